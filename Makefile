@@ -1,0 +1,247 @@
+# remodel: from a folder of photographs to a 3D pan & scan video. `make help` tells what there is.
+#
+# One file, four parts: the scene and how to run, the top (what a person calls), the build (programs under
+# out/build/FLAVOR), the pipeline's graph (products under out/SCENE). The top calls this file again with PHASE=build, then
+# with PHASE=graph once for each step that needs a list only a product can give: which photos, which views, which frames.
+
+SHELL := /bin/bash
+.SHELLFLAGS := -o pipefail -ec
+.SUFFIXES:
+MAKEFLAGS += --no-builtin-rules
+.DEFAULT_GOAL := all
+.PHONY: FORCE
+
+## SCENE=NAME: the scene to work on, scenes/NAME/
+## PHOTOS=DIR: folder of JPEG/PNG photos; with a new SCENE it is written to scenes/SCENE/scene.mk
+## SFM=DIR: a COLMAP (text, binary) or Bundler model of the photos, used in place of running COLMAP
+## EXCLUDE="NAMES": photos to leave out, by id or file name
+## QUALITY=draft|default|final: configs/QUALITY.cfg; draft and final work beside the default, in out/SCENE+QUALITY
+QUALITY ?= default
+## JOBS=local|slurm: where the per-view work runs
+JOBS ?= local
+## SLURM_ARGS="...": more options for sbatch; VIEWS_PER_JOB and FRAMES_PER_JOB cut the job array
+VIEWS_PER_JOB ?= 4
+FRAMES_PER_JOB ?= 30
+## CORES=N: cores to use; jobs times threads never exceed it
+CORES ?= $(shell nproc)
+## DEPS=auto|manual: install what is missing with apt, or only print the line to run
+DEPS ?= auto
+## FLAVOR=release|debug|asan: how the programs are compiled
+FLAVOR ?= release
+## V=1: show commands
+
+B := out/build/$(FLAVOR)
+EFFECT := establishing_dolly
+STAGES := $(patsubst stages/%/,%,$(sort $(dir $(wildcard stages/*/*.c))))
+SUB := $(MAKE) --no-print-directory
+hide = $(if $(V),,@)
+
+ifneq ($(SCENE),)
+  ifeq ($(shell [[ '$(subst ','\'',$(SCENE))' =~ ^[A-Za-z0-9_][A-Za-z0-9_-]*$$ ]] && echo good),)
+    $(error SCENE=$(SCENE): a scene is named with letters, digits, _ and -)
+  endif
+  ifeq ($(filter $(QUALITY),draft default final),)
+    $(error QUALITY=$(QUALITY) is not one of: draft default final)
+  endif
+  ifeq ($(filter $(JOBS),local slurm),)
+    $(error JOBS=$(JOBS) is not one of: local slurm)
+  endif
+  -include scenes/$(SCENE)/scene.mk
+endif
+# what quality changes is in O; what all qualities share, the photos' records and SfM, is in S
+S := out/$(SCENE)
+O := $(S)$(if $(filter-out default,$(QUALITY)),+$(QUALITY))
+
+ifneq ($(PHASE),graph)
+# ------------------------------------------------------------------------------------------------------------ the top
+ifeq ($(PHASE),)
+
+# Values with $, # and quotes reach recipes as shell variables; Make must not expand what was typed on its command line
+literal = $(if $(filter command environment,$(firstword $(origin $(1)))),$(value $(1)),$($(1)))
+export REMODEL_PHOTOS := $(call literal,PHOTOS)
+export REMODEL_SFM := $(call literal,SFM)
+export REMODEL_EXCLUDE := $(call literal,EXCLUDE)
+
+export VIEWS_PER_JOB SLURM_ARGS
+dry = $(findstring n,$(filter-out --%,$(firstword -$(MAKEFLAGS))))
+GOALS := sfm views depth path frames video report
+.PHONY: all help why resfm check bench deps deps-check clean $(GOALS)
+
+ifeq ($(SCENE),)
+all: deps ## everything a scene asks for; without SCENE builds the programs and explains
+	+@$(SUB) PHASE=build build
+	@common/explain.sh no-scene
+sfm:    ## camera poses: COLMAP, or the model in SFM
+views:  ## + rectified, linear views
+depth:  ## + layered depth maps
+path:   ## + the camera move
+frames: ## + its frames
+video:  ## + the video
+report: ## + the page: the same as all
+why:    ## what is stale, and because of what
+resfm:  ## run COLMAP again, after photos were changed
+$(GOALS) why resfm:
+	@echo "make $@ works on a scene: make $@ SCENE=NAME ('make help' lists the scenes)." >&2; exit 2
+else
+all $(GOALS) why resfm: deps
+	+@$(SUB) PHASE=build build
+	+@common/run_scene.sh '$(SCENE)' '$(S)' '$(O)' '$@' '$(dry)' '$(JOBS)' '$(CORES)' '$(B)/bin' $(SUB)
+endif
+
+deps:
+	+@common/deps.sh $(DEPS) run
+deps-check:
+	+@common/deps.sh $(DEPS) run check
+check: deps-check ## build and run all tests
+	+@$(SUB) PHASE=build tests-build
+	+@tests/run '$(B)' $(CHECKS)
+fuzz: deps-check ## FUZZ=NAME SECONDS=60: look for new inputs that break a parser (needs clang)
+	+@tests/fuzz/fuzz.sh '$(FUZZ)' '$(or $(SECONDS),60)'
+help: ## this text
+	@common/explain.sh help $(firstword $(MAKEFILE_LIST))
+clean: ## remove what was built (products of scenes stay)
+	rm -rf out/build
+
+else
+# ---------------------------------------------------------------------------------------------------------- the build
+
+say = $(if $(V),,@echo '  $(1)';)
+.DELETE_ON_ERROR:
+
+CC := gcc
+CXX := g++
+PKGS := OpenEXR libturbojpeg libpng libexif inih libxxhash qhull_r
+WARN := -Wall -Wextra -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Wvla -Wpointer-arith -Wwrite-strings
+FLAGS.release := -O3 -g
+FLAGS.asan := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer
+FLAGS.debug := -O0 -g
+ifeq ($(FLAGS.$(FLAVOR)),)
+  $(error FLAVOR=$(FLAVOR) is not one of: release asan debug)
+endif
+# -ffp-contract=off: the same bits from every compiler version; -march: AVX2 is what the hot loops are written for
+CFLAGS := -std=c11 -D_GNU_SOURCE -mavx2 -mno-fma -ffp-contract=off -fopenmp $(WARN) $(if $(CI),-Werror) $(FLAGS.$(FLAVOR)) \
+  -I. $(shell pkg-config --cflags $(PKGS) 2>/dev/null)
+LDLIBS := -lOpenEXRCore $(shell pkg-config --libs $(PKGS) 2>/dev/null) -lm
+
+objs = $(patsubst %.c,$(B)/obj/%.o,$(wildcard $(1)))
+COMMON_OBJS := $(call objs,common/*.c)
+BINS := $(STAGES:%=$(B)/bin/%)
+UNIT_TESTS := $(patsubst tests/unit/%.c,$(B)/tests/unit/%,$(wildcard tests/unit/*/*.c))
+FUZZ_TESTS := $(patsubst tests/fuzz/%.c,$(B)/tests/fuzz/%,$(wildcard tests/fuzz/fuzz_*.c))
+
+.PHONY: build tests-build
+build: $(BINS) $(STAGES:%=$(B)/code/%)
+tests-build: build $(UNIT_TESTS) $(FUZZ_TESTS)
+
+$(B)/flags: FORCE
+	+@mkdir -p $(@D); echo '$(CC) $(CFLAGS) $(LDLIBS)' >$@.tmp; cmp -s $@.tmp $@ && rm $@.tmp || mv $@.tmp $@
+
+$(B)/obj/%.o: %.c $(B)/flags
+	$(call say,CC $<)mkdir -p $(@D); $(CC) $(CFLAGS) -MMD -MP -c -o $@ $<
+
+$(B)/libremodel.a: $(COMMON_OBJS)
+	$(call say,AR $@)rm -f $@; ar rcsD $@ $^
+
+# what a product depends on is the code, not the file: a stamp of the stripped program, rewritten only if that changed
+$(B)/code/%: $(B)/bin/%
+	+@[ -e $< ] || exit 0; mkdir -p $(@D); strip -s -o $@.bin $<; cksum <$@.bin >$@.tmp; rm $@.bin; \
+	  cmp -s $@.tmp $@ && rm $@.tmp || mv $@.tmp $@
+
+link = $(call say,LD $@)mkdir -p $(@D); $(CC) $(CFLAGS) -o $@ $(filter %.o %.a,$^) $(LDLIBS) $(1)
+
+define stage_rules
+$(B)/bin/$(1): $(call objs,stages/$(1)/*.c) $(B)/libremodel.a
+	$$(call link)
+$(patsubst tests/unit/%.c,$(B)/tests/unit/%,$(wildcard tests/unit/$(1)/*.c)): \
+  $(filter-out $(B)/obj/stages/$(1)/$(1).o,$(call objs,stages/$(1)/*.c))
+endef
+$(foreach s,$(STAGES),$(eval $(call stage_rules,$(s))))
+
+# tests/unit/common/*.c test common/; tests/unit/STAGE/*.c test a stage's algorithm (its objects but for its main)
+$(UNIT_TESTS): $(B)/tests/unit/%: $(B)/obj/tests/unit/%.o $(B)/libremodel.a
+	$(call link,-lcmocka)
+$(FUZZ_TESTS): $(B)/tests/fuzz/%: $(B)/obj/tests/fuzz/%.o $(B)/obj/tests/fuzz/run_corpus.o $(B)/libremodel.a
+	$(call link)
+.SECONDARY: $(call objs,tests/*/*.c tests/*/*/*.c)
+-include $(shell find $(B)/obj -name '*.d' 2>/dev/null)
+
+endif
+else
+# ---------------------------------------------------------------------------------------------------------- the graph
+
+# lists that products give: PHOTO_IDS, VIEWS, FRAMES
+-include $(S)/photos/photos.mk $(O)/views/views.mk $(O)/parallax/$(EFFECT)/frames.mk
+
+BIN := $(B)/bin
+E := $(O)/parallax/$(EFFECT)
+CAMERAS := $(addprefix $(O)/views/,cameras.txt images.txt points3D.txt)
+VIEW_EXR := $(VIEWS:%=$(O)/views/%.exr)
+DEPTH := $(VIEWS:%=$(O)/depth/%.exr)
+DEPTH_TXT := $(DEPTH:.exr=.txt)
+FRAME_EXR := $(FRAMES:%=$(E)/frames/%.exr)
+PATH_TXT := $(E)/path.txt $(addprefix $(E)/path/,cameras.txt images.txt points3D.txt)
+needs = $(O)/slice/$(1).cfg $(B)/code/$(1)
+T := $(CORES)
+
+# $(call stage,NAME,ITEM,FOLDER,ARGS): runs it here, its words on screen and in FOLDER/log
+stage = $(hide)common/run_stage.sh live $(1) $(2) $(3) $(BIN)/$(1) --threads $(T) --config $(3)/slice/$(1).cfg $(4)
+# $(call farm,NAME,ITEM,PRODUCTS,ARGS[,SHELLWORD]): the same for per-view work, which may be planned (LAUNCH=plan) for a cluster;
+# a plan's line is PRODUCTS, a tab, and the command with SHELLWORD already expanded behind it
+farm_line = common/run_stage.sh quiet $(1) $(2) $(O) $(BIN)/$(1) --threads $(T) --config $(O)/slice/$(1).cfg $(4)
+farm = $(if $(filter plan,$(LAUNCH)),printf '%s\t%s %s\n' '$(3)' '$(farm_line)' "$(5)" >>$(PLAN),$(farm_line) $(5))
+
+.PHONY: sfm views depth path frames video report
+sfm: $(O)/views/views.mk
+views: $(VIEW_EXR)
+depth: $(DEPTH) $(DEPTH_TXT)
+path: $(E)/frames.mk
+frames: $(FRAME_EXR)
+video: $(E)/video.mp4
+report: $(O)/index.html
+
+# SfM runs once for a set of photos: COLMAP is not reproducible, so a changed photo does not redo it (make resfm does)
+$(S)/sfm/models.txt: $(S)/photos/list.txt $(S)/slice/sfm.cfg $(S)/stamp/sfm_source.txt
+	$(call stage,sfm,all,$(S),--photos "$$REMODEL_PHOTOS" --records $(S)/photos --out $(S)/sfm \
+	  $(if $(wildcard scenes/$(SCENE)/masks),--masks scenes/$(SCENE)/masks) $${REMODEL_SFM:+--model "$$REMODEL_SFM"})
+
+$(CAMERAS) $(O)/views/lenses.txt $(O)/views/views.mk &: $(S)/sfm/models.txt $(S)/photos/list.txt \
+  $(S)/stamp/photo_sizes.txt $(call needs,sfm_import)
+	$(call stage,sfm_import,all,$(O),--sfm $(S)/sfm --records $(S)/photos --out $(O)/views)
+
+define view_rules
+$(O)/views/$(1).exr: $(S)/photos/$(firstword $(subst @, ,$(1))).txt $(CAMERAS) $(O)/views/lenses.txt $(call needs,rectify)
+	$$(hide)$$(call farm,rectify,$(1),$$@,--view $(1) --photos "$$$$REMODEL_PHOTOS" --records $(S)/photos --views $(O)/views --out $$@)
+$(O)/depth/$(1).exr $(O)/depth/$(1).txt &: $(O)/views/$(1).exr $(CAMERAS) $(call needs,segment_depth) | $(VIEW_EXR)
+	$$(hide)$$(call farm,segment_depth,$(1),$(1:%=$(O)/depth/%.txt $(O)/depth/%.exr),\
+	  --view $(1) --views $(O)/views --out $(1:%=$(O)/depth/%.exr) --deps $(1:%=$(O)/depth/%.d))
+endef
+$(foreach v,$(VIEWS),$(eval $(call view_rules,$(v))))
+-include $(wildcard $(DEPTH:.exr=.d)) # the neighbours each view really read
+$(O)/views/%.exr: ; # a neighbour that is a view no more
+
+$(PATH_TXT) $(E)/frames.mk &: $(CAMERAS) $(O)/views/lenses.txt $(DEPTH) $(DEPTH_TXT) $(call needs,plan_path)
+	$(call stage,plan_path,$(EFFECT),$(O),--views $(O)/views --depth $(O)/depth --records $(S)/photos --effect $(EFFECT) --out $(E))
+
+# frames come in chunks, a process each; of a chunk only the frames that are missing or stale are rendered
+define chunk_rule
+$(1:%=$(E)/frames/%.exr) &: $(PATH_TXT) $(CAMERAS) $(DEPTH) $(DEPTH_TXT) $(call needs,render_views)
+	$$(hide)stale=$$$$(common/stale.sh $(1:%=$(E)/frames/%.exr) -- $$^); \
+	  $$(call farm,render_views,$(firstword $(1)),$(1:%=$(E)/frames/%.exr),--views $(O)/views --depth $(O)/depth --path $(E) --out $(E)/frames --frames,$$$$stale)
+endef
+chunks = $(if $(1),$(eval $(call chunk_rule,$(wordlist 1,$(FRAMES_PER_JOB),$(1))))$(call chunks,$(wordlist $(words x $(wordlist 1,$(FRAMES_PER_JOB),$(1))),$(words $(1)),$(1))))
+$(call chunks,$(FRAMES))
+
+$(E)/video.mp4: $(FRAME_EXR) $(PATH_TXT) $(call needs,encode_video)
+	$(call stage,encode_video,$(EFFECT),$(O),--path $(E) --frames $(E)/frames --out $@)
+
+$(O)/index.html: $(E)/video.mp4 $(PATH_TXT) $(CAMERAS) $(DEPTH) $(DEPTH_TXT) $(S)/photos/list.txt $(STAGES:%=$(O)/slice/%.cfg) $(call needs,report)
+	$(call stage,report,page,$(O),--scene $(SCENE) --folder $(O) --shared $(S) --photos "$$REMODEL_PHOTOS" --out $@)
+
+# What is looked at afresh in every run, also under -n: configs, photos. Files are rewritten only if their text changed.
+CONFIGS := configs/default.cfg $(if $(filter-out default,$(QUALITY)),configs/$(QUALITY).cfg) $(wildcard scenes/$(SCENE)/scene.cfg)
+.PHONY: look
+look:
+	+@common/look.sh slices $(BIN) $(O)/slice '$(STAGES)' $(CONFIGS)
+	+@common/look.sh slices $(BIN) $(S)/slice 'import_photos sfm' $(filter-out configs/draft.cfg configs/final.cfg,$(CONFIGS))
+	+@common/look.sh photos $(BIN) $(S) scenes/$(SCENE)
+endif

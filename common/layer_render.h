@@ -1,0 +1,47 @@
+/* layer_render.h - layered depth maps seen from a novel camera.
+ *
+ * Each segment is a plane (1/z linear in its view's pixels), so its picture in the novel camera is a homography: a target pixel
+ * is taken back to the segment's view, where the layers' ids tell whether it belongs to the segment. In each view
+ * segments go front to back and saturate; across views a soft z-buffer (thesis eq. 3.1) blends by weight x w x alpha. */
+#ifndef REMODEL_LAYER_RENDER_H
+#define REMODEL_LAYER_RENDER_H
+
+#include "camera_set.h"
+#include "layered_depth.h"
+#include "view_mesh.h"
+
+struct layer_scene { /* views, their layers, the mesh; depths[i] belongs to set->views[i] */
+    const struct camera_set *set;
+    struct layered_depth *depths; /* owned; width 0 where not loaded */
+    struct view_mesh mesh;
+    double near_depth, far_depth; /* robust percentiles (2, 98) of the segments' depths over all views, in their own cameras */
+};
+
+/* Reads depth_folder/VIEW.exr of every view. ST_DATA if a size differs from the camera's. Adds each file to prov (may be NULL). */
+enum status layer_scene_read(struct layer_scene *scene, const struct camera_set *set, const char *depth_folder,
+                             struct provenance *prov, struct err *err);
+void layer_scene_release(struct layer_scene *scene);
+
+struct layer_render_options {
+    double soft_z;     /* width of the soft z: in units of the segments' depth uncertainty; 0: the thesis' (rho, rho / 10) */
+    int fill_diameter; /* holes narrower than this (px) are filled by the reverse soft z in 7x7; 0: none */
+};
+
+struct rendered_frame {
+    int width, height;
+    float *rgba;      /* w * h * 4, linear, premultiplied; alpha 0 in holes */
+    float *z;         /* w * h, depth in the novel camera, 0 unknown */
+    uint8_t *hole;    /* w * h: 1 where no segment was, before filling */
+    double hole_fraction, unfilled_fraction; /* of the pixels: before and after filling */
+};
+
+/* The frame's buffers are kept from call to call if the size is the same. Same bits for any number of threads. */
+enum status layer_render(struct rendered_frame *out, const struct layer_scene *scene, const struct view *novel,
+                         const struct layer_render_options *options, struct err *err);
+void rendered_frame_release(struct rendered_frame *frame);
+
+/* Coverage alone, without colour: out->hole and hole_fraction; `scale` reduces the novel camera (0 < scale <= 1). */
+enum status layer_coverage(struct rendered_frame *out, const struct layer_scene *scene, const struct view *novel,
+                           double scale, struct err *err);
+
+#endif

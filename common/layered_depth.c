@@ -1,0 +1,244 @@
+/* layered_depth.c - reading and writing layered depth maps; formats in docs/formats.md.
+ *
+ * VIEW.txt, in front of the picture because a picture without its segments cannot be used:
+ *   remodel-segments 1
+ *   size WIDTH HEIGHT
+ *   segments COUNT
+ *   ID PIXELS A B C SIGMA CONFIDENCE      a line a segment, ids 1 .. COUNT in order
+ * What is read is checked against itself, so that whoever uses it may index segments by id without looking. */
+#include "common/layered_depth.h"
+
+#include <limits.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/exr.h"
+#include "common/outfile.h"
+#include "common/textfile.h"
+#include "common/view_image.h"
+
+#define PLANES_A_LAYER 6
+static const char *const plane_names[2 * PLANES_A_LAYER] = {
+    "interior.R", "interior.G", "interior.B", "interior.A", "interior.Z", "interior.id",
+    "boundary.R", "boundary.G", "boundary.B", "boundary.A", "boundary.Z", "boundary.id",
+};
+static const enum exr_type plane_types[PLANES_A_LAYER] = {EXR_HALF, EXR_HALF, EXR_HALF, EXR_HALF, EXR_FLOAT, EXR_UINT};
+
+static enum status layer_init(struct layer *l, size_t pixels, struct err *err)
+{
+    l->rgba = calloc(pixels, 4 * sizeof *l->rgba);
+    l->z = calloc(pixels, sizeof *l->z);
+    l->id = calloc(pixels, sizeof *l->id);
+    return l->rgba && l->z && l->id ? ST_OK : err_nomem(err, "a layer of a depth map", pixels * 24);
+}
+
+static void layer_release(struct layer *l)
+{
+    free(l->rgba);
+    free(l->z);
+    free(l->id);
+}
+
+enum status layered_depth_init(struct layered_depth *d, int width, int height, struct err *err)
+{
+    *d = (struct layered_depth){0};
+    if (width < 1 || height < 1 || (int64_t)width * height > INT_MAX)
+        return err_set(err, ST_DATA, "a depth map cannot have %d x %d pixels.", width, height);
+    d->width = width;
+    d->height = height;
+    size_t pixels = (size_t)width * (size_t)height;
+    if (layer_init(&d->interior, pixels, err) || layer_init(&d->boundary, pixels, err)) {
+        layered_depth_release(d);
+        return ST_NOMEM;
+    }
+    return ST_OK;
+}
+
+void layered_depth_release(struct layered_depth *d)
+{
+    if (!d) return;
+    layer_release(&d->interior);
+    layer_release(&d->boundary);
+    free(d->segments);
+    *d = (struct layered_depth){0};
+}
+
+/* PATH.exr -> PATH.txt; the caller frees it. */
+static enum status text_path(char **text, const char *path, struct err *err)
+{
+    size_t n = strlen(path);
+    if (n < 5 || strcmp(path + n - 4, ".exr"))
+        return err_set(err, ST_USAGE, "%s: a depth map is a file whose name ends in .exr.", path);
+    *text = strdup(path);
+    if (!*text) return err_nomem(err, "a file name", n + 1);
+    memcpy(*text + n - 4, ".txt", 4);
+    return ST_OK;
+}
+
+static enum status write_segments(const struct layered_depth *d, const char *path, const struct provenance *prov,
+                                  struct err *err)
+{
+    struct outfile file = {0};
+    enum status st = outfile_open(&file, path, err);
+    if (!st) {
+        if (prov) provenance_print(prov, file.fp);
+        fprintf(file.fp, "remodel-segments 1\nsize %d %d\nsegments %d\n", d->width, d->height, d->segment_count);
+        for (int i = 0; i < d->segment_count; i++) {
+            const struct depth_segment *s = &d->segments[i];
+            fprintf(file.fp, "%u %d %.17g %.17g %.17g %.9g %.9g\n", s->id, s->pixels, s->plane[0], s->plane[1],
+                    s->plane[2], s->sigma, s->confidence);
+        }
+        st = outfile_commit(&file, err);
+    }
+    outfile_discard(&file);
+    return st;
+}
+
+static enum status add_layer(struct exr_image *im, const struct layer *l, const char *const *names, struct err *err)
+{
+    size_t pixels = (size_t)im->width * (size_t)im->height;
+    for (int k = 0; k < PLANES_A_LAYER; k++) {
+        struct exr_plane *plane;
+        if (exr_add_plane(im, names[k], plane_types[k], &plane, err)) return err->status;
+        if (k < 4)
+            for (size_t i = 0; i < pixels; i++) plane->f[i] = l->rgba[4 * i + (size_t)k];
+        else if (k == 4)
+            memcpy(plane->f, l->z, pixels * sizeof *l->z);
+        else
+            memcpy(plane->u, l->id, pixels * sizeof *l->id);
+    }
+    return ST_OK;
+}
+
+enum status layered_depth_write(const struct layered_depth *d, const struct view *view, const char *path,
+                                const struct provenance *prov, struct err *err)
+{
+    struct exr_image im = {0};
+    char *text = NULL;
+    enum status st = text_path(&text, path, err);
+    if (!st) st = exr_image_init(&im, d->width, d->height, err);
+    if (!st) st = add_layer(&im, &d->interior, plane_names, err);
+    if (!st) st = add_layer(&im, &d->boundary, plane_names + PLANES_A_LAYER, err);
+    if (!st) {
+        if (view) exr_set_camera(&im, view);
+        st = write_segments(d, text, prov, err);
+    }
+    if (!st) st = exr_write(&im, path, prov, err);
+    exr_image_release(&im);
+    free(text);
+    return st;
+}
+
+static enum status expect_word(struct textfile *t, const char *wanted, struct err *err)
+{
+    char *word;
+    if (!textfile_next(t)) return textfile_error(t, err, NULL, "a line '%s ...'", wanted);
+    if (textfile_word(t, wanted, &word, err)) return err->status;
+    return strcmp(word, wanted) ? textfile_error(t, err, word, "'%s'", wanted) : ST_OK;
+}
+
+static enum status read_segment(struct depth_segment *s, struct textfile *t, int id, int64_t pixels_most,
+                                struct err *err)
+{
+    int64_t id_read, pixels;
+    if (!textfile_next(t)) return textfile_error(t, err, NULL, "a line of segment %d", id);
+    if (textfile_int(t, "segment id", id, id, &id_read, err) ||
+        textfile_int(t, "pixels", 0, pixels_most, &pixels, err) || textfile_double(t, "plane a", &s->plane[0], err) ||
+        textfile_double(t, "plane b", &s->plane[1], err) || textfile_double(t, "plane c", &s->plane[2], err) ||
+        textfile_double(t, "sigma", &s->sigma, err) || textfile_double(t, "confidence", &s->confidence, err) ||
+        textfile_end(t, err))
+        return err->status;
+    if (s->sigma < 0) return textfile_error(t, err, "a negative sigma", "a relative uncertainty of 0 or more");
+    if (s->confidence < 0 || s->confidence > 1)
+        return textfile_error(t, err, "a confidence out of range", "a number from 0 to 1");
+    s->id = (uint32_t)id;
+    s->pixels = (int)pixels;
+    return ST_OK;
+}
+
+enum status layered_depth_read_segments(struct layered_depth *d, const char *path, struct err *err)
+{
+    struct textfile t = {0};
+    int64_t version, width = 0, height = 0, count = 0;
+    *d = (struct layered_depth){0};
+    enum status st = textfile_open(&t, path, err);
+    if (!st) st = expect_word(&t, "remodel-segments", err);
+    if (!st) st = textfile_int(&t, "version", 1, 1, &version, err);
+    if (!st) st = textfile_end(&t, err);
+    if (!st) st = expect_word(&t, "size", err);
+    if (!st) st = textfile_int(&t, "width", 1, 1 << 20, &width, err);
+    if (!st) st = textfile_int(&t, "height", 1, INT_MAX / width, &height, err);
+    if (!st) st = textfile_end(&t, err);
+    if (!st) st = expect_word(&t, "segments", err);
+    /* at least 14 bytes a line: a count that the file cannot hold is not believed */
+    if (!st) st = textfile_int(&t, "number of segments", 0, (int64_t)(t.size / 14 + 1), &count, err);
+    if (!st) st = textfile_end(&t, err);
+    if (!st) {
+        d->width = (int)width;
+        d->height = (int)height;
+        d->segments = calloc((size_t)count + 1, sizeof *d->segments);
+        if (!d->segments) st = err_nomem(err, "segments", (size_t)count * sizeof *d->segments);
+    }
+    for (int i = 0; !st && i < count; i++) {
+        st = read_segment(&d->segments[i], &t, i + 1, width * height, err);
+        d->segment_count = i + 1;
+    }
+    if (!st && textfile_next(&t)) st = textfile_error(&t, err, "another line", "the end of the file");
+    textfile_release(&t);
+    if (st) layered_depth_release(d);
+    return st;
+}
+
+static enum status take_layer(struct layer *l, const struct exr_image *im, const char *const *names, int segments,
+                              const char *path, struct err *err)
+{
+    size_t pixels = (size_t)im->width * (size_t)im->height;
+    const struct exr_plane *planes[PLANES_A_LAYER];
+    for (int k = 0; k < PLANES_A_LAYER; k++) {
+        planes[k] = exr_find(im, names[k]);
+        if (!planes[k] || (k == 5 ? !planes[k]->u : !planes[k]->f))
+            return err_set(err, ST_DATA, "%s: channel %s has the wrong type; make the depth map again.", path,
+                           names[k]);
+    }
+    for (size_t i = 0; i < pixels; i++) {
+        for (int k = 0; k < 4; k++) l->rgba[4 * i + (size_t)k] = planes[k]->f[i];
+        l->z[i] = planes[4]->f[i];
+        l->id[i] = planes[5]->u[i];
+        if (l->id[i] > (uint32_t)segments || !(l->z[i] >= 0) || !(l->rgba[4 * i + 3] >= 0 && l->rgba[4 * i + 3] <= 1))
+            return err_set(err, ST_DATA,
+                           "%s: pixel (%zu, %zu) of %.8s has segment %u, alpha %g, z %g; wanted a segment up to %d, an "
+                           "alpha from 0 to 1 and a depth of 0 or more. Make the depth map again.",
+                           path, i % (size_t)im->width, i / (size_t)im->width, names[0], l->id[i],
+                           (double)l->rgba[4 * i + 3], (double)l->z[i], segments);
+    }
+    return ST_OK;
+}
+
+enum status layered_depth_read(struct layered_depth *d, const char *path, struct err *err)
+{
+    struct exr_image im = {0};
+    struct layered_depth listed = {0};
+    char *text = NULL;
+    *d = (struct layered_depth){0};
+    enum status st = text_path(&text, path, err);
+    if (!st) st = layered_depth_read_segments(&listed, text, err);
+    if (!st) st = exr_read(&im, path, plane_names, 2 * PLANES_A_LAYER, err);
+    if (!st && (im.width != listed.width || im.height != listed.height))
+        st = err_set(err, ST_DATA, "%s has %d x %d pixels but %s speaks of %d x %d; make the depth map again.", path,
+                     im.width, im.height, text, listed.width, listed.height);
+    if (!st) st = layered_depth_init(d, im.width, im.height, err);
+    if (!st) st = take_layer(&d->interior, &im, plane_names, listed.segment_count, path, err);
+    if (!st) st = take_layer(&d->boundary, &im, plane_names + PLANES_A_LAYER, listed.segment_count, path, err);
+    if (!st) {
+        d->segments = listed.segments;
+        d->segment_count = listed.segment_count;
+        listed.segments = NULL;
+    } else {
+        layered_depth_release(d);
+    }
+    layered_depth_release(&listed);
+    exr_image_release(&im);
+    free(text);
+    return st;
+}

@@ -1,0 +1,18 @@
+/* log.h - words for people, on stderr, each line beginning with the stage's name. */
+#ifndef REMODEL_LOG_H
+#define REMODEL_LOG_H
+
+#include <stdbool.h>
+
+#include "err.h"
+
+void log_set_name(const char *stage); /* kept by pointer: a string literal */
+const char *log_name(void);           /* "remodel" until it is set */
+void log_note(const char *fmt, ...) ERR_PRINTF(1, 2);
+void log_warn(const char *fmt, ...) ERR_PRINTF(1, 2); /* "STAGE: warning: ..." */
+void log_line(const char *kind, const char *text);       /* "STAGE: KINDTEXT", in one piece even beside other processes */
+
+/* A line that the next one replaces (progress on a terminal); keep: it stays, and the next one goes below. */
+void log_redraw(const char *text, bool keep);
+
+#endif

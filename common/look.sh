@@ -1,0 +1,58 @@
+#!/usr/bin/env bash
+# look.sh - what every run looks at afresh; a file is rewritten only if its text changed, so that nothing else reruns.
+#
+#   look.sh slices BIN FOLDER 'STAGE...' CONFIG...   each stage's effective parameters -> FOLDER/STAGE.cfg
+#   look.sh photos BIN S SCENE_FOLDER                the photos' records, their sizes, and what SfM starts from
+set -euo pipefail
+what=$1 bin=$2 folder=$3; shift 3
+
+# keep FILE: standard input becomes FILE if it differs; the text before is kept as FILE.old for `make why`
+keep()
+{
+    mkdir -p "$(dirname "$1")"
+    cat >"$1.tmp"
+    if cmp -s "$1.tmp" "$1"; then rm "$1.tmp"; else
+        [ ! -e "$1" ] || cp -f "$1" "$1.old"
+        mv "$1.tmp" "$1"
+    fi
+}
+
+if [ "$what" = slices ]; then
+    stages=$1; shift
+    known=" $(cd stages && echo */) "
+    for c in "$@"; do
+        awk -v known="${known//\// }" -v file="$c" '
+            /^[ \t]*\[/ { s = $0; gsub(/^[ \t]*\[[ \t]*|[ \t]*\].*$/, "", s)
+                if (!index(known, " " s " ")) { printf "%s:%d: found the section [%s], which no stage has; wanted one of:%s\n", file, NR, s, known; bad = 1 } }
+            END { exit bad }' "$c" >&2 || exit 2
+    done
+    options=()
+    for c in "$@"; do options+=(--config "$c"); done
+    for s in $stages; do
+        text=$("$bin/$s" --print-config "${options[@]}") || exit 2
+        echo "$text" | keep "$folder/$s.cfg"
+    done
+    exit 0
+fi
+
+scene=$1
+exclude=()
+if [ -n "${REMODEL_EXCLUDE-}" ]; then # names with blanks are quoted
+    while IFS= read -r -d '' n; do exclude+=(--exclude "$n"); done < <(xargs printf '%s\0' <<<"$REMODEL_EXCLUDE")
+fi
+mode=silent
+[ -e "$folder/photos/list.txt" ] || mode=live
+common/run_stage.sh "$mode" import_photos all "$folder" "$bin/import_photos" --config "$folder/slice/import_photos.cfg" \
+    --photos "$REMODEL_PHOTOS" "${exclude[@]}" --out "$folder/photos"
+[ "$mode" = live ] || grep -h warning: "$folder/log/import_photos.all.log" >&2 || true
+for r in "$folder"/photos/*.txt; do
+    [ "${r##*/}" = list.txt ] || { printf '%s ' "${r##*/}"; grep -E '^(size|orientation) ' "$r" | tr '\n' ' '; echo; }
+done | keep "$folder/stamp/photo_sizes.txt"
+{
+    if [ -n "${REMODEL_SFM-}" ]; then
+        (cd "$REMODEL_SFM" && find . -type f \( -name '*.txt' -o -name '*.bin' -o -name '*.out' \) -print0 | LC_ALL=C sort -z | xargs -0r cksum)
+    else
+        echo "COLMAP"
+        [ ! -d "$scene/masks" ] || (cd "$scene/masks" && find . -type f -name '*.png' -print0 | LC_ALL=C sort -z | xargs -0r cksum)
+    fi
+} | keep "$folder/stamp/sfm_source.txt"

@@ -1,0 +1,44 @@
+/* photo.h - photographs as cameras store them: JPEG and PNG with EXIF, and pictures for people to look at.
+ *
+ * Rows are those of the stored file: EXIF orientation is reported, never applied. */
+#ifndef REMODEL_PHOTO_H
+#define REMODEL_PHOTO_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "err.h"
+#include "image.h"
+
+struct photo_info { /* 0 or "" where the file does not say */
+    int width, height;
+    int bits;        /* a sample: 8 or 16 */
+    int orientation; /* EXIF 1..8; 1 if absent */
+    double focal_mm, focal35_mm, seconds, f_number, iso;
+    char make[64], model[64];
+};
+
+struct photo {
+    struct photo_info info;
+    uint16_t *samples; /* RGB interleaved, w * h * 3, owned; 8-bit files hold 0..255, 16-bit files 0..65535 */
+};
+
+/* Errors name the file and say what to do: not a JPEG or PNG (by content, not by name), empty, truncated (a JPEG that
+ * ends early is an error, not a grey lower half), CMYK or YCCK, larger than 2^28 pixels, a size of 0. Grey becomes RGB;
+ * alpha is dropped. */
+enum status photo_read(struct photo *p, const char *path, struct err *err);
+enum status photo_read_info(struct photo_info *info, const char *path, struct err *err); /* headers only */
+void photo_release(struct photo *p);
+
+/* 3 channels, linearised by the sRGB curve: white is 1. */
+enum status photo_to_linear(struct image *out, const struct photo *p, struct err *err);
+
+/* 8-bit RGB (channels 3) or grey (1), through an outfile. quality: 1..100. Deterministic bytes. */
+enum status png_write(const char *path, const unsigned char *pixels, int width, int height, int channels,
+                      struct err *err);
+enum status jpeg_write(const char *path, const unsigned char *rgb, int width, int height, int quality, struct err *err);
+/* JPEG in memory; *bytes is malloc'ed, the caller frees it. */
+enum status jpeg_encode(unsigned char **bytes, size_t *size, const unsigned char *rgb, int width, int height,
+                        int quality, struct err *err);
+
+#endif

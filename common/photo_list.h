@@ -1,0 +1,40 @@
+/* photo_list.h - the photographs of a scene as `import_photos` recorded them: out/SCENE/photos/.
+ *
+ * list.txt, a line a photo in order of id: ID "FILE" - rewritten only when the set changes. ID.txt, a record a photo,
+ * rewritten only when that photo's content changes:
+ *   remodel-photo 1
+ *   file "IMG 1.jpg"            as the folder PHOTOS names it
+ *   hash 0123...                of its bytes (common/hash.h)
+ *   size WIDTH HEIGHT
+ *   bits 8
+ *   orientation 1               EXIF, 1..8
+ *   exif FOCAL_MM FOCAL35_MM SECONDS F_NUMBER ISO     0: not stated
+ *   camera "MAKE" "MODEL"
+ * An id is safe for Make, shells and file systems: letters, digits, _ and -; unique in the scene; the same for the same set of file names. */
+#ifndef REMODEL_PHOTO_LIST_H
+#define REMODEL_PHOTO_LIST_H
+
+#include "hash.h"
+#include "photo.h"
+
+struct photo_record {
+    char *id, *file; /* owned */
+    char hash[HASH_TEXT];
+    struct photo_info info;
+};
+
+struct photo_list {
+    struct photo_record *photos; /* in order of id (strcmp) */
+    int count;
+};
+
+/* list.txt and every record it names. folder: out/SCENE/photos. */
+enum status photo_list_read(struct photo_list *list, const char *folder, struct err *err);
+enum status photo_record_read(struct photo_record *r, const char *folder, const char *id, struct err *err);
+enum status photo_record_write(const struct photo_record *r, const char *folder, struct err *err);
+int photo_list_find_id(const struct photo_list *list, const char *id);     /* -1: not there */
+int photo_list_find_file(const struct photo_list *list, const char *file); /* -1: not there */
+void photo_record_release(struct photo_record *r);
+void photo_list_release(struct photo_list *list);
+
+#endif

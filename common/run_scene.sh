@@ -1,0 +1,126 @@
+#!/usr/bin/env bash
+# run_scene.sh SCENE S O GOAL DRY JOBS CORES BIN MAKE... - one run of a scene: its lock, then the graph's phases in turn.
+#
+# S: what all qualities share; O: this quality's products; DRY: n under `make -n`. A phase ends where the next one needs a
+# list that only a product can give. Jobs times threads never exceed CORES: each phase has as many jobs as it has work,
+# and the threads that are left.
+set -euo pipefail
+scene=$1 S=$2 O=$3 goal=$4 dry=$5 jobs=$6 cores=$7 bin=$8; shift 8
+make=("$@")
+folder=scenes/$scene
+
+# what the caller's -j says is an upper bound for jobs; the job server itself is not passed on
+asked=$(grep -oE -- '(^| )-j *[0-9]+' <<<"${MAKEFLAGS-}" | grep -oE '[0-9]+' | head -n 1 || true)
+MAKEFLAGS=$(sed -E 's/(^| )-j *[0-9]*( |$)/ /; s/--jobserver-[a-z]+=[^ ]*//' <<<"${MAKEFLAGS-}")
+export MAKEFLAGS
+most=$cores
+[ -z "$asked" ] || [ "$asked" -ge "$cores" ] || most=$asked
+graph() { "${make[@]}" PHASE=graph "$@"; }
+
+if [ ! -e "$folder/scene.mk" ]; then
+    if [ -z "${REMODEL_PHOTOS-}" ]; then
+        echo "There is no $folder/scene.mk. Give the folder of photos to begin: make PHOTOS=DIR SCENE=$scene" >&2
+        exit 2
+    fi
+    if [ ! -d "$REMODEL_PHOTOS" ]; then
+        echo "PHOTOS=$REMODEL_PHOTOS is no folder. Give the folder that holds the JPEG or PNG files." >&2
+        exit 2
+    fi
+    if [ "$dry" = n ]; then echo "would create $folder/scene.mk and scene.cfg, and go on from there"; exit 0; fi
+    mkdir -p "$folder"
+    for_make() { sed -e 's/\$/$$/g' -e 's/#/\\#/g' <<<"$1"; }
+    {
+        echo "# What this scene is made from. Every variable of \`make help\` may stand here; the command line wins."
+        echo "PHOTOS := $(for_make "$REMODEL_PHOTOS")"
+        [ -z "${REMODEL_SFM-}" ] || echo "SFM := $(for_make "$REMODEL_SFM")"
+        echo "# photos to leave out, by id or file name; names with blanks in quotes"
+        echo "EXCLUDE := $(for_make "${REMODEL_EXCLUDE-}")"
+        echo "PRODUCTS := parallax"
+    } >"$folder/.scene.mk.tmp"
+    [ -e "$folder/scene.cfg" ] || {
+        echo "# Overrides of configs/default.cfg for this scene alone, a section a stage. For example:"
+        echo "#"
+        echo "# [sfm]"
+        echo "# camera_model = OPENCV"
+    } >"$folder/scene.cfg"
+    mv "$folder/.scene.mk.tmp" "$folder/scene.mk"
+    echo "made $folder/scene.mk and scene.cfg"
+fi
+if [ -z "${REMODEL_PHOTOS-}" ]; then
+    echo "$folder/scene.mk sets no PHOTOS. Write there PHOTOS := DIR, the folder of the photos." >&2
+    exit 2
+fi
+
+mkdir -p "$S"
+if [ "$dry" != n ] && [ "$goal" != why ]; then
+    exec 9>"$S/.lock"
+    if ! flock -n 9; then
+        echo "Another run works on scene $scene (or on a part that an ended run left behind). Wait for it, or end it, and try again." >&2
+        exit 1
+    fi
+fi
+
+graph look
+if [ "$goal" = why ]; then
+    graph -n --debug=b --no-print-directory report | common/explain.sh why "$S" "$O"
+    exit 0
+fi
+if [ "$dry" = n ]; then
+    [ -e "$O/views/views.mk" ] || echo "# not known before structure from motion has run: which views there are"
+    [ "$goal" = resfm ] && exec "${make[@]}" PHASE=graph -W "$S/photos/list.txt" sfm
+    [ "$goal" = all ] && goal=report
+    exec "${make[@]}" PHASE=graph T="$cores" "$goal"
+fi
+
+work=$(mktemp -d "${TMPDIR:-/tmp}/remodel.XXXXXX")
+trap 'rm -rf "$work"' EXIT
+
+# farm STAGE GOAL: the stale products of a per-view stage, here or on the cluster
+farm()
+{
+    local plan=$work/$1.plan count wide threads
+    : >"$plan"
+    graph -s -j1 LAUNCH=plan PLAN="$plan" T="$3" "$2"
+    count=$(wc -l <"$plan")
+    [ "$count" -gt 0 ] || return 0
+    if [ "$jobs" = slurm ]; then
+        REMODEL_BIN=$bin common/slurm.sh "$1" "$plan" "$O/jobs/$1" "$4" "$3"
+        graph -q "$2" || { echo "$1: the cluster's jobs have ended, but something of '$2' is still stale; see make why SCENE=$scene." >&2; exit 1; }
+        return
+    fi
+    wide=$((count < most ? count : most))
+    threads=$((cores / wide))
+    date +%s >"$work/$1.tally"
+    REMODEL_TALLY=$work/$1.tally REMODEL_COUNT=$count graph -j"$wide" T="$threads" "$2"
+}
+one() { graph -j1 T="$cores" "$@"; }
+# frames are few processes with all threads each, since every one of them holds all views in memory
+farm_frames()
+{
+    if [ "$jobs" = slurm ]; then farm render_views frames "$cores" 1; else
+        plan=$work/render_views.plan; : >"$plan"
+        graph -s -j1 LAUNCH=plan PLAN="$plan" frames
+        date +%s >"$work/render_views.tally"
+        REMODEL_TALLY=$work/render_views.tally REMODEL_COUNT=$(wc -l <"$plan") one frames
+    fi
+}
+
+if [ "$goal" = resfm ]; then
+    one -W "$S/photos/list.txt" sfm
+    echo "make SCENE=$scene goes on from the new camera poses."
+    exit 0
+fi
+one sfm
+common/explain.sh changed-photos "$S" "$scene"
+case $goal in sfm) exit 0 ;; esac
+farm rectify views 1 "${VIEWS_PER_JOB:-4}"
+case $goal in views) exit 0 ;; esac
+farm segment_depth depth 1 "${VIEWS_PER_JOB:-4}"
+case $goal in depth) exit 0 ;; esac
+one path
+case $goal in path) exit 0 ;; esac
+farm_frames
+case $goal in frames) exit 0 ;; esac
+one video
+case $goal in video) ;; *) one report ;; esac
+common/explain.sh products "$O"

@@ -1,0 +1,34 @@
+#!/usr/bin/env bash
+# run_stage.sh live|quiet|silent STAGE ITEM FOLDER COMMAND... - runs one stage; its words go to FOLDER/log/STAGE.ITEM.log.
+#
+# live: they are shown as they come. quiet: one line when the stage has ended, with the time left when REMODEL_TALLY
+# (a file, begun by run_scene.sh) and REMODEL_COUNT say how many there are. silent: not even that. A failure shows the log's end; the product
+# that was there before is left alone.
+set -uo pipefail
+mode=$1 stage=$2 item=$3 folder=$4; shift 4
+mkdir -p "$folder/log"
+log=$folder/log/$stage.$item.log
+if [ "$mode" = live ]; then
+    "$@" 2>&1 >/dev/null | tee "$log" >&2
+    rc=${PIPESTATUS[0]}
+else
+    "$@" 2>"$log"
+    rc=$?
+fi
+if [ "$rc" -ne 0 ]; then
+    {
+        [ "$rc" -le 128 ] || echo "$stage: $item was ended by signal $((rc - 128))$([ "$rc" -ne 137 ] || echo ' (killed: perhaps there was not enough memory)')."
+        [ "$mode" = live ] || { echo "$stage: $item failed; the end of $log says:"; tail -n 5 "$log" | sed 's/^/    /'; }
+    } >&2
+    exit "$rc"
+fi
+[ "$mode" = quiet ] || exit 0
+if [ -n "${REMODEL_TALLY-}" ] && [ -e "$REMODEL_TALLY" ]; then
+    echo "$item" >>"$REMODEL_TALLY"
+    { read -r began; done=$(wc -l); } <"$REMODEL_TALLY"
+    now=$(date +%s)
+    left=$(((now - began) * (REMODEL_COUNT - done) / (done > 0 ? done : 1)))
+    printf '%s %d/%d %s, about %d:%02d left\n' "$stage" "$done" "$REMODEL_COUNT" "$item" $((left / 60)) $((left % 60)) >&2
+else
+    printf '%s %s\n' "$stage" "$item" >&2
+fi

@@ -1,0 +1,95 @@
+#include "html.h"
+
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stdint.h>
+#include <string.h>
+
+/* Length of the UTF-8 character at `s` and its code; 0 if the bytes are none (overlong forms and surrogates included). */
+static size_t utf8_next(const unsigned char *s, size_t size, uint32_t *code)
+{
+    static const uint32_t LEAST[5] = {0, 0, 0x80, 0x800, 0x10000};
+    size_t length = s[0] < 0x80             ? 1
+                    : (s[0] & 0xe0) == 0xc0 ? 2
+                    : (s[0] & 0xf0) == 0xe0 ? 3
+                    : (s[0] & 0xf8) == 0xf0 ? 4
+                                            : 0;
+    if (!length || length > size) return 0;
+    *code = length == 1 ? s[0] : s[0] & (0x7fu >> length);
+    for (size_t i = 1; i < length; i++) {
+        if ((s[i] & 0xc0) != 0x80) return 0;
+        *code = *code << 6 | (s[i] & 0x3fu);
+    }
+    if (*code < LEAST[length] || *code > 0x10ffff || (*code >= 0xd800 && *code <= 0xdfff)) return 0;
+    return length;
+}
+
+static bool allowed(uint32_t code)
+{
+    if (code < 0x20) return code == '\t' || code == '\n';
+    if (code >= 0x7f && code < 0xa0) return false;
+    return (code & 0xfffe) != 0xfffe && !(code >= 0xfdd0 && code <= 0xfdef);
+}
+
+void html_bytes(FILE *to, const char *text, size_t size)
+{
+    const unsigned char *s = (const unsigned char *)text;
+    for (size_t at = 0; at < size;) {
+        uint32_t code = 0;
+        size_t length = utf8_next(s + at, size - at, &code);
+        if (!length || !allowed(code))
+            fputs("\xef\xbf\xbd", to);
+        else if (code == '&')
+            fputs("&amp;", to);
+        else if (code == '<')
+            fputs("&lt;", to);
+        else if (code == '>')
+            fputs("&gt;", to);
+        else if (code == '"')
+            fputs("&quot;", to);
+        else if (code == '\'')
+            fputs("&#39;", to);
+        else
+            fwrite(s + at, 1, length, to);
+        at += length ? length : 1;
+    }
+}
+
+void html_text(FILE *to, const char *text) { html_bytes(to, text, strlen(text)); }
+
+void html_printf(FILE *to, const char *fmt, ...)
+{
+    char text[4096];
+    va_list args;
+    va_start(args, fmt);
+    vsnprintf(text, sizeof text, fmt, args);
+    va_end(args);
+    html_text(to, text);
+}
+
+void html_base64(FILE *to, const void *bytes, size_t size)
+{
+    static const char DIGITS[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    const unsigned char *b = bytes;
+    for (size_t i = 0; i < size; i += 3) {
+        size_t left = size - i;
+        uint32_t word = (uint32_t)b[i] << 16 | (left > 1 ? (uint32_t)b[i + 1] << 8 : 0) | (left > 2 ? b[i + 2] : 0u);
+        putc(DIGITS[word >> 18], to);
+        putc(DIGITS[word >> 12 & 63], to);
+        putc(left > 1 ? DIGITS[word >> 6 & 63] : '=', to);
+        putc(left > 2 ? DIGITS[word & 63] : '=', to);
+    }
+}
+
+enum status html_base64_file(FILE *to, const char *path, struct err *err)
+{
+    unsigned char part[3 * 16384]; /* whole groups of three, so that only the last part is padded */
+    size_t size;
+    FILE *from = fopen(path, "rb");
+    enum status st = from ? ST_OK : err_errno(err, "open", path);
+
+    while (!st && (size = fread(part, 1, sizeof part, from)) > 0) html_base64(to, part, size);
+    if (from && ferror(from)) st = err_errno(err, "read", path);
+    if (from) fclose(from);
+    return st;
+}
