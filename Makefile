@@ -65,7 +65,7 @@ export REMODEL_EXCLUDE := $(call literal,EXCLUDE)
 export VIEWS_PER_JOB SLURM_ARGS
 dry = $(findstring n,$(filter-out --%,$(firstword -$(MAKEFLAGS))))
 GOALS := sfm views depth path frames video report
-.PHONY: all help why resfm check bench deps deps-check clean $(GOALS)
+.PHONY: all help why resfm check fuzz man deps deps-check clean $(GOALS)
 
 ifeq ($(SCENE),)
 all: deps ## everything a scene asks for; without SCENE builds the programs and explains
@@ -99,10 +99,13 @@ fuzz: deps-check ## FUZZ=NAME SECONDS=60: look for new inputs that break a parse
 	+@tests/fuzz/fuzz.sh '$(FUZZ)' '$(or $(SECONDS),60)'
 help: ## this text
 	@common/explain.sh help $(firstword $(MAKEFILE_LIST))
+man: ## docs/man from the programs' --help
+	+@$(SUB) PHASE=build build
+	@for s in $(STAGES); do common/man.sh $(B)/bin $$s >docs/man/$$s.1.tmp && mv docs/man/$$s.1.tmp docs/man/$$s.1; done
 clean: ## remove what was built (products of scenes stay)
 	rm -rf out/build
 
-else
+endif
 # ---------------------------------------------------------------------------------------------------------- the build
 
 say = $(if $(V),,@echo '  $(1)';)
@@ -131,7 +134,7 @@ FUZZ_TESTS := $(patsubst tests/fuzz/%.c,$(B)/tests/fuzz/%,$(wildcard tests/fuzz/
 
 .PHONY: build tests-build
 build: $(BINS) $(STAGES:%=$(B)/code/%)
-tests-build: build $(UNIT_TESTS) $(FUZZ_TESTS)
+tests-build: build $(UNIT_TESTS) $(FUZZ_TESTS) $(B)/tests/pipeline/make_photos
 
 $(B)/flags: FORCE
 	+@mkdir -p $(@D); echo '$(CC) $(CFLAGS) $(LDLIBS)' >$@.tmp; cmp -s $@.tmp $@ && rm $@.tmp || mv $@.tmp $@
@@ -160,12 +163,13 @@ $(foreach s,$(STAGES),$(eval $(call stage_rules,$(s))))
 # tests/unit/common/*.c test common/; tests/unit/STAGE/*.c test a stage's algorithm (its objects but for its main)
 $(UNIT_TESTS): $(B)/tests/unit/%: $(B)/obj/tests/unit/%.o $(B)/libremodel.a
 	$(call link,-lcmocka)
+$(B)/tests/pipeline/make_photos: $(B)/obj/tests/pipeline/make_photos.o $(B)/libremodel.a
+	$(call link)
 $(FUZZ_TESTS): $(B)/tests/fuzz/%: $(B)/obj/tests/fuzz/%.o $(B)/obj/tests/fuzz/run_corpus.o $(B)/libremodel.a
 	$(call link)
 .SECONDARY: $(call objs,tests/*/*.c tests/*/*/*.c)
 -include $(shell find $(B)/obj -name '*.d' 2>/dev/null)
 
-endif
 else
 # ---------------------------------------------------------------------------------------------------------- the graph
 

@@ -10,7 +10,7 @@
  *   P_k = sum over i + j = k of N_i D_j (1 + 2 i - 2 j),
  * so "P > 0 and D > 0 on [0, s]" is decided exactly. With tangential terms the Jacobian's determinant must be positive
  * too. */
-#include "camera.h"
+#include "common/camera.h"
 
 #include <stddef.h>
 #include <string.h>
@@ -297,6 +297,9 @@ bool camera_project(const struct camera *c, struct vec3 p, double *u, double *v)
     return true;
 }
 
+/* A ray this many focal lengths off the axis cannot be told from one across it. */
+static const double WIDEST = 1e8;
+
 bool camera_unproject(const struct camera *c, double u, double v, struct vec3 *ray)
 {
     double fx, fy, cx, cy;
@@ -311,9 +314,9 @@ bool camera_unproject(const struct camera *c, double u, double v, struct vec3 *r
         return true;
     }
     double x = xd, y = yd;
+    if (q.none && rd > WIDEST) return false;
     if (rd > 0 && !q.none) {
-        /* beyond 1e8 focal lengths a ray cannot be told from one across the axis */
-        bool found = undistort_radius(&q, rd, 1e8, &r);
+        bool found = undistort_radius(&q, rd, WIDEST, &r);
         x = xd * (r / rd);
         y = yd * (r / rd);
         if (q.tangential ? !undistort_tangential(&q, xd, yd, &x, &y) : !found) return false;

@@ -20,7 +20,8 @@ void parallel_for(size_t count, size_t chunk, void (*fn)(void *ctx, size_t begin
     if (threads <= 1 || omp_in_parallel()) {
         /* a nested loop keeps its thread's number, and with it the scratch memory nobody else touches */
         const int thread = omp_get_thread_num();
-        for (size_t c = 0; c < chunks; c++) fn(ctx, c * chunk, count - c * chunk > chunk ? (c + 1) * chunk : count, thread);
+        for (size_t c = 0; c < chunks; c++)
+            fn(ctx, c * chunk, count - c * chunk > chunk ? (c + 1) * chunk : count, thread);
         return;
     }
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads)

@@ -31,7 +31,10 @@ struct photo_list {
 /* list.txt and every record it names. folder: out/SCENE/photos. */
 enum status photo_list_read(struct photo_list *list, const char *folder, struct err *err);
 enum status photo_record_read(struct photo_record *r, const char *folder, const char *id, struct err *err);
+/* Only if its text is new, so that its time tells Make when the photo last changed. */
 enum status photo_record_write(const struct photo_record *r, const char *folder, struct err *err);
+/* list.txt and photos.mk (PHOTO_IDS := the ids), each only if its text is new. */
+enum status photo_list_write(const struct photo_list *list, const char *folder, struct err *err);
 int photo_list_find_id(const struct photo_list *list, const char *id);     /* -1: not there */
 int photo_list_find_file(const struct photo_list *list, const char *file); /* -1: not there */
 void photo_record_release(struct photo_record *r);

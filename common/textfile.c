@@ -27,7 +27,10 @@ static enum status read_all(struct textfile *t, FILE *fp, struct err *err)
     if (!fstat(fileno(fp), &info) && S_ISREG(info.st_mode) && info.st_size > 0) room = (size_t)info.st_size + 1;
     for (;;) {
         char *grown = realloc(t->bytes, room + 1); /* and one for the final NUL */
-        if (!grown) return err_context(err, "%s", (err_nomem(err, "a text file", room + 1), t->path));
+        if (!grown) {
+            err_nomem(err, "a text file", room + 1);
+            return err_context(err, "%s", t->path);
+        }
         t->bytes = grown;
         while (t->size < room && (n = fread(t->bytes + t->size, 1, room - t->size, fp)) > 0) t->size += n;
         if (ferror(fp)) return err_errno(err, "read", t->path);
@@ -188,20 +191,20 @@ enum status textfile_quote(const char *word, char *out, size_t size, struct err 
 {
     const bool plain = *word && !strpbrk(word, " \t\"\\#");
     char shown[SCAN_SHOWN];
-    size_t n = 0;
+    size_t need = plain ? 1 : 3; /* the final NUL, and two quotes */
 
     if (strpbrk(word, "\n\r"))
         return err_set(err, ST_DATA, "the name %s holds a line break, which a text file cannot; rename it.",
                        scan_show(shown, word));
-    if (!plain && size) out[n++] = '"';
-    for (const char *p = word; *p && n + 3 < size; p++) {
-        if (!plain && (*p == '"' || *p == '\\')) out[n++] = '\\';
-        out[n++] = *p;
-        if (!p[1]) word = p + 1;
+    for (const char *p = word; *p; p++) need += 1 + (*p == '"' || *p == '\\');
+    if (need > size)
+        return err_set(err, ST_DATA, "the name %s is longer than %zu bytes; shorten it.", scan_show(shown, word), size);
+    if (!plain) *out++ = '"';
+    for (const char *p = word; *p; p++) {
+        if (*p == '"' || *p == '\\') *out++ = '\\';
+        *out++ = *p;
     }
-    if (*word || n + 2 > size)
-        return err_set(err, ST_DATA, "the name %s is too long.", scan_show(shown, word));
-    if (!plain) out[n++] = '"';
-    out[n] = '\0';
+    if (!plain) *out++ = '"';
+    *out = '\0';
     return ST_OK;
 }

@@ -1,0 +1,345 @@
+/* layer_render.c - see layer_render.h: a frame, band of rows by band of rows.
+ *
+ * A band draws one view after another: each only where the view mesh names it, then, in what is still a hole, the other views.
+ * What a view shows of a pixel becomes one sample; the soft z blends a pixel's samples. Bands are cut by height
+ * alone and share nothing, so threads and the split of a path into jobs do not change a bit. */
+#include "common/layer_render.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/hole_fill.h"
+#include "common/layer_raster.h"
+#include "common/parallel.h"
+#include "common/soft_z.h"
+
+#define BAND_ROWS    16
+#define COVERED      0.5f /* alpha from which a view covers a pixel */
+#define MESH_SAMPLES 6    /* most that the view mesh names */
+#define MAX_SAMPLES  10   /* with those of other views in holes */
+#define NEAR_SPACING 0.1  /* of the mesh's spacing: other views closer than this weigh about alike */
+
+void rendered_frame_release(struct rendered_frame *frame)
+{
+    if (!frame) return;
+    free(frame->rgba);
+    free(frame->z);
+    free(frame->hole);
+    *frame = (struct rendered_frame){0};
+}
+
+static enum status frame_resize(struct rendered_frame *f, int width, int height, bool color, struct err *err)
+{
+    const size_t pixels = (size_t)width * (size_t)height;
+    if (f->width != width || f->height != height || !f->hole || color != (f->rgba != NULL)) {
+        rendered_frame_release(f);
+        f->hole = malloc(pixels);
+        if (color) {
+            f->rgba = malloc(pixels * 4 * sizeof *f->rgba);
+            f->z = malloc(pixels * sizeof *f->z);
+        }
+        if (!f->hole || (color && (!f->rgba || !f->z))) {
+            rendered_frame_release(f);
+            return err_nomem(err, "a frame", pixels * (color ? 21 : 1));
+        }
+        f->width = width;
+        f->height = height;
+    }
+    f->hole_fraction = f->unfilled_fraction = 0;
+    return ST_OK;
+}
+
+/* ------------------------------------------------------------------------------------------------- one frame */
+
+struct other_view {
+    int view;
+    double distance; /* of its centre to the novel one's */
+};
+
+struct scratch { /* of one thread, for a band */
+    struct view_weights *weights;
+    struct raster_pixel *pixels;
+    float *skip;
+    struct soft_z_sample *samples; /* [MAX_SAMPLES][band pixels] */
+    uint8_t *counts, *covered;
+    bool *named; /* a view */
+    int spans[BAND_ROWS][2];
+};
+
+struct frame_job {
+    const struct layer_scene *scene;
+    struct view novel;
+    struct soft_z soft;
+    struct view_mesh_camera mesh;
+    struct raster_view *rasters; /* a view */
+    struct other_view *by_distance;
+    struct scratch *scratch; /* a thread */
+    struct rendered_frame *out;
+    enum status *prepared; /* a view */
+};
+
+static int compare_distance(const void *a, const void *b)
+{
+    const struct other_view *x = a, *y = b;
+    if (x->distance != y->distance) return x->distance < y->distance ? -1 : 1;
+    return x->view - y->view;
+}
+
+static void scratch_release(struct scratch *s)
+{
+    free(s->weights);
+    free(s->pixels);
+    free(s->skip);
+    free(s->samples);
+    free(s->counts);
+    free(s->covered);
+    free(s->named);
+}
+
+static enum status scratch_init(struct scratch *s, int width, int views, bool color, struct err *err)
+{
+    const size_t n = (size_t)BAND_ROWS * (size_t)width;
+    s->pixels = malloc(n * sizeof *s->pixels);
+    s->skip = malloc(n * sizeof *s->skip);
+    s->covered = malloc(n);
+    if (color) {
+        s->weights = malloc(n * sizeof *s->weights);
+        s->samples = malloc(n * MAX_SAMPLES * sizeof *s->samples);
+        s->counts = malloc(n);
+        s->named = malloc((size_t)views * sizeof *s->named + 1);
+    }
+    if (!s->pixels || !s->skip || !s->covered || (color && (!s->weights || !s->samples || !s->counts || !s->named)))
+        return err_nomem(err, "a band of a frame", n * (sizeof *s->pixels + MAX_SAMPLES * sizeof *s->samples));
+    return ST_OK;
+}
+
+static void prepare_views(void *ctx, size_t begin, size_t end, int thread)
+{
+    struct frame_job *job = ctx;
+    (void)thread;
+    for (size_t i = begin; i < end; i++)
+        job->prepared[i] = raster_view_prepare(&job->rasters[i], job->scene, (int)i, &job->novel, NULL);
+}
+
+static void job_release(struct frame_job *job)
+{
+    for (int i = 0; job->rasters && i < job->scene->set->view_count; i++) raster_view_release(&job->rasters[i]);
+    for (int i = 0; job->scratch && i < parallel_threads(); i++) scratch_release(&job->scratch[i]);
+    free(job->rasters);
+    free(job->by_distance);
+    free(job->scratch);
+    free(job->prepared);
+}
+
+static enum status job_init(struct frame_job *job, struct rendered_frame *out, const struct layer_scene *scene,
+                            const struct view *novel, double soft_z, bool color, struct err *err)
+{
+    const int views = scene->set->view_count;
+    const size_t count = (size_t)views + 1, threads = (size_t)parallel_threads();
+    enum status st = ST_OK;
+
+    *job = (struct frame_job){.scene = scene, .novel = *novel, .out = out};
+    job->soft.widths = (float)soft_z;
+    job->soft.range = (float)fmax(scene->far_depth - scene->near_depth, 1e-6 * scene->far_depth);
+    job->rasters = calloc(count, sizeof *job->rasters);
+    job->by_distance = calloc(count, sizeof *job->by_distance);
+    job->prepared = calloc(count, sizeof *job->prepared);
+    job->scratch = calloc(threads, sizeof *job->scratch);
+    if (!job->rasters || !job->by_distance || !job->prepared || !job->scratch)
+        return err_nomem(err, "a frame's views", count * sizeof *job->rasters);
+
+    for (size_t i = 0; !st && i < threads; i++) st = scratch_init(&job->scratch[i], novel->width, views, color, err);
+    if (st || (st = frame_resize(out, novel->width, novel->height, color, err))) return st;
+    parallel_for((size_t)views, 1, prepare_views, job);
+    for (int i = 0; i < views; i++) {
+        if (job->prepared[i]) return err_nomem(err, "a view's segments", sizeof(struct raster_segment));
+        job->by_distance[i].view = i;
+        job->by_distance[i].distance = vec3_length(vec3_sub(scene->set->views[i].center, novel->center));
+    }
+    qsort(job->by_distance, (size_t)views, sizeof *job->by_distance, compare_distance);
+    return ST_OK;
+}
+
+static double hole_fraction(const struct rendered_frame *f)
+{
+    const size_t pixels = (size_t)f->width * (size_t)f->height;
+    size_t holes = 0;
+    for (size_t p = 0; p < pixels; p++) holes += f->hole[p];
+    return (double)holes / (double)pixels;
+}
+
+/* ------------------------------------------------------------------------------------------- one view, one band */
+
+/* Draws a view where skip is not INFINITY; the spans follow from it. False if it is INFINITY everywhere. */
+static bool draw_view(const struct frame_job *job, struct scratch *s, int view, int y0, int y1)
+{
+    const int w = job->novel.width;
+    bool any = false;
+
+    for (int y = y0; y < y1; y++) {
+        const size_t row = (size_t)(y - y0) * (size_t)w;
+        int first = w, last = -1;
+        for (int x = 0; x < w; x++) {
+            if (isinf(s->skip[row + (size_t)x])) continue;
+            if (first > x) first = x;
+            last = x;
+            s->pixels[row + (size_t)x] = (struct raster_pixel){0};
+        }
+        s->spans[y - y0][0] = first;
+        s->spans[y - y0][1] = last;
+        any |= first <= last;
+    }
+    const struct raster_target target = {y0, y1, w, s->pixels, s->skip, (const int(*)[2])s->spans};
+    if (any) raster_rows(&target, &job->rasters[view], &job->scene->views[view], &job->soft);
+    return any;
+}
+
+static void add_sample(struct scratch *s, size_t n, size_t p, float blend)
+{
+    const struct raster_pixel *from = &s->pixels[p];
+    const struct raster_surface *surface = raster_visible(from);
+    struct soft_z_sample *to = &s->samples[s->counts[p]++ * n + p];
+    memcpy(to->rgba, from->rgba, sizeof to->rgba);
+    to->z = surface->z;
+    to->sigma = surface->sigma;
+    to->blend = blend;
+}
+
+static float weight_of(const struct view_weights *w, int view)
+{
+    for (int k = 0; k < w->count; k++)
+        if (w->view[k] == view) return w->weight[k];
+    return 0;
+}
+
+static void draw_named_views(const struct frame_job *job, struct scratch *s, int y0, int y1)
+{
+    const int w = job->novel.width, views = job->scene->set->view_count;
+    const size_t n = (size_t)(y1 - y0) * (size_t)w;
+
+    memset(s->named, 0, (size_t)views * sizeof *s->named);
+    for (int y = y0; y < y1; y++) view_mesh_row(&job->mesh, y, s->weights + (size_t)(y - y0) * (size_t)w);
+    for (size_t p = 0; p < n; p++)
+        for (int k = 0; k < s->weights[p].count; k++) s->named[s->weights[p].view[k]] |= s->weights[p].weight[k] > 0;
+    for (int v = 0; v < views; v++) {
+        if (!s->named[v]) continue;
+        for (size_t p = 0; p < n; p++) s->skip[p] = weight_of(&s->weights[p], v) > 0 ? 0 : INFINITY;
+        const bool drawn = draw_view(job, s, v, y0, y1);
+        for (size_t p = 0; drawn && p < n; p++) {
+            const float blend = weight_of(&s->weights[p], v);
+            if (!(blend > 0) || !(s->pixels[p].rgba[3] > 0)) continue;
+            s->covered[p] |= s->pixels[p].rgba[3] >= COVERED;
+            add_sample(s, n, p, blend);
+        }
+    }
+}
+
+/* In pixels that the named views leave a hole. */
+static void draw_other_views(const struct frame_job *job, struct scratch *s, int y0, int y1)
+{
+    const size_t n = (size_t)(y1 - y0) * (size_t)job->novel.width;
+    const double least = NEAR_SPACING * job->scene->mesh.spacing;
+    const double nearest = job->by_distance[0].distance;
+    uint8_t *hole = s->covered; /* 0: a hole for the named views; from here on 1 covered by them, 2 by others */
+
+    for (int i = 0; i < job->scene->set->view_count; i++) {
+        const struct other_view *o = &job->by_distance[i];
+        const double d = o->distance * o->distance + least * least;
+        const float blend = d > 0 ? (float)((nearest * nearest + least * least) / d) : 1;
+        for (size_t p = 0; p < n; p++)
+            s->skip[p] = hole[p] == 1 || weight_of(&s->weights[p], o->view) > 0 ? INFINITY : 0;
+        if (!(blend > 0) || !draw_view(job, s, o->view, y0, y1)) continue;
+        for (size_t p = 0; p < n; p++) {
+            if (hole[p] == 1 || weight_of(&s->weights[p], o->view) > 0 || s->pixels[p].rgba[3] < COVERED) continue;
+            hole[p] = 2;
+            if (s->counts[p] < MAX_SAMPLES) add_sample(s, n, p, blend);
+        }
+    }
+}
+
+static void render_bands(void *ctx, size_t begin, size_t end, int thread)
+{
+    struct frame_job *job = ctx;
+    struct scratch *s = &job->scratch[thread];
+    const int y0 = (int)begin, y1 = (int)end, w = job->novel.width;
+    const size_t n = (size_t)(y1 - y0) * (size_t)w, first = (size_t)y0 * (size_t)w;
+    bool holes = false;
+
+    memset(s->counts, 0, n);
+    memset(s->covered, 0, n);
+    draw_named_views(job, s, y0, y1);
+    for (size_t p = 0; p < n; p++) holes |= !s->covered[p];
+    if (holes) draw_other_views(job, s, y0, y1);
+
+    for (size_t p = 0; p < n; p++) {
+        float *rgba = job->out->rgba + 4 * (first + p), *z = &job->out->z[first + p];
+        struct soft_z_sample samples[MAX_SAMPLES];
+        job->out->hole[first + p] = !s->covered[p];
+        if (!s->covered[p]) {
+            memset(rgba, 0, 4 * sizeof *rgba);
+            *z = 0;
+            continue;
+        }
+        for (int k = 0; k < s->counts[p]; k++) samples[k] = s->samples[(size_t)k * n + p];
+        soft_z_blend(&job->soft, samples, s->counts[p], rgba, z);
+    }
+}
+
+enum status layer_render(struct rendered_frame *out, const struct layer_scene *scene, const struct view *novel,
+                         const struct layer_render_options *options, struct err *err)
+{
+    struct frame_job job;
+    enum status st = job_init(&job, out, scene, novel, options->soft_z, true, err);
+
+    if (!st) {
+        view_mesh_prepare(&job.mesh, &scene->mesh, novel);
+        parallel_for((size_t)novel->height, BAND_ROWS, render_bands, &job);
+        out->hole_fraction = hole_fraction(out);
+        st = hole_fill(out, &job.soft, (float)scene->sigma, options->fill_diameter, err);
+    }
+    job_release(&job);
+    return st;
+}
+
+/* ------------------------------------------------------------------------------------------------- coverage */
+
+static void cover_bands(void *ctx, size_t begin, size_t end, int thread)
+{
+    struct frame_job *job = ctx;
+    struct scratch *s = &job->scratch[thread];
+    const int y0 = (int)begin, y1 = (int)end, w = job->novel.width;
+    const size_t n = (size_t)(y1 - y0) * (size_t)w;
+    uint8_t *hole = job->out->hole + (size_t)y0 * (size_t)w;
+
+    memset(hole, 1, n);
+    for (int i = 0; i < job->scene->set->view_count; i++) {
+        for (size_t p = 0; p < n; p++) s->skip[p] = hole[p] ? 0 : INFINITY;
+        if (!draw_view(job, s, job->by_distance[i].view, y0, y1)) return; /* no hole is left */
+        for (size_t p = 0; p < n; p++) hole[p] = hole[p] && s->pixels[p].rgba[3] < COVERED;
+    }
+}
+
+enum status layer_coverage(struct rendered_frame *out, const struct layer_scene *scene, const struct view *novel,
+                           double scale, struct err *err)
+{
+    struct view reduced = *novel;
+    struct frame_job job;
+
+    reduced.width = (int)fmax(1, lround(novel->width * scale));
+    reduced.height = (int)fmax(1, lround(novel->height * scale));
+    const double sx = (double)reduced.width / novel->width, sy = (double)reduced.height / novel->height;
+    reduced.fx *= sx;
+    reduced.cx *= sx;
+    reduced.fy *= sy;
+    reduced.cy *= sy;
+
+    const enum status st = job_init(&job, out, scene, &reduced, 0, false, err);
+    if (!st) {
+        parallel_for((size_t)reduced.height, BAND_ROWS, cover_bands, &job);
+        out->hole_fraction = hole_fraction(out);
+        out->unfilled_fraction = out->hole_fraction;
+    }
+    job_release(&job);
+    return st;
+}

@@ -1,0 +1,420 @@
+#include "contents.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
+
+#include "common/parallel.h"
+#include "common/photo.h"
+
+static enum status add_note(struct contents *c, struct err *err, const char *fmt, ...) ERR_PRINTF(3, 4);
+static enum status add_note(struct contents *c, struct err *err, const char *fmt, ...)
+{
+    size_t bytes = ((size_t)c->note_count + 1) * sizeof *c->notes;
+    char(*grown)[NOTE_SIZE] = realloc(c->notes, bytes);
+    va_list args;
+    if (!grown) return err_nomem(err, "notes", bytes);
+    c->notes = grown;
+    va_start(args, fmt);
+    vsnprintf(grown[c->note_count++], NOTE_SIZE, fmt, args);
+    va_end(args);
+    return ST_OK;
+}
+
+static bool is_folder(const char *path)
+{
+    struct stat s;
+    return !stat(path, &s) && S_ISDIR(s.st_mode);
+}
+
+static bool is_file(const char *path)
+{
+    struct stat s;
+    return !stat(path, &s) && S_ISREG(s.st_mode);
+}
+
+static bool same_folder(const char *a, const char *b)
+{
+    struct stat x, y;
+    return !stat(a, &x) && !stat(b, &y) && x.st_dev == y.st_dev && x.st_ino == y.st_ino;
+}
+
+/* -------------------------------------------------------------------------------------------------- photographs */
+
+static bool looks_like_photo(const char *name)
+{
+    const char *dot = strrchr(name, '.');
+    return name[0] != '.' && dot && (!strcasecmp(dot, ".jpg") || !strcasecmp(dot, ".jpeg") || !strcasecmp(dot, ".png"));
+}
+
+static enum status find_left_out(struct contents *c, const char *folder, struct err *err)
+{
+    struct dirent **names = NULL;
+    int count = scandir(folder, &names, NULL, alphasort);
+    enum status st = ST_OK;
+
+    if (count < 0)
+        return add_note(c, err, "The folder of photographs cannot be read (%s): no thumbnails.", strerror(errno));
+    for (int i = 0; i < count; i++) {
+        const char *name = names[i]->d_name;
+        if (!st && looks_like_photo(name) && photo_list_find_file(&c->photos, name) < 0) {
+            size_t bytes = ((size_t)c->left_out_count + 1) * sizeof *c->left_out;
+            char(*grown)[256] = realloc(c->left_out, bytes);
+            if (grown) {
+                c->left_out = grown;
+                snprintf(grown[c->left_out_count++], sizeof *grown, "%s", name);
+            } else
+                st = err_nomem(err, "names of photos", bytes);
+        }
+        free(names[i]);
+    }
+    free(names);
+    return st;
+}
+
+struct photo_job {
+    struct contents *c;
+    const char *folder;
+};
+
+static void make_photo_cards(void *ctx, size_t begin, size_t end, int thread)
+{
+    const struct photo_job *job = ctx;
+    (void)thread;
+    for (size_t i = begin; i < end; i++) {
+        struct photo_card *card = &job->c->photo_cards[i];
+        struct photo photo = {0};
+        struct err err = ERR_INIT;
+        char path[4096];
+        snprintf(path, sizeof path, "%s/%s", job->folder, card->record->file);
+        if (photo_read(&photo, path, &err) || picture_from_photo(&card->picture, &photo, PICTURE_HEIGHT, &err))
+            snprintf(card->trouble, sizeof card->trouble, "%.*s", NOTE_SIZE - 1, err.text);
+        photo_release(&photo);
+    }
+}
+
+static enum status read_photos(struct contents *c, const char *shared, const char *folder, struct err *err)
+{
+    char path[4096];
+    struct err trouble = ERR_INIT;
+    snprintf(path, sizeof path, "%s/photos", shared);
+    if (photo_list_read(&c->photos, path, &trouble))
+        return add_note(c, err, "There is no list of photographs. %s", trouble.text);
+    c->has_photos = true;
+    c->photo_cards = calloc((size_t)c->photos.count + 1, sizeof *c->photo_cards);
+    if (!c->photo_cards) return err_nomem(err, "photos", (size_t)c->photos.count * sizeof *c->photo_cards);
+    for (int i = 0; i < c->photos.count; i++) c->photo_cards[i].record = &c->photos.photos[i];
+    struct photo_job job = {c, folder};
+    if (is_folder(folder)) parallel_for((size_t)c->photos.count, 1, make_photo_cards, &job);
+    return find_left_out(c, folder, err);
+}
+
+/* -------------------------------------------------------------------------------------------------------- views */
+
+static int compare_doubles(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static enum status measure_points(struct contents *c, struct err *err)
+{
+    const struct sfm_model *m = &c->views.model;
+    size_t total = 0, n = 0;
+    double squares = 0;
+    for (int i = 0; i < m->point_count; i++) total += (size_t)m->points[i].track_count;
+    double *errors = malloc((total + 1) * sizeof *errors);
+    if (!errors) return err_nomem(err, "reprojection errors", total * sizeof *errors);
+    for (int i = 0; i < m->point_count; i++)
+        for (int k = 0; k < m->points[i].track_count; k++) {
+            const struct sfm_track *t = &m->points[i].track[k];
+            const struct sfm_observation *o = &m->images[t->image_idx].observations[t->observation_idx];
+            double u, v;
+            if (!(view_project(&c->views.views[t->image_idx], m->points[i].position, &u, &v) > 0)) continue;
+            errors[n++] = hypot(u - o->u, v - o->v);
+            squares += errors[n - 1] * errors[n - 1];
+        }
+    if (n) {
+        qsort(errors, n, sizeof *errors, compare_doubles);
+        c->error_median = errors[n / 2];
+        c->error_rms = sqrt(squares / (double)n);
+        c->track_mean = (double)total / m->point_count;
+    }
+    free(errors);
+    return ST_OK;
+}
+
+struct view_job {
+    struct contents *c;
+    const char *folder;
+};
+
+static enum status read_depth(struct view_card *card, const char *path, int orientation, struct err *err)
+{
+    static const char *const NAMES[] = {"interior.Z", "interior.id", "boundary.id"};
+    struct exr_image im = {0};
+    if (!exr_read(&im, path, NAMES, 3, err)) {
+        const struct exr_plane *z = exr_find(&im, NAMES[0]);
+        for (int k = 1; k < 3; k++) { /* ids count from 1 */
+            const struct exr_plane *id = exr_find(&im, NAMES[k]);
+            for (size_t i = 0; id->u && i < (size_t)im.width * (size_t)im.height; i++)
+                if (id->u[i] > card->segments) card->segments = id->u[i];
+        }
+        if (z->f)
+            depth_thumb_make(&card->depth, z->f, im.width, im.height, orientation, PICTURE_HEIGHT, err);
+        else
+            err_set(err, ST_DATA, "%s: interior.Z holds no floats.", path);
+    }
+    exr_image_release(&im);
+    return err->status;
+}
+
+static void make_view_cards(void *ctx, size_t begin, size_t end, int thread)
+{
+    static const char *const NAMES[] = {"R", "G", "B"};
+    const struct view_job *job = ctx;
+    (void)thread;
+    for (size_t i = begin; i < end; i++) {
+        struct view_card *card = &job->c->view_cards[i];
+        int orientation = card->photo ? card->photo->info.orientation : 1;
+        struct exr_image im = {0};
+        struct err err = ERR_INIT;
+        char path[4096];
+
+        snprintf(path, sizeof path, "%s/views/%s.exr", job->folder, card->view->name);
+        if (is_file(path) && !exr_read(&im, path, NAMES, 3, &err))
+            picture_from_exr(&card->picture, &im, orientation, PICTURE_HEIGHT, &err);
+        exr_image_release(&im);
+
+        snprintf(path, sizeof path, "%s/depth/%s.exr", job->folder, card->view->name);
+        if (!err.status && is_file(path) && !read_depth(card, path, orientation, &err)) {
+            const struct depth_thumb *depth = &card->depth;
+            depth_range(&depth, 1, 0.02, &card->near, &card->far);
+        }
+        if (err.status) snprintf(card->trouble, sizeof card->trouble, "%.*s", NOTE_SIZE - 1, err.text);
+    }
+}
+
+/* Which photograph each view was made from: as lenses.txt says. */
+static void match_photos(struct contents *c)
+{
+    for (int i = 0; i < c->views.view_count; i++) {
+        struct view_card *card = &c->view_cards[i];
+        card->view = &c->views.views[i];
+        int lens = lens_list_find(&c->lenses, card->view->name);
+        int photo = lens < 0 ? -1 : photo_list_find_id(&c->photos, c->lenses.lenses[lens].photo);
+        if (photo < 0) continue;
+        card->photo = &c->photos.photos[photo];
+        c->photo_cards[photo].views++;
+    }
+}
+
+static enum status colour_depths(struct contents *c, struct err *err)
+{
+    const struct depth_thumb **thumbs = calloc((size_t)c->views.view_count + 1, sizeof *thumbs);
+    enum status st = thumbs ? ST_OK : err_nomem(err, "depth thumbnails", 0);
+    if (st) return st;
+    for (int i = 0; i < c->views.view_count; i++) {
+        const struct view_card *card = &c->view_cards[i];
+        if (!card->depth.z) continue;
+        thumbs[c->depth_count++] = &card->depth;
+        c->known += card->depth.known;
+        c->segments += card->segments;
+    }
+    if (c->depth_count) c->known /= c->depth_count;
+    if (depth_range(thumbs, c->depth_count, 0.02, &c->near, &c->far))
+        for (int i = 0; i < c->views.view_count && !st; i++)
+            if (c->view_cards[i].depth.z)
+                st = picture_from_depth(&c->view_cards[i].depth_picture, &c->view_cards[i].depth, c->near, c->far, err);
+    free(thumbs);
+    return st;
+}
+
+static enum status read_views(struct contents *c, const char *folder, struct err *err)
+{
+    char path[4096];
+    struct err trouble = ERR_INIT;
+    snprintf(path, sizeof path, "%s/views", folder);
+    if (camera_set_read(&c->views, path, &trouble)) return add_note(c, err, "There are no views yet. %s", trouble.text);
+    c->has_views = true;
+    snprintf(path, sizeof path, "%s/views/lenses.txt", folder);
+    if (lens_list_read(&c->lenses, path, &trouble) &&
+        add_note(c, err, "Which photograph a view comes from is not known. %s", trouble.text))
+        return err->status;
+    c->view_cards = calloc((size_t)c->views.view_count + 1, sizeof *c->view_cards);
+    if (!c->view_cards) return err_nomem(err, "views", (size_t)c->views.view_count * sizeof *c->view_cards);
+    match_photos(c);
+    struct view_job job = {c, folder};
+    parallel_for((size_t)c->views.view_count, 1, make_view_cards, &job);
+
+    int pictures = 0;
+    for (int i = 0; i < c->views.view_count; i++) pictures += c->view_cards[i].picture.rgb != NULL;
+    if (colour_depths(c, err) || measure_points(c, err)) return err->status;
+    if (pictures < c->views.view_count && add_note(c, err, "%d of %d views have no rectified picture yet.",
+                                                   c->views.view_count - pictures, c->views.view_count))
+        return err->status;
+    if (c->depth_count < c->views.view_count && add_note(c, err, "%d of %d views have no depth map yet.",
+                                                         c->views.view_count - c->depth_count, c->views.view_count))
+        return err->status;
+    return ST_OK;
+}
+
+/* ------------------------------------------------------------------------------------------------------- effects */
+
+enum { PATH_SIZE = 4096 + 512 }; /* holds a folder's path and a file in it */
+
+static double share(const char *text)
+{
+    char *end;
+    double value = text ? strtod(text, &end) : -1;
+    return text && end != text && !*end && value >= 0 && value <= 1 ? value : -1;
+}
+
+static enum status read_frames(struct contents *c, struct effect_card *e, const char *folder, struct err *err)
+{
+    static const char *const NAMES[] = {"R", "G", "B"};
+    char trouble_text[NOTE_SIZE] = "";
+    e->holes = malloc((size_t)e->path.frame_count * sizeof *e->holes);
+    e->unfilled = malloc((size_t)e->path.frame_count * sizeof *e->unfilled);
+    if (!e->holes || !e->unfilled)
+        return err_nomem(err, "holes a frame", (size_t)e->path.frame_count * sizeof *e->holes);
+
+    for (int i = 0; i < e->path.frame_count; i++) {
+        struct exr_image im = {0};
+        struct err trouble = ERR_INIT;
+        char path[PATH_SIZE];
+        e->holes[i] = e->unfilled[i] = -1;
+        snprintf(path, sizeof path, "%s/frames/%s.exr", folder, e->path.frames[i].camera.name);
+        if (!is_file(path)) continue;
+        if (!exr_read(&im, path, NAMES, i == 0 ? 3 : 0, &trouble)) { /* attributes alone, but for the first frame */
+            e->frames_found++;
+            e->holes[i] = share(exr_attribute(&im, "remodel:holes"));
+            e->unfilled[i] = share(exr_attribute(&im, "remodel:unfilled"));
+            if (i == 0) picture_from_exr(&e->poster, &im, 1, 720, &trouble);
+        }
+        if (trouble.status) snprintf(trouble_text, sizeof trouble_text, "%.*s", NOTE_SIZE - 1, trouble.text);
+        exr_image_release(&im);
+    }
+    if (trouble_text[0] && add_note(c, err, "A frame of %s cannot be read. %.800s", e->name, trouble_text))
+        return err->status;
+    if (e->frames_found < e->path.frame_count)
+        return add_note(c, err, "%d of %d frames of %s are not there.", e->path.frame_count - e->frames_found,
+                        e->path.frame_count, e->name);
+    return ST_OK;
+}
+
+static enum status read_effect(struct contents *c, struct effect_card *e, const char *folder, struct err *err)
+{
+    char path[PATH_SIZE];
+    struct err trouble = ERR_INIT;
+    struct stat s;
+
+    snprintf(path, sizeof path, "%s/video.mp4", folder);
+    if (stat(path, &s) || !S_ISREG(s.st_mode) || s.st_size == 0) {
+        if (add_note(c, err, "There is no video of %s yet.", e->name)) return err->status;
+    } else {
+        e->video_bytes = s.st_size;
+        if (!(e->video = strdup(path))) return err_nomem(err, "a file name", strlen(path));
+    }
+    if (camera_path_read(&e->path, folder, &trouble))
+        return add_note(c, err, "There is no camera path of %s. %s", e->name, trouble.text);
+    return read_frames(c, e, folder, err);
+}
+
+static enum status read_effects(struct contents *c, const char *folder, struct err *err)
+{
+    struct dirent **names = NULL;
+    char path[4096];
+    snprintf(path, sizeof path, "%s/parallax", folder);
+    int count = scandir(path, &names, NULL, alphasort);
+    enum status st = ST_OK;
+
+    c->effects = calloc((size_t)(count > 0 ? count : 0) + 1, sizeof *c->effects);
+    if (!c->effects) st = err_nomem(err, "effects", (size_t)count * sizeof *c->effects);
+    for (int i = 0; i < count; i++) {
+        snprintf(path, sizeof path, "%s/parallax/%s", folder, names[i]->d_name);
+        if (!st && names[i]->d_name[0] != '.' && is_folder(path)) {
+            struct effect_card *e = &c->effects[c->effect_count++];
+            snprintf(e->name, sizeof e->name, "%s", names[i]->d_name);
+            st = read_effect(c, e, path, err);
+        }
+        free(names[i]);
+    }
+    free(names);
+    if (!st && !c->effect_count) st = add_note(c, err, "No camera move was planned yet: there is no video.");
+    return st;
+}
+
+/* --------------------------------------------------------------------------------------------------------- whole */
+
+/* Logs and slices of the two folders, each once. */
+static enum status read_records(struct contents *c, const char *folder, const char *shared, const char *defaults,
+                                struct err *err)
+{
+    const char *folders[2] = {shared, folder};
+    struct settings usual = {0};
+    enum status st = ST_OK;
+
+    for (int i = same_folder(folder, shared) ? 1 : 0; i < 2 && !st; i++) {
+        struct err trouble = ERR_INIT;
+        char path[4096];
+        snprintf(path, sizeof path, "%s/log", folders[i]);
+        if (usage_add_folder(&c->usage, path, "report", &trouble))
+            st = add_note(c, err, "Not all logs can be read. %s", trouble.text);
+        trouble.status = ST_OK;
+        snprintf(path, sizeof path, "%s/slice", folders[i]);
+        if (!st && settings_add_folder(&c->settings, path, &trouble))
+            st = add_note(c, err, "Not all parameters can be read. %s", trouble.text);
+    }
+    if (defaults && !st) {
+        struct err trouble = ERR_INIT;
+        c->has_defaults = !settings_add_file(&usual, defaults, &trouble);
+        if (!c->has_defaults) st = add_note(c, err, "The default parameters cannot be read. %s", trouble.text);
+        settings_compare(&c->settings, &usual);
+    }
+    settings_release(&usual);
+    return st;
+}
+
+enum status contents_read(struct contents *c, const char *folder, const char *shared, const char *photos,
+                          const char *defaults, struct err *err)
+{
+    if (!is_folder(folder))
+        return err_set(err, ST_IO, "%s is no folder: there is no scene to report on. Make the scene first.", folder);
+    if (read_photos(c, shared, photos, err) || read_views(c, folder, err) || read_effects(c, folder, err))
+        return err->status;
+    return read_records(c, folder, shared, defaults, err);
+}
+
+void contents_release(struct contents *c)
+{
+    for (int i = 0; c->photo_cards && i < c->photos.count; i++) picture_release(&c->photo_cards[i].picture);
+    for (int i = 0; c->view_cards && i < c->views.view_count; i++) {
+        picture_release(&c->view_cards[i].picture);
+        picture_release(&c->view_cards[i].depth_picture);
+        depth_thumb_release(&c->view_cards[i].depth);
+    }
+    for (int i = 0; i < c->effect_count; i++) {
+        camera_path_release(&c->effects[i].path);
+        picture_release(&c->effects[i].poster);
+        free(c->effects[i].video);
+        free(c->effects[i].holes);
+        free(c->effects[i].unfilled);
+    }
+    free(c->photo_cards);
+    free(c->view_cards);
+    free(c->effects);
+    free(c->left_out);
+    free(c->notes);
+    usage_table_release(&c->usage);
+    settings_release(&c->settings);
+    lens_list_release(&c->lenses);
+    camera_set_release(&c->views);
+    photo_list_release(&c->photos);
+    *c = (struct contents){0};
+}

@@ -1,0 +1,77 @@
+/* contents.h - what a scene's folders hold for the page, thumbnails included.
+ *
+ * folder is out/SCENE of one quality, shared the folder of its photographs and SfM (they may be the same). What is missing
+ * or cannot be read is a sentence in `notes`, not an error: a page tells about half-made scenes too. */
+#ifndef REMODEL_CONTENTS_H
+#define REMODEL_CONTENTS_H
+
+#include "common/camera_path.h"
+#include "common/lens_list.h"
+#include "common/photo_list.h"
+#include "pictures.h"
+#include "settings.h"
+#include "usage.h"
+
+enum { NOTE_SIZE = 1024, PICTURE_HEIGHT = 240 };
+
+struct photo_card {
+    const struct photo_record *record;
+    int views; /* made from it; 0: SfM could not place it */
+    struct picture picture;
+    char trouble[NOTE_SIZE]; /* why there is no picture, or "" */
+};
+
+struct view_card {
+    const struct view *view;
+    const struct photo_record *photo; /* NULL if it cannot be told */
+    struct picture picture, depth_picture;
+    struct depth_thumb depth;
+    uint32_t segments;
+    double near, far; /* of this view's known depths, without 2 % at either end; 0 if none is known */
+    char trouble[NOTE_SIZE];
+};
+
+struct effect_card {
+    char name[256];
+    struct camera_path path; /* frame_count 0: not planned, or it cannot be read */
+    char *video;             /* file name, owned; NULL if there is none */
+    long long video_bytes;
+    double *holes, *unfilled; /* a frame: share of its pixels, before and after filling; -1 unknown */
+    int frames_found;
+    struct picture poster; /* the first frame */
+};
+
+struct contents {
+    struct photo_list photos;
+    struct camera_set views;
+    struct lens_list lenses;
+    bool has_photos, has_views;
+
+    struct photo_card *photo_cards; /* photos.count */
+    struct view_card *view_cards;   /* views.view_count */
+    struct effect_card *effects;
+    int effect_count;
+    char (*left_out)[256]; /* photographs in the folder that are not in the list */
+    int left_out_count;
+
+    double near, far;               /* of all views' depths; the colours' ends; 0 if none is known */
+    double known;                   /* mean share of pixels with a depth, over views that have a depth map */
+    int depth_count;                /* views that have one */
+    long long segments;             /* of all views */
+    double error_median, error_rms; /* reprojection of the points into the rectified views, px */
+    double track_mean;              /* observations a point */
+
+    struct usage_table usage;
+    struct settings settings;
+    bool has_defaults;
+
+    char (*notes)[NOTE_SIZE];
+    int note_count;
+};
+
+/* defaults may be NULL. ST_IO if `folder` is not there; ST_NOMEM. */
+enum status contents_read(struct contents *c, const char *folder, const char *shared, const char *photos,
+                          const char *defaults, struct err *err);
+void contents_release(struct contents *c);
+
+#endif

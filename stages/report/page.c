@@ -1,0 +1,666 @@
+#include "page.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/version.h"
+#include "html.h"
+
+static const char STYLE[] =
+    ":root{color-scheme:light "
+    "dark;--bg:#f8f7f4;--card:#fff;--text:#1e2124;--muted:#5b6168;--line:#e1dfd8;--accent:#0a6c74;"
+    "--second:#b0501a;--tint:#e3f0f0;--warn:#7a4b00;--warn-bg:#fdf1d8}\n"
+    "@media(prefers-color-scheme:dark){:root{--bg:#131618;--card:#1c2023;--text:#e7e6e1;--muted:#a2a9af;--line:#333a3f;"
+    "--accent:#63c4c6;--second:#f0a36c;--tint:#1d3537;--warn:#f2c879;--warn-bg:#38290f}}\n"
+    "*{box-sizing:border-box}\n"
+    "body{margin:0;background:var(--bg);color:var(--text);font:16px/1.55 system-ui,-apple-system,\"Segoe UI\",Roboto,"
+    "\"Helvetica Neue\",Arial,sans-serif;overflow-wrap:anywhere}\n"
+    "header,main,footer{max-width:1120px;margin:0 auto;padding:0 20px}\n"
+    "header{padding-top:36px}\n"
+    "h1{font-size:2.1rem;line-height:1.2;margin:0;letter-spacing:-.01em}\n"
+    "h2{font-size:1.3rem;margin:0 0 14px;letter-spacing:-.005em}\n"
+    "h3{font-size:1rem;margin:0 0 8px}\n"
+    "p{margin:0 0 12px;max-width:72ch}\n"
+    ".lead{color:var(--muted);margin:6px 0 0}\n"
+    ".muted,figcaption,.how{color:var(--muted)}\n"
+    "nav{margin:18px 0 0;display:flex;flex-wrap:wrap;gap:4px 18px;border-bottom:1px solid "
+    "var(--line);padding-bottom:12px}\n"
+    "a{color:var(--accent);text-underline-offset:3px}\n"
+    "nav a{text-decoration:none}nav a:hover{text-decoration:underline}\n"
+    ":focus-visible{outline:3px solid var(--accent);outline-offset:2px;border-radius:4px}\n"
+    "section{margin:36px 0 0;scroll-margin-top:12px}\n"
+    ".card{background:var(--card);border:1px solid var(--line);border-radius:10px;padding:18px}\n"
+    ".effect{display:grid;gap:20px;grid-template-columns:minmax(0,2fr) minmax(0,1fr);margin-bottom:18px}\n"
+    "video{display:block;width:100%;height:auto;max-height:80vh;background:#000;border-radius:6px}\n"
+    ".plot{display:block;width:100%;max-width:480px;height:auto;font-size:11px}\n"
+    ".plot text{fill:var(--muted)}.plot .grid{stroke:var(--line)}.plot "
+    "path{fill:none;stroke-width:2;stroke-linejoin:round}\n"
+    ".plot .before{stroke:var(--second)}.plot .after{stroke:var(--accent)}\n"
+    ".key{display:flex;flex-wrap:wrap;gap:2px 16px;list-style:none;margin:4px 0 0;padding:0;font-size:.85rem;"
+    "color:var(--muted)}\n"
+    ".key i{display:inline-block;width:16px;height:3px;border-radius:2px;vertical-align:middle;margin-right:6px}\n"
+    ".key .before{background:var(--second)}.key .after{background:var(--accent)}\n"
+    "figure{margin:0}figcaption{font-size:.85rem;line-height:1.4;margin-top:6px}figcaption b{color:var(--text);"
+    "font-weight:600}\n"
+    "img{display:block;max-width:100%;height:auto;border-radius:6px;background:var(--line)}\n"
+    ".strip{display:flex;flex-wrap:wrap;gap:16px;list-style:none;margin:0;padding:0}\n"
+    ".strip li{max-width:100%}.strip img{height:132px;width:auto;object-fit:contain}.strip figure{width:min-content;"
+    "min-width:96px}\n"
+    ".none{display:grid;place-items:center;height:132px;min-width:176px;padding:10px;border:1px dashed var(--muted);"
+    "border-radius:6px;font-size:.8rem;color:var(--muted)}\n"
+    ".off img{opacity:.45}\n"
+    ".tag{display:inline-block;background:var(--warn-bg);color:var(--warn);border-radius:4px;padding:0 "
+    "6px;font-size:.8rem}\n"
+    ".pairs{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(100%,460px),1fr));gap:20px}\n"
+    ".pair{display:grid;grid-template-columns:1fr 1fr;gap:6px}.pair img{width:100%}\n"
+    ".legend{max-width:480px;margin:0 0 18px;font-size:.85rem;color:var(--muted)}\n"
+    ".ramp{height:14px;border-radius:4px}\n"
+    ".ticks{display:flex;justify-content:space-between;font-variant-numeric:tabular-nums}\n"
+    ".hatch{display:inline-block;width:22px;height:12px;border-radius:3px;vertical-align:-1px;margin-right:6px;"
+    "background:repeating-linear-gradient(135deg,#787878 0 3px,#a5a5a5 3px 6px)}\n"
+    ".wide{overflow-x:auto}\n"
+    "table{border-collapse:collapse;width:100%;font-variant-numeric:tabular-nums}\n"
+    "th,td{text-align:left;vertical-align:top;padding:7px 14px 7px 0;border-bottom:1px solid var(--line)}\n"
+    "tr:last-child>th,tr:last-child>td{border-bottom:0}\n"
+    "thead th{font-size:.85rem;font-weight:600;color:var(--muted)}tbody th{font-weight:500}\n"
+    ".n{text-align:right}.n .bar{margin-left:auto}\n"
+    ".bar{display:block;height:4px;border-radius:2px;background:var(--accent);margin-top:3px}\n"
+    ".peak .bar{background:var(--second)}\n"
+    "tfoot th,tfoot td{font-weight:600}\n"
+    ".how{font-size:.9rem}\n"
+    "details{border-bottom:1px solid var(--line);padding:8px 0}details:last-child{border-bottom:0}\n"
+    "summary{cursor:pointer}summary .muted{font-size:.9rem}\n"
+    "details table{margin:8px 0 4px}\n"
+    "code{font-family:ui-monospace,SFMono-Regular,Menlo,Consolas,monospace;font-size:.9em}\n"
+    ".changed{background:var(--tint)}.changed th,.changed td:nth-child(2){font-weight:600}\n"
+    ".changed th{padding-left:8px}\n"
+    ".list{margin:0;padding-left:1.2em}.list li{margin:4px 0}\n"
+    "footer{margin-top:40px;padding-bottom:40px;color:var(--muted);font-size:.85rem}\n"
+    "@media(max-width:800px){.effect{grid-template-columns:minmax(0,1fr)}}\n"
+    "@media(max-width:560px){header,main,footer{padding-left:14px;padding-right:14px}h1{font-size:1.6rem}.card{padding:"
+    "14px}"
+    ".strip img,.none{height:104px}.numbers .how{display:block;padding-top:0}.numbers "
+    "tr{display:grid;grid-template-columns:"
+    "1fr auto;border-bottom:1px solid var(--line)}.numbers th,.numbers td{border-bottom:0}.numbers "
+    ".how{grid-column:1/-1}}\n"
+    "@media print{nav{display:none}section{break-inside:avoid}}\n";
+
+/* The order of the data's way; further stages follow in order of appearance. */
+static const char *const CHAIN[] = {"import_photos", "sfm",       "sfm_import",   "rectify",
+                                    "segment_depth", "plan_path", "render_views", "encode_video"};
+enum { CHAIN_LENGTH = sizeof CHAIN / sizeof *CHAIN };
+
+static void put_seconds(FILE *to, double seconds)
+{
+    if (seconds < 60)
+        fprintf(to, "%.*f s", seconds < 10 ? 2 : 1, seconds);
+    else if (seconds < 3600)
+        fprintf(to, "%d min %02d s", (int)seconds / 60, (int)seconds % 60);
+    else
+        fprintf(to, "%.0f h %02d min", floor(seconds / 3600), (int)(fmod(seconds, 3600) / 60));
+}
+
+static void put_mib(FILE *to, double mib)
+{
+    if (mib < 1024)
+        fprintf(to, "%.*f MiB", mib < 10 ? 1 : 0, mib);
+    else
+        fprintf(to, "%.1f GiB", mib / 1024);
+}
+
+static void put_plural(FILE *to, long long n, const char *one, const char *many)
+{
+    fprintf(to, "%lld %s", n, n == 1 ? one : many);
+}
+
+/* A name with blanks for its underlines. */
+static void put_words(FILE *to, const char *name)
+{
+    char words[256];
+    snprintf(words, sizeof words, "%s", name);
+    for (char *p = words; *p; p++)
+        if (*p == '_') *p = ' ';
+    html_text(to, words);
+}
+
+static enum status put_picture(FILE *to, const struct picture *p, int quality, const char *alt, const char *name,
+                               struct err *err)
+{
+    unsigned char *bytes = NULL;
+    size_t size = 0;
+    enum status st = jpeg_encode(&bytes, &size, p->rgb, p->width, p->height, quality, err);
+    if (!st) {
+        fprintf(to, "<img width=\"%d\" height=\"%d\" alt=\"%s ", p->width, p->height, alt);
+        html_text(to, name);
+        fputs("\" src=\"data:image/jpeg;base64,", to);
+        html_base64(to, bytes, size);
+        fputs("\">", to);
+    }
+    free(bytes);
+    return st;
+}
+
+/* --------------------------------------------------------------------------------------------------------- video */
+
+/* 1, 2 or 5 times a power of ten, not below x. */
+static double round_up(double x)
+{
+    double step = pow(10, floor(log10(x)));
+    return x <= step ? step : x <= 2 * step ? 2 * step : x <= 5 * step ? 5 * step : 10 * step;
+}
+
+static void put_curve(FILE *to, const struct effect_card *e, const double *values, double top, const char *name)
+{
+    const double left = 44, right = 348, high = 12, low = 152;
+    bool drawn = false; /* pen is down */
+    fprintf(to, "<path class=\"%s\" d=\"", name);
+    for (int i = 0; i < e->path.frame_count; i++) {
+        if (values[i] < 0) {
+            drawn = false;
+            continue;
+        }
+        double x = left + (right - left) * i / (e->path.frame_count > 1 ? e->path.frame_count - 1 : 1);
+        fprintf(to, "%s%.1f %.1f", drawn ? "L" : "M", x, low - (low - high) * values[i] / top);
+        drawn = true;
+    }
+    fputs("\"/>\n", to);
+}
+
+/* Holes by frame, before and after filling, in percent of the picture. */
+static void put_hole_plot(FILE *to, const struct effect_card *e)
+{
+    double most = -1, most_unfilled = -1;
+    int worst = 0;
+    for (int i = 0; i < e->path.frame_count; i++) {
+        if (e->holes[i] > most) most = e->holes[i], worst = i;
+        most_unfilled = fmax(most_unfilled, e->unfilled[i]);
+    }
+    if (most < 0) {
+        fputs("<p class=\"muted\">No frame tells how large its holes are.</p>\n", to);
+        return;
+    }
+    double top = round_up(fmax(fmax(most, most_unfilled), 1e-4)),
+           seconds = e->path.frames[e->path.frame_count - 1].time;
+    fprintf(
+        to,
+        "<h3>Holes in each frame</h3>\n<svg class=\"plot\" viewBox=\"0 0 360 186\" role=\"img\" aria-label=\"Share of "
+        "each frame without any segment: at most %.3g %% (frame ",
+        100 * most);
+    html_text(to, e->path.frames[worst].camera.name);
+    fputs(") before small holes are filled", to);
+    if (most_unfilled >= 0) fprintf(to, ", at most %.3g %% after", 100 * most_unfilled);
+    fputs(".\">\n", to);
+    for (int k = 0; k <= 2; k++) {
+        double y = 152 - 70 * k;
+        fprintf(to, "<line class=\"grid\" x1=\"44\" x2=\"348\" y1=\"%.0f\" y2=\"%.0f\"/>", y, y);
+        fprintf(to, "<text x=\"38\" y=\"%.0f\" text-anchor=\"end\">%.3g %%</text>\n", y + 4, 50 * top * k);
+    }
+    for (int k = 0; k <= 2; k++)
+        fprintf(to, "<text x=\"%d\" y=\"170\" text-anchor=\"%s\">%.2g s</text>\n", 44 + 152 * k,
+                k == 0   ? "start"
+                : k == 1 ? "middle"
+                         : "end",
+                seconds * k / 2);
+    put_curve(to, e, e->holes, top, "before");
+    if (most_unfilled >= 0) put_curve(to, e, e->unfilled, top, "after");
+    fprintf(to, "</svg>\n<ul class=\"key\"><li><i class=\"before\"></i>before filling, at most %.3g %%</li>",
+            100 * most);
+    if (most_unfilled >= 0)
+        fprintf(to, "<li><i class=\"after\"></i>after filling, at most %.3g %%</li>", 100 * most_unfilled);
+    fputs("</ul>\n", to);
+}
+
+static void put_scores(FILE *to, const struct effect_card *e)
+{
+    fputs("<table>\n<tbody>\n", to);
+    for (int i = 0; i < e->path.score_count; i++) {
+        const struct path_score *s = &e->path.scores[i];
+        fputs("<tr><th scope=\"row\">", to);
+        put_words(to, s->name);
+        fprintf(to, "</th><td class=\"n\">%.4g ", s->value);
+        html_text(to, !strcmp(s->unit, "-") ? "" : s->unit);
+        fputs("</td></tr>\n", to);
+    }
+    const struct view *v = &e->path.frames[0].camera;
+    fprintf(to, "<tr><th scope=\"row\">video</th><td class=\"n\">%d × %d, ", v->width, v->height);
+    put_plural(to, e->path.frame_count, "frame", "frames");
+    fputs(", ", to);
+    put_seconds(to, e->path.frame_count / e->path.fps);
+    fputs("</td></tr>\n</tbody>\n</table>\n", to);
+}
+
+static enum status put_effect(FILE *to, const struct effect_card *e, struct err *err)
+{
+    fputs("<article class=\"card effect\">\n<div>\n<h3>", to);
+    put_words(to, e->name);
+    fputs("</h3>\n", to);
+    if (e->video) {
+        fputs("<video controls loop muted autoplay playsinline", to);
+        if (e->path.frame_count)
+            fprintf(to, " width=\"%d\" height=\"%d\"", e->path.frames[0].camera.width, e->path.frames[0].camera.height);
+        fputs(" aria-label=\"Rendered camera move ", to);
+        html_text(to, e->name);
+        fputs("\"", to);
+        if (e->poster.rgb) {
+            unsigned char *bytes = NULL;
+            size_t size = 0;
+            if (jpeg_encode(&bytes, &size, e->poster.rgb, e->poster.width, e->poster.height, 80, err))
+                return err->status;
+            fputs(" poster=\"data:image/jpeg;base64,", to);
+            html_base64(to, bytes, size);
+            fputs("\"", to);
+            free(bytes);
+        }
+        fputs(" src=\"data:video/mp4;base64,", to);
+        if (html_base64_file(to, e->video, err)) return err->status;
+        fputs("\">This browser plays no video.</video>\n<p class=\"muted\">The same video stands beside this page: "
+              "<code>parallax/",
+              to);
+        html_text(to, e->name);
+        fprintf(to, "/video.mp4</code> (%.1f MB).</p>\n", (double)e->video_bytes / 1e6);
+    } else {
+        fputs("<p>There is no video yet.</p>\n", to);
+    }
+    fputs("</div>\n<div>\n", to);
+    if (e->path.frame_count) {
+        put_scores(to, e);
+        put_hole_plot(to, e);
+    } else {
+        fputs("<p>There is no camera path that can be read.</p>\n", to);
+    }
+    fputs("</div>\n</article>\n", to);
+    return ST_OK;
+}
+
+static enum status put_videos(FILE *to, const struct contents *c, struct err *err)
+{
+    fputs("<section id=\"video\" aria-labelledby=\"video-title\">\n<h2 id=\"video-title\">Video</h2>\n", to);
+    if (!c->effect_count) fputs("<p>No camera move was planned yet, so there is no video.</p>\n", to);
+    for (int i = 0; i < c->effect_count; i++)
+        if (put_effect(to, &c->effects[i], err)) return err->status;
+    fputs("</section>\n", to);
+    return ST_OK;
+}
+
+/* ------------------------------------------------------------------------------------------------------ pictures */
+
+static enum status put_photos(FILE *to, const struct contents *c, struct err *err)
+{
+    fputs("<section id=\"photos\" aria-labelledby=\"photos-title\">\n<h2 id=\"photos-title\">Photographs</h2>\n", to);
+    if (!c->photos.count)
+        fputs("<p>No photographs are listed yet.</p>\n", to);
+    else
+        fputs("<ul class=\"strip\">\n", to);
+    for (int i = 0; i < c->photos.count; i++) {
+        const struct photo_card *card = &c->photo_cards[i];
+        bool off = c->has_views && !card->views;
+        fprintf(to, "<li%s><figure>", off ? " class=\"off\"" : "");
+        if (card->picture.rgb) {
+            if (put_picture(to, &card->picture, 80, "Photograph", card->record->file, err)) return err->status;
+        } else {
+            fprintf(to, "<div class=\"none\">no picture</div>");
+        }
+        fputs("<figcaption><b>", to);
+        html_text(to, card->record->file);
+        fprintf(to, "</b> %d × %d", card->record->info.width, card->record->info.height);
+        if (card->views > 1) fprintf(to, ", %d views", card->views);
+        if (off) fputs(" <span class=\"tag\">not placed by SfM</span>", to);
+        if (card->trouble[0]) {
+            fputs(" <span class=\"tag\">", to);
+            html_text(to, card->trouble);
+            fputs("</span>", to);
+        }
+        fputs("</figcaption></figure></li>\n", to);
+    }
+    fputs(c->photos.count ? "</ul>\n</section>\n" : "</section>\n", to);
+    return ST_OK;
+}
+
+static void put_legend(FILE *to, const struct contents *c)
+{
+    fputs("<div class=\"legend\">\n<div class=\"ramp\" style=\"background:linear-gradient(90deg", to);
+    for (int k = 16; k >= 0; k--) {
+        unsigned char rgb[3];
+        depth_colour(k / 16.0, rgb);
+        fprintf(to, ",#%02x%02x%02x", rgb[0], rgb[1], rgb[2]);
+    }
+    fputs(")\"></div>\n<div class=\"ticks\">", to);
+    for (int k = 0; k <= 4; k++)
+        fprintf(to, "<span>%.3g</span>", 1 / (1 / c->near + (1 / c->far - 1 / c->near) * k / 4));
+    fputs("</div>\n<p>Depth along the camera's axis in scene units; near is bright, equal steps of colour are equal "
+          "steps of 1/depth. "
+          "<span class=\"hatch\"></span>unknown</p>\n</div>\n",
+          to);
+}
+
+static enum status put_depths(FILE *to, const struct contents *c, struct err *err)
+{
+    fputs("<section id=\"depth\" aria-labelledby=\"depth-title\">\n<h2 id=\"depth-title\">Views and their depth</h2>\n",
+          to);
+    if (!c->views.view_count)
+        fputs("<p>There are no views yet.</p>\n", to);
+    else if (c->near > 0)
+        put_legend(to, c);
+    fputs("<div class=\"pairs\">\n", to);
+    for (int i = 0; i < c->views.view_count; i++) {
+        const struct view_card *card = &c->view_cards[i];
+        fputs("<figure>\n<div class=\"pair\">", to);
+        if (!card->picture.rgb)
+            fputs("<div class=\"none\">no picture yet</div>", to);
+        else if (put_picture(to, &card->picture, 80, "View", card->view->name, err))
+            return err->status;
+        if (!card->depth_picture.rgb)
+            fputs("<div class=\"none\">no depth yet</div>", to);
+        else if (put_picture(to, &card->depth_picture, 90, "Depth of view", card->view->name, err))
+            return err->status;
+        fputs("</div>\n<figcaption><b>", to);
+        html_text(to, card->view->name);
+        fprintf(to, "</b> %d × %d", card->view->width, card->view->height);
+        if (card->depth.z) fprintf(to, ", %.1f %% known, %u segments", 100 * card->depth.known, card->segments);
+        if (card->near > 0) fprintf(to, ", depth %.3g to %.3g", card->near, card->far);
+        if (card->trouble[0]) {
+            fputs(" <span class=\"tag\">", to);
+            html_text(to, card->trouble);
+            fputs("</span>", to);
+        }
+        fputs("</figcaption>\n</figure>\n", to);
+    }
+    fputs("</div>\n</section>\n", to);
+    return ST_OK;
+}
+
+/* ------------------------------------------------------------------------------------------------------- figures */
+
+static void put_number_head(FILE *to, const char *what)
+{
+    fprintf(to, "<tr><th scope=\"row\">%s</th><td class=\"n\">", what);
+}
+
+static void put_number_tail(FILE *to, const char *how) { fprintf(to, "</td><td class=\"how\">%s</td></tr>\n", how); }
+
+static void put_numbers(FILE *to, const struct contents *c)
+{
+    const struct sfm_model *m = &c->views.model;
+    int placed = 0;
+    for (int i = 0; i < c->photos.count; i++) placed += c->photo_cards[i].views > 0;
+
+    fputs("<section id=\"numbers\" aria-labelledby=\"numbers-title\">\n<h2 id=\"numbers-title\">Key numbers</h2>\n"
+          "<div class=\"card\"><table class=\"numbers\">\n<tbody>\n",
+          to);
+    put_number_head(to, "Photographs");
+    fprintf(to, "%d", c->photos.count);
+    put_number_tail(to, "in the list, without those left out");
+    if (c->has_views) {
+        put_number_head(to, "Views");
+        fprintf(to, "%d", c->views.view_count);
+        fputs("</td><td class=\"how\">", to);
+        if (c->has_photos) fprintf(to, "%d of %d photographs placed by SfM", placed, c->photos.count);
+        fputs("</td></tr>\n", to);
+        put_number_head(to, "Sparse points");
+        fprintf(to, "%d", m->point_count);
+        fputs("</td><td class=\"how\">", to);
+        if (m->point_count) fprintf(to, "each seen by %.1f views on average", c->track_mean);
+        fputs("</td></tr>\n", to);
+        if (m->point_count) {
+            put_number_head(to, "Reprojection error");
+            fprintf(to, "%.2f px", c->error_median);
+            fputs("</td><td class=\"how\">", to);
+            fprintf(to, "median, recomputed in the rectified views; root mean square %.2f px</td></tr>\n",
+                    c->error_rms);
+        }
+    }
+    if (c->depth_count) {
+        put_number_head(to, "Segments");
+        fprintf(to, "%lld", c->segments);
+        fputs("</td><td class=\"how\">", to);
+        fprintf(to, "in %d depth maps, %.0f a view</td></tr>\n", c->depth_count, (double)c->segments / c->depth_count);
+        put_number_head(to, "Known depth");
+        fprintf(to, "%.2f %%", 100 * c->known);
+        put_number_tail(to, "of the views' pixels");
+    }
+    for (int i = 0; i < c->effect_count; i++) {
+        const struct effect_card *e = &c->effects[i];
+        if (!e->path.frame_count) continue;
+        put_number_head(to, "Video");
+        put_seconds(to, e->path.frame_count / e->path.fps);
+        fputs("</td><td class=\"how\">", to);
+        html_text(to, e->name);
+        fprintf(to, ": %d of %d frames made, %d × %d, %.4g a second", e->frames_found, e->path.frame_count,
+                e->path.frames[0].camera.width, e->path.frames[0].camera.height, e->path.fps);
+        if (e->video) fprintf(to, ", %.1f MB", (double)e->video_bytes / 1e6);
+        fputs("</td></tr>\n", to);
+    }
+    fputs("</tbody>\n</table></div>\n</section>\n", to);
+}
+
+static const struct stage_usage *stage_at(const struct usage_table *t, const char *name)
+{
+    for (int i = 0; i < t->stage_count; i++)
+        if (!strcmp(t->stages[i].sum.stage, name)) return &t->stages[i];
+    return NULL;
+}
+
+static bool in_chain(const char *name)
+{
+    for (int i = 0; i < CHAIN_LENGTH; i++)
+        if (!strcmp(CHAIN[i], name)) return true;
+    return false;
+}
+
+static void put_bar(FILE *to, double part, double whole)
+{
+    fprintf(to, "<span class=\"bar\" style=\"width:%.1f%%\"></span>", whole > 0 ? fmax(100 * part / whole, 0.5) : 0.5);
+}
+
+static void put_usage_row(FILE *to, const struct stage_usage *s, const struct usage *most)
+{
+    fputs("<tr><th scope=\"row\">", to);
+    html_text(to, s->sum.stage);
+    fprintf(to, "</th><td class=\"n\">%d", s->runs);
+    if (s->unfinished) fprintf(to, " <span class=\"tag\">%d did not end</span>", s->unfinished);
+    fputs("</td><td class=\"n\">", to);
+    put_seconds(to, s->sum.wall);
+    put_bar(to, s->sum.wall, most->wall);
+    fputs("</td><td class=\"n\">", to);
+    put_seconds(to, s->sum.cpu);
+    put_bar(to, s->sum.cpu, most->cpu);
+    fputs("</td><td class=\"n peak\">", to);
+    put_mib(to, s->sum.mib);
+    put_bar(to, s->sum.mib, most->mib);
+    fputs("</td></tr>\n", to);
+}
+
+static void put_usage(FILE *to, const struct contents *c)
+{
+    const struct usage_table *t = &c->usage;
+    struct usage sum = {0}, most = {0};
+    fputs("<section id=\"time\" aria-labelledby=\"time-title\">\n<h2 id=\"time-title\">Time and memory</h2>\n", to);
+    if (!t->stage_count) {
+        fputs("<p>No stage left a log.</p>\n</section>\n", to);
+        return;
+    }
+    for (int i = 0; i < t->stage_count; i++) {
+        const struct usage *u = &t->stages[i].sum;
+        sum = (struct usage){"", sum.wall + u->wall, sum.cpu + u->cpu, fmax(sum.mib, u->mib)};
+        most = (struct usage){"", fmax(most.wall, u->wall), fmax(most.cpu, u->cpu), fmax(most.mib, u->mib)};
+    }
+    fputs("<p>Summed over each stage's latest runs; runs of one stage may have gone on side by side. Memory is the "
+          "largest peak of "
+          "one run.</p>\n<div class=\"card wide\" role=\"region\" aria-labelledby=\"time-title\" "
+          "tabindex=\"0\"><table>\n<thead><tr>"
+          "<th scope=\"col\">Stage</th><th scope=\"col\" class=\"n\">Runs</th><th scope=\"col\" class=\"n\">Wall "
+          "clock</th>"
+          "<th scope=\"col\" class=\"n\">Processor</th><th scope=\"col\" class=\"n\">Peak "
+          "memory</th></tr></thead>\n<tbody>\n",
+          to);
+    for (int i = 0; i < CHAIN_LENGTH; i++) {
+        const struct stage_usage *s = stage_at(t, CHAIN[i]);
+        if (s) put_usage_row(to, s, &most);
+    }
+    for (int i = 0; i < t->stage_count; i++)
+        if (!in_chain(t->stages[i].sum.stage)) put_usage_row(to, &t->stages[i], &most);
+    fputs("</tbody>\n<tfoot><tr><th scope=\"row\">All</th><td></td><td class=\"n\">", to);
+    put_seconds(to, sum.wall);
+    fputs("</td><td class=\"n\">", to);
+    put_seconds(to, sum.cpu);
+    fputs("</td><td class=\"n\">", to);
+    put_mib(to, sum.mib);
+    fputs("</td></tr></tfoot>\n</table></div>\n</section>\n", to);
+}
+
+/* ----------------------------------------------------------------------------------------------------- the rest */
+
+static void put_section_settings(FILE *to, const struct contents *c, int from, int end)
+{
+    const struct setting *items = c->settings.items;
+    int changed = 0;
+    for (int i = from; i < end; i++) changed += items[i].changed;
+    fputs(changed ? "<details open><summary><code>" : "<details><summary><code>", to);
+    html_text(to, items[from].section[0] ? items[from].section : "no section");
+    fputs("</code> <span class=\"muted\">", to);
+    put_plural(to, end - from, "parameter", "parameters");
+    if (c->has_defaults) {
+        if (changed)
+            fprintf(to, ", %d changed", changed);
+        else
+            fputs(", all default", to);
+    }
+    fputs("</span></summary>\n<table>\n<tbody>\n", to);
+    for (int i = from; i < end; i++) {
+        fputs(items[i].changed ? "<tr class=\"changed\"><th scope=\"row\"><code>" : "<tr><th scope=\"row\"><code>", to);
+        html_text(to, items[i].key);
+        fputs("</code></th><td><code>", to);
+        html_text(to, items[i].value);
+        fputs("</code></td><td class=\"how\">", to);
+        if (items[i].changed) html_printf(to, "default %s", items[i].usual[0] ? items[i].usual : "is empty");
+        fputs("</td></tr>\n", to);
+    }
+    fputs("</tbody>\n</table>\n</details>\n", to);
+}
+
+static void put_settings(FILE *to, const struct contents *c)
+{
+    const struct setting *items = c->settings.items;
+    fputs("<section id=\"parameters\" aria-labelledby=\"parameters-title\">\n<h2 "
+          "id=\"parameters-title\">Parameters</h2>\n",
+          to);
+    if (!c->settings.count) {
+        fputs("<p>No stage left its parameters.</p>\n</section>\n", to);
+        return;
+    }
+    fputs("<div class=\"card\">\n", to);
+    for (int from = 0, end; from < c->settings.count; from = end) {
+        for (end = from + 1; end < c->settings.count && !strcmp(items[end].section, items[from].section);) end++;
+        put_section_settings(to, c, from, end);
+    }
+    fputs("</div>\n</section>\n", to);
+}
+
+static void put_warnings(FILE *to, const struct contents *c)
+{
+    fputs("<section id=\"warnings\" aria-labelledby=\"warnings-title\">\n<h2 id=\"warnings-title\">Warnings</h2>\n",
+          to);
+    if (!c->usage.warning_count)
+        fputs("<p>The logs hold no warning.</p>\n", to);
+    else
+        fputs("<div class=\"card\"><ul class=\"list\">\n", to);
+    for (int i = 0; i < c->usage.warning_count; i++) {
+        const struct log_warning *w = &c->usage.warnings[i];
+        fputs("<li><code>", to);
+        html_text(to, w->stage);
+        fputs("</code> <span class=\"muted\">", to);
+        html_text(to, w->item);
+        if (w->count > 1) fprintf(to, " and %d more", w->count - 1);
+        fputs("</span><br>", to);
+        html_text(to, w->text);
+        fputs("</li>\n", to);
+    }
+    if (c->usage.warnings_dropped) fprintf(to, "<li>and %d more, in the logs</li>\n", c->usage.warnings_dropped);
+    fputs(c->usage.warning_count ? "</ul></div>\n</section>\n" : "</section>\n", to);
+}
+
+static void put_skipped(FILE *to, const struct contents *c)
+{
+    int count = c->note_count + c->left_out_count;
+    fputs(
+        "<section id=\"skipped\" aria-labelledby=\"skipped-title\">\n<h2 id=\"skipped-title\">Left out, and why</h2>\n"
+        "<div class=\"card\"><ul class=\"list\">\n",
+        to);
+    for (int i = 0; i < c->note_count; i++) {
+        fputs("<li>", to);
+        html_text(to, c->notes[i]);
+        fputs("</li>\n", to);
+    }
+    for (int i = 0; i < c->left_out_count; i++) {
+        fputs("<li><b>", to);
+        html_text(to, c->left_out[i]);
+        fputs("</b> stands in the folder of photographs but not in the scene's list: it was excluded, or added "
+              "since.</li>\n",
+              to);
+    }
+    for (int i = 0; c->has_views && i < c->photos.count; i++) {
+        if (c->photo_cards[i].views) continue;
+        fputs("<li><b>", to);
+        html_text(to, c->photo_cards[i].record->file);
+        fputs("</b> could not be placed: too little of it matches the other photographs, or it lies in a smaller model "
+              "that was not "
+              "chosen.</li>\n",
+              to);
+        count++;
+    }
+    for (int i = 0; c->usage.stage_count && i < CHAIN_LENGTH; i++) {
+        if (stage_at(&c->usage, CHAIN[i])) continue;
+        fprintf(to, "<li>The stage <code>%s</code> left no log: it has not run for this scene.</li>\n", CHAIN[i]);
+        count++;
+    }
+    if (!count) fputs("<li>Nothing: every photograph is used and every stage has run.</li>\n", to);
+    fputs("</ul></div>\n</section>\n", to);
+}
+
+static void put_head(FILE *to, const char *scene, const struct contents *c)
+{
+    fputs("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
+          "content=\"width=device-width, initial-scale=1\">\n<meta http-equiv=\"Content-Security-Policy\" "
+          "content=\"default-src "
+          "'none'; img-src data:; media-src data:; style-src 'unsafe-inline'\">\n<meta name=\"generator\" "
+          "content=\"remodel " REMODEL_VERSION "\">\n<link rel=\"icon\" href=\"data:,\">\n<title>",
+          to);
+    html_text(to, scene);
+    fputs(" · remodel " REMODEL_VERSION "</title>\n<style>\n", to);
+    fputs(STYLE, to);
+    fputs("</style>\n</head>\n<body>\n<header>\n<h1>", to);
+    html_text(to, scene);
+    fputs("</h1>\n<p class=\"lead\">", to);
+    put_plural(to, c->photos.count, "photograph", "photographs");
+    fputs(" · ", to);
+    put_plural(to, c->views.view_count, "view", "views");
+    fputs(" · ", to);
+    put_plural(to, c->depth_count, "depth map", "depth maps");
+    int videos = 0;
+    for (int i = 0; i < c->effect_count; i++) videos += c->effects[i].video != NULL;
+    fputs(" · ", to);
+    put_plural(to, videos, "video", "videos");
+    fputs(
+        " · remodel " REMODEL_VERSION
+        "</p>\n<nav aria-label=\"Contents\"><a href=\"#video\">Video</a><a href=\"#photos\">Photographs</a>"
+        "<a href=\"#depth\">Depth</a><a href=\"#numbers\">Numbers</a><a href=\"#time\">Time and memory</a><a "
+        "href=\"#parameters\">"
+        "Parameters</a><a href=\"#warnings\">Warnings</a><a href=\"#skipped\">Left out</a></nav>\n</header>\n<main>\n",
+        to);
+}
+
+enum status page_write(FILE *to, const char *scene, const struct contents *c, struct err *err)
+{
+    put_head(to, scene, c);
+    if (put_videos(to, c, err) || put_photos(to, c, err) || put_depths(to, c, err)) return err->status;
+    put_numbers(to, c);
+    put_usage(to, c);
+    put_settings(to, c);
+    put_warnings(to, c);
+    put_skipped(to, c);
+    fputs("</main>\n<footer>Made by remodel " REMODEL_VERSION
+          ". This file holds everything it shows.</footer>\n</body>\n</html>\n",
+          to);
+    return ST_OK;
+}

@@ -1,0 +1,175 @@
+/* neighbours.c - see neighbours.h. */
+#include "stages/segment_depth/neighbours.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+
+#define LEAST_SHARED 8      /* points that two views must share before the points choose */
+#define LARGEST_ERROR 2.0   /* px, of a point that is believed */
+#define DEGREE (M_PI / 180)
+
+static int compare_points(const void *a, const void *b)
+{
+    const struct sfm_point *p = a, *q = b;
+    return (p->id > q->id) - (p->id < q->id);
+}
+
+enum status seen_points_find(struct seen_points *seen, const struct camera_set *set, int view_idx, struct err *err)
+{
+    const struct view *view = &set->views[view_idx];
+    const struct sfm_model *m = &set->model;
+    *seen = (struct seen_points){0};
+    if (view_idx >= m->image_count) return ST_OK;
+    const struct sfm_image *image = &m->images[view_idx];
+    seen->points = malloc(((size_t)image->observation_count + 1) * sizeof *seen->points);
+    if (!seen->points) return err_nomem(err, "the points of a view", (size_t)image->observation_count * 32);
+    for (int i = 0; i < image->observation_count && m->point_count > 0; i++) {
+        const struct sfm_observation *o = &image->observations[i];
+        struct sfm_point key = {.id = o->point_id};
+        const struct sfm_point *p =
+            bsearch(&key, m->points, (size_t)m->point_count, sizeof *m->points, compare_points);
+        double u, v, z;
+        if (!p || !((z = view_project(view, p->position, &u, &v)) > 0)) continue;
+        if (!(hypot(u - o->u, v - o->v) <= LARGEST_ERROR)) continue;
+        seen->points[seen->count++] = (struct seen_point){(int)(p - m->points), u, v, 1 / z};
+    }
+    return ST_OK;
+}
+
+void seen_points_release(struct seen_points *seen)
+{
+    if (!seen) return;
+    free(seen->points);
+    *seen = (struct seen_points){0};
+}
+
+static double angle_at(struct vec3 point, struct vec3 a, struct vec3 b)
+{
+    struct vec3 to_a = vec3_sub(a, point), to_b = vec3_sub(b, point);
+    return atan2(vec3_length(vec3_cross(to_a, to_b)), vec3_dot(to_a, to_b)) / DEGREE;
+}
+
+static double angle_weight(double degrees)
+{
+    if (degrees < 5) return pow(degrees / 5, 1.5);
+    return degrees <= 20 ? 1 : exp(-pow((degrees - 20) / 12, 2));
+}
+
+/* Score of every view given those chosen already; shared[] counts the points in common. */
+static void score_views(double *score, int *shared, const struct camera_set *set, int view_idx,
+                        const struct seen_points *seen, const int *chosen, int chosen_count)
+{
+    const struct view *view = &set->views[view_idx];
+    for (int j = 0; j < set->view_count; j++) score[j] = shared[j] = 0;
+    for (int i = 0; i < seen->count; i++) {
+        const struct sfm_point *p = &set->model.points[seen->points[i].point_idx];
+        for (int k = 0; k < p->track_count; k++) {
+            int j = p->track[k].image_idx;
+            if (j == view_idx || j >= set->view_count) continue;
+            const struct view *other = &set->views[j];
+            double u, v, z = view_project(other, p->position, &u, &v);
+            if (!(z > 0)) continue;
+            double scale = other->fx / z / (view->fx * seen->points[i].inverse_z);
+            double w = angle_weight(angle_at(p->position, view->center, other->center)) * fmin(scale, 1 / scale);
+            for (int c = 0; c < chosen_count; c++)
+                w *= fmin(1, 0.2 + angle_at(p->position, set->views[chosen[c]].center, other->center) / 5);
+            score[j] += w;
+            shared[j]++;
+        }
+    }
+}
+
+/* Without points: near ones looking the same way, at some distance. */
+static void score_poses(double *score, const struct camera_set *set, int view_idx)
+{
+    const struct view *view = &set->views[view_idx];
+    double farthest = 0;
+    for (int j = 0; j < set->view_count; j++)
+        farthest = fmax(farthest, vec3_length(vec3_sub(set->views[j].center, view->center)));
+    for (int j = 0; j < set->view_count; j++) {
+        const struct view *other = &set->views[j];
+        double distance = vec3_length(vec3_sub(other->center, view->center)), cosine = 0;
+        for (int k = 0; k < 3; k++) cosine += view->cam_from_world.m[2][k] * other->cam_from_world.m[2][k];
+        bool usable = distance > 1e-6 * farthest && cosine > 0.7;
+        score[j] = usable ? cosine / (0.05 * farthest + distance) : 0;
+    }
+}
+
+static int best_view(const double *score, const int *shared, int count, int view_idx, const int *chosen,
+                     int chosen_count)
+{
+    int best = -1;
+    for (int j = 0; j < count; j++) {
+        bool taken = j == view_idx || (shared && shared[j] < LEAST_SHARED);
+        for (int c = 0; c < chosen_count; c++) taken = taken || chosen[c] == j;
+        if (!taken && score[j] > 1e-9 && (best < 0 || score[j] > score[best])) best = j;
+    }
+    return best;
+}
+
+enum status neighbours_choose(int neighbours[MAX_NEIGHBOURS], int *count, const struct camera_set *set, int view_idx,
+                              const struct seen_points *seen, int most, struct err *err)
+{
+    double *score = malloc((size_t)set->view_count * sizeof *score);
+    int *shared = malloc((size_t)set->view_count * sizeof *shared), best = 0;
+    enum status st = ST_OK;
+    *count = 0;
+    if (!score || !shared) {
+        st = err_nomem(err, "scores of views", (size_t)set->view_count * 12);
+        goto done;
+    }
+    double first_score = 0;
+    while (*count < most && *count < MAX_NEIGHBOURS && best >= 0) {
+        score_views(score, shared, set, view_idx, seen, neighbours, *count);
+        best = best_view(score, shared, set->view_count, view_idx, neighbours, *count);
+        if (*count == 0 && best >= 0) first_score = score[best];
+        /* a view that adds next to nothing costs as much time as a good one */
+        if (best >= 0 && score[best] >= 0.02 * first_score) neighbours[(*count)++] = best;
+        else best = -1;
+    }
+    if (*count == 0) {
+        score_poses(score, set, view_idx);
+        while (*count < most && *count < MAX_NEIGHBOURS &&
+               (best = best_view(score, NULL, set->view_count, view_idx, neighbours, *count)) >= 0)
+            neighbours[(*count)++] = best;
+    }
+    if (*count == 0)
+        st = err_set(err, ST_DATA,
+                     "view %s has no neighbour to match with: among the %d other view(s) none looks at the same scene "
+                     "from another place. Depth needs at least two views taken from different points; add photos "
+                     "beside this one or leave it out (EXCLUDE).",
+                     set->views[view_idx].name, set->view_count - 1);
+done:
+    free(score);
+    free(shared);
+    return st;
+}
+
+static int compare_doubles(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+void depth_range(double *least, double *most, const struct camera_set *set, int view_idx,
+                 const struct seen_points *seen, const int *neighbours, int count)
+{
+    const struct view *view = &set->views[view_idx];
+    double *inverse = seen->count >= LEAST_SHARED ? malloc((size_t)seen->count * sizeof *inverse) : NULL;
+    if (inverse) {
+        for (int i = 0; i < seen->count; i++) inverse[i] = seen->points[i].inverse_z;
+        qsort(inverse, (size_t)seen->count, sizeof *inverse, compare_doubles);
+        double low = inverse[seen->count / 100], high = inverse[seen->count - 1 - seen->count / 100];
+        double margin = 0.15 * (high - low) + 0.03 * high;
+        *least = fmax(low - margin, 0.3 * low);
+        *most = high + margin;
+        free(inverse);
+        return;
+    }
+    double baseline = 0;
+    for (int k = 0; k < count; k++)
+        baseline = fmax(baseline, vec3_length(vec3_sub(set->views[neighbours[k]].center, view->center)));
+    *most = fmax(0.25 * view->width, 2) / (view->fx * baseline);
+    *least = *most / 500;
+}

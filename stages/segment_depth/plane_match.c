@@ -1,0 +1,423 @@
+/* plane_match.c - the matching cost; nearly all of the stage's time is spent in segment_cost().
+ *
+ * Eight bytes a pixel: R G B, fine gradient x y, coarse gradient x y (offset 128), validity. A neighbour's texture keeps
+ * a pixel's bytes interleaved with those of the pixel below, so that 32 bytes from one address hold the four corners of
+ * a bilinear sample of all channels: _mm256_maddubs_epi16 blends vertically, one multiply horizontally. The sum of
+ * weighted truncated differences is an integer; validity has a weight that lifts a pixel over every honest cost. */
+#include "stages/segment_depth/plane_match.h"
+
+#include <immintrin.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/parallel.h"
+
+#define CHANNELS 8
+#define UNIT 127 /* vertical weights sum to it, so features are bytes times it */
+
+/* Truncations (in bytes; gradients are stored 2 x grey levels) and weights; they follow PatchMatch Stereo (Bleyer 2011) in trusting
+ * gradients more than colours. */
+enum { COLOUR_LIMIT = 24, FINE_LIMIT = 16, COARSE_LIMIT = 20 };
+enum { COLOUR_WEIGHT = 11, FINE_WEIGHT = 38, COARSE_WEIGHT = 18, VALID_WEIGHT = 1000 };
+enum {
+    WORST = UNIT * (3 * COLOUR_LIMIT * COLOUR_WEIGHT + 2 * FINE_LIMIT * FINE_WEIGHT + 2 * COARSE_LIMIT * COARSE_WEIGHT),
+    OUT_OF_SIGHT = WORST + 1,
+};
+
+static uint8_t byte_from(float x) { return (uint8_t)(x <= 0 ? 0 : x >= 255 ? 255 : x + 0.5f); }
+
+struct pack_job {
+    const struct gamma_image *g;
+    const float *luma, *smooth;
+    float gain[3];
+    float turn[2][2]; /* gradient in the reference's axes = turn (gx, gy) */
+    uint8_t *packed;  /* CHANNELS a pixel */
+};
+
+static int inside(int x, int size) { return x < 0 ? 0 : x >= size ? size - 1 : x; }
+
+static void gradient(float out[2], const struct pack_job *job, const float *luma, int x, int y, int step)
+{
+    int w = job->g->width, h = job->g->height;
+    float gx = luma[y * w + inside(x + step, w)] - luma[y * w + inside(x - step, w)];
+    float gy = luma[inside(y + step, h) * w + x] - luma[inside(y - step, h) * w + x];
+    out[0] = 128 + 255 * (job->turn[0][0] * gx + job->turn[0][1] * gy);
+    out[1] = 128 + 255 * (job->turn[1][0] * gx + job->turn[1][1] * gy);
+}
+
+static void pack_rows(void *ctx, size_t begin, size_t end, int thread)
+{
+    const struct pack_job *job = ctx;
+    int w = job->g->width;
+    (void)thread;
+    for (int y = (int)begin; y < (int)end; y++)
+        for (int x = 0; x < w; x++) {
+            size_t i = (size_t)y * (size_t)w + (size_t)x;
+            uint8_t *p = job->packed + CHANNELS * i;
+            float fine[2], coarse[2];
+            gradient(fine, job, job->luma, x, y, 1);
+            gradient(coarse, job, job->smooth, x, y, 2);
+            for (int c = 0; c < 3; c++) p[c] = byte_from(255 * job->gain[c] * job->g->rgb[c][i]);
+            for (int c = 0; c < 2; c++) {
+                p[3 + c] = byte_from(fine[c]);
+                p[5 + c] = byte_from(coarse[c]);
+            }
+            p[7] = job->g->valid[i] ? 255 : 0;
+        }
+}
+
+/* (1 4 6 4 1)/16 both ways; from and to differ; line holds w * h floats. */
+static void smooth_luma(float *to, const float *from, float *line, int w, int h)
+{
+    for (int y = 0; y < h; y++)
+        for (int x = 0; x < w; x++) {
+            const float *p = from + (size_t)y * (size_t)w;
+            line[(size_t)y * (size_t)w + (size_t)x] =
+                0.375f * p[x] + 0.25f * (p[inside(x - 1, w)] + p[inside(x + 1, w)]) +
+                0.0625f * (p[inside(x - 2, w)] + p[inside(x + 2, w)]);
+        }
+    for (int y = 0; y < h; y++) {
+        const float *p[5];
+        for (int k = 0; k < 5; k++) p[k] = line + (size_t)inside(y + k - 2, h) * (size_t)w;
+        float *q = to + (size_t)y * (size_t)w;
+        for (int x = 0; x < w; x++)
+            q[x] = 0.375f * p[2][x] + 0.25f * (p[1][x] + p[3][x]) + 0.0625f * (p[0][x] + p[4][x]);
+    }
+}
+
+/* CHANNELS bytes a pixel, allocated; NULL: no memory. */
+static uint8_t *pack(const struct gamma_image *g, const double gain[3], double turn[2][2])
+{
+    size_t pixels = (size_t)g->width * (size_t)g->height;
+    float *luma = malloc(3 * pixels * sizeof *luma);
+    uint8_t *packed = malloc(CHANNELS * pixels);
+    if (!luma || !packed) {
+        free(luma);
+        free(packed);
+        return NULL;
+    }
+    for (size_t i = 0; i < pixels; i++)
+        luma[i] = (float)(0.3 * gain[0]) * g->rgb[0][i] + (float)(0.6 * gain[1]) * g->rgb[1][i] +
+                  (float)(0.1 * gain[2]) * g->rgb[2][i];
+    smooth_luma(luma + pixels, luma, luma + 2 * pixels, g->width, g->height);
+    struct pack_job job = {.g = g, .luma = luma, .smooth = luma + pixels, .packed = packed};
+    for (int c = 0; c < 3; c++) job.gain[c] = (float)gain[c];
+    for (int i = 0; i < 2; i++)
+        for (int j = 0; j < 2; j++) job.turn[i][j] = (float)turn[i][j];
+    parallel_for((size_t)g->height, 16, pack_rows, &job);
+    free(luma);
+    return packed;
+}
+
+enum status matcher_init(struct matcher *m, const struct segmentation *s, const struct gamma_image *reference,
+                         struct err *err)
+{
+    const double gain[3] = {1, 1, 1};
+    double turn[2][2] = {{1, 0}, {0, 1}};
+    size_t room = 0;
+    *m = (struct matcher){.segments = s};
+    m->first = malloc(((size_t)s->count + 1) * sizeof *m->first);
+    if (!m->first) return err_nomem(err, "a matcher", (size_t)s->count * sizeof *m->first);
+    for (int k = 0; k < s->count; k++) {
+        m->first[k] = (int)room;
+        room += ((size_t)s->segments[k].pixels + 7) & ~(size_t)7;
+    }
+    m->first[s->count] = (int)room;
+    m->x = aligned_alloc(32, (room + 8) * sizeof *m->x);
+    m->y = aligned_alloc(32, (room + 8) * sizeof *m->y);
+    m->features = aligned_alloc(32, (room + 8) * CHANNELS * sizeof *m->features);
+    uint8_t *packed = pack(reference, gain, turn);
+    if (!m->x || !m->y || !m->features || !packed) {
+        free(packed);
+        return err_nomem(err, "the pixels of a matcher", room * 24);
+    }
+    for (int k = 0; k < s->count; k++)
+        for (int i = m->first[k]; i < m->first[k + 1]; i++) {
+            int n = i - m->first[k], last = s->segments[k].pixels - 1;
+            int pixel = s->pixel[s->segments[k].first + (n < last ? n : last)];
+            m->x[i] = (float)(pixel % s->width) + 0.5f;
+            m->y[i] = (float)(pixel / s->width) + 0.5f;
+            for (int c = 0; c < CHANNELS; c++)
+                m->features[i * CHANNELS + c] = (int16_t)(UNIT * packed[(size_t)pixel * CHANNELS + (size_t)c]);
+            if (n > last) m->features[i * CHANNELS + 7] = -UNIT * 128; /* filling: never in sight */
+        }
+    free(packed);
+    return ST_OK;
+}
+
+static void homography_parts(struct match_neighbour *n, const struct view *view, const struct view *other)
+{
+    /* p' = K' (R K^-1 [u v 1] + T / z) */
+    struct mat3 r = mat3_multiply(other->cam_from_world, mat3_transpose(view->cam_from_world));
+    struct vec3 t = vec3_sub(other->translation, mat3_apply(r, view->translation));
+    const double shift[3] = {t.x, t.y, t.z};
+    double turned[3][3];
+    for (int i = 0; i < 3; i++) {
+        turned[i][0] = r.m[i][0] / view->fx;
+        turned[i][1] = r.m[i][1] / view->fy;
+        turned[i][2] = r.m[i][2] - r.m[i][0] * view->cx / view->fx - r.m[i][1] * view->cy / view->fy;
+    }
+    for (int j = 0; j < 3; j++) {
+        n->base[0][j] = other->fx * turned[0][j] + other->cx * turned[2][j];
+        n->base[1][j] = other->fy * turned[1][j] + other->cy * turned[2][j];
+        n->base[2][j] = turned[2][j];
+    }
+    n->shift[0] = other->fx * shift[0] + other->cx * shift[2];
+    n->shift[1] = other->fy * shift[1] + other->cy * shift[2];
+    n->shift[2] = shift[2];
+}
+
+static bool carry(const struct match_neighbour *n, double u, double v, double inverse_z, double *nu, double *nv)
+{
+    double p[3];
+    for (int i = 0; i < 3; i++) p[i] = n->base[i][0] * u + n->base[i][1] * v + n->base[i][2] + n->shift[i] * inverse_z;
+    if (!(p[2] > 1e-9)) return false;
+    *nu = p[0] / p[2];
+    *nv = p[1] / p[2];
+    return true;
+}
+
+static int compare_doubles(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* Median ratio of the view's colours to the neighbour's, at the points that both observed. */
+static enum status estimate_gain(double gain[3], const struct camera_set *set, const struct view *other,
+                                 int neighbour_idx, const struct seen_points *seen,
+                                 const struct gamma_image *reference, const struct gamma_image *picture,
+                                 struct err *err)
+{
+    double *ratios = malloc(((size_t)seen->count + 1) * 3 * sizeof *ratios);
+    int count = 0;
+    if (!ratios) return err_nomem(err, "colour ratios", (size_t)seen->count * 24);
+    for (int i = 0; i < seen->count; i++) {
+        const struct sfm_point *p = &set->model.points[seen->points[i].point_idx];
+        bool both = false;
+        float mine[3], theirs[3];
+        double u, v;
+        for (int k = 0; k < p->track_count; k++) both = both || p->track[k].image_idx == neighbour_idx;
+        if (!both || !(view_project(other, p->position, &u, &v) > 0)) continue;
+        if (!gamma_image_at(reference, seen->points[i].u, seen->points[i].v, mine)) continue;
+        if (!gamma_image_at(picture, u, v, theirs)) continue;
+        bool well_exposed = true;
+        for (int c = 0; c < 3; c++)
+            well_exposed = well_exposed && mine[c] > 0.05f && mine[c] < 0.97f && theirs[c] > 0.05f && theirs[c] < 0.97f;
+        if (!well_exposed) continue;
+        for (int c = 0; c < 3; c++) ratios[c * seen->count + count] = (double)mine[c] / (double)theirs[c];
+        count++;
+    }
+    for (int c = 0; c < 3; c++) {
+        double *r = ratios + (size_t)c * (size_t)seen->count;
+        qsort(r, (size_t)count, sizeof *r, compare_doubles);
+        gain[c] = count >= 12 ? fmin(fmax(r[count / 2], 0.25), 4) : 1;
+    }
+    free(ratios);
+    return ST_OK;
+}
+
+/* Interleaves rows y and y + 1; one more column repeats the last, and the end is padded for 32-byte loads. */
+static enum status make_texture(struct match_neighbour *n, const uint8_t *packed, struct err *err)
+{
+    size_t w = (size_t)n->width, h = (size_t)n->height, size = (w + 1) * h * 2 * CHANNELS + 32;
+    n->texture = calloc(size, 1);
+    if (!n->texture) return err_nomem(err, "a texture to match with", size);
+    for (size_t y = 0; y < h; y++)
+        for (size_t x = 0; x <= w; x++) {
+            size_t column = x < w ? x : w - 1, below = y + 1 < h ? y + 1 : y;
+            uint8_t *to = n->texture + (y * (w + 1) + x) * 2 * CHANNELS;
+            for (size_t c = 0; c < CHANNELS; c++) {
+                to[2 * c] = packed[(y * w + column) * CHANNELS + c];
+                to[2 * c + 1] = packed[(below * w + column) * CHANNELS + c];
+            }
+        }
+    return ST_OK;
+}
+
+enum status matcher_add(struct matcher *m, const struct camera_set *set, int view_idx, int neighbour_idx,
+                        const struct seen_points *seen, double typical, const struct gamma_image *reference,
+                        struct gamma_image *picture, struct err *err)
+{
+    const struct view *view = &set->views[view_idx];
+    struct view other = set->views[neighbour_idx];
+    struct match_neighbour *n = &m->neighbours[m->neighbour_count];
+    double turn[2][2] = {{1, 0}, {0, 1}}, gain[3], u0, v0, ux, vx, uy, vy;
+    double u = view->width / 2.0, v = view->height / 2.0;
+    if (estimate_gain(gain, set, &other, neighbour_idx, seen, reference, picture, err)) return err->status;
+    for (;;) {
+        homography_parts(n, view, &other);
+        if (!carry(n, u, v, typical, &u0, &v0) || !carry(n, u + 1, v, typical, &ux, &vx) ||
+            !carry(n, u, v + 1, typical, &uy, &vy))
+            break;
+        turn[0][0] = ux - u0; /* gradients are covectors: the transposed Jacobian brings them here */
+        turn[0][1] = vx - v0;
+        turn[1][0] = uy - u0;
+        turn[1][1] = vy - v0;
+        double scale = sqrt(fabs(turn[0][0] * turn[1][1] - turn[0][1] * turn[1][0]));
+        if (!(scale > 1.6) || picture->width < 2 || picture->height < 2) break;
+        if (gamma_image_halve(picture, err)) return err->status;
+        other.width = picture->width;
+        other.height = picture->height;
+        other.fx /= 2;
+        other.fy /= 2;
+        other.cx /= 2;
+        other.cy /= 2;
+    }
+    n->width = picture->width;
+    n->height = picture->height;
+    for (int i = 0; i < 2; i++)
+        for (int j = 0; j < 2; j++) turn[i][j] = fmin(fmax(turn[i][j], -2), 2);
+    uint8_t *packed = pack(picture, gain, turn);
+    if (!packed) return err_nomem(err, "a picture to match with", (size_t)n->width * (size_t)n->height * 20);
+    enum status st = make_texture(n, packed, err);
+    free(packed);
+    if (!st) m->neighbour_count++;
+    return st;
+}
+
+void matcher_release(struct matcher *m)
+{
+    if (!m) return;
+    for (int i = 0; i < m->neighbour_count; i++) free(m->neighbours[i].texture);
+    free(m->first);
+    free(m->x);
+    free(m->y);
+    free(m->features);
+    *m = (struct matcher){0};
+}
+
+/* Sum over four pixels' channels of the weighted truncated differences, a lane a pixel: pixels 2 i, 2 i + 1 in q[i]. */
+static inline __m256i pair_differences(const uint8_t *texture, const int *at, const int *across, const int *down,
+                                       const int16_t *reference)
+{
+    const __m256i limit = _mm256_setr_epi16(
+        UNIT * COLOUR_LIMIT, UNIT * COLOUR_LIMIT, UNIT * COLOUR_LIMIT, UNIT * FINE_LIMIT, UNIT * FINE_LIMIT,
+        UNIT * COARSE_LIMIT, UNIT * COARSE_LIMIT, 32767, UNIT * COLOUR_LIMIT, UNIT * COLOUR_LIMIT, UNIT * COLOUR_LIMIT,
+        UNIT * FINE_LIMIT, UNIT * FINE_LIMIT, UNIT * COARSE_LIMIT, UNIT * COARSE_LIMIT, 32767);
+    const __m256i weight = _mm256_setr_epi16(COLOUR_WEIGHT, COLOUR_WEIGHT, COLOUR_WEIGHT, FINE_WEIGHT, FINE_WEIGHT,
+                                             COARSE_WEIGHT, COARSE_WEIGHT, VALID_WEIGHT, COLOUR_WEIGHT, COLOUR_WEIGHT,
+                                             COLOUR_WEIGHT, FINE_WEIGHT, FINE_WEIGHT, COARSE_WEIGHT, COARSE_WEIGHT,
+                                             VALID_WEIGHT);
+    __m256i p = _mm256_maddubs_epi16(_mm256_loadu_si256((const __m256i *)(texture + (size_t)at[0] * 2 * CHANNELS)),
+                                     _mm256_set1_epi32(down[0]));
+    __m256i q = _mm256_maddubs_epi16(_mm256_loadu_si256((const __m256i *)(texture + (size_t)at[1] * 2 * CHANNELS)),
+                                     _mm256_set1_epi32(down[1]));
+    __m256i left = _mm256_permute2x128_si256(p, q, 0x20), right = _mm256_permute2x128_si256(p, q, 0x31);
+    __m256i fraction = _mm256_set_m128i(_mm_set1_epi32(across[1]), _mm_set1_epi32(across[0]));
+    __m256i sample = _mm256_add_epi16(left, _mm256_mulhrs_epi16(_mm256_sub_epi16(right, left), fraction));
+    /* saturating: the filling's validity is far below any sample's */
+    __m256i difference =
+        _mm256_abs_epi16(_mm256_subs_epi16(sample, _mm256_load_si256((const __m256i *)reference)));
+    return _mm256_madd_epi16(_mm256_min_epi16(difference, limit), weight);
+}
+
+/* Mean cost of a segment in one neighbour, 0 .. 1, and the fraction of its pixels that the neighbour sees. */
+static float neighbour_cost(const struct matcher *m, const struct match_neighbour *n, int begin, int end,
+                            struct plane plane, int *seen)
+{
+    const double slope[3] = {plane.a, plane.b, plane.c};
+    __m256 h[3][3];
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) h[i][j] = _mm256_set1_ps((float)(n->base[i][j] + n->shift[i] * slope[j]));
+    const __m256 half = _mm256_set1_ps(0.5f), zero = _mm256_setzero_ps(), small = _mm256_set1_ps(1e-9f);
+    const __m256 right = _mm256_set1_ps((float)(n->width - 1)), bottom = _mm256_set1_ps((float)(n->height - 1));
+    const __m256 low = _mm256_set1_ps(-0.5f);
+    const __m256 most_u = _mm256_add_ps(right, half), most_v = _mm256_add_ps(bottom, half);
+    const __m256i stride = _mm256_set1_epi32(n->width + 1);
+    __m256i sum = _mm256_setzero_si256(), count = _mm256_setzero_si256();
+    for (int i = begin; i < end; i += 8) {
+        __m256 x = _mm256_load_ps(m->x + i), y = _mm256_load_ps(m->y + i), p[3];
+        for (int k = 0; k < 3; k++)
+            p[k] = _mm256_add_ps(_mm256_add_ps(_mm256_mul_ps(h[k][0], x), _mm256_mul_ps(h[k][1], y)), h[k][2]);
+        __m256 inverse = _mm256_div_ps(_mm256_set1_ps(1), p[2]);
+        __m256 u = _mm256_sub_ps(_mm256_mul_ps(p[0], inverse), half);
+        __m256 v = _mm256_sub_ps(_mm256_mul_ps(p[1], inverse), half);
+        __m256 in_sight = _mm256_and_ps(
+            _mm256_cmp_ps(p[2], small, _CMP_GT_OQ),
+            _mm256_and_ps(_mm256_and_ps(_mm256_cmp_ps(u, low, _CMP_GE_OQ), _mm256_cmp_ps(u, most_u, _CMP_LE_OQ)),
+                          _mm256_and_ps(_mm256_cmp_ps(v, low, _CMP_GE_OQ), _mm256_cmp_ps(v, most_v, _CMP_LE_OQ))));
+        if (_mm256_testz_ps(in_sight, in_sight)) continue;
+        u = _mm256_min_ps(_mm256_max_ps(u, zero), right); /* NaN becomes 0: max returns its second operand */
+        v = _mm256_min_ps(_mm256_max_ps(v, zero), bottom);
+        __m256i column = _mm256_cvttps_epi32(u), row = _mm256_cvttps_epi32(v);
+        __m256i fu = _mm256_cvttps_epi32(
+            _mm256_mul_ps(_mm256_sub_ps(u, _mm256_cvtepi32_ps(column)), _mm256_set1_ps(32767)));
+        __m256i fv = _mm256_cvtps_epi32(_mm256_mul_ps(_mm256_sub_ps(v, _mm256_cvtepi32_ps(row)), _mm256_set1_ps(UNIT)));
+        __m256i weights = _mm256_or_si256(_mm256_sub_epi32(_mm256_set1_epi32(UNIT), fv), _mm256_slli_epi32(fv, 8));
+        _Alignas(32) int at[8], across[8], down[8];
+        _mm256_store_si256((__m256i *)at, _mm256_add_epi32(_mm256_mullo_epi32(row, stride), column));
+        _mm256_store_si256((__m256i *)across, _mm256_or_si256(fu, _mm256_slli_epi32(fu, 16)));
+        _mm256_store_si256((__m256i *)down, _mm256_or_si256(weights, _mm256_slli_epi32(weights, 16)));
+        const int16_t *reference = m->features + (size_t)i * CHANNELS;
+        __m256i q[4];
+        for (int k = 0; k < 4; k++)
+            q[k] = pair_differences(n->texture, at + 2 * k, across + 2 * k, down + 2 * k,
+                                    reference + (ptrdiff_t)(2 * k) * CHANNELS);
+        /* lanes: pixels 0 2 4 6 | 1 3 5 7; their order does not matter to integer sums, but it does to the mask */
+        __m256i cost = _mm256_hadd_epi32(_mm256_hadd_epi32(q[0], q[1]), _mm256_hadd_epi32(q[2], q[3]));
+        __m256i mask = _mm256_permutevar8x32_epi32(_mm256_castps_si256(in_sight), _mm256_setr_epi32(0, 2, 4, 6, 1, 3, 5, 7));
+        mask = _mm256_and_si256(mask, _mm256_cmpgt_epi32(_mm256_set1_epi32(OUT_OF_SIGHT), cost));
+        sum = _mm256_add_epi32(sum, _mm256_srli_epi32(_mm256_and_si256(mask, cost), 4)); /* room for 2^17 pixels a lane */
+        count = _mm256_sub_epi32(count, mask);
+    }
+    _Alignas(32) int sums[8], counts[8];
+    _mm256_store_si256((__m256i *)sums, sum);
+    _mm256_store_si256((__m256i *)counts, count);
+    int64_t total = 0;
+    *seen = 0;
+    for (int k = 0; k < 8; k++) {
+        total += sums[k];
+        *seen += counts[k];
+    }
+    return *seen > 0 ? (float)((double)total * 16 / ((double)WORST * *seen)) : 1;
+}
+
+float match_cost(const struct matcher *m, int segment, struct plane plane)
+{
+    float costs[MAX_NEIGHBOURS];
+    int count = 0;
+    for (int k = 0; k < m->neighbour_count; k++) {
+        int seen, at;
+        float cost =
+            neighbour_cost(m, &m->neighbours[k], m->first[segment], m->first[segment + 1], plane, &seen);
+        if (2 * seen < m->segments->segments[segment].pixels) continue;
+        for (at = count++; at > 0 && costs[at - 1] > cost; at--) costs[at] = costs[at - 1];
+        costs[at] = cost;
+    }
+    if (count == 0) return -1;
+    int better = (count + 1) / 2;
+    float sum = 0;
+    for (int k = 0; k < better; k++) sum += costs[k];
+    return sum / (float)better;
+}
+
+double matcher_shift(const struct matcher *m, double least, double most)
+{
+    enum { GRID = 7, STEPS = 8 };
+    double largest = 0;
+    for (int k = 0; k < m->neighbour_count; k++) {
+        double paths[GRID * GRID];
+        int count = 0;
+        for (int g = 0; g < GRID * GRID; g++) {
+            double u = (g % GRID + 0.5) / GRID * m->segments->width, v = (double)(g / GRID + 0.5) / GRID * m->segments->height;
+            double path = 0, pu = 0, pv = 0, nu, nv;
+            bool had = false;
+            for (int i = 0; i <= STEPS; i++) {
+                bool has = carry(&m->neighbours[k], u, v, least + (most - least) * i / STEPS, &nu, &nv);
+                /* only where the neighbour could see it: behind its frame shifts grow without bound */
+                has = has && nu >= 0 && nv >= 0 && nu <= m->neighbours[k].width && nv <= m->neighbours[k].height;
+                if (had && has) path += hypot(nu - pu, nv - pv);
+                had = has;
+                pu = nu;
+                pv = nv;
+            }
+            if (path > 0) paths[count++] = path;
+        }
+        if (!count) continue;
+        qsort(paths, (size_t)count, sizeof *paths, compare_doubles);
+        largest = fmax(largest, paths[count * 3 / 4]);
+    }
+    return largest;
+}

@@ -1,0 +1,50 @@
+/* plane_match.h - how well a segment on a plane agrees with the neighbouring views.
+ *
+ * A plane is 1/z = a u + b v + c in the view's pixel coordinates, so that a segment's picture in a neighbour is a
+ * homography. Per pixel the cost compares colours and gradients of luminance at two scales, each truncated; a
+ * neighbour's cost is the mean over the segment's pixels that it sees; of the neighbours that see at least half of the segment, the
+ * better half counts (the others may not see it for something in front). 0 is perfect, 1 hopeless. */
+#ifndef REMODEL_PLANE_MATCH_H
+#define REMODEL_PLANE_MATCH_H
+
+#include "stages/segment_depth/neighbours.h"
+#include "stages/segment_depth/oversegment.h"
+
+struct plane { double a, b, c; };
+
+static inline double plane_at(struct plane p, double u, double v) { return p.a * u + p.b * v + p.c; }
+
+struct match_neighbour {
+    double base[3][3], shift[3]; /* [u' v' 1] ~ base [u v 1] + shift / z */
+    int width, height;
+    uint8_t *texture; /* owned; see plane_match.c */
+};
+
+struct matcher {
+    const struct segmentation *segments;
+    int *first;          /* of each segment's pixels in x, y and features; groups of eight; count + 1 */
+    float *x, *y;        /* pixel centres */
+    int16_t *features;   /* eight a pixel */
+    struct match_neighbour neighbours[MAX_NEIGHBOURS];
+    int neighbour_count;
+};
+
+/* m is {0} on entry; release it also after a failure. */
+enum status matcher_init(struct matcher *m, const struct segmentation *segments, const struct gamma_image *reference,
+                         struct err *err);
+
+/* Adds a neighbour. The picture is halved while it is more than 1.6 times as fine as the view at inverse depth `typical`;
+ * its colours are multiplied by the median ratio at the points both see, its gradients turned to the view's axes. */
+enum status matcher_add(struct matcher *m, const struct camera_set *set, int view_idx, int neighbour_idx,
+                        const struct seen_points *seen, double typical, const struct gamma_image *reference,
+                        struct gamma_image *picture, struct err *err);
+void matcher_release(struct matcher *m);
+
+/* -1: no neighbour sees half of the segment. */
+float match_cost(const struct matcher *m, int segment, struct plane plane);
+
+/* Pixels by which a neighbour's picture of the view shifts when 1/z goes from least to most: the largest over the
+ * neighbours, each at the median of a grid of the view's pixels. */
+double matcher_shift(const struct matcher *m, double least, double most);
+
+#endif

@@ -1,0 +1,270 @@
+/* refine.c - PatchMatch-like search for a plane a segment (Bleyer 2011), on the graph of segments.
+ *
+ * Energy of segment i on plane P:
+ *   pixels_i / mean pixels x (match_cost + points) + smoothness sum_j w_ij min(|P - P_j| / step at the border's middle, jump) / jump
+ *   + slant if P is not constant
+ * Segments are coloured so that none touches another of its colour; a colour's segments look at the same moment at
+ * neighbours that do not change meanwhile, so the outcome does not depend on threads. Planes are fitted to what stood at the beginning
+ * of a pass. */
+#include "stages/segment_depth/refine.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/parallel.h"
+#include "common/progress.h"
+
+#define POINT_HALF 1.0 /* this many points count half of what many count */
+
+enum status point_lists_make(struct point_lists *lists, const struct segmentation *s, const struct seen_points *seen,
+                             struct err *err)
+{
+    *lists = (struct point_lists){0};
+    lists->first = calloc((size_t)s->count + 2, sizeof *lists->first);
+    lists->points = malloc(((size_t)seen->count + 1) * sizeof *lists->points);
+    if (!lists->first || !lists->points) {
+        point_lists_release(lists);
+        return err_nomem(err, "lists of points", (size_t)s->count * sizeof *lists->first);
+    }
+    for (int round = 0; round < 2; round++) {
+        for (int i = 0; i < seen->count; i++) {
+            const struct seen_point *p = &seen->points[i];
+            if (!(p->u >= 0 && p->v >= 0 && p->u < s->width && p->v < s->height)) continue;
+            int label = s->label[(int)p->v * s->width + (int)p->u];
+            if (label < 0) continue;
+            if (round == 0) lists->first[label + 2]++;
+            else lists->points[lists->first[label + 1]++] = *p;
+        }
+        for (int k = 1; k <= s->count + 1 && round == 0; k++) lists->first[k] += lists->first[k - 1];
+    }
+    return ST_OK;
+}
+
+void point_lists_release(struct point_lists *lists)
+{
+    if (!lists) return;
+    free(lists->first);
+    free(lists->points);
+    *lists = (struct point_lists){0};
+}
+
+float point_cost(const struct point_lists *lists, int segment, struct plane plane, double width)
+{
+    int begin = lists->first[segment], end = lists->first[segment + 1];
+    double sum = 0;
+    for (int i = begin; i < end; i++) {
+        const struct seen_point *p = &lists->points[i];
+        sum += fmin(1, fabs(plane_at(plane, p->u, p->v) - p->inverse_z) / width);
+    }
+    return begin < end ? (float)(sum / (end - begin + POINT_HALF)) : 0;
+}
+
+struct refine {
+    const struct matcher *m;
+    const struct segmentation *s;
+    const struct point_lists *points;
+    const float *weights;
+    const struct segment_params *params;
+    double least, most, step, change; /* change: of 1/z that this pass tries */
+    struct plane *plane, *before;
+    float *data; /* of the current plane, without weights */
+    const int *members;
+};
+
+static float data_cost(const struct refine *r, int i, struct plane p)
+{
+    float cost = match_cost(r->m, i, p);
+    /* unseen by every neighbour: nothing for it, nothing against it but what an ordinary match would be better than */
+    if (cost < 0) cost = 0.6f;
+    return cost + (float)r->params->points * point_cost(r->points, i, p, 2 * r->step);
+}
+
+static double prior_cost(const struct refine *r, int i, struct plane p)
+{
+    double sum = p.a != 0 || p.b != 0 ? r->params->slant : 0;
+    for (int t = r->s->first_touch[i]; t < r->s->first_touch[i + 1]; t++) {
+        const struct touch *touch = &r->s->touches[t];
+        double u = (double)touch->u, v = (double)touch->v;
+        double d = fabs(plane_at(p, u, v) - plane_at(r->plane[touch->other], u, v)) / r->step;
+        sum += r->params->smoothness * (double)r->weights[t] * fmin(d / r->params->jump, 1);
+    }
+    return sum;
+}
+
+/* A plane must keep to the depth range over the segment and a margin around it, where its edge may be painted. */
+static bool allowed(const struct refine *r, int i, struct plane p)
+{
+    const struct segment *g = &r->s->segments[i];
+    const double margin = 3, u[2] = {g->x0 - margin, g->x1 + 1 + margin}, v[2] = {g->y0 - margin, g->y1 + 1 + margin};
+    for (int k = 0; k < 4; k++) {
+        double d = plane_at(p, u[k & 1], v[k >> 1]);
+        if (!(d >= r->least && d <= r->most)) return false;
+    }
+    return true;
+}
+
+static void try_plane(struct refine *r, int i, struct plane p, double *best)
+{
+    if (!allowed(r, i, p)) return;
+    double weight = (double)r->s->segments[i].pixels / r->params->segment_pixels;
+    double prior = prior_cost(r, i, p);
+    if (prior >= *best) return;
+    float data = data_cost(r, i, p);
+    double energy = weight * (double)data + prior;
+    if (energy < *best) {
+        *best = energy;
+        r->plane[i] = p;
+        r->data[i] = data;
+    }
+}
+
+static struct plane plane_through(double u, double v, double inverse_z, double a, double b)
+{
+    return (struct plane){a, b, inverse_z - a * u - b * v};
+}
+
+/* Least squares over the segment, those it touches and those they touch, weighted by likeness, size and agreement in depth.
+ * False if they do not span a plane. */
+static bool fit_plane(const struct refine *r, int i, struct plane *fit)
+{
+    const struct segmentation *s = r->s;
+    const struct segment *g = &s->segments[i];
+    double m[3][3] = {{0}}, rhs[3] = {0}, center = plane_at(r->before[i], g->cx, g->cy);
+    double tolerance = 3 * r->step;
+    for (int t = s->first_touch[i] - 1; t < s->first_touch[i + 1]; t++) {
+        /* t == first - 1 stands for the segment itself */
+        int near = t < s->first_touch[i] ? i : s->touches[t].other;
+        for (int k = s->first_touch[near] - 1; k < s->first_touch[near + 1]; k++) {
+            int j = k < s->first_touch[near] ? near : s->touches[k].other;
+            const struct segment *h = &s->segments[j];
+            double d = plane_at(r->before[j], h->cx, h->cy), off = (d - center) / tolerance, colour = 0;
+            for (int c = 0; c < 3; c++) colour += pow((double)(h->colour[c] - g->colour[c]) / 12, 2);
+            double w = h->pixels / ((1 + colour) * (1 + off * off * off * off));
+            const double q[3] = {h->cx - g->cx, h->cy - g->cy, 1};
+            for (int a = 0; a < 3; a++) {
+                for (int b = 0; b < 3; b++) m[a][b] += w * q[a] * q[b];
+                rhs[a] += w * q[a] * d;
+            }
+        }
+    }
+    double spread = 1e-3 * (m[0][0] + m[1][1]) + 1e-9;
+    m[0][0] += spread; /* leans towards constant where the centroids lie on a line */
+    m[1][1] += spread;
+    struct vec3 x = {m[0][0], m[1][0], m[2][0]}, y = {m[0][1], m[1][1], m[2][1]}, z = {m[0][2], m[1][2], m[2][2]};
+    struct vec3 e = {rhs[0], rhs[1], rhs[2]};
+    double det = vec3_dot(x, vec3_cross(y, z));
+    if (!(fabs(det) > 1e-12 * m[2][2] * m[2][2] * m[2][2])) return false;
+    double a = vec3_dot(e, vec3_cross(y, z)) / det, b = vec3_dot(x, vec3_cross(e, z)) / det;
+    double c = vec3_dot(x, vec3_cross(y, e)) / det;
+    *fit = plane_through(g->cx, g->cy, c, a, b);
+    return isfinite(a) && isfinite(b) && isfinite(c);
+}
+
+static void refine_segment(struct refine *r, int i)
+{
+    const struct segmentation *s = r->s;
+    const struct segment *g = &s->segments[i];
+    double weight = (double)g->pixels / r->params->segment_pixels;
+    double best = weight * (double)r->data[i] + prior_cost(r, i, r->plane[i]);
+    struct plane fit;
+    bool fitted = fit_plane(r, i, &fit);
+    if (fitted) {
+        double here = plane_at(r->plane[i], g->cx, g->cy);
+        try_plane(r, i, fit, &best);
+        try_plane(r, i, plane_through(g->cx, g->cy, here, fit.a, fit.b), &best);
+    }
+    for (int t = s->first_touch[i]; t < s->first_touch[i + 1]; t++) {
+        struct plane p = r->plane[s->touches[t].other];
+        struct plane own = r->plane[i];
+        if (p.a != own.a || p.b != own.b || p.c != own.c) try_plane(r, i, p, &best);
+    }
+    double here = plane_at(r->plane[i], g->cx, g->cy);
+    if (r->plane[i].a != 0 || r->plane[i].b != 0) try_plane(r, i, (struct plane){0, 0, here}, &best);
+    for (int sign = -1; sign <= 1; sign += 2) {
+        struct plane p = r->plane[i];
+        p.c += sign * r->change;
+        try_plane(r, i, p, &best);
+    }
+    for (int k = 0; k < 4; k++) { /* a turn about the centroid that shifts the segment's rim by `change` */
+        double a = k < 2 ? (k ? 1 : -1) * 2 * r->change / (g->x1 - g->x0 + 1) : 0;
+        double b = k < 2 ? 0 : (k & 1 ? 1 : -1) * 2 * r->change / (g->y1 - g->y0 + 1);
+        struct plane p = r->plane[i];
+        try_plane(r, i, plane_through(g->cx, g->cy, plane_at(p, g->cx, g->cy), p.a + a, p.b + b), &best);
+    }
+}
+
+static void refine_members(void *ctx, size_t begin, size_t end, int thread)
+{
+    struct refine *r = ctx;
+    (void)thread;
+    for (size_t k = begin; k < end; k++) refine_segment(r, r->members[k]);
+}
+
+static void first_costs(void *ctx, size_t begin, size_t end, int thread)
+{
+    struct refine *r = ctx;
+    (void)thread;
+    for (size_t i = begin; i < end; i++) r->data[i] = data_cost(r, (int)i, r->plane[i]);
+}
+
+/* Greedy colours; members sorted by colour; first[c] where colour c begins. At most 64 colours. */
+#define MOST_COLOURS 64
+static int colour_segments(const struct segmentation *s, int *colour, int *members, int first[MOST_COLOURS + 1])
+{
+    int colours = 0;
+    for (int i = 0; i < s->count; i++) {
+        uint64_t taken = 0;
+        for (int t = s->first_touch[i]; t < s->first_touch[i + 1]; t++)
+            if (s->touches[t].other < i) taken |= (uint64_t)1 << colour[s->touches[t].other];
+        for (colour[i] = 0; taken >> colour[i] & 1; colour[i]++) continue;
+        colours = colour[i] + 1 > colours ? colour[i] + 1 : colours;
+    }
+    for (int c = 0, n = 0; c <= colours; c++) {
+        first[c] = n;
+        for (int i = 0; i < s->count; i++)
+            if (colour[i] == c) members[n++] = i;
+    }
+    return colours;
+}
+
+enum status refine_planes(struct plane *plane, const struct matcher *m, const struct point_lists *points,
+                          const float *weights, const struct segment_params *params, double least, double most,
+                          double step, struct err *err)
+{
+    const struct segmentation *s = m->segments;
+    struct refine r = {.m = m, .s = s, .points = points, .weights = weights, .params = params, .plane = plane};
+    int *colour = malloc(((size_t)s->count + 1) * sizeof *colour), first[MOST_COLOURS + 1];
+    int *members = malloc(((size_t)s->count + 1) * sizeof *members);
+    struct progress progress;
+    enum status st = ST_OK;
+    r.before = malloc(((size_t)s->count + 1) * sizeof *r.before);
+    r.data = malloc(((size_t)s->count + 1) * sizeof *r.data);
+    if (!colour || !members || !r.before || !r.data) {
+        st = err_nomem(err, "the refinement of planes", (size_t)s->count * 40);
+        goto done;
+    }
+    r.least = 0.7 * least;
+    r.most = 1.3 * most;
+    r.step = step;
+    r.members = members;
+    int colours = colour_segments(s, colour, members, first);
+    progress_start(&progress, "refinement", (int64_t)params->passes * s->count, "segments");
+    parallel_for((size_t)s->count, 64, first_costs, &r);
+    for (int pass = 0; pass < params->passes; pass++) {
+        memcpy(r.before, plane, (size_t)s->count * sizeof *plane);
+        r.change = step * pow(0.5, pass);
+        for (int c = 0; c < colours; c++) {
+            r.members = members + first[c];
+            parallel_for((size_t)(first[c + 1] - first[c]), 16, refine_members, &r);
+            progress_add(&progress, first[c + 1] - first[c]);
+        }
+    }
+    progress_end(&progress);
+done:
+    free(colour);
+    free(members);
+    free(r.before);
+    free(r.data);
+    return st;
+}

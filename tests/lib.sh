@@ -1,0 +1,62 @@
+# lib.sh - for the tests that are scripts: a scratch project, and verdicts.
+#
+# B is the build folder (out/build/FLAVOR). A test is a shell function; `run NAME` runs it in a subshell with -e and prints
+# its verdict; `skip WHY` inside ends it as skipped.
+set -uo pipefail
+root=$PWD
+B=${B:-out/build/release}
+export FLAVOR=${B##*/}
+unset MAKEFLAGS MFLAGS MAKELEVEL SCENE PHOTOS SFM EXCLUDE QUALITY JOBS CORES V CI
+scratch=$(mktemp -d "${TMPDIR:-/tmp}/remodel-test.XXXXXX")
+trap 'rm -rf --one-file-system "$scratch"' EXIT
+
+fail() { echo "# $*"; exit 1; }
+skip() { echo "# $*" >"$scratch/.skip"; exit 0; }
+run()
+{
+    rm -f "$scratch/.skip"
+    local out rc=0
+    out=$(set -e; "$1" 2>&1) || rc=$?
+    if [ -e "$scratch/.skip" ]; then echo "skip $1: $(sed 's/^# //' "$scratch/.skip")"
+    elif [ "$rc" -eq 0 ]; then echo "ok $1"
+    else
+        echo "$out" | tail -n 40
+        echo "not ok $1: $(echo "$out" | grep '^# ' | tail -n 1 | sed 's/^# //')"
+    fi
+}
+
+# project NAME: a project folder of its own under scratch (same Makefile, programs and configs; own scenes and out); goes there
+project()
+{
+    mkdir -p "$scratch/$1/out" "$scratch/$1/scenes"
+    for f in Makefile stages common configs tests; do ln -sfn "$root/$f" "$scratch/$1/$f"; done
+    ln -sfn "$root/out/build" "$scratch/$1/out/build"
+    cd "$scratch/$1" || exit 1
+}
+
+# photos DIR [OPTION...]: a synthetic scene, DIR/photos and DIR/model
+photos() { "$root/$B/tests/pipeline/make_photos" --out "$@"; }
+
+# small SCENE: a scene.cfg for tests that are about the graph: few planes, few frames
+small()
+{
+    mkdir -p "scenes/$1"
+    cat >"scenes/$1/scene.cfg" <<'CFG'
+[segment_depth]
+max_planes = 32
+[plan_path]
+seconds = 0.5
+fps = 12
+max_side = 160
+CFG
+}
+
+# products SCENE: hash and name of every product from sfm_import on
+products()
+{
+    (cd "out/$1" && find views depth parallax -type f ! -name '.*' | LC_ALL=C sort | xargs -d '\n' sha256sum)
+}
+# snapshot FOLDER: names and times of all products, to see what was made again
+snapshot() { find "$1"/ -type f \( -path '*/views/*' -o -path '*/depth/*' -o -path '*/parallax/*' -o -path '*/sfm/*' -o -name index.html \) -printf '%P %T@\n' | LC_ALL=C sort; }
+# changed BEFORE AFTER: the names whose time changed, or that are new
+changed() { comm -13 "$1" "$2" | cut -d' ' -f1; }

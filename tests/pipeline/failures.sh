@@ -1,0 +1,140 @@
+# bad photos, odd names, a full disk, killed stages: the right result or a clear sentence, and nothing lost
+. tests/lib.sh
+project failures
+photos set >/dev/null
+small t
+
+copy() { rm -rf "$1"; mkdir "$1"; cp set/photos/*.jpg "$1"/; }
+# refused WORD...: make PHOTOS=bad fails with a sentence that holds every word, and leaves no list of photos
+refused()
+{
+    rm -rf out/bad scenes/bad
+    before=$(ls -l --time-style=full-iso bad | sha256sum)
+    if make -s DEPS=manual PHOTOS=bad SCENE=bad SFM=set/model >log 2>&1 </dev/null; then cat log; fail "it was taken"; fi
+    for w in "$@"; do grep -qF -- "$w" log || { cat log; fail "the sentence does not hold '$w'"; }; done
+    [ ! -e out/bad/views/views.mk ] || fail "it went on to views"
+    [ "$before" = "$(ls -l --time-style=full-iso bad | sha256sum)" ] || fail "the user's folder was changed"
+}
+
+truncated_photo() { copy bad; head -c 5000 set/photos/v03.jpg >bad/v03.jpg; refused v03.jpg EXCLUDE; }
+empty_photo() { copy bad; : >bad/v02.jpg; refused v02.jpg empty; }
+not_a_photo() { copy bad; echo hello >bad/v01.jpg; refused v01.jpg; }
+cmyk_photo() { copy bad; cp "$root"/tests/fuzz/corpus/photo/*cmyk*.jpg bad/v04.jpg; refused v04.jpg CMYK; }
+two_bad_photos_are_both_named() { copy bad; : >bad/v02.jpg; echo x >bad/v04.jpg; refused v02.jpg v04.jpg; }
+no_photo() { rm -rf bad; mkdir bad; refused bad; }
+one_photo() { rm -rf bad; mkdir bad; cp set/photos/v00.jpg bad; refused bad; }
+no_folder()
+{
+    if make -s DEPS=manual PHOTOS=nowhere SCENE=nowhere >log 2>&1; then fail "it was taken"; fi
+    grep -q 'nowhere' log || fail "no sentence"
+    [ ! -e scenes/nowhere ] || fail "a scene was left behind"
+}
+unreadable_photo()
+{
+    copy bad
+    rm bad/v03.jpg; ln -s nowhere.jpg bad/v03.jpg
+    refused v03.jpg
+}
+
+odd_names()
+{
+    rm -rf 'o d d'; mkdir 'o d d'
+    cp set/photos/v00.jpg 'o d d/a photo.jpg'
+    cp set/photos/v01.jpg "o d d/it's \"quoted\".jpg"
+    cp set/photos/v02.jpg 'o d d/cost $5 #2.jpg'
+    cp set/photos/v03.jpg 'o d d/same.jpg'
+    cp set/photos/v04.jpg 'o d d/same.JPEG'
+    cp set/photos/v05.jpg 'o d d/dots.1.2.jpg'
+    rm -rf odd-model; cp -r set/model odd-model
+    sed -i -e "s|v00.jpg$|a photo.jpg|; s|v01.jpg$|it's \"quoted\".jpg|; s|v02.jpg$|cost \$5 #2.jpg|; s|v03.jpg$|same.jpg|; s|v04.jpg$|same.JPEG|; s|v05.jpg$|dots.1.2.jpg|" odd-model/images.txt
+    small odd
+    make -s DEPS=manual PHOTOS='o d d' SFM=odd-model SCENE=odd video >log 2>&1 || { cat log; fail "make"; }
+    n=$(grep -c '\.exr$' out/odd/views/images.txt)
+    [ "$n" = 6 ] || { cat out/odd/views/images.txt | cut -c1-80; fail "$n views, wanted 6"; }
+    make -s DEPS=manual SCENE=odd why >log 2>&1
+    grep -q 'Nothing is stale' log || { cat log; fail "a second make would not be idle"; }
+}
+
+odd_folder_names()
+{
+    d='pho$to #1 '"it's"
+    rm -rf "$d"; cp -r set/photos "$d"
+    small folder
+    make -s DEPS=manual PHOTOS="$d" SFM=set/model SCENE=folder views >log 2>&1 || { cat log; fail "make PHOTOS"; }
+    make -s DEPS=manual SCENE=folder views >log 2>&1 || { cat log; fail "make from scene.mk"; }
+}
+
+killed_stage()
+{
+    make -s DEPS=manual PHOTOS=set/photos SFM=set/model SCENE=t depth >log 2>&1 || { cat log; fail "make"; }
+    want=$(sha256sum out/t/depth/v02.exr)
+    rm -f out/t/depth/v02.*
+    # the stage that makes v02 is ended by SIGKILL in the middle of its work
+    cat >killer <<'K'
+#!/bin/bash
+for i in $(seq 400); do
+    for p in /proc/[0-9]*; do
+        if tr '\0' ' ' <"$p/cmdline" 2>/dev/null | grep -q "^out/build/[a-z]*/bin/segment_depth .*--view v02 .*--out out/t/"; then
+            [ "$(readlink "$p/cwd")" = "$1" ] && sleep 0.02 && kill -9 "${p#/proc/}" && exit 0
+        fi
+    done
+    sleep 0.005
+done
+exit 1
+K
+    bash killer "$PWD" & k=$!
+    if make -s DEPS=manual SCENE=t depth >log 2>&1; then wait "$k" || skip "the stage was too fast to be caught"; fail "make was content"; fi
+    wait "$k" || fail "nothing was killed"
+    grep -q 'signal 9' log || { cat log; fail "the signal is not told"; }
+    [ ! -e out/t/depth/v02.exr ] || fail "a half-made product stands there"
+    make -s DEPS=manual SCENE=t depth >log 2>&1 || { cat log; fail "make after it"; }
+    [ "$want" = "$(sha256sum out/t/depth/v02.exr)" ] || fail "other bytes"
+}
+
+full_disk()
+{
+    [ "$(id -u)" = 0 ] || skip "mounting a small tmpfs needs root"
+    mkdir -p small out/full
+    mount -t tmpfs -o size=600k none out/full 2>/dev/null || skip "a tmpfs cannot be mounted here"
+    small full
+    rc=0
+    make -s DEPS=manual PHOTOS=set/photos SFM=set/model SCENE=full >log 2>&1 || rc=$?
+    whole=0 broken=
+    for f in out/full/views/*.exr out/full/depth/*.exr; do
+        [ -e "$f" ] || continue
+        if "$B/bin/verify" --file "$f" 2>/dev/null; then whole=$((whole + 1)); else broken="$broken $f"; fi
+    done
+    mount -o remount,size=200m out/full
+    rc2=0
+    make -s DEPS=manual SCENE=full video >log2 2>&1 || rc2=$?
+    made=$(ls out/full/parallax/*/video.mp4 2>/dev/null)
+    umount out/full
+    [ "$rc" -ne 0 ] || fail "a full disk went unnoticed"
+    grep -qi 'no space left' log || { cat log; fail "no sentence about the space"; }
+    [ -z "$broken" ] || fail "half-made:$broken"
+    [ "$rc2" = 0 ] && [ -n "$made" ] || { cat log2; fail "it does not go on when there is space"; }
+}
+
+photos_of_different_sizes_and_png()
+{
+    # through COLMAP itself, as a user would; one photo is another size, one a PNG
+    photos sized --views 6 --size 480x360 >/dev/null
+    photos half --views 6 --size 400x300 >/dev/null
+    cp half/photos/v03.jpg sized/photos/v03.jpg
+    small sized
+    make -s DEPS=manual PHOTOS=sized/photos SCENE=sized video >log 2>&1 || { tail -n 30 log; fail "make"; }
+    [ "$(awk '!/^#/ { print $3, $4 }' out/sized/sfm/0/cameras.txt | sort -u | wc -l)" = 2 ] || fail "two sizes of cameras were expected"
+}
+
+photos_that_do_not_overlap_are_refused_with_a_reason()
+{
+    rm -rf flat; mkdir flat
+    for i in 1 2 3; do cp "$root"/tests/fuzz/corpus/photo/grey.jpg "flat/p$i.jpg"; done
+    if make -s DEPS=manual PHOTOS=flat SCENE=flat >log 2>&1; then fail "it was taken"; fi
+    grep -qiE 'features|overlap|texture' log || { tail log; fail "no useful reason"; }
+    [ ! -e out/flat/sfm/models.txt ] || fail "a model was left"
+}
+
+for t in truncated_photo empty_photo not_a_photo cmyk_photo two_bad_photos_are_both_named no_photo one_photo no_folder \
+    unreadable_photo odd_names odd_folder_names killed_stage full_disk photos_of_different_sizes_and_png \
+    photos_that_do_not_overlap_are_refused_with_a_reason; do run "$t"; done

@@ -1,0 +1,172 @@
+# what the graph makes, keeps and makes again; on a synthetic scene with known poses
+. tests/lib.sh
+project graph
+photos set >/dev/null
+small t
+
+run_scene() { make -s DEPS=manual SCENE=t "$@" 2>&1; }
+
+chain_from_photos_to_video()
+{
+    make -s DEPS=manual PHOTOS=set/photos SFM=set/model SCENE=t >first.log 2>&1 || { cat first.log; fail "make failed"; }
+    [ -s out/t/parallax/establishing_dolly/video.mp4 ] || fail "no video"
+    [ -s out/t/index.html ] || fail "no page"
+    tail -n 2 first.log | grep -q 'video  out/t/parallax/establishing_dolly/video.mp4' || fail "the run does not end with the video's path"
+    n=$(ffprobe -v error -count_frames -select_streams v -show_entries stream=nb_read_frames,pix_fmt,codec_name,width,height -of csv=p=0 out/t/parallax/establishing_dolly/video.mp4)
+    [ "$n" = "h264,160,120,yuv420p,6" ] || fail "the video is $n, wanted h264,160,120,yuv420p,6"
+}
+
+second_make_does_nothing()
+{
+    snapshot out/t >a
+    run_scene >log
+    snapshot out/t >b
+    diff a b || fail "a second make made something again"
+    run_scene why | grep -q 'Nothing is stale' || fail "make why sees something stale"
+    [ -z "$(run_scene -n report | grep run_stage)" ] || fail "make -n wants to run something"
+}
+
+comment_in_a_config_rebuilds_nothing()
+{
+    snapshot out/t >a
+    echo '# a comment' >>scenes/t/scene.cfg
+    run_scene >log
+    snapshot out/t >b
+    diff a b || fail "a comment made something again"
+}
+
+a_parameter_redoes_its_stage_and_what_follows()
+{
+    snapshot out/t >a
+    printf '[encode_video]\ncrf = 30\n' >>scenes/t/scene.cfg
+    run_scene why >why
+    grep -q 'video.mp4: .*encode_video.cfg' why || { cat why; fail "make why does not name the slice"; }
+    grep -q 'crf = 30' why || { cat why; fail "make why does not tell the new value"; }
+    run_scene >log
+    snapshot out/t >b
+    [ "$(changed a b)" = "index.html
+parallax/establishing_dolly/video.mp4" ] || { changed a b; fail "wrong products were made again"; }
+}
+
+a_deleted_product_is_made_again_with_what_follows()
+{
+    for p in parallax/establishing_dolly/frames/0003.exr views/v01.exr depth/v02.exr depth/v02.txt views/images.txt parallax/establishing_dolly/path.txt index.html; do
+        (cd out/t && find views depth parallax -type f ! -name '.*' | sort | xargs -d '\n' sha256sum) >before
+        snapshot out/t >a
+        rm "out/t/$p"
+        run_scene >log || { cat log; fail "make after deleting $p"; }
+        [ -e "out/t/$p" ] || fail "$p was not made again"
+        snapshot out/t >b
+        case $p in
+        *0003.exr) want="index.html parallax/establishing_dolly/frames/0003.exr parallax/establishing_dolly/video.mp4" ;;
+        index.html) want="index.html" ;;
+        *) want= ;;
+        esac
+        [ -z "$want" ] || [ "$(changed a b | tr '\n' ' ')" = "$want " ] || { changed a b; fail "after $p was deleted, wrong products were made again"; }
+        (cd out/t && find views depth parallax -type f ! -name '.*' | sort | xargs -d '\n' sha256sum) >after
+        diff before after || fail "after $p was deleted, other bytes came out"
+    done
+}
+
+a_changed_photo_redoes_its_view_and_its_readers()
+{
+    snapshot out/t >a
+    photos set --change 4 >/dev/null
+    run_scene >log
+    snapshot out/t >b
+    changed a b >c
+    grep -q '^views/v04.exr' c || fail "the changed photo's view was not made again"
+    ! grep -qE '^(sfm/|views/(cameras|images|points3D)|views/v0[0-35-9])' c || { cat c; fail "too much was made again"; }
+    for d in out/t/depth/v0?.d; do
+        v=$(basename "$d" .d)
+        if grep -q 'v04.exr' "$d"; then grep -q "^depth/$v.exr" c || fail "$v reads the changed view, but was not made again"
+        else ! grep -q "^depth/$v.exr" c || fail "$v does not read the changed view, but was made again"; fi
+    done
+    photos set >/dev/null
+    run_scene >log
+}
+
+a_photo_that_goes_redoes_sfm()
+{
+    snapshot out/t >a
+    run_scene EXCLUDE=v05.jpg >log 2>&1 || { cat log; fail "make EXCLUDE"; }
+    grep -q v05 out/t/views/images.txt && fail "v05 is still a view"
+    snapshot out/t >b
+    changed a b | grep -q '^sfm/' || fail "SfM was not done again"
+    run_scene >log 2>&1
+    grep -q v05 out/t/views/images.txt || fail "v05 did not come back"
+}
+
+draft_stands_beside_and_shares_sfm()
+{
+    snapshot out/t >a
+    run_scene QUALITY=draft video >log 2>&1 || { cat log; fail "draft"; }
+    snapshot out/t >b
+    diff a b || fail "the draft run touched the default one"
+    [ -s out/t+draft/parallax/establishing_dolly/video.mp4 ] || fail "no draft video"
+    [ ! -e out/t+draft/sfm ] || fail "the draft run made its own SfM"
+}
+
+a_second_run_is_refused()
+{
+    exec 8>out/t/.lock; flock 8
+    if run_scene >log 2>&1 8>&-; then fail "the second run went on"; fi
+    grep -q 'Another run works on scene t' log || { cat log; fail "no sentence"; }
+    exec 8>&-
+}
+
+a_failed_stage_keeps_the_old_product_and_says_why()
+{
+    cp scenes/t/scene.cfg keep.cfg
+    before=$(sha256sum out/t/depth/v01.exr)
+    printf '[segment_depth]\nmax_planes = none\n' >>scenes/t/scene.cfg
+    if run_scene >log 2>&1; then fail "a wrong value was taken"; fi
+    grep -q 'scene.cfg' log || { cat log; fail "the sentence does not name the file"; }
+    cp keep.cfg scenes/t/scene.cfg
+    printf '[segmentdepth]\n' >>scenes/t/scene.cfg
+    if run_scene >log 2>&1; then fail "an unknown section was taken"; fi
+    grep -q 'scene.cfg:.*segmentdepth' log || { cat log; fail "the sentence does not name the section"; }
+    cp keep.cfg scenes/t/scene.cfg
+    [ "$before" = "$(sha256sum out/t/depth/v01.exr)" ] || fail "the good product was lost"
+    run_scene >log 2>&1 || { cat log; fail "make after the mend"; }
+}
+
+threads_splits_and_resumes_give_the_same_bytes()
+{
+    products t >want
+    rm -rf out/t/views out/t/depth out/t/parallax
+    run_scene CORES=1 FRAMES_PER_JOB=2 >log 2>&1 || { cat log; fail "one core"; }
+    products t | diff want - || fail "one core gives other bytes"
+    rm -rf out/t/views out/t/depth out/t/parallax
+    # ended three times on the way, by the hardest signal, then resumed
+    for wait in 0.7 1.2 1.7; do
+        setsid make -s DEPS=manual SCENE=t >log 2>&1 &
+        p=$!
+        sleep "$wait"
+        kill -9 -- "-$p" 2>/dev/null || true
+        wait "$p" 2>/dev/null || true
+    done
+    run_scene CORES=3 >log 2>&1 || { cat log; fail "resumed run"; }
+    products t | diff want - || fail "a resumed run gives other bytes"
+}
+
+jobs_times_threads_never_exceed_the_cores()
+{
+    rm -rf out/t/depth
+    run_scene -j8 CORES=2 V=1 depth >log 2>&1 || { cat log; fail "make -j8"; }
+    [ "$(grep -c 'bin/segment_depth --threads 1 ' log)" -ge 1 ] || { cat log; fail "two jobs of one thread were expected"; }
+    ! grep -q 'threads 2' log || fail "two jobs of two threads on two cores"
+}
+
+run chain_from_photos_to_video
+run second_make_does_nothing
+run comment_in_a_config_rebuilds_nothing
+run a_parameter_redoes_its_stage_and_what_follows
+run a_deleted_product_is_made_again_with_what_follows
+run a_changed_photo_redoes_its_view_and_its_readers
+run a_photo_that_goes_redoes_sfm
+run draft_stands_beside_and_shares_sfm
+run a_second_run_is_refused
+run a_failed_stage_keeps_the_old_product_and_says_why
+run threads_splits_and_resumes_give_the_same_bytes
+run jobs_times_threads_never_exceed_the_cores

@@ -1,0 +1,102 @@
+# JOBS=slurm on a cluster of three nodes on this host gives the bytes of JOBS=local, also when a job is lost
+. tests/lib.sh
+project slurm
+
+# a controller and three nodes from a generated configuration: no systemd, no cgroups, no munge
+start_cluster()
+{
+    export SLURM_CONF=$scratch/slurm.conf
+    local host port; host=$(hostname -s); port=$((20000 + $$ % 20000))
+    mkdir -p "$scratch"/{state,n1,n2,n3}
+    cat >"$SLURM_CONF" <<CONF
+ClusterName=test
+SlurmctldHost=$host(127.0.0.1)
+SlurmctldPort=$port
+SlurmUser=root
+SlurmdUser=root
+AuthType=auth/none
+CredType=cred/none
+AuthInfo=cred_expire=5
+ProctrackType=proctrack/linuxproc
+TaskPlugin=task/none
+SelectType=select/cons_tres
+SelectTypeParameters=CR_CPU
+SlurmdParameters=config_overrides
+StateSaveLocation=$scratch/state
+SlurmdSpoolDir=$scratch/%n
+SlurmctldPidFile=$scratch/slurmctld.pid
+SlurmdPidFile=$scratch/%n.pid
+SlurmctldLogFile=$scratch/slurmctld.log
+SlurmdLogFile=$scratch/%n.log
+ReturnToService=2
+SchedulerParameters=sched_interval=1
+MailProg=/bin/true
+SwitchType=switch/none
+MpiDefault=none
+NodeName=n1 NodeHostname=$host NodeAddr=127.0.0.1 Port=$((port + 1)) CPUs=2
+NodeName=n2 NodeHostname=$host NodeAddr=127.0.0.1 Port=$((port + 2)) CPUs=2
+NodeName=n3 NodeHostname=$host NodeAddr=127.0.0.1 Port=$((port + 3)) CPUs=2
+PartitionName=all Nodes=n1,n2,n3 Default=YES State=UP MaxTime=60
+CONF
+    export PATH=$PATH:/usr/sbin:/sbin
+    slurmctld -D >"$scratch/ctld.out" 2>&1 &
+    pids=$!
+    for n in n1 n2 n3; do slurmd -D -N "$n" >"$scratch/$n.out" 2>&1 & pids="$pids $!"; done
+    for _ in $(seq 100); do
+        [ "$(sinfo -h -t idle -o '%D' 2>/dev/null)" = 3 ] && return 0
+        sleep 0.2
+    done
+    tail -n 5 "$scratch"/*.log "$scratch"/*.out
+    return 1
+}
+stop_cluster() { kill $pids 2>/dev/null; wait $pids 2>/dev/null; }
+
+if ! PATH=$PATH:/usr/sbin command -v slurmctld >/dev/null; then echo "skip slurm: slurmctld is not installed"; exit 0; fi
+if [ "$(id -u)" != 0 ]; then echo "skip slurm: starting slurmd needs root"; exit 0; fi
+pids=
+trap 'stop_cluster; rm -rf --one-file-system "$scratch"' EXIT
+if ! start_cluster; then echo "not ok cluster: it did not come up"; exit 1; fi
+
+photos set >/dev/null
+small local; small cluster
+
+cluster_gives_the_bytes_of_local()
+{
+    make -s DEPS=manual PHOTOS=set/photos SFM=set/model SCENE=local >log 2>&1 || { cat log; fail "local run"; }
+    make -s DEPS=manual PHOTOS=set/photos SFM=set/model SCENE=cluster JOBS=slurm VIEWS_PER_JOB=2 FRAMES_PER_JOB=2 >log 2>&1 || { cat log; fail "cluster run"; }
+    grep -q 'segment_depth: job' log || { cat log; fail "nothing went to the cluster"; }
+    products local >a; products cluster >b
+    diff a b || fail "the cluster gives other bytes"
+    make -s DEPS=manual SCENE=cluster JOBS=slurm >log 2>&1
+    ! grep -q ': job' log || { cat log; fail "a second run went to the cluster again"; }
+}
+
+a_task_that_fails_is_told_and_not_trusted()
+{
+    rm out/cluster/depth/v01.exr out/cluster/depth/v03.exr
+    cp out/cluster/views/v02.exr keep.exr
+    head -c 2000 keep.exr >out/cluster/views/v02.exr # a view that is not whole: its readers must fail
+    if make -s DEPS=manual SCENE=cluster JOBS=slurm depth >log 2>&1; then fail "the run was called good"; fi
+    grep -q 'failed on the cluster' log || { cat log; fail "the failure is not told"; }
+    cp keep.exr out/cluster/views/v02.exr
+    make -s DEPS=manual SCENE=cluster JOBS=slurm >log 2>&1 || { cat log; fail "the run after the mend"; }
+    products local >a; products cluster >b
+    diff a b || fail "other bytes after the mend"
+}
+
+a_cancelled_job_is_not_called_good()
+{
+    rm -f out/cluster/depth/*.exr
+    make -s DEPS=manual SCENE=cluster JOBS=slurm VIEWS_PER_JOB=9 depth >log 2>&1 &
+    run=$!
+    for _ in $(seq 100); do squeue -h -o '%i' | grep -q . && break; sleep 0.1; done
+    scancel -u root
+    if wait "$run"; then fail "the run was called good"; fi
+    make -s DEPS=manual SCENE=cluster JOBS=slurm >log 2>&1 || { cat log; fail "the run after it"; }
+    products local >a; products cluster >b
+    diff a b || fail "other bytes after a cancelled job"
+}
+
+run cluster_gives_the_bytes_of_local
+run a_task_that_fails_is_told_and_not_trusted
+run a_cancelled_job_is_not_called_good

@@ -1,0 +1,157 @@
+/* Thumbnails stand upright, means are those of light, and the colours of depth grow lighter all the way to the camera. */
+#include "stages/report/pictures.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+/* The letter F of three columns and four rows, stored as each of EXIF's eight orientations: turned upright all are the
+ * same. Where the picture's first row and first column lie is taken from the EXIF standard's table. */
+static void turns_every_orientation_upright(void **state)
+{
+    static const char *const STORED[9] = {NULL,
+                                          "###"
+                                          "#.."
+                                          "##."
+                                          "#..",
+                                          "###"
+                                          "..#"
+                                          ".##"
+                                          "..#",
+                                          "..#"
+                                          ".##"
+                                          "..#"
+                                          "###",
+                                          "#.."
+                                          "##."
+                                          "#.."
+                                          "###",
+                                          "####"
+                                          "#.#."
+                                          "#...",
+                                          "#..."
+                                          "#.#."
+                                          "####",
+                                          "...#"
+                                          ".#.#"
+                                          "####",
+                                          "####"
+                                          ".#.#"
+                                          "...#"};
+    struct err err = ERR_INIT;
+    (void)state;
+    for (int orientation = 1; orientation <= 8; orientation++) {
+        uint16_t samples[36];
+        struct picture p = {0};
+        struct photo photo = {.samples = samples};
+        photo.info.width = orientation >= 5 ? 4 : 3;
+        photo.info.height = orientation >= 5 ? 3 : 4;
+        photo.info.bits = 8;
+        photo.info.orientation = orientation;
+        for (int i = 0; i < 36; i++) samples[i] = STORED[orientation][i / 3] == '#' ? 0 : 255;
+        assert_int_equal(picture_from_photo(&p, &photo, 240, &err), ST_OK);
+        assert_int_equal(p.width, 3);
+        assert_int_equal(p.height, 4);
+        for (int i = 0; i < 12; i++) assert_int_equal(p.rgb[3 * i], STORED[1][i] == '#' ? 0 : 255);
+        picture_release(&p);
+        picture_release(&p);
+    }
+}
+
+static void shrinks_to_the_upright_height(void **state)
+{
+    struct err err = ERR_INIT;
+    struct picture p = {0};
+    struct photo photo = {.info = {.width = 1000, .height = 400, .bits = 16}};
+    (void)state;
+    photo.samples = calloc(1000 * 400 * 3, sizeof *photo.samples);
+    assert_non_null(photo.samples);
+    for (size_t i = 0; i < 1000 * 400; i++) /* columns of black and white: half the light, sRGB 188 */
+        for (int c = 0; c < 3; c++) photo.samples[3 * i + (size_t)c] = i % 2 ? 65535 : 0;
+    photo.info.orientation = 1;
+    assert_int_equal(picture_from_photo(&p, &photo, 100, &err), ST_OK);
+    assert_int_equal(p.width, 250);
+    assert_int_equal(p.height, 100);
+    for (int i = 0; i < 250 * 100 * 3; i++) assert_int_equal(p.rgb[i], 188);
+    picture_release(&p);
+    photo.info.orientation = 6;
+    assert_int_equal(picture_from_photo(&p, &photo, 100, &err), ST_OK);
+    assert_int_equal(p.width, 40);
+    assert_int_equal(p.height, 100);
+    picture_release(&p);
+    free(photo.samples);
+}
+
+/* CIE L* of an sRGB colour. */
+static double lightness(const unsigned char rgb[3])
+{
+    double y = 0.2126 * (double)linear_from_srgb((float)rgb[0] / 255) +
+               0.7152 * (double)linear_from_srgb((float)rgb[1] / 255) +
+               0.0722 * (double)linear_from_srgb((float)rgb[2] / 255);
+    return y > 0.008856 ? 116 * cbrt(y) - 16 : 903.3 * y;
+}
+
+static void colours_grow_lighter(void **state)
+{
+    unsigned char rgb[3];
+    double last = 0;
+    (void)state;
+    for (int i = 0; i <= 100; i++) {
+        depth_colour(i / 100.0, rgb);
+        double l = lightness(rgb);
+        assert_true(l > last + 0.1 && l < last + (i ? 2 : 20));
+        last = l;
+    }
+    depth_colour(NAN, rgb);
+    assert_true(lightness(rgb) < 20);
+}
+
+static void colours_depth_and_hatches_the_unknown(void **state)
+{
+    float z[6] = {1, 2, 4, 8, 0, 0};
+    struct err err = ERR_INIT;
+    struct depth_thumb d = {0};
+    struct picture p = {0};
+    unsigned char rgb[3];
+    double near, far;
+    (void)state;
+    assert_int_equal(depth_thumb_make(&d, z, 6, 1, 1, 240, &err), ST_OK);
+    assert_float_equal(d.known, 4.0 / 6, 1e-12);
+    const struct depth_thumb *thumbs = &d;
+    assert_true(depth_range(&thumbs, 1, 0, &near, &far));
+    assert_float_equal(near, 1, 0);
+    assert_float_equal(far, 8, 0);
+    assert_int_equal(picture_from_depth(&p, &d, near, far, &err), ST_OK);
+    depth_colour(1, rgb);
+    assert_memory_equal(p.rgb, rgb, 3);
+    depth_colour((0.5 - 0.125) / (1 - 0.125), rgb);
+    assert_memory_equal(p.rgb + 3, rgb, 3);
+    depth_colour(0, rgb);
+    assert_memory_equal(p.rgb + 9, rgb, 3);
+    assert_int_equal(p.rgb[12], p.rgb[13]); /* grey */
+    picture_release(&p);
+    assert_int_equal(picture_from_depth(&p, &d, 2, 2, &err), ST_OK); /* a range of no extent is no division by zero */
+    picture_release(&p);
+    depth_thumb_release(&d);
+
+    memset(z, 0, sizeof z);
+    assert_int_equal(depth_thumb_make(&d, z, 3, 2, 8, 240, &err), ST_OK);
+    assert_int_equal(d.width, 2);
+    assert_false(depth_range(&thumbs, 1, 0.02, &near, &far));
+    depth_thumb_release(&d);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(turns_every_orientation_upright),
+        cmocka_unit_test(shrinks_to_the_upright_height),
+        cmocka_unit_test(colours_grow_lighter),
+        cmocka_unit_test(colours_depth_and_hatches_the_unknown),
+    };
+    return cmocka_run_group_tests_name("pictures", tests, NULL, NULL);
+}
