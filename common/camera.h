@@ -3,7 +3,8 @@
  * Camera axes: x right, y down, z forward. Pixel (x, y) has its centre at (x + 0.5, y + 0.5), so (cx, cy) of a centred
  * camera is (width / 2, height / 2). Parameters are in COLMAP's order:
  *   SIMPLE_PINHOLE f cx cy; PINHOLE fx fy cx cy; SIMPLE_RADIAL f cx cy k; RADIAL f cx cy k1 k2;
- *   OPENCV fx fy cx cy k1 k2 p1 p2; OPENCV_FISHEYE fx fy cx cy k1 k2 k3 k4; FULL_OPENCV fx fy cx cy k1 k2 p1 p2 k3 k4 k5 k6 */
+ *   OPENCV fx fy cx cy k1 k2 p1 p2; OPENCV_FISHEYE fx fy cx cy k1 k2 k3 k4;
+ *   FULL_OPENCV fx fy cx cy k1 k2 p1 p2 k3 k4 k5 k6 */
 #ifndef REMODEL_CAMERA_H
 #define REMODEL_CAMERA_H
 
@@ -50,7 +51,8 @@ void camera_focal(const struct camera *c, double *fx, double *fy, double *cx, do
  * back), or beyond the radius where the distortion stops being one-to-one. */
 bool camera_project(const struct camera *c, struct vec3 p, double *u, double *v);
 
-/* Pixel -> unit ray in camera coordinates; Newton on the distortion to 1e-10 of the focal length. False if no ray maps there. */
+/* Pixel -> unit ray in camera coordinates; Newton on the distortion to 1e-10 of the focal length. False if no ray maps
+ * there. */
 bool camera_unproject(const struct camera *c, double u, double v, struct vec3 *ray);
 
 struct vec3 pose_apply(const struct pose *cam_from_world, struct vec3 world);

@@ -48,7 +48,7 @@ static void report_use(void)
              (peak + 1023) / 1024);
 }
 
-/* ------------------------------------------------------------------------------------------------------- the options */
+/* ---------------------------------------------------------------------------------------------------- the options */
 
 static const struct param no_params[] = {PARAM_END};
 
@@ -167,7 +167,8 @@ static enum status store(const struct cli_opt *o, const char *value, bool again,
     return ST_OK;
 }
 
-/* One argument, or two if the value stands apart; *i moves to the last one taken. seen: a flag for each of the stage's options. */
+/* One argument, or two if the value stands apart; *i moves to the last one taken. seen: a flag for each of the stage's
+ * options. */
 static enum status take_arg(int argc, char **argv, int *i, const struct known *known, bool *seen, struct err *err)
 {
     const char *arg = argv[*i], *name = arg + 2, *value = NULL;

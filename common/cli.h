@@ -11,7 +11,15 @@
 #include "param.h"
 #include "provenance.h"
 
-enum cli_kind { CLI_KIND_END, CLI_KIND_ABOUT, CLI_KIND_STR, CLI_KIND_LIST, CLI_KIND_INT, CLI_KIND_FLAG, CLI_KIND_PARAMS };
+enum cli_kind {
+    CLI_KIND_END,
+    CLI_KIND_ABOUT,
+    CLI_KIND_STR,
+    CLI_KIND_LIST,
+    CLI_KIND_INT,
+    CLI_KIND_FLAG,
+    CLI_KIND_PARAMS
+};
 
 struct cli_list { /* of an option that may be given several times; items point into argv, the array is owned */
     const char **items;
@@ -25,19 +33,40 @@ struct cli_opt {
     void *value;
     bool required;
     const char *help;
-    const struct param *table;                                   /* CLI_PARAMS */
-    enum status (*check)(const void *values, struct err *err);   /* CLI_PARAMS: relations between parameters, or NULL */
+    const struct param *table;                                 /* CLI_PARAMS */
+    enum status (*check)(const void *values, struct err *err); /* CLI_PARAMS: relations between parameters, or NULL */
 };
 
 #define CLI_REQUIRED true
 #define CLI_OPTIONAL false
-#define CLI_ABOUT(text) {CLI_KIND_ABOUT, NULL, NULL, false, text, NULL, NULL} /* first line of --help */
-#define CLI_STR(name, ptr, required, help) {CLI_KIND_STR, name, ptr, required, help, NULL, NULL}   /* const char ** */
-#define CLI_LIST(name, ptr, required, help) {CLI_KIND_LIST, name, ptr, required, help, NULL, NULL} /* struct cli_list * */
-#define CLI_INT(name, ptr, required, help) {CLI_KIND_INT, name, ptr, required, help, NULL, NULL}   /* int * */
-#define CLI_FLAG(name, ptr, help) {CLI_KIND_FLAG, name, ptr, false, help, NULL, NULL}              /* bool * */
-#define CLI_PARAMS(table, ptr, check) {CLI_KIND_PARAMS, NULL, ptr, false, NULL, table, check}
-#define CLI_END {CLI_KIND_END, NULL, NULL, false, NULL, NULL, NULL}
+#define CLI_ABOUT(text)                                     \
+    {                                                       \
+        CLI_KIND_ABOUT, NULL, NULL, false, text, NULL, NULL \
+    } /* first line of --help */
+#define CLI_STR(name, ptr, required, help)                  \
+    {                                                       \
+        CLI_KIND_STR, name, ptr, required, help, NULL, NULL \
+    } /* const char ** */
+#define CLI_LIST(name, ptr, required, help)                  \
+    {                                                        \
+        CLI_KIND_LIST, name, ptr, required, help, NULL, NULL \
+    } /* struct cli_list * */
+#define CLI_INT(name, ptr, required, help)                  \
+    {                                                       \
+        CLI_KIND_INT, name, ptr, required, help, NULL, NULL \
+    } /* int * */
+#define CLI_FLAG(name, ptr, help)                         \
+    {                                                     \
+        CLI_KIND_FLAG, name, ptr, false, help, NULL, NULL \
+    } /* bool * */
+#define CLI_PARAMS(table, ptr, check)                         \
+    {                                                         \
+        CLI_KIND_PARAMS, NULL, ptr, false, NULL, table, check \
+    }
+#define CLI_END                                           \
+    {                                                     \
+        CLI_KIND_END, NULL, NULL, false, NULL, NULL, NULL \
+    }
 
 enum cli_verdict { CLI_RUN, CLI_DONE, CLI_FAILED };
 

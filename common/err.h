@@ -22,7 +22,10 @@ struct err {
     char text[2048]; /* a sentence: file, place, what was found, what to do */
 };
 
-#define ERR_INIT {ST_OK, ""}
+#define ERR_INIT  \
+    {             \
+        ST_OK, "" \
+    }
 
 #if defined(__GNUC__)
 #define ERR_PRINTF(fmt, args) __attribute__((format(printf, fmt, args)))

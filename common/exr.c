@@ -135,8 +135,9 @@ static enum status library_error(struct err *err, enum status status, const char
     const char *why = library_message[0] ? library_message : exr_get_default_error_message(code);
     size_t length = strlen(why);
     while (length && strchr(".\n ", why[length - 1])) length--;
-    return err_set(err, code == EXR_ERR_OUT_OF_MEMORY ? ST_NOMEM : status, "cannot %s %s: %.*s.", verb, path,
-                   (int)length, why);
+    if (code == EXR_ERR_OUT_OF_MEMORY) status = ST_NOMEM;
+    return err_set(err, status, "cannot %s %s: %.*s%s.", verb, path, (int)length, why,
+                   status == ST_DATA ? "; it is damaged or no OpenEXR file: make it again" : "");
 }
 
 /* What went wrong in one chunk; kept per chunk so that the first in the file is named for any number of threads. */
@@ -409,6 +410,8 @@ static exr_result_t unpack_chunk(exr_decode_pipeline_t *pipe)
     if (width < 1 || height < 1 || width > im->width - job->x || height > im->height - job->y ||
         row_bytes * (uint64_t)height != pipe->chunk.unpacked_size)
         return EXR_ERR_CORRUPT_CHUNK;
+    if (pipe->chunk.compression == EXR_COMPRESSION_NONE && pipe->chunk.packed_size != pipe->chunk.unpacked_size)
+        return EXR_ERR_CORRUPT_CHUNK; /* the library would leave the rest of the buffer as it was */
 
     for (int row = 0; row < height; row++) {
         size_t at = (size_t)(job->y + row) * (size_t)im->width + (size_t)job->x;
@@ -449,13 +452,15 @@ static void decode_chunks(void *ctx, size_t begin, size_t end, int thread)
                                (int)(i / (size_t)r->chunks_across) * r->chunk_height};
         exr_chunk_info_t info;
         exr_result_t rv = chunk_info(r, i, &info);
-        if (!rv) {
-            rv = pipe->context ? exr_decoding_update(r->ctxt, 0, &info, pipe)
-                               : exr_decoding_initialize(r->ctxt, 0, &info, pipe);
+        if (!rv && pipe->context) {
+            rv = exr_decoding_update(r->ctxt, 0, &info, pipe);
+        } else if (!rv) {
+            rv = exr_decoding_initialize(r->ctxt, 0, &info, pipe);
+            if (!rv) rv = exr_decoding_choose_default_routines(r->ctxt, 0, pipe);
+            pipe->unpack_and_convert_fn = unpack_chunk;
         }
         if (!rv) {
             pipe->decoding_user_data = &job;
-            pipe->unpack_and_convert_fn = unpack_chunk;
             rv = exr_decoding_run(r->ctxt, 0, pipe);
         }
         if (rv) { /* its buffers may be half made */
@@ -473,7 +478,7 @@ static enum status choose_channels(struct reader *r, const char *path, const cha
     const exr_attr_chlist_t *list = NULL;
     exr_result_t rv = exr_get_channels(r->ctxt, 0, &list);
     if (rv || list->num_channels < 1)
-        return err_set(err, ST_DATA, "cannot read %s: it has no channels; make the file again.", path);
+        return err_set(err, ST_DATA, "cannot read %s: it has no channels; make it again.", path);
     r->plane_from_channel = malloc((size_t)list->num_channels * sizeof(int));
     if (!r->plane_from_channel) return err_nomem(err, "a list of channels", (size_t)list->num_channels * sizeof(int));
 
@@ -591,7 +596,7 @@ enum status exr_read(struct exr_image *im, const char *path, const char *const *
     }
     if (!st) {
         parallel_for(r.chunks, 1, decode_chunks, &r);
-        st = first_fault(err, "read", path, "; it is damaged or cut off: make the file again", im, r.faults, r.chunks);
+        st = first_fault(err, "read", path, "; it is damaged or cut off: make it again", im, r.faults, r.chunks);
     }
 
     for (int i = 0; r.pipes && i < threads; i++) exr_decoding_destroy(r.ctxt, &r.pipes[i]);

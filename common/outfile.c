@@ -1,8 +1,8 @@
 /* outfile.c - see outfile.h.
  *
- * Live temporary files stand in a list that exit handlers and signal handlers can walk: its nodes are never freed, only used
- * again, and a node's path is valid while its owner is set. The name is listed before the file exists, so that no signal can come
- * between. A forked child has another process id and removes nothing. */
+ * Live temporary files stand in a list that exit handlers and signal handlers can walk: its nodes are never freed, only
+ * used again, and a node's path is valid while its owner is set. The name is listed before the file exists, so that no
+ * signal can come between. A forked child has another process id and removes nothing. */
 #include "common/outfile.h"
 
 #include <errno.h>

@@ -1,7 +1,7 @@
 /* param.c - see param.h.
  *
- * Config files are INI files as inih reads them: "[section]", "key = value", comments from # or ; at the beginning of a line, or
- * from " ;" behind a value. */
+ * Config files are INI files as inih reads them: "[section]", "key = value", comments from # or ; at the beginning of a
+ * line, or from " ;" behind a value. */
 #include "common/param.h"
 
 #include <ini.h>
@@ -36,7 +36,8 @@ static bool is_choice(const char *words, const char *word)
     return false;
 }
 
-/* What params_print() writes must read back as it was: no line breaks, no blanks at the ends, nothing that begins a comment. */
+/* What params_print() writes must read back as it was: no line breaks, no blanks at the ends, nothing that begins a
+ * comment. */
 static bool survives(const char *text)
 {
     const size_t n = strlen(text);
@@ -117,8 +118,8 @@ static void where_text(const struct reading *r, char *where, size_t size)
     snprintf(where, size, "%s:%d: ", r->path, r->line);
 }
 
-/* inih's fgets. Blanks at the beginning are dropped: inih takes an indented line for more of the line above. Comments of any length
- * are passed over here. */
+/* inih's fgets. Blanks at the beginning are dropped: inih takes an indented line for more of the line above. Comments
+ * of any length are passed over here. */
 static char *read_line(char *to, int room, void *ctx)
 {
     struct reading *r = ctx;
@@ -213,14 +214,25 @@ enum status params_set(const struct param *table, void *values, const char *assi
     return p ? assign(p, values, equals + 1, "--set ", err) : unknown(table, name, "--set: ", err);
 }
 
-static void print_value(const struct param *p, const void *values, bool exact, FILE *to)
+/* The shortest decimal number that reads back as the same double. */
+static void print_double(double value, FILE *to)
+{
+    char text[32];
+    for (int digits = 1; digits <= 17; digits++) {
+        snprintf(text, sizeof text, "%.*g", digits, value);
+        if (strtod(text, NULL) == value) break;
+    }
+    fputs(text, to);
+}
+
+static void print_value(const struct param *p, const void *values, FILE *to)
 {
     const void *v = (const char *)values + p->offset;
 
     if (p->kind == PARAM_int)
         fprintf(to, "%d", *(const int *)v);
     else if (p->kind == PARAM_double)
-        fprintf(to, exact ? "%.17g" : "%.10g", *(const double *)v);
+        print_double(*(const double *)v, to);
     else
         fputs(v, to);
 }
@@ -233,7 +245,7 @@ void params_print(const struct param *table, const void *values, const char *sec
     for (const struct param *p = table; p->name; p++) {
         const bool empty = p->kind == PARAM_text && !*((const char *)values + p->offset);
         fprintf(to, empty ? "%s =" : "%s = ", p->name);
-        print_value(p, values, true, to);
+        print_value(p, values, to);
         fputc('\n', to);
     }
     uselocale(old);
@@ -246,7 +258,7 @@ void params_help(const struct param *table, const void *values, FILE *to)
     for (const struct param *p = table; p->name; p++) {
         fprintf(to, "  %-20s %s\n%23s", p->name, p->help, "");
         fputs(p->kind == PARAM_text || p->kind == PARAM_choice ? "default \"" : "default ", to);
-        print_value(p, values, false, to);
+        print_value(p, values, to);
         if (p->kind == PARAM_choice)
             fprintf(to, "\", one of %s", p->unit);
         else if (p->kind == PARAM_text)

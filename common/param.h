@@ -28,17 +28,20 @@ typedef char param_text[PARAM_TEXT_SIZE];
 
 enum param_kind { PARAM_int, PARAM_double, PARAM_text, PARAM_choice };
 
-#define PARAM_C_int int
+#define PARAM_C_int    int
 #define PARAM_C_double double
-#define PARAM_C_text param_text
+#define PARAM_C_text   param_text
 #define PARAM_C_choice param_text
 
-#define PARAM_FIELD(name, type, value, least, most, unit, help) PARAM_C_##type name;
+#define PARAM_FIELD(name, type, value, least, most, unit, help)   PARAM_C_##type name;
 #define PARAM_DEFAULT(name, type, value, least, most, unit, help) .name = value,
 /* a row of a table; PARAM_STRUCT must be #defined to the struct where the table is written */
 #define PARAM_ROW(name, type, value, least, most, unit, help) \
     {#name, PARAM_##type, offsetof(PARAM_STRUCT, name), least, most, unit, help},
-#define PARAM_END {NULL, PARAM_int, 0, 0, 0, NULL, NULL}
+#define PARAM_END                            \
+    {                                        \
+        NULL, PARAM_int, 0, 0, 0, NULL, NULL \
+    }
 
 struct param {
     const char *name;
@@ -58,7 +61,7 @@ enum status params_read_file(const struct param *table, void *values, const char
 enum status params_set(const struct param *table, void *values, const char *assignment, struct err *err);
 
 /* "[section]", then "key = value" lines in the table's order: canonical, so that equal parameters give equal bytes
- * (%.17g for double). An empty table prints the section line alone. */
+ * (doubles as the shortest decimal number that reads back the same). An empty table prints the section line alone. */
 void params_print(const struct param *table, const void *values, const char *section, FILE *to);
 
 /* The lines of --help: name, default (what values holds), range, unit, help. */

@@ -205,6 +205,8 @@ static enum status read_jpeg_header(struct photo_info *info, const struct file_b
     int subsampling = 0, space = 0;
     if (tjDecompressHeader3(handle, file->bytes, file->size, &info->width, &info->height, &subsampling, &space))
         return jpeg_damaged(file, handle, err);
+    if (info->width < 1) /* no error of the decoder, which waits for more */
+        return err_set(err, ST_DATA, "%s is a JPEG that ends in its header; copy the photo again.", file->path);
     if (space == TJCS_CMYK || space == TJCS_YCCK)
         return err_set(err, ST_DATA, "%s is a CMYK JPEG, made for printing; export the photo as RGB.", file->path);
     info->bits = 8;

@@ -1,7 +1,7 @@
 /* process.c - see process.h.
  *
- * The child tells why it could not start through a pipe that a good execve() closes. All that needs memory (the path, the
- * environment) is made before fork(): other threads of this process may hold locks. */
+ * The child tells why it could not start through a pipe that a good execve() closes. All that needs memory (the path,
+ * the environment) is made before fork(): other threads of this process may hold locks. */
 #include "common/process.h"
 
 #include <errno.h>

@@ -22,7 +22,8 @@ struct process {
     FILE *input;
 };
 enum status process_start(struct process *p, const char *const argv[], const char *log, struct err *err);
-/* Closes the input and waits. A program that ends early is not a SIGPIPE for the writer but *code != 0 here. {0} is the empty state, and harmless. */
+/* Closes the input and waits. A program that ends early is not a SIGPIPE for the writer but *code != 0 here. {0} is the
+ * empty state, and harmless. */
 enum status process_finish(struct process *p, int *code, struct err *err);
 /* Ends the program, if it still runs, and waits. */
 void process_kill(struct process *p);

@@ -13,7 +13,7 @@ struct progress {
     const char *what, *unit; /* "plane sweep", "planes" */
     int64_t total;
     atomic_llong done;
-    double started, shown;   /* seconds, monotonic */
+    double started, shown; /* seconds, monotonic */
     atomic_flag drawing;
     bool terminal;
 };

@@ -1,4 +1,6 @@
-/* rng.c - Philox 4x32-10: J. Salmon, M. Moraes, R. Dror, D. Shaw, "Parallel Random Numbers: As Easy as 1, 2, 3", SC 2011.
+/* rng.c - Philox 4x32-10.
+ *
+ * J. Salmon, M. Moraes, R. Dror, D. Shaw, "Parallel Random Numbers: As Easy as 1, 2, 3", SC 2011.
  *
  * Ten rounds of a bijection of the 128-bit counter; the key moves on by a Weyl sequence between rounds. */
 #include "common/rng.h"

@@ -52,8 +52,8 @@ bool scan_double(const char *text, double *value)
     return true;
 }
 
-/* Damerau's distance without its rarest case: insertions, deletions, replacements, neighbours swapped. Words are short: longer
- * ones than the table are no near miss of anything. */
+/* Damerau's distance without its rarest case: insertions, deletions, replacements, neighbours swapped. Words are short:
+ * longer ones than the table are no near miss of anything. */
 enum { LONGEST = 63 };
 
 static int distance(const char *a, const char *b)

@@ -13,8 +13,8 @@ bool scan_double(const char *text, double *value);
 
 locale_t scan_c_locale(void); /* for uselocale() around printing numbers */
 
-/* The known word nearest to `word`, or NULL if none is near enough to be what was meant. next(ctx, i) is the i-th known word,
- * NULL after the last. */
+/* The known word nearest to `word`, or NULL if none is near enough to be what was meant. next(ctx, i) is the i-th known
+ * word, NULL after the last. */
 const char *scan_nearest(const char *word, const char *(*next)(const void *ctx, int i), const void *ctx);
 
 /* `found` as an error message may show it: in quotes, at most 40 characters of it, control characters escaped. */

@@ -446,7 +446,7 @@ static enum status read_bundler_camera(struct textfile *t, const int size[2], in
     for (int i = 0; i < 3; i++)
         if (read_row(t, "a row of a rotation", rows[i], 3, err)) return err->status;
     if (read_row(t, "a translation", at, 3, err)) return err->status;
-    *placed = lens[0] != 0;
+    *placed = lens[0] != 0 && size[0] > 0;
     if (!*placed) return ST_OK;
 
     struct mat3 r;

@@ -28,15 +28,16 @@ struct textfile {
 
 enum status textfile_open(struct textfile *t, const char *path, struct err *err);
 
-bool textfile_next(struct textfile *t);     /* next record; false at the end */
-bool textfile_next_raw(struct textfile *t); /* next line even if blank or a comment (COLMAP's images.txt has blank ones) */
+bool textfile_next(struct textfile *t); /* next record; false at the end */
+bool textfile_next_raw(
+    struct textfile *t); /* next line even if blank or a comment (COLMAP's images.txt has blank ones) */
 
 /* Next word of the line. A word may be quoted: "two words", with \" and \\ inside (see textfile_quote). */
 enum status textfile_word(struct textfile *t, const char *what, char **word, struct err *err);
 enum status textfile_int(struct textfile *t, const char *what, int64_t least, int64_t most, int64_t *value,
                          struct err *err);
 enum status textfile_double(struct textfile *t, const char *what, double *value, struct err *err);
-/* All that is left of the line, blanks at both ends removed (COLMAP's image names may hold blanks); may not be empty. */
+/* All that is left of the line, blanks at both ends removed (COLMAP's image names hold blanks); may not be empty. */
 enum status textfile_rest(struct textfile *t, const char *what, char **rest, struct err *err);
 bool textfile_more(struct textfile *t); /* another word stands on this line */
 enum status textfile_end(struct textfile *t, struct err *err);
@@ -47,8 +48,8 @@ enum status textfile_error(const struct textfile *t, struct err *err, const char
 
 void textfile_release(struct textfile *t);
 
-/* Writes a word so that textfile_word() reads it back: quoted if it is empty or holds blanks, quotes, \ or #. A line break cannot be
- * written: returns ST_DATA. */
+/* Writes a word so that textfile_word() reads it back: quoted if it is empty or holds blanks, quotes, \ or #. A line
+ * break cannot be written: returns ST_DATA. */
 enum status textfile_quote(const char *word, char *out, size_t size, struct err *err);
 
 #endif

@@ -484,7 +484,10 @@ static bool span_pixels(const struct span *s, int begin, int end, int *first, in
 static inline bool span_weights(const struct span *s, double u, float weight[3], double *sum)
 {
     double e[3] = {0};
-    for (int k = 0; k < s->corners; k++) e[k] = fmax(s->a[k] + s->b[k] * u, 0);
+    for (int k = 0; k < s->corners; k++) {
+        e[k] = s->a[k] + s->b[k] * u;
+        e[k] = e[k] > 0 ? e[k] : 0;
+    }
     *sum = e[0] + e[1] + e[2];
     if (!(*sum > 0)) return false;
     double scale = 1 / *sum;

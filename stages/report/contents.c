@@ -192,10 +192,9 @@ static void make_view_cards(void *ctx, size_t begin, size_t end, int thread)
         exr_image_release(&im);
 
         snprintf(path, sizeof path, "%s/depth/%s.exr", job->folder, card->view->name);
-        if (!err.status && is_file(path) && !read_depth(card, path, orientation, &err)) {
-            const struct depth_thumb *depth = &card->depth;
-            depth_range(&depth, 1, 0.02, &card->near, &card->far);
-        }
+        if (is_file(path)) read_depth(card, path, orientation, &err);
+        const struct depth_thumb *depth = &card->depth;
+        if (depth->z) depth_range(&depth, 1, 0.02, &card->near, &card->far);
         if (err.status) snprintf(card->trouble, sizeof card->trouble, "%.*s", NOTE_SIZE - 1, err.text);
     }
 }
@@ -356,11 +355,12 @@ static enum status read_effects(struct contents *c, const char *folder, struct e
 static enum status read_records(struct contents *c, const char *folder, const char *shared, const char *defaults,
                                 struct err *err)
 {
-    const char *folders[2] = {shared, folder};
+    const char *folders[2] = {folder,
+                              shared}; /* what both hold of parameters, the shared stages ran with the shared ones */
     struct settings usual = {0};
     enum status st = ST_OK;
 
-    for (int i = same_folder(folder, shared) ? 1 : 0; i < 2 && !st; i++) {
+    for (int i = 0; i < (same_folder(folder, shared) ? 1 : 2) && !st; i++) {
         struct err trouble = ERR_INIT;
         char path[4096];
         snprintf(path, sizeof path, "%s/log", folders[i]);

@@ -32,6 +32,7 @@ static const char STYLE[] =
     "section{margin:36px 0 0;scroll-margin-top:12px}\n"
     ".card{background:var(--card);border:1px solid var(--line);border-radius:10px;padding:18px}\n"
     ".effect{display:grid;gap:20px;grid-template-columns:minmax(0,2fr) minmax(0,1fr);margin-bottom:18px}\n"
+    "video+p{margin:8px 0 0;font-size:.85rem}\n"
     "video{display:block;width:100%;height:auto;max-height:80vh;background:#000;border-radius:6px}\n"
     ".plot{display:block;width:100%;max-width:480px;height:auto;font-size:11px}\n"
     ".plot text{fill:var(--muted)}.plot .grid{stroke:var(--line)}.plot "
@@ -45,11 +46,12 @@ static const char STYLE[] =
     "font-weight:600}\n"
     "img{display:block;max-width:100%;height:auto;border-radius:6px;background:var(--line)}\n"
     ".strip{display:flex;flex-wrap:wrap;gap:16px;list-style:none;margin:0;padding:0}\n"
-    ".strip li{max-width:100%}.strip img{height:132px;width:auto;object-fit:contain}.strip figure{width:min-content;"
+    ".strip li{max-width:100%}.strip img{height:132px;width:auto;max-width:calc(100vw - 40px);object-fit:cover}.strip "
+    "figure{width:min-content;"
     "min-width:96px}\n"
     ".none{display:grid;place-items:center;height:132px;min-width:176px;padding:10px;border:1px dashed var(--muted);"
     "border-radius:6px;font-size:.8rem;color:var(--muted)}\n"
-    ".off img{opacity:.45}\n"
+    ".size{white-space:nowrap}.off img{opacity:.45}\n"
     ".tag{display:inline-block;background:var(--warn-bg);color:var(--warn);border-radius:4px;padding:0 "
     "6px;font-size:.8rem}\n"
     ".pairs{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(100%,460px),1fr));gap:20px}\n"
@@ -62,11 +64,11 @@ static const char STYLE[] =
     ".wide{overflow-x:auto}\n"
     "table{border-collapse:collapse;width:100%;font-variant-numeric:tabular-nums}\n"
     "th,td{text-align:left;vertical-align:top;padding:7px 14px 7px 0;border-bottom:1px solid var(--line)}\n"
-    "tr:last-child>th,tr:last-child>td{border-bottom:0}\n"
+    "tr>:last-child{padding-right:0}tr:last-child>th,tr:last-child>td{border-bottom:0}\n"
     "thead th{font-size:.85rem;font-weight:600;color:var(--muted)}tbody th{font-weight:500}\n"
-    ".n{text-align:right}.n .bar{margin-left:auto}\n"
-    ".bar{display:block;height:4px;border-radius:2px;background:var(--accent);margin-top:3px}\n"
-    ".peak .bar{background:var(--second)}\n"
+    ".n{text-align:right}\n"
+    ".bar{display:block;height:4px;min-width:72px;border-radius:2px;background:var(--line);margin-top:4px}\n"
+    ".bar i{display:block;height:4px;border-radius:2px;background:var(--accent)}.peak i{background:var(--second)}\n"
     "tfoot th,tfoot td{font-weight:600}\n"
     ".how{font-size:.9rem}\n"
     "details{border-bottom:1px solid var(--line);padding:8px 0}details:last-child{border-bottom:0}\n"
@@ -223,10 +225,11 @@ static void put_scores(FILE *to, const struct effect_card *e)
         fputs("</td></tr>\n", to);
     }
     const struct view *v = &e->path.frames[0].camera;
-    fprintf(to, "<tr><th scope=\"row\">video</th><td class=\"n\">%d × %d, ", v->width, v->height);
-    put_plural(to, e->path.frame_count, "frame", "frames");
-    fputs(", ", to);
+    fprintf(to, "<tr><th scope=\"row\">picture</th><td class=\"n\">%d × %d</td></tr>\n", v->width, v->height);
+    fputs("<tr><th scope=\"row\">duration</th><td class=\"n\">", to);
     put_seconds(to, e->path.frame_count / e->path.fps);
+    fputs(", ", to);
+    put_plural(to, e->path.frame_count, "frame", "frames");
     fputs("</td></tr>\n</tbody>\n</table>\n", to);
 }
 
@@ -303,7 +306,7 @@ static enum status put_photos(FILE *to, const struct contents *c, struct err *er
         }
         fputs("<figcaption><b>", to);
         html_text(to, card->record->file);
-        fprintf(to, "</b> %d × %d", card->record->info.width, card->record->info.height);
+        fprintf(to, "</b> <span class=\"size\">%d × %d</span>", card->record->info.width, card->record->info.height);
         if (card->views > 1) fprintf(to, ", %d views", card->views);
         if (off) fputs(" <span class=\"tag\">not placed by SfM</span>", to);
         if (card->trouble[0]) {
@@ -356,7 +359,7 @@ static enum status put_depths(FILE *to, const struct contents *c, struct err *er
             return err->status;
         fputs("</div>\n<figcaption><b>", to);
         html_text(to, card->view->name);
-        fprintf(to, "</b> %d × %d", card->view->width, card->view->height);
+        fprintf(to, "</b> <span class=\"size\">%d × %d</span>", card->view->width, card->view->height);
         if (card->depth.z) fprintf(to, ", %.1f %% known, %u segments", 100 * card->depth.known, card->segments);
         if (card->near > 0) fprintf(to, ", depth %.3g to %.3g", card->near, card->far);
         if (card->trouble[0]) {
@@ -450,15 +453,16 @@ static bool in_chain(const char *name)
 
 static void put_bar(FILE *to, double part, double whole)
 {
-    fprintf(to, "<span class=\"bar\" style=\"width:%.1f%%\"></span>", whole > 0 ? fmax(100 * part / whole, 0.5) : 0.5);
+    fprintf(to, "<span class=\"bar\"><i style=\"width:%.1f%%\"></i></span>",
+            whole > 0 ? fmax(100 * part / whole, 0.5) : 0.5);
 }
 
 static void put_usage_row(FILE *to, const struct stage_usage *s, const struct usage *most)
 {
     fputs("<tr><th scope=\"row\">", to);
     html_text(to, s->sum.stage);
-    fprintf(to, "</th><td class=\"n\">%d", s->runs);
     if (s->unfinished) fprintf(to, " <span class=\"tag\">%d did not end</span>", s->unfinished);
+    fprintf(to, "</th><td class=\"n\">%d", s->runs);
     fputs("</td><td class=\"n\">", to);
     put_seconds(to, s->sum.wall);
     put_bar(to, s->sum.wall, most->wall);
@@ -550,10 +554,13 @@ static void put_settings(FILE *to, const struct contents *c)
         return;
     }
     fputs("<div class=\"card\">\n", to);
-    for (int from = 0, end; from < c->settings.count; from = end) {
-        for (end = from + 1; end < c->settings.count && !strcmp(items[end].section, items[from].section);) end++;
-        put_section_settings(to, c, from, end);
-    }
+    for (int k = 0; k <= CHAIN_LENGTH; k++) /* the chain's stages in its order, then the others */
+        for (int from = 0, end; from < c->settings.count; from = end) {
+            const char *section = items[from].section;
+            for (end = from + 1; end < c->settings.count && !strcmp(items[end].section, section);) end++;
+            if (k < CHAIN_LENGTH ? !strcmp(section, CHAIN[k]) : !in_chain(section))
+                put_section_settings(to, c, from, end);
+        }
     fputs("</div>\n</section>\n", to);
 }
 

@@ -163,7 +163,7 @@ void depth_range(double *least, double *most, const struct camera_set *set, int 
         double low = inverse[seen->count / 100], high = inverse[seen->count - 1 - seen->count / 100];
         double margin = 0.15 * (high - low) + 0.03 * high;
         *least = fmax(low - margin, 0.3 * low);
-        *most = high + margin;
+        *most = high + 2 * margin; /* near ground has few points: it is blurred, or hidden from most views */
         free(inverse);
         return;
     }

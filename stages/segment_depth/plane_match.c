@@ -18,8 +18,22 @@
 
 /* Truncations (in bytes; gradients are stored 2 x grey levels) and weights; they follow PatchMatch Stereo (Bleyer 2011) in trusting
  * gradients more than colours. */
-enum { COLOUR_LIMIT = 24, FINE_LIMIT = 16, COARSE_LIMIT = 20 };
-enum { COLOUR_WEIGHT = 11, FINE_WEIGHT = 38, COARSE_WEIGHT = 18, VALID_WEIGHT = 1000 };
+#define SURROUNDINGS 6   /* px: half width of the window that gradients are measured against */
+#define DEVIATION 20.0f
+#ifndef NOISE
+#define NOISE 4.0f       /* grey levels: gradients of this size are half believed */
+#endif
+#ifndef FL
+#define FL 30
+#define CL 30
+#endif
+enum { COLOUR_LIMIT = 24, FINE_LIMIT = FL, COARSE_LIMIT = CL };
+#ifndef FW
+#define FW 20
+#define CW 12
+#define OW 11
+#endif
+enum { COLOUR_WEIGHT = OW, FINE_WEIGHT = FW, COARSE_WEIGHT = CW, VALID_WEIGHT = 1000 };
 enum {
     WORST = UNIT * (3 * COLOUR_LIMIT * COLOUR_WEIGHT + 2 * FINE_LIMIT * FINE_WEIGHT + 2 * COARSE_LIMIT * COARSE_WEIGHT),
     OUT_OF_SIGHT = WORST + 1,
@@ -27,9 +41,11 @@ enum {
 
 static uint8_t byte_from(float x) { return (uint8_t)(x <= 0 ? 0 : x >= 255 ? 255 : x + 0.5f); }
 
+#define FEW_SEE 0.3f /* cost of a neighbour that would have counted but does not see the segment */
+
 struct pack_job {
     const struct gamma_image *g;
-    const float *luma, *smooth;
+    const float *luma, *smooth, *fine_scale, *coarse_scale; /* the scales make gradients' bytes */
     float gain[3];
     float turn[2][2]; /* gradient in the reference's axes = turn (gx, gy) */
     uint8_t *packed;  /* CHANNELS a pixel */
@@ -37,13 +53,39 @@ struct pack_job {
 
 static int inside(int x, int size) { return x < 0 ? 0 : x >= size ? size - 1 : x; }
 
-static void gradient(float out[2], const struct pack_job *job, const float *luma, int x, int y, int step)
+static void gradient(float out[2], const float turn[2][2], const float *luma, int w, int h, int x, int y, int step)
 {
-    int w = job->g->width, h = job->g->height;
     float gx = luma[y * w + inside(x + step, w)] - luma[y * w + inside(x - step, w)];
     float gy = luma[inside(y + step, h) * w + x] - luma[inside(y - step, h) * w + x];
-    out[0] = 128 + 255 * (job->turn[0][0] * gx + job->turn[0][1] * gy);
-    out[1] = 128 + 255 * (job->turn[1][0] * gx + job->turn[1][1] * gy);
+    out[0] = turn[0][0] * gx + turn[0][1] * gy;
+    out[1] = turn[1][0] * gx + turn[1][1] * gy;
+}
+
+/* Mean over a window of (2 r + 1)^2, in place, two passes of running sums; the ends repeat. line: max(w, h) floats. */
+static void box_line(float *at, int count, size_t step, float *line, int r)
+{
+    double sum = 0;
+    for (int i = 0; i < count; i++) line[i] = at[(size_t)i * step];
+    for (int i = -r; i <= r; i++) sum += (double)line[inside(i, count)];
+    for (int i = 0; i < count; i++) {
+        at[(size_t)i * step] = (float)(sum / (2 * r + 1));
+        sum += (double)line[inside(i + r + 1, count)] - (double)line[inside(i - r, count)];
+    }
+}
+
+/* Factor that brings gradients to DEVIATION bytes a standard deviation of their surroundings. */
+static void gradient_scale(float *scale, const float turn[2][2], const float *luma, float *line, int w, int h, int step)
+{
+    for (int y = 0; y < h; y++)
+        for (int x = 0; x < w; x++) {
+            float d[2];
+            gradient(d, turn, luma, w, h, x, y, step);
+            scale[(size_t)y * (size_t)w + (size_t)x] = 0.5f * (d[0] * d[0] + d[1] * d[1]);
+        }
+    for (int y = 0; y < h; y++) box_line(scale + (size_t)y * (size_t)w, w, 1, line, SURROUNDINGS);
+    for (int x = 0; x < w; x++) box_line(scale + x, h, (size_t)w, line, SURROUNDINGS);
+    for (size_t i = 0; i < (size_t)w * (size_t)h; i++)
+        scale[i] = DEVIATION / (sqrtf(fmaxf(scale[i], 0)) + NOISE / 255);
 }
 
 static void pack_rows(void *ctx, size_t begin, size_t end, int thread)
@@ -56,12 +98,12 @@ static void pack_rows(void *ctx, size_t begin, size_t end, int thread)
             size_t i = (size_t)y * (size_t)w + (size_t)x;
             uint8_t *p = job->packed + CHANNELS * i;
             float fine[2], coarse[2];
-            gradient(fine, job, job->luma, x, y, 1);
-            gradient(coarse, job, job->smooth, x, y, 2);
+            gradient(fine, job->turn, job->luma, w, job->g->height, x, y, 1);
+            gradient(coarse, job->turn, job->smooth, w, job->g->height, x, y, 2);
             for (int c = 0; c < 3; c++) p[c] = byte_from(255 * job->gain[c] * job->g->rgb[c][i]);
             for (int c = 0; c < 2; c++) {
-                p[3 + c] = byte_from(fine[c]);
-                p[5 + c] = byte_from(coarse[c]);
+                p[3 + c] = byte_from(128 + job->fine_scale[i] * fine[c]);
+                p[5 + c] = byte_from(128 + job->coarse_scale[i] * coarse[c]);
             }
             p[7] = job->g->valid[i] ? 255 : 0;
         }
@@ -90,7 +132,8 @@ static void smooth_luma(float *to, const float *from, float *line, int w, int h)
 static uint8_t *pack(const struct gamma_image *g, const double gain[3], double turn[2][2])
 {
     size_t pixels = (size_t)g->width * (size_t)g->height;
-    float *luma = malloc(3 * pixels * sizeof *luma);
+    size_t longest = (size_t)(g->width > g->height ? g->width : g->height);
+    float *luma = malloc((4 * pixels + longest) * sizeof *luma);
     uint8_t *packed = malloc(CHANNELS * pixels);
     if (!luma || !packed) {
         free(luma);
@@ -100,11 +143,15 @@ static uint8_t *pack(const struct gamma_image *g, const double gain[3], double t
     for (size_t i = 0; i < pixels; i++)
         luma[i] = (float)(0.3 * gain[0]) * g->rgb[0][i] + (float)(0.6 * gain[1]) * g->rgb[1][i] +
                   (float)(0.1 * gain[2]) * g->rgb[2][i];
-    smooth_luma(luma + pixels, luma, luma + 2 * pixels, g->width, g->height);
-    struct pack_job job = {.g = g, .luma = luma, .smooth = luma + pixels, .packed = packed};
+    float *smooth = luma + pixels, *fine = luma + 2 * pixels, *coarse = luma + 3 * pixels, *line = luma + 4 * pixels;
+    smooth_luma(smooth, luma, fine, g->width, g->height);
+    struct pack_job job = {
+        .g = g, .luma = luma, .smooth = smooth, .fine_scale = fine, .coarse_scale = coarse, .packed = packed};
     for (int c = 0; c < 3; c++) job.gain[c] = (float)gain[c];
     for (int i = 0; i < 2; i++)
         for (int j = 0; j < 2; j++) job.turn[i][j] = (float)turn[i][j];
+    gradient_scale(fine, job.turn, luma, line, g->width, g->height, 1);
+    gradient_scale(coarse, job.turn, smooth, line, g->width, g->height, 2);
     parallel_for((size_t)g->height, 16, pack_rows, &job);
     free(luma);
     return packed;
@@ -387,7 +434,8 @@ float match_cost(const struct matcher *m, int segment, struct plane plane)
         costs[at] = cost;
     }
     if (count == 0) return -1;
-    int better = (count + 1) / 2;
+    int better = (m->neighbour_count + 1) / 2;
+    while (count < better) costs[count++] = FEW_SEE; /* fewer witnesses must not look like better ones */
     float sum = 0;
     for (int k = 0; k < better; k++) sum += costs[k];
     return sum / (float)better;

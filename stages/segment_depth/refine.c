@@ -8,62 +8,19 @@
  * of a pass. */
 #include "stages/segment_depth/refine.h"
 
+#include <assert.h>
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "common/parallel.h"
 #include "common/progress.h"
 
-#define POINT_HALF 1.0 /* this many points count half of what many count */
-
-enum status point_lists_make(struct point_lists *lists, const struct segmentation *s, const struct seen_points *seen,
-                             struct err *err)
-{
-    *lists = (struct point_lists){0};
-    lists->first = calloc((size_t)s->count + 2, sizeof *lists->first);
-    lists->points = malloc(((size_t)seen->count + 1) * sizeof *lists->points);
-    if (!lists->first || !lists->points) {
-        point_lists_release(lists);
-        return err_nomem(err, "lists of points", (size_t)s->count * sizeof *lists->first);
-    }
-    for (int round = 0; round < 2; round++) {
-        for (int i = 0; i < seen->count; i++) {
-            const struct seen_point *p = &seen->points[i];
-            if (!(p->u >= 0 && p->v >= 0 && p->u < s->width && p->v < s->height)) continue;
-            int label = s->label[(int)p->v * s->width + (int)p->u];
-            if (label < 0) continue;
-            if (round == 0) lists->first[label + 2]++;
-            else lists->points[lists->first[label + 1]++] = *p;
-        }
-        for (int k = 1; k <= s->count + 1 && round == 0; k++) lists->first[k] += lists->first[k - 1];
-    }
-    return ST_OK;
-}
-
-void point_lists_release(struct point_lists *lists)
-{
-    if (!lists) return;
-    free(lists->first);
-    free(lists->points);
-    *lists = (struct point_lists){0};
-}
-
-float point_cost(const struct point_lists *lists, int segment, struct plane plane, double width)
-{
-    int begin = lists->first[segment], end = lists->first[segment + 1];
-    double sum = 0;
-    for (int i = begin; i < end; i++) {
-        const struct seen_point *p = &lists->points[i];
-        sum += fmin(1, fabs(plane_at(plane, p->u, p->v) - p->inverse_z) / width);
-    }
-    return begin < end ? (float)(sum / (end - begin + POINT_HALF)) : 0;
-}
-
 struct refine {
     const struct matcher *m;
     const struct segmentation *s;
-    const struct point_lists *points;
+    const struct point_evidence *points;
     const float *weights;
     const struct segment_params *params;
     double least, most, step, change; /* change: of 1/z that this pass tries */
@@ -77,7 +34,7 @@ static float data_cost(const struct refine *r, int i, struct plane p)
     float cost = match_cost(r->m, i, p);
     /* unseen by every neighbour: nothing for it, nothing against it but what an ordinary match would be better than */
     if (cost < 0) cost = 0.6f;
-    return cost + (float)r->params->points * point_cost(r->points, i, p, 2 * r->step);
+    return cost + (float)point_evidence_cost(r->points, i, p, r->s->segments[i].cx, r->s->segments[i].cy);
 }
 
 static double prior_cost(const struct refine *r, int i, struct plane p)
@@ -217,7 +174,7 @@ static int colour_segments(const struct segmentation *s, int *colour, int *membe
         uint64_t taken = 0;
         for (int t = s->first_touch[i]; t < s->first_touch[i + 1]; t++)
             if (s->touches[t].other < i) taken |= (uint64_t)1 << colour[s->touches[t].other];
-        for (colour[i] = 0; taken >> colour[i] & 1; colour[i]++) continue;
+        for (colour[i] = 0; taken >> colour[i] & 1; colour[i]++) assert(colour[i] < MOST_COLOURS - 1);
         colours = colour[i] + 1 > colours ? colour[i] + 1 : colours;
     }
     for (int c = 0, n = 0; c <= colours; c++) {
@@ -228,9 +185,8 @@ static int colour_segments(const struct segmentation *s, int *colour, int *membe
     return colours;
 }
 
-enum status refine_planes(struct plane *plane, const struct matcher *m, const struct point_lists *points,
-                          const float *weights, const struct segment_params *params, double least, double most,
-                          double step, struct err *err)
+enum status refine_planes(struct plane *plane, const struct matcher *m, const struct point_evidence *points,
+                          const float *weights, const struct segment_params *params, struct err *err)
 {
     const struct segmentation *s = m->segments;
     struct refine r = {.m = m, .s = s, .points = points, .weights = weights, .params = params, .plane = plane};
@@ -244,16 +200,16 @@ enum status refine_planes(struct plane *plane, const struct matcher *m, const st
         st = err_nomem(err, "the refinement of planes", (size_t)s->count * 40);
         goto done;
     }
-    r.least = 0.7 * least;
-    r.most = 1.3 * most;
-    r.step = step;
+    r.least = 0.7 * points->least;
+    r.most = 1.3 * points->most;
+    r.step = points->step;
     r.members = members;
     int colours = colour_segments(s, colour, members, first);
     progress_start(&progress, "refinement", (int64_t)params->passes * s->count, "segments");
     parallel_for((size_t)s->count, 64, first_costs, &r);
     for (int pass = 0; pass < params->passes; pass++) {
         memcpy(r.before, plane, (size_t)s->count * sizeof *plane);
-        r.change = step * pow(0.5, pass);
+        r.change = r.step * pow(0.5, pass);
         for (int c = 0; c < colours; c++) {
             r.members = members + first[c];
             parallel_for((size_t)(first[c + 1] - first[c]), 16, refine_members, &r);

@@ -30,7 +30,7 @@ static const struct vec3 BOX_CENTER = {0.25, 0.7, 5.8}, BOX_HALF = {0.8, 0.8, 0.
 static const double BOX_COS = 0.8, BOX_SIN = 0.6; /* its turn about y */
 
 struct room_view {
-    char name[16];
+    char name[24];
     struct view view;
     bool sticker;
 };

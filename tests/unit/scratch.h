@@ -1,4 +1,4 @@
-/* scratch.h - what unit tests share: a scratch folder, files in it, and children whose words and ends can be looked at. */
+/* scratch.h - what unit tests share: a scratch folder, files in it, children whose words and ends can be looked at. */
 #ifndef REMODEL_TESTS_SCRATCH_H
 #define REMODEL_TESTS_SCRATCH_H
 
@@ -13,6 +13,7 @@
 #include <fcntl.h>
 #include <ftw.h>
 #include <limits.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -109,8 +110,8 @@ static inline int count_entries(const char *folder)
     return n;
 }
 
-#define assert_contains(text, part)                                          \
-    do {                                                                     \
+#define assert_contains(text, part)                                           \
+    do {                                                                      \
         if (!strstr(text, part)) fail_msg("no \"%s\" in \"%s\"", part, text); \
     } while (0)
 
@@ -120,16 +121,16 @@ static inline int count_entries(const char *folder)
     } while (0)
 
 /* The error has this status and these words, and is a sentence. */
-#define assert_err(err, wanted_status, part)                                                          \
-    do {                                                                                              \
-        if ((err).status != (wanted_status))                                                          \
-            fail_msg("status %d in place of %d: %s", (err).status, (wanted_status), (err).text);      \
-        assert_contains((err).text, part);                                                            \
-        if ((err).text[strlen((err).text) - 1] != '.') fail_msg("no full stop: \"%s\"", (err).text);   \
+#define assert_err(err, wanted_status, part)                                                         \
+    do {                                                                                             \
+        if ((err).status != (wanted_status))                                                         \
+            fail_msg("status %d in place of %d: %s", (err).status, (wanted_status), (err).text);     \
+        assert_contains((err).text, part);                                                           \
+        if ((err).text[strlen((err).text) - 1] != '.') fail_msg("no full stop: \"%s\"", (err).text); \
     } while (0)
 
-#define assert_ok(call, err)                                           \
-    do {                                                               \
+#define assert_ok(call, err)                                               \
+    do {                                                                   \
         if ((call) != ST_OK) fail_msg("%s failed: %s", #call, (err).text); \
     } while (0)
 

@@ -1,8 +1,8 @@
 /* camera.c - camera models: closed forms, round trips to the corners, and where a distortion stops being one-to-one. */
+#include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
-#include <setjmp.h>
 
 #include <cmocka.h>
 #include <math.h>

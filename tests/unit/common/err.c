@@ -81,8 +81,10 @@ static void log_lines(void **state)
 
 static void numbers_are_strict(void **state)
 {
-    static const char *const not_ints[] = {"", "-", "+", " 1", "1 ", "1.0", "0x10", "1e3", "9223372036854775808", "--1"};
-    static const char *const not_doubles[] = {"", ".", "-", "nan", "inf", "1e999", "0x1p3", " 1", "1 ", "1,5", "1e", "-infinity"};
+    static const char *const not_ints[] = {"",   "-", "+", " 1", "1 ", "1.0", "0x10", "1e3", "9223372036854775808",
+                                           "--1"};
+    static const char *const not_doubles[] = {"",      ".",  "-",  "nan", "inf", "1e999",
+                                              "0x1p3", " 1", "1 ", "1,5", "1e",  "-infinity"};
     int64_t i = 7;
     double d = 7;
 
@@ -143,9 +145,12 @@ static void hashes(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(first_error_is_kept), cmocka_unit_test(sentences),
-        cmocka_unit_test(long_text_is_cut_visibly), cmocka_unit_test(log_lines),
-        cmocka_unit_test(numbers_are_strict), cmocka_unit_test(shown_text_is_safe),
+        cmocka_unit_test(first_error_is_kept),
+        cmocka_unit_test(sentences),
+        cmocka_unit_test(long_text_is_cut_visibly),
+        cmocka_unit_test(log_lines),
+        cmocka_unit_test(numbers_are_strict),
+        cmocka_unit_test(shown_text_is_safe),
         cmocka_unit_test(hashes),
     };
 

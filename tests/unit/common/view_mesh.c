@@ -124,8 +124,8 @@ static void check_everywhere(const struct fixture *f, double slope)
         at = vec3_add(at, vec3_scale(f->mesh.axis_x, 1.5 * size * r[0]));
         at = vec3_add(at, vec3_scale(f->mesh.axis_y, 1.5 * size * r[1]));
         at = vec3_add(at, vec3_scale(f->mesh.normal, size * depth));
-        struct vec3 ahead = vec3_add(vec3_scale(f->mesh.normal, 8 * size),
-                                     vec3_make(size * r[3], size * r[4], size * r[5]));
+        struct vec3 ahead =
+            vec3_add(vec3_scale(f->mesh.normal, 8 * size), vec3_make(size * r[3], size * r[4], size * r[5]));
         check_continuous(f, at, vec3_add(at, ahead), slope);
         struct vec3 along = vec3_add(vec3_scale(f->mesh.axis_x, r[3]), vec3_scale(f->mesh.axis_y, r[4]));
         struct view novel = look(at, vec3_add(at, along)); /* rays parallel to the mesh */
@@ -353,8 +353,7 @@ static void in_front_and_behind_by_hand(void **state)
     struct vec3 centroid = f.mesh.centroid;
     /* all three views where the ray meets the centroid, from either side */
     for (int side = -1; side <= 1; side += 2) {
-        struct view novel = look(vec3_make(centroid.x, centroid.y, 2.5 * side),
-                                 vec3_make(centroid.x, centroid.y, 20));
+        struct view novel = look(vec3_make(centroid.x, centroid.y, 2.5 * side), vec3_make(centroid.x, centroid.y, 20));
         novel.cx += 0.5; /* the pixel's centre on the axis */
         novel.cy += 0.5;
         for (int v = 0; v < 3; v++) assert_float_equal(pixel_weight(&f, &novel, W / 2, H / 2, v), 1 / 3.0, 1e-5);

@@ -1,0 +1,136 @@
+/* encode.c - see encode.h. ffmpeg reads raw RGB from a pipe and writes to the output's temporary file, which takes the
+ * output's place only if every frame went in and ffmpeg ended well. */
+#include "stages/encode_video/encode.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "common/exr.h"
+#include "common/image.h"
+#include "common/outfile.h"
+#include "common/process.h"
+#include "common/progress.h"
+
+#define PARAM_STRUCT struct encode_params
+const struct param encode_param_table[] = {ENCODE_PARAMS(PARAM_ROW) PARAM_END};
+#undef PARAM_STRUCT
+
+/* x264's bytes depend on its number of threads, so that is fixed and no option */
+#define ENCODER_THREADS "2"
+
+static enum status start_encoder(struct process *ffmpeg, const struct camera_path *path, const char *file,
+                                 const struct encode_params *params, struct err *err)
+{
+    const struct view *camera = &path->frames[0].camera;
+    char size[32], rate[32], crf[16];
+
+    snprintf(size, sizeof size, "%dx%d", camera->width, camera->height);
+    snprintf(rate, sizeof rate, "%.9g", path->fps);
+    snprintf(crf, sizeof crf, "%d", params->crf);
+    /* clang-format off */
+    const char *const argv[] = {
+        "ffmpeg", "-hide_banner", "-loglevel", "error", "-y",
+        "-f", "rawvideo", "-pix_fmt", "rgb24", "-video_size", size, "-framerate", rate, "-i", "pipe:0",
+        "-vf", "scale=out_color_matrix=bt709:out_range=tv:flags=accurate_rnd+full_chroma_int+bitexact,format=yuv420p",
+        "-c:v", "libx264", "-preset", params->preset, "-crf", crf, "-threads", ENCODER_THREADS,
+        "-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709", "-color_range", "tv",
+        "-flags:v", "+bitexact", "-fflags", "+bitexact", "-map_metadata", "-1",
+        "-movflags", "+faststart", "-f", "mp4", file, NULL,
+    };
+    /* clang-format on */
+    return process_start(ffmpeg, argv, NULL, err);
+}
+
+/* The frame as 8-bit sRGB. */
+static enum status read_frame(unsigned char *rgb, const struct camera_path *path, int frame, const char *folder,
+                              struct err *err)
+{
+    static const char *const names[] = {"R", "G", "B"};
+    const struct view *camera = &path->frames[frame].camera;
+    const size_t size = strlen(folder) + 64;
+    struct exr_image exr = {0};
+    struct image linear = {0};
+    enum status st = ST_OK;
+    char *file = malloc(size);
+
+    if (!file) return err_nomem(err, "a file name", size);
+    snprintf(file, size, "%s/%.32s.exr", folder, camera->name);
+    if (access(file, F_OK))
+        st = err_set(err, ST_DATA, "frame %d of %d is missing: there is no %s. Render it, then encode again.",
+                     frame + 1, path->frame_count, file);
+    if (!st) st = exr_read(&exr, file, names, 3, err);
+    if (!st && (exr.width != camera->width || exr.height != camera->height))
+        st = err_set(err, ST_DATA, "%s has %d x %d pixels, but the path's frames have %d x %d. Render it again.", file,
+                     exr.width, exr.height, camera->width, camera->height);
+    if (!st) st = image_init(&linear, exr.width, exr.height, 3, err);
+    if (!st) {
+        for (size_t k = 0; k < 3; k++) {
+            const struct exr_plane *plane = exr_find(&exr, names[k]);
+            const size_t pixels = (size_t)exr.width * (size_t)exr.height;
+            for (size_t p = 0; p < pixels; p++) linear.data[3 * p + k] = plane->f[p];
+        }
+        image_to_srgb8(&linear, rgb);
+    }
+    image_release(&linear);
+    exr_image_release(&exr);
+    free(file);
+    return st;
+}
+
+static enum status check_result(int code, int written, const struct camera_path *path, const char *file,
+                                struct err *err)
+{
+    struct stat info;
+    if (code || written < path->frame_count)
+        return err_set(err, ST_IO,
+                       "ffmpeg ended with status %d after %d of %d frames; its words are above or in the log.", code,
+                       written, path->frame_count);
+    if (stat(file, &info)) return err_errno(err, "look at", file);
+    if (info.st_size == 0) return err_set(err, ST_IO, "ffmpeg ended well, but its output %s is empty.", file);
+    return ST_OK;
+}
+
+enum status encode_frames(const struct camera_path *path, const char *folder, const char *out,
+                          const struct encode_params *params, struct err *err)
+{
+    const int width = path->frame_count ? path->frames[0].camera.width : 0;
+    const int height = path->frame_count ? path->frames[0].camera.height : 0;
+    const size_t bytes = 3 * (size_t)width * (size_t)height;
+    struct process ffmpeg = {0};
+    struct outfile file = {0};
+    struct progress progress;
+    unsigned char *rgb = NULL;
+    int written = 0, code = 0;
+
+    if (!path->frame_count) return err_set(err, ST_DATA, "the path has no frames; plan it again.");
+    if (width % 2 || height % 2)
+        return err_set(
+            err, ST_DATA,
+            "the path's frames have %d x %d pixels, but H.264 with half colour needs even sizes; plan the path again.",
+            width, height);
+    if (!(rgb = malloc(bytes))) return err_nomem(err, "a frame", bytes);
+
+    progress_start(&progress, "encoding", path->frame_count, "frames");
+    enum status st = read_frame(rgb, path, 0, folder, err);
+    if (!st) st = outfile_open(&file, out, err);
+    if (!st) st = start_encoder(&ffmpeg, path, file.temp, params, err);
+    if (!st) {
+        while (fwrite(rgb, 1, bytes, ffmpeg.input) == bytes && ++written < path->frame_count) {
+            progress_add(&progress, 1);
+            if ((st = read_frame(rgb, path, written, folder, err))) break;
+        }
+        if (st)
+            process_kill(&ffmpeg);
+        else if (!(st = process_finish(&ffmpeg, &code, err)))
+            st = check_result(code, written, path, file.temp, err);
+    }
+    progress_end(&progress);
+    if (!st) st = outfile_commit(&file, err);
+    outfile_discard(&file);
+    free(rgb);
+    return st;
+}

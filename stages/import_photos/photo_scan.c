@@ -1,0 +1,317 @@
+/* photo_scan.c - see photo_scan.h. */
+#include "stages/import_photos/photo_scan.h"
+
+#include <ctype.h>
+#include <dirent.h>
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "common/outfile.h"
+#include "common/parallel.h"
+#include "common/progress.h"
+#include "common/textfile.h"
+
+#define ID_MOST 100 /* of 255 bytes in a file name: leaves room for @k, endings and a temporary name */
+
+/* Length of the name without .jpg, .jpeg or .png; 0 if it has none of them. */
+static size_t stem_length(const char *file)
+{
+    static const char *const endings[] = {".jpg", ".jpeg", ".png"};
+    size_t length = strlen(file);
+    for (int i = 0; i < 3; i++) {
+        size_t ending = strlen(endings[i]);
+        if (length > ending && !strcasecmp(file + length - ending, endings[i])) return length - ending;
+    }
+    return 0;
+}
+
+static bool id_char(char c) { return isalnum((unsigned char)c) || c == '_' || c == '-'; }
+
+static void id_from_stem(char id[ID_MOST + 1], const char *stem, size_t length)
+{
+    size_t n = 0;
+    bool named = false, run = false; /* run: in a run of other characters */
+    for (size_t i = 0; i < length && n < ID_MOST; i++) {
+        bool plain = (unsigned char)stem[i] < 128 && id_char(stem[i]) && (n || stem[i] != '-');
+        if (plain || !run) id[n++] = plain ? stem[i] : '_';
+        named |= plain && isalnum((unsigned char)stem[i]);
+        run = !plain;
+    }
+    id[n] = 0;
+    if (!named) strcpy(id, "photo");
+}
+
+static int by_file(const void *a, const void *b)
+{
+    return strcmp(((const struct scanned_photo *)a)->file, ((const struct scanned_photo *)b)->file);
+}
+
+static int by_id(const void *a, const void *b)
+{
+    return strcmp(((const struct scanned_photo *)a)->id, ((const struct scanned_photo *)b)->id);
+}
+
+static bool id_taken(const struct photo_scan *scan, const char *id)
+{
+    if (!strcmp(id, "list")) return true; /* list.txt is the list of photos */
+    for (int i = 0; i < scan->count; i++)
+        if (scan->photos[i].id && !strcmp(scan->photos[i].id, id)) return true;
+    return false;
+}
+
+struct base_id {
+    char text[ID_MOST + 1];
+    int photo;
+};
+
+static int by_base(const void *a, const void *b)
+{
+    return strcmp(((const struct base_id *)a)->text, ((const struct base_id *)b)->text);
+}
+
+/* Photos are in order of file name. First those whose name is theirs alone, then the others one by one. */
+static enum status assign_ids(struct photo_scan *scan, struct err *err)
+{
+    size_t count = (size_t)scan->count;
+    struct base_id *bases = calloc(count + 1, sizeof *bases), *sorted = calloc(count + 1, sizeof *sorted);
+    bool *shared = calloc(count + 1, sizeof *shared);
+    enum status st = bases && sorted && shared ? ST_OK : err_nomem(err, "the photos' ids", count * sizeof *bases);
+
+    for (size_t i = 0; !st && i < count; i++) {
+        id_from_stem(bases[i].text, scan->photos[i].file, stem_length(scan->photos[i].file));
+        bases[i].photo = (int)i;
+        sorted[i] = bases[i];
+    }
+    if (!st) qsort(sorted, count, sizeof *sorted, by_base);
+    for (size_t i = 0; !st && i < count; i++)
+        shared[sorted[i].photo] = (i && !by_base(&sorted[i], &sorted[i - 1])) ||
+                                  (i + 1 < count && !by_base(&sorted[i], &sorted[i + 1])) ||
+                                  !strcmp(sorted[i].text, "list");
+    for (int pass = 0; pass < 2; pass++) {
+        for (size_t i = 0; !st && i < count; i++) {
+            struct scanned_photo *p = &scan->photos[i];
+            char id[ID_MOST + 32];
+            if (shared[i] != (pass == 1)) continue;
+            if (shared[i]) {
+                int n = 1, length = snprintf(id, sizeof id, "%s_%s", bases[i].text, strrchr(p->file, '.') + 1);
+                while (id_taken(scan, id)) snprintf(id + length, sizeof id - (size_t)length, "-%d", ++n);
+            }
+            p->id = strdup(shared[i] ? id : bases[i].text);
+            if (!p->id) st = err_nomem(err, "a photo's id", ID_MOST);
+        }
+    }
+    free(bases);
+    free(sorted);
+    free(shared);
+    if (!st) qsort(scan->photos, count, sizeof *scan->photos, by_id);
+    return st;
+}
+
+static char *join_path(const char *folder, const char *name, const char *ending)
+{
+    char *path = NULL;
+    return asprintf(&path, "%s/%s%s", folder, name, ending) < 0 ? NULL : path;
+}
+
+static enum status scan_entry(struct photo_scan *scan, const char *name, struct err *err)
+{
+    struct stat info;
+    if (name[0] == '.') return ST_OK;
+    char *path = join_path(scan->folder, name, "");
+    if (!path) return err_nomem(err, "a path", 0);
+    bool other = !stem_length(name) || (!stat(path, &info) && !S_ISREG(info.st_mode)); /* a dead link is a bad photo */
+    free(path);
+    if (other) {
+        scan->ignored++;
+        return ST_OK;
+    }
+    struct scanned_photo *photos = realloc(scan->photos, ((size_t)scan->count + 1) * sizeof *photos);
+    if (!photos) return err_nomem(err, "a list of photos", ((size_t)scan->count + 1) * sizeof *photos);
+    scan->photos = photos;
+    photos[scan->count] = (struct scanned_photo){.file = strdup(name)};
+    return photos[scan->count++].file ? ST_OK : err_nomem(err, "a file name", strlen(name) + 1);
+}
+
+enum status photo_scan_folder(struct photo_scan *scan, const char *folder, struct err *err)
+{
+    *scan = (struct photo_scan){.folder = strdup(folder)};
+    if (!scan->folder) return err_nomem(err, "a path", strlen(folder) + 1);
+    DIR *dir = opendir(folder);
+    if (!dir && errno == ENOENT)
+        return err_set(err, ST_IO, "the folder of photos %s is not there; say where the photos are.", folder);
+    if (!dir && errno == ENOTDIR)
+        return err_set(err, ST_DATA, "%s is not a folder; name the folder that holds the photos.", folder);
+    if (!dir) return err_errno(err, "open the folder of photos", folder);
+
+    enum status st = ST_OK;
+    errno = 0;
+    for (struct dirent *entry; !st && (entry = readdir(dir)); errno = 0) st = scan_entry(scan, entry->d_name, err);
+    if (!st && errno) st = err_errno(err, "list the folder of photos", folder);
+    closedir(dir);
+    if (!st && scan->count) {
+        qsort(scan->photos, (size_t)scan->count, sizeof *scan->photos, by_file);
+        st = assign_ids(scan, err);
+    }
+    return st;
+}
+
+int photo_scan_exclude(struct photo_scan *scan, const char *name)
+{
+    int matched = 0;
+    for (int i = 0; i < scan->count; i++) {
+        struct scanned_photo *p = &scan->photos[i];
+        size_t stem = stem_length(p->file);
+        if (strcmp(name, p->file) && strcmp(name, p->id) && (strlen(name) != stem || strncmp(name, p->file, stem)))
+            continue;
+        p->excluded = true;
+        matched++;
+    }
+    return matched;
+}
+
+struct check_job {
+    struct photo_scan *scan;
+    const char *records;
+    struct progress progress;
+};
+
+/* The record for the file as it is now. The old one is good for as long as the file's bytes are the same. */
+static enum status check_photo(struct scanned_photo *p, const char *folder, const char *records)
+{
+    struct photo_record old = {0};
+    struct photo photo = {0};
+    struct err ignored = ERR_INIT;
+    char quoted[1024];
+    char *path = join_path(folder, p->file, "");
+    enum status st = path ? ST_OK : err_nomem(&p->err, "a path", 0);
+
+    if (!st) st = textfile_quote(p->file, quoted, sizeof quoted, &p->err);
+    if (!st) st = hash_file(p->record.hash, path, &p->err);
+    if (!st && !photo_record_read(&old, records, p->id, &ignored) && !strcmp(old.hash, p->record.hash)) {
+        p->record.info = old.info;
+    } else if (!st) {
+        st = photo_read(&photo, path, &p->err);
+        p->record.info = photo.info;
+    }
+    if (!st) {
+        p->record.file = strdup(p->file);
+        p->record.id = strdup(p->id);
+        if (!p->record.file || !p->record.id) st = err_nomem(&p->err, "a record", 0);
+    }
+    photo_record_release(&old);
+    photo_release(&photo);
+    free(path);
+    return st;
+}
+
+static void check_photos(void *ctx, size_t begin, size_t end, int thread)
+{
+    (void)thread;
+    struct check_job *job = ctx;
+    for (size_t i = begin; i < end; i++) {
+        struct scanned_photo *p = &job->scan->photos[i];
+        if (!p->excluded) check_photo(p, job->scan->folder, job->records);
+        progress_add(&job->progress, 1);
+    }
+}
+
+enum status photo_scan_check(struct photo_scan *scan, const char *records, struct err *err)
+{
+    struct check_job job = {.scan = scan, .records = records};
+    progress_start(&job.progress, "checking photos", scan->count, "photos");
+    parallel_for((size_t)scan->count, 1, check_photos, &job);
+    progress_end(&job.progress);
+    for (int i = 0; i < scan->count; i++) /* these are no fault of the photo */
+        if (scan->photos[i].err.status == ST_NOMEM) return err_set(err, ST_NOMEM, "%s", scan->photos[i].err.text);
+    return ST_OK;
+}
+
+static const struct scanned_photo *good_photo(const struct photo_scan *scan, const char *id, size_t length)
+{
+    for (int i = 0; i < scan->count; i++) {
+        const struct scanned_photo *p = &scan->photos[i];
+        if (strlen(p->id) == length && !strncmp(p->id, id, length)) return p->excluded || p->err.status ? NULL : p;
+    }
+    return NULL;
+}
+
+/* Records of photos that are gone, left out or bad. */
+static enum status remove_stale(const struct photo_scan *scan, const char *records, struct err *err)
+{
+    DIR *dir = opendir(records);
+    enum status st = ST_OK;
+    if (!dir) return err_errno(err, "open", records);
+    for (struct dirent *entry; !st && (entry = readdir(dir));) {
+        size_t length = strlen(entry->d_name);
+        if (length < 5 || strcmp(entry->d_name + length - 4, ".txt") || entry->d_name[0] == '.' ||
+            !strcmp(entry->d_name, "list.txt") || good_photo(scan, entry->d_name, length - 4))
+            continue;
+        char *path = join_path(records, entry->d_name, "");
+        if (!path)
+            st = err_nomem(err, "a path", 0);
+        else if (unlink(path))
+            st = err_errno(err, "remove", path);
+        free(path);
+    }
+    closedir(dir);
+    return st;
+}
+
+static enum status bad_photos_error(const struct photo_scan *scan, int bad, int used, struct err *err)
+{
+    char names[1024] = "";
+    for (int i = 0; i < scan->count; i++) {
+        size_t n = strlen(names);
+        if (!scan->photos[i].excluded && scan->photos[i].err.status)
+            snprintf(names + n, sizeof names - n, " %s", scan->photos[i].id);
+    }
+    return err_set(err, ST_DATA, "%d of %d photos in %s cannot be used: mend them, or leave them out (EXCLUDE =%s).",
+                   bad, used, scan->folder, names);
+}
+
+enum status photo_scan_write(const struct photo_scan *scan, const char *records, struct err *err)
+{
+    struct photo_list list = {0};
+    int bad = 0, used = 0;
+    enum status st = make_folders(records, err);
+
+    for (int i = 0; i < scan->count; i++) {
+        used += !scan->photos[i].excluded;
+        bad += !scan->photos[i].excluded && scan->photos[i].err.status;
+    }
+    if (!st) st = remove_stale(scan, records, err);
+    if (!st && !(list.photos = calloc((size_t)scan->count + 1, sizeof *list.photos)))
+        st = err_nomem(err, "a list of photos", (size_t)scan->count * sizeof *list.photos);
+    for (int i = 0; !st && i < scan->count; i++) {
+        const struct scanned_photo *p = &scan->photos[i];
+        if (p->excluded || p->err.status) continue;
+        list.photos[list.count++] = p->record; /* borrowed */
+        st = photo_record_write(&p->record, records, err);
+    }
+    if (!st && bad) st = bad_photos_error(scan, bad, used, err);
+    if (!st && used < 2)
+        st = err_set(err, ST_DATA,
+                     "%s holds %s JPEG or PNG photo%s; a parallax video needs at least 2, taken from different places.",
+                     scan->folder, used ? "one" : "no", used < scan->count ? " that is not left out" : "");
+    if (!st) st = photo_list_write(&list, records, err);
+    free(list.photos);
+    return st;
+}
+
+void photo_scan_release(struct photo_scan *scan)
+{
+    if (!scan) return;
+    for (int i = 0; i < scan->count; i++) {
+        free(scan->photos[i].file);
+        free(scan->photos[i].id);
+        photo_record_release(&scan->photos[i].record);
+    }
+    free(scan->photos);
+    free(scan->folder);
+    *scan = (struct photo_scan){0};
+}

@@ -1,0 +1,46 @@
+/* photo_scan.h - the photographs of a folder: their ids, what is left out, and which of them cannot be used.
+ *
+ * A photo is a file straight in the folder whose name ends in .jpg, .jpeg or .png (any case) and does not begin with
+ * a dot. An id is the name without that ending, every run of characters but letters, digits, _ and - made one _; it
+ * does not begin with -. Where two photos would share an id (or take one of the scene's own names) the ending is added
+ * to each, _jpg, and if that is taken -2, -3 in order of file name. Ids depend on the set of names alone, photos that
+ * are left out included, so leaving one out renames no other. */
+#ifndef REMODEL_PHOTO_SCAN_H
+#define REMODEL_PHOTO_SCAN_H
+
+#include <stdbool.h>
+
+#include "common/photo_list.h"
+
+struct scanned_photo {
+    char *file, *id; /* owned */
+    bool excluded;
+    struct photo_record record; /* filled by photo_scan_check() */
+    struct err err;             /* why it cannot be used */
+};
+
+struct photo_scan {
+    char *folder;                 /* owned */
+    struct scanned_photo *photos; /* in order of id (strcmp) */
+    int count;
+    int ignored; /* other files and folders in there, hidden ones not counted */
+};
+
+/* ST_IO, ST_DATA: the folder is missing, no folder, or unreadable. No photo at all is no error yet. */
+enum status photo_scan_folder(struct photo_scan *scan, const char *folder, struct err *err);
+
+/* Leaves out the photos whose file name, id or name without its ending is `name`; how many these are. */
+int photo_scan_exclude(struct photo_scan *scan, const char *name);
+
+/* Every photo that is not left out: its record, taken from `records` if the file has not changed since, otherwise
+ * after decoding it to the last pixel. Photos that cannot be used have `err` set; they are no error of this
+ * function. */
+enum status photo_scan_check(struct photo_scan *scan, const char *records, struct err *err);
+
+/* Writes the records of the good photos, removes those of all others, and if every photo is good the list and
+ * photos.mk. ST_DATA: bad photos (each has its own `err`), or fewer than two. */
+enum status photo_scan_write(const struct photo_scan *scan, const char *records, struct err *err);
+
+void photo_scan_release(struct photo_scan *scan);
+
+#endif

@@ -1,0 +1,172 @@
+/* plan_path.c - plans a camera move that shows a scene's depth without showing its holes.
+ *
+ * reads   VIEWS/cameras.txt, images.txt, points3D.txt   the cameras
+ *         VIEWS/lenses.txt, RECORDS/ID.txt              with --records: which way up the photos are
+ *         DEPTH/VIEW.exr, VIEW.txt                      every view's layers
+ * writes  OUT/path/{cameras,images,points3D}.txt        the frames' cameras
+ *         OUT/path.txt                                  scores and times
+ *         OUT/frames.mk                                 FRAMES := 0001 0002 ..., last: if it is new, so is the rest */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/cli.h"
+#include "common/lens_list.h"
+#include "common/log.h"
+#include "common/outfile.h"
+#include "common/photo_list.h"
+#include "stages/plan_path/establishing_dolly.h"
+
+enum { PATH_SIZE = 4096 };
+
+static enum status join(char out[PATH_SIZE], const char *folder, const char *file, const char *suffix, struct err *err)
+{
+    if (snprintf(out, PATH_SIZE, "%s/%s%s", folder, file, suffix) < PATH_SIZE) return ST_OK;
+    return err_set(err, ST_IO, "the path %s/%s%s is too long.", folder, file, suffix);
+}
+
+static enum status add_input(struct provenance *prov, const char *name, const char *folder, const char *file,
+                             struct err *err)
+{
+    char path[PATH_SIZE];
+    if (join(path, folder, file, "", err) || provenance_add_file(prov, name, path, err)) return err->status;
+    return ST_OK;
+}
+
+/* Where a photo's upright direction points in its camera, by EXIF orientation. */
+static struct vec3 upright(int orientation)
+{
+    switch (orientation) {
+    case 3:
+    case 4:
+        return vec3_make(0, 1, 0); /* the first row is at the bottom */
+    case 5:
+    case 6:
+        return vec3_make(-1, 0, 0); /* the first column is at the top */
+    case 7:
+    case 8:
+        return vec3_make(1, 0, 0);
+    default:
+        return vec3_make(0, -1, 0);
+    }
+}
+
+/* The upright direction in each view's camera. */
+static enum status find_ups(struct vec3 *ups, const struct camera_set *set, const char *views, const char *records,
+                            struct provenance *prov, struct err *err)
+{
+    struct lens_list lenses = {0};
+    char path[PATH_SIZE], name[PATH_SIZE];
+    enum status st = join(path, views, "lenses.txt", "", err) || lens_list_read(&lenses, path, err) ||
+                             provenance_add_file(prov, "views/lenses.txt", path, err)
+                         ? err->status
+                         : ST_OK;
+    for (int i = 0; !st && i < set->view_count; i++) {
+        struct photo_record record = {0};
+        int at = lens_list_find(&lenses, set->views[i].name);
+        if (at < 0) {
+            st = err_set(err, ST_DATA, "%s has no view %s, but images.txt has. Import the views again.", path,
+                         set->views[i].name);
+            break;
+        }
+        const struct lens *lens = &lenses.lenses[at];
+        char record_path[PATH_SIZE];
+        st = photo_record_read(&record, records, lens->photo, err);
+        if (!st) st = join(record_path, records, lens->photo, ".txt", err);
+        if (!st) st = join(name, "photos", lens->photo, ".txt", err);
+        if (!st) st = provenance_add_file(prov, name, record_path, err);
+        if (!st) ups[i] = mat3_apply(mat3_from_quat(lens->view_from_photo), upright(record.info.orientation));
+        photo_record_release(&record);
+    }
+    lens_list_release(&lenses);
+    return st;
+}
+
+static enum status write_frames(const struct camera_path *path, const char *out, struct err *err)
+{
+    struct outfile f = {0};
+    char name[PATH_SIZE];
+    enum status st = join(name, out, "frames.mk", "", err) || outfile_open(&f, name, err) ? err->status : ST_OK;
+    if (!st) {
+        fputs("FRAMES :=", f.fp);
+        for (int i = 0; i < path->frame_count; i++) fprintf(f.fp, " %s", path->frames[i].camera.name);
+        fputc('\n', f.fp);
+        st = outfile_commit(&f, err);
+    }
+    outfile_discard(&f);
+    return st;
+}
+
+static void tell(const struct camera_path *path, const struct dolly_notes *notes, const struct plan_params *params)
+{
+    double parallax = 0, angle = 0;
+    for (int i = 0; i < path->score_count; i++) {
+        if (!strcmp(path->scores[i].name, "parallax")) parallax = path->scores[i].value;
+        if (!strcmp(path->scores[i].name, "angle")) angle = path->scores[i].value;
+    }
+    log_note("%d frames of %d x %d around view %s: %.1f degrees at the scene's centroid, %.0f px of parallax",
+             path->frame_count, path->frames[0].camera.width, path->frames[0].camera.height, notes->center_view, angle,
+             parallax);
+    if (notes->zoom > 1) log_note("zoomed in by %.0f %% to keep holes out of the frames", 100 * (notes->zoom - 1));
+    if (notes->hole_limit > params->max_holes)
+        log_warn("even view %s leaves more than %.3g %% of the frame uncovered; allowing %.3g %%", notes->center_view,
+                 100 * params->max_holes, 100 * notes->hole_limit);
+    if (notes->stands_still)
+        log_warn("no move keeps holes below %.3g %% of the frame: the camera stands still", 100 * notes->hole_limit);
+}
+
+static enum status plan(const char *views, const char *records, const char *depth, const char *out,
+                        const struct plan_params *params, struct provenance *prov, struct err *err)
+{
+    struct camera_set set = {0};
+    struct layer_scene scene = {0};
+    struct camera_path path = {0};
+    struct dolly_notes notes = {0};
+    struct vec3 *ups = NULL;
+    enum status st = camera_set_read(&set, views, err);
+    if (!st) st = add_input(prov, "views/cameras.txt", views, "cameras.txt", err);
+    if (!st) st = add_input(prov, "views/images.txt", views, "images.txt", err);
+    if (!st) st = add_input(prov, "views/points3D.txt", views, "points3D.txt", err);
+    if (!st && records) {
+        ups = calloc((size_t)set.view_count + 1, sizeof *ups);
+        st = ups ? find_ups(ups, &set, views, records, prov, err)
+                 : err_nomem(err, "a direction a view", (size_t)set.view_count * sizeof *ups);
+    }
+    if (!st) st = layer_scene_read(&scene, &set, depth, prov, err);
+    if (!st) st = plan_establishing_dolly(&path, &notes, &scene, ups, params, err);
+    if (!st) st = camera_path_write(&path, out, prov, err);
+    if (!st) st = write_frames(&path, out, err);
+    if (!st) tell(&path, &notes, params);
+    camera_path_release(&path);
+    layer_scene_release(&scene);
+    camera_set_release(&set);
+    free(ups);
+    return st;
+}
+
+int main(int argc, char **argv)
+{
+    const char *views = NULL, *records = NULL, *depth = NULL, *effect = NULL, *out = NULL;
+    struct plan_params params = PLAN_PARAMS_DEFAULT;
+    const struct cli_opt opts[] = {
+        CLI_ABOUT("Plans a camera move that shows a scene's depth without showing its holes."),
+        CLI_STR("views", &views, CLI_REQUIRED, "folder of cameras"),
+        CLI_STR("depth", &depth, CLI_REQUIRED, "folder of the views' layers"),
+        CLI_STR("records", &records, CLI_OPTIONAL, "folder of the photos' records: makes the film upright"),
+        CLI_STR("effect", &effect, CLI_REQUIRED, "establishing_dolly"),
+        CLI_STR("out", &out, CLI_REQUIRED, "folder to write the path into"),
+        CLI_PARAMS(plan_param_table, &params, plan_params_check),
+        CLI_END,
+    };
+    struct provenance prov = {0};
+    struct err err = ERR_INIT;
+    if (cli_parse(argc, argv, "plan_path", opts, &prov, &err) == CLI_RUN) {
+        if (strcmp(effect, "establishing_dolly"))
+            err_set(&err, ST_USAGE, "there is no effect \"%s\"; the one known is establishing_dolly.", effect);
+        else
+            plan(views, records, depth, out, &params, &prov, &err);
+    }
+    err_report(&err);
+    provenance_release(&prov);
+    return err_exit_code(&err);
+}

@@ -1,0 +1,108 @@
+/* frames.c - see frames.h. */
+#include "stages/render_views/frames.h"
+
+#include <ctype.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/exr.h"
+#include "common/progress.h"
+#include "common/view_image.h"
+
+#define PARAM_STRUCT struct render_params
+const struct param render_param_table[] = {RENDER_PARAMS(PARAM_ROW) PARAM_END};
+#undef PARAM_STRUCT
+
+/* A number of 1 .. most at *text, which is moved behind it; 0 if there is none. */
+static int frame_number(const char **text, int most)
+{
+    long n = 0;
+    char *end = NULL;
+    if (isdigit((unsigned char)**text)) n = strtol(*text, &end, 10);
+    if (n < 1 || n > most) return 0;
+    *text = end;
+    return (int)n;
+}
+
+enum status frames_select(bool *wanted, int frame_count, const char *list, struct err *err)
+{
+    const char *at = list;
+
+    memset(wanted, 0, (size_t)frame_count * sizeof *wanted);
+    for (;;) {
+        const int first = frame_number(&at, frame_count);
+        int last = first;
+        if (first && *at == ':') {
+            at++;
+            last = frame_number(&at, frame_count);
+        }
+        if (!first || last < first || (*at && *at != ','))
+            return err_set(err, ST_USAGE,
+                           "--frames %s: wanted frame numbers and ranges from 1 to %d, like 1:30 or 1:30,45.", list,
+                           frame_count);
+        for (int i = first; i <= last; i++) wanted[i - 1] = true;
+        if (!*at++) return ST_OK;
+    }
+}
+
+static enum status frame_write(const struct rendered_frame *f, const struct view *camera, const char *file,
+                               const struct provenance *prov, struct err *err)
+{
+    static const char *const names[] = {"R", "G", "B", "A"};
+    const size_t pixels = (size_t)f->width * (size_t)f->height;
+    struct exr_image im = {0};
+    struct exr_plane *plane;
+    char holes[32], unfilled[32];
+
+    snprintf(holes, sizeof holes, "%.9g", f->hole_fraction);
+    snprintf(unfilled, sizeof unfilled, "%.9g", f->unfilled_fraction);
+    enum status st = exr_image_init(&im, f->width, f->height, err);
+    for (size_t k = 0; !st && k < 4; k++) {
+        st = exr_add_plane(&im, names[k], EXR_HALF, &plane, err);
+        for (size_t p = 0; !st && p < pixels; p++) plane->f[p] = f->rgba[4 * p + k];
+    }
+    if (!st && !(st = exr_add_plane(&im, "Z", EXR_FLOAT, &plane, err))) memcpy(plane->f, f->z, pixels * sizeof *f->z);
+    if (!st) {
+        exr_set_camera(&im, camera);
+        st = exr_set_attribute(&im, "remodel:holes", holes, err);
+    }
+    if (!st) st = exr_set_attribute(&im, "remodel:unfilled", unfilled, err);
+    if (!st) st = exr_write(&im, file, prov, err);
+    exr_image_release(&im);
+    return st;
+}
+
+enum status frames_render(const struct camera_path *path, const bool *wanted, const struct layer_scene *scene,
+                          const struct render_params *params, const char *folder, const struct provenance *prov,
+                          struct err *err)
+{
+    const struct layer_render_options options = {params->soft_z, params->fill_diameter};
+    const size_t size = strlen(folder) + 64;
+    struct rendered_frame frame = {0};
+    struct progress progress;
+    char *file = malloc(size);
+    int count = 0;
+
+    if (!file) return err_nomem(err, "a file name", size);
+    for (int i = 0; i < path->frame_count; i++) count += wanted[i];
+    progress_start(&progress, "rendering", count, "frames");
+    enum status st = ST_OK;
+    for (int i = 0; !st && i < path->frame_count; i++) {
+        const struct view *camera = &path->frames[i].camera;
+        if (!wanted[i]) continue;
+        snprintf(file, size, "%s/%.32s.exr", folder, camera->name);
+        st = layer_render(&frame, scene, camera, &options, err);
+        if (!st && frame.hole_fraction >= 1)
+            st = err_set(err, ST_DATA,
+                         "frame %d of the path sees nothing of the scene: no view covers any of its pixels. "
+                         "Look at its pose in the path, or plan the path again.",
+                         i + 1);
+        if (!st) st = frame_write(&frame, camera, file, prov, err);
+        progress_add(&progress, 1);
+    }
+    progress_end(&progress);
+    rendered_frame_release(&frame);
+    free(file);
+    return st;
+}

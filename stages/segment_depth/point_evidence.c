@@ -1,0 +1,127 @@
+/* point_evidence.c - see point_evidence.h. */
+#include "stages/segment_depth/point_evidence.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "common/parallel.h"
+
+#define NEAR_COLOUR 12.0f  /* Lab distance that counts like a distance of NEAR_PLACE of the picture's diagonal */
+#define NEAR_PLACE 0.08f
+#define LOOSE 0.04         /* of the depth range: how far from a nearby point's depth costs in full */
+
+static enum status sort_into_segments(struct point_evidence *e, const struct segmentation *s,
+                                      const struct seen_points *seen, struct err *err)
+{
+    e->first = calloc((size_t)s->count + 2, sizeof *e->first);
+    e->points = malloc(((size_t)seen->count + 1) * sizeof *e->points);
+    if (!e->first || !e->points) return err_nomem(err, "lists of points", (size_t)s->count * sizeof *e->first);
+    for (int round = 0; round < 2; round++) {
+        for (int i = 0; i < seen->count; i++) {
+            const struct seen_point *p = &seen->points[i];
+            if (!(p->u >= 0 && p->v >= 0 && p->u < s->width && p->v < s->height)) continue;
+            int label = s->label[(int)p->v * s->width + (int)p->u];
+            if (label < 0) continue;
+            if (round == 0) e->first[label + 2]++;
+            else e->points[e->first[label + 1]++] = *p;
+        }
+        for (int k = 1; k <= s->count + 1 && round == 0; k++) e->first[k] += e->first[k - 1];
+    }
+    return ST_OK;
+}
+
+struct nearest_job {
+    struct point_evidence *e;
+    const struct segmentation *s;
+    float place; /* 1 / px */
+    float (*key)[5]; /* of each point: place and colour, scaled */
+};
+
+static void fill_key(float key[5], const struct segment *g, double u, double v, float place)
+{
+    key[0] = place * (float)u;
+    key[1] = place * (float)v;
+    for (int c = 0; c < 3; c++) key[2 + c] = g->colour[c] / NEAR_COLOUR;
+}
+
+static void find_nearest(void *ctx, size_t begin, size_t end, int thread)
+{
+    const struct nearest_job *job = ctx;
+    int points = job->e->first[job->s->count], keep = job->e->nearest_count;
+    (void)thread;
+    for (size_t i = begin; i < end; i++) {
+        const struct segment *g = &job->s->segments[i];
+        float key[5], distance[NEAREST_POINTS], *depth = job->e->nearest + i * NEAREST_POINTS;
+        int count = 0;
+        fill_key(key, g, g->cx, g->cy, job->place);
+        for (int p = 0; p < points; p++) {
+            float d = 0;
+            for (int c = 0; c < 5; c++) d += (key[c] - job->key[p][c]) * (key[c] - job->key[p][c]);
+            if (count == keep && d >= distance[count - 1]) continue;
+            int at = count < keep ? count++ : count - 1;
+            for (; at > 0 && distance[at - 1] > d; at--) {
+                distance[at] = distance[at - 1];
+                depth[at] = depth[at - 1];
+            }
+            distance[at] = d;
+            depth[at] = (float)job->e->points[p].inverse_z;
+        }
+    }
+}
+
+enum status point_evidence_make(struct point_evidence *e, const struct segmentation *s, const struct seen_points *seen,
+                                double least, double most, double step, const struct segment_params *params,
+                                struct err *err)
+{
+    *e = (struct point_evidence){.least = least,
+                                 .most = most,
+                                 .step = step,
+                                 .inside_weight = params->points,
+                                 .nearest_weight = params->nearest_points,
+                                 .far_weight = params->far_bias};
+    enum status st = sort_into_segments(e, s, seen, err);
+    if (!st) {
+        int points = e->first[s->count];
+        float place = (float)(1 / (NEAR_PLACE * hypot(s->width, s->height)));
+        struct nearest_job job = {.e = e, .s = s, .place = place};
+        e->nearest_count = points < NEAREST_POINTS ? points : NEAREST_POINTS;
+        e->nearest = malloc(((size_t)s->count * NEAREST_POINTS + 1) * sizeof *e->nearest);
+        job.key = malloc(((size_t)points + 1) * sizeof *job.key);
+        if (e->nearest && job.key) {
+            for (int i = 0; i < s->count; i++)
+                for (int k = e->first[i]; k < e->first[i + 1]; k++)
+                    fill_key(job.key[k], &s->segments[i], e->points[k].u, e->points[k].v, place);
+            parallel_for((size_t)s->count, 64, find_nearest, &job);
+        } else {
+            st = err_nomem(err, "points near segments", (size_t)s->count * NEAREST_POINTS * sizeof *e->nearest);
+        }
+        free(job.key);
+    }
+    if (st) point_evidence_release(e);
+    return st;
+}
+
+void point_evidence_release(struct point_evidence *e)
+{
+    if (!e) return;
+    free(e->first);
+    free(e->points);
+    free(e->nearest);
+    *e = (struct point_evidence){0};
+}
+
+double point_evidence_cost(const struct point_evidence *e, int segment, struct plane plane, double u, double v)
+{
+    int begin = e->first[segment], end = e->first[segment + 1];
+    double inside = 0, nearest = 1, here = plane_at(plane, u, v);
+    for (int i = begin; i < end; i++) {
+        const struct seen_point *p = &e->points[i];
+        inside += fmin(1, fabs(plane_at(plane, p->u, p->v) - p->inverse_z) / (2 * e->step));
+    }
+    if (begin < end) inside /= end - begin + 1.0; /* one point counts half of what many count */
+    const float *depth = e->nearest + (size_t)segment * NEAREST_POINTS;
+    double loose = LOOSE * (e->most - e->least);
+    for (int k = 0; k < e->nearest_count; k++) nearest = fmin(nearest, fabs(here - (double)depth[k]) / loose);
+    double far = fmin(fmax((here - e->least) / (e->most - e->least), 0), 1);
+    return e->inside_weight * inside + (e->nearest_count ? e->nearest_weight * nearest : 0) + e->far_weight * far;
+}

@@ -1,0 +1,117 @@
+/* segment_depth.c - layered depth of one view by multi-view segment matching.
+ *
+ * reads   VIEWS/cameras.txt, images.txt, points3D.txt   the cameras and sparse points
+ *         VIEWS/VIEW.exr                                the view and the neighbours it selects, linear RGBA
+ * writes  DEPS                                          make dependencies: the pictures really read
+ *         OUT with .txt for .exr, then OUT              segments; layers interior.* and boundary.* (RGBA, Z, id)
+ *
+ * Each file appears whole or not at all, OUT last: if it is new, so are the others. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/cli.h"
+#include "common/outfile.h"
+#include "common/view_image.h"
+#include "stages/segment_depth/view_depth.h"
+
+struct views_folder {
+    const char *folder;
+    const struct camera_set *set;
+    struct provenance *prov;
+};
+
+/* FOLDER/VIEW.exr; the caller frees it. NULL: no memory. */
+static char *view_path(const char *folder, const char *view)
+{
+    size_t size = strlen(folder) + strlen(view) + 6;
+    char *path = malloc(size);
+    if (path) snprintf(path, size, "%s/%s.exr", folder, view);
+    return path;
+}
+
+static enum status read_view(void *ctx, int view_idx, struct image *im, struct err *err)
+{
+    const struct views_folder *f = ctx;
+    const struct view *view = &f->set->views[view_idx];
+    char *path = view_path(f->folder, view->name), *input = view_path("views", view->name);
+    enum status st = path && input ? ST_OK : err_nomem(err, "a file name", strlen(f->folder) + strlen(view->name));
+    if (!st) st = view_image_read(im, f->folder, view, err);
+    if (!st) st = provenance_add_file(f->prov, input, path, err);
+    free(path);
+    free(input);
+    return st;
+}
+
+static void print_escaped(FILE *to, const char *path)
+{
+    for (; *path; path++) {
+        if (*path == ' ' || *path == '#' || *path == '\\') fputc('\\', to);
+        if (*path == '$') fputc('$', to);
+        fputc(*path, to);
+    }
+}
+
+/* "OUT: VIEWS/A.exr VIEWS/B.exr", and an empty rule for each, so that a view that is gone does not stop make. */
+static enum status write_deps(const char *deps, const char *out, const char *folder, const struct camera_set *set,
+                              const int *read, int count, struct err *err)
+{
+    struct outfile file = {0};
+    enum status st = outfile_open(&file, deps, err);
+    if (!st) {
+        print_escaped(file.fp, out);
+        for (int rule = 0; rule < 2; rule++)
+            for (int i = 0; i < count; i++) {
+                fputs(rule ? "" : i ? " " : ": ", file.fp);
+                print_escaped(file.fp, folder);
+                fprintf(file.fp, "/%s.exr%s", set->views[read[i]].name, rule ? ":\n" : i + 1 < count ? "" : "\n");
+            }
+        st = outfile_commit(&file, err);
+    }
+    outfile_discard(&file);
+    return st;
+}
+
+static enum status segment_depth(const char *folder, const char *name, const char *out, const char *deps,
+                                 const struct segment_params *params, struct provenance *prov, struct err *err)
+{
+    struct camera_set set = {0};
+    struct layered_depth depth = {0};
+    int read[1 + MAX_NEIGHBOURS], count = 0;
+    enum status st = camera_set_read(&set, folder, err);
+    if (!st && (read[0] = camera_set_find(&set, name)) < 0)
+        st = err_set(err, ST_USAGE, "there is no view %s in %s/images.txt; its views are listed in %s/views.mk.", name,
+                     folder, folder);
+    if (!st) {
+        struct views_folder views = {folder, &set, prov};
+        const struct view_source source = {read_view, &views};
+        st = view_depth(&depth, read + 1, &count, &set, read[0], &source, params, err);
+    }
+    if (!st && deps) st = write_deps(deps, out, folder, &set, read, 1 + count, err);
+    if (!st) st = layered_depth_write(&depth, &set.views[read[0]], out, prov, err);
+    layered_depth_release(&depth);
+    camera_set_release(&set);
+    return st;
+}
+
+int main(int argc, char **argv)
+{
+    const char *views = NULL, *view = NULL, *out = NULL, *deps = NULL;
+    struct segment_params params = SEGMENT_PARAMS_DEFAULT;
+    const struct cli_opt opts[] = {
+        CLI_ABOUT("Layered depth of one view by multi-view segment matching."),
+        CLI_STR("views", &views, CLI_REQUIRED, "folder of cameras and rectified views"),
+        CLI_STR("view", &view, CLI_REQUIRED, "view to work on"),
+        CLI_STR("out", &out, CLI_REQUIRED, "EXR to write"),
+        CLI_STR("deps", &deps, CLI_OPTIONAL, "make dependencies to write: the pictures really read"),
+        CLI_PARAMS(segment_param_table, &params, NULL),
+        CLI_END,
+    };
+    struct provenance prov = {0};
+    struct err err = ERR_INIT;
+    if (cli_parse(argc, argv, "segment_depth", opts, &prov, &err) != CLI_RUN ||
+        segment_depth(views, view, out, deps, &params, &prov, &err))
+        err_report(&err);
+    provenance_release(&prov);
+    return err_exit_code(&err);
+}

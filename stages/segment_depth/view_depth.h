@@ -1,0 +1,22 @@
+/* view_depth.h - layered depth of one view: from pictures and cameras to segments with planes. */
+#ifndef REMODEL_VIEW_DEPTH_H
+#define REMODEL_VIEW_DEPTH_H
+
+#include "common/image.h"
+#include "common/layered_depth.h"
+#include "stages/segment_depth/neighbours.h"
+#include "stages/segment_depth/segment_params.h"
+
+/* Reads a view's picture; the callback fills im (empty on entry), which the algorithm releases. */
+struct view_source {
+    enum status (*read)(void *ctx, int view_idx, struct image *im, struct err *err);
+    void *ctx;
+};
+
+/* out: {0} on entry; the caller releases it. neighbours, neighbour_count: the views that were read besides view_idx.
+ * ST_DATA: no neighbour. The same bits for any number of threads. */
+enum status view_depth(struct layered_depth *out, int neighbours[MAX_NEIGHBOURS], int *neighbour_count,
+                       const struct camera_set *set, int view_idx, const struct view_source *source,
+                       const struct segment_params *params, struct err *err);
+
+#endif

@@ -1,0 +1,504 @@
+/* run_colmap.c - see run_colmap.h. */
+#include "stages/sfm/run_colmap.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "common/log.h"
+#include "common/outfile.h"
+#include "common/parallel.h"
+#include "common/process.h"
+#include "common/textfile.h"
+
+#define PARAM_STRUCT struct sfm_params
+const struct param sfm_param_table[] = {SFM_PARAMS(PARAM_ROW) PARAM_END};
+#undef PARAM_STRUCT
+
+enum { STEPS = 4, MANY_PHOTOS = 200, FEW_FEATURES = 200, MOST_ARGS = 40 };
+
+enum status sfm_params_check(const void *values, struct err *err)
+{
+    const struct sfm_params *p = values;
+    struct camera c = {.width = 1, .height = 1};
+    const char *at = p->camera_params;
+    int count = 0;
+    if (!*at) {
+        if (!strcmp(p->refine_camera, "no"))
+            return err_set(err, ST_USAGE, "[sfm] refine_camera = no needs the lens: give camera_params too.");
+        return ST_OK;
+    }
+    camera_model_from_name(p->camera_model, &c.model);
+    for (;; at++, count++) {
+        char *end;
+        double value = strtod(at, &end);
+        if (end == at || (*end && *end != ',')) {
+            count = -1;
+            break;
+        }
+        if (count < CAMERA_MAX_PARAMS) c.params[count] = value;
+        at = end;
+        if (!*at) break;
+    }
+    int wanted = camera_model_params(c.model);
+    if (count + 1 != wanted)
+        return err_set(err, ST_USAGE,
+                       "[sfm] camera_params is \"%s\", wanted the %d numbers of %s with commas in between.",
+                       p->camera_params, wanted, p->camera_model);
+    struct err why = ERR_INIT;
+    if (camera_check(&c, &why)) return err_set(err, ST_USAGE, "[sfm] camera_params: %s", why.text);
+    return ST_OK;
+}
+
+enum status sfm_single_camera(bool *single, const struct photo_list *photos, const struct sfm_params *params,
+                              struct err *err)
+{
+    const struct photo_info *first = photos->count ? &photos->photos[0].info : NULL;
+    int other = 0;
+    bool same_size = true, same_lens = true;
+    for (int i = 1; i < photos->count; i++) {
+        const struct photo_info *info = &photos->photos[i].info;
+        if (info->width != first->width || info->height != first->height) {
+            if (same_size) other = i;
+            same_size = false;
+        }
+        /* what a photo does not say is 0 or "": it must not say it either where others do */
+        same_lens = same_lens && info->focal_mm == first->focal_mm && !strcmp(info->make, first->make) &&
+                    !strcmp(info->model, first->model);
+    }
+    *single =
+        !strcmp(params->single_camera, "yes") || (!strcmp(params->single_camera, "auto") && same_size && same_lens);
+    if (*single && !same_size) {
+        const struct photo_record *a = &photos->photos[0], *b = &photos->photos[other];
+        return err_set(
+            err, ST_USAGE,
+            "[sfm] single_camera is yes, but photo \"%s\" is %d x %d px and \"%s\" %d x %d px; set it to auto or no.",
+            a->file, a->info.width, a->info.height, b->file, b->info.width, b->info.height);
+    }
+    return ST_OK;
+}
+
+/* -------------------------------------------------------------------------------------------------- COLMAP's log */
+
+static const char *value_of(const char *line, const char *key)
+{
+    line += strspn(line, " \t");
+    if (strncmp(line, key, strlen(key))) return NULL;
+    line += strlen(key);
+    return line + strspn(line, " \t");
+}
+
+enum status feature_counts_read(struct feature_counts *c, const char *log, struct err *err)
+{
+    struct textfile t = {0};
+    int room = 0;
+    *c = (struct feature_counts){0};
+    enum status st = textfile_open(&t, log, err);
+    while (!st && textfile_next_raw(&t)) {
+        const char *name = value_of(t.cursor, "Name:"), *features = value_of(t.cursor, "Features:");
+        if (features && c->count) c->list[c->count - 1].features = (int)strtol(features, NULL, 10);
+        if (!name) continue;
+        if (c->count == room) {
+            int more = room ? 2 * room : 64;
+            void *p = realloc(c->list, (size_t)more * sizeof *c->list);
+            if (!p) {
+                st = err_nomem(err, "feature counts", (size_t)more * sizeof *c->list);
+                break;
+            }
+            c->list = p;
+            room = more;
+        }
+        c->list[c->count] = (struct feature_count){strdup(name), -1};
+        if (!c->list[c->count++].name) st = err_nomem(err, "a name", strlen(name) + 1);
+    }
+    textfile_release(&t);
+    if (st) feature_counts_release(c);
+    return st;
+}
+
+void feature_counts_release(struct feature_counts *c)
+{
+    if (!c) return;
+    for (int i = 0; i < c->count; i++) free(c->list[i].name);
+    free(c->list);
+    *c = (struct feature_counts){0};
+}
+
+/* "Loading images... 11 in 0.000s (connected 9)": how many pictures match any other; -1 if the log does not say. */
+static int connected_images(const char *log)
+{
+    struct textfile t = {0};
+    struct err ignored = ERR_INIT;
+    int found = -1;
+    if (textfile_open(&t, log, &ignored)) return -1;
+    while (textfile_next_raw(&t)) {
+        const char *at = strstr(t.cursor, "Loading images"), *connected = at ? strstr(at, "(connected ") : NULL;
+        if (connected) found = (int)strtol(connected + strlen("(connected "), NULL, 10);
+    }
+    textfile_release(&t);
+    return found;
+}
+
+/* The last line that says something, for the sentence about a step that failed. */
+static void last_words(char *words, size_t size, const char *log)
+{
+    struct textfile t = {0};
+    struct err ignored = ERR_INIT;
+    *words = '\0';
+    if (textfile_open(&t, log, &ignored)) return;
+    while (textfile_next_raw(&t)) {
+        const char *p = t.cursor + strspn(t.cursor, " \t");
+        if (isalpha((unsigned char)*p)) snprintf(words, size, "%s", p);
+    }
+    textfile_release(&t);
+}
+
+/* ---------------------------------------------------------------------------------------------------- one run */
+
+struct run {
+    const struct sfm_folder *folder;
+    const struct photo_list *photos;
+    const struct sfm_params *params;
+    char *images, *masks, *database, *sparse; /* in the work folder; masks NULL without any */
+    char *logs[STEPS];
+    char threads[16], most_features[16], most_size[16];
+    bool single;
+};
+
+static void run_release(struct run *r)
+{
+    free(r->images);
+    free(r->masks);
+    free(r->database);
+    free(r->sparse);
+    for (int i = 0; i < STEPS; i++) free(r->logs[i]);
+}
+
+/* The extension of a file name if it is plain, so that the link's name is safe; COLMAP looks at the content. */
+static const char *safe_extension(const char *file)
+{
+    const char *dot = strrchr(file, '.');
+    if (!dot || !dot[1] || strlen(dot) > 6) return ".img";
+    for (const char *p = dot + 1; *p; p++)
+        if (!isalnum((unsigned char)*p) || (unsigned char)*p > 127) return ".img";
+    return dot;
+}
+
+static enum status link_file(const char *target, const char *link, struct err *err)
+{
+    return symlink(target, link) ? err_errno(err, "make the link", link) : ST_OK;
+}
+
+static enum status link_photos(struct run *r, const char *photos, const char *masks, struct err *err)
+{
+    char *from = realpath(photos, NULL), *masks_from = masks ? realpath(masks, NULL) : NULL;
+    enum status st = from ? ST_OK : err_errno(err, "open", photos);
+    int mask_count = 0;
+    if (!st && masks && !masks_from) st = err_errno(err, "open", masks);
+    if (!st) st = make_folders(r->images, err);
+    for (int i = 0; !st && i < r->photos->count; i++) {
+        const struct photo_record *p = &r->photos->photos[i];
+        char *target = text_format(err, "%s/%s", from, p->file), *mask = NULL, *mask_link = NULL;
+        char *link = text_format(err, "%s/%s%s", r->images, p->id, safe_extension(p->file));
+        st = target && link ? link_file(target, link, err) : err->status;
+        if (!st && masks) {
+            mask = text_format(err, "%s/%s.png", masks_from, p->id);
+            mask_link = text_format(err, "%s.masks/%s%s.png", r->images, p->id, safe_extension(p->file));
+            if (!mask || !mask_link) st = err->status;
+            if (!st && !access(mask, F_OK)) {
+                if (!mask_count++) {
+                    r->masks = text_format(err, "%s.masks", r->images);
+                    st = r->masks ? make_folders(r->masks, err) : err->status;
+                }
+                if (!st) st = link_file(mask, mask_link, err);
+            }
+        }
+        free(target);
+        free(link);
+        free(mask);
+        free(mask_link);
+    }
+    if (!st && mask_count) log_note("%d photos have a mask", mask_count);
+    free(from);
+    free(masks_from);
+    return st;
+}
+
+static enum status run_prepare(struct run *r, const char *photos, const char *masks, struct err *err)
+{
+    const char *work = r->folder->work;
+    enum status st = sfm_single_camera(&r->single, r->photos, r->params, err);
+    if (st) return st;
+    snprintf(r->threads, sizeof r->threads, "%d", parallel_threads());
+    snprintf(r->most_features, sizeof r->most_features, "%d", r->params->max_features);
+    snprintf(r->most_size, sizeof r->most_size, "%d", r->params->max_image_size);
+    r->images = text_format(err, "%s/images", work);
+    r->database = text_format(err, "%s/database.db", work);
+    r->sparse = text_format(err, "%s/sparse", work);
+    if (!r->images || !r->database || !r->sparse) return err->status;
+    for (int i = 0; i < STEPS; i++)
+        if (!(r->logs[i] = text_format(err, "%s/colmap-%d.log", work, i + 1))) return err->status;
+    st = make_folders(r->sparse, err);
+    if (!st) st = link_photos(r, photos, masks, err);
+    return st;
+}
+
+static double now(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* One command of COLMAP. An exit status above `most` is an error. */
+static enum status colmap(const struct run *r, int step, const char *const args[], int most, struct err *err)
+{
+    static const char *const env[] = {"QT_QPA_PLATFORM=offscreen", NULL};
+    const char *argv[MOST_ARGS + 2] = {"colmap"};
+    char words[512];
+    int n = 1, status = 0;
+    for (; args[n - 1]; n++) argv[n] = args[n - 1];
+    enum status st = process_run_env(argv, env, r->logs[step - 1], &status, err);
+    if (st || status <= most) return st;
+    last_words(words, sizeof words, r->logs[step - 1]);
+    return err_set(err, ST_IO, "colmap %s failed with exit status %d%s; its last words are \"%s\", its log is %s.",
+                   args[0], status, status == 137 ? " (killed: out of memory?)" : "", words, r->logs[step - 1]);
+}
+
+static enum status extract(const struct run *r, struct err *err)
+{
+    const struct sfm_params *p = r->params;
+    const char *args[MOST_ARGS] = {"feature_extractor",
+                                   "--database_path",
+                                   r->database,
+                                   "--image_path",
+                                   r->images,
+                                   "--ImageReader.camera_model",
+                                   p->camera_model,
+                                   r->single ? "--ImageReader.single_camera" : "--ImageReader.single_camera_per_image",
+                                   "1",
+                                   "--SiftExtraction.use_gpu",
+                                   "0",
+                                   "--SiftExtraction.num_threads",
+                                   r->threads,
+                                   "--SiftExtraction.max_num_features",
+                                   r->most_features,
+                                   "--SiftExtraction.max_image_size",
+                                   r->most_size};
+    int n = 0;
+    while (args[n]) n++;
+    if (*p->camera_params) {
+        args[n++] = "--ImageReader.camera_params";
+        args[n++] = p->camera_params;
+    }
+    if (r->masks) {
+        args[n++] = "--ImageReader.mask_path";
+        args[n++] = r->masks;
+    }
+    return colmap(r, 1, args, 0, err);
+}
+
+static enum status match(const struct run *r, struct err *err)
+{
+    const char *which = r->params->matcher;
+    bool all = !strcmp(which, "exhaustive") || (!strcmp(which, "auto") && r->photos->count <= MANY_PHOTOS);
+    const char *args[] = {all ? "exhaustive_matcher" : "sequential_matcher",
+                          "--database_path",
+                          r->database,
+                          "--SiftMatching.use_gpu",
+                          "0",
+                          "--SiftMatching.num_threads",
+                          r->threads,
+                          NULL};
+    return colmap(r, 2, args, 0, err);
+}
+
+static bool is_folder(const char *path)
+{
+    struct stat info;
+    return !stat(path, &info) && S_ISDIR(info.st_mode);
+}
+
+/* relaxed: starts from a pair that is closer together and shares less than COLMAP wants by default. */
+static enum status map(const struct run *r, bool relaxed, struct err *err)
+{
+    const char *refine = strcmp(r->params->refine_camera, "no") ? "1" : "0";
+    const char *args[MOST_ARGS] = {"mapper",    "--database_path",
+                                   r->database, "--image_path",
+                                   r->images,   "--output_path",
+                                   r->sparse,   "--Mapper.num_threads",
+                                   r->threads,  "--Mapper.ba_refine_focal_length",
+                                   refine,      "--Mapper.ba_refine_extra_params",
+                                   refine};
+    int n = 0;
+    while (args[n]) n++;
+    if (relaxed) {
+        static const char *const easier[] = {"--Mapper.init_min_tri_angle",       "4",
+                                             "--Mapper.init_min_num_inliers",     "50",
+                                             "--Mapper.abs_pose_min_num_inliers", "20"};
+        for (size_t i = 0; i < sizeof easier / sizeof *easier; i++) args[n++] = easier[i];
+    }
+    /* it exits with 1 when it finds no model: the models are counted instead, and the reason is told by photo */
+    return colmap(r, 3, args, 1, err);
+}
+
+/* A list of photos by name in one sentence, not longer than its room. */
+static void list_photos(char *text, size_t size, const struct run *r, const struct feature_counts *c, int most)
+{
+    size_t used = 0;
+    int named = 0, left = 0;
+    *text = '\0';
+    for (int i = 0; i < r->photos->count; i++) {
+        const struct photo_record *p = &r->photos->photos[i];
+        size_t stem = strlen(p->id);
+        int features = -1;
+        for (int k = 0; k < c->count; k++)
+            if (!strncmp(c->list[k].name, p->id, stem) && c->list[k].name[stem] == '.') features = c->list[k].features;
+        if (features >= most) continue;
+        if (used + strlen(p->file) + 40 > size) {
+            left++;
+            continue;
+        }
+        used += (size_t)snprintf(text + used, size - used, features < 0 ? "%s%s (unreadable)" : "%s%s (%d)",
+                                 named++ ? ", " : "", p->file, features);
+    }
+    if (left) snprintf(text + used, size - used, " and %d more", left);
+}
+
+static enum status note_features(const struct run *r, struct err *err)
+{
+    struct feature_counts c = {0};
+    char few[1024];
+    long long total = 0;
+    enum status st = feature_counts_read(&c, r->logs[0], err);
+    if (st) return st;
+    for (int i = 0; i < c.count; i++) total += c.list[i].features > 0 ? c.list[i].features : 0;
+    log_note("%lld features in %d photos", total, r->photos->count);
+    list_photos(few, sizeof few, r, &c, FEW_FEATURES);
+    if (*few) log_warn("few features (too blurred, dark or plain to be placed well, or masked): %s", few);
+    if (!total)
+        st = err_set(err, ST_DATA,
+                     "COLMAP found no feature in any of the %d photos; they are blank, masked, or cannot be read; its "
+                     "log is %s.",
+                     r->photos->count, r->logs[0]);
+    feature_counts_release(&c);
+    return st;
+}
+
+static enum status tell_why_nothing(const struct run *r, struct err *err)
+{
+    struct feature_counts c = {0};
+    char few[700];
+    int connected = connected_images(r->logs[2]);
+    enum status st = feature_counts_read(&c, r->logs[0], err);
+    if (st) return st;
+    list_photos(few, sizeof few, r, &c, FEW_FEATURES);
+    if (connected == 0)
+        st = err_set(err, ST_DATA,
+                     "COLMAP placed none of the %d photos: no two of them match. They must show the same things from "
+                     "places a step "
+                     "apart%s%s.",
+                     r->photos->count, *few ? "; few features: " : "", few);
+    else
+        st = err_set(err, ST_DATA,
+                     "COLMAP placed none of the %d photos, though %d match another one: they may be taken from one "
+                     "spot (turning is "
+                     "not enough, take steps aside) or share too little%s%s. Its log is %s.",
+                     r->photos->count, connected, *few ? "; few features: " : "", few, r->logs[2]);
+    feature_counts_release(&c);
+    return st;
+}
+
+/* Names the model's images by the photos' files; a name that a text model cannot hold stays ID.EXT. */
+static enum status name_images(struct sfm_model *m, const struct photo_list *photos, struct err *err)
+{
+    for (int i = 0; i < m->image_count; i++) {
+        char *name = m->images[i].name, *dot = strrchr(name, '.');
+        if (dot) *dot = '\0';
+        int at = photo_list_find_id(photos, name);
+        if (dot) *dot = '.';
+        if (at < 0) return err_set(err, ST_INTERNAL, "COLMAP's model has an image \"%s\" that it was not given.", name);
+        const char *file = photos->photos[at].file;
+        size_t n = strlen(file);
+        if (strpbrk(file, "\r\n") || strchr(" \t", file[0]) || strchr(" \t", file[n - 1])) continue;
+        if (!(name = strdup(file))) return err_nomem(err, "a name", n + 1);
+        free(m->images[i].name);
+        m->images[i].name = name;
+    }
+    return ST_OK;
+}
+
+/* Model number k as text, checked, into the folder. */
+static enum status add_model(const struct run *r, struct sfm_folder *f, int k, const struct provenance *prov,
+                             struct err *err)
+{
+    struct sfm_model m = {0};
+    char *from = text_format(err, "%s/%d", r->sparse, k), *text = text_format(err, "%s/text/%d", f->work, k);
+    const char *args[] = {"model_converter", "--input_path", from, "--output_path", text, "--output_type", "TXT", NULL};
+    enum status st = from && text ? make_folders(text, err) : err->status;
+    if (!st) st = colmap(r, 4, args, 0, err);
+    if (!st) st = sfm_model_read_text(&m, text, err);
+    if (!st) log_note("model %d: %d of %d photos, %d points", k, m.image_count, r->photos->count, m.point_count);
+    if (!st) st = name_images(&m, r->photos, err);
+    if (!st) st = sfm_folder_add(f, &m, prov, err);
+    sfm_model_release(&m);
+    free(from);
+    free(text);
+    return st;
+}
+
+static int count_models(const struct run *r, struct err *err)
+{
+    for (int k = 0;; k++) {
+        char *path = text_format(err, "%s/%d", r->sparse, k);
+        bool there = path && is_folder(path);
+        free(path);
+        if (!there) return k;
+    }
+}
+
+enum status run_colmap(struct sfm_folder *f, const char *photos, const char *masks, const struct photo_list *list,
+                       const struct sfm_params *params, const struct provenance *prov, struct err *err)
+{
+    struct run r = {.folder = f, .photos = list, .params = params};
+    double started = now();
+    int models = 0;
+    enum status st = ST_OK;
+    if (list->count < 2)
+        return err_set(
+            err, ST_DATA,
+            "there %s; structure from motion needs at least 2, better 8 or more, taken from places a step apart.",
+            list->count ? "is only 1 photo" : "are no photos");
+    st = run_prepare(&r, photos, masks, err);
+    if (!st)
+        log_note("step 1 of %d: features of %d photos, %s", STEPS, list->count,
+                 r.single ? "one lens for all" : "a lens each");
+    if (!st) st = extract(&r, err);
+    if (!st) st = note_features(&r, err);
+    if (!st) log_note("step 2 of %d: matches (%.1f s so far)", STEPS, now() - started);
+    if (!st) st = match(&r, err);
+    if (!st) log_note("step 3 of %d: poses and points (%.1f s so far)", STEPS, now() - started);
+    if (!st) st = map(&r, false, err);
+    if (!st && !(models = count_models(&r, err))) {
+        log_note("no pair of photos is a good start; trying again with pairs that are closer together");
+        st = map(&r, true, err);
+        if (!st) models = count_models(&r, err);
+    }
+    if (!st && !models) st = tell_why_nothing(&r, err);
+    if (!st) log_note("step 4 of %d: text of %d models (%.1f s so far)", STEPS, models, now() - started);
+    for (int k = 0; !st && k < models; k++) st = add_model(&r, f, k, prov, err);
+    for (int i = 0; !st && i < STEPS; i++) {
+        char *kept = text_format(err, "%s/colmap-%d.log", f->made, i + 1);
+        if (!kept) st = err->status;
+        if (!st && rename(r.logs[i], kept)) st = err_errno(err, "keep", r.logs[i]);
+        free(kept);
+    }
+    run_release(&r);
+    return st;
+}

@@ -1,0 +1,57 @@
+/* run_colmap.h - COLMAP's sparse reconstruction of a set of photographs.
+ *
+ * COLMAP sees links with safe names (ID.EXT) in the work folder, never the photos' folder. It has no CUDA here, so features and
+ * matches are made on the CPU. Its exit code alone is not trusted: what it made is counted. */
+#ifndef REMODEL_RUN_COLMAP_H
+#define REMODEL_RUN_COLMAP_H
+
+#include "common/param.h"
+#include "stages/sfm/sfm_folder.h"
+
+#define SFM_PARAMS(X)                                                                                               \
+    X(camera_model, choice, "SIMPLE_RADIAL", 0, 0,                                                                  \
+      "SIMPLE_RADIAL|SIMPLE_PINHOLE|PINHOLE|RADIAL|OPENCV|OPENCV_FISHEYE|FULL_OPENCV",                              \
+      "lens model that COLMAP fits; OPENCV_FISHEYE for fisheye lenses")                                             \
+    X(camera_params, text, "", 0, 0, "", "the lens to start from, in COLMAP's order with commas; empty: from EXIF") \
+    X(refine_camera, choice, "yes", 0, 0, "yes|no", "no keeps the lens that camera_params gives")                   \
+    X(single_camera, choice, "auto", 0, 0, "auto|yes|no",                                                           \
+      "one lens for all photos; auto: if size, focal length and make are the same")                                 \
+    X(matcher, choice, "auto", 0, 0, "auto|exhaustive|sequential",                                                  \
+      "pairs to match; auto: all, or for more than 200 photos neighbours in order of name")                         \
+    X(max_features, int, 8192, 100, 100000, "", "features a photo")                                                 \
+    X(max_image_size, int, 3200, 200, 20000, "px", "larger photos are scaled down to this to find features")
+
+struct sfm_params {
+    SFM_PARAMS(PARAM_FIELD)
+};
+#define SFM_PARAMS_DEFAULT        \
+    {                             \
+        SFM_PARAMS(PARAM_DEFAULT) \
+    }
+extern const struct param sfm_param_table[];
+
+/* camera_params must be as many numbers as camera_model has, focal lengths > 0. */
+enum status sfm_params_check(const void *values, struct err *err);
+
+/* One lens for all photos? ST_USAGE: "yes" was asked for but sizes differ. */
+enum status sfm_single_camera(bool *single, const struct photo_list *photos, const struct sfm_params *params,
+                              struct err *err);
+
+/* What the log of `colmap feature_extractor` says about one picture. */
+struct feature_count {
+    char *name;   /* owned */
+    int features; /* -1: COLMAP could not read it */
+};
+struct feature_counts {
+    struct feature_count *list;
+    int count;
+};
+enum status feature_counts_read(struct feature_counts *c, const char *log, struct err *err);
+void feature_counts_release(struct feature_counts *c);
+
+/* Adds COLMAP's models of the photos to the folder, their images named by the photos' files. masks: NULL or a folder of ID.png,
+ * black where nothing is to be found. ST_DATA with the likely reason, by photo, if nothing could be placed. */
+enum status run_colmap(struct sfm_folder *f, const char *photos, const char *masks, const struct photo_list *list,
+                       const struct sfm_params *params, const struct provenance *prov, struct err *err);
+
+#endif

@@ -1,0 +1,55 @@
+/* sfm.c - finds the cameras of the photographs with COLMAP, or takes over a model that there is already.
+ *
+ * reads   PHOTOS/FILE, RECORDS/list.txt, ID.txt    the photos and their records
+ *         MASKS/ID.png                             black where nothing is to be found
+ *         MODEL                                    COLMAP's text or binary format, or Bundler's
+ * writes  OUT/N/{cameras,images,points3D}.txt      the models, images named by the photos' files
+ *         OUT/photos.txt                           id and hash of the photos they are of
+ *         OUT/models.txt                           the list of models
+ *
+ * OUT is made in OUT.work and replaced as a whole. */
+#include <stdbool.h>
+
+#include "common/cli.h"
+#include "stages/sfm/run_colmap.h"
+#include "stages/sfm/user_model.h"
+
+static enum status run(const char *photos, const char *records, const char *masks, const char *model, const char *out,
+                       const struct sfm_params *params, struct provenance *prov, struct err *err)
+{
+    struct photo_list list = {0};
+    struct sfm_folder folder = {0};
+    enum status st = photo_list_read(&list, records, err);
+    if (!st) st = sfm_folder_open(&folder, out, err);
+    if (!st && model)
+        st = user_model_add(&folder, model, &list, prov, err);
+    else if (!st)
+        st = run_colmap(&folder, photos, masks, &list, params, prov, err);
+    if (!st) st = sfm_folder_commit(&folder, &list, prov, err);
+    sfm_folder_release(&folder);
+    photo_list_release(&list);
+    return st;
+}
+
+int main(int argc, char **argv)
+{
+    const char *photos = NULL, *records = NULL, *masks = NULL, *model = NULL, *out = NULL;
+    struct sfm_params params = SFM_PARAMS_DEFAULT;
+    const struct cli_opt opts[] = {
+        CLI_ABOUT("Finds the cameras of the photographs with COLMAP, or takes over a model that there is already."),
+        CLI_STR("photos", &photos, CLI_REQUIRED, "folder of photographs"),
+        CLI_STR("records", &records, CLI_REQUIRED, "folder of the photos' records"),
+        CLI_STR("masks", &masks, CLI_OPTIONAL, "folder of masks ID.png, black where nothing is to be found"),
+        CLI_STR("model", &model, CLI_OPTIONAL, "folder of a model to use: COLMAP text or binary, or Bundler"),
+        CLI_STR("out", &out, CLI_REQUIRED, "folder to make"),
+        CLI_PARAMS(sfm_param_table, &params, sfm_params_check),
+        CLI_END,
+    };
+    struct provenance prov = {0};
+    struct err err = ERR_INIT;
+    if (cli_parse(argc, argv, "sfm", opts, &prov, &err) != CLI_RUN ||
+        run(photos, records, masks, model, out, &params, &prov, &err))
+        err_report(&err);
+    provenance_release(&prov);
+    return err_exit_code(&err);
+}

@@ -1,0 +1,130 @@
+/* sfm_folder.c - see sfm_folder.h. */
+#include "stages/sfm/sfm_folder.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <ftw.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "common/outfile.h"
+
+char *text_format(struct err *err, const char *fmt, ...)
+{
+    char *text = NULL;
+    va_list args;
+    va_start(args, fmt);
+    if (vasprintf(&text, fmt, args) < 0) {
+        text = NULL;
+        err_nomem(err, "a text", strlen(fmt));
+    }
+    va_end(args);
+    return text;
+}
+
+static int remove_one(const char *path, const struct stat *info, int kind, struct FTW *ftw)
+{
+    (void)info, (void)kind, (void)ftw;
+    return remove(path);
+}
+
+enum status remove_tree(const char *path, struct err *err)
+{
+    if (nftw(path, remove_one, 16, FTW_DEPTH | FTW_PHYS) && errno != ENOENT) return err_errno(err, "remove", path);
+    return ST_OK;
+}
+
+/* What stands at `out` will be replaced as a whole, so it must be nothing, an empty folder, or made by this stage. */
+static enum status check_replaceable(const char *out, struct err *err)
+{
+    char *models = text_format(err, "%s/models.txt", out);
+    if (!models) return err->status;
+    bool ours = !access(models, F_OK);
+    free(models);
+    if (ours || !rmdir(out) || errno == ENOENT) return ST_OK;
+    return err_set(err, ST_USAGE,
+                   "%s is there and is no folder of structure-from-motion models (it has no models.txt); it would be "
+                   "replaced as a "
+                   "whole: name another one with --out.",
+                   out);
+}
+
+enum status sfm_folder_open(struct sfm_folder *f, const char *out, struct err *err)
+{
+    size_t length = strlen(out);
+    *f = (struct sfm_folder){0};
+    while (length > 1 && out[length - 1] == '/') length--;
+    f->out = text_format(err, "%.*s", (int)length, out);
+    f->work = text_format(err, "%.*s.work", (int)length, out);
+    f->made = text_format(err, "%.*s.work/sfm", (int)length, out);
+    if (!f->out || !f->work || !f->made) return err->status;
+    enum status st = check_replaceable(f->out, err);
+    if (!st) st = remove_tree(f->work, err);
+    if (!st) st = make_folders(f->made, err);
+    return st;
+}
+
+enum status sfm_folder_add(struct sfm_folder *f, const struct sfm_model *m, const struct provenance *prov,
+                           struct err *err)
+{
+    char *folder = text_format(err, "%s/%d", f->made, f->models);
+    enum status st = folder ? sfm_model_write_text(m, folder, prov, err) : err->status;
+    if (!st) f->models++;
+    free(folder);
+    return st;
+}
+
+static enum status write_lists(const struct sfm_folder *f, const struct photo_list *photos,
+                               const struct provenance *prov, struct err *err)
+{
+    struct outfile list = {0}, models = {0};
+    char *list_path = text_format(err, "%s/photos.txt", f->made);
+    char *models_path = text_format(err, "%s/models.txt", f->made);
+    enum status st = list_path && models_path ? outfile_open(&list, list_path, err) : err->status;
+    if (!st) {
+        provenance_print(prov, list.fp);
+        for (int i = 0; i < photos->count; i++)
+            fprintf(list.fp, "%s %s\n", photos->photos[i].id, photos->photos[i].hash);
+        st = outfile_commit(&list, err);
+    }
+    if (!st) st = outfile_open(&models, models_path, err);
+    if (!st) {
+        provenance_print(prov, models.fp);
+        fputs("remodel-sfm 1\n", models.fp);
+        for (int i = 0; i < f->models; i++) fprintf(models.fp, "%d colmap\n", i);
+        st = outfile_commit(&models, err);
+    }
+    outfile_discard(&list);
+    outfile_discard(&models);
+    free(list_path);
+    free(models_path);
+    return st;
+}
+
+enum status sfm_folder_commit(struct sfm_folder *f, const struct photo_list *photos, const struct provenance *prov,
+                              struct err *err)
+{
+    enum status st = write_lists(f, photos, prov, err);
+    char *old = text_format(err, "%s/old", f->work);
+    if (!old) st = err->status;
+    /* where there is no old folder, or the file system cannot exchange two, the old one (if any) goes out of the way first */
+    if (!st && renameat2(AT_FDCWD, f->made, AT_FDCWD, f->out, RENAME_EXCHANGE) &&
+        ((rename(f->out, old) && errno != ENOENT) || rename(f->made, f->out)))
+        st = err_errno(err, "replace", f->out);
+    free(old);
+    if (!st) st = remove_tree(f->work, err);
+    return st;
+}
+
+void sfm_folder_release(struct sfm_folder *f)
+{
+    if (!f) return;
+    free(f->out);
+    free(f->work);
+    free(f->made);
+    *f = (struct sfm_folder){0};
+}

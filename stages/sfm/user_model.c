@@ -1,0 +1,235 @@
+/* user_model.c - see user_model.h. */
+#include "stages/sfm/user_model.h"
+
+#include <dirent.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "common/log.h"
+#include "common/outfile.h"
+#include "common/photo_match.h"
+#include "common/process.h"
+#include "common/textfile.h"
+
+static bool has_file(const char *folder, const char *file)
+{
+    struct err ignored = ERR_INIT;
+    char *path = text_format(&ignored, "%s/%s", folder, file);
+    bool there = path && !access(path, F_OK);
+    free(path);
+    return there;
+}
+
+static bool is_text(const char *folder) { return has_file(folder, "cameras.txt") && has_file(folder, "images.txt"); }
+static bool is_binary(const char *folder) { return has_file(folder, "cameras.bin") && has_file(folder, "images.bin"); }
+
+static enum status add_inputs(struct provenance *prov, const char *folder, const char *const files[], int model,
+                              struct err *err)
+{
+    enum status st = ST_OK;
+    for (int i = 0; !st && files[i]; i++) {
+        char *path = text_format(err, "%s/%s", folder, files[i]);
+        char *name = text_format(err, "model/%d/%s", model, files[i]);
+        st = path && name ? provenance_add_file(prov, name, path, err) : err->status;
+        free(path);
+        free(name);
+    }
+    return st;
+}
+
+static enum status add_text(struct sfm_folder *f, const char *folder, const struct provenance *prov, struct err *err)
+{
+    struct sfm_model m = {0};
+    enum status st = sfm_model_read_text(&m, folder, err);
+    if (!st) log_note("model %d: %d images, %d points", f->models, m.image_count, m.point_count);
+    if (!st) st = sfm_folder_add(f, &m, prov, err);
+    sfm_model_release(&m);
+    return st;
+}
+
+static enum status add_binary(struct sfm_folder *f, const char *folder, const struct provenance *prov, struct err *err)
+{
+    static const char *const env[] = {"QT_QPA_PLATFORM=offscreen", NULL};
+    char *text = text_format(err, "%s/text/%d", f->work, f->models), *log = text_format(err, "%s/colmap.log", f->work);
+    const char *argv[] = {"colmap", "model_converter", "--input_path", folder, "--output_path",
+                          text,     "--output_type",   "TXT",          NULL};
+    int code = 0;
+    enum status st = text && log ? make_folders(text, err) : err->status;
+    if (!st) st = process_run_env(argv, env, log, &code, err);
+    if (!st && code)
+        st = err_set(err, ST_DATA, "colmap could not read the binary model in %s (exit status %d); its log is %s.",
+                     folder, code, log);
+    if (!st) st = add_text(f, text, prov, err);
+    free(text);
+    free(log);
+    return st;
+}
+
+/* ------------------------------------------------------------------------------------------------------- Bundler */
+
+/* A file of the folder for which `wanted` holds, the one called `first` if there is one, else the first by name. *path stays
+ * NULL if there is none. */
+static enum status find_file(char **path, const char *folder, const char *first, bool (*wanted)(const char *path),
+                             const char *pattern, struct err *err)
+{
+    struct dirent **names = NULL;
+    int count = scandir(folder, &names, NULL, alphasort);
+    enum status st = ST_OK;
+    for (int pass = 0; pass < 2; pass++)
+        for (int i = 0; i < count && !st && !*path; i++) {
+            const char *name = names[i]->d_name;
+            size_t n = strlen(name), tail = strlen(pattern);
+            if (n < tail || strcmp(name + n - tail, pattern) || (pass == 0) != !strcmp(name, first)) continue;
+            char *p = text_format(err, "%s/%s", folder, name);
+            if (!p)
+                st = err->status;
+            else if (wanted(p))
+                *path = p;
+            else
+                free(p);
+        }
+    for (int i = 0; i < count; i++) free(names[i]);
+    free(names);
+    return st;
+}
+
+static bool is_bundle(const char *path)
+{
+    char line[16] = "";
+    FILE *fp = fopen(path, "re");
+    bool yes = fp && fgets(line, sizeof line, fp) && !strncmp(line, "# Bundle file", 13);
+    if (fp) fclose(fp);
+    return yes;
+}
+
+static bool is_list(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return strstr(slash ? slash : path, "list");
+}
+
+struct image_names {
+    char **names;
+    int (*sizes)[2];
+    int count;
+};
+
+static void image_names_release(struct image_names *n)
+{
+    for (int i = 0; i < n->count; i++) free(n->names[i]);
+    free(n->names);
+    free(n->sizes);
+}
+
+/* A line an image: its name, then perhaps numbers. Sizes are those of the photos; 0 for what is not among them. */
+static enum status read_list(struct image_names *n, const char *path, const struct photo_list *photos, struct err *err)
+{
+    struct textfile t = {0};
+    int room = 0, strangers = 0;
+    enum status st = textfile_open(&t, path, err);
+    while (!st && textfile_next(&t)) {
+        char *name = NULL;
+        st = textfile_word(&t, "name of an image", &name, err);
+        if (st) break;
+        if (n->count == room) {
+            room = room ? 2 * room : 64;
+            void *names = realloc(n->names, (size_t)room * sizeof *n->names);
+            if (names) n->names = names;
+            void *sizes = realloc(n->sizes, (size_t)room * sizeof *n->sizes);
+            if (sizes) n->sizes = sizes;
+            if (!names || !sizes) {
+                st = err_nomem(err, "a list of images", (size_t)room * sizeof *n->names);
+                break;
+            }
+        }
+        int at = photo_list_match(photos, name), *size = n->sizes[n->count];
+        size[0] = at < 0 ? 0 : photos->photos[at].info.width;
+        size[1] = at < 0 ? 0 : photos->photos[at].info.height;
+        strangers += at < 0;
+        n->names[n->count] = strdup(name);
+        if (!n->names[n->count++]) st = err_nomem(err, "a name", strlen(name) + 1);
+    }
+    textfile_release(&t);
+    if (!st && n->count == strangers)
+        st = err_set(err, ST_DATA,
+                     "none of the %d images that %s names is among the photos; give the model of these photos.",
+                     n->count, path);
+    if (!st && strangers) log_note("%d images of the model are none of the photos: left out", strangers);
+    return st;
+}
+
+static enum status add_bundler(struct sfm_folder *f, const char *bundle, const char *list,
+                               const struct photo_list *photos, const struct provenance *prov, struct err *err)
+{
+    struct image_names n = {0};
+    struct sfm_model m = {0};
+    enum status st = read_list(&n, list, photos, err);
+    if (!st)
+        st = sfm_model_read_bundler(&m, bundle, (const char *const *)n.names, (const int(*)[2])n.sizes, n.count, err);
+    if (!st) log_note("Bundler's model: %d images, %d points", m.image_count, m.point_count);
+    if (!st) st = sfm_folder_add(f, &m, prov, err);
+    sfm_model_release(&m);
+    image_names_release(&n);
+    return st;
+}
+
+/* *found: whether there is a Bundler file. */
+static enum status try_bundler(struct sfm_folder *f, const char *from, const struct photo_list *photos, bool *found,
+                               struct provenance *prov, struct err *err)
+{
+    char *inner = text_format(err, "%s/bundle", from), *bundle = NULL, *list = NULL;
+    enum status st = inner ? find_file(&bundle, from, "bundle.out", is_bundle, ".out", err) : err->status;
+    if (!st && !bundle) st = find_file(&bundle, inner, "bundle.out", is_bundle, ".out", err);
+    *found = bundle;
+    if (!st && bundle) st = find_file(&list, from, "list.txt", is_list, ".txt", err);
+    if (!st && bundle && !list)
+        st = err_set(err, ST_DATA, "%s needs the list of its images: put Bundler's list.txt into %s.", bundle, from);
+    if (!st && bundle) st = provenance_add_file(prov, "model/bundle.out", bundle, err);
+    if (!st && bundle) st = provenance_add_file(prov, "model/list.txt", list, err);
+    if (!st && bundle) st = add_bundler(f, bundle, list, photos, prov, err);
+    free(inner);
+    free(bundle);
+    free(list);
+    return st;
+}
+
+/* -------------------------------------------------------------------------------------------------------------- all */
+
+/* *found: whether the folder holds a COLMAP model. */
+static enum status try_colmap(struct sfm_folder *f, const char *folder, bool *found, struct provenance *prov,
+                              struct err *err)
+{
+    static const char *const text[] = {"cameras.txt", "images.txt", "points3D.txt", NULL};
+    static const char *const binary[] = {"cameras.bin", "images.bin", "points3D.bin", NULL};
+    bool as_text = is_text(folder), as_binary = !as_text && is_binary(folder);
+    enum status st = ST_OK;
+    *found = as_text || as_binary;
+    if (*found) st = add_inputs(prov, folder, as_text ? text : binary, f->models, err);
+    if (!st && as_text) st = add_text(f, folder, prov, err);
+    if (!st && as_binary) st = add_binary(f, folder, prov, err);
+    return st;
+}
+
+enum status user_model_add(struct sfm_folder *f, const char *from, const struct photo_list *photos,
+                           struct provenance *prov, struct err *err)
+{
+    bool found = false, more = true;
+    if (access(from, R_OK | X_OK)) return err_errno(err, "open", from);
+    enum status st = try_colmap(f, from, &found, prov, err);
+    for (int k = 0; !st && (f->models == k) && more && !found; k++) {
+        char *folder = text_format(err, "%s/%d", from, k);
+        st = folder ? try_colmap(f, folder, &more, prov, err) : err->status;
+        free(folder);
+    }
+    if (!st && !f->models) st = try_bundler(f, from, photos, &found, prov, err);
+    if (!st && !f->models)
+        st = err_set(err, ST_DATA,
+                     "%s holds no structure-from-motion model: wanted COLMAP's cameras, images and points3D (.txt or "
+                     ".bin), there "
+                     "or in its folders 0, 1, ..., or a Bundler file (.out, beginning with \"# Bundle file\") with its "
+                     "list.txt.",
+                     from);
+    return st;
+}

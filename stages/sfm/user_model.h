@@ -1,0 +1,13 @@
+/* user_model.h - a structure-from-motion model that the user already has. */
+#ifndef REMODEL_USER_MODEL_H
+#define REMODEL_USER_MODEL_H
+
+#include "stages/sfm/sfm_folder.h"
+
+/* Adds the models in `from`: COLMAP's text (cameras.txt, images.txt, points3D.txt) or binary format, in `from` itself or in its
+ * folders 0, 1, ...; or Bundler's (a .out file in `from` or from/bundle, and a list of its images). Nothing in `from` is
+ * changed. */
+enum status user_model_add(struct sfm_folder *f, const char *from, const struct photo_list *photos,
+                           struct provenance *prov, struct err *err);
+
+#endif

@@ -1,0 +1,81 @@
+/* sfm_import.c - picks, checks and converts the structure-from-motion model into rectified pinhole views.
+ *
+ * reads   SFM/models.txt, photos.txt, N/{cameras,images,points3D}.txt   the models, in COLMAP's text format
+ *         RECORDS/list.txt, ID.txt                                      the photos' names and sizes
+ * writes  OUT/points3D.txt, cameras.txt, images.txt                     the views, pinhole, and the points they see
+ *         OUT/lenses.txt                                                which photo and lens each view comes from
+ *         OUT/views.mk                                                  their names, for Make; last */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/cli.h"
+#include "stages/sfm_import/import_model.h"
+
+static enum status add_input(struct provenance *prov, const char *name, const char *folder, const char *file,
+                             struct err *err)
+{
+    size_t size = strlen(folder) + strlen(file) + 2;
+    char *path = malloc(size);
+    if (!path) return err_nomem(err, "a file name", size);
+    snprintf(path, size, "%s/%s", folder, file);
+    enum status st = provenance_add_file(prov, name, path, err);
+    free(path);
+    return st;
+}
+
+static enum status add_inputs(struct provenance *prov, const char *sfm, const char *model, struct err *err)
+{
+    static const char *const files[] = {"cameras.txt", "images.txt", "points3D.txt"};
+    enum status st = ST_OK;
+    for (int i = 0; !st && i < 3; i++) {
+        size_t size = strlen(model) + strlen(files[i]) + 6;
+        char *name = malloc(size);
+        if (!name) return err_nomem(err, "a file name", size);
+        snprintf(name, size, "sfm/%s/%s", model, files[i]);
+        st = add_input(prov, name, sfm, name + 4, err);
+        free(name);
+    }
+    return st;
+}
+
+static enum status run(const char *sfm, const char *records, const char *out, const struct import_params *params,
+                       struct provenance *prov, struct err *err)
+{
+    struct photo_list photos = {0};
+    struct sfm_model model = {0};
+    struct imported imported = {0};
+    char *name = NULL;
+    enum status st = photo_list_read(&photos, records, err);
+    if (!st) st = import_choose(&model, &name, sfm, &photos, err);
+    if (!st) st = import_check_photos(sfm, &photos, err);
+    if (!st) st = add_inputs(prov, sfm, name, err);
+    if (!st && import_model(&imported, &model, &photos, params, err)) st = err_context(err, "%s/%s", sfm, name);
+    if (!st) st = imported_write(&imported, out, prov, err);
+    imported_release(&imported);
+    sfm_model_release(&model);
+    photo_list_release(&photos);
+    free(name);
+    return st;
+}
+
+int main(int argc, char **argv)
+{
+    const char *sfm = NULL, *records = NULL, *out = NULL;
+    struct import_params params = IMPORT_PARAMS_DEFAULT;
+    const struct cli_opt opts[] = {
+        CLI_ABOUT("Picks, checks and converts the structure-from-motion model into rectified pinhole views."),
+        CLI_STR("sfm", &sfm, CLI_REQUIRED, "folder of the models"),
+        CLI_STR("records", &records, CLI_REQUIRED, "folder of the photos' records"),
+        CLI_STR("out", &out, CLI_REQUIRED, "folder to write the views' cameras, points and lenses to"),
+        CLI_PARAMS(import_param_table, &params, NULL),
+        CLI_END,
+    };
+    struct provenance prov = {0};
+    struct err err = ERR_INIT;
+    if (cli_parse(argc, argv, "sfm_import", opts, &prov, &err) != CLI_RUN ||
+        run(sfm, records, out, &params, &prov, &err))
+        err_report(&err);
+    provenance_release(&prov);
+    return err_exit_code(&err);
+}

@@ -1,0 +1,35 @@
+/* fuzz_photo.c - photographs: any bytes give a picture of the size its header says, or a sentence that names the file. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include "common/photo.h"
+#include "tests/fuzz/fuzz.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    struct photo photo;
+    struct photo_info info;
+    struct err err = ERR_INIT, info_err = ERR_INIT;
+    char path[64];
+    int fd = memfd_create("photo", 0);
+
+    if (fd < 0 || write(fd, data, size) != (ssize_t)size) abort();
+    snprintf(path, sizeof path, "/proc/self/fd/%d", fd);
+    enum status info_st = photo_read_info(&info, path, &info_err), st = photo_read(&photo, path, &err);
+    if (st != err.status || info_st != info_err.status) abort();
+    if (st && (photo.samples || !strstr(err.text, path))) abort();
+    if (!st) {
+        unsigned sum = 0;
+        size_t samples = (size_t)photo.info.width * (size_t)photo.info.height * 3;
+        for (size_t i = 0; i < samples; i++) sum |= photo.samples[i];
+        if (!samples || (photo.info.bits == 8 && sum > 255)) abort();
+        if (info_st || memcmp(&info, &photo.info, sizeof info)) abort();
+        if (info.orientation < 1 || info.orientation > 8) abort();
+    }
+    photo_release(&photo);
+    close(fd);
+    return 0;
+}

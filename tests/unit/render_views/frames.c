@@ -1,0 +1,169 @@
+/* frames.c - which frames are asked for, and what a rendered frame's file holds. */
+#include "tests/unit/scratch.h"
+
+#include "common/exr.h"
+#include "common/parallel.h"
+#include "stages/render_views/frames.h"
+
+#define W 48
+#define H 32
+
+static void lists_of_frames(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *list, *wanted; /* of 6 frames */
+    } good[] = {{"1:6", "111111"}, {"1", "100000"}, {"2:4", "011100"}, {"1:2,5", "110010"}, {"6,3,3:4", "001101"}};
+    static const char *const bad[] = {"",    "0",   "7",    "1:7", "3:2", "1:",   ":3",  ",",
+                                      "1,",  "1,,2", "a",   "1-3", "-1",  "1:2:3", " 1", "99999999999999999999"};
+    bool wanted[6];
+
+    for (size_t i = 0; i < sizeof good / sizeof *good; i++) {
+        struct err err = ERR_INIT;
+        assert_ok(frames_select(wanted, 6, good[i].list, &err), err);
+        for (int k = 0; k < 6; k++) assert_int_equal(wanted[k], good[i].wanted[k] == '1');
+    }
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        struct err err = ERR_INIT;
+        assert_int_equal(frames_select(wanted, 6, bad[i], &err), ST_USAGE);
+        assert_err(err, ST_USAGE, "from 1 to 6");
+    }
+}
+
+struct scene {
+    struct view view;
+    struct camera_set set;
+    struct layer_scene layers;
+    struct camera_path path;
+};
+
+/* One view of a wall at depth 4, and a path that slides along it. */
+static void scene_make(struct scene *s, int frames)
+{
+    struct layered_depth d;
+    struct err err = ERR_INIT;
+
+    memset(s, 0, sizeof *s);
+    s->view = (struct view){.name = "wall", .width = W, .height = H, .fx = 40, .fy = 40, .cx = W / 2.0, .cy = H / 2.0};
+    s->view.cam_from_world = (struct mat3){{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    s->set.views = &s->view;
+    s->set.view_count = 1;
+    assert_ok(layered_depth_init(&d, W, H, &err), err);
+    d.segments = calloc(1, sizeof *d.segments);
+    d.segment_count = 1;
+    d.segments[0] = (struct depth_segment){.id = 1, .pixels = W * H, .plane = {0, 0, 0.25}, .sigma = 0.01};
+    for (int i = 0; i < W * H; i++) {
+        for (int k = 0; k < 3; k++) d.interior.rgba[4 * i + k] = (float)((i % W * (k + 1)) % 64) / 64;
+        d.interior.rgba[4 * i + 3] = 1;
+        d.interior.z[i] = 4;
+        d.interior.id[i] = 1;
+    }
+    assert_ok(layer_scene_init(&s->layers, &s->set, &d, &err), err);
+    assert_ok(camera_path_init(&s->path, "test", 30, frames, &err), err);
+    for (int i = 0; i < frames; i++) {
+        struct view *c = &s->path.frames[i].camera;
+        const char *name = c->name;
+        *c = s->view;
+        c->name = name;
+        c->center.x = 0.03 * i;
+        c->translation.x = -0.03 * i;
+    }
+}
+
+static void scene_drop(struct scene *s)
+{
+    layer_scene_release(&s->layers);
+    camera_path_release(&s->path);
+}
+
+static void frames_are_written_whole(void **state)
+{
+    (void)state;
+    const struct render_params params = RENDER_PARAMS_DEFAULT;
+    const struct provenance prov = {.stage = "render_views", .version = "0"};
+    const bool wanted[4] = {true, false, false, true};
+    struct scene s;
+    struct exr_image im = {0};
+    struct err err = ERR_INIT;
+
+    scene_make(&s, 4);
+    assert_ok(frames_render(&s.path, wanted, &s.layers, &params, scratch_path("some"), &prov, &err), err);
+    assert_int_equal(count_entries(scratch_path("some")), 2);
+    assert_ok(exr_read(&im, scratch_path("some/0001.exr"), NULL, 0, &err), err);
+    assert_int_equal(im.width, W);
+    for (int i = 0; i < W * H; i++) { /* at the view itself: its picture */
+        assert_true(exr_find(&im, "Z")->f[i] == 4);
+        assert_true(exr_find(&im, "A")->f[i] == 1);
+        assert_true(exr_find(&im, "G")->f[i] == (float)((i % W * 2) % 64) / 64);
+    }
+    assert_string_equal(exr_attribute(&im, "remodel:holes"), "0");
+    assert_true(im.has_world_to_camera);
+    exr_image_release(&im);
+
+    assert_ok(exr_read(&im, scratch_path("some/0004.exr"), NULL, 0, &err), err);
+    /* 0.09 to the right is 0.9 px: the last column is of no view, and filled */
+    assert_true(fabs(atof(exr_attribute(&im, "remodel:holes")) - 1.0 / W) < 1e-6);
+    assert_string_equal(exr_attribute(&im, "remodel:unfilled"), "0");
+    exr_image_release(&im);
+    scene_drop(&s);
+}
+
+static void splits_and_threads_give_the_same_bytes(void **state)
+{
+    (void)state;
+    const struct render_params params = RENDER_PARAMS_DEFAULT;
+    const struct provenance prov = {.stage = "render_views", .version = "0"};
+    const bool all[3] = {true, true, true};
+    const int threads = parallel_threads();
+    struct scene s;
+    struct err err = ERR_INIT;
+
+    scene_make(&s, 3);
+    parallel_set_threads(2);
+    assert_ok(frames_render(&s.path, all, &s.layers, &params, scratch_path("all"), &prov, &err), err);
+    parallel_set_threads(1);
+    for (int i = 2; i >= 0; i--) {
+        bool one[3] = {false};
+        one[i] = true;
+        assert_ok(frames_render(&s.path, one, &s.layers, &params, scratch_path("split"), &prov, &err), err);
+    }
+    parallel_set_threads(threads);
+    for (int i = 1; i <= 3; i++) {
+        char a[HASH_TEXT], b[HASH_TEXT], name[32];
+        snprintf(name, sizeof name, "all/%04d.exr", i);
+        assert_ok(hash_file(a, scratch_path(name), &err), err);
+        snprintf(name, sizeof name, "split/%04d.exr", i);
+        assert_ok(hash_file(b, scratch_path(name), &err), err);
+        assert_string_equal(a, b);
+    }
+    scene_drop(&s);
+}
+
+static void an_empty_frame_is_an_error(void **state)
+{
+    (void)state;
+    const struct render_params params = RENDER_PARAMS_DEFAULT;
+    const struct provenance prov = {.stage = "render_views", .version = "0"};
+    const bool all[3] = {true, true, true};
+    struct scene s;
+    struct err err = ERR_INIT;
+
+    scene_make(&s, 3);
+    s.path.frames[1].camera.translation.z = -8; /* behind the wall */
+    s.path.frames[1].camera.center.z = 8;
+    assert_int_equal(frames_render(&s.path, all, &s.layers, &params, scratch_path("empty"), &prov, &err), ST_DATA);
+    assert_err(err, ST_DATA, "frame 2 ");
+    assert_int_equal(count_entries(scratch_path("empty")), 1);
+    scene_drop(&s);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(lists_of_frames),
+        cmocka_unit_test(frames_are_written_whole),
+        cmocka_unit_test(splits_and_threads_give_the_same_bytes),
+        cmocka_unit_test(an_empty_frame_is_an_error),
+    };
+    return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
+}
