@@ -173,8 +173,8 @@ $(FUZZ_TESTS): $(B)/tests/fuzz/%: $(B)/obj/tests/fuzz/%.o $(B)/obj/tests/fuzz/ru
 else
 # ---------------------------------------------------------------------------------------------------------- the graph
 
-# lists that products give: PHOTO_IDS, VIEWS, FRAMES
--include $(S)/photos/photos.mk $(O)/views/views.mk $(O)/parallax/$(EFFECT)/frames.mk
+# lists that products give: PHOTO_IDS, VIEWS, FRAMES; not by `include`, for which make would first remake them, even under -n
+$(foreach f,$(S)/photos/photos.mk $(O)/views/views.mk $(O)/parallax/$(EFFECT)/frames.mk,$(eval $(file <$(f))))
 
 BIN := $(B)/bin
 E := $(O)/parallax/$(EFFECT)

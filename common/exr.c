@@ -261,7 +261,7 @@ static void compress_chunks(void *ctx, size_t begin, size_t end, int thread)
             pipe.yield_until_ready_fn = NULL; /* the order is kept by write_chunks() */
             pipe.write_fn = keep_chunk;
             for (int c = 0; c < pipe.channel_count; c++) /* pack_chunk() needs none, but the library refuses NULL */
-                pipe.channels[c].encode_from_ptr = (const uint8_t *)w->im->planes[0].f;
+                pipe.channels[c].encode_from_ptr = (const uint8_t *)w->im->planes;
             rv = exr_encoding_run(w->ctxt, w->part, &pipe);
         }
         exr_encoding_destroy(w->ctxt, &pipe);
@@ -509,7 +509,7 @@ static enum status choose_channels(struct reader *r, const char *path, const cha
     return ST_OK;
 }
 
-/* String attributes that are no provenance, and worldToCamera. Strings too long for the list are left out. */
+/* String attributes but provenance and the format's own, and worldToCamera. Strings too long for the list are left out. */
 static enum status read_attributes(struct reader *r, struct err *err)
 {
     int32_t count = 0;
@@ -523,7 +523,7 @@ static enum status read_attributes(struct reader *r, struct err *err)
             for (int k = 0; k < 16; k++) r->im->has_world_to_camera &= isfinite(a->m44f->m[k]) != 0;
         }
         if (a->type != EXR_ATTR_STRING || !a->string->str) continue;
-        bool ours = false;
+        bool ours = !strcmp(a->name, "type") || !strcmp(a->name, "name");
         for (int k = 0; k < 4; k++) ours |= !strcmp(a->name, provenance_names[k]);
         if (ours || strlen(a->string->str) >= sizeof r->im->attributes[0][1]) continue;
         if (exr_set_attribute(r->im, a->name, a->string->str, err)) return err->status;

@@ -1,10 +1,11 @@
-/* hole_fill.h - fills what a novel camera sees of no view, from the far side: a hole is where a near surface moved away
- * from a farther one, so the farther one is what belongs there (thesis 3.6.1).
+/* hole_fill.h - fills what a novel camera sees of no view, from the far side: a hole is where a near surface moved
+ * away from a farther one, so the farther one is what belongs there (thesis 3.6.1).
  *
  * Holes narrower than `diameter` (no diameter x diameter square of hole pixels holds the pixel): the mean of the
- * known pixels in 7x7 by the soft z weights of the reversed depth (z normalised and reversed: the farthest counts 1), repeated over what
- * is filled so far until the far side has come across. Wider ones: a pull-push pyramid with the same
- * preference among each 2x2 and, coming back, among the four coarser neighbours. Picture borders are no special case. */
+ * known pixels in 7x7 by the soft z weights of the reversed depth (z normalised and reversed: the farthest counts
+ * 1), repeated over what is filled so far until the far side has come across. Wider ones: a pull-push pyramid with
+ * the same preference among each 2x2 and, coming back, among the four coarser neighbours. Picture borders are no
+ * special case. */
 #ifndef REMODEL_HOLE_FILL_H
 #define REMODEL_HOLE_FILL_H
 
@@ -12,8 +13,8 @@
 #include "layer_render.h"
 #include "soft_z.h"
 
-/* Fills rgba and z where frame->hole is 1 and sets unfilled_fraction. sigma: relative uncertainty of the depths, for the width of the
- * reversed soft z. diameter 0 fills nothing. Same bits for any number of threads. */
+/* Fills rgba and z where frame->hole is 1 and sets unfilled_fraction. sigma: relative uncertainty of the depths, for
+ * the width of the reversed soft z. diameter 0 fills nothing. Same bits for any number of threads. */
 enum status hole_fill(struct rendered_frame *frame, const struct soft_z *soft, float sigma, int diameter,
                       struct err *err);
 

@@ -1,15 +1,16 @@
 /* layer_raster.h - private to the renderer: one view's segments drawn in a novel camera.
  *
- * A segment's plane p = (a, b, c), 1/z = p . (u, v, 1), and the relative pose X_view = R X_novel + t give, in pixels,
+ * A segment's plane p = (a, b, c), 1/z = p . (u, v, 1), and the relative pose X_view = R X_novel + t give, in
+ * pixels,
  *   M = K_view R K_novel^-1,   k = K_view t,   m = M^T p / (1 - p . k)
  *   1/z_novel = m . (x, y, 1),   (u, v, 1) ~ (M + k m^T) (x, y, 1)
  * and 1 - p . k <= 0 where the novel camera is behind the plane: such a segment is not drawn.
  *
  * A target pixel taken back to the view gathers its four neighbours there: coverage and premultiplied colour are the
- * bilinear sums over those texels whose layer id is this segment's. In a cell whose texels all belong to segments of similar depth
- * (JOIN_SIGMAS below) the whole cell counts for each of them: neighbours on one surface then overlap by up to a
- * pixel with the same texture in both, so that planes that differ slightly show no crack while the novel camera moves, and edges at depth
- * jumps stay anti-aliased. */
+ * bilinear sums over those texels whose layer id is this segment's. In a cell whose texels all belong to segments of
+ * similar depth (JOIN_SIGMAS below) the whole cell counts for each of them: neighbours on one surface then overlap
+ * by up to a pixel with the same texture in both, so that planes that differ slightly show no crack while the novel
+ * camera moves, and edges at depth jumps stay anti-aliased. */
 #ifndef REMODEL_LAYER_RASTER_H
 #define REMODEL_LAYER_RASTER_H
 
@@ -72,18 +73,18 @@ struct raster_pixel { /* what one view has accumulated */
     struct raster_surface front, back;
 };
 
-/* Puts a fragment (premultiplied, alpha > 0) on a pixel: behind or beside what is there with weight min(alpha, 1 - accumulated); before it if it
- * is nearer than the front surface by more than `reach` (segments are sorted by their centres, which slanted ones can
- * belie). */
+/* Puts a fragment (premultiplied, alpha > 0) on a pixel: behind or beside what is there with weight min(alpha, 1 -
+ * accumulated); before it if it is nearer than the front surface by more than `reach` (segments are sorted by their
+ * centres, which slanted ones can belie). */
 void raster_composite(struct raster_pixel *p, const float fragment[4], float z, float sigma, float reach);
 
-/* The depth of a pixel is that of one surface, never a mean across a jump: the front surface's if it has at least half of the alpha,
- * else the one behind it. */
+/* The depth of a pixel is that of one surface, never a mean across a jump: the front surface's if it has at least
+ * half of the alpha, else the one behind it. */
 const struct raster_surface *raster_visible(const struct raster_pixel *p);
 
-/* Rows [y0, y1) of the target in buffers of (y1 - y0) * width, first column 0. skip[i]: fragments with 1/z <= skip[i] are not drawn at
- * pixel i: 0 draws all, INFINITY none; it rises where a pixel is full. pixels: zeroed by the caller where not masked. spans: first
- * and last column of each row that need drawing at all. */
+/* Rows [y0, y1) of the target in buffers of (y1 - y0) * width, first column 0. skip[i]: fragments with 1/z <=
+ * skip[i] are not drawn at pixel i: 0 draws all, INFINITY none; it rises where a pixel is full. pixels: zeroed by
+ * the caller where not masked. spans: first and last column of each row that need drawing at all. */
 struct raster_target {
     int y0, y1, width;
     struct raster_pixel *pixels;

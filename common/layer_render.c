@@ -1,8 +1,8 @@
 /* layer_render.c - see layer_render.h: a frame, band of rows by band of rows.
  *
- * A band draws one view after another: each only where the view mesh names it, then, in what is still a hole, the other views.
- * What a view shows of a pixel becomes one sample; the soft z blends a pixel's samples. Bands are cut by height
- * alone and share nothing, so threads and the split of a path into jobs do not change a bit. */
+ * A band draws one view after another: each only where the view mesh names it, then, in what is still a hole, the
+ * other views. What a view shows of a pixel becomes one sample; the soft z blends a pixel's samples. Bands are cut
+ * by height alone and share nothing, so threads and the split of a path into jobs do not change a bit. */
 #include "common/layer_render.h"
 
 #include <math.h>

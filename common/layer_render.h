@@ -30,11 +30,12 @@ struct layer_scene { /* views, their layers, the mesh; depths[i] belongs to set-
     double sigma;                 /* the median of their relative uncertainties */
 };
 
-/* Reads depth_folder/VIEW.exr of every view. ST_DATA if a size differs from the camera's. Adds each file to prov (may be NULL).
- * The set must outlive the scene. */
+/* Reads depth_folder/VIEW.exr of every view. ST_DATA if a size differs from the camera's. Adds each file to prov
+ * (may be NULL). The set must outlive the scene. */
 enum status layer_scene_read(struct layer_scene *scene, const struct camera_set *set, const char *depth_folder,
                              struct provenance *prov, struct err *err);
-/* From depth maps in memory, one a view; their contents pass to the scene and depths[i] is left empty, on failure too. */
+/* From depth maps in memory, one a view; their contents pass to the scene and depths[i] is left empty, on failure
+ * too. */
 enum status layer_scene_init(struct layer_scene *scene, const struct camera_set *set, struct layered_depth *depths,
                              struct err *err);
 void layer_scene_release(struct layer_scene *scene);

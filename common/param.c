@@ -214,11 +214,11 @@ enum status params_set(const struct param *table, void *values, const char *assi
     return p ? assign(p, values, equals + 1, "--set ", err) : unknown(table, name, "--set: ", err);
 }
 
-/* The shortest decimal number that reads back as the same double. */
+/* As few digits as read back the same double, but never fewer than %g has. */
 static void print_double(double value, FILE *to)
 {
     char text[32];
-    for (int digits = 1; digits <= 17; digits++) {
+    for (int digits = 6; digits <= 17; digits++) {
         snprintf(text, sizeof text, "%.*g", digits, value);
         if (strtod(text, NULL) == value) break;
     }

@@ -91,9 +91,9 @@ farm()
     wide=$((count < most ? count : most))
     threads=$((cores / wide))
     date +%s >"$work/$1.tally"
-    REMODEL_TALLY=$work/$1.tally REMODEL_COUNT=$count graph -j"$wide" T="$threads" "$2"
+    REMODEL_TALLY=$work/$1.tally REMODEL_COUNT=$count graph -s -j"$wide" T="$threads" "$2"
 }
-one() { graph -j1 T="$cores" "$@"; }
+one() { graph -s -j1 T="$cores" "$@"; }
 # frames are few processes with all threads each, since every one of them holds all views in memory
 farm_frames()
 {

@@ -1,4 +1,5 @@
-/* encode.h - frames to H.264 with ffmpeg: yuv420p, BT.709, faststart; the same bytes from run to run with the same ffmpeg. */
+/* encode.h - frames to H.264 with ffmpeg: yuv420p, BT.709, faststart; the same bytes from run to run with the same
+ * ffmpeg. */
 #ifndef REMODEL_ENCODE_VIDEO_ENCODE_H
 #define REMODEL_ENCODE_VIDEO_ENCODE_H
 
@@ -19,8 +20,9 @@ struct encode_params {
     }
 extern const struct param encode_param_table[];
 
-/* folder/NNNN.exr of every frame of the path, in its order and at its rate, to the MP4 file `out`. Colour is linear and becomes 8-bit
- * sRGB; what is not filled is black. ST_DATA: a frame that is missing or of another size than the path's, odd sizes; ST_IO: ffmpeg fails. */
+/* folder/NNNN.exr of every frame of the path, in its order and at its rate, to the MP4 file `out`. Colour is linear
+ * and becomes 8-bit sRGB; what is not filled is black. ST_DATA: a frame that is missing or of another size than the
+ * path's, odd sizes; ST_IO: ffmpeg fails. */
 enum status encode_frames(const struct camera_path *path, const char *folder, const char *out,
                           const struct encode_params *params, struct err *err);
 

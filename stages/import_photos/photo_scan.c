@@ -1,7 +1,6 @@
 /* photo_scan.c - see photo_scan.h. */
 #include "stages/import_photos/photo_scan.h"
 
-#include <ctype.h>
 #include <dirent.h>
 #include <errno.h>
 #include <stdio.h>
@@ -30,16 +29,20 @@ static size_t stem_length(const char *file)
     return 0;
 }
 
-static bool id_char(char c) { return isalnum((unsigned char)c) || c == '_' || c == '-'; }
+static bool id_char(char c)
+{
+    return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '_' || c == '-';
+}
 
 static void id_from_stem(char id[ID_MOST + 1], const char *stem, size_t length)
 {
     size_t n = 0;
-    bool named = false, run = false; /* run: in a run of other characters */
+    bool begun = false, named = false, run = false; /* run: in a run of other characters */
     for (size_t i = 0; i < length && n < ID_MOST; i++) {
-        bool plain = (unsigned char)stem[i] < 128 && id_char(stem[i]) && (n || stem[i] != '-');
+        bool plain = id_char(stem[i]) && (begun || stem[i] != '-');
         if (plain || !run) id[n++] = plain ? stem[i] : '_';
-        named |= plain && isalnum((unsigned char)stem[i]);
+        begun |= plain;
+        named |= plain && stem[i] != '_' && stem[i] != '-';
         run = !plain;
     }
     id[n] = 0;

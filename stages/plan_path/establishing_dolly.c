@@ -348,8 +348,9 @@ static double distance_to_views(const struct plan *p, const struct way *w)
     return p->scene->mesh.spacing > 0 ? sum / p->scene->mesh.spacing : 0;
 }
 
-/* Sets reach, zoom and merit: how much length the direction gives. min_zoom: from which the middle keeps the limits. */
-static enum status explore(struct plan *p, struct way *w, double min_zoom, struct err *err)
+static double length_of(const struct way *w) { return high_end(w, w->reach) - low_end(w, w->reach); }
+
+static void find_extent(const struct plan *p, struct way *w)
 {
     const struct camera_set *set = p->scene->set;
     struct vec3 center = center_view(p)->center;
@@ -363,19 +364,24 @@ static enum status explore(struct plan *p, struct way *w, double min_zoom, struc
         w->low = -reach;
         w->high = reach;
     }
-    const double most = angle_reach(p, w);
-    const double longest = high_end(w, most) - low_end(w, most);
-    struct way best = *w;
-    best.zoom = min_zoom;
-    for (int i = 0; longest > 0; i++) {
-        w->zoom = min_zoom + ZOOM_STEP * i;
-        if (w->zoom > p->params->max_zoom + 1e-9 || longest / (w->zoom * w->zoom) <= best.merit) break;
-        if (find_reach(p, w, most, SEARCH_STEPS, err)) return err->status;
-        double length = high_end(w, w->reach) - low_end(w, w->reach);
-        w->merit = length / (w->zoom * w->zoom * (1 + distance_to_views(p, w)));
-        if (w->merit > best.merit) best = *w;
+}
+
+/* Sets reach, zoom and merit of a direction, as far as its merit times `weight` can beat the best there is, which it then
+ * replaces. min_zoom: from which the middle keeps the limits. */
+static enum status explore(struct plan *p, struct vec3 direction, double weight, double min_zoom, struct way *best,
+                           struct err *err)
+{
+    struct way w = {.direction = direction, .zoom = min_zoom};
+    find_extent(p, &w);
+    w.reach = angle_reach(p, &w);
+    const double most = w.reach, promise = weight * length_of(&w) / (1 + distance_to_views(p, &w));
+    for (int i = 0; most > 0; i++) {
+        w.zoom = min_zoom + ZOOM_STEP * i;
+        if (w.zoom > p->params->max_zoom + 1e-9 || promise / (w.zoom * w.zoom) <= best->merit) break;
+        if (find_reach(p, &w, most, SEARCH_STEPS, err)) return err->status;
+        w.merit = weight * length_of(&w) / (w.zoom * w.zoom * (1 + distance_to_views(p, &w)));
+        if (w.merit > best->merit) *best = w;
     }
-    *w = best;
     return ST_OK;
 }
 
@@ -401,14 +407,10 @@ static enum status find_way(struct plan *p, struct way *best, struct err *err)
     struct vec3 x = mesh->axis_x, y = mesh->axis_y;
     const struct vec3 directions[] = {x, y, vec3_scale(vec3_add(x, y), slope), vec3_scale(vec3_sub(x, y), slope)};
     double min_zoom;
-    *best = (struct way){.merit = -1};
     if (find_min_zoom(p, &min_zoom, err)) return err->status;
-    for (int i = 0; i < (mesh->rank == 2 ? 4 : 1); i++) {
-        struct way w = {.direction = directions[i]};
-        if (explore(p, &w, min_zoom, err)) return err->status;
-        if (i) w.merit *= OTHER_WAY_WEIGHT;
-        if (w.merit > best->merit) *best = w;
-    }
+    *best = (struct way){.direction = x, .zoom = min_zoom};
+    for (int i = 0; i < (mesh->rank == 2 ? 4 : 1); i++)
+        if (explore(p, directions[i], i ? OTHER_WAY_WEIGHT : 1, min_zoom, best, err)) return err->status;
     if (best->reach > 0 && find_reach(p, best, angle_reach(p, best), FINAL_STEPS, err)) return err->status;
     return ST_OK;
 }
@@ -509,8 +511,7 @@ enum status plan_establishing_dolly(struct camera_path *path, struct dolly_notes
     if (!st) {
         fill_frames(path, &p, &w);
         st = add_scores(path, &p, &w, err);
-        *notes = (struct dolly_notes){center_view(&p)->name, w.zoom, p.hole_limit,
-                                      !(high_end(&w, w.reach) > low_end(&w, w.reach))};
+        *notes = (struct dolly_notes){center_view(&p)->name, w.zoom, p.hole_limit, !(length_of(&w) > 0)};
     }
     rendered_frame_release(&p.coverage);
     free(p.blobs);

@@ -22,8 +22,8 @@ struct render_params {
     }
 extern const struct param render_param_table[];
 
-/* wanted[i] for frame i + 1 of "1:30,45": ranges and single numbers, from 1. ST_USAGE: anything else, a number that is no frame
- * of the path, an empty list. */
+/* wanted[i] for frame i + 1 of "1:30,45": ranges and single numbers, from 1. ST_USAGE: anything else, a number that
+ * is no frame of the path, an empty list. */
 enum status frames_select(bool *wanted, int frame_count, const char *list, struct err *err);
 
 /* Renders the wanted frames into folder/NNNN.exr. A frame that sees nothing of the scene is ST_DATA with its number. */

@@ -193,8 +193,6 @@ static void make_view_cards(void *ctx, size_t begin, size_t end, int thread)
 
         snprintf(path, sizeof path, "%s/depth/%s.exr", job->folder, card->view->name);
         if (is_file(path)) read_depth(card, path, orientation, &err);
-        const struct depth_thumb *depth = &card->depth;
-        if (depth->z) depth_range(&depth, 1, 0.02, &card->near, &card->far);
         if (err.status) snprintf(card->trouble, sizeof card->trouble, "%.*s", NOTE_SIZE - 1, err.text);
     }
 }
@@ -215,23 +213,18 @@ static void match_photos(struct contents *c)
 
 static enum status colour_depths(struct contents *c, struct err *err)
 {
-    const struct depth_thumb **thumbs = calloc((size_t)c->views.view_count + 1, sizeof *thumbs);
-    enum status st = thumbs ? ST_OK : err_nomem(err, "depth thumbnails", 0);
-    if (st) return st;
     for (int i = 0; i < c->views.view_count; i++) {
-        const struct view_card *card = &c->view_cards[i];
+        struct view_card *card = &c->view_cards[i];
         if (!card->depth.z) continue;
-        thumbs[c->depth_count++] = &card->depth;
+        c->depth_count++;
         c->known += card->depth.known;
         c->segments += card->segments;
+        if (depth_range(&card->depth, 0.02, &card->near, &card->far) &&
+            picture_from_depth(&card->depth_picture, &card->depth, card->near, card->far, err))
+            return err->status;
     }
     if (c->depth_count) c->known /= c->depth_count;
-    if (depth_range(thumbs, c->depth_count, 0.02, &c->near, &c->far))
-        for (int i = 0; i < c->views.view_count && !st; i++)
-            if (c->view_cards[i].depth.z)
-                st = picture_from_depth(&c->view_cards[i].depth_picture, &c->view_cards[i].depth, c->near, c->far, err);
-    free(thumbs);
-    return st;
+    return ST_OK;
 }
 
 static enum status read_views(struct contents *c, const char *folder, struct err *err)
@@ -373,8 +366,8 @@ static enum status read_records(struct contents *c, const char *folder, const ch
     }
     if (defaults && !st) {
         struct err trouble = ERR_INIT;
-        c->has_defaults = !settings_add_file(&usual, defaults, &trouble);
-        if (!c->has_defaults) st = add_note(c, err, "The default parameters cannot be read. %s", trouble.text);
+        if (settings_add_file(&usual, defaults, &trouble))
+            st = add_note(c, err, "The default parameters cannot be read. %s", trouble.text);
         settings_compare(&c->settings, &usual);
     }
     settings_release(&usual);

@@ -27,7 +27,7 @@ struct view_card {
     struct picture picture, depth_picture;
     struct depth_thumb depth;
     uint32_t segments;
-    double near, far; /* of this view's known depths, without 2 % at either end; 0 if none is known */
+    double near, far; /* its known depths without 2 % at either end: the colours' ends; 0 if none is known */
     char trouble[NOTE_SIZE];
 };
 
@@ -54,7 +54,6 @@ struct contents {
     char (*left_out)[256]; /* photographs in the folder that are not in the list */
     int left_out_count;
 
-    double near, far;               /* of all views' depths; the colours' ends; 0 if none is known */
     double known;                   /* mean share of pixels with a depth, over views that have a depth map */
     int depth_count;                /* views that have one */
     long long segments;             /* of all views */
@@ -63,7 +62,6 @@ struct contents {
 
     struct usage_table usage;
     struct settings settings;
-    bool has_defaults;
 
     char (*notes)[NOTE_SIZE];
     int note_count;

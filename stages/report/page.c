@@ -6,87 +6,7 @@
 
 #include "common/version.h"
 #include "html.h"
-
-static const char STYLE[] =
-    ":root{color-scheme:light "
-    "dark;--bg:#f8f7f4;--card:#fff;--text:#1e2124;--muted:#5b6168;--line:#e1dfd8;--accent:#0a6c74;"
-    "--second:#b0501a;--tint:#e3f0f0;--warn:#7a4b00;--warn-bg:#fdf1d8}\n"
-    "@media(prefers-color-scheme:dark){:root{--bg:#131618;--card:#1c2023;--text:#e7e6e1;--muted:#a2a9af;--line:#333a3f;"
-    "--accent:#63c4c6;--second:#f0a36c;--tint:#1d3537;--warn:#f2c879;--warn-bg:#38290f}}\n"
-    "*{box-sizing:border-box}\n"
-    "body{margin:0;background:var(--bg);color:var(--text);font:16px/1.55 system-ui,-apple-system,\"Segoe UI\",Roboto,"
-    "\"Helvetica Neue\",Arial,sans-serif;overflow-wrap:anywhere}\n"
-    "header,main,footer{max-width:1120px;margin:0 auto;padding:0 20px}\n"
-    "header{padding-top:36px}\n"
-    "h1{font-size:2.1rem;line-height:1.2;margin:0;letter-spacing:-.01em}\n"
-    "h2{font-size:1.3rem;margin:0 0 14px;letter-spacing:-.005em}\n"
-    "h3{font-size:1rem;margin:0 0 8px}\n"
-    "p{margin:0 0 12px;max-width:72ch}\n"
-    ".lead{color:var(--muted);margin:6px 0 0}\n"
-    ".muted,figcaption,.how{color:var(--muted)}\n"
-    "nav{margin:18px 0 0;display:flex;flex-wrap:wrap;gap:4px 18px;border-bottom:1px solid "
-    "var(--line);padding-bottom:12px}\n"
-    "a{color:var(--accent);text-underline-offset:3px}\n"
-    "nav a{text-decoration:none}nav a:hover{text-decoration:underline}\n"
-    ":focus-visible{outline:3px solid var(--accent);outline-offset:2px;border-radius:4px}\n"
-    "section{margin:36px 0 0;scroll-margin-top:12px}\n"
-    ".card{background:var(--card);border:1px solid var(--line);border-radius:10px;padding:18px}\n"
-    ".effect{display:grid;gap:20px;grid-template-columns:minmax(0,2fr) minmax(0,1fr);margin-bottom:18px}\n"
-    "video+p{margin:8px 0 0;font-size:.85rem}\n"
-    "video{display:block;width:100%;height:auto;max-height:80vh;background:#000;border-radius:6px}\n"
-    ".plot{display:block;width:100%;max-width:480px;height:auto;font-size:11px}\n"
-    ".plot text{fill:var(--muted)}.plot .grid{stroke:var(--line)}.plot "
-    "path{fill:none;stroke-width:2;stroke-linejoin:round}\n"
-    ".plot .before{stroke:var(--second)}.plot .after{stroke:var(--accent)}\n"
-    ".key{display:flex;flex-wrap:wrap;gap:2px 16px;list-style:none;margin:4px 0 0;padding:0;font-size:.85rem;"
-    "color:var(--muted)}\n"
-    ".key i{display:inline-block;width:16px;height:3px;border-radius:2px;vertical-align:middle;margin-right:6px}\n"
-    ".key .before{background:var(--second)}.key .after{background:var(--accent)}\n"
-    "figure{margin:0}figcaption{font-size:.85rem;line-height:1.4;margin-top:6px}figcaption b{color:var(--text);"
-    "font-weight:600}\n"
-    "img{display:block;max-width:100%;height:auto;border-radius:6px;background:var(--line)}\n"
-    ".strip{display:flex;flex-wrap:wrap;gap:16px;list-style:none;margin:0;padding:0}\n"
-    ".strip li{max-width:100%}.strip img{height:132px;width:auto;max-width:calc(100vw - 40px);object-fit:cover}.strip "
-    "figure{width:min-content;"
-    "min-width:96px}\n"
-    ".none{display:grid;place-items:center;height:132px;min-width:176px;padding:10px;border:1px dashed var(--muted);"
-    "border-radius:6px;font-size:.8rem;color:var(--muted)}\n"
-    ".size{white-space:nowrap}.off img{opacity:.45}\n"
-    ".tag{display:inline-block;background:var(--warn-bg);color:var(--warn);border-radius:4px;padding:0 "
-    "6px;font-size:.8rem}\n"
-    ".pairs{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(100%,460px),1fr));gap:20px}\n"
-    ".pair{display:grid;grid-template-columns:1fr 1fr;gap:6px}.pair img{width:100%}\n"
-    ".legend{max-width:480px;margin:0 0 18px;font-size:.85rem;color:var(--muted)}\n"
-    ".ramp{height:14px;border-radius:4px}\n"
-    ".ticks{display:flex;justify-content:space-between;font-variant-numeric:tabular-nums}\n"
-    ".hatch{display:inline-block;width:22px;height:12px;border-radius:3px;vertical-align:-1px;margin-right:6px;"
-    "background:repeating-linear-gradient(135deg,#787878 0 3px,#a5a5a5 3px 6px)}\n"
-    ".wide{overflow-x:auto}\n"
-    "table{border-collapse:collapse;width:100%;font-variant-numeric:tabular-nums}\n"
-    "th,td{text-align:left;vertical-align:top;padding:7px 14px 7px 0;border-bottom:1px solid var(--line)}\n"
-    "tr>:last-child{padding-right:0}tr:last-child>th,tr:last-child>td{border-bottom:0}\n"
-    "thead th{font-size:.85rem;font-weight:600;color:var(--muted)}tbody th{font-weight:500}\n"
-    ".n{text-align:right}\n"
-    ".bar{display:block;height:4px;min-width:72px;border-radius:2px;background:var(--line);margin-top:4px}\n"
-    ".bar i{display:block;height:4px;border-radius:2px;background:var(--accent)}.peak i{background:var(--second)}\n"
-    "tfoot th,tfoot td{font-weight:600}\n"
-    ".how{font-size:.9rem}\n"
-    "details{border-bottom:1px solid var(--line);padding:8px 0}details:last-child{border-bottom:0}\n"
-    "summary{cursor:pointer}summary .muted{font-size:.9rem}\n"
-    "details table{margin:8px 0 4px}\n"
-    "code{font-family:ui-monospace,SFMono-Regular,Menlo,Consolas,monospace;font-size:.9em}\n"
-    ".changed{background:var(--tint)}.changed th,.changed td:nth-child(2){font-weight:600}\n"
-    ".changed th{padding-left:8px}\n"
-    ".list{margin:0;padding-left:1.2em}.list li{margin:4px 0}\n"
-    "footer{margin-top:40px;padding-bottom:40px;color:var(--muted);font-size:.85rem}\n"
-    "@media(max-width:800px){.effect{grid-template-columns:minmax(0,1fr)}}\n"
-    "@media(max-width:560px){header,main,footer{padding-left:14px;padding-right:14px}h1{font-size:1.6rem}.card{padding:"
-    "14px}"
-    ".strip img,.none{height:104px}.numbers .how{display:block;padding-top:0}.numbers "
-    "tr{display:grid;grid-template-columns:"
-    "1fr auto;border-bottom:1px solid var(--line)}.numbers th,.numbers td{border-bottom:0}.numbers "
-    ".how{grid-column:1/-1}}\n"
-    "@media print{nav{display:none}section{break-inside:avoid}}\n";
+#include "style.h"
 
 /* The order of the data's way; further stages follow in order of appearance. */
 static const char *const CHAIN[] = {"import_photos", "sfm",       "sfm_import",   "rectify",
@@ -213,24 +133,25 @@ static void put_hole_plot(FILE *to, const struct effect_card *e)
     fputs("</ul>\n", to);
 }
 
+/* What plan_path says of the move, and the video's size and length. */
 static void put_scores(FILE *to, const struct effect_card *e)
 {
-    fputs("<table>\n<tbody>\n", to);
-    for (int i = 0; i < e->path.score_count; i++) {
-        const struct path_score *s = &e->path.scores[i];
-        fputs("<tr><th scope=\"row\">", to);
-        put_words(to, s->name);
-        fprintf(to, "</th><td class=\"n\">%.4g ", s->value);
-        html_text(to, !strcmp(s->unit, "-") ? "" : s->unit);
-        fputs("</td></tr>\n", to);
-    }
     const struct view *v = &e->path.frames[0].camera;
-    fprintf(to, "<tr><th scope=\"row\">picture</th><td class=\"n\">%d × %d</td></tr>\n", v->width, v->height);
-    fputs("<tr><th scope=\"row\">duration</th><td class=\"n\">", to);
+    fprintf(to, "<dl class=\"scores\">\n<div><dt>picture</dt><dd>%d × %d</dd></div>\n<div><dt>duration</dt><dd>",
+            v->width, v->height);
     put_seconds(to, e->path.frame_count / e->path.fps);
     fputs(", ", to);
     put_plural(to, e->path.frame_count, "frame", "frames");
-    fputs("</td></tr>\n</tbody>\n</table>\n", to);
+    fputs("</dd></div>\n", to);
+    for (int i = 0; i < e->path.score_count; i++) {
+        const struct path_score *score = &e->path.scores[i];
+        fputs("<div><dt>", to);
+        put_words(to, score->name);
+        fprintf(to, "</dt><dd>%.4g ", score->value);
+        html_text(to, score->unit);
+        fputs("</dd></div>\n", to);
+    }
+    fputs("</dl>\n", to);
 }
 
 static enum status put_effect(FILE *to, const struct effect_card *e, struct err *err)
@@ -266,13 +187,13 @@ static enum status put_effect(FILE *to, const struct effect_card *e, struct err 
         fputs("<p>There is no video yet.</p>\n", to);
     }
     fputs("</div>\n<div>\n", to);
-    if (e->path.frame_count) {
-        put_scores(to, e);
+    if (e->path.frame_count)
         put_hole_plot(to, e);
-    } else {
+    else
         fputs("<p>There is no camera path that can be read.</p>\n", to);
-    }
-    fputs("</div>\n</article>\n", to);
+    fputs("</div>\n", to);
+    if (e->path.frame_count) put_scores(to, e);
+    fputs("</article>\n", to);
     return ST_OK;
 }
 
@@ -320,55 +241,68 @@ static enum status put_photos(FILE *to, const struct contents *c, struct err *er
     return ST_OK;
 }
 
-static void put_legend(FILE *to, const struct contents *c)
+static enum status put_depth(FILE *to, const struct view_card *card, struct err *err)
 {
-    fputs("<div class=\"legend\">\n<div class=\"ramp\" style=\"background:linear-gradient(90deg", to);
-    for (int k = 16; k >= 0; k--) {
-        unsigned char rgb[3];
-        depth_colour(k / 16.0, rgb);
-        fprintf(to, ",#%02x%02x%02x", rgb[0], rgb[1], rgb[2]);
+    if (!card->depth.z) {
+        fputs("<div class=\"none\">no depth yet</div>", to);
+        return ST_OK;
     }
-    fputs(")\"></div>\n<div class=\"ticks\">", to);
-    for (int k = 0; k <= 4; k++)
-        fprintf(to, "<span>%.3g</span>", 1 / (1 / c->near + (1 / c->far - 1 / c->near) * k / 4));
-    fputs("</div>\n<p>Depth along the camera's axis in scene units; near is bright, equal steps of colour are equal "
-          "steps of 1/depth. "
-          "<span class=\"hatch\"></span>unknown</p>\n</div>\n",
-          to);
+    if (!card->depth_picture.rgb) {
+        fputs("<div class=\"none\">no depth is known</div>", to);
+        return ST_OK;
+    }
+    if (put_picture(to, &card->depth_picture, 90, "Depth of view", card->view->name, err)) return err->status;
+    fprintf(to,
+            "<div class=\"ramp\"></div><div class=\"ticks\"><span>%.3g</span><span>%.3g</span><span>%.3g</span></div>",
+            card->near, 2 / (1 / card->near + 1 / card->far), card->far);
+    return ST_OK;
+}
+
+static enum status put_view(FILE *to, const struct view_card *card, struct err *err)
+{
+    fputs("<figure>\n<div class=\"pair\"><div>", to);
+    if (!card->picture.rgb)
+        fputs("<div class=\"none\">no picture yet</div>", to);
+    else if (put_picture(to, &card->picture, 80, "View", card->view->name, err))
+        return err->status;
+    fputs("</div><div>", to);
+    if (put_depth(to, card, err)) return err->status;
+    fputs("</div></div>\n<figcaption><b>", to);
+    html_text(to, card->view->name);
+    fprintf(to, "</b> <span class=\"size\">%d × %d</span>", card->view->width, card->view->height);
+    if (card->depth.z) fprintf(to, ", %.1f %% known, %u segments", 100 * card->depth.known, card->segments);
+    if (card->trouble[0]) {
+        fputs(" <span class=\"tag\">", to);
+        html_text(to, card->trouble);
+        fputs("</span>", to);
+    }
+    fputs("</figcaption>\n</figure>\n", to);
+    return ST_OK;
 }
 
 static enum status put_depths(FILE *to, const struct contents *c, struct err *err)
 {
     fputs("<section id=\"depth\" aria-labelledby=\"depth-title\">\n<h2 id=\"depth-title\">Views and their depth</h2>\n",
           to);
-    if (!c->views.view_count)
-        fputs("<p>There are no views yet.</p>\n", to);
-    else if (c->near > 0)
-        put_legend(to, c);
-    fputs("<div class=\"pairs\">\n", to);
-    for (int i = 0; i < c->views.view_count; i++) {
-        const struct view_card *card = &c->view_cards[i];
-        fputs("<figure>\n<div class=\"pair\">", to);
-        if (!card->picture.rgb)
-            fputs("<div class=\"none\">no picture yet</div>", to);
-        else if (put_picture(to, &card->picture, 80, "View", card->view->name, err))
-            return err->status;
-        if (!card->depth_picture.rgb)
-            fputs("<div class=\"none\">no depth yet</div>", to);
-        else if (put_picture(to, &card->depth_picture, 90, "Depth of view", card->view->name, err))
-            return err->status;
-        fputs("</div>\n<figcaption><b>", to);
-        html_text(to, card->view->name);
-        fprintf(to, "</b> <span class=\"size\">%d × %d</span>", card->view->width, card->view->height);
-        if (card->depth.z) fprintf(to, ", %.1f %% known, %u segments", 100 * card->depth.known, card->segments);
-        if (card->near > 0) fprintf(to, ", depth %.3g to %.3g", card->near, card->far);
-        if (card->trouble[0]) {
-            fputs(" <span class=\"tag\">", to);
-            html_text(to, card->trouble);
-            fputs("</span>", to);
-        }
-        fputs("</figcaption>\n</figure>\n", to);
+    if (!c->views.view_count) {
+        fputs("<p>There are no views yet.</p>\n</section>\n", to);
+        return ST_OK;
     }
+    if (c->depth_count)
+        fputs("<p class=\"muted\">Depth along the camera's axis in scene units. Near is bright; equal steps of colour "
+              "are equal "
+              "steps of 1/depth over each view's own range, leaving out 2 % at either end. <span "
+              "class=\"hatch\"></span>unknown</p>\n",
+              to);
+    fputs("<div class=\"pairs\" style=\"--ramp:linear-gradient(90deg", to);
+    for (int k = 16; k >= 0; k--) {
+        unsigned char rgb[3];
+        depth_colour(k / 16.0, rgb);
+        fprintf(to, ",#%02x%02x%02x", rgb[0], rgb[1], rgb[2]);
+    }
+    fputs(")\">\n", to);
+    for (int i = 0; i < c->views.view_count; i++)
+        if (put_view(to, &c->view_cards[i], err)) return err->status;
     fputs("</div>\n</section>\n", to);
     return ST_OK;
 }
@@ -518,18 +452,16 @@ static void put_usage(FILE *to, const struct contents *c)
 static void put_section_settings(FILE *to, const struct contents *c, int from, int end)
 {
     const struct setting *items = c->settings.items;
-    int changed = 0;
-    for (int i = from; i < end; i++) changed += items[i].changed;
+    int changed = 0, known = 0;
+    for (int i = from; i < end; i++) changed += items[i].changed, known += items[i].known;
     fputs(changed ? "<details open><summary><code>" : "<details><summary><code>", to);
     html_text(to, items[from].section[0] ? items[from].section : "no section");
     fputs("</code> <span class=\"muted\">", to);
     put_plural(to, end - from, "parameter", "parameters");
-    if (c->has_defaults) {
-        if (changed)
-            fprintf(to, ", %d changed", changed);
-        else
-            fputs(", all default", to);
-    }
+    if (changed)
+        fprintf(to, ", %d changed", changed);
+    else if (known == end - from)
+        fputs(", all default", to);
     fputs("</span></summary>\n<table>\n<tbody>\n", to);
     for (int i = from; i < end; i++) {
         fputs(items[i].changed ? "<tr class=\"changed\"><th scope=\"row\"><code>" : "<tr><th scope=\"row\"><code>", to);
@@ -635,7 +567,7 @@ static void put_head(FILE *to, const char *scene, const struct contents *c)
           to);
     html_text(to, scene);
     fputs(" · remodel " REMODEL_VERSION "</title>\n<style>\n", to);
-    fputs(STYLE, to);
+    fputs(page_style, to);
     fputs("</style>\n</head>\n<body>\n<header>\n<h1>", to);
     html_text(to, scene);
     fputs("</h1>\n<p class=\"lead\">", to);

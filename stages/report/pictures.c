@@ -182,20 +182,18 @@ static int compare_floats(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-bool depth_range(const struct depth_thumb *const *thumbs, int count, double cut, double *near, double *far)
+bool depth_range(const struct depth_thumb *d, double cut, double *near, double *far)
 {
-    size_t total = 0, n = 0;
-    for (int i = 0; i < count; i++) total += (size_t)thumbs[i]->width * (size_t)thumbs[i]->height;
-    float *all = malloc((total + 1) * sizeof *all);
-    if (!all) return false;
-    for (int i = 0; i < count; i++)
-        for (size_t k = 0; k < (size_t)thumbs[i]->width * (size_t)thumbs[i]->height; k++)
-            if (thumbs[i]->z[k] > 0) all[n++] = thumbs[i]->z[k];
+    size_t size = (size_t)d->width * (size_t)d->height, n = 0;
+    float *known = malloc((size + 1) * sizeof *known);
+    if (!known) return false;
+    for (size_t i = 0; i < size; i++)
+        if (d->z[i] > 0) known[n++] = d->z[i];
     if (n) {
-        qsort(all, n, sizeof *all, compare_floats);
-        *near = all[(size_t)(cut * (double)(n - 1))];
-        *far = all[(size_t)((1 - cut) * (double)(n - 1))];
+        qsort(known, n, sizeof *known, compare_floats);
+        *near = known[(size_t)(cut * (double)(n - 1))];
+        *far = known[(size_t)((1 - cut) * (double)(n - 1))];
     }
-    free(all);
+    free(known);
     return n > 0;
 }

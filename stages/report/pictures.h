@@ -5,6 +5,8 @@
 #ifndef REMODEL_PICTURES_H
 #define REMODEL_PICTURES_H
 
+#include <stdbool.h>
+
 #include "common/exr.h"
 #include "common/photo.h"
 
@@ -41,7 +43,7 @@ void depth_colour(double t, unsigned char rgb[3]);
 enum status picture_from_depth(struct picture *p, const struct depth_thumb *d, double near, double far,
                                struct err *err);
 
-/* The depths that bound a share of 1 - 2 * cut of the known pixels of all the thumbs. False if none is known. */
-bool depth_range(const struct depth_thumb *const *thumbs, int count, double cut, double *near, double *far);
+/* The depths that bound a share of 1 - 2 * cut of the known pixels. False if none is known, or there is no memory. */
+bool depth_range(const struct depth_thumb *d, double cut, double *near, double *far);
 
 #endif

@@ -79,6 +79,7 @@ void settings_compare(struct settings *s, const struct settings *defaults)
         struct setting *item = &s->items[i];
         const struct setting *usual = find(defaults, item->section, item->key);
         if (usual) memcpy(item->usual, usual->value, sizeof item->usual);
+        item->known = usual != NULL;
         item->changed = usual && !same_value(item->value, usual->value);
     }
 }

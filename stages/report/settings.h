@@ -10,8 +10,8 @@
 
 struct setting {
     char section[64], key[64], value[256];
-    char usual[256]; /* the default, if there is one */
-    bool changed;    /* the default is known and another */
+    char usual[256]; /* the default, if it is known */
+    bool known, changed;
 };
 
 struct settings {
@@ -22,7 +22,7 @@ struct settings {
 /* Adds all *.cfg of a folder, in order of name. A folder that is not there adds nothing. */
 enum status settings_add_folder(struct settings *s, const char *folder, struct err *err);
 enum status settings_add_file(struct settings *s, const char *path, struct err *err);
-/* Fills usual and changed from the defaults' sections and keys. Numbers are compared as numbers. */
+/* Fills usual, known and changed from the defaults' sections and keys. Numbers are compared as numbers. */
 void settings_compare(struct settings *s, const struct settings *defaults);
 void settings_release(struct settings *s);
 

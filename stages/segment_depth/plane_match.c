@@ -16,24 +16,14 @@
 #define CHANNELS 8
 #define UNIT 127 /* vertical weights sum to it, so features are bytes times it */
 
-/* Truncations (in bytes; gradients are stored 2 x grey levels) and weights; they follow PatchMatch Stereo (Bleyer 2011) in trusting
- * gradients more than colours. */
+/* Truncations (in bytes) and weights, found by trial on pairs with known disparities. Gradients are divided by their
+ * deviation in the surroundings, which lets weak texture count and exposure not; they are trusted more than colours, as in
+ * PatchMatch Stereo (Bleyer 2011). */
 #define SURROUNDINGS 6   /* px: half width of the window that gradients are measured against */
 #define DEVIATION 20.0f
-#ifndef NOISE
-#define NOISE 4.0f       /* grey levels: gradients of this size are half believed */
-#endif
-#ifndef FL
-#define FL 30
-#define CL 30
-#endif
-enum { COLOUR_LIMIT = 24, FINE_LIMIT = FL, COARSE_LIMIT = CL };
-#ifndef FW
-#define FW 20
-#define CW 12
-#define OW 11
-#endif
-enum { COLOUR_WEIGHT = OW, FINE_WEIGHT = FW, COARSE_WEIGHT = CW, VALID_WEIGHT = 1000 };
+#define NOISE 3.0f       /* grey levels: gradients of this size are half believed */
+enum { COLOUR_LIMIT = 24, FINE_LIMIT = 14, COARSE_LIMIT = 14 };
+enum { COLOUR_WEIGHT = 14, FINE_WEIGHT = 50, COARSE_WEIGHT = 16, VALID_WEIGHT = 1000 };
 enum {
     WORST = UNIT * (3 * COLOUR_LIMIT * COLOUR_WEIGHT + 2 * FINE_LIMIT * FINE_WEIGHT + 2 * COARSE_LIMIT * COARSE_WEIGHT),
     OUT_OF_SIGHT = WORST + 1,

@@ -6,7 +6,7 @@
 
 #include "common/parallel.h"
 
-#define NEAR_COLOUR 12.0f  /* Lab distance that counts like a distance of NEAR_PLACE of the picture's diagonal */
+#define NEAR_COLOUR 6.0f  /* Lab distance that counts like a distance of NEAR_PLACE of the picture's diagonal */
 #define NEAR_PLACE 0.08f
 #define LOOSE 0.04         /* of the depth range: how far from a nearby point's depth costs in full */
 

@@ -218,7 +218,7 @@ enum status user_model_add(struct sfm_folder *f, const char *from, const struct 
     bool found = false, more = true;
     if (access(from, R_OK | X_OK)) return err_errno(err, "open", from);
     enum status st = try_colmap(f, from, &found, prov, err);
-    for (int k = 0; !st && (f->models == k) && more && !found; k++) {
+    for (int k = 0; !st && !found && more; k++) {
         char *folder = text_format(err, "%s/%d", from, k);
         st = folder ? try_colmap(f, folder, &more, prov, err) : err->status;
         free(folder);

@@ -1,8 +1,8 @@
 /* layer_render.c - layered depth maps of scenes with known shape, seen from where no photo was taken. */
+#include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
-#include <setjmp.h>
 
 #include <cmocka.h>
 #include <math.h>
@@ -15,11 +15,11 @@
 
 #define assert_near(a, b, tolerance) assert_true(fabs((double)(a) - (double)(b)) <= (tolerance))
 
-#define W 160
-#define H 120
-#define FOCAL 150.0
+#define W         160
+#define H         120
+#define FOCAL     150.0
 #define MAX_VIEWS 5
-#define CELL 12 /* segments are cut along a grid of this pitch */
+#define CELL      12 /* segments are cut along a grid of this pitch */
 
 /* ---------------------------------------------------------------------------------- scenes that are formulas */
 
@@ -49,8 +49,8 @@ static double meet(const struct view *v, double u, double w, double (*f)(double 
 {
     double z = 4;
     for (int i = 0; i < 60; i++)
-        z = 0.5 * z + 0.5 * (f(v->center.x + (u - v->cx) / v->fx * z, v->center.y + (w - v->cy) / v->fy * z) -
-                             v->center.z);
+        z = 0.5 * z +
+            0.5 * (f(v->center.x + (u - v->cx) / v->fx * z, v->center.y + (w - v->cy) / v->fy * z) - v->center.z);
     return z;
 }
 
@@ -110,8 +110,8 @@ static void depth_make(struct layered_depth *d, const struct view *v, const stru
             const size_t p = (size_t)(y * W + x);
             int surface;
             const double u = x + 0.5, w = y + 0.5, z = shape->depth(v, u, w, &surface);
-            const struct vec3 world = vec3_add(
-                v->center, vec3_make((u - v->cx) / v->fx * z, (w - v->cy) / v->fy * z, z));
+            const struct vec3 world =
+                vec3_add(v->center, vec3_make((u - v->cx) / v->fx * z, (w - v->cy) / v->fy * z, z));
             const uint32_t id = (uint32_t)(2 * (y / CELL * columns + x / CELL) + surface + 1);
             struct depth_segment *s = &d->segments[id - 1];
             float *rgba = d->interior.rgba + 4 * p;
@@ -156,7 +156,8 @@ static void render(struct rendered_frame *f, const struct scene *s, const struct
     if (layer_render(f, &s->layers, novel, &options, &err)) fail_msg("%s", err.text);
 }
 
-/* dB of the frame against the scene's own texture seen from there, over pixels `margin` inside the frame that are no holes; peak 1. */
+/* dB of the frame against the scene's own texture seen from there, over pixels `margin` inside the frame that are no
+ * holes; peak 1. */
 static double psnr(const struct rendered_frame *f, const struct view *v, const struct shape *shape, int margin)
 {
     double sum = 0;
@@ -223,8 +224,7 @@ static void depth_follows_the_planes(void **state)
     scene_make(&s, &tilted_planes, four, 4);
     render(&f, &s, &novel, 6);
     for (int y = 15; y < H - 15; y++)
-        for (int x = 15; x < W - 15; x++)
-            assert_near(f.z[y * W + x], meet(&novel, x + 0.5, y + 0.5, tilted), 1e-4);
+        for (int x = 15; x < W - 15; x++) assert_near(f.z[y * W + x], meet(&novel, x + 0.5, y + 0.5, tilted), 1e-4);
     assert_true(psnr(&f, &novel, &tilted_planes, 15) > 35);
     layer_scene_release(&s.layers);
     rendered_frame_release(&f);
@@ -270,7 +270,8 @@ static void a_small_move_changes_the_picture_a_little(void **state)
             double change = 0;
             render(&b, &s, &there, 6);
             for (int p = 0; p < W * H * 4; p++) change += fabs((double)a.rgba[p] - (double)b.rgba[p]);
-            assert_true(change / (W * H * 4) < 3 * steps[i]); /* a parallax of FOCAL / z = 40 px a unit, texture of 0.05 a px */
+            /* a parallax of FOCAL / z = 40 px a unit, texture of 0.05 a px */
+            assert_true(change / (W * H * 4) < 3 * steps[i]);
         }
         layer_scene_release(&s.layers);
         rendered_frame_release(&a);
@@ -323,7 +324,8 @@ static void what_no_view_saw_is_a_hole_filled_from_behind(void **state)
     assert_near(s.layers.far_depth, 6, 1e-9);
 
     render(&f, &s, &novel, 0);
-    /* a strip of `disparity` px right of the square (35..45 px wide picture of half width 25), and the border's FOCAL shift / 6 = 5 */
+    /* a strip of `disparity` px right of the square (35..45 px wide picture of half width 25), and the border's
+     * FOCAL shift / 6 = 5 */
     assert_near(f.hole_fraction * W * H, 50 * disparity + H * 5, 80);
     assert_near(f.unfilled_fraction, f.hole_fraction, 0);
     const int left = W / 2 + 25 - 10, middle = H / 2; /* the square's right edge moves by FOCAL shift / 3 = 10 */

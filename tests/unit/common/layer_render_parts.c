@@ -1,9 +1,9 @@
 /* layer_render_parts.c - the renderer's formulas against numbers worked out by hand: soft z, front-to-back saturation,
  * hole filling. */
+#include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
-#include <setjmp.h>
 
 #include <cmocka.h>
 #include <math.h>
@@ -48,7 +48,8 @@ static void soft_z_blends_by_weight_alpha_and_depth(void **state)
     const struct soft_z soft = {0, 10};
     float rgba[4], z;
 
-    /* dz 5 is half of rho: w 1/2. Colour (0.6 * 1 * 1 + 0.4 * 0.5 * 0) / 0.8; depth without blend: (10 + 0.5 * 15) / 1.5 */
+    /* dz 5 is half of rho: w 1/2. Colour (0.6 * 1 * 1 + 0.4 * 0.5 * 0) / 0.8; depth without blend: (10 + 0.5 * 15) /
+     * 1.5 */
     const struct soft_z_sample two[] = {{{1, 0, 0, 1}, 10, 0.01f, 0.6f}, {{0, 1, 0, 1}, 15, 0.01f, 0.4f}};
     soft_z_blend(&soft, two, 2, rgba, &z);
     assert_near(rgba[0], 0.75, 1e-6);

@@ -14,8 +14,8 @@ static void lists_of_frames(void **state)
     static const struct {
         const char *list, *wanted; /* of 6 frames */
     } good[] = {{"1:6", "111111"}, {"1", "100000"}, {"2:4", "011100"}, {"1:2,5", "110010"}, {"6,3,3:4", "001101"}};
-    static const char *const bad[] = {"",    "0",   "7",    "1:7", "3:2", "1:",   ":3",  ",",
-                                      "1,",  "1,,2", "a",   "1-3", "-1",  "1:2:3", " 1", "99999999999999999999"};
+    static const char *const bad[] = {"",   "0",    "7", "1:7", "3:2", "1:",    ":3", ",",
+                                      "1,", "1,,2", "a", "1-3", "-1",  "1:2:3", " 1", "99999999999999999999"};
     bool wanted[6];
 
     for (size_t i = 0; i < sizeof good / sizeof *good; i++) {

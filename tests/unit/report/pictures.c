@@ -121,8 +121,7 @@ static void colours_depth_and_hatches_the_unknown(void **state)
     (void)state;
     assert_int_equal(depth_thumb_make(&d, z, 6, 1, 1, 240, &err), ST_OK);
     assert_float_equal(d.known, 4.0 / 6, 1e-12);
-    const struct depth_thumb *thumbs = &d;
-    assert_true(depth_range(&thumbs, 1, 0, &near, &far));
+    assert_true(depth_range(&d, 0, &near, &far));
     assert_float_equal(near, 1, 0);
     assert_float_equal(far, 8, 0);
     assert_int_equal(picture_from_depth(&p, &d, near, far, &err), ST_OK);
@@ -141,7 +140,7 @@ static void colours_depth_and_hatches_the_unknown(void **state)
     memset(z, 0, sizeof z);
     assert_int_equal(depth_thumb_make(&d, z, 3, 2, 8, 240, &err), ST_OK);
     assert_int_equal(d.width, 2);
-    assert_false(depth_range(&thumbs, 1, 0.02, &near, &far));
+    assert_false(depth_range(&d, 0.02, &near, &far));
     depth_thumb_release(&d);
 }
 

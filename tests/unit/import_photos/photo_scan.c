@@ -1,0 +1,293 @@
+/* Folders of photos: ids for any names, what is left out, which photos are bad, and what is rewritten when. */
+#include "tests/unit/scratch.h"
+
+#include "stages/import_photos/photo_scan.h"
+
+#define GOOD  "tests/fuzz/corpus/photo/rgb.jpg"
+#define OTHER "tests/fuzz/corpus/photo/rgb8.png"
+#define CUT   "tests/fuzz/corpus/photo/cut.jpg"
+#define CMYK  "tests/fuzz/corpus/photo/cmyk.jpg"
+
+static char photos[300], records[300];
+
+/* Two empty folders. */
+static int fresh(void **state)
+{
+    static int number;
+    (void)state;
+    snprintf(photos, sizeof photos, "%s/%d-photos", scratch, ++number);
+    snprintf(records, sizeof records, "%s/%d-records", scratch, number);
+    return mkdir(photos, 0777);
+}
+
+static void put(const char *name, const char *from)
+{
+    char path[1024];
+    unsigned char bytes[4096];
+    FILE *in = fopen(from, "rb");
+    assert_non_null(in);
+    size_t size = fread(bytes, 1, sizeof bytes, in);
+    fclose(in);
+    snprintf(path, sizeof path, "%s/%s", photos, name);
+    FILE *out = fopen(path, "wb");
+    assert_non_null(out);
+    assert_int_equal(fwrite(bytes, 1, size, out), size);
+    assert_int_equal(fclose(out), 0);
+}
+
+static void assert_there(const char *name, bool there)
+{
+    char path[1024];
+    snprintf(path, sizeof path, "%s/%s", records, name);
+    if ((access(path, F_OK) == 0) != there) fail_msg("%s is %sthere", path, there ? "not " : "");
+}
+
+static const char *id_of(const struct photo_scan *scan, const char *file)
+{
+    for (int i = 0; i < scan->count; i++)
+        if (!strcmp(scan->photos[i].file, file)) return scan->photos[i].id;
+    return "(not there)";
+}
+
+static enum status import(struct photo_scan *scan, const char *exclude, struct err *err)
+{
+    enum status st = photo_scan_folder(scan, photos, err);
+    if (!st && exclude) assert_true(photo_scan_exclude(scan, exclude) > 0);
+    if (!st) st = photo_scan_check(scan, records, err);
+    if (!st) st = photo_scan_write(scan, records, err);
+    return st;
+}
+
+static void ids(void **state)
+{
+    const char *const names[][2] = {
+        {"1341847980.722988.jpg", "1341847980_722988"},
+        {"IMG 1.jpg", "IMG_1"},
+        {"two  blanks & 'quotes' \"too\".jpeg", "two_blanks_quotes_too_"},
+        {"#hash$dollar.png", "_hash_dollar"},
+        {"--out.jpg", "_out"},
+        {"-.jpg", "photo_jpg"}, /* shares "photo" with the next two */
+        {"\xe6\xa9\x8b.jpg", "photo_jpg-2"},
+        {"photo.png", "photo_png"},
+        {"Z\xc3\xbcrich.JPG", "Z_rich"},
+        {"list.jpg", "list_jpg"}, /* list.txt is taken */
+        {"same.jpg", "same_jpg"},
+        {"same.JPG", "same_JPG"},
+        {"same.png", "same_png"},
+        {"a b.jpg", "a_b_jpg-2"}, /* "a_b_jpg" is a photo's own name */
+        {"a+b.jpg", "a_b_jpg-3"},
+        {"a_b_jpg.png", "a_b_jpg"},
+        {"x.jpg.jpg", "x_jpg"},
+        {"name\nwith line break.jpg", "name_with_line_break"},
+    };
+    struct photo_scan scan = {0};
+    struct err err = ERR_INIT;
+    (void)state;
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) put(names[i][0], GOOD);
+    put(".hidden.jpg", GOOD);
+    put("notes.txt", GOOD);
+    put("jpg", GOOD);
+    put("clip.jpg.mp4", GOOD);
+    char sub[400];
+    snprintf(sub, sizeof sub, "%s/sub.jpg", photos);
+    assert_int_equal(mkdir(sub, 0777), 0);
+
+    assert_ok(photo_scan_folder(&scan, photos, &err), err);
+    assert_int_equal(scan.count, sizeof names / sizeof *names);
+    assert_int_equal(scan.ignored, 4);
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+        assert_string_equal(id_of(&scan, names[i][0]), names[i][1]);
+    for (int i = 1; i < scan.count; i++) assert_true(strcmp(scan.photos[i - 1].id, scan.photos[i].id) < 0);
+    photo_scan_release(&scan);
+    photo_scan_release(&scan);
+    photo_scan_release(NULL);
+}
+
+static void long_names(void **state)
+{
+    char name[256];
+    struct photo_scan scan = {0};
+    struct err err = ERR_INIT;
+    (void)state;
+    for (int i = 0; i < 3; i++) {
+        memset(name, 'n', sizeof name);
+        snprintf(name + 240, 16, "%d.jpg", i);
+        put(name, GOOD);
+    }
+    assert_ok(import(&scan, NULL, &err), err);
+    for (int i = 0; i < scan.count; i++) assert_true(strlen(scan.photos[i].id) < 120);
+    photo_scan_release(&scan);
+}
+
+static void leaving_out(void **state)
+{
+    struct photo_scan scan = {0};
+    struct err err = ERR_INIT;
+    (void)state;
+    put("a b.jpg", GOOD);
+    put("c.jpg", GOOD);
+    put("c.png", OTHER);
+    put("d.jpg", GOOD);
+    put("e.jpg", GOOD);
+    assert_ok(photo_scan_folder(&scan, photos, &err), err);
+    assert_int_equal(photo_scan_exclude(&scan, "a_b"), 1);
+    assert_int_equal(photo_scan_exclude(&scan, "a b"), 1);
+    assert_int_equal(photo_scan_exclude(&scan, "c"), 2);
+    assert_int_equal(photo_scan_exclude(&scan, "c.png"), 1);
+    assert_int_equal(photo_scan_exclude(&scan, "d.png"), 0);
+    assert_int_equal(photo_scan_exclude(&scan, ""), 0);
+    photo_scan_release(&scan);
+
+    /* what is left out renames no other photo, is not looked at, and its record goes */
+    put("c.png", CUT);
+    assert_ok(import(&scan, "c_png", &err), err);
+    photo_scan_release(&scan);
+    assert_there("c_jpg.txt", true);
+    assert_there("c_png.txt", false);
+    assert_ok(import(&scan, "c", &err), err);
+    photo_scan_release(&scan);
+    assert_there("c_jpg.txt", false);
+}
+
+static void rewrites_only_what_changed(void **state)
+{
+    const char *const products[] = {"list.txt", "photos.mk", "a.txt", "b.txt", "c.txt"};
+    const struct timespec old[2] = {{1000, 0}, {1000, 0}};
+    char paths[5][400];
+    struct stat info;
+    struct photo_scan scan = {0};
+    struct err err = ERR_INIT;
+    (void)state;
+    put("a.jpg", GOOD);
+    put("b.png", OTHER);
+    put("c.jpg", GOOD);
+    for (int round = 0; round < 4; round++) {
+        /* the first time, nothing, another content, another set */
+        if (round == 2) put("b.png", "tests/fuzz/corpus/photo/rgba8.png");
+        assert_ok(import(&scan, round == 3 ? "c" : NULL, &err), err);
+        photo_scan_release(&scan);
+        for (int i = 0; i < 5; i++) {
+            const bool fresh_list = round == 0 || (round == 3 && i < 2), fresh_record = round == 2 && i == 3;
+            snprintf(paths[i], sizeof paths[i], "%s/%s", records, products[i]);
+            if (round == 3 && i == 4) {
+                assert_int_not_equal(stat(paths[i], &info), 0);
+                continue;
+            }
+            assert_int_equal(stat(paths[i], &info), 0);
+            assert_int_equal(info.st_mtime != 1000, fresh_list || fresh_record);
+            assert_int_equal(utimensat(AT_FDCWD, paths[i], old, 0), 0);
+        }
+    }
+    assert_int_equal(count_entries(photos), 3);
+}
+
+static void bad_photos_are_all_named(void **state)
+{
+    struct photo_scan scan = {0};
+    struct err err = ERR_INIT;
+    char link[400];
+    (void)state;
+    put("good 1.jpg", GOOD);
+    put("good 2.png", OTHER);
+    put("bad 1.jpg", GOOD);
+    assert_ok(import(&scan, NULL, &err), err);
+    photo_scan_release(&scan);
+    assert_there("bad_1.txt", true);
+
+    put("bad 1.jpg", CUT);
+    put("bad 2.jpg", CMYK);
+    put("bad\n3.jpg", GOOD);
+    snprintf(link, sizeof link, "%s/bad 4.jpg", photos);
+    assert_int_equal(symlink("nowhere", link), 0);
+    assert_int_equal(import(&scan, NULL, &err), ST_DATA);
+    assert_err(err, ST_DATA, "4 of 6 photos in ");
+    assert_contains(err.text, "EXCLUDE = bad_1 bad_2 bad_3 bad_4)");
+    const char *const words[] = {"bad 1.jpg", "bad 2.jpg is a CMYK", "line break", "bad 4.jpg"};
+    for (int i = 0; i < 4; i++) assert_contains(scan.photos[i].err.text, words[i]);
+    for (int i = 4; i < 6; i++) assert_int_equal(scan.photos[i].err.status, ST_OK);
+    photo_scan_release(&scan);
+    assert_there("bad_1.txt", false);
+    assert_there("bad_2.txt", false);
+    assert_there("good_1.txt", true);
+    assert_there("good_2.txt", true);
+
+    put("bad 1.jpg", GOOD); /* mended */
+    err = (struct err)ERR_INIT;
+    assert_ok(photo_scan_folder(&scan, photos, &err), err);
+    for (const char *name = "234"; *name; name++) {
+        const char id[] = {'b', 'a', 'd', '_', *name, 0};
+        assert_int_equal(photo_scan_exclude(&scan, id), 1);
+    }
+    assert_ok(photo_scan_check(&scan, records, &err), err);
+    assert_ok(photo_scan_write(&scan, records, &err), err);
+    photo_scan_release(&scan);
+    assert_there("bad_1.txt", true);
+}
+
+static void damaged_records_are_made_again(void **state)
+{
+    struct photo_scan scan = {0};
+    struct photo_record in;
+    struct err err = ERR_INIT;
+    char path[400];
+    (void)state;
+    put("a.jpg", GOOD);
+    put("b.jpg", GOOD);
+    assert_ok(import(&scan, NULL, &err), err);
+    photo_scan_release(&scan);
+    snprintf(path, sizeof path, "%s/a.txt", records);
+    assert_int_equal(truncate(path, 20), 0);
+    assert_ok(import(&scan, NULL, &err), err);
+    photo_scan_release(&scan);
+    assert_ok(photo_record_read(&in, records, "a", &err), err);
+    assert_int_equal(in.info.width, 16);
+    photo_record_release(&in);
+}
+
+static void too_few_and_no_folder(void **state)
+{
+    struct photo_scan scan = {0};
+    struct err err = ERR_INIT;
+    (void)state;
+    put("notes.txt", GOOD);
+    assert_int_equal(import(&scan, NULL, &err), ST_DATA);
+    assert_err(err, ST_DATA, "no JPEG or PNG photo; a parallax video needs at least 2");
+    photo_scan_release(&scan);
+
+    err = (struct err)ERR_INIT;
+    put("a.jpg", GOOD);
+    assert_int_equal(import(&scan, NULL, &err), ST_DATA);
+    assert_err(err, ST_DATA, "one JPEG or PNG photo;");
+    photo_scan_release(&scan);
+    assert_there("list.txt", false);
+    assert_there("photos.mk", false);
+
+    err = (struct err)ERR_INIT;
+    put("b.jpg", GOOD);
+    assert_int_equal(import(&scan, "a", &err), ST_DATA);
+    assert_err(err, ST_DATA, "one JPEG or PNG photo that is not left out;");
+    photo_scan_release(&scan);
+
+    err = (struct err)ERR_INIT;
+    assert_int_equal(photo_scan_folder(&scan, scratch_path("no-such"), &err), ST_IO);
+    assert_err(err, ST_IO, "is not there");
+    photo_scan_release(&scan);
+    err = (struct err)ERR_INIT;
+    assert_int_equal(photo_scan_folder(&scan, GOOD, &err), ST_DATA);
+    assert_err(err, ST_DATA, "is not a folder");
+    photo_scan_release(&scan);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup(ids, fresh),
+        cmocka_unit_test_setup(long_names, fresh),
+        cmocka_unit_test_setup(leaving_out, fresh),
+        cmocka_unit_test_setup(rewrites_only_what_changed, fresh),
+        cmocka_unit_test_setup(bad_photos_are_all_named, fresh),
+        cmocka_unit_test_setup(damaged_records_are_made_again, fresh),
+        cmocka_unit_test_setup(too_few_and_no_folder, fresh),
+    };
+    return cmocka_run_group_tests_name("photo_scan", tests, scratch_make, scratch_remove);
+}
