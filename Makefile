@@ -150,7 +150,7 @@ $(B)/code/%: $(B)/bin/%
 	+@[ -e $< ] || exit 0; mkdir -p $(@D); strip -s -o $@.bin $<; cksum <$@.bin >$@.tmp; rm $@.bin; \
 	  cmp -s $@.tmp $@ && rm $@.tmp || mv $@.tmp $@
 
-link = $(call say,LD $@)mkdir -p $(@D); $(CC) $(CFLAGS) -o $@ $(filter %.o %.a,$^) $(LDLIBS) $(1)
+link = $(call say,LD $@)mkdir -p $(@D); $(CC) $(CFLAGS) -o $@ $(filter %.o,$^) $(filter %.a,$^) $(LDLIBS) $(1)
 
 define stage_rules
 $(B)/bin/$(1): $(call objs,stages/$(1)/*.c) $(B)/libremodel.a
@@ -216,8 +216,8 @@ define view_rules
 $(O)/views/$(1).exr: $(S)/photos/$(firstword $(subst @, ,$(1))).txt $(CAMERAS) $(O)/views/lenses.txt $(call needs,rectify)
 	$$(hide)$$(call farm,rectify,$(1),$$@,--view $(1) --photos "$$$$REMODEL_PHOTOS" --records $(S)/photos --views $(O)/views --out $$@)
 $(O)/depth/$(1).exr $(O)/depth/$(1).txt &: $(O)/views/$(1).exr $(CAMERAS) $(call needs,segment_depth) | $(VIEW_EXR)
-	$$(hide)$$(call farm,segment_depth,$(1),$(1:%=$(O)/depth/%.txt $(O)/depth/%.exr),\
-	  --view $(1) --views $(O)/views --out $(1:%=$(O)/depth/%.exr) --deps $(1:%=$(O)/depth/%.d))
+	$$(hide)$$(call farm,segment_depth,$(1),$(O)/depth/$(1).txt $(O)/depth/$(1).exr,\
+	  --view $(1) --views $(O)/views --out $(O)/depth/$(1).exr --deps $(O)/depth/$(1).d)
 endef
 $(foreach v,$(VIEWS),$(eval $(call view_rules,$(v))))
 -include $(wildcard $(DEPTH:.exr=.d)) # the neighbours each view really read
@@ -239,7 +239,7 @@ $(E)/video.mp4: $(FRAME_EXR) $(PATH_TXT) $(call needs,encode_video)
 	$(call stage,encode_video,$(EFFECT),$(O),--path $(E) --frames $(E)/frames --out $@)
 
 $(O)/index.html: $(E)/video.mp4 $(PATH_TXT) $(CAMERAS) $(DEPTH) $(DEPTH_TXT) $(S)/photos/list.txt $(STAGES:%=$(O)/slice/%.cfg) $(call needs,report)
-	$(call stage,report,page,$(O),--scene $(SCENE) --folder $(O) --shared $(S) --photos "$$REMODEL_PHOTOS" --out $@)
+	$(call stage,report,page,$(O),--scene $(SCENE) --folder $(O) --shared $(S) --photos "$$REMODEL_PHOTOS" --defaults configs/default.cfg --out $@)
 
 # What is looked at afresh in every run, also under -n: configs, photos. Files are rewritten only if their text changed.
 CONFIGS := configs/default.cfg $(if $(filter-out default,$(QUALITY)),configs/$(QUALITY).cfg) $(wildcard scenes/$(SCENE)/scene.cfg)

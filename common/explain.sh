@@ -30,7 +30,7 @@ help)
     [ -n "$found" ] || echo "  none yet: make PHOTOS=DIR SCENE=NAME makes one"
     ;;
 why) # standard input: make -n --debug=b
-    awk -v S="$1" -v O="$2" '
+    said=$(awk -v S="$1" '
         /^ *File .* does not exist\.$/ { gsub(/^ *File .|. does not exist\.$/, ""); reason[$0] = "it does not exist" }
         /^ *Prerequisite .* is newer than target / {
             split($0, q, /\047/); t = q[4]; p = q[2]
@@ -40,16 +40,13 @@ why) # standard input: make -n --debug=b
             for (i = 1; i <= n; i++) {
                 t = order[i]
                 if (index(t, S) != 1 || t in said) continue
-                said[t] = 1; shown++
-                print t ": " (reason[t] ? reason[t] : "something that it is made with is made again")
+                said[t] = 1
+                print t ": " (reason[t] ? reason[t] : "it is made together with one that is stale")
             }
-            if (!shown) print "Nothing is stale."
-        }'
-    for s in "$1"/slice/*.cfg "$2"/slice/*.cfg; do
-        [ -e "$s.old" ] || continue
-        case " ${seen-} " in *" $s "*) continue ;; esac
-        seen="${seen-} $s"
-        diff "$s.old" "$s" | sed -nE "s|^< (.*)|$s: was \1|p; s|^> (.*)|$s: is \1|p" || true
+        }')
+    echo "${said:-Nothing is stale.}"
+    for s in $(grep -oE '[^ ]*/slice/[a-z_]*\.cfg is newer' <<<"$said" | cut -d' ' -f1 | sort -u); do
+        [ ! -e "$s.old" ] || diff "$s.old" "$s" | sed -nE "s|^< (.*)|$s: was \1|p; s|^> (.*)|$s: is \1|p" || true
     done
     ;;
 changed-photos) # photos whose content is not what SfM saw

@@ -509,7 +509,7 @@ static enum status choose_channels(struct reader *r, const char *path, const cha
     return ST_OK;
 }
 
-/* String attributes but provenance and the format's own, and worldToCamera. Strings too long for the list are left out. */
+/* worldToCamera, and the string attributes but for provenance, the format's own, and those too long for the list. */
 static enum status read_attributes(struct reader *r, struct err *err)
 {
     int32_t count = 0;
@@ -589,12 +589,12 @@ enum status exr_read(struct exr_image *im, const char *path, const char *const *
         st = library_error(err, ST_DATA, "read", path, rv);
     if (!st) st = choose_channels(&r, path, names, name_count, err);
     if (!st) st = read_attributes(&r, err);
-    if (!st) {
+    if (!st && im->count > 0) { /* with no channel asked for, the header is all */
         r.pipes = calloc((size_t)threads, sizeof *r.pipes);
         r.faults = calloc(r.chunks, sizeof *r.faults);
         if (!r.pipes || !r.faults) st = err_nomem(err, "a list of chunks", r.chunks * sizeof *r.faults);
     }
-    if (!st) {
+    if (!st && im->count > 0) {
         parallel_for(r.chunks, 1, decode_chunks, &r);
         st = first_fault(err, "read", path, "; it is damaged or cut off: make it again", im, r.faults, r.chunks);
     }

@@ -26,9 +26,9 @@ struct exr_plane {
 struct exr_image {
     int width, height;
     int count;
-    struct exr_plane *planes;  /* owned, with their data */
+    struct exr_plane *planes; /* owned, with their data */
     bool has_world_to_camera;
-    float world_to_camera[16]; /* Imath's row-vector convention: as stored in the file's m44f; see exr_set_camera */
+    float world_to_camera[16];  /* Imath's row-vector convention: as stored in the file's m44f; see exr_set_camera */
     char (*attributes)[2][256]; /* further string attributes, name and value; owned; may be NULL */
     int attribute_count;
 };
@@ -43,12 +43,15 @@ enum status exr_set_attribute(struct exr_image *im, const char *name, const char
 const char *exr_attribute(const struct exr_image *im, const char *name); /* NULL if it is not there */
 void exr_image_release(struct exr_image *im);
 
-/* Values beyond half's range are written as the largest half; NaN is ST_DATA naming channel and pixel. */
+/* Values beyond half's range, infinity too, are written as the largest half; NaN, and infinity in a float channel, is
+ * ST_DATA naming channel and pixel. */
 enum status exr_write(const struct exr_image *im, const char *path, const struct provenance *prov, struct err *err);
 
-/* Reads all channels (or, with names != NULL, those, a missing one being ST_DATA that lists what is there). Single-part scanline or
- * tiled files of any codec OpenEXRCore has; the data window must start anywhere but be the picture. NaN or infinity in
- * a float channel is ST_DATA naming channel and pixel. A file with missing chunks is ST_DATA. */
+/* Reads all channels (or, with names != NULL, those, a missing one being ST_DATA that lists what is there; others are
+ * not looked at; with no name at all only the header is read). Single-part scanline or tiled files of any codec OpenEXRCore has, no channel subsampled; the data window
+ * may start anywhere but must be as large as the display window. NaN or infinity in a float channel is ST_DATA naming
+ * channel and pixel. A file with missing chunks is ST_DATA. The attributes read are its strings of at most 255 bytes
+ * but for the provenance and the format's own. */
 enum status exr_read(struct exr_image *im, const char *path, const char *const *names, int name_count, struct err *err);
 
 #endif

@@ -8,6 +8,7 @@
 #define FULL         0.999f /* alpha from which a pixel takes no more from behind */
 #define LEAST_FACING 1e-6   /* 1 - p . k: below, the plane is seen edge-on or from behind */
 #define LEAST_RATIO  1e-6   /* of a depth in the novel camera to the depth in the view */
+#define BORDER       0.05f  /* of the picture's long side: where a view fades out towards its border */
 #define BLOCK        64     /* target pixels whose source positions are computed at once */
 
 /* ---------------------------------------------------------------------------------------------- projection */
@@ -154,25 +155,27 @@ static void surface_add(struct raster_surface *s, float z, float sigma, float al
     s->alpha = total;
 }
 
-void raster_composite(struct raster_pixel *p, const float fragment[4], float z, float sigma, float reach)
+void raster_composite(struct raster_pixel *p, const struct raster_fragment *fragment, float reach)
 {
-    const float total = p->rgba[3], alpha = fragment[3];
+    const float total = p->rgba[3], alpha = fragment->rgba[3], z = fragment->z;
 
     if (total > 0 && z < p->front.z - reach) {
-        const float keep = fminf(1, (1 - alpha) / total);
-        for (int k = 0; k < 4; k++) p->rgba[k] = fragment[k] + fmaxf(0, keep) * p->rgba[k];
+        const float keep = fmaxf(0, fminf(1, (1 - alpha) / total));
+        for (int k = 0; k < 4; k++) p->rgba[k] = fragment->rgba[k] + keep * p->rgba[k];
+        p->inside = alpha * fragment->inside + keep * p->inside;
         p->back = p->front;
-        p->back.alpha = fmaxf(0, keep) * p->front.alpha;
-        p->front = (struct raster_surface){z, alpha, sigma};
+        p->back.alpha *= keep;
+        p->front = (struct raster_surface){z, alpha, fragment->sigma};
         return;
     }
     const float weight = fminf(alpha, 1 - total);
     if (!(weight > 0)) return;
-    for (int k = 0; k < 4; k++) p->rgba[k] += weight / alpha * fragment[k];
+    for (int k = 0; k < 4; k++) p->rgba[k] += weight / alpha * fragment->rgba[k];
+    p->inside += weight * fragment->inside;
     if (!(total > 0) || z <= p->front.z + reach)
-        surface_add(&p->front, z, sigma, weight);
+        surface_add(&p->front, z, fragment->sigma, weight);
     else if (!(p->back.alpha > 0) || fabsf(z - p->back.z) <= reach)
-        surface_add(&p->back, z, sigma, weight);
+        surface_add(&p->back, z, fragment->sigma, weight);
 }
 
 const struct raster_surface *raster_visible(const struct raster_pixel *p)
@@ -213,6 +216,14 @@ __attribute__((target("f16c"))) static inline bool sample(const struct layer_vie
     }
     _mm_storeu_ps(rgba, _mm_add_ps(_mm256_castps256_ps128(sum), _mm256_extractf128_ps(sum, 1)));
     return rgba[3] > 0;
+}
+
+/* How far texel position (u, v) is inside the picture: 0 at its border, 1 from BORDER of its long side on. */
+static inline float inside(const struct layer_view *lv, float u, float v)
+{
+    const float across = (float)(lv->width > lv->height ? lv->width : lv->height) * BORDER;
+    const float x = fminf(u - 0.5f, (float)lv->width + 0.5f - u), y = fminf(v - 0.5f, (float)lv->height + 0.5f - v);
+    return fminf(1, fmaxf(0, fminf(x, y)) / across);
 }
 
 /* Narrows [*lo, *hi] to where slope x + offset >= 0. */
@@ -263,11 +274,14 @@ static void raster_row(const struct raster_target *target, int y, const struct r
             inverses[i] = (float)(inverse.slope * x + inverse.offset);
         }
         for (int i = 0; i < count; i++) {
-            float rgba[4], *skip = &target->skip[row + (size_t)(x0 + i)];
-            if (inverses[i] <= *skip || !sample(lv, s->id, us[i], vs[i], rgba)) continue;
-            const float z = 1 / inverses[i];
+            struct raster_fragment f;
+            float *skip = &target->skip[row + (size_t)(x0 + i)];
+            if (inverses[i] <= *skip || !sample(lv, s->id, us[i], vs[i], f.rgba)) continue;
+            f.z = 1 / inverses[i];
+            f.sigma = s->sigma;
+            f.inside = inside(lv, us[i], vs[i]);
             struct raster_pixel *p = &target->pixels[row + (size_t)(x0 + i)];
-            raster_composite(p, rgba, z, s->sigma, soft_z_reach(soft, z, s->sigma));
+            raster_composite(p, &f, soft_z_reach(soft, f.z, f.sigma));
             if (p->rgba[3] >= FULL) {
                 const float nearer = p->front.z - soft_z_reach(soft, p->front.z, p->front.sigma);
                 *skip = nearer > 0 ? 1 / nearer : INFINITY;

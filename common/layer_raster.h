@@ -68,15 +68,22 @@ struct raster_surface {
     float z, alpha, sigma; /* means over its fragments */
 };
 
+struct raster_fragment { /* of a segment in a pixel */
+    float rgba[4];       /* premultiplied, alpha > 0 */
+    float z, sigma;
+    float inside; /* 1, falling to 0 towards the border of the view's picture */
+};
+
 struct raster_pixel { /* what one view has accumulated */
     float rgba[4];
+    float inside; /* sum over its fragments, weighted as the colour */
     struct raster_surface front, back;
 };
 
-/* Puts a fragment (premultiplied, alpha > 0) on a pixel: behind or beside what is there with weight min(alpha, 1 -
- * accumulated); before it if it is nearer than the front surface by more than `reach` (segments are sorted by their
- * centres, which slanted ones can belie). */
-void raster_composite(struct raster_pixel *p, const float fragment[4], float z, float sigma, float reach);
+/* Puts a fragment on a pixel: behind or beside what is there with weight min(alpha, 1 - accumulated); before it if it
+ * is nearer than the front surface by more than `reach` (segments are sorted by their centres, which slanted ones can
+ * belie). */
+void raster_composite(struct raster_pixel *p, const struct raster_fragment *fragment, float reach);
 
 /* The depth of a pixel is that of one surface, never a mean across a jump: the front surface's if it has at least
  * half of the alpha, else the one behind it. */

@@ -203,7 +203,7 @@ static void add_sample(struct scratch *s, size_t n, size_t p, float blend)
     memcpy(to->rgba, from->rgba, sizeof to->rgba);
     to->z = surface->z;
     to->sigma = surface->sigma;
-    to->blend = blend;
+    to->blend = blend * fmaxf(LEAST_INSIDE, from->inside / from->rgba[3]);
 }
 
 static float weight_of(const struct view_weights *w, int view)
@@ -235,25 +235,19 @@ static void draw_named_views(const struct frame_job *job, struct scratch *s, int
     }
 }
 
-/* In pixels that the named views leave a hole. */
+/* In pixels that the named views leave a hole: the nearest of the other views that covers it. */
 static void draw_other_views(const struct frame_job *job, struct scratch *s, int y0, int y1)
 {
     const size_t n = (size_t)(y1 - y0) * (size_t)job->novel.width;
-    const double least = NEAR_SPACING * job->scene->mesh.spacing;
-    const double nearest = job->by_distance[0].distance;
-    uint8_t *hole = s->covered; /* 0: a hole for the named views; from here on 1 covered by them, 2 by others */
 
     for (int i = 0; i < job->scene->set->view_count; i++) {
-        const struct other_view *o = &job->by_distance[i];
-        const double d = o->distance * o->distance + least * least;
-        const float blend = d > 0 ? (float)((nearest * nearest + least * least) / d) : 1;
-        for (size_t p = 0; p < n; p++)
-            s->skip[p] = hole[p] == 1 || weight_of(&s->weights[p], o->view) > 0 ? INFINITY : 0;
-        if (!(blend > 0) || !draw_view(job, s, o->view, y0, y1)) continue;
+        const int view = job->by_distance[i].view;
+        for (size_t p = 0; p < n; p++) s->skip[p] = s->covered[p] || weight_of(&s->weights[p], view) > 0 ? INFINITY : 0;
+        if (!draw_view(job, s, view, y0, y1)) continue;
         for (size_t p = 0; p < n; p++) {
-            if (hole[p] == 1 || weight_of(&s->weights[p], o->view) > 0 || s->pixels[p].rgba[3] < COVERED) continue;
-            hole[p] = 2;
-            if (s->counts[p] < MAX_SAMPLES) add_sample(s, n, p, blend);
+            if (s->covered[p] || weight_of(&s->weights[p], view) > 0 || s->pixels[p].rgba[3] < COVERED) continue;
+            s->covered[p] = 1;
+            add_sample(s, n, p, 1);
         }
     }
 }

@@ -5,9 +5,10 @@
  * (common/layer_raster.h). In each view segments go front to back and saturate; across the views that the view mesh
  * names for the pixel, a soft z-buffer (thesis eq. 3.1, common/soft_z.h) blends by weight x w x alpha.
  *
- * A pixel is a hole if no view at all covers it with alpha 0.5. Where the views that the mesh names leave one, the
- * others that see something there take their place, weighted by 1 / distance^2 of their centres: an extension of the
- * thesis, which would inpaint there. Holes are filled from the far side (common/hole_fill.h).
+ * Two things are not in the thesis. A view's weight falls off towards the border of its picture, so that the border
+ * leaves no line. And a pixel is a hole only if no view at all covers it with alpha 0.5: where the views that the mesh
+ * names leave one, the nearest other view (by centre) that sees something there takes their place. What is left is
+ * filled from the far side (common/hole_fill.h).
  *
  * Depth is z along the novel camera's axis, in scene units; colour is scene-linear. */
 #ifndef REMODEL_LAYER_RENDER_H

@@ -1,7 +1,7 @@
 /* metrics.c - PSNR and SSIM.
  *
  * SSIM after Z. Wang, A. C. Bovik, H. R. Sheikh, E. P. Simoncelli, "Image quality assessment: from error visibility to
- * structural similarity", 2004: means, variances and covariance under a Gaussian window of 11x11 whose weights sum to 1,
+ * structural similarity", 2004: means, variances and covariance under a Gaussian window of 11x11, its weights' sum 1,
  *   ssim = (2 ma mb + C1)(2 sab + C2) / ((ma^2 + mb^2 + C1)(sa^2 + sb^2 + C2)),  C1 = (K1 L)^2, C2 = (K2 L)^2.
  * The window is separable: rows are filtered first, then columns. The paper takes luminance; here each of R, G, B is
  * compared and the three are averaged. Sums are kept per chunk of rows and added in order. */

@@ -10,7 +10,8 @@
  *   orientation 1               EXIF, 1..8
  *   exif FOCAL_MM FOCAL35_MM SECONDS F_NUMBER ISO     0: not stated
  *   camera "MAKE" "MODEL"
- * An id is safe for Make, shells and file systems: letters, digits, _ and -; unique in the scene; the same for the same set of file names. */
+ * An id is safe for Make, shells and file systems: letters, digits, _ and -, not - first; unique in the scene; the same
+ * for the same set of file names. photos.mk holds the ids for Make. */
 #ifndef REMODEL_PHOTO_LIST_H
 #define REMODEL_PHOTO_LIST_H
 

@@ -15,6 +15,8 @@ MAKEFLAGS=$(sed -E 's/(^| )-j *[0-9]*( |$)/ /; s/--jobserver-[a-z]+=[^ ]*//' <<<
 export MAKEFLAGS
 most=$cores
 [ -z "$asked" ] || [ "$asked" -ge "$cores" ] || most=$asked
+quiet=-s
+[ -z "${V-}" ] || quiet=
 graph() { "${make[@]}" PHASE=graph "$@"; }
 
 if [ ! -e "$folder/scene.mk" ]; then
@@ -91,9 +93,9 @@ farm()
     wide=$((count < most ? count : most))
     threads=$((cores / wide))
     date +%s >"$work/$1.tally"
-    REMODEL_TALLY=$work/$1.tally REMODEL_COUNT=$count graph -s -j"$wide" T="$threads" "$2"
+    REMODEL_TALLY=$work/$1.tally REMODEL_COUNT=$count graph $quiet -j"$wide" T="$threads" "$2"
 }
-one() { graph -s -j1 T="$cores" "$@"; }
+one() { graph $quiet -j1 T="$cores" "$@"; }
 # frames are few processes with all threads each, since every one of them holds all views in memory
 farm_frames()
 {

@@ -7,9 +7,15 @@
 
 #include <math.h>
 
-struct vec3 { double x, y, z; };
-struct mat3 { double m[3][3]; };
-struct quat { double w, x, y, z; };
+struct vec3 {
+    double x, y, z;
+};
+struct mat3 {
+    double m[3][3];
+};
+struct quat {
+    double w, x, y, z;
+};
 
 static inline struct vec3 vec3_make(double x, double y, double z) { return (struct vec3){x, y, z}; }
 static inline struct vec3 vec3_add(struct vec3 a, struct vec3 b) { return vec3_make(a.x + b.x, a.y + b.y, a.z + b.z); }
@@ -44,8 +50,7 @@ static inline struct mat3 mat3_multiply(struct mat3 a, struct mat3 b)
 {
     struct mat3 c;
     for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++)
-            c.m[i][j] = a.m[i][0] * b.m[0][j] + a.m[i][1] * b.m[1][j] + a.m[i][2] * b.m[2][j];
+        for (int j = 0; j < 3; j++) c.m[i][j] = a.m[i][0] * b.m[0][j] + a.m[i][1] * b.m[1][j] + a.m[i][2] * b.m[2][j];
     return c;
 }
 
@@ -53,7 +58,8 @@ static inline struct mat3 mat3_multiply(struct mat3 a, struct mat3 b)
 struct mat3 mat3_from_quat(struct quat q);
 /* Unit quaternion with w >= 0. */
 struct quat quat_from_mat3(struct mat3 r);
-/* Eigenvalues ascending, eigenvectors as rows of `vectors`; symmetric input; Jacobi, deterministic signs (the largest component positive). */
+/* Eigenvalues ascending, eigenvectors as rows of `vectors`; symmetric input; Jacobi, deterministic signs (the largest
+ * component positive). */
 void mat3_eigen_symmetric(struct mat3 a, double values[3], struct mat3 *vectors);
 
 #endif

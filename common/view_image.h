@@ -1,4 +1,5 @@
-/* view_image.h - a rectified view's picture: out/SCENE/views/VIEW.exr, scene-linear R G B (half), A (half, 1 where the photo has a pixel). */
+/* view_image.h - a rectified view's picture: out/SCENE/views/VIEW.exr, scene-linear R G B (half), A (half, 1 where the
+ * photo has a pixel). */
 #ifndef REMODEL_VIEW_IMAGE_H
 #define REMODEL_VIEW_IMAGE_H
 

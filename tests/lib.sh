@@ -35,7 +35,7 @@ project()
 }
 
 # photos DIR [OPTION...]: a synthetic scene, DIR/photos and DIR/model
-photos() { "$root/$B/tests/pipeline/make_photos" --out "$@"; }
+photos() { "$root/$B/tests/pipeline/make_photos" --views 6 --out "$@"; }
 
 # small SCENE: a scene.cfg for tests that are about the graph: few planes, few frames
 small()
@@ -43,7 +43,7 @@ small()
     mkdir -p "scenes/$1"
     cat >"scenes/$1/scene.cfg" <<'CFG'
 [segment_depth]
-max_planes = 32
+planes = 32
 [plan_path]
 seconds = 0.5
 fps = 12

@@ -25,13 +25,15 @@ const struct param plan_param_table[] = {PLAN_PARAMS(PARAM_ROW) PARAM_END};
 #define CENTRAL_VIEWS    5   /* whose segments vote for the centroid */
 #define CENTRAL_PART     0.5 /* of width and height */
 #define ZOOM_STEP        0.05
+#define ZOOM_COST 3
 #define NEAR_PERCENTILE  0.02 /* depths that stand for near and far */
 #define FAR_PERCENTILE   0.98
 #define NEAR_FRACTION    0.5   /* of the near depth in the middle: nearer than this is within the scene */
 #define NEAR_TOLERANCE   0.005 /* of the picture */
-#define HOLE_SLACK       1.2   /* over the holes of the centremost view, where they are too many already */
+#define SLACK            1.2   /* over what the centremost view leaves, where that is too much already */
 #define LONE_REACH       0.05  /* of the distance: how far views at one place let the camera go */
 #define OTHER_WAY_WEIGHT 0.8   /* of directions other than the main axis */
+#define OUTSIDE_SIDE     64    /* of the picture in which what is outside is counted */
 #define PLACES           5     /* where holes are counted */
 #define SEARCH_STEPS     4     /* of a bisection while zooms and directions are compared */
 #define FINAL_STEPS      8
@@ -89,7 +91,7 @@ struct plan {
     size_t blob_count;
     struct sample *scratch; /* blob_count of them */
     struct view lens;       /* size, focal length and principal point of the film; the focal length without zoom */
-    double near_limit, hole_limit;
+    double near_limit, hole_limit, outside_limit;
     double near_depth, far_depth; /* of what the film's middle shows */
     struct rendered_frame coverage;
 };
@@ -255,6 +257,35 @@ static enum status count_holes(struct plan *p, const struct view *v, double *hol
     return ST_OK;
 }
 
+/* The part of the picture, at the centroid's depth, that lies beyond the borders of the views that the mesh names: each pixel
+ * counts by the weight of the views that do not contain it. Other views may show it, but with a seam. */
+static double outside(const struct plan *p, const struct view *v)
+{
+    const struct camera_set *set = p->scene->set;
+    struct view_weights row[OUTSIDE_SIDE];
+    struct view_mesh_camera mc;
+    struct view small = *v;
+    double scale = (double)OUTSIDE_SIDE / (v->width > v->height ? v->width : v->height), sum = 0, x, y;
+    double depth = view_project(v, p->centroid, &x, &y);
+    small.width = (int)fmax(1, floor(v->width * scale));
+    small.height = (int)fmax(1, floor(v->height * scale));
+    small.fx *= scale, small.fy *= scale, small.cx *= scale, small.cy *= scale;
+    view_mesh_prepare(&mc, &p->scene->mesh, &small);
+    for (int j = 0; j < small.height; j++) {
+        view_mesh_row(&mc, j, row);
+        for (int i = 0; i < small.width; i++) {
+            struct vec3 point = view_unproject(&small, i + 0.5, j + 0.5, depth);
+            for (int k = 0; k < row[i].count; k++) {
+                const struct view *of = &set->views[row[i].view[k]];
+                double u = -1, t = -1;
+                if (!(view_project(of, point, &u, &t) > 0) || u < 0 || u > of->width || t < 0 || t > of->height)
+                    sum += (double)row[i].weight[k];
+            }
+        }
+    }
+    return sum / (small.width * small.height);
+}
+
 /* ----------------------------------------------------------------------------------------------------------- the ends */
 
 static struct vec3 place(const struct plan *p, const struct way *w, double s)
@@ -304,7 +335,7 @@ static enum status keeps_limits(struct plan *p, const struct way *w, bool *good,
         struct view v = camera_at(p, w, places_in_order[i]);
         double near, total, holes = 0;
         blobs_in_picture(p, &v, p->near_limit, &near, &total);
-        *good = near <= NEAR_TOLERANCE * total;
+        *good = near <= NEAR_TOLERANCE * total && outside(p, &v) <= p->outside_limit;
         if (!*good) break;
         if (count_holes(p, &v, &holes, err)) return err->status;
         *good = holes <= p->hole_limit;
@@ -377,26 +408,30 @@ static enum status explore(struct plan *p, struct vec3 direction, double weight,
     const double most = w.reach, promise = weight * length_of(&w) / (1 + distance_to_views(p, &w));
     for (int i = 0; most > 0; i++) {
         w.zoom = min_zoom + ZOOM_STEP * i;
-        if (w.zoom > p->params->max_zoom + 1e-9 || promise / (w.zoom * w.zoom) <= best->merit) break;
+        if (w.zoom > p->params->max_zoom + 1e-9 || promise / pow(w.zoom, ZOOM_COST) <= best->merit) break;
         if (find_reach(p, &w, most, SEARCH_STEPS, err)) return err->status;
-        w.merit = weight * length_of(&w) / (w.zoom * w.zoom * (1 + distance_to_views(p, &w)));
+        w.merit = weight * length_of(&w) / (pow(w.zoom, ZOOM_COST) * (1 + distance_to_views(p, &w)));
         if (w.merit > best->merit) *best = w;
     }
     return ST_OK;
 }
 
-/* The smallest zoom at which the centremost view's place keeps max_holes; where none does, the largest, and the limit is raised. */
+/* The smallest zoom at which the centremost view's place keeps max_holes and max_outside; where none does, the largest, and
+ * what is not kept is allowed as it is there, and a little more. */
 static enum status find_min_zoom(struct plan *p, double *zoom, struct err *err)
 {
-    double holes = 0;
+    const double max_holes = p->params->max_holes, max_outside = p->params->max_outside;
+    double holes = 0, beyond = 0;
     for (int i = 0;; i++) {
         *zoom = fmin(1 + ZOOM_STEP * i, p->params->max_zoom);
         struct view v = aim(p, center_view(p)->center, *zoom);
+        beyond = outside(p, &v);
         if (count_holes(p, &v, &holes, err)) return err->status;
-        if (holes <= p->params->max_holes) return ST_OK;
+        if (holes <= max_holes && beyond <= max_outside) return ST_OK;
         if (*zoom >= p->params->max_zoom) break;
     }
-    p->hole_limit = HOLE_SLACK * holes;
+    if (holes > max_holes) p->hole_limit = SLACK * holes;
+    if (beyond > max_outside) p->outside_limit = SLACK * beyond;
     return ST_OK;
 }
 
@@ -443,7 +478,8 @@ static enum status add_scores(struct camera_path *path, struct plan *p, const st
         camera_path_add_score(path, "near_motion", hypot(near[0], near[1]), "px", err) ||
         camera_path_add_score(path, "far_motion", hypot(far[0], far[1]), "px", err) ||
         camera_path_add_score(path, "parallax", hypot(near[0] - far[0], near[1] - far[1]), "px", err) ||
-        camera_path_add_score(path, "hole_limit", p->hole_limit, "", err))
+        camera_path_add_score(path, "hole_limit", p->hole_limit, "", err) ||
+        camera_path_add_score(path, "outside_limit", p->outside_limit, "", err))
         return err->status;
     for (int i = 0; i < PLACES; i++) {
         double part = i / (PLACES - 1.0), holes = 0;
@@ -451,6 +487,8 @@ static enum status add_scores(struct camera_path *path, struct plan *p, const st
         char name[32];
         snprintf(name, sizeof name, "holes_at_%g", part);
         if (count_holes(p, &v, &holes, err) || camera_path_add_score(path, name, holes, "", err)) return err->status;
+        snprintf(name, sizeof name, "outside_at_%g", part);
+        if (camera_path_add_score(path, name, outside(p, &v), "", err)) return err->status;
     }
     return ST_OK;
 }
@@ -484,7 +522,8 @@ enum status plan_establishing_dolly(struct camera_path *path, struct dolly_notes
                                     const struct layer_scene *scene, const struct vec3 *ups,
                                     const struct plan_params *params, struct err *err)
 {
-    struct plan p = {.scene = scene, .params = params, .hole_limit = params->max_holes};
+    struct plan p = {
+        .scene = scene, .params = params, .hole_limit = params->max_holes, .outside_limit = params->max_outside};
     struct way w = {0};
     *notes = (struct dolly_notes){0};
     if (plan_params_check(params, err)) return err->status;
@@ -511,7 +550,8 @@ enum status plan_establishing_dolly(struct camera_path *path, struct dolly_notes
     if (!st) {
         fill_frames(path, &p, &w);
         st = add_scores(path, &p, &w, err);
-        *notes = (struct dolly_notes){center_view(&p)->name, w.zoom, p.hole_limit, !(length_of(&w) > 0)};
+        *notes =
+            (struct dolly_notes){center_view(&p)->name, w.zoom, p.hole_limit, p.outside_limit, !(length_of(&w) > 0)};
     }
     rendered_frame_release(&p.coverage);
     free(p.blobs);

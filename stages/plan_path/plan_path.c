@@ -107,12 +107,16 @@ static void tell(const struct camera_path *path, const struct dolly_notes *notes
     log_note("%d frames of %d x %d around view %s: %.1f degrees at the scene's centroid, %.0f px of parallax",
              path->frame_count, path->frames[0].camera.width, path->frames[0].camera.height, notes->center_view, angle,
              parallax);
-    if (notes->zoom > 1) log_note("zoomed in by %.0f %% to keep holes out of the frames", 100 * (notes->zoom - 1));
+    if (notes->zoom > 1)
+        log_note("zoomed in by %.0f %% to keep holes and the photos' borders out of the frames",
+                 100 * (notes->zoom - 1));
     if (notes->hole_limit > params->max_holes)
         log_warn("even view %s leaves more than %.3g %% of the frame uncovered; allowing %.3g %%", notes->center_view,
                  100 * params->max_holes, 100 * notes->hole_limit);
-    if (notes->stands_still)
-        log_warn("no move keeps holes below %.3g %% of the frame: the camera stands still", 100 * notes->hole_limit);
+    if (notes->outside_limit > params->max_outside)
+        log_warn("even at view %s more than %.3g %% of the frame lies beyond the views' borders; allowing %.3g %%",
+                 notes->center_view, 100 * params->max_outside, 100 * notes->outside_limit);
+    if (notes->stands_still) log_warn("no move keeps holes and borders out of the frames: the camera stands still");
 }
 
 static enum status plan(const char *views, const char *records, const char *depth, const char *out,

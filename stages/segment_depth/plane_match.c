@@ -31,7 +31,12 @@ enum {
 
 static uint8_t byte_from(float x) { return (uint8_t)(x <= 0 ? 0 : x >= 255 ? 255 : x + 0.5f); }
 
-#define FEW_SEE 0.3f /* cost of a neighbour that would have counted but does not see the segment */
+#ifndef FEW
+#define FEW 0.4f
+#define RW 0.5
+#endif
+#define FEW_SEE FEW    /* cost of a neighbour that does not see the segment */
+#define RANK_WEIGHT RW /* of a neighbour's cost against the next better one */
 
 struct pack_job {
     const struct gamma_image *g;
@@ -423,12 +428,12 @@ float match_cost(const struct matcher *m, int segment, struct plane plane)
         for (at = count++; at > 0 && costs[at - 1] > cost; at--) costs[at] = costs[at - 1];
         costs[at] = cost;
     }
-    if (count == 0) return -1;
-    int better = (m->neighbour_count + 1) / 2;
-    while (count < better) costs[count++] = FEW_SEE; /* fewer witnesses must not look like better ones */
-    float sum = 0;
-    for (int k = 0; k < better; k++) sum += costs[k];
-    return sum / (float)better;
+    double sum = 0, total = 0, weight = 1;
+    for (int k = 0; k < m->neighbour_count; k++, weight *= RANK_WEIGHT) {
+        sum += weight * (double)(k < count ? costs[k] : FEW_SEE);
+        total += weight;
+    }
+    return (float)(sum / total);
 }
 
 double matcher_shift(const struct matcher *m, double least, double most)

@@ -16,7 +16,7 @@
     X(slant, double, 0.02, 0, 10, "", "what a slanted plane must explain better than a constant depth")               \
     X(points, double, 0.3, 0, 10, "", "weight of the sparse points that a segment holds")                             \
     X(nearest_points, double, 0.05, 0, 10, "", "weight of the sparse points near a segment")                           \
-    X(far_bias, double, 0.03, 0, 10, "", "from nearest to farthest: what a depth costs where nothing else tells")     \
+    X(far_bias, double, 0.06, 0, 10, "", "from nearest to farthest: what a depth costs where nothing else tells")     \
     X(matte, choice, "two_colour", 0, 0, "two_colour|none", "how pixels at depth edges are split")
 
 struct segment_params {

@@ -1,4 +1,4 @@
-/* fuzz_photo.c - photographs: any bytes give a picture of the size its header says, or a sentence that names the file. */
+/* fuzz_photo.c - photographs: any bytes give a picture of the size its header says, or a sentence naming the file. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

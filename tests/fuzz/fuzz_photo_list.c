@@ -1,4 +1,4 @@
-/* fuzz_photo_list.c - a photo's record: what is read is written again and read back the same, or a sentence says why not. */
+/* fuzz_photo_list.c - a photo's record: what is read is written and read back the same, or a sentence says why not. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -16,13 +16,13 @@ refused()
     [ "$before" = "$(ls -l --time-style=full-iso bad | sha256sum)" ] || fail "the user's folder was changed"
 }
 
-truncated_photo() { copy bad; head -c 5000 set/photos/v03.jpg >bad/v03.jpg; refused v03.jpg EXCLUDE; }
-empty_photo() { copy bad; : >bad/v02.jpg; refused v02.jpg empty; }
-not_a_photo() { copy bad; echo hello >bad/v01.jpg; refused v01.jpg; }
-cmyk_photo() { copy bad; cp "$root"/tests/fuzz/corpus/photo/*cmyk*.jpg bad/v04.jpg; refused v04.jpg CMYK; }
-two_bad_photos_are_both_named() { copy bad; : >bad/v02.jpg; echo x >bad/v04.jpg; refused v02.jpg v04.jpg; }
+truncated_photo() { copy bad; head -c 5000 set/photos/photo_4.jpg >bad/photo_4.jpg; refused photo_4.jpg EXCLUDE; }
+empty_photo() { copy bad; : >bad/photo_3.jpg; refused photo_3.jpg empty; }
+not_a_photo() { copy bad; echo hello >bad/photo_2.jpg; refused photo_2.jpg; }
+cmyk_photo() { copy bad; cp "$root"/tests/fuzz/corpus/photo/*cmyk*.jpg bad/photo_5.jpg; refused photo_5.jpg CMYK; }
+two_bad_photos_are_both_named() { copy bad; : >bad/photo_3.jpg; echo x >bad/photo_5.jpg; refused photo_3.jpg photo_5.jpg; }
 no_photo() { rm -rf bad; mkdir bad; refused bad; }
-one_photo() { rm -rf bad; mkdir bad; cp set/photos/v00.jpg bad; refused bad; }
+one_photo() { rm -rf bad; mkdir bad; cp set/photos/photo_1.jpg bad; refused bad; }
 no_folder()
 {
     if make -s DEPS=manual PHOTOS=nowhere SCENE=nowhere >log 2>&1; then fail "it was taken"; fi
@@ -32,21 +32,21 @@ no_folder()
 unreadable_photo()
 {
     copy bad
-    rm bad/v03.jpg; ln -s nowhere.jpg bad/v03.jpg
-    refused v03.jpg
+    rm bad/photo_4.jpg; ln -s nowhere.jpg bad/photo_4.jpg
+    refused photo_4.jpg
 }
 
 odd_names()
 {
     rm -rf 'o d d'; mkdir 'o d d'
-    cp set/photos/v00.jpg 'o d d/a photo.jpg'
-    cp set/photos/v01.jpg "o d d/it's \"quoted\".jpg"
-    cp set/photos/v02.jpg 'o d d/cost $5 #2.jpg'
-    cp set/photos/v03.jpg 'o d d/same.jpg'
-    cp set/photos/v04.jpg 'o d d/same.JPEG'
-    cp set/photos/v05.jpg 'o d d/dots.1.2.jpg'
+    cp set/photos/photo_1.jpg 'o d d/a photo.jpg'
+    cp set/photos/photo_2.jpg "o d d/it's \"quoted\".jpg"
+    cp set/photos/photo_3.jpg 'o d d/cost $5 #2.jpg'
+    cp set/photos/photo_4.jpg 'o d d/same.jpg'
+    cp set/photos/photo_5.jpg 'o d d/same.JPEG'
+    cp set/photos/photo_6.jpg 'o d d/dots.1.2.jpg'
     rm -rf odd-model; cp -r set/model odd-model
-    sed -i -e "s|v00.jpg$|a photo.jpg|; s|v01.jpg$|it's \"quoted\".jpg|; s|v02.jpg$|cost \$5 #2.jpg|; s|v03.jpg$|same.jpg|; s|v04.jpg$|same.JPEG|; s|v05.jpg$|dots.1.2.jpg|" odd-model/images.txt
+    sed -i -e "s|photo_1.jpg$|a photo.jpg|; s|photo_2.jpg$|it's \"quoted\".jpg|; s|photo_3.jpg$|cost \$5 #2.jpg|; s|photo_4.jpg$|same.jpg|; s|photo_5.jpg$|same.JPEG|; s|photo_6.jpg$|dots.1.2.jpg|" odd-model/images.txt
     small odd
     make -s DEPS=manual PHOTOS='o d d' SFM=odd-model SCENE=odd video >log 2>&1 || { cat log; fail "make"; }
     n=$(grep -c '\.exr$' out/odd/views/images.txt)
@@ -67,14 +67,14 @@ odd_folder_names()
 killed_stage()
 {
     make -s DEPS=manual PHOTOS=set/photos SFM=set/model SCENE=t depth >log 2>&1 || { cat log; fail "make"; }
-    want=$(sha256sum out/t/depth/v02.exr)
-    rm -f out/t/depth/v02.*
-    # the stage that makes v02 is ended by SIGKILL in the middle of its work
+    want=$(sha256sum out/t/depth/photo_3.exr)
+    rm -f out/t/depth/photo_3.*
+    # the stage that makes photo_3 is ended by SIGKILL in the middle of its work
     cat >killer <<'K'
 #!/bin/bash
 for i in $(seq 400); do
     for p in /proc/[0-9]*; do
-        if tr '\0' ' ' <"$p/cmdline" 2>/dev/null | grep -q "^out/build/[a-z]*/bin/segment_depth .*--view v02 .*--out out/t/"; then
+        if tr '\0' ' ' <"$p/cmdline" 2>/dev/null | grep -q "^out/build/[a-z]*/bin/segment_depth .*--view photo_3 .*--out out/t/"; then
             [ "$(readlink "$p/cwd")" = "$1" ] && sleep 0.02 && kill -9 "${p#/proc/}" && exit 0
         fi
     done
@@ -86,9 +86,9 @@ K
     if make -s DEPS=manual SCENE=t depth >log 2>&1; then wait "$k" || skip "the stage was too fast to be caught"; fail "make was content"; fi
     wait "$k" || fail "nothing was killed"
     grep -q 'signal 9' log || { cat log; fail "the signal is not told"; }
-    [ ! -e out/t/depth/v02.exr ] || fail "a half-made product stands there"
+    [ ! -e out/t/depth/photo_3.exr ] || fail "a half-made product stands there"
     make -s DEPS=manual SCENE=t depth >log 2>&1 || { cat log; fail "make after it"; }
-    [ "$want" = "$(sha256sum out/t/depth/v02.exr)" ] || fail "other bytes"
+    [ "$want" = "$(sha256sum out/t/depth/photo_3.exr)" ] || fail "other bytes"
 }
 
 full_disk()
@@ -120,7 +120,7 @@ photos_of_different_sizes_and_png()
     # through COLMAP itself, as a user would; one photo is another size, one a PNG
     photos sized --views 6 --size 480x360 >/dev/null
     photos half --views 6 --size 400x300 >/dev/null
-    cp half/photos/v03.jpg sized/photos/v03.jpg
+    cp half/photos/photo_4.jpg sized/photos/photo_4.jpg
     small sized
     make -s DEPS=manual PHOTOS=sized/photos SCENE=sized video >log 2>&1 || { tail -n 30 log; fail "make"; }
     [ "$(awk '!/^#/ { print $3, $4 }' out/sized/sfm/0/cameras.txt | sort -u | wc -l)" = 2 ] || fail "two sizes of cameras were expected"

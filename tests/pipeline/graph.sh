@@ -50,7 +50,7 @@ parallax/establishing_dolly/video.mp4" ] || { changed a b; fail "wrong products 
 
 a_deleted_product_is_made_again_with_what_follows()
 {
-    for p in parallax/establishing_dolly/frames/0003.exr views/v01.exr depth/v02.exr depth/v02.txt views/images.txt parallax/establishing_dolly/path.txt index.html; do
+    for p in parallax/establishing_dolly/frames/0003.exr views/photo_2.exr depth/photo_3.exr depth/photo_3.txt views/images.txt parallax/establishing_dolly/path.txt index.html; do
         (cd out/t && find views depth parallax -type f ! -name '.*' | sort | xargs -d '\n' sha256sum) >before
         snapshot out/t >a
         rm "out/t/$p"
@@ -71,15 +71,15 @@ a_deleted_product_is_made_again_with_what_follows()
 a_changed_photo_redoes_its_view_and_its_readers()
 {
     snapshot out/t >a
-    photos set --change 4 >/dev/null
+    photos set --change 5 >/dev/null
     run_scene >log
     snapshot out/t >b
     changed a b >c
-    grep -q '^views/v04.exr' c || fail "the changed photo's view was not made again"
-    ! grep -qE '^(sfm/|views/(cameras|images|points3D)|views/v0[0-35-9])' c || { cat c; fail "too much was made again"; }
-    for d in out/t/depth/v0?.d; do
+    grep -q '^views/photo_5.exr' c || fail "the changed photo's view was not made again"
+    ! grep -qE '^(sfm/|views/(cameras|images|points3D)|views/photo_[12346]\.)' c || { cat c; fail "too much was made again"; }
+    for d in out/t/depth/photo_?.d; do
         v=$(basename "$d" .d)
-        if grep -q 'v04.exr' "$d"; then grep -q "^depth/$v.exr" c || fail "$v reads the changed view, but was not made again"
+        if grep -q 'photo_5.exr' "$d"; then grep -q "^depth/$v.exr" c || fail "$v reads the changed view, but was not made again"
         else ! grep -q "^depth/$v.exr" c || fail "$v does not read the changed view, but was made again"; fi
     done
     photos set >/dev/null
@@ -89,12 +89,12 @@ a_changed_photo_redoes_its_view_and_its_readers()
 a_photo_that_goes_redoes_sfm()
 {
     snapshot out/t >a
-    run_scene EXCLUDE=v05.jpg >log 2>&1 || { cat log; fail "make EXCLUDE"; }
-    grep -q v05 out/t/views/images.txt && fail "v05 is still a view"
+    run_scene EXCLUDE=photo_6.jpg >log 2>&1 || { cat log; fail "make EXCLUDE"; }
+    grep -q photo_6 out/t/views/images.txt && fail "photo_6 is still a view"
     snapshot out/t >b
     changed a b | grep -q '^sfm/' || fail "SfM was not done again"
     run_scene >log 2>&1
-    grep -q v05 out/t/views/images.txt || fail "v05 did not come back"
+    grep -q photo_6 out/t/views/images.txt || fail "photo_6 did not come back"
 }
 
 draft_stands_beside_and_shares_sfm()
@@ -118,8 +118,8 @@ a_second_run_is_refused()
 a_failed_stage_keeps_the_old_product_and_says_why()
 {
     cp scenes/t/scene.cfg keep.cfg
-    before=$(sha256sum out/t/depth/v01.exr)
-    printf '[segment_depth]\nmax_planes = none\n' >>scenes/t/scene.cfg
+    before=$(sha256sum out/t/depth/photo_2.exr)
+    printf '[segment_depth]\nplanes = none\n' >>scenes/t/scene.cfg
     if run_scene >log 2>&1; then fail "a wrong value was taken"; fi
     grep -q 'scene.cfg' log || { cat log; fail "the sentence does not name the file"; }
     cp keep.cfg scenes/t/scene.cfg
@@ -127,7 +127,7 @@ a_failed_stage_keeps_the_old_product_and_says_why()
     if run_scene >log 2>&1; then fail "an unknown section was taken"; fi
     grep -q 'scene.cfg:.*segmentdepth' log || { cat log; fail "the sentence does not name the section"; }
     cp keep.cfg scenes/t/scene.cfg
-    [ "$before" = "$(sha256sum out/t/depth/v01.exr)" ] || fail "the good product was lost"
+    [ "$before" = "$(sha256sum out/t/depth/photo_2.exr)" ] || fail "the good product was lost"
     run_scene >log 2>&1 || { cat log; fail "make after the mend"; }
 }
 

@@ -73,12 +73,12 @@ cluster_gives_the_bytes_of_local()
 
 a_task_that_fails_is_told_and_not_trusted()
 {
-    rm out/cluster/depth/v01.exr out/cluster/depth/v03.exr
-    cp out/cluster/views/v02.exr keep.exr
-    head -c 2000 keep.exr >out/cluster/views/v02.exr # a view that is not whole: its readers must fail
+    rm out/cluster/depth/photo_2.exr out/cluster/depth/photo_4.exr
+    cp out/cluster/views/photo_3.exr keep.exr
+    head -c 2000 keep.exr >out/cluster/views/photo_3.exr # a view that is not whole: its readers must fail
     if make -s DEPS=manual SCENE=cluster JOBS=slurm depth >log 2>&1; then fail "the run was called good"; fi
     grep -q 'failed on the cluster' log || { cat log; fail "the failure is not told"; }
-    cp keep.exr out/cluster/views/v02.exr
+    cp keep.exr out/cluster/views/photo_3.exr
     make -s DEPS=manual SCENE=cluster JOBS=slurm >log 2>&1 || { cat log; fail "the run after the mend"; }
     products local >a; products cluster >b
     diff a b || fail "other bytes after the mend"

@@ -1,13 +1,8 @@
 /* camera.c - camera models: closed forms, round trips to the corners, and where a distortion stops being one-to-one. */
+#include "tests/unit/scratch.h"
 #include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 
-#include <cmocka.h>
 #include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 #include "common/camera.h"
 #include "common/rng.h"

@@ -89,20 +89,27 @@ static void a_view_that_enters_does_so_without_a_jump(void **state)
     }
 }
 
+static void composite(struct raster_pixel *p, const float rgba[4], float z, float sigma, float inside, float reach)
+{
+    const struct raster_fragment f = {{rgba[0], rgba[1], rgba[2], rgba[3]}, z, sigma, inside};
+    raster_composite(p, &f, reach);
+}
+
 static void fragments_saturate_front_to_back(void **state)
 {
     (void)state;
     struct raster_pixel p = {0};
     const float red[4] = {0.6f, 0, 0, 0.6f}, green[4] = {0, 0.5f, 0, 0.5f}, blue[4] = {0, 0, 1, 1};
 
-    raster_composite(&p, red, 5, 0.01f, 0.5f);
-    raster_composite(&p, green, 5.2f, 0.02f, 0.5f); /* the same surface: 0.4 are left */
+    composite(&p, red, 5, 0.01f, 1, 0.5f);
+    composite(&p, green, 5.2f, 0.02f, 0.5f, 0.5f); /* the same surface: 0.4 are left */
     assert_near(p.rgba[0], 0.6, 1e-6);
     assert_near(p.rgba[1], 0.4, 1e-6);
     assert_near(p.rgba[3], 1, 1e-6);
+    assert_near(p.inside, 0.6 * 1 + 0.4 * 0.5, 1e-6);
     assert_near(p.front.z, 0.6 * 5 + 0.4 * 5.2, 1e-5);
     assert_near(p.front.sigma, 0.6 * 0.01 + 0.4 * 0.02, 1e-6);
-    raster_composite(&p, blue, 9, 0.01f, 0.5f); /* nothing is left */
+    composite(&p, blue, 9, 0.01f, 1, 0.5f); /* nothing is left */
     assert_near(p.rgba[2], 0, 0);
     assert_near(p.rgba[3], 1, 1e-6);
     assert_true(raster_visible(&p) == &p.front);
@@ -114,18 +121,19 @@ static void depth_is_never_a_mean_across_a_jump(void **state)
     struct raster_pixel p = {0};
     const float edge[4] = {0.3f, 0, 0, 0.3f}, wall[4] = {0, 0, 1, 1};
 
-    raster_composite(&p, edge, 2, 0.01f, 0.1f);
-    raster_composite(&p, wall, 7, 0.01f, 0.1f);
+    composite(&p, edge, 2, 0.01f, 1, 0.1f);
+    composite(&p, wall, 7, 0.01f, 1, 0.1f);
     assert_near(p.rgba[0], 0.3, 1e-6);
     assert_near(p.rgba[2], 0.7, 1e-6);
     assert_near(raster_visible(&p)->z, 7, 0); /* most of the pixel is wall */
 
     p = (struct raster_pixel){0};
-    raster_composite(&p, wall, 7, 0.01f, 0.1f); /* out of order: the nearer one still goes in front */
-    raster_composite(&p, edge, 2, 0.01f, 0.1f);
+    composite(&p, wall, 7, 0.01f, 0.2f, 0.1f); /* out of order: the nearer one still goes in front */
+    composite(&p, edge, 2, 0.01f, 1, 0.1f);
     assert_near(p.rgba[0], 0.3, 1e-6);
     assert_near(p.rgba[2], 0.7, 1e-6);
     assert_near(p.rgba[3], 1, 1e-6);
+    assert_near(p.inside, 0.3 * 1 + 0.7 * 0.2, 1e-6);
     assert_near(p.front.z, 2, 0);
     assert_near(raster_visible(&p)->z, 7, 0);
 }
