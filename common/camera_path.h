@@ -1,7 +1,7 @@
 /* camera_path.h - a camera move: out/SCENE/parallax/EFFECT/path/{cameras,images,points3D}.txt and path.txt beside it.
  *
- * The poses are COLMAP text, a PINHOLE camera a frame, image names "0001.exr"; all frames have one size, even in both directions.
- * path.txt holds what COLMAP's format cannot say:
+ * The poses are COLMAP text, a PINHOLE camera a frame, image names "0001.exr"; all frames have one size, even in both
+ * directions. path.txt holds what COLMAP's format cannot say:
  *   remodel-path 1
  *   effect establishing_dolly
  *   fps 30                           frames a second

@@ -1,9 +1,9 @@
 /* delaunay.c - Delaunay triangulation in the plane.
  *
- * qhull lifts the points onto a paraboloid, whose lower hull is the triangulation. Points on a common circle (grids) make
- * facets of more than three vertices; qhull splits them without changing the points (option Qt; no joggle), which
- * may leave triangles of no area along the hull: they are dropped here. */
-#include "delaunay.h"
+ * qhull lifts the points onto a paraboloid, whose lower hull is the triangulation. Points on a common circle (grids)
+ * make facets of more than three vertices; qhull splits them without changing the points (option Qt; no joggle),
+ * which may leave triangles of no area along the hull: they are dropped here. */
+#include "common/delaunay.h"
 
 #include <math.h>
 #include <stdbool.h>

@@ -15,10 +15,9 @@
 #include "common/soft_z.h"
 
 #define BAND_ROWS    16
-#define COVERED      0.5f /* alpha from which a view covers a pixel */
-#define MESH_SAMPLES 6    /* most that the view mesh names */
-#define MAX_SAMPLES  10   /* with those of other views in holes */
-#define NEAR_SPACING 0.1  /* of the mesh's spacing: other views closer than this weigh about alike */
+#define COVERED      0.5f  /* alpha from which a view covers a pixel */
+#define MAX_SAMPLES  7     /* six that the view mesh names, or fewer and another view in a hole */
+#define LEAST_INSIDE 1e-3f /* a view alone at its border still shows */
 
 void rendered_frame_release(struct rendered_frame *frame)
 {

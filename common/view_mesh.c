@@ -2,30 +2,32 @@
  *
  * Lines. Let A, B, C be a triangle's corners relative to the novel camera's centre and d a ray. Then
  *   d det(A, B, C) = e_a A + e_b B + e_c C   with e_a = d . (B x C), e_b = d . (C x A), e_c = d . (A x B),
- * so the line along d meets the triangle where the e are of one sign, with barycentric weights e / (e_a + e_b + e_c), at
- * t = det / (e_a + e_b + e_c). All triangles are counter-clockwise in the plane, so e >= 0 means that the line crosses the mesh
- * towards the scene, and the sign of det tells whether forward (the camera is behind) or backward (in front). The e are
- * linear along a row of pixels: a triangle's part of a row is an interval, found by three divisions.
+ * so the line along d meets the triangle where the e are of one sign, with barycentric weights e / (e_a + e_b + e_c),
+ * at t = det / (e_a + e_b + e_c). All triangles are counter-clockwise in the plane, so e >= 0 means that the line
+ * crosses the mesh towards the scene, and the sign of det tells whether forward (the camera is behind) or backward
+ * (in front). The e are linear along a row of pixels: a triangle's part of a row is an interval, found by three
+ * divisions.
  *
- * Beyond the boundary. Lines that miss the triangles meet the plane beyond the rim; seen from the centroid that place lies
- * between two rim vertices a, b, whose edge gives the weights. In the plane's coordinates about the centroid the place is
- * p = o - (o_z / d_z) d, so that q = d_z p = d_z o - o_z d is linear in the pixel as well, and q = alpha a + beta b by two cross
- * products. The weights depend on the direction of q only and are continuous when d turns parallel to the plane; rays that
- * look away (d_z < 0) keep q = -o_z d.
+ * Beyond the boundary. Lines that miss the triangles meet the plane beyond the rim; seen from the centroid that place
+ * lies between two rim vertices a, b, whose edge gives the weights. In the plane's coordinates about the centroid the
+ * place is p = o - (o_z / d_z) d, so that q = d_z p = d_z o - o_z d is linear in the pixel as well, and q = alpha a +
+ * beta b by two cross products. The weights depend on the direction of q only and are continuous when d turns
+ * parallel to the plane; rays that look away (d_z < 0) keep q = -o_z d.
  *
  * What differs from the thesis:
- * - the plane must face the scene: on an orbit the best plane through the centres contains the scene too, and its rays would run
- *   along it; the plane through the main axis that faces the mean viewing direction is taken instead;
- * - duplicates lie in the fitted plane, so that uneven centres are not exaggerated four times, and what lies beyond is flat;
+ * - the plane must face the scene: on an orbit the best plane through the centres contains the scene too, and its
+ *   rays would run along it; the plane through the main axis that faces the mean viewing direction is taken instead;
+ * - duplicates lie in the fitted plane, so that uneven centres are not exaggerated four times, and what lies beyond
+ *   is flat;
  * - sets of centres much wider than high get duplicates stretched across, up to the collinear case, where weights
  *   depend on the position along the line alone;
  * - "near the mesh" is measured along the normal, which is continuous also over a bent mesh. */
-#include "view_mesh.h"
+#include "common/view_mesh.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-#include "delaunay.h"
+#include "common/delaunay.h"
 
 #define DUPLICATE_REACH 4.0  /* times the offset from the centroid */
 #define FACING          0.7  /* cosine between normal and viewing direction that a fitted plane must reach */
@@ -68,7 +70,8 @@ static struct vec3 mean_axis(const struct camera_set *set, int row)
     return vec3_normalize(sum);
 }
 
-/* Unit vector perpendicular to `unit`, near a mean axis of the cameras; near another one where the first is parallel to it. */
+/* Unit vector perpendicular to `unit`, near a mean axis of the cameras; near another one where the first is parallel
+ * to it. */
 static struct vec3 perpendicular_axis(const struct camera_set *set, int row, int other_row, struct vec3 unit)
 {
     struct vec3 axis = mean_axis(set, row);
@@ -368,8 +371,8 @@ struct ray_row {
     struct vec3 from, step, plane_from, plane_step;
 };
 
-/* What blends in one triangle (three corners) or beyond one rim edge (two): corner k's weight at u is a[k] + b[k] u, up to a
- * common factor; the piece covers the u where all of them and the gate are >= 0. */
+/* What blends in one triangle (three corners) or beyond one rim edge (two): corner k's weight at u is a[k] + b[k] u,
+ * up to a common factor; the piece covers the u where all of them and the gate are >= 0. */
 struct span {
     int corners;
     double a[4], b[4]; /* the corners, then the gate */
@@ -390,7 +393,7 @@ static void line_of(double *a, double *b, struct vec3 v, struct vec3 from, struc
     *b = vec3_dot(v, step);
 }
 
-/* False if the triangle is seen from the wrong side. side: 1 if the camera is behind the mesh, -1 in front, 0 either. */
+/* False if seen from the wrong side. side: 1 if the camera is behind the mesh, -1 in front, 0 either. */
 static bool triangle_span(struct span *s, const struct view_mesh *mesh, int triangle, struct vec3 eye,
                           const struct ray_row *rays, int side)
 {
@@ -501,7 +504,8 @@ static inline void store(struct view_weights *w, const struct blend *b, int corn
     for (int k = 0; k < corners; k++) w->weight[b->slot[k]] += b->keep * weight[k];
 }
 
-/* ------------------------------------------------------------------------------------------- views that share a centre */
+/* ------------------------------------------------------------------------------------------- views that share a
+ * centre */
 
 /* How well a view's picture contains a ray: 0.05 at its border, 1 in the middle; ever less outside, and never 0. */
 static double containment(const struct view *view, struct vec3 ray)
@@ -530,8 +534,8 @@ static void keep_best(struct candidate *list, int *count, int most, int view, do
     list[at] = (struct candidate){view, score};
 }
 
-/* Hands each vertex' weight to the views that share its centre: the best three, by how far they beat the fourth, so that
- * weights stay continuous where the choice changes. */
+/* Hands each vertex' weight to the views that share its centre: the best three, by how far they beat the fourth, so
+ * that weights stay continuous where the choice changes. */
 static void share_weights(const struct view_mesh *mesh, struct vec3 ray, struct view_weights *w)
 {
     struct candidate all[VIEW_WEIGHTS_MAX + 1];
@@ -566,7 +570,8 @@ static void share_weights(const struct view_mesh *mesh, struct vec3 ray, struct 
         w->weight[insert_view(w, all[i].view)] = (float)(sum > 0 ? (all[i].score - least) / sum : 1.0 / n);
 }
 
-/* ----------------------------------------------------------------------------------------------------- a novel camera */
+/* ----------------------------------------------------------------------------------------------------- a novel
+ * camera */
 
 static struct vec3 to_plane_direction(const struct view_mesh *mesh, struct vec3 d)
 {

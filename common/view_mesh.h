@@ -1,13 +1,14 @@
 /* view_mesh.h - which views a ray of a novel camera blends, and with what weights (thesis 3.6).
  *
  * A triangle mesh with its vertices at the views' centres: Delaunay in the plane fitted to them, boundary vertices
- * duplicated at 4.0 times their offset from the centroid. A pixel's ray, forward or (novel camera in front of the mesh)
- * backward, hits one triangle: three views and their barycentric weights. A ray that hits none takes the weights of the
- * boundary point in its direction. Near the mesh, where its projection is singular, the weights of the nearest mesh point hold
- * for the whole picture, faded in over a band. Fewer than three views, collinear and coincident centres work.
+ * duplicated at 4.0 times their offset from the centroid. A pixel's ray, forward or (novel camera in front of the
+ * mesh) backward, hits one triangle: three views and their barycentric weights. A ray that hits none takes the
+ * weights of the boundary point in its direction. Near the mesh, where its projection is singular, the weights of the
+ * nearest mesh point hold for the whole picture, faded in over a band. Fewer than three views, collinear and
+ * coincident centres work.
  *
- * Views with the same centre (a tripod, a photo that became several views) share a vertex; its weight goes to those of
- * them whose pictures contain the ray best. */
+ * Views with the same centre (a tripod, a photo that became several views) share a vertex; its weight goes to those
+ * of them whose pictures contain the ray best. */
 #ifndef REMODEL_VIEW_MESH_H
 #define REMODEL_VIEW_MESH_H
 

@@ -1,14 +1,16 @@
 /* establishing_dolly.c - the establishing dolly in its thin form.
  *
- * The camera always points at the scene's centroid, the median of the segments in the middle of the central views' pictures;
- * its focal length is the views' mean, its roll none against their mean up. It moves along a line through the centremost view in the plane
- * of the view mesh: in a few directions the ends are put as far out as the views' spread (extent) and the angle that the ends subtend
- * at the centroid (max_angle: what a picture shows must be seen by neighbouring views) allow, symmetric about the centremost view as far as
- * there are views on both sides. Then the reach is shrunk by bisection until the holes at the ends, the quarters and the middle
- * are few enough and nothing of the scene is too near.
+ * The camera always points at the scene's centroid, the median of the segments in the middle of the central views'
+ * pictures; its focal length is the views' mean, its roll none against their mean up. It moves along a line through
+ * the centremost view in the plane of the view mesh: in a few directions the ends are put as far out as the views'
+ * spread (extent) and the angle that the ends subtend at the centroid (max_angle: what a picture shows must be seen
+ * by neighbouring views) allow, symmetric about the centremost view as far as there are views on both sides. Then the
+ * reach is shrunk by bisection until, at the ends, the quarters and the middle, the holes are few enough, the frame
+ * stays within the pictures of the views that it blends, and nothing of the scene is too near.
  *
- * Zooming in hides holes at the border: each 5 % of focal length is tried, and what counts is length / zoom^2, a picture's
- * area being given up for the length gained. Of the directions the best by length, closeness to the views and this wins.
+ * Zooming in hides holes and the photos' borders: each 5 % of focal length is tried; what counts is length / zoom^3:
+ * zooming in gives up what the photos frame. Of the directions the one wins that has most length for this and for its
+ * distance to the views.
  *
  * What differs from the thesis: no grid of viewpoints, holes by their area and not by H. */
 #include "stages/plan_path/establishing_dolly.h"
@@ -25,7 +27,7 @@ const struct param plan_param_table[] = {PLAN_PARAMS(PARAM_ROW) PARAM_END};
 #define CENTRAL_VIEWS    5   /* whose segments vote for the centroid */
 #define CENTRAL_PART     0.5 /* of width and height */
 #define ZOOM_STEP        0.05
-#define ZOOM_COST 3
+#define ZOOM_COST        3
 #define NEAR_PERCENTILE  0.02 /* depths that stand for near and far */
 #define FAR_PERCENTILE   0.98
 #define NEAR_FRACTION    0.5   /* of the near depth in the middle: nearer than this is within the scene */
@@ -47,7 +49,7 @@ enum status plan_params_check(const void *values, struct err *err)
                    p->seconds, p->fps);
 }
 
-/* -------------------------------------------------------------------------------------------------- weighted samples */
+/* ------------------------------------------------------------------------------------------------- weighted samples */
 
 struct sample {
     double value, weight;
@@ -80,7 +82,7 @@ struct blob {
     bool central; /* in the middle of its view's picture */
 };
 
-/* ------------------------------------------------------------------------------------------------------------ a plan */
+/* ----------------------------------------------------------------------------------------------------------- a plan */
 
 struct plan {
     const struct layer_scene *scene;
@@ -233,7 +235,8 @@ static struct view aim(const struct plan *p, struct vec3 at, double zoom)
     return v;
 }
 
-/* The weight of the blobs in the picture; `near` gets that of those nearer than `limit`. Their depths go to p->scratch. */
+/* The weight of the blobs in the picture; `near` gets that of those nearer than `limit`. Their depths go to
+ * p->scratch. */
 static size_t blobs_in_picture(const struct plan *p, const struct view *v, double limit, double *near, double *total)
 {
     size_t n = 0;
@@ -257,8 +260,8 @@ static enum status count_holes(struct plan *p, const struct view *v, double *hol
     return ST_OK;
 }
 
-/* The part of the picture, at the centroid's depth, that lies beyond the borders of the views that the mesh names: each pixel
- * counts by the weight of the views that do not contain it. Other views may show it, but with a seam. */
+/* The part of the picture, at the centroid's depth, that lies beyond the borders of the views that the mesh names:
+ * each pixel counts by the weight of the views that do not contain it. Other views may show it, but with a seam. */
 static double outside(const struct plan *p, const struct view *v)
 {
     const struct camera_set *set = p->scene->set;
@@ -286,7 +289,8 @@ static double outside(const struct plan *p, const struct view *v)
     return sum / (small.width * small.height);
 }
 
-/* ----------------------------------------------------------------------------------------------------------- the ends */
+/* ----------------------------------------------------------------------------------------------------------- the
+ * ends */
 
 static struct vec3 place(const struct plan *p, const struct way *w, double s)
 {
@@ -343,7 +347,7 @@ static enum status keeps_limits(struct plan *p, const struct way *w, bool *good,
     return ST_OK;
 }
 
-/* Sets w->reach to the largest reach up to `most` that keeps the limits at w->zoom; the middle is known to keep them. */
+/* Sets w->reach to the largest up to `most` that keeps the limits at w->zoom; the middle is known to keep them. */
 static enum status find_reach(struct plan *p, struct way *w, double most, int steps, struct err *err)
 {
     double good = 0, bad = most;
@@ -397,8 +401,8 @@ static void find_extent(const struct plan *p, struct way *w)
     }
 }
 
-/* Sets reach, zoom and merit of a direction, as far as its merit times `weight` can beat the best there is, which it then
- * replaces. min_zoom: from which the middle keeps the limits. */
+/* Sets reach, zoom and merit of a direction, as far as its merit times `weight` can beat the best there is, which it
+ * then replaces. min_zoom: from which the middle keeps the limits. */
 static enum status explore(struct plan *p, struct vec3 direction, double weight, double min_zoom, struct way *best,
                            struct err *err)
 {
@@ -416,8 +420,8 @@ static enum status explore(struct plan *p, struct vec3 direction, double weight,
     return ST_OK;
 }
 
-/* The smallest zoom at which the centremost view's place keeps max_holes and max_outside; where none does, the largest, and
- * what is not kept is allowed as it is there, and a little more. */
+/* The smallest zoom at which the centremost view's place keeps max_holes and max_outside; where none does, the
+ * largest, and what is not kept is allowed as it is there, and a little more. */
 static enum status find_min_zoom(struct plan *p, double *zoom, struct err *err)
 {
     const double max_holes = p->params->max_holes, max_outside = p->params->max_outside;
@@ -450,7 +454,8 @@ static enum status find_way(struct plan *p, struct way *best, struct err *err)
     return ST_OK;
 }
 
-/* ----------------------------------------------------------------------------------------------------------- the path */
+/* ----------------------------------------------------------------------------------------------------------- the
+ * path */
 
 /* How far a point on the middle camera's axis moves in the picture from one end to the other. */
 static void displacement(const struct view *first, const struct view *middle, const struct view *last, double depth,

@@ -1,4 +1,5 @@
-/* establishing_dolly.h - a camera move along the views, pointing at the scene's centroid (thesis 3.4.2, "Establishing dolly").
+/* establishing_dolly.h - a camera move along the views, pointing at the scene's centroid (thesis 3.4.2, "Establishing
+ * dolly").
  *
  * Scene units, degrees where a name says so; depth is z along a camera's axis. */
 #ifndef REMODEL_ESTABLISHING_DOLLY_H
@@ -46,9 +47,9 @@ struct dolly_notes {
     bool stands_still;       /* no move keeps the limit */
 };
 
-/* ups: a view's upright direction in its own camera (0 -1 0 for a picture that is stored upright), one a view; NULL: all upright.
- * The film is upright, and turned by 90 degrees against pictures stored so. path is empty on entry; on failure it is
- * left empty. ST_DATA: the scene has no depth. Same bits for any number of threads. */
+/* ups: a view's upright direction in its own camera (0 -1 0 for a picture that is stored upright), one a view; NULL:
+ * all upright. The film is upright, and turned by 90 degrees against pictures stored so. path is empty on entry; on
+ * failure it is left empty. ST_DATA: the scene has no depth. Same bits for any number of threads. */
 enum status plan_establishing_dolly(struct camera_path *path, struct dolly_notes *notes,
                                     const struct layer_scene *scene, const struct vec3 *ups,
                                     const struct plan_params *params, struct err *err);

@@ -78,7 +78,8 @@ static void refuses_to_make_nonsense(void **state)
     camera_path_release(&p);
 }
 
-/* Writes a good path of two frames, then `text` as its path.txt (NULL: as it is); reading it must fail with these words. */
+/* Writes a good path of two frames, then `text` as its path.txt (NULL: as it is); reading it must fail with these
+ * words. */
 static void refused(const char *text, const char *words)
 {
     struct camera_path p = {0};

@@ -1,4 +1,5 @@
-/* delaunay.c - the triangulation is a Delaunay one, covers the hull, turns counter-clockwise, and degenerate input makes none. */
+/* delaunay.c - the triangulation is a Delaunay one, covers the hull, turns counter-clockwise, and degenerate input
+ * makes none. */
 #include "common/delaunay.h"
 
 #include <math.h>

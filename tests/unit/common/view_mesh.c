@@ -1,4 +1,5 @@
-/* view_mesh.c - weights of rays: what a camera at a view, between views, before and behind them must get, and the hard cases. */
+/* view_mesh.c - weights of rays: what a camera at a view, between views, before and behind them must get, and the
+ * hard cases. */
 #include "common/view_mesh.h"
 
 #include <setjmp.h>

@@ -1,0 +1,88 @@
+# what every stage's command line promises, and what the Makefile says to wrong words
+. tests/lib.sh
+
+stages=$(cd stages && echo */ | tr -d /)
+
+# expect CODE WORD COMMAND...: exit status and a word on standard error
+expect()
+{
+    local code=$1 word=$2 rc=0; shift 2
+    "$@" >"$scratch/out" 2>"$scratch/err" </dev/null || rc=$?
+    [ "$rc" = "$code" ] || { cat "$scratch/err"; fail "$*: exit $rc, wanted $code"; }
+    grep -qF -- "$word" "$scratch/err" || [ -z "$word" ] || { cat "$scratch/err"; fail "$*: nothing says '$word'"; }
+}
+
+help_version_and_config_of_every_stage()
+{
+    for s in $stages; do
+        for o in --help --version --print-config; do
+            "$B/bin/$s" "$o" >"$scratch/out" 2>"$scratch/err" || fail "$s $o"
+            [ -s "$scratch/out" ] && [ ! -s "$scratch/err" ] || fail "$s $o: words belong on standard output"
+        done
+        grep -qx "\[$s\]" "$scratch/out" || fail "$s --print-config does not begin with its section"
+    done
+}
+
+wrong_usage_is_2_with_a_sentence()
+{
+    for s in $stages; do
+        expect 2 "no-such-option" "$B/bin/$s" --no-such-option
+        expect 2 "error" "$B/bin/$s"
+        expect 2 "no-such-file" "$B/bin/$s" --config no-such-file.cfg
+        expect 2 "no_such_key" "$B/bin/$s" --set no_such_key=1
+        expect 2 "threads" "$B/bin/$s" --threads many
+    done
+}
+
+parameters_out_of_range_are_refused()
+{
+    expect 2 "planes" "$B/bin/segment_depth" --set planes=-1
+    expect 2 "planes" "$B/bin/segment_depth" --set planes=1e9
+    expect 2 "max_holes" "$B/bin/plan_path" --set max_holes=nan
+    expect 2 "camera_model" "$B/bin/sfm" --set camera_model=FISH
+}
+
+missing_inputs_fail_with_their_name()
+{
+    d=$scratch/nowhere
+    expect 1 "$d" "$B/bin/import_photos" --photos "$d" --out "$scratch/o"
+    expect 1 "$d" "$B/bin/sfm_import" --sfm "$d" --records "$d" --out "$scratch/o"
+    expect 1 "$d" "$B/bin/rectify" --view v --photos "$d" --records "$d" --views "$d" --out "$scratch/o/v.exr"
+    expect 1 "$d" "$B/bin/segment_depth" --view v --views "$d" --out "$scratch/o/v.exr"
+    expect 1 "$d" "$B/bin/plan_path" --views "$d" --depth "$d" --effect establishing_dolly --out "$scratch/o"
+    expect 1 "$d" "$B/bin/render_views" --views "$d" --depth "$d" --path "$d" --frames 1:2 --out "$scratch/o"
+    expect 1 "$d" "$B/bin/encode_video" --path "$d" --frames "$d" --out "$scratch/o/v.mp4"
+    expect 1 "$d" "$B/bin/verify" --file "$d"
+    [ -z "$(find "$scratch/o" -type f 2>/dev/null)" ] || { find "$scratch/o"; fail "a product was left"; }
+}
+
+make_without_a_scene_builds_and_explains()
+{
+    make -s DEPS=manual >"$scratch/out" 2>&1 || { cat "$scratch/out"; fail "make"; }
+    grep -q 'make PHOTOS=DIR SCENE=NAME' "$scratch/out" || fail "it does not say what to give"
+}
+
+make_says_what_is_wrong_with_its_words()
+{
+    project words
+    expect 2 "SCENE=NAME" make -s DEPS=manual depth
+    expect 2 "QUALITY=best" make -s DEPS=manual SCENE=x QUALITY=best
+    expect 2 "JOBS=cloud" make -s DEPS=manual SCENE=x JOBS=cloud
+    expect 2 "letters, digits" make -s DEPS=manual SCENE='../x'
+    expect 2 "PHOTOS=DIR" make -s DEPS=manual SCENE=nothing
+    expect 2 "no-such-folder" make -s DEPS=manual SCENE=x PHOTOS=no-such-folder
+    [ -z "$(ls scenes)" ] || fail "a scene was left behind"
+}
+
+missing_packages_are_named_with_the_line_to_run()
+{
+    project packages
+    rm configs; cp -r "$root/configs" configs
+    echo "run no-such-package command:no-such-command" >>configs/packages.txt
+    expect 2 "no-such-command" make -s DEPS=manual
+    grep -q 'apt-get install .*no-such-package' "$scratch/out" || fail "the line to run is not printed"
+}
+
+for t in help_version_and_config_of_every_stage wrong_usage_is_2_with_a_sentence parameters_out_of_range_are_refused \
+    missing_inputs_fail_with_their_name make_without_a_scene_builds_and_explains make_says_what_is_wrong_with_its_words \
+    missing_packages_are_named_with_the_line_to_run; do run "$t"; done
