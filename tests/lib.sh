@@ -35,7 +35,11 @@ project()
 }
 
 # photos DIR [OPTION...]: a synthetic scene, DIR/photos and DIR/model
-photos() { "$root/$B/tests/pipeline/make_photos" --views 6 --out "$@"; }
+photos()
+{
+    case "$*" in *--views*) ;; *) set -- "$@" --views 6 ;; esac
+    "$root/$B/tests/pipeline/make_photos" --out "$@" 2>&1
+}
 
 # small SCENE: a scene.cfg for tests that are about the graph: few planes, few frames
 small()
@@ -54,7 +58,7 @@ CFG
 # products SCENE: hash and name of every product from sfm_import on
 products()
 {
-    (cd "out/$1" && find views depth parallax -type f ! -name '.*' | LC_ALL=C sort | xargs -d '\n' sha256sum)
+    (cd "out/$1" && find views depth parallax -type f ! -name '.*' ! -name '*.d' | LC_ALL=C sort | xargs -d '\n' sha256sum)
 }
 # snapshot FOLDER: names and times of all products, to see what was made again
 snapshot() { find "$1"/ -type f \( -path '*/views/*' -o -path '*/depth/*' -o -path '*/parallax/*' -o -path '*/sfm/*' -o -name index.html \) -printf '%P %T@\n' | LC_ALL=C sort; }

@@ -8,7 +8,7 @@
  * reach is shrunk by bisection until, at the ends, the quarters and the middle, the holes are few enough, the frame
  * stays within the pictures of the views that it blends, and nothing of the scene is too near.
  *
- * Zooming in hides holes and the photos' borders: each 5 % of focal length is tried; what counts is length / zoom^3:
+ * Zooming in hides holes and the photos' borders: each 5 % of focal length is tried; what counts is length / zoom^4:
  * zooming in gives up what the photos frame. Of the directions the one wins that has most length for this and for its
  * distance to the views.
  *
@@ -27,7 +27,7 @@ const struct param plan_param_table[] = {PLAN_PARAMS(PARAM_ROW) PARAM_END};
 #define CENTRAL_VIEWS    5   /* whose segments vote for the centroid */
 #define CENTRAL_PART     0.5 /* of width and height */
 #define ZOOM_STEP        0.05
-#define ZOOM_COST        3
+#define ZOOM_COST        4
 #define NEAR_PERCENTILE  0.02 /* depths that stand for near and far */
 #define FAR_PERCENTILE   0.98
 #define NEAR_FRACTION    0.5   /* of the near depth in the middle: nearer than this is within the scene */

@@ -20,7 +20,7 @@
     X(max_side, int, 1280, 16, 16384, "px", "longest side of the film where width and height are 0")                  \
     X(ease, choice, "smooth", 0, 0, "none|smooth", "how the move starts and stops")                                   \
     X(max_holes, double, 0.01, 0, 1, "", "part of a frame that no view covers, at most, before filling")              \
-    X(max_outside, double, 0.02, 0, 1, "", "part of a frame beyond the borders of the views that it blends, at most") \
+    X(max_outside, double, 0.03, 0, 1, "", "part of a frame beyond the borders of the views that it blends, at most") \
     X(extent, double, 1, 0, 10, "", "length of the move, at most, as a part of the views' spread")                    \
     X(max_angle, double, 25, 0.1, 90, "degrees", "between the ends, seen from the scene's centroid")                  \
     X(max_zoom, double, 1.5, 1, 4, "", "longest focal length, as a multiple of the views' mean")                      \

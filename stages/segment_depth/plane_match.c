@@ -31,12 +31,8 @@ enum {
 
 static uint8_t byte_from(float x) { return (uint8_t)(x <= 0 ? 0 : x >= 255 ? 255 : x + 0.5f); }
 
-#ifndef FEW
-#define FEW 0.4f
-#define RW 0.5
-#endif
-#define FEW_SEE FEW    /* cost of a neighbour that does not see the segment */
-#define RANK_WEIGHT RW /* of a neighbour's cost against the next better one */
+#define UNSEEN_COST 0.45f /* of a neighbour that does not see the segment: fewer witnesses must not look like better ones */
+#define RANK_WEIGHT 0.5   /* of a neighbour's cost against the next better one's */
 
 struct pack_job {
     const struct gamma_image *g;
@@ -430,7 +426,7 @@ float match_cost(const struct matcher *m, int segment, struct plane plane)
     }
     double sum = 0, total = 0, weight = 1;
     for (int k = 0; k < m->neighbour_count; k++, weight *= RANK_WEIGHT) {
-        sum += weight * (double)(k < count ? costs[k] : FEW_SEE);
+        sum += weight * (double)(k < count ? costs[k] : UNSEEN_COST);
         total += weight;
     }
     return (float)(sum / total);

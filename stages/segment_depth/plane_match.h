@@ -2,8 +2,9 @@
  *
  * A plane is 1/z = a u + b v + c in the view's pixel coordinates, so that a segment's picture in a neighbour is a
  * homography. Per pixel the cost compares colours and gradients of luminance at two scales, each truncated; a
- * neighbour's cost is the mean over the segment's pixels that it sees; of the neighbours that see at least half of the segment, the
- * better half counts (the others may not see it for something in front). 0 is perfect, 1 hopeless. */
+ * neighbour's cost is the mean over the segment's pixels that it sees, or a fixed one if it sees less than half of them. In
+ * order of cost each neighbour counts half of the one before it: the worse ones may not see the segment for something
+ * in front of it. 0 is perfect, 1 hopeless. */
 #ifndef REMODEL_PLANE_MATCH_H
 #define REMODEL_PLANE_MATCH_H
 
@@ -40,7 +41,6 @@ enum status matcher_add(struct matcher *m, const struct camera_set *set, int vie
                         struct gamma_image *picture, struct err *err);
 void matcher_release(struct matcher *m);
 
-/* -1: no neighbour sees half of the segment. */
 float match_cost(const struct matcher *m, int segment, struct plane plane);
 
 /* Pixels by which a neighbour's picture of the view shifts when 1/z goes from least to most: the largest over the

@@ -31,10 +31,8 @@ struct refine {
 
 static float data_cost(const struct refine *r, int i, struct plane p)
 {
-    float cost = match_cost(r->m, i, p);
-    /* unseen by every neighbour: nothing for it, nothing against it but what an ordinary match would be better than */
-    if (cost < 0) cost = 0.6f;
-    return cost + (float)point_evidence_cost(r->points, i, p, r->s->segments[i].cx, r->s->segments[i].cy);
+    const struct segment *g = &r->s->segments[i];
+    return match_cost(r->m, i, p) + (float)point_evidence_cost(r->points, i, p, g->cx, g->cy);
 }
 
 static double prior_cost(const struct refine *r, int i, struct plane p)

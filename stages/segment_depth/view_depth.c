@@ -27,8 +27,6 @@
 const struct param segment_param_table[] = {SEGMENT_PARAMS(PARAM_ROW) PARAM_END};
 #undef PARAM_STRUCT
 
-#define UNSEEN_COST 0.6f /* where no neighbour looks: worse than an ordinary match, better than a wrong one */
-
 struct sweep {
     const struct matcher *m;
     const struct point_evidence *points;
@@ -50,8 +48,7 @@ static void sweep_segments(void *ctx, size_t begin, size_t end, int thread)
         float weight = (float)g->pixels / (float)w->params->segment_pixels;
         for (int p = 0; p < w->planes; p++) {
             struct plane plane = {0, 0, w->least + p * w->step};
-            float c = match_cost(w->m, (int)i, plane);
-            cost[p] = c < 0 ? UNSEEN_COST : c;
+            cost[p] = match_cost(w->m, (int)i, plane);
             energy[p] = weight * (cost[p] + (float)point_evidence_cost(w->points, (int)i, plane, g->cx, g->cy));
         }
     }
@@ -80,9 +77,8 @@ static enum status list_depths(struct layered_depth *out, const struct sweep *w,
         const struct segment *g = &s->segments[i];
         double inverse = plane_at(planes[i], g->cx, g->cy);
         float chosen = match_cost(w->m, i, planes[i]);
-        double sure = chosen < 0 ? 0
-                                 : confidence_of(w->cost + (size_t)i * (size_t)w->planes, w->planes,
-                                                 (inverse - w->least) / w->step, chosen);
+        double sure = confidence_of(w->cost + (size_t)i * (size_t)w->planes, w->planes,
+                                    (inverse - w->least) / w->step, chosen);
         /* a sure segment is right to half a step; an inherited one to a few */
         out->segments[i] = (struct depth_segment){
             .id = (uint32_t)i + 1,

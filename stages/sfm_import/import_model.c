@@ -213,7 +213,7 @@ static enum status match_photos(struct importer *imp, struct import_stats *stats
     if (!st) {
         name_lines_end(&strangers);
         log_note("%d of %d photos are placed", stats->registered, photos->count);
-        if (stats->unregistered) {
+        if (stats->unregistered && stats->registered) {
             name_lines_end(&missing);
             log_note("what is not placed shares too little with the other photos: it overlaps too little with them, is "
                      "blurred, or shows little texture; photos taken in between help");
@@ -315,7 +315,7 @@ static enum status check_errors(struct importer *imp, struct import_stats *stats
 {
     const struct sfm_model *m = imp->in;
     long long total = 0, finite = 0, at = 0;
-    double sum = 0, stated = 0, stated_weight = 0;
+    double sum = 0, model_sum = 0, stated = 0, stated_weight = 0;
     for (int i = 0; i < m->point_count; i++) total += m->points[i].track_count;
     imp->errors = malloc(((size_t)total + 1) * sizeof *imp->errors);
     double *sorted = malloc(((size_t)total + 1) * sizeof *sorted);
@@ -337,6 +337,7 @@ static enum status check_errors(struct importer *imp, struct import_stats *stats
             if (e < INFINITY) {
                 sorted[finite++] = e;
                 sum += e;
+                model_sum += e / sqrt(im->scale_u * im->scale_v);
             }
         }
         if (p->error >= 0 && p->track_count) {
@@ -350,6 +351,7 @@ static enum status check_errors(struct importer *imp, struct import_stats *stats
         stats->median_error = (sorted[(finite - 1) / 2] + sorted[finite / 2]) / 2;
     }
     stats->stated_error = stated_weight > 0 ? stated / stated_weight : -1;
+    if (model_sum > 0 && stated_weight > 0) stats->stated_error *= sum / model_sum; /* to pixels of the photos */
     free(sorted);
     return ST_OK;
 }
@@ -360,6 +362,12 @@ static enum status judge_errors(const struct import_stats *stats, const struct i
         log_warn("the model has no point that these photos see; depth will have nothing to start from");
         return ST_OK;
     }
+    if (stats->dropped == stats->observations)
+        return err_set(
+            err, ST_DATA,
+            "none of the model's %lld observations lies within %g px of where its cameras see the point; cameras and "
+            "points do not belong together, or follow other conventions than COLMAP's.",
+            stats->observations, params->max_error);
     log_note("reprojection error, computed anew: mean %.3f px, median %.3f px over %lld observations",
              stats->mean_error, stats->median_error, stats->observations);
     if (stats->dropped)
@@ -371,12 +379,6 @@ static enum status judge_errors(const struct import_stats *stats, const struct i
             "the model states a mean reprojection error of %.3f px, but it is %.3f px; was it made by another program, "
             "or changed by hand?",
             stats->stated_error, stats->mean_error);
-    if (stats->dropped == stats->observations)
-        return err_set(
-            err, ST_DATA,
-            "none of the model's %lld observations lies within %g px of where its cameras see the point; cameras and "
-            "points do not belong together, or follow other conventions than COLMAP's.",
-            stats->observations, params->max_error);
     if (2 * stats->dropped > stats->observations)
         log_warn("more than half of the observations are dropped: the model fits these photos badly");
     return ST_OK;
@@ -582,10 +584,14 @@ static enum status make_points(struct importer *imp, struct imported *out, struc
 
 static void warn_of_few_points(const struct importer *imp, const struct sfm_model *m)
 {
-    for (int i = 0; i < m->image_count; i++)
-        if (m->images[i].observation_count < FEW_POINTS && m->point_count)
-            log_warn("view %s (photo \"%s\") sees only %d points of the model; its depth may be poor",
-                     imp->views[i].name, imp->photos->photos[imp->views[i].photo].file, m->images[i].observation_count);
+    for (int i = 0; i < imp->in->image_count && m->point_count; i++) {
+        const struct input_image *im = &imp->images[i];
+        int seen = 0;
+        for (int k = 0; k < im->view_count; k++) seen += m->images[im->views[k]].observation_count;
+        if (im->view_count && seen < FEW_POINTS)
+            log_warn("photo \"%s\" sees only %d points of the model; its depth may be poor",
+                     imp->photos->photos[im->photo].file, seen);
+    }
 }
 
 enum status import_model(struct imported *out, const struct sfm_model *model, const struct photo_list *photos,

@@ -76,7 +76,7 @@ static int wide_views(struct photo_view views[MOST_PARTS], const struct camera *
     for (int part = 0; part < MOST_PARTS && side >= 1; part++) {
         struct photo_view v = {
             part, {CAMERA_PINHOLE, side, side, {side / 2.0, side / 2.0, side / 2.0, side / 2.0}}, turns[part]};
-        if (share_inside(lens, &v) >= 0.25) views[count++] = v;
+        if (part == 0 || share_inside(lens, &v) >= 0.25) views[count++] = v;
     }
     return count;
 }

@@ -161,7 +161,8 @@ static void rail(void **state)
     assert_int_equal(path.frame_count, 30);
     assert_float_equal(path.frames[29].time, 29 / 30.0, 1e-12);
     assert_false(notes.stands_still);
-    assert_true(notes.zoom <= 1.1 && notes.hole_limit == params.max_holes);
+    assert_true(notes.zoom <= 1.3 && notes.hole_limit == params.max_holes);
+    assert_true(notes.outside_limit == params.max_outside);
     const struct view *first = &path.frames[0].camera, *last = &path.frames[29].camera;
     assert_int_equal(first->width, W);
     assert_int_equal(first->height, H);
@@ -338,6 +339,8 @@ static void holes_shorten_the_move_or_zoom_in(void **state)
         snprintf(name, sizeof name, "holes_at_%g", i / 4.0);
         assert_true(score(&path, name) <= params.max_holes);
     }
+    assert_true(score(&path, "outside_at_0") <= params.max_outside &&
+                score(&path, "outside_at_1") <= params.max_outside);
     double zoomed = score(&path, "length");
     assert_true(zoomed > 0.5);
     camera_path_release(&path);

@@ -49,7 +49,9 @@ static void a_pinhole_photo_is_kept_as_it_is(void **state)
         assert_ok(photo_views(views, &count, &lenses[i], 2, 110, &err), err);
         assert_int_equal(count, 1);
         assert_int_equal(views[0].part, -1);
-        assert_memory_equal(&views[0].camera, &lenses[i], sizeof lenses[i]);
+        const struct camera *c = &views[0].camera;
+        assert_true(c->model == lenses[i].model && c->width == lenses[i].width && c->height == lenses[i].height);
+        assert_memory_equal(c->params, lenses[i].params, sizeof c->params);
         assert_true(views[0].view_from_photo.w == 1);
     }
 }
@@ -160,7 +162,7 @@ static void a_fisheye_becomes_a_cube_of_views(void **state)
     assert_true(photo_pixel(&lens, &views[1], 1280, 300, &u, &v) && photo_pixel(&lens, &views[0], 0, 300, &u2, &v2));
     assert_near(hypot(u - u2, v - v2), 0, 1e-6);
 
-    /* 2 megapixels are kept by each view; a letterbox of 120 x 30 degrees has nothing above and below */
+    /* 2 megapixels are kept by each view; a strip has nothing above and below */
     assert_ok(photo_views(views, &count, &lens, 0.5, 110, &err), err);
     assert_int_equal(views[0].camera.width, 707);
     struct camera wide = {CAMERA_OPENCV_FISHEYE, 1600, 200, {700, 700, 800, 100}};
