@@ -34,6 +34,8 @@ B := out/build/$(FLAVOR)
 EFFECT := establishing_dolly
 STAGES := $(patsubst stages/%/,%,$(sort $(dir $(wildcard stages/*/*.c))))
 SUB := $(MAKE) --no-print-directory
+# without a -j of the caller's, compiling uses all cores
+BUILD = $(SUB) PHASE=build $(if $(findstring -j,$(MAKEFLAGS)),,-j$(CORES))
 hide = $(if $(V),,@)
 
 ifneq ($(SCENE),)
@@ -69,7 +71,7 @@ GOALS := sfm views depth path frames video report
 
 ifeq ($(SCENE),)
 all: deps ## everything a scene asks for; without SCENE builds the programs and explains
-	+@$(SUB) PHASE=build build
+	+@$(BUILD) build
 	@common/explain.sh no-scene
 sfm:    ## camera poses: COLMAP, or the model in SFM
 views:  ## + rectified, linear views
@@ -84,7 +86,7 @@ $(GOALS) why resfm:
 	@echo "make $@ works on a scene: make $@ SCENE=NAME ('make help' lists the scenes)." >&2; exit 2
 else
 all $(GOALS) why resfm: deps
-	+@$(SUB) PHASE=build build
+	+@$(BUILD) build
 	+@common/run_scene.sh '$(SCENE)' '$(S)' '$(O)' '$@' '$(dry)' '$(JOBS)' '$(CORES)' '$(B)/bin' $(SUB)
 endif
 
@@ -93,14 +95,14 @@ deps:
 deps-check:
 	+@common/deps.sh $(DEPS) run check
 check: deps-check ## build and run all tests
-	+@$(SUB) PHASE=build tests-build
+	+@$(BUILD) tests-build
 	+@tests/run '$(B)' $(CHECKS)
-fuzz: deps-check ## FUZZ=NAME SECONDS=60: look for new inputs that break a parser (needs clang)
-	+@tests/fuzz/fuzz.sh '$(FUZZ)' '$(or $(SECONDS),60)'
+fuzz: deps-check ## look for new inputs that break a parser: FUZZ=NAME FUZZ_SECONDS=60
+	+@tests/fuzz/fuzz.sh '$(FUZZ)' '$(or $(FUZZ_SECONDS),60)'
 help: ## this text
 	@common/explain.sh help $(firstword $(MAKEFILE_LIST))
 man: ## docs/man from the programs' --help
-	+@$(SUB) PHASE=build build
+	+@$(BUILD) build
 	@for s in $(STAGES); do common/man.sh $(B)/bin $$s >docs/man/$$s.1.tmp && mv docs/man/$$s.1.tmp docs/man/$$s.1; done
 clean: ## remove what was built (products of scenes stay)
 	rm -rf out/build

@@ -58,8 +58,9 @@ static int clip_polygon(double (*points)[2], int count, const double row[3], dou
 }
 
 /* The target pixels that the rectangle [u0, u1] x [v0, v1] of the plane can touch; false if there are none. */
-static bool target_rectangle(struct raster_segment *s, const double plane[3], double to_target[3][3], double u0,
-                             double v0, double u1, double v1, double inverse_z, const struct view *novel)
+static bool target_rectangle(struct raster_segment *s, struct raster_order *o, const double plane[3],
+                             double to_target[3][3], double u0, double v0, double u1, double v1, double inverse_z,
+                             const struct view *novel)
 {
     double points[8][2] = {{u0, v0}, {u1, v0}, {u1, v1}, {u0, v1}};
     double x0 = INFINITY, y0 = INFINITY, x1 = -INFINITY, y1 = -INFINITY;
@@ -77,15 +78,15 @@ static bool target_rectangle(struct raster_segment *s, const double plane[3], do
     }
     if (!(x1 > 0 && y1 > 0 && x0 < novel->width && y0 < novel->height)) return false;
     s->x0 = (int)fmax(0, x0 - 1);
-    s->y0 = (int)fmax(0, y0 - 1);
+    o->y0 = (int)fmax(0, y0 - 1);
     s->x1 = (int)fmin(novel->width - 1, x1 + 1);
-    s->y1 = (int)fmin(novel->height - 1, y1 + 1);
+    o->y1 = (int)fmin(novel->height - 1, y1 + 1);
     return true;
 }
 
 static int compare_depth(const void *a, const void *b)
 {
-    const struct raster_segment *s = a, *t = b;
+    const struct raster_order *s = a, *t = b;
     if (s->depth != t->depth) return s->depth < t->depth ? -1 : 1;
     return (s->id > t->id) - (s->id < t->id);
 }
@@ -99,7 +100,9 @@ enum status raster_view_prepare(struct raster_view *rv, const struct layer_scene
 
     rv->count = 0;
     rv->segments = malloc(((size_t)d->segment_count + 1) * sizeof *rv->segments);
-    if (!rv->segments) return err_nomem(err, "a view's segments", (size_t)d->segment_count * sizeof *rv->segments);
+    rv->order = malloc(((size_t)d->segment_count + 1) * sizeof *rv->order);
+    if (!rv->segments || !rv->order)
+        return err_nomem(err, "a view's segments", (size_t)d->segment_count * sizeof *rv->segments);
     relate(&m, &k, &scene->set->views[view], novel);
     relate(&inverse, &inverse_k, novel, &scene->set->views[view]);
 
@@ -119,9 +122,9 @@ enum status raster_view_prepare(struct raster_view *rv, const struct layer_scene
                 s.from_target[r][c] = m.m[r][c] + kv[r] * s.inverse_z[c];
                 to_target[r][c] = inverse.m[r][c] + ik[r] * p[c];
             }
-        const double ratio = row_at(to_target[2], shape->u, shape->v);
-        s.depth = ratio / inverse_z;
-        if (!target_rectangle(&s, p, to_target, shape->x0 - 0.5, shape->y0 - 0.5, shape->x1 + 1.5, shape->y1 + 1.5,
+        struct raster_order o = {.id = s.id, .segment = rv->count};
+        o.depth = row_at(to_target[2], shape->u, shape->v) / inverse_z;
+        if (!target_rectangle(&s, &o, p, to_target, shape->x0 - 0.5, shape->y0 - 0.5, shape->x1 + 1.5, shape->y1 + 1.5,
                               inverse_z, novel))
             continue;
 
@@ -132,9 +135,10 @@ enum status raster_view_prepare(struct raster_view *rv, const struct layer_scene
         s.v0 = shape->y0;
         s.u1 = shape->x1 + 2;
         s.v1 = shape->y1 + 2;
+        rv->order[rv->count] = o;
         rv->segments[rv->count++] = s;
     }
-    qsort(rv->segments, (size_t)rv->count, sizeof *rv->segments, compare_depth);
+    qsort(rv->order, (size_t)rv->count, sizeof *rv->order, compare_depth);
     return ST_OK;
 }
 
@@ -142,6 +146,7 @@ void raster_view_release(struct raster_view *rv)
 {
     if (!rv) return;
     free(rv->segments);
+    free(rv->order);
     *rv = (struct raster_view){0};
 }
 
@@ -294,9 +299,9 @@ void raster_rows(const struct raster_target *target, const struct raster_view *r
                  const struct soft_z *soft)
 {
     for (int i = 0; i < rv->count; i++) {
-        const struct raster_segment *s = &rv->segments[i];
-        const int first = s->y0 > target->y0 ? s->y0 : target->y0;
-        const int last = s->y1 < target->y1 - 1 ? s->y1 : target->y1 - 1;
-        for (int y = first; y <= last; y++) raster_row(target, y, s, lv, soft);
+        const struct raster_order *o = &rv->order[i];
+        const int first = o->y0 > target->y0 ? o->y0 : target->y0;
+        const int last = o->y1 < target->y1 - 1 ? o->y1 : target->y1 - 1;
+        for (int y = first; y <= last; y++) raster_row(target, y, &rv->segments[o->segment], lv, soft);
     }
 }

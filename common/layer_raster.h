@@ -51,12 +51,18 @@ struct raster_segment { /* a segment as a novel camera sees it */
     double from_target[3][3]; /* target pixel -> index into the padded texels, homogeneous */
     double inverse_z[3];      /* 1/z_novel = inverse_z . (x, y, 1) */
     double u0, v0, u1, v1;    /* where in the padded texels it may have coverage */
-    double depth;             /* of its centre in the novel camera */
-    int x0, y0, x1, y1;       /* target pixels, inclusive */
+    int x0, x1;               /* target columns, inclusive */
+};
+
+struct raster_order { /* what sorting and looking for a band's segments need, close together */
+    double depth;     /* of the segment's centre in the novel camera */
+    uint32_t id;
+    int segment, y0, y1; /* y0, y1: target rows, inclusive */
 };
 
 struct raster_view {
-    struct raster_segment *segments; /* front to back by depth, ties by id */
+    struct raster_segment *segments;
+    struct raster_order *order; /* front to back by depth, ties by id */
     int count;
 };
 

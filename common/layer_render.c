@@ -1,8 +1,8 @@
 /* layer_render.c - see layer_render.h: a frame, band of rows by band of rows.
  *
  * A band draws one view after another: each only where the view mesh names it, then, in what is still a hole, the
- * other views. What a view shows of a pixel becomes one sample; the soft z blends a pixel's samples. Bands are cut
- * by height alone and share nothing, so threads and the split of a path into jobs do not change a bit. */
+ * other views. What a view shows of a pixel becomes one sample; the soft z blends a pixel's samples. Bands are cut by
+ * height alone and share nothing, so threads and the split of a path into jobs do not change a bit. */
 #include "common/layer_render.h"
 
 #include <math.h>
@@ -17,6 +17,7 @@
 #define BAND_ROWS    16
 #define COVERED      0.5f  /* alpha from which a view covers a pixel */
 #define MAX_SAMPLES  7     /* six that the view mesh names, or fewer and another view in a hole */
+#define AGAINST_MOST 0.5f  /* blending weight of views that may see through what another view shows in a hole */
 #define LEAST_INSIDE 1e-3f /* a view alone at its border still shows */
 
 void rendered_frame_release(struct rendered_frame *frame)
@@ -96,19 +97,17 @@ static void scratch_release(struct scratch *s)
     free(s->named);
 }
 
-static enum status scratch_init(struct scratch *s, int width, int views, bool color, struct err *err)
+static enum status scratch_init(struct scratch *s, int width, int views, struct err *err)
 {
     const size_t n = (size_t)BAND_ROWS * (size_t)width;
+    s->weights = malloc(n * sizeof *s->weights);
     s->pixels = malloc(n * sizeof *s->pixels);
     s->skip = malloc(n * sizeof *s->skip);
+    s->samples = malloc(n * MAX_SAMPLES * sizeof *s->samples);
+    s->counts = malloc(n);
     s->covered = malloc(n);
-    if (color) {
-        s->weights = malloc(n * sizeof *s->weights);
-        s->samples = malloc(n * MAX_SAMPLES * sizeof *s->samples);
-        s->counts = malloc(n);
-        s->named = malloc((size_t)views * sizeof *s->named + 1);
-    }
-    if (!s->pixels || !s->skip || !s->covered || (color && (!s->weights || !s->samples || !s->counts || !s->named)))
+    s->named = malloc((size_t)views * sizeof *s->named + 1);
+    if (!s->weights || !s->pixels || !s->skip || !s->samples || !s->counts || !s->covered || !s->named)
         return err_nomem(err, "a band of a frame", n * (sizeof *s->pixels + MAX_SAMPLES * sizeof *s->samples));
     return ST_OK;
 }
@@ -148,7 +147,7 @@ static enum status job_init(struct frame_job *job, struct rendered_frame *out, c
     if (!job->rasters || !job->by_distance || !job->prepared || !job->scratch)
         return err_nomem(err, "a frame's views", count * sizeof *job->rasters);
 
-    for (size_t i = 0; !st && i < threads; i++) st = scratch_init(&job->scratch[i], novel->width, views, color, err);
+    for (size_t i = 0; !st && i < threads; i++) st = scratch_init(&job->scratch[i], novel->width, views, err);
     if (st || (st = frame_resize(out, novel->width, novel->height, color, err))) return st;
     parallel_for((size_t)views, 1, prepare_views, job);
     for (int i = 0; i < views; i++) {
@@ -234,29 +233,57 @@ static void draw_named_views(const struct frame_job *job, struct scratch *s, int
     }
 }
 
-/* In pixels that the named views leave a hole: the nearest of the other views that covers it. */
+/* Whether a view looks through this world point, at a surface clearly farther: then nothing can be there. */
+static bool sees_through(const struct frame_job *job, int view, struct vec3 point, float sigma)
+{
+    const struct layer_view *lv = &job->scene->views[view];
+    double u, v;
+    const double z = view_project(&job->scene->set->views[view], point, &u, &v);
+    if (!(z > 0) || !(u >= 0 && v >= 0 && u < lv->width && v < lv->height)) return false;
+
+    const struct texel *t = &lv->texels[((size_t)v + 1) * (size_t)lv->stride + (size_t)u + 1];
+    const uint32_t id = t->id[0] & ~TEXEL_JOINED;
+    if (!id) return false;
+    const struct depth_segment *seg = &job->scene->depths[view].segments[id - 1];
+    const double inverse = seg->plane[0] * u + seg->plane[1] * v + seg->plane[2];
+    if (!(inverse > 0)) return true;
+    const float rho = soft_z_rho(&job->soft, (float)z, sigma, (float)(1 / inverse), (float)seg->sigma);
+    return soft_z_weight((float)(1 / inverse - z), 0.1f * rho, rho) == 0;
+}
+
+/* In pixels that the named views leave a hole: the nearest of the other views that shows something there through which
+ * the named views, by most of their weight, do not see. What is there was hidden from them, so it must lie behind what
+ * they show; else a segment at a wrong depth would hang in the hole. */
 static void draw_other_views(const struct frame_job *job, struct scratch *s, int y0, int y1)
 {
-    const size_t n = (size_t)(y1 - y0) * (size_t)job->novel.width;
+    const int w = job->novel.width;
+    const size_t n = (size_t)(y1 - y0) * (size_t)w;
 
     for (int i = 0; i < job->scene->set->view_count; i++) {
         const int view = job->by_distance[i].view;
         for (size_t p = 0; p < n; p++) s->skip[p] = s->covered[p] || weight_of(&s->weights[p], view) > 0 ? INFINITY : 0;
         if (!draw_view(job, s, view, y0, y1)) continue;
         for (size_t p = 0; p < n; p++) {
-            if (s->covered[p] || weight_of(&s->weights[p], view) > 0 || s->pixels[p].rgba[3] < COVERED) continue;
+            const struct view_weights *named = &s->weights[p];
+            if (s->covered[p] || weight_of(named, view) > 0 || s->pixels[p].rgba[3] < COVERED) continue;
+            const struct raster_surface *surface = raster_visible(&s->pixels[p]);
+            const struct vec3 point = view_unproject(&job->novel, (double)(p % (size_t)w) + 0.5,
+                                                     y0 + (double)(p / (size_t)w) + 0.5, surface->z);
+            float against = 0;
+            for (int k = 0; k < named->count; k++)
+                if (named->weight[k] > 0 && sees_through(job, named->view[k], point, surface->sigma))
+                    against += named->weight[k];
+            if (against > AGAINST_MOST) continue;
             s->covered[p] = 1;
             add_sample(s, n, p, 1);
         }
     }
 }
 
-static void render_bands(void *ctx, size_t begin, size_t end, int thread)
+/* The band's samples, and which pixels are covered. */
+static void draw_band(const struct frame_job *job, struct scratch *s, int y0, int y1)
 {
-    struct frame_job *job = ctx;
-    struct scratch *s = &job->scratch[thread];
-    const int y0 = (int)begin, y1 = (int)end, w = job->novel.width;
-    const size_t n = (size_t)(y1 - y0) * (size_t)w, first = (size_t)y0 * (size_t)w;
+    const size_t n = (size_t)(y1 - y0) * (size_t)job->novel.width;
     bool holes = false;
 
     memset(s->counts, 0, n);
@@ -264,7 +291,15 @@ static void render_bands(void *ctx, size_t begin, size_t end, int thread)
     draw_named_views(job, s, y0, y1);
     for (size_t p = 0; p < n; p++) holes |= !s->covered[p];
     if (holes) draw_other_views(job, s, y0, y1);
+}
 
+static void render_bands(void *ctx, size_t begin, size_t end, int thread)
+{
+    struct frame_job *job = ctx;
+    struct scratch *s = &job->scratch[thread];
+    const size_t first = begin * (size_t)job->novel.width, n = (end - begin) * (size_t)job->novel.width;
+
+    draw_band(job, s, (int)begin, (int)end);
     for (size_t p = 0; p < n; p++) {
         float *rgba = job->out->rgba + 4 * (first + p), *z = &job->out->z[first + p];
         struct soft_z_sample samples[MAX_SAMPLES];
@@ -299,18 +334,12 @@ enum status layer_render(struct rendered_frame *out, const struct layer_scene *s
 
 static void cover_bands(void *ctx, size_t begin, size_t end, int thread)
 {
-    struct frame_job *job = ctx;
-    struct scratch *s = &job->scratch[thread];
-    const int y0 = (int)begin, y1 = (int)end, w = job->novel.width;
-    const size_t n = (size_t)(y1 - y0) * (size_t)w;
-    uint8_t *hole = job->out->hole + (size_t)y0 * (size_t)w;
+    const struct frame_job *job = ctx;
+    const struct scratch *s = &job->scratch[thread];
+    const size_t first = begin * (size_t)job->novel.width, n = (end - begin) * (size_t)job->novel.width;
 
-    memset(hole, 1, n);
-    for (int i = 0; i < job->scene->set->view_count; i++) {
-        for (size_t p = 0; p < n; p++) s->skip[p] = hole[p] ? 0 : INFINITY;
-        if (!draw_view(job, s, job->by_distance[i].view, y0, y1)) return; /* no hole is left */
-        for (size_t p = 0; p < n; p++) hole[p] = hole[p] && s->pixels[p].rgba[3] < COVERED;
-    }
+    draw_band(job, &job->scratch[thread], (int)begin, (int)end);
+    for (size_t p = 0; p < n; p++) job->out->hole[first + p] = !s->covered[p];
 }
 
 enum status layer_coverage(struct rendered_frame *out, const struct layer_scene *scene, const struct view *novel,
@@ -327,8 +356,9 @@ enum status layer_coverage(struct rendered_frame *out, const struct layer_scene 
     reduced.fy *= sy;
     reduced.cy *= sy;
 
-    const enum status st = job_init(&job, out, scene, &reduced, 0, false, err);
+    const enum status st = job_init(&job, out, scene, &reduced, SOFT_Z_WIDTHS, false, err);
     if (!st) {
+        view_mesh_prepare(&job.mesh, &scene->mesh, &reduced);
         parallel_for((size_t)reduced.height, BAND_ROWS, cover_bands, &job);
         out->hole_fraction = hole_fraction(out);
         out->unfilled_fraction = out->hole_fraction;

@@ -6,9 +6,10 @@
  * names for the pixel, a soft z-buffer (thesis eq. 3.1, common/soft_z.h) blends by weight x w x alpha.
  *
  * Two things are not in the thesis. A view's weight falls off towards the border of its picture, so that the border
- * leaves no line. And a pixel is a hole only if no view at all covers it with alpha 0.5: where the views that the mesh
- * names leave one, the nearest other view (by centre) that sees something there takes their place. What is left is
- * filled from the far side (common/hole_fill.h).
+ * leaves no line. And a pixel is a hole only if nothing else covers it either: where the views that the mesh names leave
+ * it below alpha 0.5, the nearest other view (by centre) that sees something there takes their place, unless most of
+ * them, by weight, see through it at something farther. What is left is filled from the far side
+ * (common/hole_fill.h).
  *
  * Depth is z along the novel camera's axis, in scene units; colour is scene-linear. */
 #ifndef REMODEL_LAYER_RENDER_H
@@ -41,6 +42,8 @@ enum status layer_scene_init(struct layer_scene *scene, const struct camera_set 
                              struct err *err);
 void layer_scene_release(struct layer_scene *scene);
 
+#define SOFT_Z_WIDTHS 3 /* the usual soft_z */
+
 struct layer_render_options {
     double
         soft_z; /* width of the soft z: in units of the segments' depth uncertainty; 0: the thesis' (rho, rho / 10) */
@@ -61,8 +64,8 @@ enum status layer_render(struct rendered_frame *out, const struct layer_scene *s
                          const struct layer_render_options *options, struct err *err);
 void rendered_frame_release(struct rendered_frame *frame);
 
-/* Coverage alone, without colour: out->hole and hole_fraction (rgba and z stay NULL); `scale` reduces the novel camera
- * (0 < scale <= 1). The holes are those of layer_render: pixels that no view covers. */
+/* Coverage alone: out->hole and hole_fraction (rgba and z stay NULL); `scale` reduces the novel camera (0 < scale <=
+ * 1). The holes are those of layer_render with the usual soft z. */
 enum status layer_coverage(struct rendered_frame *out, const struct layer_scene *scene, const struct view *novel,
                            double scale, struct err *err);
 

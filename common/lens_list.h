@@ -3,7 +3,8 @@
  *   remodel-lenses 1
  *   VIEW PHOTO MODEL WIDTH HEIGHT PARAMS... turn W X Y Z
  * a line a view, in order of view: the photo's id, its camera as COLMAP writes it (size and parameters in stored photo
- * pixels), and the rotation view_from_photo as a quaternion (1 0 0 0 unless the photo became several views, PHOTO@k). */
+ * pixels), and the rotation view_from_photo as a quaternion (1 0 0 0 unless the photo became several views,
+ * PHOTO@k). */
 #ifndef REMODEL_LENS_LIST_H
 #define REMODEL_LENS_LIST_H
 

@@ -54,8 +54,8 @@ struct sfm_model {
 enum status sfm_model_read_text(struct sfm_model *m, const char *folder, struct err *err);
 
 /* Reads a Bundler v0.3 file. names[i], sizes[i]: the file name and size in pixels of its camera i; count must be the
- * file's. Cameras with focal length 0 are those Bundler could not place: left out, like those of size 0 x 0. The axes are
- * turned to this program's; RADIAL cameras, principal point in the middle. Point errors are -1: the file has none. */
+ * file's. Cameras with focal length 0 are those Bundler could not place: left out, like those of size 0 x 0. The axes
+ * are turned to this program's; RADIAL cameras, principal point in the middle. Point errors are -1: it states none. */
 enum status sfm_model_read_bundler(struct sfm_model *m, const char *path, const char *const *names,
                                    const int (*sizes)[2], int count, struct err *err);
 

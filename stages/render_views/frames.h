@@ -9,8 +9,9 @@
 #include "common/layer_render.h"
 #include "common/param.h"
 
-#define RENDER_PARAMS(X)                                                                                              \
-    X(soft_z, double, 3, 0, 100, "", "width of the soft z, in depth uncertainties; 0: the whole scene's depth range") \
+#define RENDER_PARAMS(X)                                                               \
+    X(soft_z, double, SOFT_Z_WIDTHS, 0, 100, "",                                       \
+      "width of the soft z, in depth uncertainties; 0: the whole scene's depth range") \
     X(fill_diameter, int, 6, 0, 64, "px", "holes narrower than this are filled from around; 0: no hole is filled")
 
 struct render_params {

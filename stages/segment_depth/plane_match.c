@@ -31,8 +31,12 @@ enum {
 
 static uint8_t byte_from(float x) { return (uint8_t)(x <= 0 ? 0 : x >= 255 ? 255 : x + 0.5f); }
 
-#define UNSEEN_COST 0.45f /* of a neighbour that does not see the segment: fewer witnesses must not look like better ones */
-#define RANK_WEIGHT 0.5   /* of a neighbour's cost against the next better one's */
+#ifndef UC
+#define UC 0.5f
+#define RW 0.7
+#endif
+#define NO_MATCH UC      /* cost from which a neighbour is taken not to see the segment at all */
+#define RANK_WEIGHT RW   /* of a neighbour's cost against the next better one's */
 
 struct pack_job {
     const struct gamma_image *g;
@@ -148,6 +152,13 @@ static uint8_t *pack(const struct gamma_image *g, const double gain[3], double t
     return packed;
 }
 
+static void put_pixel(struct matcher *m, int i, int pixel, const uint8_t *packed)
+{
+    m->x[i] = (float)(pixel % m->segments->width) + 0.5f;
+    m->y[i] = (float)(pixel / m->segments->width) + 0.5f;
+    for (int c = 0; c < CHANNELS; c++) m->features[i * CHANNELS + c] = (int16_t)(UNIT * packed[c]);
+}
+
 enum status matcher_init(struct matcher *m, const struct segmentation *s, const struct gamma_image *reference,
                          struct err *err)
 {
@@ -170,16 +181,18 @@ enum status matcher_init(struct matcher *m, const struct segmentation *s, const 
         free(packed);
         return err_nomem(err, "the pixels of a matcher", room * 24);
     }
-    for (int k = 0; k < s->count; k++)
-        for (int i = m->first[k]; i < m->first[k + 1]; i++) {
-            int n = i - m->first[k], last = s->segments[k].pixels - 1;
-            int pixel = s->pixel[s->segments[k].first + (n < last ? n : last)];
-            m->x[i] = (float)(pixel % s->width) + 0.5f;
-            m->y[i] = (float)(pixel / s->width) + 0.5f;
-            for (int c = 0; c < CHANNELS; c++)
-                m->features[i * CHANNELS + c] = (int16_t)(UNIT * packed[(size_t)pixel * CHANNELS + (size_t)c]);
-            if (n > last) m->features[i * CHANNELS + 7] = -UNIT * 128; /* filling: never in sight */
+    for (int k = 0; k < s->count; k++) {
+        const int *pixel = s->pixel + s->segments[k].first, count = s->segments[k].pixels;
+        int i = m->first[k];
+        for (int odd = 0; odd < 2; odd++) /* a chessboard's white squares first: see match_cost_half */
+            for (int n = 0; n < count; n++)
+                if ((pixel[n] % s->width + pixel[n] / s->width) % 2 == odd)
+                    put_pixel(m, i++, pixel[n], packed + (size_t)pixel[n] * CHANNELS);
+        for (; i < m->first[k + 1]; i++) {
+            put_pixel(m, i, pixel[0], packed + (size_t)pixel[0] * CHANNELS);
+            m->features[i * CHANNELS + 7] = -UNIT * 128; /* filling: never in sight */
         }
+    }
     free(packed);
     return ST_OK;
 }
@@ -412,24 +425,35 @@ static float neighbour_cost(const struct matcher *m, const struct match_neighbou
     return *seen > 0 ? (float)((double)total * 16 / ((double)WORST * *seen)) : 1;
 }
 
-float match_cost(const struct matcher *m, int segment, struct plane plane)
+static float ranked_cost(const struct matcher *m, int begin, int end, int pixels, struct plane plane)
 {
     float costs[MAX_NEIGHBOURS];
     int count = 0;
     for (int k = 0; k < m->neighbour_count; k++) {
         int seen, at;
-        float cost =
-            neighbour_cost(m, &m->neighbours[k], m->first[segment], m->first[segment + 1], plane, &seen);
-        if (2 * seen < m->segments->segments[segment].pixels) continue;
+        float cost = neighbour_cost(m, &m->neighbours[k], begin, end, plane, &seen);
+        if (2 * seen < pixels || cost >= NO_MATCH) continue;
         for (at = count++; at > 0 && costs[at - 1] > cost; at--) costs[at] = costs[at - 1];
         costs[at] = cost;
     }
     double sum = 0, total = 0, weight = 1;
     for (int k = 0; k < m->neighbour_count; k++, weight *= RANK_WEIGHT) {
-        sum += weight * (double)(k < count ? costs[k] : UNSEEN_COST);
+        sum += weight * (double)(k < count ? costs[k] : NO_MATCH);
         total += weight;
     }
     return (float)(sum / total);
+}
+
+float match_cost(const struct matcher *m, int segment, struct plane plane)
+{
+    return ranked_cost(m, m->first[segment], m->first[segment + 1], m->segments->segments[segment].pixels, plane);
+}
+
+float match_cost_half(const struct matcher *m, int segment, struct plane plane)
+{
+    int pixels = m->segments->segments[segment].pixels, half = (pixels / 2 + 7) / 8 * 8;
+    if (half < 8) half = 8;
+    return ranked_cost(m, m->first[segment], m->first[segment] + half, half < pixels ? half : pixels, plane);
 }
 
 double matcher_shift(const struct matcher *m, double least, double most)

@@ -1,14 +1,14 @@
 /* smooth.c - sequential tree-reweighted message passing on the graph of touching segments.
  *
  * Nodes are visited in order of number, forwards and backwards; one message an edge is kept, always the one that runs in
- * the direction of the last visit. A message is the lower envelope of cones, truncated (Felzenszwalb and
- * Huttenlocher 2006): linear in the number of labels. */
+ * the direction of the last visit. A message is a lower envelope of cut-off cones. */
 #include "stages/segment_depth/smooth.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 
-#define ROUNDS 12
+#define ROUNDS 10
 
 /* Colour difference at which two sides are half alike, and what remains of a border's weight between unlike ones: a
  * depth edge without a colour edge is rare, the reverse is common. */
@@ -42,18 +42,31 @@ struct pass {
     int labels;
     float slope, most;
     float *message; /* labels an edge */
-    float *belief, *out;
+    float *belief, *scratch;
 };
 
-/* out(l) = min_k in(k) + min(slope |k - l|, most), less its minimum */
-static void truncated_linear(float *out, const float *in, int labels, float slope, float most)
+static inline float smaller(float a, float b) { return a < b ? a : b; }
+
+/* inout(l) = min_k inout(k) + min(slope |k - l|, most), less its minimum; scratch holds as many. Cones of 1, 2, 4 ... labels
+ * one after another make the cone of their sum, as far as it is not cut off anyway; each step is a vector operation. */
+static void truncated_linear(float *inout, float *scratch, int labels, float slope, float most)
 {
-    float least = in[0];
-    for (int l = 1; l < labels; l++) least = in[l] < least ? in[l] : least;
-    out[0] = in[0];
-    for (int l = 1; l < labels; l++) out[l] = fminf(in[l], out[l - 1] + slope);
-    for (int l = labels - 2; l >= 0; l--) out[l] = fminf(out[l], out[l + 1] + slope);
-    for (int l = 0; l < labels; l++) out[l] = fminf(out[l], least + most) - least;
+    float least = inout[0], *from = inout, *to = scratch;
+    for (int l = 1; l < labels; l++) least = smaller(inout[l], least);
+    for (int reach = 1; reach < labels && (float)(reach - 1) * slope < most; reach *= 2) {
+        float rise = (float)reach * slope;
+        int inner = labels - reach > reach ? reach : labels - reach;
+        for (int l = 0; l < inner; l++) to[l] = smaller(from[l], from[l + reach] + rise);
+        for (int l = reach; l < labels - reach; l++)
+            to[l] = smaller(from[l], smaller(from[l - reach], from[l + reach]) + rise);
+        for (int l = inner; l < reach; l++) to[l] = from[l];
+        for (int l = labels - reach > reach ? labels - reach : reach; l < labels; l++)
+            to[l] = smaller(from[l], from[l - reach] + rise);
+        float *swap = from;
+        from = to;
+        to = swap;
+    }
+    for (int l = 0; l < labels; l++) inout[l] = smaller(from[l], least + most) - least;
 }
 
 static void visit(struct pass *p, int i, const float *cost, bool forward)
@@ -72,8 +85,8 @@ static void visit(struct pass *p, int i, const float *cost, bool forward)
     for (int t = begin; t < end; t++) {
         if ((p->s->touches[t].other > i) != forward) continue;
         float *message = p->message + (size_t)p->s->touches[t].edge * (size_t)labels;
-        for (int l = 0; l < labels; l++) p->out[l] = part * p->belief[l] - message[l];
-        truncated_linear(message, p->out, labels, p->slope * p->weights[t], p->most * p->weights[t]);
+        for (int l = 0; l < labels; l++) message[l] = part * p->belief[l] - message[l];
+        truncated_linear(message, p->scratch, labels, p->slope * p->weights[t], p->most * p->weights[t]);
     }
 }
 
@@ -87,7 +100,7 @@ static int decide(struct pass *p, int i, const float *cost, const int *label)
         const float *message = p->message + (size_t)p->s->touches[t].edge * (size_t)p->labels;
         for (int l = 0; l < p->labels; l++)
             p->belief[l] += other > i ? message[l]
-                                      : p->weights[t] * fminf(p->slope * (float)abs(l - label[other]), p->most);
+                                      : p->weights[t] * smaller(p->slope * (float)abs(l - label[other]), p->most);
     }
     for (int l = 1; l < p->labels; l++)
         if (p->belief[l] < p->belief[best]) best = l;
@@ -102,7 +115,7 @@ enum status smooth_labels(int *label, const struct segmentation *s, const float 
     p.message = calloc((size_t)s->edge_count * (size_t)labels + 1, sizeof *p.message);
     p.belief = malloc(2 * (size_t)labels * sizeof *p.belief);
     if (p.message && p.belief) {
-        p.out = p.belief + labels;
+        p.scratch = p.belief + labels;
         for (int round = 0; round < ROUNDS; round++) {
             for (int i = 0; i < s->count; i++) visit(&p, i, cost + (size_t)i * (size_t)labels, true);
             for (int i = s->count - 1; i >= 0; i--) visit(&p, i, cost + (size_t)i * (size_t)labels, false);

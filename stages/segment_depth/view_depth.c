@@ -14,6 +14,7 @@
 #include "stages/segment_depth/view_depth.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -27,7 +28,11 @@
 const struct param segment_param_table[] = {SEGMENT_PARAMS(PARAM_ROW) PARAM_END};
 #undef PARAM_STRUCT
 
+#define HORIZON 0.03 /* |cosine| between a ray and the horizontal below which horizontal planes are not tried */
+
 struct sweep {
+    const struct view *view;
+    struct vec3 down;   /* in the view's axes */
     const struct matcher *m;
     const struct point_evidence *points;
     const struct segment_params *params;
@@ -38,6 +43,21 @@ struct sweep {
     struct progress progress;
 };
 
+/* A segment's plane at a label: facing the camera, or else horizontal, which is how floors and ceilings lie. False if
+ * the two are the same to the pictures, or the horizontal one is seen at too grazing an angle. */
+static struct plane facing_plane(const struct sweep *w, int label) { return (struct plane){0, 0, w->least + label * w->step}; }
+
+static bool horizontal_plane(const struct sweep *w, const struct segment *g, int label, struct plane *plane)
+{
+    const struct view *v = w->view;
+    double d = w->least + label * w->step, size = sqrt(g->pixels);
+    double cosine = w->down.x * (g->cx - v->cx) / v->fx + w->down.y * (g->cy - v->cy) / v->fy + w->down.z;
+    if (!(fabs(cosine) > HORIZON)) return false;
+    double a = d * w->down.x / (v->fx * cosine), b = d * w->down.y / (v->fy * cosine), rise = hypot(a, b) / w->step;
+    *plane = (struct plane){a, b, d - a * g->cx - b * g->cy};
+    return rise * size > 0.5 && rise < 1;
+}
+
 static void sweep_segments(void *ctx, size_t begin, size_t end, int thread)
 {
     struct sweep *w = ctx;
@@ -47,12 +67,24 @@ static void sweep_segments(void *ctx, size_t begin, size_t end, int thread)
         const struct segment *g = &w->m->segments->segments[i];
         float weight = (float)g->pixels / (float)w->params->segment_pixels;
         for (int p = 0; p < w->planes; p++) {
-            struct plane plane = {0, 0, w->least + p * w->step};
-            cost[p] = match_cost(w->m, (int)i, plane);
+            struct plane plane = facing_plane(w, p), tilted;
+            cost[p] = match_cost_half(w->m, (int)i, plane);
+            if (horizontal_plane(w, g, p, &tilted)) {
+                float other = match_cost_half(w->m, (int)i, tilted) + (float)w->params->slant;
+                cost[p] = other < cost[p] ? other : cost[p];
+            }
             energy[p] = weight * (cost[p] + (float)point_evidence_cost(w->points, (int)i, plane, g->cx, g->cy));
         }
     }
     progress_add(&w->progress, (int64_t)(end - begin));
+}
+
+static struct plane better_plane(const struct sweep *w, int segment, int label)
+{
+    struct plane facing = facing_plane(w, label), tilted;
+    if (!horizontal_plane(w, &w->m->segments->segments[segment], label, &tilted)) return facing;
+    float slant = (float)w->params->slant;
+    return match_cost(w->m, segment, tilted) + slant < match_cost(w->m, segment, facing) ? tilted : facing;
 }
 
 /* How sure a segment's depth is: its cost there against the best cost elsewhere, and against a hopeless match. */
@@ -90,18 +122,32 @@ static enum status list_depths(struct layered_depth *out, const struct sweep *w,
     return ST_OK;
 }
 
-static enum status solve(struct layered_depth *out, const struct matcher *m, const struct image *picture,
-                         const struct seen_points *seen, double least, double most,
+/* Where down is in the view's axes, if photographers hold cameras upright on average. */
+static struct vec3 find_down(const struct camera_set *set, const struct view *view)
+{
+    struct vec3 sum = {0, 0, 0};
+    for (int i = 0; i < set->view_count; i++) {
+        const double *y = set->views[i].cam_from_world.m[1];
+        sum = vec3_add(sum, vec3_make(y[0], y[1], y[2]));
+    }
+    return mat3_apply(view->cam_from_world, vec3_normalize(sum));
+}
+
+static enum status solve(struct layered_depth *out, const struct camera_set *set, const struct view *view,
+                         const struct matcher *m, const struct image *picture, const struct seen_points *seen,
+                         double least, double most,
                          const struct segment_params *params, struct err *err)
 {
     const struct segmentation *s = m->segments;
     double shift = matcher_shift(m, least, most);
     struct point_evidence points = {0};
-    struct sweep w = {.m = m, .points = &points, .params = params, .least = least};
+    struct sweep w = {.view = view, .m = m, .points = &points, .params = params, .least = least};
+    w.down = find_down(set, view);
     struct plane *planes = malloc(((size_t)s->count + 1) * sizeof *planes);
     int *labels = malloc(((size_t)s->count + 1) * sizeof *labels);
     float *weights = touch_weights(s, params->segment_pixels);
     w.planes = (int)fmin(fmax(ceil(shift) + 1, 4), params->planes);
+if(getenv("DBG"))fprintf(stderr,"shift %g planes %d range %g %g\n",shift,w.planes,least,most);
     w.step = (most - least) / (w.planes - 1);
     size_t costs = (size_t)s->count * (size_t)w.planes + 1;
     w.cost = malloc(costs * sizeof *w.cost);
@@ -117,7 +163,7 @@ static enum status solve(struct layered_depth *out, const struct matcher *m, con
                            (float)params->smoothness, err);
     }
     if (!st) {
-        for (int i = 0; i < s->count; i++) planes[i] = (struct plane){0, 0, least + labels[i] * w.step};
+        for (int i = 0; i < s->count; i++) planes[i] = better_plane(&w, i, labels[i]);
         st = refine_planes(planes, m, &points, weights, params, err);
     }
     if (!st) st = list_depths(out, &w, planes, err);
@@ -171,7 +217,7 @@ enum status view_depth(struct layered_depth *out, int neighbours[MAX_NEIGHBOURS]
     for (int k = 0; !st && k < *neighbour_count; k++)
         st = add_neighbour(&matcher, set, view_idx, neighbours[k], source, &seen, 0.5 * (least + most), &gamma,
                            exposure, err);
-    if (!st) st = solve(out, &matcher, &picture, &seen, least, most, params, err);
+    if (!st) st = solve(out, set, &set->views[view_idx], &matcher, &picture, &seen, least, most, params, err);
     if (st) layered_depth_release(out);
     matcher_release(&matcher);
     segmentation_release(&segments);

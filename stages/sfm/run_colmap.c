@@ -14,6 +14,7 @@
 #include "common/log.h"
 #include "common/outfile.h"
 #include "common/parallel.h"
+#include "common/photo_match.h"
 #include "common/process.h"
 #include "common/textfile.h"
 
@@ -163,6 +164,7 @@ static void last_words(char *words, size_t size, const char *log)
 
 struct run {
     const struct sfm_folder *folder;
+    double started;
     const struct photo_list *photos;
     const struct sfm_params *params;
     char *images, *masks, *database, *sparse; /* in the work folder; masks NULL without any */
@@ -230,8 +232,17 @@ static enum status link_photos(struct run *r, const char *photos, const char *ma
     return st;
 }
 
-static enum status run_prepare(struct run *r, const char *photos, const char *masks, struct err *err)
+static double now(void)
 {
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static enum status run_prepare(struct run *r, const struct sfm_folder *f, const struct sfm_input *in,
+                               const struct sfm_params *params, struct err *err)
+{
+    *r = (struct run){.folder = f, .started = now(), .photos = in->list, .params = params};
     const char *work = r->folder->work;
     enum status st = sfm_single_camera(&r->single, r->photos, r->params, err);
     if (st) return st;
@@ -245,15 +256,8 @@ static enum status run_prepare(struct run *r, const char *photos, const char *ma
     for (int i = 0; i < STEPS; i++)
         if (!(r->logs[i] = text_format(err, "%s/colmap-%d.log", work, i + 1))) return err->status;
     st = make_folders(r->sparse, err);
-    if (!st) st = link_photos(r, photos, masks, err);
+    if (!st) st = link_photos(r, in->photos, in->masks, err);
     return st;
-}
-
-static double now(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
 /* One command of COLMAP. An exit status above `most` is an error. */
@@ -463,27 +467,41 @@ static int count_models(const struct run *r, struct err *err)
     }
 }
 
-enum status run_colmap(struct sfm_folder *f, const char *photos, const char *masks, const struct photo_list *list,
-                       const struct sfm_params *params, const struct provenance *prov, struct err *err)
+static enum status features_and_matches(const struct run *r, struct err *err)
 {
-    struct run r = {.folder = f, .photos = list, .params = params};
-    double started = now();
-    int models = 0;
+    log_note("step 1 of %d: features of %d photos, %s", STEPS, r->photos->count,
+             r->single ? "one lens for all" : "a lens each");
+    enum status st = extract(r, err);
+    if (!st) st = note_features(r, err);
+    if (!st) log_note("step 2 of %d: matches (%.1f s so far)", STEPS, now() - r->started);
+    if (!st) st = match(r, err);
+    return st;
+}
+
+static enum status keep_logs(const struct run *r, struct err *err)
+{
     enum status st = ST_OK;
-    if (list->count < 2)
-        return err_set(
-            err, ST_DATA,
-            "there %s; structure from motion needs at least 2, better 8 or more, taken from places a step apart.",
-            list->count ? "is only 1 photo" : "are no photos");
-    st = run_prepare(&r, photos, masks, err);
-    if (!st)
-        log_note("step 1 of %d: features of %d photos, %s", STEPS, list->count,
-                 r.single ? "one lens for all" : "a lens each");
-    if (!st) st = extract(&r, err);
-    if (!st) st = note_features(&r, err);
-    if (!st) log_note("step 2 of %d: matches (%.1f s so far)", STEPS, now() - started);
-    if (!st) st = match(&r, err);
-    if (!st) log_note("step 3 of %d: poses and points (%.1f s so far)", STEPS, now() - started);
+    for (int i = 0; !st && i < STEPS; i++) {
+        char *kept = text_format(err, "%s/colmap-%d.log", r->folder->made, i + 1);
+        if (!kept) st = err->status;
+        if (!st && rename(r->logs[i], kept)) st = err_errno(err, "keep", r->logs[i]);
+        free(kept);
+    }
+    return st;
+}
+
+enum status run_colmap(struct sfm_folder *f, const struct sfm_input *in, const struct provenance *prov, struct err *err)
+{
+    struct run r = {0};
+    int models = 0;
+    if (in->list->count < 2)
+        return err_set(err, ST_DATA,
+                       "there %s; structure from motion needs at least 2, better 8 or more, taken from places a step "
+                       "apart.",
+                       in->list->count ? "is only 1 photo" : "are no photos");
+    enum status st = run_prepare(&r, f, in, in->params, err);
+    if (!st) st = features_and_matches(&r, err);
+    if (!st) log_note("step 3 of %d: poses and points (%.1f s so far)", STEPS, now() - r.started);
     if (!st) st = map(&r, false, err);
     if (!st && !(models = count_models(&r, err))) {
         log_note("no pair of photos is a good start; trying again with pairs that are closer together");
@@ -491,14 +509,133 @@ enum status run_colmap(struct sfm_folder *f, const char *photos, const char *mas
         if (!st) models = count_models(&r, err);
     }
     if (!st && !models) st = tell_why_nothing(&r, err);
-    if (!st) log_note("step 4 of %d: text of %d models (%.1f s so far)", STEPS, models, now() - started);
+    if (!st) log_note("step 4 of %d: text of %d models (%.1f s so far)", STEPS, models, now() - r.started);
     for (int k = 0; !st && k < models; k++) st = add_model(&r, f, k, prov, err);
-    for (int i = 0; !st && i < STEPS; i++) {
-        char *kept = text_format(err, "%s/colmap-%d.log", f->made, i + 1);
-        if (!kept) st = err->status;
-        if (!st && rename(r.logs[i], kept)) st = err_errno(err, "keep", r.logs[i]);
-        free(kept);
-    }
+    if (!st) st = keep_logs(&r, err);
     run_release(&r);
+    return st;
+}
+
+/* ------------------------------------------------------------------------------------------------- known cameras */
+
+/* The lens that COLMAP should check matches with: the model's, where there is but one. */
+static void params_of_model(struct sfm_params *params, const struct sfm_model *m)
+{
+    if (m->camera_count != 1) return;
+    const struct camera *c = &m->cameras[0].camera;
+    char text[PARAM_TEXT_SIZE] = "";
+    size_t used = 0;
+    for (int i = 0; i < camera_model_params(c->model) && used < sizeof text; i++)
+        used += (size_t)snprintf(text + used, sizeof text - used, "%s%.12g", i ? "," : "", c->params[i]);
+    if (used >= sizeof text) return;
+    snprintf(params->camera_model, sizeof params->camera_model, "%s", camera_model_name(c->model));
+    memcpy(params->camera_params, text, sizeof text);
+}
+
+/* COLMAP's id of a picture: its place among those that feature extraction's log says were read; 0 if it was not. */
+static int id_in_database(const struct feature_counts *c, const char *name)
+{
+    int id = 0;
+    for (int i = 0; i < c->count; i++) {
+        id += c->list[i].features >= 0;
+        if (!strcmp(c->list[i].name, name)) return c->list[i].features >= 0 ? id : 0;
+    }
+    return 0;
+}
+
+/* The model's cameras and poses into a folder, its images with the names and ids that they have in the database. */
+static enum status write_known(const struct run *r, const struct sfm_model *m, const char *folder, struct err *err)
+{
+    struct sfm_model known = {.cameras = m->cameras, .camera_count = m->camera_count};
+    struct feature_counts c = {0};
+    enum status st = feature_counts_read(&c, r->logs[0], err);
+    known.images = calloc((size_t)m->image_count + 1, sizeof *known.images);
+    if (!st && !known.images) st = err_nomem(err, "images", (size_t)m->image_count * sizeof *known.images);
+    for (int i = 0; !st && i < m->image_count; i++) {
+        int at = photo_list_match(r->photos, m->images[i].name);
+        if (at < 0) continue;
+        const struct photo_record *p = &r->photos->photos[at];
+        char *name = text_format(err, "%s%s", p->id, safe_extension(p->file));
+        int id = name ? id_in_database(&c, name) : 0;
+        if (!id) {
+            free(name);
+            if (!name) st = err->status;
+            continue;
+        }
+        known.images[known.image_count++] =
+            (struct sfm_image){id, m->images[i].cam_from_world, m->images[i].camera_idx, name, NULL, 0};
+    }
+    if (!st && known.image_count < 2)
+        st = err_set(err, ST_DATA,
+                     "the model has no points, and only %d of its %d images are among the photos and can be read, so "
+                     "that none can "
+                     "be triangulated; give the model of these photos.",
+                     known.image_count, m->image_count);
+    if (!st) st = sfm_model_write_text(&known, folder, NULL, err);
+    for (int i = 0; i < known.image_count; i++) free(known.images[i].name);
+    free(known.images);
+    feature_counts_release(&c);
+    return st;
+}
+
+static bool sizes_match(const struct sfm_model *m, const struct photo_list *photos)
+{
+    for (int i = 0; i < m->image_count; i++) {
+        int at = photo_list_match(photos, m->images[i].name);
+        const struct camera *c = &m->cameras[m->images[i].camera_idx].camera;
+        if (at >= 0 && (c->width != photos->photos[at].info.width || c->height != photos->photos[at].info.height))
+            return false;
+    }
+    return true;
+}
+
+enum status triangulate(struct sfm_model *m, const struct sfm_folder *f, const struct sfm_input *in, struct err *err)
+{
+    struct run r = {0};
+    struct sfm_model found = {0};
+    struct sfm_params params = *in->params;
+    if (!sizes_match(m, in->list)) {
+        log_warn("the model has no points, and none can be found: it is of pictures of another size than the photos");
+        return ST_OK;
+    }
+    params_of_model(&params, m);
+    char *known = text_format(err, "%s/known", f->work), *made = text_format(err, "%s/triangulated", f->work);
+    char *text = text_format(err, "%s/triangulated-text", f->work);
+    enum status st = known && made && text ? run_prepare(&r, f, in, &params, err) : err->status;
+    const char *triangulator[] = {"point_triangulator",
+                                  "--database_path",
+                                  r.database,
+                                  "--image_path",
+                                  r.images,
+                                  "--input_path",
+                                  known,
+                                  "--output_path",
+                                  made,
+                                  "--Mapper.num_threads",
+                                  r.threads,
+                                  NULL};
+    const char *converter[] = {"model_converter", "--input_path", made, "--output_path", text,
+                               "--output_type",   "TXT",          NULL};
+    if (!st) st = make_folders(made, err);
+    if (!st) st = make_folders(text, err);
+    if (!st) st = features_and_matches(&r, err);
+    if (!st) st = write_known(&r, m, known, err);
+    if (!st) log_note("step 3 of %d: points (%.1f s so far)", STEPS, now() - r.started);
+    if (!st) st = colmap(&r, 3, triangulator, 0, err);
+    if (!st) st = colmap(&r, 4, converter, 0, err);
+    if (!st) st = sfm_model_read_text(&found, text, err);
+    if (!st) st = name_images(&found, in->list, err);
+    if (!st) st = keep_logs(&r, err);
+    if (!st) {
+        log_note("%d points are triangulated from the model's cameras", found.point_count);
+        sfm_model_release(m);
+        *m = found;
+        found = (struct sfm_model){0};
+    }
+    sfm_model_release(&found);
+    run_release(&r);
+    free(known);
+    free(made);
+    free(text);
     return st;
 }

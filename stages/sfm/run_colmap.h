@@ -1,7 +1,7 @@
 /* run_colmap.h - COLMAP's sparse reconstruction of a set of photographs.
  *
- * COLMAP sees links with safe names (ID.EXT) in the work folder, never the photos' folder. It has no CUDA here, so features and
- * matches are made on the CPU. Its exit code alone is not trusted: what it made is counted. */
+ * COLMAP sees links with safe names (ID.EXT) in the work folder, never the photos' folder. It has no CUDA here, so
+ * features and matches are made on the CPU. Its exit code alone is not trusted: what it made is counted. */
 #ifndef REMODEL_RUN_COLMAP_H
 #define REMODEL_RUN_COLMAP_H
 
@@ -49,9 +49,19 @@ struct feature_counts {
 enum status feature_counts_read(struct feature_counts *c, const char *log, struct err *err);
 void feature_counts_release(struct feature_counts *c);
 
-/* Adds COLMAP's models of the photos to the folder, their images named by the photos' files. masks: NULL or a folder of ID.png,
- * black where nothing is to be found. ST_DATA with the likely reason, by photo, if nothing could be placed. */
-enum status run_colmap(struct sfm_folder *f, const char *photos, const char *masks, const struct photo_list *list,
-                       const struct sfm_params *params, const struct provenance *prov, struct err *err);
+struct sfm_input {
+    const char *photos, *masks; /* folders; masks: NULL or of ID.png, black where nothing is to be found */
+    const struct photo_list *list;
+    const struct sfm_params *params;
+};
+
+/* Adds COLMAP's models of the photos to the folder, their images named by the photos' files. ST_DATA with the likely
+ * reason, by photo, if nothing could be placed. */
+enum status run_colmap(struct sfm_folder *f, const struct sfm_input *in, const struct provenance *prov,
+                       struct err *err);
+
+/* Finds the points that cameras of known pose see: features and matches as above, then triangulation; poses and lenses
+ * stay. Images that are none of the photos are lost. */
+enum status triangulate(struct sfm_model *m, const struct sfm_folder *f, const struct sfm_input *in, struct err *err);
 
 #endif

@@ -111,7 +111,7 @@ enum status sfm_folder_commit(struct sfm_folder *f, const struct photo_list *pho
     enum status st = write_lists(f, photos, prov, err);
     char *old = text_format(err, "%s/old", f->work);
     if (!old) st = err->status;
-    /* where there is no old folder, or the file system cannot exchange two, the old one (if any) goes out of the way first */
+    /* where there is no old folder, or the file system cannot exchange two, an old one is moved out of the way first */
     if (!st && renameat2(AT_FDCWD, f->made, AT_FDCWD, f->out, RENAME_EXCHANGE) &&
         ((rename(f->out, old) && errno != ENOENT) || rename(f->made, f->out)))
         st = err_errno(err, "replace", f->out);

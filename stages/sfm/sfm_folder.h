@@ -25,8 +25,8 @@ enum status sfm_folder_open(struct sfm_folder *f, const char *out, struct err *e
 enum status sfm_folder_add(struct sfm_folder *f, const struct sfm_model *m, const struct provenance *prov,
                            struct err *err);
 
-/* Writes photos.txt and, last, models.txt, puts the folder in the place of `out` (exchanged in one step, so that there is
- * always one), and removes the old one and the work folder. */
+/* Writes photos.txt and, last, models.txt, puts the folder in the place of `out` (exchanged in one step, so that there
+ * is always one), and removes the old one and the work folder. */
 enum status sfm_folder_commit(struct sfm_folder *f, const struct photo_list *photos, const struct provenance *prov,
                               struct err *err);
 

@@ -25,11 +25,13 @@ static bool has_file(const char *folder, const char *file)
 static bool is_text(const char *folder) { return has_file(folder, "cameras.txt") && has_file(folder, "images.txt"); }
 static bool is_binary(const char *folder) { return has_file(folder, "cameras.bin") && has_file(folder, "images.bin"); }
 
+/* Hashes of those of the files that are there. */
 static enum status add_inputs(struct provenance *prov, const char *folder, const char *const files[], int model,
                               struct err *err)
 {
     enum status st = ST_OK;
     for (int i = 0; !st && files[i]; i++) {
+        if (!has_file(folder, files[i])) continue;
         char *path = text_format(err, "%s/%s", folder, files[i]);
         char *name = text_format(err, "model/%d/%s", model, files[i]);
         st = path && name ? provenance_add_file(prov, name, path, err) : err->status;
@@ -39,17 +41,55 @@ static enum status add_inputs(struct provenance *prov, const char *folder, const
     return st;
 }
 
-static enum status add_text(struct sfm_folder *f, const char *folder, const struct provenance *prov, struct err *err)
+static enum status copy_file(const char *from_folder, const char *to_folder, const char *file, struct err *err)
+{
+    struct textfile t = {0};
+    struct outfile out = {0};
+    char *from = text_format(err, "%s/%s", from_folder, file), *to = text_format(err, "%s/%s", to_folder, file);
+    enum status st = from && to ? textfile_open(&t, from, err) : err->status;
+    if (!st) st = outfile_open(&out, to, err);
+    if (!st) fwrite(t.bytes, 1, t.size, out.fp);
+    if (!st) st = outfile_commit(&out, err);
+    outfile_discard(&out);
+    textfile_release(&t);
+    free(from);
+    free(to);
+    return st;
+}
+
+/* A model of cameras alone may lack points3D.txt: reads copies of the two others beside an empty one. */
+static enum status read_cameras_alone(struct sfm_model *m, const struct sfm_folder *f, const char *folder,
+                                      struct err *err)
+{
+    struct outfile empty = {0};
+    char *copy = text_format(err, "%s/cameras-alone", f->work);
+    char *points = text_format(err, "%s/cameras-alone/points3D.txt", f->work);
+    enum status st = copy && points ? outfile_open(&empty, points, err) : err->status;
+    if (!st) st = outfile_commit(&empty, err);
+    if (!st) st = copy_file(folder, copy, "cameras.txt", err);
+    if (!st) st = copy_file(folder, copy, "images.txt", err);
+    if (!st) st = sfm_model_read_text(m, copy, err);
+    outfile_discard(&empty);
+    free(copy);
+    free(points);
+    return st;
+}
+
+static enum status add_text(struct sfm_folder *f, const char *folder, const struct sfm_input *in,
+                            const struct provenance *prov, struct err *err)
 {
     struct sfm_model m = {0};
-    enum status st = sfm_model_read_text(&m, folder, err);
+    enum status st = has_file(folder, "points3D.txt") ? sfm_model_read_text(&m, folder, err)
+                                                      : read_cameras_alone(&m, f, folder, err);
     if (!st) log_note("model %d: %d images, %d points", f->models, m.image_count, m.point_count);
+    if (!st && !m.point_count) st = triangulate(&m, f, in, err);
     if (!st) st = sfm_folder_add(f, &m, prov, err);
     sfm_model_release(&m);
     return st;
 }
 
-static enum status add_binary(struct sfm_folder *f, const char *folder, const struct provenance *prov, struct err *err)
+static enum status add_binary(struct sfm_folder *f, const char *folder, const struct sfm_input *in,
+                              const struct provenance *prov, struct err *err)
 {
     static const char *const env[] = {"QT_QPA_PLATFORM=offscreen", NULL};
     char *text = text_format(err, "%s/text/%d", f->work, f->models), *log = text_format(err, "%s/colmap.log", f->work);
@@ -61,7 +101,7 @@ static enum status add_binary(struct sfm_folder *f, const char *folder, const st
     if (!st && code)
         st = err_set(err, ST_DATA, "colmap could not read the binary model in %s (exit status %d); its log is %s.",
                      folder, code, log);
-    if (!st) st = add_text(f, text, prov, err);
+    if (!st) st = add_text(f, text, in, prov, err);
     free(text);
     free(log);
     return st;
@@ -69,8 +109,8 @@ static enum status add_binary(struct sfm_folder *f, const char *folder, const st
 
 /* ------------------------------------------------------------------------------------------------------- Bundler */
 
-/* A file of the folder for which `wanted` holds, the one called `first` if there is one, else the first by name. *path stays
- * NULL if there is none. */
+/* A file of the folder for which `wanted` holds, the one called `first` if there is one, else the first by name. *path
+ * stays NULL if there is none. */
 static enum status find_file(char **path, const char *folder, const char *first, bool (*wanted)(const char *path),
                              const char *pattern, struct err *err)
 {
@@ -198,8 +238,8 @@ static enum status try_bundler(struct sfm_folder *f, const char *from, const str
 /* -------------------------------------------------------------------------------------------------------------- all */
 
 /* *found: whether the folder holds a COLMAP model. */
-static enum status try_colmap(struct sfm_folder *f, const char *folder, bool *found, struct provenance *prov,
-                              struct err *err)
+static enum status try_colmap(struct sfm_folder *f, const char *folder, const struct sfm_input *in, bool *found,
+                              struct provenance *prov, struct err *err)
 {
     static const char *const text[] = {"cameras.txt", "images.txt", "points3D.txt", NULL};
     static const char *const binary[] = {"cameras.bin", "images.bin", "points3D.bin", NULL};
@@ -207,23 +247,23 @@ static enum status try_colmap(struct sfm_folder *f, const char *folder, bool *fo
     enum status st = ST_OK;
     *found = as_text || as_binary;
     if (*found) st = add_inputs(prov, folder, as_text ? text : binary, f->models, err);
-    if (!st && as_text) st = add_text(f, folder, prov, err);
-    if (!st && as_binary) st = add_binary(f, folder, prov, err);
+    if (!st && as_text) st = add_text(f, folder, in, prov, err);
+    if (!st && as_binary) st = add_binary(f, folder, in, prov, err);
     return st;
 }
 
-enum status user_model_add(struct sfm_folder *f, const char *from, const struct photo_list *photos,
-                           struct provenance *prov, struct err *err)
+enum status user_model_add(struct sfm_folder *f, const char *from, const struct sfm_input *in, struct provenance *prov,
+                           struct err *err)
 {
     bool found = false, more = true;
     if (access(from, R_OK | X_OK)) return err_errno(err, "open", from);
-    enum status st = try_colmap(f, from, &found, prov, err);
+    enum status st = try_colmap(f, from, in, &found, prov, err);
     for (int k = 0; !st && !found && more; k++) {
         char *folder = text_format(err, "%s/%d", from, k);
-        st = folder ? try_colmap(f, folder, &more, prov, err) : err->status;
+        st = folder ? try_colmap(f, folder, in, &more, prov, err) : err->status;
         free(folder);
     }
-    if (!st && !f->models) st = try_bundler(f, from, photos, &found, prov, err);
+    if (!st && !f->models) st = try_bundler(f, from, in->list, &found, prov, err);
     if (!st && !f->models)
         st = err_set(err, ST_DATA,
                      "%s holds no structure-from-motion model: wanted COLMAP's cameras, images and points3D (.txt or "

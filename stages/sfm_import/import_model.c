@@ -179,8 +179,7 @@ struct importer {
     struct input_image *images;
     struct output_view *views;
     int view_count;
-    double *
-        errors; /* of every entry of every track, in order; INFINITY behind the camera or outside its lens; -1 not a photo */
+    double *errors; /* of each track entry, in order; INFINITY: behind the camera or outside its lens; -1: no photo */
 };
 
 static enum status match_photos(struct importer *imp, struct import_stats *stats, struct err *err)
@@ -384,7 +383,7 @@ static enum status judge_errors(const struct import_stats *stats, const struct i
     return ST_OK;
 }
 
-/* --------------------------------------------------------------------------------------------------------- the views */
+/* ------------------------------------------------------------------------------------------------------ the views */
 
 static int compare_views(const void *a, const void *b)
 {
@@ -469,7 +468,7 @@ static enum status make_cameras(const struct importer *imp, struct imported *out
     return ST_OK;
 }
 
-/* -------------------------------------------------------------------------------------------------------- the points */
+/* ----------------------------------------------------------------------------------------------------- the points */
 
 struct sighting { /* of one point in one view, in rectified pixels */
     int view, image;
@@ -625,7 +624,7 @@ enum status import_model(struct imported *out, const struct sfm_model *model, co
     return st;
 }
 
-/* ----------------------------------------------------------------------------------------------------------- writing */
+/* -------------------------------------------------------------------------------------------------------- writing */
 
 static enum status write_views_mk(const struct imported *in, const char *path, struct err *err)
 {

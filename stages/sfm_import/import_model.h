@@ -23,8 +23,8 @@ struct import_params {
     }
 extern const struct param import_param_table[];
 
-/* Reads SFM/models.txt and, of its models, the one with the most images that are among the photos (then the most points);
- * notes the others. name is its folder inside SFM; the caller frees it. */
+/* Reads SFM/models.txt and, of its models, the one with the most images that are among the photos (then the most
+ * points); notes the others. name is its folder inside SFM; the caller frees it. */
 enum status import_choose(struct sfm_model *model, char **name, const char *sfm, const struct photo_list *photos,
                           struct err *err);
 
@@ -45,8 +45,8 @@ struct imported {
     struct import_stats stats;
 };
 
-/* ST_DATA with a sentence that says what to do: two images that are one photo, fewer than two registered photos, photos of another
- * size than the model's, no observation that fits. Notes and warnings go to the log. */
+/* ST_DATA with a sentence that says what to do: two images that are one photo, fewer than two registered photos,
+ * photos of another size than the model's, no observation that fits. Notes and warnings go to the log. */
 enum status import_model(struct imported *out, const struct sfm_model *model, const struct photo_list *photos,
                          const struct import_params *params, struct err *err);
 

@@ -1,9 +1,10 @@
 /* view_cameras.c - see view_cameras.h.
  *
- * The rectangle of rule 3: the border of the photo, sampled all around, is taken to the plane z = 1. The rectangle's left
- * side stands at the largest x of the left border's samples, and so on: no sample lies inside it, the axis does, so it is
- * inside the photo whichever way the lens bends. Where a border pixel has no ray (a distortion that folds, the black corners of a
- * circular fisheye's model) the outermost pixel towards the principal point that has one stands in for it. */
+ * The rectangle of rule 3: the border of the photo, sampled all around, is taken to the plane z = 1. The rectangle's
+ * left side stands at the largest x of the left border's samples, and so on: no sample lies inside it, the axis does,
+ * so it is inside the photo whichever way the lens bends. Where a border pixel has no ray (a distortion that folds,
+ * the black corners of a circular fisheye's model) the outermost pixel towards the principal point that has one stands
+ * in for it. */
 #include "stages/sfm_import/view_cameras.h"
 
 #include <float.h>
@@ -100,7 +101,7 @@ static bool one_view(struct photo_view *view, const struct camera *lens, double 
     double scale = fmin(1, sqrt(most_pixels / (across * down)));
     across *= scale;
     down *= scale;
-    /* the tolerance keeps a side that is whole but for rounding; a fraction of a pixel is cut off evenly at both ends */
+    /* the tolerance keeps a side that is whole but for rounding; a pixel's fraction is cut off evenly at both ends */
     double width = floor(across + 1e-6), height = floor(down + 1e-6);
     if (!(width >= 1 && height >= 1 && width <= 1 << 20 && height <= 1 << 20)) return false;
     *view = (struct photo_view){-1, {CAMERA_PINHOLE, (int)width, (int)height, {0}}, {1, 0, 0, 0}};

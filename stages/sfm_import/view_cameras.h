@@ -1,11 +1,12 @@
 /* view_cameras.h - the one rule by which a photo's lens becomes the pinhole cameras of its views.
  *
- * 1. The field of view is measured along the two midlines of the photo's border. A field wider than `max_field` in either
- *    direction becomes up to five square pinhole views of 90 degrees with the photo's centre: 0 forward, 1 left, 2 right,
- *    3 up, 4 down; of 1 to 4, one with fewer than a quarter of its pixels inside the photo is left out.
+ * 1. The field of view is measured along the two midlines of the photo's border. A field wider than `max_field` in
+ *    either direction becomes up to five square pinhole views of 90 degrees with the photo's centre: 0 forward, 1
+ *    left, 2 right, 3 up, 4 down; of 1 to 4, one with fewer than a quarter of its pixels inside the photo is left out.
  * 2. A narrower SIMPLE_PINHOLE or PINHOLE photo within `max_megapixels` keeps its camera and its pixels.
- * 3. Any other becomes one PINHOLE view: focal lengths those of the lens at its centre, the principal point where the lens
- *    has it, and borders drawn in or out so that the view is the largest upright rectangle found that lies inside the photo.
+ * 3. Any other becomes one PINHOLE view: focal lengths those of the lens at its centre, the principal point where the
+ *    lens has it, and borders drawn in or out so that the view is the largest upright rectangle found that lies inside
+ *    the photo.
  * 4. A view of more than `max_megapixels` (0: no limit) is scaled down with its aspect kept.
  *
  * Pixels are those of the stored photo; pixel (x, y) has its centre at (x + 0.5, y + 0.5). */

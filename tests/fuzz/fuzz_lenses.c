@@ -1,5 +1,5 @@
-/* fuzz_lenses.c - the list of lenses: what is read is written again and read back the same, or a sentence says why not; and
- * no lens, however bent, makes its projection return anything but a pixel or nothing. */
+/* fuzz_lenses.c - the list of lenses: what is read is written again and read back the same, or a sentence says why
+ * not; and no lens, however bent, makes its projection return anything but a pixel or nothing. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

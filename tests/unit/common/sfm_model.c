@@ -1,4 +1,5 @@
-/* sfm_model.c - models in COLMAP's and Bundler's text: what is read, that writing keeps every bit, and what is refused. */
+/* sfm_model.c - models in COLMAP's and Bundler's text: what is read, that writing keeps every bit, and what is
+ * refused. */
 #include "tests/unit/scratch.h"
 
 #include <math.h>
@@ -233,8 +234,8 @@ static void names_that_cannot_be_written_are_refused(void **state)
 static void bundler_axes_are_turned(void **state)
 {
     (void)state;
-    /* camera 0 looks along Bundler's -z from (0, 0, 5): p = X + (0, 0, -5); camera 1 is not placed; camera 2 is turned a
-     * quarter about y, so that it looks along +x from (-4, 0, 0) */
+    /* camera 0 looks along Bundler's -z from (0, 0, 5): p = X + (0, 0, -5); camera 1 is not placed; camera 2 is turned
+     * a quarter about y, so that it looks along +x from (-4, 0, 0) */
     const char *text = "# Bundle file v0.3\n3 2\n"
                        "100 -0.2 0.01\n1 0 0\n0 1 0\n0 0 1\n0 0 -5\n"
                        "0 0 0\n0 0 0\n0 0 0\n0 0 0\n0 0 0\n"
@@ -263,8 +264,8 @@ static void bundler_axes_are_turned(void **state)
     assert_near(m.images[1].observations[1].v, 50 - 40.2752, 1e-12);
     assert_int_equal(m.points[1].track_count, 2); /* not the view that was not placed */
 
-    /* the turned camera: the origin lies 4 ahead, in its middle; the other point at (1, 2, 0.5) is 5 ahead, 2 up, and world z
-     * is to its right */
+    /* the turned camera: the origin lies 4 ahead, in its middle; the other point at (1, 2, 0.5) is 5 ahead, 2 up, and
+     * world z is to its right */
     assert_true(camera_project(a, pose_apply(&m.images[0].cam_from_world, m.points[0].position), &u, &v));
     assert_near(u, 40, 1e-12);
     assert_near(v, 20, 1e-12);

@@ -4,7 +4,7 @@
 #include "stages/sfm/user_model.h"
 
 static const char cameras[] = "1 PINHOLE 64 48 50 50 32 24\n";
-static const char images[] = "1 1 0 0 0 0 0 0 1 x/a.jpg\n\n2 1 0 0 0 1 0 0 1 b.jpg\n\n";
+static const char images[] = "1 1 0 0 0 0 0 0 1 x/a.jpg\n32 24 7\n2 1 0 0 0 1 0 0 1 b.jpg\n40 24 7\n";
 
 static char ids[2][2] = {"a", "b"}, files[2][8] = {"a.jpg", "b.jpg"};
 static struct photo_record records[] = {
@@ -12,6 +12,7 @@ static struct photo_record records[] = {
     {.id = ids[1], .file = files[1], .hash = "11", .info = {.width = 64, .height = 48}},
 };
 static const struct photo_list photos = {records, 2};
+static const struct sfm_params params = SFM_PARAMS_DEFAULT;
 
 static const char *folder(const char *name)
 {
@@ -28,7 +29,7 @@ static void write_text_model(const char *name)
     snprintf(file, sizeof file, "%s/images.txt", name);
     scratch_write(file, images);
     snprintf(file, sizeof file, "%s/points3D.txt", name);
-    scratch_write(file, "");
+    scratch_write(file, "7 0 0 5 1 2 3 0.5 1 0 2 0\n");
 }
 
 /* Takes over `from` as the product `out`. */
@@ -36,8 +37,9 @@ static enum status take(const char *from, const char *out, struct err *err)
 {
     struct provenance prov = {.stage = "sfm", .version = "0"};
     struct sfm_folder f = {0};
+    struct sfm_input in = {scratch, NULL, &photos, &params};
     enum status st = sfm_folder_open(&f, scratch_path(out), err);
-    if (!st) st = user_model_add(&f, scratch_path(from), &photos, &prov, err);
+    if (!st) st = user_model_add(&f, scratch_path(from), &in, &prov, err);
     if (!st) st = sfm_folder_commit(&f, &photos, &prov, err);
     sfm_folder_release(&f);
     provenance_release(&prov);

@@ -1,4 +1,5 @@
-/* import_model.c - models of a made-up scene with known cameras: matching by name, errors computed anew, rectified pixels. */
+/* import_model.c - models of a made-up scene with known cameras: matching by name, errors computed anew, rectified
+ * pixels. */
 #include "tests/unit/scratch.h"
 
 #include <math.h>

@@ -1,4 +1,5 @@
-/* view_cameras.c - the rule from lens to views: what is kept, that nothing of a view lies outside its photo, wide lenses. */
+/* view_cameras.c - the rule from lens to views: what is kept, that nothing of a view lies outside its photo, wide
+ * lenses. */
 #include "tests/unit/scratch.h"
 
 #include <math.h>
@@ -153,7 +154,7 @@ static void a_fisheye_becomes_a_cube_of_views(void **state)
         struct vec3 z = mat3_apply(mat3_transpose(mat3_from_quat(views[k].view_from_photo)), vec3_make(0, 0, 1));
         assert_near(vec3_length(vec3_sub(z, vec3_make(forward[k][0], forward[k][1], forward[k][2]))), 0, 1e-12);
     }
-    /* "up" is up in the picture: its middle lies above the photo's, and its lower border is the forward view's upper one */
+    /* "up" is up in the picture: its middle lies above the photo's, and its lower border is the forward one's upper */
     double u, v, u2, v2;
     assert_true(photo_pixel(&lens, &views[3], 640, 640, &u, &v));
     assert_true(v < 1000 - 640 && fabs(u - 1000) < 1e-6);
