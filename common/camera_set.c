@@ -41,8 +41,7 @@ static int compare_places(const void *a, const void *b)
     return strcmp(((const struct place *)a)->view.name, ((const struct place *)b)->view.name);
 }
 
-/* The model is in order of "VIEW.exr", which differs from the order of VIEW where a name is the beginning of another.
- * */
+/* The model is in order of "VIEW.exr", which differs from the order of VIEW where one name begins another. */
 static enum status sort_views(struct camera_set *set, struct err *err)
 {
     struct sfm_model *m = &set->model;

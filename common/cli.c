@@ -187,8 +187,8 @@ static enum status take_arg(int argc, char **argv, int *i, const struct known *k
     } else if (!(o = find(known->common, name, n))) {
         snprintf(word, sizeof word, "%.*s", (int)n, name);
         const char *near = scan_nearest(word, known_name, known);
-        return err_set(err, ST_USAGE, "unknown option %s%s%s%s.", scan_show(shown, word),
-                       near ? "; did you mean --" : "; --help lists them", near ? near : "", near ? "?" : "");
+        return err_set(err, ST_USAGE, "unknown option %s%s%s%s", scan_show(shown, word),
+                       near ? "; did you mean --" : "; --help lists them", near ? near : "", near ? "?" : ".");
     }
     if (o->kind == CLI_KIND_FLAG && value) return err_set(err, ST_USAGE, "--%s takes no value.", o->name);
     if (o->kind != CLI_KIND_FLAG && !value) {

@@ -1,4 +1,4 @@
-/* layer_raster.h - private to the renderer: one view's segments drawn in a novel camera.
+/* layer_raster.h - one view's segments drawn in a novel camera: what layer_render.c is made of.
  *
  * A segment's plane p = (a, b, c), 1/z = p . (u, v, 1), and the relative pose X_view = R X_novel + t give, in
  * pixels,
@@ -8,7 +8,7 @@
  *
  * A target pixel taken back to the view gathers its four neighbours there: coverage and premultiplied colour are the
  * bilinear sums over those texels whose layer id is this segment's. In a cell whose texels all belong to segments of
- * similar depth (JOIN_SIGMAS below) the whole cell counts for each of them: neighbours on one surface then overlap
+ * one surface (linked by JOIN_SIGMAS below) the whole cell counts for each of them: neighbours on one surface then overlap
  * by up to a pixel with the same texture in both, so that planes that differ slightly show no crack while the novel
  * camera moves, and edges at depth jumps stay anti-aliased. */
 #ifndef REMODEL_LAYER_RASTER_H

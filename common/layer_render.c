@@ -17,7 +17,7 @@
 #define BAND_ROWS    16
 #define COVERED      0.5f  /* alpha from which a view covers a pixel */
 #define MAX_SAMPLES  7     /* six that the view mesh names, or fewer and another view in a hole */
-#define AGAINST_MOST 0.5f  /* blending weight of views that may see through what another view shows in a hole */
+#define AGAINST_MOST 0.5f  /* part, by weight, of the views that can tell that may see through what fills a hole */
 #define LEAST_INSIDE 1e-3f /* a view alone at its border still shows */
 
 void rendered_frame_release(struct rendered_frame *frame)
@@ -233,26 +233,29 @@ static void draw_named_views(const struct frame_job *job, struct scratch *s, int
     }
 }
 
-/* Whether a view looks through this world point, at a surface clearly farther: then nothing can be there. */
-static bool sees_through(const struct frame_job *job, int view, struct vec3 point, float sigma)
+enum sight { SIGHT_NONE, SIGHT_THROUGH, SIGHT_STOPPED };
+
+/* Whether a view looks through this world point, at a surface clearly farther: then nothing can be there. It cannot
+ * tell if the point is outside its picture or it has no depth there. */
+static enum sight sight_of(const struct frame_job *job, int view, struct vec3 point, float sigma)
 {
     const struct layer_view *lv = &job->scene->views[view];
     double u, v;
     const double z = view_project(&job->scene->set->views[view], point, &u, &v);
-    if (!(z > 0) || !(u >= 0 && v >= 0 && u < lv->width && v < lv->height)) return false;
+    if (!(z > 0) || !(u >= 0 && v >= 0 && u < lv->width && v < lv->height)) return SIGHT_NONE;
 
     const struct texel *t = &lv->texels[((size_t)v + 1) * (size_t)lv->stride + (size_t)u + 1];
     const uint32_t id = t->id[0] & ~TEXEL_JOINED;
-    if (!id) return false;
+    if (!id) return SIGHT_NONE;
     const struct depth_segment *seg = &job->scene->depths[view].segments[id - 1];
     const double inverse = seg->plane[0] * u + seg->plane[1] * v + seg->plane[2];
-    if (!(inverse > 0)) return true;
+    if (!(inverse > 0)) return SIGHT_THROUGH;
     const float rho = soft_z_rho(&job->soft, (float)z, sigma, (float)(1 / inverse), (float)seg->sigma);
-    return soft_z_weight((float)(1 / inverse - z), 0.1f * rho, rho) == 0;
+    return soft_z_weight((float)(1 / inverse - z), 0.1f * rho, rho) == 0 ? SIGHT_THROUGH : SIGHT_STOPPED;
 }
 
 /* In pixels that the named views leave a hole: the nearest of the other views that shows something there through which
- * the named views, by most of their weight, do not see. What is there was hidden from them, so it must lie behind what
+ * the named views that can tell, by most of their weight, do not see. What is there was hidden from them, so it must lie behind what
  * they show; else a segment at a wrong depth would hang in the hole. */
 static void draw_other_views(const struct frame_job *job, struct scratch *s, int y0, int y1)
 {
@@ -269,11 +272,11 @@ static void draw_other_views(const struct frame_job *job, struct scratch *s, int
             const struct raster_surface *surface = raster_visible(&s->pixels[p]);
             const struct vec3 point = view_unproject(&job->novel, (double)(p % (size_t)w) + 0.5,
                                                      y0 + (double)(p / (size_t)w) + 0.5, surface->z);
-            float against = 0;
+            float told[3] = {0};
             for (int k = 0; k < named->count; k++)
-                if (named->weight[k] > 0 && sees_through(job, named->view[k], point, surface->sigma))
-                    against += named->weight[k];
-            if (against > AGAINST_MOST) continue;
+                if (named->weight[k] > 0)
+                    told[sight_of(job, named->view[k], point, surface->sigma)] += named->weight[k];
+            if (told[SIGHT_THROUGH] > AGAINST_MOST * (told[SIGHT_THROUGH] + told[SIGHT_STOPPED])) continue;
             s->covered[p] = 1;
             add_sample(s, n, p, 1);
         }

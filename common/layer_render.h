@@ -6,9 +6,9 @@
  * names for the pixel, a soft z-buffer (thesis eq. 3.1, common/soft_z.h) blends by weight x w x alpha.
  *
  * Two things are not in the thesis. A view's weight falls off towards the border of its picture, so that the border
- * leaves no line. And a pixel is a hole only if nothing else covers it either: where the views that the mesh names leave
- * it below alpha 0.5, the nearest other view (by centre) that sees something there takes their place, unless most of
- * them, by weight, see through it at something farther. What is left is filled from the far side
+ * leaves no line. And a pixel is a hole only if nothing else covers it either: where the views that the mesh names
+ * leave it below alpha 0.5, the nearest other view (by centre) that sees something there takes their place, unless
+ * most of them, by weight, see through it at something farther. What is left is filled from the far side
  * (common/hole_fill.h).
  *
  * Depth is z along the novel camera's axis, in scene units; colour is scene-linear. */
@@ -23,9 +23,8 @@ struct layer_view; /* a view packed for rendering, 24 bytes a pixel: common/laye
 
 struct layer_scene { /* views, their layers, the mesh; depths[i] belongs to set->views[i] */
     const struct camera_set *set;
-    struct layered_depth
-        *depths;              /* owned; size and segments only: the layers' planes are packed and given back (NULL) */
-    struct layer_view *views; /* owned; one a view */
+    struct layered_depth *depths; /* owned; size and segments: the planes are packed and given back (NULL) */
+    struct layer_view *views;     /* owned; one a view */
     struct view_mesh mesh;
     double near_depth, far_depth; /* percentiles (2, 98) of the segments' depths over all views, in their own cameras,
                                      a segment counting by its pixels */
@@ -45,8 +44,7 @@ void layer_scene_release(struct layer_scene *scene);
 #define SOFT_Z_WIDTHS 3 /* the usual soft_z */
 
 struct layer_render_options {
-    double
-        soft_z; /* width of the soft z: in units of the segments' depth uncertainty; 0: the thesis' (rho, rho / 10) */
+    double soft_z;     /* width of the soft z, in depth uncertainties; 0: the thesis' (rho, rho / 10) */
     int fill_diameter; /* holes narrower than this (px) are filled by the reverse soft z in 7x7, wider ones by a pyramid
                           that prefers the far side; 0: none is filled */
 };

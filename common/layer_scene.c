@@ -39,12 +39,22 @@ static void shape_add(struct segment_shape *s, int x, int y, bool interior)
     }
 }
 
-/* Whether the four texels at t belong to segments whose planes agree in the middle of them, at (u, v). */
+/* Whether the planes of two segments agree at pixel (u, v). */
+static bool planes_meet(const struct depth_segment *a, const struct depth_segment *b, double u, double v)
+{
+    const double za = a->plane[0] * u + a->plane[1] * v + a->plane[2];
+    const double zb = b->plane[0] * u + b->plane[1] * v + b->plane[2];
+    const double sa = fmax(a->sigma, SOFT_Z_SIGMA_LEAST), sb = fmax(b->sigma, SOFT_Z_SIGMA_LEAST);
+    return fabs(za - zb) <= JOIN_SIGMAS * hypot(sa, sb) * fmin(za, zb);
+}
+
+/* Whether the four texels at t belong to segments of one surface: in the middle of them, at (u, v), each one's plane
+ * meets another's until all are linked. (On a slope, those at opposite corners need not meet.) */
 static bool cell_joined(const struct texel *t, int stride, const struct layered_depth *d, double u, double v)
 {
     const struct texel *cell[4] = {t, t + 1, t + stride, t + stride + 1};
     uint32_t ids[8];
-    int count = 0;
+    int count = 0, linked = 1;
 
     for (int k = 0; k < 4; k++)
         for (int l = 0; l < 2; l++) {
@@ -54,15 +64,14 @@ static bool cell_joined(const struct texel *t, int stride, const struct layered_
             for (int i = 0; i < count; i++) known |= ids[i] == id;
             if (id && !known) ids[count++] = id;
         }
-    for (int i = 0; i < count; i++)
-        for (int j = i + 1; j < count; j++) {
-            const struct depth_segment *a = &d->segments[ids[i] - 1], *b = &d->segments[ids[j] - 1];
-            const double za = a->plane[0] * u + a->plane[1] * v + a->plane[2];
-            const double zb = b->plane[0] * u + b->plane[1] * v + b->plane[2];
-            const double sa = fmax(a->sigma, SOFT_Z_SIGMA_LEAST), sb = fmax(b->sigma, SOFT_Z_SIGMA_LEAST);
-            if (!(fabs(za - zb) <= JOIN_SIGMAS * hypot(sa, sb) * fmin(za, zb))) return false;
-        }
-    return true;
+    for (int i = 0; i < linked; i++) /* ids[0 .. linked) hang together */
+        for (int j = linked; j < count; j++)
+            if (planes_meet(&d->segments[ids[i] - 1], &d->segments[ids[j] - 1], u, v)) {
+                const uint32_t id = ids[j];
+                ids[j] = ids[linked];
+                ids[linked++] = id;
+            }
+    return linked == count;
 }
 
 void layer_view_release(struct layer_view *lv)

@@ -18,11 +18,11 @@ struct layer {
 };
 
 struct depth_segment {
-    uint32_t id;         /* its place in the list + 1 */
-    int pixels;          /* of the interior */
-    double plane[3];     /* 1/z = plane[0] u + plane[1] v + plane[2] */
-    double sigma;        /* uncertainty of z, relative: dz / z */
-    double confidence;   /* 0 inherited from neighbours .. 1 sure */
+    uint32_t id;       /* its place in the list + 1 */
+    int pixels;        /* of the interior */
+    double plane[3];   /* 1/z = plane[0] u + plane[1] v + plane[2] */
+    double sigma;      /* uncertainty of z, relative: dz / z */
+    double confidence; /* 0 inherited from neighbours .. 1 sure */
 };
 
 struct layered_depth {

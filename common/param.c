@@ -95,11 +95,11 @@ static enum status unknown(const struct param *table, const char *name, const ch
     const char *near = scan_nearest(name, table_name, table);
     char shown[SCAN_SHOWN];
 
-    return err_set(err, ST_USAGE, "%sunknown parameter %s%s%s%s.", where, scan_show(shown, name),
+    return err_set(err, ST_USAGE, "%sunknown parameter %s%s%s%s", where, scan_show(shown, name),
                    near           ? "; did you mean "
                    : !table->name ? "; this stage has none"
                                   : "; --help lists them",
-                   near ? near : "", near ? "?" : "");
+                   near ? near : "", near ? "?" : ".");
 }
 
 struct reading {

@@ -13,11 +13,11 @@
 
 #include "common/parallel.h"
 
-#define REACH 2          /* px: how far light spreads over a jump */
-#define COLLECT 6        /* px: half width of the window of the two means */
-#define LEAST_COLOURS 4  /* pixels a mean needs */
+#define REACH          2     /* px: how far light spreads over a jump */
+#define COLLECT        6     /* px: half width of the window of the two means */
+#define LEAST_COLOURS  4     /* pixels a mean needs */
 #define LEAST_CONTRAST 0.08f /* of the means' gamma-encoded distance */
-#define OFF_LINE 0.35f   /* distance from the line, in lengths of the line, up to which a pixel is a mixture */
+#define OFF_LINE       0.35f /* distance from the line, in lengths of the line, up to which a pixel is a mixture */
 
 struct layers {
     struct layered_depth *out;

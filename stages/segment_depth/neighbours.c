@@ -5,9 +5,9 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
-#define LEAST_SHARED 8      /* points that two views must share before the points choose */
-#define LARGEST_ERROR 2.0   /* px, of a point that is believed */
-#define DEGREE (M_PI / 180)
+#define LEAST_SHARED  8   /* points that two views must share before the points choose */
+#define LARGEST_ERROR 2.0 /* px, of a point that is believed */
+#define DEGREE        (M_PI / 180)
 
 static int compare_points(const void *a, const void *b)
 {
@@ -27,8 +27,7 @@ enum status seen_points_find(struct seen_points *seen, const struct camera_set *
     for (int i = 0; i < image->observation_count && m->point_count > 0; i++) {
         const struct sfm_observation *o = &image->observations[i];
         struct sfm_point key = {.id = o->point_id};
-        const struct sfm_point *p =
-            bsearch(&key, m->points, (size_t)m->point_count, sizeof *m->points, compare_points);
+        const struct sfm_point *p = bsearch(&key, m->points, (size_t)m->point_count, sizeof *m->points, compare_points);
         double u, v, z;
         if (!p || !((z = view_project(view, p->position, &u, &v)) > 0)) continue;
         if (!(hypot(u - o->u, v - o->v) <= LARGEST_ERROR)) continue;
@@ -125,8 +124,10 @@ enum status neighbours_choose(int neighbours[MAX_NEIGHBOURS], int *count, const 
         best = best_view(score, shared, set->view_count, view_idx, neighbours, *count);
         if (*count == 0 && best >= 0) first_score = score[best];
         /* a view that adds next to nothing costs as much time as a good one */
-        if (best >= 0 && score[best] >= 0.02 * first_score) neighbours[(*count)++] = best;
-        else best = -1;
+        if (best >= 0 && score[best] >= 0.02 * first_score)
+            neighbours[(*count)++] = best;
+        else
+            best = -1;
     }
     if (*count == 0) {
         score_poses(score, set, view_idx);

@@ -11,12 +11,12 @@ struct segment {
     float colour[3];    /* mean; L a b of oversegment.c, 0..100 */
 };
 
-struct touch {          /* one direction of a border between two segments */
+struct touch { /* one direction of a border between two segments */
     int other;
-    int length;         /* pixel sides that they share */
-    int edge;           /* the border's number, the same in both directions */
-    float u, v;         /* the border's middle */
-    float contrast;     /* mean colour difference across the border, L a b */
+    int length;     /* pixel sides that they share */
+    int edge;       /* the border's number, the same in both directions */
+    float u, v;     /* the border's middle */
+    float contrast; /* mean colour difference across the border, L a b */
 };
 
 struct segmentation {

@@ -14,14 +14,14 @@
 #include "common/parallel.h"
 
 #define CHANNELS 8
-#define UNIT 127 /* vertical weights sum to it, so features are bytes times it */
+#define UNIT     127 /* vertical weights sum to it, so features are bytes times it */
 
 /* Truncations (in bytes) and weights, found by trial on pairs with known disparities. Gradients are divided by their
  * deviation in the surroundings, which lets weak texture count and exposure not; they are trusted more than colours, as in
  * PatchMatch Stereo (Bleyer 2011). */
-#define SURROUNDINGS 6   /* px: half width of the window that gradients are measured against */
-#define DEVIATION 20.0f
-#define NOISE 3.0f       /* grey levels: gradients of this size are half believed */
+#define SURROUNDINGS 6 /* px: half width of the window that gradients are measured against */
+#define DEVIATION    20.0f
+#define NOISE        3.0f /* grey levels: gradients of this size are half believed */
 enum { COLOUR_LIMIT = 24, FINE_LIMIT = 14, COARSE_LIMIT = 14 };
 enum { COLOUR_WEIGHT = 14, FINE_WEIGHT = 50, COARSE_WEIGHT = 16, VALID_WEIGHT = 1000 };
 enum {
@@ -31,12 +31,11 @@ enum {
 
 static uint8_t byte_from(float x) { return (uint8_t)(x <= 0 ? 0 : x >= 255 ? 255 : x + 0.5f); }
 
-#ifndef UC
-#define UC 0.5f
-#define RW 0.7
-#endif
-#define NO_MATCH UC      /* cost from which a neighbour is taken not to see the segment at all */
-#define RANK_WEIGHT RW   /* of a neighbour's cost against the next better one's */
+/* Of a neighbour: the cost where it does not see the segment; the most that a mismatch can cost, for a match of texture with a
+ * blank wall must not look better than one with other texture; and its weight against that of the next better one. */
+#define UNSEEN_COST   0.55f
+#define MISMATCH_COST 0.7f
+#define RANK_WEIGHT   0.6
 
 struct pack_job {
     const struct gamma_image *g;
@@ -79,8 +78,7 @@ static void gradient_scale(float *scale, const float turn[2][2], const float *lu
         }
     for (int y = 0; y < h; y++) box_line(scale + (size_t)y * (size_t)w, w, 1, line, SURROUNDINGS);
     for (int x = 0; x < w; x++) box_line(scale + x, h, (size_t)w, line, SURROUNDINGS);
-    for (size_t i = 0; i < (size_t)w * (size_t)h; i++)
-        scale[i] = DEVIATION / (sqrtf(fmaxf(scale[i], 0)) + NOISE / 255);
+    for (size_t i = 0; i < (size_t)w * (size_t)h; i++) scale[i] = DEVIATION / (sqrtf(fmaxf(scale[i], 0)) + NOISE / 255);
 }
 
 static void pack_rows(void *ctx, size_t begin, size_t end, int thread)
@@ -110,9 +108,9 @@ static void smooth_luma(float *to, const float *from, float *line, int w, int h)
     for (int y = 0; y < h; y++)
         for (int x = 0; x < w; x++) {
             const float *p = from + (size_t)y * (size_t)w;
-            line[(size_t)y * (size_t)w + (size_t)x] =
-                0.375f * p[x] + 0.25f * (p[inside(x - 1, w)] + p[inside(x + 1, w)]) +
-                0.0625f * (p[inside(x - 2, w)] + p[inside(x + 2, w)]);
+            line[(size_t)y * (size_t)w + (size_t)x] = 0.375f * p[x] +
+                                                      0.25f * (p[inside(x - 1, w)] + p[inside(x + 1, w)]) +
+                                                      0.0625f * (p[inside(x - 2, w)] + p[inside(x + 2, w)]);
         }
     for (int y = 0; y < h; y++) {
         const float *p[5];
@@ -237,9 +235,8 @@ static int compare_doubles(const void *a, const void *b)
 
 /* Median ratio of the view's colours to the neighbour's, at the points that both observed. */
 static enum status estimate_gain(double gain[3], const struct camera_set *set, const struct view *other,
-                                 int neighbour_idx, const struct seen_points *seen,
-                                 const struct gamma_image *reference, const struct gamma_image *picture,
-                                 struct err *err)
+                                 int neighbour_idx, const struct seen_points *seen, const struct gamma_image *reference,
+                                 const struct gamma_image *picture, struct err *err)
 {
     double *ratios = malloc(((size_t)seen->count + 1) * 3 * sizeof *ratios);
     int count = 0;
@@ -347,10 +344,10 @@ static inline __m256i pair_differences(const uint8_t *texture, const int *at, co
         UNIT * COLOUR_LIMIT, UNIT * COLOUR_LIMIT, UNIT * COLOUR_LIMIT, UNIT * FINE_LIMIT, UNIT * FINE_LIMIT,
         UNIT * COARSE_LIMIT, UNIT * COARSE_LIMIT, 32767, UNIT * COLOUR_LIMIT, UNIT * COLOUR_LIMIT, UNIT * COLOUR_LIMIT,
         UNIT * FINE_LIMIT, UNIT * FINE_LIMIT, UNIT * COARSE_LIMIT, UNIT * COARSE_LIMIT, 32767);
-    const __m256i weight = _mm256_setr_epi16(COLOUR_WEIGHT, COLOUR_WEIGHT, COLOUR_WEIGHT, FINE_WEIGHT, FINE_WEIGHT,
-                                             COARSE_WEIGHT, COARSE_WEIGHT, VALID_WEIGHT, COLOUR_WEIGHT, COLOUR_WEIGHT,
-                                             COLOUR_WEIGHT, FINE_WEIGHT, FINE_WEIGHT, COARSE_WEIGHT, COARSE_WEIGHT,
-                                             VALID_WEIGHT);
+    const __m256i weight =
+        _mm256_setr_epi16(COLOUR_WEIGHT, COLOUR_WEIGHT, COLOUR_WEIGHT, FINE_WEIGHT, FINE_WEIGHT, COARSE_WEIGHT,
+                          COARSE_WEIGHT, VALID_WEIGHT, COLOUR_WEIGHT, COLOUR_WEIGHT, COLOUR_WEIGHT, FINE_WEIGHT,
+                          FINE_WEIGHT, COARSE_WEIGHT, COARSE_WEIGHT, VALID_WEIGHT);
     __m256i p = _mm256_maddubs_epi16(_mm256_loadu_si256((const __m256i *)(texture + (size_t)at[0] * 2 * CHANNELS)),
                                      _mm256_set1_epi32(down[0]));
     __m256i q = _mm256_maddubs_epi16(_mm256_loadu_si256((const __m256i *)(texture + (size_t)at[1] * 2 * CHANNELS)),
@@ -359,8 +356,7 @@ static inline __m256i pair_differences(const uint8_t *texture, const int *at, co
     __m256i fraction = _mm256_set_m128i(_mm_set1_epi32(across[1]), _mm_set1_epi32(across[0]));
     __m256i sample = _mm256_add_epi16(left, _mm256_mulhrs_epi16(_mm256_sub_epi16(right, left), fraction));
     /* saturating: the filling's validity is far below any sample's */
-    __m256i difference =
-        _mm256_abs_epi16(_mm256_subs_epi16(sample, _mm256_load_si256((const __m256i *)reference)));
+    __m256i difference = _mm256_abs_epi16(_mm256_subs_epi16(sample, _mm256_load_si256((const __m256i *)reference)));
     return _mm256_madd_epi16(_mm256_min_epi16(difference, limit), weight);
 }
 
@@ -393,8 +389,8 @@ static float neighbour_cost(const struct matcher *m, const struct match_neighbou
         u = _mm256_min_ps(_mm256_max_ps(u, zero), right); /* NaN becomes 0: max returns its second operand */
         v = _mm256_min_ps(_mm256_max_ps(v, zero), bottom);
         __m256i column = _mm256_cvttps_epi32(u), row = _mm256_cvttps_epi32(v);
-        __m256i fu = _mm256_cvttps_epi32(
-            _mm256_mul_ps(_mm256_sub_ps(u, _mm256_cvtepi32_ps(column)), _mm256_set1_ps(32767)));
+        __m256i fu =
+            _mm256_cvttps_epi32(_mm256_mul_ps(_mm256_sub_ps(u, _mm256_cvtepi32_ps(column)), _mm256_set1_ps(32767)));
         __m256i fv = _mm256_cvtps_epi32(_mm256_mul_ps(_mm256_sub_ps(v, _mm256_cvtepi32_ps(row)), _mm256_set1_ps(UNIT)));
         __m256i weights = _mm256_or_si256(_mm256_sub_epi32(_mm256_set1_epi32(UNIT), fv), _mm256_slli_epi32(fv, 8));
         _Alignas(32) int at[8], across[8], down[8];
@@ -408,9 +404,11 @@ static float neighbour_cost(const struct matcher *m, const struct match_neighbou
                                     reference + (ptrdiff_t)(2 * k) * CHANNELS);
         /* lanes: pixels 0 2 4 6 | 1 3 5 7; their order does not matter to integer sums, but it does to the mask */
         __m256i cost = _mm256_hadd_epi32(_mm256_hadd_epi32(q[0], q[1]), _mm256_hadd_epi32(q[2], q[3]));
-        __m256i mask = _mm256_permutevar8x32_epi32(_mm256_castps_si256(in_sight), _mm256_setr_epi32(0, 2, 4, 6, 1, 3, 5, 7));
+        __m256i mask =
+            _mm256_permutevar8x32_epi32(_mm256_castps_si256(in_sight), _mm256_setr_epi32(0, 2, 4, 6, 1, 3, 5, 7));
         mask = _mm256_and_si256(mask, _mm256_cmpgt_epi32(_mm256_set1_epi32(OUT_OF_SIGHT), cost));
-        sum = _mm256_add_epi32(sum, _mm256_srli_epi32(_mm256_and_si256(mask, cost), 4)); /* room for 2^17 pixels a lane */
+        sum =
+            _mm256_add_epi32(sum, _mm256_srli_epi32(_mm256_and_si256(mask, cost), 4)); /* room for 2^17 pixels a lane */
         count = _mm256_sub_epi32(count, mask);
     }
     _Alignas(32) int sums[8], counts[8];
@@ -425,6 +423,7 @@ static float neighbour_cost(const struct matcher *m, const struct match_neighbou
     return *seen > 0 ? (float)((double)total * 16 / ((double)WORST * *seen)) : 1;
 }
 
+/* A neighbour that sees less than half of the pixels does not see the segment. */
 static float ranked_cost(const struct matcher *m, int begin, int end, int pixels, struct plane plane)
 {
     float costs[MAX_NEIGHBOURS];
@@ -432,13 +431,14 @@ static float ranked_cost(const struct matcher *m, int begin, int end, int pixels
     for (int k = 0; k < m->neighbour_count; k++) {
         int seen, at;
         float cost = neighbour_cost(m, &m->neighbours[k], begin, end, plane, &seen);
-        if (2 * seen < pixels || cost >= NO_MATCH) continue;
+        if (2 * seen < pixels) continue;
+        if (cost > MISMATCH_COST) cost = MISMATCH_COST;
         for (at = count++; at > 0 && costs[at - 1] > cost; at--) costs[at] = costs[at - 1];
         costs[at] = cost;
     }
     double sum = 0, total = 0, weight = 1;
     for (int k = 0; k < m->neighbour_count; k++, weight *= RANK_WEIGHT) {
-        sum += weight * (double)(k < count ? costs[k] : NO_MATCH);
+        sum += weight * (double)(k < count ? costs[k] : UNSEEN_COST);
         total += weight;
     }
     return (float)(sum / total);
@@ -464,7 +464,8 @@ double matcher_shift(const struct matcher *m, double least, double most)
         double paths[GRID * GRID];
         int count = 0;
         for (int g = 0; g < GRID * GRID; g++) {
-            double u = (g % GRID + 0.5) / GRID * m->segments->width, v = (double)(g / GRID + 0.5) / GRID * m->segments->height;
+            double u = (g % GRID + 0.5) / GRID * m->segments->width,
+                   v = (double)(g / GRID + 0.5) / GRID * m->segments->height;
             double path = 0, pu = 0, pv = 0, nu, nv;
             bool had = false;
             for (int i = 0; i <= STEPS; i++) {

@@ -2,16 +2,18 @@
  *
  * A plane is 1/z = a u + b v + c in the view's pixel coordinates, so that a segment's picture in a neighbour is a
  * homography. Per pixel the cost compares colours and gradients of luminance at two scales, each truncated; a
- * neighbour's cost is the mean over the segment's pixels that it sees, or a fixed one if it sees less than half of them. In
- * order of cost each neighbour counts half of the one before it: the worse ones may not see the segment for something
- * in front of it. 0 is perfect, 1 hopeless. */
+ * neighbour's cost is the mean over the segment's pixels that it sees, at most a fixed one, or another fixed one if it does
+ * not see the segment. In order of cost each neighbour counts a little less than the one before: the worse ones may
+ * not see the segment for something in front of it. 0 is perfect, 1 hopeless. */
 #ifndef REMODEL_PLANE_MATCH_H
 #define REMODEL_PLANE_MATCH_H
 
 #include "stages/segment_depth/neighbours.h"
 #include "stages/segment_depth/oversegment.h"
 
-struct plane { double a, b, c; };
+struct plane {
+    double a, b, c;
+};
 
 static inline double plane_at(struct plane p, double u, double v) { return p.a * u + p.b * v + p.c; }
 
@@ -23,9 +25,9 @@ struct match_neighbour {
 
 struct matcher {
     const struct segmentation *segments;
-    int *first;          /* of each segment's pixels in x, y and features; groups of eight; count + 1 */
-    float *x, *y;        /* pixel centres */
-    int16_t *features;   /* eight a pixel */
+    int *first;        /* of each segment's pixels in x, y and features; groups of eight; count + 1 */
+    float *x, *y;      /* pixel centres */
+    int16_t *features; /* eight a pixel */
     struct match_neighbour neighbours[MAX_NEIGHBOURS];
     int neighbour_count;
 };

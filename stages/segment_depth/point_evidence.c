@@ -6,9 +6,9 @@
 
 #include "common/parallel.h"
 
-#define NEAR_COLOUR 6.0f  /* Lab distance that counts like a distance of NEAR_PLACE of the picture's diagonal */
-#define NEAR_PLACE 0.08f
-#define LOOSE 0.04         /* of the depth range: how far from a nearby point's depth costs in full */
+#define NEAR_COLOUR 6.0f /* Lab distance that counts like a distance of NEAR_PLACE of the picture's diagonal */
+#define NEAR_PLACE  0.08f
+#define LOOSE       0.04 /* of the depth range: how far from a nearby point's depth costs in full */
 
 static enum status sort_into_segments(struct point_evidence *e, const struct segmentation *s,
                                       const struct seen_points *seen, struct err *err)
@@ -22,8 +22,10 @@ static enum status sort_into_segments(struct point_evidence *e, const struct seg
             if (!(p->u >= 0 && p->v >= 0 && p->u < s->width && p->v < s->height)) continue;
             int label = s->label[(int)p->v * s->width + (int)p->u];
             if (label < 0) continue;
-            if (round == 0) e->first[label + 2]++;
-            else e->points[e->first[label + 1]++] = *p;
+            if (round == 0)
+                e->first[label + 2]++;
+            else
+                e->points[e->first[label + 1]++] = *p;
         }
         for (int k = 1; k <= s->count + 1 && round == 0; k++) e->first[k] += e->first[k - 1];
     }
@@ -33,7 +35,7 @@ static enum status sort_into_segments(struct point_evidence *e, const struct seg
 struct nearest_job {
     struct point_evidence *e;
     const struct segmentation *s;
-    float place; /* 1 / px */
+    float place;     /* 1 / px */
     float (*key)[5]; /* of each point: place and colour, scaled */
 };
 

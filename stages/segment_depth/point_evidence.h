@@ -12,7 +12,7 @@
  * some point nearby, in place and colour; of several, the farthest, since the edges of a flat region belong to what
  * stands in front of it. Both are soft: they decide where the pictures say nothing. */
 struct point_evidence {
-    int *first;               /* count + 1: the points inside segment i are [first[i], first[i + 1]) */
+    int *first; /* count + 1: the points inside segment i are [first[i], first[i + 1]) */
     struct seen_point *points;
     float *nearest;           /* NEAREST_POINTS inverse depths a segment, ascending */
     int nearest_count;        /* 0 if the view has no points */

@@ -5,24 +5,27 @@
 #include "common/param.h"
 
 /* name, type, default, least, most, unit, help */
-#define SEGMENT_PARAMS(X)                                                                                              \
-    X(segment_pixels, int, 64, 16, 100000, "px", "pixels that a segment has on average")                             \
-    X(compactness, double, 8, 0.1, 100, "", "over-segmentation: distance against colour; more is rounder")            \
-    X(neighbours, int, 4, 1, 16, "", "views to match with")                                                           \
-    X(planes, int, 192, 4, 1024, "", "most planes of the sweep; fewer if a step of one pixel needs fewer")            \
-    X(smoothness, double, 0.35, 0, 100, "", "how strongly touching segments want the same depth")                      \
-    X(jump, double, 12, 1, 1000, "steps", "a depth difference that costs no more when it grows")                      \
-    X(passes, int, 4, 0, 20, "", "refinements of the segments' planes")                                               \
-    X(slant, double, 0.02, 0, 10, "", "what a slanted plane must explain better than a constant depth")               \
-    X(points, double, 0.3, 0, 10, "", "weight of the sparse points that a segment holds")                             \
-    X(nearest_points, double, 0.05, 0, 10, "", "weight of the sparse points near a segment")                           \
-    X(far_bias, double, 0.06, 0, 10, "", "from nearest to farthest: what a depth costs where nothing else tells")     \
+#define SEGMENT_PARAMS(X)                                                                                         \
+    X(segment_pixels, int, 64, 16, 100000, "px", "pixels that a segment has on average")                          \
+    X(compactness, double, 8, 0.1, 100, "", "over-segmentation: distance against colour; more is rounder")        \
+    X(neighbours, int, 4, 1, 16, "", "views to match with")                                                       \
+    X(planes, int, 256, 4, 1024, "", "most planes of the sweep; fewer if a step of one pixel needs fewer")        \
+    X(smoothness, double, 0.35, 0, 100, "", "how strongly touching segments want the same depth")                 \
+    X(jump, double, 12, 1, 1000, "steps", "a depth difference that costs no more when it grows")                  \
+    X(passes, int, 4, 0, 20, "", "refinements of the segments' planes")                                           \
+    X(slant, double, 0.02, 0, 10, "", "what a slanted plane must explain better than a constant depth")           \
+    X(points, double, 0.3, 0, 10, "", "weight of the sparse points that a segment holds")                         \
+    X(nearest_points, double, 0.05, 0, 10, "", "weight of the sparse points near a segment")                      \
+    X(far_bias, double, 0.06, 0, 10, "", "from nearest to farthest: what a depth costs where nothing else tells") \
     X(matte, choice, "two_colour", 0, 0, "two_colour|none", "how pixels at depth edges are split")
 
 struct segment_params {
     SEGMENT_PARAMS(PARAM_FIELD)
 };
-#define SEGMENT_PARAMS_DEFAULT {SEGMENT_PARAMS(PARAM_DEFAULT)}
+#define SEGMENT_PARAMS_DEFAULT        \
+    {                                 \
+        SEGMENT_PARAMS(PARAM_DEFAULT) \
+    }
 extern const struct param segment_param_table[];
 
 #endif

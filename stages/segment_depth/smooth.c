@@ -12,7 +12,7 @@
 
 /* Colour difference at which two sides are half alike, and what remains of a border's weight between unlike ones: a
  * depth edge without a colour edge is rare, the reverse is common. */
-#define ALIKE 9.0f
+#define ALIKE         9.0f
 #define UNLIKE_WEIGHT 0.06f
 
 float *touch_weights(const struct segmentation *s, int segment_pixels)
@@ -77,8 +77,10 @@ static void visit(struct pass *p, int i, const float *cost, bool forward)
     for (int t = begin; t < end; t++) {
         const float *message = p->message + (size_t)p->s->touches[t].edge * (size_t)labels;
         for (int l = 0; l < labels; l++) p->belief[l] += message[l];
-        if (p->s->touches[t].other < i) before++;
-        else after++;
+        if (p->s->touches[t].other < i)
+            before++;
+        else
+            after++;
     }
     int share = before > after ? before : after;
     float part = share > 0 ? 1 / (float)share : 1;
@@ -99,16 +101,16 @@ static int decide(struct pass *p, int i, const float *cost, const int *label)
         int other = p->s->touches[t].other;
         const float *message = p->message + (size_t)p->s->touches[t].edge * (size_t)p->labels;
         for (int l = 0; l < p->labels; l++)
-            p->belief[l] += other > i ? message[l]
-                                      : p->weights[t] * smaller(p->slope * (float)abs(l - label[other]), p->most);
+            p->belief[l] +=
+                other > i ? message[l] : p->weights[t] * smaller(p->slope * (float)abs(l - label[other]), p->most);
     }
     for (int l = 1; l < p->labels; l++)
         if (p->belief[l] < p->belief[best]) best = l;
     return best;
 }
 
-enum status smooth_labels(int *label, const struct segmentation *s, const float *cost, int labels,
-                          const float *weights, float slope, float most, struct err *err)
+enum status smooth_labels(int *label, const struct segmentation *s, const float *cost, int labels, const float *weights,
+                          float slope, float most, struct err *err)
 {
     struct pass p = {.s = s, .weights = weights, .labels = labels, .slope = slope, .most = most};
     enum status st = ST_OK;

@@ -11,7 +11,7 @@ float *touch_weights(const struct segmentation *s, int segment_pixels);
 /* Labels that make
  *   sum_i cost[i * labels + label_i] + sum_touching weight_ij min(slope |label_i - label_j|, most)
  * small: sequential tree-reweighted message passing (Kolmogorov 2006). Deterministic. */
-enum status smooth_labels(int *label, const struct segmentation *s, const float *cost, int labels,
-                          const float *weights, float slope, float most, struct err *err);
+enum status smooth_labels(int *label, const struct segmentation *s, const float *cost, int labels, const float *weights,
+                          float slope, float most, struct err *err);
 
 #endif

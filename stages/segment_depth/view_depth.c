@@ -14,7 +14,6 @@
 #include "stages/segment_depth/view_depth.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -32,20 +31,23 @@ const struct param segment_param_table[] = {SEGMENT_PARAMS(PARAM_ROW) PARAM_END}
 
 struct sweep {
     const struct view *view;
-    struct vec3 down;   /* in the view's axes */
+    struct vec3 down; /* in the view's axes */
     const struct matcher *m;
     const struct point_evidence *points;
     const struct segment_params *params;
     double least, step; /* of 1/z */
     int planes;
-    float *cost;        /* planes a segment: matching alone */
-    float *energy;      /* planes a segment: with points, weighted by size */
+    float *cost;   /* planes a segment: matching alone */
+    float *energy; /* planes a segment: with points, weighted by size */
     struct progress progress;
 };
 
 /* A segment's plane at a label: facing the camera, or else horizontal, which is how floors and ceilings lie. False if
  * the two are the same to the pictures, or the horizontal one is seen at too grazing an angle. */
-static struct plane facing_plane(const struct sweep *w, int label) { return (struct plane){0, 0, w->least + label * w->step}; }
+static struct plane facing_plane(const struct sweep *w, int label)
+{
+    return (struct plane){0, 0, w->least + label * w->step};
+}
 
 static bool horizontal_plane(const struct sweep *w, const struct segment *g, int label, struct plane *plane)
 {
@@ -109,8 +111,8 @@ static enum status list_depths(struct layered_depth *out, const struct sweep *w,
         const struct segment *g = &s->segments[i];
         double inverse = plane_at(planes[i], g->cx, g->cy);
         float chosen = match_cost(w->m, i, planes[i]);
-        double sure = confidence_of(w->cost + (size_t)i * (size_t)w->planes, w->planes,
-                                    (inverse - w->least) / w->step, chosen);
+        double sure =
+            confidence_of(w->cost + (size_t)i * (size_t)w->planes, w->planes, (inverse - w->least) / w->step, chosen);
         /* a sure segment is right to half a step; an inherited one to a few */
         out->segments[i] = (struct depth_segment){
             .id = (uint32_t)i + 1,
@@ -135,8 +137,7 @@ static struct vec3 find_down(const struct camera_set *set, const struct view *vi
 
 static enum status solve(struct layered_depth *out, const struct camera_set *set, const struct view *view,
                          const struct matcher *m, const struct image *picture, const struct seen_points *seen,
-                         double least, double most,
-                         const struct segment_params *params, struct err *err)
+                         double least, double most, const struct segment_params *params, struct err *err)
 {
     const struct segmentation *s = m->segments;
     double shift = matcher_shift(m, least, most);
@@ -147,7 +148,6 @@ static enum status solve(struct layered_depth *out, const struct camera_set *set
     int *labels = malloc(((size_t)s->count + 1) * sizeof *labels);
     float *weights = touch_weights(s, params->segment_pixels);
     w.planes = (int)fmin(fmax(ceil(shift) + 1, 4), params->planes);
-if(getenv("DBG"))fprintf(stderr,"shift %g planes %d range %g %g\n",shift,w.planes,least,most);
     w.step = (most - least) / (w.planes - 1);
     size_t costs = (size_t)s->count * (size_t)w.planes + 1;
     w.cost = malloc(costs * sizeof *w.cost);

@@ -239,12 +239,12 @@ static void a_surface_in_pieces_shows_no_cracks(void **state)
         struct scene s;
         struct rendered_frame f = {0};
         scene_make(&s, shapes[k], one, 1);
-        for (int i = 0; i < 12; i++) { /* up to 11 px of parallax */
-            const struct view novel = view_at(0.3 * cos(i), 0.3 * sin(i), 0.2 * sin(2 * i));
+        for (int i = 0; i < 12; i++) { /* up to 17 px of parallax, 0.7 between neighbours */
+            const struct view novel = view_at(0.45 * cos(i), 0.45 * sin(i), 0.2 * sin(2 * i));
             render(&f, &s, &novel, 0);
-            assert_int_equal(holes_inside(&f, 25), 0);
-            for (int y = 25; y < H - 25; y++)
-                for (int x = 25; x < W - 25; x++) {
+            assert_int_equal(holes_inside(&f, 30), 0);
+            for (int y = 30; y < H - 30; y++)
+                for (int x = 30; x < W - 30; x++) {
                     assert_near(f.rgba[4 * (y * W + x) + 3], 1, 0);
                     assert_near(f.rgba[4 * (y * W + x) + 2], 0.8, 0.01);
                 }
@@ -353,10 +353,10 @@ static void what_no_view_saw_is_a_hole_filled_from_behind(void **state)
     rendered_frame_release(&cover);
 }
 
-static void other_views_fill_what_the_mesh_leaves(void **state)
+static void no_hole_along_a_rail(void **state)
 {
     (void)state;
-    /* beside the square the two nearest views may both see its side; those on its other side saw the wall there */
+    /* along the rail and in front of it; coverage and rendering agree on every pixel */
     static const double rail[][3] = {{-0.6, 0, 0}, {-0.3, 0, 0}, {0.3, 0, 0}, {0.6, 0, 0}};
     struct scene s;
     struct rendered_frame f = {0};
@@ -374,6 +374,79 @@ static void other_views_fill_what_the_mesh_leaves(void **state)
     }
     layer_scene_release(&s.layers);
     rendered_frame_release(&f);
+}
+
+static void a_picture_border_leaves_no_line(void **state)
+{
+    (void)state;
+    /* the right views are a fifth darker: where their pictures end the frame must not step */
+    static const double rail[][3] = {{-0.8, 0, 0}, {0.8, 0, 0}};
+    const struct view novel = view_at(-0.2, 0, 0);
+    struct scene s;
+    struct layered_depth depths[2];
+    struct rendered_frame f = {0};
+    struct err err = ERR_INIT;
+
+    memset(&s, 0, sizeof s);
+    for (int i = 0; i < 2; i++) {
+        s.views[i] = view_at(rail[i][0], rail[i][1], rail[i][2]);
+        depth_make(&depths[i], &s.views[i], &tilted_planes);
+        for (int p = 0; p < W * H * 4; p++)
+            if (p % 4 != 3) depths[i].interior.rgba[p] = i ? 0.8f : 1;
+    }
+    s.set.views = s.views;
+    s.set.view_count = 2;
+    assert_int_equal(layer_scene_init(&s.layers, &s.set, depths, &err), ST_OK);
+    render(&f, &s, &novel, 6);
+    for (int y = 4; y < H - 4; y++) /* not the corners, where both fade at once */
+        for (int x = 1; x < W; x++)
+            assert_near(f.rgba[4 * (y * W + x)], f.rgba[4 * (y * W + x - 1)], 0.06); /* 0.2 over 8 px of fading */
+    layer_scene_release(&s.layers);
+    rendered_frame_release(&f);
+}
+
+static void erase(struct layered_depth *d, int x0, int y0, int x1, int y1)
+{
+    for (int y = y0; y < y1; y++)
+        for (int x = x0; x < x1; x++) {
+            const size_t p = (size_t)(y * W + x);
+            d->interior.id[p] = 0;
+            memset(d->interior.rgba + 4 * p, 0, 4 * sizeof(float));
+        }
+}
+
+static void a_hole_takes_the_nearest_view_that_does_not_hang_in_the_air(void **state)
+{
+    (void)state;
+    /* the two views that the mesh names lack the same patch of wall above the square: novel [70, 90) x [18, 30) */
+    static const double rail[][3] = {{-0.6, 0, 0}, {-0.3, 0, 0}, {0.3, 0, 0}, {0.6, 0, 0}};
+    const struct view novel = view_at(0.05, 0, 0.001);
+    for (int phantom = 0; phantom < 2; phantom++) {
+        struct scene s;
+        struct layered_depth depths[4];
+        struct rendered_frame f = {0};
+        struct err err = ERR_INIT;
+
+        memset(&s, 0, sizeof s);
+        for (int i = 0; i < 4; i++) {
+            s.views[i] = view_at(rail[i][0], rail[i][1], rail[i][2]);
+            depth_make(&depths[i], &s.views[i], &square);
+        }
+        erase(&depths[1], 78, 18, 100, 30); /* FOCAL 0.3 / 6 = 7.5 px to either side */
+        erase(&depths[2], 62, 18, 84, 30);
+        for (int i = 0; phantom && i < depths[3].segment_count; i++) /* the next one's wall is in front of all */
+            if (fabs(depths[3].segments[i].plane[2] - 1.0 / 6) < 1e-6) depths[3].segments[i].plane[2] = 1 / 1.5;
+        s.set.views = s.views;
+        s.set.view_count = 4;
+        assert_int_equal(layer_scene_init(&s.layers, &s.set, depths, &err), ST_OK);
+        render(&f, &s, &novel, 0);
+        assert_int_equal(holes_inside(&f, 10), 0);
+        for (int y = 19; y < 29; y++)
+            for (int x = 72; x < 88; x++) assert_near(f.z[y * W + x], 6, 0.01);
+        assert_true(psnr(&f, &novel, &square, 10) > 30);
+        layer_scene_release(&s.layers);
+        rendered_frame_release(&f);
+    }
 }
 
 static void boundaries_composite_to_the_photo(void **state)
@@ -483,7 +556,9 @@ int main(void)
         cmocka_unit_test(a_small_move_changes_the_picture_a_little),
         cmocka_unit_test(threads_do_not_change_a_bit),
         cmocka_unit_test(what_no_view_saw_is_a_hole_filled_from_behind),
-        cmocka_unit_test(other_views_fill_what_the_mesh_leaves),
+        cmocka_unit_test(no_hole_along_a_rail),
+        cmocka_unit_test(a_picture_border_leaves_no_line),
+        cmocka_unit_test(a_hole_takes_the_nearest_view_that_does_not_hang_in_the_air),
         cmocka_unit_test(boundaries_composite_to_the_photo),
         cmocka_unit_test(odd_places_to_stand),
         cmocka_unit_test(broken_depth_maps_are_refused),
