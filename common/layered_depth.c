@@ -76,6 +76,22 @@ static enum status text_path(char **text, const char *path, struct err *err)
     return ST_OK;
 }
 
+/* What could not be read back is not written. */
+static enum status check_segments(const struct layered_depth *d, const char *path, struct err *err)
+{
+    for (int i = 0; i < d->segment_count; i++) {
+        const struct depth_segment *s = &d->segments[i];
+        bool finite = isfinite(s->plane[0]) && isfinite(s->plane[1]) && isfinite(s->plane[2]);
+        if (s->id == (uint32_t)i + 1 && s->pixels >= 0 && s->pixels <= (int64_t)d->width * d->height && finite &&
+            isfinite(s->sigma) && s->sigma >= 0 && s->confidence >= 0 && s->confidence <= 1)
+            continue;
+        return err_set(err, ST_INTERNAL,
+                       "cannot write %s: segment %d has id %u, %d pixels, plane %g %g %g, sigma %g, confidence %g.",
+                       path, i + 1, s->id, s->pixels, s->plane[0], s->plane[1], s->plane[2], s->sigma, s->confidence);
+    }
+    return ST_OK;
+}
+
 static enum status write_segments(const struct layered_depth *d, const char *path, const struct provenance *prov,
                                   struct err *err)
 {
@@ -117,6 +133,7 @@ enum status layered_depth_write(const struct layered_depth *d, const struct view
     struct exr_image im = {0};
     char *text = NULL;
     enum status st = text_path(&text, path, err);
+    if (!st) st = check_segments(d, path, err);
     if (!st) st = exr_image_init(&im, d->width, d->height, err);
     if (!st) st = add_layer(&im, &d->interior, plane_names, err);
     if (!st) st = add_layer(&im, &d->boundary, plane_names + PLANES_A_LAYER, err);
@@ -142,6 +159,7 @@ static enum status read_segment(struct depth_segment *s, struct textfile *t, int
                                 struct err *err)
 {
     int64_t id_read, pixels;
+    char found[32];
     if (!textfile_next(t)) return textfile_error(t, err, NULL, "a line of segment %d", id);
     if (textfile_int(t, "segment id", id, id, &id_read, err) ||
         textfile_int(t, "pixels", 0, pixels_most, &pixels, err) || textfile_double(t, "plane a", &s->plane[0], err) ||
@@ -149,9 +167,10 @@ static enum status read_segment(struct depth_segment *s, struct textfile *t, int
         textfile_double(t, "sigma", &s->sigma, err) || textfile_double(t, "confidence", &s->confidence, err) ||
         textfile_end(t, err))
         return err->status;
-    if (s->sigma < 0) return textfile_error(t, err, "a negative sigma", "a relative uncertainty of 0 or more");
-    if (s->confidence < 0 || s->confidence > 1)
-        return textfile_error(t, err, "a confidence out of range", "a number from 0 to 1");
+    if (s->sigma < 0 || s->confidence < 0 || s->confidence > 1) {
+        snprintf(found, sizeof found, "%g", s->sigma < 0 ? s->sigma : s->confidence);
+        return textfile_error(t, err, found, s->sigma < 0 ? "sigma, 0 or more" : "confidence, from 0 to 1");
+    }
     s->id = (uint32_t)id;
     s->pixels = (int)pixels;
     return ST_OK;
@@ -184,7 +203,7 @@ enum status layered_depth_read_segments(struct layered_depth *d, const char *pat
         st = read_segment(&d->segments[i], &t, i + 1, width * height, err);
         d->segment_count = i + 1;
     }
-    if (!st && textfile_next(&t)) st = textfile_error(&t, err, "another line", "the end of the file");
+    if (!st && textfile_next(&t)) st = textfile_error(&t, err, t.cursor, "the end of the file");
     textfile_release(&t);
     if (st) layered_depth_release(d);
     return st;

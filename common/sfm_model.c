@@ -121,8 +121,7 @@ static int find_point(const struct sfm_model *m, int64_t id)
     return low < m->point_count && m->points[low].id == id ? low : -1;
 }
 
-/* -------------------------------------------------------------------------------------------------
- * COLMAP's text */
+/* --------------------------------------------------------------------------------------------------- COLMAP's text */
 
 static enum status read_cameras(struct sfm_model *m, struct id_list *ids, const char *folder, struct err *err)
 {
@@ -413,8 +412,7 @@ enum status sfm_model_read_text(struct sfm_model *m, const char *folder, struct 
     return st ? err->status : ST_OK;
 }
 
-/* -------------------------------------------------------------------------------------------------------
- * Bundler */
+/* --------------------------------------------------------------------------------------------------------- Bundler */
 
 /* A line of exactly n numbers. */
 static enum status read_row(struct textfile *t, const char *what, double *values, int n, struct err *err)
@@ -605,8 +603,7 @@ enum status sfm_model_read_bundler(struct sfm_model *m, const char *path, const 
     return st ? err->status : ST_OK;
 }
 
-/* -------------------------------------------------------------------------------------------------------
- * writing */
+/* --------------------------------------------------------------------------------------------------------- writing */
 
 static void print_cameras(const struct sfm_model *m, FILE *to)
 {

@@ -504,8 +504,7 @@ static inline void store(struct view_weights *w, const struct blend *b, int corn
     for (int k = 0; k < corners; k++) w->weight[b->slot[k]] += b->keep * weight[k];
 }
 
-/* ------------------------------------------------------------------------------------------- views that share a
- * centre */
+/* --------------------------------------------------------------------------------------- views that share a centre */
 
 /* How well a view's picture contains a ray: 0.05 at its border, 1 in the middle; ever less outside, and never 0. */
 static double containment(const struct view *view, struct vec3 ray)
@@ -570,8 +569,7 @@ static void share_weights(const struct view_mesh *mesh, struct vec3 ray, struct 
         w->weight[insert_view(w, all[i].view)] = (float)(sum > 0 ? (all[i].score - least) / sum : 1.0 / n);
 }
 
-/* ----------------------------------------------------------------------------------------------------- a novel
- * camera */
+/* -------------------------------------------------------------------------------------------------- a novel camera */
 
 static struct vec3 to_plane_direction(const struct view_mesh *mesh, struct vec3 d)
 {

@@ -289,8 +289,7 @@ static double outside(const struct plan *p, const struct view *v)
     return sum / (small.width * small.height);
 }
 
-/* ----------------------------------------------------------------------------------------------------------- the
- * ends */
+/* -------------------------------------------------------------------------------------------------------- the ends */
 
 static struct vec3 place(const struct plan *p, const struct way *w, double s)
 {
@@ -454,8 +453,7 @@ static enum status find_way(struct plan *p, struct way *best, struct err *err)
     return ST_OK;
 }
 
-/* ----------------------------------------------------------------------------------------------------------- the
- * path */
+/* --------------------------------------------------------------------------------------------------- the path */
 
 /* How far a point on the middle camera's axis moves in the picture from one end to the other. */
 static void displacement(const struct view *first, const struct view *middle, const struct view *last, double depth,

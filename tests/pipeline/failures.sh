@@ -137,9 +137,12 @@ photos_of_different_sizes_and_png()
     photos sized --views 6 --size 480x360 >/dev/null
     photos half --views 6 --size 400x300 >/dev/null
     cp half/photos/photo_4.jpg sized/photos/photo_4.jpg
+    ffmpeg -v error -i sized/photos/photo_2.jpg sized/photos/photo_2.png
+    rm sized/photos/photo_2.jpg
     small sized
     make -s DEPS=manual PHOTOS=sized/photos SCENE=sized video >log 2>&1 || { tail -n 30 log; fail "make"; }
     [ "$(awk '!/^#/ { print $3, $4 }' out/sized/sfm/0/cameras.txt | sort -u | wc -l)" = 2 ] || fail "two sizes of cameras were expected"
+    [ -e out/sized/views/photo_2.exr ] || fail "the PNG became no view"
 }
 
 photos_that_do_not_overlap_are_refused_with_a_reason()

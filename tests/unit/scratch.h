@@ -121,12 +121,12 @@ static inline int count_entries(const char *folder)
     } while (0)
 
 /* The error has this status and these words, and is a sentence. */
-#define assert_err(err, wanted_status, part)                                                         \
-    do {                                                                                             \
-        if ((err).status != (wanted_status))                                                         \
-            fail_msg("status %d in place of %d: %s", (err).status, (wanted_status), (err).text);     \
-        assert_contains((err).text, part);                                                           \
-        if ((err).text[strlen((err).text) - 1] != '.') fail_msg("no full stop: \"%s\"", (err).text); \
+#define assert_err(err, wanted_status, part)                                                                 \
+    do {                                                                                                     \
+        if ((err).status != (wanted_status))                                                                 \
+            fail_msg("status %d in place of %d: %s", (err).status, (wanted_status), (err).text);             \
+        assert_contains((err).text, part);                                                                   \
+        if (!strchr(".?", (err).text[strlen((err).text) - 1])) fail_msg("no full stop: \"%s\"", (err).text); \
     } while (0)
 
 #define assert_ok(call, err)                                               \
