@@ -8,6 +8,8 @@
 
 #include <stddef.h>
 
+#include "log.h"
+
 enum status {
     ST_OK = 0,
     ST_USAGE,    /* wrong command line or configuration: exit 2 */
@@ -27,14 +29,8 @@ struct err {
         ST_OK, "" \
     }
 
-#if defined(__GNUC__)
-#define ERR_PRINTF(fmt, args) __attribute__((format(printf, fmt, args)))
-#else
-#define ERR_PRINTF(fmt, args)
-#endif
-
 /* Sets the error if none is set yet; returns `status` (of the error that is kept). err may be NULL. */
-enum status err_set(struct err *err, enum status status, const char *fmt, ...) ERR_PRINTF(3, 4);
+enum status err_set(struct err *err, enum status status, const char *fmt, ...) PRINTF_LIKE(3, 4);
 
 /* ST_IO with strerror(errno): "cannot VERB PATH: REASON." */
 enum status err_errno(struct err *err, const char *verb, const char *path);
@@ -43,7 +39,7 @@ enum status err_errno(struct err *err, const char *verb, const char *path);
 enum status err_nomem(struct err *err, const char *what, size_t bytes);
 
 /* Puts "PREFIX: " in front of an error that is set; returns err->status. */
-enum status err_context(struct err *err, const char *fmt, ...) ERR_PRINTF(2, 3);
+enum status err_context(struct err *err, const char *fmt, ...) PRINTF_LIKE(2, 3);
 
 /* Prints "STAGE: error: SENTENCE" on stderr (log_name() is the stage); nothing if no error is set. */
 void err_report(const struct err *err);

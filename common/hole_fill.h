@@ -9,8 +9,7 @@
 #ifndef REMODEL_HOLE_FILL_H
 #define REMODEL_HOLE_FILL_H
 
-#include "err.h"
-#include "layer_render.h"
+#include "rendered_frame.h"
 #include "soft_z.h"
 
 /* Fills rgba and z where frame->hole is 1 and sets unfilled_fraction. sigma: relative uncertainty of the depths, for

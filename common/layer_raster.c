@@ -91,10 +91,9 @@ static int compare_depth(const void *a, const void *b)
     return (s->id > t->id) - (s->id < t->id);
 }
 
-enum status raster_view_prepare(struct raster_view *rv, const struct layer_scene *scene, int view,
-                                const struct view *novel, struct err *err)
+enum status raster_view_prepare(struct raster_view *rv, const struct layered_depth *d, const struct layer_view *lv,
+                                const struct view *view, const struct view *novel, struct err *err)
 {
-    const struct layered_depth *d = &scene->depths[view];
     struct mat3 m, inverse;
     struct vec3 k, inverse_k;
 
@@ -103,11 +102,11 @@ enum status raster_view_prepare(struct raster_view *rv, const struct layer_scene
     rv->order = malloc(((size_t)d->segment_count + 1) * sizeof *rv->order);
     if (!rv->segments || !rv->order)
         return err_nomem(err, "a view's segments", (size_t)d->segment_count * sizeof *rv->segments);
-    relate(&m, &k, &scene->set->views[view], novel);
-    relate(&inverse, &inverse_k, novel, &scene->set->views[view]);
+    relate(&m, &k, view, novel);
+    relate(&inverse, &inverse_k, novel, view);
 
     for (int i = 0; i < d->segment_count; i++) {
-        const struct segment_shape *shape = &scene->views[view].shapes[i];
+        const struct segment_shape *shape = &lv->shapes[i];
         const double *p = d->segments[i].plane, kv[3] = {k.x, k.y, k.z},
                      ik[3] = {inverse_k.x, inverse_k.y, inverse_k.z};
         const double facing = 1 - (p[0] * k.x + p[1] * k.y + p[2] * k.z);

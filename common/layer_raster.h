@@ -14,36 +14,8 @@
 #ifndef REMODEL_LAYER_RASTER_H
 #define REMODEL_LAYER_RASTER_H
 
-#include <stdbool.h>
-
-#include "layer_render.h"
+#include "layer_view.h"
 #include "soft_z.h"
-
-/* Neighbours are joined if their depths differ by at most this many times sqrt(sigma_a^2 + sigma_b^2), relative. */
-#define JOIN_SIGMAS 2.0
-
-#define TEXEL_JOINED 0x80000000u /* in id[0]: the cell of this texel and its right, lower and diagonal neighbour */
-
-struct texel { /* of both layers, 0 interior and 1 boundary */
-    uint32_t id[2];
-    uint16_t rgba[2][4]; /* half */
-};
-
-struct segment_shape {
-    int x0, y0, x1, y1; /* its texels, inclusive; x1 < x0: it has none */
-    double u, v;        /* the centre of its interior (or of all it has) */
-    double pixels;      /* of its interior */
-};
-
-struct layer_view {
-    int width, height, stride; /* stride of the texels: one of padding on the left and above, two right and below */
-    struct texel *texels;
-    struct segment_shape *shapes; /* parallel to the depth map's segments */
-};
-
-/* The layers' planes of `depth` are freed. ST_DATA: an id without segment. */
-enum status layer_view_pack(struct layer_view *lv, struct layered_depth *depth, const char *name, struct err *err);
-void layer_view_release(struct layer_view *lv);
 
 struct raster_segment { /* a segment as a novel camera sees it */
     uint32_t id;
@@ -66,8 +38,9 @@ struct raster_view {
     int count;
 };
 
-enum status raster_view_prepare(struct raster_view *rv, const struct layer_scene *scene, int view,
-                                const struct view *novel, struct err *err);
+/* Of the view's segments those that the novel camera may see. */
+enum status raster_view_prepare(struct raster_view *rv, const struct layered_depth *depth, const struct layer_view *lv,
+                                const struct view *view, const struct view *novel, struct err *err);
 void raster_view_release(struct raster_view *rv);
 
 struct raster_surface {

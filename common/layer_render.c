@@ -20,36 +20,6 @@
 #define AGAINST_MOST 0.5f  /* part, by weight, of the views that can tell that may see through what fills a hole */
 #define LEAST_INSIDE 1e-3f /* a view alone at its border still shows */
 
-void rendered_frame_release(struct rendered_frame *frame)
-{
-    if (!frame) return;
-    free(frame->rgba);
-    free(frame->z);
-    free(frame->hole);
-    *frame = (struct rendered_frame){0};
-}
-
-static enum status frame_resize(struct rendered_frame *f, int width, int height, bool color, struct err *err)
-{
-    const size_t pixels = (size_t)width * (size_t)height;
-    if (f->width != width || f->height != height || !f->hole || color != (f->rgba != NULL)) {
-        rendered_frame_release(f);
-        f->hole = malloc(pixels);
-        if (color) {
-            f->rgba = malloc(pixels * 4 * sizeof *f->rgba);
-            f->z = malloc(pixels * sizeof *f->z);
-        }
-        if (!f->hole || (color && (!f->rgba || !f->z))) {
-            rendered_frame_release(f);
-            return err_nomem(err, "a frame", pixels * (color ? 21 : 1));
-        }
-        f->width = width;
-        f->height = height;
-    }
-    f->hole_fraction = f->unfilled_fraction = 0;
-    return ST_OK;
-}
-
 /* ------------------------------------------------------------------------------------------------- one frame */
 
 struct other_view {
@@ -117,7 +87,8 @@ static void prepare_views(void *ctx, size_t begin, size_t end, int thread)
     struct frame_job *job = ctx;
     (void)thread;
     for (size_t i = begin; i < end; i++)
-        job->prepared[i] = raster_view_prepare(&job->rasters[i], job->scene, (int)i, &job->novel, NULL);
+        job->prepared[i] = raster_view_prepare(&job->rasters[i], &job->scene->depths[i], &job->scene->views[i],
+                                               &job->scene->set->views[i], &job->novel, NULL);
 }
 
 static void job_release(struct frame_job *job)
@@ -148,7 +119,7 @@ static enum status job_init(struct frame_job *job, struct rendered_frame *out, c
         return err_nomem(err, "a frame's views", count * sizeof *job->rasters);
 
     for (size_t i = 0; !st && i < threads; i++) st = scratch_init(&job->scratch[i], novel->width, views, err);
-    if (st || (st = frame_resize(out, novel->width, novel->height, color, err))) return st;
+    if (st || (st = rendered_frame_resize(out, novel->width, novel->height, color, err))) return st;
     parallel_for((size_t)views, 1, prepare_views, job);
     for (int i = 0; i < views; i++) {
         if (job->prepared[i]) return err_nomem(err, "a view's segments", sizeof(struct raster_segment));

@@ -168,7 +168,7 @@ static enum status read_segment(struct depth_segment *s, struct textfile *t, int
         textfile_end(t, err))
         return err->status;
     if (s->sigma < 0 || s->confidence < 0 || s->confidence > 1) {
-        snprintf(found, sizeof found, "%g", s->sigma < 0 ? s->sigma : s->confidence);
+        snprintf(found, sizeof found, "%.9g", s->sigma < 0 ? s->sigma : s->confidence);
         return textfile_error(t, err, found, s->sigma < 0 ? "sigma, 0 or more" : "confidence, from 0 to 1");
     }
     s->id = (uint32_t)id;

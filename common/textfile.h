@@ -44,7 +44,7 @@ enum status textfile_end(struct textfile *t, struct err *err);
 
 /* "PATH:LINE: found FOUND, wanted WANTED." as ST_DATA; found NULL means the end of the line. */
 enum status textfile_error(const struct textfile *t, struct err *err, const char *found, const char *wanted, ...)
-    ERR_PRINTF(4, 5);
+    PRINTF_LIKE(4, 5);
 
 void textfile_release(struct textfile *t);
 

@@ -18,8 +18,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/layer_raster.h"
-
 #define PARAM_STRUCT struct plan_params
 const struct param plan_param_table[] = {PLAN_PARAMS(PARAM_ROW) PARAM_END};
 #undef PARAM_STRUCT

@@ -12,7 +12,7 @@
 #include "common/parallel.h"
 #include "common/photo.h"
 
-static enum status add_note(struct contents *c, struct err *err, const char *fmt, ...) ERR_PRINTF(3, 4);
+static enum status add_note(struct contents *c, struct err *err, const char *fmt, ...) PRINTF_LIKE(3, 4);
 static enum status add_note(struct contents *c, struct err *err, const char *fmt, ...)
 {
     size_t bytes = ((size_t)c->note_count + 1) * sizeof *c->notes;

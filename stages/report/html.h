@@ -15,7 +15,7 @@ void html_text(FILE *to, const char *text);
 void html_bytes(FILE *to, const char *text, size_t size);
 
 /* As printf, then escaped; at most 4095 bytes. */
-void html_printf(FILE *to, const char *fmt, ...) ERR_PRINTF(2, 3);
+void html_printf(FILE *to, const char *fmt, ...) PRINTF_LIKE(2, 3);
 
 /* RFC 4648, no line breaks. */
 void html_base64(FILE *to, const void *bytes, size_t size);

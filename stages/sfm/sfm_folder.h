@@ -6,7 +6,7 @@
 #include "common/sfm_model.h"
 
 /* printf into memory that the caller frees; NULL: no memory, err is set. */
-char *text_format(struct err *err, const char *fmt, ...) ERR_PRINTF(2, 3);
+char *text_format(struct err *err, const char *fmt, ...) PRINTF_LIKE(2, 3);
 
 /* Removes a folder and all in it; what its links point to stays. Fine if it is not there. */
 enum status remove_tree(const char *path, struct err *err);
