@@ -102,7 +102,7 @@ static enum status write_segments(const struct layered_depth *d, const char *pat
         fprintf(file.fp, "remodel-segments 1\nsize %d %d\nsegments %d\n", d->width, d->height, d->segment_count);
         for (int i = 0; i < d->segment_count; i++) {
             const struct depth_segment *s = &d->segments[i];
-            fprintf(file.fp, "%u %d %.17g %.17g %.17g %.9g %.9g\n", s->id, s->pixels, s->plane[0], s->plane[1],
+            fprintf(file.fp, "%u %d %.17g %.17g %.17g %.17g %.17g\n", s->id, s->pixels, s->plane[0], s->plane[1],
                     s->plane[2], s->sigma, s->confidence);
         }
         st = outfile_commit(&file, err);

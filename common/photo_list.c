@@ -84,7 +84,10 @@ static enum status read_fields(struct photo_record *r, struct textfile *t, struc
                 read_text(t, "model", info->model, sizeof info->model, err) || textfile_end(t, err)
             ? ST_DATA
             : ST_OK;
-    if (!st && textfile_next(t)) st = textfile_error(t, err, "another line", "the end of the file");
+    if (!st && textfile_next(t)) {
+        char *more = NULL;
+        if (!(st = textfile_rest(t, "a line", &more, err))) st = textfile_error(t, err, more, "the end of the file");
+    }
     return st;
 }
 

@@ -15,12 +15,21 @@
 #define LOBES 3
 #define STEPS 256 /* table entries a unit; read with linear interpolation: error below 1e-5 */
 
+#define MAX_REDUCTION 64 /* a reduction beyond it aliases a little; it keeps the taps' memory small */
+enum { MAX_TAPS = 2 * LOBES * MAX_REDUCTION + 1, CHUNK = 16 };
+
+struct place { /* where in the photo a view's pixel lies */
+    double u, v;
+    bool seen;
+};
+
 struct resample {
     struct image *out;
     const struct image *photo;
     const struct camera *lens;
     struct mat3 photo_from_view;
     const struct view *view;
+    struct place *places; /* two rows a thread, each of the view's width + 1 */
     float kernel[LOBES * STEPS + 2];
 };
 
@@ -32,94 +41,121 @@ static void make_kernel(float *kernel)
     }
 }
 
-static float kernel_at(const float *kernel, float x)
+static float kernel_at(const float *kernel, float steps)
 {
-    float at = fabsf(x) * STEPS;
+    float at = fabsf(steps);
     if (at >= LOBES * STEPS) return 0;
     int i = (int)at;
     return kernel[i] + (at - (float)i) * (kernel[i + 1] - kernel[i]);
 }
 
-static bool photo_from_pixel(const struct resample *r, double u, double v, double *pu, double *pv)
+static struct place photo_from_pixel(const struct resample *r, int x, int y)
 {
-    struct vec3 ray = {(u - r->view->cx) / r->view->fx, (v - r->view->cy) / r->view->fy, 1};
-    return camera_project(r->lens, mat3_apply(r->photo_from_view, ray), pu, pv);
+    const struct view *view = r->view;
+    struct vec3 ray = {(x + 0.5 - view->cx) / view->fx, (y + 0.5 - view->cy) / view->fy, 1};
+    struct place p = {0};
+    p.seen = camera_project(r->lens, mat3_apply(r->photo_from_view, ray), &p.u, &p.v);
+    return p;
 }
 
-/* Taps along one axis around `at` (pixel centres at +0.5): first sample, weights; at the border the last sample repeats. */
+/* Taps along one axis around `at` (pixel centres at +0.5); those within one lobe are near. */
 struct taps {
     int first, count;
-    float scale;
-    float *weight; /* room for the largest count */
+    int near_begin, near_end; /* counted from the first */
+    float weight[MAX_TAPS];
 };
 
-static void make_taps(struct taps *t, const float *kernel, double at, double scale, int max_count)
+static void make_taps(struct taps *t, const float *kernel, double at, double scale)
 {
-    double radius = LOBES * scale;
-    int first = (int)ceil(at - 0.5 - radius), last = (int)floor(at - 0.5 + radius);
-    t->first = first;
-    t->count = last - first + 1 < max_count ? last - first + 1 : max_count;
-    t->scale = (float)scale;
+    double radius = LOBES * scale, steps = STEPS / scale;
+    int last = (int)floor(at - 0.5 + radius);
+    t->first = (int)ceil(at - 0.5 - radius);
+    t->count = last - t->first + 1 < MAX_TAPS ? last - t->first + 1 : MAX_TAPS;
+    t->near_begin = (int)ceil(at - 0.5 - scale) - t->first;
+    t->near_end = (int)floor(at - 0.5 + scale) - t->first + 1;
     float sum = 0;
     for (int i = 0; i < t->count; i++) {
-        t->weight[i] = kernel_at(kernel, (float)((first + i + 0.5 - at) / scale));
+        t->weight[i] = kernel_at(kernel, (float)((t->first + i + 0.5 - at) * steps));
         sum += t->weight[i];
     }
-    for (int i = 0; i < t->count; i++) t->weight[i] /= sum;
+    float share = 1 / sum;
+    for (int i = 0; i < t->count; i++) t->weight[i] *= share;
 }
 
 static int clamp_int(int x, int most) { return x < 0 ? 0 : x > most ? most : x; }
 
-static void filter(float rgb[3], const struct image *photo, const struct taps *tx, const struct taps *ty, double u,
-                   double v)
+/* The samples of a photo's row under the taps, copied to `room` where they reach over the border: there the last sample
+ * repeats. */
+static const float *samples_under(const struct image *photo, int y, const struct taps *t, float *room)
 {
-    float sum[3] = {0}, least[3] = {INFINITY, INFINITY, INFINITY}, most[3] = {0};
-    for (int j = 0; j < ty->count; j++) {
-        int y = clamp_int(ty->first + j, photo->height - 1);
-        const float *row = image_at(photo, 0, y);
-        bool near_row = fabs(ty->first + j + 0.5 - v) <= (double)ty->scale;
-        float line[3] = {0};
-        for (int i = 0; i < tx->count; i++) {
-            const float *p = row + 3 * (size_t)clamp_int(tx->first + i, photo->width - 1);
-            for (int c = 0; c < 3; c++) line[c] += tx->weight[i] * p[c];
-            if (near_row && fabs(tx->first + i + 0.5 - u) <= (double)tx->scale)
-                for (int c = 0; c < 3; c++) {
-                    least[c] = p[c] < least[c] ? p[c] : least[c];
-                    most[c] = p[c] > most[c] ? p[c] : most[c];
-                }
-        }
-        for (int c = 0; c < 3; c++) sum[c] += ty->weight[j] * line[c];
-    }
-    for (int c = 0; c < 3; c++) rgb[c] = sum[c] < least[c] ? least[c] : sum[c] > most[c] ? most[c] : sum[c];
+    const float *row = image_at(photo, 0, clamp_int(y, photo->height - 1));
+    if (t->first >= 0 && t->first + t->count <= photo->width) return row + 3 * (size_t)t->first;
+    for (int i = 0; i < t->count; i++)
+        memcpy(room + 3 * (size_t)i, row + 3 * (size_t)clamp_int(t->first + i, photo->width - 1), 3 * sizeof *room);
+    return room;
 }
 
-#define MAX_REDUCTION 64 /* a reduction beyond it aliases a little; it keeps the taps' memory small */
+/* Down the columns first: there a row's samples, of whatever colour, share one weight. */
+static void filter(float rgb[3], const struct image *photo, const struct taps *tx, const struct taps *ty)
+{
+    float columns[3 * MAX_TAPS], room[3 * MAX_TAPS], least[3], most[3] = {0};
+    int samples = 3 * tx->count;
+    for (int c = 0; c < 3; c++) least[c] = INFINITY;
+    for (int k = 0; k < samples; k++) columns[k] = 0;
+    for (int j = 0; j < ty->count; j++) {
+        const float *row = samples_under(photo, ty->first + j, tx, room), weight = ty->weight[j];
+        for (int k = 0; k < samples; k++) columns[k] += weight * row[k];
+        if (j < ty->near_begin || j >= ty->near_end) continue;
+        for (int i = tx->near_begin; i < tx->near_end; i++)
+            for (int c = 0; c < 3; c++) {
+                float sample = row[3 * i + c];
+                least[c] = sample < least[c] ? sample : least[c];
+                most[c] = sample > most[c] ? sample : most[c];
+            }
+    }
+    for (int c = 0; c < 3; c++) {
+        float sum = 0;
+        for (int i = 0; i < tx->count; i++) sum += tx->weight[i] * columns[3 * i + c];
+        rgb[c] = sum < least[c] ? least[c] : sum > most[c] ? most[c] : sum;
+    }
+}
+
+static void project_row(const struct resample *r, int y, struct place *row)
+{
+    for (int x = 0; x <= r->view->width; x++) row[x] = photo_from_pixel(r, x, y);
+}
+
+/* One-sided differences suffice for a filter's width; where the lens ends they are taken to the other side. */
+static void resample_pixel(const struct resample *r, int x, int y, const struct place *here, const struct place *below)
+{
+    struct place at = here[x], right = here[x + 1], down = below[x];
+    struct taps tx, ty;
+    if (!at.seen || at.u < 0 || at.v < 0 || at.u > r->photo->width || at.v > r->photo->height) return;
+    if (!right.seen) right = photo_from_pixel(r, x - 1, y);
+    if (!right.seen) right = at;
+    if (!down.seen) down = photo_from_pixel(r, x, y - 1);
+    if (!down.seen) down = at;
+    double su = hypot(right.u - at.u, down.u - at.u), sv = hypot(right.v - at.v, down.v - at.v);
+    make_taps(&tx, r->kernel, at.u, fmin(fmax(su, 1), MAX_REDUCTION));
+    make_taps(&ty, r->kernel, at.v, fmin(fmax(sv, 1), MAX_REDUCTION));
+    float *out = image_at(r->out, x, y);
+    filter(out, r->photo, &tx, &ty);
+    out[3] = 1;
+}
 
 static void resample_rows(void *ctx, size_t begin, size_t end, int thread)
 {
     const struct resample *r = ctx;
-    enum { MAX_TAPS = 2 * LOBES * MAX_REDUCTION + 1 };
-    float wx[MAX_TAPS], wy[MAX_TAPS];
-    struct taps tx = {.weight = wx}, ty = {.weight = wy};
-    (void)thread;
-    for (size_t y = begin; y < end; y++)
-        for (int x = 0; x < r->view->width; x++) {
-            double u, v, ux, vx, uy, vy;
-            double px = x + 0.5, py = (double)y + 0.5;
-            if (!photo_from_pixel(r, px, py, &u, &v) || u < 0 || v < 0 || u > r->photo->width || v > r->photo->height)
-                continue;
-            /* one-sided differences suffice for a filter's width; where the lens ends, the centre's scale is taken */
-            double su = 1, sv = 1;
-            if (photo_from_pixel(r, px + 1, py, &ux, &vx) && photo_from_pixel(r, px, py + 1, &uy, &vy)) {
-                su = hypot(ux - u, uy - u);
-                sv = hypot(vx - v, vy - v);
-            }
-            make_taps(&tx, r->kernel, u, fmin(fmax(su, 1), MAX_REDUCTION), MAX_TAPS);
-            make_taps(&ty, r->kernel, v, fmin(fmax(sv, 1), MAX_REDUCTION), MAX_TAPS);
-            float *out = image_at(r->out, x, (int)y);
-            filter(out, r->photo, &tx, &ty, u, v);
-            out[3] = 1;
-        }
+    size_t row = (size_t)r->view->width + 1;
+    struct place *here = r->places + 2 * row * (size_t)thread, *below = here + row;
+    project_row(r, (int)begin, here);
+    for (int y = (int)begin; y < (int)end; y++) {
+        project_row(r, y + 1, below);
+        for (int x = 0; x < r->view->width; x++) resample_pixel(r, x, y, here, below);
+        struct place *done = here;
+        here = below;
+        below = done;
+    }
 }
 
 static bool same_camera(const struct resample *r)
@@ -137,7 +173,7 @@ static bool same_camera(const struct resample *r)
 enum status resample_photo(struct image *out, const struct image *photo, const struct camera *lens,
                            const struct mat3 *photo_from_view, const struct view *view, struct err *err)
 {
-    struct resample r = {out, photo, lens, *photo_from_view, view, {0}};
+    struct resample r = {.out = out, .photo = photo, .lens = lens, .photo_from_view = *photo_from_view, .view = view};
     if (photo->width != lens->width || photo->height != lens->height)
         return err_set(err, ST_DATA,
                        "the photo has %d x %d pixels but its camera %d x %d: it was exchanged after structure from "
@@ -152,7 +188,14 @@ enum status resample_photo(struct image *out, const struct image *photo, const s
         }
         return ST_OK;
     }
+    size_t room = ((size_t)view->width + 1) * 2 * (size_t)parallel_threads() * sizeof *r.places;
+    r.places = malloc(room);
+    if (!r.places) {
+        image_release(out);
+        return err_nomem(err, "rows of a view", room);
+    }
     make_kernel(r.kernel);
-    parallel_for((size_t)view->height, 4, resample_rows, &r);
+    parallel_for((size_t)view->height, CHUNK, resample_rows, &r);
+    free(r.places);
     return ST_OK;
 }

@@ -1,4 +1,5 @@
-/* fuzz_photo_list.c - a photo's record: what is read is written and read back the same, or a sentence says why not. */
+/* fuzz_photo_list.c - a photo's record, and the list of photos: what is read is written and read back the same, or a
+ * sentence says why not. Every input is read as the record of photo a, and as the list beside good records of a and b. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,6 +9,41 @@
 #include "common/photo_list.h"
 #include "tests/fuzz/fuzz.h"
 
+static void write_file(const char *path, const void *bytes, size_t size)
+{
+    FILE *fp = fopen(path, "wb");
+    if (!fp || (size && fwrite(bytes, 1, size, fp) != size) || fclose(fp)) abort();
+}
+
+static void check_list(const char *folder, const uint8_t *data, size_t size)
+{
+    static const char *const names[] = {"a.txt", "b.txt", "list.txt", "photos.mk"};
+    static const char *const files[] = {"a.jpg", "\"b c.jpg\""};
+    char paths[4][64], text[300];
+    struct photo_list list, again;
+    struct err err = ERR_INIT;
+
+    for (int i = 0; i < 4; i++) snprintf(paths[i], sizeof paths[i], "%s/%s", folder, names[i]);
+    for (int i = 0; i < 2; i++) {
+        snprintf(text, sizeof text,
+                 "remodel-photo 1\nfile %s\nhash 0123456789abcdef0123456789abcdef\nsize 640 480\nbits 8\norientation "
+                 "1\nexif 0 0 0 0 0\ncamera \"\" \"\"\n",
+                 files[i]);
+        write_file(paths[i], text, strlen(text));
+    }
+    write_file(paths[2], data, size);
+    enum status st = photo_list_read(&list, folder, &err);
+    if (st && (st != err.status || !strstr(err.text, folder) || list.photos)) abort();
+    if (!st) {
+        if (list.count < 1 || list.count > 2 || photo_list_find_id(&list, list.photos[0].id) != 0) abort();
+        if (photo_list_write(&list, folder, &err) || photo_list_read(&again, folder, &err)) abort();
+        if (again.count != list.count || strcmp(again.photos[0].file, list.photos[0].file)) abort();
+        photo_list_release(&again);
+        photo_list_release(&list);
+    }
+    for (int i = 0; i < 4; i++) unlink(paths[i]);
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     char folder[] = "/tmp/remodel-fuzz-XXXXXX", path[64];
@@ -16,8 +52,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 
     if (!mkdtemp(folder)) abort();
     snprintf(path, sizeof path, "%s/a.txt", folder);
-    FILE *fp = fopen(path, "wb");
-    if (!fp || fwrite(data, 1, size, fp) != size || fclose(fp)) abort();
+    write_file(path, data, size);
     enum status st = photo_record_read(&record, folder, "a", &err);
     if (st && (st != err.status || record.id || !strstr(err.text, path))) abort();
     if (!st && !photo_record_write(&record, folder, &err)) {
@@ -27,7 +62,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         photo_record_release(&again);
     }
     photo_record_release(&record);
-    unlink(path);
+    check_list(folder, data, size);
     rmdir(folder);
     return 0;
 }

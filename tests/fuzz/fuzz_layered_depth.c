@@ -1,0 +1,145 @@
+/* fuzz_layered_depth.c - layered depth maps: any pair of list and picture gives a depth map whose segments may be indexed
+ * by its ids and that survives writing, or a sentence.
+ *
+ * The input is the list, a line "%%", and the picture. Without that line it is, if it begins like an OpenEXR file, the
+ * picture, whose list is then one of three segments and its size; else the list, with a good picture of 4 x 3. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "common/exr.h"
+#include "common/layered_depth.h"
+#include "tests/fuzz/fuzz.h"
+
+static char folder[] = "/tmp/remodel-fuzz-XXXXXX";
+static char list[64], picture[64], good[64];
+
+static void remove_folder(void)
+{
+    unlink(list);
+    unlink(picture);
+    unlink(good);
+    snprintf(list, sizeof list, "%s/good.txt", folder);
+    unlink(list);
+    rmdir(folder);
+}
+
+static void make_folder(void)
+{
+    struct layered_depth d;
+    struct err err = ERR_INIT;
+
+    if (!mkdtemp(folder) || atexit(remove_folder)) abort();
+    snprintf(list, sizeof list, "%s/d.txt", folder);
+    snprintf(picture, sizeof picture, "%s/d.exr", folder);
+    snprintf(good, sizeof good, "%s/good.exr", folder);
+    if (layered_depth_init(&d, 4, 3, &err) || layered_depth_write(&d, NULL, good, NULL, &err)) abort();
+    layered_depth_release(&d);
+}
+
+static void write_bytes(const char *path, const void *bytes, size_t size)
+{
+    FILE *fp = fopen(path, "wb");
+    if (!fp || (size && fwrite(bytes, 1, size, fp) != size) || fclose(fp)) abort();
+}
+
+static void write_list_of_size(void)
+{
+    struct exr_image im;
+    char text[200];
+    if (exr_read(&im, picture, (const char *const[]){NULL}, 0, NULL)) im.width = im.height = 1;
+    snprintf(text, sizeof text,
+             "remodel-segments 1\nsize %d %d\nsegments 3\n1 0 0 0 1 0.1 1\n2 0 0.5 0 1 0.1 1\n3 0 0 0 0 0 0\n",
+             im.width, im.height);
+    exr_image_release(&im);
+    write_bytes(list, text, strlen(text));
+}
+
+static void check_segments(const struct layered_depth *d)
+{
+    if (d->width < 1 || d->height < 1 || d->segment_count < 0) abort();
+    for (int i = 0; i < d->segment_count; i++) {
+        const struct depth_segment *s = &d->segments[i];
+        if (s->id != (uint32_t)i + 1 || s->pixels < 0 || (int64_t)s->pixels > (int64_t)d->width * d->height) abort();
+        for (int k = 0; k < 3; k++)
+            if (!isfinite(s->plane[k])) abort();
+        if (!(s->sigma >= 0 && s->sigma < INFINITY && s->confidence >= 0 && s->confidence <= 1)) abort();
+    }
+}
+
+static void check_layer(const struct layer *l, const struct layered_depth *d)
+{
+    for (size_t i = 0; i < (size_t)d->width * (size_t)d->height; i++) {
+        for (int k = 0; k < 4; k++)
+            if (!isfinite(l->rgba[4 * i + (size_t)k])) abort();
+        if (l->id[i] > (uint32_t)d->segment_count || !(l->z[i] >= 0 && l->z[i] < INFINITY)) abort();
+        if (!(l->rgba[4 * i + 3] >= 0 && l->rgba[4 * i + 3] <= 1)) abort();
+    }
+}
+
+static void check_empty(const struct layered_depth *d, enum status st, const struct err *err)
+{
+    static const struct layered_depth empty;
+    if (st != err->status || !strstr(err->text, folder) || memcmp(d, &empty, sizeof empty)) abort();
+}
+
+static void write_again(const struct layered_depth *d)
+{
+    struct layered_depth again;
+    struct err err = ERR_INIT;
+    const size_t pixels = (size_t)d->width * (size_t)d->height;
+
+    if (layered_depth_write(d, NULL, picture, NULL, &err) || layered_depth_read(&again, picture, &err)) abort();
+    if (again.width != d->width || again.height != d->height || again.segment_count != d->segment_count) abort();
+    for (int i = 0; i < d->segment_count; i++)
+        if (memcmp(again.segments[i].plane, d->segments[i].plane, sizeof d->segments[i].plane)) abort();
+    if (memcmp(again.interior.z, d->interior.z, pixels * sizeof *d->interior.z) ||
+        memcmp(again.boundary.id, d->boundary.id, pixels * sizeof *d->boundary.id))
+        abort();
+    layered_depth_release(&again);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    static const uint8_t magic[] = {0x76, 0x2f, 0x31, 0x01};
+    struct layered_depth d;
+    struct err err = ERR_INIT;
+
+    if (!list[0]) make_folder();
+    unlink(picture); /* it may be a link to the good one */
+    const uint8_t *parted = memmem(data, size, "%%\n", 3);
+    if (size >= sizeof magic && !memcmp(data, magic, sizeof magic)) {
+        write_bytes(picture, data, size);
+        write_list_of_size();
+    } else {
+        const size_t length = parted ? (size_t)(parted - data) : size;
+        write_bytes(list, data, length);
+        if (parted)
+            write_bytes(picture, parted + 3, size - length - 3);
+        else if (link(good, picture))
+            abort();
+    }
+
+    enum status st = layered_depth_read_segments(&d, list, &err);
+    if (st) {
+        check_empty(&d, st, &err);
+    } else {
+        check_segments(&d);
+        if (d.interior.rgba || d.boundary.id) abort();
+        layered_depth_release(&d);
+    }
+    err = (struct err)ERR_INIT;
+    st = layered_depth_read(&d, picture, &err);
+    if (st) {
+        check_empty(&d, st, &err);
+        return 0;
+    }
+    check_segments(&d);
+    check_layer(&d.interior, &d);
+    check_layer(&d.boundary, &d);
+    write_again(&d);
+    layered_depth_release(&d);
+    return 0;
+}

@@ -1,0 +1,62 @@
+/* fuzz_sfm_lists.c - text that other programs leave for structure from motion: Bundler's list of images and COLMAP's log.
+ * Any bytes give names and counts, or a sentence. Every input is read as both. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "tests/fuzz/fuzz.h"
+
+/* a stage's files, which are in no library */
+#include "stages/sfm/run_colmap.c"
+#include "stages/sfm/sfm_folder.c"
+#include "stages/sfm/user_model.c"
+
+static void check_list(const char *path)
+{
+    char text[4][8] = {"a", "a.jpg", "b", "b.jpg"};
+    struct photo_record records[2] = {{.id = text[0], .file = text[1], .info = {.width = 64, .height = 48}},
+                                      {.id = text[2], .file = text[3], .info = {.width = 48, .height = 64}}};
+    const struct photo_list photos = {records, 2};
+    struct image_names names = {0};
+    struct err err = ERR_INIT;
+    int known = 0;
+
+    enum status st = read_list(&names, path, &photos, &err);
+    if (st && (st != err.status || !strstr(err.text, path))) abort();
+    for (int i = 0; i < names.count; i++) {
+        int at = photo_list_match(&photos, names.names[i]);
+        known += at >= 0;
+        if (names.sizes[i][0] != (at < 0 ? 0 : records[at].info.width)) abort();
+    }
+    if (!st && !known) abort();
+    image_names_release(&names);
+}
+
+static void check_log(const char *path)
+{
+    struct feature_counts counts;
+    struct err err = ERR_INIT;
+    char words[100];
+
+    enum status st = feature_counts_read(&counts, path, &err);
+    if (st && (st != err.status || !strstr(err.text, path) || counts.list)) abort();
+    for (int i = 0; i < counts.count; i++)
+        if (!counts.list[i].name) abort();
+    connected_images(path);
+    last_words(words, sizeof words, path);
+    if (strlen(words) >= sizeof words || strchr(words, '\n')) abort();
+    feature_counts_release(&counts);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    char path[] = "/tmp/remodel-fuzz-XXXXXX";
+    int fd = mkstemp(path);
+
+    if (fd < 0 || write(fd, data, size) != (ssize_t)size || close(fd)) abort();
+    check_list(path);
+    check_log(path);
+    unlink(path);
+    return 0;
+}
