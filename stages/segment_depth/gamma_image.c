@@ -65,6 +65,7 @@ static enum status allocate(struct gamma_image *g, int width, int height, struct
 enum status gamma_image_make(struct gamma_image *g, const struct image *linear_rgba, double exposure, struct err *err)
 {
     if (allocate(g, linear_rgba->width, linear_rgba->height, err)) return ST_NOMEM;
+    g->exposure = exposure;
     struct make_job job = {g, linear_rgba, (float)exposure};
     parallel_for((size_t)g->height, 16, make_rows, &job);
     return ST_OK;
@@ -97,6 +98,7 @@ enum status gamma_image_halve(struct gamma_image *g, struct err *err)
             }
             for (int c = 0; c < 3; c++) half.rgb[c][to] = sum[c] / 4;
         }
+    half.exposure = g->exposure;
     gamma_image_release(g);
     *g = half;
     return ST_OK;

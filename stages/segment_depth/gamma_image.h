@@ -12,6 +12,7 @@
 
 struct gamma_image {
     int width, height;
+    double exposure;
     float *rgb[3];  /* w * h each, 0 .. 1; owned */
     uint8_t *valid; /* w * h: the photo has a pixel here */
 };

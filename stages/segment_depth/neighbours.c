@@ -153,24 +153,27 @@ static int compare_doubles(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-void depth_range(double *least, double *most, const struct camera_set *set, int view_idx,
-                 const struct seen_points *seen, const int *neighbours, int count)
+enum status depth_range(double *least, double *most, const struct camera_set *set, int view_idx,
+                        const struct seen_points *seen, const int *neighbours, int count, struct err *err)
 {
     const struct view *view = &set->views[view_idx];
-    double *inverse = seen->count >= LEAST_SHARED ? malloc((size_t)seen->count * sizeof *inverse) : NULL;
-    if (inverse) {
+    if (seen->count >= LEAST_SHARED) {
+        double *inverse = malloc((size_t)seen->count * sizeof *inverse);
+        if (!inverse) return err_nomem(err, "depths of points", (size_t)seen->count * sizeof *inverse);
         for (int i = 0; i < seen->count; i++) inverse[i] = seen->points[i].inverse_z;
         qsort(inverse, (size_t)seen->count, sizeof *inverse, compare_doubles);
-        double low = inverse[seen->count / 100], high = inverse[seen->count - 1 - seen->count / 100];
+        int stray = (seen->count + 80) / 100; /* at either end; one in 20 points may be false */
+        double low = inverse[stray], high = inverse[seen->count - 1 - stray];
         double margin = 0.15 * (high - low) + 0.03 * high;
         *least = fmax(low - margin, 0.3 * low);
         *most = high + 2 * margin; /* near ground has few points: it is blurred, or hidden from most views */
         free(inverse);
-        return;
+        return ST_OK;
     }
     double baseline = 0;
     for (int k = 0; k < count; k++)
         baseline = fmax(baseline, vec3_length(vec3_sub(set->views[neighbours[k]].center, view->center)));
     *most = fmax(0.25 * view->width, 2) / (view->fx * baseline);
     *least = *most / 500;
+    return ST_OK;
 }

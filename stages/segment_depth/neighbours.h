@@ -33,7 +33,7 @@ enum status neighbours_choose(int neighbours[MAX_NEIGHBOURS], int *count, const 
 
 /* Inverse depths to sweep, least < most, both > 0: robust percentiles of the points with margins, or, without points,
  * what the neighbours' baselines can tell from infinity up to a shift of a quarter of the picture. */
-void depth_range(double *least, double *most, const struct camera_set *set, int view_idx,
-                 const struct seen_points *seen, const int *neighbours, int count);
+enum status depth_range(double *least, double *most, const struct camera_set *set, int view_idx,
+                        const struct seen_points *seen, const int *neighbours, int count, struct err *err);
 
 #endif

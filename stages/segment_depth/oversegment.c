@@ -155,73 +155,76 @@ static int root_of(const struct part *parts, int i)
 /* Offers part b to a part a that must go: keeps the one of the nearest colour. */
 static void offer(const struct part *parts, int a, int b, int *best, float *best_distance)
 {
-    int root = root_of(parts, b);
-    if (root == a) return;
     float d = 0;
     for (int c = 0; c < 3; c++) {
-        float e = (float)(parts[a].lab[c] - parts[root].lab[c]);
+        float e = (float)(parts[a].lab[c] - parts[b].lab[c]);
         d += e * e;
     }
-    if (d < *best_distance || (d <= *best_distance && root < *best)) {
+    if (d < *best_distance || (d <= *best_distance && b < *best)) {
         *best_distance = d;
-        *best = root;
+        *best = b;
     }
 }
 
-/* Parts that may not stay, in order, are given to the touching part (as merged so far) of the nearest colour. */
-static void merge_parts(const struct slic *s, int *part_of, int *queue, struct part *parts, int count,
+/* Parts that may not stay, in order, are given with all that was given to them to the touching part (as merged so far)
+ * of the nearest colour. walked: w * h, scratch. */
+static void merge_parts(const struct slic *s, int *part_of, int *walked, int *queue, struct part *parts, int count,
                         const int *largest, int least_pixels)
 {
     int pixels = s->width * s->height;
+    for (int p = 0; p < pixels; p++) walked[p] = -1;
     for (int i = 0; i < count; i++) {
         if (largest[parts[i].label] == i && parts[i].pixels >= least_pixels) continue;
         int best = -1, head = 0, tail = 0;
         float best_distance = INFINITY;
         queue[tail++] = parts[i].first;
-        part_of[parts[i].first] = -2 - i; /* walked over */
+        walked[parts[i].first] = i;
         while (head < tail) {
             int p = queue[head++], x = p % s->width;
             const int next[4] = {x > 0 ? p - 1 : -1, x + 1 < s->width ? p + 1 : -1, p - s->width,
                                  p + s->width < pixels ? p + s->width : -1};
             for (int k = 0; k < 4; k++) {
-                if (next[k] < 0 || s->label[next[k]] < 0) continue;
-                int other = part_of[next[k]];
-                if (other == i) {
-                    part_of[next[k]] = -2 - i;
+                if (next[k] < 0 || s->label[next[k]] < 0 || walked[next[k]] == i) continue;
+                int root = root_of(parts, part_of[next[k]]);
+                if (root == i) {
+                    walked[next[k]] = i;
                     queue[tail++] = next[k];
-                } else if (other != -2 - i) {
-                    offer(parts, i, other < 0 ? -2 - other : other, &best, &best_distance);
+                } else {
+                    offer(parts, i, root, &best, &best_distance);
                 }
             }
         }
-        if (best >= 0) parts[i].into = best;
+        if (best < 0) continue; /* an island */
+        parts[i].into = best;
+        parts[best].pixels += parts[i].pixels;
     }
     for (int p = 0; p < pixels; p++)
-        if (s->label[p] >= 0) part_of[p] = root_of(parts, part_of[p] < 0 ? -2 - part_of[p] : part_of[p]);
+        if (s->label[p] >= 0) part_of[p] = root_of(parts, part_of[p]);
 }
 
 static enum status connect_segments(struct slic *s, int segment_pixels, struct err *err)
 {
     size_t pixels = (size_t)s->width * (size_t)s->height, centres = (size_t)s->columns * (size_t)s->rows;
     int *part_of = malloc(pixels * sizeof *part_of), *queue = malloc(pixels * sizeof *queue);
-    int *largest = malloc(centres * sizeof *largest);
+    int *largest = malloc(centres * sizeof *largest), *walked = malloc(pixels * sizeof *walked);
     struct part *parts = malloc(pixels * sizeof *parts);
     enum status st = ST_OK;
-    if (part_of && queue && largest && parts) {
+    if (part_of && queue && largest && walked && parts) {
         int count = find_parts(s, part_of, queue, parts);
         for (size_t k = 0; k < centres; k++) largest[k] = -1;
         for (int i = 0; i < count; i++) {
             int *l = &largest[parts[i].label];
             if (*l < 0 || parts[i].pixels > parts[*l].pixels) *l = i;
         }
-        merge_parts(s, part_of, queue, parts, count, largest, segment_pixels / 6);
+        merge_parts(s, part_of, walked, queue, parts, count, largest, segment_pixels / 6);
         memcpy(s->label, part_of, pixels * sizeof *part_of);
     } else {
-        st = err_nomem(err, "connected segments", pixels * (sizeof *parts + 8));
+        st = err_nomem(err, "connected segments", pixels * (sizeof *parts + 12));
     }
     free(part_of);
     free(queue);
     free(largest);
+    free(walked);
     free(parts);
     return st;
 }
@@ -377,10 +380,10 @@ static void seed(struct slic *s)
     for (int j = 0; j < s->rows; j++)
         for (int i = 0; i < s->columns; i++) {
             struct centre *c = &s->centres[j * s->columns + i];
-            int x = (bound(i, s->columns, s->width) + bound(i + 1, s->columns, s->width)) / 2;
-            int y = (bound(j, s->rows, s->height) + bound(j + 1, s->rows, s->height)) / 2;
-            size_t p = (size_t)y * (size_t)s->width + (size_t)x;
-            *c = (struct centre){{s->lab[0][p], s->lab[1][p], s->lab[2][p]}, (float)x + 0.5f, (float)y + 0.5f};
+            int x = bound(i, s->columns, s->width) + bound(i + 1, s->columns, s->width);
+            int y = bound(j, s->rows, s->height) + bound(j + 1, s->rows, s->height);
+            size_t p = (size_t)(y / 2) * (size_t)s->width + (size_t)(x / 2);
+            *c = (struct centre){{s->lab[0][p], s->lab[1][p], s->lab[2][p]}, 0.5f * (float)x, 0.5f * (float)y};
         }
 }
 

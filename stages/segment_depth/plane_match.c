@@ -233,12 +233,14 @@ static int compare_doubles(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Median ratio of the view's colours to the neighbour's, at the points that both observed. */
+/* Median ratio of the view's colours to the neighbour's, at the points that both observed; where those are too few, the
+ * photos are taken to have been exposed alike. */
 static enum status estimate_gain(double gain[3], const struct camera_set *set, const struct view *other,
                                  int neighbour_idx, const struct seen_points *seen, const struct gamma_image *reference,
                                  const struct gamma_image *picture, struct err *err)
 {
     double *ratios = malloc(((size_t)seen->count + 1) * 3 * sizeof *ratios);
+    double same_light = sqrt(reference->exposure / picture->exposure);
     int count = 0;
     if (!ratios) return err_nomem(err, "colour ratios", (size_t)seen->count * 24);
     for (int i = 0; i < seen->count; i++) {
@@ -260,7 +262,7 @@ static enum status estimate_gain(double gain[3], const struct camera_set *set, c
     for (int c = 0; c < 3; c++) {
         double *r = ratios + (size_t)c * (size_t)seen->count;
         qsort(r, (size_t)count, sizeof *r, compare_doubles);
-        gain[c] = count >= 12 ? fmin(fmax(r[count / 2], 0.25), 4) : 1;
+        gain[c] = count >= 12 ? fmin(fmax(r[count / 2], 0.25 * same_light), 4 * same_light) : same_light;
     }
     free(ratios);
     return ST_OK;
@@ -411,7 +413,8 @@ static float neighbour_cost(const struct matcher *m, const struct match_neighbou
             _mm256_add_epi32(sum, _mm256_srli_epi32(_mm256_and_si256(mask, cost), 4)); /* room for 2^17 pixels a lane */
         count = _mm256_sub_epi32(count, mask);
     }
-    _Alignas(32) int sums[8], counts[8];
+    _Alignas(32) uint32_t sums[8];
+    _Alignas(32) int counts[8];
     _mm256_store_si256((__m256i *)sums, sum);
     _mm256_store_si256((__m256i *)counts, count);
     int64_t total = 0;

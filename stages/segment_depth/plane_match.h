@@ -17,6 +17,21 @@ struct plane {
 
 static inline double plane_at(struct plane p, double u, double v) { return p.a * u + p.b * v + p.c; }
 
+/* A segment's plane stays within [PLANE_LEAST x least, PLANE_MOST x most] of the inverse depths swept, over the segment and
+ * a margin around it, where its edge may be painted. */
+#define PLANE_LEAST 0.7
+#define PLANE_MOST  1.3
+
+static inline bool plane_keeps_to(struct plane p, const struct segment *g, double least, double most)
+{
+    const double margin = 3, u[2] = {g->x0 - margin, g->x1 + 1 + margin}, v[2] = {g->y0 - margin, g->y1 + 1 + margin};
+    for (int k = 0; k < 4; k++) {
+        double d = plane_at(p, u[k & 1], v[k >> 1]);
+        if (!(d >= least && d <= most)) return false;
+    }
+    return true;
+}
+
 struct match_neighbour {
     double base[3][3], shift[3]; /* [u' v' 1] ~ base [u v 1] + shift / z */
     int width, height;

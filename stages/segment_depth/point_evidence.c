@@ -8,7 +8,10 @@
 
 #define NEAR_COLOUR 6.0f /* Lab distance that counts like a distance of NEAR_PLACE of the picture's diagonal */
 #define NEAR_PLACE  0.08f
-#define LOOSE       0.04 /* of the depth range: how far from a nearby point's depth costs in full */
+/* How far from a nearby point's depth costs in full: a part of the depth range, but not so few steps that the pictures
+ * could not tell better. */
+#define LOOSE       0.04
+#define LOOSE_STEPS 4
 
 static enum status sort_into_segments(struct point_evidence *e, const struct segmentation *s,
                                       const struct seen_points *seen, struct err *err)
@@ -122,7 +125,7 @@ double point_evidence_cost(const struct point_evidence *e, int segment, struct p
     }
     if (begin < end) inside /= end - begin + 1.0; /* one point counts half of what many count */
     const float *depth = e->nearest + (size_t)segment * NEAREST_POINTS;
-    double loose = LOOSE * (e->most - e->least);
+    double loose = fmax(LOOSE * (e->most - e->least), LOOSE_STEPS * e->step);
     for (int k = 0; k < e->nearest_count; k++) nearest = fmin(nearest, fabs(here - (double)depth[k]) / loose);
     double far = fmin(fmax((here - e->least) / (e->most - e->least), 0), 1);
     return e->inside_weight * inside + (e->nearest_count ? e->nearest_weight * nearest : 0) + e->far_weight * far;

@@ -47,21 +47,9 @@ static double prior_cost(const struct refine *r, int i, struct plane p)
     return sum;
 }
 
-/* A plane must keep to the depth range over the segment and a margin around it, where its edge may be painted. */
-static bool allowed(const struct refine *r, int i, struct plane p)
-{
-    const struct segment *g = &r->s->segments[i];
-    const double margin = 3, u[2] = {g->x0 - margin, g->x1 + 1 + margin}, v[2] = {g->y0 - margin, g->y1 + 1 + margin};
-    for (int k = 0; k < 4; k++) {
-        double d = plane_at(p, u[k & 1], v[k >> 1]);
-        if (!(d >= r->least && d <= r->most)) return false;
-    }
-    return true;
-}
-
 static void try_plane(struct refine *r, int i, struct plane p, double *best)
 {
-    if (!allowed(r, i, p)) return;
+    if (!plane_keeps_to(p, &r->s->segments[i], r->least, r->most)) return;
     double weight = (double)r->s->segments[i].pixels / r->params->segment_pixels;
     double prior = prior_cost(r, i, p);
     if (prior >= *best) return;
@@ -198,8 +186,8 @@ enum status refine_planes(struct plane *plane, const struct matcher *m, const st
         st = err_nomem(err, "the refinement of planes", (size_t)s->count * 40);
         goto done;
     }
-    r.least = 0.7 * points->least;
-    r.most = 1.3 * points->most;
+    r.least = PLANE_LEAST * points->least;
+    r.most = PLANE_MOST * points->most;
     r.step = points->step;
     r.members = members;
     int colours = colour_segments(s, colour, members, first);

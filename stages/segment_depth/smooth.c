@@ -8,7 +8,8 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
-#define ROUNDS 10
+#define ROUNDS  10
+#define REPAIRS 3
 
 /* Colour difference at which two sides are half alike, and what remains of a border's weight between unlike ones: a
  * depth edge without a colour edge is rare, the reverse is common. */
@@ -92,8 +93,8 @@ static void visit(struct pass *p, int i, const float *cost, bool forward)
     }
 }
 
-/* Label of i given those of the segments before it and the messages of those after it. */
-static int decide(struct pass *p, int i, const float *cost, const int *label)
+/* Label of i given those of the segments before it, and the messages of those after it or else their labels too. */
+static int decide(struct pass *p, int i, const float *cost, const int *label, bool messages)
 {
     int best = 0;
     for (int l = 0; l < p->labels; l++) p->belief[l] = cost[l];
@@ -101,12 +102,13 @@ static int decide(struct pass *p, int i, const float *cost, const int *label)
         int other = p->s->touches[t].other;
         const float *message = p->message + (size_t)p->s->touches[t].edge * (size_t)p->labels;
         for (int l = 0; l < p->labels; l++)
-            p->belief[l] +=
-                other > i ? message[l] : p->weights[t] * smaller(p->slope * (float)abs(l - label[other]), p->most);
+            p->belief[l] += other > i && messages
+                                ? message[l]
+                                : p->weights[t] * smaller(p->slope * (float)abs(l - label[other]), p->most);
     }
     for (int l = 1; l < p->labels; l++)
         if (p->belief[l] < p->belief[best]) best = l;
-    return best;
+    return messages || p->belief[best] < p->belief[label[i]] ? best : label[i];
 }
 
 enum status smooth_labels(int *label, const struct segmentation *s, const float *cost, int labels, const float *weights,
@@ -122,7 +124,10 @@ enum status smooth_labels(int *label, const struct segmentation *s, const float 
             for (int i = 0; i < s->count; i++) visit(&p, i, cost + (size_t)i * (size_t)labels, true);
             for (int i = s->count - 1; i >= 0; i--) visit(&p, i, cost + (size_t)i * (size_t)labels, false);
         }
-        for (int i = 0; i < s->count; i++) label[i] = decide(&p, i, cost + (size_t)i * (size_t)labels, label);
+        /* messages that tie leave labels that a look at the neighbours improves */
+        for (int round = 0; round <= REPAIRS; round++)
+            for (int i = 0; i < s->count; i++)
+                label[i] = decide(&p, i, cost + (size_t)i * (size_t)labels, label, round == 0);
     } else {
         st = err_nomem(err, "messages between segments", (size_t)s->edge_count * (size_t)labels * sizeof(float));
     }

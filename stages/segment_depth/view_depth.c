@@ -35,7 +35,7 @@ struct sweep {
     const struct matcher *m;
     const struct point_evidence *points;
     const struct segment_params *params;
-    double least, step; /* of 1/z */
+    double least, most, step; /* of 1/z */
     int planes;
     float *cost;   /* planes a segment: matching alone */
     float *energy; /* planes a segment: with points, weighted by size */
@@ -43,7 +43,7 @@ struct sweep {
 };
 
 /* A segment's plane at a label: facing the camera, or else horizontal, which is how floors and ceilings lie. False if
- * the two are the same to the pictures, or the horizontal one is seen at too grazing an angle. */
+ * the two are the same to the pictures, or the horizontal one is seen at too grazing an angle, or leaves the depths. */
 static struct plane facing_plane(const struct sweep *w, int label)
 {
     return (struct plane){0, 0, w->least + label * w->step};
@@ -57,7 +57,7 @@ static bool horizontal_plane(const struct sweep *w, const struct segment *g, int
     if (!(fabs(cosine) > HORIZON)) return false;
     double a = d * w->down.x / (v->fx * cosine), b = d * w->down.y / (v->fy * cosine), rise = hypot(a, b) / w->step;
     *plane = (struct plane){a, b, d - a * g->cx - b * g->cy};
-    return rise * size > 0.5 && rise < 1;
+    return rise * size > 0.5 && rise < 1 && plane_keeps_to(*plane, g, PLANE_LEAST * w->least, PLANE_MOST * w->most);
 }
 
 static void sweep_segments(void *ctx, size_t begin, size_t end, int thread)
@@ -89,14 +89,17 @@ static struct plane better_plane(const struct sweep *w, int segment, int label)
     return match_cost(w->m, segment, tilted) + slant < match_cost(w->m, segment, facing) ? tilted : facing;
 }
 
-/* How sure a segment's depth is: its cost there against the best cost elsewhere, and against a hopeless match. */
+/* How sure a segment's depth is: the sweep's best cost around `at` against its best elsewhere, for a refined plane would
+ * win over an equal one of the sweep; and the final cost against a hopeless match. */
 static double confidence_of(const float *cost, int planes, double at, float chosen)
 {
-    enum { APART = 3 }; /* steps: nearer depths are the same answer */
-    float rival = 1;
-    for (int p = 0; p < planes; p++)
-        if (fabs(p - at) > APART && cost[p] < rival) rival = cost[p];
-    double distinct = (double)(rival - chosen) / 0.12, good = (0.7 - (double)chosen) / 0.3;
+    double apart = fmin(3, (planes - 1) / 3.0); /* steps: nearer depths are the same answer */
+    float near = 1, rival = 1;
+    for (int p = 0; p < planes; p++) {
+        float *best = fabs(p - at) > apart ? &rival : &near;
+        *best = fminf(*best, cost[p]);
+    }
+    double distinct = (double)(rival - near) / 0.12, good = (0.7 - (double)chosen) / 0.3;
     return fmin(fmax(distinct, 0), 1) * fmin(fmax(good, 0), 1);
 }
 
@@ -142,7 +145,7 @@ static enum status solve(struct layered_depth *out, const struct camera_set *set
     const struct segmentation *s = m->segments;
     double shift = matcher_shift(m, least, most);
     struct point_evidence points = {0};
-    struct sweep w = {.view = view, .m = m, .points = &points, .params = params, .least = least};
+    struct sweep w = {.view = view, .m = m, .points = &points, .params = params, .least = least, .most = most};
     w.down = find_down(set, view);
     struct plane *planes = malloc(((size_t)s->count + 1) * sizeof *planes);
     int *labels = malloc(((size_t)s->count + 1) * sizeof *labels);
@@ -179,12 +182,13 @@ static enum status solve(struct layered_depth *out, const struct camera_set *set
 
 static enum status add_neighbour(struct matcher *m, const struct camera_set *set, int view_idx, int neighbour_idx,
                                  const struct view_source *source, const struct seen_points *seen, double typical,
-                                 const struct gamma_image *reference, double exposure, struct err *err)
+                                 const struct gamma_image *reference, struct err *err)
 {
     struct image picture = {0};
     struct gamma_image gamma = {0};
     enum status st = source->read(source->ctx, neighbour_idx, &picture, err);
-    if (!st) st = gamma_image_make(&gamma, &picture, exposure, err);
+    /* a brighter photo of the same scene must not clip here what it did not clip itself */
+    if (!st) st = gamma_image_make(&gamma, &picture, fmin(reference->exposure, exposure_of(&picture)), err);
     image_release(&picture);
     if (!st) st = matcher_add(m, set, view_idx, neighbour_idx, seen, typical, reference, &gamma, err);
     gamma_image_release(&gamma);
@@ -200,23 +204,19 @@ enum status view_depth(struct layered_depth *out, int neighbours[MAX_NEIGHBOURS]
     struct gamma_image gamma = {0};
     struct segmentation segments = {0};
     struct matcher matcher = {0};
-    double least = 0, most = 0, exposure = 1;
+    double least = 0, most = 0;
     *out = (struct layered_depth){0};
     *neighbour_count = 0;
     enum status st = seen_points_find(&seen, set, view_idx, err);
     if (!st) st = neighbours_choose(neighbours, neighbour_count, set, view_idx, &seen, params->neighbours, err);
     if (!st) st = source->read(source->ctx, view_idx, &picture, err);
     if (!st) st = layered_depth_init(out, picture.width, picture.height, err);
-    if (!st) {
-        depth_range(&least, &most, set, view_idx, &seen, neighbours, *neighbour_count);
-        exposure = exposure_of(&picture);
-        st = gamma_image_make(&gamma, &picture, exposure, err);
-    }
+    if (!st) st = depth_range(&least, &most, set, view_idx, &seen, neighbours, *neighbour_count, err);
+    if (!st) st = gamma_image_make(&gamma, &picture, exposure_of(&picture), err);
     if (!st) st = oversegment(&segments, &gamma, params->segment_pixels, params->compactness, err);
     if (!st) st = matcher_init(&matcher, &segments, &gamma, err);
     for (int k = 0; !st && k < *neighbour_count; k++)
-        st = add_neighbour(&matcher, set, view_idx, neighbours[k], source, &seen, 0.5 * (least + most), &gamma,
-                           exposure, err);
+        st = add_neighbour(&matcher, set, view_idx, neighbours[k], source, &seen, 0.5 * (least + most), &gamma, err);
     if (!st) st = solve(out, set, &set->views[view_idx], &matcher, &picture, &seen, least, most, params, err);
     if (st) layered_depth_release(out);
     matcher_release(&matcher);

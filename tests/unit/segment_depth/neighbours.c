@@ -1,0 +1,266 @@
+/* neighbours.c - cameras about a patch of points: which are matched, and over what depths. */
+#include "stages/segment_depth/neighbours.h"
+
+#include "tests/unit/segment_depth/scene.h"
+
+enum { ALL = 63 };
+
+static struct scene scene; /* zeroed by start(): it is large */
+
+/* The view itself, 160 x 120, at the origin. */
+static void start(void)
+{
+    memset(&scene, 0, sizeof scene);
+    scene_view(&scene, 160, 120, 160, 0, 0, 0, 0);
+}
+
+static int at(double x, double y, double z)
+{
+    scene_view(&scene, 160, 120, 160, x, y, z, 0);
+    return scene.set.view_count - 1;
+}
+
+/* Points about (0, 0, 10), to be added after the views. */
+static void patch(int count, unsigned mask)
+{
+    for (int i = 0; i < count; i++)
+        scene_point(&scene,
+                    vec3_make(4 * scene_hash(i, 0, 0) - 2, 3 * scene_hash(i, 0, 1) - 1.5, 9.5 + scene_hash(i, 0, 2)),
+                    mask);
+}
+
+static int choose(int neighbours[MAX_NEIGHBOURS], int most, struct err *err)
+{
+    struct seen_points seen;
+    int count = -1;
+    *err = (struct err)ERR_INIT;
+    assert_int_equal(seen_points_find(&seen, &scene.set, 0, err), ST_OK);
+    const enum status st = neighbours_choose(neighbours, &count, &scene.set, 0, &seen, most, err);
+    assert_int_equal(st, count ? ST_OK : ST_DATA);
+    for (int i = 0; i < count; i++) {
+        assert_in_range(neighbours[i], 1, scene.set.view_count - 1);
+        for (int k = 0; k < i; k++) assert_int_not_equal(neighbours[i], neighbours[k]);
+    }
+    seen_points_release(&seen);
+    return count;
+}
+
+static void too_near_and_too_wide_lose(void **state)
+{
+    (void)state;
+    int n[MAX_NEIGHBOURS];
+    struct err err;
+    start();
+    at(0.02, 0, 0); /* a tenth of a degree */
+    at(12, 0, 0);   /* 50 degrees */
+    const int left = at(-1.4, 0, 0), right = at(1.5, 0, 0);
+    patch(60, ALL);
+    assert_int_equal(choose(n, 16, &err), 2); /* the others are not worth their time */
+    assert_int_equal(n[0] + n[1], left + right);
+    assert_int_equal(choose(n, 1, &err), 1);
+}
+
+static void as_many_as_asked(void **state)
+{
+    (void)state;
+    int n[MAX_NEIGHBOURS];
+    struct err err;
+    start();
+    for (int i = 0; i < 5; i++) at(1.5 * cos(i), 1.5 * sin(i), 0);
+    patch(60, ALL);
+    for (int most = 1; most <= 7; most++) assert_int_equal(choose(n, most, &err), most < 5 ? most : 5);
+}
+
+static void the_second_adds_a_direction(void **state)
+{
+    (void)state;
+    int n[MAX_NEIGHBOURS];
+    struct err err;
+    start();
+    at(1.5, 0, 0);
+    at(1.55, 0, 0);
+    const int above = at(0, -1, 0);
+    patch(60, ALL);
+    assert_int_equal(choose(n, 2, &err), 2);
+    assert_true(n[0] == above || n[1] == above);
+}
+
+static void like_scales_win(void **state)
+{
+    (void)state;
+    int n[MAX_NEIGHBOURS];
+    struct err err;
+    start();
+    at(7, 0, -20);                     /* 13 degrees, from three times as far */
+    const int beside = at(0.85, 0, 0); /* not quite 5 */
+    patch(60, ALL);
+    choose(n, 1, &err);
+    assert_int_equal(n[0], beside);
+}
+
+static void a_view_that_shares_no_points_is_not_chosen(void **state)
+{
+    (void)state;
+    int n[MAX_NEIGHBOURS];
+    struct err err;
+    start();
+    at(1.5, 0, 0);
+    const int seen_by = at(-0.4, 0, 0);
+    patch(60, 1u | 1u << seen_by);
+    assert_int_equal(choose(n, 4, &err), 1);
+    assert_int_equal(n[0], seen_by);
+}
+
+static void without_points_poses_choose(void **state)
+{
+    (void)state;
+    for (int points = 0; points < 8; points += 7) { /* none, or too few */
+        int n[MAX_NEIGHBOURS];
+        struct err err;
+        start();
+        at(3, 0, 0);
+        const int near = at(0.5, 0, 0);
+        scene_view(&scene, 160, 120, 160, 0.1, 0, 0, 1.2); /* nearer, but turned away */
+        patch(points, ALL);
+        assert_int_equal(choose(n, 4, &err), 2);
+        assert_int_equal(n[0], near);
+    }
+}
+
+static void no_view_to_match_with_is_an_error(void **state)
+{
+    (void)state;
+    int n[MAX_NEIGHBOURS];
+    struct err err;
+    for (int which = 0; which < 4; which++) {
+        start();
+        if (which == 1) scene_view(&scene, 160, 120, 160, 0, 0, 0, 0.1); /* a tripod: turned, not moved */
+        if (which == 1) at(0, 0, 0);
+        if (which >= 2) scene_view(&scene, 160, 120, 160, 1, 0, 0, 2.5); /* looks elsewhere */
+        if (which != 2) patch(60, which == 3 ? 1 : ALL);
+        assert_int_equal(choose(n, 4, &err), 0);
+        assert_int_equal(err.status, ST_DATA);
+        assert_non_null(strstr(err.text, "view a has no neighbour"));
+        assert_non_null(strstr(err.text, which == 1 ? "among the 2 other"
+                                         : which    ? "among the 1 other"
+                                                    : "among the 0 other"));
+    }
+}
+
+static void points_are_those_in_front_and_where_they_were_observed(void **state)
+{
+    (void)state;
+    struct seen_points seen;
+    struct err err = ERR_INIT;
+    start();
+    at(1, 0, 0);
+    patch(6, ALL);
+    scene.observations[0][1].u += 3;        /* observed elsewhere */
+    scene.observations[0][2].point_id = -1; /* no point */
+    scene.observations[0][3].point_id = 5;  /* not in the list */
+    scene.points[4].position.z = -7;        /* behind */
+    scene.observations[0][5].v += 1.5;      /* a little off is believed */
+    assert_int_equal(seen_points_find(&seen, &scene.set, 0, &err), ST_OK);
+    assert_int_equal(seen.count, 2);
+    for (int i = 0; i < 2; i++) {
+        const struct seen_point *p = &seen.points[i];
+        const struct vec3 x = scene.points[p->point_idx].position;
+        assert_int_equal(p->point_idx, i ? 5 : 0);
+        assert_near(p->inverse_z, 1 / x.z, 1e-15);
+        assert_near(p->u, 80 + 160 * x.x / x.z, 1e-9);
+        assert_near(p->v, 60 + 160 * x.y / x.z, 1e-9);
+    }
+    seen_points_release(&seen);
+    seen_points_release(&seen);
+    seen_points_release(NULL);
+    scene.set.model.image_count = 0; /* cameras alone */
+    assert_int_equal(seen_points_find(&seen, &scene.set, 0, &err), ST_OK);
+    assert_int_equal(seen.count, 0);
+    seen_points_release(&seen);
+}
+
+static void range_of(double *least, double *most)
+{
+    struct seen_points seen;
+    struct err err = ERR_INIT;
+    const int neighbour = 1;
+    assert_int_equal(seen_points_find(&seen, &scene.set, 0, &err), ST_OK);
+    assert_int_equal(depth_range(least, most, &scene.set, 0, &seen, &neighbour, 1, &err), ST_OK);
+    seen_points_release(&seen);
+    assert_true(*least > 0 && *least < *most && isfinite(*most));
+}
+
+static void depths_bracket_the_points(void **state)
+{
+    (void)state;
+    for (int count = 8; count <= 200; count += 24) {
+        double least, most;
+        start();
+        at(1, 0, 0);
+        patch(count, ALL);
+        range_of(&least, &most);
+        int outside = 0;
+        for (int i = 0; i < count; i++) {
+            const double d = 1 / scene.points[i].position.z;
+            outside += d < least || d > most;
+        }
+        assert_int_equal(outside, 0);
+        assert_true(1 / least < 12 && 1 / most > 8);
+    }
+}
+
+static void a_stray_point_does_not_stretch_the_depths(void **state)
+{
+    (void)state;
+    for (int count = 40; count <= 340; count += 100) {
+        double least, most;
+        start();
+        at(1, 0, 0);
+        patch(count, ALL);
+        scene_point(&scene, vec3_make(0, 0, 0.01), 1);
+        scene_point(&scene, vec3_make(0, 0, 1e6), 1);
+        range_of(&least, &most);
+        assert_true(1 / least < 12 && 1 / most > 8);
+    }
+}
+
+static void points_at_one_depth_leave_some_depths(void **state)
+{
+    (void)state;
+    double least, most;
+    start();
+    at(1, 0, 0);
+    for (int i = 0; i < 30; i++) scene_point(&scene, vec3_make(0.1 * i - 1.5, 0.1, 10), ALL);
+    range_of(&least, &most);
+    assert_true(least < 0.0975 && most > 0.1025);
+}
+
+static void without_points_baselines_tell_the_depths(void **state)
+{
+    (void)state;
+    double least, most;
+    start();
+    at(0.5, 0, 0);
+    range_of(&least, &most);
+    assert_near(160 * 0.5 * most, 40, 1e-9); /* a quarter of the picture */
+    assert_true(160 * 0.5 * least < 0.1);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(too_near_and_too_wide_lose),
+        cmocka_unit_test(as_many_as_asked),
+        cmocka_unit_test(the_second_adds_a_direction),
+        cmocka_unit_test(like_scales_win),
+        cmocka_unit_test(a_view_that_shares_no_points_is_not_chosen),
+        cmocka_unit_test(without_points_poses_choose),
+        cmocka_unit_test(no_view_to_match_with_is_an_error),
+        cmocka_unit_test(points_are_those_in_front_and_where_they_were_observed),
+        cmocka_unit_test(depths_bracket_the_points),
+        cmocka_unit_test(a_stray_point_does_not_stretch_the_depths),
+        cmocka_unit_test(points_at_one_depth_leave_some_depths),
+        cmocka_unit_test(without_points_baselines_tell_the_depths),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,139 @@
+/* point_evidence.c - what points cost a segment that lies on, near or off them. */
+#include "stages/segment_depth/point_evidence.h"
+
+#include "tests/unit/segment_depth/scene.h"
+
+enum { W = 64, H = 48, SEGMENTS = 48 };
+
+static const double least = 0.1, most = 0.5, step = 0.01;
+
+/* A uniform grey picture, so segments are squares of 8 x 8; the upper half is brighter if `halves`. */
+static void cut(struct segmentation *s, bool halves)
+{
+    struct image im;
+    struct gamma_image g;
+    struct err err = ERR_INIT;
+    assert_int_equal(image_init(&im, W, H, 4, &err), ST_OK);
+    for (int i = 0; i < W * H; i++)
+        for (int c = 0; c < 4; c++) im.data[4 * i + c] = c == 3 ? 1 : halves && i < W * H / 2 ? 0.6f : 0.1f;
+    assert_int_equal(gamma_image_make(&g, &im, 1, &err), ST_OK);
+    *s = (struct segmentation){0};
+    assert_int_equal(oversegment(s, &g, 64, 8, &err), ST_OK);
+    assert_int_equal(s->count, SEGMENTS);
+    gamma_image_release(&g);
+    image_release(&im);
+}
+
+static void make(struct point_evidence *e, const struct segmentation *s, struct seen_point *points, int count)
+{
+    const struct segment_params params = SEGMENT_PARAMS_DEFAULT;
+    const struct seen_points seen = {points, count};
+    struct err err = ERR_INIT;
+    if (point_evidence_make(e, s, &seen, least, most, step, &params, &err)) fail_msg("%s", err.text);
+}
+
+static double cost_of(const struct point_evidence *e, const struct segmentation *s, int segment, double inverse_z)
+{
+    const struct plane p = {0, 0, inverse_z};
+    return point_evidence_cost(e, segment, p, s->segments[segment].cx, s->segments[segment].cy);
+}
+
+static double cheapest(const struct point_evidence *e, const struct segmentation *s, int segment)
+{
+    double best = least;
+    for (double d = least; d <= most; d += 0.001)
+        if (cost_of(e, s, segment, d) < cost_of(e, s, segment, best)) best = d;
+    return best;
+}
+
+static void points_inside_hold_a_segment(void **state)
+{
+    (void)state;
+    struct segmentation s;
+    struct point_evidence e;
+    struct seen_point one = {0, 20.5, 12.5, 0.3}, many[9];
+    cut(&s, false);
+    const int segment = s.label[12 * W + 20];
+    make(&e, &s, &one, 1);
+    assert_near(cheapest(&e, &s, segment), 0.3, 0.002);
+    const double held = cost_of(&e, &s, segment, 0.3 + 5 * step) - cost_of(&e, &s, segment, 0.3);
+    assert_near(held, 0.5 * 0.3 + 0.05 + 0.06 * 5 * step / (most - least), 1e-6);
+    point_evidence_release(&e);
+    for (int i = 0; i < 9; i++) many[i] = (struct seen_point){i, 17 + 0.7 * i, 10 + 0.5 * i, 0.3};
+    many[4].inverse_z = 0.45; /* one is false */
+    make(&e, &s, many, 9);
+    assert_near(cheapest(&e, &s, segment), 0.3, 0.002);
+    assert_true(cost_of(&e, &s, segment, 0.3 + 5 * step) - cost_of(&e, &s, segment, 0.3) > 1.2 * held);
+    /* a plane that slants through the points is as good */
+    for (int i = 0; i < 9; i++) many[i].inverse_z = 0.3 + 0.002 * (many[i].u - s.segments[segment].cx);
+    point_evidence_release(&e);
+    make(&e, &s, many, 9);
+    const struct plane slanted = {0.002, 0, 0.3 - 0.002 * s.segments[segment].cx};
+    assert_true(point_evidence_cost(&e, segment, slanted, s.segments[segment].cx, s.segments[segment].cy) <
+                cost_of(&e, &s, segment, 0.3) - 0.02);
+    point_evidence_release(&e);
+    segmentation_release(&s);
+}
+
+static void a_segment_without_points_leans_on_those_near_in_place_and_colour(void **state)
+{
+    (void)state;
+    struct segmentation s;
+    struct point_evidence e;
+    struct seen_point points[32];
+    cut(&s, true);
+    for (int i = 0; i < 32; i++) /* the bright half is near, with points at its left; the dark one far, at its right */
+        points[i] = (struct seen_point){i, i % 8 + (i < 16 ? 20.5 : 56.5), (i / 8 * 11) + 2, i < 16 ? 0.4 : 0.15};
+    make(&e, &s, points, 32);
+    assert_near(cheapest(&e, &s, s.label[4 * W + 4]), 0.4, 0.02);
+    assert_near(cheapest(&e, &s, s.label[20 * W + 60]), 0.4, 0.02); /* dark points are nearer in place */
+    assert_near(cheapest(&e, &s, s.label[44 * W + 20]), 0.15, 0.02);
+    point_evidence_release(&e);
+    segmentation_release(&s);
+}
+
+static void of_several_near_depths_the_farthest_is_cheapest(void **state)
+{
+    (void)state;
+    struct segmentation s;
+    struct point_evidence e;
+    struct seen_point points[8];
+    cut(&s, false);
+    for (int i = 0; i < 8; i++) points[i] = (struct seen_point){i, 8.0 * i + 4, 4, i % 2 ? 0.45 : 0.2};
+    make(&e, &s, points, 8);
+    assert_near(cheapest(&e, &s, s.label[30 * W + 30]), 0.2, 0.002);
+    point_evidence_release(&e);
+    segmentation_release(&s);
+}
+
+static void without_points_far_is_a_little_cheaper(void **state)
+{
+    (void)state;
+    struct segmentation s;
+    struct point_evidence e;
+    struct seen_point outside[] = {{0, -1, 5, 0.3}, {1, 5, 48, 0.3}, {2, 64, 5, 0.3}, {3, 1e9, -1e9, 0.3}};
+    cut(&s, false);
+    for (int count = 0; count <= 4; count += 4) { /* points outside the picture are none */
+        make(&e, &s, outside, count);
+        for (int i = 0; i < SEGMENTS; i++) {
+            assert_near(cost_of(&e, &s, i, least), 0, 1e-12);
+            assert_near(cost_of(&e, &s, i, most) - cost_of(&e, &s, i, least), 0.06, 1e-12);
+            assert_near(cost_of(&e, &s, i, 9), cost_of(&e, &s, i, most), 1e-12);
+        }
+        point_evidence_release(&e);
+        point_evidence_release(&e);
+    }
+    point_evidence_release(NULL);
+    segmentation_release(&s);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(points_inside_hold_a_segment),
+        cmocka_unit_test(a_segment_without_points_leans_on_those_near_in_place_and_colour),
+        cmocka_unit_test(of_several_near_depths_the_farthest_is_cheapest),
+        cmocka_unit_test(without_points_far_is_a_little_cheaper),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,215 @@
+/* scene.h - scenes that are formulas: planes and spheres with painted surfaces, photographed by ray casting.
+ *
+ * Depths, colours, sparse points and what hides what are known exactly. World: x right, y down, z forward. */
+#ifndef REMODEL_TESTS_SEGMENT_SCENE_H
+#define REMODEL_TESTS_SEGMENT_SCENE_H
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/camera_set.h"
+#include "common/image.h"
+
+#define assert_near(a, b, tolerance) assert_true(fabs((double)(a) - (double)(b)) <= (tolerance))
+
+enum { MOST_VIEWS = 6, MOST_SURFACES = 4, MOST_POINTS = 400 };
+
+struct surface {
+    struct vec3 center, across, down; /* rectangle: center + s across + t down, |s| and |t| <= 1; across, down square */
+    double radius;                    /* > 0: a sphere */
+    float colour[3];                  /* linear */
+    double cell, contrast;            /* noise: size of its grains in the world, 0 .. 1; contrast 0: blank */
+    double period;                    /* > 0: in place of noise, stripes across x */
+};
+
+struct scene {
+    struct surface surfaces[MOST_SURFACES];
+    int surface_count;
+    struct view views[MOST_VIEWS];
+    double gain[MOST_VIEWS]; /* exposure of each photo; 0: it is black */
+    struct camera_set set;
+    struct sfm_image images[MOST_VIEWS];
+    struct sfm_point points[MOST_POINTS];
+    struct sfm_track tracks[MOST_POINTS][MOST_VIEWS];
+    struct sfm_observation observations[MOST_VIEWS][MOST_POINTS];
+    bool holes; /* photos have no pixels in a disc in their middle */
+};
+
+static inline double scene_hash(int x, int y, int z)
+{
+    uint32_t h = (uint32_t)x * 0x9e3779b1u ^ (uint32_t)y * 0x85ebca77u ^ (uint32_t)z * 0xc2b2ae3du;
+    h = (h ^ h >> 15) * 0x2c1b3c6du;
+    h = (h ^ h >> 12) * 0x297a2d39u;
+    return (double)(h ^ h >> 15) / 4294967296.0;
+}
+
+/* Smooth value noise on a unit lattice, 0 .. 1. */
+static inline double scene_noise(double x, double y, double z)
+{
+    const double at[3] = {x, y, z};
+    int cell[3];
+    double f[3], sum = 0;
+    for (int k = 0; k < 3; k++) {
+        cell[k] = (int)floor(at[k]);
+        f[k] = at[k] - cell[k];
+        f[k] = f[k] * f[k] * (3 - 2 * f[k]);
+    }
+    for (int k = 0; k < 8; k++)
+        sum += (k & 1 ? f[0] : 1 - f[0]) * (k & 2 ? f[1] : 1 - f[1]) * (k & 4 ? f[2] : 1 - f[2]) *
+               scene_hash(cell[0] + (k & 1), cell[1] + (k >> 1 & 1), cell[2] + (k >> 2));
+    return sum;
+}
+
+static inline void scene_paint(const struct surface *s, struct vec3 p, float rgb[3])
+{
+    for (int c = 0; c < 3; c++) {
+        double g = 0;
+        if (s->period > 0)
+            g = sin(2 * M_PI * p.x / s->period);
+        else if (s->contrast > 0)
+            g = 1.4 * (scene_noise(p.x / s->cell + 17 * c, p.y / s->cell, p.z / s->cell) - 0.5) +
+                0.6 * (scene_noise(3 * p.x / s->cell, 3 * p.y / s->cell + 9 * c, 3 * p.z / s->cell) - 0.5);
+        rgb[c] = s->colour[c] * (float)(1 + s->contrast * g);
+    }
+}
+
+/* Depth along the view's axis and surface at a pixel; HUGE_VAL and -1 where there is none. */
+static inline double scene_depth(const struct scene *scene, const struct view *v, double u, double w, int *surface)
+{
+    const struct vec3 d = vec3_sub(view_unproject(v, u, w, 1), v->center); /* has depth 1 */
+    double nearest = HUGE_VAL;
+    *surface = -1;
+    for (int i = 0; i < scene->surface_count; i++) {
+        const struct surface *s = &scene->surfaces[i];
+        const struct vec3 to = vec3_sub(s->center, v->center);
+        double t;
+        if (s->radius > 0) {
+            const double dd = vec3_dot(d, d), dt = vec3_dot(d, to),
+                         root = dt * dt - dd * (vec3_dot(to, to) - s->radius * s->radius);
+            if (!(root >= 0)) continue;
+            t = (dt - sqrt(root)) / dd;
+        } else {
+            const struct vec3 n = vec3_cross(s->across, s->down);
+            t = vec3_dot(n, to) / vec3_dot(n, d);
+            const struct vec3 p = vec3_sub(vec3_scale(d, t), to);
+            if (!(fabs(vec3_dot(p, s->across)) <= vec3_dot(s->across, s->across))) continue;
+            if (!(fabs(vec3_dot(p, s->down)) <= vec3_dot(s->down, s->down))) continue;
+        }
+        if (t > 1e-6 && t < nearest) {
+            nearest = t;
+            *surface = i;
+        }
+    }
+    return nearest;
+}
+
+static inline struct surface *scene_surface(struct scene *s, struct vec3 center)
+{
+    struct surface *f = &s->surfaces[s->surface_count++];
+    *f = (struct surface){.center = center, .colour = {0.35f, 0.3f, 0.25f}, .cell = 0.25, .contrast = 0.8};
+    return f;
+}
+
+/* A rectangle that faces the z axis, or leans: its depth grows by `lean` along x. */
+static inline struct surface *scene_wall(struct scene *s, double x, double y, double z, double half_x, double half_y,
+                                         double lean)
+{
+    struct surface *f = scene_surface(s, vec3_make(x, y, z));
+    f->across = vec3_make(half_x, 0, half_x * lean);
+    f->down = vec3_make(0, half_y, 0);
+    return f;
+}
+
+/* A view at a place, turned by `yaw` radians about the y axis (to the right), else along z. */
+static inline struct view *scene_view(struct scene *s, int width, int height, double focal, double x, double y,
+                                      double z, double yaw)
+{
+    static const char *const names[MOST_VIEWS] = {"a", "b", "c", "d", "e", "f"};
+    const int i = s->set.view_count++;
+    struct view *v = &s->views[i];
+    *v = (struct view){.name = names[i], .width = width, .height = height, .fx = focal, .fy = focal};
+    v->cx = width / 2.0;
+    v->cy = height / 2.0;
+    v->cam_from_world = (struct mat3){{{cos(yaw), 0, -sin(yaw)}, {0, 1, 0}, {sin(yaw), 0, cos(yaw)}}};
+    v->center = vec3_make(x, y, z);
+    v->translation = vec3_scale(mat3_apply(v->cam_from_world, v->center), -1);
+    s->gain[i] = 1;
+    s->set.views = s->views;
+    s->images[i] = (struct sfm_image){.id = i + 1, .observations = s->observations[i]};
+    s->set.model.images = s->images;
+    s->set.model.image_count = s->set.view_count;
+    return v;
+}
+
+/* Adds a point that the views of `mask` observe. */
+static inline void scene_point(struct scene *s, struct vec3 position, unsigned mask)
+{
+    struct sfm_model *m = &s->set.model;
+    struct sfm_point *p = &s->points[m->point_count];
+    *p = (struct sfm_point){.id = 10 + 3 * m->point_count, .position = position, .track = s->tracks[m->point_count]};
+    assert_true(m->point_count++ < MOST_POINTS);
+    m->points = s->points;
+    for (int i = 0; i < s->set.view_count; i++) {
+        double u = 0, w = 0;
+        if (!(mask >> i & 1) || !(view_project(&s->views[i], position, &u, &w) > 0)) continue;
+        struct sfm_image *image = &s->images[i];
+        p->track[p->track_count++] = (struct sfm_track){i, image->observation_count};
+        image->observations[image->observation_count++] = (struct sfm_observation){u, w, p->id};
+    }
+}
+
+/* What structure from motion would find: about `count` points of the surfaces that have texture, spread over the first
+ * view, observed where they are seen. */
+static inline void scene_points(struct scene *s, int count)
+{
+    const struct view *v = &s->views[0];
+    for (int i = 0; i < count; i++) {
+        const double u = v->width * scene_hash(i, 1, 2), w = v->height * scene_hash(i, 3, 4);
+        unsigned mask = 0;
+        int at, seen;
+        const double z = scene_depth(s, v, u, w, &at);
+        if (at < 0 || !(s->surfaces[at].contrast > 0)) continue;
+        const struct vec3 p = view_unproject(v, u, w, z);
+        for (int k = 0; k < s->set.view_count; k++) {
+            double pu = -1, pw = -1;
+            const double there = view_project(&s->views[k], p, &pu, &pw);
+            if (!(there > 0 && pu >= 0 && pw >= 0 && pu < s->views[k].width && pw < s->views[k].height)) continue;
+            if (fabs(scene_depth(s, &s->views[k], pu, pw, &seen) / there - 1) < 1e-6) mask |= 1u << k;
+        }
+        if (mask & (mask - 1)) scene_point(s, p, mask);
+    }
+}
+
+/* The photo: 3 x 3 rays a pixel, linear R G B A, of 8 bits in sRGB, at most 1. */
+static inline enum status scene_photo(void *ctx, int view_idx, struct image *im, struct err *err)
+{
+    const struct scene *s = ctx;
+    const struct view *v = &s->views[view_idx];
+    if (image_init(im, v->width, v->height, 4, err)) return err->status;
+    for (int y = 0; y < v->height; y++)
+        for (int x = 0; x < v->width; x++) {
+            float *rgba = image_at(im, x, y);
+            if (s->holes && hypot(x + 0.5 - v->cx, y + 0.5 - v->cy) < v->height / 6.0) continue;
+            for (int k = 0; k < 9; k++) {
+                float rgb[3] = {0};
+                int at;
+                const double u = x + (k % 3 + 0.5) / 3, w = y + (k / 3 + 0.5) / 3, z = scene_depth(s, v, u, w, &at);
+                if (at >= 0) scene_paint(&s->surfaces[at], view_unproject(v, u, w, z), rgb);
+                for (int c = 0; c < 3; c++) rgba[c] += (float)s->gain[view_idx] * rgb[c] / 9;
+            }
+            for (int c = 0; c < 3; c++) rgba[c] = linear_from_srgb(rintf(255 * srgb_from_linear(rgba[c])) / 255);
+            rgba[3] = 1;
+        }
+    return ST_OK;
+}
+
+#endif

@@ -1,0 +1,638 @@
+/* view_depth.c - the whole stage on photographs of scenes whose depth is a formula, easy ones and hard ones. */
+#include "stages/segment_depth/view_depth.h"
+
+#include "tests/unit/segment_depth/scene.h"
+
+#include "common/parallel.h"
+
+enum { W = 160, H = 120, FOCAL = 160 };
+
+struct result {
+    struct layered_depth depth;
+    int neighbours[MAX_NEIGHBOURS], neighbour_count;
+};
+
+static struct scene scene; /* large; zeroed by start() */
+
+static void start(void) { memset(&scene, 0, sizeof scene); }
+
+/* `count` views around the first, 0.4 away. */
+static void stand(int count)
+{
+    static const double offsets[][2] = {{0, 0}, {0.4, 0}, {-0.4, 0}, {0, 0.4}, {0, -0.4}};
+    for (int i = 0; i < count; i++) scene_view(&scene, W, H, FOCAL, offsets[i][0], offsets[i][1], 0, 0);
+}
+
+/* What every depth map promises, whatever the photos show. */
+static void must_be_sound(const struct layered_depth *d)
+{
+    struct image photo;
+    struct err err = ERR_INIT;
+    assert_int_equal(scene_photo(&scene, 0, &photo, &err), ST_OK);
+    assert_true(d->width == photo.width && d->height == photo.height);
+    for (int i = 0; i < d->segment_count; i++) {
+        const struct depth_segment *s = &d->segments[i];
+        assert_int_equal(s->id, i + 1);
+        assert_true(isfinite(s->plane[0]) && isfinite(s->plane[1]) && isfinite(s->plane[2]));
+        assert_true(isfinite(s->sigma) && s->sigma > 0);
+        assert_true(s->confidence >= 0 && s->confidence <= 1);
+    }
+    for (int i = 0; i < d->width * d->height; i++) {
+        float sum[4] = {0};
+        for (int k = 0; k < 2; k++) {
+            const struct layer *l = k ? &d->boundary : &d->interior;
+            for (int c = 0; c < 4; c++) sum[c] += l->rgba[4 * i + c];
+            assert_true(l->id[i] <= (uint32_t)d->segment_count && (l->id[i] > 0) == (l->rgba[4 * i + 3] > 0));
+            assert_true(isfinite(l->z[i]) && (l->id[i] ? l->z[i] > 0 : l->z[i] <= 0));
+            if (!l->id[i]) continue;
+            const double *p = d->segments[l->id[i] - 1].plane;
+            assert_near((double)l->z[i] * (p[0] * (i % d->width + 0.5) + p[1] * (i / d->width + 0.5) + p[2]), 1, 1e-5);
+        }
+        for (int c = 0; c < 4; c++) assert_near(sum[c], photo.data[4 * i + c], 1e-6);
+    }
+    image_release(&photo);
+}
+
+static enum status depth_of(struct result *r, const struct segment_params *params, struct err *err)
+{
+    const struct view_source source = {scene_photo, &scene};
+    return view_depth(&r->depth, r->neighbours, &r->neighbour_count, &scene.set, 0, &source, params, err);
+}
+
+static void must_work(struct result *r)
+{
+    const struct segment_params params = SEGMENT_PARAMS_DEFAULT;
+    struct err err = ERR_INIT;
+    if (depth_of(r, &params, &err)) fail_msg("%s", err.text);
+    must_be_sound(&r->depth);
+}
+
+/* Is another surface, or another depth than a tenth off, within 3 px? */
+static bool at_jump(int x, int y)
+{
+    int own, other;
+    const double z = scene_depth(&scene, &scene.views[0], x + 0.5, y + 0.5, &own);
+    for (int k = 0; k < 16; k++) {
+        const double u = x + 0.5 + 3 * cos(k * M_PI / 8), v = y + 0.5 + 3 * sin(k * M_PI / 8);
+        const double there = scene_depth(&scene, &scene.views[0], u, v, &other);
+        if (other != own && fabs(there / z - 1) > 0.1) return true;
+    }
+    return false;
+}
+
+/* Part of the pixels of a surface (-1: all), away from jumps, whose depth is within `tolerance` of the truth. */
+static double right(const struct layered_depth *d, int surface, double tolerance)
+{
+    int good = 0, count = 0;
+    for (int y = 0; y < d->height; y++)
+        for (int x = 0; x < d->width; x++) {
+            int at;
+            const double z = scene_depth(&scene, &scene.views[0], x + 0.5, y + 0.5, &at);
+            if (at < 0 || (surface >= 0 && at != surface) || at_jump(x, y)) continue;
+            good += fabs((double)d->interior.z[y * d->width + x] / z - 1) <= tolerance;
+            count++;
+        }
+    assert_true(count > 0);
+    if (getenv("VERDICT"))
+        print_message("  surface %d: %.4f of %d within %g\n", surface, (double)good / count, count, tolerance);
+    return (double)good / count;
+}
+
+static double mean_confidence(const struct layered_depth *d)
+{
+    double sum = 0, pixels = 0;
+    for (int i = 0; i < d->segment_count; i++) {
+        sum += d->segments[i].confidence * d->segments[i].pixels;
+        pixels += d->segments[i].pixels;
+    }
+    if (getenv("VERDICT")) print_message("  confidence %.3f\n", sum / pixels);
+    return sum / pixels;
+}
+
+/* -------------------------------------------------------------------------------------- scenes that should be easy */
+
+static void a_wall_is_found(void **state)
+{
+    (void)state;
+    for (int points = 0; points < 2; points++) {
+        struct result r = {0};
+        start();
+        scene_wall(&scene, 0, 0, 5, 9, 9, 0);
+        stand(3);
+        scene_points(&scene, points * 150);
+        must_work(&r);
+        assert_int_equal(r.neighbour_count, 2);
+        assert_true(right(&r.depth, -1, 0.01) > 0.97);
+        assert_true(mean_confidence(&r.depth) > 0.7);
+        layered_depth_release(&r.depth);
+    }
+}
+
+static void a_leaning_wall_is_found(void **state)
+{
+    (void)state;
+    struct result r = {0};
+    start();
+    scene_wall(&scene, 0, 0, 5, 9, 9, 0.5);
+    stand(3);
+    scene_points(&scene, 150);
+    must_work(&r);
+    assert_true(right(&r.depth, -1, 0.02) > 0.97);
+    layered_depth_release(&r.depth);
+}
+
+static void a_floor_is_found(void **state)
+{
+    (void)state;
+    struct result r = {0};
+    start();
+    struct surface *floor = scene_surface(&scene, vec3_make(0, 1, 7));
+    floor->across = vec3_make(15, 0, 0);
+    floor->down = vec3_make(0, 0, 7);
+    scene_wall(&scene, 0, 0, 12, 20, 20, 0)->cell = 0.6;
+    stand(5);
+    scene_points(&scene, 300);
+    must_work(&r);
+    assert_true(right(&r.depth, 0, 0.02) > 0.95);
+    assert_true(right(&r.depth, 1, 0.02) > 0.9);
+    layered_depth_release(&r.depth);
+}
+
+static void a_ball_is_found(void **state)
+{
+    (void)state;
+    struct result r = {0};
+    start();
+    scene_wall(&scene, 0, 0, 7, 12, 12, 0)->cell = 0.35;
+    scene_surface(&scene, vec3_make(0.1, 0, 5))->radius = 1;
+    scene.surfaces[1].colour[0] = 0.15f;
+    scene.surfaces[1].cell = 0.2;
+    stand(5);
+    scene_points(&scene, 300);
+    must_work(&r);
+    assert_true(right(&r.depth, 0, 0.01) > 0.95);
+    assert_true(right(&r.depth, 1, 0.02) > 0.9);
+    layered_depth_release(&r.depth);
+}
+
+/* A card in front of a wall; in each row the step from the wall's depth to the card's is where the card's edge is. */
+static void a_depth_jump_is_within_two_pixels(void **state)
+{
+    (void)state;
+    struct result r = {0};
+    int rows = 0, near = 0;
+    start();
+    scene_wall(&scene, 0, 0, 7, 12, 12, 0)->cell = 0.35;
+    struct surface *card = scene_wall(&scene, 0.1, 0.1, 4, 0.8, 0.7, 0);
+    card->colour[0] = 0.12f;
+    card->cell = 0.2;
+    stand(5);
+    scene_points(&scene, 300);
+    must_work(&r);
+    assert_true(right(&r.depth, 0, 0.02) > 0.97 && right(&r.depth, 1, 0.01) > 0.97);
+    for (int y = 0; y < H; y++) {
+        int surface, edges[2] = {-1, -1}, found[2] = {-1, -1};
+        for (int x = 1; x < W; x++) {
+            scene_depth(&scene, &scene.views[0], x + 0.5, y + 0.5, &surface);
+            if (surface == 1 && edges[0] < 0) edges[0] = x;
+            if (surface == 1) edges[1] = x;
+            if (r.depth.interior.z[y * W + x] < 5.5f && found[0] < 0) found[0] = x;
+            if (r.depth.interior.z[y * W + x] < 5.5f) found[1] = x;
+        }
+        for (int k = 0; k < 2 && edges[0] >= 0; k++) {
+            near += abs(edges[k] - found[k]) <= 2;
+            rows++;
+        }
+    }
+    assert_true(rows > 80 && near >= 0.95 * rows);
+    layered_depth_release(&r.depth);
+}
+
+/* --------------------------------------------------------------------------------------------------- hard cases */
+
+/* A blank panel hangs in a textured wall, or is a part of it: its depth is that of what surrounds it. */
+static void a_blank_wall_takes_the_depth_of_its_frame(void **state)
+{
+    (void)state;
+    for (int points = 0; points < 2; points++) {
+        struct result r = {0};
+        start();
+        scene_wall(&scene, 0, 0, 5, 9, 9, 0.2);
+        scene_wall(&scene, 0, 0, 5 - 1e-4, 0.9, 0.7, 0.2)->contrast = 0;
+        stand(5);
+        scene_points(&scene, points * 200);
+        must_work(&r);
+        assert_true(right(&r.depth, 0, 0.02) > 0.95);
+        assert_true(right(&r.depth, 1, 0.03) > 0.9);
+        layered_depth_release(&r.depth);
+    }
+}
+
+static void a_wall_all_blank_gives_some_depth_and_no_confidence(void **state)
+{
+    (void)state;
+    struct result r = {0};
+    start();
+    scene_wall(&scene, 0, 0, 5, 30, 30, 0)->contrast = 0;
+    stand(3);
+    must_work(&r);
+    assert_true(mean_confidence(&r.depth) < 0.3);
+    layered_depth_release(&r.depth);
+}
+
+/* Vertical stripes repeat every 0.31 in the world, 10 px: less than the shift between the views. Points tell which
+ * stripe is which. */
+static void a_repeated_pattern_is_resolved_by_points(void **state)
+{
+    (void)state;
+    struct result r = {0};
+    start();
+    scene_wall(&scene, 0, 0, 5, 9, 9, 0);
+    scene.surfaces[0].period = 0.31;
+    stand(3);
+    for (int i = 0; i < 60; i++) /* corners of something small: they lie on the wall */
+        scene_point(&scene, vec3_make(5 * scene_hash(i, 0, 0) - 2.5, 3.5 * scene_hash(i, 0, 1) - 1.75, 5), 7);
+    for (int i = 0; i < 12; i++) /* and some far and near ones, so that the sweep is wide */
+        scene_point(&scene, vec3_make(scene_hash(i, 0, 0), -1.4, i % 2 ? 3 : 9), 7);
+    must_work(&r);
+    assert_true(right(&r.depth, -1, 0.02) > 0.9);
+    layered_depth_release(&r.depth);
+}
+
+static void a_repeated_pattern_alone_is_not_sure(void **state)
+{
+    (void)state;
+    struct result r = {0};
+    start();
+    scene_wall(&scene, 0, 0, 5, 9, 9, 0);
+    scene.surfaces[0].period = 0.31;
+    stand(2);
+    must_work(&r);
+    assert_true(mean_confidence(&r.depth) < 0.5);
+    layered_depth_release(&r.depth);
+}
+
+static void a_photo_twice_as_bright_matches(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 4; k++) { /* twice, half; with points and without */
+        struct result r = {0};
+        start();
+        scene_wall(&scene, 0, 0, 5, 9, 9, 0.2);
+        stand(3);
+        scene.gain[1] = k % 2 ? 2 : 0.5;
+        scene_points(&scene, k / 2 * 150);
+        must_work(&r);
+        assert_true(right(&r.depth, -1, 0.01) > 0.93);
+        layered_depth_release(&r.depth);
+    }
+}
+
+static void a_tripod_has_no_depth_and_says_so(void **state)
+{
+    (void)state;
+    const struct segment_params params = SEGMENT_PARAMS_DEFAULT;
+    struct result r = {0};
+    struct err err = ERR_INIT;
+    start();
+    scene_wall(&scene, 0, 0, 5, 9, 9, 0);
+    for (int i = 0; i < 3; i++) scene_view(&scene, W, H, FOCAL, 0, 0, 0, 0.1 * i);
+    scene_points(&scene, 100);
+    assert_int_equal(depth_of(&r, &params, &err), ST_DATA);
+    assert_non_null(strstr(err.text, "taken from different points"));
+    assert_null(r.depth.interior.z);
+
+    start(); /* a hand's breadth away from it, points as structure from motion would then place them */
+    scene_wall(&scene, 0, 0, 5, 9, 9, 0);
+    for (int i = 0; i < 3; i++) scene_view(&scene, W, H, FOCAL, 1e-4 * i, 0, 0, 0.1 * i);
+    scene_points(&scene, 100);
+    must_work(&r);
+    assert_true(mean_confidence(&r.depth) < 0.3);
+    layered_depth_release(&r.depth);
+}
+
+static void a_neighbour_that_looks_elsewhere_is_left_out(void **state)
+{
+    (void)state;
+    struct result r = {0};
+    start();
+    scene_wall(&scene, 0, 0, 5, 9, 9, 0);
+    scene_view(&scene, W, H, FOCAL, 0, 0, 0, 0);
+    scene_view(&scene, W, H, FOCAL, 0.3, 0, 0, 2);
+    scene_view(&scene, W, H, FOCAL, 0.4, 0, 0, 0);
+    scene_points(&scene, 150);
+    must_work(&r);
+    assert_int_equal(r.neighbour_count, 1);
+    assert_int_equal(r.neighbours[0], 2);
+    layered_depth_release(&r.depth);
+}
+
+/* The poses claim that the neighbour sees the wall, but its photo shows something else. */
+static void a_neighbour_with_another_picture_does_no_harm(void **state)
+{
+    (void)state;
+    struct result r = {0};
+    start();
+    scene_wall(&scene, 0, 0, 5, 9, 9, 0.2);
+    stand(4);
+    scene.gain[2] = 0; /* black */
+    scene_points(&scene, 150);
+    must_work(&r);
+    assert_int_equal(r.neighbour_count, 3);
+    assert_true(right(&r.depth, -1, 0.01) > 0.93);
+    layered_depth_release(&r.depth);
+}
+
+static void two_views_are_enough(void **state)
+{
+    (void)state;
+    for (int points = 0; points < 2; points++) {
+        struct result r = {0};
+        start();
+        scene_wall(&scene, 0, 0, 6, 12, 12, 0.3);
+        struct surface *card = scene_wall(&scene, 0.1, 0.1, 4, 0.8, 0.7, 0);
+        card->colour[0] = 0.12f;
+        stand(2);
+        scene_points(&scene, points * 150);
+        must_work(&r);
+        assert_true(right(&r.depth, 0, 0.02) > 0.85); /* a strip at the left is in one photo only */
+        assert_true(right(&r.depth, 1, 0.02) > 0.95);
+        layered_depth_release(&r.depth);
+    }
+}
+
+static void one_view_is_not(void **state)
+{
+    (void)state;
+    const struct segment_params params = SEGMENT_PARAMS_DEFAULT;
+    struct result r = {0};
+    struct err err = ERR_INIT;
+    start();
+    scene_wall(&scene, 0, 0, 5, 9, 9, 0);
+    stand(1);
+    assert_int_equal(depth_of(&r, &params, &err), ST_DATA);
+    assert_non_null(strstr(err.text, "at least two views"));
+}
+
+static void tiny_and_narrow_photos_work(void **state)
+{
+    (void)state;
+    static const int sizes[][2] = {{1, 1}, {2, 1}, {1, 9}, {8, 8}, {3, 100}, {300, 2}, {17, 5}};
+    for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++)
+        for (int points = 0; points < 2; points++) {
+            struct result r = {0};
+            start();
+            scene_wall(&scene, 0, 0, 5, 90, 90, 0);
+            for (int k = 0; k < 3; k++) scene_view(&scene, sizes[i][0], sizes[i][1], 20, 0.3 * k, 0.05 * k, 0, 0);
+            scene_points(&scene, points * 60);
+            must_work(&r);
+            assert_true(r.depth.segment_count >= 1 && r.depth.interior.z[0] > 0);
+            layered_depth_release(&r.depth);
+        }
+}
+
+/* A pole 4 px wide, of another colour than the wall. */
+static void a_thin_pole_is_found(void **state)
+{
+    (void)state;
+    struct result r = {0};
+    int found = 0;
+    start();
+    scene_wall(&scene, 0, 0, 7, 12, 12, 0)->cell = 0.35;
+    struct surface *pole = scene_wall(&scene, 0.05, 0, 4, 0.05, 3, 0);
+    pole->colour[0] = pole->colour[1] = pole->colour[2] = 0.06f;
+    stand(5);
+    scene_points(&scene, 300);
+    must_work(&r);
+    assert_true(right(&r.depth, 0, 0.02) > 0.95);
+    for (int y = 0; y < H; y++) {
+        const float *z = r.depth.interior.z + y * W;
+        for (int x = 78; x < 86; x++)
+            if (fabsf(z[x] - 4) < 0.2f) {
+                found++;
+                break;
+            }
+    }
+    if (getenv("VERDICT")) print_message("  pole in %d rows\n", found);
+    assert_true(found >= 0.8 * H);
+    layered_depth_release(&r.depth);
+}
+
+static void white_and_black_photos_work(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 4; k++) {
+        struct result r = {0};
+        start();
+        scene_wall(&scene, 0, 0, 5, 9, 9, 0);
+        stand(3);
+        for (int i = 0; i < 3; i++)
+            scene.gain[i] = k == 3 ? (i == 1) * 1000 : k % 2 ? 1000 : 0; /* all; or one of them */
+        scene_points(&scene, k / 2 * 100);
+        must_work(&r);
+        assert_true(mean_confidence(&r.depth) < 0.3);
+        layered_depth_release(&r.depth);
+    }
+}
+
+/* The middle of a lamp is white, its rim is not. */
+static void a_burnt_out_patch_takes_the_depth_of_its_rim(void **state)
+{
+    (void)state;
+    struct result r = {0};
+    start();
+    scene_wall(&scene, 0, 0, 5, 9, 9, 0);
+    struct surface *lamp = scene_wall(&scene, 0.2, 0.1, 5 - 1e-4, 0.5, 0.5, 0);
+    for (int c = 0; c < 3; c++) lamp->colour[c] = 30;
+    lamp->contrast = 0;
+    stand(5);
+    scene_points(&scene, 200);
+    must_work(&r);
+    assert_true(right(&r.depth, 1, 0.02) > 0.9 && right(&r.depth, 0, 0.02) > 0.95);
+    layered_depth_release(&r.depth);
+}
+
+static void pixels_that_a_photo_lacks_have_no_depth(void **state)
+{
+    (void)state;
+    struct result r = {0};
+    start();
+    scene_wall(&scene, 0, 0, 5, 9, 9, 0.2);
+    stand(3);
+    scene.holes = true;
+    scene_points(&scene, 150);
+    must_work(&r);
+    assert_int_equal(r.depth.interior.id[H / 2 * W + W / 2], 0);
+    int good = 0, count = 0;
+    for (int i = 0; i < W * H; i++) {
+        int surface;
+        if (!r.depth.interior.id[i]) continue;
+        good +=
+            fabs((double)r.depth.interior.z[i] / scene_depth(&scene, scene.views, i % W + 0.5, i / W + 0.5, &surface) -
+                 1) < 0.02;
+        count++;
+    }
+    assert_true(count > 0.8 * W * H && good > 0.95 * count);
+    layered_depth_release(&r.depth);
+}
+
+/* Without points the sweep begins nearly at infinity, where a plane as steep as a floor soon passes through it. */
+static void a_steep_floor_without_points_has_no_depth_behind_the_camera(void **state)
+{
+    (void)state;
+    struct result r = {0};
+    start();
+    struct surface *floor = scene_surface(&scene, vec3_make(0, 0.3, 60));
+    floor->across = vec3_make(150, 0, 0);
+    floor->down = vec3_make(0, 0, 60);
+    stand(5);
+    struct segment_params params = SEGMENT_PARAMS_DEFAULT;
+    struct err err = ERR_INIT;
+    for (int k = 0; k < 6; k++) {
+        params.passes = k % 2 ? 0 : 4;
+        params.segment_pixels = k < 2 ? 64 : k < 4 ? 300 : 2000;
+        if (depth_of(&r, &params, &err)) fail_msg("%s", err.text);
+        must_be_sound(&r.depth);
+        layered_depth_release(&r.depth);
+    }
+}
+
+/* Another wall in each photo: planes are chosen by chance, horizontal ones across the horizon too. */
+static enum status unrelated_photo(void *ctx, int view_idx, struct image *im, struct err *err)
+{
+    struct scene *s = ctx;
+    s->surfaces[0].cell = view_idx ? 0.11 + 0.02 * view_idx : 0.2;
+    const enum status st = scene_photo(ctx, view_idx, im, err);
+    s->surfaces[0].cell = 0.2;
+    return st;
+}
+
+static void unrelated_photos_give_sound_depths(void **state)
+{
+    (void)state;
+    const struct view_source source = {unrelated_photo, &scene};
+    static const int sizes[] = {64, 300, 2000};
+    start();
+    scene_wall(&scene, 0, 0, 5, 30, 30, 0)->cell = 0.2;
+    stand(3);
+    for (int k = 0; k < 6; k++) {
+        struct result r = {0};
+        struct segment_params params = SEGMENT_PARAMS_DEFAULT;
+        struct err err = ERR_INIT;
+        params.slant = 0;
+        params.passes = k % 2 ? 4 : 0;
+        params.segment_pixels = sizes[k / 2];
+        if (view_depth(&r.depth, r.neighbours, &r.neighbour_count, &scene.set, 0, &source, &params, &err))
+            fail_msg("%s", err.text);
+        must_be_sound(&r.depth);
+        layered_depth_release(&r.depth);
+    }
+}
+
+static void extreme_parameters_work(void **state)
+{
+    (void)state;
+    static const char *const sets[][6] = {
+        {"planes=4", "passes=0", "smoothness=0", "slant=0", NULL},
+        {"segment_pixels=100000", "planes=1024", "jump=1000", NULL},
+        {"segment_pixels=16", "jump=1", "smoothness=100", "passes=8", NULL},
+        {"points=0", "nearest_points=0", "far_bias=0", "matte=none", NULL},
+        {"points=10", "nearest_points=10", "far_bias=10", "neighbours=1", "compactness=0.1", NULL},
+    };
+    start();
+    scene_wall(&scene, 0, 0, 7, 12, 12, 0.2);
+    scene_wall(&scene, 0.1, 0.1, 4, 0.8, 0.7, 0)->colour[0] = 0.12f;
+    stand(3);
+    scene_points(&scene, 150);
+    for (size_t i = 0; i < sizeof sets / sizeof *sets; i++) {
+        struct result r = {0};
+        struct segment_params params = SEGMENT_PARAMS_DEFAULT;
+        struct err err = ERR_INIT;
+        for (int k = 0; sets[i][k]; k++)
+            assert_int_equal(params_set(segment_param_table, &params, sets[i][k], &err), ST_OK);
+        if (depth_of(&r, &params, &err)) fail_msg("%s", err.text);
+        must_be_sound(&r.depth);
+        layered_depth_release(&r.depth);
+    }
+}
+
+static enum status broken_photo(void *ctx, int view_idx, struct image *im, struct err *err)
+{
+    if (view_idx == 2) return err_set(err, ST_IO, "cannot read photo 2.");
+    return scene_photo(ctx, view_idx, im, err);
+}
+
+static void a_photo_that_cannot_be_read_is_told(void **state)
+{
+    (void)state;
+    const struct view_source source = {broken_photo, &scene};
+    const struct segment_params params = SEGMENT_PARAMS_DEFAULT;
+    struct result r = {0};
+    struct err err = ERR_INIT;
+    start();
+    scene_wall(&scene, 0, 0, 5, 9, 9, 0);
+    stand(3);
+    assert_int_equal(view_depth(&r.depth, r.neighbours, &r.neighbour_count, &scene.set, 0, &source, &params, &err),
+                     ST_IO);
+    assert_string_equal(err.text, "cannot read photo 2.");
+    assert_null(r.depth.segments);
+}
+
+static void threads_do_not_change_a_bit(void **state)
+{
+    (void)state;
+    static struct result r[3];
+    start();
+    scene_wall(&scene, 0, 0, 7, 12, 12, 0.2);
+    scene_surface(&scene, vec3_make(0.1, 0, 5))->radius = 1;
+    stand(5);
+    scene_points(&scene, 200);
+    for (int k = 0; k < 3; k++) {
+        parallel_set_threads(k + 1);
+        must_work(&r[k]);
+    }
+    parallel_set_threads(0);
+    for (int k = 1; k < 3; k++) {
+        const struct layered_depth *a = &r[0].depth, *b = &r[k].depth;
+        assert_int_equal(a->segment_count, b->segment_count);
+        assert_memory_equal(a->segments, b->segments, (size_t)a->segment_count * sizeof *a->segments);
+        assert_memory_equal(a->interior.rgba, b->interior.rgba, sizeof(float) * 4 * W * H);
+        assert_memory_equal(a->interior.z, b->interior.z, sizeof(float) * W * H);
+        assert_memory_equal(a->interior.id, b->interior.id, sizeof(uint32_t) * W * H);
+        assert_memory_equal(a->boundary.rgba, b->boundary.rgba, sizeof(float) * 4 * W * H);
+        assert_memory_equal(a->boundary.z, b->boundary.z, sizeof(float) * W * H);
+    }
+    for (int k = 0; k < 3; k++) layered_depth_release(&r[k].depth);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_wall_is_found),
+        cmocka_unit_test(a_leaning_wall_is_found),
+        cmocka_unit_test(a_floor_is_found),
+        cmocka_unit_test(a_ball_is_found),
+        cmocka_unit_test(a_depth_jump_is_within_two_pixels),
+        cmocka_unit_test(a_blank_wall_takes_the_depth_of_its_frame),
+        cmocka_unit_test(a_wall_all_blank_gives_some_depth_and_no_confidence),
+        cmocka_unit_test(a_repeated_pattern_is_resolved_by_points),
+        cmocka_unit_test(a_repeated_pattern_alone_is_not_sure),
+        cmocka_unit_test(a_photo_twice_as_bright_matches),
+        cmocka_unit_test(a_tripod_has_no_depth_and_says_so),
+        cmocka_unit_test(a_neighbour_that_looks_elsewhere_is_left_out),
+        cmocka_unit_test(a_neighbour_with_another_picture_does_no_harm),
+        cmocka_unit_test(two_views_are_enough),
+        cmocka_unit_test(one_view_is_not),
+        cmocka_unit_test(tiny_and_narrow_photos_work),
+        cmocka_unit_test(a_thin_pole_is_found),
+        cmocka_unit_test(white_and_black_photos_work),
+        cmocka_unit_test(a_burnt_out_patch_takes_the_depth_of_its_rim),
+        cmocka_unit_test(pixels_that_a_photo_lacks_have_no_depth),
+        cmocka_unit_test(a_steep_floor_without_points_has_no_depth_behind_the_camera),
+        cmocka_unit_test(unrelated_photos_give_sound_depths),
+        cmocka_unit_test(extreme_parameters_work),
+        cmocka_unit_test(a_photo_that_cannot_be_read_is_told),
+        cmocka_unit_test(threads_do_not_change_a_bit),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
