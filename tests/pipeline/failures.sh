@@ -74,10 +74,11 @@ killed_stage()
     make -s DEPS=manual SCENE=large depth >log 2>&1 &
     run=$!
     for _ in $(seq 2000); do
-        for p in $(pgrep -f 'bin/segment_depth .*--view photo_3 .*--out out/large/'); do
-            [ "$(readlink "/proc/$p/exe")" = "$root/$B/bin/segment_depth" ] || continue
+        for p in /proc/[0-9]*; do
+            [ "$(readlink "$p/exe")" = "$root/$B/bin/segment_depth" ] || continue
+            tr '\0' ' ' <"$p/cmdline" | grep -q -- '--view photo_3 .*--out out/large/' || continue
             sleep 0.2
-            kill -9 "$p" && break 2
+            kill -9 "${p#/proc/}" && break 2
         done
         sleep 0.01
     done

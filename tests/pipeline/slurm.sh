@@ -38,6 +38,8 @@ NodeName=n2 NodeHostname=$host NodeAddr=127.0.0.1 Port=$((port + 2)) CPUs=2
 NodeName=n3 NodeHostname=$host NodeAddr=127.0.0.1 Port=$((port + 3)) CPUs=2
 PartitionName=all Nodes=n1,n2,n3 Default=YES State=UP MaxTime=60
 CONF
+    # a container may have no cgroups: a plugin that is never used, in a folder of its own
+    printf "CgroupPlugin=cgroup/v1\nCgroupMountpoint=%s/cgroup\n" "$scratch" >"$scratch/cgroup.conf"
     export PATH=$PATH:/usr/sbin:/sbin
     slurmctld -D >"$scratch/ctld.out" 2>&1 &
     pids=$!

@@ -168,7 +168,7 @@ static bool runs(pid_t pid)
     snprintf(path, sizeof path, "/proc/%d/stat", (int)pid);
     text = scratch_read(path);
     const char *after = strrchr(text, ')');
-    const bool running = after && after[2] != 'Z'; /* a zombie waits only to be noticed */
+    const bool running = after && after[1] == ' ' && after[2] != 'Z'; /* a zombie waits only to be noticed */
     free(text);
     return running;
 }
