@@ -17,6 +17,9 @@ MAKEFLAGS += --no-builtin-rules
 ## EXCLUDE="NAMES": photos to leave out, by id or file name
 ## QUALITY=draft|default|final: configs/QUALITY.cfg; draft and final work beside the default, in out/SCENE+QUALITY
 QUALITY ?= default
+## HOLDOUT=N: every Nth photo, the first included, is kept out of depth and rendering, to compare; in out/SCENE+holdoutN
+## HOLDOUT_VIEWS="NAMES": the same for these photos or views, in out/SCENE+holdout
+## TRUTH=DIR: known cameras and depths, which products are compared with (docs/evaluation.md)
 ## JOBS=local|slurm: where the per-view work runs
 JOBS ?= local
 ## SLURM_ARGS="...": more options for sbatch; VIEWS_PER_JOB and FRAMES_PER_JOB cut the job array
@@ -49,10 +52,24 @@ ifneq ($(SCENE),)
     $(error JOBS=$(JOBS) is not one of: local slurm)
   endif
   -include scenes/$(SCENE)/scene.mk
+  ifneq ($(HOLDOUT),)
+    ifeq ($(shell [[ '$(subst ','\'',$(HOLDOUT))' =~ ^[1-9][0-9]{0,8}$$ ]] && echo good),)
+      $(error HOLDOUT=$(HOLDOUT): wanted a number: every how many photos one is held out)
+    endif
+    ifneq ($(HOLDOUT_VIEWS),)
+      $(error HOLDOUT and HOLDOUT_VIEWS are both given; give one of them)
+    endif
+  endif
+  ifneq ($(HOLDOUT_VIEWS),)
+    ifeq ($(shell [[ '$(subst ','\'',$(HOLDOUT_VIEWS))' =~ ^[A-Za-z0-9_@\ -]+$$ ]] && echo good),)
+      $(error HOLDOUT_VIEWS=$(HOLDOUT_VIEWS): names of photos and views are letters, digits, _, - and @)
+    endif
+  endif
 endif
 # what quality changes is in O; what all qualities share, the photos' records and SfM, is in S
 S := out/$(SCENE)
-O := $(S)$(if $(filter-out default,$(QUALITY)),+$(QUALITY))
+HELDOUT := $(if $(HOLDOUT),+holdout$(HOLDOUT),$(if $(HOLDOUT_VIEWS),+holdout))
+O := $(S)$(if $(filter-out default,$(QUALITY)),+$(QUALITY))$(HELDOUT)
 
 ifneq ($(PHASE),graph)
 # ------------------------------------------------------------------------------------------------------------ the top
@@ -63,10 +80,11 @@ literal = $(if $(filter command environment,$(firstword $(origin $(1)))),$(value
 export REMODEL_PHOTOS := $(call literal,PHOTOS)
 export REMODEL_SFM := $(call literal,SFM)
 export REMODEL_EXCLUDE := $(call literal,EXCLUDE)
+export REMODEL_TRUTH := $(call literal,TRUTH)
 
 export VIEWS_PER_JOB SLURM_ARGS
 dry = $(findstring n,$(filter-out --%,$(firstword -$(MAKEFLAGS))))
-GOALS := sfm views depth path frames video report
+GOALS := sfm views depth path frames video evaluate report
 .PHONY: all help why resfm check fuzz man deps deps-check clean $(GOALS)
 
 ifeq ($(SCENE),)
@@ -79,6 +97,7 @@ depth:  ## + layered depth maps
 path:   ## + the camera move
 frames: ## + its frames
 video:  ## + the video
+evaluate: ## the depth maps, compared with TRUTH or with photos held out, into metrics.tsv
 report: ## + the page: the same as all
 why:    ## what is stale, and because of what
 resfm:  ## run COLMAP again, after photos were changed
@@ -175,13 +194,19 @@ $(FUZZ_TESTS): $(B)/tests/fuzz/%: $(B)/obj/tests/fuzz/%.o $(B)/obj/tests/fuzz/ru
 else
 # ---------------------------------------------------------------------------------------------------------- the graph
 
-# lists that products give: PHOTO_IDS, VIEWS, FRAMES; not by `include`, for which make would first remake them, even under -n
+# lists that products give: PHOTO_IDS, VIEWS, FRAMES, HELD (held-out views); not by `include`, for which make would first
+# remake them, even under -n
+$(if $(HELDOUT),$(eval $(file <$(O)/holdout/views/views.mk))$(eval HELD := $(VIEWS))$(eval VIEWS :=))
 $(foreach f,$(S)/photos/photos.mk $(O)/views/views.mk $(O)/parallax/$(EFFECT)/frames.mk,$(eval $(file <$(f))))
 
 BIN := $(B)/bin
 E := $(O)/parallax/$(EFFECT)
 CAMERAS := $(addprefix $(O)/views/,cameras.txt images.txt points3D.txt)
 VIEW_EXR := $(VIEWS:%=$(O)/views/%.exr)
+H := $(O)/holdout
+HELD_CAMERAS := $(if $(HELDOUT),$(addprefix $(H)/views/,cameras.txt images.txt points3D.txt lenses.txt views.mk))
+HELD_EXR := $(HELD:%=$(H)/views/%.exr)
+HELD_FRAMES := $(HELD:%=$(H)/frames/%.exr)
 DEPTH := $(VIEWS:%=$(O)/depth/%.exr)
 DEPTH_TXT := $(DEPTH:.exr=.txt)
 FRAME_EXR := $(FRAMES:%=$(E)/frames/%.exr)
@@ -196,13 +221,15 @@ stage = $(hide)common/run_stage.sh live $(1) $(2) $(3) $(BIN)/$(1) --threads $(T
 farm_line = common/run_stage.sh quiet $(1) $(2) $(O) $(BIN)/$(1) --threads $(T) --config $(O)/slice/$(1).cfg $(4)
 farm = $(if $(filter plan,$(LAUNCH)),printf '%s\t%s %s\n' '$(3)' '$(farm_line)' "$(5)" >>$(PLAN),$(farm_line) $(5))
 
-.PHONY: sfm views depth path frames video report
+.PHONY: sfm views depth path frames video heldout evaluate report
 sfm: $(O)/views/views.mk
-views: $(VIEW_EXR)
+views: $(VIEW_EXR) $(HELD_EXR)
 depth: $(DEPTH) $(DEPTH_TXT)
 path: $(E)/frames.mk
 frames: $(FRAME_EXR)
 video: $(E)/video.mp4
+heldout: $(HELD_FRAMES)
+evaluate: $(O)/metrics.tsv
 report: $(O)/index.html
 
 # SfM runs once for a set of photos: COLMAP is not reproducible, so a changed photo does not redo it (make resfm does)
@@ -210,18 +237,25 @@ $(S)/sfm/models.txt: $(S)/photos/list.txt $(S)/slice/sfm.cfg $(S)/stamp/sfm_sour
 	$(call stage,sfm,all,$(S),--photos "$$REMODEL_PHOTOS" --records $(S)/photos --out $(S)/sfm \
 	  $(if $(wildcard scenes/$(SCENE)/masks),--masks scenes/$(SCENE)/masks) $${REMODEL_SFM:+--model "$$REMODEL_SFM"})
 
-$(CAMERAS) $(O)/views/lenses.txt $(O)/views/views.mk &: $(S)/sfm/models.txt $(S)/photos/list.txt \
-  $(S)/stamp/photo_sizes.txt $(call needs,sfm_import)
-	$(call stage,sfm_import,all,$(O),--sfm $(S)/sfm --records $(S)/photos --out $(O)/views)
+$(CAMERAS) $(O)/views/lenses.txt $(O)/views/views.mk $(HELD_CAMERAS) &: $(S)/sfm/models.txt $(S)/photos/list.txt \
+  $(S)/stamp/photo_sizes.txt $(if $(HELDOUT),$(O)/stamp/holdout.txt) $(call needs,sfm_import)
+	$(call stage,sfm_import,all,$(O),--sfm $(S)/sfm --records $(S)/photos --out $(O)/views \
+	  $(if $(HOLDOUT),--holdout $(HOLDOUT)) $(if $(HOLDOUT_VIEWS),--holdout-views '$(HOLDOUT_VIEWS)'))
 
+# $(1): a view; $(2): the folder of its cameras
+define rectify_rule
+$(2)/$(1).exr: $(S)/photos/$(firstword $(subst @, ,$(1))).txt $(addprefix $(2)/,cameras.txt images.txt points3D.txt lenses.txt) \
+  $(call needs,rectify)
+	$$(hide)$$(call farm,rectify,$(1),$$@,--view $(1) --photos "$$$$REMODEL_PHOTOS" --records $(S)/photos --views $(2) --out $$@)
+endef
 define view_rules
-$(O)/views/$(1).exr: $(S)/photos/$(firstword $(subst @, ,$(1))).txt $(CAMERAS) $(O)/views/lenses.txt $(call needs,rectify)
-	$$(hide)$$(call farm,rectify,$(1),$$@,--view $(1) --photos "$$$$REMODEL_PHOTOS" --records $(S)/photos --views $(O)/views --out $$@)
+$(call rectify_rule,$(1),$(O)/views)
 $(O)/depth/$(1).exr $(O)/depth/$(1).txt &: $(O)/views/$(1).exr $(CAMERAS) $(call needs,segment_depth) | $(VIEW_EXR)
 	$$(hide)$$(call farm,segment_depth,$(1),$(O)/depth/$(1).txt $(O)/depth/$(1).exr,\
 	  --view $(1) --views $(O)/views --out $(O)/depth/$(1).exr --deps $(O)/depth/$(1).d)
 endef
 $(foreach v,$(VIEWS),$(eval $(call view_rules,$(v))))
+$(foreach v,$(HELD),$(eval $(call rectify_rule,$(v),$(H)/views)))
 -include $(wildcard $(DEPTH:.exr=.d)) # the neighbours each view really read
 $(O)/views/%.exr: ; # a neighbour that is a view no more
 
@@ -234,13 +268,24 @@ $(1:%=$(E)/frames/%.exr) &: $(PATH_TXT) $(CAMERAS) $(DEPTH) $(DEPTH_TXT) $(call 
 	$$(hide)stale=$$$$(common/stale.sh $(1:%=$(E)/frames/%.exr) -- $$^); \
 	  $$(call farm,render_views,$(firstword $(1)),$(1:%=$(E)/frames/%.exr),--views $(O)/views --depth $(O)/depth --path $(E) --out $(E)/frames --frames,$$$$stale)
 endef
-chunks = $(if $(1),$(eval $(call chunk_rule,$(wordlist 1,$(FRAMES_PER_JOB),$(1))))$(call chunks,$(wordlist $(words x $(wordlist 1,$(FRAMES_PER_JOB),$(1))),$(words $(1)),$(1))))
-$(call chunks,$(FRAMES))
+chunks = $(if $(2),$(eval $(call $(1),$(wordlist 1,$(FRAMES_PER_JOB),$(2))))$(call chunks,$(1),$(wordlist $(words x $(wordlist 1,$(FRAMES_PER_JOB),$(2))),$(words $(2)),$(2))))
+$(call chunks,chunk_rule,$(FRAMES))
+
+# the held-out photos' cameras, rendered from the other views
+define heldout_rule
+$(1:%=$(H)/frames/%.exr) &: $(HELD_CAMERAS) $(CAMERAS) $(DEPTH) $(DEPTH_TXT) $(call needs,render_views)
+	$$(hide)$$(call farm,render_views,heldout-$(firstword $(1)),$(1:%=$(H)/frames/%.exr),--views $(O)/views --depth $(O)/depth --cameras $(H)/views --out $(H)/frames $(1:%=--camera %))
+endef
+$(call chunks,heldout_rule,$(HELD))
+
+$(O)/metrics.tsv: $(CAMERAS) $(O)/views/lenses.txt $(DEPTH) $(DEPTH_TXT) $(HELD_CAMERAS) $(HELD_EXR) $(HELD_FRAMES) \
+  $(S)/photos/list.txt $(O)/stamp/truth.txt $(call needs,evaluate)
+	$(call stage,evaluate,all,$(O),--folder $(O) --shared $(S) $${REMODEL_TRUTH:+--truth "$$REMODEL_TRUTH"} --out $@)
 
 $(E)/video.mp4: $(FRAME_EXR) $(PATH_TXT) $(call needs,encode_video)
 	$(call stage,encode_video,$(EFFECT),$(O),--path $(E) --frames $(E)/frames --out $@)
 
-$(O)/index.html: $(E)/video.mp4 $(PATH_TXT) $(CAMERAS) $(DEPTH) $(DEPTH_TXT) $(S)/photos/list.txt $(STAGES:%=$(O)/slice/%.cfg) $(call needs,report)
+$(O)/index.html: $(if $(HELDOUT)$(TRUTH),$(O)/metrics.tsv) $(E)/video.mp4 $(PATH_TXT) $(CAMERAS) $(DEPTH) $(DEPTH_TXT) $(S)/photos/list.txt $(STAGES:%=$(O)/slice/%.cfg) $(call needs,report)
 	$(call stage,report,page,$(O),--scene $(SCENE) --folder $(O) --shared $(S) --photos "$$REMODEL_PHOTOS" --defaults configs/default.cfg --out $@)
 
 # What is looked at afresh in every run, also under -n: configs, photos. Files are rewritten only if their text changed.
@@ -250,4 +295,5 @@ look:
 	+@common/look.sh slices $(BIN) $(O)/slice '$(STAGES)' $(CONFIGS)
 	+@common/look.sh slices $(BIN) $(S)/slice 'import_photos sfm' $(filter-out configs/draft.cfg configs/final.cfg,$(CONFIGS))
 	+@common/look.sh photos $(BIN) $(S) scenes/$(SCENE)
+	+@common/look.sh evaluation $(BIN) $(O) '$(HOLDOUT)' '$(HOLDOUT_VIEWS)'
 endif

@@ -57,6 +57,11 @@ changed-photos) # photos whose content is not what SfM saw
         $1 == "hash" && f in saw && saw[f] != $2 { print f }' "$S/sfm/photos.txt" "$S"/photos/*.txt | tr '\n' ' ')
     [ -z "$changed" ] || echo "Changed since the camera poses were found: ${changed}- the poses are kept; make resfm SCENE=$scene finds them anew."
     ;;
+metrics)
+    grep '^# skipped' "$1/metrics.tsv" | sed 's/^# /  /' || true
+    awk -F'\t' '!/^#/ { printf "  %-36s %12.6g %s\n", $1, $2, $3 == "1" ? "" : $3 }' "$1/metrics.tsv"
+    echo "table  $1/metrics.tsv"
+    ;;
 products)
     for v in "$1"/parallax/*/video.mp4; do [ ! -e "$v" ] || echo "video  $v"; done
     [ ! -e "$1/index.html" ] || echo "page   $1/index.html"

@@ -3,6 +3,7 @@
 #
 #   look.sh slices BIN FOLDER 'STAGE...' CONFIG...   each stage's effective parameters -> FOLDER/STAGE.cfg
 #   look.sh photos BIN S SCENE_FOLDER                the photos' records, their sizes, and what SfM starts from
+#   look.sh evaluation BIN O HOLDOUT HOLDOUT_VIEWS   what is held out, and the files of the truth
 set -euo pipefail
 what=$1 bin=$2 folder=$3; shift 3
 
@@ -32,6 +33,16 @@ if [ "$what" = slices ]; then
         text=$("$bin/$s" --print-config "${options[@]}") || exit 2
         echo "$text" | keep "$folder/$s.cfg"
     done
+    exit 0
+fi
+
+if [ "$what" = evaluation ]; then
+    [ -z "$1$2" ] || printf 'every %s\nviews %s\n' "$1" "$2" | keep "$folder/stamp/holdout.txt"
+    if [ -n "${REMODEL_TRUTH-}" ]; then
+        find -L "$REMODEL_TRUTH" -type f -printf '%P %s %T@\n' | LC_ALL=C sort
+    else
+        echo "no truth"
+    fi | keep "$folder/stamp/truth.txt"
     exit 0
 fi
 

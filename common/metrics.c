@@ -9,6 +9,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "common/parallel.h"
 
@@ -139,4 +140,25 @@ enum status metrics_ssim(const uint8_t *a, const uint8_t *b, int width, int heig
     free(job.scratch);
     free(job.sums);
     return st;
+}
+
+void metrics_ssim_windows(uint8_t *windows, const uint8_t *mask, int width, int height)
+{
+    memset(windows, 0, (size_t)width * (size_t)height);
+    for (int y = 0; y < height; y++) { /* first of pixels whose row of the window is masked */
+        int run = 0;
+        for (int x = 0; x < width; x++) {
+            run = mask[(size_t)y * (size_t)width + (size_t)x] ? run + 1 : 0;
+            if (run >= WINDOW) windows[(size_t)y * (size_t)width + (size_t)(x - WINDOW / 2)] = 1;
+        }
+    }
+    for (int x = 0; x < width; x++) { /* then of those with WINDOW such rows; what is overwritten was read before */
+        uint32_t rows = 0;
+        for (int y = 0; y < height + WINDOW / 2; y++) {
+            uint8_t row = y < height ? windows[(size_t)y * (size_t)width + (size_t)x] : 0;
+            rows = (rows << 1 | row) & ((1u << WINDOW) - 1);
+            if (y >= WINDOW / 2)
+                windows[(size_t)(y - WINDOW / 2) * (size_t)width + (size_t)x] = rows == (1u << WINDOW) - 1;
+        }
+    }
 }

@@ -18,4 +18,8 @@ enum status metrics_psnr(const uint8_t *a, const uint8_t *b, int width, int heig
 enum status metrics_ssim(const uint8_t *a, const uint8_t *b, int width, int height, const uint8_t *mask, double *ssim,
                          struct err *err);
 
+/* windows[i] = 1 where all pixels of SSIM's window about pixel i are in the picture and in the mask: with it as the
+ * mask, no pixel outside `mask` takes part. */
+void metrics_ssim_windows(uint8_t *windows, const uint8_t *mask, int width, int height);
+
 #endif

@@ -35,6 +35,7 @@ if [ ! -e "$folder/scene.mk" ]; then
         echo "# What this scene is made from. Every variable of \`make help\` may stand here; the command line wins."
         echo "PHOTOS := $(for_make "$REMODEL_PHOTOS")"
         [ -z "${REMODEL_SFM-}" ] || echo "SFM := $(for_make "$REMODEL_SFM")"
+        [ -z "${REMODEL_TRUTH-}" ] || echo "TRUTH := $(for_make "$REMODEL_TRUTH")"
         echo "# photos to leave out, by id or file name; names with blanks in quotes"
         echo "EXCLUDE := $(for_make "${REMODEL_EXCLUDE-}")"
         echo "PRODUCTS := parallax"
@@ -50,6 +51,10 @@ if [ ! -e "$folder/scene.mk" ]; then
 fi
 if [ -z "${REMODEL_PHOTOS-}" ]; then
     echo "$folder/scene.mk sets no PHOTOS. Write there PHOTOS := DIR, the folder of the photos." >&2
+    exit 2
+fi
+if [ -n "${REMODEL_TRUTH-}" ] && [ ! -d "$REMODEL_TRUTH" ]; then
+    echo "TRUTH=$REMODEL_TRUTH is no folder. Give the folder that holds cameras.txt and images.txt of the truth." >&2
     exit 2
 fi
 
@@ -99,12 +104,18 @@ one() { graph $quiet -j1 T="$cores" "$@"; }
 # frames are few processes with all threads each, since every one of them holds all views in memory
 farm_frames()
 {
-    if [ "$jobs" = slurm ]; then farm render_views frames "$cores" 1; else
+    if [ "$jobs" = slurm ]; then farm render_views "$1" "$cores" 1; else
         plan=$work/render_views.plan; : >"$plan"
-        graph -s -j1 LAUNCH=plan PLAN="$plan" frames
+        graph -s -j1 LAUNCH=plan PLAN="$plan" "$1"
         date +%s >"$work/render_views.tally"
-        REMODEL_TALLY=$work/render_views.tally REMODEL_COUNT=$(wc -l <"$plan") one frames
+        REMODEL_TALLY=$work/render_views.tally REMODEL_COUNT=$(wc -l <"$plan") one "$1"
     fi
+}
+# what the depth maps are worth: compared with photos held out, with the truth
+evaluate()
+{
+    case $O in *+holdout*) farm_frames heldout ;; esac
+    one evaluate
 }
 
 if [ "$goal" = resfm ]; then
@@ -118,11 +129,19 @@ case $goal in sfm) exit 0 ;; esac
 farm rectify views 1 "${VIEWS_PER_JOB:-4}"
 case $goal in views) exit 0 ;; esac
 farm segment_depth depth 1 "${VIEWS_PER_JOB:-4}"
-case $goal in depth) exit 0 ;; esac
+case $goal in
+depth) exit 0 ;;
+evaluate) evaluate; common/explain.sh metrics "$O"; exit 0 ;;
+esac
 one path
 case $goal in path) exit 0 ;; esac
-farm_frames
+farm_frames frames
 case $goal in frames) exit 0 ;; esac
 one video
-case $goal in video) ;; *) one report ;; esac
+case $goal in
+video) ;;
+*)
+    case $O${REMODEL_TRUTH:+ truth} in *+holdout* | *truth) evaluate ;; esac
+    one report ;;
+esac
 common/explain.sh products "$O"

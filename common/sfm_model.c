@@ -412,6 +412,24 @@ enum status sfm_model_read_text(struct sfm_model *m, const char *folder, struct 
     return st ? err->status : ST_OK;
 }
 
+enum status sfm_model_read_cameras(struct sfm_model *m, const char *folder, struct err *err)
+{
+    struct id_list cameras = {0}, images = {0};
+    int *lines = NULL;
+    *m = (struct sfm_model){0};
+    enum status st = read_cameras(m, &cameras, folder, err) || read_images(m, &cameras, &images, &lines, folder, err);
+    for (int i = 0; !st && i < m->image_count; i++) {
+        free(m->images[i].observations);
+        m->images[i].observations = NULL;
+        m->images[i].observation_count = 0;
+    }
+    free(lines);
+    id_list_release(&cameras);
+    id_list_release(&images);
+    if (st) sfm_model_release(m);
+    return st ? err->status : ST_OK;
+}
+
 /* --------------------------------------------------------------------------------------------------------- Bundler */
 
 /* A line of exactly n numbers. */

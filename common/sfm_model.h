@@ -53,6 +53,9 @@ struct sfm_model {
  * quaternion of length 0 (others are normalised). Empty points3D.txt is fine. */
 enum status sfm_model_read_text(struct sfm_model *m, const char *folder, struct err *err);
 
+/* cameras.txt and images.txt alone: poses and lenses, no points and no observations. */
+enum status sfm_model_read_cameras(struct sfm_model *m, const char *folder, struct err *err);
+
 /* Reads a Bundler v0.3 file. names[i], sizes[i]: the file name and size in pixels of its camera i; count must be the
  * file's. Cameras with focal length 0 are those Bundler could not place: left out, like those of size 0 x 0. The axes
  * are turned to this program's; RADIAL cameras, principal point in the middle. Point errors are -1: it states none. */

@@ -46,8 +46,8 @@ enum status frames_select(bool *wanted, int frame_count, const char *list, struc
     }
 }
 
-static enum status frame_write(const struct rendered_frame *f, const struct view *camera, const char *file,
-                               const struct provenance *prov, struct err *err)
+static enum status frame_write(const struct rendered_frame *f, const struct view *camera, bool with_holes,
+                               const char *file, const struct provenance *prov, struct err *err)
 {
     static const char *const names[] = {"R", "G", "B", "A"};
     const size_t pixels = (size_t)f->width * (size_t)f->height;
@@ -63,6 +63,8 @@ static enum status frame_write(const struct rendered_frame *f, const struct view
         for (size_t p = 0; !st && p < pixels; p++) plane->f[p] = f->rgba[4 * p + k];
     }
     if (!st && !(st = exr_add_plane(&im, "Z", EXR_FLOAT, &plane, err))) memcpy(plane->f, f->z, pixels * sizeof *f->z);
+    if (!st && with_holes && !(st = exr_add_plane(&im, "hole", EXR_HALF, &plane, err)))
+        for (size_t p = 0; p < pixels; p++) plane->f[p] = f->hole[p];
     if (!st) {
         exr_set_camera(&im, camera);
         st = exr_set_attribute(&im, "remodel:holes", holes, err);
@@ -98,11 +100,58 @@ enum status frames_render(const struct camera_path *path, const bool *wanted, co
                          "frame %d of the path sees nothing of the scene: no view covers any of its pixels. "
                          "Look at its pose in the path, or plan the path again.",
                          i + 1);
-        if (!st) st = frame_write(&frame, camera, file, prov, err);
+        if (!st) st = frame_write(&frame, camera, false, file, prov, err);
         progress_add(&progress, 1);
     }
     progress_end(&progress);
     rendered_frame_release(&frame);
     free(file);
+    return st;
+}
+
+enum status cameras_select(bool *wanted, const struct camera_set *cameras, const char *const *names, int count,
+                           struct err *err)
+{
+    for (int i = 0; i < cameras->view_count; i++) wanted[i] = count == 0;
+    for (int i = 0; i < count; i++) {
+        int at = camera_set_find(cameras, names[i]);
+        if (at < 0)
+            return err_set(err, ST_USAGE,
+                           "--camera %s: the folder of --cameras has no camera of this name; its first is %s.",
+                           names[i], cameras->views[0].name);
+        wanted[at] = true;
+    }
+    return ST_OK;
+}
+
+enum status cameras_render(const struct camera_set *cameras, const bool *wanted, const struct layer_scene *scene,
+                           const struct render_params *params, const char *folder, const struct provenance *prov,
+                           struct err *err)
+{
+    const struct layer_render_options options = {params->soft_z, params->fill_diameter};
+    struct progress progress;
+    int count = 0;
+    enum status st = ST_OK;
+
+    for (int i = 0; i < cameras->view_count; i++) count += wanted[i];
+    progress_start(&progress, "rendering", count, "frames");
+    for (int i = 0; !st && i < cameras->view_count; i++) {
+        const struct view *camera = &cameras->views[i];
+        const size_t size = strlen(folder) + strlen(camera->name) + 8;
+        struct rendered_frame frame = {0};
+        char *file = malloc(size);
+        if (wanted[i] && !file) st = err_nomem(err, "a file name", size);
+        if (wanted[i] && !st) {
+            snprintf(file, size, "%s/%s.exr", folder, camera->name);
+            st = layer_render(&frame, scene, camera, &options, err);
+            if (!st && frame.hole_fraction >= 1)
+                log_warn("camera %s sees nothing of the scene: its frame is empty", camera->name);
+            if (!st) st = frame_write(&frame, camera, true, file, prov, err);
+            progress_add(&progress, 1);
+        }
+        rendered_frame_release(&frame);
+        free(file);
+    }
+    progress_end(&progress);
     return st;
 }

@@ -32,4 +32,14 @@ enum status frames_render(const struct camera_path *path, const bool *wanted, co
                           const struct render_params *params, const char *folder, const struct provenance *prov,
                           struct err *err);
 
+/* wanted[i] for camera i: all, or with names those. ST_USAGE: a name that is no camera. */
+enum status cameras_select(bool *wanted, const struct camera_set *cameras, const char *const *names, int count,
+                           struct err *err);
+
+/* One frame a wanted camera, of its own size, into folder/NAME.exr, which also has the channel hole (half): 1 where no
+ * view covers the pixel, before filling. A camera that sees nothing gets an empty frame and a warning. */
+enum status cameras_render(const struct camera_set *cameras, const bool *wanted, const struct layer_scene *scene,
+                           const struct render_params *params, const char *folder, const struct provenance *prov,
+                           struct err *err);
+
 #endif

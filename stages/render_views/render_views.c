@@ -1,9 +1,11 @@
-/* render_views.c - the frames of a camera move, from layered depth maps.
+/* render_views.c - the frames of a camera move, or of given cameras, from layered depth maps.
  *
  * reads   VIEWS/cameras.txt, images.txt, points3D.txt   the views
  *         DEPTH/VIEW.exr, VIEW.txt                      layers and segments of every view
- *         PATH/path.txt, path/NAME.txt                  the move
- * writes  OUT/NNNN.exr                                  a file a frame: R G B A, Z */
+ *         PATH/path.txt, path/NAME.txt                  the move; or
+ *         CAMERAS/cameras.txt, images.txt, points3D.txt cameras of any sizes, such as those of views that are held out
+ * writes  OUT/NNNN.exr                                  a file a frame: R G B A, Z; or
+ *         OUT/CAMERA.exr                                the same and hole, a file a camera */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -35,9 +37,9 @@ static enum status add_inputs(struct provenance *prov, const char *views, const 
     return st;
 }
 
-static enum status render_views(const char *views, const char *depth, const char *path_folder, const char *list,
-                                const char *out, const struct render_params *params, struct provenance *prov,
-                                struct err *err)
+static enum status render_path(const char *views, const char *depth, const char *path_folder, const char *list,
+                               const char *out, const struct render_params *params, struct provenance *prov,
+                               struct err *err)
 {
     struct camera_set set = {0};
     struct camera_path path = {0};
@@ -61,26 +63,63 @@ static enum status render_views(const char *views, const char *depth, const char
     return st;
 }
 
+static enum status render_cameras(const char *views, const char *depth, const char *folder,
+                                  const struct cli_list *names, const char *out, const struct render_params *params,
+                                  struct provenance *prov, struct err *err)
+{
+    static const char *const files[] = {"cameras.txt", "images.txt", "points3D.txt"};
+    struct camera_set set = {0}, cameras = {0};
+    struct layer_scene scene = {0};
+    bool *wanted = NULL;
+    enum status st = camera_set_read(&set, views, err);
+
+    if (!st) st = camera_set_read(&cameras, folder, err);
+    if (!st) {
+        wanted = calloc((size_t)cameras.view_count + 1, sizeof *wanted);
+        st = wanted ? cameras_select(wanted, &cameras, names->items, names->count, err)
+                    : err_nomem(err, "cameras", (size_t)cameras.view_count);
+    }
+    for (int i = 0; !st && i < 3; i++) st = add_input(prov, "views", views, files[i], err);
+    for (int i = 0; !st && i < 2; i++) st = add_input(prov, "cameras", folder, files[i], err);
+    if (!st) st = layer_scene_read(&scene, &set, depth, prov, err);
+    if (!st) st = cameras_render(&cameras, wanted, &scene, params, out, prov, err);
+    free(wanted);
+    layer_scene_release(&scene);
+    camera_set_release(&cameras);
+    camera_set_release(&set);
+    return st;
+}
+
 int main(int argc, char **argv)
 {
-    const char *views = NULL, *depth = NULL, *path = NULL, *frames = NULL, *out = NULL;
+    const char *views = NULL, *depth = NULL, *path = NULL, *frames = NULL, *cameras = NULL, *out = NULL;
+    struct cli_list names = {0};
     struct render_params params = RENDER_PARAMS_DEFAULT;
     const struct cli_opt opts[] = {
-        CLI_ABOUT("Renders the frames of a camera move from layered depth maps."),
+        CLI_ABOUT("Renders the frames of a camera move, or of given cameras, from layered depth maps."),
         CLI_STR("views", &views, CLI_REQUIRED, "folder of cameras"),
         CLI_STR("depth", &depth, CLI_REQUIRED, "folder of layered depth maps"),
-        CLI_STR("path", &path, CLI_REQUIRED, "folder of the move: path.txt and path/"),
-        CLI_STR("frames", &frames, CLI_REQUIRED, "frames to render: 1:30 or 1:30,45"),
-        CLI_STR("out", &out, CLI_REQUIRED, "folder of the EXR files to write, NNNN.exr"),
+        CLI_STR("path", &path, CLI_OPTIONAL, "folder of the move: path.txt and path/"),
+        CLI_STR("frames", &frames, CLI_OPTIONAL, "frames of the move to render: 1:30 or 1:30,45"),
+        CLI_STR("cameras", &cameras, CLI_OPTIONAL, "in place of a move: folder of cameras, a frame each"),
+        CLI_LIST("camera", &names, CLI_OPTIONAL, "of these cameras only this one; may be given several times"),
+        CLI_STR("out", &out, CLI_REQUIRED, "folder of the EXR files to write, NNNN.exr or CAMERA.exr"),
         CLI_PARAMS(render_param_table, &params, NULL),
         CLI_END,
     };
     struct provenance prov = {0};
     struct err err = ERR_INIT;
 
-    if (cli_parse(argc, argv, "render_views", opts, &prov, &err) != CLI_RUN ||
-        render_views(views, depth, path, frames, out, &params, &prov, &err))
-        err_report(&err);
+    enum cli_verdict verdict = cli_parse(argc, argv, "render_views", opts, &prov, &err);
+
+    if (verdict == CLI_RUN && (cameras ? path || frames : !path || !frames || names.count))
+        err_set(&err, ST_USAGE, "wanted either --path with --frames, or --cameras; --camera goes with --cameras.");
+    else if (verdict == CLI_RUN && cameras)
+        render_cameras(views, depth, cameras, &names, out, &params, &prov, &err);
+    else if (verdict == CLI_RUN)
+        render_path(views, depth, path, frames, out, &params, &prov, &err);
+    err_report(&err);
+    cli_list_release(&names);
     provenance_release(&prov);
     return err_exit_code(&err);
 }

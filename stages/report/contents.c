@@ -174,6 +174,20 @@ static enum status read_depth(struct view_card *card, const char *path, int orie
     return err->status;
 }
 
+static void read_truth(struct view_card *card, const char *path, int orientation, struct err *err)
+{
+    static const char *const NAMES[] = {"Z"};
+    struct exr_image im = {0};
+    if (!exr_read(&im, path, NAMES, 1, err)) {
+        const struct exr_plane *z = exr_find(&im, NAMES[0]);
+        if (z->f)
+            depth_thumb_make(&card->truth, z->f, im.width, im.height, orientation, PICTURE_HEIGHT, err);
+        else
+            err_set(err, ST_DATA, "%s: Z holds no floats.", path);
+    }
+    exr_image_release(&im);
+}
+
 static void make_view_cards(void *ctx, size_t begin, size_t end, int thread)
 {
     static const char *const NAMES[] = {"R", "G", "B"};
@@ -193,6 +207,10 @@ static void make_view_cards(void *ctx, size_t begin, size_t end, int thread)
 
         snprintf(path, sizeof path, "%s/depth/%s.exr", job->folder, card->view->name);
         if (is_file(path)) read_depth(card, path, orientation, &err);
+
+        snprintf(path, sizeof path, "%s/evaluate/truth/%s.exr", job->folder, card->view->name);
+        if (metric_rows_find(&job->c->view_metrics, card->view->name, "depth.occluded") && is_file(path))
+            read_truth(card, path, orientation, &err);
         if (err.status) snprintf(card->trouble, sizeof card->trouble, "%.*s", NOTE_SIZE - 1, err.text);
     }
 }
@@ -219,8 +237,12 @@ static enum status colour_depths(struct contents *c, struct err *err)
         c->depth_count++;
         c->known += card->depth.known;
         c->segments += card->segments;
-        if (depth_range(&card->depth, 0.02, &card->near, &card->far) &&
-            picture_from_depth(&card->depth_picture, &card->depth, card->near, card->far, err))
+        bool known = (card->truth.z && depth_range(&card->truth, 0.02, &card->near, &card->far)) ||
+                     depth_range(&card->depth, 0.02, &card->near, &card->far);
+        if (known && picture_from_depth(&card->depth_picture, &card->depth, card->near, card->far, err))
+            return err->status;
+        if (known && card->truth.z &&
+            picture_from_depth(&card->truth_picture, &card->truth, card->near, card->far, err))
             return err->status;
     }
     if (c->depth_count) c->known /= c->depth_count;
@@ -253,6 +275,90 @@ static enum status read_views(struct contents *c, const char *folder, struct err
     if (c->depth_count < c->views.view_count && add_note(c, err, "%d of %d views have no depth map yet.",
                                                          c->views.view_count - c->depth_count, c->views.view_count))
         return err->status;
+    return ST_OK;
+}
+
+/* --------------------------------------------------------------------------------------------------- evaluation */
+
+struct held_job {
+    struct contents *c;
+    const char *folder;
+};
+
+static void make_held_cards(void *ctx, size_t begin, size_t end, int thread)
+{
+    static const char *const NAMES[] = {"R", "G", "B"};
+    const struct held_job *job = ctx;
+    (void)thread;
+    for (size_t i = begin; i < end; i++) {
+        struct held_card *card = &job->c->held_cards[i];
+        int lens = lens_list_find(&job->c->held_lenses, card->view->name);
+        int photo = lens < 0 ? -1 : photo_list_find_id(&job->c->photos, job->c->held_lenses.lenses[lens].photo);
+        int orientation = photo < 0 ? 1 : job->c->photos.photos[photo].info.orientation;
+        struct err err = ERR_INIT;
+        for (int k = 0; k < 2; k++) {
+            struct exr_image im = {0};
+            char path[4096];
+            snprintf(path, sizeof path, "%s/holdout/%s/%s.exr", job->folder, k ? "frames" : "views", card->view->name);
+            if (is_file(path) && !exr_read(&im, path, NAMES, 3, &err))
+                picture_from_exr(k ? &card->frame : &card->picture, &im, orientation, HELD_HEIGHT, &err);
+            exr_image_release(&im);
+        }
+        if (err.status) snprintf(card->trouble, sizeof card->trouble, "%.*s", NOTE_SIZE - 1, err.text);
+    }
+}
+
+static enum status read_held(struct contents *c, const char *folder, struct err *err)
+{
+    char path[4096];
+    struct err trouble = ERR_INIT;
+    snprintf(path, sizeof path, "%s/holdout/views/lenses.txt", folder);
+    if (!is_file(path)) return ST_OK;
+    if (lens_list_read(&c->held_lenses, path, &trouble))
+        return add_note(c, err, "What is held out is not known. %s", trouble.text);
+    snprintf(path, sizeof path, "%s/holdout/views", folder);
+    if (camera_set_read(&c->held, path, &trouble))
+        return add_note(c, err, "What is held out is not known. %s", trouble.text);
+    c->held_cards = calloc((size_t)c->held.view_count + 1, sizeof *c->held_cards);
+    if (!c->held_cards) return err_nomem(err, "held-out views", (size_t)c->held.view_count * sizeof *c->held_cards);
+    for (int i = 0; i < c->held.view_count; i++) {
+        int lens = lens_list_find(&c->held_lenses, c->held.views[i].name);
+        int photo = lens < 0 ? -1 : photo_list_find_id(&c->photos, c->held_lenses.lenses[lens].photo);
+        c->held_cards[i].view = &c->held.views[i];
+        if (photo >= 0) c->photo_cards[photo].held_out = true;
+    }
+    struct held_job job = {c, folder};
+    parallel_for((size_t)c->held.view_count, 1, make_held_cards, &job);
+    return ST_OK;
+}
+
+static enum status read_metrics(struct contents *c, const char *folder, struct err *err)
+{
+    char path[4096];
+    struct err trouble = ERR_INIT;
+    snprintf(path, sizeof path, "%s/metrics.tsv", folder);
+    if (!is_file(path)) return ST_OK;
+    if (metric_rows_read(&c->metrics, path, false, &trouble))
+        return add_note(c, err, "What was measured cannot be read. %s", trouble.text);
+    c->has_metrics = true;
+    snprintf(path, sizeof path, "%s/evaluate/views.tsv", folder);
+    if (metric_rows_read(&c->view_metrics, path, true, &trouble))
+        return add_note(c, err, "What was measured of the views cannot be read. %s", trouble.text);
+    return ST_OK;
+}
+
+/* The table is made with the page only where there is a truth or a hold-out; otherwise it may be of an older run. */
+static enum status check_age(struct contents *c, const char *folder, struct err *err)
+{
+    struct stat table, map;
+    char path[4096];
+    snprintf(path, sizeof path, "%s/metrics.tsv", folder);
+    if (!c->has_metrics || stat(path, &table)) return ST_OK;
+    for (int i = 0; i < c->views.view_count; i++) {
+        snprintf(path, sizeof path, "%s/depth/%s.exr", folder, c->views.views[i].name);
+        if (stat(path, &map) || map.st_mtime <= table.st_mtime) continue;
+        return add_note(c, err, "What is shown as measured is older than the depth maps; make evaluate measures anew.");
+    }
     return ST_OK;
 }
 
@@ -379,7 +485,8 @@ enum status contents_read(struct contents *c, const char *folder, const char *sh
 {
     if (!is_folder(folder))
         return err_set(err, ST_IO, "%s is no folder: there is no scene to report on. Make the scene first.", folder);
-    if (read_photos(c, shared, photos, err) || read_views(c, folder, err) || read_effects(c, folder, err))
+    if (read_photos(c, shared, photos, err) || read_metrics(c, folder, err) || read_views(c, folder, err) ||
+        read_held(c, folder, err) || check_age(c, folder, err) || read_effects(c, folder, err))
         return err->status;
     return read_records(c, folder, shared, defaults, err);
 }
@@ -390,7 +497,13 @@ void contents_release(struct contents *c)
     for (int i = 0; c->view_cards && i < c->views.view_count; i++) {
         picture_release(&c->view_cards[i].picture);
         picture_release(&c->view_cards[i].depth_picture);
+        picture_release(&c->view_cards[i].truth_picture);
         depth_thumb_release(&c->view_cards[i].depth);
+        depth_thumb_release(&c->view_cards[i].truth);
+    }
+    for (int i = 0; c->held_cards && i < c->held.view_count; i++) {
+        picture_release(&c->held_cards[i].picture);
+        picture_release(&c->held_cards[i].frame);
     }
     for (int i = 0; i < c->effect_count; i++) {
         camera_path_release(&c->effects[i].path);
@@ -401,11 +514,16 @@ void contents_release(struct contents *c)
     }
     free(c->photo_cards);
     free(c->view_cards);
+    free(c->held_cards);
     free(c->effects);
     free(c->left_out);
     free(c->notes);
     usage_table_release(&c->usage);
     settings_release(&c->settings);
+    metric_rows_release(&c->metrics);
+    metric_rows_release(&c->view_metrics);
+    lens_list_release(&c->held_lenses);
+    camera_set_release(&c->held);
     lens_list_release(&c->lenses);
     camera_set_release(&c->views);
     photo_list_release(&c->photos);

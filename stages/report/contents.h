@@ -8,26 +8,35 @@
 #include "common/camera_path.h"
 #include "common/lens_list.h"
 #include "common/photo_list.h"
+#include "metric_rows.h"
 #include "pictures.h"
 #include "settings.h"
 #include "usage.h"
 
-enum { NOTE_SIZE = 1024, PICTURE_HEIGHT = 240 };
+enum { NOTE_SIZE = 1024, PICTURE_HEIGHT = 240, HELD_HEIGHT = 360 };
 
 struct photo_card {
     const struct photo_record *record;
-    int views; /* made from it; 0: SfM could not place it */
+    int views; /* made from it; 0: SfM could not place it, or it is held out */
+    bool held_out;
     struct picture picture;
     char trouble[NOTE_SIZE]; /* why there is no picture, or "" */
 };
 
 struct view_card {
     const struct view *view;
-    const struct photo_record *photo; /* NULL if it cannot be told */
-    struct picture picture, depth_picture;
-    struct depth_thumb depth;
+    const struct photo_record *photo;                     /* NULL if it cannot be told */
+    struct picture picture, depth_picture, truth_picture; /* both depths in the same colours */
+    struct depth_thumb depth, truth;                      /* truth: as `evaluate` left it; empty if it did not */
     uint32_t segments;
-    double near, far; /* its known depths without 2 % at either end: the colours' ends; 0 if none is known */
+    double near,
+        far; /* the true depths, else its own, without 2 % at either end: the colours' ends; 0 if none is known */
+    char trouble[NOTE_SIZE];
+};
+
+struct held_card { /* a view that was held out */
+    const struct view *view;
+    struct picture picture, frame; /* the photograph, and what was rendered in its place */
     char trouble[NOTE_SIZE];
 };
 
@@ -49,8 +58,13 @@ struct contents {
 
     struct photo_card *photo_cards; /* photos.count */
     struct view_card *view_cards;   /* views.view_count */
+    struct camera_set held;
+    struct lens_list held_lenses;
+    struct held_card *held_cards; /* held.view_count */
     struct effect_card *effects;
     int effect_count;
+    bool has_metrics;
+    struct metric_rows metrics, view_metrics;
     char (*left_out)[256]; /* photographs in the folder that are not in the list */
     int left_out_count;
 

@@ -218,7 +218,7 @@ static enum status put_photos(FILE *to, const struct contents *c, struct err *er
         fputs("<ul class=\"strip\">\n", to);
     for (int i = 0; i < c->photos.count; i++) {
         const struct photo_card *card = &c->photo_cards[i];
-        bool off = c->has_views && !card->views;
+        bool off = c->has_views && !card->views && !card->held_out;
         fprintf(to, "<li%s><figure>", off ? " class=\"off\"" : "");
         if (card->picture.rgb) {
             if (put_picture(to, &card->picture, 80, "Photograph", card->record->file, err)) return err->status;
@@ -229,6 +229,7 @@ static enum status put_photos(FILE *to, const struct contents *c, struct err *er
         html_text(to, card->record->file);
         fprintf(to, "</b> <span class=\"size\">%d × %d</span>", card->record->info.width, card->record->info.height);
         if (card->views > 1) fprintf(to, ", %d views", card->views);
+        if (card->held_out) fputs(" <span class=\"tag\">held out</span>", to);
         if (off) fputs(" <span class=\"tag\">not placed by SfM</span>", to);
         if (card->trouble[0]) {
             fputs(" <span class=\"tag\">", to);
@@ -258,19 +259,35 @@ static enum status put_depth(FILE *to, const struct view_card *card, struct err 
     return ST_OK;
 }
 
-static enum status put_view(FILE *to, const struct view_card *card, struct err *err)
+/* " · 12.3 % off by more than 1 px" of a view's metric, if it was measured. */
+static void put_view_metric(FILE *to, const struct contents *c, const char *view, const char *name, const char *words)
 {
-    fputs("<figure>\n<div class=\"pair\"><div>", to);
+    const struct metric_row *m = metric_rows_find(&c->view_metrics, view, name);
+    if (m)
+        fprintf(to, ", %.4g%s%s %s", m->value, strcmp(m->unit, "1") ? " " : "", strcmp(m->unit, "1") ? m->unit : "",
+                words);
+}
+
+static enum status put_view(FILE *to, const struct contents *c, const struct view_card *card, struct err *err)
+{
+    fprintf(to, "<figure>\n<div class=\"pair%s\"><div>", card->truth_picture.rgb ? " three" : "");
     if (!card->picture.rgb)
         fputs("<div class=\"none\">no picture yet</div>", to);
     else if (put_picture(to, &card->picture, 80, "View", card->view->name, err))
         return err->status;
     fputs("</div><div>", to);
     if (put_depth(to, card, err)) return err->status;
+    if (card->truth_picture.rgb) {
+        fputs("</div><div>", to);
+        if (put_picture(to, &card->truth_picture, 90, "True depth of view", card->view->name, err)) return err->status;
+        fputs("<p class=\"under\">truth</p>", to);
+    }
     fputs("</div></div>\n<figcaption><b>", to);
     html_text(to, card->view->name);
     fprintf(to, "</b> <span class=\"size\">%d × %d</span>", card->view->width, card->view->height);
     if (card->depth.z) fprintf(to, ", %.1f %% known, %u segments", 100 * card->depth.known, card->segments);
+    put_view_metric(to, c, card->view->name, "depth.bad1", "off by more than 1 px");
+    put_view_metric(to, c, card->view->name, "depth.error50", "median error");
     if (card->trouble[0]) {
         fputs(" <span class=\"tag\">", to);
         html_text(to, card->trouble);
@@ -291,7 +308,8 @@ static enum status put_depths(FILE *to, const struct contents *c, struct err *er
     if (c->depth_count)
         fputs("<p class=\"muted\">Depth along the camera's axis in scene units. Near is bright; equal steps of colour "
               "are equal "
-              "steps of 1/depth over each view's own range, leaving out 2 % at either end. <span "
+              "steps of 1/depth over each view's own range, leaving out 2 % at either end (of the truth, where there "
+              "is one). <span "
               "class=\"hatch\"></span>unknown</p>\n",
               to);
     fputs("<div class=\"pairs\" style=\"--ramp:linear-gradient(90deg", to);
@@ -302,8 +320,117 @@ static enum status put_depths(FILE *to, const struct contents *c, struct err *er
     }
     fputs(")\">\n", to);
     for (int i = 0; i < c->views.view_count; i++)
-        if (put_view(to, &c->view_cards[i], err)) return err->status;
+        if (put_view(to, c, &c->view_cards[i], err)) return err->status;
     fputs("</div>\n</section>\n", to);
+    return ST_OK;
+}
+
+/* ---------------------------------------------------------------------------------------------------- evaluation */
+
+static const char *metric_words(const char *name)
+{
+    static const char *const WORDS[][2] = {
+        {"camera.center_max", "camera's place, worst"},
+        {"camera.center_median", "camera's place, median"},
+        {"camera.placed", "photographs placed, of those the truth knows"},
+        {"camera.rotation_max", "camera's turn, worst"},
+        {"camera.rotation_median", "camera's turn, median"},
+        {"camera.scale", "one scene unit, in units of the truth"},
+        {"depth.bad1", "disparity off by more than 1 px, or no depth"},
+        {"depth.bad1_visible", "the same where another photograph sees the point"},
+        {"depth.bad2", "disparity off by more than 2 px, or no depth"},
+        {"depth.bad2_visible", "the same where another photograph sees the point"},
+        {"depth.baseline", "distance of the two cameras of that disparity"},
+        {"depth.error50", "relative depth error, half of the pixels have less"},
+        {"depth.error50_visible", "the same where another photograph sees the point"},
+        {"depth.error90", "relative depth error, 90 % have less"},
+        {"depth.error90_visible", "the same where another photograph sees the point"},
+        {"depth.error95", "relative depth error, 95 % have less"},
+        {"depth.error95_visible", "the same where another photograph sees the point"},
+        {"depth.known", "pixels with a depth"},
+        {"depth.occluded", "pixels that no other photograph sees"},
+        {"holdout.holes", "of the held-out pictures, seen by no view"},
+        {"holdout.pictures", "held-out pictures compared"},
+        {"holdout.psnr", "rendered against photographed, mean"},
+        {"holdout.psnr_covered", "the same without holes"},
+        {"holdout.ssim", "structural similarity, mean"},
+        {"holdout.ssim_covered", "the same without holes"},
+    };
+    for (size_t i = 0; i < sizeof WORDS / sizeof *WORDS; i++)
+        if (!strcmp(WORDS[i][0], name)) return WORDS[i][1];
+    return "";
+}
+
+static enum status put_held(FILE *to, const struct contents *c, const struct held_card *card, struct err *err)
+{
+    const struct picture *pictures[2] = {&card->picture, &card->frame};
+    static const char *const ALTS[2] = {"Held-out photograph", "Rendered in place of"};
+    static const char *const UNDER[2] = {"photograph", "rendered"};
+    fputs("<figure>\n<div class=\"pair\">", to);
+    for (int k = 0; k < 2; k++) {
+        fputs("<div>", to);
+        if (!pictures[k]->rgb)
+            fputs("<div class=\"none\">no picture yet</div>", to);
+        else if (put_picture(to, pictures[k], 85, ALTS[k], card->view->name, err))
+            return err->status;
+        fprintf(to, "<p class=\"under\">%s</p></div>", UNDER[k]);
+    }
+    fputs("</div>\n<figcaption><b>", to);
+    html_text(to, card->view->name);
+    fprintf(to, "</b> <span class=\"size\">%d × %d</span>", card->view->width, card->view->height);
+    put_view_metric(to, c, card->view->name, "holdout.psnr", "PSNR");
+    put_view_metric(to, c, card->view->name, "holdout.ssim", "SSIM");
+    put_view_metric(to, c, card->view->name, "holdout.holes", "holes");
+    if (card->trouble[0]) {
+        fputs(" <span class=\"tag\">", to);
+        html_text(to, card->trouble);
+        fputs("</span>", to);
+    }
+    fputs("</figcaption>\n</figure>\n", to);
+    return ST_OK;
+}
+
+static void put_metrics(FILE *to, const struct metric_rows *r)
+{
+    fputs("<div class=\"card wide\" role=\"region\" aria-labelledby=\"evaluation-title\" tabindex=\"0\"><table>\n"
+          "<thead><tr><th scope=\"col\">Metric</th><th scope=\"col\" class=\"n\">Value</th><th scope=\"col\">Unit</th>"
+          "<th scope=\"col\">Better</th><th scope=\"col\">What it is</th></tr></thead>\n<tbody>\n",
+          to);
+    for (int i = 0; i < r->count; i++) {
+        const struct metric_row *m = &r->rows[i];
+        fputs("<tr><th scope=\"row\"><code>", to);
+        html_text(to, m->name);
+        fprintf(to, "</code></th><td class=\"n\">%.5g</td><td>", m->value);
+        html_text(to, strcmp(m->unit, "1") ? m->unit : "");
+        fputs("</td><td>", to);
+        html_text(to, strcmp(m->direction, "none") ? m->direction : "");
+        fprintf(to, "</td><td class=\"how\">%s</td></tr>\n", metric_words(m->name));
+    }
+    fputs("</tbody>\n</table></div>\n", to);
+}
+
+static enum status put_evaluation(FILE *to, const struct contents *c, struct err *err)
+{
+    if (!c->has_metrics && !c->held.view_count) return ST_OK;
+    fputs("<section id=\"evaluation\" aria-labelledby=\"evaluation-title\">\n<h2 id=\"evaluation-title\">Measured "
+          "against truth and held-out photographs</h2>\n",
+          to);
+    if (c->metrics.count)
+        put_metrics(to, &c->metrics);
+    else
+        fputs("<p>Nothing was measured yet.</p>\n", to);
+    if (c->metrics.note_count) fputs("<ul class=\"list muted\">\n", to);
+    for (int i = 0; i < c->metrics.note_count; i++) {
+        fputs("<li>", to);
+        html_text(to, c->metrics.notes[i]);
+        fputs("</li>\n", to);
+    }
+    if (c->metrics.note_count) fputs("</ul>\n", to);
+    if (c->held.view_count) fputs("<h3>Held-out photographs</h3>\n<div class=\"pairs\">\n", to);
+    for (int i = 0; i < c->held.view_count; i++)
+        if (put_held(to, c, &c->held_cards[i], err)) return err->status;
+    if (c->held.view_count) fputs("</div>\n", to);
+    fputs("</section>\n", to);
     return ST_OK;
 }
 
@@ -539,7 +666,7 @@ static void put_skipped(FILE *to, const struct contents *c)
               to);
     }
     for (int i = 0; c->has_views && i < c->photos.count; i++) {
-        if (c->photo_cards[i].views) continue;
+        if (c->photo_cards[i].views || c->photo_cards[i].held_out) continue;
         fputs("<li><b>", to);
         html_text(to, c->photo_cards[i].record->file);
         fputs("</b> could not be placed: too little of it matches the other photographs, or it lies in a smaller model "
@@ -580,9 +707,10 @@ static void put_head(FILE *to, const char *scene, const struct contents *c)
     for (int i = 0; i < c->effect_count; i++) videos += c->effects[i].video != NULL;
     fputs(" · ", to);
     put_plural(to, videos, "video", "videos");
+    fputs(" · remodel " REMODEL_VERSION "</p>\n<nav aria-label=\"Contents\"><a href=\"#video\">Video</a>", to);
+    if (c->has_metrics || c->held.view_count) fputs("<a href=\"#evaluation\">Measured</a>", to);
     fputs(
-        " · remodel " REMODEL_VERSION
-        "</p>\n<nav aria-label=\"Contents\"><a href=\"#video\">Video</a><a href=\"#photos\">Photographs</a>"
+        "<a href=\"#photos\">Photographs</a>"
         "<a href=\"#depth\">Depth</a><a href=\"#numbers\">Numbers</a><a href=\"#time\">Time and memory</a><a "
         "href=\"#parameters\">"
         "Parameters</a><a href=\"#warnings\">Warnings</a><a href=\"#skipped\">Left out</a></nav>\n</header>\n<main>\n",
@@ -592,7 +720,8 @@ static void put_head(FILE *to, const char *scene, const struct contents *c)
 enum status page_write(FILE *to, const char *scene, const struct contents *c, struct err *err)
 {
     put_head(to, scene, c);
-    if (put_videos(to, c, err) || put_photos(to, c, err) || put_depths(to, c, err)) return err->status;
+    if (put_videos(to, c, err) || put_evaluation(to, c, err) || put_photos(to, c, err) || put_depths(to, c, err))
+        return err->status;
     put_numbers(to, c);
     put_usage(to, c);
     put_settings(to, c);

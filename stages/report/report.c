@@ -1,6 +1,7 @@
 /* report.c - one page about a scene: video, photographs, depth, figures, times, parameters, and what was left out.
  *
  * reads   FOLDER/{views,depth,parallax,log,slice}, SHARED/{photos,log,slice}   whatever is there of them
+ *         FOLDER/metrics.tsv, evaluate, holdout   what was measured, the truth, held-out photographs
  *         PHOTOS/FILE                    the photographs, for thumbnails
  *         DEFAULTS                       the default parameters, so that changed ones stand out
  * writes  OUT                            HTML with everything inside; what is missing is said there */

@@ -52,6 +52,8 @@ const char page_style[] =
     "6px;font-size:.8rem}\n"
     ".pairs{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(100%,460px),1fr));gap:20px}\n"
     ".pair{display:grid;grid-template-columns:1fr 1fr;gap:6px}.pair img{width:100%}\n"
+    ".pair.three{grid-template-columns:1fr 1fr 1fr}.under{margin:4px 0 0;font-size:.75rem;color:var(--muted)}\n"
+    "#evaluation .list{margin:12px 0 20px}#evaluation .pairs{margin-top:4px}\n"
     ".ramp{height:6px;border-radius:3px;margin-top:6px;background:var(--ramp)}\n"
     ".ticks{display:flex;justify-content:space-between;font-size:.75rem;color:var(--muted);font-variant-numeric:"
     "tabular-nums}\n"

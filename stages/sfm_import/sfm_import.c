@@ -4,13 +4,15 @@
  *         RECORDS/list.txt, ID.txt                                      the photos' names and sizes
  * writes  OUT/points3D.txt, cameras.txt, images.txt                     the views, pinhole, and the points they see
  *         OUT/lenses.txt                                                which photo and lens each view comes from
- *         OUT/views.mk                                                  their names, for Make; last */
+ *         OUT/views.mk                                                  their names, for Make; last
+ *         OUT/../holdout/views/                                         the same files of the views that are held out */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "common/cli.h"
-#include "stages/sfm_import/import_model.h"
+#include "common/outfile.h"
+#include "stages/sfm_import/holdout.h"
 
 static enum status add_input(struct provenance *prov, const char *name, const char *folder, const char *file,
                              struct err *err)
@@ -39,8 +41,35 @@ static enum status add_inputs(struct provenance *prov, const char *sfm, const ch
     return st;
 }
 
-static enum status run(const char *sfm, const char *records, const char *out, const struct import_params *params,
-                       struct provenance *prov, struct err *err)
+struct held_out { /* what is kept out of the views; every 0 and names NULL: nothing */
+    int every;
+    const char *names;
+};
+
+/* OUT's views.mk is the last of all files. */
+static enum status write_split(const struct imported *all, const struct held_out *which, const char *out,
+                               const struct provenance *prov, struct err *err)
+{
+    struct imported kept = {0}, held = {0};
+    size_t size = strlen(out) + 32;
+    bool *marks = calloc((size_t)all->lenses.count + 1, sizeof *marks);
+    char *folder = malloc(size);
+    enum status st = marks && folder ? ST_OK : err_nomem(err, "views", size);
+    if (!st) snprintf(folder, size, "%s/../holdout/views", out);
+    if (!st) st = make_folders(out, err);
+    if (!st) st = holdout_choose(marks, &all->lenses, which->every, which->names, err);
+    if (!st) st = holdout_split(&kept, &held, all, marks, err);
+    if (!st) st = imported_write(&held, folder, prov, err);
+    if (!st) st = imported_write(&kept, out, prov, err);
+    imported_release(&kept);
+    imported_release(&held);
+    free(folder);
+    free(marks);
+    return st;
+}
+
+static enum status run(const char *sfm, const char *records, const char *out, const struct held_out *held,
+                       const struct import_params *params, struct provenance *prov, struct err *err)
 {
     struct photo_list photos = {0};
     struct sfm_model model = {0};
@@ -51,7 +80,10 @@ static enum status run(const char *sfm, const char *records, const char *out, co
     if (!st) st = import_check_photos(sfm, &photos, err);
     if (!st) st = add_inputs(prov, sfm, name, err);
     if (!st && import_model(&imported, &model, &photos, params, err)) st = err_context(err, "%s/%s", sfm, name);
-    if (!st) st = imported_write(&imported, out, prov, err);
+    if (!st && (held->every || (held->names && *held->names)))
+        st = write_split(&imported, held, out, prov, err);
+    else if (!st)
+        st = imported_write(&imported, out, prov, err);
     imported_release(&imported);
     sfm_model_release(&model);
     photo_list_release(&photos);
@@ -62,20 +94,30 @@ static enum status run(const char *sfm, const char *records, const char *out, co
 int main(int argc, char **argv)
 {
     const char *sfm = NULL, *records = NULL, *out = NULL;
+    struct held_out held = {0};
     struct import_params params = IMPORT_PARAMS_DEFAULT;
     const struct cli_opt opts[] = {
         CLI_ABOUT("Picks, checks and converts the structure-from-motion model into rectified pinhole views."),
         CLI_STR("sfm", &sfm, CLI_REQUIRED, "folder of the models"),
         CLI_STR("records", &records, CLI_REQUIRED, "folder of the photos' records"),
         CLI_STR("out", &out, CLI_REQUIRED, "folder to write the views' cameras, points and lenses to"),
+        CLI_INT(
+            "holdout", &held.every, CLI_OPTIONAL,
+            "hold out the views of every Nth photo in order of name, the first included; they go to OUT/../holdout"),
+        CLI_STR("holdout-views", &held.names, CLI_OPTIONAL,
+                "hold out these views, or all of these photos: \"NAME NAME\""),
         CLI_PARAMS(import_param_table, &params, NULL),
         CLI_END,
     };
     struct provenance prov = {0};
     struct err err = ERR_INIT;
-    if (cli_parse(argc, argv, "sfm_import", opts, &prov, &err) != CLI_RUN ||
-        run(sfm, records, out, &params, &prov, &err))
-        err_report(&err);
+    enum cli_verdict verdict = cli_parse(argc, argv, "sfm_import", opts, &prov, &err);
+    if (verdict == CLI_RUN && held.every < 0)
+        err_set(&err, ST_USAGE, "--holdout %d: wanted a number from 1: every how many photos one is held out.",
+                held.every);
+    else if (verdict == CLI_RUN)
+        run(sfm, records, out, &held, &params, &prov, &err);
+    err_report(&err);
     provenance_release(&prov);
     return err_exit_code(&err);
 }

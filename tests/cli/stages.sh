@@ -40,6 +40,16 @@ parameters_out_of_range_are_refused()
     expect 2 "planes" "$B/bin/segment_depth" --set planes=1e9
     expect 2 "max_holes" "$B/bin/plan_path" --set max_holes=nan
     expect 2 "camera_model" "$B/bin/sfm" --set camera_model=FISH
+    expect 2 "baseline" "$B/bin/evaluate" --set baseline=-1
+}
+
+options_that_exclude_each_other_are_refused()
+{
+    d=$scratch/nowhere
+    expect 2 "either --path" "$B/bin/render_views" --views "$d" --depth "$d" --out "$d"
+    expect 2 "either --path" "$B/bin/render_views" --views "$d" --depth "$d" --out "$d" --path "$d" --frames 1 --cameras "$d"
+    expect 2 "either --path" "$B/bin/render_views" --views "$d" --depth "$d" --out "$d" --path "$d" --frames 1 --camera x
+    expect 2 "--holdout -3" "$B/bin/sfm_import" --sfm "$d" --records "$d" --out "$d" --holdout -3
 }
 
 missing_inputs_fail_with_their_name()
@@ -51,6 +61,8 @@ missing_inputs_fail_with_their_name()
     expect 1 "$d" "$B/bin/segment_depth" --view v --views "$d" --out "$scratch/o/v.exr"
     expect 1 "$d" "$B/bin/plan_path" --views "$d" --depth "$d" --effect establishing_dolly --out "$scratch/o"
     expect 1 "$d" "$B/bin/render_views" --views "$d" --depth "$d" --path "$d" --frames 1:2 --out "$scratch/o"
+    expect 1 "$d" "$B/bin/render_views" --views "$d" --depth "$d" --cameras "$d" --out "$scratch/o"
+    expect 1 "$d" "$B/bin/evaluate" --folder "$d" --shared "$d" --truth "$d" --out "$scratch/o/metrics.tsv"
     expect 1 "$d" "$B/bin/encode_video" --path "$d" --frames "$d" --out "$scratch/o/v.mp4"
     expect 1 "$d" "$B/bin/verify" --file "$d"
     [ -z "$(find "$scratch/o" -type f 2>/dev/null)" ] || { find "$scratch/o"; fail "a product was left"; }
@@ -68,6 +80,10 @@ make_says_what_is_wrong_with_its_words()
     expect 2 "SCENE=NAME" make -s DEPS=manual depth
     expect 2 "QUALITY=best" make -s DEPS=manual SCENE=x QUALITY=best
     expect 2 "JOBS=cloud" make -s DEPS=manual SCENE=x JOBS=cloud
+    expect 2 "HOLDOUT=some" make -s DEPS=manual SCENE=x HOLDOUT=some
+    expect 2 "HOLDOUT=0" make -s DEPS=manual SCENE=x HOLDOUT=0
+    expect 2 "both given" make -s DEPS=manual SCENE=x HOLDOUT=8 HOLDOUT_VIEWS=a
+    expect 2 "names of photos" make -s DEPS=manual SCENE=x HOLDOUT_VIEWS='a;b'
     expect 2 "letters, digits" make -s DEPS=manual SCENE='../x'
     expect 2 "PHOTOS=DIR" make -s DEPS=manual SCENE=nothing
     expect 2 "no-such-folder" make -s DEPS=manual SCENE=x PHOTOS=no-such-folder
@@ -84,5 +100,6 @@ missing_packages_are_named_with_the_line_to_run()
 }
 
 for t in help_version_and_config_of_every_stage wrong_usage_is_2_with_a_sentence parameters_out_of_range_are_refused \
+    options_that_exclude_each_other_are_refused \
     missing_inputs_fail_with_their_name make_without_a_scene_builds_and_explains make_says_what_is_wrong_with_its_words \
     missing_packages_are_named_with_the_line_to_run; do run "$t"; done

@@ -157,12 +157,40 @@ static void same_for_any_threads(void **state)
     parallel_set_threads(0);
 }
 
+/* Against a look at every pixel of every window; some masks reach all borders. */
+static void windows_wholly_in_a_mask(void **state)
+{
+    uint8_t mask[W * H], windows[W * H];
+    uint32_t s = 5;
+    (void)state;
+    for (int density = 0; density < 4; density++) {
+        int found = 0;
+        for (int i = 0; i < W * H; i++) {
+            s = s * 1664525 + 1013904223;
+            mask[i] = density == 0 || (s >> 16) % 400 >= (uint32_t)density;
+        }
+        metrics_ssim_windows(windows, mask, W, H);
+        for (int y = 0; y < H; y++)
+            for (int x = 0; x < W; x++) {
+                bool whole = x >= 5 && y >= 5 && x < W - 5 && y < H - 5;
+                for (int k = 0; k < 121 && whole; k++) whole = mask[(y + k / 11 - 5) * W + x + k % 11 - 5];
+                assert_int_equal(windows[y * W + x], whole);
+                found += whole;
+            }
+        assert_true(found > 0);
+        if (density == 0) assert_int_equal(found, (W - 10) * (H - 10));
+    }
+    metrics_ssim_windows(windows, mask, 7, 7); /* smaller than a window */
+    for (int i = 0; i < 49; i++) assert_int_equal(windows[i], 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(psnr_closed_form),   cmocka_unit_test(ssim_of_equals_is_one),
-        cmocka_unit_test(ssim_of_constants),  cmocka_unit_test(ssim_window_by_window),
-        cmocka_unit_test(ssim_single_window), cmocka_unit_test(same_for_any_threads),
+        cmocka_unit_test(psnr_closed_form),         cmocka_unit_test(ssim_of_equals_is_one),
+        cmocka_unit_test(ssim_of_constants),        cmocka_unit_test(ssim_window_by_window),
+        cmocka_unit_test(ssim_single_window),       cmocka_unit_test(same_for_any_threads),
+        cmocka_unit_test(windows_wholly_in_a_mask),
     };
     return cmocka_run_group_tests_name("metrics", tests, NULL, NULL);
 }

@@ -316,6 +316,26 @@ static void bundler_damage_is_named(void **state)
     }
 }
 
+static void cameras_alone_need_no_points(void **state)
+{
+    (void)state;
+    struct sfm_model m;
+    struct err err = ERR_INIT;
+    scratch_write("cameras.txt", "1 PINHOLE 4 3 2 2 2 1.5\n");
+    scratch_write("images.txt", "# a comment\n2 1 0 0 0 1 2 3 1 b.jpg\n0.5 0.5 7\n1 1 0 0 0 0 0 0 1 a.jpg\n\n");
+    remove(scratch_path("points3D.txt"));
+    assert_ok(sfm_model_read_cameras(&m, scratch, &err), err);
+    assert_int_equal(m.image_count, 2);
+    assert_string_equal(m.images[1].name, "b.jpg");
+    assert_true(m.images[1].cam_from_world.translation.z == 3);
+    assert_int_equal(m.images[1].observation_count, 0);
+    assert_int_equal(m.point_count, 0);
+    sfm_model_release(&m);
+    remove(scratch_path("images.txt"));
+    assert_int_equal(sfm_model_read_cameras(&m, scratch, &err), ST_IO);
+    assert_err(err, ST_IO, "images.txt");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -323,6 +343,7 @@ int main(void)
         cmocka_unit_test(writing_keeps_every_bit),        cmocka_unit_test(damage_is_named_with_its_line),
         cmocka_unit_test(a_missing_file_is_named),        cmocka_unit_test(names_that_cannot_be_written_are_refused),
         cmocka_unit_test(bundler_axes_are_turned),        cmocka_unit_test(bundler_damage_is_named),
+        cmocka_unit_test(cameras_alone_need_no_points),
     };
     return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }

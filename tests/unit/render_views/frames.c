@@ -157,6 +157,48 @@ static void an_empty_frame_is_an_error(void **state)
     scene_drop(&s);
 }
 
+static void cameras_have_frames_of_their_own_size(void **state)
+{
+    (void)state;
+    const struct render_params params = RENDER_PARAMS_DEFAULT;
+    const struct provenance prov = {.stage = "render_views", .version = "0"};
+    const char *const one[] = {"odd"}, *const none[] = {"other"};
+    struct view cameras[2];
+    struct camera_set set = {.views = cameras, .view_count = 2};
+    bool wanted[2];
+    struct scene s;
+    struct exr_image im = {0};
+    struct err err = ERR_INIT;
+
+    scene_make(&s, 1);
+    cameras[0] = cameras[1] = s.view;
+    cameras[0].name = "behind";
+    cameras[0].translation.z = -8; /* it sees nothing: an empty frame */
+    cameras[0].center.z = 8;
+    cameras[1].name = "odd";
+    cameras[1].width = W + 11; /* 11 columns that no view covers, on the right */
+    assert_ok(cameras_select(wanted, &set, NULL, 0, &err), err);
+    assert_true(wanted[0] && wanted[1]);
+    assert_ok(cameras_render(&set, wanted, &s.layers, &params, scratch_path("cameras"), &prov, &err), err);
+    assert_ok(exr_read(&im, scratch_path("cameras/odd.exr"), NULL, 0, &err), err);
+    assert_int_equal(im.width, W + 11);
+    for (int i = 0; i < (W + 11) * H; i++) {
+        assert_true(exr_find(&im, "hole")->f[i] == (i % (W + 11) >= W));
+        assert_true(exr_find(&im, "Z")->f[i] == 4);
+    }
+    exr_image_release(&im);
+    assert_ok(exr_read(&im, scratch_path("cameras/behind.exr"), NULL, 0, &err), err);
+    assert_string_equal(exr_attribute(&im, "remodel:holes"), "1");
+    for (int i = 0; i < W * H; i++) assert_true(exr_find(&im, "hole")->f[i] == 1 && exr_find(&im, "A")->f[i] == 0);
+    exr_image_release(&im);
+
+    assert_ok(cameras_select(wanted, &set, one, 1, &err), err);
+    assert_true(!wanted[0] && wanted[1]);
+    assert_int_equal(cameras_select(wanted, &set, none, 1, &err), ST_USAGE);
+    assert_err(err, ST_USAGE, "--camera other");
+    scene_drop(&s);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -164,6 +206,7 @@ int main(void)
         cmocka_unit_test(frames_are_written_whole),
         cmocka_unit_test(splits_and_threads_give_the_same_bytes),
         cmocka_unit_test(an_empty_frame_is_an_error),
+        cmocka_unit_test(cameras_have_frames_of_their_own_size),
     };
     return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }

@@ -1,0 +1,26 @@
+/* axes_error.c - see axes_error.h. */
+#include "stages/evaluate/axes_error.h"
+
+/* Of a rotation, degrees; by its quaternion, which stays exact where the angle is small. */
+static double angle_of(struct mat3 r)
+{
+    struct quat q = quat_from_mat3(r);
+    return 2 * atan2(vec3_length(vec3_make(q.x, q.y, q.z)), fabs(q.w)) * 180 / M_PI;
+}
+
+struct axes_errors axes_errors(const struct room_axes *found, const struct room_axes *truth)
+{
+    static const struct mat3 QUARTER = {{{0, 1, 0}, {-1, 0, 0}, {0, 0, 1}}};
+    struct vec3 a = {found->axes.m[2][0], found->axes.m[2][1], found->axes.m[2][2]};
+    struct vec3 b = {truth->axes.m[2][0], truth->axes.m[2][1], truth->axes.m[2][2]};
+    struct mat3 turned = found->axes;
+    struct axes_errors e = {.up = atan2(vec3_length(vec3_cross(a, b)), vec3_dot(a, b)) * 180 / M_PI,
+                            .all = 180,
+                            .floor = fabs(found->floor - truth->floor),
+                            .ceiling = fabs(found->ceiling - truth->ceiling)};
+    for (int k = 0; k < 4; k++) {
+        e.all = fmin(e.all, angle_of(mat3_multiply(turned, mat3_transpose(truth->axes))));
+        turned = mat3_multiply(QUARTER, turned);
+    }
+    return e;
+}

@@ -1,0 +1,76 @@
+#include "metric_rows.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/textfile.h"
+
+static enum status read_word(struct textfile *t, const char *what, char *to, size_t size, struct err *err)
+{
+    char *word = NULL;
+    if (textfile_word(t, what, &word, err)) return err->status;
+    if (strlen(word) >= size) return textfile_error(t, err, word, "%s of at most %zu letters", what, size - 1);
+    memcpy(to, word, strlen(word) + 1);
+    return ST_OK;
+}
+
+static enum status read_row(struct metric_rows *r, struct textfile *t, bool of_views, struct err *err)
+{
+    size_t bytes = ((size_t)r->count + 1) * sizeof *r->rows;
+    struct metric_row *grown = realloc(r->rows, bytes), m = {0};
+    char *view = NULL;
+    if (!grown) return err_nomem(err, "metrics", bytes);
+    r->rows = grown;
+    if ((of_views && textfile_word(t, "view", &view, err)) || read_word(t, "metric", m.name, sizeof m.name, err) ||
+        textfile_double(t, "value", &m.value, err) || read_word(t, "unit", m.unit, sizeof m.unit, err) ||
+        read_word(t, "direction", m.direction, sizeof m.direction, err) || textfile_end(t, err))
+        return err->status;
+    if (!(m.view = strdup(view ? view : ""))) return err_nomem(err, "metrics", bytes);
+    r->rows[r->count++] = m;
+    return ST_OK;
+}
+
+/* The comment's text, if it is one for people. */
+static enum status read_note(struct metric_rows *r, const char *text, struct err *err)
+{
+    size_t bytes = ((size_t)r->note_count + 1) * sizeof *r->notes;
+    if (strncmp(text, "# skipped ", 10) && strncmp(text, "# note: ", 8)) return ST_OK;
+    char **grown = realloc(r->notes, bytes);
+    if (!grown) return err_nomem(err, "notes", bytes);
+    r->notes = grown;
+    if (!(grown[r->note_count] = strdup(text + (text[2] == 'n' ? 8 : 2)))) return err_nomem(err, "notes", bytes);
+    r->note_count++;
+    return ST_OK;
+}
+
+enum status metric_rows_read(struct metric_rows *r, const char *path, bool of_views, struct err *err)
+{
+    struct textfile t = {0};
+    *r = (struct metric_rows){0};
+    enum status st = textfile_open(&t, path, err);
+    while (!st && textfile_next_raw(&t)) {
+        if (t.cursor[0] == '#')
+            st = read_note(r, t.cursor, err);
+        else if (textfile_more(&t))
+            st = read_row(r, &t, of_views, err);
+    }
+    textfile_release(&t);
+    if (st) metric_rows_release(r);
+    return st;
+}
+
+const struct metric_row *metric_rows_find(const struct metric_rows *r, const char *view, const char *name)
+{
+    for (int i = 0; i < r->count; i++)
+        if (!strcmp(r->rows[i].view, view) && !strcmp(r->rows[i].name, name)) return &r->rows[i];
+    return NULL;
+}
+
+void metric_rows_release(struct metric_rows *r)
+{
+    for (int i = 0; i < r->count; i++) free(r->rows[i].view);
+    for (int i = 0; i < r->note_count; i++) free(r->notes[i]);
+    free(r->rows);
+    free(r->notes);
+    *r = (struct metric_rows){0};
+}

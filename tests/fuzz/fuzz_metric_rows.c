@@ -1,0 +1,28 @@
+/* The report's reader of metric tables, of scenes and of views. */
+#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+#include "fuzz.h"
+#include "stages/report/metric_rows.c" /* a stage's file, which is in no library */
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    char path[] = "/tmp/remodel-fuzz-XXXXXX";
+    int fd = mkstemp(path);
+    if (fd < 0 || write(fd, data, size) != (ssize_t)size) abort();
+    close(fd);
+    for (int of_views = 0; of_views < 2; of_views++) {
+        struct metric_rows r;
+        struct err err = ERR_INIT;
+        enum status st = metric_rows_read(&r, path, of_views, &err);
+        if (st != err.status || (st && r.count)) abort();
+        for (int i = 0; i < r.count; i++)
+            if (!isfinite(r.rows[i].value) || !metric_rows_find(&r, r.rows[i].view, r.rows[i].name)) abort();
+        metric_rows_release(&r);
+    }
+    unlink(path);
+    return 0;
+}

@@ -1,0 +1,131 @@
+/* Cameras against the true ones: similarities known beforehand, errors computed by hand. */
+#include "stages/evaluate/alignment.h"
+
+#include "tests/unit/scratch.h"
+
+#define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
+
+enum { COUNT = 4 };
+
+static struct quat turn(double degrees, double x, double y, double z)
+{
+    double a = degrees * M_PI / 360;
+    return (struct quat){cos(a), sin(a) * x, sin(a) * y, sin(a) * z};
+}
+
+static struct pose pose_at(struct vec3 center, struct quat rotation)
+{
+    return (struct pose){rotation, vec3_scale(mat3_apply(mat3_from_quat(rotation), center), -1)};
+}
+
+/* The same camera in the world that s, r, t lead to. */
+static struct pose moved(const struct pose *p, double s, struct mat3 r, struct vec3 t)
+{
+    struct vec3 center = vec3_add(vec3_scale(mat3_apply(r, pose_center(p)), s), t);
+    struct mat3 cam = mat3_multiply(mat3_from_quat(p->rotation), mat3_transpose(r));
+    return pose_at(center, quat_from_mat3(cam));
+}
+
+static void a_known_similarity_is_found(void **state)
+{
+    static const struct vec3 centers[COUNT] = {{0, 0, 0}, {1, 0.2, 0}, {2, -0.1, 0.3}, {3, 0.5, -0.4}};
+    struct mat3 r = mat3_from_quat(turn(120, 0.6, 0, 0.8));
+    struct pose found[COUNT], truth[COUNT];
+    struct similarity a;
+    struct camera_errors e;
+    struct err err = ERR_INIT;
+    (void)state;
+    for (int i = 0; i < COUNT; i++) {
+        found[i] = pose_at(centers[i], turn(10 * i, 0, 1, 0));
+        truth[i] = moved(&found[i], 2.5, r, vec3_make(7, -3, 1));
+    }
+    for (int count = 2; count <= COUNT; count++) { /* two stand on a line: their turns decide */
+        assert_ok(align_cameras(&a, found, truth, count, &err), err);
+        assert_near(a.scale, 2.5, 1e-9);
+        for (int i = 0; i < 9; i++) assert_near(a.rotation.m[i / 3][i % 3], r.m[i / 3][i % 3], 1e-9);
+        assert_near(a.translation.x, 7, 1e-9);
+        assert_ok(measure_cameras(&e, &a, found, truth, count, &err), err);
+        assert_near(e.center_max, 0, 1e-9);
+        assert_near(e.rotation_max, 0, 1e-6);
+    }
+}
+
+/* A square whose one diagonal grew by a tenth and whose other one shrank by as much: nothing is gained by moving,
+ * turning or scaling it, so every centre is off by 0.1. */
+static void errors_of_a_bent_square(void **state)
+{
+    static const struct vec3 from[COUNT] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}};
+    static const struct vec3 to[COUNT] = {{1.1, 0, 0}, {-1.1, 0, 0}, {0, 0.9, 0}, {0, -0.9, 0}};
+    struct pose found[COUNT], truth[COUNT];
+    struct similarity a;
+    struct camera_errors e;
+    struct err err = ERR_INIT;
+    (void)state;
+    for (int i = 0; i < COUNT; i++) {
+        found[i] = pose_at(from[i], turn(i == 2 ? 3 : i == 1 ? 1 : 0, 1, 0, 0));
+        truth[i] = pose_at(to[i], turn(0, 1, 0, 0));
+    }
+    assert_ok(align_cameras(&a, found, truth, COUNT, &err), err);
+    assert_near(a.scale, 1, 1e-12);
+    assert_ok(measure_cameras(&e, &a, found, truth, COUNT, &err), err);
+    assert_near(e.center_median, 0.1, 1e-9);
+    assert_near(e.center_max, 0.1, 1e-9);
+    assert_near(e.rotation_max, 3, 1e-9);
+    assert_near(e.rotation_median, 0.5, 1e-9); /* of 0 0 1 3 */
+}
+
+/* A mirrored scene is not aligned by mirroring it back: the third term of the trace is negative (Umeyama's S). */
+static void a_mirror_stays_one(void **state)
+{
+    static const struct vec3 from[COUNT] = {{3, 0, 0}, {0, 2, 0}, {0, 0, 1}, {-3, -2, -1}};
+    struct pose found[COUNT], truth[COUNT];
+    struct similarity a;
+    struct err err = ERR_INIT;
+    double det = 0;
+    (void)state;
+    for (int i = 0; i < COUNT; i++) {
+        found[i] = pose_at(from[i], turn(0, 1, 0, 0));
+        truth[i] = pose_at(vec3_make(from[i].x, from[i].y, -from[i].z), turn(0, 1, 0, 0));
+    }
+    assert_ok(align_cameras(&a, found, truth, COUNT, &err), err);
+    for (int i = 0; i < 3; i++)
+        det += a.rotation.m[0][i] * (a.rotation.m[1][(i + 1) % 3] * a.rotation.m[2][(i + 2) % 3] -
+                                     a.rotation.m[1][(i + 2) % 3] * a.rotation.m[2][(i + 1) % 3]);
+    assert_near(det, 1, 1e-12);
+    assert_true(a.scale > 0 && a.scale < 1);
+}
+
+static void without_two_places_there_is_no_scale(void **state)
+{
+    struct pose found[2] = {pose_at(vec3_make(1, 2, 3), turn(0, 1, 0, 0)),
+                            pose_at(vec3_make(1, 2, 3), turn(9, 1, 0, 0))};
+    struct pose truth[2] = {found[0], pose_at(vec3_make(4, 4, 4), turn(9, 1, 0, 0))};
+    struct similarity a;
+    struct err err = ERR_INIT;
+    (void)state;
+    assert_int_equal(align_cameras(&a, found, truth, 1, &err), ST_DATA);
+    assert_err(err, ST_DATA, "there is no scale");
+    assert_int_equal(align_cameras(&a, found, truth, 2, &err), ST_DATA);
+    assert_int_equal(align_cameras(&a, truth, found, 2, &err), ST_DATA);
+}
+
+static void medians(void **state)
+{
+    double odd[] = {5, 1, 3}, even[] = {4, 1, 2, 9};
+    (void)state;
+    assert_true(median(odd, 3) == 3);
+    assert_true(median(even, 4) == 3);
+    assert_true(median(even, 1) == 1);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_known_similarity_is_found),
+        cmocka_unit_test(errors_of_a_bent_square),
+        cmocka_unit_test(a_mirror_stays_one),
+        cmocka_unit_test(without_two_places_there_is_no_scale),
+        cmocka_unit_test(medians),
+    };
+    return cmocka_run_group_tests_name("alignment", tests, NULL, NULL);
+}

@@ -1,0 +1,35 @@
+/* The tables' text: sorted, the same for the same values, never a NaN. */
+#include "stages/evaluate/metric_table.h"
+
+#include <math.h>
+
+#include "tests/unit/scratch.h"
+
+static void sorted_with_reasons(void **state)
+{
+    struct metric_table t = {0};
+    struct err err = ERR_INIT;
+    (void)state;
+    assert_ok(metric_add(&t, NULL, "holdout.psnr", 1.0 / 3, "dB", "higher", &err), err);
+    assert_ok(metric_add(&t, "v2", "depth.bad1", 12.5, "%", "lower", &err), err);
+    assert_ok(metric_add(&t, NULL, "camera.scale", -0.0, "m", "none", &err), err);
+    assert_ok(metric_add(&t, "v10", "depth.bad1", 1e-10, "%", "lower", &err), err);
+    assert_ok(metric_note(&t, &err, "skipped %s: two\nlines", "this"), err);
+    assert_ok(metric_table_write(&t, false, scratch_path("metrics.tsv"), NULL, &err), err);
+    assert_file_text(scratch_path("metrics.tsv"), "# skipped this: two lines\n# name\tvalue\tunit\tdirection\n"
+                                                  "camera.scale\t0\tm\tnone\nholdout.psnr\t0.333333333\tdB\thigher\n");
+    assert_ok(metric_table_write(&t, true, scratch_path("views.tsv"), NULL, &err), err);
+    assert_file_text(scratch_path("views.tsv"), "# view\tname\tvalue\tunit\tdirection\n"
+                                                "v10\tdepth.bad1\t1e-10\t%\tlower\nv2\tdepth.bad1\t12.5\t%\tlower\n");
+    assert_int_equal(metric_add(&t, NULL, "x", NAN, "1", "none", &err), ST_INTERNAL);
+    assert_err(err, ST_INTERNAL, "no finite value");
+    assert_int_equal(metric_add(&t, NULL, "x", INFINITY, "1", "none", &err), ST_INTERNAL);
+    metric_table_release(&t);
+    metric_table_release(&t);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(sorted_with_reasons)};
+    return cmocka_run_group_tests_name("metric_table", tests, scratch_make, scratch_remove);
+}
