@@ -84,14 +84,15 @@ export REMODEL_TRUTH := $(call literal,TRUTH)
 
 export VIEWS_PER_JOB SLURM_ARGS
 dry = $(findstring n,$(filter-out --%,$(firstword -$(MAKEFLAGS))))
-GOALS := sfm views depth path frames video evaluate report
+GOALS := hdr sfm views depth path frames video evaluate report
 .PHONY: all help why resfm check fuzz man deps deps-check clean $(GOALS)
 
 ifeq ($(SCENE),)
 all: deps ## everything a scene asks for; without SCENE builds the programs and explains
 	+@$(BUILD) build
 	@common/explain.sh no-scene
-sfm:    ## camera poses: COLMAP, or the model in SFM
+hdr:    ## bracketed photos merged; nothing where photos are no brackets
+sfm:    ## + camera poses: COLMAP, or the model in SFM
 views:  ## + rectified, linear views
 depth:  ## + layered depth maps
 path:   ## + the camera move
@@ -194,7 +195,7 @@ $(FUZZ_TESTS): $(B)/tests/fuzz/%: $(B)/obj/tests/fuzz/%.o $(B)/obj/tests/fuzz/ru
 else
 # ---------------------------------------------------------------------------------------------------------- the graph
 
-# lists that products give: PHOTO_IDS, VIEWS, FRAMES, HELD (held-out views); not by `include`, for which make would first
+# lists that products give: PHOTO_IDS and BRACKETED, VIEWS, FRAMES, HELD (held-out views); not by `include`, for which make would first
 # remake them, even under -n
 $(if $(HELDOUT),$(eval $(file <$(O)/holdout/views/views.mk))$(eval HELD := $(VIEWS))$(eval VIEWS :=))
 $(foreach f,$(S)/photos/photos.mk $(O)/views/views.mk $(O)/parallax/$(EFFECT)/frames.mk,$(eval $(file <$(f))))
@@ -216,12 +217,18 @@ T := $(CORES)
 
 # $(call stage,NAME,ITEM,FOLDER,ARGS): runs it here, its words on screen and in FOLDER/log
 stage = $(hide)common/run_stage.sh live $(1) $(2) $(3) $(BIN)/$(1) --threads $(T) --config $(3)/slice/$(1).cfg $(4)
-# $(call farm,NAME,ITEM,PRODUCTS,ARGS[,SHELLWORD]): the same for per-view work, which may be planned (LAUNCH=plan) for a cluster;
-# a plan's line is PRODUCTS, a tab, and the command with SHELLWORD already expanded behind it
-farm_line = common/run_stage.sh quiet $(1) $(2) $(O) $(BIN)/$(1) --threads $(T) --config $(O)/slice/$(1).cfg $(4)
+# $(call farm,NAME,ITEM,PRODUCTS,ARGS[,SHELLWORD[,FOLDER]]): the same for per-view work, which may be planned (LAUNCH=plan) for a
+# cluster; a plan's line is PRODUCTS, a tab, and the command with SHELLWORD already expanded behind it; FOLDER is O if not given
+farm_line = common/run_stage.sh quiet $(1) $(2) $(or $(6),$(O)) $(BIN)/$(1) --threads $(T) --config $(or $(6),$(O))/slice/$(1).cfg $(4)
 farm = $(if $(filter plan,$(LAUNCH)),printf '%s\t%s %s\n' '$(3)' '$(farm_line)' "$(5)" >>$(PLAN),$(farm_line) $(5))
 
-.PHONY: sfm views depth path frames video heldout evaluate report
+# what stages after hdr_merge take for the photos, and what a photo's view is made from; $(1) is a photo's id
+HDR := $(if $(BRACKETED),$(foreach p,$(PHOTO_IDS),$(S)/hdr/$(p).exr $(S)/hdr/$(p).jpg))
+PICTURES := $(if $(BRACKETED),$(S)/hdr,"$$REMODEL_PHOTOS")
+picture = $(if $(BRACKETED),$(S)/hdr/$(1).exr,$(S)/photos/$(1).txt)
+
+.PHONY: hdr sfm views depth path frames video heldout evaluate report
+hdr: $(HDR)
 sfm: $(O)/views/views.mk
 views: $(VIEW_EXR) $(HELD_EXR)
 depth: $(DEPTH) $(DEPTH_TXT)
@@ -232,9 +239,17 @@ heldout: $(HELD_FRAMES)
 evaluate: $(O)/metrics.tsv
 report: $(O)/index.html
 
+# a view's exposures, all qualities share them
+define hdr_rules
+$(S)/hdr/$(1).exr $(S)/hdr/$(1).jpg &: $(S)/photos/$(1).txt $(S)/slice/hdr_merge.cfg $(B)/code/hdr_merge
+	$$(hide)$$(call farm,hdr_merge,$(1),$(S)/hdr/$(1).jpg $(S)/hdr/$(1).exr,\
+	  --id $(1) --photos "$$$$REMODEL_PHOTOS" --records $(S)/photos --out $(S)/hdr,,$(S))
+endef
+$(if $(BRACKETED),$(foreach p,$(PHOTO_IDS),$(eval $(call hdr_rules,$(p)))))
+
 # SfM runs once for a set of photos: COLMAP is not reproducible, so a changed photo does not redo it (make resfm does)
-$(S)/sfm/models.txt: $(S)/photos/list.txt $(S)/slice/sfm.cfg $(S)/stamp/sfm_source.txt
-	$(call stage,sfm,all,$(S),--photos "$$REMODEL_PHOTOS" --records $(S)/photos --out $(S)/sfm \
+$(S)/sfm/models.txt: $(S)/photos/list.txt $(S)/slice/sfm.cfg $(S)/stamp/sfm_source.txt | $(HDR)
+	$(call stage,sfm,all,$(S),--photos $(PICTURES) --records $(S)/photos --out $(S)/sfm \
 	  $(if $(wildcard scenes/$(SCENE)/masks),--masks scenes/$(SCENE)/masks) $${REMODEL_SFM:+--model "$$REMODEL_SFM"})
 
 $(CAMERAS) $(O)/views/lenses.txt $(O)/views/views.mk $(HELD_CAMERAS) &: $(S)/sfm/models.txt $(S)/photos/list.txt \
@@ -244,9 +259,9 @@ $(CAMERAS) $(O)/views/lenses.txt $(O)/views/views.mk $(HELD_CAMERAS) &: $(S)/sfm
 
 # $(1): a view; $(2): the folder of its cameras
 define rectify_rule
-$(2)/$(1).exr: $(S)/photos/$(firstword $(subst @, ,$(1))).txt $(addprefix $(2)/,cameras.txt images.txt points3D.txt lenses.txt) \
+$(2)/$(1).exr: $(call picture,$(firstword $(subst @, ,$(1)))) $(addprefix $(2)/,cameras.txt images.txt points3D.txt lenses.txt) \
   $(call needs,rectify)
-	$$(hide)$$(call farm,rectify,$(1),$$@,--view $(1) --photos "$$$$REMODEL_PHOTOS" --records $(S)/photos --views $(2) --out $$@)
+	$$(hide)$$(call farm,rectify,$(1),$$@,--view $(1) --photos $$(PICTURES) --records $(S)/photos --views $(2) --out $$@)
 endef
 define view_rules
 $(call rectify_rule,$(1),$(O)/views)
@@ -286,14 +301,14 @@ $(E)/video.mp4: $(FRAME_EXR) $(PATH_TXT) $(call needs,encode_video)
 	$(call stage,encode_video,$(EFFECT),$(O),--path $(E) --frames $(E)/frames --out $@)
 
 $(O)/index.html: $(if $(HELDOUT)$(TRUTH),$(O)/metrics.tsv) $(E)/video.mp4 $(PATH_TXT) $(CAMERAS) $(DEPTH) $(DEPTH_TXT) $(S)/photos/list.txt $(STAGES:%=$(O)/slice/%.cfg) $(call needs,report)
-	$(call stage,report,page,$(O),--scene $(SCENE) --folder $(O) --shared $(S) --photos "$$REMODEL_PHOTOS" --defaults configs/default.cfg --out $@)
+	$(call stage,report,page,$(O),--scene $(SCENE) --folder $(O) --shared $(S) --photos $(PICTURES) --defaults configs/default.cfg --out $@)
 
 # What is looked at afresh in every run, also under -n: configs, photos. Files are rewritten only if their text changed.
 CONFIGS := configs/default.cfg $(if $(filter-out default,$(QUALITY)),configs/$(QUALITY).cfg) $(wildcard scenes/$(SCENE)/scene.cfg)
 .PHONY: look
 look:
 	+@common/look.sh slices $(BIN) $(O)/slice '$(STAGES)' $(CONFIGS)
-	+@common/look.sh slices $(BIN) $(S)/slice 'import_photos sfm' $(filter-out configs/draft.cfg configs/final.cfg,$(CONFIGS))
+	+@common/look.sh slices $(BIN) $(S)/slice 'import_photos hdr_merge sfm' $(filter-out configs/draft.cfg configs/final.cfg,$(CONFIGS))
 	+@common/look.sh photos $(BIN) $(S) scenes/$(SCENE)
 	+@common/look.sh evaluation $(BIN) $(O) '$(HOLDOUT)' '$(HOLDOUT_VIEWS)'
 endif

@@ -54,10 +54,10 @@ fi
 mode=silent
 [ -e "$folder/photos/list.txt" ] || mode=live
 common/run_stage.sh "$mode" import_photos all "$folder" "$bin/import_photos" --config "$folder/slice/import_photos.cfg" \
-    --photos "$REMODEL_PHOTOS" "${exclude[@]}" --out "$folder/photos"
+    --photos "$REMODEL_PHOTOS" --scene "$scene" "${exclude[@]}" --out "$folder/photos"
 [ "$mode" = live ] || grep -h warning: "$folder/log/import_photos.all.log" >&2 || true
 for r in "$folder"/photos/*.txt; do
-    [ "${r##*/}" = list.txt ] || { printf '%s ' "${r##*/}"; grep -E '^(size|orientation) ' "$r" | tr '\n' ' '; echo; }
+    [[ ${r##*/} = list.txt || ${r##*/} = brackets.txt ]] || { printf '%s ' "${r##*/}"; grep -E '^(size|orientation) ' "$r" | tr '\n' ' '; echo; }
 done | keep "$folder/stamp/photo_sizes.txt"
 {
     if [ -n "${REMODEL_SFM-}" ]; then

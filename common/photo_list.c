@@ -8,7 +8,8 @@
 #include "common/outfile.h"
 #include "common/textfile.h"
 
-#define QUOTED_SIZE 1024 /* a file name has at most 255 bytes */
+#define QUOTED_SIZE   1024 /* a file name has at most 255 bytes */
+#define MOST_BRACKETS 1000 /* of one view */
 
 static enum status keep_word(char **kept, const char *word, struct err *err)
 {
@@ -61,6 +62,48 @@ static enum status read_hash(struct textfile *t, char hash[HASH_TEXT], struct er
     return st;
 }
 
+static enum status read_exposure(struct textfile *t, const char *what, double *value, struct err *err)
+{
+    enum status st = textfile_double(t, what, value, err);
+    char found[32];
+    if (st || *value > 0) return st;
+    snprintf(found, sizeof found, "%.9g", *value);
+    return textfile_error(t, err, found, "%s above 0", what);
+}
+
+static enum status read_bracket(struct photo_record *r, struct textfile *t, struct err *err)
+{
+    struct bracket *b = &r->brackets[r->bracket_count], *before = r->bracket_count ? b - 1 : NULL;
+    char *word = NULL;
+    enum status st =
+        expect_line(t, "bracket", err) || textfile_word(t, "file name", &word, err) || keep_word(&b->file, word, err)
+            ? ST_DATA
+            : ST_OK;
+    if (st) return st;
+    r->bracket_count++; /* from here on it is released with the record */
+    st = read_hash(t, b->hash, err);
+    if (!st) st = read_exposure(t, "exposure", &b->exposure, err);
+    if (!st && before && before->exposure >= b->exposure)
+        st = textfile_error(t, err, b->file, "longer and longer exposures");
+    return st ? st : textfile_end(t, err);
+}
+
+static enum status read_brackets(struct photo_record *r, struct textfile *t, struct err *err)
+{
+    int count = 0;
+    char *word = NULL;
+    enum status st = textfile_word(t, "brackets", &word, err);
+    if (!st && strcmp(word, "brackets")) st = textfile_error(t, err, word, "a line \"brackets ...\", or the end");
+    if (!st) st = read_int(t, "number of exposures", 1, MOST_BRACKETS, &count, err);
+    if (!st) st = read_int(t, "index of the middle exposure", 0, count - 1, &r->middle, err);
+    if (!st) st = read_exposure(t, "exposure of white", &r->white, err);
+    if (!st) st = textfile_end(t, err);
+    if (!st && !(r->brackets = calloc((size_t)count, sizeof *r->brackets)))
+        st = err_nomem(err, "a list of exposures", (size_t)count * sizeof *r->brackets);
+    while (!st && r->bracket_count < count) st = read_bracket(r, t, err);
+    return st;
+}
+
 static enum status read_fields(struct photo_record *r, struct textfile *t, struct err *err)
 {
     struct photo_info *info = &r->info;
@@ -84,6 +127,7 @@ static enum status read_fields(struct photo_record *r, struct textfile *t, struc
                 read_text(t, "model", info->model, sizeof info->model, err) || textfile_end(t, err)
             ? ST_DATA
             : ST_OK;
+    if (!st && textfile_next(t)) st = read_brackets(r, t, err);
     if (!st && textfile_next(t)) {
         char *more = NULL;
         if (!(st = textfile_rest(t, "a line", &more, err))) st = textfile_error(t, err, more, "the end of the file");
@@ -165,33 +209,72 @@ enum status photo_record_write(const struct photo_record *r, const char *folder,
         fprintf(to, "exif %.17g %.17g %.17g %.17g %.17g\n", info->focal_mm, info->focal35_mm, info->seconds,
                 info->f_number, info->iso);
         fprintf(to, "camera %s %s\n", make, model);
+        if (r->bracket_count) fprintf(to, "brackets %d %d %.17g\n", r->bracket_count, r->middle, r->white);
+        for (int i = 0; !st && i < r->bracket_count; i++) {
+            const struct bracket *b = &r->brackets[i];
+            st = textfile_quote(b->file, file, sizeof file, err);
+            if (!st) fprintf(to, "bracket %s %s %.17g\n", file, b->hash, b->exposure);
+        }
         st = finish_text(to, &text, &size, path, st, err);
     }
     free(path);
     return st;
 }
 
+static enum status print_list(const struct photo_list *list, FILE *to, struct err *err)
+{
+    char file[QUOTED_SIZE];
+    enum status st = ST_OK;
+    for (int i = 0; !st && i < list->count; i++) {
+        st = textfile_quote(list->photos[i].file, file, sizeof file, err);
+        if (!st) fprintf(to, "%s %s\n", list->photos[i].id, file);
+    }
+    return st;
+}
+
+static enum status print_make(const struct photo_list *list, FILE *to, struct err *err)
+{
+    (void)err;
+    fputs("PHOTO_IDS :=", to);
+    for (int i = 0; i < list->count; i++) fprintf(to, " %s", list->photos[i].id);
+    fputs(list->count && list->photos[0].bracket_count ? "\nBRACKETED := yes\n" : "\n", to);
+    return ST_OK;
+}
+
+static enum status print_brackets(const struct photo_list *list, FILE *to, struct err *err)
+{
+    char file[QUOTED_SIZE];
+    enum status st = ST_OK;
+    fputs("# VIEW FILE FILE ... from the shortest exposure on\n", to);
+    for (int i = 0; !st && i < list->count; i++) {
+        fputs(list->photos[i].id, to);
+        for (int k = 0; !st && k < list->photos[i].bracket_count; k++) {
+            st = textfile_quote(list->photos[i].brackets[k].file, file, sizeof file, err);
+            if (!st) fprintf(to, " %s", file);
+        }
+        fputc('\n', to);
+    }
+    return st;
+}
+
 enum status photo_list_write(const struct photo_list *list, const char *folder, struct err *err)
 {
+    static const struct {
+        const char *name;
+        enum status (*print)(const struct photo_list *list, FILE *to, struct err *err);
+    } texts[] = {{"brackets.txt", print_brackets}, {"list.txt", print_list}, {"photos.mk", print_make}};
+    bool bracketed = list->count && list->photos[0].bracket_count;
     enum status st = ST_OK;
-    for (int make = 0; !st && make < 2; make++) { /* list.txt, then photos.mk */
-        char *path = NULL, *text = NULL, file[QUOTED_SIZE];
+    for (int i = bracketed ? 0 : 1; !st && i < 3; i++) {
+        char *path = NULL, *text = NULL;
         size_t size = 0;
         FILE *to = open_memstream(&text, &size);
         if (!to) return err_nomem(err, "a list of photos", 0);
-        if (asprintf(&path, "%s/%s", folder, make ? "photos.mk" : "list.txt") < 0) {
+        if (asprintf(&path, "%s/%s", folder, texts[i].name) < 0) {
             path = NULL;
             st = err_nomem(err, "a path", 0);
         }
-        if (make) fputs("PHOTO_IDS :=", to);
-        for (int i = 0; !st && i < list->count; i++) {
-            if (!make) st = textfile_quote(list->photos[i].file, file, sizeof file, err);
-            if (make)
-                fprintf(to, " %s", list->photos[i].id);
-            else if (!st)
-                fprintf(to, "%s %s\n", list->photos[i].id, file);
-        }
-        if (make) fputc('\n', to);
+        if (!st) st = texts[i].print(list, to, err);
         st = finish_text(to, &text, &size, path, st, err);
         free(path);
     }
@@ -260,6 +343,8 @@ int photo_list_find_file(const struct photo_list *list, const char *file)
 void photo_record_release(struct photo_record *r)
 {
     if (!r) return;
+    for (int i = 0; i < r->bracket_count; i++) free(r->brackets[i].file);
+    free(r->brackets);
     free(r->id);
     free(r->file);
     *r = (struct photo_record){0};

@@ -14,5 +14,9 @@ int photo_list_match(const struct photo_list *photos, const char *name)
     size_t stem = dot ? (size_t)(dot - base) : strlen(base);
     for (int i = 0; at < 0 && i < photos->count; i++)
         if (!strncmp(photos->photos[i].id, base, stem) && !photos->photos[i].id[stem]) at = i;
+    for (int i = 0; at < 0 && i < photos->count; i++) {
+        const struct photo_record *p = &photos->photos[i];
+        if (p->bracket_count && !strcmp(p->brackets[p->middle].file, base)) at = i;
+    }
     return at;
 }

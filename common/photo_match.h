@@ -4,8 +4,8 @@
 
 #include "photo_list.h"
 
-/* By exact file name, else by the name behind its last slash, else by the photo's id with or without an extension.
- * Index into the list; -1: none. */
+/* By exact file name, else by the name behind its last slash, else by the photo's id with or without an extension, else
+ * by the file name of a view's middle exposure. Index into the list; -1: none. */
 int photo_list_match(const struct photo_list *photos, const char *name);
 
 #endif

@@ -118,11 +118,17 @@ evaluate()
     one evaluate
 }
 
+# photos that are exposures of one view are merged before anything sees them
+merge_brackets() { [ ! -e "$S/photos/brackets.txt" ] || farm hdr_merge hdr 1 "${VIEWS_PER_JOB:-4}"; }
+
 if [ "$goal" = resfm ]; then
+    merge_brackets
     one -W "$S/photos/list.txt" sfm
     echo "make SCENE=$scene goes on from the new camera poses."
     exit 0
 fi
+merge_brackets
+case $goal in hdr) exit 0 ;; esac
 one sfm
 common/explain.sh changed-photos "$S" "$scene"
 case $goal in sfm) exit 0 ;; esac

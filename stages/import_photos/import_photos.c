@@ -1,15 +1,20 @@
-/* import_photos.c - checks the photographs of a folder and gives them ids.
+/* import_photos.c - checks the photographs of a folder, gives them ids, finds which are exposures of one view.
  *
- * reads   --photos DIR   *.jpg *.jpeg *.png straight in it; nothing in there is written
+ * reads   --photos DIR   *.jpg *.jpeg *.png straight in it, exposures.txt; nothing in there is written
+ *         --scene DIR    brackets.txt, exposures.txt if they are there
  * writes  --out DIR      ID.txt, a record a photo (content hash, size, EXIF); then list.txt; then photos.mk
+ *                        where photos are brackets: members/ID.txt, a record a photo; ID.txt, a record a view, and
+ *                        brackets.txt; then list.txt and photos.mk with the views
  *
  * Each file is rewritten only if its text changes, so that Make sees which photos did. A photo that cannot be used is
  * named with the reason, and so are all others like it, before the stage fails. */
+#include <stdlib.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "common/cli.h"
 #include "common/log.h"
-#include "stages/import_photos/photo_scan.h"
+#include "stages/import_photos/bracket_views.h"
 
 /* The user's folder is never written to. */
 static enum status check_out(const char *photos, const char *out, struct err *err)
@@ -19,11 +24,56 @@ static enum status check_out(const char *photos, const char *out, struct err *er
     return err_set(err, ST_USAGE, "--out %s is the folder of photos itself; name another one for the records.", out);
 }
 
-static void leave_out(struct photo_scan *scan, const struct cli_list *exclude)
+static bool is_there(const char *folder, const char *name)
 {
-    for (int i = 0; i < exclude->count; i++)
-        if (!photo_scan_exclude(scan, exclude->items[i]))
-            log_warn("no photo in %s is called %s; nothing is left out for it.", scan->folder, exclude->items[i]);
+    char *path = NULL;
+    bool there = asprintf(&path, "%s/%s", folder, name) >= 0 && !access(path, F_OK);
+    free(path);
+    return there;
+}
+
+/* Photos, and then views that are exposures of them, by the names that are to be left out. */
+struct left_out {
+    const struct cli_list *names;
+    bool *used;
+};
+
+static void leave_out(struct photo_scan *scan, struct left_out *out)
+{
+    for (int i = 0; i < out->names->count; i++) out->used[i] = photo_scan_exclude(scan, out->names->items[i]) > 0;
+}
+
+static void report_left_out(const struct photo_scan *scan, const struct left_out *out)
+{
+    for (int i = 0; i < out->names->count; i++)
+        if (!out->used[i])
+            log_warn("no photo in %s is called %s; nothing is left out for it.", scan->folder, out->names->items[i]);
+}
+
+/* Where photos are brackets their own records are in `members`, even when they cannot be grouped or one is bad: what
+ * was known of the views stays untouched until all is well. */
+static enum status import(struct photo_scan *scan, const char *scene, struct left_out *leave, const char *out,
+                          const struct import_params *params, struct err *err)
+{
+    struct bracket_views views = {0};
+    char *members = NULL;
+    bool bad = photo_scan_bad(scan) > 0;
+    enum status st = ST_OK;
+    if (asprintf(&members, "%s/members", out) < 0) return err_nomem(err, "a path", 0);
+    if (!bad)
+        st =
+            bracket_views_find(&views, scan, scene, params, leave->names->items, leave->names->count, leave->used, err);
+    bool bracketed = st || views.bracketed || (bad && is_there(out, "brackets.txt"));
+    report_left_out(scan, leave);
+    if (!bracketed)
+        st = photo_scan_write(scan, out, err);
+    else if (photo_scan_write_records(scan, members, err) || st)
+        st = err->status;
+    else
+        st = bracket_views_write(&views, scan, out, err);
+    bracket_views_release(&views);
+    free(members);
+    return st;
 }
 
 static void report_scan(const struct photo_scan *scan)
@@ -34,13 +84,17 @@ static void report_scan(const struct photo_scan *scan)
 
 int main(int argc, char **argv)
 {
-    const char *photos = NULL, *out = NULL;
+    const char *photos = NULL, *scene = NULL, *out = NULL;
     struct cli_list exclude = {0};
+    struct import_params params = IMPORT_PARAMS_DEFAULT;
     const struct cli_opt opts[] = {
         CLI_ABOUT("check the photographs of a folder, give them ids, record what they are"),
         CLI_STR("photos", &photos, CLI_REQUIRED, "folder of JPEG and PNG photos; sub-folders are not looked into"),
-        CLI_LIST("exclude", &exclude, CLI_OPTIONAL, "photo to leave out: file name, with or without ending, or id"),
+        CLI_STR("scene", &scene, CLI_OPTIONAL, "folder that may hold brackets.txt and exposures.txt"),
+        CLI_LIST("exclude", &exclude, CLI_OPTIONAL,
+                 "photo to leave out: file name, with or without ending, or id; or a view"),
         CLI_STR("out", &out, CLI_REQUIRED, "folder of records to write"),
+        CLI_PARAMS(import_param_table, &params, NULL),
         CLI_END,
     };
     struct provenance prov = {0};
@@ -50,9 +104,12 @@ int main(int argc, char **argv)
     switch (cli_parse(argc, argv, "import_photos", opts, &prov, &err)) {
     case CLI_RUN:
         if (!check_out(photos, out, &err) && !photo_scan_folder(&scan, photos, &err)) {
-            leave_out(&scan, &exclude);
-            if (!photo_scan_check(&scan, out, &err)) photo_scan_write(&scan, out, &err);
+            struct left_out left = {&exclude, calloc((size_t)exclude.count + 1, sizeof(bool))};
+            if (!left.used) err_nomem(&err, "names", (size_t)exclude.count);
+            if (left.used) leave_out(&scan, &left);
+            if (left.used && !photo_scan_check(&scan, out, &err)) import(&scan, scene, &left, out, &params, &err);
             report_scan(&scan);
+            free(left.used);
         }
         err_report(&err);
         break;

@@ -15,10 +15,7 @@
 #include "common/progress.h"
 #include "common/textfile.h"
 
-#define ID_MOST 100 /* of 255 bytes in a file name: leaves room for @k, endings and a temporary name */
-
-/* Length of the name without .jpg, .jpeg or .png; 0 if it has none of them. */
-static size_t stem_length(const char *file)
+size_t photo_stem(const char *file)
 {
     static const char *const endings[] = {".jpg", ".jpeg", ".png"};
     size_t length = strlen(file);
@@ -34,11 +31,11 @@ static bool id_char(char c)
     return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '_' || c == '-';
 }
 
-static void id_from_stem(char id[ID_MOST + 1], const char *stem, size_t length)
+void photo_id_from_stem(char id[PHOTO_ID_MOST + 1], const char *stem, size_t length)
 {
     size_t n = 0;
     bool begun = false, named = false, run = false; /* run: in a run of other characters */
-    for (size_t i = 0; i < length && n < ID_MOST; i++) {
+    for (size_t i = 0; i < length && n < PHOTO_ID_MOST; i++) {
         bool plain = id_char(stem[i]) && (begun || stem[i] != '-');
         if (plain || !run) id[n++] = plain ? stem[i] : '_';
         begun |= plain;
@@ -59,16 +56,18 @@ static int by_id(const void *a, const void *b)
     return strcmp(((const struct scanned_photo *)a)->id, ((const struct scanned_photo *)b)->id);
 }
 
+bool photo_id_reserved(const char *id) { return !strcmp(id, "list") || !strcmp(id, "brackets"); }
+
 static bool id_taken(const struct photo_scan *scan, const char *id)
 {
-    if (!strcmp(id, "list")) return true; /* list.txt is the list of photos */
+    if (photo_id_reserved(id)) return true;
     for (int i = 0; i < scan->count; i++)
         if (scan->photos[i].id && !strcmp(scan->photos[i].id, id)) return true;
     return false;
 }
 
 struct base_id {
-    char text[ID_MOST + 1];
+    char text[PHOTO_ID_MOST + 1];
     int photo;
 };
 
@@ -86,7 +85,7 @@ static enum status assign_ids(struct photo_scan *scan, struct err *err)
     enum status st = bases && sorted && shared ? ST_OK : err_nomem(err, "the photos' ids", count * sizeof *bases);
 
     for (size_t i = 0; !st && i < count; i++) {
-        id_from_stem(bases[i].text, scan->photos[i].file, stem_length(scan->photos[i].file));
+        photo_id_from_stem(bases[i].text, scan->photos[i].file, photo_stem(scan->photos[i].file));
         bases[i].photo = (int)i;
         sorted[i] = bases[i];
     }
@@ -94,18 +93,18 @@ static enum status assign_ids(struct photo_scan *scan, struct err *err)
     for (size_t i = 0; !st && i < count; i++)
         shared[sorted[i].photo] = (i && !by_base(&sorted[i], &sorted[i - 1])) ||
                                   (i + 1 < count && !by_base(&sorted[i], &sorted[i + 1])) ||
-                                  !strcmp(sorted[i].text, "list");
+                                  photo_id_reserved(sorted[i].text);
     for (int pass = 0; pass < 2; pass++) {
         for (size_t i = 0; !st && i < count; i++) {
             struct scanned_photo *p = &scan->photos[i];
-            char id[ID_MOST + 32];
+            char id[PHOTO_ID_MOST + 32];
             if (shared[i] != (pass == 1)) continue;
             if (shared[i]) {
                 int n = 1, length = snprintf(id, sizeof id, "%s_%s", bases[i].text, strrchr(p->file, '.') + 1);
                 while (id_taken(scan, id)) snprintf(id + length, sizeof id - (size_t)length, "-%d", ++n);
             }
             p->id = strdup(shared[i] ? id : bases[i].text);
-            if (!p->id) st = err_nomem(err, "a photo's id", ID_MOST);
+            if (!p->id) st = err_nomem(err, "a photo's id", PHOTO_ID_MOST);
         }
     }
     free(bases);
@@ -124,10 +123,10 @@ static char *join_path(const char *folder, const char *name, const char *ending)
 static enum status scan_entry(struct photo_scan *scan, const char *name, struct err *err)
 {
     struct stat info;
-    if (name[0] == '.') return ST_OK;
+    if (name[0] == '.' || !strcmp(name, "exposures.txt")) return ST_OK;
     char *path = join_path(scan->folder, name, "");
     if (!path) return err_nomem(err, "a path", 0);
-    bool other = !stem_length(name) || (!stat(path, &info) && !S_ISREG(info.st_mode)); /* a dead link is a bad photo */
+    bool other = !photo_stem(name) || (!stat(path, &info) && !S_ISREG(info.st_mode)); /* a dead link is a bad photo */
     free(path);
     if (other) {
         scan->ignored++;
@@ -168,7 +167,7 @@ int photo_scan_exclude(struct photo_scan *scan, const char *name)
     int matched = 0;
     for (int i = 0; i < scan->count; i++) {
         struct scanned_photo *p = &scan->photos[i];
-        size_t stem = stem_length(p->file);
+        size_t stem = photo_stem(p->file);
         if (strcmp(name, p->file) && strcmp(name, p->id) && (strlen(name) != stem || strncmp(name, p->file, stem)))
             continue;
         p->excluded = true;
@@ -183,19 +182,28 @@ struct check_job {
     struct progress progress;
 };
 
+static bool read_old_record(struct photo_record *old, const char *records, const char *id)
+{
+    struct err ignored = ERR_INIT;
+    char *members = join_path(records, "members", "");
+    bool found =
+        (members && !photo_record_read(old, members, id, &ignored)) || !photo_record_read(old, records, id, &ignored);
+    free(members);
+    return found;
+}
+
 /* The record for the file as it is now. The old one is good for as long as the file's bytes are the same. */
 static enum status check_photo(struct scanned_photo *p, const char *folder, const char *records)
 {
     struct photo_record old = {0};
     struct photo photo = {0};
-    struct err ignored = ERR_INIT;
     char quoted[1024];
     char *path = join_path(folder, p->file, "");
     enum status st = path ? ST_OK : err_nomem(&p->err, "a path", 0);
 
     if (!st) st = textfile_quote(p->file, quoted, sizeof quoted, &p->err);
     if (!st) st = hash_file(p->record.hash, path, &p->err);
-    if (!st && !photo_record_read(&old, records, p->id, &ignored) && !strcmp(old.hash, p->record.hash)) {
+    if (!st && read_old_record(&old, records, p->id) && !strcmp(old.hash, p->record.hash)) {
         p->record.info = old.info;
     } else if (!st) {
         st = photo_read(&photo, path, &p->err);
@@ -234,17 +242,16 @@ enum status photo_scan_check(struct photo_scan *scan, const char *records, struc
     return ST_OK;
 }
 
-static const struct scanned_photo *good_photo(const struct photo_scan *scan, const char *id, size_t length)
+static bool good(const struct scanned_photo *p) { return !p->excluded && !p->err.status; }
+
+static bool has_id(const char *const *ids, int count, const char *id, size_t length)
 {
-    for (int i = 0; i < scan->count; i++) {
-        const struct scanned_photo *p = &scan->photos[i];
-        if (strlen(p->id) == length && !strncmp(p->id, id, length)) return p->excluded || p->err.status ? NULL : p;
-    }
-    return NULL;
+    for (int i = 0; i < count; i++)
+        if (strlen(ids[i]) == length && !strncmp(ids[i], id, length)) return true;
+    return false;
 }
 
-/* Records of photos that are gone, left out or bad. */
-static enum status remove_stale(const struct photo_scan *scan, const char *records, struct err *err)
+enum status photo_scan_remove_others(const char *records, const char *const *ids, int count, struct err *err)
 {
     DIR *dir = opendir(records);
     enum status st = ST_OK;
@@ -252,7 +259,7 @@ static enum status remove_stale(const struct photo_scan *scan, const char *recor
     for (struct dirent *entry; !st && (entry = readdir(dir));) {
         size_t length = strlen(entry->d_name);
         if (length < 5 || strcmp(entry->d_name + length - 4, ".txt") || entry->d_name[0] == '.' ||
-            !strcmp(entry->d_name, "list.txt") || good_photo(scan, entry->d_name, length - 4))
+            !strcmp(entry->d_name, "list.txt") || has_id(ids, count, entry->d_name, length - 4))
             continue;
         char *path = join_path(records, entry->d_name, "");
         if (!path)
@@ -265,7 +272,21 @@ static enum status remove_stale(const struct photo_scan *scan, const char *recor
     return st;
 }
 
-static enum status bad_photos_error(const struct photo_scan *scan, int bad, int used, struct err *err)
+int photo_scan_bad(const struct photo_scan *scan)
+{
+    int bad = 0;
+    for (int i = 0; i < scan->count; i++) bad += !scan->photos[i].excluded && scan->photos[i].err.status;
+    return bad;
+}
+
+static int used_photos(const struct photo_scan *scan)
+{
+    int used = 0;
+    for (int i = 0; i < scan->count; i++) used += !scan->photos[i].excluded;
+    return used;
+}
+
+static enum status bad_photos_error(const struct photo_scan *scan, int bad, struct err *err)
 {
     char names[1024] = "";
     for (int i = 0; i < scan->count; i++) {
@@ -274,33 +295,39 @@ static enum status bad_photos_error(const struct photo_scan *scan, int bad, int 
             snprintf(names + n, sizeof names - n, " %s", scan->photos[i].id);
     }
     return err_set(err, ST_DATA, "%d of %d photos in %s cannot be used: mend them, or leave them out (EXCLUDE =%s).",
-                   bad, used, scan->folder, names);
+                   bad, used_photos(scan), scan->folder, names);
+}
+
+enum status photo_scan_write_records(const struct photo_scan *scan, const char *records, struct err *err)
+{
+    int count = 0, bad = photo_scan_bad(scan);
+    const char **ids = calloc((size_t)scan->count + 1, sizeof *ids);
+    enum status st = ids ? make_folders(records, err) : err_nomem(err, "ids", (size_t)scan->count * sizeof *ids);
+
+    for (int i = 0; !st && i < scan->count; i++)
+        if (good(&scan->photos[i])) ids[count++] = scan->photos[i].id;
+    if (!st) st = photo_scan_remove_others(records, ids, count, err);
+    for (int i = 0; !st && i < scan->count; i++)
+        if (good(&scan->photos[i])) st = photo_record_write(&scan->photos[i].record, records, err);
+    if (!st && bad) st = bad_photos_error(scan, bad, err);
+    free(ids);
+    return st;
 }
 
 enum status photo_scan_write(const struct photo_scan *scan, const char *records, struct err *err)
 {
     struct photo_list list = {0};
-    int bad = 0, used = 0;
-    enum status st = make_folders(records, err);
+    int used = used_photos(scan);
+    enum status st = photo_scan_write_records(scan, records, err);
 
-    for (int i = 0; i < scan->count; i++) {
-        used += !scan->photos[i].excluded;
-        bad += !scan->photos[i].excluded && scan->photos[i].err.status;
-    }
-    if (!st) st = remove_stale(scan, records, err);
-    if (!st && !(list.photos = calloc((size_t)scan->count + 1, sizeof *list.photos)))
-        st = err_nomem(err, "a list of photos", (size_t)scan->count * sizeof *list.photos);
-    for (int i = 0; !st && i < scan->count; i++) {
-        const struct scanned_photo *p = &scan->photos[i];
-        if (p->excluded || p->err.status) continue;
-        list.photos[list.count++] = p->record; /* borrowed */
-        st = photo_record_write(&p->record, records, err);
-    }
-    if (!st && bad) st = bad_photos_error(scan, bad, used, err);
     if (!st && used < 2)
         st = err_set(err, ST_DATA,
                      "%s holds %s JPEG or PNG photo%s; a parallax video needs at least 2, taken from different places.",
                      scan->folder, used ? "one" : "no", used < scan->count ? " that is not left out" : "");
+    if (!st && !(list.photos = calloc((size_t)scan->count + 1, sizeof *list.photos)))
+        st = err_nomem(err, "a list of photos", (size_t)scan->count * sizeof *list.photos);
+    for (int i = 0; !st && i < scan->count; i++)
+        if (good(&scan->photos[i])) list.photos[list.count++] = scan->photos[i].record; /* borrowed */
     if (!st) st = photo_list_write(&list, records, err);
     free(list.photos);
     return st;

@@ -23,7 +23,7 @@ struct photo_scan {
     char *folder;                 /* owned */
     struct scanned_photo *photos; /* in order of id (strcmp) */
     int count;
-    int ignored; /* other files and folders in there, hidden ones not counted */
+    int ignored; /* other files and folders in there; hidden ones and exposures.txt are not counted */
 };
 
 /* ST_IO, ST_DATA: the folder is missing, no folder, or unreadable. No photo at all is no error yet. */
@@ -32,14 +32,27 @@ enum status photo_scan_folder(struct photo_scan *scan, const char *folder, struc
 /* Leaves out the photos whose file name, id or name without its ending is `name`; how many these are. */
 int photo_scan_exclude(struct photo_scan *scan, const char *name);
 
-/* Every photo that is not left out: its record, taken from `records` if the file has not changed since, otherwise
- * after decoding it to the last pixel. Photos that cannot be used have `err` set; they are no error of this
- * function. */
+/* Every photo that is not left out: its record, taken from `records` or its folder `members` if the file has not
+ * changed since, otherwise after decoding it to the last pixel. Photos that cannot be used have `err` set; they are no
+ * error of this function. */
 enum status photo_scan_check(struct photo_scan *scan, const char *records, struct err *err);
+int photo_scan_bad(const struct photo_scan *scan); /* how many these are */
 
-/* Writes the records of the good photos, removes those of all others, and if every photo is good the list and
- * photos.mk. ST_DATA: bad photos (each has its own `err`), or fewer than two. */
+/* Writes the records of the good photos and removes those of all others. ST_DATA: bad photos (each has its own
+ * `err`). */
+enum status photo_scan_write_records(const struct photo_scan *scan, const char *records, struct err *err);
+
+/* The same, and then the list and photos.mk. ST_DATA also for fewer than two photos. */
 enum status photo_scan_write(const struct photo_scan *scan, const char *records, struct err *err);
+
+/* Removes the records in a folder but for those of the ids. */
+enum status photo_scan_remove_others(const char *records, const char *const *ids, int count, struct err *err);
+
+/* What ids are made of. */
+enum { PHOTO_ID_MOST = 100 };        /* of 255 bytes in a file name: leaves room for @k, endings and a temporary name */
+size_t photo_stem(const char *file); /* length of the name without .jpg, .jpeg or .png; 0 if it has none of them */
+bool photo_id_reserved(const char *id); /* a name of the scene's own: list, brackets */
+void photo_id_from_stem(char id[PHOTO_ID_MOST + 1], const char *stem, size_t length);
 
 void photo_scan_release(struct photo_scan *scan);
 

@@ -1,17 +1,21 @@
 /* rectify.c - resamples a photograph into its view's pinhole camera, in linear colour.
  *
  * reads   VIEWS/cameras.txt, images.txt, lenses.txt   the view's camera, and the photo's lens
- *         RECORDS/ID.txt, PHOTOS/FILE                 the photo
+ *         RECORDS/ID.txt, PHOTOS/FILE                 the photo; of a view of several exposures PHOTOS/ID.exr, merged
  * writes  OUT                                         VIEW.exr: R G B (linear), A */
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "common/cli.h"
+#include "common/exr.h"
 #include "common/lens_list.h"
 #include "common/photo_list.h"
 #include "common/view_image.h"
 #include "stages/rectify/resample.h"
+
+enum { RADIOMETRY_SIZE = 256 };
 
 /* The caller frees it. NULL: no memory. */
 static char *joined(const char *folder, const char *file)
@@ -34,16 +38,51 @@ static enum status find_view(const struct view **view, const struct lens **lens,
     return ST_OK;
 }
 
-static enum status read_photo(struct image *linear, const char *photos, const char *file, struct provenance *prov,
-                              struct err *err)
+/* PHOTOS/FILE, scene-linear by the sRGB curve. */
+static enum status read_photo(struct image *linear, const char *path, struct err *err)
 {
     struct photo photo = {0};
-    char *path = joined(photos, file), *input = joined("photos", file);
-    enum status st = path && input ? ST_OK : err_nomem(err, "a file name", strlen(photos) + strlen(file));
-    if (!st) st = photo_read(&photo, path, err);
+    enum status st = photo_read(&photo, path, err);
     if (!st) st = photo_to_linear(linear, &photo, err);
-    if (!st) st = provenance_add_file(prov, input, path, err);
     photo_release(&photo);
+    return st;
+}
+
+/* What hdr_merge made of the photo's exposures. */
+static enum status read_merged(struct image *linear, const char *path, char radiometry[RADIOMETRY_SIZE],
+                               struct err *err)
+{
+    static const char *const names[] = {"R", "G", "B"};
+    struct exr_image exr = {0};
+    enum status st = exr_read(&exr, path, names, 3, err);
+    for (int c = 0; !st && c < 3; c++)
+        if (!exr_find(&exr, names[c])->f)
+            st = err_set(err, ST_DATA, "%s: channel %s holds integers, wanted half or float; merge the view again.",
+                         path, names[c]);
+    if (!st) st = image_init(linear, exr.width, exr.height, 3, err);
+    for (size_t c = 0; !st && c < 3; c++) {
+        const float *from = exr_find(&exr, names[c])->f;
+        size_t pixels = (size_t)exr.width * (size_t)exr.height;
+        for (size_t i = 0; i < pixels; i++) linear->data[3 * i + c] = fmaxf(from[i], 0);
+    }
+    const char *is = exr_attribute(&exr, "remodel:radiometry");
+    if (!st && is) snprintf(radiometry, RADIOMETRY_SIZE, "%s", is);
+    exr_image_release(&exr);
+    return st;
+}
+
+static enum status read_source(struct image *linear, char radiometry[RADIOMETRY_SIZE], const char *photos,
+                               const struct photo_record *record, struct provenance *prov, struct err *err)
+{
+    char merged[512]; /* an id has at most 255 bytes */
+    bool brackets = record->bracket_count > 0;
+    snprintf(merged, sizeof merged, "%s.exr", record->id);
+    const char *file = brackets ? merged : record->file;
+    char *path = joined(photos, file), *input = joined(brackets ? "hdr" : "photos", file);
+    enum status st = path && input ? ST_OK : err_nomem(err, "a file name", strlen(photos) + strlen(file));
+    strcpy(radiometry, "approximate");
+    if (!st) st = brackets ? read_merged(linear, path, radiometry, err) : read_photo(linear, path, err);
+    if (!st) st = provenance_add_file(prov, input, path, err);
     free(input);
     free(path);
     return st;
@@ -58,19 +97,19 @@ static enum status rectify(const char *name, const char *photos, const char *rec
     struct image linear = {0}, rectified = {0};
     const struct view *view = NULL;
     const struct lens *lens = NULL;
-    char *lens_path = joined(views, "lenses.txt");
+    char *lens_path = joined(views, "lenses.txt"), radiometry[RADIOMETRY_SIZE] = "";
     enum status st = lens_path ? ST_OK : err_nomem(err, "a file name", strlen(views));
     if (!st) st = camera_set_read(&set, views, err);
     if (!st) st = lens_list_read(&lenses, lens_path, err);
     if (!st) st = find_view(&view, &lens, &set, &lenses, name, views, err);
     if (!st) st = photo_record_read(&record, records, lens->photo, err);
-    if (!st) st = read_photo(&linear, photos, record.file, prov, err);
+    if (!st) st = read_source(&linear, radiometry, photos, &record, prov, err);
     if (!st) {
         struct mat3 photo_from_view = mat3_transpose(mat3_from_quat(lens->view_from_photo));
         st = resample_photo(&rectified, &linear, &lens->camera, &photo_from_view, view, err);
         if (st) err_context(err, "%s/%s", photos, record.file);
     }
-    if (!st) st = view_image_write(&rectified, out, view, prov, "approximate", err);
+    if (!st) st = view_image_write(&rectified, out, view, prov, radiometry, err);
     image_release(&rectified);
     image_release(&linear);
     photo_record_release(&record);
@@ -86,7 +125,7 @@ int main(int argc, char **argv)
     const struct cli_opt opts[] = {
         CLI_ABOUT("Resamples a photograph into its view's pinhole camera, in linear colour."),
         CLI_STR("view", &view, CLI_REQUIRED, "view to make"),
-        CLI_STR("photos", &photos, CLI_REQUIRED, "folder of photographs"),
+        CLI_STR("photos", &photos, CLI_REQUIRED, "folder of photographs, or of merged exposures"),
         CLI_STR("records", &records, CLI_REQUIRED, "folder of the photos' records"),
         CLI_STR("views", &views, CLI_REQUIRED, "folder of cameras and lenses"),
         CLI_STR("out", &out, CLI_REQUIRED, "EXR to write"),

@@ -9,7 +9,7 @@
 #include "style.h"
 
 /* The order of the data's way; further stages follow in order of appearance. */
-static const char *const CHAIN[] = {"import_photos", "sfm",       "sfm_import",   "rectify",
+static const char *const CHAIN[] = {"import_photos", "hdr_merge", "sfm",          "sfm_import",  "rectify",
                                     "segment_depth", "plan_path", "render_views", "encode_video"};
 enum { CHAIN_LENGTH = sizeof CHAIN / sizeof *CHAIN };
 

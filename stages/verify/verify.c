@@ -1,12 +1,13 @@
 /* verify.c - says whether products are whole.
  *
- * reads  FILE...   EXR files (every chunk is decoded) and text products (not empty, ending in a line break)
+ * reads  FILE...   EXR and JPEG files (decoded to the last pixel) and text products (not empty, ending in a line break)
  * writes nothing; exit 1 with a sentence for the first file that is missing or not whole. */
 #include <stdio.h>
 #include <string.h>
 
 #include "common/cli.h"
 #include "common/exr.h"
+#include "common/photo.h"
 
 static enum status verify_text(const char *path, struct err *err)
 {
@@ -19,9 +20,18 @@ static enum status verify_text(const char *path, struct err *err)
                                   last == EOF ? "nothing" : "no line break at the end");
 }
 
+static enum status verify_photo(const char *path, struct err *err)
+{
+    struct photo photo = {0};
+    enum status st = photo_read(&photo, path, err);
+    photo_release(&photo);
+    return st;
+}
+
 static enum status verify_file(const char *path, struct err *err)
 {
     size_t n = strlen(path);
+    if (n >= 4 && !strcmp(path + n - 4, ".jpg")) return verify_photo(path, err);
     if (n < 4 || strcmp(path + n - 4, ".exr")) return verify_text(path, err);
     struct exr_image im = {0};
     enum status st = exr_read(&im, path, NULL, 0, err);

@@ -39,6 +39,8 @@ parameters_out_of_range_are_refused()
     expect 2 "planes" "$B/bin/segment_depth" --set planes=-1
     expect 2 "planes" "$B/bin/segment_depth" --set planes=1e9
     expect 2 "max_holes" "$B/bin/plan_path" --set max_holes=nan
+    expect 2 "brackets" "$B/bin/import_photos" --set brackets=maybe
+    expect 2 "saturated" "$B/bin/hdr_merge" --set saturated=2
     expect 2 "camera_model" "$B/bin/sfm" --set camera_model=FISH
     expect 2 "baseline" "$B/bin/evaluate" --set baseline=-1
 }
@@ -56,6 +58,7 @@ missing_inputs_fail_with_their_name()
 {
     d=$scratch/nowhere
     expect 1 "$d" "$B/bin/import_photos" --photos "$d" --out "$scratch/o"
+    expect 1 "$d" "$B/bin/hdr_merge" --id v --photos "$d" --records "$d" --out "$scratch/o"
     expect 1 "$d" "$B/bin/sfm_import" --sfm "$d" --records "$d" --out "$scratch/o"
     expect 1 "$d" "$B/bin/rectify" --view v --photos "$d" --records "$d" --views "$d" --out "$scratch/o/v.exr"
     expect 1 "$d" "$B/bin/segment_depth" --view v --views "$d" --out "$scratch/o/v.exr"

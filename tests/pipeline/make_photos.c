@@ -6,6 +6,8 @@
  * no EXIF. Scene units; x right, y down, z into the room. The same options give the same bytes.
  *
  * writes  DIR/photos/photo_N.jpg                          16 samples a pixel, quality 95
+ *         DIR/photos/photo_N_eK.jpg                       in place of it with --brackets: exposures two stops apart around
+ *                                                         the middle one, their times, f-number and ISO in EXIF
  *         DIR/model/{cameras,images,points3D}.txt         COLMAP text: true poses, surface points and their tracks
  *         DIR/truth/photo_N.exr                           Z at the pixels' centres, id: 1 wall, 2 floor, 3 box */
 #include <stdio.h>
@@ -190,8 +192,60 @@ static void render_rows(void *ctx, size_t begin, size_t end, int thread)
         }
 }
 
-static enum status write_view(const struct room_view *rv, const char *folder, const struct provenance *prov,
-                              struct err *err)
+/* An APP1 segment: EXIF with exposure time (1/denominator s), f/8 and ISO 100. */
+static size_t make_exif(unsigned char exif[128], uint32_t denominator)
+{
+    static const unsigned char head[] = {
+        0xff, 0xe1, 0,    92,   'E', 'x', 'i', 'f', 0,   0, 'I', 'I', 42, 0, 8, 0,
+        0,    0, /* TIFF: little-endian, first folder at 8 */
+        1,    0,    0x69, 0x87, 4,   0,   1,   0,   0,   0, 26,  0,   0,  0, 0, 0,
+        0,    0,                                                                   /* one entry: EXIF's folder, at 26 */
+        3,    0,    0x9a, 0x82, 5,   0,   1,   0,   0,   0, 68,  0,   0,  0,       /* exposure time: rational at 68 */
+        0x9d, 0x82, 5,    0,    1,   0,   0,   0,   76,  0, 0,   0,                /* f-number: rational at 76 */
+        0x27, 0x88, 3,    0,    1,   0,   0,   0,   100, 0, 0,   0,   0,  0, 0, 0, /* ISO 100; no more folders */
+    };
+    const uint32_t values[4] = {1, denominator, 8, 1};
+    size_t size = sizeof head;
+    memcpy(exif, head, size);
+    for (int i = 0; i < 4; i++)
+        for (int k = 0; k < 4; k++) exif[size++] = (unsigned char)(values[i] >> 8 * k);
+    exif[2] = (unsigned char)((size - 2) >> 8);
+    exif[3] = (unsigned char)(size - 2);
+    return size;
+}
+
+/* Exposure `number` of `count`: the middle one as the room is; a JPEG with its EXIF behind the first marker. */
+static enum status write_bracket(const struct room_view *rv, const struct image *picture, int number, int count,
+                                 const char *folder, struct err *err)
+{
+    struct image exposed = {0};
+    struct outfile f = {0};
+    char path[4096];
+    unsigned char exif[128], *rgb = NULL, *jpeg = NULL;
+    size_t samples = (size_t)picture->width * (size_t)picture->height * 3, size = 0;
+    double gain = pow(4, number - (count - 1) / 2);
+    size_t exif_size = make_exif(exif, (uint32_t)(4096 / gain));
+
+    snprintf(path, sizeof path, "%s/photos/%s_e%d.jpg", folder, rv->name, number);
+    enum status st = image_init(&exposed, picture->width, picture->height, 3, err);
+    if (!st && !(rgb = malloc(samples))) st = err_nomem(err, "a photo", samples);
+    for (size_t i = 0; !st && i < samples; i++) exposed.data[i] = (float)gain * picture->data[i];
+    if (!st) image_to_srgb8(&exposed, rgb);
+    if (!st) st = jpeg_encode(&jpeg, &size, rgb, picture->width, picture->height, 95, err);
+    if (!st) st = outfile_open(&f, path, err);
+    if (!st && (fwrite(jpeg, 1, 2, f.fp) != 2 || fwrite(exif, 1, exif_size, f.fp) != exif_size ||
+                fwrite(jpeg + 2, 1, size - 2, f.fp) != size - 2))
+        st = err_errno(err, "write", path);
+    if (!st) st = outfile_commit(&f, err);
+    outfile_discard(&f);
+    image_release(&exposed);
+    free(rgb);
+    free(jpeg);
+    return st;
+}
+
+static enum status write_view(const struct room_view *rv, int brackets, const char *folder,
+                              const struct provenance *prov, struct err *err)
 {
     char path[4096];
     struct image picture = {0};
@@ -211,8 +265,9 @@ static enum status write_view(const struct room_view *rv, const char *folder, co
     exr_set_camera(&truth, &rv->view);
     snprintf(path, sizeof path, "%s/truth/%s.exr", folder, rv->name);
     if ((st = exr_write(&truth, path, prov, err))) goto done;
+    for (int k = 0; k < brackets && !st; k++) st = write_bracket(rv, &picture, k, brackets, folder, err);
     snprintf(path, sizeof path, "%s/photos/%s.jpg", folder, rv->name);
-    st = jpeg_write(path, rgb, rv->view.width, rv->view.height, 95, err);
+    if (!st && !brackets) st = jpeg_write(path, rgb, rv->view.width, rv->view.height, 95, err);
 done:
     free(rgb);
     image_release(&picture);
@@ -291,13 +346,14 @@ done:
 int main(int argc, char **argv)
 {
     const char *out = NULL, *size = "320x240";
-    int views = 5, change = 0, width = 0, height = 0, end = 0;
+    int views = 5, change = 0, brackets = 0, width = 0, height = 0, end = 0;
     const struct cli_opt opts[] = {
         CLI_ABOUT("renders photographs of a small analytic room, with true cameras, points and depths"),
         CLI_STR("out", &out, CLI_REQUIRED, "folder to write photos, model and truth into"),
         CLI_INT("views", &views, CLI_OPTIONAL, "number of photos, 1 to 99 (5)"),
         CLI_STR("size", &size, CLI_OPTIONAL, "pixels of a photo, WIDTHxHEIGHT (320x240)"),
         CLI_INT("change", &change, CLI_OPTIONAL, "photo that gets a bright sticker on the wall, from 1 (none)"),
+        CLI_INT("brackets", &brackets, CLI_OPTIONAL, "exposures of each view, 1 to 9 (one photo without EXIF)"),
         CLI_END,
     };
     static struct room_view room[MAX_VIEWS];
@@ -309,13 +365,15 @@ int main(int argc, char **argv)
         if (views < 1 || views > MAX_VIEWS || change < 0 || change > views)
             err_set(&err, ST_USAGE, "--views %d --change %d: wanted 1 to %d views and a photo among them.", views,
                     change, MAX_VIEWS);
+        else if (brackets < 0 || brackets > 9)
+            err_set(&err, ST_USAGE, "--brackets %d: wanted 1 to 9.", brackets);
         else if (sscanf(size, "%dx%d%n", &width, &height, &end) != 2 || size[end] || width < 16 || height < 16 ||
                  width > 4096 || height > 4096)
             err_set(&err, ST_USAGE, "--size %s: wanted WIDTHxHEIGHT, each 16 to 4096.", size);
         for (int i = 0; i < views && !err.status; i++) {
             place_view(&room[i], i + 1, views, width, height);
             room[i].sticker = i + 1 == change;
-            write_view(&room[i], out, &prov, &err);
+            write_view(&room[i], brackets, out, &prov, &err);
         }
         if (!err.status) write_model(room, views, out, &err);
     }

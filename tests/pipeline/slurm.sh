@@ -73,6 +73,16 @@ cluster_gives_the_bytes_of_local()
     ! grep -q ': job' log || { cat log; fail "a second run went to the cluster again"; }
 }
 
+brackets_are_merged_on_the_cluster()
+{
+    photos bracketed --brackets 3 >/dev/null
+    make -s DEPS=manual PHOTOS=bracketed/photos SFM=bracketed/model SCENE=hdrlocal hdr >log 2>&1 || { cat log; fail "local run"; }
+    make -s DEPS=manual PHOTOS=bracketed/photos SFM=bracketed/model SCENE=hdrcluster JOBS=slurm hdr >log 2>&1 || { cat log; fail "cluster run"; }
+    grep -q 'hdr_merge: job' log || { cat log; fail "nothing went to the cluster"; }
+    (cd out/hdrlocal/hdr && sha256sum -- *) >a; (cd out/hdrcluster/hdr && sha256sum -- *) >b
+    diff a b || fail "the cluster gives other bytes"
+}
+
 a_task_that_fails_is_told_and_not_trusted()
 {
     rm out/cluster/depth/photo_2.exr out/cluster/depth/photo_4.exr
@@ -100,5 +110,6 @@ a_cancelled_job_is_not_called_good()
 }
 
 run cluster_gives_the_bytes_of_local
+run brackets_are_merged_on_the_cluster
 run a_task_that_fails_is_told_and_not_trusted
 run a_cancelled_job_is_not_called_good

@@ -88,6 +88,36 @@ static void list_round_trip(void **state)
     assert_false(is_old(scratch_path("list.txt")) || is_old(scratch_path("photos.mk")));
 }
 
+static void views_of_several_exposures(void **state)
+{
+    char id[] = "hall", file[] = "hall.jpg", dark[] = "a b.jpg", bright[] = "c.jpg";
+    struct bracket brackets[] = {{dark, "0123456789abcdef0123456789abcdef", 0.003125},
+                                 {bright, "ffff456789abcdef0123456789abcdef", 1.0 / 30}};
+    struct photo_record r = sample(id, file);
+    struct photo_list list = {&r, 1}, in;
+    struct err err = ERR_INIT;
+    (void)state;
+    r.brackets = brackets;
+    r.bracket_count = 2;
+    r.middle = 1;
+    r.white = 1.0 / 30;
+    assert_ok(photo_record_write(&r, scratch, &err), err);
+    assert_ok(photo_list_write(&list, scratch, &err), err);
+    assert_file_text(scratch_path("photos.mk"), "PHOTO_IDS := hall\nBRACKETED := yes\n");
+    assert_file_text(scratch_path("brackets.txt"),
+                     "# VIEW FILE FILE ... from the shortest exposure on\nhall \"a b.jpg\" c.jpg\n");
+    assert_ok(photo_list_read(&in, scratch, &err), err);
+    assert_int_equal(in.photos[0].bracket_count, 2);
+    assert_int_equal(in.photos[0].middle, 1);
+    assert_true(in.photos[0].white == r.white);
+    for (int i = 0; i < 2; i++) {
+        assert_string_equal(in.photos[0].brackets[i].file, brackets[i].file);
+        assert_string_equal(in.photos[0].brackets[i].hash, brackets[i].hash);
+        assert_true(in.photos[0].brackets[i].exposure == brackets[i].exposure);
+    }
+    photo_list_release(&in);
+}
+
 static void bad_lists(void **state)
 {
     const char *const cases[][2] = {
@@ -127,6 +157,12 @@ static void bad_records(void **state)
         {"long-make", ":8:"},
         {"open-quote", ":8:"},
         {"extra-line", ":9:"},
+        {"brackets-cut", ": found \"the end of the file\", wanted a line \"bracket ...\""},
+        {"brackets-order", ":11: found \"b.jpg\", wanted longer and longer exposures"},
+        {"brackets-middle", ":9: found \"1\", wanted index of the middle exposure, an integer from 0 to 0"},
+        {"brackets-zero", ":9: found \"0\", wanted exposure of white above 0"},
+        {"brackets-many", ":9: found \"1001\", wanted number of exposures"},
+        {"brackets-more", ":11:"},
         {"empty", "wanted a line \"remodel-photo ...\""},
         {"cut", "cut.txt"},
         {"nul", "nul.txt"},
@@ -156,6 +192,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(record_round_trip),
         cmocka_unit_test(list_round_trip),
+        cmocka_unit_test(views_of_several_exposures),
         cmocka_unit_test(bad_lists),
         cmocka_unit_test(bad_records),
     };

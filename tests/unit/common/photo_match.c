@@ -69,9 +69,24 @@ static void an_empty_list_knows_no_photo(void **state)
     assert_int_equal(photo_list_match(&none, ""), -1);
 }
 
+/* A view of several exposures is also called by its middle one. */
+static void a_view_is_its_middle_exposure(void **state)
+{
+    char files[][16] = {"v_e0.jpg", "v_e1.jpg", "v", "v.jpg"};
+    struct bracket brackets[] = {{.file = files[0]}, {.file = files[1]}};
+    struct photo_record view = {
+        .id = files[2], .file = files[3], .brackets = brackets, .bracket_count = 2, .middle = 1};
+    const struct photo_list list = {&view, 1};
+    (void)state;
+    assert_int_equal(photo_list_match(&list, "v.jpg"), 0);
+    assert_int_equal(photo_list_match(&list, "images/v_e1.jpg"), 0);
+    assert_int_equal(photo_list_match(&list, "v_e0.jpg"), -1);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_view_is_its_middle_exposure),
         cmocka_unit_test(names_mean_their_photos),
         cmocka_unit_test(the_whole_name_comes_before_its_end),
         cmocka_unit_test(an_empty_list_knows_no_photo),

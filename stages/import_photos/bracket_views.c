@@ -1,0 +1,543 @@
+/* bracket_views.c - see bracket_views.h. */
+#include "stages/import_photos/bracket_views.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "common/bracket_list.h"
+#include "common/log.h"
+
+#define PARAM_STRUCT struct import_params
+const struct param import_param_table[] = {IMPORT_PARAMS(PARAM_ROW) PARAM_END};
+#undef PARAM_STRUCT
+
+enum { CYCLE_MOST = 16, CYCLE_STARTS = 48, CYCLED_LEAST = 6, NAMED_MOST = 8, TEXT_SIZE = 160 };
+
+static const double same = 1.01, apart = 1.2; /* ratios of exposures */
+
+static bool equal_exposures(double a, double b) { return a > 0 && b > 0 && a < same * b && b < same * a; }
+
+/* The time as people read it on the camera. */
+static const char *show_seconds(char text[32], const struct exposure *e)
+{
+    if (!(e->seconds > 0))
+        strcpy(text, "no exposure time");
+    else if (e->seconds < 0.4)
+        snprintf(text, 32, "1/%.5g s", 1 / e->seconds);
+    else
+        snprintf(text, 32, "%.5g s", e->seconds);
+    return text;
+}
+
+static void append(char *text, size_t size, const char *separator, const char *word)
+{
+    size_t n = strlen(text);
+    snprintf(text + n, size - n, "%s%s", n ? separator : "", word);
+}
+
+/* -------------------------------------------------------------------------------------------------------- exposures */
+
+static int find_file(const struct photo_scan *scan, const char *file)
+{
+    for (int i = 0; i < scan->count; i++)
+        if (!strcmp(scan->photos[i].file, file)) return i;
+    return -1;
+}
+
+static enum status apply_list(struct exposure *exposures, const struct photo_scan *scan, const char *folder,
+                              struct err *err)
+{
+    struct exposure_list list = {0};
+    char *path = NULL, shown[TEXT_SIZE];
+    if (asprintf(&path, "%s/exposures.txt", folder) < 0) return err_nomem(err, "a path", 0);
+    enum status st = access(path, F_OK) ? ST_OK : exposure_list_read(&list, path, err);
+    for (int i = 0; !st && i < list.count; i++) {
+        const struct exposure_line *line = &list.lines[i];
+        int at = find_file(scan, line->file);
+        snprintf(shown, sizeof shown, "%s", line->file);
+        if (at < 0) {
+            st = err_set(err, ST_DATA, "%s:%d: found %s, wanted a photo of %s; mend the name or remove the line.", path,
+                         line->line, shown, scan->folder);
+            break;
+        }
+        struct exposure *e = &exposures[at];
+        e->seconds = line->exposure.seconds;
+        e->filter = line->exposure.filter;
+        if (line->exposure.f_number > 0) e->f_number = line->exposure.f_number;
+        if (line->exposure.iso > 0) e->iso = line->exposure.iso;
+    }
+    exposure_list_release(&list);
+    free(path);
+    return st;
+}
+
+static enum status find_exposures(struct bracket_views *v, const struct photo_scan *scan, const char *scene,
+                                  struct err *err)
+{
+    v->exposures = calloc((size_t)scan->count + 1, sizeof *v->exposures);
+    if (!v->exposures) return err_nomem(err, "exposures", (size_t)scan->count * sizeof *v->exposures);
+    for (int i = 0; i < scan->count; i++) {
+        const struct photo_info *info = &scan->photos[i].record.info;
+        v->exposures[i] = (struct exposure){info->seconds, info->f_number, info->iso, 1};
+    }
+    enum status st = apply_list(v->exposures, scan, scan->folder, err);
+    return st || !scene ? st : apply_list(v->exposures, scan, scene, err);
+}
+
+/* --------------------------------------------------------------------------------------------------------- grouping */
+
+static enum status add_view(struct bracket_views *v, const char *id, const int *photos, int count, struct err *err)
+{
+    struct bracket_view *views = realloc(v->views, ((size_t)v->count + 1) * sizeof *views);
+    if (!views) return err_nomem(err, "a list of views", ((size_t)v->count + 1) * sizeof *views);
+    v->views = views;
+    struct bracket_view *view = &views[v->count++];
+    *view = (struct bracket_view){strdup(id), malloc((size_t)count * sizeof *photos), count, 0};
+    if (!view->id || !view->photos) return err_nomem(err, "a view", (size_t)count * sizeof *photos);
+    memcpy(view->photos, photos, (size_t)count * sizeof *photos);
+    return ST_OK;
+}
+
+static enum status views_of_line(struct bracket_views *v, const struct photo_scan *scan,
+                                 const struct bracket_list *list, const struct bracket_line *line, bool *listed,
+                                 struct err *err)
+{
+    int *photos = malloc((size_t)line->count * sizeof *photos), count = 0;
+    enum status st = photos ? ST_OK : err_nomem(err, "a view", (size_t)line->count * sizeof *photos);
+    for (int k = 0; !st && k < line->count; k++) {
+        int at = find_file(scan, line->files[k]);
+        if (at < 0) {
+            st = err_set(err, ST_DATA, "%s:%d: found %.100s, wanted a photo of %s; mend the name or remove it.",
+                         list->path, line->line, line->files[k], scan->folder);
+            break;
+        }
+        listed[at] = true;
+        if (!scan->photos[at].excluded) photos[count++] = at;
+    }
+    if (!st && count) st = add_view(v, line->view, photos, count, err);
+    free(photos);
+    return st;
+}
+
+static enum status group_by_list(struct bracket_views *v, const struct photo_scan *scan, const char *path,
+                                 struct err *err)
+{
+    struct bracket_list list = {0};
+    char names[512] = "";
+    int missing = 0;
+    bool *listed = calloc((size_t)scan->count + 1, sizeof *listed);
+    enum status st = listed ? bracket_list_read(&list, path, err) : err_nomem(err, "photos", (size_t)scan->count);
+    for (int i = 0; !st && i < list.count; i++) st = views_of_line(v, scan, &list, &list.lines[i], listed, err);
+    for (int i = 0; !st && i < scan->count; i++)
+        if (!listed[i] && !scan->photos[i].excluded && missing++ < NAMED_MOST)
+            append(names, sizeof names, ", ", scan->photos[i].file);
+    if (!st && missing)
+        st = err_set(err, ST_DATA,
+                     "%s has no view with %s%s (%d of the photos in %s); add them to a line, or leave them out "
+                     "(EXCLUDE).",
+                     path, names, missing > NAMED_MOST ? ", ..." : "", missing, scan->folder);
+    bracket_list_release(&list);
+    free(listed);
+    return st;
+}
+
+struct ordered { /* the photos that are not left out, in the camera's order */
+    int *photos;
+    double *values; /* exposures */
+    int count;
+};
+
+struct cycle {
+    int begin, length; /* of `ordered` */
+    int count;         /* how often it is there */
+};
+
+struct named {
+    const char *file;
+    int photo;
+};
+
+static int by_name(const void *a, const void *b)
+{
+    const struct named *x = a, *y = b;
+    int order = strverscmp(x->file, y->file);
+    return order ? order : strcmp(x->file, y->file);
+}
+
+static enum status order_photos(struct ordered *o, const struct bracket_views *v, const struct photo_scan *scan,
+                                struct err *err)
+{
+    size_t count = (size_t)scan->count;
+    struct named *names = calloc(count + 1, sizeof *names);
+    o->photos = calloc(count + 1, sizeof *o->photos);
+    o->values = calloc(count + 1, sizeof *o->values);
+    enum status st = names && o->photos && o->values ? ST_OK : err_nomem(err, "photos", count * sizeof *names);
+    for (int i = 0; !st && i < scan->count; i++)
+        if (!scan->photos[i].excluded) names[o->count++] = (struct named){scan->photos[i].file, i};
+    if (!st) qsort(names, (size_t)o->count, sizeof *names, by_name);
+    for (int i = 0; !st && i < o->count; i++) {
+        o->photos[i] = names[i].photo;
+        o->values[i] = exposure_value(&v->exposures[names[i].photo]);
+    }
+    free(names);
+    return st;
+}
+
+static bool distinct(const double *values, int count)
+{
+    for (int i = 0; i < count; i++) {
+        if (!(values[i] > 0)) return false;
+        for (int k = 0; k < i; k++)
+            if (values[i] < apart * values[k] && values[k] < apart * values[i]) return false;
+    }
+    return true;
+}
+
+static bool cycle_at(const struct ordered *o, const struct cycle *c, int at)
+{
+    if (at + c->length > o->count) return false;
+    for (int k = 0; k < c->length; k++)
+        if (!equal_exposures(o->values[c->begin + k], o->values[at + k])) return false;
+    return true;
+}
+
+/* The cycle that holds most photos; of equals the longest, and the first. length 0: there is none. */
+static struct cycle find_cycle(const struct ordered *o)
+{
+    struct cycle best = {0};
+    for (int length = 2; length <= CYCLE_MOST && length <= o->count; length++)
+        for (int begin = 0; begin + length <= o->count && begin < CYCLE_STARTS; begin++) {
+            struct cycle c = {begin, length, 0};
+            if (!distinct(o->values + begin, length)) continue;
+            for (int at = 0; at < o->count;) {
+                bool here = cycle_at(o, &c, at);
+                c.count += here;
+                at += here ? length : 1;
+            }
+            int more = c.count * length - best.count * best.length;
+            if (c.count >= 2 && (more > 0 || (!more && length > best.length))) best = c;
+        }
+    return best;
+}
+
+static void show_cycle(char *text, size_t size, const struct bracket_views *v, const struct ordered *o,
+                       const struct cycle *c)
+{
+    char one[32];
+    *text = 0;
+    for (int k = 0; k < c->length; k++)
+        append(text, size, ", ", show_seconds(one, &v->exposures[o->photos[c->begin + k]]));
+}
+
+static enum status incomplete(const struct bracket_views *v, const struct photo_scan *scan, const struct ordered *o,
+                              const struct cycle *c, struct err *err)
+{
+    char cycle[400], odd[700] = "", ids[400] = "", one[32];
+    int count = 0;
+    for (int at = 0; at < o->count;) {
+        bool here = cycle_at(o, c, at);
+        const struct scanned_photo *p = &scan->photos[o->photos[at]];
+        if (!here && count++ < NAMED_MOST) {
+            char *text = NULL;
+            if (asprintf(&text, "%s (%s)", p->file, show_seconds(one, &v->exposures[o->photos[at]])) < 0)
+                return err_nomem(err, "a text", 0);
+            append(odd, sizeof odd, ", ", text);
+            append(ids, sizeof ids, " ", p->id);
+            free(text);
+        }
+        at += here ? c->length : 1;
+    }
+    const char *more = count > NAMED_MOST ? " ..." : "";
+    show_cycle(cycle, sizeof cycle, v, o, c);
+    return err_set(err, ST_DATA,
+                   "the photos in %s are brackets of %s in order of file name, but these belong to no complete one: "
+                   "%s%s. Add what is missing (a time: in exposures.txt), leave them out (EXCLUDE = %s%s), say in the "
+                   "scene's brackets.txt which photos make a view, or set [import_photos] brackets = no.",
+                   scan->folder, cycle, odd, more, ids, more);
+}
+
+static enum status add_cycles(struct bracket_views *v, const struct ordered *o, const struct cycle *c, struct err *err)
+{
+    enum status st = ST_OK;
+    for (int at = 0; !st && at < o->count; at += c->length) st = add_view(v, "", o->photos + at, c->length, err);
+    return st;
+}
+
+static enum status group_by_cycle(struct bracket_views *v, const struct photo_scan *scan, bool must, struct err *err)
+{
+    struct ordered o = {0};
+    char text[400];
+    enum status st = order_photos(&o, v, scan, err);
+    struct cycle c = {0};
+    if (!st) c = find_cycle(&o);
+    int held = c.count * c.length;
+    bool clear = held >= CYCLED_LEAST || (must && held);
+    if (!st && clear && held == o.count) {
+        st = add_cycles(v, &o, &c, err);
+        show_cycle(text, sizeof text, v, &o, &c);
+        if (!st) log_note("%d views of %d exposures each: %s", c.count, c.length, text);
+    } else if (!st && clear && (must || 4 * held >= 3 * o.count)) {
+        st = incomplete(v, scan, &o, &c, err);
+    } else if (!st && must) {
+        st = err_set(err, ST_DATA,
+                     "[import_photos] brackets is yes, but the exposures of the %d photos in %s form no cycle that is "
+                     "there at least twice; say in the scene's brackets.txt which photos make a view.",
+                     o.count, scan->folder);
+    }
+    free(o.photos);
+    free(o.values);
+    return st;
+}
+
+/* ------------------------------------------------------------------------------------------------- views and checks */
+
+/* Where the names of the view's photos first differ, back to the last whole word before it. */
+static size_t common_stem(const struct photo_scan *scan, const struct bracket_view *view)
+{
+    const char *first = scan->photos[view->photos[0]].file;
+    size_t length = photo_stem(first);
+    for (int i = 1; i < view->count; i++) {
+        const char *file = scan->photos[view->photos[i]].file;
+        size_t n = 0, most = photo_stem(file);
+        while (n < length && n < most && file[n] == first[n]) n++;
+        length = n;
+    }
+    if (view->count > 1) {
+        while (length && !strchr("_- .", first[length])) length--;
+        while (length && strchr("_- .", first[length - 1])) length--;
+    }
+    return length;
+}
+
+static int by_view(const void *a, const void *b)
+{
+    return strcmp(((const struct bracket_view *)a)->id, ((const struct bracket_view *)b)->id);
+}
+
+static enum status name_views(struct bracket_views *v, const struct photo_scan *scan, struct err *err)
+{
+    bool stems = true;
+    for (int pass = 0; pass < 2; pass++) { /* by stems; by first photos where two stems are the same */
+        for (int i = 0; i < v->count; i++) {
+            const struct scanned_photo *first = &scan->photos[v->views[i].photos[0]];
+            char id[PHOTO_ID_MOST + 1];
+            photo_id_from_stem(id, first->file, common_stem(scan, &v->views[i]));
+            free(v->views[i].id);
+            v->views[i].id = strdup(pass ? first->id : id);
+            if (!v->views[i].id) return err_nomem(err, "a view's name", sizeof id);
+            stems &= pass || (common_stem(scan, &v->views[i]) && !photo_id_reserved(id));
+        }
+        qsort(v->views, (size_t)v->count, sizeof *v->views, by_view);
+        for (int i = 1; i < v->count; i++) stems &= pass || by_view(&v->views[i - 1], &v->views[i]);
+        if (stems) break;
+    }
+    return ST_OK;
+}
+
+struct by_exposure {
+    double value;
+    const char *file;
+    int photo;
+};
+
+static int by_value(const void *a, const void *b)
+{
+    const struct by_exposure *x = a, *y = b;
+    if (x->value != y->value) return x->value < y->value ? -1 : 1;
+    return strcmp(x->file, y->file);
+}
+
+static enum status sort_view(struct bracket_view *view, const struct bracket_views *v, const struct photo_scan *scan,
+                             struct err *err)
+{
+    struct by_exposure *order = calloc((size_t)view->count, sizeof *order);
+    if (!order) return err_nomem(err, "a view", (size_t)view->count * sizeof *order);
+    for (int i = 0; i < view->count; i++) {
+        int p = view->photos[i];
+        order[i] = (struct by_exposure){exposure_value(&v->exposures[p]), scan->photos[p].file, p};
+    }
+    qsort(order, (size_t)view->count, sizeof *order, by_value);
+    for (int i = 0; i < view->count; i++) view->photos[i] = order[i].photo;
+    view->middle = (view->count - 1) / 2;
+    free(order);
+    return ST_OK;
+}
+
+static enum status check_view(const struct bracket_view *view, const struct bracket_views *v,
+                              const struct photo_scan *scan, struct err *err)
+{
+    const struct scanned_photo *first = &scan->photos[view->photos[0]];
+    char one[32];
+    for (int i = 0; i < view->count; i++) { /* in order of exposure: what has none comes first */
+        const struct scanned_photo *p = &scan->photos[view->photos[i]];
+        const struct photo_info *info = &p->record.info;
+        double value = exposure_value(&v->exposures[view->photos[i]]);
+        if (!(value > 0))
+            return err_set(err, ST_DATA,
+                           "view %s: the exposure time of %s is not known (EXIF does not tell it); write a line \"%s "
+                           "SECONDS\" into exposures.txt.",
+                           view->id, p->file, p->file);
+        if (info->width != first->record.info.width || info->height != first->record.info.height)
+            return err_set(err, ST_DATA,
+                           "view %s: %s has %d x %d pixels, but %s %d x %d; the exposures of a view have one size. "
+                           "Leave one out (EXCLUDE), or mend brackets.txt.",
+                           view->id, p->file, info->width, info->height, first->file, first->record.info.width,
+                           first->record.info.height);
+        if (i && equal_exposures(value, exposure_value(&v->exposures[view->photos[i - 1]])))
+            return err_set(err, ST_DATA,
+                           "view %s: %s and %s have the same exposure (%s); leave one out (EXCLUDE), or correct them "
+                           "in exposures.txt or brackets.txt.",
+                           view->id, scan->photos[view->photos[i - 1]].file, p->file,
+                           show_seconds(one, &v->exposures[view->photos[i]]));
+    }
+    return ST_OK;
+}
+
+/* Exposures can be compared only if all of them state the f-number and the ISO, or none. */
+static enum status check_comparable(const struct bracket_views *v, const struct photo_scan *scan, struct err *err)
+{
+    const struct exposure *first = NULL;
+    const char *first_file = NULL;
+    for (int i = 0; i < v->count; i++)
+        for (int k = 0; k < v->views[i].count; k++) {
+            int p = v->views[i].photos[k];
+            const struct exposure *e = &v->exposures[p];
+            if (!first) first = e, first_file = scan->photos[p].file;
+            bool number = (e->f_number > 0) != (first->f_number > 0);
+            if (!number && (e->iso > 0) == (first->iso > 0)) continue;
+            bool mine = number ? e->f_number > 0 : e->iso > 0;
+            return err_set(err, ST_DATA,
+                           "the %s of %s is known, but not that of %s, so their exposures cannot be compared; write a "
+                           "line \"FILE SECONDS F_NUMBER ISO\" into exposures.txt.",
+                           number ? "f-number" : "ISO value", mine ? scan->photos[p].file : first_file,
+                           mine ? first_file : scan->photos[p].file);
+        }
+    return ST_OK;
+}
+
+static void release_view(struct bracket_view *view)
+{
+    free(view->id);
+    free(view->photos);
+}
+
+static void leave_out_views(struct bracket_views *v, const char *const *exclude, int exclude_count, bool *used)
+{
+    int kept = 0;
+    for (int i = 0; i < v->count; i++) {
+        bool out = false;
+        for (int k = 0; k < exclude_count; k++)
+            if (!strcmp(exclude[k], v->views[i].id)) out = used[k] = true;
+        if (out)
+            release_view(&v->views[i]);
+        else
+            v->views[kept++] = v->views[i];
+    }
+    v->count = kept;
+}
+
+static int compare_doubles(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static enum status find_white(struct bracket_views *v, struct err *err)
+{
+    double *middles = malloc((size_t)v->count * sizeof *middles);
+    if (!middles) return err_nomem(err, "exposures", (size_t)v->count * sizeof *middles);
+    for (int i = 0; i < v->count; i++)
+        middles[i] = exposure_value(&v->exposures[v->views[i].photos[v->views[i].middle]]);
+    qsort(middles, (size_t)v->count, sizeof *middles, compare_doubles);
+    v->white = middles[(v->count - 1) / 2];
+    free(middles);
+    return ST_OK;
+}
+
+enum status bracket_views_find(struct bracket_views *v, const struct photo_scan *scan, const char *scene,
+                               const struct import_params *params, const char *const *exclude, int exclude_count,
+                               bool *used, struct err *err)
+{
+    char *path = NULL;
+    *v = (struct bracket_views){0};
+    if (!strcmp(params->brackets, "no")) return ST_OK;
+    enum status st = find_exposures(v, scan, scene, err);
+    if (!st && scene && asprintf(&path, "%s/brackets.txt", scene) < 0) {
+        path = NULL;
+        st = err_nomem(err, "a path", 0);
+    }
+    bool listed = path && !access(path, F_OK);
+    if (!st && listed) st = group_by_list(v, scan, path, err);
+    if (!st && !listed) st = group_by_cycle(v, scan, !strcmp(params->brackets, "yes"), err);
+    if (!st && listed && v->count) qsort(v->views, (size_t)v->count, sizeof *v->views, by_view);
+    if (!st && !listed && v->count) st = name_views(v, scan, err);
+    for (int i = 0; !st && i < v->count; i++) st = sort_view(&v->views[i], v, scan, err);
+    v->bracketed = v->count > 0;
+    if (!st) leave_out_views(v, exclude, exclude_count, used);
+    for (int i = 0; !st && i < v->count; i++) st = check_view(&v->views[i], v, scan, err);
+    if (!st) st = check_comparable(v, scan, err);
+    if (!st && v->count) st = find_white(v, err);
+    free(path);
+    if (st) bracket_views_release(v);
+    return st;
+}
+
+/* ---------------------------------------------------------------------------------------------------------- writing */
+
+static enum status make_record(struct photo_record *r, const struct bracket_view *view, const struct bracket_views *v,
+                               const struct photo_scan *scan, struct err *err)
+{
+    const struct photo_record *middle = &scan->photos[view->photos[view->middle]].record;
+    *r = (struct photo_record){.info = middle->info, .middle = view->middle, .white = v->white};
+    strcpy(r->hash, middle->hash);
+    r->id = strdup(view->id);
+    r->brackets = calloc((size_t)view->count, sizeof *r->brackets);
+    if (asprintf(&r->file, "%s.jpg", view->id) < 0) r->file = NULL;
+    if (!r->id || !r->file || !r->brackets) return err_nomem(err, "a record", 0);
+    for (int i = 0; i < view->count; i++) {
+        const struct scanned_photo *p = &scan->photos[view->photos[i]];
+        struct bracket *b = &r->brackets[r->bracket_count++];
+        b->exposure = exposure_value(&v->exposures[view->photos[i]]);
+        strcpy(b->hash, p->record.hash);
+        if (!(b->file = strdup(p->file))) return err_nomem(err, "a record", 0);
+    }
+    return ST_OK;
+}
+
+enum status bracket_views_write(const struct bracket_views *v, const struct photo_scan *scan, const char *records,
+                                struct err *err)
+{
+    size_t count = (size_t)v->count;
+    struct photo_list list = {0};
+    const char **ids = calloc(count + 1, sizeof *ids);
+    list.photos = calloc(count + 1, sizeof *list.photos);
+    enum status st = ids && list.photos ? ST_OK : err_nomem(err, "a list of views", count * sizeof *list.photos);
+    for (int i = 0; !st && i < v->count; i++) {
+        ids[i] = v->views[i].id;
+        st = make_record(&list.photos[list.count++], &v->views[i], v, scan, err);
+    }
+    if (!st) ids[v->count] = "brackets";
+    if (!st) st = photo_scan_remove_others(records, ids, v->count + 1, err);
+    for (int i = 0; !st && i < v->count; i++) st = photo_record_write(&list.photos[i], records, err);
+    if (!st && v->count < 2)
+        st = err_set(err, ST_DATA,
+                     "the photos in %s are exposures of %s; a parallax video needs at least 2 views, taken from "
+                     "different places.",
+                     scan->folder, v->count ? "one view" : "no view that is not left out");
+    if (!st) st = photo_list_write(&list, records, err);
+    photo_list_release(&list);
+    free(ids);
+    return st;
+}
+
+void bracket_views_release(struct bracket_views *v)
+{
+    if (!v) return;
+    for (int i = 0; i < v->count; i++) release_view(&v->views[i]);
+    free(v->views);
+    free(v->exposures);
+    *v = (struct bracket_views){0};
+}

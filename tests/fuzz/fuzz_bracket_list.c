@@ -1,0 +1,31 @@
+/* fuzz_bracket_list.c - brackets.txt: views with safe names, each once, each with photos; or a sentence says why not. */
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "common/bracket_list.h"
+#include "tests/fuzz/fuzz.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    char path[] = "/tmp/remodel-fuzz-XXXXXX";
+    int fd = mkstemp(path);
+    struct bracket_list list;
+    struct err err = ERR_INIT;
+
+    if (fd < 0 || write(fd, data, size) != (ssize_t)size || close(fd)) abort();
+    if (bracket_list_read(&list, path, &err)) {
+        if (!strstr(err.text, path) || list.lines) abort();
+    } else {
+        if (list.count < 1) abort();
+        for (int i = 0; i < list.count; i++) {
+            const char *view = list.lines[i].view;
+            if (!*view || *view == '-' || strpbrk(view, " /.\"\\#$%\t") || list.lines[i].count < 1) abort();
+            for (int k = 0; k < i; k++)
+                if (!strcmp(view, list.lines[k].view)) abort();
+        }
+        bracket_list_release(&list);
+    }
+    unlink(path);
+    return 0;
+}

@@ -1,0 +1,32 @@
+/* fuzz_exposure_list.c - exposures.txt: each photo once with an exposure that is a positive number; or a sentence says
+ * why not. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "common/exposure_list.h"
+#include "tests/fuzz/fuzz.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    char path[] = "/tmp/remodel-fuzz-XXXXXX";
+    int fd = mkstemp(path);
+    struct exposure_list list;
+    struct err err = ERR_INIT;
+
+    if (fd < 0 || write(fd, data, size) != (ssize_t)size || close(fd)) abort();
+    if (exposure_list_read(&list, path, &err)) {
+        if (!strstr(err.text, path) || list.lines) abort();
+    } else {
+        for (int i = 0; i < list.count; i++) {
+            double value = exposure_value(&list.lines[i].exposure);
+            if (!(value > 0) || !isfinite(value)) abort();
+            for (int k = 0; k < i; k++)
+                if (!strcmp(list.lines[i].file, list.lines[k].file)) abort();
+        }
+        exposure_list_release(&list);
+    }
+    unlink(path);
+    return 0;
+}

@@ -1,0 +1,322 @@
+/* bracket_views.c - folders of photos with exposures: which are views of several, what they are called, and what is said
+ * when they cannot be grouped. */
+#include "tests/unit/scratch.h"
+
+#include <math.h>
+
+#include "stages/import_photos/bracket_views.h"
+
+#define GOOD "tests/fuzz/corpus/photo/rgb.jpg"
+
+static char photos[300], records[300], scene[300];
+
+/* Three empty folders. */
+static int fresh(void **state)
+{
+    static int number;
+    (void)state;
+    snprintf(photos, sizeof photos, "%s/%d-photos", scratch, ++number);
+    snprintf(records, sizeof records, "%s/%d-records", scratch, number);
+    snprintf(scene, sizeof scene, "%s/%d-scene", scratch, number);
+    return mkdir(photos, 0777) || mkdir(records, 0777) || mkdir(scene, 0777);
+}
+
+static void put(const char *name)
+{
+    char path[1024];
+    unsigned char bytes[4096];
+    FILE *in = fopen(GOOD, "rb");
+    assert_non_null(in);
+    size_t size = fread(bytes, 1, sizeof bytes, in);
+    fclose(in);
+    snprintf(path, sizeof path, "%s/%s", photos, name);
+    FILE *out = fopen(path, "wb");
+    assert_non_null(out);
+    assert_int_equal(fwrite(bytes, 1, size, out), size);
+    assert_int_equal(fclose(out), 0);
+}
+
+static void put_text(const char *folder, const char *name, const char *text)
+{
+    char path[1024];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    FILE *out = fopen(path, "w");
+    assert_non_null(out);
+    assert_true(fputs(text, out) >= 0);
+    assert_int_equal(fclose(out), 0);
+}
+
+static void file_is(const char *name, const char *wanted)
+{
+    char path[1024];
+    snprintf(path, sizeof path, "%s/%s", records, name);
+    assert_file_text(path, wanted);
+}
+
+struct import {
+    struct photo_scan scan;
+    struct bracket_views views;
+    struct err err;
+};
+
+static void import_release(struct import *im)
+{
+    bracket_views_release(&im->views);
+    photo_scan_release(&im->scan);
+}
+
+/* name and seconds of each photo, by turns; seconds NULL: not stated. */
+static enum status import(struct import *im, const char *const (*shots)[2], int count, const char *brackets,
+                          const char *exclude)
+{
+    struct import_params params = IMPORT_PARAMS_DEFAULT;
+    bool used[1] = {false};
+    *im = (struct import){.err = ERR_INIT};
+    strcpy(params.brackets, brackets);
+    for (int i = 0; i < count; i++) put(shots[i][0]);
+    enum status st = photo_scan_folder(&im->scan, photos, &im->err);
+    if (!st && exclude) photo_scan_exclude(&im->scan, exclude);
+    if (!st) st = photo_scan_check(&im->scan, records, &im->err);
+    for (int i = 0; !st && i < im->scan.count; i++)
+        for (int k = 0; k < count; k++)
+            if (!strcmp(im->scan.photos[i].file, shots[k][0]) && shots[k][1])
+                im->scan.photos[i].record.info.seconds = strtod(shots[k][1], NULL);
+    if (!st) st = bracket_views_find(&im->views, &im->scan, scene, &params, &exclude, exclude ? 1 : 0, used, &im->err);
+    return st;
+}
+
+static const char *const cycle[9][2] = {{"v1_e0.jpg", "0.1"}, {"v1_e1.jpg", "0.4"}, {"v1_e2.jpg", "1.6"},
+                                        {"v2_e0.jpg", "0.1"}, {"v2_e1.jpg", "0.4"}, {"v2_e2.jpg", "1.6"},
+                                        {"v3_e0.jpg", "0.1"}, {"v3_e1.jpg", "0.4"}, {"v3_e2.jpg", "1.6"}};
+
+static void a_cycle_of_exposures_makes_views(void **state)
+{
+    struct import im;
+    (void)state;
+    assert_ok(import(&im, cycle, 9, "auto", NULL), im.err);
+    assert_true(im.views.bracketed);
+    assert_int_equal(im.views.count, 3);
+    assert_string_equal(im.views.views[1].id, "v2");
+    assert_int_equal(im.views.views[1].count, 3);
+    assert_int_equal(im.views.views[1].middle, 1);
+    assert_true(fabs(im.views.white - 0.4) <= 1e-12);
+    assert_ok(bracket_views_write(&im.views, &im.scan, records, &im.err), im.err);
+    file_is("photos.mk", "PHOTO_IDS := v1 v2 v3\nBRACKETED := yes\n");
+    file_is("list.txt", "v1 v1.jpg\nv2 v2.jpg\nv3 v3.jpg\n");
+    file_is("brackets.txt", "# VIEW FILE FILE ... from the shortest exposure on\nv1 v1_e0.jpg v1_e1.jpg v1_e2.jpg\n"
+                            "v2 v2_e0.jpg v2_e1.jpg v2_e2.jpg\nv3 v3_e0.jpg v3_e1.jpg v3_e2.jpg\n");
+    struct photo_list list;
+    assert_ok(photo_list_read(&list, records, &im.err), im.err);
+    assert_int_equal(list.photos[0].bracket_count, 3);
+    assert_string_equal(list.photos[0].brackets[2].file, "v1_e2.jpg");
+    assert_true(fabs(list.photos[0].brackets[2].exposure - 1.6) <= 1e-12);
+    assert_true(fabs(list.photos[0].info.seconds - 0.4) <= 1e-12);
+    photo_list_release(&list);
+    import_release(&im);
+    import_release(&im);
+}
+
+/* Counters that run on: numbers are counted by value, and a stem that all views share is no name. */
+static void views_are_named_by_their_first_photo_where_stems_are_the_same(void **state)
+{
+    static const char *const shots[6][2] = {{"IMG_8.jpg", "1"},  {"IMG_9.jpg", "0.5"},  {"IMG_10.jpg", "2"},
+                                            {"IMG_11.jpg", "1"}, {"IMG_12.jpg", "0.5"}, {"IMG_13.jpg", "2"}};
+    struct import im;
+    (void)state;
+    assert_ok(import(&im, shots, 6, "auto", NULL), im.err);
+    assert_int_equal(im.views.count, 2);
+    assert_string_equal(im.views.views[0].id, "IMG_11");
+    assert_string_equal(im.views.views[1].id, "IMG_8");
+    assert_string_equal(im.scan.photos[im.views.views[1].photos[0]].file, "IMG_9.jpg"); /* the shortest */
+    import_release(&im);
+}
+
+/* The photos' names in brackets.txt, and thereby the folder's order, do not matter. */
+static void the_order_of_files_does_not_matter(void **state)
+{
+    struct import im;
+    char *text[2];
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        char path[400];
+        put_text(
+            scene, "brackets.txt",
+            i ? "b v2_e2.jpg v2_e0.jpg v2_e1.jpg\na v1_e1.jpg v1_e2.jpg v1_e0.jpg\nc v3_e2.jpg v3_e1.jpg v3_e0.jpg\n"
+              : "a v1_e0.jpg v1_e1.jpg v1_e2.jpg\nb v2_e0.jpg v2_e1.jpg v2_e2.jpg\nc v3_e0.jpg v3_e1.jpg v3_e2.jpg\n");
+        assert_ok(import(&im, cycle, 9, "auto", NULL), im.err);
+        assert_int_equal(im.views.count, 3);
+        assert_ok(bracket_views_write(&im.views, &im.scan, records, &im.err), im.err);
+        import_release(&im);
+        snprintf(path, sizeof path, "%s/b.txt", records);
+        text[i] = scratch_read(path);
+    }
+    assert_string_equal(text[0], text[1]);
+    free(text[0]);
+    free(text[1]);
+}
+
+static void photos_that_are_no_brackets_stay_single(void **state)
+{
+    static const char *const few[4][2] = {{"a.jpg", "1"}, {"b.jpg", "2"}, {"c.jpg", "1"}, {"d.jpg", "2"}};
+    static const char *const same[6][2] = {{"a.jpg", "1"}, {"b.jpg", "1"}, {"c.jpg", "1"},
+                                           {"d.jpg", "1"}, {"e.jpg", "1"}, {"f.jpg", "1"}};
+    static const char *const wild[8][2] = {{"a.jpg", "1"}, {"b.jpg", "2"},   {"c.jpg", "1"}, {"d.jpg", "1"},
+                                           {"e.jpg", "2"}, {"f.jpg", "0.5"}, {"g.jpg", "1"}, {"h.jpg", "3"}};
+    static const char *const untold[6][2] = {{"a.jpg", NULL}, {"b.jpg", NULL}, {"c.jpg", NULL},
+                                             {"d.jpg", NULL}, {"e.jpg", NULL}, {"f.jpg", NULL}};
+    const struct {
+        const char *const (*shots)[2];
+        int count;
+    } cases[] = {{few, 4}, {same, 6}, {wild, 8}, {untold, 6}};
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct import im;
+        fresh(NULL);
+        assert_ok(import(&im, cases[i].shots, cases[i].count, "auto", NULL), im.err);
+        assert_false(im.views.bracketed);
+        import_release(&im);
+    }
+    struct import im;
+    fresh(NULL);
+    assert_ok(import(&im, few, 4, "yes", NULL), im.err);
+    assert_int_equal(im.views.count, 2);
+    import_release(&im);
+    fresh(NULL);
+    assert_int_equal(import(&im, wild, 3, "yes", NULL), ST_DATA);
+    assert_err(im.err, ST_DATA, "form no cycle");
+    import_release(&im);
+    fresh(NULL);
+    assert_ok(import(&im, cycle, 9, "no", NULL), im.err);
+    assert_false(im.views.bracketed);
+    import_release(&im);
+}
+
+static void incomplete_cycles_are_named(void **state)
+{
+    const char *shots[9][2];
+    struct import im;
+    (void)state;
+    memcpy(shots, cycle, sizeof shots);
+    shots[8][1] = NULL;
+    assert_int_equal(import(&im, (const char *const(*)[2])shots, 9, "yes", NULL), ST_DATA);
+    assert_err(im.err, ST_DATA, "brackets of 1/10 s, 0.4 s, 1.6 s in order of file name");
+    assert_contains(im.err.text, "v3_e0.jpg (1/10 s), v3_e1.jpg (0.4 s), v3_e2.jpg (no exposure time).");
+    assert_contains(im.err.text, "EXCLUDE = v3_e0 v3_e1 v3_e2");
+    import_release(&im);
+    assert_ok(import(&im, (const char *const(*)[2])shots, 9, "auto", NULL), im.err); /* 6 of 9 might be chance */
+    assert_false(im.views.bracketed);
+    import_release(&im);
+
+    fresh(NULL);
+    assert_int_equal(import(&im, cycle, 7, "auto", NULL), ST_DATA);
+    assert_err(im.err, ST_DATA, "belong to no complete one: v3_e0.jpg (1/10 s).");
+    import_release(&im);
+}
+
+static void written_exposures_win(void **state)
+{
+    struct import im;
+    (void)state;
+    put_text(photos, "exposures.txt", "v1_e2.jpg 3.2 0 0 2\nv1_e0.jpg 7\n");
+    put_text(scene, "exposures.txt", "v1_e0.jpg 0.1\n");
+    assert_ok(import(&im, cycle, 9, "auto", NULL), im.err);
+    assert_int_equal(im.views.count, 3); /* 3.2 s through a filter of 2 is 1.6 s; 7 s is taken back */
+    import_release(&im);
+
+    put_text(scene, "exposures.txt", "v9.jpg 0.1\n");
+    assert_int_equal(import(&im, cycle, 9, "auto", NULL), ST_DATA);
+    assert_err(im.err, ST_DATA, "exposures.txt:1: found v9.jpg, wanted a photo of");
+    import_release(&im);
+
+    put_text(scene, "exposures.txt", "v1_e0.jpg 0.1 8 100\n"); /* the others do not state f-number and ISO */
+    put_text(scene, "brackets.txt",
+             "a v1_e0.jpg v1_e1.jpg v1_e2.jpg\nb v2_e0.jpg v2_e1.jpg v2_e2.jpg\n"
+             "c v3_e0.jpg v3_e1.jpg v3_e2.jpg\n");
+    assert_int_equal(import(&im, cycle, 9, "auto", NULL), ST_DATA);
+    assert_err(im.err, ST_DATA, "the f-number of v1_e0.jpg is known, but not that of v1_e1.jpg");
+    import_release(&im);
+}
+
+static void wrong_lists_are_told(void **state)
+{
+    static const char *const cases[][2] = {
+        {"a v1_e0.jpg v1_e1.jpg v1_e2.jpg\nb v2_e0.jpg v2_e1.jpg v2_e2.jpg\nc v3_e0.jpg v3_e1.jpg\n",
+         "has no view with v3_e2.jpg (1 of the photos in"},
+        {"a v1_e0.jpg v1_e9.jpg\n", "brackets.txt:1: found v1_e9.jpg, wanted a photo of"},
+        {"a v1_e0.jpg v2_e0.jpg v1_e1.jpg v1_e2.jpg\nb v2_e1.jpg v2_e2.jpg\nc v3_e0.jpg v3_e1.jpg v3_e2.jpg\n",
+         "view a: v1_e0.jpg and v2_e0.jpg have the same exposure (1/10 s)"},
+    };
+    struct import im;
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        put_text(scene, "brackets.txt", cases[i][0]);
+        assert_int_equal(import(&im, cycle, 9, "auto", NULL), ST_DATA);
+        assert_err(im.err, ST_DATA, cases[i][1]);
+        import_release(&im);
+    }
+    const char *shots[9][2];
+    memcpy(shots, cycle, sizeof shots);
+    shots[4][1] = NULL;
+    put_text(scene, "brackets.txt",
+             "a v1_e0.jpg v1_e1.jpg v1_e2.jpg\nb v2_e0.jpg v2_e1.jpg v2_e2.jpg\n"
+             "c v3_e0.jpg v3_e1.jpg v3_e2.jpg\n");
+    assert_int_equal(import(&im, (const char *const(*)[2])shots, 9, "auto", NULL), ST_DATA);
+    assert_err(im.err, ST_DATA, "view b: the exposure time of v2_e1.jpg is not known");
+    assert_contains(im.err.text, "write a line \"v2_e1.jpg SECONDS\" into exposures.txt");
+    import_release(&im);
+}
+
+static void sizes_must_be_the_same(void **state)
+{
+    struct import im;
+    (void)state;
+    put_text(scene, "brackets.txt", "a v1_e0.jpg v1_e1.jpg\n");
+    assert_ok(import(&im, cycle, 2, "auto", NULL), im.err);
+    im.scan.photos[1].record.info.width++;
+    struct import_params params = IMPORT_PARAMS_DEFAULT;
+    struct bracket_views views;
+    assert_int_equal(bracket_views_find(&views, &im.scan, scene, &params, NULL, 0, NULL, &im.err), ST_DATA);
+    assert_err(im.err, ST_DATA, "view a: v1_e1.jpg has 17 x ");
+    import_release(&im);
+}
+
+static void views_and_exposures_can_be_left_out(void **state)
+{
+    struct import im;
+    (void)state;
+    assert_ok(import(&im, cycle, 9, "auto", "v2"), im.err);
+    assert_int_equal(im.views.count, 2);
+    assert_string_equal(im.views.views[1].id, "v3");
+    import_release(&im);
+
+    put_text(scene, "brackets.txt",
+             "a v1_e0.jpg v1_e1.jpg v1_e2.jpg\nb v2_e0.jpg v2_e1.jpg v2_e2.jpg\n"
+             "c v3_e0.jpg v3_e1.jpg v3_e2.jpg\n");
+    assert_ok(import(&im, cycle, 9, "auto", "v2_e2.jpg"), im.err);
+    assert_int_equal(im.views.views[1].count, 2);
+    assert_int_equal(im.views.views[1].middle, 0);
+    import_release(&im);
+
+    fresh(NULL);
+    put_text(scene, "brackets.txt", "a v1_e0.jpg v1_e1.jpg v1_e2.jpg\n");
+    assert_ok(import(&im, cycle, 3, "auto", NULL), im.err);
+    assert_int_equal(bracket_views_write(&im.views, &im.scan, records, &im.err), ST_DATA);
+    assert_err(im.err, ST_DATA, "are exposures of one view; a parallax video needs at least 2 views");
+    import_release(&im);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup(a_cycle_of_exposures_makes_views, fresh),
+        cmocka_unit_test_setup(views_are_named_by_their_first_photo_where_stems_are_the_same, fresh),
+        cmocka_unit_test_setup(the_order_of_files_does_not_matter, fresh),
+        cmocka_unit_test_setup(photos_that_are_no_brackets_stay_single, fresh),
+        cmocka_unit_test_setup(incomplete_cycles_are_named, fresh),
+        cmocka_unit_test_setup(written_exposures_win, fresh),
+        cmocka_unit_test_setup(wrong_lists_are_told, fresh),
+        cmocka_unit_test_setup(sizes_must_be_the_same, fresh),
+        cmocka_unit_test_setup(views_and_exposures_can_be_left_out, fresh),
+    };
+    return cmocka_run_group_tests_name("bracket_views", tests, scratch_make, scratch_remove);
+}
