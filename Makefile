@@ -29,6 +29,7 @@ FRAMES_PER_JOB ?= 30
 CORES ?= $(shell nproc)
 ## DEPS=auto|manual: install what is missing with apt, or only print the line to run
 DEPS ?= auto
+## REPEATS=N: how often a bench runs each setting; SCENES="A B": what regress runs
 ## FLAVOR=release|debug|asan: how the programs are compiled
 FLAVOR ?= release
 ## V=1: show commands
@@ -85,7 +86,7 @@ export REMODEL_TRUTH := $(call literal,TRUTH)
 export VIEWS_PER_JOB SLURM_ARGS
 dry = $(findstring n,$(filter-out --%,$(firstword -$(MAKEFLAGS))))
 GOALS := hdr sfm views depth path frames video evaluate report
-.PHONY: all help why resfm check fuzz man deps deps-check clean $(GOALS)
+.PHONY: all help why resfm check fuzz bench bench-compare regress regress-accept man deps deps-check deps-bench clean $(GOALS)
 
 ifeq ($(SCENE),)
 all: deps ## everything a scene asks for; without SCENE builds the programs and explains
@@ -113,10 +114,25 @@ endif
 deps:
 	+@common/deps.sh $(DEPS) run
 deps-check:
-	+@common/deps.sh $(DEPS) run check
+	+@common/deps.sh $(DEPS) run check bench
+deps-bench:
+	+@common/deps.sh $(DEPS) run bench
 check: deps-check ## build and run all tests
 	+@$(BUILD) tests-build
 	+@tests/run '$(B)' $(CHECKS)
+bench: deps-bench ## measure everything in tests/bench: tables and plots under out/bench
+	+@$(BUILD) bench-build
+	+@rc=0; for b in tests/bench/*.sh; do tests/bench/run "$$(basename $$b .sh)" '$(B)' || rc=1; done; exit $$rc
+bench-%: deps-bench FORCE ## one of them: bench-exr, bench-simulate
+	+@$(BUILD) bench-build
+	+@tests/bench/run '$*' '$(B)'
+bench-compare: deps-bench ## NAME=exr OLD=REVISION: the same bench on another revision's code, alternating
+	+@$(BUILD) bench-build
+	+@tests/bench/compare '$(NAME)' '$(OLD)' '$(B)' $(BUILD)
+regress: ## run the reference scenes (or SCENES="...") and compare their metrics with tests/expected
+	+@tests/regress/run compare $(SCENES)
+regress-accept: ## make what these runs gave the expected metrics
+	+@tests/regress/run accept $(SCENES)
 fuzz: deps-check ## look for new inputs that break a parser: FUZZ=NAME FUZZ_SECONDS=60
 	+@tests/fuzz/fuzz.sh '$(FUZZ)' '$(or $(FUZZ_SECONDS),60)'
 help: ## this text
@@ -135,7 +151,7 @@ say = $(if $(V),,@echo '  $(1)';)
 
 CC := gcc
 CXX := g++
-PKGS := OpenEXR libturbojpeg libpng libexif inih libxxhash qhull_r
+PKGS := OpenEXR libturbojpeg libpng libexif inih libxxhash qhull_r libdeflate
 WARN := -Wall -Wextra -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Wvla -Wpointer-arith -Wwrite-strings
 FLAGS.release := -O3 -g
 FLAGS.asan := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer
@@ -143,26 +159,35 @@ FLAGS.debug := -O0 -g
 ifeq ($(FLAGS.$(FLAVOR)),)
   $(error FLAVOR=$(FLAVOR) is not one of: release asan debug)
 endif
-# -ffp-contract=off: the same bits from every compiler version; -march: AVX2 is what the hot loops are written for
-CFLAGS := -std=c11 -D_GNU_SOURCE -mavx2 -mno-fma -ffp-contract=off -fopenmp $(WARN) $(if $(CI),-Werror) $(FLAGS.$(FLAVOR)) \
+# -ffp-contract=off: the same bits from every compiler version; AVX2 and F16C (every processor with
+# the one has the other) are what the hot loops are written for
+CFLAGS := -std=c11 -D_GNU_SOURCE -mavx2 -mf16c -mno-fma -ffp-contract=off -fopenmp $(WARN) $(if $(CI),-Werror) $(FLAGS.$(FLAVOR)) \
   -I. $(shell pkg-config --cflags $(PKGS) 2>/dev/null)
+# C++ only where a library has no C interface
+CXXFLAGS := -std=c++17 -mavx2 -mno-fma -ffp-contract=off -Wall -Wextra -Wshadow $(if $(CI),-Werror) $(FLAGS.$(FLAVOR)) \
+  -I. $(shell pkg-config --cflags OpenEXR 2>/dev/null)
 LDLIBS := -lOpenEXRCore $(shell pkg-config --libs $(PKGS) 2>/dev/null) -lm
 
 objs = $(patsubst %.c,$(B)/obj/%.o,$(wildcard $(1)))
 COMMON_OBJS := $(call objs,common/*.c)
 BINS := $(STAGES:%=$(B)/bin/%)
 UNIT_TESTS := $(patsubst tests/unit/%.c,$(B)/tests/unit/%,$(wildcard tests/unit/*/*.c))
+BENCHES := $(patsubst tests/bench/%.c,$(B)/tests/bench/%,$(wildcard tests/bench/*.c))
 FUZZ_TESTS := $(patsubst tests/fuzz/%.c,$(B)/tests/fuzz/%,$(wildcard tests/fuzz/fuzz_*.c))
 
-.PHONY: build tests-build
+.PHONY: build tests-build bench-build
 build: $(BINS) $(STAGES:%=$(B)/code/%)
-tests-build: build $(UNIT_TESTS) $(FUZZ_TESTS) $(B)/tests/pipeline/make_photos
+tests-build: build bench-build $(UNIT_TESTS) $(FUZZ_TESTS) $(B)/tests/pipeline/make_photos
+bench-build: build $(BENCHES)
 
 $(B)/flags: FORCE
-	+@mkdir -p $(@D); echo '$(CC) $(CFLAGS) $(LDLIBS)' >$@.tmp; cmp -s $@.tmp $@ && rm $@.tmp || mv $@.tmp $@
+	+@mkdir -p $(@D); echo '$(CC) $(CFLAGS) $(CXX) $(CXXFLAGS) $(LDLIBS)' >$@.tmp; cmp -s $@.tmp $@ && rm $@.tmp || mv $@.tmp $@
 
 $(B)/obj/%.o: %.c $(B)/flags
 	$(call say,CC $<)mkdir -p $(@D); $(CC) $(CFLAGS) -MMD -MP -c -o $@ $<
+
+$(B)/obj/%.o: %.cc $(B)/flags
+	$(call say,CXX $<)mkdir -p $(@D); $(CXX) $(CXXFLAGS) -MMD -MP -c -o $@ $<
 
 $(B)/libremodel.a: $(COMMON_OBJS)
 	$(call say,AR $@)rm -f $@; ar rcsD $@ $^
@@ -185,6 +210,9 @@ $(foreach s,$(STAGES),$(eval $(call stage_rules,$(s))))
 # tests/unit/common/*.c test common/; tests/unit/STAGE/*.c test a stage's algorithm (its objects but for its main)
 $(UNIT_TESTS): $(B)/tests/unit/%: $(B)/obj/tests/unit/%.o $(B)/libremodel.a
 	$(call link,-lcmocka)
+$(BENCHES): $(B)/tests/bench/%: $(B)/obj/tests/bench/%.o $(B)/libremodel.a
+	$(call link,-lstdc++)
+$(B)/tests/bench/exr: $(B)/obj/tests/bench/exr_openexr.o # the baseline
 $(B)/tests/pipeline/make_photos: $(B)/obj/tests/pipeline/make_photos.o $(B)/libremodel.a
 	$(call link)
 $(FUZZ_TESTS): $(B)/tests/fuzz/%: $(B)/obj/tests/fuzz/%.o $(B)/obj/tests/fuzz/run_corpus.o $(B)/libremodel.a

@@ -17,7 +17,7 @@ help)
     echo "remodel: from a folder of photographs to a 3D pan & scan video"
     echo
     echo "targets"
-    sed -nE 's/^([a-z]+):[^#]*## (.*)/\1\t\2/p' "$1" | awk -F'\t' '{ printf "  %-10s %s\n", $1, $2 }'
+    sed -nE 's/^([a-z%-]+):[^#]*## (.*)/\1\t\2/p' "$1" | awk -F'\t' '{ sub(/%/, "NAME", $1); printf "  %-14s %s\n", $1, $2 }'
     echo "variables"
     sed -nE 's/^## ([^:]*): (.*)/\1\t\2/p' "$1" | awk -F'\t' '{ printf "  %-28s %s\n", $1, $2 }'
     echo "scenes"

@@ -1,10 +1,12 @@
-/* exr.c - OpenEXR files: OpenEXRCore does headers, chunks and codecs; samples are packed and unpacked here, a row of
- * a channel at a time, so that only the wanted channels are converted and every float is looked at once.
+/* exr.c - OpenEXR files: OpenEXRCore does headers, chunks and codecs (but for ZIP: exr_zip.h); samples are packed and
+ * unpacked here, a row of a channel at a time, so that only the wanted channels are converted and every float is looked
+ * at once.
  *
  * A chunk's uncompressed bytes are the format's own: for each row, for each channel in order of name, the row's
  * samples, little-endian, as on the machines this program is built for. */
 #include "common/exr.h"
 
+#include <immintrin.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,11 +15,11 @@
 #include <half.h>
 #include <openexr.h>
 
+#include "common/exr_zip.h"
 #include "common/outfile.h"
 #include "common/parallel.h"
 
 #define MOST_PIXELS  (INT64_C(1) << 28)
-#define ZIP_LEVEL    4 /* zlib's; part of the reproducible bytes */
 #define ZIP_ROWS     16
 #define LARGEST_HALF 65504.0F
 #define SHORT_NAME   31 /* longer names need a flag in the file's version */
@@ -124,7 +126,6 @@ static exr_context_initializer_t initializer(void)
 {
     exr_context_initializer_t init = EXR_DEFAULT_CONTEXT_INITIALIZER;
     init.error_handler_fn = keep_message;
-    init.zip_level = ZIP_LEVEL;
     library_message[0] = 0;
     return init;
 }
@@ -178,21 +179,34 @@ struct writer {
     int part;
     exr_chunk_info_t *infos;
     struct packed_chunk *packed;
+    exr_encode_pipeline_t *pipes; /* owned; one a thread */
+    struct exr_zip *zips;         /* owned; one a thread */
     struct chunk_fault *faults;
     size_t chunks;
+    int rows; /* of a chunk */
 };
 
 struct write_job {
     struct writer *w;
+    struct exr_zip *zip;
     size_t chunk;
 };
 
 /* One row to half or float; the place of the first sample that cannot be written, or -1. */
 static int pack_half(uint8_t *to, const float *from, int width)
 {
-    for (int x = 0; x < width; x++) {
+    const __m256 most = _mm256_set1_ps(LARGEST_HALF), least = _mm256_set1_ps(-LARGEST_HALF);
+    int x = 0;
+    for (; x + 8 <= width; x += 8) {
+        const __m256 v = _mm256_loadu_ps(from + x);
+        if (_mm256_movemask_ps(_mm256_cmp_ps(v, v, _CMP_UNORD_Q))) break; /* the loop below finds which */
+        const __m256 held = _mm256_min_ps(_mm256_max_ps(v, least), most);
+        _mm_storeu_si128((__m128i *)(to + 2 * x), _mm256_cvtps_ph(held, _MM_FROUND_TO_NEAREST_INT));
+    }
+    for (; x < width; x++) {
         if (isnan(from[x])) return x;
-        uint16_t bits = imath_float_to_half(fminf(fmaxf(from[x], -LARGEST_HALF), LARGEST_HALF));
+        const float held = from[x] > LARGEST_HALF ? LARGEST_HALF : from[x] < -LARGEST_HALF ? -LARGEST_HALF : from[x];
+        const uint16_t bits = imath_float_to_half(held);
         memcpy(to + 2 * x, &bits, 2);
     }
     return -1;
@@ -234,38 +248,54 @@ static exr_result_t pack_chunk(exr_encode_pipeline_t *pipe)
     return EXR_ERR_SUCCESS;
 }
 
+static bool zips(const struct exr_image *im) { return im->codec == EXR_ZIP || im->codec == EXR_ZIPS; }
+
 /* Stands in for the library's write: chunks are compressed in any order and written in theirs. */
 static exr_result_t keep_chunk(exr_encode_pipeline_t *pipe)
 {
     const struct write_job *job = pipe->encoding_user_data;
     struct packed_chunk *packed = &job->w->packed[job->chunk];
-    packed->bytes = malloc(pipe->compressed_bytes ? pipe->compressed_bytes : 1);
-    if (!packed->bytes) return EXR_ERR_OUT_OF_MEMORY;
-    memcpy(packed->bytes, pipe->compressed_buffer, pipe->compressed_bytes);
+    const void *bytes = pipe->compressed_buffer;
     packed->size = pipe->compressed_bytes;
+    if (zips(job->w->im)) {
+        if (!exr_zip_pack(job->zip, pipe->packed_buffer, pipe->packed_bytes, &packed->size))
+            return EXR_ERR_OUT_OF_MEMORY;
+        bytes = packed->size < pipe->packed_bytes ? job->zip->bytes : pipe->packed_buffer;
+    }
+    packed->bytes = malloc(packed->size ? packed->size : 1);
+    if (!packed->bytes) return EXR_ERR_OUT_OF_MEMORY;
+    memcpy(packed->bytes, bytes, packed->size);
     return EXR_ERR_SUCCESS;
 }
 
 static void compress_chunks(void *ctx, size_t begin, size_t end, int thread)
 {
-    (void)thread;
     struct writer *w = ctx;
+    exr_encode_pipeline_t *pipe = &w->pipes[thread];
     for (size_t i = begin; i < end; i++) {
-        exr_encode_pipeline_t pipe = EXR_ENCODE_PIPELINE_INITIALIZER;
-        struct write_job job = {w, i};
-        exr_result_t rv = exr_encoding_initialize(w->ctxt, w->part, &w->infos[i], &pipe);
-        if (!rv) rv = exr_encoding_choose_default_routines(w->ctxt, w->part, &pipe);
-        if (!rv) {
-            pipe.encoding_user_data = &job;
-            pipe.convert_and_pack_fn = pack_chunk;
-            pipe.yield_until_ready_fn = NULL; /* the order is kept by write_chunks() */
-            pipe.write_fn = keep_chunk;
-            for (int c = 0; c < pipe.channel_count; c++) /* pack_chunk() needs none, but the library refuses NULL */
-                pipe.channels[c].encode_from_ptr = (const uint8_t *)w->im->planes;
-            rv = exr_encoding_run(w->ctxt, w->part, &pipe);
+        struct write_job job = {w, &w->zips[thread], i};
+        exr_result_t rv = EXR_ERR_SUCCESS;
+        if (pipe->context) {
+            rv = exr_encoding_update(w->ctxt, w->part, &w->infos[i], pipe);
+        } else {
+            rv = exr_encoding_initialize(w->ctxt, w->part, &w->infos[i], pipe);
+            if (!rv) rv = exr_encoding_choose_default_routines(w->ctxt, w->part, pipe);
+            pipe->convert_and_pack_fn = pack_chunk;
+            pipe->yield_until_ready_fn = NULL; /* the order is kept by write_chunks() */
+            pipe->write_fn = keep_chunk;
+            if (zips(w->im)) pipe->compress_fn = NULL; /* keep_chunk() does */
         }
-        exr_encoding_destroy(w->ctxt, &pipe);
-        if (rv && !w->faults[i].code) w->faults[i] = (struct chunk_fault){rv, -1, 0, 0};
+        if (!rv) {
+            pipe->encoding_user_data = &job;
+            for (int c = 0; c < pipe->channel_count; c++) /* pack_chunk() needs none, but the library refuses NULL */
+                pipe->channels[c].encode_from_ptr = (const uint8_t *)w->im->planes;
+            rv = exr_encoding_run(w->ctxt, w->part, pipe);
+        }
+        if (rv) { /* its buffers may be half made */
+            exr_encoding_destroy(w->ctxt, pipe);
+            *pipe = (exr_encode_pipeline_t)EXR_ENCODE_PIPELINE_INITIALIZER;
+            if (!w->faults[i].code) w->faults[i] = (struct chunk_fault){rv, -1, 0, 0};
+        }
     }
 }
 
@@ -274,9 +304,13 @@ static exr_result_t write_header(struct writer *w, const struct provenance *prov
     static const exr_attr_chromaticities_t rec709 = {0.64F, 0.33F, 0.30F, 0.60F, 0.15F, 0.06F, 0.3127F, 0.3290F};
     static const exr_pixel_type_t type[] = {
         [EXR_UINT] = EXR_PIXEL_UINT, [EXR_HALF] = EXR_PIXEL_HALF, [EXR_FLOAT] = EXR_PIXEL_FLOAT};
+    static const exr_compression_t codec[] = {[EXR_ZIP] = EXR_COMPRESSION_ZIP,
+                                              [EXR_ZIPS] = EXR_COMPRESSION_ZIPS,
+                                              [EXR_RLE] = EXR_COMPRESSION_RLE,
+                                              [EXR_NONE] = EXR_COMPRESSION_NONE};
     const struct exr_image *im = w->im;
     exr_result_t rv = exr_add_part(w->ctxt, NULL, EXR_STORAGE_SCANLINE, &w->part);
-    if (!rv) rv = exr_initialize_required_attr_simple(w->ctxt, w->part, im->width, im->height, EXR_COMPRESSION_ZIP);
+    if (!rv) rv = exr_initialize_required_attr_simple(w->ctxt, w->part, im->width, im->height, codec[im->codec]);
     bool long_names = false;
     for (int i = 0; i < im->count; i++) long_names |= strlen(im->planes[i].name) > SHORT_NAME;
     for (int i = 0; i < im->attribute_count; i++) long_names |= strlen(im->attributes[i][0]) > SHORT_NAME;
@@ -303,21 +337,29 @@ static exr_result_t write_header(struct writer *w, const struct provenance *prov
 
 static enum status write_chunks(struct writer *w, const char *path, struct err *err)
 {
-    w->chunks = ((size_t)w->im->height + ZIP_ROWS - 1) / ZIP_ROWS;
+    w->rows = w->im->codec == EXR_ZIP ? ZIP_ROWS : 1;
+    w->chunks = ((size_t)w->im->height + (size_t)w->rows - 1) / (size_t)w->rows;
     w->infos = calloc(w->chunks, sizeof *w->infos);
     w->packed = calloc(w->chunks, sizeof *w->packed);
     w->faults = calloc(w->chunks, sizeof *w->faults);
-    if (!w->infos || !w->packed || !w->faults) return err_nomem(err, "a list of chunks", w->chunks * sizeof *w->infos);
+    w->pipes = calloc((size_t)parallel_threads(), sizeof *w->pipes);
+    w->zips = calloc((size_t)parallel_threads(), sizeof *w->zips);
+    if (!w->infos || !w->packed || !w->faults || !w->pipes || !w->zips)
+        return err_nomem(err, "a list of chunks", w->chunks * sizeof *w->infos);
 
     exr_result_t rv = EXR_ERR_SUCCESS;
     for (size_t i = 0; !rv && i < w->chunks; i++)
-        rv = exr_write_scanline_chunk_info(w->ctxt, w->part, (int)i * ZIP_ROWS, &w->infos[i]);
+        rv = exr_write_scanline_chunk_info(w->ctxt, w->part, (int)i * w->rows, &w->infos[i]);
     if (rv) return library_error(err, ST_INTERNAL, "write", path, rv);
 
     parallel_for(w->chunks, 1, compress_chunks, w);
+    for (int i = 0; i < parallel_threads(); i++) {
+        exr_encoding_destroy(w->ctxt, &w->pipes[i]);
+        exr_zip_release(&w->zips[i]);
+    }
     enum status st = first_fault(err, "write", path, "", w->im, w->faults, w->chunks);
     for (size_t i = 0; !st && i < w->chunks; i++) {
-        rv = exr_write_scanline_chunk(w->ctxt, w->part, (int)i * ZIP_ROWS, w->packed[i].bytes, w->packed[i].size);
+        rv = exr_write_scanline_chunk(w->ctxt, w->part, (int)i * w->rows, w->packed[i].bytes, w->packed[i].size);
         if (rv) st = library_error(err, ST_IO, "write", path, rv);
     }
     return st;
@@ -349,6 +391,8 @@ enum status exr_write(const struct exr_image *im, const char *path, const struct
     if (!st) st = outfile_commit(&file, err);
 
     outfile_discard(&file);
+    free(w.pipes);
+    free(w.zips);
     for (size_t i = 0; w.packed && i < w.chunks; i++) free(w.packed[i].bytes);
     free(w.infos);
     free(w.packed);
@@ -368,25 +412,33 @@ struct reader {
     size_t chunks;
     int *plane_from_channel;      /* owned; -1: not wanted */
     exr_decode_pipeline_t *pipes; /* owned; one a thread */
+    struct exr_zip *zips;         /* owned; one a thread */
     struct chunk_fault *faults;
 };
 
 struct read_job {
     struct reader *r;
+    struct exr_zip *zip;
     struct chunk_fault *fault;
     int x, y; /* of the chunk's first pixel in the picture */
 };
 
 static int unpack_half(float *to, const uint8_t *from, int width)
 {
-    int bad = -1;
-    for (int x = 0; x < width; x++) {
+    const __m128i exponent = _mm_set1_epi16(0x7c00);
+    int x = 0;
+    for (; x + 8 <= width; x += 8) {
+        const __m128i bits = _mm_loadu_si128((const __m128i *)(from + 2 * x));
+        if (_mm_movemask_epi8(_mm_cmpeq_epi16(_mm_and_si128(bits, exponent), exponent))) break;
+        _mm256_storeu_ps(to + x, _mm256_cvtph_ps(bits));
+    }
+    for (; x < width; x++) {
         uint16_t bits;
         memcpy(&bits, from + 2 * x, 2);
+        if ((bits & 0x7c00) == 0x7c00) return x;
         to[x] = imath_half_to_float(bits);
-        if ((bits & 0x7c00) == 0x7c00 && bad < 0) bad = x;
     }
-    return bad;
+    return -1;
 }
 
 static int unpack_float(float *to, const uint8_t *from, int width)
@@ -436,6 +488,20 @@ static exr_result_t unpack_chunk(exr_decode_pipeline_t *pipe)
     return EXR_ERR_SUCCESS;
 }
 
+static exr_result_t unzip_chunk(exr_decode_pipeline_t *pipe)
+{
+    static const exr_result_t results[] = {[EXR_ZIP_GOOD] = EXR_ERR_SUCCESS,
+                                           [EXR_ZIP_DAMAGED] = EXR_ERR_CORRUPT_CHUNK,
+                                           [EXR_ZIP_NOMEM] = EXR_ERR_OUT_OF_MEMORY};
+    const struct read_job *job = pipe->decoding_user_data;
+    const size_t packed = pipe->chunk.packed_size, size = pipe->chunk.unpacked_size;
+    if (packed < size)
+        return results[exr_zip_unpack(job->zip, pipe->packed_buffer, packed, pipe->unpacked_buffer, size)];
+    if (packed > size) return EXR_ERR_CORRUPT_CHUNK;
+    if (pipe->unpacked_buffer != pipe->packed_buffer) memcpy(pipe->unpacked_buffer, pipe->packed_buffer, size);
+    return EXR_ERR_SUCCESS;
+}
+
 static exr_result_t chunk_info(const struct reader *r, size_t chunk, exr_chunk_info_t *info)
 {
     int across = (int)(chunk % (size_t)r->chunks_across), down = (int)(chunk / (size_t)r->chunks_across);
@@ -448,7 +514,7 @@ static void decode_chunks(void *ctx, size_t begin, size_t end, int thread)
     struct reader *r = ctx;
     exr_decode_pipeline_t *pipe = &r->pipes[thread];
     for (size_t i = begin; i < end; i++) {
-        struct read_job job = {r, &r->faults[i], (int)(i % (size_t)r->chunks_across) * r->chunk_width,
+        struct read_job job = {r, &r->zips[thread], &r->faults[i], (int)(i % (size_t)r->chunks_across) * r->chunk_width,
                                (int)(i / (size_t)r->chunks_across) * r->chunk_height};
         exr_chunk_info_t info;
         exr_result_t rv = chunk_info(r, i, &info);
@@ -458,6 +524,8 @@ static void decode_chunks(void *ctx, size_t begin, size_t end, int thread)
             rv = exr_decoding_initialize(r->ctxt, 0, &info, pipe);
             if (!rv) rv = exr_decoding_choose_default_routines(r->ctxt, 0, pipe);
             pipe->unpack_and_convert_fn = unpack_chunk;
+            if (info.compression == EXR_COMPRESSION_ZIP || info.compression == EXR_COMPRESSION_ZIPS)
+                pipe->decompress_fn = unzip_chunk;
         }
         if (!rv) {
             pipe->decoding_user_data = &job;
@@ -591,8 +659,9 @@ enum status exr_read(struct exr_image *im, const char *path, const char *const *
     if (!st) st = read_attributes(&r, err);
     if (!st && im->count > 0) { /* with no channel asked for, the header is all */
         r.pipes = calloc((size_t)threads, sizeof *r.pipes);
+        r.zips = calloc((size_t)threads, sizeof *r.zips);
         r.faults = calloc(r.chunks, sizeof *r.faults);
-        if (!r.pipes || !r.faults) st = err_nomem(err, "a list of chunks", r.chunks * sizeof *r.faults);
+        if (!r.pipes || !r.zips || !r.faults) st = err_nomem(err, "a list of chunks", r.chunks * sizeof *r.faults);
     }
     if (!st && im->count > 0) {
         parallel_for(r.chunks, 1, decode_chunks, &r);
@@ -600,7 +669,9 @@ enum status exr_read(struct exr_image *im, const char *path, const char *const *
     }
 
     for (int i = 0; r.pipes && i < threads; i++) exr_decoding_destroy(r.ctxt, &r.pipes[i]);
+    for (int i = 0; r.zips && i < threads; i++) exr_zip_release(&r.zips[i]);
     free(r.pipes);
+    free(r.zips);
     free(r.faults);
     free(r.plane_from_channel);
     if (r.ctxt) exr_finish(&r.ctxt);

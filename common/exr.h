@@ -1,4 +1,4 @@
-/* exr.h - OpenEXR files, on OpenEXRCore: scanline, ZIP, half or float or uint channels.
+/* exr.h - OpenEXR files, on OpenEXRCore: scanline, half or float or uint channels, lossless codecs.
  *
  * In memory a channel is a plane of float or uint32_t, row-major, w * h. Writing is atomic (common/outfile.h) and gives
  * the same bytes for the same input. Every file carries chromaticities (Rec.709, D65) and the provenance as string
@@ -14,6 +14,9 @@
 
 enum exr_type { EXR_UINT, EXR_HALF, EXR_FLOAT }; /* on disk; both float kinds are float in memory */
 
+/* How a file is written; ZIP packs 16 rows together, the others a row by itself. */
+enum exr_codec { EXR_ZIP, EXR_ZIPS, EXR_RLE, EXR_NONE };
+
 #define EXR_NAME_SIZE 64
 
 struct exr_plane {
@@ -26,6 +29,7 @@ struct exr_plane {
 struct exr_image {
     int width, height;
     int count;
+    enum exr_codec codec;     /* exr_write() uses it, exr_read() takes any and leaves EXR_ZIP here */
     struct exr_plane *planes; /* owned, with their data */
     bool has_world_to_camera;
     float world_to_camera[16];  /* Imath's row-vector convention: as stored in the file's m44f; see exr_set_camera */

@@ -6,6 +6,8 @@
 # that was there before is left alone.
 set -uo pipefail
 mode=$1 stage=$2 item=$3 folder=$4; shift 4
+# threads with nothing to do sleep, not spin: on a machine with other work spinning takes the core from who has work
+export OMP_WAIT_POLICY=${OMP_WAIT_POLICY-passive}
 mkdir -p "$folder/log"
 log=$folder/log/$stage.$item.log
 if [ "$mode" = live ]; then

@@ -78,6 +78,24 @@ static void round_trip(void **state)
     exr_image_release(NULL);
 }
 
+static void every_codec_comes_back(void **state)
+{
+    struct err err = ERR_INIT;
+    (void)state;
+    for (int codec = EXR_ZIP; codec <= EXR_NONE; codec++) {
+        struct exr_image im = sample(37, 45), in;
+        const char *path = scratch_path("codec.exr");
+        im.codec = (enum exr_codec)codec;
+        assert_ok(exr_write(&im, path, NULL, &err), err);
+        assert_ok(exr_read(&in, path, NULL, 0, &err), err);
+        assert_memory_equal(exr_find(&in, "interior.id")->u, exr_find(&im, "interior.id")->u, 37 * 45 * 4);
+        assert_memory_equal(exr_find(&in, "Z")->f, exr_find(&im, "Z")->f, 37 * 45 * 4);
+        assert_memory_equal(exr_find(&in, "R")->f, exr_find(&im, "R")->f, 37 * 45 * 4);
+        exr_image_release(&in);
+        exr_image_release(&im);
+    }
+}
+
 static void half_is_the_nearest_and_saturates(void **state)
 {
     struct err err = ERR_INIT;
@@ -339,6 +357,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(round_trip),
+        cmocka_unit_test(every_codec_comes_back),
         cmocka_unit_test(half_is_the_nearest_and_saturates),
         cmocka_unit_test(same_bytes_for_any_threads_and_order),
         cmocka_unit_test(refused_samples_leave_the_old_file),

@@ -1,0 +1,20 @@
+/* exr_openexr.h - the baseline of the bench `exr`: the OpenEXR library's own C++ interface, which is what programs that
+ * write EXR files (ImageMagick, OpenCV, ...) call. It takes and gives the same pictures as common/exr.h. */
+#ifndef REMODEL_BENCH_EXR_OPENEXR_H
+#define REMODEL_BENCH_EXR_OPENEXR_H
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+#include "common/exr.h"
+
+void openexr_set_threads(int threads);
+/* The file gets the picture's codec, half channels being rounded from float as in exr_write(). Not atomic, no fsync. */
+enum status openexr_write(const struct exr_image *im, const char *path, struct err *err);
+/* All channels of a scanline file, in order of name. */
+enum status openexr_read(struct exr_image *im, const char *path, struct err *err);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,52 @@
+/* picture_error.c - how far a picture is from the truth, for benches.
+ *
+ *   picture_error PICTURE.exr TRUTH.exr
+ *
+ * Prints "error E", "unit 1", "pixels N": E is the root of the mean, over pixels and the channels R G B, of
+ * ((v - t) / (t + m / 100))^2, t the truth's value and m its mean over the picture, which keeps
+ * black pixels from counting without bound. */
+#include <math.h>
+#include <stdio.h>
+
+#include "common/exr.h"
+
+static enum status compare(const char *picture, const char *truth, struct err *err)
+{
+    static const char *const names[] = {"R", "G", "B"};
+    struct exr_image a = {0}, b = {0};
+    enum status st = exr_read(&a, picture, names, 3, err);
+    if (!st) st = exr_read(&b, truth, names, 3, err);
+    if (!st && (a.width != b.width || a.height != b.height))
+        st = err_set(err, ST_DATA, "%s has %d x %d pixels, %s %d x %d; they must be of one size.", picture, a.width,
+                     a.height, truth, b.width, b.height);
+    if (!st) {
+        const size_t pixels = (size_t)a.width * (size_t)a.height;
+        double mean = 0, sum = 0;
+        for (int c = 0; c < 3; c++)
+            for (size_t i = 0; i < pixels; i++) mean += (double)b.planes[c].f[i] / (3 * (double)pixels);
+        if (!(mean > 0)) st = err_set(err, ST_DATA, "%s is black; there is nothing to be relative to.", truth);
+        for (int c = 0; !st && c < 3; c++) {
+            const struct exr_plane *v = exr_find(&a, names[c]), *t = exr_find(&b, names[c]);
+            for (size_t i = 0; i < pixels; i++) {
+                double off = ((double)v->f[i] - (double)t->f[i]) / (fmax(t->f[i], 0) + mean / 100);
+                sum += off * off;
+            }
+        }
+        if (!st) printf("error %.5g\nunit 1\npixels %zu\n", sqrt(sum / (3 * (double)pixels)), pixels);
+    }
+    exr_image_release(&a);
+    exr_image_release(&b);
+    return st;
+}
+
+int main(int argc, char **argv)
+{
+    struct err err = ERR_INIT;
+    log_set_name("picture_error");
+    if (argc != 3)
+        err_set(&err, ST_USAGE, "found %d arguments, wanted PICTURE TRUTH.", argc - 1);
+    else
+        compare(argv[1], argv[2], &err);
+    err_report(&err);
+    return err_exit_code(&err);
+}
