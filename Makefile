@@ -230,6 +230,10 @@ $(foreach f,$(S)/photos/photos.mk $(O)/views/views.mk $(O)/parallax/$(EFFECT)/fr
 
 BIN := $(B)/bin
 E := $(O)/parallax/$(EFFECT)
+# a described scene is photographed first: photos.mk lists its SHOTS, and SHOT_NAME the files of each
+SIM := $(S)/simulated
+DESCRIBED := $(wildcard scenes/$(SCENE)/scene.txt)
+$(if $(DESCRIBED),$(eval $(file <$(SIM)/photos.mk)))
 CAMERAS := $(addprefix $(O)/views/,cameras.txt images.txt points3D.txt)
 VIEW_EXR := $(VIEWS:%=$(O)/views/%.exr)
 H := $(O)/holdout
@@ -249,6 +253,18 @@ stage = $(hide)common/run_stage.sh live $(1) $(2) $(3) $(BIN)/$(1) --threads $(T
 # cluster; a plan's line is PRODUCTS, a tab, and the command with SHELLWORD already expanded behind it; FOLDER is O if not given
 farm_line = common/run_stage.sh quiet $(1) $(2) $(or $(6),$(O)) $(BIN)/$(1) --threads $(T) --config $(or $(6),$(O))/slice/$(1).cfg $(4)
 farm = $(if $(filter plan,$(LAUNCH)),printf '%s\t%s %s\n' '$(3)' '$(farm_line)' "$(5)" >>$(PLAN),$(farm_line) $(5))
+
+DESCRIPTION := $(DESCRIBED) $(if $(DESCRIBED),scenes/$(SCENE)/cameras.txt $(wildcard scenes/$(SCENE)/*.obj)) \
+  $(S)/slice/simulate.cfg $(B)/code/simulate
+$(SIM)/photos.mk: $(DESCRIPTION)
+	$(call stage,simulate,common,$(S),--scene scenes/$(SCENE) --out $(SIM) --common)
+define shot_rules
+$(SHOT_$(1):%=$(SIM)/%) &: $(DESCRIPTION)
+	$$(hide)$$(call farm,simulate,$(1),$(SHOT_$(1):%=$(SIM)/%),--scene scenes/$(SCENE) --out $(SIM) --photo $(1),,$(S))
+endef
+$(foreach s,$(SHOTS),$(eval $(call shot_rules,$(s))))
+.PHONY: simulated
+simulated: $(foreach s,$(SHOTS),$(SHOT_$(s):%=$(SIM)/%))
 
 # what stages after hdr_merge take for the photos, and what a photo's view is made from; $(1) is a photo's id
 HDR := $(if $(BRACKETED),$(foreach p,$(PHOTO_IDS),$(S)/hdr/$(p).exr $(S)/hdr/$(p).jpg))
@@ -333,7 +349,9 @@ $(O)/index.html: $(if $(HELDOUT)$(TRUTH),$(O)/metrics.tsv) $(E)/video.mp4 $(PATH
 
 # What is looked at afresh in every run, also under -n: configs, photos. Files are rewritten only if their text changed.
 CONFIGS := configs/default.cfg $(if $(filter-out default,$(QUALITY)),configs/$(QUALITY).cfg) $(wildcard scenes/$(SCENE)/scene.cfg)
-.PHONY: look
+.PHONY: look look-simulate
+look-simulate:
+	+@common/look.sh slices $(BIN) $(S)/slice simulate $(filter-out configs/draft.cfg configs/final.cfg,$(CONFIGS))
 look:
 	+@common/look.sh slices $(BIN) $(O)/slice '$(STAGES)' $(CONFIGS)
 	+@common/look.sh slices $(BIN) $(S)/slice 'import_photos hdr_merge sfm' $(filter-out configs/draft.cfg configs/final.cfg,$(CONFIGS))

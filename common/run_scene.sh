@@ -53,11 +53,6 @@ if [ -z "${REMODEL_PHOTOS-}" ]; then
     echo "$folder/scene.mk sets no PHOTOS. Write there PHOTOS := DIR, the folder of the photos." >&2
     exit 2
 fi
-if [ -n "${REMODEL_TRUTH-}" ] && [ ! -d "$REMODEL_TRUTH" ]; then
-    echo "TRUTH=$REMODEL_TRUTH is no folder. Give the folder that holds cameras.txt and images.txt of the truth." >&2
-    exit 2
-fi
-
 mkdir -p "$S"
 if [ "$dry" != n ] && [ "$goal" != why ]; then
     exec 9>"$S/.lock"
@@ -67,20 +62,10 @@ if [ "$dry" != n ] && [ "$goal" != why ]; then
     fi
 fi
 
-graph look
-if [ "$goal" = why ]; then
-    graph -n --debug=b --no-print-directory report | common/explain.sh why "$S" "$O"
-    exit 0
+if [ "$dry" != n ]; then
+    work=$(mktemp -d "${TMPDIR:-/tmp}/remodel.XXXXXX")
+    trap 'rm -rf "$work"' EXIT
 fi
-if [ "$dry" = n ]; then
-    [ -e "$O/views/views.mk" ] || echo "# not known before structure from motion has run: which views there are"
-    [ "$goal" = resfm ] && exec "${make[@]}" PHASE=graph -W "$S/photos/list.txt" sfm
-    [ "$goal" = all ] && goal=report
-    exec "${make[@]}" PHASE=graph T="$cores" "$goal"
-fi
-
-work=$(mktemp -d "${TMPDIR:-/tmp}/remodel.XXXXXX")
-trap 'rm -rf "$work"' EXIT
 
 # farm STAGE GOAL: the stale products of a per-view stage, here or on the cluster
 farm()
@@ -101,6 +86,34 @@ farm()
     REMODEL_TALLY=$work/$1.tally REMODEL_COUNT=$count graph $quiet -j"$wide" T="$threads" "$2"
 }
 one() { graph $quiet -j1 T="$cores" "$@"; }
+
+# a described scene is photographed before its photos can be looked at
+if [ -e "$folder/scene.txt" ]; then
+    if [ "$dry" = n ] || [ "$goal" = why ]; then
+        [ -e "$S/simulated/photos.mk" ] || { echo "# nothing is known before the scene is simulated: make SCENE=$scene"; exit 0; }
+    else
+        graph look-simulate
+        one "$S/simulated/photos.mk"
+        farm simulate simulated 1 "${VIEWS_PER_JOB:-4}"
+    fi
+fi
+if [ -n "${REMODEL_TRUTH-}" ] && [ ! -d "$REMODEL_TRUTH" ]; then
+    echo "TRUTH=$REMODEL_TRUTH is no folder. Give the folder that holds cameras.txt and images.txt of the truth." >&2
+    exit 2
+fi
+
+graph look
+if [ "$goal" = why ]; then
+    graph -n --debug=b --no-print-directory report | common/explain.sh why "$S" "$O"
+    exit 0
+fi
+if [ "$dry" = n ]; then
+    [ -e "$O/views/views.mk" ] || echo "# not known before structure from motion has run: which views there are"
+    [ "$goal" = resfm ] && exec "${make[@]}" PHASE=graph -W "$S/photos/list.txt" sfm
+    [ "$goal" = all ] && goal=report
+    exec "${make[@]}" PHASE=graph T="$cores" "$goal"
+fi
+
 # frames are few processes with all threads each, since every one of them holds all views in memory
 farm_frames()
 {
