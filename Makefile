@@ -217,6 +217,10 @@ $(B)/tests/pipeline/make_photos: $(B)/obj/tests/pipeline/make_photos.o $(B)/libr
 	$(call link)
 $(FUZZ_TESTS): $(B)/tests/fuzz/%: $(B)/obj/tests/fuzz/%.o $(B)/obj/tests/fuzz/run_corpus.o $(B)/libremodel.a
 	$(call link)
+# what simulate alone needs
+$(B)/bin/simulate $(B)/tests/unit/simulate/%: private LDLIBS += -lembree3
+$(B)/tests/fuzz/fuzz_scene $(B)/tests/fuzz/fuzz_shoot: private LDLIBS += -lembree3
+$(B)/tests/fuzz/fuzz_scene $(B)/tests/fuzz/fuzz_shoot: $(filter-out %/simulate.o,$(call objs,stages/simulate/*.c))
 .SECONDARY: $(call objs,tests/*/*.c tests/*/*/*.c)
 -include $(shell find $(B)/obj -name '*.d' 2>/dev/null)
 

@@ -469,6 +469,107 @@ enum status jpeg_encode(unsigned char **bytes, size_t *size, const unsigned char
     return st;
 }
 
+/* EXIF's fractions: of exposure times 1/n where that is what is meant, else millionths or what fits. */
+static ExifRational exif_rational(double value)
+{
+    const double inverse = 1 / value;
+    if (value < 1 && inverse < 4e9 && fabs(inverse - round(inverse)) < 1e-9 * inverse)
+        return (ExifRational){1, (ExifLong)round(inverse)};
+    ExifLong below = 1000000;
+    while (below > 1 && value * below > 4e9) below /= 10;
+    return (ExifRational){(ExifLong)round(value * below), below};
+}
+
+/* A new entry of `count` values; NULL: no memory. Its data is the entry's. */
+static ExifEntry *exif_add(ExifData *data, ExifIfd ifd, ExifTag tag, ExifFormat format, size_t count)
+{
+    ExifMem *mem = exif_mem_new_default();
+    ExifEntry *e = mem ? exif_entry_new_mem(mem) : NULL;
+    const size_t size = count * exif_format_get_size(format);
+    unsigned char *room = e ? exif_mem_alloc(mem, (ExifLong)size) : NULL;
+    if (room) {
+        e->tag = tag;
+        e->format = format;
+        e->components = count;
+        e->size = (unsigned)size;
+        e->data = room;
+        exif_content_add_entry(data->ifd[ifd], e);
+    }
+    if (e) exif_entry_unref(e); /* the content holds its own */
+    if (mem) exif_mem_unref(mem);
+    return room ? e : NULL;
+}
+
+static bool exif_put_text(ExifData *data, ExifTag tag, const char *text)
+{
+    if (!*text) return true;
+    ExifEntry *e = exif_add(data, EXIF_IFD_0, tag, EXIF_FORMAT_ASCII, strlen(text) + 1);
+    if (e) memcpy(e->data, text, strlen(text) + 1);
+    return e;
+}
+
+static bool exif_put_short(ExifData *data, ExifIfd ifd, ExifTag tag, double value)
+{
+    if (!(value > 0)) return true;
+    ExifEntry *e = exif_add(data, ifd, tag, EXIF_FORMAT_SHORT, 1);
+    if (e) exif_set_short(e->data, exif_data_get_byte_order(data), (ExifShort)fmin(65535, fmax(1, round(value))));
+    return e;
+}
+
+static bool exif_put_rational(ExifData *data, ExifTag tag, double value)
+{
+    if (!(value > 0)) return true;
+    ExifEntry *e = exif_add(data, EXIF_IFD_EXIF, tag, EXIF_FORMAT_RATIONAL, 1);
+    if (e) exif_set_rational(e->data, exif_data_get_byte_order(data), exif_rational(value));
+    return e;
+}
+
+/* The block as it stands in an APP1 segment, "Exif" and two zeros before it; libexif's memory. */
+static enum status exif_block(unsigned char **block, unsigned *size, const struct photo_info *info, struct err *err)
+{
+    ExifData *data = exif_data_new();
+    bool made = data;
+    *block = NULL;
+    if (made) {
+        exif_data_set_byte_order(data, EXIF_BYTE_ORDER_INTEL);
+        exif_data_unset_option(data, EXIF_DATA_OPTION_FOLLOW_SPECIFICATION);
+        made = exif_put_text(data, EXIF_TAG_MAKE, info->make) && exif_put_text(data, EXIF_TAG_MODEL, info->model) &&
+               exif_put_short(data, EXIF_IFD_0, EXIF_TAG_ORIENTATION, info->orientation) &&
+               exif_put_rational(data, EXIF_TAG_EXPOSURE_TIME, info->seconds) &&
+               exif_put_rational(data, EXIF_TAG_FNUMBER, info->f_number) &&
+               exif_put_short(data, EXIF_IFD_EXIF, EXIF_TAG_ISO_SPEED_RATINGS, info->iso) &&
+               exif_put_rational(data, EXIF_TAG_FOCAL_LENGTH, info->focal_mm) &&
+               exif_put_short(data, EXIF_IFD_EXIF, EXIF_TAG_FOCAL_LENGTH_IN_35MM_FILM, info->focal35_mm);
+    }
+    if (made) exif_data_save_data(data, block, size);
+    if (data) exif_data_unref(data);
+    return *block && *size <= 65533 ? ST_OK : err_nomem(err, "EXIF data", 65533);
+}
+
+enum status photo_write_jpeg(const char *path, const unsigned char *rgb, int width, int height, int quality,
+                             const struct photo_info *info, struct err *err)
+{
+    struct outfile f = {0};
+    unsigned char *bytes = NULL, *exif = NULL;
+    size_t size = 0;
+    unsigned exif_size = 0;
+    enum status st = jpeg_encode(&bytes, &size, rgb, width, height, quality, err);
+    if (!st) st = exif_block(&exif, &exif_size, info, err);
+    if (!st) st = outfile_open(&f, path, err);
+    if (!st) { /* behind the start marker */
+        const unsigned char segment[4] = {0xff, 0xe1, (unsigned char)((exif_size + 2) >> 8),
+                                          (unsigned char)(exif_size + 2)};
+        if (fwrite(bytes, 1, 2, f.fp) != 2 || fwrite(segment, 1, 4, f.fp) != 4 ||
+            fwrite(exif, 1, exif_size, f.fp) != exif_size || fwrite(bytes + 2, 1, size - 2, f.fp) != size - 2)
+            st = err_errno(err, "write", path);
+    }
+    if (!st) st = outfile_commit(&f, err);
+    outfile_discard(&f);
+    free(exif);
+    free(bytes);
+    return st;
+}
+
 enum status jpeg_write(const char *path, const unsigned char *rgb, int width, int height, int quality, struct err *err)
 {
     struct outfile f = {0};

@@ -37,6 +37,10 @@ enum status photo_to_linear(struct image *out, const struct photo *p, struct err
 enum status png_write(const char *path, const unsigned char *pixels, int width, int height, int channels,
                       struct err *err);
 enum status jpeg_write(const char *path, const unsigned char *rgb, int width, int height, int quality, struct err *err);
+/* A JPEG as a camera stores it: with EXIF of what `info` says (make, model, orientation, focal lengths, exposure time,
+ * f-number, ISO speed; 0 and "" are left out). Its width, height and bits are not looked at. */
+enum status photo_write_jpeg(const char *path, const unsigned char *rgb, int width, int height, int quality,
+                             const struct photo_info *info, struct err *err);
 /* JPEG in memory; *bytes is malloc'ed, the caller frees it. */
 enum status jpeg_encode(unsigned char **bytes, size_t *size, const unsigned char *rgb, int width, int height,
                         int quality, struct err *err);

@@ -230,6 +230,35 @@ static void written_pictures_read_back(void **state)
     assert_int_equal(png_write(scratch_path("rgb.png/x.png"), rgb, 40, 30, 3, &err), ST_IO);
 }
 
+/* A JPEG with EXIF says again what it was told, exposure times to the last digit; nothing is said that was not told. */
+static void exif_is_written(void **state)
+{
+    const double seconds[] = {1.0 / 8000, 1.0 / 240, 1.0 / 60, 0.3, 1, 2.5, 30};
+    unsigned char rgb[16 * 12 * 3];
+    struct photo_info info;
+    struct err err = ERR_INIT;
+    (void)state;
+    for (int i = 0; i < 16 * 12 * 3; i++) rgb[i] = (unsigned char)(i * 5);
+    for (size_t i = 0; i < sizeof seconds / sizeof *seconds; i++) {
+        const struct photo_info told = {0, 0, 0, 1, 24.5, 33, seconds[i], 5.6, 400, "remodel", "lens of 24 mm"};
+        const char *path = scratch_path("exif.jpg");
+        assert_ok(photo_write_jpeg(path, rgb, 16, 12, 90, &told, &err), err);
+        assert_ok(photo_read_info(&info, path, &err), err);
+        assert_true(info.width == 16 && info.height == 12 && info.bits == 8 && info.orientation == 1);
+        assert_true(fabs(info.seconds - seconds[i]) < 1e-12 && info.f_number == 5.6 && info.iso == 400);
+        assert_true(info.focal_mm == 24.5 && info.focal35_mm == 33);
+        assert_string_equal(info.make, "remodel");
+        assert_string_equal(info.model, "lens of 24 mm");
+    }
+    const struct photo_info nothing = {0};
+    struct photo p;
+    assert_ok(photo_write_jpeg(scratch_path("bare.jpg"), rgb, 16, 12, 90, &nothing, &err), err);
+    assert_ok(photo_read(&p, scratch_path("bare.jpg"), &err), err);
+    assert_true(p.info.seconds == 0 && p.info.focal_mm == 0 && !*p.info.make && p.info.orientation == 1);
+    photo_release(&p);
+    assert_int_equal(photo_write_jpeg(scratch_path("bare.jpg/x.jpg"), rgb, 16, 12, 90, &nothing, &err), ST_IO);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -242,6 +271,7 @@ int main(void)
         cmocka_unit_test(cut_anywhere),
         cmocka_unit_test(linear_light),
         cmocka_unit_test(written_pictures_read_back),
+        cmocka_unit_test(exif_is_written),
     };
     return cmocka_run_group_tests_name("photo", tests, scratch_make, scratch_remove);
 }

@@ -1,0 +1,101 @@
+/* brdf.c - see brdf.h.
+ *
+ * Sampling: the diffuse part by the cosine; Phong's lobe by (n + 1) / (2 pi) cos^n about the mirrored view; Ward's by
+ * its half vector (G. Ward, "Measuring and Modeling Anisotropic Reflection", 1992): tan(N,H) = alpha sqrt(-ln u). The
+ * part is chosen by a fixed share, and the density is that of both together. */
+#include "stages/simulate/brdf.h"
+
+#include <math.h>
+
+#include "stages/simulate/fast.h"
+
+#define PI 3.14159265358979323846
+
+void frame_from_normal(struct vec3 z, struct vec3 *x, struct vec3 *y)
+{
+    /* Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 2017 */
+    const double sign = z.z < 0 ? -1 : 1, a = -1 / (sign + z.z), b = z.x * z.y * a;
+    *x = vec3_make(1 + sign * z.x * z.x * a, sign * b, -sign * z.x);
+    *y = vec3_make(b, sign + z.y * z.y * a, -z.y);
+}
+
+static double gloss_share(const struct brdf *b)
+{
+    if (b->kind == BRDF_LAMBERT || !(b->gloss > 0)) return 0;
+    return b->gloss / (b->gloss + rgb_luminance(b->albedo));
+}
+
+static struct vec3 mirrored(struct vec3 n, struct vec3 v) { return vec3_sub(vec3_scale(n, 2 * vec3_dot(n, v)), v); }
+
+struct rgb brdf_eval(const struct brdf *b, struct vec3 n, struct vec3 view, struct vec3 light, double *pdf)
+{
+    const double cos_l = vec3_dot(n, light), cos_v = vec3_dot(n, view), share = gloss_share(b);
+    *pdf = 0;
+    if (!(cos_l > 0) || !(cos_v > 0)) return rgb_grey(0);
+    double gloss = 0, gloss_pdf = 0;
+    if (b->kind == BRDF_PHONG && share > 0) {
+        const double c = vec3_dot(mirrored(n, view), light), lobe = c > 0 ? pow(c, b->shape) : 0;
+        gloss = b->ks * lobe;
+        gloss_pdf = (b->shape + 1) / (2 * PI) * lobe;
+    } else if (b->kind == BRDF_WARD && share > 0) {
+        const struct vec3 h = vec3_normalize(vec3_add(view, light));
+        const double cos_h = vec3_dot(n, h), cos2 = cos_h * cos_h, alpha2 = b->shape * b->shape;
+        const double lobe = cos_h > 0 ? exp((cos2 - 1) / (cos2 * alpha2)) / (4 * PI * alpha2) : 0;
+        gloss = b->ks * lobe * sqrt(cos_l / cos_v);
+        gloss_pdf = lobe > 0 ? lobe / (cos2 * cos_h * vec3_dot(h, light)) : 0;
+    }
+    *pdf = (1 - share) * cos_l / PI + share * gloss_pdf;
+    return rgb_add(rgb_scale(b->albedo, cos_l / PI), rgb_grey(gloss));
+}
+
+struct vec3 direction_about(struct vec3 axis, double sin_t, double cos_t, double turns)
+{
+    struct vec3 x, y;
+    double c, s;
+    frame_from_normal(axis, &x, &y);
+    circle(turns, &c, &s);
+    return vec3_add(vec3_add(vec3_scale(x, sin_t * c), vec3_scale(y, sin_t * s)), vec3_scale(axis, cos_t));
+}
+
+bool brdf_sample(const struct brdf *b, struct vec3 n, struct vec3 view, const double u[3], struct vec3 *light)
+{
+    const double share = gloss_share(b);
+    if (u[0] >= share) {
+        *light = direction_about(n, sqrt(u[1]), sqrt(1 - u[1]), u[2]);
+    } else if (b->kind == BRDF_PHONG) {
+        const double cos_t = pow(1 - u[1], 1 / (b->shape + 1));
+        *light = direction_about(mirrored(n, view), sqrt(most(0, 1 - cos_t * cos_t)), cos_t, u[2]);
+    } else {
+        const double tan_h = b->shape * sqrt(-log(1 - u[1])), cos_h = 1 / sqrt(1 + tan_h * tan_h);
+        *light = mirrored(direction_about(n, tan_h * cos_h, cos_h, u[2]), view);
+    }
+    return vec3_dot(n, *light) > 0;
+}
+
+/* Ward's lobe with ks = 1 towards a viewer at cos_v: the mean of f cos / density over a grid of the sampling square. */
+static double ward_albedo(double alpha, double cos_v)
+{
+    enum { STEPS = 96 };
+    const struct brdf b = {BRDF_WARD, {0, 0, 0}, 1, alpha, 1};
+    const struct vec3 n = {0, 0, 1}, view = {sqrt(1 - cos_v * cos_v), 0, cos_v};
+    double sum = 0;
+    for (int i = 0; i < STEPS; i++)
+        for (int j = 0; j < STEPS; j++) {
+            const double u[3] = {0, (i + 0.5) / STEPS, (j + 0.5) / STEPS};
+            struct vec3 light;
+            double pdf;
+            if (!brdf_sample(&b, n, view, u, &light)) continue;
+            const double value = brdf_eval(&b, n, view, light, &pdf).r;
+            if (pdf > 0) sum += value / pdf;
+        }
+    return sum / (STEPS * STEPS);
+}
+
+double brdf_gloss_albedo(enum brdf_kind kind, double ks, double shape)
+{
+    double most = 0;
+    if (kind == BRDF_PHONG) return 2 * PI * ks / (shape + 1);
+    if (kind == BRDF_WARD)
+        for (int i = 1; i <= 20; i++) most = fmax(most, ward_albedo(shape, i / 20.0));
+    return ks * most;
+}

@@ -1,0 +1,107 @@
+/* mesh_file.c - see mesh_file.h. */
+#include "stages/simulate/mesh_file.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/scan.h"
+#include "common/textfile.h"
+
+#define MOST_TRIANGLES (1 << 22)
+#define MOST_METRES    1e5
+
+struct mesh {
+    struct vec3 *vertices;
+    struct vec3 (*triangles)[3];
+    int vertex_count, vertex_room, triangle_count, triangle_room;
+};
+
+static enum status grow(void **list, int count, int *room, size_t size, struct err *err)
+{
+    if (count < *room) return ST_OK;
+    const int more = *room ? 2 * *room : 64;
+    void *grown = realloc(*list, (size_t)more * size);
+    if (!grown) return err_nomem(err, "a mesh", (size_t)more * size);
+    *list = grown;
+    *room = more;
+    return ST_OK;
+}
+
+static enum status read_vertex(struct mesh *m, struct textfile *t, struct err *err)
+{
+    double v[3] = {0, 0, 0};
+    enum status st = ST_OK;
+    for (int i = 0; !st && i < 3; i++) {
+        st = textfile_double(t, "a vertex's coordinate", &v[i], err);
+        if (!st && fabs(v[i]) > MOST_METRES)
+            st = textfile_error(t, err, "a larger number", "a vertex's coordinate, at most %g", MOST_METRES);
+    }
+    void *list = m->vertices;
+    if (!st) st = grow(&list, m->vertex_count, &m->vertex_room, sizeof *m->vertices, err);
+    m->vertices = list;
+    if (!st) m->vertices[m->vertex_count++] = vec3_make(v[0], v[1], v[2]);
+    return st;
+}
+
+static enum status read_corner(const struct mesh *m, struct textfile *t, struct vec3 *corner, struct err *err)
+{
+    char *word = NULL, *slash;
+    int64_t index = 0;
+    enum status st = textfile_word(t, "a face's vertex", &word, err);
+    if (st) return st;
+    if ((slash = strchr(word, '/'))) *slash = '\0';
+    if (!scan_int(word, &index) || index == 0 || index > m->vertex_count || -index > m->vertex_count)
+        return textfile_error(t, err, word, "a vertex from 1 to %d, or counted back from -1", m->vertex_count);
+    *corner = m->vertices[index > 0 ? index - 1 : m->vertex_count + index];
+    return ST_OK;
+}
+
+static enum status read_face(struct mesh *m, struct textfile *t, struct err *err)
+{
+    struct vec3 first = {0, 0, 0}, before = {0, 0, 0}, corner = {0, 0, 0};
+    enum status st = read_corner(m, t, &first, err);
+    if (!st) st = read_corner(m, t, &before, err);
+    do {
+        if (!st) st = read_corner(m, t, &corner, err);
+        if (!st && m->triangle_count == MOST_TRIANGLES)
+            st = textfile_error(t, err, "one more", "at most %d triangles", MOST_TRIANGLES);
+        void *list = m->triangles;
+        if (!st) st = grow(&list, m->triangle_count, &m->triangle_room, sizeof *m->triangles, err);
+        m->triangles = list;
+        if (!st) {
+            struct vec3 *triangle = m->triangles[m->triangle_count];
+            triangle[0] = first;
+            triangle[1] = before;
+            triangle[2] = corner;
+            const struct vec3 n = vec3_cross(vec3_sub(before, first), vec3_sub(corner, first));
+            if (vec3_length(n) > 0) m->triangle_count++; /* one without an area shows nothing */
+        }
+        before = corner;
+    } while (!st && textfile_more(t));
+    return st;
+}
+
+enum status mesh_file_read(struct vec3 (**triangles)[3], int *count, const char *path, struct err *err)
+{
+    struct textfile t = {0};
+    struct mesh m = {0};
+    enum status st = textfile_open(&t, path, err);
+    while (!st && textfile_next(&t)) {
+        char *word = NULL;
+        st = textfile_word(&t, "v or f", &word, err);
+        if (!st && !strcmp(word, "v"))
+            st = read_vertex(&m, &t, err);
+        else if (!st && !strcmp(word, "f"))
+            st = read_face(&m, &t, err);
+    }
+    if (!st && !m.triangle_count)
+        st = err_set(err, ST_DATA, "%s has no face with an area (lines that begin with f); export it as Wavefront OBJ.",
+                     path);
+    textfile_release(&t);
+    free(m.vertices);
+    if (st) free(m.triangles);
+    *triangles = st ? NULL : m.triangles;
+    *count = st ? 0 : m.triangle_count;
+    return st;
+}

@@ -1,0 +1,74 @@
+/* sampler.c - see sampler.h.
+ *
+ * The points are kept with their bits reversed: scrambling then is a hash whose every bit depends on lower bits only. */
+#include "stages/simulate/sampler.h"
+
+#include "stages/simulate/noise.h"
+
+/* Sobol' direction numbers of S. Joe and F. Kuo (2008), dimensions 1 to 4, first 16 bits, bits reversed. */
+#define BITS 16
+static const noise_u32x4 directions[BITS] = {
+    {0x1, 0x1, 0x1, 0x1},
+    {0x2, 0x3, 0x3, 0x3},
+    {0x4, 0x5, 0x6, 0x4},
+    {0x8, 0xf, 0x9, 0xa},
+    {0x10, 0x11, 0x17, 0x1f},
+    {0x20, 0x33, 0x3a, 0x2e},
+    {0x40, 0x55, 0x71, 0x45},
+    {0x80, 0xff, 0xa3, 0xc9},
+    {0x100, 0x101, 0x116, 0x11b},
+    {0x200, 0x303, 0x339, 0x2a4},
+    {0x400, 0x505, 0x677, 0x79a},
+    {0x800, 0xf0f, 0x9aa, 0xb67},
+    {0x1000, 0x1111, 0x1601, 0x101e},
+    {0x2000, 0x3333, 0x3903, 0x302d},
+    {0x4000, 0x5555, 0x7706, 0x4041},
+    {0x8000, 0xffff, 0xaa09, 0xa0c3},
+};
+
+/* S. Laine and T. Karras (2011), with the constants found by N. Vegdahl. */
+static uint32_t scrambled(uint32_t x, uint32_t seed)
+{
+    x ^= x * 0x3d20adeau;
+    x += seed;
+    x *= seed >> 16 | 1;
+    x ^= x * 0x05526c56u;
+    x ^= x * 0x53a22864u;
+    return x;
+}
+
+/* The same, and then the bits reversed, of four numbers at once. */
+static noise_u32x4 scrambled_reversed4(noise_u32x4 x, noise_u32x4 seed)
+{
+    x ^= x * 0x3d20adeau;
+    x += seed;
+    x *= seed >> 16 | 1;
+    x ^= x * 0x05526c56u;
+    x ^= x * 0x53a22864u;
+    x = (x >> 1 & 0x55555555u) | (x & 0x55555555u) << 1;
+    x = (x >> 2 & 0x33333333u) | (x & 0x33333333u) << 2;
+    x = (x >> 4 & 0x0f0f0f0fu) | (x & 0x0f0f0f0fu) << 4;
+    x = (x >> 8 & 0x00ff00ffu) | (x & 0x00ff00ffu) << 8;
+    return x >> 16 | x << 16;
+}
+
+struct sampler sampler_make(const struct rng *rng, uint64_t pixel, int samples)
+{
+    uint32_t mask = 1;
+    while (mask < (uint32_t)samples && mask < 1u << BITS) mask *= 2;
+    return (struct sampler){rng_u32(rng, pixel, 0), mask - 1, 0};
+}
+
+void sampler_group(const struct sampler *s, uint32_t group, double u[4])
+{
+    /* beyond the points that the tables reach, sets with other seeds follow */
+    const uint32_t set = s->sample & ~s->mask;
+    const uint32_t seed = noise_mix(s->key ^ noise_mix(group + 0x68bc21ebu * (set + 1)));
+    const uint32_t index = scrambled(s->sample & s->mask, noise_mix(seed + 0x9e3779b9u)) & s->mask;
+    const noise_u32x4 dimension = {0x51633e2du, 0xa2c67c5au, 0xf429ba87u, 0x458cf8b4u};
+    noise_u32x4 x = {0, 0, 0, 0};
+    for (uint32_t bit = 0, left = index; left; bit++, left >>= 1)
+        if (left & 1) x ^= directions[bit];
+    x = scrambled_reversed4(x, noise_mix4(seed + dimension));
+    for (int d = 0; d < 4; d++) u[d] = x[d] * 0x1p-32;
+}

@@ -1,0 +1,345 @@
+/* shoot_file.c - see shoot_file.h. */
+#include "stages/simulate/shoot_file.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/scan.h"
+#include "common/textfile.h"
+
+#define PI             3.14159265358979323846
+#define MOST_METRES    1e5
+#define MOST_SIDE      16384
+#define MOST_LINES     10000
+#define MOST_EXPOSURES 16
+
+struct reader {
+    struct shoot *shoot;
+    struct textfile file;
+    double scale;
+    bool has_sensor, has_quality;
+};
+
+static enum status number(struct reader *r, const char *what, double least, double most, double *value, struct err *err)
+{
+    char *word = NULL;
+    enum status st = textfile_word(&r->file, what, &word, err);
+    if (st) return st;
+    if (!scan_double(word, value) || *value < least || *value > most)
+        return textfile_error(&r->file, err, word, "%s, a number from %g to %g", what, least, most);
+    return ST_OK;
+}
+
+static enum status place(struct reader *r, const char *what, struct vec3 *p, struct err *err)
+{
+    enum status st = number(r, what, -MOST_METRES, MOST_METRES, &p->x, err);
+    if (!st) st = number(r, what, -MOST_METRES, MOST_METRES, &p->y, err);
+    if (!st) st = number(r, what, -MOST_METRES, MOST_METRES, &p->z, err);
+    return st;
+}
+
+/* A new name, letters, digits, _ and -; the caller frees it. */
+static enum status new_name(struct reader *r, char **name, struct err *err)
+{
+    char *word = NULL;
+    enum status st = textfile_word(&r->file, "a name", &word, err);
+    if (st) return st;
+    bool good = isalnum((unsigned char)*word) && strlen(word) <= 64;
+    for (const char *p = word; *p; p++) good = good && (isalnum((unsigned char)*p) || *p == '_' || *p == '-');
+    if (!good) return textfile_error(&r->file, err, word, "a name of at most 64 letters, digits, _ and -");
+    *name = strdup(word);
+    return *name ? ST_OK : err_nomem(err, "a name", strlen(word) + 1);
+}
+
+static enum status add(struct reader *r, void **list, int count, int most, size_t size, struct err *err)
+{
+    if (count == most) return textfile_error(&r->file, err, "one more", "at most %d such lines", most);
+    if (count & (count - 1)) return ST_OK;
+    void *grown = realloc(*list, (size_t)(count ? 2 * count : 1) * size);
+    if (!grown) return err_nomem(err, "a list of photos", (size_t)(count ? 2 * count : 1) * size);
+    *list = grown;
+    return ST_OK;
+}
+
+static int find_lens(const struct shoot *s, const char *name)
+{
+    for (int i = 0; i < s->lens_count; i++)
+        if (!strcmp(s->lenses[i].name, name)) return i;
+    return -1;
+}
+
+static enum status read_lens_numbers(struct reader *r, struct lens *l, struct err *err)
+{
+    int64_t width = 0, height = 0;
+    double farthest = 0;
+    const bool pinhole = l->kind == LENS_PINHOLE;
+    enum status st = textfile_int(&r->file, "a width in pixels", 1, MOST_SIDE, &width, err);
+    if (!st) st = textfile_int(&r->file, "a height in pixels", 1, MOST_SIDE, &height, err);
+    if (!st) st = number(r, "a focal length in pixels", 1, 1e6, &l->fx, err);
+    if (!st && pinhole) st = number(r, "a focal length in pixels", 1, 1e6, &l->fy, err);
+    if (!st) st = number(r, "the principal point's x in pixels", 0, (double)width, &l->cx, err);
+    if (!st) st = number(r, "the principal point's y in pixels", 0, (double)height, &l->cy, err);
+    if (st) return st;
+    if (!pinhole) l->fy = l->fx;
+    l->width = (int)fmax(1, round((double)width * r->scale));
+    l->height = (int)fmax(1, round((double)height * r->scale));
+    /* by what the rounded sizes really are, so that the field of view stays */
+    const double sx = l->width / (double)width, sy = l->height / (double)height;
+    l->fx *= sx, l->cx *= sx, l->fy *= sy, l->cy *= sy;
+    if (!pinhole) l->fx = l->fy = (l->fx + l->fy) / 2;
+    for (int i = 0; i < 4; i++)
+        farthest = fmax(farthest, hypot(l->cx - (i & 1 ? l->width : 0), l->cy - (i & 2 ? l->height : 0)));
+    if (!pinhole && farthest >= 2 * l->fx * sin(PI / 3)) {
+        char found[80];
+        snprintf(found, sizeof found, "a corner %.1f px off the axis", farthest);
+        return textfile_error(&r->file, err, found, "less than %.1f px: a field of view below 240 degrees",
+                              2 * l->fx * sin(PI / 3));
+    }
+    return ST_OK;
+}
+
+static enum status read_lens(struct reader *r, struct err *err)
+{
+    struct shoot *s = r->shoot;
+    struct lens made = {0};
+    char *kind = NULL;
+    void *list = s->lenses;
+    enum status st = new_name(r, &made.name, err);
+    if (!st && find_lens(s, made.name) >= 0)
+        st = textfile_error(&r->file, err, made.name, "a name that no other lens has");
+    if (!st) st = textfile_word(&r->file, "a kind of lens: pinhole or equisolid", &kind, err);
+    if (!st && strcmp(kind, "pinhole") && strcmp(kind, "equisolid"))
+        st = textfile_error(&r->file, err, kind, "a kind of lens: pinhole or equisolid");
+    if (!st) made.kind = strcmp(kind, "pinhole") ? LENS_EQUISOLID : LENS_PINHOLE;
+    if (!st) st = read_lens_numbers(r, &made, err);
+    if (!st) st = textfile_end(&r->file, err);
+    if (!st) st = add(r, &list, s->lens_count, MOST_LINES, sizeof made, err);
+    if (!st) {
+        s->lenses = list;
+        s->lenses[s->lens_count++] = made;
+    } else {
+        free(made.name);
+    }
+    return st;
+}
+
+static enum status read_exposure(struct reader *r, struct exposures *e, struct err *err)
+{
+    struct exposure made = {0, 8, 100, 1};
+    void *list = e->list;
+    enum status st = number(r, "an exposure time in seconds", 1e-6, 1e4, &made.seconds, err);
+    if (!st && textfile_more(&r->file)) {
+        st = number(r, "an f-number", 0.5, 128, &made.f_number, err);
+        if (!st) st = number(r, "an ISO speed", 1, 65535, &made.iso, err);
+    }
+    if (!st && textfile_more(&r->file)) st = number(r, "a filter's factor", 1, 1e9, &made.filter, err);
+    if (!st) st = textfile_end(&r->file, err);
+    if (!st) st = add(r, &list, e->count, MOST_EXPOSURES, sizeof made, err);
+    if (st) return st;
+    e->list = list;
+    e->list[e->count++] = made;
+    return ST_OK;
+}
+
+static enum status read_sensor(struct reader *r, struct err *err)
+{
+    struct sensor *sensor = &r->shoot->sensor;
+    int64_t seed = 0;
+    if (r->has_sensor) return textfile_error(&r->file, err, "a second sensor", "one");
+    enum status st = number(r, "a full well in electrons", 10, 1e9, &sensor->full_well, err);
+    if (!st) st = number(r, "a read noise in electrons", 0, 1e6, &sensor->read_noise, err);
+    if (!st) st = number(r, "a gain", 1e-9, 1e9, &sensor->gain, err);
+    if (!st) st = textfile_int(&r->file, "a seed", 0, INT64_MAX, &seed, err);
+    if (!st) st = textfile_end(&r->file, err);
+    sensor->seed = (uint64_t)seed;
+    r->has_sensor = !st;
+    return st;
+}
+
+static enum status read_quality(struct reader *r, struct err *err)
+{
+    int64_t quality = 0;
+    if (r->has_quality) return textfile_error(&r->file, err, "a second quality", "one");
+    enum status st = textfile_int(&r->file, "a JPEG quality", 1, 100, &quality, err);
+    if (!st) st = textfile_end(&r->file, err);
+    r->shoot->quality = (int)quality;
+    r->has_quality = !st;
+    return st;
+}
+
+/* z up in the world; a camera that looks straight up or down has y of the world at its top. */
+static struct pose pose_looking(struct vec3 at, struct vec3 look_at, double roll)
+{
+    const struct vec3 forward = vec3_normalize(vec3_sub(look_at, at));
+    const struct vec3 up = hypot(forward.x, forward.y) > 1e-9 ? vec3_make(0, 0, 1) : vec3_make(0, 1, 0);
+    const struct vec3 right = vec3_normalize(vec3_cross(forward, up)), down = vec3_cross(forward, right);
+    const double c = cos(roll * PI / 180), s = sin(roll * PI / 180);
+    const struct vec3 x = vec3_add(vec3_scale(right, c), vec3_scale(down, s));
+    const struct vec3 y = vec3_add(vec3_scale(right, -s), vec3_scale(down, c));
+    const struct mat3 turn = {{{x.x, x.y, x.z}, {y.x, y.y, y.z}, {forward.x, forward.y, forward.z}}};
+    const struct quat q = quat_from_mat3(turn);
+    /* the translation is of the rotation that is written */
+    return (struct pose){q, vec3_scale(mat3_apply(mat3_from_quat(q), at), -1)};
+}
+
+static enum status read_shot(struct reader *r, bool reference, struct err *err)
+{
+    struct shoot *s = r->shoot;
+    struct shot made = {.reference = reference};
+    char *word = NULL;
+    void *list = s->shots;
+    enum status st = new_name(r, &made.name, err);
+    if (!st && shoot_find(s, made.name) >= 0)
+        st = textfile_error(&r->file, err, made.name, "a name that no other photo has");
+    if (!st) st = textfile_word(&r->file, "the name of a lens above", &word, err);
+    if (!st && (made.lens = find_lens(s, word)) < 0)
+        st = textfile_error(&r->file, err, word, "the name of a lens above");
+    if (!st) st = place(r, "where the camera is", &made.at, err);
+    if (!st) st = place(r, "where it looks", &made.look_at, err);
+    if (!st && vec3_length(vec3_sub(made.look_at, made.at)) < 1e-9)
+        st = textfile_error(&r->file, err, "the camera's own place", "another place to look at");
+    if (!st && textfile_more(&r->file)) {
+        st = textfile_word(&r->file, "roll", &word, err);
+        if (!st && strcmp(word, "roll")) st = textfile_error(&r->file, err, word, "roll or the end of the line");
+        if (!st) st = number(r, "an angle in degrees", -360, 360, &made.roll, err);
+    }
+    if (!st) st = textfile_end(&r->file, err);
+    if (!st) st = add(r, &list, s->shot_count, MOST_LINES, sizeof made, err);
+    if (!st) {
+        made.cam_from_world = pose_looking(made.at, made.look_at, made.roll);
+        s->shots = list;
+        s->shots[s->shot_count++] = made;
+    } else {
+        free(made.name);
+    }
+    return st;
+}
+
+static enum status read_line(struct reader *r, struct err *err)
+{
+    char *word = NULL;
+    enum status st = textfile_word(&r->file, "a line of a shoot", &word, err);
+    if (st) return st;
+    if (!strcmp(word, "lens")) return read_lens(r, err);
+    if (!strcmp(word, "exposure")) return read_exposure(r, &r->shoot->exposures[0], err);
+    if (!strcmp(word, "reference-exposure")) return read_exposure(r, &r->shoot->exposures[1], err);
+    if (!strcmp(word, "sensor")) return read_sensor(r, err);
+    if (!strcmp(word, "quality")) return read_quality(r, err);
+    if (!strcmp(word, "photo")) return read_shot(r, false, err);
+    if (!strcmp(word, "reference")) return read_shot(r, true, err);
+    return textfile_error(&r->file, err, word,
+                          "one of lens, exposure, reference-exposure, sensor, quality, photo, reference");
+}
+
+static enum status read_header(struct reader *r, struct err *err)
+{
+    char *word = NULL;
+    int64_t version = 0;
+    if (!textfile_next(&r->file))
+        return err_set(err, ST_DATA, "%s is empty, wanted cameras, which begin with the line: remodel-shoot 1.",
+                       r->file.path);
+    enum status st = textfile_word(&r->file, "remodel-shoot", &word, err);
+    if (!st && strcmp(word, "remodel-shoot")) st = textfile_error(&r->file, err, word, "remodel-shoot");
+    if (!st) st = textfile_int(&r->file, "the format's version", 1, 1, &version, err);
+    if (!st) st = textfile_end(&r->file, err);
+    return st;
+}
+
+static enum status check_complete(const struct reader *r, struct err *err)
+{
+    const char *missing = NULL;
+    int photos = 0;
+    for (int i = 0; i < r->shoot->shot_count; i++) photos += !r->shoot->shots[i].reference;
+    if (!photos) missing = "photo NAME LENS X Y Z LOOK_X LOOK_Y LOOK_Z";
+    if (!r->has_sensor) missing = "sensor FULL_WELL READ_NOISE GAIN SEED";
+    if (!r->shoot->exposures[0].count) missing = "exposure SECONDS";
+    if (!missing) return ST_OK;
+    return err_set(err, ST_DATA, "%s lacks a line; add: %s.", r->file.path, missing);
+}
+
+enum status shoot_read(struct shoot *s, const char *folder, double scale, struct provenance *prov, struct err *err)
+{
+    struct reader r = {.shoot = s, .scale = scale};
+    char *path = NULL;
+    *s = (struct shoot){.quality = 94};
+    if (asprintf(&path, "%s/cameras.txt", folder) < 0) return err_nomem(err, "a file name", strlen(folder));
+    enum status st = textfile_open(&r.file, path, err);
+    if (!st) st = read_header(&r, err);
+    while (!st && textfile_next(&r.file)) st = read_line(&r, err);
+    if (!st) st = check_complete(&r, err);
+    if (!st && prov) st = provenance_add_file(prov, "cameras.txt", path, err);
+    textfile_release(&r.file);
+    free(path);
+    if (st) shoot_release(s);
+    return st;
+}
+
+void shoot_release(struct shoot *s)
+{
+    if (!s) return;
+    for (int i = 0; i < s->lens_count; i++) free(s->lenses[i].name);
+    for (int i = 0; i < s->shot_count; i++) free(s->shots[i].name);
+    free(s->lenses);
+    for (int i = 0; i < 2; i++) free(s->exposures[i].list);
+    free(s->shots);
+    *s = (struct shoot){0};
+}
+
+const struct exposures *shoot_exposures(const struct shoot *s, const struct shot *shot)
+{
+    return &s->exposures[shot->reference && s->exposures[1].count];
+}
+
+int shoot_find(const struct shoot *s, const char *name)
+{
+    for (int i = 0; i < s->shot_count; i++)
+        if (!strcmp(s->shots[i].name, name)) return i;
+    return -1;
+}
+
+/* -------------------------------------------------------------------------------------------------------------- lenses */
+
+bool lens_ray(const struct lens *l, double u, double v, struct vec3 *ray)
+{
+    const double x = (u - l->cx) / l->fx, y = (v - l->cy) / l->fy;
+    if (l->kind == LENS_PINHOLE) {
+        *ray = vec3_normalize(vec3_make(x, y, 1));
+        return true;
+    }
+    /* with r = 2 sin(theta / 2): cos(theta) = 1 - r^2 / 2 and sin(theta) / r = sqrt(1 - r^2 / 4) */
+    const double rr = x * x + y * y;
+    if (rr > 4) return false;
+    const double s = sqrt(1 - rr / 4);
+    *ray = vec3_make(x * s, y * s, 1 - rr / 2);
+    return true;
+}
+
+bool lens_project(const struct lens *l, struct vec3 p, double *u, double *v)
+{
+    double scale;
+    if (l->kind == LENS_PINHOLE) {
+        if (!(p.z > 0)) return false;
+        scale = 1 / p.z;
+    } else {
+        const double aside = hypot(p.x, p.y), theta = atan2(aside, p.z);
+        if (!(aside > 0) && !(p.z > 0)) return false;
+        scale = aside > 0 ? 2 * sin(theta / 2) / aside : 1 / p.z;
+    }
+    *u = l->fx * p.x * scale + l->cx;
+    *v = l->fy * p.y * scale + l->cy;
+    return true;
+}
+
+struct camera lens_camera(const struct lens *l)
+{
+    struct camera c = {CAMERA_PINHOLE, l->width, l->height, {l->fx, l->fy, l->cx, l->cy}};
+    if (l->kind == LENS_EQUISOLID) {
+        const double k[4] = {-1.0 / 24, 1.0 / 1920, -1.0 / 322560, 1.0 / 92897280};
+        c.model = CAMERA_OPENCV_FISHEYE;
+        for (int i = 0; i < 4; i++) c.params[4 + i] = k[i];
+    }
+    return c;
+}

@@ -1,0 +1,82 @@
+/* sky.c - see sky.h.
+ *
+ * By azimuth and elevation: a sky that pales towards the horizon, with clouds; a row of buildings with windows, cells in
+ * azimuth; in front of it trees; below the horizon fields. Strong enough in detail to be matched between photographs. */
+#include "stages/simulate/sky.h"
+
+#include <math.h>
+
+#include "stages/simulate/fast.h"
+#include "stages/simulate/noise.h"
+
+#define PI           3.14159265358979323846
+#define BUILDINGS    54  /* around the horizon */
+#define TALLEST_TREE 7.3 /* degrees */
+
+void sky_init(struct sky *sky, const struct scene *s)
+{
+    const double az = s->sun.azimuth * PI / 180, el = s->sun.elevation * PI / 180;
+    *sky = (struct sky){.has_sun = s->has_sun, .has_panorama = s->has_panorama, .panorama = s->panorama};
+    /* azimuth counts from x to y */
+    sky->sun = vec3_make(cos(el) * cos(az), cos(el) * sin(az), sin(el));
+    sky->sun_cos = cos(s->sun.angular_radius * PI / 180);
+    sky->sun_radiance = s->sun.radiance;
+}
+
+/* Noise around the horizon, periodic in azimuth: two noises mixed where they meet. */
+static double ring(uint32_t seed, double turn, double cells, double y)
+{
+    const double t = smooth_step(0.95, 1, turn), x = turn * cells;
+    const double noise = noise_octaves(seed, x, y, 2);
+    return t > 0 ? (1 - t) * noise + t * noise_octaves(seed, x - cells, y, 2) : noise;
+}
+
+static struct rgb panorama(const struct panorama *p, struct vec3 d)
+{
+    const double el = asin(most(-1, least(1, d.z))) * (180 / PI), turn = 0.5 + atan2(d.y, d.x) / (2 * PI);
+    const double bright = rgb_luminance(p->sky);
+    if (el < 0) { /* fields on a plane */
+        const double near = 1 / most(0.02, -d.z);
+        return rgb_scale(p->ground, 0.9 + 0.5 * noise_octaves(p->seed + 5, 2 * d.x * near, 2 * d.y * near, 4));
+    }
+    if (el > 30) { /* nothing stands so high */
+        const double cloud =
+            smooth_step(0, 0.5, noise_octaves(p->seed, 4 * d.x / (d.z + 0.3), 4 * d.y / (d.z + 0.3), 5));
+        return rgb_mix(p->sky, rgb_grey(1.3 * bright), 0.45 * cloud);
+    }
+
+    const double tree_top = el > TALLEST_TREE ? 0
+                                              : 1.6 + 4.5 * most(0, ring(p->seed + 1, turn, 90, 0.5)) +
+                                                    1.2 * ring(p->seed + 2, turn, 700, 0.5);
+    if (el < tree_top) {
+        const double leaf = ring(p->seed + 3, turn, 1100, 3 * el), lit = 0.5 + 0.5 * el / (tree_top + 0.5);
+        const struct rgb green =
+            rgb_mix(rgb_make(0.05, 0.09, 0.03), rgb_make(0.16, 0.2, 0.06), 0.5 + 0.5 * ring(p->seed + 4, turn, 40, 9));
+        return rgb_scale(green, bright * lit * (1 + 0.8 * leaf));
+    }
+    const double cell = turn * BUILDINGS;
+    const uint32_t house = noise_hash(p->seed, noise_floor(cell), 3);
+    const double x = cell - floor(cell), top = 3 + 13 * noise_unit(house, 0) * noise_unit(house, 1);
+    const double side = 0.25 * noise_unit(house, 2);
+    if (el < top && x > side) {
+        const double columns = 4 + floor(5 * noise_unit(house, 3)), rows = 1.1 + 0.8 * noise_unit(house, 4);
+        const double fx = (x - side) / (1 - side) * columns, fy = (top - el) / rows;
+        const uint32_t pane = noise_hash(house, noise_floor(fx), noise_floor(fy));
+        const double wx = fabs(fx - floor(fx) - 0.5), wy = fabs(fy - floor(fy) - 0.5);
+        struct rgb c = rgb_mix(rgb_make(0.42, 0.26, 0.2), rgb_make(0.5, 0.48, 0.42), noise_unit(house, 5));
+        c = rgb_scale(c, 0.6 + 0.7 * noise_unit(house, 6));
+        if (wx < 0.27 && wy < 0.3 && top - el > 0.4)
+            c = rgb_scale(rgb_make(0.7, 0.85, 1), 0.1 + 0.6 * noise_unit(pane, 0));
+        return rgb_scale(c, bright);
+    }
+    const double cloud = smooth_step(0.05, 0.5, ring(p->seed + 6, turn, 14, el / 9));
+    const struct rgb haze = rgb_mix(p->sky, rgb_grey(1.25 * bright), 0.7 * exp(-el / 14));
+    return rgb_mix(haze, rgb_grey(1.35 * bright), 0.4 * cloud);
+}
+
+struct rgb sky_radiance(const struct sky *sky, struct vec3 direction)
+{
+    struct rgb c = sky->has_panorama ? panorama(&sky->panorama, direction) : rgb_grey(0);
+    if (sky->has_sun && vec3_dot(direction, sky->sun) > sky->sun_cos) c = rgb_add(c, sky->sun_radiance);
+    return c;
+}

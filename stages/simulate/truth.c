@@ -1,0 +1,280 @@
+/* truth.c - see truth.h. */
+#include "stages/simulate/truth.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/outfile.h"
+#include "common/parallel.h"
+#include "common/progress.h"
+#include "common/sfm_model.h"
+#include "stages/simulate/photos.h"
+
+#define OFF_SURFACE 0.02 /* m: where the irradiance is taken, as probes are held */
+#define MOST_TRIES  1000
+
+/* ------------------------------------------------------------------------------------------------------------- cameras */
+
+static void model_release(struct sfm_model *m)
+{
+    for (int i = 0; i < m->image_count; i++) free(m->images[i].name);
+    free(m->images);
+    free(m->cameras);
+}
+
+static enum status write_cameras(const struct shoot *s, bool reference, const char *folder,
+                                 const struct provenance *prov, struct err *err)
+{
+    struct sfm_model m = {0};
+    enum status st = ST_OK;
+    m.cameras = calloc((size_t)s->lens_count + 1, sizeof *m.cameras);
+    m.images = calloc((size_t)s->shot_count + 1, sizeof *m.images);
+    if (!m.cameras || !m.images) st = err_nomem(err, "cameras", (size_t)s->shot_count * sizeof *m.images);
+    for (int i = 0; !st && i < s->lens_count; i++)
+        m.cameras[m.camera_count++] = (struct sfm_camera){i + 1, lens_camera(&s->lenses[i])};
+    for (int i = 0; !st && i < s->shot_count; i++) {
+        const struct shot *shot = &s->shots[i];
+        char *name = NULL;
+        if (shot->reference != reference) continue;
+        if (asprintf(&name, "%s.jpg", shot->name) < 0)
+            st = err_nomem(err, "a name", strlen(shot->name));
+        else
+            m.images[m.image_count] =
+                (struct sfm_image){m.image_count + 1, shot->cam_from_world, shot->lens, name, NULL, 0},
+            m.image_count++;
+    }
+    if (!st) st = sfm_model_write_text(&m, folder, prov, err);
+    model_release(&m);
+    return st;
+}
+
+/* ---------------------------------------------------------------------------------------------------------- irradiance */
+
+struct irradiance_job {
+    struct irradiance_point *points;
+    const struct world *world;
+    const struct shoot *shoot;
+    struct rng rng;
+    int samples;
+    bool *found;
+    struct progress *progress;
+};
+
+/* A place that a photo sees, with room to hold a probe in front of it. */
+static bool find_place(const struct irradiance_job *job, size_t index, struct irradiance_point *p)
+{
+    const struct shoot *s = job->shoot;
+    for (uint64_t k = 0; k < MOST_TRIES; k++) {
+        const struct shot *shot = &s->shots[(int)(rng_uniform(&job->rng, index, 3 * k) * s->shot_count)];
+        const struct camera_view view = camera_view_make(s, shot);
+        const double u = rng_uniform(&job->rng, index, 3 * k + 1) * view.lens->width;
+        const double v = rng_uniform(&job->rng, index, 3 * k + 2) * view.lens->height;
+        struct ray ray;
+        struct hit hit;
+        if (shot->reference || !camera_view_ray(&view, u, v, &ray)) continue;
+        if (!geometry_hit(&job->world->geometry, ray.from, ray.direction, &hit)) continue;
+        if (job->world->geometry.faces[hit.face].material < 0) continue;
+        const struct vec3 off = vec3_add(hit.point, vec3_scale(hit.normal, job->world->geometry.epsilon));
+        if (geometry_blocked(&job->world->geometry, off, hit.normal, 2 * OFF_SURFACE)) continue;
+        p->point = vec3_add(hit.point, vec3_scale(hit.normal, OFF_SURFACE));
+        p->normal = hit.normal;
+        return true;
+    }
+    return false;
+}
+
+static void find_irradiance(void *ctx, size_t begin, size_t end, int thread)
+{
+    (void)thread;
+    const struct irradiance_job *job = ctx;
+    for (size_t i = begin; i < end; i++) {
+        struct irradiance_point *p = &job->points[i];
+        struct rgb sum = {0, 0, 0};
+        uint64_t rays = 0;
+        job->found[i] = find_place(job, i, p);
+        struct sampler s = sampler_make(&job->rng, ~(uint64_t)i, job->samples);
+        for (; job->found[i] && s.sample < (uint32_t)job->samples; s.sample++)
+            sum = rgb_add(sum, path_irradiance(job->world, p->point, p->normal, &s, &rays));
+        p->irradiance = rgb_scale(sum, 1.0 / job->samples);
+        progress_add(job->progress, 1);
+    }
+}
+
+enum status truth_irradiance(struct irradiance_point *points, int count, const struct world *w, const struct shoot *s,
+                             const struct simulate_params *params, struct err *err)
+{
+    struct progress progress;
+    bool *found = calloc((size_t)count + 1, sizeof *found);
+    enum status st = found ? ST_OK : err_nomem(err, "irradiance points", (size_t)count);
+    if (!st) {
+        struct irradiance_job job = {
+            points, w,        s, rng_make((uint64_t)params->seed, "simulate", "irradiance"), params->irradiance_samples,
+            found,  &progress};
+        progress_start(&progress, "irradiance", count, "points");
+        parallel_for((size_t)count, 1, find_irradiance, &job);
+        progress_end(&progress);
+    }
+    for (int i = 0; !st && i < count; i++)
+        if (!found[i])
+            st = err_set(err, ST_DATA,
+                         "no surface was found in the photos at which irradiance could be taken; see where the cameras "
+                         "look, or set [simulate] irradiance_points = 0.");
+    free(found);
+    return st;
+}
+
+/* ---------------------------------------------------------------------------------------------------------- text files */
+
+struct text_job {
+    const struct world *world;
+    const struct shoot *shoot;
+    const struct simulate_params *params;
+    const struct irradiance_point *points;
+};
+
+static void print_faces(FILE *to, const struct text_job *job)
+{
+    const struct geometry *g = &job->world->geometry;
+    fputs("remodel-faces 1\n# id name area normal\n", to);
+    for (int i = 0; i < g->face_count; i++) {
+        const struct face *f = &g->faces[i];
+        fprintf(to, "%d %s %.9g %.9g %.9g %.9g\n", i + 1, f->name, f->area, f->normal.x, f->normal.y, f->normal.z);
+    }
+}
+
+static void print_irradiance(FILE *to, const struct text_job *job)
+{
+    fputs("# world position, normal, irradiance E rgb = integral L cos (same units as hdr radiance, no 1/pi); the "
+          "point lies "
+          "2 cm off the surface\n",
+          to);
+    for (int i = 0; i < job->params->irradiance_points; i++) {
+        const struct irradiance_point *p = &job->points[i];
+        fprintf(to, "%.9g %.9g %.9g %.9g %.9g %.9g %.9g %.9g %.9g\n", p->point.x, p->point.y, p->point.z, p->normal.x,
+                p->normal.y, p->normal.z, p->irradiance.r, p->irradiance.g, p->irradiance.b);
+    }
+}
+
+static void print_exposures(FILE *to, const struct text_job *job)
+{
+    const struct shoot *s = job->shoot;
+    fputs("# file seconds f-number iso neutral-density-factor\n", to);
+    for (int i = 0; i < s->shot_count; i++)
+        for (int k = 0; s->shots[i].reference && k < shoot_exposures(s, &s->shots[i])->count; k++) {
+            const struct exposure *e = &shoot_exposures(s, &s->shots[i])->list[k];
+            char *file = photo_file_name(s, &s->shots[i], k);
+            fprintf(to, "%s %.9g %.9g %.9g %.9g\n", file ? file : "", e->seconds, e->f_number, e->iso, e->filter);
+            free(file);
+        }
+}
+
+/* For Make: the shots, and of each the files that come of it, its photos last. */
+static void print_lists(FILE *to, const struct text_job *job)
+{
+    fputs("SHOTS :=", to);
+    for (int i = 0; i < job->shoot->shot_count; i++) fprintf(to, " %s", job->shoot->shots[i].name);
+    for (int i = 0; i < job->shoot->shot_count; i++) {
+        const struct shot *shot = &job->shoot->shots[i];
+        const struct exposures *exposures = shoot_exposures(job->shoot, shot);
+        fprintf(to, "\nSHOT_%s :=", shot->name);
+        if (!shot->reference && !strcmp(job->params->truth, "yes"))
+            fprintf(to, " truth/depth/%s.exr truth/ids/%s.exr truth/hdr/%s.exr", shot->name, shot->name, shot->name);
+        for (int k = 0; k < exposures->count; k++) {
+            char *name = photo_file_name(job->shoot, shot, k);
+            if (name) fprintf(to, " %s/%s", shot->reference ? "lri" : "photos", name);
+            free(name);
+        }
+    }
+    fputc('\n', to);
+}
+
+static enum status write_text(const char *out, const char *file, void (*print)(FILE *to, const struct text_job *job),
+                              const struct text_job *job, const struct provenance *prov, struct err *err)
+{
+    struct outfile f = {0};
+    char *path = NULL;
+    enum status st = asprintf(&path, "%s/%s", out, file) < 0 ? err_nomem(err, "a file name", strlen(out)) : ST_OK;
+    if (!st) st = outfile_open(&f, path, err);
+    if (!st) {
+        if (prov) provenance_print(prov, f.fp);
+        print(f.fp, job);
+        st = outfile_commit(&f, err);
+    }
+    outfile_discard(&f);
+    free(path);
+    return st;
+}
+
+/* FOLDER/FILE to OUT/TO, byte by byte. */
+static enum status copy_text(const char *folder, const char *file, const char *out, const char *to, struct err *err)
+{
+    struct outfile f = {0};
+    char *from_path = NULL, *to_path = NULL;
+    FILE *from = NULL;
+    enum status st = ST_OK;
+    if (asprintf(&from_path, "%s/%s", folder, file) < 0 || asprintf(&to_path, "%s/%s", out, to) < 0)
+        st = err_nomem(err, "a file name", strlen(out));
+    if (!st && !(from = fopen(from_path, "rbe"))) st = err_errno(err, "open", from_path);
+    if (!st) st = outfile_open(&f, to_path, err);
+    for (int c; !st && (c = getc(from)) != EOF;) putc(c, f.fp);
+    if (!st && ferror(from)) st = err_errno(err, "read", from_path);
+    if (!st) st = outfile_commit(&f, err);
+    outfile_discard(&f);
+    if (from) fclose(from);
+    free(from_path);
+    free(to_path);
+    return st;
+}
+
+static enum status write_references(const struct shoot *s, const char *out, const struct provenance *prov,
+                                    const struct text_job *job, struct err *err)
+{
+    char *folder = NULL;
+    bool any = false;
+    for (int i = 0; i < s->shot_count; i++) any = any || s->shots[i].reference;
+    if (!any) return ST_OK;
+    enum status st = asprintf(&folder, "%s/truth/lri", out) < 0 ? err_nomem(err, "a file name", strlen(out)) : ST_OK;
+    if (!st) st = write_cameras(s, true, folder, prov, err);
+    if (!st) st = write_text(out, "lri/exposures.txt", print_exposures, job, NULL, err);
+    free(folder);
+    return st;
+}
+
+enum status truth_write(const struct world *w, const struct shoot *s, const char *folder, const char *out,
+                        const struct simulate_params *params, const struct provenance *prov, struct err *err)
+{
+    const int count = params->irradiance_points;
+    struct irradiance_point *points = calloc((size_t)count + 1, sizeof *points);
+    struct text_job job = {w, s, params, points};
+    char *truth = NULL;
+    enum status st = points ? ST_OK : err_nomem(err, "irradiance points", (size_t)count * sizeof *points);
+    if (!st && asprintf(&truth, "%s/truth", out) < 0) st = err_nomem(err, "a file name", strlen(out));
+    if (!st) st = copy_text(folder, "scene.txt", out, "truth/scene.txt", err);
+    if (!st) st = write_text(out, "truth/faces.txt", print_faces, &job, prov, err);
+    if (!st) st = write_cameras(s, false, truth, prov, err);
+    if (!st) st = write_references(s, out, prov, &job, err);
+    if (!st && count) st = truth_irradiance(points, count, w, s, params, err);
+    if (!st && count) st = write_text(out, "truth/irradiance.txt", print_irradiance, &job, prov, err);
+    if (!st) st = write_text(out, "photos.mk", print_lists, &job, NULL, err);
+    free(truth);
+    free(points);
+    return st;
+}
+
+enum status truth_write_edited(const struct world *w, const char *folder, const char *out, const char *edit,
+                               const struct provenance *prov, struct err *err)
+{
+    struct text_job job = {.world = w};
+    char *from = NULL, *scene = NULL, *faces = NULL;
+    enum status st = ST_OK;
+    if (asprintf(&from, "scene-%s.txt", edit) < 0 || asprintf(&scene, "truth/edited-%s/scene.txt", edit) < 0 ||
+        asprintf(&faces, "truth/edited-%s/faces.txt", edit) < 0)
+        st = err_nomem(err, "a file name", strlen(edit));
+    if (!st) st = copy_text(folder, from, out, scene, err);
+    if (!st) st = write_text(out, faces, print_faces, &job, prov, err);
+    free(from);
+    free(scene);
+    free(faces);
+    return st;
+}

@@ -1,0 +1,202 @@
+/* Light transport against closed forms: furnaces, lamps over a floor, the sun through a window, a box that absorbs
+ * nothing, and the two ways of finding light against each other. */
+#include "tests/unit/simulate/worlds.h"
+
+static const struct vec3 up = {0, 0, 1};
+
+/* In a closed room that reflects half of the light and emits 1/2 everywhere, the radiance is 1. */
+static void furnace(void **state)
+{
+    (void)state;
+    const struct vec3 directions[] = {{1, 0.2, 0.1}, {-0.3, 0.4, -1}, {0.1, 0.9, 0.5}};
+    struct world w = world_from("texture half rgb 0.5 0.5 0.5\nmaterial m lambert half\nglow m 0.5 0.5 0.5\n"
+                                "box room 0 0 0 4 3 2.5 m\n");
+    for (int i = 0; i < 3; i++) {
+        const struct rgb l = mean_radiance(&w, vec3_make(1, 1, 1), directions[i], 60000, i);
+        assert_near(l.r, 1, 0.005);
+        assert_near(l.g, 1, 0.005);
+        assert_near(l.b, 1, 0.005);
+    }
+    assert_near(mean_irradiance(&w, vec3_make(2, 1, 0.02), up, 60000, 1).g, PI, 0.005);
+    w.max_bounces = 3; /* 1/2 + 1/4 + 1/8 + 1/16 */
+    assert_near(mean_radiance(&w, vec3_make(1, 1, 1), directions[0], 60000, 5).r, 0.9375, 0.005);
+    world_release(&w);
+}
+
+/* The same with glossy walls: what the lobe loses below the horizon is known only by its bound, so: no more than 1, and
+ * no less than without gloss. */
+static void glossy_furnace(void **state)
+{
+    (void)state;
+    const char *const kinds[] = {"phong half 0.8 20", "ward half 0.45 0.2", "ward half 0.4 0.6"};
+    for (int i = 0; i < 3; i++) {
+        char text[300];
+        snprintf(text, sizeof text,
+                 "texture half rgb 0.5 0.5 0.5\nmaterial m %s\nglow m 0.5 0.5 0.5\nbox room 0 0 0 4 3 2 m\n", kinds[i]);
+        struct world w = world_from(text);
+        const double bound = 0.5 / (1 - 0.5 - w.scene.materials[0].gloss);
+        const struct rgb l = mean_radiance(&w, vec3_make(1, 1, 1), vec3_make(1, 0.3, 0.2), 100000, i);
+        assert_true(l.r > 1.05 && l.r < bound * 1.005);
+        world_release(&w);
+    }
+}
+
+/* Form factor of a rectangle parallel to a surface element, one corner above the element, a and b its sides by its
+ * height. */
+static double corner_factor(double a, double b)
+{
+    return (a / sqrt(1 + a * a) * atan(b / sqrt(1 + a * a)) + b / sqrt(1 + b * b) * atan(a / sqrt(1 + b * b))) /
+           (2 * PI);
+}
+
+static double rectangle_factor(double x0, double x1, double y0, double y1, double h)
+{
+#define F(x, y) (((x) < 0) != ((y) < 0) ? -1 : 1) * corner_factor(fabs(x) / h, fabs(y) / h)
+    return F(x1, y1) - F(x0, y1) - F(x1, y0) + F(x0, y0);
+#undef F
+}
+
+static void square_lamp(void **state)
+{
+    (void)state;
+    const struct vec3 places[] = {{0, 0, 0.001}, {0.5, 0.3, 0.001}, {-2, 1, 0.001}, {4, 4, 0.001}};
+    struct world w =
+        world_from("texture grey rgb 0.5 0.25 0.1\nmaterial m lambert grey\nquad floor -9 -9 0 18 0 0 0 18 0 m\n"
+                   "lamp l quad 0 0 2  0 0.6 0  1 0 0  10 20 5\n");
+    for (int i = 0; i < 4; i++) {
+        const struct vec3 p = places[i];
+        const double factor = rectangle_factor(0 - p.x, 1 - p.x, 0 - p.y, 0.6 - p.y, 2 - p.z);
+        for (int way = 0; way < 2; way++) {
+            w.only_surface = way;
+            const int paths = way ? 2000000 : 20000;
+            if (way && i > 1) continue; /* too small from there to be met by chance */
+            const struct rgb e = mean_irradiance(&w, p, up, paths, i);
+            assert_near(e.r, PI * 10 * factor, 0.005);
+            assert_near(e.g, PI * 20 * factor, 0.005);
+        }
+        w.only_surface = false; /* what a camera sees of the floor */
+        const struct rgb l = mean_radiance(&w, vec3_make(p.x, p.y, 1), vec3_make(0, 0, -1), 20000, i);
+        assert_near(l.r, 0.5 * 10 * factor, 0.005);
+        assert_near(l.b, 0.1 * 5 * factor, 0.005);
+    }
+    /* it is dark above it, and the lamp itself looks as bright as it is told to be */
+    assert_true(mean_irradiance(&w, vec3_make(0.5, 0.3, 2.5), vec3_make(0, 0, -1), 4096, 1).r < 10);
+    assert_near(mean_radiance(&w, vec3_make(0.5, 0.3, 1), up, 4096, 1).g, 20, 1e-12);
+    assert_true(mean_radiance(&w, vec3_make(0.5, 0.3, 3), vec3_make(0, 0, -1), 4096, 1).g == 0);
+    world_release(&w);
+}
+
+static void round_lamp(void **state)
+{
+    (void)state;
+    struct world w =
+        world_from("texture black rgb 0 0 0\nmaterial m lambert black\nquad floor -9 -9 0 18 0 0 0 18 0 m\n"
+                   "lamp l disk 0 0 2  0 0 -1  0.5  10 20 5  90\n");
+    for (int i = 0; i < 4; i++) { /* off the axis */
+        const double d = 0.01 + 0.7 * i, h = 2 / d, r = 0.5 / d, z = 1 + h * h + r * r;
+        const double factor = 0.5 * (1 - (1 + h * h - r * r) / sqrt(z * z - 4 * r * r));
+        for (int way = 0; way < 2; way++) {
+            w.only_surface = way;
+            const struct rgb e = mean_irradiance(&w, vec3_make(0.6 * d, -0.8 * d, 0), up, way ? 2000000 : 20000, i);
+            assert_near(e.r, PI * 10 * factor, way ? 0.007 : 0.005);
+        }
+    }
+    world_release(&w);
+}
+
+static void spot(void **state)
+{
+    (void)state;
+    struct world w =
+        world_from("texture black rgb 0 0 0\nmaterial m lambert black\nquad floor -9 -9 0 18 0 0 0 18 0 m\n"
+                   "lamp l disk 0 0 2  0 0 -1  0.1  100 100 100  30 3\n");
+    const double h = 2, r = 0.1, power = 1 + 1.5, wanted = PI * 100 / power * (1 - pow(h * h / (h * h + r * r), power));
+    assert_near(mean_irradiance(&w, vec3_make(0, 0, 0), up, 20000, 1).r, wanted, 0.005);
+    /* beyond the cone of its rim there is nothing; just inside that of its centre nearly half of it shines */
+    const double reach = 2 * tan(30 * PI / 180);
+    assert_true(mean_irradiance(&w, vec3_make(reach + 0.101, 0, 0), up, 4096, 1).r == 0);
+    assert_true(mean_irradiance(&w, vec3_make(reach + 0.095, 0, 0), up, 4096, 1).r > 0);
+    const double inside = mean_irradiance(&w, vec3_make(reach - 0.11, 0, 0), up, 20000, 1).r;
+    const double border = mean_irradiance(&w, vec3_make(reach, 0, 0), up, 20000, 1).r;
+    assert_true(border > 0.4 * inside && border < 0.6 * inside);
+    world_release(&w);
+}
+
+#define ROOM                                                                             \
+    "room r 0 0 5 4 0 2.5 m m\nwall s 0 0 5 0 0 2.5 0.2 m\nwall e 5 0 5 4 0 2.5 0.2 m\n" \
+    "wall n 5 4 0 4 0 2.5 0.2 m\nwall w 0 4 0 0 0 2.5 0.2 m\nwindow o s 1.5 3.5 0.8 2.2\n"
+
+/* A disk of light of angular radius a, all of it seen, gives pi L sin^2 a cos. */
+static void sun_through_window(void **state)
+{
+    (void)state;
+    struct world w =
+        world_from("texture black rgb 0 0 0\nmaterial m lambert black\n" ROOM "sun -90 45 1.2 5000 4000 3000\n");
+    const double s = sin(1.2 * PI / 180), wanted = PI * 5000 * s * s * cos(45 * PI / 180);
+    const struct rgb e = mean_irradiance(&w, vec3_make(2.5, 1.3, 0), up, 20000, 1);
+    assert_near(e.r, wanted, 0.005);
+    assert_near(e.b, wanted * 0.6, 0.005);
+    assert_true(mean_irradiance(&w, vec3_make(2.5, 3.5, 0), up, 4096, 1).r == 0);
+    assert_true(mean_irradiance(&w, vec3_make(0.8, 1.3, 0), up, 4096, 1).r == 0);
+    world_release(&w);
+}
+
+#define LAMP_FOR_A_CEILING "lamp l quad 0 0 1.9999  0 2 0  2 0 0  3 3 3\n"
+
+/* In a box that absorbs nothing, under a ceiling that is all lamp and absorbs what meets it, every path ends at the lamp:
+ * the radiance is the lamp's everywhere, no more and no less. */
+static void nothing_is_lost_or_made(void **state)
+{
+    (void)state;
+    struct world w =
+        world_from("texture white rgb 1 1 1\nmaterial m lambert white\nbox room 0 0 0 2 2 2 m\n" LAMP_FOR_A_CEILING);
+    for (int way = 0; way < 2; way++) {
+        w.only_surface = way;
+        assert_near(mean_radiance(&w, vec3_make(0.2, 0.2, 0.2), vec3_make(0.2, 1, 0.1), 500000, 1).r, 3, 0.005);
+        assert_near(mean_radiance(&w, vec3_make(0.2, 0.2, 1.9), vec3_make(-0.2, 0.3, -0.1), 500000, 2).g, 3, 0.005);
+    }
+    world_release(&w);
+    /* the same where half of the whiteness is gloss: its lobe loses what falls below the horizon, and makes nothing */
+    w = world_from(
+        "texture part rgb 0.5 0.5 0.5\nmaterial m phong part 0.8 9.3\nbox room 0 0 0 2 2 2 m\n" LAMP_FOR_A_CEILING);
+    const double l = mean_radiance(&w, vec3_make(0.2, 0.2, 0.2), vec3_make(0.2, 1, 0.1), 500000, 1).r;
+    assert_true(l > 1 && l < 3 * 1.005);
+    world_release(&w);
+}
+
+/* A room with everything in it, seen with and without looking for lights. */
+static void both_ways_agree(void **state)
+{
+    (void)state;
+    struct world w = world_from(
+        "texture grey rgb 0.5 0.45 0.4\nmaterial m lambert grey\nmaterial shiny phong grey 0.5 10\n"
+        "material ward ward grey 0.3 0.4\n" ROOM "opening door e 1 2 0 2\nbox b 1 2 0 2 3 0.5 shiny turn 20\n"
+        "quad table 2.5 1 0.7 1 0 0 0 1 0 ward\nlamp l quad 3 2 2.4 0 1 0 1 0 0 4 4 3\n"
+        "lamp d disk 1 1 2.4 0 0 -1 0.3 20 20 20 40 1\nsun -80 35 12 40 36 30\npanorama 3 2 2 2.5 1 0.9 0.8\n");
+    const struct vec3 eye = {4.5, 3.5, 1.6},
+                      at[] = {{1.5, 2.4, 0.5}, {3, 1.5, 0.7}, {2, 1, 0}, {0, 2, 1.5}, {2.5, 0, 0.4}, {5, 1.5, 1}};
+    for (int i = 0; i < 6; i++) {
+        double l[2];
+        for (int way = 0; way < 2; way++) {
+            w.only_surface = way;
+            l[way] = rgb_luminance(mean_radiance(&w, eye, vec3_sub(at[i], eye), way ? 400000 : 50000, 10 * i + way));
+        }
+        assert_near(l[0], l[1], 0.015);
+    }
+    world_release(&w);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(furnace),
+        cmocka_unit_test(glossy_furnace),
+        cmocka_unit_test(square_lamp),
+        cmocka_unit_test(round_lamp),
+        cmocka_unit_test(spot),
+        cmocka_unit_test(sun_through_window),
+        cmocka_unit_test(nothing_is_lost_or_made),
+        cmocka_unit_test(both_ways_agree),
+    };
+    return cmocka_run_group_tests_name("simulate light", tests, scratch_make, scratch_remove);
+}

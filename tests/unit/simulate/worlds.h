@@ -1,0 +1,61 @@
+/* worlds.h - what the tests of simulate share: scenes from text, means of many light paths. */
+#ifndef REMODEL_TESTS_WORLDS_H
+#define REMODEL_TESTS_WORLDS_H
+
+#include "tests/unit/scratch.h"
+
+#include <math.h>
+
+#include "stages/simulate/path_trace.h"
+
+#define PI 3.14159265358979323846
+
+/* |got - wanted| within a part of the wanted value. */
+#define assert_near(got, wanted, part)                                                                   \
+    do {                                                                                                 \
+        const double got_ = (got), wanted_ = (wanted);                                                   \
+        if (!(fabs(got_ - wanted_) <= (part)*fabs(wanted_)))                                             \
+            fail_msg("%s is %.6g, wanted %.6g within %g %%", #got, got_, wanted_, 100 * (double)(part)); \
+    } while (0)
+
+static inline struct world world_from(const char *text)
+{
+    struct world w = {0};
+    struct err err = ERR_INIT;
+    char *all = NULL;
+    assert_true(asprintf(&all, "remodel-scene 1\n%s", text) > 0);
+    scratch_write("scene.txt", all);
+    free(all);
+    assert_ok(world_read(&w, scratch, "scene.txt", NULL, &err), err);
+    return w;
+}
+
+/* The mean of `paths` estimates, in sets of 4096 that are spread evenly. */
+static inline struct rgb mean_irradiance(const struct world *w, struct vec3 point, struct vec3 normal, int paths,
+                                         int seed)
+{
+    const struct rng rng = rng_make((uint64_t)seed, "test", "irradiance");
+    struct rgb sum = {0, 0, 0};
+    uint64_t rays = 0;
+    for (int done = 0; done < paths; done += 4096) {
+        struct sampler s = sampler_make(&rng, (uint64_t)done, 4096);
+        for (; s.sample < 4096; s.sample++) sum = rgb_add(sum, path_irradiance(w, point, normal, &s, &rays));
+    }
+    return rgb_scale(sum, 1.0 / ((paths + 4095) / 4096 * 4096));
+}
+
+static inline struct rgb mean_radiance(const struct world *w, struct vec3 from, struct vec3 direction, int paths,
+                                       int seed)
+{
+    const struct rng rng = rng_make((uint64_t)seed, "test", "radiance");
+    const struct ray ray = {from, vec3_normalize(direction)};
+    struct rgb sum = {0, 0, 0};
+    uint64_t rays = 0;
+    for (int done = 0; done < paths; done += 4096) {
+        struct sampler s = sampler_make(&rng, (uint64_t)done, 4096);
+        for (; s.sample < 4096; s.sample++) sum = rgb_add(sum, path_radiance(w, ray, &s, &rays));
+    }
+    return rgb_scale(sum, 1.0 / ((paths + 4095) / 4096 * 4096));
+}
+
+#endif
