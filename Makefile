@@ -29,7 +29,10 @@ FRAMES_PER_JOB ?= 30
 CORES ?= $(shell nproc)
 ## DEPS=auto|manual: install what is missing with apt, or only print the line to run
 DEPS ?= auto
-## REPEATS=N: how often a bench runs each setting; SCENES="A B": what regress runs
+## REPEATS=N: how often a bench runs each setting
+## SCENES="A B": the scenes that plain `make` and `make regress` run (the latter also A+holdoutN: with HOLDOUT=N)
+SCENES ?= still-life loft
+REGRESS := $(if $(filter file,$(origin SCENES)),still-life still-life+holdout4 loft,$(SCENES))
 ## FLAVOR=release|debug|asan: how the programs are compiled
 FLAVOR ?= release
 ## V=1: show commands
@@ -89,9 +92,9 @@ GOALS := hdr sfm views depth path frames video evaluate report
 .PHONY: all help why resfm check fuzz bench bench-compare regress regress-accept man deps deps-check deps-bench clean $(GOALS)
 
 ifeq ($(SCENE),)
-all: deps ## everything a scene asks for; without SCENE builds the programs and explains
+all: deps ## everything a scene asks for; without SCENE builds the programs and runs SCENES, at draft quality if none is said
 	+@$(BUILD) build
-	@common/explain.sh no-scene
+	+@common/run_scenes.sh '$(if $(filter file,$(origin QUALITY)),draft,$(QUALITY))' '$(SCENES)' $(SUB)
 hdr:    ## bracketed photos merged; nothing where photos are no brackets
 sfm:    ## + camera poses: COLMAP, or the model in SFM
 views:  ## + rectified, linear views
@@ -129,10 +132,10 @@ bench-%: deps-bench FORCE ## one of them: bench-exr, bench-simulate
 bench-compare: deps-bench ## NAME=exr OLD=REVISION: the same bench on another revision's code, alternating
 	+@$(BUILD) bench-build
 	+@tests/bench/compare '$(NAME)' '$(OLD)' '$(B)' $(BUILD)
-regress: ## run the reference scenes (or SCENES="...") and compare their metrics with tests/expected
-	+@tests/regress/run compare $(SCENES)
+regress: ## run SCENES at draft quality and compare their metrics with tests/expected
+	+@tests/regress/run compare $(REGRESS)
 regress-accept: ## make what these runs gave the expected metrics
-	+@tests/regress/run accept $(SCENES)
+	+@tests/regress/run accept $(REGRESS)
 fuzz: deps-check ## look for new inputs that break a parser: FUZZ=NAME FUZZ_SECONDS=60
 	+@tests/fuzz/fuzz.sh '$(FUZZ)' '$(or $(FUZZ_SECONDS),60)'
 help: ## this text

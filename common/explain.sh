@@ -5,7 +5,7 @@ what=$1; shift
 case $what in
 no-scene)
     cat <<'TEXT'
-The programs are built. To make a 3D pan & scan video, give a folder of photos of one scene, taken from places a step apart:
+To make a 3D pan & scan video of your own, give a folder of photos of one scene, taken from places a step apart:
 
     make PHOTOS=DIR SCENE=NAME      8 to 15 JPEG or PNG photos; the video and a page come under out/NAME
     make SCENE=NAME                 goes on, or redoes just what is stale
