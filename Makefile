@@ -20,6 +20,7 @@ QUALITY ?= default
 ## HOLDOUT=N: every Nth photo, the first included, is kept out of depth and rendering, to compare; in out/SCENE+holdoutN
 ## HOLDOUT_VIEWS="NAMES": the same for these photos or views, in out/SCENE+holdout
 ## TRUTH=DIR: known cameras and depths, which products are compared with (docs/evaluation.md)
+## EDIT=E: the edited scene scenes/SCENE/scene-E.txt, for `make edited`
 ## JOBS=local|slurm: where the per-view work runs
 JOBS ?= local
 ## SLURM_ARGS="...": more options for sbatch; VIEWS_PER_JOB and FRAMES_PER_JOB cut the job array
@@ -56,6 +57,11 @@ ifneq ($(SCENE),)
     $(error JOBS=$(JOBS) is not one of: local slurm)
   endif
   -include scenes/$(SCENE)/scene.mk
+  ifneq ($(EDIT),)
+    ifeq ($(wildcard scenes/$(SCENE)/scene-$(EDIT).txt),)
+      $(error EDIT=$(EDIT): there is no scenes/$(SCENE)/scene-$(EDIT).txt)
+    endif
+  endif
   ifneq ($(HOLDOUT),)
     ifeq ($(shell [[ '$(subst ','\'',$(HOLDOUT))' =~ ^[1-9][0-9]{0,8}$$ ]] && echo good),)
       $(error HOLDOUT=$(HOLDOUT): wanted a number: every how many photos one is held out)
@@ -88,13 +94,14 @@ export REMODEL_TRUTH := $(call literal,TRUTH)
 
 export VIEWS_PER_JOB SLURM_ARGS
 dry = $(findstring n,$(filter-out --%,$(firstword -$(MAKEFLAGS))))
-GOALS := hdr sfm views depth path frames video evaluate report
+GOALS := edited hdr sfm views depth path frames video evaluate report
 .PHONY: all help why resfm check fuzz bench bench-compare regress regress-accept man deps deps-check deps-bench clean $(GOALS)
 
 ifeq ($(SCENE),)
 all: deps ## everything a scene asks for; without SCENE builds the programs and runs SCENES, at draft quality if none is said
 	+@$(BUILD) build
 	+@common/run_scenes.sh '$(if $(filter file,$(origin QUALITY)),draft,$(QUALITY))' '$(SCENES)' $(SUB)
+edited: ## what is true of the edited scene EDIT of a described one: its radiance from the same cameras
 hdr:    ## bracketed photos merged; nothing where photos are no brackets
 sfm:    ## + camera poses: COLMAP, or the model in SFM
 views:  ## + rectified, linear views
@@ -261,8 +268,8 @@ stage = $(hide)common/run_stage.sh live $(1) $(2) $(3) $(BIN)/$(1) --threads $(T
 farm_line = common/run_stage.sh quiet $(1) $(2) $(or $(6),$(O)) $(BIN)/$(1) --threads $(T) --config $(or $(6),$(O))/slice/$(1).cfg $(4)
 farm = $(if $(filter plan,$(LAUNCH)),printf '%s\t%s %s\n' '$(3)' '$(farm_line)' "$(5)" >>$(PLAN),$(farm_line) $(5))
 
-DESCRIPTION := $(DESCRIBED) $(if $(DESCRIBED),scenes/$(SCENE)/cameras.txt $(wildcard scenes/$(SCENE)/*.obj)) \
-  $(S)/slice/simulate.cfg $(B)/code/simulate
+SHOOT := $(if $(DESCRIBED),scenes/$(SCENE)/cameras.txt $(wildcard scenes/$(SCENE)/*.obj)) $(S)/slice/simulate.cfg $(B)/code/simulate
+DESCRIPTION := $(DESCRIBED) $(SHOOT)
 $(SIM)/photos.mk: $(DESCRIPTION)
 	$(call stage,simulate,common,$(S),--scene scenes/$(SCENE) --out $(SIM) --common)
 define shot_rules
@@ -272,6 +279,15 @@ endef
 $(foreach s,$(SHOTS),$(eval $(call shot_rules,$(s))))
 .PHONY: simulated
 simulated: $(foreach s,$(SHOTS),$(SHOT_$(s):%=$(SIM)/%))
+
+EDITED := $(SIM)/truth/edited-$(EDIT)
+EDITED_TXT := $(EDITED)/scene.txt $(EDITED)/faces.txt
+$(EDITED_TXT) &: scenes/$(SCENE)/scene-$(EDIT).txt $(SHOOT)
+	$(call stage,simulate,edited-$(EDIT),$(S),--scene scenes/$(SCENE) --out $(SIM) --common --edit $(EDIT))
+$(EDITED)/hdr/%.exr: scenes/$(SCENE)/scene-$(EDIT).txt $(SHOOT)
+	$(hide)$(call farm,simulate,$*,$@,--scene scenes/$(SCENE) --out $(SIM) --photo $* --edit $(EDIT),,$(S))
+.PHONY: edited
+edited: $(EDITED_TXT) $(patsubst truth/%,$(EDITED)/%,$(foreach s,$(SHOTS),$(filter truth/hdr/%,$(SHOT_$(s)))))
 
 # what stages after hdr_merge take for the photos, and what a photo's view is made from; $(1) is a photo's id
 HDR := $(if $(BRACKETED),$(foreach p,$(PHOTO_IDS),$(S)/hdr/$(p).exr $(S)/hdr/$(p).jpg))

@@ -87,6 +87,10 @@ farm()
 }
 one() { graph $quiet -j1 T="$cores" "$@"; }
 
+if [ "$goal" = edited ] && [ -z "${EDIT-}" ]; then
+    echo "make edited wants EDIT=E, where $folder/scene-E.txt describes the edited scene." >&2
+    exit 2
+fi
 # a described scene is photographed before its photos can be looked at
 if [ -e "$folder/scene.txt" ]; then
     if [ "$dry" = n ] || [ "$goal" = why ]; then
@@ -94,6 +98,12 @@ if [ -e "$folder/scene.txt" ]; then
     else
         graph look-simulate
         one "$S/simulated/photos.mk"
+        if [ "$goal" = edited ]; then
+            one "$S/simulated/truth/edited-$EDIT/faces.txt"
+            farm simulate edited 1 "${VIEWS_PER_JOB:-4}"
+            echo "truth  $S/simulated/truth/edited-$EDIT"
+            exit 0
+        fi
         farm simulate simulated 1 "${VIEWS_PER_JOB:-4}"
     fi
 fi

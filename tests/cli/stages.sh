@@ -87,6 +87,7 @@ make_says_what_is_wrong_with_its_words()
     expect 2 "HOLDOUT=0" make -s DEPS=manual SCENE=x HOLDOUT=0
     expect 2 "both given" make -s DEPS=manual SCENE=x HOLDOUT=8 HOLDOUT_VIEWS=a
     expect 2 "names of photos" make -s DEPS=manual SCENE=x HOLDOUT_VIEWS='a;b'
+    expect 2 "scene-none.txt" make -s DEPS=manual edited SCENE=x EDIT=none
     expect 2 "letters, digits" make -s DEPS=manual SCENE='../x'
     expect 2 "PHOTOS=DIR" make -s DEPS=manual SCENE=nothing
     expect 2 "no-such-folder" make -s DEPS=manual SCENE=x PHOTOS=no-such-folder

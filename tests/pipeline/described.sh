@@ -1,0 +1,85 @@
+# a described scene through make: photographed first, again only where its description changed; its edited scene on demand
+. tests/lib.sh
+
+# describe SCENE: a small room, three photos in two exposures, one reference image, an edited scene "dark"
+describe()
+{
+    mkdir -p "scenes/$1"
+    cat >"scenes/$1/scene.txt" <<'TXT'
+remodel-scene 1
+texture plain plaster 0.3 0.4 1  0.6 0.58 0.5
+material m lambert plain
+room hall 0 0 4 3  0 2.5  m m
+wall south 0 0 4 0  0 2.5 0.2 m
+wall east 4 0 4 3  0 2.5 0.2 m
+wall north 4 3 0 3  0 2.5 0.2 m
+wall west 0 3 0 0  0 2.5 0.2 m
+lamp l quad 1 1 2.49  0 1 0  1 0 0  10 10 9
+TXT
+    sed 's/10 10 9$/3 3 3/' "scenes/$1/scene.txt" >"scenes/$1/scene-dark.txt"
+    cat >"scenes/$1/cameras.txt" <<'TXT'
+remodel-shoot 1
+lens p pinhole 60 40 50 50 30 20
+exposure 0.02
+exposure 0.04
+sensor 30000 6 1 5
+photo a p 1 1 1.5  3 2 1.2
+photo b p 1.2 1 1.5  3 2 1.2
+photo c p 1.4 1 1.5  3 2 1.2
+reference r p 2 1 1  0 1 1
+TXT
+    printf '[simulate]\nsamples = 4\nirradiance_samples = 64\n' >"scenes/$1/scene.cfg"
+    printf 'PHOTOS := out/%s/simulated/photos\n' "$1" >"scenes/$1/scene.mk"
+}
+m() { make -s DEPS=manual SCENE=room "$@" >log 2>&1 || { cat log; fail "make $*"; }; }
+times() { find out/room/simulated -type f -printf '%P %T@\n' | LC_ALL=C sort; }
+bytes() { (cd "$1" && find . -type f | LC_ALL=C sort | xargs sha256sum); }
+
+photographed_once_and_again_where_the_description_changed()
+{
+    project described; describe room
+    m hdr
+    [ "$(find out/room/simulated/photos -name '*.jpg' | wc -l)" = 6 ] || fail "there are not two exposures of three photos"
+    [ -e out/room/hdr/a.exr ] || fail "they were not merged"
+    times >a; m hdr; times >b
+    diff a b || fail "a second make photographed again"
+    sed -i 's/^photo b p 1.2/photo b p 1.25/' scenes/room/cameras.txt
+    m hdr; times >b
+    grep -q photos/b_e0.jpg <(comm -13 a b) || fail "a moved camera did not photograph again"
+}
+
+the_edited_scene_on_demand()
+{
+    project edited; describe room
+    m edited EDIT=dark
+    for f in scene.txt faces.txt hdr/a.exr hdr/b.exr hdr/c.exr; do
+        [ -e "out/room/simulated/truth/edited-dark/$f" ] || fail "there is no $f"
+    done
+    [ ! -e out/room/simulated/photos ] || fail "the scene that is not edited was photographed, too"
+    times >a; m edited EDIT=dark; times >b
+    diff a b || fail "a second make did it again"
+    ! make -s DEPS=manual SCENE=room edited >log 2>&1 || fail "make edited without EDIT was content"
+    grep -q 'EDIT=E' log || fail "it does not say what it wants"
+}
+
+same_bytes_for_one_and_two_cores()
+{
+    project one; describe room; m hdr CORES=1; bytes out/room/simulated >"$scratch/one.bytes"
+    project two; describe room; m hdr CORES=2; bytes out/room/simulated >"$scratch/two.bytes"
+    diff "$scratch/one.bytes" "$scratch/two.bytes" || fail "they differ"
+}
+
+a_fault_in_the_description_is_told_and_leaves_nothing()
+{
+    project fault; describe room
+    sed -i '5s/.*/wall south 0 0 4 zero  0 2.5 0.2 m/' scenes/room/scene.txt
+    ! make -s DEPS=manual SCENE=room hdr >log 2>&1 || fail "make was content"
+    grep -q 'scenes/room/scene.txt:5: found' log || { cat log; fail "file and line are not named"; }
+    describe room; sed -i '/^lamp/d' scenes/room/scene.txt
+    ! make -s DEPS=manual SCENE=room hdr >log 2>&1 || fail "make was content without a light"
+    grep -qi 'light' log || { cat log; fail "the missing light is not named"; }
+    [ -z "$(find out/room/simulated -type f 2>/dev/null)" ] || { find out/room/simulated; fail "a product was left"; }
+}
+
+for t in photographed_once_and_again_where_the_description_changed the_edited_scene_on_demand same_bytes_for_one_and_two_cores \
+    a_fault_in_the_description_is_told_and_leaves_nothing; do run "$t"; done
