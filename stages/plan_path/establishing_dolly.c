@@ -23,6 +23,7 @@ const struct param plan_param_table[] = {PLAN_PARAMS(PARAM_ROW) PARAM_END};
 #undef PARAM_STRUCT
 
 #define CENTRAL_VIEWS    5   /* whose segments vote for the centroid */
+#define SAME_WAY         0.5 /* cosine of the angle between their axes and the centremost view's, at least */
 #define CENTRAL_PART     0.5 /* of width and height */
 #define ZOOM_STEP        0.05
 #define ZOOM_COST        4
@@ -107,13 +108,17 @@ static const struct view *center_view(const struct plan *p) { return &p->scene->
 
 static struct vec3 row_of(struct mat3 m, int row) { return vec3_make(m.m[row][0], m.m[row][1], m.m[row][2]); }
 
+/* The view nearest the middle of all; of several views of one photo, the one that looks where most views look. */
 static void find_center_view(struct plan *p)
 {
     const struct camera_set *set = p->scene->set;
-    double best = HUGE_VAL;
+    struct vec3 gaze = {0};
+    double best = HUGE_VAL, best_gaze = 0;
+    for (int i = 0; i < set->view_count; i++) gaze = vec3_add(gaze, row_of(set->views[i].cam_from_world, 2));
     for (int i = 0; i < set->view_count; i++) {
-        double d = vec3_length(vec3_sub(set->views[i].center, p->scene->mesh.centroid));
-        if (d < best) best = d, p->center = i;
+        const double d = vec3_length(vec3_sub(set->views[i].center, p->scene->mesh.centroid));
+        const double g = vec3_dot(row_of(set->views[i].cam_from_world, 2), gaze);
+        if (d < best * (1 - 1e-9) || (d <= best * (1 + 1e-9) && g > best_gaze)) best = d, best_gaze = g, p->center = i;
     }
 }
 
@@ -155,9 +160,12 @@ static bool median_coordinate(const struct plan *p, const bool *use, bool centra
     return n > 0;
 }
 
+/* Of the central views those vote that look about the same way as the centremost one: indoors others show what is
+ * behind it. */
 static enum status find_centroid(struct plan *p, struct err *err)
 {
     const struct camera_set *set = p->scene->set;
+    const struct vec3 gaze = row_of(center_view(p)->cam_from_world, 2);
     bool *use = calloc((size_t)set->view_count, sizeof *use);
     if (!use) return err_nomem(err, "a list of views", (size_t)set->view_count);
     for (int k = 0; k < CENTRAL_VIEWS && k < set->view_count; k++) {
@@ -165,6 +173,7 @@ static enum status find_centroid(struct plan *p, struct err *err)
         double nearest = HUGE_VAL;
         for (int i = 0; i < set->view_count; i++) {
             double d = vec3_length(vec3_sub(set->views[i].center, center_view(p)->center));
+            if (vec3_dot(row_of(set->views[i].cam_from_world, 2), gaze) < SAME_WAY) continue;
             if (!use[i] && d < nearest) nearest = d, best = i;
         }
         if (best >= 0) use[best] = true;

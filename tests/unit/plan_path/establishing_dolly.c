@@ -296,6 +296,28 @@ static void orbit_stays_around_the_middle(void **state)
     release(&f, &path);
 }
 
+/* Three photos in a room, each a view ahead and two of what is behind it: the move looks where most look, and what is
+ * behind the camera has no part in where the scene is. */
+static void views_that_look_all_ways(void **state)
+{
+    (void)state;
+    static const struct rectangle front_and_back[] = {{0, 0, 10, 40, 40}, {0, 0, -6, 40, 40}};
+    struct fixture f = {0};
+    struct camera_path path = {0};
+    struct dolly_notes notes;
+    struct plan_params params = quick();
+    for (int i = -1; i <= 1; i++) {
+        add_view(&f, vec3_make(i, 0, 0), vec3_make(i - 0.3, 0, -1), vec3_make(0, 1, 0));
+        add_view(&f, vec3_make(i, 0, 0), vec3_make(i + 0.3, 0, -1), vec3_make(0, 1, 0));
+        for (int k = -1; k <= 1; k++)
+            add_view(&f, vec3_make(i, 0, 0), vec3_make(i + 0.3 * k, 0, 1), vec3_make(0, 1, 0));
+    }
+    finish(&f, front_and_back, 2);
+    must_plan(&path, &notes, &f, NULL, &params);
+    for (int i = 0; i < path.frame_count; i++) assert_true(row_of(path.frames[i].camera.cam_from_world, 2).z > 0.8);
+    release(&f, &path);
+}
+
 static void two_views_and_one_and_a_tripod(void **state)
 {
     (void)state;
@@ -439,6 +461,7 @@ int main(void)
         cmocka_unit_test(sizes),
         cmocka_unit_test(photos_stored_on_their_side),
         cmocka_unit_test(orbit_stays_around_the_middle),
+        cmocka_unit_test(views_that_look_all_ways),
         cmocka_unit_test(two_views_and_one_and_a_tripod),
         cmocka_unit_test(holes_shorten_the_move_or_zoom_in),
         cmocka_unit_test(too_many_holes_everywhere_raise_the_limit),
