@@ -94,7 +94,7 @@ export REMODEL_TRUTH := $(call literal,TRUTH)
 
 export VIEWS_PER_JOB SLURM_ARGS
 dry = $(findstring n,$(filter-out --%,$(firstword -$(MAKEFLAGS))))
-GOALS := edited hdr sfm views depth path frames video evaluate report
+GOALS := edited hdr sfm views depth points path frames video evaluate report
 .PHONY: all help why resfm check fuzz bench bench-compare regress regress-accept man deps deps-check deps-bench clean $(GOALS)
 
 ifeq ($(SCENE),)
@@ -106,6 +106,7 @@ hdr:    ## bracketed photos merged; nothing where photos are no brackets
 sfm:    ## + camera poses: COLMAP, or the model in SFM
 views:  ## + rectified, linear views
 depth:  ## + layered depth maps
+points: ## + oriented points on which they agree (no part of what follows)
 path:   ## + the camera move
 frames: ## + its frames
 video:  ## + the video
@@ -124,7 +125,7 @@ endif
 deps:
 	+@common/deps.sh $(DEPS) run
 deps-check:
-	+@common/deps.sh $(DEPS) run check bench
+	+@common/deps.sh $(DEPS) run check
 deps-bench:
 	+@common/deps.sh $(DEPS) run bench
 check: deps-check ## build and run all tests
@@ -133,7 +134,7 @@ check: deps-check ## build and run all tests
 bench: deps-bench ## measure everything in tests/bench: tables and plots under out/bench
 	+@$(BUILD) bench-build
 	+@rc=0; for b in tests/bench/*.sh; do tests/bench/run "$$(basename $$b .sh)" '$(B)' || rc=1; done; exit $$rc
-bench-%: deps-bench FORCE ## one of them: bench-exr, bench-simulate
+bench-%: deps-bench FORCE ## one of them: bench-depth, bench-exr, bench-simulate
 	+@$(BUILD) bench-build
 	+@tests/bench/run '$*' '$(B)'
 bench-compare: deps-bench ## NAME=exr OLD=REVISION: the same bench on another revision's code, alternating
@@ -183,11 +184,13 @@ COMMON_OBJS := $(call objs,common/*.c)
 BINS := $(STAGES:%=$(B)/bin/%)
 UNIT_TESTS := $(patsubst tests/unit/%.c,$(B)/tests/unit/%,$(wildcard tests/unit/*/*.c))
 BENCHES := $(patsubst tests/bench/%.c,$(B)/tests/bench/%,$(wildcard tests/bench/*.c))
+# of them what needs OpenCV, which only benches do: tests must do without
+OPENCV_BENCHES := $(B)/tests/bench/stereo_sgbm
 FUZZ_TESTS := $(patsubst tests/fuzz/%.c,$(B)/tests/fuzz/%,$(wildcard tests/fuzz/fuzz_*.c))
 
 .PHONY: build tests-build bench-build
 build: $(BINS) $(STAGES:%=$(B)/code/%)
-tests-build: build bench-build $(UNIT_TESTS) $(FUZZ_TESTS) $(B)/tests/pipeline/make_photos
+tests-build: build $(filter-out $(OPENCV_BENCHES),$(BENCHES)) $(UNIT_TESTS) $(FUZZ_TESTS) $(B)/tests/pipeline/make_photos
 bench-build: build $(BENCHES)
 
 $(B)/flags: FORCE
@@ -223,6 +226,9 @@ $(UNIT_TESTS): $(B)/tests/unit/%: $(B)/obj/tests/unit/%.o $(B)/libremodel.a
 $(BENCHES): $(B)/tests/bench/%: $(B)/obj/tests/bench/%.o $(B)/libremodel.a
 	$(call link,-lstdc++)
 $(B)/tests/bench/exr: $(B)/obj/tests/bench/exr_openexr.o # the baseline
+$(B)/tests/bench/stereo_sgbm: $(B)/obj/tests/bench/depth_sgbm.o
+$(B)/tests/bench/stereo_sgbm: private LDLIBS += -lopencv_calib3d -lopencv_imgproc -lopencv_core
+$(B)/obj/tests/bench/depth_sgbm.o: private CXXFLAGS += -isystem /usr/include/opencv4
 $(B)/tests/pipeline/make_photos: $(B)/obj/tests/pipeline/make_photos.o $(B)/libremodel.a
 	$(call link)
 $(FUZZ_TESTS): $(B)/tests/fuzz/%: $(B)/obj/tests/fuzz/%.o $(B)/obj/tests/fuzz/run_corpus.o $(B)/libremodel.a
@@ -256,6 +262,10 @@ HELD_EXR := $(HELD:%=$(H)/views/%.exr)
 HELD_FRAMES := $(HELD:%=$(H)/frames/%.exr)
 DEPTH := $(VIEWS:%=$(O)/depth/%.exr)
 DEPTH_TXT := $(DEPTH:.exr=.txt)
+# depth comes in rounds: each reads what the one before left in its folder; the last is O/depth itself
+LAST_ROUND := $(shell sed -n 's/^rounds = //p' $(O)/slice/segment_depth.cfg 2>/dev/null)
+round = $(O)/depth$(if $(filter-out $(LAST_ROUND),$(1)),/round$(1))
+POINTS := $(O)/points/points.ply
 FRAME_EXR := $(FRAMES:%=$(E)/frames/%.exr)
 PATH_TXT := $(E)/path.txt $(addprefix $(E)/path/,cameras.txt images.txt points3D.txt)
 needs = $(O)/slice/$(1).cfg $(B)/code/$(1)
@@ -294,11 +304,12 @@ HDR := $(if $(BRACKETED),$(foreach p,$(PHOTO_IDS),$(S)/hdr/$(p).exr $(S)/hdr/$(p
 PICTURES := $(if $(BRACKETED),$(S)/hdr,"$$REMODEL_PHOTOS")
 picture = $(if $(BRACKETED),$(S)/hdr/$(1).exr,$(S)/photos/$(1).txt)
 
-.PHONY: hdr sfm views depth path frames video heldout evaluate report
+.PHONY: hdr sfm views depth points path frames video heldout evaluate report
 hdr: $(HDR)
 sfm: $(O)/views/views.mk
 views: $(VIEW_EXR) $(HELD_EXR)
 depth: $(DEPTH) $(DEPTH_TXT)
+points: $(POINTS)
 path: $(E)/frames.mk
 frames: $(FRAME_EXR)
 video: $(E)/video.mp4
@@ -330,16 +341,28 @@ $(2)/$(1).exr: $(call picture,$(firstword $(subst @, ,$(1)))) $(addprefix $(2)/,
   $(call needs,rectify)
 	$$(hide)$$(call farm,rectify,$(1),$$@,--view $(1) --photos $$(PICTURES) --records $(S)/photos --views $(2) --out $$@)
 endef
-define view_rules
-$(call rectify_rule,$(1),$(O)/views)
-$(O)/depth/$(1).exr $(O)/depth/$(1).txt &: $(O)/views/$(1).exr $(CAMERAS) $(call needs,segment_depth) | $(VIEW_EXR)
-	$$(hide)$$(call farm,segment_depth,$(1),$(O)/depth/$(1).txt $(O)/depth/$(1).exr,\
-	  --view $(1) --views $(O)/views --out $(O)/depth/$(1).exr --deps $(O)/depth/$(1).d)
-endef
-$(foreach v,$(VIEWS),$(eval $(call view_rules,$(v))))
+$(foreach v,$(VIEWS),$(eval $(call rectify_rule,$(v),$(O)/views)))
 $(foreach v,$(HELD),$(eval $(call rectify_rule,$(v),$(H)/views)))
--include $(wildcard $(DEPTH:.exr=.d)) # the neighbours each view really read
+
+# $(1): a view; $(2): the folder of a round; $(3): that of the round before, empty for the first
+define depth_rule
+$(2)/$(1).exr $(2)/$(1).txt &: $(O)/views/$(1).exr $(if $(3),$(3)/$(1).exr) $(CAMERAS) $(call needs,segment_depth) \
+  | $(VIEW_EXR) $(if $(3),$(VIEWS:%=$(3)/%.exr))
+	$$(hide)$$(call farm,segment_depth,$(1),$(2)/$(1).txt $(2)/$(1).exr,\
+	  --view $(1) --views $(O)/views $(if $(3),--before $(3)) --out $(2)/$(1).exr --deps $(2)/$(1).d)
+endef
+# $(1): a round
+define round_rules
+.PHONY: depth-round$(1)
+depth-round$(1): $(VIEWS:%=$(call round,$(1))/%.exr)
+-include $(wildcard $(VIEWS:%=$(call round,$(1))/%.d)) # the neighbours each view really read
+endef
+$(foreach k,$(if $(LAST_ROUND),$(shell seq 0 $(LAST_ROUND))),$(eval $(call round_rules,$(k)))\
+  $(foreach v,$(VIEWS),$(eval $(call depth_rule,$(v),$(call round,$(k)),$(if $(filter-out 0,$(k)),$(call round,$(shell expr $(k) - 1)))))))
 $(O)/views/%.exr: ; # a neighbour that is a view no more
+
+$(POINTS): $(CAMERAS) $(DEPTH) $(DEPTH_TXT) $(call needs,fuse_points)
+	$(call stage,fuse_points,all,$(O),--views $(O)/views --depth $(O)/depth --out $@)
 
 $(PATH_TXT) $(E)/frames.mk &: $(CAMERAS) $(O)/views/lenses.txt $(DEPTH) $(DEPTH_TXT) $(call needs,plan_path)
 	$(call stage,plan_path,$(EFFECT),$(O),--views $(O)/views --depth $(O)/depth --records $(S)/photos --effect $(EFFECT) --out $(E))

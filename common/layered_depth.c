@@ -234,29 +234,63 @@ static enum status take_layer(struct layer *l, const struct exr_image *im, const
     return ST_OK;
 }
 
-enum status layered_depth_read(struct layered_depth *d, const char *path, struct err *err)
+/* layers: 1, the interior alone, or 2. */
+static enum status read_layers(struct layered_depth *d, const char *path, int layers, struct err *err)
 {
     struct exr_image im = {0};
-    struct layered_depth listed = {0};
     char *text = NULL;
-    *d = (struct layered_depth){0};
     enum status st = text_path(&text, path, err);
-    if (!st) st = layered_depth_read_segments(&listed, text, err);
-    if (!st) st = exr_read(&im, path, plane_names, 2 * PLANES_A_LAYER, err);
-    if (!st && (im.width != listed.width || im.height != listed.height))
+    if (!st) st = layered_depth_read_segments(d, text, err);
+    if (!st) st = exr_read(&im, path, plane_names, layers * PLANES_A_LAYER, err);
+    if (!st && (im.width != d->width || im.height != d->height))
         st = err_set(err, ST_DATA, "%s has %d x %d pixels but %s speaks of %d x %d; make the depth map again.", path,
-                     im.width, im.height, text, listed.width, listed.height);
-    if (!st) st = layered_depth_init(d, im.width, im.height, err);
-    if (!st) st = take_layer(&d->interior, &im, plane_names, listed.segment_count, path, err);
-    if (!st) st = take_layer(&d->boundary, &im, plane_names + PLANES_A_LAYER, listed.segment_count, path, err);
+                     im.width, im.height, text, d->width, d->height);
+    for (int i = 0; !st && i < layers; i++) {
+        struct layer *l = i ? &d->boundary : &d->interior;
+        st = layer_init(l, (size_t)im.width * (size_t)im.height, err);
+        if (!st) st = take_layer(l, &im, plane_names + i * PLANES_A_LAYER, d->segment_count, path, err);
+    }
+    if (st) layered_depth_release(d);
+    exr_image_release(&im);
+    free(text);
+    return st;
+}
+
+enum status layered_depth_read(struct layered_depth *d, const char *path, struct err *err)
+{
+    *d = (struct layered_depth){0};
+    return read_layers(d, path, 2, err);
+}
+
+enum status layered_depth_read_interior(struct layered_depth *d, const char *path, struct err *err)
+{
+    *d = (struct layered_depth){0};
+    return read_layers(d, path, 1, err);
+}
+
+enum status layered_depth_read_ids(struct layered_depth *d, const char *path, struct err *err)
+{
+    static const char *const name[] = {"interior.id"};
+    struct exr_image im = {0};
+    char *text = NULL;
+    enum status st = text_path(&text, path, err);
+    if (!st) st = layered_depth_read_segments(d, text, err);
+    if (!st) st = exr_read(&im, path, name, 1, err);
+    struct exr_plane *ids = st ? NULL : exr_find(&im, name[0]);
+    if (!st && (im.width != d->width || im.height != d->height || !ids->u))
+        st = err_set(err, ST_DATA, "%s does not hold the %d x %d ids that %s speaks of; make the depth map again.",
+                     path, d->width, d->height, text);
+    for (size_t i = 0; !st && i < (size_t)im.width * (size_t)im.height; i++)
+        if (ids->u[i] > (uint32_t)d->segment_count)
+            st = err_set(err, ST_DATA,
+                         "%s: pixel (%zu, %zu) has segment %u, wanted one up to %d; make the depth map again.", path,
+                         i % (size_t)im.width, i / (size_t)im.width, ids->u[i], d->segment_count);
     if (!st) {
-        d->segments = listed.segments;
-        d->segment_count = listed.segment_count;
-        listed.segments = NULL;
+        d->interior.id = ids->u;
+        ids->u = NULL;
     } else {
         layered_depth_release(d);
     }
-    layered_depth_release(&listed);
     exr_image_release(&im);
     free(text);
     return st;

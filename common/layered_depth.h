@@ -40,6 +40,10 @@ enum status layered_depth_write(const struct layered_depth *d, const struct view
                                 const struct provenance *prov, struct err *err);
 /* ids are those of the list (or 0), alphas in [0, 1], z >= 0: ST_DATA with the pixel or the line where that is not so. */
 enum status layered_depth_read(struct layered_depth *d, const char *path, struct err *err);
+/* TXT and the interior; the boundary stays empty. */
+enum status layered_depth_read_interior(struct layered_depth *d, const char *path, struct err *err);
+/* TXT and interior.id alone; the rest of the layers stays empty. */
+enum status layered_depth_read_ids(struct layered_depth *d, const char *path, struct err *err);
 /* TXT alone: size and segments; the layers stay empty. */
 enum status layered_depth_read_segments(struct layered_depth *d, const char *path, struct err *err);
 

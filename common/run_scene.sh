@@ -157,9 +157,13 @@ common/explain.sh changed-photos "$S" "$scene"
 case $goal in sfm) exit 0 ;; esac
 farm rectify views 1 "${VIEWS_PER_JOB:-4}"
 case $goal in views) exit 0 ;; esac
-farm segment_depth depth 1 "${VIEWS_PER_JOB:-4}"
+for round in $(seq 0 "$(sed -n 's/^rounds = //p' "$O/slice/segment_depth.cfg")"); do
+    farm segment_depth "depth-round$round" 1 "${VIEWS_PER_JOB:-4}"
+done
+one depth
 case $goal in
 depth) exit 0 ;;
+points) one points; exit 0 ;;
 evaluate) evaluate; common/explain.sh metrics "$O"; exit 0 ;;
 esac
 one path

@@ -64,3 +64,13 @@ products()
 snapshot() { find "$1"/ -type f \( -path '*/views/*' -o -path '*/depth/*' -o -path '*/parallax/*' -o -path '*/sfm/*' -o -name index.html \) -printf '%P %T@\n' | LC_ALL=C sort; }
 # changed BEFORE AFTER: the names whose time changed, or that are new
 changed() { comm -13 "$1" "$2" | cut -d' ' -f1; }
+# reads DEPS PHOTO: whether a depth map with these make dependencies comes from that photo's view, be it by way of a round before
+reads()
+{
+    local before
+    grep -q "/views/$2.exr" "$1" && return
+    for before in $(sed 1d "$1" | grep -oE "^[^ ]*/depth/round[0-9]+/[^ ]*\.exr"); do
+        reads "${before%.exr}.d" "$2" && return
+    done
+    return 1
+}

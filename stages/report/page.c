@@ -9,8 +9,8 @@
 #include "style.h"
 
 /* The order of the data's way; further stages follow in order of appearance. */
-static const char *const CHAIN[] = {"import_photos", "hdr_merge", "sfm",          "sfm_import",  "rectify",
-                                    "segment_depth", "plan_path", "render_views", "encode_video"};
+static const char *const CHAIN[] = {"import_photos", "hdr_merge",   "sfm",       "sfm_import",   "rectify",
+                                    "segment_depth", "fuse_points", "plan_path", "render_views", "encode_video"};
 enum { CHAIN_LENGTH = sizeof CHAIN / sizeof *CHAIN };
 
 static void put_seconds(FILE *to, double seconds)

@@ -12,32 +12,42 @@ static int compare_floats(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-double exposure_of(const struct image *im)
+#define POWER        0.5
+#define LEAST_POWER  0.2
+#define LEAST_MIDDLE 0.35 /* where the median is to be after the curve */
+
+struct tone tone_of(const struct image *im)
 {
     enum { SAMPLES = 1 << 14 };
     size_t pixels = (size_t)im->width * (size_t)im->height, step = pixels / SAMPLES + 1;
     float *brightest = malloc((pixels / step + 1) * sizeof *brightest);
     size_t count = 0;
-    double exposure = 1;
-    if (!brightest) return 1;
+    struct tone tone = {1, POWER};
+    if (!brightest) return tone;
     for (size_t i = 0; i < pixels; i += step) {
         const float *p = im->data + 4 * i;
         if (p[3] >= 0.5f) brightest[count++] = fmaxf(p[0], fmaxf(p[1], p[2]));
     }
     if (count) {
         qsort(brightest, count, sizeof *brightest, compare_floats);
-        double bright = (double)brightest[count - 1 - count / 50];
-        if (bright > 1e-12) exposure = 0.95 * 0.95 / bright;
+        const double bright = (double)brightest[count - 1 - count / 50], middle = (double)brightest[count / 2];
+        if (bright > 1e-12) {
+            if (middle > 1e-12 * bright && middle < bright)
+                tone.power = fmax(fmin(log(LEAST_MIDDLE) / log(middle / bright), POWER), LEAST_POWER);
+            tone.exposure = pow(0.95, 1 / tone.power) / bright;
+        }
     }
     free(brightest);
-    return exposure;
+    return tone;
 }
 
 struct make_job {
     struct gamma_image *g;
     const struct image *linear;
-    float exposure;
+    float exposure, power;
 };
+
+static float curve(float x, float power) { return power == 0.5f ? sqrtf(x) : powf(x, power); }
 
 static void make_rows(void *ctx, size_t begin, size_t end, int thread)
 {
@@ -46,7 +56,7 @@ static void make_rows(void *ctx, size_t begin, size_t end, int thread)
     (void)thread;
     for (size_t i = begin * width; i < end * width; i++) {
         const float *p = job->linear->data + 4 * i;
-        for (int c = 0; c < 3; c++) job->g->rgb[c][i] = sqrtf(fminf(fmaxf(job->exposure * p[c], 0), 1));
+        for (int c = 0; c < 3; c++) job->g->rgb[c][i] = curve(fminf(fmaxf(job->exposure * p[c], 0), 1), job->power);
         job->g->valid[i] = p[3] >= 0.5f;
     }
 }
@@ -62,11 +72,11 @@ static enum status allocate(struct gamma_image *g, int width, int height, struct
     return err_nomem(err, "a picture to match", pixels * 13);
 }
 
-enum status gamma_image_make(struct gamma_image *g, const struct image *linear_rgba, double exposure, struct err *err)
+enum status gamma_image_make(struct gamma_image *g, const struct image *linear_rgba, struct tone tone, struct err *err)
 {
     if (allocate(g, linear_rgba->width, linear_rgba->height, err)) return ST_NOMEM;
-    g->exposure = exposure;
-    struct make_job job = {g, linear_rgba, (float)exposure};
+    g->tone = tone;
+    struct make_job job = {g, linear_rgba, (float)tone.exposure, (float)tone.power};
     parallel_for((size_t)g->height, 16, make_rows, &job);
     return ST_OK;
 }
@@ -98,7 +108,7 @@ enum status gamma_image_halve(struct gamma_image *g, struct err *err)
             }
             for (int c = 0; c < 3; c++) half.rgb[c][to] = sum[c] / 4;
         }
-    half.exposure = g->exposure;
+    half.tone = g->tone;
     gamma_image_release(g);
     *g = half;
     return ST_OK;

@@ -153,23 +153,39 @@ static int compare_doubles(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-enum status depth_range(double *least, double *most, const struct camera_set *set, int view_idx,
-                        const struct seen_points *seen, const int *neighbours, int count, struct err *err)
+/* Inverse depths of all points of the scene that lie in the view's frame, seen by it or not: what it sees without having
+ * matched it is mostly no nearer and no farther than what other views matched there. *inverse is malloc'ed. */
+static enum status framed_points(double **inverse, int *count, const struct camera_set *set, const struct view *view,
+                                 struct err *err)
+{
+    const struct sfm_model *m = &set->model;
+    *count = 0;
+    *inverse = malloc(((size_t)m->point_count + 1) * sizeof **inverse);
+    if (!*inverse) return err_nomem(err, "depths of points", (size_t)m->point_count * sizeof **inverse);
+    for (int i = 0; i < m->point_count; i++) {
+        double u, v, z = view_project(view, m->points[i].position, &u, &v);
+        if (z > 0 && u >= 0 && v >= 0 && u <= view->width && v <= view->height) (*inverse)[(*count)++] = 1 / z;
+    }
+    qsort(*inverse, (size_t)*count, sizeof **inverse, compare_doubles);
+    return ST_OK;
+}
+
+enum status depth_range(double *least, double *most, const struct camera_set *set, int view_idx, const int *neighbours,
+                        int count, struct err *err)
 {
     const struct view *view = &set->views[view_idx];
-    if (seen->count >= LEAST_SHARED) {
-        double *inverse = malloc((size_t)seen->count * sizeof *inverse);
-        if (!inverse) return err_nomem(err, "depths of points", (size_t)seen->count * sizeof *inverse);
-        for (int i = 0; i < seen->count; i++) inverse[i] = seen->points[i].inverse_z;
-        qsort(inverse, (size_t)seen->count, sizeof *inverse, compare_doubles);
-        int stray = (seen->count + 80) / 100; /* at either end; one in 20 points may be false */
-        double low = inverse[stray], high = inverse[seen->count - 1 - stray];
-        double margin = 0.15 * (high - low) + 0.03 * high;
+    double *inverse = NULL;
+    int points = 0;
+    if (framed_points(&inverse, &points, set, view, err)) return err->status;
+    if (points >= LEAST_SHARED) {
+        const int stray = (points + 80) / 100; /* at either end; one in 20 points may be false */
+        double low = inverse[stray], high = inverse[points - 1 - stray];
+        const double margin = 0.15 * (high - low) + 0.03 * high;
         *least = fmax(low - margin, 0.3 * low);
         *most = high + 2 * margin; /* near ground has few points: it is blurred, or hidden from most views */
-        free(inverse);
-        return ST_OK;
     }
+    free(inverse);
+    if (points >= LEAST_SHARED) return ST_OK;
     double baseline = 0;
     for (int k = 0; k < count; k++)
         baseline = fmax(baseline, vec3_length(vec3_sub(set->views[neighbours[k]].center, view->center)));

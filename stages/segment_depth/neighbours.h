@@ -31,9 +31,10 @@ void seen_points_release(struct seen_points *seen);
 enum status neighbours_choose(int neighbours[MAX_NEIGHBOURS], int *count, const struct camera_set *set, int view_idx,
                               const struct seen_points *seen, int most, struct err *err);
 
-/* Inverse depths to sweep, least < most, both > 0: robust percentiles of the points with margins, or, without points,
- * what the neighbours' baselines can tell from infinity up to a shift of a quarter of the picture. */
-enum status depth_range(double *least, double *most, const struct camera_set *set, int view_idx,
-                        const struct seen_points *seen, const int *neighbours, int count, struct err *err);
+/* Inverse depths to sweep, least < most, both > 0: robust percentiles, with margins, of all points of the scene that lie in
+ * the view's frame, seen by it or not; or, without points, what the neighbours' baselines can tell from infinity up to a
+ * shift of a quarter of the picture. */
+enum status depth_range(double *least, double *most, const struct camera_set *set, int view_idx, const int *neighbours,
+                        int count, struct err *err);
 
 #endif

@@ -19,11 +19,11 @@
 /* Truncations (in bytes) and weights, found by trial on pairs with known disparities. Gradients are divided by their
  * deviation in the surroundings, which lets weak texture count and exposure not; they are trusted more than colours, as in
  * PatchMatch Stereo (Bleyer 2011). */
-#define SURROUNDINGS 6 /* px: half width of the window that gradients are measured against */
+#define SURROUNDINGS 2 /* px: half width of the window that gradients are measured against */
 #define DEVIATION    20.0f
 #define NOISE        3.0f /* grey levels: gradients of this size are half believed */
 enum { COLOUR_LIMIT = 24, FINE_LIMIT = 14, COARSE_LIMIT = 14 };
-enum { COLOUR_WEIGHT = 14, FINE_WEIGHT = 50, COARSE_WEIGHT = 16, VALID_WEIGHT = 1000 };
+enum { COLOUR_WEIGHT = 14, FINE_WEIGHT = 50, COARSE_WEIGHT = 6, VALID_WEIGHT = 1000 };
 enum {
     WORST = UNIT * (3 * COLOUR_LIMIT * COLOUR_WEIGHT + 2 * FINE_LIMIT * FINE_WEIGHT + 2 * COARSE_LIMIT * COARSE_WEIGHT),
     OUT_OF_SIGHT = WORST + 1,
@@ -31,11 +31,14 @@ enum {
 
 static uint8_t byte_from(float x) { return (uint8_t)(x <= 0 ? 0 : x >= 255 ? 255 : x + 0.5f); }
 
-/* Of a neighbour: the cost where it does not see the segment; the most that a mismatch can cost, for a match of texture with a
- * blank wall must not look better than one with other texture; and its weight against that of the next better one. */
-#define UNSEEN_COST   0.55f
-#define MISMATCH_COST 0.7f
-#define RANK_WEIGHT   0.6
+/* Of a neighbour: the cost where it does not see the segment, or another surface hides the segment from it, as its own
+ * depth says; and its weight against that of the next better one. At most MATCH_WORST, for a match of texture with a
+ * blank wall must not look better than one with other texture. */
+#define UNSEEN_COST 0.4f
+#define HIDDEN_COST 0.67f
+#define RANK_WEIGHT 0.6
+
+#define LEAST_CONTRAST 0.05 /* between good and chance matches: pictures that show nothing at all */
 
 struct pack_job {
     const struct gamma_image *g;
@@ -163,7 +166,7 @@ enum status matcher_init(struct matcher *m, const struct segmentation *s, const 
     const double gain[3] = {1, 1, 1};
     double turn[2][2] = {{1, 0}, {0, 1}};
     size_t room = 0;
-    *m = (struct matcher){.segments = s};
+    *m = (struct matcher){.segments = s, .good = 0, .random = 1};
     m->first = malloc(((size_t)s->count + 1) * sizeof *m->first);
     if (!m->first) return err_nomem(err, "a matcher", (size_t)s->count * sizeof *m->first);
     for (int k = 0; k < s->count; k++) {
@@ -195,7 +198,7 @@ enum status matcher_init(struct matcher *m, const struct segmentation *s, const 
     return ST_OK;
 }
 
-static void homography_parts(struct match_neighbour *n, const struct view *view, const struct view *other)
+void match_homography(double base[3][3], double shift_out[3], const struct view *view, const struct view *other)
 {
     /* p' = K' (R K^-1 [u v 1] + T / z) */
     struct mat3 r = mat3_multiply(other->cam_from_world, mat3_transpose(view->cam_from_world));
@@ -208,13 +211,13 @@ static void homography_parts(struct match_neighbour *n, const struct view *view,
         turned[i][2] = r.m[i][2] - r.m[i][0] * view->cx / view->fx - r.m[i][1] * view->cy / view->fy;
     }
     for (int j = 0; j < 3; j++) {
-        n->base[0][j] = other->fx * turned[0][j] + other->cx * turned[2][j];
-        n->base[1][j] = other->fy * turned[1][j] + other->cy * turned[2][j];
-        n->base[2][j] = turned[2][j];
+        base[0][j] = other->fx * turned[0][j] + other->cx * turned[2][j];
+        base[1][j] = other->fy * turned[1][j] + other->cy * turned[2][j];
+        base[2][j] = turned[2][j];
     }
-    n->shift[0] = other->fx * shift[0] + other->cx * shift[2];
-    n->shift[1] = other->fy * shift[1] + other->cy * shift[2];
-    n->shift[2] = shift[2];
+    shift_out[0] = other->fx * shift[0] + other->cx * shift[2];
+    shift_out[1] = other->fy * shift[1] + other->cy * shift[2];
+    shift_out[2] = shift[2];
 }
 
 static bool carry(const struct match_neighbour *n, double u, double v, double inverse_z, double *nu, double *nv)
@@ -240,7 +243,7 @@ static enum status estimate_gain(double gain[3], const struct camera_set *set, c
                                  const struct gamma_image *picture, struct err *err)
 {
     double *ratios = malloc(((size_t)seen->count + 1) * 3 * sizeof *ratios);
-    double same_light = sqrt(reference->exposure / picture->exposure);
+    double same_light = pow(reference->tone.exposure / picture->tone.exposure, reference->tone.power);
     int count = 0;
     if (!ratios) return err_nomem(err, "colour ratios", (size_t)seen->count * 24);
     for (int i = 0; i < seen->count; i++) {
@@ -297,7 +300,7 @@ enum status matcher_add(struct matcher *m, const struct camera_set *set, int vie
     double u = view->width / 2.0, v = view->height / 2.0;
     if (estimate_gain(gain, set, &other, neighbour_idx, seen, reference, picture, err)) return err->status;
     for (;;) {
-        homography_parts(n, view, &other);
+        match_homography(n->base, n->shift, view, &other);
         if (!carry(n, u, v, typical, &u0, &v0) || !carry(n, u + 1, v, typical, &ux, &vx) ||
             !carry(n, u, v + 1, typical, &uy, &vy))
             break;
@@ -331,6 +334,8 @@ void matcher_release(struct matcher *m)
 {
     if (!m) return;
     for (int i = 0; i < m->neighbour_count; i++) free(m->neighbours[i].texture);
+    free(m->unseen);
+    free(m->hidden);
     free(m->first);
     free(m->x);
     free(m->y);
@@ -427,36 +432,119 @@ static float neighbour_cost(const struct matcher *m, const struct match_neighbou
 }
 
 /* A neighbour that sees less than half of the pixels does not see the segment. */
-static float ranked_cost(const struct matcher *m, int begin, int end, int pixels, struct plane plane)
+static float ranked_cost(const struct matcher *m, int segment, int pixels, struct plane plane, unsigned hidden)
 {
     float costs[MAX_NEIGHBOURS];
+    const int begin = m->first[segment],
+              end = pixels < m->segments->segments[segment].pixels ? begin + pixels : m->first[segment + 1];
+    const float unseen = m->unseen ? m->unseen[segment] : UNSEEN_COST;
     int count = 0;
     for (int k = 0; k < m->neighbour_count; k++) {
-        int seen, at;
-        float cost = neighbour_cost(m, &m->neighbours[k], begin, end, plane, &seen);
+        int seen = pixels, at;
+        float cost = m->hidden ? m->hidden[segment] : HIDDEN_COST;
+        if (!(hidden >> k & 1))
+            cost = (neighbour_cost(m, &m->neighbours[k], begin, end, plane, &seen) - m->good) / (m->random - m->good);
         if (2 * seen < pixels) continue;
-        if (cost > MISMATCH_COST) cost = MISMATCH_COST;
+        cost = fminf(fmaxf(cost, MATCH_BEST), MATCH_WORST);
         for (at = count++; at > 0 && costs[at - 1] > cost; at--) costs[at] = costs[at - 1];
         costs[at] = cost;
     }
     double sum = 0, total = 0, weight = 1;
     for (int k = 0; k < m->neighbour_count; k++, weight *= RANK_WEIGHT) {
-        sum += weight * (double)(k < count ? costs[k] : UNSEEN_COST);
+        sum += weight * (double)(k < count ? costs[k] : unseen);
         total += weight;
     }
     return (float)(sum / total);
 }
 
-float match_cost(const struct matcher *m, int segment, struct plane plane)
+float match_cost(const struct matcher *m, int segment, struct plane plane, unsigned hidden)
 {
-    return ranked_cost(m, m->first[segment], m->first[segment + 1], m->segments->segments[segment].pixels, plane);
+    return ranked_cost(m, segment, m->segments->segments[segment].pixels, plane, hidden);
 }
 
-float match_cost_half(const struct matcher *m, int segment, struct plane plane)
+/* Of a segment's pixels, rounded up to groups of eight. */
+static int half_of(int pixels)
 {
-    int pixels = m->segments->segments[segment].pixels, half = (pixels / 2 + 7) / 8 * 8;
-    if (half < 8) half = 8;
-    return ranked_cost(m, m->first[segment], m->first[segment] + half, half < pixels ? half : pixels, plane);
+    const int half = (pixels / 2 + 7) / 8 * 8;
+    return half < 8 ? (pixels < 8 ? pixels : 8) : half < pixels ? half : pixels;
+}
+
+float match_cost_half(const struct matcher *m, int segment, struct plane plane, unsigned hidden)
+{
+    return ranked_cost(m, segment, half_of(m->segments->segments[segment].pixels), plane, hidden);
+}
+
+struct calibration {
+    struct matcher *m;
+    double least, most;
+    float *best, *mean; /* raw costs of each segment over depths and neighbours; best 2: never seen */
+};
+
+static void calibrate_segments(void *ctx, size_t begin, size_t end, int thread)
+{
+    enum { DEPTHS = 48 };
+    const struct calibration *job = ctx;
+    const struct matcher *m = job->m;
+    (void)thread;
+    for (size_t i = begin; i < end; i++) {
+        const int pixels = half_of(m->segments->segments[i].pixels);
+        double best_sum = 0, mean_sum = 0;
+        int count = 0;
+        for (int k = 0; k < m->neighbour_count; k++) {
+            double best = 1, sum = 0;
+            int seen_at = 0;
+            for (int d = 0; d < DEPTHS; d++) {
+                const struct plane plane = {0, 0, job->least + (job->most - job->least) * d / (DEPTHS - 1)};
+                int seen;
+                const double cost =
+                    (double)neighbour_cost(m, &m->neighbours[k], m->first[i], m->first[i] + pixels, plane, &seen);
+                if (2 * seen < pixels) continue;
+                best = fmin(best, cost);
+                sum += cost;
+                seen_at++;
+            }
+            if (2 * seen_at < DEPTHS) continue;
+            best_sum += best;
+            mean_sum += sum / seen_at;
+            count++;
+        }
+        job->best[i] = count ? (float)(best_sum / count) : 2;
+        job->mean[i] = count ? (float)(mean_sum / count) : 2;
+    }
+}
+
+enum status matcher_calibrate(struct matcher *m, double least, double most, struct err *err)
+{
+    const int count = m->segments->count;
+    double good = 0, random = 0;
+    int seen = 0;
+    struct calibration job = {m, least, most, malloc(((size_t)count + 1) * sizeof(float)),
+                              malloc(((size_t)count + 1) * sizeof(float))};
+    m->unseen = malloc(((size_t)count + 1) * sizeof *m->unseen);
+    m->hidden = malloc(((size_t)count + 1) * sizeof *m->hidden);
+    enum status st = job.best && job.mean && m->unseen && m->hidden
+                         ? ST_OK
+                         : err_nomem(err, "costs of segments", (size_t)count * 16);
+    if (!st) parallel_for((size_t)count, 32, calibrate_segments, &job);
+    for (int i = 0; !st && i < count; i++)
+        if (job.best[i] <= 1) {
+            good += (double)job.best[i];
+            random += (double)job.mean[i];
+            seen++;
+        }
+    if (!st && seen) {
+        m->good = (float)(good / seen);
+        m->random = (float)fmax(random / seen, good / seen + LEAST_CONTRAST);
+    }
+    for (int i = 0; !st && i < count; i++) {
+        const float best = (job.best[i] - m->good) / (m->random - m->good);
+        const float spread = (job.mean[i] - job.best[i]) / (m->random - m->good);
+        m->unseen[i] = fminf(UNSEEN_COST, best + UNSEEN_COST * spread);
+        m->hidden[i] = fminf(HIDDEN_COST, best + HIDDEN_COST * spread);
+    }
+    free(job.best);
+    free(job.mean);
+    return st;
 }
 
 double matcher_shift(const struct matcher *m, double least, double most)

@@ -4,7 +4,8 @@
  * homography. Per pixel the cost compares colours and gradients of luminance at two scales, each truncated; a
  * neighbour's cost is the mean over the segment's pixels that it sees, at most a fixed one, or another fixed one if it does
  * not see the segment. In order of cost each neighbour counts a little less than the one before: the worse ones may
- * not see the segment for something in front of it. 0 is perfect, 1 hopeless. */
+ * not see the segment for something in front of it. Costs are measured against the pictures' own noise: 0 is what a good match
+ * costs in this view, 1 what a chance one does (matcher_calibrate()). */
 #ifndef REMODEL_PLANE_MATCH_H
 #define REMODEL_PLANE_MATCH_H
 
@@ -45,7 +46,15 @@ struct matcher {
     int16_t *features; /* eight a pixel */
     struct match_neighbour neighbours[MAX_NEIGHBOURS];
     int neighbour_count;
+    float good, random;     /* raw costs of a good match and of a chance one */
+    float *unseen, *hidden; /* of each segment: what a neighbour costs that cannot see it, or that it is hidden from */
 };
+
+#define MATCH_BEST  (-1.0f) /* no match costs less */
+#define MATCH_WORST 1.33f   /* nor more */
+
+/* [u' v' 1] of `other` ~ base [u v 1] + shift / z. */
+void match_homography(double base[3][3], double shift[3], const struct view *view, const struct view *other);
 
 /* m is {0} on entry; release it also after a failure. */
 enum status matcher_init(struct matcher *m, const struct segmentation *segments, const struct gamma_image *reference,
@@ -56,11 +65,16 @@ enum status matcher_init(struct matcher *m, const struct segmentation *segments,
 enum status matcher_add(struct matcher *m, const struct camera_set *set, int view_idx, int neighbour_idx,
                         const struct seen_points *seen, double typical, const struct gamma_image *reference,
                         struct gamma_image *picture, struct err *err);
+/* Measures what good and chance matches cost at inverse depths from least to most. A segment that cannot be seen costs a part
+ * of the way from its best match to its mean one, so that a blank one, which matches everywhere, is not drawn to where it
+ * would be seen. To be called once, after the last neighbour and before the first cost. */
+enum status matcher_calibrate(struct matcher *m, double least, double most, struct err *err);
 void matcher_release(struct matcher *m);
 
-float match_cost(const struct matcher *m, int segment, struct plane plane);
+/* hidden: bit k is set if neighbour k cannot see the segment there, which then costs a fixed amount. */
+float match_cost(const struct matcher *m, int segment, struct plane plane, unsigned hidden);
 /* The same of every second pixel, in half the time. */
-float match_cost_half(const struct matcher *m, int segment, struct plane plane);
+float match_cost_half(const struct matcher *m, int segment, struct plane plane, unsigned hidden);
 
 /* Pixels by which a neighbour's picture of the view shifts when 1/z goes from least to most: the largest over the
  * neighbours, each at the median of a grid of the view's pixels. */

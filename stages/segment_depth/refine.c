@@ -1,8 +1,5 @@
 /* refine.c - PatchMatch-like search for a plane a segment (Bleyer 2011), on the graph of segments.
  *
- * Energy of segment i on plane P:
- *   pixels_i / mean pixels x (match_cost + points) + smoothness sum_j w_ij min(|P - P_j| / step at the border's middle, jump) / jump
- *   + slant if P is not constant
  * Segments are coloured so that none touches another of its colour; a colour's segments look at the same moment at
  * neighbours that do not change meanwhile, so the outcome does not depend on threads. Planes are fitted to what stood at the beginning
  * of a pass. */
@@ -18,47 +15,31 @@
 #include "common/progress.h"
 
 struct refine {
-    const struct matcher *m;
+    const struct plane_problem *p;
     const struct segmentation *s;
-    const struct point_evidence *points;
-    const float *weights;
-    const struct segment_params *params;
-    double least, most, step, change; /* change: of 1/z that this pass tries */
+    double step, change; /* change: of 1/z that this pass tries */
     struct plane *plane, *before;
-    float *data; /* of the current plane, without weights */
+    float *unary; /* of the current plane */
     const int *members;
 };
 
-static float data_cost(const struct refine *r, int i, struct plane p)
-{
-    const struct segment *g = &r->s->segments[i];
-    return match_cost(r->m, i, p) + (float)point_evidence_cost(r->points, i, p, g->cx, g->cy);
-}
-
 static double prior_cost(const struct refine *r, int i, struct plane p)
 {
-    double sum = p.a != 0 || p.b != 0 ? r->params->slant : 0;
-    for (int t = r->s->first_touch[i]; t < r->s->first_touch[i + 1]; t++) {
-        const struct touch *touch = &r->s->touches[t];
-        double u = (double)touch->u, v = (double)touch->v;
-        double d = fabs(plane_at(p, u, v) - plane_at(r->plane[touch->other], u, v)) / r->step;
-        sum += r->params->smoothness * (double)r->weights[t] * fmin(d / r->params->jump, 1);
-    }
+    double sum = 0;
+    for (int t = r->s->first_touch[i]; t < r->s->first_touch[i + 1]; t++)
+        sum += problem_pair(r->p, i, t, p, r->plane[r->s->touches[t].other]);
     return sum;
 }
 
 static void try_plane(struct refine *r, int i, struct plane p, double *best)
 {
-    if (!plane_keeps_to(p, &r->s->segments[i], r->least, r->most)) return;
-    double weight = (double)r->s->segments[i].pixels / r->params->segment_pixels;
-    double prior = prior_cost(r, i, p);
+    const double prior = prior_cost(r, i, p);
     if (prior >= *best) return;
-    float data = data_cost(r, i, p);
-    double energy = weight * (double)data + prior;
-    if (energy < *best) {
-        *best = energy;
+    const float unary = problem_unary(r->p, i, p);
+    if (prior + (double)unary < *best) {
+        *best = prior + (double)unary;
         r->plane[i] = p;
-        r->data[i] = data;
+        r->unary[i] = unary;
     }
 }
 
@@ -108,8 +89,7 @@ static void refine_segment(struct refine *r, int i)
 {
     const struct segmentation *s = r->s;
     const struct segment *g = &s->segments[i];
-    double weight = (double)g->pixels / r->params->segment_pixels;
-    double best = weight * (double)r->data[i] + prior_cost(r, i, r->plane[i]);
+    double best = (double)r->unary[i] + prior_cost(r, i, r->plane[i]);
     struct plane fit;
     bool fitted = fit_plane(r, i, &fit);
     if (fitted) {
@@ -148,7 +128,7 @@ static void first_costs(void *ctx, size_t begin, size_t end, int thread)
 {
     struct refine *r = ctx;
     (void)thread;
-    for (size_t i = begin; i < end; i++) r->data[i] = data_cost(r, (int)i, r->plane[i]);
+    for (size_t i = begin; i < end; i++) r->unary[i] = problem_unary(r->p, (int)i, r->plane[i]);
 }
 
 /* Greedy colours; members sorted by colour; first[c] where colour c begins. At most 64 colours. */
@@ -171,24 +151,21 @@ static int colour_segments(const struct segmentation *s, int *colour, int *membe
     return colours;
 }
 
-enum status refine_planes(struct plane *plane, const struct matcher *m, const struct point_evidence *points,
-                          const float *weights, const struct segment_params *params, struct err *err)
+enum status refine_planes(struct plane *plane, const struct plane_problem *p, struct err *err)
 {
-    const struct segmentation *s = m->segments;
-    struct refine r = {.m = m, .s = s, .points = points, .weights = weights, .params = params, .plane = plane};
+    const struct segmentation *s = p->m->segments;
+    const struct segment_params *params = p->params;
+    struct refine r = {.p = p, .s = s, .step = p->step, .plane = plane};
     int *colour = malloc(((size_t)s->count + 1) * sizeof *colour), first[MOST_COLOURS + 1];
     int *members = malloc(((size_t)s->count + 1) * sizeof *members);
     struct progress progress;
     enum status st = ST_OK;
     r.before = malloc(((size_t)s->count + 1) * sizeof *r.before);
-    r.data = malloc(((size_t)s->count + 1) * sizeof *r.data);
-    if (!colour || !members || !r.before || !r.data) {
+    r.unary = malloc(((size_t)s->count + 1) * sizeof *r.unary);
+    if (!colour || !members || !r.before || !r.unary) {
         st = err_nomem(err, "the refinement of planes", (size_t)s->count * 40);
         goto done;
     }
-    r.least = PLANE_LEAST * points->least;
-    r.most = PLANE_MOST * points->most;
-    r.step = points->step;
     r.members = members;
     int colours = colour_segments(s, colour, members, first);
     progress_start(&progress, "refinement", (int64_t)params->passes * s->count, "segments");
@@ -207,6 +184,6 @@ done:
     free(colour);
     free(members);
     free(r.before);
-    free(r.data);
+    free(r.unary);
     return st;
 }

@@ -16,7 +16,7 @@
 #include "stages/segment_depth/view_depth.h"
 
 struct views_folder {
-    const char *folder;
+    const char *folder, *before;
     const struct camera_set *set;
     struct provenance *prov;
 };
@@ -43,6 +43,19 @@ static enum status read_view(void *ctx, int view_idx, struct image *im, struct e
     return st;
 }
 
+static enum status read_depth(void *ctx, int view_idx, struct layered_depth *d, struct err *err)
+{
+    const struct views_folder *f = ctx;
+    const char *name = f->set->views[view_idx].name;
+    char *path = view_path(f->before, name), *input = view_path("depth", name);
+    enum status st = path && input ? ST_OK : err_nomem(err, "a file name", strlen(f->before) + strlen(name));
+    if (!st) st = layered_depth_read_ids(d, path, err);
+    if (!st) st = provenance_add_file(f->prov, input, path, err);
+    free(path);
+    free(input);
+    return st;
+}
+
 static void print_escaped(FILE *to, const char *path)
 {
     for (; *path; path++) {
@@ -52,28 +65,34 @@ static void print_escaped(FILE *to, const char *path)
     }
 }
 
-/* "OUT: VIEWS/A.exr VIEWS/B.exr", and an empty rule for each, so that a view that is gone does not stop make. */
-static enum status write_deps(const char *deps, const char *out, const char *folder, const struct camera_set *set,
-                              const int *read, int count, struct err *err)
+/* "OUT: VIEWS/A.exr VIEWS/B.exr ... BEFORE/B.exr ...", and an empty rule for each, so that a view that is gone does not
+ * stop make. */
+static enum status write_deps(const char *deps, const char *out, const char *const folders[2],
+                              const struct camera_set *set, const int *read, int count, struct err *err)
 {
     struct outfile file = {0};
     enum status st = outfile_open(&file, deps, err);
     if (!st) {
         print_escaped(file.fp, out);
-        for (int rule = 0; rule < 2; rule++)
-            for (int i = 0; i < count; i++) {
-                fputs(rule ? "" : i ? " " : ": ", file.fp);
-                print_escaped(file.fp, folder);
-                fprintf(file.fp, "/%s.exr%s", set->views[read[i]].name, rule ? ":\n" : i + 1 < count ? "" : "\n");
-            }
+        fputc(':', file.fp);
+        for (int rule = 0; rule < 2; rule++) {
+            for (int f = 0; f < 2 && folders[f]; f++)
+                for (int i = 0; i < count; i++) {
+                    fputs(rule ? "" : " ", file.fp);
+                    print_escaped(file.fp, folders[f]);
+                    fprintf(file.fp, "/%s.exr%s", set->views[read[i]].name, rule ? ":\n" : "");
+                }
+            if (!rule) fputc('\n', file.fp);
+        }
         st = outfile_commit(&file, err);
     }
     outfile_discard(&file);
     return st;
 }
 
-static enum status segment_depth(const char *folder, const char *name, const char *out, const char *deps,
-                                 const struct segment_params *params, struct provenance *prov, struct err *err)
+static enum status segment_depth(const char *folder, const char *before, const char *name, const char *out,
+                                 const char *deps, const struct segment_params *params, struct provenance *prov,
+                                 struct err *err)
 {
     struct camera_set set = {0};
     struct layered_depth depth = {0};
@@ -83,11 +102,11 @@ static enum status segment_depth(const char *folder, const char *name, const cha
         st = err_set(err, ST_USAGE, "there is no view %s in %s/images.txt; its views are listed in %s/views.mk.", name,
                      folder, folder);
     if (!st) {
-        struct views_folder views = {folder, &set, prov};
-        const struct view_source source = {read_view, &views};
+        struct views_folder views = {folder, before, &set, prov};
+        const struct view_source source = {read_view, before ? read_depth : NULL, &views};
         st = view_depth(&depth, read + 1, &count, &set, read[0], &source, params, err);
     }
-    if (!st && deps) st = write_deps(deps, out, folder, &set, read, 1 + count, err);
+    if (!st && deps) st = write_deps(deps, out, (const char *const[2]){folder, before}, &set, read, 1 + count, err);
     if (!st) st = layered_depth_write(&depth, &set.views[read[0]], out, prov, err);
     layered_depth_release(&depth);
     camera_set_release(&set);
@@ -96,12 +115,14 @@ static enum status segment_depth(const char *folder, const char *name, const cha
 
 int main(int argc, char **argv)
 {
-    const char *views = NULL, *view = NULL, *out = NULL, *deps = NULL;
+    const char *views = NULL, *before = NULL, *view = NULL, *out = NULL, *deps = NULL;
     struct segment_params params = SEGMENT_PARAMS_DEFAULT;
     const struct cli_opt opts[] = {
         CLI_ABOUT("Layered depth of one view by multi-view segment matching."),
         CLI_STR("views", &views, CLI_REQUIRED, "folder of cameras and rectified views"),
         CLI_STR("view", &view, CLI_REQUIRED, "view to work on"),
+        CLI_STR("before", &before, CLI_OPTIONAL,
+                "folder of all views' depth in the round before; without it this is the first"),
         CLI_STR("out", &out, CLI_REQUIRED, "EXR to write"),
         CLI_STR("deps", &deps, CLI_OPTIONAL, "make dependencies to write: the pictures really read"),
         CLI_PARAMS(segment_param_table, &params, NULL),
@@ -110,7 +131,7 @@ int main(int argc, char **argv)
     struct provenance prov = {0};
     struct err err = ERR_INIT;
     if (cli_parse(argc, argv, "segment_depth", opts, &prov, &err) != CLI_RUN ||
-        segment_depth(views, view, out, deps, &params, &prov, &err))
+        segment_depth(views, before, view, out, deps, &params, &prov, &err))
         err_report(&err);
     provenance_release(&prov);
     return err_exit_code(&err);

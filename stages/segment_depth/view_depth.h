@@ -7,9 +7,11 @@
 #include "stages/segment_depth/neighbours.h"
 #include "stages/segment_depth/segment_params.h"
 
-/* Reads a view's picture; the callback fills im (empty on entry), which the algorithm releases. */
+/* Reads a view's picture, and what depth it had in the round before: segments and the interior's ids (NULL: this is the first round). The
+ * callbacks fill what is empty on entry; the algorithm releases it. */
 struct view_source {
     enum status (*read)(void *ctx, int view_idx, struct image *im, struct err *err);
+    enum status (*read_depth)(void *ctx, int view_idx, struct layered_depth *d, struct err *err);
     void *ctx;
 };
 

@@ -1,6 +1,6 @@
 /* verify.c - says whether products are whole.
  *
- * reads  FILE...   EXR and JPEG files (decoded to the last pixel) and text products (not empty, ending in a line break)
+ * reads  FILE...   EXR, JPEG and PLY files (decoded to the last pixel or point) and text products (not empty, ending in a line break)
  * writes nothing; exit 1 with a sentence for the first file that is missing or not whole. */
 #include <stdio.h>
 #include <string.h>
@@ -8,6 +8,7 @@
 #include "common/cli.h"
 #include "common/exr.h"
 #include "common/photo.h"
+#include "common/point_cloud.h"
 
 static enum status verify_text(const char *path, struct err *err)
 {
@@ -28,10 +29,19 @@ static enum status verify_photo(const char *path, struct err *err)
     return st;
 }
 
+static enum status verify_points(const char *path, struct err *err)
+{
+    struct point_cloud cloud = {0};
+    enum status st = point_cloud_read(&cloud, path, err);
+    point_cloud_release(&cloud);
+    return st;
+}
+
 static enum status verify_file(const char *path, struct err *err)
 {
     size_t n = strlen(path);
     if (n >= 4 && !strcmp(path + n - 4, ".jpg")) return verify_photo(path, err);
+    if (n >= 4 && !strcmp(path + n - 4, ".ply")) return verify_points(path, err);
     if (n < 4 || strcmp(path + n - 4, ".exr")) return verify_text(path, err);
     struct exr_image im = {0};
     enum status st = exr_read(&im, path, NULL, 0, err);

@@ -38,6 +38,7 @@ parameters_out_of_range_are_refused()
 {
     expect 2 "planes" "$B/bin/segment_depth" --set planes=-1
     expect 2 "planes" "$B/bin/segment_depth" --set planes=1e9
+    expect 2 "tolerance" "$B/bin/fuse_points" --set tolerance=0
     expect 2 "max_holes" "$B/bin/plan_path" --set max_holes=nan
     expect 2 "brackets" "$B/bin/import_photos" --set brackets=maybe
     expect 2 "saturated" "$B/bin/hdr_merge" --set saturated=2
@@ -51,6 +52,7 @@ options_that_exclude_each_other_are_refused()
     expect 2 "either --path" "$B/bin/render_views" --views "$d" --depth "$d" --out "$d"
     expect 2 "either --path" "$B/bin/render_views" --views "$d" --depth "$d" --out "$d" --path "$d" --frames 1 --cameras "$d"
     expect 2 "either --path" "$B/bin/render_views" --views "$d" --depth "$d" --out "$d" --path "$d" --frames 1 --camera x
+    expect 2 "--memory -1" "$B/bin/fuse_points" --views "$d" --depth "$d" --out "$d" --memory -1
     expect 2 "--holdout -3" "$B/bin/sfm_import" --sfm "$d" --records "$d" --out "$d" --holdout -3
 }
 
@@ -62,6 +64,7 @@ missing_inputs_fail_with_their_name()
     expect 1 "$d" "$B/bin/sfm_import" --sfm "$d" --records "$d" --out "$scratch/o"
     expect 1 "$d" "$B/bin/rectify" --view v --photos "$d" --records "$d" --views "$d" --out "$scratch/o/v.exr"
     expect 1 "$d" "$B/bin/segment_depth" --view v --views "$d" --out "$scratch/o/v.exr"
+    expect 1 "$d" "$B/bin/fuse_points" --views "$d" --depth "$d" --out "$scratch/o/p.ply"
     expect 1 "$d" "$B/bin/plan_path" --views "$d" --depth "$d" --effect establishing_dolly --out "$scratch/o"
     expect 1 "$d" "$B/bin/render_views" --views "$d" --depth "$d" --path "$d" --frames 1:2 --out "$scratch/o"
     expect 1 "$d" "$B/bin/render_views" --views "$d" --depth "$d" --cameras "$d" --out "$scratch/o"

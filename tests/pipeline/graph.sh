@@ -68,6 +68,31 @@ a_deleted_product_is_made_again_with_what_follows()
     done
 }
 
+points_are_made_when_they_are_asked_for()
+{
+    [ ! -e out/t/points ] || fail "points were made though nobody asked"
+    run_scene points >log || { cat log; fail "make points"; }
+    head -n 3 out/t/points/points.ply | grep -aqx 'comment remodel-points 1' || fail "these are no points"
+    ! grep -aqF "$PWD" out/t/points/points.ply || fail "the points name a folder of this machine"
+    n=$(grep -am 1 '^element vertex' out/t/points/points.ply | cut -d' ' -f3)
+    [ "$n" -gt 5000 ] || fail "only $n points"
+    sha256sum out/t/points/points.ply >before
+    stat -c %y out/t/points/points.ply >a
+    run_scene points >log
+    stat -c %y out/t/points/points.ply | diff a - || fail "a second make points made them again"
+    rm out/t/depth/photo_3.exr
+    run_scene points CORES=1 >log || { cat log; fail "make points after a depth map was deleted"; }
+    sha256sum out/t/points/points.ply | diff before - || fail "other points came out"
+    ! stat -c %y out/t/points/points.ply | diff -q a - >/dev/null || fail "a new depth map did not make the points again"
+    printf '[fuse_points]\ngrid = 0.02\n' >>scenes/t/scene.cfg
+    snapshot out/t >a
+    run_scene points >log
+    snapshot out/t >b
+    diff a b || fail "a parameter of fuse_points made something else again"
+    [ "$(grep -am 1 '^element vertex' out/t/points/points.ply | cut -d' ' -f3)" -lt $((n / 2)) ] || fail "the points do not follow the grid"
+    run_scene >log # what follows depth, for the tests that come
+}
+
 a_changed_photo_redoes_its_view_and_its_readers()
 {
     snapshot out/t >a
@@ -79,7 +104,7 @@ a_changed_photo_redoes_its_view_and_its_readers()
     ! grep -qE '^(sfm/|views/(cameras|images|points3D)|views/photo_[12346]\.)' c || { cat c; fail "too much was made again"; }
     for d in out/t/depth/photo_?.d; do
         v=$(basename "$d" .d)
-        if grep -q 'photo_5.exr' "$d"; then grep -q "^depth/$v.exr" c || fail "$v reads the changed view, but was not made again"
+        if reads "$d" photo_5; then grep -q "^depth/$v.exr" c || fail "$v reads the changed view, but was not made again"
         else ! grep -q "^depth/$v.exr" c || fail "$v does not read the changed view, but was made again"; fi
     done
     photos set >/dev/null
@@ -163,6 +188,7 @@ run second_make_does_nothing
 run comment_in_a_config_rebuilds_nothing
 run a_parameter_redoes_its_stage_and_what_follows
 run a_deleted_product_is_made_again_with_what_follows
+run points_are_made_when_they_are_asked_for
 run a_changed_photo_redoes_its_view_and_its_readers
 run a_photo_that_goes_redoes_sfm
 run draft_stands_beside_and_shares_sfm

@@ -399,6 +399,97 @@ static void a_picture_cut_anywhere_is_refused(void **state)
     layered_depth_release(&d);
 }
 
+/* ------------------------------------------------------------------------------------------------------- ids alone */
+
+static void ids_alone_are_read(void **state)
+{
+    static const int sizes[][2] = {{WIDTH, HEIGHT}, {1, 1}, {300, 1}};
+    (void)state;
+    for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
+        struct layered_depth d = sample(sizes[i][0], sizes[i][1]), back = {0};
+        struct err err = ERR_INIT;
+        const char *path = scratch_path("ids.exr");
+        assert_ok(layered_depth_write(&d, &view, path, NULL, &err), err);
+        assert_ok(layered_depth_read_ids(&back, path, &err), err);
+        assert_true(back.width == d.width && back.height == d.height);
+        assert_memory_equal(back.interior.id, d.interior.id,
+                            (size_t)d.width * (size_t)d.height * sizeof *d.interior.id);
+        assert_true(!back.interior.rgba && !back.interior.z && !back.boundary.rgba && !back.boundary.z &&
+                    !back.boundary.id);
+        assert_same_segments(&d, &back);
+        layered_depth_release(&back);
+        assert_true(is_empty(&back));
+        layered_depth_release(&d);
+    }
+}
+
+static void assert_ids_refused(const char *path, enum status status, const char *words)
+{
+    struct layered_depth d = {0};
+    struct err err = ERR_INIT;
+    assert_int_equal(layered_depth_read_ids(&d, path, &err), status);
+    assert_err(err, status, words);
+    assert_true(is_empty(&d));
+}
+
+static void broken_ids_are_refused(void **state)
+{
+    struct layered_depth d = sample(WIDTH, HEIGHT);
+    struct err err = ERR_INIT;
+    size_t size;
+    (void)state;
+    assert_ids_refused(scratch_path("no-ids.exr"), ST_IO, "no-ids.txt");
+    assert_ids_refused(scratch_path("no-ids.txt"), ST_USAGE,
+                       "no-ids.txt: a depth map is a file whose name ends in .exr");
+
+    assert_ok(layered_depth_write(&d, &view, scratch_path("ids.exr"), NULL, &err), err);
+    assert_int_equal(unlink(scratch_path("ids.exr")), 0);
+    assert_ids_refused(scratch_path("ids.exr"), ST_IO, "ids.exr");
+
+    /* a list of another size, or of fewer segments than the picture's */
+    assert_ok(layered_depth_write(&d, &view, scratch_path("ids.exr"), NULL, &err), err);
+    scratch_write("ids.txt", "remodel-segments 1\nsize 37 21\nsegments 0\n");
+    assert_ids_refused(scratch_path("ids.exr"), ST_DATA, "ids.exr does not hold the 37 x 21 ids that ");
+    scratch_write("ids.txt", "remodel-segments 1\nsize 21 37\nsegments 1\n1 2 0.5 0 0.25 0.01 1\n");
+    assert_ids_refused(scratch_path("ids.exr"), ST_DATA, "ids.exr: pixel (2, 0) has segment 2, wanted one up to 1;");
+    scratch_write("ids.txt", "remodel-segments 1\nsize 21 37\nsegments oops\n");
+    assert_ids_refused(scratch_path("ids.exr"), ST_DATA, "ids.txt:3: found \"oops\"");
+
+    d.interior.id[30 * WIDTH + 11] = UINT32_MAX;
+    assert_ok(layered_depth_write(&d, &view, scratch_path("ids.exr"), NULL, &err), err);
+    assert_ids_refused(scratch_path("ids.exr"), ST_DATA, "pixel (11, 30) has segment 4294967295, wanted one up to 5;");
+    d.interior.id[30 * WIDTH + 11] = 1;
+    d.boundary.id[0] = 77; /* nobody asked for these */
+    assert_ok(layered_depth_write(&d, &view, scratch_path("ids.exr"), NULL, &err), err);
+    struct layered_depth back = {0};
+    assert_ok(layered_depth_read_ids(&back, scratch_path("ids.exr"), &err), err);
+    layered_depth_release(&back);
+
+    char *bytes = file_bytes(scratch_path("ids.exr"), &size);
+    for (size_t cut = 0; cut < size; cut += cut < 40 ? 7 : size / 7) {
+        scratch_write_bytes("ids.exr", bytes, cut);
+        assert_ids_refused(scratch_path("ids.exr"), ST_DATA, "ids.exr");
+    }
+    free(bytes);
+    layered_depth_release(&d);
+}
+
+static void ids_that_are_missing_or_no_integers(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 2; k++) {
+        struct exr_image im = {0};
+        struct err err = ERR_INIT;
+        assert_ok(exr_image_init(&im, 2, 1, &err), err);
+        assert_ok(exr_add_plane(&im, k ? "interior.Z" : "interior.id", EXR_HALF, NULL, &err), err);
+        assert_ok(exr_write(&im, scratch_path("half-ids.exr"), NULL, &err), err);
+        scratch_write("half-ids.txt", HEAD "segments 0\n");
+        assert_ids_refused(scratch_path("half-ids.exr"), ST_DATA,
+                           k ? "no channel interior.id" : "does not hold the 2 x 1 ids");
+        exr_image_release(&im);
+    }
+}
+
 /* ------------------------------------------------------------------------------------------------------ failed writes */
 
 static void a_refused_depth_leaves_no_picture_and_keeps_the_old_one(void **state)
@@ -491,6 +582,9 @@ int main(void)
         cmocka_unit_test(samples_out_of_range_are_named_with_their_pixel),
         cmocka_unit_test(channels_that_are_missing_or_of_another_type),
         cmocka_unit_test(a_picture_cut_anywhere_is_refused),
+        cmocka_unit_test(ids_alone_are_read),
+        cmocka_unit_test(broken_ids_are_refused),
+        cmocka_unit_test(ids_that_are_missing_or_no_integers),
         cmocka_unit_test(a_refused_depth_leaves_no_picture_and_keeps_the_old_one),
         cmocka_unit_test(segments_that_could_not_be_read_are_not_written),
         cmocka_unit_test(a_full_disk_leaves_nothing_half_written),

@@ -3,7 +3,9 @@
 
 #include "tests/unit/segment_depth/scene.h"
 
-static void make(struct gamma_image *g, int width, int height, double exposure, float (*value)(int x, int y, int c))
+static const struct tone plain = {1, 0.5};
+
+static void make(struct gamma_image *g, int width, int height, struct tone tone, float (*value)(int x, int y, int c))
 {
     struct image im;
     struct err err = ERR_INIT;
@@ -11,7 +13,7 @@ static void make(struct gamma_image *g, int width, int height, double exposure, 
     for (int y = 0; y < height; y++)
         for (int x = 0; x < width; x++)
             for (int c = 0; c < 4; c++) image_at(&im, x, y)[c] = value(x, y, c);
-    assert_int_equal(gamma_image_make(g, &im, exposure, &err), ST_OK);
+    assert_int_equal(gamma_image_make(g, &im, tone, &err), ST_OK);
     image_release(&im);
 }
 
@@ -22,7 +24,6 @@ static float ramp(int x, int y, int c)
     return c < 3 ? f * f : 1;
 }
 static float holed(int x, int y, int c) { return c == 3 ? x != 2 || y != 1 : ramp(x, y, c); }
-static float mostly_dark(int x, int y, int c) { return c == 3 ? 1 : y == 0 ? 4 : x < 8 ? 0.002f : 0.001f; }
 static float black(int x, int y, int c) { return c == 3 && x + y >= 0; }
 static float wild(int x, int y, int c) { return c == 3 ? 1 : x == 0 ? NAN : x == 1 ? -3 : y ? 1e30f : INFINITY; }
 
@@ -31,7 +32,7 @@ static void a_sample_of_a_plane_is_exact(void **state)
     (void)state;
     struct gamma_image g;
     float rgb[3];
-    make(&g, 9, 7, 1, ramp);
+    make(&g, 9, 7, plain, ramp);
     for (int i = 0; i < 200; i++) {
         const double u = 0.5 + 8 * scene_hash(i, 0, 0), v = 0.5 + 6 * scene_hash(i, 0, 1);
         assert_true(gamma_image_at(&g, u, v, rgb));
@@ -51,7 +52,7 @@ static void a_sample_needs_all_its_pixels(void **state)
     (void)state;
     struct gamma_image g;
     float rgb[3];
-    make(&g, 5, 4, 1, holed);
+    make(&g, 5, 4, plain, holed);
     assert_false(gamma_image_at(&g, 2.5, 1.5, rgb) || gamma_image_at(&g, 3.4, 2.4, rgb) ||
                  gamma_image_at(&g, 1.6, 0.6, rgb));
     assert_true(gamma_image_at(&g, 3.6, 2.6, rgb) && gamma_image_at(&g, 1.4, 1.5, rgb));
@@ -63,7 +64,7 @@ static void halving_averages_and_keeps_one_pixel(void **state)
     (void)state;
     struct gamma_image g;
     struct err err = ERR_INIT;
-    make(&g, 7, 5, 1, holed);
+    make(&g, 7, 5, plain, holed);
     assert_int_equal(gamma_image_halve(&g, &err), ST_OK);
     assert_true(g.width == 3 && g.height == 2);
     for (int i = 0; i < 6; i++) {
@@ -76,30 +77,71 @@ static void halving_averages_and_keeps_one_pixel(void **state)
     gamma_image_release(&g);
 }
 
-static void exposure_follows_the_bright_pixels_but_not_the_brightest(void **state)
+/* One row in a hundred is a lamp; half of the rest is bright, the other half, with the median, is `dark`. */
+static struct tone tone_with(double bright, double dark)
+{
+    struct image im;
+    struct err err = ERR_INIT;
+    assert_int_equal(image_init(&im, 16, 100, 4, &err), ST_OK);
+    for (int i = 0; i < 6400; i++)
+        im.data[i] = i % 4 == 3 ? 1 : i < 64 ? 2000 * (float)bright : i / 4 % 16 < 7 ? (float)bright : (float)dark;
+    const struct tone tone = tone_of(&im);
+    image_release(&im);
+    return tone;
+}
+
+static void the_tone_follows_the_bright_pixels_but_not_the_brightest(void **state)
+{
+    (void)state;
+    static const double brights[] = {0.002, 1, 300};
+    for (int k = 0; k < 3; k++)
+        for (double ratio = 1; ratio > 1e-7; ratio /= 3) {
+            const struct tone t = tone_with(brights[k], brights[k] * ratio);
+            const double middle = pow(t.exposure * brights[k] * ratio, t.power);
+            assert_near(pow(t.exposure * brights[k], t.power), 0.95, 1e-4);
+            assert_true(t.power <= 0.5 && t.power >= 0.2);
+            if (t.power > 0.2) assert_true(middle > 0.33); /* bent no less than it takes, */
+            if (t.power < 0.5) assert_true(middle < 0.34); /* and no more */
+        }
+}
+
+static void a_photo_of_nothing_has_exposure_1(void **state)
 {
     (void)state;
     struct image im;
     struct err err = ERR_INIT;
-    assert_int_equal(image_init(&im, 16, 100, 4, &err), ST_OK); /* one row in a hundred is a lamp */
-    for (int i = 0; i < 6400; i++) im.data[i] = mostly_dark(i / 4 % 16, i / 64, i % 4);
-    assert_near(exposure_of(&im) * 0.002 / (0.95 * 0.95), 1, 1e-5);
-    memset(im.data, 0, 6400 * sizeof *im.data); /* no pixel at all */
-    assert_near(exposure_of(&im), 1, 0);
-    for (int i = 3; i < 6400; i += 4) im.data[i] = 1; /* black */
-    assert_near(exposure_of(&im), 1, 0);
+    assert_int_equal(image_init(&im, 16, 100, 4, &err), ST_OK); /* no pixel at all */
+    for (int k = 0; k < 2; k++) {
+        assert_near(tone_of(&im).exposure, 1, 0);
+        assert_near(tone_of(&im).power, 0.5, 0);
+        for (int i = 3; i < 6400; i += 4) im.data[i] = 1; /* black */
+    }
     image_release(&im);
+    const struct tone lamp = tone_with(1, 0); /* half of it black */
+    assert_near(pow(lamp.exposure, lamp.power), 0.95, 1e-6);
+}
+
+static void a_change_of_exposure_is_a_factor_at_any_power(void **state)
+{
+    (void)state;
+    struct gamma_image g[2];
+    for (double power = 0.5; power > 0.15; power -= 0.15) {
+        for (int k = 0; k < 2; k++) make(&g[k], 9, 7, (struct tone){k ? 0.5 : 1, power}, ramp);
+        for (int i = 0; i < 63; i++) assert_near(g[1].rgb[1][i] / g[0].rgb[1][i], pow(0.5, power), 1e-5);
+        assert_near(g[0].rgb[0][0], pow(0.125 * 0.125, power), 1e-6);
+        for (int k = 0; k < 2; k++) gamma_image_release(&g[k]);
+    }
 }
 
 static void values_are_between_0_and_1(void **state)
 {
     (void)state;
     struct gamma_image g;
-    make(&g, 4, 3, 2, wild);
+    make(&g, 4, 3, (struct tone){2, 0.5}, wild);
     for (int c = 0; c < 3; c++)
         for (int i = 0; i < 12; i++) assert_true(g.rgb[c][i] >= 0 && g.rgb[c][i] <= 1);
     gamma_image_release(&g);
-    make(&g, 4, 3, 2, black);
+    make(&g, 4, 3, (struct tone){2, 0.5}, black);
     for (int i = 0; i < 12; i++) assert_near(g.rgb[1][i], 0, 0);
     gamma_image_release(&g);
 }
@@ -110,7 +152,9 @@ int main(void)
         cmocka_unit_test(a_sample_of_a_plane_is_exact),
         cmocka_unit_test(a_sample_needs_all_its_pixels),
         cmocka_unit_test(halving_averages_and_keeps_one_pixel),
-        cmocka_unit_test(exposure_follows_the_bright_pixels_but_not_the_brightest),
+        cmocka_unit_test(the_tone_follows_the_bright_pixels_but_not_the_brightest),
+        cmocka_unit_test(a_photo_of_nothing_has_exposure_1),
+        cmocka_unit_test(a_change_of_exposure_is_a_factor_at_any_power),
         cmocka_unit_test(values_are_between_0_and_1),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -185,7 +185,7 @@ static void range_of(double *least, double *most)
     struct err err = ERR_INIT;
     const int neighbour = 1;
     assert_int_equal(seen_points_find(&seen, &scene.set, 0, &err), ST_OK);
-    assert_int_equal(depth_range(least, most, &scene.set, 0, &seen, &neighbour, 1, &err), ST_OK);
+    assert_int_equal(depth_range(least, most, &scene.set, 0, &neighbour, 1, &err), ST_OK);
     seen_points_release(&seen);
     assert_true(*least > 0 && *least < *most && isfinite(*most));
 }

@@ -59,7 +59,7 @@ static void cut(struct segmentation *s, struct gamma_image *g, int width, int he
     assert_int_equal(image_init(&im, width, height, 4, &err), ST_OK);
     for (int y = 0; y < height; y++)
         for (int x = 0; x < width; x++) paint(x, y, image_at(&im, x, y));
-    assert_int_equal(gamma_image_make(g, &im, 1, &err), ST_OK);
+    assert_int_equal(gamma_image_make(g, &im, (struct tone){1, 0.5}, &err), ST_OK);
     image_release(&im);
     *s = (struct segmentation){0};
     if (oversegment(s, g, segment_pixels, compactness, &err)) fail_msg("%s", err.text);

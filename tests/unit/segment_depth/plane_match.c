@@ -3,6 +3,8 @@
 
 #include "tests/unit/segment_depth/scene.h"
 
+#include "common/parallel.h"
+
 enum { W = 120, H = 90, FOCAL = 120 };
 
 struct bench {
@@ -37,8 +39,8 @@ static void match_all(void)
     struct err err = ERR_INIT;
     scene_points(&b.scene, 60);
     assert_int_equal(scene_photo(&b.scene, 0, &photo, &err), ST_OK);
-    const double exposure = exposure_of(&photo);
-    assert_int_equal(gamma_image_make(&b.reference, &photo, exposure, &err), ST_OK);
+    const struct tone tone = tone_of(&photo);
+    assert_int_equal(gamma_image_make(&b.reference, &photo, tone, &err), ST_OK);
     image_release(&photo);
     assert_int_equal(oversegment(&b.segments, &b.reference, 64, 8, &err), ST_OK);
     assert_int_equal(seen_points_find(&b.seen, &b.scene.set, 0, &err), ST_OK);
@@ -46,7 +48,8 @@ static void match_all(void)
     for (int k = 1; k < b.scene.set.view_count; k++) {
         struct gamma_image other = {0};
         assert_int_equal(scene_photo(&b.scene, k, &photo, &err), ST_OK);
-        assert_int_equal(gamma_image_make(&other, &photo, fmin(exposure, exposure_of(&photo)), &err), ST_OK);
+        const struct tone own = {fmin(tone.exposure, tone_of(&photo).exposure), tone.power};
+        assert_int_equal(gamma_image_make(&other, &photo, own, &err), ST_OK);
         assert_int_equal(matcher_add(&b.matcher, &b.scene.set, 0, k, &b.seen, 0.25, &b.reference, &other, &err), ST_OK);
         image_release(&photo);
         gamma_image_release(&other);
@@ -100,10 +103,11 @@ static struct verdict judge(void)
     struct verdict v = {0};
     for (int i = 0; i < b.segments.count; i++) {
         if (!well_inside(i)) continue;
-        const double at = (double)match_cost(&b.matcher, i, b.truth);
-        const double one = (double)fminf(match_cost(&b.matcher, i, off_by(1)), match_cost(&b.matcher, i, off_by(-1)));
+        const double at = (double)match_cost(&b.matcher, i, b.truth, 0);
+        const double one =
+            (double)fminf(match_cost(&b.matcher, i, off_by(1), 0), match_cost(&b.matcher, i, off_by(-1), 0));
         bool best = true;
-        for (int k = -6; k <= 6; k++) best = best && (k == 0 || (double)match_cost(&b.matcher, i, off_by(k)) > at);
+        for (int k = -6; k <= 6; k++) best = best && (k == 0 || (double)match_cost(&b.matcher, i, off_by(k), 0) > at);
         assert_true(at >= 0 && at <= 1);
         v.truth += at;
         v.rise += one - at;
@@ -141,7 +145,7 @@ static void slant_shows_in_the_cost(void **state)
         const struct segment *g = &b.segments.segments[i];
         if (!well_inside(i) || g->pixels < 60) continue;
         const struct plane flat = {0, 0, plane_at(b.truth, g->cx, g->cy)};
-        slanted += match_cost(&b.matcher, i, b.truth) < match_cost(&b.matcher, i, flat);
+        slanted += match_cost(&b.matcher, i, b.truth, 0) < match_cost(&b.matcher, i, flat, 0);
         count++;
     }
     assert_true(count > 20 && slanted >= 0.9 * count);
@@ -164,7 +168,8 @@ static void every_second_pixel_says_about_the_same(void **state)
         }
     for (int i = 0; i < b.segments.count; i++)
         for (int k = -4; well_inside(i) && k <= 4; k++, count++)
-            sum += fabs((double)(match_cost(&b.matcher, i, off_by(k)) - match_cost_half(&b.matcher, i, off_by(k))));
+            sum +=
+                fabs((double)(match_cost(&b.matcher, i, off_by(k), 0) - match_cost_half(&b.matcher, i, off_by(k), 0)));
     assert_true(sum / count < 0.03);
     finish();
 }
@@ -199,7 +204,7 @@ static void a_small_change_of_exposure_needs_no_points(void **state)
     struct matcher m = {0};
     assert_int_equal(matcher_init(&m, &b.segments, &b.reference, &err), ST_OK);
     assert_int_equal(scene_photo(&b.scene, 1, &photo, &err), ST_OK);
-    assert_int_equal(gamma_image_make(&other, &photo, 0.5, &err), ST_OK);
+    assert_int_equal(gamma_image_make(&other, &photo, (struct tone){0.5, 0.5}, &err), ST_OK);
     assert_int_equal(matcher_add(&m, &b.scene.set, 0, 1, &none, 0.25, &b.reference, &other, &err), ST_OK);
     matcher_release(&b.matcher);
     b.matcher = m;
@@ -263,15 +268,15 @@ static void who_does_not_see_the_segment_has_no_opinion(void **state)
     scene_view(&b.scene, W, H, FOCAL, 0.5, 0, 0, M_PI);       /* looks back */
     scene_view(&b.scene, W, H, FOCAL, 0.5, 0, 0, M_PI / 2.5); /* and aside */
     match_all();
-    const float unseen = match_cost(&b.matcher, 0, b.truth);
-    assert_true(unseen > 0.4f && unseen < 0.7f);
+    const float unseen = match_cost(&b.matcher, 0, b.truth, 0);
+    assert_true(unseen > 0.1f && unseen < 0.9f); /* dearer than a good match, cheaper than a chance one */
     for (int i = 0; i < b.segments.count; i++)
         for (int k = -1; k <= 1; k++) {
-            assert_near(match_cost(&b.matcher, i, off_by(k)), unseen, 1e-7);
-            assert_near(match_cost_half(&b.matcher, i, off_by(k)), unseen, 1e-7);
+            assert_near(match_cost(&b.matcher, i, off_by(k), 0), unseen, 1e-7);
+            assert_near(match_cost_half(&b.matcher, i, off_by(k), 0), unseen, 1e-7);
         }
     const struct plane behind = {0, 0, -1};
-    assert_near(match_cost(&b.matcher, 5, behind), unseen, 1e-7);
+    assert_near(match_cost(&b.matcher, 5, behind, 0), unseen, 1e-7);
     assert_near(matcher_shift(&b.matcher, 0.1, 0.5), 0, 0);
     finish();
 }
@@ -300,10 +305,94 @@ static void any_plane_has_a_cost_between_0_and_1(void **state)
     for (int i = 0; i < b.segments.count; i += 7)
         for (int k = 0; k < 9 * 9; k++) {
             const struct plane p = {sizes[k % 9] * (k % 2 ? 1 : -1), -0.5 * sizes[k % 9], sizes[k / 9]};
-            const float cost = match_cost(&b.matcher, i, p), half = match_cost_half(&b.matcher, i, p);
+            const float cost = match_cost(&b.matcher, i, p, 0), half = match_cost_half(&b.matcher, i, p, 0);
             assert_true(cost >= 0 && cost <= 1 && half >= 0 && half <= 1);
         }
     assert_true(isfinite(matcher_shift(&b.matcher, 1e-9, 1e9)));
+    finish();
+}
+
+/* After calibration a good match costs about 0 and a chance one about 1, whatever the pictures' noise: two depths far off count as
+ * chance. Calibrated costs are the raw ones, shifted and scaled. */
+static void calibration_puts_good_matches_at_0_and_chance_at_1(void **state)
+{
+    (void)state;
+    static const double contrasts[] = {0.8, 0.2, 0.05};
+    struct err err = ERR_INIT;
+    for (int c = 0; c < 3; c++) {
+        double good = 0, chance = 0, worst_fit = 0;
+        int count = 0;
+        start();
+        b.scene.surfaces[0].contrast = contrasts[c];
+        scene_view(&b.scene, W, H, FOCAL, 0.5, 0, 0, 0);
+        match_all();
+        static float raw[2][1000];
+        assert_true(b.segments.count < 1000);
+        for (int i = 0; i < b.segments.count; i++)
+            for (int k = 0; k < 2; k++) raw[k][i] = match_cost(&b.matcher, i, off_by(5 * k), 0);
+        assert_int_equal(matcher_calibrate(&b.matcher, 0.15, 0.4, &err), ST_OK);
+        assert_true(b.matcher.good >= 0 && b.matcher.random > b.matcher.good && b.matcher.random <= 1);
+        for (int i = 0; i < b.segments.count; i++) {
+            if (!well_inside(i)) continue;
+            const float at = match_cost(&b.matcher, i, b.truth, 0), off = match_cost(&b.matcher, i, off_by(5), 0);
+            const float wanted = (raw[1][i] - b.matcher.good) / (b.matcher.random - b.matcher.good);
+            worst_fit = fmax(worst_fit, fabs((double)(off - fminf(wanted, MATCH_WORST))));
+            good += (double)at;
+            chance += (double)off;
+            count++;
+        }
+        if (getenv("VERDICT")) print_message("  good %.3f chance %.3f\n", good / count, chance / count);
+        assert_near(good / count, 0, 0.1);
+        assert_near(chance / count, 1, 0.25);
+        assert_near(worst_fit, 0, 1e-5);
+        finish();
+    }
+}
+
+/* Nothing to measure, or nothing to tell apart: costs stay finite and bounded above. */
+static void calibration_of_pictures_that_tell_nothing_stays_finite(void **state)
+{
+    struct err err = ERR_INIT;
+    (void)state;
+    for (int which = 0; which < 3; which++) {
+        start();
+        if (which == 0) b.scene.surfaces[0].contrast = 0;
+        scene_view(&b.scene, W, H, FOCAL, 0.5, 0, 0, which == 1 ? M_PI : 0); /* looks back */
+        if (which == 2) b.scene.gain[1] = 0;                                 /* black */
+        match_all();
+        assert_int_equal(matcher_calibrate(&b.matcher, 0.15, 0.4, &err), ST_OK);
+        assert_true(b.matcher.random - b.matcher.good > 0.01f);
+        for (int i = 0; i < b.segments.count; i += 3)
+            for (int k = -6; k <= 6; k += 3) {
+                const float cost = match_cost(&b.matcher, i, off_by(k), 0);
+                assert_true(cost >= MATCH_BEST && cost <= MATCH_WORST);
+            }
+        finish();
+    }
+}
+
+/* Of raw costs (not calibrated), so that black is the same everywhere. Neighbour 1 is black: it costs less when it is said to be hidden; the good one, said to be hidden, costs more than what it shows.
+ * All hidden is one fixed cost, between a good match and a chance one, whatever the plane. */
+static void a_neighbour_that_is_hidden_costs_a_fixed_amount(void **state)
+{
+    (void)state;
+    start();
+    scene_view(&b.scene, W, H, FOCAL, 0.5, 0, 0, 0);
+    scene_view(&b.scene, W, H, FOCAL, -0.5, 0, 0, 0);
+    b.scene.gain[2] = 0;
+    match_all();
+    const float hidden = match_cost(&b.matcher, 0, b.truth, 3);
+    assert_true(hidden > 0.1f && hidden < 1);
+    for (int i = 0; i < b.segments.count; i++) {
+        for (int k = -9; k <= 9; k += 3) assert_near(match_cost(&b.matcher, i, off_by(k), 3), hidden, 1e-6);
+        assert_near(match_cost(&b.matcher, i, (struct plane){1, 2, 3}, 3), hidden,
+                    1e-6); /* whom it could not see either */
+        assert_near(match_cost_half(&b.matcher, i, b.truth, 3), hidden, 1e-6);
+        if (!well_inside(i)) continue;
+        assert_true(match_cost(&b.matcher, i, b.truth, 1) > match_cost(&b.matcher, i, b.truth, 0));
+        assert_near(match_cost(&b.matcher, i, b.truth, 4), match_cost(&b.matcher, i, b.truth, 0),
+                    0); /* there is no such */
+    }
     finish();
 }
 
@@ -331,13 +420,13 @@ static void pictures_of_a_pixel_and_of_none_are_matched(void **state)
         for (int i = 0; i < 2; i++) scene_view(&b.scene, 1 + 2 * k, 1 + 2 * k, 1, 0.5 * i, 0, 0, 0);
         assert_int_equal(scene_photo(&b.scene, 0, &photo, &err), ST_OK);
         for (int i = 0; k && i < 9; i++) photo.data[4 * i + 3] = 0;
-        assert_int_equal(gamma_image_make(&b.reference, &photo, 1, &err), ST_OK);
-        assert_int_equal(gamma_image_make(&other, &photo, 1, &err), ST_OK);
+        assert_int_equal(gamma_image_make(&b.reference, &photo, (struct tone){1, 0.5}, &err), ST_OK);
+        assert_int_equal(gamma_image_make(&other, &photo, (struct tone){1, 0.5}, &err), ST_OK);
         assert_int_equal(oversegment(&b.segments, &b.reference, 64, 8, &err), ST_OK);
         assert_int_equal(matcher_init(&b.matcher, &b.segments, &b.reference, &err), ST_OK);
         assert_int_equal(matcher_add(&b.matcher, &b.scene.set, 0, 1, &b.seen, 0.25, &b.reference, &other, &err), ST_OK);
         assert_int_equal(b.segments.count, k ? 0 : 1);
-        if (!k) assert_near(match_cost(&b.matcher, 0, (struct plane){0, 0, 0.25}), 0, 1e-3);
+        if (!k) assert_near(match_cost(&b.matcher, 0, (struct plane){0, 0, 0.25}, 0), 0, 1e-3);
         image_release(&photo);
         gamma_image_release(&other);
         finish();
@@ -359,8 +448,12 @@ int main(void)
         cmocka_unit_test(who_does_not_see_the_segment_has_no_opinion),
         cmocka_unit_test(a_worse_neighbour_counts_less_but_counts),
         cmocka_unit_test(any_plane_has_a_cost_between_0_and_1),
+        cmocka_unit_test(calibration_puts_good_matches_at_0_and_chance_at_1),
+        cmocka_unit_test(calibration_of_pictures_that_tell_nothing_stays_finite),
+        cmocka_unit_test(a_neighbour_that_is_hidden_costs_a_fixed_amount),
         cmocka_unit_test(the_shift_of_a_sideways_step_is_focal_times_baseline),
         cmocka_unit_test(pictures_of_a_pixel_and_of_none_are_matched),
     };
+    parallel_set_threads(1); /* tests run side by side */
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

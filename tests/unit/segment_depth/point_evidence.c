@@ -6,6 +6,8 @@
 enum { W = 64, H = 48, SEGMENTS = 48 };
 
 static const double least = 0.1, most = 0.5, step = 0.01;
+/* of the test's own, so that each is felt: */
+static const double weight = 0.3, near_weight = 0.05, far_weight = 0.04;
 
 /* A uniform grey picture, so segments are squares of 8 x 8; the upper half is brighter if `halves`. */
 static void cut(struct segmentation *s, bool halves)
@@ -16,7 +18,7 @@ static void cut(struct segmentation *s, bool halves)
     assert_int_equal(image_init(&im, W, H, 4, &err), ST_OK);
     for (int i = 0; i < W * H; i++)
         for (int c = 0; c < 4; c++) im.data[4 * i + c] = c == 3 ? 1 : halves && i < W * H / 2 ? 0.6f : 0.1f;
-    assert_int_equal(gamma_image_make(&g, &im, 1, &err), ST_OK);
+    assert_int_equal(gamma_image_make(&g, &im, (struct tone){1, 0.5}, &err), ST_OK);
     *s = (struct segmentation){0};
     assert_int_equal(oversegment(s, &g, 64, 8, &err), ST_OK);
     assert_int_equal(s->count, SEGMENTS);
@@ -26,7 +28,7 @@ static void cut(struct segmentation *s, bool halves)
 
 static void make(struct point_evidence *e, const struct segmentation *s, struct seen_point *points, int count)
 {
-    const struct segment_params params = SEGMENT_PARAMS_DEFAULT;
+    const struct segment_params params = {.points = weight, .nearest_points = near_weight, .far_bias = far_weight};
     const struct seen_points seen = {points, count};
     struct err err = ERR_INIT;
     if (point_evidence_make(e, s, &seen, least, most, step, &params, &err)) fail_msg("%s", err.text);
@@ -57,7 +59,7 @@ static void points_inside_hold_a_segment(void **state)
     make(&e, &s, &one, 1);
     assert_near(cheapest(&e, &s, segment), 0.3, 0.002);
     const double held = cost_of(&e, &s, segment, 0.3 + 5 * step) - cost_of(&e, &s, segment, 0.3);
-    assert_near(held, 0.5 * 0.3 + 0.05 + 0.06 * 5 * step / (most - least), 1e-6);
+    assert_near(held, 0.5 * weight + near_weight + far_weight * 5 * step / (most - least), 1e-6);
     point_evidence_release(&e);
     for (int i = 0; i < 9; i++) many[i] = (struct seen_point){i, 17 + 0.7 * i, 10 + 0.5 * i, 0.3};
     many[4].inverse_z = 0.45; /* one is false */
@@ -117,7 +119,7 @@ static void without_points_far_is_a_little_cheaper(void **state)
         make(&e, &s, outside, count);
         for (int i = 0; i < SEGMENTS; i++) {
             assert_near(cost_of(&e, &s, i, least), 0, 1e-12);
-            assert_near(cost_of(&e, &s, i, most) - cost_of(&e, &s, i, least), 0.06, 1e-12);
+            assert_near(cost_of(&e, &s, i, most) - cost_of(&e, &s, i, least), far_weight, 1e-12);
             assert_near(cost_of(&e, &s, i, 9), cost_of(&e, &s, i, most), 1e-12);
         }
         point_evidence_release(&e);

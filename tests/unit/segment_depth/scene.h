@@ -21,7 +21,7 @@
 
 #define assert_near(a, b, tolerance) assert_true(fabs((double)(a) - (double)(b)) <= (tolerance))
 
-enum { MOST_VIEWS = 6, MOST_SURFACES = 4, MOST_POINTS = 400 };
+enum { MOST_VIEWS = 6, MOST_SURFACES = 6, MOST_POINTS = 400 };
 
 struct surface {
     struct vec3 center, across, down; /* rectangle: center + s across + t down, |s| and |t| <= 1; across, down square */
@@ -29,6 +29,8 @@ struct surface {
     float colour[3];                  /* linear */
     double cell, contrast;            /* noise: size of its grains in the world, 0 .. 1; contrast 0: blank */
     double period;                    /* > 0: in place of noise, stripes across x */
+    double gloss;                     /* > 0: the mirrored light adds this much where it is seen from */
+    struct vec3 light;
 };
 
 struct scene {
@@ -80,6 +82,15 @@ static inline void scene_paint(const struct surface *s, struct vec3 p, float rgb
                 0.6 * (scene_noise(3 * p.x / s->cell, 3 * p.y / s->cell + 9 * c, 3 * p.z / s->cell) - 0.5);
         rgb[c] = s->colour[c] * (float)(1 + s->contrast * g);
     }
+}
+
+/* Of a flat glossy surface, seen from `eye`: a soft spot about the place where the light is mirrored; it moves with the eye. */
+static inline double scene_highlight(const struct surface *s, struct vec3 p, struct vec3 eye)
+{
+    const struct vec3 n = vec3_normalize(vec3_cross(s->across, s->down));
+    const struct vec3 in = vec3_sub(p, eye), to_light = vec3_normalize(vec3_sub(s->light, p));
+    const struct vec3 out = vec3_normalize(vec3_sub(in, vec3_scale(n, 2 * vec3_dot(n, in))));
+    return s->gloss * exp(-(1 - vec3_dot(out, to_light)) / 0.004);
 }
 
 /* Depth along the view's axis and surface at a pixel; HUGE_VAL and -1 where there is none. */
@@ -204,6 +215,9 @@ static inline enum status scene_photo(void *ctx, int view_idx, struct image *im,
                 int at;
                 const double u = x + (k % 3 + 0.5) / 3, w = y + (k / 3 + 0.5) / 3, z = scene_depth(s, v, u, w, &at);
                 if (at >= 0) scene_paint(&s->surfaces[at], view_unproject(v, u, w, z), rgb);
+                if (at >= 0 && s->surfaces[at].gloss > 0)
+                    for (int c = 0; c < 3; c++)
+                        rgb[c] += (float)scene_highlight(&s->surfaces[at], view_unproject(v, u, w, z), v->center);
                 for (int c = 0; c < 3; c++) rgba[c] += (float)s->gain[view_idx] * rgb[c] / 9;
             }
             for (int c = 0; c < 3; c++) rgba[c] = linear_from_srgb(rintf(255 * srgb_from_linear(rgba[c])) / 255);

@@ -1,113 +1,5 @@
 /* view_depth.c - the whole stage on photographs of scenes whose depth is a formula, easy ones and hard ones. */
-#include "stages/segment_depth/view_depth.h"
-
-#include "tests/unit/segment_depth/scene.h"
-
-#include "common/parallel.h"
-
-enum { W = 160, H = 120, FOCAL = 160 };
-
-struct result {
-    struct layered_depth depth;
-    int neighbours[MAX_NEIGHBOURS], neighbour_count;
-};
-
-static struct scene scene; /* large; zeroed by start() */
-
-static void start(void) { memset(&scene, 0, sizeof scene); }
-
-/* `count` views around the first, 0.4 away. */
-static void stand(int count)
-{
-    static const double offsets[][2] = {{0, 0}, {0.4, 0}, {-0.4, 0}, {0, 0.4}, {0, -0.4}};
-    for (int i = 0; i < count; i++) scene_view(&scene, W, H, FOCAL, offsets[i][0], offsets[i][1], 0, 0);
-}
-
-/* What every depth map promises, whatever the photos show. */
-static void must_be_sound(const struct layered_depth *d)
-{
-    struct image photo;
-    struct err err = ERR_INIT;
-    assert_int_equal(scene_photo(&scene, 0, &photo, &err), ST_OK);
-    assert_true(d->width == photo.width && d->height == photo.height);
-    for (int i = 0; i < d->segment_count; i++) {
-        const struct depth_segment *s = &d->segments[i];
-        assert_int_equal(s->id, i + 1);
-        assert_true(isfinite(s->plane[0]) && isfinite(s->plane[1]) && isfinite(s->plane[2]));
-        assert_true(isfinite(s->sigma) && s->sigma > 0);
-        assert_true(s->confidence >= 0 && s->confidence <= 1);
-    }
-    for (int i = 0; i < d->width * d->height; i++) {
-        float sum[4] = {0};
-        for (int k = 0; k < 2; k++) {
-            const struct layer *l = k ? &d->boundary : &d->interior;
-            for (int c = 0; c < 4; c++) sum[c] += l->rgba[4 * i + c];
-            assert_true(l->id[i] <= (uint32_t)d->segment_count && (l->id[i] > 0) == (l->rgba[4 * i + 3] > 0));
-            assert_true(isfinite(l->z[i]) && (l->id[i] ? l->z[i] > 0 : l->z[i] <= 0));
-            if (!l->id[i]) continue;
-            const double *p = d->segments[l->id[i] - 1].plane;
-            assert_near((double)l->z[i] * (p[0] * (i % d->width + 0.5) + p[1] * (i / d->width + 0.5) + p[2]), 1, 1e-5);
-        }
-        for (int c = 0; c < 4; c++) assert_near(sum[c], photo.data[4 * i + c], 1e-6);
-    }
-    image_release(&photo);
-}
-
-static enum status depth_of(struct result *r, const struct segment_params *params, struct err *err)
-{
-    const struct view_source source = {scene_photo, &scene};
-    return view_depth(&r->depth, r->neighbours, &r->neighbour_count, &scene.set, 0, &source, params, err);
-}
-
-static void must_work(struct result *r)
-{
-    const struct segment_params params = SEGMENT_PARAMS_DEFAULT;
-    struct err err = ERR_INIT;
-    if (depth_of(r, &params, &err)) fail_msg("%s", err.text);
-    must_be_sound(&r->depth);
-}
-
-/* Is another surface, or another depth than a tenth off, within 3 px? */
-static bool at_jump(int x, int y)
-{
-    int own, other;
-    const double z = scene_depth(&scene, &scene.views[0], x + 0.5, y + 0.5, &own);
-    for (int k = 0; k < 16; k++) {
-        const double u = x + 0.5 + 3 * cos(k * M_PI / 8), v = y + 0.5 + 3 * sin(k * M_PI / 8);
-        const double there = scene_depth(&scene, &scene.views[0], u, v, &other);
-        if (other != own && fabs(there / z - 1) > 0.1) return true;
-    }
-    return false;
-}
-
-/* Part of the pixels of a surface (-1: all), away from jumps, whose depth is within `tolerance` of the truth. */
-static double right(const struct layered_depth *d, int surface, double tolerance)
-{
-    int good = 0, count = 0;
-    for (int y = 0; y < d->height; y++)
-        for (int x = 0; x < d->width; x++) {
-            int at;
-            const double z = scene_depth(&scene, &scene.views[0], x + 0.5, y + 0.5, &at);
-            if (at < 0 || (surface >= 0 && at != surface) || at_jump(x, y)) continue;
-            good += fabs((double)d->interior.z[y * d->width + x] / z - 1) <= tolerance;
-            count++;
-        }
-    assert_true(count > 0);
-    if (getenv("VERDICT"))
-        print_message("  surface %d: %.4f of %d within %g\n", surface, (double)good / count, count, tolerance);
-    return (double)good / count;
-}
-
-static double mean_confidence(const struct layered_depth *d)
-{
-    double sum = 0, pixels = 0;
-    for (int i = 0; i < d->segment_count; i++) {
-        sum += d->segments[i].confidence * d->segments[i].pixels;
-        pixels += d->segments[i].pixels;
-    }
-    if (getenv("VERDICT")) print_message("  confidence %.3f\n", sum / pixels);
-    return sum / pixels;
-}
+#include "tests/unit/segment_depth/whole.h"
 
 /* -------------------------------------------------------------------------------------- scenes that should be easy */
 
@@ -510,7 +402,7 @@ static enum status unrelated_photo(void *ctx, int view_idx, struct image *im, st
 static void unrelated_photos_give_sound_depths(void **state)
 {
     (void)state;
-    const struct view_source source = {unrelated_photo, &scene};
+    const struct view_source source = {unrelated_photo, NULL, &scene};
     static const int sizes[] = {64, 300, 2000};
     start();
     scene_wall(&scene, 0, 0, 5, 30, 30, 0)->cell = 0.2;
@@ -565,7 +457,7 @@ static enum status broken_photo(void *ctx, int view_idx, struct image *im, struc
 static void a_photo_that_cannot_be_read_is_told(void **state)
 {
     (void)state;
-    const struct view_source source = {broken_photo, &scene};
+    const struct view_source source = {broken_photo, NULL, &scene};
     const struct segment_params params = SEGMENT_PARAMS_DEFAULT;
     struct result r = {0};
     struct err err = ERR_INIT;
@@ -591,7 +483,7 @@ static void threads_do_not_change_a_bit(void **state)
         parallel_set_threads(k + 1);
         must_work(&r[k]);
     }
-    parallel_set_threads(0);
+    parallel_set_threads(1);
     for (int k = 1; k < 3; k++) {
         const struct layered_depth *a = &r[0].depth, *b = &r[k].depth;
         assert_int_equal(a->segment_count, b->segment_count);
@@ -634,5 +526,6 @@ int main(void)
         cmocka_unit_test(a_photo_that_cannot_be_read_is_told),
         cmocka_unit_test(threads_do_not_change_a_bit),
     };
+    parallel_set_threads(1); /* tests run side by side */
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

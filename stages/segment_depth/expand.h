@@ -1,0 +1,10 @@
+/* expand.h - planes of segments by local expansion moves. */
+#ifndef REMODEL_EXPAND_H
+#define REMODEL_EXPAND_H
+
+#include "stages/segment_depth/plane_problem.h"
+
+/* Improves plane[], one a segment. The same for any number of threads. */
+enum status expand_planes(struct plane *plane, const struct plane_problem *p, struct err *err);
+
+#endif

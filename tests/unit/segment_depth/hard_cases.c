@@ -1,0 +1,419 @@
+/* hard_cases.c - the whole stage where matching cannot know: blank walls, wallpaper, gloss, no neighbour, broken and odd pictures; and
+ * that a second round, in which views look at each other's depths, does not spoil what the first one found. */
+#include "tests/unit/scratch.h"
+#include "tests/unit/segment_depth/whole.h"
+
+#include "common/view_image.h"
+
+static const struct segment_params params = SEGMENT_PARAMS_DEFAULT;
+
+static struct surface *floor_at(double y, double far)
+{
+    struct surface *floor = scene_surface(&scene, vec3_make(0, y, far / 2));
+    floor->across = vec3_make(15, 0, 0);
+    floor->down = vec3_make(0, 0, far / 2);
+    return floor;
+}
+
+/* ------------------------------------------------------------------------------------------------- what can't be matched */
+
+/* Half a pixel between the nearest views, as a part of a depth: what matching can promise. */
+static double half_a_step(double z) { return 0.5 * z / (FOCAL * 0.4); }
+
+/* The back wall of a room has no texture at all; the floor, the ceiling and the walls beside it, which it meets, have. */
+static void a_textureless_wall_stands_where_the_room_ends(void **state)
+{
+    (void)state;
+    for (int points = 0; points < 2; points++) {
+        struct layered_depth d[2];
+        start();
+        scene_wall(&scene, 0, 0, 6, 2, 1.5, 0)->contrast = 0;
+        floor_at(1.5, 6)->colour[0] = 0.15f;
+        floor_at(-1.5, 6)->colour[1] = 0.15f;
+        for (int side = -1; side <= 1; side += 2) {
+            struct surface *wall = scene_surface(&scene, vec3_make(2 * side, 0, 3));
+            wall->across = vec3_make(0, 0, 3);
+            wall->down = vec3_make(0, 1.5, 0);
+        }
+        stand(5);
+        scene_points(&scene, points * 300);
+        must_work_in_rounds(d, 1, &params);
+        for (int round = 0; round < 2; round++) {
+            assert_true(right(&d[round], 0, half_a_step(6)) > 0.95);
+            assert_true(right(&d[round], -1, half_a_step(6)) > 0.95);
+            layered_depth_release(&d[round]);
+        }
+    }
+}
+
+/* Wallpaper whose stripes match at many depths; the plain plaster above and below it holds it. Without points. */
+static void wallpaper_takes_the_depth_of_what_frames_it(void **state)
+{
+    (void)state;
+    struct layered_depth d[2];
+    start();
+    scene_wall(&scene, 0, 0, 5, 9, 9, 0);
+    scene_wall(&scene, 0, 0, 5 - 1e-4, 1.2, 0.5, 0)->period = 0.31; /* 10 px */
+    stand(5);
+    must_work_in_rounds(d, 1, &params);
+    for (int round = 0; round < 2; round++) {
+        assert_true(right(&d[round], 0, 0.02) > 0.95);
+        assert_true(right(&d[round], 1, 0.02) > 0.9);
+        layered_depth_release(&d[round]);
+    }
+}
+
+/* A lamp is mirrored in the floor: the spot moves on it from view to view, just as a lamp below the floor would. A sheen leaves the
+ * floor where it is. Where the spot outshines the floor, pictures show the lamp and nothing else; but it stays within its bounds. */
+static void a_highlight_that_moves_on_a_glossy_floor_stays_within_its_bounds(void **state)
+{
+    (void)state;
+    for (int burnt = 0; burnt < 2; burnt++) {
+        struct layered_depth d[2];
+        start();
+        struct surface *floor = floor_at(1, 14);
+        floor->gloss = burnt ? 5 : 0.3;
+        floor->light = vec3_make(0, -0.5, 9);
+        scene_wall(&scene, 0, 0, 12, 20, 20, 0)->cell = 0.6;
+        stand(5);
+        scene_points(&scene, 300);
+        must_work_in_rounds(d, 1, &params);
+        for (int round = 0; round < 2; round++) {
+            int pixels[2] = {0}, good[2] = {0}; /* dull, lit */
+            for (int y = 0; y < H; y++)
+                for (int x = 0; x < W; x++) {
+                    int at;
+                    const double z = scene_depth(&scene, &scene.views[0], x + 0.5, y + 0.5, &at);
+                    const struct vec3 p = view_unproject(&scene.views[0], x + 0.5, y + 0.5, z);
+                    assert_true(d[round].interior.z[y * W + x] > 0);
+                    if (at != 0 || at_jump(x, y)) continue;
+                    const bool lit = scene_highlight(floor, p, scene.views[0].center) > 0.1;
+                    pixels[lit]++;
+                    good[lit] += fabs(1 / (double)d[round].interior.z[y * W + x] - 1 / z) < 0.5 / (FOCAL * 0.4);
+                }
+            if (getenv("VERDICT"))
+                print_message("  %d of %d dull, %d of %d lit\n", good[0], pixels[0], good[1], pixels[1]);
+            assert_true(pixels[1] > 200 && good[0] > 0.95 * pixels[0]);
+            if (!burnt) assert_true(good[1] > 0.95 * pixels[1]);
+            layered_depth_release(&d[round]);
+        }
+    }
+}
+
+/* --------------------------------------------------------------------------------------------------- who can't be matched */
+
+static void no_neighbour_is_told_in_a_sentence(void **state)
+{
+    (void)state;
+    for (int views = 1; views <= 2; views++) {
+        struct result r = {0};
+        struct err err = ERR_INIT;
+        start();
+        scene_wall(&scene, 0, 0, 5, 9, 9, 0);
+        stand(1);
+        if (views == 2) scene_view(&scene, W, H, FOCAL, 0.4, 0, 0, M_PI); /* looks the other way */
+        assert_int_equal(depth_of(&r, &params, &err), ST_DATA);
+        assert_err(err, ST_DATA, "view a has no neighbour to match with: among the ");
+        assert_contains(err.text, views == 1 ? "the 0 other view(s)" : "the 1 other view(s)");
+        assert_contains(err.text, "at least two views taken from different points");
+        assert_int_equal(r.neighbour_count, 0);
+        assert_true(!r.depth.interior.id && !r.depth.segments);
+    }
+}
+
+static void put_text(FILE *fp, const char *name, const char *type, const void *value, uint32_t size)
+{
+    fwrite(name, 1, strlen(name) + 1, fp);
+    fwrite(type, 1, strlen(type) + 1, fp);
+    fwrite(&size, 4, 1, fp);
+    fwrite(value, 1, size, fp);
+}
+
+/* An EXR with any floats, which the project's own writer would refuse: no compression, a line a chunk. */
+static void write_any_exr(const char *path, const struct image *im)
+{
+    static const char magic[8] = {0x76, 0x2f, 0x31, 0x01, 2};
+    static const int channel_of[4] = {3, 2, 1, 0}; /* A B G R */
+    const int32_t window[4] = {0, 0, im->width - 1, im->height - 1};
+    const float one = 1, centre[2] = {0, 0};
+    char list[4 * 18 + 1] = {0};
+    FILE *fp = fopen(path, "wb");
+    assert_non_null(fp);
+    for (int c = 0; c < 4; c++) {
+        char *at = list + (ptrdiff_t)18 * c; /* name, float, linear, sampling 1 1 */
+        const int32_t type = 2, sampling = 1;
+        at[0] = "ABGR"[c];
+        memcpy(at + 2, &type, 4);
+        memcpy(at + 10, &sampling, 4);
+        memcpy(at + 14, &sampling, 4);
+    }
+    fwrite(magic, 1, 8, fp);
+    put_text(fp, "channels", "chlist", list, sizeof list);
+    put_text(fp, "compression", "compression", "", 1);
+    put_text(fp, "dataWindow", "box2i", window, sizeof window);
+    put_text(fp, "displayWindow", "box2i", window, sizeof window);
+    put_text(fp, "lineOrder", "lineOrder", "", 1);
+    put_text(fp, "pixelAspectRatio", "float", &one, 4);
+    put_text(fp, "screenWindowCenter", "v2f", centre, 8);
+    put_text(fp, "screenWindowWidth", "float", &one, 4);
+    fputc(0, fp);
+    const uint64_t table = (uint64_t)ftell(fp) + 8 * (uint64_t)im->height, line = 8 + 16 * (uint64_t)im->width;
+    for (int y = 0; y < im->height; y++) fwrite(&(uint64_t){table + line * (uint64_t)y}, 8, 1, fp);
+    for (int32_t y = 0; y < im->height; y++) {
+        fwrite(&y, 4, 1, fp);
+        fwrite(&(int32_t){16 * im->width}, 4, 1, fp);
+        for (int c = 0; c < 4; c++)
+            for (int x = 0; x < im->width; x++) fwrite(&im->data[4 * (y * im->width + x) + channel_of[c]], 4, 1, fp);
+    }
+    assert_int_equal(fclose(fp), 0);
+}
+
+static enum status photo_on_disk(void *ctx, int view_idx, struct image *im, struct err *err)
+{
+    (void)ctx;
+    return view_image_read(im, scratch, &scene.views[view_idx], err);
+}
+
+/* In the view itself or in a neighbour: the reader refuses it, with file, channel and pixel. */
+static void a_nan_in_a_view_is_told_with_its_pixel(void **state)
+{
+    (void)state;
+    const struct view_source source = {photo_on_disk, NULL, NULL};
+    start();
+    scene_wall(&scene, 0, 0, 5, 9, 9, 0.2);
+    stand(3);
+    for (int broken = -1; broken < 6; broken++) {
+        struct result r = {0};
+        struct err err = ERR_INIT;
+        for (int k = 0; k < 3; k++) {
+            struct image photo;
+            char name[8];
+            assert_int_equal(scene_photo(&scene, k, &photo, &err), ST_OK);
+            if (broken >= 0 && broken % 3 == k) image_at(&photo, 41, 17)[1] = broken < 3 ? NAN : -INFINITY;
+            snprintf(name, sizeof name, "%s.exr", scene.views[k].name);
+            write_any_exr(scratch_path(name), &photo);
+            image_release(&photo);
+        }
+        const enum status st =
+            view_depth(&r.depth, r.neighbours, &r.neighbour_count, &scene.set, 0, &source, &params, &err);
+        if (broken < 0) { /* none is: the files are good */
+            assert_ok(st, err);
+            assert_true(right(&r.depth, -1, 0.02) > 0.95);
+            layered_depth_release(&r.depth);
+            continue;
+        }
+        assert_int_equal(st, ST_DATA);
+        assert_err(err, ST_DATA, "channel G holds NaN or infinity at pixel (41, 17)");
+        char name[8];
+        snprintf(name, sizeof name, "/%s.exr", scene.views[broken % 3].name);
+        assert_contains(err.text, name);
+        assert_true(!r.depth.interior.id && !r.depth.segments);
+    }
+}
+
+/* A round before of another picture, or none at all. */
+static enum status depth_of_less(void *ctx, int view_idx, struct layered_depth *d, struct err *err)
+{
+    const enum status st = rounds_depth(ctx, view_idx, d, err);
+    d->segment_count -= view_idx == 0;
+    return st;
+}
+static enum status no_depth(void *ctx, int view_idx, struct layered_depth *d, struct err *err)
+{
+    (void)ctx, (void)d;
+    return err_set(err, ST_IO, "there is no depth of view %d.", view_idx);
+}
+
+static void a_round_before_that_does_not_fit_is_told(void **state)
+{
+    (void)state;
+    static struct rounds before;
+    struct result r = {0};
+    struct err err = ERR_INIT;
+    start();
+    scene_wall(&scene, 0, 0, 5, 9, 9, 0.2);
+    stand(2);
+    before.scene = &scene;
+    const struct view_source first = {scene_photo, NULL, &scene}, less = {rounds_photo, depth_of_less, &before},
+                             none = {rounds_photo, no_depth, &before};
+    for (int k = 0; k < 2; k++)
+        assert_ok(view_depth(&before.depth[k], r.neighbours, &r.neighbour_count, &scene.set, k, &first, &params, &err),
+                  err);
+    assert_int_equal(view_depth(&r.depth, r.neighbours, &r.neighbour_count, &scene.set, 0, &less, &params, &err),
+                     ST_DATA);
+    assert_err(err, ST_DATA, "segments of view a, this one");
+    assert_true(!r.depth.interior.id && !r.depth.segments);
+    err = (struct err)ERR_INIT;
+    assert_int_equal(view_depth(&r.depth, r.neighbours, &r.neighbour_count, &scene.set, 0, &none, &params, &err),
+                     ST_IO);
+    assert_string_equal(err.text, "there is no depth of view 1.");
+    assert_true(!r.depth.interior.id && !r.depth.segments);
+    for (int k = 0; k < 2; k++) layered_depth_release(&before.depth[k]);
+}
+
+/* ------------------------------------------------------------------------------------------------------- odd pictures */
+
+static void photos_of_one_pixel_work_in_rounds(void **state)
+{
+    (void)state;
+    for (int points = 0; points < 2; points++) {
+        struct layered_depth d[3];
+        start();
+        scene_wall(&scene, 0, 0, 5, 90, 90, 0);
+        for (int k = 0; k < 3; k++) scene_view(&scene, 1, 1, 20, 0.02 * k, 0, 0, 0);
+        scene_points(&scene, points * 60);
+        must_work_in_rounds(d, 2, &params);
+        for (int round = 0; round < 3; round++) {
+            assert_int_equal(d[round].segment_count, 1);
+            assert_true(d[round].interior.z[0] > 0);
+            layered_depth_release(&d[round]);
+        }
+    }
+}
+
+/* A strip of a wall at depth 5, one ray a pixel. */
+static enum status strip_photo(void *ctx, int view_idx, struct image *im, struct err *err)
+{
+    const struct scene *s = ctx;
+    const struct view *v = &s->views[view_idx];
+    if (image_init(im, v->width, v->height, 4, err)) return err->status;
+    for (int y = 0; y < v->height; y++)
+        for (int x = 0; x < v->width; x++) {
+            const struct vec3 p = view_unproject(v, x + 0.5, y + 0.5, 5);
+            float *rgba = image_at(im, x, y);
+            for (int c = 0; c < 3; c++) rgba[c] = 0.1f + 0.5f * (float)scene_noise(p.x / 0.02 + 31 * c, p.y / 0.02, 0);
+            rgba[3] = 1;
+        }
+    return ST_OK;
+}
+
+/* 20000 x 16 px and 16 x 20000 px. */
+static void a_photo_as_long_as_a_street_works(void **state)
+{
+    (void)state;
+    const struct view_source source = {strip_photo, NULL, &scene};
+    for (int upright = 0; upright < 2; upright++) {
+        struct result r = {0};
+        struct err err = ERR_INIT;
+        const int width = upright ? 16 : 20000, height = upright ? 20000 : 16;
+        start();
+        for (int k = 0; k < 2; k++)
+            scene_view(&scene, width, height, 2000, upright ? 0 : 0.05 * k, upright ? 0.05 * k : 0, 0, 0);
+        for (int i = 0; i < 60; i++) {
+            const double along = 10 * (i + 0.5) / 30 - 10;
+            scene_point(&scene,
+                        vec3_make(upright ? 0.004 : along, upright ? along : 0.004,
+                                  i % 4   ? 5
+                                  : i % 8 ? 4.6
+                                          : 5.4),
+                        3);
+        }
+        if (view_depth(&r.depth, r.neighbours, &r.neighbour_count, &scene.set, 0, &source, &params, &err))
+            fail_msg("%s", err.text);
+        assert_true(r.depth.width == width && r.depth.height == height);
+        assert_true(r.depth.segment_count > 20000 * 16 / 200);
+        int good = 0;
+        for (int i = 0; i < width * height; i++) {
+            assert_true(isfinite(r.depth.interior.z[i]) && r.depth.interior.z[i] > 0);
+            good += fabsf(r.depth.interior.z[i] / 5 - 1) < 0.02f;
+        }
+        if (getenv("VERDICT")) print_message("  %.4f of the strip\n", good / 320000.0);
+        assert_true(good > 0.97 * width * height);
+        layered_depth_release(&r.depth);
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------------------- rounds */
+
+static bool seen_elsewhere(double u, double v)
+{
+    int at;
+    const struct vec3 p = view_unproject(&scene.views[0], u, v, scene_depth(&scene, &scene.views[0], u, v, &at));
+    for (int k = 1; k < scene.set.view_count; k++) {
+        double pu = -1, pv = -1;
+        const double z = view_project(&scene.views[k], p, &pu, &pv);
+        if (!(z > 0 && pu >= 0 && pv >= 0 && pu < W && pv < H)) continue;
+        if (fabs(scene_depth(&scene, &scene.views[k], pu, pv, &at) / z - 1) < 1e-6) return true;
+    }
+    return false;
+}
+
+/* Part of the pixels whose depth is off by more than so many steps, those at jumps included; of all, or of those that another view
+ * sees too. */
+static double wrong(const struct layered_depth *d, double steps, bool all)
+{
+    int bad = 0, count = 0;
+    for (int i = 0; i < W * H; i++) {
+        int at;
+        const double u = i % W + 0.5, v = i / W + 0.5, z = scene_depth(&scene, &scene.views[0], u, v, &at);
+        if (!all && !seen_elsewhere(u, v)) continue;
+        bad += !(fabs(1 / (double)d->interior.z[i] - 1 / z) <= steps / (FOCAL * 0.4));
+        count++;
+    }
+    if (getenv("VERDICT")) print_message("  wrong by %g: %.4f of %d\n", steps, bad / (double)count, count);
+    return bad / (double)count;
+}
+
+/* What a few pixels at the card's rim may change, of all. */
+static const double rim = 0.001;
+
+/* A card in front of a wall; many views or two, with points and without, facing or leaning. */
+static void more_rounds_never_make_two_planes_worse(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 8; k++) {
+        struct layered_depth d[3];
+        start();
+        scene_wall(&scene, 0, 0, 7, 12, 12, k & 4 ? 0.3 : 0)->cell = 0.35;
+        struct surface *card = scene_wall(&scene, 0.1, 0.1, 4, 0.8, 0.7, k & 4 ? -0.3 : 0);
+        card->colour[0] = 0.12f;
+        card->cell = 0.2;
+        stand(k & 2 ? 2 : 3);
+        scene_points(&scene, k & 1 ? 200 : 0);
+        must_work_in_rounds(d, 2, &params);
+        for (int round = 1; round < 3; round++) {
+            assert_true(wrong(&d[round], 0.5, false) <= wrong(&d[0], 0.5, false) + rim);
+            assert_true(wrong(&d[round], 2, true) <= wrong(&d[0], 2, true) + rim);
+        }
+        for (int round = 0; round < 3; round++) layered_depth_release(&d[round]);
+    }
+}
+
+static void threads_do_not_change_a_bit_of_a_second_round(void **state)
+{
+    (void)state;
+    struct layered_depth d[2][2];
+    start();
+    scene_wall(&scene, 0, 0, 7, 12, 12, 0.2);
+    scene_surface(&scene, vec3_make(0.1, 0, 5))->radius = 1;
+    stand(3);
+    for (int k = 0; k < 2; k++) {
+        parallel_set_threads(k + 1);
+        must_work_in_rounds(d[k], 1, &params);
+    }
+    parallel_set_threads(1);
+    const struct layered_depth *a = &d[0][1], *b = &d[1][1];
+    assert_int_equal(a->segment_count, b->segment_count);
+    assert_memory_equal(a->segments, b->segments, (size_t)a->segment_count * sizeof *a->segments);
+    assert_memory_equal(a->interior.z, b->interior.z, sizeof(float) * W * H);
+    assert_memory_equal(a->boundary.rgba, b->boundary.rgba, sizeof(float) * 4 * W * H);
+    for (int k = 0; k < 4; k++) layered_depth_release(&d[k / 2][k % 2]);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_textureless_wall_stands_where_the_room_ends),
+        cmocka_unit_test(wallpaper_takes_the_depth_of_what_frames_it),
+        cmocka_unit_test(a_highlight_that_moves_on_a_glossy_floor_stays_within_its_bounds),
+        cmocka_unit_test(no_neighbour_is_told_in_a_sentence),
+        cmocka_unit_test(a_nan_in_a_view_is_told_with_its_pixel),
+        cmocka_unit_test(a_round_before_that_does_not_fit_is_told),
+        cmocka_unit_test(photos_of_one_pixel_work_in_rounds),
+        cmocka_unit_test(a_photo_as_long_as_a_street_works),
+        cmocka_unit_test(more_rounds_never_make_two_planes_worse),
+        cmocka_unit_test(threads_do_not_change_a_bit_of_a_second_round),
+    };
+    parallel_set_threads(1); /* tests run side by side */
+    return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
+}

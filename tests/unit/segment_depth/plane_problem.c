@@ -1,0 +1,155 @@
+/* plane_problem.c - the energy's pairs are a metric in the planes, and its terms are what the header says. */
+#include "stages/segment_depth/plane_problem.h"
+
+#include "tests/unit/segment_depth/problem.h"
+
+#include "common/parallel.h"
+
+static void start(void)
+{
+    bench_empty();
+    scene_wall(&b.scene, 0, 0, 4, 6, 6, 0.3);
+    bench_views();
+    bench_make(0.15, 0.45);
+}
+
+/* Some alike, some far apart, some slanted, some equal. */
+static struct plane draw(int i, int k)
+{
+    const double size = b.problem.step * pow(10, 3 * scene_hash(i, k, 1) - 1);
+    struct plane p = {0, 0, 0.3 + size * (2 * scene_hash(i, k, 2) - 1)};
+    if (i % 3) p.a = size / W * (2 * scene_hash(i, k, 3) - 1);
+    if (i % 3) p.b = size / H * (2 * scene_hash(i, k, 4) - 1);
+    return k > 0 && i % 7 == 0 ? draw(i, k - 1) : p;
+}
+
+static int twin(int segment, int touch)
+{
+    const int j = b.segments.touches[touch].other;
+    for (int t = b.segments.first_touch[j]; t < b.segments.first_touch[j + 1]; t++)
+        if (b.segments.touches[t].other == segment) return t;
+    fail_msg("segment %d touches %d but not the other way round", segment, j);
+    return -1;
+}
+
+static void a_pair_is_a_metric(void **state)
+{
+    (void)state;
+    int cut_off = 0, count = 0;
+    start();
+    for (int i = 0; i < b.segments.count; i++)
+        for (int t = b.segments.first_touch[i]; t < b.segments.first_touch[i + 1]; t++, count++) {
+            const int j = b.segments.touches[t].other, back = twin(i, t);
+            const struct plane p = draw(count, 0), q = draw(count, 1), r = draw(count, 2);
+            const double pq = problem_pair(&b.problem, i, t, p, q), qr = problem_pair(&b.problem, i, t, q, r);
+            const double most = b.params.smoothness * (double)b.weights[t];
+            assert_near(problem_pair(&b.problem, i, t, p, p), 0, 0);
+            assert_true(pq >= 0 && pq <= most);
+            assert_near(problem_pair(&b.problem, i, t, q, p), pq, 1e-15);
+            assert_near(problem_pair(&b.problem, j, back, q, p), pq,
+                        1e-12); /* seen from the other side of the border */
+            assert_true(problem_pair(&b.problem, i, t, p, r) <= pq + qr + 1e-12);
+            cut_off += pq >= most - 1e-12;
+        }
+    assert_true(count > 500 && cut_off > 20 && cut_off < count / 2);
+    bench_release();
+}
+
+/* Constant planes n steps apart cost n / jump of the whole, up to the whole. */
+static void a_gap_costs_by_its_steps_up_to_the_jump(void **state)
+{
+    (void)state;
+    start();
+    b.params.jump = 8;
+    for (int t = 0; t < b.segments.first_touch[1]; t++)
+        for (int n = -20; n <= 20; n++) {
+            const struct plane p = {0, 0, 0.3}, q = {0, 0, 0.3 + n * b.problem.step};
+            assert_near(problem_pair(&b.problem, 0, t, p, q),
+                        b.params.smoothness * (double)b.weights[t] * fmin(abs(n) / 8.0, 1), 1e-9);
+        }
+    bench_release();
+}
+
+/* Two segments on one slanted plane cost nothing; facing planes at those depths, or a fold at the border, do. */
+static void a_surface_slants_for_nothing_but_a_fold_costs(void **state)
+{
+    (void)state;
+    start();
+    for (int i = 0; i < b.segments.count; i += 5)
+        for (int t = b.segments.first_touch[i]; t < b.segments.first_touch[i + 1]; t++) {
+            const struct segment *g = &b.segments.segments[i], *h = &b.segments.segments[b.segments.touches[t].other];
+            const double u = (double)b.segments.touches[t].u, v = (double)b.segments.touches[t].v;
+            const double a = b.problem.step / 4 * (g->cx > h->cx ? 1 : -1), across = fabs(g->cx - h->cx);
+            const struct plane slanted = {a, 0, 0.3 - a * u},
+                               folded = {-a, 0, 0.3 + a * u}; /* they meet at the border */
+            assert_near(problem_pair(&b.problem, i, t, slanted, slanted), 0, 0);
+            if (across < 3) continue;
+            assert_true(problem_pair(&b.problem, i, t, slanted, folded) > 0);
+            assert_true(problem_pair(&b.problem, i, t, (struct plane){0, 0, plane_at(slanted, g->cx, g->cy)},
+                                     (struct plane){0, 0, plane_at(slanted, h->cx, h->cy)}) > 0);
+            assert_near(plane_at(slanted, u, v), plane_at(folded, u, v), 1e-12);
+        }
+    bench_release();
+}
+
+/* Over the bounding box and a margin, which four corners bound. */
+static void a_plane_that_leaves_the_depths_is_out_of_the_question(void **state)
+{
+    (void)state;
+    const double low = PLANE_LEAST * 0.15, high = PLANE_MOST * 0.45;
+    int never = 0, count = 0;
+    start();
+    for (int i = 0; i < b.segments.count; i++)
+        for (int k = 0; k < 12; k++, count++) {
+            const struct segment *g = &b.segments.segments[i];
+            struct plane p = {0.01 * (2 * scene_hash(i, k, 0) - 1), 0.01 * (2 * scene_hash(i, k, 1) - 1), 0};
+            p.c = 0.9 * scene_hash(i, k, 2) - 0.1 - p.a * g->cx - p.b * g->cy;
+            bool leaves = false;
+            for (int y = g->y0 - 3; y <= g->y1 + 4; y++)
+                for (int x = g->x0 - 3; x <= g->x1 + 4; x++)
+                    leaves = leaves || !(plane_at(p, x, y) >= low && plane_at(p, x, y) <= high);
+            const float cost = problem_unary(&b.problem, i, p);
+            assert_true(leaves ? cost >= PLANE_NEVER : cost < PLANE_NEVER / 100);
+            never += leaves;
+        }
+    assert_true(never > count / 5 && never < 4 * count / 5);
+    const struct plane no[] = {{NAN, 0, 0.3}, {0, INFINITY, 0.3}, {0, 0, NAN}, {0, 0, -INFINITY}, {1e300, -1e300, 0.3}};
+    for (int k = 0; k < 5; k++) assert_true(problem_unary(&b.problem, 7, no[k]) >= PLANE_NEVER);
+    bench_release();
+}
+
+/* size (match + points) + slant. */
+static void the_unary_is_the_sum_of_its_terms(void **state)
+{
+    (void)state;
+    start();
+    b.params.slant = 0.125;
+    for (int i = 0; i < b.segments.count; i++) {
+        const struct segment *g = &b.segments.segments[i];
+        const struct plane flat = {0, 0, bench_truth(g->cx, g->cy)},
+                           slanted = {1e-4, -1e-4, flat.c - 1e-4 * (g->cx - g->cy)};
+        for (int rough = 0; rough < 2; rough++)
+            for (int k = 0; k < 2; k++) {
+                const struct plane p = k ? slanted : flat;
+                const float match = rough ? match_cost_half(&b.matcher, i, p, 0) : match_cost(&b.matcher, i, p, 0);
+                const double points = point_evidence_cost(&b.points, i, p, g->cx, g->cy);
+                b.problem.rough = rough;
+                assert_near(problem_unary(&b.problem, i, p), g->pixels / 64.0 * ((double)match + points) + 0.125 * k,
+                            1e-5);
+            }
+    }
+    bench_release();
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_pair_is_a_metric),
+        cmocka_unit_test(a_gap_costs_by_its_steps_up_to_the_jump),
+        cmocka_unit_test(a_surface_slants_for_nothing_but_a_fold_costs),
+        cmocka_unit_test(a_plane_that_leaves_the_depths_is_out_of_the_question),
+        cmocka_unit_test(the_unary_is_the_sum_of_its_terms),
+    };
+    parallel_set_threads(1); /* tests run side by side */
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
