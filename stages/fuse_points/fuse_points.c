@@ -1,0 +1,109 @@
+/* fuse_points.c - oriented points on which the depth maps of several views agree.
+ *
+ * reads   VIEWS/cameras.txt, images.txt, points3D.txt   the cameras
+ *         DEPTH/VIEW.exr, VIEW.txt                      every view's interior layer and segments
+ * writes  OUT                                           binary PLY: position, normal, colour, views, confidence
+ *
+ * Holds one view's layer, of the others as many segment maps as --memory has room for, and the points. */
+#include <inttypes.h>
+#include <stdio.h>
+
+#include "common/cli.h"
+#include "common/log.h"
+#include "stages/fuse_points/fuse.h"
+
+enum { PATH_SIZE = 4096, DEFAULT_MIB = 1024 };
+
+struct depth_folder {
+    const char *folder;
+    const struct camera_set *set;
+    struct provenance *prov;
+};
+
+static enum status add_input(struct provenance *prov, const char *as, const char *folder, const char *file,
+                             const char *suffix, char path[PATH_SIZE], struct err *err)
+{
+    char name[PATH_SIZE];
+    if (snprintf(path, PATH_SIZE, "%s/%s%s", folder, file, suffix) >= PATH_SIZE ||
+        snprintf(name, PATH_SIZE, "%s/%s%s", as, file, suffix) >= PATH_SIZE)
+        return err_set(err, ST_IO, "the path %s/%s%s is too long.", folder, file, suffix);
+    return provenance_add_file(prov, name, path, err);
+}
+
+/* path: of the EXR; it and its list become inputs when they are first read. */
+static enum status find_depth(const struct depth_folder *f, int view_idx, char path[PATH_SIZE], struct err *err)
+{
+    const char *name = f->set->views[view_idx].name;
+    if (add_input(f->prov, "depth", f->folder, name, ".txt", path, err) ||
+        add_input(f->prov, "depth", f->folder, name, ".exr", path, err))
+        return err->status;
+    return ST_OK;
+}
+
+static enum status read_ids(void *ctx, int view_idx, struct layered_depth *d, struct err *err)
+{
+    char path[PATH_SIZE];
+    return find_depth(ctx, view_idx, path, err) ? err->status : layered_depth_read_ids(d, path, err);
+}
+
+static enum status read_interior(void *ctx, int view_idx, struct layered_depth *d, struct err *err)
+{
+    char path[PATH_SIZE];
+    return find_depth(ctx, view_idx, path, err) ? err->status : layered_depth_read_interior(d, path, err);
+}
+
+static void tell(const struct point_cloud *cloud, const struct fuse_stats *stats)
+{
+    const double percent = stats->samples ? 100.0 / (double)stats->samples : 0;
+    log_note("%zu points on a grid of %.4g (the scene's median depth is %.4g), from %" PRId64 " confident pixels",
+             cloud->count, cloud->cell, stats->depth, stats->samples);
+    log_note("left out: %.1f %% on which fewer than %d views agree, %.1f %% that views look through",
+             percent * (double)stats->alone, stats->views, percent * (double)stats->seen_through);
+}
+
+static enum status fuse(const char *views, const char *depth, const char *out, int mib,
+                        const struct fuse_params *params, struct provenance *prov, struct err *err)
+{
+    static const char *const camera_files[] = {"cameras.txt", "images.txt", "points3D.txt"};
+    struct camera_set set = {0};
+    struct point_cloud cloud = {0};
+    struct fuse_stats stats;
+    char path[PATH_SIZE];
+    if (mib < 0) return err_set(err, ST_USAGE, "--memory %d: wanted MiB, 0 or more.", mib);
+    enum status st = camera_set_read(&set, views, err);
+    for (int i = 0; !st && i < 3; i++) st = add_input(prov, "views", views, camera_files[i], "", path, err);
+    if (!st) {
+        struct depth_folder folder = {depth, &set, prov};
+        const struct depth_source source = {read_ids, read_interior, &folder};
+        st = fuse_points(&cloud, &stats, &set, &source, params, (size_t)mib << 20, err);
+    }
+    if (!st) st = point_cloud_write(&cloud, out, prov, err);
+    if (!st) tell(&cloud, &stats);
+    point_cloud_release(&cloud);
+    camera_set_release(&set);
+    return st;
+}
+
+int main(int argc, char **argv)
+{
+    const char *views = NULL, *depth = NULL, *out = NULL;
+    int mib = DEFAULT_MIB;
+    struct fuse_params params = FUSE_PARAMS_DEFAULT;
+    const struct cli_opt opts[] = {
+        CLI_ABOUT("Oriented points on which the depth maps of several views agree."),
+        CLI_STR("views", &views, CLI_REQUIRED, "folder of cameras"),
+        CLI_STR("depth", &depth, CLI_REQUIRED, "folder of the views' layers"),
+        CLI_STR("out", &out, CLI_REQUIRED, "PLY to write"),
+        CLI_INT("memory", &mib, CLI_OPTIONAL,
+                "MiB for segment maps that are held at once (1024); changes time, not points"),
+        CLI_PARAMS(fuse_param_table, &params, NULL),
+        CLI_END,
+    };
+    struct provenance prov = {0};
+    struct err err = ERR_INIT;
+    if (cli_parse(argc, argv, "fuse_points", opts, &prov, &err) != CLI_RUN ||
+        fuse(views, depth, out, mib, &params, &prov, &err))
+        err_report(&err);
+    provenance_release(&prov);
+    return err_exit_code(&err);
+}

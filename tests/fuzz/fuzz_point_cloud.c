@@ -1,0 +1,50 @@
+/* fuzz_point_cloud.c - points.ply: any bytes give points that keep their promises and survive writing, or a sentence. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "common/point_cloud.h"
+#include "tests/fuzz/fuzz.h"
+
+static char path[] = "/tmp/remodel-fuzz-XXXXXX";
+
+static void remove_file(void) { unlink(path); }
+
+static void check(const struct point_cloud *cloud)
+{
+    if (!(cloud->cell >= 0)) abort();
+    for (size_t i = 0; i < cloud->count; i++) {
+        const struct cloud_point *p = &cloud->points[i];
+        if (!isfinite(p->position.x) || !isfinite(p->position.y) || !isfinite(p->position.z) || !p->views) abort();
+        if (!(p->confidence >= 0 && p->confidence <= 1) || !(fabsf(p->normal[0]) < 1.01f)) abort();
+    }
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    static int opened;
+    struct point_cloud cloud, again;
+    struct err err = ERR_INIT;
+
+    if (!opened) {
+        const int fd = mkstemp(path);
+        if (fd < 0 || close(fd) || atexit(remove_file)) abort();
+        opened = 1;
+    }
+    FILE *fp = fopen(path, "wb");
+    if (!fp || (size && fwrite(data, 1, size, fp) != size) || fclose(fp)) abort();
+    if (point_cloud_read(&cloud, path, &err)) {
+        if (cloud.points || cloud.count || !strstr(err.text, path)) abort();
+        return 0;
+    }
+    check(&cloud);
+    if (point_cloud_write(&cloud, path, NULL, &err) || point_cloud_read(&again, path, &err)) abort();
+    if (again.count != cloud.count || again.cell != cloud.cell) abort();
+    for (size_t i = 0; i < cloud.count; i++)
+        if (memcmp(&again.points[i].position, &cloud.points[i].position, sizeof cloud.points[i].position)) abort();
+    point_cloud_release(&again);
+    point_cloud_release(&cloud);
+    return 0;
+}
