@@ -1,5 +1,5 @@
 # compare.awk SETTINGS RAW - two revisions of a bench: ratios new / old of the samples of a repeat, and what else changed.
-BEGIN { FS = OFS = "\t"; repeats = 0 }
+BEGIN { FS = OFS = "\t"; repeats = 0; also = split(timed_too, too, " "); for (i = 1; i <= also; i++) is_timed[too[i]] = 1 }
 function median(list, n,    i, j, t)
 {
     for (i = 2; i <= n; i++) { # few
@@ -13,7 +13,7 @@ FNR == NR { settings[FNR - 1] = $0; rows = FNR - 1; next }
 {
     if ($2 > repeats) repeats = $2
     if ($4 == "seconds" || $4 == "peak_mib") { timed[$4, $1, $3, $2] = $5 + 0; next }
-    if ($4 == "cpu_seconds") next
+    if ($4 == "cpu_seconds" || $4 in is_timed) next
     value[$1, $3, $4] = $5
     if (!($4 in seen)) { seen[$4] = 1; names[++n] = $4 }
 }

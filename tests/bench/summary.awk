@@ -1,6 +1,6 @@
 # summary.awk SETTINGS RAW - the table of a bench: settings, seconds with their range, ratio, peak, error, unit, counts.
 # RAW: build, repeat, row, name, value. On a fault, a line that begins with "!", and exit 1.
-BEGIN { FS = OFS = "\t"; repeats = 0 }
+BEGIN { FS = OFS = "\t"; repeats = 0; also = split(timed_too, too, " "); for (i = 1; i <= also; i++) is_timed[too[i]] = 1 }
 function median(list, n,    i, j, t)
 {
     for (i = 2; i <= n; i++) { # few
@@ -20,7 +20,7 @@ FNR == NR {
 {
     if ($2 > repeats) repeats = $2
     if ($4 == "cpu_seconds") next # too coarse to tell
-    if ($4 == "seconds" || $4 == "peak_mib") { timed[$4, $3, $2] = $5 + 0; next }
+    if ($4 == "seconds" || $4 == "peak_mib" || $4 in is_timed) { timed[$4, $3, $2] = $5 + 0; next }
     if (!($4 in counts)) { counts[$4] = 1; if ($4 != "error" && $4 != "unit") order[++orders] = $4 }
     if (($3, $4) in value && value[$3, $4] != $5)
         fault("setting '" settings[$3] "': " $4 " was " value[$3, $4] " and is " $5 " in repeat " $2 "; what is no time must repeat")
@@ -29,7 +29,9 @@ FNR == NR {
 END {
     if (failed) exit 1
     if (rate != "" && !(rate in counts)) fault("the rate is of " rate ", which no sample prints")
-    head = settings[0] "\tseconds\tseconds_least\tseconds_most\tratio\tpeak_mib\terror\tunit"
+    head = settings[0] "\tseconds\tseconds_least\tseconds_most\tratio\tpeak_mib"
+    for (k = 1; k <= also; k++) head = head OFS too[k]
+    head = head "\terror\tunit"
     for (k = 1; k <= orders; k++) head = head OFS order[k]
     if (rate != "") head = head OFS rate "_per_s"
     print head
@@ -50,6 +52,11 @@ END {
         }
         seconds = median(s, repeats)
         text = settings[i] OFS sprintf("%.6g\t%.6g\t%.6g\t%s\t%.4g", seconds, least, most, against ? sprintf("%.3f", median(q, repeats)) : "-", median(m, repeats))
+        for (k = 1; k <= also; k++) {
+            has = 1
+            for (r = 1; r <= repeats; r++) { has = has && ((too[k], i, r) in timed); if (has) s[r] = timed[too[k], i, r] }
+            text = text OFS (has ? sprintf("%.4g", median(s, repeats)) : "-")
+        }
         text = text OFS (((i, "error") in value) ? value[i, "error"] : "-") OFS (((i, "unit") in value) ? value[i, "unit"] : "-")
         for (k = 1; k <= orders; k++) text = text OFS (((i, order[k]) in value) ? value[i, order[k]] : "-")
         if (rate != "") text = text OFS sprintf("%.4g", seconds > 0 ? value[i, rate] / seconds : 0)

@@ -60,6 +60,14 @@ what_is_no_time_must_repeat()
     bench 1 trivial "$B"; says "things was 10 and is 11 in repeat 2"
 }
 
+times_of_a_bench_s_own_need_not_repeat()
+{
+    trivial
+    sed -i 's|rate=things|rate=things timed=laps|; s|things %d\\n", t|things %d\\nlaps %d\\n", t|; s|10 \* k }|10 * k, 7 + n }|' "$BENCHES/trivial.sh"
+    bench 0 trivial "$B"
+    [ "$(cell "$BENCH_OUT/trivial.tsv" ours 10 laps)" = 8 ] || { cat "$BENCH_OUT/trivial.tsv"; fail "the column has not the median"; }
+}
+
 a_failing_sample_is_named()
 {
     trivial
@@ -100,5 +108,5 @@ make_says_what_a_comparison_needs()
     grep -q 'no-such-revision' "$scratch/err" || fail "the revision is not named"
 }
 
-for t in a_trivial_bench_writes_the_right_table the_plot_is_an_svg_with_every_line what_is_no_time_must_repeat a_failing_sample_is_named \
+for t in a_trivial_bench_writes_the_right_table the_plot_is_an_svg_with_every_line what_is_no_time_must_repeat times_of_a_bench_s_own_need_not_repeat a_failing_sample_is_named \
     a_bench_says_what_it_misses two_builds_are_compared_pair_by_pair make_says_what_a_comparison_needs; do run "$t"; done

@@ -1,0 +1,220 @@
+# depth.sh - segment_depth: error against time, by each of its knobs, on rectified pairs and on scenes with known depth.
+#
+# Pairs: teddy, cones, venus, Art, Books, motorcycle of the Middlebury stereo sets, in BENCH_PAIRS (../shared/data/middlebury;
+# without that folder only scenes are measured). Both views get their depth, so that rounds can compare them; the left one is
+# judged. Error: bad-2, the part of pixels seen by both whose disparity is off by more than 2 px of the full picture
+# (stereo_score.c), mean over the pairs; each pair has a column of its own. Scenes: BENCH_SCENES (still-life), any of scenes/ whose
+# scene.mk has a TRUTH; `make sfm` is run for them first, their views are BENCH_SCENE_SIZE (0.5) of the photos' size, and
+# error is depth.bad2_visible of docs/evaluation.md, with the relative errors beside it.
+#
+# The default setting is in every panel; a panel turns one knob. Constant z is the thesis' form: slants cost more than they can gain. Baseline:
+# OpenCV's StereoSGBM (stereo_sgbm.c) on the same views: its best settings, left-right checked and filled; block is its window; `plain` is what it gives if the
+# pictures get no margin for the columns on the left. It makes the depth of one view, ours of two.
+# seconds: wall time of the programs over all items of the set, in BENCH_THREADS (1) threads; core_s_per_mp: processor time over the
+# megapixels of all views that got a depth, all rounds included; size: of the views, as a part of the photos'; the rows of the sweep `threads` are about seconds alone.
+title="Depth maps: error against time"
+note="Lower left is better. A panel turns one knob; the other knobs are at their defaults."
+baseline=SGBM
+match="set sweep size"
+timed=core_s_per_mp
+line=series label=value panel="set sweep"
+x=core_s_per_mp x_label="Core-seconds per megapixel of view" y_label="Pixels off by more than 2 px (%)"
+
+pairs=${BENCH_PAIRS-../shared/data/middlebury}
+scenes=${BENCH_SCENES-still-life}
+scene_size=${BENCH_SCENE_SIZE:-0.5}
+threads=${BENCH_THREADS:-1}
+
+# said FILE NAME: the last value of NAME in lines "NAME VALUE"
+said() { awk -v k="$2" '$1 == k { v = $2 } END { print v }' "$1"; }
+quietly() { "$@" >"$work/words" 2>&1 || { tail -n 5 "$work/words" >&2; missing "${1##*/} failed on the bench's input."; }; }
+
+# ITEM is a pair or a scene: photos, records, sfm, truth in $work/ITEM, and the knobs that it needs in $work/ITEM/knobs
+prepare_pair() # NAME
+{
+    local to=$work/$1 v
+    "$B/tests/bench/stereo_pair" --pair "$pairs/$1" --out "$to" >"$work/pair" 2>"$work/words" || { cat "$work/words" >&2; missing "$pairs/$1 cannot be used."; }
+    quietly "$B/bin/import_photos" --photos "$to/photos" --out "$to/records"
+    mkdir "$to/sfm" # as the stage sfm leaves it: nothing has to be found
+    mv "$to/model" "$to/sfm/0"
+    printf 'remodel-sfm 1\n0 colmap\n' >"$to/sfm/models.txt"
+    for v in left right; do echo "$v $(said "$to/records/$v.txt" hash)"; done >"$to/sfm/photos.txt"
+    said "$work/pair" near >"$to/near"
+    printf '%s\n' --set "near=$(cat "$to/near")" --set far=1000 >"$to/knobs"
+}
+prepare_scene() # NAME
+{
+    local to=$work/$1 mk=scenes/$1/scene.mk photos truth
+    photos=$(sed -n 's/^PHOTOS *:*= *//p' "$mk" 2>/dev/null) truth=$(sed -n 's/^TRUTH *:*= *//p' "$mk" 2>/dev/null)
+    if [ -z "$photos" ] || [ -z "$truth" ]; then missing "$mk names no PHOTOS or no TRUTH; BENCH_SCENES=\"NAMES\" are scenes with both."; fi
+    echo "depth: photos and cameras of $1 (make SCENE=$1 sfm)" >&2
+    "${MAKE:-make}" --no-print-directory SCENE="$1" QUALITY=default sfm >"$work/words" 2>&1 || { tail -n 5 "$work/words" >&2; missing "make SCENE=$1 sfm failed."; }
+    mkdir -p "$to"
+    if grep -q '^BRACKETED := yes' "out/$1/photos/photos.mk"; then photos=out/$1/hdr; fi
+    ln -s "$(realpath "$photos")" "$to/photos"
+    ln -s "$(realpath "out/$1/photos")" "$to/records"
+    ln -s "$(realpath "out/$1/sfm")" "$to/sfm"
+    ln -s "$(realpath "$truth")" "$to/truth"
+    : >"$to/knobs"
+}
+
+prepare()
+{
+    [ -x "$B/bin/segment_depth" ] || missing "there is no program $B/bin/segment_depth."
+    "$B/bin/segment_depth" --print-config >"$work/defaults"
+    local p s
+    found_pairs=
+    for p in teddy cones venus Art Books motorcycle; do
+        if [ -d "$pairs/$p" ]; then prepare_pair "$p"; found_pairs+=" $p"; fi
+    done
+    [ -n "$found_pairs" ] || echo "depth: there are no Middlebury pairs in '$pairs' (BENCH_PAIRS=DIR says where they are), so there are only scenes, and no baseline." >&2
+    for s in $scenes; do prepare_scene "$s"; done
+    [ -n "$found_pairs$scenes" ] || missing "there are neither pairs nor scenes."
+}
+
+default_of() { sed -n "s/^$1 = //p" "$work/defaults"; }
+
+settings()
+{
+    printf 'series\tset\tsweep\tvalue\tsize\n'
+    # SERIES SET SWEEP VALUE
+    row()
+    {
+        local size=1
+        [ "$2" = Middlebury ] || size=$scene_size
+        [ "$3" != resolution ] || size=$4
+        printf '%s\t%s\t%s\t%s\t%s\n' "$@" "$size"
+    }
+    sweep() # SET KNOB SERIES VALUES...: with the default among them, in order
+    {
+        local set=$1 knob=$2 series=$3 v; shift 3
+        for v in $(printf '%s\n' "$@" "$(default_of "$knob")" | sort -gu); do row "$series" "$set" "$knob" "$v"; done
+    }
+    local v s
+    if [ -n "$found_pairs" ]; then
+        for s in slanted 'constant z'; do sweep Middlebury rounds "$s" 0 1 2; done
+        for v in 'block 1' 'block 3' 'block 5' plain; do row SGBM Middlebury rounds "$v"; done
+        for s in slanted 'constant z'; do for v in ${BENCH_SIZES:-0.5 0.7 1}; do row "$s" Middlebury resolution "$v"; done; done
+        for v in ${BENCH_SIZES:-0.5 0.7 1}; do row SGBM Middlebury resolution "$v"; done
+        sweep Middlebury segment_pixels slanted 32 128 256; row SGBM Middlebury segment_pixels 'block 1'
+        sweep Middlebury planes slanted 8 16 32; row SGBM Middlebury planes 'block 1'
+        sweep Middlebury passes slanted 0 1 2; row SGBM Middlebury passes 'block 1'
+        [ "$(nproc)" = 1 ] || for v in 1 2; do row slanted Middlebury threads "$v"; done
+    fi
+    for v in $scenes; do
+        sweep "$v" neighbours slanted 1 2 8
+        row 'constant z' "$v" neighbours "$(default_of neighbours)"
+    done
+}
+
+# views ITEM SIZE: the folder of its rectified views at this part of the photos' size; made once
+views()
+{
+    local from=$work/$1 to=$work/$1/views@$2 limit=0 v
+    if [ ! -e "$to/views.mk" ]; then
+        [ "$2" = 1 ] || limit=$(cat "$from"/records/*.txt | awk -v s="$2" '$1 == "size" { print $2 * $3 * s * s * 1e-6; exit }')
+        quietly "$B/bin/sfm_import" --sfm "$from/sfm/" --records "$from/records" --set "max_megapixels=$limit" --out "$to"
+        for v in $(sed -n 's/^VIEWS := //p' "$to/views.mk"); do
+            quietly "$B/bin/rectify" --view "$v" --photos "$from/photos/" --records "$from/records" --views "$to" --out "$to/$v.exr"
+        done
+    fi
+    echo "$to"
+}
+megapixels() { awk '/^[^#]/ && NF >= 8 { n += $3 * $4 } END { print n * 1e-6 }' "$1/cameras.txt"; }
+
+# a sample's sums: use_of_* gathers "seconds cpu peak megapixels" a process; judged_*: "ITEM NAME VALUE" a figure
+use() # FILE MEGAPIXELS COMMAND...
+{
+    local to=$1 mp=$2; shift 2
+    measured "$@" >"$work/use1" || return
+    echo "$(said "$work/use1" seconds) $(said "$work/use1" cpu_seconds) $(said "$work/use1" peak_mib) $mp" >>"$to"
+}
+# the lines of a sample; error is the mean over the items
+sums() # USES JUDGED
+{
+    awk '{ s += $1; c += $2; mp += $4; if ($3 > peak) peak = $3 } END { printf "seconds %.6f\npeak_mib %.1f\ncore_s_per_mp %.4g\n", s, peak, c / mp }' "$1"
+    awk '{ if (!(($2) in n)) order[++k] = $2; n[$2]++; sum[$2] += $3; items[$1] = 1; if ($2 == "error") { own[++m] = $1; bad[m] = $3 } }
+        END {
+            for (i = 1; i <= k; i++) printf "%s %.4g\n", order[i], sum[order[i]] / n[order[i]]
+            print "unit %"
+            for (i = 1; m > 1 && i <= m; i++) printf "%s %.4g\n", own[i], bad[i]
+        }' "$2"
+}
+
+judge() # ITEM SIZE DEPTH: of a pair DEPTH is the left view's file, of a scene a folder; prints "ITEM NAME VALUE" lines
+{
+    local of=$work/$1 folder=$fast/judged
+    if [ -d "$3" ]; then
+        rm -rf "$folder"; mkdir -p "$folder"
+        ln -s "$of/views@$2" "$folder/views"; ln -s "$3" "$folder/depth"
+        "$B/bin/evaluate" --folder "$folder" --shared "$(dirname "$(realpath "$of/records")")" --truth "$of/truth/" --out "$folder/metrics.tsv" 2>"$work/err" || return
+        awk -v item="$1" 'BEGIN { n = split("depth.bad2_visible error depth.bad1_visible bad1 depth.known known depth.error50_visible relative50 depth.error90_visible relative90", w, " ")
+                for (i = 1; i < n; i += 2) name[w[i]] = w[i + 1] }
+            $1 in name { print item, name[$1], $2 }' "$folder/metrics.tsv"
+    else
+        "$B/tests/bench/stereo_score" --truth "$of/truth" --views "$of/views@$2" --depth "$3" 2>"$work/err" | awk -v item="$1" '$1 ~ /^(error|bad1|known)$/ { print item, $1, $2 }'
+    fi
+}
+
+# Rounds build on each other, and the default stands in every panel: what a setting gave is kept for the rest of the repeat, and
+# the depth of the last round that was made until another setting is asked for.
+solved() # KEY SIZE ITEMS ROUND THREADS ARGS...: makes $fast/KEY.ROUND, a sample's lines
+{
+    local key=$1 size=$2 items=$3 round=$4 threads=$5 now=$fast/rounds k item v in before args; shift 5
+    [ ! -e "$fast/$key.$round" ] || return 0
+    [ -e "$now/key" ] && [ "$(cat "$now/key")" = "$key" ] && [ "$(cat "$now/next")" -le "$round" ] || { rm -rf "$now"; mkdir "$now"; echo "$key" >"$now/key"; echo 0 >"$now/next"; }
+    for ((k = $(cat "$now/next"); k <= round; k++)); do
+        : >"$now/judged"
+        for item in $items; do
+            in=$(views "$item" "$size") before=()
+            [ "$k" = 0 ] || before=(--before "$now/$item.$((k - 1))")
+            mkdir "$now/$item.$k"
+            mapfile -t args <"$work/$item/knobs"
+            for v in $(sed -n 's/^VIEWS := //p' "$in/views.mk"); do
+                use "$now/uses" 0 "$B/bin/segment_depth" --threads "$threads" "${args[@]}" "$@" --views "$in" --view "$v" "${before[@]}" --out "$now/$item.$k/$v.exr" || return
+            done
+            [ "$k" = 0 ] || rm -r "$now/$item.$((k - 1))"
+            [ "$k" != 0 ] || echo "0 0 0 $(megapixels "$in")" >>"$now/uses"
+            if [ -e "$work/$item/near" ]; then v=/left.exr; else v=; fi
+            judge "$item" "$size" "$now/$item.$k$v" >>"$now/judged" || return
+        done
+        sums "$now/uses" "$now/judged" >"$fast/$key.$k"
+        echo $((k + 1)) >"$now/next"
+    done
+}
+
+sgbm() # KEY SIZE ARGS...
+{
+    local key=$1 size=$2 item in; shift 2
+    [ ! -e "$fast/$key" ] || return 0
+    rm -f "$fast/uses" "$fast/judged.txt"
+    for item in $found_pairs; do
+        in=$(views "$item" "$size")
+        use "$fast/uses" "$(megapixels "$in" | awk '{ print $1 / 2 }')" "$B/tests/bench/stereo_sgbm" --views "$in" --set "near=$(cat "$work/$item/near")" "$@" --out "$fast/sgbm.exr" &&
+            judge "$item" "$size" "$fast/sgbm.exr" >>"$fast/judged.txt" || return
+    done
+    sums "$fast/uses" "$fast/judged.txt" >"$fast/$key"
+}
+
+sample() # SERIES SET SWEEP VALUE SIZE
+{
+    local size=$5 items=$found_pairs rounds on=$threads args=() key
+    rounds=$(default_of rounds)
+    [ "$2" = Middlebury ] || items=$2
+    if [ "$1" = SGBM ]; then
+        case $4 in block*) args=(--set "block=${4#block }") ;; plain) args=(--set widen=no) ;; esac
+        key="SGBM $r ${B//\//_} $size ${args[*]#block=1}"
+        sgbm "$key" "$size" "${args[@]}" && cat "$fast/$key"
+        return
+    fi
+    [ "$1" = slanted ] || args+=(--set slant=10)
+    case $3 in
+    rounds) rounds=$4 ;;
+    resolution) ;;
+    threads) on=$4 ;;
+    *) [ "$4" = "$(default_of "$3")" ] || args+=(--set "$3=$4") ;;
+    esac
+    key="$2 $r ${B//\//_} $size $on ${args[*]}"
+    solved "$key" "$size" "$items" "$rounds" "$on" "${args[@]}" || return
+    if [ "$3" = threads ]; then grep -v '^core_s_per_mp ' "$fast/$key.$rounds"; else cat "$fast/$key.$rounds"; fi
+}
