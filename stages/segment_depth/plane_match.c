@@ -38,7 +38,8 @@ static uint8_t byte_from(float x) { return (uint8_t)(x <= 0 ? 0 : x >= 255 ? 255
 #define HIDDEN_COST 0.67f
 #define RANK_WEIGHT 0.6
 
-#define LEAST_CONTRAST 0.05 /* between good and chance matches: pictures that show nothing at all */
+#define USEFUL_CONTRAST 0.25 /* of the best neighbour's: below it one shows something else, or nothing */
+#define LEAST_CONTRAST  0.05 /* between good and chance matches: pictures that show nothing at all */
 
 struct pack_job {
     const struct gamma_image *g;
@@ -439,8 +440,11 @@ static float ranked_cost(const struct matcher *m, int segment, int pixels, struc
               end = pixels < m->segments->segments[segment].pixels ? begin + pixels : m->first[segment + 1];
     const float unseen = m->unseen ? m->unseen[segment] : UNSEEN_COST;
     int count = 0;
+    int useful = 0;
     for (int k = 0; k < m->neighbour_count; k++) {
         int seen = pixels, at;
+        if (m->useless >> k & 1) continue;
+        useful++;
         float cost = m->hidden ? m->hidden[segment] : HIDDEN_COST;
         if (!(hidden >> k & 1))
             cost = (neighbour_cost(m, &m->neighbours[k], begin, end, plane, &seen) - m->good) / (m->random - m->good);
@@ -450,11 +454,11 @@ static float ranked_cost(const struct matcher *m, int segment, int pixels, struc
         costs[at] = cost;
     }
     double sum = 0, total = 0, weight = 1;
-    for (int k = 0; k < m->neighbour_count; k++, weight *= RANK_WEIGHT) {
+    for (int k = 0; k < useful; k++, weight *= RANK_WEIGHT) {
         sum += weight * (double)(k < count ? costs[k] : unseen);
         total += weight;
     }
-    return (float)(sum / total);
+    return useful ? (float)(sum / total) : unseen;
 }
 
 float match_cost(const struct matcher *m, int segment, struct plane plane, unsigned hidden)
@@ -477,8 +481,9 @@ float match_cost_half(const struct matcher *m, int segment, struct plane plane, 
 struct calibration {
     struct matcher *m;
     double least, most;
-    float *best, *mean; /* raw costs of each segment over depths and neighbours; best 2: never seen */
+    float *best, *mean; /* raw costs over depths, of each segment in each neighbour; UNSEEN: it is not in sight */
 };
+#define UNSEEN 2.0f
 
 static void calibrate_segments(void *ctx, size_t begin, size_t end, int thread)
 {
@@ -486,13 +491,12 @@ static void calibrate_segments(void *ctx, size_t begin, size_t end, int thread)
     const struct calibration *job = ctx;
     const struct matcher *m = job->m;
     (void)thread;
-    for (size_t i = begin; i < end; i++) {
-        const int pixels = half_of(m->segments->segments[i].pixels);
-        double best_sum = 0, mean_sum = 0;
-        int count = 0;
+    for (size_t i = begin; i < end; i++)
         for (int k = 0; k < m->neighbour_count; k++) {
+            const int pixels = half_of(m->segments->segments[i].pixels);
+            const size_t at = i * MAX_NEIGHBOURS + (size_t)k;
             double best = 1, sum = 0;
-            int seen_at = 0;
+            int count = 0;
             for (int d = 0; d < DEPTHS; d++) {
                 const struct plane plane = {0, 0, job->least + (job->most - job->least) * d / (DEPTHS - 1)};
                 int seen;
@@ -501,44 +505,61 @@ static void calibrate_segments(void *ctx, size_t begin, size_t end, int thread)
                 if (2 * seen < pixels) continue;
                 best = fmin(best, cost);
                 sum += cost;
-                seen_at++;
+                count++;
             }
-            if (2 * seen_at < DEPTHS) continue;
-            best_sum += best;
-            mean_sum += sum / seen_at;
+            job->best[at] = 2 * count >= DEPTHS ? (float)best : UNSEEN;
+            job->mean[at] = 2 * count >= DEPTHS ? (float)(sum / count) : UNSEEN;
+        }
+}
+
+/* Means over segments and the neighbours of which `use` has the bit. False: no segment is in sight of any. */
+static bool mean_costs(const struct calibration *job, int begin, int end, unsigned use, double *good, double *random)
+{
+    int count = 0;
+    *good = *random = 0;
+    for (int i = begin; i < end; i++)
+        for (int k = 0; k < job->m->neighbour_count; k++) {
+            const size_t at = (size_t)i * MAX_NEIGHBOURS + (size_t)k;
+            if (!(use >> k & 1) || !(job->best[at] < UNSEEN)) continue;
+            *good += (double)job->best[at];
+            *random += (double)job->mean[at];
             count++;
         }
-        job->best[i] = count ? (float)(best_sum / count) : 2;
-        job->mean[i] = count ? (float)(mean_sum / count) : 2;
-    }
+    if (!count) return false;
+    *good /= count;
+    *random /= count;
+    return true;
 }
 
 enum status matcher_calibrate(struct matcher *m, double least, double most, struct err *err)
 {
     const int count = m->segments->count;
-    double good = 0, random = 0;
-    int seen = 0;
-    struct calibration job = {m, least, most, malloc(((size_t)count + 1) * sizeof(float)),
-                              malloc(((size_t)count + 1) * sizeof(float))};
+    const size_t costs = (size_t)count * MAX_NEIGHBOURS + 1;
+    struct calibration job = {m, least, most, malloc(costs * sizeof(float)), malloc(costs * sizeof(float))};
+    double good, random, contrast[MAX_NEIGHBOURS] = {0}, most_contrast = 0;
     m->unseen = malloc(((size_t)count + 1) * sizeof *m->unseen);
     m->hidden = malloc(((size_t)count + 1) * sizeof *m->hidden);
     enum status st = job.best && job.mean && m->unseen && m->hidden
                          ? ST_OK
-                         : err_nomem(err, "costs of segments", (size_t)count * 16);
+                         : err_nomem(err, "costs of segments", costs * 2 * sizeof(float));
     if (!st) parallel_for((size_t)count, 32, calibrate_segments, &job);
-    for (int i = 0; !st && i < count; i++)
-        if (job.best[i] <= 1) {
-            good += (double)job.best[i];
-            random += (double)job.mean[i];
-            seen++;
-        }
-    if (!st && seen) {
-        m->good = (float)(good / seen);
-        m->random = (float)fmax(random / seen, good / seen + LEAST_CONTRAST);
+    for (int k = 0; !st && k < m->neighbour_count; k++) {
+        if (mean_costs(&job, 0, count, 1u << k, &good, &random)) contrast[k] = random - good;
+        most_contrast = fmax(most_contrast, contrast[k]);
+    }
+    m->useless = 0;
+    for (int k = 0; k < m->neighbour_count; k++)
+        if (contrast[k] < USEFUL_CONTRAST * most_contrast) m->useless |= 1u << k;
+    if (!st && mean_costs(&job, 0, count, ~m->useless, &good, &random)) {
+        m->good = (float)good;
+        m->random = (float)fmax(random, good + LEAST_CONTRAST);
     }
     for (int i = 0; !st && i < count; i++) {
-        const float best = (job.best[i] - m->good) / (m->random - m->good);
-        const float spread = (job.mean[i] - job.best[i]) / (m->random - m->good);
+        m->unseen[i] = UNSEEN_COST;
+        m->hidden[i] = HIDDEN_COST;
+        if (!mean_costs(&job, i, i + 1, ~m->useless, &good, &random)) continue;
+        const float best = ((float)good - m->good) / (m->random - m->good);
+        const float spread = (float)(random - good) / (m->random - m->good);
         m->unseen[i] = fminf(UNSEEN_COST, best + UNSEEN_COST * spread);
         m->hidden[i] = fminf(HIDDEN_COST, best + HIDDEN_COST * spread);
     }

@@ -46,6 +46,7 @@ struct matcher {
     int16_t *features; /* eight a pixel */
     struct match_neighbour neighbours[MAX_NEIGHBOURS];
     int neighbour_count;
+    unsigned useless;       /* bit k: neighbour k tells good matches from chance ones hardly, and is not looked at */
     float good, random;     /* raw costs of a good match and of a chance one */
     float *unseen, *hidden; /* of each segment: what a neighbour costs that cannot see it, or that it is hidden from */
 };
@@ -67,7 +68,7 @@ enum status matcher_add(struct matcher *m, const struct camera_set *set, int vie
                         struct gamma_image *picture, struct err *err);
 /* Measures what good and chance matches cost at inverse depths from least to most. A segment that cannot be seen costs a part
  * of the way from its best match to its mean one, so that a blank one, which matches everywhere, is not drawn to where it
- * would be seen. To be called once, after the last neighbour and before the first cost. */
+ * would be seen. A neighbour that tells good from chance far less than the best one is left out. To be called once, after the last neighbour and before the first cost. */
 enum status matcher_calibrate(struct matcher *m, double least, double most, struct err *err);
 void matcher_release(struct matcher *m);
 

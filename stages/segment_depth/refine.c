@@ -33,8 +33,8 @@ static double prior_cost(const struct refine *r, int i, struct plane p)
 
 static void try_plane(struct refine *r, int i, struct plane p, double *best)
 {
-    const double prior = prior_cost(r, i, p);
-    if (prior >= *best) return;
+    const double prior = prior_cost(r, i, p), size = (double)r->s->segments[i].pixels / r->p->params->segment_pixels;
+    if (prior + size * (double)MATCH_BEST >= *best) return;
     const float unary = problem_unary(r->p, i, p);
     if (prior + (double)unary < *best) {
         *best = prior + (double)unary;
