@@ -55,22 +55,85 @@ static double angle_weight(double degrees)
     return degrees <= 20 ? 1 : exp(-pow((degrees - 20) / 12, 2));
 }
 
-/* Score of every view given those chosen already; shared[] counts the points in common. */
-static void score_views(double *score, int *shared, const struct camera_set *set, int view_idx,
-                        const struct seen_points *seen, const int *chosen, int chosen_count)
+#define GRID    12   /* tiles that a view is cut into, each way */
+#define COVERED 2.0  /* what a point seen by a view that is chosen already takes from its tile */
+#define FRAMED  0.25 /* weight of a tile whose points only other views saw: they may be hidden here */
+
+/* A point that tells which views see a tile: the view's own, and where it has none in a tile, all that project there. */
+struct witness {
+    const struct sfm_point *point;
+    double inverse_z;
+    int tile;
+    bool seen;
+};
+
+struct witnesses {
+    struct witness *list;
+    int count, of_tile[GRID * GRID];
+};
+
+static int tile_of(const struct view *view, double u, double v)
+{
+    const double x = fmin(fmax(u / view->width, 0), 0.999), y = fmin(fmax(v / view->height, 0), 0.999);
+    return (int)(y * GRID) * GRID + (int)(x * GRID);
+}
+
+static bool track_has(const struct sfm_point *p, int image_idx)
+{
+    for (int k = 0; k < p->track_count; k++)
+        if (p->track[k].image_idx == image_idx) return true;
+    return false;
+}
+
+static enum status find_witnesses(struct witnesses *w, const struct camera_set *set, int view_idx,
+                                  const struct seen_points *seen, struct err *err)
 {
     const struct view *view = &set->views[view_idx];
-    for (int j = 0; j < set->view_count; j++) score[j] = shared[j] = 0;
+    const struct sfm_model *m = &set->model;
+    int own[GRID * GRID] = {0};
+    *w = (struct witnesses){0};
+    w->list = malloc(((size_t)seen->count + (size_t)m->point_count + 1) * sizeof *w->list);
+    if (!w->list) return err_nomem(err, "points in the frame", (size_t)m->point_count * sizeof *w->list);
     for (int i = 0; i < seen->count; i++) {
-        const struct sfm_point *p = &set->model.points[seen->points[i].point_idx];
+        const struct seen_point *p = &seen->points[i];
+        const int tile = tile_of(view, p->u, p->v);
+        own[tile]++;
+        w->list[w->count++] = (struct witness){&m->points[p->point_idx], p->inverse_z, tile, true};
+    }
+    for (int i = 0; i < m->point_count; i++) {
+        double u, v, z = view_project(view, m->points[i].position, &u, &v);
+        if (!(z > 0) || !(u >= 0 && v >= 0 && u < view->width && v < view->height)) continue;
+        const int tile = tile_of(view, u, v);
+        if (!own[tile]) w->list[w->count++] = (struct witness){&m->points[i], 1 / z, tile, false};
+    }
+    for (int i = 0; i < w->count; i++) w->of_tile[w->list[i].tile]++;
+    return ST_OK;
+}
+
+/* Score of every view given those chosen already; shared[] counts the points in common. The points of a tile together count as
+ * one, so that a wall with few is worth as much as a shelf with many; and the less, the more of the views chosen already see the tile. */
+static void score_views(double *score, int *shared, const struct camera_set *set, int view_idx,
+                        const struct witnesses *witnesses, const int *chosen, int chosen_count)
+{
+    const struct view *view = &set->views[view_idx];
+    int covered[GRID * GRID] = {0};
+    for (int j = 0; j < set->view_count; j++) score[j] = shared[j] = 0;
+    for (int i = 0; i < witnesses->count; i++)
+        for (int c = 0; c < chosen_count; c++)
+            covered[witnesses->list[i].tile] += track_has(witnesses->list[i].point, chosen[c]);
+    for (int i = 0; i < witnesses->count; i++) {
+        const struct witness *at = &witnesses->list[i];
+        const struct sfm_point *p = at->point;
+        const double share = (at->seen ? 1 : FRAMED) / (witnesses->of_tile[at->tile] + COVERED * covered[at->tile]);
         for (int k = 0; k < p->track_count; k++) {
             int j = p->track[k].image_idx;
             if (j == view_idx || j >= set->view_count) continue;
             const struct view *other = &set->views[j];
             double u, v, z = view_project(other, p->position, &u, &v);
             if (!(z > 0)) continue;
-            double scale = other->fx / z / (view->fx * seen->points[i].inverse_z);
-            double w = angle_weight(angle_at(p->position, view->center, other->center)) * fmin(scale, 1 / scale);
+            double scale = other->fx / z / (view->fx * at->inverse_z);
+            double w =
+                share * angle_weight(angle_at(p->position, view->center, other->center)) * fmin(scale, 1 / scale);
             for (int c = 0; c < chosen_count; c++)
                 w *= fmin(1, 0.2 + angle_at(p->position, set->views[chosen[c]].center, other->center) / 5);
             score[j] += w;
@@ -111,6 +174,7 @@ enum status neighbours_choose(int neighbours[MAX_NEIGHBOURS], int *count, const 
                               const struct seen_points *seen, int most, struct err *err)
 {
     double *score = malloc((size_t)set->view_count * sizeof *score);
+    struct witnesses witnesses = {0};
     int *shared = malloc((size_t)set->view_count * sizeof *shared), best = 0;
     enum status st = ST_OK;
     *count = 0;
@@ -119,8 +183,9 @@ enum status neighbours_choose(int neighbours[MAX_NEIGHBOURS], int *count, const 
         goto done;
     }
     double first_score = 0;
+    if ((st = find_witnesses(&witnesses, set, view_idx, seen, err))) goto done;
     while (*count < most && *count < MAX_NEIGHBOURS && best >= 0) {
-        score_views(score, shared, set, view_idx, seen, neighbours, *count);
+        score_views(score, shared, set, view_idx, &witnesses, neighbours, *count);
         best = best_view(score, shared, set->view_count, view_idx, neighbours, *count);
         if (*count == 0 && best >= 0) first_score = score[best];
         /* a view that adds next to nothing costs as much time as a good one */
@@ -144,6 +209,7 @@ enum status neighbours_choose(int neighbours[MAX_NEIGHBOURS], int *count, const 
 done:
     free(score);
     free(shared);
+    free(witnesses.list);
     return st;
 }
 

@@ -26,7 +26,9 @@ void seen_points_release(struct seen_points *seen);
  *
  * A candidate's score sums over the points that both saw: how well the triangle (view, point, candidate) measures depth -
  * full between 5 and 20 degrees, little at 0 and beyond 45 -, how alike the two scales are, and whether it adds a
- * direction to those already chosen (Goesele et al. 2007). Where points are too few, nearness and viewing
+ * direction to those already chosen (Goesele et al. 2007). The view is cut into tiles that count alike, however many points
+ * they hold, and the less, the more of the chosen views already see them: a wall with few points needs a neighbour
+ * too. In a tile where the view saw no point, those of other views that project there speak, more softly. Where points are too few, nearness and viewing
  * direction decide. ST_DATA: no other view can be matched; the sentence says why. */
 enum status neighbours_choose(int neighbours[MAX_NEIGHBOURS], int *count, const struct camera_set *set, int view_idx,
                               const struct seen_points *seen, int most, struct err *err);

@@ -19,22 +19,26 @@
 /* Truncations (in bytes) and weights, found by trial on pairs with known disparities. Gradients are divided by their
  * deviation in the surroundings, which lets weak texture count and exposure not; they are trusted more than colours, as in
  * PatchMatch Stereo (Bleyer 2011). */
-#define SURROUNDINGS 2 /* px: half width of the window that gradients are measured against */
+#define SURROUNDINGS 1 /* px: half width of the window that gradients are measured against */
 #define DEVIATION    20.0f
-#define NOISE        3.0f /* grey levels: gradients of this size are half believed */
-enum { COLOUR_LIMIT = 24, FINE_LIMIT = 14, COARSE_LIMIT = 14 };
-enum { COLOUR_WEIGHT = 14, FINE_WEIGHT = 50, COARSE_WEIGHT = 6, VALID_WEIGHT = 1000 };
+#define NOISE        2.0f /* grey levels: gradients of this size are half believed */
+enum { COLOUR_LIMIT = 16, FINE_LIMIT = 14, COARSE_LIMIT = 14 };
+enum { COLOUR_WEIGHT = 10, FINE_WEIGHT = 50, COARSE_WEIGHT = 3, VALID_WEIGHT = 1000 };
 enum {
     WORST = UNIT * (3 * COLOUR_LIMIT * COLOUR_WEIGHT + 2 * FINE_LIMIT * FINE_WEIGHT + 2 * COARSE_LIMIT * COARSE_WEIGHT),
     OUT_OF_SIGHT = WORST + 1,
 };
+
+#define EDGE_REACH      2    /* px */
+#define EDGE_FALLOFF    0.5  /* a px: how much less the edge at some distance matters */
+#define EDGE_DIFFERENCE 15.0 /* grey levels: halves what a pixel counts */
 
 static uint8_t byte_from(float x) { return (uint8_t)(x <= 0 ? 0 : x >= 255 ? 255 : x + 0.5f); }
 
 /* Of a neighbour: the cost where it does not see the segment, or another surface hides the segment from it, as its own
  * depth says; and its weight against that of the next better one. At most MATCH_WORST, for a match of texture with a
  * blank wall must not look better than one with other texture. */
-#define UNSEEN_COST 0.4f
+#define UNSEEN_COST 0.5f
 #define HIDDEN_COST 0.67f
 #define RANK_WEIGHT 0.6
 
@@ -154,8 +158,35 @@ static uint8_t *pack(const struct gamma_image *g, const double gain[3], double t
     return packed;
 }
 
-static void put_pixel(struct matcher *m, int i, int pixel, const uint8_t *packed)
+/* What a pixel counts. One beside an edge of its segment has the edge in its gradients, and an edge moves with what stands
+ * in front: the surface behind would be matched at that depth. So the more its colour differs from that of a near pixel
+ * of another segment, the less it counts. */
+#define FULL_WEIGHT 16
+static int edge_weight(const struct segmentation *s, const uint8_t *packed, int pixel)
 {
+    const int x = pixel % s->width, y = pixel / s->width;
+    const uint8_t *own = packed + (size_t)pixel * CHANNELS;
+    double most = 0;
+    for (int j = -EDGE_REACH; j <= EDGE_REACH; j++)
+        for (int i = -EDGE_REACH; i <= EDGE_REACH; i++) {
+            const int other = inside(y + j, s->height) * s->width + inside(x + i, s->width);
+            if (s->label[other] == s->label[pixel]) continue;
+            const uint8_t *theirs = packed + (size_t)other * CHANNELS;
+            int difference = 0;
+            for (int c = 0; c < 3; c++) {
+                const int d = abs(own[c] - theirs[c]);
+                difference = d > difference ? d : difference;
+            }
+            most = fmax(most, difference / (1 + EDGE_FALLOFF * (hypot(i, j) - 1)));
+        }
+    const int weight = (int)(FULL_WEIGHT / (1 + most * most / (EDGE_DIFFERENCE * EDGE_DIFFERENCE)) + 0.5);
+    return weight < 1 ? 1 : weight;
+}
+
+static void put_pixel(struct matcher *m, int i, int pixel, const uint8_t *packed, int weight)
+{
+    static const int lane[8] = {0, 4, 1, 5, 2, 6, 3, 7}; /* as neighbour_cost() sums them */
+    m->weight[(i & ~7) + lane[i & 7]] = weight;
     m->x[i] = (float)(pixel % m->segments->width) + 0.5f;
     m->y[i] = (float)(pixel / m->segments->width) + 0.5f;
     for (int c = 0; c < CHANNELS; c++) m->features[i * CHANNELS + c] = (int16_t)(UNIT * packed[c]);
@@ -177,9 +208,10 @@ enum status matcher_init(struct matcher *m, const struct segmentation *s, const 
     m->first[s->count] = (int)room;
     m->x = aligned_alloc(32, (room + 8) * sizeof *m->x);
     m->y = aligned_alloc(32, (room + 8) * sizeof *m->y);
+    m->weight = aligned_alloc(32, (room + 8) * sizeof *m->weight);
     m->features = aligned_alloc(32, (room + 8) * CHANNELS * sizeof *m->features);
     uint8_t *packed = pack(reference, gain, turn);
-    if (!m->x || !m->y || !m->features || !packed) {
+    if (!m->x || !m->y || !m->weight || !m->features || !packed) {
         free(packed);
         return err_nomem(err, "the pixels of a matcher", room * 24);
     }
@@ -189,9 +221,9 @@ enum status matcher_init(struct matcher *m, const struct segmentation *s, const 
         for (int odd = 0; odd < 2; odd++) /* a chessboard's white squares first: see match_cost_half */
             for (int n = 0; n < count; n++)
                 if ((pixel[n] % s->width + pixel[n] / s->width) % 2 == odd)
-                    put_pixel(m, i++, pixel[n], packed + (size_t)pixel[n] * CHANNELS);
+                    put_pixel(m, i++, pixel[n], packed + (size_t)pixel[n] * CHANNELS, edge_weight(s, packed, pixel[n]));
         for (; i < m->first[k + 1]; i++) {
-            put_pixel(m, i, pixel[0], packed + (size_t)pixel[0] * CHANNELS);
+            put_pixel(m, i, pixel[0], packed + (size_t)pixel[0] * CHANNELS, 0);
             m->features[i * CHANNELS + 7] = -UNIT * 128; /* filling: never in sight */
         }
     }
@@ -341,6 +373,7 @@ void matcher_release(struct matcher *m)
     free(m->x);
     free(m->y);
     free(m->features);
+    free(m->weight);
     *m = (struct matcher){0};
 }
 
@@ -381,7 +414,7 @@ static float neighbour_cost(const struct matcher *m, const struct match_neighbou
     const __m256 low = _mm256_set1_ps(-0.5f);
     const __m256 most_u = _mm256_add_ps(right, half), most_v = _mm256_add_ps(bottom, half);
     const __m256i stride = _mm256_set1_epi32(n->width + 1);
-    __m256i sum = _mm256_setzero_si256(), count = _mm256_setzero_si256();
+    __m256i sum = _mm256_setzero_si256(), count = _mm256_setzero_si256(), believed = count;
     for (int i = begin; i < end; i += 8) {
         __m256 x = _mm256_load_ps(m->x + i), y = _mm256_load_ps(m->y + i), p[3];
         for (int k = 0; k < 3; k++)
@@ -410,26 +443,29 @@ static float neighbour_cost(const struct matcher *m, const struct match_neighbou
         for (int k = 0; k < 4; k++)
             q[k] = pair_differences(n->texture, at + 2 * k, across + 2 * k, down + 2 * k,
                                     reference + (ptrdiff_t)(2 * k) * CHANNELS);
-        /* lanes: pixels 0 2 4 6 | 1 3 5 7; their order does not matter to integer sums, but it does to the mask */
+        /* lanes: pixels 0 2 4 6 | 1 3 5 7; their order does not matter to integer sums, but it does to mask and weight */
         __m256i cost = _mm256_hadd_epi32(_mm256_hadd_epi32(q[0], q[1]), _mm256_hadd_epi32(q[2], q[3]));
         __m256i mask =
             _mm256_permutevar8x32_epi32(_mm256_castps_si256(in_sight), _mm256_setr_epi32(0, 2, 4, 6, 1, 3, 5, 7));
         mask = _mm256_and_si256(mask, _mm256_cmpgt_epi32(_mm256_set1_epi32(OUT_OF_SIGHT), cost));
-        sum =
-            _mm256_add_epi32(sum, _mm256_srli_epi32(_mm256_and_si256(mask, cost), 4)); /* room for 2^17 pixels a lane */
+        const __m256i weight = _mm256_load_si256((const __m256i *)(m->weight + i));
+        sum = _mm256_add_epi32(sum, _mm256_mullo_epi32(_mm256_srli_epi32(_mm256_and_si256(mask, cost), 8), weight));
+        believed = _mm256_add_epi32(believed, _mm256_and_si256(mask, weight));
         count = _mm256_sub_epi32(count, mask);
     }
     _Alignas(32) uint32_t sums[8];
-    _Alignas(32) int counts[8];
+    _Alignas(32) int counts[8], weights[8];
+    _mm256_store_si256((__m256i *)weights, believed);
     _mm256_store_si256((__m256i *)sums, sum);
     _mm256_store_si256((__m256i *)counts, count);
-    int64_t total = 0;
+    int64_t total = 0, all = 0;
     *seen = 0;
     for (int k = 0; k < 8; k++) {
         total += sums[k];
         *seen += counts[k];
+        all += weights[k];
     }
-    return *seen > 0 ? (float)((double)total * 16 / ((double)WORST * *seen)) : 1;
+    return all > 0 ? (float)((double)total * 256 / ((double)WORST * (double)all)) : 1; /* weights are 1 at least */
 }
 
 /* A neighbour that sees less than half of the pixels does not see the segment. */

@@ -18,17 +18,19 @@ struct plane {
 
 static inline double plane_at(struct plane p, double u, double v) { return p.a * u + p.b * v + p.c; }
 
-/* A segment's plane stays within [PLANE_LEAST x least, PLANE_MOST x most] of the inverse depths swept, over the segment and
- * a margin around it, where its edge may be painted. */
+/* A segment's plane stays within [least, most] of the inverse depths swept at the segment's middle, and over the segment and a
+ * margin around it, where its edge may be painted, within [PLANE_LEAST x least, PLANE_MOST x most]. */
 #define PLANE_LEAST 0.7
 #define PLANE_MOST  1.3
 
 static inline bool plane_keeps_to(struct plane p, const struct segment *g, double least, double most)
 {
     const double margin = 3, u[2] = {g->x0 - margin, g->x1 + 1 + margin}, v[2] = {g->y0 - margin, g->y1 + 1 + margin};
+    const double middle = plane_at(p, g->cx, g->cy), slack = 0.02 * (most - least);
+    if (!(middle >= least - slack && middle <= most + slack)) return false;
     for (int k = 0; k < 4; k++) {
-        double d = plane_at(p, u[k & 1], v[k >> 1]);
-        if (!(d >= least && d <= most)) return false;
+        const double d = plane_at(p, u[k & 1], v[k >> 1]);
+        if (!(d >= PLANE_LEAST * least && d <= PLANE_MOST * most)) return false;
     }
     return true;
 }
@@ -44,6 +46,7 @@ struct matcher {
     int *first;        /* of each segment's pixels in x, y and features; groups of eight; count + 1 */
     float *x, *y;      /* pixel centres */
     int16_t *features; /* eight a pixel */
+    int *weight;       /* one a pixel, in the order in which they are summed */
     struct match_neighbour neighbours[MAX_NEIGHBOURS];
     int neighbour_count;
     unsigned useless;       /* bit k: neighbour k tells good matches from chance ones hardly, and is not looked at */

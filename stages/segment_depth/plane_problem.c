@@ -6,7 +6,7 @@
 float problem_unary(const struct plane_problem *p, int segment, struct plane plane)
 {
     const struct segment *g = &p->m->segments->segments[segment];
-    if (!plane_keeps_to(plane, g, PLANE_LEAST * p->least, PLANE_MOST * p->most)) return PLANE_NEVER;
+    if (!plane_keeps_to(plane, g, p->least, p->most)) return PLANE_NEVER;
     unsigned hidden = 0;
     float data = p->cross ? (float)p->params->cross_view * cross_view_cost(p->cross, segment, plane, &hidden) : 0;
     data += (p->rough ? match_cost_half : match_cost)(p->m, segment, plane, hidden) +

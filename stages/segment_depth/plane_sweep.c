@@ -39,7 +39,7 @@ static bool horizontal_plane(const struct sweep_job *job, const struct segment *
     const double a = d * down.x / (v->fx * cosine), b = d * down.y / (v->fy * cosine), rise = hypot(a, b) / w->step;
     *plane = (struct plane){a, b, d - a * g->cx - b * g->cy};
     const double most = w->least + (w->planes - 1) * w->step;
-    return rise * size > 0.5 && rise < 1 && plane_keeps_to(*plane, g, PLANE_LEAST * w->least, PLANE_MOST * most);
+    return rise * size > 0.5 && rise < 1 && plane_keeps_to(*plane, g, w->least, most);
 }
 
 static void sweep_segments(void *ctx, size_t begin, size_t end, int thread)

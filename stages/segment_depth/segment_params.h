@@ -12,7 +12,7 @@
     X(near, double, 0, 0, 1e30, "scene units", "least depth that is tried; 0: as the sparse points tell")         \
     X(far, double, 0, 0, 1e30, "scene units", "greatest depth that is tried; 0: as the sparse points tell")       \
     X(planes, int, 256, 4, 1024, "", "most planes of the sweep; fewer if a step of one pixel needs fewer")        \
-    X(smoothness, double, 1.2, 0, 100, "", "how strongly touching segments want the same depth")                  \
+    X(smoothness, double, 1.0, 0, 100, "", "how strongly touching segments want the same depth")                  \
     X(jump, double, 12, 1, 1000, "steps", "a depth difference that costs no more when it grows")                  \
     X(rounds, int, 1, 0, 9, "", "after the first one, in which views look at each other's depths")                \
     X(passes, int, 4, 0, 20, "", "refinements of the segments' planes")                                           \

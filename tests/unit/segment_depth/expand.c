@@ -177,8 +177,7 @@ static void planes_keep_to_the_depths(void **state)
         planes[i] = (struct plane){0, 0, i % 2 ? b.problem.least : b.problem.most};
     expand(planes);
     for (int i = 0; i < b.segments.count; i++)
-        assert_true(plane_keeps_to(planes[i], &b.segments.segments[i], PLANE_LEAST * b.problem.least,
-                                   PLANE_MOST * b.problem.most));
+        assert_true(plane_keeps_to(planes[i], &b.segments.segments[i], b.problem.least, b.problem.most));
     bench_release();
 }
 
