@@ -14,6 +14,7 @@ MAKEFLAGS += --no-builtin-rules
 ## SCENE=NAME: the scene to work on, scenes/NAME/
 ## PHOTOS=DIR: folder of JPEG/PNG photos; with a new SCENE it is written to scenes/SCENE/scene.mk
 ## SFM=DIR: a COLMAP (text, binary) or Bundler model of the photos, used in place of running COLMAP
+## DEPTH=DIR: depth that is known already: DIR/VIEW.exr or .png of any view (docs/formats.md); the others are matched
 ## EXCLUDE="NAMES": photos to leave out, by id or file name
 ## QUALITY=draft|default|final: configs/QUALITY.cfg; draft and final work beside the default, in out/SCENE+QUALITY
 QUALITY ?= default
@@ -89,6 +90,7 @@ ifeq ($(PHASE),)
 literal = $(if $(filter command environment,$(firstword $(origin $(1)))),$(value $(1)),$($(1)))
 export REMODEL_PHOTOS := $(call literal,PHOTOS)
 export REMODEL_SFM := $(call literal,SFM)
+export REMODEL_DEPTH := $(call literal,DEPTH)
 export REMODEL_EXCLUDE := $(call literal,EXCLUDE)
 export REMODEL_TRUTH := $(call literal,TRUTH)
 
@@ -260,8 +262,8 @@ H := $(O)/holdout
 HELD_CAMERAS := $(if $(HELDOUT),$(addprefix $(H)/views/,cameras.txt images.txt points3D.txt lenses.txt views.mk))
 HELD_EXR := $(HELD:%=$(H)/views/%.exr)
 HELD_FRAMES := $(HELD:%=$(H)/frames/%.exr)
-DEPTH := $(VIEWS:%=$(O)/depth/%.exr)
-DEPTH_TXT := $(DEPTH:.exr=.txt)
+DEPTH_EXR := $(VIEWS:%=$(O)/depth/%.exr)
+DEPTH_TXT := $(DEPTH_EXR:.exr=.txt)
 # depth comes in rounds: each reads what the one before left in its folder; the last is O/depth itself
 LAST_ROUND := $(shell sed -n 's/^rounds = //p' $(O)/slice/segment_depth.cfg 2>/dev/null)
 round = $(O)/depth$(if $(filter-out $(LAST_ROUND),$(1)),/round$(1))
@@ -308,7 +310,7 @@ picture = $(if $(BRACKETED),$(S)/hdr/$(1).exr,$(S)/photos/$(1).txt)
 hdr: $(HDR)
 sfm: $(O)/views/views.mk
 views: $(VIEW_EXR) $(HELD_EXR)
-depth: $(DEPTH) $(DEPTH_TXT)
+depth: $(DEPTH_EXR) $(DEPTH_TXT)
 points: $(POINTS)
 path: $(E)/frames.mk
 frames: $(FRAME_EXR)
@@ -325,10 +327,11 @@ $(S)/hdr/$(1).exr $(S)/hdr/$(1).jpg &: $(S)/photos/$(1).txt $(S)/slice/hdr_merge
 endef
 $(if $(BRACKETED),$(foreach p,$(PHOTO_IDS),$(eval $(call hdr_rules,$(p)))))
 
-# SfM runs once for a set of photos: COLMAP is not reproducible, so a changed photo does not redo it (make resfm does)
+MASKS := $(if $(wildcard scenes/$(SCENE)/masks),--masks scenes/$(SCENE)/masks)
+# SfM runs once for a set of photos: COLMAP is not reproducible, so a changed photo or mask does not redo it (make resfm does)
 $(S)/sfm/models.txt: $(S)/photos/list.txt $(S)/slice/sfm.cfg $(S)/stamp/sfm_source.txt | $(HDR)
 	$(call stage,sfm,all,$(S),--photos $(PICTURES) --records $(S)/photos --out $(S)/sfm \
-	  $(if $(wildcard scenes/$(SCENE)/masks),--masks scenes/$(SCENE)/masks) $${REMODEL_SFM:+--model "$$REMODEL_SFM"})
+	  $(MASKS) $${REMODEL_SFM:+--model "$$REMODEL_SFM"})
 
 $(CAMERAS) $(O)/views/lenses.txt $(O)/views/views.mk $(HELD_CAMERAS) &: $(S)/sfm/models.txt $(S)/photos/list.txt \
   $(S)/stamp/photo_sizes.txt $(if $(HELDOUT),$(O)/stamp/holdout.txt) $(call needs,sfm_import)
@@ -338,18 +341,19 @@ $(CAMERAS) $(O)/views/lenses.txt $(O)/views/views.mk $(HELD_CAMERAS) &: $(S)/sfm
 # $(1): a view; $(2): the folder of its cameras
 define rectify_rule
 $(2)/$(1).exr: $(call picture,$(firstword $(subst @, ,$(1)))) $(addprefix $(2)/,cameras.txt images.txt points3D.txt lenses.txt) \
-  $(call needs,rectify)
-	$$(hide)$$(call farm,rectify,$(1),$$@,--view $(1) --photos $$(PICTURES) --records $(S)/photos --views $(2) --out $$@)
+  $(wildcard $(S)/stamp/mask/$(firstword $(subst @, ,$(1))).txt) $(call needs,rectify)
+	$$(hide)$$(call farm,rectify,$(1),$$@,--view $(1) --photos $$(PICTURES) $(MASKS) --records $(S)/photos --views $(2) --out $$@)
 endef
 $(foreach v,$(VIEWS),$(eval $(call rectify_rule,$(v),$(O)/views)))
 $(foreach v,$(HELD),$(eval $(call rectify_rule,$(v),$(H)/views)))
 
+GIVEN := $(if $(DEPTH),--given "$$$$REMODEL_DEPTH")
 # $(1): a view; $(2): the folder of a round; $(3): that of the round before, empty for the first
 define depth_rule
-$(2)/$(1).exr $(2)/$(1).txt &: $(O)/views/$(1).exr $(if $(3),$(3)/$(1).exr) $(CAMERAS) $(call needs,segment_depth) \
+$(2)/$(1).exr $(2)/$(1).txt &: $(O)/views/$(1).exr $(if $(3),$(3)/$(1).exr) $(wildcard $(S)/stamp/given/$(1).txt) $(CAMERAS) $(call needs,segment_depth) \
   | $(VIEW_EXR) $(if $(3),$(VIEWS:%=$(3)/%.exr))
 	$$(hide)$$(call farm,segment_depth,$(1),$(2)/$(1).txt $(2)/$(1).exr,\
-	  --view $(1) --views $(O)/views $(if $(3),--before $(3)) --out $(2)/$(1).exr --deps $(2)/$(1).d)
+	  --view $(1) --views $(O)/views $(if $(3),--before $(3)) $(GIVEN) --out $(2)/$(1).exr --deps $(2)/$(1).d)
 endef
 # $(1): a round
 define round_rules
@@ -361,15 +365,15 @@ $(foreach k,$(if $(LAST_ROUND),$(shell seq 0 $(LAST_ROUND))),$(eval $(call round
   $(foreach v,$(VIEWS),$(eval $(call depth_rule,$(v),$(call round,$(k)),$(if $(filter-out 0,$(k)),$(call round,$(shell expr $(k) - 1)))))))
 $(O)/views/%.exr: ; # a neighbour that is a view no more
 
-$(POINTS): $(CAMERAS) $(DEPTH) $(DEPTH_TXT) $(call needs,fuse_points)
+$(POINTS): $(CAMERAS) $(DEPTH_EXR) $(DEPTH_TXT) $(call needs,fuse_points)
 	$(call stage,fuse_points,all,$(O),--views $(O)/views --depth $(O)/depth --out $@)
 
-$(PATH_TXT) $(E)/frames.mk &: $(CAMERAS) $(O)/views/lenses.txt $(DEPTH) $(DEPTH_TXT) $(call needs,plan_path)
+$(PATH_TXT) $(E)/frames.mk &: $(CAMERAS) $(O)/views/lenses.txt $(DEPTH_EXR) $(DEPTH_TXT) $(call needs,plan_path)
 	$(call stage,plan_path,$(EFFECT),$(O),--views $(O)/views --depth $(O)/depth --records $(S)/photos --effect $(EFFECT) --out $(E))
 
 # frames come in chunks, a process each; of a chunk only the frames that are missing or stale are rendered
 define chunk_rule
-$(1:%=$(E)/frames/%.exr) &: $(PATH_TXT) $(CAMERAS) $(DEPTH) $(DEPTH_TXT) $(call needs,render_views)
+$(1:%=$(E)/frames/%.exr) &: $(PATH_TXT) $(CAMERAS) $(DEPTH_EXR) $(DEPTH_TXT) $(call needs,render_views)
 	$$(hide)stale=$$$$(common/stale.sh $(1:%=$(E)/frames/%.exr) -- $$^); \
 	  $$(call farm,render_views,$(firstword $(1)),$(1:%=$(E)/frames/%.exr),--views $(O)/views --depth $(O)/depth --path $(E) --out $(E)/frames --frames,$$$$stale)
 endef
@@ -378,19 +382,19 @@ $(call chunks,chunk_rule,$(FRAMES))
 
 # the held-out photos' cameras, rendered from the other views
 define heldout_rule
-$(1:%=$(H)/frames/%.exr) &: $(HELD_CAMERAS) $(CAMERAS) $(DEPTH) $(DEPTH_TXT) $(call needs,render_views)
+$(1:%=$(H)/frames/%.exr) &: $(HELD_CAMERAS) $(CAMERAS) $(DEPTH_EXR) $(DEPTH_TXT) $(call needs,render_views)
 	$$(hide)$$(call farm,render_views,heldout-$(firstword $(1)),$(1:%=$(H)/frames/%.exr),--views $(O)/views --depth $(O)/depth --cameras $(H)/views --out $(H)/frames $(1:%=--camera %))
 endef
 $(call chunks,heldout_rule,$(HELD))
 
-$(O)/metrics.tsv: $(CAMERAS) $(O)/views/lenses.txt $(DEPTH) $(DEPTH_TXT) $(HELD_CAMERAS) $(HELD_EXR) $(HELD_FRAMES) \
+$(O)/metrics.tsv: $(CAMERAS) $(O)/views/lenses.txt $(DEPTH_EXR) $(DEPTH_TXT) $(HELD_CAMERAS) $(HELD_EXR) $(HELD_FRAMES) \
   $(S)/photos/list.txt $(O)/stamp/truth.txt $(call needs,evaluate)
 	$(call stage,evaluate,all,$(O),--folder $(O) --shared $(S) $${REMODEL_TRUTH:+--truth "$$REMODEL_TRUTH"} --out $@)
 
 $(E)/video.mp4: $(FRAME_EXR) $(PATH_TXT) $(call needs,encode_video)
 	$(call stage,encode_video,$(EFFECT),$(O),--path $(E) --frames $(E)/frames --out $@)
 
-$(O)/index.html: $(if $(HELDOUT)$(TRUTH),$(O)/metrics.tsv) $(E)/video.mp4 $(PATH_TXT) $(CAMERAS) $(DEPTH) $(DEPTH_TXT) $(S)/photos/list.txt $(STAGES:%=$(O)/slice/%.cfg) $(call needs,report)
+$(O)/index.html: $(if $(HELDOUT)$(TRUTH),$(O)/metrics.tsv) $(E)/video.mp4 $(PATH_TXT) $(CAMERAS) $(DEPTH_EXR) $(DEPTH_TXT) $(S)/photos/list.txt $(STAGES:%=$(O)/slice/%.cfg) $(call needs,report)
 	$(call stage,report,page,$(O),--scene $(SCENE) --folder $(O) --shared $(S) --photos $(PICTURES) --defaults configs/default.cfg --out $@)
 
 # What is looked at afresh in every run, also under -n: configs, photos. Files are rewritten only if their text changed.

@@ -55,7 +55,23 @@ changed-photos) # photos whose content is not what SfM saw
     changed=$(awk 'FNR == 1 { f = FILENAME; sub(/.*\//, "", f); sub(/\.txt$/, "", f) }
         FILENAME ~ /sfm\/photos\.txt$/ { saw[$1] = $2; next }
         $1 == "hash" && f in saw && saw[f] != $2 { print f }' "$S/sfm/photos.txt" "$S"/photos/*.txt | tr '\n' ' ')
-    [ -z "$changed" ] || echo "Changed since the camera poses were found: ${changed}- the poses are kept; make resfm SCENE=$scene finds them anew."
+    [ ! -e "scenes/$scene/masks" ] || changed+=$(find "scenes/$scene/masks" -name '*.png' -newer "$S/sfm/models.txt" -printf 'masks/%P ' | tr ' ' '\n' | LC_ALL=C sort | tr '\n' ' ')
+    [ -z "${changed// /}" ] || echo "Changed since the camera poses were found: ${changed# }- the poses are kept; make resfm SCENE=$scene finds them anew."
+    ;;
+given-depth) # which views have a file in DEPTH, and which files there are of no view
+    S=$1 O=$2
+    [ -n "${REMODEL_DEPTH-}" ] || exit 0
+    views=$(sed 's/^VIEWS :=//' "$O/views/views.mk")
+    held=$([ ! -e "$O/holdout/views/views.mk" ] || sed 's/^VIEWS :=//' "$O/holdout/views/views.mk")
+    of_views=0 of_none=
+    for f in "$S"/stamp/given/*.txt; do
+        [ -e "$f" ] && ! grep -qx none "$f" || continue
+        f=${f##*/}; f=${f%.txt}
+        case " $views " in *" $f "*) of_views=$((of_views + 1)); continue ;; esac
+        case " $held " in *" $f "*) ;; *) of_none+=" $f" ;; esac
+    done
+    echo "DEPTH=$REMODEL_DEPTH gives the depth of $of_views of $(wc -w <<<"$views") views."
+    [ -z "$of_none" ] || echo "warning: DEPTH=$REMODEL_DEPTH has files of what is no view:$of_none; $O/views/views.mk lists the views." >&2
     ;;
 metrics)
     grep '^# skipped' "$1/metrics.tsv" | sed 's/^# /  /' || true

@@ -2,7 +2,7 @@
 # look.sh - what every run looks at afresh; a file is rewritten only if its text changed, so that nothing else reruns.
 #
 #   look.sh slices BIN FOLDER 'STAGE...' CONFIG...   each stage's effective parameters -> FOLDER/STAGE.cfg
-#   look.sh photos BIN S SCENE_FOLDER                the photos' records, their sizes, and what SfM starts from
+#   look.sh photos BIN S SCENE_FOLDER                the photos' records, their sizes, what SfM starts from, masks, depth that was given
 #   look.sh evaluation BIN O HOLDOUT HOLDOUT_VIEWS   what is held out, and the files of the truth
 set -euo pipefail
 what=$1 bin=$2 folder=$3; shift 3
@@ -64,6 +64,50 @@ done | keep "$folder/stamp/photo_sizes.txt"
         (cd "$REMODEL_SFM" && find . -type f \( -name '*.txt' -o -name '*.bin' -o -name '*.out' \) -print0 | LC_ALL=C sort -z | xargs -0r cksum)
     else
         echo "COLMAP"
-        [ ! -d "$scene/masks" ] || (cd "$scene/masks" && find . -type f -name '*.png' -print0 | LC_ALL=C sort -z | xargs -0r cksum)
     fi
 } | keep "$folder/stamp/sfm_source.txt"
+
+# stamps WHAT: standard input is lines "NAME TEXT..."; NAME's lines become stamp/WHAT/NAME.txt, and what is named no more says "none"
+stamps()
+{
+    local to=$folder/stamp/$1 name text f
+    declare -A lines=()
+    while read -r name text; do lines[$name]+=$text$'\n'; done
+    for f in "$to"/*.txt; do
+        name=${f##*/}; name=${name%.txt}
+        [ ! -e "$f" ] || [ -n "${lines[$name]-}" ] || echo none | keep "$f"
+    done
+    for name in "${!lines[@]}"; do printf '%s' "${lines[$name]}" | keep "$to/$name.txt"; done
+}
+# sums FOLDER ENDING...: "NAME CKSUM SIZE FILE" of the files there, NAME without the ending
+sums()
+{
+    local where=$1 ending f; shift
+    for ending in "$@"; do
+        for f in "$where"/*."$ending"; do
+            [ -f "$f" ] || continue
+            f=${f##*/}
+            if [[ ${f%.*} =~ ^[A-Za-z0-9_@-]+$ ]]; then echo "${f%.*} $(cd "$where" && cksum "$f")"; else
+                echo "warning: $where/$f is not looked at: its name must be a photo's id, as $folder/photos/list.txt has it." >&2; fi
+        done
+    done
+}
+
+# a photo's mask; of one that stands for several exposures also these photos' masks
+if [ -d "$scene/masks" ]; then
+    known=$(cd "$folder/photos" && awk '
+        FNR == 1 { id = FILENAME; sub(/.*\//, "", id); sub(/\.txt$/, "", id); member = FILENAME ~ /^members\//; if (!member) print id, id }
+        member && /^file / { sub(/^file /, ""); id_from_file[$0] = id }
+        !member && /^bracket / { sub(/^bracket /, ""); sub(/ [^ ]+ [^ ]+$/, ""); if ($0 in id_from_file) print id_from_file[$0], id }
+    ' $([ ! -d members ] || [ ! -e brackets.txt ] || echo members/*.txt) $(cut -d' ' -f1 list.txt | sed 's/$/.txt/'))
+    sums "$scene/masks" png | awk -v known="${known//$'\n'/ }" -v where="$scene/masks" -v list="$folder/photos/list.txt" '
+        BEGIN { n = split(known, w); for (i = 1; i < n; i += 2) of[w[i]] = w[i + 1] }
+        $1 in of { print of[$1], $2, $3, $4; next }
+        { print "warning: " where "/" $4 " masks nothing: no photo has the id " $1 "; " list " has them." >"/dev/stderr" }'
+fi | stamps mask
+
+# the depth files of DEPTH, each with the file that tells their units; what they are of is known when there are views
+if [ -n "${REMODEL_DEPTH-}" ]; then
+    units=$(cd "$REMODEL_DEPTH" && { [ ! -e depth.txt ] || cksum depth.txt; })
+    sums "$REMODEL_DEPTH" exr png | sed "s|\$| $units|"
+fi | stamps given

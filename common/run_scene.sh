@@ -19,6 +19,10 @@ quiet=-s
 [ -z "${V-}" ] || quiet=
 graph() { "${make[@]}" PHASE=graph "$@"; }
 
+if [ -n "${REMODEL_DEPTH-}" ] && [ ! -d "$REMODEL_DEPTH" ]; then
+    echo "DEPTH=$REMODEL_DEPTH is no folder. Give the folder that holds VIEW.exr or VIEW.png, the depth of views." >&2
+    exit 2
+fi
 if [ ! -e "$folder/scene.mk" ]; then
     if [ -z "${REMODEL_PHOTOS-}" ]; then
         echo "There is no $folder/scene.mk. Give the folder of photos to begin: make PHOTOS=DIR SCENE=$scene" >&2
@@ -35,6 +39,7 @@ if [ ! -e "$folder/scene.mk" ]; then
         echo "# What this scene is made from. Every variable of \`make help\` may stand here; the command line wins."
         echo "PHOTOS := $(for_make "$REMODEL_PHOTOS")"
         [ -z "${REMODEL_SFM-}" ] || echo "SFM := $(for_make "$REMODEL_SFM")"
+        [ -z "${REMODEL_DEPTH-}" ] || echo "DEPTH := $(for_make "$REMODEL_DEPTH")"
         [ -z "${REMODEL_TRUTH-}" ] || echo "TRUTH := $(for_make "$REMODEL_TRUTH")"
         echo "# photos to leave out, by id or file name; names with blanks in quotes"
         echo "EXCLUDE := $(for_make "${REMODEL_EXCLUDE-}")"
@@ -157,6 +162,7 @@ common/explain.sh changed-photos "$S" "$scene"
 case $goal in sfm) exit 0 ;; esac
 farm rectify views 1 "${VIEWS_PER_JOB:-4}"
 case $goal in views) exit 0 ;; esac
+common/explain.sh given-depth "$S" "$O"
 for round in $(seq 0 "$(sed -n 's/^rounds = //p' "$O/slice/segment_depth.cfg")"); do
     farm segment_depth "depth-round$round" 1 "${VIEWS_PER_JOB:-4}"
 done

@@ -2,6 +2,7 @@
  *
  * reads   VIEWS/cameras.txt, images.txt, lenses.txt   the view's camera, and the photo's lens
  *         RECORDS/ID.txt, PHOTOS/FILE                 the photo; of a view of several exposures PHOTOS/ID.exr, merged
+ *         MASKS/ID.png                                black where the view is to have no pixel; need not be there
  * writes  OUT                                         VIEW.exr: R G B (linear), A */
 #include <math.h>
 #include <stdio.h>
@@ -12,6 +13,7 @@
 #include "common/exr.h"
 #include "common/lens_list.h"
 #include "common/photo_list.h"
+#include "common/photo_mask.h"
 #include "common/view_image.h"
 #include "stages/rectify/resample.h"
 
@@ -88,12 +90,13 @@ static enum status read_source(struct image *linear, char radiometry[RADIOMETRY_
     return st;
 }
 
-static enum status rectify(const char *name, const char *photos, const char *records, const char *views,
-                           const char *out, struct provenance *prov, struct err *err)
+static enum status rectify(const char *name, const char *photos, const char *masks, const char *records,
+                           const char *views, const char *out, struct provenance *prov, struct err *err)
 {
     struct camera_set set = {0};
     struct lens_list lenses = {0};
     struct photo_record record = {0};
+    struct photo_mask mask = {0};
     struct image linear = {0}, rectified = {0};
     const struct view *view = NULL;
     const struct lens *lens = NULL;
@@ -104,14 +107,16 @@ static enum status rectify(const char *name, const char *photos, const char *rec
     if (!st) st = find_view(&view, &lens, &set, &lenses, name, views, err);
     if (!st) st = photo_record_read(&record, records, lens->photo, err);
     if (!st) st = read_source(&linear, radiometry, photos, &record, prov, err);
+    if (!st) st = photo_mask_read(&mask, masks, records, &record, prov, err);
     if (!st) {
         struct mat3 photo_from_view = mat3_transpose(mat3_from_quat(lens->view_from_photo));
-        st = resample_photo(&rectified, &linear, &lens->camera, &photo_from_view, view, err);
+        st = resample_photo(&rectified, &linear, mask.masked, &lens->camera, &photo_from_view, view, err);
         if (st) err_context(err, "%s/%s", photos, record.file);
     }
     if (!st) st = view_image_write(&rectified, out, view, prov, radiometry, err);
     image_release(&rectified);
     image_release(&linear);
+    photo_mask_release(&mask);
     photo_record_release(&record);
     lens_list_release(&lenses);
     camera_set_release(&set);
@@ -121,11 +126,12 @@ static enum status rectify(const char *name, const char *photos, const char *rec
 
 int main(int argc, char **argv)
 {
-    const char *view = NULL, *photos = NULL, *records = NULL, *views = NULL, *out = NULL;
+    const char *view = NULL, *photos = NULL, *masks = NULL, *records = NULL, *views = NULL, *out = NULL;
     const struct cli_opt opts[] = {
         CLI_ABOUT("Resamples a photograph into its view's pinhole camera, in linear colour."),
         CLI_STR("view", &view, CLI_REQUIRED, "view to make"),
         CLI_STR("photos", &photos, CLI_REQUIRED, "folder of photographs, or of merged exposures"),
+        CLI_STR("masks", &masks, CLI_OPTIONAL, "folder of masks ID.png, black where the view is to have no pixel"),
         CLI_STR("records", &records, CLI_REQUIRED, "folder of the photos' records"),
         CLI_STR("views", &views, CLI_REQUIRED, "folder of cameras and lenses"),
         CLI_STR("out", &out, CLI_REQUIRED, "EXR to write"),
@@ -134,7 +140,7 @@ int main(int argc, char **argv)
     struct provenance prov = {0};
     struct err err = ERR_INIT;
     if (cli_parse(argc, argv, "rectify", opts, &prov, &err) != CLI_RUN ||
-        rectify(view, photos, records, views, out, &prov, &err))
+        rectify(view, photos, masks, records, views, out, &prov, &err))
         err_report(&err);
     provenance_release(&prov);
     return err_exit_code(&err);

@@ -26,6 +26,7 @@ struct place { /* where in the photo a view's pixel lies */
 struct resample {
     struct image *out;
     const struct image *photo;
+    const unsigned char *masked; /* of the photo's pixels; NULL: none is */
     const struct camera *lens;
     struct mat3 photo_from_view;
     const struct view *view;
@@ -120,6 +121,17 @@ static void filter(float rgb[3], const struct image *photo, const struct taps *t
     }
 }
 
+/* Is one of the samples within one lobe masked? */
+static bool is_masked(const struct resample *r, const struct taps *tx, const struct taps *ty)
+{
+    for (int j = ty->near_begin; j < ty->near_end; j++) {
+        const size_t row = (size_t)clamp_int(ty->first + j, r->photo->height - 1) * (size_t)r->photo->width;
+        for (int i = tx->near_begin; i < tx->near_end; i++)
+            if (r->masked[row + (size_t)clamp_int(tx->first + i, r->photo->width - 1)]) return true;
+    }
+    return false;
+}
+
 static void project_row(const struct resample *r, int y, struct place *row)
 {
     for (int x = 0; x <= r->view->width; x++) row[x] = photo_from_pixel(r, x, y);
@@ -138,6 +150,7 @@ static void resample_pixel(const struct resample *r, int x, int y, const struct 
     double su = hypot(right.u - at.u, down.u - at.u), sv = hypot(right.v - at.v, down.v - at.v);
     make_taps(&tx, r->kernel, at.u, fmin(fmax(su, 1), MAX_REDUCTION));
     make_taps(&ty, r->kernel, at.v, fmin(fmax(sv, 1), MAX_REDUCTION));
+    if (r->masked && is_masked(r, &tx, &ty)) return;
     float *out = image_at(r->out, x, y);
     filter(out, r->photo, &tx, &ty);
     out[3] = 1;
@@ -170,10 +183,12 @@ static bool same_camera(const struct resample *r)
            r->lens->width == r->view->width && r->lens->height == r->view->height;
 }
 
-enum status resample_photo(struct image *out, const struct image *photo, const struct camera *lens,
-                           const struct mat3 *photo_from_view, const struct view *view, struct err *err)
+enum status resample_photo(struct image *out, const struct image *photo, const unsigned char *masked,
+                           const struct camera *lens, const struct mat3 *photo_from_view, const struct view *view,
+                           struct err *err)
 {
-    struct resample r = {.out = out, .photo = photo, .lens = lens, .photo_from_view = *photo_from_view, .view = view};
+    struct resample r = {
+        .out = out, .photo = photo, .masked = masked, .lens = lens, .photo_from_view = *photo_from_view, .view = view};
     if (photo->width != lens->width || photo->height != lens->height)
         return err_set(err, ST_DATA,
                        "the photo has %d x %d pixels but its camera %d x %d: it was exchanged after structure from "
@@ -183,6 +198,7 @@ enum status resample_photo(struct image *out, const struct image *photo, const s
     if (same_camera(&r)) {
         size_t pixels = (size_t)view->width * (size_t)view->height;
         for (size_t i = 0; i < pixels; i++) {
+            if (masked && masked[i]) continue;
             memcpy(out->data + 4 * i, photo->data + 3 * i, 3 * sizeof(float));
             out->data[4 * i + 3] = 1;
         }

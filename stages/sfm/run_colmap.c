@@ -14,6 +14,7 @@
 #include "common/log.h"
 #include "common/outfile.h"
 #include "common/parallel.h"
+#include "common/photo_mask.h"
 #include "common/photo_match.h"
 #include "common/process.h"
 #include "common/textfile.h"
@@ -197,38 +198,45 @@ static enum status link_file(const char *target, const char *link, struct err *e
     return symlink(target, link) ? err_errno(err, "make the link", link) : ST_OK;
 }
 
-static enum status link_photos(struct run *r, const char *photos, const char *masks, struct err *err)
+/* The photo's mask as COLMAP wants it, black where nothing is to be found, behind `images`. */
+static enum status write_mask(struct run *r, const struct sfm_input *in, const struct photo_record *p, int *count,
+                              struct err *err)
 {
-    char *from = realpath(photos, NULL), *masks_from = masks ? realpath(masks, NULL) : NULL;
-    enum status st = from ? ST_OK : err_errno(err, "open", photos);
+    struct photo_mask mask = {0};
+    enum status st = photo_mask_read(&mask, in->masks, in->records, p, NULL, err);
+    if (!st && mask.masked) {
+        const size_t pixels = (size_t)mask.width * (size_t)mask.height;
+        for (size_t i = 0; i < pixels; i++) mask.masked[i] = mask.masked[i] ? 0 : 255;
+        if (!r->masks) {
+            r->masks = text_format(err, "%s.masks", r->images);
+            st = r->masks ? make_folders(r->masks, err) : err->status;
+        }
+        char *path = st ? NULL : text_format(err, "%s/%s%s.png", r->masks, p->id, safe_extension(p->file));
+        if (!st) st = path ? png_write(path, mask.masked, mask.width, mask.height, 1, err) : err->status;
+        free(path);
+        ++*count;
+    }
+    photo_mask_release(&mask);
+    return st;
+}
+
+static enum status link_photos(struct run *r, const struct sfm_input *in, struct err *err)
+{
+    char *from = realpath(in->photos, NULL);
+    enum status st = from ? ST_OK : err_errno(err, "open", in->photos);
     int mask_count = 0;
-    if (!st && masks && !masks_from) st = err_errno(err, "open", masks);
     if (!st) st = make_folders(r->images, err);
     for (int i = 0; !st && i < r->photos->count; i++) {
         const struct photo_record *p = &r->photos->photos[i];
-        char *target = text_format(err, "%s/%s", from, p->file), *mask = NULL, *mask_link = NULL;
+        char *target = text_format(err, "%s/%s", from, p->file);
         char *link = text_format(err, "%s/%s%s", r->images, p->id, safe_extension(p->file));
         st = target && link ? link_file(target, link, err) : err->status;
-        if (!st && masks) {
-            mask = text_format(err, "%s/%s.png", masks_from, p->id);
-            mask_link = text_format(err, "%s.masks/%s%s.png", r->images, p->id, safe_extension(p->file));
-            if (!mask || !mask_link) st = err->status;
-            if (!st && !access(mask, F_OK)) {
-                if (!mask_count++) {
-                    r->masks = text_format(err, "%s.masks", r->images);
-                    st = r->masks ? make_folders(r->masks, err) : err->status;
-                }
-                if (!st) st = link_file(mask, mask_link, err);
-            }
-        }
+        if (!st) st = write_mask(r, in, p, &mask_count, err);
         free(target);
         free(link);
-        free(mask);
-        free(mask_link);
     }
     if (!st && mask_count) log_note("%d photos have a mask", mask_count);
     free(from);
-    free(masks_from);
     return st;
 }
 
@@ -256,7 +264,7 @@ static enum status run_prepare(struct run *r, const struct sfm_folder *f, const 
     for (int i = 0; i < STEPS; i++)
         if (!(r->logs[i] = text_format(err, "%s/colmap-%d.log", work, i + 1))) return err->status;
     st = make_folders(r->sparse, err);
-    if (!st) st = link_photos(r, in->photos, in->masks, err);
+    if (!st) st = link_photos(r, in, err);
     return st;
 }
 

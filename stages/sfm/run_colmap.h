@@ -50,7 +50,8 @@ enum status feature_counts_read(struct feature_counts *c, const char *log, struc
 void feature_counts_release(struct feature_counts *c);
 
 struct sfm_input {
-    const char *photos, *masks; /* folders; masks: NULL or of ID.png, black where nothing is to be found */
+    const char *photos, *masks,
+        *records; /* folders; masks: NULL or of ID.png (common/photo_mask.h): black is not looked at */
     const struct photo_list *list;
     const struct sfm_params *params;
 };

@@ -19,7 +19,7 @@ static enum status run(const char *photos, const char *records, const char *mask
 {
     struct photo_list list = {0};
     struct sfm_folder folder = {0};
-    const struct sfm_input in = {photos, masks, &list, params};
+    const struct sfm_input in = {photos, masks, records, &list, params};
     enum status st = photo_list_read(&list, records, err);
     if (!st) st = sfm_folder_open(&folder, out, err);
     if (!st && model)

@@ -81,7 +81,7 @@ static struct image look(const struct image *photo, const struct camera *lens, s
         least = fminf(least, photo->data[i]);
         most = fmaxf(most, photo->data[i]);
     }
-    assert_ok(resample_photo(&out, photo, lens, &photo_from_view, view, &err), err);
+    assert_ok(resample_photo(&out, photo, NULL, lens, &photo_from_view, view, &err), err);
     assert_true(out.width == view->width && out.height == view->height && out.channels == 4);
     for (size_t i = 0; i < (size_t)out.width * (size_t)out.height; i++) {
         const float *p = out.data + 4 * i;
@@ -685,7 +685,7 @@ static void a_photo_of_another_size_is_refused(void **state)
     struct view view = centred_view(10, 20, 15);
     struct err err = ERR_INIT;
     (void)state;
-    assert_int_equal(resample_photo(&out, &photo, &lens, &same_axes, &view, &err), ST_DATA);
+    assert_int_equal(resample_photo(&out, &photo, NULL, &lens, &same_axes, &view, &err), ST_DATA);
     assert_err(err, ST_DATA, "the photo has 20 x 10 pixels but its camera 10 x 20");
     assert_contains(err.text, "make resfm");
     assert_null(out.data);
