@@ -407,6 +407,7 @@ struct reader {
     struct exr_image *im;
     exr_context_t ctxt;
     exr_attr_box2i_t window;
+    bool any; /* NaN and infinity are no fault */
     bool tiled;
     int chunk_width, chunk_height, chunks_across;
     size_t chunks;
@@ -423,7 +424,7 @@ struct read_job {
     int x, y; /* of the chunk's first pixel in the picture */
 };
 
-static int unpack_half(float *to, const uint8_t *from, int width)
+static int unpack_half(float *to, const uint8_t *from, int width, bool any)
 {
     const __m128i exponent = _mm_set1_epi16(0x7c00);
     int x = 0;
@@ -435,16 +436,16 @@ static int unpack_half(float *to, const uint8_t *from, int width)
     for (; x < width; x++) {
         uint16_t bits;
         memcpy(&bits, from + 2 * x, 2);
-        if ((bits & 0x7c00) == 0x7c00) return x;
+        if ((bits & 0x7c00) == 0x7c00 && !any) return x;
         to[x] = imath_half_to_float(bits);
     }
     return -1;
 }
 
-static int unpack_float(float *to, const uint8_t *from, int width)
+static int unpack_float(float *to, const uint8_t *from, int width, bool any)
 {
     memcpy(to, from, (size_t)width * 4);
-    for (int x = 0; x < width; x++)
+    for (int x = 0; x < width && !any; x++)
         if (!isfinite(to[x])) return x;
     return -1;
 }
@@ -472,9 +473,9 @@ static exr_result_t unpack_chunk(exr_decode_pipeline_t *pipe)
             if (p >= 0) {
                 const struct exr_plane *plane = &im->planes[p];
                 if (plane->type == EXR_HALF)
-                    bad = unpack_half(plane->f + at, from, width);
+                    bad = unpack_half(plane->f + at, from, width, job->r->any);
                 else if (plane->type == EXR_FLOAT)
-                    bad = unpack_float(plane->f + at, from, width);
+                    bad = unpack_float(plane->f + at, from, width, job->r->any);
                 else
                     memcpy(plane->u + at, from, (size_t)width * 4);
             }
@@ -638,9 +639,10 @@ static enum status read_header(struct reader *r, const char *path, struct err *e
     return ST_OK;
 }
 
-enum status exr_read(struct exr_image *im, const char *path, const char *const *names, int name_count, struct err *err)
+static enum status read_file(struct exr_image *im, const char *path, const char *const *names, int name_count, bool any,
+                             struct err *err)
 {
-    struct reader r = {.im = im};
+    struct reader r = {.im = im, .any = any};
     exr_context_initializer_t init = initializer();
     exr_chunk_info_t info;
     int threads = parallel_threads();
@@ -677,4 +679,14 @@ enum status exr_read(struct exr_image *im, const char *path, const char *const *
     if (r.ctxt) exr_finish(&r.ctxt);
     if (st) exr_image_release(im);
     return st;
+}
+
+enum status exr_read(struct exr_image *im, const char *path, const char *const *names, int name_count, struct err *err)
+{
+    return read_file(im, path, names, name_count, false, err);
+}
+
+enum status exr_read_any(struct exr_image *im, const char *path, struct err *err)
+{
+    return read_file(im, path, NULL, 0, true, err);
 }

@@ -57,5 +57,7 @@ enum status exr_write(const struct exr_image *im, const char *path, const struct
  * channel and pixel. A file with missing chunks is ST_DATA. The attributes read are its strings of at most 255 bytes
  * but for the provenance and the format's own. */
 enum status exr_read(struct exr_image *im, const char *path, const char *const *names, int name_count, struct err *err);
+/* All channels, with NaN and infinity where the file has them: for what other programs wrote, who mark so what they do not know. */
+enum status exr_read_any(struct exr_image *im, const char *path, struct err *err);
 
 #endif

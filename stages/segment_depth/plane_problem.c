@@ -6,6 +6,7 @@
 float problem_unary(const struct plane_problem *p, int segment, struct plane plane)
 {
     const struct segment *g = &p->m->segments->segments[segment];
+    if (given_depth_knows(p->given, segment)) return given_depth_is(p->given, segment, plane) ? 0 : PLANE_NEVER;
     if (!plane_keeps_to(plane, g, p->least, p->most)) return PLANE_NEVER;
     unsigned hidden = 0;
     float data = p->cross ? (float)p->params->cross_view * cross_view_cost(p->cross, segment, plane, &hidden) : 0;

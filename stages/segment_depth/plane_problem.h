@@ -3,12 +3,14 @@
  *   sum over segments i of  size_i (match_cost + points + cross_view) + slant [P_i is not constant]
  * + sum over touching i, j of smoothness w_ij min(gap(P_i, P_j) / step, jump) / jump
  *
+ * A segment whose depth is given has one plane, which costs nothing; any other costs PLANE_NEVER.
  * size_i is in segments of mean size; gap is the mean difference of the two planes at the middle of the border and at both
  * centroids: zero where the planes are the same, so that a surface may slant for nothing, and never more than the way by a third plane. */
 #ifndef REMODEL_PLANE_PROBLEM_H
 #define REMODEL_PLANE_PROBLEM_H
 
 #include "stages/segment_depth/cross_view.h"
+#include "stages/segment_depth/given_depth.h"
 #include "stages/segment_depth/plane_match.h"
 #include "stages/segment_depth/point_evidence.h"
 #include "stages/segment_depth/segment_params.h"
@@ -18,8 +20,9 @@ struct plane_problem { /* borrows all that it points to */
     struct vec3 down; /* in the view's axes */
     const struct matcher *m;
     const struct point_evidence *points;
-    const struct cross_view *cross; /* NULL in the first round */
-    const float *weights;           /* a touch each, as touch_weights() */
+    const struct cross_view *cross;  /* NULL in the first round */
+    const struct given_depth *given; /* NULL: nothing is */
+    const float *weights;            /* a touch each, as touch_weights() */
     const struct segment_params *params;
     double least, most, step; /* inverse depths of the sweep */
     const float *cost;        /* planes a segment: matching alone, at constant depths; NULL after the first round */

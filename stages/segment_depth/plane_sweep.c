@@ -10,6 +10,10 @@
 
 #define HORIZON 0.03 /* |cosine| between a ray and the horizontal below which horizontal planes are not tried */
 
+/* Segments of given depth stay at the label nearest to it, whatever those that they touch want. */
+#define GIVEN_WEIGHT 10
+#define MOST_OFF     1e3
+
 struct sweep_job {
     const struct plane_sweep *w;
     const struct view *view;
@@ -51,6 +55,14 @@ static void sweep_segments(void *ctx, size_t begin, size_t end, int thread)
         float *cost = w->cost + i * (size_t)w->planes, *energy = job->energy + i * (size_t)w->planes;
         const struct segment *g = &job->m->segments->segments[i];
         const float size = (float)g->pixels / (float)job->params->segment_pixels;
+        if (given_depth_knows(w->given, (int)i)) {
+            const double given = plane_at(w->given->planes[i], g->cx, g->cy);
+            for (int p = 0; p < w->planes; p++) {
+                cost[p] = (float)fmin(fabs(w->least + p * w->step - given) / w->step, MOST_OFF);
+                energy[p] = GIVEN_WEIGHT * cost[p];
+            }
+            continue;
+        }
         for (int p = 0; p < w->planes; p++) {
             const struct plane plane = facing_plane(w, p);
             struct plane tilted;
@@ -78,6 +90,7 @@ void plane_sweep_steps(struct plane_sweep *w, const struct matcher *m, double le
                        const struct segment_params *params)
 {
     w->planes = (int)fmin(fmax(ceil(matcher_shift(m, least, most)) + 1, 4), params->planes);
+    if (!m->neighbour_count) w->planes = params->planes;
     w->step = (most - least) / (w->planes - 1);
     w->least = least;
 }
@@ -101,7 +114,8 @@ enum status plane_sweep_run(struct plane_sweep *w, struct plane *plane, const st
         st = smooth_labels(labels, s, job.energy, w->planes, weights, (float)(params->smoothness / params->jump),
                            (float)params->smoothness, err);
     }
-    for (int i = 0; !st && i < s->count; i++) plane[i] = better_plane(&job, i, labels[i]);
+    for (int i = 0; !st && i < s->count; i++)
+        plane[i] = given_depth_knows(w->given, i) ? w->given->planes[i] : better_plane(&job, i, labels[i]);
     free(labels);
     free(job.energy);
     return st;

@@ -5,6 +5,7 @@
 #ifndef REMODEL_PLANE_SWEEP_H
 #define REMODEL_PLANE_SWEEP_H
 
+#include "stages/segment_depth/given_depth.h"
 #include "stages/segment_depth/plane_match.h"
 #include "stages/segment_depth/point_evidence.h"
 #include "stages/segment_depth/segment_params.h"
@@ -12,7 +13,8 @@
 struct plane_sweep {
     double least, step; /* of 1/z; the depths are least + k step */
     int planes;
-    float *cost; /* planes a segment: matching alone */
+    float *cost;                     /* planes a segment: matching alone */
+    const struct given_depth *given; /* NULL: nothing is; set by the caller */
 };
 
 /* How many depths a sweep from least to most takes, and their distance. */

@@ -2,6 +2,8 @@
  *
  * reads   VIEWS/cameras.txt, images.txt, points3D.txt   the cameras and sparse points
  *         VIEWS/VIEW.exr                                the view and the neighbours it selects, linear RGBA
+ *         GIVEN/VIEW.exr or .png, depth.txt             depth that is known already; need not be there
+ *         VIEWS/lenses.txt                              for given depth that is as large as the photo
  * writes  DEPS                                          make dependencies: the pictures really read
  *         OUT with .txt for .exr, then OUT              segments; layers interior.* and boundary.* (RGBA, Z, id)
  *
@@ -9,14 +11,17 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "common/cli.h"
 #include "common/outfile.h"
 #include "common/view_image.h"
+#include "stages/segment_depth/given_depth.h"
+#include "stages/segment_depth/given_read.h"
 #include "stages/segment_depth/view_depth.h"
 
 struct views_folder {
-    const char *folder, *before;
+    const char *folder, *before, *given;
     const struct camera_set *set;
     struct provenance *prov;
 };
@@ -56,6 +61,31 @@ static enum status read_depth(void *ctx, int view_idx, struct layered_depth *d, 
     return st;
 }
 
+/* Nothing is given where all is unknown. */
+static enum status read_given(void *ctx, int view_idx, float **z, struct err *err)
+{
+    const struct views_folder *f = ctx;
+    const struct view *view = &f->set->views[view_idx];
+    struct lens_list lenses = {0};
+    char *path = NULL;
+    if (asprintf(&path, "%s/lenses.txt", f->folder) < 0) return err_nomem(err, "a file name", strlen(f->folder));
+    enum status st = access(path, F_OK) ? ST_OK : lens_list_read(&lenses, path, err);
+    const int lens = st ? -1 : lens_list_find(&lenses, view->name);
+    if (!st) st = given_read(z, f->given, view, lens < 0 ? NULL : &lenses.lenses[lens], f->prov, err);
+    double least = 0, most = 0;
+    if (!st && *z && !given_depth_range(&least, &most, *z, (size_t)view->width * (size_t)view->height)) {
+        log_warn("the depth that %s gives view %s is unknown (0, NaN or infinite) everywhere; the view is matched as "
+                 "if there "
+                 "were none.",
+                 f->given, view->name);
+        free(*z);
+        *z = NULL;
+    }
+    lens_list_release(&lenses);
+    free(path);
+    return st;
+}
+
 static void print_escaped(FILE *to, const char *path)
 {
     for (; *path; path++) {
@@ -90,9 +120,9 @@ static enum status write_deps(const char *deps, const char *out, const char *con
     return st;
 }
 
-static enum status segment_depth(const char *folder, const char *before, const char *name, const char *out,
-                                 const char *deps, const struct segment_params *params, struct provenance *prov,
-                                 struct err *err)
+static enum status segment_depth(const char *folder, const char *before, const char *given, const char *name,
+                                 const char *out, const char *deps, const struct segment_params *params,
+                                 struct provenance *prov, struct err *err)
 {
     struct camera_set set = {0};
     struct layered_depth depth = {0};
@@ -102,8 +132,8 @@ static enum status segment_depth(const char *folder, const char *before, const c
         st = err_set(err, ST_USAGE, "there is no view %s in %s/images.txt; its views are listed in %s/views.mk.", name,
                      folder, folder);
     if (!st) {
-        struct views_folder views = {folder, before, &set, prov};
-        const struct view_source source = {read_view, before ? read_depth : NULL, &views};
+        struct views_folder views = {folder, before, given, &set, prov};
+        const struct view_source source = {read_view, before ? read_depth : NULL, &views, given ? read_given : NULL};
         st = view_depth(&depth, read + 1, &count, &set, read[0], &source, params, err);
     }
     if (!st && deps) st = write_deps(deps, out, (const char *const[2]){folder, before}, &set, read, 1 + count, err);
@@ -115,7 +145,7 @@ static enum status segment_depth(const char *folder, const char *before, const c
 
 int main(int argc, char **argv)
 {
-    const char *views = NULL, *before = NULL, *view = NULL, *out = NULL, *deps = NULL;
+    const char *views = NULL, *before = NULL, *given = NULL, *view = NULL, *out = NULL, *deps = NULL;
     struct segment_params params = SEGMENT_PARAMS_DEFAULT;
     const struct cli_opt opts[] = {
         CLI_ABOUT("Layered depth of one view by multi-view segment matching."),
@@ -123,6 +153,8 @@ int main(int argc, char **argv)
         CLI_STR("view", &view, CLI_REQUIRED, "view to work on"),
         CLI_STR("before", &before, CLI_OPTIONAL,
                 "folder of all views' depth in the round before; without it this is the first"),
+        CLI_STR("given", &given, CLI_OPTIONAL,
+                "folder of depth that is known already: VIEW.exr, or VIEW.png and depth.txt; of any view, or none"),
         CLI_STR("out", &out, CLI_REQUIRED, "EXR to write"),
         CLI_STR("deps", &deps, CLI_OPTIONAL, "make dependencies to write: the pictures really read"),
         CLI_PARAMS(segment_param_table, &params, NULL),
@@ -131,7 +163,7 @@ int main(int argc, char **argv)
     struct provenance prov = {0};
     struct err err = ERR_INIT;
     if (cli_parse(argc, argv, "segment_depth", opts, &prov, &err) != CLI_RUN ||
-        segment_depth(views, before, view, out, deps, &params, &prov, &err))
+        segment_depth(views, before, given, view, out, deps, &params, &prov, &err))
         err_report(&err);
     provenance_release(&prov);
     return err_exit_code(&err);

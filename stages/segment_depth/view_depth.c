@@ -4,6 +4,7 @@
  * comparing the view with its neighbours at many depths; let touching segments of like colour agree; let views agree,
  * in rounds; split the segments' rims into two colours. In order:
  *   oversegment   SLIC in gamma-encoded opponent colours
+ *   given_depth   planes of segments whose depth a user brought: no match can move them, all others go on from them
  *   neighbours    by shared points, angle and scale; the points also bound the depths
  *   plane_sweep   first round: matching cost of every segment at constant depths, smoothed; later rounds begin with the
  *                 planes of the round before
@@ -18,6 +19,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/log.h"
 #include "stages/segment_depth/expand.h"
 #include "stages/segment_depth/layers.h"
 #include "stages/segment_depth/plane_sweep.h"
@@ -51,6 +53,15 @@ static enum status list_depths(struct layered_depth *out, const struct plane_pro
     for (int i = 0; i < s->count; i++) {
         const struct segment *g = &s->segments[i];
         const double inverse = plane_at(planes[i], g->cx, g->cy);
+        if (given_depth_knows(p->given, i)) {
+            out->segments[i] = (struct depth_segment){
+                .id = (uint32_t)i + 1,
+                .plane = {planes[i].a, planes[i].b, planes[i].c},
+                .sigma = (0.5 * p->step + (double)p->given->off[i]) / inverse,
+                .confidence = (double)p->given->good[i],
+            };
+            continue;
+        }
         unsigned hidden = 0;
         if (p->cross) cross_view_cost(p->cross, i, planes[i], &hidden);
         const double good = fmin(fmax((double)MATCH_WORST - (double)match_cost(p->m, i, planes[i], hidden), 0), 1);
@@ -88,6 +99,7 @@ struct solve {
     const struct image *picture;
     const struct seen_points *seen;
     double least, most;
+    float *given; /* z of each pixel, or NULL */
     const struct view_source *source;
     const struct segment_params *params;
 };
@@ -111,6 +123,23 @@ static enum status planes_before(struct plane *planes, double *distinct, const s
     return st;
 }
 
+static enum status fit_given(struct given_depth *given, const struct solve *v, double step, struct err *err)
+{
+    const struct segmentation *s = v->m->segments;
+    const char *name = v->set->views[v->view_idx].name;
+    if (given_depth_make(given, s, v->given, step, v->params, err)) return err->status;
+    const double pixels = (double)s->width * s->height;
+    log_note("depth is given for %d of %.0f pixels (%.1f %%) of view %s; it settles %d of %d segments", given->pixels,
+             pixels, 100 * given->pixels / pixels, name, given->segments, s->count);
+    if (v->neighbour_count || given->segments) return ST_OK;
+    return err_set(
+        err, ST_DATA,
+        "view %s has no neighbour to match with, and its given depth is too sparse: no segment has it in an "
+        "eighth of its pixels. Give denser depth, larger segments ([segment_depth] segment_pixels), or photos "
+        "taken beside this one.",
+        name);
+}
+
 static enum status solve(struct layered_depth *out, const struct solve *v, struct err *err)
 {
     const struct segmentation *s = v->m->segments;
@@ -118,17 +147,20 @@ static enum status solve(struct layered_depth *out, const struct solve *v, struc
     struct point_evidence points = {0};
     struct cross_view cross = {0};
     struct plane_sweep sweep = {0};
+    struct given_depth given = {0};
     struct plane *planes = malloc(((size_t)s->count + 1) * sizeof *planes);
     double *distinct = calloc((size_t)s->count + 1, sizeof *distinct);
     float *weights = touch_weights(s, params->segment_pixels);
     const bool first = !v->source->read_depth;
     plane_sweep_steps(&sweep, v->m, v->least, v->most, params);
+    if (v->given) sweep.given = &given;
     const struct view *view = &v->set->views[v->view_idx];
     struct plane_problem problem = {.view = view,
                                     .down = find_down(v->set, view),
                                     .m = v->m,
                                     .points = &points,
                                     .cross = first ? NULL : &cross,
+                                    .given = sweep.given,
                                     .weights = weights,
                                     .params = params,
                                     .least = v->least,
@@ -136,6 +168,7 @@ static enum status solve(struct layered_depth *out, const struct solve *v, struc
                                     .step = sweep.step,
                                     .planes = sweep.planes};
     enum status st = planes && distinct && weights ? ST_OK : err_nomem(err, "planes", (size_t)s->count * 40);
+    if (!st && v->given) st = fit_given(&given, v, sweep.step, err);
     if (!st) st = point_evidence_make(&points, s, v->seen, v->least, v->most, sweep.step, params, err);
     if (!st && first) {
         st = plane_sweep_run(&sweep, planes, v->m, &points, weights, view, problem.down, params, err);
@@ -145,6 +178,8 @@ static enum status solve(struct layered_depth *out, const struct solve *v, struc
         st = cross_view_make(&cross, s, v->set, v->view_idx, v->neighbours, v->neighbour_count, sweep.step, &source,
                              err);
         if (!st) st = planes_before(planes, distinct, v, err);
+        for (int i = 0; !st && i < s->count; i++)
+            if (given_depth_knows(sweep.given, i)) planes[i] = given.planes[i];
     }
     if (!st) st = expand_planes(planes, &problem, err);
     if (!st) st = refine_planes(planes, &problem, err);
@@ -159,6 +194,7 @@ static enum status solve(struct layered_depth *out, const struct solve *v, struc
     free(weights);
     cross_view_release(&cross);
     plane_sweep_release(&sweep);
+    given_depth_release(&given);
     point_evidence_release(&points);
     return st;
 }
@@ -182,6 +218,16 @@ static enum status add_neighbour(struct matcher *m, const struct camera_set *set
     return st;
 }
 
+/* A view whose depth is given may stand alone. */
+static enum status find_neighbours(int neighbours[MAX_NEIGHBOURS], int *count, const struct camera_set *set,
+                                   int view_idx, const struct seen_points *seen, const struct segment_params *params,
+                                   const float *given, struct err *err)
+{
+    struct err alone = ERR_INIT;
+    const enum status st = neighbours_choose(neighbours, count, set, view_idx, seen, params->neighbours, &alone);
+    return st && !(st == ST_DATA && given) ? err_set(err, st, "%s", alone.text) : ST_OK;
+}
+
 enum status view_depth(struct layered_depth *out, int neighbours[MAX_NEIGHBOURS], int *neighbour_count,
                        const struct camera_set *set, int view_idx, const struct view_source *source,
                        const struct segment_params *params, struct err *err)
@@ -202,10 +248,12 @@ enum status view_depth(struct layered_depth *out, int neighbours[MAX_NEIGHBOURS]
     *out = (struct layered_depth){0};
     *neighbour_count = 0;
     enum status st = seen_points_find(&seen, set, view_idx, err);
-    if (!st) st = neighbours_choose(neighbours, neighbour_count, set, view_idx, &seen, params->neighbours, err);
+    if (!st && source->read_given) st = source->read_given(source->ctx, view_idx, &v.given, err);
+    if (!st) st = find_neighbours(neighbours, neighbour_count, set, view_idx, &seen, params, v.given, err);
     if (!st) st = source->read(source->ctx, view_idx, &picture, err);
     if (!st) st = layered_depth_init(out, picture.width, picture.height, err);
-    if (!st) st = depth_range(&v.least, &v.most, set, view_idx, neighbours, *neighbour_count, err);
+    if (!st && *neighbour_count) st = depth_range(&v.least, &v.most, set, view_idx, neighbours, *neighbour_count, err);
+    if (!st && v.given) given_depth_range(&v.least, &v.most, v.given, (size_t)picture.width * (size_t)picture.height);
     if (!st && params->far > 0) v.least = 1 / params->far;
     if (!st && params->near > 0) v.most = 1 / params->near;
     if (!st && !(v.least < v.most))
@@ -226,5 +274,6 @@ enum status view_depth(struct layered_depth *out, int neighbours[MAX_NEIGHBOURS]
     gamma_image_release(&gamma);
     image_release(&picture);
     seen_points_release(&seen);
+    free(v.given);
     return st;
 }

@@ -13,10 +13,13 @@ struct view_source {
     enum status (*read)(void *ctx, int view_idx, struct image *im, struct err *err);
     enum status (*read_depth)(void *ctx, int view_idx, struct layered_depth *d, struct err *err);
     void *ctx;
+    /* Depth that is given: z of each of the view's pixels, 0 unknown; malloc'ed, NULL where nothing is given. The callback may be
+     * NULL. */
+    enum status (*read_given)(void *ctx, int view_idx, float **z, struct err *err);
 };
 
 /* out: {0} on entry; the caller releases it. neighbours, neighbour_count: the views that were read besides view_idx.
- * ST_DATA: no neighbour. The same bits for any number of threads. */
+ * ST_DATA: no neighbour, nor given depth. The same bits for any number of threads. */
 enum status view_depth(struct layered_depth *out, int neighbours[MAX_NEIGHBOURS], int *neighbour_count,
                        const struct camera_set *set, int view_idx, const struct view_source *source,
                        const struct segment_params *params, struct err *err);

@@ -178,7 +178,7 @@ static enum status photo_on_disk(void *ctx, int view_idx, struct image *im, stru
 static void a_nan_in_a_view_is_told_with_its_pixel(void **state)
 {
     (void)state;
-    const struct view_source source = {photo_on_disk, NULL, NULL};
+    const struct view_source source = {photo_on_disk, NULL, NULL, NULL};
     start();
     scene_wall(&scene, 0, 0, 5, 9, 9, 0.2);
     stand(3);
@@ -234,8 +234,9 @@ static void a_round_before_that_does_not_fit_is_told(void **state)
     scene_wall(&scene, 0, 0, 5, 9, 9, 0.2);
     stand(2);
     before.scene = &scene;
-    const struct view_source first = {scene_photo, NULL, &scene}, less = {rounds_photo, depth_of_less, &before},
-                             none = {rounds_photo, no_depth, &before};
+    const struct view_source first = {scene_photo, NULL, &scene, NULL},
+                             less = {rounds_photo, depth_of_less, &before, NULL},
+                             none = {rounds_photo, no_depth, &before, NULL};
     for (int k = 0; k < 2; k++)
         assert_ok(view_depth(&before.depth[k], r.neighbours, &r.neighbour_count, &scene.set, k, &first, &params, &err),
                   err);
@@ -291,7 +292,7 @@ static enum status strip_photo(void *ctx, int view_idx, struct image *im, struct
 static void a_photo_as_long_as_a_street_works(void **state)
 {
     (void)state;
-    const struct view_source source = {strip_photo, NULL, &scene};
+    const struct view_source source = {strip_photo, NULL, &scene, NULL};
     for (int upright = 0; upright < 2; upright++) {
         struct result r = {0};
         struct err err = ERR_INIT;

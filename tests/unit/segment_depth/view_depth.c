@@ -402,7 +402,7 @@ static enum status unrelated_photo(void *ctx, int view_idx, struct image *im, st
 static void unrelated_photos_give_sound_depths(void **state)
 {
     (void)state;
-    const struct view_source source = {unrelated_photo, NULL, &scene};
+    const struct view_source source = {unrelated_photo, NULL, &scene, NULL};
     static const int sizes[] = {64, 300, 2000};
     start();
     scene_wall(&scene, 0, 0, 5, 30, 30, 0)->cell = 0.2;
@@ -457,7 +457,7 @@ static enum status broken_photo(void *ctx, int view_idx, struct image *im, struc
 static void a_photo_that_cannot_be_read_is_told(void **state)
 {
     (void)state;
-    const struct view_source source = {broken_photo, NULL, &scene};
+    const struct view_source source = {broken_photo, NULL, &scene, NULL};
     const struct segment_params params = SEGMENT_PARAMS_DEFAULT;
     struct result r = {0};
     struct err err = ERR_INIT;

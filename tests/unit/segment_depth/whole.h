@@ -57,7 +57,7 @@ static inline void must_be_sound(const struct layered_depth *d)
 
 static inline enum status depth_of(struct result *r, const struct segment_params *params, struct err *err)
 {
-    const struct view_source source = {scene_photo, NULL, &scene};
+    const struct view_source source = {scene_photo, NULL, &scene, NULL};
     return view_depth(&r->depth, r->neighbours, &r->neighbour_count, &scene.set, 0, &source, params, err);
 }
 
@@ -147,7 +147,7 @@ static inline void must_work_in_rounds(struct layered_depth *first_view, int mor
     for (int round = 0; round <= more; round++) {
         now.scene = next.scene = &scene;
         for (int k = 0; k < scene.set.view_count; k++) {
-            const struct view_source source = {rounds_photo, round ? rounds_depth : NULL, &now};
+            const struct view_source source = {rounds_photo, round ? rounds_depth : NULL, &now, NULL};
             int neighbours[MAX_NEIGHBOURS], count;
             struct err err = ERR_INIT;
             if (round == more && k > 0) break;

@@ -1,0 +1,270 @@
+/* given_read.c - see given_read.h. */
+#include "stages/segment_depth/given_read.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "common/exr.h"
+#include "common/log.h"
+#include "common/photo.h"
+#include "common/textfile.h"
+
+#define LEAST_Z 1e-30 /* what is nearer or farther cannot be told from 0 or infinity */
+#define MOST_Z  1e30
+
+struct map { /* as the file has it */
+    const char *path;
+    int width, height;
+    float *z; /* w * h, 0 unknown; owned */
+};
+
+enum status given_units_read(struct given_units *u, const char *path, struct err *err)
+{
+    struct textfile t = {0};
+    char *word = NULL, found[32];
+    *u = (struct given_units){0};
+    enum status st = textfile_open(&t, path, err);
+    while (!st && textfile_next(&t)) {
+        st = textfile_word(&t, "scale or pixels", &word, err);
+        if (st) break;
+        if (!strcmp(word, "scale") && !(u->scale > 0)) {
+            st = textfile_double(&t, "what a sample is to be multiplied with", &u->scale, err);
+            if (!st && !(u->scale >= 1e-12 && u->scale <= 1e12)) {
+                snprintf(found, sizeof found, "%.9g", u->scale);
+                st = textfile_error(&t, err, found, "a scale from 1e-12 to 1e12");
+            }
+        } else if (!strcmp(word, "pixels") && u->pixels == PIXELS_BY_SIZE) {
+            st = textfile_word(&t, "view or photo", &word, err);
+            if (!st && !strcmp(word, "view"))
+                u->pixels = PIXELS_OF_VIEW;
+            else if (!st && !strcmp(word, "photo"))
+                u->pixels = PIXELS_OF_PHOTO;
+            else if (!st)
+                st = textfile_error(&t, err, word, "view or photo");
+        } else {
+            st = textfile_error(&t, err, word, "a line \"scale NUMBER\" or \"pixels view|photo\", each at most once");
+        }
+        if (!st) st = textfile_end(&t, err);
+    }
+    textfile_release(&t);
+    if (st) *u = (struct given_units){0};
+    return st;
+}
+
+static enum status keep_sample(struct map *m, size_t i, double sample, double scale, struct err *err)
+{
+    const double z = sample * scale;
+    if (sample < 0 && isfinite(sample))
+        return err_set(
+            err, ST_DATA,
+            "%s: found the depth %.9g at pixel (%d, %d); wanted z along the camera's axis, more than 0 in front "
+            "of it, and 0 where it is not known.",
+            m->path, sample, (int)(i % (size_t)m->width), (int)(i / (size_t)m->width));
+    m->z[i] = z >= LEAST_Z && z <= MOST_Z ? (float)z : 0;
+    return ST_OK;
+}
+
+static enum status init_map(struct map *m, int width, int height, struct err *err)
+{
+    const size_t pixels = (size_t)width * (size_t)height;
+    m->width = width;
+    m->height = height;
+    m->z = malloc(pixels * sizeof *m->z);
+    return m->z ? ST_OK : err_nomem(err, "given depth", pixels * sizeof *m->z);
+}
+
+static enum status read_exr(struct map *m, const struct given_units *units, struct err *err)
+{
+    struct exr_image exr = {0};
+    enum status st = exr_read_any(&exr, m->path, err);
+    const struct exr_plane *plane = st ? NULL : exr_find(&exr, "Z");
+    if (!st && !plane && exr.count == 1) plane = exr.planes;
+    if (!st && !plane) {
+        char there[1024] = "";
+        for (int c = 0; c < exr.count; c++) {
+            const size_t length = strlen(there);
+            snprintf(there + length, sizeof there - length, " %s", exr.planes[c].name);
+        }
+        st = err_set(err, ST_DATA, "%s has the channels%s; wanted one that is called Z, or a single one.", m->path,
+                     there);
+    }
+    if (!st) st = init_map(m, exr.width, exr.height, err);
+    const double scale = units->scale > 0 ? units->scale : 1;
+    const size_t pixels = (size_t)m->width * (size_t)m->height;
+    for (size_t i = 0; !st && i < pixels; i++)
+        st = keep_sample(m, i, plane->f ? (double)plane->f[i] : (double)plane->u[i], scale, err);
+    exr_image_release(&exr);
+    return st;
+}
+
+static enum status read_png(struct map *m, const struct given_units *units, const char *folder, struct err *err)
+{
+    struct photo photo = {0};
+    if (!(units->scale > 0))
+        return err_set(err, ST_DATA,
+                       "%s holds whole numbers, and nothing tells what they mean; write the line \"scale NUMBER\" into "
+                       "%s/depth.txt, NUMBER being what makes them depth in scene units.",
+                       m->path, folder);
+    enum status st = photo_read(&photo, m->path, err);
+    if (!st) st = init_map(m, photo.info.width, photo.info.height, err);
+    const size_t pixels = (size_t)m->width * (size_t)m->height;
+    for (size_t i = 0; !st && i < pixels; i++) {
+        const uint16_t *s = photo.samples + 3 * i;
+        if (s[0] != s[1] || s[0] != s[2])
+            st = err_set(err, ST_DATA, "%s is in colour; depth as PNG is grey, of 8 or 16 bit.", m->path);
+        else
+            st = keep_sample(m, i, s[0], units->scale, err);
+    }
+    photo_release(&photo);
+    return st;
+}
+
+/* Is one size the other, scaled and rounded? */
+static bool same_aspect(int w, int h, int width, int height)
+{
+    const double a = w, b = h, c = width, d = height;
+    return fabs(a * d / c - b) <= 1 || fabs(b * c / d - a) <= 1 || fabs(c * b / a - d) <= 1 || fabs(d * a / b - c) <= 1;
+}
+
+struct mapping {
+    const struct map *map;
+    const struct view *view;
+    const struct lens *lens; /* NULL: the map is of the view */
+    struct mat3 photo_from_view;
+};
+
+/* Where in the map a view's pixel lies, in the map's pixels, and what makes its z the view's; false: outside. */
+static bool map_from_pixel(const struct mapping *g, int x, int y, double *u, double *v, double *factor)
+{
+    const struct view *view = g->view;
+    *u = (x + 0.5) * g->map->width / view->width;
+    *v = (y + 0.5) * g->map->height / view->height;
+    *factor = 1;
+    if (g->lens) {
+        const struct vec3 ray = {(x + 0.5 - view->cx) / view->fx, (y + 0.5 - view->cy) / view->fy, 1};
+        const struct vec3 turned = mat3_apply(g->photo_from_view, ray);
+        if (!(turned.z > 1e-6) || !camera_project(&g->lens->camera, turned, u, v)) return false;
+        *u *= (double)g->map->width / g->lens->camera.width;
+        *v *= (double)g->map->height / g->lens->camera.height;
+        *factor = 1 / turned.z;
+    }
+    return *u >= 0 && *v >= 0 && *u < g->map->width && *v < g->map->height;
+}
+
+/* Whether it matters if the map is of the photo or of the view: by a pixel somewhere. */
+static bool lens_matters(const struct mapping *of_photo)
+{
+    enum { GRID = 8 };
+    struct mapping of_view = *of_photo;
+    of_view.lens = NULL;
+    for (int k = 0; k <= GRID; k++)
+        for (int i = 0; i <= GRID; i++) {
+            const int x = (of_photo->view->width - 1) * i / GRID, y = (of_photo->view->height - 1) * k / GRID;
+            double u, v, pu, pv, factor;
+            map_from_pixel(&of_view, x, y, &u, &v, &factor);
+            if (!map_from_pixel(of_photo, x, y, &pu, &pv, &factor) || hypot(pu - u, pv - v) > 1) return true;
+        }
+    return false;
+}
+
+static enum status choose_mapping(struct mapping *g, const struct map *m, const char *folder,
+                                  const struct given_units *units, const struct view *view, const struct lens *lens,
+                                  struct err *err)
+{
+    /* where a photo became several views there is no view of its name */
+    const struct camera *photo = lens && !strcmp(lens->photo, view->name) ? &lens->camera : NULL;
+    const bool as_view = same_aspect(m->width, m->height, view->width, view->height);
+    const bool as_photo = photo && same_aspect(m->width, m->height, photo->width, photo->height);
+    const bool is_view = m->width == view->width && m->height == view->height;
+    const bool is_photo = photo && m->width == photo->width && m->height == photo->height;
+    bool of_photo = !is_view && (is_photo || !as_view);
+    if (units->pixels != PIXELS_BY_SIZE) of_photo = units->pixels == PIXELS_OF_PHOTO;
+    *g = (struct mapping){m, view, NULL, {{{0}}}};
+    if (!(of_photo ? as_photo : as_view)) {
+        char sizes[128] = "";
+        if (photo) snprintf(sizes, sizeof sizes, ", its photo %d x %d", photo->width, photo->height);
+        return err_set(err, ST_DATA,
+                       "%s has %d x %d pixels, but view %s has %d x %d%s; wanted %s, or the same at another scale.",
+                       m->path, m->width, m->height, view->name, view->width, view->height, sizes,
+                       units->pixels == PIXELS_BY_SIZE   ? (photo ? "one of these sizes" : "this size")
+                       : units->pixels == PIXELS_OF_VIEW ? "the view's size, as depth.txt says"
+                       : photo                           ? "the photo's size, as depth.txt says"
+                                                         : "a photo that is one view, as depth.txt says");
+    }
+    if (!photo) return ST_OK;
+    g->lens = lens;
+    g->photo_from_view = mat3_transpose(mat3_from_quat(lens->view_from_photo));
+    if (units->pixels == PIXELS_BY_SIZE && as_view && as_photo && lens_matters(g))
+        log_warn(
+            "%s could be of the rectified view or of the photo with its lens; it is taken for the %s's. Say so with a "
+            "line \"pixels view\" or \"pixels photo\" in %s/depth.txt.",
+            m->path, of_photo ? "photo" : "view", folder);
+    if (!of_photo) g->lens = NULL;
+    return ST_OK;
+}
+
+static enum status map_to_view(float **z, const struct mapping *g, struct err *err)
+{
+    const struct view *view = g->view;
+    const size_t pixels = (size_t)view->width * (size_t)view->height;
+    float *to = *z = calloc(pixels, sizeof *to);
+    if (!to) return err_nomem(err, "given depth", pixels * sizeof *to);
+    for (int y = 0; y < view->height; y++)
+        for (int x = 0; x < view->width; x++, to++) {
+            double u, v, factor;
+            if (!map_from_pixel(g, x, y, &u, &v, &factor)) continue;
+            *to = (float)(factor * (double)g->map->z[(size_t)v * (size_t)g->map->width + (size_t)u]);
+        }
+    return ST_OK;
+}
+
+/* FOLDER/NAME, its name as an input; *path is NULL if the file is not there. */
+static enum status find_file(char **path, const char *folder, const char *name, const char *ending,
+                             struct provenance *prov, struct err *err)
+{
+    char *input = NULL;
+    enum status st = ST_OK;
+    if (asprintf(path, "%s/%s%s", folder, name, ending) < 0) *path = NULL;
+    if (!*path || asprintf(&input, "given/%s%s", name, ending) < 0) {
+        st = err_nomem(err, "a file name", strlen(folder) + strlen(name));
+    } else if (access(*path, F_OK)) {
+        free(*path);
+        *path = NULL;
+    } else {
+        st = provenance_add_file(prov, input, *path, err);
+    }
+    free(input);
+    return st;
+}
+
+enum status given_read(float **z, const char *folder, const struct view *view, const struct lens *lens,
+                       struct provenance *prov, struct err *err)
+{
+    struct given_units units = {0};
+    struct map map = {0};
+    struct mapping mapping;
+    char *path = NULL, *told = NULL;
+    bool png = false;
+    *z = NULL;
+    enum status st = find_file(&path, folder, view->name, ".exr", prov, err);
+    if (!st && !path) {
+        png = true;
+        st = find_file(&path, folder, view->name, ".png", prov, err);
+    }
+    if (!st && path) st = find_file(&told, folder, "depth", ".txt", prov, err);
+    if (!st && told) st = given_units_read(&units, told, err);
+    if (!st && path) {
+        map.path = path;
+        st = png ? read_png(&map, &units, folder, err) : read_exr(&map, &units, err);
+        if (!st) st = choose_mapping(&mapping, &map, folder, &units, view, lens, err);
+        if (!st) st = map_to_view(z, &mapping, err);
+    }
+    free(map.z);
+    free(told);
+    free(path);
+    return st;
+}
