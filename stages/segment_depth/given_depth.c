@@ -2,7 +2,8 @@
  *
  * Of planes through three samples, and that of least squares, the one with the least median residual tells how well samples
  * agree at all (Rousseeuw 1984): a scanner's to a part of a step, a network's to several. Least squares of what lies within 2.5
- * such deviations, repeated, makes it exact. */
+ * such deviations, repeated, makes it exact. What a slope saves is counted in deviations too, for given depth is often finer than a
+ * step. */
 #include "stages/segment_depth/given_depth.h"
 
 #include <math.h>
@@ -15,9 +16,12 @@
 #define LEAST_SAMPLES 4
 #define LEAST_PART    8 /* one in so many pixels */
 #define TRIPLES       12
-#define LOOKED_AT     64  /* samples that tell a median */
-#define OUTSIDE       2.5 /* deviations: not of this plane */
-#define LIMIT         4.0 /* steps, or deviations if these are more: a miss that costs no more when it grows */
+#define LOOKED_AT     64   /* samples that tell a median */
+#define OUTSIDE       2.5  /* deviations: not of this plane */
+#define LIMIT         4.0  /* deviations: a miss that costs no more when it grows */
+#define FINEST        0.02 /* steps: a smaller deviation makes no difference */
+#define PARAMETERS    4.0  /* what a slope must save in all, in deviations: less is fitted noise */
+#define NO_FIT        4.0  /* steps: what is farther off is not explained at all */
 #define REPEATS       4
 
 struct sample {
@@ -119,11 +123,11 @@ static struct plane fitted(const struct sample *p, int count, struct plane from,
     return (struct plane){a, b, mean[2] - a * mean[0] - b * mean[1]};
 }
 
-static double cost_of(const struct fit *f, const struct sample *p, int count, struct plane at, double limit)
+static double cost_of(const struct sample *p, int count, struct plane at, double limit)
 {
     double sum = 0;
     for (int k = 0; k < count; k++) sum += fmin(residual(&p[k], at), limit);
-    return sum / count / f->step;
+    return sum / count;
 }
 
 /* Positive over the segment and the margin where its edge may be painted, and nowhere far from what was given. */
@@ -158,20 +162,21 @@ static void fit_segment(const struct fit *f, int i, const struct sample *p, int 
         slanted = tried;
         if (k < 0 && median < 1e-3 * f->step) break;
     }
-    const double deviation = fmax(1.5 * least, f->step), reach = OUTSIDE * deviation, limit = LIMIT * deviation;
+    const double deviation = fmax(1.5 * least, FINEST * f->step), reach = OUTSIDE * deviation,
+                 limit = LIMIT * deviation;
     for (int k = 0; k < REPEATS; k++) {
         slanted = fitted(p, count, slanted, reach, false);
         level = fitted(p, count, level, reach, true);
     }
     const struct plane moved = {slanted.a, slanted.b, slanted.c - slanted.a * g->cx - slanted.b * g->cy};
-    const double gain = cost_of(f, p, count, level, limit) - cost_of(f, p, count, slanted, limit);
-    const bool slants = size * gain > f->params->slant && stays_near(g, moved, p, count);
+    const double gain = (cost_of(p, count, level, limit) - cost_of(p, count, slanted, limit)) / deviation;
+    const bool slants = size * gain > f->params->slant && count * gain > PARAMETERS && stays_near(g, moved, p, count);
     const struct plane best = slants ? slanted : level;
     double off = 0, good = 0;
     int inside = 0;
     for (int k = 0; k < count; k++) {
         const double r = residual(&p[k], best);
-        good += 1 - fmin(r / (LIMIT * f->step), 1);
+        good += 1 - fmin(r / (NO_FIT * f->step), 1);
         if (r > reach) continue;
         off += r;
         inside++;

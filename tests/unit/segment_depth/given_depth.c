@@ -1,0 +1,334 @@
+/* given_depth.c - depth that is given as a formula, with noise, holes and outliers: what planes it must give, alone and beside
+ * segments that are matched. */
+#include "tests/unit/scratch.h"
+#include "tests/unit/segment_depth/whole.h"
+
+#include "stages/segment_depth/given_depth.h"
+
+/* What is given of a pixel; z is the truth. */
+typedef double (*giver)(int x, int y, double z);
+static giver gives;
+
+static enum status given_z(void *ctx, int view_idx, float **z, struct err *err)
+{
+    const struct view *v = &scene.views[view_idx];
+    (void)ctx, (void)err;
+    *z = NULL;
+    if (view_idx) return ST_OK;
+    assert_non_null(*z = calloc((size_t)v->width * (size_t)v->height, sizeof **z));
+    for (int y = 0; y < v->height; y++)
+        for (int x = 0; x < v->width; x++) {
+            int at;
+            const double truth = scene_depth(&scene, v, x + 0.5, y + 0.5, &at);
+            (*z)[y * v->width + x] = (float)gives(x, y, at < 0 ? 0 : truth);
+        }
+    return ST_OK;
+}
+
+static double all(int x, int y, double z) { return (void)x, (void)y, z; }
+static double left_half(int x, int y, double z) { return (void)y, x < W / 2 ? z : 0; }
+static double one_in_20(int x, int y, double z) { return (x + 7 * y) % 20 == 0 ? z : 0; }
+static double one_in_3(int x, int y, double z) { return (x + y) % 3 == 0 ? z : 0; }
+static double with_a_hole(int x, int y, double z) { return hypot(x - W / 4.0, y - H / 2.0) < 15 ? 0 : z; }
+static double twice_as_far(int x, int y, double z) { return (void)x, (void)y, 2 * z; }
+
+static double noisy(int x, int y, double z)
+{
+    const double n = scene_hash(x, y, 1), stray = scene_hash(x, y, 2);
+    return stray < 0.1 ? z * (0.3 + 3 * n) : z * (1 + 0.01 * (n - 0.5));
+}
+
+static void must_work_given(struct result *r, giver g)
+{
+    const struct segment_params params = SEGMENT_PARAMS_DEFAULT;
+    const struct view_source source = {scene_photo, NULL, &scene, given_z};
+    struct err err = ERR_INIT;
+    gives = g;
+    assert_ok(view_depth(&r->depth, r->neighbours, &r->neighbour_count, &scene.set, 0, &source, &params, &err), err);
+    must_be_sound(&r->depth);
+}
+
+/* A leaning wall, and a card before it. */
+static void wall_and_card(int views)
+{
+    start();
+    scene_wall(&scene, 0, 0, 7, 15, 15, 0.4)->cell = 0.35;
+    scene_wall(&scene, 0.1, 0.1, 4, 0.8, 0.7, 0)->colour[0] = 0.1f;
+    stand(views);
+}
+
+/* -------------------------------------------------------------------------------------------------- a view by itself */
+
+static void a_single_photo_with_depth_has_layers(void **state)
+{
+    (void)state;
+    struct result r = {0};
+    wall_and_card(1);
+    must_work_given(&r, all);
+    assert_int_equal(r.neighbour_count, 0);
+    assert_true(right(&r.depth, 0, 1e-4) > 0.98);
+    assert_true(right(&r.depth, 1, 1e-4) > 0.98);
+    assert_true(mean_confidence(&r.depth) > 0.9);
+    int boundary = 0;
+    for (int i = 0; i < W * H; i++) boundary += r.depth.boundary.id[i] > 0;
+    assert_true(boundary > 20); /* the card's rim is split */
+    layered_depth_release(&r.depth);
+}
+
+static void samples_in_a_third_of_the_pixels_are_enough(void **state)
+{
+    (void)state;
+    struct result r = {0};
+    wall_and_card(1);
+    must_work_given(&r, one_in_3);
+    assert_true(right(&r.depth, 0, 1e-3) > 0.97 && right(&r.depth, 1, 1e-3) > 0.97);
+    layered_depth_release(&r.depth);
+}
+
+static void noise_and_outliers_bend_nothing(void **state)
+{
+    (void)state;
+    struct result r = {0};
+    wall_and_card(3);
+    must_work_given(&r, noisy);
+    assert_true(right(&r.depth, 0, 0.005) > 0.97 && right(&r.depth, 1, 0.005) > 0.97);
+    assert_true(mean_confidence(&r.depth) > 0.5 && mean_confidence(&r.depth) < 0.95);
+    layered_depth_release(&r.depth);
+}
+
+/* Nothing can be matched: what is not given inherits. */
+static void a_hole_takes_what_surrounds_it(void **state)
+{
+    (void)state;
+    struct result r = {0};
+    start();
+    scene_wall(&scene, 0, 0, 7, 15, 15, 0.4);
+    stand(1);
+    must_work_given(&r, with_a_hole);
+    assert_true(right(&r.depth, 0, 0.02) > 0.97);
+    double worst = 0;
+    for (int i = 0; i < r.depth.segment_count; i++) worst = fmax(worst, 1 - r.depth.segments[i].confidence);
+    assert_true(worst > 0.9); /* and says that it is not sure */
+    layered_depth_release(&r.depth);
+}
+
+static void too_sparse_depth_alone_is_refused(void **state)
+{
+    (void)state;
+    const struct segment_params params = SEGMENT_PARAMS_DEFAULT;
+    const struct view_source source = {scene_photo, NULL, &scene, given_z};
+    struct result r = {0};
+    struct err err = ERR_INIT;
+    wall_and_card(1);
+    gives = one_in_20;
+    assert_int_equal(view_depth(&r.depth, r.neighbours, &r.neighbour_count, &scene.set, 0, &source, &params, &err),
+                     ST_DATA);
+    assert_err(err, ST_DATA, "view a has no neighbour");
+    assert_contains(err.text, "too sparse");
+    assert_null(r.depth.segments);
+}
+
+/* ---------------------------------------------------------------------------------------- beside what is matched */
+
+static void one_half_is_given_the_other_is_matched(void **state)
+{
+    (void)state;
+    struct result r = {0};
+    wall_and_card(5);
+    scene_points(&scene, 200);
+    must_work_given(&r, left_half);
+    assert_int_equal(r.neighbour_count, 4);
+    assert_true(right(&r.depth, 0, 0.02) > 0.95 && right(&r.depth, 1, 0.02) > 0.95);
+    int good = 0, count = 0;
+    for (int y = 0; y < H; y++)
+        for (int x = 0; x < W / 2 - 8; x++) {
+            int at;
+            const double z = scene_depth(&scene, &scene.views[0], x + 0.5, y + 0.5, &at);
+            if (at_jump(x, y)) continue;
+            good += fabs((double)r.depth.interior.z[y * W + x] / z - 1) < 1e-4;
+            count++;
+        }
+    assert_true(good > 0.97 * count);
+    layered_depth_release(&r.depth);
+}
+
+/* However well the pictures tell another depth, also in later rounds and where the neighbours see through it. */
+static void what_is_given_stays(void **state)
+{
+    (void)state;
+    static struct rounds before;
+    const struct segment_params params = SEGMENT_PARAMS_DEFAULT;
+    memset(&before, 0, sizeof before);
+    start();
+    scene_wall(&scene, 0, 0, 5, 12, 12, 0.2);
+    stand(3);
+    scene_points(&scene, 200);
+    before.scene = &scene;
+    gives = twice_as_far;
+    for (int round = 0; round < 2; round++) {
+        const struct view_source source = {rounds_photo, round ? rounds_depth : NULL, &before, given_z};
+        struct layered_depth now[3] = {{0}};
+        for (int k = 0; k < 3; k++) {
+            int neighbours[MAX_NEIGHBOURS], count;
+            struct err err = ERR_INIT;
+            assert_ok(view_depth(&now[k], neighbours, &count, &scene.set, k, &source, &params, &err), err);
+        }
+        for (int k = 0; k < 3; k++) {
+            layered_depth_release(&before.depth[k]);
+            before.depth[k] = now[k];
+        }
+        for (int i = 0; i < W * H; i++) {
+            int at;
+            const double z = scene_depth(&scene, &scene.views[0], i % W + 0.5, i / W + 0.5, &at);
+            assert_near((double)now[0].interior.z[i] / (2 * z), 1, 2e-4);
+        }
+        assert_true(right(&now[1], -1, 0.02) > (round ? 0 : 0.97)); /* of which nothing is given */
+    }
+    for (int k = 0; k < 3; k++) layered_depth_release(&before.depth[k]);
+}
+
+static void any_number_of_threads_gives_the_same_bits(void **state)
+{
+    (void)state;
+    struct result r[2] = {{{0}, {0}, 0}};
+    wall_and_card(3);
+    for (int k = 0; k < 2; k++) {
+        parallel_set_threads(k ? 3 : 1);
+        must_work_given(&r[k], noisy);
+    }
+    assert_int_equal(r[0].depth.segment_count, r[1].depth.segment_count);
+    assert_memory_equal(r[0].depth.segments, r[1].depth.segments,
+                        (size_t)r[0].depth.segment_count * sizeof *r[0].depth.segments);
+    assert_memory_equal(r[0].depth.interior.z, r[1].depth.interior.z, W * H * sizeof(float));
+    for (int k = 0; k < 2; k++) layered_depth_release(&r[k].depth);
+}
+
+/* ------------------------------------------------------------------------------------------------------- the fit */
+
+enum { SIDE = 8 };
+#define STEP 0.01
+
+/* Segments of SIDE x SIDE pixels in a row. */
+struct row {
+    struct segmentation s;
+    struct segment segments[4];
+    int pixel[4 * SIDE * SIDE];
+    float z[4 * SIDE * SIDE];
+    struct given_depth g;
+};
+
+static void make_row(struct row *r)
+{
+    *r = (struct row){.s = {.width = 4 * SIDE, .height = SIDE, .count = 4}};
+    r->s.segments = r->segments;
+    r->s.pixel = r->pixel;
+    for (int i = 0; i < 4; i++) {
+        r->segments[i] = (struct segment){.first = i * SIDE * SIDE,
+                                          .pixels = SIDE * SIDE,
+                                          .cx = (i + 0.5) * SIDE,
+                                          .cy = SIDE / 2.0,
+                                          .x0 = i * SIDE,
+                                          .x1 = (i + 1) * SIDE - 1,
+                                          .y1 = SIDE - 1};
+        for (int k = 0; k < SIDE * SIDE; k++) r->pixel[i * SIDE * SIDE + k] = k / SIDE * 4 * SIDE + i * SIDE + k % SIDE;
+    }
+}
+
+static void fit_row(struct row *r)
+{
+    const struct segment_params params = SEGMENT_PARAMS_DEFAULT;
+    struct err err = ERR_INIT;
+    assert_ok(given_depth_make(&r->g, &r->s, r->z, STEP, &params, &err), err);
+}
+
+static void give(struct row *r, int segment, int k, double inverse)
+{
+    r->z[r->pixel[segment * SIDE * SIDE + k]] = (float)(1 / inverse);
+}
+
+static void the_larger_part_gives_the_plane(void **state)
+{
+    (void)state;
+    static struct row r;
+    make_row(&r);
+    for (int k = 0; k < SIDE * SIDE; k++) {
+        const double u = k % SIDE + 0.5, v = k / SIDE + 0.5;
+        give(&r, 0, k, k % SIDE < 5 ? 0.5 : 1);                                  /* two level parts */
+        give(&r, 1, k, k % SIDE < 3 ? 1 : 0.5 + 0.004 * (SIDE + u) + 0.002 * v); /* the larger one slants */
+        give(&r, 2, k, 0.5 + (k % 2 ? 1e-5 : -1e-5));                            /* level but for a trifle */
+        if (k < SIDE * SIDE / 8 - 1) give(&r, 3, k, 0.5);                        /* too little of it */
+    }
+    fit_row(&r);
+    assert_true(r.g.known[0] && r.g.known[1] && r.g.known[2] && !r.g.known[3]);
+    assert_int_equal(r.g.segments, 3);
+    assert_int_equal(r.g.pixels, 3 * SIDE * SIDE + SIDE * SIDE / 8 - 1);
+    assert_near(r.g.planes[0].a, 0, 0);
+    assert_near(r.g.planes[0].c, 0.5, 1e-6);
+    assert_near(r.g.good[0], 5.0 / 8, 1e-3);
+    assert_near(r.g.planes[1].a, 0.004, 1e-6);
+    assert_near(r.g.planes[1].b, 0.002, 1e-6);
+    assert_near(r.g.planes[1].c, 0.5, 1e-5);
+    assert_near(r.g.off[1], 0, 1e-6);
+    assert_true(r.g.planes[2].a == 0 && r.g.planes[2].b == 0);
+    assert_near(r.g.good[2], 1, 0.01);
+    given_depth_release(&r.g);
+    given_depth_release(&r.g);
+}
+
+/* Samples along a line, or a slope that would leave the front of the camera: a constant is all that they tell. */
+static void a_plane_that_samples_do_not_span_is_level(void **state)
+{
+    (void)state;
+    static struct row r;
+    make_row(&r);
+    for (int k = 0; k < SIDE; k++) {
+        give(&r, 0, k * SIDE + 3, 0.5 + 0.01 * k);
+        give(&r, 1, k, 0.5);
+        give(&r, 2, k * SIDE + 0, 0.02 + 0.08 * 0);
+        give(&r, 2, k * SIDE + 1, 0.02 + 0.08 * 1);
+    }
+    fit_row(&r);
+    for (int i = 0; i < 3; i++) {
+        assert_true(r.g.known[i]);
+        assert_true(r.g.planes[i].a == 0 && r.g.planes[i].b == 0 && r.g.planes[i].c > 0);
+    }
+    given_depth_release(&r.g);
+}
+
+static void the_range_leaves_strays_out(void **state)
+{
+    (void)state;
+    enum { N = 10000 };
+    static float z[N];
+    double least = 0, most = 0;
+    memset(z, 0, sizeof z);
+    assert_false(given_depth_range(&least, &most, z, N));
+    for (int i = 0; i < N; i++) z[i] = i % 2 ? 0 : i % 100 == 0 ? 1e-6f : (float)(2 + 2.0 * i / N);
+    assert_true(given_depth_range(&least, &most, z, N));
+    assert_true(least > 0.2 && least < 0.26 && most > 0.49 && most < 0.6);
+    least = 0.1;
+    most = 3;
+    assert_true(given_depth_range(&least, &most, z, N)); /* widens only */
+    assert_true(least == 0.1 && most == 3);
+    for (int i = 0; i < N; i++) z[i] = 4;
+    least = most = 0;
+    assert_true(given_depth_range(&least, &most, z, N) && least < 0.25 && most > 0.25);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_single_photo_with_depth_has_layers),
+        cmocka_unit_test(samples_in_a_third_of_the_pixels_are_enough),
+        cmocka_unit_test(noise_and_outliers_bend_nothing),
+        cmocka_unit_test(a_hole_takes_what_surrounds_it),
+        cmocka_unit_test(too_sparse_depth_alone_is_refused),
+        cmocka_unit_test(one_half_is_given_the_other_is_matched),
+        cmocka_unit_test(what_is_given_stays),
+        cmocka_unit_test(any_number_of_threads_gives_the_same_bits),
+        cmocka_unit_test(the_larger_part_gives_the_plane),
+        cmocka_unit_test(a_plane_that_samples_do_not_span_is_level),
+        cmocka_unit_test(the_range_leaves_strays_out),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
