@@ -127,7 +127,7 @@ static enum status read_png(struct map *m, const struct given_units *units, cons
 static bool same_aspect(int w, int h, int width, int height)
 {
     const double a = w, b = h, c = width, d = height;
-    return fabs(a * d / c - b) <= 1 || fabs(b * c / d - a) <= 1 || fabs(c * b / a - d) <= 1 || fabs(d * a / b - c) <= 1;
+    return fabs(a * d / c - b) < 1 || fabs(b * c / d - a) < 1 || fabs(c * b / a - d) < 1 || fabs(d * a / b - c) < 1;
 }
 
 struct mapping {

@@ -692,6 +692,57 @@ static void a_photo_of_another_size_is_refused(void **state)
     image_release(&photo);
 }
 
+/* ------------------------------------------------------------------------------------------------------------ masks */
+
+/* Through the photo's own camera, a reduction and a bent lens: no pixel shows light of what is masked, though that is brighter than all
+ * else by far; out of its reach nothing changes. */
+static void what_is_masked_is_no_part_of_the_view(void **state)
+{
+    enum { SIDE = 60 };
+    const struct camera cameras[] = {pinhole(SIDE, SIDE, 60),
+                                    pinhole(SIDE, SIDE, 60),
+                                    {CAMERA_SIMPLE_RADIAL, SIDE, SIDE, {60, SIDE / 2.0, SIDE / 2.0, -0.1}}};
+    const struct view views[] = {centred_view(SIDE, SIDE, 60), centred_view(SIDE / 2, SIDE / 2, 30),
+                                 centred_view(SIDE, SIDE, 60)};
+    (void)state;
+    for (int k = 0; k < 3; k++) {
+        struct image photo = noise(SIDE, SIDE), plain, out = {0};
+        unsigned char masked[SIDE * SIDE] = {0};
+        struct err err = ERR_INIT;
+        plain = look(&photo, &cameras[k], same_axes, &views[k]);
+        for (int y = 20; y < 33; y++)
+            for (int x = 25; x < 40; x++) {
+                masked[y * SIDE + x] = 1;
+                for (int c = 0; c < 3; c++) image_at(&photo, x, y)[c] = 1000;
+            }
+        assert_ok(resample_photo(&out, &photo, masked, &cameras[k], &same_axes, &views[k], &err), err);
+        const double scale = (double)SIDE / views[k].width;
+        int hidden = 0;
+        for (int y = 0; y < out.height; y++)
+            for (int x = 0; x < out.width; x++) {
+                const float *p = image_at(&out, x, y), *q = image_at(&plain, x, y);
+                double u = (x + 0.5) * scale, v = (y + 0.5) * scale;
+                const double r2 = ((u - 30) * (u - 30) + (v - 30) * (v - 30)) / 3600;
+                if (k == 2) u = 30 + (u - 30) * (1 - 0.1 * r2);
+                if (k == 2) v = 30 + (v - 30) * (1 - 0.1 * r2);
+                const double away = fmax(fmax(25 - u, u - 40), fmax(20 - v, v - 33)); /* below 0: inside */
+                assert_true(p[3] == 0 || p[3] == 1);
+                if (away < 0) assert_true(p[3] == 0);
+                if (away > 2 * scale) assert_true(p[3] == q[3]);
+                if (away > 3.5 * scale) assert_memory_equal(p, q, 4 * sizeof *p);
+                for (int c = 0; c < 3; c++) assert_true(p[3] == 1 ? p[c] < 4 : p[c] == 0);
+                hidden += p[3] < q[3];
+            }
+        const double area = 15 * 13 / (scale * scale);
+        if (k == 0) assert_int_equal(hidden, 15 * 13);
+        assert_true(hidden >= area * 0.95 &&
+                    hidden <= (15 + 2.1 * scale) * (13 + 2.1 * scale) / (scale * scale) * 1.05);
+        image_release(&photo);
+        image_release(&plain);
+        image_release(&out);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -711,6 +762,7 @@ int main(void)
         cmocka_unit_test(the_smallest_and_the_longest),
         cmocka_unit_test(any_number_of_threads_gives_the_same_bits),
         cmocka_unit_test(a_photo_of_another_size_is_refused),
+        cmocka_unit_test(what_is_masked_is_no_part_of_the_view),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

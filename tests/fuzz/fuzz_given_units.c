@@ -1,0 +1,26 @@
+/* fuzz_given_units.c - depth.txt, what a user's depth is in: a scale that is a positive number, or none; or a sentence says why
+ * not. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "stages/segment_depth/given_read.h"
+#include "tests/fuzz/fuzz.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    char path[] = "/tmp/remodel-fuzz-XXXXXX";
+    int fd = mkstemp(path);
+    struct given_units units;
+    struct err err = ERR_INIT;
+
+    if (fd < 0 || write(fd, data, size) != (ssize_t)size || close(fd)) abort();
+    if (given_units_read(&units, path, &err)) {
+        if (!strstr(err.text, path) || units.scale > 0) abort();
+    } else if (!isfinite(units.scale) || units.scale < 0 || units.scale > 1e12 || units.pixels > PIXELS_OF_PHOTO) {
+        abort();
+    }
+    unlink(path);
+    return 0;
+}
