@@ -19,7 +19,7 @@
 #define LOOKED_AT     64   /* samples that tell a median */
 #define OUTSIDE       2.5  /* deviations: not of this plane */
 #define LIMIT         4.0  /* deviations: a miss that costs no more when it grows */
-#define FINEST        0.02 /* steps: a smaller deviation makes no difference */
+#define FINEST        1e-3 /* steps: a smaller deviation makes no difference */
 #define PARAMETERS    4.0  /* what a slope must save in all, in deviations: less is fitted noise */
 #define NO_FIT        4.0  /* steps: what is farther off is not explained at all */
 #define REPEATS       4

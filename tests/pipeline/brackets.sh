@@ -80,6 +80,23 @@ a_deleted_merge_is_made_again()
     done
 }
 
+a_mask_of_an_exposure_masks_its_view()
+{
+    times_file a
+    mkdir -p scenes/t/masks
+    painted scenes/t/masks/photo_3_e0.png 100 80
+    painted scenes/t/masks/photo_3.png 200 80
+    run_scene depth >log || { cat log; fail "make"; }
+    times_file b
+    changed a b >c
+    grep -q '^views/photo_3.exr' c || { cat c; fail "the view was not made again"; }
+    ! grep -qE '^(sfm|hdr)/|^views/photo_[12456]\.' c || { cat c; fail "too much was made again"; }
+    for p in "130 100" "230 100"; do [ "$(alpha out/t/views/photo_3.exr $p)" = 00000000 ] || fail "the view has a pixel at $p"; done
+    [ "$(alpha out/t/views/photo_3.exr 180 100)" = 0000803f ] || fail "the view lacks a pixel between the masks"
+    rm -r scenes/t/masks
+    run_scene >log || { cat log; fail "make without masks"; }
+}
+
 written_exposures_redo_what_they_are_of()
 {
     times_file a
@@ -165,6 +182,6 @@ no_brackets_when_told_so()
 }
 
 for t in from_brackets_to_video the_next_make_does_nothing merged_views_are_nearly_the_middle_exposure \
-    a_changed_bracket_redoes_its_view_and_its_readers a_deleted_merge_is_made_again written_exposures_redo_what_they_are_of \
+    a_changed_bracket_redoes_its_view_and_its_readers a_deleted_merge_is_made_again a_mask_of_an_exposure_masks_its_view written_exposures_redo_what_they_are_of \
     an_incomplete_cycle_is_refused_and_nothing_is_lost brackets_txt_says_which_photos_are_a_view \
     threads_do_not_matter_and_draft_shares_the_merge no_brackets_when_told_so; do run "$t"; done

@@ -111,6 +111,99 @@ a_changed_photo_redoes_its_view_and_its_readers()
     run_scene >log
 }
 
+a_mask_redoes_its_view_and_its_readers()
+{
+    (cd out/t && find views depth -type f ! -name '.*' ! -name '*.d' | sort | xargs -d '\n' sha256sum) >before
+    mkdir -p scenes/t/masks
+    for at in "100 80" "30 20" none; do
+        snapshot out/t >a
+        if [ "$at" = none ]; then rm scenes/t/masks/photo_5.png; else painted scenes/t/masks/photo_5.png $at; fi
+        run_scene why | grep -q 'views/photo_5.exr: .*mask/photo_5.txt is newer' || fail "make why does not name the mask"
+        run_scene depth >log || { cat log; fail "make with the mask at $at"; }
+        snapshot out/t >b
+        changed a b >c
+        grep -q '^views/photo_5.exr' c || fail "the masked view was not made again"
+        ! grep -qE '^(sfm/|views/(cameras|images|points3D)|views/photo_[12346]\.)' c || { cat c; fail "too much was made again"; }
+        for d in out/t/depth/photo_?.d; do
+            v=$(basename "$d" .d)
+            if reads "$d" photo_5; then grep -q "^depth/$v.exr" c || fail "$v reads the masked view, but was not made again"
+            else ! grep -q "^depth/$v.exr" c || fail "$v does not read the masked view, but was made again"; fi
+        done
+        [ "$at" != none ] || continue
+        set -- $at
+        for p in "$1 $2" "$(($1 + 59)) $(($2 + 49))"; do
+            [ "$(alpha out/t/views/photo_5.exr $p)" = 00000000 ] || fail "the view has a pixel at $p"
+            [ "$(alpha out/t/depth/photo_5.exr $p interior)$(alpha out/t/depth/photo_5.exr $p boundary)" = 0000000000000000 ] || fail "there is depth at $p"
+        done
+        for p in "$(($1 - 1)) $2" "$1 $(($2 + 50))"; do
+            [ "$(alpha out/t/views/photo_5.exr $p)" = 0000803f ] || fail "the view lacks the pixel $p, beside the mask"
+        done
+        snapshot out/t >a
+        run_scene depth >log
+        snapshot out/t >b
+        diff a b || fail "a second make made something again"
+    done
+    (cd out/t && find views depth -type f ! -name '.*' ! -name '*.d' | sort | xargs -d '\n' sha256sum) | diff before - || fail "without the mask other bytes come out than before"
+    painted scenes/t/masks/photo_9.png 0 0
+    run_scene depth 2>&1 | grep -q 'masks/photo_9.png masks nothing' || fail "a mask of no photo went unnoticed"
+    rm scenes/t/masks/photo_9.png
+    ffmpeg -v error -f lavfi -i color=white:s=32x24 -frames:v 1 scenes/t/masks/photo_2.png
+    if run_scene depth >log 2>&1; then fail "a mask of another size was taken"; fi
+    grep -q 'masks/photo_2.png has 32 x 24 pixels, but the photo "photo_2.jpg" that it masks has 320 x 240' log || { cat log; fail "no sentence"; }
+    rm -r scenes/t/masks
+    run_scene >log || { cat log; fail "make without masks"; }
+}
+
+# the planes in the depth map of photo_5
+planes_5() { awk '/^segments/ { go = 1; next } go { print $3, $4, $5 }' out/t/depth/photo_5.txt; }
+
+given_depth_is_honoured_and_redoes_its_view_and_its_readers()
+{
+    (cd out/t && find depth -type f ! -name '.*' ! -name '*.d' | sort | xargs -d '\n' sha256sum) >before
+    mkdir -p given
+    for what in one two other none; do
+        snapshot out/t >a
+        case $what in
+        one) cp set/truth/photo_5.exr given ;;
+        two) echo 'scale 2' >given/depth.txt ;;
+        other) mv given/photo_5.exr given/photo_6.exr ;;
+        none) rm given/photo_6.exr ;;
+        esac
+        run_scene DEPTH=given depth >log || { cat log; fail "make with $what"; }
+        snapshot out/t >b
+        changed a b >c
+        [ $what != none ] || { (cd out/t && find depth -type f ! -name '.*' ! -name '*.d' | sort | xargs -d '\n' sha256sum) | diff before - || fail "without given depth other bytes come out than before"; continue; }
+        ! grep -qE '^(sfm|views)/' c || { cat c; fail "too much was made again"; }
+        gave=photo_5; [ $what != other ] || gave='photo_[56]'
+        grep -q "gives the depth of 1 of 6 views" log || { cat log; fail "it is not said how many views have depth"; }
+        grep -q "depth is given for 76800 of 76800 pixels" out/t/log/segment_depth.photo_$([ $what = other ] && echo 6 || echo 5).log || fail "it is not said how many pixels are given"
+        ! grep -E '^depth/round0/.*exr' c | grep -qv "round0/$gave.exr" || { cat c; fail "views whose depth is not given were made again in the first round"; }
+        for d in out/t/depth/photo_?.d; do
+            v=$(basename "$d" .d)
+            if [[ $v == $gave ]] || sed 1d "$d" | grep -q "/depth/round0/$gave.exr"; then grep -q "^depth/$v.exr" c || fail "$v looks at given depth, but was not made again"
+            else ! grep -q "^depth/$v.exr" c || fail "$v does not look at given depth, but was made again"; fi
+        done
+        case $what in
+        one) planes_5 >planes ;;
+        two) planes_5 | paste - planes | awk '{ for (i = 1; i <= 3; i++) if ((d = 2 * $i - $(i + 3)) > 1e-6 || d < -1e-6) { bad++; break } } END { print bad+0, NR; exit bad > NR / 20 || NR < 100 }' || fail "depth that is twice as far has not half the inverse depths" ;;
+        esac
+        snapshot out/t >a
+        run_scene DEPTH=given depth >log
+        snapshot out/t >b
+        diff a b || fail "a second make made something again"
+    done
+    ffmpeg -v error -f lavfi -i color=gray:s=320x240 -frames:v 1 -pix_fmt gray16be given/photo_3.png
+    echo 'pixels view' >given/depth.txt
+    if run_scene DEPTH=given depth >log 2>&1; then fail "a PNG without scale was taken"; fi
+    grep -q 'given/photo_3.png holds whole numbers' log || { cat log; fail "no sentence about the scale"; }
+    mv given/photo_3.png given/photo_33.png
+    run_scene DEPTH=given depth >log 2>&1 || { cat log; fail "make"; }
+    grep -q 'files of what is no view: photo_33' log || { cat log; fail "a file of no view went unnoticed"; }
+    if run_scene DEPTH=nowhere depth >log 2>&1; then fail "DEPTH=nowhere was taken"; fi
+    grep -q 'DEPTH=nowhere is no folder' log || { cat log; fail "no sentence about the folder"; }
+    run_scene >log || { cat log; fail "make without DEPTH"; }
+}
+
 a_photo_that_goes_redoes_sfm()
 {
     snapshot out/t >a
@@ -190,6 +283,8 @@ run a_parameter_redoes_its_stage_and_what_follows
 run a_deleted_product_is_made_again_with_what_follows
 run points_are_made_when_they_are_asked_for
 run a_changed_photo_redoes_its_view_and_its_readers
+run a_mask_redoes_its_view_and_its_readers
+run given_depth_is_honoured_and_redoes_its_view_and_its_readers
 run a_photo_that_goes_redoes_sfm
 run draft_stands_beside_and_shares_sfm
 run a_second_run_is_refused
