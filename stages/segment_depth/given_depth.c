@@ -70,6 +70,25 @@ bool given_depth_range(double *least, double *most, const float *z, size_t pixel
     return true;
 }
 
+double given_depth_ratio(const float *z, int width, int height, const struct seen_points *seen)
+{
+    enum { LEAST_POINTS = 8 };
+    double *ratios = malloc(((size_t)seen->count + 1) * sizeof *ratios), median = 0;
+    int count = 0;
+    for (int i = 0; ratios && i < seen->count; i++) {
+        const struct seen_point *p = &seen->points[i];
+        if (!(p->u >= 0 && p->v >= 0 && p->u < width && p->v < height)) continue;
+        const float at = z[(size_t)p->v * (size_t)width + (size_t)p->u];
+        if (at > 0) ratios[count++] = (double)at * p->inverse_z;
+    }
+    if (count >= LEAST_POINTS) {
+        qsort(ratios, (size_t)count, sizeof *ratios, compare_doubles);
+        median = ratios[count / 2];
+    }
+    free(ratios);
+    return median;
+}
+
 static double residual(const struct sample *p, struct plane at)
 {
     return fabs(at.a * p->u + at.b * p->v + at.c - p->d);

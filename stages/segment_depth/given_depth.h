@@ -20,6 +20,10 @@ struct given_depth { /* an entry a segment */
  * depths; where least is 0, they are all. */
 bool given_depth_range(double *least, double *most, const float *z, size_t pixels);
 
+/* Median of the given depth against that of the sparse points which the view saw where depth is given; 0 if these are fewer than
+ * eight. Far from 1, the depth is in other units than the scene. */
+double given_depth_ratio(const float *z, int width, int height, const struct seen_points *seen);
+
 /* step: of inverse depth, about one pixel of the widest baseline. A segment with samples of two surfaces gets the plane of the larger
  * part; a constant depth where that explains the samples as well. g is {0} on entry; release it also after a failure. The same
  * for any number of threads. */

@@ -315,6 +315,23 @@ static void the_range_leaves_strays_out(void **state)
     assert_true(given_depth_range(&least, &most, z, N) && least < 0.25 && most > 0.25);
 }
 
+/* By what given depth is off the scene's units; a third of the points is false. */
+static void units_show_in_the_sparse_points(void **state)
+{
+    (void)state;
+    enum { N = 30 };
+    static float z[W * H];
+    struct seen_point points[N + 1];
+    struct seen_points seen = {points, N};
+    for (int i = 0; i < W * H; i++) z[i] = i % 7 ? 1000.0f * (float)(2 + i % W) : 0;
+    for (int i = 0; i < N; i++)
+        points[i] = (struct seen_point){i, 3 * i + 0.5, 2 * i + 0.5, (i % 3 ? 1 : 5) / (2.0 + 3 * i)};
+    assert_near(given_depth_ratio(z, W, H, &seen), 1000, 1e-3);
+    points[N] = (struct seen_point){0, W, -1, 1};
+    seen = (struct seen_points){points + N - 4, 5};
+    assert_near(given_depth_ratio(z, W, H, &seen), 0, 0); /* too few */
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -329,6 +346,7 @@ int main(void)
         cmocka_unit_test(the_larger_part_gives_the_plane),
         cmocka_unit_test(a_plane_that_samples_do_not_span_is_level),
         cmocka_unit_test(the_range_leaves_strays_out),
+        cmocka_unit_test(units_show_in_the_sparse_points),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
