@@ -700,8 +700,8 @@ static void what_is_masked_is_no_part_of_the_view(void **state)
 {
     enum { SIDE = 60 };
     const struct camera cameras[] = {pinhole(SIDE, SIDE, 60),
-                                    pinhole(SIDE, SIDE, 60),
-                                    {CAMERA_SIMPLE_RADIAL, SIDE, SIDE, {60, SIDE / 2.0, SIDE / 2.0, -0.1}}};
+                                     pinhole(SIDE, SIDE, 60),
+                                     {CAMERA_SIMPLE_RADIAL, SIDE, SIDE, {60, SIDE / 2.0, SIDE / 2.0, -0.1}}};
     const struct view views[] = {centred_view(SIDE, SIDE, 60), centred_view(SIDE / 2, SIDE / 2, 30),
                                  centred_view(SIDE, SIDE, 60)};
     (void)state;
