@@ -348,7 +348,7 @@ endef
 $(foreach v,$(VIEWS),$(eval $(call rectify_rule,$(v),$(O)/views)))
 $(foreach v,$(HELD),$(eval $(call rectify_rule,$(v),$(H)/views)))
 
-GIVEN := $(if $(DEPTH),--given "$$$$REMODEL_DEPTH")
+GIVEN := $(if $(value REMODEL_DEPTH),--given "$$$$REMODEL_DEPTH")
 # $(1): a view; $(2): the folder of a round; $(3): that of the round before, empty for the first
 define depth_rule
 $(2)/$(1).exr $(2)/$(1).txt &: $(O)/views/$(1).exr $(if $(3),$(3)/$(1).exr) $(wildcard $(S)/stamp/given/$(1).txt) $(CAMERAS) $(call needs,segment_depth) \

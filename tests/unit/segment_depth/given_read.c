@@ -49,8 +49,8 @@ static void write_exr(int width, int height, const char *const *names, int count
     exr_image_release(&im);
 }
 
-/* Puts other bits in the place of every sample of v.exr that is `from`. */
-static void patch(float from, uint32_t bits)
+/* Puts other bytes in the place of every sample of v.exr that is `from`. */
+static void patch_bytes(const void *from, const void *bits, size_t count)
 {
     FILE *fp = fopen(scratch_path("v.exr"), "rb");
     static unsigned char bytes[1 << 20];
@@ -58,14 +58,16 @@ static void patch(float from, uint32_t bits)
     const size_t size = fread(bytes, 1, sizeof bytes, fp);
     fclose(fp);
     int found = 0;
-    for (size_t i = 0; i + 4 <= size; i++)
-        if (!memcmp(bytes + i, &from, 4)) {
-            memcpy(bytes + i, &bits, 4);
+    for (size_t i = 0; i + count <= size; i++)
+        if (!memcmp(bytes + i, from, count)) {
+            memcpy(bytes + i, bits, count);
             found++;
         }
     assert_true(found > 0);
     scratch_write_bytes("v.exr", bytes, size);
 }
+
+static void patch(float from, uint32_t bits) { patch_bytes(&from, &bits, 4); }
 
 static double ramp(int k, int x, int y) { return (k ? 1000 : 2) + x + 100 * y; }
 static double strange(int k, int x, int y)
@@ -139,6 +141,12 @@ static void what_is_not_known_is_zero(void **state)
     patch(1234.5f, 0xffc00000);
     z = read_for(&view, NULL);
     assert_true(z[2] == 0 && z[3] == 0);
+    free(z);
+    write_exr(W, H, names, 1, EXR_HALF, strange);
+    patch_bytes(&(uint16_t){0x64d2}, &(uint16_t){0x7e00}, 2); /* 1234 */
+    patch_bytes(&(uint16_t){0x6c38}, &(uint16_t){0x7c00}, 2); /* 4320 */
+    z = read_for(&view, NULL);
+    assert_true(z[2] == 0 && z[3] == 0 && z[5] == 7 && z[W - 1] == 7);
     free(z);
 }
 
