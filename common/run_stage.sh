@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # run_stage.sh live|quiet|silent STAGE ITEM FOLDER COMMAND... - runs one stage; its words go to FOLDER/log/STAGE.ITEM.log.
 #
-# live: they are shown as they come. quiet: one line when the stage has ended, with the time left when REMODEL_TALLY
+# live: they are shown as they come. quiet: its warnings, and one line when the stage has ended, with the time left when REMODEL_TALLY
 # (a file, begun by run_scene.sh) and REMODEL_COUNT say how many there are. silent: not even that. A failure shows the log's end; the product
 # that was there before is left alone.
 set -uo pipefail
@@ -25,6 +25,7 @@ if [ "$rc" -ne 0 ]; then
     exit "$rc"
 fi
 [ "$mode" = quiet ] || exit 0
+grep -a '^[a-z_]*: warning: ' "$log" >&2 || true
 if [ -n "${REMODEL_TALLY-}" ] && [ -e "$REMODEL_TALLY" ]; then
     echo "$item" >>"$REMODEL_TALLY"
     { read -r began; done=$(wc -l); } <"$REMODEL_TALLY"

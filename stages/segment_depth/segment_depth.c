@@ -74,10 +74,9 @@ static enum status read_given(void *ctx, int view_idx, float **z, struct err *er
     if (!st) st = given_read(z, f->given, view, lens < 0 ? NULL : &lenses.lenses[lens], f->prov, err);
     double least = 0, most = 0;
     if (!st && *z && !given_depth_range(&least, &most, *z, (size_t)view->width * (size_t)view->height)) {
-        log_warn("the depth that %s gives view %s is unknown (0, NaN or infinite) everywhere; the view is matched as "
-                 "if there "
-                 "were none.",
-                 f->given, view->name);
+        if (!f->before) /* once is enough */
+            log_warn("the depth that %s gives view %s is unknown everywhere (0, NaN, infinite); it is matched as ever.",
+                     f->given, view->name);
         free(*z);
         *z = NULL;
     }

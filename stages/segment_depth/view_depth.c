@@ -125,6 +125,7 @@ static enum status planes_before(struct plane *planes, double *distinct, const s
 
 #define OTHER_UNITS 1.1 /* given depth that is so many times off its points' is not meant so */
 
+/* Warns once, in the first round. */
 static enum status fit_given(struct given_depth *given, const struct solve *v, double step, struct err *err)
 {
     const struct segmentation *s = v->m->segments;
@@ -134,7 +135,7 @@ static enum status fit_given(struct given_depth *given, const struct solve *v, d
     log_note("depth is given for %d of %.0f pixels (%.1f %%) of view %s; it settles %d of %d segments", given->pixels,
              pixels, 100 * given->pixels / pixels, name, given->segments, s->count);
     const double ratio = given_depth_ratio(v->given, s->width, s->height, v->seen);
-    if (ratio > 0 && !(ratio > 1 / OTHER_UNITS && ratio < OTHER_UNITS))
+    if (!v->source->read_depth && ratio > 0 && !(ratio > 1 / OTHER_UNITS && ratio < OTHER_UNITS))
         log_warn(
             "the depth given for view %s is %.4g times that of its sparse points: it seems to be in other units than "
             "the scene. It is used as it is; \"scale\" in depth.txt would bring it there.",

@@ -118,7 +118,8 @@ a_mask_redoes_its_view_and_its_readers()
     for at in "100 80" "30 20" none; do
         snapshot out/t >a
         if [ "$at" = none ]; then rm scenes/t/masks/photo_5.png; else painted scenes/t/masks/photo_5.png $at; fi
-        run_scene why | grep -q 'views/photo_5.exr: .*mask/photo_5.txt is newer' || fail "make why does not name the mask"
+        run_scene why >why
+        grep -q 'views/photo_5.exr: .*mask/photo_5.txt is newer' why || fail "make why does not name the mask"
         run_scene depth >log || { cat log; fail "make with the mask at $at"; }
         snapshot out/t >b
         changed a b >c
@@ -145,7 +146,8 @@ a_mask_redoes_its_view_and_its_readers()
     done
     (cd out/t && find views depth -type f ! -name '.*' ! -name '*.d' | sort | xargs -d '\n' sha256sum) | diff before - || fail "without the mask other bytes come out than before"
     painted scenes/t/masks/photo_9.png 0 0
-    run_scene depth 2>&1 | grep -q 'masks/photo_9.png masks nothing' || fail "a mask of no photo went unnoticed"
+    run_scene depth >log 2>&1 || { cat log; fail "make with a mask of no photo"; }
+    grep -q 'masks/photo_9.png masks nothing' log || fail "a mask of no photo went unnoticed"
     rm scenes/t/masks/photo_9.png
     ffmpeg -v error -f lavfi -i color=white:s=32x24 -frames:v 1 scenes/t/masks/photo_2.png
     if run_scene depth >log 2>&1; then fail "a mask of another size was taken"; fi
