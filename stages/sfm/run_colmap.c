@@ -4,6 +4,7 @@
 #include <ctype.h>
 #include <errno.h>
 #include <math.h>
+#include <signal.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
@@ -268,19 +269,28 @@ static enum status run_prepare(struct run *r, const struct sfm_folder *f, const 
     return st;
 }
 
-/* One command of COLMAP. An exit status above `most` is an error. */
-static enum status colmap(const struct run *r, int step, const char *const args[], int most, struct err *err)
+static enum status colmap_exit(int *status, const struct run *r, int step, const char *const args[], struct err *err)
 {
     static const char *const env[] = {"QT_QPA_PLATFORM=offscreen", NULL};
     const char *argv[MOST_ARGS + 2] = {"colmap"};
+    for (int n = 1; args[n - 1]; n++) argv[n] = args[n - 1];
+    return process_run_env(argv, env, r->logs[step - 1], status, err);
+}
+
+static enum status colmap_failed(const struct run *r, int step, const char *command, int status, struct err *err)
+{
     char words[512];
-    int n = 1, status = 0;
-    for (; args[n - 1]; n++) argv[n] = args[n - 1];
-    enum status st = process_run_env(argv, env, r->logs[step - 1], &status, err);
-    if (st || status <= most) return st;
     last_words(words, sizeof words, r->logs[step - 1]);
     return err_set(err, ST_IO, "colmap %s failed with exit status %d%s; its last words are \"%s\", its log is %s.",
-                   args[0], status, status == 137 ? " (killed: out of memory?)" : "", words, r->logs[step - 1]);
+                   command, status, status == 137 ? " (killed: out of memory?)" : "", words, r->logs[step - 1]);
+}
+
+/* One command of COLMAP. An exit status above `most` is an error. */
+static enum status colmap(const struct run *r, int step, const char *const args[], int most, struct err *err)
+{
+    int status = 0;
+    enum status st = colmap_exit(&status, r, step, args, err);
+    return st || status <= most ? st : colmap_failed(r, step, args[0], status, err);
 }
 
 static enum status extract(const struct run *r, struct err *err)
@@ -383,7 +393,7 @@ static void list_photos(char *text, size_t size, const struct run *r, const stru
     if (left) snprintf(text + used, size - used, " and %d more", left);
 }
 
-static enum status note_features(const struct run *r, struct err *err)
+static enum status note_features(long long *found, const struct run *r, struct err *err)
 {
     struct feature_counts c = {0};
     char few[1024];
@@ -394,11 +404,7 @@ static enum status note_features(const struct run *r, struct err *err)
     log_note("%lld features in %d photos", total, r->photos->count);
     list_photos(few, sizeof few, r, &c, FEW_FEATURES);
     if (*few) log_warn("few features (too blurred, dark or plain to be placed well, or masked): %s", few);
-    if (!total)
-        st = err_set(err, ST_DATA,
-                     "COLMAP found no feature in any of the %d photos; they are blank, masked, or cannot be read; its "
-                     "log is %s.",
-                     r->photos->count, r->logs[0]);
+    *found = total;
     feature_counts_release(&c);
     return st;
 }
@@ -475,15 +481,16 @@ static int count_models(const struct run *r, struct err *err)
     }
 }
 
-static enum status features_and_matches(const struct run *r, struct err *err)
+/* *features: how many there are in all photos; matches are looked for if there are any. */
+static enum status features_and_matches(long long *features, const struct run *r, struct err *err)
 {
     log_note("step 1 of %d: features of %d photos, %s", STEPS, r->photos->count,
              r->single ? "one lens for all" : "a lens each");
     enum status st = extract(r, err);
-    if (!st) st = note_features(r, err);
-    if (!st) log_note("step 2 of %d: matches (%.1f s so far)", STEPS, now() - r->started);
-    if (!st) st = match(r, err);
-    return st;
+    if (!st) st = note_features(features, r, err);
+    if (st || !*features) return st;
+    log_note("step 2 of %d: matches (%.1f s so far)", STEPS, now() - r->started);
+    return match(r, err);
 }
 
 static enum status keep_logs(const struct run *r, struct err *err)
@@ -492,7 +499,7 @@ static enum status keep_logs(const struct run *r, struct err *err)
     for (int i = 0; !st && i < STEPS; i++) {
         char *kept = text_format(err, "%s/colmap-%d.log", r->folder->made, i + 1);
         if (!kept) st = err->status;
-        if (!st && rename(r->logs[i], kept)) st = err_errno(err, "keep", r->logs[i]);
+        if (!st && rename(r->logs[i], kept) && errno != ENOENT) st = err_errno(err, "keep", r->logs[i]);
         free(kept);
     }
     return st;
@@ -501,6 +508,7 @@ static enum status keep_logs(const struct run *r, struct err *err)
 enum status run_colmap(struct sfm_folder *f, const struct sfm_input *in, const struct provenance *prov, struct err *err)
 {
     struct run r = {0};
+    long long features = 0;
     int models = 0;
     if (in->list->count < 2)
         return err_set(err, ST_DATA,
@@ -508,7 +516,12 @@ enum status run_colmap(struct sfm_folder *f, const struct sfm_input *in, const s
                        "apart.",
                        in->list->count ? "is only 1 photo" : "are no photos");
     enum status st = run_prepare(&r, f, in, in->params, err);
-    if (!st) st = features_and_matches(&r, err);
+    if (!st) st = features_and_matches(&features, &r, err);
+    if (!st && !features)
+        st = err_set(err, ST_DATA,
+                     "COLMAP found no feature in any of the %d photos; they are blank, masked, or cannot be read; its "
+                     "log is %s.",
+                     in->list->count, r.logs[0]);
     if (!st) log_note("step 3 of %d: poses and points (%.1f s so far)", STEPS, now() - r.started);
     if (!st) st = map(&r, false, err);
     if (!st && !(models = count_models(&r, err))) {
@@ -597,11 +610,47 @@ static bool sizes_match(const struct sfm_model *m, const struct photo_list *phot
     return true;
 }
 
+/* Runs COLMAP's triangulator on the cameras in `known`. It aborts in its bundle adjustment if it has found no point, or none
+ * that it keeps: nothing it made, and no failure. By itself it looks at points of at least three photos; those of two, of
+ * which more are false, are looked at only if there are no others. *points: whether it made a model. */
+static enum status find_points(bool *points, const struct run *r, const char *known, const char *made, struct err *err)
+{
+    enum status st = ST_OK;
+    *points = false;
+    for (int two = 0; !st && !*points && two < 2; two++) {
+        const char *args[] = {"point_triangulator",
+                              "--database_path",
+                              r->database,
+                              "--image_path",
+                              r->images,
+                              "--input_path",
+                              known,
+                              "--output_path",
+                              made,
+                              "--Mapper.num_threads",
+                              r->threads,
+                              "--Mapper.tri_ignore_two_view_tracks",
+                              two ? "0" : "1",
+                              NULL};
+        const int aborted = 128 + SIGABRT;
+        char words[512];
+        int status = 0;
+        st = colmap_exit(&status, r, 3, args, err);
+        last_words(words, sizeof words, r->logs[2]);
+        *points = !st && !status;
+        if (!st && status && !(status == aborted && strstr(words, "bundle_adjuster.Solve")))
+            st = colmap_failed(r, 3, args[0], status, err);
+    }
+    return st;
+}
+
 enum status triangulate(struct sfm_model *m, const struct sfm_folder *f, const struct sfm_input *in, struct err *err)
 {
     struct run r = {0};
     struct sfm_model found = {0};
     struct sfm_params params = *in->params;
+    long long features = 0;
+    bool points = false;
     if (!sizes_match(m, in->list)) {
         log_warn("the model has no points, and none can be found: it is of pictures of another size than the photos");
         return ST_OK;
@@ -610,35 +659,31 @@ enum status triangulate(struct sfm_model *m, const struct sfm_folder *f, const s
     char *known = text_format(err, "%s/known", f->work), *made = text_format(err, "%s/triangulated", f->work);
     char *text = text_format(err, "%s/triangulated-text", f->work);
     enum status st = known && made && text ? run_prepare(&r, f, in, &params, err) : err->status;
-    const char *triangulator[] = {"point_triangulator",
-                                  "--database_path",
-                                  r.database,
-                                  "--image_path",
-                                  r.images,
-                                  "--input_path",
-                                  known,
-                                  "--output_path",
-                                  made,
-                                  "--Mapper.num_threads",
-                                  r.threads,
-                                  NULL};
     const char *converter[] = {"model_converter", "--input_path", made, "--output_path", text,
                                "--output_type",   "TXT",          NULL};
     if (!st) st = make_folders(made, err);
     if (!st) st = make_folders(text, err);
-    if (!st) st = features_and_matches(&r, err);
+    if (!st) st = features_and_matches(&features, &r, err);
     if (!st) st = write_known(&r, m, known, err);
-    if (!st) log_note("step 3 of %d: points (%.1f s so far)", STEPS, now() - r.started);
-    if (!st) st = colmap(&r, 3, triangulator, 0, err);
-    if (!st) st = colmap(&r, 4, converter, 0, err);
-    if (!st) st = sfm_model_read_text(&found, text, err);
-    if (!st) st = name_images(&found, in->list, err);
+    if (!st && features) {
+        log_note("step 3 of %d: points (%.1f s so far)", STEPS, now() - r.started);
+        st = find_points(&points, &r, known, made, err);
+    }
+    if (!st && points) st = colmap(&r, 4, converter, 0, err);
+    if (!st && points) st = sfm_model_read_text(&found, text, err);
+    if (!st && points) st = name_images(&found, in->list, err);
     if (!st) st = keep_logs(&r, err);
-    if (!st) {
+    if (!st && found.point_count) {
         log_note("%d points are triangulated from the model's cameras", found.point_count);
         sfm_model_release(m);
         *m = found;
         found = (struct sfm_model){0};
+    } else if (!st) {
+        log_warn(
+            "the model has no points, and none can be found: %s. Its cameras are taken as they are; depth is looked "
+            "for between [segment_depth] near and far, or wherever neighbours can tell it if they are not set",
+            features ? "no two photos show the same features where its cameras see them"
+                     : "the photos have no features");
     }
     sfm_model_release(&found);
     run_release(&r);

@@ -62,7 +62,8 @@ enum status run_colmap(struct sfm_folder *f, const struct sfm_input *in, const s
                        struct err *err);
 
 /* Finds the points that cameras of known pose see: features and matches as above, then triangulation; poses and lenses
- * stay. Images that are none of the photos are lost. */
+ * stay. Images that are none of the photos are lost. Where nothing can be found the model is left as it is, with a
+ * warning. */
 enum status triangulate(struct sfm_model *m, const struct sfm_folder *f, const struct sfm_input *in, struct err *err);
 
 #endif
