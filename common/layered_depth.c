@@ -64,6 +64,20 @@ void layered_depth_release(struct layered_depth *d)
     *d = (struct layered_depth){0};
 }
 
+struct depth_shares layered_depth_shares(const struct layered_depth *d)
+{
+    const size_t pixels = (size_t)d->width * (size_t)d->height;
+    size_t unknown = 0, inherited = 0;
+    for (size_t i = 0; i < pixels; i++) {
+        const uint32_t id = d->interior.id[i];
+        if (!id || id > (uint32_t)d->segment_count)
+            unknown++;
+        else
+            inherited += d->segments[id - 1].confidence < DEPTH_INHERITED;
+    }
+    return (struct depth_shares){(double)unknown / (double)pixels, (double)inherited / (double)pixels};
+}
+
 /* PATH.exr -> PATH.txt; the caller frees it. */
 static enum status text_path(char **text, const char *path, struct err *err)
 {
@@ -127,6 +141,16 @@ static enum status add_layer(struct exr_image *im, const struct layer *l, const 
     return ST_OK;
 }
 
+static enum status add_shares(struct exr_image *im, const struct layered_depth *d, struct err *err)
+{
+    const struct depth_shares shares = layered_depth_shares(d);
+    char text[32];
+    snprintf(text, sizeof text, "%.6g", shares.unknown);
+    if (exr_set_attribute(im, "remodel:unknown", text, err)) return err->status;
+    snprintf(text, sizeof text, "%.6g", shares.inherited);
+    return exr_set_attribute(im, "remodel:inherited", text, err);
+}
+
 enum status layered_depth_write(const struct layered_depth *d, const struct view *view, const char *path,
                                 const struct provenance *prov, struct err *err)
 {
@@ -137,6 +161,7 @@ enum status layered_depth_write(const struct layered_depth *d, const struct view
     if (!st) st = exr_image_init(&im, d->width, d->height, err);
     if (!st) st = add_layer(&im, &d->interior, plane_names, err);
     if (!st) st = add_layer(&im, &d->boundary, plane_names + PLANES_A_LAYER, err);
+    if (!st) st = add_shares(&im, d, err);
     if (!st) {
         if (view) exr_set_camera(&im, view);
         st = write_segments(d, text, prov, err);

@@ -25,6 +25,10 @@ struct depth_segment {
     double confidence; /* 0 inherited from neighbours .. 1 sure */
 };
 
+/* Below this confidence a segment's depth is called inherited: no other view saw it, or the pictures say as good as nothing of its
+ * depth, which is then its neighbours'. */
+#define DEPTH_INHERITED 0.1
+
 struct layered_depth {
     int width, height;
     struct layer interior, boundary;
@@ -35,7 +39,15 @@ struct layered_depth {
 enum status layered_depth_init(struct layered_depth *d, int width, int height, struct err *err);
 void layered_depth_release(struct layered_depth *d);
 
-/* Writes TXT (path with .exr replaced by .txt), then the EXR; each whole or not at all, the EXR last. */
+/* What is not known, as parts of all pixels. */
+struct depth_shares {
+    double unknown;   /* no depth: no photo is there (masked, or outside of the lens) */
+    double inherited; /* a depth, but of a segment whose confidence is below DEPTH_INHERITED; by the interior's ids */
+};
+struct depth_shares layered_depth_shares(const struct layered_depth *d);
+
+/* Writes TXT (path with .exr replaced by .txt), then the EXR; each whole or not at all, the EXR last. The EXR's attributes
+ * remodel:unknown and remodel:inherited are the shares. */
 enum status layered_depth_write(const struct layered_depth *d, const struct view *view, const char *path,
                                 const struct provenance *prov, struct err *err);
 /* ids are those of the list (or 0), alphas in [0, 1], z >= 0: ST_DATA with the pixel or the line where that is not so. */

@@ -154,6 +154,13 @@ struct view_job {
     const char *folder;
 };
 
+static double share(const char *text)
+{
+    char *end;
+    double value = text ? strtod(text, &end) : -1;
+    return text && end != text && !*end && value >= 0 && value <= 1 ? value : -1;
+}
+
 static enum status read_depth(struct view_card *card, const char *path, int orientation, struct err *err)
 {
     static const char *const NAMES[] = {"interior.Z", "interior.id", "boundary.id"};
@@ -169,6 +176,7 @@ static enum status read_depth(struct view_card *card, const char *path, int orie
             depth_thumb_make(&card->depth, z->f, im.width, im.height, orientation, PICTURE_HEIGHT, err);
         else
             err_set(err, ST_DATA, "%s: interior.Z holds no floats.", path);
+        card->inherited = share(exr_attribute(&im, "remodel:inherited"));
     }
     exr_image_release(&im);
     return err->status;
@@ -236,6 +244,7 @@ static enum status colour_depths(struct contents *c, struct err *err)
         if (!card->depth.z) continue;
         c->depth_count++;
         c->known += card->depth.known;
+        c->inherited = c->inherited < 0 || card->inherited < 0 ? -1 : c->inherited + card->inherited;
         c->segments += card->segments;
         bool known = (card->truth.z && depth_range(&card->truth, 0.02, &card->near, &card->far)) ||
                      depth_range(&card->depth, 0.02, &card->near, &card->far);
@@ -246,6 +255,7 @@ static enum status colour_depths(struct contents *c, struct err *err)
             return err->status;
     }
     if (c->depth_count) c->known /= c->depth_count;
+    if (c->depth_count && c->inherited > 0) c->inherited /= c->depth_count;
     return ST_OK;
 }
 
@@ -365,13 +375,6 @@ static enum status check_age(struct contents *c, const char *folder, struct err 
 /* ------------------------------------------------------------------------------------------------------- effects */
 
 enum { PATH_SIZE = 4096 + 512 }; /* holds a folder's path and a file in it */
-
-static double share(const char *text)
-{
-    char *end;
-    double value = text ? strtod(text, &end) : -1;
-    return text && end != text && !*end && value >= 0 && value <= 1 ? value : -1;
-}
 
 static enum status read_frames(struct contents *c, struct effect_card *e, const char *folder, struct err *err)
 {

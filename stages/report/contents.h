@@ -29,6 +29,7 @@ struct view_card {
     struct picture picture, depth_picture, truth_picture; /* both depths in the same colours */
     struct depth_thumb depth, truth;                      /* truth: as `evaluate` left it; empty if it did not */
     uint32_t segments;
+    double inherited; /* share of the pixels that have only their neighbours' depth; -1: the depth map does not say */
     double near,
         far; /* the true depths, else its own, without 2 % at either end: the colours' ends; 0 if none is known */
     char trouble[NOTE_SIZE];
@@ -69,6 +70,7 @@ struct contents {
     int left_out_count;
 
     double known;                   /* mean share of pixels with a depth, over views that have a depth map */
+    double inherited;               /* the same of inherited ones; -1: some depth map does not say */
     int depth_count;                /* views that have one */
     long long segments;             /* of all views */
     double error_median, error_rms; /* reprojection of the points into the rectified views, px */

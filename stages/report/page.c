@@ -285,7 +285,9 @@ static enum status put_view(FILE *to, const struct contents *c, const struct vie
     fputs("</div></div>\n<figcaption><b>", to);
     html_text(to, card->view->name);
     fprintf(to, "</b> <span class=\"size\">%d × %d</span>", card->view->width, card->view->height);
-    if (card->depth.z) fprintf(to, ", %.1f %% known, %u segments", 100 * card->depth.known, card->segments);
+    if (card->depth.z) fprintf(to, ", %.1f %% known", 100 * card->depth.known);
+    if (card->depth.z && card->inherited >= 0) fprintf(to, ", %.1f %% inherited", 100 * card->inherited);
+    if (card->depth.z) fprintf(to, ", %u segments", card->segments);
     put_view_metric(to, c, card->view->name, "depth.bad1", "off by more than 1 px");
     put_view_metric(to, c, card->view->name, "depth.error50", "median error");
     if (card->trouble[0]) {
@@ -310,7 +312,8 @@ static enum status put_depths(FILE *to, const struct contents *c, struct err *er
               "are equal "
               "steps of 1/depth over each view's own range, leaving out 2 % at either end (of the truth, where there "
               "is one). <span "
-              "class=\"hatch\"></span>unknown</p>\n",
+              "class=\"hatch\"></span>unknown: masked, or outside of the lens. Inherited: no other view "
+              "tells this depth, it is that of what touches it.</p>\n",
               to);
     fputs("<div class=\"pairs\" style=\"--ramp:linear-gradient(90deg", to);
     for (int k = 16; k >= 0; k--) {
@@ -443,6 +446,33 @@ static void put_number_head(FILE *to, const char *what)
 
 static void put_number_tail(FILE *to, const char *how) { fprintf(to, "</td><td class=\"how\">%s</td></tr>\n", how); }
 
+/* The view with most inherited depth, of those that come after `after` in that order (NULL: of all); NULL: none is left. */
+static const struct view_card *next_inherited(const struct contents *c, const struct view_card *after)
+{
+    const struct view_card *most = NULL;
+    for (int i = 0; i < c->views.view_count; i++) {
+        const struct view_card *v = &c->view_cards[i];
+        const bool later = !after || v->inherited < after->inherited || (v->inherited == after->inherited && v > after);
+        if (v->depth.z && v->inherited > 0 && later && (!most || v->inherited > most->inherited)) most = v;
+    }
+    return most;
+}
+
+/* How much depth no other view tells, and where most of it is. */
+static void put_inherited(FILE *to, const struct contents *c)
+{
+    const struct view_card *worst = NULL;
+    put_number_head(to, "Inherited depth");
+    fprintf(to, "%.2f %%", 100 * c->inherited);
+    fputs("</td><td class=\"how\">of the views' pixels: no other view tells their depth", to);
+    for (int k = 0; k < 3 && c->depth_count > 3 && (worst = next_inherited(c, worst)); k++) {
+        fputs(k ? ", " : "; most in ", to);
+        html_text(to, worst->view->name);
+        fprintf(to, " (%.1f %%)", 100 * worst->inherited);
+    }
+    fputs("</td></tr>\n", to);
+}
+
 static void put_numbers(FILE *to, const struct contents *c)
 {
     const struct sfm_model *m = &c->views.model;
@@ -481,7 +511,8 @@ static void put_numbers(FILE *to, const struct contents *c)
         fprintf(to, "in %d depth maps, %.0f a view</td></tr>\n", c->depth_count, (double)c->segments / c->depth_count);
         put_number_head(to, "Known depth");
         fprintf(to, "%.2f %%", 100 * c->known);
-        put_number_tail(to, "of the views' pixels");
+        put_number_tail(to, "of the views' pixels; the others are masked or outside of the lens");
+        if (c->inherited >= 0) put_inherited(to, c);
     }
     for (int i = 0; i < c->effect_count; i++) {
         const struct effect_card *e = &c->effects[i];

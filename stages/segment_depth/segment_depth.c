@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #include "common/cli.h"
+#include "common/log.h"
 #include "common/outfile.h"
 #include "common/view_image.h"
 #include "stages/segment_depth/given_depth.h"
@@ -119,6 +120,14 @@ static enum status write_deps(const char *deps, const char *out, const char *con
     return st;
 }
 
+static void tell_unknown(const char *view, const struct layered_depth *d)
+{
+    const struct depth_shares shares = layered_depth_shares(d);
+    log_note("%s: %.2f %% of the pixels have no depth%s, %.2f %% inherit theirs: no other view tells it", view,
+             100 * shares.unknown, shares.unknown > 0 ? " (masked, or outside of the lens)" : "",
+             100 * shares.inherited);
+}
+
 static enum status segment_depth(const char *folder, const char *before, const char *given, const char *name,
                                  const char *out, const char *deps, const struct segment_params *params,
                                  struct provenance *prov, struct err *err)
@@ -137,6 +146,7 @@ static enum status segment_depth(const char *folder, const char *before, const c
     }
     if (!st && deps) st = write_deps(deps, out, (const char *const[2]){folder, before}, &set, read, 1 + count, err);
     if (!st) st = layered_depth_write(&depth, &set.views[read[0]], out, prov, err);
+    if (!st) tell_unknown(name, &depth);
     layered_depth_release(&depth);
     camera_set_release(&set);
     return st;

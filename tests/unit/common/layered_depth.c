@@ -119,6 +119,33 @@ static void a_view_without_segments_is_a_depth_map_too(void **state)
     layered_depth_release(&d);
 }
 
+/* Of four pixels two have a segment, of which one is sure. */
+static void what_is_not_known_is_in_the_attributes(void **state)
+{
+    struct layered_depth d;
+    struct exr_image im = {0};
+    struct err err = ERR_INIT;
+    (void)state;
+    assert_ok(layered_depth_init(&d, 4, 1, &err), err);
+    d.segments = calloc(2, sizeof *d.segments);
+    assert_non_null(d.segments);
+    d.segment_count = 2;
+    for (int i = 0; i < 2; i++) {
+        d.segments[i] = (struct depth_segment){(uint32_t)i + 1, 1, {0, 0, 0.5}, 0.1, i ? DEPTH_INHERITED : 0.05};
+        d.interior.id[2 * i] = (uint32_t)i + 1;
+        d.interior.z[2 * i] = 2;
+        d.interior.rgba[4 * (2 * i) + 3] = 1;
+    }
+    assert_true(fabs(layered_depth_shares(&d).unknown - 0.5) <= 0);
+    assert_true(fabs(layered_depth_shares(&d).inherited - 0.25) <= 0);
+    assert_ok(layered_depth_write(&d, &view, scratch_path("shares.exr"), NULL, &err), err);
+    assert_ok(exr_read(&im, scratch_path("shares.exr"), (const char *const[]){"interior.Z"}, 1, &err), err);
+    assert_string_equal(exr_attribute(&im, "remodel:unknown"), "0.5");
+    assert_string_equal(exr_attribute(&im, "remodel:inherited"), "0.25");
+    exr_image_release(&im);
+    layered_depth_release(&d);
+}
+
 static void release_may_be_called_again(void **state)
 {
     struct layered_depth d = sample(2, 2);
@@ -573,6 +600,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_depth_map_round_trips),
         cmocka_unit_test(a_view_without_segments_is_a_depth_map_too),
+        cmocka_unit_test(what_is_not_known_is_in_the_attributes),
         cmocka_unit_test(release_may_be_called_again),
         cmocka_unit_test(the_same_depth_gives_the_same_bytes),
         cmocka_unit_test(provenance_and_camera_are_in_both_files),

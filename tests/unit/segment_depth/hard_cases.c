@@ -252,6 +252,57 @@ static void a_round_before_that_does_not_fit_is_told(void **state)
     for (int k = 0; k < 2; k++) layered_depth_release(&before.depth[k]);
 }
 
+/* The only neighbour is half as wide as the view: what lies beside it has no other view, and takes its depth from what has. */
+static void what_no_neighbour_sees_inherits_and_is_told(void **state)
+{
+    (void)state;
+    for (int points = 0; points < 2; points++) {
+        struct layered_depth d[2];
+        start();
+        scene_wall(&scene, 0, 0, 5, 9, 9, 0);
+        stand(1);
+        scene_view(&scene, W / 2, H, FOCAL, 0.4, 0, 0, 0);
+        scene_points(&scene, points * 300);
+        must_work_in_rounds(d, 1, &params);
+        const double left = W / 2.0 - W / 4.0 + FOCAL * 0.4 / 5, right_end = left + W / 2.0, margin = 6;
+        for (int round = 0; round < 2; round++) {
+            int unseen = 0, seen = 0, inherited = 0, told = 0;
+            for (int i = 0; i < W * H; i++) {
+                const bool sure = d[round].segments[d[round].interior.id[i] - 1].confidence >= DEPTH_INHERITED;
+                const double u = i % W + 0.5;
+                if (u > left + margin && u < right_end - margin) seen++, told += sure;
+                if (u < left - margin || u > right_end + margin) unseen++, inherited += !sure;
+            }
+            const struct depth_shares shares = layered_depth_shares(&d[round]);
+            if (getenv("VERDICT"))
+                print_message("  %.4f of unseen inherited, %.4f of seen told, %.4f of all inherited\n",
+                              inherited / (double)unseen, told / (double)seen, shares.inherited);
+            assert_true(inherited > 0.99 * unseen);
+            assert_true(told > 0.98 * seen);
+            assert_true(shares.unknown == 0);
+            assert_near(shares.inherited, 0.5, 0.04);
+            assert_true(right(&d[round], 0, 0.02) > 0.99);
+            layered_depth_release(&d[round]);
+        }
+    }
+}
+
+/* Every view lacks a disc, as behind a mask: it has no depth, and is counted. */
+static void what_is_masked_has_no_depth_and_is_told(void **state)
+{
+    (void)state;
+    struct result r;
+    int masked = 0;
+    start();
+    scene_wall(&scene, 0, 0, 5, 9, 9, 0);
+    stand(3);
+    scene.holes = true;
+    must_work(&r);
+    for (int i = 0; i < W * H; i++) masked += hypot(i % W + 0.5 - W / 2.0, i / W + 0.5 - H / 2.0) < H / 6.0;
+    assert_near(layered_depth_shares(&r.depth).unknown, masked / (double)(W * H), 1e-12);
+    layered_depth_release(&r.depth);
+}
+
 /* ------------------------------------------------------------------------------------------------------- odd pictures */
 
 static void photos_of_one_pixel_work_in_rounds(void **state)
@@ -410,6 +461,8 @@ int main(void)
         cmocka_unit_test(no_neighbour_is_told_in_a_sentence),
         cmocka_unit_test(a_nan_in_a_view_is_told_with_its_pixel),
         cmocka_unit_test(a_round_before_that_does_not_fit_is_told),
+        cmocka_unit_test(what_no_neighbour_sees_inherits_and_is_told),
+        cmocka_unit_test(what_is_masked_has_no_depth_and_is_told),
         cmocka_unit_test(photos_of_one_pixel_work_in_rounds),
         cmocka_unit_test(a_photo_as_long_as_a_street_works),
         cmocka_unit_test(more_rounds_never_make_two_planes_worse),
