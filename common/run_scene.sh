@@ -163,7 +163,28 @@ case $goal in sfm) exit 0 ;; esac
 farm rectify views 1 "${VIEWS_PER_JOB:-4}"
 case $goal in views) exit 0 ;; esac
 common/explain.sh given-depth "$S" "$O"
-for round in $(seq 0 "$(sed -n 's/^rounds = //p' "$O/slice/segment_depth.cfg")"); do
+# tell_depth LAST: what is stale of depth in all rounds up to the LAST one: how long it will take, and how much memory
+tell_depth()
+{
+    local list=$work/depth.list wide
+    # where this fails, making it will fail and say why
+    graph -n -s depth 2>/dev/null | awk -v last="$1" '
+        {
+            view = out = ""
+            for (i = 2; i < NF; i++) { if ($i == "segment_depth" && $(i - 2) ~ /run_stage.sh$/) view = $(i + 1); if ($i == "--out") out = $(i + 1) }
+            if (view == "") next
+            print view, match(out, /\/round[0-9]+\//) ? substr(out, RSTART + 6, RLENGTH - 7) : last
+        }' >"$list" || return 0
+    [ -s "$list" ] || return 0
+    wide=$(cut -d' ' -f2 "$list" | sort | uniq -c | awk '$1 > n { n = $1 } END { print n }')
+    wide=$((wide < most ? wide : most))
+    [ "$jobs" != slurm ] || wide=0
+    "$bin/segment_depth" --config "$O/slice/segment_depth.cfg" --threads $((wide ? cores / wide : 1)) --views "$O/views" \
+        --estimate "$list" --jobs "$wide" >&2 2>"$work/words" || cat "$work/words" >&2
+}
+last_round=$(sed -n 's/^rounds = //p' "$O/slice/segment_depth.cfg")
+tell_depth "$last_round"
+for round in $(seq 0 "$last_round"); do
     farm segment_depth "depth-round$round" 1 "${VIEWS_PER_JOB:-4}"
 done
 one depth

@@ -236,8 +236,8 @@ static enum status framed_points(double **inverse, int *count, const struct came
     return ST_OK;
 }
 
-enum status depth_range(double *least, double *most, const struct camera_set *set, int view_idx, const int *neighbours,
-                        int count, struct err *err)
+enum status depth_range(double *least, double *most, bool *guessed, const struct camera_set *set, int view_idx,
+                        const int *neighbours, int count, struct err *err)
 {
     const struct view *view = &set->views[view_idx];
     double *inverse = NULL;
@@ -251,7 +251,8 @@ enum status depth_range(double *least, double *most, const struct camera_set *se
         *most = high + 2 * margin; /* near ground has few points: it is blurred, or hidden from most views */
     }
     free(inverse);
-    if (points >= LEAST_SHARED) return ST_OK;
+    *guessed = points < LEAST_SHARED;
+    if (!*guessed) return ST_OK;
     double baseline = 0;
     for (int k = 0; k < count; k++)
         baseline = fmax(baseline, vec3_length(vec3_sub(set->views[neighbours[k]].center, view->center)));

@@ -35,8 +35,8 @@ enum status neighbours_choose(int neighbours[MAX_NEIGHBOURS], int *count, const 
 
 /* Inverse depths to sweep, least < most, both > 0: robust percentiles, with margins, of all points of the scene that lie in
  * the view's frame, seen by it or not; or, without points, what the neighbours' baselines can tell from infinity up to a
- * shift of a quarter of the picture. */
-enum status depth_range(double *least, double *most, const struct camera_set *set, int view_idx, const int *neighbours,
-                        int count, struct err *err);
+ * shift of a quarter of the picture; *guessed: whether it is that. */
+enum status depth_range(double *least, double *most, bool *guessed, const struct camera_set *set, int view_idx,
+                        const int *neighbours, int count, struct err *err);
 
 #endif

@@ -7,6 +7,8 @@
  * writes  DEPS                                          make dependencies: the pictures really read
  *         OUT with .txt for .exr, then OUT              segments; layers interior.* and boundary.* (RGBA, Z, id)
  *
+ * --estimate instead prints what depth will take, and reads nothing but cameras and points.
+ *
  * Each file appears whole or not at all, OUT last: if it is new, so are the others. */
 #include <stdio.h>
 #include <stdlib.h>
@@ -17,6 +19,7 @@
 #include "common/log.h"
 #include "common/outfile.h"
 #include "common/view_image.h"
+#include "stages/segment_depth/estimate.h"
 #include "stages/segment_depth/given_depth.h"
 #include "stages/segment_depth/given_read.h"
 #include "stages/segment_depth/view_depth.h"
@@ -139,6 +142,7 @@ static enum status segment_depth(const char *folder, const char *before, const c
     if (!st && (read[0] = camera_set_find(&set, name)) < 0)
         st = err_set(err, ST_USAGE, "there is no view %s in %s/images.txt; its views are listed in %s/views.mk.", name,
                      folder, folder);
+    if (!st) st = note_work(&set, read[0], !before, params, err);
     if (!st) {
         struct views_folder views = {folder, before, given, &set, prov};
         const struct view_source source = {read_view, before ? read_depth : NULL, &views, given ? read_given : NULL};
@@ -152,28 +156,50 @@ static enum status segment_depth(const char *folder, const char *before, const c
     return st;
 }
 
+static enum status estimate(const char *folder, const char *list, int jobs, const struct segment_params *params,
+                            struct err *err)
+{
+    struct camera_set set = {0};
+    enum status st = jobs < 0
+                         ? err_set(err, ST_USAGE, "--jobs %d: wanted how many views are made at a time, or 0.", jobs)
+                         : camera_set_read(&set, folder, err);
+    if (!st) st = tell_work(stdout, list, &set, jobs, params, err);
+    camera_set_release(&set);
+    return st;
+}
+
 int main(int argc, char **argv)
 {
-    const char *views = NULL, *before = NULL, *given = NULL, *view = NULL, *out = NULL, *deps = NULL;
+    const char *views = NULL, *before = NULL, *given = NULL, *view = NULL, *out = NULL, *deps = NULL, *list = NULL;
+    int jobs = 1;
     struct segment_params params = SEGMENT_PARAMS_DEFAULT;
     const struct cli_opt opts[] = {
         CLI_ABOUT("Layered depth of one view by multi-view segment matching."),
         CLI_STR("views", &views, CLI_REQUIRED, "folder of cameras and rectified views"),
-        CLI_STR("view", &view, CLI_REQUIRED, "view to work on"),
+        CLI_STR("view", &view, CLI_OPTIONAL, "view to work on (required, with --out)"),
         CLI_STR("before", &before, CLI_OPTIONAL,
                 "folder of all views' depth in the round before; without it this is the first"),
         CLI_STR("given", &given, CLI_OPTIONAL,
                 "folder of depth that is known already: VIEW.exr, or VIEW.png and depth.txt; of any view, or none"),
-        CLI_STR("out", &out, CLI_REQUIRED, "EXR to write"),
+        CLI_STR("out", &out, CLI_OPTIONAL, "EXR to write"),
         CLI_STR("deps", &deps, CLI_OPTIONAL, "make dependencies to write: the pictures really read"),
+        CLI_STR("estimate", &list, CLI_OPTIONAL,
+                "makes no depth: a file of lines VIEW ROUND, still to be made, of which time and memory are printed"),
+        CLI_INT("jobs", &jobs, CLI_OPTIONAL,
+                "with --estimate: views made at a time, each with all --threads; 0: on a cluster"),
         CLI_PARAMS(segment_param_table, &params, NULL),
         CLI_END,
     };
     struct provenance prov = {0};
     struct err err = ERR_INIT;
-    if (cli_parse(argc, argv, "segment_depth", opts, &prov, &err) != CLI_RUN ||
-        segment_depth(views, before, given, view, out, deps, &params, &prov, &err))
-        err_report(&err);
+    const enum cli_verdict verdict = cli_parse(argc, argv, "segment_depth", opts, &prov, &err);
+    if (verdict == CLI_RUN && !list == !(view && out))
+        err_set(&err, ST_USAGE, "give --view and --out, or else --estimate.");
+    else if (verdict == CLI_RUN && list)
+        estimate(views, list, jobs, &params, &err);
+    else if (verdict == CLI_RUN)
+        segment_depth(views, before, given, view, out, deps, &params, &prov, &err);
+    err_report(&err);
     provenance_release(&prov);
     return err_exit_code(&err);
 }

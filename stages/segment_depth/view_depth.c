@@ -237,6 +237,28 @@ static enum status find_neighbours(int neighbours[MAX_NEIGHBOURS], int *count, c
     return st && !(st == ST_DATA && given) ? err_set(err, st, "%s", alone.text) : ST_OK;
 }
 
+/* The inverse depths to look at: of the sparse points, of what is given, or of the neighbours' baselines; near and far go first. */
+static enum status find_range(struct solve *v, int neighbour_count, size_t pixels, struct err *err)
+{
+    const struct segment_params *params = v->params;
+    bool guessed = false;
+    if (neighbour_count &&
+        depth_range(&v->least, &v->most, &guessed, v->set, v->view_idx, v->neighbours, neighbour_count, err))
+        return err->status;
+    if (v->given) given_depth_range(&v->least, &v->most, v->given, pixels);
+    if (guessed && !(params->near > 0 && params->far > 0))
+        log_warn("too few sparse points tell how far away things are; what a neighbour shows shifted by up to a "
+                 "quarter of the picture is looked for, from depth %.4g on. If things are nearer, or that is too near, "
+                 "set [segment_depth] near and far",
+                 1 / v->most);
+    if (guessed && params->near > 0) v->least = fmin(v->least, 1 / params->near / 500);
+    if (params->far > 0) v->least = 1 / params->far;
+    if (params->near > 0) v->most = 1 / params->near;
+    if (v->least < v->most) return ST_OK;
+    return err_set(err, ST_USAGE, "[segment_depth] near = %g and far = %g leave no depth between them.", 1 / v->most,
+                   1 / v->least);
+}
+
 enum status view_depth(struct layered_depth *out, int neighbours[MAX_NEIGHBOURS], int *neighbour_count,
                        const struct camera_set *set, int view_idx, const struct view_source *source,
                        const struct segment_params *params, struct err *err)
@@ -261,13 +283,7 @@ enum status view_depth(struct layered_depth *out, int neighbours[MAX_NEIGHBOURS]
     if (!st) st = find_neighbours(neighbours, neighbour_count, set, view_idx, &seen, params, v.given, err);
     if (!st) st = source->read(source->ctx, view_idx, &picture, err);
     if (!st) st = layered_depth_init(out, picture.width, picture.height, err);
-    if (!st && *neighbour_count) st = depth_range(&v.least, &v.most, set, view_idx, neighbours, *neighbour_count, err);
-    if (!st && v.given) given_depth_range(&v.least, &v.most, v.given, (size_t)picture.width * (size_t)picture.height);
-    if (!st && params->far > 0) v.least = 1 / params->far;
-    if (!st && params->near > 0) v.most = 1 / params->near;
-    if (!st && !(v.least < v.most))
-        st = err_set(err, ST_USAGE, "[segment_depth] near = %g and far = %g leave no depth between them.", 1 / v.most,
-                     1 / v.least);
+    if (!st) st = find_range(&v, *neighbour_count, (size_t)picture.width * (size_t)picture.height, err);
     if (!st) st = gamma_image_make(&gamma, &picture, tone_of(&picture), err);
     if (!st) st = oversegment(&segments, &gamma, params->segment_pixels, params->compactness, err);
     if (!st) st = matcher_init(&matcher, &segments, &gamma, err);

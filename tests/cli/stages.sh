@@ -53,6 +53,9 @@ options_that_exclude_each_other_are_refused()
     expect 2 "either --path" "$B/bin/render_views" --views "$d" --depth "$d" --out "$d" --path "$d" --frames 1 --cameras "$d"
     expect 2 "either --path" "$B/bin/render_views" --views "$d" --depth "$d" --out "$d" --path "$d" --frames 1 --camera x
     expect 2 "--memory -1" "$B/bin/fuse_points" --views "$d" --depth "$d" --out "$d" --memory -1
+    expect 2 "or else --estimate" "$B/bin/segment_depth" --views "$d"
+    expect 2 "or else --estimate" "$B/bin/segment_depth" --views "$d" --view v --out v.exr --estimate list
+    expect 2 "--jobs -1" "$B/bin/segment_depth" --views "$d" --estimate list --jobs -1
     expect 2 "--holdout -3" "$B/bin/sfm_import" --sfm "$d" --records "$d" --out "$d" --holdout -3
 }
 

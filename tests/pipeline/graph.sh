@@ -68,6 +68,22 @@ a_deleted_product_is_made_again_with_what_follows()
     done
 }
 
+depth_is_told_before_it_is_made()
+{
+    rm out/t/depth/photo_3.exr
+    run_scene CORES=1 depth >log || { cat log; fail "make depth"; }
+    sed -n '/^depth: /,$p' log | head -n 2 >told
+    { read -r first; read -r second; } <told
+    [[ $first =~ ^depth:\ 1\ view\ of\ 320\ x\ 240,\ [0-9]\ neighbours,\ 1\ round:\ about\ [0-9]+\ s\ on\ 1\ core,\ [0-9]+\ MiB\ at\ a\ time$ ]] || { cat log; fail "told '$first'"; }
+    [[ $second == 'segment_depth 1/1 photo_3'* ]] || { cat log; fail "'$second' follows what is told"; }
+    run_scene depth >log || { cat log; fail "make depth again"; }
+    ! grep '^depth: ' log || fail "something is told where there is nothing to do"
+    rm -r out/t/depth/round0/photo_*.exr
+    run_scene depth >log || { cat log; fail "make depth after deleting a round"; }
+    grep -qE '^depth: 6 views of 320 x 240, .*, 2 rounds: about ' log || { cat log; fail "of two rounds not both are told"; }
+    run_scene >log || { cat log; fail "make"; }
+}
+
 points_are_made_when_they_are_asked_for()
 {
     [ ! -e out/t/points ] || fail "points were made though nobody asked"
@@ -283,6 +299,7 @@ run second_make_does_nothing
 run comment_in_a_config_rebuilds_nothing
 run a_parameter_redoes_its_stage_and_what_follows
 run a_deleted_product_is_made_again_with_what_follows
+run depth_is_told_before_it_is_made
 run points_are_made_when_they_are_asked_for
 run a_changed_photo_redoes_its_view_and_its_readers
 run a_mask_redoes_its_view_and_its_readers

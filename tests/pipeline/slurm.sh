@@ -67,6 +67,7 @@ cluster_gives_the_bytes_of_local()
     make -s DEPS=manual PHOTOS=set/photos SFM=set/model SCENE=local >log 2>&1 || { cat log; fail "local run"; }
     make -s DEPS=manual PHOTOS=set/photos SFM=set/model SCENE=cluster JOBS=slurm VIEWS_PER_JOB=2 FRAMES_PER_JOB=2 >log 2>&1 || { cat log; fail "cluster run"; }
     grep -q 'segment_depth: job' log || { cat log; fail "nothing went to the cluster"; }
+    grep -qE '^depth: .* of one core in all, up to [0-9]+ MiB a view \(SLURM_ARGS=' log || { cat log; fail "what the cluster's jobs need is not told"; }
     products local >a; products cluster >b
     diff a b || fail "the cluster gives other bytes"
     make -s DEPS=manual SCENE=cluster JOBS=slurm >log 2>&1
