@@ -64,7 +64,7 @@ const char page_style[] =
     "th,td{text-align:left;vertical-align:top;padding:7px 14px 7px 0;border-bottom:1px solid var(--line)}\n"
     "tr>:last-child{padding-right:0}tr:last-child>th,tr:last-child>td{border-bottom:0}\n"
     "thead th{font-size:.85rem;font-weight:600;color:var(--muted)}tbody th{font-weight:500}\n"
-    ".n{text-align:right}\n"
+    ".n{text-align:right;white-space:nowrap}\n"
     ".bar{display:block;height:4px;min-width:52px;border-radius:2px;background:var(--line);margin-top:4px}\n"
     ".bar i{display:block;height:4px;border-radius:2px;background:var(--accent)}.peak i{background:var(--second)}\n"
     "tfoot th,tfoot td{font-weight:600}\n"

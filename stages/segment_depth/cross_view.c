@@ -140,7 +140,7 @@ static bool nearer_by(const struct cross_view *x, const struct cross_neighbour *
     const double there = g->plane[0] * nu + g->plane[1] * nv + g->plane[2];
     if (!(there > 0)) return false;
     *steps = (there - inverse / p[2]) * p[2] * p[2] / (fmax(turned, 0.1) * x->step);
-    *confidence = fmaxf((float)g->confidence, LEAST_CONFIDENCE);
+    *confidence = (float)g->confidence;
     return true;
 }
 
@@ -164,7 +164,7 @@ float cross_view_cost(const struct cross_view *x, int segment, struct plane plan
                 cost = HIDDEN;
                 behind += confidence > LEAST_OCCLUDER;
             } else {
-                cost = HIDDEN + confidence * fminf(1, (float)(-steps - AGREE) / (float)AGREE);
+                cost = HIDDEN + fmaxf(confidence, LEAST_CONFIDENCE) * fminf(1, (float)(-steps - AGREE) / (float)AGREE);
             }
             sum += cost;
         }

@@ -41,7 +41,8 @@ void cross_view_release(struct cross_view *x);
  * something in neighbour k. */
 float cross_view_cost(const struct cross_view *x, int segment, struct plane plane, unsigned *hidden);
 
-/* Neighbours that agree at the segment's middle, weighted by their own confidence. */
+/* Neighbours that agree at the segment's middle, weighted by their own confidence: views that all have inherited a depth do not make
+ * it sure. */
 double cross_view_agreeing(const struct cross_view *x, int segment, struct plane plane);
 
 #endif

@@ -131,6 +131,22 @@ static void tell_unknown(const char *view, const struct layered_depth *d)
              100 * shares.inherited);
 }
 
+/* Whether depths were looked for where nothing says that there are any. */
+static enum status tell_range(const struct camera_set *set, const int *read, int count,
+                              const struct segment_params *params, struct err *err)
+{
+    double least = 0, most = 0;
+    bool guessed = false;
+    if (params->near > 0 && params->far > 0) return ST_OK;
+    enum status st = depth_range(&least, &most, &guessed, set, read[0], read + 1, count, err);
+    if (!st && guessed)
+        log_warn("too few sparse points tell how far away things are: depths from %.4g on were looked at, where a "
+                 "neighbour shows things shifted by at most a quarter of the picture; if there is anything nearer, or "
+                 "nothing so near, set [segment_depth] near and far",
+                 1 / most);
+    return st;
+}
+
 static enum status segment_depth(const char *folder, const char *before, const char *given, const char *name,
                                  const char *out, const char *deps, const struct segment_params *params,
                                  struct provenance *prov, struct err *err)
@@ -150,6 +166,7 @@ static enum status segment_depth(const char *folder, const char *before, const c
     }
     if (!st && deps) st = write_deps(deps, out, (const char *const[2]){folder, before}, &set, read, 1 + count, err);
     if (!st) st = layered_depth_write(&depth, &set.views[read[0]], out, prov, err);
+    if (!st && count && !given) st = tell_range(&set, read, count, params, err);
     if (!st) tell_unknown(name, &depth);
     layered_depth_release(&depth);
     camera_set_release(&set);

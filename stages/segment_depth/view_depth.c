@@ -19,7 +19,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/log.h"
 #include "stages/segment_depth/expand.h"
 #include "stages/segment_depth/layers.h"
 #include "stages/segment_depth/plane_sweep.h"
@@ -246,11 +245,6 @@ static enum status find_range(struct solve *v, int neighbour_count, size_t pixel
         depth_range(&v->least, &v->most, &guessed, v->set, v->view_idx, v->neighbours, neighbour_count, err))
         return err->status;
     if (v->given) given_depth_range(&v->least, &v->most, v->given, pixels);
-    if (guessed && !(params->near > 0 && params->far > 0))
-        log_warn("too few sparse points tell how far away things are; what a neighbour shows shifted by up to a "
-                 "quarter of the picture is looked for, from depth %.4g on. If things are nearer, or that is too near, "
-                 "set [segment_depth] near and far",
-                 1 / v->most);
     if (guessed && params->near > 0) v->least = fmin(v->least, 1 / params->near / 500);
     if (params->far > 0) v->least = 1 / params->far;
     if (params->near > 0) v->most = 1 / params->near;
