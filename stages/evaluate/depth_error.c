@@ -59,6 +59,7 @@ static void tally(struct depth_tally *t, double z, double truth, double focal_ba
     t->known++;
     t->bad1 += off > 1;
     t->bad2 += off > 2;
+    t->within2 += fabs(z - truth) <= 0.02 * truth;
     quantiles_add(&t->errors, (float)fmin(fabs(z - truth) / truth, 1e30));
 }
 
@@ -78,6 +79,7 @@ static void merge(struct depth_tally *to, const struct depth_tally *from)
     to->known += from->known;
     to->bad1 += from->bad1;
     to->bad2 += from->bad2;
+    to->within2 += from->within2;
     to->errors.count += from->errors.count;
     for (int i = 0; i < BINS; i++) to->errors.bins[i] += from->errors.bins[i];
 }

@@ -22,8 +22,8 @@ void quantiles_add(struct quantiles *q, float value);
 double quantiles_get(const struct quantiles *q, double part);
 void quantiles_release(struct quantiles *q);
 
-struct depth_tally { /* over all pixels with a true depth, or over the visible ones */
-    uint64_t pixels, known, bad1, bad2;
+struct depth_tally {                             /* over all pixels with a true depth, or over the visible ones */
+    uint64_t pixels, known, bad1, bad2, within2; /* within2: known, and off by at most 2 % */
     struct quantiles errors;
 };
 struct depth_errors {

@@ -245,6 +245,8 @@ static enum status add_tally(struct metric_table *t, const char *view, const str
         snprintf(name, sizeof name, "depth.error%.0f%s", 100 * PARTS[k], suffix);
         if (metric_add(t, view, name, 100 * quantiles_get(&y->errors, PARTS[k]), "%", "lower", err)) return err->status;
     }
+    snprintf(name, sizeof name, "depth.within2%s", suffix);
+    if (y->known && metric_add(t, view, name, percent(y->within2, y->known), "%", "higher", err)) return err->status;
     return ST_OK;
 }
 

@@ -352,6 +352,8 @@ static const char *metric_words(const char *name)
         {"depth.error95_visible", "the same where another photograph sees the point"},
         {"depth.known", "pixels with a depth"},
         {"depth.occluded", "pixels that no other photograph sees"},
+        {"depth.within2", "known pixels whose depth is off by at most 2 %"},
+        {"depth.within2_visible", "the same where another photograph sees the point"},
         {"holdout.holes", "of the held-out pictures, seen by no view"},
         {"holdout.pictures", "held-out pictures compared"},
         {"holdout.psnr", "rendered against photographed, mean"},

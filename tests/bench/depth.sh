@@ -3,15 +3,18 @@
 # Pairs: teddy, cones, venus, Art, Books, motorcycle of the Middlebury stereo sets, in BENCH_PAIRS (../shared/data/middlebury;
 # without that folder only scenes are measured). Both views get their depth, so that rounds can compare them; the left one is
 # judged. Error: bad-2, the part of pixels seen by both whose disparity is off by more than 2 px of the full picture
-# (stereo_score.c), mean over the pairs; each pair has a column of its own. Scenes: BENCH_SCENES (still-life), any of scenes/ whose
-# scene.mk has a TRUTH; `make sfm` is run for them first, their views are BENCH_SCENE_SIZE (0.5) of the photos' size, and
-# error is depth.bad2_visible of docs/evaluation.md, with the relative errors beside it.
+# (stereo_score.c), mean over the pairs; each pair has a column of its own. Scenes: BENCH_SCENES (still-life, loft, and the folder
+# ../shared/data/apartment where there is one). A name is one of scenes/ whose scene.mk has a TRUTH; `make sfm` is run for it first. A folder has
+# photos/ and truth/, whose cameras are taken. Views are BENCH_SCENE_SIZE (0.5) of the photos' size, and
+# error is depth.bad2_visible of docs/evaluation.md, with the relative errors, the part within 2 % and the part known beside it.
+# BENCH_SWEEPS="quality rounds": these panels alone.
 #
-# The default setting is in every panel; a panel turns one knob. Constant z is the thesis' form: slants cost more than they can gain. Baseline:
+# The default setting is in every panel; a panel turns one knob. `quality` has the [segment_depth] of configs/draft.cfg and final.cfg beside the
+# default; `threads` and `jobs` are one and two threads for a view, one and two views at a time. Constant z is the thesis' form: slants cost more than they can gain. Baseline:
 # OpenCV's StereoSGBM (stereo_sgbm.c) on the same views: its best settings, left-right checked and filled; block is its window; `plain` is what it gives if the
 # pictures get no margin for the columns on the left. It makes the depth of one view, ours of two.
 # seconds: wall time of the programs over all items of the set, in BENCH_THREADS (1) threads; core_s_per_mp: processor time over the
-# megapixels of all views that got a depth, all rounds included; size: of the views, as a part of the photos'; the rows of the sweep `threads` are about seconds alone.
+# megapixels of all views that got a depth, all rounds included; size: of the views, as a part of the photos'; the rows of the sweeps `threads` and `jobs` are about seconds alone.
 title="Depth maps: error against time"
 note="Lower left is better. A panel turns one knob; the other knobs are at their defaults."
 baseline=SGBM
@@ -21,7 +24,9 @@ line=series label=value panel="set sweep"
 x=core_s_per_mp x_label="Core-seconds per megapixel of view" y_label="Pixels off by more than 2 px (%)"
 
 pairs=${BENCH_PAIRS-../shared/data/middlebury}
-scenes=${BENCH_SCENES-still-life}
+apartment=../shared/data/apartment
+[ -d "$apartment" ] || apartment=
+scenes=${BENCH_SCENES-still-life loft $apartment}
 scene_size=${BENCH_SCENE_SIZE:-0.5}
 threads=${BENCH_THREADS:-1}
 
@@ -58,6 +63,29 @@ prepare_scene() # NAME
     : >"$to/knobs"
 }
 
+# a folder of photos and truth, whose cameras are the model
+prepare_folder() # DIR
+{
+    local to made id photos=$1/photos
+    to=$work/${1##*/} made=$work/${1##*/}/made
+    if [ ! -d "$1/photos" ] || [ ! -d "$1/truth" ]; then missing "$1 holds no photos/ or no truth/; BENCH_SCENES=\"NAMES\" are scenes or such folders."; fi
+    echo "depth: photos and cameras of $1" >&2
+    mkdir -p "$made"
+    quietly "$B/bin/import_photos" --photos "$photos" --out "$made/photos"
+    if grep -q '^BRACKETED := yes' "$made/photos/photos.mk"; then
+        for id in $(sed -n 's/^PHOTO_IDS := //p' "$made/photos/photos.mk"); do
+            quietly "$B/bin/hdr_merge" --id "$id" --photos "$photos" --records "$made/photos" --out "$made/hdr"
+        done
+        photos=$made/hdr
+    fi
+    quietly "$B/bin/sfm" --photos "$photos" --records "$made/photos" --model "$1/truth" --out "$made/sfm"
+    ln -s "$(realpath "$photos")" "$to/photos"
+    ln -s "$made/photos" "$to/records"
+    ln -s "$made/sfm" "$to/sfm"
+    ln -s "$(realpath "$1/truth")" "$to/truth"
+    : >"$to/knobs"
+}
+
 prepare()
 {
     [ -x "$B/bin/segment_depth" ] || missing "there is no program $B/bin/segment_depth."
@@ -68,8 +96,15 @@ prepare()
         if [ -d "$pairs/$p" ]; then prepare_pair "$p"; found_pairs+=" $p"; fi
     done
     [ -n "$found_pairs" ] || echo "depth: there are no Middlebury pairs in '$pairs' (BENCH_PAIRS=DIR says where they are), so there are only scenes, and no baseline." >&2
-    for s in $scenes; do prepare_scene "$s"; done
-    [ -n "$found_pairs$scenes" ] || missing "there are neither pairs nor scenes."
+    found_scenes=
+    for s in $scenes; do
+        case $s in */*) prepare_folder "${s%/}" ;; *) prepare_scene "$s" ;; esac
+        s=${s%/}; found_scenes+=" ${s##*/}"
+    done
+    for s in draft final; do # what a quality changes, as options
+        "$B/bin/segment_depth" --config "configs/$s.cfg" --print-config | comm -13 <(sort "$work/defaults") <(sort -) | sed 's/ = /=/' >"$work/$s"
+    done
+    [ -n "$found_pairs$found_scenes" ] || missing "there are neither pairs nor scenes."
 }
 
 default_of() { sed -n "s/^$1 = //p" "$work/defaults"; }
@@ -81,6 +116,7 @@ settings()
     row()
     {
         local size=1
+        case " ${BENCH_SWEEPS:-$3} " in *" $3 "*) ;; *) return 0 ;; esac
         [ "$2" = Middlebury ] || size=$scene_size
         [ "$3" != resolution ] || size=$4
         printf '%s\t%s\t%s\t%s\t%s\n' "$@" "$size"
@@ -99,11 +135,14 @@ settings()
         sweep Middlebury segment_pixels slanted 32 128 256; row SGBM Middlebury segment_pixels 'block 1'
         sweep Middlebury planes slanted 8 16 32; row SGBM Middlebury planes 'block 1'
         sweep Middlebury passes slanted 0 1 2; row SGBM Middlebury passes 'block 1'
-        [ "$(nproc)" = 1 ] || for v in 1 2; do row slanted Middlebury threads "$v"; done
+        for v in draft default final; do row slanted Middlebury quality "$v"; done; row SGBM Middlebury quality 'block 1'
+        [ "$(nproc)" = 1 ] || for s in threads jobs; do for v in 1 2; do row slanted Middlebury "$s" "$v"; done; done
     fi
-    for v in $scenes; do
+    for v in $found_scenes; do
         sweep "$v" neighbours slanted 1 2 8
         row 'constant z' "$v" neighbours "$(default_of neighbours)"
+        sweep "$v" rounds slanted 0
+        for s in draft default final; do row slanted "$v" quality "$s"; done
     done
 }
 
@@ -148,7 +187,7 @@ judge() # ITEM SIZE DEPTH: of a pair DEPTH is the left view's file, of a scene a
         rm -rf "$folder"; mkdir -p "$folder"
         ln -s "$of/views@$2" "$folder/views"; ln -s "$3" "$folder/depth"
         "$B/bin/evaluate" --folder "$folder" --shared "$(dirname "$(realpath "$of/records")")" --truth "$of/truth/" --out "$folder/metrics.tsv" 2>"$work/err" || return
-        awk -v item="$1" 'BEGIN { n = split("depth.bad2_visible error depth.bad1_visible bad1 depth.known known depth.error50_visible relative50 depth.error90_visible relative90", w, " ")
+        awk -v item="$1" 'BEGIN { n = split("depth.bad2_visible error depth.bad1_visible bad1 depth.known known depth.within2_visible within2 depth.error50_visible relative50 depth.error90_visible relative90", w, " ")
                 for (i = 1; i < n; i += 2) name[w[i]] = w[i + 1] }
             $1 in name { print item, name[$1], $2 }' "$folder/metrics.tsv"
     else
@@ -158,9 +197,9 @@ judge() # ITEM SIZE DEPTH: of a pair DEPTH is the left view's file, of a scene a
 
 # Rounds build on each other, and the default stands in every panel: what a setting gave is kept for the rest of the repeat, and
 # the depth of the last round that was made until another setting is asked for.
-solved() # KEY SIZE ITEMS ROUND THREADS ARGS...: makes $fast/KEY.ROUND, a sample's lines
+solved() # KEY SIZE ITEMS ROUND THREADS JOBS ARGS...: makes $fast/KEY.ROUND, a sample's lines
 {
-    local key=$1 size=$2 items=$3 round=$4 threads=$5 now=$fast/rounds k item v in before args; shift 5
+    local key=$1 size=$2 items=$3 round=$4 threads=$5 jobs=$6 now=$fast/rounds k item v in before args command running began; shift 6
     [ ! -e "$fast/$key.$round" ] || return 0
     [ -e "$now/key" ] && [ "$(cat "$now/key")" = "$key" ] && [ "$(cat "$now/next")" -le "$round" ] || { rm -rf "$now"; mkdir "$now"; echo "$key" >"$now/key"; echo 0 >"$now/next"; }
     for ((k = $(cat "$now/next"); k <= round; k++)); do
@@ -170,15 +209,29 @@ solved() # KEY SIZE ITEMS ROUND THREADS ARGS...: makes $fast/KEY.ROUND, a sample
             [ "$k" = 0 ] || before=(--before "$now/$item.$((k - 1))")
             mkdir "$now/$item.$k"
             mapfile -t args <"$work/$item/knobs"
+            running=() began=$EPOCHREALTIME
             for v in $(sed -n 's/^VIEWS := //p' "$in/views.mk"); do
-                use "$now/uses" 0 "$B/bin/segment_depth" --threads "$threads" "${args[@]}" "$@" --views "$in" --view "$v" "${before[@]}" --out "$now/$item.$k/$v.exr" || return
+                command=("$B/bin/segment_depth" --threads "$threads" "${args[@]}" "$@" --views "$in" --view "$v" "${before[@]}" --out "$now/$item.$k/$v.exr")
+                if [ "$jobs" = 1 ]; then
+                    use "$now/uses" 0 "${command[@]}" || return
+                else # side by side, each with files of its own for what is measured
+                    if [ "${#running[@]}" = "$jobs" ]; then wait "${running[0]}" || return; running=("${running[@]:1}"); fi
+                    (work=$now/job.$v; mkdir -p "$work"; use "$now/uses" 0 "${command[@]}") &
+                    running+=($!)
+                fi
             done
+            for v in "${running[@]}"; do wait "$v" || return; done
+            [ "$jobs" = 1 ] || echo "$began $EPOCHREALTIME" >>"$now/walls"
             [ "$k" = 0 ] || rm -r "$now/$item.$((k - 1))"
             [ "$k" != 0 ] || echo "0 0 0 $(megapixels "$in")" >>"$now/uses"
             if [ -e "$work/$item/near" ]; then v=/left.exr; else v=; fi
             judge "$item" "$size" "$now/$item.$k$v" >>"$now/judged" || return
         done
         sums "$now/uses" "$now/judged" >"$fast/$key.$k"
+        if [ "$jobs" != 1 ]; then # from the first one's beginning to the last one's end
+            awk '{ s += $2 - $1 } END { printf "seconds %.6f\n", s }' "$now/walls" >"$fast/wall"
+            grep -v '^seconds ' "$fast/$key.$k" >>"$fast/wall"; mv "$fast/wall" "$fast/$key.$k"
+        fi
         echo $((k + 1)) >"$now/next"
     done
 }
@@ -198,7 +251,7 @@ sgbm() # KEY SIZE ARGS...
 
 sample() # SERIES SET SWEEP VALUE SIZE
 {
-    local size=$5 items=$found_pairs rounds on=$threads args=() key
+    local size=$5 items=$found_pairs rounds on=$threads side=1 args=() key v
     rounds=$(default_of rounds)
     [ "$2" = Middlebury ] || items=$2
     if [ "$1" = SGBM ]; then
@@ -212,9 +265,11 @@ sample() # SERIES SET SWEEP VALUE SIZE
     rounds) rounds=$4 ;;
     resolution) ;;
     threads) on=$4 ;;
+    jobs) side=$4 ;;
+    quality) [ "$4" = default ] || while read -r v; do case $v in rounds=*) rounds=${v#*=} ;; *) args+=(--set "$v") ;; esac; done <"$work/$4" ;;
     *) [ "$4" = "$(default_of "$3")" ] || args+=(--set "$3=$4") ;;
     esac
-    key="$2 $r ${B//\//_} $size $on ${args[*]}"
-    solved "$key" "$size" "$items" "$rounds" "$on" "${args[@]}" || return
-    if [ "$3" = threads ]; then grep -v '^core_s_per_mp ' "$fast/$key.$rounds"; else cat "$fast/$key.$rounds"; fi
+    key="$2 $r ${B//\//_} $size $on $side ${args[*]}"
+    solved "$key" "$size" "$items" "$rounds" "$on" "$side" "${args[@]}" || return
+    if [ "$3" = threads ] || [ "$3" = jobs ]; then grep -v '^core_s_per_mp ' "$fast/$key.$rounds"; else cat "$fast/$key.$rounds"; fi
 }

@@ -19,6 +19,7 @@ static void counts_and_quantiles(void **state)
     depth_errors_add(&e, z, truth, occluded, 6, 10);
     assert_int_equal(e.all.pixels, 5);
     assert_int_equal(e.all.known, 4);
+    assert_int_equal(e.all.within2, 1);
     assert_int_equal(e.all.bad1, 3); /* off by 2.5, by 1.5, and the unknown one; off by exactly 1 is not bad */
     assert_int_equal(e.all.bad2, 2);
     assert_int_equal(e.visible.pixels, 4);
