@@ -312,8 +312,8 @@ static enum status put_depths(FILE *to, const struct contents *c, struct err *er
               "are equal "
               "steps of 1/depth over each view's own range, leaving out 2 % at either end (of the truth, where there "
               "is one). <span "
-              "class=\"hatch\"></span>unknown: masked, or outside of the lens. Inherited: no other view "
-              "tells this depth, it is that of what touches it.</p>\n",
+              "class=\"hatch\"></span>unknown: masked, or outside of the lens. Inherited: nothing in other views tells "
+              "this depth (not seen there, or blank, or repeated); it is that of what touches it.</p>\n",
               to);
     fputs("<div class=\"pairs\" style=\"--ramp:linear-gradient(90deg", to);
     for (int k = 16; k >= 0; k--) {
@@ -466,7 +466,7 @@ static void put_inherited(FILE *to, const struct contents *c)
     const struct view_card *worst = NULL;
     put_number_head(to, "Inherited depth");
     fprintf(to, "%.2f %%", 100 * c->inherited);
-    fputs("</td><td class=\"how\">of the views' pixels: no other view tells their depth", to);
+    fputs("</td><td class=\"how\">of the views' pixels: nothing in other views tells their depth", to);
     for (int k = 0; k < 3 && c->depth_count > 3 && (worst = next_inherited(c, worst)); k++) {
         fputs(k ? ", " : "; most in ", to);
         html_text(to, worst->view->name);

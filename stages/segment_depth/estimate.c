@@ -69,7 +69,7 @@ static double rounded(double x)
 
 static void time_words(char words[32], double seconds)
 {
-    if (seconds < 100)
+    if (seconds < 180)
         snprintf(words, 32, "%.0f s", rounded(seconds));
     else if (seconds < 100 * 60)
         snprintf(words, 32, "%.0f min", rounded(seconds / 60));

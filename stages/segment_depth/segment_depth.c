@@ -126,7 +126,7 @@ static enum status write_deps(const char *deps, const char *out, const char *con
 static void tell_unknown(const char *view, const struct layered_depth *d)
 {
     const struct depth_shares shares = layered_depth_shares(d);
-    log_note("%s: %.2f %% of the pixels have no depth%s, %.2f %% inherit theirs: no other view tells it", view,
+    log_note("%s: %.2f %% of the pixels have no depth%s, %.2f %% inherit theirs: nothing in other views tells it", view,
              100 * shares.unknown, shares.unknown > 0 ? " (masked, or outside of the lens)" : "",
              100 * shares.inherited);
 }
