@@ -44,6 +44,7 @@ figures_are_those_of_a_scene_without_errors()
     within camera.placed 100 100
     within depth.known 99 100
     within depth.error50 0 5
+    within depth.within2 40 100
     within depth.bad2 0 50
     within depth.occluded 0 20
     within depth.baseline 0.1 2
