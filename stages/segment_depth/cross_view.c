@@ -1,10 +1,11 @@
 /* cross_view.c - see cross_view.h. */
 #include "stages/segment_depth/cross_view.h"
 
+#include <immintrin.h>
 #include <math.h>
 #include <stdlib.h>
 
-#define AGREE            2.0 /* steps: planes nearer than this agree, the less the farther */
+#define AGREE            2.0f /* steps: planes nearer than this agree, the less the farther */
 #define HIDDEN           0.15f /* cost of being hidden from a neighbour: dearer than agreeing, cheaper than standing in its way */
 #define UNKNOWN          0.15f
 #define LEAST_OCCLUDER   0.3f  /* confidence of what is believed to hide something */
@@ -28,16 +29,37 @@ static bool plane_from_neighbour(struct plane *out, const double p[3], const str
 /* Places spread over each segment, in pixel coordinates. */
 static enum status make_places(struct cross_view *x, const struct segmentation *s, struct err *err)
 {
-    x->places = malloc(((size_t)s->count * CROSS_PLACES + 1) * sizeof *x->places);
-    if (!x->places) return err_nomem(err, "places of segments", (size_t)s->count * CROSS_PLACES * sizeof *x->places);
+    x->places = malloc(((size_t)s->count + 1) * sizeof *x->places);
+    if (!x->places) return err_nomem(err, "places of segments", (size_t)s->count * sizeof *x->places);
     for (int i = 0; i < s->count; i++)
         for (int k = 0; k < CROSS_PLACES; k++) {
             const struct segment *g = &s->segments[i];
             const int pixel = s->pixel[g->first + g->pixels * (2 * k + 1) / (2 * CROSS_PLACES)];
-            float *at = x->places[i * CROSS_PLACES + k];
-            at[0] = (float)(pixel % s->width) + 0.5f;
-            at[1] = (float)(pixel / s->width) + 0.5f;
+            x->places[i][0][k] = (float)(pixel % s->width) + 0.5f;
+            x->places[i][1][k] = (float)(pixel / s->width) + 0.5f;
         }
+    return ST_OK;
+}
+
+/* What cross_view_cost() reads, close together. */
+static enum status look_from(struct cross_neighbour *n, const struct cross_view *x, int segments, struct err *err)
+{
+    const size_t planes = (size_t)n->depth.segment_count + 1, size = ((size_t)segments + 1) * sizeof *n->places;
+    n->places = aligned_alloc(32, size);
+    n->planes = calloc(planes, sizeof *n->planes);
+    if (!n->places || !n->planes) return err_nomem(err, "places of segments", size);
+    for (int i = 0; i < segments; i++)
+        for (int k = 0; k < CROSS_PLACES; k++) {
+            const double u = (double)x->places[i][0][k], v = (double)x->places[i][1][k];
+            for (int j = 0; j < 3; j++)
+                n->places[i].turned[j][k] = (float)(n->base[j][0] * u + n->base[j][1] * v + n->base[j][2]);
+            n->places[i].steps[k] = 1 / (fmaxf(n->places[i].turned[2][k], 0.1f) * (float)x->step);
+        }
+    for (size_t k = 1; k < planes; k++) {
+        const struct depth_segment *g = &n->depth.segments[k - 1];
+        n->planes[k] =
+            (struct cross_plane){(float)g->plane[0], (float)g->plane[1], (float)g->plane[2], (float)g->confidence};
+    }
     return ST_OK;
 }
 
@@ -101,6 +123,7 @@ enum status cross_view_make(struct cross_view *x, const struct segmentation *s, 
         x->count = k + 1;
         st = source->read(source->ctx, neighbours[k], &n->depth, err);
         if (!st) st = segment_centers(&centers[k], &n->depth, err);
+        if (!st) st = look_from(n, x, s->count, err);
     }
     for (int round = 0; !st && round < 2; round++) {
         for (int k = 0; k < count; k++)
@@ -118,72 +141,100 @@ enum status cross_view_make(struct cross_view *x, const struct segmentation *s, 
 void cross_view_release(struct cross_view *x)
 {
     if (!x) return;
-    for (int k = 0; k < x->count; k++) layered_depth_release(&x->neighbours[k].depth);
+    for (int k = 0; k < x->count; k++) {
+        layered_depth_release(&x->neighbours[k].depth);
+        free(x->neighbours[k].places);
+        free(x->neighbours[k].planes);
+    }
     free(x->places);
     free(x->first_proposal);
     free(x->proposals);
     *x = (struct cross_view){0};
 }
 
-/* How many steps nearer the neighbour's surface is than the point; false if the neighbour knows nothing there. */
-static bool nearer_by(const struct cross_view *x, const struct cross_neighbour *n, double u, double v, double inverse,
-                      double *steps, float *confidence)
+/* Of each place of a segment at an inverse depth: how many steps nearer the neighbour's surface is, and the neighbour's
+ * confidence. Returns the lanes where the neighbour knows something. */
+static inline __m256 nearer_by(const struct cross_neighbour *n, int segment, __m256 inverse, __m256 *steps,
+                               __m256 *confidence)
 {
-    double p[3], turned = n->base[2][0] * u + n->base[2][1] * v + n->base[2][2];
-    for (int i = 0; i < 3; i++) p[i] = n->base[i][0] * u + n->base[i][1] * v + n->base[i][2] + n->shift[i] * inverse;
-    if (!(p[2] > 1e-9)) return false;
-    const double nu = p[0] / p[2], nv = p[1] / p[2];
-    if (!(nu >= 0 && nv >= 0 && nu < n->depth.width && nv < n->depth.height)) return false;
-    const uint32_t id = n->depth.interior.id[(size_t)nv * (size_t)n->depth.width + (size_t)nu];
-    if (!id) return false;
-    const struct depth_segment *g = &n->depth.segments[id - 1];
-    const double there = g->plane[0] * nu + g->plane[1] * nv + g->plane[2];
-    if (!(there > 0)) return false;
-    *steps = (there - inverse / p[2]) * p[2] * p[2] / (fmax(turned, 0.1) * x->step);
-    *confidence = (float)g->confidence;
-    return true;
+    const struct cross_places *at = &n->places[segment];
+    __m256 p[3];
+    for (int j = 0; j < 3; j++)
+        p[j] = _mm256_add_ps(_mm256_load_ps(at->turned[j]), _mm256_mul_ps(_mm256_set1_ps((float)n->shift[j]), inverse));
+    const __m256 zero = _mm256_setzero_ps(), r = _mm256_div_ps(_mm256_set1_ps(1), p[2]);
+    const __m256 u = _mm256_mul_ps(p[0], r), v = _mm256_mul_ps(p[1], r);
+    __m256 known = _mm256_cmp_ps(p[2], _mm256_set1_ps(1e-9f), _CMP_GT_OQ);
+    known = _mm256_and_ps(known, _mm256_and_ps(_mm256_cmp_ps(u, zero, _CMP_GE_OQ), _mm256_cmp_ps(v, zero, _CMP_GE_OQ)));
+    known = _mm256_and_ps(known, _mm256_cmp_ps(u, _mm256_set1_ps((float)n->depth.width), _CMP_LT_OQ));
+    known = _mm256_and_ps(known, _mm256_cmp_ps(v, _mm256_set1_ps((float)n->depth.height), _CMP_LT_OQ));
+    *steps = *confidence = zero;
+    if (_mm256_testz_ps(known, known)) return known;
+    const __m256i pixel = _mm256_add_epi32(
+        _mm256_mullo_epi32(_mm256_cvttps_epi32(v), _mm256_set1_epi32(n->depth.width)), _mm256_cvttps_epi32(u));
+    const __m256i none = _mm256_setzero_si256(); /* the planes of no segment are 0 */
+    const __m256i id = _mm256_slli_epi32(
+        _mm256_mask_i32gather_epi32(none, (const int *)n->depth.interior.id, pixel, _mm256_castps_si256(known), 4), 2);
+    const float *planes = &n->planes->a;
+    __m256 there = _mm256_mul_ps(_mm256_i32gather_ps(planes, id, 4), u);
+    there = _mm256_add_ps(there, _mm256_mul_ps(_mm256_i32gather_ps(planes + 1, id, 4), v));
+    there = _mm256_add_ps(there, _mm256_i32gather_ps(planes + 2, id, 4));
+    *confidence = _mm256_i32gather_ps(planes + 3, id, 4);
+    *steps = _mm256_mul_ps(_mm256_sub_ps(_mm256_mul_ps(there, p[2]), inverse),
+                           _mm256_mul_ps(p[2], _mm256_load_ps(at->steps)));
+    return _mm256_and_ps(known, _mm256_cmp_ps(there, zero, _CMP_GT_OQ));
+}
+
+/* Of a segment's places on a plane. */
+static __m256 inverse_depths(const struct cross_view *x, int segment, struct plane plane)
+{
+    const float(*at)[CROSS_PLACES] = x->places[segment];
+    const __m256 a = _mm256_set1_ps((float)plane.a), b = _mm256_set1_ps((float)plane.b);
+    return _mm256_add_ps(
+        _mm256_add_ps(_mm256_mul_ps(a, _mm256_loadu_ps(at[0])), _mm256_mul_ps(b, _mm256_loadu_ps(at[1]))),
+        _mm256_set1_ps((float)plane.c));
 }
 
 float cross_view_cost(const struct cross_view *x, int segment, struct plane plane, unsigned *hidden)
 {
-    float sum = 0;
+    const __m256 agree = _mm256_set1_ps(AGREE), zero = _mm256_setzero_ps();
+    const __m256 inverse = inverse_depths(x, segment, plane);
+    __m256 sum = zero;
     *hidden = 0;
     if (!x->count) return 0;
     for (int k = 0; k < x->count; k++) {
-        int behind = 0;
-        for (int i = 0; i < CROSS_PLACES; i++) {
-            const float *at = x->places[segment * CROSS_PLACES + i];
-            double steps;
-            float confidence, cost;
-            if (!nearer_by(x, &x->neighbours[k], (double)at[0], (double)at[1],
-                           plane_at(plane, (double)at[0], (double)at[1]), &steps, &confidence)) {
-                cost = UNKNOWN;
-            } else if (fabs(steps) <= AGREE) {
-                cost = HIDDEN * (float)(fabs(steps) / AGREE);
-            } else if (steps > 0) {
-                cost = HIDDEN;
-                behind += confidence > LEAST_OCCLUDER;
-            } else {
-                cost = HIDDEN + fmaxf(confidence, LEAST_CONFIDENCE) * fminf(1, (float)(-steps - AGREE) / (float)AGREE);
-            }
-            sum += cost;
-        }
-        if (behind > CROSS_PLACES / 2) *hidden |= 1u << k;
+        __m256 steps, confidence;
+        const __m256 known = nearer_by(&x->neighbours[k], segment, inverse, &steps, &confidence);
+        const __m256 off = _mm256_max_ps(steps, _mm256_sub_ps(zero, steps));
+        const __m256 near = _mm256_mul_ps(_mm256_min_ps(off, agree), _mm256_set1_ps(HIDDEN / AGREE));
+        const __m256 through =
+            _mm256_mul_ps(_mm256_sub_ps(_mm256_sub_ps(zero, steps), agree), _mm256_set1_ps(1 / AGREE));
+        const __m256 sure = _mm256_max_ps(confidence, _mm256_set1_ps(LEAST_CONFIDENCE));
+        const __m256 in_the_way = _mm256_mul_ps(sure, _mm256_min_ps(_mm256_max_ps(through, zero), _mm256_set1_ps(1)));
+        sum = _mm256_add_ps(sum, _mm256_blendv_ps(_mm256_set1_ps(UNKNOWN), _mm256_add_ps(near, in_the_way), known));
+        const __m256 behind = _mm256_and_ps(_mm256_cmp_ps(steps, agree, _CMP_GT_OQ),
+                                            _mm256_cmp_ps(confidence, _mm256_set1_ps(LEAST_OCCLUDER), _CMP_GT_OQ));
+        if (__builtin_popcount((unsigned)_mm256_movemask_ps(_mm256_and_ps(known, behind))) > CROSS_PLACES / 2)
+            *hidden |= 1u << k;
     }
-    return sum / (float)(x->count * CROSS_PLACES);
+    _Alignas(32) float lanes[CROSS_PLACES];
+    _mm256_store_ps(lanes, sum);
+    float all = 0;
+    for (int i = 0; i < CROSS_PLACES; i++) all += lanes[i];
+    return all / (float)(x->count * CROSS_PLACES);
 }
 
 double cross_view_agreeing(const struct cross_view *x, int segment, struct plane plane)
 {
+    const __m256 inverse = inverse_depths(x, segment, plane);
     double sum = 0;
     for (int k = 0; k < x->count; k++) {
-        const float *at = x->places[segment * CROSS_PLACES + CROSS_PLACES / 2];
-        double steps;
-        float confidence;
-        if (nearer_by(x, &x->neighbours[k], (double)at[0], (double)at[1], plane_at(plane, (double)at[0], (double)at[1]),
-                      &steps, &confidence) &&
-            fabs(steps) <= AGREE)
-            sum += (double)confidence;
+        _Alignas(32) float steps[CROSS_PLACES], confidence[CROSS_PLACES];
+        __m256 s, c;
+        const unsigned known = (unsigned)_mm256_movemask_ps(nearer_by(&x->neighbours[k], segment, inverse, &s, &c));
+        _mm256_store_ps(steps, s);
+        _mm256_store_ps(confidence, c);
+        if (known >> CROSS_PLACES / 2 & 1 && fabsf(steps[CROSS_PLACES / 2]) <= AGREE)
+            sum += (double)confidence[CROSS_PLACES / 2];
     }
     return sum;
 }

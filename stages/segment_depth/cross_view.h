@@ -15,21 +15,34 @@ struct depth_source {
     void *ctx;
 };
 
+#define CROSS_PLACES 8 /* of a segment; as many as a vector has lanes */
+
+/* A segment's places as a neighbour sees them: [u' v' 1] ~ turned + shift / z. */
+struct cross_places {
+    float turned[3][CROSS_PLACES];
+    float steps
+        [CROSS_PLACES]; /* steps of the view in a unit of inverse depth of the neighbour, both at the same distance */
+};
+
+struct cross_plane {
+    float a, b, c, confidence;
+};
+
 struct cross_neighbour {
     double base[3][3], shift[3]; /* as match_neighbour, at the picture's own size */
     struct layered_depth depth;
+    struct cross_places *places; /* of each segment of the view */
+    struct cross_plane *planes;  /* by the ids of depth; 0 stands for no segment */
 };
 
 struct cross_view {
     struct cross_neighbour neighbours[MAX_NEIGHBOURS];
     int count;
-    double step;         /* of inverse depth: about one pixel */
-    float (*places)[2];  /* CROSS_PLACES a segment */
-    int *first_proposal; /* count + 1: planes of neighbours' segments whose middles lie in a segment */
+    double step;                      /* of inverse depth: about one pixel */
+    float (*places)[2][CROSS_PLACES]; /* of each segment: u, v */
+    int *first_proposal;              /* count + 1: planes of neighbours' segments whose middles lie in a segment */
     struct plane *proposals;
 };
-
-#define CROSS_PLACES 5
 
 /* x is {0} on entry; release it also after a failure. */
 enum status cross_view_make(struct cross_view *x, const struct segmentation *s, const struct camera_set *set,

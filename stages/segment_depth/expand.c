@@ -20,6 +20,7 @@
 
 #define SCALES 4
 #define TRIFLE 0.03 /* of energy */
+#define SWAY   0.3f /* a plane that costs a segment more than its own by so much of `hold` is not looked at for it */
 #define UNITS  1e7  /* integers a unit of energy */
 #define APART  4    /* cells that move side by side are so many apart */
 
@@ -43,6 +44,7 @@ struct expander {
     const struct segmentation *s;
     struct plane *plane, *before; /* before: when the group of cells began to move; of what lies outside a region */
     float *unary, *least;         /* of each segment's present plane; the least that any plane tried has had */
+    float *hold;                  /* the most that each segment's neighbours can make it pay */
     struct cells cells[SCALES];
     struct rng rng;
     struct worker *workers;
@@ -64,6 +66,34 @@ static bool content(const struct expander *x, const struct worker *w, int i)
 
 static int64_t units(double energy) { return (int64_t)(energy * UNITS); }
 
+struct move {
+    struct expander *x;
+    struct worker *w;
+    struct plane proposal;
+};
+
+/* Of the proposal, to the region's segments. */
+static void unary_costs(void *ctx, size_t begin, size_t end, int thread)
+{
+    const struct move *m = ctx;
+    struct expander *x = m->x;
+    const struct plane p = m->proposal;
+    (void)thread;
+    for (size_t k = begin; k < end; k++) {
+        const int i = m->w->region[k];
+        const struct plane own = x->plane[i];
+        if (k + 1 < end) match_prefetch(x->p->m, m->w->region[k + 1], p);
+        if (own.a == p.a && own.b == p.b && own.c == p.c) {
+            m->w->unary[k] = x->unary[i];
+        } else if (x->pass > 0 && x->scale == 0 && content(x, m->w, i)) {
+            m->w->unary[k] = PLANE_NEVER;
+        } else {
+            m->w->unary[k] = problem_unary(x->p, i, p, x->unary[i] + SWAY * x->hold[i]);
+            x->least[i] = fminf(x->least[i], m->w->unary[k]);
+        }
+    }
+}
+
 /* One move. */
 static void expand(struct expander *x, struct worker *w, int count, struct plane proposal, struct err *err)
 {
@@ -72,17 +102,10 @@ static void expand(struct expander *x, struct worker *w, int count, struct plane
     for (int k = 0; k < count; k++) edges += s->first_touch[w->region[k] + 1] - s->first_touch[w->region[k]];
     if (max_flow_begin(&w->flow, count, edges, err)) return;
     bool hope = false;
+    struct move move = {x, w, proposal};
+    parallel_for((size_t)count, 128, unary_costs, &move);
     for (int k = 0; k < count; k++) {
         const int i = w->region[k];
-        const struct plane own = x->plane[i];
-        if (own.a == proposal.a && own.b == proposal.b && own.c == proposal.c) {
-            w->unary[k] = x->unary[i];
-        } else if (x->pass > 0 && x->scale == 0 && content(x, w, i)) {
-            w->unary[k] = PLANE_NEVER;
-        } else {
-            w->unary[k] = problem_unary(x->p, i, proposal);
-            x->least[i] = fminf(x->least[i], w->unary[k]);
-        }
         hope = hope || w->unary[k] < x->unary[i];
         max_flow_terminal(&w->flow, k, units((double)w->unary[k] - (double)x->unary[i]));
     }
@@ -262,7 +285,12 @@ static void first_costs(void *ctx, size_t begin, size_t end, int thread)
 {
     struct expander *x = ctx;
     (void)thread;
-    for (size_t i = begin; i < end; i++) x->least[i] = x->unary[i] = problem_unary(x->p, (int)i, x->plane[i]);
+    for (size_t i = begin; i < end; i++) {
+        x->hold[i] = 0;
+        for (int t = x->s->first_touch[i]; t < x->s->first_touch[i + 1]; t++)
+            x->hold[i] += (float)x->p->params->smoothness * x->p->weights[t];
+        x->least[i] = x->unary[i] = problem_unary(x->p, (int)i, x->plane[i], INFINITY);
+    }
 }
 
 static enum status make_cells(struct cells *c, const struct segmentation *s, double side, struct err *err)
@@ -312,7 +340,15 @@ static void release(struct expander *x, int threads)
     free(x->errs);
     free(x->unary);
     free(x->least);
+    free(x->hold);
     free(x->before);
+}
+
+/* Large cells pay off at the beginning. */
+static int scales_of(const struct expander *x)
+{
+    const int left = SCALES - (x->p->cross ? 1 : 0) - x->pass;
+    return left > 2 ? left : 2;
 }
 
 enum status expand_planes(struct plane *plane, const struct plane_problem *p, struct err *err)
@@ -323,16 +359,17 @@ enum status expand_planes(struct plane *plane, const struct plane_problem *p, st
     struct expander x = {.p = &rough,
                          .s = p->m->segments,
                          .plane = plane,
-                         .passes = p->params->passes,
+                         .passes = problem_passes(p),
                          .rng = rng_make(1, "segment_depth", "expand")};
     const int threads = parallel_threads();
     struct progress progress;
     int *group = malloc(((size_t)x.s->count + 64) * sizeof *group);
     x.unary = malloc(((size_t)x.s->count + 1) * sizeof *x.unary);
+    x.hold = malloc(((size_t)x.s->count + 1) * sizeof *x.hold);
     x.least = malloc(((size_t)x.s->count + 1) * sizeof *x.least);
     x.before = malloc(((size_t)x.s->count + 1) * sizeof *x.before);
     enum status st =
-        group && x.unary && x.least && x.before ? ST_OK : err_nomem(err, "planes", (size_t)x.s->count * 32);
+        group && x.unary && x.hold && x.least && x.before ? ST_OK : err_nomem(err, "planes", (size_t)x.s->count * 32);
     if (!st) st = init_workers(&x, threads, err);
     int cells = 0;
     for (int k = 0; !st && k < SCALES; k++) {
@@ -344,7 +381,7 @@ enum status expand_planes(struct plane *plane, const struct plane_problem *p, st
         progress_start(&progress, "expansion", (int64_t)x.passes * cells, "cells");
     }
     for (x.pass = 0; !st && x.pass < x.passes; x.pass++) {
-        for (x.scale = 0; !st && x.scale < SCALES; x.scale++) {
+        for (x.scale = 0; !st && x.scale < scales_of(&x); x.scale++) {
             const struct cells *c = &x.cells[x.scale];
             for (int g = 0; !st && g < APART * APART; g++) {
                 int count = 0;
@@ -352,7 +389,10 @@ enum status expand_planes(struct plane *plane, const struct plane_problem *p, st
                     for (int cx = g % APART; cx < c->across; cx += APART) group[count++] = y * c->across + cx;
                 x.group = group;
                 memcpy(x.before, plane, (size_t)x.s->count * sizeof *plane);
-                parallel_for((size_t)count, 1, move_group, &x);
+                if (count >= 4 * threads)
+                    parallel_for((size_t)count, 1, move_group, &x);
+                else /* few and large: one after the other, the costs of each side by side */
+                    move_group(&x, 0, (size_t)count, 0);
                 progress_add(&progress, count);
                 for (int t = 0; !st && t < threads; t++)
                     if (x.errs[t].status) {

@@ -38,7 +38,7 @@ static uint8_t byte_from(float x) { return (uint8_t)(x <= 0 ? 0 : x >= 255 ? 255
 /* Of a neighbour: the cost where it does not see the segment, or another surface hides the segment from it, as its own
  * depth says; and its weight against that of the next better one. At most MATCH_WORST, for a match of texture with a
  * blank wall must not look better than one with other texture. */
-#define UNSEEN_COST 0.5f
+#define UNSEEN_COST 0.4f
 #define HIDDEN_COST 0.67f
 #define RANK_WEIGHT 0.6
 
@@ -377,10 +377,12 @@ void matcher_release(struct matcher *m)
     *m = (struct matcher){0};
 }
 
-/* Sum over four pixels' channels of the weighted truncated differences, a lane a pixel: pixels 2 i, 2 i + 1 in q[i]. */
-static inline __m256i pair_differences(const uint8_t *texture, const int *at, const int *across, const int *down,
+/* Weighted truncated differences of two pixels, a lane each, summed by pairs of channels. at: of the upper left corner, in
+ * halves of a texture element; corners: weights of the corners that sum to UNIT, those of the left column in bytes 0 and 1. */
+static inline __m256i pair_differences(const uint8_t *texture, const int *at, const int *corners,
                                        const int16_t *reference)
 {
+    const __m256i columns = _mm256_set_m128i(_mm_set1_epi16(0x0302), _mm_set1_epi16(0x0100));
     const __m256i limit = _mm256_setr_epi16(
         UNIT * COLOUR_LIMIT, UNIT * COLOUR_LIMIT, UNIT * COLOUR_LIMIT, UNIT * FINE_LIMIT, UNIT * FINE_LIMIT,
         UNIT * COARSE_LIMIT, UNIT * COARSE_LIMIT, 32767, UNIT * COLOUR_LIMIT, UNIT * COLOUR_LIMIT, UNIT * COLOUR_LIMIT,
@@ -389,13 +391,13 @@ static inline __m256i pair_differences(const uint8_t *texture, const int *at, co
         _mm256_setr_epi16(COLOUR_WEIGHT, COLOUR_WEIGHT, COLOUR_WEIGHT, FINE_WEIGHT, FINE_WEIGHT, COARSE_WEIGHT,
                           COARSE_WEIGHT, VALID_WEIGHT, COLOUR_WEIGHT, COLOUR_WEIGHT, COLOUR_WEIGHT, FINE_WEIGHT,
                           FINE_WEIGHT, COARSE_WEIGHT, COARSE_WEIGHT, VALID_WEIGHT);
-    __m256i p = _mm256_maddubs_epi16(_mm256_loadu_si256((const __m256i *)(texture + (size_t)at[0] * 2 * CHANNELS)),
-                                     _mm256_set1_epi32(down[0]));
-    __m256i q = _mm256_maddubs_epi16(_mm256_loadu_si256((const __m256i *)(texture + (size_t)at[1] * 2 * CHANNELS)),
-                                     _mm256_set1_epi32(down[1]));
-    __m256i left = _mm256_permute2x128_si256(p, q, 0x20), right = _mm256_permute2x128_si256(p, q, 0x31);
-    __m256i fraction = _mm256_set_m128i(_mm_set1_epi32(across[1]), _mm_set1_epi32(across[0]));
-    __m256i sample = _mm256_add_epi16(left, _mm256_mulhrs_epi16(_mm256_sub_epi16(right, left), fraction));
+    __m256i p =
+        _mm256_maddubs_epi16(_mm256_loadu_si256((const __m256i *)(texture + (size_t)(unsigned)at[0] * CHANNELS)),
+                             _mm256_shuffle_epi8(_mm256_set1_epi32(corners[0]), columns));
+    __m256i q =
+        _mm256_maddubs_epi16(_mm256_loadu_si256((const __m256i *)(texture + (size_t)(unsigned)at[1] * CHANNELS)),
+                             _mm256_shuffle_epi8(_mm256_set1_epi32(corners[1]), columns));
+    __m256i sample = _mm256_add_epi16(_mm256_permute2x128_si256(p, q, 0x20), _mm256_permute2x128_si256(p, q, 0x31));
     /* saturating: the filling's validity is far below any sample's */
     __m256i difference = _mm256_abs_epi16(_mm256_subs_epi16(sample, _mm256_load_si256((const __m256i *)reference)));
     return _mm256_madd_epi16(_mm256_min_epi16(difference, limit), weight);
@@ -430,19 +432,27 @@ static float neighbour_cost(const struct matcher *m, const struct match_neighbou
         u = _mm256_min_ps(_mm256_max_ps(u, zero), right); /* NaN becomes 0: max returns its second operand */
         v = _mm256_min_ps(_mm256_max_ps(v, zero), bottom);
         __m256i column = _mm256_cvttps_epi32(u), row = _mm256_cvttps_epi32(v);
-        __m256i fu =
-            _mm256_cvttps_epi32(_mm256_mul_ps(_mm256_sub_ps(u, _mm256_cvtepi32_ps(column)), _mm256_set1_ps(32767)));
-        __m256i fv = _mm256_cvtps_epi32(_mm256_mul_ps(_mm256_sub_ps(v, _mm256_cvtepi32_ps(row)), _mm256_set1_ps(UNIT)));
-        __m256i weights = _mm256_or_si256(_mm256_sub_epi32(_mm256_set1_epi32(UNIT), fv), _mm256_slli_epi32(fv, 8));
-        _Alignas(32) int at[8], across[8], down[8];
-        _mm256_store_si256((__m256i *)at, _mm256_add_epi32(_mm256_mullo_epi32(row, stride), column));
-        _mm256_store_si256((__m256i *)across, _mm256_or_si256(fu, _mm256_slli_epi32(fu, 16)));
-        _mm256_store_si256((__m256i *)down, _mm256_or_si256(weights, _mm256_slli_epi32(weights, 16)));
+        const __m256 unit = _mm256_set1_ps(UNIT), fv = _mm256_sub_ps(v, _mm256_cvtepi32_ps(row));
+        const __m256 fu = _mm256_mul_ps(_mm256_sub_ps(u, _mm256_cvtepi32_ps(column)), unit);
+        /* rounded so that the corners' weights sum to UNIT; the upper left one may be -1 */
+        const __m256i lower_right = _mm256_cvtps_epi32(_mm256_mul_ps(fu, fv));
+        const __m256i upper_right = _mm256_sub_epi32(_mm256_cvtps_epi32(fu), lower_right);
+        const __m256i lower_left = _mm256_sub_epi32(_mm256_cvtps_epi32(_mm256_mul_ps(fv, unit)), lower_right);
+        const __m256i upper_left = _mm256_sub_epi32(
+            _mm256_set1_epi32(UNIT), _mm256_add_epi32(_mm256_add_epi32(lower_right, upper_right), lower_left));
+        const __m256i low_byte = _mm256_set1_epi32(255);
+        _Alignas(32) int at[8], corners[8];
+        _mm256_store_si256((__m256i *)at,
+                           _mm256_slli_epi32(_mm256_add_epi32(_mm256_mullo_epi32(row, stride), column), 1));
+        _mm256_store_si256(
+            (__m256i *)corners,
+            _mm256_or_si256(_mm256_or_si256(_mm256_and_si256(upper_left, low_byte), _mm256_slli_epi32(lower_left, 8)),
+                            _mm256_or_si256(_mm256_slli_epi32(upper_right, 16), _mm256_slli_epi32(lower_right, 24))));
+        __asm__("" : "+m"(at), "+m"(corners)); /* they are to be loaded one by one, not taken apart in registers */
         const int16_t *reference = m->features + (size_t)i * CHANNELS;
         __m256i q[4];
         for (int k = 0; k < 4; k++)
-            q[k] = pair_differences(n->texture, at + 2 * k, across + 2 * k, down + 2 * k,
-                                    reference + (ptrdiff_t)(2 * k) * CHANNELS);
+            q[k] = pair_differences(n->texture, at + 2 * k, corners + 2 * k, reference + (ptrdiff_t)(2 * k) * CHANNELS);
         /* lanes: pixels 0 2 4 6 | 1 3 5 7; their order does not matter to integer sums, but it does to mask and weight */
         __m256i cost = _mm256_hadd_epi32(_mm256_hadd_epi32(q[0], q[1]), _mm256_hadd_epi32(q[2], q[3]));
         __m256i mask =
@@ -632,4 +642,31 @@ double matcher_shift(const struct matcher *m, double least, double most)
         largest = fmax(largest, paths[count * 3 / 4]);
     }
     return largest;
+}
+
+#define PREFETCHED 64 /* px: a larger segment would push out of the cache what it fetched */
+
+void match_prefetch(const struct matcher *m, int segment, struct plane plane)
+{
+    const struct segment *g = &m->segments->segments[segment];
+    const double d = plane_at(plane, g->cx, g->cy);
+    if (g->x1 - g->x0 > PREFETCHED || g->y1 - g->y0 > PREFETCHED) return;
+    for (int k = 0; k < m->neighbour_count; k++) {
+        const struct match_neighbour *n = &m->neighbours[k];
+        double p[3];
+        if (m->useless >> k & 1) continue;
+        for (int i = 0; i < 3; i++)
+            p[i] = n->base[i][0] * g->cx + n->base[i][1] * g->cy + n->base[i][2] + n->shift[i] * d;
+        if (!(p[2] > 1e-9)) continue;
+        const float u = (float)(p[0] / p[2]), v = (float)(p[1] / p[2]);
+        if (!(u >= 0 && v >= 0 && u < (float)n->width && v < (float)n->height)) continue;
+        const int half_h = (g->y1 - g->y0) / 2 + 1, half_w = (g->x1 - g->x0) / 2 + 1;
+        const int y0 = inside((int)v - half_h, n->height), y1 = inside((int)v + half_h, n->height);
+        const int x0 = inside((int)u - half_w, n->width), x1 = inside((int)u + half_w + 1, n->width);
+        for (int y = y0; y <= y1; y++) {
+            const uint8_t *row = n->texture + ((size_t)y * (size_t)(n->width + 1)) * 2 * CHANNELS;
+            for (int x = x0; x <= x1 + 3; x += 4)
+                _mm_prefetch((const char *)(row + (size_t)x * 2 * CHANNELS), _MM_HINT_T0);
+        }
+    }
 }

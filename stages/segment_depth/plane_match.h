@@ -79,6 +79,8 @@ void matcher_release(struct matcher *m);
 float match_cost(const struct matcher *m, int segment, struct plane plane, unsigned hidden);
 /* The same of every second pixel, in half the time. */
 float match_cost_half(const struct matcher *m, int segment, struct plane plane, unsigned hidden);
+/* Has the pictures of the segment on the plane fetched from memory, for a match_cost() that follows soon. */
+void match_prefetch(const struct matcher *m, int segment, struct plane plane);
 
 /* Pixels by which a neighbour's picture of the view shifts when 1/z goes from least to most: the largest over the
  * neighbours, each at the median of a grid of the view's pixels. */

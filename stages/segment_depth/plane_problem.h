@@ -27,12 +27,21 @@ struct plane_problem { /* borrows all that it points to */
     double least, most, step; /* inverse depths of the sweep */
     const float *cost;        /* planes a segment: matching alone, at constant depths; NULL after the first round */
     int planes;
-    bool rough; /* every second pixel will do */
+    const float
+        *least_match; /* after the first round: of each segment, what it may hardly match better than; or NULL */
+    bool rough;       /* every second pixel will do */
 };
+
+/* Later rounds begin where the one before ended. */
+static inline int problem_passes(const struct plane_problem *p)
+{
+    return p->cross ? (p->params->passes + 1) / 2 : p->params->passes;
+}
 
 #define PLANE_NEVER 1e4f /* the cost of a plane that leaves the depths */
 
-float problem_unary(const struct plane_problem *p, int segment, struct plane plane);
+/* PLANE_NEVER also if it would be more than `most`, as far as can be said without looking at the pictures. */
+float problem_unary(const struct plane_problem *p, int segment, struct plane plane, float most);
 double problem_pair(const struct plane_problem *p, int segment, int touch, struct plane own, struct plane other);
 
 #endif

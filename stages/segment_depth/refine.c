@@ -35,7 +35,7 @@ static void try_plane(struct refine *r, int i, struct plane p, double *best)
 {
     const double prior = prior_cost(r, i, p), size = (double)r->s->segments[i].pixels / r->p->params->segment_pixels;
     if (prior + size * (double)MATCH_BEST >= *best) return;
-    const float unary = problem_unary(r->p, i, p);
+    const float unary = problem_unary(r->p, i, p, (float)(*best - prior));
     if (prior + (double)unary < *best) {
         *best = prior + (double)unary;
         r->plane[i] = p;
@@ -128,7 +128,7 @@ static void first_costs(void *ctx, size_t begin, size_t end, int thread)
 {
     struct refine *r = ctx;
     (void)thread;
-    for (size_t i = begin; i < end; i++) r->unary[i] = problem_unary(r->p, (int)i, r->plane[i]);
+    for (size_t i = begin; i < end; i++) r->unary[i] = problem_unary(r->p, (int)i, r->plane[i], INFINITY);
 }
 
 /* Greedy colours; members sorted by colour; first[c] where colour c begins. At most 64 colours. */
@@ -154,7 +154,6 @@ static int colour_segments(const struct segmentation *s, int *colour, int *membe
 enum status refine_planes(struct plane *plane, const struct plane_problem *p, struct err *err)
 {
     const struct segmentation *s = p->m->segments;
-    const struct segment_params *params = p->params;
     struct refine r = {.p = p, .s = s, .step = p->step, .plane = plane};
     int *colour = malloc(((size_t)s->count + 1) * sizeof *colour), first[MOST_COLOURS + 1];
     int *members = malloc(((size_t)s->count + 1) * sizeof *members);
@@ -168,9 +167,10 @@ enum status refine_planes(struct plane *plane, const struct plane_problem *p, st
     }
     r.members = members;
     int colours = colour_segments(s, colour, members, first);
-    progress_start(&progress, "refinement", (int64_t)params->passes * s->count, "segments");
+    const int passes = problem_passes(p);
+    progress_start(&progress, "refinement", (int64_t)passes * s->count, "segments");
     parallel_for((size_t)s->count, 64, first_costs, &r);
-    for (int pass = 0; pass < params->passes; pass++) {
+    for (int pass = 0; pass < passes; pass++) {
         memcpy(r.before, plane, (size_t)s->count * sizeof *plane);
         r.change = r.step * pow(0.5, pass);
         for (int c = 0; c < colours; c++) {

@@ -15,7 +15,7 @@
     X(smoothness, double, 1.0, 0, 100, "", "how strongly touching segments want the same depth")                  \
     X(jump, double, 12, 1, 1000, "steps", "a depth difference that costs no more when it grows")                  \
     X(rounds, int, 1, 0, 9, "", "after the first one, in which views look at each other's depths")                \
-    X(passes, int, 4, 0, 20, "", "refinements of the segments' planes")                                           \
+    X(passes, int, 3, 0, 20, "", "over all segments' planes in the first round; half as many later")              \
     X(slant, double, 0.02, 0, 10, "", "what a slanted plane must explain better than a constant depth")           \
     X(points, double, 1, 0, 10, "", "weight of the sparse points that a segment holds")                           \
     X(nearest_points, double, 0.01, 0, 10, "", "weight of the sparse points near a segment")                      \

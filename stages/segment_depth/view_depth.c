@@ -159,6 +159,7 @@ static enum status solve(struct layered_depth *out, const struct solve *v, struc
     struct plane *planes = malloc(((size_t)s->count + 1) * sizeof *planes);
     double *distinct = calloc((size_t)s->count + 1, sizeof *distinct);
     float *weights = touch_weights(s, params->segment_pixels);
+    float *matches = malloc(((size_t)s->count + 1) * sizeof *matches);
     const bool first = !v->source->read_depth;
     plane_sweep_steps(&sweep, v->m, v->least, v->most, params);
     if (v->given) sweep.given = &given;
@@ -175,7 +176,7 @@ static enum status solve(struct layered_depth *out, const struct solve *v, struc
                                     .most = v->most,
                                     .step = sweep.step,
                                     .planes = sweep.planes};
-    enum status st = planes && distinct && weights ? ST_OK : err_nomem(err, "planes", (size_t)s->count * 40);
+    enum status st = planes && distinct && weights && matches ? ST_OK : err_nomem(err, "planes", (size_t)s->count * 40);
     if (!st && v->given) st = fit_given(&given, v, sweep.step, err);
     if (!st) st = point_evidence_make(&points, s, v->seen, v->least, v->most, sweep.step, params, err);
     if (!st && first) {
@@ -186,6 +187,8 @@ static enum status solve(struct layered_depth *out, const struct solve *v, struc
         st = cross_view_make(&cross, s, v->set, v->view_idx, v->neighbours, v->neighbour_count, sweep.step, &source,
                              err);
         if (!st) st = planes_before(planes, distinct, v, err);
+        for (int i = 0; !st && i < s->count; i++) matches[i] = match_cost_half(v->m, i, planes[i], 0);
+        problem.least_match = matches;
         for (int i = 0; !st && i < s->count; i++)
             if (given_depth_knows(sweep.given, i)) planes[i] = given.planes[i];
     }
@@ -200,6 +203,7 @@ static enum status solve(struct layered_depth *out, const struct solve *v, struc
     free(planes);
     free(distinct);
     free(weights);
+    free(matches);
     cross_view_release(&cross);
     plane_sweep_release(&sweep);
     given_depth_release(&given);

@@ -109,13 +109,13 @@ static void a_plane_that_leaves_the_depths_is_out_of_the_question(void **state)
             for (int y = g->y0 - 3; y <= g->y1 + 4; y++)
                 for (int x = g->x0 - 3; x <= g->x1 + 4; x++)
                     leaves = leaves || !(plane_at(p, x, y) >= low && plane_at(p, x, y) <= high);
-            const float cost = problem_unary(&b.problem, i, p);
+            const float cost = problem_unary(&b.problem, i, p, INFINITY);
             assert_true(leaves ? cost >= PLANE_NEVER : cost < PLANE_NEVER / 100);
             never += leaves;
         }
     assert_true(never > count / 5 && never < 9 * count / 10);
     const struct plane no[] = {{NAN, 0, 0.3}, {0, INFINITY, 0.3}, {0, 0, NAN}, {0, 0, -INFINITY}, {1e300, -1e300, 0.3}};
-    for (int k = 0; k < 5; k++) assert_true(problem_unary(&b.problem, 7, no[k]) >= PLANE_NEVER);
+    for (int k = 0; k < 5; k++) assert_true(problem_unary(&b.problem, 7, no[k], INFINITY) >= PLANE_NEVER);
     bench_release();
 }
 
@@ -135,8 +135,8 @@ static void the_unary_is_the_sum_of_its_terms(void **state)
                 const float match = rough ? match_cost_half(&b.matcher, i, p, 0) : match_cost(&b.matcher, i, p, 0);
                 const double points = point_evidence_cost(&b.points, i, p, g->cx, g->cy);
                 b.problem.rough = rough;
-                assert_near(problem_unary(&b.problem, i, p), g->pixels / 64.0 * ((double)match + points) + 0.125 * k,
-                            1e-5);
+                assert_near(problem_unary(&b.problem, i, p, INFINITY),
+                            g->pixels / 64.0 * ((double)match + points) + 0.125 * k, 1e-5);
             }
     }
     bench_release();

@@ -93,7 +93,7 @@ static inline double bench_energy(const struct plane *planes, bool rough)
     double sum = 0;
     p.rough = rough;
     for (int i = 0; i < b.segments.count; i++) {
-        sum += (double)problem_unary(&p, i, planes[i]);
+        sum += (double)problem_unary(&p, i, planes[i], INFINITY);
         for (int t = b.segments.first_touch[i]; t < b.segments.first_touch[i + 1]; t++) {
             const int j = b.segments.touches[t].other;
             if (j > i) sum += problem_pair(&p, i, t, planes[i], planes[j]);
