@@ -85,6 +85,27 @@ static void the_second_adds_a_direction(void **state)
     assert_true(n[0] == above || n[1] == above);
 }
 
+/* A corner of the view with few points is worth a neighbour, though every other one shares more of the many elsewhere; also
+ * if the view itself saw none of them. */
+static void neighbours_cover_the_whole_view(void **state)
+{
+    (void)state;
+    for (int own = 0; own < 2; own++) {
+        int n[MAX_NEIGHBOURS];
+        struct err err;
+        start();
+        const int many[3] = {at(1.5, 0, 0), at(0, 1.2, 0), at(-1.3, 0.2, 0)}, few = at(1, 1, 0);
+        patch(200, 1u | 1u << many[0] | 1u << many[1] | 1u << many[2]);
+        for (int i = 0; i < 60; i++) /* to the right of them */
+            scene_point(&scene, vec3_make(2.6 + 2.2 * scene_hash(i, 1, 0), 3 * scene_hash(i, 1, 1) - 1.5, 10),
+                        (unsigned)own | 1u << few);
+        const int count = choose(n, own ? 2 : 3, &err);
+        bool found = false;
+        for (int k = 0; k < count; k++) found = found || n[k] == few;
+        assert_true(found);
+    }
+}
+
 static void like_scales_win(void **state)
 {
     (void)state;
@@ -254,6 +275,7 @@ int main(void)
         cmocka_unit_test(too_near_and_too_wide_lose),
         cmocka_unit_test(as_many_as_asked),
         cmocka_unit_test(the_second_adds_a_direction),
+        cmocka_unit_test(neighbours_cover_the_whole_view),
         cmocka_unit_test(like_scales_win),
         cmocka_unit_test(a_view_that_shares_no_points_is_not_chosen),
         cmocka_unit_test(without_points_poses_choose),

@@ -142,6 +142,44 @@ static void the_unary_is_the_sum_of_its_terms(void **state)
     bench_release();
 }
 
+/* Screening never changes what costs no more than `most`, and gives up what surely costs more. */
+static void a_plane_that_cannot_be_good_enough_is_not_matched(void **state)
+{
+    (void)state;
+    enum { PLANES = 60 };
+    start();
+    const double step = (0.45 - 0.15) / (PLANES - 1);
+    float *cost = malloc(sizeof *cost * PLANES * (size_t)b.segments.count);
+    int given_up = 0, wrong = 0, count = 0;
+    assert_non_null(cost);
+    for (int i = 0; i < b.segments.count; i++)
+        for (int k = 0; k < PLANES; k++)
+            cost[i * PLANES + k] = match_cost(&b.matcher, i, (struct plane){0, 0, 0.15 + k * step}, 0);
+    for (int swept = 0; swept < 2; swept++) {
+        struct plane_problem p = b.problem;
+        p.step = step;
+        p.cost = swept ? cost : NULL;
+        p.planes = PLANES;
+        for (int i = 0; i < b.segments.count; i++)
+            for (int k = 0; k < 8; k++, count++) {
+                const struct segment *g = &b.segments.segments[i];
+                const double slope = 2e-3 * (2 * scene_hash(i, k, 1) - 1);
+                const struct plane plane = {slope, 0, 0.16 + 0.28 * scene_hash(i, k, 0) - slope * g->cx};
+                const float full = problem_unary(&p, i, plane, INFINITY);
+                const float most = (float)(2 * scene_hash(i, k, 2) - 0.5);
+                const float screened = problem_unary(&p, i, plane, most);
+                assert_true(screened >= PLANE_NEVER || screened == full);
+                if (!swept) assert_true(screened == full || full > most); /* a bound that always holds */
+                given_up += swept && screened > full;
+                wrong += swept && screened > full && full <= most;
+            }
+    }
+    assert_true(given_up > count / 20);
+    assert_true(wrong < given_up / 100);
+    free(cost);
+    bench_release();
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -150,6 +188,7 @@ int main(void)
         cmocka_unit_test(a_surface_slants_for_nothing_but_a_fold_costs),
         cmocka_unit_test(a_plane_that_leaves_the_depths_is_out_of_the_question),
         cmocka_unit_test(the_unary_is_the_sum_of_its_terms),
+        cmocka_unit_test(a_plane_that_cannot_be_good_enough_is_not_matched),
     };
     parallel_set_threads(1); /* tests run side by side */
     return cmocka_run_group_tests(tests, NULL, NULL);
