@@ -55,8 +55,8 @@ static double angle_weight(double degrees)
     return degrees <= 20 ? 1 : exp(-pow((degrees - 20) / 12, 2));
 }
 
-#define GRID    12   /* tiles that a view is cut into, each way */
-#define COVERED 4.0  /* what a point seen by a view that is chosen already takes from its tile */
+#define GRID    12  /* tiles that a view is cut into, each way */
+#define COVERED 4.0 /* what a point seen by a view that is chosen already takes from its tile */
 #define FRAMED  0.5 /* weight of a tile whose points only other views saw: they may be hidden here */
 
 /* A point that tells which views see a tile: the view's own, and where it has none in a tile, all that project there. */

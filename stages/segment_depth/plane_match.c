@@ -21,9 +21,11 @@
  * PatchMatch Stereo (Bleyer 2011). */
 #define SURROUNDINGS 1 /* px: half width of the window that gradients are measured against */
 #define DEVIATION    20.0f
-#define NOISE        2.0f /* grey levels: gradients of this size are half believed */
+#define LEAST_NOISE  1.5f /* grey levels: gradients of the pictures' noise are half believed, of this much at least */
+#define SMOOTHED     0.3f /* of the noise is left in coarse gradients */
+#define NOISY        3.0f /* grey levels of noise at which coarse gradients count half of what they may */
 enum { COLOUR_LIMIT = 16, FINE_LIMIT = 14, COARSE_LIMIT = 14 };
-enum { COLOUR_WEIGHT = 10, FINE_WEIGHT = 50, COARSE_WEIGHT = 3, VALID_WEIGHT = 1000 };
+enum { COLOUR_WEIGHT = 10, FINE_WEIGHT = 50, COARSE_WEIGHT = 20, VALID_WEIGHT = 1000 };
 enum {
     WORST = UNIT * (3 * COLOUR_LIMIT * COLOUR_WEIGHT + 2 * FINE_LIMIT * FINE_WEIGHT + 2 * COARSE_LIMIT * COARSE_WEIGHT),
     OUT_OF_SIGHT = WORST + 1,
@@ -76,7 +78,8 @@ static void box_line(float *at, int count, size_t step, float *line, int r)
 }
 
 /* Factor that brings gradients to DEVIATION bytes a standard deviation of their surroundings. */
-static void gradient_scale(float *scale, const float turn[2][2], const float *luma, float *line, int w, int h, int step)
+static void gradient_scale(float *scale, const float turn[2][2], const float *luma, float *line, int w, int h, int step,
+                           float deviation, float noise)
 {
     for (int y = 0; y < h; y++)
         for (int x = 0; x < w; x++) {
@@ -86,7 +89,7 @@ static void gradient_scale(float *scale, const float turn[2][2], const float *lu
         }
     for (int y = 0; y < h; y++) box_line(scale + (size_t)y * (size_t)w, w, 1, line, SURROUNDINGS);
     for (int x = 0; x < w; x++) box_line(scale + x, h, (size_t)w, line, SURROUNDINGS);
-    for (size_t i = 0; i < (size_t)w * (size_t)h; i++) scale[i] = DEVIATION / (sqrtf(fmaxf(scale[i], 0)) + NOISE / 255);
+    for (size_t i = 0; i < (size_t)w * (size_t)h; i++) scale[i] = deviation / (sqrtf(fmaxf(scale[i], 0)) + noise / 255);
 }
 
 static void pack_rows(void *ctx, size_t begin, size_t end, int thread)
@@ -129,8 +132,31 @@ static void smooth_luma(float *to, const float *from, float *line, int w, int h)
     }
 }
 
-/* CHANNELS bytes a pixel, allocated; NULL: no memory. */
-static uint8_t *pack(const struct gamma_image *g, const double gain[3], double turn[2][2])
+/* Grey levels of noise: a low quantile of how much pixels differ from the planes through their surroundings (J. Immerkaer, "Fast
+ * noise variance estimation", 1996, with a quantile in place of the mean: texture is in the upper ones). */
+static float noise_of(const struct gamma_image *g)
+{
+    enum { BINS = 512, A_LEVEL = 16 };
+    const int w = g->width;
+    size_t count[BINS] = {0}, all = 0, below = 0;
+    for (int y = 1; y + 1 < g->height; y++)
+        for (int x = 1; x + 1 < w; x++) {
+            const size_t i = (size_t)y * (size_t)w + (size_t)x;
+            const float *p = g->rgb[1] + i;
+            if (!g->valid[i] || !(p[0] > 0.02f && p[0] < 0.98f)) continue; /* clipped pixels have none */
+            const float corners = p[-w - 1] + p[-w + 1] + p[w - 1] + p[w + 1], sides = p[-w] + p[w] + p[-1] + p[1];
+            const float off = fabsf(corners - 2 * sides + 4 * p[0]) * (255.0f / 6);
+            count[off < (float)(BINS - 1) / A_LEVEL ? (int)(off * A_LEVEL) : BINS - 1]++;
+            all++;
+        }
+    int bin = 0;
+    while (bin < BINS - 1 && (below += count[bin]) < all / 5) bin++;
+    return all ? ((float)bin + 0.5f) / A_LEVEL / 0.2533f
+               : 0; /* a fifth of a normal distribution lies within so much of it */
+}
+
+/* CHANNELS bytes a pixel, allocated; NULL: no memory. noise: of the view, grey levels. */
+static uint8_t *pack(const struct gamma_image *g, const double gain[3], double turn[2][2], float noise)
 {
     size_t pixels = (size_t)g->width * (size_t)g->height;
     size_t longest = (size_t)(g->width > g->height ? g->width : g->height);
@@ -151,8 +177,10 @@ static uint8_t *pack(const struct gamma_image *g, const double gain[3], double t
     for (int c = 0; c < 3; c++) job.gain[c] = (float)gain[c];
     for (int i = 0; i < 2; i++)
         for (int j = 0; j < 2; j++) job.turn[i][j] = (float)turn[i][j];
-    gradient_scale(fine, job.turn, luma, line, g->width, g->height, 1);
-    gradient_scale(coarse, job.turn, smooth, line, g->width, g->height, 2);
+    const float believed = fmaxf(noise, LEAST_NOISE), noisy = noise * noise / (noise * noise + NOISY * NOISY);
+    gradient_scale(fine, job.turn, luma, line, g->width, g->height, 1, DEVIATION, believed);
+    gradient_scale(coarse, job.turn, smooth, line, g->width, g->height, 2, DEVIATION * noisy,
+                   fmaxf(SMOOTHED * noise, LEAST_NOISE));
     parallel_for((size_t)g->height, 16, pack_rows, &job);
     free(luma);
     return packed;
@@ -198,7 +226,7 @@ enum status matcher_init(struct matcher *m, const struct segmentation *s, const 
     const double gain[3] = {1, 1, 1};
     double turn[2][2] = {{1, 0}, {0, 1}};
     size_t room = 0;
-    *m = (struct matcher){.segments = s, .good = 0, .random = 1};
+    *m = (struct matcher){.segments = s, .good = 0, .random = 1, .noise = noise_of(reference)};
     m->first = malloc(((size_t)s->count + 1) * sizeof *m->first);
     if (!m->first) return err_nomem(err, "a matcher", (size_t)s->count * sizeof *m->first);
     for (int k = 0; k < s->count; k++) {
@@ -210,7 +238,7 @@ enum status matcher_init(struct matcher *m, const struct segmentation *s, const 
     m->y = aligned_alloc(32, (room + 8) * sizeof *m->y);
     m->weight = aligned_alloc(32, (room + 8) * sizeof *m->weight);
     m->features = aligned_alloc(32, (room + 8) * CHANNELS * sizeof *m->features);
-    uint8_t *packed = pack(reference, gain, turn);
+    uint8_t *packed = pack(reference, gain, turn, m->noise);
     if (!m->x || !m->y || !m->weight || !m->features || !packed) {
         free(packed);
         return err_nomem(err, "the pixels of a matcher", room * 24);
@@ -355,7 +383,7 @@ enum status matcher_add(struct matcher *m, const struct camera_set *set, int vie
     n->height = picture->height;
     for (int i = 0; i < 2; i++)
         for (int j = 0; j < 2; j++) turn[i][j] = fmin(fmax(turn[i][j], -2), 2);
-    uint8_t *packed = pack(picture, gain, turn);
+    uint8_t *packed = pack(picture, gain, turn, m->noise);
     if (!packed) return err_nomem(err, "a picture to match with", (size_t)n->width * (size_t)n->height * 20);
     enum status st = make_texture(n, packed, err);
     free(packed);

@@ -49,6 +49,7 @@ struct matcher {
     int *weight;       /* one a pixel, in the order in which they are summed */
     struct match_neighbour neighbours[MAX_NEIGHBOURS];
     int neighbour_count;
+    float noise;            /* of the view, grey levels */
     unsigned useless;       /* bit k: neighbour k tells good matches from chance ones hardly, and is not looked at */
     float good, random;     /* raw costs of a good match and of a chance one */
     float *unseen, *hidden; /* of each segment: what a neighbour costs that cannot see it, or that it is hidden from */
