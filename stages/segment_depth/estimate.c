@@ -10,16 +10,15 @@
 #include "common/textfile.h"
 #include "stages/segment_depth/neighbours.h"
 
-/* Measured with --threads 1 on one core of a 2-core machine: user seconds and peak of 11 views of kermit, 3 of fern and 11 of sceaux
- * at 0.32 to 0.4 megapixels, with 1 to 8 neighbours, 0 to 8 passes and 32 to 150 pixels a segment, and in a second round; and of
- * sceaux at 1.6 and 0.1 megapixels. Example: 20 to 27 core-seconds and 230 to 280 MiB a megapixel with 4 neighbours by
- * default, 30 and 218 at 1.6 megapixels, 12 at 0.1. These constants give 25 and 270. */
+/* Measured with --threads 1 on one core of a 2-core machine, user seconds and peak of a view: an interior of 0.73 megapixels with 1, 2, 4
+ * and 8 neighbours, 5, 9, 12 and 15 core-seconds a megapixel in the first round and 7 in the second (4 neighbours), 250 MiB a megapixel;
+ * a pair of 0.37 megapixels, 5 and 3.6; a facade of 1.9 megapixels, 16. */
 static const struct {
     double seconds, seconds_neighbour; /* a megapixel: over-segmentation, features, sweep, layers */
     double pass, pass_neighbour;       /* a megapixel and pass of a segment of 64 pixels; goes with 1 / sqrt(pixels) */
     double later;                      /* a later round's passes, as a part of the first one's */
     double mib, mib_megapixel, mib_neighbour; /* the program itself; a megapixel; a megapixel and neighbour */
-} cost = {1, 0.45, 0.5, 1.25, 1.2, 20, 110, 28};
+} cost = {1, 0.45, 0.6, 0.62, 0.42, 20, 110, 28};
 
 struct depth_work depth_work(double pixels, int neighbours, bool first, const struct segment_params *params)
 {
