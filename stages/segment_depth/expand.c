@@ -253,20 +253,21 @@ static void move_cell(struct expander *x, struct worker *w, int cell, struct err
             w->region[count++] = c->members[k];
         }
     struct dice d = {&x->rng, (uint64_t)cell, (uint64_t)(x->pass * SCALES + x->scale) << 16};
+    const int tries = x->scale < 2 ? 2 : 1; /* of a kind: moves of large cells cost more and rarely gain */
     struct plane proposal;
     if (x->p->cross && x->scale == 0 && !err->status) {
         const int i = pick(&d, members, inner), *first = x->p->cross->first_proposal + i;
         if (first[1] > first[0])
             expand(x, w, count, x->p->cross->proposals[first[0] + (int)(roll(&d) * (first[1] - first[0]))], err);
     }
-    for (int k = 0; k < 2 && !err->status; k++) expand(x, w, count, x->plane[pick(&d, members, inner)], err);
+    for (int k = 0; k < tries && !err->status; k++) expand(x, w, count, x->plane[pick(&d, members, inner)], err);
     if (x->scale == 0 && x->p->cost && !err->status)
         expand(x, w, count, plane_from_sweep(x, pick(&d, members, inner), &d), err);
-    for (int k = 0; k < 2 && !err->status; k++) expand(x, w, count, shaken(x, pick(&d, members, inner), &d), err);
-    for (int k = 0; k < 2 && !err->status; k++)
+    for (int k = 0; k < tries && !err->status; k++) expand(x, w, count, shaken(x, pick(&d, members, inner), &d), err);
+    for (int k = 0; k < tries && !err->status; k++)
         if (plane_through_three(x, k ? w->region : members, k ? count : inner, &d, &proposal))
             expand(x, w, count, proposal, err);
-    for (int k = 0; k < 2 && !err->status && x->scale > 0; k++) {
+    for (int k = 0; k < tries && !err->status && x->scale > 0; k++) {
         const int *from = k ? w->region : members, n = k ? count : inner;
         if (level_plane(x, pick(&d, from, n), &proposal)) expand(x, w, count, proposal, err);
         if (upright_plane(x, pick(&d, from, n), pick(&d, from, n), &proposal)) expand(x, w, count, proposal, err);
