@@ -246,9 +246,9 @@ enum status matcher_init(struct matcher *m, const struct segmentation *s, const 
     for (int k = 0; k < s->count; k++) {
         const int *pixel = s->pixel + s->segments[k].first, count = s->segments[k].pixels;
         int i = m->first[k];
-        for (int odd = 0; odd < 2; odd++) /* a chessboard's white squares first: see match_cost_half */
+        for (int part = 0; part < 2; part++) /* of every fourth pixel first: see match_cost_rough() */
             for (int n = 0; n < count; n++)
-                if ((pixel[n] % s->width + pixel[n] / s->width) % 2 == odd)
+                if ((pixel[n] % s->width % 2 || pixel[n] / s->width % 2) == part)
                     put_pixel(m, i++, pixel[n], packed + (size_t)pixel[n] * CHANNELS, edge_weight(s, packed, pixel[n]));
         for (; i < m->first[k + 1]; i++) {
             put_pixel(m, i, pixel[0], packed + (size_t)pixel[0] * CHANNELS, 0);
@@ -541,15 +541,15 @@ float match_cost(const struct matcher *m, int segment, struct plane plane, unsig
 }
 
 /* Of a segment's pixels, rounded up to groups of eight. */
-static int half_of(int pixels)
+static int fourth_of(int pixels)
 {
-    const int half = (pixels / 2 + 7) / 8 * 8;
-    return half < 8 ? (pixels < 8 ? pixels : 8) : half < pixels ? half : pixels;
+    const int part = (pixels / 4 + 7) / 8 * 8;
+    return part < 8 ? (pixels < 8 ? pixels : 8) : part < pixels ? part : pixels;
 }
 
-float match_cost_half(const struct matcher *m, int segment, struct plane plane, unsigned hidden)
+float match_cost_rough(const struct matcher *m, int segment, struct plane plane, unsigned hidden)
 {
-    return ranked_cost(m, segment, half_of(m->segments->segments[segment].pixels), plane, hidden);
+    return ranked_cost(m, segment, fourth_of(m->segments->segments[segment].pixels), plane, hidden);
 }
 
 struct calibration {
@@ -567,7 +567,7 @@ static void calibrate_segments(void *ctx, size_t begin, size_t end, int thread)
     (void)thread;
     for (size_t i = begin; i < end; i++)
         for (int k = 0; k < m->neighbour_count; k++) {
-            const int pixels = half_of(m->segments->segments[i].pixels);
+            const int pixels = fourth_of(m->segments->segments[i].pixels);
             const size_t at = i * MAX_NEIGHBOURS + (size_t)k;
             double best = 1, sum = 0;
             int count = 0;

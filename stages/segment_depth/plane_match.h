@@ -78,8 +78,8 @@ void matcher_release(struct matcher *m);
 
 /* hidden: bit k is set if neighbour k cannot see the segment there, which then costs a fixed amount. */
 float match_cost(const struct matcher *m, int segment, struct plane plane, unsigned hidden);
-/* The same of every second pixel, in half the time. */
-float match_cost_half(const struct matcher *m, int segment, struct plane plane, unsigned hidden);
+/* The same of every fourth pixel, in a fourth of the time. */
+float match_cost_rough(const struct matcher *m, int segment, struct plane plane, unsigned hidden);
 /* Has the pictures of the segment on the plane fetched from memory, for a match_cost() that follows soon. */
 void match_prefetch(const struct matcher *m, int segment, struct plane plane);
 

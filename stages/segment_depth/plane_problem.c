@@ -32,7 +32,7 @@ float problem_unary(const struct plane_problem *p, int segment, struct plane pla
     float data = p->cross ? (float)p->params->cross_view * cross_view_cost(p->cross, segment, plane, &hidden) : 0;
     data += (float)point_evidence_cost(p->points, segment, plane, g->cx, g->cy);
     if (size * (data + least_match(p, segment, plane)) + slant > most) return PLANE_NEVER;
-    data += (p->rough ? match_cost_half : match_cost)(p->m, segment, plane, hidden);
+    data += (p->rough ? match_cost_rough : match_cost)(p->m, segment, plane, hidden);
     return size * data + slant;
 }
 

@@ -29,7 +29,7 @@ struct plane_problem { /* borrows all that it points to */
     int planes;
     const float
         *least_match; /* after the first round: of each segment, what it may hardly match better than; or NULL */
-    bool rough;       /* every second pixel will do */
+    bool rough;       /* every fourth pixel will do */
 };
 
 /* Later rounds begin where the one before ended. */

@@ -66,9 +66,9 @@ static void sweep_segments(void *ctx, size_t begin, size_t end, int thread)
         for (int p = 0; p < w->planes; p++) {
             const struct plane plane = facing_plane(w, p);
             struct plane tilted;
-            cost[p] = match_cost_half(job->m, (int)i, plane, 0);
+            cost[p] = match_cost_rough(job->m, (int)i, plane, 0);
             if (horizontal_plane(job, g, p, &tilted)) {
-                const float other = match_cost_half(job->m, (int)i, tilted, 0) + (float)job->params->slant;
+                const float other = match_cost_rough(job->m, (int)i, tilted, 0) + (float)job->params->slant;
                 cost[p] = other < cost[p] ? other : cost[p];
             }
             energy[p] = size * (cost[p] + (float)point_evidence_cost(job->points, (int)i, plane, g->cx, g->cy));

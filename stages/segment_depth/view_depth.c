@@ -187,7 +187,7 @@ static enum status solve(struct layered_depth *out, const struct solve *v, struc
         st = cross_view_make(&cross, s, v->set, v->view_idx, v->neighbours, v->neighbour_count, sweep.step, &source,
                              err);
         if (!st) st = planes_before(planes, distinct, v, err);
-        for (int i = 0; !st && i < s->count; i++) matches[i] = match_cost_half(v->m, i, planes[i], 0);
+        for (int i = 0; !st && i < s->count; i++) matches[i] = match_cost_rough(v->m, i, planes[i], 0);
         problem.least_match = matches;
         for (int i = 0; !st && i < s->count; i++)
             if (given_depth_knows(sweep.given, i)) planes[i] = given.planes[i];

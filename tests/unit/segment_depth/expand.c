@@ -29,7 +29,7 @@ static float *sweep(int planes)
     for (int i = 0; i < b.segments.count; i++)
         for (int p = 0; p < planes; p++)
             cost[i * planes + p] =
-                match_cost_half(&b.matcher, i, (struct plane){0, 0, b.problem.least + p * b.problem.step}, 0);
+                match_cost_rough(&b.matcher, i, (struct plane){0, 0, b.problem.least + p * b.problem.step}, 0);
     b.problem.cost = cost;
     b.problem.planes = planes;
     return cost;

@@ -132,7 +132,7 @@ static void the_unary_is_the_sum_of_its_terms(void **state)
         for (int rough = 0; rough < 2; rough++)
             for (int k = 0; k < 2; k++) {
                 const struct plane p = k ? slanted : flat;
-                const float match = rough ? match_cost_half(&b.matcher, i, p, 0) : match_cost(&b.matcher, i, p, 0);
+                const float match = rough ? match_cost_rough(&b.matcher, i, p, 0) : match_cost(&b.matcher, i, p, 0);
                 const double points = point_evidence_cost(&b.points, i, p, g->cx, g->cy);
                 b.problem.rough = rough;
                 assert_near(problem_unary(&b.problem, i, p, INFINITY),

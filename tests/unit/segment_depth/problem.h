@@ -86,7 +86,7 @@ static inline double bench_truth(double u, double v)
     return 1 / scene_depth(&b.scene, &b.scene.views[0], u, v, &surface);
 }
 
-/* Of all segments and borders; `rough`: every second pixel. */
+/* Of all segments and borders; `rough`: every fourth pixel. */
 static inline double bench_energy(const struct plane *planes, bool rough)
 {
     struct plane_problem p = b.problem;
