@@ -146,23 +146,6 @@ evaluate()
     one evaluate
 }
 
-# photos that are exposures of one view are merged before anything sees them
-merge_brackets() { [ ! -e "$S/photos/brackets.txt" ] || farm hdr_merge hdr 1 "${VIEWS_PER_JOB:-4}"; }
-
-if [ "$goal" = resfm ]; then
-    merge_brackets
-    one -W "$S/photos/list.txt" sfm
-    echo "make SCENE=$scene goes on from the new camera poses."
-    exit 0
-fi
-merge_brackets
-case $goal in hdr) exit 0 ;; esac
-one sfm
-common/explain.sh changed-photos "$S" "$scene"
-case $goal in sfm) exit 0 ;; esac
-farm rectify views 1 "${VIEWS_PER_JOB:-4}"
-case $goal in views) exit 0 ;; esac
-common/explain.sh given-depth "$S" "$O"
 # tell_depth LAST: what is stale of depth in all rounds up to the LAST one: how long it will take, and how much memory
 tell_depth()
 {
@@ -182,6 +165,24 @@ tell_depth()
     "$bin/segment_depth" --config "$O/slice/segment_depth.cfg" --threads $((wide ? cores / wide : 1)) --views "$O/views" \
         --estimate "$list" --jobs "$wide" >&2 2>"$work/words" || cat "$work/words" >&2
 }
+
+# photos that are exposures of one view are merged before anything sees them
+merge_brackets() { [ ! -e "$S/photos/brackets.txt" ] || farm hdr_merge hdr 1 "${VIEWS_PER_JOB:-4}"; }
+
+if [ "$goal" = resfm ]; then
+    merge_brackets
+    one -W "$S/photos/list.txt" sfm
+    echo "make SCENE=$scene goes on from the new camera poses."
+    exit 0
+fi
+merge_brackets
+case $goal in hdr) exit 0 ;; esac
+one sfm
+common/explain.sh changed-photos "$S" "$scene"
+case $goal in sfm) exit 0 ;; esac
+farm rectify views 1 "${VIEWS_PER_JOB:-4}"
+case $goal in views) exit 0 ;; esac
+common/explain.sh given-depth "$S" "$O"
 last_round=$(sed -n 's/^rounds = //p' "$O/slice/segment_depth.cfg")
 tell_depth "$last_round"
 for round in $(seq 0 "$last_round"); do

@@ -1,8 +1,8 @@
-/* plane_match.c - the matching cost; nearly all of the stage's time is spent in segment_cost().
+/* plane_match.c - the matching cost; most of the stage's time is spent in neighbour_cost().
  *
  * Eight bytes a pixel: R G B, fine gradient x y, coarse gradient x y (offset 128), validity. A neighbour's texture keeps
  * a pixel's bytes interleaved with those of the pixel below, so that 32 bytes from one address hold the four corners of
- * a bilinear sample of all channels: _mm256_maddubs_epi16 blends vertically, one multiply horizontally. The sum of
+ * a bilinear sample of all channels: _mm256_maddubs_epi16 weighs them, and the two columns are added. The sum of
  * weighted truncated differences is an integer; validity has a weight that lifts a pixel over every honest cost. */
 #include "stages/segment_depth/plane_match.h"
 
@@ -14,7 +14,7 @@
 #include "common/parallel.h"
 
 #define CHANNELS 8
-#define UNIT     127 /* vertical weights sum to it, so features are bytes times it */
+#define UNIT     127 /* corners' weights sum to it, so features are bytes times it */
 
 /* Truncations (in bytes) and weights, found by trial on pairs with known disparities. Gradients are divided by their
  * deviation in the surroundings, which lets weak texture count and exposure not; they are trusted more than colours, as in

@@ -84,7 +84,7 @@ float match_cost_rough(const struct matcher *m, int segment, struct plane plane,
 void match_prefetch(const struct matcher *m, int segment, struct plane plane);
 
 /* Pixels by which a neighbour's picture of the view shifts when 1/z goes from least to most: the largest over the
- * neighbours, each at the median of a grid of the view's pixels. */
+ * neighbours, each at the upper quartile of a grid of the view's pixels. */
 double matcher_shift(const struct matcher *m, double least, double most);
 
 #endif

@@ -25,7 +25,7 @@
 #define LARGEST_HALF 65504.0F
 
 struct request {
-    const char *picture, *library, *direction, *codec, *folder;
+    const char *picture, *by, *direction, *codec, *folder;
     int width, height;
     bool by_openexr, paint;
 };
@@ -211,13 +211,13 @@ static bool one_of(const char *word, const char *a, const char *b) { return !str
 int main(int argc, char **argv)
 {
     struct request r = {
-        .direction = "write", .folder = ".", .library = "remodel", .codec = "ZIP", .width = 1920, .height = 1280};
+        .direction = "write", .folder = ".", .by = "remodel", .codec = "ZIP", .width = 1920, .height = 1280};
     const struct cli_opt opts[] = {
         CLI_ABOUT("One sample of the bench exr: writes or reads a picture."),
         CLI_STR("direction", &r.direction, CLI_OPTIONAL, "write or read"),
         CLI_STR("folder", &r.folder, CLI_OPTIONAL, "where the file is written"),
         CLI_STR("picture", &r.picture, CLI_REQUIRED, "an EXR file"),
-        CLI_STR("library", &r.library, CLI_OPTIONAL, "remodel or OpenEXR"),
+        CLI_STR("by", &r.by, CLI_OPTIONAL, "who does it: remodel or OpenEXR"),
         CLI_STR("codec", &r.codec, CLI_OPTIONAL, "none, RLE, ZIPS or ZIP"),
         CLI_FLAG("paint", &r.paint, "writes the synthetic picture to the file PICTURE, nothing else"),
         CLI_INT("width", &r.width, CLI_OPTIONAL, "of the synthetic picture"),
@@ -227,12 +227,12 @@ int main(int argc, char **argv)
     struct provenance prov = {0};
     struct err err = ERR_INIT;
     if (cli_parse(argc, argv, "bench_exr", opts, &prov, &err) == CLI_RUN) {
-        r.by_openexr = !strcmp(r.library, "OpenEXR");
+        r.by_openexr = !strcmp(r.by, "OpenEXR");
         openexr_set_threads(parallel_threads());
         if (!one_of(r.direction, "write", "read"))
             err_set(&err, ST_USAGE, "found --direction %s, wanted write or read.", r.direction);
-        else if (!one_of(r.library, "remodel", "OpenEXR"))
-            err_set(&err, ST_USAGE, "found --library %s, wanted remodel or OpenEXR.", r.library);
+        else if (!one_of(r.by, "remodel", "OpenEXR"))
+            err_set(&err, ST_USAGE, "found --by %s, wanted remodel or OpenEXR.", r.by);
         else if (r.paint)
             write_painting(&r, &err);
         else

@@ -35,6 +35,6 @@ sample()
 {
     local file=$fast/synthetic.exr
     [ "$2" = synthetic ] || file=$view
-    measured "$B/tests/bench/exr" --library "$1" --picture "$file" --direction "$3" --codec "$4" --threads "$5" --folder "$fast" || return
+    measured "$B/tests/bench/exr" --by "$1" --picture "$file" --direction "$3" --codec "$4" --threads "$5" --folder "$fast" || return
     awk '$1 == "bytes" { printf "size_mb %.6g\n", $2 * 1e-6 }' "$work/said"
 }
