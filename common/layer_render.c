@@ -1,24 +1,31 @@
-/* layer_render.c - see layer_render.h: a frame, band of rows by band of rows.
+/* layer_render.c - see layer_render.h: a frame, tile by tile.
  *
- * A band draws one view after another: each only where the view mesh names it, then, in what is still a hole, the
- * other views. What a view shows of a pixel becomes one sample; the soft z blends a pixel's samples. Bands are cut by
- * height alone and share nothing, so threads and the split of a path into jobs do not change a bit. */
+ * Blending weights are the view mesh's at the corners of a lattice of LATTICE px, and bilinear between. A tile draws one
+ * view after another, where the lattice names it; then, where no view covers a pixel, the other views. What a view shows
+ * of a pixel becomes one sample; the soft z blends a pixel's samples, eight pixels at a time. Tiles share nothing, so
+ * threads and the split of a path into jobs do not change a bit. */
 #include "common/layer_render.h"
 
+#include <immintrin.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "common/hole_fill.h"
-#include "common/layer_raster.h"
+#include "common/layer_visibility.h"
 #include "common/parallel.h"
 #include "common/soft_z.h"
 
-#define BAND_ROWS    16
+#define LATTICE      16 /* px */
+#define PATCHES      (TILE_WIDTH / LATTICE)
 #define COVERED      0.5f  /* alpha from which a view covers a pixel */
-#define MAX_SAMPLES  7     /* six that the view mesh names, or fewer and another view in a hole */
+#define SLOTS        8     /* views that a patch of the lattice blends, at most */
+#define OTHER        SLOTS /* the slot of a view that steps in */
 #define AGAINST_MOST 0.5f  /* part, by weight, of the views that can tell that may see through what fills a hole */
 #define LEAST_INSIDE 1e-3f /* a view alone at its border still shows */
+#define LEAST_WEIGHT 1e-6f /* and so does one alone where its weight is 0 */
+
+_Static_assert(TILE_HEIGHT == LATTICE && TILE_WIDTH % LATTICE == 0, "a tile is a row of patches");
 
 /* ------------------------------------------------------------------------------------------------- one frame */
 
@@ -27,26 +34,38 @@ struct other_view {
     double distance; /* of its centre to the novel one's */
 };
 
-struct scratch { /* of one thread, for a band */
-    struct view_weights *weights;
-    struct raster_pixel *pixels;
-    float *skip;
-    struct soft_z_sample *samples; /* [MAX_SAMPLES][band pixels] */
-    uint8_t *counts, *covered;
-    bool *named; /* a view */
-    int spans[BAND_ROWS][2];
+struct patch { /* of the lattice: the views that it blends, and their weights at its corners */
+    int count;
+    int view[SLOTS];
+    float weight[SLOTS][4]; /* upper left, upper right, lower left, lower right */
+};
+
+struct slot { /* what one view shows of each pixel; views change from patch to patch */
+    struct view_samples shown;
+    float blend[TILE_PIXELS]; /* blending weight; 0 where nothing is shown */
+};
+
+struct scratch { /* of one thread, for a tile */
+    struct tile_visibility seen;
+    struct slot slots[SLOTS + 1];
+    struct view_samples spare;
+    struct patch patches[PATCHES];
+    uint8_t covered[TILE_PIXELS];
+    bool other[PATCHES]; /* whether the slot OTHER has something */
 };
 
 struct frame_job {
     const struct layer_scene *scene;
     struct view novel;
     struct soft_z soft;
-    struct view_mesh_camera mesh;
-    struct raster_view *rasters; /* a view */
+    struct view_weights *lattice; /* lattice_width a row */
+    int lattice_width;
+    struct drawn_view *drawn; /* a view */
     struct other_view *by_distance;
     struct scratch *scratch; /* a thread */
     struct rendered_frame *out;
     enum status *prepared; /* a view */
+    int tiles_x, tiles;
 };
 
 static int compare_distance(const void *a, const void *b)
@@ -56,49 +75,44 @@ static int compare_distance(const void *a, const void *b)
     return x->view - y->view;
 }
 
-static void scratch_release(struct scratch *s)
-{
-    free(s->weights);
-    free(s->pixels);
-    free(s->skip);
-    free(s->samples);
-    free(s->counts);
-    free(s->covered);
-    free(s->named);
-}
-
-static enum status scratch_init(struct scratch *s, int width, int views, struct err *err)
-{
-    const size_t n = (size_t)BAND_ROWS * (size_t)width;
-    s->weights = malloc(n * sizeof *s->weights);
-    s->pixels = malloc(n * sizeof *s->pixels);
-    s->skip = malloc(n * sizeof *s->skip);
-    s->samples = malloc(n * MAX_SAMPLES * sizeof *s->samples);
-    s->counts = malloc(n);
-    s->covered = malloc(n);
-    s->named = malloc((size_t)views * sizeof *s->named + 1);
-    if (!s->weights || !s->pixels || !s->skip || !s->samples || !s->counts || !s->covered || !s->named)
-        return err_nomem(err, "a band of a frame", n * (sizeof *s->pixels + MAX_SAMPLES * sizeof *s->samples));
-    return ST_OK;
-}
-
 static void prepare_views(void *ctx, size_t begin, size_t end, int thread)
 {
     struct frame_job *job = ctx;
     (void)thread;
     for (size_t i = begin; i < end; i++)
-        job->prepared[i] = raster_view_prepare(&job->rasters[i], &job->scene->depths[i], &job->scene->views[i],
-                                               &job->scene->set->views[i], &job->novel, NULL);
+        job->prepared[i] = drawn_view_prepare(&job->drawn[i], &job->scene->depths[i], &job->scene->views[i],
+                                              &job->scene->set->views[i], &job->novel, NULL);
 }
 
 static void job_release(struct frame_job *job)
 {
-    for (int i = 0; job->rasters && i < job->scene->set->view_count; i++) raster_view_release(&job->rasters[i]);
-    for (int i = 0; job->scratch && i < parallel_threads(); i++) scratch_release(&job->scratch[i]);
-    free(job->rasters);
+    for (int i = 0; job->drawn && i < job->scene->set->view_count; i++) drawn_view_release(&job->drawn[i]);
+    free(job->drawn);
     free(job->by_distance);
     free(job->scratch);
     free(job->prepared);
+    free(job->lattice);
+}
+
+/* The weights at the lattice's points: a camera whose pixels they are. */
+static enum status lattice_init(struct frame_job *job, struct err *err)
+{
+    const struct view *novel = &job->novel;
+    struct view camera = *novel;
+    struct view_mesh_camera mesh;
+
+    camera.width = (novel->width + LATTICE - 1) / LATTICE + 1;
+    camera.height = (novel->height + LATTICE - 1) / LATTICE + 1;
+    camera.fx /= LATTICE;
+    camera.fy /= LATTICE;
+    camera.cx = novel->cx / LATTICE + 0.5;
+    camera.cy = novel->cy / LATTICE + 0.5;
+    job->lattice_width = camera.width;
+    job->lattice = malloc((size_t)camera.width * (size_t)camera.height * sizeof *job->lattice);
+    if (!job->lattice) return err_nomem(err, "a frame's blending weights", sizeof *job->lattice);
+    view_mesh_prepare(&mesh, &job->scene->mesh, &camera);
+    for (int y = 0; y < camera.height; y++) view_mesh_row(&mesh, y, job->lattice + (size_t)y * (size_t)camera.width);
+    return ST_OK;
 }
 
 static enum status job_init(struct frame_job *job, struct rendered_frame *out, const struct layer_scene *scene,
@@ -106,23 +120,25 @@ static enum status job_init(struct frame_job *job, struct rendered_frame *out, c
 {
     const int views = scene->set->view_count;
     const size_t count = (size_t)views + 1, threads = (size_t)parallel_threads();
-    enum status st = ST_OK;
 
     *job = (struct frame_job){.scene = scene, .novel = *novel, .out = out};
     job->soft.widths = (float)soft_z;
     job->soft.range = (float)fmax(scene->far_depth - scene->near_depth, 1e-6 * scene->far_depth);
-    job->rasters = calloc(count, sizeof *job->rasters);
+    job->tiles_x = (novel->width + TILE_WIDTH - 1) / TILE_WIDTH;
+    job->tiles = job->tiles_x * ((novel->height + TILE_HEIGHT - 1) / TILE_HEIGHT);
+    job->drawn = calloc(count, sizeof *job->drawn);
     job->by_distance = calloc(count, sizeof *job->by_distance);
     job->prepared = calloc(count, sizeof *job->prepared);
-    job->scratch = calloc(threads, sizeof *job->scratch);
-    if (!job->rasters || !job->by_distance || !job->prepared || !job->scratch)
-        return err_nomem(err, "a frame's views", count * sizeof *job->rasters);
+    job->scratch = malloc(threads * sizeof *job->scratch);
+    if (!job->drawn || !job->by_distance || !job->prepared || !job->scratch)
+        return err_nomem(err, "a frame's views", count * sizeof *job->drawn + threads * sizeof *job->scratch);
 
-    for (size_t i = 0; !st && i < threads; i++) st = scratch_init(&job->scratch[i], novel->width, views, err);
-    if (st || (st = rendered_frame_resize(out, novel->width, novel->height, color, err))) return st;
+    enum status st = rendered_frame_resize(out, novel->width, novel->height, color, err);
+    if (!st) st = lattice_init(job, err);
+    if (st) return st;
     parallel_for((size_t)views, 1, prepare_views, job);
     for (int i = 0; i < views; i++) {
-        if (job->prepared[i]) return err_nomem(err, "a view's segments", sizeof(struct raster_segment));
+        if (job->prepared[i]) return err_nomem(err, "a view's segments", sizeof(struct drawn_segment));
         job->by_distance[i].view = i;
         job->by_distance[i].distance = vec3_length(vec3_sub(scene->set->views[i].center, novel->center));
     }
@@ -138,70 +154,145 @@ static double hole_fraction(const struct rendered_frame *f)
     return (double)holes / (double)pixels;
 }
 
-/* ------------------------------------------------------------------------------------------- one view, one band */
+/* -------------------------------------------------------------------------------------------------- a tile's views */
 
-/* Draws a view where skip is not INFINITY; the spans follow from it. False if it is INFINITY everywhere. */
-static bool draw_view(const struct frame_job *job, struct scratch *s, int view, int y0, int y1)
+struct place { /* of a tile in the frame */
+    int tile, x, y, width, height, patches;
+};
+
+static struct place place_of(const struct frame_job *job, int tile)
 {
-    const int w = job->novel.width;
-    bool any = false;
-
-    for (int y = y0; y < y1; y++) {
-        const size_t row = (size_t)(y - y0) * (size_t)w;
-        int first = w, last = -1;
-        for (int x = 0; x < w; x++) {
-            if (isinf(s->skip[row + (size_t)x])) continue;
-            if (first > x) first = x;
-            last = x;
-            s->pixels[row + (size_t)x] = (struct raster_pixel){0};
-        }
-        s->spans[y - y0][0] = first;
-        s->spans[y - y0][1] = last;
-        any |= first <= last;
-    }
-    const struct raster_target target = {y0, y1, w, s->pixels, s->skip, (const int(*)[2])s->spans};
-    if (any) raster_rows(&target, &job->rasters[view], &job->scene->views[view], &job->soft);
-    return any;
+    struct place at = {.tile = tile, .x = tile % job->tiles_x * TILE_WIDTH, .y = tile / job->tiles_x * TILE_HEIGHT};
+    at.width = job->novel.width - at.x < TILE_WIDTH ? job->novel.width - at.x : TILE_WIDTH;
+    at.height = job->novel.height - at.y < TILE_HEIGHT ? job->novel.height - at.y : TILE_HEIGHT;
+    at.patches = (at.width + LATTICE - 1) / LATTICE;
+    return at;
 }
 
-static void add_sample(struct scratch *s, size_t n, size_t p, float blend)
+static int patch_slot(const struct patch *p, int view)
 {
-    const struct raster_pixel *from = &s->pixels[p];
-    const struct raster_surface *surface = raster_visible(from);
-    struct soft_z_sample *to = &s->samples[s->counts[p]++ * n + p];
-    memcpy(to->rgba, from->rgba, sizeof to->rgba);
-    to->z = surface->z;
-    to->sigma = surface->sigma;
-    to->blend = blend * fmaxf(LEAST_INSIDE, from->inside / from->rgba[3]);
+    for (int k = 0; k < p->count; k++)
+        if (p->view[k] == view) return k;
+    return -1;
 }
 
-static float weight_of(const struct view_weights *w, int view)
+static float corner_sum(const float weight[4]) { return weight[0] + weight[1] + weight[2] + weight[3]; }
+
+/* Drops the least of a patch's views. */
+static void patch_drop(struct patch *p)
 {
-    for (int k = 0; k < w->count; k++)
-        if (w->view[k] == view) return w->weight[k];
-    return 0;
+    int least = 0;
+    for (int k = 1; k < p->count; k++)
+        if (corner_sum(p->weight[k]) < corner_sum(p->weight[least])) least = k;
+    p->count--;
+    memmove(&p->view[least], &p->view[least + 1], (size_t)(p->count - least) * sizeof p->view[0]);
+    memmove(&p->weight[least], &p->weight[least + 1], (size_t)(p->count - least) * sizeof p->weight[0]);
 }
 
-static void draw_named_views(const struct frame_job *job, struct scratch *s, int y0, int y1)
+static void patch_init(struct patch *p, const struct frame_job *job, int x, int y)
 {
-    const int w = job->novel.width, views = job->scene->set->view_count;
-    const size_t n = (size_t)(y1 - y0) * (size_t)w;
-
-    memset(s->named, 0, (size_t)views * sizeof *s->named);
-    for (int y = y0; y < y1; y++) view_mesh_row(&job->mesh, y, s->weights + (size_t)(y - y0) * (size_t)w);
-    for (size_t p = 0; p < n; p++)
-        for (int k = 0; k < s->weights[p].count; k++) s->named[s->weights[p].view[k]] |= s->weights[p].weight[k] > 0;
-    for (int v = 0; v < views; v++) {
-        if (!s->named[v]) continue;
-        for (size_t p = 0; p < n; p++) s->skip[p] = weight_of(&s->weights[p], v) > 0 ? 0 : INFINITY;
-        const bool drawn = draw_view(job, s, v, y0, y1);
-        for (size_t p = 0; drawn && p < n; p++) {
-            const float blend = weight_of(&s->weights[p], v);
-            if (!(blend > 0) || !(s->pixels[p].rgba[3] > 0)) continue;
-            s->covered[p] |= s->pixels[p].rgba[3] >= COVERED;
-            add_sample(s, n, p, blend);
+    p->count = 0;
+    for (int corner = 0; corner < 4; corner++) {
+        const struct view_weights *w =
+            &job->lattice[(size_t)(y + corner / 2) * (size_t)job->lattice_width + (size_t)(x + corner % 2)];
+        for (int i = 0; i < w->count; i++) {
+            if (!(w->weight[i] > 0)) continue;
+            int k = patch_slot(p, w->view[i]);
+            if (k < 0) {
+                if (p->count == SLOTS) patch_drop(p);
+                k = p->count++;
+                p->view[k] = w->view[i];
+                memset(p->weight[k], 0, sizeof p->weight[k]);
+            }
+            p->weight[k][corner] = w->weight[i];
         }
     }
+}
+
+/* A view's blending weights at eight pixels of a patch from (x, y) on, counted from its upper left corner. */
+static inline __m256 patch_weights(const float weight[4], int x, int y)
+{
+    const float v = ((float)y + 0.5f) / LATTICE;
+    const float left = weight[0] + v * (weight[2] - weight[0]), right = weight[1] + v * (weight[3] - weight[1]);
+    const __m256 lanes = _mm256_setr_ps(0, 1, 2, 3, 4, 5, 6, 7);
+    const __m256 u =
+        _mm256_mul_ps(_mm256_add_ps(lanes, _mm256_set1_ps((float)x + 0.5f)), _mm256_set1_ps(1.0f / LATTICE));
+    const __m256 w = _mm256_add_ps(_mm256_set1_ps(left), _mm256_mul_ps(u, _mm256_set1_ps(right - left)));
+    return _mm256_max_ps(w, _mm256_set1_ps(LEAST_WEIGHT));
+}
+
+/* Marks the pixels of eight that the samples cover. */
+static inline void mark_covered(uint8_t *covered, const float *alpha)
+{
+    for (int k = 0; k < 8; k++) covered[k] |= alpha[k] >= COVERED;
+}
+
+static bool any_visible(const struct tile_visibility *seen, size_t i)
+{
+    const __m256i places = _mm256_loadu_si256((const __m256i *)(const void *)(seen->front + i));
+    return _mm256_movemask_epi8(_mm256_cmpeq_epi32(places, _mm256_set1_epi32(-1))) != -1;
+}
+
+static void clear_tile(struct tile_visibility *seen, size_t begin, size_t end, float inverse)
+{
+    for (size_t i = begin; i < end; i++) seen->inverse_front[i] = seen->inverse_behind[i] = inverse;
+    for (size_t i = begin; i < end; i++) seen->front[i] = seen->behind[i] = VISIBLE_NONE;
+}
+
+/* The patches that name the view are cleared, those between them shut; false if none names it. */
+static bool clear_named(struct scratch *s, const struct place *at, int view, int *first, int *last)
+{
+    *first = PATCHES;
+    *last = -1;
+    for (int k = 0; k < at->patches; k++) {
+        if (patch_slot(&s->patches[k], view) < 0) continue;
+        if (*first > k) *first = k;
+        *last = k;
+    }
+    for (int y = 0; y < at->height; y++)
+        for (int k = *first; k <= *last; k++) {
+            const size_t begin = (size_t)y * TILE_STRIDE + (size_t)k * LATTICE;
+            clear_tile(&s->seen, begin, begin + LATTICE, patch_slot(&s->patches[k], view) < 0 ? INFINITY : 0);
+        }
+    return *last >= 0;
+}
+
+static int patch_end(const struct place *at, int k) /* in the tile's columns */
+{
+    return (k + 1) * LATTICE < at->width ? (k + 1) * LATTICE : at->width;
+}
+
+static void draw_view(const struct frame_job *job, struct scratch *s, const struct place *at, int view)
+{
+    const struct drawn_view *drawn = &job->drawn[view];
+    const struct layer_view *lv = &job->scene->views[view];
+    const __m256 least = _mm256_set1_ps(LEAST_INSIDE);
+    int first, last;
+
+    if (!clear_named(s, at, view, &first, &last)) return;
+    visibility_draw(&s->seen, drawn, lv, at->tile, at->x + first * LATTICE, at->x + patch_end(at, last));
+    for (int k = first; k <= last; k++) {
+        const int n = patch_slot(&s->patches[k], view);
+        if (n < 0) continue;
+        struct slot *slot = &s->slots[n];
+        for (int y = 0; y < at->height; y++)
+            for (int x = 0; x < LATTICE; x += 8) {
+                const size_t i = (size_t)y * TILE_STRIDE + (size_t)(k * LATTICE + x);
+                visibility_sample8(&slot->shown, &s->seen, drawn, lv, i, at->x, at->y);
+                mark_covered(s->covered + i, slot->shown.alpha + i);
+                const __m256 shown =
+                    _mm256_cmp_ps(_mm256_loadu_ps(slot->shown.alpha + i), _mm256_setzero_ps(), _CMP_GT_OQ);
+                const __m256 weight = _mm256_mul_ps(patch_weights(s->patches[k].weight[n], x, y),
+                                                    _mm256_max_ps(least, _mm256_loadu_ps(slot->shown.inside + i)));
+                _mm256_storeu_ps(slot->blend + i, _mm256_and_ps(shown, weight));
+            }
+    }
+}
+
+static void draw_named_views(const struct frame_job *job, struct scratch *s, const struct place *at)
+{
+    for (int k = 0; k < at->patches; k++) patch_init(&s->patches[k], job, at->x / LATTICE + k, at->y / LATTICE);
+    for (int v = 0; v < job->scene->set->view_count; v++) draw_view(job, s, at, v);
 }
 
 enum sight { SIGHT_NONE, SIGHT_THROUGH, SIGHT_STOPPED };
@@ -225,66 +316,198 @@ static enum sight sight_of(const struct frame_job *job, int view, struct vec3 po
     return soft_z_weight((float)(1 / inverse - z), 0.1f * rho, rho) == 0 ? SIGHT_THROUGH : SIGHT_STOPPED;
 }
 
-/* In pixels that the named views leave a hole: the nearest of the other views that shows something there through which
- * the named views that can tell, by most of their weight, do not see. What is there was hidden from them, so it must lie behind what
- * they show; else a segment at a wrong depth would hang in the hole. */
-static void draw_other_views(const struct frame_job *job, struct scratch *s, int y0, int y1)
+/* Of the patch's views that can tell, by most of their weight, none looks through what another view shows here. What is
+ * there was hidden from them, so it must lie behind what they show; else a segment at a wrong depth would hang in the
+ * hole. */
+static bool may_step_in(const struct frame_job *job, const struct patch *patch, const struct place *at, int x, int y,
+                        float z, float sigma)
 {
-    const int w = job->novel.width;
-    const size_t n = (size_t)(y1 - y0) * (size_t)w;
+    const struct vec3 point = view_unproject(&job->novel, at->x + x + 0.5, at->y + y + 0.5, z);
+    float told[3] = {0};
+    for (int k = 0; k < patch->count; k++)
+        told[sight_of(job, patch->view[k], point, sigma)] +=
+            _mm256_cvtss_f32(patch_weights(patch->weight[k], x % LATTICE, y));
+    return !(told[SIGHT_THROUGH] > AGAINST_MOST * (told[SIGHT_THROUGH] + told[SIGHT_STOPPED]));
+}
 
-    for (int i = 0; i < job->scene->set->view_count; i++) {
-        const int view = job->by_distance[i].view;
-        for (size_t p = 0; p < n; p++) s->skip[p] = s->covered[p] || weight_of(&s->weights[p], view) > 0 ? INFINITY : 0;
-        if (!draw_view(job, s, view, y0, y1)) continue;
-        for (size_t p = 0; p < n; p++) {
-            const struct view_weights *named = &s->weights[p];
-            if (s->covered[p] || weight_of(named, view) > 0 || s->pixels[p].rgba[3] < COVERED) continue;
-            const struct raster_surface *surface = raster_visible(&s->pixels[p]);
-            const struct vec3 point = view_unproject(&job->novel, (double)(p % (size_t)w) + 0.5,
-                                                     y0 + (double)(p / (size_t)w) + 0.5, surface->z);
-            float told[3] = {0};
-            for (int k = 0; k < named->count; k++)
-                if (named->weight[k] > 0)
-                    told[sight_of(job, named->view[k], point, surface->sigma)] += named->weight[k];
-            if (told[SIGHT_THROUGH] > AGAINST_MOST * (told[SIGHT_THROUGH] + told[SIGHT_STOPPED])) continue;
-            s->covered[p] = 1;
-            add_sample(s, n, p, 1);
+/* Opens the pixels that nothing covers yet, of the patches that name the view or of those that do not; the columns
+ * from the first to the last. False if there are none. */
+static bool clear_uncovered(struct scratch *s, const struct place *at, int view, bool named, int *first, int *last)
+{
+    bool open[PATCHES];
+    *first = at->width;
+    *last = -1;
+    for (int k = 0; k < at->patches; k++) open[k] = (patch_slot(&s->patches[k], view) >= 0) == named;
+    for (int y = 0; y < at->height; y++) {
+        const size_t row = (size_t)y * TILE_STRIDE;
+        clear_tile(&s->seen, row, row + TILE_STRIDE, INFINITY); /* eight at a time: beyond the width, too */
+        for (int x = 0; x < at->width; x++) {
+            if (s->covered[row + (size_t)x] || !open[x / LATTICE]) continue;
+            s->seen.inverse_front[row + (size_t)x] = s->seen.inverse_behind[row + (size_t)x] = 0;
+            if (*first > x) *first = x;
+            if (*last < x) *last = x;
         }
+    }
+    return *last >= 0;
+}
+
+/* What the slot OTHER has of a patch is cleared once, when it gets its first. */
+static void open_other(struct scratch *s, int patch)
+{
+    struct slot *slot = &s->slots[OTHER];
+    if (s->other[patch]) return;
+    s->other[patch] = true;
+    for (int y = 0; y < TILE_HEIGHT; y++)
+        for (int x = patch * LATTICE; x < (patch + 1) * LATTICE; x++) {
+            const size_t i = (size_t)y * TILE_STRIDE + (size_t)x;
+            memset(slot->shown.rgba[i], 0, sizeof slot->shown.rgba[i]);
+            slot->shown.alpha[i] = slot->shown.z[i] = slot->shown.sigma[i] = slot->blend[i] = 0;
+        }
+}
+
+/* Of eight pixels what another view shows, where it covers a hole and may. */
+static void step_in(const struct frame_job *job, struct scratch *s, const struct place *at, size_t i, bool color)
+{
+    struct slot *slot = &s->slots[OTHER];
+    const struct view_samples *from = &s->spare;
+    const int y = (int)(i / TILE_STRIDE);
+
+    for (size_t p = i; p < i + 8; p++) {
+        const int x = (int)(p % TILE_STRIDE);
+        if (!(from->alpha[p] >= COVERED) || x >= at->width) continue;
+        if (!may_step_in(job, &s->patches[x / LATTICE], at, x, y, from->z[p], from->sigma[p])) continue;
+        s->covered[p] = 1;
+        if (!color) continue;
+        open_other(s, x / LATTICE);
+        memcpy(slot->shown.rgba[p], from->rgba[p], sizeof from->rgba[p]);
+        slot->shown.alpha[p] = from->alpha[p];
+        slot->shown.z[p] = from->z[p];
+        slot->shown.sigma[p] = from->sigma[p];
+        slot->blend[p] = from->inside[p] > LEAST_INSIDE ? from->inside[p] : LEAST_INSIDE;
     }
 }
 
-/* The band's samples, and which pixels are covered. */
-static void draw_band(const struct frame_job *job, struct scratch *s, int y0, int y1)
+/* In pixels that the named views leave a hole: the nearest of the other views that shows something there. */
+static void draw_other_views(const struct frame_job *job, struct scratch *s, const struct place *at, bool color)
 {
-    const size_t n = (size_t)(y1 - y0) * (size_t)job->novel.width;
-    bool holes = false;
-
-    memset(s->counts, 0, n);
-    memset(s->covered, 0, n);
-    draw_named_views(job, s, y0, y1);
-    for (size_t p = 0; p < n; p++) holes |= !s->covered[p];
-    if (holes) draw_other_views(job, s, y0, y1);
+    for (int n = 0; n < job->scene->set->view_count; n++) {
+        const int view = job->by_distance[n].view;
+        const struct drawn_view *drawn = &job->drawn[view];
+        const struct layer_view *lv = &job->scene->views[view];
+        int first, last;
+        if (drawn->tile_begin[at->tile] == drawn->tile_begin[at->tile + 1]) continue;
+        if (!clear_uncovered(s, at, view, false, &first, &last)) continue;
+        visibility_draw(&s->seen, drawn, lv, at->tile, at->x + first, at->x + last + 1);
+        for (int y = 0; y < at->height; y++)
+            for (int x = first & ~7; x <= last; x += 8) {
+                const size_t i = (size_t)y * TILE_STRIDE + (size_t)x;
+                if (!any_visible(&s->seen, i)) continue;
+                visibility_sample8(&s->spare, &s->seen, drawn, lv, i, at->x, at->y);
+                step_in(job, s, at, i, color);
+            }
+    }
 }
 
-static void render_bands(void *ctx, size_t begin, size_t end, int thread)
+/* ------------------------------------------------------------------------------------------------------- blending */
+
+/* Eight pixels from i on: the samples of `slots`. Inlined for each usual count, so that all stays in registers. */
+static inline __attribute__((always_inline)) void blend_eight(const struct frame_job *job, const struct scratch *s,
+                                                              const int *slots, int count, size_t i, float (*rgba)[4],
+                                                              float *z)
+{
+    __m256 weight[SLOTS + 1], there[SLOTS + 1], depth[SLOTS + 1], unsure[SLOTS + 1], visible[SLOTS + 1];
+    __m256 z_sum = _mm256_setzero_ps(), there_sum = z_sum;
+
+    for (int k = 0; k < count; k++) {
+        const struct slot *slot = &s->slots[slots[k]];
+        depth[k] = _mm256_loadu_ps(slot->shown.z + i);
+        unsure[k] = _mm256_mul_ps(depth[k], _mm256_loadu_ps(slot->shown.sigma + i));
+        weight[k] = _mm256_loadu_ps(slot->blend + i);
+        there[k] = soft_z_presence8(weight[k], _mm256_loadu_ps(slot->shown.alpha + i));
+        visible[k] = _mm256_set1_ps(1);
+    }
+    for (int k = 0; k < count; k++)
+        for (int c = 0; c < count; c++)
+            if (c != k)
+                visible[k] = soft_z_behind8(&job->soft, visible[k], depth[k], unsure[k], depth[c], unsure[c], there[c]);
+
+    float w[SLOTS + 1][8];
+    for (int k = 0; k < count; k++) {
+        const __m256 part = _mm256_mul_ps(visible[k], there[k]);
+        z_sum = _mm256_add_ps(z_sum, _mm256_mul_ps(part, depth[k]));
+        there_sum = _mm256_add_ps(there_sum, part);
+        _mm256_storeu_ps(w[k], _mm256_mul_ps(visible[k], weight[k]));
+    }
+    _mm256_storeu_ps(z, _mm256_div_ps(z_sum, _mm256_max_ps(there_sum, _mm256_set1_ps(1e-30f))));
+    for (int n = 0; n < 8; n++) {
+        __m128 sum = _mm_setzero_ps();
+        for (int k = 0; k < count; k++)
+            sum = _mm_add_ps(
+                sum, _mm_mul_ps(_mm_set1_ps(w[k][n]), _mm_loadu_ps(s->slots[slots[k]].shown.rgba[i + (size_t)n])));
+        const __m128 alpha = _mm_shuffle_ps(sum, sum, 0xFF);
+        _mm_storeu_ps(rgba[n], _mm_div_ps(sum, _mm_max_ps(alpha, _mm_set1_ps(1e-30f))));
+    }
+}
+
+static void blend_patch(const struct frame_job *job, const struct scratch *s, const struct place *at, int k)
+{
+    const int begin = k * LATTICE, end = patch_end(at, k);
+    int slots[SLOTS + 1], count = 0;
+
+    for (int n = 0; n < s->patches[k].count; n++) slots[count++] = n;
+    if (s->other[k]) slots[count++] = OTHER;
+    for (int y = 0; y < at->height; y++)
+        for (int x0 = begin; x0 < end; x0 += 8) {
+            const size_t i = (size_t)y * TILE_STRIDE + (size_t)x0;
+            const size_t p = (size_t)(at->y + y) * (size_t)job->novel.width + (size_t)(at->x + x0);
+            const int n = end - x0 < 8 ? end - x0 : 8;
+            float rgba[8][4], z[8];
+            if (count == 1)
+                blend_eight(job, s, slots, 1, i, rgba, z);
+            else if (count == 2)
+                blend_eight(job, s, slots, 2, i, rgba, z);
+            else if (count == 3)
+                blend_eight(job, s, slots, 3, i, rgba, z);
+            else
+                blend_eight(job, s, slots, count, i, rgba, z);
+            for (int x = 0; x < n; x++)
+                if (!s->covered[i + (size_t)x]) {
+                    memset(rgba[x], 0, sizeof rgba[x]);
+                    z[x] = 0;
+                }
+            memcpy(job->out->rgba + 4 * p, rgba, (size_t)n * sizeof rgba[0]);
+            memcpy(job->out->z + p, z, (size_t)n * sizeof z[0]);
+        }
+}
+
+static void write_holes(const struct frame_job *job, const struct scratch *s, const struct place *at)
+{
+    for (int y = 0; y < at->height; y++) {
+        uint8_t *hole = job->out->hole + (size_t)(at->y + y) * (size_t)job->novel.width + (size_t)at->x;
+        for (int x = 0; x < at->width; x++) hole[x] = !s->covered[y * TILE_STRIDE + x];
+    }
+}
+
+static bool any_hole(const struct scratch *s, const struct place *at)
+{
+    for (int y = 0; y < at->height; y++)
+        if (memchr(s->covered + (size_t)y * TILE_STRIDE, 0, (size_t)at->width)) return true;
+    return false;
+}
+
+static void render_tiles(void *ctx, size_t begin, size_t end, int thread)
 {
     struct frame_job *job = ctx;
     struct scratch *s = &job->scratch[thread];
-    const size_t first = begin * (size_t)job->novel.width, n = (end - begin) * (size_t)job->novel.width;
 
-    draw_band(job, s, (int)begin, (int)end);
-    for (size_t p = 0; p < n; p++) {
-        float *rgba = job->out->rgba + 4 * (first + p), *z = &job->out->z[first + p];
-        struct soft_z_sample samples[MAX_SAMPLES];
-        job->out->hole[first + p] = !s->covered[p];
-        if (!s->covered[p]) {
-            memset(rgba, 0, 4 * sizeof *rgba);
-            *z = 0;
-            continue;
-        }
-        for (int k = 0; k < s->counts[p]; k++) samples[k] = s->samples[(size_t)k * n + p];
-        soft_z_blend(&job->soft, samples, s->counts[p], rgba, z);
+    for (size_t t = begin; t < end; t++) {
+        const struct place at = place_of(job, (int)t);
+        memset(s->covered, 0, sizeof s->covered);
+        memset(s->other, 0, sizeof s->other);
+        draw_named_views(job, s, &at);
+        if (any_hole(s, &at)) draw_other_views(job, s, &at, true);
+        for (int k = 0; k < at.patches; k++) blend_patch(job, s, &at, k);
+        write_holes(job, s, &at);
     }
 }
 
@@ -295,8 +518,7 @@ enum status layer_render(struct rendered_frame *out, const struct layer_scene *s
     enum status st = job_init(&job, out, scene, novel, options->soft_z, true, err);
 
     if (!st) {
-        view_mesh_prepare(&job.mesh, &scene->mesh, novel);
-        parallel_for((size_t)novel->height, BAND_ROWS, render_bands, &job);
+        parallel_for((size_t)job.tiles, 1, render_tiles, &job);
         out->hole_fraction = hole_fraction(out);
         st = hole_fill(out, &job.soft, (float)scene->sigma, options->fill_diameter, err);
     }
@@ -304,16 +526,70 @@ enum status layer_render(struct rendered_frame *out, const struct layer_scene *s
     return st;
 }
 
-/* ------------------------------------------------------------------------------------------------- coverage */
+/* ------------------------------------------------------------------------------------------------------- coverage */
 
-static void cover_bands(void *ctx, size_t begin, size_t end, int thread)
+static void cover_view(const struct frame_job *job, struct scratch *s, const struct place *at, int view)
+{
+    const struct drawn_view *drawn = &job->drawn[view];
+    const struct layer_view *lv = &job->scene->views[view];
+    int first, last;
+
+    if (!clear_uncovered(s, at, view, true, &first, &last)) return;
+    visibility_draw(&s->seen, drawn, lv, at->tile, at->x + first, at->x + last + 1);
+    for (int y = 0; y < at->height; y++)
+        for (int x = first & ~7; x <= last; x += 8) {
+            const size_t i = (size_t)y * TILE_STRIDE + (size_t)x;
+            const __m256i places = _mm256_loadu_si256((const __m256i *)(const void *)(s->seen.front + i));
+            const __m256i none = _mm256_cmpeq_epi32(places, _mm256_set1_epi32(-1));
+            const int shown = ~_mm256_movemask_ps(_mm256_castsi256_ps(none)) & 0xFF;
+            const int full = _mm256_movemask_ps(_mm256_castsi256_ps(places)) & shown;
+            for (int k = 0; k < 8; k++) s->covered[i + (size_t)k] |= full >> k & 1;
+            if (full == shown) continue;
+            visibility_sample8(&s->spare, &s->seen, drawn, lv, i, at->x, at->y);
+            mark_covered(s->covered + i, s->spare.alpha + i);
+        }
+}
+
+/* The views of a tile's patches, those that count for most first: the first covers nearly all. */
+static void cover_named_views(const struct frame_job *job, struct scratch *s, const struct place *at)
+{
+    int views[PATCHES * SLOTS], count = 0;
+    float sums[PATCHES * SLOTS];
+
+    for (int k = 0; k < at->patches; k++) {
+        patch_init(&s->patches[k], job, at->x / LATTICE + k, at->y / LATTICE);
+        for (int n = 0; n < s->patches[k].count; n++) {
+            int i = 0;
+            while (i < count && views[i] != s->patches[k].view[n]) i++;
+            if (i == count) {
+                views[count] = s->patches[k].view[n];
+                sums[count++] = 0;
+            }
+            sums[i] += corner_sum(s->patches[k].weight[n]);
+        }
+    }
+    for (; count > 0; count--) {
+        int most = 0;
+        for (int i = 1; i < count; i++)
+            if (sums[i] > sums[most]) most = i;
+        cover_view(job, s, at, views[most]);
+        views[most] = views[count - 1];
+        sums[most] = sums[count - 1];
+    }
+}
+
+static void cover_tiles(void *ctx, size_t begin, size_t end, int thread)
 {
     const struct frame_job *job = ctx;
-    const struct scratch *s = &job->scratch[thread];
-    const size_t first = begin * (size_t)job->novel.width, n = (end - begin) * (size_t)job->novel.width;
+    struct scratch *s = &job->scratch[thread];
 
-    draw_band(job, &job->scratch[thread], (int)begin, (int)end);
-    for (size_t p = 0; p < n; p++) job->out->hole[first + p] = !s->covered[p];
+    for (size_t t = begin; t < end; t++) {
+        const struct place at = place_of(job, (int)t);
+        memset(s->covered, 0, sizeof s->covered);
+        cover_named_views(job, s, &at);
+        if (any_hole(s, &at)) draw_other_views(job, s, &at, false);
+        write_holes(job, s, &at);
+    }
 }
 
 enum status layer_coverage(struct rendered_frame *out, const struct layer_scene *scene, const struct view *novel,
@@ -332,8 +608,7 @@ enum status layer_coverage(struct rendered_frame *out, const struct layer_scene 
 
     const enum status st = job_init(&job, out, scene, &reduced, SOFT_Z_WIDTHS, false, err);
     if (!st) {
-        view_mesh_prepare(&job.mesh, &scene->mesh, &reduced);
-        parallel_for((size_t)reduced.height, BAND_ROWS, cover_bands, &job);
+        parallel_for((size_t)job.tiles, 1, cover_tiles, &job);
         out->hole_fraction = hole_fraction(out);
         out->unfilled_fraction = out->hole_fraction;
     }

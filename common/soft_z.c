@@ -3,9 +3,6 @@
 
 #include <math.h>
 
-#define BLEND_WHOLE 0.05f /* a view with this blending weight is wholly present */
-#define ALPHA_WHOLE 0.5f
-
 float soft_z_weight(float dz, float gamma, float rho)
 {
     if (dz <= gamma) return 1;
@@ -29,7 +26,7 @@ float soft_z_reach(const struct soft_z *s, float z, float sigma)
 
 static float presence(const struct soft_z_sample *s)
 {
-    const float blend = s->blend / BLEND_WHOLE, alpha = s->rgba[3] / ALPHA_WHOLE;
+    const float blend = s->blend / SOFT_Z_BLEND_WHOLE, alpha = s->rgba[3] / SOFT_Z_ALPHA_WHOLE;
     return (blend < 1 ? blend : 1) * (alpha < 1 ? alpha : 1);
 }
 

@@ -10,6 +10,8 @@
 #ifndef REMODEL_SOFT_Z_H
 #define REMODEL_SOFT_Z_H
 
+#include <immintrin.h>
+
 struct soft_z {
     float widths; /* k; 0: rho is `range` everywhere, the thesis' */
     float range;  /* far - near of the scene, robust */
@@ -17,6 +19,9 @@ struct soft_z {
 
 /* Uncertainties below this (relative) are taken for it: no depth map is that sure, and rounding is not a depth jump. */
 #define SOFT_Z_SIGMA_LEAST 1e-3f
+
+#define SOFT_Z_BLEND_WHOLE 0.05f /* a view with this blending weight is wholly present */
+#define SOFT_Z_ALPHA_WHOLE 0.5f
 
 float soft_z_weight(float dz, float gamma, float rho);
 
@@ -32,6 +37,47 @@ struct soft_z_sample { /* what one view shows in a pixel */
     float z, sigma;    /* of its front surface; sigma relative */
     float blend;       /* the view's blending weight */
 };
+
+/* Eight pixels at a time; the same formulas as soft_z_blend. A depth's uncertainty is sigma z, sigma at least
+ * SOFT_Z_SIGMA_LEAST. */
+
+/* p of samples with these blending weights and alphas. */
+static inline __m256 soft_z_presence8(__m256 blend, __m256 alpha)
+{
+    const __m256 one = _mm256_set1_ps(1);
+    return _mm256_mul_ps(_mm256_min_ps(one, _mm256_mul_ps(blend, _mm256_set1_ps(1 / SOFT_Z_BLEND_WHOLE))),
+                         _mm256_min_ps(one, _mm256_mul_ps(alpha, _mm256_set1_ps(1 / SOFT_Z_ALPHA_WHOLE))));
+}
+
+/* 1/2 (1 + cos(pi t)) for t in [0, 1]: 1/2 - 1/2 sin(pi (t - 1/2)), whose series needs five terms for 1e-6. */
+static inline __m256 soft_z_fall8(__m256 t)
+{
+    static const float terms[] = {0.0821458866f, -0.599264529f, 2.55016404f, -5.16771278f, 3.14159265f};
+    const __m256 s = _mm256_sub_ps(t, _mm256_set1_ps(0.5f)), s2 = _mm256_mul_ps(s, s);
+    __m256 sum = _mm256_set1_ps(terms[0]);
+    for (int i = 1; i < 5; i++) sum = _mm256_add_ps(_mm256_mul_ps(sum, s2), _mm256_set1_ps(terms[i]));
+    return _mm256_sub_ps(_mm256_set1_ps(0.5f), _mm256_mul_ps(_mm256_set1_ps(0.5f), _mm256_mul_ps(sum, s)));
+}
+
+/* w of samples at z, no more than `w`, where samples c of presence p_c may hide them. */
+static inline __m256 soft_z_behind8(const struct soft_z *s, __m256 w, __m256 z, __m256 uncertainty, __m256 z_c,
+                                    __m256 uncertainty_c, __m256 p_c)
+{
+    const __m256 one = _mm256_set1_ps(1), dz = _mm256_sub_ps(z, z_c);
+    __m256 rho = _mm256_set1_ps(s->range);
+    if (s->widths > 0) {
+        const __m256 sum =
+            _mm256_add_ps(_mm256_mul_ps(uncertainty, uncertainty), _mm256_mul_ps(uncertainty_c, uncertainty_c));
+        rho = _mm256_mul_ps(_mm256_set1_ps(2 * s->widths), _mm256_sqrt_ps(sum));
+    }
+    const __m256 gamma = _mm256_mul_ps(rho, _mm256_set1_ps(0.1f));
+    const __m256 over = _mm256_sub_ps(dz, gamma);
+    if (!_mm256_movemask_ps(_mm256_cmp_ps(over, _mm256_setzero_ps(), _CMP_GT_OQ))) return w;
+    const __m256 length = _mm256_max_ps(_mm256_mul_ps(rho, _mm256_set1_ps(0.8f)), _mm256_set1_ps(1e-30f));
+    const __m256 t = _mm256_max_ps(_mm256_setzero_ps(), _mm256_min_ps(one, _mm256_div_ps(over, length)));
+    const __m256 hidden = _mm256_mul_ps(p_c, _mm256_sub_ps(one, soft_z_fall8(t)));
+    return _mm256_min_ps(w, _mm256_sub_ps(one, hidden));
+}
 
 /* Blends the samples (alpha > 0) of a pixel: colour by blend x w x alpha, normalised; depth sum(w z) / sum(w),
  * without blending weights. The closest sample decides w; but a sample that is hardly there - blend below 0.05, or
