@@ -18,13 +18,18 @@
 
 #define LATTICE      16 /* px */
 #define PATCHES      (TILE_WIDTH / LATTICE)
-#define COVERED      0.5f  /* alpha from which a view covers a pixel */
-#define SLOTS        8     /* views that a patch of the lattice blends, at most */
+#define COVERED      0.5f /* alpha from which a view covers a pixel */
+#define MESH_SLOTS   6    /* views that a patch of the lattice blends by the mesh, at most */
+#define SLOTS        (MESH_SLOTS + LAYER_MORE_VIEWS)
 #define OTHER        SLOTS /* the slot of a view that steps in */
 #define AGAINST_MOST 0.5f  /* part, by weight, of the views that can tell that may see through what fills a hole */
 #define LEAST_INSIDE 1e-3f /* a view alone at its border still shows */
 #define LEAST_WEIGHT 1e-6f /* and so does one alone where its weight is 0 */
+#define MORE_WEIGHT  0.5f  /* of the nearest view, beyond the mesh's weights */
+#define LEAST_VOTE   0.05f /* of a view at its border */
+#define VOTE_INSIDE  0.25f /* a view this far inside its picture has its whole vote */
 
+_Static_assert(2 * (SLOTS + 1) <= SOFT_Z_MERGE_MOST, "all fragments of a pixel are merged");
 _Static_assert(TILE_HEIGHT == LATTICE && TILE_WIDTH % LATTICE == 0, "a tile is a row of patches");
 
 /* ------------------------------------------------------------------------------------------------- one frame */
@@ -40,9 +45,9 @@ struct patch { /* of the lattice: the views that it blends, and their weights at
     float weight[SLOTS][4]; /* upper left, upper right, lower left, lower right */
 };
 
-struct slot { /* what one view shows of each pixel; views change from patch to patch */
-    struct view_samples shown;
-    float blend[TILE_PIXELS]; /* blending weight; 0 where nothing is shown */
+struct slot {                          /* what one view shows of each pixel; views change from patch to patch */
+    struct view_samples shown, behind; /* behind: by the offline renderer alone */
+    float blend[TILE_PIXELS];          /* blending weight; 0 where nothing is shown */
 };
 
 struct scratch { /* of one thread, for a tile */
@@ -62,6 +67,8 @@ struct frame_job {
     int lattice_width;
     struct drawn_view *drawn; /* a view */
     struct other_view *by_distance;
+    float *more_weight, *standing; /* a view: what it adds to the mesh's weights, and counts among views that vote */
+    bool offline;
     struct scratch *scratch; /* a thread */
     struct rendered_frame *out;
     enum status *prepared; /* a view */
@@ -90,6 +97,8 @@ static void job_release(struct frame_job *job)
     free(job->drawn);
     free(job->by_distance);
     free(job->scratch);
+    free(job->more_weight);
+    free(job->standing);
     free(job->prepared);
     free(job->lattice);
 }
@@ -115,22 +124,40 @@ static enum status lattice_init(struct frame_job *job, struct err *err)
     return ST_OK;
 }
 
+/* The views nearest to the camera add to the mesh's weights, by nearness, and vote on what is there; both fade before a
+ * view drops out of their number. */
+static void weigh_more_views(struct frame_job *job, int more)
+{
+    const int views = job->scene->set->view_count;
+    const struct other_view *nearest = job->by_distance;
+
+    for (int n = 0; n < more && n < views; n++) {
+        const double edge = more < views ? nearest[more].distance : INFINITY;
+        const double fade = nearest[n].distance < edge ? fmin(1, 2 * (1 - nearest[n].distance / edge)) : 0;
+        const double near = nearest[n].distance > 0 ? nearest[0].distance / nearest[n].distance : 1;
+        job->more_weight[nearest[n].view] = (float)(MORE_WEIGHT * near * fade);
+        job->standing[nearest[n].view] = (float)fade;
+    }
+}
+
 static enum status job_init(struct frame_job *job, struct rendered_frame *out, const struct layer_scene *scene,
-                            const struct view *novel, double soft_z, bool color, struct err *err)
+                            const struct view *novel, const struct layer_render_options *options, bool color,
+                            struct err *err)
 {
     const int views = scene->set->view_count;
     const size_t count = (size_t)views + 1, threads = (size_t)parallel_threads();
 
-    *job = (struct frame_job){.scene = scene, .novel = *novel, .out = out};
-    job->soft.widths = (float)soft_z;
-    job->soft.range = (float)fmax(scene->far_depth - scene->near_depth, 1e-6 * scene->far_depth);
+    *job = (struct frame_job){.scene = scene, .novel = *novel, .out = out, .offline = options->offline};
+    job->soft = layer_scene_soft_z(scene, options->soft_z);
     job->tiles_x = (novel->width + TILE_WIDTH - 1) / TILE_WIDTH;
     job->tiles = job->tiles_x * ((novel->height + TILE_HEIGHT - 1) / TILE_HEIGHT);
     job->drawn = calloc(count, sizeof *job->drawn);
     job->by_distance = calloc(count, sizeof *job->by_distance);
     job->prepared = calloc(count, sizeof *job->prepared);
     job->scratch = malloc(threads * sizeof *job->scratch);
-    if (!job->drawn || !job->by_distance || !job->prepared || !job->scratch)
+    job->more_weight = calloc(count, sizeof *job->more_weight);
+    job->standing = calloc(count, sizeof *job->standing);
+    if (!job->drawn || !job->by_distance || !job->prepared || !job->scratch || !job->more_weight || !job->standing)
         return err_nomem(err, "a frame's views", count * sizeof *job->drawn + threads * sizeof *job->scratch);
 
     enum status st = rendered_frame_resize(out, novel->width, novel->height, color, err);
@@ -143,6 +170,7 @@ static enum status job_init(struct frame_job *job, struct rendered_frame *out, c
         job->by_distance[i].distance = vec3_length(vec3_sub(scene->set->views[i].center, novel->center));
     }
     qsort(job->by_distance, (size_t)views, sizeof *job->by_distance, compare_distance);
+    if (job->offline) weigh_more_views(job, options->more_views);
     return ST_OK;
 }
 
@@ -199,13 +227,23 @@ static void patch_init(struct patch *p, const struct frame_job *job, int x, int 
             if (!(w->weight[i] > 0)) continue;
             int k = patch_slot(p, w->view[i]);
             if (k < 0) {
-                if (p->count == SLOTS) patch_drop(p);
+                if (p->count == MESH_SLOTS) patch_drop(p);
                 k = p->count++;
                 p->view[k] = w->view[i];
                 memset(p->weight[k], 0, sizeof p->weight[k]);
             }
             p->weight[k][corner] = w->weight[i];
         }
+    }
+    for (int v = 0; job->offline && v < job->scene->set->view_count; v++) {
+        if (!(job->more_weight[v] > 0)) continue;
+        int k = patch_slot(p, v);
+        if (k < 0) {
+            k = p->count++;
+            p->view[k] = v;
+            memset(p->weight[k], 0, sizeof p->weight[k]);
+        }
+        for (int corner = 0; corner < 4; corner++) p->weight[k][corner] += job->more_weight[v];
     }
 }
 
@@ -222,9 +260,9 @@ static inline __m256 patch_weights(const float weight[4], int x, int y)
 }
 
 /* Marks the pixels of eight that the samples cover. */
-static inline void mark_covered(uint8_t *covered, const float *alpha)
+static inline void mark_covered(uint8_t *covered, const float *alpha, const float *behind)
 {
-    for (int k = 0; k < 8; k++) covered[k] |= alpha[k] >= COVERED;
+    for (int k = 0; k < 8; k++) covered[k] |= alpha[k] + (behind ? behind[k] : 0) >= COVERED;
 }
 
 static bool any_visible(const struct tile_visibility *seen, size_t i)
@@ -278,8 +316,9 @@ static void draw_view(const struct frame_job *job, struct scratch *s, const stru
         for (int y = 0; y < at->height; y++)
             for (int x = 0; x < LATTICE; x += 8) {
                 const size_t i = (size_t)y * TILE_STRIDE + (size_t)(k * LATTICE + x);
-                visibility_sample8(&slot->shown, &s->seen, drawn, lv, i, at->x, at->y);
-                mark_covered(s->covered + i, slot->shown.alpha + i);
+                visibility_sample8(&slot->shown, job->offline ? &slot->behind : NULL, &s->seen, drawn, lv, i, at->x,
+                                   at->y);
+                mark_covered(s->covered + i, slot->shown.alpha + i, job->offline ? slot->behind.alpha + i : NULL);
                 const __m256 shown =
                     _mm256_cmp_ps(_mm256_loadu_ps(slot->shown.alpha + i), _mm256_setzero_ps(), _CMP_GT_OQ);
                 const __m256 weight = _mm256_mul_ps(patch_weights(s->patches[k].weight[n], x, y),
@@ -402,7 +441,7 @@ static void draw_other_views(const struct frame_job *job, struct scratch *s, con
             for (int x = first & ~7; x <= last; x += 8) {
                 const size_t i = (size_t)y * TILE_STRIDE + (size_t)x;
                 if (!any_visible(&s->seen, i)) continue;
-                visibility_sample8(&s->spare, &s->seen, drawn, lv, i, at->x, at->y);
+                visibility_sample8(&s->spare, NULL, &s->seen, drawn, lv, i, at->x, at->y);
                 step_in(job, s, at, i, color);
             }
     }
@@ -449,6 +488,39 @@ static inline __attribute__((always_inline)) void blend_eight(const struct frame
     }
 }
 
+/* Of a view's fragment in pixel i. */
+static void take_fragment(struct soft_z_fragment *f, const struct view_samples *from, size_t i, float blend, float vote)
+{
+    memcpy(f->rgba, from->rgba[i], sizeof f->rgba);
+    f->z = from->z[i];
+    f->uncertainty = from->z[i] * from->sigma[i];
+    f->blend = blend;
+    f->vote = vote;
+    f->before = 0;
+}
+
+/* A pixel, of all fragments of the views in `slots`. */
+static void merge_pixel(const struct frame_job *job, const struct scratch *s, const struct patch *patch,
+                        const int *slots, int count, size_t i, float rgba[4], float *z)
+{
+    struct soft_z_fragment fragments[2 * (SLOTS + 1)];
+    int n = 0;
+
+    for (int k = 0; k < count; k++) {
+        const struct slot *slot = &s->slots[slots[k]];
+        const float blend = slot->blend[i];
+        if (!(slot->shown.alpha[i] > 0)) continue;
+        const float standing = slots[k] == OTHER ? 1 : job->standing[patch->view[slots[k]]];
+        const float inside = fminf(1, fmaxf(LEAST_VOTE, slot->shown.inside[i] / VOTE_INSIDE));
+        const float vote = inside * fmaxf(standing, fminf(1, blend / SOFT_Z_BLEND_WHOLE));
+        take_fragment(&fragments[n++], &slot->shown, i, blend, vote);
+        if (slots[k] == OTHER || !(slot->behind.alpha[i] > 0)) continue;
+        take_fragment(&fragments[n], &slot->behind, i, blend, vote);
+        fragments[n++].before = slot->shown.alpha[i];
+    }
+    if (n) soft_z_merge(&job->soft, fragments, n, rgba, z);
+}
+
 static void blend_patch(const struct frame_job *job, const struct scratch *s, const struct place *at, int k)
 {
     const int begin = k * LATTICE, end = patch_end(at, k);
@@ -462,7 +534,10 @@ static void blend_patch(const struct frame_job *job, const struct scratch *s, co
             const size_t p = (size_t)(at->y + y) * (size_t)job->novel.width + (size_t)(at->x + x0);
             const int n = end - x0 < 8 ? end - x0 : 8;
             float rgba[8][4], z[8];
-            if (count == 1)
+            if (job->offline)
+                for (size_t x = 0; x < (size_t)n; x++)
+                    merge_pixel(job, s, &s->patches[k], slots, count, i + x, rgba[x], &z[x]);
+            else if (count == 1)
                 blend_eight(job, s, slots, 1, i, rgba, z);
             else if (count == 2)
                 blend_eight(job, s, slots, 2, i, rgba, z);
@@ -515,7 +590,7 @@ enum status layer_render(struct rendered_frame *out, const struct layer_scene *s
                          const struct layer_render_options *options, struct err *err)
 {
     struct frame_job job;
-    enum status st = job_init(&job, out, scene, novel, options->soft_z, true, err);
+    enum status st = job_init(&job, out, scene, novel, options, true, err);
 
     if (!st) {
         parallel_for((size_t)job.tiles, 1, render_tiles, &job);
@@ -545,8 +620,8 @@ static void cover_view(const struct frame_job *job, struct scratch *s, const str
             const int full = _mm256_movemask_ps(_mm256_castsi256_ps(places)) & shown;
             for (int k = 0; k < 8; k++) s->covered[i + (size_t)k] |= full >> k & 1;
             if (full == shown) continue;
-            visibility_sample8(&s->spare, &s->seen, drawn, lv, i, at->x, at->y);
-            mark_covered(s->covered + i, s->spare.alpha + i);
+            visibility_sample8(&s->spare, NULL, &s->seen, drawn, lv, i, at->x, at->y);
+            mark_covered(s->covered + i, s->spare.alpha + i, NULL);
         }
 }
 
@@ -606,7 +681,8 @@ enum status layer_coverage(struct rendered_frame *out, const struct layer_scene 
     reduced.fy *= sy;
     reduced.cy *= sy;
 
-    const enum status st = job_init(&job, out, scene, &reduced, SOFT_Z_WIDTHS, false, err);
+    const struct layer_render_options options = {.soft_z = SOFT_Z_WIDTHS};
+    const enum status st = job_init(&job, out, scene, &reduced, &options, false, err);
     if (!st) {
         parallel_for((size_t)job.tiles, 1, cover_tiles, &job);
         out->hole_fraction = hole_fraction(out);

@@ -121,6 +121,12 @@ enum status layer_scene_init(struct layer_scene *scene, const struct camera_set 
     return st;
 }
 
+struct soft_z layer_scene_soft_z(const struct layer_scene *scene, double widths)
+{
+    const double range = fmax(scene->far_depth - scene->near_depth, 1e-6 * scene->far_depth);
+    return (struct soft_z){.widths = (float)widths, .range = (float)range};
+}
+
 void layer_scene_release(struct layer_scene *scene)
 {
     if (!scene) return;

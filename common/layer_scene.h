@@ -3,6 +3,7 @@
 #define REMODEL_LAYER_SCENE_H
 
 #include "layer_view.h"
+#include "soft_z.h"
 #include "view_mesh.h"
 
 struct layer_scene { /* views, their layers, the mesh; depths[i] belongs to set->views[i] */
@@ -23,6 +24,8 @@ enum status layer_scene_read(struct layer_scene *scene, const struct camera_set 
  * too. */
 enum status layer_scene_init(struct layer_scene *scene, const struct camera_set *set, struct layered_depth *depths,
                              struct err *err);
+/* The soft z of a scene; widths in depth uncertainties, 0: the thesis'. */
+struct soft_z layer_scene_soft_z(const struct layer_scene *scene, double widths);
 void layer_scene_release(struct layer_scene *scene);
 
 #endif

@@ -262,6 +262,41 @@ static inline __m128 photo_texel(const struct layer_view *lv, int at, float fu, 
     return _mm_add_ps(left, _mm_mul_ps(_mm_sub_ps(right, left), _mm_set1_ps(fu)));
 }
 
+static void cubic_weights(float w[4], float t)
+{
+    const float t2 = t * t, t3 = t2 * t;
+    w[0] = -0.5f * t3 + t2 - 0.5f * t;
+    w[1] = 1.5f * t3 - 2.5f * t2 + 1;
+    w[2] = -1.5f * t3 + 2 * t2 + 0.5f * t;
+    w[3] = 0.5f * t3 - 0.5f * t2;
+}
+
+/* As photo_texel, by the four texels each way around; bilinear where any of the cells between them is split. */
+static __m128 photo_cubic(const struct layer_view *lv, int at, float fu, float fv)
+{
+    float wu[4], wv[4];
+    __m128 sum = _mm_setzero_ps();
+
+    if (at < lv->stride + 1) return photo_texel(lv, at, fu, fv);
+    for (int y = -1; y <= 1; y++)
+        for (int x = -1; x <= 1; x++) {
+            const uint32_t word = lv->cells[at + y * lv->stride + x].word[0];
+            if (!word || word & CELL_SPLIT) return photo_texel(lv, at, fu, fv);
+        }
+    cubic_weights(wu, fu);
+    cubic_weights(wv, fv);
+    for (int y = 0; y < 4; y++) {
+        const uint16_t(*t)[4] = (const uint16_t(*)[4])lv->photo + at + (y - 1) * lv->stride - 1;
+        __m128 row = _mm_setzero_ps();
+        for (int x = 0; x < 4; x++) {
+            const __m128 texel = _mm_cvtph_ps(_mm_loadl_epi64((const __m128i *)(const void *)t[x]));
+            row = _mm_add_ps(row, _mm_mul_ps(_mm_set1_ps(wu[x]), texel));
+        }
+        sum = _mm_add_ps(sum, _mm_mul_ps(_mm_set1_ps(wv[y]), row));
+    }
+    return _mm_max_ps(sum, _mm_setzero_ps());
+}
+
 static __m128 photo_at(const struct layer_view *lv, float u, float v)
 {
     const int i = (int)u, j = (int)v;
@@ -339,9 +374,9 @@ static __m128 behind_at(const struct drawn_segment *b, bool full, const struct l
     return full ? photo_at(lv, u, v) : surface_at(lv, b->id, u, v);
 }
 
-/* A pixel whose front segment has no texel beyond one of its cell's borders. */
-static void sample_split(struct view_samples *s, const struct tile_visibility *tv, const struct drawn_view *dv,
-                         const struct layer_view *lv, size_t i, int x, int y)
+/* A pixel whose front does not fill it. */
+static void sample_split(struct view_samples *s, struct view_samples *behind, const struct tile_visibility *tv,
+                         const struct drawn_view *dv, const struct layer_view *lv, size_t i, int x, int y)
 {
     const uint32_t place = tv->behind[i];
     __m128 sum = surface_at(lv, dv->segments[tv->front[i]].id, tv->u[i], tv->v[i]);
@@ -351,10 +386,16 @@ static void sample_split(struct view_samples *s, const struct tile_visibility *t
         const uint32_t at = place & ~VISIBLE_FULL;
         const __m128 back = behind_at(&dv->segments[at], place & VISIBLE_FULL, lv, x, y);
         const float back_alpha = alpha_of(back), weight = back_alpha < 1 - alpha ? back_alpha : 1 - alpha;
-        if (weight > 0) sum = _mm_add_ps(sum, _mm_mul_ps(back, _mm_set1_ps(weight / back_alpha)));
-        if (weight > alpha) { /* a pixel's depth is that of one surface, never a mean across a jump */
-            s->z[i] = 1 / tv->inverse_behind[i];
-            s->sigma[i] = dv->sigmas[at];
+        const __m128 rest = weight > 0 ? _mm_mul_ps(back, _mm_set1_ps(weight / back_alpha)) : _mm_setzero_ps();
+        struct view_samples *to = behind ? behind : s;
+        if (behind) {
+            _mm_storeu_ps(behind->rgba[i], rest);
+            behind->alpha[i] = weight > 0 ? weight : 0;
+        } else
+            sum = _mm_add_ps(sum, rest);
+        if (behind || weight > alpha) { /* a pixel's depth is that of one surface, never a mean across a jump */
+            to->z[i] = 1 / tv->inverse_behind[i];
+            to->sigma[i] = dv->sigmas[at];
         }
     }
     _mm_storeu_ps(s->rgba[i], sum);
@@ -367,8 +408,8 @@ static void sample_nothing(struct view_samples *s, size_t i)
     s->alpha[i] = s->z[i] = s->sigma[i] = s->inside[i] = 0;
 }
 
-void visibility_sample8(struct view_samples *s, const struct tile_visibility *tv, const struct drawn_view *dv,
-                        const struct layer_view *lv, size_t i, int tile_x, int tile_y)
+void visibility_sample8(struct view_samples *s, struct view_samples *behind, const struct tile_visibility *tv,
+                        const struct drawn_view *dv, const struct layer_view *lv, size_t i, int tile_x, int tile_y)
 {
     const __m256i place = _mm256_loadu_si256((const __m256i *)(const void *)(tv->front + i));
     const __m256i none = _mm256_cmpeq_epi32(place, _mm256_set1_epi32(-1));
@@ -379,6 +420,7 @@ void visibility_sample8(struct view_samples *s, const struct tile_visibility *tv
                  v = _mm256_and_ps(there, _mm256_loadu_ps(tv->v + i));
     const __m256i segment = _mm256_andnot_si256(none, _mm256_and_si256(place, _mm256_set1_epi32((int)~VISIBLE_FULL)));
 
+    if (behind) _mm256_storeu_ps(behind->alpha + i, _mm256_setzero_ps());
     if (empty == 0xFF) {
         for (size_t k = i; k < i + 8; k++) sample_nothing(s, k);
         return;
@@ -395,13 +437,16 @@ void visibility_sample8(struct view_samples *s, const struct tile_visibility *tv
     _mm256_storeu_ps(fv, _mm256_sub_ps(v, _mm256_cvtepi32_ps(line)));
     _mm256_storeu_si256((__m256i *)at,
                         _mm256_add_epi32(column, _mm256_mullo_epi32(line, _mm256_set1_epi32(lv->stride))));
-    for (int k = 0; k < 8; k++) _mm_storeu_ps(s->rgba[i + (size_t)k], photo_texel(lv, at[k], fu[k], fv[k]));
+    if (behind)
+        for (int k = 0; k < 8; k++) _mm_storeu_ps(s->rgba[i + (size_t)k], photo_cubic(lv, at[k], fu[k], fv[k]));
+    else
+        for (int k = 0; k < 8; k++) _mm_storeu_ps(s->rgba[i + (size_t)k], photo_texel(lv, at[k], fu[k], fv[k]));
     if (full == 0xFF) return;
     for (int k = 0; k < 8; k++) {
         const size_t p = i + (size_t)k;
         if (empty >> k & 1)
             sample_nothing(s, p);
         else if (!(full >> k & 1))
-            sample_split(s, tv, dv, lv, p, tile_x + (int)(p % TILE_STRIDE), tile_y + (int)(p / TILE_STRIDE));
+            sample_split(s, behind, tv, dv, lv, p, tile_x + (int)(p % TILE_STRIDE), tile_y + (int)(p / TILE_STRIDE));
     }
 }

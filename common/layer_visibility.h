@@ -59,8 +59,11 @@ struct view_samples {                         /* what views show in a tile's pix
     float inside[TILE_PIXELS];                /* 1, falling to 0 towards the border of the view's picture */
 };
 
-/* Of the eight pixels from i on of a tile whose first pixel is (tile_x, tile_y). */
-void visibility_sample8(struct view_samples *s, const struct tile_visibility *tv, const struct drawn_view *dv,
-                        const struct layer_view *lv, size_t i, int tile_x, int tile_y);
+/* Of the eight pixels from i on of a tile whose first pixel is (tile_x, tile_y). behind NULL: what is behind a front that
+ * leaves something free is composited with it, saturating, and the photo is looked up bilinearly. Else it stays apart
+ * (inside is the front's), with no more alpha than is left, and the photo is looked up bicubically (Catmull and Rom 1974)
+ * wherever one surface is all around. */
+void visibility_sample8(struct view_samples *s, struct view_samples *behind, const struct tile_visibility *tv,
+                        const struct drawn_view *dv, const struct layer_view *lv, size_t i, int tile_x, int tile_y);
 
 #endif

@@ -87,4 +87,22 @@ static inline __m256 soft_z_behind8(const struct soft_z *s, __m256 w, __m256 z, 
  * which is the formula above wherever every p is 1. rgba gets alpha 1. */
 void soft_z_blend(const struct soft_z *s, const struct soft_z_sample *samples, int count, float rgba[4], float *z);
 
+/* The offline renderer's: all fragments of all views in one soft z, and views that see otherwise speak against one. */
+struct soft_z_fragment {
+    float rgba[4];        /* premultiplied; alpha > 0: what is left of the pixel in its view, front to back */
+    float z, uncertainty; /* uncertainty sigma z */
+    float blend;          /* the view's blending weight */
+    float vote;           /* what the view's word counts, up to 1 */
+    float before;         /* alpha of what its view has in front of it */
+};
+
+#define SOFT_Z_MERGE_MOST 64 /* fragments */
+
+/* A fragment's standing is (for / (for + against))^2: for it speak the votes of all fragments at its depth, itself
+ * included, against it those behind it - their views look through it - and in part those before it. It hides others and
+ * counts by its standing; of what is hidden by the views in front, the most counts, so that at a rim the part that the
+ * front leaves stays with what is behind. Colours are averaged as square roots: a mean over views that disagree is then
+ * about what the eye takes for their mean, where one of radiances is too bright. rgba gets alpha 1. */
+void soft_z_merge(const struct soft_z *s, const struct soft_z_fragment *fragments, int count, float rgba[4], float *z);
+
 #endif

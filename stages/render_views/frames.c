@@ -79,7 +79,7 @@ enum status frames_render(const struct camera_path *path, const bool *wanted, co
                           const struct render_params *params, const char *folder, const struct provenance *prov,
                           struct err *err)
 {
-    const struct layer_render_options options = {params->soft_z, params->fill_diameter};
+    const struct layer_render_options options = {.offline = getenv("OFFLINE") != NULL, .more_views = 12, .soft_z = params->soft_z, .fill_diameter = params->fill_diameter};
     const size_t size = strlen(folder) + 64;
     struct rendered_frame frame = {0};
     struct progress progress;
@@ -128,7 +128,7 @@ enum status cameras_render(const struct camera_set *cameras, const bool *wanted,
                            const struct render_params *params, const char *folder, const struct provenance *prov,
                            struct err *err)
 {
-    const struct layer_render_options options = {params->soft_z, params->fill_diameter};
+    const struct layer_render_options options = {.offline = getenv("OFFLINE") != NULL, .more_views = 12, .soft_z = params->soft_z, .fill_diameter = params->fill_diameter};
     struct progress progress;
     int count = 0;
     enum status st = ST_OK;
