@@ -58,6 +58,8 @@ static void pixel_set(struct rendered_frame *f, size_t p, const struct color_z *
 
 /* ---------------------------------------------------------------------------------------------- narrow holes */
 
+static bool is_empty(const struct rendered_frame *f, size_t p) { return !(f->rgba[4 * p + 3] > 0); }
+
 /* sums[(y + 1) * (w + 1) + x + 1]: of flags over [0, x] x [0, y]. */
 static void summed_area(uint32_t *sums, const uint8_t *flags, int w, int h)
 {
@@ -79,26 +81,41 @@ static uint32_t area(const uint32_t *sums, int w, int x0, int y0, int x1, int y1
     return sums[bottom + (size_t)x1] - sums[bottom + (size_t)x0] - sums[top + (size_t)x1] + sums[top + (size_t)x0];
 }
 
-/* The hole pixels that no square of hole pixels of that side holds, in picture order. */
-static size_t narrow_pixels(uint32_t *list, const struct rendered_frame *f, int side, uint32_t *sums, uint8_t *corner)
+enum status hole_narrow_pixels(uint32_t **list, size_t *count, const struct rendered_frame *f, int diameter,
+                               struct err *err)
 {
     const int w = f->width, h = f->height;
-    size_t count = 0;
+    const size_t pixels = (size_t)w * (size_t)h;
+    uint32_t *sums = malloc(((size_t)w + 1) * ((size_t)h + 1) * sizeof *sums);
+    uint8_t *flags = malloc(pixels);
+    enum status st = ST_OK;
 
-    summed_area(sums, f->hole, w, h);
-    memset(corner, 0, (size_t)w * (size_t)h);
-    for (int y = 0; y + side <= h; y++)
-        for (int x = 0; x + side <= w; x++)
-            corner[(size_t)y * (size_t)w + (size_t)x] =
-                area(sums, w, x, y, x + side, y + side) == (uint32_t)side * (uint32_t)side;
-    summed_area(sums, corner, w, h);
+    *count = 0;
+    *list = malloc(pixels * sizeof **list);
+    if (!*list || !sums || !flags) {
+        free(*list);
+        *list = NULL;
+        st = err_nomem(err, "the narrow holes of a frame", pixels * 9);
+        goto done;
+    }
+    for (size_t p = 0; p < pixels; p++) flags[p] = is_empty(f, p);
+    summed_area(sums, flags, w, h);
+    memset(flags, 0, pixels); /* from here on: the upper left corner of a square of empty pixels */
+    for (int y = 0; y + diameter <= h; y++)
+        for (int x = 0; x + diameter <= w; x++)
+            flags[(size_t)y * (size_t)w + (size_t)x] =
+                area(sums, w, x, y, x + diameter, y + diameter) == (uint32_t)diameter * (uint32_t)diameter;
+    summed_area(sums, flags, w, h);
     for (int y = 0; y < h; y++)
         for (int x = 0; x < w; x++) {
             const size_t p = (size_t)y * (size_t)w + (size_t)x;
-            const int x0 = x >= side ? x - side + 1 : 0, y0 = y >= side ? y - side + 1 : 0;
-            if (f->hole[p] && !area(sums, w, x0, y0, x + 1, y + 1)) list[count++] = (uint32_t)p;
+            const int x0 = x >= diameter ? x - diameter + 1 : 0, y0 = y >= diameter ? y - diameter + 1 : 0;
+            if (is_empty(f, p) && !area(sums, w, x0, y0, x + 1, y + 1)) (*list)[(*count)++] = (uint32_t)p;
         }
-    return count;
+done:
+    free(flags);
+    free(sums);
+    return st;
 }
 
 struct narrow_pass {
@@ -131,39 +148,22 @@ static void narrow_chunk(void *ctx, size_t begin, size_t end, int thread)
     }
 }
 
-static enum status fill_narrow(struct rendered_frame *f, const struct far_side *far, int diameter, struct err *err)
+enum status hole_fill_pixels(struct rendered_frame *f, const uint32_t *list, size_t count, const struct soft_z *soft,
+                             float sigma, int diameter, struct err *err)
 {
-    const size_t w = (size_t)f->width, h = (size_t)f->height;
-    uint32_t *sums = malloc((w + 1) * (h + 1) * sizeof *sums);
-    uint32_t *list = malloc(w * h * sizeof *list);
-    uint8_t *corner = malloc(w * h);
-    struct color_z *filled = NULL;
-    enum status st = ST_OK;
+    const struct far_side far = {soft, sigma};
+    struct color_z *filled = malloc((count + 1) * sizeof *filled);
 
-    if (!sums || !list || !corner) {
-        st = err_nomem(err, "the narrow holes of a frame", w * h * 9);
-        goto done;
-    }
-    const size_t count = narrow_pixels(list, f, diameter, sums, corner);
-    if (!count) goto done;
-    filled = malloc(count * sizeof *filled);
-    if (!filled) {
-        st = err_nomem(err, "the narrow holes of a frame", count * sizeof *filled);
-        goto done;
-    }
+    if (!filled) return err_nomem(err, "the narrow holes of a frame", count * sizeof *filled);
     /* each pass reads the one before only, so the far side crosses RADIUS pixels a pass, whatever the order */
-    for (int reached = 0; reached < diameter; reached += RADIUS) {
-        struct narrow_pass pass = {f, far, list, filled};
+    for (int reached = 0; count && reached < diameter; reached += RADIUS) {
+        struct narrow_pass pass = {f, &far, list, filled};
         parallel_for(count, LIST_CHUNK, narrow_chunk, &pass);
         for (size_t i = 0; i < count; i++)
             if (filled[i].z > 0) pixel_set(f, list[i], &filled[i]);
     }
-done:
     free(filled);
-    free(corner);
-    free(list);
-    free(sums);
-    return st;
+    return ST_OK;
 }
 
 /* ------------------------------------------------------------------------------------------------ wide holes */
@@ -255,7 +255,7 @@ done:
 static size_t count_empty(const struct rendered_frame *f)
 {
     size_t empty = 0;
-    for (size_t p = 0; p < (size_t)f->width * (size_t)f->height; p++) empty += !(f->rgba[4 * p + 3] > 0);
+    for (size_t p = 0; p < (size_t)f->width * (size_t)f->height; p++) empty += is_empty(f, p);
     return empty;
 }
 
@@ -264,12 +264,16 @@ enum status hole_fill(struct rendered_frame *frame, const struct soft_z *soft, f
 {
     const struct far_side far = {soft, sigma};
     const double pixels = (double)frame->width * (double)frame->height;
+    uint32_t *list = NULL;
+    size_t count = 0;
     enum status st = ST_OK;
 
     if (diameter > 0 && count_empty(frame)) {
-        st = fill_narrow(frame, &far, diameter, err);
+        st = hole_narrow_pixels(&list, &count, frame, diameter, err);
+        if (!st) st = hole_fill_pixels(frame, list, count, soft, sigma, diameter, err);
         if (!st && count_empty(frame)) st = fill_wide(frame, &far, err);
     }
     frame->unfilled_fraction = (double)count_empty(frame) / pixels;
+    free(list);
     return st;
 }

@@ -1,0 +1,729 @@
+/* exemplar_fill.c - see exemplar_fill.h.
+ *
+ * Criminisi's algorithm fills a hole patch by patch. The front is the hole's pixels that touch what may spread. Of the
+ * front's pixels the one goes first whose priority
+ *   P(p) = C(p) (D(p) + D0)      C(p) = sum of the confidences of the patch's usable pixels / pixels of the patch
+ *                                D(p) = |isophote . normal of the front|, in units of the mean brightness
+ * is greatest: patches that are mostly known, and where a line meets the front. The patch in the window whose pixels
+ * differ least (sum of squares, over the target's usable pixels) from it is copied into the patch's empty pixels, whose
+ * confidence becomes C(p). Known pixels have confidence 1. The isophote is the strongest gradient in the patch, turned
+ * by a right angle. D0, which the paper lacks, keeps even regions from having no order at all.
+ *
+ * What the thesis adds: the rim's depths are split in two clusters, and pixels nearer than the border between them are
+ * taken for absent: they do not spread, bear no front, and are neither source nor compared. Two clusters there are if
+ * the gap between their means in ln z is above 4 sqrt(2) sigma, twice as far as two depths of one surface may well
+ * differ by error, and above 4 times their pooled standard deviation (even depths, a wall seen aslant, give 3.5; a
+ * Gaussian gives 2.7). A cluster holds a twentieth of the rim at least, so that a few stray depths make none.
+ *
+ * Depth goes along with each patch: the mean of the usable pixels around by the weights of the soft z reversed, the
+ * farthest counting 1, over the squared distance in pixels.
+ *
+ * So that even ground is not paved with the one patch that is smoothest, a pixel that was copied n times makes the patch
+ * around it dearer by n times half of what noise alone makes two patches differ, the noise being the mean step between
+ * neighbours among what may be copied.
+ *
+ * Where the window has no whole patch of usable pixels (deep in a wide hole) it is laid around the place that a pixel
+ * of the target was itself copied from; failing that it is doubled until the frame is searched; where there is no patch
+ * at all, colour is blended as depth is. Equal differences: the first in picture order; equal priorities likewise. */
+#include "stages/render_views/exemplar_fill.h"
+
+#include <immintrin.h>
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/hole_fill.h"
+#include "common/parallel.h"
+
+#define PARAM_STRUCT struct exemplar_params
+const struct param exemplar_param_table[] = {EXEMPLAR_PARAMS(PARAM_ROW) PARAM_END};
+#undef PARAM_STRUCT
+
+#define MAX_RADIUS    7
+#define MAX_PATCH     ((2 * MAX_RADIUS + 1) * (2 * MAX_RADIUS + 1))
+#define GAP_SIGMAS    4.0 /* of sqrt(2) sigma */
+#define GAP_SPREADS   4.0
+#define LEAST_SHARE   20 /* a cluster holds at least one in so many */
+#define EVEN_PRIORITY 0.01f
+#define PER_COPY      0.5f /* of the noise, as above */
+#define LANES         8
+#define NOWHERE       UINT32_MAX
+#define KNOWN         0 /* label of a pixel that is in no hole; hole i has label i + 1 */
+
+struct hole {
+    size_t first, count; /* in the list of pixels */
+    int x0, y0, x1, y1;  /* bounding box, x1 and y1 outside */
+};
+
+struct front_pixel {
+    float priority;
+    uint32_t pixel;
+};
+
+struct scratch {             /* of one thread */
+    uint8_t *valid, *copies; /* one block: where patches may be copied from, how often a pixel was (255: or more) */
+    size_t valid_size;
+    int *run;
+    struct front_pixel *heap;
+    size_t heap_count, heap_size;
+    float *rim;
+    size_t rim_size;
+    struct exemplar_stats stats;
+    enum status status;
+};
+
+struct job {
+    struct rendered_frame *frame;
+    const struct exemplar_depth *depth;
+    int w, h, radius, window;
+    size_t stride;     /* of the planes */
+    float *planes[3];  /* square roots of what was known before; rows have LANES more */
+    float *luma;       /* of what is known, in units of its mean */
+    float *confidence; /* 0: empty still */
+    float *priority;   /* of a pixel on a front: entries of the heap that say otherwise are stale */
+    uint32_t *origin;  /* of a filled pixel: where it was copied from; NOWHERE if it was blended */
+    uint32_t *label;
+    uint32_t *list; /* pixels of hole after hole */
+    struct hole *holes;
+    size_t hole_count;
+    struct scratch *scratch;
+};
+
+struct fill { /* of one hole */
+    const struct job *job;
+    struct scratch *s;
+    uint32_t label;
+    float border;                       /* what is not farther than this is near; -1: all is far */
+    float noise;                        /* square of the mean step between neighbours */
+    int bx, by, bw, bh, margin, stride; /* where `valid` tells whether a pixel is the centre of a whole usable patch */
+};
+
+/* --------------------------------------------------------------------------------------------------- clusters */
+
+static int compare_floats(const void *a, const void *b)
+{
+    const float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
+}
+
+float exemplar_far_border(float *z, size_t count, float sigma)
+{
+    double sum = 0, squares = 0, near_sum = 0, best = -1, border = 0, gap = 0;
+    size_t first = 0;
+
+    qsort(z, count, sizeof *z, compare_floats);
+    while (first < count && !(z[first] > 0)) first++;
+    z += first;
+    count -= first;
+    if (count < 4) return 0;
+
+    const double base = log(z[count / 2]); /* keeps the squares small */
+    for (size_t i = 0; i < count; i++) {
+        const double v = log(z[i]) - base;
+        sum += v;
+        squares += v * v;
+    }
+    const size_t least = count / LEAST_SHARE > 2 ? count / LEAST_SHARE : 2;
+    for (size_t i = 0; i + least < count; i++) { /* near: [0, i] */
+        near_sum += log(z[i]) - base;
+        if (i + 1 < least || !(z[i] < z[i + 1])) continue;
+        const double n = (double)(i + 1), m = (double)(count - i - 1), far_sum = sum - near_sum;
+        const double between = near_sum * near_sum / n + far_sum * far_sum / m; /* the greatest: least spread within */
+        if (between > best) {
+            best = between;
+            border = 0.5 * (near_sum / n + far_sum / m);
+            gap = far_sum / m - near_sum / n;
+        }
+    }
+    const double spread = sqrt(fmax(0, squares - best) / (double)count);
+    const double error = M_SQRT2 * fmax(sigma, SOFT_Z_SIGMA_LEAST);
+    return best >= 0 && gap > GAP_SIGMAS * error && gap > GAP_SPREADS * spread ? (float)exp(border + base) : 0;
+}
+
+/* ------------------------------------------------------------------------------------------------ what is usable */
+
+static bool is_usable(const struct fill *f, size_t p)
+{
+    const uint32_t label = f->job->label[p];
+    if (label == KNOWN) return f->job->frame->z[p] > f->border;
+    return label == f->label && f->job->confidence[p] > 0;
+}
+
+static bool is_open(const struct fill *f, size_t p)
+{
+    return f->job->label[p] == f->label && !(f->job->confidence[p] > 0);
+}
+
+static bool usable_at(const struct fill *f, int x, int y)
+{
+    const struct job *j = f->job;
+    return x >= 0 && y >= 0 && x < j->w && y < j->h && is_usable(f, (size_t)y * (size_t)j->w + (size_t)x);
+}
+
+/* On the front: open, and beside something that spreads. */
+static bool on_front(const struct fill *f, int x, int y)
+{
+    if (!is_open(f, (size_t)y * (size_t)f->job->w + (size_t)x)) return false;
+    for (int v = y - 1; v <= y + 1; v++)
+        for (int u = x - 1; u <= x + 1; u++)
+            if (usable_at(f, u, v)) return true;
+    return false;
+}
+
+static float luma_of(const float *rgba, float mean)
+{
+    return (sqrtf(fmaxf(0, rgba[0])) + sqrtf(fmaxf(0, rgba[1])) + sqrtf(fmaxf(0, rgba[2]))) / (3 * mean);
+}
+
+/* ------------------------------------------------------------------------------------------------- priorities */
+
+static float confidence_at(const struct fill *f, int x, int y)
+{
+    const struct job *j = f->job;
+    const int r = j->radius;
+    float sum = 0;
+
+    for (int v = y - r; v <= y + r; v++)
+        for (int u = x - r; u <= x + r; u++)
+            if (usable_at(f, u, v)) sum += j->confidence[(size_t)v * (size_t)j->w + (size_t)u];
+    return sum / (float)((2 * r + 1) * (2 * r + 1));
+}
+
+static float data_at(const struct fill *f, int x, int y)
+{
+    const struct job *j = f->job;
+    const int r = j->radius, side = 2 * r + 3;
+    bool usable[(2 * MAX_RADIUS + 3) * (2 * MAX_RADIUS + 3)];
+    float strongest = 0, gx = 0, gy = 0;
+
+    for (int v = 0; v < side; v++)
+        for (int u = 0; u < side; u++) usable[v * side + u] = usable_at(f, x - r - 1 + u, y - r - 1 + v);
+#define AT(u, v) ((float)usable[(v)*side + (u)])
+    const int c = r + 1;
+    const float nx =
+        AT(c + 1, c - 1) + 2 * AT(c + 1, c) + AT(c + 1, c + 1) - AT(c - 1, c - 1) - 2 * AT(c - 1, c) - AT(c - 1, c + 1);
+    const float ny =
+        AT(c - 1, c + 1) + 2 * AT(c, c + 1) + AT(c + 1, c + 1) - AT(c - 1, c - 1) - 2 * AT(c, c - 1) - AT(c + 1, c - 1);
+#undef AT
+    if (nx == 0 && ny == 0) return 0;
+    for (int v = 1; v + 1 < side; v++)
+        for (int u = 1; u + 1 < side; u++) {
+            const bool *k = usable + v * side + u;
+            if (!k[0] || !k[-1] || !k[1] || !k[-side] || !k[side]) continue;
+            const float *l = j->luma + (size_t)(y - c + v) * (size_t)j->w + (size_t)(x - c + u);
+            const float dx = 0.5f * (l[1] - l[-1]), dy = 0.5f * (l[j->w] - l[-j->w]), square = dx * dx + dy * dy;
+            if (square > strongest) {
+                strongest = square;
+                gx = dx;
+                gy = dy;
+            }
+        }
+    return fabsf(gx * ny - gy * nx) / sqrtf(nx * nx + ny * ny);
+}
+
+static bool goes_before(struct front_pixel a, struct front_pixel b)
+{
+    return a.priority > b.priority || (a.priority == b.priority && a.pixel < b.pixel);
+}
+
+static bool heap_push(struct scratch *s, struct front_pixel item)
+{
+    if (s->heap_count == s->heap_size) {
+        const size_t size = s->heap_size ? 2 * s->heap_size : 1024;
+        struct front_pixel *heap = realloc(s->heap, size * sizeof *heap);
+        if (!heap) return false;
+        s->heap = heap;
+        s->heap_size = size;
+    }
+    size_t i = s->heap_count++;
+    while (i && goes_before(item, s->heap[(i - 1) / 2])) {
+        s->heap[i] = s->heap[(i - 1) / 2];
+        i = (i - 1) / 2;
+    }
+    s->heap[i] = item;
+    return true;
+}
+
+static struct front_pixel heap_pop(struct scratch *s)
+{
+    const struct front_pixel top = s->heap[0], last = s->heap[--s->heap_count];
+    size_t i = 0;
+    for (;;) {
+        size_t child = 2 * i + 1;
+        if (child >= s->heap_count) break;
+        if (child + 1 < s->heap_count && goes_before(s->heap[child + 1], s->heap[child])) child++;
+        if (!goes_before(s->heap[child], last)) break;
+        s->heap[i] = s->heap[child];
+        i = child;
+    }
+    s->heap[i] = last;
+    return top;
+}
+
+static bool front_update(const struct fill *f, int x, int y)
+{
+    if (!on_front(f, x, y)) return true;
+    const size_t p = (size_t)y * (size_t)f->job->w + (size_t)x;
+    const float priority = confidence_at(f, x, y) * (data_at(f, x, y) + EVEN_PRIORITY);
+    if (priority == f->job->priority[p]) return true;
+    f->job->priority[p] = priority;
+    return heap_push(f->s, (struct front_pixel){priority, (uint32_t)p});
+}
+
+/* ---------------------------------------------------------------------------------------------------- the source */
+
+static int least(int a, int b) { return a < b ? a : b; }
+static int most(int a, int b) { return a > b ? a : b; }
+
+/* Which pixels, `margin` around the hole, are centres of a whole patch that was known before and is not near. */
+static bool find_sources(struct fill *f, const struct hole *hole, int margin)
+{
+    const struct job *j = f->job;
+    struct scratch *s = f->s;
+    const int r = j->radius, side = 2 * r + 1;
+
+    f->margin = margin;
+    f->bx = most(0, hole->x0 - margin);
+    f->by = most(0, hole->y0 - margin);
+    f->bw = least(j->w, hole->x1 + margin) - f->bx;
+    f->bh = least(j->h, hole->y1 + margin) - f->by;
+    f->stride = f->bw + LANES;
+    const size_t size = (size_t)f->stride * (size_t)f->bh;
+    if (size > s->valid_size) {
+        free(s->valid);
+        s->valid_size = 0;
+        s->valid = malloc(2 * size);
+        if (!s->valid) return false;
+        s->valid_size = size;
+    }
+    s->copies = s->valid + size;
+    memset(s->valid, 0, 2 * size);
+    memset(s->run, 0, (size_t)f->bw * sizeof *s->run);
+    double steps = 0, pairs = 0;
+    for (int y = 0; y < f->bh; y++) {
+        int across = 0; /* good pixels up to here; run: rows of `side` good pixels up to here, by their last */
+        for (int x = 0; x < f->bw; x++) {
+            const size_t p = (size_t)(f->by + y) * (size_t)j->w + (size_t)(f->bx + x);
+            across = j->label[p] == KNOWN && j->frame->z[p] > f->border ? across + 1 : 0;
+            if (across > 1) {
+                const size_t q = (size_t)(f->by + y) * j->stride + (size_t)(f->bx + x);
+                for (int k = 0; k < 3; k++) steps += fabsf(j->planes[k][q] - j->planes[k][q - 1]);
+                pairs += 3;
+            }
+            s->run[x] = across >= side ? s->run[x] + 1 : 0;
+            if (s->run[x] >= side) s->valid[(size_t)(y - r) * (size_t)f->stride + (size_t)(x - r)] = 0xff;
+        }
+    }
+    const double step = pairs > 0 ? steps / pairs : 0;
+    f->noise = (float)(step * step);
+    return true;
+}
+
+struct target {
+    int count;
+    uint32_t origin;             /* where one of its pixels was copied from, or NOWHERE */
+    ptrdiff_t offset[MAX_PATCH]; /* from the centre, in the planes */
+    float v[MAX_PATCH][3];
+};
+
+static void target_make(struct target *t, const struct fill *f, int x, int y)
+{
+    const struct job *j = f->job;
+    const int r = j->radius;
+
+    t->count = 0;
+    t->origin = NOWHERE;
+    for (int dy = -r; dy <= r; dy++)
+        for (int dx = -r; dx <= r; dx++) {
+            if (!usable_at(f, x + dx, y + dy)) continue;
+            const size_t p = (size_t)(y + dy) * (size_t)j->w + (size_t)(x + dx);
+            for (size_t k = 0; k < 3; k++) t->v[t->count][k] = sqrtf(fmaxf(0, j->frame->rgba[4 * p + k]));
+            t->offset[t->count++] = dy * (ptrdiff_t)j->stride + dx;
+            if (t->origin == NOWHERE && j->label[p] != KNOWN) t->origin = j->origin[p];
+        }
+}
+
+/* The centre of the patch most like the target within `half` of (x, y), in pixels of the frame; false: no whole patch
+ * there. */
+static bool search(const struct fill *f, const struct target *t, int x, int y, int half, size_t *found)
+{
+    const struct job *j = f->job;
+    const int x0 = most(f->bx, x - half), x1 = least(f->bx + f->bw, x + half);
+    const int y0 = most(f->by, y - half), y1 = least(f->by + f->bh, y + half);
+    const float *const red = j->planes[0], *const green = j->planes[1], *const blue = j->planes[2];
+    const __m256 dearer = _mm256_set1_ps(PER_COPY * 3 * (float)t->count * f->noise);
+    float best = INFINITY;
+    bool any = false;
+
+    for (int v = y0; v < y1; v++) {
+        const size_t row = (size_t)(v - f->by) * (size_t)f->stride;
+        const uint8_t *const valid = f->s->valid + row, *const copies = f->s->copies + row;
+        for (int u = x0; u < x1; u += LANES) {
+            uint64_t lanes;
+            memcpy(&lanes, valid + (u - f->bx), sizeof lanes);
+            if (x1 - u < LANES) lanes &= ((uint64_t)1 << (8 * (x1 - u))) - 1;
+            if (!lanes) continue;
+            const __m256 allowed = _mm256_castsi256_ps(_mm256_cvtepi8_epi32(_mm_cvtsi64_si128((long long)lanes)));
+            const __m256 limit = _mm256_set1_ps(best);
+            const size_t at = (size_t)v * j->stride + (size_t)u;
+            const __m128i copied = _mm_loadl_epi64((const __m128i *)(copies + (u - f->bx)));
+            __m256 sum = _mm256_mul_ps(dearer, _mm256_cvtepi32_ps(_mm256_cvtepu8_epi32(copied)));
+            int left = 0;
+            for (int i = 0; i < t->count;) {
+                for (const int end = least(t->count, i + 5); i < end; i++) {
+                    const size_t q = at + (size_t)t->offset[i];
+                    const __m256 dr = _mm256_sub_ps(_mm256_loadu_ps(red + q), _mm256_set1_ps(t->v[i][0]));
+                    const __m256 dg = _mm256_sub_ps(_mm256_loadu_ps(green + q), _mm256_set1_ps(t->v[i][1]));
+                    const __m256 db = _mm256_sub_ps(_mm256_loadu_ps(blue + q), _mm256_set1_ps(t->v[i][2]));
+                    sum =
+                        _mm256_add_ps(sum, _mm256_add_ps(_mm256_mul_ps(dr, dr),
+                                                         _mm256_add_ps(_mm256_mul_ps(dg, dg), _mm256_mul_ps(db, db))));
+                }
+                left = _mm256_movemask_ps(_mm256_and_ps(allowed, _mm256_cmp_ps(sum, limit, _CMP_LT_OQ)));
+                if (!left) break;
+            }
+            if (!left) continue;
+            float sums[LANES];
+            _mm256_storeu_ps(sums, sum);
+            for (int k = 0; k < LANES; k++)
+                if ((left >> k & 1) && sums[k] < best) {
+                    best = sums[k];
+                    *found = (size_t)v * (size_t)j->w + (size_t)(u + k);
+                    any = true;
+                }
+        }
+    }
+    return any;
+}
+
+/* ------------------------------------------------------------------------------------------------------ filling */
+
+/* From the usable pixels around, the far side first. */
+static void blend(const struct fill *f, int x, int y, float rgb[3], float *z)
+{
+    const struct job *j = f->job;
+    const int r = j->radius + 1; /* a front's patch reaches no farther from what the front touches */
+    float z_far = 0, sum = 0, z_sum = 0, colors = 0;
+
+    for (int v = y - r; v <= y + r; v++)
+        for (int u = x - r; u <= x + r; u++)
+            if (usable_at(f, u, v)) z_far = fmaxf(z_far, j->frame->z[(size_t)v * (size_t)j->w + (size_t)u]);
+    const float rho = soft_z_rho(&j->depth->soft, z_far, j->depth->sigma, z_far, j->depth->sigma);
+    *z = rgb[0] = rgb[1] = rgb[2] = 0;
+    for (int v = y - r; v <= y + r; v++)
+        for (int u = x - r; u <= x + r; u++) {
+            if (!usable_at(f, u, v)) continue;
+            const size_t p = (size_t)v * (size_t)j->w + (size_t)u;
+            const float nearness = 1 / (float)((u - x) * (u - x) + (v - y) * (v - y));
+            const float w = nearness * soft_z_weight(z_far - j->frame->z[p], 0.1f * rho, rho);
+            for (int k = 0; k < 3; k++) rgb[k] += w * j->frame->rgba[4 * p + (size_t)k];
+            colors += w;
+            if (!(j->frame->z[p] > 0)) continue;
+            z_sum += w * j->frame->z[p];
+            sum += w;
+        }
+    for (int k = 0; k < 3 && colors > 0; k++) rgb[k] /= colors;
+    if (sum > 0) *z = z_sum / sum;
+}
+
+static void count_copy(struct fill *f, size_t from)
+{
+    const size_t x = from % (size_t)f->job->w - (size_t)f->bx, y = from / (size_t)f->job->w - (size_t)f->by;
+    uint8_t *copies = f->s->copies + y * (size_t)f->stride + x;
+    if (*copies < UINT8_MAX) ++*copies;
+}
+
+static bool fill_patch(struct fill *f, const struct hole *hole, size_t p)
+{
+    const struct job *j = f->job;
+    const int r = j->radius, x = (int)(p % (size_t)j->w), y = (int)(p / (size_t)j->w);
+    const float confidence = confidence_at(f, x, y);
+    struct target target;
+    struct {
+        size_t p;
+        float rgb[3], z;
+        uint32_t origin;
+    } filled[MAX_PATCH];
+    size_t source = 0;
+    int count = 0;
+
+    target_make(&target, f, x, y);
+    bool found = search(f, &target, x, y, j->window / 2, &source);
+    if (!found) {
+        f->s->stats.moved++;
+        if (target.origin != NOWHERE)
+            found = search(f, &target, (int)(target.origin % (uint32_t)j->w), (int)(target.origin / (uint32_t)j->w),
+                           j->window / 2, &source);
+    }
+    for (int half = j->window; !found; half *= 2) {
+        if (f->margin < half && !find_sources(f, hole, half)) return false;
+        found = search(f, &target, x, y, half, &source);
+        if (half >= most(j->w, j->h)) break;
+    }
+    f->s->stats.patches += found;
+    f->s->stats.no_patch += !found;
+
+    for (int v = most(0, y - r); v <= least(j->h - 1, y + r); v++)
+        for (int u = most(0, x - r); u <= least(j->w - 1, x + r); u++) {
+            const size_t q = (size_t)v * (size_t)j->w + (size_t)u;
+            if (!is_open(f, q)) continue;
+            filled[count].p = q;
+            blend(f, u, v, filled[count].rgb, &filled[count].z);
+            const size_t from = source + q - p; /* same rows apart in both: no wrap, the source patch is whole */
+            filled[count].origin = found ? (uint32_t)from : NOWHERE;
+            if (found) {
+                memcpy(filled[count].rgb, j->frame->rgba + 4 * from, 3 * sizeof(float));
+                count_copy(f, from);
+            }
+            count++;
+        }
+    for (int i = 0; i < count; i++) {
+        const size_t q = filled[i].p;
+        memcpy(j->frame->rgba + 4 * q, filled[i].rgb, sizeof filled[i].rgb);
+        j->frame->rgba[4 * q + 3] = 1;
+        j->frame->z[q] = filled[i].z;
+        j->confidence[q] = confidence;
+        j->origin[q] = filled[i].origin;
+        j->luma[q] = luma_of(filled[i].rgb, j->luma[(size_t)j->w * (size_t)j->h]);
+    }
+    /* gradients of the patch reach one pixel beyond it */
+    for (int v = most(0, y - 2 * r - 1); v <= least(j->h - 1, y + 2 * r + 1); v++)
+        for (int u = most(0, x - 2 * r - 1); u <= least(j->w - 1, x + 2 * r + 1); u++)
+            if (!front_update(f, u, v)) return false;
+    return true;
+}
+
+/* The depths along a hole's rim: one a side that a pixel of the hole shares with a known one. */
+static bool rim_depths(const struct fill *f, const struct hole *hole, size_t *count)
+{
+    const struct job *j = f->job;
+    struct scratch *s = f->s;
+
+    if (4 * hole->count > s->rim_size) {
+        free(s->rim);
+        s->rim_size = 0;
+        s->rim = malloc(4 * hole->count * sizeof *s->rim);
+        if (!s->rim) return false;
+        s->rim_size = 4 * hole->count;
+    }
+    *count = 0;
+    for (size_t i = 0; i < hole->count; i++) {
+        const size_t p = j->list[hole->first + i], w = (size_t)j->w;
+        const int x = (int)(p % w), y = (int)(p / w);
+        if (x > 0 && j->label[p - 1] == KNOWN) s->rim[(*count)++] = j->frame->z[p - 1];
+        if (x + 1 < j->w && j->label[p + 1] == KNOWN) s->rim[(*count)++] = j->frame->z[p + 1];
+        if (y > 0 && j->label[p - w] == KNOWN) s->rim[(*count)++] = j->frame->z[p - w];
+        if (y + 1 < j->h && j->label[p + w] == KNOWN) s->rim[(*count)++] = j->frame->z[p + w];
+    }
+    return true;
+}
+
+static bool fill_hole(const struct job *j, struct scratch *s, size_t index)
+{
+    const struct hole *hole = &j->holes[index];
+    struct fill f = {.job = j, .s = s, .label = (uint32_t)index + 1, .border = -1};
+    size_t count;
+
+    if (!rim_depths(&f, hole, &count)) return false;
+    const float border = exemplar_far_border(s->rim, count, j->depth->sigma);
+    if (border > 0) f.border = border;
+    s->stats.holes++;
+    s->stats.classified += border > 0;
+    if (!find_sources(&f, hole, j->window / 2)) return false;
+
+    s->heap_count = 0;
+    for (size_t i = 0; i < hole->count; i++) {
+        const uint32_t p = j->list[hole->first + i];
+        if (!front_update(&f, (int)(p % (uint32_t)j->w), (int)(p / (uint32_t)j->w))) return false;
+    }
+    while (s->heap_count) {
+        const struct front_pixel next = heap_pop(s);
+        if (next.priority != j->priority[next.pixel] || !is_open(&f, next.pixel)) continue;
+        if (!fill_patch(&f, hole, next.pixel)) return false;
+    }
+    return true;
+}
+
+static void fill_holes(void *ctx, size_t begin, size_t end, int thread)
+{
+    const struct job *j = ctx;
+    struct scratch *s = &j->scratch[thread];
+    for (size_t i = begin; i < end; i++)
+        if (!s->status && !fill_hole(j, s, i)) s->status = ST_NOMEM;
+}
+
+/* ------------------------------------------------------------------------------------------------------- holes */
+
+static int compare_holes(const void *a, const void *b) /* the largest first, for the threads' sake */
+{
+    const struct hole *x = a, *y = b;
+    if (x->count != y->count) return x->count > y->count ? -1 : 1;
+    return x->first < y->first ? -1 : x->first > y->first;
+}
+
+/* Labels and lists what is empty. */
+static enum status find_holes(struct job *j, struct err *err)
+{
+    const size_t pixels = (size_t)j->w * (size_t)j->h;
+    size_t listed = 0, room = 0;
+
+    j->hole_count = 0;
+    for (size_t p = 0; p < pixels; p++) j->label[p] = j->frame->rgba[4 * p + 3] > 0 ? KNOWN : UINT32_MAX;
+    for (size_t p = 0; p < pixels; p++) {
+        if (j->label[p] != UINT32_MAX) continue;
+        if (j->hole_count == room) {
+            room = room ? 2 * room : 64;
+            struct hole *holes = realloc(j->holes, room * sizeof *holes);
+            if (!holes) return err_nomem(err, "the holes of a frame", room * sizeof *holes);
+            j->holes = holes;
+        }
+        struct hole *hole = &j->holes[j->hole_count++];
+        *hole = (struct hole){listed, 0, j->w, j->h, 0, 0};
+        j->label[p] = 1;
+        j->list[listed++] = (uint32_t)p;
+        for (size_t i = hole->first; i < listed; i++) {
+            const int x = (int)(j->list[i] % (uint32_t)j->w), y = (int)(j->list[i] / (uint32_t)j->w);
+            hole->x0 = least(hole->x0, x);
+            hole->y0 = least(hole->y0, y);
+            hole->x1 = most(hole->x1, x + 1);
+            hole->y1 = most(hole->y1, y + 1);
+            for (int v = most(0, y - 1); v <= least(j->h - 1, y + 1); v++)
+                for (int u = most(0, x - 1); u <= least(j->w - 1, x + 1); u++) {
+                    const size_t q = (size_t)v * (size_t)j->w + (size_t)u;
+                    if (j->label[q] != UINT32_MAX) continue;
+                    j->label[q] = 1;
+                    j->list[listed++] = (uint32_t)q;
+                }
+        }
+        hole->count = listed - hole->first;
+    }
+    if (j->hole_count) qsort(j->holes, j->hole_count, sizeof *j->holes, compare_holes);
+    for (size_t i = 0; i < j->hole_count; i++)
+        for (size_t k = 0; k < j->holes[i].count; k++) j->label[j->list[j->holes[i].first + k]] = (uint32_t)i + 1;
+    return ST_OK;
+}
+
+/* Fills the holes that are narrow throughout. */
+static enum status fill_narrow_holes(struct job *j, int diameter, struct err *err)
+{
+    const struct exemplar_depth *d = j->depth;
+    uint32_t *narrow = NULL;
+    size_t *narrow_count = NULL, count = 0, kept = 0;
+    enum status st = find_holes(j, err);
+
+    if (st || !j->hole_count) return st;
+    st = hole_narrow_pixels(&narrow, &count, j->frame, diameter, err);
+    narrow_count = calloc(j->hole_count, sizeof *narrow_count);
+    if (!st && !narrow_count) st = err_nomem(err, "the holes of a frame", j->hole_count * sizeof *narrow_count);
+    for (size_t i = 0; !st && i < count; i++) narrow_count[j->label[narrow[i]] - 1]++;
+    for (size_t i = 0; !st && i < count; i++) {
+        const uint32_t hole = j->label[narrow[i]] - 1;
+        if (narrow_count[hole] == j->holes[hole].count) narrow[kept++] = narrow[i];
+    }
+    if (!st) st = hole_fill_pixels(j->frame, narrow, kept, &d->soft, d->sigma, diameter, err);
+    free(narrow_count);
+    free(narrow);
+    return st;
+}
+
+/* ------------------------------------------------------------------------------------------------------- a frame */
+
+static void job_release(struct job *j)
+{
+    for (int i = 0; j->scratch && i < parallel_threads(); i++) {
+        free(j->scratch[i].valid);
+        free(j->scratch[i].run);
+        free(j->scratch[i].heap);
+        free(j->scratch[i].rim);
+    }
+    free(j->scratch);
+    free(j->planes[0]);
+    free(j->luma);
+    free(j->confidence);
+    free(j->priority);
+    free(j->origin);
+    free(j->label);
+    free(j->list);
+    free(j->holes);
+}
+
+static enum status prepare_patches(struct job *j, struct err *err)
+{
+    const struct rendered_frame *f = j->frame;
+    const size_t w = (size_t)j->w, h = (size_t)j->h, pixels = w * h, threads = (size_t)parallel_threads();
+    double sum = 0;
+    size_t known = 0;
+
+    j->stride = w + LANES;
+    const size_t plane = j->stride * h + 2 * LANES;
+    j->planes[0] = calloc(3 * plane, sizeof(float));
+    j->luma = calloc(pixels + 1, sizeof *j->luma); /* the last: the mean */
+    j->confidence = calloc(pixels, sizeof *j->confidence);
+    j->priority = malloc(pixels * sizeof *j->priority);
+    j->origin = malloc(pixels * sizeof *j->origin);
+    j->scratch = calloc(threads, sizeof *j->scratch);
+    if (!j->origin || !j->planes[0] || !j->luma || !j->confidence || !j->priority || !j->scratch)
+        return err_nomem(err, "the patches of a frame", pixels * 24);
+    for (size_t i = 0; i < threads; i++) {
+        j->scratch[i].run = malloc(w * sizeof *j->scratch[i].run);
+        if (!j->scratch[i].run) return err_nomem(err, "the patches of a frame", w * sizeof(int));
+    }
+    for (size_t k = 1; k < 3; k++) j->planes[k] = j->planes[0] + k * plane;
+    for (size_t p = 0; p < pixels; p++) {
+        j->priority[p] = -1;
+        if (j->label[p] != KNOWN) continue;
+        for (size_t k = 0; k < 3; k++) j->planes[k][p / w * j->stride + p % w] = sqrtf(fmaxf(0, f->rgba[4 * p + k]));
+        j->confidence[p] = 1;
+        j->luma[p] = luma_of(f->rgba + 4 * p, 1);
+        sum += j->luma[p];
+        known++;
+    }
+    const float mean = known && sum > 0 ? (float)(sum / (double)known) : 1;
+    for (size_t p = 0; p < pixels; p++) j->luma[p] /= mean;
+    j->luma[pixels] = mean;
+    return ST_OK;
+}
+
+enum status exemplar_fill(struct rendered_frame *frame, const struct exemplar_depth *depth, int diameter,
+                          const struct exemplar_params *params, struct exemplar_stats *stats, struct err *err)
+{
+    const size_t pixels = (size_t)frame->width * (size_t)frame->height;
+    struct job j = {.frame = frame, .depth = depth, .w = frame->width, .h = frame->height};
+    struct exemplar_stats total = {0};
+    size_t empty = 0, left = 0;
+    enum status st = ST_OK;
+
+    j.radius = least(MAX_RADIUS, params->fill_patch / 2);
+    j.window = params->fill_window;
+    for (size_t p = 0; p < pixels; p++) empty += !(frame->rgba[4 * p + 3] > 0);
+    total.empty = left = empty;
+    if (diameter <= 0 || !empty || empty == pixels) goto done;
+
+    j.label = malloc(pixels * sizeof *j.label);
+    j.list = malloc(empty * sizeof *j.list);
+    st = j.label && j.list ? fill_narrow_holes(&j, diameter, err)
+                           : err_nomem(err, "the holes of a frame", (pixels + empty) * sizeof *j.label);
+    if (!st) st = find_holes(&j, err); /* what is left */
+    if (!st && j.hole_count) st = prepare_patches(&j, err);
+    if (st) goto done;
+    parallel_for(j.hole_count, 1, fill_holes, &j);
+    for (int i = 0; j.scratch && i < parallel_threads(); i++) {
+        const struct exemplar_stats *s = &j.scratch[i].stats;
+        if (j.scratch[i].status) st = err_nomem(err, "the filling of a hole", pixels);
+        total.holes += s->holes;
+        total.classified += s->classified;
+        total.patches += s->patches;
+        total.no_patch += s->no_patch;
+        total.moved += s->moved;
+    }
+    total.narrow = empty;
+    for (size_t i = 0; i < j.hole_count; i++) total.narrow -= j.holes[i].count;
+    left = 0;
+    for (size_t p = 0; p < pixels; p++) left += !(frame->rgba[4 * p + 3] > 0);
+done:
+    frame->unfilled_fraction = (double)left / (double)pixels;
+    if (stats) *stats = total;
+    job_release(&j);
+    return st;
+}
