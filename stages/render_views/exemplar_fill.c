@@ -12,8 +12,9 @@
  * What the thesis adds: the rim's depths are split in two clusters, and pixels nearer than the border between them are
  * taken for absent: they do not spread, bear no front, and are neither source nor compared. Two clusters there are if
  * the gap between their means in ln z is above 4 sqrt(2) sigma, twice as far as two depths of one surface may well
- * differ by error, and above 4 times their pooled standard deviation (even depths, a wall seen aslant, give 3.5; a
- * Gaussian gives 2.7). A cluster holds a twentieth of the rim at least, so that a few stray depths make none.
+ * differ by error; if not more than an eighth of the rim lies in the gap's middle third (a wall seen aslant has a sixth
+ * there, a Gaussian a fifth); and if each holds a twentieth of the rim at least. A fortieth of the rim at either end is
+ * left out before, so that a few stray depths neither make a cluster nor hide one.
  *
  * Depth goes along with each patch: the mean of the usable pixels around by the weights of the soft z reversed, the
  * farthest counting 1, over the squared distance in pixels.
@@ -43,10 +44,11 @@ const struct param exemplar_param_table[] = {EXEMPLAR_PARAMS(PARAM_ROW) PARAM_EN
 #define MAX_RADIUS    7
 #define MAX_PATCH     ((2 * MAX_RADIUS + 1) * (2 * MAX_RADIUS + 1))
 #define GAP_SIGMAS    4.0 /* of sqrt(2) sigma */
-#define GAP_SPREADS   4.0
-#define LEAST_SHARE   20 /* a cluster holds at least one in so many */
-#define EVEN_PRIORITY 0.01f
-#define PER_COPY      0.5f /* of the noise, as above */
+#define VALLEY_SHARE  8   /* at most one in so many lies between the clusters */
+#define LEAST_SHARE   20  /* a cluster holds at least one in so many */
+#define STRAY_SHARE   40  /* one in so many at either end does not count */
+#define EVEN_PRIORITY 0.1f
+#define PER_COPY      0.5f
 #define LANES         8
 #define NOWHERE       UINT32_MAX
 #define KNOWN         0 /* label of a pixel that is in no hole; hole i has label i + 1 */
@@ -109,36 +111,34 @@ static int compare_floats(const void *a, const void *b)
 
 float exemplar_far_border(float *z, size_t count, float sigma)
 {
-    double sum = 0, squares = 0, near_sum = 0, best = -1, border = 0, gap = 0;
-    size_t first = 0;
+    double sum = 0, near_sum = 0, best = -1, border = 0, gap = 0;
+    size_t first = 0, near_count = 0, between = 0;
 
     qsort(z, count, sizeof *z, compare_floats);
     while (first < count && !(z[first] > 0)) first++;
+    first += (count - first) / STRAY_SHARE;
+    count -= first + (count - first) / (STRAY_SHARE - 1);
     z += first;
-    count -= first;
-    if (count < 4) return 0;
+    if (count < 2) return 0;
 
-    const double base = log(z[count / 2]); /* keeps the squares small */
-    for (size_t i = 0; i < count; i++) {
-        const double v = log(z[i]) - base;
-        sum += v;
-        squares += v * v;
-    }
-    const size_t least = count / LEAST_SHARE > 2 ? count / LEAST_SHARE : 2;
-    for (size_t i = 0; i + least < count; i++) { /* near: [0, i] */
+    const double base = log(z[count / 2]); /* keeps the sums small */
+    for (size_t i = 0; i < count; i++) sum += log(z[i]) - base;
+    for (size_t i = 0; i + 1 < count; i++) { /* near: [0, i] */
         near_sum += log(z[i]) - base;
-        if (i + 1 < least || !(z[i] < z[i + 1])) continue;
+        if (!(z[i] < z[i + 1])) continue;
         const double n = (double)(i + 1), m = (double)(count - i - 1), far_sum = sum - near_sum;
-        const double between = near_sum * near_sum / n + far_sum * far_sum / m; /* the greatest: least spread within */
-        if (between > best) {
-            best = between;
-            border = 0.5 * (near_sum / n + far_sum / m);
+        const double apart = near_sum * near_sum / n + far_sum * far_sum / m; /* greatest: least squares within */
+        if (apart > best) {
+            best = apart;
+            border = base + 0.5 * (near_sum / n + far_sum / m);
             gap = far_sum / m - near_sum / n;
+            near_count = i + 1;
         }
     }
-    const double spread = sqrt(fmax(0, squares - best) / (double)count);
-    const double error = M_SQRT2 * fmax(sigma, SOFT_Z_SIGMA_LEAST);
-    return best >= 0 && gap > GAP_SIGMAS * error && gap > GAP_SPREADS * spread ? (float)exp(border + base) : 0;
+    for (size_t i = 0; i < count; i++) between += z[i] > exp(border - gap / 6) && z[i] < exp(border + gap / 6);
+    const bool two = gap > GAP_SIGMAS * M_SQRT2 * fmax(sigma, SOFT_Z_SIGMA_LEAST) && between * VALLEY_SHARE <= count &&
+                     near_count * LEAST_SHARE >= count && (count - near_count) * LEAST_SHARE >= count;
+    return two ? (float)exp(border) : 0;
 }
 
 /* ------------------------------------------------------------------------------------------------ what is usable */
