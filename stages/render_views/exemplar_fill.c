@@ -349,8 +349,9 @@ static void target_make(struct target *t, const struct fill *f, int x, int y)
 static bool search(const struct fill *f, const struct target *t, int x, int y, int half, size_t *found)
 {
     const struct job *j = f->job;
-    const int x0 = most(f->bx, x - half), x1 = least(f->bx + f->bw, x + half);
-    const int y0 = most(f->by, y - half), y1 = least(f->by + f->bh, y + half);
+    const int r = j->radius; /* no patch reaches out of the frame, so that lanes that do not count read it too */
+    const int x0 = most(most(f->bx, r), x - half), x1 = least(least(f->bx + f->bw, j->w - r), x + half);
+    const int y0 = most(most(f->by, r), y - half), y1 = least(least(f->by + f->bh, j->h - r), y + half);
     const float *const red = j->planes[0], *const green = j->planes[1], *const blue = j->planes[2];
     const __m256 dearer = _mm256_set1_ps(PER_COPY * 3 * (float)t->count * f->noise);
     float best = INFINITY;
