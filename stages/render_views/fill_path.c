@@ -271,14 +271,14 @@ void fill_flicker_add(double *difference, double *pixels, const struct rendered_
             view_unproject(camera_a, (double)(p % wa) + 0.5, (double)(p / wa) + 0.5, (double)a->z[p]);
         if (!(view_project(camera_b, at, &u, &v) > 0)) continue;
         if (!(u >= 0.5 && v >= 0.5 && u < b->width - 0.5 && v < b->height - 0.5)) continue;
-        const size_t nearest = (size_t)v * wb + (size_t)u, q = (size_t)(v - 0.5) * wb + (size_t)(u - 0.5);
+        const size_t q = (size_t)(v - 0.5) * wb + (size_t)(u - 0.5);
         const size_t around[4] = {q, q + 1, q + wb, q + wb + 1};
         const double fx = u - 0.5 - floor(u - 0.5), fy = v - 0.5 - floor(v - 0.5);
         const double weights[4] = {(1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy};
         double sum = 0;
-        bool known = b->hole[nearest] && b->rgba[4 * nearest + 3] > 0;
-        for (int k = 0; k < 4; k++) known &= around[k] < wb * (size_t)b->height && b->rgba[4 * around[k] + 3] > 0;
-        if (!known) continue;
+        bool filled = true; /* a near object beside the hole is another matter */
+        for (int k = 0; k < 4; k++) filled &= b->hole[around[k]] && b->rgba[4 * around[k] + 3] > 0;
+        if (!filled) continue;
         for (size_t c = 0; c < 3; c++) {
             double other = 0;
             for (int k = 0; k < 4; k++) other += weights[k] * sqrt(fmax(0, (double)b->rgba[4 * around[k] + c]));
