@@ -37,18 +37,14 @@
 #include "common/hole_fill.h"
 #include "common/parallel.h"
 
-#define PARAM_STRUCT struct exemplar_params
-const struct param exemplar_param_table[] = {EXEMPLAR_PARAMS(PARAM_ROW) PARAM_END};
-#undef PARAM_STRUCT
-
 #define MAX_RADIUS    7
 #define MAX_PATCH     ((2 * MAX_RADIUS + 1) * (2 * MAX_RADIUS + 1))
-#define GAP_SIGMAS    4.0 /* of sqrt(2) sigma */
-#define VALLEY_SHARE  8   /* at most one in so many lies between the clusters */
-#define LEAST_SHARE   20  /* a cluster holds at least one in so many */
-#define STRAY_SHARE   40  /* one in so many at either end does not count */
-#define EVEN_PRIORITY 0.1f
-#define PER_COPY      0.5f
+#define GAP_SIGMAS    4.0  /* of sqrt(2) sigma */
+#define VALLEY_SHARE  8    /* at most one in so many lies between the clusters */
+#define LEAST_SHARE   20   /* a cluster holds at least one in so many */
+#define STRAY_SHARE   40   /* one in so many at either end does not count */
+#define EVEN_PRIORITY 0.1f /* D0 */
+#define PER_COPY      0.5f /* of what noise makes two patches differ */
 #define LANES         8
 #define NOWHERE       UINT32_MAX
 #define KNOWN         0 /* label of a pixel that is in no hole; hole i has label i + 1 */

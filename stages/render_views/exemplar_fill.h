@@ -28,8 +28,6 @@ struct exemplar_params {
         EXEMPLAR_PARAMS(PARAM_DEFAULT) \
     }
 
-extern const struct param exemplar_param_table[];
-
 struct exemplar_depth { /* what the filling knows of depth in a scene */
     struct soft_z soft;
     float sigma; /* relative uncertainty of the depths */
