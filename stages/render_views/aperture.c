@@ -1,0 +1,209 @@
+/* aperture.c - see aperture.h. */
+#include "stages/render_views/aperture.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/parallel.h"
+#include "common/rng.h"
+
+#define FIRST_BATCH 8
+#define TILE        32
+#define PERCENTILE  0.98
+#define SOBOL_BITS  20
+
+/* Each bit is flipped or not by what its key draws for the bits above it. */
+static double scrambled(uint32_t bits, uint64_t dimension)
+{
+    const struct rng rng = rng_make(0, "render_views", "aperture");
+    uint32_t result = 0;
+
+    for (uint32_t k = 0; k < SOBOL_BITS; k++) {
+        const uint32_t above = 1u << k | (k ? bits >> (32 - k) : 0);
+        result |= ((bits >> (31 - k) ^ rng_u32(&rng, dimension, above)) & 1) << (31 - k);
+    }
+    return (result + 0.5 * (1u << (32 - SOBOL_BITS))) * 0x1p-32;
+}
+
+void aperture_lens_point(int index, double *x, double *y)
+{
+    uint32_t bits[2] = {0}, row = 1u << 31; /* row: of Sobol's second matrix, which is Pascal's triangle mod 2 */
+    double square[2];
+
+    for (uint32_t i = (uint32_t)index, k = 31; i; i >>= 1, k--, row ^= row >> 1) {
+        if (!(i & 1)) continue;
+        bits[0] |= 1u << k;
+        bits[1] ^= row;
+    }
+    for (int k = 0; k < 2; k++) square[k] = 2 * scrambled(bits[k], (uint64_t)k) - 1;
+    /* squares around the centre to circles around it */
+    const bool wide = fabs(square[0]) > fabs(square[1]);
+    const double radius = wide ? square[0] : square[1];
+    const double angle = radius == 0 ? 0 : (wide ? square[1] : square[0]) / radius * (M_PI / 4);
+    *x = radius * (wide ? cos(angle) : sin(angle));
+    *y = radius * (wide ? sin(angle) : cos(angle));
+}
+
+struct view aperture_view(const struct view *camera, double a, double b, double focus)
+{
+    const struct vec3 offset = mat3_apply(mat3_transpose(camera->cam_from_world), vec3_make(a, b, 0));
+    struct view v = *camera;
+
+    v.center = vec3_add(camera->center, offset);
+    v.translation.x -= a;
+    v.translation.y -= b;
+    v.cx += camera->fx * a / focus;
+    v.cy += camera->fy * b / focus;
+    return v;
+}
+
+struct sums {
+    const float *from;
+    float *before, *batch; /* over the points before the last batch, and in it */
+    float *mean;
+    double per_before, per_batch;
+};
+
+static void add_chunk(void *ctx, size_t begin, size_t end, int thread)
+{
+    const struct sums *s = ctx;
+    float *restrict to = s->batch;
+    const float *restrict from = s->from;
+    (void)thread;
+    for (size_t i = begin; i < end; i++) to[i] += from[i];
+}
+
+static void merge_chunk(void *ctx, size_t begin, size_t end, int thread)
+{
+    const struct sums *s = ctx;
+    float *restrict before = s->before, *restrict batch = s->batch;
+    (void)thread;
+    for (size_t i = begin; i < end; i++) {
+        before[i] += batch[i];
+        batch[i] = 0;
+    }
+}
+
+static void mean_chunk(void *ctx, size_t begin, size_t end, int thread)
+{
+    const struct sums *s = ctx;
+    const float *restrict before = s->before, scale = (float)s->per_before;
+    float *restrict mean = s->mean;
+    (void)thread;
+    for (size_t i = begin; i < end; i++) mean[i] = before[i] * scale;
+}
+
+#define CHUNK 65536
+
+struct tiles {
+    const struct sums *sums;
+    int width, height, across;
+    float *error; /* squares, a tile each */
+};
+
+static float encoded(float linear) { return sqrtf(linear < 1 ? (linear > 0 ? linear : 0) : 1); }
+
+static void tile_errors(void *ctx, size_t begin, size_t end, int thread)
+{
+    const struct tiles *t = ctx;
+    const float a = (float)t->sums->per_before, b = (float)t->sums->per_batch;
+    (void)thread;
+
+    for (size_t i = begin; i < end; i++) {
+        const int x0 = (int)i % t->across * TILE, y0 = (int)i / t->across * TILE;
+        const int x1 = x0 + TILE < t->width ? x0 + TILE : t->width, y1 = y0 + TILE < t->height ? y0 + TILE : t->height;
+        float sum = 0;
+        for (int y = y0; y < y1; y++)
+            for (int x = x0; x < x1; x++) {
+                const size_t p = 4 * ((size_t)y * (size_t)t->width + (size_t)x);
+                for (size_t k = 0; k < 3; k++) {
+                    const float d = encoded(a * t->sums->before[p + k]) - encoded(b * t->sums->batch[p + k]);
+                    sum += d * d;
+                }
+            }
+        t->error[i] = sum / (float)(3 * (x1 - x0) * (y1 - y0));
+    }
+}
+
+static int by_value(const void *a, const void *b)
+{
+    const float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
+}
+
+static double error_of_mean(const struct sums *s, struct tiles *t, int before, int batch)
+{
+    const int count = t->across * ((t->height + TILE - 1) / TILE);
+    struct sums means = *s;
+
+    means.per_before = 1.0 / before;
+    means.per_batch = 1.0 / batch;
+    t->sums = &means;
+    parallel_for((size_t)count, 16, tile_errors, t);
+    qsort(t->error, (size_t)count, sizeof *t->error, by_value);
+    return sqrt(t->error[(int)(PERCENTILE * (count - 1))]) * sqrt((double)before * batch) / (before + batch);
+}
+
+enum status aperture_render(struct rendered_frame *out, const struct view *camera, double aperture, double focus,
+                            const struct aperture_options *options, aperture_pinhole *render, void *ctx,
+                            struct aperture_stats *stats, struct err *err)
+{
+    struct rendered_frame frame = {0};
+    struct aperture_stats done = {0, 0};
+    struct sums sums = {0};
+    struct tiles tiles = {0};
+
+    if (!(aperture >= 0) || !isfinite(aperture))
+        return err_set(err, ST_DATA, "frame %s has the aperture %g: wanted a diameter of 0 or more.",
+                       camera->name ? camera->name : "", aperture);
+    if (aperture > 0 && !(focus > 0 && isfinite(focus)))
+        return err_set(err, ST_DATA, "frame %s is focused at depth %g: with an aperture, wanted more than 0.",
+                       camera->name ? camera->name : "", focus);
+    enum status st = render(ctx, camera, out, err);
+    if (st || aperture == 0) goto done;
+
+    done.error = 1;
+    const size_t samples = 4 * (size_t)out->width * (size_t)out->height;
+    tiles.width = out->width;
+    tiles.height = out->height;
+    tiles.across = (out->width + TILE - 1) / TILE;
+    sums.before = calloc(samples, sizeof *sums.before);
+    sums.batch = calloc(samples, sizeof *sums.batch);
+    tiles.error = malloc((size_t)tiles.across * (size_t)((out->height + TILE - 1) / TILE) * sizeof *tiles.error);
+    if (!sums.before || !sums.batch || !tiles.error) {
+        st = err_nomem(err, "the mean of a lens's frames", 2 * samples * sizeof *sums.before);
+        goto done;
+    }
+    int before = 0, count = 0; /* points before this batch, and with it */
+    while (count < options->most) {
+        const int until = before ? 2 * before : FIRST_BATCH / 2;
+        while (count < until && count < options->most) {
+            double x, y;
+            aperture_lens_point(count, &x, &y);
+            const struct view at = aperture_view(camera, x * aperture / 2, y * aperture / 2, focus);
+            st = render(ctx, &at, &frame, err);
+            if (!st && (frame.width != out->width || frame.height != out->height))
+                st = err_set(err, ST_INTERNAL, "frames of one lens have different sizes.");
+            if (st) goto done;
+            sums.from = frame.rgba;
+            parallel_for(samples, CHUNK, add_chunk, &sums);
+            count++;
+        }
+        if (before) done.error = error_of_mean(&sums, &tiles, before, count - before);
+        parallel_for(samples, CHUNK, merge_chunk, &sums);
+        before = count;
+        if (count >= FIRST_BATCH && done.error < options->error) break;
+    }
+    done.samples = count;
+    sums.per_before = 1.0 / done.samples;
+    sums.mean = out->rgba;
+    parallel_for(samples, CHUNK, mean_chunk, &sums);
+done:
+    if (!st && stats) *stats = done;
+    rendered_frame_release(&frame);
+    free(sums.before);
+    free(sums.batch);
+    free(tiles.error);
+    return st;
+}
