@@ -4,8 +4,8 @@
  * [0, 1], goes on to coarser levels. A texel's m is the mean of what came down to it.
  *
  * Channels of a level: of the back colour x weight, weight, m x weight; of the near layer colour, coverage, m x coverage; and the
- * part of it that is not near. On the way up the first of each are replaced by what is looked up there, the near layer
- * by the sum of what was left on this level and on coarser ones. All loops run over lines of one channel,
+ * part of it that is not near. On the way up beside them comes what is looked up there, for the near layer
+ * the sum of what was left on this level and on coarser ones. All loops run over lines of one channel,
  * eight texels at a time; lines are padded, and what stands in the padding is never looked at. */
 #include "stages/render_views/defocus.h"
 
@@ -18,7 +18,7 @@
 #include "common/parallel.h"
 
 enum { BACK, BACK_WEIGHT = 3, NEAR, NEAR_COVER = 7, OPEN, BACK_M, NEAR_M, CHANNELS };
-#define UP_CHANNELS BACK_M /* BACK .. OPEN are looked up, the means are not */
+#define UP_CHANNELS BACK_M /* BACK .. OPEN are looked up, the means are not; the results stand behind the channels */
 
 #define ROWS     16          /* a chunk */
 #define MARGIN   8           /* floats beside a line, for what lies beyond its ends */
@@ -38,8 +38,16 @@ static inline v8 most(v8 a, v8 b) { return _mm256_max_ps(a, b); }
 /* b where a is below 0 (its sign bit is set), else c */
 static inline v8 if_below(v8 a, v8 b, v8 c) { return _mm256_blendv_ps(c, b, a); }
 
-/* The part of what wants the blur m that goes beyond a level, whose own is `here` = 4^level. */
-static inline v8 beyond(v8 m, float here) { return least(most((m - here) * (1 / (3 * here)), all(0)), all(1)); }
+static inline v8 ramp(v8 m, float from, float to)
+{
+    return least(most((m - from) * (1 / (to - from)), all(0)), all(1));
+}
+
+/* The part of what wants the blur m that goes beyond a level, whose own is `here` = 4^level. What stays is taken as it is, or,
+ * on levels of the pyramid, smoothed by (1 2 1) / 4, which stands for the blur 2 `here`: so the kernels that are mixed differ by
+ * half an octave, and no sharp core shows through a wide one. */
+static inline v8 beyond(v8 m, float here) { return here > 1 ? ramp(m, 2 * here, 4 * here) : ramp(m, 1, 4); }
+static inline v8 smoothed(v8 m, float here) { return ramp(m, here, 2 * here) - beyond(m, here); }
 
 /* The same for the weight of what serves others' look-ups: something blurred serves up to one level more, so that edges between
  * blurs have no step; something sharp does not. */
@@ -238,8 +246,12 @@ static void rows_down(void *ctx, size_t begin, size_t end, int thread)
 static void double_line(float *restrict to, float *restrict blend, const struct defocus_level *coarse, int y, int k)
 {
     const int near = y / 2, other = y & 1 ? near + 1 : near - 1, w = coarse->width;
-    const float *restrict a = line_of(coarse, near, k);
-    const float *restrict b = line_of(coarse, other < 0 ? 0 : other < coarse->height ? other : coarse->height - 1, k);
+    const float *restrict a = line_of(coarse, near, CHANNELS + k);
+    const float *restrict b = line_of(coarse,
+                                      other < 0                ? 0
+                                      : other < coarse->height ? other
+                                                               : coarse->height - 1,
+                                      CHANNELS + k);
 
     for (int i = 0; i < w; i++) blend[i] = 0.75f * a[i] + 0.25f * b[i];
     blend[-1] = blend[0];
@@ -250,28 +262,66 @@ static void double_line(float *restrict to, float *restrict blend, const struct 
     }
 }
 
-static void level_looks_up(const struct pass *p, int y, float *const *up)
+/* lines[k]: rows y - 1 .. y + 1 of the channels that hold light, by (1 2 1) / 4; of the near ones what is to be smoothed. */
+static void smooth_rows(const struct pass *p, int y, float *const *lines)
+{
+    const struct defocus_level *l = &p->d->levels[p->level];
+    const float here = ldexpf(1, 2 * p->level);
+    const float *rows[3];
+
+    for (int i = 0; i < 3; i++) {
+        const int at = y + i - 1;
+        rows[i] = line_of(l, at < 0 ? 0 : at < l->height ? at : l->height - 1, 0);
+    }
+    for (size_t k = BACK; k <= BACK_WEIGHT; k++) {
+        const float *a = rows[0] + k * l->stride, *b = rows[1] + k * l->stride, *c = rows[2] + k * l->stride;
+        for (int x = 0; x < l->width; x += 8) put(lines[k] + x, 0.25f * (get(a + x) + get(c + x)) + 0.5f * get(b + x));
+    }
+    for (int x = 0; p->any_near && x < l->width; x += 8) {
+        v8 sum[NEAR_COVER + 1] = {{0}};
+        for (int i = 0; i < 3; i++) {
+            const float *at = rows[i] + x;
+            const v8 m = get(at + NEAR_M * l->stride) / (get(at + NEAR_COVER * l->stride) + TINY);
+            const v8 part = (i == 1 ? 0.5f : 0.25f) * smoothed(m, here);
+            for (size_t k = NEAR; k <= NEAR_COVER; k++) sum[k] += part * get(at + k * l->stride);
+        }
+        for (size_t k = NEAR; k <= NEAR_COVER; k++) put(lines[k] + x, sum[k]);
+    }
+    for (int k = BACK; k <= NEAR_COVER; k++) {
+        lines[k][-1] = lines[k][0];
+        lines[k][l->width] = lines[k][l->width - 1];
+    }
+}
+
+static inline v8 smooth(const float *at) { return 0.25f * (get(at - 1) + get(at + 1)) + 0.5f * get(at); }
+
+static void level_looks_up(const struct pass *p, int y, float *const *up, float *const *lines)
 {
     const struct defocus_level *l = &p->d->levels[p->level];
     const float here = ldexpf(1, 2 * p->level); /* on the last level no m is above it */
-    const size_t stride = l->stride;
+    const size_t stride = l->stride, result = CHANNELS * l->stride;
     float *row = line_of(l, y, 0);
 
+    smooth_rows(p, y, lines);
     for (int x = 0; x < l->width; x += 8) {
         float *at = row + x;
         const v8 weight = get(at + BACK_WEIGHT * stride), above = get(up[BACK_WEIGHT] + x);
-        const v8 on = beyond(get(at + BACK_M * stride) / (weight + TINY), here);
-        const v8 sum = weight + LEAST * above, own = (1 - on) / (sum + TINY);
-        const v8 coarser = (1 - own * weight) / (above + TINY);
+        const v8 m = get(at + BACK_M * stride) / (weight + TINY), blurred = smoothed(m, here);
+        const v8 sum = weight + LEAST * above, sharp = 1 - beyond(m, here) - blurred;
+        const v8 around = blurred * weight / (smooth(lines[BACK_WEIGHT] + x) + TINY);
+        const v8 coarser = (sum - (sharp + blurred) * weight) / (above + TINY);
         for (size_t k = BACK; k < BACK_WEIGHT; k++)
-            put(at + k * stride, (get(at + k * stride) * own + get(up[k] + x) * coarser) * sum);
-        put(at + BACK_WEIGHT * stride, sum);
+            put(at + k * stride + result,
+                get(at + k * stride) * sharp + smooth(lines[k] + x) * around + get(up[k] + x) * coarser);
+        put(at + BACK_WEIGHT * stride + result, sum);
     }
     for (int x = 0; p->any_near && x < l->width; x += 8) {
         float *at = row + x;
-        const v8 on = beyond(get(at + NEAR_M * stride) / (get(at + NEAR_COVER * stride) + TINY), here), own = 1 - on;
-        for (size_t k = NEAR; k <= NEAR_COVER; k++) put(at + k * stride, get(at + k * stride) * own + get(up[k] + x));
-        put(at + OPEN * stride, get(at + OPEN * stride) * own + get(up[OPEN] + x) * on);
+        const v8 m = get(at + NEAR_M * stride) / (get(at + NEAR_COVER * stride) + TINY), on = beyond(m, here);
+        const v8 sharp = 1 - on - smoothed(m, here);
+        for (size_t k = NEAR; k <= NEAR_COVER; k++)
+            put(at + k * stride + result, get(at + k * stride) * sharp + smooth(lines[k] + x) + get(up[k] + x));
+        put(at + OPEN * stride + result, get(at + OPEN * stride) * (1 - on) + get(up[OPEN] + x) * on);
     }
 }
 
@@ -310,10 +360,10 @@ static void rows_up(void *ctx, size_t begin, size_t end, int thread)
     const struct pass *p = ctx;
     const struct defocus_level *l = &p->d->levels[p->level];
     const size_t size = line_size(l->width + 1);
-    float *at = p->d->scratch + (size_t)thread * p->d->scratch_size, *up[UP_CHANNELS], *spare[6], *blend;
+    float *at = p->d->scratch + (size_t)thread * p->d->scratch_size, *up[UP_CHANNELS], *spare[8], *blend;
 
     for (int k = 0; k < UP_CHANNELS; k++, at += size) up[k] = at;
-    for (int k = 0; k < 6; k++, at += size) spare[k] = at + MARGIN;
+    for (int k = 0; k < 8; k++, at += size) spare[k] = at + MARGIN;
     blend = at + MARGIN;
     for (int y = (int)begin; y < (int)end; y++) {
         for (int k = 0; k < UP_CHANNELS; k++) {
@@ -324,7 +374,7 @@ static void rows_up(void *ctx, size_t begin, size_t end, int thread)
                 double_line(up[k], blend, l + 1, y, k);
         }
         if (p->level)
-            level_looks_up(p, y, up);
+            level_looks_up(p, y, up, spare);
         else
             frame_looks_up(p, y, up, spare);
     }
@@ -346,7 +396,7 @@ static enum status resize(struct defocus *d, int width, int height, struct err *
         l->width = (from->width + 1) / 2;
         l->height = (from->height + 1) / 2;
         l->stride = (size_t)(l->width + 7) / 8 * 8;
-        l->plane = CHANNELS * l->stride;
+        l->plane = (CHANNELS + UP_CHANNELS) * l->stride;
         size += l->plane * (size_t)l->height;
     }
     d->scratch_size = (CHANNELS + 6) * line_size(width + 1) + 4 * CHANNELS * line_size((width + 1) / 2);

@@ -13,7 +13,8 @@
  *
  * The look-up is trilinear, bottom up: level by level bilinear (weights 3/4 1/4 on each axis), down by its transpose
  * (1 3 3 1) / 8, so that a moving point's blur moves evenly. The kernel of level l has the variance (4^l - 1) / 2, a disk
- * c^2 / 16, hence l = log4(1 + c^2 / 8), and between two levels the mixture that has the variance asked for.
+ * c^2 / 16, hence l = log4(1 + c^2 / 8). In between stand the level smoothed by (1 2 1) / 4, of twice the variance, and the
+ * mixture of neighbours that has the variance asked for.
  *
  * What differs from the thesis: it blends pixels behind the focus with a blurred picture by the mean depth and part of
  * near pixels around; its kernels are Gaussians on one level. */

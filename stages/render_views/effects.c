@@ -2,6 +2,7 @@
 #include "stages/render_views/effects.h"
 
 #include <assert.h>
+#include <ctype.h>
 #include <locale.h>
 #include <math.h>
 #include <stdbool.h>
@@ -21,6 +22,13 @@
 
 static const char *const kind_words[] = {"saturation", "brightness", "color"};
 static const char *const region_words[] = {"all", "inside", "outside"};
+
+static bool name_is_good(const char *name)
+{
+    for (const char *c = name; *c; c++)
+        if (iscntrl((unsigned char)*c)) return false;
+    return *name && strlen(name) <= NAME_MOST;
+}
 
 static int values_of(enum effect_kind kind) { return kind == EFFECT_COLOR ? 3 : 1; }
 
@@ -77,7 +85,7 @@ static enum status read_layer(struct textfile *t, struct effects *e, bool has_re
         return textfile_error(t, err, "layer", "a %s of the layer %s", wanted, e->layers[e->layer_count - 1].name);
     enum status st = textfile_word(t, "the layer's name", &name, err);
     if (st) return st;
-    if (!*name || strlen(name) > NAME_MOST) return textfile_error(t, err, name, "a name of 1 to %d letters", NAME_MOST);
+    if (!name_is_good(name)) return textfile_error(t, err, name, "a name of 1 to %d printed letters", NAME_MOST);
     for (int i = 0; i < e->layer_count; i++)
         if (!strcmp(e->layers[i].name, name)) return textfile_error(t, err, name, "a name that no layer has yet");
     if (e->layer_count == EFFECT_LAYERS_MOST)
@@ -193,7 +201,7 @@ static bool within(double value, double least, double most) { return value >= le
 static bool layer_is_good(const struct effects *e, int index)
 {
     const struct effect_layer *l = &e->layers[index];
-    bool good = l->name && *l->name && strlen(l->name) <= NAME_MOST && within(l->key_count, 1, KEYS_MOST);
+    bool good = l->name && name_is_good(l->name) && within(l->key_count, 1, KEYS_MOST);
 
     for (int i = 0; good && i < index; i++) good = strcmp(e->layers[i].name, l->name) != 0;
     if (l->region != EFFECT_ALL)

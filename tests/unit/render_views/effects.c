@@ -86,6 +86,7 @@ static void what_is_wrong_is_told(void **state)
         {"remodel-effects 2\n", ":1:", "found \"2\""},
         {HEAD "region all\n", ":2:", "wanted layer"},
         {HEAD "layer\n", ":2:", "the layer's name"},
+        {HEAD "layer a\rb color\n", ":2:", "a name of 1 to 64 printed letters"},
         {HEAD "layer a hue\n", ":2:", "found \"hue\", wanted what the layer changes: saturation, brightness or color"},
         {HEAD "layer a color 1\n", ":2:", "wanted the end of the line"},
         {LAYER, ":2:", "found the end of the file, wanted a region of the layer a"},
