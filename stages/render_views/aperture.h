@@ -1,16 +1,16 @@
-/* aperture.h - depth of field of the offline renderer: the view moved over a lens, averaged on the plane in focus (thesis
- * 3.6.2).
+/* aperture.h - depth of field of the offline renderer: the view moved over a lens, averaged on the plane in focus
+ * (thesis 3.6.2).
  *
  * A pinhole at the lens's centre sees the camera point (X, Y, Z) at u = fx X / Z + cx. From the lens point (a, b), an
  * offset of the centre in the camera's x and y, with the principal point moved by fx a / focus, it is at
  *   u' = fx (X - a) / Z + cx + fx a / focus = u + fx a (1 / focus - 1 / Z) = u + fx a (Z - focus) / (Z focus)
- * (v the same with fy and b): exactly u at Z = focus, so that frames need not be warped to be averaged; elsewhere the
- * lens's disk, |(a, b)| <= aperture / 2, becomes the circle of confusion, of diameter aperture fx |Z - focus| / (Z focus)
- * px. What is in focus is a plane parallel to the picture.
+ * (v the same with fy and b): exactly u at Z = focus, so that frames need not be warped to be averaged; elsewhere
+ * the lens's disk, |(a, b)| <= aperture / 2, becomes the circle of confusion, of diameter aperture fx |Z - focus| /
+ * (Z focus) px. What is in focus is a plane parallel to the picture.
  *
- * Lens points: Sobol's first two dimensions, Owen-scrambled (common/rng.h), mapped to the disk with areas kept (P. Shirley
- * and K. Chiu 1997): the same for all frames, so that nothing flickers. Measured on smooth functions of the lens their mean
- * errs half as much at 32 and more points as that of the R2 sequence, and halves tell more of it. */
+ * Lens points: Sobol's first two dimensions, Owen-scrambled (common/rng.h), mapped to the disk with areas kept (P.
+ * Shirley and K. Chiu 1997): the same for all frames, so that nothing flickers. Measured on smooth functions of the
+ * lens their mean errs half as much at 32 and more points as that of the R2 sequence, and halves tell more of it. */
 #ifndef REMODEL_RENDER_VIEWS_APERTURE_H
 #define REMODEL_RENDER_VIEWS_APERTURE_H
 
@@ -22,7 +22,7 @@
     X(aperture_samples, int, 128, 1, 4096, "",                                   \
       "most points of the lens, a pinhole frame each, of a frame with depth of " \
       "field")                                                                   \
-    X(aperture_error, double, 0.006, 0, 1, "",                                   \
+    X(aperture_error, double, 0.012, 0, 1, "",                                   \
       "points are added until the estimated error is below this, 1 being "       \
       "white and errors those of encoded pixels")
 
@@ -45,12 +45,13 @@ void aperture_lens_point(int index, double *x, double *y);
 /* The camera from a lens point (a, b), in scene units. */
 struct view aperture_view(const struct view *camera, double a, double b, double focus);
 
-/* out: rgba the (premultiplied) mean of the frames from the lens's points; z, hole and fractions of one more frame, at the
- * lens's centre. aperture 0: that frame itself. Points are added in batches that double their number, from 8. The error estimate: with the means A
- * and B of the points before and in the last batch, n_A and n_B of them, the error of the whole mean is about
- * |A - B| sqrt(n_A n_B) / (n_A + n_B); of it, on square roots of colours cut at white, the root mean square in each 32x32
- * tile, and of the tiles the 98th percentile, so that a small blurred part is not lost in a sharp picture. stats may be NULL.
- * ST_DATA: an aperture below 0, a focus that is not above 0. Same bits for any number of threads. */
+/* out: rgba the (premultiplied) mean of the frames from the lens's points; z, hole and fractions of one more frame,
+ * at the lens's centre. aperture 0: that frame itself. Points are added in batches that double their number, from 8.
+ * The error estimate: with the means A and B of the points before and in the last batch, n_A and n_B of them, the
+ * error of the whole mean is about |A - B| sqrt(n_A n_B) / (n_A + n_B); of it, on square roots of colours cut at
+ * white, the root mean square in each 32x32 tile, and of the tiles the 98th percentile, so that a small blurred part
+ * is not lost in a sharp picture. stats may be NULL. ST_DATA: an aperture below 0, a focus that is not above 0. Same
+ * bits for any number of threads. */
 enum status aperture_render(struct rendered_frame *out, const struct view *camera, double aperture, double focus,
                             const struct aperture_options *options, aperture_pinhole *render, void *ctx,
                             struct aperture_stats *stats, struct err *err);

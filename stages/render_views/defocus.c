@@ -1,12 +1,13 @@
 /* defocus.c - see defocus.h.
  *
- * m = 4^l = 1 + c^2 / 8 stands for a blur everywhere: on level k, of what wants m, the part (m - 4^k) / (3 4^k), cut to
- * [0, 1], goes on to coarser levels. A texel's m is the mean of what came down to it.
+ * m = 4^l = 1 + c^2 / 8 stands for a blur everywhere. Of what wants m, a part stays on a level, as it is or
+ * smoothed, and the rest goes on to coarser ones: beyond(), smoothed(). A texel's m is the mean of what came down to
+ * it.
  *
- * Channels of a level: of the back colour x weight, weight, m x weight; of the near layer colour, coverage, m x coverage; and the
- * part of it that is not near. On the way up beside them comes what is looked up there, for the near layer
- * the sum of what was left on this level and on coarser ones. All loops run over lines of one channel,
- * eight texels at a time; lines are padded, and what stands in the padding is never looked at. */
+ * Channels of a level: of the back colour x weight, weight, m x weight; of the near layer colour, coverage, m x
+ * coverage; and how much of the texel is not near (OPEN). On the way up beside them comes what is looked up there,
+ * for the near layer the sum of what was left on this level and on coarser ones. All loops run over lines of one
+ * channel, eight texels at a time; lines are padded, and what stands in the padding is never looked at. */
 #include "stages/render_views/defocus.h"
 
 #include <immintrin.h>
@@ -20,7 +21,7 @@
 enum { BACK, BACK_WEIGHT = 3, NEAR, NEAR_COVER = 7, OPEN, BACK_M, NEAR_M, CHANNELS };
 #define UP_CHANNELS BACK_M /* BACK .. OPEN are looked up, the means are not; the results stand behind the channels */
 
-#define ROWS     16          /* a chunk */
+#define ROWS     32          /* a chunk */
 #define MARGIN   8           /* floats beside a line, for what lies beyond its ends */
 #define LEAST    (1.0f / 64) /* weight of what is too sharp for a level, or hidden: used where there is nothing else */
 #define TINY     1e-30f      /* keeps 0 / 0 out */
@@ -43,14 +44,14 @@ static inline v8 ramp(v8 m, float from, float to)
     return least(most((m - from) * (1 / (to - from)), all(0)), all(1));
 }
 
-/* The part of what wants the blur m that goes beyond a level, whose own is `here` = 4^level. What stays is taken as it is, or,
- * on levels of the pyramid, smoothed by (1 2 1) / 4, which stands for the blur 2 `here`: so the kernels that are mixed differ by
- * half an octave, and no sharp core shows through a wide one. */
+/* The part of what wants the blur m that goes beyond a level, whose own is `here` = 4^level. What stays is taken as
+ * it is, or, on levels of the pyramid, smoothed by (1 2 1) / 4, which stands for the blur 2 `here`: so the kernels
+ * that are mixed differ by half an octave, and no sharp core shows through a wide one. */
 static inline v8 beyond(v8 m, float here) { return here > 1 ? ramp(m, 2 * here, 4 * here) : ramp(m, 1, 4); }
 static inline v8 smoothed(v8 m, float here) { return ramp(m, here, 2 * here) - beyond(m, here); }
 
-/* The same for the weight of what serves others' look-ups: something blurred serves up to one level more, so that edges between
- * blurs have no step; something sharp does not. */
+/* The same for the weight of what serves others' look-ups: something blurred serves up to one level more, so that
+ * edges between blurs have no step; something sharp does not. */
 static inline v8 serves(v8 m, float here) { return most(beyond(m * least(m, all(SPREAD)), here), all(LEAST)); }
 
 struct pass {
@@ -117,8 +118,9 @@ static inline v8 blur_of(const struct pass *p, v8 z)
 
 static inline v8 known(v8 z) { return if_below(0 - z, z, all(FARTHEST)); }
 
-/* The blur of each pixel of a row. A pixel at the side of a blurred near one is taken for near too: silhouettes are mixed pixels, and
- * what they have of the near surface would stand sharp under its blur. `nearest` is a scratch line. */
+/* The blur of each pixel of a row. A pixel at the side of a blurred near one is taken for near too: silhouettes are
+ * mixed pixels, and what they have of the near surface would stand sharp under its blur. `nearest` is a scratch
+ * line. */
 static void row_blur(float *m, const struct pass *p, int y, float *nearest)
 {
     const int w = p->frame->width, h = p->frame->height;
@@ -262,7 +264,8 @@ static void double_line(float *restrict to, float *restrict blend, const struct 
     }
 }
 
-/* lines[k]: rows y - 1 .. y + 1 of the channels that hold light, by (1 2 1) / 4; of the near ones what is to be smoothed. */
+/* lines[k]: rows y - 1 .. y + 1 of the channels that hold light, by (1 2 1) / 4; of the near ones what is to be
+ * smoothed. */
 static void smooth_rows(const struct pass *p, int y, float *const *lines)
 {
     const struct defocus_level *l = &p->d->levels[p->level];
@@ -338,8 +341,8 @@ static void frame_looks_up(const struct pass *p, int y, float *const *up, float 
         for (int k = 0; k < 3; k++) put(rgba[k] + x, get(rgba[k] + x) * own + get(up[BACK + k] + x) * coarser);
     }
     for (int x = 0; p->any_near && x < w; x += 8) {
-        /* A pixel of the back lies under the near layer; a near pixel is a part of it, and where the layer does not cover it
-         * the back shows as far as there is any within its own blur. */
+        /* A pixel of the back lies under the near layer; a near pixel is a part of it, and where the layer does not
+         * cover it the back shows as far as there is any within its own blur. */
         const v8 m_signed = get(m + x), alpha = get(rgba[3] + x);
         const v8 on = beyond(if_below(m_signed, -m_signed, m_signed), 1), own = 1 - on;
         const v8 cover = get(up[NEAR_COVER] + x) + if_below(m_signed, alpha * own, all(0));

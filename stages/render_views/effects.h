@@ -2,7 +2,7 @@
  *
  * Layers are laid over a finished frame in the order written, each over what the ones before gave. Where a pixel is in
  * the world is told by the frame's z; the file is described in docs/formats.md. In scene-linear, premultiplied colour:
- *   saturation s   c + w (s - 1) (c - Y), Y the Rec.709 luminance, which stays: an s above 1 ends where a colour would be below 0
+ *   saturation s   c + w (s - 1) (c - Y), Y the Rec.709 luminance, which stays; it ends where a colour would be below 0
  *   brightness b   c (1 + w (b - 1))
  *   color r g b    the same with a factor for each colour
  * w is 1 in the whole picture, or 1 in a box and exp(-d^2 / (2 falloff^2)) at distance d from it, or 1 less that. */
@@ -47,8 +47,8 @@ void effects_release(struct effects *e);
 /* Linear between keys, held before the first and after the last. */
 void effect_layer_value(const struct effect_layer *layer, double time, double value[3]);
 
-/* Changes rgba of a frame of that camera; a pixel with z 0 is farther than any box. Layers that change nothing at that time cost
- * nothing and leave every bit. Colours do not go below 0. Same bits for any number of threads. */
+/* Changes rgba of a frame of that camera; a pixel with z 0 is farther than any box. Layers that change nothing at
+ * that time cost nothing and leave every bit. Colours do not go below 0. Same bits for any number of threads. */
 void effects_apply(const struct effects *e, double time, const struct view *camera, struct rendered_frame *frame);
 
 #endif

@@ -11,7 +11,8 @@
 #define W 180
 #define H 120
 
-/* A wall with a pattern, and before it a board, a half-plane with a slanted edge or a square, of one colour or a pattern. */
+/* A wall with a pattern, and before it a board, a half-plane with a slanted edge or a square, of one colour or a
+ * pattern. */
 struct world {
     double wall, board;
     bool square;
