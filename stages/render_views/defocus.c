@@ -5,9 +5,10 @@
  * it.
  *
  * Channels of a level: of the back colour x weight, weight, m x weight; of the near layer colour, coverage, m x
- * coverage; and how much of the texel is not near (OPEN). On the way up beside them comes what is looked up there,
- * for the near layer the sum of what was left on this level and on coarser ones. All loops run over lines of one
- * channel, eight texels at a time; lines are padded, and what stands in the padding is never looked at. */
+ * coverage; and OPEN, how much of a texel is not near, or much less blurred than the level: what a pixel that looks up
+ * this level lets be seen. On the way up beside them comes what is looked up there; of the near layer what was left on
+ * coarser levels, which is nearer, then what is left on this one as far as there is room. All loops run over lines of
+ * one channel, eight texels at a time; lines are padded, and what stands in the padding is never looked at. */
 #include "stages/render_views/defocus.h"
 
 #include <immintrin.h>
@@ -19,14 +20,17 @@
 #include "common/parallel.h"
 
 enum { BACK, BACK_WEIGHT = 3, NEAR, NEAR_COVER = 7, OPEN, BACK_M, NEAR_M, CHANNELS };
-#define UP_CHANNELS BACK_M /* BACK .. OPEN are looked up, the means are not; the results stand behind the channels */
+#define UP_CHANNELS BACK_M /* results are of BACK .. OPEN, and stand behind the channels */
 
 #define ROWS     32          /* a chunk */
 #define MARGIN   8           /* floats beside a line, for what lies beyond its ends */
 #define LEAST    (1.0f / 64) /* weight of what is too sharp for a level, or hidden: used where there is nothing else */
-#define TINY     1e-30f      /* keeps 0 / 0 out */
+#define TINY     1e-36f      /* keeps 0 / 0 out */
 #define FARTHEST 1e30f       /* stands for unknown depths */
 #define BLURRED  1.5f        /* m of a near surface whose silhouette is widened */
+#define HARDLY   2           /* m from where on a near surface ceases to stand behind others, */
+#define FULLY    8           /* up to here, where its weight there is */
+#define LAST     1e-9f       /* this, which counts where there is nothing else */
 #define SPREAD   4           /* how much more than its own m a pixel of the back may serve */
 
 typedef float v8 __attribute__((vector_size(32)));
@@ -159,7 +163,10 @@ static void frame_goes_down(const struct pass *p, int y, float *const *lines, fl
     row_apart(rgba, p->frame->rgba + (size_t)y * (size_t)w * 4, w);
     row_blur(m, p, y, rgba[5]);
     for (int x = 0; x < w; x += 8) {
-        const v8 size = get(m + x), part = if_below(size, all(0), serves(size, 1)), weight = get(rgba[3] + x) * part;
+        /* what is near but hardly blurred may stand behind what is more so */
+        const v8 m_signed = get(m + x), size = if_below(m_signed, -m_signed, m_signed);
+        const v8 part = serves(size, 1) * most(1 - ramp(-m_signed, HARDLY, FULLY), all(LAST)),
+                 weight = get(rgba[3] + x) * part;
         for (int k = 0; k < 3; k++) put(lines[BACK + k] + x, get(rgba[k] + x) * part);
         put(lines[BACK_WEIGHT] + x, weight);
         put(lines[BACK_M] + x, weight * size);
@@ -190,11 +197,11 @@ static void level_goes_down(const struct pass *p, int y, float *const *lines)
     for (int x = 0; p->any_near && x < l->width; x += 8) {
         const float *at = row + x;
         const v8 cover = get(at + NEAR_COVER * stride), m = get(at + NEAR_M * stride);
-        const v8 part = beyond(m / (cover + TINY), here);
+        const v8 wanted = m / (cover + TINY), part = beyond(wanted, here), open = get(at + OPEN * stride);
         for (size_t k = NEAR; k < NEAR_COVER; k++) put(lines[k] + x, get(at + k * stride) * part);
         put(lines[NEAR_COVER] + x, cover * part);
         put(lines[NEAR_M] + x, m * part);
-        put(lines[OPEN] + x, get(at + OPEN * stride));
+        put(lines[OPEN] + x, 1 - (1 - open) * ramp(wanted, here / 4, here));
     }
 }
 
@@ -298,6 +305,9 @@ static void smooth_rows(const struct pass *p, int y, float *const *lines)
 
 static inline v8 smooth(const float *at) { return 0.25f * (get(at - 1) + get(at + 1)) + 0.5f * get(at); }
 
+/* The part of a coverage for which there is room beside what is nearer. */
+static inline v8 room_for(v8 cover, v8 nearer) { return least(most(1 - nearer, all(0)) / (cover + TINY), all(1)); }
+
 static void level_looks_up(const struct pass *p, int y, float *const *up, float *const *lines)
 {
     const struct defocus_level *l = &p->d->levels[p->level];
@@ -320,10 +330,14 @@ static void level_looks_up(const struct pass *p, int y, float *const *up, float 
     }
     for (int x = 0; p->any_near && x < l->width; x += 8) {
         float *at = row + x;
-        const v8 m = get(at + NEAR_M * stride) / (get(at + NEAR_COVER * stride) + TINY), on = beyond(m, here);
-        const v8 sharp = 1 - on - smoothed(m, here);
-        for (size_t k = NEAR; k <= NEAR_COVER; k++)
-            put(at + k * stride + result, get(at + k * stride) * sharp + smooth(lines[k] + x) + get(up[k] + x));
+        const v8 cover = get(at + NEAR_COVER * stride), nearer = get(up[NEAR_COVER] + x);
+        const v8 m = get(at + NEAR_M * stride) / (cover + TINY), on = beyond(m, here),
+                 sharp = 1 - on - smoothed(m, here);
+        const v8 left = cover * sharp + smooth(lines[NEAR_COVER] + x), room = room_for(left, nearer);
+        for (size_t k = NEAR; k < NEAR_COVER; k++)
+            put(at + k * stride + result,
+                (get(at + k * stride) * sharp + smooth(lines[k] + x)) * room + get(up[k] + x));
+        put(at + NEAR_COVER * stride + result, left * room + nearer);
         put(at + OPEN * stride + result, get(at + OPEN * stride) * (1 - on) + get(up[OPEN] + x) * on);
     }
 }
@@ -345,10 +359,11 @@ static void frame_looks_up(const struct pass *p, int y, float *const *up, float 
          * cover it the back shows as far as there is any within its own blur. */
         const v8 m_signed = get(m + x), alpha = get(rgba[3] + x);
         const v8 on = beyond(if_below(m_signed, -m_signed, m_signed), 1), own = 1 - on;
-        const v8 cover = get(up[NEAR_COVER] + x) + if_below(m_signed, alpha * own, all(0));
+        const v8 nearer = get(up[NEAR_COVER] + x), room = room_for(alpha * own, nearer);
+        const v8 cover = nearer + if_below(m_signed, alpha * own * room, all(0));
         const v8 left = most(1 - cover, all(0)), seen = on * get(up[OPEN] + x);
         const v8 layer = 1 / if_below(m_signed, cover + seen + TINY, most(cover, all(1)));
-        const v8 mine = own * if_below(m_signed, layer, left);
+        const v8 mine = own * if_below(m_signed, layer * room, left);
         const v8 coarser = if_below(m_signed, layer * seen, left * on * alpha) / (get(up[BACK_WEIGHT] + x) + TINY);
         for (int k = 0; k < 3; k++)
             put(rgba[k] + x,

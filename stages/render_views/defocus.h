@@ -7,7 +7,8 @@
  *
  *  - before the focus a surface's light spreads over whatever is behind it. Each pixel's colour and coverage descend
  *    to the level of its own blur and are left there; the levels, brought up again and added, are the near layer,
- *    whose coverage fades across a silhouette. It is laid over the rest.
+ *    whose coverage fades across a silhouette. What is nearer is blurred more, so a coarser level
+ *    covers a finer one where they add up to more than 1. The layer is laid over the rest.
  *  - in or behind the focus a pixel sees through its own circle what is not hidden by nearer things. It looks up the
  *    level of its own blur in a pyramid where a pixel counts on the way down only as long as its own blur is of the
  *    level's size: what is sharp or near does not bleed into a blurred background. Near pixels count nothing; behind

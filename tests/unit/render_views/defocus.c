@@ -104,6 +104,7 @@ static void it_is_near_what_a_lens_gives(void **state)
         {"edge-far", {4, 1.5, false, 0, 0.9f}, 0.3, 1.5, 32, 9},
         {"both-behind", {8, 2, true, 0, 0.9f}, 0.2, 1, 30, 9},
         {"both-before", {2, 1.5, true, 0, 0.9f}, 0.2, 8, 35, 9},
+        {"hardly-near", {4, 1.5, true, 0, 0.9f}, 0.2, 4.2, 36, 9}, /* the wall too is before the focus, by 0.4 px */
         {"between", {6, 1.2, true, 0, 0}, 0.15, 2.2, 35, 8},
     };
     const struct view v = a_camera();
