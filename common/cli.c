@@ -147,10 +147,11 @@ static enum status store(const struct cli_opt *o, const char *value, bool again,
     char shown[SCAN_SHOWN];
     int64_t v;
 
-    if (again && (o->kind == CLI_KIND_STR || o->kind == CLI_KIND_INT))
+    if (again && (o->kind == CLI_KIND_STR || o->kind == CLI_KIND_PARAM || o->kind == CLI_KIND_INT))
         return err_set(err, ST_USAGE, "--%s is given twice; keep one.", o->name);
     switch (o->kind) {
     case CLI_KIND_STR:
+    case CLI_KIND_PARAM:
         *(const char **)o->value = value;
         return ST_OK;
     case CLI_KIND_LIST:
@@ -200,9 +201,22 @@ static enum status take_arg(int argc, char **argv, int *i, const struct known *k
     return store(o, value, again, err);
 }
 
-/* Config files, then --set, then the relations between parameters; the outcome goes to the provenance. */
-static enum status effective_params(const struct cli_opt *params, const struct common_opts *common, const char *stage,
-                                    struct provenance *prov, struct err *err)
+static enum status set_param(const struct cli_opt *params, const struct cli_opt *o, struct err *err)
+{
+    const char *value = *(const char *const *)o->value;
+    char assignment[PARAM_TEXT_SIZE + 64];
+
+    if (!value) return ST_OK;
+    if (snprintf(assignment, sizeof assignment, "%s=%s", o->name, value) >= (int)sizeof assignment)
+        return err_set(err, ST_USAGE, "--%s: its value is too long.", o->name);
+    return params_set(params->table, params->value, assignment, err);
+}
+
+/* Config files, then --set and options that are parameters, then the relations between parameters; the outcome goes to
+ * the provenance. */
+static enum status effective_params(const struct cli_opt *opts, const struct cli_opt *params,
+                                    const struct common_opts *common, const char *stage, struct provenance *prov,
+                                    struct err *err)
 {
     size_t size = 0;
     enum status st = ST_OK;
@@ -211,6 +225,8 @@ static enum status effective_params(const struct cli_opt *params, const struct c
         st = params_read_file(params->table, params->value, stage, common->configs.items[i], err);
     for (int i = 0; !st && i < common->sets.count; i++)
         st = params_set(params->table, params->value, common->sets.items[i], err);
+    for (const struct cli_opt *o = opts; !st && o->kind != CLI_KIND_END; o++)
+        if (o->kind == CLI_KIND_PARAM) st = set_param(params, o, err);
     if (!st && params->check) st = params->check(params->value, err);
     if (st) return st;
 
@@ -251,7 +267,7 @@ static enum status parse(int argc, char **argv, const char *stage, const struct 
     if (!st && (common->threads < 0 || common->threads > MOST_THREADS))
         st = err_set(err, ST_USAGE, "--threads %d: wanted 0 (as many as there are cores) to %d.", common->threads,
                      MOST_THREADS);
-    if (!st) st = effective_params(params, common, stage, prov, err);
+    if (!st) st = effective_params(opts, params, common, stage, prov, err);
     if (st || common->print_config) {
         if (!st) fputs(prov->params, stdout);
         return st;

@@ -18,6 +18,7 @@ enum cli_kind {
     CLI_KIND_LIST,
     CLI_KIND_INT,
     CLI_KIND_FLAG,
+    CLI_KIND_PARAM,
     CLI_KIND_PARAMS
 };
 
@@ -59,6 +60,11 @@ struct cli_opt {
     {                                                     \
         CLI_KIND_FLAG, name, ptr, false, help, NULL, NULL \
     } /* bool * */
+/* A parameter that has an option of its own: --NAME VALUE is the last --set NAME=VALUE. */
+#define CLI_PARAM(name, ptr, help)                         \
+    {                                                      \
+        CLI_KIND_PARAM, name, ptr, false, help, NULL, NULL \
+    }
 #define CLI_PARAMS(table, ptr, check)                         \
     {                                                         \
         CLI_KIND_PARAMS, NULL, ptr, false, NULL, table, check \

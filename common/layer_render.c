@@ -68,7 +68,7 @@ struct frame_job {
     struct drawn_view *drawn; /* a view */
     struct other_view *by_distance;
     float *more_weight, *standing; /* a view: what it adds to the mesh's weights, and counts among views that vote */
-    bool offline;
+    bool offline, nearest_alone;
     struct scratch *scratch; /* a thread */
     struct rendered_frame *out;
     enum status *prepared; /* a view */
@@ -148,6 +148,7 @@ static enum status job_init(struct frame_job *job, struct rendered_frame *out, c
     const size_t count = (size_t)views + 1, threads = (size_t)parallel_threads();
 
     *job = (struct frame_job){.scene = scene, .novel = *novel, .out = out, .offline = options->offline};
+    job->nearest_alone = options->nearest_alone;
     job->soft = layer_scene_soft_z(scene, options->soft_z);
     job->tiles_x = (novel->width + TILE_WIDTH - 1) / TILE_WIDTH;
     job->tiles = job->tiles_x * ((novel->height + TILE_HEIGHT - 1) / TILE_HEIGHT);
@@ -170,7 +171,7 @@ static enum status job_init(struct frame_job *job, struct rendered_frame *out, c
         job->by_distance[i].distance = vec3_length(vec3_sub(scene->set->views[i].center, novel->center));
     }
     qsort(job->by_distance, (size_t)views, sizeof *job->by_distance, compare_distance);
-    if (job->offline) weigh_more_views(job, options->more_views);
+    if (job->offline && !job->nearest_alone) weigh_more_views(job, options->more_views);
     return ST_OK;
 }
 
@@ -220,6 +221,10 @@ static void patch_drop(struct patch *p)
 static void patch_init(struct patch *p, const struct frame_job *job, int x, int y)
 {
     p->count = 0;
+    if (job->nearest_alone) {
+        *p = (struct patch){.count = 1, .view = {job->by_distance[0].view}, .weight = {{1, 1, 1, 1}}};
+        return;
+    }
     for (int corner = 0; corner < 4; corner++) {
         const struct view_weights *w =
             &job->lattice[(size_t)(y + corner / 2) * (size_t)job->lattice_width + (size_t)(x + corner % 2)];
@@ -580,7 +585,7 @@ static void render_tiles(void *ctx, size_t begin, size_t end, int thread)
         memset(s->covered, 0, sizeof s->covered);
         memset(s->other, 0, sizeof s->other);
         draw_named_views(job, s, &at);
-        if (any_hole(s, &at)) draw_other_views(job, s, &at, true);
+        if (!job->nearest_alone && any_hole(s, &at)) draw_other_views(job, s, &at, true);
         for (int k = 0; k < at.patches; k++) blend_patch(job, s, &at, k);
         write_holes(job, s, &at);
     }
@@ -595,7 +600,8 @@ enum status layer_render(struct rendered_frame *out, const struct layer_scene *s
     if (!st) {
         parallel_for((size_t)job.tiles, 1, render_tiles, &job);
         out->hole_fraction = hole_fraction(out);
-        st = hole_fill(out, &job.soft, (float)scene->sigma, options->fill_diameter, err);
+        const struct soft_z soft = layer_scene_soft_z(scene, SOFT_Z_FILL_WIDTHS);
+        st = hole_fill(out, &soft, (float)scene->sigma, options->fill_diameter, err);
     }
     job_release(&job);
     return st;

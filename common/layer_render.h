@@ -18,7 +18,8 @@
 #include "layer_scene.h"
 #include "rendered_frame.h"
 
-#define SOFT_Z_WIDTHS 3 /* the usual soft_z */
+#define SOFT_Z_WIDTHS      8 /* the usual soft_z */
+#define SOFT_Z_FILL_WIDTHS 3 /* of the reversed one that fills holes: narrow, so that only the far side comes in */
 
 #define LAYER_MORE_VIEWS 12
 
@@ -27,7 +28,8 @@ struct layer_render_options {
         offline; /* all segments of all contributing views in one soft z (soft_z_merge); else the two nearest surfaces of
                           a view are composited, then views are blended */
     int more_views; /* offline: this many of the nearest views (at most LAYER_MORE_VIEWS) are blended and vote, too */
-    double soft_z;  /* width of the soft z, in depth uncertainties; 0: the thesis' (rho, rho / 10) */
+    bool nearest_alone; /* the view nearest to the camera and no other: what blending is compared with */
+    double soft_z;      /* width of the soft z, in depth uncertainties; 0: the thesis' (rho, rho / 10) */
     int fill_diameter; /* holes narrower than this (px) are filled by the reverse soft z in 7x7, wider ones by a pyramid
                           that prefers the far side; 0: none is filled */
 };

@@ -2,6 +2,7 @@
 #include "stages/render_views/frames.h"
 
 #include <ctype.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,9 +11,45 @@
 #include "common/progress.h"
 #include "common/view_image.h"
 
-#define PARAM_STRUCT struct render_params
-const struct param render_param_table[] = {RENDER_PARAMS(PARAM_ROW) PARAM_END};
-#undef PARAM_STRUCT
+enum status frame_part_read(struct frame_part *part, const char *crop, const char *scale, struct err *err)
+{
+    int used = 0;
+    char *end = NULL;
+
+    *part = (struct frame_part){.scale = 1};
+    if (crop && (sscanf(crop, "%9d,%9d,%9d,%9d%n", &part->x, &part->y, &part->width, &part->height, &used) != 4 ||
+                 crop[used] || part->x < 0 || part->y < 0 || part->width < 1 || part->height < 1))
+        return err_set(err, ST_USAGE, "--crop %s: wanted X,Y,WIDTH,HEIGHT in pixels, like 100,50,640,480.", crop);
+    if (scale) part->scale = strtod(scale, &end);
+    if (scale && (end == scale || *end || !(part->scale > 0 && part->scale <= 16)))
+        return err_set(err, ST_USAGE, "--scale %s: wanted a number above 0, at most 16.", scale);
+    return ST_OK;
+}
+
+enum status frame_part_camera(struct view *camera, const struct frame_part *part, struct err *err)
+{
+    if (part->width) {
+        if (part->x > camera->width - part->width || part->y > camera->height - part->height)
+            return err_set(err, ST_USAGE, "--crop %d,%d,%d,%d: the picture of %s has %d x %d pixels.", part->x, part->y,
+                           part->width, part->height, camera->name, camera->width, camera->height);
+        camera->cx -= part->x;
+        camera->cy -= part->y;
+        camera->width = part->width;
+        camera->height = part->height;
+    }
+    if (part->scale == 1) return ST_OK;
+    const int width = (int)lround(camera->width * part->scale), height = (int)lround(camera->height * part->scale);
+    if (width < 1 || height < 1 || width > 65536 || height > 65536)
+        return err_set(err, ST_USAGE, "--scale %g makes a picture of %d x %d pixels of the %d x %d of %s.", part->scale,
+                       width, height, camera->width, camera->height, camera->name);
+    camera->fx *= (double)width / camera->width;
+    camera->cx *= (double)width / camera->width;
+    camera->fy *= (double)height / camera->height;
+    camera->cy *= (double)height / camera->height;
+    camera->width = width;
+    camera->height = height;
+    return ST_OK;
+}
 
 /* A number of 1 .. most at *text, which is moved behind it; 0 if there is none. */
 static int frame_number(const char **text, int most)
@@ -75,11 +112,9 @@ static enum status frame_write(const struct rendered_frame *f, const struct view
     return st;
 }
 
-enum status frames_render(const struct camera_path *path, const bool *wanted, const struct layer_scene *scene,
-                          const struct render_params *params, const char *folder, const struct provenance *prov,
-                          struct err *err)
+enum status frames_render(const struct camera_path *path, const bool *wanted, struct renderer *renderer,
+                          const char *folder, const struct provenance *prov, struct err *err)
 {
-    const struct layer_render_options options = {.offline = getenv("OFFLINE") != NULL, .more_views = 12, .soft_z = params->soft_z, .fill_diameter = params->fill_diameter};
     const size_t size = strlen(folder) + 64;
     struct rendered_frame frame = {0};
     struct progress progress;
@@ -94,7 +129,7 @@ enum status frames_render(const struct camera_path *path, const bool *wanted, co
         const struct view *camera = &path->frames[i].camera;
         if (!wanted[i]) continue;
         snprintf(file, size, "%s/%.32s.exr", folder, camera->name);
-        st = layer_render(&frame, scene, camera, &options, err);
+        st = renderer_frame(renderer, i, &frame, err);
         if (!st && frame.hole_fraction >= 1)
             st = err_set(err, ST_DATA,
                          "frame %d of the path sees nothing of the scene: no view covers any of its pixels. "
@@ -124,11 +159,9 @@ enum status cameras_select(bool *wanted, const struct camera_set *cameras, const
     return ST_OK;
 }
 
-enum status cameras_render(const struct camera_set *cameras, const bool *wanted, const struct layer_scene *scene,
-                           const struct render_params *params, const char *folder, const struct provenance *prov,
-                           struct err *err)
+enum status cameras_render(const struct camera_set *cameras, const bool *wanted, struct renderer *renderer,
+                           const char *folder, const struct provenance *prov, struct err *err)
 {
-    const struct layer_render_options options = {.offline = getenv("OFFLINE") != NULL, .more_views = 12, .soft_z = params->soft_z, .fill_diameter = params->fill_diameter};
     struct progress progress;
     int count = 0;
     enum status st = ST_OK;
@@ -143,7 +176,7 @@ enum status cameras_render(const struct camera_set *cameras, const bool *wanted,
         if (wanted[i] && !file) st = err_nomem(err, "a file name", size);
         if (wanted[i] && !st) {
             snprintf(file, size, "%s/%s.exr", folder, camera->name);
-            st = layer_render(&frame, scene, camera, &options, err);
+            st = renderer_camera(renderer, camera, &frame, err);
             if (!st && frame.hole_fraction >= 1)
                 log_warn("camera %s sees nothing of the scene: its frame is empty", camera->name);
             if (!st) st = frame_write(&frame, camera, true, file, prov, err);

@@ -4,6 +4,7 @@
  *         DEPTH/VIEW.exr, VIEW.txt                      layers and segments of every view
  *         PATH/path.txt, path/NAME.txt                  the move; or
  *         CAMERAS/cameras.txt, images.txt, points3D.txt cameras of any sizes, such as those of views that are held out
+ *         EFFECTS.txt                                   layers of colour changes, of a move
  * writes  OUT/NNNN.exr                                  a file a frame: R G B A, Z; or
  *         OUT/CAMERA.exr                                the same and hole, a file a camera */
 #include <stdio.h>
@@ -37,89 +38,119 @@ static enum status add_inputs(struct provenance *prov, const char *views, const 
     return st;
 }
 
-static enum status render_path(const char *views, const char *depth, const char *path_folder, const char *list,
-                               const char *out, const struct render_params *params, struct provenance *prov,
-                               struct err *err)
+struct job { /* what the command line says */
+    const char *views, *depth, *path, *frames, *cameras, *effects, *crop, *scale, *out;
+    struct cli_list names;
+    struct frame_part part;
+    struct render_params params;
+};
+
+static enum status render_path(const struct job *job, struct provenance *prov, struct err *err)
 {
     struct camera_set set = {0};
     struct camera_path path = {0};
     struct layer_scene scene = {0};
+    struct effects effects = {0};
+    struct renderer renderer = {0};
     bool *wanted = NULL;
-    enum status st = camera_set_read(&set, views, err);
+    enum status st = camera_set_read(&set, job->views, err);
 
-    if (!st) st = camera_path_read(&path, path_folder, err);
+    if (!st) st = camera_path_read(&path, job->path, err);
+    for (int i = 0; !st && i < path.frame_count; i++) st = frame_part_camera(&path.frames[i].camera, &job->part, err);
     if (!st) {
         wanted = calloc((size_t)path.frame_count + 1, sizeof *wanted);
-        st = wanted ? frames_select(wanted, path.frame_count, list, err)
+        st = wanted ? frames_select(wanted, path.frame_count, job->frames, err)
                     : err_nomem(err, "the frames of a path", (size_t)path.frame_count);
     }
-    if (!st) st = add_inputs(prov, views, path_folder, path.effect, err);
-    if (!st) st = layer_scene_read(&scene, &set, depth, prov, err);
-    if (!st) st = frames_render(&path, wanted, &scene, params, out, prov, err);
+    if (!st) st = add_inputs(prov, job->views, job->path, path.effect, err);
+    if (!st && job->effects && !(st = effects_read(&effects, job->effects, err)))
+        st = provenance_add_file(prov, "effects.txt", job->effects, err);
+    if (!st) st = layer_scene_read(&scene, &set, job->depth, prov, err);
+    if (!st) {
+        renderer_init(&renderer, &scene, &path, &effects, &job->params);
+        st = frames_render(&path, wanted, &renderer, job->out, prov, err);
+    }
     free(wanted);
+    renderer_release(&renderer);
+    effects_release(&effects);
     layer_scene_release(&scene);
     camera_path_release(&path);
     camera_set_release(&set);
     return st;
 }
 
-static enum status render_cameras(const char *views, const char *depth, const char *folder,
-                                  const struct cli_list *names, const char *out, const struct render_params *params,
-                                  struct provenance *prov, struct err *err)
+static enum status render_cameras(const struct job *job, struct provenance *prov, struct err *err)
 {
     static const char *const files[] = {"cameras.txt", "images.txt", "points3D.txt"};
+    static const struct effects none = {0};
     struct camera_set set = {0}, cameras = {0};
     struct layer_scene scene = {0};
+    struct renderer renderer = {0};
     bool *wanted = NULL;
-    enum status st = camera_set_read(&set, views, err);
+    enum status st = camera_set_read(&set, job->views, err);
 
-    if (!st) st = camera_set_read(&cameras, folder, err);
+    if (!st) st = camera_set_read(&cameras, job->cameras, err);
+    for (int i = 0; !st && i < cameras.view_count; i++) st = frame_part_camera(&cameras.views[i], &job->part, err);
     if (!st) {
         wanted = calloc((size_t)cameras.view_count + 1, sizeof *wanted);
-        st = wanted ? cameras_select(wanted, &cameras, names->items, names->count, err)
+        st = wanted ? cameras_select(wanted, &cameras, job->names.items, job->names.count, err)
                     : err_nomem(err, "cameras", (size_t)cameras.view_count);
     }
-    for (int i = 0; !st && i < 3; i++) st = add_input(prov, "views", views, files[i], err);
-    for (int i = 0; !st && i < 2; i++) st = add_input(prov, "cameras", folder, files[i], err);
-    if (!st) st = layer_scene_read(&scene, &set, depth, prov, err);
-    if (!st) st = cameras_render(&cameras, wanted, &scene, params, out, prov, err);
+    for (int i = 0; !st && i < 3; i++) st = add_input(prov, "views", job->views, files[i], err);
+    for (int i = 0; !st && i < 2; i++) st = add_input(prov, "cameras", job->cameras, files[i], err);
+    if (!st) st = layer_scene_read(&scene, &set, job->depth, prov, err);
+    if (!st) {
+        renderer_init(&renderer, &scene, NULL, &none, &job->params);
+        st = cameras_render(&cameras, wanted, &renderer, job->out, prov, err);
+    }
     free(wanted);
+    renderer_release(&renderer);
     layer_scene_release(&scene);
     camera_set_release(&cameras);
     camera_set_release(&set);
     return st;
 }
 
+static enum status render(struct job *job, struct provenance *prov, struct err *err)
+{
+    const bool cameras = job->cameras;
+    enum status st = ST_OK;
+
+    if (cameras ? job->path || job->frames : !job->path || !job->frames || job->names.count)
+        return err_set(err, ST_USAGE,
+                       "wanted either --path with --frames, or --cameras; --camera goes with --cameras.");
+    if (cameras && job->effects)
+        return err_set(err, ST_USAGE, "--effects goes with --path: single cameras have no times for their keys.");
+    if ((st = frame_part_read(&job->part, job->crop, job->scale, err))) return st;
+    return cameras ? render_cameras(job, prov, err) : render_path(job, prov, err);
+}
+
 int main(int argc, char **argv)
 {
-    const char *views = NULL, *depth = NULL, *path = NULL, *frames = NULL, *cameras = NULL, *out = NULL;
-    struct cli_list names = {0};
-    struct render_params params = RENDER_PARAMS_DEFAULT;
+    struct job job = {.params = RENDER_PARAMS_DEFAULT};
+    const char *renderer = NULL;
     const struct cli_opt opts[] = {
         CLI_ABOUT("Renders the frames of a camera move, or of given cameras, from layered depth maps."),
-        CLI_STR("views", &views, CLI_REQUIRED, "folder of cameras"),
-        CLI_STR("depth", &depth, CLI_REQUIRED, "folder of layered depth maps"),
-        CLI_STR("path", &path, CLI_OPTIONAL, "folder of the move: path.txt and path/"),
-        CLI_STR("frames", &frames, CLI_OPTIONAL, "frames of the move to render: 1:30 or 1:30,45"),
-        CLI_STR("cameras", &cameras, CLI_OPTIONAL, "in place of a move: folder of cameras, a frame each"),
-        CLI_LIST("camera", &names, CLI_OPTIONAL, "of these cameras only this one; may be given several times"),
-        CLI_STR("out", &out, CLI_REQUIRED, "folder of the EXR files to write, NNNN.exr or CAMERA.exr"),
-        CLI_PARAMS(render_param_table, &params, NULL),
+        CLI_STR("views", &job.views, CLI_REQUIRED, "folder of cameras"),
+        CLI_STR("depth", &job.depth, CLI_REQUIRED, "folder of layered depth maps"),
+        CLI_STR("path", &job.path, CLI_OPTIONAL, "folder of the move: path.txt and path/"),
+        CLI_STR("frames", &job.frames, CLI_OPTIONAL, "frames of the move to render: 1:30 or 1:30,45"),
+        CLI_STR("effects", &job.effects, CLI_OPTIONAL, "file of effect layers, laid over the frames of the move"),
+        CLI_STR("cameras", &job.cameras, CLI_OPTIONAL, "in place of a move: folder of cameras, a frame each"),
+        CLI_LIST("camera", &job.names, CLI_OPTIONAL, "of these cameras only this one; may be given several times"),
+        CLI_STR("crop", &job.crop, CLI_OPTIONAL, "X,Y,WIDTH,HEIGHT: only this part of the frames, px"),
+        CLI_STR("scale", &job.scale, CLI_OPTIONAL, "makes the frames, or the part of them, larger or smaller"),
+        CLI_STR("out", &job.out, CLI_REQUIRED, "folder of the EXR files to write, NNNN.exr or CAMERA.exr"),
+        CLI_PARAM("renderer", &renderer, "offline (best) or fast"),
+        CLI_PARAMS(render_param_table, &job.params, NULL),
         CLI_END,
     };
     struct provenance prov = {0};
     struct err err = ERR_INIT;
 
-    enum cli_verdict verdict = cli_parse(argc, argv, "render_views", opts, &prov, &err);
-
-    if (verdict == CLI_RUN && (cameras ? path || frames : !path || !frames || names.count))
-        err_set(&err, ST_USAGE, "wanted either --path with --frames, or --cameras; --camera goes with --cameras.");
-    else if (verdict == CLI_RUN && cameras)
-        render_cameras(views, depth, cameras, &names, out, &params, &prov, &err);
-    else if (verdict == CLI_RUN)
-        render_path(views, depth, path, frames, out, &params, &prov, &err);
+    if (cli_parse(argc, argv, "render_views", opts, &prov, &err) == CLI_RUN) render(&job, &prov, &err);
     err_report(&err);
-    cli_list_release(&names);
+    cli_list_release(&job.names);
     provenance_release(&prov);
     return err_exit_code(&err);
 }

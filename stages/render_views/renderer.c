@@ -1,0 +1,67 @@
+/* renderer.c - see renderer.h. */
+#include "stages/render_views/renderer.h"
+
+#include <string.h>
+
+#define PARAM_STRUCT struct render_params
+const struct param render_param_table[] = {RENDER_PARAMS(PARAM_ROW) PARAM_END};
+#undef PARAM_STRUCT
+
+static enum status render_anchor(void *ctx, int frame, struct rendered_frame *out, struct err *err)
+{
+    struct renderer *r = ctx;
+    return layer_render(out, r->scene, &r->path->frames[frame].camera, &r->options, err);
+}
+
+void renderer_init(struct renderer *r, const struct layer_scene *scene, const struct camera_path *path,
+                   const struct effects *effects, const struct render_params *params)
+{
+    *r = (struct renderer){.scene = scene, .path = path, .effects = effects, .fill_diameter = params->fill_diameter};
+    r->options.offline = strcmp(params->renderer, "offline") == 0;
+    r->options.nearest_alone = strcmp(params->views, "nearest") == 0;
+    r->options.more_views = params->more_views;
+    r->options.soft_z = params->soft_z;
+    r->options.fill_diameter = r->options.offline ? 0 : params->fill_diameter;
+    r->exemplar = (struct exemplar_params){.fill_patch = params->fill_patch, .fill_window = params->fill_window};
+    r->depth = (struct exemplar_depth){layer_scene_soft_z(scene, SOFT_Z_FILL_WIDTHS), (float)scene->sigma};
+    r->aperture = (struct aperture_options){params->aperture_samples, params->aperture_error};
+    if (!path || !r->options.offline) return;
+    const struct fill_path_options fill = {r->depth, r->exemplar, params->fill_diameter, params->fill_anchors};
+    fill_path_init(&r->fill, path, render_anchor, r, &fill);
+}
+
+/* Of the frame that is being rendered, from its camera or one within its aperture. */
+static enum status render_pinhole(void *ctx, const struct view *camera, struct rendered_frame *out, struct err *err)
+{
+    struct renderer *r = ctx;
+    const enum status st = layer_render(out, r->scene, camera, &r->options, err);
+    return st || !r->options.offline ? st : fill_path_frame(&r->fill, r->frame, camera, out, err);
+}
+
+enum status renderer_frame(struct renderer *r, int frame, struct rendered_frame *out, struct err *err)
+{
+    const struct path_frame *f = &r->path->frames[frame];
+    enum status st;
+
+    r->frame = frame;
+    if (r->options.offline)
+        st = aperture_render(out, &f->camera, f->aperture, f->focus, &r->aperture, render_pinhole, r, NULL, err);
+    else if (!(st = render_pinhole(r, &f->camera, out, err)))
+        st = defocus_apply(&r->defocus, out, &f->camera, f->aperture, f->focus, err);
+    if (!st) effects_apply(r->effects, f->time, &f->camera, out);
+    return st;
+}
+
+enum status renderer_camera(struct renderer *r, const struct view *camera, struct rendered_frame *out, struct err *err)
+{
+    const enum status st = layer_render(out, r->scene, camera, &r->options, err);
+    return st || !r->options.offline ? st : exemplar_fill(out, &r->depth, r->fill_diameter, &r->exemplar, NULL, err);
+}
+
+void renderer_release(struct renderer *r)
+{
+    if (!r) return;
+    if (r->fill.path) fill_path_release(&r->fill);
+    defocus_release(&r->defocus);
+    *r = (struct renderer){0};
+}
