@@ -57,66 +57,123 @@ void soft_z_blend(const struct soft_z *s, const struct soft_z_sample *samples, i
 
 #define AGAINST_BEFORE 0.3f  /* what a fragment in front of another speaks against it */
 #define STANDING_WHOLE 0.25f /* a fragment of this standing hides wholly */
+#define BLOCKS         (SOFT_Z_MERGE_MOST / 8)
 
-static float merge_rho(const struct soft_z *s, const struct soft_z_fragment *a, const struct soft_z_fragment *b)
-{
-    if (!(s->widths > 0)) return s->range;
-    return 2 * s->widths * sqrtf(a->uncertainty * a->uncertainty + b->uncertainty * b->uncertainty);
-}
+struct
+    merge { /* a pixel's fragments, eight a vector; what is beyond the last one votes for nothing and hides nothing */
+    float z[SOFT_Z_MERGE_MOST], square[SOFT_Z_MERGE_MOST]; /* square: of the uncertainty */
+    float vote[SOFT_Z_MERGE_MOST], standing[SOFT_Z_MERGE_MOST], there[SOFT_Z_MERGE_MOST];
+    __m256 apart[SOFT_Z_MERGE_MOST][BLOCKS]; /* 1 - w of each pair */
+    int count, blocks;
+};
 
 static float at_most_one(float x) { return x < 1 ? x : 1; }
+
+static float sum8(__m256 v)
+{
+    const __m128 four = _mm_add_ps(_mm256_castps256_ps128(v), _mm256_extractf128_ps(v, 1));
+    const __m128 two = _mm_add_ps(four, _mm_movehl_ps(four, four));
+    return _mm_cvtss_f32(_mm_add_ss(two, _mm_shuffle_ps(two, two, 1)));
+}
+
+static float most8(__m256 v)
+{
+    const __m128 four = _mm_max_ps(_mm256_castps256_ps128(v), _mm256_extractf128_ps(v, 1));
+    const __m128 two = _mm_max_ps(four, _mm_movehl_ps(four, four));
+    return _mm_cvtss_f32(_mm_max_ss(two, _mm_shuffle_ps(two, two, 1)));
+}
 
 /* Whether all fragments are so near each other that none hides or speaks against another. */
 static bool one_surface(const struct soft_z *s, const struct soft_z_fragment *f, int count)
 {
     float least = f[0].z, most = f[0].z, sure = f[0].uncertainty;
     for (int i = 1; i < count; i++) {
-        least = fminf(least, f[i].z);
-        most = fmaxf(most, f[i].z);
-        sure = fminf(sure, f[i].uncertainty);
+        least = f[i].z < least ? f[i].z : least;
+        most = f[i].z > most ? f[i].z : most;
+        sure = f[i].uncertainty < sure ? f[i].uncertainty : sure;
     }
     const float rho = s->widths > 0 ? 2 * s->widths * (float)M_SQRT2 * sure : s->range;
     return most - least <= 0.1f * rho;
 }
 
-static void standings(const struct soft_z *s, const struct soft_z_fragment *f, int count, float *standing)
+/* How far apart all pairs are, and every fragment's standing. */
+static void standings(struct merge *m, const struct soft_z *s)
 {
-    for (int i = 0; i < count; i++) {
-        float pro = 0, contra = 1e-6f;
-        for (int c = 0; c < count; c++) {
-            const float rho = merge_rho(s, &f[i], &f[c]), dz = f[c].z - f[i].z;
-            const float w = soft_z_weight(fabsf(dz), 0.1f * rho, rho), vote = f[c].vote * f[c].rgba[3];
-            pro += vote * w;
-            contra += (dz > 0 ? 1 : AGAINST_BEFORE) * vote * (1 - w);
+    const __m256 one = _mm256_set1_ps(1), zero = _mm256_setzero_ps();
+    const __m256 sign = _mm256_set1_ps(-0.0f);
+
+    for (int i = 0; i < m->count; i++) {
+        __m256 pro = zero, contra = zero;
+        for (int b = 0; b < m->blocks; b++) {
+            const __m256 dz = _mm256_sub_ps(_mm256_loadu_ps(m->z + 8 * b), _mm256_set1_ps(m->z[i]));
+            const __m256 square = _mm256_add_ps(_mm256_loadu_ps(m->square + 8 * b), _mm256_set1_ps(m->square[i]));
+            const __m256 rho = s->widths > 0 ? _mm256_mul_ps(_mm256_set1_ps(2 * s->widths), _mm256_sqrt_ps(square))
+                                             : _mm256_set1_ps(s->range);
+            const __m256 over = _mm256_sub_ps(_mm256_andnot_ps(sign, dz), _mm256_mul_ps(rho, _mm256_set1_ps(0.1f)));
+            const __m256 length = _mm256_max_ps(_mm256_mul_ps(rho, _mm256_set1_ps(0.8f)), _mm256_set1_ps(1e-30f));
+            const __m256 t = _mm256_max_ps(zero, _mm256_min_ps(one, _mm256_div_ps(over, length)));
+            const __m256 w = soft_z_fall8(t), vote = _mm256_loadu_ps(m->vote + 8 * b);
+            const __m256 part =
+                _mm256_blendv_ps(_mm256_set1_ps(AGAINST_BEFORE), one, _mm256_cmp_ps(dz, zero, _CMP_GT_OQ));
+            m->apart[i][b] = _mm256_sub_ps(one, w);
+            pro = _mm256_add_ps(pro, _mm256_mul_ps(vote, w));
+            contra = _mm256_add_ps(contra, _mm256_mul_ps(_mm256_mul_ps(part, vote), m->apart[i][b]));
         }
-        const float part = pro / (pro + contra);
-        standing[i] = part * part;
+        const float sum = sum8(pro), part = sum / (sum + sum8(contra) + 1e-6f);
+        m->standing[i] = part * part;
     }
+}
+
+/* What of fragment i the fragments before it hide. */
+static float hidden_part(const struct merge *m, int i)
+{
+    __m256 most = _mm256_setzero_ps();
+    for (int b = 0; b < m->blocks; b++) {
+        const __m256 before = _mm256_cmp_ps(_mm256_loadu_ps(m->z + 8 * b), _mm256_set1_ps(m->z[i]), _CMP_LT_OQ);
+        const __m256 hides = _mm256_mul_ps(_mm256_loadu_ps(m->there + 8 * b), m->apart[i][b]);
+        most = _mm256_max_ps(most, _mm256_and_ps(before, hides));
+    }
+    return most8(most);
+}
+
+static void merge_prepare(struct merge *m, const struct soft_z *s, const struct soft_z_fragment *f, int count)
+{
+    m->count = count;
+    m->blocks = (count + 7) / 8;
+    for (int i = 0; i < 8 * m->blocks; i++) {
+        const bool is = i < count;
+        m->z[i] = is ? f[i].z : 0;
+        m->square[i] = is ? f[i].uncertainty * f[i].uncertainty : 0;
+        m->vote[i] = is ? f[i].vote * f[i].rgba[3] : 0;
+        m->there[i] = 0;
+    }
+    standings(m, s);
+    for (int i = 0; i < count; i++)
+        m->there[i] = at_most_one(f[i].blend * m->standing[i] / SOFT_Z_BLEND_WHOLE) *
+                      at_most_one(m->standing[i] / STANDING_WHOLE) * (f[i].before + f[i].rgba[3]);
 }
 
 void soft_z_merge(const struct soft_z *s, const struct soft_z_fragment *f, int count, float rgba[4], float *z)
 {
-    float standing[SOFT_Z_MERGE_MOST], color[3] = {0}, sum = 0, z_sum = 0, z_weight = 0;
     const bool agree = one_surface(s, f, count);
+    float sum = 0, z_sum = 0, z_weight = 0;
+    __m128 color = _mm_setzero_ps();
+    struct merge m;
 
-    if (!agree) standings(s, f, count, standing);
+    if (!agree) merge_prepare(&m, s, f, count);
     for (int i = 0; i < count; i++) {
-        float hidden = 0;
-        for (int c = 0; !agree && c < count; c++) {
-            if (!(f[c].z < f[i].z)) continue;
-            const float rho = merge_rho(s, &f[i], &f[c]);
-            const float there = at_most_one(f[c].blend * standing[c] / SOFT_Z_BLEND_WHOLE) *
-                                at_most_one(standing[c] / STANDING_WHOLE) * (f[c].before + f[c].rgba[3]);
-            hidden = fmaxf(hidden, there * (1 - soft_z_weight(f[i].z - f[c].z, 0.1f * rho, rho)));
-        }
-        const float alpha = f[i].rgba[3], seen = fminf(alpha, fmaxf(0, 1 - hidden));
-        const float there = seen * (agree ? 1 : standing[i]), weight = f[i].blend * there;
-        for (int k = 0; k < 3; k++) color[k] += weight * sqrtf(fmaxf(0, f[i].rgba[k] / alpha));
+        const float alpha = f[i].rgba[3], left = agree ? 1 : 1 - hidden_part(&m, i);
+        const float seen = left <= 0 ? 0 : alpha < left ? alpha : left;
+        const float there = seen * (agree ? 1 : m.standing[i]), weight = f[i].blend * there;
+        const float present = there * at_most_one(f[i].blend / SOFT_Z_BLEND_WHOLE);
+        const __m128 own = _mm_div_ps(_mm_max_ps(_mm_setzero_ps(), _mm_loadu_ps(f[i].rgba)), _mm_set1_ps(alpha));
+        color = _mm_add_ps(color, _mm_mul_ps(_mm_set1_ps(weight), _mm_sqrt_ps(own)));
         sum += weight;
-        z_sum += there * at_most_one(f[i].blend / SOFT_Z_BLEND_WHOLE) * f[i].z;
-        z_weight += there * at_most_one(f[i].blend / SOFT_Z_BLEND_WHOLE);
+        z_sum += present * f[i].z;
+        z_weight += present;
     }
-    for (int k = 0; k < 3; k++) rgba[k] = sum > 0 ? color[k] / sum * (color[k] / sum) : 0;
+    const __m128 mean = _mm_mul_ps(color, _mm_set1_ps(sum > 0 ? 1 / sum : 0));
+    _mm_storeu_ps(rgba, _mm_mul_ps(mean, mean));
     rgba[3] = sum > 0;
     *z = z_weight > 0 ? z_sum / z_weight : 0;
 }

@@ -96,7 +96,7 @@ struct soft_z_fragment {
     float before;         /* alpha of what its view has in front of it */
 };
 
-#define SOFT_Z_MERGE_MOST 64 /* fragments */
+#define SOFT_Z_MERGE_MOST 40 /* fragments */
 
 /* A fragment's standing is (for / (for + against))^2: for it speak the votes of all fragments at its depth, itself
  * included, against it those behind it - their views look through it - and in part those before it. It hides others and
