@@ -58,63 +58,100 @@ static void pixel_set(struct rendered_frame *f, size_t p, const struct color_z *
 
 /* ---------------------------------------------------------------------------------------------- narrow holes */
 
-static bool is_empty(const struct rendered_frame *f, size_t p) { return !(f->rgba[4 * p + 3] > 0); }
+struct mask { /* bytes, a flag a pixel */
+    const struct rendered_frame *frame;
+    uint8_t *flags, *spare; /* w * h */
+    uint32_t *counts;       /* a row: flags of empty pixels */
+    int diameter;
+};
 
-/* sums[(y + 1) * (w + 1) + x + 1]: of flags over [0, x] x [0, y]. */
-static void summed_area(uint32_t *sums, const uint8_t *flags, int w, int h)
+static void mask_rows(void *ctx, size_t begin, size_t end, int thread)
 {
-    memset(sums, 0, ((size_t)w + 1) * sizeof *sums);
-    for (int y = 0; y < h; y++) {
-        const uint32_t *above = sums + (size_t)y * ((size_t)w + 1);
-        uint32_t *row = sums + ((size_t)y + 1) * ((size_t)w + 1), run = 0;
-        row[0] = 0;
-        for (int x = 0; x < w; x++) {
-            run += flags[(size_t)y * (size_t)w + (size_t)x] != 0;
-            row[x + 1] = above[x + 1] + run;
+    const struct mask *m = ctx;
+    const size_t w = (size_t)m->frame->width;
+    (void)thread;
+    for (size_t y = begin; y < end; y++) {
+        m->counts[y] = 0;
+        for (size_t p = y * w; p < (y + 1) * w; p++) {
+            m->flags[p] = !(m->frame->rgba[4 * p + 3] > 0);
+            m->counts[y] += m->flags[p];
         }
     }
 }
 
-static uint32_t area(const uint32_t *sums, int w, int x0, int y0, int x1, int y1) /* over [x0, x1) x [y0, y1) */
+/* to[x] of `count` bytes: whether all of from[x .. x + length) are set. */
+static void runs_of(uint8_t *to, const uint8_t *from, size_t count, size_t length)
 {
-    const size_t s = (size_t)w + 1, top = (size_t)y0 * s, bottom = (size_t)y1 * s;
-    return sums[bottom + (size_t)x1] - sums[bottom + (size_t)x0] - sums[top + (size_t)x1] + sums[top + (size_t)x0];
+    memcpy(to, from, count);
+    for (size_t k = 1; k < length; k++)
+        for (size_t x = 0; x < count; x++) to[x] &= from[x + k];
 }
 
-enum status hole_narrow_pixels(uint32_t **list, size_t *count, const struct rendered_frame *f, int diameter,
-                               struct err *err)
+/* Leaves those flags alone that a diameter x diameter square of flags holds: an opening, by rows and columns. A row
+ * without flags is passed over. */
+static void keep_wide(struct mask *m)
 {
-    const int w = f->width, h = f->height;
-    const size_t pixels = (size_t)w * (size_t)h;
-    uint32_t *sums = malloc(((size_t)w + 1) * ((size_t)h + 1) * sizeof *sums);
-    uint8_t *flags = malloc(pixels);
+    const size_t w = (size_t)m->frame->width, h = (size_t)m->frame->height, d = (size_t)m->diameter;
+
+    memset(m->spare, 0, w * h);
+    if (w < d || h < d) {
+        memset(m->flags, 0, w * h);
+        return;
+    }
+    for (size_t y = 0; y < h; y++) /* spare: where a run of d begins */
+        if (m->counts[y] >= d) runs_of(m->spare + y * w, m->flags + y * w, w - d + 1, d);
+    for (size_t y = 0; y + d <= h; y++) /* and d rows have one: where a square begins */
+        for (size_t k = 1; m->counts[y] && k < d; k++)
+            for (size_t x = 0; x < w; x++) m->spare[y * w + x] &= m->spare[(y + k) * w + x];
+    for (size_t y = h - d + 1; y < h; y++) memset(m->spare + y * w, 0, w);
+    for (size_t y = 0; y < h; y++) { /* the squares' first rows, in full width */
+        if (!m->counts[y]) continue;
+        uint8_t *row = m->spare + y * w;
+        for (size_t x = w; x-- > 0;) { /* from the right: what begins at x - k covers x */
+            uint8_t any = 0;
+            for (size_t k = 0; k < d && k <= x; k++) any |= row[x - k];
+            row[x] = any;
+        }
+    }
+    for (size_t y = 0; y < h; y++) {
+        memset(m->flags + y * w, 0, m->counts[y] ? w : 0);
+        for (size_t k = 0; m->counts[y] && k < d && k <= y; k++)
+            for (size_t x = 0; x < w; x++) m->flags[y * w + x] |= m->spare[(y - k) * w + x];
+    }
+}
+
+enum status hole_narrow_pixels(uint32_t **list, size_t *count, size_t *empty, const struct rendered_frame *f,
+                               int diameter, struct err *err)
+{
+    const size_t w = (size_t)f->width, h = (size_t)f->height;
+    struct mask m = {f, malloc(w * h), malloc(w * h), malloc((h + 1) * sizeof *m.counts), diameter};
+    size_t n = 0;
     enum status st = ST_OK;
 
-    *count = 0;
-    *list = malloc(pixels * sizeof **list);
-    if (!*list || !sums || !flags) {
-        free(*list);
-        *list = NULL;
-        st = err_nomem(err, "the narrow holes of a frame", pixels * 9);
+    *count = *empty = 0;
+    *list = NULL;
+    if (!m.flags || !m.spare || !m.counts) {
+        st = err_nomem(err, "the narrow holes of a frame", 2 * w * h);
         goto done;
     }
-    for (size_t p = 0; p < pixels; p++) flags[p] = is_empty(f, p);
-    summed_area(sums, flags, w, h);
-    memset(flags, 0, pixels); /* from here on: the upper left corner of a square of empty pixels */
-    for (int y = 0; y + diameter <= h; y++)
-        for (int x = 0; x + diameter <= w; x++)
-            flags[(size_t)y * (size_t)w + (size_t)x] =
-                area(sums, w, x, y, x + diameter, y + diameter) == (uint32_t)diameter * (uint32_t)diameter;
-    summed_area(sums, flags, w, h);
-    for (int y = 0; y < h; y++)
-        for (int x = 0; x < w; x++) {
-            const size_t p = (size_t)y * (size_t)w + (size_t)x;
-            const int x0 = x >= diameter ? x - diameter + 1 : 0, y0 = y >= diameter ? y - diameter + 1 : 0;
-            if (is_empty(f, p) && !area(sums, w, x0, y0, x + 1, y + 1)) (*list)[(*count)++] = (uint32_t)p;
-        }
+    parallel_for(h, 64, mask_rows, &m);
+    for (size_t y = 0; y < h; y++) *empty += m.counts[y];
+    *list = malloc((*empty + 1) * sizeof **list);
+    if (!*list) {
+        st = err_nomem(err, "the narrow holes of a frame", *empty * sizeof **list);
+        goto done;
+    }
+    if (*empty) keep_wide(&m);
+    for (int wide = 0; wide < 2; wide++) {
+        for (size_t y = 0; y < h; y++)
+            for (size_t p = y * w; m.counts[y] && p < (y + 1) * w; p++)
+                if (m.flags[p] == wide && !(f->rgba[4 * p + 3] > 0)) (*list)[n++] = (uint32_t)p;
+        if (!wide) *count = n;
+    }
 done:
-    free(flags);
-    free(sums);
+    free(m.flags);
+    free(m.spare);
+    free(m.counts);
     return st;
 }
 
@@ -168,112 +205,126 @@ enum status hole_fill_pixels(struct rendered_frame *f, const uint32_t *list, siz
 
 /* ------------------------------------------------------------------------------------------------ wide holes */
 
+/* What is asked of a level's texel is computed when it is asked for first: what is far from holes never is. */
+enum known { NOT_ASKED, PULLED, EMPTY, PUSHED };
+
 struct level {
     int w, h;
     struct color_z *texels;
+    uint8_t *known;
 };
 
-struct pyramid_step {
-    const struct level *from, *to;
+struct pyramid {
+    const struct rendered_frame *frame;
+    struct level levels[MAX_LEVELS]; /* 0 is the frame: of it only what is PUSHED stands here */
+    int count;
     const struct far_side *far;
 };
 
-static void pull_rows(void *ctx, size_t begin, size_t end, int thread)
+/* The far side of a texel's 2x2; false if none of them is known. */
+static bool pull(struct pyramid *p, int level, int x, int y, struct color_z *value)
 {
-    const struct pyramid_step *s = ctx;
-    (void)thread;
-    for (int y = (int)begin; y < (int)end; y++)
-        for (int x = 0; x < s->to->w; x++) {
-            struct color_z items[4] = {0}, *to = &s->to->texels[(size_t)y * (size_t)s->to->w + (size_t)x];
-            float weights[4] = {0};
-            for (int k = 0; k < 4; k++) {
-                const int u = 2 * x + (k & 1), v = 2 * y + (k >> 1);
-                if (u >= s->from->w || v >= s->from->h) continue;
-                items[k] = s->from->texels[(size_t)v * (size_t)s->from->w + (size_t)u];
-                weights[k] = items[k].z > 0;
-            }
-            *to = (struct color_z){0};
-            far_mean(s->far, items, weights, 4, to);
-        }
-}
+    struct level *l = &p->levels[level];
+    const size_t at = (size_t)y * (size_t)l->w + (size_t)x;
 
-static void push_rows(void *ctx, size_t begin, size_t end, int thread)
-{
-    const struct pyramid_step *s = ctx;
-    (void)thread;
-    for (int y = (int)begin; y < (int)end; y++)
-        for (int x = 0; x < s->to->w; x++) {
-            struct color_z items[4] = {0}, *to = &s->to->texels[(size_t)y * (size_t)s->to->w + (size_t)x];
-            float weights[4] = {0};
-            if (to->z > 0) continue;
-            for (int k = 0; k < 4; k++) { /* bilinear: the parent has 3/4 of each axis */
-                const int u = x / 2 + ((k & 1) ? (x & 1 ? 1 : -1) : 0), v = y / 2 + ((k >> 1) ? (y & 1 ? 1 : -1) : 0);
-                if (u < 0 || v < 0 || u >= s->from->w || v >= s->from->h) continue;
-                items[k] = s->from->texels[(size_t)v * (size_t)s->from->w + (size_t)u];
-                weights[k] = ((k & 1) ? 0.25f : 0.75f) * ((k >> 1) ? 0.25f : 0.75f);
-            }
-            far_mean(s->far, items, weights, 4, to);
-        }
-}
-
-static enum status fill_wide(struct rendered_frame *f, const struct far_side *far, struct err *err)
-{
-    struct level levels[MAX_LEVELS] = {{f->width, f->height, NULL}};
-    const size_t pixels = (size_t)f->width * (size_t)f->height;
-    enum status st = ST_OK;
-    int count = 1;
-
-    while (levels[count - 1].w > 1 || levels[count - 1].h > 1) {
-        levels[count] = (struct level){(levels[count - 1].w + 1) / 2, (levels[count - 1].h + 1) / 2, NULL};
-        count++;
+    if (level == 0) {
+        *value = pixel_get(p->frame, at);
+        return p->frame->rgba[4 * at + 3] > 0 && value->z > 0;
     }
-    for (int i = 0; i < count; i++) {
-        const size_t size = (size_t)levels[i].w * (size_t)levels[i].h * sizeof *levels[i].texels;
-        levels[i].texels = malloc(size);
-        if (!levels[i].texels) {
-            st = err_nomem(err, "a pyramid of a frame", size);
+    if (l->known[at] == NOT_ASKED) {
+        struct color_z items[4];
+        float weights[4] = {0};
+        for (int k = 0; k < 4; k++) {
+            const int u = 2 * x + (k & 1), v = 2 * y + (k >> 1);
+            if (u < l[-1].w && v < l[-1].h && pull(p, level - 1, u, v, &items[k])) weights[k] = items[k].z > 0;
+        }
+        l->known[at] = far_mean(p->far, items, weights, 4, &l->texels[at]) ? PULLED : EMPTY;
+    }
+    if (l->known[at] != PULLED) return false;
+    *value = l->texels[at];
+    return true;
+}
+
+/* The same, and where none is known from the level above: bilinear, the parent has 3/4 of each axis. */
+static bool push(struct pyramid *p, int level, int x, int y, struct color_z *value)
+{
+    struct level *l = &p->levels[level];
+    const size_t at = (size_t)y * (size_t)l->w + (size_t)x;
+
+    if (pull(p, level, x, y, value)) return true;
+    if (l->known[at] != PUSHED && level + 1 < p->count) {
+        struct color_z items[4];
+        float weights[4] = {0};
+        for (int k = 0; k < 4; k++) {
+            const int u = x / 2 + ((k & 1) ? (x & 1 ? 1 : -1) : 0), v = y / 2 + ((k >> 1) ? (y & 1 ? 1 : -1) : 0);
+            if (u < 0 || v < 0 || u >= l[1].w || v >= l[1].h || !push(p, level + 1, u, v, &items[k])) continue;
+            weights[k] = ((k & 1) ? 0.25f : 0.75f) * ((k >> 1) ? 0.25f : 0.75f);
+        }
+        if (far_mean(p->far, items, weights, 4, &l->texels[at])) l->known[at] = PUSHED;
+    }
+    if (l->known[at] != PUSHED) return false;
+    *value = l->texels[at];
+    return true;
+}
+
+/* The pixels of the list; how many of them got a colour. */
+static enum status fill_wide(struct rendered_frame *f, const uint32_t *list, size_t count, const struct far_side *far,
+                             size_t *filled, struct err *err)
+{
+    const uint32_t w = (uint32_t)f->width;
+    struct pyramid p = {.frame = f, .levels = {{.w = f->width, .h = f->height}}, .count = 1, .far = far};
+    struct color_z value;
+    enum status st = ST_OK;
+
+    for (; p.levels[p.count - 1].w > 1 || p.levels[p.count - 1].h > 1; p.count++) {
+        const struct level *l = &p.levels[p.count - 1];
+        p.levels[p.count] = (struct level){.w = (l->w + 1) / 2, .h = (l->h + 1) / 2};
+    }
+    for (int i = 0; i < p.count; i++) {
+        struct level *l = &p.levels[i];
+        const size_t size = (size_t)l->w * (size_t)l->h;
+        l->texels = malloc(size * sizeof *l->texels);
+        l->known = calloc(size, 1);
+        if (!l->texels || !l->known) {
+            st = err_nomem(err, "a pyramid of a frame", size * sizeof *l->texels);
             goto done;
         }
     }
-    for (size_t p = 0; p < pixels; p++)
-        levels[0].texels[p] = f->rgba[4 * p + 3] > 0 ? pixel_get(f, p) : (struct color_z){0};
-    for (int i = 0; i + 1 < count; i++) {
-        struct pyramid_step step = {&levels[i], &levels[i + 1], far};
-        parallel_for((size_t)step.to->h, 32, pull_rows, &step);
-    }
-    for (int i = count - 2; i >= 0; i--) {
-        struct pyramid_step step = {&levels[i + 1], &levels[i], far};
-        parallel_for((size_t)step.to->h, 32, push_rows, &step);
-    }
-    for (size_t p = 0; p < pixels; p++)
-        if (!(f->rgba[4 * p + 3] > 0) && levels[0].texels[p].z > 0) pixel_set(f, p, &levels[0].texels[p]);
+    for (size_t i = 0; i < count; i++) push(&p, 0, (int)(list[i] % w), (int)(list[i] / w), &value);
+    *filled = 0;
+    for (size_t i = 0; i < count; i++) /* all are computed from the frame as it was */
+        if (p.levels[0].known[list[i]] == PUSHED) {
+            pixel_set(f, list[i], &p.levels[0].texels[list[i]]);
+            ++*filled;
+        }
 done:
-    for (int i = 0; i < count; i++) free(levels[i].texels);
+    for (int i = 0; i < p.count; i++) {
+        free(p.levels[i].texels);
+        free(p.levels[i].known);
+    }
     return st;
-}
-
-static size_t count_empty(const struct rendered_frame *f)
-{
-    size_t empty = 0;
-    for (size_t p = 0; p < (size_t)f->width * (size_t)f->height; p++) empty += is_empty(f, p);
-    return empty;
 }
 
 enum status hole_fill(struct rendered_frame *frame, const struct soft_z *soft, float sigma, int diameter,
                       struct err *err)
 {
     const struct far_side far = {soft, sigma};
-    const double pixels = (double)frame->width * (double)frame->height;
     uint32_t *list = NULL;
-    size_t count = 0;
-    enum status st = ST_OK;
+    size_t narrow = 0, empty = 0, filled = 0;
+    enum status st = hole_narrow_pixels(&list, &narrow, &empty, frame, diameter > 0 ? diameter : 1, err);
 
-    if (diameter > 0 && count_empty(frame)) {
-        st = hole_narrow_pixels(&list, &count, frame, diameter, err);
-        if (!st) st = hole_fill_pixels(frame, list, count, soft, sigma, diameter, err);
-        if (!st && count_empty(frame)) st = fill_wide(frame, &far, err);
+    if (!st && diameter > 0) {
+        st = hole_fill_pixels(frame, list, narrow, soft, sigma, diameter, err);
+        for (size_t i = 0; !st && i < narrow; i++) filled += frame->rgba[4 * (size_t)list[i] + 3] > 0;
     }
-    frame->unfilled_fraction = (double)count_empty(frame) / pixels;
+    if (!st && diameter > 0 && filled < empty) {
+        size_t wide = 0, left = narrow; /* narrow ones that found nothing near are left to the pyramid, too */
+        for (size_t i = narrow; i-- > 0;)
+            if (!(frame->rgba[4 * (size_t)list[i] + 3] > 0)) list[--left] = list[i];
+        st = fill_wide(frame, list + left, empty - left, &far, &wide, err);
+        filled += wide;
+    }
+    frame->unfilled_fraction = (double)(empty - filled) / ((double)frame->width * (double)frame->height);
     free(list);
     return st;
 }

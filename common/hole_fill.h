@@ -19,9 +19,10 @@ enum status hole_fill(struct rendered_frame *frame, const struct soft_z *soft, f
                       struct err *err);
 
 /* The narrow half, for a filler that does the wide holes otherwise: the pixels of holes that no diameter x diameter
- * square of hole pixels holds, in picture order (the caller frees *list; on failure it is NULL) ... */
-enum status hole_narrow_pixels(uint32_t **list, size_t *count, const struct rendered_frame *frame, int diameter,
-                               struct err *err);
+ * square of hole pixels holds: *count of them, and behind them in the list the others, *empty in all; each in picture
+ * order; the caller frees *list ... */
+enum status hole_narrow_pixels(uint32_t **list, size_t *count, size_t *empty, const struct rendered_frame *frame,
+                               int diameter, struct err *err);
 /* ... and the filling of such pixels alone, from what is known as far as `diameter` around. */
 enum status hole_fill_pixels(struct rendered_frame *frame, const uint32_t *list, size_t count,
                              const struct soft_z *soft, float sigma, int diameter, struct err *err);

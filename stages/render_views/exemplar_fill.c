@@ -606,11 +606,11 @@ static enum status fill_narrow_holes(struct job *j, int diameter, struct err *er
 {
     const struct exemplar_depth *d = j->depth;
     uint32_t *narrow = NULL;
-    size_t *narrow_count = NULL, count = 0, kept = 0;
+    size_t *narrow_count = NULL, count = 0, empty = 0, kept = 0;
     enum status st = find_holes(j, err);
 
     if (st || !j->hole_count) return st;
-    st = hole_narrow_pixels(&narrow, &count, j->frame, diameter, err);
+    st = hole_narrow_pixels(&narrow, &count, &empty, j->frame, diameter, err);
     narrow_count = calloc(j->hole_count, sizeof *narrow_count);
     if (!st && !narrow_count) st = err_nomem(err, "the holes of a frame", j->hole_count * sizeof *narrow_count);
     for (size_t i = 0; !st && i < count; i++) narrow_count[j->label[narrow[i]] - 1]++;
