@@ -113,20 +113,21 @@ static enum status index_cells(struct layer_view *lv, const struct layered_depth
     for (size_t y = 0; y < rows; y++)
         for (size_t x = 0; x + 1 < row; x++) {
             struct texel *t = &lv->texels[y * row + x];
-            struct cell *cell = &lv->cells[y * row + x];
+            uint32_t *first = &lv->cells[0][y * row + x], *second = &lv->cells[1][y * row + x];
             uint32_t ids[CELL_IDS] = {0};
             uint8_t surface[CELL_IDS];
             bool empty;
             const int count = cell_ids(t, lv->stride, ids, &empty);
             const bool one = cell_surfaces(ids, count, d, (double)x, (double)y, surface) <= 1 && !empty;
-            cell->word[0] = ids[0];
-            cell->word[1] = ids[1];
+            *first = ids[0];
+            *second = ids[1];
             if (is_many(count, empty)) {
                 memcpy(lv->many[many].id, ids, sizeof ids);
                 memcpy(lv->many[many].surface, surface, sizeof surface);
-                *cell = (struct cell){{CELL_MANY | (uint32_t)many++, 0}};
+                *first = CELL_MANY | (uint32_t)many++;
+                *second = 0;
             }
-            if (!one) cell->word[0] |= CELL_SPLIT;
+            if (!one) *first |= CELL_SPLIT;
             if (one && count) t->id[0] |= TEXEL_JOINED;
         }
     return ST_OK;
@@ -137,7 +138,7 @@ void layer_view_release(struct layer_view *lv)
     if (!lv) return;
     free(lv->texels);
     free(lv->photo);
-    free(lv->cells);
+    for (int k = 0; k < 2; k++) free(lv->cells[k]);
     free(lv->many);
     free(lv->shapes);
     *lv = (struct layer_view){0};
@@ -159,9 +160,10 @@ enum status layer_view_pack(struct layer_view *lv, struct layered_depth *depth, 
     *lv = (struct layer_view){.width = w, .height = h, .stride = stride};
     lv->texels = aligned_alloc(64, (size + 63) / 64 * 64);
     lv->photo = calloc((size_t)stride * (size_t)(h + 3), sizeof *lv->photo);
-    lv->cells = calloc((size_t)stride * (size_t)(h + 3) + 8, sizeof *lv->cells); /* read eight at a time */
+    for (int k = 0; k < 2; k++) /* sixteen are read at a time */
+        lv->cells[k] = calloc((size_t)stride * (size_t)(h + 3) + 16, sizeof *lv->cells[k]);
     lv->shapes = calloc((size_t)depth->segment_count + 1, sizeof *lv->shapes);
-    if (!lv->texels || !lv->photo || !lv->cells || !lv->shapes) {
+    if (!lv->texels || !lv->photo || !lv->cells[0] || !lv->cells[1] || !lv->shapes) {
         layer_view_release(lv);
         return err_nomem(err, "the layers of a view", size);
     }

@@ -19,15 +19,11 @@ struct texel { /* of both layers, 0 interior and 1 boundary */
     uint16_t rgba[2][4]; /* half */
 };
 
-/* What segments a cell has: word[0] holds the first one's id and the flags, word[1] the second one's id, 0 for none; or with
- * CELL_MANY word[0] holds the place in the list of ids, and word[1] is 0. */
+/* What segments a cell has, in two words: the first one's id and the flags; the second one's id, 0 for none. Or with
+ * CELL_MANY the first holds the place in the list of ids, and the second is 0. */
 #define CELL_SPLIT 0x80000000u /* its segments are not of one surface, or it is at a border of what is known */
 #define CELL_MANY  0x40000000u
 #define CELL_IDS   8 /* of a cell with many, 0 where there are fewer */
-
-struct cell {
-    uint32_t word[2];
-};
 
 struct many_cell { /* of more than two segments, or of two at a border; surface[i] tells which are of one surface */
     uint32_t id[CELL_IDS];
@@ -45,7 +41,7 @@ struct layer_view {
     int width, height, stride; /* stride of the texels: one of padding on the left and above, two right and below */
     struct texel *texels;
     uint16_t (*photo)[4]; /* both layers composited: half, premultiplied; stride and padding of the texels */
-    struct cell *cells;   /* the cell that begins at a texel */
+    uint32_t *cells[2];   /* first and second word of the cell that begins at a texel */
     struct many_cell *many;
     struct segment_shape *shapes; /* parallel to the depth map's segments */
 };

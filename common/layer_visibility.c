@@ -129,26 +129,31 @@ static inline __m256i mask_of(int lanes)
     return _mm256_cmpeq_epi32(_mm256_and_si256(_mm256_set1_epi32(lanes), bits), bits);
 }
 
-/* The cells' words at eight places. */
-static inline void cell_words(const struct cell *cells, __m256i at, __m256i *first, __m256i *second)
+/* Words at eight places; near: those are at base + near, 0 .. 15 each. */
+static inline __m256i words_near(const uint32_t *words, int base, __m256i near)
 {
-    const __m256i lanes = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
-    const __m128i begin = _mm256_castsi256_si128(at);
-    const __m256i run = _mm256_add_epi32(_mm256_broadcastd_epi32(begin), lanes);
-    __m256i low, high;
+    const __m256i low = _mm256_loadu_si256((const __m256i *)(const void *)(words + base));
+    const __m256i high = _mm256_loadu_si256((const __m256i *)(const void *)(words + base + 8));
+    return _mm256_blendv_epi8(_mm256_permutevar8x32_epi32(low, near), _mm256_permutevar8x32_epi32(high, near),
+                              _mm256_cmpgt_epi32(near, _mm256_set1_epi32(7)));
+}
 
-    if (_mm256_movemask_epi8(_mm256_cmpeq_epi32(at, run)) == -1) {
-        const struct cell *from = cells + _mm_cvtsi128_si32(begin);
-        low = _mm256_loadu_si256((const __m256i *)(const void *)from);
-        high = _mm256_loadu_si256((const __m256i *)(const void *)(from + 4));
+/* The words of the cells at eight places, of which lane `first` is the leftmost that matters. */
+static inline void cell_words(uint32_t *const cells[2], __m256i at, int first, __m256i *word, __m256i *second)
+{
+    const __m256i base = _mm256_permutevar8x32_epi32(at, _mm256_set1_epi32(first));
+    const __m256i near = _mm256_sub_epi32(at, base);
+    const __m256i is_near =
+        _mm256_cmpeq_epi32(_mm256_andnot_si256(_mm256_set1_epi32(15), near), _mm256_setzero_si256());
+
+    if (_mm256_movemask_epi8(is_near) == -1) { /* a gather takes three times as long */
+        const int begin = _mm_cvtsi128_si32(_mm256_castsi256_si128(base));
+        *word = words_near(cells[0], begin, near);
+        *second = words_near(cells[1], begin, near);
     } else {
-        const long long *from = (const long long *)(const void *)cells;
-        low = _mm256_i32gather_epi64(from, begin, 8);
-        high = _mm256_i32gather_epi64(from, _mm256_extracti128_si256(at, 1), 8);
+        *word = _mm256_i32gather_epi32((const int *)(const void *)cells[0], at, 4);
+        *second = _mm256_i32gather_epi32((const int *)(const void *)cells[1], at, 4);
     }
-    const __m256 a = _mm256_castsi256_ps(low), b = _mm256_castsi256_ps(high);
-    *first = _mm256_permute4x64_epi64(_mm256_castps_si256(_mm256_shuffle_ps(a, b, 0x88)), 0xD8);
-    *second = _mm256_permute4x64_epi64(_mm256_castps_si256(_mm256_shuffle_ps(a, b, 0xDD)), 0xD8);
 }
 
 static void draw_row(struct tile_visibility *tv, size_t row, int first, int last, const struct drawn_segment *s,
@@ -193,12 +198,14 @@ static void draw_row(struct tile_visibility *tv, size_t row, int first, int last
         wanted &= _mm256_movemask_ps(_mm256_and_ps(there, _mm256_cmp_ps(w, zero, _CMP_GT_OQ)));
         if (!wanted) continue;
 
-        /* lanes that are not there look at the segment's corner */
-        const __m256i column = _mm256_cvttps_epi32(_mm256_blendv_ps(u0, u, there));
-        const __m256i line = _mm256_cvttps_epi32(_mm256_blendv_ps(v0, v, there));
-        const __m256i cell = _mm256_add_epi32(column, _mm256_mullo_epi32(line, _mm256_set1_epi32(lv->stride)));
+        /* lanes that are not there look where the first one does that is */
+        const int leftmost = __builtin_ctz((unsigned)wanted);
+        const __m256i column = _mm256_cvttps_epi32(u), line = _mm256_cvttps_epi32(v);
+        const __m256i place_of = _mm256_add_epi32(column, _mm256_mullo_epi32(line, _mm256_set1_epi32(lv->stride)));
+        const __m256i own_place = _mm256_permutevar8x32_epi32(place_of, _mm256_set1_epi32(leftmost));
+        const __m256i cell = _mm256_blendv_epi8(own_place, place_of, _mm256_castps_si256(there));
         __m256i split, other; /* the sign of the first word is CELL_SPLIT */
-        cell_words(lv->cells, cell, &split, &other);
+        cell_words(lv->cells, cell, leftmost, &split, &other);
         const __m256i owner = _mm256_andnot_si256(_mm256_set1_epi32((int)CELL_SPLIT), split);
         const __m256i own = _mm256_or_si256(_mm256_cmpeq_epi32(owner, id), _mm256_cmpeq_epi32(other, id));
         int hits = wanted & _mm256_movemask_ps(_mm256_castsi256_ps(own));
@@ -280,7 +287,7 @@ static __m128 photo_cubic(const struct layer_view *lv, int at, float fu, float f
     if (at < lv->stride + 1) return photo_texel(lv, at, fu, fv);
     for (int y = -1; y <= 1; y++)
         for (int x = -1; x <= 1; x++) {
-            const uint32_t word = lv->cells[at + y * lv->stride + x].word[0];
+            const uint32_t word = lv->cells[0][at + y * lv->stride + x];
             if (!word || word & CELL_SPLIT) return photo_texel(lv, at, fu, fv);
         }
     cubic_weights(wu, fu);
@@ -317,7 +324,7 @@ static inline __m256 layers_of(const struct texel *t, const uint32_t *ids, int c
 /* Those of the cell's segments that are of one surface with segment `id`; how many. */
 static int same_surface(const struct layer_view *lv, size_t at, uint32_t id, uint32_t ids[CELL_IDS])
 {
-    const uint32_t word = lv->cells[at].word[0];
+    const uint32_t word = lv->cells[0][at];
     int count = 0, own = 0;
 
     ids[0] = id;

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#define SLACK        1e-3 /* px */
 #define LEAST_FACING 1e-6 /* 1 - p . k: below, the plane is seen edge-on or from behind */
 #define LEAST_RATIO  1e-6 /* of a depth in the novel camera to the depth in the view */
 
@@ -87,11 +88,11 @@ static bool target_rectangle(struct projected_segment *s, const struct view_rela
         y1 = y > y1 ? y : y1;
     }
     if (!(x1 > 0 && y1 > 0 && x0 < r->width && y0 < r->height)) return false;
-    s->x0 = x0 > 1 ? (int)(x0 - 1) : 0;
-    s->y0 = y0 > 1 ? (int)(y0 - 1) : 0;
-    s->x1 = x1 + 1 < r->width - 1 ? (int)(x1 + 1) : r->width - 1;
-    s->y1 = y1 + 1 < r->height - 1 ? (int)(y1 + 1) : r->height - 1;
-    return true;
+    s->x0 = x0 > 0.5 + SLACK ? (int)ceil(x0 - 0.5 - SLACK) : 0; /* pixels whose centres are within */
+    s->y0 = y0 > 0.5 + SLACK ? (int)ceil(y0 - 0.5 - SLACK) : 0;
+    s->x1 = x1 - 0.5 + SLACK < r->width - 1 ? (int)floor(x1 - 0.5 + SLACK) : r->width - 1;
+    s->y1 = y1 - 0.5 + SLACK < r->height - 1 ? (int)floor(y1 - 0.5 + SLACK) : r->height - 1;
+    return s->x0 <= s->x1 && s->y0 <= s->y1;
 }
 
 bool segment_project(struct projected_segment *s, const struct view_relation *r, const struct depth_segment *segment,
