@@ -282,6 +282,11 @@ static void clear_tile(struct tile_visibility *seen, size_t begin, size_t end, f
     for (size_t i = begin; i < end; i++) seen->front[i] = seen->behind[i] = VISIBLE_NONE;
 }
 
+static int patch_end(const struct place *at, int k) /* in the tile's columns */
+{
+    return (k + 1) * LATTICE < at->width ? (k + 1) * LATTICE : at->width;
+}
+
 /* The patches that name the view are cleared, those between them shut; false if none names it. */
 static bool clear_named(struct scratch *s, const struct place *at, int view, int *first, int *last)
 {
@@ -297,12 +302,11 @@ static bool clear_named(struct scratch *s, const struct place *at, int view, int
             const size_t begin = (size_t)y * TILE_STRIDE + (size_t)k * LATTICE;
             clear_tile(&s->seen, begin, begin + LATTICE, patch_slot(&s->patches[k], view) < 0 ? INFINITY : 0);
         }
+    for (int y = 0; y < TILE_HEIGHT; y++) {
+        s->seen.first[y] = *first * LATTICE;
+        s->seen.last[y] = y < at->height && *last >= 0 ? patch_end(at, *last) - 1 : -1;
+    }
     return *last >= 0;
-}
-
-static int patch_end(const struct place *at, int k) /* in the tile's columns */
-{
-    return (k + 1) * LATTICE < at->width ? (k + 1) * LATTICE : at->width;
 }
 
 static void draw_view(const struct frame_job *job, struct scratch *s, const struct place *at, int view)
@@ -313,7 +317,7 @@ static void draw_view(const struct frame_job *job, struct scratch *s, const stru
     int first, last;
 
     if (!clear_named(s, at, view, &first, &last)) return;
-    visibility_draw(&s->seen, drawn, lv, at->tile, at->x + first * LATTICE, at->x + patch_end(at, last));
+    visibility_draw(&s->seen, drawn, lv, at->tile);
     for (int k = first; k <= last; k++) {
         const int n = patch_slot(&s->patches[k], view);
         if (n < 0) continue;
@@ -374,25 +378,46 @@ static bool may_step_in(const struct frame_job *job, const struct patch *patch, 
     return !(told[SIGHT_THROUGH] > AGAINST_MOST * (told[SIGHT_THROUGH] + told[SIGHT_STOPPED]));
 }
 
+static bool any_hole(const struct scratch *s, const struct place *at)
+{
+    for (int y = 0; y < at->height; y++)
+        if (memchr(s->covered + (size_t)y * TILE_STRIDE, 0, (size_t)at->width)) return true;
+    return false;
+}
+
 /* Opens the pixels that nothing covers yet, of the patches that name the view or of those that do not; the columns
  * from the first to the last. False if there are none. */
-static bool clear_uncovered(struct scratch *s, const struct place *at, int view, bool named, int *first, int *last)
+static bool clear_uncovered(struct scratch *s, const struct place *at, int view, bool named)
 {
-    bool open[PATCHES];
-    *first = at->width;
-    *last = -1;
-    for (int k = 0; k < at->patches; k++) open[k] = (patch_slot(&s->patches[k], view) >= 0) == named;
-    for (int y = 0; y < at->height; y++) {
-        const size_t row = (size_t)y * TILE_STRIDE;
-        clear_tile(&s->seen, row, row + TILE_STRIDE, INFINITY); /* eight at a time: beyond the width, too */
-        for (int x = 0; x < at->width; x++) {
-            if (s->covered[row + (size_t)x] || !open[x / LATTICE]) continue;
-            s->seen.inverse_front[row + (size_t)x] = s->seen.inverse_behind[row + (size_t)x] = 0;
-            if (*first > x) *first = x;
-            if (*last < x) *last = x;
-        }
+    const __m256 shut = _mm256_set1_ps(INFINITY);
+    const __m256i none = _mm256_set1_epi32(-1), lanes = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
+    bool open[PATCHES], any = false;
+
+    for (int y = 0; y < TILE_HEIGHT; y++) {
+        s->seen.first[y] = at->width;
+        s->seen.last[y] = -1;
     }
-    return *last >= 0;
+    if (!any_hole(s, at)) return false;
+    for (int k = 0; k < at->patches; k++) open[k] = (patch_slot(&s->patches[k], view) >= 0) == named;
+    for (int y = 0; y < at->height; y++)
+        for (int x = 0; x < at->width; x += 8) {
+            const size_t i = (size_t)y * TILE_STRIDE + (size_t)x;
+            const __m256i covered =
+                _mm256_cvtepu8_epi32(_mm_loadl_epi64((const __m128i *)(const void *)(s->covered + i)));
+            const __m256i within = _mm256_cmpgt_epi32(_mm256_set1_epi32(open[x / LATTICE] ? at->width - x : 0), lanes);
+            const __m256i is_open = _mm256_andnot_si256(_mm256_cmpgt_epi32(covered, _mm256_setzero_si256()), within);
+            const __m256 inverse = _mm256_andnot_ps(_mm256_castsi256_ps(is_open), shut);
+            const unsigned bits = (unsigned)_mm256_movemask_ps(_mm256_castsi256_ps(is_open));
+            _mm256_storeu_ps(s->seen.inverse_front + i, inverse);
+            _mm256_storeu_ps(s->seen.inverse_behind + i, inverse);
+            _mm256_storeu_si256((__m256i *)(void *)(s->seen.front + i), none);
+            _mm256_storeu_si256((__m256i *)(void *)(s->seen.behind + i), none);
+            if (!bits) continue;
+            any = true;
+            if (s->seen.last[y] < 0) s->seen.first[y] = x;
+            s->seen.last[y] = x + 7 < at->width ? x + 7 : at->width - 1;
+        }
+    return any;
 }
 
 /* What the slot OTHER has of a patch is cleared once, when it gets its first. */
@@ -438,12 +463,11 @@ static void draw_other_views(const struct frame_job *job, struct scratch *s, con
         const int view = job->by_distance[n].view;
         const struct drawn_view *drawn = &job->drawn[view];
         const struct layer_view *lv = &job->scene->views[view];
-        int first, last;
         if (drawn->tile_begin[at->tile] == drawn->tile_begin[at->tile + 1]) continue;
-        if (!clear_uncovered(s, at, view, false, &first, &last)) continue;
-        visibility_draw(&s->seen, drawn, lv, at->tile, at->x + first, at->x + last + 1);
+        if (!clear_uncovered(s, at, view, false)) continue;
+        visibility_draw(&s->seen, drawn, lv, at->tile);
         for (int y = 0; y < at->height; y++)
-            for (int x = first & ~7; x <= last; x += 8) {
+            for (int x = s->seen.first[y]; x <= s->seen.last[y]; x += 8) {
                 const size_t i = (size_t)y * TILE_STRIDE + (size_t)x;
                 if (!any_visible(&s->seen, i)) continue;
                 visibility_sample8(&s->spare, NULL, &s->seen, drawn, lv, i, at->x, at->y);
@@ -568,13 +592,6 @@ static void write_holes(const struct frame_job *job, const struct scratch *s, co
     }
 }
 
-static bool any_hole(const struct scratch *s, const struct place *at)
-{
-    for (int y = 0; y < at->height; y++)
-        if (memchr(s->covered + (size_t)y * TILE_STRIDE, 0, (size_t)at->width)) return true;
-    return false;
-}
-
 static void render_tiles(void *ctx, size_t begin, size_t end, int thread)
 {
     struct frame_job *job = ctx;
@@ -613,12 +630,11 @@ static void cover_view(const struct frame_job *job, struct scratch *s, const str
 {
     const struct drawn_view *drawn = &job->drawn[view];
     const struct layer_view *lv = &job->scene->views[view];
-    int first, last;
 
-    if (!clear_uncovered(s, at, view, true, &first, &last)) return;
-    visibility_draw(&s->seen, drawn, lv, at->tile, at->x + first, at->x + last + 1);
+    if (!clear_uncovered(s, at, view, true)) return;
+    visibility_draw(&s->seen, drawn, lv, at->tile);
     for (int y = 0; y < at->height; y++)
-        for (int x = first & ~7; x <= last; x += 8) {
+        for (int x = s->seen.first[y]; x <= s->seen.last[y]; x += 8) {
             const size_t i = (size_t)y * TILE_STRIDE + (size_t)x;
             const __m256i places = _mm256_loadu_si256((const __m256i *)(const void *)(s->seen.front + i));
             const __m256i none = _mm256_cmpeq_epi32(places, _mm256_set1_epi32(-1));

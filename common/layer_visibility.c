@@ -239,20 +239,21 @@ static void draw_row(struct tile_visibility *tv, size_t row, int first, int last
     }
 }
 
-void visibility_draw(struct tile_visibility *tv, const struct drawn_view *dv, const struct layer_view *lv, int tile,
-                     int x0, int x1)
+void visibility_draw(struct tile_visibility *tv, const struct drawn_view *dv, const struct layer_view *lv, int tile)
 {
     const int tile_x = tile % dv->tiles_x * TILE_WIDTH, tile_y = tile / dv->tiles_x * TILE_HEIGHT;
 
     for (uint32_t i = dv->tile_begin[tile]; i < dv->tile_begin[tile + 1]; i++) {
         const uint32_t place = dv->tile_segments[i];
         const struct drawn_segment *s = &dv->segments[place];
-        const int first = s->x0 > x0 ? s->x0 : x0, last = s->x1 < x1 - 1 ? s->x1 : x1 - 1;
-        const int top = s->y0 > tile_y ? s->y0 : tile_y;
-        const int bottom = s->y1 < tile_y + TILE_HEIGHT - 1 ? s->y1 : tile_y + TILE_HEIGHT - 1;
-        if (first > last) continue;
-        for (int y = top; y <= bottom; y++)
-            draw_row(tv, (size_t)(y - tile_y) * TILE_STRIDE, first, last, s, place, lv, (float)(y - s->y0), tile_x);
+        const int top = s->y0 > tile_y ? s->y0 - tile_y : 0;
+        const int bottom = s->y1 < tile_y + TILE_HEIGHT - 1 ? s->y1 - tile_y : TILE_HEIGHT - 1;
+        for (int y = top; y <= bottom; y++) {
+            const int first = s->x0 > tile_x + tv->first[y] ? s->x0 : tile_x + tv->first[y];
+            const int last = s->x1 < tile_x + tv->last[y] ? s->x1 : tile_x + tv->last[y];
+            if (first > last) continue;
+            draw_row(tv, (size_t)y * TILE_STRIDE, first, last, s, place, lv, (float)(tile_y + y - s->y0), tile_x);
+        }
     }
 }
 

@@ -46,11 +46,11 @@ struct tile_visibility {
     float inverse_front[TILE_PIXELS], inverse_behind[TILE_PIXELS];
     uint32_t front[TILE_PIXELS], behind[TILE_PIXELS]; /* places in segments; front with VISIBLE_FULL or not */
     float u[TILE_PIXELS], v[TILE_PIXELS];             /* of front, in the padded texels */
+    int first[TILE_HEIGHT], last[TILE_HEIGHT];        /* a row: the columns in which pixels are wanted, inclusive */
 };
 
-/* Draws the view's segments on a tile, in its columns [x0, x1). */
-void visibility_draw(struct tile_visibility *tv, const struct drawn_view *dv, const struct layer_view *lv, int tile,
-                     int x0, int x1);
+/* Draws the view's segments on a tile. */
+void visibility_draw(struct tile_visibility *tv, const struct drawn_view *dv, const struct layer_view *lv, int tile);
 
 struct view_samples {                         /* what views show in a tile's pixels */
     float rgba[TILE_PIXELS][4];               /* premultiplied */
