@@ -374,10 +374,11 @@ $(PATH_TXT) $(E)/frames.mk &: $(CAMERAS) $(O)/views/lenses.txt $(DEPTH_EXR) $(DE
 	$(call stage,plan_path,$(EFFECT),$(O),--views $(O)/views --depth $(O)/depth --records $(S)/photos --effect $(EFFECT) --out $(E))
 
 # frames come in chunks, a process each; of a chunk only the frames that are missing or stale are rendered
+EFFECT_LAYERS := $(wildcard scenes/$(SCENE)/effects.txt)
 define chunk_rule
-$(1:%=$(E)/frames/%.exr) &: $(PATH_TXT) $(CAMERAS) $(DEPTH_EXR) $(DEPTH_TXT) $(call needs,render_views)
+$(1:%=$(E)/frames/%.exr) &: $(PATH_TXT) $(EFFECT_LAYERS) $(CAMERAS) $(DEPTH_EXR) $(DEPTH_TXT) $(call needs,render_views)
 	$$(hide)stale=$$$$(common/stale.sh $(1:%=$(E)/frames/%.exr) -- $$^); \
-	  $$(call farm,render_views,$(firstword $(1)),$(1:%=$(E)/frames/%.exr),--views $(O)/views --depth $(O)/depth --path $(E) --out $(E)/frames --frames,$$$$stale)
+	  $$(call farm,render_views,$(firstword $(1)),$(1:%=$(E)/frames/%.exr),--views $(O)/views --depth $(O)/depth --path $(E) $(EFFECT_LAYERS:%=--effects %) --out $(E)/frames --frames,$$$$stale)
 endef
 chunks = $(if $(2),$(eval $(call $(1),$(wordlist 1,$(FRAMES_PER_JOB),$(2))))$(call chunks,$(1),$(wordlist $(words x $(wordlist 1,$(FRAMES_PER_JOB),$(2))),$(words $(2)),$(2))))
 $(call chunks,chunk_rule,$(FRAMES))

@@ -10,6 +10,9 @@
 #ifndef REMODEL_HOLE_FILL_H
 #define REMODEL_HOLE_FILL_H
 
+#include <stddef.h>
+#include <stdint.h>
+
 #include "rendered_frame.h"
 #include "soft_z.h"
 

@@ -4,7 +4,7 @@
 every_header_compiles_alone()
 {
     for h in common/*.h stages/*/*.h; do
-        echo "#include \"$h\"" | gcc -std=c11 -D_GNU_SOURCE -Wall -Wextra -Werror -I. -fsyntax-only -xc - || fail "$h does not compile alone"
+        echo "#include \"$h\"" | gcc -std=c11 -D_GNU_SOURCE -mavx2 -mf16c -Wall -Wextra -Werror -I. -fsyntax-only -xc - || fail "$h does not compile alone"
     done
 }
 
