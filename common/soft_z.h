@@ -28,10 +28,6 @@ float soft_z_weight(float dz, float gamma, float rho);
 /* rho of two depths with their relative uncertainties. */
 float soft_z_rho(const struct soft_z *s, float z_a, float sigma_a, float z_b, float sigma_b);
 
-/* How far apart in depth two fragments of one view may be and still be the same surface: k s z, or rho / 10 with the
- * thesis' range. */
-float soft_z_reach(const struct soft_z *s, float z, float sigma);
-
 struct soft_z_sample { /* what one view shows in a pixel */
     float rgba[4];     /* premultiplied */
     float z, sigma;    /* of its front surface; sigma relative */
@@ -98,11 +94,13 @@ struct soft_z_fragment {
 
 #define SOFT_Z_MERGE_MOST 40 /* fragments */
 
-/* A fragment's standing is (for / (for + against))^2: for it speak the votes of all fragments at its depth, itself
- * included, against it those behind it - their views look through it - and in part those before it. It hides others and
- * counts by its standing; of what is hidden by the views in front, the most counts, so that at a rim the part that the
- * front leaves stays with what is behind. Colours are averaged as square roots: a mean over views that disagree is then
- * about what the eye takes for their mean, where one of radiances is too bright. rgba gets alpha 1. */
+/* The fragments of a view stand one after the other, front to back. A fragment's standing is (for / (for + against))^2:
+ * for it speak the votes of all fragments at its depth, itself included, against it those behind it, by what they have
+ * more of than it leaves them - their views look through it - and in part those before it, by what they have more of
+ * than its own view has there. It hides others and counts by its standing; of what is hidden by the views in front, the
+ * most counts, so that at a rim the part that the front leaves stays with what is behind. A view's own fragments are
+ * averaged as they are: they share the pixel's area. Views' colours are averaged as square roots: a mean over views that
+ * disagree is then about what the eye takes for their mean, where one of radiances is too bright. rgba gets alpha 1. */
 void soft_z_merge(const struct soft_z *s, const struct soft_z_fragment *fragments, int count, float rgba[4], float *z);
 
 #endif
