@@ -328,8 +328,9 @@ static void draw_view(const struct frame_job *job, struct scratch *s, const stru
                 visibility_sample8(&slot->shown, job->offline ? &slot->behind : NULL, &s->seen, drawn, lv, i, at->x,
                                    at->y);
                 mark_covered(s->covered + i, slot->shown.alpha + i, job->offline ? slot->behind.alpha + i : NULL);
-                const __m256 shown =
-                    _mm256_cmp_ps(_mm256_loadu_ps(slot->shown.alpha + i), _mm256_setzero_ps(), _CMP_GT_OQ);
+                __m256 alpha = _mm256_loadu_ps(slot->shown.alpha + i);
+                if (job->offline) alpha = _mm256_add_ps(alpha, _mm256_loadu_ps(slot->behind.alpha + i));
+                const __m256 shown = _mm256_cmp_ps(alpha, _mm256_setzero_ps(), _CMP_GT_OQ);
                 const __m256 weight = _mm256_mul_ps(patch_weights(s->patches[k].weight[n], x, y),
                                                     _mm256_max_ps(least, _mm256_loadu_ps(slot->shown.inside + i)));
                 _mm256_storeu_ps(slot->blend + i, _mm256_and_ps(shown, weight));
@@ -538,12 +539,13 @@ static void merge_pixel(const struct frame_job *job, const struct scratch *s, co
     for (int k = 0; k < count; k++) {
         const struct slot *slot = &s->slots[slots[k]];
         const float blend = slot->blend[i];
-        if (!(slot->shown.alpha[i] > 0)) continue;
+        const bool behind = slots[k] != OTHER && slot->behind.alpha[i] > 0; /* be it with nothing in front */
+        if (!(slot->shown.alpha[i] > 0) && !behind) continue;
         const float standing = slots[k] == OTHER ? 1 : job->standing[patch->view[slots[k]]];
         const float inside = fminf(1, fmaxf(LEAST_VOTE, slot->shown.inside[i] / VOTE_INSIDE));
         const float vote = inside * fmaxf(standing, fminf(1, blend / SOFT_Z_BLEND_WHOLE));
-        take_fragment(&fragments[n++], &slot->shown, i, blend, vote);
-        if (slots[k] == OTHER || !(slot->behind.alpha[i] > 0)) continue;
+        if (slot->shown.alpha[i] > 0) take_fragment(&fragments[n++], &slot->shown, i, blend, vote);
+        if (!behind) continue;
         take_fragment(&fragments[n], &slot->behind, i, blend, vote);
         fragments[n++].before = slot->shown.alpha[i];
     }

@@ -65,10 +65,13 @@ static inline double wave_depth(const struct view *v, double u, double w, int *s
     return meet(v, u, w, wave);
 }
 
+/* A plane: in closed form, for views that are turned, too. 0 where it is not seen. */
 static inline double tilted_depth(const struct view *v, double u, double w, int *surface)
 {
+    const struct vec3 c = v->center, d = vec3_sub(view_unproject(v, u, w, 1), c);
+    const double z = (tilted(c.x, c.y) - c.z) / (d.z - 0.5 * d.x + 0.2 * d.y);
     *surface = 0;
-    return meet(v, u, w, tilted);
+    return z > 0 ? z : 0;
 }
 
 /* A square of half width 0.5 at z = 3 in front of a wall at z = 6. */
@@ -112,8 +115,7 @@ static void depth_make(struct layered_depth *d, const struct view *v, const stru
             const size_t p = (size_t)(y * W + x);
             int surface;
             const double u = x + 0.5, w = y + 0.5, z = shape->depth(v, u, w, &surface);
-            const struct vec3 world =
-                vec3_add(v->center, vec3_make((u - v->cx) / v->fx * z, (w - v->cy) / v->fy * z, z));
+            const struct vec3 world = view_unproject(v, u, w, z);
             const uint32_t id = (uint32_t)(2 * (y / CELL * columns + x / CELL) + surface + 1);
             struct depth_segment *s = &d->segments[id - 1];
             float *rgba = d->interior.rgba + 4 * p;
@@ -156,7 +158,8 @@ static const struct layer_render_options renderers[2] = {
     {.offline = true, .more_views = 4, .soft_z = SOFT_Z_WIDTHS, .fill_diameter = 6},
 };
 
-static inline void render(struct rendered_frame *f, const struct scene *s, const struct view *novel, bool offline, int fill)
+static inline void render(struct rendered_frame *f, const struct scene *s, const struct view *novel, bool offline,
+                          int fill)
 {
     struct layer_render_options options = renderers[offline];
     struct err err = ERR_INIT;
@@ -185,7 +188,7 @@ static inline double psnr(const struct rendered_frame *f, const struct view *v, 
             float rgb[3];
             const double u = x + 0.5, w = y + 0.5, z = shape->depth(v, u, w, &surface);
             if (f->hole[p]) continue;
-            texture(vec3_add(v->center, vec3_make((u - v->cx) / v->fx * z, (w - v->cy) / v->fy * z, z)), surface, rgb);
+            texture(view_unproject(v, u, w, z), surface, rgb);
             for (int k = 0; k < 3; k++) sum += pow((double)f->rgba[4 * p + (size_t)k] - (double)rgb[k], 2);
             count += 3;
         }
