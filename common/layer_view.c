@@ -11,15 +11,17 @@
 
 #define HALF_MOST 65504.0f
 
-/* Both layers, and their sum: the photo. */
+/* Both layers, and their sum: the photo. What is no number becomes 0. */
 __attribute__((target("f16c"))) static void pack_rgba(uint16_t half[2][4], uint16_t photo[4], const float *interior,
                                                       const float *boundary)
 {
     const __m256 most = _mm256_set1_ps(HALF_MOST), least = _mm256_set1_ps(-HALF_MOST);
     __m256 v = _mm256_set_m128(_mm_loadu_ps(boundary), _mm_loadu_ps(interior));
+    v = _mm256_and_ps(v, _mm256_cmp_ps(v, v, _CMP_ORD_Q));
     v = _mm256_max_ps(_mm256_min_ps(v, most), least);
     _mm_storeu_si128((__m128i *)half, _mm256_cvtps_ph(v, _MM_FROUND_TO_NEAREST_INT));
-    const __m128 sum = _mm_add_ps(_mm256_castps256_ps128(v), _mm256_extractf128_ps(v, 1));
+    __m128 sum = _mm_add_ps(_mm256_castps256_ps128(v), _mm256_extractf128_ps(v, 1));
+    sum = _mm_max_ps(_mm_min_ps(sum, _mm256_castps256_ps128(most)), _mm256_castps256_ps128(least));
     _mm_storel_epi64((__m128i *)(void *)photo, _mm_cvtps_ph(sum, _MM_FROUND_TO_NEAREST_INT));
 }
 

@@ -72,7 +72,8 @@ static inline __m256 soft_z_behind8(const struct soft_z *s, __m256 w, __m256 z, 
     const __m256 length = _mm256_max_ps(_mm256_mul_ps(rho, _mm256_set1_ps(0.8f)), _mm256_set1_ps(1e-30f));
     const __m256 t = _mm256_max_ps(_mm256_setzero_ps(), _mm256_min_ps(one, _mm256_div_ps(over, length)));
     const __m256 hidden = _mm256_mul_ps(p_c, _mm256_sub_ps(one, soft_z_fall8(t)));
-    return _mm256_min_ps(w, _mm256_sub_ps(one, hidden));
+    return _mm256_max_ps(_mm256_setzero_ps(),
+                         _mm256_min_ps(w, _mm256_sub_ps(one, hidden))); /* the series ends below 0 */
 }
 
 /* Blends the samples (alpha > 0) of a pixel: colour by blend x w x alpha, normalised; depth sum(w z) / sum(w),

@@ -427,11 +427,11 @@ static void passing_an_edge_of_the_view_mesh_is_smooth(void **state)
     const bool offline = *(const bool *)*state;
     struct scene s;
     uneven_scene_make(&s, &square, nine, 9);
-    check_moves(&s, vec3_make(0, 0.1, 0), right, &renderers[offline]);    /* on the mesh, from triangle to triangle */
-    check_moves(&s, vec3_make(0, 0.1, 0.3), right, &renderers[offline]);  /* in front of it */
-    check_moves(&s, vec3_make(0.3, 0.1, 0), right, &renderers[offline]);  /* out over its rim */
-    check_moves(&s, vec3_make(0.1, 0.05, 0), ahead, &renderers[offline]); /* through it */
-    check_moves(&s, vec3_make(0.1, 0.1, -0.2), aslant, &renderers[offline]); /* behind it */
+    check_moves(&s, vec3_make(0, 0.1, 0), right, &renderers[offline]);   /* on the mesh, from triangle to triangle */
+    check_moves(&s, vec3_make(0, 0.1, 0.3), right, &renderers[offline]); /* in front of it */
+    check_moves(&s, vec3_make(0.3, 0.1, 0), right, &renderers[offline]); /* out over its rim */
+    check_moves(&s, vec3_make(0.1071, 0.0532, 0), ahead, &renderers[offline]); /* through it */
+    check_moves(&s, vec3_make(0.1, 0.1, -0.2), aslant, &renderers[offline]);   /* behind it */
     layer_scene_release(&s.layers);
 }
 
@@ -501,7 +501,7 @@ static void weights_that_blend_sum_to_one(void **state)
                 if (x < 30 || y < 30 || x >= W - 30 || y >= H - 30) continue; /* where no view fades at its border */
                 for (int k = 0; k < 3; k++)
                     assert_near(offline ? sqrt((double)c[k]) : (double)c[k], weight[k],
-                                0.02); /* bilinear within 16 px */
+                                0.04); /* bilinear within 16 px, kinks too */
             }
         }
     }
@@ -522,12 +522,12 @@ static void what_all_other_views_look_through_does_not_show(void **state)
     memset(&s, 0, sizeof s);
     for (int i = 0; i < 9; i++) {
         s.views[i] = view_at(nine[i][0], nine[i][1], nine[i][2]);
-        depth_make(&depths[i], &s.views[i], &square);
+        depth_make(&depths[i], &s.views[i], &tilted_planes);
     }
-    int moved = 0; /* of the view in the middle every fifth segment of the wall hangs in the air, and is white */
+    int moved = 0; /* of the view in the middle every fifth segment hangs in the air, and is white */
     for (int k = 0; k < depths[4].segment_count; k++)
-        if (fabs(depths[4].segments[k].plane[2] - 1.0 / 6) < 1e-6 && k % 5 == 0) {
-            depths[4].segments[k].plane[2] = 1 / 2.0;
+        if (depths[4].segments[k].pixels && k / 2 % 5 == 0) {
+            memcpy(depths[4].segments[k].plane, (const double[3]){0, 0, 1 / 2.0}, sizeof depths[4].segments[k].plane);
             moved++;
             for (int p = 0; p < W * H; p++)
                 if (depths[4].interior.id[p] == (uint32_t)k + 1)
@@ -543,9 +543,9 @@ static void what_all_other_views_look_through_does_not_show(void **state)
         assert_int_equal(holes_inside(&f, 15), 0);
         for (int y = 15; y < H - 15; y++)
             for (int x = 15; x < W - 15; x++) {
-                const float *c = f.rgba + 4 * (y * W + x), z = f.z[y * W + x];
-                assert_true(fabs((double)z - 6 + novel.center.z) < 0.02 || fabs((double)z - 3 + novel.center.z) < 0.02);
-                assert_true(c[0] < 0.9f && c[1] < 0.9f); /* the texture's most is 0.75 */
+                const float *c = f.rgba + 4 * (y * W + x);
+                assert_near(f.z[y * W + x], meet(&novel, x + 0.5, y + 0.5, tilted), 0.02);
+                assert_true(c[0] < 0.8f && c[1] < 0.75f && c[2] < 0.86f); /* the texture's most: 0.75, 0.7, 0.8 */
             }
     }
     layer_scene_release(&s.layers);
@@ -722,7 +722,9 @@ static void a_silhouette_between_two_views_stays_a_clean_edge(void **state)
     struct rendered_frame f = {0};
 
     silhouette_make(&s, pair, 2);
-    for (int i = 0; i <= 20; i++) { /* the left view has nothing behind the edge: half a pixel at most */
+    /* the left view has nothing behind the edge. Fast, its rim hides what others have there: wholly from half coverage
+     * on (half a pixel of error), in proportion below (a quarter) */
+    for (int i = 0; i <= 20; i++) {
         const double x0 = -0.09 + 0.009 * i, edge = EDGE - FOCAL * x0 / 3;
         const struct view novel = view_at(x0, 0, 0);
         render(&f, &s, &novel, offline, 0);
@@ -735,7 +737,7 @@ static void a_silhouette_between_two_views_stays_a_clean_edge(void **state)
                 assert_true(x == 60 || c[0] <= c[-4] + 1e-3f);
                 if (fabs(x + 0.5 - edge) > 2) assert_near(c[0], x < edge, 1e-3);
             }
-            assert_near(60 + sum, edge, 0.5);
+            assert_near(60 + sum, edge, offline ? 0.5 : 0.75);
         }
     }
     layer_scene_release(&s.layers);

@@ -141,6 +141,7 @@ static void eight_weights_behind_are_the_scalar_ones(void **state)
             const float rho = soft_z_rho(soft, z[k], sigma[k], z_c[k], sigma_c[k]);
             const float hidden = p_c[k] * (1 - soft_z_weight(z[k] - z_c[k], 0.1f * rho, rho));
             assert_near(told[k], fminf(w[k], 1 - hidden), 1e-5);
+            assert_true(told[k] >= 0);
         }
     }
 }
