@@ -40,6 +40,7 @@ static int stage_main(void *ctx)
     struct cli_list exclude = {0};
     int count = 3, argc = 0;
     bool fast = false;
+    const char *planes = NULL;
     struct try_params params = TRY_PARAMS_DEFAULT;
     const struct cli_opt opts[] = {
         CLI_ABOUT("Tries the command line."),
@@ -48,6 +49,7 @@ static int stage_main(void *ctx)
         CLI_LIST("exclude", &exclude, CLI_OPTIONAL, "file to leave out"),
         CLI_INT("count", &count, CLI_OPTIONAL, "how many"),
         CLI_FLAG("fast", &fast, "be quick"),
+        CLI_PARAM("planes", &planes, "planes, as a word of its own"),
         CLI_PARAMS(try_table, &params, check),
         CLI_END,
     };
@@ -181,6 +183,30 @@ static void configs_then_sets(void **state)
     assert_try(2, "did you mean planes?", "--out=x", "--set=planse=3");
 }
 
+static void an_option_that_is_a_parameter(void **state)
+{
+    char a[PATH_MAX];
+
+    (void)state;
+    strcpy(a, scratch_write("planes.cfg", "[try]\nplanes = 5\n"));
+    /* it wins over config files and --set, wherever it stands, and is among the effective parameters */
+    assert_try(0, "planes = 7\n", "--out=x", "--planes=7");
+    assert_try(0, "planes = 7\n", "--planes", "7", "--set=planes=6", "--config", a, "--out=x");
+    assert_try(0, "planes = 5\n", "--out=x", "--config", a);
+    assert_try(0, "[try]\nnear_z = 1\nfar_z = 10\nplanes = 9\n", "--print-config", "--planes=9");
+    /* and is checked as one */
+    assert_try(2, "planes", "--out=x", "--planes=65");
+    assert_try(2, "planes", "--out=x", "--planes=few");
+    assert_try(2, "planes", "--out=x", "--planes=");
+    assert_try(2, "--planes is given twice; keep one.", "--out=x", "--planes=7", "--planes=7");
+    assert_try(2, "--planes needs a value", "--out=x", "--planes");
+    assert_try(2, "did you mean --planes?", "--out=x", "--plane=7");
+
+    char lengthy[2000] = "--planes=";
+    memset(lengthy + 9, '1', sizeof lengthy - 10);
+    assert_try(2, "--planes: its value is too long.", "--out=x", lengthy);
+}
+
 static void the_last_line(void **state)
 {
     char *said;
@@ -233,6 +259,7 @@ int main(void)
         cmocka_unit_test(help_version_config),
         cmocka_unit_test(output_that_cannot_be_written),
         cmocka_unit_test(configs_then_sets),
+        cmocka_unit_test(an_option_that_is_a_parameter),
         cmocka_unit_test(the_last_line),
         cmocka_unit_test(children_say_nothing),
     };

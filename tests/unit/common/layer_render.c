@@ -545,7 +545,7 @@ static void what_all_other_views_look_through_does_not_show(void **state)
             for (int x = 15; x < W - 15; x++) {
                 const float *c = f.rgba + 4 * (y * W + x);
                 assert_near(f.z[y * W + x], meet(&novel, x + 0.5, y + 0.5, tilted), 0.02);
-                assert_true(c[0] < 0.8f && c[1] < 0.75f && c[2] < 0.86f); /* the texture's most: 0.75, 0.7, 0.8 */
+                assert_true(c[0] < 0.85f && c[1] < 0.8f && c[2] < 0.9f); /* a tenth above the texture at most */
             }
     }
     layer_scene_release(&s.layers);

@@ -1,6 +1,8 @@
 /* frames.c - which frames are asked for, and what a rendered frame's file holds. */
 #include "tests/unit/scratch.h"
 
+#include <math.h>
+
 #include "common/exr.h"
 #include "common/parallel.h"
 #include "stages/render_views/frames.h"
@@ -35,11 +37,14 @@ struct scene {
     struct camera_set set;
     struct layer_scene layers;
     struct camera_path path;
+    struct effects effects; /* none */
+    struct renderer renderer;
 };
 
 /* One view of a wall at depth 4, and a path that slides along it. */
-static void scene_make(struct scene *s, int frames)
+static void scene_make(struct scene *s, int frames, const char *renderer)
 {
+    struct render_params params = RENDER_PARAMS_DEFAULT;
     struct layered_depth d;
     struct err err = ERR_INIT;
 
@@ -68,26 +73,28 @@ static void scene_make(struct scene *s, int frames)
         c->center.x = 0.03 * i;
         c->translation.x = -0.03 * i;
     }
+    snprintf(params.renderer, sizeof params.renderer, "%s", renderer);
+    renderer_init(&s->renderer, &s->layers, &s->path, &s->effects, &params);
 }
 
 static void scene_drop(struct scene *s)
 {
+    renderer_release(&s->renderer);
     layer_scene_release(&s->layers);
     camera_path_release(&s->path);
 }
 
 static void frames_are_written_whole(void **state)
 {
-    (void)state;
-    const struct render_params params = RENDER_PARAMS_DEFAULT;
+    const char *kind = *state;
     const struct provenance prov = {.stage = "render_views", .version = "0"};
     const bool wanted[4] = {true, false, false, true};
     struct scene s;
     struct exr_image im = {0};
     struct err err = ERR_INIT;
 
-    scene_make(&s, 4);
-    assert_ok(frames_render(&s.path, wanted, &s.layers, &params, scratch_path("some"), &prov, &err), err);
+    scene_make(&s, 4, kind);
+    assert_ok(frames_render(&s.path, wanted, &s.renderer, scratch_path("some"), &prov, &err), err);
     assert_int_equal(count_entries(scratch_path("some")), 2);
     assert_ok(exr_read(&im, scratch_path("some/0001.exr"), NULL, 0, &err), err);
     assert_int_equal(im.width, W);
@@ -110,22 +117,21 @@ static void frames_are_written_whole(void **state)
 
 static void splits_and_threads_give_the_same_bytes(void **state)
 {
-    (void)state;
-    const struct render_params params = RENDER_PARAMS_DEFAULT;
+    const char *kind = *state;
     const struct provenance prov = {.stage = "render_views", .version = "0"};
     const bool all[3] = {true, true, true};
     const int threads = parallel_threads();
     struct scene s;
     struct err err = ERR_INIT;
 
-    scene_make(&s, 3);
+    scene_make(&s, 3, kind);
     parallel_set_threads(2);
-    assert_ok(frames_render(&s.path, all, &s.layers, &params, scratch_path("all"), &prov, &err), err);
+    assert_ok(frames_render(&s.path, all, &s.renderer, scratch_path("all"), &prov, &err), err);
     parallel_set_threads(1);
     for (int i = 2; i >= 0; i--) {
         bool one[3] = {false};
         one[i] = true;
-        assert_ok(frames_render(&s.path, one, &s.layers, &params, scratch_path("split"), &prov, &err), err);
+        assert_ok(frames_render(&s.path, one, &s.renderer, scratch_path("split"), &prov, &err), err);
     }
     parallel_set_threads(threads);
     for (int i = 1; i <= 3; i++) {
@@ -141,17 +147,16 @@ static void splits_and_threads_give_the_same_bytes(void **state)
 
 static void an_empty_frame_is_an_error(void **state)
 {
-    (void)state;
-    const struct render_params params = RENDER_PARAMS_DEFAULT;
+    const char *kind = *state;
     const struct provenance prov = {.stage = "render_views", .version = "0"};
     const bool all[3] = {true, true, true};
     struct scene s;
     struct err err = ERR_INIT;
 
-    scene_make(&s, 3);
+    scene_make(&s, 3, kind);
     s.path.frames[1].camera.translation.z = -8; /* behind the wall */
     s.path.frames[1].camera.center.z = 8;
-    assert_int_equal(frames_render(&s.path, all, &s.layers, &params, scratch_path("empty"), &prov, &err), ST_DATA);
+    assert_int_equal(frames_render(&s.path, all, &s.renderer, scratch_path("empty"), &prov, &err), ST_DATA);
     assert_err(err, ST_DATA, "frame 2 ");
     assert_int_equal(count_entries(scratch_path("empty")), 1);
     scene_drop(&s);
@@ -159,8 +164,7 @@ static void an_empty_frame_is_an_error(void **state)
 
 static void cameras_have_frames_of_their_own_size(void **state)
 {
-    (void)state;
-    const struct render_params params = RENDER_PARAMS_DEFAULT;
+    const char *kind = *state;
     const struct provenance prov = {.stage = "render_views", .version = "0"};
     const char *const one[] = {"odd"}, *const none[] = {"other"};
     struct view cameras[2];
@@ -170,7 +174,7 @@ static void cameras_have_frames_of_their_own_size(void **state)
     struct exr_image im = {0};
     struct err err = ERR_INIT;
 
-    scene_make(&s, 1);
+    scene_make(&s, 1, kind);
     cameras[0] = cameras[1] = s.view;
     cameras[0].name = "behind";
     cameras[0].translation.z = -8; /* it sees nothing: an empty frame */
@@ -179,7 +183,7 @@ static void cameras_have_frames_of_their_own_size(void **state)
     cameras[1].width = W + 11; /* 11 columns that no view covers, on the right */
     assert_ok(cameras_select(wanted, &set, NULL, 0, &err), err);
     assert_true(wanted[0] && wanted[1]);
-    assert_ok(cameras_render(&set, wanted, &s.layers, &params, scratch_path("cameras"), &prov, &err), err);
+    assert_ok(cameras_render(&set, wanted, &s.renderer, scratch_path("cameras"), &prov, &err), err);
     assert_ok(exr_read(&im, scratch_path("cameras/odd.exr"), NULL, 0, &err), err);
     assert_int_equal(im.width, W + 11);
     for (int i = 0; i < (W + 11) * H; i++) {
@@ -199,14 +203,120 @@ static void cameras_have_frames_of_their_own_size(void **state)
     scene_drop(&s);
 }
 
+/* ------------------------------------------------------------------------------------------------ parts of frames */
+
+static void parts_are_read(void **state)
+{
+    (void)state;
+    static const char *const bad_crops[] = {"",         "1,2,3",     "1,2,3,4,5",         "1,2,3,4 ",
+                                            "a,b,c,d",  "-1,0,4,4",  "0,-1,4,4",          "0,0,0,4",
+                                            "0,0,4,-4", "1.5,0,4,4", "99999999999,0,4,4", "0 0 4 4"};
+    static const char *const bad_scales[] = {"", "0", "-1", "nan", "inf", "17", "1x", "x", "1e-400"};
+    struct frame_part part;
+    struct err err = ERR_INIT;
+
+    assert_ok(frame_part_read(&part, NULL, NULL, &err), err);
+    assert_true(part.width == 0 && part.scale == 1);
+    assert_ok(frame_part_read(&part, "3,0,40,20", "0.5", &err), err);
+    assert_true(part.x == 3 && part.y == 0 && part.width == 40 && part.height == 20 && part.scale == 0.5);
+    for (size_t i = 0; i < sizeof bad_crops / sizeof *bad_crops; i++) {
+        struct err e = ERR_INIT;
+        if (frame_part_read(&part, bad_crops[i], NULL, &e) != ST_USAGE)
+            fail_msg("--crop \"%s\" was taken", bad_crops[i]);
+        assert_err(e, ST_USAGE, "wanted X,Y,WIDTH,HEIGHT");
+    }
+    for (size_t i = 0; i < sizeof bad_scales / sizeof *bad_scales; i++) {
+        struct err e = ERR_INIT;
+        if (frame_part_read(&part, NULL, bad_scales[i], &e) != ST_USAGE)
+            fail_msg("--scale \"%s\" was taken", bad_scales[i]);
+        assert_err(e, ST_USAGE, "wanted a number above 0, at most 16");
+    }
+}
+
+static void a_part_is_within_its_picture(void **state)
+{
+    (void)state;
+    static const struct frame_part bad[] = {
+        {W - 3, 0, 4, 4, 1}, {0, H, 1, 1, 1}, {0, 0, W + 1, 1, 1}, {0, 0, 4, H + 1, 1}, {2147483, 0, 999999999, 4, 1}};
+    const struct frame_part nothing = {0, 0, 4, 4, 0.05}, huge = {0, 0, 0, 0, 16};
+    struct view v = {.name = "wall", .width = W, .height = H, .fx = 40, .fy = 41, .cx = 24, .cy = 16};
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        struct err err = ERR_INIT;
+        struct view c = v;
+        assert_int_equal(frame_part_camera(&c, &bad[i], &err), ST_USAGE);
+        assert_err(err, ST_USAGE, "48 x 32 pixels");
+    }
+    struct err err = ERR_INIT;
+    struct view c = v;
+    assert_int_equal(frame_part_camera(&c, &nothing, &err), ST_USAGE);
+    assert_err(err, ST_USAGE, "--scale 0.05 makes a picture of 0 x 0 pixels");
+    err = (struct err)ERR_INIT;
+    c = v;
+    c.width = 20000;
+    assert_int_equal(frame_part_camera(&c, &huge, &err), ST_USAGE);
+    assert_err(err, ST_USAGE, "320000 x 512");
+
+    /* the same rays: a point is seen at the same place, cropped and scaled */
+    const struct frame_part part = {10, 5, 30, 20, 1.5};
+    err = (struct err)ERR_INIT;
+    c = v;
+    assert_ok(frame_part_camera(&c, &part, &err), err);
+    assert_true(c.width == 45 && c.height == 30);
+    assert_true(fabs((0.3 * c.fx + c.cx) - 1.5 * (0.3 * v.fx + v.cx - 10)) < 1e-9);
+    assert_true(fabs((-0.2 * c.fy + c.cy) - 1.5 * (-0.2 * v.fy + v.cy - 5)) < 1e-9);
+}
+
+static void a_crop_is_that_part_of_the_whole(void **state)
+{
+    const char *kind = *state;
+    const struct frame_part part = {9, 7, 27, 18, 1};
+    struct scene s;
+    struct rendered_frame whole = {0}, cut = {0};
+    struct err err = ERR_INIT;
+
+    scene_make(&s, 3, kind);
+    for (int i = 0; i < 3; i++) {
+        struct view camera = s.path.frames[i].camera;
+        assert_ok(renderer_camera(&s.renderer, &camera, &whole, &err), err);
+        assert_ok(frame_part_camera(&camera, &part, &err), err);
+        assert_ok(renderer_camera(&s.renderer, &camera, &cut, &err), err);
+        assert_true(cut.width == 27 && cut.height == 18);
+        for (int y = 0; y < 18; y++)
+            for (int x = 0; x < 27; x++) {
+                const int p = y * 27 + x, q = (y + 7) * W + x + 9;
+                assert_int_equal(cut.hole[p], whole.hole[q]);
+                if (cut.hole[p]) continue;
+                assert_true(fabsf(cut.z[p] - whole.z[q]) < 1e-4f);
+                for (int k = 0; k < 4; k++) assert_true(fabsf(cut.rgba[4 * p + k] - whole.rgba[4 * q + k]) < 1e-4f);
+            }
+    }
+    /* at twice the size: pixel pairs around the same place, depth the same */
+    struct view camera = s.view;
+    const struct frame_part twice = {0, 0, 0, 0, 2};
+    assert_ok(frame_part_camera(&camera, &twice, &err), err);
+    assert_ok(renderer_camera(&s.renderer, &camera, &cut, &err), err);
+    assert_true(cut.width == 2 * W && cut.height == 2 * H);
+    for (int p = 0; p < 4 * W * H; p++) assert_true(fabsf(cut.z[p] - 4) < 1e-4f);
+    rendered_frame_release(&whole);
+    rendered_frame_release(&cut);
+    scene_drop(&s);
+}
+
+static char fast[] = "fast", offline[] = "offline";
+#define BOTH(test) \
+    {#test " (fast)", test, NULL, NULL, fast}, { #test " (offline)", test, NULL, NULL, offline }
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(lists_of_frames),
-        cmocka_unit_test(frames_are_written_whole),
-        cmocka_unit_test(splits_and_threads_give_the_same_bytes),
-        cmocka_unit_test(an_empty_frame_is_an_error),
-        cmocka_unit_test(cameras_have_frames_of_their_own_size),
+        cmocka_unit_test(parts_are_read),
+        cmocka_unit_test(a_part_is_within_its_picture),
+        BOTH(a_crop_is_that_part_of_the_whole),
+        BOTH(frames_are_written_whole),
+        BOTH(splits_and_threads_give_the_same_bytes),
+        BOTH(an_empty_frame_is_an_error),
+        BOTH(cameras_have_frames_of_their_own_size),
     };
     return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }
