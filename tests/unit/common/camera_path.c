@@ -138,6 +138,7 @@ static void refuses_cameras_that_make_no_film(void **state)
     (void)state;
     refused_camera("PINHOLE 321 200 300 300 160 100", "even");
     refused_camera("PINHOLE 322 200 300 300 160 100", "320 x 200");
+    refused_camera("PINHOLE 320 200 0 300 160 100", "focal");
     refused_camera("PINHOLE 320 200 -300 300 160 100", "-300");
     refused_camera("PINHOLE 320 200 nan 300 160 100", "nan");
     refused_camera("RADIAL 320 200 300 160 100 0 0", "PINHOLE");
