@@ -20,11 +20,6 @@ float soft_z_rho(const struct soft_z *s, float z_a, float sigma_a, float z_b, fl
     return 2 * s->widths * sqrtf(a * a + b * b);
 }
 
-float soft_z_reach(const struct soft_z *s, float z, float sigma)
-{
-    return s->widths > 0 ? s->widths * known_sigma(sigma) * z : 0.1f * s->range;
-}
-
 static float presence(const struct soft_z_sample *s)
 {
     const float blend = s->blend / SOFT_Z_BLEND_WHOLE, alpha = s->rgba[3] / SOFT_Z_ALPHA_WHOLE;
@@ -59,10 +54,11 @@ void soft_z_blend(const struct soft_z *s, const struct soft_z_sample *samples, i
 #define STANDING_WHOLE 0.25f /* a fragment of this standing hides wholly */
 #define BLOCKS         (SOFT_Z_MERGE_MOST / 8)
 
-struct
-    merge { /* a pixel's fragments, eight a vector; what is beyond the last one votes for nothing and hides nothing */
+/* A pixel's fragments, eight a vector; what is beyond the last one votes for nothing and hides nothing. */
+struct merge {
     float z[SOFT_Z_MERGE_MOST], square[SOFT_Z_MERGE_MOST]; /* square: of the uncertainty */
-    float vote[SOFT_Z_MERGE_MOST], standing[SOFT_Z_MERGE_MOST], there[SOFT_Z_MERGE_MOST];
+    float vote[SOFT_Z_MERGE_MOST], alpha[SOFT_Z_MERGE_MOST], before[SOFT_Z_MERGE_MOST];
+    float standing[SOFT_Z_MERGE_MOST], there[SOFT_Z_MERGE_MOST], weight[SOFT_Z_MERGE_MOST];
     __m256 apart[SOFT_Z_MERGE_MOST][BLOCKS]; /* 1 - w of each pair */
     int count, blocks;
 };
@@ -96,30 +92,39 @@ static bool one_surface(const struct soft_z *s, const struct soft_z_fragment *f,
     return most - least <= 0.1f * rho;
 }
 
+/* 1 - w of fragment i and eight others. */
+static __m256 apart8(const struct merge *m, const struct soft_z *s, int i, int block, __m256 dz)
+{
+    const __m256 one = _mm256_set1_ps(1), zero = _mm256_setzero_ps(), sign = _mm256_set1_ps(-0.0f);
+    const __m256 square = _mm256_add_ps(_mm256_loadu_ps(m->square + 8 * block), _mm256_set1_ps(m->square[i]));
+    const __m256 rho =
+        s->widths > 0 ? _mm256_mul_ps(_mm256_set1_ps(2 * s->widths), _mm256_sqrt_ps(square)) : _mm256_set1_ps(s->range);
+    const __m256 over = _mm256_sub_ps(_mm256_andnot_ps(sign, dz), _mm256_mul_ps(rho, _mm256_set1_ps(0.1f)));
+    const __m256 length = _mm256_max_ps(_mm256_mul_ps(rho, _mm256_set1_ps(0.8f)), _mm256_set1_ps(1e-30f));
+    const __m256 t = _mm256_max_ps(zero, _mm256_min_ps(one, _mm256_div_ps(over, length)));
+    return _mm256_sub_ps(one, _mm256_max_ps(zero, _mm256_min_ps(one, soft_z_fall8(t)))); /* the series ends below 0 */
+}
+
 /* How far apart all pairs are, and every fragment's standing. */
 static void standings(struct merge *m, const struct soft_z *s)
 {
     const __m256 one = _mm256_set1_ps(1), zero = _mm256_setzero_ps();
-    const __m256 sign = _mm256_set1_ps(-0.0f);
 
     for (int i = 0; i < m->count; i++) {
+        const __m256 leaves = _mm256_set1_ps(1 - m->before[i] - m->alpha[i]), before = _mm256_set1_ps(m->before[i]);
         __m256 pro = zero, contra = zero;
         for (int b = 0; b < m->blocks; b++) {
             const __m256 dz = _mm256_sub_ps(_mm256_loadu_ps(m->z + 8 * b), _mm256_set1_ps(m->z[i]));
-            const __m256 square = _mm256_add_ps(_mm256_loadu_ps(m->square + 8 * b), _mm256_set1_ps(m->square[i]));
-            const __m256 rho = s->widths > 0 ? _mm256_mul_ps(_mm256_set1_ps(2 * s->widths), _mm256_sqrt_ps(square))
-                                             : _mm256_set1_ps(s->range);
-            const __m256 over = _mm256_sub_ps(_mm256_andnot_ps(sign, dz), _mm256_mul_ps(rho, _mm256_set1_ps(0.1f)));
-            const __m256 length = _mm256_max_ps(_mm256_mul_ps(rho, _mm256_set1_ps(0.8f)), _mm256_set1_ps(1e-30f));
-            const __m256 t = _mm256_max_ps(zero, _mm256_min_ps(one, _mm256_div_ps(over, length)));
-            const __m256 w = soft_z_fall8(t), vote = _mm256_loadu_ps(m->vote + 8 * b);
-            const __m256 part =
-                _mm256_blendv_ps(_mm256_set1_ps(AGAINST_BEFORE), one, _mm256_cmp_ps(dz, zero, _CMP_GT_OQ));
-            m->apart[i][b] = _mm256_sub_ps(one, w);
-            pro = _mm256_add_ps(pro, _mm256_mul_ps(vote, w));
-            contra = _mm256_add_ps(contra, _mm256_mul_ps(_mm256_mul_ps(part, vote), m->apart[i][b]));
+            const __m256 farther = _mm256_cmp_ps(dz, zero, _CMP_GT_OQ);
+            const __m256 alpha = _mm256_loadu_ps(m->alpha + 8 * b), vote = _mm256_loadu_ps(m->vote + 8 * b);
+            const __m256 more = _mm256_max_ps(zero, _mm256_sub_ps(alpha, _mm256_blendv_ps(before, leaves, farther)));
+            const __m256 part = _mm256_blendv_ps(_mm256_set1_ps(AGAINST_BEFORE), one, farther);
+            const __m256 apart = apart8(m, s, i, b, dz);
+            m->apart[i][b] = apart;
+            pro = _mm256_add_ps(pro, _mm256_mul_ps(_mm256_mul_ps(vote, alpha), _mm256_sub_ps(one, apart)));
+            contra = _mm256_add_ps(contra, _mm256_mul_ps(_mm256_mul_ps(part, vote), _mm256_mul_ps(more, apart)));
         }
-        const float sum = sum8(pro), part = sum / (sum + sum8(contra) + 1e-6f);
+        const float sum = sum8(pro), part = sum / (sum + sum8(contra) + 1e-30f);
         m->standing[i] = part * part;
     }
 }
@@ -144,8 +149,10 @@ static void merge_prepare(struct merge *m, const struct soft_z *s, const struct 
         const bool is = i < count;
         m->z[i] = is ? f[i].z : 0;
         m->square[i] = is ? f[i].uncertainty * f[i].uncertainty : 0;
-        m->vote[i] = is ? f[i].vote * f[i].rgba[3] : 0;
-        m->there[i] = 0;
+        m->vote[i] = is ? f[i].vote : 0;
+        m->alpha[i] = is ? f[i].rgba[3] : 0;
+        m->before[i] = is ? f[i].before : 0;
+        m->there[i] = m->weight[i] = 0;
     }
     standings(m, s);
     for (int i = 0; i < count; i++)
@@ -153,11 +160,31 @@ static void merge_prepare(struct merge *m, const struct soft_z *s, const struct 
                       at_most_one(m->standing[i] / STANDING_WHOLE) * (f[i].before + f[i].rgba[3]);
 }
 
+/* The mean of the depths of the surface that has most of the weight, never one across a jump. */
+static float merged_depth(const struct merge *m)
+{
+    float most = 0, z = 0;
+    for (int i = 0; i < m->count; i++) {
+        __m256 sum = _mm256_setzero_ps(), z_sum = sum;
+        for (int b = 0; b < m->blocks; b++) {
+            const __m256 w = _mm256_sub_ps(_mm256_set1_ps(1), m->apart[i][b]);
+            const __m256 part = _mm256_mul_ps(_mm256_loadu_ps(m->weight + 8 * b), w);
+            sum = _mm256_add_ps(sum, part);
+            z_sum = _mm256_add_ps(z_sum, _mm256_mul_ps(part, _mm256_loadu_ps(m->z + 8 * b)));
+        }
+        const float weight = sum8(sum);
+        if (!(weight > most)) continue;
+        most = weight;
+        z = sum8(z_sum) / weight;
+    }
+    return z;
+}
+
 void soft_z_merge(const struct soft_z *s, const struct soft_z_fragment *f, int count, float rgba[4], float *z)
 {
     const bool agree = one_surface(s, f, count);
-    float sum = 0, z_sum = 0, z_weight = 0;
-    __m128 color = _mm_setzero_ps();
+    float sum = 0, own_sum = 0, z_sum = 0, z_weight = 0;
+    __m128 color = _mm_setzero_ps(), own = color; /* own: of the view that the fragment is of */
     struct merge m;
 
     if (!agree) merge_prepare(&m, s, f, count);
@@ -166,14 +193,22 @@ void soft_z_merge(const struct soft_z *s, const struct soft_z_fragment *f, int c
         const float seen = left <= 0 ? 0 : alpha < left ? alpha : left;
         const float there = seen * (agree ? 1 : m.standing[i]), weight = f[i].blend * there;
         const float present = there * at_most_one(f[i].blend / SOFT_Z_BLEND_WHOLE);
-        const __m128 own = _mm_div_ps(_mm_max_ps(_mm_setzero_ps(), _mm_loadu_ps(f[i].rgba)), _mm_set1_ps(alpha));
-        color = _mm_add_ps(color, _mm_mul_ps(_mm_set1_ps(weight), _mm_sqrt_ps(own)));
-        sum += weight;
+        const __m128 straight = _mm_div_ps(_mm_max_ps(_mm_setzero_ps(), _mm_loadu_ps(f[i].rgba)), _mm_set1_ps(alpha));
+        own = _mm_add_ps(own, _mm_mul_ps(_mm_set1_ps(weight), straight));
+        own_sum += weight;
+        if (i + 1 == count || !(f[i + 1].before > 0)) {
+            const __m128 mean = _mm_mul_ps(own, _mm_set1_ps(own_sum > 0 ? 1 / own_sum : 0));
+            color = _mm_add_ps(color, _mm_mul_ps(_mm_set1_ps(own_sum), _mm_sqrt_ps(mean)));
+            sum += own_sum;
+            own = _mm_setzero_ps();
+            own_sum = 0;
+        }
         z_sum += present * f[i].z;
         z_weight += present;
+        if (!agree) m.weight[i] = present;
     }
     const __m128 mean = _mm_mul_ps(color, _mm_set1_ps(sum > 0 ? 1 / sum : 0));
     _mm_storeu_ps(rgba, _mm_mul_ps(mean, mean));
     rgba[3] = sum > 0;
-    *z = z_weight > 0 ? z_sum / z_weight : 0;
+    *z = !agree ? merged_depth(&m) : z_weight > 0 ? z_sum / z_weight : 0;
 }

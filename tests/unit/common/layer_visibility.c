@@ -81,7 +81,11 @@ static void draw(struct strips *s, const struct view *novel)
         s->seen.inverse_front[i] = s->seen.inverse_behind[i] = 0;
         s->seen.front[i] = s->seen.behind[i] = VISIBLE_NONE;
     }
-    visibility_draw(&s->seen, &s->drawn, &s->packed, 0, 0, W);
+    for (int y = 0; y < TILE_HEIGHT; y++) {
+        s->seen.first[y] = 0;
+        s->seen.last[y] = W - 1;
+    }
+    visibility_draw(&s->seen, &s->drawn, &s->packed, 0);
     for (size_t i = 0; i < TILE_PIXELS; i += 8)
         if (i % TILE_STRIDE < W) visibility_sample8(&s->shown, &s->behind, &s->seen, &s->drawn, &s->packed, i, 0, 0);
 }
