@@ -136,7 +136,7 @@ check: deps-check ## build and run all tests
 bench: deps-bench ## measure everything in tests/bench: tables and plots under out/bench
 	+@$(BUILD) bench-build
 	+@rc=0; for b in tests/bench/*.sh; do tests/bench/run "$$(basename $$b .sh)" '$(B)' || rc=1; done; exit $$rc
-bench-%: deps-bench FORCE ## one of them: bench-depth, bench-exr, bench-simulate
+bench-%: deps-bench FORCE ## one of them: bench-depth, bench-exr, bench-render, bench-simulate
 	+@$(BUILD) bench-build
 	+@tests/bench/run '$*' '$(B)'
 bench-compare: deps-bench ## NAME=exr OLD=REVISION: the same bench on another revision's code, alternating
@@ -228,6 +228,7 @@ $(UNIT_TESTS): $(B)/tests/unit/%: $(B)/obj/tests/unit/%.o $(B)/libremodel.a
 $(BENCHES): $(B)/tests/bench/%: $(B)/obj/tests/bench/%.o $(B)/libremodel.a
 	$(call link,-lstdc++)
 $(B)/tests/bench/exr: $(B)/obj/tests/bench/exr_openexr.o # the baseline
+$(B)/tests/bench/render_rate: $(filter-out %/render_views.o,$(call objs,stages/render_views/*.c))
 $(B)/tests/bench/stereo_sgbm: $(B)/obj/tests/bench/depth_sgbm.o
 $(B)/tests/bench/stereo_sgbm: private LDLIBS += -lopencv_calib3d -lopencv_imgproc -lopencv_core
 $(B)/obj/tests/bench/depth_sgbm.o: private CXXFLAGS += -isystem /usr/include/opencv4

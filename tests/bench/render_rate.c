@@ -1,18 +1,48 @@
-/* render_rate.c - how fast frames of a camera move are rendered, files apart.
+/* render_rate.c - how long a frame takes, files apart: of a camera move, or of given cameras, whose frames it can write.
  *
- *   render_rate --views DIR --depth DIR --path DIR [--renderer fast|coverage] [--frames N] [--width W --height H]
+ *   render_rate --views DIR --depth DIR --path DIR [--frames N] [--width W --height H] [--coverage]
+ *   render_rate --views DIR --depth DIR --cameras DIR [--scale S] [--out DIR]
+ *   render_rate --views DIR --cameras DIR --photo [--out DIR]
  *
- * The frames are N that are spread over the move, each as large as said. Prints "frames_per_s F", "core_ms M" (processor
- * time of a frame), "holes H" (% of all pixels) and "peak_mib P". */
+ * and the parameters of render_views. The frames of a move are N that are spread over it, each as large as said; rendered by
+ * themselves, without aperture and effects. Of cameras each gives a frame of its own size times S. What is written
+ * (CAMERA.exr: R, G, B, hole) has the camera's own size again, between pixels by bilinear interpolation: what a reduced
+ * picture is worth when it is shown as large. --photo is what a user has without any rendering: the photo of the view
+ * whose centre is nearest, as it is.
+ *
+ * All frames are rendered again until half a second is measured; the first round counts only if it took as long. Prints
+ * "seconds S" (a frame), "frames_per_s F", "core_ms M" (processor time a frame), "core_s_per_mp C" (processor time a
+ * megapixel of the frame as it is shown, so before --scale), "holes H" (% of all pixels) and "peak_mib P" (of the process, reading included). */
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
 #include <time.h>
 
-#include "common/camera_path.h"
 #include "common/cli.h"
-#include "common/layer_render.h"
+#include "common/exr.h"
+#include "common/view_image.h"
+#include "stages/render_views/frames.h"
+
+#define SECONDS_LEAST 0.5
+
+struct job { /* what the command line says */
+    const char *views, *depth, *path, *cameras, *scale, *out;
+    int frames, width, height;
+    bool coverage, photo;
+    struct render_params params;
+};
+
+struct bench { /* what is rendered, and how */
+    struct camera_set set, set_of_cameras;
+    struct camera_path path;
+    struct layer_scene scene;
+    struct renderer renderer;
+    const struct view **cameras; /* of the set or the path; owned list */
+    struct view *reduced;        /* as they are rendered */
+    int count;
+};
 
 static double now(clockid_t clock)
 {
@@ -32,63 +62,237 @@ static void resize(struct view *v, int width, int height)
     v->height = height;
 }
 
-static enum status measure(const struct layer_scene *scene, const struct camera_path *path, const char *renderer,
-                           int frames, int width, int height, struct err *err)
-{
-    const struct layer_render_options options = {.soft_z = SOFT_Z_WIDTHS, .fill_diameter = 6};
-    struct rendered_frame frame = {0};
-    double wall = 0, cpu = 0, holes = 0;
-    enum status st = ST_OK;
+/* ------------------------------------------------------------------------------------------------ what is written */
 
-    for (int i = -1; !st && i < frames; i++) { /* the first is a warm-up */
-        const int n = i < 0 ? 0 : (int)((long)i * (path->frame_count - 1) / (frames > 1 ? frames - 1 : 1));
-        struct view camera = path->frames[n].camera;
-        resize(&camera, width, height);
-        const double wall_begin = now(CLOCK_MONOTONIC), cpu_begin = now(CLOCK_PROCESS_CPUTIME_ID);
-        st = strcmp(renderer, "coverage") == 0 ? layer_coverage(&frame, scene, &camera, 1, err)
-                                               : layer_render(&frame, scene, &camera, &options, err);
-        if (i < 0) continue;
-        wall += now(CLOCK_MONOTONIC) - wall_begin;
-        cpu += now(CLOCK_PROCESS_CPUTIME_ID) - cpu_begin;
-        holes += frame.hole_fraction;
+/* out from in of w x h: between pixel centres bilinearly, beyond the outer ones as there; of its own size it stays as it is. */
+static void enlarge(float *out, int out_width, int out_height, const float *in, int w, int h, int channels)
+{
+    if (out_width == w && out_height == h) {
+        memcpy(out, in, (size_t)w * (size_t)h * (size_t)channels * sizeof *out);
+        return;
     }
-    rendered_frame_release(&frame);
-    if (st) return st;
+    for (int y = 0; y < out_height; y++) {
+        const double v = fmin(fmax((y + 0.5) * h / out_height - 0.5, 0), h - 1);
+        const int y0 = (int)v, y1 = y0 + 1 < h ? y0 + 1 : y0;
+        for (int x = 0; x < out_width; x++) {
+            const double u = fmin(fmax((x + 0.5) * w / out_width - 0.5, 0), w - 1);
+            const int x0 = (int)u, x1 = x0 + 1 < w ? x0 + 1 : x0;
+            const double a = u - x0, b = v - y0;
+            for (int c = 0; c < channels; c++) {
+                const double top = (1 - a) * in[((size_t)y0 * (size_t)w + (size_t)x0) * (size_t)channels + (size_t)c] +
+                                   a * in[((size_t)y0 * (size_t)w + (size_t)x1) * (size_t)channels + (size_t)c];
+                const double low = (1 - a) * in[((size_t)y1 * (size_t)w + (size_t)x0) * (size_t)channels + (size_t)c] +
+                                   a * in[((size_t)y1 * (size_t)w + (size_t)x1) * (size_t)channels + (size_t)c];
+                out[((size_t)y * (size_t)out_width + (size_t)x) * (size_t)channels + (size_t)c] =
+                    (float)((1 - b) * top + b * low);
+            }
+        }
+    }
+}
+
+/* rgba and hole are of w x h; the file gets the camera's size. */
+static enum status write_frame(const char *folder, const struct view *camera, const float *rgba, const float *hole,
+                               int w, int h, struct err *err)
+{
+    static const char *const names[] = {"R", "G", "B", "hole"};
+    const size_t pixels = (size_t)camera->width * (size_t)camera->height;
+    const size_t size = strlen(folder) + strlen(camera->name) + 8;
+    struct exr_image im = {0};
+    struct exr_plane *plane;
+    float *full = malloc(4 * pixels * sizeof *full);
+    char *file = malloc(size);
+    enum status st = full && file ? exr_image_init(&im, camera->width, camera->height, err)
+                                  : err_nomem(err, "a frame", 4 * pixels * sizeof *full);
+
+    if (!st) enlarge(full, camera->width, camera->height, rgba, w, h, 4);
+    for (size_t k = 0; !st && k < 4; k++) {
+        if ((st = exr_add_plane(&im, names[k], EXR_HALF, &plane, err))) break;
+        if (k == 3) enlarge(plane->f, camera->width, camera->height, hole, w, h, 1);
+        for (size_t i = 0; k < 3 && i < pixels; i++) plane->f[i] = full[4 * i + k];
+    }
+    if (!st) {
+        snprintf(file, size, "%s/%s.exr", folder, camera->name);
+        st = exr_write(&im, file, NULL, err);
+    }
+    exr_image_release(&im);
+    free(full);
+    free(file);
+    return st;
+}
+
+static enum status write_rendered(const char *folder, const struct view *camera, const struct rendered_frame *f,
+                                  struct err *err)
+{
+    const size_t pixels = (size_t)f->width * (size_t)f->height;
+    float *hole = malloc(pixels * sizeof *hole);
+
+    if (!hole) return err_nomem(err, "a frame's holes", pixels * sizeof *hole);
+    for (size_t i = 0; i < pixels; i++) hole[i] = f->hole[i];
+    const enum status st = write_frame(folder, camera, f->rgba, hole, f->width, f->height, err);
+    free(hole);
+    return st;
+}
+
+/* ------------------------------------------------------------------------------------------------------- measuring */
+
+static void say(int frames, double megapixels, double wall, double cpu, double holes)
+{
     struct rusage use;
     getrusage(RUSAGE_SELF, &use);
-    printf("frames_per_s %.4g\ncore_ms %.4g\nholes %.4g\npeak_mib %.1f\n", frames / wall, 1e3 * cpu / frames,
-           1e2 * holes / frames, (double)use.ru_maxrss / 1024);
-    return ST_OK;
+    printf("seconds %.6f\nframes_per_s %.4g\ncore_ms %.4g\ncore_s_per_mp %.4g\nholes %.4g\npeak_mib %.1f\n",
+           wall / frames, frames / wall, 1e3 * cpu / frames, cpu / megapixels, 1e2 * holes / frames,
+           (double)use.ru_maxrss / 1024);
+}
+
+static enum status measure(struct bench *b, const struct job *job, struct err *err)
+{
+    struct rendered_frame frame = {0};
+    double wall = 0, cpu = 0, holes = 0, megapixels = 0;
+    int done = 0;
+    enum status st = ST_OK;
+
+    for (int round = 0; !st && (round == 0 || wall < SECONDS_LEAST); round++) {
+        if (round == 1) wall = cpu = holes = megapixels = done = 0;
+        for (int i = 0; !st && i < b->count; i++) {
+            const struct view *camera = &b->reduced[i], *shown = job->path ? camera : b->cameras[i];
+            const double wall_begin = now(CLOCK_MONOTONIC), cpu_begin = now(CLOCK_PROCESS_CPUTIME_ID);
+            st = job->coverage ? layer_coverage(&frame, &b->scene, camera, 1, err)
+                               : renderer_camera(&b->renderer, camera, &frame, err);
+            wall += now(CLOCK_MONOTONIC) - wall_begin;
+            cpu += now(CLOCK_PROCESS_CPUTIME_ID) - cpu_begin;
+            holes += frame.hole_fraction;
+            megapixels += 1e-6 * shown->width * shown->height;
+            done++;
+            if (!st && round == 0 && job->out) st = write_rendered(job->out, b->cameras[i], &frame, err);
+        }
+    }
+    rendered_frame_release(&frame);
+    if (!st) say(done, megapixels, wall, cpu, holes);
+    return st;
+}
+
+static int nearest_view(const struct camera_set *set, const struct view *camera)
+{
+    int nearest = 0;
+    for (int i = 1; i < set->view_count; i++)
+        if (vec3_length(vec3_sub(set->views[i].center, camera->center)) <
+            vec3_length(vec3_sub(set->views[nearest].center, camera->center)))
+            nearest = i;
+    return nearest;
+}
+
+/* Its photo is at hand: what is measured is finding it and copying it. */
+static enum status measure_photos(struct bench *b, const struct job *job, struct err *err)
+{
+    double wall = 0, cpu = 0, holes = 0, megapixels = 0;
+    enum status st = ST_OK;
+
+    for (int i = 0; !st && i < b->count; i++) {
+        const int nearest = nearest_view(&b->set, b->cameras[i]);
+        struct image photo = {0}, copy = {0};
+        float *hole = NULL;
+        st = view_image_read(&photo, job->views, &b->set.views[nearest], err);
+        const size_t pixels = st ? 0 : (size_t)photo.width * (size_t)photo.height;
+        if (!st) st = image_init(&copy, photo.width, photo.height, 4, err);
+        if (!st && !(hole = malloc(pixels * sizeof *hole))) st = err_nomem(err, "holes", pixels * sizeof *hole);
+        if (!st) {
+            const double wall_begin = now(CLOCK_MONOTONIC), cpu_begin = now(CLOCK_PROCESS_CPUTIME_ID);
+            memcpy(copy.data, photo.data, 4 * pixels * sizeof *copy.data);
+            wall += now(CLOCK_MONOTONIC) - wall_begin;
+            cpu += now(CLOCK_PROCESS_CPUTIME_ID) - cpu_begin;
+            megapixels += 1e-6 * (double)pixels;
+            double missing = 0;
+            for (size_t p = 0; p < pixels; p++) missing += hole[p] = !(copy.data[4 * p + 3] > 0);
+            holes += missing / (double)pixels;
+            if (job->out) st = write_frame(job->out, b->cameras[i], copy.data, hole, copy.width, copy.height, err);
+        }
+        image_release(&photo);
+        image_release(&copy);
+        free(hole);
+    }
+    if (!st) say(b->count, megapixels, wall, cpu, holes);
+    return st;
+}
+
+/* --------------------------------------------------------------------------------------------------- what is asked */
+
+static enum status choose_cameras(struct bench *b, const struct job *job, struct err *err)
+{
+    struct frame_part part;
+    enum status st = frame_part_read(&part, NULL, job->scale, err);
+
+    if (!st)
+        st = job->path ? camera_path_read(&b->path, job->path, err)
+                       : camera_set_read(&b->set_of_cameras, job->cameras, err);
+    if (st) return st;
+    b->count = job->path ? job->frames : b->set_of_cameras.view_count;
+    b->cameras = calloc((size_t)b->count + 1, sizeof *b->cameras);
+    b->reduced = calloc((size_t)b->count + 1, sizeof *b->reduced);
+    if (!b->cameras || !b->reduced) return err_nomem(err, "cameras", (size_t)b->count);
+    for (int i = 0; !st && i < b->count; i++) {
+        const int last = b->path.frame_count - 1;
+        b->cameras[i] = job->path ? &b->path.frames[(long)i * last / (b->count > 1 ? b->count - 1 : 1)].camera
+                                  : &b->set_of_cameras.views[i];
+        b->reduced[i] = *b->cameras[i];
+        if (job->path)
+            resize(&b->reduced[i], job->width, job->height);
+        else
+            st = frame_part_camera(&b->reduced[i], &part, err);
+    }
+    return st;
+}
+
+static enum status run(struct bench *b, const struct job *job, struct err *err)
+{
+    static const struct effects none = {0};
+
+    if (!job->path == !job->cameras || !job->depth != job->photo || (job->path && (job->out || job->photo)) ||
+        (job->out && job->coverage))
+        return err_set(err, ST_USAGE,
+                       "wanted --depth with either --path or --cameras, or --photo with --cameras; "
+                       "--out goes with --cameras, without --coverage.");
+    if (job->frames < 1 || job->width < 1 || job->height < 1 || job->width > 65536 || job->height > 65536)
+        return err_set(err, ST_USAGE, "--frames %d --width %d --height %d: wanted numbers from 1, sizes up to 65536.",
+                       job->frames, job->width, job->height);
+    if (camera_set_read(&b->set, job->views, err) || choose_cameras(b, job, err)) return err->status;
+    if (job->photo) return measure_photos(b, job, err);
+    if (layer_scene_read(&b->scene, &b->set, job->depth, NULL, err)) return err->status;
+    renderer_init(&b->renderer, &b->scene, NULL, &none, &job->params);
+    return measure(b, job, err);
 }
 
 int main(int argc, char **argv)
 {
-    const char *views = NULL, *depth = NULL, *folder = NULL, *renderer = "fast", *frames = "20", *width = "1200",
-               *height = "800";
+    struct job job = {.frames = 20, .width = 1200, .height = 800, .params = RENDER_PARAMS_DEFAULT};
     const struct cli_opt opts[] = {
-        CLI_ABOUT("How fast frames of a camera move are rendered, files apart."),
-        CLI_STR("views", &views, CLI_REQUIRED, "folder of cameras"),
-        CLI_STR("depth", &depth, CLI_REQUIRED, "folder of layered depth maps"),
-        CLI_STR("path", &folder, CLI_REQUIRED, "folder of the move: path.txt and path/"),
-        CLI_STR("renderer", &renderer, CLI_OPTIONAL, "fast or coverage"),
-        CLI_STR("frames", &frames, CLI_OPTIONAL, "how many, spread over the move"),
-        CLI_STR("width", &width, CLI_OPTIONAL, "of a frame, px"),
-        CLI_STR("height", &height, CLI_OPTIONAL, "of a frame, px"),
+        CLI_ABOUT("How long a frame takes, files apart: of a camera move, or of given cameras."),
+        CLI_STR("views", &job.views, CLI_REQUIRED, "folder of cameras"),
+        CLI_STR("depth", &job.depth, CLI_OPTIONAL, "folder of layered depth maps"),
+        CLI_STR("path", &job.path, CLI_OPTIONAL, "folder of the move: path.txt and path/"),
+        CLI_INT("frames", &job.frames, CLI_OPTIONAL, "of the move: how many, spread over it"),
+        CLI_INT("width", &job.width, CLI_OPTIONAL, "of a frame of the move, px"),
+        CLI_INT("height", &job.height, CLI_OPTIONAL, "of a frame of the move, px"),
+        CLI_STR("cameras", &job.cameras, CLI_OPTIONAL, "in place of a move: folder of cameras, a frame each"),
+        CLI_STR("scale", &job.scale, CLI_OPTIONAL, "of the cameras' frames: renders them larger or smaller"),
+        CLI_FLAG("coverage", &job.coverage, "only which pixels some view covers"),
+        CLI_FLAG("photo", &job.photo, "in place of rendering: the photo of the nearest view"),
+        CLI_STR("out", &job.out, CLI_OPTIONAL, "folder for the cameras' frames, CAMERA.exr"),
+        CLI_PARAMS(render_param_table, &job.params, NULL),
         CLI_END,
     };
     struct provenance prov = {0};
-    struct camera_set set = {0};
-    struct camera_path path = {0};
-    struct layer_scene scene = {0};
+    struct bench b = {0};
     struct err err = ERR_INIT;
 
-    if (cli_parse(argc, argv, "render_rate", opts, &prov, &err) == CLI_RUN && !camera_set_read(&set, views, &err) &&
-        !camera_path_read(&path, folder, &err) && !layer_scene_read(&scene, &set, depth, NULL, &err))
-        measure(&scene, &path, renderer, atoi(frames), atoi(width), atoi(height), &err);
+    if (cli_parse(argc, argv, "render_rate", opts, &prov, &err) == CLI_RUN) run(&b, &job, &err);
     err_report(&err);
-    layer_scene_release(&scene);
-    camera_path_release(&path);
-    camera_set_release(&set);
+    renderer_release(&b.renderer);
+    layer_scene_release(&b.scene);
+    camera_path_release(&b.path);
+    camera_set_release(&b.set_of_cameras);
+    camera_set_release(&b.set);
+    free(b.cameras);
+    free(b.reduced);
     provenance_release(&prov);
     return err_exit_code(&err);
 }

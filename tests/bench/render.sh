@@ -1,0 +1,148 @@
+# render.sh - render_views: held-out photos against time, by each of its knobs; how many frames a second; memory.
+#
+# Scenes: BENCH_SCENES, names of scenes/ or of folders of BENCH_DATA (../shared/data) that hold photos/; one that is neither is
+# skipped. Every eighth photo is held out, or the views that stand behind a colon (still-life:s4). Their depth maps come from
+# `make SCENE=NAME HOLDOUT=8 depth`. psnr (dB), ssim and holes (%) are those of docs/evaluation.md; gain is psnr over that
+# of plain hard z. seconds and core_s_per_mp (processor time a megapixel) are a frame's, in memory: reading the scene and
+# writing files are not in them (render_rate.c), and the megapixels are the photo's at any scale. peak_mib is the process's, with all views read.
+# BENCH_SWEEPS="scale views": these panels alone.
+#
+# The default setting is in every panel; a panel turns one knob. `scale`: of the frames, which are enlarged to the photo's size before
+# they are compared. `soft_z`: its width in depth uncertainties; 0 is the thesis', the scene's depth range. `views`: that may show in a
+# pixel: 1 (views=nearest), 3 (more_views=0), or 3 and so many more. `filling`: of holes, offline's by patches and fast's from around; off is
+# fill_diameter=0.
+# Baselines: the photo of the nearest view as it is, in the table alone, for copying it is no rendering; hard z, the nearest view's depth map alone, by the fast renderer; constant z, the
+# offline renderer with every segment flattened at its middle (flatten_depth.c).
+# Two more panels have no photos: `rate`, frames of the move of BENCH_RATE (still-life, all views) at 1200 x 800 by threads, and `memory`, frames
+# of 15 made views of 1 megapixel (made_layers.c). BENCH_THREADS (all cores) is for all rows but those of `rate`.
+title="New views: PSNR of held-out photos against time"
+note="Upper left is better. A panel turns one knob; the other knobs are at their defaults."
+baseline="hard z"
+match="scene sweep"
+timed="core_s_per_mp frames_per_s core_ms"
+line=series label=value panel="scene sweep" across=4
+x=core_s_per_mp x_label="Core-seconds per megapixel" y=psnr y_label="PSNR (dB)"
+
+scenes=${BENCH_SCENES-fern sceaux kermit fountain still-life:s4}
+data=${BENCH_DATA:-../shared/data}
+rate_scene=${BENCH_RATE-still-life}
+threads=${BENCH_THREADS:-$(nproc)}
+sweeps=${BENCH_SWEEPS:-scale soft_z views filling rate memory}
+
+wanted() { case " $sweeps " in *" $1 "*) ;; *) return 1 ;; esac; }
+quietly() { "$@" >"$work/words" 2>&1 || { tail -n 5 "$work/words" >&2; missing "'$*' failed."; }; }
+made() { echo "render: make $*" >&2; quietly "${MAKE:-make}" --no-print-directory QUALITY=default "$@"; }
+
+# products of NAME, with HELD (views, or nothing) held out: $work/NAME is what `evaluate` wants
+prepare_scene() # NAME HELD
+{
+    local to=$work/$1 from=out/$1+holdout8 photos=()
+    if [ ! -e "scenes/$1/scene.mk" ]; then
+        if [ ! -d "$data/$1/photos" ]; then echo "render: $1 is skipped, for there is neither scenes/$1/scene.mk nor $data/$1/photos." >&2; return; fi
+        photos=(PHOTOS="$data/$1/photos")
+    fi
+    if [ -n "$2" ]; then
+        made SCENE="$1" "${photos[@]}" HOLDOUT= HOLDOUT_VIEWS="$2" depth
+        from=out/$1+holdout
+    else
+        made SCENE="$1" "${photos[@]}" HOLDOUT=8 HOLDOUT_VIEWS= depth
+    fi
+    mkdir -p "$to/holdout/frames" "$to/flat"
+    ln -s "$(realpath "$from/views")" "$to/views"
+    ln -s "$(realpath "$from/holdout/views")" "$to/holdout/views"
+    ln -s "$(realpath "$from/depth")" "$to/layers" # not depth: `evaluate` would look at it each time
+    ln -s "$(realpath "out/$1")" "$to/shared"
+    quietly "$B/tests/bench/flatten_depth" --views "$to/views" --depth "$to/layers" --out "$to/flat"
+    found_scenes+=" $1"
+}
+
+prepare()
+{
+    [ -x "$B/tests/bench/render_rate" ] || missing "there is no program $B/tests/bench/render_rate."
+    "$B/bin/render_views" --print-config >"$work/defaults"
+    local s
+    found_scenes=
+    if wanted scale || wanted soft_z || wanted views || wanted filling; then
+        for s in $scenes; do prepare_scene "${s%%:*}" "$(case $s in *:*) echo "${s#*:}" ;; esac)"; done
+    fi
+    if [ -n "$rate_scene" ] && wanted rate; then made SCENE="$rate_scene" HOLDOUT= HOLDOUT_VIEWS= path; fi
+    if wanted memory; then quietly "$B/tests/bench/made_layers" --out "$work/made"; fi
+    [ -n "$found_scenes" ] || { [ -n "$rate_scene" ] && wanted rate; } || wanted memory || missing "there is no scene; BENCH_SCENES=\"NAMES\" are those of scenes/, or of folders with photos/ in '$data' (BENCH_DATA)."
+}
+
+default_of() { sed -n "s/^$1 = //p" "$work/defaults"; }
+
+settings()
+{
+    printf 'series\tscene\tsweep\tvalue\n'
+    row() { printf '%s\t%s\t%s\t%s\n' "$@"; }
+    local s sweep v r
+    for s in $found_scenes; do
+        for sweep in scale soft_z views filling; do
+            wanted "$sweep" || continue
+            for r in 'nearest photo' 'hard z' 'constant z'; do row "$r" "$s" "$sweep" -; done
+            for r in fast offline; do
+                case $sweep in
+                scale) for v in ${BENCH_SCALES:-0.25 0.5 1}; do row "$r" "$s" scale "$v"; done ;;
+                soft_z) for v in $(printf '%s\n' 0 2 4 16 "$(default_of soft_z)" | sort -gu); do row "$r" "$s" soft_z "$v"; done ;;
+                views) for v in 1 3; do row "$r" "$s" views "$v"; done ;;
+                filling) for v in off on; do row "$r" "$s" filling "$v"; done ;;
+                esac
+            done
+            [ "$sweep" != views ] || for v in $(printf '%s\n' 4 8 12 "$(default_of more_views)" | sort -gu); do row offline "$s" views "3+$v"; done
+        done
+    done
+    if [ -n "$rate_scene" ] && wanted rate; then
+        for r in fast coverage offline; do for v in 1 2; do row "$r" "$rate_scene" rate "$v threads"; done; done
+    fi
+    if wanted memory; then for r in fast offline; do row "$r" made memory '15 views'; done; fi
+}
+
+# rate ARGS...: of frames without photos
+rate() { measured "$B/tests/bench/render_rate" "$@"; }
+
+# The default stands in every panel: what a setting gave is kept for the rest of the repeat.
+solved() # SCENE KEY ARGS...: makes $fast/KEY, a sample's lines without gain
+{
+    local of=$work/$1 key=$2; shift 2
+    [ ! -e "$fast/$key" ] || return 0
+    rm -f "$of"/holdout/frames/*
+    measured "$B/tests/bench/render_rate" --threads "$threads" --views "$of/views" --cameras "$of/holdout/views" --out "$of/holdout/frames" "$@" | grep -v '^holes ' >"$fast/rendered" &&
+        "$B/bin/evaluate" --folder "$of" --shared "$of/shared" --out "$of/metrics.tsv" 2>"$work/err" || return
+    awk -F'\t' '$1 ~ /^holdout\.(psnr|ssim|holes)$/ { sub(/.*\./, "", $1); printf "%s %.5g\n", $1, $2 }' "$of/metrics.tsv" >>"$fast/rendered"
+    mv "$fast/rendered" "$fast/$key"
+}
+psnr_of() { awk '$1 == "psnr" { print $2 }' "$fast/$1"; }
+
+sample() # SERIES SCENE SWEEP VALUE
+{
+    local of=$work/$2 key args=() same="$2 $r ${B//\//_}"
+    case $3 in
+    rate)
+        args=(--threads "${4%% *}" --views "out/$2/views" --depth "out/$2/depth" --path "out/$2/parallax/establishing_dolly")
+        case $1 in coverage) args+=(--coverage) ;; offline) args+=(--frames 5 --set renderer=offline) ;; *) args+=(--set "renderer=$1") ;; esac
+        rate "${args[@]}"; return ;;
+    memory) rate --threads "$threads" --views "$of/views" --depth "$of/depth" --cameras "$of/cameras" --set "renderer=$1"; return ;;
+    esac
+    local hard=(--depth "$of/layers" --set renderer=fast --set views=nearest)
+    case $1 in
+    'nearest photo') args=(--photo) ;;
+    'hard z') args=("${hard[@]}") ;;
+    'constant z') args=(--depth "$of/flat" --set renderer=offline) ;;
+    *)
+        args=(--depth "$of/layers" --set "renderer=$1")
+        case $3=$4 in
+        scale=1 | views=3+"$(default_of more_views)" | filling=on) ;;
+        scale=*) args+=(--scale "$4") ;;
+        views=1) args+=(--set views=nearest) ;;
+        views=3) [ "$1" = fast ] || args+=(--set more_views=0) ;;
+        views=*) args+=(--set "more_views=${4#3+}") ;;
+        filling=off) args+=(--set fill_diameter=0) ;;
+        *) [ "$4" = "$(default_of "$3")" ] || args+=(--set "$3=$4") ;;
+        esac ;;
+    esac
+    key="$same ${args[*]//\//_}"
+    solved "$2" "$same ${hard[*]//\//_}" "${hard[@]}" && solved "$2" "$key" "${args[@]}" || return
+    if [ "$1" = 'nearest photo' ]; then grep -v '^core_s_per_mp ' "$fast/$key"; else cat "$fast/$key"; fi
+    awk -v a="$(psnr_of "$key")" -v b="$(psnr_of "$same ${hard[*]//\//_}")" 'BEGIN { printf "gain %.2f\n", a - b }'
+}
