@@ -86,8 +86,6 @@ a_small_scene_gets_its_table()
     "$B/bin/evaluate" --folder out/t+holdout --shared out/t --out out/t+holdout/metrics.tsv 2>"$scratch/err"
     [ "$(cell offline on psnr)" = "$(awk -F'\t' '$1 == "holdout.psnr" { printf "%.5g", $2 }' out/t+holdout/metrics.tsv)" ] || { cat "$t" out/t+holdout/metrics.tsv; fail "another PSNR than the stages'"; }
 }
-    [ "$(cell offline on psnr)" = "$(awk -F'\t' '$1 == "holdout.psnr" { printf "%.5g", $2 }' out/t+holdout/metrics.tsv)" ] || { cat "$t" out/t+holdout/metrics.tsv; fail "another PSNR than make's"; }
-}
 
 the_nearest_photo_is_the_view_itself()
 {
