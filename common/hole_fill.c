@@ -290,8 +290,10 @@ static enum status fill_wide(struct rendered_frame *f, const uint32_t *list, siz
             goto done;
         }
     }
-    for (size_t i = 0; i < count; i++) push(&p, 0, (int)(list[i] % w), (int)(list[i] / w), &value);
     *filled = 0;
+    if (!pull(&p, p.count - 1, 0, 0, &value))
+        goto done; /* nothing is known: whatever is asked for would be asked in vain */
+    for (size_t i = 0; i < count; i++) push(&p, 0, (int)(list[i] % w), (int)(list[i] / w), &value);
     for (size_t i = 0; i < count; i++) /* all are computed from the frame as it was */
         if (p.levels[0].known[list[i]] == PUSHED) {
             pixel_set(f, list[i], &p.levels[0].texels[list[i]]);
