@@ -8,7 +8,7 @@
 
 #include "segment_project.h"
 
-#define TILE_WIDTH  256
+#define TILE_WIDTH  128
 #define TILE_HEIGHT 16
 #define TILE_STRIDE (TILE_WIDTH + 8) /* of the buffers: eight pixels are written where one is meant */
 #define TILE_PIXELS (TILE_STRIDE * TILE_HEIGHT)
