@@ -121,3 +121,14 @@ struct vec3 view_unproject(const struct view *view, double u, double v, double z
     struct vec3 p = vec3_make((u - view->cx) / view->fx * z, (v - view->cy) / view->fy * z, z);
     return mat3_apply(mat3_transpose(view->cam_from_world), vec3_sub(p, view->translation));
 }
+
+void view_resize(struct view *view, int width, int height)
+{
+    const double x = (double)width / view->width, y = (double)height / view->height;
+    view->fx *= x;
+    view->cx *= x;
+    view->fy *= y;
+    view->cy *= y;
+    view->width = width;
+    view->height = height;
+}

@@ -31,4 +31,7 @@ double view_project(const struct view *view, struct vec3 world, double *u, doubl
 /* World point of a pixel at depth z (along the axis, never along the ray). */
 struct vec3 view_unproject(const struct view *view, double u, double v, double z);
 
+/* The same picture with that many pixels. */
+void view_resize(struct view *view, int width, int height);
+
 #endif

@@ -1,9 +1,9 @@
 /* layer_render.c - see layer_render.h: a frame, tile by tile.
  *
- * Blending weights are the view mesh's at the corners of a lattice of LATTICE px, and bilinear between. A tile draws one
- * view after another, where the lattice names it; then, where no view covers a pixel, the other views. What a view shows
- * of a pixel becomes one sample; the soft z blends a pixel's samples, eight pixels at a time. Tiles share nothing, so
- * threads and the split of a path into jobs do not change a bit. */
+ * Blending weights are the view mesh's at the corners of a lattice of LATTICE px, and bilinear between. A tile draws
+ * one view after another, where the lattice names it; then, where no view covers a pixel, the other views. What a view
+ * shows of a pixel becomes one sample; the soft z blends a pixel's samples, eight pixels at a time. Tiles share
+ * nothing, so threads and the split of a path into jobs do not change a bit. */
 #include "common/layer_render.h"
 
 #include <immintrin.h>
@@ -30,6 +30,7 @@
 #define VOTE_INSIDE  0.25f /* a view this far inside its picture has its whole vote */
 
 _Static_assert(2 * (SLOTS + 1) <= SOFT_Z_MERGE_MOST, "all fragments of a pixel are merged");
+_Static_assert(SLOTS + 1 <= SOFT_Z_BLEND_MOST, "all views of a pixel are blended");
 _Static_assert(TILE_HEIGHT == LATTICE && TILE_WIDTH % LATTICE == 0, "a tile is a row of patches");
 
 /* ------------------------------------------------------------------------------------------------- one frame */
@@ -479,43 +480,19 @@ static void draw_other_views(const struct frame_job *job, struct scratch *s, con
 
 /* ------------------------------------------------------------------------------------------------------- blending */
 
-/* Eight pixels from i on: the samples of `slots`. Inlined for each usual count, so that all stays in registers. */
+/* Eight pixels from i on: the samples of `slots`; a constant for each usual count. */
 static inline __attribute__((always_inline)) void blend_eight(const struct frame_job *job, const struct scratch *s,
                                                               const int *slots, int count, size_t i, float (*rgba)[4],
                                                               float *z)
 {
-    __m256 weight[SLOTS + 1], there[SLOTS + 1], depth[SLOTS + 1], unsure[SLOTS + 1], visible[SLOTS + 1];
-    __m256 z_sum = _mm256_setzero_ps(), there_sum = z_sum;
-
+    struct soft_z_samples8 views[SOFT_Z_BLEND_MOST];
     for (int k = 0; k < count; k++) {
         const struct slot *slot = &s->slots[slots[k]];
-        depth[k] = _mm256_loadu_ps(slot->shown.z + i);
-        unsure[k] = _mm256_mul_ps(depth[k], _mm256_loadu_ps(slot->shown.sigma + i));
-        weight[k] = _mm256_loadu_ps(slot->blend + i);
-        there[k] = soft_z_presence8(weight[k], _mm256_loadu_ps(slot->shown.alpha + i));
-        visible[k] = _mm256_set1_ps(1);
+        const struct view_samples *shown = &slot->shown;
+        views[k] = (struct soft_z_samples8){shown->rgba + i, shown->alpha + i, shown->z + i, shown->sigma + i,
+                                            slot->blend + i};
     }
-    for (int k = 0; k < count; k++)
-        for (int c = 0; c < count; c++)
-            if (c != k)
-                visible[k] = soft_z_behind8(&job->soft, visible[k], depth[k], unsure[k], depth[c], unsure[c], there[c]);
-
-    float w[SLOTS + 1][8];
-    for (int k = 0; k < count; k++) {
-        const __m256 part = _mm256_mul_ps(visible[k], there[k]);
-        z_sum = _mm256_add_ps(z_sum, _mm256_mul_ps(part, depth[k]));
-        there_sum = _mm256_add_ps(there_sum, part);
-        _mm256_storeu_ps(w[k], _mm256_mul_ps(visible[k], weight[k]));
-    }
-    _mm256_storeu_ps(z, _mm256_div_ps(z_sum, _mm256_max_ps(there_sum, _mm256_set1_ps(1e-30f))));
-    for (int n = 0; n < 8; n++) {
-        __m128 sum = _mm_setzero_ps();
-        for (int k = 0; k < count; k++)
-            sum = _mm_add_ps(
-                sum, _mm_mul_ps(_mm_set1_ps(w[k][n]), _mm_loadu_ps(s->slots[slots[k]].shown.rgba[i + (size_t)n])));
-        const __m128 alpha = _mm_shuffle_ps(sum, sum, 0xFF);
-        _mm_storeu_ps(rgba[n], _mm_div_ps(sum, _mm_max_ps(alpha, _mm_set1_ps(1e-30f))));
-    }
+    soft_z_blend8(&job->soft, views, count, rgba, z);
 }
 
 /* Of a view's fragment in pixel i. */
@@ -697,14 +674,7 @@ enum status layer_coverage(struct rendered_frame *out, const struct layer_scene 
     struct view reduced = *novel;
     struct frame_job job;
 
-    reduced.width = (int)fmax(1, lround(novel->width * scale));
-    reduced.height = (int)fmax(1, lround(novel->height * scale));
-    const double sx = (double)reduced.width / novel->width, sy = (double)reduced.height / novel->height;
-    reduced.fx *= sx;
-    reduced.cx *= sx;
-    reduced.fy *= sy;
-    reduced.cy *= sy;
-
+    view_resize(&reduced, (int)fmax(1, lround(novel->width * scale)), (int)fmax(1, lround(novel->height * scale)));
     const struct layer_render_options options = {.soft_z = SOFT_Z_WIDTHS};
     const enum status st = job_init(&job, out, scene, &reduced, &options, false, err);
     if (!st) {

@@ -4,17 +4,17 @@
  * target pixel is taken back to the segment's view (common/segment_project.h), where the cells' ids tell whether it
  * belongs to the segment (common/layer_visibility.h).
  *
- *   fast     in each view the two nearest surfaces, front to back and saturating; across the views that the view mesh names
- *            for the pixel, a soft z-buffer (thesis eq. 3.1, common/soft_z.h) blends by weight x w x alpha
+ *   fast     in each view the two nearest surfaces, front to back and saturating; across the views that the view mesh
+ *            names for the pixel, a soft z-buffer (thesis eq. 3.1, common/soft_z.h) blends by weight x w x alpha
  *   offline  the surfaces of those views and of the nearest ones beside them in one soft z, in which views that see
  *            otherwise speak against a surface (soft_z_merge); colours are looked up bicubically
  *
- * Four things are not in the thesis. The offline renderer's further views, and their votes. Blending weights are the view
- * mesh's at points 16 px apart, bilinear between. A view's weight falls off towards the border of its picture, so that
- * the border leaves no line. And a pixel is a hole only if nothing else covers it either: where the views that the mesh
- * names leave it below alpha 0.5, the nearest other view (by centre) that sees something there takes their place,
- * unless most of them, by weight, see through it at something farther. Of what is left common/hole_fill.h fills as
- * much as the options say, from the far side.
+ * Four things are not in the thesis. The offline renderer's further views, and their votes. Blending weights are the
+ * view mesh's at points 16 px apart, bilinear between. A view's weight falls off towards the border of its picture, so
+ * that the border leaves no line. And a pixel is a hole only if nothing else covers it either: where the views that
+ * the mesh names leave it below alpha 0.5, the nearest other view (by centre) that sees something there takes their
+ * place, unless most of them, by weight, see through it at something farther. Of what is left common/hole_fill.h fills
+ * as much as the options say, from the far side.
  *
  * Depth is z along the novel camera's axis, in scene units; colour is scene-linear. */
 #ifndef REMODEL_LAYER_RENDER_H

@@ -20,36 +20,6 @@ float soft_z_rho(const struct soft_z *s, float z_a, float sigma_a, float z_b, fl
     return 2 * s->widths * sqrtf(a * a + b * b);
 }
 
-static float presence(const struct soft_z_sample *s)
-{
-    const float blend = s->blend / SOFT_Z_BLEND_WHOLE, alpha = s->rgba[3] / SOFT_Z_ALPHA_WHOLE;
-    return (blend < 1 ? blend : 1) * (alpha < 1 ? alpha : 1);
-}
-
-void soft_z_blend(const struct soft_z *s, const struct soft_z_sample *samples, int count, float rgba[4], float *z)
-{
-    float color[4] = {0}, z_sum = 0, w_sum = 0;
-
-    for (int i = 0; i < count; i++) {
-        const struct soft_z_sample *a = &samples[i];
-        float w = 1;
-        for (int c = 0; c < count; c++) {
-            const struct soft_z_sample *b = &samples[c];
-            if (!(b->z < a->z)) continue;
-            const float rho = soft_z_rho(s, a->z, a->sigma, b->z, b->sigma);
-            const float hidden = presence(b) * (1 - soft_z_weight(a->z - b->z, 0.1f * rho, rho));
-            w = fminf(w, 1 - hidden);
-        }
-        const float there = w * presence(a);
-        for (int k = 0; k < 4; k++) color[k] += a->blend * w * a->rgba[k];
-        z_sum += there * a->z;
-        w_sum += there;
-    }
-    for (int k = 0; k < 3; k++) rgba[k] = color[3] > 0 ? color[k] / color[3] : 0;
-    rgba[3] = color[3] > 0;
-    *z = w_sum > 0 ? z_sum / w_sum : 0;
-}
-
 #define AGAINST_BEFORE 0.3f  /* what a fragment in front of another speaks against it */
 #define STANDING_WHOLE 0.25f /* a fragment of this standing hides wholly */
 #define BLOCKS         (SOFT_Z_MERGE_MOST / 8)
@@ -96,13 +66,10 @@ static bool one_surface(const struct soft_z *s, const struct soft_z_fragment *f,
 static __m256 apart8(const struct merge *m, const struct soft_z *s, int i, int block, __m256 dz)
 {
     const __m256 one = _mm256_set1_ps(1), zero = _mm256_setzero_ps(), sign = _mm256_set1_ps(-0.0f);
-    const __m256 square = _mm256_add_ps(_mm256_loadu_ps(m->square + 8 * block), _mm256_set1_ps(m->square[i]));
     const __m256 rho =
-        s->widths > 0 ? _mm256_mul_ps(_mm256_set1_ps(2 * s->widths), _mm256_sqrt_ps(square)) : _mm256_set1_ps(s->range);
-    const __m256 over = _mm256_sub_ps(_mm256_andnot_ps(sign, dz), _mm256_mul_ps(rho, _mm256_set1_ps(0.1f)));
-    const __m256 length = _mm256_max_ps(_mm256_mul_ps(rho, _mm256_set1_ps(0.8f)), _mm256_set1_ps(1e-30f));
-    const __m256 t = _mm256_max_ps(zero, _mm256_min_ps(one, _mm256_div_ps(over, length)));
-    return _mm256_sub_ps(one, _mm256_max_ps(zero, _mm256_min_ps(one, soft_z_fall8(t)))); /* the series ends below 0 */
+        soft_z_rho8(s, _mm256_add_ps(_mm256_loadu_ps(m->square + 8 * block), _mm256_set1_ps(m->square[i])));
+    const __m256 w = soft_z_weight8(soft_z_over8(_mm256_andnot_ps(sign, dz), rho), rho);
+    return _mm256_sub_ps(one, _mm256_max_ps(zero, _mm256_min_ps(one, w)));
 }
 
 /* How far apart all pairs are, and every fragment's standing. */

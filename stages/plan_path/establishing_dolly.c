@@ -277,9 +277,7 @@ static double outside(const struct plan *p, const struct view *v)
     struct view small = *v;
     double scale = (double)OUTSIDE_SIDE / (v->width > v->height ? v->width : v->height), sum = 0, x, y;
     double depth = view_project(v, p->centroid, &x, &y);
-    small.width = (int)fmax(1, floor(v->width * scale));
-    small.height = (int)fmax(1, floor(v->height * scale));
-    small.fx *= scale, small.fy *= scale, small.cx *= scale, small.cy *= scale;
+    view_resize(&small, (int)fmax(1, floor(v->width * scale)), (int)fmax(1, floor(v->height * scale)));
     view_mesh_prepare(&mc, &p->scene->mesh, &small);
     for (int j = 0; j < small.height; j++) {
         view_mesh_row(&mc, j, row);

@@ -42,12 +42,7 @@ enum status frame_part_camera(struct view *camera, const struct frame_part *part
     if (width < 1 || height < 1 || width > 65536 || height > 65536)
         return err_set(err, ST_USAGE, "--scale %g makes a picture of %d x %d pixels of the %d x %d of %s.", part->scale,
                        width, height, camera->width, camera->height, camera->name);
-    camera->fx *= (double)width / camera->width;
-    camera->cx *= (double)width / camera->width;
-    camera->fy *= (double)height / camera->height;
-    camera->cy *= (double)height / camera->height;
-    camera->width = width;
-    camera->height = height;
+    view_resize(camera, width, height);
     return ST_OK;
 }
 

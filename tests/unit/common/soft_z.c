@@ -1,4 +1,4 @@
-/* soft_z.c - the soft z-buffer against numbers worked out by hand, eight pixels at once against one, and the merging of
+/* soft_z.c - the soft z-buffer against numbers worked out by hand, its vectors against the formulas, and the merging of
  * all views' fragments. */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -8,6 +8,7 @@
 #include <cmocka.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "common/rng.h"
 #include "common/soft_z.h"
@@ -38,6 +39,34 @@ static void soft_z_width_is_of_two_uncertainties(void **state)
     assert_near(soft_z_rho(&thesis, 10, 0.03f, 20, 0.02f), 100, 0);
 }
 
+struct sample { /* what one view shows in a pixel */
+    float rgba[4], z, sigma, blend;
+};
+
+/* Eight pixels that are all the same, and come out the same. */
+static void blend(const struct soft_z *s, const struct sample *samples, int count, float rgba[4], float *z)
+{
+    struct soft_z_samples8 views[3];
+    float colours[3][8][4], planes[3][4][8], out[8][4], out_z[8];
+
+    for (int k = 0; k < count; k++) {
+        const float one[4] = {samples[k].rgba[3], samples[k].z, samples[k].sigma, samples[k].blend};
+        for (int n = 0; n < 8; n++) {
+            memcpy(colours[k][n], samples[k].rgba, sizeof colours[k][n]);
+            for (int p = 0; p < 4; p++) planes[k][p][n] = one[p];
+        }
+        views[k] = (struct soft_z_samples8){(const float(*)[4])colours[k], planes[k][0], planes[k][1], planes[k][2],
+                                            planes[k][3]};
+    }
+    soft_z_blend8(s, views, count, out, out_z);
+    for (int n = 1; n < 8; n++) {
+        assert_memory_equal(out[n], out[0], sizeof out[0]);
+        assert_true(out_z[n] == out_z[0]);
+    }
+    memcpy(rgba, out[0], sizeof out[0]);
+    *z = out_z[0];
+}
+
 static void soft_z_blends_by_weight_alpha_and_depth(void **state)
 {
     (void)state;
@@ -46,23 +75,23 @@ static void soft_z_blends_by_weight_alpha_and_depth(void **state)
 
     /* dz 5 is half of rho: w 1/2. Colour (0.6 * 1 * 1 + 0.4 * 0.5 * 0) / 0.8; depth without blend: (10 + 0.5 * 15) /
      * 1.5 */
-    const struct soft_z_sample two[] = {{{1, 0, 0, 1}, 10, 0.01f, 0.6f}, {{0, 1, 0, 1}, 15, 0.01f, 0.4f}};
-    soft_z_blend(&soft, two, 2, rgba, &z);
+    const struct sample two[] = {{{1, 0, 0, 1}, 10, 0.01f, 0.6f}, {{0, 1, 0, 1}, 15, 0.01f, 0.4f}};
+    blend(&soft, two, 2, rgba, &z);
     assert_near(rgba[0], 0.75, 1e-6);
     assert_near(rgba[1], 0.25, 1e-6);
     assert_near(rgba[3], 1, 0);
     assert_near(z, 17.5 / 1.5, 1e-5);
 
     /* alpha weighs, premultiplied: blends 1/2 and 1/2, alphas 1 and 0.6, one depth */
-    const struct soft_z_sample thin[] = {{{1, 0, 0, 1}, 10, 0.01f, 0.5f}, {{0, 0.6f, 0, 0.6f}, 10, 0.01f, 0.5f}};
-    soft_z_blend(&soft, thin, 2, rgba, &z);
+    const struct sample thin[] = {{{1, 0, 0, 1}, 10, 0.01f, 0.5f}, {{0, 0.6f, 0, 0.6f}, 10, 0.01f, 0.5f}};
+    blend(&soft, thin, 2, rgba, &z);
     assert_near(rgba[0], 1 / 1.6, 1e-6);
     assert_near(rgba[1], 0.6 / 1.6, 1e-6);
     assert_near(z, 10, 1e-6);
 
     /* hidden: far behind counts nothing, in colour and depth */
-    const struct soft_z_sample far[] = {{{1, 0, 0, 1}, 10, 0.01f, 0.1f}, {{0, 1, 0, 1}, 30, 0.01f, 0.9f}};
-    soft_z_blend(&soft, far, 2, rgba, &z);
+    const struct sample far[] = {{{1, 0, 0, 1}, 10, 0.01f, 0.1f}, {{0, 1, 0, 1}, 30, 0.01f, 0.9f}};
+    blend(&soft, far, 2, rgba, &z);
     assert_near(rgba[0], 1, 1e-6);
     assert_near(z, 10, 1e-6);
 }
@@ -74,9 +103,9 @@ static void a_view_that_enters_does_so_without_a_jump(void **state)
     float rgba[4], z, before = 0;
 
     for (int i = 0; i <= 100; i++) { /* the nearer view's blending weight from 0 to 0.1 */
-        const float blend = 0.001f * (float)i;
-        const struct soft_z_sample s[] = {{{1, 0, 0, 1}, 5, 0.01f, blend}, {{0, 1, 0, 1}, 8, 0.01f, 1 - blend}};
-        soft_z_blend(&soft, s, 2, rgba, &z);
+        const float part = 0.001f * (float)i;
+        const struct sample s[] = {{{1, 0, 0, 1}, 5, 0.01f, part}, {{0, 1, 0, 1}, 8, 0.01f, 1 - part}};
+        blend(&soft, s, 2, rgba, &z);
         if (i) assert_true(fabsf(rgba[0] - before) < 0.35f); /* no more than the last steps of hiding the far one */
         if (i == 0) assert_near(rgba[0], 0, 0);
         if (i == 1) assert_true(rgba[0] < 0.01f && z > 7.9f);
