@@ -1,5 +1,5 @@
-/* layer_view.h - a view's two layers packed for rendering, in the order in which they are read: 40 bytes a pixel, and 64
- * for each cell of more than two segments.
+/* layer_view.h - a view's two layers packed for rendering, in the order in which they are read: 40 bytes a pixel, and
+ * 64 for each cell of more than two segments.
  *
  * A cell is what lies between the centres of a texel, its right, lower and diagonal neighbour. Where all of it belongs
  * to one surface, its colour is that of the photo, whichever of its segments asks; elsewhere a segment's coverage and

@@ -1,8 +1,12 @@
-/* layer_visibility.h - which segments of a view a novel camera sees, tile by tile: what the fast renderer is made of.
+/* layer_visibility.h - which segments of a view a novel camera sees, tile by tile: what both renderers are made of.
  *
  * Drawing a segment writes no colour: for each pixel of a tile the two nearest surfaces that have texels there are kept,
- * each by its nearest segment, with the place in the view that the nearer one shows. Colour is looked up once a pixel after that, however many
- * segments were drawn. The order of drawing does not matter, so segments need no sorting; eight pixels are drawn at once. */
+ * each by its nearest segment, with the place in the view that the nearer one shows. Colour is looked up once a pixel
+ * after that, however many segments were drawn. Segments need no sorting, and eight pixels are drawn at once.
+ *
+ * The two surfaces do not depend on the order in which segments are drawn, except where three or more at one pixel make a
+ * chain, each within the tolerance of the next but the first and last not: where the chain is cut then depends on the
+ * order. That order is the tile's list, which is always the same. */
 #ifndef REMODEL_LAYER_VISIBILITY_H
 #define REMODEL_LAYER_VISIBILITY_H
 
@@ -59,10 +63,10 @@ struct view_samples {                         /* what views show in a tile's pix
     float inside[TILE_PIXELS];                /* 1, falling to 0 towards the border of the view's picture */
 };
 
-/* Of the eight pixels from i on of a tile whose first pixel is (tile_x, tile_y). behind NULL: what is behind a front that
- * leaves something free is composited with it, saturating, and the photo is looked up bilinearly. Else it stays apart
- * (inside is the front's), with no more alpha than is left, and the photo is looked up bicubically (Catmull and Rom 1974)
- * wherever one surface is all around. */
+/* Of the eight pixels from i on of a tile whose first pixel is (tile_x, tile_y). behind NULL: what is behind a front
+ * that leaves something free is composited with it, saturating, and the photo is looked up bilinearly. Else it stays
+ * apart (inside is the front's), with no more alpha than is left, and the photo is looked up bicubically (Catmull and
+ * Rom 1974) wherever one surface is all around. */
 void visibility_sample8(struct view_samples *s, struct view_samples *behind, const struct tile_visibility *tv,
                         const struct drawn_view *dv, const struct layer_view *lv, size_t i, int tile_x, int tile_y);
 

@@ -109,7 +109,6 @@ bool segment_project(struct projected_segment *s, const struct view_relation *r,
     if (!target_rectangle(s, r, p, to_target, shape->x0 - 0.5, shape->y0 - 0.5, shape->x1 + 1.5, shape->y1 + 1.5,
                           inverse_z))
         return false;
-    s->depth = row_at(to_target[2], shape->u, shape->v) / inverse_z;
     for (int i = 0; i < 3; i++) s->inverse_z[i] = (r->m[0][i] * p[0] + r->m[1][i] * p[1] + r->m[2][i] * p[2]) / facing;
     for (int i = 0; i < 3; i++)
         for (int c = 0; c < 3; c++) s->from_target[i][c] = r->m[i][c] + r->k[i] * s->inverse_z[c];

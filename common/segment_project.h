@@ -21,11 +21,10 @@ struct view_relation {                    /* "to pixels from pixels", both ways 
 void view_relation_make(struct view_relation *r, const struct view *view, const struct view *novel);
 
 struct projected_segment {
-    double from_target
-        [3][3]; /* target position (x, y; pixel centres at + 0.5) -> index into the padded texels, homogeneous */
+    /* target position (x, y; pixel centres at + 0.5) -> index into the padded texels, homogeneous */
+    double from_target[3][3];
     double inverse_z[3];   /* 1/z_novel = inverse_z . (x, y, 1) */
     double u0, v0, u1, v1; /* where in the padded texels it may have coverage */
-    double depth;          /* of its centre in the novel camera */
     int x0, y0, x1, y1;    /* target pixels, inclusive, that it may touch */
 };
 
