@@ -139,7 +139,7 @@ static void say(int frames, double megapixels, double wall, double cpu, double h
 {
     struct rusage use;
     getrusage(RUSAGE_SELF, &use);
-    printf("seconds %.6f\nframes_per_s %.4g\ncore_ms %.4g\ncore_s_per_mp %.4g\nholes %.4g\npeak_mib %.1f\n",
+    printf("seconds %.9g\nframes_per_s %.9g\ncore_ms %.9g\ncore_s_per_mp %.9g\nholes %.4g\npeak_mib %.1f\n",
            wall / frames, frames / wall, 1e3 * cpu / frames, cpu / megapixels, 1e2 * holes / frames,
            (double)use.ru_maxrss / 1024);
 }
