@@ -138,7 +138,9 @@ static void depth_make(struct layered_depth *d, const struct view *v, const stru
     }
 }
 
-static inline void scene_make(struct scene *s, const struct shape *shape, const double (*centers)[3], int count)
+/* View i is brighter by brightness[i % 3] than the texture. */
+static inline void scene_make_uneven(struct scene *s, const struct shape *shape, const double (*centers)[3], int count,
+                                     const float brightness[3])
 {
     struct layered_depth depths[MAX_VIEWS] = {0};
     struct err err = ERR_INIT;
@@ -147,10 +149,18 @@ static inline void scene_make(struct scene *s, const struct shape *shape, const 
     for (int i = 0; i < count; i++) {
         s->views[i] = view_at(centers[i][0], centers[i][1], centers[i][2]);
         depth_make(&depths[i], &s->views[i], shape);
+        for (int p = 0; p < W * H * 4; p++)
+            if (p % 4 != 3) depths[i].interior.rgba[p] *= brightness[i % 3];
     }
     s->set.views = s->views;
     s->set.view_count = count;
     if (layer_scene_init(&s->layers, &s->set, depths, &err)) fail_msg("%s", err.text);
+}
+
+static inline void scene_make(struct scene *s, const struct shape *shape, const double (*centers)[3], int count)
+{
+    static const float even[3] = {1, 1, 1};
+    scene_make_uneven(s, shape, centers, count, even);
 }
 
 static const struct layer_render_options renderers[2] = {

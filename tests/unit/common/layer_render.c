@@ -270,16 +270,25 @@ static void a_hole_takes_the_nearest_view_that_does_not_hang_in_the_air(void **s
     }
 }
 
+/* What a view at the origin sees of the square, with its own camera. The depth map is used up. */
+static void render_own(struct rendered_frame *f, struct layered_depth *d, bool offline)
+{
+    struct scene s = {.views = {view_at(0, 0, 0)}, .set = {.view_count = 1}};
+    struct err err = ERR_INIT;
+
+    s.set.views = s.views;
+    assert_int_equal(layer_scene_init(&s.layers, &s.set, d, &err), ST_OK);
+    render(f, &s, &s.views[0], offline, 6);
+    layer_scene_release(&s.layers);
+}
+
 static void boundaries_composite_to_the_photo(void **state)
 {
     const bool offline = *(const bool *)*state;
     /* the square's rim, two pixels wide, is matted: half in each layer */
+    const struct view v = view_at(0, 0, 0);
     struct layered_depth d;
-    struct view v = view_at(0, 0, 0);
-    struct camera_set set = {.views = &v, .view_count = 1};
-    struct layer_scene layers = {0};
     struct rendered_frame f = {0};
-    struct err err = ERR_INIT;
     float *photo = malloc(sizeof *photo * W * H * 4);
 
     depth_make(&d, &v, &square);
@@ -297,14 +306,12 @@ static void boundaries_composite_to_the_photo(void **state)
                 d.interior.rgba[4 * p + (size_t)k] = 0.625f * photo[4 * p + (size_t)k];
             }
         }
-    assert_int_equal(layer_scene_init(&layers, &set, &d, &err), ST_OK);
-    assert_int_equal(layer_render(&f, &layers, &v, &renderers[offline], &err), ST_OK);
+    render_own(&f, &d, offline);
     for (int p = 0; p < W * H; p++) {
         for (int k = 0; k < 3; k++) assert_near(f.rgba[4 * p + k], photo[4 * p + k], 1.0 / 1024);
         assert_true(fabsf(f.z[p] - 3) < 1e-4f || fabsf(f.z[p] - 6) < 1e-4f);
     }
     free(photo);
-    layer_scene_release(&layers);
     rendered_frame_release(&f);
 }
 
@@ -373,22 +380,7 @@ static const double nine[][3] = {{-0.3, -0.3, 0}, {0, -0.3, 0},   {0.3, -0.3, 0}
                                  {0.3, 0, 0},     {-0.3, 0.3, 0}, {0, 0.3, 0},    {0.3, 0.3, 0}};
 
 /* As scene_make, view i brighter by i % 3 tenths: what each one weighs is seen. */
-static void uneven_scene_make(struct scene *s, const struct shape *shape, const double (*centers)[3], int count)
-{
-    struct layered_depth depths[MAX_VIEWS] = {0};
-    struct err err = ERR_INIT;
-
-    memset(s, 0, sizeof *s);
-    for (int i = 0; i < count; i++) {
-        s->views[i] = view_at(centers[i][0], centers[i][1], centers[i][2]);
-        depth_make(&depths[i], &s->views[i], shape);
-        for (int p = 0; p < W * H * 4; p++)
-            if (p % 4 != 3) depths[i].interior.rgba[p] *= 1 + 0.1f * (float)(i % 3);
-    }
-    s->set.views = s->views;
-    s->set.view_count = count;
-    if (layer_scene_init(&s->layers, &s->set, depths, &err)) fail_msg("%s", err.text);
-}
+static const float uneven[3] = {1, 1.1f, 1.2f};
 
 /* Mean absolute difference of the pictures from two places. */
 static double change(const struct scene *s, struct vec3 a, struct vec3 b, const struct layer_render_options *options)
@@ -426,7 +418,7 @@ static void passing_an_edge_of_the_view_mesh_is_smooth(void **state)
 {
     const bool offline = *(const bool *)*state;
     struct scene s;
-    uneven_scene_make(&s, &square, nine, 9);
+    scene_make_uneven(&s, &square, nine, 9, uneven);
     check_moves(&s, vec3_make(0, 0.1, 0), right, &renderers[offline]);   /* on the mesh, from triangle to triangle */
     check_moves(&s, vec3_make(0, 0.1, 0.3), right, &renderers[offline]); /* in front of it */
     check_moves(&s, vec3_make(0.3, 0.1, 0), right, &renderers[offline]); /* out over its rim */
@@ -439,7 +431,7 @@ static void passing_an_input_view_is_smooth(void **state)
 {
     const bool offline = *(const bool *)*state;
     struct scene s;
-    uneven_scene_make(&s, &square, nine, 9);
+    scene_make_uneven(&s, &square, nine, 9, uneven);
     check_moves(&s, vec3_make(0, 0, 0), right, &renderers[offline]);
     check_moves(&s, vec3_make(0, 0, 0), ahead, &renderers[offline]);
     check_moves(&s, vec3_make(0.3, -0.3, 0), aslant, &renderers[offline]); /* at the mesh's corner */
@@ -451,7 +443,7 @@ static void a_view_enters_the_nearest_ones_smoothly(void **state)
     static const int more[] = {1, 3, 5};
     struct scene s;
     (void)state;
-    uneven_scene_make(&s, &square, nine, 9);
+    scene_make_uneven(&s, &square, nine, 9, uneven);
     for (int i = 0; i < 3; i++) {
         struct layer_render_options options = renderers[true];
         options.more_views = more[i];
@@ -785,19 +777,14 @@ static void nothing_infinite_reaches_a_frame(void **state)
 static void an_unknown_colour_is_black(void **state)
 {
     const bool offline = *(const bool *)*state;
+    const struct view v = view_at(0, 0, 0);
     struct layered_depth d;
-    struct view v = view_at(0, 0, 0);
-    struct camera_set set = {.views = &v, .view_count = 1};
-    struct layer_scene layers = {0};
     struct rendered_frame f = {0};
-    struct err err = ERR_INIT;
 
     depth_make(&d, &v, &square);
     d.interior.rgba[4 * (20 * W + 30)] = NAN;
-    assert_int_equal(layer_scene_init(&layers, &set, &d, &err), ST_OK);
-    assert_int_equal(layer_render(&f, &layers, &v, &renderers[offline], &err), ST_OK);
+    render_own(&f, &d, offline);
     assert_near(f.rgba[4 * (20 * W + 30)], 0, 1e-3);
-    layer_scene_release(&layers);
     rendered_frame_release(&f);
 }
 

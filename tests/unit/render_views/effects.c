@@ -211,24 +211,30 @@ static void layers_do_what_they_say(void **state)
     rendered_frame_release(&f);
 }
 
+/* The frame, under layers that are written so. */
+static void apply_text(const char *text, double time, struct rendered_frame *f)
+{
+    const struct view v = a_camera();
+    struct effects e;
+    read_text(&e, text);
+    effects_apply(&e, time, &v, f);
+    effects_release(&e);
+}
+
 static void layers_follow_each_other_in_order(void **state)
 {
     (void)state;
-    const struct view v = a_camera();
     struct rendered_frame f = {0}, g = {0};
-    struct effects e;
 
     make_frame(&f);
     make_frame(&g);
-    read_text(
-        &e,
-        "remodel-effects 1\nlayer tint color\nregion all\nkey 0 2 1 0.5\nlayer grey saturation\nregion all\nkey 0 0\n");
-    effects_apply(&e, 0, &v, &f);
+    apply_text("remodel-effects 1\nlayer tint color\nregion all\nkey 0 2 1 0.5\n"
+               "layer grey saturation\nregion all\nkey 0 0\n",
+               0, &f);
     for (int p = 0; p < W * H; p++) { /* first tinted, then grey: all colours are equal */
         const float c[3] = {2 * g.rgba[4 * p], g.rgba[4 * p + 1], 0.5f * g.rgba[4 * p + 2]};
         for (int k = 0; k < 3; k++) assert_true(fabs(f.rgba[4 * p + k] - luminance(c)) < 1e-6);
     }
-    effects_release(&e);
     rendered_frame_release(&f);
     rendered_frame_release(&g);
 }
@@ -236,29 +242,22 @@ static void layers_follow_each_other_in_order(void **state)
 static void identity_touches_nothing(void **state)
 {
     (void)state;
+    static const char layers[] = "remodel-effects 1\nlayer a saturation\nregion all\nkey 1 1\nkey 2 0\n"
+                                 "layer b color\nregion inside -9 -9 -9 9 9 9 1\nkey 0 1 1 1\nkey 1 1 1 1\n"
+                                 "layer c brightness\nregion outside -9 -9 -9 9 9 9 1\nkey 1 1\n";
+    static const char far_away[] = "remodel-effects 1\nlayer a color\nregion inside 50 50 50 60 60 60 1\nkey 0 2 3 4\n"
+                                   "layer b saturation\nregion inside 50 50 50 60 60 60 1\nkey 0 0\n";
     const struct view v = a_camera();
     struct rendered_frame f = {0}, g = {0};
-    struct effects e;
 
     make_frame(&f);
     make_frame(&g);
     effects_apply(&(struct effects){0}, 0, &v, &f);
-    read_text(&e, "remodel-effects 1\nlayer a saturation\nregion all\nkey 1 1\nkey 2 0\n"
-                  "layer b color\nregion inside -9 -9 -9 9 9 9 1\nkey 0 1 1 1\nkey 1 1 1 1\n"
-                  "layer c brightness\nregion outside -9 -9 -9 9 9 9 1\nkey 1 1\n");
-    effects_apply(&e, 0.9, &v, &f);
+    apply_text(layers, 0.9, &f);
+    apply_text(far_away, 0, &f);
     assert_memory_equal(f.rgba, g.rgba, W * H * 4 * sizeof(float));
-    effects_apply(&e, 1.1, &v, &f);
+    apply_text(layers, 1.1, &f);
     assert_memory_not_equal(f.rgba, g.rgba, W * H * 4 * sizeof(float));
-    effects_release(&e);
-
-    /* nor does a box that is far away */
-    make_frame(&f);
-    read_text(&e, "remodel-effects 1\nlayer a color\nregion inside 50 50 50 60 60 60 1\nkey 0 2 3 4\n"
-                  "layer b saturation\nregion inside 50 50 50 60 60 60 1\nkey 0 0\n");
-    effects_apply(&e, 0, &v, &f);
-    assert_memory_equal(f.rgba, g.rgba, W * H * 4 * sizeof(float));
-    effects_release(&e);
     rendered_frame_release(&f);
     rendered_frame_release(&g);
 }
