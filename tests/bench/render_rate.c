@@ -51,7 +51,8 @@ static double now(clockid_t clock)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-static void resize(struct view *v, int width, int height)
+/* A frame that is as wide as before, its height cut or added: unlike view_resize, pixels stay square in any shape. */
+static void reframe(struct view *v, int width, int height)
 {
     const double scale = (double)width / v->width;
     v->cx = 0.5 * width + (v->cx - 0.5 * v->width) * scale;
@@ -235,7 +236,7 @@ static enum status choose_cameras(struct bench *b, const struct job *job, struct
                                   : &b->set_of_cameras.views[i];
         b->reduced[i] = *b->cameras[i];
         if (job->path)
-            resize(&b->reduced[i], job->width, job->height);
+            reframe(&b->reduced[i], job->width, job->height);
         else
             st = frame_part_camera(&b->reduced[i], &part, err);
     }
