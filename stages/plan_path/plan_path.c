@@ -11,10 +11,9 @@
 #include <string.h>
 
 #include "common/cli.h"
-#include "common/lens_list.h"
 #include "common/log.h"
 #include "common/outfile.h"
-#include "common/photo_list.h"
+#include "common/upright.h"
 #include "stages/plan_path/establishing_dolly.h"
 
 enum { PATH_SIZE = 4096 };
@@ -31,55 +30,6 @@ static enum status add_input(struct provenance *prov, const char *name, const ch
     char path[PATH_SIZE];
     if (join(path, folder, file, "", err) || provenance_add_file(prov, name, path, err)) return err->status;
     return ST_OK;
-}
-
-/* Where a photo's upright direction points in its camera, by EXIF orientation. */
-static struct vec3 upright(int orientation)
-{
-    switch (orientation) {
-    case 3:
-    case 4:
-        return vec3_make(0, 1, 0); /* the first row is at the bottom */
-    case 5:
-    case 6:
-        return vec3_make(-1, 0, 0); /* the first column is at the top */
-    case 7:
-    case 8:
-        return vec3_make(1, 0, 0);
-    default:
-        return vec3_make(0, -1, 0);
-    }
-}
-
-/* The upright direction in each view's camera. */
-static enum status find_ups(struct vec3 *ups, const struct camera_set *set, const char *views, const char *records,
-                            struct provenance *prov, struct err *err)
-{
-    struct lens_list lenses = {0};
-    char path[PATH_SIZE], name[PATH_SIZE];
-    enum status st = join(path, views, "lenses.txt", "", err) || lens_list_read(&lenses, path, err) ||
-                             provenance_add_file(prov, "views/lenses.txt", path, err)
-                         ? err->status
-                         : ST_OK;
-    for (int i = 0; !st && i < set->view_count; i++) {
-        struct photo_record record = {0};
-        int at = lens_list_find(&lenses, set->views[i].name);
-        if (at < 0) {
-            st = err_set(err, ST_DATA, "%s has no view %s, but images.txt has. Import the views again.", path,
-                         set->views[i].name);
-            break;
-        }
-        const struct lens *lens = &lenses.lenses[at];
-        char record_path[PATH_SIZE];
-        st = photo_record_read(&record, records, lens->photo, err);
-        if (!st) st = join(record_path, records, lens->photo, ".txt", err);
-        if (!st) st = join(name, "photos", lens->photo, ".txt", err);
-        if (!st) st = provenance_add_file(prov, name, record_path, err);
-        if (!st) ups[i] = mat3_apply(mat3_from_quat(lens->view_from_photo), upright(record.info.orientation));
-        photo_record_release(&record);
-    }
-    lens_list_release(&lenses);
-    return st;
 }
 
 static enum status write_frames(const struct camera_path *path, const char *out, struct err *err)
@@ -133,7 +83,7 @@ static enum status plan(const char *views, const char *records, const char *dept
     if (!st) st = add_input(prov, "views/points3D.txt", views, "points3D.txt", err);
     if (!st && records) {
         ups = calloc((size_t)set.view_count + 1, sizeof *ups);
-        st = ups ? find_ups(ups, &set, views, records, prov, err)
+        st = ups ? upright_read(ups, &set, views, records, prov, err)
                  : err_nomem(err, "a direction a view", (size_t)set.view_count * sizeof *ups);
     }
     if (!st) st = layer_scene_read(&scene, &set, depth, prov, err);
