@@ -23,6 +23,8 @@ struct camera_set {
 
 /* PINHOLE and SIMPLE_PINHOLE only. */
 enum status camera_set_read(struct camera_set *set, const char *folder, struct err *err);
+/* Names the three files of the folder as inputs: views/cameras.txt, images.txt, points3D.txt. */
+enum status camera_set_add_inputs(struct provenance *prov, const char *folder, struct err *err);
 int camera_set_find(const struct camera_set *set, const char *name); /* -1: not there */
 void camera_set_release(struct camera_set *set);
 

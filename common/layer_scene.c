@@ -5,30 +5,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "common/weighted.h"
+
 #define NEAR_PERCENTILE 0.02
 #define FAR_PERCENTILE  0.98
-
-struct weighted {
-    double value, weight;
-};
-
-static int compare_weighted(const void *a, const void *b)
-{
-    const double x = ((const struct weighted *)a)->value, y = ((const struct weighted *)b)->value;
-    return (x > y) - (x < y);
-}
-
-/* Of values in ascending order. */
-static double percentile(const struct weighted *values, size_t count, double part)
-{
-    double total = 0, sum = 0;
-    for (size_t i = 0; i < count; i++) total += values[i].weight;
-    for (size_t i = 0; i < count; i++) {
-        sum += values[i].weight;
-        if (sum >= part * total) return values[i].value;
-    }
-    return count ? values[count - 1].value : 0;
-}
 
 static enum status measure_depths(struct layer_scene *s, struct err *err)
 {
@@ -49,11 +29,9 @@ static enum status measure_depths(struct layer_scene *s, struct err *err)
             depths[count] = (struct weighted){1 / inverse, shape->pixels};
             sigmas[count++] = (struct weighted){seg->sigma, shape->pixels};
         }
-    qsort(depths, count, sizeof *depths, compare_weighted);
-    qsort(sigmas, count, sizeof *sigmas, compare_weighted);
-    s->near_depth = percentile(depths, count, NEAR_PERCENTILE);
-    s->far_depth = percentile(depths, count, FAR_PERCENTILE);
-    s->sigma = percentile(sigmas, count, 0.5);
+    s->near_depth = weighted_percentile(depths, count, NEAR_PERCENTILE);
+    s->far_depth = weighted_percentile(depths, count, FAR_PERCENTILE);
+    s->sigma = weighted_percentile(sigmas, count, 0.5);
     free(depths);
     free(sigmas);
     return ST_OK;

@@ -1,0 +1,200 @@
+/* layout.c - see layout.h. */
+#include "stages/sample_validity/layout.h"
+
+#include <stdlib.h>
+
+#include "common/weighted.h"
+
+#define CENTRAL_VIEWS   5    /* whose segments vote for the centroid */
+#define SAME_WAY        0.5  /* cosine of the angle between their axes and the centremost view's, at least */
+#define NEAR_PERCENTILE 0.02 /* the depth that stands for near */
+#define NEAR_FRACTION   0.5  /* of the near depth: what comes nearer is within the scene */
+#define LEAST_BOX       0.02 /* of the median depth: what the box of the centres is padded to */
+
+struct layout {
+    struct shot *shot;
+    const struct layer_scene *scene;
+    const struct scene_points *points;
+    const struct validity_params *params;
+    int center;
+    struct weighted *scratch; /* one a point */
+};
+
+static const struct view *center_view(const struct layout *l) { return &l->scene->set->views[l->center]; }
+
+static struct vec3 row_of(struct mat3 m, int row) { return vec3_make(m.m[row][0], m.m[row][1], m.m[row][2]); }
+
+/* The view nearest the middle of all; of several views of one photo, the one that looks where most views look. */
+static void find_center_view(struct layout *l)
+{
+    const struct camera_set *set = l->scene->set;
+    struct vec3 gaze = {0};
+    double best = HUGE_VAL, best_gaze = 0;
+    for (int i = 0; i < set->view_count; i++) gaze = vec3_add(gaze, row_of(set->views[i].cam_from_world, 2));
+    for (int i = 0; i < set->view_count; i++) {
+        const double d = vec3_length(vec3_sub(set->views[i].center, l->scene->mesh.centroid));
+        const double g = vec3_dot(row_of(set->views[i].cam_from_world, 2), gaze);
+        if (d < best * (1 - 1e-9) || (d <= best * (1 + 1e-9) && g > best_gaze)) best = d, best_gaze = g, l->center = i;
+    }
+}
+
+/* Median of a coordinate of the points of some views, in the centremost view's camera. */
+static bool median_coordinate(const struct layout *l, const bool *use, bool central, int axis, double *value)
+{
+    const struct view *v = center_view(l);
+    const struct vec3 row = row_of(v->cam_from_world, axis);
+    const double shift = axis == 0 ? v->translation.x : axis == 1 ? v->translation.y : v->translation.z;
+    size_t n = 0;
+    for (size_t i = 0; i < l->points->count; i++) {
+        const struct scene_point *p = &l->points->points[i];
+        if (use[p->view] && (p->central || !central))
+            l->scratch[n++] = (struct weighted){vec3_dot(row, p->position) + shift, p->weight};
+    }
+    *value = weighted_percentile(l->scratch, n, 0.5);
+    return n > 0;
+}
+
+/* Of the central views those vote that look about the same way as the centremost one: indoors others show what is
+ * behind it. */
+static enum status find_centroid(struct layout *l, struct err *err)
+{
+    const struct camera_set *set = l->scene->set;
+    const struct vec3 gaze = row_of(center_view(l)->cam_from_world, 2);
+    bool *use = calloc((size_t)set->view_count, sizeof *use);
+    if (!use) return err_nomem(err, "a list of views", (size_t)set->view_count);
+    for (int k = 0; k < CENTRAL_VIEWS && k < set->view_count; k++) {
+        int best = -1;
+        double nearest = HUGE_VAL;
+        for (int i = 0; i < set->view_count; i++) {
+            const double d = vec3_length(vec3_sub(set->views[i].center, center_view(l)->center));
+            if (vec3_dot(row_of(set->views[i].cam_from_world, 2), gaze) < SAME_WAY) continue;
+            if (!use[i] && d < nearest) nearest = d, best = i;
+        }
+        if (best >= 0) use[best] = true;
+    }
+    double c[3];
+    const bool central = median_coordinate(l, use, true, 0, &c[0]);
+    if (!central) /* nothing in the middle of the central views: everything then */
+        for (int i = 0; i < set->view_count; i++) use[i] = true;
+    for (int axis = 0; axis < 3; axis++) median_coordinate(l, use, central, axis, &c[axis]);
+    free(use);
+    const struct view *v = center_view(l);
+    if (!(c[2] > 0))
+        return err_set(err, ST_DATA,
+                       "the scene's centroid lies behind the centremost view %s: its depth maps do not agree.",
+                       v->name);
+    const struct vec3 in_view = vec3_sub(vec3_make(c[0], c[1], c[2]), v->translation);
+    l->shot->centroid = mat3_apply(mat3_transpose(v->cam_from_world), in_view);
+    return ST_OK;
+}
+
+/* The mean of the views' upright directions, and the film's size and focal length. */
+static void find_lens(struct layout *l, const struct vec3 *ups)
+{
+    const struct camera_set *set = l->scene->set;
+    const struct validity_params *par = l->params;
+    const struct view *c = center_view(l);
+    struct view *lens = &l->shot->lens;
+    struct vec3 upright = {0, -1, 0}, sum = {0}, center_up;
+    double focal = 0; /* of the longer side */
+    for (int i = 0; i < set->view_count; i++) {
+        const struct view *v = &set->views[i];
+        const struct vec3 up = ups ? ups[i] : upright;
+        sum = vec3_add(sum, mat3_apply(mat3_transpose(v->cam_from_world), up));
+        focal += sqrt(v->fx * v->fy) / (v->width > v->height ? v->width : v->height) / set->view_count;
+    }
+    center_up = ups ? ups[l->center] : upright;
+    if (vec3_length(sum) < 0.1 * set->view_count) sum = mat3_apply(mat3_transpose(c->cam_from_world), center_up);
+    l->shot->up = vec3_normalize(sum);
+
+    const bool turned = fabs(center_up.x) > fabs(center_up.y);
+    const double w = turned ? c->height : c->width, h = turned ? c->width : c->height;
+    const double shrink = fmin(1, par->max_side / fmax(w, h));
+    const double width = par->width ? par->width : par->height ? par->height * w / h : w * shrink;
+    const double height = par->height ? par->height : par->width ? par->width * h / w : h * shrink;
+    *lens = (struct view){.name = "film"};
+    lens->width = (int)fmax(2, 2 * round(width / 2));
+    lens->height = (int)fmax(2, 2 * round(height / 2));
+    lens->cx = lens->width / 2.0;
+    lens->cy = lens->height / 2.0;
+    /* the film's picture lies within that of a photo of the centremost view's shape */
+    lens->fx = lens->fy = focal * fmax(w, h) * fmax(lens->width / w, lens->height / h);
+}
+
+/* Depths of what the film's middle shows from the origin. */
+static enum status measure_depths(struct layout *l, struct err *err)
+{
+    const struct view v = shot_aim(l->shot, l->shot->origin, l->shot->centroid, l->shot->lens.fx);
+    size_t n = 0;
+    for (size_t i = 0; i < l->points->count; i++) {
+        const struct scene_point *p = &l->points->points[i];
+        double u = -1, t = -1;
+        const double z = view_project(&v, p->position, &u, &t);
+        if (z <= 0 || u < 0 || u > v.width || t < 0 || t > v.height) continue;
+        l->scratch[n++] = (struct weighted){z, p->weight};
+    }
+    if (!n)
+        return err_set(err, ST_DATA, "the centremost view %s shows nothing that has a depth.", center_view(l)->name);
+    l->shot->near_limit = NEAR_FRACTION * weighted_percentile(l->scratch, n, NEAR_PERCENTILE);
+    l->shot->median_depth = weighted_percentile(l->scratch, n, 0.5);
+    return ST_OK;
+}
+
+/* The mesh's axes; but views that stand in a row towards the scene have no plane that faces it, and the film then
+ * keeps to the centremost view's direction. */
+static void find_frame(struct layout *l)
+{
+    const struct view_mesh *mesh = &l->scene->mesh;
+    const struct view *c = center_view(l);
+    struct shot *s = l->shot;
+    s->origin = c->center;
+    s->axis_x = mesh->axis_x;
+    s->axis_y = mesh->axis_y;
+    s->axis_z = mesh->normal;
+    if (vec3_dot(s->axis_z, row_of(c->cam_from_world, 2)) >= SAME_WAY) return;
+    s->axis_x = row_of(c->cam_from_world, 0);
+    s->axis_y = row_of(c->cam_from_world, 1);
+    s->axis_z = row_of(c->cam_from_world, 2);
+}
+
+static void find_box(struct layout *l)
+{
+    const struct camera_set *set = l->scene->set;
+    struct shot *s = l->shot;
+    const double least = LEAST_BOX * s->median_depth;
+    for (int i = 0; i < set->view_count; i++) {
+        const struct vec3 c = shot_coordinates(s, set->views[i].center);
+        const double at[2] = {c.x, c.y};
+        for (int k = 0; k < 2; k++) {
+            if (!i || at[k] < s->low[k]) s->low[k] = at[k];
+            if (!i || at[k] > s->high[k]) s->high[k] = at[k];
+        }
+    }
+    for (int k = 0; k < 2; k++) {
+        const double lacks = least - (s->high[k] - s->low[k]);
+        if (!(lacks > 0)) continue;
+        s->low[k] -= lacks / 2;
+        s->high[k] += lacks / 2;
+    }
+}
+
+enum status layout_find(struct shot *shot, int *center, const struct layer_scene *scene,
+                        const struct scene_points *points, const struct vec3 *ups, const struct validity_params *params,
+                        struct err *err)
+{
+    struct layout l = {.shot = shot, .scene = scene, .points = points, .params = params};
+    *shot = (struct shot){0};
+    l.scratch = malloc((points->count + 1) * sizeof *l.scratch);
+    if (!l.scratch) return err_nomem(err, "depths", points->count * sizeof *l.scratch);
+    find_center_view(&l);
+    find_frame(&l);
+    enum status st = find_centroid(&l, err);
+    if (!st) {
+        find_lens(&l, ups);
+        st = measure_depths(&l, err);
+    }
+    if (!st) find_box(&l);
+    *center = l.center;
+    free(l.scratch);
+    return st;
+}

@@ -1,0 +1,117 @@
+/* sample_validity.c - samples from where a scene can be shown: a region of valid viewpoints for each end of a move.
+ *
+ * reads   VIEWS/cameras.txt, images.txt, points3D.txt   the cameras
+ *         VIEWS/lenses.txt, RECORDS/ID.txt              with --records: which way up the photos are
+ *         DEPTH/VIEW.exr, VIEW.txt                      every view's layers
+ *         SUBJECTS                                      with --subjects: what the move shows
+ * writes  OUT/validity.png                              the regions, to look at
+ *         OUT/validity.txt                              last: if it is new, so is the picture */
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "common/cli.h"
+#include "common/log.h"
+#include "common/upright.h"
+#include "stages/sample_validity/picture.h"
+#include "stages/sample_validity/sample.h"
+
+enum { PATH_SIZE = 4096 };
+
+struct job {
+    const char *views, *records, *depth, *subjects, *effect, *out;
+    struct validity_params params;
+};
+
+static void tell(const struct validity *v, const struct sampling_notes *n)
+{
+    static const char *const ends[] = {"start", "end"};
+    for (int i = 0; i < 2; i++) {
+        const struct validity_region *r = &v->region[i];
+        double back = 0, forth = 0;
+        for (int k = 0; k < r->columns * r->rows; k++) {
+            back = fmin(back, r->cells[k].low);
+            forth = fmax(forth, r->cells[k].high);
+        }
+        if (n->none[i])
+            log_warn("the %s of the move has no valid viewpoint: the camera stands at view %s there", ends[i],
+                     n->center_view);
+        else
+            log_note("%s: %d of %d places are valid, z from %.3g to %.3g median depths", ends[i],
+                     validity_region_count(r), r->columns * r->rows, back / v->shot.median_depth,
+                     forth / v->shot.median_depth);
+    }
+    if (v->zoom > 1)
+        log_note("f is %.0f %% longer than the views' mean, to keep the photos' borders out of the frames",
+                 100 * (v->zoom - 1));
+    if (v->limits.max_h > n->asked_h)
+        log_warn("no viewpoint has H below %g, not even that of view %s; allowing %.3g", n->asked_h, n->center_view,
+                 v->limits.max_h);
+    if (v->limits.max_outside > n->asked_outside)
+        log_warn("even at view %s more than %.3g %% of the frame lies beyond the views' borders; allowing %.3g %%",
+                 n->center_view, 100 * n->asked_outside, 100 * v->limits.max_outside);
+    if (n->error.limits)
+        log_note("in full pictures %d of %d limits lie within one step of %.2g %% of the median depth; the worst is "
+                 "%.0f steps off",
+                 n->error.within, n->error.limits, 100 * v->step / v->shot.median_depth, n->error.worst);
+}
+
+static enum status sample(const struct job *job, struct provenance *prov, struct err *err)
+{
+    struct camera_set set = {0};
+    struct layer_scene scene = {0};
+    struct subject_list subjects = {0};
+    struct validity v = {0};
+    struct sampling_notes notes = {0};
+    struct film_effect effect;
+    struct vec3 *ups = NULL;
+    char picture[PATH_SIZE], text[PATH_SIZE];
+
+    enum status st = film_effect_parse(&effect, job->effect, err);
+    if (!st && (snprintf(picture, PATH_SIZE, "%s/validity.png", job->out) >= PATH_SIZE ||
+                snprintf(text, PATH_SIZE, "%s/validity.txt", job->out) >= PATH_SIZE))
+        st = err_set(err, ST_IO, "the path %s is too long.", job->out);
+    if (!st) st = camera_set_read(&set, job->views, err);
+    if (!st) st = camera_set_add_inputs(prov, job->views, err);
+    if (!st && job->records) {
+        ups = calloc((size_t)set.view_count + 1, sizeof *ups);
+        st = ups ? upright_read(ups, &set, job->views, job->records, prov, err)
+                 : err_nomem(err, "a direction a view", (size_t)set.view_count * sizeof *ups);
+    }
+    if (!st && job->subjects) {
+        st = subject_list_read(&subjects, job->subjects, err);
+        if (!st) st = provenance_add_file(prov, "parallax/subjects.txt", job->subjects, err);
+    }
+    if (!st) st = layer_scene_read(&scene, &set, job->depth, prov, err);
+    if (!st) st = validity_sample(&v, &notes, &scene, ups, &subjects, &effect, &job->params, err);
+    if (!st) st = validity_picture_write(&v, &scene.mesh, picture, err);
+    if (!st) st = validity_write(&v, text, prov, err);
+    if (!st) tell(&v, &notes);
+    validity_release(&v);
+    layer_scene_release(&scene);
+    subject_list_release(&subjects);
+    camera_set_release(&set);
+    free(ups);
+    return st;
+}
+
+int main(int argc, char **argv)
+{
+    struct job job = {.params = VALIDITY_PARAMS_DEFAULT};
+    const struct cli_opt opts[] = {
+        CLI_ABOUT("Samples from where a scene can be shown: a region of valid viewpoints for each end of a move."),
+        CLI_STR("views", &job.views, CLI_REQUIRED, "folder of cameras"),
+        CLI_STR("depth", &job.depth, CLI_REQUIRED, "folder of the views' layers"),
+        CLI_STR("records", &job.records, CLI_OPTIONAL, "folder of the photos' records: makes the film upright"),
+        CLI_STR("subjects", &job.subjects, CLI_OPTIONAL, "file of the scene's subjects, for moves that have any"),
+        CLI_STR("effect", &job.effect, CLI_REQUIRED, "of the taxonomy, like dolly_in+narrow_dof (docs/formats.md)"),
+        CLI_STR("out", &job.out, CLI_REQUIRED, "folder to write validity.txt and validity.png into"),
+        CLI_PARAMS(validity_param_table, &job.params, NULL),
+        CLI_END,
+    };
+    struct provenance prov = {0};
+    struct err err = ERR_INIT;
+    if (cli_parse(argc, argv, "sample_validity", opts, &prov, &err) == CLI_RUN) sample(&job, &prov, &err);
+    err_report(&err);
+    provenance_release(&prov);
+    return err_exit_code(&err);
+}
