@@ -9,10 +9,10 @@
 #ifndef REMODEL_RENDER_VIEWS_RENDERER_H
 #define REMODEL_RENDER_VIEWS_RENDERER_H
 
+#include "common/effects.h"
 #include "common/layer_render.h"
 #include "stages/render_views/aperture.h"
 #include "stages/render_views/defocus.h"
-#include "stages/render_views/effects.h"
 #include "stages/render_views/fill_path.h"
 
 #define RENDER_PARAMS(X)                                                                                           \

@@ -5,7 +5,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "stages/render_views/effects.h"
+#include "common/effects.h"
 #include "tests/fuzz/fuzz.h"
 
 static void apply(const struct effects *e)

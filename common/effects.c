@@ -1,5 +1,5 @@
 /* effects.c - see effects.h. */
-#include "stages/render_views/effects.h"
+#include "common/effects.h"
 
 #include <assert.h>
 #include <ctype.h>

@@ -3,8 +3,8 @@
 
 #include <math.h>
 
+#include "common/effects.h"
 #include "common/parallel.h"
-#include "stages/render_views/effects.h"
 
 #define W 77
 #define H 20

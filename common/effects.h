@@ -6,8 +6,8 @@
  *   brightness b   c (1 + w (b - 1))
  *   color r g b    the same with a factor for each colour
  * w is 1 in the whole picture, or 1 in a box and exp(-d^2 / (2 falloff^2)) at distance d from it, or 1 less that. */
-#ifndef REMODEL_RENDER_VIEWS_EFFECTS_H
-#define REMODEL_RENDER_VIEWS_EFFECTS_H
+#ifndef REMODEL_EFFECTS_H
+#define REMODEL_EFFECTS_H
 
 #include "common/camera_set.h"
 #include "common/provenance.h"
