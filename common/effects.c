@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/monotone.h"
 #include "common/outfile.h"
 #include "common/parallel.h"
 #include "common/scan.h"
@@ -22,6 +23,7 @@
 
 static const char *const kind_words[] = {"saturation", "brightness", "color"};
 static const char *const region_words[] = {"all", "inside", "outside"};
+static const char *const curve_words[] = {"linear", "cubic"};
 
 static bool name_is_good(const char *name)
 {
@@ -118,6 +120,16 @@ static enum status read_region(struct textfile *t, struct effect_layer *l, struc
     return st;
 }
 
+static enum status read_curve(struct textfile *t, struct effect_layer *l, struct err *err)
+{
+    char *word;
+    enum status st = textfile_word(t, "linear or cubic", &word, err);
+    if (st) return st;
+    if (!strcmp(word, curve_words[EFFECT_LINEAR])) return ST_OK;
+    l->curve = EFFECT_CUBIC;
+    return strcmp(word, curve_words[EFFECT_CUBIC]) ? textfile_error(t, err, word, "linear or cubic") : ST_OK;
+}
+
 static enum status read_key(struct textfile *t, struct effect_layer *l, struct err *err)
 {
     static const char *const colors[] = {"red", "green", "blue"};
@@ -158,38 +170,49 @@ static enum status read_header(struct textfile *t, struct err *err)
     return textfile_end(t, err);
 }
 
+enum status effects_read_layers(struct effects *e, struct textfile *t, struct err *err)
+{
+    bool has_region = false;
+    enum status st = ST_OK;
+
+    *e = (struct effects){0};
+    while (!st && textfile_next(t)) {
+        struct effect_layer *l = e->layer_count ? &e->layers[e->layer_count - 1] : NULL;
+        char *word;
+        if ((st = textfile_word(t, "layer, region, curve or key", &word, err))) break;
+        if (!strcmp(word, "layer")) {
+            st = read_layer(t, e, has_region, err);
+            has_region = false;
+        } else if (l && !has_region && !strcmp(word, "region")) {
+            st = read_region(t, l, err);
+            has_region = true;
+        } else if (l && has_region && !l->key_count && l->curve == EFFECT_LINEAR && !strcmp(word, "curve")) {
+            st = read_curve(t, l, err);
+        } else if (l && has_region && !strcmp(word, "key")) {
+            st = read_key(t, l, err);
+        } else {
+            st = textfile_error(t, err, word, !l ? "layer" : has_region ? "key or layer" : "region");
+        }
+        if (!st) st = textfile_end(t, err);
+    }
+    const char *wanted = still_wanted(e, has_region);
+    if (!st && wanted)
+        st = err_set(err, ST_DATA, "%s:%d: found the end of the file, wanted a %s of the layer %s.", t->path, t->line,
+                     wanted, e->layers[e->layer_count - 1].name);
+    if (st) effects_release(e);
+    return st;
+}
+
 enum status effects_read(struct effects *e, const char *path, struct err *err)
 {
     struct textfile t = {0};
-    bool has_region = false;
 
     *e = (struct effects){0};
     enum status st = textfile_open(&t, path, err);
     if (st) return st;
     st = read_header(&t, err);
-    while (!st && textfile_next(&t)) {
-        struct effect_layer *l = e->layer_count ? &e->layers[e->layer_count - 1] : NULL;
-        char *word;
-        if ((st = textfile_word(&t, "layer, region or key", &word, err))) break;
-        if (!strcmp(word, "layer")) {
-            st = read_layer(&t, e, has_region, err);
-            has_region = false;
-        } else if (l && !has_region && !strcmp(word, "region")) {
-            st = read_region(&t, l, err);
-            has_region = true;
-        } else if (l && has_region && !strcmp(word, "key")) {
-            st = read_key(&t, l, err);
-        } else {
-            st = textfile_error(&t, err, word, !l ? "layer" : has_region ? "key or layer" : "region");
-        }
-        if (!st) st = textfile_end(&t, err);
-    }
-    const char *wanted = still_wanted(e, has_region);
-    if (!st && wanted)
-        st = err_set(err, ST_DATA, "%s:%d: found the end of the file, wanted a %s of the layer %s.", path, t.line,
-                     wanted, e->layers[e->layer_count - 1].name);
+    if (!st) st = effects_read_layers(e, &t, err);
     textfile_release(&t);
-    if (st) effects_release(e);
     return st;
 }
 
@@ -223,6 +246,7 @@ static void write_layer(const struct effect_layer *l, const char *name, FILE *to
         fprintf(to, " %.17g %.17g %.17g %.17g %.17g %.17g %.17g", l->low.x, l->low.y, l->low.z, l->high.x, l->high.y,
                 l->high.z, l->falloff);
     fprintf(to, "\n");
+    if (l->curve != EFFECT_LINEAR) fprintf(to, "curve %s\n", curve_words[l->curve]);
     for (int i = 0; i < l->key_count; i++) {
         fprintf(to, "key %.17g", l->keys[i].time);
         for (int k = 0; k < values_of(l->kind); k++) fprintf(to, " %.17g", l->keys[i].value[k]);
@@ -261,14 +285,28 @@ enum status effects_write(const struct effects *e, const char *path, const struc
 
 /* ---------------------------------------------------------------------------------------------------- applying */
 
+/* Of a value at a key of a cubic layer; level at the first and the last, as what is held there is. */
+static double key_slope(const struct effect_layer *l, int i, int k)
+{
+    if (i == 0 || i == l->key_count - 1) return 0;
+    const struct effect_key *key = &l->keys[i];
+    const double h0 = key->time - key[-1].time, h1 = key[1].time - key->time;
+    return monotone_slope(h0, (key->value[k] - key[-1].value[k]) / h0, h1, (key[1].value[k] - key->value[k]) / h1);
+}
+
 void effect_layer_value(const struct effect_layer *l, double time, double value[3])
 {
     int after = 0;
     while (after < l->key_count && l->keys[after].time <= time) after++;
     const struct effect_key *b = &l->keys[after < l->key_count ? after : after - 1], *a = after ? b - 1 : b;
     if (after == l->key_count) a = b;
-    const double t = a == b ? 0 : (time - a->time) / (b->time - a->time);
-    for (int k = 0; k < 3; k++) value[k] = a->value[k] + t * (b->value[k] - a->value[k]);
+    const double h = b->time - a->time, t = a == b ? 0 : (time - a->time) / h;
+    for (int k = 0; k < 3; k++)
+        if (l->curve == EFFECT_CUBIC && a != b)
+            value[k] =
+                monotone_value(a->value[k], b->value[k], h, key_slope(l, after - 1, k), key_slope(l, after, k), t);
+        else
+            value[k] = a->value[k] + t * (b->value[k] - a->value[k]);
 }
 
 typedef float v4 __attribute__((vector_size(16)));

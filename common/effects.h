@@ -9,14 +9,16 @@
 #ifndef REMODEL_EFFECTS_H
 #define REMODEL_EFFECTS_H
 
-#include "common/camera_set.h"
-#include "common/provenance.h"
-#include "common/rendered_frame.h"
+#include "camera_set.h"
+#include "provenance.h"
+#include "rendered_frame.h"
+#include "textfile.h"
 
 #define EFFECT_LAYERS_MOST 64
 
 enum effect_kind { EFFECT_SATURATION, EFFECT_BRIGHTNESS, EFFECT_COLOR };
 enum effect_region { EFFECT_ALL, EFFECT_INSIDE, EFFECT_OUTSIDE };
+enum effect_curve { EFFECT_LINEAR, EFFECT_CUBIC };
 
 struct effect_key {
     double time;     /* seconds from the start of the path */
@@ -27,8 +29,9 @@ struct effect_layer {
     char *name;
     enum effect_kind kind;
     enum effect_region region;
-    struct vec3 low, high; /* corners of the box, in the world */
-    double falloff;        /* scene units; 0: the box has a hard edge */
+    enum effect_curve curve; /* between keys */
+    struct vec3 low, high;   /* corners of the box, in the world */
+    double falloff;          /* scene units; 0: the box has a hard edge */
     struct effect_key *keys;
     int key_count;
 };
@@ -40,11 +43,14 @@ struct effects { /* {0} is valid, and changes nothing */
 
 /* ST_DATA with file, line, what was found and what was wanted; e is left empty then. */
 enum status effects_read(struct effects *e, const char *path, struct err *err);
+/* The layers alone, from the next line of an open file to its end: what follows the first line of an effects file. */
+enum status effects_read_layers(struct effects *e, struct textfile *t, struct err *err);
 /* What is written reads back with the same bits. prov may be NULL. ST_DATA: layers that a file may not have. */
 enum status effects_write(const struct effects *e, const char *path, const struct provenance *prov, struct err *err);
 void effects_release(struct effects *e);
 
-/* Linear between keys, held before the first and after the last. */
+/* Linear or a monotone cubic (common/monotone.h) between keys, held before the first and after the last; a cubic starts
+ * and ends level. */
 void effect_layer_value(const struct effect_layer *layer, double time, double value[3]);
 
 /* Changes rgba of a frame of that camera; a pixel with z 0 is farther than any box. Layers that change nothing at

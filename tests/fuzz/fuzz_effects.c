@@ -27,8 +27,8 @@ static void same(const struct effects *a, const struct effects *b)
     if (a->layer_count != b->layer_count) abort();
     for (int i = 0; i < a->layer_count; i++) {
         const struct effect_layer *x = &a->layers[i], *y = &b->layers[i];
-        if (strcmp(x->name, y->name) || x->kind != y->kind || x->region != y->region || x->falloff != y->falloff ||
-            x->low.x != y->low.x || x->high.z != y->high.z || x->key_count != y->key_count)
+        if (strcmp(x->name, y->name) || x->kind != y->kind || x->region != y->region || x->curve != y->curve ||
+            x->falloff != y->falloff || x->low.x != y->low.x || x->high.z != y->high.z || x->key_count != y->key_count)
             abort();
         for (int k = 0; k < x->key_count; k++)
             if (memcmp(&x->keys[k], &y->keys[k], sizeof *x->keys)) abort();

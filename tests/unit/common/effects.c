@@ -106,6 +106,10 @@ static void what_is_wrong_is_told(void **state)
         {LAYER "region all\nkey 1 1\nkey 1 2\n", ":5:", "wanted a time after 1"},
         {LAYER "region all\nkey 0 1\nlayer a color\n", ":5:", "a name that no layer has yet"},
         {HEAD "layer a color\nregion all\nkey 0 1 1\n", ":4:", "wanted blue"},
+        {LAYER "curve cubic\n", ":3:", "wanted region"},
+        {LAYER "region all\ncurve round\n", ":4:", "found \"round\", wanted linear or cubic"},
+        {LAYER "region all\ncurve cubic\ncurve cubic\n", ":5:", "wanted key or layer"},
+        {LAYER "region all\nkey 0 1\ncurve cubic\n", ":5:", "wanted key or layer"},
     };
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         struct effects e;
@@ -146,6 +150,37 @@ static void what_is_written_reads_back(void **state)
     assert_ok(effects_read(&again, path, &more), more);
     effects_release(&again);
     effects_release(&e);
+}
+
+static void a_cubic_is_smooth_and_stays_between_its_keys(void **state)
+{
+    (void)state;
+    static const double at[] = {1, 2, 4, 4.5, 7}, want[] = {0.5, 1.5, 1, 1, 1};
+    struct effects e, again;
+    struct err err = ERR_INIT;
+    double value[3], before = 0;
+    const char *path = scratch_path("cubic.txt");
+
+    read_text(&e, "remodel-effects 1\nlayer a brightness\nregion all\ncurve cubic\n"
+                  "key 1 0.5\nkey 2 1.5\nkey 4 1\nkey 4.5 1\nkey 7 1\n");
+    assert_ok(effects_write(&e, path, NULL, &err), err);
+    assert_ok(effects_read(&again, path, &err), err);
+    assert_int_equal(again.layers[0].curve, EFFECT_CUBIC);
+    for (int i = 0; i < 5; i++) {
+        double step[2];
+        effect_layer_value(&again.layers[0], at[i], value);
+        assert_true(value[0] == want[i]);
+        for (int k = 0; k < 2; k++)
+            effect_layer_value(&again.layers[0], at[i] + (k ? 1e-6 : -1e-6), value), step[k] = value[0];
+        assert_true(fabs(step[1] + step[0] - 2 * want[i]) < 1e-11); /* no kink */
+    }
+    for (int i = 0; i <= 100; i++) {
+        effect_layer_value(&e.layers[0], 1 + i / 100.0, value);
+        assert_true(value[0] >= before && value[0] >= 0.5 && value[0] <= 1.5);
+        before = value[0];
+    }
+    effects_release(&e);
+    effects_release(&again);
 }
 
 static void values_are_linear_between_keys(void **state)
@@ -312,6 +347,7 @@ int main(void)
         cmocka_unit_test(what_is_wrong_is_told),
         cmocka_unit_test(what_is_written_reads_back),
         cmocka_unit_test(values_are_linear_between_keys),
+        cmocka_unit_test(a_cubic_is_smooth_and_stays_between_its_keys),
         cmocka_unit_test(layers_do_what_they_say),
         cmocka_unit_test(layers_follow_each_other_in_order),
         cmocka_unit_test(identity_touches_nothing),
