@@ -237,6 +237,7 @@ $(B)/tests/pipeline/make_photos: $(B)/obj/tests/pipeline/make_photos.o $(B)/libr
 $(FUZZ_TESTS): $(B)/tests/fuzz/%: $(B)/obj/tests/fuzz/%.o $(B)/obj/tests/fuzz/run_corpus.o $(B)/libremodel.a
 	$(call link)
 $(B)/tests/fuzz/fuzz_given_units: $(call objs,stages/segment_depth/given_read.c)
+$(B)/tests/fuzz/fuzz_keyframes: $(filter-out %/plan_path.o,$(call objs,stages/plan_path/*.c))
 # what simulate alone needs
 $(B)/bin/simulate $(B)/tests/unit/simulate/%: private LDLIBS += -lembree3
 $(B)/tests/fuzz/fuzz_scene $(B)/tests/fuzz/fuzz_shoot: private LDLIBS += -lembree3

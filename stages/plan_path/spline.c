@@ -1,0 +1,212 @@
+/* spline.c - curves through keys.
+ *
+ * A path's shape and its timing are apart. The shape is a cubic Hermite spline over the length of the chords, its
+ * tangent at a key the mean of the directions of the chords there, which is the direction that a centripetal
+ * Catmull-Rom spline has: no loops, no cusps, and a line stays a line (Yuksel, Schaefer and Keyser, 2011). The timing is
+ * a monotone cubic (common/monotone.h) from time to that length: a key's time changes how fast the camera goes, never
+ * where, and it does not overshoot a key to come back to it, where a C2 spline over time would leave what the photos
+ * show. Keys of constant velocity give constant velocity.
+ *
+ * Orientations likewise, over the sum of the angles between keys: the shape is the cubic in cumulative form of Kim, Kim
+ * and Shin (1995), q0 exp(w1 b1) exp(w2 b2) exp(w3 b3), whose angular velocities at the ends are 3 w1 and 3 w3. */
+#include "stages/plan_path/spline.h"
+
+#include <stdlib.h>
+
+#include "common/monotone.h"
+
+#define LEAST_STEP 1e-12 /* of the distance from the origin: a shorter way is none, its direction but rounding */
+#define LEAST_TURN 1e-9  /* radians, likewise */
+
+/* -------------------------------------------------------------------------------------------------------- numbers */
+
+enum status curve_init(struct curve *c, int count, struct err *err)
+{
+    const size_t n = (size_t)(count > 0 ? count : 1);
+    *c = (struct curve){.time = calloc(3 * n, sizeof *c->time), .count = count};
+    if (!c->time) return err_nomem(err, "keys", 3 * n * sizeof *c->time);
+    c->value = c->time + n;
+    c->slope = c->value + n;
+    return ST_OK;
+}
+
+void curve_release(struct curve *c)
+{
+    if (!c) return;
+    free(c->time);
+    *c = (struct curve){0};
+}
+
+void curve_fit(struct curve *c, bool rest)
+{
+    const double *t = c->time, *v = c->value;
+    const int n = c->count;
+#define H(i) (t[(i) + 1] - t[i])
+#define S(i) ((v[(i) + 1] - v[i]) / H(i))
+    for (int i = 1; i < n - 1; i++) c->slope[i] = monotone_slope(H(i - 1), S(i - 1), H(i), S(i));
+    if (n == 2) c->slope[0] = c->slope[1] = S(0);
+    if (n > 2) {
+        c->slope[0] = monotone_end_slope(H(0), S(0), H(1), S(1));
+        c->slope[n - 1] = monotone_end_slope(H(n - 2), S(n - 2), H(n - 3), S(n - 3));
+    }
+#undef H
+#undef S
+    if (n && (rest || n == 1)) c->slope[0] = c->slope[n - 1] = 0;
+}
+
+/* The key at or before a time that is not before the first key nor at the last one or after. */
+static int interval_of(const struct curve *c, double time)
+{
+    int low = 0, high = c->count - 1;
+    while (high - low > 1) {
+        const int mid = low + (high - low) / 2;
+        if (c->time[mid] <= time)
+            low = mid;
+        else
+            high = mid;
+    }
+    return low;
+}
+
+double curve_at(const struct curve *c, double time)
+{
+    if (!(time > c->time[0])) return c->value[0];
+    if (time >= c->time[c->count - 1]) return c->value[c->count - 1];
+    const int i = interval_of(c, time);
+    const double h = c->time[i + 1] - c->time[i];
+    return monotone_value(c->value[i], c->value[i + 1], h, c->slope[i], c->slope[i + 1], (time - c->time[i]) / h);
+}
+
+/* ---------------------------------------------------------------------------------------------------- quaternions */
+
+static struct quat multiply(struct quat a, struct quat b)
+{
+    return (struct quat){a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z, a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,
+                         a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x, a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w};
+}
+
+static struct quat conjugate(struct quat q) { return (struct quat){q.w, -q.x, -q.y, -q.z}; }
+
+/* Of a turn by the length of a vector about it. */
+static struct quat turn_by(struct vec3 v)
+{
+    const double angle = vec3_length(v), part = angle > 0 ? sin(angle / 2) / angle : 0.5;
+    return (struct quat){cos(angle / 2), part * v.x, part * v.y, part * v.z};
+}
+
+/* The inverse, of at most half a turn. */
+static struct vec3 turn_of(struct quat q)
+{
+    const struct vec3 v = vec3_scale(vec3_make(q.x, q.y, q.z), q.w < 0 ? -1 : 1);
+    const double sine = vec3_length(v);
+    return vec3_scale(v, sine > 0 ? 2 * atan2(sine, fabs(q.w)) / sine : 2);
+}
+
+struct quat turn_between(struct quat a, struct quat b, struct vec3 da, struct vec3 db, double t)
+{
+    const struct vec3 first = vec3_scale(da, 1.0 / 3), last = vec3_scale(db, 1.0 / 3);
+    const struct quat from = multiply(a, turn_by(first)), to = multiply(b, turn_by(vec3_scale(last, -1)));
+    const struct vec3 middle = turn_of(multiply(conjugate(from), to));
+    const double u = 1 - t;
+    struct quat q = multiply(a, turn_by(vec3_scale(first, 1 - u * u * u)));
+    q = multiply(q, turn_by(vec3_scale(middle, t * t * (3 - 2 * t))));
+    q = multiply(q, turn_by(vec3_scale(last, t * t * t)));
+    const double length = sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
+    return (struct quat){q.w / length, q.x / length, q.y / length, q.z / length};
+}
+
+struct vec3 place_between(struct vec3 a, struct vec3 b, struct vec3 da, struct vec3 db, double t)
+{
+    const double u = 1 - t;
+    const struct vec3 bend = vec3_sub(vec3_scale(da, u), vec3_scale(db, t));
+    return vec3_add(vec3_add(a, vec3_scale(vec3_sub(b, a), t * t * (3 - 2 * t))), vec3_scale(bend, t * u));
+}
+
+/* --------------------------------------------------------------------------------------------------------- motion */
+
+enum status motion_init(struct motion *m, int count, struct err *err)
+{
+    const size_t n = (size_t)(count > 0 ? count : 1);
+    *m = (struct motion){.count = count};
+    m->place = calloc(3 * n, sizeof *m->place);
+    m->turn = calloc(n, sizeof *m->turn);
+    if (!m->place || !m->turn) return err_nomem(err, "keys", 3 * n * sizeof *m->place);
+    m->course = m->place + n;
+    m->spin = m->course + n;
+    return curve_init(&m->along, count, err) || curve_init(&m->turning, count, err) ? err->status : ST_OK;
+}
+
+void motion_release(struct motion *m)
+{
+    if (!m) return;
+    free(m->place);
+    free(m->turn);
+    curve_release(&m->along);
+    curve_release(&m->turning);
+    *m = (struct motion){0};
+}
+
+/* From the way from each key to the next one, in `way`: its running sum of lengths, and the directions at keys, the
+ * mean of those of the nearest ways before and after that have a length. */
+static void fit_shape(struct vec3 *way, double *sum, int count)
+{
+    struct vec3 before = {0};
+    sum[0] = 0;
+    for (int i = 0; i < count - 1; i++) {
+        sum[i + 1] = sum[i] + vec3_length(way[i]);
+        way[i] = sum[i + 1] > sum[i] ? vec3_normalize(way[i]) : vec3_make(0, 0, 0);
+    }
+    way[count - 1] = vec3_make(0, 0, 0);
+    for (int i = count - 2; i >= 0; i--) /* each key: the direction after it */
+        if (!(vec3_length(way[i]) > 0)) way[i] = way[i + 1];
+    for (int i = 0; i < count; i++) {
+        const struct vec3 after = way[i];
+        const bool moved = vec3_length(before) > 0, moves = vec3_length(after) > 0;
+        way[i] = moved && moves ? vec3_scale(vec3_add(before, after), 0.5) : moved ? before : after;
+        if (i < count - 1 && sum[i + 1] > sum[i]) before = after;
+    }
+}
+
+void motion_fit(struct motion *m, bool rest)
+{
+    for (int i = 0; i < m->count; i++) m->turning.time[i] = m->along.time[i];
+    for (int i = 0; i < m->count - 1; i++) {
+        const double far = fmax(vec3_length(m->place[i]), vec3_length(m->place[i + 1]));
+        m->course[i] = vec3_sub(m->place[i + 1], m->place[i]);
+        m->spin[i] = turn_of(multiply(conjugate(m->turn[i]), m->turn[i + 1]));
+        if (!(vec3_length(m->course[i]) > LEAST_STEP * far)) m->course[i] = vec3_make(0, 0, 0);
+        if (!(vec3_length(m->spin[i]) > LEAST_TURN)) m->spin[i] = vec3_make(0, 0, 0);
+    }
+    fit_shape(m->course, m->along.value, m->count);
+    fit_shape(m->spin, m->turning.value, m->count);
+    curve_fit(&m->along, rest);
+    curve_fit(&m->turning, rest);
+}
+
+void motion_at(const struct motion *m, double time, struct vec3 *place, struct quat *turn)
+{
+    const double *length = m->along.value, *angle = m->turning.value;
+    int i = 0;
+    if (time >= m->along.time[m->count - 1])
+        i = m->count - 1;
+    else if (time > m->along.time[0])
+        i = interval_of(&m->along, time);
+    *place = m->place[i];
+    *turn = m->turn[i];
+    if (i == m->count - 1 || !(time > m->along.time[i])) return;
+    double h = length[i + 1] - length[i];
+    if (h > 0)
+        *place = place_between(m->place[i], m->place[i + 1], vec3_scale(m->course[i], h),
+                               vec3_scale(m->course[i + 1], h), (curve_at(&m->along, time) - length[i]) / h);
+    h = angle[i + 1] - angle[i];
+    if (h > 0)
+        *turn = turn_between(m->turn[i], m->turn[i + 1], vec3_scale(m->spin[i], h), vec3_scale(m->spin[i + 1], h),
+                             (curve_at(&m->turning, time) - angle[i]) / h);
+}
+
+void motion_rates(const struct motion *m, bool last, struct vec3 *velocity, struct vec3 *spin)
+{
+    const int i = last ? m->count - 1 : 0;
+    *velocity = vec3_scale(m->course[i], m->along.slope[i]);
+    *spin = vec3_scale(m->spin[i], m->turning.slope[i]);
+}
