@@ -8,6 +8,8 @@
 #include <unistd.h>
 
 #include "stages/plan_path/film.h"
+#include "stages/plan_path/keyframes.h" /* fuzz.sh compiles what is named here */
+#include "stages/plan_path/spline.h"
 #include "tests/fuzz/fuzz.h"
 
 static char folder[] = "/tmp/remodel-fuzz-XXXXXX";
