@@ -371,11 +371,24 @@ $(O)/views/%.exr: ; # a neighbour that is a view no more
 $(POINTS): $(CAMERAS) $(DEPTH_EXR) $(DEPTH_TXT) $(call needs,fuse_points)
 	$(call stage,fuse_points,all,$(O),--views $(O)/views --depth $(O)/depth --out $@)
 
-$(PATH_TXT) $(E)/frames.mk &: $(CAMERAS) $(O)/views/lenses.txt $(DEPTH_EXR) $(DEPTH_TXT) $(call needs,plan_path)
-	$(call stage,plan_path,$(EFFECT),$(O),--views $(O)/views --depth $(O)/depth --records $(S)/photos --effect $(EFFECT) --out $(E))
+# $(1): an effect, $(2): its folder
+define path_rule
+$(2)/path.txt $(addprefix $(2)/path/,cameras.txt images.txt points3D.txt) $(2)/frames.mk &: $(CAMERAS) $(O)/views/lenses.txt $(DEPTH_EXR) $(DEPTH_TXT) $(call needs,plan_path)
+	$$(call stage,plan_path,$(1),$(O),--views $(O)/views --depth $(O)/depth --records $(S)/photos --effect $(1) --out $(2))
+endef
+# a film of keys: its effect is its name; the moves that it chains are planned first
+KEYFRAMES := $(wildcard scenes/$(SCENE)/keyframes/$(EFFECT).txt)
+CHAINED := $(if $(KEYFRAMES),$(sort $(shell awk '$$1 == "move" && $$2 ~ /^[A-Za-z0-9_+-]+$$/ { print $$2 }' $(KEYFRAMES))))
+$(foreach e,$(CHAINED),$(if $(wildcard scenes/$(SCENE)/keyframes/$(e).txt),$(error $(KEYFRAMES) chains $(e), a film of keys: only planned moves can be chained)))
+$(foreach e,$(if $(KEYFRAMES),$(CHAINED),$(EFFECT)),$(eval $(call path_rule,$(e),$(O)/parallax/$(e))))
+ifneq ($(KEYFRAMES),)
+$(PATH_TXT) $(E)/effects.txt $(E)/frames.mk &: $(KEYFRAMES) $(CHAINED:%=$(O)/parallax/%/path.txt) $(wildcard $(CHAINED:%=$(O)/parallax/%/effects.txt)) \
+  $(CAMERAS) $(O)/views/lenses.txt $(call needs,plan_path)
+	$(call stage,plan_path,$(EFFECT),$(O),--views $(O)/views --records $(S)/photos --keyframes $(KEYFRAMES) --moves $(O)/parallax --effect $(EFFECT) --out $(E))
+endif
 
 # frames come in chunks, a process each; of a chunk only the frames that are missing or stale are rendered
-EFFECT_LAYERS := $(wildcard scenes/$(SCENE)/effects.txt)
+EFFECT_LAYERS := $(if $(KEYFRAMES),$(E)/effects.txt,$(wildcard scenes/$(SCENE)/effects.txt))
 define chunk_rule
 $(1:%=$(E)/frames/%.exr) &: $(PATH_TXT) $(EFFECT_LAYERS) $(CAMERAS) $(DEPTH_EXR) $(DEPTH_TXT) $(call needs,render_views)
 	$$(hide)stale=$$$$(common/stale.sh $(1:%=$(E)/frames/%.exr) -- $$^); \
