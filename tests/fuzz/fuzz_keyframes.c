@@ -1,5 +1,6 @@
 /* fuzz_keyframes.c - films that people write: any bytes give a path whose every number is one, and layers that can be
- * written, or a sentence. A planned move "m" of three frames is there to be chained. */
+ * written, or a sentence. A planned move "m" of three frames is there to be chained. (The headers name what fuzz.sh
+ * compiles.) */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -8,7 +9,7 @@
 #include <unistd.h>
 
 #include "stages/plan_path/film.h"
-#include "stages/plan_path/keyframes.h" /* fuzz.sh compiles what is named here */
+#include "stages/plan_path/keyframes.h"
 #include "stages/plan_path/spline.h"
 #include "tests/fuzz/fuzz.h"
 
