@@ -238,6 +238,8 @@ $(FUZZ_TESTS): $(B)/tests/fuzz/%: $(B)/obj/tests/fuzz/%.o $(B)/obj/tests/fuzz/ru
 	$(call link)
 $(B)/tests/fuzz/fuzz_given_units: $(call objs,stages/segment_depth/given_read.c)
 $(B)/tests/fuzz/fuzz_keyframes: $(filter-out %/plan_path.o,$(call objs,stages/plan_path/*.c))
+# what plan_path alone needs: JSON
+$(B)/bin/plan_path $(B)/tests/unit/plan_path/%: private LDLIBS += -ljansson
 # what simulate alone needs
 $(B)/bin/simulate $(B)/tests/unit/simulate/%: private LDLIBS += -lembree3
 $(B)/tests/fuzz/fuzz_scene $(B)/tests/fuzz/fuzz_shoot: private LDLIBS += -lembree3
@@ -273,6 +275,7 @@ round = $(O)/depth$(if $(filter-out $(LAST_ROUND),$(1)),/round$(1))
 POINTS := $(O)/points/points.ply
 FRAME_EXR := $(FRAMES:%=$(E)/frames/%.exr)
 PATH_TXT := $(E)/path.txt $(addprefix $(E)/path/,cameras.txt images.txt points3D.txt)
+PATH_EXPORTS := $(E)/transforms.json $(E)/blender.py
 needs = $(O)/slice/$(1).cfg $(B)/code/$(1)
 T := $(CORES)
 
@@ -315,7 +318,7 @@ sfm: $(O)/views/views.mk
 views: $(VIEW_EXR) $(HELD_EXR)
 depth: $(DEPTH_EXR) $(DEPTH_TXT)
 points: $(POINTS)
-path: $(E)/frames.mk
+path: $(E)/frames.mk $(PATH_EXPORTS)
 frames: $(FRAME_EXR)
 video: $(E)/video.mp4
 heldout: $(HELD_FRAMES)

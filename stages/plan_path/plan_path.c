@@ -8,6 +8,7 @@
  * writes  OUT/path/{cameras,images,points3D}.txt        the frames' cameras
  *         OUT/effects.txt                               with --keyframes: the film's effect layers
  *         OUT/path.txt                                  scores and times
+ *         OUT/blender.py, transforms.json               the same move for other programs
  *         OUT/frames.mk                                 FRAMES := 0001 0002 ..., last: if it is new, so is the rest */
 #include <stdio.h>
 #include <stdlib.h>
@@ -20,6 +21,7 @@
 #include "stages/plan_path/establishing_dolly.h"
 #include "stages/plan_path/film.h"
 #include "stages/plan_path/film_lens.h"
+#include "stages/plan_path/path_export.h"
 
 enum { PATH_SIZE = 4096 };
 
@@ -137,6 +139,7 @@ static enum status plan(const char *views, const char *records, const char *dept
     if (!st) st = layer_scene_read(&scene, &set, depth, prov, err);
     if (!st) st = plan_establishing_dolly(&path, &notes, &scene, ups, params, err);
     if (!st) st = camera_path_write(&path, out, prov, err);
+    if (!st) st = path_export_write(&path, out, prov, err);
     if (!st) st = write_frames(&path, out, err);
     if (!st) tell(&path, &notes, params);
     camera_path_release(&path);
