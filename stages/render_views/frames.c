@@ -1,7 +1,6 @@
 /* frames.c - see frames.h. */
 #include "stages/render_views/frames.h"
 
-#include <ctype.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -44,38 +43,6 @@ enum status frame_part_camera(struct view *camera, const struct frame_part *part
                        width, height, camera->width, camera->height, camera->name);
     view_resize(camera, width, height);
     return ST_OK;
-}
-
-/* A number of 1 .. most at *text, which is moved behind it; 0 if there is none. */
-static int frame_number(const char **text, int most)
-{
-    long n = 0;
-    char *end = NULL;
-    if (isdigit((unsigned char)**text)) n = strtol(*text, &end, 10);
-    if (n < 1 || n > most) return 0;
-    *text = end;
-    return (int)n;
-}
-
-enum status frames_select(bool *wanted, int frame_count, const char *list, struct err *err)
-{
-    const char *at = list;
-
-    memset(wanted, 0, (size_t)frame_count * sizeof *wanted);
-    for (;;) {
-        const int first = frame_number(&at, frame_count);
-        int last = first;
-        if (first && *at == ':') {
-            at++;
-            last = frame_number(&at, frame_count);
-        }
-        if (!first || last < first || (*at && *at != ','))
-            return err_set(err, ST_USAGE,
-                           "--frames %s: wanted frame numbers and ranges from 1 to %d, like 1:30 or 1:30,45.", list,
-                           frame_count);
-        for (int i = first; i <= last; i++) wanted[i - 1] = true;
-        if (!*at++) return ST_OK;
-    }
 }
 
 static enum status frame_write(const struct rendered_frame *f, const struct view *camera, bool with_holes,

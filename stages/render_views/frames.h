@@ -17,10 +17,6 @@ enum status frame_part_read(struct frame_part *part, const char *crop, const cha
 /* The camera of the part: the same rays. ST_USAGE: the part is not within the picture, or nothing is left of it. */
 enum status frame_part_camera(struct view *camera, const struct frame_part *part, struct err *err);
 
-/* wanted[i] for frame i + 1 of "1:30,45": ranges and single numbers, from 1. ST_USAGE: anything else, a number that
- * is no frame of the path, an empty list. */
-enum status frames_select(bool *wanted, int frame_count, const char *list, struct err *err);
-
 /* Renders the wanted frames into folder/NNNN.exr. A frame that sees nothing of the scene is ST_DATA with its number. */
 enum status frames_render(const struct camera_path *path, const bool *wanted, struct renderer *renderer,
                           const char *folder, const struct provenance *prov, struct err *err);

@@ -12,6 +12,7 @@
 #include <string.h>
 
 #include "common/cli.h"
+#include "common/frame_list.h"
 #include "stages/render_views/frames.h"
 
 static enum status add_input(struct provenance *prov, const char *prefix, const char *folder, const char *file,
@@ -59,7 +60,7 @@ static enum status render_path(const struct job *job, struct provenance *prov, s
     for (int i = 0; !st && i < path.frame_count; i++) st = frame_part_camera(&path.frames[i].camera, &job->part, err);
     if (!st) {
         wanted = calloc((size_t)path.frame_count + 1, sizeof *wanted);
-        st = wanted ? frames_select(wanted, path.frame_count, job->frames, err)
+        st = wanted ? frame_list_read(wanted, path.frame_count, job->frames, err)
                     : err_nomem(err, "the frames of a path", (size_t)path.frame_count);
     }
     if (!st) st = add_inputs(prov, job->views, job->path, path.effect, err);

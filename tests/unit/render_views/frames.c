@@ -1,4 +1,4 @@
-/* frames.c - which frames are asked for, and what a rendered frame's file holds. */
+/* frames.c - parts of frames, and what a rendered frame's file holds. */
 #include "tests/unit/scratch.h"
 
 #include <math.h>
@@ -9,28 +9,6 @@
 
 #define W 48
 #define H 32
-
-static void lists_of_frames(void **state)
-{
-    (void)state;
-    static const struct {
-        const char *list, *wanted; /* of 6 frames */
-    } good[] = {{"1:6", "111111"}, {"1", "100000"}, {"2:4", "011100"}, {"1:2,5", "110010"}, {"6,3,3:4", "001101"}};
-    static const char *const bad[] = {"",   "0",    "7", "1:7", "3:2", "1:",    ":3", ",",
-                                      "1,", "1,,2", "a", "1-3", "-1",  "1:2:3", " 1", "99999999999999999999"};
-    bool wanted[6];
-
-    for (size_t i = 0; i < sizeof good / sizeof *good; i++) {
-        struct err err = ERR_INIT;
-        assert_ok(frames_select(wanted, 6, good[i].list, &err), err);
-        for (int k = 0; k < 6; k++) assert_int_equal(wanted[k], good[i].wanted[k] == '1');
-    }
-    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
-        struct err err = ERR_INIT;
-        assert_int_equal(frames_select(wanted, 6, bad[i], &err), ST_USAGE);
-        assert_err(err, ST_USAGE, "from 1 to 6");
-    }
-}
 
 struct scene {
     struct view view;
@@ -309,7 +287,6 @@ static char fast[] = "fast", offline[] = "offline";
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(lists_of_frames),
         cmocka_unit_test(parts_are_read),
         cmocka_unit_test(a_part_is_within_its_picture),
         BOTH(a_crop_is_that_part_of_the_whole),
