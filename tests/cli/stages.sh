@@ -40,6 +40,7 @@ parameters_out_of_range_are_refused()
     expect 2 "planes" "$B/bin/segment_depth" --set planes=1e9
     expect 2 "tolerance" "$B/bin/fuse_points" --set tolerance=0
     expect 2 "max_holes" "$B/bin/plan_path" --set max_holes=nan
+    expect 2 "tolerance" "$B/bin/pan_scan" --set tolerance=nan
     expect 2 "brackets" "$B/bin/import_photos" --set brackets=maybe
     expect 2 "saturated" "$B/bin/hdr_merge" --set saturated=2
     expect 2 "camera_model" "$B/bin/sfm" --set camera_model=FISH
@@ -71,6 +72,7 @@ missing_inputs_fail_with_their_name()
     expect 1 "$d" "$B/bin/plan_path" --views "$d" --depth "$d" --effect establishing_dolly --out "$scratch/o"
     expect 1 "$d" "$B/bin/render_views" --views "$d" --depth "$d" --path "$d" --frames 1:2 --out "$scratch/o"
     expect 1 "$d" "$B/bin/render_views" --views "$d" --depth "$d" --cameras "$d" --out "$scratch/o"
+    expect 1 "$d" "$B/bin/pan_scan" --views "$d" --path "$d" --frames 1:2 --out "$scratch/o"
     expect 1 "$d" "$B/bin/evaluate" --folder "$d" --shared "$d" --truth "$d" --out "$scratch/o/metrics.tsv"
     expect 1 "$d" "$B/bin/encode_video" --path "$d" --frames "$d" --out "$scratch/o/v.mp4"
     expect 1 "$d" "$B/bin/verify" --file "$d"

@@ -1,0 +1,130 @@
+/* crop_picture.c - see crop_picture.h. Rows first, into a strip of the rows that are needed, then columns; each pass keeps to the range of its own
+ * samples within one kernel unit. */
+#include "stages/pan_scan/crop_picture.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "common/parallel.h"
+
+enum { CHUNK = 8 };
+
+struct taps {             /* of the pixels along an axis */
+    int room;             /* taps a pixel, at most */
+    int *first, *count;   /* a pixel */
+    int *near_end, *near; /* the samples within one unit: [near, near_end) of the taps */
+    float *weights;       /* room a pixel */
+};
+
+static void taps_release(struct taps *t)
+{
+    free(t->first);
+    free(t->weights);
+    *t = (struct taps){0};
+}
+
+static double kernel(double x)
+{
+    x = fabs(x);
+    return x < 1 ? 1 + x * x * (1.5 * x - 2.5) : x < 2 ? 2 + x * (-4 + x * (2.5 - 0.5 * x)) : 0;
+}
+
+/* Pixels [0, pixels) of a part of an axis that begins at `from` and is `length` samples long. */
+static enum status taps_make(struct taps *t, int pixels, double from, double length, struct err *err)
+{
+    const double step = length / pixels, stretch = fmax(1, step);
+    const size_t n = (size_t)pixels;
+    *t = (struct taps){.room = (int)ceil(4 * stretch) + 1};
+    t->first = malloc(4 * n * sizeof *t->first);
+    t->weights = malloc(n * (size_t)t->room * sizeof *t->weights);
+    if (!t->first || !t->weights) {
+        taps_release(t);
+        return err_nomem(err, "a filter", n * (size_t)t->room * sizeof *t->weights);
+    }
+    t->count = t->first + n, t->near = t->count + n, t->near_end = t->near + n;
+    for (int i = 0; i < pixels; i++) {
+        const double at = from + (i + 0.5) * step - 0.5; /* in samples, whose centres are whole numbers here */
+        float *weight = t->weights + (size_t)i * (size_t)t->room;
+        double sum = 0;
+        t->first[i] = (int)ceil(at - 2 * stretch);
+        t->count[i] = (int)floor(at + 2 * stretch) - t->first[i] + 1;
+        if (t->count[i] > t->room) t->count[i] = t->room;
+        t->near[i] = (int)ceil(at - stretch);
+        t->near_end[i] = (int)floor(at + stretch) + 1;
+        t->near[i] -= t->first[i], t->near_end[i] -= t->first[i];
+        for (int k = 0; k < t->count[i]; k++) sum += kernel((t->first[i] + k - at) / stretch);
+        for (int k = 0; k < t->count[i]; k++) weight[k] = (float)(kernel((t->first[i] + k - at) / stretch) / sum);
+    }
+    return ST_OK;
+}
+
+static int within(int x, int count) { return x < 0 ? 0 : x >= count ? count - 1 : x; }
+
+/* One pixel: samples `stride` floats apart, number i of the axis at base + i stride, `samples` of them. */
+static void filter(float *out, const struct taps *t, int pixel, const float *base, size_t stride, int samples,
+                   int channels)
+{
+    const float *weight = t->weights + (size_t)pixel * (size_t)t->room;
+    for (int c = 0; c < channels; c++) {
+        float sum = 0, least = INFINITY, most = -INFINITY;
+        for (int k = 0; k < t->count[pixel]; k++) {
+            const float s = base[(size_t)within(t->first[pixel] + k, samples) * stride + (size_t)c];
+            sum += weight[k] * s;
+            if (k < t->near[pixel] || k >= t->near_end[pixel]) continue;
+            least = s < least ? s : least;
+            most = s > most ? s : most;
+        }
+        out[c] = sum < least ? least : sum > most ? most : sum;
+    }
+}
+
+struct passes {
+    const struct image *picture;
+    struct image strip; /* rows [top, top + strip.height) of the picture, as wide as the frame */
+    int top;
+    struct image *out;
+    struct taps across, down;
+};
+
+static void along_rows(void *ctx, size_t begin, size_t end, int thread)
+{
+    struct passes *p = ctx;
+    (void)thread;
+    for (size_t y = begin; y < end; y++)
+        for (int x = 0; x < p->strip.width; x++)
+            filter(image_at(&p->strip, x, (int)y), &p->across, x, image_at(p->picture, 0, p->top + (int)y),
+                   (size_t)p->picture->channels, p->picture->width, p->picture->channels);
+}
+
+static void along_columns(void *ctx, size_t begin, size_t end, int thread)
+{
+    struct passes *p = ctx;
+    const size_t stride = (size_t)p->strip.width * (size_t)p->strip.channels;
+    (void)thread;
+    for (size_t y = begin; y < end; y++)
+        for (int x = 0; x < p->out->width; x++)
+            filter(image_at(p->out, x, (int)y), &p->down, (int)y, image_at(&p->strip, x, 0), stride, p->strip.height,
+                   p->strip.channels);
+}
+
+enum status crop_picture(struct image *out, const struct image *picture, const struct crop *crop, struct err *err)
+{
+    struct passes p = {.picture = picture, .out = out};
+    enum status st = taps_make(&p.across, out->width, crop->x, crop->width, err);
+    if (!st) st = taps_make(&p.down, out->height, crop->y, crop->height, err);
+    if (!st) {
+        const int last = out->height - 1;
+        p.top = within(p.down.first[0], picture->height);
+        const int bottom = within(p.down.first[last] + p.down.count[last] - 1, picture->height);
+        for (int i = 0; i <= last; i++) p.down.first[i] -= p.top; /* samples of the strip */
+        st = image_init(&p.strip, out->width, bottom - p.top + 1, picture->channels, err);
+    }
+    if (!st) {
+        parallel_for((size_t)p.strip.height, CHUNK, along_rows, &p);
+        parallel_for((size_t)out->height, CHUNK, along_columns, &p);
+    }
+    image_release(&p.strip);
+    taps_release(&p.across);
+    taps_release(&p.down);
+    return st;
+}

@@ -1,0 +1,220 @@
+/* pan_scan.c - a camera move in 2D: crops of one photograph that follow it as closely as a crop can.
+ *
+ * reads   VIEWS/cameras.txt, images.txt, points3D.txt   the views, and the points they see
+ *         VIEWS/VIEW.exr                                the one view that is shown
+ *         DEPTH/VIEW.exr, VIEW.txt                      with --depth: where its pixels are
+ *         PATH/path.txt, path/NAME.txt                  the move
+ * writes  OUT/NNNN.exr                                  a file a frame: R G B A
+ *
+ * At either end of the move the crop is fitted, within the photograph, to where the path's camera sees the scene's points; between them it goes as
+ * the camera goes. */
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "common/cli.h"
+#include "common/exr.h"
+#include "common/frame_list.h"
+#include "common/log.h"
+#include "common/progress.h"
+#include "common/view_image.h"
+#include "stages/pan_scan/crop_move.h"
+#include "stages/pan_scan/crop_picture.h"
+#include "stages/pan_scan/pan_params.h"
+
+enum { PATH_SIZE = 4096 };
+
+#define HELD_FROM 0.5 /* frame px: a crop that is moved less to stay within the photograph is not worth a word */
+
+#define PARAM_STRUCT struct pan_params
+const struct param pan_param_table[] = {PAN_PARAMS(PARAM_ROW) PARAM_END};
+#undef PARAM_STRUCT
+
+struct job { /* what the command line says */
+    const char *views, *depth, *path, *frames, *out;
+    struct pan_params params;
+};
+
+static enum status add_input(struct provenance *prov, const char *as, const char *folder, const char *file,
+                             const char *suffix, char path[PATH_SIZE], struct err *err)
+{
+    char name[512];
+    if (snprintf(path, PATH_SIZE, "%s/%s%s", folder, file, suffix) >= PATH_SIZE ||
+        snprintf(name, sizeof name, "%s/%s%s", as, file, suffix) >= (int)sizeof name)
+        return err_set(err, ST_IO, "the path %s/%s%s is too long.", folder, file, suffix);
+    return provenance_add_file(prov, name, path, err);
+}
+
+static enum status add_inputs(struct provenance *prov, const struct job *job, const char *effect, const char *view,
+                              struct err *err)
+{
+    static const char *const view_files[] = {"cameras.txt", "images.txt", "points3D.txt"};
+    static const char *const path_files[] = {"path.txt", "path/cameras.txt", "path/images.txt"};
+    char prefix[128], path[PATH_SIZE];
+    enum status st = ST_OK;
+    snprintf(prefix, sizeof prefix, "parallax/%s", effect);
+    for (int i = 0; !st && i < 3; i++) st = add_input(prov, "views", job->views, view_files[i], "", path, err);
+    if (!st) st = add_input(prov, "views", job->views, view, ".exr", path, err);
+    for (int i = 0; !st && i < 3; i++) st = add_input(prov, prefix, job->path, path_files[i], "", path, err);
+    return st;
+}
+
+static enum status find_view(int *view_idx, const struct job *job, const struct camera_set *set,
+                             const struct camera_path *path, struct err *err)
+{
+    if (!job->params.view[0]) {
+        *view_idx = crop_move_choose_view(set, path);
+        return ST_OK;
+    }
+    *view_idx = camera_set_find(set, job->params.view);
+    if (*view_idx >= 0) return ST_OK;
+    return err_set(err, ST_USAGE, "--view %s: %s/images.txt has no view of this name; its first is %s.",
+                   job->params.view, job->views, set->views[0].name);
+}
+
+static enum status read_depth(struct layered_depth *depth, const struct job *job, const char *view,
+                              struct provenance *prov, struct err *err)
+{
+    char path[PATH_SIZE];
+    if (add_input(prov, "depth", job->depth, view, ".txt", path, err) ||
+        add_input(prov, "depth", job->depth, view, ".exr", path, err) || layered_depth_read_interior(depth, path, err))
+        return err->status;
+    return ST_OK;
+}
+
+/* Each end is told of by the process that makes its frame. */
+static void tell(const struct crop_move *m, const bool *wanted)
+{
+    static const char *const names[] = {"first", "last"};
+    const int frames[] = {0, m->path->frame_count - 1};
+    for (int end = 0; end < 2; end++) {
+        const struct crop c = crop_move_stored(m, m->ends[end].crop);
+        if (!wanted[frames[end]]) continue;
+        log_note("the %s frame shows %.0f x %.0f pixels of view %s from (%.0f, %.0f) on, and misses the scene's points "
+                 "by %.1f px "
+                 "(median)",
+                 names[end], c.width, c.height, m->view.name, c.x, c.y, m->misfits[end]);
+        if (m->ends[end].beyond > HELD_FROM)
+            log_warn("the %s frame's crop is held at the border of view %s: to follow the move it would leave the "
+                     "photograph by %.0f px",
+                     names[end], m->view.name, m->ends[end].beyond);
+    }
+}
+
+static enum status frame_write(const struct image *frame, const struct crop_move *m, int i, const char *file,
+                               const struct provenance *prov, struct err *err)
+{
+    static const char *const names[] = {"R", "G", "B", "A"};
+    const size_t pixels = (size_t)frame->width * (size_t)frame->height;
+    const struct crop c = crop_move_stored(m, crop_move_crop(m, i));
+    struct exr_image im = {0};
+    struct exr_plane *plane;
+    size_t empty = 0;
+    double misfit = 0;
+    char holes[32], crop[128], off[32];
+
+    enum status st = exr_image_init(&im, frame->width, frame->height, err);
+    for (size_t k = 0; !st && k < 4; k++) {
+        st = exr_add_plane(&im, names[k], EXR_HALF, &plane, err);
+        for (size_t p = 0; !st && p < pixels; p++) plane->f[p] = frame->data[4 * p + k];
+    }
+    for (size_t p = 0; p < pixels; p++) empty += frame->data[4 * p + 3] < 0.5f;
+    if (!st) st = crop_move_misfit(&misfit, m, i, err);
+    snprintf(holes, sizeof holes, "%.9g", (double)empty / (double)pixels);
+    snprintf(crop, sizeof crop, "%.9g %.9g %.9g %.9g", c.x, c.y, c.width, c.height);
+    snprintf(off, sizeof off, "%.9g", misfit);
+    if (!st) {
+        exr_set_camera(&im, &m->view);
+        st = exr_set_attribute(&im, "remodel:holes", holes, err);
+    }
+    if (!st) st = exr_set_attribute(&im, "remodel:unfilled", holes, err);
+    if (!st) st = exr_set_attribute(&im, "remodel:view", m->view.name, err);
+    if (!st) st = exr_set_attribute(&im, "remodel:crop", crop, err);
+    if (!st) st = exr_set_attribute(&im, "remodel:misfit", off, err);
+    if (!st) st = exr_write(&im, file, prov, err);
+    exr_image_release(&im);
+    return st;
+}
+
+static enum status make_frames(const struct crop_move *m, const bool *wanted, const struct image *picture,
+                               const char *folder, const struct provenance *prov, struct err *err)
+{
+    const struct view *camera = &m->path->frames[0].camera;
+    struct image frame = {0};
+    struct progress progress;
+    char file[PATH_SIZE];
+    int count = 0;
+    enum status st = image_init(&frame, camera->width, camera->height, 4, err);
+    for (int i = 0; i < m->path->frame_count; i++) count += wanted[i];
+    progress_start(&progress, "cropping", count, "frames");
+    for (int i = 0; !st && i < m->path->frame_count; i++) {
+        if (!wanted[i]) continue;
+        const struct crop crop = crop_move_crop(m, i);
+        if (snprintf(file, sizeof file, "%s/%.32s.exr", folder, m->path->frames[i].camera.name) >= PATH_SIZE)
+            st = err_set(err, ST_IO, "the path %s/%.32s.exr is too long.", folder, m->path->frames[i].camera.name);
+        if (!st) st = crop_picture(&frame, picture, &crop, err);
+        if (!st) st = frame_write(&frame, m, i, file, prov, err);
+        progress_add(&progress, 1);
+    }
+    progress_end(&progress);
+    image_release(&frame);
+    return st;
+}
+
+static enum status pan_scan(const struct job *job, struct provenance *prov, struct err *err)
+{
+    struct camera_set set = {0};
+    struct camera_path path = {0};
+    struct layered_depth depth = {0};
+    struct crop_move move = {0};
+    struct image picture = {0};
+    bool *wanted = NULL;
+    int view_idx = 0;
+    enum status st = camera_set_read(&set, job->views, err);
+
+    if (!st) st = camera_path_read(&path, job->path, err);
+    if (!st) {
+        wanted = calloc((size_t)path.frame_count, sizeof *wanted);
+        st = wanted ? frame_list_read(wanted, path.frame_count, job->frames, err)
+                    : err_nomem(err, "the frames of a path", (size_t)path.frame_count);
+    }
+    if (!st) st = find_view(&view_idx, job, &set, &path, err);
+    if (!st) st = add_inputs(prov, job, path.effect, set.views[view_idx].name, err);
+    if (!st && job->depth) st = read_depth(&depth, job, set.views[view_idx].name, prov, err);
+    if (!st) st = crop_move_init(&move, &set, view_idx, job->depth ? &depth : NULL, &path, job->params.tolerance, err);
+    if (!st) st = view_image_read(&picture, job->views, &set.views[view_idx], err);
+    if (!st) st = crop_move_turn(&picture, &move, err);
+    if (!st) tell(&move, wanted);
+    if (!st) st = make_frames(&move, wanted, &picture, job->out, prov, err);
+    free(wanted);
+    image_release(&picture);
+    crop_move_release(&move);
+    layered_depth_release(&depth);
+    camera_path_release(&path);
+    camera_set_release(&set);
+    return st;
+}
+
+int main(int argc, char **argv)
+{
+    struct job job = {.params = PAN_PARAMS_DEFAULT};
+    const char *view = NULL;
+    const struct cli_opt opts[] = {
+        CLI_ABOUT("A camera move in 2D: crops of one photograph that follow it as closely as a crop can."),
+        CLI_STR("views", &job.views, CLI_REQUIRED, "folder of cameras and rectified views"),
+        CLI_STR("depth", &job.depth, CLI_OPTIONAL,
+                "folder of layered depth maps; without it the sparse points are followed"),
+        CLI_STR("path", &job.path, CLI_REQUIRED, "folder of the move: path.txt and path/"),
+        CLI_STR("frames", &job.frames, CLI_REQUIRED, "frames of the move to make: 1:30 or 1:30,45"),
+        CLI_STR("out", &job.out, CLI_REQUIRED, "folder of the EXR files to write, NNNN.exr"),
+        CLI_PARAM("view", &view, "the view whose photograph is shown"),
+        CLI_PARAMS(pan_param_table, &job.params, NULL),
+        CLI_END,
+    };
+    struct provenance prov = {0};
+    struct err err = ERR_INIT;
+
+    if (cli_parse(argc, argv, "pan_scan", opts, &prov, &err) == CLI_RUN) pan_scan(&job, &prov, &err);
+    err_report(&err);
+    provenance_release(&prov);
+    return err_exit_code(&err);
+}
