@@ -96,7 +96,7 @@ export REMODEL_TRUTH := $(call literal,TRUTH)
 
 export VIEWS_PER_JOB SLURM_ARGS
 dry = $(findstring n,$(filter-out --%,$(firstword -$(MAKEFLAGS))))
-GOALS := edited hdr sfm views depth points path frames video evaluate report
+GOALS := edited hdr sfm views depth points path frames video pan_scan evaluate report
 .PHONY: all help why resfm check fuzz bench bench-compare regress regress-accept man deps deps-check deps-bench clean $(GOALS)
 
 ifeq ($(SCENE),)
@@ -112,6 +112,7 @@ points: ## + oriented points on which they agree (no part of what follows)
 path:   ## + the camera move
 frames: ## + its frames
 video:  ## + the video
+pan_scan: ## the same move in 2D, crops of one photograph, to compare; from then on the page shows it too
 evaluate: ## the depth maps, compared with TRUTH or with photos held out, into metrics.tsv
 report: ## + the page: the same as all
 why:    ## what is stale, and because of what
@@ -312,7 +313,7 @@ HDR := $(if $(BRACKETED),$(foreach p,$(PHOTO_IDS),$(S)/hdr/$(p).exr $(S)/hdr/$(p
 PICTURES := $(if $(BRACKETED),$(S)/hdr,"$$REMODEL_PHOTOS")
 picture = $(if $(BRACKETED),$(S)/hdr/$(1).exr,$(S)/photos/$(1).txt)
 
-.PHONY: hdr sfm views depth points path frames video heldout evaluate report
+.PHONY: hdr sfm views depth points path frames video pan_frames pan_scan heldout evaluate report
 hdr: $(HDR)
 sfm: $(O)/views/views.mk
 views: $(VIEW_EXR) $(HELD_EXR)
@@ -321,6 +322,8 @@ points: $(POINTS)
 path: $(E)/frames.mk $(PATH_EXPORTS)
 frames: $(FRAME_EXR)
 video: $(E)/video.mp4
+pan_frames: $(FRAMES:%=$(E)/pan_scan/frames/%.exr)
+pan_scan: $(E)/pan_scan/video.mp4
 heldout: $(HELD_FRAMES)
 evaluate: $(O)/metrics.tsv
 report: $(O)/index.html
@@ -400,6 +403,14 @@ endef
 chunks = $(if $(2),$(eval $(call $(1),$(wordlist 1,$(FRAMES_PER_JOB),$(2))))$(call chunks,$(1),$(wordlist $(words x $(wordlist 1,$(FRAMES_PER_JOB),$(2))),$(words $(2)),$(2))))
 $(call chunks,chunk_rule,$(FRAMES))
 
+# the move in 2D, on request; which view it shows is told by the path
+define pan_rule
+$(1:%=$(E)/pan_scan/frames/%.exr) &: $(PATH_TXT) $(CAMERAS) $(VIEW_EXR) $(DEPTH_EXR) $(DEPTH_TXT) $(call needs,pan_scan)
+	$$(hide)stale=$$$$(common/stale.sh $(1:%=$(E)/pan_scan/frames/%.exr) -- $$^); \
+	  $$(call farm,pan_scan,$(firstword $(1)),$(1:%=$(E)/pan_scan/frames/%.exr),--views $(O)/views --depth $(O)/depth --path $(E) --out $(E)/pan_scan/frames --frames,$$$$stale)
+endef
+$(call chunks,pan_rule,$(FRAMES))
+
 # the held-out photos' cameras, rendered from the other views
 define heldout_rule
 $(1:%=$(H)/frames/%.exr) &: $(HELD_CAMERAS) $(CAMERAS) $(DEPTH_EXR) $(DEPTH_TXT) $(call needs,render_views)
@@ -414,7 +425,10 @@ $(O)/metrics.tsv: $(CAMERAS) $(O)/views/lenses.txt $(DEPTH_EXR) $(DEPTH_TXT) $(H
 $(E)/video.mp4: $(FRAME_EXR) $(PATH_TXT) $(call needs,encode_video)
 	$(call stage,encode_video,$(EFFECT),$(O),--path $(E) --frames $(E)/frames --out $@)
 
-$(O)/index.html: $(if $(HELDOUT)$(TRUTH),$(O)/metrics.tsv) $(E)/video.mp4 $(PATH_TXT) $(CAMERAS) $(DEPTH_EXR) $(DEPTH_TXT) $(S)/photos/list.txt $(STAGES:%=$(O)/slice/%.cfg) $(call needs,report)
+$(E)/pan_scan/video.mp4: $(FRAMES:%=$(E)/pan_scan/frames/%.exr) $(PATH_TXT) $(call needs,encode_video)
+	$(call stage,encode_video,$(EFFECT)-pan_scan,$(O),--path $(E) --frames $(E)/pan_scan/frames --out $@)
+
+$(O)/index.html: $(if $(HELDOUT)$(TRUTH),$(O)/metrics.tsv) $(E)/video.mp4 $(wildcard $(E)/pan_scan/video.mp4) $(PATH_TXT) $(CAMERAS) $(DEPTH_EXR) $(DEPTH_TXT) $(S)/photos/list.txt $(STAGES:%=$(O)/slice/%.cfg) $(call needs,report)
 	$(call stage,report,page,$(O),--scene $(SCENE) --folder $(O) --shared $(S) --photos $(PICTURES) --defaults configs/default.cfg --out $@)
 
 # What is looked at afresh in every run, also under -n: configs, photos. Files are rewritten only if their text changed.

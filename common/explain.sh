@@ -79,7 +79,7 @@ metrics)
     echo "table  $1/metrics.tsv"
     ;;
 products)
-    for v in "$1"/parallax/*/video.mp4; do [ ! -e "$v" ] || echo "video  $v"; done
+    for v in "$1"/parallax/*/video.mp4 "$1"/parallax/*/pan_scan/video.mp4; do [ ! -e "$v" ] || echo "video  $v"; done
     [ ! -e "$1/index.html" ] || echo "page   $1/index.html"
     ;;
 esac

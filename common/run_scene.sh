@@ -129,20 +129,22 @@ if [ "$dry" = n ]; then
     exec "${make[@]}" PHASE=graph T="$cores" "$goal"
 fi
 
-# frames are few processes with all threads each, since every one of them holds all views in memory
+# farm_frames STAGE GOAL: frames are few processes with all threads each, since every one of them holds all views in memory
 farm_frames()
 {
-    if [ "$jobs" = slurm ]; then farm render_views "$1" "$cores" 1; else
-        plan=$work/render_views.plan; : >"$plan"
-        graph -s -j1 LAUNCH=plan PLAN="$plan" "$1"
-        date +%s >"$work/render_views.tally"
-        REMODEL_TALLY=$work/render_views.tally REMODEL_COUNT=$(wc -l <"$plan") one "$1"
+    if [ "$jobs" = slurm ]; then farm "$1" "$2" "$cores" 1; else
+        plan=$work/$1.plan; : >"$plan"
+        graph -s -j1 LAUNCH=plan PLAN="$plan" "$2"
+        date +%s >"$work/$1.tally"
+        REMODEL_TALLY=$work/$1.tally REMODEL_COUNT=$(wc -l <"$plan") one "$2"
     fi
 }
+# the move in 2D: once it was asked for it is kept as new as the rest
+pan_scan() { farm_frames pan_scan pan_frames; one pan_scan; }
 # what the depth maps are worth: compared with photos held out, with the truth
 evaluate()
 {
-    case $O in *+holdout*) farm_frames heldout ;; esac
+    case $O in *+holdout*) farm_frames render_views heldout ;; esac
     one evaluate
 }
 
@@ -196,13 +198,19 @@ evaluate) evaluate; common/explain.sh metrics "$O"; exit 0 ;;
 esac
 one path
 case $goal in path) exit 0 ;; esac
-farm_frames frames
+if [ "$goal" = pan_scan ]; then
+    pan_scan
+    common/explain.sh products "$O"
+    exit 0
+fi
+farm_frames render_views frames
 case $goal in frames) exit 0 ;; esac
 one video
 case $goal in
 video) ;;
 *)
     case $O${REMODEL_TRUTH:+ truth} in *+holdout* | *truth) evaluate ;; esac
+    ! ls "$O"/parallax/*/pan_scan/video.mp4 >/dev/null 2>&1 || pan_scan
     one report ;;
 esac
 common/explain.sh products "$O"

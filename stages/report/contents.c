@@ -11,6 +11,7 @@
 
 #include "common/parallel.h"
 #include "common/photo.h"
+#include "common/scan.h"
 
 static enum status add_note(struct contents *c, struct err *err, const char *fmt, ...) PRINTF_LIKE(3, 4);
 static enum status add_note(struct contents *c, struct err *err, const char *fmt, ...)
@@ -409,6 +410,40 @@ static enum status read_frames(struct contents *c, struct effect_card *e, const 
     return ST_OK;
 }
 
+/* The first and the last frame tell which photograph is shown, and how well. */
+static enum status read_pan_frame(struct contents *c, struct effect_card *e, const char *folder, int end,
+                                  struct err *err)
+{
+    static const char *const NAMES[] = {"R", "G", "B"};
+    struct exr_image im = {0};
+    struct err trouble = ERR_INIT;
+    char path[PATH_SIZE];
+    snprintf(path, sizeof path, "%s/pan_scan/frames/%s.exr", folder,
+             e->path.frames[end ? e->path.frame_count - 1 : 0].camera.name);
+    if (!exr_read(&im, path, NAMES, end ? 0 : 3, &trouble)) {
+        const char *view = exr_attribute(&im, "remodel:view"), *misfit = exr_attribute(&im, "remodel:misfit");
+        if (view) snprintf(e->pan.view, sizeof e->pan.view, "%s", view);
+        if (!misfit || !scan_double(misfit, &e->pan.misfit[end]) || !(e->pan.misfit[end] >= 0)) e->pan.misfit[end] = -1;
+        if (!end) picture_from_exr(&e->pan.poster, &im, 1, 720, &trouble);
+    }
+    exr_image_release(&im);
+    if (trouble.status) return add_note(c, err, "A frame of %s in 2D cannot be read. %.800s", e->name, trouble.text);
+    return ST_OK;
+}
+
+/* Made on request: nothing is said where it is not there. */
+static enum status read_pan(struct contents *c, struct effect_card *e, const char *folder, struct err *err)
+{
+    char path[PATH_SIZE];
+    struct stat s;
+    e->pan.misfit[0] = e->pan.misfit[1] = -1;
+    snprintf(path, sizeof path, "%s/pan_scan/video.mp4", folder);
+    if (stat(path, &s) || !S_ISREG(s.st_mode) || s.st_size == 0) return ST_OK;
+    e->pan.video_bytes = s.st_size;
+    if (!(e->pan.video = strdup(path))) return err_nomem(err, "a file name", strlen(path));
+    return read_pan_frame(c, e, folder, 0, err) || read_pan_frame(c, e, folder, 1, err) ? err->status : ST_OK;
+}
+
 static enum status read_effect(struct contents *c, struct effect_card *e, const char *folder, struct err *err)
 {
     char path[PATH_SIZE];
@@ -424,7 +459,7 @@ static enum status read_effect(struct contents *c, struct effect_card *e, const 
     }
     if (camera_path_read(&e->path, folder, &trouble))
         return add_note(c, err, "There is no camera path of %s. %s", e->name, trouble.text);
-    return read_frames(c, e, folder, err);
+    return read_frames(c, e, folder, err) || read_pan(c, e, folder, err) ? err->status : ST_OK;
 }
 
 static enum status read_effects(struct contents *c, const char *folder, struct err *err)
@@ -511,7 +546,9 @@ void contents_release(struct contents *c)
     for (int i = 0; i < c->effect_count; i++) {
         camera_path_release(&c->effects[i].path);
         picture_release(&c->effects[i].poster);
+        picture_release(&c->effects[i].pan.poster);
         free(c->effects[i].video);
+        free(c->effects[i].pan.video);
         free(c->effects[i].holes);
         free(c->effects[i].unfilled);
     }

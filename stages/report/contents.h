@@ -41,6 +41,14 @@ struct held_card { /* a view that was held out */
     char trouble[NOTE_SIZE];
 };
 
+struct pan_card { /* the same move in 2D, if it was made */
+    char *video;  /* file name, owned; NULL if there is none */
+    long long video_bytes;
+    char view[256];        /* whose photograph it shows; "" unknown */
+    double misfit[2];      /* of the first and the last frame: px by which it misses the scene's points; -1 unknown */
+    struct picture poster; /* the first frame */
+};
+
 struct effect_card {
     char name[256];
     struct camera_path path; /* frame_count 0: not planned, or it cannot be read */
@@ -49,6 +57,7 @@ struct effect_card {
     double *holes, *unfilled; /* a frame: share of its pixels, before and after filling; -1 unknown */
     int frames_found;
     struct picture poster; /* the first frame */
+    struct pan_card pan;
 };
 
 struct contents {

@@ -9,8 +9,9 @@
 #include "style.h"
 
 /* The order of the data's way; further stages follow in order of appearance. */
-static const char *const CHAIN[] = {"import_photos", "hdr_merge",   "sfm",       "sfm_import",   "rectify",
-                                    "segment_depth", "fuse_points", "plan_path", "render_views", "encode_video"};
+static const char *const CHAIN[] = {"import_photos", "hdr_merge",     "sfm",         "sfm_import",
+                                    "rectify",       "segment_depth", "fuse_points", "plan_path",
+                                    "render_views",  "pan_scan",      "encode_video"};
 enum { CHAIN_LENGTH = sizeof CHAIN / sizeof *CHAIN };
 
 static void put_seconds(FILE *to, double seconds)
@@ -154,39 +155,69 @@ static void put_scores(FILE *to, const struct effect_card *e)
     fputs("</dl>\n", to);
 }
 
+/* A video inside the page; label, and folder under parallax/, are of the effect's name and what follows it. */
+static enum status put_video(FILE *to, const struct effect_card *e, const char *video, long long bytes,
+                             const struct picture *poster, const char *label, const char *folder, struct err *err)
+{
+    fputs("<video controls loop muted autoplay playsinline", to);
+    if (e->path.frame_count)
+        fprintf(to, " width=\"%d\" height=\"%d\"", e->path.frames[0].camera.width, e->path.frames[0].camera.height);
+    fprintf(to, " aria-label=\"%s ", label);
+    html_text(to, e->name);
+    fputs("\"", to);
+    if (poster->rgb) {
+        unsigned char *jpeg = NULL;
+        size_t size = 0;
+        if (jpeg_encode(&jpeg, &size, poster->rgb, poster->width, poster->height, 80, err)) return err->status;
+        fputs(" poster=\"data:image/jpeg;base64,", to);
+        html_base64(to, jpeg, size);
+        fputs("\"", to);
+        free(jpeg);
+    }
+    fputs(" src=\"data:video/mp4;base64,", to);
+    if (html_base64_file(to, video, err)) return err->status;
+    fputs("\">This browser plays no video.</video>\n<p class=\"muted\">The same video stands beside this page: "
+          "<code>parallax/",
+          to);
+    html_text(to, e->name);
+    fprintf(to, "%s/video.mp4</code> (%.1f MB).</p>\n", folder, (double)bytes / 1e6);
+    return ST_OK;
+}
+
+/* The move in 2D beside the one in 3D. */
+static enum status put_pan(FILE *to, const struct effect_card *e, struct err *err)
+{
+    const struct pan_card *p = &e->pan;
+    fputs("<div>\n<h3>the same move in 2D</h3>\n", to);
+    if (put_video(to, e, p->video, p->video_bytes, &p->poster, "Pan and zoom over one photograph after the move",
+                  "/pan_scan", err))
+        return err->status;
+    fputs("<p class=\"muted\">Crops of one photograph", to);
+    if (p->view[0]) {
+        fputs(", <code>", to);
+        html_text(to, p->view);
+        fputs("</code>,", to);
+    }
+    fputs(" that follow the move as closely as a crop can", to);
+    if (p->misfit[0] >= 0 && p->misfit[1] >= 0)
+        fprintf(to, "; half of the scene's points are off by more than %.3g px in the first frame, %.3g px in the last",
+                p->misfit[0], p->misfit[1]);
+    fputs(".</p>\n</div>\n", to);
+    return ST_OK;
+}
+
 static enum status put_effect(FILE *to, const struct effect_card *e, struct err *err)
 {
-    fputs("<article class=\"card effect\">\n<div>\n<h3>", to);
+    fprintf(to, "<article class=\"card effect%s\">\n<div>\n<h3>", e->pan.video ? " two" : "");
     put_words(to, e->name);
     fputs("</h3>\n", to);
-    if (e->video) {
-        fputs("<video controls loop muted autoplay playsinline", to);
-        if (e->path.frame_count)
-            fprintf(to, " width=\"%d\" height=\"%d\"", e->path.frames[0].camera.width, e->path.frames[0].camera.height);
-        fputs(" aria-label=\"Rendered camera move ", to);
-        html_text(to, e->name);
-        fputs("\"", to);
-        if (e->poster.rgb) {
-            unsigned char *bytes = NULL;
-            size_t size = 0;
-            if (jpeg_encode(&bytes, &size, e->poster.rgb, e->poster.width, e->poster.height, 80, err))
-                return err->status;
-            fputs(" poster=\"data:image/jpeg;base64,", to);
-            html_base64(to, bytes, size);
-            fputs("\"", to);
-            free(bytes);
-        }
-        fputs(" src=\"data:video/mp4;base64,", to);
-        if (html_base64_file(to, e->video, err)) return err->status;
-        fputs("\">This browser plays no video.</video>\n<p class=\"muted\">The same video stands beside this page: "
-              "<code>parallax/",
-              to);
-        html_text(to, e->name);
-        fprintf(to, "/video.mp4</code> (%.1f MB).</p>\n", (double)e->video_bytes / 1e6);
-    } else {
+    if (!e->video)
         fputs("<p>There is no video yet.</p>\n", to);
-    }
-    fputs("</div>\n<div>\n", to);
+    else if (put_video(to, e, e->video, e->video_bytes, &e->poster, "Rendered camera move", "", err))
+        return err->status;
+    fputs("</div>\n", to);
+    if (e->pan.video && put_pan(to, e, err)) return err->status;
+    fputs("<div>\n", to);
     if (e->path.frame_count)
         put_hole_plot(to, e);
     else
