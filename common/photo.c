@@ -411,39 +411,54 @@ static void png_keep_write_message(png_structp png, png_const_charp message)
     png_longjmp(png, 1);
 }
 
-static enum status write_png_rows(struct png_writer *w, FILE *fp, const char *path, const unsigned char *pixels,
-                                  int width, int height, int channels, struct err *err)
+struct png_picture {
+    const unsigned char *pixels; /* interleaved; 16-bit samples in this machine's order */
+    int width, height, channels, bits;
+    const unsigned char *exif; /* NULL: none */
+    unsigned exif_size;
+};
+
+static enum status write_png_rows(struct png_writer *w, FILE *fp, const char *path, const struct png_picture *p,
+                                  struct err *err)
 {
+    const size_t row = (size_t)p->width * (size_t)p->channels * (size_t)(p->bits / 8);
     if (setjmp(png_jmpbuf(w->png))) return err_set(err, ST_IO, "cannot write %s: %s.", path, w->message);
     png_init_io(w->png, fp);
     png_set_user_limits(w->png, 1 << 28, 1 << 28);
     png_set_compression_level(w->png, PNG_LEVEL);
-    png_set_IHDR(w->png, w->info, (png_uint_32)width, (png_uint_32)height, 8,
-                 channels == 1 ? PNG_COLOR_TYPE_GRAY : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
+    png_set_IHDR(w->png, w->info, (png_uint_32)p->width, (png_uint_32)p->height, p->bits,
+                 p->channels == 1 ? PNG_COLOR_TYPE_GRAY : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
                  PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    if (p->exif) png_set_eXIf_1(w->png, w->info, p->exif_size, (png_bytep)p->exif);
     png_write_info(w->png, w->info);
-    for (int y = 0; y < height; y++) png_write_row(w->png, pixels + (size_t)y * (size_t)width * (size_t)channels);
+    if (p->bits == 16) png_set_swap(w->png); /* libpng's samples are big-endian */
+    for (int y = 0; y < p->height; y++) png_write_row(w->png, p->pixels + (size_t)y * row);
     png_write_end(w->png, w->info);
     return ST_OK;
+}
+
+static enum status write_png(const char *path, const struct png_picture *p, struct err *err)
+{
+    struct png_writer w = {0};
+    struct outfile f = {0};
+    if (p->width < 1 || p->height < 1 || (p->channels != 1 && p->channels != 3))
+        return err_set(err, ST_INTERNAL, "cannot write %s: no PNG is %d x %d pixels of %d channels.", path, p->width,
+                       p->height, p->channels);
+    w.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &w, png_keep_write_message, png_ignore_warning);
+    if (w.png) w.info = png_create_info_struct(w.png);
+    enum status st = w.info ? ST_OK : err_nomem(err, "a PNG encoder", 0);
+    if (!st) st = outfile_open(&f, path, err);
+    if (!st) st = write_png_rows(&w, f.fp, path, p, err);
+    if (!st) st = outfile_commit(&f, err);
+    outfile_discard(&f);
+    png_destroy_write_struct(&w.png, &w.info);
+    return st;
 }
 
 enum status png_write(const char *path, const unsigned char *pixels, int width, int height, int channels,
                       struct err *err)
 {
-    struct png_writer w = {0};
-    struct outfile f = {0};
-    if (width < 1 || height < 1 || (channels != 1 && channels != 3))
-        return err_set(err, ST_INTERNAL, "cannot write %s: no PNG is %d x %d pixels of %d channels.", path, width,
-                       height, channels);
-    w.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &w, png_keep_write_message, png_ignore_warning);
-    if (w.png) w.info = png_create_info_struct(w.png);
-    enum status st = w.info ? ST_OK : err_nomem(err, "a PNG encoder", 0);
-    if (!st) st = outfile_open(&f, path, err);
-    if (!st) st = write_png_rows(&w, f.fp, path, pixels, width, height, channels, err);
-    if (!st) st = outfile_commit(&f, err);
-    outfile_discard(&f);
-    png_destroy_write_struct(&w.png, &w.info);
-    return st;
+    return write_png(path, &(struct png_picture){pixels, width, height, channels, 8, NULL, 0}, err);
 }
 
 enum status jpeg_encode(unsigned char **bytes, size_t *size, const unsigned char *rgb, int width, int height,
@@ -567,6 +582,30 @@ enum status photo_write_jpeg(const char *path, const unsigned char *rgb, int wid
     outfile_discard(&f);
     free(exif);
     free(bytes);
+    return st;
+}
+
+enum status photo_write_part(const char *path, const struct photo *p, int x, int y, int width, int height,
+                             const struct photo_info *info, struct err *err)
+{
+    const size_t row = (size_t)width * 3, size = p->info.bits == 16 ? 2 : 1;
+    unsigned char *pixels = malloc(row * (size_t)height * size), *exif = NULL;
+    unsigned exif_size = 0;
+    enum status st = pixels ? ST_OK : err_nomem(err, "a picture", row * (size_t)height * size);
+    for (int k = 0; !st && k < height; k++) {
+        const uint16_t *from = p->samples + ((size_t)(y + k) * (size_t)p->info.width + (size_t)x) * 3;
+        unsigned char *to = pixels + (size_t)k * row * size;
+        if (size == 2) memcpy(to, from, row * size);
+        for (size_t i = 0; size == 1 && i < row; i++) to[i] = (unsigned char)from[i];
+    }
+    if (!st) st = exif_block(&exif, &exif_size, info, err);
+    if (!st) {
+        const unsigned mark = sizeof exif_mark; /* PNG goes without it */
+        st = write_png(
+            path, &(struct png_picture){pixels, width, height, 3, p->info.bits, exif + mark, exif_size - mark}, err);
+    }
+    free(exif);
+    free(pixels);
     return st;
 }
 

@@ -259,6 +259,29 @@ static void exif_is_written(void **state)
     assert_int_equal(photo_write_jpeg(scratch_path("bare.jpg/x.jpg"), rgb, 16, 12, 90, &nothing, &err), ST_IO);
 }
 
+/* Samples of 8 and of 16 bits, and EXIF, come back from a part as they are in the photo. */
+static void a_part_has_the_photos_own_samples(void **state)
+{
+    static uint16_t samples[20 * 10 * 3];
+    struct err err = ERR_INIT;
+    (void)state;
+    for (int bits = 8; bits <= 16; bits += 8) {
+        const struct photo_info told = {0, 0, 0, 6, 24.5, 70, 1.0 / 60, 5.6, 400, "remodel", "nine lenses"};
+        struct photo part, p = {{.width = 20, .height = 10, .bits = bits}, samples};
+        for (int i = 0; i < 20 * 10 * 3; i++) samples[i] = (uint16_t)(i * 109 % (bits == 8 ? 256 : 65536));
+        assert_ok(photo_write_part(scratch_path("part.png"), &p, 13, 4, 7, 6, &told, &err), err);
+        assert_ok(photo_read(&part, scratch_path("part.png"), &err), err);
+        assert_true(part.info.width == 7 && part.info.height == 6 && part.info.bits == bits);
+        for (int y = 0; y < 6; y++)
+            for (int i = 0; i < 7 * 3; i++)
+                assert_int_equal(part.samples[y * 21 + i], samples[(y + 4) * 60 + 13 * 3 + i]);
+        assert_true(part.info.orientation == 6 && part.info.focal_mm == 24.5 && part.info.focal35_mm == 70);
+        assert_true(fabs(part.info.seconds - 1.0 / 60) < 1e-12 && part.info.f_number == 5.6 && part.info.iso == 400);
+        assert_string_equal(part.info.model, "nine lenses");
+        photo_release(&part);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -272,6 +295,7 @@ int main(void)
         cmocka_unit_test(linear_light),
         cmocka_unit_test(written_pictures_read_back),
         cmocka_unit_test(exif_is_written),
+        cmocka_unit_test(a_part_has_the_photos_own_samples),
     };
     return cmocka_run_group_tests_name("photo", tests, scratch_make, scratch_remove);
 }
