@@ -87,7 +87,7 @@ static enum status encode_photo(const struct photo *p, const char *path, struct 
     if (!rgb) return err_nomem(err, "a photo", samples);
     for (size_t i = 0; i < samples; i++)
         rgb[i] = (unsigned char)(p->info.bits == 16 ? p->samples[i] >> 8 : p->samples[i]);
-    enum status st = jpeg_write(path, rgb, p->info.width, p->info.height, QUALITY, err);
+    enum status st = photo_write_jpeg(path, rgb, p->info.width, p->info.height, QUALITY, &p->info, err);
     free(rgb);
     return st;
 }

@@ -8,6 +8,7 @@
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
@@ -85,6 +86,30 @@ enum status sfm_single_camera(bool *single, const struct photo_list *photos, con
             a->file, a->info.width, a->info.height, b->file, b->info.width, b->info.height);
     }
     return ST_OK;
+}
+
+void sfm_png_lens(char text[SFM_LENS_TEXT], const struct photo_list *photos, const struct sfm_params *params)
+{
+    const struct photo_info *first = photos->count ? &photos->photos[0].info : NULL;
+    enum camera_model model = CAMERA_SIMPLE_RADIAL;
+    *text = '\0';
+    for (int i = 0; i < photos->count; i++) {
+        const struct photo_record *p = &photos->photos[i];
+        const char *end = strrchr(p->file, '.');
+        if (!end || strcasecmp(end, ".png") || !(p->info.focal35_mm > 0) || p->info.focal35_mm != first->focal35_mm ||
+            p->info.width != first->width || p->info.height != first->height)
+            return;
+    }
+    if (!first || !camera_model_from_name(params->camera_model, &model)) return;
+    const int count = camera_model_params(model);
+    const bool one = model == CAMERA_SIMPLE_PINHOLE || model == CAMERA_SIMPLE_RADIAL || model == CAMERA_RADIAL;
+    /* COLMAP's own rule for JPEGs: the long side is 35 mm */
+    const double focal = first->focal35_mm / 35 * fmax(first->width, first->height);
+    int length = snprintf(text, SFM_LENS_TEXT, "%.9g", focal);
+    if (!one) length += snprintf(text + length, SFM_LENS_TEXT - (size_t)length, ",%.9g", focal);
+    length +=
+        snprintf(text + length, SFM_LENS_TEXT - (size_t)length, ",%.9g,%.9g", first->width / 2.0, first->height / 2.0);
+    for (int i = one ? 3 : 4; i < count; i++) length += snprintf(text + length, SFM_LENS_TEXT - (size_t)length, ",0");
 }
 
 /* -------------------------------------------------------------------------------------------------- COLMAP's log */
@@ -171,7 +196,7 @@ struct run {
     const struct sfm_params *params;
     char *images, *masks, *database, *sparse; /* in the work folder; masks NULL without any */
     char *logs[STEPS];
-    char threads[16], most_features[16], most_size[16];
+    char threads[16], most_features[16], most_size[16], lens[SFM_LENS_TEXT];
     bool single;
 };
 
@@ -255,6 +280,7 @@ static enum status run_prepare(struct run *r, const struct sfm_folder *f, const 
     const char *work = r->folder->work;
     enum status st = sfm_single_camera(&r->single, r->photos, r->params, err);
     if (st) return st;
+    sfm_png_lens(r->lens, r->photos, r->params);
     snprintf(r->threads, sizeof r->threads, "%d", parallel_threads());
     snprintf(r->most_features, sizeof r->most_features, "%d", r->params->max_features);
     snprintf(r->most_size, sizeof r->most_size, "%d", r->params->max_image_size);
@@ -315,9 +341,9 @@ static enum status extract(const struct run *r, struct err *err)
                                    r->most_size};
     int n = 0;
     while (args[n]) n++;
-    if (*p->camera_params) {
+    if (*p->camera_params || *r->lens) {
         args[n++] = "--ImageReader.camera_params";
-        args[n++] = p->camera_params;
+        args[n++] = *p->camera_params ? p->camera_params : r->lens;
     }
     if (r->masks) {
         args[n++] = "--ImageReader.mask_path";

@@ -37,6 +37,11 @@ enum status sfm_params_check(const void *values, struct err *err);
 enum status sfm_single_camera(bool *single, const struct photo_list *photos, const struct sfm_params *params,
                               struct err *err);
 
+/* The lens to start from, as camera_params has it, where COLMAP itself would not find it in EXIF: of PNG photos, which
+ * all have one size and one known focal length on 35 mm film. "" where that is not so. */
+enum { SFM_LENS_TEXT = 400 };
+void sfm_png_lens(char text[SFM_LENS_TEXT], const struct photo_list *photos, const struct sfm_params *params);
+
 /* What the log of `colmap feature_extractor` says about one picture. */
 struct feature_count {
     char *name;   /* owned */

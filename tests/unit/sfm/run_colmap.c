@@ -71,6 +71,36 @@ static void one_lens_only_where_photos_are_alike(void **state)
     assert_err(err, ST_USAGE, "\"b.jpg\" 480 x 640 px");
 }
 
+static void pngs_bring_the_lens_of_their_exif(void **state)
+{
+    (void)state;
+    char ids[2][2] = {"a", "b"}, files[2][8] = {"a.png", "b.PNG"}, text[SFM_LENS_TEXT];
+    struct photo_record photos[2] = {
+        {.id = ids[0], .file = files[0], .info = {.width = 640, .height = 480, .focal35_mm = 70}},
+        {.id = ids[1], .file = files[1], .info = {.width = 640, .height = 480, .focal35_mm = 70}},
+    };
+    struct photo_list list = {photos, 2};
+    struct sfm_params p = SFM_PARAMS_DEFAULT;
+    sfm_png_lens(text, &list, &p);
+    assert_string_equal(text, "1280,320,240,0");
+    struct err err = ERR_INIT;
+    for (int m = 0; m < CAMERA_MODEL_COUNT; m++) { /* as many numbers as the model has */
+        strcpy(p.camera_model, camera_model_name(m));
+        sfm_png_lens(text, &list, &p);
+        strcpy(p.camera_params, text);
+        assert_ok(sfm_params_check(&p, &err), err);
+    }
+    photos[1].info.focal35_mm = 0;
+    sfm_png_lens(text, &list, &p);
+    assert_string_equal(text, "");
+    photos[1].info.focal35_mm = 70;
+    strcpy(files[1], "b.jpg"); /* COLMAP reads that itself */
+    sfm_png_lens(text, &list, &p);
+    assert_string_equal(text, "");
+    sfm_png_lens(text, &(struct photo_list){0}, &p);
+    assert_string_equal(text, "");
+}
+
 static void features_are_counted_from_the_log(void **state)
 {
     (void)state;
@@ -97,6 +127,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(lens_parameters_must_fit_the_model),
         cmocka_unit_test(one_lens_only_where_photos_are_alike),
+        cmocka_unit_test(pngs_bring_the_lens_of_their_exif),
         cmocka_unit_test(features_are_counted_from_the_log),
     };
     return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
