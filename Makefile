@@ -13,6 +13,7 @@ MAKEFLAGS += --no-builtin-rules
 
 ## SCENE=NAME: the scene to work on, scenes/NAME/
 ## PHOTOS=DIR: folder of JPEG/PNG photos; with a new SCENE it is written to scenes/SCENE/scene.mk
+## SPLIT=CxR: each photo is of a multi-lens camera: C columns and R rows of small pictures, which become the photos
 ## SFM=DIR: a COLMAP (text, binary) or Bundler model of the photos, used in place of running COLMAP
 ## DEPTH=DIR: depth that is known already: DIR/VIEW.exr or .png of any view (docs/formats.md); the others are matched
 ## EXCLUDE="NAMES": photos to leave out, by id or file name
@@ -63,6 +64,11 @@ ifneq ($(SCENE),)
       $(error EDIT=$(EDIT): there is no scenes/$(SCENE)/scene-$(EDIT).txt)
     endif
   endif
+  ifneq ($(SPLIT),)
+    ifeq ($(shell [[ '$(subst ','\'',$(SPLIT))' =~ ^[1-9][0-9]?x[1-9][0-9]?$$ ]] && echo good),)
+      $(error SPLIT=$(SPLIT): wanted COLUMNSxROWS, such as 3x2: how many pictures a photo holds)
+    endif
+  endif
   ifneq ($(HOLDOUT),)
     ifeq ($(shell [[ '$(subst ','\'',$(HOLDOUT))' =~ ^[1-9][0-9]{0,8}$$ ]] && echo good),)
       $(error HOLDOUT=$(HOLDOUT): wanted a number: every how many photos one is held out)
@@ -89,6 +95,7 @@ ifeq ($(PHASE),)
 # Values with $, # and quotes reach recipes as shell variables; Make must not expand what was typed on its command line
 literal = $(if $(filter command environment,$(firstword $(origin $(1)))),$(value $(1)),$($(1)))
 export REMODEL_PHOTOS := $(call literal,PHOTOS)
+export REMODEL_SPLIT := $(SPLIT)
 export REMODEL_SFM := $(call literal,SFM)
 export REMODEL_DEPTH := $(call literal,DEPTH)
 export REMODEL_EXCLUDE := $(call literal,EXCLUDE)
@@ -240,7 +247,8 @@ $(FUZZ_TESTS): $(B)/tests/fuzz/%: $(B)/obj/tests/fuzz/%.o $(B)/obj/tests/fuzz/ru
 $(B)/tests/fuzz/fuzz_given_units: $(call objs,stages/segment_depth/given_read.c)
 $(B)/tests/fuzz/fuzz_keyframes: $(filter-out %/plan_path.o,$(call objs,stages/plan_path/*.c))
 # what plan_path alone needs: JSON
-$(B)/bin/plan_path $(B)/tests/unit/plan_path/%: private LDLIBS += -ljansson
+$(B)/bin/plan_path $(B)/tests/unit/plan_path/% $(B)/tests/fuzz/fuzz_keyframes: private LDLIBS += -ljansson
+$(B)/tests/fuzz/fuzz_split_list: $(call objs,stages/import_photos/split_list.c)
 # what simulate alone needs
 $(B)/bin/simulate $(B)/tests/unit/simulate/%: private LDLIBS += -lembree3
 $(B)/tests/fuzz/fuzz_scene $(B)/tests/fuzz/fuzz_shoot: private LDLIBS += -lembree3
@@ -310,7 +318,8 @@ edited: $(EDITED_TXT) $(patsubst truth/%,$(EDITED)/%,$(foreach s,$(SHOTS),$(filt
 
 # what stages after hdr_merge take for the photos, and what a photo's view is made from; $(1) is a photo's id
 HDR := $(if $(BRACKETED),$(foreach p,$(PHOTO_IDS),$(S)/hdr/$(p).exr $(S)/hdr/$(p).jpg))
-PICTURES := $(if $(BRACKETED),$(S)/hdr,"$$REMODEL_PHOTOS")
+ORIGINALS := $(if $(SPLIT),$(S)/split,"$$REMODEL_PHOTOS")
+PICTURES := $(if $(BRACKETED),$(S)/hdr,$(ORIGINALS))
 picture = $(if $(BRACKETED),$(S)/hdr/$(1).exr,$(S)/photos/$(1).txt)
 
 .PHONY: hdr sfm views depth points path frames video pan_frames pan_scan heldout evaluate report
@@ -332,7 +341,7 @@ report: $(O)/index.html
 define hdr_rules
 $(S)/hdr/$(1).exr $(S)/hdr/$(1).jpg &: $(S)/photos/$(1).txt $(S)/slice/hdr_merge.cfg $(B)/code/hdr_merge
 	$$(hide)$$(call farm,hdr_merge,$(1),$(S)/hdr/$(1).jpg $(S)/hdr/$(1).exr,\
-	  --id $(1) --photos "$$$$REMODEL_PHOTOS" --records $(S)/photos --out $(S)/hdr,,$(S))
+	  --id $(1) --photos $$(ORIGINALS) --records $(S)/photos --out $(S)/hdr,,$(S))
 endef
 $(if $(BRACKETED),$(foreach p,$(PHOTO_IDS),$(eval $(call hdr_rules,$(p)))))
 

@@ -51,10 +51,12 @@ exclude=()
 if [ -n "${REMODEL_EXCLUDE-}" ]; then # names with blanks are quoted
     while IFS= read -r -d '' n; do exclude+=(--exclude "$n"); done < <(xargs printf '%s\0' <<<"$REMODEL_EXCLUDE")
 fi
+split=()
+[ -z "${REMODEL_SPLIT-}" ] || split=(--split "$REMODEL_SPLIT" --cuts "$folder/split")
 mode=silent
 [ -e "$folder/photos/list.txt" ] || mode=live
 common/run_stage.sh "$mode" import_photos all "$folder" "$bin/import_photos" --config "$folder/slice/import_photos.cfg" \
-    --photos "$REMODEL_PHOTOS" --scene "$scene" "${exclude[@]}" --out "$folder/photos"
+    --photos "$REMODEL_PHOTOS" --scene "$scene" "${exclude[@]}" "${split[@]}" --out "$folder/photos"
 [ "$mode" = live ] || grep -h warning: "$folder/log/import_photos.all.log" >&2 || true
 for r in "$folder"/photos/*.txt; do
     [[ ${r##*/} = list.txt || ${r##*/} = brackets.txt ]] || { printf '%s ' "${r##*/}"; grep -E '^(size|orientation) ' "$r" | tr '\n' ' '; echo; }
@@ -65,6 +67,7 @@ done | keep "$folder/stamp/photo_sizes.txt"
     else
         echo "COLMAP"
     fi
+    [ -z "${REMODEL_SPLIT-}" ] || grep '^grid ' "$folder/split/split.txt"
 } | keep "$folder/stamp/sfm_source.txt"
 
 # stamps WHAT: standard input is lines "NAME TEXT..."; NAME's lines become stamp/WHAT/NAME.txt, and what is named no more says "none"

@@ -38,6 +38,7 @@ if [ ! -e "$folder/scene.mk" ]; then
     {
         echo "# What this scene is made from. Every variable of \`make help\` may stand here; the command line wins."
         echo "PHOTOS := $(for_make "$REMODEL_PHOTOS")"
+        [ -z "${REMODEL_SPLIT-}" ] || echo "SPLIT := $REMODEL_SPLIT"
         [ -z "${REMODEL_SFM-}" ] || echo "SFM := $(for_make "$REMODEL_SFM")"
         [ -z "${REMODEL_DEPTH-}" ] || echo "DEPTH := $(for_make "$REMODEL_DEPTH")"
         [ -z "${REMODEL_TRUTH-}" ] || echo "TRUTH := $(for_make "$REMODEL_TRUTH")"

@@ -6,7 +6,7 @@ set -uo pipefail
 root=$PWD
 B=${B:-out/build/release}
 export FLAVOR=${B##*/}
-unset MAKEFLAGS MFLAGS MAKELEVEL SCENE PHOTOS SFM DEPTH EXCLUDE QUALITY HOLDOUT HOLDOUT_VIEWS TRUTH JOBS CORES V CI
+unset MAKEFLAGS MFLAGS MAKELEVEL SCENE PHOTOS SPLIT SFM DEPTH EXCLUDE QUALITY HOLDOUT HOLDOUT_VIEWS TRUTH JOBS CORES V CI
 scratch=$(mktemp -d "${TMPDIR:-/tmp}/remodel-test.XXXXXX")
 trap 'rm -rf --one-file-system "$scratch"' EXIT
 

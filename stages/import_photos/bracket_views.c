@@ -10,10 +10,6 @@
 #include "common/bracket_list.h"
 #include "common/log.h"
 
-#define PARAM_STRUCT struct import_params
-const struct param import_param_table[] = {IMPORT_PARAMS(PARAM_ROW) PARAM_END};
-#undef PARAM_STRUCT
-
 enum { CYCLE_MOST = 16, CYCLE_STARTS = 48, CYCLED_LEAST = 6, NAMED_MOST = 8, TEXT_SIZE = 160 };
 
 static const double same = 1.01, apart = 1.2; /* ratios of exposures */
@@ -156,14 +152,15 @@ struct cycle {
 };
 
 struct named {
-    const char *file;
+    const char *lens, *file; /* lens: _cXrY.png of a picture that was cut out, else "" */
     int photo;
 };
 
 static int by_name(const void *a, const void *b)
 {
     const struct named *x = a, *y = b;
-    int order = strverscmp(x->file, y->file);
+    int order = strverscmp(x->lens, y->lens);
+    if (!order) order = strverscmp(x->file, y->file);
     return order ? order : strcmp(x->file, y->file);
 }
 
@@ -176,7 +173,10 @@ static enum status order_photos(struct ordered *o, const struct bracket_views *v
     o->values = calloc(count + 1, sizeof *o->values);
     enum status st = names && o->photos && o->values ? ST_OK : err_nomem(err, "photos", count * sizeof *names);
     for (int i = 0; !st && i < scan->count; i++)
-        if (!scan->photos[i].excluded) names[o->count++] = (struct named){scan->photos[i].file, i};
+        if (!scan->photos[i].excluded) {
+            const char *file = scan->photos[i].file, *end = scan->cut ? strrchr(file, '_') : NULL;
+            names[o->count++] = (struct named){end ? end : "", file, i};
+        }
     if (!st) qsort(names, (size_t)o->count, sizeof *names, by_name);
     for (int i = 0; !st && i < o->count; i++) {
         o->photos[i] = names[i].photo;

@@ -4,7 +4,8 @@
  * bracketing camera leaves a cycle of exposures: 1/500 1/125 1/30 1/500 1/125 1/30 ... A cycle has 2 to 16 exposures,
  * any two of them at least 1.2 apart; it counts if it is seen at least twice and in at least 6 photos. If it holds all
  * photos they are brackets. If it holds three quarters of them a few are missing or too many, which is an error. Else
- * they are single photos.
+ * they are single photos. Pictures cut out of photos (split_photos.h) are taken lens by lens, so that one bracket of a
+ * multi-lens camera is a cycle, too.
  *
  * An exposure is seconds x ISO / (f-number^2 x filter): by EXIF, by exposures.txt in the photos' folder, by
  * SCENE/exposures.txt; the later one wins. */
@@ -12,22 +13,8 @@
 #define REMODEL_BRACKET_VIEWS_H
 
 #include "common/exposure_list.h"
-#include "common/param.h"
+#include "stages/import_photos/import_params.h"
 #include "stages/import_photos/photo_scan.h"
-
-/* name, type, default, least, most, unit, help */
-#define IMPORT_PARAMS(X)                             \
-    X(brackets, choice, "auto", 0, 0, "auto|yes|no", \
-      "photos are exposures of the same views; auto: if brackets.txt says so or their exposures form a cycle")
-
-struct import_params {
-    IMPORT_PARAMS(PARAM_FIELD)
-};
-#define IMPORT_PARAMS_DEFAULT        \
-    {                                \
-        IMPORT_PARAMS(PARAM_DEFAULT) \
-    }
-extern const struct param import_param_table[];
 
 struct bracket_view {
     char *

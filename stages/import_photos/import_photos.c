@@ -1,10 +1,12 @@
 /* import_photos.c - checks the photographs of a folder, gives them ids, finds which are exposures of one view.
  *
  * reads   --photos DIR   *.jpg *.jpeg *.png straight in it, exposures.txt; nothing in there is written
+ *         --split CxR    each of them holds C x R pictures of a multi-lens camera, which are the photos
  *         --scene DIR    brackets.txt, exposures.txt if they are there
  * writes  --out DIR      ID.txt, a record a photo (content hash, size, EXIF); then list.txt; then photos.mk
  *                        where photos are brackets: members/ID.txt, a record a photo; ID.txt, a record a view, and
  *                        brackets.txt; then list.txt and photos.mk with the views
+ *         --cuts DIR     with --split: ID_cXrY.png, the pictures; then split.txt
  *
  * Each file is rewritten only if its text changes, so that Make sees which photos did. A photo that cannot be used is
  * named with the reason, and so are all others like it, before the stage fails. */
@@ -15,13 +17,14 @@
 #include "common/cli.h"
 #include "common/log.h"
 #include "stages/import_photos/bracket_views.h"
+#include "stages/import_photos/split_photos.h"
 
 /* The user's folder is never written to. */
-static enum status check_out(const char *photos, const char *out, struct err *err)
+static enum status check_out(const char *photos, const char *option, const char *out, struct err *err)
 {
     struct stat a, b;
-    if (stat(photos, &a) || stat(out, &b) || a.st_dev != b.st_dev || a.st_ino != b.st_ino) return ST_OK;
-    return err_set(err, ST_USAGE, "--out %s is the folder of photos itself; name another one for the records.", out);
+    if (!out || stat(photos, &a) || stat(out, &b) || a.st_dev != b.st_dev || a.st_ino != b.st_ino) return ST_OK;
+    return err_set(err, ST_USAGE, "%s %s is the folder of photos itself; name another one.", option, out);
 }
 
 static bool is_there(const char *folder, const char *name)
@@ -40,7 +43,7 @@ struct left_out {
 
 static void leave_out(struct photo_scan *scan, struct left_out *out)
 {
-    for (int i = 0; i < out->names->count; i++) out->used[i] = photo_scan_exclude(scan, out->names->items[i]) > 0;
+    for (int i = 0; i < out->names->count; i++) out->used[i] |= photo_scan_exclude(scan, out->names->items[i]) > 0;
 }
 
 static void report_left_out(const struct photo_scan *scan, const struct left_out *out)
@@ -48,6 +51,33 @@ static void report_left_out(const struct photo_scan *scan, const struct left_out
     for (int i = 0; i < out->names->count; i++)
         if (!out->used[i])
             log_warn("no photo in %s is called %s; nothing is left out for it.", scan->folder, out->names->items[i]);
+}
+
+static void report_scan(const struct photo_scan *scan)
+{
+    for (int i = 0; i < scan->count; i++) err_report(&scan->photos[i].err);
+    if (scan->ignored) log_note("ignored in %s: %d that are no .jpg, .jpeg or .png file", scan->folder, scan->ignored);
+}
+
+/* The pictures that the photos hold, cut out into `cuts`. */
+static enum status cut(const char *photos, const char *split, const char *cuts, struct left_out *leave,
+                       const struct import_params *params, struct err *err)
+{
+    struct photo_scan scan = {0};
+    struct split_grid grid;
+    enum status st = split_grid_parse(&grid, split, params, err);
+    if (!st) st = photo_scan_folder(&scan, photos, err);
+    if (!st) {
+        leave_out(&scan, leave);
+        if (is_there(photos, "exposures.txt"))
+            log_warn("%s/exposures.txt is not read, for its photos are cut; write the pictures' exposures into that of "
+                     "the scene.",
+                     photos);
+        st = split_photos(&scan, &grid, cuts, err);
+        report_scan(&scan);
+    }
+    photo_scan_release(&scan);
+    return st;
 }
 
 /* Where photos are brackets their own records are in `members`, even when they cannot be grouped or one is bad: what
@@ -76,15 +106,31 @@ static enum status import(struct photo_scan *scan, const char *scene, struct lef
     return st;
 }
 
-static void report_scan(const struct photo_scan *scan)
+static enum status run(struct photo_scan *scan, const char *photos, const char *scene, const char *split,
+                       const char *cuts, const struct cli_list *exclude, const char *out,
+                       const struct import_params *params, struct err *err)
 {
-    for (int i = 0; i < scan->count; i++) err_report(&scan->photos[i].err);
-    if (scan->ignored) log_note("ignored in %s: %d that are no .jpg, .jpeg or .png file", scan->folder, scan->ignored);
+    struct left_out left = {exclude, calloc((size_t)exclude->count + 1, sizeof(bool))};
+    enum status st = left.used ? ST_OK : err_nomem(err, "names", (size_t)exclude->count);
+    if (!st && !split != !cuts)
+        st = err_set(err, ST_USAGE,
+                     "--split and --cuts go together: how many pictures a photo holds, and where they go.");
+    if (!st) st = check_out(photos, "--out", out, err);
+    if (!st) st = check_out(photos, "--cuts", cuts, err);
+    if (!st && split) st = cut(photos, split, cuts, &left, params, err);
+    if (!st) st = photo_scan_folder(scan, split ? cuts : photos, err);
+    scan->cut = split;
+    if (!st) leave_out(scan, &left);
+    if (!st) st = photo_scan_check(scan, out, err);
+    if (!st) st = import(scan, scene, &left, out, params, err);
+    report_scan(scan);
+    free(left.used);
+    return st;
 }
 
 int main(int argc, char **argv)
 {
-    const char *photos = NULL, *scene = NULL, *out = NULL;
+    const char *photos = NULL, *scene = NULL, *split = NULL, *cuts = NULL, *out = NULL;
     struct cli_list exclude = {0};
     struct import_params params = IMPORT_PARAMS_DEFAULT;
     const struct cli_opt opts[] = {
@@ -93,8 +139,11 @@ int main(int argc, char **argv)
         CLI_STR("scene", &scene, CLI_OPTIONAL, "folder that may hold brackets.txt and exposures.txt"),
         CLI_LIST("exclude", &exclude, CLI_OPTIONAL,
                  "photo to leave out: file name, with or without ending, or id; or a view"),
+        CLI_STR("split", &split, CLI_OPTIONAL,
+                "CxR: each photo holds C columns and R rows of pictures, of a multi-lens camera; these are the photos"),
+        CLI_STR("cuts", &cuts, CLI_OPTIONAL, "folder to write these pictures into"),
         CLI_STR("out", &out, CLI_REQUIRED, "folder of records to write"),
-        CLI_PARAMS(import_param_table, &params, NULL),
+        CLI_PARAMS(import_param_table, &params, import_params_check),
         CLI_END,
     };
     struct provenance prov = {0};
@@ -103,14 +152,7 @@ int main(int argc, char **argv)
 
     switch (cli_parse(argc, argv, "import_photos", opts, &prov, &err)) {
     case CLI_RUN:
-        if (!check_out(photos, out, &err) && !photo_scan_folder(&scan, photos, &err)) {
-            struct left_out left = {&exclude, calloc((size_t)exclude.count + 1, sizeof(bool))};
-            if (!left.used) err_nomem(&err, "names", (size_t)exclude.count);
-            if (left.used) leave_out(&scan, &left);
-            if (left.used && !photo_scan_check(&scan, out, &err)) import(&scan, scene, &left, out, &params, &err);
-            report_scan(&scan);
-            free(left.used);
-        }
+        run(&scan, photos, scene, split, cuts, &exclude, out, &params, &err);
         err_report(&err);
         break;
     case CLI_DONE:

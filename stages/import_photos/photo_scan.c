@@ -123,7 +123,7 @@ static char *join_path(const char *folder, const char *name, const char *ending)
 static enum status scan_entry(struct photo_scan *scan, const char *name, struct err *err)
 {
     struct stat info;
-    if (name[0] == '.' || !strcmp(name, "exposures.txt")) return ST_OK;
+    if (name[0] == '.' || !strcmp(name, "exposures.txt") || !strcmp(name, "split.txt")) return ST_OK;
     char *path = join_path(scan->folder, name, "");
     if (!path) return err_nomem(err, "a path", 0);
     bool other = !photo_stem(name) || (!stat(path, &info) && !S_ISREG(info.st_mode)); /* a dead link is a bad photo */
@@ -279,28 +279,30 @@ int photo_scan_bad(const struct photo_scan *scan)
     return bad;
 }
 
-static int used_photos(const struct photo_scan *scan)
+int photo_scan_used(const struct photo_scan *scan)
 {
     int used = 0;
     for (int i = 0; i < scan->count; i++) used += !scan->photos[i].excluded;
     return used;
 }
 
-static enum status bad_photos_error(const struct photo_scan *scan, int bad, struct err *err)
+enum status photo_scan_refuse_bad(const struct photo_scan *scan, struct err *err)
 {
     char names[1024] = "";
+    int bad = photo_scan_bad(scan);
+    if (!bad) return ST_OK;
     for (int i = 0; i < scan->count; i++) {
         size_t n = strlen(names);
         if (!scan->photos[i].excluded && scan->photos[i].err.status)
             snprintf(names + n, sizeof names - n, " %s", scan->photos[i].id);
     }
     return err_set(err, ST_DATA, "%d of %d photos in %s cannot be used: mend them, or leave them out (EXCLUDE =%s).",
-                   bad, used_photos(scan), scan->folder, names);
+                   bad, photo_scan_used(scan), scan->folder, names);
 }
 
 enum status photo_scan_write_records(const struct photo_scan *scan, const char *records, struct err *err)
 {
-    int count = 0, bad = photo_scan_bad(scan);
+    int count = 0;
     const char **ids = calloc((size_t)scan->count + 1, sizeof *ids);
     enum status st = ids ? make_folders(records, err) : err_nomem(err, "ids", (size_t)scan->count * sizeof *ids);
 
@@ -309,7 +311,7 @@ enum status photo_scan_write_records(const struct photo_scan *scan, const char *
     if (!st) st = photo_scan_remove_others(records, ids, count, err);
     for (int i = 0; !st && i < scan->count; i++)
         if (good(&scan->photos[i])) st = photo_record_write(&scan->photos[i].record, records, err);
-    if (!st && bad) st = bad_photos_error(scan, bad, err);
+    if (!st) st = photo_scan_refuse_bad(scan, err);
     free(ids);
     return st;
 }
@@ -317,7 +319,7 @@ enum status photo_scan_write_records(const struct photo_scan *scan, const char *
 enum status photo_scan_write(const struct photo_scan *scan, const char *records, struct err *err)
 {
     struct photo_list list = {0};
-    int used = used_photos(scan);
+    int used = photo_scan_used(scan);
     enum status st = photo_scan_write_records(scan, records, err);
 
     if (!st && used < 2)

@@ -23,7 +23,8 @@ struct photo_scan {
     char *folder;                 /* owned */
     struct scanned_photo *photos; /* in order of id (strcmp) */
     int count;
-    int ignored; /* other files and folders in there; hidden ones and exposures.txt are not counted */
+    bool cut;    /* the photos are pictures cut out of others, ID_cXrY.png; set by who knows */
+    int ignored; /* other files and folders in there; hidden ones, exposures.txt and split.txt are not counted */
 };
 
 /* ST_IO, ST_DATA: the folder is missing, no folder, or unreadable. No photo at all is no error yet. */
@@ -36,7 +37,10 @@ int photo_scan_exclude(struct photo_scan *scan, const char *name);
  * changed since, otherwise after decoding it to the last pixel. Photos that cannot be used have `err` set; they are no
  * error of this function. */
 enum status photo_scan_check(struct photo_scan *scan, const char *records, struct err *err);
-int photo_scan_bad(const struct photo_scan *scan); /* how many these are */
+int photo_scan_bad(const struct photo_scan *scan);  /* how many these are */
+int photo_scan_used(const struct photo_scan *scan); /* how many are not left out */
+/* ST_DATA, naming them, if there are any. */
+enum status photo_scan_refuse_bad(const struct photo_scan *scan, struct err *err);
 
 /* Writes the records of the good photos and removes those of all others. ST_DATA: bad photos (each has its own
  * `err`). */

@@ -93,6 +93,10 @@ make_says_what_is_wrong_with_its_words()
     expect 2 "JOBS=cloud" make -s DEPS=manual SCENE=x JOBS=cloud
     expect 2 "HOLDOUT=some" make -s DEPS=manual SCENE=x HOLDOUT=some
     expect 2 "HOLDOUT=0" make -s DEPS=manual SCENE=x HOLDOUT=0
+    expect 2 "SPLIT=9" make -s DEPS=manual SCENE=x SPLIT=9
+    expect 2 "SPLIT=0x3" make -s DEPS=manual SCENE=x SPLIT=0x3
+    expect 2 "COLUMNSxROWS" make -s DEPS=manual SCENE=x SPLIT="3x3'; touch bad; '"
+    [ ! -e bad ] || fail "a command in SPLIT was run"
     expect 2 "both given" make -s DEPS=manual SCENE=x HOLDOUT=8 HOLDOUT_VIEWS=a
     expect 2 "names of photos" make -s DEPS=manual SCENE=x HOLDOUT_VIEWS='a;b'
     expect 2 "scene-none.txt" make -s DEPS=manual edited SCENE=x EDIT=none

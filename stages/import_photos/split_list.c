@@ -1,0 +1,142 @@
+/* split_list.c - see split_list.h. */
+#include "stages/import_photos/split_list.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/outfile.h"
+#include "common/textfile.h"
+
+enum { QUOTED_SIZE = 1024, SIDE_MOST = 1 << 28 };
+
+static enum status expect_word(struct textfile *t, const char *wanted, struct err *err)
+{
+    char *word = NULL;
+    enum status st = textfile_word(t, wanted, &word, err);
+    if (!st && strcmp(word, wanted)) st = textfile_error(t, err, word, "a line \"%s ...\"", wanted);
+    return st;
+}
+
+static enum status expect_line(struct textfile *t, const char *keyword, struct err *err)
+{
+    if (!textfile_next(t)) return textfile_error(t, err, "the end of the file", "a line \"%s ...\"", keyword);
+    return expect_word(t, keyword, err);
+}
+
+static enum status read_int(struct textfile *t, const char *what, int least, int most, int *value, struct err *err)
+{
+    int64_t wide = 0;
+    enum status st = textfile_int(t, what, least, most, &wide, err);
+    if (!st) *value = (int)wide;
+    return st;
+}
+
+/* A file of this folder or of PHOTOS, and its hash. */
+static enum status read_file(struct textfile *t, char **file, char hash[HASH_TEXT], struct err *err)
+{
+    char *word = NULL;
+    enum status st = textfile_word(t, "file name", &word, err);
+    if (!st && (!*word || *word == '.' || strchr(word, '/')))
+        st = textfile_error(t, err, word, "the name of a file, without a folder");
+    if (!st && !(*file = strdup(word))) st = err_nomem(err, "a file name", strlen(word) + 1);
+    if (!st) st = textfile_word(t, "hash", &word, err);
+    if (!st && (strlen(word) != HASH_TEXT - 1 || strspn(word, "0123456789abcdef") != HASH_TEXT - 1))
+        st = textfile_error(t, err, word, "a hash of %d hexadecimal digits", HASH_TEXT - 1);
+    if (!st) strcpy(hash, word);
+    return st;
+}
+
+static enum status read_cut(struct split_cut *c, struct textfile *t, struct err *err)
+{
+    enum status st = expect_line(t, "cut", err);
+    if (!st) st = read_file(t, &c->file, c->hash, err);
+    if (!st) st = read_int(t, "first column", 0, SIDE_MOST, &c->x, err);
+    if (!st) st = read_int(t, "first row", 0, SIDE_MOST, &c->y, err);
+    return st ? st : textfile_end(t, err);
+}
+
+static enum status read_photo(struct split_list *list, struct textfile *t, struct err *err)
+{
+    const size_t cuts = (size_t)(list->grid.columns * list->grid.rows);
+    struct split_photo *photos = realloc(list->photos, ((size_t)list->count + 1) * sizeof *photos);
+    if (!photos) return err_nomem(err, "a list of photos", ((size_t)list->count + 1) * sizeof *photos);
+    list->photos = photos;
+    struct split_photo *p = &photos[list->count++];
+    *p = (struct split_photo){.cuts = calloc(cuts, sizeof *p->cuts)};
+    enum status st =
+        p->cuts ? expect_word(t, "photo", err) : err_nomem(err, "a list of pictures", cuts * sizeof *p->cuts);
+    if (!st) st = read_file(t, &p->file, p->hash, err);
+    if (!st) st = read_int(t, "width", 1, SIDE_MOST, &p->width, err);
+    if (!st) st = read_int(t, "height", 1, SIDE_MOST, &p->height, err);
+    if (!st) st = textfile_end(t, err);
+    while (!st && p->count < (int)cuts) st = read_cut(&p->cuts[p->count++], t, err);
+    return st;
+}
+
+static enum status read_all(struct split_list *list, struct textfile *t, struct err *err)
+{
+    struct split_grid *g = &list->grid;
+    int version = 0;
+    enum status st = expect_line(t, "remodel-split", err);
+    if (!st) st = read_int(t, "format version", 1, 1, &version, err);
+    if (!st) st = textfile_end(t, err);
+    if (!st) st = expect_line(t, "grid", err);
+    if (!st) st = read_int(t, "columns", 1, SPLIT_MOST, &g->columns, err);
+    if (!st) st = read_int(t, "rows", 1, SPLIT_MOST, &g->rows, err);
+    if (!st) st = read_int(t, "border", 0, SIDE_MOST, &g->border, err);
+    if (!st) st = read_int(t, "gap", 0, SIDE_MOST, &g->gap, err);
+    if (!st) st = read_int(t, "darkness", 0, 255, &g->dark, err);
+    if (!st) st = textfile_end(t, err);
+    while (!st && textfile_next(t)) st = read_photo(list, t, err);
+    return st;
+}
+
+enum status split_list_read(struct split_list *list, const char *path, struct err *err)
+{
+    struct textfile t = {0};
+    *list = (struct split_list){0};
+    enum status st = textfile_open(&t, path, err);
+    if (!st) st = read_all(list, &t, err);
+    textfile_release(&t);
+    if (st) split_list_release(list);
+    return st;
+}
+
+enum status split_list_write(const struct split_list *list, const char *path, struct err *err)
+{
+    const struct split_grid *g = &list->grid;
+    struct outfile f = {0};
+    char name[QUOTED_SIZE];
+    enum status st = outfile_open(&f, path, err);
+    if (!st) fprintf(f.fp, "remodel-split 1\ngrid %d %d %d %d %d\n", g->columns, g->rows, g->border, g->gap, g->dark);
+    for (int i = 0; !st && i < list->count; i++) {
+        const struct split_photo *p = &list->photos[i];
+        if ((st = textfile_quote(p->file, name, sizeof name, err))) break;
+        fprintf(f.fp, "photo %s %s %d %d\n", name, p->hash, p->width, p->height);
+        for (int k = 0; !st && k < p->count; k++) {
+            const struct split_cut *c = &p->cuts[k];
+            st = textfile_quote(c->file, name, sizeof name, err);
+            if (!st) fprintf(f.fp, "cut %s %s %d %d\n", name, c->hash, c->x, c->y);
+        }
+    }
+    if (!st) st = outfile_commit(&f, err);
+    outfile_discard(&f);
+    return st;
+}
+
+void split_photo_release(struct split_photo *p)
+{
+    for (int i = 0; i < p->count; i++) free(p->cuts[i].file);
+    free(p->cuts);
+    free(p->file);
+    *p = (struct split_photo){0};
+}
+
+void split_list_release(struct split_list *list)
+{
+    if (!list) return;
+    for (int i = 0; i < list->count; i++) split_photo_release(&list->photos[i]);
+    free(list->photos);
+    *list = (struct split_list){0};
+}

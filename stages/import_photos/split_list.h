@@ -1,0 +1,40 @@
+/* split_list.h - split.txt: which pictures were cut out of which photographs.
+ *
+ *   remodel-split 1
+ *   grid COLUMNS ROWS BORDER GAP DARK           [import_photos] split_*
+ *   photo "IMG 1.jpg" HASH WIDTH HEIGHT         as the folder PHOTOS names it, its bytes' hash; size of its pictures
+ *   cut IMG_1_c1r1.png HASH X Y                 COLUMNS x ROWS lines behind each photo, row by row: the file beside this one, its
+ *                                               hash, its first column and row in the photo as stored */
+#ifndef REMODEL_SPLIT_LIST_H
+#define REMODEL_SPLIT_LIST_H
+
+#include "common/hash.h"
+#include "stages/import_photos/split_grid.h"
+
+struct split_cut {
+    char *file; /* owned */
+    char hash[HASH_TEXT];
+    int x, y;
+};
+
+struct split_photo {
+    char *file; /* owned */
+    char hash[HASH_TEXT];
+    int width, height;      /* of each cut */
+    struct split_cut *cuts; /* columns x rows of them, owned */
+    int count;
+};
+
+struct split_list {
+    struct split_grid grid;
+    struct split_photo *photos;
+    int count;
+};
+
+/* {0} is the empty list. ST_DATA with file and line. */
+enum status split_list_read(struct split_list *list, const char *path, struct err *err);
+enum status split_list_write(const struct split_list *list, const char *path, struct err *err);
+void split_photo_release(struct split_photo *p);
+void split_list_release(struct split_list *list);
+
+#endif

@@ -1,0 +1,211 @@
+/* split_photos.c - see split_photos.h. */
+#include "stages/import_photos/split_photos.h"
+
+#include <dirent.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "common/log.h"
+#include "common/outfile.h"
+#include "common/parallel.h"
+#include "stages/import_photos/split_list.h"
+
+static char *join_path(const char *folder, const char *name)
+{
+    char *path = NULL;
+    return asprintf(&path, "%s/%s", folder, name) < 0 ? NULL : path;
+}
+
+/* The photo's pictures by name, without their hashes and places. */
+static enum status name_cuts(struct split_photo *s, const struct scanned_photo *p, const struct split_grid *g,
+                             struct err *err)
+{
+    const size_t cuts = (size_t)(g->columns * g->rows);
+    s->file = strdup(p->file);
+    s->cuts = calloc(cuts, sizeof *s->cuts);
+    if (!s->file || !s->cuts) return err_nomem(err, "a list of pictures", cuts * sizeof *s->cuts);
+    for (int r = 1; r <= g->rows; r++)
+        for (int c = 1; c <= g->columns; c++) {
+            struct split_cut *cut = &s->cuts[s->count];
+            if (asprintf(&cut->file, "%s_c%dr%d.png", p->id, c, r) < 0) {
+                cut->file = NULL;
+                return err_nomem(err, "a file name", 0);
+            }
+            s->count++;
+        }
+    return ST_OK;
+}
+
+/* Whether what was cut before is what would be cut now. */
+static bool still_good(struct split_photo *s, const struct split_list *old, const struct split_grid *g, const char *out)
+{
+    const struct split_photo *before = NULL;
+    if (memcmp(&old->grid, g, sizeof *g)) return false;
+    for (int i = 0; i < old->count && !before; i++)
+        if (!strcmp(old->photos[i].file, s->file) && !strcmp(old->photos[i].hash, s->hash)) before = &old->photos[i];
+    for (int k = 0; before && k < s->count; k++) {
+        const struct split_cut *was = &before->cuts[k];
+        struct split_cut *cut = &s->cuts[k];
+        struct err ignored = ERR_INIT;
+        char *path = strcmp(was->file, cut->file) ? NULL : join_path(out, cut->file);
+        const bool same =
+            path && !access(path, F_OK) && !hash_file(cut->hash, path, &ignored) && !strcmp(cut->hash, was->hash);
+        free(path);
+        if (!same) return false;
+        cut->x = was->x;
+        cut->y = was->y;
+    }
+    if (before) s->width = before->width, s->height = before->height;
+    return before;
+}
+
+struct cut_job {
+    struct split_photo *to;
+    const struct photo *from;
+    const struct photo_info *info;
+    const char *out;
+    struct err *errs; /* of each picture */
+};
+
+static void cut_pictures(void *ctx, size_t begin, size_t end, int thread)
+{
+    (void)thread;
+    struct cut_job *job = ctx;
+    for (size_t i = begin; i < end; i++) {
+        struct split_cut *c = &job->to->cuts[i];
+        char *path = join_path(job->out, c->file);
+        enum status st = path ? ST_OK : err_nomem(&job->errs[i], "a path", 0);
+        if (!st)
+            st = photo_write_part(path, job->from, c->x, c->y, job->to->width, job->to->height, job->info,
+                                  &job->errs[i]);
+        if (!st) hash_file(c->hash, path, &job->errs[i]);
+        free(path);
+    }
+}
+
+static enum status write_cuts(struct split_photo *s, const struct photo *p, const char *out, struct err *err)
+{
+    struct photo_info info = p->info;
+    info.focal35_mm *= hypot(p->info.width, p->info.height) / hypot(s->width, s->height);
+    struct cut_job job = {s, p, &info, out, calloc((size_t)s->count, sizeof *job.errs)};
+    if (!job.errs) return err_nomem(err, "errors", (size_t)s->count * sizeof *job.errs);
+    parallel_for((size_t)s->count, 1, cut_pictures, &job);
+    enum status st = ST_OK;
+    for (int i = 0; !st && i < s->count; i++)
+        if (job.errs[i].status) st = err_set(err, job.errs[i].status, "%s", job.errs[i].text);
+    free(job.errs);
+    return st;
+}
+
+/* What can be wrong with the photo itself goes to its own error. */
+static enum status cut_photo(struct split_photo *s, struct scanned_photo *p, const struct split_grid *g,
+                             const char *path, const char *out, struct err *err)
+{
+    struct photo photo = {0};
+    struct split_layout layout = {0};
+    enum status st = photo_read(&photo, path, &p->err);
+    if (!st) st = split_layout_find(&layout, g, &photo, path, &p->err);
+    if (!st) {
+        s->width = layout.width;
+        s->height = layout.height;
+        for (int i = 0; i < s->count; i++) {
+            s->cuts[i].x = layout.x[i % g->columns];
+            s->cuts[i].y = layout.y[i / g->columns];
+        }
+        if (layout.over_width || layout.over_height)
+            log_note("%s: %d x %d px are no multiple of %d x %d pictures; %d px across and %d px down are in none",
+                     p->file, photo.info.width, photo.info.height, g->columns, g->rows, layout.over_width,
+                     layout.over_height);
+        if (photo.info.orientation > 4 && g->columns != g->rows)
+            log_warn(
+                "%s is stored turned on its side; its %d columns and %d rows of pictures are counted as it is stored.",
+                p->file, g->columns, g->rows);
+        st = write_cuts(s, &photo, out, err);
+    }
+    photo_release(&photo);
+    return st;
+}
+
+static bool is_listed(const struct split_list *list, const char *file)
+{
+    for (int i = 0; i < list->count; i++)
+        for (int k = 0; k < list->photos[i].count; k++)
+            if (!strcmp(list->photos[i].cuts[k].file, file)) return true;
+    return false;
+}
+
+/* Whether a name ends as those of pictures do: _cXrY.png. */
+static bool is_cut_name(const char *name)
+{
+    const char *at = strrchr(name, '_');
+    int column, row, end = 0;
+    return at && sscanf(at, "_c%2dr%2d.png%n", &column, &row, &end) == 2 && end && !at[end];
+}
+
+static enum status remove_others(const struct split_list *list, const char *out, struct err *err)
+{
+    DIR *dir = opendir(out);
+    enum status st = dir ? ST_OK : err_errno(err, "open", out);
+    for (struct dirent *e; !st && (e = readdir(dir));) {
+        if (e->d_name[0] == '.' || !is_cut_name(e->d_name) || is_listed(list, e->d_name)) continue;
+        char *path = join_path(out, e->d_name);
+        if (!path)
+            st = err_nomem(err, "a path", 0);
+        else if (unlink(path))
+            st = err_errno(err, "remove", path);
+        free(path);
+    }
+    if (dir) closedir(dir);
+    return st;
+}
+
+static enum status split_all(struct split_list *list, int *kept, struct photo_scan *scan, const struct split_list *old,
+                             const char *out, struct err *err)
+{
+    enum status st = ST_OK;
+    for (int i = 0; !st && i < scan->count; i++) {
+        struct scanned_photo *p = &scan->photos[i];
+        struct split_photo *s = &list->photos[list->count];
+        if (p->excluded) continue;
+        char *path = join_path(scan->folder, p->file);
+        st = path ? ST_OK : err_nomem(err, "a path", 0);
+        list->count++;
+        if (!st) st = name_cuts(s, p, &list->grid, err);
+        if (!st && !hash_file(s->hash, path, &p->err)) {
+            if (still_good(s, old, &list->grid, out))
+                ++*kept;
+            else if (cut_photo(s, p, &list->grid, path, out, err))
+                st = err->status; /* the next photo's turn if this one alone is bad */
+        }
+        free(path);
+    }
+    return st;
+}
+
+enum status split_photos(struct photo_scan *scan, const struct split_grid *grid, const char *out, struct err *err)
+{
+    struct split_list old = {0}, list = {.grid = *grid};
+    struct err ignored = ERR_INIT;
+    int kept = 0;
+    if (!photo_scan_used(scan))
+        return err_set(err, ST_DATA, "%s holds no JPEG or PNG photo%s to cut into pictures.", scan->folder,
+                       scan->count ? " that is not left out" : "");
+    char *path = join_path(out, "split.txt");
+    list.photos = calloc((size_t)scan->count, sizeof *list.photos);
+    enum status st = path && list.photos ? make_folders(out, err) : err_nomem(err, "a list of photos", 0);
+    if (!st) split_list_read(&old, path, &ignored); /* where it cannot be read all is cut again */
+    if (!st) st = split_all(&list, &kept, scan, &old, out, err);
+    if (!st) st = photo_scan_refuse_bad(scan, err);
+    if (!st) st = remove_others(&list, out, err);
+    if (!st && (kept < list.count || list.count != old.count)) st = split_list_write(&list, path, err);
+    if (!st && kept < list.count)
+        log_note("%d of %d photos cut into %d x %d pictures each", list.count - kept, list.count, grid->columns,
+                 grid->rows);
+    split_list_release(&old);
+    split_list_release(&list);
+    free(path);
+    return st;
+}

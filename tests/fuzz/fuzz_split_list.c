@@ -1,0 +1,53 @@
+/* fuzz_split_list.c - split.txt: photos with as many pictures as the grid has; written again it reads the same. Or a
+ * sentence says why not. */
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "stages/import_photos/split_list.h"
+#include "tests/fuzz/fuzz.h"
+
+static void check_file(const char *file)
+{
+    if (!*file || *file == '.' || strchr(file, '/')) abort();
+}
+
+static void check_same(const struct split_photo *p, const struct split_photo *q)
+{
+    if (strcmp(p->file, q->file) || strcmp(p->hash, q->hash) || p->width != q->width || p->height != q->height) abort();
+    for (int k = 0; k < p->count; k++) {
+        const struct split_cut *c = &p->cuts[k], *d = &q->cuts[k];
+        if (strcmp(c->file, d->file) || strcmp(c->hash, d->hash) || c->x != d->x || c->y != d->y) abort();
+    }
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    char path[] = "/tmp/remodel-fuzz-XXXXXX";
+    int fd = mkstemp(path);
+    struct split_list list, again;
+    struct err err = ERR_INIT;
+
+    if (fd < 0 || write(fd, data, size) != (ssize_t)size || close(fd)) abort();
+    if (split_list_read(&list, path, &err)) {
+        if (!strstr(err.text, path) || list.photos) abort();
+    } else {
+        for (int i = 0; i < list.count; i++) {
+            const struct split_photo *p = &list.photos[i];
+            if (p->count != list.grid.columns * list.grid.rows || p->width < 1 || p->height < 1) abort();
+            check_file(p->file);
+            for (int k = 0; k < p->count; k++) check_file(p->cuts[k].file);
+        }
+        if (!split_list_write(&list, path,
+                              &err)) { /* a name may hold what cannot be written: a line break is none of it */
+            if (split_list_read(&again, path, &err) || again.count != list.count) abort();
+            for (int i = 0; i < list.count; i++) check_same(&list.photos[i], &again.photos[i]);
+            split_list_release(&again);
+        } else if (err.status != ST_DATA) {
+            abort();
+        }
+        split_list_release(&list);
+    }
+    unlink(path);
+    return 0;
+}
