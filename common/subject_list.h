@@ -23,7 +23,7 @@ struct subject {
     enum subject_source source;
     double x0, y0, x1, y1; /* x0 < x1, y0 < y1 */
     double depth;          /* > 0, scene units */
-    double score;          /* of the detection, more is surer; 0: a user's */
+    double score;          /* of the detections, more is surer; 0: a user's */
     int confirmed, asked;  /* other views that see a face there too, of those that were asked; 0: a user's */
     struct vec3 corner[4];
 };
