@@ -103,7 +103,7 @@ export REMODEL_TRUTH := $(call literal,TRUTH)
 
 export VIEWS_PER_JOB SLURM_ARGS
 dry = $(findstring n,$(filter-out --%,$(firstword -$(MAKEFLAGS))))
-GOALS := edited hdr sfm views depth points path frames video pan_scan evaluate report
+GOALS := edited hdr sfm views depth points subjects path frames video pan_scan evaluate report
 .PHONY: all help why resfm check fuzz bench bench-compare regress regress-accept man deps deps-check deps-bench clean $(GOALS)
 
 ifeq ($(SCENE),)
@@ -116,6 +116,7 @@ sfm:    ## + camera poses: COLMAP, or the model in SFM
 views:  ## + rectified, linear views
 depth:  ## + layered depth maps
 points: ## + oriented points on which they agree (no part of what follows)
+subjects: ## + faces, or the rectangles of scenes/SCENE/subjects.txt
 path:   ## + the camera move
 frames: ## + its frames
 video:  ## + the video
@@ -194,7 +195,7 @@ COMMON_OBJS := $(call objs,common/*.c)
 BINS := $(STAGES:%=$(B)/bin/%)
 UNIT_TESTS := $(patsubst tests/unit/%.c,$(B)/tests/unit/%,$(wildcard tests/unit/*/*.c))
 BENCHES := $(patsubst tests/bench/%.c,$(B)/tests/bench/%,$(wildcard tests/bench/*.c))
-# of them what needs OpenCV, which only benches do: tests must do without
+# of them what needs more of OpenCV than find_subjects does: tests must do without
 OPENCV_BENCHES := $(B)/tests/bench/stereo_sgbm
 FUZZ_TESTS := $(patsubst tests/fuzz/%.c,$(B)/tests/fuzz/%,$(wildcard tests/fuzz/fuzz_*.c))
 
@@ -246,9 +247,16 @@ $(FUZZ_TESTS): $(B)/tests/fuzz/%: $(B)/obj/tests/fuzz/%.o $(B)/obj/tests/fuzz/ru
 	$(call link)
 $(B)/tests/fuzz/fuzz_given_units: $(call objs,stages/segment_depth/given_read.c)
 $(B)/tests/fuzz/fuzz_keyframes: $(filter-out %/plan_path.o,$(call objs,stages/plan_path/*.c))
-# what plan_path alone needs: JSON
-$(B)/bin/plan_path $(B)/tests/unit/plan_path/% $(B)/tests/fuzz/fuzz_keyframes: private LDLIBS += -ljansson
+# what plan_path alone needs: JSON, nonlinear least squares
+$(B)/bin/plan_path $(B)/tests/unit/plan_path/% $(B)/tests/fuzz/fuzz_keyframes: $(B)/obj/common/ceres_least_squares.o
+$(B)/bin/plan_path $(B)/tests/unit/plan_path/% $(B)/tests/fuzz/fuzz_keyframes: private LDLIBS += -ljansson -lceres -lglog -lstdc++
+$(B)/obj/common/ceres_least_squares.o: private CXXFLAGS += -isystem /usr/include/eigen3
 $(B)/tests/fuzz/fuzz_split_list: $(call objs,stages/import_photos/split_list.c)
+# what find_subjects alone needs; its tests do without OpenCV
+$(B)/bin/find_subjects: $(B)/obj/common/opencv_faces.o
+$(B)/bin/find_subjects: private LDLIBS += -lopencv_objdetect -lopencv_imgproc -lopencv_core -lstdc++
+$(B)/obj/common/opencv_faces.o: private CXXFLAGS += -isystem /usr/include/opencv4
+$(B)/tests/fuzz/fuzz_regions: $(call objs,stages/find_subjects/region*.c)
 # what simulate alone needs
 $(B)/bin/simulate $(B)/tests/unit/simulate/%: private LDLIBS += -lembree3
 $(B)/tests/fuzz/fuzz_scene $(B)/tests/fuzz/fuzz_shoot: private LDLIBS += -lembree3
@@ -282,6 +290,7 @@ DEPTH_TXT := $(DEPTH_EXR:.exr=.txt)
 LAST_ROUND := $(shell sed -n 's/^rounds = //p' $(O)/slice/segment_depth.cfg 2>/dev/null)
 round = $(O)/depth$(if $(filter-out $(LAST_ROUND),$(1)),/round$(1))
 POINTS := $(O)/points/points.ply
+SUBJECTS := $(O)/parallax/subjects.txt
 FRAME_EXR := $(FRAMES:%=$(E)/frames/%.exr)
 PATH_TXT := $(E)/path.txt $(addprefix $(E)/path/,cameras.txt images.txt points3D.txt)
 PATH_EXPORTS := $(E)/transforms.json $(E)/blender.py
@@ -322,12 +331,13 @@ ORIGINALS := $(if $(SPLIT),$(S)/split,"$$REMODEL_PHOTOS")
 PICTURES := $(if $(BRACKETED),$(S)/hdr,$(ORIGINALS))
 picture = $(if $(BRACKETED),$(S)/hdr/$(1).exr,$(S)/photos/$(1).txt)
 
-.PHONY: hdr sfm views depth points path frames video pan_frames pan_scan heldout evaluate report
+.PHONY: hdr sfm views depth points subjects path frames video pan_frames pan_scan heldout evaluate report
 hdr: $(HDR)
 sfm: $(O)/views/views.mk
 views: $(VIEW_EXR) $(HELD_EXR)
 depth: $(DEPTH_EXR) $(DEPTH_TXT)
 points: $(POINTS)
+subjects: $(SUBJECTS)
 path: $(E)/frames.mk $(PATH_EXPORTS)
 frames: $(FRAME_EXR)
 video: $(E)/video.mp4
@@ -401,6 +411,13 @@ $(PATH_TXT) $(E)/effects.txt $(E)/frames.mk &: $(KEYFRAMES) $(CHAINED:%=$(O)/par
   $(CAMERAS) $(O)/views/lenses.txt $(call needs,plan_path)
 	$(call stage,plan_path,$(EFFECT),$(O),--views $(O)/views --records $(S)/photos --keyframes $(KEYFRAMES) --moves $(O)/parallax --effect $(EFFECT) --out $(E))
 endif
+# rectangles that a user drew, in place of faces; that they came or went is a change whatever the file's time
+DRAWN := $(wildcard scenes/$(SCENE)/subjects.txt)
+WERE_DRAWN := $(shell grep -om1 '^. input subjects.txt' $(SUBJECTS) 2>/dev/null)
+$(SUBJECTS): $(CAMERAS) $(O)/views/lenses.txt $(if $(DRAWN),$(DRAWN),$(VIEW_EXR)) $(DEPTH_EXR) $(DEPTH_TXT) $(call needs,find_subjects) \
+  $(if $(DRAWN),$(if $(WERE_DRAWN),,FORCE),$(if $(WERE_DRAWN),FORCE))
+	$(call stage,find_subjects,all,$(O),--views $(O)/views --depth $(O)/depth --records $(S)/photos $(DRAWN:%=--subjects %) --out $@)
+
 
 # frames come in chunks, a process each; of a chunk only the frames that are missing or stale are rendered
 EFFECT_LAYERS := $(if $(KEYFRAMES),$(E)/effects.txt,$(wildcard scenes/$(SCENE)/effects.txt))

@@ -194,7 +194,7 @@ done
 one depth
 case $goal in
 depth) exit 0 ;;
-points) one points; exit 0 ;;
+points | subjects) one "$goal"; exit 0 ;;
 evaluate) evaluate; common/explain.sh metrics "$O"; exit 0 ;;
 esac
 one path

@@ -41,6 +41,7 @@ parameters_out_of_range_are_refused()
     expect 2 "tolerance" "$B/bin/fuse_points" --set tolerance=0
     expect 2 "max_holes" "$B/bin/plan_path" --set max_holes=nan
     expect 2 "tolerance" "$B/bin/pan_scan" --set tolerance=nan
+    expect 2 "least_face" "$B/bin/find_subjects" --set least_face=0
     expect 2 "brackets" "$B/bin/import_photos" --set brackets=maybe
     expect 2 "saturated" "$B/bin/hdr_merge" --set saturated=2
     expect 2 "camera_model" "$B/bin/sfm" --set camera_model=FISH
@@ -69,6 +70,7 @@ missing_inputs_fail_with_their_name()
     expect 1 "$d" "$B/bin/rectify" --view v --photos "$d" --records "$d" --views "$d" --out "$scratch/o/v.exr"
     expect 1 "$d" "$B/bin/segment_depth" --view v --views "$d" --out "$scratch/o/v.exr"
     expect 1 "$d" "$B/bin/fuse_points" --views "$d" --depth "$d" --out "$scratch/o/p.ply"
+    expect 1 "$d" "$B/bin/find_subjects" --views "$d" --depth "$d" --out "$scratch/o/subjects.txt"
     expect 1 "$d" "$B/bin/plan_path" --views "$d" --depth "$d" --effect establishing_dolly --out "$scratch/o"
     expect 1 "$d" "$B/bin/render_views" --views "$d" --depth "$d" --path "$d" --frames 1:2 --out "$scratch/o"
     expect 1 "$d" "$B/bin/render_views" --views "$d" --depth "$d" --cameras "$d" --out "$scratch/o"

@@ -1,0 +1,217 @@
+/* find_subjects.c - what a camera move shows: faces that several photographs see, or rectangles that a user drew.
+ *
+ * reads   VIEWS/cameras.txt, images.txt, points3D.txt   the cameras
+ *         VIEWS/lenses.txt                              with --subjects or --records: the views' photos
+ *         RECORDS/ID.txt                                with --records: which way up the photos are
+ *         VIEWS/VIEW.exr                                without --subjects: the centremost views and those that confirm
+ *         DEPTH/VIEW.exr, VIEW.txt                      of the views in which subjects are
+ * writes  OUT                                           the subjects, the two largest faces or the user's in their order */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/cli.h"
+#include "common/lens_list.h"
+#include "common/log.h"
+#include "common/upright.h"
+#include "common/view_image.h"
+#include "stages/find_subjects/faces.h"
+#include "stages/find_subjects/region_depth.h"
+#include "stages/find_subjects/regions.h"
+
+enum { PATH_SIZE = 4096 };
+
+#define CASCADES "/usr/share/opencv4/haarcascades"
+
+struct inputs {
+    const char *views, *depth, *records, *subjects, *cascades;
+    struct camera_set set;
+    struct vec3 *ups; /* NULL: all photos are stored upright, as far as is known */
+    struct face_detector *detector;
+    struct provenance *prov;
+};
+
+static enum status add_input(struct inputs *in, const char *as, const char *folder, const char *file,
+                             const char *suffix, char path[PATH_SIZE], struct err *err)
+{
+    char name[PATH_SIZE];
+    if (snprintf(path, PATH_SIZE, "%s/%s%s", folder, file, suffix) >= PATH_SIZE ||
+        snprintf(name, PATH_SIZE, "%s/%s%s", as, file, suffix) >= PATH_SIZE)
+        return err_set(err, ST_IO, "the path %s/%s%s is too long.", folder, file, suffix);
+    return provenance_add_file(in->prov, name, path, err);
+}
+
+static enum status read_depth(void *ctx, int view_idx, struct layered_depth *d, struct err *err)
+{
+    struct inputs *in = ctx;
+    const struct view *v = &in->set.views[view_idx];
+    char path[PATH_SIZE];
+    if (add_input(in, "depth", in->depth, v->name, ".txt", path, err) ||
+        add_input(in, "depth", in->depth, v->name, ".exr", path, err) || layered_depth_read(d, path, err))
+        return err->status;
+    if (d->width == v->width && d->height == v->height) return ST_OK;
+    err_set(err, ST_DATA, "%s is %d x %d pixels, but its camera says %d x %d; make the depth maps again.", path,
+            d->width, d->height, v->width, v->height);
+    layered_depth_release(d);
+    return err->status;
+}
+
+static enum status read_picture(void *ctx, int view_idx, unsigned char **grey, struct err *err)
+{
+    struct inputs *in = ctx;
+    const struct view *v = &in->set.views[view_idx];
+    struct image im = {0};
+    char path[PATH_SIZE];
+    if (add_input(in, "views", in->views, v->name, ".exr", path, err) || view_image_read(&im, in->views, v, err))
+        return err->status;
+    const size_t pixels = (size_t)im.width * (size_t)im.height;
+    *grey = malloc(pixels);
+    for (size_t i = 0; *grey && i < pixels; i++) {
+        const float *rgb = im.data + 4 * i;
+        (*grey)[i] =
+            (unsigned char)(255 * srgb_from_linear(0.2126F * rgb[0] + 0.7152F * rgb[1] + 0.0722F * rgb[2]) + 0.5F);
+    }
+    image_release(&im);
+    return *grey ? ST_OK : err_nomem(err, "a grey picture", pixels);
+}
+
+static enum status detect(void *ctx, const unsigned char *grey, int width, int height, double least, double most,
+                          struct face **faces, int *count, struct err *err)
+{
+    struct inputs *in = ctx;
+    return face_detect(in->detector, grey, width, height, least, most, faces, count, err);
+}
+
+/* ---------------------------------------------------------------------------------------------------------- outcomes */
+
+static void tell_face(const struct face_sighting *f)
+{
+    const struct subject *s = &f->subject;
+    char what[256];
+    snprintf(what, sizeof what, "view %.100s, face of %.0f x %.0f px at %.0f %.0f (score %.0f)", s->view, s->x1 - s->x0,
+             s->y1 - s->y0, s->x0, s->y0, s->score);
+    switch (f->verdict) {
+    case FACE_KEPT:
+    case FACE_BEYOND:
+        if (f->alone)
+            log_warn("%s: %d other views show its place, too few to confirm it; taken for one by its score", what,
+                     s->asked);
+        else
+            log_note("%s: %d of %d views confirm it%s", what, s->confirmed, s->asked,
+                     f->verdict == FACE_KEPT ? "" : "; left out, two larger ones are there");
+        break;
+    case FACE_NO_DEPTH:
+        log_warn("%s: nothing in it has a depth; left out", what);
+        break;
+    case FACE_UNCONFIRMED:
+        log_note("%s: only %d of %d views confirm it; left out", what, s->confirmed, s->asked);
+        break;
+    case FACE_UNSURE:
+        log_note("%s: too low a score%s; left out", what,
+                 f->alone ? ", with too few other views that show its place" : "");
+        break;
+    }
+}
+
+static enum status seek_faces(struct subject_list *list, struct inputs *in, const struct find_params *params,
+                              struct err *err)
+{
+    const struct face_source source = {in, read_picture, read_depth, detect};
+    struct face_report report = {0};
+    char path[PATH_SIZE];
+    enum status st = face_detector_open(&in->detector, in->cascades, err);
+    for (int i = 0; !st && face_cascades[i]; i++)
+        st = add_input(in, "opencv", in->cascades, face_cascades[i], "", path, err);
+    if (!st) st = find_faces(list, &report, &in->set, in->ups, &source, params, err);
+    for (int i = 0; !st && i < report.count; i++) tell_face(&report.sightings[i]);
+    if (!st && !list->count) log_note("no face in the %d most central views", report.views);
+    face_report_release(&report);
+    face_detector_release(in->detector);
+    return st;
+}
+
+static enum status place_region(struct subject_list *list, struct inputs *in, const struct region *region,
+                                const struct lens_list *lenses, struct err *err)
+{
+    struct subject s = {0};
+    struct layered_depth depth = {0};
+    int view_idx = 0;
+    enum status st = region_in_view(&s, &view_idx, region, in->subjects, &in->set, lenses, err);
+    if (!st) st = read_depth(in, view_idx, &depth, err);
+    if (!st) st = region_depth(&s.depth, &depth, &s, err);
+    if (!st && !(s.depth > 0))
+        st =
+            err_set(err, ST_DATA,
+                    "%s:%d: nothing in the rectangle from %.9g %.9g to %.9g %.9g of %s has a depth (masked, or outside "
+                    "of the lens), so it has no place in space; draw it over something else, or in another photo.",
+                    in->subjects, region->line, region->x0, region->y0, region->x1, region->y1, region->view);
+    if (!st) {
+        subject_place(&s, &in->set.views[view_idx], in->ups ? &in->ups[view_idx] : NULL);
+        log_note("subject %d: view %s, %.0f x %.0f px at %.0f %.0f, depth %.4g", list->count + 1, s.view, s.x1 - s.x0,
+                 s.y1 - s.y0, s.x0, s.y0, s.depth);
+        st = subject_list_add(list, &s, err);
+    }
+    layered_depth_release(&depth);
+    subject_release(&s);
+    return st;
+}
+
+static enum status place_regions(struct subject_list *list, struct inputs *in, struct err *err)
+{
+    struct region_list regions = {0};
+    struct lens_list lenses = {0};
+    char path[PATH_SIZE];
+    enum status st = region_list_read(&regions, in->subjects, err);
+    if (!st) st = provenance_add_file(in->prov, "subjects.txt", in->subjects, err);
+    if (!st) st = add_input(in, "views", in->views, "lenses.txt", "", path, err);
+    if (!st) st = lens_list_read(&lenses, path, err);
+    if (!st && !regions.count) log_note("%s names no subject: there is none", in->subjects);
+    for (int i = 0; !st && i < regions.count; i++) st = place_region(list, in, &regions.regions[i], &lenses, err);
+    lens_list_release(&lenses);
+    region_list_release(&regions);
+    return st;
+}
+
+static enum status find(struct inputs *in, const char *out, const struct find_params *params, struct err *err)
+{
+    static const char *const camera_files[] = {"cameras.txt", "images.txt", "points3D.txt"};
+    struct subject_list list = {0};
+    char path[PATH_SIZE];
+    enum status st = camera_set_read(&in->set, in->views, err);
+    for (int i = 0; !st && i < 3; i++) st = add_input(in, "views", in->views, camera_files[i], "", path, err);
+    if (!st && in->records) {
+        in->ups = calloc((size_t)in->set.view_count + 1, sizeof *in->ups);
+        st = in->ups ? upright_read(in->ups, &in->set, in->views, in->records, in->prov, err)
+                     : err_nomem(err, "a direction a view", (size_t)in->set.view_count * sizeof *in->ups);
+    }
+    if (!st) st = in->subjects ? place_regions(&list, in, err) : seek_faces(&list, in, params, err);
+    if (!st) st = subject_list_write(&list, out, in->prov, err);
+    subject_list_release(&list);
+    camera_set_release(&in->set);
+    free(in->ups);
+    return st;
+}
+
+int main(int argc, char **argv)
+{
+    struct provenance prov = {0};
+    struct inputs in = {.cascades = CASCADES, .prov = &prov};
+    const char *out = NULL;
+    struct find_params params = FIND_PARAMS_DEFAULT;
+    const struct cli_opt opts[] = {
+        CLI_ABOUT("Finds what a camera move is to show: faces, or rectangles that a user drew."),
+        CLI_STR("views", &in.views, CLI_REQUIRED, "folder of cameras and rectified views"),
+        CLI_STR("depth", &in.depth, CLI_REQUIRED, "folder of the views' layers"),
+        CLI_STR("records", &in.records, CLI_OPTIONAL, "folder of the photos' records: which way up they are"),
+        CLI_STR("subjects", &in.subjects, CLI_OPTIONAL, "file of rectangles on photos; faces are then not looked for"),
+        CLI_STR("cascades", &in.cascades, CLI_OPTIONAL, "folder of OpenCV's face cascades (" CASCADES ")"),
+        CLI_STR("out", &out, CLI_REQUIRED, "list of subjects to write"),
+        CLI_PARAMS(find_param_table, &params, NULL),
+        CLI_END,
+    };
+    struct err err = ERR_INIT;
+    if (cli_parse(argc, argv, "find_subjects", opts, &prov, &err) != CLI_RUN || find(&in, out, &params, &err))
+        err_report(&err);
+    provenance_release(&prov);
+    return err_exit_code(&err);
+}

@@ -1,0 +1,72 @@
+/* region_depth.c - see region_depth.h. */
+#include "stages/find_subjects/region_depth.h"
+
+#include <stdlib.h>
+
+struct sample {
+    float z, weight;
+};
+
+static int compare_samples(const void *a, const void *b)
+{
+    const struct sample *p = a, *q = b;
+    if (p->z != q->z) return p->z < q->z ? -1 : 1;
+    return (p->weight > q->weight) - (p->weight < q->weight); /* the sum is then the same in any sort's hands */
+}
+
+bool clip_to_picture(struct subject *s, int width, int height)
+{
+    s->x0 = fmin(fmax(s->x0, 0), width);
+    s->x1 = fmin(fmax(s->x1, 0), width);
+    s->y0 = fmin(fmax(s->y0, 0), height);
+    s->y1 = fmin(fmax(s->y1, 0), height);
+    return s->x1 > s->x0 && s->y1 > s->y0;
+}
+
+/* Pixels [*first, *end) whose centres lie in [low, high]; the one that holds the middle where there is none. */
+static void pixel_range(double low, double high, int size, int *first, int *end)
+{
+    *first = (int)ceil(low - 0.5);
+    *end = (int)floor(high - 0.5) + 1;
+    if (*end <= *first) *end = (*first = (int)((low + high) / 2)) + 1;
+    if (*first < 0) *first = 0;
+    if (*end > size) *end = size;
+}
+
+static size_t add_sample(struct sample *samples, size_t count, const struct layered_depth *d, const struct layer *l,
+                         size_t pixel)
+{
+    const uint32_t id = l->id[pixel];
+    const float z = l->z[pixel], alpha = l->rgba[4 * pixel + 3];
+    if (!id || !(z > 0) || !(alpha > 0)) return count;
+    samples[count] = (struct sample){z, alpha * (float)fmax(d->segments[id - 1].confidence, DEPTH_INHERITED)};
+    return count + 1;
+}
+
+enum status region_depth(double *depth, const struct layered_depth *d, const struct subject *s, struct err *err)
+{
+    int left, right, top, bottom;
+    *depth = 0;
+    pixel_range(s->x0, s->x1, d->width, &left, &right);
+    pixel_range(s->y0, s->y1, d->height, &top, &bottom);
+    if (right <= left || bottom <= top) return ST_OK;
+    const size_t most = 2 * (size_t)(right - left) * (size_t)(bottom - top);
+    struct sample *samples = malloc(most * sizeof *samples);
+    if (!samples) return err_nomem(err, "the depths in a rectangle", most * sizeof *samples);
+    size_t count = 0;
+    for (int y = top; y < bottom; y++)
+        for (int x = left; x < right; x++) {
+            const size_t pixel = (size_t)y * (size_t)d->width + (size_t)x;
+            count = add_sample(samples, count, d, &d->interior, pixel);
+            count = add_sample(samples, count, d, &d->boundary, pixel);
+        }
+    qsort(samples, count, sizeof *samples, compare_samples);
+    double total = 0, sum = 0;
+    for (size_t i = 0; i < count; i++) total += samples[i].weight;
+    for (size_t i = 0; i < count && !(*depth > 0); i++) {
+        sum += samples[i].weight;
+        if (sum >= total / 2) *depth = samples[i].z;
+    }
+    free(samples);
+    return ST_OK;
+}

@@ -1,0 +1,147 @@
+/* regions.c - see regions.h. */
+#include "stages/find_subjects/regions.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/scan.h"
+#include "common/textfile.h"
+#include "stages/find_subjects/region_depth.h"
+
+enum { GRID = 33, MOST_REGIONS = 10000 }; /* GRID: places of a region, each way, that go through the lens */
+
+void region_list_release(struct region_list *list)
+{
+    if (!list) return;
+    for (int i = 0; i < list->count; i++) free(list->regions[i].view);
+    free(list->regions);
+    *list = (struct region_list){0};
+}
+
+static enum status wrong_number(const struct textfile *t, double found, const char *wanted, double than,
+                                struct err *err)
+{
+    char text[32];
+    snprintf(text, sizeof text, "%.9g", found);
+    return textfile_error(t, err, text, "%s (%.9g): X0 Y0 is the upper left corner, X1 Y1 the lower right one", wanted,
+                          than);
+}
+
+static enum status read_region(struct textfile *t, struct region *r, struct err *err)
+{
+    char *word, *view;
+    if (textfile_word(t, "\"subject\"", &word, err)) return err->status;
+    if (strcmp(word, "subject"))
+        return textfile_error(t, err, word, "\"subject\", in a line \"subject VIEW X0 Y0 X1 Y1\"");
+    if (textfile_word(t, "a photo or view", &view, err) || textfile_double(t, "x0", &r->x0, err) ||
+        textfile_double(t, "y0", &r->y0, err) || textfile_double(t, "x1", &r->x1, err) ||
+        textfile_double(t, "y1", &r->y1, err) || textfile_end(t, err))
+        return err->status;
+    if (!(r->x1 > r->x0)) return wrong_number(t, r->x1, "an X1 above X0", r->x0, err);
+    if (!(r->y1 > r->y0)) return wrong_number(t, r->y1, "a Y1 above Y0", r->y0, err);
+    r->line = t->line;
+    r->view = strdup(view);
+    return r->view ? ST_OK : err_nomem(err, "a view's name", strlen(view));
+}
+
+enum status region_list_read(struct region_list *list, const char *path, struct err *err)
+{
+    struct textfile t = {0};
+    *list = (struct region_list){0};
+    enum status st = textfile_open(&t, path, err);
+    while (!st && textfile_next(&t)) {
+        const size_t bytes = ((size_t)list->count + 1) * sizeof *list->regions;
+        if (list->count == MOST_REGIONS) {
+            st = err_set(err, ST_DATA, "%s:%d: found more than %d subjects.", path, t.line, MOST_REGIONS);
+            break;
+        }
+        struct region *more = realloc(list->regions, bytes);
+        if (!more) {
+            st = err_nomem(err, "subjects", bytes);
+            break;
+        }
+        list->regions = more;
+        struct region *r = &list->regions[list->count++];
+        *r = (struct region){0};
+        st = read_region(&t, r, err);
+    }
+    textfile_release(&t);
+    if (st) region_list_release(list);
+    return st;
+}
+
+/* ------------------------------------------------------------------------------------------------ through the lens */
+
+/* The box, in the view's pixels, of the part of the region that the photo has and that lies before the view; returns how many
+ * places of it the view's picture shows. */
+static int project_region(struct subject *s, const struct region *r, const struct lens *lens, const struct view *view)
+{
+    const struct mat3 view_from_photo = mat3_from_quat(lens->view_from_photo);
+    const double left = fmax(r->x0, 0), right = fmin(r->x1, lens->camera.width);
+    const double top = fmax(r->y0, 0), bottom = fmin(r->y1, lens->camera.height);
+    int shown = 0;
+    s->x0 = s->y0 = HUGE_VAL;
+    s->x1 = s->y1 = -HUGE_VAL;
+    if (!(right > left && bottom > top)) return 0;
+    for (int i = 0; i < GRID * GRID; i++) {
+        struct vec3 ray;
+        const double x = left + (right - left) * (i % GRID) / (GRID - 1);
+        const double y = top + (bottom - top) * (i / GRID) / (GRID - 1);
+        if (!camera_unproject(&lens->camera, x, y, &ray)) continue;
+        ray = mat3_apply(view_from_photo, ray);
+        if (!(ray.z > 0)) continue;
+        const double u = view->fx * (ray.x / ray.z) + view->cx, v = view->fy * (ray.y / ray.z) + view->cy;
+        s->x0 = fmin(s->x0, u);
+        s->x1 = fmax(s->x1, u);
+        s->y0 = fmin(s->y0, v);
+        s->y1 = fmax(s->y1, v);
+        shown += u >= 0 && u <= view->width && v >= 0 && v <= view->height;
+    }
+    return clip_to_picture(s, view->width, view->height) ? shown : 0;
+}
+
+/* Photos and views, for a guess at what was meant. */
+static const char *known_name(const void *ctx, int i)
+{
+    const struct lens_list *lenses = ctx;
+    if (i >= 2 * lenses->count) return NULL;
+    return i % 2 ? lenses->lenses[i / 2].view : lenses->lenses[i / 2].photo;
+}
+
+enum status region_in_view(struct subject *s, int *view_idx, const struct region *region, const char *path,
+                           const struct camera_set *set, const struct lens_list *lenses, struct err *err)
+{
+    const struct lens *known = NULL;
+    int most = 0;
+    for (int i = 0; i < lenses->count; i++) {
+        const struct lens *lens = &lenses->lenses[i];
+        const int at = camera_set_find(set, lens->view);
+        if ((strcmp(lens->view, region->view) && strcmp(lens->photo, region->view)) || at < 0) continue;
+        known = lens;
+        struct subject found = {.source = SUBJECT_USER};
+        const int shown = project_region(&found, region, lens, &set->views[at]);
+        if (shown <= most) continue;
+        most = shown;
+        *s = found;
+        *view_idx = at;
+    }
+    if (!known) {
+        char shown[SCAN_SHOWN];
+        const char *near = scan_nearest(region->view, known_name, lenses);
+        const char *wanted = "wanted a photo's id or a view's name, as lenses.txt has them";
+        scan_show(shown, region->view);
+        if (near)
+            return err_set(err, ST_DATA, "%s:%d: found %s, %s; did you mean %s?", path, region->line, shown, wanted,
+                           near);
+        return err_set(err, ST_DATA, "%s:%d: found %s, %s.", path, region->line, shown, wanted);
+    }
+    if (!most)
+        return err_set(
+            err, ST_DATA,
+            "%s:%d: the rectangle from %.9g %.9g to %.9g %.9g lies outside of what %s shows: the photo has %d x %d "
+            "pixels; draw it in pixels of the photo as it is stored.",
+            path, region->line, region->x0, region->y0, region->x1, region->y1, region->view, known->camera.width,
+            known->camera.height);
+    s->view = strdup(set->views[*view_idx].name);
+    return s->view ? ST_OK : err_nomem(err, "a view's name", strlen(region->view));
+}
