@@ -123,7 +123,17 @@ static enum status seek_faces(struct subject_list *list, struct inputs *in, cons
     for (int i = 0; !st && face_cascades[i]; i++)
         st = add_input(in, "opencv", in->cascades, face_cascades[i], "", path, err);
     if (!st) st = find_faces(list, &report, &in->set, in->ups, &source, params, err);
-    for (int i = 0; !st && i < report.count; i++) tell_face(&report.sightings[i]);
+    int far_off = 0; /* what chance makes of windows and leaves needs no line each */
+    for (int i = 0; !st && i < report.count; i++) {
+        const struct face_sighting *f = &report.sightings[i];
+        if ((f->verdict == FACE_UNSURE || f->verdict == FACE_UNCONFIRMED) && f->subject.score < params->least_score / 2)
+            far_off++;
+        else
+            tell_face(f);
+    }
+    if (far_off)
+        log_note("%d %s in a single view, but hardly in others; left out", far_off,
+                 far_off == 1 ? "place looks like a face" : "places look like faces");
     if (!st && !list->count) log_note("no face in the %d most central views", report.views);
     face_report_release(&report);
     face_detector_release(in->detector);
