@@ -248,8 +248,9 @@ $(FUZZ_TESTS): $(B)/tests/fuzz/%: $(B)/obj/tests/fuzz/%.o $(B)/obj/tests/fuzz/ru
 $(B)/tests/fuzz/fuzz_given_units: $(call objs,stages/segment_depth/given_read.c)
 $(B)/tests/fuzz/fuzz_keyframes: $(filter-out %/plan_path.o,$(call objs,stages/plan_path/*.c))
 # what plan_path alone needs: JSON, nonlinear least squares
-$(B)/bin/plan_path $(B)/tests/unit/plan_path/% $(B)/tests/fuzz/fuzz_keyframes: $(B)/obj/common/ceres_least_squares.o
-$(B)/bin/plan_path $(B)/tests/unit/plan_path/% $(B)/tests/fuzz/fuzz_keyframes: private LDLIBS += -ljansson -lceres -lglog -lstdc++
+PLANNERS := $(B)/bin/plan_path $(B)/tests/fuzz/fuzz_keyframes $(filter $(B)/tests/unit/plan_path/%,$(UNIT_TESTS))
+$(PLANNERS): $(B)/obj/common/ceres_least_squares.o
+$(PLANNERS): private LDLIBS += -ljansson -lceres -lglog -lstdc++
 $(B)/obj/common/ceres_least_squares.o: private CXXFLAGS += -isystem /usr/include/eigen3
 $(B)/tests/fuzz/fuzz_split_list: $(call objs,stages/import_photos/split_list.c)
 # what find_subjects alone needs; its tests do without OpenCV

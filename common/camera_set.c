@@ -136,6 +136,19 @@ struct vec3 view_unproject(const struct view *view, double u, double v, double z
     return mat3_apply(mat3_transpose(view->cam_from_world), vec3_sub(p, view->translation));
 }
 
+struct view view_from_lens_point(const struct view *camera, double a, double b, double focus)
+{
+    const struct vec3 offset = mat3_apply(mat3_transpose(camera->cam_from_world), vec3_make(a, b, 0));
+    struct view v = *camera;
+
+    v.center = vec3_add(camera->center, offset);
+    v.translation.x -= a;
+    v.translation.y -= b;
+    v.cx += camera->fx * a / focus;
+    v.cy += camera->fy * b / focus;
+    return v;
+}
+
 void view_resize(struct view *view, int width, int height)
 {
     const double x = (double)width / view->width, y = (double)height / view->height;

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "common/distance.h"
+#include "common/parallel.h"
 
 #define OUTSIDE_SIDE   64    /* of the picture in which what is outside is counted */
 #define NEAR_TOLERANCE 0.005 /* of the picture */
@@ -112,10 +113,51 @@ enum status viewpoint_is_valid(bool *valid, struct viewpoint_test *test, const s
     return ST_OK;
 }
 
+void viewpoint_test_like(struct viewpoint_test *test, const struct viewpoint_test *like)
+{
+    *test = (struct viewpoint_test){
+        .scene = like->scene, .points = like->points, .shot = like->shot, .limits = like->limits};
+}
+
 void viewpoint_test_release(struct viewpoint_test *test)
 {
     rendered_frame_release(&test->coverage);
     free(test->distance);
     test->distance = NULL;
     test->distance_room = 0;
+}
+
+struct measuring {
+    struct viewpoint *out;
+    const struct view *cameras;
+    struct viewpoint_test *tests; /* a thread */
+    struct err *errors;           /* a camera */
+};
+
+static void measure_some(void *ctx, size_t begin, size_t end, int thread)
+{
+    const struct measuring *m = ctx;
+    for (size_t i = begin; i < end; i++)
+        viewpoint_measure(&m->out[i], &m->tests[thread], &m->cameras[i], &m->errors[i]);
+}
+
+enum status viewpoints_measure(struct viewpoint *out, const struct view *cameras, int count,
+                               struct viewpoint_test *like, struct err *err)
+{
+    const int threads = parallel_threads();
+    struct measuring m = {out, cameras, calloc((size_t)threads, sizeof *m.tests),
+                          calloc((size_t)count + 1, sizeof *m.errors)};
+    enum status st = m.tests && m.errors ? ST_OK : err_nomem(err, "viewpoints", (size_t)count * sizeof *m.errors);
+
+    for (int t = 0; !st && t < threads; t++) viewpoint_test_like(&m.tests[t], like);
+    if (!st) parallel_for((size_t)count, 1, measure_some, &m);
+    for (int i = 0; !st && i < count; i++)
+        if (m.errors[i].status) st = err_set(err, m.errors[i].status, "%s", m.errors[i].text);
+    for (int t = 0; m.tests && t < threads; t++) {
+        like->renders += m.tests[t].renders;
+        viewpoint_test_release(&m.tests[t]);
+    }
+    free(m.tests);
+    free(m.errors);
+    return st;
 }

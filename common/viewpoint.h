@@ -50,6 +50,11 @@ enum status viewpoint_measure(struct viewpoint *v, struct viewpoint_test *test, 
                               struct err *err);
 /* Whether it is valid; what is cheap is looked at first, and the rest only if that is good. */
 enum status viewpoint_is_valid(bool *valid, struct viewpoint_test *test, const struct view *camera, struct err *err);
+/* The same for `count` cameras, on all threads; `like` says of what, and counts the renders. */
+enum status viewpoints_measure(struct viewpoint *out, const struct view *cameras, int count,
+                               struct viewpoint_test *like, struct err *err);
+/* Another one of the same scene, for another thread. */
+void viewpoint_test_like(struct viewpoint_test *test, const struct viewpoint_test *like);
 void viewpoint_test_release(struct viewpoint_test *test);
 
 #endif

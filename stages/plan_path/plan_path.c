@@ -1,12 +1,13 @@
 /* plan_path.c - plans a camera move that shows a scene's depth without showing its holes, or the film of a file of keys.
  *
  * reads   VIEWS/cameras.txt, images.txt, points3D.txt   the cameras
- *         VIEWS/lenses.txt, RECORDS/ID.txt              with --records: which way up the photos are
- *         DEPTH/VIEW.exr, VIEW.txt                      every view's layers; or
+ *         DEPTH/VIEW.exr, VIEW.txt                      every view's layers,
+ *         VALIDITY, SUBJECTS                            the move's valid viewpoints, and what it shows; or
  *         FILE, MOVES/EFFECT/path.txt, path/NAME.txt,   with --keyframes: the film, the moves that it chains
- *         effects.txt                                   and their effect layers
+ *         effects.txt                                   and their effect layers,
+ *         VIEWS/lenses.txt, RECORDS/ID.txt              and with --records which way up the photos are
  * writes  OUT/path/{cameras,images,points3D}.txt        the frames' cameras
- *         OUT/effects.txt                               with --keyframes: the film's effect layers
+ *         OUT/effects.txt                               the film's own effect layers, with none too
  *         OUT/path.txt                                  scores and times
  *         OUT/blender.py, transforms.json               the same move for other programs
  *         OUT/frames.mk                                 FRAMES := 0001 0002 ..., last: if it is new, so is the rest */
@@ -14,14 +15,15 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/central_views.h"
 #include "common/cli.h"
+#include "common/film_lens.h"
 #include "common/log.h"
 #include "common/outfile.h"
 #include "common/upright.h"
-#include "stages/plan_path/establishing_dolly.h"
 #include "stages/plan_path/film.h"
-#include "stages/plan_path/film_lens.h"
 #include "stages/plan_path/path_export.h"
+#include "stages/plan_path/plan_move.h"
 
 enum { PATH_SIZE = 4096 };
 
@@ -29,14 +31,6 @@ static enum status join(char out[PATH_SIZE], const char *folder, const char *fil
 {
     if (snprintf(out, PATH_SIZE, "%s/%s%s", folder, file, suffix) < PATH_SIZE) return ST_OK;
     return err_set(err, ST_IO, "the path %s/%s%s is too long.", folder, file, suffix);
-}
-
-static enum status add_input(struct provenance *prov, const char *name, const char *folder, const char *file,
-                             struct err *err)
-{
-    char path[PATH_SIZE];
-    if (join(path, folder, file, "", err) || provenance_add_file(prov, name, path, err)) return err->status;
-    return ST_OK;
 }
 
 static enum status write_frames(const struct camera_path *path, const char *out, struct err *err)
@@ -54,26 +48,35 @@ static enum status write_frames(const struct camera_path *path, const char *out,
     return st;
 }
 
-static void tell(const struct camera_path *path, const struct dolly_notes *notes, const struct plan_params *params)
+/* The path for render_views and for other programs; layers stand beside it, none too. */
+static enum status write_film(const struct camera_path *path, const struct effects *layers, const char *out,
+                              const struct provenance *prov, struct err *err)
 {
-    double parallax = 0, angle = 0;
-    for (int i = 0; i < path->score_count; i++) {
-        if (!strcmp(path->scores[i].name, "parallax")) parallax = path->scores[i].value;
-        if (!strcmp(path->scores[i].name, "angle")) angle = path->scores[i].value;
-    }
-    log_note("%d frames of %d x %d around view %s: %.1f degrees at the scene's centroid, %.0f px of parallax",
-             path->frame_count, path->frames[0].camera.width, path->frames[0].camera.height, notes->center_view, angle,
-             parallax);
-    if (notes->zoom > 1)
-        log_note("zoomed in by %.0f %% to keep holes and the photos' borders out of the frames",
-                 100 * (notes->zoom - 1));
-    if (notes->hole_limit > params->max_holes)
-        log_warn("even view %s leaves more than %.3g %% of the frame uncovered; allowing %.3g %%", notes->center_view,
-                 100 * params->max_holes, 100 * notes->hole_limit);
-    if (notes->outside_limit > params->max_outside)
-        log_warn("even at view %s more than %.3g %% of the frame lies beyond the views' borders; allowing %.3g %%",
-                 notes->center_view, 100 * params->max_outside, 100 * notes->outside_limit);
-    if (notes->stands_still) log_warn("no move keeps holes and borders out of the frames: the camera stands still");
+    char name[PATH_SIZE];
+    enum status st = join(name, out, "effects.txt", "", err);
+    if (!st) st = effects_write(layers, name, prov, err);
+    if (!st) st = camera_path_write(path, out, prov, err);
+    if (!st) st = path_export_write(path, out, prov, err);
+    if (!st) st = write_frames(path, out, err);
+    return st;
+}
+
+static void tell(const struct camera_path *path, const struct move_notes *n, const struct validity *v)
+{
+    const struct move_ends *e = &n->ends, *d = &n->chosen.discrete;
+    log_note("%d frames of %d x %d: %.1f degrees at the scene's centroid, %.3g median depths long", path->frame_count,
+             path->frames[0].camera.width, path->frames[0].camera.height, e->angle, e->length / v->shot.median_depth);
+    log_note("parallax %.2f %% of the frames (the best of the %d longest pairs: %.2f %%), worst H %.2g at %.0f %% of "
+             "the way (%.2g)",
+             100 * e->parallax, n->chosen.pairs, 100 * d->parallax, e->worst_h, 100 * e->worst_at, d->worst_h);
+    if (n->stands_still)
+        log_warn("no move keeps all of its way valid: the camera stands still");
+    else if (n->chosen.chosen < 0)
+        log_note("no pair was valid all along: the best one was drawn together towards the origin");
+    if (!e->valid)
+        log_warn("a part of the way is not valid: H is up to %.3g, the limit is %.3g", e->worst_h, v->limits.max_h);
+    if (v->effect.focus && !(n->aperture > 0))
+        log_warn("the aperture cannot open without showing holes: all frames are pinhole");
 }
 
 /* The views and, with records, their upright directions; the caller frees *ups. */
@@ -81,9 +84,7 @@ static enum status read_views(struct camera_set *set, struct vec3 **ups, const c
                               struct provenance *prov, struct err *err)
 {
     enum status st = camera_set_read(set, views, err);
-    if (!st) st = add_input(prov, "views/cameras.txt", views, "cameras.txt", err);
-    if (!st) st = add_input(prov, "views/images.txt", views, "images.txt", err);
-    if (!st) st = add_input(prov, "views/points3D.txt", views, "points3D.txt", err);
+    if (!st) st = camera_set_add_inputs(prov, views, err);
     if (st || !records) return st;
     *ups = calloc((size_t)set->view_count + 1, sizeof **ups);
     return *ups ? upright_read(*ups, set, views, records, prov, err)
@@ -91,7 +92,7 @@ static enum status read_views(struct camera_set *set, struct vec3 **ups, const c
 }
 
 struct job { /* what the command line says */
-    const char *views, *records, *depth, *keyframes, *moves, *effect, *out;
+    const char *views, *records, *depth, *validity, *subjects, *keyframes, *moves, *name, *out;
     struct plan_params params;
 };
 
@@ -102,62 +103,70 @@ static enum status plan_film(const struct job *job, struct provenance *prov, str
     struct camera_path path = {0};
     struct effects layers = {0};
     struct vec3 *ups = NULL;
-    struct film film = {.name = job->effect, .fps = job->params.fps, .moves = job->moves};
-    char name[PATH_SIZE];
+    int *order = NULL;
+    struct film film = {.name = job->name, .fps = job->params.fps, .moves = job->moves};
     enum status st = read_views(&set, &ups, job->views, job->records, prov, err);
     if (!st && !set.view_count) st = err_set(err, ST_DATA, "%s has no view: there is no scene to film.", job->views);
+    if (!st && !(order = malloc((size_t)set.view_count * sizeof *order)))
+        st = err_nomem(err, "views", (size_t)set.view_count * sizeof *order);
+    if (!st) st = central_views(order, &set, err);
     if (!st) {
         film.set = &set;
         film.ups = ups;
         film.rest = !strcmp(job->params.ease, "smooth");
-        film_lens(&film.lens, &film.up, &set, ups, &job->params);
+        const struct film_size size = {job->params.width, job->params.height, job->params.max_side};
+        film_lens(&film.lens, &film.up, &set, order[0], ups, &size);
         st = keyframed_path(&path, &layers, job->keyframes, &film, prov, err);
     }
-    if (!st) st = join(name, job->out, "effects.txt", "", err);
-    if (!st) st = effects_write(&layers, name, prov, err);
-    if (!st) st = camera_path_write(&path, job->out, prov, err);
-    if (!st) st = write_frames(&path, job->out, err);
+    if (!st) st = write_film(&path, &layers, job->out, prov, err);
     if (!st)
         log_note("%d frames of %d x %d in %d shots, %d effect layers", path.frame_count, film.lens.width,
                  film.lens.height, path.score_count, layers.layer_count);
     camera_path_release(&path);
     effects_release(&layers);
     camera_set_release(&set);
+    free(order);
     free(ups);
     return st;
 }
 
-static enum status plan(const char *views, const char *records, const char *depth, const char *out,
-                        const struct plan_params *params, struct provenance *prov, struct err *err)
+static enum status plan(const struct job *job, struct provenance *prov, struct err *err)
 {
     struct camera_set set = {0};
     struct layer_scene scene = {0};
+    struct validity v = {0};
+    struct subject_list subjects = {0};
     struct camera_path path = {0};
-    struct dolly_notes notes = {0};
-    struct vec3 *ups = NULL;
-    enum status st = read_views(&set, &ups, views, records, prov, err);
-    if (!st) st = layer_scene_read(&scene, &set, depth, prov, err);
-    if (!st) st = plan_establishing_dolly(&path, &notes, &scene, ups, params, err);
-    if (!st) st = camera_path_write(&path, out, prov, err);
-    if (!st) st = path_export_write(&path, out, prov, err);
-    if (!st) st = write_frames(&path, out, err);
-    if (!st) tell(&path, &notes, params);
+    struct effects layers = {0};
+    struct move_notes notes = {0};
+    enum status st = read_views(&set, NULL, job->views, NULL, prov, err);
+    if (!st) st = validity_read(&v, job->validity, err);
+    if (!st) st = provenance_add_file(prov, "validity.txt", job->validity, err);
+    if (!st && job->subjects) {
+        st = subject_list_read(&subjects, job->subjects, err);
+        if (!st) st = provenance_add_file(prov, "parallax/subjects.txt", job->subjects, err);
+    }
+    if (!st) st = layer_scene_read(&scene, &set, job->depth, prov, err);
+    if (!st) st = plan_move(&path, &layers, &notes, &scene, &v, &subjects, &job->params, err);
+    if (!st) st = write_film(&path, &layers, job->out, prov, err);
+    if (!st) tell(&path, &notes, &v);
     camera_path_release(&path);
+    effects_release(&layers);
+    subject_list_release(&subjects);
+    validity_release(&v);
     layer_scene_release(&scene);
     camera_set_release(&set);
-    free(ups);
     return st;
 }
 
 static enum status run(const struct job *job, struct provenance *prov, struct err *err)
 {
-    if (job->keyframes) return plan_film(job, prov, err);
-    if (!job->depth)
+    if (job->keyframes ? job->depth || job->validity || job->subjects || !job->name
+                       : !job->depth || !job->validity || job->name || job->moves)
         return err_set(err, ST_USAGE,
-                       "--depth is missing, the folder of the views' layers; only a film of keys does without.");
-    if (strcmp(job->effect, "establishing_dolly"))
-        return err_set(err, ST_USAGE, "there is no effect \"%s\"; the one known is establishing_dolly.", job->effect);
-    return plan(job->views, job->records, job->depth, job->out, &job->params, prov, err);
+                       "wanted --depth with --validity, for a move, or --keyframes with --name, for a film of keys; "
+                       "--subjects goes with the one, --moves and --records with the other.");
+    return job->keyframes ? plan_film(job, prov, err) : plan(job, prov, err);
 }
 
 int main(int argc, char **argv)
@@ -166,11 +175,15 @@ int main(int argc, char **argv)
     const struct cli_opt opts[] = {
         CLI_ABOUT("Plans a camera move that shows a scene's depth without showing its holes, or a film of keys."),
         CLI_STR("views", &job.views, CLI_REQUIRED, "folder of cameras"),
-        CLI_STR("depth", &job.depth, CLI_OPTIONAL, "folder of the views' layers"),
-        CLI_STR("records", &job.records, CLI_OPTIONAL, "folder of the photos' records: makes the film upright"),
-        CLI_STR("effect", &job.effect, CLI_REQUIRED, "establishing_dolly; of a film of keys, its name"),
-        CLI_STR("keyframes", &job.keyframes, CLI_OPTIONAL, "file of keys and moves to make a film from"),
-        CLI_STR("moves", &job.moves, CLI_OPTIONAL, "folder of the planned moves that the film may chain"),
+        CLI_STR("depth", &job.depth, CLI_OPTIONAL, "of a move: folder of the views' layers"),
+        CLI_STR("validity", &job.validity, CLI_OPTIONAL,
+                "of a move: file of its valid viewpoints, which names the effect"),
+        CLI_STR("subjects", &job.subjects, CLI_OPTIONAL, "of a move: file of the scene's subjects, if it needs any"),
+        CLI_STR("keyframes", &job.keyframes, CLI_OPTIONAL, "of a film of keys: file of its keys and moves"),
+        CLI_STR("name", &job.name, CLI_OPTIONAL, "of a film of keys: what it is called"),
+        CLI_STR("moves", &job.moves, CLI_OPTIONAL, "of a film of keys: folder of the planned moves that it may chain"),
+        CLI_STR("records", &job.records, CLI_OPTIONAL,
+                "of a film of keys: folder of the photos' records, makes it upright"),
         CLI_STR("out", &job.out, CLI_REQUIRED, "folder to write the path into"),
         CLI_PARAMS(plan_param_table, &job.params, plan_params_check),
         CLI_END,

@@ -45,19 +45,6 @@ void aperture_lens_point(int index, double *x, double *y)
     *y = radius * (wide ? sin(angle) : cos(angle));
 }
 
-struct view aperture_view(const struct view *camera, double a, double b, double focus)
-{
-    const struct vec3 offset = mat3_apply(mat3_transpose(camera->cam_from_world), vec3_make(a, b, 0));
-    struct view v = *camera;
-
-    v.center = vec3_add(camera->center, offset);
-    v.translation.x -= a;
-    v.translation.y -= b;
-    v.cx += camera->fx * a / focus;
-    v.cy += camera->fy * b / focus;
-    return v;
-}
-
 struct sums {
     const float *from;
     float *before, *batch; /* over the points before the last batch, and in it */
@@ -181,7 +168,7 @@ enum status aperture_render(struct rendered_frame *out, const struct view *camer
         while (count < until && count < options->most) {
             double x, y;
             aperture_lens_point(count, &x, &y);
-            const struct view at = aperture_view(camera, x * aperture / 2, y * aperture / 2, focus);
+            const struct view at = view_from_lens_point(camera, x * aperture / 2, y * aperture / 2, focus);
             st = render(ctx, &at, &frame, err);
             if (!st && (frame.width != out->width || frame.height != out->height))
                 st = err_set(err, ST_INTERNAL, "frames of one lens have different sizes.");

@@ -42,9 +42,6 @@ struct aperture_stats {
 /* Point of the unit disk. */
 void aperture_lens_point(int index, double *x, double *y);
 
-/* The camera from a lens point (a, b), in scene units. */
-struct view aperture_view(const struct view *camera, double a, double b, double focus);
-
 /* out: rgba the (premultiplied) mean of the frames from the lens's points; z, hole and fractions of one more frame,
  * at the lens's centre. aperture 0: that frame itself. Points are added in batches that double their number, from 8.
  * The error estimate: with the means A and B of the points before and in the last batch, n_A and n_B of them, the

@@ -3,6 +3,8 @@
 
 #include <stdlib.h>
 
+#include "common/central_views.h"
+#include "common/film_lens.h"
 #include "common/weighted.h"
 
 #define CENTRAL_VIEWS   5    /* whose segments vote for the centroid */
@@ -24,18 +26,14 @@ static const struct view *center_view(const struct layout *l) { return &l->scene
 
 static struct vec3 row_of(struct mat3 m, int row) { return vec3_make(m.m[row][0], m.m[row][1], m.m[row][2]); }
 
-/* The view nearest the middle of all; of several views of one photo, the one that looks where most views look. */
-static void find_center_view(struct layout *l)
+static enum status find_center_view(struct layout *l, struct err *err)
 {
-    const struct camera_set *set = l->scene->set;
-    struct vec3 gaze = {0};
-    double best = HUGE_VAL, best_gaze = 0;
-    for (int i = 0; i < set->view_count; i++) gaze = vec3_add(gaze, row_of(set->views[i].cam_from_world, 2));
-    for (int i = 0; i < set->view_count; i++) {
-        const double d = vec3_length(vec3_sub(set->views[i].center, l->scene->mesh.centroid));
-        const double g = vec3_dot(row_of(set->views[i].cam_from_world, 2), gaze);
-        if (d < best * (1 - 1e-9) || (d <= best * (1 + 1e-9) && g > best_gaze)) best = d, best_gaze = g, l->center = i;
-    }
+    int *order = malloc(((size_t)l->scene->set->view_count + 1) * sizeof *order);
+    if (!order) return err_nomem(err, "views", sizeof *order);
+    const enum status st = central_views(order, l->scene->set, err);
+    if (!st) l->center = order[0];
+    free(order);
+    return st;
 }
 
 /* Median of a coordinate of the points of some views, in the centremost view's camera. */
@@ -86,39 +84,6 @@ static enum status find_centroid(struct layout *l, struct err *err)
     const struct vec3 in_view = vec3_sub(vec3_make(c[0], c[1], c[2]), v->translation);
     l->shot->centroid = mat3_apply(mat3_transpose(v->cam_from_world), in_view);
     return ST_OK;
-}
-
-/* The mean of the views' upright directions, and the film's size and focal length. */
-static void find_lens(struct layout *l, const struct vec3 *ups)
-{
-    const struct camera_set *set = l->scene->set;
-    const struct validity_params *par = l->params;
-    const struct view *c = center_view(l);
-    struct view *lens = &l->shot->lens;
-    struct vec3 upright = {0, -1, 0}, sum = {0}, center_up;
-    double focal = 0; /* of the longer side */
-    for (int i = 0; i < set->view_count; i++) {
-        const struct view *v = &set->views[i];
-        const struct vec3 up = ups ? ups[i] : upright;
-        sum = vec3_add(sum, mat3_apply(mat3_transpose(v->cam_from_world), up));
-        focal += sqrt(v->fx * v->fy) / (v->width > v->height ? v->width : v->height) / set->view_count;
-    }
-    center_up = ups ? ups[l->center] : upright;
-    if (vec3_length(sum) < 0.1 * set->view_count) sum = mat3_apply(mat3_transpose(c->cam_from_world), center_up);
-    l->shot->up = vec3_normalize(sum);
-
-    const bool turned = fabs(center_up.x) > fabs(center_up.y);
-    const double w = turned ? c->height : c->width, h = turned ? c->width : c->height;
-    const double shrink = fmin(1, par->max_side / fmax(w, h));
-    const double width = par->width ? par->width : par->height ? par->height * w / h : w * shrink;
-    const double height = par->height ? par->height : par->width ? par->width * h / w : h * shrink;
-    *lens = (struct view){.name = "film"};
-    lens->width = (int)fmax(2, 2 * round(width / 2));
-    lens->height = (int)fmax(2, 2 * round(height / 2));
-    lens->cx = lens->width / 2.0;
-    lens->cy = lens->height / 2.0;
-    /* the film's picture lies within that of a photo of the centremost view's shape */
-    lens->fx = lens->fy = focal * fmax(w, h) * fmax(lens->width / w, lens->height / h);
 }
 
 /* Depths of what the film's middle shows from the origin. */
@@ -186,13 +151,14 @@ enum status layout_find(struct shot *shot, int *center, const struct layer_scene
     *shot = (struct shot){0};
     l.scratch = malloc((points->count + 1) * sizeof *l.scratch);
     if (!l.scratch) return err_nomem(err, "depths", points->count * sizeof *l.scratch);
-    find_center_view(&l);
-    find_frame(&l);
-    enum status st = find_centroid(&l, err);
+    enum status st = find_center_view(&l, err);
     if (!st) {
-        find_lens(&l, ups);
-        st = measure_depths(&l, err);
+        const struct film_size size = {params->width, params->height, params->max_side};
+        find_frame(&l);
+        film_lens(&shot->lens, &shot->up, scene->set, l.center, ups, &size);
+        st = find_centroid(&l, err);
     }
+    if (!st) st = measure_depths(&l, err);
     if (!st) find_box(&l);
     *center = l.center;
     free(l.scratch);

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/parallel.h"
 #include "common/progress.h"
 #include "stages/sample_validity/layout.h"
 
@@ -18,7 +19,7 @@ const struct param validity_param_table[] = {VALIDITY_PARAMS(PARAM_ROW) PARAM_EN
 #define ZOOM_PLACES 5   /* a side */
 #define SLACK       1.2 /* over what the centremost place leaves, where no place is valid */
 
-struct sampler {
+struct sampler { /* of one thread */
     struct validity *v;
     struct viewpoint_test test;
 };
@@ -120,35 +121,84 @@ static enum status find_zoom(struct sampler *s, double max_zoom, const char *cen
     return ST_OK;
 }
 
-/* Finds some limits again in larger pictures. */
+struct cell_job {
+    struct sampler *samplers; /* a thread */
+    const struct shot_end *end;
+    struct validity_cell *cells;
+    struct err *errors; /* a cell */
+    struct progress progress;
+};
+
+static void sample_some(void *ctx, size_t begin, size_t end, int thread)
+{
+    struct cell_job *job = ctx;
+    for (size_t i = begin; i < end; i++) {
+        sample_cell(&job->samplers[thread], job->end, &job->cells[i], &job->errors[i]);
+        progress_add(&job->progress, 1);
+    }
+}
+
+/* Cells are independent, so each thread has its own and draws its pictures alone. */
+static enum status sample_cells(struct sampler *s, const struct shot_end *end, struct validity_cell *cells, int count,
+                                const char *what, struct err *err)
+{
+    const int threads = parallel_threads();
+    struct cell_job job = {.end = end, .cells = cells};
+    job.samplers = calloc((size_t)threads, sizeof *job.samplers);
+    job.errors = calloc((size_t)count + 1, sizeof *job.errors);
+    enum status st = job.samplers && job.errors ? ST_OK : err_nomem(err, "places", (size_t)count * sizeof *job.errors);
+
+    for (int t = 0; !st && t < threads; t++) {
+        job.samplers[t].v = s->v;
+        viewpoint_test_like(&job.samplers[t].test, &s->test);
+    }
+    if (!st) {
+        progress_start(&job.progress, what, count, "places");
+        parallel_for((size_t)count, 1, sample_some, &job);
+        progress_end(&job.progress);
+    }
+    for (int i = 0; !st && i < count; i++)
+        if (job.errors[i].status) st = err_set(err, job.errors[i].status, "%s", job.errors[i].text);
+    for (int t = 0; job.samplers && t < threads; t++) {
+        s->test.renders += job.samplers[t].test.renders;
+        viewpoint_test_release(&job.samplers[t].test);
+    }
+    free(job.samplers);
+    free(job.errors);
+    return st;
+}
+
+/* Finds the limits of some places, evenly among the valid ones, again in larger pictures. */
 static enum status compare(struct sampler *s, const struct shot_end *end, const struct validity_region *r, int wanted,
                            struct sampling_error *e, struct err *err)
 {
-    const int valid = validity_region_count(r), side = s->test.limits.side;
-    int seen = 0, compared = 0;
+    const int valid = validity_region_count(r), few = wanted < valid ? wanted : valid, side = s->test.limits.side;
+    struct validity_cell *again = calloc((size_t)few + 1, sizeof *again);
+    const struct validity_cell **of = calloc((size_t)few + 1, sizeof *of);
+    int seen = 0, taken = 0;
 
-    s->test.limits.side = H_REFERENCE_SIDE;
-    for (int i = 0; i < r->columns * r->rows && compared < wanted && compared < valid; i++) {
+    enum status st = again && of ? ST_OK : err_nomem(err, "places", (size_t)few * sizeof *again);
+    for (int i = 0; !st && i < r->columns * r->rows && taken < few; i++) {
         const struct validity_cell *c = &r->cells[i];
-        if (!c->valid) continue;
-        /* evenly among the valid ones */
-        const int few = wanted < valid ? wanted : valid, next = (int)((2L * compared + 1) * valid / (2L * few));
-        if (seen++ < next) continue;
-        compared++;
-        for (int way = -1; way <= 1; way += 2) {
-            double z;
-            bool there;
-            if (is_valid(s, end, c->x, c->y, 0, &there, err)) return err->status;
-            z = 0;
-            if (there && search(s, end, c->x, c->y, way, &z, err)) return err->status;
-            const double apart = fabs(z - (way < 0 ? c->low : c->high)) / s->v->step;
+        if (!c->valid || seen++ < (2 * taken + 1) * valid / (2 * few)) continue;
+        again[taken] = (struct validity_cell){.x = c->x, .y = c->y};
+        of[taken++] = c;
+    }
+    s->test.limits.side = H_REFERENCE_SIDE;
+    if (!st && taken) st = sample_cells(s, end, again, taken, "places in full pictures", err);
+    s->test.limits.side = side;
+    for (int i = 0; !st && i < taken; i++) {
+        const double apart[2] = {fabs(again[i].low - of[i]->low) / s->v->step,
+                                 fabs(again[i].high - of[i]->high) / s->v->step};
+        for (int k = 0; k < 2; k++) {
             e->limits++;
-            e->within += apart < 1.5;
-            e->worst = fmax(e->worst, apart);
+            e->within += apart[k] < 1.5;
+            e->worst = fmax(e->worst, apart[k]);
         }
     }
-    s->test.limits.side = side;
-    return ST_OK;
+    free(again);
+    free(of);
+    return st;
 }
 
 static bool same_rule(const struct shot_end *a, const struct shot_end *b)
@@ -164,7 +214,6 @@ static enum status sample_end(struct sampler *s, int at, const struct validity_p
     struct validity_region *r = &v->region[at];
     const struct shot_end *end = &v->move.end[at];
     const int side = v->move.on_axis ? 1 : params->grid;
-    struct progress progress;
 
     if (validity_region_init(r, side, side, err)) return err->status;
     place_cells(r, &v->shot, v->move.on_axis, params->extent);
@@ -172,13 +221,8 @@ static enum status sample_end(struct sampler *s, int at, const struct validity_p
         memcpy(r->cells, v->region[0].cells, (size_t)(side * side) * sizeof *r->cells);
         return ST_OK;
     }
-    progress_start(&progress, at ? "places for the end" : "places for the start", side * side, "places");
-    enum status st = ST_OK;
-    for (int i = 0; !st && i < side * side; i++) {
-        st = sample_cell(s, end, &r->cells[i], err);
-        progress_add(&progress, 1);
-    }
-    progress_end(&progress);
+    enum status st =
+        sample_cells(s, end, r->cells, side * side, at ? "places for the end" : "places for the start", err);
     return st ? st : compare(s, end, r, params->check_cells, &notes->error, err);
 }
 

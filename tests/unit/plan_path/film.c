@@ -1,7 +1,7 @@
 /* film.c - films of keys and planned moves: what files mean, what is wrong with others, how shots are joined. */
 #include "stages/plan_path/film.h"
 
-#include "stages/plan_path/film_lens.h"
+#include "common/film_lens.h"
 #include "tests/unit/scratch.h"
 
 /* Two views side by side looking along z, as large as the film, and one that is stored lying on its side. */
@@ -290,17 +290,17 @@ static void what_is_wrong_is_told(void **state)
 static void the_lens_is_the_views_mean(void **state)
 {
     (void)state;
-    struct plan_params params = PLAN_PARAMS_DEFAULT;
+    struct film_size size = {.max_side = 1280};
     struct view lens;
     struct vec3 up;
     a_film();
-    film_lens(&lens, &up, &set, ups, &params);
+    film_lens(&lens, &up, &set, 0, ups, &size);
     near_to(up.y, -1);
     assert_true(lens.width == 320 && lens.height == 240 && lens.cx == 160 && lens.cy == 120);
     near_to(lens.fx, (300 + 330 + 310) / 3.0);
-    params.width = 640;
-    params.height = 101; /* wider than the photos: their width fills it */
-    film_lens(&lens, &up, &set, ups, &params);
+    size.width = 640;
+    size.height = 101; /* wider than the photos: their width fills it */
+    film_lens(&lens, &up, &set, 0, ups, &size);
     assert_true(lens.width == 640 && lens.height == 102);
     near_to(lens.fx, 2 * (300 + 330 + 310) / 3.0);
 }

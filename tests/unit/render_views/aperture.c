@@ -76,7 +76,7 @@ static void points_in_focus_keep_their_pixel(void **state)
         const double z = i % 2 ? 2.5 : 2.5 + 0.3 * i, u = 5 + 4 * i, t = 70 - 3 * i;
         const double a = 0.01 * (i - 9), b = 0.02 * (i % 5 - 2);
         const struct vec3 at = view_unproject(&v, u, t, z);
-        const struct view moved = aperture_view(&v, a, b, 2.5);
+        const struct view moved = view_from_lens_point(&v, a, b, 2.5);
         double mu, mv;
         assert_true(fabs(view_project(&moved, at, &mu, &mv) - z) < 1e-12);
         assert_true(fabs(mu - u - v.fx * a * (z - 2.5) / (2.5 * z)) < 1e-9);

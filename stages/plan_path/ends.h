@@ -1,0 +1,44 @@
+/* ends.h - where a move starts and ends (thesis 3.4.2, "Maximizing parallax"), among the valid viewpoints.
+ *
+ * A cell of the start's region gives a candidate for the start, its nearest or farthest valid z as the move goes, and one
+ * of the end's region one for the end. Of the longest pairs that subtend no more than max_angle at the scene's centroid
+ * the one with most parallax is the thesis' answer. From there the ends leave the grid: by Levenberg-Marquardt (Ceres)
+ * on a smooth surrogate - for the parallax how far the two sides of every depth edge of the origin's picture part between
+ * the two cameras, for the limits penalties that rise beyond them, the regions interpolated between cells. What comes out
+ * is taken as far on the way from the thesis' answer as the real viewpoints and the real parallax bear it out.
+ *
+ * Every place on the way is looked at too, not the ends alone. Where one is not valid, the next best of the measured
+ * pairs is tried; if none is valid all along, the best is drawn together towards the origin until it is. */
+#ifndef REMODEL_ENDS_H
+#define REMODEL_ENDS_H
+
+#include "common/validity.h"
+#include "stages/plan_path/plan_params.h"
+
+struct move_ends {
+    struct vec3 at[2];
+    double length;            /* scene units */
+    double angle;             /* degrees, at the scene's centroid */
+    double parallax;          /* stages/plan_path/parallax.h */
+    double worst_h, worst_at; /* along the way; at: 0 start .. 1 end */
+    double worst_outside;
+    bool valid; /* all along */
+};
+
+struct ends_notes {
+    struct move_ends discrete; /* the thesis' answer: of the longest pairs the one with most parallax, valid or not */
+    int pairs;                 /* measured */
+    int chosen;   /* which of them, by parallax, is valid all along: 0 is the best; -1: none, drawn together */
+    bool refined; /* the ends have left the grid */
+    long renders;
+};
+
+#define WAY_PLACES 25 /* where viewpoints are looked at along the way */
+
+enum status ends_choose(struct move_ends *best, struct ends_notes *notes, const struct layer_scene *scene,
+                        const struct validity *v, const struct plan_params *params, struct err *err);
+
+/* The candidate of a cell for one end of the move. */
+struct vec3 ends_candidate(const struct validity *v, int end, int cell);
+
+#endif

@@ -1,0 +1,143 @@
+/* image_effects.c - see image_effects.h. */
+#include "stages/plan_path/image_effects.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define FIRST_APERTURE 0.002 /* of the focus */
+#define HALVINGS       4
+#define BOX_DEPTH      0.75 /* of the subject's size, before and behind its plane */
+#define BOX_FALLOFF    0.35 /* of the subject's size */
+
+static enum status corners_valid(bool *valid, struct viewpoint_test *test, const struct view *camera, double aperture,
+                                 double focus, struct err *err)
+{
+    *valid = true;
+    for (int i = 0; i < 4 && *valid; i++) {
+        const struct view corner =
+            view_from_lens_point(camera, (i % 2 ? 0.5 : -0.5) * aperture, (i / 2 ? 0.5 : -0.5) * aperture, focus);
+        if (viewpoint_is_valid(valid, test, &corner, err)) return err->status;
+    }
+    return ST_OK;
+}
+
+enum status aperture_search(double *aperture, struct viewpoint_test *test, const struct view *camera, double focus,
+                            double max_blur, struct err *err)
+{
+    const double most = max_blur * focus / camera->fx; /* of the infinitely far: aperture fx / focus px */
+    double good = 0, bad = 0, next = fmin(FIRST_APERTURE * focus, most);
+    bool valid;
+
+    *aperture = 0;
+    if (!(most > 0)) return ST_OK;
+    while (!(bad > 0) && good < most) {
+        if (corners_valid(&valid, test, camera, next, focus, err)) return err->status;
+        if (valid)
+            good = next, next = fmin(2 * next, most);
+        else
+            bad = next;
+    }
+    for (int i = 0; bad > 0 && i < HALVINGS; i++) {
+        next = 0.5 * (good + bad);
+        if (corners_valid(&valid, test, camera, next, focus, err)) return err->status;
+        if (valid)
+            good = next;
+        else
+            bad = next;
+    }
+    *aperture = good;
+    return ST_OK;
+}
+
+static double depth_of(const struct view *camera, const struct subject *s)
+{
+    double u, v;
+    return view_project(camera, subject_center(s), &u, &v);
+}
+
+/* The focus of a frame, a part of the way along; 0: a subject is behind the camera. */
+static double focus_at(const struct view *camera, const struct validity *v, const struct subject_list *subjects,
+                       double part)
+{
+    const bool two = v->effect.move == MOVE_DOLLY;
+    const double first = depth_of(camera, &subjects->subjects[0]);
+    const double second = two ? depth_of(camera, &subjects->subjects[1]) : first;
+    if (!(first > 0 && second > 0)) return 0;
+    if (!two) return first;
+    if (v->effect.focus == FOCUS_WIDEN) return first; /* it is in focus while there is a depth of field to speak of */
+    return v->effect.focus == FOCUS_NARROW ? second : (1 - part) * first + part * second;
+}
+
+enum status focus_frames(struct camera_path *path, double *widest, const double *parts, struct viewpoint_test *test,
+                         const struct validity *v, const struct subject_list *subjects,
+                         const struct plan_params *params, struct err *err)
+{
+    const enum focus_effect effect = v->effect.focus;
+    const int last = path->frame_count - 1;
+    const double longer = fmax(v->shot.lens.width, v->shot.lens.height);
+
+    *widest = INFINITY;
+    for (int end = 0; end < 2; end++) { /* where the aperture is widest */
+        const struct view *camera = &path->frames[end ? last : 0].camera;
+        double aperture = 0;
+        if (effect == (end ? FOCUS_WIDEN : FOCUS_NARROW)) continue;
+        const double focus = focus_at(camera, v, subjects, end);
+        if (focus > 0 && aperture_search(&aperture, test, camera, focus, params->max_blur * longer, err))
+            return err->status;
+        *widest = fmin(*widest, aperture);
+    }
+    for (int i = 0; i <= last && *widest > 0; i++) {
+        struct path_frame *f = &path->frames[i];
+        const double t = parts[i], focus = focus_at(&f->camera, v, subjects, t);
+        const double open = effect == FOCUS_NARROW ? t : effect == FOCUS_WIDEN ? 1 - t : 1;
+        if (!(focus > 0) || !(open > 0)) continue;
+        f->aperture = *widest * open;
+        f->focus = focus;
+    }
+    return ST_OK;
+}
+
+/* The subject's quadrilateral, as deep before and behind as it is high, in a box along the world's axes. */
+static void subject_box(const struct subject *s, struct vec3 *low, struct vec3 *high, double *size)
+{
+    const struct vec3 down = vec3_sub(s->corner[3], s->corner[0]), right = vec3_sub(s->corner[1], s->corner[0]);
+    *size = vec3_length(down);
+    const struct vec3 depth = vec3_scale(vec3_normalize(vec3_cross(right, down)), BOX_DEPTH * *size);
+    *low = vec3_make(HUGE_VAL, HUGE_VAL, HUGE_VAL);
+    *high = vec3_scale(*low, -1);
+    for (int i = 0; i < 8; i++) {
+        const struct vec3 c = vec3_add(s->corner[i % 4], vec3_scale(depth, i < 4 ? 1 : -1));
+        *low = vec3_make(fmin(low->x, c.x), fmin(low->y, c.y), fmin(low->z, c.z));
+        *high = vec3_make(fmax(high->x, c.x), fmax(high->y, c.y), fmax(high->z, c.z));
+    }
+}
+
+enum status tone_layers(struct effects *layers, const struct validity *v, const struct subject_list *subjects,
+                        const struct camera_path *path, const struct plan_params *params, struct err *err)
+{
+    const double to[TONE_COUNT] = {[TONE_SATURATE] = params->saturate,
+                                   [TONE_DESATURATE] = params->desaturate,
+                                   [TONE_BRIGHTEN] = params->brighten,
+                                   [TONE_DIM] = params->dim};
+    const enum tone_effect tone = v->effect.tone;
+    double size;
+
+    *layers = (struct effects){0};
+    if (!tone) return ST_OK;
+    layers->layers = calloc(1, sizeof *layers->layers);
+    if (!layers->layers) return err_nomem(err, "an effect layer", sizeof *layers->layers);
+    layers->layer_count = 1;
+    struct effect_layer *l = layers->layers;
+    l->kind = tone == TONE_SATURATE || tone == TONE_DESATURATE ? EFFECT_SATURATION : EFFECT_BRIGHTNESS;
+    l->region = tone == TONE_SATURATE || tone == TONE_BRIGHTEN ? EFFECT_INSIDE : EFFECT_OUTSIDE;
+    l->curve = EFFECT_CUBIC;
+    subject_box(&subjects->subjects[0], &l->low, &l->high, &size);
+    l->falloff = BOX_FALLOFF * size;
+    l->name = strdup("subject");
+    l->keys = calloc(2, sizeof *l->keys);
+    if (!l->name || !l->keys) return err_nomem(err, "an effect layer", 2 * sizeof *l->keys);
+    l->key_count = 2;
+    l->keys[0] = (struct effect_key){path->frames[0].time, {1}};
+    l->keys[1] = (struct effect_key){path->frames[path->frame_count - 1].time, {to[tone]}};
+    return ST_OK;
+}
