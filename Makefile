@@ -41,7 +41,9 @@ FLAVOR ?= release
 ## V=1: show commands
 
 B := out/build/$(FLAVOR)
-EFFECT := establishing_dolly
+## EFFECT="NAMES": films to make: moves of the taxonomy with their image effects (docs/formats.md), like dolly_in+narrow_dof, or
+##   films of keys, scenes/NAME/keyframes/FILM.txt; auto: one by chance of those that suit the scene; all: all of them
+EFFECT ?= establishing_dolly
 STAGES := $(patsubst stages/%/,%,$(sort $(dir $(wildcard stages/*/*.c))))
 SUB := $(MAKE) --no-print-directory
 # without a -j of the caller's, compiling uses all cores
@@ -68,6 +70,9 @@ ifneq ($(SCENE),)
     ifeq ($(shell [[ '$(subst ','\'',$(SPLIT))' =~ ^[1-9][0-9]?x[1-9][0-9]?$$ ]] && echo good),)
       $(error SPLIT=$(SPLIT): wanted COLUMNSxROWS, such as 3x2: how many pictures a photo holds)
     endif
+  endif
+  ifeq ($(shell [[ '$(subst ','\'',$(EFFECT))' =~ ^[A-Za-z0-9_+\ -]+$$ ]] && echo good),)
+    $(error EFFECT=$(EFFECT): effects are named with letters, digits, _, - and +)
   endif
   ifneq ($(HOLDOUT),)
     ifeq ($(shell [[ '$(subst ','\'',$(HOLDOUT))' =~ ^[1-9][0-9]{0,8}$$ ]] && echo good),)
@@ -96,6 +101,7 @@ ifeq ($(PHASE),)
 literal = $(if $(filter command environment,$(firstword $(origin $(1)))),$(value $(1)),$($(1)))
 export REMODEL_PHOTOS := $(call literal,PHOTOS)
 export REMODEL_SPLIT := $(SPLIT)
+export REMODEL_EFFECT := $(EFFECT)
 export REMODEL_SFM := $(call literal,SFM)
 export REMODEL_DEPTH := $(call literal,DEPTH)
 export REMODEL_EXCLUDE := $(call literal,EXCLUDE)
@@ -292,6 +298,7 @@ LAST_ROUND := $(shell sed -n 's/^rounds = //p' $(O)/slice/segment_depth.cfg 2>/d
 round = $(O)/depth$(if $(filter-out $(LAST_ROUND),$(1)),/round$(1))
 POINTS := $(O)/points/points.ply
 SUBJECTS := $(O)/parallax/subjects.txt
+CHOICE := $(O)/parallax/$(CHOOSE)-effects.mk
 FRAME_EXR := $(FRAMES:%=$(E)/frames/%.exr)
 PATH_TXT := $(E)/path.txt $(addprefix $(E)/path/,cameras.txt images.txt points3D.txt)
 PATH_EXPORTS := $(E)/transforms.json $(E)/blender.py
@@ -332,14 +339,17 @@ ORIGINALS := $(if $(SPLIT),$(S)/split,"$$REMODEL_PHOTOS")
 PICTURES := $(if $(BRACKETED),$(S)/hdr,$(ORIGINALS))
 picture = $(if $(BRACKETED),$(S)/hdr/$(1).exr,$(S)/photos/$(1).txt)
 
-.PHONY: hdr sfm views depth points subjects path frames video pan_frames pan_scan heldout evaluate report
+# films of one run; each phase that makes one is told which by EFFECT
+EFFECTS ?= $(EFFECT)
+.PHONY: hdr sfm views depth points subjects choice path frames video pan_frames pan_scan heldout evaluate report
 hdr: $(HDR)
 sfm: $(O)/views/views.mk
 views: $(VIEW_EXR) $(HELD_EXR)
 depth: $(DEPTH_EXR) $(DEPTH_TXT)
 points: $(POINTS)
 subjects: $(SUBJECTS)
-path: $(E)/frames.mk $(PATH_EXPORTS)
+choice: $(CHOICE)
+path: $(E)/frames.mk $(PATH_EXPORTS) $(E)/effects.txt
 frames: $(FRAME_EXR)
 video: $(E)/video.mp4
 pan_frames: $(FRAMES:%=$(E)/pan_scan/frames/%.exr)
@@ -397,31 +407,40 @@ $(O)/views/%.exr: ; # a neighbour that is a view no more
 $(POINTS): $(CAMERAS) $(DEPTH_EXR) $(DEPTH_TXT) $(call needs,fuse_points)
 	$(call stage,fuse_points,all,$(O),--views $(O)/views --depth $(O)/depth --out $@)
 
-# $(1): an effect, $(2): its folder
-define path_rule
-$(2)/path.txt $(addprefix $(2)/path/,cameras.txt images.txt points3D.txt) $(2)/frames.mk &: $(CAMERAS) $(O)/views/lenses.txt $(DEPTH_EXR) $(DEPTH_TXT) $(call needs,plan_path)
-	$$(call stage,plan_path,$(1),$(O),--views $(O)/views --depth $(O)/depth --records $(S)/photos --effect $(1) --out $(2))
+# which effects suit the scene, for EFFECT=auto and EFFECT=all
+$(CHOICE): $(SUBJECTS) $(call needs,choose_effects)
+	$(call stage,choose_effects,$(CHOOSE),$(O),--subjects $(SUBJECTS) --effect $(CHOOSE) --out $@)
+
+# from where a move can be shown: the same for all of its image effects. $(1): the move
+needs_subjects = $(if $(filter establishing_%,$(1)),,$(SUBJECTS))
+define validity_rule
+$(O)/parallax/$(1)/validity.txt $(O)/parallax/$(1)/validity.png &: $(CAMERAS) $(O)/views/lenses.txt $(DEPTH_EXR) $(DEPTH_TXT) $(call needs_subjects,$(1)) $(call needs,sample_validity)
+	$$(call stage,sample_validity,$(1),$(O),--views $(O)/views --depth $(O)/depth --records $(S)/photos --effect $(1) \
+	  $(addprefix --subjects ,$(call needs_subjects,$(1))) --out $(O)/parallax/$(1))
 endef
+# $(1): an effect, $(2): its folder, $(3): its move
+define path_rule
+$(2)/path.txt $(addprefix $(2)/path/,cameras.txt images.txt points3D.txt) $(2)/effects.txt $(2)/transforms.json $(2)/blender.py $(2)/frames.mk &: \
+  $(CAMERAS) $(O)/parallax/$(3)/validity.txt $(DEPTH_EXR) $(DEPTH_TXT) $(call needs_subjects,$(1)) $(call needs,plan_path)
+	$$(call stage,plan_path,$(1),$(O),--views $(O)/views --depth $(O)/depth --validity $(O)/parallax/$(3)/validity.txt --effect $(1) \
+	  $(addprefix --subjects ,$(call needs_subjects,$(1))) --out $(2))
+endef
+move_of = $(firstword $(subst +, ,$(1)))
 # a film of keys: its effect is its name; the moves that it chains are planned first
 KEYFRAMES := $(wildcard scenes/$(SCENE)/keyframes/$(EFFECT).txt)
 CHAINED := $(if $(KEYFRAMES),$(sort $(shell awk '$$1 == "move" && $$2 ~ /^[A-Za-z0-9_+-]+$$/ { print $$2 }' $(KEYFRAMES))))
 $(foreach e,$(CHAINED),$(if $(wildcard scenes/$(SCENE)/keyframes/$(e).txt),$(error $(KEYFRAMES) chains $(e), a film of keys: only planned moves can be chained)))
-$(foreach e,$(if $(KEYFRAMES),$(CHAINED),$(EFFECT)),$(eval $(call path_rule,$(e),$(O)/parallax/$(e))))
+PLANNED := $(if $(KEYFRAMES),$(CHAINED),$(EFFECT))
+$(foreach m,$(sort $(foreach e,$(PLANNED),$(call move_of,$(e)))),$(eval $(call validity_rule,$(m))))
+$(foreach e,$(PLANNED),$(eval $(call path_rule,$(e),$(O)/parallax/$(e),$(call move_of,$(e)))))
 ifneq ($(KEYFRAMES),)
-$(PATH_TXT) $(E)/effects.txt $(E)/frames.mk &: $(KEYFRAMES) $(CHAINED:%=$(O)/parallax/%/path.txt) $(wildcard $(CHAINED:%=$(O)/parallax/%/effects.txt)) \
+$(PATH_TXT) $(PATH_EXPORTS) $(E)/effects.txt $(E)/frames.mk &: $(KEYFRAMES) $(CHAINED:%=$(O)/parallax/%/path.txt) $(CHAINED:%=$(O)/parallax/%/effects.txt) \
   $(CAMERAS) $(O)/views/lenses.txt $(call needs,plan_path)
 	$(call stage,plan_path,$(EFFECT),$(O),--views $(O)/views --records $(S)/photos --keyframes $(KEYFRAMES) --moves $(O)/parallax --effect $(EFFECT) --out $(E))
 endif
-# rectangles that a user drew, in place of faces; that they came or went is a change whatever the file's time
-DRAWN := $(wildcard scenes/$(SCENE)/subjects.txt)
-WERE_DRAWN := $(shell grep -om1 '^. input subjects.txt' $(SUBJECTS) 2>/dev/null)
-$(SUBJECTS): $(CAMERAS) $(O)/views/lenses.txt $(if $(DRAWN),$(DRAWN),$(VIEW_EXR)) $(DEPTH_EXR) $(DEPTH_TXT) $(call needs,find_subjects) \
-  $(if $(DRAWN),$(if $(WERE_DRAWN),,FORCE),$(if $(WERE_DRAWN),FORCE))
-	$(call stage,find_subjects,all,$(O),--views $(O)/views --depth $(O)/depth --records $(S)/photos $(DRAWN:%=--subjects %) --out $@)
-
 
 # frames come in chunks, a process each; of a chunk only the frames that are missing or stale are rendered
-EFFECT_LAYERS := $(if $(KEYFRAMES),$(E)/effects.txt,$(wildcard scenes/$(SCENE)/effects.txt))
+EFFECT_LAYERS := $(E)/effects.txt $(if $(KEYFRAMES),,$(wildcard scenes/$(SCENE)/effects.txt))
 define chunk_rule
 $(1:%=$(E)/frames/%.exr) &: $(PATH_TXT) $(EFFECT_LAYERS) $(CAMERAS) $(DEPTH_EXR) $(DEPTH_TXT) $(call needs,render_views)
 	$$(hide)stale=$$$$(common/stale.sh $(1:%=$(E)/frames/%.exr) -- $$^); \
@@ -455,7 +474,7 @@ $(E)/video.mp4: $(FRAME_EXR) $(PATH_TXT) $(call needs,encode_video)
 $(E)/pan_scan/video.mp4: $(FRAMES:%=$(E)/pan_scan/frames/%.exr) $(PATH_TXT) $(call needs,encode_video)
 	$(call stage,encode_video,$(EFFECT)-pan_scan,$(O),--path $(E) --frames $(E)/pan_scan/frames --out $@)
 
-$(O)/index.html: $(if $(HELDOUT)$(TRUTH),$(O)/metrics.tsv) $(E)/video.mp4 $(wildcard $(E)/pan_scan/video.mp4) $(PATH_TXT) $(CAMERAS) $(DEPTH_EXR) $(DEPTH_TXT) $(S)/photos/list.txt $(STAGES:%=$(O)/slice/%.cfg) $(call needs,report)
+$(O)/index.html: $(if $(HELDOUT)$(TRUTH),$(O)/metrics.tsv) $(EFFECTS:%=$(O)/parallax/%/video.mp4) $(wildcard $(EFFECTS:%=$(O)/parallax/%/pan_scan/video.mp4)) $(EFFECTS:%=$(O)/parallax/%/path.txt) $(CAMERAS) $(DEPTH_EXR) $(DEPTH_TXT) $(S)/photos/list.txt $(STAGES:%=$(O)/slice/%.cfg) $(call needs,report)
 	$(call stage,report,page,$(O),--scene $(SCENE) --folder $(O) --shared $(S) --photos $(PICTURES) --defaults configs/default.cfg --out $@)
 
 # What is looked at afresh in every run, also under -n: configs, photos. Files are rewritten only if their text changed.

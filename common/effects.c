@@ -34,6 +34,23 @@ static bool name_is_good(const char *name)
 
 static int values_of(enum effect_kind kind) { return kind == EFFECT_COLOR ? 3 : 1; }
 
+enum status effects_append(struct effects *e, struct effects *from, struct err *err)
+{
+    const int count = e->layer_count + from->layer_count;
+    if (!from->layer_count) return ST_OK;
+    if (count > EFFECT_LAYERS_MOST)
+        return err_set(err, ST_DATA, "%d effect layers are laid over one film; at most %d can be.", count,
+                       EFFECT_LAYERS_MOST);
+    struct effect_layer *layers = realloc(e->layers, (size_t)count * sizeof *layers);
+    if (!layers) return err_nomem(err, "effect layers", (size_t)count * sizeof *layers);
+    memcpy(layers + e->layer_count, from->layers, (size_t)from->layer_count * sizeof *layers);
+    e->layers = layers;
+    e->layer_count = count;
+    free(from->layers);
+    *from = (struct effects){0};
+    return ST_OK;
+}
+
 void effects_release(struct effects *e)
 {
     if (!e) return;

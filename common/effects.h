@@ -47,6 +47,8 @@ enum status effects_read(struct effects *e, const char *path, struct err *err);
 enum status effects_read_layers(struct effects *e, struct textfile *t, struct err *err);
 /* What is written reads back with the same bits. prov may be NULL. ST_DATA: layers that a file may not have. */
 enum status effects_write(const struct effects *e, const char *path, const struct provenance *prov, struct err *err);
+/* Moves the layers of `from`, which is empty then, behind those of `e`. ST_DATA: more than EFFECT_LAYERS_MOST. */
+enum status effects_append(struct effects *e, struct effects *from, struct err *err);
 void effects_release(struct effects *e);
 
 /* Linear or a monotone cubic (common/monotone.h) between keys, held before the first and after the last; a cubic starts

@@ -17,7 +17,14 @@ most=$cores
 [ -z "$asked" ] || [ "$asked" -ge "$cores" ] || most=$asked
 quiet=-s
 [ -z "${V-}" ] || quiet=
-graph() { "${make[@]}" PHASE=graph "$@"; }
+# the films of this run; each phase that makes one is told which
+read -r -a effects <<<"$REMODEL_EFFECT"
+choose=
+case $REMODEL_EFFECT in auto | all) choose=$REMODEL_EFFECT effects=(establishing_dolly) ;; esac
+effect=${effects[0]:?EFFECT names no effect}
+graph() { "${make[@]}" PHASE=graph EFFECT="$effect" EFFECTS="${effects[*]}" CHOOSE="$choose" "$@"; }
+# auto and all: known once the subjects are
+read_choice() { read -r -a effects <<<"$(sed -n 's/^EFFECTS := *//p' "$O/parallax/$choose-effects.mk")"; effect=${effects[0]}; }
 
 if [ -n "${REMODEL_DEPTH-}" ] && [ ! -d "$REMODEL_DEPTH" ]; then
     echo "DEPTH=$REMODEL_DEPTH is no folder. Give the folder that holds VIEW.exr or VIEW.png, the depth of views." >&2
@@ -119,6 +126,7 @@ if [ -n "${REMODEL_TRUTH-}" ] && [ ! -d "$REMODEL_TRUTH" ]; then
 fi
 
 graph look
+[ -z "$choose" ] || [ ! -e "$O/parallax/$choose-effects.mk" ] || read_choice
 if [ "$goal" = why ]; then
     graph -n --debug=b --no-print-directory report | common/explain.sh why "$S" "$O"
     exit 0
@@ -197,21 +205,28 @@ depth) exit 0 ;;
 points | subjects) one "$goal"; exit 0 ;;
 evaluate) evaluate; common/explain.sh metrics "$O"; exit 0 ;;
 esac
-one path
+if [ -n "$choose" ]; then
+    one choice
+    read_choice
+fi
+# a phase for each film
+films() { for effect in "${effects[@]}"; do "$@"; done; }
+films one path
 case $goal in path) exit 0 ;; esac
 if [ "$goal" = pan_scan ]; then
-    pan_scan
+    films pan_scan
     common/explain.sh products "$O"
     exit 0
 fi
-farm_frames render_views frames
+films farm_frames render_views frames
 case $goal in frames) exit 0 ;; esac
-one video
+films one video
 case $goal in
 video) ;;
 *)
     case $O${REMODEL_TRUTH:+ truth} in *+holdout* | *truth) evaluate ;; esac
-    ! ls "$O"/parallax/*/pan_scan/video.mp4 >/dev/null 2>&1 || pan_scan
+    for effect in "${effects[@]}"; do [ ! -e "$O/parallax/$effect/pan_scan/video.mp4" ] || pan_scan; done
+    effect=${effects[0]}
     one report ;;
 esac
 common/explain.sh products "$O"

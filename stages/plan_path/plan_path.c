@@ -92,7 +92,7 @@ static enum status read_views(struct camera_set *set, struct vec3 **ups, const c
 }
 
 struct job { /* what the command line says */
-    const char *views, *records, *depth, *validity, *subjects, *keyframes, *moves, *name, *out;
+    const char *views, *records, *depth, *validity, *subjects, *keyframes, *moves, *effect, *out;
     struct plan_params params;
 };
 
@@ -104,7 +104,7 @@ static enum status plan_film(const struct job *job, struct provenance *prov, str
     struct effects layers = {0};
     struct vec3 *ups = NULL;
     int *order = NULL;
-    struct film film = {.name = job->name, .fps = job->params.fps, .moves = job->moves};
+    struct film film = {.name = job->effect, .fps = job->params.fps, .moves = job->moves};
     enum status st = read_views(&set, &ups, job->views, job->records, prov, err);
     if (!st && !set.view_count) st = err_set(err, ST_DATA, "%s has no view: there is no scene to film.", job->views);
     if (!st && !(order = malloc((size_t)set.view_count * sizeof *order)))
@@ -139,8 +139,14 @@ static enum status plan(const struct job *job, struct provenance *prov, struct e
     struct camera_path path = {0};
     struct effects layers = {0};
     struct move_notes notes = {0};
-    enum status st = read_views(&set, NULL, job->views, NULL, prov, err);
+    struct film_effect effect;
+    enum status st = film_effect_parse(&effect, job->effect, err);
+    if (!st) st = read_views(&set, NULL, job->views, NULL, prov, err);
     if (!st) st = validity_read(&v, job->validity, err);
+    if (!st && v.effect.move != effect.move)
+        st = err_set(err, ST_USAGE, "--effect %s: %s is of another move. Sample the valid viewpoints of this one.",
+                     job->effect, job->validity);
+    v.effect = effect;
     if (!st) st = provenance_add_file(prov, "validity.txt", job->validity, err);
     if (!st && job->subjects) {
         st = subject_list_read(&subjects, job->subjects, err);
@@ -161,11 +167,12 @@ static enum status plan(const struct job *job, struct provenance *prov, struct e
 
 static enum status run(const struct job *job, struct provenance *prov, struct err *err)
 {
-    if (job->keyframes ? job->depth || job->validity || job->subjects || !job->name
-                       : !job->depth || !job->validity || job->name || job->moves)
+    const bool move = job->depth && job->validity && !job->keyframes && !job->moves;
+    const bool keys = job->keyframes && !job->depth && !job->validity && !job->subjects;
+    if (!move && !keys)
         return err_set(err, ST_USAGE,
-                       "wanted --depth with --validity, for a move, or --keyframes with --name, for a film of keys; "
-                       "--subjects goes with the one, --moves and --records with the other.");
+                       "wanted --depth with --validity, for a move, or --keyframes, for a film of keys; --subjects goes "
+                       "with the one, --moves and --records with the other.");
     return job->keyframes ? plan_film(job, prov, err) : plan(job, prov, err);
 }
 
@@ -175,12 +182,12 @@ int main(int argc, char **argv)
     const struct cli_opt opts[] = {
         CLI_ABOUT("Plans a camera move that shows a scene's depth without showing its holes, or a film of keys."),
         CLI_STR("views", &job.views, CLI_REQUIRED, "folder of cameras"),
+        CLI_STR("effect", &job.effect, CLI_REQUIRED, "of the taxonomy, like dolly_in+dim; of a film of keys, its name"),
         CLI_STR("depth", &job.depth, CLI_OPTIONAL, "of a move: folder of the views' layers"),
         CLI_STR("validity", &job.validity, CLI_OPTIONAL,
-                "of a move: file of its valid viewpoints, which names the effect"),
+                "of a move: file of its valid viewpoints"),
         CLI_STR("subjects", &job.subjects, CLI_OPTIONAL, "of a move: file of the scene's subjects, if it needs any"),
         CLI_STR("keyframes", &job.keyframes, CLI_OPTIONAL, "of a film of keys: file of its keys and moves"),
-        CLI_STR("name", &job.name, CLI_OPTIONAL, "of a film of keys: what it is called"),
         CLI_STR("moves", &job.moves, CLI_OPTIONAL, "of a film of keys: folder of the planned moves that it may chain"),
         CLI_STR("records", &job.records, CLI_OPTIONAL,
                 "of a film of keys: folder of the photos' records, makes it upright"),

@@ -40,8 +40,9 @@ static enum status add_inputs(struct provenance *prov, const char *views, const 
 }
 
 struct job { /* what the command line says */
-    const char *views, *depth, *path, *frames, *cameras, *effects, *crop, *scale, *out;
+    const char *views, *depth, *path, *frames, *cameras, *crop, *scale, *out;
     struct cli_list names;
+    struct cli_list effects; /* files */
     struct frame_part part;
     struct render_params params;
 };
@@ -51,7 +52,7 @@ static enum status render_path(const struct job *job, struct provenance *prov, s
     struct camera_set set = {0};
     struct camera_path path = {0};
     struct layer_scene scene = {0};
-    struct effects effects = {0};
+    struct effects effects = {0}, more = {0};
     struct renderer renderer = {0};
     bool *wanted = NULL;
     enum status st = camera_set_read(&set, job->views, err);
@@ -64,8 +65,12 @@ static enum status render_path(const struct job *job, struct provenance *prov, s
                     : err_nomem(err, "the frames of a path", (size_t)path.frame_count);
     }
     if (!st) st = add_inputs(prov, job->views, job->path, path.effect, err);
-    if (!st && job->effects && !(st = effects_read(&effects, job->effects, err)))
-        st = provenance_add_file(prov, "effects.txt", job->effects, err);
+    for (int i = 0; !st && i < job->effects.count; i++) {
+        st = effects_read(&more, job->effects.items[i], err);
+        if (!st) st = effects_append(&effects, &more, err);
+        effects_release(&more);
+        if (!st) st = provenance_add_file(prov, i ? "scene/effects.txt" : "effects.txt", job->effects.items[i], err);
+    }
     if (!st) st = layer_scene_read(&scene, &set, job->depth, prov, err);
     if (!st) {
         renderer_init(&renderer, &scene, &path, &effects, &job->params);
@@ -120,7 +125,7 @@ static enum status render(struct job *job, struct provenance *prov, struct err *
     if (cameras ? job->path || job->frames : !job->path || !job->frames || job->names.count)
         return err_set(err, ST_USAGE,
                        "wanted either --path with --frames, or --cameras; --camera goes with --cameras.");
-    if (cameras && job->effects)
+    if (cameras && job->effects.count)
         return err_set(err, ST_USAGE, "--effects goes with --path: single cameras have no times for their keys.");
     if ((st = frame_part_read(&job->part, job->crop, job->scale, err))) return st;
     return cameras ? render_cameras(job, prov, err) : render_path(job, prov, err);
@@ -136,7 +141,7 @@ int main(int argc, char **argv)
         CLI_STR("depth", &job.depth, CLI_REQUIRED, "folder of layered depth maps"),
         CLI_STR("path", &job.path, CLI_OPTIONAL, "folder of the move: path.txt and path/"),
         CLI_STR("frames", &job.frames, CLI_OPTIONAL, "frames of the move to render: 1:30 or 1:30,45"),
-        CLI_STR("effects", &job.effects, CLI_OPTIONAL, "file of effect layers, laid over the frames of the move"),
+        CLI_LIST("effects", &job.effects, CLI_OPTIONAL, "file of effect layers, laid over the frames of the move; may be given several times"),
         CLI_STR("cameras", &job.cameras, CLI_OPTIONAL, "in place of a move: folder of cameras, a frame each"),
         CLI_LIST("camera", &job.names, CLI_OPTIONAL, "of these cameras only this one; may be given several times"),
         CLI_STR("crop", &job.crop, CLI_OPTIONAL, "X,Y,WIDTH,HEIGHT: only this part of the frames, px"),
@@ -152,6 +157,7 @@ int main(int argc, char **argv)
     if (cli_parse(argc, argv, "render_views", opts, &prov, &err) == CLI_RUN) render(&job, &prov, &err);
     err_report(&err);
     cli_list_release(&job.names);
+    cli_list_release(&job.effects);
     provenance_release(&prov);
     return err_exit_code(&err);
 }

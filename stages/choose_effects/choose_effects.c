@@ -1,0 +1,105 @@
+/* choose_effects.c - says which films to make of a scene: one by chance, or all that suit it.
+ *
+ * reads   SUBJECTS       what there is to show (find_subjects)
+ * writes  OUT            EFFECTS := dolly_in dolly_in+dim ..., for make */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/cli.h"
+#include "common/log.h"
+#include "common/outfile.h"
+#include "common/subject_list.h"
+#include "common/taxonomy.h"
+
+/* name, type, default, least, most, unit, help */
+#define CHOICE_PARAMS(X) X(seed, int, 1, 0, 1000000, "", "of the chance that draws one effect for EFFECT=auto")
+
+struct choice_params {
+    CHOICE_PARAMS(PARAM_FIELD)
+};
+#define CHOICE_PARAMS_DEFAULT        \
+    {                                \
+        CHOICE_PARAMS(PARAM_DEFAULT) \
+    }
+#define PARAM_STRUCT struct choice_params
+static const struct param choice_param_table[] = {CHOICE_PARAMS(PARAM_ROW) PARAM_END};
+#undef PARAM_STRUCT
+
+static struct scene_subjects subjects_of(const struct subject_list *list)
+{
+    struct scene_subjects s = {list->count, 1};
+    if (list->count < 2) return s;
+    const double a = list->subjects[0].depth, b = list->subjects[1].depth;
+    s.depth_ratio = a > b ? a / b : b / a;
+    return s;
+}
+
+static enum status write_choice(const struct film_effect *list, int count, const char *path,
+                                const struct provenance *prov, struct err *err)
+{
+    struct outfile f = {0};
+    enum status st = outfile_open(&f, path, err);
+    if (!st) {
+        provenance_print(prov, f.fp);
+        fputs("EFFECTS :=", f.fp);
+        for (int i = 0; i < count; i++) {
+            char name[EFFECT_NAME_SIZE];
+            film_effect_name(&list[i], name);
+            fprintf(f.fp, " %s", name);
+        }
+        fputc('\n', f.fp);
+        st = outfile_commit(&f, err);
+    }
+    outfile_discard(&f);
+    return st;
+}
+
+static enum status choose(const char *subjects, const char *which, const char *out, const struct choice_params *params,
+                          struct provenance *prov, struct err *err)
+{
+    struct film_effect list[FILM_EFFECTS_MOST];
+    struct subject_list found = {0};
+    int count = 0;
+
+    enum status st = subject_list_read(&found, subjects, err);
+    if (!st) st = provenance_add_file(prov, "parallax/subjects.txt", subjects, err);
+    const struct scene_subjects scene = subjects_of(&found);
+    if (!st && !strcmp(which, "all")) {
+        count = film_effects_list(list, &scene);
+        log_note("%d subject%s: %d effects", scene.count, scene.count == 1 ? "" : "s", count);
+    } else if (!st) {
+        char name[EFFECT_NAME_SIZE];
+        list[count++] = film_effect_draw(&scene, (uint64_t)params->seed);
+        film_effect_name(&list[0], name);
+        log_note("%d subject%s: %s, by chance (seed %d)", scene.count, scene.count == 1 ? "" : "s", name, params->seed);
+    }
+    if (!st) st = write_choice(list, count, out, prov, err);
+    subject_list_release(&found);
+    return st;
+}
+
+int main(int argc, char **argv)
+{
+    const char *subjects = NULL, *which = NULL, *out = NULL;
+    struct choice_params params = CHOICE_PARAMS_DEFAULT;
+    const struct cli_opt opts[] = {
+        CLI_ABOUT("Says which films to make of a scene: one by chance, or all that suit it."),
+        CLI_STR("subjects", &subjects, CLI_REQUIRED, "file of the scene's subjects"),
+        CLI_STR("effect", &which, CLI_REQUIRED, "auto or all"),
+        CLI_STR("out", &out, CLI_REQUIRED, "file to write"),
+        CLI_PARAMS(choice_param_table, &params, NULL),
+        CLI_END,
+    };
+    struct provenance prov = {0};
+    struct err err = ERR_INIT;
+    if (cli_parse(argc, argv, "choose_effects", opts, &prov, &err) == CLI_RUN) {
+        if (strcmp(which, "auto") && strcmp(which, "all"))
+            err_set(&err, ST_USAGE, "--effect %s: wanted auto or all; effects that are named need no choice.", which);
+        else
+            choose(subjects, which, out, &params, &prov, &err);
+    }
+    err_report(&err);
+    provenance_release(&prov);
+    return err_exit_code(&err);
+}
