@@ -407,6 +407,13 @@ $(O)/views/%.exr: ; # a neighbour that is a view no more
 $(POINTS): $(CAMERAS) $(DEPTH_EXR) $(DEPTH_TXT) $(call needs,fuse_points)
 	$(call stage,fuse_points,all,$(O),--views $(O)/views --depth $(O)/depth --out $@)
 
+# rectangles that a user drew, in place of faces; that they came or went is a change whatever the file's time
+DRAWN := $(wildcard scenes/$(SCENE)/subjects.txt)
+WERE_DRAWN := $(shell grep -om1 '^. input subjects.txt' $(SUBJECTS) 2>/dev/null)
+$(SUBJECTS): $(CAMERAS) $(O)/views/lenses.txt $(if $(DRAWN),$(DRAWN),$(VIEW_EXR)) $(DEPTH_EXR) $(DEPTH_TXT) $(call needs,find_subjects) \
+  $(if $(DRAWN),$(if $(WERE_DRAWN),,FORCE),$(if $(WERE_DRAWN),FORCE))
+	$(call stage,find_subjects,all,$(O),--views $(O)/views --depth $(O)/depth --records $(S)/photos $(DRAWN:%=--subjects %) --out $@)
+
 # which effects suit the scene, for EFFECT=auto and EFFECT=all
 $(CHOICE): $(SUBJECTS) $(call needs,choose_effects)
 	$(call stage,choose_effects,$(CHOOSE),$(O),--subjects $(SUBJECTS) --effect $(CHOOSE) --out $@)

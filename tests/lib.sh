@@ -48,6 +48,8 @@ small()
     cat >"scenes/$1/scene.cfg" <<'CFG'
 [segment_depth]
 planes = 32
+[sample_validity]
+max_side = 160
 [plan_path]
 seconds = 0.5
 fps = 12

@@ -170,9 +170,10 @@ static enum status run(const struct job *job, struct provenance *prov, struct er
     const bool move = job->depth && job->validity && !job->keyframes && !job->moves;
     const bool keys = job->keyframes && !job->depth && !job->validity && !job->subjects;
     if (!move && !keys)
-        return err_set(err, ST_USAGE,
-                       "wanted --depth with --validity, for a move, or --keyframes, for a film of keys; --subjects goes "
-                       "with the one, --moves and --records with the other.");
+        return err_set(
+            err, ST_USAGE,
+            "wanted --depth with --validity, for a move, or --keyframes, for a film of keys; --subjects goes "
+            "with the one, --moves and --records with the other.");
     return job->keyframes ? plan_film(job, prov, err) : plan(job, prov, err);
 }
 
@@ -184,8 +185,7 @@ int main(int argc, char **argv)
         CLI_STR("views", &job.views, CLI_REQUIRED, "folder of cameras"),
         CLI_STR("effect", &job.effect, CLI_REQUIRED, "of the taxonomy, like dolly_in+dim; of a film of keys, its name"),
         CLI_STR("depth", &job.depth, CLI_OPTIONAL, "of a move: folder of the views' layers"),
-        CLI_STR("validity", &job.validity, CLI_OPTIONAL,
-                "of a move: file of its valid viewpoints"),
+        CLI_STR("validity", &job.validity, CLI_OPTIONAL, "of a move: file of its valid viewpoints"),
         CLI_STR("subjects", &job.subjects, CLI_OPTIONAL, "of a move: file of the scene's subjects, if it needs any"),
         CLI_STR("keyframes", &job.keyframes, CLI_OPTIONAL, "of a film of keys: file of its keys and moves"),
         CLI_STR("moves", &job.moves, CLI_OPTIONAL, "of a film of keys: folder of the planned moves that it may chain"),
