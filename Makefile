@@ -262,8 +262,11 @@ $(B)/tests/fuzz/fuzz_split_list: $(call objs,stages/import_photos/split_list.c)
 # what find_subjects alone needs; its tests do without OpenCV
 $(B)/bin/find_subjects: $(B)/obj/common/opencv_faces.o
 $(B)/bin/find_subjects: private LDLIBS += -lopencv_objdetect -lopencv_imgproc -lopencv_core -lstdc++
-$(B)/obj/common/opencv_faces.o: private CXXFLAGS += -isystem /usr/include/opencv4
 $(B)/tests/fuzz/fuzz_regions: $(call objs,stages/find_subjects/region*.c)
+# what morph_views alone needs
+$(B)/bin/morph_views $(filter $(B)/tests/unit/morph_views/%,$(UNIT_TESTS)): $(B)/obj/common/opencv_features.o
+$(B)/bin/morph_views $(filter $(B)/tests/unit/morph_views/%,$(UNIT_TESTS)): private LDLIBS += -lopencv_calib3d -lopencv_features2d -lopencv_core -lstdc++
+$(patsubst %.cc,$(B)/obj/%.o,$(wildcard common/opencv_*.cc)): private CXXFLAGS += -isystem /usr/include/opencv4
 # what simulate alone needs
 $(B)/bin/simulate $(B)/tests/unit/simulate/%: private LDLIBS += -lembree3
 $(B)/tests/fuzz/fuzz_scene $(B)/tests/fuzz/fuzz_shoot: private LDLIBS += -lembree3

@@ -1,0 +1,94 @@
+/* geometry.c - see geometry.h. */
+#include "stages/morph_views/geometry.h"
+
+#include <math.h>
+
+#define LEAST_SPREAD 0.05 /* px between a pixel's nearest and farthest place: less is no line */
+
+static bool line_through(double u0, double v0, double u1, double v1, struct epipolar_line *line)
+{
+    double dx = u1 - u0, dy = v1 - v0, length = hypot(dx, dy);
+    if (!(length > LEAST_SPREAD) || !isfinite(length)) return false;
+    dx /= length;
+    dy /= length;
+    *line = (struct epipolar_line){(float)dx, (float)dy, (float)(dy * u0 - dx * v0)};
+    return true;
+}
+
+static bool posed_place(const struct geometry *g, int from, struct vec3 ray, double z, double *u, double *v)
+{
+    const struct posed_photo *a = &g->photos[from], *b = &g->photos[!from];
+    struct mat3 world_from_a = mat3_transpose(a->photo_from_world);
+    struct vec3 at;
+    if (isinf(z)) {
+        at = mat3_apply(b->photo_from_world, mat3_apply(world_from_a, ray));
+    } else {
+        struct vec3 p = vec3_scale(ray, z / ray.z);
+        struct vec3 world = mat3_apply(world_from_a, vec3_sub(p, a->translation));
+        at = vec3_add(mat3_apply(b->photo_from_world, world), b->translation);
+    }
+    double pu, pv;
+    if (!camera_project(&b->lens, at, &pu, &pv)) return false;
+    film_map(g->films[!from]->film_from_photo, pu, pv, u, v);
+    return true;
+}
+
+static bool posed_line(const struct geometry *g, int from, double x, double y, struct epipolar_line *line)
+{
+    const struct posed_photo *a = &g->photos[from];
+    struct vec3 ray;
+    double pu, pv, u0, v0, u1, v1;
+    film_map(g->films[from]->photo_from_film, x, y, &pu, &pv);
+    if (!camera_unproject(&a->lens, pu, pv, &ray) || ray.z <= 0) return false;
+    return posed_place(g, from, ray, a->far, &u0, &v0) && posed_place(g, from, ray, a->near, &u1, &v1) &&
+           line_through(u0, v0, u1, v1, line);
+}
+
+/* A point of picture `from` seen along a ray of the guessed camera, at 1/z = s. */
+static bool guessed_place(const struct geometry *g, int from, double x, double y, double s, double *u, double *v)
+{
+    double ray[3] = {(x - g->width / 2.0) / g->focal, (y - g->height / 2.0) / g->focal, 1}, p[3];
+    const double *r = g->rotation, *t = g->translation;
+    for (int i = 0; i < 3; i++) {
+        if (from == 0)
+            p[i] = r[3 * i] * ray[0] + r[3 * i + 1] * ray[1] + r[3 * i + 2] * ray[2] + s * t[i];
+        else
+            p[i] = r[i] * (ray[0] - s * t[0]) + r[3 + i] * (ray[1] - s * t[1]) + r[6 + i] * (ray[2] - s * t[2]);
+    }
+    if (p[2] < 1e-3) return false;
+    *u = g->focal * p[0] / p[2] + g->width / 2.0;
+    *v = g->focal * p[1] / p[2] + g->height / 2.0;
+    return true;
+}
+
+static bool fundamental_line(const struct geometry *g, int from, double x, double y, struct epipolar_line *line)
+{
+    const double *f = g->fundamental;
+    double l[3], u0, v0, u1, v1;
+    for (int i = 0; i < 3; i++)
+        l[i] = from == 0 ? f[3 * i] * x + f[3 * i + 1] * y + f[3 * i + 2] : f[i] * x + f[3 + i] * y + f[6 + i];
+    double length = hypot(l[0], l[1]);
+    if (!(length > 0)) return false;
+    /* the line is l0 u + l1 v + l2 = 0, so that (l1, -l0) points along it */
+    double dx = l[1] / length, dy = -l[0] / length, c = l[2] / length;
+    if (guessed_place(g, from, x, y, 0.01, &u0, &v0) && guessed_place(g, from, x, y, 0.02, &u1, &v1) &&
+        dx * (u1 - u0) + dy * (v1 - v0) < 0) {
+        dx = -dx;
+        dy = -dy;
+        c = -c;
+    }
+    *line = (struct epipolar_line){(float)dx, (float)dy, (float)c};
+    return true;
+}
+
+bool geometry_line(const struct geometry *g, int from, double x, double y, struct epipolar_line *line)
+{
+    switch (g->kind) {
+    case GEOMETRY_POSED:
+        return posed_line(g, from, x, y, line);
+    case GEOMETRY_FUNDAMENTAL:
+        return fundamental_line(g, from, x, y, line);
+    default:
+        return false;
+    }
+}

@@ -1,0 +1,159 @@
+/* morph_frames.c - see morph_frames.h. */
+#include "stages/morph_views/morph_frames.h"
+
+#include <ctype.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/camera_path.h"
+#include "common/exr.h"
+#include "common/parallel.h"
+#include "common/progress.h"
+#include "common/view_image.h"
+#include "stages/morph_views/morph.h"
+#include "stages/morph_views/prepare.h"
+
+static int frame_number(const char **text, int most)
+{
+    char *end = NULL;
+    long n = isdigit((unsigned char)**text) ? strtol(*text, &end, 10) : 0;
+    if (n < 1 || n > most) return 0;
+    *text = end;
+    return (int)n;
+}
+
+enum status morph_frames_select(bool *wanted, int frame_count, const char *list, struct err *err)
+{
+    const char *at = list;
+    memset(wanted, 0, (size_t)frame_count * sizeof *wanted);
+    do {
+        int first = frame_number(&at, frame_count), last = first;
+        if (first && *at == ':') {
+            at++;
+            last = frame_number(&at, frame_count);
+        }
+        if (!first || last < first || (*at && *at != ','))
+            return err_set(err, ST_USAGE,
+                           "--frames %s: wanted frame numbers and ranges from 1 to %d, like 1:30 or 1:30,45.", list,
+                           frame_count);
+        for (int i = first; i <= last; i++) wanted[i - 1] = true;
+    } while (*at++);
+    return ST_OK;
+}
+
+struct job {
+    const struct morph *morph;
+    const struct camera_path *path;
+    const struct morph_params *params;
+    const struct provenance *prov;
+    const char *out;
+    const int *frames; /* the wanted ones */
+    bool posed;
+    struct err *errors; /* one a frame: the first that failed is told */
+    struct progress progress;
+};
+
+static enum status write_frame(const struct job *job, const struct rendered_frame *f, const struct view *camera,
+                               double t, struct err *err)
+{
+    static const char *const names[] = {"R", "G", "B", "A"};
+    const size_t n = (size_t)f->width * (size_t)f->height;
+    struct exr_image im = {0};
+    char path[4096], holes[32], unfilled[32], time[32];
+    if (snprintf(path, sizeof path, "%s/%.32s.exr", job->out, camera->name) >= (int)sizeof path)
+        return err_set(err, ST_IO, "the path %s/%s.exr is too long.", job->out, camera->name);
+    snprintf(holes, sizeof holes, "%.9g", f->hole_fraction);
+    snprintf(unfilled, sizeof unfilled, "%.9g", f->unfilled_fraction);
+    snprintf(time, sizeof time, "%.9g", t);
+    enum status st = exr_image_init(&im, f->width, f->height, err);
+    for (size_t k = 0; !st && k < 4; k++) {
+        struct exr_plane *plane;
+        st = exr_add_plane(&im, names[k], EXR_HALF, &plane, err);
+        for (size_t p = 0; !st && p < n; p++) plane->f[p] = f->rgba[4 * p + k];
+    }
+    if (!st && job->posed) exr_set_camera(&im, camera);
+    if (!st) st = exr_set_attribute(&im, "remodel:holes", holes, err);
+    if (!st) st = exr_set_attribute(&im, "remodel:unfilled", unfilled, err);
+    if (!st) st = exr_set_attribute(&im, "remodel:t", time, err);
+    if (!st) st = exr_set_attribute(&im, "remodel:radiometry", job->morph->radiometry, err);
+    if (!st) st = exr_write(&im, path, job->prov, err);
+    exr_image_release(&im);
+    return st;
+}
+
+static void make_frames(void *ctx, size_t begin, size_t end, int thread)
+{
+    struct job *job = ctx;
+    struct rendered_frame frame = {0};
+    (void)thread;
+    for (size_t i = begin; i < end; i++) {
+        struct err *err = &job->errors[i];
+        double t = morph_time(job->frames[i], job->path->frame_count, job->params);
+        if (!morph_frame(&frame, job->morph, t, err))
+            write_frame(job, &frame, &job->path->frames[job->frames[i]].camera, t, err);
+        progress_add(&job->progress, 1);
+    }
+    rendered_frame_release(&frame);
+}
+
+static enum status add_inputs(const char *folder, bool *posed, struct provenance *prov, struct err *err)
+{
+    static const char *const files[] = {"first.exr", "second.exr", "path.txt", "path/cameras.txt", "path/images.txt"};
+    struct exr_image head = {0};
+    char path[4096], name[256];
+    enum status st = ST_OK;
+    for (int i = 4; !st && i >= 0; i--) {
+        snprintf(name, sizeof name, "parallax/morph/%s", files[i]);
+        if (snprintf(path, sizeof path, "%s/%s", folder, files[i]) >= (int)sizeof path)
+            st = err_set(err, ST_IO, "the path %s/%s is too long.", folder, files[i]);
+        if (!st) st = provenance_add_file(prov, name, path, err);
+    }
+    if (!st) st = exr_read(&head, path, (const char *const[]){"R"}, 0, err);
+    *posed = head.has_world_to_camera;
+    exr_image_release(&head);
+    return st;
+}
+
+enum status morph_frames(const char *folder, const char *list, const char *out, const struct morph_params *params,
+                         struct provenance *prov, struct err *err)
+{
+    struct morph morph = {0};
+    struct camera_path path = {0};
+    struct job job = {.morph = &morph, .path = &path, .params = params, .prov = prov, .out = out};
+    bool *wanted = NULL;
+    int *frames = NULL, count = 0;
+    enum status st = camera_path_read(&path, folder, err);
+    if (!st) {
+        const size_t n = (size_t)path.frame_count;
+        wanted = calloc(n, sizeof *wanted);
+        frames = calloc(n, sizeof *frames);
+        job.errors = calloc(n, sizeof *job.errors);
+        if (!wanted || !frames || !job.errors) st = err_nomem(err, "a list of frames", n * sizeof *job.errors);
+    }
+    if (!st) st = morph_frames_select(wanted, path.frame_count, list, err);
+    if (!st) st = morph_read(&morph, folder, err);
+    if (!st && (morph.pictures[0].width != path.frames[0].camera.width ||
+                morph.pictures[0].height != path.frames[0].camera.height))
+        st = err_set(err, ST_DATA,
+                     "%s/first.exr has %d x %d pixels, but the frames of path.txt %d x %d; make the morph again.",
+                     folder, morph.pictures[0].width, morph.pictures[0].height, path.frames[0].camera.width,
+                     path.frames[0].camera.height);
+    if (!st) st = add_inputs(folder, &job.posed, prov, err);
+    if (!st) {
+        for (int i = 0; i < path.frame_count; i++)
+            if (wanted[i]) frames[count++] = i;
+        job.frames = frames;
+        progress_start(&job.progress, "morphing", count, "frames");
+        parallel_for((size_t)count, 1, make_frames, &job);
+        progress_end(&job.progress);
+        for (int i = 0; !st && i < count; i++)
+            if (job.errors[i].status) st = err_set(err, job.errors[i].status, "%s", job.errors[i].text);
+    }
+    morph_release(&morph);
+    camera_path_release(&path);
+    free(job.errors);
+    free(wanted);
+    free(frames);
+    return st;
+}

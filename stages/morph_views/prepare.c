@@ -1,0 +1,382 @@
+/* prepare.c - see prepare.h. */
+#include "stages/morph_views/prepare.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/camera_path.h"
+#include "common/exr.h"
+#include "common/lens_list.h"
+#include "common/log.h"
+#include "common/outfile.h"
+#include "common/photo_list.h"
+#include "stages/morph_views/morph.h"
+
+enum { PATH_SIZE = 4096 };
+#define USUAL_FOCAL    1.2 /* of the longest side, where EXIF says nothing */
+#define TOLERANCE      1.0 /* px from the epipolar line, of a feature */
+#define PLANE_PART     0.9 /* of the matches on one homography: the photos tell no epipolar geometry */
+#define DEPTH_TRIM     0.02
+#define DEPTH_ROOM     1.5 /* beyond the sparse points' depths, either way */
+#define NEAR_BASELINES 3
+
+static enum status join(char out[PATH_SIZE], const char *folder, const char *file, const char *suffix, struct err *err)
+{
+    if (snprintf(out, PATH_SIZE, "%s/%s%s", folder, file, suffix) < PATH_SIZE) return ST_OK;
+    return err_set(err, ST_IO, "the path %s/%s%s is too long.", folder, file, suffix);
+}
+
+/* --------------------------------------------------------------------------------------------------------- photos */
+
+/* R G B, scene-linear; of a photo in several exposures what hdr_merge made of them. */
+static enum status read_photo(struct image *linear, char *radiometry, size_t size, const char *photos,
+                              const struct photo_record *record, struct provenance *prov, struct err *err)
+{
+    static const char *const names[] = {"R", "G", "B"};
+    const bool merged = record->bracket_count > 0;
+    char path[PATH_SIZE], input[PATH_SIZE];
+    struct photo photo = {0};
+    struct exr_image exr = {0};
+    enum status st = join(path, photos, merged ? record->id : record->file, merged ? ".exr" : "", err);
+    if (!st) st = join(input, merged ? "hdr" : "photos", merged ? record->id : record->file, merged ? ".exr" : "", err);
+    snprintf(radiometry, size, "approximate");
+    if (!st && !merged && !(st = photo_read(&photo, path, err))) st = photo_to_linear(linear, &photo, err);
+    if (!st && merged) {
+        st = exr_read(&exr, path, names, 3, err);
+        for (int c = 0; !st && c < 3; c++)
+            if (!exr_find(&exr, names[c])->f)
+                st = err_set(err, ST_DATA, "%s: channel %s holds integers, wanted half or float; merge the view again.",
+                             path, names[c]);
+        if (!st) st = image_init(linear, exr.width, exr.height, 3, err);
+        for (size_t c = 0; !st && c < 3; c++) {
+            const float *from = exr_find(&exr, names[c])->f;
+            for (size_t i = 0; i < (size_t)exr.width * (size_t)exr.height; i++)
+                linear->data[3 * i + c] = fmaxf(from[i], 0);
+        }
+        if (!st && exr_attribute(&exr, "remodel:radiometry"))
+            snprintf(radiometry, size, "%.60s", exr_attribute(&exr, "remodel:radiometry"));
+    }
+    if (!st) st = provenance_add_file(prov, input, path, err);
+    photo_release(&photo);
+    exr_image_release(&exr);
+    return st;
+}
+
+struct pair {
+    struct photo_record records[2];
+    struct film_picture films[2];
+    double focal; /* px of the film, of the first photo */
+};
+
+static enum status read_pair(struct pair *pair, struct morph *m, const struct morph_job *job,
+                             const struct morph_params *params, struct provenance *prov, struct err *err)
+{
+    int width = 0, height = 0;
+    enum status st = ST_OK;
+    for (int i = 0; !st && i < 2; i++) {
+        const char *id = i ? job->second : job->first;
+        struct photo_record *record = &pair->records[i];
+        struct image linear = {0};
+        char path[PATH_SIZE], name[PATH_SIZE];
+        st = photo_record_read(record, job->records, id, err) || join(path, job->records, id, ".txt", err) ||
+                     join(name, "photos", id, ".txt", err) || provenance_add_file(prov, name, path, err)
+                 ? err->status
+                 : ST_OK;
+        if (!st) st = read_photo(&linear, m->radiometry, sizeof m->radiometry, job->photos, record, prov, err);
+        const int turned = record->info.orientation;
+        if (!st && !i) {
+            int w, h;
+            film_upright_size(&w, &h, linear.width, linear.height, turned);
+            st = film_size(&width, &height, w, h, params->max_side, err);
+        }
+        if (!st) st = film_picture_make(&pair->films[i], &linear, turned, width, height, err);
+        if (!st) m->pictures[i] = pair->films[i].rgb;
+        if (st == ST_DATA) err_context(err, "photo %s", id);
+        image_release(&linear);
+    }
+    if (st) return st;
+    const struct photo_info *info = &pair->records[0].info;
+    pair->focal = USUAL_FOCAL * (width > height ? width : height);
+    if (info->focal35_mm > 0) pair->focal *= info->focal35_mm / 36 / USUAL_FOCAL;
+    return ST_OK;
+}
+
+/* -------------------------------------------------------------------------------------------------------- cameras */
+
+static int compare_doubles(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* Depths between which a photo's points lie, with room; without points from a few baselines to infinity. */
+static enum status depth_range(struct posed_photo *p, const struct sfm_model *model, double baseline, struct err *err)
+{
+    double *z = malloc(((size_t)model->point_count + 1) * sizeof *z);
+    size_t count = 0;
+    if (!z) return err_nomem(err, "depths", (size_t)model->point_count * sizeof *z);
+    for (int i = 0; i < model->point_count; i++) {
+        double depth = vec3_add(mat3_apply(p->photo_from_world, model->points[i].position), p->translation).z;
+        if (depth > 0) z[count++] = depth;
+    }
+    qsort(z, count, sizeof *z, compare_doubles);
+    p->near = count ? z[(size_t)(DEPTH_TRIM * (double)(count - 1))] / DEPTH_ROOM : NEAR_BASELINES * baseline;
+    p->far = count ? z[(size_t)((1 - DEPTH_TRIM) * (double)(count - 1))] * DEPTH_ROOM : INFINITY;
+    free(z);
+    return ST_OK;
+}
+
+/* The photo's only view; NULL: it has none, or several. */
+static const struct view *find_view(const struct lens **lens, const struct camera_set *set,
+                                    const struct lens_list *lenses, const char *photo)
+{
+    const struct view *found = NULL;
+    int count = 0;
+    for (int i = 0; i < lenses->count; i++) {
+        int at = strcmp(lenses->lenses[i].photo, photo) ? -1 : camera_set_find(set, lenses->lenses[i].view);
+        if (at < 0) continue;
+        count++;
+        found = &set->views[at];
+        *lens = &lenses->lenses[i];
+    }
+    return count == 1 ? found : NULL;
+}
+
+/* *known: both photos have a camera. */
+static enum status read_cameras(struct geometry *g, bool *known, const struct morph_job *job, const struct pair *pair,
+                                struct provenance *prov, struct err *err)
+{
+    static const char *const files[] = {"cameras.txt", "images.txt", "points3D.txt", "lenses.txt"};
+    struct camera_set set = {0};
+    struct lens_list lenses = {0};
+    char path[PATH_SIZE], name[PATH_SIZE];
+    *known = false;
+    if (!job->views) return ST_OK;
+    enum status st = camera_set_read(&set, job->views, err);
+    for (int i = 0; !st && i < 4; i++)
+        st = join(path, job->views, files[i], "", err) || join(name, "views", files[i], "", err) ||
+                     provenance_add_file(prov, name, path, err)
+                 ? err->status
+                 : ST_OK;
+    if (!st) st = lens_list_read(&lenses, path, err);
+    bool all = !st;
+    for (int i = 0; all && i < 2; i++) {
+        const struct lens *lens = NULL;
+        const struct view *view = find_view(&lens, &set, &lenses, pair->records[i].id);
+        if (!view) {
+            log_warn("photo %s has %s in %s: epipolar lines are found from features", pair->records[i].id,
+                     lens ? "several views" : "no camera", job->views);
+            all = false;
+            break;
+        }
+        if (lens->camera.width != pair->films[i].stored_width || lens->camera.height != pair->films[i].stored_height)
+            st = err_set(err, ST_DATA,
+                         "photo %s has %d x %d pixels but its camera %d x %d: it was exchanged after structure from "
+                         "motion; redo that (make resfm) or put the old photo back.",
+                         pair->records[i].id, pair->films[i].stored_width, pair->films[i].stored_height,
+                         lens->camera.width, lens->camera.height);
+        struct mat3 turn = mat3_transpose(mat3_from_quat(lens->view_from_photo));
+        g->photos[i] = (struct posed_photo){.lens = lens->camera,
+                                            .photo_from_world = mat3_multiply(turn, view->cam_from_world),
+                                            .translation = mat3_apply(turn, view->translation)};
+        g->films[i] = &pair->films[i];
+        all = !st;
+    }
+    if (all) {
+        struct vec3 centers[2];
+        for (int i = 0; i < 2; i++)
+            centers[i] =
+                vec3_scale(mat3_apply(mat3_transpose(g->photos[i].photo_from_world), g->photos[i].translation), -1);
+        double baseline = vec3_length(vec3_sub(centers[1], centers[0]));
+        for (int i = 0; !st && i < 2; i++) st = depth_range(&g->photos[i], &set.model, baseline, err);
+        g->kind = GEOMETRY_POSED;
+        *known = true;
+    }
+    lens_list_release(&lenses);
+    camera_set_release(&set);
+    return st;
+}
+
+static void geometry_from_features(struct geometry *g, const struct two_view *found, const struct pair *pair)
+{
+    if (!found->inliers) {
+        log_warn(
+            "photos %s and %s share only %d features: there are no epipolar lines, and they are matched by looks and "
+            "smoothness alone",
+            pair->records[0].id, pair->records[1].id, found->count);
+        return;
+    }
+    if (found->plane_inliers >= PLANE_PART * found->inliers) {
+        log_note(
+            "%d of %d features lie on one plane, or the camera only turned: there is no epipolar geometry to keep to",
+            found->plane_inliers, found->count);
+        return;
+    }
+    g->kind = GEOMETRY_FUNDAMENTAL;
+    memcpy(g->fundamental, found->fundamental, sizeof g->fundamental);
+    memcpy(g->rotation, found->rotation, sizeof g->rotation);
+    memcpy(g->translation, found->translation, sizeof g->translation);
+    log_note("%d of %d matched features agree on the epipolar geometry", found->inliers, found->count);
+}
+
+static enum status find_features(struct two_view *found, const struct image looks[2], double focal, struct err *err)
+{
+    const size_t n = (size_t)looks[0].width * (size_t)looks[0].height;
+    unsigned char *grey = malloc(2 * n);
+    if (!grey) return err_nomem(err, "grey pictures", 2 * n);
+    for (size_t i = 0; i < 2; i++)
+        for (size_t p = 0; p < n; p++) {
+            const float *rgb = looks[i].data + 3 * p;
+            float v = 255 * (0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2]);
+            grey[i * n + p] = (unsigned char)lrintf(fminf(fmaxf(v, 0), 255));
+        }
+    enum status st = two_view_find(found, grey, grey + n, looks[0].width, looks[0].height, focal, TOLERANCE, err);
+    free(grey);
+    return st;
+}
+
+/* ----------------------------------------------------------------------------------------------------------- path */
+
+double morph_time(int frame, int count, const struct morph_params *params)
+{
+    double t = count > 1 ? (double)frame / (count - 1) : 0;
+    return strcmp(params->ease, "smooth") ? t : t * t * (3 - 2 * t);
+}
+
+/* The film's camera at one photo; a photo that is stored mirrored has none, for a rotation cannot turn it. */
+static bool film_camera(struct view *v, const struct posed_photo *p, const struct film_picture *film)
+{
+    const double(*m)[3] = film->film_from_photo;
+    double fx, fy, cx, cy, det = m[0][0] * m[1][1] - m[0][1] * m[1][0], scale = sqrt(fabs(det));
+    if (det <= 0) return false;
+    camera_focal(&p->lens, &fx, &fy, &cx, &cy);
+    struct mat3 turn = {{{m[0][0] / scale, m[0][1] / scale, 0}, {m[1][0] / scale, m[1][1] / scale, 0}, {0, 0, 1}}};
+    bool swapped = fabs(turn.m[0][1]) > 0.5;
+    v->fx = scale * (swapped ? fy : fx);
+    v->fy = scale * (swapped ? fx : fy);
+    film_map(m, cx, cy, &v->cx, &v->cy);
+    v->cam_from_world = mat3_multiply(turn, p->photo_from_world);
+    v->translation = mat3_apply(turn, p->translation);
+    v->center = vec3_scale(mat3_apply(mat3_transpose(v->cam_from_world), v->translation), -1);
+    return true;
+}
+
+static double mix(double a, double b, double t) { return a + t * (b - a); }
+
+static void camera_between(struct view *v, const struct view ends[2], double t)
+{
+    struct quat a = quat_from_mat3(ends[0].cam_from_world), b = quat_from_mat3(ends[1].cam_from_world);
+    double sign = a.w * b.w + a.x * b.x + a.y * b.y + a.z * b.z < 0 ? -1 : 1;
+    struct quat q = {mix(a.w, sign * b.w, t), mix(a.x, sign * b.x, t), mix(a.y, sign * b.y, t),
+                     mix(a.z, sign * b.z, t)};
+    double length = sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
+    q = (struct quat){q.w / length, q.x / length, q.y / length, q.z / length};
+    v->fx = mix(ends[0].fx, ends[1].fx, t);
+    v->fy = mix(ends[0].fy, ends[1].fy, t);
+    v->cx = mix(ends[0].cx, ends[1].cx, t);
+    v->cy = mix(ends[0].cy, ends[1].cy, t);
+    v->cam_from_world = mat3_from_quat(q);
+    v->center = vec3_add(ends[0].center, vec3_scale(vec3_sub(ends[1].center, ends[0].center), t));
+    v->translation = vec3_scale(mat3_apply(v->cam_from_world, v->center), -1);
+}
+
+static enum status write_path(const struct morph *m, const struct view ends[2], double matched, const char *out,
+                              const struct morph_params *params, const struct provenance *prov, struct err *err)
+{
+    struct camera_path path = {0};
+    struct outfile f = {0};
+    char name[PATH_SIZE];
+    double length = 0;
+    const size_t n = (size_t)m->flows[0].width * (size_t)m->flows[0].height;
+    for (size_t p = 0; p < n; p++) length += hypot(m->flows[0].uv[2 * p], m->flows[0].uv[2 * p + 1]) / (double)n;
+    enum status st =
+        camera_path_init(&path, "morph", params->fps, (int)floor(params->seconds * params->fps + 0.5), err);
+    if (!st) st = camera_path_add_score(&path, "matched", matched, "", err);
+    if (!st) st = camera_path_add_score(&path, "way", length, "px", err);
+    for (int i = 0; !st && i < path.frame_count; i++) {
+        struct view *v = &path.frames[i].camera;
+        v->width = m->pictures[0].width;
+        v->height = m->pictures[0].height;
+        camera_between(v, ends, morph_time(i, path.frame_count, params));
+    }
+    if (!st) st = camera_path_write(&path, out, prov, err);
+    if (!st) st = join(name, out, "frames.mk", "", err);
+    if (!st) st = outfile_open(&f, name, err);
+    if (!st) {
+        fputs("MORPH_FRAMES :=", f.fp);
+        for (int i = 0; i < path.frame_count; i++) fprintf(f.fp, " %s", path.frames[i].camera.name);
+        fputc('\n', f.fp);
+        st = outfile_commit(&f, err);
+    }
+    outfile_discard(&f);
+    camera_path_release(&path);
+    return st;
+}
+
+/* ---------------------------------------------------------------------------------------------------------- whole */
+
+static double matched_part(const struct morph *m)
+{
+    const size_t n = (size_t)m->flows[0].width * (size_t)m->flows[0].height;
+    size_t sure = 0;
+    for (int i = 0; i < 2; i++)
+        for (size_t p = 0; p < n; p++) sure += m->flows[i].sure[p] >= 0.5f;
+    return (double)sure / (double)(2 * n);
+}
+
+enum status morph_prepare(const struct morph_job *job, const char *out, const struct morph_params *params,
+                          struct provenance *prov, struct err *err)
+{
+    struct pair pair = {0};
+    struct morph m = {0};
+    struct geometry geometry = {0};
+    struct two_view found = {0};
+    struct image looks[2] = {0};
+    struct view ends[2] = {0};
+    bool posed = false;
+    double matched = 0;
+    enum status st = read_pair(&pair, &m, job, params, prov, err);
+    for (int i = 0; !st && i < 2; i++) st = match_image(&looks[i], &m.pictures[i], err);
+    if (!st) st = find_features(&found, looks, pair.focal, err);
+    if (!st) {
+        geometry.width = looks[0].width;
+        geometry.height = looks[0].height;
+        geometry.focal = pair.focal;
+        st = read_cameras(&geometry, &posed, job, &pair, prov, err);
+    }
+    if (!st && !posed) geometry_from_features(&geometry, &found, &pair);
+    if (!st) st = match_pictures(m.flows, looks, &geometry, found.matches, found.count, params, err);
+    if (!st) {
+        matched = matched_part(&m);
+        if (matched < params->min_matched)
+            st = err_set(err, ST_DATA,
+                         "only %.0f %% of the pixels of photos %s and %s match each other (wanted %.0f %%): they show "
+                         "different things, or the same from too far apart. Choose two others, or lower min_matched.",
+                         100 * matched, pair.records[0].id, pair.records[1].id, 100 * params->min_matched);
+    }
+    if (!st) {
+        morph_find_gain(&m);
+        posed = posed && film_camera(&ends[0], &geometry.photos[0], &pair.films[0]) &&
+                film_camera(&ends[1], &geometry.photos[1], &pair.films[1]);
+        for (int i = 0; !posed && i < 2; i++) /* a camera that stands still, for a path must have some */
+            ends[i] = (struct view){.fx = pair.focal,
+                                    .fy = pair.focal,
+                                    .cx = geometry.width / 2.0,
+                                    .cy = geometry.height / 2.0,
+                                    .cam_from_world = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}};
+        st = morph_write(&m, posed ? ends : NULL, out, prov, err);
+    }
+    if (!st) st = write_path(&m, ends, matched, out, params, prov, err);
+    if (!st) log_note("%.0f %% of the pixels are matched both ways", 100 * matched);
+    m.pictures[0] = m.pictures[1] = (struct image){0}; /* the films' */
+    for (int i = 0; i < 2; i++) {
+        film_picture_release(&pair.films[i]);
+        photo_record_release(&pair.records[i]);
+        image_release(&looks[i]);
+    }
+    two_view_release(&found);
+    morph_release(&m);
+    return st;
+}
