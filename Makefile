@@ -22,6 +22,7 @@ QUALITY ?= default
 ## HOLDOUT=N: every Nth photo, the first included, is kept out of depth and rendering, to compare; in out/SCENE+holdoutN
 ## HOLDOUT_VIEWS="NAMES": the same for these photos or views, in out/SCENE+holdout
 ## TRUTH=DIR: known cameras and depths, which products are compared with (docs/evaluation.md)
+## MORPH="A B": the two photos, by id, that `make morph` goes between; of a scene of two photos these
 ## EDIT=E: the edited scene scenes/SCENE/scene-E.txt, for `make edited`
 ## JOBS=local|slurm: where the per-view work runs
 JOBS ?= local
@@ -109,7 +110,7 @@ export REMODEL_TRUTH := $(call literal,TRUTH)
 
 export VIEWS_PER_JOB SLURM_ARGS
 dry = $(findstring n,$(filter-out --%,$(firstword -$(MAKEFLAGS))))
-GOALS := edited hdr sfm views depth points subjects path frames video pan_scan evaluate report
+GOALS := edited hdr sfm views depth points subjects path frames video pan_scan morph evaluate report
 .PHONY: all help why resfm check fuzz bench bench-compare regress regress-accept man deps deps-check deps-bench clean $(GOALS)
 
 ifeq ($(SCENE),)
@@ -127,6 +128,7 @@ path:   ## + the camera move
 frames: ## + its frames
 video:  ## + the video
 pan_scan: ## the same move in 2D, crops of one photograph, to compare; from then on the page shows it too
+morph:  ## the film from one photo of MORPH to the other, along matches (all that a scene of two photos gets)
 evaluate: ## the depth maps, compared with TRUTH or with photos held out, into metrics.tsv
 report: ## + the page: the same as all
 why:    ## what is stale, and because of what
@@ -280,7 +282,7 @@ else
 # lists that products give: PHOTO_IDS and BRACKETED, VIEWS, FRAMES, HELD (held-out views); not by `include`, for which make would first
 # remake them, even under -n
 $(if $(HELDOUT),$(eval $(file <$(O)/holdout/views/views.mk))$(eval HELD := $(VIEWS))$(eval VIEWS :=))
-$(foreach f,$(S)/photos/photos.mk $(O)/views/views.mk $(O)/parallax/$(EFFECT)/frames.mk,$(eval $(file <$(f))))
+$(foreach f,$(S)/photos/photos.mk $(O)/views/views.mk $(O)/parallax/$(EFFECT)/frames.mk $(O)/parallax/morph/frames.mk,$(eval $(file <$(f))))
 
 BIN := $(B)/bin
 E := $(O)/parallax/$(EFFECT)
@@ -305,6 +307,12 @@ CHOICE := $(O)/parallax/$(CHOOSE)-effects.mk
 FRAME_EXR := $(FRAMES:%=$(E)/frames/%.exr)
 PATH_TXT := $(E)/path.txt $(addprefix $(E)/path/,cameras.txt images.txt points3D.txt)
 PATH_EXPORTS := $(E)/transforms.json $(E)/blender.py
+# two photos have a morph and nothing else; poses are used where there are any
+MORPH ?= $(if $(filter 2,$(words $(PHOTO_IDS))),$(PHOTO_IDS))
+PAIR := $(filter 2,$(words $(PHOTO_IDS)))
+M := $(O)/parallax/morph
+MORPH_EXR := $(MORPH_FRAMES:%=$(M)/frames/%.exr)
+MORPH_TXT := $(M)/path.txt $(addprefix $(M)/path/,cameras.txt images.txt points3D.txt) $(M)/first.exr $(M)/second.exr
 needs = $(O)/slice/$(1).cfg $(B)/code/$(1)
 T := $(CORES)
 
@@ -344,7 +352,7 @@ picture = $(if $(BRACKETED),$(S)/hdr/$(1).exr,$(S)/photos/$(1).txt)
 
 # films of one run; each phase that makes one is told which by EFFECT
 EFFECTS ?= $(EFFECT)
-.PHONY: hdr sfm views depth points subjects choice path frames video pan_frames pan_scan heldout evaluate report
+.PHONY: hdr sfm views depth points subjects choice path frames video pan_frames pan_scan heldout evaluate report morph-path morph-frames morph
 hdr: $(HDR)
 sfm: $(O)/views/views.mk
 views: $(VIEW_EXR) $(HELD_EXR)
@@ -357,6 +365,9 @@ frames: $(FRAME_EXR)
 video: $(E)/video.mp4
 pan_frames: $(FRAMES:%=$(E)/pan_scan/frames/%.exr)
 pan_scan: $(E)/pan_scan/video.mp4
+morph-path: $(M)/frames.mk
+morph-frames: $(MORPH_EXR)
+morph: $(M)/video.mp4
 heldout: $(HELD_FRAMES)
 evaluate: $(O)/metrics.tsv
 report: $(O)/index.html
@@ -466,6 +477,18 @@ $(1:%=$(E)/pan_scan/frames/%.exr) &: $(PATH_TXT) $(CAMERAS) $(VIEW_EXR) $(DEPTH_
 	  $$(call farm,pan_scan,$(firstword $(1)),$(1:%=$(E)/pan_scan/frames/%.exr),--views $(O)/views --depth $(O)/depth --path $(E) --out $(E)/pan_scan/frames --frames,$$$$stale)
 endef
 $(call chunks,pan_rule,$(FRAMES))
+MORPH_POSES := $(if $(wildcard $(O)/views/views.mk),$(CAMERAS) $(O)/views/lenses.txt)
+$(MORPH_TXT) $(M)/frames.mk &: $(foreach p,$(MORPH),$(call picture,$(p))) $(MORPH_POSES) $(O)/stamp/morph.txt $(call needs,morph_views)
+	$(call stage,morph_views,path,$(O),--photos $(PICTURES) --records $(S)/photos --first $(firstword $(MORPH)) --second $(lastword $(MORPH)) \
+	  $(if $(MORPH_POSES),--views $(O)/views) --out $(M))
+define morph_rule
+$(1:%=$(M)/frames/%.exr) &: $(MORPH_TXT) $(call needs,morph_views)
+	$$(hide)stale=$$$$(common/stale.sh $(1:%=$(M)/frames/%.exr) -- $$^); \
+	  $$(call farm,morph_views,$(firstword $(1)),$(1:%=$(M)/frames/%.exr),--morph $(M) --out $(M)/frames --frames,$$$$stale)
+endef
+$(call chunks,morph_rule,$(MORPH_FRAMES))
+$(M)/video.mp4: $(MORPH_EXR) $(MORPH_TXT) $(call needs,encode_video)
+	$(call stage,encode_video,morph,$(O),--path $(M) --frames $(M)/frames --out $@)
 
 # the held-out photos' cameras, rendered from the other views
 define heldout_rule
@@ -484,7 +507,9 @@ $(E)/video.mp4: $(FRAME_EXR) $(PATH_TXT) $(call needs,encode_video)
 $(E)/pan_scan/video.mp4: $(FRAMES:%=$(E)/pan_scan/frames/%.exr) $(PATH_TXT) $(call needs,encode_video)
 	$(call stage,encode_video,$(EFFECT)-pan_scan,$(O),--path $(E) --frames $(E)/pan_scan/frames --out $@)
 
-$(O)/index.html: $(if $(HELDOUT)$(TRUTH),$(O)/metrics.tsv) $(EFFECTS:%=$(O)/parallax/%/video.mp4) $(wildcard $(EFFECTS:%=$(O)/parallax/%/pan_scan/video.mp4)) $(EFFECTS:%=$(O)/parallax/%/path.txt) $(CAMERAS) $(DEPTH_EXR) $(DEPTH_TXT) $(S)/photos/list.txt $(STAGES:%=$(O)/slice/%.cfg) $(call needs,report)
+SHOWN := $(if $(PAIR),$(M)/video.mp4,$(if $(HELDOUT)$(TRUTH),$(O)/metrics.tsv) $(EFFECTS:%=$(O)/parallax/%/video.mp4) $(wildcard $(EFFECTS:%=$(O)/parallax/%/pan_scan/video.mp4)) \
+  $(EFFECTS:%=$(O)/parallax/%/path.txt) $(CAMERAS) $(DEPTH_EXR) $(DEPTH_TXT) $(wildcard $(M)/video.mp4))
+$(O)/index.html: $(SHOWN) $(S)/photos/list.txt $(STAGES:%=$(O)/slice/%.cfg) $(call needs,report)
 	$(call stage,report,page,$(O),--scene $(SCENE) --folder $(O) --shared $(S) --photos $(PICTURES) --defaults configs/default.cfg --out $@)
 
 # What is looked at afresh in every run, also under -n: configs, photos. Files are rewritten only if their text changed.
@@ -496,5 +521,6 @@ look:
 	+@common/look.sh slices $(BIN) $(O)/slice '$(STAGES)' $(CONFIGS)
 	+@common/look.sh slices $(BIN) $(S)/slice 'import_photos hdr_merge sfm' $(filter-out configs/draft.cfg configs/final.cfg,$(CONFIGS))
 	+@common/look.sh photos $(BIN) $(S) scenes/$(SCENE)
+	+@common/look.sh morph $(BIN) $(O) '$(MORPH)'
 	+@common/look.sh evaluation $(BIN) $(O) '$(HOLDOUT)' '$(HOLDOUT_VIEWS)'
 endif

@@ -3,6 +3,7 @@
 #
 #   look.sh slices BIN FOLDER 'STAGE...' CONFIG...   each stage's effective parameters -> FOLDER/STAGE.cfg
 #   look.sh photos BIN S SCENE_FOLDER                the photos' records, their sizes, what SfM starts from, masks, depth that was given
+#   look.sh morph BIN O 'ID ID'                      which photos a morph goes between
 #   look.sh evaluation BIN O HOLDOUT HOLDOUT_VIEWS   what is held out, and the files of the truth
 set -euo pipefail
 what=$1 bin=$2 folder=$3; shift 3
@@ -36,6 +37,10 @@ if [ "$what" = slices ]; then
     exit 0
 fi
 
+if [ "$what" = morph ]; then
+    [ -z "$1" ] || echo "$1" | keep "$folder/stamp/morph.txt"
+    exit 0
+fi
 if [ "$what" = evaluation ]; then
     [ -z "$1$2" ] || printf 'every %s\nviews %s\n' "$1" "$2" | keep "$folder/stamp/holdout.txt"
     if [ -n "${REMODEL_TRUTH-}" ]; then

@@ -3,7 +3,9 @@
  * A pixel whose way there and back ends where it began is sure. Small islands that flow unlike all around them are not,
  * whatever they say. What is not sure is mostly hidden in the other picture, behind something nearer: it belongs to
  * the far side of the gap, so of what the eight directions meet first the second farthest is taken (Hirschmueller 2008),
- * or where near and far are not known the one that looks most like the pixel. Where nothing sure is met the flow stays as it is. */
+ * or where near and far are not known, the one that looks most like the pixel. Where nothing sure is met the flow stays as it is.
+ * Wide areas without a match have no such side: the farther from what is sure, the more the flow is only smooth, so that the
+ * morph dissolves there and does not break into pieces. */
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -12,10 +14,15 @@
 #include "common/parallel.h"
 #include "stages/morph_views/match.h"
 
-enum { CHUNK = 8, DIRECTIONS = 8, LEAST_ISLAND = 60 };
+enum { CHUNK = 8, DIRECTIONS = 8, LEAST_ISLAND = 60, SETTLE_ROUNDS = 3, RELAXED = 150 };
 #define AGREE       0.75f /* px between the way's beginning and its end: wholly sure ... */
 #define DISAGREE    1.5f  /* ... and not at all */
 #define ISLAND_STEP 1.5f
+#define LIKE        0.1f /* of white, sum of three colours */
+#define HOLD        2.0f /* how much an unsure flow keeps to its choice beside what is sure ... */
+#define HOLD_REACH  5.0f /* ... and how many px off that is a third of it */
+#define OVER        1.9f /* over-relaxation */
+#define SETTLED     8.0f /* px: what differs more counts no more */
 
 static int clamp_int(int x, int most) { return x < 0 ? 0 : x > most ? most : x; }
 
@@ -25,9 +32,11 @@ struct checking {
     const struct geometry *geometry;
     int from;
     bool has_lines;
-    const float *uv;   /* of flows[from], before filling */
-    const float *sure; /* the same */
-    float *passed;     /* of flows[from]: before islands are taken out */
+    const float *uv;       /* of flows[from], before filling */
+    const float *sure;     /* the same */
+    float *passed;         /* of flows[from]: before islands are taken out */
+    const float *distance; /* px to what is sure */
+    int colour;            /* red or black half of the board */
 };
 
 /* The flow near a point: of the four pixels around it the one that ends nearest to (x, y). */
@@ -139,6 +148,88 @@ static void fill_rows(void *ctx, size_t begin, size_t end, int thread)
         }
 }
 
+/* Of the pixel's flow and its eight neighbours' the one that the 7 x 7 pixels around differ least from, weighted by how
+ * much they look like it: what directions chose one by one becomes one surface. */
+static void settle_rows(void *ctx, size_t begin, size_t end, int thread)
+{
+    enum { REACH = 3 };
+    const struct checking *c = ctx;
+    struct flow *f = &c->flows[c->from];
+    const struct image *im = &c->pictures[c->from];
+    (void)thread;
+    for (int y = (int)begin; y < (int)end; y++)
+        for (int x = 0; x < f->width; x++) {
+            size_t p = (size_t)y * (size_t)f->width + (size_t)x, best = p;
+            if (f->sure[p] >= 0.5f) continue;
+            float weights[49], least = INFINITY;
+            size_t around[49];
+            int count = 0;
+            for (int j = -REACH; j <= REACH; j++)
+                for (int i = -REACH; i <= REACH; i++) {
+                    int qx = clamp_int(x + i, f->width - 1), qy = clamp_int(y + j, f->height - 1);
+                    const float *a = image_at(im, x, y), *b = image_at(im, qx, qy);
+                    around[count] = (size_t)qy * (size_t)f->width + (size_t)qx;
+                    float unlike = fabsf(a[0] - b[0]) + fabsf(a[1] - b[1]) + fabsf(a[2] - b[2]);
+                    weights[count++] = 0.05f + expf(-unlike / LIKE);
+                }
+            for (int k = 0; k < 9; k++) {
+                size_t q = around[24 + (k / 3 - 1) * 7 + k % 3 - 1];
+                float sum = 0;
+                for (int i = 0; i < count; i++)
+                    sum += weights[i] * fminf(fabsf(c->uv[2 * q] - c->uv[2 * around[i]]) +
+                                                  fabsf(c->uv[2 * q + 1] - c->uv[2 * around[i] + 1]),
+                                              SETTLED);
+                if (sum < least) {
+                    least = sum;
+                    best = q;
+                }
+            }
+            f->uv[2 * p] = c->uv[2 * best];
+            f->uv[2 * p + 1] = c->uv[2 * best + 1];
+        }
+}
+
+/* Steps to the nearest sure pixel, by two passes over the picture. */
+static void find_distance(float *distance, const struct flow *f)
+{
+    const int w = f->width, h = f->height;
+    for (int pass = 0; pass < 2; pass++)
+        for (int k = 0; k < w * h; k++) {
+            int p = pass ? w * h - 1 - k : k, x = p % w, y = p / w, step = pass ? 1 : -1;
+            if (!pass) distance[p] = f->sure[p] >= 0.5f ? 0 : 1e6f;
+            if (x + step >= 0 && x + step < w) distance[p] = fminf(distance[p], distance[p + step] + 1);
+            if (y + step >= 0 && y + step < h) distance[p] = fminf(distance[p], distance[p + step * w] + 1);
+        }
+}
+
+static void relax_rows(void *ctx, size_t begin, size_t end, int thread)
+{
+    const struct checking *c = ctx;
+    struct flow *f = &c->flows[c->from];
+    const struct image *im = &c->pictures[c->from];
+    const int w = f->width, h = f->height;
+    (void)thread;
+    for (int y = (int)begin; y < (int)end; y++)
+        for (int x = (y + c->colour) & 1; x < w; x += 2) {
+            static const int ways[4][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
+            size_t p = (size_t)y * (size_t)w + (size_t)x;
+            if (f->sure[p] >= 0.5f) continue;
+            float sum = HOLD * expf(-c->distance[p] / HOLD_REACH), total[2];
+            for (size_t k = 0; k < 2; k++) total[k] = sum * c->uv[2 * p + k];
+            for (int d = 0; d < 4; d++) {
+                int qx = x + ways[d][0], qy = y + ways[d][1];
+                if (qx < 0 || qy < 0 || qx >= w || qy >= h) continue;
+                size_t q = (size_t)qy * (size_t)w + (size_t)qx;
+                const float *a = image_at(im, x, y), *b = image_at(im, qx, qy);
+                float unlike = fabsf(a[0] - b[0]) + fabsf(a[1] - b[1]) + fabsf(a[2] - b[2]);
+                float weight = 0.02f + expf(-unlike / LIKE);
+                sum += weight;
+                for (size_t k = 0; k < 2; k++) total[k] += weight * f->uv[2 * q + k];
+            }
+            for (size_t k = 0; k < 2; k++) f->uv[2 * p + k] += OVER * (total[k] / sum - f->uv[2 * p + k]);
+        }
+}
+
 static void near_rows(void *ctx, size_t begin, size_t end, int thread)
 {
     const struct checking *c = ctx;
@@ -179,6 +270,17 @@ enum status flow_check(struct flow flows[2], const struct image pictures[2], con
         c.uv = uv;
         c.sure = sure;
         parallel_for(h, CHUNK, fill_rows, &c);
+        for (int k = 0; k < SETTLE_ROUNDS; k++) {
+            memcpy(uv, f->uv, 2 * n * sizeof *uv);
+            parallel_for(h, CHUNK, settle_rows, &c);
+        }
+        memcpy(uv, f->uv, 2 * n * sizeof *uv);
+        find_distance(passed[c.from], f);
+        c.distance = passed[c.from];
+        for (int k = 0; k < 2 * RELAXED; k++) {
+            c.colour = k & 1;
+            parallel_for(h, CHUNK, relax_rows, &c);
+        }
         parallel_for(h, CHUNK, near_rows, &c);
     }
     for (int i = 0; i < 2; i++) free(passed[i]);

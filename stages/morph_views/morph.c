@@ -12,15 +12,13 @@
 #include <string.h>
 
 #include "common/exr.h"
-#include "common/hole_fill.h"
 #include "common/view_image.h"
 
-#define TEAR        1.0f  /* px: neighbours whose flows differ by more are not one surface */
-#define ROOM        0.02f /* px by which pieces of a sheet overlap */
-#define UNSURE      0.02f /* weight of what is not sure */
-#define APART       2.0f  /* px: two pictures that show things farther apart from each other contradict each other */
-#define SURE_RANK   0.5f  /* px of nearness that being sure is worth */
-#define NARROW_HOLE 6     /* px */
+#define TEAR      1.0f  /* px: neighbours whose flows differ by more are not one surface */
+#define ROOM      0.02f /* px by which pieces of a sheet overlap */
+#define UNSURE    0.02f /* weight of what is not sure */
+#define APART     2.0f  /* px: two pictures that show things farther apart from each other contradict each other */
+#define SURE_RANK 0.5f  /* px of nearness that being sure is worth */
 
 static const char *const FILES[2] = {"first.exr", "second.exr"};
 static const char *const PLANES[7] = {"R", "G", "B", "flow.x", "flow.y", "sure", "near"};
@@ -272,7 +270,7 @@ static void lay_sheet(const struct sheet *s)
 
 static void blend(float rgba[4], float *rank, const struct morph *m, const struct hit *hits[2], double t)
 {
-    float weight[2], colour[2][3], place[2][2], sure[2];
+    float weight[2], colour[2][3], place[2][2], sure[2] = {0, 0};
     for (int i = 0; i < 2; i++) {
         const struct hit *h = hits[i];
         weight[i] = 0;
@@ -285,7 +283,8 @@ static void blend(float rgba[4], float *rank, const struct morph *m, const struc
         sample(&m->pictures[i], h->x, h->y, colour[i]);
         for (int c = 0; c < 3; c++) colour[i][c] *= (float)pow(m->gain[c], i ? t - 1 : t);
     }
-    if (weight[0] > 0 && weight[1] > 0 && hypotf(place[0][0] - hits[1]->x, place[0][1] - hits[1]->y) > APART &&
+    if (sure[0] + sure[1] >= 0.5f && weight[0] > 0 && weight[1] > 0 &&
+        hypotf(place[0][0] - hits[1]->x, place[0][1] - hits[1]->y) > APART &&
         hypotf(place[1][0] - hits[0]->x, place[1][1] - hits[0]->y) > APART)
         for (int i = 0; i < 2; i++) weight[i] = weight[i] * weight[i] * weight[i] * weight[i]; /* one of them, nearly */
     float sum = weight[0] + weight[1];
@@ -296,6 +295,38 @@ static void blend(float rgba[4], float *rank, const struct morph *m, const struc
     }
     rgba[3] = 1;
     *rank = hits[weight[1] > weight[0]]->rank;
+}
+
+/* What neither picture shows is a crack, or hidden in both: of what eight directions meet first, the second, third and
+ * fourth farthest (the farthest alone may be a wrong match). */
+static void fill_holes(struct rendered_frame *f)
+{
+    static const int ways[8][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, 1}, {1, -1}, {-1, -1}};
+    const size_t w = (size_t)f->width;
+    size_t unfilled = 0;
+    for (int y = 0; y < f->height; y++)
+        for (int x = 0; x < f->width; x++) {
+            size_t p = (size_t)y * w + (size_t)x, met[8];
+            int count = 0;
+            if (!f->hole[p]) continue;
+            for (int d = 0; d < 8; d++) {
+                int qx = x, qy = y;
+                do {
+                    qx += ways[d][0];
+                    qy += ways[d][1];
+                } while (qx >= 0 && qy >= 0 && qx < f->width && qy < f->height && f->hole[(size_t)qy * w + (size_t)qx]);
+                if (qx < 0 || qy < 0 || qx >= f->width || qy >= f->height) continue;
+                size_t q = (size_t)qy * w + (size_t)qx;
+                int k = count++;
+                for (; k > 0 && f->z[met[k - 1]] < f->z[q]; k--) met[k] = met[k - 1];
+                met[k] = q;
+            }
+            int first = count > 1 ? 1 : 0, last = count < 4 ? count : 4;
+            unfilled += count == 0;
+            for (int k = first; k < last; k++)
+                for (size_t c = 0; c < 4; c++) f->rgba[4 * p + c] += f->rgba[4 * met[k] + c] / (float)(last - first);
+        }
+    f->unfilled_fraction = (double)unfilled / ((double)f->width * (double)f->height);
 }
 
 static void copy_picture(struct rendered_frame *out, const struct image *picture)
@@ -342,8 +373,6 @@ enum status morph_frame(struct rendered_frame *out, const struct morph *m, doubl
     free(hits);
     for (size_t p = 0; p < n; p++) out->z[p] = out->hole[p] ? 0 : 1 + most - out->z[p]; /* far is what ranks low */
     out->hole_fraction = (double)holes / (double)n;
-    out->unfilled_fraction = 0;
-    if (!holes) return ST_OK;
-    const struct soft_z soft = {.widths = 0, .range = fmaxf(most - least, 1e-3f)};
-    return hole_fill(out, &soft, SOFT_Z_SIGMA_LEAST, NARROW_HOLE, err);
+    fill_holes(out);
+    return ST_OK;
 }
