@@ -89,6 +89,11 @@ ifneq ($(SCENE),)
     endif
   endif
 endif
+ifneq ($(MORPH),)
+  ifeq ($(shell [[ '$(subst ','\'',$(MORPH))' =~ ^[A-Za-z0-9_][A-Za-z0-9_-]*\ +[A-Za-z0-9_][A-Za-z0-9_-]*$$ ]] && echo good),)
+    $(error MORPH=$(MORPH): wanted the ids of two photos, as in MORPH="a b")
+  endif
+endif
 # what quality changes is in O; what all qualities share, the photos' records and SfM, is in S
 S := out/$(SCENE)
 HELDOUT := $(if $(HOLDOUT),+holdout$(HOLDOUT),$(if $(HOLDOUT_VIEWS),+holdout))
@@ -514,7 +519,9 @@ $(O)/index.html: $(SHOWN) $(S)/photos/list.txt $(STAGES:%=$(O)/slice/%.cfg) $(ca
 
 # What is looked at afresh in every run, also under -n: configs, photos. Files are rewritten only if their text changed.
 CONFIGS := configs/default.cfg $(if $(filter-out default,$(QUALITY)),configs/$(QUALITY).cfg) $(wildcard scenes/$(SCENE)/scene.cfg)
-.PHONY: look look-simulate
+.PHONY: look look-simulate look-morph
+look-morph:
+	+@common/look.sh morph $(BIN) $(O) '$(MORPH)'
 look-simulate:
 	+@common/look.sh slices $(BIN) $(S)/slice simulate $(filter-out configs/draft.cfg configs/final.cfg,$(CONFIGS))
 look:

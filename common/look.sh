@@ -38,7 +38,7 @@ if [ "$what" = slices ]; then
 fi
 
 if [ "$what" = morph ]; then
-    [ -z "$1" ] || echo "$1" | keep "$folder/stamp/morph.txt"
+    if [ -n "$1" ]; then echo "$1" | keep "$folder/stamp/morph.txt"; else rm -f "$folder/stamp/morph.txt"; fi
     exit 0
 fi
 if [ "$what" = evaluation ]; then

@@ -17,6 +17,7 @@ namespace {
 
 const int MAX_FEATURES = 8000;
 const float RATIO = 0.8f; /* of the best match's distance to the next one's (Lowe 2004) */
+const double CONTRAST = 0.015; /* of a feature, less than usual: dim surfaces count, too */
 const int LEAST_MATCHES = 16;
 
 struct features {
@@ -27,7 +28,7 @@ struct features {
 features find_features(const unsigned char *grey, int width, int height)
 {
     features f;
-    cv::SIFT::create(MAX_FEATURES)
+    cv::SIFT::create(MAX_FEATURES, 3, CONTRAST)
         ->detectAndCompute(cv::Mat(height, width, CV_8U, const_cast<unsigned char *>(grey)), cv::noArray(), f.points,
                            f.descriptors);
     return f;

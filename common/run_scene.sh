@@ -180,6 +180,23 @@ tell_depth()
 # photos that are exposures of one view are merged before anything sees them
 merge_brackets() { [ ! -e "$S/photos/brackets.txt" ] || farm hdr_merge hdr 1 "${VIEWS_PER_JOB:-4}"; }
 
+# make_morph: the film between two photos
+make_morph()
+{
+    local id
+    graph look-morph # the photos are known only now
+    if [ ! -e "$O/stamp/morph.txt" ]; then
+        echo "make morph goes from one photo to another: make morph SCENE=$scene MORPH=\"A B\", with ids that $S/photos/list.txt lists." >&2
+        exit 2
+    fi
+    for id in $(<"$O/stamp/morph.txt"); do
+        [ -e "$S/photos/$id.txt" ] || { echo "MORPH: there is no photo $id; $S/photos/list.txt lists them." >&2; exit 2; }
+    done
+    one morph-path
+    farm morph_views morph-frames "$cores" 1
+    one morph
+}
+
 if [ "$goal" = resfm ]; then
     merge_brackets
     one -W "$S/photos/list.txt" sfm
@@ -188,6 +205,15 @@ if [ "$goal" = resfm ]; then
 fi
 merge_brackets
 case $goal in hdr) exit 0 ;; esac
+# two photos are too few for a camera move
+if [ "$(grep -c '^[^#]' "$S/photos/list.txt")" = 2 ] && [[ $goal = all || $goal = report || $goal = video || $goal = morph ]]; then
+    [ -z "${REMODEL_SFM-}" ] || one sfm
+    make_morph
+    [[ $goal = video || $goal = morph ]] || one report
+    common/explain.sh products "$O"
+    exit 0
+fi
+case $goal in morph) make_morph; common/explain.sh products "$O"; exit 0 ;; esac
 one sfm
 common/explain.sh changed-photos "$S" "$scene"
 case $goal in sfm) exit 0 ;; esac

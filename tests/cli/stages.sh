@@ -39,10 +39,13 @@ parameters_out_of_range_are_refused()
     expect 2 "planes" "$B/bin/segment_depth" --set planes=-1
     expect 2 "planes" "$B/bin/segment_depth" --set planes=1e9
     expect 2 "tolerance" "$B/bin/fuse_points" --set tolerance=0
-    expect 2 "max_holes" "$B/bin/plan_path" --set max_holes=nan
+    expect 2 "max_angle" "$B/bin/plan_path" --set max_angle=nan
+    expect 2 "max_h" "$B/bin/sample_validity" --set max_h=nan
+    expect 2 "seed" "$B/bin/choose_effects" --set seed=-1
     expect 2 "tolerance" "$B/bin/pan_scan" --set tolerance=nan
     expect 2 "least_face" "$B/bin/find_subjects" --set least_face=0
     expect 2 "brackets" "$B/bin/import_photos" --set brackets=maybe
+    expect 2 "fewer than two frames" "$B/bin/morph_views" --set seconds=0.01
     expect 2 "saturated" "$B/bin/hdr_merge" --set saturated=2
     expect 2 "camera_model" "$B/bin/sfm" --set camera_model=FISH
     expect 2 "baseline" "$B/bin/evaluate" --set baseline=-1
@@ -54,6 +57,10 @@ options_that_exclude_each_other_are_refused()
     expect 2 "either --path" "$B/bin/render_views" --views "$d" --depth "$d" --out "$d"
     expect 2 "either --path" "$B/bin/render_views" --views "$d" --depth "$d" --out "$d" --path "$d" --frames 1 --cameras "$d"
     expect 2 "either --path" "$B/bin/render_views" --views "$d" --depth "$d" --out "$d" --path "$d" --frames 1 --camera x
+    expect 2 "either --photos" "$B/bin/morph_views" --out "$d"
+    expect 2 "either --photos" "$B/bin/morph_views" --out "$d" --morph "$d"
+    expect 2 "either --photos" "$B/bin/morph_views" --out "$d" --morph "$d" --frames 1 --first a
+    expect 2 "either --photos" "$B/bin/morph_views" --out "$d" --photos "$d" --records "$d" --first a --second b --frames 1
     expect 2 "--memory -1" "$B/bin/fuse_points" --views "$d" --depth "$d" --out "$d" --memory -1
     expect 2 "or else --estimate" "$B/bin/segment_depth" --views "$d"
     expect 2 "or else --estimate" "$B/bin/segment_depth" --views "$d" --view v --out v.exr --estimate list
@@ -75,6 +82,8 @@ missing_inputs_fail_with_their_name()
     expect 1 "$d" "$B/bin/render_views" --views "$d" --depth "$d" --path "$d" --frames 1:2 --out "$scratch/o"
     expect 1 "$d" "$B/bin/render_views" --views "$d" --depth "$d" --cameras "$d" --out "$scratch/o"
     expect 1 "$d" "$B/bin/pan_scan" --views "$d" --path "$d" --frames 1:2 --out "$scratch/o"
+    expect 1 "$d" "$B/bin/morph_views" --photos "$d" --records "$d" --first a --second b --out "$scratch/o"
+    expect 1 "$d" "$B/bin/morph_views" --morph "$d" --frames 1:2 --out "$scratch/o"
     expect 1 "$d" "$B/bin/evaluate" --folder "$d" --shared "$d" --truth "$d" --out "$scratch/o/metrics.tsv"
     expect 1 "$d" "$B/bin/encode_video" --path "$d" --frames "$d" --out "$scratch/o/v.mp4"
     expect 1 "$d" "$B/bin/verify" --file "$d"
@@ -100,6 +109,8 @@ make_says_what_is_wrong_with_its_words()
     expect 2 "COLUMNSxROWS" make -s DEPS=manual SCENE=x SPLIT="3x3'; touch bad; '"
     [ ! -e bad ] || fail "a command in SPLIT was run"
     expect 2 "both given" make -s DEPS=manual SCENE=x HOLDOUT=8 HOLDOUT_VIEWS=a
+    expect 2 "ids of two photos" make -s DEPS=manual SCENE=x MORPH=a
+    expect 2 "ids of two photos" make -s DEPS=manual SCENE=x MORPH='a b c'
     expect 2 "names of photos" make -s DEPS=manual SCENE=x HOLDOUT_VIEWS='a;b'
     expect 2 "scene-none.txt" make -s DEPS=manual edited SCENE=x EDIT=none
     expect 2 "letters, digits" make -s DEPS=manual SCENE='../x'

@@ -1,0 +1,235 @@
+/* Flows of made pairs: the soft epipolar term, and the hard cases. */
+#include "../scratch.h"
+#include "made_pair.h"
+#include "stages/morph_views/morph.h"
+
+struct flows {
+    struct image linear[2], looks[2];
+    struct flow flow[2];
+};
+
+static void release(struct flows *f)
+{
+    for (int i = 0; i < 2; i++) {
+        image_release(&f->linear[i]);
+        image_release(&f->looks[i]);
+        flow_release(&f->flow[i]);
+    }
+}
+
+static void match(struct flows *f, const struct geometry *g, const struct morph_params *params)
+{
+    struct err err = ERR_INIT;
+    for (int i = 0; i < 2; i++) assert_ok(match_image(&f->looks[i], &f->linear[i], &err), err);
+    assert_ok(match_pictures(f->flow, f->looks, g, NULL, 0, params, &err), err);
+    for (int i = 0; i < 2; i++)
+        for (int p = 0; p < 2 * MADE_WIDTH * MADE_HEIGHT; p++) assert_true(isfinite(f->flow[i].uv[p]));
+}
+
+static void make(struct flows *f, const struct made_pair *pair)
+{
+    struct err err = ERR_INIT;
+    *f = (struct flows){0};
+    for (int i = 0; i < 2; i++) {
+        assert_ok(image_init(&f->linear[i], MADE_WIDTH, MADE_HEIGHT, 3, &err), err);
+        made_picture(&f->linear[i], pair, i);
+    }
+}
+
+static double sure_part(const struct flow *f)
+{
+    double sure = 0;
+    for (int p = 0; p < MADE_WIDTH * MADE_HEIGHT; p++) sure += f->sure[p] >= 0.5f;
+    return sure / (MADE_WIDTH * MADE_HEIGHT);
+}
+
+static void a_still_scene_is_matched_to_parts_of_a_pixel(void **state)
+{
+    const struct made_pair pair = {{-4.4, 0}, {-11.7, 0}, true, 1};
+    const struct morph_params params = MORPH_PARAMS_DEFAULT;
+    const struct geometry g = made_side_by_side();
+    struct flows f;
+    (void)state;
+    make(&f, &pair);
+    match(&f, &g, &params);
+    assert_true(made_right(&f.flow[0], &pair, false, 0.35) > 0.95);
+    assert_true(made_right(&f.flow[0], &pair, true, 0.35) > 0.95);
+    release(&f);
+}
+
+static void what_moved_off_its_line_is_followed_by_the_soft_term_and_not_by_a_hard_one(void **state)
+{
+    const struct made_pair pair = {{-5, 0}, {-11, 9}, true, 1};
+    struct morph_params params = MORPH_PARAMS_DEFAULT;
+    const struct geometry g = made_side_by_side();
+    struct flows f;
+    (void)state;
+    make(&f, &pair);
+    match(&f, &g, &params);
+    assert_true(made_right(&f.flow[0], &pair, false, 0.5) > 0.95);
+    assert_true(made_right(&f.flow[0], &pair, true, 0.5) > 0.95);
+    for (int i = 0; i < 2; i++) flow_release(&f.flow[i]);
+    for (int i = 0; i < 2; i++) image_release(&f.looks[i]);
+    params.epipolar = 10; /* more than any look can cost */
+    params.epipolar_width = 1;
+    match(&f, &g, &params);
+    assert_true(made_right(&f.flow[0], &pair, true, 0.5) < 0.05);
+    release(&f);
+}
+
+static void what_is_hidden_goes_with_the_far_side(void **state)
+{
+    const struct made_pair pair = {{-4, 0}, {-14, 0}, true, 1};
+    const struct morph_params params = MORPH_PARAMS_DEFAULT;
+    const struct geometry g = made_side_by_side();
+    struct flows f;
+    int far = 0, count = 0;
+    (void)state;
+    make(&f, &pair);
+    match(&f, &g, &params);
+    for (int y = 48; y < 78; y++) /* the square covers the ten columns at its left in the second picture */
+        for (int x = 52; x < 58; x++, count++) far += fabsf(f.flow[0].uv[2 * (y * MADE_WIDTH + x)] + 4) < 1.5f;
+    assert_true(far > 0.8 * count);
+    release(&f);
+}
+
+static void identical_photos_do_not_flow(void **state)
+{
+    const struct made_pair pair = {{0, 0}, {0, 0}, false, 1};
+    const struct morph_params params = MORPH_PARAMS_DEFAULT;
+    const struct geometry g = {.kind = GEOMETRY_NONE};
+    struct flows f;
+    (void)state;
+    make(&f, &pair);
+    match(&f, &g, &params);
+    for (int p = 0; p < 2 * MADE_WIDTH * MADE_HEIGHT; p++) assert_true(fabsf(f.flow[0].uv[p]) < 1e-3f);
+    assert_true(sure_part(&f.flow[0]) == 1);
+    release(&f);
+}
+
+static void a_textureless_pair_does_not_flow(void **state)
+{
+    const struct made_pair pair = {{0, 0}, {0, 0}, false, 1};
+    const struct morph_params params = MORPH_PARAMS_DEFAULT;
+    const struct geometry g = {.kind = GEOMETRY_NONE};
+    struct flows f;
+    (void)state;
+    make(&f, &pair);
+    for (int i = 0; i < 2; i++)
+        for (int p = 0; p < 3 * MADE_WIDTH * MADE_HEIGHT; p++) f.linear[i].data[p] = 0.3f;
+    match(&f, &g, &params);
+    for (int p = 0; p < 2 * MADE_WIDTH * MADE_HEIGHT; p++) assert_true(fabsf(f.flow[0].uv[p]) < 1e-3f);
+    assert_true(sure_part(&f.flow[0]) == 1);
+    release(&f);
+}
+
+static void black_pictures_are_no_trouble(void **state)
+{
+    const struct made_pair pair = {{0, 0}, {0, 0}, false, 0};
+    const struct morph_params params = MORPH_PARAMS_DEFAULT;
+    const struct geometry g = {.kind = GEOMETRY_NONE};
+    struct flows f;
+    (void)state;
+    make(&f, &pair); /* the second one */
+    match(&f, &g, &params);
+    release(&f);
+}
+
+static void another_exposure_matches_as_well_and_is_measured(void **state)
+{
+    const struct made_pair pair = {{-6, 0}, {-13, 0}, true, 0.4};
+    const struct morph_params params = MORPH_PARAMS_DEFAULT;
+    const struct geometry g = made_side_by_side();
+    struct flows f;
+    (void)state;
+    make(&f, &pair);
+    match(&f, &g, &params);
+    assert_true(made_right(&f.flow[0], &pair, false, 0.5) > 0.95);
+    assert_true(made_right(&f.flow[0], &pair, true, 0.5) > 0.95);
+    struct morph m = {.pictures = {f.linear[0], f.linear[1]}, .flows = {f.flow[0], f.flow[1]}};
+    morph_find_gain(&m);
+    for (int c = 0; c < 3; c++) assert_true(fabs(m.gain[c] - 0.4) < 0.02);
+    release(&f);
+}
+
+static void a_camera_that_only_turned_is_matched_without_lines(void **state)
+{
+    const double focal = 200, angle = 0.05; /* about the vertical, 10 px */
+    const struct made_pair pair = {{0, 0}, {0, 0}, false, 1};
+    const struct morph_params params = MORPH_PARAMS_DEFAULT;
+    const struct camera lens = {
+        CAMERA_PINHOLE, MADE_WIDTH, MADE_HEIGHT, {focal, focal, MADE_WIDTH / 2., MADE_HEIGHT / 2.}};
+    struct film_picture films[2] = {
+        {.photo_from_film = {{1, 0, 0}, {0, 1, 0}}, .film_from_photo = {{1, 0, 0}, {0, 1, 0}}},
+        {.photo_from_film = {{1, 0, 0}, {0, 1, 0}}, .film_from_photo = {{1, 0, 0}, {0, 1, 0}}}};
+    const struct mat3 one = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    const struct mat3 turn = {{{cos(angle), 0, -sin(angle)}, {0, 1, 0}, {sin(angle), 0, cos(angle)}}};
+    const struct geometry g = {.kind = GEOMETRY_POSED,
+                               .width = MADE_WIDTH,
+                               .height = MADE_HEIGHT,
+                               .photos = {{lens, one, {0, 0, 0}, 1, 10}, {lens, turn, {0, 0, 0}, 1, 10}},
+                               .films = {&films[0], &films[1]}};
+    struct epipolar_line line;
+    struct flows f;
+    int right = 0, count = 0;
+    (void)state;
+    assert_false(geometry_line(&g, 0, 80, 60, &line));
+    make(&f, &pair);
+    for (int y = 0; y < MADE_HEIGHT; y++)
+        for (int x = 0; x < MADE_WIDTH; x++) {
+            struct vec3 ray = {(x + 0.5 - MADE_WIDTH / 2.) / focal, (y + 0.5 - MADE_HEIGHT / 2.) / focal, 1};
+            struct vec3 p = mat3_apply(mat3_transpose(turn), ray);
+            double u = focal * p.x / p.z + MADE_WIDTH / 2. - 0.5, v = focal * p.y / p.z + MADE_HEIGHT / 2. - 0.5;
+            for (int c = 0; c < 3; c++) image_at(&f.linear[1], x, y)[c] = (float)made_texture(u, v, 7 * c);
+        }
+    match(&f, &g, &params);
+    for (int y = 24; y < MADE_HEIGHT - 24; y++)
+        for (int x = 24; x < MADE_WIDTH - 24; x++, count++) {
+            struct vec3 ray = {(x + 0.5 - MADE_WIDTH / 2.) / focal, (y + 0.5 - MADE_HEIGHT / 2.) / focal, 1};
+            struct vec3 p = mat3_apply(turn, ray);
+            const float *uv = f.flow[0].uv + 2 * (y * MADE_WIDTH + x);
+            right += hypot(focal * p.x / p.z + MADE_WIDTH / 2. - 0.5 - x - uv[0],
+                           focal * p.y / p.z + MADE_HEIGHT / 2. - 0.5 - y - uv[1]) < 0.5;
+        }
+    assert_true(right > 0.95 * count);
+    release(&f);
+}
+
+static void lines_of_cameras_and_of_their_fundamental_matrix_agree(void **state)
+{
+    const double focal = 200;
+    const struct camera lens = {
+        CAMERA_PINHOLE, MADE_WIDTH, MADE_HEIGHT, {focal, focal, MADE_WIDTH / 2., MADE_HEIGHT / 2.}};
+    const struct film_picture film = {.photo_from_film = {{1, 0, 0}, {0, 1, 0}},
+                                      .film_from_photo = {{1, 0, 0}, {0, 1, 0}}};
+    const struct mat3 one = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    const struct geometry g = {.kind = GEOMETRY_POSED,
+                               .photos = {{lens, one, {0, 0, 0}, 2, 50}, {lens, one, {-0.2, 0, 0}, 2, 50}},
+                               .films = {&film, &film}};
+    const struct geometry f = made_side_by_side();
+    (void)state;
+    for (int from = 0; from < 2; from++)
+        for (int k = 0; k < 5; k++) {
+            struct epipolar_line a, b;
+            assert_true(geometry_line(&g, from, 20 + 25 * k, 11 + 20 * k, &a));
+            assert_true(geometry_line(&f, from, 20 + 25 * k, 11 + 20 * k, &b));
+            assert_true(fabsf(a.dx - b.dx) < 1e-4f && fabsf(a.dy - b.dy) < 1e-4f && fabsf(a.c - b.c) < 1e-3f);
+            assert_true(a.dx == (from ? 1 : -1)); /* nearer is left in the second picture, right in the first */
+        }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_still_scene_is_matched_to_parts_of_a_pixel),
+        cmocka_unit_test(what_moved_off_its_line_is_followed_by_the_soft_term_and_not_by_a_hard_one),
+        cmocka_unit_test(what_is_hidden_goes_with_the_far_side),
+        cmocka_unit_test(identical_photos_do_not_flow),
+        cmocka_unit_test(a_textureless_pair_does_not_flow),
+        cmocka_unit_test(black_pictures_are_no_trouble),
+        cmocka_unit_test(another_exposure_matches_as_well_and_is_measured),
+        cmocka_unit_test(a_camera_that_only_turned_is_matched_without_lines),
+        cmocka_unit_test(lines_of_cameras_and_of_their_fundamental_matrix_agree),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
