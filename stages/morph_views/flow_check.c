@@ -67,7 +67,7 @@ static void check_rows(void *ctx, size_t begin, size_t end, int thread)
             c->passed[p] = off <= AGREE ? 1 : off >= DISAGREE ? 0 : (DISAGREE - off) / (DISAGREE - AGREE);
             struct epipolar_line line;
             f->near[p] = 0;
-            if (geometry_line(c->geometry, c->from, (double)x + 0.5, (double)y + 0.5, &line))
+            if (geometry_line(c->geometry, c->from, (double)x + 0.5, (double)y + 0.5, NULL, &line))
                 f->near[p] = line.dx * f->uv[2 * p] + line.dy * f->uv[2 * p + 1];
         }
 }
@@ -239,7 +239,7 @@ static void near_rows(void *ctx, size_t begin, size_t end, int thread)
         for (size_t x = 0; x < (size_t)f->width; x++) {
             size_t p = y * (size_t)f->width + x;
             struct epipolar_line line;
-            if (geometry_line(c->geometry, c->from, (double)x + 0.5, (double)y + 0.5, &line))
+            if (geometry_line(c->geometry, c->from, (double)x + 0.5, (double)y + 0.5, NULL, &line))
                 f->near[p] = line.dx * f->uv[2 * p] + line.dy * f->uv[2 * p + 1];
         }
 }
@@ -256,7 +256,7 @@ enum status flow_check(struct flow flows[2], const struct image pictures[2], con
     unsigned char *seen = malloc(n);
     enum status st =
         passed[0] && passed[1] && uv && sure && stack && seen ? ST_OK : err_nomem(err, "a flow's check", n * 30);
-    c.has_lines = geometry_line(geometry, 0, flows[0].width / 2.0, flows[0].height / 2.0, &line);
+    c.has_lines = geometry_line(geometry, 0, flows[0].width / 2.0, flows[0].height / 2.0, NULL, &line);
     for (c.from = 0; !st && c.from < 2; c.from++) {
         c.passed = passed[c.from];
         parallel_for(h, CHUNK, check_rows, &c);

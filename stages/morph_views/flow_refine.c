@@ -155,7 +155,8 @@ static void weigh_rows(void *ctx, size_t begin, size_t end, int thread)
             size_t p = y * (size_t)w + x;
             r->weights[2 * p] = x + 1 < (size_t)w ? weight_between(r, p, p + 1) : 0;
             r->weights[2 * p + 1] = y + 1 < (size_t)h ? weight_between(r, p, p + (size_t)w) : 0;
-            if (!geometry_line(r->geometry, r->from_idx, (double)x + 0.5, (double)y + 0.5, &r->lines[p]))
+            const double at[2] = {(double)x + 0.5 + r->whole[2 * p], (double)y + 0.5 + r->whole[2 * p + 1]};
+            if (!geometry_line(r->geometry, r->from_idx, (double)x + 0.5, (double)y + 0.5, at, &r->lines[p]))
                 r->lines[p] = (struct epipolar_line){0};
         }
 }

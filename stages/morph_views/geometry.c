@@ -3,6 +3,7 @@
 
 #include <math.h>
 
+#define TANGENT      0.02 /* of the range of 1/z: half the chord that stands for a curve */
 #define LEAST_SPREAD 0.05 /* px between a pixel's nearest and farthest place: less is no line */
 
 static bool line_through(double u0, double v0, double u1, double v1, struct epipolar_line *line)
@@ -33,15 +34,28 @@ static bool posed_place(const struct geometry *g, int from, struct vec3 ray, dou
     return true;
 }
 
-static bool posed_line(const struct geometry *g, int from, double x, double y, struct epipolar_line *line)
+static bool posed_line(const struct geometry *g, int from, double x, double y, const double *at,
+                       struct epipolar_line *line)
 {
     const struct posed_photo *a = &g->photos[from];
     struct vec3 ray;
-    double pu, pv, u0, v0, u1, v1;
+    double pu, pv, u0, v0, u1, v1, far = 1 / a->far, near = 1 / a->near;
     film_map(g->films[from]->photo_from_film, x, y, &pu, &pv);
     if (!camera_unproject(&a->lens, pu, pv, &ray) || ray.z <= 0) return false;
-    return posed_place(g, from, ray, a->far, &u0, &v0) && posed_place(g, from, ray, a->near, &u1, &v1) &&
-           line_through(u0, v0, u1, v1, line);
+    if (!posed_place(g, from, ray, 1 / far, &u0, &v0) || !posed_place(g, from, ray, 1 / near, &u1, &v1)) return false;
+    double length = (u1 - u0) * (u1 - u0) + (v1 - v0) * (v1 - v0);
+    if (at && length > LEAST_SPREAD * LEAST_SPREAD) { /* 1/z runs nearly evenly along the way from far to near */
+        double part = ((at[0] - u0) * (u1 - u0) + (at[1] - v0) * (v1 - v0)) / length;
+        double middle = far + (near - far) * fmin(fmax(part, 0), 1), half = (near - far) * TANGENT;
+        struct epipolar_line tangent;
+        if (posed_place(g, from, ray, 1 / fmax(middle - half, 0), &pu, &pv) &&
+            posed_place(g, from, ray, 1 / (middle + half), &u1, &v1) && line_through(pu, pv, u1, v1, &tangent)) {
+            *line = tangent;
+            return true;
+        }
+        return false;
+    }
+    return line_through(u0, v0, u1, v1, line);
 }
 
 /* A point of picture `from` seen along a ray of the guessed camera, at 1/z = s. */
@@ -81,11 +95,11 @@ static bool fundamental_line(const struct geometry *g, int from, double x, doubl
     return true;
 }
 
-bool geometry_line(const struct geometry *g, int from, double x, double y, struct epipolar_line *line)
+bool geometry_line(const struct geometry *g, int from, double x, double y, const double *at, struct epipolar_line *line)
 {
     switch (g->kind) {
     case GEOMETRY_POSED:
-        return posed_line(g, from, x, y, line);
+        return posed_line(g, from, x, y, at, line);
     case GEOMETRY_FUNDAMENTAL:
         return fundamental_line(g, from, x, y, line);
     default:

@@ -482,7 +482,14 @@ static void line_rows(void *ctx, size_t begin, size_t end, int thread)
     for (size_t y = begin; y < end; y++)
         for (int x = 0; x < s->width; x++) {
             struct epipolar_line *l = &s->lines[y * (size_t)s->width + (size_t)x];
-            if (!geometry_line(s->geometry, s->from_idx, (x + 0.5) * s->scale, ((double)y + 0.5) * s->scale, l))
+            double px = (x + 0.5) * s->scale, py = ((double)y + 0.5) * s->scale, at[2] = {px, py};
+            if (s->above) {
+                size_t q = (size_t)clamp_int((int)y / 2, s->above_height - 1) * (size_t)s->above_width +
+                           (size_t)clamp_int(x / 2, s->above_width - 1);
+                at[0] += 2 * s->scale * s->above[KEPT * q].x;
+                at[1] += 2 * s->scale * s->above[KEPT * q].y;
+            }
+            if (!geometry_line(s->geometry, s->from_idx, px, py, s->above ? at : NULL, l))
                 *l = (struct epipolar_line){0};
         }
 }

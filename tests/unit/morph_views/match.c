@@ -173,7 +173,7 @@ static void a_camera_that_only_turned_is_matched_without_lines(void **state)
     struct flows f;
     int right = 0, count = 0;
     (void)state;
-    assert_false(geometry_line(&g, 0, 80, 60, &line));
+    assert_false(geometry_line(&g, 0, 80, 60, NULL, &line));
     make(&f, &pair);
     for (int y = 0; y < MADE_HEIGHT; y++)
         for (int x = 0; x < MADE_WIDTH; x++) {
@@ -211,11 +211,38 @@ static void lines_of_cameras_and_of_their_fundamental_matrix_agree(void **state)
     for (int from = 0; from < 2; from++)
         for (int k = 0; k < 5; k++) {
             struct epipolar_line a, b;
-            assert_true(geometry_line(&g, from, 20 + 25 * k, 11 + 20 * k, &a));
-            assert_true(geometry_line(&f, from, 20 + 25 * k, 11 + 20 * k, &b));
+            assert_true(geometry_line(&g, from, 20 + 25 * k, 11 + 20 * k, NULL, &a));
+            assert_true(geometry_line(&f, from, 20 + 25 * k, 11 + 20 * k, NULL, &b));
             assert_true(fabsf(a.dx - b.dx) < 1e-4f && fabsf(a.dy - b.dy) < 1e-4f && fabsf(a.c - b.c) < 1e-3f);
             assert_true(a.dx == (from ? 1 : -1)); /* nearer is left in the second picture, right in the first */
         }
+}
+
+static void through_a_lens_that_distorts_a_line_is_the_curves_tangent(void **state)
+{
+    const struct camera lens = {
+        CAMERA_SIMPLE_RADIAL, MADE_WIDTH, MADE_HEIGHT, {150, MADE_WIDTH / 2., MADE_HEIGHT / 2., -0.3}};
+    const struct film_picture film = {.photo_from_film = {{1, 0, 0}, {0, 1, 0}},
+                                      .film_from_photo = {{1, 0, 0}, {0, 1, 0}}};
+    const struct mat3 one = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    const struct geometry g = {.kind = GEOMETRY_POSED,
+                               .photos = {{lens, one, {0, 0, 0}, 1, 100}, {lens, one, {-0.5, 0, 0}, 1, 100}},
+                               .films = {&film, &film}};
+    struct vec3 ray;
+    double at[2], worst = 0, chord = 0;
+    (void)state;
+    assert_true(camera_unproject(&lens, 130, 100, &ray));
+    for (double z = 1.1; z < 20; z *= 1.3) {
+        struct vec3 p = vec3_scale(ray, z / ray.z);
+        struct epipolar_line line;
+        assert_true(camera_project(&lens, vec3_add(p, vec3_make(-0.5, 0, 0)), &at[0], &at[1]));
+        assert_true(geometry_line(&g, 0, 130, 100, at, &line));
+        worst = fmax(worst, fabs(line.dx * at[1] - line.dy * at[0] + line.c));
+        assert_true(geometry_line(&g, 0, 130, 100, NULL, &line));
+        chord = fmax(chord, fabs(line.dx * at[1] - line.dy * at[0] + line.c));
+    }
+    assert_true(worst < 0.05);
+    assert_true(chord > 0.5); /* so that it tells the two apart */
 }
 
 int main(void)
@@ -229,6 +256,7 @@ int main(void)
         cmocka_unit_test(black_pictures_are_no_trouble),
         cmocka_unit_test(another_exposure_matches_as_well_and_is_measured),
         cmocka_unit_test(a_camera_that_only_turned_is_matched_without_lines),
+        cmocka_unit_test(through_a_lens_that_distorts_a_line_is_the_curves_tangent),
         cmocka_unit_test(lines_of_cameras_and_of_their_fundamental_matrix_agree),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
