@@ -10,10 +10,13 @@
 #define SHRINK_STEPS 7
 #define BACK_STEPS   3 /* from the refined ends towards those on the grid */
 
-/* Whether an end stands as far towards the scene as it may, or as far back. */
+/* Whether an end stands as far towards the scene as it may, or as far back. The establishing dolly is to show the whole
+ * scene: both of its ends stay back, and it goes across. */
 static bool is_forward(enum move move, int end)
 {
     switch (move) {
+    case MOVE_ESTABLISHING_DOLLY:
+        return false;
     case MOVE_ESTABLISHING_DOLLY_OUT:
     case MOVE_DOLLY_OUT:
     case MOVE_DOLLY_ZOOM:
