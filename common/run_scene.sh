@@ -244,10 +244,11 @@ if [ "$goal" = pan_scan ]; then
     common/explain.sh products "$O"
     exit 0
 fi
-films farm_frames render_views frames
-case $goal in frames) exit 0 ;; esac
-films one video
+# a film is whole before the next one begins
+film() { farm_frames render_views frames; [ "$goal" = frames ] || one video; }
+films film
 case $goal in
+frames) exit 0 ;;
 video) ;;
 *)
     case $O${REMODEL_TRUTH:+ truth} in *+holdout* | *truth) evaluate ;; esac
