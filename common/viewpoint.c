@@ -3,26 +3,11 @@
 
 #include <stdlib.h>
 
-#include "common/distance.h"
+#include "common/hole_measure.h"
 #include "common/parallel.h"
 
 #define OUTSIDE_SIDE   64    /* of the picture in which what is outside is counted */
 #define NEAR_TOLERANCE 0.005 /* of the picture */
-
-enum status hole_measure(double *h, const uint8_t *hole, int width, int height, float *scratch, struct err *err)
-{
-    const double scale = (width > height ? width : height) / (double)H_REFERENCE_SIDE;
-    double total = 0;
-    if (distance_squared(scratch, hole, width, height, err)) return err->status;
-    for (int y = 0; y < height; y++) {
-        const float *row = scratch + (size_t)y * (size_t)width;
-        double sum = 0;
-        for (int x = 0; x < width; x++) sum += (double)(row[x] * sqrtf(row[x]));
-        total += sum;
-    }
-    *h = total / (scale * scale * scale) / ((double)width * height);
-    return ST_OK;
-}
 
 static enum status measure_holes(struct viewpoint *v, struct viewpoint_test *test, const struct view *camera,
                                  struct err *err)

@@ -1,21 +1,15 @@
 /* viewpoint.h - whether a scene can be shown from a camera (thesis 3.4.2, "Valid viewpoint sampling").
  *
- *   H(V) = sum over the hole pixels of d^3 / (w h)
- * d: the distance in px from a hole pixel to the nearest one that is none, of a picture whose longer side is 1200 px. A
- * picture at s times that size is measured with d / s, so that H does not depend on how large holes are looked at but
- * for what is too small to be seen. A hole is a pixel that no segment covers, before anything is filled.
- *
- * A viewpoint is valid if H < max_h. Two more limits are not in the thesis, and keep pictures from being worse than
+ * A viewpoint is valid if H < max_h (common/hole_measure.h). Two more limits are not in the thesis, and keep pictures from being worse than
  * their holes tell: how much of the frame may lie beyond the borders of the views that the view mesh blends there
  * (others step in, with a seam), and that what is near may not come nearer than shot.near_limit. */
 #ifndef REMODEL_VIEWPOINT_H
 #define REMODEL_VIEWPOINT_H
 
+#include "hole_measure.h"
 #include "layer_render.h"
 #include "scene_points.h"
 #include "shot.h"
-
-#define H_REFERENCE_SIDE 1200
 
 struct viewpoint_limits {
     double max_h;
@@ -41,9 +35,6 @@ struct viewpoint_test { /* keeps buffers; one thread uses it at a time */
     size_t distance_room;
     long renders; /* coverage drawn so far */
 };
-
-/* H of a mask, 1 where there is a hole. scratch: width * height. */
-enum status hole_measure(double *h, const uint8_t *hole, int width, int height, float *scratch, struct err *err);
 
 /* Measures all of it. */
 enum status viewpoint_measure(struct viewpoint *v, struct viewpoint_test *test, const struct view *camera,

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "common/exr.h"
+#include "common/hole_measure.h"
 #include "common/progress.h"
 #include "common/view_image.h"
 
@@ -45,6 +46,16 @@ enum status frame_part_camera(struct view *camera, const struct frame_part *part
     return ST_OK;
 }
 
+static enum status measure_holes(double *h, const struct rendered_frame *f, struct err *err)
+{
+    const size_t pixels = (size_t)f->width * (size_t)f->height;
+    float *scratch = malloc(pixels * sizeof *scratch);
+    const enum status st = scratch ? hole_measure(h, f->hole, f->width, f->height, scratch, err)
+                                   : err_nomem(err, "distances in holes", pixels * sizeof *scratch);
+    free(scratch);
+    return st;
+}
+
 static enum status frame_write(const struct rendered_frame *f, const struct view *camera, bool with_holes,
                                const char *file, const struct provenance *prov, struct err *err)
 {
@@ -52,11 +63,14 @@ static enum status frame_write(const struct rendered_frame *f, const struct view
     const size_t pixels = (size_t)f->width * (size_t)f->height;
     struct exr_image im = {0};
     struct exr_plane *plane;
-    char holes[32], unfilled[32];
+    char holes[32], unfilled[32], measure[32];
+    double h = 0;
 
     snprintf(holes, sizeof holes, "%.9g", f->hole_fraction);
     snprintf(unfilled, sizeof unfilled, "%.9g", f->unfilled_fraction);
-    enum status st = exr_image_init(&im, f->width, f->height, err);
+    enum status st = measure_holes(&h, f, err);
+    snprintf(measure, sizeof measure, "%.9g", h);
+    if (!st) st = exr_image_init(&im, f->width, f->height, err);
     for (size_t k = 0; !st && k < 4; k++) {
         st = exr_add_plane(&im, names[k], EXR_HALF, &plane, err);
         for (size_t p = 0; !st && p < pixels; p++) plane->f[p] = f->rgba[4 * p + k];
@@ -69,6 +83,7 @@ static enum status frame_write(const struct rendered_frame *f, const struct view
         st = exr_set_attribute(&im, "remodel:holes", holes, err);
     }
     if (!st) st = exr_set_attribute(&im, "remodel:unfilled", unfilled, err);
+    if (!st && isfinite(h)) st = exr_set_attribute(&im, "remodel:h", measure, err);
     if (!st) st = exr_write(&im, file, prov, err);
     exr_image_release(&im);
     return st;
