@@ -51,7 +51,12 @@ static double focal_at(const struct shot *shot, const struct shot_end *end, stru
 
 struct view shot_end_camera(const struct shot *shot, const struct shot_end *end, struct vec3 at)
 {
-    return shot_aim(shot, at, end->target, focal_at(shot, end, at, end->target));
+    double focal = focal_at(shot, end, at, end->target);
+    if (end->focal > 0 && end->size > 0) {
+        const double size = focal * unit_size(shot, end, at, end->target);
+        if (!(size > 0 && size <= end->size)) focal = 0;
+    }
+    return shot_aim(shot, at, end->target, focal);
 }
 
 static struct vec3 between(struct vec3 a, struct vec3 b, double t)
@@ -76,6 +81,13 @@ static struct shot_end keep_size(const struct subject *s, struct vec3 target, do
     struct shot_end end = {.target = target, .size = size};
     memcpy(end.corner, s->corner, sizeof end.corner);
     return end;
+}
+
+/* The focal length of a close end: less than 1.5 f if the subject would fill the frame, but no less than f. */
+static double close_focal(const struct shot *shot, double size)
+{
+    const double f = shot->lens.fx;
+    return fmax(f, fmin(CLOSE_FOCAL * f, f * SUBJECT_PART * shot->lens.height / size));
 }
 
 /* A subject's size in the camera at the origin that points at the target. */
@@ -119,8 +131,9 @@ enum status shot_move_make(struct shot_move *m, const struct shot *shot, enum mo
         const int there = move == MOVE_DOLLY_IN;
         if (origin_size(&size, shot, first, subject_lower_center(first), f, err)) return err->status;
         m->end[!there] = whole;
-        m->end[there] = close;
-        m->end[there].target = subject_lower_center(first);
+        m->end[there] = keep_size(first, subject_lower_center(first), 0);
+        m->end[there].focal = close_focal(shot, size);
+        m->end[there].size = SUBJECT_MOST * size * m->end[there].focal / f;
         return ST_OK;
     }
     case MOVE_DOLLY_ZOOM:
@@ -133,8 +146,9 @@ enum status shot_move_make(struct shot_move *m, const struct shot *shot, enum mo
     default: {
         const struct vec3 a = subject_center(first), b = subject_center(second);
         double other;
-        if (origin_size(&size, shot, first, a, CLOSE_FOCAL * f, err) || origin_size(&other, shot, second, b, f, err))
+        if (origin_size(&size, shot, first, a, f, err) || origin_size(&other, shot, second, b, f, err))
             return err->status;
+        size *= close_focal(shot, size) / f;
         m->end[0] = keep_size(first, a, size);
         m->end[1] = keep_size(second, b, size);
         return ST_OK;

@@ -112,9 +112,10 @@ static enum status read_end(struct textfile *t, struct shot_end *e, struct err *
     if (!strcmp(word, "focal")) {
         if (textfile_double(t, "the focal length", &e->focal, err)) return err->status;
         if (!(e->focal > 0)) return textfile_error(t, err, "a focal length of 0 or less", "one above 0");
-        return textfile_end(t, err);
-    }
-    if (strcmp(word, "size")) return textfile_error(t, err, word, "\"focal\" or \"size\"");
+        if (!textfile_more(t)) return ST_OK;
+        if (read_word(t, "most", err)) return err->status;
+    } else if (strcmp(word, "size"))
+        return textfile_error(t, err, word, "\"focal\" or \"size\"");
     if (textfile_double(t, "the size", &e->size, err)) return err->status;
     if (!(e->size > 0)) return textfile_error(t, err, "a size of 0 or less", "one above 0");
     for (int i = 0; i < 4; i++)
@@ -194,10 +195,9 @@ static void print_end(FILE *fp, const struct shot_end *e)
 {
     fputs("end target", fp);
     print_vector(fp, e->target);
-    if (e->focal > 0)
-        fprintf(fp, " focal %.17g", e->focal);
-    else {
-        fprintf(fp, " size %.17g", e->size);
+    if (e->focal > 0) fprintf(fp, " focal %.17g", e->focal);
+    if (e->size > 0) {
+        fprintf(fp, " %s %.17g", e->focal > 0 ? "most" : "size", e->size);
         for (int i = 0; i < 4; i++) print_vector(fp, e->corner[i]);
     }
     fputc('\n', fp);

@@ -11,7 +11,8 @@
  *   limits H OUTSIDE SIDE            of a valid viewpoint (common/viewpoint.h)
  *   step S                           how exactly the z of a cell is known
  *   on_axis 0|1                      1: ends lie on the z axis, and each region is one cell
- *   end target X Y Z focal F         one of these two, for the start and then for the end
+ *   end target X Y Z focal F         one of these three, for the start and then for the end
+ *   end target X Y Z focal F most S X Y Z X Y Z X Y Z X Y Z    a quadrilateral that is shown no higher than S px
  *   end target X Y Z size S X Y Z X Y Z X Y Z X Y Z     a quadrilateral that keeps its size
  *   region C R                       after each end, then C x R cells, row after row
  *   cell X Y none

@@ -13,7 +13,7 @@ const struct param validity_param_table[] = {VALIDITY_PARAMS(PARAM_ROW) PARAM_EN
 #undef PARAM_STRUCT
 
 #define FIRST_STEP  16  /* tolerances */
-#define MOST_BACK   4.0 /* median depths */
+#define MOST_BACK   1.0 /* median depths: farther off, zoomed in, it is but a flatter picture */
 #define ZOOM_STEP   0.05
 #define ZOOM_COST   4   /* places count by zoom^-4 */
 #define ZOOM_PLACES 5   /* a side */
