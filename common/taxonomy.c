@@ -22,6 +22,15 @@ static const struct {
 static const char *const focuses[FOCUS_COUNT] = {"", "narrow_dof", "widen_dof", "pull_focus"};
 static const char *const tones[TONE_COUNT] = {"", "saturate", "desaturate", "brighten", "dim"};
 
+struct scene_subjects scene_subjects_of(const struct subject_list *list)
+{
+    struct scene_subjects s = {list->count, 1};
+    if (list->count < 2) return s;
+    const double a = list->subjects[0].depth, b = list->subjects[1].depth;
+    s.depth_ratio = a > b ? a / b : b / a;
+    return s;
+}
+
 int move_subjects(enum move move) { return moves[move].subjects; }
 
 void film_effect_name(const struct film_effect *e, char name[EFFECT_NAME_SIZE])

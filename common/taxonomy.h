@@ -15,6 +15,7 @@
 #include <stdint.h>
 
 #include "err.h"
+#include "subject_list.h"
 
 enum move {
     MOVE_ESTABLISHING_DOLLY,
@@ -52,6 +53,7 @@ struct scene_subjects {
     double depth_ratio; /* of the farther to the nearer of the first two; 1 if there are fewer */
 };
 
+struct scene_subjects scene_subjects_of(const struct subject_list *list);
 int move_subjects(enum move move); /* how many it needs */
 void film_effect_name(const struct film_effect *e, char name[EFFECT_NAME_SIZE]);
 /* ST_USAGE: what is wrong with the name, and the nearest one that is known. */

@@ -1,7 +1,7 @@
-/* choose_effects.c - says which films to make of a scene: one by chance, or all that suit it.
+/* choose_effects.c - says which films to make of a scene: one by chance, or all that suit it; or whether a name is an effect's.
  *
  * reads   SUBJECTS       what there is to show (find_subjects)
- * writes  OUT            EFFECTS := dolly_in dolly_in+dim ..., for make */
+ * writes  OUT            EFFECTS := dolly_in dolly_in+dim ..., for make; nothing where a name is looked at */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -25,15 +25,6 @@ struct choice_params {
 #define PARAM_STRUCT struct choice_params
 static const struct param choice_param_table[] = {CHOICE_PARAMS(PARAM_ROW) PARAM_END};
 #undef PARAM_STRUCT
-
-static struct scene_subjects subjects_of(const struct subject_list *list)
-{
-    struct scene_subjects s = {list->count, 1};
-    if (list->count < 2) return s;
-    const double a = list->subjects[0].depth, b = list->subjects[1].depth;
-    s.depth_ratio = a > b ? a / b : b / a;
-    return s;
-}
 
 static enum status write_choice(const struct film_effect *list, int count, const char *path,
                                 const struct provenance *prov, struct err *err)
@@ -64,7 +55,7 @@ static enum status choose(const char *subjects, const char *which, const char *o
 
     enum status st = subject_list_read(&found, subjects, err);
     if (!st) st = provenance_add_file(prov, "parallax/subjects.txt", subjects, err);
-    const struct scene_subjects scene = subjects_of(&found);
+    const struct scene_subjects scene = scene_subjects_of(&found);
     if (!st && !strcmp(which, "all")) {
         count = film_effects_list(list, &scene);
         log_note("%d subject%s: %d effects", scene.count, scene.count == 1 ? "" : "s", count);
@@ -79,23 +70,38 @@ static enum status choose(const char *subjects, const char *which, const char *o
     return st;
 }
 
+/* Before anything is known of a scene: whether some scene could have the effect. */
+static enum status look_at_name(const char *name, struct err *err)
+{
+    const struct scene_subjects any = {2, 2 * DOF_DEPTH_RATIO};
+    struct film_effect e;
+    if (!strcmp(name, "auto") || !strcmp(name, "all"))
+        return err_set(err, ST_USAGE, "%s stands for what suits the scene: it can't be named beside other effects.",
+                       name);
+    return film_effect_parse(&e, name, err) || film_effect_check(&e, &any, err) ? err->status : ST_OK;
+}
+
 int main(int argc, char **argv)
 {
     const char *subjects = NULL, *which = NULL, *out = NULL;
     struct choice_params params = CHOICE_PARAMS_DEFAULT;
     const struct cli_opt opts[] = {
-        CLI_ABOUT("Says which films to make of a scene: one by chance, or all that suit it."),
-        CLI_STR("subjects", &subjects, CLI_REQUIRED, "file of the scene's subjects"),
-        CLI_STR("effect", &which, CLI_REQUIRED, "auto or all"),
-        CLI_STR("out", &out, CLI_REQUIRED, "file to write"),
+        CLI_ABOUT("Says which films to make of a scene: one by chance, or all that suit it; or whether a name is an "
+                  "effect's."),
+        CLI_STR("subjects", &subjects, CLI_OPTIONAL, "for auto and all: file of the scene's subjects"),
+        CLI_STR("effect", &which, CLI_REQUIRED, "auto or all; or a name to look at, an error if it is no effect's"),
+        CLI_STR("out", &out, CLI_OPTIONAL, "for auto and all: file to write"),
         CLI_PARAMS(choice_param_table, &params, NULL),
         CLI_END,
     };
     struct provenance prov = {0};
     struct err err = ERR_INIT;
     if (cli_parse(argc, argv, "choose_effects", opts, &prov, &err) == CLI_RUN) {
-        if (strcmp(which, "auto") && strcmp(which, "all"))
-            err_set(&err, ST_USAGE, "--effect %s: wanted auto or all; effects that are named need no choice.", which);
+        if (!subjects && !out)
+            look_at_name(which, &err);
+        else if (!subjects || !out || (strcmp(which, "auto") && strcmp(which, "all")))
+            err_set(&err, ST_USAGE,
+                    "--effect %s: wanted auto or all, with --subjects and --out; or a name, without them.", which);
         else
             choose(subjects, which, out, &params, &prov, &err);
     }

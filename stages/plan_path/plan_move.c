@@ -120,9 +120,8 @@ enum status plan_move(struct camera_path *path, struct effects *layers, struct m
     *notes = (struct move_notes){.aperture = 0};
     film_effect_name(&v->effect, name);
     enum status st = plan_params_check(params, err);
-    if (!st && subjects->count < move_subjects(v->effect.move))
-        st = err_set(err, ST_DATA, "%s needs %d subjects, and the list has %d. Sample the valid viewpoints again.",
-                     name, move_subjects(v->effect.move), subjects->count);
+    const struct scene_subjects has = scene_subjects_of(subjects);
+    if (!st) st = film_effect_check(&v->effect, &has, err);
     if (!st) st = ends_choose(&notes->ends, &notes->chosen, scene, v, params, err);
     if (!st && !isfinite(notes->ends.worst_h))
         st = err_set(err, ST_DATA, "%s: a part of the way sees nothing of the scene, even close to the origin.", name);
