@@ -462,6 +462,24 @@ static enum status read_effect(struct contents *c, struct effect_card *e, const 
     return read_frames(c, e, folder, err) || read_pan(c, e, folder, err) ? err->status : ST_OK;
 }
 
+/* All effects of a move share its valid viewpoints. */
+static enum status find_validity(struct effect_card *e, const char *folder, struct err *err)
+{
+    char path[PATH_SIZE];
+    snprintf(path, sizeof path, "%s/parallax/%.*s/validity.png", folder, (int)strcspn(e->name, "+"), e->name);
+    if (!is_file(path)) return ST_OK;
+    return (e->validity = strdup(path)) ? ST_OK : err_nomem(err, "a file name", strlen(path));
+}
+
+/* A move of which only other films were made has a folder for what they share. */
+static bool is_film(const char *folder)
+{
+    char path[PATH_SIZE], validity[PATH_SIZE];
+    snprintf(path, sizeof path, "%s/path.txt", folder);
+    snprintf(validity, sizeof validity, "%s/validity.txt", folder);
+    return is_folder(folder) && (is_file(path) || !is_file(validity));
+}
+
 static enum status read_effects(struct contents *c, const char *folder, struct err *err)
 {
     struct dirent **names = NULL;
@@ -474,10 +492,11 @@ static enum status read_effects(struct contents *c, const char *folder, struct e
     if (!c->effects) st = err_nomem(err, "effects", (size_t)count * sizeof *c->effects);
     for (int i = 0; i < count; i++) {
         snprintf(path, sizeof path, "%s/parallax/%s", folder, names[i]->d_name);
-        if (!st && names[i]->d_name[0] != '.' && is_folder(path)) {
+        if (!st && names[i]->d_name[0] != '.' && is_film(path)) {
             struct effect_card *e = &c->effects[c->effect_count++];
             snprintf(e->name, sizeof e->name, "%s", names[i]->d_name);
             st = read_effect(c, e, path, err);
+            if (!st) st = find_validity(e, folder, err);
         }
         free(names[i]);
     }
@@ -549,6 +568,7 @@ void contents_release(struct contents *c)
         picture_release(&c->effects[i].pan.poster);
         free(c->effects[i].video);
         free(c->effects[i].pan.video);
+        free(c->effects[i].validity);
         free(c->effects[i].holes);
         free(c->effects[i].unfilled);
     }

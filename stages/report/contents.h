@@ -57,6 +57,7 @@ struct effect_card {
     double *holes, *unfilled; /* a frame: share of its pixels, before and after filling; -1 unknown */
     int frames_found;
     struct picture poster; /* the first frame */
+    char *validity;        /* file name of the picture of its move's valid viewpoints, owned; NULL if there is none */
     struct pan_card pan;
 };
 

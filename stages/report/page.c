@@ -206,6 +206,19 @@ static enum status put_pan(FILE *to, const struct effect_card *e, struct err *er
     return ST_OK;
 }
 
+/* From where the move can be shown. */
+static enum status put_validity(FILE *to, const struct effect_card *e, struct err *err)
+{
+    fputs("<h3>Valid viewpoints</h3>\n<figure><img loading=\"lazy\" alt=\"Places of valid viewpoints of ", to);
+    html_text(to, e->name);
+    fputs("\" src=\"data:image/png;base64,", to);
+    if (html_base64_file(to, e->validity, err)) return err->status;
+    fputs("\"><figcaption>Start above end; left how far back, right how far towards the scene: dark blue not at all, "
+          "yellow the farthest, grey nowhere. White: the views.</figcaption></figure>\n",
+          to);
+    return ST_OK;
+}
+
 static enum status put_effect(FILE *to, const struct effect_card *e, struct err *err)
 {
     fprintf(to, "<article class=\"card effect%s\">\n<div>\n<h3>", e->pan.video ? " two" : "");
@@ -222,6 +235,7 @@ static enum status put_effect(FILE *to, const struct effect_card *e, struct err 
         put_hole_plot(to, e);
     else
         fputs("<p>There is no camera path that can be read.</p>\n", to);
+    if (e->validity && put_validity(to, e, err)) return err->status;
     fputs("</div>\n", to);
     if (e->path.frame_count) put_scores(to, e);
     fputs("</article>\n", to);
