@@ -44,7 +44,7 @@ FLAVOR ?= release
 B := out/build/$(FLAVOR)
 ## EFFECT="NAMES": films to make: moves of the taxonomy with their image effects (docs/formats.md), like dolly_in+narrow_dof, or
 ##   films of keys, scenes/NAME/keyframes/FILM.txt; auto: one by chance of those that suit the scene; all: all of them
-EFFECT ?= establishing_dolly
+##   (without it, and with auto and all, a scene of two photos gets the morph between them)
 STAGES := $(patsubst stages/%/,%,$(sort $(dir $(wildcard stages/*/*.c))))
 SUB := $(MAKE) --no-print-directory
 # without a -j of the caller's, compiling uses all cores
@@ -62,6 +62,8 @@ ifneq ($(SCENE),)
     $(error JOBS=$(JOBS) is not one of: local slurm)
   endif
   -include scenes/$(SCENE)/scene.mk
+  EFFECT_NAMED := $(if $(filter undefined,$(origin EFFECT)),,$(filter-out auto all,$(EFFECT)))
+  EFFECT ?= establishing_dolly
   ifneq ($(EDIT),)
     ifeq ($(wildcard scenes/$(SCENE)/scene-$(EDIT).txt),)
       $(error EDIT=$(EDIT): there is no scenes/$(SCENE)/scene-$(EDIT).txt)
@@ -108,6 +110,7 @@ literal = $(if $(filter command environment,$(firstword $(origin $(1)))),$(value
 export REMODEL_PHOTOS := $(call literal,PHOTOS)
 export REMODEL_SPLIT := $(SPLIT)
 export REMODEL_EFFECT := $(EFFECT)
+export REMODEL_EFFECT_NAMED := $(EFFECT_NAMED)
 export REMODEL_SFM := $(call literal,SFM)
 export REMODEL_DEPTH := $(call literal,DEPTH)
 export REMODEL_EXCLUDE := $(call literal,EXCLUDE)
@@ -287,10 +290,13 @@ else
 # lists that products give: PHOTO_IDS and BRACKETED, VIEWS, FRAMES, HELD (held-out views); not by `include`, for which make would first
 # remake them, even under -n
 $(if $(HELDOUT),$(eval $(file <$(O)/holdout/views/views.mk))$(eval HELD := $(VIEWS))$(eval VIEWS :=))
-$(foreach f,$(S)/photos/photos.mk $(O)/views/views.mk $(O)/parallax/$(EFFECT)/frames.mk $(O)/parallax/morph/frames.mk,$(eval $(file <$(f))))
+$(foreach f,$(S)/photos/photos.mk $(O)/views/views.mk $(O)/parallax/morph/frames.mk,$(eval $(file <$(f))))
+# the films of this run, and FRAMES_film of each
+EFFECTS ?= $(sort $(EFFECT))
+$(foreach e,$(EFFECTS),$(eval FRAMES :=)$(eval $(file <$(O)/parallax/$(e)/frames.mk))$(eval FRAMES_$(e) := $(FRAMES)))
 
 BIN := $(B)/bin
-E := $(O)/parallax/$(EFFECT)
+P := $(O)/parallax
 # a described scene is photographed first: photos.mk lists its SHOTS, and SHOT_NAME the files of each
 SIM := $(S)/simulated
 DESCRIBED := $(wildcard scenes/$(SCENE)/scene.txt)
@@ -307,15 +313,24 @@ DEPTH_TXT := $(DEPTH_EXR:.exr=.txt)
 LAST_ROUND := $(shell sed -n 's/^rounds = //p' $(O)/slice/segment_depth.cfg 2>/dev/null)
 round = $(O)/depth$(if $(filter-out $(LAST_ROUND),$(1)),/round$(1))
 POINTS := $(O)/points/points.ply
-SUBJECTS := $(O)/parallax/subjects.txt
-CHOICE := $(O)/parallax/$(CHOOSE)-effects.mk
-FRAME_EXR := $(FRAMES:%=$(E)/frames/%.exr)
-PATH_TXT := $(E)/path.txt $(addprefix $(E)/path/,cameras.txt images.txt points3D.txt)
-PATH_EXPORTS := $(E)/transforms.json $(E)/blender.py
-# two photos have a morph and nothing else; poses are used where there are any
+SUBJECTS := $(P)/subjects.txt
+CHOICE := $(if $(CHOOSE),$(P)/$(CHOOSE)-effects.mk)
+# films of keys among them
+keyframes = $(wildcard scenes/$(SCENE)/keyframes/$(1).txt)
+FILMS := $(foreach e,$(EFFECTS),$(if $(call keyframes,$(e)),$(e)))
+# of a film
+frame_exr = $(FRAMES_$(1):%=$(P)/$(1)/frames/%.exr)
+pan_exr = $(FRAMES_$(1):%=$(P)/$(1)/pan_scan/frames/%.exr)
+path_txt = $(P)/$(1)/path.txt $(addprefix $(P)/$(1)/path/,cameras.txt images.txt points3D.txt)
+path_all = $(call path_txt,$(1)) $(addprefix $(P)/$(1)/,effects.txt transforms.json blender.py frames.mk)
+# of a planned effect
+needs_subjects = $(if $(filter establishing_%,$(1)),,$(SUBJECTS))
+move_of = $(firstword $(subst +, ,$(1)))
+validity = $(addprefix $(P)/$(call move_of,$(1))/,validity.txt validity.png)
+# two photos have a morph and nothing else, unless a move was named; poses are used where there are any
 MORPH ?= $(if $(filter 2,$(words $(PHOTO_IDS))),$(PHOTO_IDS))
-PAIR := $(filter 2,$(words $(PHOTO_IDS)))
-M := $(O)/parallax/morph
+PAIR := $(if $(REMODEL_EFFECT_NAMED),,$(filter 2,$(words $(PHOTO_IDS))))
+M := $(P)/morph
 MORPH_EXR := $(MORPH_FRAMES:%=$(M)/frames/%.exr)
 MORPH_TXT := $(M)/path.txt $(addprefix $(M)/path/,cameras.txt images.txt points3D.txt) $(M)/first.exr $(M)/second.exr
 needs = $(O)/slice/$(1).cfg $(B)/code/$(1)
@@ -355,8 +370,6 @@ ORIGINALS := $(if $(SPLIT),$(S)/split,"$$REMODEL_PHOTOS")
 PICTURES := $(if $(BRACKETED),$(S)/hdr,$(ORIGINALS))
 picture = $(if $(BRACKETED),$(S)/hdr/$(1).exr,$(S)/photos/$(1).txt)
 
-# films of one run; each phase that makes one is told which by EFFECT
-EFFECTS ?= $(EFFECT)
 .PHONY: hdr sfm views depth points subjects choice path frames video pan_frames pan_scan heldout evaluate report morph-path morph-frames morph
 hdr: $(HDR)
 sfm: $(O)/views/views.mk
@@ -365,11 +378,11 @@ depth: $(DEPTH_EXR) $(DEPTH_TXT)
 points: $(POINTS)
 subjects: $(SUBJECTS)
 choice: $(CHOICE)
-path: $(E)/frames.mk $(PATH_EXPORTS) $(E)/effects.txt
-frames: $(FRAME_EXR)
-video: $(E)/video.mp4
-pan_frames: $(FRAMES:%=$(E)/pan_scan/frames/%.exr)
-pan_scan: $(E)/pan_scan/video.mp4
+path: $(foreach e,$(EFFECTS),$(call path_all,$(e)) $(if $(filter $(e),$(FILMS)),,$(call validity,$(e))))
+frames: $(foreach e,$(EFFECTS),$(call frame_exr,$(e)))
+video: $(EFFECTS:%=$(P)/%/video.mp4)
+pan_frames: $(foreach e,$(EFFECTS),$(call pan_exr,$(e)))
+pan_scan: $(EFFECTS:%=$(P)/%/pan_scan/video.mp4)
 morph-path: $(M)/frames.mk
 morph-frames: $(MORPH_EXR)
 morph: $(M)/video.mp4
@@ -434,54 +447,60 @@ $(SUBJECTS): $(CAMERAS) $(O)/views/lenses.txt $(if $(DRAWN),$(DRAWN),$(VIEW_EXR)
 	$(call stage,find_subjects,all,$(O),--views $(O)/views --depth $(O)/depth --records $(S)/photos $(DRAWN:%=--subjects %) --out $@)
 
 # which effects suit the scene, for EFFECT=auto and EFFECT=all
-$(CHOICE): $(SUBJECTS) $(call needs,choose_effects)
+$(P)/%-effects.mk: $(SUBJECTS) $(call needs,choose_effects)
 	$(call stage,choose_effects,$(CHOOSE),$(O),--subjects $(SUBJECTS) --effect $(CHOOSE) --out $@)
 
 # from where a move can be shown: the same for all of its image effects. $(1): the move
-needs_subjects = $(if $(filter establishing_%,$(1)),,$(SUBJECTS))
 define validity_rule
-$(O)/parallax/$(1)/validity.txt $(O)/parallax/$(1)/validity.png &: $(CAMERAS) $(O)/views/lenses.txt $(DEPTH_EXR) $(DEPTH_TXT) $(call needs_subjects,$(1)) $(call needs,sample_validity)
+$(call validity,$(1)) &: $(CAMERAS) $(O)/views/lenses.txt $(DEPTH_EXR) $(DEPTH_TXT) $(call needs_subjects,$(1)) $(call needs,sample_validity)
 	$$(call stage,sample_validity,$(1),$(O),--views $(O)/views --depth $(O)/depth --records $(S)/photos --effect $(1) \
-	  $(addprefix --subjects ,$(call needs_subjects,$(1))) --out $(O)/parallax/$(1))
+	  $(addprefix --subjects ,$(call needs_subjects,$(1))) --out $(P)/$(1))
 endef
-# $(1): an effect, $(2): its folder, $(3): its move
+# $(1): a planned effect
 define path_rule
-$(2)/path.txt $(addprefix $(2)/path/,cameras.txt images.txt points3D.txt) $(2)/effects.txt $(2)/transforms.json $(2)/blender.py $(2)/frames.mk &: \
-  $(CAMERAS) $(O)/parallax/$(3)/validity.txt $(DEPTH_EXR) $(DEPTH_TXT) $(call needs_subjects,$(1)) $(call needs,plan_path)
-	$$(call stage,plan_path,$(1),$(O),--views $(O)/views --depth $(O)/depth --validity $(O)/parallax/$(3)/validity.txt --effect $(1) \
-	  $(addprefix --subjects ,$(call needs_subjects,$(1))) --out $(2))
+$(call path_all,$(1)) &: $(CAMERAS) $(call validity,$(1)) $(DEPTH_EXR) $(DEPTH_TXT) $(call needs_subjects,$(1)) $(call needs,plan_path)
+	$$(call stage,plan_path,$(1),$(O),--views $(O)/views --depth $(O)/depth --validity $(firstword $(call validity,$(1))) --effect $(1) \
+	  $(addprefix --subjects ,$(call needs_subjects,$(1))) --out $(P)/$(1))
 endef
-move_of = $(firstword $(subst +, ,$(1)))
 # a film of keys: its effect is its name; the moves that it chains are planned first
-KEYFRAMES := $(wildcard scenes/$(SCENE)/keyframes/$(EFFECT).txt)
-CHAINED := $(if $(KEYFRAMES),$(sort $(shell awk '$$1 == "move" && $$2 ~ /^[A-Za-z0-9_+-]+$$/ { print $$2 }' $(KEYFRAMES))))
-$(foreach e,$(CHAINED),$(if $(wildcard scenes/$(SCENE)/keyframes/$(e).txt),$(error $(KEYFRAMES) chains $(e), a film of keys: only planned moves can be chained)))
-PLANNED := $(if $(KEYFRAMES),$(CHAINED),$(EFFECT))
-$(foreach m,$(sort $(foreach e,$(PLANNED),$(call move_of,$(e)))),$(eval $(call validity_rule,$(m))))
-$(foreach e,$(PLANNED),$(eval $(call path_rule,$(e),$(O)/parallax/$(e),$(call move_of,$(e)))))
-ifneq ($(KEYFRAMES),)
-$(PATH_TXT) $(PATH_EXPORTS) $(E)/effects.txt $(E)/frames.mk &: $(KEYFRAMES) $(CHAINED:%=$(O)/parallax/%/path.txt) $(CHAINED:%=$(O)/parallax/%/effects.txt) \
-  $(CAMERAS) $(O)/views/lenses.txt $(call needs,plan_path)
-	$(call stage,plan_path,$(EFFECT),$(O),--views $(O)/views --records $(S)/photos --keyframes $(KEYFRAMES) --moves $(O)/parallax --effect $(EFFECT) --out $(E))
-endif
-
-# frames come in chunks, a process each; of a chunk only the frames that are missing or stale are rendered
-EFFECT_LAYERS := $(E)/effects.txt $(if $(KEYFRAMES),,$(wildcard scenes/$(SCENE)/effects.txt))
-define chunk_rule
-$(1:%=$(E)/frames/%.exr) &: $(PATH_TXT) $(EFFECT_LAYERS) $(CAMERAS) $(DEPTH_EXR) $(DEPTH_TXT) $(call needs,render_views)
-	$$(hide)stale=$$$$(common/stale.sh $(1:%=$(E)/frames/%.exr) -- $$^); \
-	  $$(call farm,render_views,$(firstword $(1)),$(1:%=$(E)/frames/%.exr),--views $(O)/views --depth $(O)/depth --path $(E) $(EFFECT_LAYERS:%=--effects %) --out $(E)/frames --frames,$$$$stale)
+chained = $(sort $(shell awk '$$1 == "move" && $$2 ~ /^[A-Za-z0-9_+-]+$$/ { print $$2 }' $(call keyframes,$(1))))
+define film_rule
+$(call path_all,$(1)) &: $(call keyframes,$(1)) $(foreach m,$(CHAINED_$(1)),$(P)/$(m)/path.txt $(P)/$(m)/effects.txt) $(CAMERAS) $(O)/views/lenses.txt $(call needs,plan_path)
+	$$(call stage,plan_path,$(1),$(O),--views $(O)/views --records $(S)/photos --keyframes $(call keyframes,$(1)) --moves $(P) --effect $(1) --out $(P)/$(1))
 endef
-chunks = $(if $(2),$(eval $(call $(1),$(wordlist 1,$(FRAMES_PER_JOB),$(2))))$(call chunks,$(1),$(wordlist $(words x $(wordlist 1,$(FRAMES_PER_JOB),$(2))),$(words $(2)),$(2))))
-$(call chunks,chunk_rule,$(FRAMES))
+$(foreach f,$(FILMS),$(eval CHAINED_$(f) := $(call chained,$(f))))
+$(foreach f,$(FILMS),$(foreach e,$(CHAINED_$(f)),$(if $(call keyframes,$(e)),$(error $(call keyframes,$(f)) chains $(e), a film of keys: only planned moves can be chained))))
+PLANNED := $(sort $(filter-out $(FILMS),$(EFFECTS)) $(foreach f,$(FILMS),$(CHAINED_$(f))))
+$(foreach m,$(sort $(foreach e,$(PLANNED),$(call move_of,$(e)))),$(eval $(call validity_rule,$(m))))
+$(foreach e,$(PLANNED),$(eval $(call path_rule,$(e))))
+$(foreach f,$(FILMS),$(eval $(call film_rule,$(f))))
+
+# frames come in chunks, a process each; of a chunk only the frames that are missing or stale are rendered. $(1): frames, $(2): their film
+effect_layers = $(P)/$(1)/effects.txt $(if $(filter $(1),$(FILMS)),,$(wildcard scenes/$(SCENE)/effects.txt))
+define chunk_rule
+$(1:%=$(P)/$(2)/frames/%.exr) &: $(call path_txt,$(2)) $(call effect_layers,$(2)) $(CAMERAS) $(DEPTH_EXR) $(DEPTH_TXT) $(call needs,render_views)
+	$$(hide)stale=$$$$(common/stale.sh $(1:%=$(P)/$(2)/frames/%.exr) -- $$^); \
+	  $$(call farm,render_views,$(2)-$(firstword $(1)),$(1:%=$(P)/$(2)/frames/%.exr),--views $(O)/views --depth $(O)/depth --path $(P)/$(2) $(addprefix --effects ,$(call effect_layers,$(2))) --out $(P)/$(2)/frames --frames,$$$$stale)
+endef
+chunks = $(if $(2),$(eval $(call $(1),$(wordlist 1,$(FRAMES_PER_JOB),$(2)),$(3)))$(call chunks,$(1),$(wordlist $(words x $(wordlist 1,$(FRAMES_PER_JOB),$(2))),$(words $(2)),$(2)),$(3)))
+$(foreach e,$(EFFECTS),$(call chunks,chunk_rule,$(FRAMES_$(e)),$(e)))
 
 # the move in 2D, on request; which view it shows is told by the path
 define pan_rule
-$(1:%=$(E)/pan_scan/frames/%.exr) &: $(PATH_TXT) $(CAMERAS) $(VIEW_EXR) $(DEPTH_EXR) $(DEPTH_TXT) $(call needs,pan_scan)
-	$$(hide)stale=$$$$(common/stale.sh $(1:%=$(E)/pan_scan/frames/%.exr) -- $$^); \
-	  $$(call farm,pan_scan,$(firstword $(1)),$(1:%=$(E)/pan_scan/frames/%.exr),--views $(O)/views --depth $(O)/depth --path $(E) --out $(E)/pan_scan/frames --frames,$$$$stale)
+$(1:%=$(P)/$(2)/pan_scan/frames/%.exr) &: $(call path_txt,$(2)) $(CAMERAS) $(VIEW_EXR) $(DEPTH_EXR) $(DEPTH_TXT) $(call needs,pan_scan)
+	$$(hide)stale=$$$$(common/stale.sh $(1:%=$(P)/$(2)/pan_scan/frames/%.exr) -- $$^); \
+	  $$(call farm,pan_scan,$(2)-$(firstword $(1)),$(1:%=$(P)/$(2)/pan_scan/frames/%.exr),--views $(O)/views --depth $(O)/depth --path $(P)/$(2) --out $(P)/$(2)/pan_scan/frames --frames,$$$$stale)
 endef
-$(call chunks,pan_rule,$(FRAMES))
+$(foreach e,$(EFFECTS),$(call chunks,pan_rule,$(FRAMES_$(e)),$(e)))
+
+define video_rules
+$(P)/$(1)/video.mp4: $(call frame_exr,$(1)) $(call path_txt,$(1)) $(call needs,encode_video)
+	$$(call stage,encode_video,$(1),$(O),--path $(P)/$(1) --frames $(P)/$(1)/frames --out $$@)
+$(P)/$(1)/pan_scan/video.mp4: $(call pan_exr,$(1)) $(call path_txt,$(1)) $(call needs,encode_video)
+	$$(call stage,encode_video,$(1)-pan_scan,$(O),--path $(P)/$(1) --frames $(P)/$(1)/pan_scan/frames --out $$@)
+endef
+$(foreach e,$(EFFECTS),$(eval $(call video_rules,$(e))))
+
 MORPH_POSES := $(if $(wildcard $(O)/views/views.mk),$(CAMERAS) $(O)/views/lenses.txt)
 $(MORPH_TXT) $(M)/frames.mk &: $(foreach p,$(MORPH),$(call picture,$(p))) $(MORPH_POSES) $(O)/stamp/morph.txt $(call needs,morph_views)
 	$(call stage,morph_views,path,$(O),--photos $(PICTURES) --records $(S)/photos --first $(firstword $(MORPH)) --second $(lastword $(MORPH)) \
@@ -506,14 +525,8 @@ $(O)/metrics.tsv: $(CAMERAS) $(O)/views/lenses.txt $(DEPTH_EXR) $(DEPTH_TXT) $(H
   $(S)/photos/list.txt $(O)/stamp/truth.txt $(call needs,evaluate)
 	$(call stage,evaluate,all,$(O),--folder $(O) --shared $(S) $${REMODEL_TRUTH:+--truth "$$REMODEL_TRUTH"} --out $@)
 
-$(E)/video.mp4: $(FRAME_EXR) $(PATH_TXT) $(call needs,encode_video)
-	$(call stage,encode_video,$(EFFECT),$(O),--path $(E) --frames $(E)/frames --out $@)
-
-$(E)/pan_scan/video.mp4: $(FRAMES:%=$(E)/pan_scan/frames/%.exr) $(PATH_TXT) $(call needs,encode_video)
-	$(call stage,encode_video,$(EFFECT)-pan_scan,$(O),--path $(E) --frames $(E)/pan_scan/frames --out $@)
-
-SHOWN := $(if $(PAIR),$(M)/video.mp4,$(if $(HELDOUT)$(TRUTH),$(O)/metrics.tsv) $(EFFECTS:%=$(O)/parallax/%/video.mp4) $(wildcard $(EFFECTS:%=$(O)/parallax/%/pan_scan/video.mp4)) \
-  $(EFFECTS:%=$(O)/parallax/%/path.txt) $(CAMERAS) $(DEPTH_EXR) $(DEPTH_TXT) $(wildcard $(M)/video.mp4))
+SHOWN := $(if $(PAIR),$(M)/video.mp4,$(if $(HELDOUT)$(TRUTH),$(O)/metrics.tsv) $(EFFECTS:%=$(P)/%/video.mp4) $(wildcard $(EFFECTS:%=$(P)/%/pan_scan/video.mp4)) \
+  $(EFFECTS:%=$(P)/%/path.txt) $(CAMERAS) $(DEPTH_EXR) $(DEPTH_TXT) $(wildcard $(M)/video.mp4))
 $(O)/index.html: $(SHOWN) $(S)/photos/list.txt $(STAGES:%=$(O)/slice/%.cfg) $(call needs,report)
 	$(call stage,report,page,$(O),--scene $(SCENE) --folder $(O) --shared $(S) --photos $(PICTURES) --defaults configs/default.cfg --out $@)
 

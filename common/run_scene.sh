@@ -17,14 +17,20 @@ most=$cores
 [ -z "$asked" ] || [ "$asked" -ge "$cores" ] || most=$asked
 quiet=-s
 [ -z "${V-}" ] || quiet=
-# the films of this run; each phase that makes one is told which
-read -r -a effects <<<"$REMODEL_EFFECT"
+# the films of this run; auto and all are known once the subjects are
+read -r -a effects <<<"$(tr ' ' '\n' <<<"$REMODEL_EFFECT" | awk 'NF && !seen[$0]++' | tr '\n' ' ')"
 choose=
-case $REMODEL_EFFECT in auto | all) choose=$REMODEL_EFFECT effects=(establishing_dolly) ;; esac
-effect=${effects[0]:?EFFECT names no effect}
-graph() { "${make[@]}" PHASE=graph EFFECT="$effect" EFFECTS="${effects[*]}" CHOOSE="$choose" "$@"; }
-# auto and all: known once the subjects are
-read_choice() { read -r -a effects <<<"$(sed -n 's/^EFFECTS := *//p' "$O/parallax/$choose-effects.mk")"; effect=${effects[0]}; }
+case ${effects[*]} in auto | all) choose=${effects[0]} effects=() ;; esac
+graph() { "${make[@]}" PHASE=graph EFFECTS="${effects[*]}" CHOOSE="$choose" "$@"; }
+read_choice() { read -r -a effects <<<"$(sed -n 's/^EFFECTS := *//p' "$O/parallax/$choose-effects.mk")"; }
+# a name of no effect is told before hours of work
+for effect in "${effects[@]}"; do
+    [ ! -e "$folder/keyframes/$effect.txt" ] || continue
+    words=$("$bin/choose_effects" --effect "$effect" 2>&1) || {
+        { grep -v ': used ' <<<"$words"; echo "Nor is there a film of keys $folder/keyframes/$effect.txt."; } >&2
+        exit 2
+    }
+done
 
 if [ -n "${REMODEL_DEPTH-}" ] && [ ! -d "$REMODEL_DEPTH" ]; then
     echo "DEPTH=$REMODEL_DEPTH is no folder. Give the folder that holds VIEW.exr or VIEW.png, the depth of views." >&2
@@ -127,15 +133,24 @@ fi
 
 graph look
 [ -z "$choose" ] || [ ! -e "$O/parallax/$choose-effects.mk" ] || read_choice
+# two photos are too few for a camera move, unless one is asked for by name
+pair=
+[ -n "$REMODEL_EFFECT_NAMED" ] || [ "$(grep -c '^[^#]' "$S/photos/list.txt")" != 2 ] || pair=1
 if [ "$goal" = why ]; then
-    graph -n --debug=b --no-print-directory report | common/explain.sh why "$S" "$O"
+    graph -n --debug=b --no-print-directory ${choose:+choice} report | common/explain.sh why "$S" "$O"
     exit 0
 fi
 if [ "$dry" = n ]; then
     [ -e "$O/views/views.mk" ] || echo "# not known before structure from motion has run: which views there are"
-    [ "$goal" = resfm ] && exec "${make[@]}" PHASE=graph -W "$S/photos/list.txt" sfm
+    if [ "$goal" = resfm ]; then graph -W "$S/photos/list.txt" sfm; exit 0; fi
+    case $goal in
+    all | report | path | frames | video | pan_scan)
+        [ -z "$choose" ] || [ "${#effects[@]}" -gt 0 ] || [ "$pair" ] ||
+            { echo "# not known before the subjects are found: which films EFFECT=$choose makes"; goal=choice; } ;;
+    esac
     [ "$goal" = all ] && goal=report
-    exec "${make[@]}" PHASE=graph T="$cores" "$goal"
+    graph T="$cores" $([ -z "$choose" ] || [[ ! $goal =~ ^(report|path|frames|video|pan_scan)$ ]] || echo choice) "$goal"
+    exit 0
 fi
 
 # farm_frames STAGE GOAL: frames are few processes with all threads each, since every one of them holds all views in memory
@@ -205,8 +220,7 @@ if [ "$goal" = resfm ]; then
 fi
 merge_brackets
 case $goal in hdr) exit 0 ;; esac
-# two photos are too few for a camera move
-if [ "$(grep -c '^[^#]' "$S/photos/list.txt")" = 2 ] && [[ $goal = all || $goal = report || $goal = video || $goal = morph ]]; then
+if [ "$pair" ] && [[ $goal = all || $goal = report || $goal = video || $goal = morph ]]; then
     [ -z "${REMODEL_SFM-}" ] || one sfm
     make_morph
     [[ $goal = video || $goal = morph ]] || one report
@@ -235,25 +249,25 @@ if [ -n "$choose" ]; then
     one choice
     read_choice
 fi
-# a phase for each film
-films() { for effect in "${effects[@]}"; do "$@"; done; }
-films one path
+one path
 case $goal in path) exit 0 ;; esac
 if [ "$goal" = pan_scan ]; then
-    films pan_scan
+    pan_scan
     common/explain.sh products "$O"
     exit 0
 fi
-# a film is whole before the next one begins
-film() { farm_frames render_views frames; [ "$goal" = frames ] || one video; }
-films film
+farm_frames render_views frames
+case $goal in frames) exit 0 ;; esac
+one video
 case $goal in
 frames) exit 0 ;;
 video) ;;
 *)
     case $O${REMODEL_TRUTH:+ truth} in *+holdout* | *truth) evaluate ;; esac
-    for effect in "${effects[@]}"; do [ ! -e "$O/parallax/$effect/pan_scan/video.mp4" ] || pan_scan; done
-    effect=${effects[0]}
+    films=("${effects[@]}") effects=()
+    for effect in "${films[@]}"; do [ ! -e "$O/parallax/$effect/pan_scan/video.mp4" ] || effects+=("$effect"); done
+    [ "${#effects[@]}" = 0 ] || pan_scan
+    effects=("${films[@]}")
     one report ;;
 esac
 common/explain.sh products "$O"

@@ -57,6 +57,32 @@ max_side = 160
 CFG
 }
 
+# tiny SCENE: films of three frames, as small as may be
+tiny()
+{
+    mkdir -p "scenes/$1"
+    cat >"scenes/$1/scene.cfg" <<'CFG'
+[segment_depth]
+planes = 32
+rounds = 0
+passes = 1
+[sample_validity]
+max_side = 96
+check_side = 48
+grid = 3
+check_cells = 0
+[plan_path]
+seconds = 0.1
+max_side = 96
+pairs = 2
+refine = no
+parallax_side = 48
+[render_views]
+renderer = fast
+[encode_video]
+preset = ultrafast
+CFG
+}
 # products SCENE: hash and name of every product from sfm_import on
 products()
 {

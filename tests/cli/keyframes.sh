@@ -67,7 +67,7 @@ wrong_films_are_named_with_their_line()
     ! a_film path && grep -q 'chains other, a film of keys' log || { cat log; fail "a film in a film"; }
     cp good.txt $film; rm scenes/t/keyframes/other.txt
     rc=0; "$B/bin/plan_path" --views out/t/views --effect establishing_dolly --out made 2>err.txt || rc=$?
-    [ "$rc" = 2 ] && grep -q -- '--depth is missing' err.txt || { cat err.txt; fail "no --depth: exit $rc"; }
+    [ "$rc" = 2 ] && grep -q 'wanted --depth with --validity' err.txt || { cat err.txt; fail "no --depth: exit $rc"; }
     rc=0; "$B/bin/plan_path" --views out/t/views --keyframes $film --effect film --out made 2>err.txt || rc=$?
     [ "$rc" = 1 ] && grep -q "$film:[0-9]*: the move establishing_dolly cannot be found" err.txt || { cat err.txt; fail "no --moves: exit $rc"; }
     [ -z "$(find made -type f 2>/dev/null)" ] || fail "something was left"

@@ -61,6 +61,14 @@ options_that_exclude_each_other_are_refused()
     expect 2 "either --photos" "$B/bin/morph_views" --out "$d" --morph "$d"
     expect 2 "either --photos" "$B/bin/morph_views" --out "$d" --morph "$d" --frames 1 --first a
     expect 2 "either --photos" "$B/bin/morph_views" --out "$d" --photos "$d" --records "$d" --first a --second b --frames 1
+    expect 2 "--validity, for a move" "$B/bin/plan_path" --views "$d" --effect dolly_in --out "$d"
+    expect 2 "--validity, for a move" "$B/bin/plan_path" --views "$d" --effect dolly_in --out "$d" --depth "$d" --validity "$d" --keyframes "$d"
+    expect 2 "wanted auto or all" "$B/bin/choose_effects" --subjects "$d" --effect dolly_in --out "$d"
+    expect 2 "wanted auto or all" "$B/bin/choose_effects" --effect all --out "$d"
+    expect 2 "did you mean dolly_in?" "$B/bin/choose_effects" --effect dolly_inn
+    expect 2 "each once and in this order" "$B/bin/choose_effects" --effect dolly_in+dim+narrow_dof
+    expect 2 "takes no image effect" "$B/bin/choose_effects" --effect establishing_dolly+dim
+    expect 0 "" "$B/bin/choose_effects" --effect dolly+pull_focus
     expect 2 "--memory -1" "$B/bin/fuse_points" --views "$d" --depth "$d" --out "$d" --memory -1
     expect 2 "or else --estimate" "$B/bin/segment_depth" --views "$d"
     expect 2 "or else --estimate" "$B/bin/segment_depth" --views "$d" --view v --out v.exr --estimate list
@@ -78,7 +86,10 @@ missing_inputs_fail_with_their_name()
     expect 1 "$d" "$B/bin/segment_depth" --view v --views "$d" --out "$scratch/o/v.exr"
     expect 1 "$d" "$B/bin/fuse_points" --views "$d" --depth "$d" --out "$scratch/o/p.ply"
     expect 1 "$d" "$B/bin/find_subjects" --views "$d" --depth "$d" --out "$scratch/o/subjects.txt"
-    expect 1 "$d" "$B/bin/plan_path" --views "$d" --depth "$d" --effect establishing_dolly --out "$scratch/o"
+    expect 1 "$d" "$B/bin/choose_effects" --subjects "$d" --effect all --out "$scratch/o/all-effects.mk"
+    expect 1 "$d" "$B/bin/sample_validity" --views "$d" --depth "$d" --effect establishing_dolly --out "$scratch/o"
+    expect 1 "$d" "$B/bin/plan_path" --views "$d" --depth "$d" --validity "$d" --effect establishing_dolly --out "$scratch/o"
+    expect 1 "$d" "$B/bin/plan_path" --views "$d" --keyframes "$d" --effect film --out "$scratch/o"
     expect 1 "$d" "$B/bin/render_views" --views "$d" --depth "$d" --path "$d" --frames 1:2 --out "$scratch/o"
     expect 1 "$d" "$B/bin/render_views" --views "$d" --depth "$d" --cameras "$d" --out "$scratch/o"
     expect 1 "$d" "$B/bin/pan_scan" --views "$d" --path "$d" --frames 1:2 --out "$scratch/o"
@@ -108,6 +119,10 @@ make_says_what_is_wrong_with_its_words()
     expect 2 "SPLIT=0x3" make -s DEPS=manual SCENE=x SPLIT=0x3
     expect 2 "COLUMNSxROWS" make -s DEPS=manual SCENE=x SPLIT="3x3'; touch bad; '"
     [ ! -e bad ] || fail "a command in SPLIT was run"
+    expect 2 "effects are named with letters" make -s DEPS=manual SCENE=x EFFECT='a;b'
+    expect 2 "did you mean dolly_in?" make -s DEPS=manual SCENE=x PHOTOS=scenes EFFECT='dolly dolly_inn'
+    expect 2 "film of keys scenes/x/keyframes/dolly_inn.txt" make -s DEPS=manual SCENE=x PHOTOS=scenes EFFECT=dolly_inn
+    expect 2 "can't be named beside" make -s DEPS=manual SCENE=x PHOTOS=scenes EFFECT='dolly auto'
     expect 2 "both given" make -s DEPS=manual SCENE=x HOLDOUT=8 HOLDOUT_VIEWS=a
     expect 2 "ids of two photos" make -s DEPS=manual SCENE=x MORPH=a
     expect 2 "ids of two photos" make -s DEPS=manual SCENE=x MORPH='a b c'

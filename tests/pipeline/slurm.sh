@@ -74,6 +74,17 @@ cluster_gives_the_bytes_of_local()
     ! grep -q ': job' log || { cat log; fail "a second run went to the cluster again"; }
 }
 
+films_of_all_effects_are_rendered_on_the_cluster()
+{
+    for s in effects_local effects_cluster; do tiny $s; echo 'subject photo_2 152 116 216 188' >scenes/$s/subjects.txt; done
+    make -s DEPS=manual PHOTOS=set/photos SFM=set/model SCENE=effects_local EFFECT=all video >log 2>&1 || { cat log; fail "local run"; }
+    make -s DEPS=manual PHOTOS=set/photos SFM=set/model SCENE=effects_cluster EFFECT=all JOBS=slurm FRAMES_PER_JOB=2 video >log 2>&1 || { cat log; fail "cluster run"; }
+    grep -q 'render_views: job .* of 60 tasks' log || { cat log; fail "the films were not one job"; }
+    products effects_local >a; products effects_cluster >b
+    [ "$(grep -c video.mp4 a)" = 30 ] || fail "not 30 films"
+    diff a b || fail "the cluster gives other bytes"
+}
+
 brackets_are_merged_on_the_cluster()
 {
     photos bracketed --brackets 3 >/dev/null
@@ -111,6 +122,7 @@ a_cancelled_job_is_not_called_good()
 }
 
 run cluster_gives_the_bytes_of_local
+run films_of_all_effects_are_rendered_on_the_cluster
 run brackets_are_merged_on_the_cluster
 run a_task_that_fails_is_told_and_not_trusted
 run a_cancelled_job_is_not_called_good
