@@ -22,6 +22,9 @@ QUALITY ?= default
 ## HOLDOUT=N: every Nth photo, the first included, is kept out of depth and rendering, to compare; in out/SCENE+holdoutN
 ## HOLDOUT_VIEWS="NAMES": the same for these photos or views, in out/SCENE+holdout
 ## TRUTH=DIR: known cameras and depths, which products are compared with (docs/evaluation.md)
+## EFFECT="NAMES": films to make, by name, like dolly_in or dolly_in+narrow_dof (docs/formats.md); establishing_dolly if none is named
+## EFFECT=auto|all: one by chance of those that suit the scene, or all of them; two photos get their morph
+## EFFECT=FILM: the film of keys scenes/SCENE/keyframes/FILM.txt
 ## MORPH="A B": the two photos, by id, that `make morph` goes between; of a scene of two photos these
 ## EDIT=E: the edited scene scenes/SCENE/scene-E.txt, for `make edited`
 ## JOBS=local|slurm: where the per-view work runs
@@ -42,9 +45,6 @@ FLAVOR ?= release
 ## V=1: show commands
 
 B := out/build/$(FLAVOR)
-## EFFECT="NAMES": films to make: moves of the taxonomy with their image effects (docs/formats.md), like dolly_in+narrow_dof, or
-##   films of keys, scenes/NAME/keyframes/FILM.txt; auto: one by chance of those that suit the scene; all: all of them
-##   (without it, and with auto and all, a scene of two photos gets the morph between them)
 STAGES := $(patsubst stages/%/,%,$(sort $(dir $(wildcard stages/*/*.c))))
 SUB := $(MAKE) --no-print-directory
 # without a -j of the caller's, compiling uses all cores

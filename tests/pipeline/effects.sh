@@ -38,7 +38,7 @@ all_effects_of_one_subject()
     for e in dolly_zoom dolly_zoom_in; do
         awk -v x="$(score one $e subject_size_error)" 'BEGIN { exit !(x < 0.01) }' || fail "$e: the subject's size is off by $(score one $e subject_size_error)"
     done
-    grep -q '^  region outside' out/one/parallax/dolly_in+dim/effects.txt || fail "dolly_in+dim has no layer"
+    grep -q '^ *region outside' out/one/parallax/dolly_in+dim/effects.txt || fail "dolly_in+dim has no layer"
     ! cmp -s out/one/parallax/dolly_in/frames/0003.exr out/one/parallax/dolly_in+dim/frames/0003.exr || fail "nothing was dimmed"
     awk '$1 == "frame" { print $4 > 0 }' out/one/parallax/dolly_in+narrow_dof/path.txt | tr -d '\n' | grep -qx '0.*' || fail "narrow_dof does not begin as a pinhole"
 }
