@@ -220,8 +220,9 @@ build: $(BINS) $(STAGES:%=$(B)/code/%)
 tests-build: build $(filter-out $(OPENCV_BENCHES),$(BENCHES)) $(UNIT_TESTS) $(FUZZ_TESTS) $(B)/tests/pipeline/make_photos
 bench-build: build $(BENCHES)
 
+# temporary names of their own: runs of two scenes look at the same programs
 $(B)/flags: FORCE
-	+@mkdir -p $(@D); echo '$(CC) $(CFLAGS) $(CXX) $(CXXFLAGS) $(LDLIBS)' >$@.tmp; cmp -s $@.tmp $@ && rm $@.tmp || mv $@.tmp $@
+	+@mkdir -p $(@D); t=$@.$$$$.tmp; echo '$(CC) $(CFLAGS) $(CXX) $(CXXFLAGS) $(LDLIBS)' >$$t; cmp -s $$t $@ && rm $$t || mv $$t $@
 
 $(B)/obj/%.o: %.c $(B)/flags
 	$(call say,CC $<)mkdir -p $(@D); $(CC) $(CFLAGS) -MMD -MP -c -o $@ $<
@@ -234,8 +235,8 @@ $(B)/libremodel.a: $(COMMON_OBJS)
 
 # what a product depends on is the code, not the file: a stamp of the stripped program, rewritten only if that changed
 $(B)/code/%: $(B)/bin/%
-	+@[ -e $< ] || exit 0; mkdir -p $(@D); strip -s -o $@.bin $<; cksum <$@.bin >$@.tmp; rm $@.bin; \
-	  cmp -s $@.tmp $@ && rm $@.tmp || mv $@.tmp $@
+	+@[ -e $< ] || exit 0; mkdir -p $(@D); t=$@.$$$$; strip -s -o $$t.bin $<; cksum <$$t.bin >$$t.tmp; rm $$t.bin; \
+	  cmp -s $$t.tmp $@ && rm $$t.tmp || mv $$t.tmp $@
 
 link = $(call say,LD $@)mkdir -p $(@D); $(CC) $(CFLAGS) -o $@ $(filter %.o,$^) $(filter %.a,$^) $(LDLIBS) $(1)
 

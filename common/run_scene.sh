@@ -24,12 +24,20 @@ case ${effects[*]} in auto | all) choose=${effects[0]} effects=() ;; esac
 graph() { "${make[@]}" PHASE=graph EFFECTS="${effects[*]}" CHOOSE="$choose" "$@"; }
 read_choice() { read -r -a effects <<<"$(sed -n 's/^EFFECTS := *//p' "$O/parallax/$choose-effects.mk")"; }
 # a name of no effect is told before hours of work
+check_name()
+{
+    local words
+    [ ! -e "$folder/keyframes/$1.txt" ] || return 0
+    words=$("$bin/choose_effects" --effect "$1" 2>&1) && return
+    { grep -v ': used ' <<<"$words"; echo "${2:-Nor is there a film of keys $folder/keyframes/$1.txt.}"; } >&2
+    exit 2
+}
 for effect in "${effects[@]}"; do
-    [ ! -e "$folder/keyframes/$effect.txt" ] || continue
-    words=$("$bin/choose_effects" --effect "$effect" 2>&1) || {
-        { grep -v ': used ' <<<"$words"; echo "Nor is there a film of keys $folder/keyframes/$effect.txt."; } >&2
-        exit 2
-    }
+    check_name "$effect"
+    [ -e "$folder/keyframes/$effect.txt" ] || continue
+    for move in $(awk '$1 == "move" && $2 ~ /^[A-Za-z0-9_+-]+$/ { print $2 }' "$folder/keyframes/$effect.txt"); do
+        check_name "$move" "$folder/keyframes/$effect.txt chains it."
+    done
 done
 
 if [ -n "${REMODEL_DEPTH-}" ] && [ ! -d "$REMODEL_DEPTH" ]; then

@@ -66,6 +66,9 @@ wrong_films_are_named_with_their_line()
     cp good.txt $film; echo 'move other' >>$film
     ! a_film path && grep -q 'chains other, a film of keys' log || { cat log; fail "a film in a film"; }
     cp good.txt $film; rm scenes/t/keyframes/other.txt
+    echo 'move dolly_inn' >>$film
+    ! a_film views && grep -q 'did you mean dolly_in?' log && grep -q "$film chains it" log || { cat log; fail "a move of no name"; }
+    cp good.txt $film
     rc=0; "$B/bin/plan_path" --views out/t/views --effect establishing_dolly --out made 2>err.txt || rc=$?
     [ "$rc" = 2 ] && grep -q 'wanted --depth with --validity' err.txt || { cat err.txt; fail "no --depth: exit $rc"; }
     rc=0; "$B/bin/plan_path" --views out/t/views --keyframes $film --effect film --out made 2>err.txt || rc=$?

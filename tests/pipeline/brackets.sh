@@ -35,14 +35,17 @@ the_next_make_does_nothing()
 
 merged_views_are_nearly_the_middle_exposure()
 {
-    # the middle exposure is well exposed nearly everywhere: the film of brackets is the film of single photos
+    # the middle exposure is well exposed nearly everywhere: the film of brackets is the film of single photos, by the same cameras
     mkdir -p single; for i in 1 2 3 4 5 6; do cp "set/photos/photo_${i}_e1.jpg" "single/photo_$i.jpg"; done
     small single
-    make -s DEPS=manual PHOTOS=single SFM=set/model SCENE=single video >log 2>&1 || { cat log; fail "make of single photos"; }
+    for s in t single; do mkdir scenes/$s/keyframes; printf 'remodel-keyframes 1\nkey 0 view photo_3\nkey 0.2 view photo_4\n' >scenes/$s/keyframes/across.txt; done
+    make -s DEPS=manual PHOTOS=single SFM=set/model SCENE=single EFFECT=across video >log 2>&1 || { cat log; fail "make of single photos"; }
+    run_scene EFFECT=across video >log || { cat log; fail "make of brackets"; }
     [ ! -e out/single/hdr ] && [ ! -e out/single/photos/members ] || fail "single photos were merged"
-    db=$(ffmpeg -v info -i out/t/parallax/establishing_dolly/video.mp4 -i out/single/parallax/establishing_dolly/video.mp4 \
+    db=$(ffmpeg -v info -i out/t/parallax/across/video.mp4 -i out/single/parallax/across/video.mp4 \
         -filter_complex '[0:v][1:v]psnr' -frames:v 1 -f null - 2>&1 | sed -nE 's/.*average:([0-9]+).*/\1/p')
     [ "${db:-0}" -ge 30 ] || fail "PSNR between the two films is ${db:-none} dB"
+    rm -r out/t/parallax/across scenes/t/keyframes
 }
 
 a_changed_bracket_redoes_its_view_and_its_readers()
