@@ -40,6 +40,7 @@ const char page_style[] =
     "color:var(--muted)}\n"
     ".key i{display:inline-block;width:16px;height:3px;border-radius:2px;vertical-align:middle;margin-right:6px}\n"
     ".key .before{background:var(--second)}.key .after{background:var(--accent)}\n"
+    ".key+h3{margin-top:18px}\n"
     "figure{margin:0}figcaption{font-size:.85rem;line-height:1.4;margin-top:6px}figcaption b{color:var(--text);"
     "font-weight:600}\n"
     "img{display:block;max-width:100%;height:auto;border-radius:6px;background:var(--line)}\n"
