@@ -40,7 +40,15 @@ all_effects_of_one_subject()
     done
     grep -q '^ *region outside' out/one/parallax/dolly_in+dim/effects.txt || fail "dolly_in+dim has no layer"
     ! cmp -s out/one/parallax/dolly_in/frames/0003.exr out/one/parallax/dolly_in+dim/frames/0003.exr || fail "nothing was dimmed"
-    awk '$1 == "frame" { print $4 > 0 }' out/one/parallax/dolly_in+narrow_dof/path.txt | tr -d '\n' | grep -qx '0.*' || fail "narrow_dof does not begin as a pinhole"
+    for e in $(made one | grep -E 'narrow_dof|widen_dof'); do
+        open=$(awk '$1 == "frame" { printf "%d", ($4 > 0) }' "out/one/parallax/$e/path.txt")
+        case $open:$e in
+        011:*narrow_dof | 110:*widen_dof) opened=1 ;;
+        000:*) grep -q 'the aperture cannot open' "out/one/log/plan_path.$e.log" || fail "nothing says that the aperture of $e stays shut" ;;
+        *) fail "the apertures of $e: $open" ;;
+        esac
+    done
+    [ "${opened-}" ] || fail "no film has a depth of field"
 }
 
 the_next_make_does_nothing()
