@@ -82,8 +82,9 @@ static enum status read_shot(struct textfile *t, struct validity *v, struct err 
                        .fy = film[2],
                        .cx = film[3],
                        .cy = film[4]};
-    if (read_numbers(t, "zoom", &v->zoom, 1, err) || read_numbers(t, "near_limit", near, 1, err) ||
-        read_numbers(t, "median_depth", &s->median_depth, 1, err))
+    if (read_numbers(t, "zoom", &v->zoom, 1, err)) return err->status;
+    if (!(v->zoom > 0)) return textfile_error(t, err, "a zoom of 0 or less", "one above 0");
+    if (read_numbers(t, "near_limit", near, 1, err) || read_numbers(t, "median_depth", &s->median_depth, 1, err))
         return err->status;
     s->near_limit = near[0];
     if (!(s->median_depth > 0)) return textfile_error(t, err, "a median depth of 0 or less", "one above 0");
