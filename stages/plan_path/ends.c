@@ -8,7 +8,8 @@
 #include "stages/plan_path/refine.h"
 
 #define SHRINK_STEPS 7
-#define BACK_STEPS   3 /* from the refined ends towards those on the grid */
+#define MOST_PLACES  1000 /* a longer film's frames are closer together than matters */
+#define BACK_STEPS   3    /* from the refined ends towards those on the grid */
 
 /* Whether an end stands as far towards the scene as it may, or as far back. The establishing dolly is to show the whole
  * scene: both of its ends stay back, and it goes across. */
@@ -80,26 +81,45 @@ static enum status measure_parallax(struct chooser *c, struct move_ends *e, stru
     return st;
 }
 
-/* What all of the way is like. */
+double ends_part(int i, int count, const char *ease)
+{
+    const double t = i / (count - 1.0);
+    return strcmp(ease, "smooth") ? t : t * t * (3 - 2 * t);
+}
+
+/* What the way is like at some places: `count`, eased. */
+static enum status measure_places(struct chooser *c, struct move_ends *e, int count, const char *ease, struct err *err)
+{
+    struct view *cameras = calloc((size_t)count, sizeof *cameras);
+    struct viewpoint *seen = calloc((size_t)count, sizeof *seen);
+    enum status st = cameras && seen ? ST_OK : err_nomem(err, "the way's cameras", (size_t)count * sizeof *cameras);
+
+    for (int i = 0; !st && i < count; i++)
+        cameras[i] = shot_camera(&c->v->shot, &c->v->move, e->at, ends_part(i, count, ease));
+    if (!st) st = viewpoints_measure(seen, cameras, count, &c->test, err);
+    for (int i = 0; !st && i < count; i++) {
+        e->valid &= seen[i].valid;
+        e->worst_outside = fmax(e->worst_outside, seen[i].outside);
+        if (seen[i].h > e->worst_h) e->worst_h = seen[i].h, e->worst_at = ends_part(i, count, ease);
+    }
+    free(cameras);
+    free(seen);
+    return st;
+}
+
+/* What all of the way is like: a few places first, which tell soon where it is not valid, then those of the frames. */
 static enum status measure_way(struct chooser *c, struct move_ends *e, struct err *err)
 {
-    struct view cameras[WAY_PLACES];
-    struct viewpoint seen[WAY_PLACES];
+    const int frames = (int)fmin(round(c->params->seconds * c->params->fps), MOST_PLACES);
 
-    for (int i = 0; i < WAY_PLACES; i++)
-        cameras[i] = shot_camera(&c->v->shot, &c->v->move, e->at, i / (WAY_PLACES - 1.0));
-    if (viewpoints_measure(seen, cameras, WAY_PLACES, &c->test, err)) return err->status;
     e->length = vec3_length(vec3_sub(e->at[1], e->at[0]));
     e->angle = angle_at_centroid(&c->v->shot, e->at);
     e->valid = true;
     e->worst_h = -1;
     e->worst_outside = 0;
-    for (int i = 0; i < WAY_PLACES; i++) {
-        e->valid &= seen[i].valid;
-        e->worst_outside = fmax(e->worst_outside, seen[i].outside);
-        if (seen[i].h > e->worst_h) e->worst_h = seen[i].h, e->worst_at = i / (WAY_PLACES - 1.0);
-    }
-    return ST_OK;
+    enum status st = measure_places(c, e, WAY_PLACES, "none", err);
+    if (!st && e->valid) st = measure_places(c, e, frames, c->params->ease, err);
+    return st;
 }
 
 /* The longest pairs that keep max_angle; where all are wider, the narrowest of all. */

@@ -7,7 +7,7 @@
  * the two cameras, for the limits penalties that rise beyond them, the regions interpolated between cells. What comes out
  * is taken as far on the way from the thesis' answer as the real viewpoints and the real parallax bear it out.
  *
- * Every place on the way is looked at too, not the ends alone. Where one is not valid, the next best of the measured
+ * Every frame's place on the way is looked at too, not the ends alone. Where one is not valid, the next best of the measured
  * pairs is tried; if none is valid all along, the best is drawn together towards the origin until it is. */
 #ifndef REMODEL_ENDS_H
 #define REMODEL_ENDS_H
@@ -33,7 +33,10 @@ struct ends_notes {
     long renders;
 };
 
-#define WAY_PLACES 25 /* where viewpoints are looked at along the way */
+#define WAY_PLACES 25 /* where viewpoints are looked at along the way; if all are valid, at every frame's place too */
+
+/* How much of the way is done at the i-th of `count` frames, 0 to 1. */
+double ends_part(int i, int count, const char *ease);
 
 enum status ends_choose(struct move_ends *best, struct ends_notes *notes, const struct layer_scene *scene,
                         const struct validity *v, const struct plan_params *params, struct err *err);

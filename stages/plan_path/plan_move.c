@@ -2,7 +2,6 @@
 #include "stages/plan_path/plan_move.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 #define PARAM_STRUCT struct plan_params
 const struct param plan_param_table[] = {PLAN_PARAMS(PARAM_ROW) PARAM_END};
@@ -38,8 +37,7 @@ static void fill_frames(struct camera_path *path, double *parts, const struct va
 {
     for (int i = 0; i < path->frame_count; i++) {
         const char *name = path->frames[i].camera.name;
-        double t = i / (path->frame_count - 1.0);
-        if (!strcmp(ease, "smooth")) t = t * t * (3 - 2 * t);
+        const double t = ends_part(i, path->frame_count, ease);
         parts[i] = t;
         path->frames[i].camera = shot_camera(&v->shot, &v->move, e->at, t);
         path->frames[i].camera.name = name;
