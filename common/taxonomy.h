@@ -52,8 +52,8 @@ struct scene_subjects {
     int count;          /* moves use two at most */
     double depth_ratio; /* of the farther to the nearer of the first two; 1 if there are fewer */
 };
-
 struct scene_subjects scene_subjects_of(const struct subject_list *list);
+
 int move_subjects(enum move move); /* how many it needs */
 void film_effect_name(const struct film_effect *e, char name[EFFECT_NAME_SIZE]);
 /* ST_USAGE: what is wrong with the name, and the nearest one that is known. */

@@ -81,6 +81,8 @@ static enum status sample(const struct job *job, struct provenance *prov, struct
         st = subject_list_read(&subjects, job->subjects, err);
         if (!st) st = provenance_add_file(prov, "parallax/subjects.txt", job->subjects, err);
     }
+    const struct scene_subjects shown = scene_subjects_of(&subjects);
+    if (!st) st = film_effect_check(&effect, &shown, err);
     if (!st) st = layer_scene_read(&scene, &set, job->depth, prov, err);
     if (!st) st = validity_sample(&v, &notes, &scene, ups, &subjects, &effect, &job->params, err);
     if (!st) st = validity_picture_write(&v, &scene.mesh, picture, err);
