@@ -265,6 +265,8 @@ $(FUZZ_TESTS): $(B)/tests/fuzz/%: $(B)/obj/tests/fuzz/%.o $(B)/obj/tests/fuzz/ru
 $(B)/tests/fuzz/fuzz_given_units: $(call objs,stages/segment_depth/given_read.c)
 $(B)/tests/fuzz/fuzz_keyframes: $(filter-out %/plan_path.o,$(call objs,stages/plan_path/*.c))
 # what plan_path alone needs: JSON, nonlinear least squares
+# the planner's test samples the viewpoints that it plans with
+$(B)/tests/unit/plan_path/plan_move: $(filter-out %/sample_validity.o,$(call objs,stages/sample_validity/*.c))
 PLANNERS := $(B)/bin/plan_path $(B)/tests/fuzz/fuzz_keyframes $(filter $(B)/tests/unit/plan_path/%,$(UNIT_TESTS))
 $(PLANNERS): $(B)/obj/common/ceres_least_squares.o
 $(PLANNERS): private LDLIBS += -ljansson -lceres -lglog -lstdc++

@@ -1,7 +1,6 @@
 /* film.c - films of keys and planned moves: what files mean, what is wrong with others, how shots are joined. */
 #include "stages/plan_path/film.h"
 
-#include "common/film_lens.h"
 #include "tests/unit/scratch.h"
 
 /* Two views side by side looking along z, as large as the film, and one that is stored lying on its side. */
@@ -287,30 +286,12 @@ static void what_is_wrong_is_told(void **state)
     assert_contains(err.text, "there is no folder of planned moves");
 }
 
-static void the_lens_is_the_views_mean(void **state)
-{
-    (void)state;
-    struct film_size size = {.max_side = 1280};
-    struct view lens;
-    struct vec3 up;
-    a_film();
-    film_lens(&lens, &up, &set, 0, ups, &size);
-    near_to(up.y, -1);
-    assert_true(lens.width == 320 && lens.height == 240 && lens.cx == 160 && lens.cy == 120);
-    near_to(lens.fx, (300 + 330 + 310) / 3.0);
-    size.width = 640;
-    size.height = 101; /* wider than the photos: their width fills it */
-    film_lens(&lens, &up, &set, 0, ups, &size);
-    assert_true(lens.width == 640 && lens.height == 102);
-    near_to(lens.fx, 2 * (300 + 330 + 310) / 3.0);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(keys_say_what_frames_show), cmocka_unit_test(the_last_frame_shows_the_last_key),
         cmocka_unit_test(moves_are_chained),         cmocka_unit_test(a_moves_layers_come_with_it),
-        cmocka_unit_test(what_is_wrong_is_told),     cmocka_unit_test(the_lens_is_the_views_mean),
+        cmocka_unit_test(what_is_wrong_is_told),
     };
     return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }

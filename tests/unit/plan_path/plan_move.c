@@ -1,0 +1,757 @@
+/* plan_move.c - every move of the taxonomy over a wall with a box before it, with viewpoints sampled from it, and the hard
+ * cases: few views, views in a line or at one place, nothing valid, an aperture that cannot open. */
+#include "stages/plan_path/plan_move.h"
+
+#include "common/parallel.h"
+#include "stages/plan_path/parallax.h"
+#include "stages/sample_validity/sample.h"
+#include "tests/unit/scratch.h"
+#include "tests/unit/wall_scene.h"
+
+/* On the box, and on the wall beside it. */
+static struct subject two_subjects[2];
+static struct subject_list subjects = {two_subjects, 2};
+static const struct subject_list nobody;
+
+static int set_up(void **state)
+{
+    (void)state;
+    two_subjects[0] = upright_subject(0.5, 0.3, 6, 0.3, 0.4);
+    two_subjects[1] = upright_subject(-1.5, 0.2, 10, 0.5, 0.8);
+    return 0;
+}
+
+static struct validity_params quick_sampling(void)
+{
+    struct validity_params p = VALIDITY_PARAMS_DEFAULT;
+    p.grid = 6;
+    p.check_side = W;
+    p.tolerance = 0.02;
+    p.check_cells = 0;
+    return p;
+}
+
+static struct plan_params quick(void)
+{
+    struct plan_params p = PLAN_PARAMS_DEFAULT;
+    p.seconds = 1;
+    p.parallax_side = 96;
+    return p;
+}
+
+/* ------------------------------------------------------------------------------------------- a film and what is true of it */
+
+struct film {
+    struct validity v;
+    struct camera_path path;
+    struct effects layers;
+    struct move_notes notes;
+    struct sampling_notes sampling;
+};
+
+static double score(const struct camera_path *p, const char *name)
+{
+    for (int i = 0; i < p->score_count; i++)
+        if (!strcmp(p->scores[i].name, name)) return p->scores[i].value;
+    fail_msg("no score %s", name);
+    return 0;
+}
+
+static bool has_score(const struct camera_path *p, const char *name)
+{
+    for (int i = 0; i < p->score_count; i++)
+        if (!strcmp(p->scores[i].name, name)) return true;
+    return false;
+}
+
+static void sample(struct film *film, const struct wall_scene *f, struct film_effect effect,
+                   const struct validity_params *params)
+{
+    struct err err = ERR_INIT;
+    *film = (struct film){.v = {.zoom = 0}};
+    if (validity_sample(&film->v, &film->sampling, &f->scene, NULL, &subjects, &effect, params, &err))
+        fail_msg("%s", err.text);
+}
+
+static void plan(struct film *film, const struct wall_scene *f, const struct plan_params *params)
+{
+    static const char *const always[] = {"length",  "length_of_thesis", "angle",         "parallax",
+                                         "worst_h", "worst_h_at",       "worst_outside", "parallax_of_thesis",
+                                         "h_limit", "outside_limit",    "zoom"};
+    struct err err = ERR_INIT;
+    char name[EFFECT_NAME_SIZE];
+    const struct subject_list *of = move_subjects(film->v.effect.move) ? &subjects : &nobody;
+    if (plan_move(&film->path, &film->layers, &film->notes, &f->scene, &film->v, of, params, &err))
+        fail_msg("%s", err.text);
+    const struct camera_path *p = &film->path;
+    film_effect_name(&film->v.effect, name);
+    assert_string_equal(p->effect, name);
+    assert_int_equal(p->frame_count, (int)round(params->seconds * params->fps));
+    for (int i = 0; i < p->frame_count; i++) {
+        const struct path_frame *frame = &p->frames[i];
+        assert_camera(&frame->camera);
+        assert_float_equal(frame->time, i / params->fps, 1e-12);
+        assert_true(fabs(vec3_dot(row_of(frame->camera.cam_from_world, 0), film->v.shot.up)) < 1e-9); /* no roll */
+        assert_true(vec3_dot(row_of(frame->camera.cam_from_world, 1), film->v.shot.up) < -0.5);
+        assert_true((frame->aperture > 0) == (frame->focus > 0) && frame->aperture >= 0);
+    }
+    for (size_t i = 0; i < sizeof always / sizeof *always; i++) assert_true(has_score(p, always[i]));
+    for (int i = 0; i < p->score_count; i++) assert_true(isfinite(p->scores[i].value));
+    assert_float_equal(score(p, "length"),
+                       vec3_length(vec3_sub(p->frames[p->frame_count - 1].camera.center, p->frames[0].camera.center)),
+                       1e-9);
+    assert_true(score(p, "angle") <= params->max_angle + 1e-6);
+    assert_true(score(p, "h_limit") == film->v.limits.max_h);
+    assert_true(has_score(p, "aperture") == (film->v.effect.focus != FOCUS_ALL));
+}
+
+static void release(struct film *film)
+{
+    camera_path_release(&film->path);
+    effects_release(&film->layers);
+    validity_release(&film->v);
+}
+
+/* Every frame, measured again. Where an end of the move has no valid viewpoint at all, the film says so. */
+static void assert_all_frames_valid(const struct film *film, const struct wall_scene *f)
+{
+    struct scene_points points;
+    struct err err = ERR_INIT;
+    const bool none = film->sampling.none[0] || film->sampling.none[1];
+    assert_ok(scene_points_collect(&points, &f->scene, &err), err);
+    struct viewpoint_test test = {
+        .scene = &f->scene, .points = &points, .shot = &film->v.shot, .limits = film->v.limits};
+    assert_true(film->notes.ends.valid || none);
+    for (int i = 0; i < film->path.frame_count; i++) {
+        struct viewpoint v;
+        assert_ok(viewpoint_measure(&v, &test, &film->path.frames[i].camera, &err), err);
+        if (film->notes.ends.valid && !(v.h < film->v.limits.max_h))
+            fail_msg("move %d, frame %d: H is %g", film->v.effect.move, i, v.h);
+        assert_true(v.h <= score(&film->path, "worst_h"));
+        assert_true(v.outside <= score(&film->path, "worst_outside"));
+    }
+    viewpoint_test_release(&test);
+    scene_points_release(&points);
+}
+
+static const struct view *camera(const struct film *film, int i)
+{
+    return &film->path.frames[i < 0 ? film->path.frame_count + i : i].camera;
+}
+
+static struct film_effect only(enum move move) { return (struct film_effect){move, FOCUS_ALL, TONE_NONE}; }
+
+/* Nine views in a square of 2 by 2, a little uneven, that look at one place as people's photos do. */
+static void nine_views(struct wall_scene *f)
+{
+    *f = (struct wall_scene){.scene = {.sigma = 0}};
+    for (int i = 0; i < 9; i++)
+        add_view(f, vec3_make(i % 3 - 1 + 0.05 * (i / 3), i / 3 - 1, 0.05 * sin(i)), vec3_make(0, 0, 9),
+                 vec3_make(0, 1, 0));
+    finish(f, wall_and_box, 2);
+}
+
+/* Whatever the move, it is a film of the scene, and none of its frames has more holes than the limit. */
+static void make(struct film *film, struct wall_scene *f, enum move move)
+{
+    const struct validity_params sampling = quick_sampling();
+    const struct plan_params params = quick();
+    nine_views(f);
+    sample(film, f, only(move), &sampling);
+    plan(film, f, &params);
+    assert_false(film->notes.stands_still);
+    assert_true(score(&film->path, "parallax") > 0);
+    assert_true(film->layers.layer_count == 0);
+    assert_all_frames_valid(film, f);
+}
+
+static void unmake(struct film *film, struct wall_scene *f)
+{
+    release(film);
+    layer_scene_release(&f->scene);
+}
+
+static void establishing_dolly_goes_right_and_shows_the_scene(void **state)
+{
+    (void)state;
+    struct film film;
+    struct wall_scene f;
+    make(&film, &f, MOVE_ESTABLISHING_DOLLY);
+    const struct vec3 centroid = film.v.shot.centroid;
+    assert_true(centroid.z > 5.9 && centroid.z < 10.1);
+    for (int i = 0; i < 30; i++) {
+        assert_true(off_axis(camera(&film, i), centroid) < 1e-6);
+        assert_float_equal(camera(&film, i)->fx, W * film.v.zoom, 1e-9);
+    }
+    assert_int_equal(camera(&film, 0)->width, W);
+    assert_int_equal(camera(&film, 0)->height, H);
+    assert_true(camera(&film, 0)->center.x < -0.5 && camera(&film, -1)->center.x > 0.5);
+    unmake(&film, &f);
+}
+
+static void establishing_dolly_out_draws_back_on_the_axis(void **state)
+{
+    (void)state;
+    struct film film;
+    struct wall_scene f;
+    make(&film, &f, MOVE_ESTABLISHING_DOLLY_OUT);
+    for (int i = 0; i < 30; i++) {
+        const struct vec3 c = shot_coordinates(&film.v.shot, camera(&film, i)->center);
+        assert_true(fabs(c.x) < 1e-9 && fabs(c.y) < 1e-9);
+        assert_true(off_axis(camera(&film, i), film.v.shot.centroid) < 1e-6);
+    }
+    assert_true(camera(&film, 0)->center.z > camera(&film, -1)->center.z + 0.5);
+    assert_float_equal(camera(&film, 0)->fx, 1.5 * film.v.shot.lens.fx, 1e-9);
+    assert_float_equal(camera(&film, -1)->fx, film.v.shot.lens.fx, 1e-9);
+    unmake(&film, &f);
+}
+
+static void dollies_end_close_at_the_subject_or_begin_there(void **state)
+{
+    (void)state;
+    for (int out = 0; out < 2; out++) {
+        struct film film;
+        struct wall_scene f;
+        make(&film, &f, out ? MOVE_DOLLY_OUT : MOVE_DOLLY_IN);
+        const struct view *wide = camera(&film, out ? -1 : 0), *close = camera(&film, out ? 0 : -1);
+        assert_true(off_axis(wide, film.v.shot.centroid) < 1e-6);
+        assert_true(off_axis(close, subject_lower_center(&two_subjects[0])) < 1e-6);
+        assert_float_equal(wide->fx, film.v.shot.lens.fx, 1e-9);
+        assert_float_equal(close->fx, 1.5 * film.v.shot.lens.fx, 1e-9);
+        assert_true(close->center.z > wide->center.z);
+        assert_true(film.notes.place_error < 1e-6);
+        unmake(&film, &f);
+    }
+}
+
+static void dolly_zooms_keep_the_subjects_size(void **state)
+{
+    (void)state;
+    for (int in = 0; in < 2; in++) {
+        struct film film;
+        struct wall_scene f;
+        make(&film, &f, in ? MOVE_DOLLY_ZOOM_IN : MOVE_DOLLY_ZOOM);
+        const double promised = film.v.move.end[0].size, way = in ? 1 : -1;
+        for (int i = 0; i < 30; i++) {
+            assert_float_equal(subject_size_in(&two_subjects[0], camera(&film, i)), promised, 1e-6);
+            const struct vec3 c = shot_coordinates(&film.v.shot, camera(&film, i)->center);
+            assert_true(fabs(c.x) < 1e-9 && fabs(c.y) < 1e-9);
+            if (i) assert_true(way * (camera(&film, i)->center.z - camera(&film, i - 1)->center.z) > 0);
+            if (i) assert_true(way * (camera(&film, i - 1)->fx - camera(&film, i)->fx) > 0);
+        }
+        assert_true(film.notes.size_error < 0.01);
+        unmake(&film, &f);
+    }
+}
+
+static void dolly_goes_from_the_first_subject_to_the_second(void **state)
+{
+    (void)state;
+    struct film film;
+    struct wall_scene f;
+    make(&film, &f, MOVE_DOLLY);
+    assert_true(off_axis(camera(&film, 0), subject_center(&two_subjects[0])) < 1e-6);
+    assert_true(off_axis(camera(&film, -1), subject_center(&two_subjects[1])) < 1e-6);
+    const double first = subject_size_in(&two_subjects[0], camera(&film, 0));
+    assert_float_equal(subject_size_in(&two_subjects[1], camera(&film, -1)), first, 1e-6);
+    assert_true(film.notes.size_error < 0.01 && film.notes.place_error < 1e-6);
+    unmake(&film, &f);
+}
+
+/* ------------------------------------------------------------------------------------------------ the ends and the frames */
+
+static void easing(void **state)
+{
+    (void)state;
+    struct wall_scene f;
+    struct film film;
+    struct plan_params params = quick();
+    const struct validity_params sampling = quick_sampling();
+    nine_views(&f);
+    sample(&film, &f, only(MOVE_ESTABLISHING_DOLLY), &sampling);
+    for (int smooth = 0; smooth < 2; smooth++) {
+        strcpy(params.ease, smooth ? "smooth" : "none");
+        plan(&film, &f, &params);
+        double step[29], least = HUGE_VAL, most = 0;
+        for (int i = 0; i < 29; i++) {
+            step[i] = camera(&film, i + 1)->center.x - camera(&film, i)->center.x;
+            least = fmin(least, step[i]);
+            most = fmax(most, step[i]);
+        }
+        assert_true(least > 0);
+        if (smooth)
+            assert_true(step[0] < 0.2 * most && step[28] < 0.2 * most && step[14] == most);
+        else
+            assert_true(most - least < 1e-9);
+        camera_path_release(&film.path);
+    }
+    unmake(&film, &f);
+}
+
+static double parallax_of(const struct wall_scene *f, const struct validity *v, const struct vec3 at[2], int side)
+{
+    struct depth_picture pictures[2];
+    struct err err = ERR_INIT;
+    for (int k = 0; k < 2; k++) {
+        const struct view c = shot_end_camera(&v->shot, &v->move.end[k], at[k]);
+        assert_ok(depth_picture_make(&pictures[k], &f->scene, &c, side, &err), err);
+    }
+    const double parallax = parallax_between(&pictures[0], &pictures[1], parallax_tolerance(&f->scene));
+    for (int k = 0; k < 2; k++) depth_picture_release(&pictures[k]);
+    return parallax;
+}
+
+static double angle_of(const struct validity *v, const struct vec3 at[2])
+{
+    const struct vec3 a = vec3_sub(at[0], v->shot.centroid), b = vec3_sub(at[1], v->shot.centroid);
+    return acos(vec3_dot(a, b) / vec3_length(a) / vec3_length(b)) * 180 / M_PI;
+}
+
+/* Of all pairs of cells, at a limit of the angle that binds and at one that does not. */
+static void all_pairs_find_what_brute_force_finds(void **state)
+{
+    (void)state;
+    static const enum move moves[] = {MOVE_ESTABLISHING_DOLLY, MOVE_DOLLY_IN, MOVE_DOLLY};
+    struct wall_scene f;
+    struct validity_params sampling = quick_sampling();
+    struct plan_params params = quick();
+    sampling.grid = 3;
+    sampling.extent = 0.8;
+    params.pairs = 20736;
+    params.parallax_side = 64;
+    strcpy(params.refine, "no");
+    nine_views(&f);
+    for (size_t m = 0; m < sizeof moves / sizeof *moves; m++) {
+        struct film film;
+        sample(&film, &f, only(moves[m]), &sampling);
+        for (int narrow = 0; narrow < 2; narrow++) {
+            const int cells = 9;
+            double best = -1;
+            int counted = 0;
+            params.max_angle = narrow ? 8 : 180;
+            for (int a = 0; a < cells; a++)
+                for (int b = 0; b < cells; b++) {
+                    if (!film.v.region[0].cells[a].valid || !film.v.region[1].cells[b].valid) continue;
+                    const struct vec3 at[2] = {ends_candidate(&film.v, 0, a), ends_candidate(&film.v, 1, b)};
+                    if (angle_of(&film.v, at) > params.max_angle) continue;
+                    best = fmax(best, parallax_of(&f, &film.v, at, params.parallax_side));
+                    counted++;
+                }
+            assert_true(counted > (narrow ? 3 : 10));
+            plan(&film, &f, &params);
+            const struct ends_notes *n = &film.notes.chosen;
+            assert_int_equal(n->pairs, counted);
+            assert_true(n->discrete.parallax == best);
+            assert_false(n->refined);
+            if (n->chosen == 0) assert_true(film.notes.ends.parallax == best);
+            if (n->chosen >= 0) {
+                assert_true(film.notes.ends.valid);
+                assert_true(film.notes.ends.parallax ==
+                            parallax_of(&f, &film.v, film.notes.ends.at, params.parallax_side));
+            }
+            camera_path_release(&film.path);
+        }
+        release(&film);
+    }
+    layer_scene_release(&f.scene);
+}
+
+static void refinement_never_gives_less(void **state)
+{
+    (void)state;
+    struct wall_scene f;
+    const struct validity_params sampling = quick_sampling();
+    struct plan_params params = quick();
+    bool ever = false;
+    nine_views(&f);
+    for (int move = 0; move < MOVE_COUNT; move++)
+        for (int narrow = 0; narrow < 2; narrow++) {
+            struct film film;
+            sample(&film, &f, only((enum move)move), &sampling);
+            params.max_angle = narrow ? 12 : 25;
+            strcpy(params.refine, "no");
+            plan(&film, &f, &params);
+            const struct move_ends grid = film.notes.ends;
+            camera_path_release(&film.path);
+            strcpy(params.refine, "yes");
+            plan(&film, &f, &params);
+            const struct move_ends *e = &film.notes.ends;
+            assert_true(e->parallax >= grid.parallax && e->valid >= grid.valid);
+            assert_true(e->angle <= params.max_angle * (1 + 1e-9));
+            if (!film.notes.chosen.refined) assert_memory_equal(e->at, grid.at, sizeof e->at);
+            if (film.notes.chosen.refined) assert_true(e->parallax > grid.parallax);
+            assert_false(film.v.move.on_axis && film.notes.chosen.refined);
+            ever |= film.notes.chosen.refined;
+            release(&film);
+        }
+    assert_true(ever);
+    layer_scene_release(&f.scene);
+}
+
+static void any_threads_same_film(void **state)
+{
+    (void)state;
+    static const struct film_effect effects[] = {{MOVE_ESTABLISHING_DOLLY, FOCUS_ALL, TONE_NONE},
+                                                 {MOVE_DOLLY_ZOOM, FOCUS_NARROW, TONE_DIM},
+                                                 {MOVE_DOLLY, FOCUS_PULL, TONE_NONE}};
+    struct wall_scene f;
+    const struct validity_params sampling = quick_sampling();
+    const struct plan_params params = quick();
+    nine_views(&f);
+    for (size_t k = 0; k < sizeof effects / sizeof *effects; k++) {
+        struct film a, b;
+        parallel_set_threads(1);
+        sample(&a, &f, effects[k], &sampling);
+        plan(&a, &f, &params);
+        parallel_set_threads(3);
+        sample(&b, &f, effects[k], &sampling);
+        plan(&b, &f, &params);
+        assert_int_equal(a.path.score_count, b.path.score_count);
+        for (int i = 0; i < a.path.score_count; i++) assert_true(a.path.scores[i].value == b.path.scores[i].value);
+        for (int i = 0; i < a.path.frame_count; i++) {
+            const struct path_frame *p = &a.path.frames[i], *q = &b.path.frames[i];
+            assert_memory_equal(&p->camera.cam_from_world, &q->camera.cam_from_world, sizeof p->camera.cam_from_world);
+            assert_memory_equal(&p->camera.center, &q->camera.center, sizeof p->camera.center);
+            assert_true(p->camera.fx == q->camera.fx && p->aperture == q->aperture && p->focus == q->focus);
+        }
+        release(&a);
+        release(&b);
+    }
+    layer_scene_release(&f.scene);
+}
+
+/* ------------------------------------------------------------------------------------------------------- image effects */
+
+static void the_aperture_opens_where_the_subject_is_in_focus(void **state)
+{
+    (void)state;
+    static const enum focus_effect focuses[] = {FOCUS_NARROW, FOCUS_WIDEN};
+    struct wall_scene f;
+    const struct validity_params sampling = quick_sampling();
+    const struct plan_params params = quick();
+    nine_views(&f);
+    for (int k = 0; k < 2; k++) {
+        struct film film;
+        const int narrow = focuses[k] == FOCUS_NARROW;
+        sample(&film, &f, (struct film_effect){MOVE_DOLLY_ZOOM, focuses[k], TONE_NONE}, &sampling);
+        plan(&film, &f, &params);
+        const double widest = film.notes.aperture;
+        assert_true(widest > 0 && score(&film.path, "aperture") == widest);
+        for (int i = 0; i < 30; i++) {
+            const struct path_frame *at = &film.path.frames[i];
+            const double linear = i / 29.0, t = linear * linear * (3 - 2 * linear), open = narrow ? t : 1 - t;
+            double u, w;
+            assert_float_equal(at->aperture, widest * open, 1e-12);
+            if (at->aperture > 0)
+                assert_float_equal(at->focus, view_project(&at->camera, subject_center(&two_subjects[0]), &u, &w),
+                                   1e-9);
+        }
+        /* no more blur of what is far than was allowed: aperture fx / focus px */
+        const struct path_frame *open = &film.path.frames[narrow ? 29 : 0];
+        assert_true(open->aperture * open->camera.fx / open->focus <= params.max_blur * W * (1 + 1e-9));
+        release(&film);
+    }
+    layer_scene_release(&f.scene);
+}
+
+static void focus_is_pulled_from_subject_to_subject(void **state)
+{
+    (void)state;
+    struct wall_scene f;
+    struct film film;
+    const struct validity_params sampling = quick_sampling();
+    const struct plan_params params = quick();
+    double u, w;
+    nine_views(&f);
+    sample(&film, &f, (struct film_effect){MOVE_DOLLY, FOCUS_PULL, TONE_NONE}, &sampling);
+    plan(&film, &f, &params);
+    assert_true(film.notes.aperture > 0);
+    for (int i = 0; i < 30; i++) assert_true(film.path.frames[i].aperture == film.notes.aperture);
+    assert_float_equal(film.path.frames[0].focus,
+                       view_project(camera(&film, 0), subject_center(&two_subjects[0]), &u, &w), 1e-9);
+    assert_float_equal(film.path.frames[29].focus,
+                       view_project(camera(&film, -1), subject_center(&two_subjects[1]), &u, &w), 1e-9);
+    unmake(&film, &f);
+}
+
+static void tones_are_layers_around_the_subject(void **state)
+{
+    (void)state;
+    static const struct {
+        enum tone_effect tone;
+        enum effect_kind kind;
+        enum effect_region region;
+    } tones[] = {{TONE_SATURATE, EFFECT_SATURATION, EFFECT_INSIDE},
+                 {TONE_DESATURATE, EFFECT_SATURATION, EFFECT_OUTSIDE},
+                 {TONE_BRIGHTEN, EFFECT_BRIGHTNESS, EFFECT_INSIDE},
+                 {TONE_DIM, EFFECT_BRIGHTNESS, EFFECT_OUTSIDE}};
+    const double to[] = {1.6, 0.1, 1.5, 0.4};
+    struct wall_scene f;
+    const struct validity_params sampling = quick_sampling();
+    const struct plan_params params = quick();
+    nine_views(&f);
+    for (int k = 0; k < 4; k++) {
+        struct film film;
+        double v[3];
+        sample(&film, &f, (struct film_effect){MOVE_DOLLY_ZOOM, FOCUS_ALL, tones[k].tone}, &sampling);
+        plan(&film, &f, &params);
+        assert_int_equal(film.layers.layer_count, 1);
+        const struct effect_layer *l = &film.layers.layers[0];
+        assert_true(l->kind == tones[k].kind && l->region == tones[k].region && l->falloff > 0);
+        for (int i = 0; i < 4; i++) {
+            const struct vec3 c = two_subjects[0].corner[i];
+            assert_true(c.x >= l->low.x && c.x <= l->high.x && c.y >= l->low.y && c.y <= l->high.y);
+            assert_true(c.z > l->low.z && c.z < l->high.z);
+        }
+        effect_layer_value(l, 0, v);
+        assert_float_equal(v[0], 1, 1e-12);
+        effect_layer_value(l, film.path.frames[29].time, v);
+        assert_float_equal(v[0], to[k], 1e-12);
+        release(&film);
+    }
+    layer_scene_release(&f.scene);
+}
+
+/* ----------------------------------------------------------------------------------------------------------- hard cases */
+
+/* All moves of a scene; the least and the greatest length of them. */
+static void all_moves(struct wall_scene *f, const struct rectangle *r, int count, double length[2])
+{
+    const struct validity_params sampling = quick_sampling();
+    const struct plan_params params = quick();
+    finish(f, r, count);
+    length[0] = HUGE_VAL;
+    length[1] = 0;
+    for (int move = 0; move < MOVE_COUNT; move++) {
+        struct film film;
+        sample(&film, f, only((enum move)move), &sampling);
+        plan(&film, f, &params);
+        assert_all_frames_valid(&film, f);
+        length[0] = fmin(length[0], film.notes.ends.length);
+        length[1] = fmax(length[1], film.notes.ends.length);
+        release(&film);
+    }
+    layer_scene_release(&f->scene);
+}
+
+static void one_view_only(void **state)
+{
+    (void)state;
+    struct wall_scene f = {0};
+    double length[2];
+    add_straight(&f, 0, 0, 0);
+    all_moves(&f, wall_and_box, 2, length);
+    assert_true(length[1] > 0.1);
+}
+
+static void two_views(void **state)
+{
+    (void)state;
+    struct wall_scene f = {0};
+    double length[2];
+    add_straight(&f, 0, 0, 0);
+    add_straight(&f, 1, 0, 0);
+    all_moves(&f, wall_and_box, 2, length);
+    assert_true(length[1] > 0.1); /* but no place keeps the second subject of the dolly within the views */
+}
+
+static void centres_in_a_line(void **state)
+{
+    (void)state;
+    static const struct vec3 along[] = {
+        {1, 0, 0}, {0, 1, 0}, {0, 0, 0.4}, {0.5, 0.7, 0.2}}; /* the third towards the scene */
+    for (int k = 0; k < 4; k++) {
+        struct wall_scene f = {0};
+        double length[2];
+        for (int i = -2; i <= 2; i++) add_straight(&f, i * along[k].x, i * along[k].y, i * along[k].z);
+        all_moves(&f, wall_and_box, 2, length);
+        assert_true(length[0] > 0.1);
+    }
+}
+
+static void centres_at_one_place(void **state)
+{
+    (void)state;
+    struct wall_scene f = {0};
+    double length[2];
+    for (int i = -1; i <= 1; i++) add_view(&f, vec3_make(0, 0, 0), vec3_make(0.1 * i, 0, 1), vec3_make(0, 1, 0));
+    all_moves(&f, wall_and_box, 2, length);
+    assert_true(length[1] > 0.1);
+}
+
+/* Every place has more holes than the limit: an end gets the origin, and the camera stands there. */
+static void no_valid_cell(void **state)
+{
+    (void)state;
+    struct wall_scene f;
+    const struct validity_params sampling = quick_sampling();
+    struct plan_params params = quick();
+    strcpy(params.refine, "no");
+    nine_views(&f);
+    for (int move = 0; move < MOVE_COUNT; move++) {
+        struct film film;
+        sample(&film, &f, only((enum move)move), &sampling);
+        for (int k = 0; k < 2; k++)
+            for (int i = 0; i < film.v.region[k].columns * film.v.region[k].rows; i++)
+                film.v.region[k].cells[i] = (struct validity_cell){.valid = false};
+        struct err err = ERR_INIT;
+        assert_int_equal(plan_move(&film.path, &film.layers, &film.notes, &f.scene, &film.v, &subjects, &params, &err),
+                         ST_DATA);
+        assert_err(err, ST_DATA, "no place of the move's regions is valid");
+        assert_true(!film.path.frames && !film.layers.layers);
+        film.v.region[0].cells[0] = film.v.region[1].cells[0] = (struct validity_cell){.valid = true};
+        plan(&film, &f, &params);
+        assert_true(film.notes.stands_still && score(&film.path, "length") < 1e-12);
+        for (int i = 0; i < 30; i++)
+            assert_true(vec3_length(vec3_sub(camera(&film, i)->center, film.v.shot.origin)) < 1e-12);
+        release(&film);
+    }
+    layer_scene_release(&f.scene);
+}
+
+/* The ends are valid and the way is not: it is drawn together until it is, or stands still; it is never left invalid. */
+static void a_way_that_is_not_valid_is_drawn_together(void **state)
+{
+    (void)state;
+    struct wall_scene f;
+    const struct validity_params sampling = quick_sampling();
+    const struct plan_params params = quick();
+    struct film film;
+    nine_views(&f);
+    sample(&film, &f, only(MOVE_ESTABLISHING_DOLLY), &sampling);
+    for (int k = 0; k < 2; k++) { /* claim that places far outside were valid */
+        struct validity_region *r = &film.v.region[k];
+        for (int i = 0; i < r->columns * r->rows; i++) {
+            r->cells[i].x *= 3;
+            r->cells[i].y *= 3;
+        }
+    }
+    plan(&film, &f, &params);
+    assert_all_frames_valid(&film, &f);
+    assert_true(film.notes.ends.length > 0.1);
+    unmake(&film, &f);
+}
+
+/* The aperture's corners see past a post that stands close, however little it opens, since what is in focus is far. */
+static void an_aperture_that_cannot_open(void **state)
+{
+    (void)state;
+    static const struct rectangle far_wall_and_post[] = {{0, 0, 1000, 4000, 4000}, {-1.5, 0, 6, 0.5, 40}};
+    struct wall_scene f = {0};
+    struct plan_params params = quick();
+    struct subject far = upright_subject(0, 0, 1000, 20, 20);
+    add_straight(&f, 0, 0, 0);
+    finish(&f, far_wall_and_post, 2);
+    struct film film = {.v = {.effect = {MOVE_DOLLY_ZOOM, FOCUS_NARROW, TONE_NONE},
+                              .shot = {.lens = f.views[0],
+                                       .up = {0, -1, 0},
+                                       .axis_x = {1, 0, 0},
+                                       .axis_y = {0, 1, 0},
+                                       .axis_z = {0, 0, 1},
+                                       .low = {-1, -1},
+                                       .high = {1, 1},
+                                       .centroid = {0, 0, 1000},
+                                       .near_limit = 1,
+                                       .median_depth = 1000},
+                              .zoom = 1,
+                              .step = 1,
+                              .limits = {0.01, 1, W}}};
+    struct err err = ERR_INIT;
+    const struct subject kept = two_subjects[0];
+    two_subjects[0] = far;
+    assert_ok(shot_move_make(&film.v.move, &film.v.shot, MOVE_DOLLY_ZOOM, &subjects, &err), err);
+    for (int k = 0; k < 2; k++) {
+        assert_ok(validity_region_init(&film.v.region[k], 1, 1, &err), err);
+        film.v.region[k].cells[0].valid = true;
+    }
+    plan(&film, &f, &params);
+    assert_true(film.notes.ends.valid && film.notes.aperture == 0 && score(&film.path, "aperture") == 0);
+    for (int i = 0; i < 30; i++) assert_true(film.path.frames[i].aperture == 0 && film.path.frames[i].focus == 0);
+    camera_path_release(&film.path);
+    film.v.limits.max_h = 1e6; /* it is the holes that keep it shut */
+    plan(&film, &f, &params);
+    assert_true(film.notes.aperture > 0);
+    camera_path_release(&film.path);
+    params.max_blur = 0; /* and no blur is none, too */
+    plan(&film, &f, &params);
+    assert_true(film.notes.aperture == 0);
+    two_subjects[0] = kept;
+    unmake(&film, &f);
+}
+
+static void refuses_what_makes_no_film(void **state)
+{
+    (void)state;
+    struct wall_scene f;
+    struct film film;
+    struct plan_params params = quick();
+    const struct validity_params sampling = quick_sampling();
+    struct err err = ERR_INIT;
+    nine_views(&f);
+    sample(&film, &f, only(MOVE_DOLLY), &sampling);
+    const struct subject_list one = {two_subjects, 1};
+    assert_int_equal(plan_move(&film.path, &film.layers, &film.notes, &f.scene, &film.v, &one, &params, &err), ST_DATA);
+    assert_err(err, ST_DATA, "dolly needs 2 subjects, and the list has 1");
+    params.seconds = 0;
+    err = (struct err)ERR_INIT;
+    assert_int_equal(plan_move(&film.path, &film.layers, &film.notes, &f.scene, &film.v, &subjects, &params, &err),
+                     ST_USAGE);
+    assert_non_null(strstr(err.text, "at least two"));
+    assert_true(!film.path.frames && !film.layers.layers);
+    params.seconds = 0.04; /* one frame */
+    err = (struct err)ERR_INIT;
+    assert_int_equal(plan_params_check(&params, &err), ST_USAGE);
+    params.seconds = 0.06;
+    err = (struct err)ERR_INIT;
+    assert_int_equal(plan_params_check(&params, &err), ST_OK);
+    release(&film);
+    layer_scene_release(&f.scene);
+}
+
+static void a_scene_without_depth_has_no_film(void **state)
+{
+    (void)state;
+    struct wall_scene f = {0}, seen;
+    struct film film;
+    const struct plan_params params = quick();
+    const struct validity_params sampling = quick_sampling();
+    struct err err = ERR_INIT;
+    nine_views(&seen);
+    sample(&film, &seen, only(MOVE_ESTABLISHING_DOLLY), &sampling);
+    for (int i = 0; i < 3; i++) add_straight(&f, i, 0, 0);
+    finish(&f, NULL, 0);
+    assert_int_equal(plan_move(&film.path, &film.layers, &film.notes, &f.scene, &film.v, &nobody, &params, &err),
+                     ST_DATA);
+    assert_non_null(strstr(err.text, "no scene to move in"));
+    assert_null(film.path.frames);
+    layer_scene_release(&f.scene);
+    unmake(&film, &seen);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(establishing_dolly_goes_right_and_shows_the_scene),
+        cmocka_unit_test(establishing_dolly_out_draws_back_on_the_axis),
+        cmocka_unit_test(dollies_end_close_at_the_subject_or_begin_there),
+        cmocka_unit_test(dolly_zooms_keep_the_subjects_size),
+        cmocka_unit_test(dolly_goes_from_the_first_subject_to_the_second),
+        cmocka_unit_test(easing),
+        cmocka_unit_test(all_pairs_find_what_brute_force_finds),
+        cmocka_unit_test(refinement_never_gives_less),
+        cmocka_unit_test(any_threads_same_film),
+        cmocka_unit_test(the_aperture_opens_where_the_subject_is_in_focus),
+        cmocka_unit_test(focus_is_pulled_from_subject_to_subject),
+        cmocka_unit_test(tones_are_layers_around_the_subject),
+        cmocka_unit_test(one_view_only),
+        cmocka_unit_test(two_views),
+        cmocka_unit_test(centres_in_a_line),
+        cmocka_unit_test(centres_at_one_place),
+        cmocka_unit_test(no_valid_cell),
+        cmocka_unit_test(a_way_that_is_not_valid_is_drawn_together),
+        cmocka_unit_test(an_aperture_that_cannot_open),
+        cmocka_unit_test(refuses_what_makes_no_film),
+        cmocka_unit_test(a_scene_without_depth_has_no_film),
+    };
+    return cmocka_run_group_tests(tests, set_up, NULL);
+}
