@@ -264,15 +264,21 @@ if [ "$goal" = pan_scan ]; then
     common/explain.sh products "$O"
     exit 0
 fi
-farm_frames render_views frames
-case $goal in frames) exit 0 ;; esac
-one video
+# here a film is whole before the next one begins; a cluster gets all of their frames at once
+films=("${effects[@]}")
+if [ "$jobs" = slurm ]; then farm_frames render_views frames; fi
+for effect in "${films[@]}"; do
+    effects=("$effect")
+    [ "$jobs" = slurm ] || farm_frames render_views frames
+    [ "$goal" = frames ] || one video
+done
+effects=("${films[@]}")
 case $goal in
 frames) exit 0 ;;
 video) ;;
 *)
     case $O${REMODEL_TRUTH:+ truth} in *+holdout* | *truth) evaluate ;; esac
-    films=("${effects[@]}") effects=()
+    effects=()
     for effect in "${films[@]}"; do [ ! -e "$O/parallax/$effect/pan_scan/video.mp4" ] || effects+=("$effect"); done
     [ "${#effects[@]}" = 0 ] || pan_scan
     effects=("${films[@]}")
