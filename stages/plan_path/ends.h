@@ -2,13 +2,16 @@
  *
  * A cell of the start's region gives a candidate for the start, its nearest or farthest valid z as the move goes, and one
  * of the end's region one for the end. Of the longest pairs that subtend no more than max_angle at the scene's centroid
- * the one with most parallax is the thesis' answer. From there the ends leave the grid: by Levenberg-Marquardt (Ceres)
- * on a smooth surrogate - for the parallax how far the two sides of every depth edge of the origin's picture part between
- * the two cameras, for the limits penalties that rise beyond them, the regions interpolated between cells. What comes out
- * is taken as far on the way from the thesis' answer as the real viewpoints and the real parallax bear it out.
+ * the one with most parallax is the thesis' answer, which had to draw the scene anew for every pair. Here a cell is drawn
+ * once, and then comparing two pictures costs less than a millisecond: so all pairs are compared.
  *
- * Every frame's place on the way is looked at too, not the ends alone. Where one is not valid, the next best of the measured
- * pairs is tried; if none is valid all along, the best is drawn together towards the origin until it is. */
+ * Every frame's place on the way is looked at too, not the ends alone: of the pairs with most parallax the first whose way is valid
+ * all along is taken; if there is none, the thesis' answer is drawn together towards the origin until it is.
+ *
+ * From there the ends leave the grid: by Levenberg-Marquardt (Ceres) on a smooth surrogate - for the parallax how far the
+ * two sides of every depth edge of the origin's picture part between the two cameras, for the limits penalties that rise
+ * beyond them, the regions interpolated between cells -, of which so much is taken as the real viewpoints and the real
+ * parallax bear out; then by small moves of one end along one axis, each of which has to give more parallax. */
 #ifndef REMODEL_ENDS_H
 #define REMODEL_ENDS_H
 
@@ -27,7 +30,8 @@ struct move_ends {
 
 struct ends_notes {
     struct move_ends discrete; /* the thesis' answer: of the longest pairs the one with most parallax, valid or not */
-    int pairs;                 /* measured */
+    int longest;               /* of them */
+    int pairs;                 /* measured in all */
     int chosen;   /* which of them, by parallax, is valid all along: 0 is the best; -1: none, drawn together */
     bool refined; /* the ends have left the grid */
     long renders;

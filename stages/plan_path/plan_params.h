@@ -14,7 +14,7 @@
     X(max_side, int, 1280, 16, 16384, "px", "longest side of a film of keys where width and height are 0")             \
     X(max_angle, double, 25, 0.1, 180, "degrees", "between the ends of a move, seen from the scene's centroid")        \
     X(pairs, int, 12, 1, 20736, "", "longest pairs of ends whose parallax is measured")                                \
-    X(refine, choice, "yes", 0, 0, "yes|no", "whether the ends then leave the grid for more parallax")                 \
+    X(refine, choice, "yes", 0, 0, "yes|no", "whether all pairs are, and ends then leave the grid")                    \
     X(parallax_side, int, 192, 16, 4096, "px", "longest side of the pictures in which parallax is measured")           \
     X(max_blur, double, 0.02, 0, 1, "", "widest circle of confusion, as a part of the film's longer side")             \
     X(saturate, double, 1.6, 0, 100, "", "what the subject's saturation changes to")                                   \

@@ -68,7 +68,7 @@ static void tell(const struct camera_path *path, const struct move_notes *n, con
              path->frames[0].camera.width, path->frames[0].camera.height, e->angle, e->length / v->shot.median_depth);
     log_note("parallax %.2f %% of the frames (the best of the %d longest pairs: %.2f %%), worst H %.2g at %.0f %% of "
              "the way (%.2g)",
-             100 * e->parallax, n->chosen.pairs, 100 * d->parallax, e->worst_h, 100 * e->worst_at, d->worst_h);
+             100 * e->parallax, n->chosen.longest, 100 * d->parallax, e->worst_h, 100 * e->worst_at, d->worst_h);
     if (n->stands_still)
         log_warn("no move keeps all of its way valid: the camera stands still");
     else if (n->chosen.chosen < 0)

@@ -14,7 +14,7 @@
     X(max_zoom, double, 1.5, 1, 4, "", "longest focal length f of a film, as a multiple of the views' mean")          \
     X(grid, int, 12, 1, 64, "", "columns and rows of places across the views")                                        \
     X(extent, double, 2, 0.1, 10, "", "how far the grid reaches, in sizes of the box of the views' centres")          \
-    X(check_side, int, 240, 16, 4096, "px", "longest side of the pictures in which holes are looked for")             \
+    X(check_side, int, 480, 16, 4096, "px", "longest side of the pictures in which holes are looked for")             \
     X(tolerance, double, 0.005, 1e-5, 1, "", "how exactly the region's z is found, as a part of the median depth")    \
     X(check_cells, int, 6, 0, 4096, "", "places whose z is found again in full pictures, to tell the error")
 
