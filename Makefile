@@ -255,6 +255,7 @@ $(BENCHES): $(B)/tests/bench/%: $(B)/obj/tests/bench/%.o $(B)/libremodel.a
 	$(call link,-lstdc++)
 $(B)/tests/bench/exr: $(B)/obj/tests/bench/exr_openexr.o # the baseline
 $(B)/tests/bench/render_rate: $(filter-out %/render_views.o,$(call objs,stages/render_views/*.c))
+$(B)/tests/bench/move_pairs: $(filter-out %/plan_path.o,$(call objs,stages/plan_path/*.c))
 $(B)/tests/bench/stereo_sgbm: $(B)/obj/tests/bench/depth_sgbm.o
 $(B)/tests/bench/stereo_sgbm: private LDLIBS += -lopencv_calib3d -lopencv_imgproc -lopencv_core
 $(B)/obj/tests/bench/depth_sgbm.o: private CXXFLAGS += -isystem /usr/include/opencv4
@@ -264,10 +265,10 @@ $(FUZZ_TESTS): $(B)/tests/fuzz/%: $(B)/obj/tests/fuzz/%.o $(B)/obj/tests/fuzz/ru
 	$(call link)
 $(B)/tests/fuzz/fuzz_given_units: $(call objs,stages/segment_depth/given_read.c)
 $(B)/tests/fuzz/fuzz_keyframes: $(filter-out %/plan_path.o,$(call objs,stages/plan_path/*.c))
-# what plan_path alone needs: JSON, nonlinear least squares
 # the planner's test samples the viewpoints that it plans with
 $(B)/tests/unit/plan_path/plan_move: $(filter-out %/sample_validity.o,$(call objs,stages/sample_validity/*.c))
-PLANNERS := $(B)/bin/plan_path $(B)/tests/fuzz/fuzz_keyframes $(filter $(B)/tests/unit/plan_path/%,$(UNIT_TESTS))
+# what plan_path alone needs: JSON, nonlinear least squares
+PLANNERS := $(B)/bin/plan_path $(B)/tests/fuzz/fuzz_keyframes $(B)/tests/bench/move_pairs $(filter $(B)/tests/unit/plan_path/%,$(UNIT_TESTS))
 $(PLANNERS): $(B)/obj/common/ceres_least_squares.o
 $(PLANNERS): private LDLIBS += -ljansson -lceres -lglog -lstdc++
 $(B)/obj/common/ceres_least_squares.o: private CXXFLAGS += -isystem /usr/include/eigen3

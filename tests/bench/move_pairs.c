@@ -1,0 +1,241 @@
+/* move_pairs.c - what the ends of a camera move are worth, and what finding them costs.
+ *
+ *   move_pairs --views DIR --depth DIR --validity FILE [--all]
+ *
+ * and the parameters of plan_path. Without --all: the ends that plan_path chooses (ends.h). With it, what these are compared
+ * with: every cell's candidate is drawn once, and then the parallax of every pair of them that keeps max_angle is
+ * measured; the pairs are then looked at from the best downwards until one is valid all along its way.
+ *
+ * Prints, of the ends found, "parallax P" (% of the frames, in pictures of JUDGE_SIDE px, in which nothing was chosen),
+ * "chosen P" (the same in those in which it was), "angle A" (degrees), "worst_h H" (of the way), "valid 0|1", "pairs N"
+ * whose parallax was measured, "renders N" of depth pictures; with --all "best P" too, of the best pair whatever its way is
+ * like, as chosen; and "seconds S" and "core_s C" (processor time), reading apart. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <time.h>
+
+#include "common/cli.h"
+#include "common/parallel.h"
+#include "stages/plan_path/ends.h"
+#include "stages/plan_path/parallax.h"
+
+#define JUDGE_SIDE 640
+
+struct job {
+    const char *views, *depth, *validity;
+    bool all;
+    struct plan_params params;
+};
+
+struct found {
+    struct move_ends ends;
+    double best; /* --all: parallax */
+    long pairs, renders;
+};
+
+struct pair {
+    int cell[2];
+    double parallax;
+};
+
+struct brute {
+    const struct layer_scene *scene;
+    const struct validity *v;
+    const struct plan_params *params;
+    int cells[2];
+    struct depth_picture *pictures[2]; /* a cell; z NULL where it is not valid */
+    struct pair *pairs;                /* start by start; parallax below 0: none */
+    struct err *errors;                /* a cell of the end that is drawn */
+    int end;
+};
+
+static double now(clockid_t clock)
+{
+    struct timespec t;
+    clock_gettime(clock, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static double angle_of(const struct brute *b, const struct vec3 at[2])
+{
+    const struct vec3 p = vec3_sub(at[0], b->v->shot.centroid), q = vec3_sub(at[1], b->v->shot.centroid);
+    return atan2(vec3_length(vec3_cross(p, q)), vec3_dot(p, q)) * 180 / M_PI;
+}
+
+static void draw_some(void *ctx, size_t begin, size_t end, int thread)
+{
+    const struct brute *b = ctx;
+    (void)thread;
+    for (size_t i = begin; i < end; i++) {
+        if (!b->v->region[b->end].cells[i].valid) continue;
+        const struct view camera =
+            shot_end_camera(&b->v->shot, &b->v->move.end[b->end], ends_candidate(b->v, b->end, (int)i));
+        depth_picture_make(&b->pictures[b->end][i], b->scene, &camera, b->params->parallax_side, &b->errors[i]);
+    }
+}
+
+static void measure_some(void *ctx, size_t begin, size_t end, int thread)
+{
+    const struct brute *b = ctx;
+    const double tolerance = parallax_tolerance(b->scene);
+    (void)thread;
+    for (size_t a = begin; a < end; a++)
+        for (int k = 0; k < b->cells[1]; k++) {
+            struct pair *p = &b->pairs[a * (size_t)b->cells[1] + (size_t)k];
+            *p = (struct pair){{(int)a, k}, -1};
+            if (!b->pictures[0][a].z || !b->pictures[1][k].z) continue;
+            const struct vec3 at[2] = {ends_candidate(b->v, 0, (int)a), ends_candidate(b->v, 1, k)};
+            if (angle_of(b, at) <= b->params->max_angle)
+                p->parallax = parallax_between(&b->pictures[0][a], &b->pictures[1][k], tolerance);
+        }
+}
+
+static int more_parallax_first(const void *a, const void *b)
+{
+    const struct pair *p = a, *q = b;
+    if (p->parallax != q->parallax) return p->parallax > q->parallax ? -1 : 1;
+    return p->cell[0] != q->cell[0] ? p->cell[0] - q->cell[0] : p->cell[1] - q->cell[1];
+}
+
+/* What all of a pair's way is like. */
+static enum status measure_way(const struct brute *b, struct viewpoint_test *test, struct move_ends *e, struct err *err)
+{
+    struct view cameras[WAY_PLACES];
+    struct viewpoint seen[WAY_PLACES];
+
+    for (int i = 0; i < WAY_PLACES; i++)
+        cameras[i] = shot_camera(&b->v->shot, &b->v->move, e->at, i / (WAY_PLACES - 1.0));
+    if (viewpoints_measure(seen, cameras, WAY_PLACES, test, err)) return err->status;
+    e->angle = angle_of(b, e->at);
+    e->valid = true;
+    for (int i = 0; i < WAY_PLACES; i++) {
+        e->valid &= seen[i].valid;
+        e->worst_h = fmax(e->worst_h, seen[i].h);
+    }
+    return ST_OK;
+}
+
+static enum status draw_candidates(struct brute *b, struct found *f, struct err *err)
+{
+    enum status st = ST_OK;
+    for (b->end = 0; !st && b->end < 2; b->end++) {
+        const size_t cells = (size_t)b->cells[b->end];
+        b->pictures[b->end] = calloc(cells + 1, sizeof **b->pictures);
+        b->errors = calloc(cells + 1, sizeof *b->errors);
+        st = b->pictures[b->end] && b->errors ? ST_OK : err_nomem(err, "pictures", cells * sizeof **b->pictures);
+        if (!st) parallel_for(cells, 1, draw_some, b);
+        for (size_t i = 0; !st && i < cells; i++)
+            if (b->errors[i].status) st = err_set(err, b->errors[i].status, "%s", b->errors[i].text);
+        if (!st) f->renders += validity_region_count(&b->v->region[b->end]);
+        free(b->errors);
+        b->errors = NULL;
+    }
+    return st;
+}
+
+static enum status best_of_all(struct found *f, const struct layer_scene *scene, const struct validity *v,
+                               const struct plan_params *params, struct err *err)
+{
+    struct brute b = {.scene = scene, .v = v, .params = params};
+    struct scene_points points = {0};
+    struct viewpoint_test test = {.scene = scene, .points = &points, .shot = &v->shot, .limits = v->limits};
+    for (int k = 0; k < 2; k++) b.cells[k] = v->region[k].columns * v->region[k].rows;
+    const size_t count = (size_t)b.cells[0] * (size_t)b.cells[1];
+
+    b.pairs = malloc(count * sizeof *b.pairs);
+    enum status st = b.pairs ? ST_OK : err_nomem(err, "pairs", count * sizeof *b.pairs);
+    if (!st) st = scene_points_collect(&points, scene, err);
+    if (!st) st = draw_candidates(&b, f, err);
+    if (!st) {
+        parallel_for((size_t)b.cells[0], 1, measure_some, &b);
+        qsort(b.pairs, count, sizeof *b.pairs, more_parallax_first);
+        f->best = fmax(0, b.pairs[0].parallax);
+    }
+    for (size_t i = 0; !st && i < count && b.pairs[i].parallax >= 0; i++) {
+        f->pairs++;
+        if (f->ends.valid) continue;
+        f->ends = (struct move_ends){.parallax = b.pairs[i].parallax};
+        for (int k = 0; k < 2; k++) f->ends.at[k] = ends_candidate(v, k, b.pairs[i].cell[k]);
+        st = measure_way(&b, &test, &f->ends, err);
+    }
+    f->renders += test.renders;
+    for (int k = 0; k < 2; k++) {
+        for (int i = 0; b.pictures[k] && i < b.cells[k]; i++) depth_picture_release(&b.pictures[k][i]);
+        free(b.pictures[k]);
+    }
+    free(b.pairs);
+    viewpoint_test_release(&test);
+    scene_points_release(&points);
+    return st;
+}
+
+/* The parallax of the ends in larger pictures. */
+static enum status judge(double *parallax, const struct found *f, const struct layer_scene *scene,
+                         const struct validity *v, struct err *err)
+{
+    struct depth_picture pictures[2] = {{.z = NULL}};
+    enum status st = ST_OK;
+    for (int k = 0; !st && k < 2; k++) {
+        const struct view camera = shot_end_camera(&v->shot, &v->move.end[k], f->ends.at[k]);
+        st = depth_picture_make(&pictures[k], scene, &camera, JUDGE_SIDE, err);
+    }
+    if (!st) *parallax = parallax_between(&pictures[0], &pictures[1], parallax_tolerance(scene));
+    for (int k = 0; k < 2; k++) depth_picture_release(&pictures[k]);
+    return st;
+}
+
+static enum status run(const struct job *job, struct err *err)
+{
+    struct camera_set set = {0};
+    struct layer_scene scene = {0};
+    struct validity v = {0};
+    struct ends_notes notes = {0};
+    struct found f = {.best = 0};
+    double judged = 0;
+
+    enum status st = camera_set_read(&set, job->views, err);
+    if (!st) st = validity_read(&v, job->validity, err);
+    if (!st) st = layer_scene_read(&scene, &set, job->depth, NULL, err);
+    const double wall = now(CLOCK_MONOTONIC), core = now(CLOCK_PROCESS_CPUTIME_ID);
+    if (!st && job->all) st = best_of_all(&f, &scene, &v, &job->params, err);
+    if (!st && !job->all) {
+        st = ends_choose(&f.ends, &notes, &scene, &v, &job->params, err);
+        f.pairs = notes.pairs;
+        f.renders = notes.renders;
+    }
+    const double seconds = now(CLOCK_MONOTONIC) - wall, core_s = now(CLOCK_PROCESS_CPUTIME_ID) - core;
+    if (!st) st = judge(&judged, &f, &scene, &v, err);
+    if (!st) {
+        printf("seconds %.6g\ncore_s %.6g\nparallax %.3f\nchosen %.3f\n", seconds, core_s, 1e2 * judged,
+               1e2 * f.ends.parallax);
+        if (job->all) printf("best %.3f\n", 1e2 * f.best);
+        printf("angle %.3g\nworst_h %.3g\nvalid %d\npairs %ld\nrenders %ld\n", f.ends.angle, f.ends.worst_h,
+               f.ends.valid, f.pairs, f.renders);
+    }
+    validity_release(&v);
+    layer_scene_release(&scene);
+    camera_set_release(&set);
+    return st;
+}
+
+int main(int argc, char **argv)
+{
+    struct job job = {.params = PLAN_PARAMS_DEFAULT};
+    const struct cli_opt opts[] = {
+        CLI_ABOUT("What the ends of a camera move are worth, and what finding them costs."),
+        CLI_STR("views", &job.views, CLI_REQUIRED, "folder of cameras"),
+        CLI_STR("depth", &job.depth, CLI_REQUIRED, "folder of the views' layers"),
+        CLI_STR("validity", &job.validity, CLI_REQUIRED, "file of the move's valid viewpoints"),
+        CLI_FLAG("all", &job.all, "the best of all pairs of the regions' cells"),
+        CLI_PARAMS(plan_param_table, &job.params, plan_params_check),
+        CLI_END,
+    };
+    struct provenance prov = {0};
+    struct err err = ERR_INIT;
+
+    if (cli_parse(argc, argv, "move_pairs", opts, &prov, &err) == CLI_RUN) run(&job, &err);
+    err_report(&err);
+    provenance_release(&prov);
+    return err_exit_code(&err);
+}

@@ -1,0 +1,104 @@
+# moves.sh - plan_path and sample_validity: how much parallax the chosen ends of a move have, and how exact the limits of valid viewpoints are.
+#
+# Scenes: BENCH_SCENES, names of scenes/ (`make SCENE=NAME depth` is run first), or folders that hold views/, depth/ and photos/ already.
+# The move is the establishing dolly. BENCH_SWEEPS="ends limits": these panels alone. BENCH_THREADS (all cores).
+#
+# `ends`: move_pairs.c. The baseline is the best of all pairs of the regions' cells that is valid all along its way: every cell drawn once in pictures
+# as large as the film, every pair compared (BENCH_FULL, still-life: the scenes where this is done, for it takes minutes); `all pairs, small`
+# does so in the pictures of parallax_side, 192 px. Others: the thesis' answer, of the 12 longest pairs (refine=no), and the default.
+# parallax is in % of the frames, measured in pictures of 640 px, in which none of them was chosen; `chosen` is in those in which it was; `best`
+# that of the best pair whatever its way. `reached` is parallax over that of the thesis' form of the search in small pictures, %.
+#
+# `limits`: check_side of sample_validity; `reached` is the part of the z limits, of at most BENCH_CELLS (12) places, that are within one step of those
+# found in pictures of the film's size, %; `error` is the rest. seconds are those of the whole stage without that comparison.
+title="Camera moves: parallax of the chosen ends, exactness of the limits, against time"
+note="Upper left is better."
+repeats=1
+baseline="all pairs, small"
+match="scene sweep"
+timed="core_s"
+line=series label=value panel="scene sweep" across=2
+x=seconds x_label="Time (s)" y=reached y_label="Of the best pair's parallax, or of limits within a step (%)" zero=no
+
+scenes=${BENCH_SCENES-still-life kermit sceaux marble-head}
+full=${BENCH_FULL-still-life}
+threads=${BENCH_THREADS:-$(nproc)}
+sweeps=${BENCH_SWEEPS:-ends limits}
+
+wanted() { case " $sweeps " in *" $1 "*) ;; *) return 1 ;; esac; }
+quietly() { "$@" >"$work/words" 2>&1 || { tail -n 5 "$work/words" >&2; missing "'$*' failed."; }; }
+
+prepare()
+{
+    [ -x "$B/tests/bench/move_pairs" ] || missing "there is no program $B/tests/bench/move_pairs."
+    local s name of
+    found_scenes=
+    for s in $scenes; do
+        name=${s##*/} of=$s
+        if [[ $s != */* ]]; then
+            if [ ! -e "scenes/$s/scene.mk" ]; then echo "moves: $s is skipped, for there is no scenes/$s/scene.mk." >&2; continue; fi
+            echo "moves: make SCENE=$s depth" >&2
+            quietly "${MAKE:-make}" --no-print-directory QUALITY=default SCENE="$s" HOLDOUT= HOLDOUT_VIEWS= depth
+            of=out/$s
+        elif [ ! -d "$s/views" ] || [ ! -d "$s/depth" ]; then echo "moves: $s is skipped, for it holds no views/ and depth/." >&2; continue; fi
+        mkdir -p "$work/$name/validity"
+        for d in views depth photos; do [ ! -d "$of/$d" ] || ln -s "$(realpath "$of/$d")" "$work/$name/$d"; done
+        quietly validity "$name" "$work/$name/validity" --set check_cells=0
+        found_scenes+=" $name"
+    done
+    [ -n "$found_scenes" ] || missing "there is no scene; BENCH_SCENES=\"NAMES\" are those of scenes/, or folders that hold views/ and depth/."
+}
+
+validity() # NAME OUT ARGS...
+{
+    local of=$work/$1 to=$2 records=(); shift 2
+    [ ! -d "$of/photos" ] || records=(--records "$of/photos")
+    "$B/bin/sample_validity" --threads "$threads" --views "$of/views" --depth "$of/depth" "${records[@]}" --effect establishing_dolly --out "$to" "$@"
+}
+
+settings()
+{
+    printf 'series\tscene\tsweep\tvalue\n'
+    local s v
+    for s in $found_scenes; do
+        if wanted ends; then
+            [[ " $full " != *" $s "* ]] || printf 'all pairs, film size\t%s\tends\t-\n' "$s"
+            for v in 'all pairs, small' 'longest pairs' 'plan_path'; do printf '%s\t%s\tends\t-\n' "$v" "$s"; done
+        fi
+        if wanted limits; then for v in ${BENCH_SIDES:-120 160 240 320 480 640 1200}; do printf 'check_side\t%s\tlimits\t%s\n' "$s" "$v"; done; fi
+    done
+}
+
+pairs() # NAME ARGS...
+{
+    local of=$work/$1; shift
+    measured "$B/tests/bench/move_pairs" --threads "$threads" --views "$of/views" --depth "$of/depth" --validity "$of/validity/validity.txt" "$@"
+}
+
+sample() # SERIES SCENE SWEEP VALUE
+{
+    local of=$work/$2
+    if [ "$3" = limits ]; then
+        mkdir -p "$fast/v"
+        export -f validity; export work B threads
+        # without the comparison for the time, with it for the error
+        measured bash -c 'validity "$@"' - "$2" "$fast/v" --set "check_side=$4" --set check_cells=0 || return
+        if [ ! -e "$of/limits-$4" ]; then
+            validity "$2" "$fast/v" --set "check_side=$4" --set "check_cells=${BENCH_CELLS:-12}" 2>"$work/words" || return
+            sed -n 's/.*in full pictures \([0-9]*\) of \([0-9]*\) limits .* worst is \([0-9]*\) .*/\1 \2 \3/p' "$work/words" |
+                awk '{ n = 1; printf "limits %d\nerror %.4g\nunit %%\nreached %.4g\nworst_steps %d\n", $2, 100 * (1 - $1 / $2), 100 * $1 / $2, $3 }
+                    END { if (!n) print "limits 0" }' >"$of/limits-$4"
+        fi
+        cat "$of/limits-$4"
+        return
+    fi
+    [ -e "$of/best" ] || pairs "$2" --all >"$of/best" || return
+    case $1 in
+    'all pairs, film size') pairs "$2" --all --set parallax_side=1280 ;;
+    'all pairs, small') pairs "$2" --all ;;
+    'longest pairs') pairs "$2" --set refine=no ;;
+    *) pairs "$2" ;;
+    esac >"$fast/pairs" || return
+    cat "$fast/pairs"
+    awk '{ v[FNR == NR, $1] = $2 } END { if (v[1, "parallax"] > 0) printf "reached %.4g\n", 100 * v[0, "parallax"] / v[1, "parallax"] }' "$of/best" "$fast/pairs"
+}
