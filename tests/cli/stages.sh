@@ -54,6 +54,10 @@ parameters_out_of_range_are_refused()
 options_that_exclude_each_other_are_refused()
 {
     d=$scratch/nowhere
+    expect 2 "wanted --depth with --validity" "$B/bin/plan_path" --views "$d" --effect e --out "$d"
+    expect 2 "wanted --depth with --validity" "$B/bin/plan_path" --views "$d" --effect e --out "$d" --depth "$d"
+    expect 2 "wanted --depth with --validity" "$B/bin/plan_path" --views "$d" --effect e --out "$d" --depth "$d" --validity v --moves "$d"
+    expect 2 "wanted --depth with --validity" "$B/bin/plan_path" --views "$d" --effect e --out "$d" --keyframes k --subjects s
     expect 2 "either --path" "$B/bin/render_views" --views "$d" --depth "$d" --out "$d"
     expect 2 "either --path" "$B/bin/render_views" --views "$d" --depth "$d" --out "$d" --path "$d" --frames 1 --cameras "$d"
     expect 2 "either --path" "$B/bin/render_views" --views "$d" --depth "$d" --out "$d" --path "$d" --frames 1 --camera x

@@ -315,17 +315,17 @@ static void all_pairs_find_what_brute_force_finds(void **state)
     struct wall_scene f;
     struct validity_params sampling = quick_sampling();
     struct plan_params params = quick();
-    sampling.grid = 3;
-    sampling.extent = 0.8;
+    sampling.grid = 4;
+    sampling.extent = 1;
     params.pairs = 20736;
-    params.parallax_side = 64;
+    params.parallax_side = 48;
     strcpy(params.refine, "no");
     nine_views(&f);
     for (size_t m = 0; m < sizeof moves / sizeof *moves; m++) {
         struct film film;
         sample(&film, &f, only(moves[m]), &sampling);
         for (int narrow = 0; narrow < 2; narrow++) {
-            const int cells = 9;
+            const int cells = 16;
             double best = -1;
             int counted = 0;
             params.max_angle = narrow ? 8 : 180;
@@ -337,7 +337,7 @@ static void all_pairs_find_what_brute_force_finds(void **state)
                     best = fmax(best, parallax_of(&f, &film.v, at, params.parallax_side));
                     counted++;
                 }
-            assert_true(counted > (narrow ? 3 : 10));
+            assert_true(counted > (narrow ? 3 : 20));
             plan(&film, &f, &params);
             const struct ends_notes *n = &film.notes.chosen;
             assert_int_equal(n->pairs, counted);

@@ -1,0 +1,61 @@
+# choose_effects: what a scene's subjects allow, and what is said of wrong words
+. tests/lib.sh
+B=$root/$B
+cd "$scratch" || exit 1
+
+# subjects N RATIO: a list of N subjects, the second RATIO times as far
+subjects()
+{
+    printf 'remodel-subjects 1\nsubjects %d\n' "$1"
+    for ((i = 0; i < $1; i++)); do
+        printf 'subject v user 0 0 9 9 %s 0 0 0\ncorner 0 0 5\ncorner 1 0 5\ncorner 1 1 5\ncorner 0 1 5\n' "$(awk -v i="$i" -v r="$2" 'BEGIN { print i ? 5 * r : 5 }')"
+    done
+}
+# choose CODE WORD ARGUMENT...
+choose()
+{
+    local code=$1 word=$2 rc=0; shift 2
+    rm -f made.mk
+    "$B/bin/choose_effects" --out made.mk "$@" >out.txt 2>err.txt </dev/null || rc=$?
+    [ "$rc" = "$code" ] || { cat err.txt; fail "$*: exit $rc, wanted $code"; }
+    grep -qF -- "$word" err.txt || { cat err.txt; fail "$*: nothing says '$word'"; }
+    [ "$code" = 0 ] || { grep -q 'choose_effects: error: .*[.?]$' err.txt && [ ! -e made.mk ]; } || { cat err.txt; fail "$*: no sentence, or a file was left"; }
+}
+made() { sed -n 's/^EFFECTS := //p' made.mk; }
+
+all_are_what_the_subjects_allow()
+{
+    subjects 0 1 >s.txt; choose 0 '0 subjects: 2 effects' --subjects s.txt --effect all
+    [ "$(made)" = "establishing_dolly establishing_dolly_out" ] || { cat made.mk; fail "no subject"; }
+    subjects 1 1 >s.txt; choose 0 '1 subject: ' --subjects s.txt --effect all
+    made | grep -q 'dolly_zoom_in+dim' && ! made | grep -qE 'pull_focus|(^| )dolly( |$|\+)' || { cat made.mk; fail "one subject"; }
+    subjects 2 2 >s.txt; choose 0 '2 subjects: ' --subjects s.txt --effect all
+    made | grep -q ' dolly+pull_focus' || { cat made.mk; fail "two subjects"; }
+    subjects 2 1.1 >s.txt; choose 0 '2 subjects: ' --subjects s.txt --effect all
+    made | grep -qE ' dolly$' || { cat made.mk; fail "two subjects as far as each other"; }
+}
+
+chance_is_seeded()
+{
+    subjects 1 1 >s.txt
+    for seed in 1 2 3 4 5 6 7 8; do
+        choose 0 "by chance (seed $seed)" --subjects s.txt --effect auto --set seed=$seed; one=$(made)
+        choose 0 'by chance' --subjects s.txt --effect auto --set seed=$seed
+        [ "$(made)" = "$one" ] || fail "another one of the same seed"
+        [[ $one == dolly_* && $one != *" "* ]] || fail "$one is not one of the row of one subject"
+        echo "$one" >>drawn.txt
+    done
+    [ "$(sort -u drawn.txt | wc -l)" -gt 1 ] || fail "chance always draws $one"
+}
+
+wrong_words_are_told()
+{
+    subjects 1 1 >s.txt
+    choose 2 'wanted auto or all' --subjects s.txt --effect dolly_in
+    choose 2 'effect is missing' --subjects s.txt
+    choose 1 nowhere.txt --subjects nowhere.txt --effect all
+    sed -i '3s/user/nobody/' s.txt
+    choose 1 's.txt:3: found "nobody"' --subjects s.txt --effect all
+}
+
+for t in all_are_what_the_subjects_allow chance_is_seeded wrong_words_are_told; do run "$t"; done
