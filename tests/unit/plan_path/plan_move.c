@@ -218,7 +218,7 @@ static void dollies_end_close_at_the_subject_or_begin_there(void **state)
         assert_true(off_axis(close, subject_lower_center(&two_subjects[0])) < 1e-6);
         assert_float_equal(wide->fx, film.v.shot.lens.fx, 1e-9);
         assert_float_equal(close->fx, 1.5 * film.v.shot.lens.fx, 1e-9);
-        assert_true(close->center.z > wide->center.z);
+        if (!(close->center.z > wide->center.z)) fail_msg("%d: close at %g %g %g, wide at %g %g %g; cells %d %d; chosen %d still %d", out, close->center.x, close->center.y, close->center.z, wide->center.x, wide->center.y, wide->center.z, validity_region_count(&film.v.region[0]), validity_region_count(&film.v.region[1]), film.notes.chosen.chosen, film.notes.stands_still);
         assert_true(film.notes.place_error < 1e-6);
         unmake(&film, &f);
     }
@@ -337,7 +337,7 @@ static void all_pairs_find_what_brute_force_finds(void **state)
                     best = fmax(best, parallax_of(&f, &film.v, at, params.parallax_side));
                     counted++;
                 }
-            assert_true(counted > (narrow ? 3 : 20));
+            if (!(counted > (narrow ? 3 : 20))) fail_msg("move %d narrow %d: %d; cells %d %d", (int)m, narrow, counted, validity_region_count(&film.v.region[0]), validity_region_count(&film.v.region[1]));
             plan(&film, &f, &params);
             const struct ends_notes *n = &film.notes.chosen;
             assert_int_equal(n->pairs, counted);
