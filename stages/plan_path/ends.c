@@ -15,9 +15,10 @@
 #define ROUNDS       8    /* of small moves, both ends' */
 #define FIRST_MOVE   0.5  /* of the grid's spacing */
 #define LEAST_MOVE   0.1
-#define Z_MOVE       8 /* steps of the region's z, what the spacing is across */
-#define GLANCES      7 /* at the way */
-#define WAYS_TRIED   4 /* a round */
+#define Z_MOVE       8   /* steps of the region's z, what the spacing is across */
+#define LEAST_FORTH  0.5 /* of a dolly in's length: what it goes in, not across */
+#define GLANCES      7   /* at the way */
+#define WAYS_TRIED   4   /* a round */
 
 /* Whether an end stands as far towards the scene as it may, or as far back. The establishing dolly is to show the whole
  * scene: both of its ends stay back, and it goes across. */
@@ -249,7 +250,18 @@ static enum status score_pairs(struct chooser *c, struct pair *pairs, size_t cou
     return st;
 }
 
-/* The pairs that keep max_angle, longest first; where all are wider, the narrowest of all. */
+/* Whether a move between these ends is what its name says: no wider than max_angle; in or out, if it is a dolly in or out. */
+static bool keeps_course(const struct chooser *c, const struct vec3 at[2])
+{
+    const struct shot *shot = &c->v->shot;
+    const enum move move = c->v->move.move;
+    if (angle_at_centroid(shot, at) > c->params->max_angle * (1 + 1e-9)) return false;
+    if (move != MOVE_DOLLY_IN && move != MOVE_DOLLY_OUT) return true;
+    const double forth = shot_coordinates(shot, at[1]).z - shot_coordinates(shot, at[0]).z;
+    return (move == MOVE_DOLLY_IN ? forth : -forth) >= LEAST_FORTH * vec3_length(vec3_sub(at[1], at[0]));
+}
+
+/* The pairs that keep the move's course, longest first; where none does, the narrowest of all. */
 static enum status list_pairs(struct chooser *c, struct pair **pairs, size_t *count, struct err *err)
 {
     const struct validity *v = c->v;
@@ -268,7 +280,7 @@ static enum status list_pairs(struct chooser *c, struct pair **pairs, size_t *co
             const struct pair p = {{a, b}, vec3_length(vec3_sub(at[1], at[0])), 0};
             const double angle = angle_at_centroid(&v->shot, at);
             if (angle < least) least = angle, narrowest = p;
-            if (angle <= c->params->max_angle) (*pairs)[n++] = p;
+            if (keeps_course(c, at)) (*pairs)[n++] = p;
         }
     if (!n && narrowest.cell[0] < 0)
         return err_set(err, ST_DATA, "no place of the move's regions is valid: there is nowhere to go.");
@@ -329,7 +341,7 @@ static enum status refine(struct chooser *c, struct move_ends *best, struct err 
     for (int i = 0; i < BACK_STEPS; i++) {
         struct move_ends e = {.valid = false};
         for (int k = 0; k < 2; k++) e.at[k] = towards(best->at[k], refined[k], pow(0.5, i));
-        if (angle_at_centroid(&c->v->shot, e.at) > c->params->max_angle * (1 + 1e-9)) continue;
+        if (!keeps_course(c, e.at)) continue;
         if (measure_parallax(c, &e, err)) return err->status;
         if (!(e.parallax > best->parallax)) continue;
         if (measure_way_if_good(c, &e, err)) return err->status;
@@ -361,7 +373,7 @@ static void list_moves(struct move_ends tried[MOVES], const struct validity *v, 
     }
 }
 
-/* The parallax of moves from a pair of ends; 0 where they leave max_angle. */
+/* The parallax of moves from a pair of ends; 0 where they leave the course. */
 static enum status score_moves(struct move_ends tried[MOVES], struct chooser *c, const struct move_ends *from,
                                struct err *err)
 {
@@ -374,7 +386,7 @@ static enum status score_moves(struct move_ends tried[MOVES], struct chooser *c,
     for (int i = 0; i < MOVES + 2; i++) {
         end[i] = i < MOVES ? i / (2 * AXES) : i - MOVES;
         at[i] = i < MOVES ? tried[i].at[end[i]] : from->at[end[i]];
-        wanted[i] = i >= MOVES || angle_at_centroid(&c->v->shot, tried[i].at) <= c->params->max_angle;
+        wanted[i] = i >= MOVES || keeps_course(c, tried[i].at);
     }
     const enum status st = draw_all(&d, MOVES + 2, err);
     for (int i = 0; !st && i < MOVES; i++)

@@ -1,7 +1,8 @@
 /* ends.h - where a move starts and ends (thesis 3.4.2, "Maximizing parallax"), among the valid viewpoints.
  *
  * A cell of the start's region gives a candidate for the start, its nearest or farthest valid z as the move goes, and one
- * of the end's region one for the end. Of the longest pairs that subtend no more than max_angle at the scene's centroid
+ * of the end's region one for the end. A pair subtends no more than max_angle at the scene's centroid, and that of a dolly
+ * in or out goes at least half of its length in or out. Of the longest pairs
  * the one with most parallax is the thesis' answer, which had to draw the scene anew for every pair. Here a cell is drawn
  * once, and then comparing two pictures costs less than a millisecond: so all pairs are compared.
  *

@@ -12,12 +12,13 @@
 const struct param validity_param_table[] = {VALIDITY_PARAMS(PARAM_ROW) PARAM_END};
 #undef PARAM_STRUCT
 
-#define FIRST_STEP  16  /* tolerances */
-#define MOST_BACK   1.0 /* median depths: farther off, zoomed in, it is but a flatter picture */
-#define ZOOM_STEP   0.05
-#define ZOOM_COST   4   /* places count by zoom^-4 */
-#define ZOOM_PLACES 5   /* a side */
-#define SLACK       1.2 /* over what the centremost place leaves, where no place is valid */
+#define FIRST_STEP    16  /* tolerances */
+#define MOST_BACK     1.0 /* median depths: farther off, zoomed in, it is but a flatter picture */
+#define GRID_HALVINGS 4   /* sizes of the grid that are tried */
+#define ZOOM_STEP     0.05
+#define ZOOM_COST     4   /* places count by zoom^-4 */
+#define ZOOM_PLACES   5   /* a side */
+#define SLACK         1.2 /* over what the centremost place leaves, where no place is valid */
 
 struct sampler { /* of one thread */
     struct validity *v;
@@ -39,9 +40,9 @@ static enum status search(struct sampler *s, const struct shot_end *end, double 
     double step = FIRST_STEP * s->v->step;
     bool failed = false;
     *z = 0;
-    while (step > 0.75 * s->v->step && fabs(*z) + step <= most) {
-        bool valid;
-        if (is_valid(s, end, x, y, *z + way * step, &valid, err)) return err->status;
+    while (step > 0.75 * s->v->step) {
+        bool valid = false;
+        if (fabs(*z) + step <= most && is_valid(s, end, x, y, *z + way * step, &valid, err)) return err->status;
         failed |= !valid;
         if (valid) *z += way * step;
         step *= failed ? 0.5 : 2;
@@ -49,22 +50,25 @@ static enum status search(struct sampler *s, const struct shot_end *end, double 
     return ST_OK;
 }
 
-static enum status sample_cell(struct sampler *s, const struct shot_end *end, struct validity_cell *c, struct err *err)
+static enum status sample_cell(struct sampler *s, const struct shot_end *end, bool glance, struct validity_cell *c,
+                               struct err *err)
 {
     enum status st = is_valid(s, end, c->x, c->y, 0, &c->valid, err);
+    if (glance) return st;
     if (!st && c->valid) st = search(s, end, c->x, c->y, -1, &c->low, err);
     if (!st && c->valid) st = search(s, end, c->x, c->y, 1, &c->high, err);
     return st;
 }
 
-static void place_cells(struct validity_region *r, const struct shot *shot, bool on_axis, double extent)
+/* extent: of the grid, in sizes of the box of the centres; part: by which it is drawn together around the origin. */
+static void place_cells(struct validity_region *r, const struct shot *shot, bool on_axis, double extent, double part)
 {
     for (int i = 0; !on_axis && i < r->columns * r->rows; i++) {
         const int at[2] = {i % r->columns, i / r->columns}, of[2] = {r->columns, r->rows};
         double place[2];
         for (int k = 0; k < 2; k++) {
             const double middle = 0.5 * (shot->low[k] + shot->high[k]), size = extent * (shot->high[k] - shot->low[k]);
-            place[k] = middle + size * ((at[k] + 0.5) / of[k] - 0.5);
+            place[k] = part * (middle + size * ((at[k] + 0.5) / of[k] - 0.5));
         }
         r->cells[i].x = place[0];
         r->cells[i].y = place[1];
@@ -76,9 +80,9 @@ static enum status count_valid(struct sampler *s, double focal, int *count, stru
 {
     const struct shot_end end = {.target = s->v->shot.centroid, .focal = focal};
     struct validity_cell cells[ZOOM_PLACES * ZOOM_PLACES] = {0};
-    const struct validity_region r = {ZOOM_PLACES, ZOOM_PLACES, cells};
+    struct validity_region r = {ZOOM_PLACES, ZOOM_PLACES, cells};
     *count = 0;
-    place_cells((struct validity_region *)&r, &s->v->shot, false, 1);
+    place_cells(&r, &s->v->shot, false, 1, 1);
     for (int i = 0; i < ZOOM_PLACES * ZOOM_PLACES; i++) {
         bool valid;
         if (is_valid(s, &end, cells[i].x, cells[i].y, 0, &valid, err)) return err->status;
@@ -126,6 +130,7 @@ struct cell_job {
     const struct shot_end *end;
     struct validity_cell *cells;
     struct err *errors; /* a cell */
+    bool glance;        /* whether they are valid at z = 0, no more */
     struct progress progress;
 };
 
@@ -133,17 +138,17 @@ static void sample_some(void *ctx, size_t begin, size_t end, int thread)
 {
     struct cell_job *job = ctx;
     for (size_t i = begin; i < end; i++) {
-        sample_cell(&job->samplers[thread], job->end, &job->cells[i], &job->errors[i]);
+        sample_cell(&job->samplers[thread], job->end, job->glance, &job->cells[i], &job->errors[i]);
         progress_add(&job->progress, 1);
     }
 }
 
 /* Cells are independent, so each thread has its own and draws its pictures alone. */
 static enum status sample_cells(struct sampler *s, const struct shot_end *end, struct validity_cell *cells, int count,
-                                const char *what, struct err *err)
+                                bool glance, const char *what, struct err *err)
 {
     const int threads = parallel_threads();
-    struct cell_job job = {.end = end, .cells = cells};
+    struct cell_job job = {.end = end, .cells = cells, .glance = glance};
     job.samplers = calloc((size_t)threads, sizeof *job.samplers);
     job.errors = calloc((size_t)count + 1, sizeof *job.errors);
     enum status st = job.samplers && job.errors ? ST_OK : err_nomem(err, "places", (size_t)count * sizeof *job.errors);
@@ -185,7 +190,7 @@ static enum status compare(struct sampler *s, const struct shot_end *end, const 
         of[taken++] = c;
     }
     s->test.limits.side = H_REFERENCE_SIDE;
-    if (!st && taken) st = sample_cells(s, end, again, taken, "places in full pictures", err);
+    if (!st && taken) st = sample_cells(s, end, again, taken, false, "places in full pictures", err);
     s->test.limits.side = side;
     for (int i = 0; !st && i < taken; i++) {
         const double apart[2] = {fabs(again[i].low - of[i]->low) / s->v->step,
@@ -207,6 +212,27 @@ static bool same_rule(const struct shot_end *a, const struct shot_end *b)
            !memcmp(a->corner, b->corner, sizeof a->corner);
 }
 
+/* Places the cells. Where few of them are valid, the same number of them closer around the origin tells more: the grid is
+ * halved until a quarter of the cells is valid, and is as large as has most of them if none is. */
+static enum status draw_grid_together(struct sampler *s, const struct shot_end *end, struct validity_region *r,
+                                      double extent, struct err *err)
+{
+    const int cells = r->columns * r->rows;
+    double best = 1;
+    int most = -1;
+    enum status st = ST_OK;
+
+    for (int i = 0; !st && i < GRID_HALVINGS && cells > 1 && 4 * most < cells; i++) {
+        place_cells(r, &s->v->shot, false, extent, pow(0.5, i));
+        st = sample_cells(s, end, r->cells, cells, true, "places to look at", err);
+        const int valid = validity_region_count(r);
+        if (valid > most) most = valid, best = pow(0.5, i);
+    }
+    place_cells(r, &s->v->shot, cells == 1, extent, best);
+    for (int i = 0; i < cells; i++) r->cells[i].valid = false;
+    return st;
+}
+
 static enum status sample_end(struct sampler *s, int at, const struct validity_params *params,
                               struct sampling_notes *notes, struct err *err)
 {
@@ -216,13 +242,14 @@ static enum status sample_end(struct sampler *s, int at, const struct validity_p
     const int side = v->move.on_axis ? 1 : params->grid;
 
     if (validity_region_init(r, side, side, err)) return err->status;
-    place_cells(r, &v->shot, v->move.on_axis, params->extent);
     if (at && same_rule(end, &v->move.end[0])) {
         memcpy(r->cells, v->region[0].cells, (size_t)(side * side) * sizeof *r->cells);
         return ST_OK;
     }
-    enum status st =
-        sample_cells(s, end, r->cells, side * side, at ? "places for the end" : "places for the start", err);
+    enum status st = draw_grid_together(s, end, r, params->extent, err);
+    if (!st)
+        st =
+            sample_cells(s, end, r->cells, side * side, false, at ? "places for the end" : "places for the start", err);
     return st ? st : compare(s, end, r, params->check_cells, &notes->error, err);
 }
 

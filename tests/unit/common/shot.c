@@ -133,9 +133,9 @@ static void dollies_in_and_out_are_each_other_backwards(void **state)
 {
     (void)state;
     const struct shot s = a_shot();
-    struct subject face = upright_subject(2, 1, 9, 0.5, 1);
+    struct subject face = upright_subject(2, 1, 9, 0.25, 0.5);
     const struct subject_list list = subjects_of(&face, 1);
-    const struct vec3 lower = {2, 1.5, 9}; /* the middle of the lower half */
+    const struct vec3 lower = {2, 1.25, 9}; /* the middle of the lower half */
     const struct vec3 at[2] = {{0, 2, 3}, {2, 2, 5}}, back[2] = {at[1], at[0]};
     const struct shot_move in = make(&s, MOVE_DOLLY_IN, &list), out = make(&s, MOVE_DOLLY_OUT, &list);
     assert_false(in.on_axis || out.on_axis);

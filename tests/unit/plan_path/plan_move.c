@@ -334,6 +334,9 @@ static void all_pairs_find_what_brute_force_finds(void **state)
                     if (!film.v.region[0].cells[a].valid || !film.v.region[1].cells[b].valid) continue;
                     const struct vec3 at[2] = {ends_candidate(&film.v, 0, a), ends_candidate(&film.v, 1, b)};
                     if (angle_of(&film.v, at) > params.max_angle) continue;
+                    const double forth =
+                        shot_coordinates(&film.v.shot, at[1]).z - shot_coordinates(&film.v.shot, at[0]).z;
+                    if (moves[m] == MOVE_DOLLY_IN && forth < 0.5 * vec3_length(vec3_sub(at[1], at[0]))) continue;
                     best = fmax(best, parallax_of(&f, &film.v, at, params.parallax_side));
                     counted++;
                 }
@@ -690,8 +693,8 @@ static void refuses_what_makes_no_film(void **state)
     nine_views(&f);
     sample(&film, &f, only(MOVE_DOLLY), &sampling);
     const struct subject_list one = {two_subjects, 1};
-    assert_int_equal(plan_move(&film.path, &film.layers, &film.notes, &f.scene, &film.v, &one, &params, &err), ST_DATA);
-    assert_err(err, ST_DATA, "dolly needs 2 subjects, and the list has 1");
+    assert_int_equal(plan_move(&film.path, &film.layers, &film.notes, &f.scene, &film.v, &one, &params, &err), ST_USAGE);
+    assert_err(err, ST_USAGE, "dolly needs 2 subjects, and the scene has 1");
     params.seconds = 0;
     err = (struct err)ERR_INIT;
     assert_int_equal(plan_move(&film.path, &film.layers, &film.notes, &f.scene, &film.v, &subjects, &params, &err),
