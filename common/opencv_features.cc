@@ -13,10 +13,11 @@ extern "C" {
 #include "common/opencv_features.h"
 }
 
-namespace {
+namespace
+{
 
 const int MAX_FEATURES = 8000;
-const float RATIO = 0.8f; /* of the best match's distance to the next one's (Lowe 2004) */
+const float RATIO = 0.8f;      /* of the best match's distance to the next one's (Lowe 2004) */
 const double CONTRAST = 0.015; /* of a feature, less than usual: dim surfaces count, too */
 const int LEAST_MATCHES = 16;
 
@@ -114,8 +115,8 @@ extern "C" enum status two_view_find(struct two_view *out, const unsigned char *
         return err_nomem(err, "features of two pictures", size_t(width) * size_t(height));
     } catch (const std::exception &e) {
         two_view_release(out);
-        return err_set(err, ST_INTERNAL, "OpenCV could not match two pictures of %d x %d pixels: %.300s.", width, height,
-                       e.what());
+        return err_set(err, ST_INTERNAL, "OpenCV could not match two pictures of %d x %d pixels: %.300s.", width,
+                       height, e.what());
     }
 }
 

@@ -218,7 +218,11 @@ static void dollies_end_close_at_the_subject_or_begin_there(void **state)
         assert_true(off_axis(close, subject_lower_center(&two_subjects[0])) < 1e-6);
         assert_float_equal(wide->fx, film.v.shot.lens.fx, 1e-9);
         assert_float_equal(close->fx, 1.5 * film.v.shot.lens.fx, 1e-9);
-        if (!(close->center.z > wide->center.z)) fail_msg("%d: close at %g %g %g, wide at %g %g %g; cells %d %d; chosen %d still %d", out, close->center.x, close->center.y, close->center.z, wide->center.x, wide->center.y, wide->center.z, validity_region_count(&film.v.region[0]), validity_region_count(&film.v.region[1]), film.notes.chosen.chosen, film.notes.stands_still);
+        if (!(close->center.z > wide->center.z))
+            fail_msg("%d: close at %g %g %g, wide at %g %g %g; cells %d %d; chosen %d still %d", out, close->center.x,
+                     close->center.y, close->center.z, wide->center.x, wide->center.y, wide->center.z,
+                     validity_region_count(&film.v.region[0]), validity_region_count(&film.v.region[1]),
+                     film.notes.chosen.chosen, film.notes.stands_still);
         assert_true(film.notes.place_error < 1e-6);
         unmake(&film, &f);
     }
@@ -340,7 +344,9 @@ static void all_pairs_find_what_brute_force_finds(void **state)
                     best = fmax(best, parallax_of(&f, &film.v, at, params.parallax_side));
                     counted++;
                 }
-            if (!(counted > (narrow ? 3 : 20))) fail_msg("move %d narrow %d: %d; cells %d %d", (int)m, narrow, counted, validity_region_count(&film.v.region[0]), validity_region_count(&film.v.region[1]));
+            if (!(counted > (narrow ? 3 : 20)))
+                fail_msg("move %d narrow %d: %d; cells %d %d", (int)m, narrow, counted,
+                         validity_region_count(&film.v.region[0]), validity_region_count(&film.v.region[1]));
             plan(&film, &f, &params);
             const struct ends_notes *n = &film.notes.chosen;
             assert_int_equal(n->pairs, counted);
@@ -693,7 +699,8 @@ static void refuses_what_makes_no_film(void **state)
     nine_views(&f);
     sample(&film, &f, only(MOVE_DOLLY), &sampling);
     const struct subject_list one = {two_subjects, 1};
-    assert_int_equal(plan_move(&film.path, &film.layers, &film.notes, &f.scene, &film.v, &one, &params, &err), ST_USAGE);
+    assert_int_equal(plan_move(&film.path, &film.layers, &film.notes, &f.scene, &film.v, &one, &params, &err),
+                     ST_USAGE);
     assert_err(err, ST_USAGE, "dolly needs 2 subjects, and the scene has 1");
     params.seconds = 0;
     err = (struct err)ERR_INIT;
