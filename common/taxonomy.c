@@ -26,8 +26,14 @@ struct scene_subjects scene_subjects_of(const struct subject_list *list)
 {
     struct scene_subjects s = {list->count, 1};
     if (list->count < 2) return s;
-    const double a = list->subjects[0].depth, b = list->subjects[1].depth;
-    s.depth_ratio = a > b ? a / b : b / a;
+    /* both as the first one's view sees them: the second may have been drawn in another photo */
+    const struct subject *first = &list->subjects[0];
+    const struct vec3 right = vec3_sub(first->corner[1], first->corner[0]);
+    const struct vec3 down = vec3_sub(first->corner[3], first->corner[0]);
+    const struct vec3 forward = vec3_normalize(vec3_cross(right, down));
+    const struct vec3 between = vec3_sub(subject_center(&list->subjects[1]), subject_center(first));
+    const double a = first->depth, b = a + vec3_dot(forward, between);
+    if (b > 0) s.depth_ratio = fmax(a, b) / fmin(a, b);
     return s;
 }
 

@@ -433,6 +433,21 @@ static enum status climb(struct chooser *c, struct move_ends *best, struct err *
     return st;
 }
 
+enum status ends_measure(struct move_ends *e, const struct layer_scene *scene, const struct validity *v,
+                         const struct plan_params *params, struct err *err)
+{
+    struct ends_notes notes = {0};
+    struct chooser c = {.scene = scene, .v = v, .params = params, .notes = &notes};
+
+    c.test = (struct viewpoint_test){.scene = scene, .points = &c.points, .shot = &v->shot, .limits = v->limits};
+    enum status st = scene_points_collect(&c.points, scene, err);
+    if (!st) st = measure_way(&c, e, err);
+    if (!st) st = measure_parallax(&c, e, err);
+    scene_points_release(&c.points);
+    viewpoint_test_release(&c.test);
+    return st;
+}
+
 enum status ends_choose(struct move_ends *best, struct ends_notes *notes, const struct layer_scene *scene,
                         const struct validity *v, const struct plan_params *params, struct err *err)
 {

@@ -46,6 +46,10 @@ double ends_part(int i, int count, const char *ease);
 enum status ends_choose(struct move_ends *best, struct ends_notes *notes, const struct layer_scene *scene,
                         const struct validity *v, const struct plan_params *params, struct err *err);
 
+/* Tells of the ends in e->at all that ends_choose tells. */
+enum status ends_measure(struct move_ends *e, const struct layer_scene *scene, const struct validity *v,
+                         const struct plan_params *params, struct err *err);
+
 /* The candidate of a cell for one end of the move. */
 struct vec3 ends_candidate(const struct validity *v, int end, int cell);
 

@@ -86,11 +86,12 @@ enum status focus_frames(struct camera_path *path, double *widest, const double 
             return err->status;
         *widest = fmin(*widest, aperture);
     }
-    for (int i = 0; i <= last && *widest > 0; i++) {
+    for (int i = 0; i <= last; i++) {
         struct path_frame *f = &path->frames[i];
+        f->aperture = f->focus = 0;
         const double t = parts[i], focus = focus_at(&f->camera, v, subjects, t);
         const double open = effect == FOCUS_NARROW ? t : effect == FOCUS_WIDEN ? 1 - t : 1;
-        if (!(focus > 0) || !(open > 0)) continue;
+        if (!(focus > 0) || !(open * *widest > 0)) continue;
         f->aperture = *widest * open;
         f->focus = focus;
     }

@@ -7,7 +7,9 @@
 const struct param plan_param_table[] = {PLAN_PARAMS(PARAM_ROW) PARAM_END};
 #undef PARAM_STRUCT
 
-#define STILL 1e-6 /* median depths: a move shorter than this is none */
+#define ROOM_STEPS 7 /* by which ends are drawn together to let the aperture open */
+#define ROOM_STEP  0.1
+#define STILL      1e-6 /* median depths: a move shorter than this is none */
 
 enum status plan_params_check(const void *values, struct err *err)
 {
@@ -42,6 +44,48 @@ static void fill_frames(struct camera_path *path, double *parts, const struct va
         path->frames[i].camera = shot_camera(&v->shot, &v->move, e->at, t);
         path->frames[i].camera.name = name;
     }
+}
+
+/* The widest circle of confusion of what is infinitely far, px. */
+static double widest_blur(const struct camera_path *path)
+{
+    double most = 0;
+    for (int i = 0; i < path->frame_count; i++) {
+        const struct path_frame *f = &path->frames[i];
+        if (f->aperture > 0) most = fmax(most, f->aperture * f->camera.fx / f->focus);
+    }
+    return most;
+}
+
+/* Sets apertures and focus. Ends that were chosen at the very border of what is valid leave an aperture no room: they are drawn
+ * together towards the origin, step by step, until it opens to half of max_blur; where it never does, they stay where it
+ * opens most. */
+static enum status open_aperture(struct camera_path *path, double *parts, struct move_notes *n,
+                                 struct viewpoint_test *test, const struct validity *v,
+                                 const struct subject_list *subjects, const struct plan_params *params, struct err *err)
+{
+    const double enough = 0.5 * params->max_blur * fmax(v->shot.lens.width, v->shot.lens.height);
+    const struct move_ends chosen = n->ends;
+    struct move_ends best = chosen;
+    double most = -1;
+
+    for (int i = 0; i < ROOM_STEPS && most < enough; i++) {
+        struct move_ends e = chosen;
+        for (int k = 0; k < 2; k++) {
+            const struct vec3 way = vec3_sub(chosen.at[k], v->shot.origin);
+            e.at[k] = vec3_add(v->shot.origin, vec3_scale(way, 1 - ROOM_STEP * i));
+        }
+        if (i && ends_measure(&e, test->scene, v, params, err)) return err->status;
+        if (i && !e.valid) continue;
+        fill_frames(path, parts, v, &e, params->ease);
+        if (focus_frames(path, &n->aperture, parts, test, v, subjects, params, err)) return err->status;
+        if (widest_blur(path) > most) most = widest_blur(path), best = e;
+    }
+    n->ends = best;
+    fill_frames(path, parts, v, &best, params->ease);
+    if (focus_frames(path, &n->aperture, parts, test, v, subjects, params, err)) return err->status;
+    n->blur = widest_blur(path);
+    return ST_OK;
 }
 
 /* Of the film's frames, not of the rules they were made by: how far subjects are off the promised size and place. */
@@ -97,6 +141,7 @@ static enum status add_scores(struct camera_path *path, const struct move_notes 
         {"outside_limit", "", v->limits.max_outside, true},
         {"zoom", "", v->zoom, true},
         {"aperture", "scene units", n->aperture, v->effect.focus != FOCUS_ALL},
+        {"blur", "px", n->blur, v->effect.focus != FOCUS_ALL},
         {"subject_size_error", "", n->size_error, n->size_error > 0},
         {"subject_place_error", "px", n->place_error, n->place_error > 0},
     };
@@ -133,7 +178,7 @@ enum status plan_move(struct camera_path *path, struct effects *layers, struct m
     if (!st) fill_frames(path, parts, v, &notes->ends, params->ease);
     if (!st && v->effect.focus) {
         st = scene_points_collect(&points, scene, err);
-        if (!st) st = focus_frames(path, &notes->aperture, parts, &test, v, subjects, params, err);
+        if (!st) st = open_aperture(path, parts, notes, &test, v, subjects, params, err);
     }
     if (!st) st = tone_layers(layers, v, subjects, path, params, err);
     if (!st) {

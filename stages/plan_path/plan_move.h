@@ -10,6 +10,7 @@ struct move_notes {
     struct move_ends ends;
     struct ends_notes chosen;
     double aperture; /* the widest; 0: none was asked for, or it cannot open */
+    double blur;     /* that it makes of what is infinitely far, px */
     bool stands_still;
     double size_error;  /* of the subject, against what was promised, relative; 0 where nothing is */
     double place_error; /* of the subject that an end points at, px */

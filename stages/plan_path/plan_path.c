@@ -77,6 +77,9 @@ static void tell(const struct camera_path *path, const struct move_notes *n, con
         log_warn("a part of the way is not valid: H is up to %.3g, the limit is %.3g", e->worst_h, v->limits.max_h);
     if (v->effect.focus && !(n->aperture > 0))
         log_warn("the aperture cannot open without showing holes: all frames are pinhole");
+    else if (v->effect.focus)
+        log_note("the aperture opens to %.3g scene units: what is far is blurred by %.1f px%s", n->aperture, n->blur,
+                 n->blur < 1 ? ", which can hardly be seen" : "");
 }
 
 /* The views and, with records, their upright directions; the caller frees *ups. */
