@@ -37,6 +37,17 @@ static void print_inputs(const struct provenance *prov, const char *prefix, FILE
             fprintf(to, "%s%s %s\n", prefix, quoted, prov->inputs[i].hash);
 }
 
+enum status provenance_add_in(struct provenance *prov, const char *as, const char *folder, const char *file,
+                              const char *suffix, char path[PROVENANCE_PATH], struct err *err)
+{
+    char name[PROVENANCE_PATH], own[PROVENANCE_PATH];
+    if (!path) path = own;
+    if (snprintf(path, PROVENANCE_PATH, "%s/%s%s", folder, file, suffix) >= PROVENANCE_PATH ||
+        snprintf(name, sizeof name, "%s/%s%s", as, file, suffix) >= (int)sizeof name)
+        return err_set(err, ST_IO, "the path %s/%s%s is too long.", folder, file, suffix);
+    return provenance_add_file(prov, name, path, err);
+}
+
 void provenance_print(const struct provenance *prov, FILE *to)
 {
     fprintf(to, "# remodel %s %s\n", prov->stage, prov->version);

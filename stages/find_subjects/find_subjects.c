@@ -31,23 +31,13 @@ struct inputs {
     struct provenance *prov;
 };
 
-static enum status add_input(struct inputs *in, const char *as, const char *folder, const char *file,
-                             const char *suffix, char path[PATH_SIZE], struct err *err)
-{
-    char name[PATH_SIZE];
-    if (snprintf(path, PATH_SIZE, "%s/%s%s", folder, file, suffix) >= PATH_SIZE ||
-        snprintf(name, PATH_SIZE, "%s/%s%s", as, file, suffix) >= PATH_SIZE)
-        return err_set(err, ST_IO, "the path %s/%s%s is too long.", folder, file, suffix);
-    return provenance_add_file(in->prov, name, path, err);
-}
-
 static enum status read_depth(void *ctx, int view_idx, struct layered_depth *d, struct err *err)
 {
     struct inputs *in = ctx;
     const struct view *v = &in->set.views[view_idx];
     char path[PATH_SIZE];
-    if (add_input(in, "depth", in->depth, v->name, ".txt", path, err) ||
-        add_input(in, "depth", in->depth, v->name, ".exr", path, err) || layered_depth_read(d, path, err))
+    if (provenance_add_in(in->prov, "depth", in->depth, v->name, ".txt", path, err) ||
+        provenance_add_in(in->prov, "depth", in->depth, v->name, ".exr", path, err) || layered_depth_read(d, path, err))
         return err->status;
     if (d->width == v->width && d->height == v->height) return ST_OK;
     err_set(err, ST_DATA, "%s is %d x %d pixels, but its camera says %d x %d; make the depth maps again.", path,
@@ -62,7 +52,8 @@ static enum status read_picture(void *ctx, int view_idx, unsigned char **grey, s
     const struct view *v = &in->set.views[view_idx];
     struct image im = {0};
     char path[PATH_SIZE];
-    if (add_input(in, "views", in->views, v->name, ".exr", path, err) || view_image_read(&im, in->views, v, err))
+    if (provenance_add_in(in->prov, "views", in->views, v->name, ".exr", path, err) ||
+        view_image_read(&im, in->views, v, err))
         return err->status;
     const size_t pixels = (size_t)im.width * (size_t)im.height;
     *grey = malloc(pixels);
@@ -121,7 +112,7 @@ static enum status seek_faces(struct subject_list *list, struct inputs *in, cons
     char path[PATH_SIZE];
     enum status st = face_detector_open(&in->detector, in->cascades, err);
     for (int i = 0; !st && face_cascades[i]; i++)
-        st = add_input(in, "opencv", in->cascades, face_cascades[i], "", path, err);
+        st = provenance_add_in(in->prov, "opencv", in->cascades, face_cascades[i], "", path, err);
     if (!st) st = find_faces(list, &report, &in->set, in->ups, &source, params, err);
     int far_off = 0; /* what chance makes of windows and leaves needs no line each */
     for (int i = 0; !st && i < report.count; i++) {
@@ -173,7 +164,7 @@ static enum status place_regions(struct subject_list *list, struct inputs *in, s
     char path[PATH_SIZE];
     enum status st = region_list_read(&regions, in->subjects, err);
     if (!st) st = provenance_add_file(in->prov, "subjects.txt", in->subjects, err);
-    if (!st) st = add_input(in, "views", in->views, "lenses.txt", "", path, err);
+    if (!st) st = provenance_add_in(in->prov, "views", in->views, "lenses.txt", "", path, err);
     if (!st) st = lens_list_read(&lenses, path, err);
     if (!st && !regions.count) log_note("%s names no subject: there is none", in->subjects);
     for (int i = 0; !st && i < regions.count; i++) st = place_region(list, in, &regions.regions[i], &lenses, err);
@@ -184,11 +175,9 @@ static enum status place_regions(struct subject_list *list, struct inputs *in, s
 
 static enum status find(struct inputs *in, const char *out, const struct find_params *params, struct err *err)
 {
-    static const char *const camera_files[] = {"cameras.txt", "images.txt", "points3D.txt"};
     struct subject_list list = {0};
-    char path[PATH_SIZE];
     enum status st = camera_set_read(&in->set, in->views, err);
-    for (int i = 0; !st && i < 3; i++) st = add_input(in, "views", in->views, camera_files[i], "", path, err);
+    if (!st) st = camera_set_add_inputs(in->prov, in->views, err);
     if (!st && in->records) {
         in->ups = calloc((size_t)in->set.view_count + 1, sizeof *in->ups);
         st = in->ups ? upright_read(in->ups, &in->set, in->views, in->records, in->prov, err)

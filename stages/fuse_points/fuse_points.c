@@ -20,22 +20,12 @@ struct depth_folder {
     struct provenance *prov;
 };
 
-static enum status add_input(struct provenance *prov, const char *as, const char *folder, const char *file,
-                             const char *suffix, char path[PATH_SIZE], struct err *err)
-{
-    char name[PATH_SIZE];
-    if (snprintf(path, PATH_SIZE, "%s/%s%s", folder, file, suffix) >= PATH_SIZE ||
-        snprintf(name, PATH_SIZE, "%s/%s%s", as, file, suffix) >= PATH_SIZE)
-        return err_set(err, ST_IO, "the path %s/%s%s is too long.", folder, file, suffix);
-    return provenance_add_file(prov, name, path, err);
-}
-
 /* path: of the EXR; it and its list become inputs when they are first read. */
 static enum status find_depth(const struct depth_folder *f, int view_idx, char path[PATH_SIZE], struct err *err)
 {
     const char *name = f->set->views[view_idx].name;
-    if (add_input(f->prov, "depth", f->folder, name, ".txt", path, err) ||
-        add_input(f->prov, "depth", f->folder, name, ".exr", path, err))
+    if (provenance_add_in(f->prov, "depth", f->folder, name, ".txt", path, err) ||
+        provenance_add_in(f->prov, "depth", f->folder, name, ".exr", path, err))
         return err->status;
     return ST_OK;
 }
@@ -64,14 +54,12 @@ static void tell(const struct point_cloud *cloud, const struct fuse_stats *stats
 static enum status fuse(const char *views, const char *depth, const char *out, int mib,
                         const struct fuse_params *params, struct provenance *prov, struct err *err)
 {
-    static const char *const camera_files[] = {"cameras.txt", "images.txt", "points3D.txt"};
     struct camera_set set = {0};
     struct point_cloud cloud = {0};
     struct fuse_stats stats;
-    char path[PATH_SIZE];
     if (mib < 0) return err_set(err, ST_USAGE, "--memory %d: wanted MiB, 0 or more.", mib);
     enum status st = camera_set_read(&set, views, err);
-    for (int i = 0; !st && i < 3; i++) st = add_input(prov, "views", views, camera_files[i], "", path, err);
+    if (!st) st = camera_set_add_inputs(prov, views, err);
     if (!st) {
         struct depth_folder folder = {depth, &set, prov};
         const struct depth_source source = {read_ids, read_interior, &folder};

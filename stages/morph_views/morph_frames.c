@@ -1,46 +1,18 @@
 /* morph_frames.c - see morph_frames.h. */
 #include "stages/morph_views/morph_frames.h"
 
-#include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "common/camera_path.h"
 #include "common/exr.h"
+#include "common/frame_list.h"
 #include "common/parallel.h"
 #include "common/progress.h"
 #include "common/view_image.h"
 #include "stages/morph_views/morph.h"
 #include "stages/morph_views/prepare.h"
-
-static int frame_number(const char **text, int most)
-{
-    char *end = NULL;
-    long n = isdigit((unsigned char)**text) ? strtol(*text, &end, 10) : 0;
-    if (n < 1 || n > most) return 0;
-    *text = end;
-    return (int)n;
-}
-
-enum status morph_frames_select(bool *wanted, int frame_count, const char *list, struct err *err)
-{
-    const char *at = list;
-    memset(wanted, 0, (size_t)frame_count * sizeof *wanted);
-    do {
-        int first = frame_number(&at, frame_count), last = first;
-        if (first && *at == ':') {
-            at++;
-            last = frame_number(&at, frame_count);
-        }
-        if (!first || last < first || (*at && *at != ','))
-            return err_set(err, ST_USAGE,
-                           "--frames %s: wanted frame numbers and ranges from 1 to %d, like 1:30 or 1:30,45.", list,
-                           frame_count);
-        for (int i = first; i <= last; i++) wanted[i - 1] = true;
-    } while (*at++);
-    return ST_OK;
-}
 
 struct job {
     const struct morph *morph;
@@ -131,7 +103,7 @@ enum status morph_frames(const char *folder, const char *list, const char *out, 
         job.errors = calloc(n, sizeof *job.errors);
         if (!wanted || !frames || !job.errors) st = err_nomem(err, "a list of frames", n * sizeof *job.errors);
     }
-    if (!st) st = morph_frames_select(wanted, path.frame_count, list, err);
+    if (!st) st = frame_list_read(wanted, path.frame_count, list, err);
     if (!st) st = morph_read(&morph, folder, err);
     if (!st && (morph.pictures[0].width != path.frames[0].camera.width ||
                 morph.pictures[0].height != path.frames[0].camera.height))

@@ -34,27 +34,15 @@ struct job { /* what the command line says */
     struct pan_params params;
 };
 
-static enum status add_input(struct provenance *prov, const char *as, const char *folder, const char *file,
-                             const char *suffix, char path[PATH_SIZE], struct err *err)
-{
-    char name[512];
-    if (snprintf(path, PATH_SIZE, "%s/%s%s", folder, file, suffix) >= PATH_SIZE ||
-        snprintf(name, sizeof name, "%s/%s%s", as, file, suffix) >= (int)sizeof name)
-        return err_set(err, ST_IO, "the path %s/%s%s is too long.", folder, file, suffix);
-    return provenance_add_file(prov, name, path, err);
-}
-
 static enum status add_inputs(struct provenance *prov, const struct job *job, const char *effect, const char *view,
                               struct err *err)
 {
-    static const char *const view_files[] = {"cameras.txt", "images.txt", "points3D.txt"};
     static const char *const path_files[] = {"path.txt", "path/cameras.txt", "path/images.txt"};
-    char prefix[128], path[PATH_SIZE];
-    enum status st = ST_OK;
+    char prefix[128];
     snprintf(prefix, sizeof prefix, "parallax/%s", effect);
-    for (int i = 0; !st && i < 3; i++) st = add_input(prov, "views", job->views, view_files[i], "", path, err);
-    if (!st) st = add_input(prov, "views", job->views, view, ".exr", path, err);
-    for (int i = 0; !st && i < 3; i++) st = add_input(prov, prefix, job->path, path_files[i], "", path, err);
+    enum status st = camera_set_add_inputs(prov, job->views, err);
+    if (!st) st = provenance_add_in(prov, "views", job->views, view, ".exr", NULL, err);
+    for (int i = 0; !st && i < 3; i++) st = provenance_add_in(prov, prefix, job->path, path_files[i], "", NULL, err);
     return st;
 }
 
@@ -75,8 +63,9 @@ static enum status read_depth(struct layered_depth *depth, const struct job *job
                               struct provenance *prov, struct err *err)
 {
     char path[PATH_SIZE];
-    if (add_input(prov, "depth", job->depth, view, ".txt", path, err) ||
-        add_input(prov, "depth", job->depth, view, ".exr", path, err) || layered_depth_read_interior(depth, path, err))
+    if (provenance_add_in(prov, "depth", job->depth, view, ".txt", path, err) ||
+        provenance_add_in(prov, "depth", job->depth, view, ".exr", path, err) ||
+        layered_depth_read_interior(depth, path, err))
         return err->status;
     return ST_OK;
 }

@@ -15,27 +15,15 @@
 #include "common/frame_list.h"
 #include "stages/render_views/frames.h"
 
-static enum status add_input(struct provenance *prov, const char *prefix, const char *folder, const char *file,
-                             struct err *err)
-{
-    char path[4096], name[512];
-    snprintf(name, sizeof name, "%s/%s", prefix, file);
-    if (snprintf(path, sizeof path, "%s/%s", folder, file) >= (int)sizeof path)
-        return err_set(err, ST_IO, "the path %s/%s is too long.", folder, file);
-    return provenance_add_file(prov, name, path, err);
-}
-
 static enum status add_inputs(struct provenance *prov, const char *views, const char *path_folder, const char *effect,
                               struct err *err)
 {
-    static const char *const view_files[] = {"cameras.txt", "images.txt", "points3D.txt"};
     static const char *const path_files[] = {"path.txt", "path/cameras.txt", "path/images.txt"};
     char prefix[128];
-    enum status st = ST_OK;
+    enum status st = camera_set_add_inputs(prov, views, err);
 
     snprintf(prefix, sizeof prefix, "parallax/%s", effect);
-    for (int i = 0; !st && i < 3; i++) st = add_input(prov, "views", views, view_files[i], err);
-    for (int i = 0; !st && i < 3; i++) st = add_input(prov, prefix, path_folder, path_files[i], err);
+    for (int i = 0; !st && i < 3; i++) st = provenance_add_in(prov, prefix, path_folder, path_files[i], "", NULL, err);
     return st;
 }
 
@@ -87,7 +75,7 @@ static enum status render_path(const struct job *job, struct provenance *prov, s
 
 static enum status render_cameras(const struct job *job, struct provenance *prov, struct err *err)
 {
-    static const char *const files[] = {"cameras.txt", "images.txt", "points3D.txt"};
+    static const char *const files[] = {"cameras.txt", "images.txt"};
     static const struct effects none = {0};
     struct camera_set set = {0}, cameras = {0};
     struct layer_scene scene = {0};
@@ -102,8 +90,8 @@ static enum status render_cameras(const struct job *job, struct provenance *prov
         st = wanted ? cameras_select(wanted, &cameras, job->names.items, job->names.count, err)
                     : err_nomem(err, "cameras", (size_t)cameras.view_count);
     }
-    for (int i = 0; !st && i < 3; i++) st = add_input(prov, "views", job->views, files[i], err);
-    for (int i = 0; !st && i < 2; i++) st = add_input(prov, "cameras", job->cameras, files[i], err);
+    if (!st) st = camera_set_add_inputs(prov, job->views, err);
+    for (int i = 0; !st && i < 2; i++) st = provenance_add_in(prov, "cameras", job->cameras, files[i], "", NULL, err);
     if (!st) st = layer_scene_read(&scene, &set, job->depth, prov, err);
     if (!st) {
         renderer_init(&renderer, &scene, NULL, &none, &job->params);

@@ -173,18 +173,7 @@ static void identical_and_textureless_photos_make_a_film(void **state)
 static void frames_that_are_none_and_broken_flows_are_refused(void **state)
 {
     struct err err = ERR_INIT;
-    bool wanted[5];
-    static const char *const wrong[] = {"", "0", "6", "3:2", "1,", "1;2", "x", "1:", " 1"};
     (void)state;
-    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
-        err = (struct err)ERR_INIT;
-        assert_int_equal(morph_frames_select(wanted, 5, wrong[i], &err), ST_USAGE);
-        assert_err(err, ST_USAGE, "wanted frame numbers");
-    }
-    err = (struct err)ERR_INIT;
-    assert_ok(morph_frames_select(wanted, 5, "1,3:4", &err), err);
-    assert_true(wanted[0] && !wanted[1] && wanted[2] && wanted[3] && !wanted[4]);
-
     struct exr_image im = {0};
     assert_ok(exr_read(&im, scratch_path("m/first.exr"), NULL, 0, &err), err);
     exr_find(&im, "flow.x")->f[7] = 1e5f;
