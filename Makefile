@@ -73,6 +73,9 @@ ifneq ($(SCENE),)
     ifeq ($(shell [[ '$(subst ','\'',$(SPLIT))' =~ ^[1-9][0-9]?x[1-9][0-9]?$$ ]] && echo good),)
       $(error SPLIT=$(SPLIT): wanted COLUMNSxROWS, such as 3x2: how many pictures a photo holds)
     endif
+    ifeq ($(SPLIT),1x1)
+      $(error SPLIT=1x1: one picture a photo is no split; leave SPLIT out)
+    endif
   endif
   ifeq ($(shell [[ '$(subst ','\'',$(EFFECT))' =~ ^[A-Za-z0-9_+\ -]+$$ ]] && echo good),)
     $(error EFFECT=$(EFFECT): effects are named with letters, digits, _, - and +)
@@ -94,6 +97,9 @@ endif
 ifneq ($(MORPH),)
   ifeq ($(shell [[ '$(subst ','\'',$(MORPH))' =~ ^[A-Za-z0-9_][A-Za-z0-9_-]*\ +[A-Za-z0-9_][A-Za-z0-9_-]*$$ ]] && echo good),)
     $(error MORPH=$(MORPH): wanted the ids of two photos, as in MORPH="a b")
+  endif
+  ifeq ($(firstword $(MORPH)),$(lastword $(MORPH)))
+    $(error MORPH=$(MORPH): wanted two photos, found one twice)
   endif
 endif
 # what quality changes is in O; what all qualities share, the photos' records and SfM, is in S

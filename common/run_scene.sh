@@ -23,11 +23,16 @@ choose=
 case ${effects[*]} in auto | all) choose=${effects[0]} effects=() ;; esac
 graph() { "${make[@]}" PHASE=graph EFFECTS="${effects[*]}" CHOOSE="$choose" "$@"; }
 read_choice() { read -r -a effects <<<"$(sed -n 's/^EFFECTS := *//p' "$O/parallax/$choose-effects.mk")"; }
+film_needs_a_name() { echo "$folder/keyframes/$1.txt: $1 means something else; give the film of keys another name." >&2; exit 2; }
+for film in auto all morph; do [ ! -e "$folder/keyframes/$film.txt" ] || film_needs_a_name "$film"; done
 # a name of no effect is told before hours of work
 check_name()
 {
     local words
-    [ ! -e "$folder/keyframes/$1.txt" ] || return 0
+    if [ -e "$folder/keyframes/$1.txt" ]; then
+        ! "$bin/choose_effects" --effect "$1" >/dev/null 2>&1 || film_needs_a_name "$1"
+        return 0
+    fi
     words=$("$bin/choose_effects" --effect "$1" 2>&1) && return
     { grep -v ': used ' <<<"$words"; echo "${2:-Nor is there a film of keys $folder/keyframes/$1.txt.}"; } >&2
     exit 2

@@ -69,6 +69,11 @@ wrong_films_are_named_with_their_line()
     echo 'move dolly_inn' >>$film
     ! a_film views && grep -q 'did you mean dolly_in?' log && grep -q "$film chains it" log || { cat log; fail "a move of no name"; }
     cp good.txt $film
+    for name in dolly_in all; do
+        cp good.txt scenes/t/keyframes/$name.txt
+        ! effect=$name a_film path && grep -q "keyframes/$name.txt: $name means something else" log || { cat log; fail "a film called $name"; }
+        rm scenes/t/keyframes/$name.txt
+    done
     rc=0; "$B/bin/plan_path" --views out/t/views --effect establishing_dolly --out made 2>err.txt || rc=$?
     [ "$rc" = 2 ] && grep -q 'wanted --depth with --validity' err.txt || { cat err.txt; fail "no --depth: exit $rc"; }
     rc=0; "$B/bin/plan_path" --views out/t/views --keyframes $film --effect film --out made 2>err.txt || rc=$?
