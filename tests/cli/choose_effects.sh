@@ -8,7 +8,8 @@ subjects()
 {
     printf 'remodel-subjects 1\nsubjects %d\n' "$1"
     for ((i = 0; i < $1; i++)); do
-        printf 'subject v user 0 0 9 9 %s 0 0 0\ncorner 0 0 5\ncorner 1 0 5\ncorner 1 1 5\ncorner 0 1 5\n' "$(awk -v i="$i" -v r="$2" 'BEGIN { print i ? 5 * r : 5 }')"
+        local z; z=$(awk -v i="$i" -v r="$2" 'BEGIN { print i ? 5 * r : 5 }')
+        printf 'subject v user 0 0 9 9 %s 0 0 0\ncorner 0 0 %s\ncorner 1 0 %s\ncorner 1 1 %s\ncorner 0 1 %s\n' "$z" "$z" "$z" "$z" "$z"
     done
 }
 # choose CODE WORD ARGUMENT...
