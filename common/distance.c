@@ -48,7 +48,8 @@ static void row(float *d, int width, const struct envelope *e)
     }
     for (int x = 0, k = 0; x < width && count; x++) {
         while (k + 1 < count && e->from[k + 1] <= x) k++;
-        d[x] = e->height[k] + (float)((x - e->at[k]) * (x - e->at[k]));
+        const float across = (float)(x - e->at[k]);
+        d[x] = e->height[k] + across * across;
     }
 }
 

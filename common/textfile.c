@@ -175,8 +175,12 @@ enum status textfile_error(const struct textfile *t, struct err *err, const char
     va_start(args, wanted);
     vsnprintf(text, sizeof text, wanted, args);
     va_end(args);
+    if (!t->line) return err_set(err, ST_DATA, "%s: found an empty file, wanted %s.", t->path, text);
     return err_set(err, ST_DATA, "%s:%d: found %s, wanted %s.", t->path, t->line,
-                   found ? scan_show(shown, found) : "the end of the line", text);
+                   found       ? scan_show(shown, found)
+                   : t->cursor ? "the end of the line"
+                               : "the end of the file",
+                   text);
 }
 
 void textfile_release(struct textfile *t)

@@ -19,7 +19,8 @@
 #include "stages/find_subjects/region_depth.h"
 #include "stages/find_subjects/regions.h"
 
-enum { PATH_SIZE = 4096 };
+enum { PATH_SIZE = 4096, SMALLEST = 8 }; /* SMALLEST: px of a subject whose size says something */
+#define WHOLE 0.999                      /* part of a drawn rectangle from which on nothing was clipped */
 
 #define CASCADES "/usr/share/opencv4/haarcascades"
 
@@ -137,7 +138,8 @@ static enum status place_region(struct subject_list *list, struct inputs *in, co
     struct subject s = {0};
     struct layered_depth depth = {0};
     int view_idx = 0;
-    enum status st = region_in_view(&s, &view_idx, region, in->subjects, &in->set, lenses, err);
+    double part = 1;
+    enum status st = region_in_view(&s, &view_idx, &part, region, in->subjects, &in->set, lenses, err);
     if (!st) st = read_depth(in, view_idx, &depth, err);
     if (!st) st = region_depth(&s.depth, &depth, &s, err);
     if (!st && !(s.depth > 0))
@@ -150,6 +152,12 @@ static enum status place_region(struct subject_list *list, struct inputs *in, co
         subject_place(&s, &in->set.views[view_idx], in->ups ? &in->ups[view_idx] : NULL);
         log_note("subject %d: view %s, %.0f x %.0f px at %.0f %.0f, depth %.4g", list->count + 1, s.view, s.x1 - s.x0,
                  s.y1 - s.y0, s.x0, s.y0, s.depth);
+        if (part < WHOLE)
+            log_warn("%s:%d: only %.0f %% of the rectangle lie within view %s; the subject is that part of it",
+                     in->subjects, region->line, 100 * part, s.view);
+        if (fmin(s.x1 - s.x0, s.y1 - s.y0) < SMALLEST)
+            log_warn("%s:%d: so small a subject has an uncertain size; draw it %d px or more wide and high",
+                     in->subjects, region->line, SMALLEST);
         st = subject_list_add(list, &s, err);
     }
     layered_depth_release(&depth);

@@ -108,8 +108,9 @@ static const char *known_name(const void *ctx, int i)
     return i % 2 ? lenses->lenses[i / 2].view : lenses->lenses[i / 2].photo;
 }
 
-enum status region_in_view(struct subject *s, int *view_idx, const struct region *region, const char *path,
-                           const struct camera_set *set, const struct lens_list *lenses, struct err *err)
+enum status region_in_view(struct subject *s, int *view_idx, double *part, const struct region *region,
+                           const char *path, const struct camera_set *set, const struct lens_list *lenses,
+                           struct err *err)
 {
     const struct lens *known = NULL;
     int most = 0;
@@ -121,6 +122,10 @@ enum status region_in_view(struct subject *s, int *view_idx, const struct region
         struct subject found = {.source = SUBJECT_USER};
         const int shown = project_region(&found, region, lens, &set->views[at]);
         if (shown <= most) continue;
+        const double width = fmin(region->x1, lens->camera.width) - fmax(region->x0, 0);
+        const double height = fmin(region->y1, lens->camera.height) - fmax(region->y0, 0);
+        *part =
+            shown / (double)(GRID * GRID) * (width / (region->x1 - region->x0)) * (height / (region->y1 - region->y0));
         most = shown;
         *s = found;
         *view_idx = at;

@@ -26,8 +26,9 @@ void region_list_release(struct region_list *list);
 
 /* s: empty on entry; becomes the region's rectangle in the pixels of the view it is in (of a photo's several views, the one that holds most
  * of it), clipped to it, without depth and corners: the smallest upright rectangle that holds what the lens makes of the region.
- * *view_idx: of that view. ST_DATA: no such photo or view, or no part of the region lies in it; path: to name. */
-enum status region_in_view(struct subject *s, int *view_idx, const struct region *region, const char *path,
-                           const struct camera_set *set, const struct lens_list *lenses, struct err *err);
+ * *view_idx: of that view; *part: of the region, that it holds. ST_DATA: no such photo or view, or no part of the region lies in it; path: to name. */
+enum status region_in_view(struct subject *s, int *view_idx, double *part, const struct region *region,
+                           const char *path, const struct camera_set *set, const struct lens_list *lenses,
+                           struct err *err);
 
 #endif

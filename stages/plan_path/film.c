@@ -153,7 +153,8 @@ static enum status read_move(struct move *m, const struct film_shot *shot, const
     const struct view *first = &m->path.frames[0].camera;
     if (first->width == film->lens.width && first->height == film->lens.height) return ST_OK;
     return err_set(err, ST_DATA,
-                   "the move %s has frames of %d x %d, and the film of %d x %d: plan them with the same size.",
+                   "the move %s has frames of %d x %d, and the film of %d x %d; give both one size: width, height and "
+                   "max_side of [sample_validity] are the moves', those of [plan_path] this film's.",
                    shot->effect, first->width, first->height, film->lens.width, film->lens.height);
 }
 

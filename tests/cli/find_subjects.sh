@@ -36,6 +36,9 @@ drawn_rectangles_become_subjects_in_their_order()
     find_them 0 'subject 2: ' --subjects drawn.txt
     [ "$(grep -c "^subject $first user " made.txt)" = 2 ] && [ "$(grep -c '^corner ' made.txt)" = 8 ] || { cat made.txt; fail "the list"; }
     awk '$1 == "subject" && ++n == 2 { exit !($4 == 0 && $7 == 120 && $8 > 0) }' made.txt || { cat made.txt; fail "not clipped to the picture"; }
+    grep -qE 'drawn.txt:2: only [0-9]+ % of the rectangle' err.txt || { cat err.txt; fail "nothing tells of the clipping"; }
+    printf 'subject %s 80 40 82 44\n' "$first" >drawn.txt
+    find_them 0 'so small a subject' --subjects drawn.txt
     ! grep -qF "$PWD" made.txt || fail "the list names a folder of this machine"
     : >drawn.txt
     find_them 0 'names no subject' --subjects drawn.txt

@@ -231,7 +231,7 @@ static void a_broken_list_is_named_with_its_line(void **state)
     static const struct {
         const char *text, *words;
     } bad[] = {
-        {"", "d.txt:0: found the end of the line, wanted a line 'remodel-segments ...'"},
+        {"", "d.txt: found an empty file, wanted a line 'remodel-segments ...'"},
         {"remodel-lenses 1\n", "d.txt:1: found \"remodel-lenses\", wanted 'remodel-segments'"},
         {"remodel-segments 2\n", "d.txt:1: found \"2\", wanted version"},
         {"remodel-segments 1 x\n", "d.txt:1: found \"x\", wanted the end of the line"},

@@ -34,13 +34,15 @@ static struct view views[] = {{.name = "a", .width = 200, .height = 100, .fx = 1
                               {.name = "b@2", .width = 200, .height = 200, .fx = 100, .fy = 100, .cx = 100, .cy = 100}};
 static const struct camera_set set = {.views = views, .view_count = 3};
 
+static double part; /* of the region, in the view that the last one fell into */
+
 static enum status place(struct subject *s, int *at, const char *view, double x0, double y0, double x1, double y1,
                          struct err *err)
 {
     const struct region r = {(char *)view, 7, x0, y0, x1, y1};
     *s = (struct subject){0};
     *err = (struct err)ERR_INIT;
-    return region_in_view(s, at, &r, "subjects.txt", &set, &list, err);
+    return region_in_view(s, at, &part, &r, "subjects.txt", &set, &list, err);
 }
 
 static void a_pinhole_photo_keeps_its_rectangle(void **state)
@@ -51,9 +53,11 @@ static void a_pinhole_photo_keeps_its_rectangle(void **state)
     int at = -1;
     assert_int_equal(place(&s, &at, "a", 20, 30, 60.5, 80, &err), ST_OK);
     assert_true(at == 0 && !strcmp(s.view, "a") && s.source == SUBJECT_USER);
+    assert_true(part == 1);
     assert_true(fabs(s.x0 - 20) < 1e-9 && fabs(s.y0 - 30) < 1e-9 && fabs(s.x1 - 60.5) < 1e-9 && fabs(s.y1 - 80) < 1e-9);
     subject_release(&s);
     assert_int_equal(place(&s, &at, "a", -20, 30, 60, 180, &err), ST_OK); /* at the border it is clipped */
+    assert_true(fabs(part - 60.0 / 80 * 70 / 150) < 1e-9);
     assert_true(fabs(s.x0) < 1e-9 && fabs(s.y0 - 30) < 1e-9 && fabs(s.x1 - 60) < 1e-9 && fabs(s.y1 - 100) < 1e-9);
     subject_release(&s);
 }
