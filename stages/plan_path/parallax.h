@@ -11,7 +11,11 @@
 struct depth_picture {
     struct view camera; /* of its size */
     float *z;           /* owned; 0 unknown */
+    float *farthest;    /* of the four depths around each pixel's lower right corner; INFINITY if one is not known */
 };
+
+/* Of known depths: the camera is set, z has its size. */
+enum status depth_picture_take(struct depth_picture *d, const float *z, struct err *err);
 
 /* side: of the longer side. */
 enum status depth_picture_make(struct depth_picture *d, const struct layer_scene *scene, const struct view *camera,

@@ -1,10 +1,11 @@
 /* move_pairs.c - what the ends of a camera move are worth, and what finding them costs.
  *
- *   move_pairs --views DIR --depth DIR --validity FILE [--all]
+ *   move_pairs --views DIR --depth DIR --validity FILE [--all [--anew]]
  *
  * and the parameters of plan_path. Without --all: the ends that plan_path chooses (ends.h). With it, what these are compared
  * with: every cell's candidate is drawn once, and then the parallax of every pair of them that keeps max_angle is
- * measured; the pairs are then looked at from the best downwards until one is valid all along its way.
+ * measured; the pairs are then looked at from the best downwards until one is valid all along its way. With --anew too, both
+ * ends of every pair are drawn for that pair alone, as a search without memory would.
  *
  * Prints, of the ends found, "parallax P" (% of the frames, in pictures of JUDGE_SIDE px, in which nothing was chosen),
  * "chosen P" (the same in those in which it was), "angle A" (degrees), "worst_h H" (of the way), "valid 0|1", "pairs N"
@@ -24,7 +25,7 @@
 
 struct job {
     const char *views, *depth, *validity;
-    bool all;
+    bool all, anew;
     struct plan_params params;
 };
 
@@ -44,9 +45,10 @@ struct brute {
     const struct validity *v;
     const struct plan_params *params;
     int cells[2];
-    struct depth_picture *pictures[2]; /* a cell; z NULL where it is not valid */
-    struct pair *pairs;                /* start by start; parallax below 0: none */
-    struct err *errors;                /* a cell of the end that is drawn */
+    struct depth_picture *pictures[2]; /* a cell; z NULL where it is not valid, and where pairs are drawn anew */
+    bool anew;
+    struct pair *pairs; /* start by start; parallax below 0: none */
+    struct err *errors; /* a cell of the end that is drawn; of the start, where pairs are drawn anew */
     int end;
 };
 
@@ -75,6 +77,20 @@ static void draw_some(void *ctx, size_t begin, size_t end, int thread)
     }
 }
 
+/* Both ends drawn for this pair alone. */
+static enum status measure_anew(struct pair *p, const struct brute *b, const struct vec3 at[2], struct err *err)
+{
+    struct depth_picture pictures[2] = {{.z = NULL}};
+    enum status st = ST_OK;
+    for (int k = 0; !st && k < 2; k++) {
+        const struct view camera = shot_end_camera(&b->v->shot, &b->v->move.end[k], at[k]);
+        st = depth_picture_make(&pictures[k], b->scene, &camera, b->params->parallax_side, err);
+    }
+    if (!st) p->parallax = parallax_between(&pictures[0], &pictures[1], parallax_tolerance(b->scene));
+    for (int k = 0; k < 2; k++) depth_picture_release(&pictures[k]);
+    return st;
+}
+
 static void measure_some(void *ctx, size_t begin, size_t end, int thread)
 {
     const struct brute *b = ctx;
@@ -84,9 +100,12 @@ static void measure_some(void *ctx, size_t begin, size_t end, int thread)
         for (int k = 0; k < b->cells[1]; k++) {
             struct pair *p = &b->pairs[a * (size_t)b->cells[1] + (size_t)k];
             *p = (struct pair){{(int)a, k}, -1};
-            if (!b->pictures[0][a].z || !b->pictures[1][k].z) continue;
+            if (!b->v->region[0].cells[a].valid || !b->v->region[1].cells[k].valid) continue;
             const struct vec3 at[2] = {ends_candidate(b->v, 0, (int)a), ends_candidate(b->v, 1, k)};
-            if (angle_of(b, at) <= b->params->max_angle)
+            if (angle_of(b, at) > b->params->max_angle) continue;
+            if (b->anew)
+                measure_anew(p, b, at, &b->errors[a]);
+            else
                 p->parallax = parallax_between(&b->pictures[0][a], &b->pictures[1][k], tolerance);
         }
 }
@@ -134,10 +153,24 @@ static enum status draw_candidates(struct brute *b, struct found *f, struct err 
     return st;
 }
 
-static enum status best_of_all(struct found *f, const struct layer_scene *scene, const struct validity *v,
+static enum status measure_pairs(struct brute *b, struct found *f, struct err *err)
+{
+    const size_t starts = (size_t)b->cells[0];
+    enum status st = ST_OK;
+    if (!b->anew && draw_candidates(b, f, err)) return err->status;
+    b->errors = calloc(starts + 1, sizeof *b->errors);
+    if (!b->errors) return err_nomem(err, "errors", starts * sizeof *b->errors);
+    parallel_for(starts, 1, measure_some, b);
+    for (size_t i = 0; !st && i < starts; i++)
+        if (b->errors[i].status) st = err_set(err, b->errors[i].status, "%s", b->errors[i].text);
+    free(b->errors);
+    return st;
+}
+
+static enum status best_of_all(struct found *f, const struct layer_scene *scene, const struct validity *v, bool anew,
                                const struct plan_params *params, struct err *err)
 {
-    struct brute b = {.scene = scene, .v = v, .params = params};
+    struct brute b = {.scene = scene, .v = v, .params = params, .anew = anew};
     struct scene_points points = {0};
     struct viewpoint_test test = {.scene = scene, .points = &points, .shot = &v->shot, .limits = v->limits};
     for (int k = 0; k < 2; k++) b.cells[k] = v->region[k].columns * v->region[k].rows;
@@ -146,14 +179,14 @@ static enum status best_of_all(struct found *f, const struct layer_scene *scene,
     b.pairs = malloc(count * sizeof *b.pairs);
     enum status st = b.pairs ? ST_OK : err_nomem(err, "pairs", count * sizeof *b.pairs);
     if (!st) st = scene_points_collect(&points, scene, err);
-    if (!st) st = draw_candidates(&b, f, err);
+    if (!st) st = measure_pairs(&b, f, err);
     if (!st) {
-        parallel_for((size_t)b.cells[0], 1, measure_some, &b);
         qsort(b.pairs, count, sizeof *b.pairs, more_parallax_first);
         f->best = fmax(0, b.pairs[0].parallax);
     }
     for (size_t i = 0; !st && i < count && b.pairs[i].parallax >= 0; i++) {
         f->pairs++;
+        f->renders += anew ? 2 : 0;
         if (f->ends.valid) continue;
         f->ends = (struct move_ends){.parallax = b.pairs[i].parallax};
         for (int k = 0; k < 2; k++) f->ends.at[k] = ends_candidate(v, k, b.pairs[i].cell[k]);
@@ -198,7 +231,7 @@ static enum status run(const struct job *job, struct err *err)
     if (!st) st = validity_read(&v, job->validity, err);
     if (!st) st = layer_scene_read(&scene, &set, job->depth, NULL, err);
     const double wall = now(CLOCK_MONOTONIC), core = now(CLOCK_PROCESS_CPUTIME_ID);
-    if (!st && job->all) st = best_of_all(&f, &scene, &v, &job->params, err);
+    if (!st && job->all) st = best_of_all(&f, &scene, &v, job->anew, &job->params, err);
     if (!st && !job->all) {
         st = ends_choose(&f.ends, &notes, &scene, &v, &job->params, err);
         f.pairs = notes.pairs;
@@ -228,6 +261,7 @@ int main(int argc, char **argv)
         CLI_STR("depth", &job.depth, CLI_REQUIRED, "folder of the views' layers"),
         CLI_STR("validity", &job.validity, CLI_REQUIRED, "file of the move's valid viewpoints"),
         CLI_FLAG("all", &job.all, "the best of all pairs of the regions' cells"),
+        CLI_FLAG("anew", &job.anew, "with --all: both ends of every pair are drawn for it alone"),
         CLI_PARAMS(plan_param_table, &job.params, plan_params_check),
         CLI_END,
     };

@@ -4,8 +4,8 @@
 # The move is the establishing dolly. BENCH_SWEEPS="ends limits": these panels alone. BENCH_THREADS (all cores).
 #
 # `ends`: move_pairs.c. The baseline is the best of all pairs of the regions' cells that is valid all along its way: every cell drawn once in pictures
-# of parallax_side, 192 px, every pair compared. `all pairs, film size` does so in pictures of 1280 px (BENCH_FULL, still-life: the scenes where this is
-# done, for it takes minutes). Others: the thesis' answer, of the 12 longest pairs (refine=no), and the default. parallax is in % of the frames, measured in
+# of parallax_side, 192 px, every pair compared. `all pairs, film size` does so in pictures of 1280 px, `drawn anew` draws both ends of every pair in that size
+# for this pair alone (BENCH_FULL, still-life: the scenes where these are done, for the last takes minutes). Others: the thesis' answer, of the 12 longest pairs (refine=no), and the default. parallax is in % of the frames, measured in
 # pictures of 640 px, in which none of them was chosen; `chosen` is in those in which it was; `best` that of the best pair whatever its way.
 # `reached` is parallax over the baseline's, %.
 #
@@ -62,7 +62,7 @@ settings()
     local s v
     for s in $found_scenes; do
         if wanted ends; then
-            [[ " $full " != *" $s "* ]] || printf 'all pairs, film size\t%s\tends\t-\n' "$s"
+            [[ " $full " != *" $s "* ]] || printf '%s\t'"$s"'\tends\t-\n' 'all pairs, film size' 'drawn anew'
             for v in 'all pairs, small' 'longest pairs' 'plan_path'; do printf '%s\t%s\tends\t-\n' "$v" "$s"; done
         fi
         if wanted limits; then for v in ${BENCH_SIDES:-120 160 240 320 480 640 1200}; do printf 'check_side\t%s\tlimits\t%s\n' "$s" "$v"; done; fi
@@ -96,6 +96,7 @@ sample() # SERIES SCENE SWEEP VALUE
     [ -e "$of/best" ] || pairs "$2" --all >"$of/best" || return
     case $1 in
     'all pairs, film size') pairs "$2" --all --set parallax_side=1280 ;;
+    'drawn anew') pairs "$2" --all --anew --set parallax_side=1280 ;;
     'all pairs, small') pairs "$2" --all ;;
     'longest pairs') pairs "$2" --set refine=no ;;
     *) pairs "$2" ;;

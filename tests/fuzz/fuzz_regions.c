@@ -25,7 +25,7 @@ static void place(const struct region *r, const char *path)
     if (!(r->x1 > r->x0) || !(r->y1 > r->y0)) abort();
     if (region_in_view(&s, &at, &part, r, path, &set, &list, &err)) {
         if (!strstr(err.text, path) || s.view) abort();
-    } else if (at < 0 || !(part > 0 && part < 1 + 1e-9) || !(s.x0 >= 0 && s.y0 >= 0 && s.x1 > s.x0 && s.y1 > s.y0) ||
+    } else if (at < 0 || !(part >= 0 && part < 1 + 1e-9) || !(s.x0 >= 0 && s.y0 >= 0 && s.x1 > s.x0 && s.y1 > s.y0) ||
                !(s.x1 <= views[at].width && s.y1 <= views[at].height)) {
         abort();
     }

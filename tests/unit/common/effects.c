@@ -81,7 +81,7 @@ static void what_is_wrong_is_told(void **state)
     static const struct {
         const char *text, *place, *words;
     } bad[] = {
-        {"", ":0:", "wanted remodel-effects 1"},
+        {"", "an empty file", "wanted remodel-effects 1"},
         {"remodel-path 1\n", ":1:", "found \"remodel-path\", wanted remodel-effects 1"},
         {"remodel-effects 2\n", ":1:", "found \"2\""},
         {HEAD "region all\n", ":2:", "wanted layer"},

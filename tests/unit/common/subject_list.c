@@ -131,7 +131,7 @@ static void a_broken_list_is_refused_with_its_line(void **state)
     static const struct {
         const char *text, *place, *word;
     } cases[] = {
-        {"", ":0:", "remodel-subjects"},
+        {"", "an empty file", "remodel-subjects"},
         {"remodel-path 1\n", ":1:", "remodel-subjects"},
         {"remodel-subjects 2\n", ":1:", "version"},
         {"remodel-subjects 1\nsubjects -1\n", ":2:", "number of subjects"},

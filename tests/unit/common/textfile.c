@@ -71,7 +71,7 @@ static void bad_lines(void **state)
     static const struct {
         const char *text, *words;
     } cases[] = {
-        {"", "t.txt:1: found the end of the line, wanted an id."},
+        {"", "t.txt:1: found the end of the file, wanted an id."},
         {"x", "t.txt:1: found \"x\", wanted an id, an integer from 0 to 9."},
         {"10", "found \"10\", wanted an id, an integer from 0 to 9."},
         {"-1", "found \"-1\""},

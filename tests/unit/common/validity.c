@@ -226,7 +226,7 @@ static void a_file_that_ends_too_soon_or_goes_on_is_named(void **state)
         struct err err = ERR_INIT;
         char place[32];
         if (lines == LINES) continue;
-        snprintf(place, sizeof place, "broken.txt:%d: ", lines);
+        snprintf(place, sizeof place, lines ? "broken.txt:%d: " : "broken.txt: found an empty file", lines);
         assert_int_equal(read_changed(&v, 0, NULL, lines, &err), ST_DATA);
         assert_err(err, ST_DATA, "wanted");
         assert_contains(err.text, place);

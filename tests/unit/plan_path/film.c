@@ -212,7 +212,7 @@ static void what_is_wrong_is_told(void **state)
     static const struct {
         const char *text, *place, *words;
     } bad[] = {
-        {"", ":0:", "wanted remodel-keyframes 1"},
+        {"", "an empty file", "wanted remodel-keyframes 1"},
         {"remodel-path 1\n", ":1:", "wanted remodel-keyframes 1"},
         {"remodel-keyframes 2\n", ":1:", "found \"2\""},
         {HEAD, ":1:", "wanted a key or a move"},
