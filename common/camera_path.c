@@ -5,16 +5,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/file_path.h"
 #include "common/outfile.h"
 #include "common/textfile.h"
 
-enum { MOST_FRAMES = 1000000, LINE_SIZE = 256, PATH_SIZE = 4096 };
-
-static enum status join(char out[PATH_SIZE], const char *folder, const char *file, struct err *err)
-{
-    if (snprintf(out, PATH_SIZE, "%s/%s", folder, file) < PATH_SIZE) return ST_OK;
-    return err_set(err, ST_IO, "the path %s/%s is too long.", folder, file);
-}
+enum { MOST_FRAMES = 1000000, LINE_SIZE = 256 };
 
 enum status camera_path_init(struct camera_path *p, const char *effect, double fps, int frames, struct err *err)
 {
@@ -127,9 +122,9 @@ static enum status write_list(const struct camera_path *p, const char *path, con
 enum status camera_path_write(const struct camera_path *p, const char *folder, const struct provenance *prov,
                               struct err *err)
 {
-    char poses[PATH_SIZE], list[PATH_SIZE];
-    if (join(poses, folder, "path", err) || join(list, folder, "path.txt", err) || write_poses(p, poses, prov, err) ||
-        write_list(p, list, prov, err))
+    char poses[FILE_PATH], list[FILE_PATH];
+    if (file_path(poses, folder, "path", "", err) || file_path(list, folder, "path.txt", "", err) ||
+        write_poses(p, poses, prov, err) || write_list(p, list, prov, err))
         return err->status;
     return ST_OK;
 }
@@ -239,10 +234,10 @@ enum status camera_path_read(struct camera_path *p, const char *folder, struct e
     struct camera_set set = {0};
     struct textfile t = {0};
     struct camera_path head = {0};
-    char poses[PATH_SIZE], list[PATH_SIZE];
+    char poses[FILE_PATH], list[FILE_PATH];
     int64_t frames = 0;
     *p = (struct camera_path){0};
-    enum status st = join(poses, folder, "path", err) || join(list, folder, "path.txt", err) ||
+    enum status st = file_path(poses, folder, "path", "", err) || file_path(list, folder, "path.txt", "", err) ||
                              camera_set_read(&set, poses, err) || textfile_open(&t, list, err) ||
                              read_head(&t, &head, &frames, err)
                          ? err->status

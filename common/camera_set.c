@@ -87,14 +87,9 @@ enum status camera_set_read(struct camera_set *set, const char *folder, struct e
 enum status camera_set_add_inputs(struct provenance *prov, const char *folder, struct err *err)
 {
     static const char *const files[] = {"cameras.txt", "images.txt", "points3D.txt"};
-    for (int i = 0; i < 3; i++) {
-        char path[4096], name[64];
-        if (snprintf(path, sizeof path, "%s/%s", folder, files[i]) >= (int)sizeof path)
-            return err_set(err, ST_IO, "the path %s/%s is too long.", folder, files[i]);
-        snprintf(name, sizeof name, "views/%s", files[i]);
-        if (provenance_add_file(prov, name, path, err)) return err->status;
-    }
-    return ST_OK;
+    enum status st = ST_OK;
+    for (int i = 0; !st && i < 3; i++) st = provenance_add_in(prov, "views", folder, files[i], "", NULL, err);
+    return st;
 }
 
 int camera_set_find(const struct camera_set *set, const char *name)

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "common/file_path.h"
 #include "common/weighted.h"
 
 #define NEAR_PERCENTILE 0.02
@@ -61,16 +62,15 @@ static enum status scene_add(struct layer_scene *s, int view, struct err *err)
 enum status layer_scene_read(struct layer_scene *scene, const struct camera_set *set, const char *depth_folder,
                              struct provenance *prov, struct err *err)
 {
-    char path[4096], name[512];
+    char path[FILE_PATH];
     enum status st = scene_open(scene, set, err);
 
     for (int i = 0; !st && i < set->view_count; i++) {
-        snprintf(name, sizeof name, "depth/%s.exr", set->views[i].name);
-        if (snprintf(path, sizeof path, "%s/%s.exr", depth_folder, set->views[i].name) >= (int)sizeof path)
-            st = err_set(err, ST_IO, "the path %s/%s.exr is too long.", depth_folder, set->views[i].name);
-        else if (!(st = layered_depth_read(&scene->depths[i], path, err)) &&
-                 !(st = prov ? provenance_add_file(prov, name, path, err) : ST_OK))
-            st = scene_add(scene, i, err);
+        const char *view = set->views[i].name;
+        st = file_path(path, depth_folder, view, ".exr", err);
+        if (!st) st = layered_depth_read(&scene->depths[i], path, err);
+        if (!st && prov) st = provenance_add_in(prov, "depth", depth_folder, view, ".exr", NULL, err);
+        if (!st) st = scene_add(scene, i, err);
     }
     if (!st) st = view_mesh_build(&scene->mesh, set, err);
     if (!st) st = measure_depths(scene, err);

@@ -38,13 +38,11 @@ static void print_inputs(const struct provenance *prov, const char *prefix, FILE
 }
 
 enum status provenance_add_in(struct provenance *prov, const char *as, const char *folder, const char *file,
-                              const char *suffix, char path[PROVENANCE_PATH], struct err *err)
+                              const char *suffix, char path[FILE_PATH], struct err *err)
 {
-    char name[PROVENANCE_PATH], own[PROVENANCE_PATH];
+    char name[FILE_PATH], own[FILE_PATH];
     if (!path) path = own;
-    if (snprintf(path, PROVENANCE_PATH, "%s/%s%s", folder, file, suffix) >= PROVENANCE_PATH ||
-        snprintf(name, sizeof name, "%s/%s%s", as, file, suffix) >= (int)sizeof name)
-        return err_set(err, ST_IO, "the path %s/%s%s is too long.", folder, file, suffix);
+    if (file_path(path, folder, file, suffix, err) || file_path(name, as, file, suffix, err)) return err->status;
     return provenance_add_file(prov, name, path, err);
 }
 

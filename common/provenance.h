@@ -8,6 +8,7 @@
 #include <stdio.h>
 
 #include "err.h"
+#include "file_path.h"
 #include "hash.h"
 
 struct provenance_input {
@@ -25,10 +26,9 @@ struct provenance {
 /* Hashes the file at `path` and records it as `name`; the same name twice is recorded once. */
 enum status provenance_add_file(struct provenance *prov, const char *name, const char *path, struct err *err);
 
-#define PROVENANCE_PATH 4096
 /* The same of FOLDER/FILESUFFIX as AS/FILESUFFIX; path gets the file's path, if it is not NULL. */
 enum status provenance_add_in(struct provenance *prov, const char *as, const char *folder, const char *file,
-                              const char *suffix, char path[PROVENANCE_PATH], struct err *err);
+                              const char *suffix, char path[FILE_PATH], struct err *err);
 
 /* "# remodel STAGE VERSION", "# key = value" a parameter, "# input NAME HASH" an input: the head of text products. */
 void provenance_print(const struct provenance *prov, FILE *to);

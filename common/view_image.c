@@ -1,22 +1,19 @@
 /* view_image.c - the picture of a rectified view on disk. */
 #include "common/view_image.h"
 
-#include <stdio.h>
-#include <stdlib.h>
-
 #include "common/exr.h"
+#include "common/file_path.h"
 
 static const char *const channel_names[4] = {"R", "G", "B", "A"};
 
 enum status view_image_read(struct image *im, const char *folder, const struct view *view, struct err *err)
 {
     struct exr_image exr = {0};
-    char *path = NULL;
-    enum status st = ST_OK;
+    char path[FILE_PATH];
 
     *im = (struct image){0};
-    if (asprintf(&path, "%s/%s.exr", folder, view->name) < 0) return err_nomem(err, "a path", 0);
-    st = exr_read(&exr, path, channel_names, 4, err);
+    enum status st = file_path(path, folder, view->name, ".exr", err);
+    if (!st) st = exr_read(&exr, path, channel_names, 4, err);
     if (!st && (exr.width != view->width || exr.height != view->height))
         st = err_set(err, ST_DATA, "%s is %d x %d pixels, but its camera says %d x %d; make the views again.", path,
                      exr.width, exr.height, view->width, view->height);
@@ -31,7 +28,6 @@ enum status view_image_read(struct image *im, const char *folder, const struct v
         for (size_t i = 0; i < pixels; i++) im->data[4 * i + (size_t)c] = from[i];
     }
     exr_image_release(&exr);
-    free(path);
     return st;
 }
 

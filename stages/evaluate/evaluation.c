@@ -1,12 +1,12 @@
 /* evaluation.c - see evaluation.h. */
 #include "stages/evaluate/evaluation.h"
 
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 
 #include "common/exr.h"
+#include "common/file_path.h"
 #include "common/layered_depth.h"
 #include "common/log.h"
 #include "common/progress.h"
@@ -20,8 +20,6 @@
 #define PARAM_STRUCT struct evaluate_params
 const struct param evaluate_param_table[] = {EVALUATE_PARAMS(PARAM_ROW) PARAM_END};
 #undef PARAM_STRUCT
-
-enum { PATH_SIZE = 4096 };
 
 struct view_set { /* cameras and lenses of views, or of those that are held out */
     struct camera_set cameras;
@@ -48,29 +46,23 @@ static bool is_file(const char *path)
     return !stat(path, &info) && S_ISREG(info.st_mode);
 }
 
-/* folder/NAME in `path`; the file's hash goes into the provenance as NAME. */
-static enum status input(struct evaluation *e, char path[PATH_SIZE], struct err *err, const char *fmt, ...)
-    PRINTF_LIKE(4, 5);
-static enum status input(struct evaluation *e, char path[PATH_SIZE], struct err *err, const char *fmt, ...)
+/* folder/WHERE/FILESUFFIX in `path`; the file's hash goes into the provenance as WHERE/FILESUFFIX. */
+static enum status input(struct evaluation *e, char path[FILE_PATH], const char *where, const char *file,
+                         const char *suffix, struct err *err)
 {
-    char name[1024];
-    va_list args;
-    va_start(args, fmt);
-    int n = vsnprintf(name, sizeof name, fmt, args);
-    va_end(args);
-    if (n >= (int)sizeof name || snprintf(path, PATH_SIZE, "%s/%s", e->folder, name) >= PATH_SIZE)
-        return err_set(err, ST_IO, "the path %s/%s is too long.", e->folder, name);
+    char name[FILE_PATH];
+    if (file_path(name, where, file, suffix, err) || file_path(path, e->folder, name, "", err)) return err->status;
     return provenance_add_file(e->prov, name, path, err);
 }
 
 static enum status read_views(struct evaluation *e, struct view_set *set, const char *where, struct err *err)
 {
-    char path[PATH_SIZE], folder[PATH_SIZE];
-    snprintf(folder, sizeof folder, "%s/%s", e->folder, where);
-    enum status st = camera_set_read(&set->cameras, folder, err);
-    if (!st) st = input(e, path, err, "%s/cameras.txt", where);
-    if (!st) st = input(e, path, err, "%s/images.txt", where);
-    if (!st) st = input(e, path, err, "%s/lenses.txt", where);
+    char path[FILE_PATH], folder[FILE_PATH];
+    enum status st = file_path(folder, e->folder, where, "", err);
+    if (!st) st = camera_set_read(&set->cameras, folder, err);
+    if (!st) st = input(e, path, where, "cameras.txt", "", err);
+    if (!st) st = input(e, path, where, "images.txt", "", err);
+    if (!st) st = input(e, path, where, "lenses.txt", "", err);
     if (!st) st = lens_list_read(&set->lenses, path, err);
     for (int i = 0; !st && i < set->cameras.view_count; i++) {
         const char *view = set->cameras.views[i].name;
@@ -268,13 +260,13 @@ static enum status write_truth(const struct evaluation *e, const struct view *vi
 {
     struct exr_image im = {0};
     struct exr_plane *z = NULL, *o = NULL;
-    char path[PATH_SIZE];
+    char folder[FILE_PATH], path[FILE_PATH];
     size_t pixels = (size_t)view->width * (size_t)view->height;
-    enum status st = exr_image_init(&im, view->width, view->height, err) ||
-                     exr_add_plane(&im, "Z", EXR_FLOAT, &z, err) || exr_add_plane(&im, "occluded", EXR_UINT, &o, err);
-    if (st || snprintf(path, sizeof path, "%s/evaluate/truth/%s.exr", e->folder, view->name) >= PATH_SIZE) {
+    if (file_path(folder, e->folder, "evaluate/truth", "", err) || file_path(path, folder, view->name, ".exr", err) ||
+        exr_image_init(&im, view->width, view->height, err) || exr_add_plane(&im, "Z", EXR_FLOAT, &z, err) ||
+        exr_add_plane(&im, "occluded", EXR_UINT, &o, err)) {
         exr_image_release(&im);
-        return err->status ? err->status : err_set(err, ST_IO, "the path %s/evaluate is too long.", e->folder);
+        return err->status;
     }
     z = exr_find(&im, "Z");
     for (size_t i = 0; i < pixels; i++) {
@@ -284,7 +276,7 @@ static enum status write_truth(const struct evaluation *e, const struct view *vi
     exr_set_camera(&im, view);
     struct provenance prov = *e->prov; /* not owned */
     prov.count = e->shared_inputs;
-    st = exr_write(&im, path, &prov, err);
+    const enum status st = exr_write(&im, path, &prov, err);
     exr_image_release(&im);
     return st;
 }
@@ -351,10 +343,10 @@ static enum status evaluate_view(struct evaluation *e, int i, const bool *kept, 
     int photo = photo_of(e, &e->views, i);
     struct layered_depth d = {0};
     uint64_t here = 0, known_here = 0;
-    char path[PATH_SIZE];
+    char path[FILE_PATH];
     float *z = malloc((size_t)view->width * (size_t)view->height * sizeof *z);
     enum status st = z ? ST_OK : err_nomem(err, "a depth map", (size_t)view->width * (size_t)view->height);
-    if (!st) st = input(e, path, err, "depth/%s.exr", view->name);
+    if (!st) st = input(e, path, "depth", view->name, ".exr", err);
     if (!st) st = layered_depth_read(&d, path, err);
     if (!st && (d.width != view->width || d.height != view->height))
         st = err_set(err, ST_DATA, "%s is %d x %d px, but its view is %d x %d px; make the depth map again.", path,
@@ -391,7 +383,7 @@ static enum status evaluate_depths(struct evaluation *e, struct err *err)
     }
     progress_start(&progress, "depth maps", views->view_count, "views");
     for (int i = 0; !st && i < views->view_count; i++) {
-        char path[PATH_SIZE];
+        char path[FILE_PATH];
         snprintf(path, sizeof path, "%s/depth/%s.exr", e->folder, views->views[i].name);
         if (is_file(path))
             st = evaluate_view(e, i, kept, &tv, &scene, &pixels, &known, err);
@@ -468,16 +460,16 @@ static enum status read_pictures(struct evaluation *e, const struct view *view, 
     size_t pixels = (size_t)view->width * (size_t)view->height;
     struct image photo = {0}, frame = {0};
     struct exr_image im = {0};
-    char path[PATH_SIZE], folder[PATH_SIZE];
+    char path[FILE_PATH], folder[FILE_PATH];
     p->photo = malloc(3 * pixels);
     p->frame = malloc(3 * pixels);
     p->inside = malloc(pixels);
     p->hole = malloc(pixels);
     enum status st = p->photo && p->frame && p->inside && p->hole ? ST_OK : err_nomem(err, "pictures", 8 * pixels);
-    snprintf(folder, sizeof folder, "%s/holdout/views", e->folder);
-    if (!st) st = input(e, path, err, "holdout/views/%s.exr", view->name);
+    if (!st) st = file_path(folder, e->folder, "holdout/views", "", err);
+    if (!st) st = input(e, path, "holdout/views", view->name, ".exr", err);
     if (!st) st = view_image_read(&photo, folder, view, err);
-    if (!st) st = input(e, path, err, "holdout/frames/%s.exr", view->name);
+    if (!st) st = input(e, path, "holdout/frames", view->name, ".exr", err);
     if (!st) st = exr_read(&im, path, NAMES, 4, err);
     if (!st && (im.width != view->width || im.height != view->height))
         st = err_set(err, ST_DATA, "%s is %d x %d px, but its view is %d x %d px; render it again.", path, im.width,
@@ -540,7 +532,7 @@ static enum status evaluate_pictures(struct evaluation *e, struct err *err)
     int missing = 0;
     enum status st = ST_OK;
     for (int i = 0; !st && i < held->view_count; i++) {
-        char path[PATH_SIZE];
+        char path[FILE_PATH];
         snprintf(path, sizeof path, "%s/holdout/frames/%s.exr", e->folder, held->views[i].name);
         if (is_file(path))
             st = evaluate_picture(e, &held->views[i], &s, err);
@@ -595,20 +587,20 @@ enum status evaluate(const char *folder, const char *shared, const char *truth, 
                      const struct evaluate_params *params, struct provenance *prov, struct err *err)
 {
     struct evaluation e = {.folder = folder, .params = params, .prov = prov, .has_truth = truth != NULL};
-    char path[PATH_SIZE];
-    snprintf(path, sizeof path, "%s/photos", shared);
-    enum status st = photo_list_read(&e.photos, path, err);
+    char path[FILE_PATH];
+    enum status st = file_path(path, shared, "photos", "", err);
+    if (!st) st = photo_list_read(&e.photos, path, err);
     if (!st) st = read_views(&e, &e.views, "views", err);
-    snprintf(path, sizeof path, "%s/holdout/views/images.txt", folder);
-    e.has_held = is_file(path);
-    if (!st && e.has_held) st = read_views(&e, &e.held, "holdout/views", err);
+    if (!st) st = file_path(path, folder, "holdout/views/images.txt", "", err);
+    e.has_held = !st && is_file(path);
+    if (e.has_held) st = read_views(&e, &e.held, "holdout/views", err);
     if (!st && truth) st = truth_read(&e.truth, truth, &e.photos, params->far, prov, err);
     e.shared_inputs = prov->count;
     if (!st) st = note_missing(&e, err);
     if (!st && truth) st = evaluate_cameras(&e, err);
     if (!st) st = evaluate_depths(&e, err);
     if (!st && e.has_held) st = evaluate_pictures(&e, err);
-    snprintf(path, sizeof path, "%s/evaluate/views.tsv", folder);
+    if (!st) st = file_path(path, folder, "evaluate/views.tsv", "", err);
     if (!st) st = metric_table_write(&e.table, true, path, prov, err);
     if (!st) st = metric_table_write(&e.table, false, out, prov, err);
     evaluation_release(&e);

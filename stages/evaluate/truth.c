@@ -56,26 +56,14 @@ static enum status find_depth(struct truth *t, struct true_photo *p, const char 
     return st;
 }
 
-static enum status add_file(struct provenance *prov, const char *folder, const char *file, struct err *err)
-{
-    size_t size = strlen(folder) + strlen(file) + 16;
-    char *path = malloc(size), name[64];
-    if (!path) return err_nomem(err, "a file name", size);
-    snprintf(path, size, "%s/%s", folder, file);
-    snprintf(name, sizeof name, "truth/%s", file);
-    enum status st = provenance_add_file(prov, name, path, err);
-    free(path);
-    return st;
-}
-
 enum status truth_read(struct truth *t, const char *folder, const struct photo_list *photos, double far,
                        struct provenance *prov, struct err *err)
 {
     struct sfm_model m = {0};
     *t = (struct truth){.count = photos->count};
     enum status st = sfm_model_read_cameras(&m, folder, err);
-    if (!st) st = add_file(prov, folder, "cameras.txt", err);
-    if (!st) st = add_file(prov, folder, "images.txt", err);
+    if (!st) st = provenance_add_in(prov, "truth", folder, "cameras.txt", "", NULL, err);
+    if (!st) st = provenance_add_in(prov, "truth", folder, "images.txt", "", NULL, err);
     if (!st && !(t->photos = calloc((size_t)photos->count + 1, sizeof *t->photos)))
         st = err_nomem(err, "true photos", (size_t)photos->count * sizeof *t->photos);
     t->images = m.image_count;

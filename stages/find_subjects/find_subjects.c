@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "common/cli.h"
+#include "common/file_path.h"
 #include "common/lens_list.h"
 #include "common/log.h"
 #include "common/upright.h"
@@ -19,8 +20,8 @@
 #include "stages/find_subjects/region_depth.h"
 #include "stages/find_subjects/regions.h"
 
-enum { PATH_SIZE = 4096, SMALLEST = 8 }; /* SMALLEST: px of a subject whose size says something */
-#define WHOLE 0.999                      /* part of a drawn rectangle from which on nothing was clipped */
+enum { SMALLEST = 8 }; /* SMALLEST: px of a subject whose size says something */
+#define WHOLE 0.999    /* part of a drawn rectangle from which on nothing was clipped */
 
 #define CASCADES "/usr/share/opencv4/haarcascades"
 
@@ -36,7 +37,7 @@ static enum status read_depth(void *ctx, int view_idx, struct layered_depth *d, 
 {
     struct inputs *in = ctx;
     const struct view *v = &in->set.views[view_idx];
-    char path[PATH_SIZE];
+    char path[FILE_PATH];
     if (provenance_add_in(in->prov, "depth", in->depth, v->name, ".txt", path, err) ||
         provenance_add_in(in->prov, "depth", in->depth, v->name, ".exr", path, err) || layered_depth_read(d, path, err))
         return err->status;
@@ -52,7 +53,7 @@ static enum status read_picture(void *ctx, int view_idx, unsigned char **grey, s
     struct inputs *in = ctx;
     const struct view *v = &in->set.views[view_idx];
     struct image im = {0};
-    char path[PATH_SIZE];
+    char path[FILE_PATH];
     if (provenance_add_in(in->prov, "views", in->views, v->name, ".exr", path, err) ||
         view_image_read(&im, in->views, v, err))
         return err->status;
@@ -110,7 +111,7 @@ static enum status seek_faces(struct subject_list *list, struct inputs *in, cons
 {
     const struct face_source source = {in, read_picture, read_depth, detect};
     struct face_report report = {0};
-    char path[PATH_SIZE];
+    char path[FILE_PATH];
     enum status st = face_detector_open(&in->detector, in->cascades, err);
     for (int i = 0; !st && face_cascades[i]; i++)
         st = provenance_add_in(in->prov, "opencv", in->cascades, face_cascades[i], "", path, err);
@@ -169,7 +170,7 @@ static enum status place_regions(struct subject_list *list, struct inputs *in, s
 {
     struct region_list regions = {0};
     struct lens_list lenses = {0};
-    char path[PATH_SIZE];
+    char path[FILE_PATH];
     enum status st = region_list_read(&regions, in->subjects, err);
     if (!st) st = provenance_add_file(in->prov, "subjects.txt", in->subjects, err);
     if (!st) st = provenance_add_in(in->prov, "views", in->views, "lenses.txt", "", path, err);

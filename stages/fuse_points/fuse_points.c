@@ -9,10 +9,11 @@
 #include <stdio.h>
 
 #include "common/cli.h"
+#include "common/file_path.h"
 #include "common/log.h"
 #include "stages/fuse_points/fuse.h"
 
-enum { PATH_SIZE = 4096, DEFAULT_MIB = 1024 };
+enum { DEFAULT_MIB = 1024 };
 
 struct depth_folder {
     const char *folder;
@@ -21,7 +22,7 @@ struct depth_folder {
 };
 
 /* path: of the EXR; it and its list become inputs when they are first read. */
-static enum status find_depth(const struct depth_folder *f, int view_idx, char path[PATH_SIZE], struct err *err)
+static enum status find_depth(const struct depth_folder *f, int view_idx, char path[FILE_PATH], struct err *err)
 {
     const char *name = f->set->views[view_idx].name;
     if (provenance_add_in(f->prov, "depth", f->folder, name, ".txt", path, err) ||
@@ -32,13 +33,13 @@ static enum status find_depth(const struct depth_folder *f, int view_idx, char p
 
 static enum status read_ids(void *ctx, int view_idx, struct layered_depth *d, struct err *err)
 {
-    char path[PATH_SIZE];
+    char path[FILE_PATH];
     return find_depth(ctx, view_idx, path, err) ? err->status : layered_depth_read_ids(d, path, err);
 }
 
 static enum status read_interior(void *ctx, int view_idx, struct layered_depth *d, struct err *err)
 {
-    char path[PATH_SIZE];
+    char path[FILE_PATH];
     return find_depth(ctx, view_idx, path, err) ? err->status : layered_depth_read_interior(d, path, err);
 }
 

@@ -12,6 +12,7 @@
 #include <string.h>
 
 #include "common/exr.h"
+#include "common/file_path.h"
 #include "common/view_image.h"
 
 #define TEAR      1.0f  /* px: neighbours whose flows differ by more are not one surface */
@@ -42,21 +43,15 @@ static float *plane_place(struct morph *m, int side, int plane, size_t *step)
     return plane < 3 ? m->pictures[side].data + plane : plane < 5 ? f->uv + plane - 3 : plane == 5 ? f->sure : f->near;
 }
 
-static enum status file_name(char path[4096], const char *folder, int side, struct err *err)
-{
-    if (snprintf(path, 4096, "%s/%s", folder, FILES[side]) < 4096) return ST_OK;
-    return err_set(err, ST_IO, "the path %s/%s is too long.", folder, FILES[side]);
-}
-
 enum status morph_write(const struct morph *m, const struct view *cameras, const char *folder,
                         const struct provenance *prov, struct err *err)
 {
     enum status st = ST_OK;
     for (int side = 1; !st && side >= 0; side--) { /* the first one last */
         struct exr_image im = {0};
-        char path[4096], gain[128];
+        char path[FILE_PATH], gain[128];
         const size_t n = (size_t)m->pictures[side].width * (size_t)m->pictures[side].height;
-        st = file_name(path, folder, side, err);
+        st = file_path(path, folder, FILES[side], "", err);
         if (!st) st = exr_image_init(&im, m->pictures[side].width, m->pictures[side].height, err);
         for (int k = 0; !st && k < 7; k++) {
             struct exr_plane *plane;
@@ -120,9 +115,9 @@ static enum status read_side(struct morph *m, int side, const char *path, struct
 
 enum status morph_read(struct morph *m, const char *folder, struct err *err)
 {
-    char path[4096];
+    char path[FILE_PATH];
     for (int side = 0; side < 2; side++)
-        if (file_name(path, folder, side, err) || read_side(m, side, path, err)) return err->status;
+        if (file_path(path, folder, FILES[side], "", err) || read_side(m, side, path, err)) return err->status;
     return ST_OK;
 }
 

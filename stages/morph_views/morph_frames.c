@@ -7,6 +7,7 @@
 
 #include "common/camera_path.h"
 #include "common/exr.h"
+#include "common/file_path.h"
 #include "common/frame_list.h"
 #include "common/parallel.h"
 #include "common/progress.h"
@@ -32,9 +33,8 @@ static enum status write_frame(const struct job *job, const struct rendered_fram
     static const char *const names[] = {"R", "G", "B", "A"};
     const size_t n = (size_t)f->width * (size_t)f->height;
     struct exr_image im = {0};
-    char path[4096], holes[32], unfilled[32], time[32];
-    if (snprintf(path, sizeof path, "%s/%.32s.exr", job->out, camera->name) >= (int)sizeof path)
-        return err_set(err, ST_IO, "the path %s/%s.exr is too long.", job->out, camera->name);
+    char path[FILE_PATH], holes[32], unfilled[32], time[32];
+    if (file_path(path, job->out, camera->name, ".exr", err)) return err->status;
     snprintf(holes, sizeof holes, "%.9g", f->hole_fraction);
     snprintf(unfilled, sizeof unfilled, "%.9g", f->unfilled_fraction);
     snprintf(time, sizeof time, "%.9g", t);
@@ -73,14 +73,9 @@ static enum status add_inputs(const char *folder, bool *posed, struct provenance
 {
     static const char *const files[] = {"first.exr", "second.exr", "path.txt", "path/cameras.txt", "path/images.txt"};
     struct exr_image head = {0};
-    char path[4096], name[256];
+    char path[FILE_PATH];
     enum status st = ST_OK;
-    for (int i = 4; !st && i >= 0; i--) {
-        snprintf(name, sizeof name, "parallax/morph/%s", files[i]);
-        if (snprintf(path, sizeof path, "%s/%s", folder, files[i]) >= (int)sizeof path)
-            st = err_set(err, ST_IO, "the path %s/%s is too long.", folder, files[i]);
-        if (!st) st = provenance_add_file(prov, name, path, err);
-    }
+    for (int i = 4; !st && i >= 0; i--) st = provenance_add_in(prov, "parallax/morph", folder, files[i], "", path, err);
     if (!st) st = exr_read(&head, path, (const char *const[]){"R"}, 0, err);
     *posed = head.has_world_to_camera;
     exr_image_release(&head);

@@ -8,25 +8,19 @@
 
 #include "common/camera_path.h"
 #include "common/exr.h"
+#include "common/file_path.h"
 #include "common/lens_list.h"
 #include "common/log.h"
 #include "common/outfile.h"
 #include "common/photo_list.h"
 #include "stages/morph_views/morph.h"
 
-enum { PATH_SIZE = 4096 };
 #define USUAL_FOCAL    1.2 /* of the longest side, where EXIF says nothing */
 #define TOLERANCE      1.0 /* px from the epipolar line, of a feature */
 #define PLANE_PART     0.9 /* of the matches on one homography: the photos tell no epipolar geometry */
 #define DEPTH_TRIM     0.02
 #define DEPTH_ROOM     1.5 /* beyond the sparse points' depths, either way */
 #define NEAR_BASELINES 3
-
-static enum status join(char out[PATH_SIZE], const char *folder, const char *file, const char *suffix, struct err *err)
-{
-    if (snprintf(out, PATH_SIZE, "%s/%s%s", folder, file, suffix) < PATH_SIZE) return ST_OK;
-    return err_set(err, ST_IO, "the path %s/%s%s is too long.", folder, file, suffix);
-}
 
 /* --------------------------------------------------------------------------------------------------------- photos */
 
@@ -36,11 +30,11 @@ static enum status read_photo(struct image *linear, char *radiometry, size_t siz
 {
     static const char *const names[] = {"R", "G", "B"};
     const bool merged = record->bracket_count > 0;
-    char path[PATH_SIZE], input[PATH_SIZE];
+    char path[FILE_PATH];
     struct photo photo = {0};
     struct exr_image exr = {0};
-    enum status st = join(path, photos, merged ? record->id : record->file, merged ? ".exr" : "", err);
-    if (!st) st = join(input, merged ? "hdr" : "photos", merged ? record->id : record->file, merged ? ".exr" : "", err);
+    enum status st = provenance_add_in(prov, merged ? "hdr" : "photos", photos, merged ? record->id : record->file,
+                                       merged ? ".exr" : "", path, err);
     snprintf(radiometry, size, "approximate");
     if (!st && !merged && !(st = photo_read(&photo, path, err))) st = photo_to_linear(linear, &photo, err);
     if (!st && merged) {
@@ -58,7 +52,6 @@ static enum status read_photo(struct image *linear, char *radiometry, size_t siz
         if (!st && exr_attribute(&exr, "remodel:radiometry"))
             snprintf(radiometry, size, "%.60s", exr_attribute(&exr, "remodel:radiometry"));
     }
-    if (!st) st = provenance_add_file(prov, input, path, err);
     photo_release(&photo);
     exr_image_release(&exr);
     return st;
@@ -79,11 +72,8 @@ static enum status read_pair(struct pair *pair, struct morph *m, const struct mo
         const char *id = i ? job->second : job->first;
         struct photo_record *record = &pair->records[i];
         struct image linear = {0};
-        char path[PATH_SIZE], name[PATH_SIZE];
-        st = photo_record_read(record, job->records, id, err) || join(path, job->records, id, ".txt", err) ||
-                     join(name, "photos", id, ".txt", err) || provenance_add_file(prov, name, path, err)
-                 ? err->status
-                 : ST_OK;
+        st = photo_record_read(record, job->records, id, err);
+        if (!st) st = provenance_add_in(prov, "photos", job->records, id, ".txt", NULL, err);
         if (!st) st = read_photo(&linear, m->radiometry, sizeof m->radiometry, job->photos, record, prov, err);
         const int turned = record->info.orientation;
         if (!st && !i) {
@@ -151,15 +141,11 @@ static enum status read_cameras(struct geometry *g, bool *known, const struct mo
     static const char *const files[] = {"cameras.txt", "images.txt", "points3D.txt", "lenses.txt"};
     struct camera_set set = {0};
     struct lens_list lenses = {0};
-    char path[PATH_SIZE], name[PATH_SIZE];
+    char path[FILE_PATH];
     *known = false;
     if (!job->views) return ST_OK;
     enum status st = camera_set_read(&set, job->views, err);
-    for (int i = 0; !st && i < 4; i++)
-        st = join(path, job->views, files[i], "", err) || join(name, "views", files[i], "", err) ||
-                     provenance_add_file(prov, name, path, err)
-                 ? err->status
-                 : ST_OK;
+    for (int i = 0; !st && i < 4; i++) st = provenance_add_in(prov, "views", job->views, files[i], "", path, err);
     if (!st) st = lens_list_read(&lenses, path, err);
     bool all = !st;
     for (int i = 0; all && i < 2; i++) {
@@ -287,7 +273,7 @@ static enum status write_path(const struct morph *m, const struct view ends[2], 
 {
     struct camera_path path = {0};
     struct outfile f = {0};
-    char name[PATH_SIZE];
+    char name[FILE_PATH];
     double length = 0;
     const size_t n = (size_t)m->flows[0].width * (size_t)m->flows[0].height;
     for (size_t p = 0; p < n; p++) length += hypot(m->flows[0].uv[2 * p], m->flows[0].uv[2 * p + 1]) / (double)n;
@@ -302,7 +288,7 @@ static enum status write_path(const struct morph *m, const struct view ends[2], 
         camera_between(v, ends, morph_time(i, path.frame_count, params));
     }
     if (!st) st = camera_path_write(&path, out, prov, err);
-    if (!st) st = join(name, out, "frames.mk", "", err);
+    if (!st) st = file_path(name, out, "frames.mk", "", err);
     if (!st) st = outfile_open(&f, name, err);
     if (!st) {
         fputs("MORPH_FRAMES :=", f.fp);

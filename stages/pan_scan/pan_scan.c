@@ -13,6 +13,7 @@
 
 #include "common/cli.h"
 #include "common/exr.h"
+#include "common/file_path.h"
 #include "common/frame_list.h"
 #include "common/log.h"
 #include "common/progress.h"
@@ -20,8 +21,6 @@
 #include "stages/pan_scan/crop_move.h"
 #include "stages/pan_scan/crop_picture.h"
 #include "stages/pan_scan/pan_params.h"
-
-enum { PATH_SIZE = 4096 };
 
 #define HELD_FROM 0.5 /* frame px: a crop that is moved less to stay within the photograph is not worth a word */
 
@@ -62,7 +61,7 @@ static enum status find_view(int *view_idx, const struct job *job, const struct 
 static enum status read_depth(struct layered_depth *depth, const struct job *job, const char *view,
                               struct provenance *prov, struct err *err)
 {
-    char path[PATH_SIZE];
+    char path[FILE_PATH];
     if (provenance_add_in(prov, "depth", job->depth, view, ".txt", path, err) ||
         provenance_add_in(prov, "depth", job->depth, view, ".exr", path, err) ||
         layered_depth_read_interior(depth, path, err))
@@ -130,7 +129,7 @@ static enum status make_frames(const struct crop_move *m, const bool *wanted, co
     const struct view *camera = &m->path->frames[0].camera;
     struct image frame = {0};
     struct progress progress;
-    char file[PATH_SIZE];
+    char file[FILE_PATH];
     int count = 0;
     enum status st = image_init(&frame, camera->width, camera->height, 4, err);
     for (int i = 0; i < m->path->frame_count; i++) count += wanted[i];
@@ -138,8 +137,7 @@ static enum status make_frames(const struct crop_move *m, const bool *wanted, co
     for (int i = 0; !st && i < m->path->frame_count; i++) {
         if (!wanted[i]) continue;
         const struct crop crop = crop_move_crop(m, i);
-        if (snprintf(file, sizeof file, "%s/%.32s.exr", folder, m->path->frames[i].camera.name) >= PATH_SIZE)
-            st = err_set(err, ST_IO, "the path %s/%.32s.exr is too long.", folder, m->path->frames[i].camera.name);
+        st = file_path(file, folder, m->path->frames[i].camera.name, ".exr", err);
         if (!st) st = crop_picture(&frame, picture, &crop, err);
         if (!st) st = frame_write(&frame, m, i, file, prov, err);
         progress_add(&progress, 1);

@@ -10,11 +10,12 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "common/file_path.h"
 #include "common/monotone.h"
 #include "stages/plan_path/keyframes.h"
 #include "stages/plan_path/spline.h"
 
-enum { FRAMES_MOST = 1000000, LAYER_KEYS = 50000, PATH_SIZE = 4096 };
+enum { FRAMES_MOST = 1000000, LAYER_KEYS = 50000 };
 
 struct state { /* a film's camera at a moment; focal lengths as logarithms */
     struct vec3 place;
@@ -124,32 +125,21 @@ struct move { /* a planned move, read */
     struct effects layers;
 };
 
-static enum status add_input(struct provenance *prov, const char *folder, const char *effect, const char *file,
-                             struct err *err)
-{
-    char path[PATH_SIZE], name[256];
-    if (!prov) return ST_OK;
-    snprintf(name, sizeof name, "parallax/%s/%s", effect, file);
-    if (snprintf(path, sizeof path, "%s/%s", folder, file) >= (int)sizeof path)
-        return err_set(err, ST_IO, "the path %s/%s is too long.", folder, file);
-    return provenance_add_file(prov, name, path, err);
-}
-
 static enum status read_move(struct move *m, const struct film_shot *shot, const struct film *film,
                              struct provenance *prov, struct err *err)
 {
     static const char *const files[] = {"path.txt", "path/cameras.txt", "path/images.txt", "effects.txt"};
-    char folder[PATH_SIZE], effects[PATH_SIZE];
+    char folder[FILE_PATH], effects[FILE_PATH], as[FILE_PATH];
     if (!film->moves)
         return err_set(err, ST_DATA, "the move %s cannot be found: there is no folder of planned moves.", shot->effect);
-    if (snprintf(folder, sizeof folder, "%s/%s", film->moves, shot->effect) >= (int)sizeof folder ||
-        snprintf(effects, sizeof effects, "%s/effects.txt", folder) >= (int)sizeof effects)
-        return err_set(err, ST_IO, "the path %s/%s is too long.", film->moves, shot->effect);
+    if (file_path(folder, film->moves, shot->effect, "", err) || file_path(effects, folder, "effects.txt", "", err) ||
+        file_path(as, "parallax", shot->effect, "", err))
+        return err->status;
     const bool has_effects = !access(effects, F_OK);
     if (camera_path_read(&m->path, folder, err) || (has_effects && effects_read(&m->layers, effects, err)))
         return err->status;
-    for (int i = 0; i < 3 + has_effects; i++)
-        if (add_input(prov, folder, shot->effect, files[i], err)) return err->status;
+    for (int i = 0; prov && i < 3 + has_effects; i++)
+        if (provenance_add_in(prov, as, folder, files[i], "", NULL, err)) return err->status;
     const struct view *first = &m->path.frames[0].camera;
     if (first->width == film->lens.width && first->height == film->lens.height) return ST_OK;
     return err_set(err, ST_DATA,
@@ -371,9 +361,9 @@ enum status keyframed_path(struct camera_path *path, struct effects *layers, con
                            struct provenance *prov, struct err *err)
 {
     struct reel reel = {0};
-    char name[PATH_SIZE];
-    snprintf(name, sizeof name, "keyframes/%s.txt", film->name);
-    enum status st = prov ? provenance_add_file(prov, name, file, err) : ST_OK;
+    char name[FILE_PATH];
+    enum status st = file_path(name, "keyframes", film->name, ".txt", err);
+    if (!st && prov) st = provenance_add_file(prov, name, file, err);
     if (!st) st = lay_film(&reel, file, film, prov, err);
     if (!st) st = camera_path_init(path, film->name, film->fps, reel.frame_count, err);
     if (!st) {

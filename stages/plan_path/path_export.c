@@ -12,6 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/file_path.h"
 #include "common/outfile.h"
 
 enum { NUMBER = JSON_ENCODE_ANY | JSON_REAL_PRECISION(17) };
@@ -168,11 +169,10 @@ typedef bool put_fn(FILE *to, const struct camera_path *p, const struct provenan
 static enum status write_file(const struct camera_path *p, const char *folder, const char *file, put_fn *put,
                               const struct provenance *prov, struct err *err)
 {
-    char path[4096];
+    char path[FILE_PATH];
     struct outfile f = {0};
-    if (snprintf(path, sizeof path, "%s/%s", folder, file) >= (int)sizeof path)
-        return err_set(err, ST_IO, "the path %s/%s is too long.", folder, file);
-    enum status st = outfile_open(&f, path, err);
+    enum status st = file_path(path, folder, file, "", err);
+    if (!st) st = outfile_open(&f, path, err);
     if (!st && !put(f.fp, p, prov))
         st = ferror(f.fp) ? err_errno(err, "write", path) : err_nomem(err, "a path in JSON", 0);
     if (!st) st = outfile_commit(&f, err);

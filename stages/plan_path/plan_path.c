@@ -17,6 +17,7 @@
 
 #include "common/central_views.h"
 #include "common/cli.h"
+#include "common/file_path.h"
 #include "common/film_lens.h"
 #include "common/log.h"
 #include "common/outfile.h"
@@ -25,19 +26,11 @@
 #include "stages/plan_path/path_export.h"
 #include "stages/plan_path/plan_move.h"
 
-enum { PATH_SIZE = 4096 };
-
-static enum status join(char out[PATH_SIZE], const char *folder, const char *file, const char *suffix, struct err *err)
-{
-    if (snprintf(out, PATH_SIZE, "%s/%s%s", folder, file, suffix) < PATH_SIZE) return ST_OK;
-    return err_set(err, ST_IO, "the path %s/%s%s is too long.", folder, file, suffix);
-}
-
 static enum status write_frames(const struct camera_path *path, const char *out, struct err *err)
 {
     struct outfile f = {0};
-    char name[PATH_SIZE];
-    enum status st = join(name, out, "frames.mk", "", err) || outfile_open(&f, name, err) ? err->status : ST_OK;
+    char name[FILE_PATH];
+    enum status st = file_path(name, out, "frames.mk", "", err) || outfile_open(&f, name, err) ? err->status : ST_OK;
     if (!st) {
         fputs("FRAMES :=", f.fp);
         for (int i = 0; i < path->frame_count; i++) fprintf(f.fp, " %s", path->frames[i].camera.name);
@@ -52,8 +45,8 @@ static enum status write_frames(const struct camera_path *path, const char *out,
 static enum status write_film(const struct camera_path *path, const struct effects *layers, const char *out,
                               const struct provenance *prov, struct err *err)
 {
-    char name[PATH_SIZE];
-    enum status st = join(name, out, "effects.txt", "", err);
+    char name[FILE_PATH];
+    enum status st = file_path(name, out, "effects.txt", "", err);
     if (!st) st = effects_write(layers, name, prov, err);
     if (!st) st = camera_path_write(path, out, prov, err);
     if (!st) st = path_export_write(path, out, prov, err);

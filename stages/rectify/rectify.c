@@ -6,11 +6,11 @@
  * writes  OUT                                         VIEW.exr: R G B (linear), A */
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "common/cli.h"
 #include "common/exr.h"
+#include "common/file_path.h"
 #include "common/lens_list.h"
 #include "common/photo_list.h"
 #include "common/photo_mask.h"
@@ -18,15 +18,6 @@
 #include "stages/rectify/resample.h"
 
 enum { RADIOMETRY_SIZE = 256 };
-
-/* The caller frees it. NULL: no memory. */
-static char *joined(const char *folder, const char *file)
-{
-    size_t size = strlen(folder) + strlen(file) + 2;
-    char *path = malloc(size);
-    if (path) snprintf(path, size, "%s/%s", folder, file);
-    return path;
-}
 
 static enum status find_view(const struct view **view, const struct lens **lens, const struct camera_set *set,
                              const struct lens_list *lenses, const char *name, const char *folder, struct err *err)
@@ -76,17 +67,12 @@ static enum status read_merged(struct image *linear, const char *path, char radi
 static enum status read_source(struct image *linear, char radiometry[RADIOMETRY_SIZE], const char *photos,
                                const struct photo_record *record, struct provenance *prov, struct err *err)
 {
-    char merged[512]; /* an id has at most 255 bytes */
-    bool brackets = record->bracket_count > 0;
-    snprintf(merged, sizeof merged, "%s.exr", record->id);
-    const char *file = brackets ? merged : record->file;
-    char *path = joined(photos, file), *input = joined(brackets ? "hdr" : "photos", file);
-    enum status st = path && input ? ST_OK : err_nomem(err, "a file name", strlen(photos) + strlen(file));
+    const bool merged = record->bracket_count > 0;
+    const char *file = merged ? record->id : record->file, *suffix = merged ? ".exr" : "";
+    char path[FILE_PATH];
     strcpy(radiometry, "approximate");
-    if (!st) st = brackets ? read_merged(linear, path, radiometry, err) : read_photo(linear, path, err);
-    if (!st) st = provenance_add_file(prov, input, path, err);
-    free(input);
-    free(path);
+    enum status st = provenance_add_in(prov, merged ? "hdr" : "photos", photos, file, suffix, path, err);
+    if (!st) st = merged ? read_merged(linear, path, radiometry, err) : read_photo(linear, path, err);
     return st;
 }
 
@@ -100,8 +86,8 @@ static enum status rectify(const char *name, const char *photos, const char *mas
     struct image linear = {0}, rectified = {0};
     const struct view *view = NULL;
     const struct lens *lens = NULL;
-    char *lens_path = joined(views, "lenses.txt"), radiometry[RADIOMETRY_SIZE] = "";
-    enum status st = lens_path ? ST_OK : err_nomem(err, "a file name", strlen(views));
+    char lens_path[FILE_PATH], radiometry[RADIOMETRY_SIZE] = "";
+    enum status st = file_path(lens_path, views, "lenses.txt", "", err);
     if (!st) st = camera_set_read(&set, views, err);
     if (!st) st = lens_list_read(&lenses, lens_path, err);
     if (!st) st = find_view(&view, &lens, &set, &lenses, name, views, err);
@@ -120,7 +106,6 @@ static enum status rectify(const char *name, const char *photos, const char *mas
     photo_record_release(&record);
     lens_list_release(&lenses);
     camera_set_release(&set);
-    free(lens_path);
     return st;
 }
 

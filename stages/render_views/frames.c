@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "common/exr.h"
+#include "common/file_path.h"
 #include "common/hole_measure.h"
 #include "common/progress.h"
 #include "common/view_image.h"
@@ -92,21 +93,19 @@ static enum status frame_write(const struct rendered_frame *f, const struct view
 enum status frames_render(const struct camera_path *path, const bool *wanted, struct renderer *renderer,
                           const char *folder, const struct provenance *prov, struct err *err)
 {
-    const size_t size = strlen(folder) + 64;
     struct rendered_frame frame = {0};
     struct progress progress;
-    char *file = malloc(size);
+    char file[FILE_PATH];
     int count = 0;
 
-    if (!file) return err_nomem(err, "a file name", size);
     for (int i = 0; i < path->frame_count; i++) count += wanted[i];
     progress_start(&progress, "rendering", count, "frames");
     enum status st = ST_OK;
     for (int i = 0; !st && i < path->frame_count; i++) {
         const struct view *camera = &path->frames[i].camera;
         if (!wanted[i]) continue;
-        snprintf(file, size, "%s/%.32s.exr", folder, camera->name);
-        st = renderer_frame(renderer, i, &frame, err);
+        st = file_path(file, folder, camera->name, ".exr", err);
+        if (!st) st = renderer_frame(renderer, i, &frame, err);
         if (!st && frame.hole_fraction >= 1)
             st = err_set(err, ST_DATA,
                          "frame %d of the path sees nothing of the scene: no view covers any of its pixels. "
@@ -117,7 +116,6 @@ enum status frames_render(const struct camera_path *path, const bool *wanted, st
     }
     progress_end(&progress);
     rendered_frame_release(&frame);
-    free(file);
     return st;
 }
 
@@ -147,20 +145,16 @@ enum status cameras_render(const struct camera_set *cameras, const bool *wanted,
     progress_start(&progress, "rendering", count, "frames");
     for (int i = 0; !st && i < cameras->view_count; i++) {
         const struct view *camera = &cameras->views[i];
-        const size_t size = strlen(folder) + strlen(camera->name) + 8;
         struct rendered_frame frame = {0};
-        char *file = malloc(size);
-        if (wanted[i] && !file) st = err_nomem(err, "a file name", size);
-        if (wanted[i] && !st) {
-            snprintf(file, size, "%s/%s.exr", folder, camera->name);
-            st = renderer_camera(renderer, camera, &frame, err);
-            if (!st && frame.hole_fraction >= 1)
-                log_warn("camera %s sees nothing of the scene: its frame is empty", camera->name);
-            if (!st) st = frame_write(&frame, camera, true, file, prov, err);
-            progress_add(&progress, 1);
-        }
+        char file[FILE_PATH];
+        if (!wanted[i]) continue;
+        st = file_path(file, folder, camera->name, ".exr", err);
+        if (!st) st = renderer_camera(renderer, camera, &frame, err);
+        if (!st && frame.hole_fraction >= 1)
+            log_warn("camera %s sees nothing of the scene: its frame is empty", camera->name);
+        if (!st) st = frame_write(&frame, camera, true, file, prov, err);
         rendered_frame_release(&frame);
-        free(file);
+        progress_add(&progress, 1);
     }
     progress_end(&progress);
     return st;

@@ -10,12 +10,11 @@
 #include <stdlib.h>
 
 #include "common/cli.h"
+#include "common/file_path.h"
 #include "common/log.h"
 #include "common/upright.h"
 #include "stages/sample_validity/picture.h"
 #include "stages/sample_validity/sample.h"
-
-enum { PATH_SIZE = 4096 };
 
 struct job {
     const char *views, *records, *depth, *subjects, *effect, *out;
@@ -64,12 +63,11 @@ static enum status sample(const struct job *job, struct provenance *prov, struct
     struct sampling_notes notes = {0};
     struct film_effect effect;
     struct vec3 *ups = NULL;
-    char picture[PATH_SIZE], text[PATH_SIZE];
+    char picture[FILE_PATH], text[FILE_PATH];
 
     enum status st = film_effect_parse(&effect, job->effect, err);
-    if (!st && (snprintf(picture, PATH_SIZE, "%s/validity.png", job->out) >= PATH_SIZE ||
-                snprintf(text, PATH_SIZE, "%s/validity.txt", job->out) >= PATH_SIZE))
-        st = err_set(err, ST_IO, "the path %s is too long.", job->out);
+    if (!st) st = file_path(picture, job->out, "validity.png", "", err);
+    if (!st) st = file_path(text, job->out, "validity.txt", "", err);
     if (!st) st = camera_set_read(&set, job->views, err);
     if (!st) st = camera_set_add_inputs(prov, job->views, err);
     if (!st && job->records) {

@@ -16,6 +16,7 @@
 #include <unistd.h>
 
 #include "common/cli.h"
+#include "common/file_path.h"
 #include "common/log.h"
 #include "common/outfile.h"
 #include "common/view_image.h"
@@ -30,25 +31,12 @@ struct views_folder {
     struct provenance *prov;
 };
 
-/* FOLDER/VIEW.exr; the caller frees it. NULL: no memory. */
-static char *view_path(const char *folder, const char *view)
-{
-    size_t size = strlen(folder) + strlen(view) + 6;
-    char *path = malloc(size);
-    if (path) snprintf(path, size, "%s/%s.exr", folder, view);
-    return path;
-}
-
 static enum status read_view(void *ctx, int view_idx, struct image *im, struct err *err)
 {
     const struct views_folder *f = ctx;
     const struct view *view = &f->set->views[view_idx];
-    char *path = view_path(f->folder, view->name), *input = view_path("views", view->name);
-    enum status st = path && input ? ST_OK : err_nomem(err, "a file name", strlen(f->folder) + strlen(view->name));
-    if (!st) st = view_image_read(im, f->folder, view, err);
-    if (!st) st = provenance_add_file(f->prov, input, path, err);
-    free(path);
-    free(input);
+    enum status st = view_image_read(im, f->folder, view, err);
+    if (!st) st = provenance_add_in(f->prov, "views", f->folder, view->name, ".exr", NULL, err);
     return st;
 }
 
@@ -56,12 +44,9 @@ static enum status read_depth(void *ctx, int view_idx, struct layered_depth *d, 
 {
     const struct views_folder *f = ctx;
     const char *name = f->set->views[view_idx].name;
-    char *path = view_path(f->before, name), *input = view_path("depth", name);
-    enum status st = path && input ? ST_OK : err_nomem(err, "a file name", strlen(f->before) + strlen(name));
+    char path[FILE_PATH];
+    enum status st = provenance_add_in(f->prov, "depth", f->before, name, ".exr", path, err);
     if (!st) st = layered_depth_read_ids(d, path, err);
-    if (!st) st = provenance_add_file(f->prov, input, path, err);
-    free(path);
-    free(input);
     return st;
 }
 

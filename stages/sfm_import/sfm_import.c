@@ -11,32 +11,18 @@
 #include <string.h>
 
 #include "common/cli.h"
+#include "common/file_path.h"
 #include "common/outfile.h"
 #include "stages/sfm_import/holdout.h"
-
-static enum status add_input(struct provenance *prov, const char *name, const char *folder, const char *file,
-                             struct err *err)
-{
-    size_t size = strlen(folder) + strlen(file) + 2;
-    char *path = malloc(size);
-    if (!path) return err_nomem(err, "a file name", size);
-    snprintf(path, size, "%s/%s", folder, file);
-    enum status st = provenance_add_file(prov, name, path, err);
-    free(path);
-    return st;
-}
 
 static enum status add_inputs(struct provenance *prov, const char *sfm, const char *model, struct err *err)
 {
     static const char *const files[] = {"cameras.txt", "images.txt", "points3D.txt"};
+    char file[FILE_PATH];
     enum status st = ST_OK;
     for (int i = 0; !st && i < 3; i++) {
-        size_t size = strlen(model) + strlen(files[i]) + 6;
-        char *name = malloc(size);
-        if (!name) return err_nomem(err, "a file name", size);
-        snprintf(name, size, "sfm/%s/%s", model, files[i]);
-        st = add_input(prov, name, sfm, name + 4, err);
-        free(name);
+        st = file_path(file, model, files[i], "", err);
+        if (!st) st = provenance_add_in(prov, "sfm", sfm, file, "", NULL, err);
     }
     return st;
 }

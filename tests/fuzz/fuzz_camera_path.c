@@ -20,12 +20,12 @@ static const char *const good[] = {
     "",
 };
 
-static void file_path(char *path, size_t size, const char *name) { snprintf(path, size, "%s/%s", folder, name); }
+static void in_folder(char *path, size_t size, const char *name) { snprintf(path, size, "%s/%s", folder, name); }
 
 static void write_part(int part, const void *bytes, size_t size)
 {
     char path[256];
-    file_path(path, sizeof path, names[part]);
+    in_folder(path, sizeof path, names[part]);
     FILE *fp = fopen(path, "wb");
     if (!fp || fwrite(bytes, 1, size, fp) != size || fclose(fp)) abort();
 }
@@ -34,10 +34,10 @@ static void remove_folder(void)
 {
     char path[256];
     for (int i = 0; i < 4; i++) {
-        file_path(path, sizeof path, names[i]);
+        in_folder(path, sizeof path, names[i]);
         unlink(path);
     }
-    file_path(path, sizeof path, "path");
+    in_folder(path, sizeof path, "path");
     rmdir(path);
     rmdir(folder);
 }
@@ -46,7 +46,7 @@ static void make_folder(void)
 {
     char path[256];
     if (!mkdtemp(folder)) abort();
-    file_path(path, sizeof path, "path");
+    in_folder(path, sizeof path, "path");
     if (mkdir(path, 0777) || atexit(remove_folder)) abort();
 }
 

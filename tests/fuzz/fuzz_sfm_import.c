@@ -30,18 +30,18 @@ static const char *const good[PARTS] = {
     "1 0 0 2 9 9 9 0.5 1 0 2 0\n",
 };
 
-static void file_path(char *path, size_t size, const char *name) { snprintf(path, size, "%s/%s", folder, name); }
+static void in_folder(char *path, size_t size, const char *name) { snprintf(path, size, "%s/%s", folder, name); }
 
 static void remove_folder(void)
 {
     static const char *const folders[] = {"0", "out"};
     char path[256];
     for (int i = 0; i < FILES; i++) {
-        file_path(path, sizeof path, names[i]);
+        in_folder(path, sizeof path, names[i]);
         unlink(path);
     }
     for (int i = 0; i < 2; i++) {
-        file_path(path, sizeof path, folders[i]);
+        in_folder(path, sizeof path, folders[i]);
         rmdir(path);
     }
     rmdir(folder);
@@ -51,14 +51,14 @@ static void make_folder(void)
 {
     char path[256];
     if (!mkdtemp(folder) || atexit(remove_folder)) abort();
-    file_path(path, sizeof path, "0");
+    in_folder(path, sizeof path, "0");
     if (mkdir(path, 0777)) abort();
 }
 
 static void write_part(int part, const void *bytes, size_t size)
 {
     char path[256];
-    file_path(path, sizeof path, names[part]);
+    in_folder(path, sizeof path, names[part]);
     FILE *fp = fopen(path, "wb");
     if (!fp || (size && fwrite(bytes, 1, size, fp) != size) || fclose(fp)) abort();
 }
@@ -70,8 +70,8 @@ static void check(const struct imported *in)
     struct camera_set set;
     struct lens_list list;
     struct err err = ERR_INIT;
-    file_path(out, sizeof out, "out");
-    file_path(lenses, sizeof lenses, "out/lenses.txt");
+    in_folder(out, sizeof out, "out");
+    in_folder(lenses, sizeof lenses, "out/lenses.txt");
     if (imported_write(in, out, NULL, &err) || camera_set_read(&set, out, &err) ||
         lens_list_read(&list, lenses, &err)) {
         fprintf(stderr, "%s\n", err.text);
