@@ -3,16 +3,7 @@
 
 #include <stdlib.h>
 
-struct sample {
-    float z, weight;
-};
-
-static int compare_samples(const void *a, const void *b)
-{
-    const struct sample *p = a, *q = b;
-    if (p->z != q->z) return p->z < q->z ? -1 : 1;
-    return (p->weight > q->weight) - (p->weight < q->weight); /* the sum is then the same in any sort's hands */
-}
+#include "common/weighted.h"
 
 bool clip_to_picture(struct subject *s, int width, int height)
 {
@@ -33,13 +24,13 @@ static void pixel_range(double low, double high, int size, int *first, int *end)
     if (*end > size) *end = size;
 }
 
-static size_t add_sample(struct sample *samples, size_t count, const struct layered_depth *d, const struct layer *l,
+static size_t add_sample(struct weighted *samples, size_t count, const struct layered_depth *d, const struct layer *l,
                          size_t pixel)
 {
     const uint32_t id = l->id[pixel];
     const float z = l->z[pixel], alpha = l->rgba[4 * pixel + 3];
     if (!id || !(z > 0) || !(alpha > 0)) return count;
-    samples[count] = (struct sample){z, alpha * (float)fmax(d->segments[id - 1].confidence, DEPTH_INHERITED)};
+    samples[count] = (struct weighted){z, alpha * (float)fmax(d->segments[id - 1].confidence, DEPTH_INHERITED)};
     return count + 1;
 }
 
@@ -51,7 +42,7 @@ enum status region_depth(double *depth, const struct layered_depth *d, const str
     pixel_range(s->y0, s->y1, d->height, &top, &bottom);
     if (right <= left || bottom <= top) return ST_OK;
     const size_t most = 2 * (size_t)(right - left) * (size_t)(bottom - top);
-    struct sample *samples = malloc(most * sizeof *samples);
+    struct weighted *samples = malloc(most * sizeof *samples);
     if (!samples) return err_nomem(err, "the depths in a rectangle", most * sizeof *samples);
     size_t count = 0;
     for (int y = top; y < bottom; y++)
@@ -60,13 +51,7 @@ enum status region_depth(double *depth, const struct layered_depth *d, const str
             count = add_sample(samples, count, d, &d->interior, pixel);
             count = add_sample(samples, count, d, &d->boundary, pixel);
         }
-    qsort(samples, count, sizeof *samples, compare_samples);
-    double total = 0, sum = 0;
-    for (size_t i = 0; i < count; i++) total += samples[i].weight;
-    for (size_t i = 0; i < count && !(*depth > 0); i++) {
-        sum += samples[i].weight;
-        if (sum >= total / 2) *depth = samples[i].z;
-    }
+    *depth = weighted_percentile(samples, count, 0.5);
     free(samples);
     return ST_OK;
 }
