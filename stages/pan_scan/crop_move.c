@@ -95,7 +95,7 @@ static void add_point(struct crop_move *m, double x, double y, struct vec3 world
         const double swap = width;
         width = height, height = swap;
     }
-    m->points[m->point_count++] = (struct scene_point){x, y, world};
+    m->points[m->point_count++] = (struct seen_point){x, y, world};
 }
 
 static enum status points_of_depth(struct crop_move *m, const struct view *view, const struct layered_depth *depth,

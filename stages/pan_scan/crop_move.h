@@ -10,16 +10,16 @@
 #include "common/layered_depth.h"
 #include "stages/pan_scan/crop_fit.h"
 
-struct scene_point { /* as the view shows it */
-    double x, y;     /* in its picture */
+struct seen_point { /* as the view shows it */
+    double x, y;    /* in its picture */
     struct vec3 world;
 };
 
 struct crop_move {
     const struct camera_path *path;
-    struct view view;           /* turned; its name is the set's */
-    int quarters;               /* by which it was turned, clockwise */
-    struct scene_point *points; /* owned; places in the turned picture */
+    struct view view;          /* turned; its name is the set's */
+    int quarters;              /* by which it was turned, clockwise */
+    struct seen_point *points; /* owned; places in the turned picture */
     size_t point_count;
     double tolerance; /* frame px */
     double *parts;    /* owned; a frame: how far along the move it is, 0 .. 1 */
