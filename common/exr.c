@@ -66,6 +66,18 @@ enum status exr_add_plane(struct exr_image *im, const char *name, enum exr_type 
     return ST_OK;
 }
 
+enum status exr_init_rgba(struct exr_image *im, const float *rgba, int width, int height, struct err *err)
+{
+    static const char *const names[] = {"R", "G", "B", "A"};
+    enum status st = exr_image_init(im, width, height, err);
+    for (size_t c = 0; !st && c < 4; c++) {
+        struct exr_plane *plane;
+        st = exr_add_plane(im, names[c], EXR_HALF, &plane, err);
+        for (size_t p = 0; !st && p < (size_t)width * (size_t)height; p++) plane->f[p] = rgba[4 * p + c];
+    }
+    return st;
+}
+
 struct exr_plane *exr_find(const struct exr_image *im, const char *name)
 {
     for (int i = 0; i < im->count; i++)
@@ -90,6 +102,13 @@ enum status exr_set_attribute(struct exr_image *im, const char *name, const char
     }
     strcpy(im->attributes[at][1], value);
     return ST_OK;
+}
+
+enum status exr_set_number(struct exr_image *im, const char *name, double value, struct err *err)
+{
+    char text[32];
+    snprintf(text, sizeof text, "%.9g", value);
+    return exr_set_attribute(im, name, text, err);
 }
 
 const char *exr_attribute(const struct exr_image *im, const char *name)

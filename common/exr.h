@@ -42,8 +42,11 @@ enum status exr_image_init(struct exr_image *im, int width, int height, struct e
 /* Adds a zeroed plane. */
 enum status exr_add_plane(struct exr_image *im, const char *name, enum exr_type type, struct exr_plane **plane,
                           struct err *err);
+/* A picture of R G B A, half, from w * h * 4 samples. */
+enum status exr_init_rgba(struct exr_image *im, const float *rgba, int width, int height, struct err *err);
 struct exr_plane *exr_find(const struct exr_image *im, const char *name); /* NULL if it is not there */
 enum status exr_set_attribute(struct exr_image *im, const char *name, const char *value, struct err *err);
+enum status exr_set_number(struct exr_image *im, const char *name, double value, struct err *err); /* 9 digits */
 const char *exr_attribute(const struct exr_image *im, const char *name); /* NULL if it is not there */
 void exr_image_release(struct exr_image *im);
 

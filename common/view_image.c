@@ -40,13 +40,7 @@ enum status view_image_write(const struct image *im, const char *path, const str
     if (im->channels != 4 || im->width != view->width || im->height != view->height)
         st = err_set(err, ST_INTERNAL, "cannot write %s: a picture of %d x %d with %d channels is not view %s.", path,
                      im->width, im->height, im->channels, view->name);
-    if (!st) st = exr_image_init(&exr, im->width, im->height, err);
-    for (int c = 0; !st && c < 4; c++) {
-        struct exr_plane *plane = NULL;
-        st = exr_add_plane(&exr, channel_names[c], EXR_HALF, &plane, err);
-        size_t pixels = (size_t)im->width * (size_t)im->height;
-        for (size_t i = 0; !st && i < pixels; i++) plane->f[i] = im->data[4 * i + (size_t)c];
-    }
+    if (!st) st = exr_init_rgba(&exr, im->data, im->width, im->height, err);
     if (!st) st = exr_set_attribute(&exr, "remodel:radiometry", radiometry, err);
     if (!st) {
         exr_set_camera(&exr, view);

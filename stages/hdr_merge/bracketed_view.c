@@ -108,14 +108,12 @@ enum status bracketed_view_write_middle(const struct bracketed_view *v, const ch
 
 static enum status set_attributes(struct exr_image *im, const struct photo_record *r, struct err *err)
 {
-    char name[64], value[64];
+    char name[64];
     enum status st = exr_set_attribute(im, "remodel:radiometry", r->bracket_count > 1 ? "exact" : "one exposure", err);
-    snprintf(value, sizeof value, "%.9g", r->white);
-    if (!st) st = exr_set_attribute(im, "remodel:white", value, err);
+    if (!st) st = exr_set_number(im, "remodel:white", r->white, err);
     for (int i = 0; !st && i < r->bracket_count; i++) {
         snprintf(name, sizeof name, "remodel:exposure.%d", i + 1);
-        snprintf(value, sizeof value, "%.9g", r->brackets[i].exposure);
-        st = exr_set_attribute(im, name, value, err);
+        st = exr_set_number(im, name, r->brackets[i].exposure, err);
     }
     return st;
 }

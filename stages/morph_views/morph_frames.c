@@ -1,7 +1,6 @@
 /* morph_frames.c - see morph_frames.h. */
 #include "stages/morph_views/morph_frames.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -30,24 +29,14 @@ struct job {
 static enum status write_frame(const struct job *job, const struct rendered_frame *f, const struct view *camera,
                                double t, struct err *err)
 {
-    static const char *const names[] = {"R", "G", "B", "A"};
-    const size_t n = (size_t)f->width * (size_t)f->height;
     struct exr_image im = {0};
-    char path[FILE_PATH], holes[32], unfilled[32], time[32];
-    if (file_path(path, job->out, camera->name, ".exr", err)) return err->status;
-    snprintf(holes, sizeof holes, "%.9g", f->hole_fraction);
-    snprintf(unfilled, sizeof unfilled, "%.9g", f->unfilled_fraction);
-    snprintf(time, sizeof time, "%.9g", t);
-    enum status st = exr_image_init(&im, f->width, f->height, err);
-    for (size_t k = 0; !st && k < 4; k++) {
-        struct exr_plane *plane;
-        st = exr_add_plane(&im, names[k], EXR_HALF, &plane, err);
-        for (size_t p = 0; !st && p < n; p++) plane->f[p] = f->rgba[4 * p + k];
-    }
-    if (!st && job->posed) exr_set_camera(&im, camera);
-    if (!st) st = exr_set_attribute(&im, "remodel:holes", holes, err);
-    if (!st) st = exr_set_attribute(&im, "remodel:unfilled", unfilled, err);
-    if (!st) st = exr_set_attribute(&im, "remodel:t", time, err);
+    char path[FILE_PATH];
+    enum status st = file_path(path, job->out, camera->name, ".exr", err);
+    if (!st) st = exr_init_rgba(&im, f->rgba, f->width, f->height, err);
+    if (job->posed) exr_set_camera(&im, camera);
+    if (!st) st = exr_set_number(&im, "remodel:holes", f->hole_fraction, err);
+    if (!st) st = exr_set_number(&im, "remodel:unfilled", f->unfilled_fraction, err);
+    if (!st) st = exr_set_number(&im, "remodel:t", t, err);
     if (!st) st = exr_set_attribute(&im, "remodel:radiometry", job->morph->radiometry, err);
     if (!st) st = exr_write(&im, path, job->prov, err);
     exr_image_release(&im);

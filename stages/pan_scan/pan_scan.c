@@ -91,33 +91,24 @@ static void tell(const struct crop_move *m, const bool *wanted)
 static enum status frame_write(const struct image *frame, const struct crop_move *m, int i, const char *file,
                                const struct provenance *prov, struct err *err)
 {
-    static const char *const names[] = {"R", "G", "B", "A"};
     const size_t pixels = (size_t)frame->width * (size_t)frame->height;
     const struct crop c = crop_move_stored(m, crop_move_crop(m, i));
     struct exr_image im = {0};
-    struct exr_plane *plane;
     size_t empty = 0;
     double misfit = 0;
-    char holes[32], crop[128], off[32];
+    char crop[128];
 
-    enum status st = exr_image_init(&im, frame->width, frame->height, err);
-    for (size_t k = 0; !st && k < 4; k++) {
-        st = exr_add_plane(&im, names[k], EXR_HALF, &plane, err);
-        for (size_t p = 0; !st && p < pixels; p++) plane->f[p] = frame->data[4 * p + k];
-    }
+    enum status st = exr_init_rgba(&im, frame->data, frame->width, frame->height, err);
     for (size_t p = 0; p < pixels; p++) empty += frame->data[4 * p + 3] < 0.5f;
     if (!st) st = crop_move_misfit(&misfit, m, i, err);
-    snprintf(holes, sizeof holes, "%.9g", (double)empty / (double)pixels);
+    const double holes = (double)empty / (double)pixels;
     snprintf(crop, sizeof crop, "%.9g %.9g %.9g %.9g", c.x, c.y, c.width, c.height);
-    snprintf(off, sizeof off, "%.9g", misfit);
-    if (!st) {
-        exr_set_camera(&im, &m->view);
-        st = exr_set_attribute(&im, "remodel:holes", holes, err);
-    }
-    if (!st) st = exr_set_attribute(&im, "remodel:unfilled", holes, err);
+    exr_set_camera(&im, &m->view);
+    if (!st) st = exr_set_number(&im, "remodel:holes", holes, err);
+    if (!st) st = exr_set_number(&im, "remodel:unfilled", holes, err);
     if (!st) st = exr_set_attribute(&im, "remodel:view", m->view.name, err);
     if (!st) st = exr_set_attribute(&im, "remodel:crop", crop, err);
-    if (!st) st = exr_set_attribute(&im, "remodel:misfit", off, err);
+    if (!st) st = exr_set_number(&im, "remodel:misfit", misfit, err);
     if (!st) st = exr_write(&im, file, prov, err);
     exr_image_release(&im);
     return st;

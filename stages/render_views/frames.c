@@ -60,31 +60,20 @@ static enum status measure_holes(double *h, const struct rendered_frame *f, stru
 static enum status frame_write(const struct rendered_frame *f, const struct view *camera, bool with_holes,
                                const char *file, const struct provenance *prov, struct err *err)
 {
-    static const char *const names[] = {"R", "G", "B", "A"};
     const size_t pixels = (size_t)f->width * (size_t)f->height;
     struct exr_image im = {0};
     struct exr_plane *plane;
-    char holes[32], unfilled[32], measure[32];
     double h = 0;
 
-    snprintf(holes, sizeof holes, "%.9g", f->hole_fraction);
-    snprintf(unfilled, sizeof unfilled, "%.9g", f->unfilled_fraction);
     enum status st = measure_holes(&h, f, err);
-    snprintf(measure, sizeof measure, "%.9g", h);
-    if (!st) st = exr_image_init(&im, f->width, f->height, err);
-    for (size_t k = 0; !st && k < 4; k++) {
-        st = exr_add_plane(&im, names[k], EXR_HALF, &plane, err);
-        for (size_t p = 0; !st && p < pixels; p++) plane->f[p] = f->rgba[4 * p + k];
-    }
+    if (!st) st = exr_init_rgba(&im, f->rgba, f->width, f->height, err);
     if (!st && !(st = exr_add_plane(&im, "Z", EXR_FLOAT, &plane, err))) memcpy(plane->f, f->z, pixels * sizeof *f->z);
     if (!st && with_holes && !(st = exr_add_plane(&im, "hole", EXR_HALF, &plane, err)))
         for (size_t p = 0; p < pixels; p++) plane->f[p] = f->hole[p];
-    if (!st) {
-        exr_set_camera(&im, camera);
-        st = exr_set_attribute(&im, "remodel:holes", holes, err);
-    }
-    if (!st) st = exr_set_attribute(&im, "remodel:unfilled", unfilled, err);
-    if (!st && isfinite(h)) st = exr_set_attribute(&im, "remodel:h", measure, err);
+    exr_set_camera(&im, camera);
+    if (!st) st = exr_set_number(&im, "remodel:holes", f->hole_fraction, err);
+    if (!st) st = exr_set_number(&im, "remodel:unfilled", f->unfilled_fraction, err);
+    if (!st && isfinite(h)) st = exr_set_number(&im, "remodel:h", h, err);
     if (!st) st = exr_write(&im, file, prov, err);
     exr_image_release(&im);
     return st;

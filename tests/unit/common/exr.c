@@ -198,6 +198,26 @@ static void provenance_is_in_the_file(void **state)
     provenance_release(&prov);
 }
 
+static void interleaved_samples_and_numbers(void **state)
+{
+    const float rgba[] = {0, 0.5f, 1, 0.25f, 2, 4, 8, 0.75f};
+    static const char *const names[] = {"R", "G", "B", "A"};
+    struct err err = ERR_INIT;
+    struct exr_image im;
+    (void)state;
+    assert_ok(exr_init_rgba(&im, rgba, 2, 1, &err), err);
+    assert_int_equal(im.count, 4);
+    for (int c = 0; c < 4; c++) {
+        assert_true(exr_find(&im, names[c])->type == EXR_HALF);
+        for (int p = 0; p < 2; p++) assert_true(exr_find(&im, names[c])->f[p] == rgba[4 * p + c]);
+    }
+    assert_ok(exr_set_number(&im, "remodel:holes", 1.0 / 3, &err), err);
+    assert_string_equal(exr_attribute(&im, "remodel:holes"), "0.333333333");
+    exr_image_release(&im);
+    assert_int_equal(exr_init_rgba(&im, rgba, 0, 1, &err), ST_DATA);
+    exr_image_release(&im);
+}
+
 static void names_and_sizes(void **state)
 {
     struct err err = ERR_INIT;
@@ -362,6 +382,7 @@ int main(void)
         cmocka_unit_test(same_bytes_for_any_threads_and_order),
         cmocka_unit_test(refused_samples_leave_the_old_file),
         cmocka_unit_test(provenance_is_in_the_file),
+        cmocka_unit_test(interleaved_samples_and_numbers),
         cmocka_unit_test(names_and_sizes),
         cmocka_unit_test(foreign_codecs_and_layouts),
         cmocka_unit_test(broken_files),
