@@ -107,7 +107,7 @@ static enum status read_side(struct morph *m, int side, const char *path, struct
         if (!good)
             st = err_set(err, ST_DATA, "%s: the attribute remodel:gain is \"%s\", wanted three numbers above 0.", path,
                          gain ? gain : "");
-        snprintf(m->radiometry, sizeof m->radiometry, "%.60s", radiometry ? radiometry : "approximate");
+        snprintf(m->radiometry, sizeof m->radiometry, "%s", radiometry ? radiometry : "approximate");
     }
     exr_image_release(&im);
     return st;

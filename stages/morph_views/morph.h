@@ -7,6 +7,7 @@
 
 #include "common/camera_set.h"
 #include "common/image.h"
+#include "common/linear_photo.h"
 #include "common/provenance.h"
 #include "common/rendered_frame.h"
 #include "stages/morph_views/match.h"
@@ -15,7 +16,7 @@ struct morph {
     struct image pictures[2]; /* R G B */
     struct flow flows[2];
     double gain[3]; /* the first picture's colours times these are the second one's: exposure, white balance */
-    char radiometry[64];
+    char radiometry[RADIOMETRY_SIZE];
 };
 
 /* The medians of what sure matches say; 1 where they say nothing. */

@@ -7,12 +7,11 @@
 #include <string.h>
 
 #include "common/camera_path.h"
-#include "common/exr.h"
 #include "common/file_path.h"
 #include "common/lens_list.h"
+#include "common/linear_photo.h"
 #include "common/log.h"
 #include "common/outfile.h"
-#include "common/photo_list.h"
 #include "stages/morph_views/morph.h"
 
 #define USUAL_FOCAL    1.2 /* of the longest side, where EXIF says nothing */
@@ -23,39 +22,6 @@
 #define NEAR_BASELINES 3
 
 /* --------------------------------------------------------------------------------------------------------- photos */
-
-/* R G B, scene-linear; of a photo in several exposures what hdr_merge made of them. */
-static enum status read_photo(struct image *linear, char *radiometry, size_t size, const char *photos,
-                              const struct photo_record *record, struct provenance *prov, struct err *err)
-{
-    static const char *const names[] = {"R", "G", "B"};
-    const bool merged = record->bracket_count > 0;
-    char path[FILE_PATH];
-    struct photo photo = {0};
-    struct exr_image exr = {0};
-    enum status st = provenance_add_in(prov, merged ? "hdr" : "photos", photos, merged ? record->id : record->file,
-                                       merged ? ".exr" : "", path, err);
-    snprintf(radiometry, size, "approximate");
-    if (!st && !merged && !(st = photo_read(&photo, path, err))) st = photo_to_linear(linear, &photo, err);
-    if (!st && merged) {
-        st = exr_read(&exr, path, names, 3, err);
-        for (int c = 0; !st && c < 3; c++)
-            if (!exr_find(&exr, names[c])->f)
-                st = err_set(err, ST_DATA, "%s: channel %s holds integers, wanted half or float; merge the view again.",
-                             path, names[c]);
-        if (!st) st = image_init(linear, exr.width, exr.height, 3, err);
-        for (size_t c = 0; !st && c < 3; c++) {
-            const float *from = exr_find(&exr, names[c])->f;
-            for (size_t i = 0; i < (size_t)exr.width * (size_t)exr.height; i++)
-                linear->data[3 * i + c] = fmaxf(from[i], 0);
-        }
-        if (!st && exr_attribute(&exr, "remodel:radiometry"))
-            snprintf(radiometry, size, "%.60s", exr_attribute(&exr, "remodel:radiometry"));
-    }
-    photo_release(&photo);
-    exr_image_release(&exr);
-    return st;
-}
 
 struct pair {
     struct photo_record records[2];
@@ -74,7 +40,7 @@ static enum status read_pair(struct pair *pair, struct morph *m, const struct mo
         struct image linear = {0};
         st = photo_record_read(record, job->records, id, err);
         if (!st) st = provenance_add_in(prov, "photos", job->records, id, ".txt", NULL, err);
-        if (!st) st = read_photo(&linear, m->radiometry, sizeof m->radiometry, job->photos, record, prov, err);
+        if (!st) st = linear_photo_read(&linear, m->radiometry, job->photos, record, prov, err);
         const int turned = record->info.orientation;
         if (!st && !i) {
             int w, h;
