@@ -33,8 +33,8 @@ double view_project(const struct view *view, struct vec3 world, double *u, doubl
 /* World point of a pixel at depth z (along the axis, never along the ray). */
 struct vec3 view_unproject(const struct view *view, double u, double v, double z);
 
-/* The camera from a point (a, b) of a lens, an offset of its centre in the camera's x and y, scene units: what lies at the
- * depth `focus` stays where it is in the picture, by the principal point. */
+/* The camera from a point (a, b) of a lens, an offset of its centre in the camera's x and y, scene units: what lies at
+ * the depth `focus` stays where it is in the picture, by the principal point. */
 struct view view_from_lens_point(const struct view *view, double a, double b, double focus);
 /* The same picture with that many pixels. */
 void view_resize(struct view *view, int width, int height);

@@ -4,8 +4,8 @@
 
 #include "camera_set.h"
 
-/* order[set->view_count]: views by the distance of their centres to the centres' centroid; of those at one distance (the views of one
- * photo) first those that look where most views look. */
+/* order[set->view_count]: views by the distance of their centres to the centres' centroid; of those at one distance
+ * (the views of one photo) first those that look where most views look. */
 enum status central_views(int *order, const struct camera_set *set, struct err *err);
 
 #endif

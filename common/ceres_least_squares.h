@@ -15,8 +15,8 @@ struct least_squares {
     int iterations; /* at most */
 };
 
-/* x: a start on entry, a local minimum on return, or as near to it as the iterations come. One thread: same bits always.
- * ST_DATA: no step could be made from the start. */
+/* x: a start on entry, a local minimum on return, or as near to it as the iterations come. One thread: same bits
+ * always. ST_DATA: no step could be made from the start. */
 enum status ceres_least_squares(const struct least_squares *problem, double *x, struct err *err);
 
 #ifdef __cplusplus

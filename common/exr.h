@@ -55,12 +55,13 @@ void exr_image_release(struct exr_image *im);
 enum status exr_write(const struct exr_image *im, const char *path, const struct provenance *prov, struct err *err);
 
 /* Reads all channels (or, with names != NULL, those, a missing one being ST_DATA that lists what is there; others are
- * not looked at; with no name at all only the header is read). Single-part scanline or tiled files of any codec OpenEXRCore has, no channel subsampled; the data window
- * may start anywhere but must be as large as the display window. NaN or infinity in a float channel is ST_DATA naming
- * channel and pixel. A file with missing chunks is ST_DATA. The attributes read are its strings of at most 255 bytes
- * but for the provenance and the format's own. */
+ * not looked at; with no name at all only the header is read). Single-part scanline or tiled files of any codec
+ * OpenEXRCore has, no channel subsampled; the data window may start anywhere but must be as large as the display
+ * window. NaN or infinity in a float channel is ST_DATA naming channel and pixel. A file with missing chunks is
+ * ST_DATA. The attributes read are its strings of at most 255 bytes but for the provenance and the format's own. */
 enum status exr_read(struct exr_image *im, const char *path, const char *const *names, int name_count, struct err *err);
-/* All channels, with NaN and infinity where the file has them: for what other programs wrote, who mark so what they do not know. */
+/* All channels, with NaN and infinity where the file has them: for what other programs wrote, who mark so what they do
+ * not know. */
 enum status exr_read_any(struct exr_image *im, const char *path, struct err *err);
 
 #endif

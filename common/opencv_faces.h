@@ -21,8 +21,9 @@ extern const char *const face_cascades[];
 enum status face_detector_open(struct face_detector **detector, const char *folder, struct err *err);
 void face_detector_release(struct face_detector *detector); /* NULL is fine */
 
-/* Faces in an upright 8-bit grey picture whose width lies between least and most, px; *faces is malloc'ed, the caller frees it.
- * What several cascades find at one place stands there several times. The same picture gives the same faces. */
+/* Faces in an upright 8-bit grey picture whose width lies between least and most, px; *faces is malloc'ed, the caller
+ * frees it. What several cascades find at one place stands there several times. The same picture gives the same
+ * faces. */
 enum status face_detect(struct face_detector *detector, const unsigned char *grey, int width, int height, double least,
                         double most, struct face **faces, int *count, struct err *err);
 

@@ -1,7 +1,8 @@
-/* opencv_features.h - what two pictures have in common: matched features, and the geometry of two cameras that they tell.
+/* opencv_features.h - what two pictures have in common: matched features, and the geometry of two cameras that they
+ * tell.
  *
- * A thin face of OpenCV: SIFT, mutual best matches that pass the ratio test, USAC with a fixed seed. Pixels: a picture's
- * first pixel has its centre at (0.5, 0.5). */
+ * A thin face of OpenCV: SIFT, mutual best matches that pass the ratio test, USAC with a fixed seed. Pixels: a
+ * picture's first pixel has its centre at (0.5, 0.5). */
 #ifndef REMODEL_OPENCV_FEATURES_H
 #define REMODEL_OPENCV_FEATURES_H
 
@@ -26,7 +27,8 @@ struct two_view {
 };
 
 /* grey: 8 bits, width * height. focal: of both pictures, px; a guess serves, for it decides only what is near and what
- * far. tolerance: px from the epipolar line. Too few matches are no error: inliers is 0. Same bytes in, same bits out. */
+ * far. tolerance: px from the epipolar line. Too few matches are no error: inliers is 0. Same bytes in, same bits
+ * out. */
 enum status two_view_find(struct two_view *out, const unsigned char *first, const unsigned char *second, int width,
                           int height, double focal, double tolerance, struct err *err);
 void two_view_release(struct two_view *v);

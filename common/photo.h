@@ -41,8 +41,8 @@ enum status jpeg_write(const char *path, const unsigned char *rgb, int width, in
  * f-number, ISO speed; 0 and "" are left out). Its width, height and bits are not looked at. */
 enum status photo_write_jpeg(const char *path, const unsigned char *rgb, int width, int height, int quality,
                              const struct photo_info *info, struct err *err);
-/* A rectangle of the photo's pixels as they are, 8 or 16 bits, as PNG with the same EXIF as above. Its samples read back
- * are the photo's. */
+/* A rectangle of the photo's pixels as they are, 8 or 16 bits, as PNG with the same EXIF as above. Its samples read
+ * back are the photo's. */
 enum status photo_write_part(const char *path, const struct photo *p, int x, int y, int width, int height,
                              const struct photo_info *info, struct err *err);
 /* JPEG in memory; *bytes is malloc'ed, the caller frees it. */

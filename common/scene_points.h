@@ -1,4 +1,5 @@
-/* scene_points.h - the middle of every segment of a scene, in the world: what is where, a few thousand points in all. */
+/* scene_points.h - the middle of every segment of a scene, in the world: what is where, a few thousand points in
+ * all. */
 #ifndef REMODEL_SCENE_POINTS_H
 #define REMODEL_SCENE_POINTS_H
 

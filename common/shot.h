@@ -6,9 +6,9 @@
  * keep the size of the same quadrilateral, so does every camera between them (the dolly zoom).
  *
  * Of two subjects the thesis gives the second end's focal length by the ratio of the subjects' sizes. Here both ends
- * keep the size that the first subject has at the frame's origin at 1.5 f (or less, if it is large): the second subject then ends at exactly the
- * size at which the first began, and what is valid at one end does not depend on where the other one is. The dolly
- * zoom keeps its subject's size at the origin at f, likewise. */
+ * keep the size that the first subject has at the frame's origin at 1.5 f (or less, if it is large): the second subject
+ * then ends at exactly the size at which the first began, and what is valid at one end does not depend on where the
+ * other one is. The dolly zoom keeps its subject's size at the origin at f, likewise. */
 #ifndef REMODEL_SHOT_H
 #define REMODEL_SHOT_H
 
@@ -52,7 +52,8 @@ struct vec3 shot_place(const struct shot *shot, double x, double y, double z); /
 struct vec3 shot_coordinates(const struct shot *shot, struct vec3 world);
 /* Upright, at a place, pointing at a target. Never fails: where there is no such direction, it looks along z. */
 struct view shot_aim(const struct shot *shot, struct vec3 at, struct vec3 target, double focal);
-/* An end's camera. Its fx is 0 where the rule cannot be kept: the quadrilateral is not in front, or it would be too large. */
+/* An end's camera. Its fx is 0 where the rule cannot be kept: the quadrilateral is not in front, or it would be too
+ * large. */
 struct view shot_end_camera(const struct shot *shot, const struct shot_end *end, struct vec3 at);
 /* A camera on the way from one end to the other, 0 <= t <= 1. */
 struct view shot_camera(const struct shot *shot, const struct shot_move *m, const struct vec3 at[2], double t);

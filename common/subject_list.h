@@ -5,9 +5,9 @@
  *   subjects N
  *   subject VIEW face|user X0 Y0 X1 Y1 DEPTH SCORE CONFIRMED ASKED
  *   corner X Y Z                         four a subject: upper left, upper right, lower right, lower left
- * The rectangle is in the view's pixels, x to the right and y down; it stands in space at one depth along the view's axis,
- * parallel to its picture. Corners are in the world, named as the upright picture shows them: a view that is stored turned
- * begins with another corner of its rectangle. Moves use the first two subjects. */
+ * The rectangle is in the view's pixels, x to the right and y down; it stands in space at one depth along the view's
+ * axis, parallel to its picture. Corners are in the world, named as the upright picture shows them: a view that is
+ * stored turned begins with another corner of its rectangle. Moves use the first two subjects. */
 #ifndef REMODEL_SUBJECT_LIST_H
 #define REMODEL_SUBJECT_LIST_H
 
@@ -33,7 +33,8 @@ struct subject_list {
     int count;
 };
 
-/* No subject is a valid list. ST_DATA with file and line: numbers out of the ranges above, corners that span no area. */
+/* No subject is a valid list. ST_DATA with file and line: numbers out of the ranges above, corners that span no
+ * area. */
 enum status subject_list_read(struct subject_list *list, const char *path, struct err *err);
 enum status subject_list_write(const struct subject_list *list, const char *path, const struct provenance *prov,
                                struct err *err);
@@ -47,7 +48,8 @@ void subject_place(struct subject *s, const struct view *view, const struct vec3
 
 struct vec3 subject_center(const struct subject *s);
 struct vec3 subject_lower_center(const struct subject *s); /* the middle of the lower half */
-/* Height in a camera's pixels: from the middle of the upper to that of the lower edge; 0 if one is not in front of it. */
+/* Height in a camera's pixels: from the middle of the upper to that of the lower edge; 0 if one is not in front of
+ * it. */
 double subject_size_in(const struct subject *s, const struct view *camera);
 
 #endif

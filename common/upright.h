@@ -11,8 +11,8 @@
 /* Where a photo's upright direction points in its camera, by EXIF orientation (1..8; anything else is 1). */
 struct vec3 upright_from_orientation(int orientation);
 
-/* The same in each view's camera: ups[set->view_count]. views: the folder of lenses.txt; records: of the photos' ID.txt.
- * What was read becomes inputs of prov. ST_DATA: lenses.txt lacks a view of the set. */
+/* The same in each view's camera: ups[set->view_count]. views: the folder of lenses.txt; records: of the photos'
+ * ID.txt. What was read becomes inputs of prov. ST_DATA: lenses.txt lacks a view of the set. */
 enum status upright_read(struct vec3 *ups, const struct camera_set *set, const char *views, const char *records,
                          struct provenance *prov, struct err *err);
 

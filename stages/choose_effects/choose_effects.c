@@ -1,4 +1,4 @@
-/* choose_effects.c - says which films to make of a scene: one by chance, or all that suit it; or whether a name is an effect's.
+/* choose_effects.c - which films to make of a scene: one by chance, or all that suit it; or if a name is an effect's.
  *
  * reads   SUBJECTS       what there is to show (find_subjects)
  * writes  OUT            EFFECTS := dolly_in dolly_in+dim ..., for make; nothing where a name is looked at */

@@ -1,14 +1,16 @@
 /* faces.c - see faces.h.
  *
- * The centremost view is turned upright, scaled to `side`, and looked through for faces (thesis 3.4.2). What the cascades
- * find several times at one place is one face: the mean of its rectangles, weighted by their scores, which are added.
+ * The centremost view is turned upright, scaled to `side`, and looked through for faces (thesis 3.4.2). What the
+ * cascades find several times at one place is one face: the mean of its rectangles, weighted by their scores, which are
+ * added.
  *
  * Cascades also see faces that are not there. So each face becomes a quadrilateral in space, at the median depth of its
- * rectangle, and other views that see it from nearby directions are asked: what lies around the quadrilateral, in its plane, is
- * resampled from their pictures, where a face of that place and size would stand in the middle, as large as the quadrilateral and as
- * upright as in the first view. A view confirms if a cascade finds one there. Views from the same place are not asked: they
- * tell nothing of space. What looks like a face by chance, a dormer say, does so from everywhere: it differs by how few
- * overlapping windows see it, so that the mean of the views' scores decides as well. If a view has no confirmed face the next one outwards is looked at; the thesis has the centremost alone. */
+ * rectangle, and other views that see it from nearby directions are asked: what lies around the quadrilateral, in its
+ * plane, is resampled from their pictures, where a face of that place and size would stand in the middle, as large as
+ * the quadrilateral and as upright as in the first view. A view confirms if a cascade finds one there. Views from the
+ * same place are not asked: they tell nothing of space. What looks like a face by chance, a dormer say, does so from
+ * everywhere: it differs by how few overlapping windows see it, so that the mean of the views' scores decides as well.
+ * If a view has no confirmed face the next one outwards is looked at; the thesis has the centremost alone. */
 #include "stages/find_subjects/faces.h"
 
 #include <stdlib.h>
@@ -143,7 +145,7 @@ static void merge_faces(struct face *faces, int *count)
     qsort(faces, (size_t)kept, sizeof *faces, compare_areas);
 }
 
-/* ----------------------------------------------------------------------------------------------------------- a search */
+/* --------------------------------------------------------------------------------------------------------- a search */
 
 struct search {
     const struct camera_set *set;

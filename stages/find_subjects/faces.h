@@ -1,7 +1,8 @@
-/* faces.h - the faces that a scene's photographs show: seen in a central view, and at the same place in space in others.
+/* faces.h - the faces that a scene's photographs show: seen in a central view, and at the same place in space in
+ * others.
  *
- * Pixels are a view's, depth is along its axis. Where pictures come from and who sees faces in them is the caller's: the
- * stage gives files and OpenCV's cascades, tests give what they know. */
+ * Pixels are a view's, depth is along its axis. Where pictures come from and who sees faces in them is the caller's:
+ * the stage gives files and OpenCV's cascades, tests give what they know. */
 #ifndef REMODEL_FACES_H
 #define REMODEL_FACES_H
 

@@ -5,7 +5,7 @@
  *         RECORDS/ID.txt                                with --records: which way up the photos are
  *         VIEWS/VIEW.exr                                without --subjects: the centremost views and those that confirm
  *         DEPTH/VIEW.exr, VIEW.txt                      of the views in which subjects are
- * writes  OUT                                           the subjects, the two largest faces or the user's in their order */
+ * writes  OUT                                           the subjects, the two largest faces or the user's in order */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -75,7 +75,7 @@ static enum status detect(void *ctx, const unsigned char *grey, int width, int h
     return face_detect(in->detector, grey, width, height, least, most, faces, count, err);
 }
 
-/* ---------------------------------------------------------------------------------------------------------- outcomes */
+/* --------------------------------------------------------------------------------------------------------- outcomes */
 
 static void tell_face(const struct face_sighting *f)
 {

@@ -72,8 +72,8 @@ enum status region_list_read(struct region_list *list, const char *path, struct 
 
 /* ------------------------------------------------------------------------------------------------ through the lens */
 
-/* The box, in the view's pixels, of the part of the region that the photo has and that lies before the view; returns how many
- * places of it the view's picture shows. */
+/* The box, in the view's pixels, of the part of the region that the photo has and that lies before the view; returns
+ * how many places of it the view's picture shows. */
 static int project_region(struct subject *s, const struct region *r, const struct lens *lens, const struct view *view)
 {
     const struct mat3 view_from_photo = mat3_from_quat(lens->view_from_photo);

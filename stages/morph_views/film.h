@@ -20,9 +20,9 @@ enum status film_size(int *width, int *height, int photo_width, int photo_height
 /* Width and height of a stored photo once it is turned upright (EXIF, 1..8). */
 void film_upright_size(int *width, int *height, int stored_width, int stored_height, int orientation);
 
-/* stored: R G B. The photo is turned upright, scaled until it covers the film, and cut evenly where it sticks out; scale
- * 1 takes the pixels as they are. Larger photos are reduced by a tent filter. ST_DATA: more than half of the photo would be
- * cut. Same bits for any number of threads. */
+/* stored: R G B. The photo is turned upright, scaled until it covers the film, and cut evenly where it sticks out;
+ * scale 1 takes the pixels as they are. Larger photos are reduced by a tent filter. ST_DATA: more than half of the
+ * photo would be cut. Same bits for any number of threads. */
 enum status film_picture_make(struct film_picture *out, const struct image *stored, int orientation, int width,
                               int height, struct err *err);
 void film_picture_release(struct film_picture *p);

@@ -2,10 +2,10 @@
  *
  * A pixel whose way there and back ends where it began is sure. Small islands that flow unlike all around them are not,
  * whatever they say. What is not sure is mostly hidden in the other picture, behind something nearer: it belongs to
- * the far side of the gap, so of what the eight directions meet first the second farthest is taken (Hirschmueller 2008),
- * or where near and far are not known, the one that looks most like the pixel. Where nothing sure is met the flow stays as it is.
- * Wide areas without a match have no such side: the farther from what is sure, the more the flow is only smooth, so that the
- * morph dissolves there and does not break into pieces. */
+ * the far side of the gap, so of what the eight directions meet first the second farthest is taken (Hirschmueller
+ * 2008), or where near and far are not known, the one that looks most like the pixel. Where nothing sure is met the
+ * flow stays as it is. Wide areas without a match have no such side: the farther from what is sure, the more the flow
+ * is only smooth, so that the morph dissolves there and does not break into pieces. */
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>

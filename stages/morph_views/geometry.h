@@ -30,9 +30,9 @@ struct geometry {
 };
 
 /* The line of film pixel (x, y) of picture `from` (0, 1) in the other: the unit vector towards what is nearer, and the
- * distance of a point (u, v) there from the line, dx (v - v0) - dy (u - u0) = dx v - dy u + c. False: not known; a rotation
- * has no lines. Through a lens that distorts it is a curve: with `at`, a point {u, v} of the other picture, its tangent near
- * there, otherwise (NULL) the chord from the farthest to the nearest place. */
+ * distance of a point (u, v) there from the line, dx (v - v0) - dy (u - u0) = dx v - dy u + c. False: not known; a
+ * rotation has no lines. Through a lens that distorts it is a curve: with `at`, a point {u, v} of the other picture,
+ * its tangent near there, otherwise (NULL) the chord from the farthest to the nearest place. */
 struct epipolar_line {
     float dx, dy, c;
 };

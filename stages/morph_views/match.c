@@ -2,11 +2,12 @@
  *
  * At each level of a pyramid every pixel has up to LABELS candidates for its flow: at the coarsest all that lie within
  * the search range compete; below, what the level above liked best here and around, what pixels some way off found,
- * steps of a pixel, and matched features near by. Semi-global matching (Hirschmueller 2008) along eight directions chooses
- * among them: a candidate costs what its pixels look different (census and colour, as in ADCensus: Mei 2011), plus the
- * soft epipolar term, plus what sets it apart from its neighbours' candidates. As labels are flows, not disparities, a
- * thing that moved between the photos is one more label: it pays the epipolar term once a pixel, and that grows no more
- * beyond a few pixels. Candidates that differ from pixel to pixel are as in discrete flow (Menze 2015). */
+ * steps of a pixel, and matched features near by. Semi-global matching (Hirschmueller 2008) along eight directions
+ * chooses among them: a candidate costs what its pixels look different (census and colour, as in ADCensus: Mei 2011),
+ * plus the soft epipolar term, plus what sets it apart from its neighbours' candidates. As labels are flows, not
+ * disparities, a thing that moved between the photos is one more label: it pays the epipolar term once a pixel, and
+ * that grows no more beyond a few pixels. Candidates that differ from pixel to pixel are as in discrete flow (Menze
+ * 2015). */
 #include "stages/morph_views/match.h"
 
 #include <immintrin.h>

@@ -17,12 +17,14 @@ struct flow {
 enum status flow_init(struct flow *f, int width, int height, struct err *err);
 void flow_release(struct flow *f);
 
-/* A picture as matching sees it: R G B of roughly even steps to the eye, the median grey at 0.5 whatever the exposure. */
+/* A picture as matching sees it: R G B of roughly even steps to the eye, the median grey at 0.5 whatever the
+ * exposure. */
 enum status match_image(struct image *out, const struct image *linear, struct err *err);
 
 /* flows[0]: from first to second, flows[1]: back. Whole pixels at first, then parts. Both pictures have one size, as
- * match_image leaves them. Where the two flows contradict each other the flow is filled from the far side, and `sure` is
- * 0. Matches are tried wherever they are, whether they obey the geometry or not. Same bits for any number of threads. */
+ * match_image leaves them. Where the two flows contradict each other the flow is filled from the far side, and `sure`
+ * is 0. Matches are tried wherever they are, whether they obey the geometry or not. Same bits for any number of
+ * threads. */
 enum status match_pictures(struct flow flows[2], const struct image pictures[2], const struct geometry *geometry,
                            const struct feature_match *matches, int match_count, const struct morph_params *params,
                            struct err *err);

@@ -1,9 +1,10 @@
 /* morph.c - see morph.h: pictures between two.
  *
- * Each picture is a sheet whose pixels have gone the part t of their way (the second one's 1 - t, backwards). Between four
- * neighbours that flow alike the sheet is stretched; where it tears, at a border of something nearer, each pixel keeps its own
- * square, so that the gap between them shows what the other picture has there. Where sheets fold, what is nearer wins.
- * The two are blended by t and by how sure they are: what only one of the photos saw comes from it alone. */
+ * Each picture is a sheet whose pixels have gone the part t of their way (the second one's 1 - t, backwards). Between
+ * four neighbours that flow alike the sheet is stretched; where it tears, at a border of something nearer, each pixel
+ * keeps its own square, so that the gap between them shows what the other picture has there. Where sheets fold, what is
+ * nearer wins. The two are blended by t and by how sure they are: what only one of the photos saw comes from it
+ * alone. */
 #include "stages/morph_views/morph.h"
 
 #include <math.h>

@@ -1,11 +1,11 @@
 /* crop_fit.c - see crop_fit.h.
  *
- * With p = (x / step_x, y / step_y) a frame shows p at S p + t, S > 0. Wanted are S and t that bring the points' p near their q = (u, v):
- * Huber's loss of the distances, minimised by reweighted least squares. That the crop lies within the photograph of size P (in
- * units of p) is linear in S and t,
+ * With p = (x / step_x, y / step_y) a frame shows p at S p + t, S > 0. Wanted are S and t that bring the points' p near
+ * their q = (u, v): Huber's loss of the distances, minimised by reweighted least squares. That the crop lies within the
+ * photograph of size P (in units of p) is linear in S and t,
  *   t <= 0,  t + S P >= (frame_width, frame_height),
- * so the whole is convex. For weights and S given, t is the unbound one, q' - S p' (means), clamped axis by axis; what is left is a
- * convex function of S alone, whose slope
+ * so the whole is convex. For weights and S given, t is the unbound one, q' - S p' (means), clamped axis by axis; what
+ * is left is a convex function of S alone, whose slope
  *   S |p - p'|^2 - (p - p') (q - q') + r(S) r'(S),  r = t - (q' - S p') of each axis that is clamped,
  * grows with S: its zero, or the smallest S at which the frame fits into the photograph, is found by bisection. */
 #include "stages/pan_scan/crop_fit.h"

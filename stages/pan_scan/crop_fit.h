@@ -1,7 +1,7 @@
 /* crop_fit.h - the part of a photograph that looks most like what another camera sees.
  *
- * A crop is a rectangle of the photograph, in its pixels; a frame shows it enlarged or reduced, nothing else. Frame pixels are those of the
- * film. Pixel (x, y) has its centre at (x + 0.5, y + 0.5). */
+ * A crop is a rectangle of the photograph, in its pixels; a frame shows it enlarged or reduced, nothing else. Frame
+ * pixels are those of the film. Pixel (x, y) has its centre at (x + 0.5, y + 0.5). */
 #ifndef REMODEL_CROP_FIT_H
 #define REMODEL_CROP_FIT_H
 
@@ -32,7 +32,8 @@ struct crop_result {
     double beyond; /* frame px by which the best crop of all would leave the photograph; 0: it is the one */
 };
 
-/* The crop within the photograph that misses the points least. ST_DATA: fewer than CROP_LEAST points, or all at one place. */
+/* The crop within the photograph that misses the points least. ST_DATA: fewer than CROP_LEAST points, or all at one
+ * place. */
 enum { CROP_LEAST = 4 };
 enum status crop_fit(struct crop_result *result, const struct crop_task *task, struct err *err);
 

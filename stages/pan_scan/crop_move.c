@@ -31,7 +31,7 @@ int crop_move_choose_view(const struct camera_set *set, const struct camera_path
     return best;
 }
 
-/* ------------------------------------------------------------------------------------------------------ quarter turns */
+/* ---------------------------------------------------------------------------------------------------- quarter turns */
 
 /* By a quarter clockwise: what was at (x, y) of a picture of a height is at (height - y, x). */
 static void turn_view(struct view *v)
@@ -84,7 +84,7 @@ struct crop crop_move_stored(const struct crop_move *m, struct crop crop)
     return crop;
 }
 
-/* ------------------------------------------------------------------------------------------------------------- points */
+/* ----------------------------------------------------------------------------------------------------------- points */
 
 static void add_point(struct crop_move *m, double x, double y, struct vec3 world, int stored_width, int stored_height)
 {
@@ -134,7 +134,8 @@ static enum status sparse_points(struct crop_move *m, const struct camera_set *s
     return ST_OK;
 }
 
-/* Where the points should be seen in a frame: those within it, or, if these are too few, those in front of its camera. */
+/* Where the points should be seen in a frame: those within it, or, if these are too few, those in front of its
+ * camera. */
 static enum status make_task(struct crop_task *task, const struct crop_move *m, int frame, struct err *err)
 {
     const struct view *f = &m->path->frames[frame].camera;
@@ -183,9 +184,10 @@ enum status crop_move_misfit(double *misfit, const struct crop_move *m, int fram
     return st;
 }
 
-/* --------------------------------------------------------------------------------------------------------------- time */
+/* ------------------------------------------------------------------------------------------------------------- time */
 
-/* The angle between two cameras, and how much their focal lengths differ: what moves in a picture without moving the camera. */
+/* The angle between two cameras, and how much their focal lengths differ: what moves in a picture without moving the
+ * camera. */
 static double turn_between(const struct view *a, const struct view *b)
 {
     const struct mat3 r = mat3_multiply(a->cam_from_world, mat3_transpose(b->cam_from_world));
@@ -193,8 +195,8 @@ static double turn_between(const struct view *a, const struct view *b)
     return atan2(vec3_length(twice_sine), r.m[0][0] + r.m[1][1] + r.m[2][2] - 1) + fabs(log(b->fx / a->fx));
 }
 
-/* How far each frame is on the camera's way; where the camera stays at its place, on its way of turning and zooming; where it
- * does not do that either, by time. */
+/* How far each frame is on the camera's way; where the camera stays at its place, on its way of turning and zooming;
+ * where it does not do that either, by time. */
 static enum status find_parts(struct crop_move *m, struct err *err)
 {
     const struct camera_path *p = m->path;
@@ -225,7 +227,7 @@ struct crop crop_move_crop(const struct crop_move *m, int frame)
                          a->height + t * (b->height - a->height)};
 }
 
-/* -------------------------------------------------------------------------------------------------------------- whole */
+/* ------------------------------------------------------------------------------------------------------------ whole */
 
 enum status crop_move_init(struct crop_move *m, const struct camera_set *set, int view_idx,
                            const struct layered_depth *depth, const struct camera_path *path, double tolerance,

@@ -1,7 +1,7 @@
 /* crop_move.h - a camera move as a pan and zoom over one photograph (thesis 3.8: what 3D pan & scan is compared with).
  *
- * The photograph may be stored on its side: it is turned by quarters until it stands as the film does, and crops are of the turned picture.
- * Scene units; px of the turned picture, or of the frames, where a name says so. */
+ * The photograph may be stored on its side: it is turned by quarters until it stands as the film does, and crops are of
+ * the turned picture. Scene units; px of the turned picture, or of the frames, where a name says so. */
 #ifndef REMODEL_CROP_MOVE_H
 #define REMODEL_CROP_MOVE_H
 
@@ -27,12 +27,13 @@ struct crop_move {
     double misfits[2]; /* at the ends */
 };
 
-/* The view nearest to the middle camera of the path that looks about its way; of several at one place the one that does most. */
+/* The view nearest to the middle camera of the path that looks about its way; of several at one place the one that does
+ * most. */
 int crop_move_choose_view(const struct camera_set *set, const struct camera_path *path);
 
-/* The move: ends fitted to what the path's first and last cameras see of the view's points, the frames between as far along as the path's are.
- * The points are those of the depth map, or, if it is NULL, the sparse points that the view sees. tolerance: as a part of the frame's longer
- * side. ST_DATA: too few points. */
+/* The move: ends fitted to what the path's first and last cameras see of the view's points, the frames between as far
+ * along as the path's are. The points are those of the depth map, or, if it is NULL, the sparse points that the view
+ * sees. tolerance: as a part of the frame's longer side. ST_DATA: too few points. */
 enum status crop_move_init(struct crop_move *m, const struct camera_set *set, int view_idx,
                            const struct layered_depth *depth, const struct camera_path *path, double tolerance,
                            struct err *err);

@@ -1,5 +1,5 @@
-/* crop_picture.c - see crop_picture.h. Rows first, into a strip of the rows that are needed, then columns; each pass keeps to the range of its own
- * samples within one kernel unit. */
+/* crop_picture.c - see crop_picture.h. Rows first, into a strip of the rows that are needed, then columns; each pass
+ * keeps to the range of its own samples within one kernel unit. */
 #include "stages/pan_scan/crop_picture.h"
 
 #include <math.h>

@@ -6,8 +6,8 @@
  *         PATH/path.txt, path/NAME.txt                  the move
  * writes  OUT/NNNN.exr                                  a file a frame: R G B A
  *
- * At either end of the move the crop is fitted, within the photograph, to where the path's camera sees the scene's points; between them it goes as
- * the camera goes. */
+ * At either end of the move the crop is fitted, within the photograph, to where the path's camera sees the scene's
+ * points; between them it goes as the camera goes. */
 #include <stdio.h>
 #include <stdlib.h>
 

@@ -250,7 +250,8 @@ static enum status score_pairs(struct chooser *c, struct pair *pairs, size_t cou
     return st;
 }
 
-/* Whether a move between these ends is what its name says: no wider than max_angle; in or out, if it is a dolly in or out. */
+/* Whether a move between these ends is what its name says: no wider than max_angle; in or out, if it is a dolly in or
+ * out. */
 static bool keeps_course(const struct chooser *c, const struct vec3 at[2])
 {
     const struct shot *shot = &c->v->shot;
@@ -333,7 +334,8 @@ static enum status draw_together(struct chooser *c, struct move_ends *e, struct 
     return measure_way(c, e, err);
 }
 
-/* Takes the refined ends, or what lies nearest to them on the way from the grid's, if it is valid and has more parallax. */
+/* Takes the refined ends, or what lies nearest to them on the way from the grid's, if it is valid and has more
+ * parallax. */
 static enum status refine(struct chooser *c, struct move_ends *best, struct err *err)
 {
     struct vec3 refined[2] = {best->at[0], best->at[1]};
@@ -397,9 +399,9 @@ static enum status score_moves(struct move_ends tried[MOVES], struct chooser *c,
     return st;
 }
 
-/* Small moves of one end along one axis, as long as one of them gives more parallax and leaves the way valid; shorter ones
- * where none does. What the surrogate leaves out - what comes to hide what, where the regions really end - is in these.
- * On the way up a glance at a few places must do; the highest whose whole way is valid is taken. */
+/* Small moves of one end along one axis, as long as one of them gives more parallax and leaves the way valid; shorter
+ * ones where none does. What the surrogate leaves out - what comes to hide what, where the regions really end - is in
+ * these. On the way up a glance at a few places must do; the highest whose whole way is valid is taken. */
 static enum status climb(struct chooser *c, struct move_ends *best, struct err *err)
 {
     struct move_ends up[ROUNDS + 1] = {*best};

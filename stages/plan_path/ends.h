@@ -1,18 +1,19 @@
 /* ends.h - where a move starts and ends (thesis 3.4.2, "Maximizing parallax"), among the valid viewpoints.
  *
- * A cell of the start's region gives a candidate for the start, its nearest or farthest valid z as the move goes, and one
- * of the end's region one for the end. A pair subtends no more than max_angle at the scene's centroid, and that of a dolly
- * in or out goes at least half of its length in or out. Of the longest pairs
- * the one with most parallax is the thesis' answer, which had to draw the scene anew for every pair. Here a cell is drawn
- * once, and then comparing two pictures costs less than a millisecond: so all pairs are compared.
+ * A cell of the start's region gives a candidate for the start, its nearest or farthest valid z as the move goes, and
+ * one of the end's region one for the end. A pair subtends no more than max_angle at the scene's centroid, and that of
+ * a dolly in or out goes at least half of its length in or out. Of the longest pairs the one with most parallax is the
+ * thesis' answer, which had to draw the scene anew for every pair. Here a cell is drawn once, and then comparing two
+ * pictures costs less than a millisecond: so all pairs are compared.
  *
- * Every frame's place on the way is looked at too, not the ends alone: of the pairs with most parallax the first whose way is valid
- * all along is taken; if there is none, the thesis' answer is drawn together towards the origin until it is.
+ * Every frame's place on the way is looked at too, not the ends alone: of the pairs with most parallax the first whose
+ * way is valid all along is taken; if there is none, the thesis' answer is drawn together towards the origin until it
+ * is.
  *
- * From there the ends leave the grid: by Levenberg-Marquardt (Ceres) on a smooth surrogate - for the parallax how far the
- * two sides of every depth edge of the origin's picture part between the two cameras, for the limits penalties that rise
- * beyond them, the regions interpolated between cells -, of which so much is taken as the real viewpoints and the real
- * parallax bear out; then by small moves of one end along one axis, each of which has to give more parallax. */
+ * From there the ends leave the grid: by Levenberg-Marquardt (Ceres) on a smooth surrogate - for the parallax how far
+ * the two sides of every depth edge of the origin's picture part between the two cameras, for the limits penalties that
+ * rise beyond them, the regions interpolated between cells -, of which so much is taken as the real viewpoints and the
+ * real parallax bear out; then by small moves of one end along one axis, each of which has to give more parallax. */
 #ifndef REMODEL_ENDS_H
 #define REMODEL_ENDS_H
 

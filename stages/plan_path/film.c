@@ -248,8 +248,8 @@ static enum status add_layer(struct effects *to, struct effect_layer *layer, str
     return ST_OK;
 }
 
-/* A layer of a move over the film's time: its value at each of the shot's frames, and no change at the ends of the shots
- * beside it, to where it fades over a join. A key that its neighbours say already is left out. */
+/* A layer of a move over the film's time: its value at each of the shot's frames, and no change at the ends of the
+ * shots beside it, to where it fades over a join. A key that its neighbours say already is left out. */
 static enum status carry_layer(struct effects *to, const struct effect_layer *layer, const struct reel *reel, int index,
                                double fps, struct err *err)
 {

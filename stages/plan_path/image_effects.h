@@ -1,4 +1,5 @@
-/* image_effects.h - what a film does besides moving (thesis 3.4.3): depth of field, focus, saturation and brightness. */
+/* image_effects.h - what a film does besides moving (thesis 3.4.3): depth of field, focus, saturation and
+ * brightness. */
 #ifndef REMODEL_IMAGE_EFFECTS_H
 #define REMODEL_IMAGE_EFFECTS_H
 
@@ -13,9 +14,9 @@
 enum status aperture_search(double *aperture, struct viewpoint_test *test, const struct view *camera, double focus,
                             double max_blur, struct err *err);
 
-/* Sets every frame's aperture and focus: the aperture goes linearly, eased as the move is, between a pinhole and the widest
- * one at the end that has it; focus is on the subject, and is pulled from the first to the second. parts: each frame's
- * place on the way, 0 to 1. *widest gets the widest aperture; 0: it cannot open, and all frames are pinhole. */
+/* Sets every frame's aperture and focus: the aperture goes linearly, eased as the move is, between a pinhole and the
+ * widest one at the end that has it; focus is on the subject, and is pulled from the first to the second. parts: each
+ * frame's place on the way, 0 to 1. *widest gets the widest aperture; 0: it cannot open, and all frames are pinhole. */
 enum status focus_frames(struct camera_path *path, double *widest, const double *parts, struct viewpoint_test *test,
                          const struct validity *v, const struct subject_list *subjects,
                          const struct plan_params *params, struct err *err);

@@ -37,9 +37,10 @@ struct film_script {
     struct effects layers;
 };
 
-/* set: the views that keys may name. ups: each view's upright direction in its own camera, NULL: 0 -1 0. lens: the film's
- * size, principal point and focal length where none is keyed. up: the film's, in the world, where none is written.
- * script is empty on entry, and left so on failure. ST_DATA with file, line, what was found and what was wanted. */
+/* set: the views that keys may name. ups: each view's upright direction in its own camera, NULL: 0 -1 0. lens: the
+ * film's size, principal point and focal length where none is keyed. up: the film's, in the world, where none is
+ * written. script is empty on entry, and left so on failure. ST_DATA with file, line, what was found and what was
+ * wanted. */
 enum status film_script_read(struct film_script *script, const char *file, const struct camera_set *set,
                              const struct vec3 *ups, const struct view *lens, struct vec3 up, struct err *err);
 void film_script_release(struct film_script *script);

@@ -2,7 +2,8 @@
  *
  * The part of either picture that the other camera does not see because something stands before it, summed over both:
  * 0 to 2. A pixel is hidden if its point lies within the other camera's frame and farther than all four depths around
- * its place there. What lies outside the other frame is not counted: it tells of turning and zooming, not of parallax. */
+ * its place there. What lies outside the other frame is not counted: it tells of turning and zooming, not of
+ * parallax. */
 #ifndef REMODEL_PARALLAX_H
 #define REMODEL_PARALLAX_H
 

@@ -1,11 +1,11 @@
 /* path_export.c - see path_export.h.
  *
- * A frame is written once, as a JSON object of numbers and plain strings, which is also a Python dictionary: the script for
- * Blender begins with the same lines that transforms.json holds.
+ * A frame is written once, as a JSON object of numbers and plain strings, which is also a Python dictionary: the script
+ * for Blender begins with the same lines that transforms.json holds.
  *
- * Blender's camera, its sensor fitted to the picture's width: the width spans the angle that sensor_width spans at the distance
- * `lens`, the shifts are parts of the picture's width, and pixels that are not square (fx and fy differ) are the render's pixel
- * aspect, which is one for all frames: the first's. */
+ * Blender's camera, its sensor fitted to the picture's width: the width spans the angle that sensor_width spans at the
+ * distance `lens`, the shifts are parts of the picture's width, and pixels that are not square (fx and fy differ) are
+ * the render's pixel aspect, which is one for all frames: the first's. */
 #include "stages/plan_path/path_export.h"
 
 #include <jansson.h>
@@ -30,7 +30,8 @@ static json_t *frame_json(const struct path_frame *f)
                      f->aperture, "focus", f->focus);
 }
 
-/* What is true of the whole move; the lens only where it stays the same, for readers take what stands here for all frames. */
+/* What is true of the whole move; the lens only where it stays the same, for readers take what stands here for all
+ * frames. */
 static json_t *head_json(const struct camera_path *p, const struct provenance *prov)
 {
     const struct view *first = &p->frames[0].camera;
@@ -82,7 +83,8 @@ static bool put_transforms(FILE *to, const struct camera_path *p, const struct p
     return good && fputs("\"frames\": ", to) >= 0 && put_frames(to, p) && fputs("\n}\n", to) >= 0;
 }
 
-/* What follows the constants NAME, FPS and FRAMES. Where an action keeps its curves has changed between Blender's versions. */
+/* What follows the constants NAME, FPS and FRAMES. Where an action keeps its curves has changed between Blender's
+ * versions. */
 static const char script[] =
     "\n"
     "\n"

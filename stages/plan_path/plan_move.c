@@ -57,9 +57,9 @@ static double widest_blur(const struct camera_path *path)
     return most;
 }
 
-/* Sets apertures and focus. Ends that were chosen at the very border of what is valid leave an aperture no room: they are drawn
- * together towards the origin, step by step, until it opens to half of max_blur; where it never does, they stay where it
- * opens most. */
+/* Sets apertures and focus. Ends that were chosen at the very border of what is valid leave an aperture no room: they
+ * are drawn together towards the origin, step by step, until it opens to half of max_blur; where it never does, they
+ * stay where it opens most. */
 static enum status open_aperture(struct camera_path *path, double *parts, struct move_notes *n,
                                  struct viewpoint_test *test, const struct validity *v,
                                  const struct subject_list *subjects, const struct plan_params *params, struct err *err)

@@ -16,9 +16,9 @@ struct move_notes {
     double place_error; /* of the subject that an end points at, px */
 };
 
-/* The frames, with aperture and focus, and the scores; layers gets the effect's own layers, none for most. subjects: as they
- * were sampled with; empty if the move needs none. path and layers are empty on entry, and on failure left so. ST_DATA:
- * the regions have no place; the scene has no depth. Same bits for any number of threads. */
+/* The frames, with aperture and focus, and the scores; layers gets the effect's own layers, none for most. subjects: as
+ * they were sampled with; empty if the move needs none. path and layers are empty on entry, and on failure left so.
+ * ST_DATA: the regions have no place; the scene has no depth. Same bits for any number of threads. */
 enum status plan_move(struct camera_path *path, struct effects *layers, struct move_notes *notes,
                       const struct layer_scene *scene, const struct validity *v, const struct subject_list *subjects,
                       const struct plan_params *params, struct err *err);

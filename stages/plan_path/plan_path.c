@@ -1,4 +1,4 @@
-/* plan_path.c - plans a camera move that shows a scene's depth without showing its holes, or the film of a file of keys.
+/* plan_path.c - plans a camera move that shows a scene's depth without showing its holes, or a film of keys.
  *
  * reads   VIEWS/cameras.txt, images.txt, points3D.txt   the cameras
  *         DEPTH/VIEW.exr, VIEW.txt                      every view's layers,

@@ -1,8 +1,8 @@
 /* refine.c - see refine.h.
  *
  * Unknowns: x, y and z of both ends in the frame of the shot, in half sizes of the box of the views' centres and in its
- * larger half size for z. Residuals: S_0 / S, S the surrogate of the parallax and S_0 its value on entry; and for each limit
- * a penalty that is a hundredth at the limit and grows beyond it. */
+ * larger half size for z. Residuals: S_0 / S, S the surrogate of the parallax and S_0 its value on entry; and for each
+ * limit a penalty that is a hundredth at the limit and grows beyond it. */
 #include "stages/plan_path/refine.h"
 
 #include <stdlib.h>

@@ -4,8 +4,8 @@
 
 #include "common/validity.h"
 
-/* at: the ends on entry, a local optimum of the surrogate on return. Whether the viewpoints are valid, and whether there is
- * more parallax, is the caller's to see. */
+/* at: the ends on entry, a local optimum of the surrogate on return. Whether the viewpoints are valid, and whether
+ * there is more parallax, is the caller's to see. */
 enum status refine_ends(struct vec3 at[2], const struct layer_scene *scene, const struct validity *v, double max_angle,
                         struct err *err);
 

@@ -2,10 +2,10 @@
  *
  * A path's shape and its timing are apart. The shape is a cubic Hermite spline over the length of the chords, its
  * tangent at a key the mean of the directions of the chords there, which is the direction that a centripetal
- * Catmull-Rom spline has: no loops, no cusps, and a line stays a line (Yuksel, Schaefer and Keyser, 2011). The timing is
- * a monotone cubic (common/monotone.h) from time to that length: a key's time changes how fast the camera goes, never
- * where, and it does not overshoot a key to come back to it, where a C2 spline over time would leave what the photos
- * show. Keys of constant velocity give constant velocity.
+ * Catmull-Rom spline has: no loops, no cusps, and a line stays a line (Yuksel, Schaefer and Keyser, 2011). The timing
+ * is a monotone cubic (common/monotone.h) from time to that length: a key's time changes how fast the camera goes,
+ * never where, and it does not overshoot a key to come back to it, where a C2 spline over time would leave what the
+ * photos show. Keys of constant velocity give constant velocity.
  *
  * Orientations likewise, over the sum of the angles between keys: the shape is the cubic in cumulative form of Kim, Kim
  * and Shin (1995), q0 exp(w1 b1) exp(w2 b2) exp(w3 b3), whose angular velocities at the ends are 3 w1 and 3 w3. */

@@ -1,5 +1,5 @@
-/* layout.h - what a film of a scene starts from: the centremost view, the scene's centroid, the frame of reference and the
- * lens (thesis 3.4.2). */
+/* layout.h - what a film of a scene starts from: the centremost view, the scene's centroid, the frame of reference and
+ * the lens (thesis 3.4.2). */
 #ifndef REMODEL_SAMPLE_VALIDITY_LAYOUT_H
 #define REMODEL_SAMPLE_VALIDITY_LAYOUT_H
 

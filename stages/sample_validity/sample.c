@@ -212,8 +212,8 @@ static bool same_rule(const struct shot_end *a, const struct shot_end *b)
            !memcmp(a->corner, b->corner, sizeof a->corner);
 }
 
-/* Places the cells. Where few of them are valid, the same number of them closer around the origin tells more: the grid is
- * halved until a quarter of the cells is valid, and is as large as has most of them if none is. */
+/* Places the cells. Where few of them are valid, the same number of them closer around the origin tells more: the grid
+ * is halved until a quarter of the cells is valid, and is as large as has most of them if none is. */
 static enum status draw_grid_together(struct sampler *s, const struct shot_end *end, struct validity_region *r,
                                       double extent, struct err *err)
 {

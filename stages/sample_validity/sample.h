@@ -2,8 +2,8 @@
  *
  * A grid of places across the views, and at each of them the z at which viewpoints begin and cease to be valid, both
  * ways from z = 0: in steps that double as long as they stay valid and halve where they do not, until a step is no
- * longer than the tolerance. A place that is not valid at z = 0 has no z. Where fewer than a quarter of the places are valid,
- * the grid is drawn together around the origin by halves. Moves on the axis have one place, the origin.
+ * longer than the tolerance. A place that is not valid at z = 0 has no z. Where fewer than a quarter of the places are
+ * valid, the grid is drawn together around the origin by halves. Moves on the axis have one place, the origin.
  *
  * f is the views' mean focal length, or longer: photos held by hand do not fill a film's frame from places between
  * them. The zoom is the one with most valid places at z = 0 for what zooming in gives up, at most max_zoom. */
@@ -13,8 +13,8 @@
 #include "common/validity.h"
 #include "stages/sample_validity/validity_params.h"
 
-/* How far limits found in small pictures are from those found in pictures of the film's size, or of 1200 px if the film is
- * larger. */
+/* How far limits found in small pictures are from those found in pictures of the film's size, or of 1200 px if the film
+ * is larger. */
 struct sampling_error {
     int limits;   /* compared */
     int within;   /* of them no more than a step apart */

@@ -2,15 +2,15 @@
  *
  *   move_pairs --views DIR --depth DIR --validity FILE [--all [--anew]]
  *
- * and the parameters of plan_path. Without --all: the ends that plan_path chooses (ends.h). With it, what these are compared
- * with: every cell's candidate is drawn once, and then the parallax of every pair of them that keeps max_angle is
- * measured; the pairs are then looked at from the best downwards until one is valid all along its way. With --anew too, both
- * ends of every pair are drawn for that pair alone, as a search without memory would.
+ * and the parameters of plan_path. Without --all: the ends that plan_path chooses (ends.h). With it, what these are
+ * compared with: every cell's candidate is drawn once, and then the parallax of every pair of them that keeps max_angle
+ * is measured; the pairs are then looked at from the best downwards until one is valid all along its way. With --anew
+ * too, both ends of every pair are drawn for that pair alone, as a search without memory would.
  *
  * Prints, of the ends found, "parallax P" (% of the frames, in pictures of JUDGE_SIDE px, in which nothing was chosen),
  * "chosen P" (the same in those in which it was), "angle A" (degrees), "worst_h H" (of the way), "valid 0|1", "pairs N"
- * whose parallax was measured, "renders N" of depth pictures; with --all "best P" too, of the best pair whatever its way is
- * like, as chosen; and "seconds S" and "core_s C" (processor time), reading apart. */
+ * whose parallax was measured, "renders N" of depth pictures; with --all "best P" too, of the best pair whatever its
+ * way is like, as chosen; and "seconds S" and "core_s C" (processor time), reading apart. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,18 +1,20 @@
-/* render_rate.c - how long a frame takes, files apart: of a camera move, or of given cameras, whose frames it can write.
+/* render_rate.c - how long a frame takes, files apart: of a camera move, or of given cameras, whose frames it can
+ * write.
  *
  *   render_rate --views DIR --depth DIR --path DIR [--frames N] [--width W --height H] [--coverage]
  *   render_rate --views DIR --depth DIR --cameras DIR [--scale S] [--out DIR]
  *   render_rate --views DIR --cameras DIR --photo [--out DIR]
  *
- * and the parameters of render_views. The frames of a move are N that are spread over it, each as large as said; rendered by
- * themselves, without aperture and effects. Of cameras each gives a frame of its own size times S. What is written
- * (CAMERA.exr: R, G, B, hole) has the camera's own size again, between pixels by bilinear interpolation: what a reduced
- * picture is worth when it is shown as large. --photo is what a user has without any rendering: the photo of the view
- * whose centre is nearest, as it is.
+ * and the parameters of render_views. The frames of a move are N that are spread over it, each as large as said;
+ * rendered by themselves, without aperture and effects. Of cameras each gives a frame of its own size times S. What is
+ * written (CAMERA.exr: R, G, B, hole) has the camera's own size again, between pixels by bilinear interpolation: what a
+ * reduced picture is worth when it is shown as large. --photo is what a user has without any rendering: the photo of
+ * the view whose centre is nearest, as it is.
  *
  * All frames are rendered again until half a second is measured; the first round counts only if it took as long. Prints
  * "seconds S" (a frame), "frames_per_s F", "core_ms M" (processor time a frame), "core_s_per_mp C" (processor time a
- * megapixel of the frame as it is shown, so before --scale), "holes H" (% of all pixels) and "peak_mib P" (of the process, reading included). */
+ * megapixel of the frame as it is shown, so before --scale), "holes H" (% of all pixels) and "peak_mib P" (of the
+ * process, reading included). */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -65,7 +67,8 @@ static void reframe(struct view *v, int width, int height)
 
 /* ------------------------------------------------------------------------------------------------ what is written */
 
-/* out from in of w x h: between pixel centres bilinearly, beyond the outer ones as there; of its own size it stays as it is. */
+/* out from in of w x h: between pixel centres bilinearly, beyond the outer ones as there; of its own size it stays as
+ * it is. */
 static void enlarge(float *out, int out_width, int out_height, const float *in, int w, int h, int channels)
 {
     if (out_width == w && out_height == h) {

@@ -1,5 +1,5 @@
-/* fuzz_subject_list.c - lists of subjects: what is read can be used and is written and read back the same, or a sentence says why
- * not. */
+/* fuzz_subject_list.c - lists of subjects: what is read can be used and is written and read back the same, or a
+ * sentence says why not. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,5 +1,5 @@
-/* fuzz_validity.c - valid viewpoints: what is read can be planned with and is written and read back the same, or a sentence
- * says why not. */
+/* fuzz_validity.c - valid viewpoints: what is read can be planned with and is written and read back the same, or a
+ * sentence says why not. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,4 +1,5 @@
-/* wall_scene.h - scenes of upright rectangles, such as a wall with a box before it, whose layers are made by ray casting. */
+/* wall_scene.h - scenes of upright rectangles, such as a wall with a box before it, whose layers are made by ray
+ * casting. */
 #ifndef REMODEL_TESTS_WALL_SCENE_H
 #define REMODEL_TESTS_WALL_SCENE_H
 

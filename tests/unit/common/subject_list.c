@@ -47,8 +47,8 @@ static void the_rectangle_stands_at_its_depth(void **state)
     assert_float_equal(subject_size_in(&s, &straight), 60, 1e-12);
 }
 
-/* Of a picture that is stored turned, the corners begin where its upper left is when it is upright; the height is that of
- * the upright one. */
+/* Of a picture that is stored turned, the corners begin where its upper left is when it is upright; the height is that
+ * of the upright one. */
 static void corners_are_named_as_the_upright_picture_shows_them(void **state)
 {
     (void)state;

@@ -169,8 +169,8 @@ static void holes_outside_and_near_each_make_it_invalid(void **state)
     (void)state;
     struct fixture x;
     set_up(&x);
-    /* 1.5 up: 24 of 120 rows see a part of the wall at 10 that no view saw. And what the box at 6 hides, 64 columns less 10.7
-     * at either side that the other two views see, appears by 1.5 * 160 (1/6 - 1/10) = 16 rows. */
+    /* 1.5 up: 24 of 120 rows see a part of the wall at 10 that no view saw. And what the box at 6 hides, 64 columns
+     * less 10.7 at either side that the other two views see, appears by 1.5 * 160 (1/6 - 1/10) = 16 rows. */
     struct viewpoint v = measure(&x, moved(&x, 0, -1.5, 0));
     assert_false(v.valid);
     assert_float_equal(v.outside, 0.2, 0.02); /* counted in 64 x 48 */

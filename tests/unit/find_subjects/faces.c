@@ -1,7 +1,8 @@
 /* faces.c - which faces become subjects, where those that look for them see bright squares.
  *
- * Squares on a wall at z = 10, white above and light grey below, so that one can be told from one upside down or lying; views
- * look along z, some of their pictures turned. The detector sees whole upright squares of the widths that it is asked for. */
+ * Squares on a wall at z = 10, white above and light grey below, so that one can be told from one upside down or lying;
+ * views look along z, some of their pictures turned. The detector sees whole upright squares of the widths that it is
+ * asked for. */
 #include "stages/find_subjects/faces.h"
 
 #include <setjmp.h>

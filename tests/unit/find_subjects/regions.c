@@ -15,7 +15,8 @@
 static char photo_a[] = "a", view_a[] = "a", photo_b[] = "b", view_left[] = "b@1", view_right[] = "b@2",
             photo_gone[] = "gone";
 
-/* Photo a keeps its camera; b has a strong lens and two views, turned by 30 degrees to either side; gone has no view. */
+/* Photo a keeps its camera; b has a strong lens and two views, turned by 30 degrees to either side; gone has no
+ * view. */
 static struct lens lenses[] = {
     {view_a, photo_a, {CAMERA_PINHOLE, 200, 100, {100, 100, 100, 50}}, {1, 0, 0, 0}},
     {view_left,

@@ -1,4 +1,5 @@
-/* From photo files to frames: ends that are the photos, pictures between, farmed frames, and pairs that cannot be morphed. */
+/* From photo files to frames: ends that are the photos, pictures between, farmed frames, and pairs that cannot be
+ * morphed. */
 #include "../scratch.h"
 #include "common/exr.h"
 #include "common/parallel.h"

@@ -1,4 +1,5 @@
-/* crop_move.c - over a flat wall a crop follows a straight move exactly, however the photograph is stored; over depth it cannot. */
+/* crop_move.c - over a flat wall a crop follows a straight move exactly, however the photograph is stored; over depth
+ * it cannot. */
 #include "stages/pan_scan/crop_move.h"
 
 #include "tests/unit/scratch.h"
@@ -27,7 +28,8 @@ static struct view camera_at(double x, double y, double z, int width, int height
     return v;
 }
 
-/* The same view, its picture stored on its side: what was at (x, y) is stored at (y, width - x), the inverse of a quarter clockwise. */
+/* The same view, its picture stored on its side: what was at (x, y) is stored at (y, width - x), the inverse of a
+ * quarter clockwise. */
 static void store_turned(struct view *v)
 {
     const struct view o = *v;
@@ -41,8 +43,8 @@ static void store_turned(struct view *v)
     v->translation = vec3_make(o.translation.y, -o.translation.x, o.translation.z);
 }
 
-/* A wall at z = 10, of every three points one nearer by `relief` and one by twice that; three views of it, stored after some quarter turns; a move to the right and
- * forward, eased. */
+/* A wall at z = 10, of every three points one nearer by `relief` and one by twice that; three views of it, stored after
+ * some quarter turns; a move to the right and forward, eased. */
 static void make(struct fixture *f, int quarters, double relief)
 {
     static const char *const names[] = {"left", "middle", "right"};

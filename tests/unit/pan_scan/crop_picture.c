@@ -1,4 +1,5 @@
-/* crop_picture.c - what a resampled part of a picture must be: itself, even, straight, without halos, the same for any threads. */
+/* crop_picture.c - what a resampled part of a picture must be: itself, even, straight, without halos, the same for any
+ * threads. */
 #include "stages/pan_scan/crop_picture.h"
 
 #include "tests/unit/scratch.h"

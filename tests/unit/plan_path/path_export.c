@@ -42,7 +42,8 @@ static double number(const json_t *object, const char *key)
     return json_number_value(value);
 }
 
-/* A point through an exported frame, by its own words alone: camera to world is rigid, the camera looks along -z, y is up. */
+/* A point through an exported frame, by its own words alone: camera to world is rigid, the camera looks along -z, y is
+ * up. */
 static void project(const json_t *frame, struct vec3 world, double *u, double *v)
 {
     const json_t *rows = json_object_get(frame, "transform_matrix");

@@ -1,5 +1,5 @@
-/* plan_move.c - every move of the taxonomy over a wall with a box before it, with viewpoints sampled from it, and the hard
- * cases: few views, views in a line or at one place, nothing valid, an aperture that cannot open. */
+/* plan_move.c - every move of the taxonomy over a wall with a box before it, with viewpoints sampled from it, and the
+ * hard cases: few views, views in a line or at one place, nothing valid, an aperture that cannot open. */
 #include "stages/plan_path/plan_move.h"
 
 #include "common/parallel.h"
@@ -39,7 +39,7 @@ static struct plan_params quick(void)
     return p;
 }
 
-/* ------------------------------------------------------------------------------------------- a film and what is true of it */
+/* ------------------------------------------------------------------------------------ a film and what is true of it */
 
 struct film {
     struct validity v;
@@ -262,7 +262,7 @@ static void dolly_goes_from_the_first_subject_to_the_second(void **state)
     unmake(&film, &f);
 }
 
-/* ------------------------------------------------------------------------------------------------ the ends and the frames */
+/* ------------------------------------------------------------------------------------------ the ends and the frames */
 
 static void easing(void **state)
 {
@@ -429,7 +429,7 @@ static void any_threads_same_film(void **state)
     layer_scene_release(&f.scene);
 }
 
-/* ------------------------------------------------------------------------------------------------------- image effects */
+/* ---------------------------------------------------------------------------------------------------- image effects */
 
 static void the_aperture_opens_where_the_subject_is_in_focus(void **state)
 {
@@ -521,7 +521,7 @@ static void tones_are_layers_around_the_subject(void **state)
     layer_scene_release(&f.scene);
 }
 
-/* ----------------------------------------------------------------------------------------------------------- hard cases */
+/* ------------------------------------------------------------------------------------------------------- hard cases */
 
 /* All moves of a scene; the least and the greatest length of them. */
 static void all_moves(struct wall_scene *f, const struct rectangle *r, int count, double length[2])
@@ -618,7 +618,8 @@ static void no_valid_cell(void **state)
     layer_scene_release(&f.scene);
 }
 
-/* The ends are valid and the way is not: it is drawn together until it is, or stands still; it is never left invalid. */
+/* The ends are valid and the way is not: it is drawn together until it is, or stands still; it is never left
+ * invalid. */
 static void a_way_that_is_not_valid_is_drawn_together(void **state)
 {
     (void)state;

@@ -1,4 +1,5 @@
-/* sample.c - valid viewpoints sampled over walls and boxes: grid, limits along z, zoom, layout, and what cannot be sampled. */
+/* sample.c - valid viewpoints sampled over walls and boxes: grid, limits along z, zoom, layout, and what cannot be
+ * sampled. */
 #include "stages/sample_validity/sample.h"
 
 #include "common/parallel.h"
