@@ -23,7 +23,7 @@ struct state { /* a film's camera at a moment; focal lengths as logarithms */
     double number[FILM_NUMBERS];
 };
 
-struct shot {
+struct laid_shot {
     int first, frames; /* of the film's */
     double span;       /* seconds from its first frame to its last */
     struct motion motion;
@@ -31,7 +31,7 @@ struct shot {
     double steady[FILM_NUMBERS];
 };
 
-static void shot_release(struct shot *s)
+static void shot_release(struct laid_shot *s)
 {
     motion_release(&s->motion);
     for (int i = 0; i < FILM_NUMBERS; i++) curve_release(&s->number[i]);
@@ -39,8 +39,8 @@ static void shot_release(struct shot *s)
 
 static bool is_focal(int number) { return number == FILM_FX || number == FILM_FY; }
 
-static enum status make_shot(struct shot *s, const struct film_key *keys, int count, const struct film *film, bool rest,
-                             struct err *err)
+static enum status make_shot(struct laid_shot *s, const struct film_key *keys, int count, const struct film *film,
+                             bool rest, struct err *err)
 {
     const struct view *lens = &film->lens;
     const double steady[FILM_NUMBERS] = {log(lens->fx), log(lens->fy), lens->cx, lens->cy, 0, 0};
@@ -66,7 +66,7 @@ static enum status make_shot(struct shot *s, const struct film_key *keys, int co
     return ST_OK;
 }
 
-static void shot_at(const struct shot *s, double time, struct state *out)
+static void shot_at(const struct laid_shot *s, double time, struct state *out)
 {
     motion_at(&s->motion, time, &out->place, &out->turn);
     for (int n = 0; n < FILM_NUMBERS; n++)
@@ -74,13 +74,14 @@ static void shot_at(const struct shot *s, double time, struct state *out)
 }
 
 /* The last frame shows the last key, wherever between two frames that one is. */
-static double frame_time(const struct shot *s, int frame, double fps)
+static double frame_time(const struct laid_shot *s, int frame, double fps)
 {
     return frame >= s->frames - 1 ? s->span : fmin(frame / fps, s->span);
 }
 
 /* At the part t of the way from the end of one shot to the start of the next, which is `seconds` long. */
-static void join_at(const struct shot *from, const struct shot *to, double seconds, double t, struct state *out)
+static void join_at(const struct laid_shot *from, const struct laid_shot *to, double seconds, double t,
+                    struct state *out)
 {
     struct state a, b;
     struct vec3 va, vb, wa, wb;
@@ -174,7 +175,7 @@ static enum status move_keys(struct film_key **keys, const struct move *m, bool 
 struct reel { /* what a film is made from */
     struct film_script script;
     struct move *moves; /* a shot each; empty for keys */
-    struct shot *shots;
+    struct laid_shot *shots;
     int shot_count, frame_count;
 };
 
@@ -189,7 +190,7 @@ static enum status lay_shot(struct reel *reel, int index, const char *file, cons
                             struct provenance *prov, struct err *err)
 {
     const struct film_shot *from = &reel->script.shots[index];
-    struct shot *s = &reel->shots[index];
+    struct laid_shot *s = &reel->shots[index];
     struct move *m = &reel->moves[index];
     struct film_key *made = NULL, *keys = from->keys;
     int count = from->key_count;
@@ -222,7 +223,7 @@ static enum status lay_shot(struct reel *reel, int index, const char *file, cons
 static void fill_frames(struct camera_path *path, const struct reel *reel, const struct film *film)
 {
     for (int i = 0; i < reel->shot_count; i++) {
-        const struct shot *s = &reel->shots[i], *before = i ? s - 1 : NULL;
+        const struct laid_shot *s = &reel->shots[i], *before = i ? s - 1 : NULL;
         const int from = before ? before->first + before->frames - 1 : 0;
         struct state state;
         for (int f = from + 1; before && f < s->first; f++) {
@@ -253,7 +254,7 @@ static enum status add_layer(struct effects *to, struct effect_layer *layer, str
 static enum status carry_layer(struct effects *to, const struct effect_layer *layer, const struct reel *reel, int index,
                                double fps, struct err *err)
 {
-    const struct shot *s = &reel->shots[index];
+    const struct laid_shot *s = &reel->shots[index];
     const struct camera_path *move = &reel->moves[index].path;
     const double length = (move->frame_count - 1) / move->fps;
     const bool reversed = reel->script.shots[index].reversed;
