@@ -91,7 +91,8 @@ static enum status count_valid(struct sampler *s, double focal, int *count, stru
     return ST_OK;
 }
 
-/* Sets the zoom, and with it f. Where no place is valid at any zoom, the largest, and limits that the origin keeps. */
+/* Sets the zoom, and with it f: the origin must be valid, for moves are drawn together towards it where they must. Where it
+ * is at no zoom, the largest, and limits that it keeps. */
 static enum status find_zoom(struct sampler *s, double max_zoom, const char *center_view, struct err *err)
 {
     struct validity *v = s->v;
@@ -100,8 +101,12 @@ static enum status find_zoom(struct sampler *s, double max_zoom, const char *cen
 
     for (int i = 0;; i++) {
         const double zoom = 1 + ZOOM_STEP * i, worth = pow(zoom, -ZOOM_COST);
+        const struct view camera = shot_aim(&v->shot, v->shot.origin, v->shot.centroid, focal * zoom);
+        bool valid;
         int count;
         if (zoom > max_zoom + 1e-9 || worth <= best) break;
+        if (viewpoint_is_valid(&valid, &s->test, &camera, err)) return err->status;
+        if (!valid) continue;
         if (count_valid(s, focal * zoom, &count, err)) return err->status;
         const double merit = worth * count / (ZOOM_PLACES * ZOOM_PLACES);
         if (merit > best) best = merit, v->zoom = zoom;

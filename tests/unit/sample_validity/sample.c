@@ -240,6 +240,25 @@ static void borders_in_the_frames_make_it_zoom_in(void **state)
     layer_scene_release(&f.scene);
 }
 
+/* Five photos of a wall, the middle one turned aside: there the film shows more of its border than anywhere, and moves
+ * are drawn together towards it. */
+static void a_middle_view_that_looks_aside(void **state)
+{
+    (void)state;
+    const struct rectangle wall = {0, 0, 10, 40, 40};
+    struct wall_scene f = {0};
+    struct validity v;
+    struct sampling_notes notes;
+    const struct validity_params params = quick();
+    for (int i = -2; i <= 2; i++) add_view(&f, vec3_make(i, 0, 0), vec3_make(i ? 0 : 1, 0, 10), vec3_make(0, 1, 0));
+    finish(&f, &wall, 1);
+    sample(&v, &notes, &f, MOVE_ESTABLISHING_DOLLY, NULL, &params);
+    assert_true(v.limits.max_outside == params.max_outside); /* it is not given up */
+    assert_true(valid_at(&f, &v, 0, 0, 0, 0) && valid_at(&f, &v, 1, 0, 0, 0));
+    validity_release(&v);
+    layer_scene_release(&f.scene);
+}
+
 static void too_many_holes_everywhere_raise_the_limit(void **state)
 {
     (void)state;
@@ -340,6 +359,7 @@ int main(void)
         cmocka_unit_test(an_orbit_is_filmed_from_its_middle),
         cmocka_unit_test(views_that_look_all_ways),
         cmocka_unit_test(borders_in_the_frames_make_it_zoom_in),
+        cmocka_unit_test(a_middle_view_that_looks_aside),
         cmocka_unit_test(too_many_holes_everywhere_raise_the_limit),
         cmocka_unit_test(nothing_comes_too_near),
         cmocka_unit_test(no_valid_cell_leaves_the_origin),
