@@ -250,7 +250,7 @@ static void a_middle_view_that_looks_aside(void **state)
     struct validity v;
     struct sampling_notes notes;
     const struct validity_params params = quick();
-    for (int i = -2; i <= 2; i++) add_view(&f, vec3_make(i, 0, 0), vec3_make(i ? 0 : 1, 0, 10), vec3_make(0, 1, 0));
+    for (int i = -2; i <= 2; i++) add_view(&f, vec3_make(i, 0, 0), vec3_make(i ? 0 : 1.5, 0, 10), vec3_make(0, 1, 0));
     finish(&f, &wall, 1);
     sample(&v, &notes, &f, MOVE_ESTABLISHING_DOLLY, NULL, &params);
     assert_true(v.limits.max_outside == params.max_outside); /* it is not given up */
