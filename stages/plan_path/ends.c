@@ -334,23 +334,27 @@ static enum status draw_together(struct chooser *c, struct move_ends *e, struct 
     return measure_way(c, e, err);
 }
 
-/* Takes the refined ends, or what lies nearest to them on the way from the grid's, if it is valid and has more
- * parallax. */
-static enum status refine(struct chooser *c, struct move_ends *best, struct err *err)
+/* Ends with ever more parallax; a glance found the ways of all but the first valid, whose way was looked at in full. */
+struct ascent {
+    struct move_ends up[ROUNDS + 2];
+    int height;
+};
+
+/* Adds the refined ends, or what lies nearest to them on the way from the grid's that is valid and has more parallax. */
+static enum status refine(struct ascent *a, struct chooser *c, struct err *err)
 {
+    const struct move_ends *best = &a->up[a->height];
     struct vec3 refined[2] = {best->at[0], best->at[1]};
+    bool valid = false;
     if (refine_ends(refined, c->scene, c->v, c->params->max_angle, err)) return err->status;
-    for (int i = 0; i < BACK_STEPS; i++) {
+    for (int i = 0; i < BACK_STEPS && !valid; i++) {
         struct move_ends e = {.valid = false};
         for (int k = 0; k < 2; k++) e.at[k] = towards(best->at[k], refined[k], pow(0.5, i));
         if (!keeps_course(c, e.at)) continue;
         if (measure_parallax(c, &e, err)) return err->status;
         if (!(e.parallax > best->parallax)) continue;
-        if (measure_way_if_good(c, &e, err)) return err->status;
-        if (!e.valid) continue;
-        *best = e;
-        c->notes->refined = true;
-        break;
+        if (glance_at_way(&valid, c, e.at, err)) return err->status;
+        if (valid) a->up[++a->height] = e;
     }
     return ST_OK;
 }
@@ -399,36 +403,44 @@ static enum status score_moves(struct move_ends tried[MOVES], struct chooser *c,
     return st;
 }
 
-/* Small moves of one end along one axis, as long as one of them gives more parallax and leaves the way valid; shorter
- * ones where none does. What the surrogate leaves out - what comes to hide what, where the regions really end - is in
- * these. On the way up a glance at a few places must do; the highest whose whole way is valid is taken. */
-static enum status climb(struct chooser *c, struct move_ends *best, struct err *err)
+/* Small moves of one end along one axis, as long as one of them gives more parallax and leaves the way valid; shorter ones
+ * where none does. What the surrogate leaves out - what comes to hide what, where the regions really end - is in these. */
+static enum status climb(struct ascent *a, struct chooser *c, struct err *err)
 {
-    struct move_ends up[ROUNDS + 1] = {*best};
     double length = FIRST_MOVE;
-    int height = 0;
     enum status st = ST_OK;
 
     for (int round = 0; !st && round < ROUNDS && length >= LEAST_MOVE; round++) {
+        const struct move_ends *from = &a->up[a->height];
         struct move_ends tried[MOVES];
         bool moved = false;
-        list_moves(tried, c->v, &up[height], length);
-        st = score_moves(tried, c, &up[height], err);
+        list_moves(tried, c->v, from, length);
+        st = score_moves(tried, c, from, err);
         for (int n = 0; !st && !moved && n < WAYS_TRIED; n++) {
             int most = 0;
             for (int i = 1; i < MOVES; i++)
                 if (tried[i].parallax > tried[most].parallax) most = i;
-            if (!(tried[most].parallax > up[height].parallax)) break;
+            if (!(tried[most].parallax > from->parallax)) break;
             st = glance_at_way(&moved, c, tried[most].at, err);
-            if (!st && moved) up[++height] = tried[most];
+            if (!st && moved) a->up[++a->height] = tried[most];
             tried[most].parallax = 0;
         }
         if (!moved) length *= 0.5;
     }
-    for (; !st && height > 0; height--) {
-        st = measure_way(c, &up[height], err);
-        if (st || !up[height].valid) continue;
-        *best = up[height];
+    return st;
+}
+
+/* Ends off the grid: the highest of the ascent whose whole way is valid. */
+static enum status ascend(struct chooser *c, struct move_ends *best, struct err *err)
+{
+    struct ascent a = {.up = {*best}};
+    enum status st = refine(&a, c, err);
+    if (!st) st = climb(&a, c, err);
+    for (; !st && a.height > 0; a.height--) {
+        struct move_ends *e = &a.up[a.height];
+        st = measure_way(c, e, err);
+        if (st || !e->valid) continue;
+        *best = *e;
         c->notes->refined = true;
         break;
     }
@@ -479,8 +491,7 @@ enum status ends_choose(struct move_ends *best, struct ends_notes *notes, const 
         st = draw_together(&c, best, err);
         if (!st) st = measure_parallax(&c, best, err);
     }
-    if (!st && !strcmp(params->refine, "yes") && !v->move.on_axis)
-        st = refine(&c, best, err) || climb(&c, best, err) ? err->status : ST_OK;
+    if (!st && !strcmp(params->refine, "yes") && !v->move.on_axis) st = ascend(&c, best, err);
     free(pairs);
     scene_points_release(&c.points);
     viewpoint_test_release(&c.test);
