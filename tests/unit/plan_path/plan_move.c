@@ -292,14 +292,18 @@ static void easing(void **state)
     unmake(&film, &f);
 }
 
+static void end_picture(struct depth_picture *d, const struct wall_scene *f, const struct validity *v, int end,
+                        struct vec3 at, int side)
+{
+    struct err err = ERR_INIT;
+    const struct view c = shot_end_camera(&v->shot, &v->move.end[end], at);
+    assert_ok(depth_picture_make(d, &f->scene, &c, side, &err), err);
+}
+
 static double parallax_of(const struct wall_scene *f, const struct validity *v, const struct vec3 at[2], int side)
 {
     struct depth_picture pictures[2];
-    struct err err = ERR_INIT;
-    for (int k = 0; k < 2; k++) {
-        const struct view c = shot_end_camera(&v->shot, &v->move.end[k], at[k]);
-        assert_ok(depth_picture_make(&pictures[k], &f->scene, &c, side, &err), err);
-    }
+    for (int k = 0; k < 2; k++) end_picture(&pictures[k], f, v, k, at[k], side);
     const double parallax = parallax_between(&pictures[0], &pictures[1], parallax_tolerance(&f->scene));
     for (int k = 0; k < 2; k++) depth_picture_release(&pictures[k]);
     return parallax;
@@ -316,6 +320,7 @@ static void all_pairs_find_what_brute_force_finds(void **state)
 {
     (void)state;
     static const enum move moves[] = {MOVE_ESTABLISHING_DOLLY, MOVE_DOLLY_IN, MOVE_DOLLY};
+    enum { CELLS = 16 };
     struct wall_scene f;
     struct validity_params sampling = quick_sampling();
     struct plan_params params = quick();
@@ -327,21 +332,25 @@ static void all_pairs_find_what_brute_force_finds(void **state)
     nine_views(&f);
     for (size_t m = 0; m < sizeof moves / sizeof *moves; m++) {
         struct film film;
+        struct depth_picture pictures[2][CELLS] = {{{.z = NULL}}};
         sample(&film, &f, only(moves[m]), &sampling);
+        for (int i = 0; i < 2 * CELLS; i++)
+            if (film.v.region[i / CELLS].cells[i % CELLS].valid)
+                end_picture(&pictures[i / CELLS][i % CELLS], &f, &film.v, i / CELLS,
+                            ends_candidate(&film.v, i / CELLS, i % CELLS), params.parallax_side);
         for (int narrow = 0; narrow < 2; narrow++) {
-            const int cells = 16;
             double best = -1;
             int counted = 0;
             params.max_angle = narrow ? 8 : 180;
-            for (int a = 0; a < cells; a++)
-                for (int b = 0; b < cells; b++) {
+            for (int a = 0; a < CELLS; a++)
+                for (int b = 0; b < CELLS; b++) {
                     if (!film.v.region[0].cells[a].valid || !film.v.region[1].cells[b].valid) continue;
                     const struct vec3 at[2] = {ends_candidate(&film.v, 0, a), ends_candidate(&film.v, 1, b)};
                     if (angle_of(&film.v, at) > params.max_angle) continue;
                     const double forth =
                         shot_coordinates(&film.v.shot, at[1]).z - shot_coordinates(&film.v.shot, at[0]).z;
                     if (moves[m] == MOVE_DOLLY_IN && forth < 0.5 * vec3_length(vec3_sub(at[1], at[0]))) continue;
-                    best = fmax(best, parallax_of(&f, &film.v, at, params.parallax_side));
+                    best = fmax(best, parallax_between(&pictures[0][a], &pictures[1][b], parallax_tolerance(&f.scene)));
                     counted++;
                 }
             if (!(counted > (narrow ? 3 : 20)))
@@ -360,6 +369,7 @@ static void all_pairs_find_what_brute_force_finds(void **state)
             }
             camera_path_release(&film.path);
         }
+        for (int i = 0; i < 2 * CELLS; i++) depth_picture_release(&pictures[i / CELLS][i % CELLS]);
         release(&film);
     }
     layer_scene_release(&f.scene);
@@ -369,11 +379,13 @@ static void refinement_never_gives_less(void **state)
 {
     (void)state;
     struct wall_scene f;
-    const struct validity_params sampling = quick_sampling();
+    struct validity_params sampling = quick_sampling();
     struct plan_params params = quick();
     bool ever = false;
     nine_views(&f);
     params.fps = 10;
+    params.parallax_side = 48;
+    sampling.grid = 4;
     for (int move = 0; move < MOVE_COUNT; move++) {
         struct film film;
         sample(&film, &f, only((enum move)move), &sampling);
@@ -526,8 +538,11 @@ static void tones_are_layers_around_the_subject(void **state)
 /* All moves of a scene; the least and the greatest length of them. */
 static void all_moves(struct wall_scene *f, const struct rectangle *r, int count, double length[2])
 {
-    const struct validity_params sampling = quick_sampling();
-    const struct plan_params params = quick();
+    struct validity_params sampling = quick_sampling();
+    struct plan_params params = quick();
+    sampling.grid = 4;
+    params.fps = 12;
+    params.parallax_side = 48;
     finish(f, r, count);
     length[0] = HUGE_VAL;
     length[1] = 0;
