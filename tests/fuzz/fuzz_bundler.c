@@ -8,6 +8,7 @@
 
 #include "common/sfm_model.h"
 #include "tests/fuzz/fuzz.h"
+#include "tests/fuzz/fuzz_scratch.h"
 
 static const char *const names[] = {"b.jpg", "a.jpg", "c.jpg"};
 static const int sizes[][2] = {{640, 480}, {480, 640}, {0, 0}};
@@ -31,10 +32,9 @@ static void check(const struct sfm_model *m)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    char path[] = "/tmp/remodel-fuzz-XXXXXX";
-    int fd = mkstemp(path);
+    char path[FUZZ_PATH];
 
-    if (fd < 0 || write(fd, data, size) != (ssize_t)size || close(fd)) abort();
+    fuzz_file(path, data, size);
     for (int count = 1; count <= 3; count++) {
         struct sfm_model m;
         struct err err = ERR_INIT;

@@ -10,8 +10,9 @@
 #include <unistd.h>
 
 #include "common/camera_path.h"
+#include "tests/fuzz/fuzz_scratch.h"
 
-static char folder[] = "/tmp/remodel-fuzz-XXXXXX";
+static char folder[FUZZ_PATH];
 static const char *const names[] = {"path.txt", "path/cameras.txt", "path/images.txt", "path/points3D.txt"};
 static const char *const good[] = {
     "remodel-path 1\neffect e\nfps 30\nframes 2\nframe 0001 0 0 0\nframe 0002 0.5 0 0\n",
@@ -24,7 +25,7 @@ static void in_folder(char *path, size_t size, const char *name) { snprintf(path
 
 static void write_part(int part, const void *bytes, size_t size)
 {
-    char path[256];
+    char path[FUZZ_PATH + 64];
     in_folder(path, sizeof path, names[part]);
     FILE *fp = fopen(path, "wb");
     if (!fp || fwrite(bytes, 1, size, fp) != size || fclose(fp)) abort();
@@ -32,7 +33,7 @@ static void write_part(int part, const void *bytes, size_t size)
 
 static void remove_folder(void)
 {
-    char path[256];
+    char path[FUZZ_PATH + 64];
     for (int i = 0; i < 4; i++) {
         in_folder(path, sizeof path, names[i]);
         unlink(path);
@@ -44,8 +45,8 @@ static void remove_folder(void)
 
 static void make_folder(void)
 {
-    char path[256];
-    if (!mkdtemp(folder)) abort();
+    char path[FUZZ_PATH + 64];
+    fuzz_folder(folder);
     in_folder(path, sizeof path, "path");
     if (mkdir(path, 0777) || atexit(remove_folder)) abort();
 }

@@ -9,15 +9,16 @@
 
 #include "common/sfm_model.h"
 #include "tests/fuzz/fuzz.h"
+#include "tests/fuzz/fuzz_scratch.h"
 
-static char folder[] = "/tmp/remodel-fuzz-XXXXXX";
+static char folder[FUZZ_PATH];
 static const char *const names[] = {"cameras.txt", "images.txt", "points3D.txt"};
 
 static void part_path(char *path, size_t size, int part) { snprintf(path, size, "%s/%s", folder, names[part]); }
 
 static void remove_folder(void)
 {
-    char path[64];
+    char path[FUZZ_PATH + 64];
     for (int i = 0; i < 3; i++) {
         part_path(path, sizeof path, i);
         unlink(path);
@@ -27,7 +28,7 @@ static void remove_folder(void)
 
 static void write_part(int part, const void *bytes, size_t size)
 {
-    char path[64];
+    char path[FUZZ_PATH + 64];
     part_path(path, sizeof path, part);
     FILE *fp = fopen(path, "wb");
     if (!fp || (size && fwrite(bytes, 1, size, fp) != size) || fclose(fp)) abort();
@@ -60,7 +61,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     struct sfm_model m, again;
     struct err err = ERR_INIT;
 
-    if (!made++ && (!mkdtemp(folder) || atexit(remove_folder))) abort();
+    if (!made++) {
+        fuzz_folder(folder);
+        if (atexit(remove_folder)) abort();
+    }
     size_t at = 0;
     for (int part = 0; part < 3; part++) {
         const uint8_t *end = part < 2 ? memmem(data + at, size - at, "%%\n", 3) : NULL;

@@ -7,6 +7,7 @@
 
 #include "common/effects.h"
 #include "tests/fuzz/fuzz.h"
+#include "tests/fuzz/fuzz_scratch.h"
 
 static void apply(const struct effects *e)
 {
@@ -37,12 +38,11 @@ static void same(const struct effects *a, const struct effects *b)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    char path[] = "/tmp/remodel-fuzz-XXXXXX";
-    int fd = mkstemp(path);
+    char path[FUZZ_PATH];
     struct effects e, again;
     struct err err = ERR_INIT;
 
-    if (fd < 0 || write(fd, data, size) != (ssize_t)size || close(fd)) abort();
+    fuzz_file(path, data, size);
     if (effects_read(&e, path, &err)) {
         if (!strstr(err.text, path) || e.layers || e.layer_count) abort();
     } else {

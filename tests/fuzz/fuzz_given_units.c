@@ -7,15 +7,15 @@
 
 #include "stages/segment_depth/given_read.h"
 #include "tests/fuzz/fuzz.h"
+#include "tests/fuzz/fuzz_scratch.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    char path[] = "/tmp/remodel-fuzz-XXXXXX";
-    int fd = mkstemp(path);
+    char path[FUZZ_PATH];
     struct given_units units;
     struct err err = ERR_INIT;
 
-    if (fd < 0 || write(fd, data, size) != (ssize_t)size || close(fd)) abort();
+    fuzz_file(path, data, size);
     if (given_units_read(&units, path, &err)) {
         if (!strstr(err.text, path) || units.scale > 0) abort();
     } else if (!isfinite(units.scale) || units.scale < 0 || units.scale > 1e12 || units.pixels > PIXELS_OF_PHOTO) {

@@ -12,8 +12,9 @@
 #include "stages/plan_path/keyframes.h"
 #include "stages/plan_path/spline.h"
 #include "tests/fuzz/fuzz.h"
+#include "tests/fuzz/fuzz_scratch.h"
 
-static char folder[] = "/tmp/remodel-fuzz-XXXXXX";
+static char folder[FUZZ_PATH];
 static const char *const names[] = {"m/path.txt",    "m/path/cameras.txt", "m/path/images.txt", "m/path/points3D.txt",
                                     "m/effects.txt", "film.txt",           "layers.txt"};
 static const char *const move[] = {
@@ -27,7 +28,7 @@ enum { MOVE_FILES = 5, FILM = 5, LAYERS = 6, FILES = 7 };
 
 static const char *path_of(const char *name)
 {
-    static char paths[2][256];
+    static char paths[2][FUZZ_PATH + 64];
     static int next;
     char *path = paths[next++ % 2];
     snprintf(path, sizeof paths[0], "%s/%s", folder, name);
@@ -50,8 +51,8 @@ static void remove_folder(void)
 
 static void make_folder(void)
 {
-    if (!mkdtemp(folder) || mkdir(path_of("m"), 0777) || mkdir(path_of("m/path"), 0777) || atexit(remove_folder))
-        abort();
+    fuzz_folder(folder);
+    if (mkdir(path_of("m"), 0777) || mkdir(path_of("m/path"), 0777) || atexit(remove_folder)) abort();
     for (int i = 0; i < MOVE_FILES; i++) write_file(names[i], move[i], strlen(move[i]));
 }
 

@@ -12,9 +12,10 @@
 #include "common/exr.h"
 #include "common/layered_depth.h"
 #include "tests/fuzz/fuzz.h"
+#include "tests/fuzz/fuzz_scratch.h"
 
-static char folder[] = "/tmp/remodel-fuzz-XXXXXX";
-static char list[64], picture[64], good[64];
+static char folder[FUZZ_PATH];
+static char list[FUZZ_PATH + 64], picture[FUZZ_PATH + 64], good[FUZZ_PATH + 64];
 
 static void remove_folder(void)
 {
@@ -31,7 +32,8 @@ static void make_folder(void)
     struct layered_depth d;
     struct err err = ERR_INIT;
 
-    if (!mkdtemp(folder) || atexit(remove_folder)) abort();
+    fuzz_folder(folder);
+    if (atexit(remove_folder)) abort();
     snprintf(list, sizeof list, "%s/d.txt", folder);
     snprintf(picture, sizeof picture, "%s/d.exr", folder);
     snprintf(good, sizeof good, "%s/good.exr", folder);

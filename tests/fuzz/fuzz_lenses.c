@@ -8,6 +8,7 @@
 
 #include "common/lens_list.h"
 #include "tests/fuzz/fuzz.h"
+#include "tests/fuzz/fuzz_scratch.h"
 
 static void use_lens(const struct camera *c)
 {
@@ -23,12 +24,11 @@ static void use_lens(const struct camera *c)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    char path[] = "/tmp/remodel-fuzz-XXXXXX";
-    int fd = mkstemp(path);
+    char path[FUZZ_PATH];
     struct lens_list list, again;
     struct err err = ERR_INIT;
 
-    if (fd < 0 || write(fd, data, size) != (ssize_t)size || close(fd)) abort();
+    fuzz_file(path, data, size);
     if (lens_list_read(&list, path, &err)) {
         if (!err.text[0] || list.lenses) abort();
     } else {

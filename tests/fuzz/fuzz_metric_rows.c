@@ -7,13 +7,12 @@
 
 #include "fuzz.h"
 #include "stages/report/metric_rows.c" /* a stage's file, which is in no library */
+#include "tests/fuzz/fuzz_scratch.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    char path[] = "/tmp/remodel-fuzz-XXXXXX";
-    int fd = mkstemp(path);
-    if (fd < 0 || write(fd, data, size) != (ssize_t)size) abort();
-    close(fd);
+    char path[FUZZ_PATH];
+    fuzz_file(path, data, size);
     for (int of_views = 0; of_views < 2; of_views++) {
         struct metric_rows r;
         struct err err = ERR_INIT;

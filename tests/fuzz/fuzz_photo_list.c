@@ -8,6 +8,7 @@
 
 #include "common/photo_list.h"
 #include "tests/fuzz/fuzz.h"
+#include "tests/fuzz/fuzz_scratch.h"
 
 static void write_file(const char *path, const void *bytes, size_t size)
 {
@@ -19,7 +20,7 @@ static void check_list(const char *folder, const uint8_t *data, size_t size)
 {
     static const char *const names[] = {"a.txt", "b.txt", "list.txt", "photos.mk"};
     static const char *const files[] = {"a.jpg", "\"b c.jpg\""};
-    char paths[4][64], text[300];
+    char paths[4][FUZZ_PATH + 64], text[300];
     struct photo_list list, again;
     struct err err = ERR_INIT;
 
@@ -46,11 +47,11 @@ static void check_list(const char *folder, const uint8_t *data, size_t size)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    char folder[] = "/tmp/remodel-fuzz-XXXXXX", path[64];
+    char folder[FUZZ_PATH], path[FUZZ_PATH + 64];
     struct photo_record record, again;
     struct err err = ERR_INIT;
 
-    if (!mkdtemp(folder)) abort();
+    fuzz_folder(folder);
     snprintf(path, sizeof path, "%s/a.txt", folder);
     write_file(path, data, size);
     enum status st = photo_record_read(&record, folder, "a", &err);

@@ -7,8 +7,9 @@
 
 #include "common/point_cloud.h"
 #include "tests/fuzz/fuzz.h"
+#include "tests/fuzz/fuzz_scratch.h"
 
-static char path[] = "/tmp/remodel-fuzz-XXXXXX";
+static char path[FUZZ_PATH];
 
 static void remove_file(void) { unlink(path); }
 
@@ -29,8 +30,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     struct err err = ERR_INIT;
 
     if (!opened) {
-        const int fd = mkstemp(path);
-        if (fd < 0 || close(fd) || atexit(remove_file)) abort();
+        fuzz_file(path, data, 0);
+        if (atexit(remove_file)) abort();
         opened = 1;
     }
     FILE *fp = fopen(path, "wb");

@@ -6,6 +6,7 @@
 
 #include "stages/find_subjects/regions.h"
 #include "tests/fuzz/fuzz.h"
+#include "tests/fuzz/fuzz_scratch.h"
 
 static char name_a[] = "a", name_b[] = "b";
 static struct lens lenses[] = {
@@ -34,12 +35,11 @@ static void place(const struct region *r, const char *path)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    char path[] = "/tmp/remodel-fuzz-XXXXXX";
-    int fd = mkstemp(path);
+    char path[FUZZ_PATH];
     struct region_list list;
     struct err err = ERR_INIT;
 
-    if (fd < 0 || write(fd, data, size) != (ssize_t)size || close(fd)) abort();
+    fuzz_file(path, data, size);
     if (region_list_read(&list, path, &err)) {
         if (!strstr(err.text, path) || list.regions || list.count) abort();
     } else {

@@ -9,6 +9,7 @@
 #include "stages/simulate/geometry.h"
 #include "stages/simulate/mesh_file.h"
 #include "tests/fuzz/fuzz.h"
+#include "tests/fuzz/fuzz_scratch.h"
 
 static void use_scene(const struct scene *s)
 {
@@ -43,10 +44,10 @@ static void use_mesh(const char *path)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    char folder[] = "/tmp/remodel-fuzz-XXXXXX", path[64];
+    char folder[FUZZ_PATH], path[FUZZ_PATH + 64];
     struct scene s;
     struct err err = ERR_INIT;
-    if (!mkdtemp(folder)) abort();
+    fuzz_folder(folder);
     snprintf(path, sizeof path, "%s/scene.txt", folder);
     FILE *fp = fopen(path, "wb");
     if (!fp || fwrite(data, 1, size, fp) != size || fclose(fp)) abort();

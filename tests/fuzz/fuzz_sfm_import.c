@@ -12,12 +12,13 @@
 
 #include "common/camera_set.h"
 #include "tests/fuzz/fuzz.h"
+#include "tests/fuzz/fuzz_scratch.h"
 
 /* a stage's files, which are in no library */
 #include "stages/sfm_import/import_model.c"
 #include "stages/sfm_import/view_cameras.c"
 
-static char folder[] = "/tmp/remodel-fuzz-XXXXXX";
+static char folder[FUZZ_PATH];
 enum { PARTS = 5, FILES = 10 };
 static const char *const names[FILES] = {"models.txt",     "photos.txt",      "0/cameras.txt",  "0/images.txt",
                                          "0/points3D.txt", "out/cameras.txt", "out/images.txt", "out/points3D.txt",
@@ -35,7 +36,7 @@ static void in_folder(char *path, size_t size, const char *name) { snprintf(path
 static void remove_folder(void)
 {
     static const char *const folders[] = {"0", "out"};
-    char path[256];
+    char path[FUZZ_PATH + 64];
     for (int i = 0; i < FILES; i++) {
         in_folder(path, sizeof path, names[i]);
         unlink(path);
@@ -49,15 +50,16 @@ static void remove_folder(void)
 
 static void make_folder(void)
 {
-    char path[256];
-    if (!mkdtemp(folder) || atexit(remove_folder)) abort();
+    char path[FUZZ_PATH + 64];
+    fuzz_folder(folder);
+    if (atexit(remove_folder)) abort();
     in_folder(path, sizeof path, "0");
     if (mkdir(path, 0777)) abort();
 }
 
 static void write_part(int part, const void *bytes, size_t size)
 {
-    char path[256];
+    char path[FUZZ_PATH + 64];
     in_folder(path, sizeof path, names[part]);
     FILE *fp = fopen(path, "wb");
     if (!fp || (size && fwrite(bytes, 1, size, fp) != size) || fclose(fp)) abort();
@@ -66,7 +68,7 @@ static void write_part(int part, const void *bytes, size_t size)
 /* What was imported is what later stages read: cameras and lenses of the same views. */
 static void check(const struct imported *in)
 {
-    char out[256], lenses[256];
+    char out[FUZZ_PATH + 64], lenses[FUZZ_PATH + 64];
     struct camera_set set;
     struct lens_list list;
     struct err err = ERR_INIT;

@@ -7,6 +7,7 @@
 
 #include "stages/simulate/shoot_file.h"
 #include "tests/fuzz/fuzz.h"
+#include "tests/fuzz/fuzz_scratch.h"
 
 static void use_lens(const struct lens *l)
 {
@@ -25,10 +26,10 @@ static void use_lens(const struct lens *l)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    char folder[] = "/tmp/remodel-fuzz-XXXXXX", path[64];
+    char folder[FUZZ_PATH], path[FUZZ_PATH + 64];
     struct shoot s;
     struct err err = ERR_INIT;
-    if (!mkdtemp(folder)) abort();
+    fuzz_folder(folder);
     snprintf(path, sizeof path, "%s/cameras.txt", folder);
     FILE *fp = fopen(path, "wb");
     if (!fp || fwrite(data, 1, size, fp) != size || fclose(fp)) abort();

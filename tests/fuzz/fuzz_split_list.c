@@ -6,6 +6,7 @@
 
 #include "stages/import_photos/split_list.h"
 #include "tests/fuzz/fuzz.h"
+#include "tests/fuzz/fuzz_scratch.h"
 
 static void check_file(const char *file)
 {
@@ -23,12 +24,11 @@ static void check_same(const struct split_photo *p, const struct split_photo *q)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    char path[] = "/tmp/remodel-fuzz-XXXXXX";
-    int fd = mkstemp(path);
+    char path[FUZZ_PATH];
     struct split_list list, again;
     struct err err = ERR_INIT;
 
-    if (fd < 0 || write(fd, data, size) != (ssize_t)size || close(fd)) abort();
+    fuzz_file(path, data, size);
     if (split_list_read(&list, path, &err)) {
         if (!strstr(err.text, path) || list.photos) abort();
     } else {

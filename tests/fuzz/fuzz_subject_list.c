@@ -7,6 +7,7 @@
 
 #include "common/subject_list.h"
 #include "tests/fuzz/fuzz.h"
+#include "tests/fuzz/fuzz_scratch.h"
 
 static void use(const struct subject *s)
 {
@@ -23,12 +24,11 @@ static void use(const struct subject *s)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    char path[] = "/tmp/remodel-fuzz-XXXXXX";
-    int fd = mkstemp(path);
+    char path[FUZZ_PATH];
     struct subject_list list, again;
     struct err err = ERR_INIT;
 
-    if (fd < 0 || write(fd, data, size) != (ssize_t)size || close(fd)) abort();
+    fuzz_file(path, data, size);
     if (subject_list_read(&list, path, &err)) {
         if (!strstr(err.text, path) || list.subjects || list.count) abort();
     } else {

@@ -7,6 +7,7 @@
 
 #include "common/validity.h"
 #include "tests/fuzz/fuzz.h"
+#include "tests/fuzz/fuzz_scratch.h"
 
 static bool finite_vector(struct vec3 v) { return isfinite(v.x) && isfinite(v.y) && isfinite(v.z); }
 
@@ -47,12 +48,11 @@ static bool same(const struct validity *a, const struct validity *b)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    char path[] = "/tmp/remodel-fuzz-XXXXXX";
-    int fd = mkstemp(path);
+    char path[FUZZ_PATH];
     struct validity v, again;
     struct err err = ERR_INIT;
 
-    if (fd < 0 || write(fd, data, size) != (ssize_t)size || close(fd)) abort();
+    fuzz_file(path, data, size);
     if (validity_read(&v, path, &err)) {
         if (!strstr(err.text, path) || v.region[0].cells || v.region[1].cells) abort();
     } else {

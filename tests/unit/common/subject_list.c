@@ -1,16 +1,7 @@
 /* subject_list.c - subjects on disk and in space. */
 #include "common/subject_list.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <unistd.h>
-
-#include <cmocka.h>
+#include "tests/unit/scratch.h"
 
 #define IDENTITY                              \
     {                                         \
@@ -81,20 +72,12 @@ static void a_subject_that_is_not_before_a_camera_has_no_size_there(void **state
     assert_float_equal(subject_size_in(&s, &beyond), 120, 1e-9);
 }
 
-static void make_file(char *path, const char *text)
-{
-    strcpy(path, "/tmp/remodel-subjects-XXXXXX");
-    const int fd = mkstemp(path);
-    assert_true(fd >= 0 && write(fd, text, strlen(text)) == (ssize_t)strlen(text) && !close(fd));
-}
-
 static void what_is_written_reads_back_the_same(void **state)
 {
     (void)state;
     struct subject_list list = {0}, again;
     struct err err = ERR_INIT;
-    char path[64];
-    make_file(path, "");
+    const char *path = scratch_path("list.txt");
     for (int i = 0; i < 3; i++) {
         struct subject s = example();
         s.view = strdup(i ? "IMG 1@2" : "a");
@@ -119,7 +102,6 @@ static void what_is_written_reads_back_the_same(void **state)
     subject_list_release(&again);
     subject_list_release(&again);
     subject_list_release(NULL);
-    unlink(path);
 }
 
 #define SUBJECT "subject v face 1 2 3 4 5 6 1 2\n"
@@ -151,13 +133,11 @@ static void a_broken_list_is_refused_with_its_line(void **state)
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct subject_list list;
         struct err err = ERR_INIT;
-        char path[64];
-        make_file(path, cases[i].text);
+        const char *path = scratch_write("list.txt", cases[i].text);
         assert_int_equal(subject_list_read(&list, path, &err), ST_DATA);
-        if (!strstr(err.text, path) || !strstr(err.text, cases[i].word) || (i && !strstr(err.text, cases[i].place)))
+        if (!strstr(err.text, path) || !strstr(err.text, cases[i].word) || !strstr(err.text, cases[i].place))
             fail_msg("case %zu: %s", i, err.text);
         assert_true(!list.count && !list.subjects);
-        unlink(path);
     }
 }
 
@@ -170,5 +150,5 @@ int main(void)
         cmocka_unit_test(what_is_written_reads_back_the_same),
         cmocka_unit_test(a_broken_list_is_refused_with_its_line),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }

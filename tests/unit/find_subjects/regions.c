@@ -1,16 +1,7 @@
 /* regions.c - rectangles that a user drew, through lenses. */
 #include "stages/find_subjects/regions.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <unistd.h>
-
-#include <cmocka.h>
+#include "tests/unit/scratch.h"
 
 static char photo_a[] = "a", view_a[] = "a", photo_b[] = "b", view_left[] = "b@1", view_right[] = "b@2",
             photo_gone[] = "gone";
@@ -101,15 +92,10 @@ static void what_is_in_no_view_is_refused_with_its_line(void **state)
     assert_null(s.view);
 }
 
-static enum status read_text(struct region_list *l, char *path, const char *text, struct err *err)
+static enum status read_text(struct region_list *l, const char *text, struct err *err)
 {
-    strcpy(path, "/tmp/remodel-regions-XXXXXX");
-    const int fd = mkstemp(path);
-    assert_true(fd >= 0 && write(fd, text, strlen(text)) == (ssize_t)strlen(text) && !close(fd));
     *err = (struct err)ERR_INIT;
-    const enum status st = region_list_read(l, path, err);
-    unlink(path);
-    return st;
+    return region_list_read(l, scratch_write("subjects.txt", text), err);
 }
 
 static void lines_are_read_in_order(void **state)
@@ -117,13 +103,12 @@ static void lines_are_read_in_order(void **state)
     (void)state;
     struct region_list l;
     struct err err;
-    char path[64];
-    assert_int_equal(read_text(&l, path, "# the two of them\nsubject a 1 2 3 4.5\n\n subject \"b 1\" 0 0 9 9\n", &err),
+    assert_int_equal(read_text(&l, "# the two of them\nsubject a 1 2 3 4.5\n\n subject \"b 1\" 0 0 9 9\n", &err),
                      ST_OK);
     assert_true(l.count == 2 && !strcmp(l.regions[0].view, "a") && !strcmp(l.regions[1].view, "b 1"));
     assert_true(l.regions[0].y1 == 4.5 && l.regions[0].line == 2 && l.regions[1].line == 4);
     region_list_release(&l);
-    assert_int_equal(read_text(&l, path, "# nobody\n", &err), ST_OK);
+    assert_int_equal(read_text(&l, "# nobody\n", &err), ST_OK);
     assert_int_equal(l.count, 0);
     region_list_release(&l);
     region_list_release(NULL);
@@ -145,10 +130,9 @@ static void broken_lines_are_refused_with_their_place(void **state)
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct region_list l;
         struct err err;
-        char path[64], place_of[80];
-        assert_int_equal(read_text(&l, path, cases[i].text, &err), ST_DATA);
-        snprintf(place_of, sizeof place_of, "%s:1: ", path);
-        if (!strstr(err.text, place_of) || !strstr(err.text, cases[i].word)) fail_msg("case %zu: %s", i, err.text);
+        assert_int_equal(read_text(&l, cases[i].text, &err), ST_DATA);
+        if (!strstr(err.text, "subjects.txt:1: ") || !strstr(err.text, cases[i].word))
+            fail_msg("case %zu: %s", i, err.text);
         assert_true(!l.regions && !l.count);
     }
 }
@@ -160,5 +144,5 @@ int main(void)
         cmocka_unit_test(what_is_in_no_view_is_refused_with_its_line), cmocka_unit_test(lines_are_read_in_order),
         cmocka_unit_test(broken_lines_are_refused_with_their_place),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }

@@ -1,12 +1,7 @@
 /* What comes from outside reaches the page escaped, whatever its bytes; base64 is RFC 4648's. */
 #include "stages/report/html.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
+#include "tests/unit/scratch.h"
 
 static void expect(const char *in, size_t size, const char *wanted)
 {
@@ -82,18 +77,15 @@ static void base64_of_a_file(void **state)
 {
     enum { SIZE = 100001 };
     unsigned char *bytes = malloc(SIZE);
-    char path[] = "/tmp/remodel-html-XXXXXX", *whole = NULL, *streamed = NULL;
+    char *whole = NULL, *streamed = NULL;
     size_t length;
     struct err err = ERR_INIT;
-    int fd = mkstemp(path);
     (void)state;
-    assert_true(fd >= 0 && bytes);
+    assert_non_null(bytes);
     for (int i = 0; i < SIZE; i++) bytes[i] = (unsigned char)(i * 7 + i / 251);
-    FILE *to = fdopen(fd, "wb");
-    assert_int_equal(fwrite(bytes, 1, SIZE, to), SIZE);
-    fclose(to);
+    const char *path = scratch_write_bytes("bytes", bytes, SIZE);
 
-    to = open_memstream(&whole, &length);
+    FILE *to = open_memstream(&whole, &length);
     html_base64(to, bytes, SIZE);
     fclose(to);
     to = open_memstream(&streamed, &length);
@@ -116,5 +108,5 @@ int main(void)
         cmocka_unit_test(base64),
         cmocka_unit_test(base64_of_a_file),
     };
-    return cmocka_run_group_tests_name("html", tests, NULL, NULL);
+    return cmocka_run_group_tests_name("html", tests, scratch_make, scratch_remove);
 }
