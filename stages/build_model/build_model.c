@@ -1,0 +1,195 @@
+/* build_model.c - solid models of rooms from scripts: walls, rooms, doors, windows; and the models' edges on photographs.
+ *
+ * reads   SCRIPT, EDIT                                  docs/model-script.md
+ *         AXES                                          where the model stands in the scene, ceiling
+ *         VIEWS/cameras.txt, images.txt, lenses.txt     with --views: for places in photographs, and for the pictures
+ *         POINTS                                        with --points: where walls are that rectangles show
+ *         BASE                                          with --edit: the unedited model, whose ids are kept
+ * writes  OUT/plan.svg, view.png, plan.txt, merged.txt, model.obj, then model.txt
+ * With --overlay PHOTO instead:
+ * reads   MODEL, AXES, VIEWS, RECORDS/PHOTO.txt, PHOTOS/FILE
+ * writes  OUT                                           JPEG: the photograph with the model's edges */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/cli.h"
+#include "common/file_path.h"
+#include "common/log.h"
+#include "common/outfile.h"
+#include "common/photo_list.h"
+#include "stages/build_model/layout.h"
+#include "stages/build_model/plan_file.h"
+#include "stages/build_model/plan_picture.h"
+#include "stages/build_model/unite.h"
+
+struct job {
+    const char *script, *edit, *axes, *views, *points, *base, *out;
+    const char *overlay, *model, *photos, *records;
+    struct model_params params;
+    struct provenance prov;
+
+    struct model_axes frame;
+    struct camera_set set;
+    struct lens_list lenses;
+    struct placer placer;
+};
+
+static enum status read_frame(struct job *j, struct err *err)
+{
+    struct point_cloud cloud = {0};
+    char path[FILE_PATH];
+    enum status st = model_axes_read(&j->frame, j->axes, err);
+    if (!st) st = provenance_add_file(&j->prov, "model/axes.txt", j->axes, err);
+    if (st || !j->views) return st;
+    st = camera_set_read(&j->set, j->views, err);
+    if (!st) st = camera_set_add_inputs(&j->prov, j->views, err);
+    if (!st) st = provenance_add_in(&j->prov, "views", j->views, "lenses.txt", "", path, err);
+    if (!st) st = lens_list_read(&j->lenses, path, err);
+    if (!st && j->points) st = point_cloud_read(&cloud, j->points, err);
+    if (!st && j->points) st = provenance_add_file(&j->prov, "points/points.ply", j->points, err);
+    if (!st) st = placer_init(&j->placer, &j->set, &j->lenses, &j->frame, j->points ? &cloud : NULL, &j->params, err);
+    point_cloud_release(&cloud);
+    return st;
+}
+
+/* Names a script's file by its own name: where the scene's folder is does not change the product. */
+static enum status do_script(struct job *j, struct plan *plan, const char *path, bool edit, struct err *err)
+{
+    struct script script = {0};
+    const char *slash = strrchr(path, '/');
+    enum status st = script_read(&script, path, err);
+    if (!st) st = provenance_add_file(&j->prov, slash ? slash + 1 : path, path, err);
+    if (!st) st = plan_apply(plan, &script, edit, j->views ? &j->placer : NULL, err);
+    script_release(&script);
+    return st;
+}
+
+static enum status write_model(struct job *j, const struct plan *plan, const struct solid_mesh *mesh,
+                               const struct unite_log *log, struct err *err)
+{
+    const struct placer *placer = j->views ? &j->placer : NULL;
+    char path[FILE_PATH];
+    if (file_path(path, j->out, "plan.svg", "", err) || plan_picture_write(plan, placer, j->frame.metric, path, err) ||
+        file_path(path, j->out, "view.png", "", err) || view_picture_write(mesh, placer, path, err) ||
+        file_path(path, j->out, "plan.txt", "", err) || plan_write(plan, path, &j->prov, err) ||
+        file_path(path, j->out, "merged.txt", "", err) || merged_write(log, path, &j->prov, err) ||
+        file_path(path, j->out, "model.obj", "", err) || solid_mesh_write_obj(mesh, path, &j->prov, err) ||
+        file_path(path, j->out, "model.txt", "", err) || solid_mesh_write(mesh, path, &j->prov, err))
+        return err->status;
+    return ST_OK;
+}
+
+static void tell(const struct plan *plan, const struct solid_mesh *mesh, const struct unite_log *log,
+                 const struct solid_report *report)
+{
+    int merged = 0;
+    for (int i = 0; i < log->count; i++) {
+        if (log->notes[i].event != UNITE_MERGED) continue;
+        if (++merged <= 12) log_note("face %s became part of %s", log->notes[i].name, log->notes[i].into);
+    }
+    if (merged > 12) log_note("and %d more, in merged.txt", merged - 12);
+    log_note("%d walls, %d rooms, %d openings: %d faces in %d bodies, volume %.4g; closed, without self-intersection",
+             plan->wall_count, plan->room_count, plan->opening_count, mesh->face_count, mesh->body_count,
+             report->volume);
+}
+
+static enum status build(struct job *j, struct err *err)
+{
+    struct plan plan = {0};
+    struct solid_list solids = {0};
+    struct solid_mesh mesh = {0}, base = {0};
+    struct unite_log log = {0};
+    struct solid_report report = {0};
+    enum status st = read_frame(j, err);
+    if (!st) {
+        plan_begin(&plan, &j->frame);
+        st = do_script(j, &plan, j->script, false, err);
+    }
+    if (!st && j->edit) st = do_script(j, &plan, j->edit, true, err);
+    if (!st) st = layout_solids(&solids, &plan, err);
+    if (!st && !solids.count) st = err_set(err, ST_DATA, "%s: nothing in it is a solid.", j->script);
+    if (!st) st = solids_unite(&mesh, &solids, &log, err);
+    if (!st) st = solid_mesh_check(&mesh, 0, &report, err);
+    if (!st && j->base) st = solid_mesh_read(&base, j->base, err);
+    if (!st && j->base) st = provenance_add_file(&j->prov, "model/model.txt", j->base, err);
+    if (!st && j->base) st = solid_mesh_carry_ids(&mesh, &base, err);
+    if (!st) st = write_model(j, &plan, &mesh, &log, err);
+    if (!st) tell(&plan, &mesh, &log, &report);
+    solid_report_release(&report);
+    unite_log_release(&log);
+    solid_mesh_release(&base);
+    solid_mesh_release(&mesh);
+    solid_list_release(&solids);
+    plan_release(&plan);
+    return st;
+}
+
+static enum status overlay(struct job *j, struct err *err)
+{
+    struct solid_mesh mesh = {0};
+    struct photo_record record = {0};
+    struct photo photo = {0};
+    char path[FILE_PATH];
+    int at = 0;
+    enum status st = read_frame(j, err);
+    if (!st) st = solid_mesh_read(&mesh, j->model, err);
+    if (!st) {
+        while (at < j->placer.photo_count && strcmp(j->placer.photos[at].photo, j->overlay)) at++;
+        if (at == j->placer.photo_count)
+            st = err_set(err, ST_DATA, "%s/lenses.txt has no photo %s.", j->views, j->overlay);
+    }
+    if (!st) st = photo_record_read(&record, j->records, j->overlay, err);
+    if (!st) st = file_path(path, j->photos, record.file, "", err);
+    if (!st) st = photo_read(&photo, path, err);
+    if (!st && (photo.info.width != j->placer.photos[at].camera->width ||
+                photo.info.height != j->placer.photos[at].camera->height))
+        st = err_set(err, ST_DATA, "%s is %d x %d pixels, but its lens says %d x %d; make the views again.", path,
+                     photo.info.width, photo.info.height, j->placer.photos[at].camera->width,
+                     j->placer.photos[at].camera->height);
+    if (!st) st = overlay_write(&mesh, &j->placer.photos[at], &photo, j->params.overlay_side, j->out, err);
+    photo_release(&photo);
+    photo_record_release(&record);
+    solid_mesh_release(&mesh);
+    return st;
+}
+
+static enum status check_usage(const struct job *j, struct err *err)
+{
+    if (!j->overlay && !j->script) return err_set(err, ST_USAGE, "--script is missing (or --overlay); see --help.");
+    if (j->overlay && (!j->model || !j->views || !j->photos || !j->records))
+        return err_set(err, ST_USAGE, "--overlay wants --model, --views, --photos and --records too.");
+    if (j->base && !j->edit) return err_set(err, ST_USAGE, "--base is for --edit: the model before the edit.");
+    if (j->points && !j->views) return err_set(err, ST_USAGE, "--points wants --views too.");
+    return ST_OK;
+}
+
+int main(int argc, char **argv)
+{
+    struct job j = {.params = MODEL_PARAMS_DEFAULT};
+    const struct cli_opt opts[] = {
+        CLI_ABOUT("Builds the solid model that a script describes, or draws a model's edges on a photograph."),
+        CLI_STR("script", &j.script, CLI_OPTIONAL, "model script: walls, rooms, openings (docs/model-script.md)"),
+        CLI_STR("edit", &j.edit, CLI_OPTIONAL, "script of changes to that model"),
+        CLI_STR("base", &j.base, CLI_OPTIONAL, "with --edit: the unedited model.txt, whose ids of faces are kept"),
+        CLI_STR("axes", &j.axes, CLI_REQUIRED, "the model's frame, axes.txt"),
+        CLI_STR("views", &j.views, CLI_OPTIONAL, "folder of cameras: for places in photographs, and the pictures"),
+        CLI_STR("points", &j.points, CLI_OPTIONAL, "PLY of oriented points, for walls by rectangles"),
+        CLI_STR("overlay", &j.overlay, CLI_OPTIONAL, "photo on which to draw the edges of --model, to --out"),
+        CLI_STR("model", &j.model, CLI_OPTIONAL, "with --overlay: model.txt"),
+        CLI_STR("photos", &j.photos, CLI_OPTIONAL, "with --overlay: folder of the photographs"),
+        CLI_STR("records", &j.records, CLI_OPTIONAL, "with --overlay: folder of the photos' records"),
+        CLI_STR("out", &j.out, CLI_REQUIRED, "folder to write the model to; with --overlay the JPEG"),
+        CLI_PARAMS(model_param_table, &j.params, NULL),
+        CLI_END,
+    };
+    struct err err = ERR_INIT;
+    if (cli_parse(argc, argv, "build_model", opts, &j.prov, &err) != CLI_RUN || check_usage(&j, &err) ||
+        (j.overlay ? overlay(&j, &err) : build(&j, &err)))
+        err_report(&err);
+    placer_release(&j.placer);
+    lens_list_release(&j.lenses);
+    camera_set_release(&j.set);
+    provenance_release(&j.prov);
+    return err_exit_code(&err);
+}

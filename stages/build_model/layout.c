@@ -1,0 +1,579 @@
+/* layout.c - see layout.h.
+ *
+ * A wall is cut into columns at the sides of its openings and where a sloping ceiling begins, a column at the sills and
+ * heads into pieces. Where two openings share a side the pieces beside it are cut at their heights too, so that each
+ * reveal has its own name. Pieces take the planes of their wall by the same numbers, so that what is one plane stays one.
+ * Ends lie in the planes of the walls that they are joined to: the corner includes the intersection of both.
+ *
+ * Floors and ceilings cover the walls' thickness too, up to the middle of a wall between two rooms: they support the
+ * walls, go on through doorways, and no two things touch in an edge alone. A room's polygon is cut into convex ones along the
+ * lines of its own walls. */
+#include "stages/build_model/layout.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_SIDES = 16, NAME_SIZE = 192 };
+#define BODY "walls"
+#define NEAR 1e-9
+
+struct shape { /* half-spaces of a solid, with room for their names */
+    struct half_space h[MOST_SIDES];
+    char names[MOST_SIDES][NAME_SIZE];
+    int count;
+};
+
+static void add_side(struct shape *s, double x, double y, double z, double offset, const char *fmt, ...)
+    PRINTF_LIKE(6, 7);
+static void add_side(struct shape *s, double x, double y, double z, double offset, const char *fmt, ...)
+{
+    va_list args;
+    va_start(args, fmt);
+    vsnprintf(s->names[s->count], NAME_SIZE, fmt, args);
+    va_end(args);
+    s->h[s->count] = (struct half_space){{x, y, z}, offset, s->names[s->count]};
+    s->count++;
+}
+
+static enum status add_shape(struct solid_list *list, const char *body, const struct shape *s, struct err *err)
+{
+    return solid_list_add(list, body, s->h, s->count, err);
+}
+
+/* ------------------------------------------------------------------------------------------------------------- walls */
+
+struct top { /* of a part of a wall: z = a[0] + a[1] x + a[2] y */
+    double a[3];
+};
+
+struct span_top {
+    double s[2];
+    struct top top;
+};
+
+struct wall_parts { /* what is needed of the plan, sorted by wall */
+    const struct plan *plan;
+    const struct plan_opening **openings; /* of all walls, in order of wall, then of S */
+    int *first;                           /* openings of wall w: first[w] .. first[w + 1] - 1 */
+    struct span_top *tops;                /* the rooms' ceilings above walls, in order of wall */
+    int *filled;                          /* of first_top[w]: how many of wall w are there */
+    int *first_top;
+};
+
+static int compare_openings(const void *a, const void *b)
+{
+    const struct plan_opening *x = *(const struct plan_opening *const *)a, *y = *(const struct plan_opening *const *)b;
+    if (x->wall != y->wall) return x->wall - y->wall;
+    if (x->s[0] != y->s[0]) return x->s[0] < y->s[0] ? -1 : 1;
+    return x->z[0] < y->z[0] ? -1 : x->z[0] > y->z[0];
+}
+
+static void wall_parts_release(struct wall_parts *w)
+{
+    free(w->openings);
+    free(w->first);
+    free(w->tops);
+    free(w->filled);
+    free(w->first_top);
+}
+
+/* The edge of a room that a wall of it belongs to; -1: of none. */
+static int edge_of(const struct plan *p, const struct plan_room *r, int wall)
+{
+    const struct plan_wall *w = &p->walls[wall];
+    for (int e = 0; e < r->edge_count; e++) {
+        const struct plan_wall *x = &p->walls[r->edges[e].wall];
+        const double turn = w->d[0] * x->d[0] + w->d[1] * x->d[1];
+        if (r->edges[e].wall == wall || (turn > 1 - 1e-12 && fabs(w->c - x->c) < 1e-6)) return e;
+    }
+    return -1;
+}
+
+static enum status wall_parts_make(struct wall_parts *w, const struct plan *p, struct err *err)
+{
+    const size_t walls = (size_t)p->wall_count;
+    int uses = 0, n = 0;
+    for (int i = 0; i < p->room_count; i++) uses += p->rooms[i].removed ? 0 : p->rooms[i].wall_count;
+    *w = (struct wall_parts){.plan = p};
+    w->openings = calloc((size_t)p->opening_count + 1, sizeof *w->openings);
+    w->first = calloc(walls + 2, sizeof *w->first);
+    w->tops = calloc((size_t)uses + 1, sizeof *w->tops);
+    w->filled = calloc((size_t)uses + 1, sizeof *w->filled);
+    w->first_top = calloc(walls + 2, sizeof *w->first_top);
+    if (!w->openings || !w->first || !w->tops || !w->filled || !w->first_top) {
+        wall_parts_release(w);
+        return err_nomem(err, "the parts of walls", walls * sizeof *w->tops);
+    }
+    for (int i = 0; i < p->opening_count; i++) {
+        const struct plan_opening *o = &p->openings[i];
+        if (o->removed || p->walls[o->wall].removed) continue;
+        w->openings[n++] = o;
+        w->first[o->wall + 1]++;
+    }
+    if (n) qsort(w->openings, (size_t)n, sizeof *w->openings, compare_openings);
+    /* tops: counted, then put in their places in order of rooms */
+    for (int pass = 0; pass < 2; pass++) {
+        for (int i = 0; i < p->room_count; i++) {
+            const struct plan_room *r = &p->rooms[i];
+            for (int k = 0; !r->removed && k < r->wall_count; k++) {
+                const int wall = r->walls[k], e = edge_of(p, r, wall);
+                if (e < 0) continue;
+                if (pass == 0) {
+                    w->first_top[wall + 1]++;
+                    continue;
+                }
+                const int at = w->first_top[wall] + w->filled[w->first_top[wall]]++;
+                room_span(p, r, e, wall, w->tops[at].s);
+                memcpy(w->tops[at].top.a, r->lower, sizeof r->lower);
+            }
+        }
+        for (size_t i = 0; pass == 0 && i < walls; i++) w->first_top[i + 1] += w->first_top[i];
+    }
+    for (size_t i = 0; i < walls; i++) w->first[i + 1] += w->first[i];
+    return ST_OK;
+}
+
+bool window_has_glass(const struct plan *plan, const struct plan_opening *o, int *side)
+{
+    unsigned sides = 0;
+    if (o->kind != VERB_WINDOW || !o->filled || o->interior) return false;
+    for (int i = 0; i < plan->room_count; i++) {
+        const struct plan_room *r = &plan->rooms[i];
+        for (int k = 0; !r->removed && k < r->wall_count; k++) {
+            if (r->walls[k] != o->wall) continue;
+            const int e = edge_of(plan, r, o->wall);
+            if (e >= 0) sides |= 1u << r->edges[e].side;
+        }
+    }
+    *side = sides == 1u << SIDE_OUT ? SIDE_IN : SIDE_OUT;
+    return sides != 3;
+}
+
+static int compare_numbers(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static int unique(double *x, int count)
+{
+    int n = 0;
+    if (count) qsort(x, (size_t)count, sizeof *x, compare_numbers);
+    for (int i = 0; i < count; i++)
+        if (n == 0 || x[i] - x[n - 1] > NEAR) x[n++] = x[i];
+    return n;
+}
+
+struct column {
+    const struct wall_parts *parts;
+    int wall;
+    bool first, last; /* ends at the wall's own ends, in S */
+    double s[2];
+};
+
+/* left or right for who stands inside: the low side in the wall's own direction is left. */
+static const char *reveal_side(const struct plan_wall *w, int upper_bound_of_hole)
+{
+    return (w->sign > 0) == (upper_bound_of_hole == 1) ? "right" : "left";
+}
+
+/* The openings that have their side at S, on the column's side `upper` (the opening is beyond it). */
+static const struct plan_opening *beyond(const struct column *c, int upper, double z0, double z1, int *count)
+{
+    const struct wall_parts *w = c->parts;
+    const struct plan_opening *found = NULL;
+    *count = 0;
+    for (int i = w->first[c->wall]; i < w->first[c->wall + 1]; i++) {
+        const struct plan_opening *o = w->openings[i];
+        if (fabs(o->s[!upper] - c->s[upper]) > NEAR) continue;
+        ++*count;
+        if (!found || (o->z[0] < z1 - NEAR && o->z[1] > z0 + NEAR)) found = o;
+    }
+    return found;
+}
+
+static void add_column_side(struct shape *sh, const struct column *c, int upper, double z0, double z1)
+{
+    const struct plan *p = c->parts->plan;
+    const struct plan_wall *w = &p->walls[c->wall];
+    int count;
+    const int end = (upper == 1) == (w->sign > 0) ? END_END : END_START;
+    if (upper ? c->last : c->first) {
+        int face_wall, face_side;
+        const struct plan_line cap = wall_cap(p, c->wall, end, &face_wall, &face_side);
+        if (face_wall >= 0 && !p->walls[face_wall].removed)
+            add_side(sh, cap.n[0], cap.n[1], 0, cap.c, "wall/%s/%s", p->walls[face_wall].name,
+                     face_side == SIDE_IN ? "in" : "out");
+        else
+            add_side(sh, cap.n[0], cap.n[1], 0, cap.c, "wall/%s/%s", w->name, end == END_END ? "end" : "start");
+        return;
+    }
+    const struct plan_opening *o = beyond(c, upper, z0, z1, &count);
+    const double along = w->sign * (c->s[upper] + w->origin), out = end == END_END ? 1 : -1;
+    if (o)
+        add_side(sh, out * w->d[0], out * w->d[1], 0, out * along, "%s/%s/%s", verb_name(o->kind), o->name,
+                 reveal_side(w, !upper));
+    else
+        add_side(sh, out * w->d[0], out * w->d[1], 0, out * along, "wall/%s/cut", w->name);
+}
+
+/* A piece of a column from z0 (the head of `below`, or the wall's foot) up to the sill of `above`, or the top. */
+static enum status add_piece(struct solid_list *list, const struct column *c, double z0,
+                             const struct plan_opening *below, double z1, const struct plan_opening *above,
+                             const struct top *top, bool cut, struct err *err)
+{
+    const struct plan_wall *w = &c->parts->plan->walls[c->wall];
+    const struct plan_line in = wall_face(w, SIDE_IN), out = wall_face(w, SIDE_OUT);
+    struct shape s = {.count = 0};
+    if (!top && !(z1 - z0 > NEAR)) return ST_OK;
+    add_side(&s, in.n[0], in.n[1], 0, in.c, "wall/%s/in", w->name);
+    add_side(&s, out.n[0], out.n[1], 0, out.c, "wall/%s/out", w->name);
+    add_column_side(&s, c, 0, z0, z1);
+    add_column_side(&s, c, 1, z0, z1);
+    if (below)
+        add_side(&s, 0, 0, -1, -z0, "%s/%s/head", verb_name(below->kind), below->name);
+    else
+        add_side(&s, 0, 0, -1, -z0, "wall/%s/%s", w->name, cut ? "cut" : "bottom");
+    if (above)
+        add_side(&s, 0, 0, 1, z1, "%s/%s/sill", verb_name(above->kind), above->name);
+    else if (top)
+        add_side(&s, -top->a[1], -top->a[2], 1, top->a[0], "wall/%s/top", w->name);
+    else
+        add_side(&s, 0, 0, 1, z1, "wall/%s/cut", w->name);
+    return add_shape(list, BODY, &s, err);
+}
+
+static int compare_heights(const void *a, const void *b)
+{
+    const struct plan_opening *x = *(const struct plan_opening *const *)a, *y = *(const struct plan_opening *const *)b;
+    return x->z[0] < y->z[0] ? -1 : x->z[0] > y->z[0];
+}
+
+/* Whether the ceiling falls below z somewhere over the column. */
+static bool reaches(const struct column *c, const struct top *top, double z)
+{
+    const struct plan_wall *w = &c->parts->plan->walls[c->wall];
+    for (int k = 0; k < 4; k++) {
+        double p[2];
+        wall_point(w, c->s[k & 1], k & 2 ? w->thickness : 0, p);
+        if (top->a[0] + top->a[1] * p[0] + top->a[2] * p[1] > z + NEAR) return true;
+    }
+    return false;
+}
+
+static enum status add_column(struct solid_list *list, const struct column *c, const struct top *top,
+                              const struct plan_opening **holes, double *cuts, struct err *err)
+{
+    const struct wall_parts *w = c->parts;
+    const struct plan_wall *wall = &w->plan->walls[c->wall];
+    int hole_count = 0, cut_count = 0;
+    for (int i = w->first[c->wall]; i < w->first[c->wall + 1]; i++) {
+        const struct plan_opening *o = w->openings[i];
+        if (o->s[0] < c->s[1] - NEAR && o->s[1] > c->s[0] + NEAR) holes[hole_count++] = o;
+    }
+    if (hole_count) qsort(holes, (size_t)hole_count, sizeof *holes, compare_heights);
+    for (int upper = 0; upper < 2; upper++) { /* two openings that share this side: a piece for each reveal */
+        int count;
+        beyond(c, upper, 0, 0, &count);
+        for (int i = w->first[c->wall]; count > 1 && i < w->first[c->wall + 1]; i++) {
+            const struct plan_opening *o = w->openings[i];
+            if (fabs(o->s[!upper] - c->s[upper]) > NEAR) continue;
+            cuts[cut_count++] = o->z[0];
+            cuts[cut_count++] = o->z[1];
+        }
+    }
+    cut_count = unique(cuts, cut_count);
+    double z = wall->foot;
+    const struct plan_opening *below = NULL;
+    enum status st = ST_OK;
+    bool cut = false;
+    for (int i = 0; i <= hole_count && !st; i++) {
+        const struct plan_opening *above = i < hole_count ? holes[i] : NULL;
+        const double to = above ? above->z[0] : HUGE_VAL;
+        for (int k = 0; k < cut_count && !st; k++) {
+            if (cuts[k] <= z + NEAR || cuts[k] >= to - NEAR || !reaches(c, top, cuts[k])) continue;
+            st = add_piece(list, c, z, below, cuts[k], NULL, NULL, cut, err);
+            z = cuts[k];
+            below = NULL;
+            cut = true;
+        }
+        if (!st && above) st = above->z[0] - z > NEAR ? add_piece(list, c, z, below, to, above, NULL, cut, err) : ST_OK;
+        if (!st && !above && reaches(c, top, z)) st = add_piece(list, c, z, below, HUGE_VAL, NULL, top, cut, err);
+        if (above) {
+            z = above->z[1];
+            below = above;
+            cut = false;
+        }
+    }
+    return st;
+}
+
+/* The ceilings above a column, each once; without a room the wall's own top. */
+static int tops_above(const struct column *c, struct top *tops)
+{
+    const struct wall_parts *w = c->parts;
+    const struct plan_wall *wall = &w->plan->walls[c->wall];
+    const double middle = 0.5 * (c->s[0] + c->s[1]);
+    int n = 0;
+    for (int i = w->first_top[c->wall]; !wall->has_top && i < w->first_top[c->wall + 1]; i++) {
+        if (middle < w->tops[i].s[0] || middle > w->tops[i].s[1]) continue;
+        bool known = false;
+        for (int k = 0; k < n; k++) known |= !memcmp(tops[k].a, w->tops[i].top.a, sizeof tops[k].a);
+        if (!known) tops[n++] = w->tops[i].top;
+    }
+    if (!n) tops[n++] = (struct top){{wall->top, 0, 0}};
+    return n;
+}
+
+static enum status add_wall(struct solid_list *list, const struct wall_parts *parts, int wall, struct err *err)
+{
+    const struct plan_wall *w = &parts->plan->walls[wall];
+    const int openings = parts->first[wall + 1] - parts->first[wall];
+    const int rooms = parts->first_top[wall + 1] - parts->first_top[wall];
+    const size_t room = (size_t)(4 * openings + 2 * rooms) + 4;
+    double *s = calloc(room, sizeof *s), *cuts = calloc(room, sizeof *cuts), span[2];
+    const struct plan_opening **holes = calloc(room, sizeof *holes);
+    struct top *tops = calloc((size_t)rooms + 1, sizeof *tops);
+    int n = 0, kept = 0;
+    enum status st = s && cuts && holes && tops ? ST_OK : err_nomem(err, "a wall's pieces", room * sizeof *s);
+    if (!st) {
+        wall_span(parts->plan, wall, span);
+        for (int i = parts->first[wall]; i < parts->first[wall + 1]; i++)
+            for (int k = 0; k < 2; k++) s[n++] = parts->openings[i]->s[k];
+        const struct top own = {{w->top, 0, 0}};
+        for (int i = parts->first_top[wall]; i < parts->first_top[wall + 1] && !w->has_top; i++)
+            for (int k = 0; k < 2; k++)
+                if (memcmp(parts->tops[i].top.a, own.a, sizeof own.a)) s[n++] = parts->tops[i].s[k];
+        n = unique(s, n);
+        for (int i = 0; i < n; i++) /* cuts strictly between the ends */
+            if (s[i] > span[0] + 1e-6 && s[i] < span[1] - 1e-6) s[kept++] = s[i];
+    }
+    /* an opening that begins where the wall's clear span does leaves no column before it but the neighbour's corner: the
+     * first and the last column always reach to the caps */
+    for (int i = 0; i <= kept && !st; i++) {
+        struct column c = {parts, wall, i == 0, i == kept, {i ? s[i - 1] : span[0], i < kept ? s[i] : span[1]}};
+        const int count = tops_above(&c, tops);
+        for (int k = 0; k < count && !st; k++) st = add_column(list, &c, &tops[k], holes, cuts, err);
+    }
+    free(tops);
+    free(holes);
+    free(cuts);
+    free(s);
+    return st;
+}
+
+/* ---------------------------------------------------------------------------------------------- leaves and panes */
+
+/* A slab in an opening, from `a` to `b` behind the wall's in face. */
+static enum status add_filling(struct solid_list *list, const struct plan *p, const struct plan_opening *o, double a,
+                               double b, bool glass, struct err *err)
+{
+    const struct plan_wall *w = &p->walls[o->wall];
+    const struct plan_line in = wall_face(w, SIDE_IN);
+    const char *kind = glass ? "glass" : verb_name(o->kind), *leaf = glass ? "" : "leaf-";
+    char body[NAME_SIZE];
+    struct shape s = {.count = 0};
+    snprintf(body, sizeof body, glass ? "glass/%s" : BODY "%.0s", o->name);
+    add_side(&s, in.n[0], in.n[1], 0, in.c - a, "%s/%s/%sin", kind, o->name, leaf);
+    add_side(&s, -in.n[0], -in.n[1], 0, b - in.c, "%s/%s/%sout", kind, o->name, leaf);
+    for (int k = 0; k < 2; k++) {
+        const double along = w->sign * (o->s[k] + w->origin), out = (k == 1) == (w->sign > 0) ? 1 : -1;
+        add_side(&s, out * w->d[0], out * w->d[1], 0, out * along, "%s/%s/%s", kind, o->name, reveal_side(w, k));
+    }
+    add_side(&s, 0, 0, -1, -o->z[0], "%s/%s/sill", kind, o->name);
+    add_side(&s, 0, 0, 1, o->z[1], "%s/%s/head", kind, o->name);
+    return add_shape(list, body, &s, err);
+}
+
+static enum status add_leaf(struct solid_list *list, const struct plan *p, const struct plan_opening *o,
+                            struct err *err)
+{
+    const double middle = 0.5 * p->walls[o->wall].thickness;
+    return add_filling(list, p, o, middle - 0.5 * p->leaf, middle + 0.5 * p->leaf, false, err);
+}
+
+static enum status add_pane(struct solid_list *list, const struct plan *p, const struct plan_opening *o, int side,
+                            struct err *err)
+{
+    const double t = p->walls[o->wall].thickness;
+    return side == SIDE_OUT ? add_filling(list, p, o, t - p->glass, t, true, err)
+                            : add_filling(list, p, o, 0, p->glass, true, err);
+}
+
+/* ----------------------------------------------------------------------------------------------- floors and ceilings */
+
+struct corner {
+    double p[2];
+    struct plan_line line; /* of the side that ends here, n out of the polygon */
+    int wall, side;        /* whose face that side lies in; wall -1: a cut, -2: the middle of a wall */
+};
+
+static double turn_at(const struct corner *c, int n, int i)
+{
+    const double *a = c[(i + n - 1) % n].p, *b = c[i].p, *d = c[(i + 1) % n].p;
+    return (b[0] - a[0]) * (d[1] - b[1]) - (b[1] - a[1]) * (d[0] - b[0]);
+}
+
+struct slabs {
+    struct solid_list *list;
+    const struct plan *plan;
+    const struct plan_room *room;
+    double slab;
+    struct err *err;
+};
+
+static void slab_sides(struct shape *s, const struct slabs *b, const struct corner *c, int n, const char *what)
+{
+    const struct plan *p = b->plan;
+    for (int i = 0; i < n; i++)
+        if (c[i].wall >= 0 && !p->walls[c[i].wall].removed)
+            add_side(s, c[i].line.n[0], c[i].line.n[1], 0, c[i].line.c, "wall/%s/%s", p->walls[c[i].wall].name,
+                     c[i].side == SIDE_IN ? "in" : "out");
+        else
+            add_side(s, c[i].line.n[0], c[i].line.n[1], 0, c[i].line.c, "%s/%s/side", what, b->room->name);
+}
+
+static enum status add_slabs(const struct slabs *b, const struct corner *c, int n)
+{
+    const struct plan_room *r = b->room;
+    const double *l = r->lower;
+    struct shape floor = {.count = 0}, ceiling = {.count = 0};
+    slab_sides(&floor, b, c, n, "floor");
+    add_side(&floor, 0, 0, 1, r->floor, "floor/%s", r->name);
+    add_side(&floor, 0, 0, -1, b->slab - r->floor, "floor/%s/bottom", r->name);
+    slab_sides(&ceiling, b, c, n, "ceiling");
+    add_side(&ceiling, l[1], l[2], -1, -l[0], "ceiling/%s", r->name);
+    add_side(&ceiling, -l[1], -l[2], 1, l[0] + b->slab, "ceiling/%s/top", r->name);
+    if (add_shape(b->list, BODY, &floor, b->err)) return b->err->status;
+    return add_shape(b->list, BODY, &ceiling, b->err);
+}
+
+/* The polygon's convex parts. At a reflex corner the line of the side before it is drawn on to the nearest side that it
+ * meets, which gives two polygons with fewer such corners. */
+static enum status cut_convex(const struct slabs *b, struct corner *c, int n, int depth)
+{
+    int reflex = 0;
+    while (reflex < n && !(turn_at(c, n, reflex) < -1e-12)) reflex++;
+    if (reflex == n && n <= MOST_SIDES - 2) return add_slabs(b, c, n);
+    if (reflex == n)
+        return err_set(b->err, ST_DATA, "room %s has more than %d walls round a convex part of it.", b->room->name,
+                       MOST_SIDES - 2);
+    const double *p = c[reflex].p;
+    const struct plan_line line = c[reflex].line;
+    const double d[2] = {-line.n[1], line.n[0]}; /* counter-clockwise: the way the side goes */
+    double nearest = HUGE_VAL;
+    int hit = -1;
+    for (int k = 0; k < n; k++) {
+        const int before = (k + n - 1) % n;
+        if (k == reflex || before == reflex) continue;
+        const double *a = c[before].p, *e = c[k].p;
+        const double ha = line.n[0] * a[0] + line.n[1] * a[1] - line.c,
+                     he = line.n[0] * e[0] + line.n[1] * e[1] - line.c;
+        if ((ha > 0) == (he > 0)) continue;
+        const double t = ha / (ha - he);
+        const double ahead = d[0] * (a[0] + t * (e[0] - a[0]) - p[0]) + d[1] * (a[1] + t * (e[1] - a[1]) - p[1]);
+        if (ahead > 1e-9 && ahead < nearest) {
+            nearest = ahead;
+            hit = k;
+        }
+    }
+    struct corner *part = hit < 0 || depth > n + 64 ? NULL : calloc(2 * (size_t)n + 8, sizeof *part);
+    if (!part)
+        return err_set(b->err, ST_INTERNAL, "the floor of room %s could not be cut into convex parts.", b->room->name);
+    const double at[2] = {p[0] + nearest * d[0], p[1] + nearest * d[1]};
+    enum status st = ST_OK;
+    for (int half = 0; half < 2 && !st; half++) {
+        int m = 0;
+        /* half 0: from the reflex corner along the border to the hit side, and back over the cut; half 1: the rest */
+        const int from = half == 0 ? reflex : hit, to = half == 0 ? hit : reflex;
+        for (int k = from; k != to; k = (k + 1) % n) part[m++] = c[k];
+        if (half == 0) {
+            part[0].wall = -1; /* the cut ends at the reflex corner */
+            part[m] = c[hit];  /* the hit side, up to the cut */
+            memcpy(part[m++].p, at, sizeof at);
+            part[0].line = (struct plan_line){{-line.n[0], -line.n[1]}, -line.c};
+        } else {
+            part[m] = c[reflex]; /* the side before the corner goes on to the cut's other end */
+            memcpy(part[m++].p, at, sizeof at);
+        }
+        /* a corner that fell on another is no corner */
+        int kept = 0;
+        for (int k = 0; k < m; k++) {
+            const double *q = part[k].p, *prev = part[(k + m - 1) % m].p;
+            if (hypot(q[0] - prev[0], q[1] - prev[1]) > 1e-9) part[kept++] = part[k];
+        }
+        if (kept >= 3) st = cut_convex(b, part, kept, depth + 1);
+    }
+    free(part);
+    return st;
+}
+
+static enum status add_room(struct solid_list *list, const struct plan *p, const struct plan_room *r, struct err *err)
+{
+    const struct slabs b = {list, p, r, p->slab > 0 ? p->slab : p->thickness, err};
+    struct corner *c = calloc((size_t)r->edge_count, sizeof *c);
+    if (!c) return err_nomem(err, "a room's corners", (size_t)r->edge_count * sizeof *c);
+    for (int e = 0; e < r->edge_count; e++) {
+        const struct room_edge *edge = &r->edges[e];
+        const struct plan_wall *w = &p->walls[edge->wall];
+        const double sign = edge->side == SIDE_IN ? -1 : 1; /* out of the room */
+        memcpy(c[e].p, edge->outer, sizeof c[e].p);
+        c[e].line = (struct plan_line){{sign * w->d[1], -sign * w->d[0]}, sign * edge->border};
+        c[e].wall = edge->shared ? -2 : edge->wall;
+        c[e].side = edge->side == SIDE_IN ? SIDE_OUT : SIDE_IN;
+    }
+    const enum status st = cut_convex(&b, c, r->edge_count, 0);
+    free(c);
+    return st;
+}
+
+/* ------------------------------------------------------------------------------------------------------------- boxes */
+
+static enum status add_box(struct solid_list *list, const struct plan_box *b, struct err *err)
+{
+    static const char *const names[4] = {"left", "right", "front", "back"};
+    const double turn = fmod(b->turn, 360) * (3.14159265358979323846 / 180);
+    double c = cos(turn), s = sin(turn);
+    if (fmod(b->turn, 90) == 0) c = round(c), s = round(s);
+    const double middle[2] = {0.5 * (b->low[0] + b->high[0]), 0.5 * (b->low[1] + b->high[1])};
+    struct shape sh = {.count = 0};
+    for (int k = 0; k < 4; k++) {
+        const int axis = k / 2, out = k % 2 ? 1 : -1;
+        const double n[2] = {axis ? -out * s : out * c, axis ? out * c : out * s};
+        const double offset = b->turn == 0 ? (k % 2 ? b->high[axis] : -b->low[axis])
+                                           : n[0] * middle[0] + n[1] * middle[1] + 0.5 * (b->high[axis] - b->low[axis]);
+        add_side(&sh, n[0], n[1], 0, offset, "box/%s/%s", b->name, names[k]);
+    }
+    add_side(&sh, 0, 0, -1, -b->low[2], "box/%s/bottom", b->name);
+    add_side(&sh, 0, 0, 1, b->high[2], "box/%s/top", b->name);
+    return add_shape(list, BODY, &sh, err);
+}
+
+enum status layout_solids(struct solid_list *list, const struct plan *plan, struct err *err)
+{
+    struct wall_parts parts;
+    *list = (struct solid_list){0};
+    enum status st = wall_parts_make(&parts, plan, err);
+    if (st) return st;
+    for (int i = 0; i < plan->wall_count && !st; i++)
+        if (!plan->walls[i].removed) st = add_wall(list, &parts, i, err);
+    for (int i = 0; i < plan->room_count && !st; i++)
+        if (!plan->rooms[i].removed) st = add_room(list, plan, &plan->rooms[i], err);
+    for (int i = 0; i < plan->box_count && !st; i++)
+        if (!plan->boxes[i].removed) st = add_box(list, &plan->boxes[i], err);
+    for (int i = 0; i < plan->opening_count && !st; i++) {
+        const struct plan_opening *o = &plan->openings[i];
+        int side;
+        if (o->removed || !o->filled || plan->walls[o->wall].removed) continue;
+        if (o->kind == VERB_DOOR)
+            st = add_leaf(list, plan, o, err);
+        else if (window_has_glass(plan, o, &side))
+            st = add_pane(list, plan, o, side, err);
+    }
+    wall_parts_release(&parts);
+    if (st) solid_list_release(list);
+    return st;
+}

@@ -1,0 +1,127 @@
+/* plan.h - what a script says: walls with their joins, rooms, openings and boxes, before they are solids.
+ *
+ * Model frame: z up, floor at 0, x and y along the walls. In plan a wall is a line that runs from its start to its end, left
+ * to right for who stands before it inside; its in face is on that line, its body behind it. S along a wall is x or y of
+ * the model for a wall along an axis, and the distance from its first point for an angled one.
+ *
+ * Ends are kept as what they are joined to, not as places, so that a wall that moves takes its neighbours' ends along. */
+#ifndef REMODEL_BUILD_MODEL_PLAN_H
+#define REMODEL_BUILD_MODEL_PLAN_H
+
+#include "stages/build_model/place.h"
+#include "stages/build_model/script.h"
+
+enum end_kind {
+    FREE_END,
+    CORNER_END, /* includes the solid intersection with the other wall: goes to the farther of its faces */
+    MEET_END,   /* stops at the nearer face of the other wall */
+};
+
+struct wall_end {
+    enum end_kind kind;
+    double s;  /* FREE_END */
+    int other; /* wall */
+};
+
+enum { SIDE_IN, SIDE_OUT };
+
+struct plan_wall {
+    char *name; /* owned */
+    int line;
+    bool removed, angled; /* a removed wall keeps its line: rooms and neighbours still end at it */
+    double d[2];          /* unit, from start to end */
+    double c;             /* in face: n p = c with n = (d.y, -d.x), which points into the room */
+    int sign;             /* of d along the wall's coordinate: s = sign d p - origin */
+    double origin;
+    double thickness, foot, top;
+    bool has_top; /* told; else ceilings tell */
+    struct wall_end ends[2];
+};
+
+struct plan_opening {
+    char *name;
+    int line;
+    enum verb kind; /* VERB_DOOR, VERB_PASSAGE, VERB_WINDOW */
+    bool removed, interior;
+    bool filled; /* a door's leaf, a window's glass */
+    int wall;
+    double s[2], z[2]; /* ascending */
+};
+
+struct plan_box {
+    char *name;
+    int line;
+    bool removed;
+    double low[3], high[3], turn; /* degrees, about the vertical through its middle */
+};
+
+struct room_edge {              /* walls of one line in a row count as one edge */
+    int wall;                   /* the first of them */
+    int side;                   /* that faces the room */
+    double corner[2], outer[2]; /* where it meets the next edge: faces, and the slab's border */
+    double border;              /* the slab ends at n p = border of the wall */
+    bool shared;                /* with a room on the other side: the border is in the wall's middle */
+};
+
+struct plan_room {
+    char *name;
+    int line;
+    bool removed;
+    int *walls;
+    int wall_count;
+    double floor, ceiling;
+    bool sloped;
+    int slope_walls[2];
+    double slope_heights[2]; /* of the ceiling where it meets them */
+    double lower[3];         /* ceiling: z = lower[0] + lower[1] x + lower[2] y */
+    struct room_edge *edges; /* counter-clockwise, as of the last plan_check() */
+    int edge_count;
+};
+
+enum named { NAMED_NONE, NAMED_WALL, NAMED_OPENING, NAMED_BOX, NAMED_ROOM };
+
+struct plan_name {
+    const char *name; /* NULL: free slot */
+    enum named kind;
+    int at;
+};
+
+struct plan {
+    /* what counts for the statements that follow; 0 until it is known */
+    double thickness, slab, glass, leaf, floor, ceiling;
+    struct plan_wall *walls;
+    struct plan_opening *openings;
+    struct plan_box *boxes;
+    struct plan_room *rooms;
+    int wall_count, opening_count, box_count, room_count;
+    struct plan_name *names; /* a hash table */
+    int name_room, name_count;
+};
+
+/* What a model of these axes starts from; lengths are those of homes in metres, unknown without a scale but for `ceiling` and
+ * `thickness`, which the axes may have. axes may be NULL: metres. */
+void plan_begin(struct plan *plan, const struct model_axes *axes);
+
+/* Does what the statements say, in order, then checks the whole; edit: checks after every statement, so that the one that
+ * breaks something is named. placer may be NULL if no statement names a view. ST_DATA with file and line. */
+enum status plan_apply(struct plan *plan, const struct script *script, bool edit, const struct placer *placer,
+                       struct err *err);
+void plan_release(struct plan *plan);
+
+/* For the layout and the pictures. */
+struct plan_line { /* n p = c, n unit */
+    double n[2], c;
+};
+struct plan_line wall_face(const struct plan_wall *w, int side); /* n points out of the wall */
+/* The line across a wall at one of its ends, n pointing out of the wall. *face_wall, *face_side: the face of another wall
+ * that it lies on; *face_wall is -1 for none. */
+struct plan_line wall_cap(const struct plan *plan, int wall, int end, int *face_wall, int *face_side);
+void wall_point(const struct plan_wall *w, double s, double off, double p[2]); /* off: behind the in face */
+bool line_cross(struct plan_line a, struct plan_line b, double p[2]);          /* false: nearly parallel */
+/* Where openings may be: between the neighbours. */
+void wall_span(const struct plan *plan, int wall, double span[2]);
+/* The part of the wall above which a room's ceiling lies, for its edge. */
+void room_span(const struct plan *plan, const struct plan_room *room, int edge, int wall, double span[2]);
+double plan_wall_top(const struct plan *plan, int wall, double s0, double s1); /* least, over s0 .. s1 */
+
+#endif

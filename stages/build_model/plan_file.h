@@ -1,0 +1,12 @@
+/* plan_file.h - what is left of a script beside its solids: where its walls, openings and rooms came to lie, and which
+ * faces' names are no more; docs/formats.md. */
+#ifndef REMODEL_BUILD_MODEL_PLAN_FILE_H
+#define REMODEL_BUILD_MODEL_PLAN_FILE_H
+
+#include "stages/build_model/plan.h"
+#include "stages/build_model/unite.h"
+
+enum status plan_write(const struct plan *plan, const char *path, const struct provenance *prov, struct err *err);
+enum status merged_write(const struct unite_log *log, const char *path, const struct provenance *prov, struct err *err);
+
+#endif

@@ -1,0 +1,402 @@
+/* script.c - see script.h.
+ *
+ * One table says what stands in a line of each verb; the reader goes through its letters:
+ *   n a new or known name; p a place; w the name of a wall behind a word; L a list of names; v a number; o options. */
+#include "stages/build_model/script.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/scan.h"
+#include "common/textfile.h"
+
+enum { MOST_STATEMENTS = 200000, LONGEST_NAME = 64 };
+#define FARTHEST 1e6
+
+struct grammar {
+    const char *verb, *usage;
+    unsigned options;  /* bits of enum option */
+    const char *flags; /* words that stand alone, each between blanks */
+};
+
+#define BIT(o) (1u << OPTION_##o)
+
+static const struct grammar GRAMMAR[VERB_COUNT] = {
+    [VERB_SET] = {"set", "set thickness|slab|glass|leaf|floor|ceiling NUMBER", 0, ""},
+    [VERB_WALL] = {"wall", "wall NAME in VIEW X0 Y0 X1 Y1 | wall NAME from X Y to X Y, then options",
+                   BIT(THICKNESS) | BIT(FOOT) | BIT(TOP), " angled "},
+    [VERB_ROOM] = {"room", "room NAME WALL WALL WALL ... [floor Z] [ceiling Z]", BIT(FLOOR) | BIT(CEILING), ""},
+    [VERB_SLOPE] = {"slope", "slope ROOM from WALL Z to WALL Z", 0, ""},
+    [VERB_DOOR] = {"door", "door NAME on WALL PLACE [closed]", 0, " closed "},
+    [VERB_PASSAGE] = {"passage", "passage NAME on WALL PLACE", 0, ""},
+    [VERB_WINDOW] = {"window", "window NAME on WALL PLACE [interior] [open]", 0, " interior open "},
+    [VERB_BOX] = {"box", "box NAME from X Y to X Y | box NAME in VIEW X0 Y0 X1 Y1, then options",
+                  BIT(FOOT) | BIT(TOP) | BIT(TURN) | BIT(AT), ""},
+    [VERB_JOIN] = {"join", "join WALL WALL ...", 0, ""},
+    [VERB_EXTEND] = {"extend", "extend WALL start|end to WALL | extend WALL start|end to NUMBER", 0, ""},
+    [VERB_SPLIT] = {"split", "split WALL from S to S into NEW", 0, ""},
+    [VERB_ADJUST] = {"adjust", "adjust NAME in VIEW X0 Y0 X1 Y1 | adjust NAME from A B to C D", 0, ""},
+    [VERB_MOVE] = {"move", "move NAME by DISTANCE | move BOX by DX DY", 0, ""},
+    [VERB_OPEN] = {"open", "open NAME", 0, ""},
+    [VERB_CLOSE] = {"close", "close NAME", 0, ""},
+    [VERB_REMOVE] = {"remove", "remove NAME", 0, ""},
+};
+
+static const char *const OPTIONS[OPTION_COUNT] = {"thickness", "foot", "top", "floor", "ceiling", "turn", "at"};
+static const char *const QUANTITIES[] = {"thickness", "slab", "glass", "leaf", "floor", "ceiling", NULL};
+
+const char *verb_name(enum verb verb) { return GRAMMAR[verb].verb; }
+const char *option_name(enum option option) { return OPTIONS[option]; }
+
+void script_release(struct script *script)
+{
+    if (!script) return;
+    for (int i = 0; i < script->count; i++) free(script->statements[i].names);
+    free(script->statements);
+    free(script->words);
+    free(script->path);
+    *script = (struct script){0};
+}
+
+/* ------------------------------------------------------------------------------------------------------------ words */
+
+struct reader {
+    struct textfile t;
+    char *words; /* room for all words of the file */
+    size_t used;
+    struct err *err;
+};
+
+static enum status usage_error(struct reader *r, const char *found, enum verb verb)
+{
+    return textfile_error(&r->t, r->err, found, "%s, in a line \"%s\"", found ? "something else" : "more words",
+                          GRAMMAR[verb].usage);
+}
+
+static const char *keep_word(struct reader *r, const char *word)
+{
+    const size_t size = strlen(word) + 1;
+    char *kept = r->words + r->used;
+    memcpy(kept, word, size);
+    r->used += size;
+    return kept;
+}
+
+static bool is_name(const char *word)
+{
+    const size_t length = strlen(word);
+    static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
+    double number;
+    return length && length <= LONGEST_NAME && word[0] != '-' && strspn(word, letters) == length &&
+           !scan_double(word, &number);
+}
+
+static enum status read_name(struct reader *r, const char *what, const char **name)
+{
+    char *word;
+    if (textfile_word(&r->t, what, &word, r->err)) return r->err->status;
+    if (!is_name(word))
+        return textfile_error(&r->t, r->err, word,
+                              "%s: a name of at most %d letters, digits, _ and -, that is no number", what,
+                              LONGEST_NAME);
+    *name = keep_word(r, word);
+    return ST_OK;
+}
+
+static enum status read_number(struct reader *r, const char *what, double *value)
+{
+    if (textfile_double(&r->t, what, value, r->err)) return r->err->status;
+    if (fabs(*value) <= FARTHEST) return ST_OK;
+    char text[32];
+    snprintf(text, sizeof text, "%.9g", *value);
+    return textfile_error(&r->t, r->err, text, "%s within 1e6", what);
+}
+
+/* The word that must come next. */
+static enum status expect(struct reader *r, const char *wanted, enum verb verb)
+{
+    char *word;
+    if (!textfile_more(&r->t)) return usage_error(r, NULL, verb);
+    if (textfile_word(&r->t, wanted, &word, r->err)) return r->err->status;
+    if (!strcmp(word, wanted)) return ST_OK;
+    return textfile_error(&r->t, r->err, word, "\"%s\", in a line \"%s\"", wanted, GRAMMAR[verb].usage);
+}
+
+/* ------------------------------------------------------------------------------------------------------------- parts */
+
+static enum status read_place(struct reader *r, struct place *p, enum verb verb)
+{
+    char *word, *view;
+    if (!textfile_more(&r->t)) return usage_error(r, NULL, verb);
+    if (textfile_word(&r->t, "\"in\" or \"from\"", &word, r->err)) return r->err->status;
+    if (!strcmp(word, "in")) {
+        static const char *const what[] = {"x0", "y0", "x1", "y1"};
+        if (textfile_word(&r->t, "a photo or view", &view, r->err)) return r->err->status;
+        p->kind = PLACE_VIEW;
+        p->view = keep_word(r, view);
+        for (int i = 0; i < 4; i++)
+            if (read_number(r, what[i], &p->a[i])) return r->err->status;
+        if (p->a[2] > p->a[0] && p->a[3] > p->a[1]) return ST_OK;
+        return err_set(r->err, ST_DATA,
+                       "%s:%d: found the rectangle %.9g %.9g %.9g %.9g, wanted X0 Y0 its upper left corner and X1 Y1 "
+                       "its lower right one, in pixels of the photo as it is stored.",
+                       r->t.path, r->t.line, p->a[0], p->a[1], p->a[2], p->a[3]);
+    }
+    if (strcmp(word, "from"))
+        return textfile_error(&r->t, r->err, word, "\"in VIEW\" or \"from\", in a line \"%s\"", GRAMMAR[verb].usage);
+    p->kind = PLACE_COORDINATES;
+    if (read_number(r, "a coordinate", &p->a[0]) || read_number(r, "a coordinate", &p->a[1]) || expect(r, "to", verb) ||
+        read_number(r, "a coordinate", &p->a[2]) || read_number(r, "a coordinate", &p->a[3]))
+        return r->err->status;
+    return ST_OK;
+}
+
+/* Names until the line's end or an option's word. */
+static enum status read_list(struct reader *r, struct statement *s, int least, unsigned options)
+{
+    while (textfile_more(&r->t)) {
+        char *before = r->t.cursor;
+        for (int o = 0; o < OPTION_COUNT; o++) { /* an option's word ends the list */
+            const size_t length = strlen(OPTIONS[o]);
+            const char *at = before + strspn(before, " \t");
+            if (options & (1u << o) && !strncmp(at, OPTIONS[o], length) && (at[length] == ' ' || at[length] == '\t'))
+                goto done;
+        }
+        const size_t bytes = ((size_t)s->name_count + 1) * sizeof *s->names;
+        const char **more = realloc(s->names, bytes);
+        if (!more) return err_nomem(r->err, "names of walls", bytes);
+        s->names = more;
+        if (read_name(r, "a wall", &s->names[s->name_count])) return r->err->status;
+        s->name_count++;
+    }
+done:
+    return s->name_count < least ? usage_error(r, NULL, s->verb) : ST_OK;
+}
+
+static const char *known_flag_or_option(const void *ctx, int i)
+{
+    static const char *const flags[] = {"angled", "interior", "closed", "open", NULL};
+    const struct grammar *g = ctx;
+    int n = 0;
+    for (int o = 0; o < OPTION_COUNT; o++)
+        if (g->options & (1u << o) && n++ == i) return OPTIONS[o];
+    for (int f = 0; flags[f]; f++)
+        if (strstr(g->flags, flags[f]) && n++ == i) return flags[f];
+    return NULL;
+}
+
+static enum status read_options(struct reader *r, struct statement *s)
+{
+    const struct grammar *g = &GRAMMAR[s->verb];
+    while (textfile_more(&r->t)) {
+        char *word, padded[32];
+        if (textfile_word(&r->t, "an option", &word, r->err)) return r->err->status;
+        int o = 0;
+        while (o < OPTION_COUNT && !(g->options & (1u << o) && !strcmp(word, OPTIONS[o]))) o++;
+        if (o < OPTION_COUNT) {
+            if (s->has_option[o]) return textfile_error(&r->t, r->err, word, "each option once");
+            if (read_number(r, OPTIONS[o], &s->options[o])) return r->err->status;
+            s->has_option[o] = true;
+            continue;
+        }
+        bool *flag = NULL;
+        snprintf(padded, sizeof padded, " %.20s ", word);
+        if (word[0] && strstr(g->flags, padded))
+            flag = !strcmp(word, "angled")     ? &s->angled
+                   : !strcmp(word, "interior") ? &s->interior
+                   : !strcmp(word, "closed")   ? &s->closed
+                                               : &s->open;
+        if (!flag) {
+            const char *near = scan_nearest(word, known_flag_or_option, g);
+            if (near)
+                return textfile_error(&r->t, r->err, word,
+                                      "the line's end or an option; did you mean %s? The line is "
+                                      "\"%s\"",
+                                      near, g->usage);
+            return textfile_error(&r->t, r->err, word, "the line's end or an option, in a line \"%s\"", g->usage);
+        }
+        if (*flag) return textfile_error(&r->t, r->err, word, "each option once");
+        *flag = true;
+    }
+    return ST_OK;
+}
+
+/* ------------------------------------------------------------------------------------------------------- statements */
+
+static enum status read_set(struct reader *r, struct statement *s)
+{
+    char *word;
+    int i = 0;
+    if (textfile_word(&r->t, "a quantity", &word, r->err)) return r->err->status;
+    while (QUANTITIES[i] && strcmp(QUANTITIES[i], word)) i++;
+    if (!QUANTITIES[i]) return usage_error(r, word, s->verb);
+    s->name = QUANTITIES[i];
+    s->value_count = 1;
+    return read_number(r, s->name, &s->values[0]);
+}
+
+static enum status read_slope(struct reader *r, struct statement *s)
+{
+    s->names = calloc(2, sizeof *s->names);
+    if (!s->names) return err_nomem(r->err, "names of walls", 2 * sizeof *s->names);
+    s->name_count = s->value_count = 2;
+    if (read_name(r, "a room", &s->name) || expect(r, "from", s->verb) || read_name(r, "a wall", &s->names[0]) ||
+        read_number(r, "the height there", &s->values[0]) || expect(r, "to", s->verb) ||
+        read_name(r, "a wall", &s->names[1]) || read_number(r, "the height there", &s->values[1]))
+        return r->err->status;
+    return ST_OK;
+}
+
+static enum status read_extend(struct reader *r, struct statement *s)
+{
+    char *word;
+    if (read_name(r, "a wall", &s->name)) return r->err->status;
+    if (!textfile_more(&r->t)) return usage_error(r, NULL, s->verb);
+    if (textfile_word(&r->t, "\"start\" or \"end\"", &word, r->err)) return r->err->status;
+    s->end = !strcmp(word, "start") ? END_START : !strcmp(word, "end") ? END_END : END_NONE;
+    if (s->end == END_NONE)
+        return textfile_error(&r->t, r->err, word, "\"start\" or \"end\", in a line \"%s\"", GRAMMAR[s->verb].usage);
+    if (expect(r, "to", s->verb) || textfile_word(&r->t, "a wall or a coordinate", &word, r->err))
+        return r->err->status;
+    if (scan_double(word, &s->values[0])) {
+        s->value_count = 1;
+        if (fabs(s->values[0]) <= FARTHEST) return ST_OK;
+        return textfile_error(&r->t, r->err, word, "a coordinate within 1e6");
+    }
+    if (!is_name(word)) return textfile_error(&r->t, r->err, word, "the name of a wall, or a coordinate");
+    s->other = keep_word(r, word);
+    return ST_OK;
+}
+
+static enum status read_split(struct reader *r, struct statement *s)
+{
+    s->value_count = 2;
+    if (read_name(r, "a wall", &s->name) || expect(r, "from", s->verb) ||
+        read_number(r, "where the gap begins", &s->values[0]) || expect(r, "to", s->verb) ||
+        read_number(r, "where the gap ends", &s->values[1]) || expect(r, "into", s->verb) ||
+        read_name(r, "a new name", &s->other))
+        return r->err->status;
+    return ST_OK;
+}
+
+static enum status read_move(struct reader *r, struct statement *s)
+{
+    if (read_name(r, "a name", &s->name) || expect(r, "by", s->verb) ||
+        read_number(r, "a distance", &s->values[s->value_count++]))
+        return r->err->status;
+    if (textfile_more(&r->t)) return read_number(r, "a distance", &s->values[s->value_count++]);
+    return ST_OK;
+}
+
+static const char *known_verb(const void *ctx, int i)
+{
+    (void)ctx;
+    return i < VERB_COUNT ? GRAMMAR[i].verb : NULL;
+}
+
+static enum status read_statement(struct reader *r, struct statement *s)
+{
+    char *word;
+    int v = 0;
+    if (textfile_word(&r->t, "a statement", &word, r->err)) return r->err->status;
+    while (v < VERB_COUNT && strcmp(GRAMMAR[v].verb, word)) v++;
+    if (v == VERB_COUNT) {
+        const char *near = scan_nearest(word, known_verb, NULL);
+        if (near) return textfile_error(&r->t, r->err, word, "a statement; did you mean %s?", near);
+        return textfile_error(&r->t, r->err, word,
+                              "a statement: set, wall, room, slope, door, passage, window, box, join, extend, split, "
+                              "adjust, move, open, close or remove");
+    }
+    s->verb = (enum verb)v;
+    s->line = r->t.line;
+    s->end = END_NONE;
+    switch (s->verb) {
+    case VERB_SET:
+        if (read_set(r, s)) return r->err->status;
+        break;
+    case VERB_WALL:
+    case VERB_BOX:
+    case VERB_ADJUST:
+        if (read_name(r, "a name", &s->name) || read_place(r, &s->place, s->verb)) return r->err->status;
+        break;
+    case VERB_DOOR:
+    case VERB_PASSAGE:
+    case VERB_WINDOW:
+        if (read_name(r, "a name", &s->name) || expect(r, "on", s->verb) || read_name(r, "a wall", &s->other) ||
+            read_place(r, &s->place, s->verb))
+            return r->err->status;
+        break;
+    case VERB_ROOM:
+        if (read_name(r, "a name", &s->name) || read_list(r, s, 3, GRAMMAR[v].options)) return r->err->status;
+        break;
+    case VERB_JOIN:
+        if (read_list(r, s, 2, 0)) return r->err->status;
+        break;
+    case VERB_SLOPE:
+        if (read_slope(r, s)) return r->err->status;
+        break;
+    case VERB_EXTEND:
+        if (read_extend(r, s)) return r->err->status;
+        break;
+    case VERB_SPLIT:
+        if (read_split(r, s)) return r->err->status;
+        break;
+    case VERB_MOVE:
+        if (read_move(r, s)) return r->err->status;
+        break;
+    default:
+        if (read_name(r, "a name", &s->name)) return r->err->status;
+    }
+    return read_options(r, s);
+}
+
+static enum status read_header(struct reader *r)
+{
+    char *word;
+    int64_t version;
+    if (!textfile_next(&r->t)) return textfile_error(&r->t, r->err, NULL, "the first line \"remodel-script 1\"");
+    if (textfile_word(&r->t, "\"remodel-script\"", &word, r->err)) return r->err->status;
+    if (strcmp(word, "remodel-script"))
+        return textfile_error(&r->t, r->err, word, "the first line \"remodel-script 1\"");
+    if (textfile_int(&r->t, "version 1", 1, 1, &version, r->err)) return r->err->status;
+    return textfile_end(&r->t, r->err);
+}
+
+enum status script_read(struct script *script, const char *path, struct err *err)
+{
+    struct reader r = {.err = err};
+    int room = 0;
+    *script = (struct script){0};
+    enum status st = textfile_open(&r.t, path, err);
+    if (!st) {
+        script->path = strdup(path);
+        /* a word and its end take no more than the word and the blank behind it */
+        r.words = script->words = malloc(r.t.size + 2);
+        if (!script->path || !script->words) st = err_nomem(err, "a script", r.t.size);
+    }
+    if (!st) st = read_header(&r);
+    while (!st && textfile_next(&r.t)) {
+        if (script->count == MOST_STATEMENTS) {
+            st = err_set(err, ST_DATA, "%s:%d: found more than %d statements.", path, r.t.line, MOST_STATEMENTS);
+            break;
+        }
+        if (script->count == room) {
+            const int wanted = room ? 2 * room : 64;
+            struct statement *more = realloc(script->statements, (size_t)wanted * sizeof *more);
+            if (!more) {
+                st = err_nomem(err, "statements", (size_t)wanted * sizeof *more);
+                break;
+            }
+            script->statements = more;
+            room = wanted;
+        }
+        struct statement *s = &script->statements[script->count++];
+        *s = (struct statement){0};
+        st = read_statement(&r, s);
+    }
+    textfile_release(&r.t);
+    if (st) script_release(script);
+    return st;
+}
