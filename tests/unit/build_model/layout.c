@@ -1,0 +1,312 @@
+/* layout.c - what each statement of a model script means: coordinates in, solids out. */
+#include "tests/unit/build_model/scripted.h"
+
+static void a_room_is_closed_all_round(void **state)
+{
+    struct plan plan;
+    struct solid_list list;
+    (void)state;
+    build(&plan, &list, ROOM, NULL);
+    for (int k = 0; k < 50; k++) { /* air inside, matter in every wall, floor, ceiling, and in all four corners */
+        const double t = (k + 0.5) / 50;
+        assert_int_equal(inside(&list, "walls", 4 * t, 1.5, 1.2), 0);
+        assert_true(inside(&list, "walls", 4.4 * t - 0.2, -0.1, 1.2) > 0);
+        assert_true(inside(&list, "walls", 4.4 * t - 0.2, 3.1, 1.2) > 0);
+        assert_true(inside(&list, "walls", -0.1, 3.4 * t - 0.2, 1.2) > 0);
+        assert_true(inside(&list, "walls", 4.1, 3.4 * t - 0.2, 1.2) > 0);
+        assert_true(inside(&list, "walls", 4.4 * t - 0.2, 3.4 * t - 0.2, -0.1) > 0);
+        assert_true(inside(&list, "walls", 4.4 * t - 0.2, 3.4 * t - 0.2, 2.6) > 0);
+    }
+    assert_int_equal(inside(&list, "walls", 2, -0.21, 1), 0);
+    assert_int_equal(inside(&list, "walls", 2, 1, -0.21), 0);
+    assert_string_equal(face_at(&list, 2, 0, 1), "wall/south/in");
+    assert_string_equal(face_at(&list, 2, -0.2, 1), "wall/south/out");
+    assert_string_equal(face_at(&list, -0.1, -0.2, 1), "wall/south/out");
+    assert_string_equal(face_at(&list, -0.2, -0.1, 1), "wall/west/out"); /* the corner, whichever wall it is of */
+    assert_string_equal(face_at(&list, 4.2, 3.1, 1), "wall/east/out");
+    assert_string_equal(face_at(&list, 2, 1, 0), "floor/hall");
+    assert_string_equal(face_at(&list, 2, 1, 2.5), "ceiling/hall");
+    assert_string_equal(face_at(&list, 2, 1, -0.2), "floor/hall/bottom");
+    assert_string_equal(face_at(&list, 2, 1, 2.7), "ceiling/hall/top");
+    drop(&plan, &list);
+}
+
+static void the_inside_is_to_the_right_of_the_way_from_start_to_end(void **state)
+{
+    struct plan plan;
+    struct solid_list list;
+    (void)state;
+    build(&plan, &list, "remodel-script 1\nwall a from 0 0 to 3 0 thickness 0.3 foot 0.5 top 2\n", NULL);
+    assert_int_equal(list.count, 1);
+    assert_string_equal(face_at(&list, 1, 0, 1), "wall/a/in");
+    assert_string_equal(face_at(&list, 1, 0.3, 1), "wall/a/out");
+    assert_string_equal(face_at(&list, 0, 0.1, 1), "wall/a/start");
+    assert_string_equal(face_at(&list, 3, 0.1, 1), "wall/a/end");
+    assert_string_equal(face_at(&list, 1, 0.1, 0.5), "wall/a/bottom");
+    assert_string_equal(face_at(&list, 1, 0.1, 2), "wall/a/top");
+    drop(&plan, &list);
+}
+
+static void openings_have_reveals_with_names(void **state)
+{
+    struct plan plan;
+    struct solid_list list;
+    (void)state;
+    build(&plan, &list, ROOM "door way on south from 1 0 to 2 2\nwindow sun on south from 2.5 0.9 to 3.5 2.1\n", NULL);
+    assert_int_equal(inside(&list, "walls", 1.5, -0.1, 1), 0);
+    assert_true(inside(&list, "walls", 1.5, -0.1, 2.1) > 0);
+    assert_true(inside(&list, "walls", 2.2, -0.1, 1) > 0);
+    assert_int_equal(inside(&list, "walls", 3, -0.1, 1.5), 0);
+    assert_true(inside(&list, "walls", 3, -0.1, 0.5) > 0);
+    /* who stands inside before the south wall has x going to the left */
+    assert_string_equal(face_at(&list, 1, -0.1, 1), "door/way/right");
+    assert_string_equal(face_at(&list, 2, -0.1, 1), "door/way/left");
+    assert_string_equal(face_at(&list, 1.5, -0.1, 2), "door/way/head");
+    assert_string_equal(face_at(&list, 1.5, -0.1, 0), "floor/hall"); /* goes on through the door */
+    assert_string_equal(face_at(&list, 3, -0.1, 0.9), "window/sun/sill");
+    assert_string_equal(face_at(&list, 3, -0.1, 2.1), "window/sun/head");
+    assert_string_equal(face_at(&list, 3.5, -0.1, 1), "window/sun/left");
+    /* glass: a slab of its own, flush with the outer face */
+    assert_int_equal(inside(&list, "glass/sun", 3, -0.19, 1.5), 1);
+    assert_int_equal(inside(&list, "glass/sun", 3, -0.17, 1.5), 0);
+    assert_string_equal(face_at(&list, 3, -0.2, 1.5), "glass/sun/out");
+    assert_string_equal(face_at(&list, 3, -0.18, 1.5), "glass/sun/in");
+    drop(&plan, &list);
+}
+
+static void openings_that_share_a_side_keep_their_own_reveals(void **state)
+{
+    struct plan plan;
+    struct solid_list list;
+    (void)state;
+    build(&plan, &list,
+          ROOM "door way on north from 1 0 to 2 1.8\nwindow light on north from 1 2 to 2 2.4\n"
+               "passage beside on north from 2.5 0 to 3 2.5\n",
+          NULL);
+    assert_string_equal(face_at(&list, 1, 3.1, 1), "door/way/left");
+    assert_string_equal(face_at(&list, 1, 3.1, 2.2), "window/light/left");
+    assert_string_equal(face_at(&list, 2, 3.1, 2.2), "window/light/right");
+    assert_string_equal(face_at(&list, 1.5, 3.1, 1.8), "door/way/head");
+    assert_string_equal(face_at(&list, 1.5, 3.1, 2), "window/light/sill");
+    assert_true(inside(&list, "walls", 1.5, 3.1, 1.9) > 0);
+    assert_true(inside(&list, "walls", 0.5, 3.1, 1.9) > 0);
+    assert_int_equal(inside(&list, "walls", 2.7, 3.1, 2.4), 0); /* a passage may go up to the ceiling */
+    drop(&plan, &list);
+}
+
+static void a_wall_that_moves_takes_its_neighbours_ends_along(void **state)
+{
+    struct plan plan;
+    struct solid_list list;
+    (void)state;
+    build(&plan, &list, ROOM "window w on east from 1 1 to 2 2\n", "remodel-script 1\nmove east by 0.5\n");
+    assert_string_equal(face_at(&list, 4.5, 0.5, 1), "wall/east/in");
+    assert_string_equal(face_at(&list, 4.4, 0, 1), "wall/south/in");
+    assert_string_equal(face_at(&list, 4.4, 3, 1), "wall/north/in");
+    assert_string_equal(face_at(&list, 4.4, 1, 0), "floor/hall");
+    assert_true(inside(&list, "walls", 4.6, -0.1, 1) > 0);
+    assert_int_equal(inside(&list, "walls", 4.8, -0.1, 1), 0);
+    assert_int_equal(inside(&list, "walls", 4.6, 1.5, 1.5), 0); /* the window went along */
+    assert_int_equal(inside(&list, "glass/w", 4.69, 1.5, 1.5), 1);
+    drop(&plan, &list);
+    build(&plan, &list, ROOM, "remodel-script 1\nmove east by -1\n");
+    assert_string_equal(face_at(&list, 3, 0.5, 1), "wall/east/in");
+    assert_int_equal(inside(&list, "walls", 3.5, -0.1, 1), 0);
+    drop(&plan, &list);
+}
+
+#define TWO                                                                                                      \
+    ROOM "wall middle from 2 1 to 2 2 thickness 0.1\nextend middle start to south\nextend middle end to north\n" \
+         "remove hall\nroom left south west north middle\nroom right middle north east south\n"
+
+static void a_wall_between_two_rooms_bears_the_floor_of_both(void **state)
+{
+    struct plan plan;
+    struct solid_list list;
+    (void)state;
+    build(&plan, &list, TWO "door d on middle from 1 0 to 2 2\nwindow w on middle from 2.2 1 to 2.8 2\n", NULL);
+    /* it goes from y 0 to 3, its inside to the right of its way: x above 2 */
+    assert_string_equal(face_at(&list, 2, 0.5, 1), "wall/middle/in");
+    assert_string_equal(face_at(&list, 1.9, 2.9, 1), "wall/middle/out");
+    assert_string_equal(face_at(&list, 1.92, 1.5, 0), "floor/left");
+    assert_string_equal(face_at(&list, 1.97, 1.5, 0), "floor/right");
+    assert_string_equal(face_at(&list, 1.2, 1.5, 2.5), "ceiling/left");
+    assert_int_equal(inside(&list, "walls", 1.95, 1.5, 1), 0);
+    assert_int_equal(inside(&list, "glass/w", 1.91, 2.5, 1.5), 0); /* no glass between rooms */
+    drop(&plan, &list);
+    /* its ends follow the walls that it meets, also when it moves itself */
+    build(&plan, &list, TWO, "remodel-script 1\nmove north by 1\nmove middle by 0.5\n");
+    assert_string_equal(face_at(&list, 1.5, 3.9, 1), "wall/middle/in");
+    assert_string_equal(face_at(&list, 1.4, 0.1, 1), "wall/middle/out");
+    drop(&plan, &list);
+}
+
+static void a_split_leaves_two_walls_of_one_line(void **state)
+{
+    struct plan plan;
+    struct solid_list list;
+    (void)state;
+    build(&plan, &list, TWO "split middle from 1 to 2 into rest\n", NULL);
+    assert_int_equal(inside(&list, "walls", 1.95, 1.5, 1), 0);
+    assert_string_equal(face_at(&list, 2, 0.5, 1), "wall/middle/in");
+    assert_string_equal(face_at(&list, 2, 2.5, 1), "wall/rest/in");
+    assert_string_equal(face_at(&list, 1.95, 1, 1), "wall/middle/end");
+    assert_string_equal(face_at(&list, 1.95, 2, 1), "wall/rest/start");
+    assert_string_equal(face_at(&list, 1.97, 1.5, 0), "floor/right");
+    drop(&plan, &list);
+    /* what was joined to the part joins it still, and its openings are in it */
+    build(&plan, &list, ROOM "window w on south from 3 1 to 3.5 2\n",
+          "remodel-script 1\nsplit south from 1 to 2 into other\nmove south by 0\nmove west by 1\n");
+    assert_string_equal(face_at(&list, -0.5, 0, 1), "wall/other/in");
+    assert_string_equal(face_at(&list, 3.2, -0.1, 1), "window/w/sill");
+    assert_int_equal(plan.openings[0].wall, 0);
+    drop(&plan, &list);
+}
+
+static void doors_and_windows_open_and_close(void **state)
+{
+    struct plan plan;
+    struct solid_list list;
+    (void)state;
+    build(&plan, &list, ROOM "door d on south from 1 0 to 2 2 closed\nwindow w on north from 1 1 to 2 2\n", NULL);
+    assert_int_equal(inside(&list, "walls", 1.5, -0.1, 1), 1);
+    assert_int_equal(inside(&list, "walls", 1.5, -0.05, 1), 0);
+    assert_string_equal(face_at(&list, 1.5, -0.08, 1), "door/d/leaf-in");
+    drop(&plan, &list);
+    build(&plan, &list, ROOM "door d on south from 1 0 to 2 2 closed\nwindow w on north from 1 1 to 2 2\n",
+          "remodel-script 1\nopen d\nopen w\nadjust d from 1.2 0 to 1.9 2.1\n");
+    assert_int_equal(inside(&list, "walls", 1.5, -0.1, 1), 0);
+    assert_int_equal(inside(&list, "glass/w", 1.5, 3.19, 1.5), 0);
+    assert_string_equal(face_at(&list, 1.5, -0.1, 2.1), "door/d/head");
+    assert_string_equal(face_at(&list, 1.2, -0.1, 2), "door/d/right");
+    drop(&plan, &list);
+    build(&plan, &list, ROOM "door d on south from 1 0 to 2 2\n", "remodel-script 1\nremove d\n");
+    assert_true(inside(&list, "walls", 1.5, -0.1, 1) > 0);
+    drop(&plan, &list);
+}
+
+static void a_wall_that_is_gone_leaves_its_rooms(void **state)
+{
+    struct plan plan;
+    struct solid_list list;
+    (void)state;
+    build(&plan, &list, TWO "door d on middle from 1 0 to 2 2\n", "remodel-script 1\nremove middle\n");
+    assert_int_equal(inside(&list, "walls", 1.95, 0.5, 1), 0);
+    assert_string_equal(face_at(&list, 1.92, 1.5, 0), "floor/left");
+    assert_string_equal(face_at(&list, 1.97, 1.5, 0), "floor/right");
+    drop(&plan, &list);
+}
+
+static void a_room_with_a_reflex_corner_has_its_floor(void **state)
+{
+    struct plan plan;
+    struct solid_list list;
+    (void)state;
+    /* an L: 0..4 x 0..2 and 0..2 x 2..4 */
+    build(&plan, &list,
+          "remodel-script 1\nset thickness 0.2\nset ceiling 2.5\nwall a from 4 0 to 0 0\nwall b from 0 0 to 0 4\n"
+          "wall c from 0 4 to 2 4\nwall d from 2 4 to 2 2\nwall e from 2 2 to 4 2\nwall f from 4 2 to 4 0\n"
+          "join a b c d e f a\nroom ell a b c d e f\n",
+          NULL);
+    for (int i = 0; i < 40; i++)
+        for (int k = 0; k < 40; k++) {
+            const double x = -0.5 + 5 * (i + 0.37) / 40, y = -0.5 + 5 * (k + 0.37) / 40;
+            const bool room = x > 0 && y > 0 && x < 4 && y < 4 && (x < 2 || y < 2);
+            const bool all = x > -0.2 && y > -0.2 && x < 4.2 && y < 4.2 && (x < 2.2 || y < 2.2);
+            assert_int_equal(inside(&list, "walls", x, y, 1) > 0, all && !room);
+            assert_int_equal(inside(&list, "walls", x, y, -0.1) > 0, all);
+            assert_int_equal(inside(&list, "walls", x, y, 2.6) > 0, all);
+        }
+    assert_string_equal(face_at(&list, 2, 3, 1), "wall/d/in");
+    assert_string_equal(face_at(&list, 3, 2, 1), "wall/e/in");
+    assert_string_equal(face_at(&list, 2.2, 3, 1), "wall/d/out");
+    drop(&plan, &list);
+}
+
+static void a_ceiling_slopes_and_walls_reach_it(void **state)
+{
+    struct plan plan;
+    struct solid_list list;
+    (void)state;
+    build(&plan, &list, ROOM "slope hall from west 2 to east 4\n", NULL);
+    for (int i = 0; i < 20; i++) {
+        const double x = 4.4 * (i + 0.4) / 20 - 0.2, z = 2 + 0.5 * x;
+        assert_true(inside(&list, "walls", x, 1.5, z + 0.1) > 0);
+        assert_int_equal(inside(&list, "walls", x, -0.1, z - 0.01) > 0, 1);
+        if (x > 0 && x < 4) assert_int_equal(inside(&list, "walls", x, 1.5, z - 0.01), 0);
+        assert_int_equal(inside(&list, "walls", x, 1.5, z + 0.25), 0);
+    }
+    assert_string_equal(face_at(&list, 2, 1, 3), "ceiling/hall");
+    assert_string_equal(face_at(&list, 3.9, 0, 3.9), "wall/south/in");
+    drop(&plan, &list);
+    /* a wall between rooms reaches the higher ceiling, over the lower room it goes on */
+    build(&plan, &list, TWO "slope right from middle 2.5 to east 3.5\n", NULL);
+    assert_true(inside(&list, "walls", 3, -0.1, 2.95) > 0);
+    assert_int_equal(inside(&list, "walls", 1, -0.1, 2.75), 0);
+    drop(&plan, &list);
+}
+
+static void an_angled_wall_joins_by_its_planes(void **state)
+{
+    struct plan plan;
+    struct solid_list list;
+    (void)state;
+    /* a room of four walls, the east one from (4, 0) to (3, 3) */
+    build(&plan, &list,
+          "remodel-script 1\nset thickness 0.2\nset ceiling 2.5\nwall a from 4 0 to 0 0\nwall b from 0 0 to 0 3\n"
+          "wall c from 0 3 to 3 3\nwall d from 3 3 to 4 0 angled\njoin a b c d a\nroom r a b c d\n"
+          "window w on d from 1 1 to 2 2\n",
+          NULL);
+    const double n[2] = {-3 / sqrt(10), -1 / sqrt(10)}; /* into the room */
+    for (int i = 0; i < 60; i++)
+        for (int k = 0; k < 60; k++) {
+            const double x = -0.5 + 5.5 * (i + 0.37) / 60, y = -0.5 + 4 * (k + 0.37) / 60;
+            const double h = n[0] * (x - 4) + n[1] * y; /* before the wall's in face */
+            const bool room = x > 0 && y > 0 && y < 3 && h > 0, all = x > -0.2 && y > -0.2 && y < 3.2 && h > -0.2;
+            assert_int_equal(inside(&list, "walls", x, y, 0.5) > 0, all && !room);
+            assert_int_equal(inside(&list, "walls", x, y, -0.1) > 0, all);
+        }
+    /* S counts from its first point, (3, 3) */
+    const double at[2] = {3 + 1.5 / sqrt(10), 3 - 4.5 / sqrt(10)};
+    assert_int_equal(inside(&list, "walls", at[0] - 0.1 * n[0], at[1] - 0.1 * n[1], 1.5), 0);
+    assert_int_equal(inside(&list, "glass/w", at[0] - 0.19 * n[0], at[1] - 0.19 * n[1], 1.5), 1);
+    assert_string_equal(face_at(&list, at[0] - 0.1 * n[0], at[1] - 0.1 * n[1], 1), "window/w/sill");
+    drop(&plan, &list);
+}
+
+static void boxes_stand_turned_or_not(void **state)
+{
+    struct plan plan;
+    struct solid_list list;
+    (void)state;
+    build(&plan, &list, ROOM "box beam from 1 0 to 1.2 3 foot 2.3\nbox chest from 2 1 to 3 1.4 top 0.8 turn 90\n",
+          "remodel-script 1\nmove chest by 0.5 0.25\n");
+    assert_string_equal(face_at(&list, 1.1, 1, 2.3), "box/beam/bottom");
+    assert_string_equal(face_at(&list, 1, 1, 2.4), "box/beam/left");
+    assert_string_equal(face_at(&list, 1.2, 1, 2.4), "box/beam/right");
+    /* about (3, 1.45): turned by 90 degrees its right side looks to +y */
+    assert_string_equal(face_at(&list, 3, 1.95, 0.4), "box/chest/right");
+    assert_string_equal(face_at(&list, 2.8, 1.45, 0.4), "box/chest/back");
+    assert_string_equal(face_at(&list, 3, 1.45, 0.8), "box/chest/top");
+    drop(&plan, &list);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_room_is_closed_all_round),
+        cmocka_unit_test(the_inside_is_to_the_right_of_the_way_from_start_to_end),
+        cmocka_unit_test(openings_have_reveals_with_names),
+        cmocka_unit_test(openings_that_share_a_side_keep_their_own_reveals),
+        cmocka_unit_test(a_wall_that_moves_takes_its_neighbours_ends_along),
+        cmocka_unit_test(a_wall_between_two_rooms_bears_the_floor_of_both),
+        cmocka_unit_test(a_split_leaves_two_walls_of_one_line),
+        cmocka_unit_test(doors_and_windows_open_and_close),
+        cmocka_unit_test(a_wall_that_is_gone_leaves_its_rooms),
+        cmocka_unit_test(a_room_with_a_reflex_corner_has_its_floor),
+        cmocka_unit_test(a_ceiling_slopes_and_walls_reach_it),
+        cmocka_unit_test(an_angled_wall_joins_by_its_planes),
+        cmocka_unit_test(boxes_stand_turned_or_not),
+    };
+    return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
+}

@@ -1,0 +1,85 @@
+/* scripted.h - plans and solids of scripts that stand in a test. */
+#ifndef REMODEL_TESTS_SCRIPTED_H
+#define REMODEL_TESTS_SCRIPTED_H
+
+#include "stages/build_model/layout.h"
+#include "tests/unit/scratch.h"
+
+/* A room of 4 x 3 whose faces are at x 0 and 4, y 0 and 3; walls 0.2 thick, 2.5 high. */
+#define ROOM                                                                              \
+    "remodel-script 1\nset thickness 0.2\nset ceiling 2.5\n"                              \
+    "wall south from 4 0 to 0 0\nwall west from 0 0 to 0 3\nwall north from 0 3 to 4 3\n" \
+    "wall east from 4 3 to 4 0\njoin south west north east south\nroom hall south west north east\n"
+
+static inline enum status scripted(struct plan *plan, const char *text, const char *edit, struct err *err)
+{
+    struct script script = {0};
+    plan_begin(plan, NULL);
+    enum status st = script_read(&script, scratch_write("model.txt", text), err);
+    if (!st) st = plan_apply(plan, &script, false, NULL, err);
+    script_release(&script);
+    if (!st && edit) st = script_read(&script, scratch_write("edit.txt", edit), err);
+    if (!st && edit) st = plan_apply(plan, &script, true, NULL, err);
+    script_release(&script);
+    return st;
+}
+
+/* Solids of the text, and of an edit behind it (or NULL). */
+static inline void build(struct plan *plan, struct solid_list *list, const char *text, const char *edit)
+{
+    struct err err = ERR_INIT;
+    assert_ok(scripted(plan, text, edit, &err), err);
+    assert_ok(layout_solids(list, plan, &err), err);
+}
+
+static inline void drop(struct plan *plan, struct solid_list *list)
+{
+    solid_list_release(list);
+    plan_release(plan);
+}
+
+/* How many solids of a body a point lies inside of. */
+static inline int inside(const struct solid_list *list, const char *body, double x, double y, double z)
+{
+    int n = 0;
+    for (int i = 0; i < list->count; i++) {
+        const struct solid *s = &list->solids[i];
+        bool in = !strcmp(s->body, body);
+        for (int k = 0; k < s->count && in; k++)
+            in = vec3_dot(s->half_spaces[k].normal, vec3_make(x, y, z)) < s->half_spaces[k].offset;
+        n += in;
+    }
+    return n;
+}
+
+/* The face of the solids on which a point lies: there is matter behind it by a little and none before it. The name is
+ * of the first solid that has a plane there which bounds it at that point; "" for none. */
+static inline const char *face_at(const struct solid_list *list, double x, double y, double z)
+{
+    for (int i = 0; i < list->count; i++) {
+        const struct solid *s = &list->solids[i];
+        for (int k = 0; k < s->count; k++) {
+            const struct half_space *h = &s->half_spaces[k];
+            const double length = vec3_length(h->normal);
+            if (fabs(vec3_dot(h->normal, vec3_make(x, y, z)) - h->offset) > 1e-6 * length) continue;
+            bool in = true;
+            for (int j = 0; j < s->count && in; j++)
+                in = j == k || vec3_dot(s->half_spaces[j].normal, vec3_make(x, y, z)) < s->half_spaces[j].offset - 1e-9;
+            const double e = 1e-4 / length;
+            if (in && !inside(list, s->body, x + e * h->normal.x, y + e * h->normal.y, z + e * h->normal.z))
+                return h->name;
+        }
+    }
+    return "";
+}
+
+static inline void refused(const char *text, const char *edit, const char *words)
+{
+    struct plan plan;
+    struct err err = ERR_INIT;
+    assert_int_not_equal(scripted(&plan, text, edit, &err), ST_OK);
+    assert_err(err, ST_DATA, words);
+    plan_release(&plan);
+}
+
+#endif
