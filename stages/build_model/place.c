@@ -12,10 +12,10 @@
 
 #include "common/scan.h"
 
-enum { CELLS = 24 };
+enum { CELLS = 24, IN_CELL = 60 }; /* each way at most; points in a cell, about, at least */
 #define DEGREE     (3.14159265358979323846 / 180)
 #define BEHIND     1.08 /* of the front's distance: farther is hidden */
-#define FRONT_PART 0.1  /* of a cell's points are before its front: stray ones */
+#define FRONT_PART 0.05 /* of a cell's points are before its front: stray ones */
 #define GRAZING    0.02 /* least cosine at which a ray meets a plane at a place */
 
 void placer_release(struct placer *placer)
@@ -151,6 +151,7 @@ enum status place_corners(struct vec3 corners[2], const struct placer *placer, c
 struct shown_point {
     const struct placed_point *point;
     double distance;
+    float u, v; /* in the rectangle, 0 .. 1 */
     int cell;
 };
 
@@ -178,7 +179,7 @@ static double cone(const struct photo_camera *c, const struct place *p, struct v
     return cos(fmin(acos(fmax(-1, least)) * 1.1 + 0.01, 3.14));
 }
 
-/* shown: those that the camera sees in the rectangle; *facing: points there before those behind others are left out. */
+/* shown: those that the camera sees in the rectangle. */
 static enum status show_points(struct shown_point **shown, size_t *count, const struct placer *placer,
                                const struct photo_camera *c, const struct place *p, struct err *err)
 {
@@ -204,10 +205,14 @@ static enum status show_points(struct shown_point **shown, size_t *count, const 
             if (!more) return err_nomem(err, "points of a rectangle", room * sizeof *more);
             *shown = more;
         }
-        const int x = (int)((u - p->a[0]) / (p->a[2] - p->a[0]) * CELLS);
-        const int y = (int)((v - p->a[1]) / (p->a[3] - p->a[1]) * CELLS);
-        (*shown)[(*count)++] =
-            (struct shown_point){q, distance, (y < CELLS ? y : CELLS - 1) * CELLS + (x < CELLS ? x : CELLS - 1)};
+        (*shown)[(*count)++] = (struct shown_point){q, distance, (float)((u - p->a[0]) / (p->a[2] - p->a[0])),
+                                                    (float)((v - p->a[1]) / (p->a[3] - p->a[1])), 0};
+    }
+    /* where points are few cells are larger, so that a cell with points behind a sparse wall has some of the wall too */
+    const int cells = (int)fmax(1, fmin(CELLS, sqrt((double)*count / IN_CELL)));
+    for (size_t i = 0; i < *count; i++) {
+        const int x = (int)((*shown)[i].u * (float)cells), y = (int)((*shown)[i].v * (float)cells);
+        (*shown)[i].cell = (y < cells ? y : cells - 1) * cells + (x < cells ? x : cells - 1);
     }
     if (*count) qsort(*shown, *count, sizeof **shown, compare_shown);
     size_t kept = 0;

@@ -231,8 +231,9 @@ static enum status do_set(struct doer *d)
 
 struct plan_line wall_face(const struct plan_wall *w, int side)
 {
-    const struct plan_line in = {{w->d[1], -w->d[0]}, w->c};
-    return side == SIDE_IN ? in : (struct plan_line){{-in.n[0], -in.n[1]}, w->thickness - w->c};
+    /* 0 - x, not -x: no -0 in what is written */
+    const struct plan_line in = {{w->d[1], 0 - w->d[0]}, w->c};
+    return side == SIDE_IN ? in : (struct plan_line){{0 - in.n[0], 0 - in.n[1]}, w->thickness - w->c};
 }
 
 void wall_point(const struct plan_wall *w, double s, double off, double p[2])
@@ -312,7 +313,7 @@ void wall_span(const struct plan *plan, int wall, double span[2])
         double range[2];
         int side;
         cut_range(w, face_ahead(w, end, &plan->walls[e->other], false, &side), range);
-        span[upper] = upper ? range[0] : range[1];
+        span[upper] = (upper ? range[0] : range[1]) + 0.0; /* a -0 becomes 0 */
     }
 }
 
@@ -445,7 +446,7 @@ static enum status do_wall(struct doer *d)
     w.top = s->has_option[OPTION_TOP] ? s->options[OPTION_TOP] : p->ceiling;
     w.has_top = s->has_option[OPTION_TOP];
     enum status st = ST_OK;
-    if (w.thickness == 0)
+    if (!s->has_option[OPTION_THICKNESS] && w.thickness == 0)
         st = refuse(d, "how thick walls are is not known without a scale; write \"set thickness NUMBER\" before.");
     else if (!w.has_top && w.top == 0)
         st = refuse(d, "no ceiling was found; write \"set ceiling NUMBER\" before.");

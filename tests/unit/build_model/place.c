@@ -1,0 +1,195 @@
+/* place.c - walls from rectangles on photographs: made points, known walls. */
+#include "tests/unit/scratch.h"
+
+#include "common/rng.h"
+#include "stages/build_model/place.h"
+
+/* A camera at (2, 2, 1.5) of the model that looks along +y, a fisheye and a pinhole; the world is the model turned by 30
+ * degrees, moved, and half as large. */
+static char fish[] = "fish", pin[] = "pin", pin0[] = "pin@0";
+static struct lens lenses[] = {
+    {fish, fish, {CAMERA_OPENCV_FISHEYE, 960, 640, {426, 426, 480, 320, -1.0 / 24, 1.0 / 1920, 0, 0}}, {1, 0, 0, 0}},
+    {pin0, pin, {CAMERA_PINHOLE, 400, 300, {200, 200, 200, 150}}, {0.96592582628906831, 0, 0.25881904510252074, 0}}};
+static const struct lens_list list = {lenses, 2};
+static struct model_axes axes = {.scale = 2, .metric = true, .ceiling = 2.5, .translation = {0.3, -0.2, 0.1}};
+static struct view views[2];
+static const struct camera_set set = {.views = views, .view_count = 2};
+static struct point_cloud cloud;
+static struct placer placer;
+static const struct model_params params = MODEL_PARAMS_DEFAULT;
+
+static void add_point(double x, double y, double z, double nx, double ny, double nz)
+{
+    const struct vec3 p = world_from_model_point(&axes, vec3_make(x, y, z));
+    const struct vec3 n = world_from_model_direction(&axes, vec3_normalize(vec3_make(nx, ny, nz)));
+    cloud.points = realloc(cloud.points, (cloud.count + 1) * sizeof *cloud.points);
+    assert_non_null(cloud.points);
+    cloud.points[cloud.count++] = (struct cloud_point){p, {(float)n.x, (float)n.y, (float)n.z}, {0}, 3, 0.9F};
+}
+
+/* Points of noise on a wall n p = c about (x, y): `width` to either side, from z 0 to 2.5. */
+static void add_wall(double nx, double ny, double c, double x, double y, double width, int count, double noise)
+{
+    const struct rng r = rng_make(1, "place", "points");
+    const uint64_t key = cloud.count;
+    uint64_t k = 0;
+    for (int i = 0; i < count; i++) {
+        double d[7];
+        for (int n = 0; n < 7; n++) d[n] = rng_uniform(&r, key, k++);
+        const double along = -ny * x + nx * y + width * (2 * d[0] - 1), at = c + noise * (d[1] + d[2] - 1);
+        add_point(nx * at - ny * along, ny * at + nx * along, 2.5 * d[3], nx + 0.2 * (d[4] - 0.5),
+                  ny + 0.2 * (d[5] - 0.5), 0.2 * (d[6] - 0.5));
+    }
+}
+
+static int start(void **state)
+{
+    struct err err = ERR_INIT;
+    axes.rotation = (struct quat){cos(0.25), 0, 0, sin(0.25)};
+    /* cam_from_model: x right is x, y down is -z, z forward is y */
+    for (int i = 0; i < 2; i++) {
+        struct view v = {
+            .name = i ? "pin@0" : "fish", .width = 100, .height = 100, .fx = 50, .fy = 50, .cx = 50, .cy = 50};
+        const struct mat3 look = {{{1, 0, 0}, {0, 0, -1}, {0, 1, 0}}};
+        v.cam_from_world = mat3_multiply(mat3_from_quat(lenses[i].view_from_photo), look);
+        v.center = vec3_make(2, 2, 1.5);
+        v.translation = vec3_scale(mat3_apply(v.cam_from_world, v.center), -1);
+        views[i] = world_from_model_view(&axes, &v);
+    }
+    /* before the camera a wall at y = 4, whose normal looks to -y, a picture's width before it a board at y = 3.9, behind it
+     * a wall of another room, aside one that stands askew */
+    add_wall(0, -1, -4, 2, 4, 1.5, 6000, 0.02);
+    add_wall(0, -1, -3.6, 1.2, 3.6, 0.3, 1500, 0.02);
+    add_wall(0, -1, -6, 2, 6, 3, 20000, 0.02);
+    add_wall(-0.8, -0.6, -(0.8 * 4.5 + 0.6 * 3.6), 4.5, 3.6, 0.7, 6000, 0.01);
+    return scratch_make(state) || placer_init(&placer, &set, &list, &axes, &cloud, &params, &err);
+}
+
+static int stop(void **state)
+{
+    placer_release(&placer);
+    point_cloud_release(&cloud);
+    return scratch_remove(state);
+}
+
+static enum status place(struct placed_wall *w, const char *view, double x0, double y0, double x1, double y1,
+                         const double *normal, bool angled, struct err *err)
+{
+    const struct place p = {PLACE_VIEW, view, {x0, y0, x1, y1}};
+    *err = (struct err)ERR_INIT;
+    return place_wall(w, &placer, &p, normal, angled, "model.txt", 9, err);
+}
+
+/* Pixel of a point of the model in the fisheye photo. */
+static void pixel(double x, double y, double z, double *u, double *v)
+{
+    assert_true(camera_project(&lenses[0].camera, vec3_make(x - 2, 1.5 - z, y - 2), u, v));
+}
+
+static void a_rectangle_on_a_wall_makes_it(void **state)
+{
+    struct placed_wall w;
+    struct err err;
+    double u0, u1, v;
+    (void)state;
+    pixel(1.6, 4, 1.5, &u0, &v);
+    pixel(2.8, 4, 1.5, &u1, &v);
+    assert_ok(place(&w, "fish", u0, 250, u1, 390, NULL, false, &err), err);
+    assert_true(w.n[0] == 0 && w.n[1] == -1); /* snapped square */
+    assert_true(fabs(w.c + 4) < 0.003);       /* noise of 2 cm, a wall of another room behind it */
+    assert_true(fabs(w.ends[0][0] - 1.6) < 0.01 && fabs(w.ends[1][0] - 2.8) < 0.01);
+    assert_true(w.points > 500 && w.spread < 0.02);
+}
+
+static void a_board_before_it_is_outvoted(void **state)
+{
+    struct placed_wall w;
+    struct err err;
+    double u0, u1, v;
+    (void)state;
+    pixel(0.8, 4, 1.5, &u0, &v);
+    pixel(3.2, 4, 1.5, &u1, &v);
+    assert_ok(place(&w, "fish", u0, 200, u1, 440, NULL, false, &err), err);
+    assert_true(fabs(w.c + 4) < 0.005);
+}
+
+static void pixels_are_the_photos_own_whatever_view_is_named(void **state)
+{
+    struct placed_wall a, b;
+    struct err err;
+    (void)state;
+    assert_ok(place(&a, "pin", 160, 100, 280, 200, NULL, false, &err), err);
+    assert_ok(place(&b, "pin@0", 160, 100, 280, 200, NULL, false, &err), err);
+    assert_true(a.c == b.c && fabs(a.c + 4) < 0.005);
+    assert_true(fabs(a.ends[0][0] - (2 - 0.4)) < 0.005 && fabs(a.ends[1][0] - (2 + 0.8)) < 0.005);
+}
+
+static void an_angled_wall_gets_the_direction_of_its_points(void **state)
+{
+    struct placed_wall w;
+    struct err err;
+    double u0, u1, v;
+    (void)state;
+    pixel(4.26, 3.92, 1.5, &u0, &v);
+    pixel(4.74, 3.28, 1.5, &u1, &v);
+    assert_ok(place(&w, "fish", u0, 240, u1, 400, NULL, true, &err), err);
+    assert_true(hypot(w.n[0] + 0.8, w.n[1] + 0.6) < 0.01);
+    const double off = w.n[0] * 4.5 + w.n[1] * 3.6 - w.c;
+    assert_true(fabs(off) < 0.01);
+}
+
+static void adjust_keeps_the_direction(void **state)
+{
+    const double normal[2] = {0, -1};
+    struct placed_wall w;
+    struct err err;
+    (void)state;
+    assert_ok(place(&w, "pin", 190, 100, 280, 200, normal, false, &err), err);
+    assert_true(fabs(w.c + 4) < 0.005);
+    const double aside[2] = {1, 0};
+    assert_int_not_equal(place(&w, "pin", 190, 100, 280, 200, aside, false, &err), ST_OK);
+    assert_err(err, ST_DATA, "with the wall's normal");
+}
+
+static void rectangles_that_show_no_wall_are_refused(void **state)
+{
+    struct placed_wall w;
+    struct err err;
+    (void)state;
+    assert_int_not_equal(place(&w, "fish", 400, 20, 500, 60, NULL, false, &err), ST_OK);
+    assert_err(err, ST_DATA, "model.txt:9: the rectangle 400 20 500 60 of fish shows 0 points, wanted 30");
+    assert_int_not_equal(place(&w, "fsh", 400, 20, 500, 60, NULL, false, &err), ST_OK);
+    assert_err(err, ST_DATA, "did you mean fish?");
+    assert_int_not_equal(place(&w, "pin", 400, 20, 500, 60, NULL, false, &err), ST_OK);
+    assert_err(err, ST_DATA, "is not inside the photo pin, which has 400 x 300 pixels");
+}
+
+static void corners_lie_where_their_rays_meet_the_plane(void **state)
+{
+    struct vec3 c[2];
+    struct err err = ERR_INIT;
+    double u0, v0, u1, v1;
+    (void)state;
+    pixel(1.7, 4, 2.1, &u0, &v0);
+    pixel(2.6, 4, 0.2, &u1, &v1);
+    const struct place p = {PLACE_VIEW, "fish", {u0, v0, u1, v1}};
+    assert_ok(place_corners(c, &placer, &p, vec3_make(0, -1, 0), -4, "m", 1, &err), err);
+    assert_true(vec3_length(vec3_sub(c[0], vec3_make(1.7, 4, 2.1))) < 1e-6);
+    assert_true(vec3_length(vec3_sub(c[1], vec3_make(2.6, 4, 0.2))) < 1e-6);
+    assert_int_not_equal(place_corners(c, &placer, &p, vec3_make(0, 1, 0), 4, "m", 1, &err), ST_OK);
+    assert_err(err, ST_DATA, "starts behind it");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_rectangle_on_a_wall_makes_it),
+        cmocka_unit_test(a_board_before_it_is_outvoted),
+        cmocka_unit_test(pixels_are_the_photos_own_whatever_view_is_named),
+        cmocka_unit_test(an_angled_wall_gets_the_direction_of_its_points),
+        cmocka_unit_test(adjust_keeps_the_direction),
+        cmocka_unit_test(rectangles_that_show_no_wall_are_refused),
+        cmocka_unit_test(corners_lie_where_their_rays_meet_the_plane),
+    };
+    return cmocka_run_group_tests(tests, start, stop);
+}
