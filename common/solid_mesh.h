@@ -87,9 +87,16 @@ struct solid_polygon {
 /* Half-edges, twins, names and bodies from polygons; polygons of one body follow each other. Ids are 1, 2, ... in the
  * order in which names first occur. mesh is empty on entry. ST_DATA: an edge without its opposite or twice, a loop of
  * fewer than 3 corners, an unused vertex, a vertex in which more than one fan of faces meets, bodies that share a
- * vertex; the sentence names polygon and vertices. */
+ * vertex, numbers that are not finite; the sentence names the polygon, counted from 1. */
 enum status solid_mesh_make(struct solid_mesh *mesh, const struct vec3 *vertices, int vertex_count,
                             const struct solid_polygon *polygons, int count, struct err *err);
+
+/* The same; *wrong is the polygon that an error is about, or -1 if it is about none. */
+enum status solid_mesh_make_saying(struct solid_mesh *mesh, const struct vec3 *vertices, int vertex_count,
+                                   const struct solid_polygon *polygons, int count, int *wrong, struct err *err);
+
+/* Gives ids to names, ids[i] to names[i], all different and above 0; puts names in the order of ids. */
+enum status solid_mesh_set_ids(struct solid_mesh *mesh, const int *ids, struct err *err);
 
 /* An edited mesh keeps the ids that `base` has for the same names; new names get the ids after the largest of base, in
  * the order of their present ids. Names are put into the order of ids again. */
@@ -124,6 +131,7 @@ void solid_report_release(struct solid_report *report);
 
 double solid_mesh_volume(const struct solid_mesh *mesh, int body); /* body -1: all */
 double solid_mesh_area(const struct solid_mesh *mesh, int face);
+double solid_mesh_loop_area(const struct solid_mesh *mesh, int loop); /* negative for a hole */
 
 /* -------------------------------------------------------------------------------------------------- triangulation */
 

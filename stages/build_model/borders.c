@@ -1,0 +1,396 @@
+/* borders.c - see borders.h.
+ *
+ * In a plane P let `below` be where there is solid just below it (on the side from which its normal points away) and
+ * `above` where there is solid just above. Both are unions of convex polygons: a facet in P with its solid below adds
+ * to `below`, one with its solid above to `above`, and the section of a solid that P cuts to both. The union's surface
+ * in P with the normal outwards is below \ above, that with the normal inwards above \ below. So coplanar facets merge,
+ * opposite ones vanish and covered ones go, without cases.
+ *
+ * Where these regions end is found line by line, in the same way. Each polygon that comes to a line of P adds an
+ * interval to the line's left side, its right side (if it has an edge there) or both (if the line cuts it). The surface
+ * ends where it is on one side of the line and not on the other. Intervals end in points where three planes meet, which
+ * are compared exactly: nothing here is a matter of tolerance. */
+#include "stages/build_model/borders.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { BELOW, ABOVE };
+enum { LEFT, RIGHT };
+
+struct interval {
+    int polygon, from, to; /* points, along the line */
+    bool on[2];            /* LEFT, RIGHT */
+};
+
+struct entry { /* an edge of a polygon in the plane */
+    int line, polygon, edge;
+};
+
+struct sweep {
+    struct convex_set *set;
+    struct border_set *borders;
+    int facets;        /* polygons before this are facets, the others sections */
+    int *first, *near; /* solids whose boxes meet that of solid s, itself too: near[first[s] .. first[s + 1]) */
+    int *plane_first, *plane_facets; /* facets by plane */
+    int *polygon_of;                 /* of each solid in the plane at hand, or -1 */
+    char *bordered, *visible;        /* facets */
+    /* of the plane at hand */
+    int *polygons, polygon_count, polygon_capacity;
+    struct entry *entries;
+    int entry_count, entry_capacity;
+    /* of the line at hand */
+    int *stamp, stamp_capacity; /* polygon: the last line it was looked at for */
+    int line;
+    struct interval *intervals;
+    int interval_count, interval_capacity;
+    int *events, event_count, event_capacity;
+    int *index, index_capacity; /* of points among the events */
+    int (*covers)[2][2];        /* at an event: how many intervals more from here, BELOW and ABOVE, LEFT and RIGHT */
+    int (*border_at)[2];        /* after an event: the border of either side of the surface, or -1 */
+    int covers_capacity, border_at_capacity;
+};
+
+void border_set_release(struct border_set *b)
+{
+    if (!b) return;
+    free(b->borders);
+    free(b->names);
+    free(b->points);
+    free(b->inner);
+    *b = (struct border_set){0};
+}
+
+/* ----------------------------------------------------------------------------------------------------- neighbours */
+
+struct by_low {
+    double low;
+    int solid;
+};
+
+static int compare_low(const void *a, const void *b)
+{
+    const struct by_low *p = a, *q = b;
+    if (p->low != q->low) return p->low < q->low ? -1 : 1;
+    return (p->solid > q->solid) - (p->solid < q->solid);
+}
+
+/* Pairs of boxes that meet, by a sweep along the axis in which they are spread most. */
+static enum status find_near(struct sweep *w, struct err *err)
+{
+    const struct convex_set *set = w->set;
+    const int n = set->count;
+    double low[3], high[3];
+    int axis = 0, pair_count = 0, pair_capacity = 0, active_count = 0, *pairs = NULL;
+    struct by_low *order = malloc((size_t)n * sizeof *order);
+    int *active = malloc((size_t)n * sizeof *active);
+    enum status st = order && active ? ST_OK : err_nomem(err, "boxes of solids", (size_t)n * sizeof *order);
+
+    for (int a = 0; a < 3; a++)
+        for (int i = 0; i < n; i++) {
+            low[a] = i ? fmin(low[a], set->solids[i].low[a]) : set->solids[i].low[a];
+            high[a] = i ? fmax(high[a], set->solids[i].high[a]) : set->solids[i].high[a];
+        }
+    for (int a = 1; a < 3; a++)
+        if (high[a] - low[a] > high[axis] - low[axis]) axis = a;
+    for (int i = 0; !st && i < n; i++) order[i] = (struct by_low){set->solids[i].low[axis], i};
+    if (!st) qsort(order, (size_t)n, sizeof *order, compare_low);
+    for (int i = 0; !st && i < n; i++) {
+        const struct convex *c = &set->solids[order[i].solid];
+        int kept = 0;
+        for (int k = 0; !st && k < active_count; k++) {
+            const struct convex *o = &set->solids[active[k]];
+            if (o->high[axis] + 0.25 < c->low[axis]) continue;
+            active[kept++] = active[k];
+            if (!boxes_meet(c->low, c->high, o->low, o->high)) continue;
+            st = exact_grow(&pairs, &pair_capacity, pair_count + 2, sizeof *pairs, err);
+            if (st) break;
+            pairs[pair_count++] = order[i].solid;
+            pairs[pair_count++] = active[k];
+        }
+        active_count = kept;
+        active[active_count++] = order[i].solid;
+    }
+    w->first = calloc((size_t)n + 2, sizeof *w->first);
+    w->near = malloc(((size_t)pair_count + (size_t)n + 1) * sizeof *w->near);
+    if (!st && !(w->first && w->near))
+        st = err_nomem(err, "neighbours of solids", (size_t)pair_count * sizeof *w->near);
+    if (!st) {
+        for (int i = 0; i < n; i++) w->first[i + 2]++;
+        for (int i = 0; i < pair_count; i++) w->first[pairs[i] + 2]++;
+        for (int i = 0; i < n; i++) w->first[i + 2] += w->first[i + 1];
+        for (int i = 0; i < n; i++) w->near[w->first[i + 1]++] = i;
+        for (int i = 0; i < pair_count; i++) w->near[w->first[pairs[i] + 1]++] = pairs[i ^ 1];
+    }
+    free(order);
+    free(active);
+    free(pairs);
+    return st;
+}
+
+/* ---------------------------------------------------------------------------------------------------------- a line */
+
+static int compare_events(const void *a, const void *b, void *ctx)
+{
+    const struct sweep *w = ctx;
+    return exact_compare_along(&w->set->space, &w->set->space.lines[w->line], *(const int *)a, *(const int *)b);
+}
+
+static enum status add_event(struct sweep *w, int point, struct err *err)
+{
+    if (exact_grow(&w->events, &w->event_capacity, w->event_count + 1, sizeof *w->events, err)) return err->status;
+    w->events[w->event_count++] = point;
+    return ST_OK;
+}
+
+/* What a polygon of plane `plane` has of the line, in which the plane meets `other`; a point of `other` with
+ * exact_side() * turn > 0 is to the left. */
+static enum status add_interval(struct sweep *w, int polygon, int plane, int other, int turn, struct err *err)
+{
+    struct exact_space *space = &w->set->space;
+    const struct polygon p = w->set->polygons[polygon];
+    const struct polygon_edge *e = &w->set->edges[p.first];
+    int points[2], count = 0;
+    bool left = false, right = false;
+    int before = turn * exact_side(space, e[p.count - 1].corner, other);
+    for (int i = 0; i < p.count; i++) {
+        const int here = turn * exact_side(space, e[i].corner, other);
+        int point = e[i].corner;
+        left = left || here > 0;
+        right = right || here < 0;
+        if (here * before < 0 && exact_meet(space, plane, other, e[(i + p.count - 1) % p.count].plane, &point, err))
+            return err->status;
+        if ((!here || here * before < 0) && count < 2) points[count++] = point;
+        before = here;
+    }
+    if (!count) return ST_OK;
+    if (add_event(w, points[0], err) || (count > 1 && add_event(w, points[1], err))) return err->status;
+    if (count < 2) return ST_OK;
+    const bool swap = exact_compare_along(space, &space->lines[w->line], points[0], points[1]) > 0;
+    if (exact_grow(&w->intervals, &w->interval_capacity, w->interval_count + 1, sizeof *w->intervals, err))
+        return err->status;
+    w->intervals[w->interval_count++] = (struct interval){polygon, points[swap], points[!swap], {left, right}};
+    return ST_OK;
+}
+
+static bool on_surface(const int cover[2][2], int which, int side)
+{
+    return cover[which][side] > 0 && !cover[!which][side];
+}
+
+/* Borders from the counts of what covers each stretch. */
+static enum status add_borders(struct sweep *w, int plane, bool *any, struct err *err)
+{
+    int cover[2][2] = {{0}}, run[2] = {-1, -1};
+    *any = false;
+    for (int i = 0; i + 1 < w->event_count; i++) {
+        for (int k = 0; k < 4; k++) cover[k / 2][k % 2] += w->covers[i][k / 2][k % 2];
+        for (int which = BELOW; which <= ABOVE; which++) {
+            const bool left = on_surface(cover, which, LEFT), right = on_surface(cover, which, RIGHT);
+            const bool forward = which == BELOW ? left : right;
+            int *at = &run[which];
+            if (left == right) {
+                *at = -1;
+            } else if (*at >= 0 && w->borders->borders[*at].forward == forward) {
+                struct border *b = &w->borders->borders[*at];
+                *(forward ? &b->to : &b->from) = w->events[i + 1];
+            } else {
+                struct border_set *set = w->borders;
+                if (exact_grow(&set->borders, &set->border_capacity, set->border_count + 1, sizeof *set->borders, err))
+                    return err->status;
+                *at = set->border_count++;
+                set->borders[*at] = (struct border){.plane = plane,
+                                                    .side = which == BELOW ? 1 : -1,
+                                                    .line = w->line,
+                                                    .from = w->events[forward ? i : i + 1],
+                                                    .to = w->events[forward ? i + 1 : i],
+                                                    .forward = forward};
+                *any = true;
+            }
+            w->border_at[i][which] = *at;
+        }
+        /* what the names need to know: is the surface on this side of the line? */
+        for (int k = 0; k < 4; k++) w->covers[i][k / 2][k % 2] = on_surface(cover, k / 2, k % 2);
+    }
+    return ST_OK;
+}
+
+/* Names of the facets that are part of the surface along the line. */
+static enum status add_names(struct sweep *w, struct err *err)
+{
+    for (int i = 0; i < w->interval_count; i++) {
+        const struct interval *v = &w->intervals[i];
+        const struct polygon *p = &w->set->polygons[v->polygon];
+        if (!p->side) continue;
+        const int which = p->side > 0 ? BELOW : ABOVE;
+        int last = -1;
+        for (int k = w->index[v->from]; k < w->index[v->to]; k++) {
+            const bool seen[2] = {v->on[LEFT] && w->covers[k][which][LEFT], v->on[RIGHT] && w->covers[k][which][RIGHT]};
+            if (!seen[LEFT] && !seen[RIGHT]) continue;
+            w->visible[v->polygon] = 1;
+            const int border = w->border_at[k][which];
+            if (border < 0 || border == last) continue;
+            last = border;
+            w->bordered[v->polygon] = 1;
+            struct border_set *set = w->borders;
+            if (exact_grow(&set->names, &set->name_capacity, set->name_count + 1, sizeof *set->names, err))
+                return err->status;
+            set->names[set->name_count++] = (struct border_name){border, p->name};
+        }
+    }
+    return ST_OK;
+}
+
+/* All edges of the plane's polygons on one line. */
+static enum status sweep_line(struct sweep *w, int plane, const struct entry *entries, int count, struct err *err)
+{
+    struct convex_set *set = w->set;
+    struct exact_space *space = &set->space;
+    const int other = set->edges[entries[0].edge].plane;
+    w->line = entries[0].line;
+    const int turn = exact_turn(space->planes[plane].n, space->lines[w->line].d, space->planes[other].n);
+    w->event_count = w->interval_count = 0;
+    for (int i = 0; i < count; i++) {
+        const struct polygon p = set->polygons[entries[i].polygon];
+        const int next = entries[i].edge + 1 < p.first + p.count ? entries[i].edge + 1 : p.first;
+        const double *a = space->points[set->edges[entries[i].edge].corner].p;
+        const double *b = space->points[set->edges[next].corner].p;
+        double low[3], high[3];
+        for (int k = 0; k < 3; k++) {
+            low[k] = fmin(a[k], b[k]);
+            high[k] = fmax(a[k], b[k]);
+        }
+        for (int k = w->first[p.solid]; k < w->first[p.solid + 1]; k++) {
+            const int q = w->polygon_of[w->near[k]];
+            if (q < 0 || w->stamp[q] == w->line) continue;
+            if (!boxes_meet(low, high, set->polygons[q].low, set->polygons[q].high)) continue;
+            w->stamp[q] = w->line;
+            if (add_interval(w, q, plane, other, turn, err)) return err->status;
+        }
+    }
+    qsort_r(w->events, (size_t)w->event_count, sizeof *w->events, compare_events, w);
+    int kept = 0;
+    for (int i = 0; i < w->event_count; i++)
+        if (!kept || w->events[kept - 1] != w->events[i]) w->events[kept++] = w->events[i];
+    w->event_count = kept;
+    if (exact_grow(&w->index, &w->index_capacity, space->point_count, sizeof *w->index, err) ||
+        exact_grow(&w->covers, &w->covers_capacity, kept + 1, sizeof *w->covers, err) ||
+        exact_grow(&w->border_at, &w->border_at_capacity, kept + 1, sizeof *w->border_at, err))
+        return err->status;
+    memset(w->covers, 0, (size_t)kept * sizeof *w->covers);
+    for (int i = 0; i < kept; i++) w->index[w->events[i]] = i;
+    for (int i = 0; i < w->interval_count; i++) {
+        const struct interval *v = &w->intervals[i];
+        const int side = set->polygons[v->polygon].side;
+        for (int k = 0; k < 4; k++)
+            if (v->on[k % 2] && (k / 2 == BELOW ? side >= 0 : side <= 0)) {
+                w->covers[w->index[v->from]][k / 2][k % 2]++;
+                w->covers[w->index[v->to]][k / 2][k % 2]--;
+            }
+    }
+    bool any;
+    if (add_borders(w, plane, &any, err) || add_names(w, err)) return err->status;
+    if (!any) return ST_OK;
+    struct border_set *b = w->borders;
+    if (exact_grow(&b->points, &b->point_capacity, b->point_count + kept, sizeof *b->points, err)) return err->status;
+    for (int i = 0; i < kept; i++) b->points[b->point_count++] = (struct line_point){w->line, w->events[i]};
+    return ST_OK;
+}
+
+/* --------------------------------------------------------------------------------------------------------- a plane */
+
+static int compare_entries(const void *a, const void *b)
+{
+    const struct entry *p = a, *q = b;
+    if (p->line != q->line) return p->line < q->line ? -1 : 1;
+    return (p->edge > q->edge) - (p->edge < q->edge);
+}
+
+static enum status add_polygon(struct sweep *w, int polygon, struct err *err)
+{
+    if (exact_grow(&w->polygons, &w->polygon_capacity, w->polygon_count + 1, sizeof *w->polygons, err))
+        return err->status;
+    w->polygons[w->polygon_count++] = polygon;
+    w->polygon_of[w->set->polygons[polygon].solid] = polygon;
+    return ST_OK;
+}
+
+static enum status sweep_plane(struct sweep *w, int plane, struct err *err)
+{
+    struct convex_set *set = w->set;
+    enum status st = ST_OK;
+    w->polygon_count = w->entry_count = 0;
+    for (int i = w->plane_first[plane]; !st && i < w->plane_first[plane + 1]; i++)
+        st = add_polygon(w, w->plane_facets[i], err);
+    for (int i = w->plane_first[plane]; !st && i < w->plane_first[plane + 1]; i++) {
+        const struct polygon p = set->polygons[w->plane_facets[i]];
+        for (int k = w->first[p.solid]; !st && k < w->first[p.solid + 1]; k++) {
+            const struct convex *c = &set->solids[w->near[k]];
+            int section;
+            if (w->polygon_of[w->near[k]] >= 0 || !boxes_meet(p.low, p.high, c->low, c->high)) continue;
+            st = convex_section(set, w->near[k], plane, &section, err);
+            if (!st && section >= 0) st = add_polygon(w, section, err);
+        }
+    }
+    int old = w->stamp_capacity;
+    if (!st) st = exact_grow(&w->stamp, &w->stamp_capacity, set->polygon_count, sizeof *w->stamp, err);
+    for (; old < w->stamp_capacity; old++) w->stamp[old] = -1;
+    for (int i = 0; !st && i < w->polygon_count; i++) {
+        const struct polygon p = set->polygons[w->polygons[i]];
+        w->stamp[w->polygons[i]] = -1;
+        st = exact_grow(&w->entries, &w->entry_capacity, w->entry_count + p.count, sizeof *w->entries, err);
+        for (int k = p.first; !st && k < p.first + p.count; k++)
+            w->entries[w->entry_count++] = (struct entry){set->edges[k].line, w->polygons[i], k};
+    }
+    if (!st && w->entry_count) qsort(w->entries, (size_t)w->entry_count, sizeof *w->entries, compare_entries);
+    for (int i = 0, k; !st && i < w->entry_count; i = k) {
+        for (k = i + 1; k < w->entry_count && w->entries[k].line == w->entries[i].line;) k++;
+        st = sweep_line(w, plane, &w->entries[i], k - i, err);
+    }
+    for (int i = 0; i < w->polygon_count; i++) w->polygon_of[set->polygons[w->polygons[i]].solid] = -1;
+    return st;
+}
+
+enum status borders_find(struct border_set *borders, struct convex_set *set, struct err *err)
+{
+    struct sweep w = {.set = set, .borders = borders, .facets = set->polygon_count};
+    const int planes = set->space.plane_count; /* sections add none */
+    enum status st = find_near(&w, err);
+    w.plane_first = calloc((size_t)planes + 2, sizeof *w.plane_first);
+    w.plane_facets = malloc((size_t)w.facets * sizeof *w.plane_facets);
+    w.polygon_of = malloc((size_t)set->count * sizeof *w.polygon_of);
+    w.bordered = calloc((size_t)w.facets, 1);
+    w.visible = calloc((size_t)w.facets, 1);
+    if (!st && !(w.plane_first && w.plane_facets && w.polygon_of && w.bordered && w.visible))
+        st = err_nomem(err, "the surface of a union", (size_t)w.facets * sizeof *w.plane_facets);
+    if (!st) {
+        for (int i = 0; i < set->count; i++) w.polygon_of[i] = -1;
+        for (int i = 0; i < w.facets; i++) w.plane_first[set->polygons[i].plane + 2]++;
+        for (int i = 0; i < planes; i++) w.plane_first[i + 2] += w.plane_first[i + 1];
+        for (int i = 0; i < w.facets; i++) w.plane_facets[w.plane_first[set->polygons[i].plane + 1]++] = i;
+    }
+    for (int i = 0; !st && i < planes; i++) st = sweep_plane(&w, i, err);
+    for (int i = 0; !st && i < w.facets; i++) {
+        if (!w.visible[i] || w.bordered[i]) continue;
+        st = exact_grow(&borders->inner, &borders->inner_capacity, borders->inner_count + 1, sizeof *borders->inner,
+                        err);
+        if (!st) borders->inner[borders->inner_count++] = i;
+    }
+    free(w.first);
+    free(w.near);
+    free(w.plane_first);
+    free(w.plane_facets);
+    free(w.polygon_of);
+    free(w.bordered);
+    free(w.visible);
+    free(w.polygons);
+    free(w.entries);
+    free(w.stamp);
+    free(w.intervals);
+    free(w.events);
+    free(w.index);
+    free(w.covers);
+    free(w.border_at);
+    return st;
+}

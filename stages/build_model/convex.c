@@ -1,0 +1,295 @@
+/* convex.c - see convex.h. A facet's polygon begins as a square in its plane, far out, and is cut by one half-space
+ * after the other; corners are points in which three planes meet, so that no rounding adds up. */
+#include "stages/build_model/convex.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define FAR_OUT ((int64_t)(SOLID_REACH / SOLID_STEP) + 1000000) /* where a facet's square begins: just out of reach */
+#define SNAP    2                                               /* steps in normal and offset that make no difference */
+
+void convex_set_release(struct convex_set *set)
+{
+    if (!set) return;
+    exact_release(&set->space);
+    free(set->solids);
+    free(set->polygons);
+    free(set->edges);
+    free(set->scratch[0]);
+    free(set->scratch[1]);
+    free(set->signs);
+    *set = (struct convex_set){0};
+}
+
+/* ---------------------------------------------------------------------------------------------------- the lattice */
+
+struct oblique { /* a plane before its normal is reduced, its first component that is not 0 positive */
+    int64_t n[3], q;
+    size_t of; /* half-space */
+    bool turned;
+};
+
+static int by_plane(const void *a, const void *b)
+{
+    const struct oblique *p = a, *q = b;
+    for (int i = 0; i < 3; i++)
+        if (p->n[i] != q->n[i]) return p->n[i] < q->n[i] ? -1 : 1;
+    if (p->q != q->q) return p->q < q->q ? -1 : 1;
+    return (p->of > q->of) - (p->of < q->of);
+}
+
+static bool nearly_same(const struct oblique *a, const struct oblique *b)
+{
+    for (int i = 0; i < 3; i++)
+        if (llabs(a->n[i] - b->n[i]) > SNAP) return false;
+    return llabs(a->q - b->q) <= SNAP;
+}
+
+static int64_t divisor(int64_t a, int64_t b) { return b ? divisor(b, a % b) : llabs(a); }
+
+/* Normal reduced, offset to match it. */
+static struct lattice_half_space reduced(const struct oblique *o)
+{
+    struct lattice_half_space h = {.everywhere = false};
+    const int64_t g = divisor(divisor(o->n[0], o->n[1]), o->n[2]);
+    for (int i = 0; i < 3; i++) h.n[i] = (o->turned ? -o->n[i] : o->n[i]) / g;
+    const double length =
+        sqrt((double)h.n[0] * (double)h.n[0] + (double)h.n[1] * (double)h.n[1] + (double)h.n[2] * (double)h.n[2]);
+    h.d = llround((double)(o->turned ? -o->q : o->q) * length);
+    return h;
+}
+
+/* Each takes the first plane, in the order of by_plane(), that it nearly is and that has not taken another. */
+static void snap_oblique(const struct oblique *planes, size_t *first, size_t count, struct lattice_half_space *out)
+{
+    size_t kept = 0, window = 0; /* first[0 .. kept): those that have not taken another */
+    for (size_t i = 0; i < count; i++) {
+        while (window < kept && planes[first[window]].n[0] < planes[i].n[0] - SNAP) window++;
+        size_t k = window;
+        while (k < kept && !nearly_same(&planes[first[k]], &planes[i])) k++;
+        if (k == kept) first[kept++] = i;
+        struct oblique taken = planes[first[k]];
+        taken.turned = planes[i].turned;
+        out[planes[i].of] = reduced(&taken);
+    }
+}
+
+enum status lattice_half_spaces(struct lattice_half_space **half_spaces, const struct solid_list *list, struct err *err)
+{
+    size_t all = 0, oblique = 0, at = 0;
+    for (int i = 0; i < list->count; i++) all += (size_t)list->solids[i].count;
+    struct oblique *planes = malloc((all + 1) * sizeof *planes);
+    size_t *first = malloc((all + 1) * sizeof *first);
+    struct lattice_half_space *out = calloc(all + 1, sizeof *out);
+    enum status st = planes && first && out ? ST_OK : err_nomem(err, "solids on the lattice", all * sizeof *planes);
+
+    for (int i = 0; !st && i < list->count; i++)
+        for (int k = 0; k < list->solids[i].count; k++, at++) {
+            const struct half_space *h = &list->solids[i].half_spaces[k];
+            const double n[3] = {h->normal.x, h->normal.y, h->normal.z};
+            const double most = fmax(fmax(fabs(n[0]), fabs(n[1])), fabs(n[2]));
+            const double offset = h->offset / vec3_length(h->normal) / SOLID_STEP;
+            struct oblique o = {.of = at};
+            out[at].everywhere = offset > 2.0 * FAR_OUT;
+            if (out[at].everywhere) continue;
+            o.q = offset < -2.0 * FAR_OUT ? -2 * FAR_OUT : llround(offset);
+            for (int a = 0; a < 3; a++) o.n[a] = llround(n[a] / most * EXACT_NORMAL);
+            const int64_t lead = o.n[0] ? o.n[0] : o.n[1] ? o.n[1] : o.n[2];
+            o.turned = lead < 0;
+            if (o.turned)
+                for (int a = 0; a < 4; a++) *(a < 3 ? &o.n[a] : &o.q) *= -1;
+            if ((o.n[0] != 0) + (o.n[1] != 0) + (o.n[2] != 0) == 1)
+                out[at] = reduced(&o);
+            else
+                planes[oblique++] = o;
+        }
+    if (!st) {
+        qsort(planes, oblique, sizeof *planes, by_plane);
+        snap_oblique(planes, first, oblique, out);
+    }
+    free(planes);
+    free(first);
+    if (st)
+        free(out);
+    else
+        *half_spaces = out;
+    return st;
+}
+
+/* ------------------------------------------------------------------------------------------------------- polygons */
+
+/* Cuts the polygon of *count edges in scratch[0], in `plane`, down to what has exact_side() * side <= 0 of plane `by`;
+ * *count 0 if no area is left. */
+static enum status cut(struct convex_set *set, int plane, int *count, int by, int side, struct err *err)
+{
+    const int n = *count;
+    bool inside = false, outside = false;
+    if (exact_grow(&set->signs, &set->signs_capacity, n + 1, sizeof *set->signs, err) ||
+        exact_grow(&set->scratch[1], &set->scratch_capacity[1], 2 * n + 2, sizeof **set->scratch, err))
+        return err->status;
+    const struct polygon_edge *in = set->scratch[0];
+    struct polygon_edge *out = set->scratch[1];
+    for (int i = 0; i < n; i++) {
+        set->signs[i] = side * exact_side(&set->space, in[i].corner, by);
+        inside = inside || set->signs[i] < 0;
+        outside = outside || set->signs[i] > 0;
+    }
+    if (!inside) *count = 0;
+    if (!inside || !outside) return ST_OK;
+    set->signs[n] = set->signs[0];
+
+    int made = 0;
+    for (int i = 0; i < n; i++) {
+        const int here = set->signs[i], there = set->signs[i + 1];
+        if (here <= 0) {
+            out[made] = in[i];
+            if (!here && there > 0) out[made].plane = by;
+            made++;
+        }
+        if (here * there >= 0) continue;
+        int corner;
+        if (exact_meet(&set->space, plane, in[i].plane, by, &corner, err)) return err->status;
+        out[made++] = (struct polygon_edge){corner, here < 0 ? by : in[i].plane, 0};
+    }
+    struct polygon_edge *swap = set->scratch[0];
+    const int capacity = set->scratch_capacity[0];
+    set->scratch[0] = set->scratch[1];
+    set->scratch_capacity[0] = set->scratch_capacity[1];
+    set->scratch[1] = swap;
+    set->scratch_capacity[1] = capacity;
+    *count = made;
+    return ST_OK;
+}
+
+/* A square in the plane, with corners just out of reach along the two axes that it is least along. */
+static enum status square(struct convex_set *set, int plane, int *count, const int far[6], struct err *err)
+{
+    const struct exact_plane *p = &set->space.planes[plane];
+    int k = 0;
+    for (int i = 1; i < 3; i++)
+        if (llabs(p->n[i]) > llabs(p->n[k])) k = i;
+    const int u = (k + 1) % 3, v = (k + 2) % 3, around[4] = {far[2 * u], far[2 * v], far[2 * u + 1], far[2 * v + 1]};
+    if (exact_grow(&set->scratch[0], &set->scratch_capacity[0], 4, sizeof **set->scratch, err)) return err->status;
+    for (int i = 0; i < 4; i++) {
+        set->scratch[0][i].plane = around[i];
+        if (exact_meet(&set->space, plane, around[i], around[(i + 3) % 4], &set->scratch[0][i].corner, err))
+            return err->status;
+    }
+    *count = 4;
+    return ST_OK;
+}
+
+/* The polygon in scratch[0], as one of the set's. */
+static enum status keep(struct convex_set *set, struct polygon p, struct err *err)
+{
+    if (exact_grow(&set->edges, &set->edge_capacity, set->edge_count + p.count, sizeof *set->edges, err) ||
+        exact_grow(&set->polygons, &set->polygon_capacity, set->polygon_count + 1, sizeof *set->polygons, err))
+        return err->status;
+    p.first = set->edge_count;
+    for (int i = 0; i < p.count; i++) {
+        struct polygon_edge e = set->scratch[0][i];
+        if (exact_line_add(&set->space, p.plane, e.plane, &e.line, err)) return err->status;
+        const double *at = set->space.points[e.corner].p;
+        for (int a = 0; a < 3; a++) {
+            p.low[a] = i ? fmin(p.low[a], at[a]) : at[a];
+            p.high[a] = i ? fmax(p.high[a], at[a]) : at[a];
+        }
+        set->edges[set->edge_count++] = e;
+    }
+    set->polygons[set->polygon_count++] = p;
+    return ST_OK;
+}
+
+static enum status far_planes(struct convex_set *set, int far[6], struct err *err)
+{
+    for (int i = 0; i < 6; i++) {
+        int64_t n[3] = {0};
+        int side;
+        n[i / 2] = 1;
+        if (exact_plane_add(&set->space, n, i % 2 ? FAR_OUT : -FAR_OUT, &far[i], &side, err)) return err->status;
+    }
+    return ST_OK;
+}
+
+static enum status wrong(const struct solid *s, const char *what, struct err *err)
+{
+    return err_set(err, ST_DATA, "the solid of body %s with the face %s %s.", s->body, s->half_spaces[0].name, what);
+}
+
+enum status convex_set_add(struct convex_set *set, const struct solid *solid,
+                           const struct lattice_half_space *half_spaces, const int *names, struct err *err)
+{
+    enum { FEW = 64 };
+    int far[6], few[2 * FEW], *planes = few;
+    struct convex c = {.first = set->polygon_count};
+    if (far_planes(set, far, err)) return err->status;
+    if (solid->count > FEW) planes = malloc(2 * (size_t)solid->count * sizeof *planes);
+    if (!planes) return err_nomem(err, "a solid", 2 * (size_t)solid->count * sizeof *planes);
+    int *sides = planes + (solid->count > FEW ? solid->count : FEW);
+    enum status st = ST_OK;
+    bool bounded = true;
+    for (int i = 0; !st && i < solid->count; i++)
+        if (!half_spaces[i].everywhere)
+            st = exact_plane_add(&set->space, half_spaces[i].n, half_spaces[i].d, &planes[i], &sides[i], err);
+    for (int i = 0; !st && i < solid->count; i++) {
+        bool again = half_spaces[i].everywhere;
+        for (int k = 0; k < i; k++)
+            again = again || (!half_spaces[k].everywhere && planes[k] == planes[i] && sides[k] == sides[i]);
+        if (again) continue;
+        int count;
+        st = square(set, planes[i], &count, far, err);
+        for (int k = 0; !st && count && k < solid->count; k++)
+            if (!half_spaces[k].everywhere && !exact_parallel(&set->space, planes[i], planes[k]))
+                st = cut(set, planes[i], &count, planes[k], sides[k], err);
+            else if (!half_spaces[k].everywhere && k != i &&
+                     sides[k] * exact_side(&set->space, set->scratch[0][0].corner, planes[k]) > 0)
+                count = 0; /* beyond a parallel one */
+        for (int k = 0; !st && k < count; k++)
+            for (int f = 0; f < 6; f++) bounded = bounded && set->scratch[0][k].plane != far[f];
+        if (!st && count)
+            st = keep(set,
+                      (struct polygon){
+                          .plane = planes[i], .solid = set->count, .side = sides[i], .name = names[i], .count = count},
+                      err);
+    }
+    if (planes != few) free(planes);
+    if (st) return st;
+    c.count = set->polygon_count - c.first;
+    if (!bounded) return wrong(solid, "is not bounded, or reaches beyond 1000 units from the origin", err);
+    if (c.count < 4) return wrong(solid, "is empty, or flat when rounded to a millionth of a unit", err);
+    for (int i = c.first; i < c.first + c.count; i++)
+        for (int a = 0; a < 3; a++) {
+            c.low[a] = i > c.first ? fmin(c.low[a], set->polygons[i].low[a]) : set->polygons[i].low[a];
+            c.high[a] = i > c.first ? fmax(c.high[a], set->polygons[i].high[a]) : set->polygons[i].high[a];
+        }
+    if (exact_grow(&set->solids, &set->capacity, set->count + 1, sizeof *set->solids, err)) return err->status;
+    set->solids[set->count++] = c;
+    return ST_OK;
+}
+
+enum status convex_section(struct convex_set *set, int solid, int plane, int *polygon, struct err *err)
+{
+    const struct convex c = set->solids[solid];
+    bool above = false, below = false;
+    *polygon = -1;
+    for (int i = c.first; i < c.first + c.count && !(above && below); i++) {
+        const struct polygon *p = &set->polygons[i];
+        if (p->plane == plane) return ST_OK;
+        for (int k = p->first; k < p->first + p->count; k++) {
+            const int s = exact_side(&set->space, set->edges[k].corner, plane);
+            above = above || s > 0;
+            below = below || s < 0;
+        }
+    }
+    if (!above || !below) return ST_OK;
+    int far[6], count;
+    if (far_planes(set, far, err) || square(set, plane, &count, far, err)) return err->status;
+    for (int i = c.first; i < c.first + c.count && count; i++) {
+        const struct polygon *p = &set->polygons[i];
+        if (!exact_parallel(&set->space, p->plane, plane) && cut(set, plane, &count, p->plane, p->side, err))
+            return err->status;
+    }
+    *polygon = set->polygon_count;
+    return keep(set, (struct polygon){.plane = plane, .solid = solid, .name = -1, .count = count}, err);
+}

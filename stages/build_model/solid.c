@@ -1,0 +1,100 @@
+/* solid.c - see solid.h. */
+#include "stages/build_model/solid.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+static size_t hash_text(const char *text)
+{
+    uint64_t h = 1469598103934665603u;
+    for (; *text; text++) h = (h ^ (unsigned char)*text) * 1099511628211u;
+    return (size_t)(h ^ (h >> 32));
+}
+
+static char **slot_of(char **texts, int capacity, const char *text)
+{
+    size_t at = hash_text(text) & (size_t)(capacity - 1);
+    while (texts[at] && strcmp(texts[at], text)) at = (at + 1) & (size_t)(capacity - 1);
+    return &texts[at];
+}
+
+/* The list's one copy of a text; NULL if there is no memory. */
+static const char *keep_text(struct solid_list *list, const char *text)
+{
+    if (list->text_capacity < 2 * (list->text_count + 1)) {
+        const int capacity = list->text_capacity ? 2 * list->text_capacity : 64;
+        char **texts = calloc((size_t)capacity, sizeof *texts);
+        if (!texts) return NULL;
+        for (int i = 0; i < list->text_capacity; i++)
+            if (list->texts[i]) *slot_of(texts, capacity, list->texts[i]) = list->texts[i];
+        free(list->texts);
+        list->texts = texts;
+        list->text_capacity = capacity;
+    }
+    char **slot = slot_of(list->texts, list->text_capacity, text);
+    if (!*slot && (*slot = strdup(text))) list->text_count++;
+    return *slot;
+}
+
+enum status solid_list_add(struct solid_list *list, const char *body, const struct half_space *half_spaces, int count,
+                           struct err *err)
+{
+    if (!body || !*body) return err_set(err, ST_DATA, "found a solid without a body's name, wanted one.");
+    if (count < 4)
+        return err_set(err, ST_DATA, "a solid of body %s has %d half-spaces, wanted 4 or more.", body, count);
+    for (int i = 0; i < count; i++) {
+        const struct half_space *h = &half_spaces[i];
+        if (!h->name || !*h->name)
+            return err_set(err, ST_DATA, "half-space %d of a solid of body %s has no name, wanted one.", i + 1, body);
+        const double length = vec3_length(h->normal);
+        if (!isfinite(length) || !isfinite(h->offset) || !(length > 0) || !isfinite(h->offset / length))
+            return err_set(err, ST_DATA,
+                           "face %s of body %s has the normal %g %g %g and the offset %g, wanted finite numbers and a "
+                           "normal other than 0.",
+                           h->name, body, h->normal.x, h->normal.y, h->normal.z, h->offset);
+    }
+    if (list->count == list->capacity) {
+        const int capacity = 2 * list->capacity + 16;
+        struct solid *more = realloc(list->solids, (size_t)capacity * sizeof *more);
+        if (!more) return err_nomem(err, "solids", (size_t)capacity * sizeof *more);
+        list->solids = more;
+        list->capacity = capacity;
+    }
+    struct solid s = {.count = count, .body = keep_text(list, body)};
+    s.half_spaces = malloc((size_t)count * sizeof *s.half_spaces);
+    bool good = s.body && s.half_spaces;
+    for (int i = 0; good && i < count; i++) {
+        s.half_spaces[i] = half_spaces[i];
+        s.half_spaces[i].name = keep_text(list, half_spaces[i].name);
+        good = s.half_spaces[i].name;
+    }
+    if (!good) {
+        free(s.half_spaces);
+        return err_nomem(err, "a solid", (size_t)count * sizeof *s.half_spaces);
+    }
+    list->solids[list->count++] = s;
+    return ST_OK;
+}
+
+enum status solid_list_add_box(struct solid_list *list, const char *body, struct vec3 low, struct vec3 high,
+                               const char *const names[6], struct err *err)
+{
+    const struct half_space h[6] = {
+        {{-1, 0, 0}, -low.x, names[0]}, {{1, 0, 0}, high.x, names[1]},  {{0, -1, 0}, -low.y, names[2]},
+        {{0, 1, 0}, high.y, names[3]},  {{0, 0, -1}, -low.z, names[4]}, {{0, 0, 1}, high.z, names[5]},
+    };
+    return solid_list_add(list, body, h, 6, err);
+}
+
+void solid_list_release(struct solid_list *list)
+{
+    if (!list) return;
+    for (int i = 0; i < list->count; i++) free(list->solids[i].half_spaces);
+    for (int i = 0; i < list->text_capacity; i++) free(list->texts[i]);
+    free(list->solids);
+    free(list->texts);
+    *list = (struct solid_list){0};
+}

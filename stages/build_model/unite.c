@@ -1,0 +1,892 @@
+/* unite.c - see unite.h.
+ *
+ * borders_find() says where the surface ends in each plane: stretches of lines, each with the surface on its left. What
+ * remains is to join them.
+ *
+ * - Stretches are cut at the ends of others that lie on them, so that two faces have the same edges where they meet.
+ * - Around an edge faces are sorted by angle, exactly. Each face is either where solid begins or where it ends; those
+ *   between which there is solid become each other's neighbours. So solids that touch in an edge stay apart there.
+ * - In a face the half-edge that follows is the one that bounds the same corner of the face: the first one clockwise.
+ * - Half-edges around a corner of the solid, one fan of faces, share a vertex; another fan gets another vertex.
+ * - A vertex with two faces only, in the middle of an edge, goes. Where two edges join the same two vertices all but one
+ *   get a vertex in their middle, so that vertices name an edge.
+ *
+ * See docs/decisions/0015 for why each step is exact. */
+#include "stages/build_model/unite.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "stages/build_model/borders.h"
+
+struct half {
+    int border, from;     /* point where it begins, or -1: in the middle of its edge, at `middle` */
+    int next, prev, twin; /* twin -1: it is gone */
+    int vertex, loop;
+    double middle[3];
+};
+
+struct loop {
+    int half; /* one of it that stays */
+    int face; /* -1: not known yet */
+    bool hole;
+    double area; /* of the projection along the axis that the normal is most along */
+};
+
+struct face {
+    int plane, side, name; /* name: least rank */
+    int loop, holes;       /* outer loop, and how many others */
+};
+
+struct joined { /* a body at work */
+    struct convex_set set;
+    struct border_set borders;
+    struct half *halves; /* all owned */
+    struct loop *loops;
+    struct face *faces;
+    int half_count, half_capacity, loop_count, loop_capacity, face_count, face_capacity;
+    int vertex_count;
+};
+
+struct result { /* polygons of all bodies, with offsets in place of pointers */
+    struct vec3 *vertices;
+    struct solid_polygon *polygons;
+    int *corners, *sizes;
+    size_t *at; /* of each polygon in corners, in sizes */
+    int vertex_count, vertex_capacity, polygon_count, polygon_capacity, corner_count, corner_capacity, size_count;
+    int size_capacity, at_capacity;
+};
+
+struct name_table {
+    const char **texts; /* by rank: the order of first occurrence in the list */
+    int *rank;          /* of each half-space's name */
+    char *present;      /* by rank: on the surface somewhere */
+    int count;
+};
+
+struct merge {
+    int name, into;
+};
+
+struct merges {
+    struct merge *merges;
+    int count, capacity;
+};
+
+static enum status broken(const struct solid *s, const char *what, struct err *err)
+{
+    return err_set(err, ST_INTERNAL, "the surface of body %s does not close: %s. This is a fault of the program.",
+                   s->body, what);
+}
+
+/* Half-edge's direction, and its face's outward normal. */
+static void direction(const struct joined *j, int half, int64_t d[3])
+{
+    const struct border *b = &j->borders.borders[j->halves[half].border];
+    for (int i = 0; i < 3; i++) d[i] = j->set.space.lines[b->line].d[i] * (b->forward ? 1 : -1);
+}
+
+static void outward(const struct joined *j, int half, int64_t n[3])
+{
+    const struct border *b = &j->borders.borders[j->halves[half].border];
+    for (int i = 0; i < 3; i++) n[i] = j->set.space.planes[b->plane].n[i] * b->side;
+}
+
+static void negated(const int64_t a[3], int64_t out[3])
+{
+    for (int i = 0; i < 3; i++) out[i] = -a[i];
+}
+
+/* ------------------------------------------------------------------------------------------------ edges and twins */
+
+static enum status add_half(struct joined *j, int border, int from, struct err *err)
+{
+    if (exact_grow(&j->halves, &j->half_capacity, j->half_count + 1, sizeof *j->halves, err)) return err->status;
+    j->halves[j->half_count++] =
+        (struct half){.border = border, .from = from, .next = -1, .prev = -1, .twin = -1, .vertex = -1, .loop = -1};
+    return ST_OK;
+}
+
+/* The half-edges of one edge, halves[of[0 .. count)]: those between which there is solid become twins. Counter-clockwise
+ * about the line from a face whose half-edge goes backward there is solid, from one that goes forward there is none. A
+ * face that passes flat is not among them, so that what lies within its half-turn is matched like brackets. */
+static enum status pair_around(struct joined *j, int *of, int count, const struct solid *s, struct err *err)
+{
+    const struct border *borders = j->borders.borders;
+#define FORWARD(h) borders[j->halves[h].border].forward
+    if (count == 2 && FORWARD(of[0]) != FORWARD(of[1])) {
+        j->halves[of[0]].twin = of[1];
+        j->halves[of[1]].twin = of[0];
+        return ST_OK;
+    }
+    enum { MOST = 64 };
+    if (count % 2 || count > MOST) return broken(s, "an edge without its opposite", err);
+    /* the normal, turned with the half-plane: at a right angle to it, on the same side for all */
+    int64_t u[MOST][3];
+    const int64_t *d = j->set.space.lines[borders[j->halves[of[0]].border].line].d;
+    for (int i = 0; i < count; i++) {
+        outward(j, of[i], u[i]);
+        if (!FORWARD(of[i])) negated(u[i], u[i]);
+    }
+    int order[MOST], open[MOST], depth = 0, least = 0, start = 0;
+    for (int i = 0; i < count; i++) { /* by angle from the first */
+        int k = i;
+        for (; k > 0 && exact_before(u[0], u[i], u[order[k - 1]], d); k--) order[k] = order[k - 1];
+        order[k] = i;
+    }
+    for (int i = 0; i < count; i++) {
+        depth += FORWARD(of[order[i]]) ? -1 : 1;
+        if (depth < least) {
+            least = depth;
+            start = i + 1;
+        }
+    }
+    if (depth) return broken(s, "an edge whose faces do not alternate", err);
+    for (int i = 0; i < count; i++) {
+        const int h = of[order[(start + i) % count]];
+        if (!FORWARD(h)) {
+            open[depth++] = h;
+            continue;
+        }
+        const int o = open[--depth];
+        j->halves[h].twin = o;
+        j->halves[o].twin = h;
+    }
+    return ST_OK;
+#undef FORWARD
+}
+
+struct along {
+    const struct exact_space *space;
+    const struct exact_line *line;
+};
+
+static int compare_along(const void *a, const void *b, void *ctx)
+{
+    const struct along *l = ctx;
+    return exact_compare_along(l->space, l->line, *(const int *)a, *(const int *)b);
+}
+
+/* The borders of one line, and the points to cut them at. index is scratch, by point. */
+static enum status cut_line(struct joined *j, const int *borders, int border_count, int *points, int point_count,
+                            int *index, const struct solid *s, struct err *err)
+{
+    const struct along along = {&j->set.space, &j->set.space.lines[j->borders.borders[borders[0]].line]};
+    qsort_r(points, (size_t)point_count, sizeof *points, compare_along, (void *)&along);
+    int count = 0, first = j->half_count;
+    for (int i = 0; i < point_count; i++)
+        if (!count || points[count - 1] != points[i]) points[count++] = points[i];
+    for (int i = 0; i < count; i++) index[points[i]] = i;
+    int *of = malloc(((size_t)count + 1) * sizeof *of);
+    if (!of) return err_nomem(err, "the edges of a line", ((size_t)count + 1) * sizeof *of);
+    enum status st = ST_OK;
+    for (int i = 0; i < count; i++) of[i] = 0; /* half-edges of the edge from point i to i + 1 */
+    for (int i = 0; !st && i < border_count; i++) {
+        const struct border b = j->borders.borders[borders[i]];
+        const int step = b.forward ? 1 : -1;
+        for (int k = index[b.from]; !st && k != index[b.to]; k += step) {
+            of[b.forward ? k : k - 1]++;
+            st = add_half(j, borders[i], points[k], err);
+        }
+    }
+    int *slots = malloc(((size_t)(j->half_count - first) + 1) * sizeof *slots);
+    if (!st && !slots) st = err_nomem(err, "the edges of a line", (size_t)(j->half_count - first) * sizeof *slots);
+    if (!st) {
+        for (int i = 0, sum = 0; i < count; i++) {
+            const int n = of[i];
+            of[i] = sum;
+            sum += n;
+        }
+        for (int h = first; h < j->half_count; h++) {
+            const struct half *a = &j->halves[h];
+            const int k = index[a->from] - (j->borders.borders[a->border].forward ? 0 : 1);
+            slots[of[k]++] = h;
+        }
+        for (int i = 0, begin = 0; !st && i < count; begin = of[i++])
+            if (of[i] > begin) st = pair_around(j, &slots[begin], of[i] - begin, s, err);
+    }
+    free(of);
+    free(slots);
+    return st;
+}
+
+static enum status make_halves(struct joined *j, const struct solid *s, struct err *err)
+{
+    struct border_set *b = &j->borders;
+    const size_t lines = (size_t)j->set.space.line_count, points = (size_t)j->set.space.point_count;
+    int *border_first = calloc(lines + 2, sizeof *border_first), *point_first = calloc(lines + 2, sizeof *point_first);
+    int *by_line = malloc(((size_t)b->border_count + 1) * sizeof *by_line);
+    int *line_points = malloc(((size_t)b->point_count + 1) * sizeof *line_points);
+    int *index = malloc((points + 1) * sizeof *index);
+    char *ends = calloc(points + 1, 1); /* points in which a border ends */
+    enum status st = border_first && point_first && by_line && line_points && index && ends
+                         ? ST_OK
+                         : err_nomem(err, "edges of a union", lines * sizeof *border_first);
+    if (!st) {
+        for (int i = 0; i < b->border_count; i++) {
+            ends[b->borders[i].from] = ends[b->borders[i].to] = 1;
+            border_first[b->borders[i].line + 2]++;
+        }
+        for (int i = 0; i < b->point_count; i++)
+            if (ends[b->points[i].point]) point_first[b->points[i].line + 2]++;
+        for (size_t i = 0; i < lines; i++) {
+            border_first[i + 2] += border_first[i + 1];
+            point_first[i + 2] += point_first[i + 1];
+        }
+        for (int i = 0; i < b->border_count; i++) by_line[border_first[b->borders[i].line + 1]++] = i;
+        for (int i = 0; i < b->point_count; i++)
+            if (ends[b->points[i].point]) line_points[point_first[b->points[i].line + 1]++] = b->points[i].point;
+    }
+    for (size_t i = 0; !st && i < lines; i++)
+        if (border_first[i + 1] > border_first[i])
+            st = cut_line(j, &by_line[border_first[i]], border_first[i + 1] - border_first[i],
+                          &line_points[point_first[i]], point_first[i + 1] - point_first[i], index, s, err);
+    free(border_first);
+    free(point_first);
+    free(by_line);
+    free(line_points);
+    free(index);
+    free(ends);
+    return st;
+}
+
+/* ---------------------------------------------------------------------------------------------------------- loops */
+
+/* Of the half-edges that leave the point in which h ends, in h's face: the first clockwise from where h comes from. */
+static int following(const struct joined *j, int h, const int *leaving, int count)
+{
+    const struct border *b = &j->borders.borders[j->halves[h].border];
+    int best = -1, found = 0;
+    int64_t back[3], down[3], d[3], best_d[3];
+    for (int i = 0; i < count; i++) {
+        const struct border *o = &j->borders.borders[j->halves[leaving[i]].border];
+        if (o->plane != b->plane || o->side != b->side) continue;
+        found++;
+        if (best < 0) {
+            best = leaving[i];
+            continue;
+        }
+        if (found == 2) {
+            direction(j, h, back);
+            negated(back, back);
+            outward(j, h, down);
+            negated(down, down);
+            direction(j, best, best_d);
+        }
+        direction(j, leaving[i], d);
+        if (!exact_before(back, d, best_d, down)) continue;
+        best = leaving[i];
+        memcpy(best_d, d, sizeof d);
+    }
+    return best;
+}
+
+static enum status link_halves(struct joined *j, const struct solid *s, struct err *err)
+{
+    const size_t points = (size_t)j->set.space.point_count;
+    int *first = calloc(points + 2, sizeof *first), *leaving = malloc(((size_t)j->half_count + 1) * sizeof *leaving);
+    enum status st = first && leaving ? ST_OK : err_nomem(err, "loops of a union", points * sizeof *first);
+    if (!st) {
+        for (int i = 0; i < j->half_count; i++) first[j->halves[i].from + 2]++;
+        for (size_t i = 0; i < points; i++) first[i + 2] += first[i + 1];
+        for (int i = 0; i < j->half_count; i++) leaving[first[j->halves[i].from + 1]++] = i;
+    }
+    for (int i = 0; !st && i < j->half_count; i++) {
+        const int to = j->halves[j->halves[i].twin].from;
+        const int next = following(j, i, &leaving[first[to]], first[to + 1] - first[to]);
+        if (next < 0 || j->halves[next].prev >= 0) {
+            st = broken(s, "the edge of a face that does not go on", err);
+            break;
+        }
+        j->halves[i].next = next;
+        j->halves[next].prev = i;
+    }
+    free(first);
+    free(leaving);
+    for (int i = 0; !st && i < j->half_count; i++) {
+        if (j->halves[i].loop >= 0) continue;
+        st = exact_grow(&j->loops, &j->loop_capacity, j->loop_count + 1, sizeof *j->loops, err);
+        if (st) break;
+        for (int h = i; j->halves[h].loop < 0; h = j->halves[h].next) j->halves[h].loop = j->loop_count;
+        j->loops[j->loop_count++] = (struct loop){.half = i, .face = -1};
+    }
+    return st;
+}
+
+/* Vertices, one for each fan of faces; those in the middle of an edge go. */
+static void make_vertices(struct joined *j)
+{
+    struct half *h = j->halves;
+    for (int i = 0; i < j->half_count; i++) {
+        if (h[i].vertex >= 0) continue;
+        int count = 0;
+        for (int k = i; h[k].vertex < 0; k = h[h[k].prev].twin, count++) h[k].vertex = j->vertex_count;
+        j->vertex_count++;
+        const int o = h[h[i].prev].twin;
+        const struct border *b = j->borders.borders;
+#define LINE(x) b[h[x].border].line
+        if (count != 2 || LINE(i) != LINE(h[i].prev) || LINE(o) != LINE(h[o].prev)) continue;
+#undef LINE
+        const int gone[2] = {i, o};
+        for (int k = 0; k < 2; k++) {
+            const int g = gone[k], before = h[g].prev;
+            h[before].next = h[g].next;
+            h[h[g].next].prev = before;
+            if (j->loops[h[g].loop].half == g) j->loops[h[g].loop].half = before;
+        }
+        h[h[i].prev].twin = h[o].prev;
+        h[h[o].prev].twin = h[i].prev;
+        h[i].twin = h[o].twin = -1;
+    }
+}
+
+struct edge_ends {
+    int low, high, half;
+};
+
+static int compare_ends(const void *a, const void *b)
+{
+    const struct edge_ends *p = a, *q = b;
+    if (p->low != q->low) return p->low < q->low ? -1 : 1;
+    if (p->high != q->high) return p->high < q->high ? -1 : 1;
+    return (p->half > q->half) - (p->half < q->half);
+}
+
+static void coordinates(const struct joined *j, int half, double p[3])
+{
+    const struct half *h = &j->halves[half];
+    memcpy(p, h->from >= 0 ? j->set.space.points[h->from].p : h->middle, 3 * sizeof *p);
+}
+
+/* A vertex in the middle of each edge that another one joins the ends of. */
+static enum status part_double_edges(struct joined *j, struct err *err)
+{
+    struct edge_ends *ends = malloc(((size_t)j->half_count + 1) * sizeof *ends);
+    int count = 0;
+    enum status st = ends ? ST_OK : err_nomem(err, "edges of a union", (size_t)j->half_count * sizeof *ends);
+    for (int i = 0; !st && i < j->half_count; i++) {
+        if (j->halves[i].twin < i) continue;
+        const int a = j->halves[i].vertex, b = j->halves[j->halves[i].twin].vertex;
+        ends[count++] = (struct edge_ends){a < b ? a : b, a < b ? b : a, i};
+    }
+    if (!st && count) qsort(ends, (size_t)count, sizeof *ends, compare_ends);
+    for (int i = 1; !st && i < count; i++) {
+        if (ends[i].low != ends[i - 1].low || ends[i].high != ends[i - 1].high) continue;
+        const int pair[2] = {ends[i].half, j->halves[ends[i].half].twin}, made = j->half_count;
+        double p[2][3];
+        for (int k = 0; k < 2; k++) coordinates(j, pair[k], p[k]);
+        for (int k = 0; !st && k < 2; k++) {
+            st = add_half(j, j->halves[pair[k]].border, -1, err);
+            if (st) break;
+            struct half *h = j->halves, *m = &h[made + k];
+            m->vertex = j->vertex_count;
+            m->loop = h[pair[k]].loop;
+            m->prev = pair[k];
+            m->next = h[pair[k]].next;
+            h[m->next].prev = made + k;
+            h[pair[k]].next = made + k;
+            m->twin = pair[1 - k];
+            for (int a = 0; a < 3; a++) m->middle[a] = 0.5 * (p[0][a] + p[1][a]);
+        }
+        for (int k = 0; !st && k < 2; k++) j->halves[pair[k]].twin = made + 1 - k;
+        j->vertex_count++;
+    }
+    free(ends);
+    return st;
+}
+
+/* ---------------------------------------------------------------------------------------------------------- faces */
+
+/* Axes u, v of the projection in which a face seen from outside keeps its sense of turning. */
+static void projection(const struct joined *j, const struct border *b, int *u, int *v)
+{
+    const int64_t *n = j->set.space.planes[b->plane].n;
+    int k = 0;
+    for (int i = 1; i < 3; i++)
+        if (llabs(n[i]) > llabs(n[k])) k = i;
+    const bool same = (n[k] > 0) == (b->side > 0);
+    *u = (k + (same ? 1 : 2)) % 3;
+    *v = (k + (same ? 2 : 1)) % 3;
+}
+
+/* A loop is a hole if the face goes on beyond the loop's corner that is least in u, then v, towards less u. */
+static void judge_loop(struct joined *j, int loop)
+{
+    const struct half *h = j->halves;
+    const struct exact_space *s = &j->set.space;
+    const int first = j->loops[loop].half;
+    const struct border *b = &j->borders.borders[h[first].border];
+    int u, v, least = h[first].from;
+    projection(j, b, &u, &v);
+    const double *origin = s->points[least].p;
+    double area = 0;
+    for (int i = h[first].next; i != first; i = h[i].next) {
+        const int c = exact_compare(s, h[i].from, least, u);
+        if (c < 0 || (!c && exact_compare(s, h[i].from, least, v) < 0)) least = h[i].from;
+        const double *p = s->points[h[i].from].p, *q = s->points[h[h[i].next].from].p;
+        area += 0.5 * ((p[u] - origin[u]) * (q[v] - origin[v]) - (q[u] - origin[u]) * (p[v] - origin[v]));
+    }
+    j->loops[loop].area = fabs(area);
+    /* in the plane, towards less u at the same v */
+    int64_t n[3], down[3], west[3] = {0};
+    const int k = 3 - u - v;
+    outward(j, first, n);
+    west[u] = n[k] > 0 ? -n[k] : n[k];
+    west[k] = n[k] > 0 ? n[u] : -n[u];
+    negated(n, down);
+    int i = first;
+    do {
+        if (h[i].from == least) {
+            int64_t back[3], on[3];
+            direction(j, h[i].prev, back);
+            negated(back, back);
+            direction(j, i, on);
+            if (exact_before(back, west, on, down)) j->loops[loop].hole = true;
+        }
+        i = h[i].next;
+    } while (i != first);
+}
+
+/* -1 outside, 0 on, 1 inside: a point of the face's plane and a loop, by winding in the projection. */
+static int point_in_loop(const struct joined *j, int point, int loop)
+{
+    const struct half *h = j->halves;
+    const struct exact_space *s = &j->set.space;
+    const int first = j->loops[loop].half;
+    const struct border *b = &j->borders.borders[h[first].border];
+    int u, v, i = first, winding = 0;
+    projection(j, b, &u, &v);
+    do {
+        const int a = h[i].from, c = h[h[i].next].from;
+        const int va = exact_compare(s, a, point, v), vc = exact_compare(s, c, point, v);
+        if (a == point) return 0;
+        if (va * vc <= 0) {
+            const struct border *e = &j->borders.borders[h[i].border];
+            const struct exact_line *l = &s->lines[e->line];
+            const int other = l->plane[l->plane[0] == b->plane];
+            int64_t d[3], n[3];
+            direction(j, i, d);
+            outward(j, i, n);
+            const int left = exact_turn(n, d, s->planes[other].n) * exact_side(s, point, other);
+            if (!left) { /* on the edge's line: on the edge if between its ends */
+                const int ua = exact_compare(s, a, point, u), uc = exact_compare(s, c, point, u);
+                if (ua * uc <= 0) return 0;
+            } else if (va <= 0 && vc > 0 && left > 0) {
+                winding++;
+            } else if (va > 0 && vc <= 0 && left < 0) {
+                winding--;
+            }
+        }
+        i = h[i].next;
+    } while (i != first);
+    return winding ? 1 : -1;
+}
+
+/* The same of any place, in doubles: of places that are well inside or outside. */
+static bool place_in_loop(const struct joined *j, const double p[3], int loop)
+{
+    const struct half *h = j->halves;
+    const int first = j->loops[loop].half;
+    int u, v, i = first;
+    bool in = false;
+    projection(j, &j->borders.borders[h[first].border], &u, &v);
+    do {
+        const double *a = j->set.space.points[h[i].from].p, *b = j->set.space.points[h[h[i].next].from].p;
+        if ((a[v] > p[v]) != (b[v] > p[v]) && p[u] < a[u] + (p[v] - a[v]) / (b[v] - a[v]) * (b[u] - a[u])) in = !in;
+        i = h[i].next;
+    } while (i != first);
+    return in;
+}
+
+static bool loop_in_loop(const struct joined *j, int loop, int outer)
+{
+    const struct half *h = j->halves;
+    const int first = j->loops[loop].half;
+    int i = first;
+    do {
+        const int in = point_in_loop(j, h[i].from, outer);
+        if (in) return in > 0;
+        i = h[i].next;
+    } while (i != first);
+    /* all its corners are on the other: the middle of an edge that is not on it decides */
+    const double *a = j->set.space.points[h[first].from].p, *b = j->set.space.points[h[h[first].next].from].p;
+    return place_in_loop(j, (double[3]){0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]), 0.5 * (a[2] + b[2])}, outer);
+}
+
+static const struct border *loop_border(const struct joined *j, int loop)
+{
+    return &j->borders.borders[j->halves[j->loops[loop].half].border];
+}
+
+static int loop_side(const struct joined *j, int loop)
+{
+    return 2 * loop_border(j, loop)->plane + (loop_border(j, loop)->side > 0);
+}
+
+struct loop_order {
+    int key, loop;
+};
+
+static int compare_loops(const void *a, const void *b)
+{
+    const struct loop_order *p = a, *q = b;
+    if (p->key != q->key) return p->key < q->key ? -1 : 1;
+    return (p->loop > q->loop) - (p->loop < q->loop);
+}
+
+/* Loops of one side of one plane to faces; facets inside a face give it their names. */
+static enum status faces_of_side(struct joined *j, const struct loop_order *loops, int count, const struct solid *s,
+                                 struct err *err)
+{
+    for (int i = 0; i < count; i++) {
+        const int l = loops[i].loop;
+        if (j->loops[l].hole) continue;
+        if (exact_grow(&j->faces, &j->face_capacity, j->face_count + 1, sizeof *j->faces, err)) return err->status;
+        const struct border *b = loop_border(j, l);
+        j->loops[l].face = j->face_count;
+        j->faces[j->face_count++] = (struct face){b->plane, b->side, INT32_MAX, l, 0};
+    }
+    for (int i = 0; i < count; i++) {
+        const int l = loops[i].loop;
+        int best = -1;
+        if (!j->loops[l].hole) continue;
+        for (int k = 0; k < count; k++) {
+            const int o = loops[k].loop;
+            if (j->loops[o].hole || j->loops[o].area <= j->loops[l].area) continue;
+            if (best >= 0 && j->loops[o].area >= j->loops[best].area) continue;
+            if (loop_in_loop(j, l, o)) best = o;
+        }
+        if (best < 0) return broken(s, "a hole without a face around it", err);
+        j->loops[l].face = j->loops[best].face;
+        j->faces[j->loops[best].face].holes++;
+    }
+    return ST_OK;
+}
+
+static int face_at(const struct joined *j, const struct loop_order *loops, int count, const double p[3])
+{
+    int best = -1;
+    for (int i = 0; i < count; i++) {
+        const int l = loops[i].loop;
+        if (j->loops[l].hole || !place_in_loop(j, p, l)) continue;
+        if (best < 0 || j->loops[l].area < j->loops[best].area) best = l;
+    }
+    return best < 0 ? -1 : j->loops[best].face;
+}
+
+static int side_begin(const struct loop_order *order, int count, int key)
+{
+    int low = 0, high = count;
+    while (low < high) {
+        const int middle = (low + high) / 2;
+        if (order[middle].key < key)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+/* Faces, their names (the least rank of what they are made of), and which names they took up. loop_of_border: a loop of
+ * each border. */
+static enum status make_faces(struct joined *j, const int *loop_of_border, struct merges *merges, char *present,
+                              const struct solid *s, struct err *err)
+{
+    struct loop_order *order = malloc(((size_t)j->loop_count + 1) * sizeof *order);
+    enum status st = order ? ST_OK : err_nomem(err, "faces of a union", (size_t)j->loop_count * sizeof *order);
+    const int first = merges->count;
+    for (int i = 0; !st && i < j->loop_count; i++) {
+        judge_loop(j, i);
+        order[i] = (struct loop_order){loop_side(j, i), i};
+    }
+    if (!st && j->loop_count) qsort(order, (size_t)j->loop_count, sizeof *order, compare_loops);
+    for (int i = 0, k; !st && i < j->loop_count; i = k) {
+        for (k = i + 1; k < j->loop_count && order[k].key == order[i].key;) k++;
+        st = faces_of_side(j, &order[i], k - i, s, err);
+    }
+    /* for now a merge's `into` is the face */
+    const struct border_set *b = &j->borders;
+    if (!st)
+        st = exact_grow(&merges->merges, &merges->capacity, first + b->name_count + b->inner_count,
+                        sizeof *merges->merges, err);
+    for (int i = 0; !st && i < b->name_count; i++)
+        merges->merges[merges->count++] =
+            (struct merge){b->names[i].name, j->loops[loop_of_border[b->names[i].border]].face};
+    for (int i = 0; !st && i < b->inner_count; i++) {
+        const struct polygon *p = &j->set.polygons[b->inner[i]];
+        double middle[3] = {0};
+        for (int k = p->first; k < p->first + p->count; k++)
+            for (int a = 0; a < 3; a++) middle[a] += j->set.space.points[j->set.edges[k].corner].p[a] / p->count;
+        const int key = 2 * p->plane + (p->side > 0), begin = side_begin(order, j->loop_count, key);
+        const int face = face_at(j, &order[begin], side_begin(order, j->loop_count, key + 1) - begin, middle);
+        if (face >= 0) merges->merges[merges->count++] = (struct merge){p->name, face};
+    }
+    for (int i = first; !st && i < merges->count; i++) {
+        struct face *f = &j->faces[merges->merges[i].into];
+        if (merges->merges[i].name < f->name) f->name = merges->merges[i].name;
+    }
+    int kept = first;
+    for (int i = first; !st && i < merges->count; i++) {
+        const struct merge m = {merges->merges[i].name, j->faces[merges->merges[i].into].name};
+        present[m.name] = 1;
+        if (m.name != m.into) merges->merges[kept++] = m;
+    }
+    if (!st) merges->count = kept;
+    free(order);
+    return st;
+}
+
+/* --------------------------------------------------------------------------------------------------------- result */
+
+struct face_order {
+    int name, face;
+};
+
+static int compare_faces(const void *a, const void *b)
+{
+    const struct face_order *p = a, *q = b;
+    if (p->name != q->name) return p->name < q->name ? -1 : 1;
+    return (p->face > q->face) - (p->face < q->face);
+}
+
+static enum status add_loop(struct joined *j, struct result *r, int loop, int *vertex, struct err *err)
+{
+    const int first = j->loops[loop].half;
+    int h = first, count = 0;
+    do {
+        int *v = &vertex[j->halves[h].vertex];
+        if (*v < 0) {
+            double p[3];
+            if (exact_grow(&r->vertices, &r->vertex_capacity, r->vertex_count + 1, sizeof *r->vertices, err))
+                return err->status;
+            coordinates(j, h, p);
+            /* divided, so that 2700000 becomes the double 2.7; + 0: no negative zero */
+            r->vertices[r->vertex_count] = vec3_make(p[0] / 1e6 + 0., p[1] / 1e6 + 0., p[2] / 1e6 + 0.);
+            *v = r->vertex_count++;
+        }
+        if (exact_grow(&r->corners, &r->corner_capacity, r->corner_count + 1, sizeof *r->corners, err))
+            return err->status;
+        r->corners[r->corner_count++] = *v;
+        count++;
+        h = j->halves[h].next;
+    } while (h != first);
+    if (exact_grow(&r->sizes, &r->size_capacity, r->size_count + 1, sizeof *r->sizes, err)) return err->status;
+    r->sizes[r->size_count++] = count;
+    return ST_OK;
+}
+
+static enum status add_result(struct joined *j, struct result *r, const char *body, const char *const *names,
+                              struct err *err)
+{
+    struct face_order *order = malloc(((size_t)j->face_count + 1) * sizeof *order);
+    int *vertex = malloc(((size_t)j->vertex_count + 1) * sizeof *vertex);
+    int *hole_first = calloc((size_t)j->face_count + 2, sizeof *hole_first);
+    int *holes = malloc(((size_t)j->loop_count + 1) * sizeof *holes);
+    enum status st = order && vertex && hole_first && holes
+                         ? ST_OK
+                         : err_nomem(err, "faces of a union", (size_t)j->vertex_count * sizeof *vertex);
+    if (!st) {
+        for (int i = 0; i < j->vertex_count; i++) vertex[i] = -1;
+        for (int i = 0; i < j->face_count; i++) order[i] = (struct face_order){j->faces[i].name, i};
+        qsort(order, (size_t)j->face_count, sizeof *order, compare_faces);
+        for (int i = 0; i < j->face_count; i++) hole_first[i + 2] = hole_first[i + 1] + j->faces[i].holes;
+        for (int i = 0; i < j->loop_count; i++)
+            if (j->loops[i].hole) holes[hole_first[j->loops[i].face + 1]++] = i;
+    }
+    for (int i = 0; !st && i < j->face_count; i++) {
+        const struct face *f = &j->faces[order[i].face];
+        const struct exact_plane *p = &j->set.space.planes[f->plane];
+        const double n[3] = {(double)(p->n[0] * f->side), (double)(p->n[1] * f->side), (double)(p->n[2] * f->side)};
+        const double length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+        if (exact_grow(&r->polygons, &r->polygon_capacity, r->polygon_count + 1, sizeof *r->polygons, err) ||
+            exact_grow(&r->at, &r->at_capacity, 2 * r->polygon_count + 2, sizeof *r->at, err)) {
+            st = err->status;
+            break;
+        }
+        r->at[2 * r->polygon_count] = (size_t)r->corner_count;
+        r->at[2 * r->polygon_count + 1] = (size_t)r->size_count;
+        r->polygons[r->polygon_count++] = (struct solid_polygon){
+            .name = names[f->name],
+            .body = body,
+            .normal = vec3_make(n[0] / length + 0., n[1] / length + 0., n[2] / length + 0.),
+            .offset = (double)(p->d * f->side) / length / 1e6 + 0.,
+            .loops = 1 + f->holes,
+        };
+        st = add_loop(j, r, f->loop, vertex, err);
+        for (int k = hole_first[order[i].face]; !st && k < hole_first[order[i].face + 1]; k++)
+            st = add_loop(j, r, holes[k], vertex, err);
+    }
+    free(order);
+    free(vertex);
+    free(hole_first);
+    free(holes);
+    return st;
+}
+
+static void joined_release(struct joined *j)
+{
+    convex_set_release(&j->set);
+    border_set_release(&j->borders);
+    free(j->halves);
+    free(j->loops);
+    free(j->faces);
+}
+
+/* The solids of one body: list->solids[i] for which body_of[i] is `body`. */
+static enum status unite_body(struct result *r, const struct solid_list *list, const int *members, int count,
+                              const size_t *half_space_of, const struct lattice_half_space *half_spaces,
+                              const struct name_table *names, struct merges *merges, struct err *err)
+{
+    struct joined j = {0};
+    const struct solid *first = &list->solids[members[0]];
+    enum status st = ST_OK;
+    for (int i = 0; !st && i < count; i++) {
+        const size_t at = half_space_of[members[i]];
+        st = convex_set_add(&j.set, &list->solids[members[i]], &half_spaces[at], &names->rank[at], err);
+    }
+    if (!st) st = borders_find(&j.borders, &j.set, err);
+    if (!st) st = make_halves(&j, first, err);
+    if (!st) st = link_halves(&j, first, err);
+    int *loop_of_border = malloc(((size_t)j.borders.border_count + 1) * sizeof *loop_of_border);
+    if (!st && !loop_of_border) st = err_nomem(err, "faces of a union", (size_t)j.borders.border_count);
+    if (!st) {
+        for (int i = 0; i < j.half_count; i++) loop_of_border[j.halves[i].border] = j.halves[i].loop;
+        make_vertices(&j);
+        st = make_faces(&j, loop_of_border, merges, names->present, first, err);
+    }
+    if (!st) st = part_double_edges(&j, err);
+    if (!st) st = add_result(&j, r, first->body, names->texts, err);
+    free(loop_of_border);
+    joined_release(&j);
+    return st;
+}
+
+/* ----------------------------------------------------------------------------------------------------- whole lists */
+
+static uint64_t hash_text(const char *text)
+{
+    uint64_t h = 1469598103934665603u;
+    for (; *text; text++) h = (h ^ (unsigned char)*text) * 1099511628211u;
+    return h ^ (h >> 32);
+}
+
+/* Index of a text among those that came before it, or the next one. */
+static int rank_of(const char *text, const char **texts, int *count, int *slots, int size)
+{
+    unsigned at = (unsigned)hash_text(text) & (unsigned)(size - 1);
+    for (; slots[at] >= 0; at = (at + 1) & (unsigned)(size - 1))
+        if (texts[slots[at]] == text || !strcmp(texts[slots[at]], text)) return slots[at];
+    texts[*count] = text;
+    return slots[at] = (*count)++;
+}
+
+static enum status rank_names(struct name_table *names, int *body, int *body_count, const struct solid_list *list,
+                              struct err *err)
+{
+    size_t all = 1, at = 0;
+    int size = 64;
+    for (int i = 0; i < list->count; i++) all += (size_t)list->solids[i].count;
+    while ((size_t)size < 2 * all) size *= 2;
+    int *slots = malloc(2 * (size_t)size * sizeof *slots);
+    const char **bodies = malloc(((size_t)list->count + 1) * sizeof *bodies);
+    names->texts = malloc(all * sizeof *names->texts);
+    names->rank = malloc(all * sizeof *names->rank);
+    names->present = calloc(all, 1);
+    enum status st = slots && bodies && names->texts && names->rank && names->present
+                         ? ST_OK
+                         : err_nomem(err, "names of solids", 2 * (size_t)size * sizeof *slots);
+    for (int i = 0; !st && i < 2 * size; i++) slots[i] = -1;
+    for (int i = 0; !st && i < list->count; i++) {
+        body[i] = rank_of(list->solids[i].body, bodies, body_count, slots + size, size);
+        for (int k = 0; k < list->solids[i].count; k++)
+            names->rank[at++] = rank_of(list->solids[i].half_spaces[k].name, names->texts, &names->count, slots, size);
+    }
+    free(slots);
+    free(bodies);
+    return st;
+}
+
+static int compare_merges(const void *a, const void *b)
+{
+    const struct merge *p = a, *q = b;
+    if (p->name != q->name) return p->name < q->name ? -1 : 1;
+    return (p->into > q->into) - (p->into < q->into);
+}
+
+static enum status write_log(struct unite_log *log, struct merges *merges, const struct name_table *names,
+                             struct err *err)
+{
+    const size_t most = (size_t)merges->count + (size_t)names->count + 1;
+    log->notes = malloc(most * sizeof *log->notes);
+    if (!log->notes) return err_nomem(err, "the log of a union", most * sizeof *log->notes);
+    if (merges->count) qsort(merges->merges, (size_t)merges->count, sizeof *merges->merges, compare_merges);
+    for (int i = 0, k = 0; i < names->count; i++) {
+        if (!names->present[i]) log->notes[log->count++] = (struct unite_note){UNITE_HIDDEN, names->texts[i], NULL};
+        for (; k < merges->count && merges->merges[k].name == i; k++)
+            if (!k || compare_merges(&merges->merges[k - 1], &merges->merges[k]))
+                log->notes[log->count++] =
+                    (struct unite_note){UNITE_MERGED, names->texts[i], names->texts[merges->merges[k].into]};
+    }
+    return ST_OK;
+}
+
+void unite_log_release(struct unite_log *log)
+{
+    if (!log) return;
+    free(log->notes);
+    *log = (struct unite_log){0};
+}
+
+enum status solids_unite(struct solid_mesh *mesh, const struct solid_list *solids, struct unite_log *log,
+                         struct err *err)
+{
+    const size_t n = (size_t)solids->count;
+    struct lattice_half_space *half_spaces = NULL;
+    struct name_table names = {0};
+    struct merges merges = {0};
+    struct result r = {0};
+    int *body = malloc((n + 1) * sizeof *body), *members = malloc((n + 1) * sizeof *members), bodies = 0;
+    int *first = calloc(n + 2, sizeof *first);
+    size_t *half_space_of = malloc((n + 1) * sizeof *half_space_of), at = 0;
+    enum status st = body && members && first && half_space_of ? ST_OK : err_nomem(err, "solids", n * sizeof *body);
+
+    if (!st) st = lattice_half_spaces(&half_spaces, solids, err);
+    if (!st) st = rank_names(&names, body, &bodies, solids, err);
+    if (!st) {
+        for (int i = 0; i < solids->count; at += (size_t)solids->solids[i++].count) {
+            half_space_of[i] = at;
+            first[body[i] + 2]++;
+        }
+        for (int i = 0; i < bodies; i++) first[i + 2] += first[i + 1];
+        for (int i = 0; i < solids->count; i++) members[first[body[i] + 1]++] = i;
+    }
+    for (int i = 0; !st && i < bodies; i++)
+        st = unite_body(&r, solids, &members[first[i]], first[i + 1] - first[i], half_space_of, half_spaces, &names,
+                        &merges, err);
+    for (int i = 0; !st && i < r.polygon_count; i++) {
+        r.polygons[i].corners = r.corners + r.at[2 * i];
+        r.polygons[i].sizes = r.sizes + r.at[2 * i + 1];
+    }
+    if (!st) st = solid_mesh_make(mesh, r.vertices, r.vertex_count, r.polygons, r.polygon_count, err);
+    if (!st && log) st = write_log(log, &merges, &names, err);
+    if (st) {
+        solid_mesh_release(mesh);
+        if (log) unite_log_release(log);
+    }
+    free(half_spaces);
+    free(names.texts);
+    free(names.rank);
+    free(names.present);
+    free(merges.merges);
+    free(r.vertices);
+    free(r.polygons);
+    free(r.corners);
+    free(r.sizes);
+    free(r.at);
+    free(body);
+    free(members);
+    free(first);
+    free(half_space_of);
+    return st;
+}
