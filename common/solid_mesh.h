@@ -153,8 +153,8 @@ void solid_triangles_release(struct solid_triangles *triangles);
 
 /* ---------------------------------------------------------------------------------------------------------- files */
 
-/* OBJ for other programs: an object a body, a group a face name; faces without holes as polygons, others as triangles;
- * normals of faces. prov may be NULL. */
+/* OBJ for other programs: an object a body, a group a face name, triangles with the normals of their faces. prov may be
+ * NULL. */
 enum status solid_mesh_write_obj(const struct solid_mesh *mesh, const char *path, const struct provenance *prov,
                                  struct err *err);
 
