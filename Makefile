@@ -27,6 +27,8 @@ QUALITY ?= default
 ## EFFECT=FILM: the film of keys scenes/SCENE/keyframes/FILM.txt
 ## MORPH="A B": the two photos, by id, that `make morph` goes between; of a scene of two photos these
 ## EDIT=E: the edited scene scenes/SCENE/scene-E.txt, for `make edited`
+## PRODUCTS="WORDS": what plain `make` makes: parallax, and model, which scenes/SCENE/model.txt describes; parallax if none is said
+PRODUCTS ?= parallax
 ## JOBS=local|slurm: where the per-view work runs
 JOBS ?= local
 ## SLURM_ARGS="...": more options for sbatch; VIEWS_PER_JOB and FRAMES_PER_JOB cut the job array
@@ -68,6 +70,9 @@ ifneq ($(SCENE),)
     ifeq ($(wildcard scenes/$(SCENE)/scene-$(EDIT).txt),)
       $(error EDIT=$(EDIT): there is no scenes/$(SCENE)/scene-$(EDIT).txt)
     endif
+  endif
+  ifneq ($(filter-out parallax model,$(PRODUCTS))$(if $(PRODUCTS),,none),)
+    $(error PRODUCTS=$(PRODUCTS): wanted one or more of: parallax model)
   endif
   ifneq ($(SPLIT),)
     ifeq ($(shell [[ '$(subst ','\'',$(SPLIT))' =~ ^[1-9][0-9]?x[1-9][0-9]?$$ ]] && echo good),)
@@ -115,6 +120,7 @@ ifeq ($(PHASE),)
 literal = $(if $(filter command environment,$(firstword $(origin $(1)))),$(value $(1)),$($(1)))
 export REMODEL_PHOTOS := $(call literal,PHOTOS)
 export REMODEL_SPLIT := $(SPLIT)
+export REMODEL_PRODUCTS := $(PRODUCTS)
 export REMODEL_EFFECT := $(EFFECT)
 export REMODEL_EFFECT_NAMED := $(EFFECT_NAMED)
 export REMODEL_SFM := $(call literal,SFM)
@@ -124,7 +130,7 @@ export REMODEL_TRUTH := $(call literal,TRUTH)
 
 export VIEWS_PER_JOB SLURM_ARGS
 dry = $(findstring n,$(filter-out --%,$(firstword -$(MAKEFLAGS))))
-GOALS := edited hdr sfm views depth points subjects path frames video pan_scan morph evaluate report
+GOALS := edited hdr sfm views depth points model subjects path frames video pan_scan morph evaluate report
 .PHONY: all help why resfm check fuzz bench bench-compare regress regress-accept man deps deps-check deps-bench clean $(GOALS)
 
 ifeq ($(SCENE),)
@@ -137,6 +143,7 @@ sfm:    ## + camera poses: COLMAP, or the model in SFM
 views:  ## + rectified, linear views
 depth:  ## + layered depth maps
 points: ## + oriented points on which they agree (no part of what follows)
+model:  ## the solid model of scenes/SCENE/model.txt, and of each edit in edits/, with pictures to check them
 subjects: ## + faces, or the rectangles of scenes/SCENE/subjects.txt
 path:   ## + the camera move
 frames: ## + its frames
@@ -284,6 +291,7 @@ $(B)/tests/fuzz/fuzz_split_list: $(call objs,stages/import_photos/split_list.c)
 # what find_subjects alone needs; its tests do without OpenCV
 $(B)/bin/find_subjects: $(B)/obj/common/opencv_faces.o
 $(B)/bin/find_subjects: private LDLIBS += -lopencv_objdetect -lopencv_imgproc -lopencv_core -lstdc++
+$(B)/tests/fuzz/fuzz_model_script: $(addprefix $(B)/obj/stages/build_model/,script.o plan.o place.o layout.o solid.o model_params.o)
 $(B)/tests/fuzz/fuzz_regions: $(call objs,stages/find_subjects/region*.c)
 # what morph_views alone needs
 $(B)/bin/morph_views $(filter $(B)/tests/unit/morph_views/%,$(UNIT_TESTS)): $(B)/obj/common/opencv_features.o
@@ -325,6 +333,14 @@ DEPTH_TXT := $(DEPTH_EXR:.exr=.txt)
 LAST_ROUND := $(shell sed -n 's/^rounds = //p' $(O)/slice/segment_depth.cfg 2>/dev/null)
 round = $(O)/depth$(if $(filter-out $(LAST_ROUND),$(1)),/round$(1))
 POINTS := $(O)/points/points.ply
+AXES := $(O)/model/axes.txt
+# models: the one of model.txt, and one of each edit
+model_files = $(addprefix $(1)/,model.txt model.obj plan.txt merged.txt plan.svg view.png)
+MODEL_SCRIPT := $(wildcard scenes/$(SCENE)/model.txt)
+EDITS := $(if $(MODEL_SCRIPT),$(patsubst scenes/$(SCENE)/edits/%.txt,%,$(wildcard scenes/$(SCENE)/edits/*.txt)))
+MODELS := $(if $(MODEL_SCRIPT),$(O)/model $(EDITS:%=$(O)/remodel/%))
+VIEWED := $(sort $(foreach v,$(VIEWS),$(firstword $(subst @, ,$(v))))) # photos that have a view
+OVERLAYS := $(foreach m,$(MODELS),$(VIEWED:%=$(m)/overlay/%.jpg))
 SUBJECTS := $(P)/subjects.txt
 CHOICE := $(if $(CHOOSE),$(P)/$(CHOOSE)-effects.mk)
 # films of keys among them
@@ -382,12 +398,14 @@ ORIGINALS := $(if $(SPLIT),$(S)/split,"$$REMODEL_PHOTOS")
 PICTURES := $(if $(BRACKETED),$(S)/hdr,$(ORIGINALS))
 picture = $(if $(BRACKETED),$(S)/hdr/$(1).exr,$(S)/photos/$(1).txt)
 
-.PHONY: hdr sfm views depth points subjects choice path frames video pan_frames pan_scan heldout evaluate report morph-path morph-frames morph
+.PHONY: hdr sfm views depth points model overlays subjects choice path frames video pan_frames pan_scan heldout evaluate report morph-path morph-frames morph
 hdr: $(HDR)
 sfm: $(O)/views/views.mk
 views: $(VIEW_EXR) $(HELD_EXR)
 depth: $(DEPTH_EXR) $(DEPTH_TXT)
 points: $(POINTS)
+model: $(foreach m,$(MODELS),$(call model_files,$(m)))
+overlays: $(OVERLAYS)
 subjects: $(SUBJECTS)
 choice: $(CHOICE)
 path: $(foreach e,$(EFFECTS),$(call path_all,$(e)) $(if $(filter $(e),$(FILMS)),,$(call validity,$(e))))
@@ -450,6 +468,24 @@ $(O)/views/%.exr: ; # a neighbour that is a view no more
 
 $(POINTS): $(CAMERAS) $(DEPTH_EXR) $(DEPTH_TXT) $(call needs,fuse_points)
 	$(call stage,fuse_points,all,$(O),--views $(O)/views --depth $(O)/depth --out $@)
+
+# a script that places nothing in photographs needs no points
+MODEL_POINTS := $(if $(MODEL_SCRIPT),$(if $(shell grep -lE '^[ \t]*(wall|adjust)[ \t]+[^ \t]+[ \t]+in[ \t]' $(MODEL_SCRIPT) $(EDITS:%=scenes/$(SCENE)/edits/%.txt)),$(POINTS)))
+MODEL_NEEDS := $(AXES) $(CAMERAS) $(O)/views/lenses.txt $(MODEL_POINTS) $(call needs,build_model)
+MODEL_ARGS := --axes $(AXES) --views $(O)/views $(MODEL_POINTS:%=--points %)
+$(call model_files,$(O)/model) &: $(MODEL_SCRIPT) $(MODEL_NEEDS)
+	$(call stage,build_model,model,$(O),--script $(MODEL_SCRIPT) $(MODEL_ARGS) --out $(O)/model)
+define edit_rule
+$(call model_files,$(O)/remodel/$(1)) &: $(MODEL_SCRIPT) scenes/$(SCENE)/edits/$(1).txt $(O)/model/model.txt $(MODEL_NEEDS)
+	$$(call stage,build_model,$(1),$(O),--script $(MODEL_SCRIPT) --edit scenes/$(SCENE)/edits/$(1).txt --base $(O)/model/model.txt $(MODEL_ARGS) --out $(O)/remodel/$(1))
+endef
+$(foreach e,$(EDITS),$(eval $(call edit_rule,$(e))))
+# $(1): a model's folder; $(2): a photo
+define overlay_rule
+$(1)/overlay/$(2).jpg: $(1)/model.txt $(AXES) $(CAMERAS) $(O)/views/lenses.txt $(call picture,$(2)) $(call needs,build_model)
+	$$(hide)$$(call farm,build_model,$(notdir $(1))-$(2),$$@,--overlay $(2) --model $(1)/model.txt --axes $(AXES) --views $(O)/views --photos $$(PICTURES) --records $(S)/photos --out $$@)
+endef
+$(foreach m,$(MODELS),$(foreach p,$(VIEWED),$(eval $(call overlay_rule,$(m),$(p)))))
 
 # rectangles that a user drew, in place of faces; that they came or went is a change whatever the file's time
 DRAWN := $(wildcard scenes/$(SCENE)/subjects.txt)
@@ -537,8 +573,10 @@ $(O)/metrics.tsv: $(CAMERAS) $(O)/views/lenses.txt $(DEPTH_EXR) $(DEPTH_TXT) $(H
   $(S)/photos/list.txt $(O)/stamp/truth.txt $(call needs,evaluate)
 	$(call stage,evaluate,all,$(O),--folder $(O) --shared $(S) $${REMODEL_TRUTH:+--truth "$$REMODEL_TRUTH"} --out $@)
 
+made = $(1)
 SHOWN := $(if $(PAIR),$(M)/video.mp4,$(if $(HELDOUT)$(TRUTH),$(O)/metrics.tsv) $(EFFECTS:%=$(P)/%/video.mp4) $(wildcard $(EFFECTS:%=$(P)/%/pan_scan/video.mp4)) \
-  $(EFFECTS:%=$(P)/%/path.txt) $(CAMERAS) $(DEPTH_EXR) $(DEPTH_TXT) $(wildcard $(M)/video.mp4))
+  $(EFFECTS:%=$(P)/%/path.txt) $(CAMERAS) $(DEPTH_EXR) $(DEPTH_TXT) $(wildcard $(M)/video.mp4)) \
+  $(call $(if $(filter model,$(PRODUCTS)),made,wildcard),$(foreach m,$(MODELS),$(call model_files,$(m))) $(OVERLAYS))
 $(O)/index.html: $(SHOWN) $(S)/photos/list.txt $(STAGES:%=$(O)/slice/%.cfg) $(call needs,report)
 	$(call stage,report,page,$(O),--scene $(SCENE) --folder $(O) --shared $(S) --photos $(PICTURES) --defaults configs/default.cfg --out $@)
 

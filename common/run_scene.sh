@@ -21,6 +21,14 @@ quiet=-s
 read -r -a effects <<<"$(tr ' ' '\n' <<<"$REMODEL_EFFECT" | awk 'NF && !seen[$0]++' | tr '\n' ' ')"
 choose=
 case ${effects[*]} in auto | all) choose=${effects[0]} effects=() ;; esac
+# a scene that does not ask for films gets none but those that are asked for by name
+films_wanted=1
+case " $REMODEL_PRODUCTS $goal " in
+*" parallax "* | *" choice "* | *" path "* | *" frames "* | *" video "* | *" pan_scan "* | *" morph "*) ;;
+*) [ -n "$REMODEL_EFFECT_NAMED" ] || films_wanted= effects=() choose= ;;
+esac
+model_wanted=
+[[ " $REMODEL_PRODUCTS " != *" model "* ]] || model_wanted=1
 graph() { "${make[@]}" PHASE=graph EFFECTS="${effects[*]}" CHOOSE="$choose" "$@"; }
 read_choice() { read -r -a effects <<<"$(sed -n 's/^EFFECTS := *//p' "$O/parallax/$choose-effects.mk")"; }
 film_needs_a_name() { echo "$folder/keyframes/$1.txt: $1 means something else; give the film of keys another name." >&2; exit 2; }
@@ -208,6 +216,17 @@ tell_depth()
 # photos that are exposures of one view are merged before anything sees them
 merge_brackets() { [ ! -e "$S/photos/brackets.txt" ] || farm hdr_merge hdr 1 "${VIEWS_PER_JOB:-4}"; }
 
+# make_models: the solid model that the scene's script describes, those of its edits, and their edges on the photographs
+make_models()
+{
+    if [ ! -e "$folder/model.txt" ]; then
+        echo "make model wants $folder/model.txt, the script of the model (docs/model-script.md)." >&2
+        exit 2
+    fi
+    one model
+    farm build_model overlays 1 "${VIEWS_PER_JOB:-4}"
+}
+
 # make_morph: the film between two photos
 make_morph()
 {
@@ -256,13 +275,15 @@ one depth
 case $goal in
 depth) exit 0 ;;
 points | subjects) one "$goal"; exit 0 ;;
+model) make_models; exit 0 ;;
 evaluate) evaluate; common/explain.sh metrics "$O"; exit 0 ;;
 esac
+if [ "$model_wanted" ] && [[ $goal = all || $goal = report ]]; then make_models; fi
 if [ -n "$choose" ]; then
     one choice
     read_choice
 fi
-one path
+[ -z "$films_wanted" ] || one path
 case $goal in path) exit 0 ;; esac
 if [ "$goal" = pan_scan ]; then
     pan_scan

@@ -71,7 +71,7 @@ static enum status write_model(struct job *j, const struct plan *plan, const str
     const struct placer *placer = j->views ? &j->placer : NULL;
     char path[FILE_PATH];
     if (file_path(path, j->out, "plan.svg", "", err) || plan_picture_write(plan, placer, j->frame.metric, path, err) ||
-        file_path(path, j->out, "view.png", "", err) || view_picture_write(mesh, placer, path, err) ||
+        file_path(path, j->out, "view.png", "", err) || view_picture_write(mesh, plan, placer, path, err) ||
         file_path(path, j->out, "plan.txt", "", err) || plan_write(plan, path, &j->prov, err) ||
         file_path(path, j->out, "merged.txt", "", err) || merged_write(log, path, &j->prov, err) ||
         file_path(path, j->out, "model.obj", "", err) || solid_mesh_write_obj(mesh, path, &j->prov, err) ||

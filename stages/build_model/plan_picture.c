@@ -276,6 +276,40 @@ static void aerial_line(struct raster *r, const struct aerial *a, struct vec3 p,
     }
 }
 
+/* A triangle's part below a height. */
+static void aerial_triangle(struct raster *r, const struct aerial *a, const struct vec3 p[3], double top,
+                            const unsigned char color[3])
+{
+    struct vec3 kept[4];
+    int n = 0;
+    for (int k = 0; k < 3; k++) {
+        const struct vec3 u = p[k], v = p[(k + 1) % 3];
+        if (u.z <= top) kept[n++] = u;
+        if ((u.z <= top) != (v.z <= top))
+            kept[n++] = vec3_add(u, vec3_scale(vec3_sub(v, u), (top - u.z) / (v.z - u.z)));
+    }
+    for (int k = 1; k + 1 < n; k++)
+        raster_triangle(r, aerial_point(a, kept[0]), aerial_point(a, kept[k]), aerial_point(a, kept[k + 1]), color);
+}
+
+/* Where the model is cut below its ceilings the walls are dark. */
+static void draw_cuts(struct raster *r, const struct aerial *a, const struct plan *plan, double top)
+{
+    static const unsigned char dark[3] = {92, 96, 104}, ink[3] = {40, 42, 48};
+    for (int i = 0; i < plan->wall_count; i++) {
+        const struct plan_wall *w = &plan->walls[i];
+        double c[4][2], span[2];
+        if (w->removed) continue;
+        wall_corners(plan, i, c);
+        wall_span(plan, i, span);
+        const double z = fmin(top, plan_wall_top(plan, i, span[0], span[1]));
+        struct vec3 p[4];
+        for (int k = 0; k < 4; k++) p[k] = vec3_make(c[k][0], c[k][1], z);
+        for (int k = 1; k < 3; k++) aerial_triangle(r, a, (const struct vec3[3]){p[0], p[k], p[k + 1]}, HUGE_VAL, dark);
+        for (int k = 1; k < 4; k += 2) aerial_line(r, a, p[k], p[(k + 1) % 4], false, 0.7, k == 1 ? dark : ink);
+    }
+}
+
 static bool left_out(const struct solid_mesh *mesh, int face)
 {
     return starts_with(solid_face_name(mesh, face), "ceiling/");
@@ -353,13 +387,15 @@ static enum status write_small(const struct raster *r, const char *path, struct 
     return st;
 }
 
-enum status view_picture_write(const struct solid_mesh *mesh, const struct placer *placer, const char *path,
-                               struct err *err)
+enum status view_picture_write(const struct solid_mesh *mesh, const struct plan *plan, const struct placer *placer,
+                               const char *path, struct err *err)
 {
     static const unsigned char paper[3] = {248, 248, 246}, ink[3] = {40, 42, 48};
     struct solid_triangles tris = {0};
     struct raster r = {0};
     double high = 0;
+    for (int i = 0; i < plan->wall_count; i++) high = fmax(high, plan->walls[i].removed ? 0 : plan->walls[i].top);
+    for (int i = 0; i < plan->room_count; i++) high = fmax(high, plan->rooms[i].removed ? 0 : plan->rooms[i].lower[0]);
     /* from the south-west, 55 degrees above the horizon */
     const struct vec3 back =
         vec3_make(-0.30 * cos(55 * DEGREE) / hypot(0.30, 1), -cos(55 * DEGREE) / hypot(0.30, 1), sin(55 * DEGREE));
@@ -375,17 +411,26 @@ enum status view_picture_write(const struct solid_mesh *mesh, const struct place
         unsigned char color[3];
         if (left_out(mesh, t->face) || vec3_dot(mesh->faces[t->face].normal, a.back) <= 0) continue;
         face_color(mesh, t->face, color);
-        raster_triangle(&r, aerial_point(&a, mesh->vertices[t->v[0]].p), aerial_point(&a, mesh->vertices[t->v[1]].p),
-                        aerial_point(&a, mesh->vertices[t->v[2]].p), color);
+        aerial_triangle(
+            &r, &a,
+            (const struct vec3[3]){mesh->vertices[t->v[0]].p, mesh->vertices[t->v[1]].p, mesh->vertices[t->v[2]].p},
+            high, color);
     }
     for (int h = 0; !st && h < mesh->half_edge_count; h++) {
         const struct solid_half_edge *e = &mesh->half_edges[h];
         const int f = mesh->loops[e->loop].face, g = mesh->loops[mesh->half_edges[e->twin].loop].face;
-        high = fmax(high, mesh->vertices[e->origin].p.z);
         if (e->twin < h || (left_out(mesh, f) && left_out(mesh, g))) continue;
-        aerial_line(&r, &a, mesh->vertices[e->origin].p, mesh->vertices[mesh->half_edges[e->next].origin].p, false, 0.7,
-                    ink);
+        struct vec3 p = mesh->vertices[e->origin].p, q = mesh->vertices[mesh->half_edges[e->next].origin].p;
+        if (p.z > q.z) {
+            const struct vec3 swap = p;
+            p = q;
+            q = swap;
+        }
+        if (p.z >= high) continue;
+        if (q.z > high) q = vec3_add(p, vec3_scale(vec3_sub(q, p), (high - p.z) / (q.z - p.z)));
+        aerial_line(&r, &a, p, q, false, 0.7, ink);
     }
+    if (!st) draw_cuts(&r, &a, plan, high);
     if (!st) draw_frusta(&r, &a, placer, FRUSTUM * (high > 0 ? high / 2.5 : 1));
     if (!st) st = write_small(&r, path, err);
     solid_triangles_release(&tris);

@@ -13,9 +13,9 @@
 enum status plan_picture_write(const struct plan *plan, const struct placer *placer, bool metric, const char *path,
                                struct err *err);
 
-/* PNG: the mesh from above and aside, orthographic, flat-shaded, ceilings left out, with the photographs' frusta. */
-enum status view_picture_write(const struct solid_mesh *mesh, const struct placer *placer, const char *path,
-                               struct err *err);
+/* PNG: the mesh from above and aside, orthographic, flat-shaded, cut below the ceilings, with the photographs' frusta. */
+enum status view_picture_write(const struct solid_mesh *mesh, const struct plan *plan, const struct placer *placer,
+                               const char *path, struct err *err);
 
 /* JPEG: the photograph, as it is stored, with the model's edges: bright where they are seen, thin where something of the
  * model hides them, blue for glass. At most `side` px wide and high. */
