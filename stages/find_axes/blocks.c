@@ -1,0 +1,38 @@
+/* blocks.c - see blocks.h. */
+#include "stages/find_axes/blocks.h"
+
+#include <stdlib.h>
+
+static const double EDGE = 0.33; /* of a block, in sizes of the scene: four sizes are covered */
+
+static int compare_doubles(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+enum status cloud_size(double *size, const struct point_cloud *cloud, struct vec3 origin, struct err *err)
+{
+    enum { MOST = 20000 }; /* evenly spaced points tell it well enough */
+    const size_t step = cloud->count / MOST + 1;
+    double *d = malloc((cloud->count / step + 1) * sizeof *d);
+    size_t count = 0;
+    if (!d) return err_nomem(err, "distances", (cloud->count / step + 1) * sizeof *d);
+    for (size_t i = 0; i < cloud->count; i += step)
+        d[count++] = vec3_length(vec3_sub(cloud->points[i].position, origin));
+    qsort(d, count, sizeof *d, compare_doubles);
+    *size = count ? d[count / 2] : 0;
+    free(d);
+    return ST_OK;
+}
+
+int block_of(struct vec3 p, double size)
+{
+    const double c[3] = {p.x, p.y, p.z};
+    int at = 0;
+    for (int k = 0; k < 3; k++) {
+        const double b = floor(c[k] / (EDGE * size)) + BLOCKS_ACROSS / 2;
+        at = at * BLOCKS_ACROSS + (b >= 0 ? b < BLOCKS_ACROSS ? (int)b : BLOCKS_ACROSS - 1 : 0);
+    }
+    return at;
+}

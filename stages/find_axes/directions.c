@@ -1,0 +1,299 @@
+/* directions.c - see directions.h.
+ *
+ * Y. Furukawa, B. Curless, S. Seitz, R. Szeliski, "Manhattan-world stereo", 2009: normals are counted in bins of the
+ * half sphere (a surface and its back are one direction); the first axis is where most look, the second where most look
+ * at about a right angle to it, the third at about right angles to both. Theirs is greedy. Here each of the densest
+ * places begins a triple, and the triple counts that most points look along in all: a sofa's side may be denser than a
+ * wall, but nothing much stands at right angles to it.
+ *
+ * The triple is then made exactly orthogonal and refined by robust least squares over the points: a normal's residual is
+ * its angle to the nearest axis, Tukey's biweight leaves out what has nothing to do with one. Where there are only two
+ * clusters their cross product is the third axis. */
+#include "stages/find_axes/directions.h"
+
+#include <stdlib.h>
+
+#include "stages/find_axes/blocks.h"
+
+enum {
+    GRID = 32, /* bins along a side of the cube onto which directions are projected: up to 3.6 degrees wide */
+    BINS = 3 * GRID * GRID,
+    STARTS = 24,     /* densest places that begin a triple */
+    ITERATIONS = 12, /* of the refinement */
+    STEPS = 2000,    /* of the histogram of angles */
+};
+static const double CAP = 10 * M_PI / 180;   /* of what looks along an axis */
+static const double REACH = 15 * M_PI / 180; /* beyond it, normals never count for an axis */
+static const double LEAST_SPREAD = 0.3 * M_PI / 180;
+static const double KNOWN = 1e-4;     /* of the largest eigenvalue, from which on a direction is told by the data */
+static const double BIWEIGHT = 4.685; /* standard deviations at which a residual counts for nothing (95 % efficiency) */
+
+struct bin {
+    struct vec3 sum, direction;
+    double count, mass; /* mass: points within CAP of the direction */
+};
+
+struct mat3 turned_by(struct mat3 a, struct vec3 w)
+{
+    const double angle = vec3_length(w), half = angle > 0 ? sin(angle / 2) / angle : 0.5;
+    const struct quat q = {cos(angle / 2), half * w.x, half * w.y, half * w.z};
+    const struct mat3 r = mat3_multiply(mat3_from_quat(q), a);
+    const struct vec3 x = vec3_normalize(mat3_row(r, 0));
+    const struct vec3 y = vec3_normalize(vec3_sub(mat3_row(r, 1), vec3_scale(x, vec3_dot(x, mat3_row(r, 1)))));
+    const struct vec3 z = vec3_cross(x, y);
+    return (struct mat3){{{x.x, x.y, x.z}, {y.x, y.y, y.z}, {z.x, z.y, z.z}}};
+}
+
+struct mat3 inverse_of_known(struct mat3 a, struct mat3 *unknown)
+{
+    struct mat3 vectors, inverse = {0};
+    double values[3];
+    *unknown = (struct mat3){0};
+    mat3_eigen_symmetric(a, values, &vectors);
+    for (int k = 0; k < 3; k++) {
+        const bool known = values[k] > KNOWN * values[2];
+        struct mat3 *to = known ? &inverse : unknown;
+        for (int i = 0; i < 3; i++)
+            for (int j = 0; j < 3; j++) to->m[i][j] += vectors.m[k][i] * vectors.m[k][j] / (known ? values[k] : 1);
+    }
+    return inverse;
+}
+
+struct vec3 sandwich(struct mat3 inverse, const struct vec3 *gradients, int count)
+{
+    struct mat3 middle = {0};
+    for (int b = 0; b < count; b++) {
+        const double g[3] = {gradients[b].x, gradients[b].y, gradients[b].z};
+        for (int i = 0; i < 9; i++) middle.m[i / 3][i % 3] += g[i / 3] * g[i % 3];
+    }
+    const struct mat3 c = mat3_multiply(mat3_multiply(inverse, middle), inverse);
+    return vec3_make(sqrt(fmax(c.m[0][0], 0)), sqrt(fmax(c.m[1][1], 0)), sqrt(fmax(c.m[2][2], 0)));
+}
+
+/* ------------------------------------------------------------------------------------------------------------ peaks */
+
+static int cell_of(double part) /* of -1 .. 1 */
+{
+    const int at = (int)((part + 1) / 2 * GRID);
+    return at < 0 ? 0 : at >= GRID ? GRID - 1 : at;
+}
+
+/* n or its opposite, whichever looks along the half axis of the cube's face; *at: its bin. */
+static struct vec3 fold(struct vec3 n, int *at)
+{
+    const double c[3] = {n.x, n.y, n.z};
+    int face = 0;
+    for (int k = 1; k < 3; k++)
+        if (fabs(c[k]) > fabs(c[face])) face = k;
+    *at = (face * GRID + cell_of(c[(face + 1) % 3] / c[face])) * GRID + cell_of(c[(face + 2) % 3] / c[face]);
+    return c[face] < 0 ? vec3_scale(n, -1) : n;
+}
+
+static int fill_bins(struct bin *bins, const struct point_cloud *cloud)
+{
+    int used = 0;
+    for (size_t i = 0; i < cloud->count; i++) {
+        int at;
+        const struct vec3 n = fold(cloud_normal(&cloud->points[i]), &at);
+        bins[at].sum = vec3_add(bins[at].sum, n);
+        bins[at].count++;
+    }
+    for (int i = 0; i < BINS; i++) {
+        if (!(bins[i].count > 0)) continue;
+        bins[used] = bins[i];
+        bins[used].direction = vec3_normalize(bins[used].sum);
+        used++;
+    }
+    for (int i = 0; i < used; i++)
+        for (int j = 0; j < used; j++)
+            if (fabs(vec3_dot(bins[i].direction, bins[j].direction)) > cos(CAP)) bins[i].mass += bins[j].count;
+    return used;
+}
+
+/* The densest bin at about right angles to the axes; -1: there is none. */
+static int densest(const struct bin *bins, int count, const struct vec3 *axes, int given)
+{
+    int best = -1;
+    for (int i = 0; i < count; i++) {
+        bool good = best < 0 || bins[i].mass > bins[best].mass;
+        for (int k = 0; k < given; k++) good = good && fabs(vec3_dot(bins[i].direction, axes[k])) < sin(CAP);
+        if (good) best = i;
+    }
+    return best;
+}
+
+/* The middle of the normals around a direction. */
+static struct vec3 centre(const struct bin *bins, int count, struct vec3 d)
+{
+    for (int round = 0; round < 3; round++) {
+        struct vec3 sum = {0};
+        for (int i = 0; i < count; i++) {
+            const double along = vec3_dot(bins[i].direction, d);
+            if (fabs(along) > cos(CAP)) sum = vec3_add(sum, vec3_scale(bins[i].sum, along < 0 ? -1 : 1));
+        }
+        d = vec3_normalize(sum);
+    }
+    return d;
+}
+
+static bool begins(const struct bin *bins, int count, int at, const struct vec3 *starts, int known)
+{
+    for (int k = 0; k < known; k++)
+        if (fabs(vec3_dot(bins[at].direction, starts[k])) > cos(CAP)) return false;
+    return at < count;
+}
+
+/* axes of the triple that most points look along, not yet orthogonal; returns how many there are, 1 to 3. */
+static int best_triple(struct vec3 axes[3], const struct bin *bins, int count)
+{
+    struct vec3 starts[STARTS];
+    double most = -1;
+    int found = 0;
+    for (int s = 0; s < STARTS; s++) {
+        int first = -1;
+        for (int i = 0; i < count; i++)
+            if ((first < 0 || bins[i].mass > bins[first].mass) && begins(bins, count, i, starts, s)) first = i;
+        if (first < 0) break;
+        starts[s] = bins[first].direction;
+        struct vec3 triple[3] = {centre(bins, count, starts[s])};
+        double mass = bins[first].mass;
+        int known = 1;
+        for (int at; known < 3 && (at = densest(bins, count, triple, known)) >= 0; known++) {
+            triple[known] = centre(bins, count, bins[at].direction);
+            mass += bins[at].mass;
+        }
+        if (!(mass > most)) continue;
+        most = mass;
+        found = known;
+        for (int k = 0; k < 3; k++) axes[k] = triple[k];
+    }
+    return found;
+}
+
+/* ------------------------------------------------------------------------------------------------------- refinement */
+
+/* The axis that n is nearest to, n in the frame of the axes, and the angle to it. */
+static int nearest_axis(struct vec3 n, double *angle)
+{
+    const double c[3] = {fabs(n.x), fabs(n.y), fabs(n.z)};
+    const int k = c[0] >= c[1] && c[0] >= c[2] ? 0 : c[1] >= c[2] ? 1 : 2;
+    *angle = atan2(hypot(c[(k + 1) % 3], c[(k + 2) % 3]), c[k]);
+    return k;
+}
+
+/* Standard deviation of angles to the axes in each of the two directions across, by their median. */
+static double spread_of_angles(const struct point_cloud *cloud, struct mat3 axes)
+{
+    size_t histogram[STEPS] = {0}, count = 0, seen = 0;
+    for (size_t i = 0; i < cloud->count; i++) {
+        double angle;
+        nearest_axis(mat3_apply(axes, cloud_normal(&cloud->points[i])), &angle);
+        if (!(angle < REACH)) continue;
+        histogram[(int)(angle / REACH * STEPS)]++;
+        count++;
+    }
+    int at = 0;
+    while (at < STEPS - 1 && 2 * (seen + histogram[at]) < count) seen += histogram[at++];
+    return REACH * (at + 0.5) / STEPS / sqrt(2 * log(2)); /* of a Rayleigh distribution */
+}
+
+/* The axis of a normal in the frame of the axes, and the turn that would bring it to the normal, weighted; its weight. */
+static double pull(struct vec3 n, double cut, int *axis, struct vec3 *turn)
+{
+    const double c[3] = {n.x, n.y, n.z};
+    double angle, t[3] = {0};
+    const int k = *axis = nearest_axis(n, &angle), a = (k + 1) % 3, b = (k + 2) % 3;
+    if (!(angle < cut)) return 0;
+    const double w = (1 - angle * angle / (cut * cut)) * (1 - angle * angle / (cut * cut));
+    t[a] = w * c[b] / c[k];
+    t[b] = -w * c[a] / c[k];
+    *turn = vec3_make(t[0], t[1], t[2]);
+    return w;
+}
+
+static double cut_of(const struct point_cloud *cloud, struct mat3 axes)
+{
+    return fmin(REACH, BIWEIGHT * fmax(spread_of_angles(cloud, axes), LEAST_SPREAD));
+}
+
+/* Of the turn: a normal tells nothing of the turn about its own axis. */
+static struct mat3 information_of(const double weights[3])
+{
+    struct mat3 m = {0};
+    for (int k = 0; k < 3; k++) m.m[k][k] = weights[(k + 1) % 3] + weights[(k + 2) % 3];
+    return m;
+}
+
+static void refine(struct mat3 *axes, const struct point_cloud *cloud)
+{
+    for (int round = 0; round < ITERATIONS; round++) {
+        const double cut = cut_of(cloud, *axes);
+        double weights[3] = {0};
+        struct vec3 sum = {0}, turn;
+        struct mat3 unknown;
+        for (size_t i = 0; i < cloud->count; i++) {
+            int k;
+            const double w = pull(mat3_apply(*axes, cloud_normal(&cloud->points[i])), cut, &k, &turn);
+            if (!(w > 0)) continue;
+            weights[k] += w;
+            sum = vec3_add(sum, turn);
+        }
+        *axes = turned_by(*axes, mat3_apply(inverse_of_known(information_of(weights), &unknown), sum));
+    }
+}
+
+enum status direction_errors(struct vec3 *errors, const struct mat3 *axes, struct vec3 origin,
+                             const struct point_cloud *cloud, struct err *err)
+{
+    struct vec3 *sums = calloc(BLOCKS, sizeof *sums), turn;
+    struct mat3 unknown;
+    double size = 0, weights[3] = {0};
+    const double cut = cut_of(cloud, *axes);
+    enum status st = sums ? cloud_size(&size, cloud, origin, err) : err_nomem(err, "blocks", BLOCKS * sizeof *sums);
+    for (size_t i = 0; !st && i < cloud->count; i++) {
+        int k;
+        const struct cloud_point *p = &cloud->points[i];
+        const double w = pull(mat3_apply(*axes, cloud_normal(p)), cut, &k, &turn);
+        if (!(w > 0)) continue;
+        weights[k] += w;
+        struct vec3 *sum = &sums[block_of(vec3_sub(p->position, origin), size)];
+        *sum = vec3_add(*sum, turn);
+    }
+    if (!st) *errors = sandwich(inverse_of_known(information_of(weights), &unknown), sums, BLOCKS);
+    free(sums);
+    return st;
+}
+
+enum status find_directions(struct directions *d, const struct point_cloud *cloud, double least_part, struct err *err)
+{
+    struct bin *bins = calloc(BINS, sizeof *bins);
+    struct vec3 axes[3] = {{0}};
+    *d = (struct directions){0};
+    if (!bins) return err_nomem(err, "bins of directions", BINS * sizeof *bins);
+    const int known = best_triple(axes, bins, fill_bins(bins, cloud));
+    free(bins);
+    if (!known) return err_set(err, ST_DATA, "there are no points, so there are no surfaces to find axes from.");
+    if (known > 1) {
+        const struct vec3 x = axes[0];
+        const struct vec3 y = vec3_normalize(vec3_sub(axes[1], vec3_scale(x, vec3_dot(x, axes[1]))));
+        const struct vec3 z = vec3_cross(x, y);
+        d->axes = (struct mat3){{{x.x, x.y, x.z}, {y.x, y.y, y.z}, {z.x, z.y, z.z}}};
+        refine(&d->axes, cloud);
+        for (size_t i = 0; i < cloud->count; i++) {
+            double angle;
+            const int k = nearest_axis(mat3_apply(d->axes, cloud_normal(&cloud->points[i])), &angle);
+            d->part[k] += angle < CAP;
+        }
+        for (int k = 0; k < 3; k++) d->part[k] /= (double)cloud->count;
+    }
+    int good = 0;
+    for (int k = 0; k < 3; k++) good += d->part[k] >= least_part;
+    if (good < 2)
+        return err_set(err, ST_DATA,
+                       "no two directions at right angles stand out among the normals of %zu points: along the best "
+                       "three look %.1f, %.1f and %.1f %% of them, and two of them must have %.1f %% or more. A room "
+                       "needs flat walls and a floor or ceiling in its points; if they are there but small, lower "
+                       "[find_axes] least_part.",
+                       cloud->count, 100 * d->part[0], 100 * d->part[1], 100 * d->part[2], 100 * least_part);
+    return ST_OK;
+}

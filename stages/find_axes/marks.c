@@ -1,0 +1,316 @@
+/* marks.c - see marks.h. */
+#include "stages/find_axes/marks.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/textfile.h"
+
+enum { MOST_MARKS = 10000 };
+static const double LEAST_ANGLE = 1 * M_PI / 180; /* between rays that are to meet */
+static const double MOST_MISS = 0.02; /* of the photo's longer side: where a point is seen, and where it was marked */
+static const double CONE = 0.003;     /* surfaces are sought within this part of their distance from the ray */
+static const double THIN = 0.02;      /* points this much farther than the first belong to the same surface */
+
+static const char *const kinds[] = {[MARK_POINT] = "mark",
+                                    [MARK_LENGTH] = "length",
+                                    [MARK_CORNER] = "corner",
+                                    [MARK_EDGE] = "edge",
+                                    [MARK_THICKNESS] = "thickness"};
+static const char *const wanted_kinds[] = {
+    [MARKS_SCALE] = "\"mark\" or \"length\"", [MARKS_FIX] = "\"corner\", \"edge\", \"mark\" or \"thickness\""};
+
+void mark_list_release(struct mark_list *list)
+{
+    if (!list) return;
+    for (int i = 0; i < list->count; i++) {
+        free(list->marks[i].name);
+        free(list->marks[i].view);
+    }
+    free(list->marks);
+    free(list->path);
+    *list = (struct mark_list){0};
+}
+
+/* ---------------------------------------------------------------------------------------------------------- reading */
+
+static enum status read_kind(struct textfile *t, struct mark *m, enum mark_file file, struct err *err)
+{
+    char *word;
+    if (textfile_word(t, wanted_kinds[file], &word, err)) return err->status;
+    for (int k = MARK_POINT; k <= MARK_THICKNESS; k++) {
+        const bool here = k == MARK_POINT || (k == MARK_LENGTH) == (file == MARKS_SCALE);
+        if (!here || strcmp(word, kinds[k])) continue;
+        m->kind = (enum mark_kind)k;
+        return ST_OK;
+    }
+    return textfile_error(t, err, word, "%s", wanted_kinds[file]);
+}
+
+static enum status read_on(struct textfile *t, struct mark *m, struct err *err)
+{
+    static const char wanted[] = "\"floor\", \"surface\" or the end of the line";
+    char *word;
+    if (m->kind != MARK_POINT || !textfile_more(t)) return ST_OK;
+    if (textfile_word(t, wanted, &word, err)) return err->status;
+    m->on = !strcmp(word, "floor") ? MARK_ON_FLOOR : !strcmp(word, "surface") ? MARK_ON_SURFACE : MARK_IN_VIEWS;
+    return m->on == MARK_IN_VIEWS ? textfile_error(t, err, word, wanted) : ST_OK;
+}
+
+static enum status read_mark(struct textfile *t, struct mark *m, enum mark_file file, struct err *err)
+{
+    char *name, *view;
+    m->line = t->line;
+    if (read_kind(t, m, file, err)) return err->status;
+    const bool pair = m->kind == MARK_LENGTH || m->kind == MARK_THICKNESS;
+    if (textfile_word(t, "a name", &name, err) ||
+        textfile_word(t, pair ? "a second name" : "a photo or view", &view, err))
+        return err->status;
+    m->name = strdup(name);
+    m->view = strdup(view);
+    if (!m->name || !m->view) return err_nomem(err, "a name", strlen(name) + strlen(view));
+    if (!pair && (textfile_double(t, "x", &m->x, err) || textfile_double(t, "y", &m->y, err) || read_on(t, m, err)))
+        return err->status;
+    if (m->kind == MARK_LENGTH && textfile_double(t, "metres", &m->metres, err)) return err->status;
+    if (m->kind == MARK_LENGTH && !(m->metres > 0)) {
+        char text[32];
+        snprintf(text, sizeof text, "%.9g", m->metres);
+        return textfile_error(t, err, text, "a length above 0, in metres");
+    }
+    return textfile_end(t, err);
+}
+
+static int count_of(const struct mark_list *list, enum mark_kind kind, const char *name, const char *view)
+{
+    int count = 0;
+    for (int i = 0; i < list->count; i++) {
+        const struct mark *m = &list->marks[i];
+        count += m->kind == kind && !strcmp(m->name, name) && (!view || !strcmp(m->view, view));
+    }
+    return count;
+}
+
+static enum status check_pair(const struct mark_list *list, const struct mark *m, struct err *err)
+{
+    const char *names[2] = {m->name, m->view};
+    for (int k = 0; k < 2; k++)
+        if (!count_of(list, MARK_POINT, names[k], NULL))
+            return err_set(err, ST_DATA,
+                           "%s:%d: %s is named, but nothing of that name is marked; add a line \"mark %s VIEW X Y\".",
+                           list->path, m->line, names[k], names[k]);
+    if (!strcmp(names[0], names[1]))
+        return err_set(err, ST_DATA, "%s:%d: found %s twice, wanted two different marks.", list->path, m->line,
+                       names[0]);
+    return ST_OK;
+}
+
+/* What a line says together with the others. */
+static enum status check_mark(const struct mark_list *list, const struct mark *m, struct err *err)
+{
+    if (m->kind == MARK_LENGTH || m->kind == MARK_THICKNESS) return check_pair(list, m, err);
+    if (m->kind == MARK_EDGE && !count_of(list, MARK_CORNER, m->name, m->view))
+        return err_set(err, ST_DATA,
+                       "%s:%d: the corner %s of this edge is not marked in %s; add a line \"corner %s %s X Y\".",
+                       list->path, m->line, m->name, m->view, m->name, m->view);
+    if (m->kind != MARK_EDGE && count_of(list, m->kind, m->name, m->view) > 1)
+        return err_set(err, ST_DATA, "%s:%d: %s is marked twice in %s; leave one of the lines out.", list->path,
+                       m->line, m->name, m->view);
+    const int views = count_of(list, m->kind, m->name, NULL);
+    if (m->kind == MARK_POINT && m->on != MARK_IN_VIEWS && views > 1)
+        return err_set(err, ST_DATA,
+                       "%s:%d: %s is marked in %d views; a point on the floor or on a surface is marked in one, and "
+                       "one in several views has nothing behind X Y.",
+                       list->path, m->line, m->name, views);
+    if (m->kind == MARK_POINT && m->on == MARK_IN_VIEWS && views < 2)
+        return err_set(
+            err, ST_DATA,
+            "%s:%d: %s is marked in one view alone, which does not say how far it is; mark it in another one "
+            "too, or add \"floor\" or \"surface\" to the line if it lies there.",
+            list->path, m->line, m->name);
+    if (m->kind == MARK_CORNER && views < 2 && !count_of(list, MARK_EDGE, m->name, NULL))
+        return err_set(err, ST_DATA,
+                       "%s:%d: the corner %s corrects nothing yet; mark it in another view too, for the height of the "
+                       "floor, or points on its edges, for the axes.",
+                       list->path, m->line, m->name);
+    return ST_OK;
+}
+
+enum status mark_list_read(struct mark_list *list, const char *path, enum mark_file file, struct err *err)
+{
+    struct textfile t = {0};
+    *list = (struct mark_list){.path = strdup(path)};
+    enum status st = list->path ? textfile_open(&t, path, err) : err_nomem(err, "a file name", strlen(path));
+    while (!st && textfile_next(&t)) {
+        const size_t bytes = ((size_t)list->count + 1) * sizeof *list->marks;
+        struct mark *more = list->count < MOST_MARKS ? realloc(list->marks, bytes) : NULL;
+        if (!more) {
+            st = list->count < MOST_MARKS
+                     ? err_nomem(err, "marks", bytes)
+                     : err_set(err, ST_DATA, "%s:%d: found more than %d lines.", path, t.line, MOST_MARKS);
+            break;
+        }
+        list->marks = more;
+        struct mark *m = &list->marks[list->count++];
+        *m = (struct mark){0};
+        st = read_mark(&t, m, file, err);
+    }
+    textfile_release(&t);
+    int lengths = 0, thicknesses = 0;
+    for (int i = 0; !st && i < list->count; i++) {
+        const struct mark *m = &list->marks[i];
+        st = check_mark(list, m, err);
+        lengths += m->kind == MARK_LENGTH;
+        thicknesses += m->kind == MARK_THICKNESS;
+        if (!st && thicknesses > 1)
+            st = err_set(err, ST_DATA, "%s:%d: found a second thickness; all walls share one.", path, m->line);
+    }
+    if (!st && file == MARKS_SCALE && !lengths)
+        st = err_set(err, ST_DATA, "%s: no length is given; add a line \"length NAME NAME METRES\".", path);
+    if (st) mark_list_release(list);
+    return st;
+}
+
+/* ---------------------------------------------------------------------------------------------------------- placing */
+
+enum status mark_ray(const struct mark *m, const struct mark_list *list, const struct mark_scene *scene,
+                     struct photo_camera *camera, struct vec3 *ray, struct err *err)
+{
+    if (photo_camera_find(camera, m->view, scene->set, scene->lenses, list->path, m->line, err)) return err->status;
+    if (photo_camera_ray(camera, m->x, m->y, ray)) return ST_OK;
+    return err_set(
+        err, ST_DATA,
+        "%s:%d: the pixel %.9g %.9g lies outside of what %s shows: the photo has %d x %d pixels; give pixels "
+        "of the photo as it is stored.",
+        list->path, m->line, m->x, m->y, m->view, camera->lens.width, camera->lens.height);
+}
+
+static enum status on_floor(struct vec3 *world, const struct mark *m, const struct mark_list *list,
+                            const struct mark_scene *scene, struct vec3 center, struct vec3 ray, struct err *err)
+{
+    const double above = vec3_dot(center, scene->up) - scene->floor, down = -vec3_dot(ray, scene->up);
+    if (!(down > sin(LEAST_ANGLE)) || !(above > 0))
+        return err_set(err, ST_DATA,
+                       "%s:%d: the floor is not seen at the pixel %.9g %.9g of %s: it lies at or above the horizon.",
+                       list->path, m->line, m->x, m->y, m->view);
+    *world = vec3_add(center, vec3_scale(ray, above / down));
+    return ST_OK;
+}
+
+/* The mean of the points about the ray that are not much farther than the first of them. */
+static enum status on_surface(struct vec3 *world, const struct mark *m, const struct mark_list *list,
+                              const struct point_cloud *cloud, struct vec3 center, struct vec3 ray, struct err *err)
+{
+    double first = HUGE_VAL, count = 0, sum = 0;
+    for (int pass = 0; pass < 2; pass++)
+        for (size_t i = 0; i < cloud->count; i++) {
+            const struct vec3 p = vec3_sub(cloud->points[i].position, center);
+            const double along = vec3_dot(p, ray);
+            if (!(along > 0) || vec3_length(vec3_cross(p, ray)) > fmax(CONE * along, 1.5 * cloud->cell)) continue;
+            if (!pass) {
+                first = fmin(first, along);
+            } else if (along <= first * (1 + THIN)) {
+                sum += along;
+                count++;
+            }
+        }
+    if (!(count > 0))
+        return err_set(err, ST_DATA,
+                       "%s:%d: no surface is known at the pixel %.9g %.9g of %s; mark the point in a second view in "
+                       "place of \"surface\".",
+                       list->path, m->line, m->x, m->y, m->view);
+    *world = vec3_add(center, vec3_scale(ray, sum / count));
+    return ST_OK;
+}
+
+/* Solves a x = b, a symmetric. */
+static struct vec3 solve(const double a[6], struct vec3 b) /* a: xx xy xz yy yz zz */
+{
+    const struct vec3 r0 = {a[0], a[1], a[2]}, r1 = {a[1], a[3], a[4]}, r2 = {a[2], a[4], a[5]};
+    const struct vec3 c0 = vec3_cross(r1, r2), c1 = vec3_cross(r2, r0), c2 = vec3_cross(r0, r1);
+    const double det = vec3_dot(r0, c0);
+    return vec3_scale(vec3_add(vec3_add(vec3_scale(c0, b.x), vec3_scale(c1, b.y)), vec3_scale(c2, b.z)), 1 / det);
+}
+
+/* The point nearest to all rays, by squared distance; and it must be seen near where it was marked. */
+static enum status where_rays_meet(struct vec3 *world, enum mark_kind kind, const char *name,
+                                   const struct mark_list *list, const struct mark_scene *scene, struct err *err)
+{
+    double a[6] = {0}, angle = 0;
+    struct vec3 b = {0}, first = {0};
+    const struct mark *one = NULL;
+    struct photo_camera camera;
+    for (int i = 0; i < list->count; i++) {
+        const struct mark *m = &list->marks[i];
+        struct vec3 r;
+        if (m->kind != kind || strcmp(m->name, name)) continue;
+        if (mark_ray(m, list, scene, &camera, &r, err)) return err->status;
+        if (!one) first = r;
+        one = m;
+        angle = fmax(angle, atan2(vec3_length(vec3_cross(r, first)), vec3_dot(r, first)));
+        const double across[6] = {1 - r.x * r.x, -r.x * r.y, -r.x * r.z, 1 - r.y * r.y, -r.y * r.z, 1 - r.z * r.z};
+        for (int k = 0; k < 6; k++) a[k] += across[k];
+        b = vec3_add(b, vec3_sub(camera.center, vec3_scale(r, vec3_dot(r, camera.center))));
+    }
+    if (!(angle > LEAST_ANGLE))
+        return err_set(
+            err, ST_DATA,
+            "%s:%d: %s is seen from nearly the same side in all its views (%.2g degrees apart), which does not "
+            "say how far it is; mark it in a view from elsewhere.",
+            list->path, one->line, name, angle * 180 / M_PI);
+    *world = solve(a, b);
+    for (int i = 0; i < list->count; i++) {
+        const struct mark *m = &list->marks[i];
+        struct vec3 r;
+        double u, v;
+        if (m->kind != kind || strcmp(m->name, name)) continue;
+        if (mark_ray(m, list, scene, &camera, &r, err)) return err->status;
+        const double side = fmax(camera.lens.width, camera.lens.height);
+        const bool seen =
+            vec3_dot(vec3_sub(*world, camera.center), r) > 0 && photo_camera_project(&camera, *world, &u, &v);
+        const double miss = seen ? hypot(u - m->x, v - m->y) : HUGE_VAL;
+        if (miss <= MOST_MISS * side) continue;
+        if (!seen)
+            return err_set(err, ST_DATA,
+                           "%s:%d: the rays of %s part before %s instead of meeting; its marks are not the same point.",
+                           list->path, m->line, name, m->view);
+        return err_set(err, ST_DATA,
+                       "%s:%d: the marks of %s are not the same point: where their rays are nearest to each other, %s "
+                       "sees it %.1f px from its mark.",
+                       list->path, m->line, name, m->view, miss);
+    }
+    return ST_OK;
+}
+
+enum status mark_locate(struct vec3 *world, enum mark_kind kind, const char *name, const struct mark_list *list,
+                        const struct mark_scene *scene, struct err *err)
+{
+    const struct mark *m = list->marks;
+    struct photo_camera camera;
+    struct vec3 ray;
+    while (m->kind != kind || strcmp(m->name, name)) m++; /* reading the list made sure of it */
+    if (m->on == MARK_IN_VIEWS) return where_rays_meet(world, kind, name, list, scene, err);
+    if (mark_ray(m, list, scene, &camera, &ray, err)) return err->status;
+    return m->on == MARK_ON_FLOOR ? on_floor(world, m, list, scene, camera.center, ray, err)
+                                  : on_surface(world, m, list, scene->cloud, camera.center, ray, err);
+}
+
+double mark_error(struct mark_list *list, double click, bool (*measure)(void *ctx, double *value), void *ctx)
+{
+    double value, moved, sum = 0;
+    if (!measure(ctx, &value)) return 0;
+    for (int i = 0; i < list->count; i++) {
+        double *const c[2] = {&list->marks[i].x, &list->marks[i].y};
+        for (int k = 0; k < 2; k++) {
+            const double before = *c[k];
+            *c[k] = before + click;
+            bool known = measure(ctx, &moved);
+            if (!known) { /* off the photo on that side */
+                *c[k] = before - click;
+                known = measure(ctx, &moved);
+            }
+            *c[k] = before;
+            if (known) sum += (moved - value) * (moved - value);
+        }
+    }
+    return sqrt(sum);
+}

@@ -1,0 +1,210 @@
+/* pictures.c - see pictures.h. */
+#include "stages/find_axes/pictures.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static const unsigned char X[3] = {235, 40, 40}, Y[3] = {40, 200, 60}, Z[3] = {60, 110, 255};
+static const unsigned char FLOOR[3] = {255, 215, 0}, CEILING[3] = {0, 225, 235}, WALL[3] = {235, 235, 235};
+static const double NEAR = 1e-3; /* of a line's length: what is nearer to the camera is cut off */
+static const double ARROW = 0.2; /* of the room's width */
+
+struct canvas {
+    unsigned char *pixels;
+    const struct view *view;
+    const struct model_axes *axes;
+    double half; /* of a line's width, px */
+};
+
+/* ---------------------------------------------------------------------------------------------------------- choosing */
+
+/* How far a view looks from its photo's axis: cosine. */
+static double straight(const struct lens *lens) { return mat3_from_quat(lens->view_from_photo).m[2][2]; }
+
+static int view_of_photo(const struct room_inputs *in, const char *photo)
+{
+    int best = -1;
+    double most = -2;
+    for (int i = 0; i < in->lenses->count; i++) {
+        const struct lens *lens = &in->lenses->lenses[i];
+        const int at = camera_set_find(in->set, lens->view);
+        if (strcmp(lens->photo, photo) || at < 0 || !(straight(lens) > most)) continue;
+        best = at;
+        most = straight(lens);
+    }
+    return best;
+}
+
+enum status choose_pictures(bool *chosen, int count, const struct room_inputs *in, struct err *err)
+{
+    int *photos = malloc(((size_t)in->lenses->count + 1) * sizeof *photos), known = 0; /* a lens each */
+    if (!photos) return err_nomem(err, "photos", (size_t)in->lenses->count * sizeof *photos);
+    for (int i = 0; i < in->lenses->count; i++) { /* a photo's views follow each other */
+        const char *photo = in->lenses->lenses[i].photo;
+        if (view_of_photo(in, photo) < 0 || (known && !strcmp(in->lenses->lenses[photos[known - 1]].photo, photo)))
+            continue;
+        photos[known++] = i;
+    }
+    if (count > known) count = known;
+    for (int i = 0; i < count; i++)
+        chosen[view_of_photo(in, in->lenses->lenses[photos[(int64_t)i * known / count]].photo)] = true;
+    free(photos);
+    for (int i = 0; in->fix && i < in->fix->count; i++) {
+        const struct mark *m = &in->fix->marks[i];
+        struct photo_camera camera;
+        if (m->kind != MARK_CORNER) continue;
+        if (photo_camera_find(&camera, m->view, in->set, in->lenses, in->fix->path, m->line, err)) return err->status;
+        const int lens = lens_list_find(in->lenses, in->set->views[camera.view_idx].name);
+        chosen[view_of_photo(in, in->lenses->lenses[lens].photo)] = true;
+    }
+    return ST_OK;
+}
+
+/* ----------------------------------------------------------------------------------------------------------- drawing */
+
+static void blend(unsigned char *to, const unsigned char color[3], double part)
+{
+    for (int c = 0; c < 3; c++) to[c] = (unsigned char)lround(to[c] + part * (color[c] - to[c]));
+}
+
+/* A line with round ends and soft sides. */
+static void stroke(struct canvas *k, double x0, double y0, double x1, double y1, const unsigned char color[3])
+{
+    const int w = k->view->width, h = k->view->height;
+    const double dx = x1 - x0, dy = y1 - y0, square = dx * dx + dy * dy, reach = k->half + 1;
+    const int top = (int)fmax(fmin(y0, y1) - reach, 0), bottom = (int)fmin(fmax(y0, y1) + reach, h - 1);
+    for (int y = top; y <= bottom; y++) {
+        /* where the line passes this row's neighbourhood */
+        double left = fmin(x0, x1), right = fmax(x0, x1);
+        if (fabs(dy) > 0) {
+            const double a = x0 + (y + 0.5 - reach - y0) / dy * dx, b = x0 + (y + 0.5 + reach - y0) / dy * dx;
+            left = fmax(left, fmin(a, b));
+            right = fmin(right, fmax(a, b));
+        }
+        for (int x = (int)fmax(left - reach, 0); x <= (int)fmin(right + reach, w - 1); x++) {
+            const double px = x + 0.5 - x0, py = y + 0.5 - y0;
+            const double t = square > 0 ? fmin(fmax((px * dx + py * dy) / square, 0), 1) : 0;
+            const double part = k->half + 0.5 - hypot(px - t * dx, py - t * dy);
+            if (part > 0) blend(k->pixels + 3 * ((size_t)y * (size_t)w + (size_t)x), color, fmin(part, 1));
+        }
+    }
+}
+
+/* Cuts the segment to the rectangle (Liang and Barsky); false: nothing is left. */
+static bool clip(double *x0, double *y0, double *x1, double *y1, double w, double h)
+{
+    const double dx = *x1 - *x0, dy = *y1 - *y0;
+    const double p[4] = {-dx, dx, -dy, dy}, q[4] = {*x0, w - *x0, *y0, h - *y0};
+    double from = 0, to = 1;
+    for (int i = 0; i < 4; i++) {
+        if (p[i] < 0)
+            from = fmax(from, q[i] / p[i]);
+        else if (p[i] > 0)
+            to = fmin(to, q[i] / p[i]);
+        else if (q[i] < 0)
+            return false;
+    }
+    if (!(from < to)) return false;
+    *x1 = *x0 + to * dx;
+    *y1 = *y0 + to * dy;
+    *x0 += from * dx;
+    *y0 += from * dy;
+    return true;
+}
+
+/* Between two points of the model. */
+static void line(struct canvas *k, struct vec3 a, struct vec3 b, const unsigned char color[3])
+{
+    const struct view *v = k->view;
+    struct vec3 p = vec3_add(mat3_apply(v->cam_from_world, world_from_model_point(k->axes, a)), v->translation);
+    struct vec3 q = vec3_add(mat3_apply(v->cam_from_world, world_from_model_point(k->axes, b)), v->translation);
+    const double near = NEAR * vec3_length(vec3_sub(q, p));
+    if (!(p.z > near) && !(q.z > near)) return;
+    if (!(p.z > near)) p = vec3_add(q, vec3_scale(vec3_sub(p, q), (q.z - near) / (q.z - p.z)));
+    if (!(q.z > near)) q = vec3_add(p, vec3_scale(vec3_sub(q, p), (p.z - near) / (p.z - q.z)));
+    double x0 = v->fx * p.x / p.z + v->cx, y0 = v->fy * p.y / p.z + v->cy;
+    double x1 = v->fx * q.x / q.z + v->cx, y1 = v->fy * q.y / q.z + v->cy;
+    if (p.z > 0 && q.z > 0 && clip(&x0, &y0, &x1, &y1, v->width, v->height)) stroke(k, x0, y0, x1, y1, color);
+}
+
+static void outline(struct canvas *k, const struct room *room, double z, const unsigned char color[3])
+{
+    for (int i = 0; i < 4; i++) {
+        static const int along[5][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0, 0}};
+        struct vec3 ends[2];
+        for (int e = 0; e < 2; e++)
+            ends[e] = vec3_make(along[i + e][0] ? room->most[0] : room->least[0],
+                                along[i + e][1] ? room->most[1] : room->least[1], z);
+        line(k, ends[0], ends[1], color);
+    }
+}
+
+static void arrows(struct canvas *k, struct vec3 at, double length)
+{
+    line(k, at, vec3_add(at, vec3_make(0, 0, length)), Z);
+    line(k, at, vec3_add(at, vec3_make(0, length, 0)), Y);
+    line(k, at, vec3_add(at, vec3_make(length, 0, 0)), X);
+}
+
+/* The floor's point that the lower middle of the picture shows, within the outline. */
+static struct vec3 floor_ahead(const struct view *view, const struct room *room)
+{
+    const struct vec3 ray = {0, (0.85 * view->height - view->cy) / view->fy, 1};
+    const struct vec3 c = model_from_world_point(&room->axes, view->center);
+    const struct vec3 d =
+        model_from_world_direction(&room->axes, mat3_apply(mat3_transpose(view->cam_from_world), ray));
+    const double t = d.z < 0 && c.z > 0 ? -c.z / d.z : 0;
+    return vec3_make(fmin(fmax(c.x + t * d.x, room->least[0]), room->most[0]),
+                     fmin(fmax(c.y + t * d.y, room->least[1]), room->most[1]), 0);
+}
+
+void draw_room(unsigned char *pixels, const struct view *view, const struct room *room, const struct vec3 *corners,
+               int corner_count)
+{
+    struct canvas k = {pixels, view, &room->axes, fmax(0.75, hypot(view->width, view->height) / 900)};
+    const double length = ARROW * fmin(room->most[0] - room->least[0], room->most[1] - room->least[1]);
+    if (room->axes.ceiling > 0) {
+        for (int i = 0; i < 4; i++) {
+            const double x = i % 2 ? room->most[0] : room->least[0], y = i / 2 ? room->most[1] : room->least[1];
+            line(&k, vec3_make(x, y, 0), vec3_make(x, y, room->axes.ceiling), WALL);
+        }
+        outline(&k, room, room->axes.ceiling, CEILING);
+    }
+    outline(&k, room, 0, FLOOR);
+    k.half *= 1.6;
+    for (int i = 0; i < corner_count; i++) {
+        struct vec3 at = model_from_world_point(&room->axes, corners[i]);
+        at.z = 0;
+        arrows(&k, at, length);
+    }
+    if (!corner_count) arrows(&k, floor_ahead(view, room), length);
+}
+
+static int compare_floats(const void *a, const void *b)
+{
+    const float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
+}
+
+enum status picture_to_look_at(unsigned char *pixels, const struct image *im, struct err *err)
+{
+    const size_t count = (size_t)im->width * (size_t)im->height, channels = (size_t)im->channels;
+    struct image exposed = {0};
+    float *bright = malloc(count * sizeof *bright);
+    size_t known = 0;
+    if (!bright) return err_nomem(err, "a picture", count * sizeof *bright);
+    for (size_t i = 0; i < count; i++) {
+        const float *p = im->data + i * channels;
+        if (p[3] > 0) bright[known++] = fmaxf(p[0], fmaxf(p[1], p[2]));
+    }
+    qsort(bright, known, sizeof *bright, compare_floats);
+    const float white = known ? bright[known - 1 - known / 20] : 0;
+    free(bright);
+    if (image_init(&exposed, im->width, im->height, 3, err)) return err->status;
+    for (size_t i = 0; i < count; i++)
+        for (size_t c = 0; c < 3; c++)
+            exposed.data[3 * i + c] = white > 0 ? im->data[i * channels + c] / white : im->data[i * channels + c];
+    image_to_srgb8(&exposed, pixels);
+    image_release(&exposed);
+    return ST_OK;
+}

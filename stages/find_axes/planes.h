@@ -1,0 +1,32 @@
+/* planes.h - walls, floors and ceilings as the planes across three axes on which most points lie; axes that follow
+ * them.
+ *
+ * Where a plane is wide, where its points are tells its direction far better than their normals do. */
+#ifndef REMODEL_PLANES_H
+#define REMODEL_PLANES_H
+
+#include <stdbool.h>
+
+#include "common/point_cloud.h"
+#include "stages/find_axes/axes_params.h"
+
+struct room_plane {
+    int axis, side; /* the plane's normal is axis (0 x, 1 y, 2 z) times side (1 or -1) */
+    double offset;  /* of the plane along the axis, from the origin of room_planes */
+    double spread;  /* standard deviation of its points across it, robust */
+    size_t count;   /* of its points */
+};
+
+struct room_planes {
+    struct room_plane *planes; /* owned; by axis, side and offset */
+    int count;
+};
+
+/* axes: rows in the world; if turn, they are refined, and *tilt_error, standard errors of the turns about them, radians,
+ * becomes what the planes leave of it. origin: offsets are measured from there. No plane at all is no error. */
+enum status find_planes(struct room_planes *planes, struct mat3 *axes, bool turn, struct vec3 *tilt_error,
+                        struct vec3 origin, const struct point_cloud *cloud, const struct axes_params *params,
+                        struct err *err);
+void room_planes_release(struct room_planes *planes);
+
+#endif

@@ -1,0 +1,270 @@
+/* room.c - see room.h. */
+#include "stages/find_axes/room.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/central_views.h"
+#include "stages/find_axes/correct.h"
+#include "stages/find_axes/directions.h"
+
+static const double DEGREE = M_PI / 180;
+
+static enum status central_view(int *central, const struct camera_set *set, struct err *err)
+{
+    int *order = malloc(((size_t)set->view_count + 1) * sizeof *order);
+    if (!order) return err_nomem(err, "an order of views", (size_t)set->view_count * sizeof *order);
+    const enum status st = central_views(order, set, err);
+    if (!st) *central = order[0];
+    free(order);
+    return st;
+}
+
+static struct vec3 mean_up(const struct room_inputs *in)
+{
+    struct vec3 sum = {0};
+    for (int i = 0; i < in->set->view_count; i++)
+        sum = vec3_add(sum, mat3_apply(mat3_transpose(in->set->views[i].cam_from_world), in->ups[i]));
+    return vec3_normalize(sum);
+}
+
+/* The rows in the model's order and signs: z the one nearest to up, x the one nearest to right. */
+static struct mat3 model_order(struct mat3 rows, double part[3], struct vec3 up, struct vec3 right)
+{
+    struct vec3 axis[3] = {mat3_row(rows, 0), mat3_row(rows, 1), mat3_row(rows, 2)};
+    const double before[3] = {part[0], part[1], part[2]};
+    int z = 0;
+    for (int k = 1; k < 3; k++)
+        if (fabs(vec3_dot(axis[k], up)) > fabs(vec3_dot(axis[z], up))) z = k;
+    const int a = (z + 1) % 3, b = (z + 2) % 3;
+    const int x = fabs(vec3_dot(axis[b], right)) > fabs(vec3_dot(axis[a], right)) ? b : a, y = a + b - x;
+    const struct vec3 k = vec3_scale(axis[z], vec3_dot(axis[z], up) < 0 ? -1 : 1);
+    const struct vec3 i = vec3_scale(axis[x], vec3_dot(axis[x], right) < 0 ? -1 : 1), j = vec3_cross(k, i);
+    part[0] = before[x];
+    part[1] = before[y];
+    part[2] = before[z];
+    return (struct mat3){{{i.x, i.y, i.z}, {j.x, j.y, j.z}, {k.x, k.y, k.z}}};
+}
+
+/* ------------------------------------------------------------------------------------------------------------ marks */
+
+struct measured {
+    const struct mark_list *list;
+    struct mark_scene scene;
+    struct mat3 axes;
+    struct vec3 origin;
+};
+
+/* Height of the floor's corners that are seen in several views, their mean, from the origin; false: there is none. */
+static bool corner_height(const struct measured *m, double *height, struct err *err)
+{
+    double sum = 0;
+    int count = 0;
+    for (int i = 0; i < m->list->count; i++) {
+        const struct mark *a = &m->list->marks[i];
+        int views = 0, first = 1;
+        struct vec3 p;
+        if (a->kind != MARK_CORNER) continue;
+        for (int j = 0; j < m->list->count; j++) {
+            const struct mark *b = &m->list->marks[j];
+            if (b->kind != MARK_CORNER || strcmp(a->name, b->name)) continue;
+            views++;
+            first &= j >= i;
+        }
+        if (views < 2 || !first) continue;
+        if (mark_locate(&p, MARK_CORNER, a->name, m->list, &m->scene, err)) return false;
+        sum += vec3_dot(vec3_sub(p, m->origin), mat3_row(m->axes, 2));
+        count++;
+    }
+    *height = count ? sum / count : 0;
+    return count > 0;
+}
+
+static bool measure_corners(void *ctx, double *value)
+{
+    struct err ignored = ERR_INIT;
+    return corner_height(ctx, value, &ignored);
+}
+
+/* Metres per scene unit that fit the lengths best. */
+static bool lengths_scale(const struct measured *m, double *scale, double *misfit, struct err *err)
+{
+    double product = 0, square = 0, sum = 0;
+    int count = 0;
+    for (int pass = 0; pass < 2; pass++)
+        for (int i = 0; i < m->list->count; i++) {
+            const struct mark *a = &m->list->marks[i];
+            struct vec3 p, q;
+            if (a->kind != MARK_LENGTH) continue;
+            if (mark_locate(&p, MARK_POINT, a->name, m->list, &m->scene, err) ||
+                mark_locate(&q, MARK_POINT, a->view, m->list, &m->scene, err))
+                return false;
+            const double d = vec3_length(vec3_sub(q, p));
+            if (!pass) {
+                product += d * a->metres;
+                square += d * d;
+                count++;
+                if (!(d > 0)) {
+                    err_set(err, ST_DATA, "%s:%d: %s and %s are marked at the same place.", m->list->path, a->line,
+                            a->name, a->view);
+                    return false;
+                }
+            } else {
+                sum += (d * *scale - a->metres) * (d * *scale - a->metres);
+            }
+            if (!pass) *scale = product / square;
+        }
+    *misfit = count > 1 ? sqrt(sum / (count - 1) / square) : 0; /* of the scale, as least squares has it */
+    return true;
+}
+
+static bool measure_scale(void *ctx, double *value)
+{
+    struct err ignored = ERR_INIT;
+    double misfit;
+    return lengths_scale(ctx, value, &misfit, &ignored);
+}
+
+/* Of the mark on one side of a wall's end from that on the other, along the wall direction that it follows most. */
+static enum status find_thickness(double *thickness, const struct measured *m, struct err *err)
+{
+    for (int i = 0; i < m->list->count; i++) {
+        const struct mark *a = &m->list->marks[i];
+        struct vec3 p, q;
+        if (a->kind != MARK_THICKNESS) continue;
+        if (mark_locate(&p, MARK_POINT, a->name, m->list, &m->scene, err) ||
+            mark_locate(&q, MARK_POINT, a->view, m->list, &m->scene, err))
+            return err->status;
+        const struct vec3 d = mat3_apply(m->axes, vec3_sub(q, p));
+        *thickness = fmax(fabs(d.x), fabs(d.y));
+        if (!(*thickness > 0))
+            return err_set(err, ST_DATA, "%s:%d: %s and %s are marked at the same place.", m->list->path, a->line,
+                           a->name, a->view);
+    }
+    return ST_OK;
+}
+
+/* ------------------------------------------------------------------------------------------------------------ whole */
+
+/* Along x and y: of the outermost walls that look inwards; where there is none, of nearly all points. */
+static void find_extent(struct room *room, const struct room_planes *planes, const struct point_cloud *cloud)
+{
+    for (int k = 0; k < 2; k++) {
+        double least = HUGE_VAL, most = -HUGE_VAL, lowest = HUGE_VAL, highest = -HUGE_VAL;
+        for (int i = 0; i < planes->count; i++) {
+            const struct room_plane *p = &planes->planes[i];
+            if (p->axis != k) continue;
+            if (p->side > 0)
+                least = fmin(least, p->offset);
+            else
+                most = fmax(most, p->offset);
+        }
+        for (size_t i = 0; i < cloud->count; i++) {
+            const struct vec3 p = model_from_world_point(&room->axes, cloud->points[i].position);
+            lowest = fmin(lowest, k ? p.y : p.x);
+            highest = fmax(highest, k ? p.y : p.x);
+        }
+        room->least[k] = least < HUGE_VAL ? least * room->axes.scale : lowest;
+        room->most[k] = most > -HUGE_VAL ? most * room->axes.scale : highest;
+        if (room->most[k] > room->least[k]) continue;
+        room->least[k] = lowest;
+        room->most[k] = highest;
+    }
+}
+
+static enum status find_heights(struct room *room, struct measured *m, const struct room_inputs *in, struct vec3 errors,
+                                const struct axes_params *params, struct err *err)
+{
+    if (find_level(&room->floor, 1, &m->axes, m->origin, errors, in->cloud, params, err) ||
+        find_level(&room->ceiling, -1, &m->axes, m->origin, errors, in->cloud, params, err))
+        return err->status;
+    m->list = in->fix;
+    if (in->fix && corner_height(m, &room->floor.height, err)) {
+        room->floor_marked = true;
+        room->floor.error = mark_error(in->fix, params->click, measure_corners, m);
+    }
+    if (err->status) return err->status;
+    if (!room->floor_marked && !room->floor.count)
+        return err_set(
+            err, ST_DATA,
+            "no floor is found: of %zu points only %zu lie below the central camera and look up (within %.3g "
+            "degrees). Photograph more of the floor, or mark one of its corners in two views in axes_fix.txt.",
+            in->cloud->count, room->floor.asked, params->up_angle);
+    if (!(room->floor.height < 0))
+        return err_set(
+            err, ST_DATA,
+            "%s: the corners lie above the central camera, so they are not on its floor; mark a corner where "
+            "two walls meet the floor.",
+            in->fix->path);
+    return ST_OK;
+}
+
+static enum status find_scale(struct room *room, struct measured *m, const struct room_inputs *in, double click,
+                              struct err *err)
+{
+    struct model_axes *a = &room->axes;
+    double misfit = 0;
+    m->list = in->fix;
+    if (in->fix && find_thickness(&a->thickness, m, err)) return err->status;
+    m->list = in->scale;
+    if (!in->scale) return ST_OK;
+    if (!lengths_scale(m, &a->scale, &misfit, err)) return err->status;
+    a->metric = true;
+    a->scale_error = hypot(mark_error(in->scale, click, measure_scale, m), misfit) / a->scale;
+    return ST_OK;
+}
+
+static enum status find_all(struct room *room, const struct room_inputs *in, const struct axes_params *params,
+                            struct room_planes *planes, struct err *err)
+{
+    struct directions d;
+    struct vec3 errors;
+    struct model_axes *a = &room->axes;
+    if (central_view(&room->central, in->set, err) || find_directions(&d, in->cloud, params->least_part, err))
+        return err->status;
+    const struct view *central = &in->set->views[room->central];
+    struct measured m = {.scene = {.set = in->set, .lenses = in->lenses, .cloud = in->cloud},
+                         .origin = central->center};
+    const struct vec3 down = vec3_scale(in->ups[room->central], -1), right = vec3_cross(down, vec3_make(0, 0, 1));
+    const struct vec3 up = mean_up(in);
+    m.axes = model_order(d.axes, d.part, up, mat3_apply(mat3_transpose(central->cam_from_world), right));
+    for (int k = 0; k < 3; k++) room->part[k] = d.part[k];
+    if (direction_errors(&errors, &m.axes, m.origin, in->cloud, err) ||
+        find_planes(planes, &m.axes, true, &errors, m.origin, in->cloud, params, err))
+        return err->status;
+    if (in->fix && correct_axes(&m.axes, &errors, &room->turned, in->fix, &m.scene, params->click, err))
+        return err->status;
+    if (room->turned > 0) {
+        room_planes_release(planes);
+        if (find_planes(planes, &m.axes, false, &errors, m.origin, in->cloud, params, err)) return err->status;
+        room->turned /= DEGREE;
+    }
+    if (find_heights(room, &m, in, errors, params, err)) return err->status;
+    m.scene.up = mat3_row(m.axes, 2);
+    m.scene.floor = vec3_dot(m.origin, m.scene.up) + room->floor.height;
+    *a = (struct model_axes){.rotation = quat_from_mat3(m.axes), .scale = 1};
+    if (find_scale(room, &m, in, params->click, err)) return err->status;
+    const struct vec3 foot = vec3_add(m.origin, vec3_scale(m.scene.up, room->floor.height));
+    a->translation = vec3_scale(model_from_world_direction(a, foot), -a->scale);
+    a->tilt_error = hypot(errors.x, errors.y) / DEGREE;
+    a->heading_error = errors.z / DEGREE;
+    a->floor_error = room->floor.error * a->scale;
+    a->thickness *= a->scale;
+    if (room->ceiling.count) {
+        a->ceiling = (room->ceiling.height - room->floor.height) * a->scale;
+        a->ceiling_error = hypot(room->ceiling.error, room->floor.error) * a->scale;
+    }
+    room->leaning = atan2(vec3_length(vec3_cross(up, m.scene.up)), vec3_dot(up, m.scene.up)) / DEGREE;
+    find_extent(room, planes, in->cloud);
+    return ST_OK;
+}
+
+enum status find_room(struct room *room, const struct room_inputs *in, const struct axes_params *params,
+                      struct err *err)
+{
+    struct room_planes planes = {0};
+    *room = (struct room){0};
+    const enum status st = find_all(room, in, params, &planes, err);
+    room_planes_release(&planes);
+    return st;
+}
