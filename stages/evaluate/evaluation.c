@@ -9,12 +9,15 @@
 #include "common/file_path.h"
 #include "common/layered_depth.h"
 #include "common/log.h"
+#include "common/model_axes.h"
 #include "common/progress.h"
 #include "common/view_image.h"
 #include "stages/evaluate/alignment.h"
+#include "stages/evaluate/axes_error.h"
 #include "stages/evaluate/depth_error.h"
 #include "stages/evaluate/metric_table.h"
 #include "stages/evaluate/picture_error.h"
+#include "stages/evaluate/true_room.h"
 #include "stages/evaluate/truth.h"
 
 #define PARAM_STRUCT struct evaluate_params
@@ -142,6 +145,63 @@ static enum status evaluate_cameras(struct evaluation *e, struct err *err)
     free(found);
     free(truth);
     return st ? err->status : ST_OK;
+}
+
+/* --------------------------------------------------------------------------------------------------------- axes */
+
+/* The room as found and as it is, in the truth's world moved to the mean of its cameras: heights are compared where they
+ * are, not at a far origin that a small tilt moves much. */
+static void rooms_to_compare(struct room_axes *found, struct room_axes *truth, const struct evaluation *e,
+                             const struct model_axes *a, const struct true_room *room)
+{
+    const struct similarity *s = &e->truth_from_scene;
+    struct vec3 middle = {0};
+    int cameras = 0;
+    for (int p = 0; p < e->photos.count; p++) {
+        if (!e->truth.photos[p].lens.width) continue;
+        middle = vec3_add(middle, pose_center(&e->truth.photos[p].pose));
+        cameras++;
+    }
+    middle = vec3_scale(middle, 1.0 / cameras);
+    /* both floors below the middle, along their own axes up */
+    const struct vec3 scene =
+        vec3_scale(mat3_apply(mat3_transpose(s->rotation), vec3_sub(middle, s->translation)), 1 / s->scale);
+    const double unit = s->scale / a->scale; /* metres of one model unit, by the cameras */
+    found->axes = mat3_multiply(mat3_from_quat(a->rotation), mat3_transpose(s->rotation));
+    found->floor = -model_from_world_point(a, scene).z * unit;
+    found->ceiling = found->floor + a->ceiling * unit;
+    truth->axes = room->room_from_world;
+    const double above = mat3_apply(room->room_from_world, vec3_sub(middle, room->origin)).z;
+    truth->floor = room->floor - above;
+    truth->ceiling = room->ceiling - above;
+}
+
+static enum status evaluate_axes(struct evaluation *e, const char *truth, struct err *err)
+{
+    struct metric_table *t = &e->table;
+    struct model_axes axes;
+    struct true_room room = {0};
+    struct room_axes found, wanted;
+    char path[FILE_PATH];
+    if (file_path(path, e->folder, "model/axes.txt", "", err)) return err->status;
+    if (!is_file(path)) return metric_note(t, err, "skipped axes and heights: there is no model/axes.txt");
+    if (!truth) return metric_note(t, err, "skipped axes and heights: no TRUTH is given");
+    if (!e->aligned) return metric_note(t, err, "skipped axes and heights: the cameras do not tell where the truth is");
+    if (true_room_read(&room, truth, e->prov, err)) return err->status;
+    if (!room.known)
+        return metric_note(t, err, "skipped axes and heights: the truth holds neither scene.txt nor scene-truth.txt");
+    if (input(e, path, "model", "axes.txt", "", err) || model_axes_read(&axes, path, err)) return err->status;
+    rooms_to_compare(&found, &wanted, e, &axes, &room);
+    const struct axes_errors errors = axes_errors(&found, &wanted);
+    if (metric_add(t, NULL, "axes.angle", errors.all, "degrees", "lower", err) ||
+        metric_add(t, NULL, "axes.up", errors.up, "degrees", "lower", err) ||
+        metric_add(t, NULL, "axes.floor", errors.floor, "m", "lower", err))
+        return err->status;
+    if (axes.ceiling > 0 && metric_add(t, NULL, "axes.ceiling", errors.ceiling, "m", "lower", err)) return err->status;
+    if (axes.metric &&
+        metric_add(t, NULL, "axes.scale", 100 * fabs(axes.scale / e->truth_from_scene.scale - 1), "%", "lower", err))
+        return err->status;
+    return axes.ceiling > 0 ? ST_OK : metric_note(t, err, "skipped the ceiling: none was found");
 }
 
 /* -------------------------------------------------------------------------------------------------------- depth */
@@ -568,7 +628,6 @@ static enum status note_missing(struct evaluation *e, struct err *err)
     if (!st && !e->has_held) st = metric_note(t, err, "skipped PSNR, SSIM and holes: no photo is held out (HOLDOUT)");
     if (!st) st = metric_note(t, err, "skipped irradiance: there is no relight/irradiance");
     if (!st) st = metric_note(t, err, "skipped texture errors: there is no vita and no vdta");
-    if (!st) st = metric_note(t, err, "skipped axes and heights: there is no model/axes.txt");
     return st;
 }
 
@@ -598,6 +657,7 @@ enum status evaluate(const char *folder, const char *shared, const char *truth, 
     e.shared_inputs = prov->count;
     if (!st) st = note_missing(&e, err);
     if (!st && truth) st = evaluate_cameras(&e, err);
+    if (!st) st = evaluate_axes(&e, truth, err);
     if (!st) st = evaluate_depths(&e, err);
     if (!st && e.has_held) st = evaluate_pictures(&e, err);
     if (!st) st = file_path(path, folder, "evaluate/views.tsv", "", err);

@@ -14,8 +14,9 @@
 
 enum { CLUSTERS = 3, ITERATIONS = 20 };
 /* of the scene's size */
-static const double WINDOW = 0.008; /* whose densest place is sought: about 2.5 cm of a room */
-static const double REACH = 0.02;   /* around it, beyond which points never count */
+static const double WINDOW = 0.008;  /* whose densest place is sought: about 2.5 cm of a room */
+static const double REACH = 0.02;    /* around it, beyond which points never count */
+static const double NOT_SMALL = 0.2; /* of the largest cluster */
 static const double LEAST_SPREAD = 1e-6;
 static const double BIWEIGHT = 4.685;
 
@@ -139,6 +140,20 @@ static enum status find_error(struct level *level, const struct place *places, c
     return ST_OK;
 }
 
+/* The floor's cluster is the largest one. What stands below a ceiling - beams, lamps, the heads of windows - may show
+ * more than the ceiling does, and nothing is above it: its cluster is the highest that is not small. */
+static int cluster_of(const size_t *begin, int k, int side)
+{
+    int largest = 0;
+    for (int j = 1; j < k; j++)
+        if (begin[j + 1] - begin[j] > begin[largest + 1] - begin[largest]) largest = j;
+    if (side > 0) return largest;
+    const double least = NOT_SMALL * (double)(begin[largest + 1] - begin[largest]);
+    int highest = k - 1;
+    while ((double)(begin[highest + 1] - begin[highest]) < least) highest--;
+    return highest;
+}
+
 enum status find_level(struct level *level, int side, const struct mat3 *axes, struct vec3 origin,
                        struct vec3 tilt_error, const struct point_cloud *cloud, const struct axes_params *params,
                        struct err *err)
@@ -156,13 +171,9 @@ enum status find_level(struct level *level, int side, const struct mat3 *axes, s
         st = kmeans1d(begin, heights, count, k, err);
         scratch = malloc(count * sizeof *scratch);
         if (!st && !scratch) st = err_nomem(err, "heights", count * sizeof *scratch);
-        int largest = 0;
-        for (int j = 1; !st && j < k; j++) {
-            const size_t now = begin[j + 1] - begin[j], most = begin[largest + 1] - begin[largest];
-            if (side > 0 ? now > most : now >= most) largest = j; /* of equals the lowest floor, the highest ceiling */
-        }
         if (!st) {
-            level->height = mode(heights, begin[largest], begin[largest + 1], WINDOW * size);
+            const int at = cluster_of(begin, k, side);
+            level->height = mode(heights, begin[at], begin[at + 1], WINDOW * size);
             settle(level, heights, count, size, scratch);
             const double far = 2 * REACH * size;
             level->beyond = side > 0 ? lower_bound(heights, count, level->height - far)

@@ -1,4 +1,5 @@
-/* heights.h - the height of the floor, or of the ceiling: the level on which most points that look up, or down, lie. */
+/* heights.h - the height of the floor: the level on which most points that look up lie; and that of the ceiling, the
+ * highest level with a good part of the points that look down. */
 #ifndef REMODEL_HEIGHTS_H
 #define REMODEL_HEIGHTS_H
 
