@@ -130,7 +130,7 @@ export REMODEL_TRUTH := $(call literal,TRUTH)
 
 export VIEWS_PER_JOB SLURM_ARGS
 dry = $(findstring n,$(filter-out --%,$(firstword -$(MAKEFLAGS))))
-GOALS := edited hdr sfm views depth points model subjects path frames video pan_scan morph evaluate report
+GOALS := edited hdr sfm views depth points axes model subjects path frames video pan_scan morph evaluate report
 .PHONY: all help why resfm check fuzz bench bench-compare regress regress-accept man deps deps-check deps-bench clean $(GOALS)
 
 ifeq ($(SCENE),)
@@ -143,6 +143,7 @@ sfm:    ## + camera poses: COLMAP, or the model in SFM
 views:  ## + rectified, linear views
 depth:  ## + layered depth maps
 points: ## + oriented points on which they agree (no part of what follows)
+axes:   ## + the room's axes, floor, ceiling and scale, drawn on a few photos (no part of what follows)
 model:  ## the solid model of scenes/SCENE/model.txt, and of each edit in edits/, with pictures to check them
 subjects: ## + faces, or the rectangles of scenes/SCENE/subjects.txt
 path:   ## + the camera move
@@ -292,6 +293,8 @@ $(B)/tests/fuzz/fuzz_split_list: $(call objs,stages/import_photos/split_list.c)
 $(B)/bin/find_subjects: $(B)/obj/common/opencv_faces.o
 $(B)/bin/find_subjects: private LDLIBS += -lopencv_objdetect -lopencv_imgproc -lopencv_core -lstdc++
 $(B)/tests/fuzz/fuzz_model_script: $(addprefix $(B)/obj/stages/build_model/,script.o plan.o place.o layout.o solid.o model_params.o)
+$(B)/tests/fuzz/fuzz_marks: $(call objs,stages/find_axes/marks.c)
+$(B)/tests/fuzz/fuzz_true_room: $(call objs,stages/evaluate/true_room.c)
 $(B)/tests/fuzz/fuzz_regions: $(call objs,stages/find_subjects/region*.c)
 # what morph_views alone needs
 $(B)/bin/morph_views $(filter $(B)/tests/unit/morph_views/%,$(UNIT_TESTS)): $(B)/obj/common/opencv_features.o
@@ -398,7 +401,7 @@ ORIGINALS := $(if $(SPLIT),$(S)/split,"$$REMODEL_PHOTOS")
 PICTURES := $(if $(BRACKETED),$(S)/hdr,$(ORIGINALS))
 picture = $(if $(BRACKETED),$(S)/hdr/$(1).exr,$(S)/photos/$(1).txt)
 
-.PHONY: hdr sfm views depth points model overlays subjects choice path frames video pan_frames pan_scan heldout evaluate report morph-path morph-frames morph
+.PHONY: hdr sfm views depth points axes model overlays subjects choice path frames video pan_frames pan_scan heldout evaluate report morph-path morph-frames morph
 hdr: $(HDR)
 sfm: $(O)/views/views.mk
 views: $(VIEW_EXR) $(HELD_EXR)
@@ -406,6 +409,7 @@ depth: $(DEPTH_EXR) $(DEPTH_TXT)
 points: $(POINTS)
 model: $(foreach m,$(MODELS),$(call model_files,$(m)))
 overlays: $(OVERLAYS)
+axes: $(AXES)
 subjects: $(SUBJECTS)
 choice: $(CHOICE)
 path: $(foreach e,$(EFFECTS),$(call path_all,$(e)) $(if $(filter $(e),$(FILMS)),,$(call validity,$(e))))
@@ -469,6 +473,13 @@ $(O)/views/%.exr: ; # a neighbour that is a view no more
 $(POINTS): $(CAMERAS) $(DEPTH_EXR) $(DEPTH_TXT) $(call needs,fuse_points)
 	$(call stage,fuse_points,all,$(O),--views $(O)/views --depth $(O)/depth --out $@)
 
+# what a user marked; that a file came or went is a change whatever the files' times
+MARKED := $(wildcard $(addprefix scenes/$(SCENE)/,scale.txt axes_fix.txt))
+WAS_MARKED := $(shell sed -nE '/^[^#]/q; s/^. input (scale.txt|axes_fix.txt) .*/\1/p' $(AXES) 2>/dev/null)
+$(AXES): $(CAMERAS) $(O)/views/lenses.txt $(VIEW_EXR) $(POINTS) $(MARKED) $(S)/photos/list.txt $(call needs,find_axes) \
+  $(if $(filter-out $(notdir $(MARKED)),$(WAS_MARKED))$(filter-out $(WAS_MARKED),$(notdir $(MARKED))),FORCE)
+	$(call stage,find_axes,all,$(O),--views $(O)/views --records $(S)/photos --points $(POINTS) \
+	  $(if $(filter %/scale.txt,$(MARKED)),--scale scenes/$(SCENE)/scale.txt) $(if $(filter %/axes_fix.txt,$(MARKED)),--fix scenes/$(SCENE)/axes_fix.txt) --out $@)
 # a script that places nothing in photographs needs no points
 MODEL_POINTS := $(if $(MODEL_SCRIPT),$(if $(shell grep -lE '^[ \t]*(wall|adjust)[ \t]+[^ \t]+[ \t]+in[ \t]' $(MODEL_SCRIPT) $(EDITS:%=scenes/$(SCENE)/edits/%.txt)),$(POINTS)))
 MODEL_NEEDS := $(AXES) $(CAMERAS) $(O)/views/lenses.txt $(MODEL_POINTS) $(call needs,build_model)
@@ -570,7 +581,7 @@ endef
 $(call chunks,heldout_rule,$(HELD))
 
 $(O)/metrics.tsv: $(CAMERAS) $(O)/views/lenses.txt $(DEPTH_EXR) $(DEPTH_TXT) $(HELD_CAMERAS) $(HELD_EXR) $(HELD_FRAMES) \
-  $(S)/photos/list.txt $(O)/stamp/truth.txt $(call needs,evaluate)
+  $(wildcard $(AXES)) $(S)/photos/list.txt $(O)/stamp/truth.txt $(call needs,evaluate)
 	$(call stage,evaluate,all,$(O),--folder $(O) --shared $(S) $${REMODEL_TRUTH:+--truth "$$REMODEL_TRUTH"} --out $@)
 
 made = $(1)

@@ -2,8 +2,8 @@
  *
  * Thesis 4.4.1: heights of points whose normals are within 25 degrees of up, in three clusters by k-means; the largest is
  * the floor. k-means is solved exactly (common/kmeans1d.h). A cluster's mean is pulled by whatever furniture fell to it,
- * so that only says where to look: the height is the densest place within the cluster, then a robust mean around it
- * (Tukey's biweight). */
+ * so that a cluster only says where to look: the height is the densest window within it, about 2.5 cm of a room, then a
+ * robust mean around that (Tukey's biweight). */
 #include "stages/find_axes/heights.h"
 
 #include <stdlib.h>
@@ -16,7 +16,7 @@ enum { CLUSTERS = 3, ITERATIONS = 20 };
 /* of the scene's size */
 static const double WINDOW = 0.008;  /* whose densest place is sought: about 2.5 cm of a room */
 static const double REACH = 0.02;    /* around it, beyond which points never count */
-static const double NOT_SMALL = 0.2; /* of the largest cluster */
+static const double NOT_SMALL = 0.2; /* of the largest cluster, by their densest windows */
 static const double LEAST_SPREAD = 1e-6;
 static const double BIWEIGHT = 4.685;
 
@@ -58,8 +58,8 @@ static enum status collect(struct place **places, double **heights, size_t *coun
     return ST_OK;
 }
 
-/* The middle of the densest window of a range of heights. */
-static double mode(const double *heights, size_t begin, size_t end, double window)
+/* The densest window of a range of heights: its middle; returns how many it holds. */
+static size_t densest(double *middle, const double *heights, size_t begin, size_t end, double window)
 {
     size_t first = begin, best = begin, most = 0;
     for (size_t i = begin; i < end; i++) {
@@ -68,7 +68,8 @@ static double mode(const double *heights, size_t begin, size_t end, double windo
         most = i - first + 1;
         best = first;
     }
-    return (heights[best] + heights[best + most - 1]) / 2;
+    *middle = (heights[best] + heights[best + most - 1]) / 2;
+    return most;
 }
 
 static size_t lower_bound(const double *heights, size_t count, double value)
@@ -140,18 +141,20 @@ static enum status find_error(struct level *level, const struct place *places, c
     return ST_OK;
 }
 
-/* The floor's cluster is the largest one. What stands below a ceiling - beams, lamps, the heads of windows - may show
- * more than the ceiling does, and nothing is above it: its cluster is the highest that is not small. */
-static int cluster_of(const size_t *begin, int k, int side)
+/* Where to begin. Of the floor's clusters the largest counts, by its densest window: tables and chairs may share a
+ * cluster larger than the floor's, but not a height. What stands below a ceiling - beams, lamps, the heads of windows -
+ * may show more than the ceiling does, and nothing is above it: its cluster is the highest that is not small. */
+static double level_to_begin_with(const double *heights, const size_t *begin, int k, int side, double window)
 {
-    int largest = 0;
-    for (int j = 1; j < k; j++)
-        if (begin[j + 1] - begin[j] > begin[largest + 1] - begin[largest]) largest = j;
-    if (side > 0) return largest;
-    const double least = NOT_SMALL * (double)(begin[largest + 1] - begin[largest]);
-    int highest = k - 1;
-    while ((double)(begin[highest + 1] - begin[highest]) < least) highest--;
-    return highest;
+    double middle[CLUSTERS] = {0};
+    size_t count[CLUSTERS] = {0};
+    int largest = 0, highest = k - 1;
+    for (int j = 0; j < k; j++) {
+        count[j] = densest(&middle[j], heights, begin[j], begin[j + 1], window);
+        if (count[j] > count[largest]) largest = j;
+    }
+    while ((double)count[highest] < NOT_SMALL * (double)count[largest]) highest--;
+    return middle[side > 0 ? largest : highest];
 }
 
 enum status find_level(struct level *level, int side, const struct mat3 *axes, struct vec3 origin,
@@ -172,8 +175,7 @@ enum status find_level(struct level *level, int side, const struct mat3 *axes, s
         scratch = malloc(count * sizeof *scratch);
         if (!st && !scratch) st = err_nomem(err, "heights", count * sizeof *scratch);
         if (!st) {
-            const int at = cluster_of(begin, k, side);
-            level->height = mode(heights, begin[at], begin[at + 1], WINDOW * size);
+            level->height = level_to_begin_with(heights, begin, k, side, WINDOW * size);
             settle(level, heights, count, size, scratch);
             const double far = 2 * REACH * size;
             level->beyond = side > 0 ? lower_bound(heights, count, level->height - far)
