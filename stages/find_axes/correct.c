@@ -3,7 +3,8 @@
  * In a view, the rays of a corner and of a point on an edge from it span a plane in which the edge lies, however far
  * away the corner is: each edge gives its axis one equation, axis . normal = 0. A pixel's error turns the plane about the
  * corner's ray, so that what it does to the equation is known too. The edges of a corner with two walls and a vertical
- * line fix all three turns; what they leave open stays as it was found, by a weak prior of 5 degrees. */
+ * line fix all three turns; what they leave open stays as it was found, by a prior that is too weak to hold against any
+ * edge. */
 #include "stages/find_axes/correct.h"
 
 #include <string.h>
@@ -11,7 +12,7 @@
 #include "stages/find_axes/directions.h"
 
 enum { ITERATIONS = 20 };
-static const double PRIOR = 5 * M_PI / 180;
+static const double PRIOR = 1;              /* radians */
 static const double MOST = 30 * M_PI / 180; /* an edge follows the axis that is nearest in the picture, within this */
 static const double LEAST_LENGTH = 5;       /* px */
 static const double HEAD_ON = 0.05;         /* an axis that points at the camera is told by no edge */

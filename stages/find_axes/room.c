@@ -55,7 +55,8 @@ struct measured {
     struct vec3 origin;
 };
 
-/* Height of the floor's corners that are seen in several views, their mean, from the origin; false: there is none. */
+/* Height of the floor's corners that are seen in several views, their mean, from the origin; false: there is none, or
+ * err is set. */
 static bool corner_height(const struct measured *m, double *height, struct err *err)
 {
     double sum = 0;
@@ -76,7 +77,7 @@ static bool corner_height(const struct measured *m, double *height, struct err *
         sum += vec3_dot(vec3_sub(p, m->origin), mat3_row(m->axes, 2));
         count++;
     }
-    *height = count ? sum / count : 0;
+    if (count) *height = sum / count;
     return count > 0;
 }
 

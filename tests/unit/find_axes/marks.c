@@ -1,0 +1,363 @@
+/* marks.c - what a user marks: files, places in the room, corrections, scale. */
+#include "stages/find_axes/marks.h"
+
+#include "stages/find_axes/correct.h"
+#include "tests/unit/find_axes/made_room.h"
+#include "tests/unit/scratch.h"
+
+static const struct axes_params PARAMS = AXES_PARAMS_DEFAULT;
+
+static void assert_refused(enum mark_file file, const char *text, const char *words)
+{
+    struct mark_list list;
+    struct err err = ERR_INIT;
+    const char *path = scratch_write("marks.txt", text);
+    assert_int_equal(mark_list_read(&list, path, file, &err), ST_DATA);
+    assert_err(err, ST_DATA, words);
+    assert_contains(err.text, "marks.txt");
+    assert_null(list.marks);
+}
+
+static void wrong_files_are_told_by_line(void **state)
+{
+    (void)state;
+    assert_refused(MARKS_SCALE, "mark p a 1 2\nmark p b 1 2\nmark q a 1 2 floor\nmeter p q 1\n",
+                   ":4: found \"meter\", wanted \"mark\" or \"length\"");
+    assert_refused(MARKS_SCALE, "corner p a 1 2\n", ":1: found \"corner\"");
+    assert_refused(MARKS_SCALE, "mark p a 1\n", ":1:");
+    assert_refused(MARKS_SCALE, "mark p a 1 2 wall\n", "found \"wall\", wanted \"floor\", \"surface\"");
+    assert_refused(MARKS_SCALE, "# nothing\n", "no length is given");
+    assert_refused(MARKS_SCALE, "mark p a 1 2 floor\nlength p q 2\n", ":2: q is named, but nothing");
+    assert_refused(MARKS_SCALE, "mark p a 1 2 floor\nlength p p 2\n", ":2: found p twice");
+    assert_refused(MARKS_SCALE, "mark p a 1 2 floor\nmark q a 1 2 floor\nlength p q 0\n",
+                   ":3: found \"0\", wanted a length above 0");
+    assert_refused(MARKS_SCALE, "mark p a 1 2\nmark q a 1 2 floor\nlength p q 1\n",
+                   ":1: p is marked in one view alone");
+    assert_refused(MARKS_SCALE, "mark p a 1 2\nmark p a 1 3\nmark q a 1 2 floor\nlength p q 1\n",
+                   ":1: p is marked twice in a");
+    assert_refused(MARKS_SCALE, "mark p a 1 2 floor\nmark p b 1 2\nlength p p 1\n", "p is marked in 2 views");
+    assert_refused(MARKS_FIX, "length p q 1\n", ":1: found \"length\", wanted \"corner\"");
+    assert_refused(MARKS_FIX, "corner p a 1 2\n", ":1: the corner p corrects nothing yet");
+    assert_refused(MARKS_FIX, "corner p a 1 2\nedge p b 3 4\n", ":2: the corner p of this edge is not marked in b");
+    assert_refused(MARKS_FIX, "corner p a 1 nan\n", ":1: found \"nan\"");
+    assert_refused(MARKS_FIX, "mark p a 1 2 floor\nmark q a 3 4 floor\nthickness p q\nthickness q p\n",
+                   ":4: found a second thickness");
+}
+
+static void an_empty_correction_is_none(void **state)
+{
+    (void)state;
+    struct mark_list list;
+    struct err err = ERR_INIT;
+    assert_ok(mark_list_read(&list, scratch_write("marks.txt", "# nothing yet\n"), MARKS_FIX, &err), err);
+    assert_int_equal(list.count, 0);
+    mark_list_release(&list);
+    mark_list_release(&list);
+}
+
+/* A line for a room's point in a view. */
+static void put(char *text, size_t size, const struct made_room *r, const char *what, int view, struct vec3 p,
+                const char *on)
+{
+    double u, v;
+    const size_t used = strlen(text);
+    made_pixel(r, view, p, &u, &v);
+    assert_true(u > 0 && v > 0 && u < 800 && v < 600);
+    snprintf(text + used, size - used, "%s %s %.17g %.17g %s\n", what, r->views[view].name, u, v, on);
+}
+
+static struct made turned_room(void)
+{
+    const struct vec3 w = vec3_scale(vec3_normalize(vec3_make(1, 2, -1)), 0.7);
+    return (struct made){
+        .ceiling = 1, .world_from_room = turned_by(MADE_IDENTITY, w), .scale = 0.37, .origin = vec3_make(1, 2, 3)};
+}
+
+static void marks_are_placed(void **state)
+{
+    (void)state;
+    const struct made m = turned_room();
+    struct made_room r;
+    struct mark_list list;
+    struct err err = ERR_INIT;
+    char text[2048] = "";
+    const struct vec3 p = {3.4, 2.2, 0.7}, q = {4.2, 2.5, 0}, s = {5, 3, 1.2};
+    struct vec3 at;
+    make_room(&r, &m);
+    put(text, sizeof text, &r, "mark p", 0, p, "");
+    put(text, sizeof text, &r, "mark p", 1, p, "");
+    put(text, sizeof text, &r, "mark q", 0, q, "floor");
+    put(text, sizeof text, &r, "mark s", 0, s, "surface");
+    strcat(text, "length p q 1\n");
+    assert_ok(mark_list_read(&list, scratch_write("marks.txt", text), MARKS_SCALE, &err), err);
+    const struct vec3 up = mat3_apply(m.world_from_room, vec3_make(0, 0, 1));
+    const struct mark_scene scene = {&r.set, &r.list, &r.cloud, up, vec3_dot(up, m.origin)};
+    assert_ok(mark_locate(&at, MARK_POINT, "p", &list, &scene, &err), err);
+    assert_true(vec3_length(vec3_sub(at, made_world(&m, p))) < 1e-9);
+    assert_ok(mark_locate(&at, MARK_POINT, "q", &list, &scene, &err), err);
+    assert_true(vec3_length(vec3_sub(at, made_world(&m, q))) < 1e-9);
+    assert_ok(mark_locate(&at, MARK_POINT, "s", &list, &scene, &err), err); /* of points 3 cm apart */
+    assert_true(vec3_length(vec3_sub(at, made_world(&m, s))) < 0.02 * m.scale);
+    mark_list_release(&list);
+    made_release(&r);
+}
+
+static void marks_that_place_nothing_are_told(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text, *words;
+    } cases[] = {
+        {"mark p a 1 2\nmark p e 1 2\n", ":2: found \"e\", wanted a photo's id or a view's name"},
+        {"mark p a 1 2\nmark p b 1000 2\n",
+         ":2: the pixel 1000 2 lies outside of what b shows: the photo has 800 x 600"},
+        {"mark p a 400 20 floor\n", ":1: the floor is not seen at the pixel 400 20 of a"},
+        {"mark p a 400 300\nmark p b 30 300\n", "p part before"},
+    };
+    const struct made m = turned_room();
+    const struct vec3 up = mat3_apply(m.world_from_room, vec3_make(0, 0, 1));
+    struct made_room r;
+    make_room(&r, &m);
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct mark_list list;
+        struct err err = ERR_INIT;
+        struct vec3 at;
+        const struct mark_scene scene = {&r.set, &r.list, &r.cloud, up, vec3_dot(up, m.origin)};
+        assert_ok(mark_list_read(&list, scratch_write("marks.txt", cases[i].text), MARKS_FIX, &err), err);
+        assert_int_equal(mark_locate(&at, MARK_POINT, "p", &list, &scene, &err), ST_DATA);
+        assert_err(err, ST_DATA, cases[i].words);
+        mark_list_release(&list);
+    }
+    /* no surface: an empty cloud; nearly the same place: two views side by side */
+    struct mark_list list;
+    struct err err = ERR_INIT;
+    struct vec3 at;
+    const struct point_cloud none = {0};
+    struct mark_scene scene = {&r.set, &r.list, &none, up, vec3_dot(up, m.origin)};
+    assert_ok(mark_list_read(&list, scratch_write("marks.txt", "mark p a 400 300 surface\n"), MARKS_FIX, &err), err);
+    assert_int_equal(mark_locate(&at, MARK_POINT, "p", &list, &scene, &err), ST_DATA);
+    assert_err(err, ST_DATA, "no surface is known at the pixel 400 300 of a");
+    mark_list_release(&list);
+    err = (struct err)ERR_INIT;
+    r.views[1].cam_from_world = r.views[0].cam_from_world;
+    r.views[1].translation = r.views[0].translation;
+    r.views[1].center = r.views[0].center;
+    scene.cloud = &r.cloud;
+    assert_ok(
+        mark_list_read(&list, scratch_write("marks.txt", "mark p a 400 300\nmark p b 401 300\n"), MARKS_FIX, &err),
+        err);
+    assert_int_equal(mark_locate(&at, MARK_POINT, "p", &list, &scene, &err), ST_DATA);
+    assert_err(err, ST_DATA, "p is seen from nearly the same side");
+    mark_list_release(&list);
+    made_release(&r);
+}
+
+static void read_fix(struct mark_list *list, const char *text, enum mark_file file)
+{
+    struct err err = ERR_INIT;
+    assert_ok(mark_list_read(list, scratch_write("marks.txt", text), file, &err), err);
+}
+
+/* Standard deviation of the height of corner c when marks miss by a pixel, by trying: two seen from much the same side. */
+static double height_by_chance(const struct made_room *r, struct mark_list *fix)
+{
+    enum { TRIES = 2000 };
+    const struct rng rng = rng_make(1, "test", "clicks");
+    const struct vec3 up = mat3_apply(r->made.world_from_room, vec3_make(0, 0, 1));
+    const struct mark_scene scene = {.set = &r->set, .lenses = &r->list};
+    double sum = 0, square = 0;
+    for (uint64_t i = 0; i < TRIES; i++) {
+        struct err err = ERR_INIT;
+        struct vec3 at;
+        const struct mark before[2] = {fix->marks[0], fix->marks[1]};
+        for (uint64_t k = 0; k < 2; k++) {
+            fix->marks[k].x += made_gauss(&rng, i, 4 * k);
+            fix->marks[k].y += made_gauss(&rng, i, 4 * k + 2);
+        }
+        assert_ok(mark_locate(&at, MARK_CORNER, "c", fix, &scene, &err), err);
+        const double height = vec3_dot(vec3_sub(at, r->made.origin), up);
+        sum += height / TRIES;
+        square += height * height / TRIES;
+        fix->marks[0] = before[0];
+        fix->marks[1] = before[1];
+    }
+    return sqrt(square - sum * sum);
+}
+
+/* Axes that are off by 3 degrees about all three axes, and a floor off by 5 cm, are brought back by a corner with its
+ * three edges in one view, and the corner in a second view. */
+static void corners_and_edges_correct_axes_and_floor(void **state)
+{
+    (void)state;
+    const struct made m = turned_room();
+    struct made_room r;
+    struct mark_list fix;
+    struct err err = ERR_INIT;
+    char text[2048] = "";
+    const struct vec3 corner = {5, 4, 0};
+    make_room(&r, &m);
+    put(text, sizeof text, &r, "corner c", 0, corner, "");
+    put(text, sizeof text, &r, "corner c", 1, corner, "");
+    put(text, sizeof text, &r, "edge c", 0, vec3_make(4, 4, 0), "");
+    put(text, sizeof text, &r, "edge c", 0, vec3_make(5, 3, 0), "");
+    put(text, sizeof text, &r, "edge c", 0, vec3_make(5, 4, 1.5), "");
+    read_fix(&fix, text, MARKS_FIX);
+    const struct mark_scene scene = {.set = &r.set, .lenses = &r.list, .cloud = &r.cloud};
+    const struct mat3 room_from_world = mat3_transpose(m.world_from_room);
+    struct mat3 axes = turned_by(room_from_world, vec3_make(0.03, -0.02, 0.04));
+    struct vec3 errors = {1, 1, 1};
+    double turn;
+    assert_ok(correct_axes(&axes, &errors, &turn, &fix, &scene, 1, &err), err);
+    const struct mat3 left = mat3_multiply(axes, m.world_from_room);
+    for (int i = 0; i < 9; i++) assert_true(fabs(left.m[i / 3][i % 3] - (i % 4 == 0)) < 1e-4);
+    assert_true(fabs(turn - sqrt(0.03 * 0.03 + 0.02 * 0.02 + 0.04 * 0.04)) < 1e-3);
+    assert_true(errors.x < 0.02 && errors.y < 0.02 && errors.z < 0.02 && errors.x > 1e-4);
+
+    /* the whole: points 5 cm too high look like the floor */
+    for (size_t i = 0; i < r.cloud.count; i++) {
+        struct cloud_point *p = &r.cloud.points[i];
+        p->position = vec3_add(p->position, mat3_apply(m.world_from_room, vec3_scale(vec3_make(0, 0, 0.05), m.scale)));
+    }
+    struct room_inputs in = made_inputs(&r);
+    struct room room;
+    in.fix = &fix;
+    assert_ok(find_room(&room, &in, &PARAMS, &err), err);
+    assert_true(room.floor_marked);
+    assert_true(fabs(made_floor(&r, &room.axes)) < 1e-6);
+    assert_true(fabs(room.axes.ceiling - 2.65 * m.scale) < 1e-5);
+    assert_float_equal(room.axes.floor_error / height_by_chance(&r, &fix), 1, 0.15);
+    mark_list_release(&fix);
+    made_release(&r);
+}
+
+/* Two edges on the floor leave open the turn that they do not tell: it stays. */
+static void what_marks_leave_open_stays(void **state)
+{
+    (void)state;
+    const struct made m = turned_room();
+    struct made_room r;
+    struct mark_list fix;
+    struct err err = ERR_INIT;
+    char text[1024] = "";
+    make_room(&r, &m);
+    put(text, sizeof text, &r, "corner c", 0, vec3_make(5, 4, 0), "");
+    put(text, sizeof text, &r, "edge c", 0, vec3_make(5, 3, 0), "");
+    read_fix(&fix, text, MARKS_FIX);
+    const struct mark_scene scene = {.set = &r.set, .lenses = &r.list, .cloud = &r.cloud};
+    const struct mat3 right = mat3_transpose(m.world_from_room);
+    struct mat3 axes = right;
+    struct vec3 errors = {0.001, 0.001, 0.001};
+    double turn;
+    assert_ok(correct_axes(&axes, &errors, &turn, &fix, &scene, 1, &err), err);
+    assert_true(turn < 1e-9); /* nothing to correct */
+    assert_true(errors.x <= 0.001 && errors.y <= 0.001 && errors.z <= 0.001);
+    mark_list_release(&fix);
+    made_release(&r);
+}
+
+static void edges_that_follow_no_axis_are_refused(void **state)
+{
+    (void)state;
+    const struct made m = turned_room();
+    struct made_room r;
+    struct mark_list fix;
+    struct err err = ERR_INIT;
+    char text[1024] = "";
+    make_room(&r, &m);
+    const struct mark_scene scene = {.set = &r.set, .lenses = &r.list, .cloud = &r.cloud};
+    struct mat3 axes = mat3_transpose(m.world_from_room);
+    struct vec3 errors = {0};
+    double turn;
+    int refused = 0;
+    for (int i = 0; i < 36; i++) { /* from one place in all directions of the picture */
+        snprintf(text, sizeof text, "corner c a 500 450\nedge c a %.9g %.9g\n", 500 + 99 * cos(M_PI * i / 18),
+                 450 + 99 * sin(M_PI * i / 18));
+        read_fix(&fix, text, MARKS_FIX);
+        struct mat3 now = axes;
+        struct err why = ERR_INIT;
+        if (correct_axes(&now, &errors, &turn, &fix, &scene, 1, &why)) {
+            assert_err(why, ST_DATA, "marks.txt:2: the edge follows none of the axes: in a it is ");
+            refused++;
+        } else {
+            assert_true(turn < 1);
+        }
+        mark_list_release(&fix);
+    }
+    assert_in_range(refused, 1, 35);
+    read_fix(&fix, "corner c a 100 100\nedge c a 101 101\n", MARKS_FIX);
+    assert_int_equal(correct_axes(&axes, &errors, &turn, &fix, &scene, 1, &err), ST_DATA);
+    assert_err(err, ST_DATA, "marks.txt:2: the point on the edge is only 1.41 px from its corner");
+    mark_list_release(&fix);
+    made_release(&r);
+}
+
+static void lengths_give_metres_and_marks_a_thickness(void **state)
+{
+    (void)state;
+    const struct made m = turned_room();
+    struct made_room r;
+    struct mark_list scale, fix;
+    struct err err = ERR_INIT;
+    char text[2048] = "", walls[1024] = "";
+    const struct vec3 p = {4.2, 2.5, 0}, q = {5, 3.1, 0}, t = {3.4, 2.2, 0.7};
+    make_room(&r, &m);
+    put(text, sizeof text, &r, "mark p", 0, p, "floor");
+    put(text, sizeof text, &r, "mark q", 0, q, "floor");
+    put(text, sizeof text, &r, "mark t", 0, t, "");
+    put(text, sizeof text, &r, "mark t", 1, t, "");
+    strcat(text, "length p q 1\nlength q t 1.9748417658131499\n"); /* sqrt(0.64 + 0.36); sqrt(3.86) is 1.9647 */
+    read_fix(&scale, text, MARKS_SCALE);
+    put(walls, sizeof walls, &r, "mark one", 0, vec3_make(4.4, 2.5, 0), "floor");
+    put(walls, sizeof walls, &r, "mark two", 0, vec3_make(4.41, 2.65, 0), "floor");
+    strcat(walls, "thickness one two\n");
+    read_fix(&fix, walls, MARKS_FIX);
+    struct room_inputs in = made_inputs(&r);
+    struct room room;
+    in.scale = &scale;
+    in.fix = &fix;
+    assert_ok(find_room(&room, &in, &PARAMS, &err), err);
+    assert_true(room.axes.metric);
+    /* by least squares: the second one is 0.5 % too long */
+    const double wanted = (1 + sqrt(3.86) * 1.9748417658131499) / (1 + 3.86);
+    assert_true(fabs(room.axes.scale * m.scale - wanted) < 1e-5);
+    assert_true(room.axes.scale_error > 0.001 && room.axes.scale_error < 0.05);
+    assert_true(fabs(room.axes.thickness - 0.15 * wanted) < 1e-5);
+    assert_true(fabs(room.axes.ceiling - 2.6 * wanted) < 1e-4);
+    mark_list_release(&fix);
+    mark_list_release(&scale);
+    made_release(&r);
+}
+
+/* A pixel's error moves what depends on it, and the marks are as they were. */
+static bool sum_of_marks(void *ctx, double *value)
+{
+    const struct mark_list *list = ctx;
+    *value = 3 * list->marks[0].x + 4 * list->marks[0].y;
+    return list->marks[0].x < 10.5; /* off the photo to the right */
+}
+
+static void errors_of_marks_add_up(void **state)
+{
+    (void)state;
+    struct mark_list list;
+    read_fix(&list, "mark p a 10 20 floor\n", MARKS_FIX);
+    assert_float_equal(mark_error(&list, 1, sum_of_marks, &list), 5, 1e-12);
+    assert_true(list.marks[0].x == 10 && list.marks[0].y == 20);
+    mark_list_release(&list);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(wrong_files_are_told_by_line),
+        cmocka_unit_test(an_empty_correction_is_none),
+        cmocka_unit_test(marks_are_placed),
+        cmocka_unit_test(marks_that_place_nothing_are_told),
+        cmocka_unit_test(corners_and_edges_correct_axes_and_floor),
+        cmocka_unit_test(what_marks_leave_open_stays),
+        cmocka_unit_test(edges_that_follow_no_axis_are_refused),
+        cmocka_unit_test(lengths_give_metres_and_marks_a_thickness),
+        cmocka_unit_test(errors_of_marks_add_up),
+    };
+    return cmocka_run_group_tests_name("marks", tests, scratch_make, scratch_remove);
+}
