@@ -61,7 +61,8 @@ static enum status framed_line(struct true_room *room, double *yaw, struct textf
     const int count = numbers_of(t, v, &all, err);
     if (count < 0) return err->status;
     if (!strcmp(word, "yaw_degrees")) {
-        if (count != 1 || !all) return textfile_error(t, err, word, "\"yaw_degrees\" and a number");
+        if (count != 1 || !all || !(fabs(v[0]) <= 360))
+            return textfile_error(t, err, word, "\"yaw_degrees\" and a number from -360 to 360");
         *yaw = v[0];
     } else if (!strcmp(word, "t")) {
         if (count != 3 || !all) return textfile_error(t, err, word, "\"t\" and three numbers");

@@ -1,0 +1,32 @@
+/* fuzz_model_axes.c - the model's axes: what is read takes points there and back, and is written and read back the same,
+ * or a sentence says why not. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "common/model_axes.h"
+#include "tests/fuzz/fuzz.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    char path[] = "/tmp/remodel-fuzz-XXXXXX";
+    int fd = mkstemp(path);
+    struct model_axes axes, again;
+    struct err err = ERR_INIT;
+
+    if (fd < 0 || write(fd, data, size) != (ssize_t)size || close(fd)) abort();
+    if (model_axes_read(&axes, path, &err)) {
+        if (!strstr(err.text, path) || axes.scale != 0) abort();
+    } else {
+        const struct vec3 d = model_from_world_direction(&axes, vec3_make(1, 2, 3));
+        if (!(axes.scale > 0) || !(axes.ceiling >= 0) || !(axes.thickness >= 0)) abort();
+        if (!(fabs(vec3_length(d) - sqrt(14)) < 1e-4)) abort();
+        if (model_axes_write(&axes, path, NULL, &err) || model_axes_read(&again, path, &err)) abort();
+        if (axes.scale != again.scale || axes.rotation.w != again.rotation.w || axes.ceiling != again.ceiling ||
+            axes.translation.x != again.translation.x || axes.scale_error != again.scale_error)
+            abort();
+    }
+    unlink(path);
+    return 0;
+}

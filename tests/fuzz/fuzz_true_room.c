@@ -1,0 +1,29 @@
+/* fuzz_true_room.c - the rooms of a truth: any bytes give a floor below its ceiling, none, or a sentence. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "stages/evaluate/true_room.h"
+#include "tests/fuzz/fuzz.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    char path[] = "/tmp/remodel-fuzz-XXXXXX";
+    int fd = mkstemp(path);
+
+    if (fd < 0 || write(fd, data, size) != (ssize_t)size || close(fd)) abort();
+    for (int frame = 0; frame < 2; frame++) {
+        struct true_room room;
+        struct err err = ERR_INIT;
+        if (true_room_read_file(&room, path, frame, &err)) {
+            if (!strstr(err.text, path) || room.known) abort();
+        } else if (room.known && !(room.ceiling > room.floor)) {
+            abort();
+        } else if (!isfinite(room.room_from_world.m[0][0])) {
+            abort();
+        }
+    }
+    unlink(path);
+    return 0;
+}
