@@ -542,7 +542,9 @@ static enum status place_footprint(struct doer *d, double at, double low[3], dou
     memcpy(a, p->a, sizeof a);
     if (p->kind == PLACE_VIEW) {
         struct vec3 corners[2];
-        if (place_corners(corners, d->placer, p, vec3_make(0, 0, 1), at, d->path, d->s->line, d->err))
+        struct err above = ERR_INIT; /* seen from above, else, like a beam, from below */
+        if (place_corners(corners, d->placer, p, vec3_make(0, 0, 1), at, d->path, d->s->line, &above) &&
+            place_corners(corners, d->placer, p, vec3_make(0, 0, -1), -at, d->path, d->s->line, d->err))
             return d->err->status;
         for (int i = 0; i < 2; i++) {
             a[2 * i] = corners[i].x;
