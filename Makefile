@@ -272,6 +272,7 @@ $(BENCHES): $(B)/tests/bench/%: $(B)/obj/tests/bench/%.o $(B)/libremodel.a
 $(B)/tests/bench/exr: $(B)/obj/tests/bench/exr_openexr.o # the baseline
 $(B)/tests/bench/render_rate: $(filter-out %/render_views.o,$(call objs,stages/render_views/*.c))
 $(B)/tests/bench/move_pairs: $(filter-out %/plan_path.o,$(call objs,stages/plan_path/*.c))
+$(B)/tests/bench/unite: $(filter-out %/build_model.o,$(call objs,stages/build_model/*.c))
 $(B)/tests/bench/stereo_sgbm: $(B)/obj/tests/bench/depth_sgbm.o
 $(B)/tests/bench/stereo_sgbm: private LDLIBS += -lopencv_calib3d -lopencv_imgproc -lopencv_core
 $(B)/obj/tests/bench/depth_sgbm.o: private CXXFLAGS += -isystem /usr/include/opencv4

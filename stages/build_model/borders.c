@@ -81,7 +81,7 @@ static enum status find_near(struct sweep *w, struct err *err)
 {
     const struct convex_set *set = w->set;
     const int n = set->count;
-    double low[3], high[3];
+    double low[3] = {0}, high[3] = {0};
     int axis = 0, pair_count = 0, pair_capacity = 0, active_count = 0, *pairs = NULL;
     struct by_low *order = malloc((size_t)n * sizeof *order);
     int *active = malloc((size_t)n * sizeof *active);
