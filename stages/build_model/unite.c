@@ -9,7 +9,8 @@
  * - In a face the half-edge that follows is the one that bounds the same corner of the face: the first one clockwise.
  * - Half-edges around a corner of the solid, one fan of faces, share a vertex; another fan gets another vertex.
  * - A vertex with two faces only, in the middle of an edge, goes. Where two edges join the same two vertices all but one
- *   get a vertex in their middle, so that vertices name an edge.
+ *   get a vertex in their middle, so that vertices name an edge; so does an edge that touches a third face from one of
+ *   its corners to another, so that triangles of that face cannot have the same side.
  *
  * See docs/decisions/0015 for why each step is exact. */
 #include "stages/build_model/unite.h"
@@ -341,59 +342,10 @@ static void make_vertices(struct joined *j)
     }
 }
 
-struct edge_ends {
-    int low, high, half;
-};
-
-static int compare_ends(const void *a, const void *b)
-{
-    const struct edge_ends *p = a, *q = b;
-    if (p->low != q->low) return p->low < q->low ? -1 : 1;
-    if (p->high != q->high) return p->high < q->high ? -1 : 1;
-    return (p->half > q->half) - (p->half < q->half);
-}
-
 static void coordinates(const struct joined *j, int half, double p[3])
 {
     const struct half *h = &j->halves[half];
     memcpy(p, h->from >= 0 ? j->set.space.points[h->from].p : h->middle, 3 * sizeof *p);
-}
-
-/* A vertex in the middle of each edge that another one joins the ends of. */
-static enum status part_double_edges(struct joined *j, struct err *err)
-{
-    struct edge_ends *ends = malloc(((size_t)j->half_count + 1) * sizeof *ends);
-    int count = 0;
-    enum status st = ends ? ST_OK : err_nomem(err, "edges of a union", (size_t)j->half_count * sizeof *ends);
-    for (int i = 0; !st && i < j->half_count; i++) {
-        if (j->halves[i].twin < i) continue;
-        const int a = j->halves[i].vertex, b = j->halves[j->halves[i].twin].vertex;
-        ends[count++] = (struct edge_ends){a < b ? a : b, a < b ? b : a, i};
-    }
-    if (!st && count) qsort(ends, (size_t)count, sizeof *ends, compare_ends);
-    for (int i = 1; !st && i < count; i++) {
-        if (ends[i].low != ends[i - 1].low || ends[i].high != ends[i - 1].high) continue;
-        const int pair[2] = {ends[i].half, j->halves[ends[i].half].twin}, made = j->half_count;
-        double p[2][3];
-        for (int k = 0; k < 2; k++) coordinates(j, pair[k], p[k]);
-        for (int k = 0; !st && k < 2; k++) {
-            st = add_half(j, j->halves[pair[k]].border, -1, err);
-            if (st) break;
-            struct half *h = j->halves, *m = &h[made + k];
-            m->vertex = j->vertex_count;
-            m->loop = h[pair[k]].loop;
-            m->prev = pair[k];
-            m->next = h[pair[k]].next;
-            h[m->next].prev = made + k;
-            h[pair[k]].next = made + k;
-            m->twin = pair[1 - k];
-            for (int a = 0; a < 3; a++) m->middle[a] = 0.5 * (p[0][a] + p[1][a]);
-        }
-        for (int k = 0; !st && k < 2; k++) j->halves[pair[k]].twin = made + 1 - k;
-        j->vertex_count++;
-    }
-    free(ends);
-    return st;
 }
 
 /* ---------------------------------------------------------------------------------------------------------- faces */
@@ -637,6 +589,103 @@ static enum status make_faces(struct joined *j, const int *loop_of_border, struc
     return st;
 }
 
+struct edge_ends {
+    int low, high, half;
+    bool part;
+};
+
+static int compare_ends(const void *a, const void *b)
+{
+    const struct edge_ends *p = a, *q = b;
+    if (p->low != q->low) return p->low < q->low ? -1 : 1;
+    if (p->high != q->high) return p->high < q->high ? -1 : 1;
+    return (p->half > q->half) - (p->half < q->half);
+}
+
+/* A place on half-edge h's line is on an edge of the loop along that line. */
+static bool edge_along(const struct joined *j, const double p[3], int h, int loop)
+{
+    const struct half *k = j->halves;
+    const int line = j->borders.borders[k[h].border].line, axis = j->set.space.lines[line].axis;
+    int i = j->loops[loop].half;
+    do {
+        double a[3], b[3];
+        coordinates(j, i, a);
+        coordinates(j, k[i].next, b);
+        if (j->borders.borders[k[i].border].line == line && (a[axis] < p[axis]) != (b[axis] < p[axis])) return true;
+        i = k[i].next;
+    } while (i != j->loops[loop].half);
+    return false;
+}
+
+/* Half-edge h runs through the inside of a face of neither of its sides, from one corner of that face to another. */
+static bool lies_in_a_face(const struct joined *j, int h)
+{
+    const struct half *k = j->halves;
+    const int end = k[h].twin, own[2] = {j->loops[k[h].loop].face, j->loops[k[end].loop].face};
+    for (int a = k[k[h].prev].twin; a != h; a = k[k[a].prev].twin) {
+        const int face = j->loops[k[a].loop].face;
+        bool both = false;
+        if (face == own[0] || face == own[1]) continue;
+        for (int b = k[k[end].prev].twin; b != end && !both; b = k[k[b].prev].twin)
+            both = j->loops[k[b].loop].face == face;
+        if (!both) continue;
+        double p[3], q[3];
+        coordinates(j, h, p);
+        coordinates(j, end, q);
+        for (int i = 0; i < 3; i++) p[i] = 0.5 * (p[i] + q[i]);
+        const int outer = j->faces[face].loop;
+        bool in = !edge_along(j, p, h, outer) && place_in_loop(j, p, outer);
+        for (int l = 0; in && j->faces[face].holes && l < j->loop_count; l++)
+            in = !(j->loops[l].hole && j->loops[l].face == face && (edge_along(j, p, h, l) || place_in_loop(j, p, l)));
+        if (in) return true;
+    }
+    return false;
+}
+
+/* A vertex in the middle of each edge that another one joins the ends of, or that a triangle of a third face might have
+ * as a side: a vertex pair is one edge, also of the triangles. */
+static enum status part_edges(struct joined *j, struct err *err)
+{
+    struct edge_ends *ends = malloc(((size_t)j->half_count + 1) * sizeof *ends);
+    int count = 0, kept = 0;
+    enum status st = ends ? ST_OK : err_nomem(err, "edges of a union", (size_t)j->half_count * sizeof *ends);
+    for (int i = 0; !st && i < j->half_count; i++) {
+        if (j->halves[i].twin < i) continue;
+        const int a = j->halves[i].vertex, b = j->halves[j->halves[i].twin].vertex;
+        ends[count++] = (struct edge_ends){a < b ? a : b, a < b ? b : a, i, false};
+    }
+    if (!st && count) qsort(ends, (size_t)count, sizeof *ends, compare_ends);
+    for (int i = 0; !st && i < count; i++) {
+        const bool again = i && ends[i].low == ends[i - 1].low && ends[i].high == ends[i - 1].high;
+        ends[i].part = again || lies_in_a_face(j, ends[i].half);
+    }
+    for (int i = 0; !st && i < count; i++)
+        if (ends[i].part) ends[kept++] = ends[i];
+    for (int i = 0; !st && i < kept; i++) {
+        const int pair[2] = {ends[i].half, j->halves[ends[i].half].twin}, made = j->half_count;
+        double p[2][3];
+        for (int k = 0; k < 2; k++) coordinates(j, pair[k], p[k]);
+        for (int k = 0; !st && k < 2; k++) {
+            st = add_half(j, j->halves[pair[k]].border, -1, err);
+            if (st) break;
+            struct half *h = j->halves, *m = &h[made + k];
+            m->vertex = j->vertex_count;
+            m->loop = h[pair[k]].loop;
+            m->prev = pair[k];
+            m->next = h[pair[k]].next;
+            h[m->next].prev = made + k;
+            h[pair[k]].next = made + k;
+            m->twin = pair[1 - k];
+            for (int a = 0; a < 3; a++) m->middle[a] = 0.5 * (p[0][a] + p[1][a]);
+        }
+        for (int k = 0; !st && k < 2; k++) j->halves[pair[k]].twin = made + 1 - k;
+        j->vertex_count++;
+    }
+    free(ends);
+    return st;
+}
+
 /* --------------------------------------------------------------------------------------------------------- result */
 
 struct face_order {
@@ -755,7 +804,7 @@ static enum status unite_body(struct result *r, const struct solid_list *list, c
         make_vertices(&j);
         st = make_faces(&j, loop_of_border, merges, names->present, first, err);
     }
-    if (!st) st = part_double_edges(&j, err);
+    if (!st) st = part_edges(&j, err);
     if (!st) st = add_result(&j, r, first->body, names->texts, err);
     free(loop_of_border);
     joined_release(&j);

@@ -389,13 +389,14 @@ static void slivers_and_small_faces(void **state)
     add_box(&l, "floor", 0, 0, -1, 10, 10, 0);
     add_box(&l, "post", 5, 5, 0, 5.001, 5.001, 1); /* a top of a millionth */
     check_union(&l, (struct wanted){1, 0, 16, 11, 12, 100 + 1e-6});
-    /* turned by next to nothing: faces that are nearly parallel meet far away, if at all */
+    /* turned by four units of a normal, next to nothing: faces that are nearly parallel */
+    const double tiny = ldexp(1, -20);
     add_turned_wall(&l, "a", -500, 0, 0, 1000, 0.2, 0, 2.6);
-    add_turned_wall(&l, "b", -500, 0, 0.00001, 1000, 0.2, 0, 2.6);
+    add_turned_wall(&l, "b", -500, 0, tiny * 180 / M_PI, 1000, 0.2, 0, 2.6);
     struct solid_report r = {0};
     solid_mesh_release(&mesh);
     unite(&mesh, &r, NULL, &l);
-    assert_near(r.volume, (1000 * 0.2 + 0.5 * 1000 * 1000 * 0.00001 * M_PI / 180) * 2.6, 0.01);
+    assert_near(r.volume, (1000 * 0.2 + 0.5 * 1000 * 1000 * tiny) * 2.6, 0.01);
     solid_report_release(&r);
 }
 

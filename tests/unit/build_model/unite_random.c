@@ -19,11 +19,16 @@ static struct stream stream_of(const char *what, int index)
     return (struct stream){rng_make(seed ? (uint64_t)atoll(seed) : 1, "unite", what), (uint64_t)index << 32};
 }
 
-static int draw(struct stream *s, int below) { return (int)(rng_u32(&s->rng, s->at >> 32, s->at++) % (unsigned)below); }
+static int draw(struct stream *s, int below)
+{
+    const uint64_t at = s->at++;
+    return (int)(rng_u32(&s->rng, at >> 32, at) % (unsigned)below);
+}
 
 static double real(struct stream *s, double low, double high)
 {
-    return low + (high - low) * rng_uniform(&s->rng, s->at >> 32, s->at++);
+    const uint64_t at = s->at++;
+    return low + (high - low) * rng_uniform(&s->rng, at >> 32, at);
 }
 
 /* A box of lattice cells. */
