@@ -36,6 +36,7 @@ static void tell(const struct room *room, const struct files *f, const struct ca
 {
     const struct model_axes *a = &room->axes;
     const char *unit = a->metric ? "m" : "scene units";
+    const double turned = room->fix.turn * 180 / M_PI;
     log_note("normals along x, y and up: %.0f, %.0f and %.0f %%; up leans by %.1f degrees from the cameras' mean",
              100 * room->part[0], 100 * room->part[1], 100 * room->part[2], room->leaning);
     log_note("standard errors: up %.3f degrees, heading %.3f degrees, floor %.2g %s", a->tilt_error, a->heading_error,
@@ -43,7 +44,12 @@ static void tell(const struct room *room, const struct files *f, const struct ca
     log_note("the origin lies on the floor below view %s, %.4g %s under its camera; %s", set->views[room->central].name,
              -room->floor.height * a->scale, unit,
              room->floor_marked ? "marked corners say so" : "most points that look up say so");
-    if (room->turned > 0) log_note("%s turns the axes by %.2f degrees", f->fix, room->turned);
+    if (turned > 0)
+        log_note("%s turns the axes by %.2f degrees", f->fix, turned);
+    else if (room->fix.edges)
+        log_note("%s: the edges agree with the axes as well as marks can tell; the axes stay", f->fix);
+    if (room->corner_height < 0 && !room->floor_marked)
+        log_note("%s: the corners agree with the floor as well as marks can tell; the floor stays", f->fix);
     if (a->ceiling > 0)
         log_note("ceiling at %.4g +- %.2g %s, told by %zu points", a->ceiling, a->ceiling_error, unit,
                  room->ceiling.count);
@@ -55,9 +61,9 @@ static void tell(const struct room *room, const struct files *f, const struct ca
     if (room->leaning > MOST_LEANING)
         log_warn("up leans by %.0f degrees from where the photos' upper sides point: look at the pictures of the axes",
                  room->leaning);
-    if (room->turned > MOST_TURNED)
+    if (turned > MOST_TURNED)
         log_warn("%s turns the axes by %.0f degrees, which is more than a correction: look at the pictures of the axes",
-                 f->fix, room->turned);
+                 f->fix, turned);
     if (!room->floor_marked && (double)room->floor.beyond > MOST_BEYOND * (double)room->floor.asked)
         log_warn("%.0f %% of the points that look up lie below the floor that was found: it may be a table; a floor's "
                  "corner, marked in two views in axes_fix.txt, corrects it",

@@ -16,7 +16,7 @@ enum { CLUSTERS = 3, ITERATIONS = 20 };
 /* of the scene's size */
 static const double WINDOW = 0.008;  /* whose densest place is sought: about 2.5 cm of a room */
 static const double REACH = 0.02;    /* around it, beyond which points never count */
-static const double NOT_SMALL = 0.2; /* of the largest cluster, by their densest windows */
+static const double NOT_SMALL = 0.2; /* of the largest cluster */
 static const double LEAST_SPREAD = 1e-6;
 static const double BIWEIGHT = 4.685;
 
@@ -143,18 +143,20 @@ static enum status find_error(struct level *level, const struct place *places, c
 
 /* Where to begin. Of the floor's clusters the largest counts, by its densest window: tables and chairs may share a
  * cluster larger than the floor's, but not a height. What stands below a ceiling - beams, lamps, the heads of windows -
- * may show more than the ceiling does, and nothing is above it: its cluster is the highest that is not small. */
+ * may show more than the ceiling does, and more sharply, and nothing is above it: its cluster is the highest that is not
+ * small. */
 static double level_to_begin_with(const double *heights, const size_t *begin, int k, int side, double window)
 {
     double middle[CLUSTERS] = {0};
-    size_t count[CLUSTERS] = {0};
-    int largest = 0, highest = k - 1;
+    size_t count[CLUSTERS] = {0}, most = 0;
+    int densest_one = 0, highest = k - 1;
     for (int j = 0; j < k; j++) {
         count[j] = densest(&middle[j], heights, begin[j], begin[j + 1], window);
-        if (count[j] > count[largest]) largest = j;
+        if (count[j] > count[densest_one]) densest_one = j;
+        if (begin[j + 1] - begin[j] > most) most = begin[j + 1] - begin[j];
     }
-    while ((double)count[highest] < NOT_SMALL * (double)count[largest]) highest--;
-    return middle[side > 0 ? largest : highest];
+    while ((double)(begin[highest + 1] - begin[highest]) < NOT_SMALL * (double)most) highest--;
+    return middle[side > 0 ? densest_one : highest];
 }
 
 enum status find_level(struct level *level, int side, const struct mat3 *axes, struct vec3 origin,

@@ -5,9 +5,9 @@
 #include <string.h>
 
 #include "common/central_views.h"
-#include "stages/find_axes/correct.h"
 #include "stages/find_axes/directions.h"
 
+static const double CONTRADICTS = 2; /* standard errors between the floor and its corners */
 static const double DEGREE = M_PI / 180;
 
 static enum status central_view(int *central, const struct camera_set *set, struct err *err)
@@ -180,9 +180,14 @@ static enum status find_heights(struct room *room, struct measured *m, const str
         find_level(&room->ceiling, -1, &m->axes, m->origin, errors, in->cloud, params, err))
         return err->status;
     m->list = in->fix;
-    if (in->fix && corner_height(m, &room->floor.height, err)) {
-        room->floor_marked = true;
-        room->floor.error = mark_error(in->fix, params->click, measure_corners, m);
+    if (in->fix && corner_height(m, &room->corner_height, err)) {
+        const double error = mark_error(in->fix, params->click, measure_corners, m);
+        const double off = fabs(room->corner_height - room->floor.height);
+        room->floor_marked = !room->floor.count || off > CONTRADICTS * hypot(error, room->floor.error);
+        if (room->floor_marked) {
+            room->floor.height = room->corner_height;
+            room->floor.error = error;
+        }
     }
     if (err->status) return err->status;
     if (!room->floor_marked && !room->floor.count)
@@ -233,12 +238,11 @@ static enum status find_all(struct room *room, const struct room_inputs *in, con
     if (direction_errors(&errors, &m.axes, m.origin, in->cloud, err) ||
         find_planes(planes, &m.axes, true, &errors, m.origin, in->cloud, params, err))
         return err->status;
-    if (in->fix && correct_axes(&m.axes, &errors, &room->turned, in->fix, &m.scene, params->click, err))
+    if (in->fix && correct_axes(&m.axes, &errors, &room->fix, in->fix, &m.scene, params->click, err))
         return err->status;
-    if (room->turned > 0) {
+    if (room->fix.turn > 0) {
         room_planes_release(planes);
         if (find_planes(planes, &m.axes, false, &errors, m.origin, in->cloud, params, err)) return err->status;
-        room->turned /= DEGREE;
     }
     if (find_heights(room, &m, in, errors, params, err)) return err->status;
     m.scene.up = mat3_row(m.axes, 2);

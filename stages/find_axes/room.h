@@ -3,6 +3,7 @@
 #define REMODEL_ROOM_H
 
 #include "common/model_axes.h"
+#include "stages/find_axes/correct.h"
 #include "stages/find_axes/heights.h"
 #include "stages/find_axes/marks.h"
 
@@ -19,10 +20,11 @@ struct room {
     double least[2], most[2]; /* of the outermost walls that look inwards, x and y, model units */
     int central;              /* view under whose camera the origin lies */
     /* how it was found */
-    double part[3];              /* of normals along x, y, z */
-    double leaning;              /* degrees between up and the mean camera's up */
-    double turned;               /* degrees, by axes_fix.txt */
-    bool floor_marked;           /* its height comes from axes_fix.txt */
+    double part[3]; /* of normals along x, y, z */
+    double leaning; /* degrees between up and the mean camera's up */
+    struct correction fix;
+    double corner_height;        /* of marked corners, like those of levels; 0: none is seen in two views */
+    bool floor_marked;           /* the floor is where they say, since what was found contradicts them */
     struct level floor, ceiling; /* in scene units, from the central camera's height */
 };
 
