@@ -587,7 +587,7 @@ $(O)/metrics.tsv: $(CAMERAS) $(O)/views/lenses.txt $(DEPTH_EXR) $(DEPTH_TXT) $(H
 
 made = $(1)
 SHOWN := $(if $(PAIR),$(M)/video.mp4,$(if $(HELDOUT)$(TRUTH),$(O)/metrics.tsv) $(EFFECTS:%=$(P)/%/video.mp4) $(wildcard $(EFFECTS:%=$(P)/%/pan_scan/video.mp4)) \
-  $(EFFECTS:%=$(P)/%/path.txt) $(CAMERAS) $(DEPTH_EXR) $(DEPTH_TXT) $(wildcard $(M)/video.mp4)) \
+  $(EFFECTS:%=$(P)/%/path.txt) $(CAMERAS) $(DEPTH_EXR) $(DEPTH_TXT) $(wildcard $(AXES) $(M)/video.mp4)) \
   $(call $(if $(filter model,$(PRODUCTS)),made,wildcard),$(foreach m,$(MODELS),$(call model_files,$(m))) $(OVERLAYS))
 $(O)/index.html: $(SHOWN) $(S)/photos/list.txt $(STAGES:%=$(O)/slice/%.cfg) $(call needs,report)
 	$(call stage,report,page,$(O),--scene $(SCENE) --folder $(O) --shared $(S) --photos $(PICTURES) --defaults configs/default.cfg --out $@)

@@ -505,6 +505,49 @@ static enum status read_effects(struct contents *c, const char *folder, struct e
     return st;
 }
 
+/* ---------------------------------------------------------------------------------------------------------- axes */
+
+static enum status read_axes_card(struct contents *c, const char *path, const char *view, struct err *err)
+{
+    struct photo photo = {0};
+    struct err trouble = ERR_INIT;
+    struct axes_card *card = &c->axes[c->axes_count];
+    if (photo_read(&photo, path, &trouble))
+        return add_note(c, err, "A picture of the axes cannot be shown. %s", trouble.text);
+    snprintf(card->view, sizeof card->view, "%s", view);
+    const int at = camera_set_find(&c->views, view);
+    if (at >= 0 && c->view_cards[at].photo) photo.info.orientation = c->view_cards[at].photo->info.orientation;
+    const enum status st = picture_from_photo(&card->picture, &photo, AXES_HEIGHT, err);
+    c->axes_count += !st;
+    photo_release(&photo);
+    return st;
+}
+
+/* model/axes/VIEW.png, where the axes were found */
+static enum status read_axes(struct contents *c, const char *folder, struct err *err)
+{
+    struct dirent **names = NULL;
+    char path[PATH_SIZE];
+    snprintf(path, sizeof path, "%s/model/axes.txt", folder);
+    if (!is_file(path)) return ST_OK;
+    snprintf(path, sizeof path, "%s/model/axes", folder);
+    int count = scandir(path, &names, NULL, alphasort);
+    enum status st = ST_OK;
+    c->axes = calloc((size_t)(count > 0 ? count : 0) + 1, sizeof *c->axes);
+    if (!c->axes) st = err_nomem(err, "pictures of axes", (size_t)count * sizeof *c->axes);
+    for (int i = 0; i < count; i++) {
+        char *name = names[i]->d_name, *dot = strrchr(name, '.');
+        snprintf(path, sizeof path, "%s/model/axes/%s", folder, name);
+        if (!st && dot && dot != name && name[0] != '.' && !strcmp(dot, ".png")) {
+            *dot = '\0';
+            st = read_axes_card(c, path, name, err);
+        }
+        free(names[i]);
+    }
+    free(names);
+    return st;
+}
+
 /* --------------------------------------------------------------------------------------------------------- whole */
 
 /* Logs and slices of the two folders, each once. */
@@ -543,7 +586,8 @@ enum status contents_read(struct contents *c, const char *folder, const char *sh
     if (!is_folder(folder))
         return err_set(err, ST_IO, "%s is no folder: there is no scene to report on. Make the scene first.", folder);
     if (read_photos(c, shared, photos, err) || read_metrics(c, folder, err) || read_views(c, folder, err) ||
-        read_held(c, folder, err) || check_age(c, folder, err) || read_effects(c, folder, err))
+        read_held(c, folder, err) || check_age(c, folder, err) || read_effects(c, folder, err) ||
+        read_axes(c, folder, err))
         return err->status;
     return read_records(c, folder, shared, defaults, err);
 }
@@ -572,6 +616,8 @@ void contents_release(struct contents *c)
         free(c->effects[i].holes);
         free(c->effects[i].unfilled);
     }
+    for (int i = 0; i < c->axes_count; i++) picture_release(&c->axes[i].picture);
+    free(c->axes);
     free(c->photo_cards);
     free(c->view_cards);
     free(c->held_cards);

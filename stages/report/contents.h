@@ -13,7 +13,7 @@
 #include "settings.h"
 #include "usage.h"
 
-enum { NOTE_SIZE = 1024, PICTURE_HEIGHT = 240, HELD_HEIGHT = 360 };
+enum { NOTE_SIZE = 1024, PICTURE_HEIGHT = 240, HELD_HEIGHT = 360, AXES_HEIGHT = 480 };
 
 struct photo_card {
     const struct photo_record *record;
@@ -61,6 +61,11 @@ struct effect_card {
     struct pan_card pan;
 };
 
+struct axes_card { /* a view on which the room's axes are drawn */
+    char view[256];
+    struct picture picture;
+};
+
 struct contents {
     struct photo_list photos;
     struct camera_set views;
@@ -74,6 +79,8 @@ struct contents {
     struct held_card *held_cards; /* held.view_count */
     struct effect_card *effects;
     int effect_count;
+    struct axes_card *axes;
+    int axes_count;
     bool has_metrics;
     struct metric_rows metrics, view_metrics;
     char (*left_out)[256]; /* photographs in the folder that are not in the list */

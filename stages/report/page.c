@@ -10,8 +10,8 @@
 
 /* The order of the data's way; further stages follow in order of appearance. */
 static const char *const CHAIN[] = {"import_photos", "hdr_merge",     "sfm",         "sfm_import",
-                                    "rectify",       "segment_depth", "fuse_points", "plan_path",
-                                    "render_views",  "pan_scan",      "encode_video"};
+                                    "rectify",       "segment_depth", "fuse_points", "find_axes",
+                                    "plan_path",     "render_views",  "pan_scan",    "encode_video"};
 enum { CHAIN_LENGTH = sizeof CHAIN / sizeof *CHAIN };
 
 static void put_seconds(FILE *to, double seconds)
@@ -384,6 +384,11 @@ static const char *metric_words(const char *name)
         {"camera.rotation_max", "camera's turn, worst"},
         {"camera.rotation_median", "camera's turn, median"},
         {"camera.scale", "one scene unit, in units of the truth"},
+        {"axes.angle", "turn from the found axes to the true ones"},
+        {"axes.ceiling", "height of the ceiling, off by"},
+        {"axes.floor", "height of the floor, off by"},
+        {"axes.scale", "scale.txt against the cameras"},
+        {"axes.up", "angle between found and true up"},
         {"depth.bad1", "disparity off by more than 1 px, or no depth"},
         {"depth.bad1_visible", "the same where another photograph sees the point"},
         {"depth.bad2", "disparity off by more than 2 px, or no depth"},
@@ -437,6 +442,26 @@ static enum status put_held(FILE *to, const struct contents *c, const struct hel
         fputs("</span>", to);
     }
     fputs("</figcaption>\n</figure>\n", to);
+    return ST_OK;
+}
+
+/* Where the room stands, to be checked by eye. */
+static enum status put_axes(FILE *to, const struct contents *c, struct err *err)
+{
+    if (!c->axes_count) return ST_OK;
+    fputs("<section id=\"axes\" aria-labelledby=\"axes-title\">\n<h2 id=\"axes-title\">Axes of the room</h2>\n"
+          "<p class=\"muted\">x red, y green, z blue; yellow the floor's outline, cyan the ceiling's: the rectangle of "
+          "the "
+          "outermost walls, not hidden by what stands before it.</p>\n<div class=\"pairs\">\n",
+          to);
+    for (int i = 0; i < c->axes_count; i++) {
+        fputs("<figure>", to);
+        if (put_picture(to, &c->axes[i].picture, 85, "Axes drawn on view", c->axes[i].view, err)) return err->status;
+        fputs("<figcaption><b>", to);
+        html_text(to, c->axes[i].view);
+        fputs("</b></figcaption></figure>\n", to);
+    }
+    fputs("</div>\n</section>\n", to);
     return ST_OK;
 }
 
@@ -798,7 +823,8 @@ static void put_head(FILE *to, const char *scene, const struct contents *c)
 enum status page_write(FILE *to, const char *scene, const struct contents *c, struct err *err)
 {
     put_head(to, scene, c);
-    if (put_videos(to, c, err) || put_evaluation(to, c, err) || put_photos(to, c, err) || put_depths(to, c, err))
+    if (put_videos(to, c, err) || put_evaluation(to, c, err) || put_photos(to, c, err) || put_depths(to, c, err) ||
+        put_axes(to, c, err))
         return err->status;
     put_numbers(to, c);
     put_usage(to, c);

@@ -1,0 +1,113 @@
+/* pictures.c - lines where the room's outline and the axes are, and nowhere else; which views are drawn on. */
+#include "stages/find_axes/pictures.h"
+
+#include "tests/unit/find_axes/made_room.h"
+#include "tests/unit/scratch.h"
+
+static const struct axes_params PARAMS = AXES_PARAMS_DEFAULT;
+
+static struct made made(void) { return (struct made){.ceiling = 1, .world_from_room = MADE_IDENTITY, .scale = 1}; }
+
+static const unsigned char *at(const unsigned char *pixels, double u, double v)
+{
+    assert_true(u > 1 && v > 1 && u < 799 && v < 599);
+    return pixels + 3 * ((int)v * 800 + (int)u);
+}
+
+static void outlines_and_arrows_are_where_the_room_is(void **state)
+{
+    (void)state;
+    const struct made m = made();
+    struct made_room r;
+    struct room room;
+    struct err err = ERR_INIT;
+    make_room(&r, &m);
+    const struct room_inputs in = made_inputs(&r);
+    assert_ok(find_room(&room, &in, &PARAMS, &err), err);
+    unsigned char *pixels = calloc(3, 800 * 600);
+    assert_non_null(pixels);
+    const struct vec3 corner = {4, 2.5, 0};
+    draw_room(pixels, &r.views[0], &room, &corner, 1);
+    double u, v;
+    made_pixel(&r, 0, vec3_make(5, 2.8, 0), &u, &v); /* between wall and floor */
+    assert_true(at(pixels, u, v)[0] > 200 && at(pixels, u, v)[1] > 150 && at(pixels, u, v)[2] < 100);
+    made_pixel(&r, 0, vec3_make(5, 2.5, 2.6), &u, &v); /* between wall and ceiling */
+    assert_true(at(pixels, u, v)[0] < 100 && at(pixels, u, v)[1] > 150 && at(pixels, u, v)[2] > 150);
+    made_pixel(&r, 0, vec3_make(4, 2.5, 0.3), &u, &v); /* the blue arrow on the corner */
+    assert_true(at(pixels, u, v)[2] > 200 && at(pixels, u, v)[0] < 100);
+    made_pixel(&r, 0, vec3_make(5, 2, 1.3), &u, &v); /* the middle of a wall */
+    assert_true(at(pixels, u, v)[0] == 0 && at(pixels, u, v)[1] == 0 && at(pixels, u, v)[2] == 0);
+    free(pixels);
+    made_release(&r);
+}
+
+/* A camera on the floor's outline, and one far behind everything: lines are cut, nothing is written beside the picture
+ * (the sanitizers tell). */
+static void cameras_anywhere_draw_within_their_picture(void **state)
+{
+    (void)state;
+    const struct made m = made();
+    struct made_room r;
+    struct room room;
+    struct err err = ERR_INIT;
+    make_room(&r, &m);
+    const struct room_inputs in = made_inputs(&r);
+    assert_ok(find_room(&room, &in, &PARAMS, &err), err);
+    unsigned char *pixels = calloc(3, 800 * 600);
+    assert_non_null(pixels);
+    static const double places[][3] = {{0, 0, 0}, {5, 2, 0}, {2, 2, 0}, {-50, 2, 1}, {2, 2, 2.6}, {1e6, 1e6, 1e6}};
+    for (size_t i = 0; i < sizeof places / sizeof *places; i++)
+        for (int k = 0; k < MADE_VIEWS; k++) {
+            struct view v = r.views[k];
+            v.center = vec3_make(places[i][0], places[i][1], places[i][2]);
+            v.translation = vec3_scale(mat3_apply(v.cam_from_world, v.center), -1);
+            draw_room(pixels, &v, &room, NULL, 0);
+        }
+    free(pixels);
+    made_release(&r);
+}
+
+static void views_are_chosen_evenly(void **state)
+{
+    (void)state;
+    const struct made m = made();
+    struct made_room r;
+    make_room(&r, &m);
+    const struct room_inputs in = made_inputs(&r);
+    for (int count = 0; count <= 6; count++) {
+        bool chosen[MADE_VIEWS] = {false};
+        struct err err = ERR_INIT;
+        int sum = 0;
+        assert_ok(choose_pictures(chosen, count, &in, &err), err);
+        for (int i = 0; i < MADE_VIEWS; i++) sum += chosen[i];
+        assert_int_equal(sum, count < MADE_VIEWS ? count : MADE_VIEWS);
+        if (count == 2) assert_true(chosen[0] && chosen[2]);
+    }
+    made_release(&r);
+}
+
+static void a_black_picture_stays_black(void **state)
+{
+    (void)state;
+    struct image im = {0};
+    struct err err = ERR_INIT;
+    unsigned char pixels[12];
+    assert_ok(image_init(&im, 2, 2, 4, &err), err);
+    assert_ok(picture_to_look_at(pixels, &im, &err), err);
+    for (int i = 0; i < 12; i++) assert_int_equal(pixels[i], 0);
+    for (int i = 0; i < 16; i++) im.data[i] = i % 4 == 3 ? 1 : 1e6F; /* however bright */
+    assert_ok(picture_to_look_at(pixels, &im, &err), err);
+    for (int i = 0; i < 12; i++) assert_int_equal(pixels[i], 255);
+    image_release(&im);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(outlines_and_arrows_are_where_the_room_is),
+        cmocka_unit_test(cameras_anywhere_draw_within_their_picture),
+        cmocka_unit_test(views_are_chosen_evenly),
+        cmocka_unit_test(a_black_picture_stays_black),
+    };
+    return cmocka_run_group_tests_name("pictures", tests, NULL, NULL);
+}
