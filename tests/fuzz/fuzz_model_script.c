@@ -1,0 +1,46 @@
+/* fuzz_model_script.c - model scripts: any bytes give solids, or a sentence with file and line. */
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "stages/build_model/layout.h"
+#include "tests/fuzz/fuzz.h"
+
+enum { MOST = 64 }; /* statements that are looked at: what a few thousand do takes time and is nothing new */
+
+static void apply(struct script *script, const char *path, bool edit)
+{
+    struct plan plan;
+    struct solid_list list = {0};
+    struct err err = ERR_INIT;
+    plan_begin(&plan, NULL);
+    if (plan_apply(&plan, script, edit, NULL, &err)) {
+        if (!strstr(err.text, path) || !strchr(err.text + strlen(path), ':')) abort();
+    } else if (layout_solids(&list, &plan, &err)) {
+        if (!err.text[0]) abort();
+    }
+    solid_list_release(&list);
+    plan_release(&plan);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    char path[] = "/tmp/remodel-fuzz-XXXXXX";
+    int fd = mkstemp(path);
+    struct script script;
+    struct err err = ERR_INIT;
+
+    if (fd < 0 || write(fd, data, size) != (ssize_t)size || close(fd)) abort();
+    if (script_read(&script, path, &err)) {
+        if (!strstr(err.text, path) || script.statements || script.count) abort();
+    } else {
+        const int count = script.count;
+        script.count = count < MOST ? count : MOST;
+        apply(&script, path, false);
+        apply(&script, path, true);
+        script.count = count;
+        script_release(&script);
+    }
+    unlink(path);
+    return 0;
+}
