@@ -548,6 +548,77 @@ static enum status read_axes(struct contents *c, const char *folder, struct err 
     return st;
 }
 
+/* -------------------------------------------------------------------------------------------------------- models */
+
+static char *file_if_there(const char *folder, const char *name)
+{
+    char path[PATH_SIZE + 512];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    return is_file(path) ? strdup(path) : NULL;
+}
+
+static enum status read_model(struct contents *c, const char *folder, const char *name, struct err *err)
+{
+    struct dirent **names = NULL;
+    char path[PATH_SIZE];
+    const size_t bytes = ((size_t)c->model_count + 1) * sizeof *c->models;
+    snprintf(path, sizeof path, "%s/model.txt", folder);
+    if (!is_file(path)) return ST_OK;
+    struct model_card *grown = realloc(c->models, bytes);
+    if (!grown) return err_nomem(err, "models", bytes);
+    c->models = grown;
+    struct model_card *m = &grown[c->model_count++];
+    *m = (struct model_card){.plan = file_if_there(folder, "plan.svg"), .view = file_if_there(folder, "view.png")};
+    snprintf(m->name, sizeof m->name, "%s", name);
+    snprintf(path, sizeof path, "%s/overlay", folder);
+    const int count = scandir(path, &names, NULL, alphasort);
+    enum status st = ST_OK;
+    m->overlays = calloc((size_t)(count > 0 ? count : 0) + 1, sizeof *m->overlays);
+    m->named = calloc((size_t)(count > 0 ? count : 0) + 1, sizeof *m->named);
+    if (!m->overlays || !m->named) st = err_nomem(err, "pictures of a model", (size_t)count * sizeof *m->named);
+    for (int i = 0; i < count; i++) {
+        const char *file = names[i]->d_name, *dot = strrchr(file, '.');
+        if (!st && dot && dot != file && file[0] != '.' && !strcmp(dot, ".jpg")) {
+            m->overlays[m->overlay_count] = file_if_there(path, file);
+            m->named[m->overlay_count] = strndup(file, (size_t)(dot - file));
+            m->overlay_count += m->overlays[m->overlay_count] && m->named[m->overlay_count];
+        }
+        free(names[i]);
+    }
+    free(names);
+    return st;
+}
+
+/* model/, and remodel/EDIT/ of every edit */
+static enum status read_models(struct contents *c, const char *folder, struct err *err)
+{
+    struct dirent **names = NULL;
+    char path[PATH_SIZE], below[PATH_SIZE + 256];
+    snprintf(path, sizeof path, "%s/model", folder);
+    enum status st = read_model(c, path, "", err);
+    snprintf(path, sizeof path, "%s/remodel", folder);
+    const int count = scandir(path, &names, NULL, alphasort);
+    for (int i = 0; i < count; i++) {
+        snprintf(below, sizeof below, "%s/%s", path, names[i]->d_name);
+        if (!st && names[i]->d_name[0] != '.') st = read_model(c, below, names[i]->d_name, err);
+        free(names[i]);
+    }
+    free(names);
+    return st;
+}
+
+static void model_card_release(struct model_card *m)
+{
+    for (int i = 0; m->overlays && m->named && i < m->overlay_count; i++) {
+        free(m->overlays[i]);
+        free(m->named[i]);
+    }
+    free(m->overlays);
+    free(m->named);
+    free(m->plan);
+    free(m->view);
+}
+
 /* --------------------------------------------------------------------------------------------------------- whole */
 
 /* Logs and slices of the two folders, each once. */
@@ -587,7 +658,7 @@ enum status contents_read(struct contents *c, const char *folder, const char *sh
         return err_set(err, ST_IO, "%s is no folder: there is no scene to report on. Make the scene first.", folder);
     if (read_photos(c, shared, photos, err) || read_metrics(c, folder, err) || read_views(c, folder, err) ||
         read_held(c, folder, err) || check_age(c, folder, err) || read_effects(c, folder, err) ||
-        read_axes(c, folder, err))
+        read_axes(c, folder, err) || read_models(c, folder, err))
         return err->status;
     return read_records(c, folder, shared, defaults, err);
 }
@@ -618,6 +689,8 @@ void contents_release(struct contents *c)
     }
     for (int i = 0; i < c->axes_count; i++) picture_release(&c->axes[i].picture);
     free(c->axes);
+    for (int i = 0; i < c->model_count; i++) model_card_release(&c->models[i]);
+    free(c->models);
     free(c->photo_cards);
     free(c->view_cards);
     free(c->held_cards);

@@ -66,6 +66,13 @@ struct axes_card { /* a view on which the room's axes are drawn */
     struct picture picture;
 };
 
+struct model_card {           /* a solid model: that of the scene's script, or of an edit */
+    char name[256];           /* "" for the unedited one */
+    char *plan, *view;        /* files of its pictures, owned; NULL if there is none */
+    char **overlays, **named; /* files with its edges on photographs, owned, and the photographs' ids */
+    int overlay_count;
+};
+
 struct contents {
     struct photo_list photos;
     struct camera_set views;
@@ -81,6 +88,8 @@ struct contents {
     int effect_count;
     struct axes_card *axes;
     int axes_count;
+    struct model_card *models;
+    int model_count;
     bool has_metrics;
     struct metric_rows metrics, view_metrics;
     char (*left_out)[256]; /* photographs in the folder that are not in the list */

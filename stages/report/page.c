@@ -9,9 +9,9 @@
 #include "style.h"
 
 /* The order of the data's way; further stages follow in order of appearance. */
-static const char *const CHAIN[] = {"import_photos", "hdr_merge",     "sfm",         "sfm_import",
-                                    "rectify",       "segment_depth", "fuse_points", "find_axes",
-                                    "plan_path",     "render_views",  "pan_scan",    "encode_video"};
+static const char *const CHAIN[] = {"import_photos", "hdr_merge",   "sfm",         "sfm_import",  "rectify",
+                                    "segment_depth", "fuse_points", "find_axes",   "build_model", "plan_path",
+                                    "render_views",  "pan_scan",    "encode_video"};
 enum { CHAIN_LENGTH = sizeof CHAIN / sizeof *CHAIN };
 
 static void put_seconds(FILE *to, double seconds)
@@ -465,6 +465,46 @@ static enum status put_axes(FILE *to, const struct contents *c, struct err *err)
     return ST_OK;
 }
 
+static enum status put_model_picture(FILE *to, const char *file, const char *type, const char *what, const char *name,
+                                     struct err *err)
+{
+    if (!file) return ST_OK;
+    fprintf(to, "<figure><img loading=\"lazy\" alt=\"%s ", what);
+    html_text(to, name);
+    fprintf(to, "\" src=\"data:image/%s;base64,", type);
+    if (html_base64_file(to, file, err)) return err->status;
+    fprintf(to, "\"><figcaption><b>");
+    html_text(to, name);
+    fprintf(to, "</b> %s</figcaption></figure>\n", what);
+    return ST_OK;
+}
+
+/* Solid models, to be checked by eye: plan, view from above, edges on the photographs. */
+static enum status put_models(FILE *to, const struct contents *c, struct err *err)
+{
+    if (!c->model_count) return ST_OK;
+    fputs("<section id=\"model\" aria-labelledby=\"model-title\">\n<h2 id=\"model-title\">Model</h2>\n", to);
+    for (int i = 0; i < c->model_count; i++) {
+        const struct model_card *m = &c->models[i];
+        const char *name = m->name[0] ? m->name : "model";
+        fputs("<h3>", to);
+        html_text(to, m->name[0] ? m->name : "as photographed");
+        fputs("</h3>\n<div class=\"pairs\">\n", to);
+        if (put_model_picture(to, m->plan, "svg+xml", "plan", name, err) ||
+            put_model_picture(to, m->view, "png", "from above, cut below the ceiling", name, err))
+            return err->status;
+        fputs("</div>\n<details><summary>Its edges on the photographs <span class=\"muted\">red: seen; thin: behind "
+              "something of the model; blue: glass</span></summary>\n<div class=\"pairs\">\n",
+              to);
+        for (int k = 0; k < m->overlay_count; k++)
+            if (put_model_picture(to, m->overlays[k], "jpeg", "edges of the model", m->named[k], err))
+                return err->status;
+        fputs("</div>\n</details>\n", to);
+    }
+    fputs("</section>\n", to);
+    return ST_OK;
+}
+
 static void put_metrics(FILE *to, const struct metric_rows *r)
 {
     fputs("<div class=\"card wide\" role=\"region\" aria-labelledby=\"evaluation-title\" tabindex=\"0\"><table>\n"
@@ -812,6 +852,7 @@ static void put_head(FILE *to, const char *scene, const struct contents *c)
     put_plural(to, videos, "video", "videos");
     fputs(" · remodel " REMODEL_VERSION "</p>\n<nav aria-label=\"Contents\"><a href=\"#video\">Video</a>", to);
     if (c->has_metrics || c->held.view_count) fputs("<a href=\"#evaluation\">Measured</a>", to);
+    if (c->model_count) fputs("<a href=\"#model\">Model</a>", to);
     fputs(
         "<a href=\"#photos\">Photographs</a>"
         "<a href=\"#depth\">Depth</a><a href=\"#numbers\">Numbers</a><a href=\"#time\">Time and memory</a><a "
@@ -824,7 +865,7 @@ enum status page_write(FILE *to, const char *scene, const struct contents *c, st
 {
     put_head(to, scene, c);
     if (put_videos(to, c, err) || put_evaluation(to, c, err) || put_photos(to, c, err) || put_depths(to, c, err) ||
-        put_axes(to, c, err))
+        put_axes(to, c, err) || put_models(to, c, err))
         return err->status;
     put_numbers(to, c);
     put_usage(to, c);

@@ -2,6 +2,7 @@
  *
  * reads   FOLDER/{views,depth,parallax,log,slice}, SHARED/{photos,log,slice}   whatever is there of them
  *         FOLDER/metrics.tsv, evaluate, holdout   what was measured, the truth, held-out photographs
+ *         FOLDER/model, remodel          the solid models' pictures
  *         PHOTOS/FILE                    the photographs, for thumbnails
  *         DEFAULTS                       the default parameters, so that changed ones stand out
  * writes  OUT                            HTML with everything inside; what is missing is said there */
