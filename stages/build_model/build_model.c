@@ -1,4 +1,5 @@
-/* build_model.c - solid models of rooms from scripts: walls, rooms, doors, windows; and the models' edges on photographs.
+/* build_model.c - solid models of rooms from scripts: walls, rooms, doors, windows; and the models' edges on
+ * photographs.
  *
  * reads   SCRIPT, EDIT                                  docs/model-script.md
  *         AXES                                          where the model stands in the scene, ceiling

@@ -2,12 +2,12 @@
  *
  * A wall is cut into columns at the sides of its openings and where a sloping ceiling begins, a column at the sills and
  * heads into pieces. Where two openings share a side the pieces beside it are cut at their heights too, so that each
- * reveal has its own name. Pieces take the planes of their wall by the same numbers, so that what is one plane stays one.
- * Ends lie in the planes of the walls that they are joined to: the corner includes the intersection of both.
+ * reveal has its own name. Pieces take the planes of their wall by the same numbers, so that what is one plane stays
+ * one. Ends lie in the planes of the walls that they are joined to: the corner includes the intersection of both.
  *
  * Floors and ceilings cover the walls' thickness too, up to the middle of a wall between two rooms: they support the
- * walls, go on through doorways, and no two things touch in an edge alone. A room's polygon is cut into convex ones along the
- * lines of its own walls. */
+ * walls, go on through doorways, and no two things touch in an edge alone. A room's polygon is cut into convex ones
+ * along the lines of its own walls. */
 #include "stages/build_model/layout.h"
 
 #include <math.h>
@@ -43,7 +43,8 @@ static enum status add_shape(struct solid_list *list, const char *body, const st
     return solid_list_add(list, body, s->h, s->count, err);
 }
 
-/* ------------------------------------------------------------------------------------------------------------- walls */
+/* -------------------------------------------------------------------------------------------------------------
+ * walls */
 
 struct top { /* of a part of a wall: z = a[0] + a[1] x + a[2] y */
     double a[3];
@@ -351,8 +352,8 @@ static enum status add_wall(struct solid_list *list, const struct wall_parts *pa
         for (int i = 0; i < n; i++) /* cuts strictly between the ends */
             if (s[i] > span[0] + 1e-6 && s[i] < span[1] - 1e-6) s[kept++] = s[i];
     }
-    /* an opening that begins where the wall's clear span does leaves no column before it but the neighbour's corner: the
-     * first and the last column always reach to the caps */
+    /* an opening that begins where the wall's clear span does leaves no column before it but the neighbour's corner:
+     * the first and the last column always reach to the caps */
     for (int i = 0; i <= kept && !st; i++) {
         struct column c = {parts, wall, i == 0, i == kept, {i ? s[i - 1] : span[0], i < kept ? s[i] : span[1]}};
         const int count = tops_above(&c, tops);
@@ -403,7 +404,8 @@ static enum status add_pane(struct solid_list *list, const struct plan *p, const
                             : add_filling(list, p, o, 0, p->glass, true, err);
 }
 
-/* ----------------------------------------------------------------------------------------------- floors and ceilings */
+/* ----------------------------------------------------------------------------------------------- floors and
+ * ceilings */
 
 struct corner {
     double p[2];
@@ -530,7 +532,8 @@ static enum status add_room(struct solid_list *list, const struct plan *p, const
     return st;
 }
 
-/* ------------------------------------------------------------------------------------------------------------- boxes */
+/* -------------------------------------------------------------------------------------------------------------
+ * boxes */
 
 static enum status add_box(struct solid_list *list, const struct plan_box *b, struct err *err)
 {

@@ -1,9 +1,10 @@
 /* place.c - see place.h.
  *
  * A wall by a rectangle (thesis 4.4.2): of the points that the rectangle shows, those whose normals are near one of the
- * four canonical directions vote for it; along the winner the densest window of positions is the wall, refined to the weighted mean
- * of what lies in it. What the camera cannot see is left out first: points that turn away from it, and points behind
- * others (the rectangle is cut into cells, in each of which what is farther than the front by a part of its distance is hidden). */
+ * four canonical directions vote for it; along the winner the densest window of positions is the wall, refined to
+ * the weighted mean of what lies in it. What the camera cannot see is left out first: points that turn away from it,
+ * and points behind others (the rectangle is cut into cells, in each of which what is farther than the front by a
+ * part of its distance is hidden). */
 #include "stages/build_model/place.h"
 
 #include <math.h>
@@ -208,7 +209,8 @@ static enum status show_points(struct shown_point **shown, size_t *count, const 
         (*shown)[(*count)++] = (struct shown_point){q, distance, (float)((u - p->a[0]) / (p->a[2] - p->a[0])),
                                                     (float)((v - p->a[1]) / (p->a[3] - p->a[1])), 0};
     }
-    /* where points are few cells are larger, so that a cell with points behind a sparse wall has some of the wall too */
+    /* where points are few cells are larger, so that a cell with points behind a sparse wall has some of the wall
+     * too */
     const int cells = (int)fmax(1, fmin(CELLS, sqrt((double)*count / IN_CELL)));
     for (size_t i = 0; i < *count; i++) {
         const int x = (int)((*shown)[i].u * (float)cells), y = (int)((*shown)[i].v * (float)cells);
@@ -226,7 +228,8 @@ static enum status show_points(struct shown_point **shown, size_t *count, const 
     return ST_OK;
 }
 
-/* ----------------------------------------------------------------------------------------------------- where a wall is */
+/* ----------------------------------------------------------------------------------------------------- where a wall
+ * is */
 
 struct position {
     double at, weight;

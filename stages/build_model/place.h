@@ -1,8 +1,8 @@
-/* place.h - from pixels of photographs to places of the model: walls by the oriented points that a rectangle shows, corners of
- * openings and boxes by the rays through their pixels.
+/* place.h - from pixels of photographs to places of the model: walls by the oriented points that a rectangle shows,
+ * corners of openings and boxes by the rays through their pixels.
  *
- * A rectangle shows the points that project into it, face the camera, and are not behind others. Pixels are those of the
- * photograph as it is stored, mapped through its lens. */
+ * A rectangle shows the points that project into it, face the camera, and are not behind others. Pixels are those of
+ * the photograph as it is stored, mapped through its lens. */
 #ifndef REMODEL_BUILD_MODEL_PLACE_H
 #define REMODEL_BUILD_MODEL_PLACE_H
 
@@ -47,8 +47,9 @@ struct placed_wall {
     size_t points;     /* that it rests on */
 };
 
-/* normal: the wall's own, which is kept (adjust), or NULL. Without it the canonical axis by the majority of the normals,
- * or, if `angled`, the direction that fits the points. path and line: to name. ST_DATA: no such view; no points; ... */
+/* normal: the wall's own, which is kept (adjust), or NULL. Without it the canonical axis by the majority of the
+ * normals, or, if `angled`, the direction that fits the points. path and line: to name. ST_DATA: no such view; no
+ * points; ... */
 enum status place_wall(struct placed_wall *wall, const struct placer *placer, const struct place *place,
                        const double normal[2], bool angled, const char *path, int line, struct err *err);
 

@@ -1,8 +1,8 @@
 /* plan.c - see plan.h.
  *
- * Statements change the plan at once, but what depends on the whole (whether an opening lies in its wall, whether a room's
- * walls close) is checked when all of the script is there, and in an edit after each statement: only what leaves a
- * building is an edit. */
+ * Statements change the plan at once, but what depends on the whole (whether an opening lies in its wall, whether a
+ * room's walls close) is checked when all of the script is there, and in an edit after each statement: only what
+ * leaves a building is an edit. */
 #include "stages/build_model/plan.h"
 
 #include <math.h>
@@ -96,7 +96,8 @@ static enum status add_name(struct plan *plan, const char *name, enum named kind
     return ST_OK;
 }
 
-/* -------------------------------------------------------------------------------------------------------- statements */
+/* --------------------------------------------------------------------------------------------------------
+ * statements */
 
 struct doer {
     struct plan *plan;
@@ -227,7 +228,8 @@ static enum status do_set(struct doer *d)
     return ST_OK;
 }
 
-/* ------------------------------------------------------------------------------------------------------------- lines */
+/* -------------------------------------------------------------------------------------------------------------
+ * lines */
 
 struct plan_line wall_face(const struct plan_wall *w, int side)
 {
@@ -386,7 +388,8 @@ double plan_wall_top(const struct plan *plan, int wall, double s0, double s1)
     return least < HUGE_VAL ? least : w->top;
 }
 
-/* ------------------------------------------------------------------------------------------------------------- walls */
+/* -------------------------------------------------------------------------------------------------------------
+ * walls */
 
 static enum status set_wall_line(struct doer *d, struct plan_wall *w, const double a[2], const double b[2])
 {
@@ -636,7 +639,8 @@ static enum status do_slope(struct doer *d)
     return ST_OK;
 }
 
-/* -------------------------------------------------------------------------------------------------- walls with walls */
+/* -------------------------------------------------------------------------------------------------- walls with
+ * walls */
 
 static double from_end(const struct plan *plan, int wall, int end, const double p[2])
 {
@@ -786,7 +790,8 @@ static enum status do_split(struct doer *d)
     return add_to_rooms(d, wall, new);
 }
 
-/* ------------------------------------------------------------------------------------------------------------- edits */
+/* -------------------------------------------------------------------------------------------------------------
+ * edits */
 
 static enum status do_adjust(struct doer *d)
 {
@@ -938,7 +943,8 @@ static enum status apply_one(struct doer *d)
     }
 }
 
-/* ------------------------------------------------------------------------------------------------------------ checks */
+/* ------------------------------------------------------------------------------------------------------------
+ * checks */
 
 struct checker {
     struct plan *plan;

@@ -1,10 +1,11 @@
 /* plan.h - what a script says: walls with their joins, rooms, openings and boxes, before they are solids.
  *
- * Model frame: z up, floor at 0, x and y along the walls. In plan a wall is a line that runs from its start to its end, left
- * to right for who stands before it inside; its in face is on that line, its body behind it. S along a wall is x or y of
- * the model for a wall along an axis, and the distance from its first point for an angled one.
+ * Model frame: z up, floor at 0, x and y along the walls. In plan a wall is a line that runs from its start to its
+ * end, left to right for who stands before it inside; its in face is on that line, its body behind it. S along a
+ * wall is x or y of the model for a wall along an axis, and the distance from its first point for an angled one.
  *
- * Ends are kept as what they are joined to, not as places, so that a wall that moves takes its neighbours' ends along. */
+ * Ends are kept as what they are joined to, not as places, so that a wall that moves takes its neighbours' ends
+ * along. */
 #ifndef REMODEL_BUILD_MODEL_PLAN_H
 #define REMODEL_BUILD_MODEL_PLAN_H
 
@@ -98,12 +99,12 @@ struct plan {
     int name_room, name_count;
 };
 
-/* What a model of these axes starts from; lengths are those of homes in metres, unknown without a scale but for `ceiling` and
- * `thickness`, which the axes may have. axes may be NULL: metres. */
+/* What a model of these axes starts from; lengths are those of homes in metres, unknown without a scale but for
+ * `ceiling` and `thickness`, which the axes may have. axes may be NULL: metres. */
 void plan_begin(struct plan *plan, const struct model_axes *axes);
 
-/* Does what the statements say, in order, then checks the whole; edit: checks after every statement, so that the one that
- * breaks something is named. placer may be NULL if no statement names a view. ST_DATA with file and line. */
+/* Does what the statements say, in order, then checks the whole; edit: checks after every statement, so that the one
+ * that breaks something is named. placer may be NULL if no statement names a view. ST_DATA with file and line. */
 enum status plan_apply(struct plan *plan, const struct script *script, bool edit, const struct placer *placer,
                        struct err *err);
 void plan_release(struct plan *plan);
@@ -113,8 +114,8 @@ struct plan_line { /* n p = c, n unit */
     double n[2], c;
 };
 struct plan_line wall_face(const struct plan_wall *w, int side); /* n points out of the wall */
-/* The line across a wall at one of its ends, n pointing out of the wall. *face_wall, *face_side: the face of another wall
- * that it lies on; *face_wall is -1 for none. */
+/* The line across a wall at one of its ends, n pointing out of the wall. *face_wall, *face_side: the face of another
+ * wall that it lies on; *face_wall is -1 for none. */
 struct plan_line wall_cap(const struct plan *plan, int wall, int end, int *face_wall, int *face_side);
 void wall_point(const struct plan_wall *w, double s, double off, double p[2]); /* off: behind the in face */
 bool line_cross(struct plan_line a, struct plan_line b, double p[2]);          /* false: nearly parallel */

@@ -7,18 +7,19 @@
 #include "common/solid_mesh.h"
 #include "stages/build_model/layout.h"
 
-/* SVG: walls, openings and boxes with their names, rooms with their sizes, the photographs' places and fields of view (as
- * far as 60 degrees to either side of their axes), a scale bar. placer may be NULL: no photographs. metric: units are
- * metres. */
+/* SVG: walls, openings and boxes with their names, rooms with their sizes, the photographs' places and fields of
+ * view (as far as 60 degrees to either side of their axes), a scale bar. placer may be NULL: no photographs. metric:
+ * units are metres. */
 enum status plan_picture_write(const struct plan *plan, const struct placer *placer, bool metric, const char *path,
                                struct err *err);
 
-/* PNG: the mesh from above and aside, orthographic, flat-shaded, cut below the ceilings, with the photographs' frusta. */
+/* PNG: the mesh from above and aside, orthographic, flat-shaded, cut below the ceilings, with the photographs'
+ * frusta. */
 enum status view_picture_write(const struct solid_mesh *mesh, const struct plan *plan, const struct placer *placer,
                                const char *path, struct err *err);
 
-/* JPEG: the photograph, as it is stored, with the model's edges: bright where they are seen, thin where something of the
- * model hides them, blue for glass. At most `side` px wide and high. */
+/* JPEG: the photograph, as it is stored, with the model's edges: bright where they are seen, thin where something of
+ * the model hides them, blue for glass. At most `side` px wide and high. */
 enum status overlay_write(const struct solid_mesh *mesh, const struct photo_camera *camera, const struct photo *photo,
                           int side, const char *path, struct err *err);
 

@@ -1,7 +1,8 @@
 /* raster.h - triangles and lines into small pictures: what is in front of what.
  *
  * The buffer holds nearness, linear over a triangle in the picture: 1/z in perspective, minus the distance in an
- * orthographic view. Larger is nearer; -HUGE_VALF where nothing is. Pixel (x, y) has its centre at (x + 0.5, y + 0.5). */
+ * orthographic view. Larger is nearer; -HUGE_VALF where nothing is. Pixel (x, y) has its centre at (x + 0.5, y +
+ * 0.5). */
 #ifndef REMODEL_BUILD_MODEL_RASTER_H
 #define REMODEL_BUILD_MODEL_RASTER_H
 

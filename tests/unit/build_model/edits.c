@@ -1,6 +1,7 @@
 /* edits.c - random sequences of legal edits: every model is a closed, 2-manifold solid, and faces keep their ids.
  *
- * Statements are drawn at random over a flat of two rooms; those that the plan refuses are no edits and are left out. */
+ * Statements are drawn at random over a flat of two rooms; those that the plan refuses are no edits and are left
+ * out. */
 #include "tests/unit/build_model/scripted.h"
 
 #include "common/rng.h"

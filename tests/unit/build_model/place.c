@@ -4,8 +4,8 @@
 #include "common/rng.h"
 #include "stages/build_model/place.h"
 
-/* A camera at (2, 2, 1.5) of the model that looks along +y, a fisheye and a pinhole; the world is the model turned by 30
- * degrees, moved, and half as large. */
+/* A camera at (2, 2, 1.5) of the model that looks along +y, a fisheye and a pinhole; the world is the model turned
+ * by 30 degrees, moved, and half as large. */
 static char fish[] = "fish", pin[] = "pin", pin0[] = "pin@0";
 static struct lens lenses[] = {
     {fish, fish, {CAMERA_OPENCV_FISHEYE, 960, 640, {426, 426, 480, 320, -1.0 / 24, 1.0 / 1920, 0, 0}}, {1, 0, 0, 0}},
@@ -56,8 +56,8 @@ static int start(void **state)
         v.translation = vec3_scale(mat3_apply(v.cam_from_world, v.center), -1);
         views[i] = world_from_model_view(&axes, &v);
     }
-    /* before the camera a wall at y = 4, whose normal looks to -y, a picture's width before it a board at y = 3.9, behind it
-     * a wall of another room, aside one that stands askew */
+    /* before the camera a wall at y = 4, whose normal looks to -y, a picture's width before it a board at y = 3.9,
+     * behind it a wall of another room, aside one that stands askew */
     add_wall(0, -1, -4, 2, 4, 1.5, 6000, 0.02);
     add_wall(0, -1, -3.6, 1.2, 3.6, 0.3, 1500, 0.02);
     add_wall(0, -1, -6, 2, 6, 3, 20000, 0.02);
