@@ -175,7 +175,7 @@ check: deps-check ## build and run all tests
 bench: deps-bench ## measure everything in tests/bench: tables and plots under out/bench
 	+@$(BUILD) bench-build
 	+@rc=0; for b in tests/bench/*.sh; do tests/bench/run "$$(basename $$b .sh)" '$(B)' || rc=1; done; exit $$rc
-bench-%: deps-bench FORCE ## one of them: bench-depth, bench-exr, bench-moves, bench-render, bench-simulate
+bench-%: deps-bench FORCE ## one of them: bench-depth, bench-exr, bench-moves, bench-render, bench-simulate, bench-unite
 	+@$(BUILD) bench-build
 	+@tests/bench/run '$*' '$(B)'
 bench-compare: deps-bench ## NAME=exr OLD=REVISION: the same bench on another revision's code, alternating

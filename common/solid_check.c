@@ -1,8 +1,8 @@
 /* solid_check.c - whether a mesh is a closed solid (solid_mesh.h).
  *
  * Self-intersection is looked for in three ways, which together leave only faults that meet edge to edge: no edge of a
- * body goes through the inside of a face of that body; no two of its faces in one plane cover each other; and each shell
- * is, by the solid angle under which the others are seen from one of its faces, in no other one (a cavity in one). What
+ * body goes through the inside of a face of that body; no two of its faces in one plane cover each other; and each
+ * shell is, by the solid angle under which the others are seen from one of its faces, in no other one (a cavity in one). What
  * is nearer than the tolerance touches. */
 #include <math.h>
 #include <stdbool.h>
@@ -26,7 +26,8 @@ struct checker {
     const struct solid_mesh *mesh;
     double tolerance;
     struct solid_triangles triangles;
-    int *shell_of; /* faces; owned */
+    int *shell_of;      /* faces; owned */
+    double *shell_area; /* owned */
     struct solid_report *report;
 };
 
@@ -123,7 +124,8 @@ static enum status find_shells(struct checker *c, struct err *err)
     int *shell = malloc(((size_t)m->face_count + 1) * sizeof *shell);
     c->shell_of = malloc(((size_t)m->face_count + 1) * sizeof *c->shell_of);
     r->shells = calloc((size_t)m->face_count + 1, sizeof *r->shells);
-    if (!shell || !c->shell_of || !r->shells) {
+    c->shell_area = calloc((size_t)m->face_count + 1, sizeof *c->shell_area);
+    if (!shell || !c->shell_of || !r->shells || !c->shell_area) {
         free(shell);
         return err_nomem(err, "shells", (size_t)m->face_count * sizeof *r->shells);
     }
@@ -195,6 +197,7 @@ static enum status check_faces(struct checker *c, struct err *err)
         const struct vec3 origin = AT(c, m->half_edges[first->half_edge].origin);
         const double volume = area * (m->faces[f].offset - vec3_dot(m->faces[f].normal, origin)) / 3;
         r->shells[c->shell_of[f]].volume += volume;
+        c->shell_area[c->shell_of[f]] += area;
         r->volume += volume;
     }
     for (int b = 0; b < m->body_count; b++)
@@ -433,9 +436,11 @@ static enum status check_shells(const struct checker *c, struct err *err)
         const int s = c->shell_of[f];
         if (done[s]) continue;
         done[s] = 1;
+        if (fabs(r->shells[s].volume) <= c->tolerance * c->shell_area[s]) continue; /* too thin to be in anything */
         const int *v = c->triangles.triangles[c->triangles.first[f]].v;
-        const struct vec3 sum = vec3_add(AT(c, v[0]), vec3_add(AT(c, v[1]), AT(c, v[2])));
-        const struct vec3 p = vec3_scale(sum, 1.0 / 3);
+        /* at no special place of the face: others may touch it in edges */
+        const struct vec3 p = vec3_add(vec3_scale(AT(c, v[0]), 0.2371),
+                                       vec3_add(vec3_scale(AT(c, v[1]), 0.3093), vec3_scale(AT(c, v[2]), 0.4536)));
         struct box3 at;
         double around = 0;
         box_add(&at, p, true);
@@ -471,6 +476,7 @@ enum status solid_mesh_check(const struct solid_mesh *mesh, double tolerance, st
     if (!st) st = check_shells(&c, err);
     solid_triangles_release(&c.triangles);
     free(c.shell_of);
+    free(c.shell_area);
     solid_report_release(&own);
     return st;
 }

@@ -147,7 +147,8 @@ struct solid_triangles {
 };
 
 /* Each face's polygon with holes, by ear clipping. Every vertex on a loop is a corner, so that the triangles of a
- * closed mesh are closed as well; none has zero area. */
+ * closed mesh are closed as well. None has zero area, but between corners of oblique faces that are so near each other
+ * that doubles do not tell them apart. */
 enum status solid_mesh_triangulate(struct solid_triangles *triangles, const struct solid_mesh *mesh, struct err *err);
 void solid_triangles_release(struct solid_triangles *triangles);
 

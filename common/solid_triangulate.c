@@ -3,13 +3,13 @@
  * A face is projected along the axis that its normal is most along. Each hole is joined to the loop around it by a
  * bridge, a pair of edges from its rightmost corner to the nearest corner that it sees (holes from right to left, so
  * that there always is one among the loops joined so far); then ears are clipped (Meisters 1975; bridges as in Eberly,
- * Triangulation by Ear Clipping). What differs: corners in the middle of an edge stay corners, so that neighbours agree;
- * a triangle is an ear only if no other corner is in it or on its border; and since bridges, and holes that reach the
+ * Triangulation by Ear Clipping). What differs: corners in the middle of an edge stay corners, so that neighbours
+ * agree; a triangle is an ear only if no other corner is in it or on its border; and since bridges, and holes that reach the
  * outer loop in a point, let corners coincide, a diagonal is not drawn where an edge joins the same two places.
  *
  * Places along the axes are exact in doubles; on oblique edges corners are a rounding off, so that lengths below a few
- * units in the last place of the largest coordinate count as 0. Ears that only this tolerance forbids are taken when
- * there are no others. The area of all triangles is compared with that of the face in the end. */
+ * units in the last place of the largest coordinate count as 0. Ears that only this tolerance forbids, in the end
+ * flat ones, are taken when there are no others: where corners are that near each other. The area of all triangles is compared with that of the face in the end. */
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
@@ -181,12 +181,17 @@ static bool forbids(const struct clipper *t, int ia, int ib, int ic, int iq, boo
     return strict ? d0 >= 0 && d1 >= 0 && d2 >= 0 : d0 > 0 && d1 > 0 && d2 > 0;
 }
 
-static bool is_ear(struct clipper *t, int b, bool strict)
+/* How much an ear may be off: nothing; corners on its border; flat, too. */
+enum { EXACT, LOOSE, FLAT };
+
+static bool is_ear(struct clipper *t, int b, int how)
 {
     struct corner *k = t->corners;
     const int a = k[b].prev, c = k[b].next;
-    if (k[c].next == a) return turn(t, &k[a], &k[b], &k[c]) > 0; /* the last one */
-    if (!(turn(t, &k[a], &k[b], &k[c]) > 0)) return false;
+    const double area = turn(t, &k[a], &k[b], &k[c]);
+    const bool strict = how == EXACT;
+    if (how == FLAT ? area < 0 : !(area > 0)) return false;
+    if (k[c].next == a) return true; /* the last one */
     if (!t->columns) {
         int q = c;
         do {
@@ -254,10 +259,10 @@ static int clip_ears(struct clipper *t, int at, struct solid_triangle *out, int 
 {
     struct corner *k = t->corners;
     int left = t->count, made = 0, tried = 0;
-    bool strict = true;
+    int how = EXACT;
     while (left >= 3) {
         const int a = k[at].prev, c = k[at].next;
-        if (is_ear(t, at, strict)) {
+        if (is_ear(t, at, how)) {
             out[made++] = (struct solid_triangle){{k[a].vertex, k[at].vertex, k[c].vertex}, face};
             if (left-- == 3) return made;
             k[a].next = c;
@@ -265,12 +270,11 @@ static int clip_ears(struct clipper *t, int at, struct solid_triangle *out, int 
             k[at].gone = true;
             at = k[c].next; /* not the next one: triangles would fan out from one corner */
             tried = 0;
-            strict = true;
+            how = EXACT;
         } else {
             at = c;
             if (++tried < left) continue;
-            if (!strict) return -1;
-            strict = false;
+            if (how++ == FLAT) return -1;
             tried = 0;
         }
     }

@@ -24,9 +24,10 @@ void convex_set_release(struct convex_set *set)
 
 /* ---------------------------------------------------------------------------------------------------- the lattice */
 
-struct oblique { /* a plane before its normal is reduced, its first component that is not 0 positive */
-    int64_t n[3], q;
-    size_t of; /* half-space */
+struct oblique {         /* a plane, the first component of its normal that is not 0 positive */
+    int64_t n[3], q;     /* to compare with others: the largest component 2^22, the offset in steps */
+    int64_t whole[3], d; /* what it is on the lattice */
+    size_t of;           /* half-space */
     bool turned;
 };
 
@@ -48,15 +49,56 @@ static bool nearly_same(const struct oblique *a, const struct oblique *b)
 
 static int64_t divisor(int64_t a, int64_t b) { return b ? divisor(b, a % b) : llabs(a); }
 
-/* Normal reduced, offset to match it. */
-static struct lattice_half_space reduced(const struct oblique *o)
+/* p / q = x to 1e-13, q at most EXACT_NORMAL: by continued fractions; false if there is none. |x| is at most 1. */
+static bool ratio(double x, int64_t *p, int64_t *q)
+{
+    int64_t p0 = 0, q0 = 1, p1 = 1, q1 = 0;
+    double rest = x;
+    for (int i = 0; i < 40; i++) {
+        const double whole = floor(rest);
+        if (fabs(whole) > EXACT_NORMAL) return false;
+        const int64_t p2 = (int64_t)whole * p1 + p0, q2 = (int64_t)whole * q1 + q0;
+        if (q2 > EXACT_NORMAL) return false;
+        p0 = p1;
+        q0 = q1;
+        p1 = p2;
+        q1 = q2;
+        if (fabs(x - (double)p1 / (double)q1) <= 1e-13) {
+            *p = p1;
+            *q = q1;
+            return true;
+        }
+        rest = 1 / (rest - whole);
+    }
+    return false;
+}
+
+/* The normal in whole numbers: exact where its components are to each other as small ones are (walls between corners that
+ * were typed), to 2^-22 otherwise; and the offset, in steps, times its length. */
+static void to_whole(struct oblique *o, const double n[3], double most, double offset)
+{
+    int64_t p[3], q[3], common = 1;
+    bool exact = true;
+    for (int i = 0; i < 3 && exact; i++) {
+        exact = ratio(n[i] / most, &p[i], &q[i]);
+        if (exact) common *= q[i] / divisor(common, q[i]);
+        exact = exact && common <= EXACT_NORMAL;
+    }
+    for (int i = 0; i < 3; i++) o->whole[i] = exact ? p[i] * (common / q[i]) : o->n[i];
+    const int64_t g = divisor(divisor(o->whole[0], o->whole[1]), o->whole[2]);
+    double square = 0;
+    for (int i = 0; i < 3; i++) {
+        o->whole[i] /= g;
+        square += (double)o->whole[i] * (double)o->whole[i];
+    }
+    o->d = llround(offset * sqrt(square));
+}
+
+static struct lattice_half_space half_space_of(const struct oblique *o, bool turned)
 {
     struct lattice_half_space h = {.everywhere = false};
-    const int64_t g = divisor(divisor(o->n[0], o->n[1]), o->n[2]);
-    for (int i = 0; i < 3; i++) h.n[i] = (o->turned ? -o->n[i] : o->n[i]) / g;
-    const double length =
-        sqrt((double)h.n[0] * (double)h.n[0] + (double)h.n[1] * (double)h.n[1] + (double)h.n[2] * (double)h.n[2]);
-    h.d = llround((double)(o->turned ? -o->q : o->q) * length);
+    for (int i = 0; i < 3; i++) h.n[i] = turned ? -o->whole[i] : o->whole[i];
+    h.d = turned ? -o->d : o->d;
     return h;
 }
 
@@ -69,9 +111,7 @@ static void snap_oblique(const struct oblique *planes, size_t *first, size_t cou
         size_t k = window;
         while (k < kept && !nearly_same(&planes[first[k]], &planes[i])) k++;
         if (k == kept) first[kept++] = i;
-        struct oblique taken = planes[first[k]];
-        taken.turned = planes[i].turned;
-        out[planes[i].of] = reduced(&taken);
+        out[planes[i].of] = half_space_of(&planes[first[k]], planes[i].turned);
     }
 }
 
@@ -89,20 +129,29 @@ enum status lattice_half_spaces(struct lattice_half_space **half_spaces, const s
             const struct half_space *h = &list->solids[i].half_spaces[k];
             const double n[3] = {h->normal.x, h->normal.y, h->normal.z};
             const double most = fmax(fmax(fabs(n[0]), fabs(n[1])), fabs(n[2]));
-            const double offset = h->offset / vec3_length(h->normal) / SOLID_STEP;
+            double offset = h->offset / vec3_length(h->normal) / SOLID_STEP;
             struct oblique o = {.of = at};
             out[at].everywhere = offset > 2.0 * FAR_OUT;
             if (out[at].everywhere) continue;
-            o.q = offset < -2.0 * FAR_OUT ? -2 * FAR_OUT : llround(offset);
+            offset = fmax(offset, -2.0 * FAR_OUT);
             for (int a = 0; a < 3; a++) o.n[a] = llround(n[a] / most * EXACT_NORMAL);
             const int64_t lead = o.n[0] ? o.n[0] : o.n[1] ? o.n[1] : o.n[2];
             o.turned = lead < 0;
-            if (o.turned)
-                for (int a = 0; a < 4; a++) *(a < 3 ? &o.n[a] : &o.q) *= -1;
-            if ((o.n[0] != 0) + (o.n[1] != 0) + (o.n[2] != 0) == 1)
-                out[at] = reduced(&o);
-            else
+            double up[3];
+            for (int a = 0; a < 3; a++) {
+                up[a] = o.turned ? -n[a] : n[a];
+                o.n[a] = llround(up[a] / most * EXACT_NORMAL);
+            }
+            offset = o.turned ? -offset : offset;
+            o.q = llround(offset);
+            if ((o.n[0] != 0) + (o.n[1] != 0) + (o.n[2] != 0) == 1) {
+                for (int a = 0; a < 3; a++) o.whole[a] = o.n[a] / EXACT_NORMAL;
+                o.d = o.q;
+                out[at] = half_space_of(&o, o.turned);
+            } else {
+                to_whole(&o, up, most, offset);
                 planes[oblique++] = o;
+            }
         }
     if (!st) {
         qsort(planes, oblique, sizeof *planes, by_plane);

@@ -1,10 +1,11 @@
 /* solid.h - convex solids as half-spaces with face names: what layout makes and unite puts together.
  *
  * Model frame, model units. Coordinates are taken to a lattice of a millionth of a unit (SOLID_STEP): a plane along
- * the axes lies on it exactly; an oblique plane has a normal of whole numbers (the largest component 2^22) and an
- * offset on the lattice. What is meant to be the same plane should be given by the same numbers (pieces of one wall
- * take the wall's planes, also on sloped and angled ones, and the opposite plane its negative); oblique planes that
- * differ by no more than two steps in normal and offset are taken as one. */
+ * the axes lies on it exactly. An oblique plane has a normal of whole numbers, exact where its components are to each
+ * other as whole numbers up to 2^22 are (45 degrees; a wall between corners with few digits), to 2^-22 of the largest
+ * one otherwise. What is meant to be the same plane should be given by the same numbers (pieces of one wall take the
+ * wall's planes, also on sloped and angled ones, and the opposite plane its negative); oblique planes that differ by no
+ * more than two steps in normal and offset are taken as one. */
 #ifndef REMODEL_BUILD_MODEL_SOLID_H
 #define REMODEL_BUILD_MODEL_SOLID_H
 

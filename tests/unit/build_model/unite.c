@@ -362,7 +362,7 @@ static void a_hole_that_reaches_the_outer_edge_in_a_point(void **state)
     assert_int_equal(r.count, 1);
     assert_near(r.volume, 12 - 2, 1e-12);
     solid_report_release(&r);
-    /* a column on a slab's corner quarter, whose opposite corner is missing: the slab's face comes by that place twice */
+    /* a column at a corner of a slab's opening: the slab's face comes by that place twice */
     add_box(&l, "l", 0, 0, 0, 1, 4, 1);
     add_box(&l, "m", 0, 2, 0, 4, 4, 1);
     add_box(&l, "n", 2, 0, 0, 4, 4, 1);

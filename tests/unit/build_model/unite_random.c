@@ -129,7 +129,7 @@ struct polyhedron {
 };
 
 /* A rotated box, prism or clipped ball, around a place near the middle. */
-static struct polyhedron random_polyhedron(struct stream *s)
+static struct polyhedron random_polyhedron(struct stream *s, double scale)
 {
     struct polyhedron p = {.count = 6};
     const struct vec3 at = {real(s, -1, 1), real(s, -1, 1), real(s, -1, 1)};
@@ -141,7 +141,7 @@ static struct polyhedron random_polyhedron(struct stream *s)
         struct vec3 n = vec3_scale(axes[i / 2 % 3], i % 2 ? 1 : -1);
         if (kind && i > 3)
             n = vec3_normalize(vec3_add(n, vec3_make(real(s, -0.4, 0.4), real(s, -0.4, 0.4), real(s, -0.4, 0.4))));
-        p.h[i] = (struct half_space){n, vec3_dot(n, at) + real(s, 0.2, 1.2), "face"};
+        p.h[i] = (struct half_space){n, scale * (vec3_dot(n, at) + real(s, 0.2, 1.2)), "face"};
     }
     return p;
 }
@@ -177,9 +177,10 @@ static void convex_polyhedra_by_inclusion_and_exclusion(void **state)
         struct solid_report r = {0};
         struct err err = ERR_INIT;
         const int count = 2 + draw(&s, 3);
+        const double scale = i % 3 ? 1 : 100; /* the larger the numbers, the nearer to their bounds */
         double volume = 0;
         for (int k = 0; k < count; k++) {
-            p[k] = random_polyhedron(&s);
+            p[k] = random_polyhedron(&s, scale);
             /* some share a plane with the one before, facing it or alike */
             if (k && draw(&s, 2)) {
                 const struct half_space *from = &p[k - 1].h[draw(&s, p[k - 1].count)];
@@ -202,7 +203,8 @@ static void convex_polyhedra_by_inclusion_and_exclusion(void **state)
     }
 }
 
-/* Prisms over polygons whose corners lie on a lattice, so that oblique planes, too, meet in points, edges and planes. */
+/* Prisms over polygons whose corners lie on a lattice, so that oblique planes, too, meet in points, edges and
+ * planes. */
 static void prisms_on_a_lattice(void **state)
 {
     (void)state;

@@ -244,8 +244,8 @@ static void ids_are_carried_by_name(void **state)
 
 /* ---------------------------------------------------------------------------------------------------------- plates */
 
-/* A plate of thickness 1 with rows x rows holes through it, triangular or square, or none; corners also in the middle of
- * its sides. */
+/* A plate of thickness 1 with rows x rows holes through it, triangular or square, or none; corners also in the
+ * middle of its sides. */
 static void make_plate(struct solid_mesh *m, int rows, int sides)
 {
     const int holes = rows * rows, rim = 8, n = rim + holes * sides;
