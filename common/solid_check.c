@@ -1,9 +1,9 @@
 /* solid_check.c - whether a mesh is a closed solid (solid_mesh.h).
  *
- * Self-intersection is looked for in three ways, which together leave only faults that meet edge to edge: no edge of a
- * body goes through the inside of a face of that body; no two of its faces in one plane cover each other; and each
- * shell is, by the solid angle under which the others are seen from one of its faces, in no other one (a cavity in one). What
- * is nearer than the tolerance touches. */
+ * Self-intersection is looked for in three ways, which together leave only faults that meet edge to edge: no edge of
+ * a body goes through the inside of a face of that body; no two of its faces in one plane cover each other; and each
+ * shell is, by the solid angle under which the others are seen from one of its faces, in no other one (a cavity in
+ * one). What is nearer than the tolerance touches. */
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>

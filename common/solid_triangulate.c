@@ -2,14 +2,16 @@
  *
  * A face is projected along the axis that its normal is most along. Each hole is joined to the loop around it by a
  * bridge, a pair of edges from its rightmost corner to the nearest corner that it sees (holes from right to left, so
- * that there always is one among the loops joined so far); then ears are clipped (Meisters 1975; bridges as in Eberly,
- * Triangulation by Ear Clipping). What differs: corners in the middle of an edge stay corners, so that neighbours
- * agree; a triangle is an ear only if no other corner is in it or on its border; and since bridges, and holes that reach the
- * outer loop in a point, let corners coincide, a diagonal is not drawn where an edge joins the same two places.
+ * that there always is one among the loops joined so far); then ears are clipped (Meisters 1975; bridges as in
+ * Eberly, Triangulation by Ear Clipping). What differs: corners in the middle of an edge stay corners, so that
+ * neighbours agree; a triangle is an ear only if no other corner is in it or on its border; and since bridges, and
+ * holes that reach the outer loop in a point, let corners coincide, a diagonal is not drawn where an edge joins the
+ * same two places.
  *
- * Places along the axes are exact in doubles; on oblique edges corners are a rounding off, so that lengths below a few
- * units in the last place of the largest coordinate count as 0. Ears that only this tolerance forbids, in the end
- * flat ones, are taken when there are no others: where corners are that near each other. The area of all triangles is compared with that of the face in the end. */
+ * Places along the axes are exact in doubles; on oblique edges corners are a rounding off, so that lengths below a
+ * few units in the last place of the largest coordinate count as 0. Ears that only this tolerance forbids, in the
+ * end flat ones, are taken when there are no others: where corners are that near each other. The area of all
+ * triangles is compared with that of the face in the end. */
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>

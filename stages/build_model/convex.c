@@ -73,8 +73,8 @@ static bool ratio(double x, int64_t *p, int64_t *q)
     return false;
 }
 
-/* The normal in whole numbers: exact where its components are to each other as small ones are (walls between corners that
- * were typed), to 2^-22 otherwise; and the offset, in steps, times its length. */
+/* The normal in whole numbers: exact where its components are to each other as small ones are (walls between corners
+ * that were typed), to 2^-22 otherwise; and the offset, in steps, times its length. */
 static void to_whole(struct oblique *o, const double n[3], double most, double offset)
 {
     int64_t p[3], q[3], common = 1;

@@ -1,16 +1,18 @@
 /* unite.c - see unite.h.
  *
- * borders_find() says where the surface ends in each plane: stretches of lines, each with the surface on its left. What
- * remains is to join them.
+ * borders_find() says where the surface ends in each plane: stretches of lines, each with the surface on its left.
+ * What remains is to join them.
  *
  * - Stretches are cut at the ends of others that lie on them, so that two faces have the same edges where they meet.
- * - Around an edge faces are sorted by angle, exactly. Each face is either where solid begins or where it ends; those
- *   between which there is solid become each other's neighbours. So solids that touch in an edge stay apart there.
- * - In a face the half-edge that follows is the one that bounds the same corner of the face: the first one clockwise.
+ * - Around an edge faces are sorted by angle, exactly. Each face is either where solid begins or where it ends;
+ *   those between which there is solid become each other's neighbours. So solids that touch in an edge stay apart
+ *   there.
+ * - In a face the half-edge that follows is the one that bounds the same corner of the face: the first one
+ *   clockwise.
  * - Half-edges around a corner of the solid, one fan of faces, share a vertex; another fan gets another vertex.
  * - A vertex with two faces only, in the middle of an edge, goes. Where two edges join the same two vertices all but
- *   one get a vertex in their middle, so that vertices name an edge; so does an edge that touches a third face from one of
- *   its corners to another, so that triangles of that face cannot have the same side.
+ *   one get a vertex in their middle, so that vertices name an edge; so does an edge that touches a third face from
+ *   one of its corners to another, so that triangles of that face cannot have the same side.
  *
  * See docs/decisions/0015 for why each step is exact. */
 #include "stages/build_model/unite.h"
@@ -110,8 +112,9 @@ static enum status add_half(struct joined *j, int border, int from, struct err *
 }
 
 /* The half-edges of one edge, halves[of[0 .. count)]: those between which there is solid become twins.
- * Counter-clockwise about the line from a face whose half-edge goes backward there is solid, from one that goes forward there is none. A
- * face that passes flat is not among them, so that what lies within its half-turn is matched like brackets. */
+ * Counter-clockwise about the line from a face whose half-edge goes backward there is solid, from one that goes
+ * forward there is none. A face that passes flat is not among them, so that what lies within its half-turn is
+ * matched like brackets. */
 static enum status pair_around(struct joined *j, int *of, int count, const struct solid *s, struct err *err)
 {
     const struct border *borders = j->borders.borders;

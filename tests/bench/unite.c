@@ -3,9 +3,9 @@
  *   unite [--walls N] [--turned DEGREES]
  *
  * Rooms stand in a square grid on one floor slab; there are at least N walls, each cut into four boxes around its
- * window, and each reaching into its corners. --turned turns the house, so that no wall is along an axis. Prints "seconds S" (the
- * union), "check_s S", "triangulate_s S", "error E" (the volume's, relative to what it must be), "walls N", "solids N",
- * "faces N", "vertices N", "genus N". */
+ * window, and each reaching into its corners. --turned turns the house, so that no wall is along an axis. Prints
+ * "seconds S" (the union), "check_s S", "triangulate_s S", "error E" (the volume's, relative to what it must be),
+ * "walls N", "solids N", "faces N", "vertices N", "genus N". */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -72,8 +72,8 @@ static inline int compare_edges(const void *a, const void *b)
     return p[0] != q[0] ? (p[0] > q[0]) - (p[0] < q[0]) : (p[1] > q[1]) - (p[1] < q[1]);
 }
 
-/* Triangles have area (flat ones are thinner than 1e-12, and none is turned over), and each of their edges its opposite,
- * once. */
+/* Triangles have area (flat ones are thinner than 1e-12, and none is turned over), and each of their edges its
+ * opposite, once. */
 static inline void assert_triangles_closed(const struct solid_mesh *mesh)
 {
     struct solid_triangles t = {0};
