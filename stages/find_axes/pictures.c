@@ -72,7 +72,8 @@ static void stroke(struct canvas *k, double x0, double y0, double x1, double y1,
 {
     const int w = k->view->width, h = k->view->height;
     const double dx = x1 - x0, dy = y1 - y0, square = dx * dx + dy * dy, reach = k->half + 1;
-    const int top = (int)fmax(fmin(y0, y1) - reach, 0), bottom = (int)fmin(fmax(y0, y1) + reach, h - 1);
+    const int top = (int)fmin(fmax(fmin(y0, y1) - reach, 0), h);
+    const int bottom = (int)fmin(fmax(fmax(y0, y1) + reach, -1), h - 1);
     for (int y = top; y <= bottom; y++) {
         /* where the line passes this row's neighbourhood */
         double left = fmin(x0, x1), right = fmax(x0, x1);
@@ -81,7 +82,8 @@ static void stroke(struct canvas *k, double x0, double y0, double x1, double y1,
             left = fmax(left, fmin(a, b));
             right = fmin(right, fmax(a, b));
         }
-        for (int x = (int)fmax(left - reach, 0); x <= (int)fmin(right + reach, w - 1); x++) {
+        const int last = (int)fmin(fmax(right + reach, -1), w - 1);
+        for (int x = (int)fmin(fmax(left - reach, 0), w); x <= last; x++) {
             const double px = x + 0.5 - x0, py = y + 0.5 - y0;
             const double t = square > 0 ? fmin(fmax((px * dx + py * dy) / square, 0), 1) : 0;
             const double part = k->half + 0.5 - hypot(px - t * dx, py - t * dy);

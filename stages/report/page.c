@@ -853,9 +853,12 @@ static void put_head(FILE *to, const char *scene, const struct contents *c)
     fputs(" · remodel " REMODEL_VERSION "</p>\n<nav aria-label=\"Contents\"><a href=\"#video\">Video</a>", to);
     if (c->has_metrics || c->held.view_count) fputs("<a href=\"#evaluation\">Measured</a>", to);
     if (c->model_count) fputs("<a href=\"#model\">Model</a>", to);
+    fputs("<a href=\"#photos\">Photographs</a>"
+          "<a href=\"#depth\">Depth</a>",
+          to);
+    if (c->axes_count) fputs("<a href=\"#axes\">Axes</a>", to);
     fputs(
-        "<a href=\"#photos\">Photographs</a>"
-        "<a href=\"#depth\">Depth</a><a href=\"#numbers\">Numbers</a><a href=\"#time\">Time and memory</a><a "
+        "<a href=\"#numbers\">Numbers</a><a href=\"#time\">Time and memory</a><a "
         "href=\"#parameters\">"
         "Parameters</a><a href=\"#warnings\">Warnings</a><a href=\"#skipped\">Left out</a></nav>\n</header>\n<main>\n",
         to);
