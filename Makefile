@@ -203,7 +203,7 @@ say = $(if $(V),,@echo '  $(1)';)
 
 CC := gcc
 CXX := g++
-PKGS := OpenEXR libturbojpeg libpng libexif inih libxxhash qhull_r libdeflate
+PKGS := OpenEXR libturbojpeg libpng libtiff-4 libraw_r libexif inih libxxhash qhull_r libdeflate
 WARN := -Wall -Wextra -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Wvla -Wpointer-arith -Wwrite-strings
 FLAGS.release := -O3 -g
 FLAGS.asan := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer
@@ -282,6 +282,8 @@ $(FUZZ_TESTS): $(B)/tests/fuzz/%: $(B)/obj/tests/fuzz/%.o $(B)/obj/tests/fuzz/ru
 	$(call link)
 $(B)/tests/fuzz/fuzz_given_units: $(call objs,stages/segment_depth/given_read.c)
 $(B)/tests/fuzz/fuzz_keyframes: $(filter-out %/plan_path.o,$(call objs,stages/plan_path/*.c))
+# the curve that fits a scene is tested by merging with it
+$(B)/tests/unit/hdr_merge/cross_validation: $(call objs,stages/fit_response/recover.c)
 # the planner's test samples the viewpoints that it plans with
 $(B)/tests/unit/plan_path/plan_move: $(filter-out %/sample_validity.o,$(call objs,stages/sample_validity/*.c))
 # what plan_path alone needs: JSON, nonlinear least squares

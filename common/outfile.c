@@ -234,3 +234,20 @@ void outfile_discard(struct outfile *f)
     free(f->temp);
     *f = (struct outfile){0};
 }
+
+enum status outfile_write_new(const char *path, const char *text, size_t size, struct err *err)
+{
+    FILE *old = fopen(path, "rb");
+    bool same = old != NULL;
+    for (size_t i = 0; same && i < size; i++) same = getc(old) == (unsigned char)text[i];
+    if (same) same = getc(old) == EOF;
+    if (old) fclose(old);
+    if (same) return ST_OK;
+
+    struct outfile f = {0};
+    enum status st = outfile_open(&f, path, err);
+    if (!st && fwrite(text, 1, size, f.fp) != size) st = err_errno(err, "write", path);
+    if (!st) st = outfile_commit(&f, err);
+    outfile_discard(&f);
+    return st;
+}

@@ -25,6 +25,9 @@ enum status outfile_commit(struct outfile *f, struct err *err);
 
 void outfile_discard(struct outfile *f); /* idempotent; harmless after a commit */
 
+/* Writes a file only if its text is new, so that its time tells Make when it last changed. */
+enum status outfile_write_new(const char *path, const char *text, size_t size, struct err *err);
+
 /* mkdir -p */
 enum status make_folders(const char *path, struct err *err);
 

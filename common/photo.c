@@ -1,6 +1,6 @@
-/* photo.c - JPEG by libjpeg-turbo, PNG by libpng, EXIF by libexif.
+/* photo.c - JPEG by libjpeg-turbo, PNG by libpng, EXIF by libexif; TIFF and raw files by photo_tiff.c and photo_raw.c.
  *
- * A file is read into memory once; what it is follows from its first bytes. Its EXIF block is found here, in JPEG's
+ * A file is read into memory once; what it is follows from its first bytes. EXIF of JPEG and PNG is found here, in JPEG's
  * APP1 or PNG's eXIf, and handed to libexif alone. */
 #include "common/photo.h"
 
@@ -16,21 +16,17 @@
 #include <png.h>
 #include <turbojpeg.h>
 
+#include "common/exr.h"
 #include "common/outfile.h"
 #include "common/parallel.h"
+#include "common/photo_formats.h"
 
 #define MOST_PIXELS (UINT64_C(1) << 28)
 #define PNG_LEVEL   6 /* zlib's; part of the reproducible bytes */
 
-struct file_bytes {
-    const char *path;
-    unsigned char *bytes; /* owned */
-    size_t size;
-};
-
-static enum status read_bytes(struct file_bytes *file, const char *path, struct err *err)
+static enum status read_bytes(struct photo_bytes *file, const char *path, struct err *err)
 {
-    *file = (struct file_bytes){.path = path};
+    *file = (struct photo_bytes){.path = path};
     FILE *from = fopen(path, "rb");
     if (!from) return err_errno(err, "open", path);
     enum status st = ST_OK;
@@ -53,36 +49,62 @@ static enum status read_bytes(struct file_bytes *file, const char *path, struct 
     return st;
 }
 
-enum photo_kind { KIND_JPEG, KIND_PNG };
+enum photo_kind { KIND_JPEG, KIND_PNG, KIND_TIFF, KIND_EXR, KIND_RAW };
 
-static enum status photo_kind(const struct file_bytes *file, enum photo_kind *kind, struct err *err)
+static enum status photo_kind(const struct photo_bytes *file, enum photo_kind *kind, struct err *err)
 {
-    static const unsigned char jpeg[] = {0xff, 0xd8, 0xff}, png[] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
+    static const unsigned char jpeg[] = {0xff, 0xd8, 0xff}, png[] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'},
+                               exr[] = {0x76, 0x2f, 0x31, 0x01};
     if (file->size >= sizeof jpeg && !memcmp(file->bytes, jpeg, sizeof jpeg)) {
         *kind = KIND_JPEG;
     } else if (file->size >= sizeof png && !memcmp(file->bytes, png, sizeof png)) {
         *kind = KIND_PNG;
+    } else if (file->size >= sizeof exr && !memcmp(file->bytes, exr, sizeof exr)) {
+        *kind = KIND_EXR;
+    } else if (photo_is_raw(file)) {
+        *kind = KIND_RAW;
+    } else if (photo_is_tiff(file)) {
+        *kind = KIND_TIFF;
     } else {
         char begin[32] = "";
         for (size_t i = 0; i < file->size && i < 8; i++) sprintf(begin + 3 * i, " %02x", file->bytes[i]);
-        return err_set(err, ST_DATA, "%s is neither JPEG nor PNG (it begins with the bytes%s); save it as one of them.",
+        return err_set(err, ST_DATA,
+                       "%s is neither JPEG, PNG, TIFF, EXR nor a known raw format (it begins with the bytes%s); save "
+                       "it as one of them.",
                        file->path, begin);
     }
     return ST_OK;
 }
 
-static enum status check_size(const char *path, uint64_t width, uint64_t height, struct err *err)
+enum status photo_check_size(const char *path, uint64_t width, uint64_t height, struct err *err)
 {
     if (width && height && width * height <= MOST_PIXELS) return ST_OK;
     return err_set(err, ST_DATA, "%s says that it is %llu x %llu pixels; wanted 1 to 2^28 pixels.", path,
                    (unsigned long long)width, (unsigned long long)height);
 }
 
-static enum status init_samples(struct photo *p, struct err *err)
+enum status photo_init_samples(struct photo *p, struct err *err)
 {
     size_t bytes = (size_t)p->info.width * (size_t)p->info.height * 3 * sizeof *p->samples;
     p->samples = malloc(bytes);
     return p->samples ? ST_OK : err_nomem(err, "a photo", bytes);
+}
+
+enum status photo_init_values(struct photo *p, struct err *err)
+{
+    size_t bytes = (size_t)p->info.width * (size_t)p->info.height * 3 * sizeof *p->values;
+    p->values = malloc(bytes);
+    return p->values ? ST_OK : err_nomem(err, "a photo", bytes);
+}
+
+float photo_find_saturation(const struct photo *p)
+{
+    const size_t count = (size_t)p->info.width * (size_t)p->info.height * 3, plenty = 8 + count / 10000;
+    float most = 0;
+    size_t there = 0;
+    for (size_t i = 0; i < count; i++) most = p->values[i] > most ? p->values[i] : most;
+    for (size_t i = 0; i < count; i++) there += p->values[i] == most;
+    return there >= plenty ? most : 0;
 }
 
 /* ------------------------------------------------------------------------------------------------------------- EXIF */
@@ -90,7 +112,7 @@ static enum status init_samples(struct photo *p, struct err *err)
 static const unsigned char exif_mark[6] = {'E', 'x', 'i', 'f', 0, 0};
 
 /* The TIFF block of a JPEG's APP1 segment; false if there is none before the picture's data. */
-static bool find_exif_jpeg(const struct file_bytes *file, const unsigned char **block, size_t *size)
+static bool find_exif_jpeg(const struct photo_bytes *file, const unsigned char **block, size_t *size)
 {
     const unsigned char *b = file->bytes;
     for (size_t at = 2; at + 4 <= file->size && b[at] == 0xff;) {
@@ -110,7 +132,7 @@ static bool find_exif_jpeg(const struct file_bytes *file, const unsigned char **
     return false;
 }
 
-static bool find_exif_png(const struct file_bytes *file, const unsigned char **block, size_t *size)
+static bool find_exif_png(const struct photo_bytes *file, const unsigned char **block, size_t *size)
 {
     const unsigned char *b = file->bytes;
     for (size_t at = 8; at + 12 <= file->size;) {
@@ -157,7 +179,7 @@ static void exif_text(ExifData *data, ExifTag tag, char *text, size_t size)
     text[n] = 0;
 }
 
-static enum status read_exif(struct photo_info *info, const struct file_bytes *file, enum photo_kind kind,
+static enum status read_exif(struct photo_info *info, const struct photo_bytes *file, enum photo_kind kind,
                              struct err *err)
 {
     const unsigned char *block = NULL;
@@ -193,13 +215,13 @@ static enum status read_exif(struct photo_info *info, const struct file_bytes *f
 
 /* ------------------------------------------------------------------------------------------------------------- JPEG */
 
-static enum status jpeg_damaged(const struct file_bytes *file, tjhandle handle, struct err *err)
+static enum status jpeg_damaged(const struct photo_bytes *file, tjhandle handle, struct err *err)
 {
     return err_set(err, ST_DATA, "%s is a damaged or cut-off JPEG (%s); copy or export the photo again.", file->path,
                    tjGetErrorStr2(handle));
 }
 
-static enum status read_jpeg_header(struct photo_info *info, const struct file_bytes *file, tjhandle handle,
+static enum status read_jpeg_header(struct photo_info *info, const struct photo_bytes *file, tjhandle handle,
                                     struct err *err)
 {
     int subsampling = 0, space = 0;
@@ -210,12 +232,12 @@ static enum status read_jpeg_header(struct photo_info *info, const struct file_b
     if (space == TJCS_CMYK || space == TJCS_YCCK)
         return err_set(err, ST_DATA, "%s is a CMYK JPEG, made for printing; export the photo as RGB.", file->path);
     info->bits = 8;
-    return check_size(file->path, (uint64_t)info->width, (uint64_t)info->height, err);
+    return photo_check_size(file->path, (uint64_t)info->width, (uint64_t)info->height, err);
 }
 
 /* Any warning of the decoder means that pixels are missing or made up, but for one: some cameras write padding between
  * the complete picture and the end marker 0xd9. */
-static enum status read_jpeg_pixels(struct photo *p, const struct file_bytes *file, tjhandle handle, struct err *err)
+static enum status read_jpeg_pixels(struct photo *p, const struct photo_bytes *file, tjhandle handle, struct err *err)
 {
     size_t samples = (size_t)p->info.width * (size_t)p->info.height * 3;
     unsigned char *rgb = malloc(samples);
@@ -228,13 +250,13 @@ static enum status read_jpeg_pixels(struct photo *p, const struct file_bytes *fi
                            TJFLAG_LIMITSCANS);
         if (rv && tjGetErrorCode(handle) == TJERR_WARNING) rv = 0;
     }
-    enum status st = rv ? jpeg_damaged(file, handle, err) : init_samples(p, err);
+    enum status st = rv ? jpeg_damaged(file, handle, err) : photo_init_samples(p, err);
     for (size_t i = 0; !st && i < samples; i++) p->samples[i] = rgb[i];
     free(rgb);
     return st;
 }
 
-static enum status read_jpeg(struct photo *p, const struct file_bytes *file, bool pixels, struct err *err)
+static enum status read_jpeg(struct photo *p, const struct photo_bytes *file, bool pixels, struct err *err)
 {
     tjhandle handle = tjInitDecompress();
     if (!handle) return err_nomem(err, "a JPEG decoder", 0);
@@ -248,7 +270,7 @@ static enum status read_jpeg(struct photo *p, const struct file_bytes *file, boo
 
 /* All that outlives a longjmp out of libpng is in here, behind a pointer, so that no register can hold an old value. */
 struct png_reader {
-    const struct file_bytes *file;
+    const struct photo_bytes *file;
     size_t at;
     png_structp png;
     png_infop info;
@@ -284,10 +306,10 @@ static enum status read_png_header(struct png_reader *r, struct err *err)
 {
     if (setjmp(png_jmpbuf(r->png))) return png_damaged(r, err);
     png_set_read_fn(r->png, r, png_take_bytes);
-    png_set_user_limits(r->png, 1 << 28, 1 << 28); /* check_size() has the last word */
+    png_set_user_limits(r->png, 1 << 28, 1 << 28); /* photo_check_size() has the last word */
     png_read_info(r->png, r->info);
     png_uint_32 width = png_get_image_width(r->png, r->info), height = png_get_image_height(r->png, r->info);
-    if (check_size(r->file->path, width, height, err)) return err ? err->status : ST_DATA;
+    if (photo_check_size(r->file->path, width, height, err)) return err ? err->status : ST_DATA;
     r->photo->info.width = (int)width;
     r->photo->info.height = (int)height;
     r->photo->info.bits = png_get_bit_depth(r->png, r->info) == 16 ? 16 : 8;
@@ -299,7 +321,7 @@ static enum status read_png_pixels(struct png_reader *r, struct err *err)
 {
     struct photo *p = r->photo;
     size_t row = (size_t)p->info.width * 3, height = (size_t)p->info.height;
-    enum status st = init_samples(p, err);
+    enum status st = photo_init_samples(p, err);
     if (st) return st;
     r->rows = malloc(height * sizeof *r->rows);
     if (!r->rows) return err_nomem(err, "a photo's rows", height * sizeof *r->rows);
@@ -321,7 +343,7 @@ static enum status read_png_pixels(struct png_reader *r, struct err *err)
     return ST_OK;
 }
 
-static enum status read_png(struct photo *p, const struct file_bytes *file, bool pixels, struct err *err)
+static enum status read_png(struct photo *p, const struct photo_bytes *file, bool pixels, struct err *err)
 {
     struct png_reader r = {.file = file, .photo = p};
     r.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &r, png_keep_message, png_ignore_warning);
@@ -336,26 +358,68 @@ static enum status read_png(struct photo *p, const struct file_bytes *file, bool
 
 /* ----------------------------------------------------------------------------------------------------------- photos */
 
-static enum status read_photo(struct photo *p, const char *path, bool pixels, struct err *err)
+/* EXR is linear already; it says nothing about how it was exposed. */
+static enum status read_exr(struct photo *p, const struct photo_bytes *file, bool pixels, struct err *err)
 {
-    struct file_bytes file = {0};
+    static const char *const names[] = {"R", "G", "B"};
+    struct exr_image exr = {0};
+    enum status st = exr_read(&exr, file->path, names, pixels ? 3 : 0, err);
+    for (int c = 0; !st && pixels && c < 3; c++)
+        if (!exr_find(&exr, names[c])->f)
+            st = err_set(err, ST_DATA, "%s: channel %s holds integers, wanted half or float; export it so.", file->path,
+                         names[c]);
+    p->info.bits = 32;
+    if (!st) {
+        p->info.width = exr.width;
+        p->info.height = exr.height;
+        st = photo_check_size(file->path, (uint64_t)exr.width, (uint64_t)exr.height, err);
+    }
+    if (!st && pixels) st = photo_init_values(p, err);
+    const size_t count = (size_t)p->info.width * (size_t)p->info.height;
+    for (size_t c = 0; !st && pixels && c < 3; c++) {
+        const float *from = exr_find(&exr, names[c])->f;
+        for (size_t i = 0; i < count; i++) p->values[3 * i + c] = fmaxf(from[i], 0);
+    }
+    if (!st && pixels) p->saturation = photo_find_saturation(p);
+    exr_image_release(&exr);
+    return st;
+}
+
+static enum status read_photo(struct photo *p, const char *path, bool pixels, bool linear, struct err *err)
+{
+    static enum status (*const read[])(struct photo *, const struct photo_bytes *, bool, struct err *) = {
+        [KIND_JPEG] = read_jpeg, [KIND_PNG] = read_png,       [KIND_TIFF] = photo_read_tiff,
+        [KIND_EXR] = read_exr,   [KIND_RAW] = photo_read_raw,
+    };
+    struct photo_bytes file = {0};
     enum photo_kind kind = KIND_JPEG;
-    *p = (struct photo){0};
+    *p = (struct photo){.info.orientation = 1};
     enum status st = read_bytes(&file, path, err);
     if (!st) st = photo_kind(&file, &kind, err);
-    if (!st) st = (kind == KIND_JPEG ? read_jpeg : read_png)(p, &file, pixels, err);
-    if (!st) st = read_exif(&p->info, &file, kind, err);
+    if (!st && !linear && (kind == KIND_EXR || kind == KIND_RAW))
+        st = err_set(err, ST_DATA, "%s is %s; wanted JPEG, PNG or TIFF here.", path,
+                     kind == KIND_EXR ? "an EXR file" : "a camera's raw file");
+    if (!st) st = read[kind](p, &file, pixels, err);
+    if (!st && (kind == KIND_JPEG || kind == KIND_PNG)) st = read_exif(&p->info, &file, kind, err);
     free(file.bytes);
     if (st) photo_release(p);
     return st;
 }
 
-enum status photo_read(struct photo *p, const char *path, struct err *err) { return read_photo(p, path, true, err); }
+enum status photo_read(struct photo *p, const char *path, struct err *err)
+{
+    return read_photo(p, path, true, false, err);
+}
+
+enum status photo_read_any(struct photo *p, const char *path, struct err *err)
+{
+    return read_photo(p, path, true, true, err);
+}
 
 enum status photo_read_info(struct photo_info *info, const char *path, struct err *err)
 {
     struct photo p = {0};
-    enum status st = read_photo(&p, path, false, err);
+    enum status st = read_photo(&p, path, false, true, err);
     *info = p.info;
     return st;
 }
@@ -364,6 +428,7 @@ void photo_release(struct photo *p)
 {
     if (!p) return;
     free(p->samples);
+    free(p->values);
     *p = (struct photo){0};
 }
 

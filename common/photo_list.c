@@ -116,7 +116,7 @@ static enum status read_fields(struct photo_record *r, struct textfile *t, struc
                 read_hash(t, r->hash, err) || textfile_end(t, err) || expect_line(t, "size", err) ||
                 read_int(t, "width", 1, 1 << 28, &info->width, err) ||
                 read_int(t, "height", 1, 1 << 28, &info->height, err) || textfile_end(t, err) ||
-                expect_line(t, "bits", err) || read_int(t, "bits", 8, 16, &info->bits, err) || textfile_end(t, err) ||
+                expect_line(t, "bits", err) || read_int(t, "bits", 8, 32, &info->bits, err) || textfile_end(t, err) ||
                 expect_line(t, "orientation", err) || read_int(t, "orientation", 1, 8, &info->orientation, err) ||
                 textfile_end(t, err) || expect_line(t, "exif", err) ||
                 read_exif(t, "focal length", &info->focal_mm, err) ||
@@ -158,31 +158,13 @@ enum status photo_record_read(struct photo_record *r, const char *folder, const 
     return err && err->status ? err->status : st;
 }
 
-/* Writes a file only if its text is new, so that its time tells Make when it last changed. */
-static enum status write_if_new(const char *path, const char *text, size_t size, struct err *err)
-{
-    FILE *old = fopen(path, "rb");
-    bool same = old != NULL;
-    for (size_t i = 0; same && i < size; i++) same = getc(old) == (unsigned char)text[i];
-    if (same) same = getc(old) == EOF;
-    if (old) fclose(old);
-    if (same) return ST_OK;
-
-    struct outfile f = {0};
-    enum status st = outfile_open(&f, path, err);
-    if (!st && fwrite(text, 1, size, f.fp) != size) st = err_errno(err, "write", path);
-    if (!st) st = outfile_commit(&f, err);
-    outfile_discard(&f);
-    return st;
-}
-
 /* Ends a text begun with open_memstream and writes it if it is new. */
 static enum status finish_text(FILE *to, char **text, size_t *size, const char *path, enum status st, struct err *err)
 {
     bool failed = ferror(to) != 0;
     failed |= fclose(to) != 0;
     if (!st && failed) st = err_nomem(err, "a text", *size);
-    if (!st) st = write_if_new(path, *text, *size, err);
+    if (!st) st = outfile_write_new(path, *text, *size, err);
     free(*text);
     return st;
 }

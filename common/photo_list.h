@@ -6,7 +6,7 @@
  *   file "IMG 1.jpg"            as the folder PHOTOS names it
  *   hash 0123...                of its bytes (common/hash.h)
  *   size WIDTH HEIGHT
- *   bits 8
+ *   bits 8                      a sample; 32: linear light (EXR, raw files), which hdr_merge makes a picture of
  *   orientation 1               EXIF, 1..8
  *   exif FOCAL_MM FOCAL35_MM SECONDS F_NUMBER ISO     0: not stated
  *   camera "MAKE" "MODEL"

@@ -1,14 +1,19 @@
 /* bracketed_view.c - see bracketed_view.h. */
 #include "stages/hdr_merge/bracketed_view.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "common/exr.h"
 #include "common/outfile.h"
+#include "common/parallel.h"
+#include "stages/hdr_merge/tone.h"
 
 #define LARGEST_HALF 65504.0f
+
+enum { QUALITY = 95 };
 
 /* The caller frees it. */
 static enum status join(char **path, const char *folder, const char *name, const char *ending, struct err *err)
@@ -18,24 +23,45 @@ static enum status join(char **path, const char *folder, const char *name, const
     return err_nomem(err, "a file name", strlen(folder) + strlen(name));
 }
 
+struct read_job {
+    struct photo *photos;
+    char *paths[MERGE_MOST];
+    struct err errs[MERGE_MOST];
+};
+
+static void read_some(void *ctx, size_t begin, size_t end, int thread)
+{
+    struct read_job *job = ctx;
+    (void)thread;
+    for (size_t i = begin; i < end; i++) photo_read_any(&job->photos[i], job->paths[i], &job->errs[i]);
+}
+
 static enum status read_photos(struct bracketed_view *v, const char *photos, struct provenance *prov, struct err *err)
 {
-    enum status st = ST_OK;
-    for (int i = 0; !st && i < v->record.bracket_count; i++) {
+    const int count = v->record.bracket_count;
+    struct read_job *job = calloc(1, sizeof *job);
+    enum status st = job ? ST_OK : err_nomem(err, "photos", sizeof *job);
+    for (int i = 0; !st && i < count; i++) st = join(&job->paths[i], photos, v->record.brackets[i].file, "", err);
+    if (!st) {
+        job->photos = v->photos;
+        parallel_for((size_t)count, 1, read_some, job);
+    }
+    for (int i = 0; !st && i < count; i++) {
         const struct bracket *b = &v->record.brackets[i];
-        char *path = NULL, *input = NULL;
-        st = join(&path, photos, b->file, "", err) || join(&input, "photos", b->file, "", err) ? err->status : ST_OK;
-        if (!st) st = photo_read(&v->photos[i], path, err);
-        if (!st) st = provenance_add_file(prov, input, path, err);
+        char *input = NULL;
+        if (job->errs[i].status) st = err_set(err, job->errs[i].status, "%s", job->errs[i].text);
+        if (!st) st = join(&input, "photos", b->file, "", err);
+        if (!st) st = provenance_add_file(prov, input, job->paths[i], err);
         v->exposures[i] = b->exposure / v->record.white;
-        free(path);
         free(input);
     }
+    for (int i = 0; job && i < count; i++) free(job->paths[i]);
+    free(job);
     return st;
 }
 
 enum status bracketed_view_read(struct bracketed_view *v, const char *id, const char *photos, const char *records,
-                                struct provenance *prov, struct err *err)
+                                const char *response, struct provenance *prov, struct err *err)
 {
     char *path = NULL, *input = NULL;
     enum status st = photo_record_read(&v->record, records, id, err);
@@ -48,10 +74,53 @@ enum status bracketed_view_read(struct bracketed_view *v, const char *id, const 
     if (!st)
         st = join(&path, records, id, ".txt", err) || join(&input, "photos", id, ".txt", err) ? err->status : ST_OK;
     if (!st) st = provenance_add_file(prov, input, path, err);
+    if (!st && response) st = response_read(&v->response, response, err);
+    if (!st && response) st = provenance_add_file(prov, "hdr/response.txt", response, err);
     if (!st) st = read_photos(v, photos, prov, err);
+    v->brackets = (struct brackets){v->photos, v->exposures, v->record.bracket_count, &v->response, NULL};
     free(path);
     free(input);
     return st;
+}
+
+/* Noise as it is measured holds for all exposures; what is given is for each photo's own steps. */
+static enum status find_noise(struct bracketed_view *v, const struct merge_params *params, struct err *err)
+{
+    struct noise measured;
+    if (!strcmp(params->noise, "measured") && noise_measure(&measured, &v->noise_measured, &v->brackets, err))
+        return err->status;
+    for (int k = 0; k < v->record.bracket_count; k++)
+        v->noise[k] = v->noise_measured ? measured : noise_given(params, &v->response, v->photos[k].info.bits);
+    return ST_OK;
+}
+
+/* Linear light needs exposures and a curve that are true; photos tell whether they are. */
+static enum status check_agreement(struct bracketed_view *v, const struct merge_params *params, struct err *err)
+{
+    const double most = 1.15; /* JPEG, noise and clipped colours move it by a few percent */
+    const struct exposure_agreement *a = &v->agreement;
+    const struct photo_record *r = &v->record;
+    if (merge_agreement(&v->agreement, &v->brackets, err)) return err->status;
+    const double off = fmax(a->seen / a->stated, a->stated / a->seen);
+    v->agree = off <= most;
+    if (!a->pair || off <= params->most_disagreement) return ST_OK;
+    return err_set(err, ST_DATA,
+                   "view %s: %s should have %.3g times the light of %s, but shows %.3g times as much; their exposures "
+                   "cannot be what EXIF or exposures.txt states, or they are not of one view. Correct exposures.txt or "
+                   "brackets.txt, or leave one out (EXCLUDE); [hdr_merge] most_disagreement says what is taken.",
+                   r->id, r->brackets[a->pair].file, a->stated, r->brackets[a->pair - 1].file, a->seen);
+}
+
+enum status bracketed_view_merge(struct bracketed_view *v, const struct merge_params *params, struct err *err)
+{
+    enum status st = ST_OK;
+    if (strcmp(params->align, "no"))
+        st = align_brackets(&v->alignment, &v->brackets, v->record.middle, params->most_shift, err);
+    if (!strcmp(params->align, "correct")) v->brackets.shifts = v->alignment.shifts;
+    if (!st) st = check_agreement(v, params, err);
+    if (!st) st = find_noise(v, params, err);
+    if (!st) st = merge_brackets(&v->merged, &v->brackets, v->noise, params, err);
+    return st && err->status != ST_NOMEM ? err_context(err, "view %s", v->record.id) : st;
 }
 
 static bool is_jpeg(const char *path)
@@ -81,7 +150,6 @@ static enum status copy_file(const char *from, const char *to, struct err *err)
 
 static enum status encode_photo(const struct photo *p, const char *path, struct err *err)
 {
-    enum { QUALITY = 95 };
     size_t samples = (size_t)p->info.width * (size_t)p->info.height * 3;
     unsigned char *rgb = malloc(samples);
     if (!rgb) return err_nomem(err, "a photo", samples);
@@ -92,30 +160,63 @@ static enum status encode_photo(const struct photo *p, const char *path, struct 
     return st;
 }
 
-enum status bracketed_view_write_middle(const struct bracketed_view *v, const char *photos, const char *out,
-                                        struct err *err)
+static enum status write_toned(const struct bracketed_view *v, const char *path, struct err *err)
+{
+    const struct image *im = &v->merged.radiance;
+    const size_t samples = (size_t)im->width * (size_t)im->height * 3;
+    unsigned char *rgb = malloc(samples);
+    enum status st = rgb ? tone_map(rgb, im, err) : err_nomem(err, "a picture", samples);
+    if (!st) st = photo_write_jpeg(path, rgb, im->width, im->height, QUALITY, &v->record.info, err);
+    free(rgb);
+    return st;
+}
+
+enum status bracketed_view_write_picture(const struct bracketed_view *v, const char *photos, const char *out,
+                                         const struct merge_params *params, struct err *err)
 {
     const struct photo_record *r = &v->record;
+    const struct photo *middle = &v->photos[r->middle];
     char *from = NULL, *to = NULL;
     enum status st = join(&from, photos, r->brackets[r->middle].file, "", err) || join(&to, out, r->id, ".jpg", err)
                          ? err->status
                          : ST_OK;
-    if (!st) st = is_jpeg(from) ? copy_file(from, to, err) : encode_photo(&v->photos[r->middle], to, err);
+    if (!st && (!strcmp(params->picture, "tone") || middle->values))
+        st = write_toned(v, to, err);
+    else if (!st)
+        st = is_jpeg(from) ? copy_file(from, to, err) : encode_photo(middle, to, err);
     free(from);
     free(to);
     return st;
 }
 
-static enum status set_attributes(struct exr_image *im, const struct photo_record *r, struct err *err)
+static enum status set_attributes(struct exr_image *im, const struct bracketed_view *v, struct err *err)
 {
-    char name[64];
-    enum status st = exr_set_attribute(im, "remodel:radiometry", r->bracket_count > 1 ? "exact" : "one exposure", err);
+    const struct photo_record *r = &v->record;
+    char name[64], text[64];
+    const char *radiometry = r->bracket_count < 2 ? "one exposure" : v->agree ? "exact" : "approximate";
+    enum status st = exr_set_attribute(im, "remodel:radiometry", radiometry, err);
+    if (!st) st = exr_set_attribute(im, "remodel:response", v->response.table ? "table" : "srgb", err);
     if (!st) st = exr_set_number(im, "remodel:white", r->white, err);
     for (int i = 0; !st && i < r->bracket_count; i++) {
         snprintf(name, sizeof name, "remodel:exposure.%d", i + 1);
         st = exr_set_number(im, name, r->brackets[i].exposure, err);
+        const struct shift *s = &v->alignment.shifts[i];
+        if (!v->brackets.shifts || (!s->dx && !s->dy)) continue;
+        snprintf(name, sizeof name, "remodel:shift.%d", i + 1);
+        snprintf(text, sizeof text, "%d %d", s->dx, s->dy);
+        if (!st) st = exr_set_attribute(im, name, text, err);
     }
     return st;
+}
+
+/* Eight binary digits: noise is not known better, and the rest would not be compressed. */
+static float rounded(float v)
+{
+    uint32_t bits;
+    memcpy(&bits, &v, sizeof bits);
+    bits = (bits + 0x4000u) & ~0x7fffu;
+    memcpy(&v, &bits, sizeof bits);
+    return v;
 }
 
 enum status bracketed_view_write_radiance(const struct bracketed_view *v, const char *out,
@@ -123,21 +224,22 @@ enum status bracketed_view_write_radiance(const struct bracketed_view *v, const 
 {
     static const char *const names[] = {"R", "G", "B"};
     struct exr_image im = {0};
+    struct exr_plane *plane = NULL;
     char *path = NULL;
-    size_t pixels = (size_t)v->radiance.width * (size_t)v->radiance.height;
+    const struct image *radiance = &v->merged.radiance;
+    size_t pixels = (size_t)radiance->width * (size_t)radiance->height;
     *beyond = 0;
     enum status st = join(&path, out, v->record.id, ".exr", err);
-    if (!st) st = exr_image_init(&im, v->radiance.width, v->radiance.height, err);
+    if (!st) st = exr_image_init(&im, radiance->width, radiance->height, err);
     for (size_t c = 0; !st && c < 3; c++) {
-        struct exr_plane *plane = NULL;
         st = exr_add_plane(&im, names[c], EXR_HALF, &plane, err);
-        for (size_t i = 0; !st && i < pixels; i++)
-            *beyond += (plane->f[i] = v->radiance.data[3 * i + c]) > LARGEST_HALF;
+        for (size_t i = 0; !st && i < pixels; i++) *beyond += (plane->f[i] = radiance->data[3 * i + c]) > LARGEST_HALF;
     }
-    struct exr_plane *clipped = NULL;
-    if (!st) st = exr_add_plane(&im, "clipped", EXR_UINT, &clipped, err);
-    for (size_t i = 0; !st && i < pixels; i++) clipped->u[i] = v->marks[i];
-    if (!st) st = set_attributes(&im, &v->record, err);
+    if (!st) st = exr_add_plane(&im, "clipped", EXR_UINT, &plane, err);
+    for (size_t i = 0; !st && i < pixels; i++) plane->u[i] = v->merged.marks[i];
+    if (!st) st = exr_add_plane(&im, "variance", EXR_FLOAT, &plane, err);
+    for (size_t i = 0; !st && i < pixels; i++) plane->f[i] = rounded(v->merged.variance[i]);
+    if (!st) st = set_attributes(&im, v, err);
     if (!st) st = exr_write(&im, path, prov, err);
     exr_image_release(&im);
     free(path);
@@ -149,7 +251,6 @@ void bracketed_view_release(struct bracketed_view *v)
     if (!v) return;
     for (int i = 0; i < MERGE_MOST; i++) photo_release(&v->photos[i]);
     photo_record_release(&v->record);
-    image_release(&v->radiance);
-    free(v->marks);
+    merged_release(&v->merged);
     *v = (struct bracketed_view){0};
 }

@@ -4,23 +4,32 @@
 
 #include "common/photo_list.h"
 #include "common/provenance.h"
+#include "stages/hdr_merge/align.h"
 #include "stages/hdr_merge/merge.h"
 
 struct bracketed_view {
     struct photo_record record;
     struct photo photos[MERGE_MOST];
     double exposures[MERGE_MOST]; /* relative to white's */
-    struct image radiance;        /* R G B, 1 is white */
-    uint8_t *marks;               /* a pixel: MERGE_BRIGHT, MERGE_DARK; owned */
+    struct response response;
+    struct brackets brackets; /* these, and the shifts that are corrected */
+    struct alignment alignment;
+    struct noise noise[MERGE_MOST];
+    bool noise_measured;
+    struct exposure_agreement agreement;
+    bool agree; /* exposures and response are what the photos show */
+    struct merged merged;
 };
 
-/* RECORDS/ID.txt and the photos it names in PHOTOS. v is {0} on entry; release it also after a failure. ST_DATA: a
- * single photo's record, or more exposures than MERGE_MOST. */
+/* RECORDS/ID.txt, the photos it names in PHOTOS, and how samples follow light (response: NULL for the sRGB curve). v is {0} on
+ * entry; release it also after a failure. ST_DATA: a single photo's record, or more exposures than MERGE_MOST. */
 enum status bracketed_view_read(struct bracketed_view *v, const char *id, const char *photos, const char *records,
-                                struct provenance *prov, struct err *err);
-/* OUT/ID.jpg, the middle exposure: a JPEG's own bytes, anything else encoded. */
-enum status bracketed_view_write_middle(const struct bracketed_view *v, const char *photos, const char *out,
-                                        struct err *err);
+                                const char *response, struct provenance *prov, struct err *err);
+/* Shifts, agreement, noise, radiance. ST_DATA: exposures that cannot be what is stated. */
+enum status bracketed_view_merge(struct bracketed_view *v, const struct merge_params *params, struct err *err);
+/* OUT/ID.jpg: tone-mapped; or the middle exposure, a JPEG's own bytes, anything else encoded. */
+enum status bracketed_view_write_picture(const struct bracketed_view *v, const char *photos, const char *out,
+                                         const struct merge_params *params, struct err *err);
 /* OUT/ID.exr. *beyond: samples brighter than a half number holds, cut there. */
 enum status bracketed_view_write_radiance(const struct bracketed_view *v, const char *out,
                                           const struct provenance *prov, size_t *beyond, struct err *err);

@@ -1,8 +1,8 @@
 /* merge.c - weighted mean of exposures in linear radiance.
  *
- * A sample v (linear, 1 is white) of exposure t estimates the radiance x as v / t. Its noise has a part that grows with
- * the light (photons; the steps of the sRGB curve do about the same) and a part that does not (reading, the steps near
- * black): var(v) ~ v + NOISE_FLOOR. The best weight of v / t is 1 / var(v / t) = t^2 / (t x + NOISE_FLOOR).
+ * A sample v (linear, 1 is white) of exposure t estimates the radiance x as v / t. Its noise (noise.h) has a part that grows
+ * with the light and a part that does not: var(v) = photon v + read^2. The best weight of v / t is 1 / var(v / t) =
+ * t^2 / (photon t x + read^2).
  *
  * Weights taken from the noisy samples themselves would pull the mean towards the samples that happen to look sure. So
  * there are two rounds: the first has weights t, for which the mean is sum(v) / sum(t), nearly the best already; the
@@ -14,8 +14,13 @@
  * exposure that knows most: the shortest if all saturate (a lower bound), else the longest that does not saturate, but
  * no less than the saturated ones say. Both are marked.
  *
+ * With weights w the mean sum(w v) / sum(w t) has the variance sum(w^2 var(v)) / sum(w t)^2.
+ *
  * Differs from Debevec and Malik 1997 (hat weights on the samples' own values, logarithmic mean) in that weights follow
- * noise and prediction, and the mean is of radiance, which has no bias towards dark samples. */
+ * noise and prediction, and the mean is of radiance, which has no bias towards dark samples.
+ *
+ * Blocks of pixels go through plain loops over planes, which the compiler turns into AVX2; what they cannot tell, pixels that
+ * need the second way, is done one by one. Both give the same numbers. */
 #include "stages/hdr_merge/merge.h"
 
 #include <math.h>
@@ -28,175 +33,368 @@
 const struct param merge_param_table[] = {MERGE_PARAMS(PARAM_ROW) PARAM_END};
 #undef PARAM_STRUCT
 
-enum { CHUNK = 1 << 14 };
+enum { ROWS = 8, BLOCK = 64 };
 
-static const float NOISE_FLOOR = 0.001f;  /* of white: about three steps of 8 bits near black */
 static const float SATURATED_FROM = 0.8f; /* of `saturated`: the weight falls from here */
 static const float DARK_UNTIL = 3;        /* of `dark`: the weight rises to here */
+static const float ABSENT = -1;           /* the exposure does not show this place */
+static const float luma[3] = {0.2126f, 0.7152f, 0.0722f};
 
 struct exposure_job { /* one exposure */
     const uint16_t *samples;
-    const float *curve; /* linear value of a sample */
+    const float *values;    /* in place of samples: linear already */
+    const float *tables[3]; /* linear value of a sample */
     float t;
+    int dx, dy;
+    float saturated, trusted, falling; /* weight 0 from `saturated`, 1 below `trusted` */
+    float dark, rising;                /* weight 0 up to `dark` */
+    float photon, read2;
 };
 
 struct merge {
-    struct image *radiance;
-    uint8_t *marks;
-    const struct exposure_job *exposures; /* ascending in t */
+    struct merged *out;
+    struct exposure_job exposures[MERGE_MOST]; /* ascending in t */
     int count;
-    float saturated, trusted; /* weight 0 from `saturated`, 1 below `trusted` */
-    float dark, clear;        /* weight 0 up to `dark`, 1 from `clear` */
-    float falling, rising;    /* the slopes in between */
 };
 
-static float trust(const struct merge *m, float v)
+static inline float clamp01(float v)
 {
-    return v >= m->saturated ? 0 : v <= m->trusted ? 1 : (m->saturated - v) * m->falling;
+    const float low = v > 0 ? v : 0;
+    return low < 1 ? low : 1;
 }
 
-static float clarity(const struct merge *m, float v)
+static inline float larger(float a, float b) { return a > b ? a : b; }
+static inline float smaller(float a, float b) { return a < b ? a : b; }
+
+/* 0 also for what is absent */
+static inline float trust(const struct exposure_job *e, float v)
 {
-    return v >= m->clear ? 1 : v <= m->dark ? 0 : (v - m->dark) * m->rising;
+    return v < 0 ? 0 : clamp01((e->saturated - v) * e->falling);
 }
 
-static float largest(const float rgb[3]) { return fmaxf(rgb[0], fmaxf(rgb[1], rgb[2])); }
+static inline float clarity(const struct exposure_job *e, float v) { return clamp01((v - e->dark) * e->rising); }
+
+/* ------------------------------------------------------------------------------------------------- pixel by pixel */
 
 /* A colour that no weighted sample tells; v: that colour in every exposure. */
 static float bound(const struct merge *m, const float *v, int c, uint8_t *mark)
 {
-    int known = m->count - 1; /* the longest exposure that does not saturate */
-    while (known >= 0 && v[3 * known + c] >= m->saturated) known--;
-    float x = v[3 * (known < 0 ? 0 : known) + c] / m->exposures[known < 0 ? 0 : known].t;
+    int known = -1, shortest = -1; /* the longest exposure that does not saturate; the shortest that is there */
+    for (int k = m->count - 1; k >= 0; k--) {
+        if (v[3 * k + c] < 0) continue;
+        shortest = k;
+        if (known < 0 && v[3 * k + c] < m->exposures[k].saturated) known = k;
+    }
+    const int from = known < 0 ? shortest : known;
+    float x = v[3 * from + c] / m->exposures[from].t;
     if (known < 0)
         *mark |= MERGE_BRIGHT;
-    else if (v[3 * known + c] <= m->dark)
+    else if (v[3 * known + c] <= m->exposures[known].dark)
         *mark |= MERGE_DARK;
-    for (int k = known + 1; known >= 0 && k < m->count; k++) x = fmaxf(x, v[3 * k + c] / m->exposures[k].t);
+    for (int k = known + 1; known >= 0 && k < m->count; k++) x = larger(x, v[3 * k + c] / m->exposures[k].t);
     return x;
 }
 
-/* own: colours count by their own saturation, not by the pixel's. */
-static void merge_pixel(const struct merge *m, const float *v, bool own, float rgb[3], uint8_t *mark)
+static void merge_colours(const struct merge *m, const float *v, float rgb[3], float variance[3], uint8_t *mark)
 {
-    float first[3], sum[3] = {0}, times[3] = {0};
-    for (int k = 0; k < m->count; k++) {
-        const float *s = v + 3 * k, most = largest(s);
-        for (int c = 0; c < 3; c++) {
-            float w = trust(m, own ? s[c] : most);
-            sum[c] += w * s[c];
-            times[c] += w * m->exposures[k].t;
+    for (int c = 0; c < 3; c++) {
+        float sum = 0, times = 0, weighted = 0, weights = 0, squares = 0;
+        for (int k = 0; k < m->count; k++) {
+            const float w = trust(&m->exposures[k], v[3 * k + c]);
+            sum += w * v[3 * k + c];
+            times += w * m->exposures[k].t;
         }
+        const float first = times > 0 ? sum / times : 0;
+        for (int k = 0; k < m->count; k++) {
+            const struct exposure_job *e = &m->exposures[k];
+            const float value = e->t * first;
+            const float trusted = smaller(trust(e, v[3 * k + c]), trust(e, value)) * clarity(e, value);
+            const float w = trusted * e->t / (e->photon * value + e->read2);
+            weighted += w * v[3 * k + c];
+            weights += w * e->t;
+            squares += w * trusted * e->t;
+        }
+        rgb[c] = weights > 0 ? weighted / weights : bound(m, v, c, mark);
+        variance[c] = weights > 0 ? squares / (weights * weights) : rgb[c] * rgb[c];
     }
-    if (!own && !(times[0] > 0)) {
-        merge_pixel(m, v, true, rgb, mark);
+}
+
+/* ------------------------------------------------------------------------------------------------------- in blocks */
+
+typedef float plane[BLOCK];
+
+/* The samples of an exposure for n pixels of a row from (x, y) on. */
+static void load(plane to[3], const struct exposure_job *e, int width, int height, int x, int y, int n)
+{
+    const int sx = x + e->dx, sy = y + e->dy;
+    int begin = sx < 0 ? -sx : 0, end = sx + n > width ? width - sx : n;
+    if (sy < 0 || sy >= height || begin >= end) begin = end = n;
+    for (int c = 0; c < 3; c++) {
+        for (int i = 0; i < begin; i++) to[c][i] = ABSENT;
+        for (int i = end; i < n; i++) to[c][i] = ABSENT;
+    }
+    const ptrdiff_t at = 3 * ((ptrdiff_t)sy * width + sx);
+    if (e->values) {
+        for (int i = begin; i < end; i++)
+            for (int c = 0; c < 3; c++) to[c][i] = e->values[at + 3 * i + c];
         return;
     }
-    for (int c = 0; c < 3; c++) first[c] = times[c] > 0 ? sum[c] / times[c] : 0;
+    const float *red = e->tables[0], *green = e->tables[1], *blue = e->tables[2];
+    for (int i = begin; i < end; i++) {
+        const uint16_t *s = e->samples + at + 3 * i;
+        to[0][i] = red[s[0]];
+        to[1][i] = green[s[1]];
+        to[2][i] = blue[s[2]];
+    }
+}
 
-    float weighted[3] = {0}, weights[3] = {0}, most_first = largest(first);
+/* The first round: what the second predicts exposures from; times 0 where every exposure saturates. */
+static void first_round(const struct merge *m, plane (*const v)[3], plane first[3], plane most_first, plane times,
+                        int n)
+{
+    for (int i = 0; i < n; i++) times[i] = 0;
+    for (int c = 0; c < 3; c++)
+        for (int i = 0; i < n; i++) first[c][i] = 0;
     for (int k = 0; k < m->count; k++) {
-        const float *s = v + 3 * k, t = m->exposures[k].t, most = largest(s);
-        float shared = fminf(trust(m, most), trust(m, t * most_first));
-        for (int c = 0; c < 3; c++) {
-            float value = t * first[c], trusted = own ? fminf(trust(m, s[c]), trust(m, value)) : shared;
-            float w = trusted * clarity(m, value) * t / (value + NOISE_FLOOR);
-            weighted[c] += w * s[c];
-            weights[c] += w * t;
+        const struct exposure_job *e = &m->exposures[k];
+        const float saturated = e->saturated, falling = e->falling, t = e->t;
+        const float *r = v[k][0], *g = v[k][1], *b = v[k][2];
+        for (int i = 0; i < n; i++) {
+            const float most = larger(r[i], larger(g[i], b[i]));
+            const float trusted = clamp01((saturated - most) * falling), w = most < 0 ? 0 : trusted;
+            first[0][i] += w * r[i];
+            first[1][i] += w * g[i];
+            first[2][i] += w * b[i];
+            times[i] += w * t;
         }
     }
-    for (int c = 0; c < 3; c++) rgb[c] = weights[c] > 0 ? weighted[c] / weights[c] : bound(m, v, c, mark);
-}
-
-static void merge_chunk(void *ctx, size_t begin, size_t end, int thread)
-{
-    const struct merge *m = ctx;
-    float v[3 * MERGE_MOST];
-    (void)thread;
-    for (size_t i = begin; i < end; i++) {
-        uint8_t mark = 0;
-        for (int k = 0; k < m->count; k++)
-            for (int c = 0; c < 3; c++)
-                v[3 * k + c] = m->exposures[k].curve[m->exposures[k].samples[3 * i + (size_t)c]];
-        merge_pixel(m, v, false, m->radiance->data + 3 * i, &mark);
-        if (m->marks) m->marks[i] = mark;
+    for (int i = 0; i < n; i++) {
+        const float per_time = times[i] > 0 ? 1 / times[i] : 0;
+        first[0][i] *= per_time;
+        first[1][i] *= per_time;
+        first[2][i] *= per_time;
+        most_first[i] = larger(first[0][i], larger(first[1][i], first[2][i]));
     }
 }
 
-void merge_agreement(struct exposure_agreement *worst, const struct photo *photos, const double *exposures, int count)
+struct sums { /* of a colour */
+    plane weighted, weights, squares;
+};
+
+static void second_round(const struct merge *m, plane (*const v)[3], plane first[3], const float *most_first,
+                         struct sums sums[3], int n)
+{
+    plane shared;
+    for (int c = 0; c < 3; c++)
+        for (int i = 0; i < n; i++) sums[c].weighted[i] = sums[c].weights[i] = sums[c].squares[i] = 0;
+    for (int k = 0; k < m->count; k++) {
+        const struct exposure_job e = m->exposures[k];
+        const float *r = v[k][0], *g = v[k][1], *b = v[k][2];
+        for (int i = 0; i < n; i++) {
+            const float most = larger(r[i], larger(g[i], b[i]));
+            const float seen = clamp01((e.saturated - most) * e.falling),
+                        meant = clamp01((e.saturated - e.t * most_first[i]) * e.falling);
+            shared[i] = most < 0 ? 0 : smaller(seen, meant);
+        }
+        for (int c = 0; c < 3; c++) {
+            const float *s = v[k][c], *x = first[c];
+            float *weighted = sums[c].weighted, *weights = sums[c].weights, *squares = sums[c].squares;
+            for (int i = 0; i < n; i++) {
+                const float value = e.t * x[i], trusted = shared[i] * clamp01((value - e.dark) * e.rising) * e.t;
+                const float w = trusted / (e.photon * value + e.read2);
+                weighted[i] += w * s[i];
+                weights[i] += w * e.t;
+                squares[i] += w * trusted;
+            }
+        }
+    }
+}
+
+/* Relative variance of the luminance. */
+static float relative_variance(const float rgb[3], const float variance[3], uint8_t mark)
+{
+    float y = 0, sum = 0;
+    for (int c = 0; c < 3; c++) {
+        y += luma[c] * rgb[c];
+        sum += luma[c] * luma[c] * variance[c];
+    }
+    if ((mark & MERGE_BRIGHT) || !(y > 0) || !(sum < y * y)) return 1;
+    const float v = sum / (y * y);
+    return v > 1e-12f ? v : 1e-12f;
+}
+
+static void merge_block(const struct merge *m, int x, int y, int n)
+{
+    plane v[MERGE_MOST][3], first[3], most_first, times;
+    struct sums sums[3];
+    const int width = m->out->radiance.width, height = m->out->radiance.height;
+    for (int k = 0; k < m->count; k++) load(v[k], &m->exposures[k], width, height, x, y, n);
+    first_round(m, v, first, most_first, times, n);
+    second_round(m, v, first, most_first, sums, n);
+    const size_t at = (size_t)y * (size_t)width + (size_t)x;
+    for (int i = 0; i < n; i++) {
+        float rgb[3], variance[3];
+        uint8_t mark = 0;
+        if (times[i] > 0) {
+            for (int c = 0; c < 3; c++) {
+                const float weights = sums[c].weights[i];
+                rgb[c] = weights > 0 ? sums[c].weighted[i] / weights : 0;
+                variance[c] = weights > 0 ? sums[c].squares[i] / (weights * weights) : 0;
+            }
+        }
+        const bool untold = !(times[i] > 0);
+        float pixel[3 * MERGE_MOST];
+        if (untold || !(sums[0].weights[i] > 0) || !(sums[1].weights[i] > 0) || !(sums[2].weights[i] > 0)) {
+            for (int k = 0; k < m->count; k++)
+                for (int c = 0; c < 3; c++) pixel[3 * k + c] = v[k][c][i];
+            if (untold) merge_colours(m, pixel, rgb, variance, &mark);
+            for (int c = 0; !untold && c < 3; c++)
+                if (!(sums[c].weights[i] > 0)) {
+                    rgb[c] = bound(m, pixel, c, &mark);
+                    variance[c] = rgb[c] * rgb[c];
+                }
+        }
+        for (int c = 0; c < 3; c++) m->out->radiance.data[3 * (at + (size_t)i) + (size_t)c] = rgb[c];
+        m->out->variance[at + (size_t)i] = relative_variance(rgb, variance, mark);
+        m->out->marks[at + (size_t)i] = mark;
+    }
+}
+
+static void merge_rows(void *ctx, size_t begin, size_t end, int thread)
+{
+    const struct merge *m = ctx;
+    const int width = m->out->radiance.width;
+    (void)thread;
+    for (size_t y = begin; y < end; y++)
+        for (int x = 0; x < width; x += BLOCK) merge_block(m, x, (int)y, width - x < BLOCK ? width - x : BLOCK);
+}
+
+/* ----------------------------------------------------------------------------------------------------------- setup */
+
+static enum status check(const struct brackets *b, struct err *err)
+{
+    if (b->count < 1 || b->count > MERGE_MOST)
+        return err_set(err, ST_DATA, "%d exposures cannot be merged; wanted 1 to %d.", b->count, (int)MERGE_MOST);
+    for (int k = 0; k < b->count; k++) {
+        const struct photo_info *info = &b->photos[k].info, *first = &b->photos[0].info;
+        if (info->width != first->width || info->height != first->height)
+            return err_set(
+                err, ST_DATA,
+                "exposure %d has %d x %d pixels, but the first one %d x %d; the exposures of a view have one "
+                "size.",
+                k + 1, info->width, info->height, first->width, first->height);
+        if (!(b->exposures[k] >= 1e-12 && b->exposures[k] <= 1e12))
+            return err_set(err, ST_DATA,
+                           "exposure %d is %g times that of white, which cannot be; correct it in exposures.txt.",
+                           k + 1, b->exposures[k]);
+    }
+    return ST_OK;
+}
+
+/* Limits are told for the sRGB curve: those of another one are at the same samples, of its least or most sure colour. */
+static void set_limits(struct exposure_job *e, const struct photo *p, const struct response *r,
+                       const struct merge_params *params)
+{
+    const float clear = (float)fmin(DARK_UNTIL * params->dark, 1);
+    float saturated = (float)params->saturated, trusted = SATURATED_FROM * saturated, dark = (float)params->dark,
+          from = clear;
+    if (p->values) { /* EXR may go beyond 1, or end below it */
+        saturated = p->saturation > 0 ? saturated * p->saturation : HUGE_VALF;
+        trusted = SATURATED_FROM * saturated;
+    } else if (r->table) {
+        const float at[4] = {srgb_from_linear(saturated), srgb_from_linear(trusted), srgb_from_linear(dark),
+                             srgb_from_linear(clear)};
+        saturated = trusted = HUGE_VALF;
+        dark = from = 0;
+        for (int c = 0; c < 3; c++) {
+            saturated = smaller(saturated, response_light(r, c, at[0]));
+            trusted = smaller(trusted, response_light(r, c, at[1]));
+            dark = larger(dark, response_light(r, c, at[2]));
+            from = larger(from, response_light(r, c, at[3]));
+        }
+    }
+    if (saturated == HUGE_VALF) saturated = trusted = 1e30f;
+    e->saturated = saturated;
+    e->trusted = trusted;
+    e->falling = saturated > trusted ? 1 / (saturated - trusted) : 1e30f;
+    e->dark = dark > 0 ? dark : -2; /* no light at all counts too, where it may */
+    e->rising = dark > 0 && from > dark ? 1 / (from - dark) : 1;
+}
+
+enum status merge_brackets(struct merged *out, const struct brackets *b, const struct noise *noise,
+                           const struct merge_params *params, struct err *err)
+{
+    struct merge m = {.out = out, .count = b->count};
+    float *tables[2] = {NULL, NULL}; /* of 8 and of 16 bits */
+    *out = (struct merged){0};
+    enum status st = check(b, err);
+    for (int k = 0; !st && k < b->count; k++) {
+        const struct photo *p = &b->photos[k];
+        const int wide = p->info.bits == 16;
+        if (!p->values && !tables[wide] && !(tables[wide] = response_tables(b->response, p->info.bits, err)))
+            st = ST_NOMEM;
+        if (st) break;
+        struct exposure_job *e = &m.exposures[k];
+        *e = (struct exposure_job){.samples = p->samples,
+                                   .values = p->values,
+                                   .t = (float)b->exposures[k],
+                                   .dx = b->shifts ? b->shifts[k].dx : 0,
+                                   .dy = b->shifts ? b->shifts[k].dy : 0,
+                                   .photon = (float)noise[k].photon,
+                                   .read2 = (float)noise[k].read2};
+        for (int c = 0; !p->values && c < 3; c++) e->tables[c] = tables[wide] + (size_t)c * (wide ? 65536 : 256);
+        set_limits(e, p, b->response, params);
+    }
+    const int width = st ? 1 : b->photos[0].info.width, height = st ? 1 : b->photos[0].info.height;
+    const size_t pixels = (size_t)width * (size_t)height;
+    if (!st) st = image_init(&out->radiance, width, height, 3, err);
+    if (!st && (!(out->marks = malloc(pixels)) || !(out->variance = malloc(pixels * sizeof *out->variance))))
+        st = err_nomem(err, "a view's marks and variance", pixels * 5);
+    if (!st) parallel_for((size_t)height, ROWS, merge_rows, &m);
+    free(tables[0]);
+    free(tables[1]);
+    return st;
+}
+
+void merged_release(struct merged *m)
+{
+    if (!m) return;
+    image_release(&m->radiance);
+    free(m->marks);
+    free(m->variance);
+    *m = (struct merged){0};
+}
+
+/* ------------------------------------------------------------------------------------------------------- agreement */
+
+static double light_of(const struct photo *p, const struct response *r, size_t i)
+{
+    if (p->values) return (double)p->values[i];
+    return (double)response_light(r, (int)(i % 3), (float)p->samples[i] / (p->info.bits == 16 ? 65535.0f : 255.0f));
+}
+
+enum status merge_agreement(struct exposure_agreement *worst, const struct brackets *b, struct err *err)
 {
     enum { SAMPLES = 1 << 16 };
     const double least = 0.02, most = 0.7; /* linear: neither dark nor near white */
     *worst = (struct exposure_agreement){0, 1, 1, 0};
-    for (int k = 1; k < count; k++) {
-        const struct photo *a = &photos[k - 1], *b = &photos[k];
-        size_t samples = (size_t)a->info.width * (size_t)a->info.height * 3, step = samples / SAMPLES + 1, n = 0;
-        double sum_a = 0, sum_b = 0, white_a = a->info.bits == 16 ? 65535 : 255,
-               white_b = b->info.bits == 16 ? 65535 : 255;
+    enum status st = check(b, err);
+    for (int k = 1; !st && k < b->count; k++) {
+        const struct photo *p = &b->photos[k - 1], *q = &b->photos[k];
+        const size_t samples = (size_t)p->info.width * (size_t)p->info.height * 3, step = samples / SAMPLES + 1;
+        size_t n = 0;
+        double sum_p = 0, sum_q = 0;
         for (size_t i = 0; i < samples; i += step) {
-            double va = linear_from_srgb((float)(a->samples[i] / white_a)),
-                   vb = linear_from_srgb((float)(b->samples[i] / white_b));
-            if (va < least || vb < least || va > most || vb > most) continue;
-            sum_a += va;
-            sum_b += vb;
+            const double vp = light_of(p, b->response, i), vq = light_of(q, b->response, i);
+            if (vp < least || vq < least || vp > most || vq > most) continue;
+            sum_p += vp;
+            sum_q += vq;
             n++;
         }
         if (n < SAMPLES / 256) continue;
-        double stated = exposures[k] / exposures[k - 1], seen = sum_b / sum_a;
+        const double stated = b->exposures[k] / b->exposures[k - 1], seen = sum_q / sum_p;
         if (fabs(log(seen / stated)) > fabs(log(worst->seen / worst->stated)))
             *worst = (struct exposure_agreement){k, stated, seen, n};
     }
-}
-
-static float *make_curve(int bits, struct err *err)
-{
-    size_t levels = bits == 16 ? 65536 : 256;
-    float *curve = malloc(levels * sizeof *curve);
-    if (!curve) err_nomem(err, "a tone curve", levels * sizeof *curve);
-    for (size_t i = 0; curve && i < levels; i++) curve[i] = linear_from_srgb((float)i / (float)(levels - 1));
-    return curve;
-}
-
-enum status merge_brackets(struct image *radiance, uint8_t *marks, const struct photo *photos, const double *exposures,
-                           int count, const struct merge_params *params, struct err *err)
-{
-    struct exposure_job jobs[MERGE_MOST];
-    float *curves[2] = {NULL, NULL}; /* of 8 and of 16 bits */
-    *radiance = (struct image){0};
-    if (count < 1 || count > MERGE_MOST)
-        return err_set(err, ST_DATA, "%d exposures cannot be merged; wanted 1 to %d.", count, (int)MERGE_MOST);
-    enum status st = ST_OK;
-    for (int k = 0; !st && k < count; k++) {
-        const struct photo_info *info = &photos[k].info, *first = &photos[0].info;
-        int wide = info->bits == 16;
-        if (info->width != first->width || info->height != first->height)
-            st = err_set(err, ST_DATA,
-                         "exposure %d has %d x %d pixels, but the first one %d x %d; the exposures of a view have one "
-                         "size.",
-                         k + 1, info->width, info->height, first->width, first->height);
-        if (!st && !(exposures[k] >= 1e-12 && exposures[k] <= 1e12))
-            st = err_set(err, ST_DATA,
-                         "exposure %d is %g times that of white, which cannot be; correct it in exposures.txt.", k + 1,
-                         exposures[k]);
-        if (!st && !curves[wide] && !(curves[wide] = make_curve(info->bits, err))) st = ST_NOMEM;
-        jobs[k] = (struct exposure_job){photos[k].samples, curves[wide], (float)exposures[k]};
-    }
-    if (!st) st = image_init(radiance, photos[0].info.width, photos[0].info.height, 3, err);
-    if (!st) {
-        float saturated = (float)params->saturated, dark = (float)params->dark;
-        struct merge m = {.radiance = radiance,
-                          .marks = marks,
-                          .exposures = jobs,
-                          .count = count,
-                          .saturated = saturated,
-                          .trusted = SATURATED_FROM * saturated,
-                          .falling = 1 / (saturated - SATURATED_FROM * saturated),
-                          .dark = dark,
-                          .clear = DARK_UNTIL * dark,
-                          .rising = dark > 0 ? 1 / (DARK_UNTIL * dark - dark) : 0};
-        parallel_for((size_t)radiance->width * (size_t)radiance->height, CHUNK, merge_chunk, &m);
-    }
-    free(curves[0]);
-    free(curves[1]);
     return st;
 }

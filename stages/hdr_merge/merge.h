@@ -1,6 +1,6 @@
 /* merge.h - linear radiance from photographs of one view in several exposures (brackets).
  *
- * Photos are linearised by the sRGB curve; a sample v of exposure t says radiance v / t. Exposures are relative: at
+ * Photos are linearised by a response curve; a sample v of exposure t says radiance v / t. Exposures are relative: at
  * exposure 1 radiance 1 is white. */
 #ifndef REMODEL_MERGE_H
 #define REMODEL_MERGE_H
@@ -8,26 +8,9 @@
 #include <stdint.h>
 
 #include "common/image.h"
-#include "common/param.h"
-#include "common/photo.h"
-
-/* name, type, default, least, most, unit, help */
-#define MERGE_PARAMS(X)                                                              \
-    X(saturated, double, 0.95, 0.1, 1, "",                                           \
-      "part of white, linear, from which a sample counts for nothing; less counts "  \
-      "fully below 0.8 of it")                                                       \
-    X(dark, double, 0.001, 0, 0.1, "",                                               \
-      "part of white, linear, up to which a sample counts for nothing; more counts " \
-      "fully above 3 of it")
-
-struct merge_params {
-    MERGE_PARAMS(PARAM_FIELD)
-};
-#define MERGE_PARAMS_DEFAULT        \
-    {                               \
-        MERGE_PARAMS(PARAM_DEFAULT) \
-    }
-extern const struct param merge_param_table[];
+#include "common/response.h"
+#include "stages/hdr_merge/merge_params.h"
+#include "stages/hdr_merge/noise.h"
 
 enum { MERGE_MOST = 64 }; /* exposures of a view */
 
@@ -37,12 +20,30 @@ enum {
     MERGE_DARK = 2,   /* a colour is dark even in the longest exposure that does not saturate: nearly only noise */
 };
 
-/* radiance: R G B, empty on entry, the caller releases it; marks: w * h bytes, the caller's, or NULL. photos are of one
- * size (else ST_DATA), exposures 1e-12 to
- * 1e12 (else ST_DATA) and ascending, 1 to MERGE_MOST of them. Results are finite and not negative. The same bits for any number of
- * threads. */
-enum status merge_brackets(struct image *radiance, uint8_t *marks, const struct photo *photos, const double *exposures,
-                           int count, const struct merge_params *params, struct err *err);
+/* Where an exposure shows what the picture shows: its pixel (x + dx, y + dy) is the picture's (x, y). */
+struct shift {
+    int dx, dy;
+};
+
+struct brackets {
+    const struct photo *photos; /* of one size */
+    const double *exposures;    /* ascending */
+    int count;
+    const struct response *response;
+    const struct shift *shifts; /* NULL: none */
+};
+
+struct merged {
+    struct image radiance; /* R G B; finite, not negative */
+    uint8_t *marks;        /* a pixel; owned */
+    float *variance;       /* a pixel's, of its luminance over the luminance's square; (0, 1]; owned */
+};
+
+/* m is {0} on entry; release it also after a failure. ST_DATA: photos of different sizes, exposures that are not 1e-12 to
+ * 1e12, not 1 to MERGE_MOST of them. The same bits for any number of threads. */
+enum status merge_brackets(struct merged *m, const struct brackets *b, const struct noise *noise,
+                           const struct merge_params *params, struct err *err);
+void merged_release(struct merged *m);
 
 /* How much more light an exposure seems to have had than the one before it, from the samples that are well exposed in
  * both, and how much more its exposure states; of the pair that agrees least. pair 0: there is none to compare. */
@@ -51,6 +52,6 @@ struct exposure_agreement {
     double stated, seen;
     size_t samples;
 };
-void merge_agreement(struct exposure_agreement *worst, const struct photo *photos, const double *exposures, int count);
+enum status merge_agreement(struct exposure_agreement *worst, const struct brackets *b, struct err *err);
 
 #endif

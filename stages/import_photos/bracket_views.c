@@ -292,6 +292,33 @@ static enum status group_by_cycle(struct bracket_views *v, const struct photo_sc
     return st;
 }
 
+static bool any_linear(const struct photo_scan *scan, const char **file)
+{
+    for (int i = 0; i < scan->count; i++)
+        if (!scan->photos[i].excluded && scan->photos[i].record.info.bits == 32) {
+            *file = scan->photos[i].file;
+            return true;
+        }
+    return false;
+}
+
+static enum status single_views(struct bracket_views *v, const struct photo_scan *scan, struct err *err)
+{
+    int stated = 0, count = 0;
+    enum status st = ST_OK;
+    for (int i = 0; !st && i < scan->count; i++) {
+        if (scan->photos[i].excluded) continue;
+        count++;
+        stated += v->exposures[i].seconds > 0;
+        st = add_view(v, "", &i, 1, err);
+    }
+    for (int i = 0; !st && !stated && i < scan->count; i++) v->exposures[i] = (struct exposure){1, 0, 0, 1};
+    if (!st && count)
+        log_note("%d views of one exposure each%s", count,
+                 stated ? "" : ", of which no time is known: taken to be alike");
+    return st;
+}
+
 /* ------------------------------------------------------------------------------------------------- views and checks */
 
 /* Where the names of the view's photos first differ, back to the last whole word before it. */
@@ -462,7 +489,14 @@ enum status bracket_views_find(struct bracket_views *v, const struct photo_scan 
                                bool *used, struct err *err)
 {
     char *path = NULL;
+    const char *linear = NULL;
+    const bool single = !strcmp(params->brackets, "single"), developed = any_linear(scan, &linear);
     *v = (struct bracket_views){0};
+    if (!strcmp(params->brackets, "no") && developed)
+        return err_set(err, ST_DATA,
+                       "%s/%s is an EXR or a raw file, which is made a picture of where brackets are merged; set "
+                       "[import_photos] brackets = auto, or leave it out (EXCLUDE).",
+                       scan->folder, linear);
     if (!strcmp(params->brackets, "no")) return ST_OK;
     enum status st = find_exposures(v, scan, scene, err);
     if (!st && scene && asprintf(&path, "%s/brackets.txt", scene) < 0) {
@@ -471,7 +505,8 @@ enum status bracket_views_find(struct bracket_views *v, const struct photo_scan 
     }
     bool listed = path && !access(path, F_OK);
     if (!st && listed) st = group_by_list(v, scan, path, err);
-    if (!st && !listed) st = group_by_cycle(v, scan, !strcmp(params->brackets, "yes"), err);
+    if (!st && !listed && !single) st = group_by_cycle(v, scan, !strcmp(params->brackets, "yes"), err);
+    if (!st && !listed && !v->count && (single || developed)) st = single_views(v, scan, err);
     if (!st && listed && v->count) qsort(v->views, (size_t)v->count, sizeof *v->views, by_view);
     if (!st && !listed && v->count) st = name_views(v, scan, err);
     for (int i = 0; !st && i < v->count; i++) st = sort_view(&v->views[i], v, scan, err);

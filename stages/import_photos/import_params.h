@@ -6,8 +6,10 @@
 
 /* name, type, default, least, most, unit, help */
 #define IMPORT_PARAMS(X)                                                                                        \
-    X(brackets, choice, "auto", 0, 0, "auto|yes|no",                                                            \
-      "photos are exposures of the same views; auto: if brackets.txt says so or their exposures form a cycle")  \
+    X(brackets, choice, "auto", 0, 0, "auto|yes|single|no",                                                     \
+      "photos are exposures of the same views; auto: if brackets.txt says so or their exposures form a cycle; " \
+      "single: each "                                                                                           \
+      "photo is a view's only exposure")                                                                        \
     X(split_border, int, 0, 0, 100000, "px", "with SPLIT: what surrounds the pictures of a photo on all sides") \
     X(split_gap, int, 0, 0, 100000, "px", "with SPLIT: what lies between two pictures of a photo")              \
     X(split_dark, int, 0, 0, 254, "",                                                                           \

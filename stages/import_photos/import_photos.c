@@ -1,6 +1,6 @@
 /* import_photos.c - checks the photographs of a folder, gives them ids, finds which are exposures of one view.
  *
- * reads   --photos DIR   *.jpg *.jpeg *.png straight in it, exposures.txt; nothing in there is written
+ * reads   --photos DIR   JPEG, PNG, TIFF, EXR, raw files straight in it, exposures.txt; nothing in there is written
  *         --split CxR    each of them holds C x R pictures of a multi-lens camera, which are the photos
  *         --scene DIR    brackets.txt, exposures.txt if they are there
  * writes  --out DIR      ID.txt, a record a photo (content hash, size, EXIF); then list.txt; then photos.mk
@@ -56,7 +56,12 @@ static void report_left_out(const struct photo_scan *scan, const struct left_out
 static void report_scan(const struct photo_scan *scan)
 {
     for (int i = 0; i < scan->count; i++) err_report(&scan->photos[i].err);
-    if (scan->ignored) log_note("ignored in %s: %d that are no .jpg, .jpeg or .png file", scan->folder, scan->ignored);
+    if (scan->ignored) log_note("ignored in %s: %d that are no photos by their names", scan->folder, scan->ignored);
+    if (scan->doubled)
+        log_note("ignored in %s: %d raw files beside a JPEG of the same name; keep the raw files in a folder of their "
+                 "own to "
+                 "use them",
+                 scan->folder, scan->doubled);
 }
 
 /* The pictures that the photos hold, cut out into `cuts`. */
@@ -135,7 +140,8 @@ int main(int argc, char **argv)
     struct import_params params = IMPORT_PARAMS_DEFAULT;
     const struct cli_opt opts[] = {
         CLI_ABOUT("check the photographs of a folder, give them ids, record what they are"),
-        CLI_STR("photos", &photos, CLI_REQUIRED, "folder of JPEG and PNG photos; sub-folders are not looked into"),
+        CLI_STR("photos", &photos, CLI_REQUIRED,
+                "folder of photos: JPEG, PNG, TIFF, EXR, raw; sub-folders are not looked into"),
         CLI_STR("scene", &scene, CLI_OPTIONAL, "folder that may hold brackets.txt and exposures.txt"),
         CLI_LIST("exclude", &exclude, CLI_OPTIONAL,
                  "photo to leave out: file name, with or without ending, or id; or a view"),

@@ -15,15 +15,53 @@
 #include "common/progress.h"
 #include "common/textfile.h"
 
+/* The same of raw files alone. */
+static size_t raw_stem(const char *file)
+{
+    static const char *const endings[] = {".dng", ".cr2", ".cr3", ".crw", ".nef", ".nrw", ".arw", ".sr2", ".raf",
+                                          ".orf", ".rw2", ".pef", ".srw", ".x3f", ".3fr", ".iiq", ".mrw"};
+    const size_t length = strlen(file);
+    for (size_t i = 0; i < sizeof endings / sizeof *endings; i++)
+        if (length > 4 && !strcasecmp(file + length - 4, endings[i])) return length - 4;
+    return 0;
+}
+
 size_t photo_stem(const char *file)
 {
-    static const char *const endings[] = {".jpg", ".jpeg", ".png"};
-    size_t length = strlen(file);
-    for (int i = 0; i < 3; i++) {
+    static const char *const endings[] = {".jpg", ".jpeg", ".png", ".tif", ".tiff", ".exr"};
+    const size_t length = strlen(file), raw = raw_stem(file);
+    for (size_t i = 0; i < sizeof endings / sizeof *endings; i++) {
         size_t ending = strlen(endings[i]);
         if (length > ending && !strcasecmp(file + length - ending, endings[i])) return length - ending;
     }
-    return 0;
+    return raw;
+}
+
+/* Cameras that write both give them one name. The JPEG is taken: it is what its owner looked at. */
+static bool stands_beside_jpeg(const struct photo_scan *scan, const char *raw)
+{
+    const size_t stem = raw_stem(raw);
+    for (int i = 0; stem && i < scan->count; i++) {
+        const char *other = scan->photos[i].file;
+        if (!raw_stem(other) && photo_stem(other) == stem && !strncmp(other, raw, stem) &&
+            (!strcasecmp(other + stem, ".jpg") || !strcasecmp(other + stem, ".jpeg")))
+            return true;
+    }
+    return false;
+}
+
+static void leave_raw_beside_jpeg(struct photo_scan *scan)
+{
+    int kept = 0;
+    for (int i = 0; i < scan->count; i++) scan->photos[i].excluded = stands_beside_jpeg(scan, scan->photos[i].file);
+    for (int i = 0; i < scan->count; i++)
+        if (scan->photos[i].excluded) {
+            free(scan->photos[i].file);
+            scan->doubled++;
+        } else {
+            scan->photos[kept++] = scan->photos[i];
+        }
+    scan->count = kept;
 }
 
 static bool id_char(char c)
@@ -155,6 +193,7 @@ enum status photo_scan_folder(struct photo_scan *scan, const char *folder, struc
     for (struct dirent *entry; !st && (entry = readdir(dir)); errno = 0) st = scan_entry(scan, entry->d_name, err);
     if (!st && errno) st = err_errno(err, "list the folder of photos", folder);
     closedir(dir);
+    leave_raw_beside_jpeg(scan);
     if (!st && scan->count) {
         qsort(scan->photos, (size_t)scan->count, sizeof *scan->photos, by_file);
         st = assign_ids(scan, err);
@@ -206,7 +245,7 @@ static enum status check_photo(struct scanned_photo *p, const char *folder, cons
     if (!st && read_old_record(&old, records, p->id) && !strcmp(old.hash, p->record.hash)) {
         p->record.info = old.info;
     } else if (!st) {
-        st = photo_read(&photo, path, &p->err);
+        st = photo_read_any(&photo, path, &p->err);
         p->record.info = photo.info;
     }
     if (!st) {
@@ -324,7 +363,7 @@ enum status photo_scan_write(const struct photo_scan *scan, const char *records,
 
     if (!st && used < 2)
         st = err_set(err, ST_DATA,
-                     "%s holds %s JPEG or PNG photo%s; a parallax video needs at least 2, taken from different places.",
+                     "%s holds %s photo%s; a parallax video needs at least 2, taken from different places.",
                      scan->folder, used ? "one" : "no", used < scan->count ? " that is not left out" : "");
     if (!st && !(list.photos = calloc((size_t)scan->count + 1, sizeof *list.photos)))
         st = err_nomem(err, "a list of photos", (size_t)scan->count * sizeof *list.photos);

@@ -1,7 +1,7 @@
 /* photo_scan.h - the photographs of a folder: their ids, what is left out, and which of them cannot be used.
  *
- * A photo is a file straight in the folder whose name ends in .jpg, .jpeg or .png (any case) and does not begin with
- * a dot. An id is the name without that ending, every run of characters but letters, digits, _ and - made one _; it
+ * A photo is a file straight in the folder whose name ends as those of JPEG, PNG, TIFF, EXR or raw files do (any case) and
+ * does not begin with a dot; a raw file beside a JPEG of the same name is none. An id is the name without that ending, every run of characters but letters, digits, _ and - made one _; it
  * does not begin with -. Where two photos would share an id (or take one of the scene's own names) the ending is added
  * to each, _jpg, and if that is taken -2, -3 in order of file name. Ids depend on the set of names alone, photos that
  * are left out included, so leaving one out renames no other. */
@@ -24,6 +24,7 @@ struct photo_scan {
     struct scanned_photo *photos; /* in order of id (strcmp) */
     int count;
     bool cut;    /* the photos are pictures cut out of others, ID_cXrY.png; set by who knows */
+    int doubled; /* raw files beside a JPEG of the same name */
     int ignored; /* other files and folders in there; hidden ones, exposures.txt and split.txt are not counted */
 };
 
@@ -54,7 +55,7 @@ enum status photo_scan_remove_others(const char *records, const char *const *ids
 
 /* What ids are made of. */
 enum { PHOTO_ID_MOST = 100 };        /* of 255 bytes in a file name: leaves room for @k, endings and a temporary name */
-size_t photo_stem(const char *file); /* length of the name without .jpg, .jpeg or .png; 0 if it has none of them */
+size_t photo_stem(const char *file); /* length of the name without its ending; 0 if that is no photo's */
 bool photo_id_reserved(const char *id); /* a name of the scene's own: list, brackets */
 void photo_id_from_stem(char id[PHOTO_ID_MOST + 1], const char *stem, size_t length);
 

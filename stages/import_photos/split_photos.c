@@ -191,7 +191,7 @@ enum status split_photos(struct photo_scan *scan, const struct split_grid *grid,
     struct err ignored = ERR_INIT;
     int kept = 0;
     if (!photo_scan_used(scan))
-        return err_set(err, ST_DATA, "%s holds no JPEG or PNG photo%s to cut into pictures.", scan->folder,
+        return err_set(err, ST_DATA, "%s holds no photo%s to cut into pictures.", scan->folder,
                        scan->count ? " that is not left out" : "");
     char *path = join_path(out, "split.txt");
     list.photos = calloc((size_t)scan->count, sizeof *list.photos);

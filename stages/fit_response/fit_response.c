@@ -1,0 +1,149 @@
+/* fit_response.c - finds out how the samples of bracketed photos follow light: one curve for all of a scene.
+ *
+ * reads   RECORDS/list.txt, ID.txt   the views and how their photos were exposed
+ *         PHOTOS/FILE                the photos of some of the views
+ * writes  OUT                        response.txt: the sRGB curve, or a table that was recovered (docs/formats.md)
+ *
+ * It is rewritten only if its text changes, so that Make merges views again only then; so it does not name the photos. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/cli.h"
+#include "common/file_path.h"
+#include "common/log.h"
+#include "common/outfile.h"
+#include "common/parallel.h"
+#include "common/photo_list.h"
+#include "stages/fit_response/recover.h"
+
+struct view_job {
+    const struct photo_record *record;
+    const char *photos;
+    int most;
+    struct places places;
+    struct err err;
+};
+
+/* Linear photos need no curve; a view that has one tells nothing. */
+static enum status sample_view(struct view_job *job)
+{
+    const struct photo_record *r = job->record;
+    const int count = r->bracket_count < RECOVER_MOST ? r->bracket_count : RECOVER_MOST;
+    struct photo *photos = calloc((size_t)count + 1, sizeof *photos);
+    double exposures[RECOVER_MOST];
+    bool linear = false;
+    enum status st = photos ? ST_OK : err_nomem(&job->err, "photos", (size_t)count * sizeof *photos);
+    for (int k = 0; !st && !linear && k < count; k++) {
+        char path[FILE_PATH];
+        st = file_path(path, job->photos, r->brackets[k].file, "", &job->err);
+        if (!st) st = photo_read_any(&photos[k], path, &job->err);
+        if (!st && (photos[k].info.width != photos[0].info.width || photos[k].info.height != photos[0].info.height))
+            st = err_set(&job->err, ST_DATA,
+                         "%s is not as large as the other exposures of view %s; import the photos again.", path, r->id);
+        linear |= photos[k].values != NULL;
+        exposures[k] = r->brackets[k].exposure;
+    }
+    if (!st && !linear) st = places_add(&job->places, photos, exposures, count, job->most, &job->err);
+    for (int k = 0; photos && k < count; k++) photo_release(&photos[k]);
+    free(photos);
+    return st;
+}
+
+static void sample_views(void *ctx, size_t begin, size_t end, int thread)
+{
+    struct view_job *jobs = ctx;
+    (void)thread;
+    for (size_t i = begin; i < end; i++) sample_view(&jobs[i]);
+}
+
+static enum status join(struct places *all, const struct places *p, struct err *err)
+{
+    struct place_sample *samples = realloc(all->samples, (all->sample_count + p->sample_count + 1) * sizeof *samples);
+    if (samples) all->samples = samples;
+    int *counts = realloc(all->counts, (all->count + p->count + 1) * sizeof *counts);
+    if (counts) all->counts = counts;
+    if (!samples || !counts) return err_nomem(err, "samples of photos", p->sample_count * sizeof *samples);
+    if (p->sample_count) memcpy(samples + all->sample_count, p->samples, p->sample_count * sizeof *samples);
+    if (p->count) memcpy(counts + all->count, p->counts, p->count * sizeof *counts);
+    all->sample_count += p->sample_count;
+    all->count += p->count;
+    return ST_OK;
+}
+
+static enum status gather(struct places *all, const struct photo_list *list, const char *photos,
+                          const struct fit_params *params, struct err *err)
+{
+    int bracketed = 0, n = 0;
+    for (int i = 0; i < list->count; i++) bracketed += list->photos[i].bracket_count > 1;
+    const int count = bracketed < params->views ? bracketed : params->views;
+    struct view_job *jobs = calloc((size_t)count + 1, sizeof *jobs);
+    enum status st = jobs ? ST_OK : err_nomem(err, "views", (size_t)count * sizeof *jobs);
+    for (int i = 0, seen = 0; !st && i < list->count; i++) {
+        if (list->photos[i].bracket_count < 2) continue;
+        if (n < count && seen++ * count >= n * bracketed)
+            jobs[n++] = (struct view_job){&list->photos[i], photos, params->places, {0}, ERR_INIT};
+    }
+    if (!st) parallel_for((size_t)n, 1, sample_views, jobs);
+    for (int i = 0; i < n; i++) {
+        if (!st && jobs[i].err.status) st = err_set(err, jobs[i].err.status, "%s", jobs[i].err.text);
+        if (!st) st = join(all, &jobs[i].places, err);
+        places_release(&jobs[i].places);
+    }
+    free(jobs);
+    return st;
+}
+
+static enum status write_response(const struct response *r, const char *path, const struct provenance *prov,
+                                  struct err *err)
+{
+    char *text = NULL;
+    size_t size = 0;
+    FILE *to = open_memstream(&text, &size);
+    if (!to) return err_nomem(err, "a text", 0);
+    provenance_print(prov, to);
+    fprintf(to, "remodel-response 1\ncurve %s\n", r->table ? "table 256" : "srgb");
+    for (int i = 0; r->table && i < RESPONSE_LEVELS; i++)
+        fprintf(to, "%.9g %.9g %.9g\n", (double)r->light[0][i], (double)r->light[1][i], (double)r->light[2][i]);
+    const bool failed = fclose(to) != 0;
+    enum status st = failed ? err_nomem(err, "a text", size) : outfile_write_new(path, text, size, err);
+    free(text);
+    return st;
+}
+
+static enum status fit_response(const char *photos, const char *records, const char *out,
+                                const struct fit_params *params, const struct provenance *prov, struct err *err)
+{
+    struct photo_list list = {0};
+    struct places places = {0};
+    struct response response;
+    char told[RESPONSE_TOLD];
+    enum status st = photo_list_read(&list, records, err);
+    if (!st) st = gather(&places, &list, photos, params, err);
+    if (!st) st = response_decide(&response, told, &places, params, err);
+    if (!st) st = write_response(&response, out, prov, err);
+    if (!st) log_note("samples follow light by %s", told);
+    places_release(&places);
+    photo_list_release(&list);
+    return st;
+}
+
+int main(int argc, char **argv)
+{
+    const char *photos = NULL, *records = NULL, *out = NULL;
+    struct fit_params params = FIT_PARAMS_DEFAULT;
+    const struct cli_opt opts[] = {
+        CLI_ABOUT("Finds out how the samples of bracketed photos follow light: one curve for all of a scene."),
+        CLI_STR("photos", &photos, CLI_REQUIRED, "folder of photographs"),
+        CLI_STR("records", &records, CLI_REQUIRED, "folder of records"),
+        CLI_STR("out", &out, CLI_REQUIRED, "response.txt to write, if its text changes"),
+        CLI_PARAMS(fit_param_table, &params, NULL),
+        CLI_END,
+    };
+    struct provenance prov = {0};
+    struct err err = ERR_INIT;
+    if (cli_parse(argc, argv, "fit_response", opts, &prov, &err) != CLI_RUN ||
+        fit_response(photos, records, out, &params, &prov, &err))
+        err_report(&err);
+    provenance_release(&prov);
+    return err_exit_code(&err);
+}

@@ -1,0 +1,148 @@
+/* cross_validation.c - a response and radiance that are fitted to every other exposure of a real scene must predict the others.
+ *
+ * ../shared/data/brackets-memorial is the church of Debevec and Malik, 16 exposures a stop apart, scanned from film: no sRGB curve. */
+#include "tests/unit/scratch.h"
+
+#include <math.h>
+
+#include "common/exposure_list.h"
+#include "stages/fit_response/recover.h"
+#include "stages/hdr_merge/merge.h"
+
+struct stack { /* from the shortest exposure on */
+    struct photo photos[MERGE_MOST];
+    double exposures[MERGE_MOST];
+    int count;
+};
+
+static void read_stack(struct stack *s, const char *folder)
+{
+    struct exposure_list list = {0};
+    struct err err = ERR_INIT;
+    char path[300];
+    *s = (struct stack){0};
+    if (access(folder, R_OK)) {
+        print_message("%s is not there\n", folder);
+        skip();
+    }
+    snprintf(path, sizeof path, "%s/exposures.txt", folder);
+    assert_ok(exposure_list_read(&list, path, &err), err);
+    for (int i = list.count - 1; i >= 0; i--, s->count++) { /* the list begins with the longest */
+        snprintf(path, sizeof path, "%s/%s", folder, list.lines[i].file);
+        assert_ok(photo_read(&s->photos[s->count], path, &err), err);
+        s->exposures[s->count] = exposure_value(&list.lines[i].exposure);
+        assert_true(!s->count || s->exposures[s->count] > s->exposures[s->count - 1]);
+    }
+    exposure_list_release(&list);
+}
+
+static int compare_doubles(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static double luminance(const float *rgb) { return 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2]; }
+
+/* Relative errors of the luminance that `merged` predicts for an exposure t, of its well exposed pixels: no colour near
+ * saturation, the pixel brighter than a twentieth of white, as in the comparisons with truth. */
+static size_t compare(double *errors, const struct merged *merged, const struct photo *p, double t,
+                      const struct response *response)
+{
+    const float brightest = 255 * srgb_from_linear(0.76f);
+    size_t n = 0;
+    for (size_t i = 0; i < (size_t)p->info.width * (size_t)p->info.height; i++) {
+        const uint16_t *s = p->samples + 3 * i;
+        float light[3];
+        for (int c = 0; c < 3; c++) light[c] = response_light(response, c, (float)s[c] / 255);
+        if (merged->marks[i] || s[0] > brightest || s[1] > brightest || s[2] > brightest || luminance(light) < 0.05)
+            continue;
+        errors[n++] = fabs(luminance(merged->radiance.data + 3 * i) * t / luminance(light) - 1);
+    }
+    return n;
+}
+
+/* Fits to the exposures whose index is `odd` mod 2 and predicts the others; the median error over all of them. */
+static double predict(const struct stack *s, int odd)
+{
+    struct photo fitted[MERGE_MOST];
+    double exposures[MERGE_MOST];
+    const double scale = s->exposures[s->count / 2];
+    int count = 0;
+    const struct fit_params fit = FIT_PARAMS_DEFAULT;
+    const struct merge_params params = MERGE_PARAMS_DEFAULT;
+    struct places places = {0};
+    struct response response;
+    struct merged merged = {0};
+    struct noise noise[MERGE_MOST], measured;
+    bool known = false;
+    struct err err = ERR_INIT;
+    char told[RESPONSE_TOLD];
+    for (int k = odd; k < s->count; k += 2, count++) {
+        fitted[count] = s->photos[k];
+        exposures[count] = s->exposures[k] / scale;
+    }
+    const struct brackets b = {fitted, exposures, count, &response, NULL};
+    assert_ok(places_add(&places, fitted, exposures, count, fit.places, &err), err);
+    assert_ok(response_decide(&response, told, &places, &fit, &err), err);
+    print_message("samples follow light by %s\n", told);
+    assert_true(response.table);
+    assert_ok(noise_measure(&measured, &known, &b, &err), err);
+    for (int k = 0; k < count; k++) noise[k] = known ? measured : noise_given(&params, &response, 8);
+    assert_ok(merge_brackets(&merged, &b, noise, &params, &err), err);
+
+    const size_t pixels = (size_t)fitted[0].info.width * (size_t)fitted[0].info.height;
+    double *errors = malloc((size_t)s->count * pixels * sizeof *errors);
+    size_t all = 0;
+    assert_non_null(errors);
+    for (int k = !odd; k < s->count; k += 2) {
+        double *mine = errors + all;
+        const size_t n = compare(mine, &merged, &s->photos[k], s->exposures[k] / scale, &response);
+        if (!n) continue;
+        qsort(mine, n, sizeof *mine, compare_doubles);
+        print_message("  exposure %2d: median error %.4f, 90 %% below %.3f, of %.1f %% of the pixels\n", k, mine[n / 2],
+                      mine[n * 9 / 10], 100.0 * (double)n / (double)pixels);
+        all += n;
+    }
+    qsort(errors, all, sizeof *errors, compare_doubles);
+    const double median = errors[all / 2];
+    print_message("  median error %.4f of %zu pixels\n", median, all);
+    free(errors);
+    merged_release(&merged);
+    places_release(&places);
+    return median;
+}
+
+static void memorial_predicts_what_is_left_out(void **state)
+{
+    struct stack s;
+    (void)state;
+    read_stack(&s, "../shared/data/brackets-memorial");
+    for (int odd = 0; odd < 2; odd++) assert_true(predict(&s, odd) < 0.05);
+    for (int k = 0; k < s.count; k++) photo_release(&s.photos[k]);
+}
+
+/* Its list of times is not what the photos show: those of 1 and 0.5 s, and more pairs, are equally bright. */
+static void living_room_is_seen_to_be_stated_wrongly(void **state)
+{
+    struct stack s;
+    struct exposure_agreement worst;
+    const struct response srgb = {0};
+    struct err err = ERR_INIT;
+    (void)state;
+    read_stack(&s, "../shared/data/brackets-living-room");
+    const struct brackets b = {s.photos, s.exposures, s.count, &srgb, NULL};
+    assert_ok(merge_agreement(&worst, &b, &err), err);
+    print_message("exposure %d: stated %.3g times the one before, seen %.3g\n", worst.pair, worst.stated, worst.seen);
+    assert_true(worst.pair > 0 && worst.seen < 1.1 && worst.stated > 1.9);
+    for (int k = 0; k < s.count; k++) photo_release(&s.photos[k]);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(memorial_predicts_what_is_left_out),
+        cmocka_unit_test(living_room_is_seen_to_be_stated_wrongly),
+    };
+    return cmocka_run_group_tests_name("cross_validation", tests, NULL, NULL);
+}
