@@ -427,11 +427,22 @@ heldout: $(HELD_FRAMES)
 evaluate: $(O)/metrics.tsv
 report: $(O)/index.html
 
+# how samples follow light: what the scene says, else what its exposures show. Found out before the merges are planned (run_scene.sh), and
+# written only if it is new, so that merges go by its text and not by the photos; hence the stamp, and the rule without a recipe
+RESPONSE := $(or $(wildcard scenes/$(SCENE)/response.txt),$(S)/hdr/response.txt)
+RESPONSE_STAMP := $(if $(wildcard scenes/$(SCENE)/response.txt),,$(S)/stamp/response.txt)
+$(S)/stamp/response.txt: $(if $(BRACKETED),$(PHOTO_IDS:%=$(S)/photos/%.txt) $(S)/photos/list.txt) $(S)/slice/fit_response.cfg $(B)/code/fit_response
+	$(call stage,fit_response,all,$(S),--photos $(ORIGINALS) --records $(S)/photos --out $(S)/hdr/response.txt)
+	+@mkdir -p $(@D); echo done >$@
+$(S)/hdr/response.txt: ;
+.PHONY: response
+response: $(if $(BRACKETED),$(RESPONSE_STAMP))
+
 # a view's exposures, all qualities share them
 define hdr_rules
-$(S)/hdr/$(1).exr $(S)/hdr/$(1).jpg &: $(S)/photos/$(1).txt $(S)/slice/hdr_merge.cfg $(B)/code/hdr_merge
+$(S)/hdr/$(1).exr $(S)/hdr/$(1).jpg &: $(S)/photos/$(1).txt $(RESPONSE) $(S)/slice/hdr_merge.cfg $(B)/code/hdr_merge | $(RESPONSE_STAMP)
 	$$(hide)$$(call farm,hdr_merge,$(1),$(S)/hdr/$(1).jpg $(S)/hdr/$(1).exr,\
-	  --id $(1) --photos $$(ORIGINALS) --records $(S)/photos --out $(S)/hdr,,$(S))
+	  --id $(1) --photos $$(ORIGINALS) --records $(S)/photos --response $(RESPONSE) --out $(S)/hdr,,$(S))
 endef
 $(if $(BRACKETED),$(foreach p,$(PHOTO_IDS),$(eval $(call hdr_rules,$(p)))))
 
@@ -603,7 +614,7 @@ look-simulate:
 	+@common/look.sh slices $(BIN) $(S)/slice simulate $(filter-out configs/draft.cfg configs/final.cfg,$(CONFIGS))
 look:
 	+@common/look.sh slices $(BIN) $(O)/slice '$(STAGES)' $(CONFIGS)
-	+@common/look.sh slices $(BIN) $(S)/slice 'import_photos hdr_merge sfm' $(filter-out configs/draft.cfg configs/final.cfg,$(CONFIGS))
+	+@common/look.sh slices $(BIN) $(S)/slice 'import_photos fit_response hdr_merge sfm' $(filter-out configs/draft.cfg configs/final.cfg,$(CONFIGS))
 	+@common/look.sh photos $(BIN) $(S) scenes/$(SCENE)
 	+@common/look.sh morph $(BIN) $(O) '$(MORPH)'
 	+@common/look.sh evaluation $(BIN) $(O) '$(HOLDOUT)' '$(HOLDOUT_VIEWS)'

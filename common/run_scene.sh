@@ -214,7 +214,14 @@ tell_depth()
 }
 
 # photos that are exposures of one view are merged before anything sees them
-merge_brackets() { [ ! -e "$S/photos/brackets.txt" ] || farm hdr_merge hdr 1 "${VIEWS_PER_JOB:-4}"; }
+merge_brackets()
+{
+    [ -e "$S/photos/brackets.txt" ] || return 0
+    # a curve that was deleted is found anew
+    [ -e "$S/hdr/response.txt" ] || rm -f "$S/stamp/response.txt"
+    one response
+    farm hdr_merge hdr 1 "${VIEWS_PER_JOB:-4}"
+}
 
 # make_models: the solid model that the scene's script describes, those of its edits, and their edges on the photographs
 make_models()

@@ -7,8 +7,8 @@
  * are read, so that what is left are 256 unknowns, whatever the number of places, solved by Cholesky. (A solver of nonlinear
  * problems, as Ceres, has nothing to add to that.)
  *
- * Differs in the weight of the smoothness, w(z) z^2: a power law, which tone curves are much like, has g'' as 1 / z^2, so that
- * ripples at bright levels, which exposures of equal steps cannot tell, cost as much as they should. And in that samples are means of even places, between two levels as a rule, where g goes linearly; in that the many places
+ * Differs in what is smooth: not g'' but z^2 g'' + z g', the bend of g over ln z, which is 0 for a power law, as tone curves are
+ * much like one. So it can count for much, as it must: exposures of equal steps cannot tell a ripple of that step. And in that samples are means of even places, between two levels as a rule, where g goes linearly; in that the many places
  * are taken, not some fifty; and in the scale: grey, level 128, has the light that the sRGB curve gives it, in each colour. A
  * curve that falls somewhere is fitted anew with more smoothness.
  *
@@ -27,7 +27,7 @@
 const struct param fit_param_table[] = {FIT_PARAMS(PARAM_ROW) PARAM_END};
 #undef PARAM_STRUCT
 
-enum { N = RESPONSE_LEVELS, GREY = 128, BINS = 12, BIN_LEAST = 20, PAIRS_LEAST = 200 };
+enum { N = RESPONSE_LEVELS, GREY = 128, TOE = 16, BINS = 12, BIN_LEAST = 20, PAIRS_LEAST = 200 };
 
 static const float ABSENT = -1;
 static const float darkest = 4.0f / 255, brightest = 251.0f / 255;      /* samples that tell something */
@@ -279,10 +279,10 @@ static enum status recover_colour(float light[N], struct system *s, struct syste
                                   int colour, double smoothness, struct err *err)
 {
     enum { TRIES = 10 };
-    static const double second[3] = {1, -2, 1}, one = 1;
+    static const double one = 1;
     const struct place_sample *at = p->samples;
     const int grey = GREY;
-    const double ends = 0.002; /* of smoothness, at black and white, where no sample counts */
+    const double ends = 0.02; /* of smoothness, at black and white, where no sample counts */
     double weight = 0;
     memset(data, 0, sizeof *data);
     for (size_t i = 0; i < p->count; at += p->counts[i++]) weight += add_place(data, at, p->counts[i], colour);
@@ -294,8 +294,10 @@ static enum status recover_colour(float light[N], struct system *s, struct syste
     for (int try = 0; try < TRIES && !rises; try++, smoothness *= 4) {
         *s = *data;
         for (int z = 1; z < N - 1; z++) {
+            const double reach = fmax(z, TOE) / GREY, bend = reach * reach, lean = bend / (2 * z);
+            const double factors[3] = {bend - lean, -2 * bend, bend + lean};
             const int levels[3] = {z - 1, z, z + 1};
-            add_row(s, levels, second, 3, smoothness * weight * fmax(hat(z) * z * z / (GREY * GREY), ends), 0);
+            add_row(s, levels, factors, 3, smoothness * weight * fmax(hat(z), ends), 0);
         }
         rises = solve(s);
         for (int z = 1; rises && z < N; z++) rises = s->b[z] > s->b[z - 1];

@@ -2,8 +2,8 @@
  *
  * Ward 2003, Fast, robust image registration for compositing high dynamic range photographs from hand-held exposures: an
  * exposure is made black and white at its own median, which is the same in the scene whatever the exposure; pixels near the
- * median do not count. Bitmaps are compared by exclusive or, 64 pixels at a time, over a pyramid: at each level the shift of
- * the level above is doubled and the nine shifts about it are tried.
+ * median do not count. Bitmaps are compared by exclusive or, 64 pixels at a time, over a pyramid: all shifts at its smallest
+ * level, and at each other one the nine about twice the shift of the level above.
  *
  * Differs in that the threshold of a pair is the quantile of 9 to 91 % that is farthest from black and white in both exposures,
  * so that exposures many stops apart can be compared; that shifts are compared by the part of the pixels compared; and that a
@@ -15,7 +15,7 @@
 
 #include "common/parallel.h"
 
-enum { LEVELS_MOST = 10, LEAST_SIDE = 24, NEAR = 3, QUANTILES = 11, LEAST_DISTANCE = 10 };
+enum { LEVELS_MOST = 10, LEAST_SIDE = 48, NEAR = 3, QUANTILES = 11, LEAST_DISTANCE = 10 };
 
 struct grey_level {
     int width, height;
@@ -177,16 +177,18 @@ static enum status compare_at(struct pair_job *p, int level, int quantile, doubl
     struct bitmap a = {0}, b = {0};
     enum status st = make_bitmap(&a, &p->fixed->levels[level], p->fixed->quantiles[quantile], &p->err);
     if (!st) st = make_bitmap(&b, &p->moved->levels[level], p->moved->quantiles[quantile], &p->err);
-    struct shift best = {2 * p->shift.dx, 2 * p->shift.dy}, centre = best;
-    *least = 2;
-    for (int i = 0; !st && i < 9; i++) { /* the middle one first: of equals it stays */
-        static const int order[9][2] = {{0, 0}, {-1, 0}, {1, 0}, {0, -1}, {0, 1}, {-1, -1}, {1, -1}, {-1, 1}, {1, 1}};
-        const int dx = centre.dx + order[i][0], dy = centre.dy + order[i][1];
-        const int most = p->most_shift >> level;
-        if (i && (abs(dx) > most || abs(dy) > most)) continue;
-        const double d = difference(&a, &b, dx, dy);
-        if (d < *least) *least = d, best = (struct shift){dx, dy};
-    }
+    /* all shifts at the smallest level, then the nine about twice the one above; the middle one first: of equals it stays */
+    const int most = p->most_shift >> level, reach = level == p->levels - 1 ? (most > 1 ? most : 1) : 1;
+    const struct shift centre = {2 * p->shift.dx, 2 * p->shift.dy};
+    struct shift best = centre;
+    if (!st) *least = difference(&a, &b, centre.dx, centre.dy);
+    for (int j = -reach; !st && j <= reach; j++)
+        for (int i = -reach; i <= reach; i++) {
+            const int dx = centre.dx + i, dy = centre.dy + j;
+            if ((!i && !j) || abs(dx) > most || abs(dy) > most) continue;
+            const double d = difference(&a, &b, dx, dy);
+            if (d < *least) *least = d, best = (struct shift){dx, dy};
+        }
     if (!st) *unmoved = difference(&a, &b, 0, 0);
     p->shift = best;
     release_bitmap(&a);

@@ -105,10 +105,10 @@ static enum status check_agreement(struct bracketed_view *v, const struct merge_
     v->agree = off <= most;
     if (!a->pair || off <= params->most_disagreement) return ST_OK;
     return err_set(err, ST_DATA,
-                   "view %s: %s should have %.3g times the light of %s, but shows %.3g times as much; their exposures "
+                   "%s should have %.3g times the light of %s, but shows %.3g times as much; their exposures "
                    "cannot be what EXIF or exposures.txt states, or they are not of one view. Correct exposures.txt or "
                    "brackets.txt, or leave one out (EXCLUDE); [hdr_merge] most_disagreement says what is taken.",
-                   r->id, r->brackets[a->pair].file, a->stated, r->brackets[a->pair - 1].file, a->seen);
+                   r->brackets[a->pair].file, a->stated, r->brackets[a->pair - 1].file, a->seen);
 }
 
 enum status bracketed_view_merge(struct bracketed_view *v, const struct merge_params *params, struct err *err)

@@ -54,8 +54,8 @@ static void tell(const struct bracketed_view *v, const struct merge_params *para
              v->record.id, v->record.bracket_count, v->record.bracket_count == 1 ? "" : "s",
              100.0 * (double)bright / (double)pixels, 100.0 * (double)dark / (double)pixels);
     if (v->noise_measured)
-        log_note("%s: noise as of %.3g electrons at white and %.2g of them in the dark", v->record.id,
-                 1 / v->noise[0].photon, sqrt(v->noise[0].read2) / v->noise[0].photon);
+        log_note("%s: noise of %.2f %% of white at white, %.3f %% in the dark", v->record.id,
+                 100 * sqrt(v->noise[0].photon + v->noise[0].read2), 100 * sqrt(v->noise[0].read2));
     tell_shifts(v, params);
     warn_of_disagreement(v);
 }
