@@ -11,7 +11,6 @@
       "a scene's response.txt wins over all of them")                                                                 \
     X(views, int, 8, 1, 1000, "", "that are looked at, spread over the list")                                         \
     X(places, int, 3000, 50, 100000, "", "of each view at most, where it is even")                                    \
-    X(smoothness, double, 1000, 1e-6, 1e6, "", "of a recovered curve: more makes it more like a power law")           \
     X(most_spread, double, 0.05, 0, 10, "",                                                                           \
       "by how much, relatively, the ratio of two exposures may vary with the level of light before the sRGB curve "   \
       "is given up")

@@ -9,8 +9,9 @@
  *
  * Differs in what is smooth: not g'' but z^2 g'' + z g', the bend of g over ln z, which is 0 for a power law, as tone curves are
  * much like one. So it can count for much, as it must: exposures of equal steps cannot tell a ripple of that step. And in that samples are means of even places, between two levels as a rule, where g goes linearly; in that the many places
- * are taken, not some fifty; and in the scale: grey, level 128, has the light that the sRGB curve gives it, in each colour. A
- * curve that falls somewhere is fitted anew with more smoothness.
+ * are taken, not some fifty; and in the scale: grey, level 128, has the light that the sRGB curve gives it,
+ * in each colour. Smoothness is as much as the evidence allows: of a ladder of them the largest that explains the exposures about as
+ * well as the best does, and whose curve rises everywhere.
  *
  * The evidence for a curve. Of two neighbouring exposures of a place ln f^-1(b) - ln f^-1(a) is ln(t_b / t_a) at every level,
  * if the curve is right. A wrong exposure shifts it by the same at all levels; so each pair of exposures is first set right by
@@ -275,46 +276,65 @@ static bool solve(struct system *s)
     return true;
 }
 
-static enum status recover_colour(float light[N], struct system *s, struct system *data, const struct places *p,
-                                  int colour, double smoothness, struct err *err)
+/* A colour's equations without smoothness; *weight: of all its samples. */
+static enum status set_up(struct system *s, double *weight, const struct places *p, int colour, struct err *err)
 {
-    enum { TRIES = 10 };
     static const double one = 1;
     const struct place_sample *at = p->samples;
     const int grey = GREY;
-    const double ends = 0.02; /* of smoothness, at black and white, where no sample counts */
-    double weight = 0;
-    memset(data, 0, sizeof *data);
-    for (size_t i = 0; i < p->count; at += p->counts[i++]) weight += add_place(data, at, p->counts[i], colour);
-    if (!(weight > N / 4.0))
+    *weight = 0;
+    memset(s, 0, sizeof *s);
+    for (size_t i = 0; i < p->count; at += p->counts[i++]) *weight += add_place(s, at, p->counts[i], colour);
+    if (!(*weight > N / 4.0))
         return err_set(err, ST_DATA,
                        "too few places are well exposed in two photos to recover how samples follow light.");
-    add_row(data, &grey, &one, 1, weight, (double)logf(linear_from_srgb((float)GREY / (N - 1))));
-    bool rises = false;
-    for (int try = 0; try < TRIES && !rises; try++, smoothness *= 4) {
-        *s = *data;
-        for (int z = 1; z < N - 1; z++) {
-            const double reach = fmax(z, TOE) / GREY, bend = reach * reach, lean = bend / (2 * z);
-            const double factors[3] = {bend - lean, -2 * bend, bend + lean};
-            const int levels[3] = {z - 1, z, z + 1};
-            add_row(s, levels, factors, 3, smoothness * weight * fmax(hat(z), ends), 0);
-        }
-        rises = solve(s);
-        for (int z = 1; rises && z < N; z++) rises = s->b[z] > s->b[z - 1];
-    }
-    if (!rises)
-        return err_set(err, ST_DATA, "what the photos show gives no curve that rises; their exposures must be wrong.");
-    for (int z = 0; z < N; z++) light[z] = (float)exp(s->b[z]);
+    add_row(s, &grey, &one, 1, *weight, (double)logf(linear_from_srgb((float)GREY / (N - 1))));
     return ST_OK;
 }
 
-enum status response_recover(struct response *r, const struct places *p, double smoothness, struct err *err)
+/* False: the curve falls somewhere. s is used up. */
+static bool solve_smooth(float light[N], struct system *s, double smoothness)
 {
-    struct system *s = malloc(2 * sizeof *s);
-    enum status st = s ? ST_OK : err_nomem(err, "a system of equations", 2 * sizeof *s);
-    *r = (struct response){.table = true};
-    for (int c = 0; !st && c < 3; c++) st = recover_colour(r->light[c], s, s + 1, p, c, smoothness, err);
-    if (st) *r = (struct response){0};
+    const double ends = 0.02; /* of smoothness, at black and white, where no sample counts */
+    for (int z = 1; z < N - 1; z++) {
+        const double reach = fmax(z, TOE) / GREY, bend = reach * reach, lean = bend / (2 * z);
+        const double factors[3] = {bend - lean, -2 * bend, bend + lean};
+        const int levels[3] = {z - 1, z, z + 1};
+        add_row(s, levels, factors, 3, smoothness * fmax(hat(z), ends), 0);
+    }
+    bool rises = solve(s);
+    for (int z = 1; rises && z < N; z++) rises = s->b[z] > s->b[z - 1];
+    for (int z = 0; rises && z < N; z++) light[z] = (float)exp(s->b[z]);
+    return rises;
+}
+
+enum status response_recover(struct response *r, const struct places *p, struct err *err)
+{
+    static const double ladder[] = {10, 30, 100, 300, 1000, 3000, 10000};
+    enum { RUNGS = sizeof ladder / sizeof *ladder };
+    const double as_good = 1.2, as_small = 0.002;
+    struct response curves[RUNGS];
+    struct response_evidence e[RUNGS];
+    bool rises[RUNGS];
+    struct system *s = malloc(4 * sizeof *s); /* the colours', and one to solve */
+    double weights[3], least = HUGE_VAL;
+    enum status st = s ? ST_OK : err_nomem(err, "a system of equations", 4 * sizeof *s);
+    *r = (struct response){0};
+    for (int c = 0; !st && c < 3; c++) st = set_up(&s[c], &weights[c], p, c, err);
+    for (int i = 0; !st && i < RUNGS; i++) {
+        curves[i] = (struct response){.table = true};
+        rises[i] = true;
+        for (int c = 0; c < 3; c++) {
+            s[3] = s[c];
+            rises[i] &= solve_smooth(curves[i].light[c], &s[3], ladder[i] * weights[c]);
+        }
+        if (rises[i]) st = response_judge(&e[i], &curves[i], p, err);
+        if (!st && rises[i]) least = fmin(least, e[i].spread);
+    }
+    for (int i = 0; !st && i < RUNGS; i++)
+        if (rises[i] && e[i].spread <= as_good * least + as_small) *r = curves[i];
+    if (!st && !r->table)
+        st = err_set(err, ST_DATA, "what the photos show gives no curve that rises; their exposures must be wrong.");
     free(s);
     return st;
 }
@@ -342,7 +362,7 @@ enum status response_decide(struct response *r, char told[RESPONSE_TOLD], const 
                  100 * srgb.spread);
         return ST_OK;
     }
-    st = response_recover(&curve, p, params->smoothness, err);
+    st = response_recover(&curve, p, err);
     if (!st) st = response_judge(&table, &curve, p, err);
     if (st) return st;
     if (must || table.spread < better * srgb.spread) {

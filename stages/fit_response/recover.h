@@ -38,7 +38,7 @@ enum status response_judge(struct response_evidence *e, const struct response *r
                            struct err *err);
 
 /* Least squares. ST_DATA: too little to go by. */
-enum status response_recover(struct response *r, const struct places *p, double smoothness, struct err *err);
+enum status response_recover(struct response *r, const struct places *p, struct err *err);
 
 /* What params ask for. told: a sentence for the user about what was decided and why. */
 enum { RESPONSE_TOLD = 320 };

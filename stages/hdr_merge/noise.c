@@ -70,7 +70,7 @@ static void add_bin(struct fit *fit, struct pair_sample *s, size_t count, double
     for (size_t i = 0; i < count; i++) values[i] = fabsf(values[i] - middle);
     qsort(values, count, sizeof *values, by_size);
     const double sigma = 1.4826 * (double)values[count / 2], variance = sigma * sigma;
-    if (!(variance > 0)) return;
+    if (!(variance > 0) || light < 3 * sigma) return; /* below, samples that are cut at black would bend the spread */
     const double a = light * (1 + ratio) / variance, b = (1 + ratio * ratio) / variance;
     fit->pp += a * a;
     fit->pr += a * b;
@@ -119,7 +119,7 @@ static size_t gather(struct pair_sample *to, const struct brackets *b, int k, co
             const double va = (double)sample_at(a, tables[0], (size_t)ya * (size_t)width + (size_t)xa, c),
                          vl = (double)sample_at(l, tables[1], (size_t)yl * (size_t)width + (size_t)xl, c);
             const double light = vl * ratio;
-            if (light < least_light || light > most_light || vl > most_longer || !(va > 0)) continue;
+            if (light < least_light || light > most_light || vl > most_longer) continue;
             to[count++] = (struct pair_sample){(float)light, (float)(va - light)};
         }
     }

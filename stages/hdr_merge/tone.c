@@ -18,7 +18,7 @@
 
 enum { REDUCE = 4, CURVE = 4096 };
 
-static const float GREY = 0.18f, FLOOR = 1e-6f, ADAPTED = 0.65f, EDGE = 0.8f, SATURATION = 0.8f;
+static const float GREY = 0.18f, FLOOR = 1e-7f, ADAPTED = 0.65f, EDGE = 0.8f, SATURATION = 0.8f;
 static const int RADIUS_OF_SIDE = 40; /* the radius is the long side over this */
 
 struct small { /* a plane on the reduced grid */

@@ -1,0 +1,162 @@
+/* recover.c - curves of cameras that are known must come back from exposures. */
+#include "tests/unit/scratch.h"
+
+#include <math.h>
+
+#include "common/rng.h"
+#include "stages/fit_response/recover.h"
+
+enum { WIDTH = 480, HEIGHT = 320, EXPOSURES = 5 };
+
+typedef double curve(double light, int colour); /* sample of light, both in [0, 1] */
+
+static double srgb(double light, int c) { return (void)c, (double)srgb_from_linear((float)light); }
+static double gamma_18(double light, int c) { return (void)c, pow(light, 1 / 1.8); }
+/* film: a toe, a shoulder, a black level of 5 %, colours apart */
+static double film(double light, int c)
+{
+    const double x = pow(light, 0.75 + 0.05 * c);
+    return 0.05 + 0.95 * x * (1.25 + 0.25) / (1.25 * x + 0.25);
+}
+
+struct stack {
+    struct photo photos[EXPOSURES];
+    double exposures[EXPOSURES];
+};
+
+/* Even patches of 12 px, radiance over five decades; noise of a step or so. */
+static void shoot(struct stack *s, curve *f, double step, double noise)
+{
+    for (int k = 0; k < EXPOSURES; k++) {
+        const struct rng rng = rng_make(5, "recover", "test");
+        s->exposures[k] = 0.02 * pow(step, k);
+        s->photos[k] = (struct photo){.info = {.width = WIDTH, .height = HEIGHT, .bits = 8}};
+        s->photos[k].samples = malloc(sizeof(uint16_t) * 3 * WIDTH * HEIGHT);
+        assert_non_null(s->photos[k].samples);
+        for (int i = 0; i < WIDTH * HEIGHT; i++) {
+            const uint32_t patch = (uint32_t)(i % WIDTH / 12 + 40 * (i / WIDTH / 12));
+            const double light = pow(10, 5 * rng_uniform(&rng, 1u << 30, patch) - 3);
+            for (int c = 0; c < 3; c++) {
+                const double v = fmin(light * (1 - 0.15 * c) * s->exposures[k], 1);
+                const double n = rng_uniform(&rng, (uint64_t)(3 * i + c), (uint32_t)k) - 0.5;
+                s->photos[k].samples[3 * i + c] = (uint16_t)fmin(fmax(255 * f(v, c) + 2 * noise * n + 0.5, 0), 255);
+            }
+        }
+    }
+}
+
+static void decide(struct response *r, char told[RESPONSE_TOLD], const struct stack *s, const char *how)
+{
+    struct places places = {0};
+    struct fit_params params = FIT_PARAMS_DEFAULT;
+    struct err err = ERR_INIT;
+    strcpy(params.response, how);
+    assert_ok(places_add(&places, s->photos, s->exposures, EXPOSURES, params.places, &err), err);
+    assert_ok(response_decide(r, told, &places, &params, &err), err);
+    print_message("%s\n", told);
+    places_release(&places);
+}
+
+/* The largest relative error of light from sample `from` to `to`, both of 255, after the scale at 128 is taken out. */
+static double worst_error(const struct response *r, curve *f, int from, int to)
+{
+    double worst = 0;
+    for (int c = 0; c < 3; c++) {
+        double scale = 0, lights[256];
+        for (int z = from; z <= to; z++) { /* the light of a sample, by bisection */
+            double low = 0, high = 1;
+            for (int i = 0; i < 60; i++) *(f((low + high) / 2, c) < z / 255.0 ? &low : &high) = (low + high) / 2;
+            lights[z] = low;
+        }
+        scale = lights[128] / (double)response_light(r, c, 128.0f / 255);
+        for (int z = from; z <= to; z++)
+            worst = fmax(worst, fabs((double)response_light(r, c, (float)z / 255) * scale / lights[z] - 1));
+    }
+    return worst;
+}
+
+static void release(struct stack *s)
+{
+    for (int k = 0; k < EXPOSURES; k++) photo_release(&s->photos[k]);
+}
+
+static void srgb_is_seen_to_be_srgb(void **state)
+{
+    struct response r;
+    struct stack s;
+    char told[RESPONSE_TOLD];
+    (void)state;
+    shoot(&s, srgb, 4, 1);
+    decide(&r, told, &s, "auto");
+    assert_false(r.table);
+    assert_contains(told, "the sRGB curve: ratios of exposures vary by");
+    s.exposures[3] *= 1.3; /* a wrong exposure is no other curve */
+    s.exposures[4] *= 1.3;
+    decide(&r, told, &s, "auto");
+    assert_false(r.table);
+    s.exposures[3] /= 1.3;
+    s.exposures[4] /= 1.3;
+    decide(&r, told, &s, "recover");
+    assert_true(r.table);
+    const double worst = worst_error(&r, srgb, 20, 250);
+    print_message("sRGB recovered: worst error %.4f\n", worst);
+    assert_true(worst < 0.03);
+    release(&s);
+}
+
+/* Up to where merging begins to trust samples less, 226. */
+static void other_curves_come_back(void **state)
+{
+    static const struct {
+        const char *name;
+        curve *f;
+        double step;
+        int from;
+        double most;
+    } cases[] = {
+        {"gamma 1.8", gamma_18, 4, 20, 0.03}, {"film", film, 2, 40, 0.05}, {"film, 2 stops", film, 4, 40, 0.05}};
+    struct response r;
+    char told[RESPONSE_TOLD];
+    (void)state;
+    for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
+        struct stack s;
+        shoot(&s, cases[n].f, cases[n].step, 1);
+        decide(&r, told, &s, "auto");
+        assert_true(r.table);
+        assert_contains(told, "recovered from the exposures");
+        const double worst = worst_error(&r, cases[n].f, cases[n].from, 226);
+        print_message("%s: worst error %.4f\n", cases[n].name, worst);
+        assert_true(worst < cases[n].most);
+        for (int c = 0; c < 3; c++)
+            for (int z = 1; z < RESPONSE_LEVELS; z++) assert_true(r.light[c][z] > r.light[c][z - 1]);
+        decide(&r, told, &s, "srgb");
+        assert_false(r.table);
+        release(&s);
+    }
+}
+
+static void too_little_is_told(void **state)
+{
+    struct places none = {0};
+    struct response r;
+    struct fit_params params = FIT_PARAMS_DEFAULT;
+    struct err err = ERR_INIT;
+    char told[RESPONSE_TOLD];
+    (void)state;
+    assert_ok(response_decide(&r, told, &none, &params, &err), err);
+    assert_false(r.table);
+    assert_contains(told, "too few places");
+    strcpy(params.response, "recover");
+    assert_int_equal(response_decide(&r, told, &none, &params, &err), ST_DATA);
+    assert_err(err, ST_DATA, "too few places are well exposed in two photos");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(srgb_is_seen_to_be_srgb),
+        cmocka_unit_test(other_curves_come_back),
+        cmocka_unit_test(too_little_is_told),
+    };
+    return cmocka_run_group_tests_name("recover", tests, NULL, NULL);
+}
