@@ -12,7 +12,7 @@ MAKEFLAGS += --no-builtin-rules
 .PHONY: FORCE
 
 ## SCENE=NAME: the scene to work on, scenes/NAME/
-## PHOTOS=DIR: folder of JPEG/PNG photos; with a new SCENE it is written to scenes/SCENE/scene.mk
+## PHOTOS=DIR: folder of photos (JPEG, PNG, TIFF, EXR, raw); with a new SCENE it is written to scenes/SCENE/scene.mk
 ## SPLIT=CxR: each photo is of a multi-lens camera: C columns and R rows of small pictures, which become the photos
 ## SFM=DIR: a COLMAP (text, binary) or Bundler model of the photos, used in place of running COLMAP
 ## DEPTH=DIR: depth that is known already: DIR/VIEW.exr or .png of any view (docs/formats.md); the others are matched

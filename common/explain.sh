@@ -7,7 +7,7 @@ no-scene)
     cat <<'TEXT'
 To make a 3D pan & scan video of your own, give a folder of photos of one scene, taken from places a step apart:
 
-    make PHOTOS=DIR SCENE=NAME      8 to 15 JPEG or PNG photos; the video and a page come under out/NAME
+    make PHOTOS=DIR SCENE=NAME      8 to 15 photos; the video and a page come under out/NAME
     make SCENE=NAME                 goes on, or redoes just what is stale
     make help                       all targets and variables
     make check                      the tests

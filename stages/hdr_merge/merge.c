@@ -381,15 +381,25 @@ enum status merge_agreement(struct exposure_agreement *worst, const struct brack
     enum status st = check(b, err);
     for (int k = 1; !st && k < b->count; k++) {
         const struct photo *p = &b->photos[k - 1], *q = &b->photos[k];
-        const size_t samples = (size_t)p->info.width * (size_t)p->info.height * 3, step = samples / SAMPLES + 1;
+        const struct shift none = {0, 0}, sp = b->shifts ? b->shifts[k - 1] : none,
+                           sq = b->shifts ? b->shifts[k] : none;
+        const int width = p->info.width, height = p->info.height;
+        const size_t pixels = (size_t)width * (size_t)height, step = 3 * pixels / SAMPLES + 1;
         size_t n = 0;
         double sum_p = 0, sum_q = 0;
-        for (size_t i = 0; i < samples; i += step) {
-            const double vp = light_of(p, b->response, i), vq = light_of(q, b->response, i);
-            if (vp < least || vq < least || vp > most || vq > most) continue;
-            sum_p += vp;
-            sum_q += vq;
-            n++;
+        for (size_t i = 0; i < pixels; i += step) {
+            const int x = (int)(i % (size_t)width), y = (int)(i / (size_t)width);
+            const int xp = x + sp.dx, yp = y + sp.dy, xq = x + sq.dx, yq = y + sq.dy;
+            if (xp < 0 || yp < 0 || xq < 0 || yq < 0 || xp >= width || xq >= width || yp >= height || yq >= height)
+                continue;
+            for (size_t c = 0; c < 3; c++) {
+                const double vp = light_of(p, b->response, 3 * ((size_t)yp * (size_t)width + (size_t)xp) + c),
+                             vq = light_of(q, b->response, 3 * ((size_t)yq * (size_t)width + (size_t)xq) + c);
+                if (vp < least || vq < least || vp > most || vq > most) continue;
+                sum_p += vp;
+                sum_q += vq;
+                n++;
+            }
         }
         if (n < SAMPLES / 256) continue;
         const double stated = b->exposures[k] / b->exposures[k - 1], seen = sum_q / sum_p;

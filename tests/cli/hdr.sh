@@ -1,0 +1,144 @@
+# hdr_merge and fit_response: every kind of photo, single exposures, shifts, and what is said of wrong input
+. tests/lib.sh
+photos "$scratch/set" --brackets 3 >/dev/null
+cd "$scratch" || exit 1
+export PATH=$root/$B/bin:$PATH
+
+# records FOLDER [OPTION...]: import_photos into FOLDER-records; the scene's folder is FOLDER-scene
+records() { local d=$1; shift; mkdir -p "$d-scene"; import_photos --photos "$d" --scene "$d-scene" --out "$d-records" "$@" 2>err; }
+# merged FOLDER ID [OPTION...]
+merged() { local d=$1 id=$2; shift 2; hdr_merge --id "$id" --photos "$d" --records "$d-records" --out "$d-hdr" "$@" 2>err; }
+says() { grep -qF -- "$1" err || { cat err; fail "nothing says '$1'"; }; }
+refused() { local words=$1 rc=0; shift; "$@" || rc=$?; [ "$rc" = 1 ] || { cat err; fail "$*: exit $rc, wanted 1"; }; says "$words"; }
+has() { grep -aqF -- "$2" "$1" || fail "$1 has no '$2'"; }
+# times FOLDER ENDING: exposures.txt of photos that tell none
+times() { for k in 0 1 2; do for p in "$1"/*_e$k.*; do echo "$(basename "$p") $(awk -v k=$k 'BEGIN { print 4 ^ k / 16384 }') 8 100"; done; done >"$1-scene/exposures.txt"; }
+
+jpegs()
+{
+    records set/photos || { cat err; fail "import"; }
+    fit_response --photos set/photos --records set/photos-records --out set/response.txt 2>err || { cat err; fail "fit_response"; }
+    says "samples follow light by the sRGB curve: ratios of exposures vary by"
+    tail -n 2 set/response.txt | cmp - <(printf 'remodel-response 1\ncurve srgb\n') || fail "another curve"
+    merged set/photos photo_3 --response set/response.txt || { cat err; fail "merge"; }
+    has set/photos-hdr/photo_3.exr exact
+    has set/photos-hdr/photo_3.exr variance
+    cp set/photos-hdr/photo_3.exr first.exr
+    merged set/photos photo_3 --threads 1 --response set/response.txt
+    cmp first.exr set/photos-hdr/photo_3.exr || fail "one thread gives other bytes"
+    merged set/photos photo_3 --set picture=middle
+    cmp set/photos-hdr/photo_3.jpg set/photos/photo_3_e1.jpg || fail "picture=middle is not the middle exposure's bytes"
+}
+
+tiff_and_png_merge_as_jpeg_does()
+{
+    mkdir -p tif tif-scene; n=0
+    for p in set/photos/photo_[123]_e?.jpg; do
+        b=$(basename "${p%.jpg}")
+        case $((n++ % 3)) in
+            0) ffmpeg -v error -i "$p" -pix_fmt rgb24 "tif/$b.tif" ;;
+            1) ffmpeg -v error -i "$p" -pix_fmt rgb48le "tif/$b.tiff" ;;
+            2) ffmpeg -v error -i "$p" -pix_fmt rgb24 "tif/$b.png" ;;
+        esac
+    done
+    times tif
+    records tif || { cat err; fail "import"; }
+    says "3 views of 3 exposures each"
+    merged tif photo_3 || { cat err; fail "merge"; }
+    "$root/$B/tests/bench/picture_error" tif-hdr/photo_3.exr first.exr >out || fail "no comparison"
+    awk '$1 == "error" { exit !($2 < 0.03) }' out || { cat out; fail "other radiance"; }
+}
+
+exr_alone_is_one_exposure()
+{
+    mkdir -p exr
+    for i in 1 2 3; do ffmpeg -v error -i set/photos/photo_${i}_e1.jpg -vf scale=160:120 -pix_fmt gbrpf32le exr/photo_$i.exr; done
+    records exr || { cat err; fail "import"; }
+    says "3 views of one exposure each, of which no time is known: taken to be alike"
+    grep -qx 'bits 32' exr-records/photo_2.txt && grep -qx 'BRACKETED := yes' exr-records/photos.mk || fail "wrong records"
+    merged exr photo_2 || { cat err; fail "merge"; }
+    has exr-hdr/photo_2.exr "one exposure"
+    [ -s exr-hdr/photo_2.jpg ] || fail "no picture"
+    "$root/$B/tests/bench/picture_error" exr-hdr/photo_2.exr exr/photo_2.exr >out || fail "no comparison"
+    awk '$1 == "error" { exit !($2 < 0.001) }' out || { cat out; fail "the radiance is not the file's"; }
+    fit_response --photos exr --records exr-records --out exr.txt 2>err || { cat err; fail "fit_response"; }
+    grep -qx 'curve srgb' exr.txt || fail "a curve without evidence"
+    refused "photo_1.exr is an EXR or a raw file" records exr --set brackets=no
+    printf 'photo_1.exr 1\nphoto_2.exr 0.25\nphoto_3.exr 1\n' >exr-scene/exposures.txt
+    records exr && merged exr photo_2 || { cat err; fail "with times"; }
+    "$root/$B/tests/bench/picture_error" exr-hdr/photo_2.exr exr/photo_2.exr >out
+    awk '$1 == "error" { exit !($2 > 2.9 && $2 < 3.1) }' out || { cat out; fail "a quarter of the time is not four times the radiance"; }
+    sed -i 1d exr-scene/exposures.txt
+    refused "the exposure time of photo_1.exr is not known" records exr
+}
+
+single_jpegs_are_brought_to_one_scale()
+{
+    mkdir -p one; for i in 1 2 3; do cp set/photos/photo_${i}_e$((i - 1)).jpg one/photo_$i.jpg; done
+    records one --set brackets=single || { cat err; fail "import"; }
+    merged one photo_1 || { cat err; fail "merge"; }
+    has one-hdr/photo_1.exr "one exposure"
+    has one-hdr/photo_1.exr remodel:white
+}
+
+raw_files()
+{
+    mkdir -p raw; cp set/photos/photo_[12]_e1.jpg raw/
+    echo "not looked at" >raw/photo_1_e1.CR2
+    records raw || { cat err; fail "import"; }
+    says "1 raw files beside a JPEG of the same name"
+    printf 'FUJIFILMCCD-RAW 0201' >raw/photo_9.raf
+    refused "photo_9.raf is a raw file that cannot be read (libraw:" records raw
+}
+
+wrong_exposures_are_refused()
+{
+    mkdir -p wrong wrong-scene; cp set/photos/photo_[123]_e?.jpg wrong/
+    { for i in 1 2 3; do echo "photo_${i}_e0.jpg 0.001"; echo "photo_${i}_e1.jpg 0.00025"; done; } >wrong-scene/exposures.txt
+    for i in 1 2 3; do echo "photo_$i photo_${i}_e0.jpg photo_${i}_e1.jpg photo_${i}_e2.jpg"; done >wrong-scene/brackets.txt
+    sed -i 's/photo_[123]_e2.jpg//' wrong-scene/brackets.txt; rm wrong/*_e2.jpg
+    records wrong || { cat err; fail "import"; }
+    refused "view photo_2: photo_2_e0.jpg should have 4 times the light of photo_2_e1.jpg, but shows 0.2" merged wrong photo_2
+    [ ! -e wrong-hdr/photo_2.exr ] || fail "a product was left"
+    merged wrong photo_2 --set most_disagreement=1000 || { cat err; fail "told to take it"; }
+    says "warning: view photo_2"
+    has wrong-hdr/photo_2.exr approximate
+}
+
+missing_brackets_and_times_are_named()
+{
+    mkdir -p few few-scene; cp set/photos/photo_?_e?.jpg few/; rm few/photo_4_e2.jpg
+    refused "photo_4_e0.jpg (1/16384 s), photo_4_e1.jpg (1/4096 s)" records few
+    mkdir -p bare bare-scene; for k in 0 1 2; do for i in 1 2; do ffmpeg -v error -i set/photos/photo_${i}_e$k.jpg bare/photo_${i}_e$k.png; done; done
+    for i in 1 2; do echo "photo_$i photo_${i}_e0.png photo_${i}_e1.png photo_${i}_e2.png"; done >bare-scene/brackets.txt
+    refused "the exposure time of photo_1_e0.png is not known (EXIF does not tell it); write a line" records bare
+    echo 'photo_1_e7.png 1' >bare-scene/exposures.txt
+    refused "bare-scene/exposures.txt:1: found photo_1_e7.png, wanted a photo of" records bare
+}
+
+shifts_are_told_and_corrected()
+{
+    mkdir -p moved moved-scene
+    for i in 1 2 3; do for k in 0 1 2; do
+        at=8:8; [ "$i$k" != 22 ] || at=4:10
+        ffmpeg -v error -i set/photos/photo_${i}_e$k.jpg -vf "crop=300:220:$at" -pix_fmt rgb24 moved/photo_${i}_e$k.png
+    done; done
+    times moved
+    records moved || { cat err; fail "import"; }
+    merged moved photo_2 || { cat err; fail "merge"; }
+    says "photo_2_e2.png is shifted by 4, -2 px against photo_2_e1.png; corrected"
+    has moved-hdr/photo_2.exr "4 -2"
+    merged moved photo_2 --set align=report && says "shifted by 4, -2 px against photo_2_e1.png"
+    ! grep -aq "4 -2" moved-hdr/photo_2.exr || fail "a shift that is only told was corrected"
+    merged moved photo_1 && ! grep -q shifted err || { cat err; fail "a shift where there is none"; }
+}
+
+a_wrong_curve_is_told_by_its_line()
+{
+    printf 'remodel-response 1\ncurve table 256\n0 0 0\n0.1 0.1 x\n' >bad.txt
+    refused "bad.txt:4: found" merged set/photos photo_3 --response bad.txt
+    refused "nothing.txt" merged set/photos photo_3 --response nothing.txt
+}
+
+for t in jpegs tiff_and_png_merge_as_jpeg_does exr_alone_is_one_exposure single_jpegs_are_brought_to_one_scale raw_files wrong_exposures_are_refused \
+    missing_brackets_and_times_are_named shifts_are_told_and_corrected a_wrong_curve_is_told_by_its_line; do run "$t"; done
