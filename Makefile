@@ -175,7 +175,7 @@ check: deps-check ## build and run all tests
 bench: deps-bench ## measure everything in tests/bench: tables and plots under out/bench
 	+@$(BUILD) bench-build
 	+@rc=0; for b in tests/bench/*.sh; do tests/bench/run "$$(basename $$b .sh)" '$(B)' || rc=1; done; exit $$rc
-bench-%: deps-bench FORCE ## one of them: bench-depth, bench-exr, bench-moves, bench-render, bench-simulate, bench-unite
+bench-%: deps-bench FORCE ## one of them: bench-depth, bench-exr, bench-hdr, bench-moves, bench-render, bench-simulate, bench-unite
 	+@$(BUILD) bench-build
 	+@tests/bench/run '$*' '$(B)'
 bench-compare: deps-bench ## NAME=exr OLD=REVISION: the same bench on another revision's code, alternating
@@ -270,6 +270,7 @@ $(UNIT_TESTS): $(B)/tests/unit/%: $(B)/obj/tests/unit/%.o $(B)/libremodel.a
 $(BENCHES): $(B)/tests/bench/%: $(B)/obj/tests/bench/%.o $(B)/libremodel.a
 	$(call link,-lstdc++)
 $(B)/tests/bench/exr: $(B)/obj/tests/bench/exr_openexr.o # the baseline
+$(B)/tests/bench/hdr: $(filter-out %/hdr_merge.o,$(call objs,stages/hdr_merge/*.c))
 $(B)/tests/bench/render_rate: $(filter-out %/render_views.o,$(call objs,stages/render_views/*.c))
 $(B)/tests/bench/move_pairs: $(filter-out %/plan_path.o,$(call objs,stages/plan_path/*.c))
 $(B)/tests/bench/unite: $(filter-out %/build_model.o,$(call objs,stages/build_model/*.c))

@@ -100,7 +100,9 @@ static enum status check_agreement(struct bracketed_view *v, const struct merge_
     const double most = 1.15; /* JPEG, noise and clipped colours move it by a few percent */
     const struct exposure_agreement *a = &v->agreement;
     const struct photo_record *r = &v->record;
-    if (merge_agreement(&v->agreement, &v->brackets, err)) return err->status;
+    struct brackets aligned = v->brackets; /* light is compared where it is, even if shifts are only told */
+    if (strcmp(params->align, "no")) aligned.shifts = v->alignment.shifts;
+    if (merge_agreement(&v->agreement, &aligned, err)) return err->status;
     const double off = fmax(a->seen / a->stated, a->stated / a->seen);
     v->agree = off <= most;
     if (!a->pair || off <= params->most_disagreement) return ST_OK;

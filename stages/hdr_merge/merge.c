@@ -19,8 +19,8 @@
  * Differs from Debevec and Malik 1997 (hat weights on the samples' own values, logarithmic mean) in that weights follow
  * noise and prediction, and the mean is of radiance, which has no bias towards dark samples.
  *
- * Blocks of pixels go through plain loops over planes, which the compiler turns into AVX2; what they cannot tell, pixels that
- * need the second way, is done one by one. Both give the same numbers. */
+ * Blocks of pixels go through plain loops over planes, which the compiler turns into AVX2; pixels that are merged colour by
+ * colour, or have a colour without weight, are then done one by one. */
 #include "stages/hdr_merge/merge.h"
 
 #include <math.h>
@@ -184,7 +184,7 @@ struct sums { /* of a colour */
 static void second_round(const struct merge *m, plane (*const v)[3], plane first[3], const float *most_first,
                          struct sums sums[3], int n)
 {
-    plane shared;
+    plane shared, clear;
     for (int c = 0; c < 3; c++)
         for (int i = 0; i < n; i++) sums[c].weighted[i] = sums[c].weights[i] = sums[c].squares[i] = 0;
     for (int k = 0; k < m->count; k++) {
@@ -199,9 +199,10 @@ static void second_round(const struct merge *m, plane (*const v)[3], plane first
         for (int c = 0; c < 3; c++) {
             const float *s = v[k][c], *x = first[c];
             float *weighted = sums[c].weighted, *weights = sums[c].weights, *squares = sums[c].squares;
+            /* a loop of its own: the compiler would part the other one by the cases of the clamp */
+            for (int i = 0; i < n; i++) clear[i] = clamp01((e.t * x[i] - e.dark) * e.rising);
             for (int i = 0; i < n; i++) {
-                const float value = e.t * x[i], trusted = shared[i] * clamp01((value - e.dark) * e.rising) * e.t;
-                const float w = trusted / (e.photon * value + e.read2);
+                const float trusted = shared[i] * clear[i] * e.t, w = trusted / (e.photon * (e.t * x[i]) + e.read2);
                 weighted[i] += w * s[i];
                 weights[i] += w * e.t;
                 squares[i] += w * trusted;

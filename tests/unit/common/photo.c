@@ -267,7 +267,7 @@ static void a_part_has_the_photos_own_samples(void **state)
     (void)state;
     for (int bits = 8; bits <= 16; bits += 8) {
         const struct photo_info told = {0, 0, 0, 6, 24.5, 70, 1.0 / 60, 5.6, 400, "remodel", "nine lenses"};
-        struct photo part, p = {{.width = 20, .height = 10, .bits = bits}, samples};
+        struct photo part, p = {.info = {.width = 20, .height = 10, .bits = bits}, .samples = samples};
         for (int i = 0; i < 20 * 10 * 3; i++) samples[i] = (uint16_t)(i * 109 % (bits == 8 ? 256 : 65536));
         assert_ok(photo_write_part(scratch_path("part.png"), &p, 13, 4, 7, 6, &told, &err), err);
         assert_ok(photo_read(&part, scratch_path("part.png"), &err), err);

@@ -46,7 +46,7 @@ static void lines_and_a_gap_exclude_each_other(void **state)
 /* A grey photo of 8 or 16 bits. */
 static void make_photo(struct photo *p, int width, int height, int bits, uint16_t value)
 {
-    *p = (struct photo){{.width = width, .height = height, .bits = bits, .orientation = 1}, NULL};
+    *p = (struct photo){.info = {.width = width, .height = height, .bits = bits, .orientation = 1}};
     p->samples = malloc((size_t)width * (size_t)height * 3 * sizeof *p->samples);
     assert_non_null(p->samples);
     for (int i = 0; i < width * height * 3; i++) p->samples[i] = value;
