@@ -63,7 +63,7 @@ if [ ! -e "$folder/scene.mk" ]; then
         exit 2
     fi
     if [ ! -d "$REMODEL_PHOTOS" ]; then
-        echo "PHOTOS=$REMODEL_PHOTOS is no folder. Give the folder that holds the JPEG or PNG files." >&2
+        echo "PHOTOS=$REMODEL_PHOTOS is no folder. Give the folder that holds the photos." >&2
         exit 2
     fi
     if [ "$dry" = n ]; then echo "would create $folder/scene.mk and scene.cfg, and go on from there"; exit 0; fi

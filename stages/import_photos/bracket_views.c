@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <unistd.h>
 
 #include "common/bracket_list.h"
@@ -302,6 +303,16 @@ static bool any_linear(const struct photo_scan *scan, const char **file)
     return false;
 }
 
+/* COLMAP does not read TIFF of 16 bits. */
+static bool any_tiff(const struct photo_scan *scan)
+{
+    for (int i = 0; i < scan->count; i++) {
+        const char *ending = scan->photos[i].file + photo_stem(scan->photos[i].file);
+        if (!scan->photos[i].excluded && (!strcasecmp(ending, ".tif") || !strcasecmp(ending, ".tiff"))) return true;
+    }
+    return false;
+}
+
 static enum status single_views(struct bracket_views *v, const struct photo_scan *scan, struct err *err)
 {
     int stated = 0, count = 0;
@@ -506,7 +517,7 @@ enum status bracket_views_find(struct bracket_views *v, const struct photo_scan 
     bool listed = path && !access(path, F_OK);
     if (!st && listed) st = group_by_list(v, scan, path, err);
     if (!st && !listed && !single) st = group_by_cycle(v, scan, !strcmp(params->brackets, "yes"), err);
-    if (!st && !listed && !v->count && (single || developed)) st = single_views(v, scan, err);
+    if (!st && !listed && !v->count && (single || developed || any_tiff(scan))) st = single_views(v, scan, err);
     if (!st && listed && v->count) qsort(v->views, (size_t)v->count, sizeof *v->views, by_view);
     if (!st && !listed && v->count) st = name_views(v, scan, err);
     for (int i = 0; !st && i < v->count; i++) st = sort_view(&v->views[i], v, scan, err);

@@ -72,6 +72,15 @@ exr_alone_is_one_exposure()
     refused "the exposure time of photo_1.exr is not known" records exr
 }
 
+tiff_alone_is_one_exposure()
+{
+    mkdir -p lone; for i in 1 2; do ffmpeg -v error -i set/photos/photo_${i}_e1.jpg -pix_fmt rgb48le lone/photo_$i.tif; done
+    records lone || { cat err; fail "import"; }
+    says "2 views of one exposure each"
+    merged lone photo_2 && [ -s lone-hdr/photo_2.jpg ] || { cat err; fail "merge"; }
+    has lone-hdr/photo_2.exr "one exposure"
+}
+
 single_jpegs_are_brought_to_one_scale()
 {
     mkdir -p one; for i in 1 2 3; do cp set/photos/photo_${i}_e$((i - 1)).jpg one/photo_$i.jpg; done
@@ -142,5 +151,5 @@ a_wrong_curve_is_told_by_its_line()
     refused "nothing.txt" merged set/photos photo_3 --response nothing.txt
 }
 
-for t in jpegs tiff_and_png_merge_as_jpeg_does exr_alone_is_one_exposure single_jpegs_are_brought_to_one_scale raw_files wrong_exposures_are_refused \
+for t in jpegs tiff_and_png_merge_as_jpeg_does exr_alone_is_one_exposure tiff_alone_is_one_exposure single_jpegs_are_brought_to_one_scale raw_files wrong_exposures_are_refused \
     missing_brackets_and_times_are_named shifts_are_told_and_corrected a_wrong_curve_is_told_by_its_line; do run "$t"; done

@@ -95,7 +95,7 @@ static void a_mask_of_everything_is_refused(void **state)
     scratch_write("masks/a.png", "no picture");
     err = (struct err)ERR_INIT;
     assert_int_equal(photo_mask_read(&m, scratch_path("masks"), scratch, &r, NULL, &err), ST_DATA);
-    assert_err(err, ST_DATA, "masks/a.png is neither JPEG nor PNG");
+    assert_err(err, ST_DATA, "masks/a.png is neither JPEG, PNG");
 }
 
 /* What any exposure's mask or the view's own hides is hidden; masks of other photos are not looked at. */
