@@ -1,7 +1,7 @@
 /* photo.c - JPEG by libjpeg-turbo, PNG by libpng, EXIF by libexif; TIFF and raw files by photo_tiff.c and photo_raw.c.
  *
- * A file is read into memory once; what it is follows from its first bytes. EXIF of JPEG and PNG is found here, in JPEG's
- * APP1 or PNG's eXIf, and handed to libexif alone. */
+ * A file is read into memory once; what it is follows from its first bytes. EXIF of JPEG and PNG is found here, in
+ * JPEG's APP1 or PNG's eXIf, and handed to libexif alone. */
 #include "common/photo.h"
 
 #include <errno.h>

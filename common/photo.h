@@ -1,4 +1,5 @@
-/* photo.h - photographs as cameras store them: JPEG, PNG, TIFF with EXIF, raw files, EXR; and pictures for people to look at.
+/* photo.h - photographs as cameras store them: JPEG, PNG, TIFF with EXIF, raw files, EXR; and pictures for people to
+ * look at.
  *
  * Rows are those of the stored file: EXIF orientation is reported, never applied. */
 #ifndef REMODEL_PHOTO_H
@@ -25,12 +26,12 @@ struct photo {
     float saturation;  /* what values are cut at; 0: they are not */
 };
 
-/* JPEG, PNG and TIFF of 8 or 16 bits. Errors name the file and say what to do: another format (by content, not by name),
- * empty, truncated (a JPEG that ends early is an error, not a grey lower half), CMYK or YCCK, larger than 2^28 pixels, a
- * size of 0. Grey becomes RGB; alpha is dropped. */
+/* JPEG, PNG and TIFF of 8 or 16 bits. Errors name the file and say what to do: another format (by content, not by
+ * name), empty, truncated (a JPEG that ends early is an error, not a grey lower half), CMYK or YCCK, larger than 2^28
+ * pixels, a size of 0. Grey becomes RGB; alpha is dropped. */
 enum status photo_read(struct photo *p, const char *path, struct err *err);
-/* EXR and raw files too, whose light is linear (info.bits 32). An EXR with many samples at its largest value, 1 in 10 000,
- * is cut there; else nothing in it saturates. Raw files are developed by libraw: common/photo_raw.c says how. */
+/* EXR and raw files too, whose light is linear (info.bits 32). An EXR with many samples at its largest value, 1 in
+ * 10 000, is cut there; else nothing in it saturates. Raw files are developed by libraw: common/photo_raw.c says how. */
 enum status photo_read_any(struct photo *p, const char *path, struct err *err);
 enum status photo_read_info(struct photo_info *info, const char *path, struct err *err); /* of any; headers only */
 void photo_release(struct photo *p);

@@ -29,7 +29,8 @@ enum status photo_read_tiff(struct photo *p, const struct photo_bytes *file, boo
  * method of TIFF's own. */
 bool photo_is_raw(const struct photo_bytes *file);
 enum status photo_read_raw(struct photo *p, const struct photo_bytes *file, bool pixels, struct err *err);
-/* What a TIFF says of itself that makes it a raw file: DNG's version, a reduced first picture, a mosaic, an unknown method. */
+/* What a TIFF says of itself that makes it a raw file: DNG's version, a reduced first picture, a mosaic, an unknown
+ * method. */
 bool photo_tiff_is_raw(const struct photo_bytes *file);
 
 #endif

@@ -1,5 +1,5 @@
-/* photo_tiff.c - TIFF of 8 and 16 bits, by libtiff: RGB and grey as they are stored, other kinds of 8 bits by libtiff's own
- * conversion to RGB. libtiff and not OpenCV's reader of pictures: it is C, keeps 16 bits, and tells the EXIF. */
+/* photo_tiff.c - TIFF of 8 and 16 bits, by libtiff: RGB and grey as they are stored, other kinds of 8 bits by libtiff's
+ * own conversion to RGB. libtiff and not OpenCV's reader of pictures: it is C, keeps 16 bits, and tells the EXIF. */
 #include "common/photo_formats.h"
 
 #include <stdarg.h>

@@ -7,7 +7,8 @@
  *   curve table 256
  *   R G B           256 lines: linear light of the samples 0/255, 1/255, ... 255/255, each column rising or level
  *
- * Between its lines a table goes linearly. Light of 1 is white by the sRGB curve; a table's own white may differ from it. */
+ * Between its lines a table goes linearly. Light of 1 is white by the sRGB curve; a table's own white may differ from
+ * it. */
 #ifndef REMODEL_RESPONSE_H
 #define REMODEL_RESPONSE_H
 

@@ -4,7 +4,8 @@
  *         PHOTOS/FILE                the photos of some of the views
  * writes  OUT                        response.txt: the sRGB curve, or a table that was recovered (docs/formats.md)
  *
- * It is rewritten only if its text changes, so that Make merges views again only then; so it does not name the photos. */
+ * It is rewritten only if its text changes, so that Make merges views again only then; so it does not name the photos.
+ * */
 #include <stdlib.h>
 #include <string.h>
 

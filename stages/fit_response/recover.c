@@ -1,21 +1,22 @@
 /* recover.c - see recover.h.
  *
- * Debevec and Malik 1997, Recovering high dynamic range radiance maps from photographs: g(z) = ln f^-1(z) of 256 levels and
- * the light ln E_i of places minimise
+ * Debevec and Malik 1997, Recovering high dynamic range radiance maps from photographs: g(z) = ln f^-1(z) of 256 levels
+ * and the light ln E_i of places minimise
  *   sum w(z_ij) (g(z_ij) - ln E_i - ln t_j)^2 + lambda sum w(z) g''(z)^2,   w a hat over the levels,
- * colour by colour. The problem is linear, and each ln E_i stands in its own place's equations alone: it is eliminated as they
- * are read, so that what is left are 256 unknowns, whatever the number of places, solved by Cholesky. (A solver of nonlinear
- * problems, as Ceres, has nothing to add to that.)
+ * colour by colour. The problem is linear, and each ln E_i stands in its own place's equations alone: it is eliminated
+ * as they are read, so that what is left are 256 unknowns, whatever the number of places, solved by Cholesky. (A solver
+ * of nonlinear problems, as Ceres, has nothing to add to that.)
  *
- * Differs in what is smooth: not g'' but z^2 g'' + z g', the bend of g over ln z, which is 0 for a power law, as tone curves are
- * much like one. So it can count for much, as it must: exposures of equal steps cannot tell a ripple of that step. And in that samples are means of even places, between two levels as a rule, where g goes linearly; in that the many places
- * are taken, not some fifty; and in the scale: grey, level 128, has the light that the sRGB curve gives it,
- * in each colour. Smoothness is as much as the evidence allows: of a ladder of them the largest that explains the exposures about as
- * well as the best does, and whose curve rises everywhere.
+ * Differs in what is smooth: not g'' but z^2 g'' + z g', the bend of g over ln z, which is 0 for a power law, as tone
+ * curves are much like one. So it can count for much, as it must: exposures of equal steps cannot tell a ripple of that
+ * step. And in that samples are means of even places, between two levels as a rule, where g goes linearly; in that the
+ * many places are taken, not some fifty; and in the scale: grey, level 128, has the light that the sRGB curve gives it,
+ * in each colour. Smoothness is as much as the evidence allows: of a ladder of them the largest that explains the
+ * exposures about as well as the best does, and whose curve rises everywhere.
  *
- * The evidence for a curve. Of two neighbouring exposures of a place ln f^-1(b) - ln f^-1(a) is ln(t_b / t_a) at every level,
- * if the curve is right. A wrong exposure shifts it by the same at all levels; so each pair of exposures is first set right by
- * its own median, and what is left is looked at by level. */
+ * The evidence for a curve. Of two neighbouring exposures of a place ln f^-1(b) - ln f^-1(a) is ln(t_b / t_a) at every
+ * level, if the curve is right. A wrong exposure shifts it by the same at all levels; so each pair of exposures is
+ * first set right by its own median, and what is left is looked at by level. */
 #include "stages/fit_response/recover.h"
 
 #include <math.h>
@@ -70,8 +71,8 @@ static float slope(const struct place_sample *a, const struct place_sample *b, i
     return a->rgb[c] > 0 ? logf(b->rgb[c] / a->rgb[c]) / (float)(b->time - a->time) : 0;
 }
 
-/* A colour that hardly follows the exposure tells nothing of the curve: a scanner's or a sensor's black level, frames painted
- * about the picture, what moved. Such samples become ABSENT. */
+/* A colour that hardly follows the exposure tells nothing of the curve: a scanner's or a sensor's black level, frames
+ * painted about the picture, what moved. Such samples become ABSENT. */
 static void leave_out_level(struct place_sample *s, int count)
 {
     const float least = 0.15f; /* of the sRGB curve it is 0.42 or more */

@@ -21,15 +21,15 @@ struct places {
     size_t count, sample_count;
 };
 
-/* Adds places of a view: on a grid, where 3 x 3 pixels are alike in the exposure that shows them best; samples are their
- * means. photos: of one size, with samples; exposures ascending. */
+/* Adds places of a view: on a grid, where 3 x 3 pixels are alike in the exposure that shows them best; samples are
+ * their means. photos: of one size, with samples; exposures ascending. */
 enum status places_add(struct places *p, const struct photo *photos, const double *exposures, int count, int most,
                        struct err *err);
 void places_release(struct places *p);
 
-/* How much the light ratio of neighbouring exposures varies with the level of light, as a part of it: 0 for the right curve,
- * also where exposures are not quite what is stated, for that is the same at all levels. samples: how many pairs told; too few
- * give 0. */
+/* How much the light ratio of neighbouring exposures varies with the level of light, as a part of it: 0 for the right
+ * curve, also where exposures are not quite what is stated, for that is the same at all levels. samples: how many pairs
+ * told; too few give 0. */
 struct response_evidence {
     double spread;
     size_t pairs;

@@ -1,13 +1,13 @@
 /* align.c - see align.h.
  *
- * Ward 2003, Fast, robust image registration for compositing high dynamic range photographs from hand-held exposures: an
- * exposure is made black and white at its own median, which is the same in the scene whatever the exposure; pixels near the
- * median do not count. Bitmaps are compared by exclusive or, 64 pixels at a time, over a pyramid: all shifts at its smallest
- * level, and at each other one the nine about twice the shift of the level above.
+ * Ward 2003, Fast, robust image registration for compositing high dynamic range photographs from hand-held exposures:
+ * an exposure is made black and white at its own median, which is the same in the scene whatever the exposure; pixels
+ * near the median do not count. Bitmaps are compared by exclusive or, 64 pixels at a time, over a pyramid: all shifts
+ * at its smallest level, and at each other one the nine about twice the shift of the level above.
  *
- * Differs in that the threshold of a pair is the quantile of 9 to 91 % that is farthest from black and white in both exposures,
- * so that exposures many stops apart can be compared; that shifts are compared by the part of the pixels compared; and that a
- * shift must explain a third of what differs without one, or there is none. */
+ * Differs in that the threshold of a pair is the quantile of 9 to 91 % that is farthest from black and white in both
+ * exposures, so that exposures many stops apart can be compared; that shifts are compared by the part of the pixels
+ * compared; and that a shift must explain a third of what differs without one, or there is none. */
 #include "stages/hdr_merge/align.h"
 
 #include <stdlib.h>
@@ -177,7 +177,8 @@ static enum status compare_at(struct pair_job *p, int level, int quantile, doubl
     struct bitmap a = {0}, b = {0};
     enum status st = make_bitmap(&a, &p->fixed->levels[level], p->fixed->quantiles[quantile], &p->err);
     if (!st) st = make_bitmap(&b, &p->moved->levels[level], p->moved->quantiles[quantile], &p->err);
-    /* all shifts at the smallest level, then the nine about twice the one above; the middle one first: of equals it stays */
+    /* all shifts at the smallest level, then the nine about twice the one above; the middle one first: of equals it
+     * stays */
     const int most = p->most_shift >> level, reach = level == p->levels - 1 ? (most > 1 ? most : 1) : 1;
     const struct shift centre = {2 * p->shift.dx, 2 * p->shift.dy};
     struct shift best = centre;

@@ -21,8 +21,9 @@ struct bracketed_view {
     struct merged merged;
 };
 
-/* RECORDS/ID.txt, the photos it names in PHOTOS, and how samples follow light (response: NULL for the sRGB curve). v is {0} on
- * entry; release it also after a failure. ST_DATA: a single photo's record, or more exposures than MERGE_MOST. */
+/* RECORDS/ID.txt, the photos it names in PHOTOS, and how samples follow light (response: NULL for the sRGB curve). v is
+ * {0} on entry; release it also after a failure. ST_DATA: a single photo's record, or more exposures than MERGE_MOST.
+ * */
 enum status bracketed_view_read(struct bracketed_view *v, const char *id, const char *photos, const char *records,
                                 const char *response, struct provenance *prov, struct err *err);
 /* Shifts, agreement, noise, radiance. ST_DATA: exposures that cannot be what is stated. */

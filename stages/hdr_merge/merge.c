@@ -1,26 +1,27 @@
 /* merge.c - weighted mean of exposures in linear radiance.
  *
- * A sample v (linear, 1 is white) of exposure t estimates the radiance x as v / t. Its noise (noise.h) has a part that grows
- * with the light and a part that does not: var(v) = photon v + read^2. The best weight of v / t is 1 / var(v / t) =
- * t^2 / (photon t x + read^2).
+ * A sample v (linear, 1 is white) of exposure t estimates the radiance x as v / t. Its noise (noise.h) has a part that
+ * grows with the light and a part that does not: var(v) = photon v + read^2. The best weight of v / t is 1 / var(v / t)
+ * = t^2 / (photon t x + read^2).
  *
  * Weights taken from the noisy samples themselves would pull the mean towards the samples that happen to look sure. So
  * there are two rounds: the first has weights t, for which the mean is sum(v) / sum(t), nearly the best already; the
- * second takes all that weights depend on from what the first predicts, t x. (Where photos do not keep to the curve the two
- * disagree: a sample that looks saturated itself is never trusted more than it looks, so that the result has no steps.)
+ * second takes all that weights depend on from what the first predicts, t x. (Where photos do not keep to the curve the
+ * two disagree: a sample that looks saturated itself is never trusted more than it looks, so that the result has no
+ * steps.)
  *
- * Saturation counts for the pixel: where one colour saturates, JPEG's shared colour channels spoil the others too. A pixel
- * that has a saturated colour in every exposure is merged colour by colour. What is then left without weight takes the
- * exposure that knows most: the shortest if all saturate (a lower bound), else the longest that does not saturate, but
- * no less than the saturated ones say. Both are marked.
+ * Saturation counts for the pixel: where one colour saturates, JPEG's shared colour channels spoil the others too. A
+ * pixel that has a saturated colour in every exposure is merged colour by colour. What is then left without weight
+ * takes the exposure that knows most: the shortest if all saturate (a lower bound), else the longest that does not
+ * saturate, but no less than the saturated ones say. Both are marked.
  *
  * With weights w the mean sum(w v) / sum(w t) has the variance sum(w^2 var(v)) / sum(w t)^2.
  *
  * Differs from Debevec and Malik 1997 (hat weights on the samples' own values, logarithmic mean) in that weights follow
  * noise and prediction, and the mean is of radiance, which has no bias towards dark samples.
  *
- * Blocks of pixels go through plain loops over planes, which the compiler turns into AVX2; pixels that are merged colour by
- * colour, or have a colour without weight, are then done one by one. */
+ * Blocks of pixels go through plain loops over planes, which the compiler turns into AVX2; pixels that are merged
+ * colour by colour, or have a colour without weight, are then done one by one. */
 #include "stages/hdr_merge/merge.h"
 
 #include <math.h>
@@ -292,7 +293,8 @@ static enum status check(const struct brackets *b, struct err *err)
     return ST_OK;
 }
 
-/* Limits are told for the sRGB curve: those of another one are at the same samples, of its least or most sure colour. */
+/* Limits are told for the sRGB curve: those of another one are at the same samples, of its least or most sure colour.
+ * */
 static void set_limits(struct exposure_job *e, const struct photo *p, const struct response *r,
                        const struct merge_params *params)
 {

@@ -39,8 +39,8 @@ struct merged {
     float *variance;       /* a pixel's, of its luminance over the luminance's square; (0, 1]; owned */
 };
 
-/* m is {0} on entry; release it also after a failure. ST_DATA: photos of different sizes, exposures that are not 1e-12 to
- * 1e12, not 1 to MERGE_MOST of them. The same bits for any number of threads. */
+/* m is {0} on entry; release it also after a failure. ST_DATA: photos of different sizes, exposures that are not 1e-12
+ * to 1e12, not 1 to MERGE_MOST of them. The same bits for any number of threads. */
 enum status merge_brackets(struct merged *m, const struct brackets *b, const struct noise *noise,
                            const struct merge_params *params, struct err *err);
 void merged_release(struct merged *m);

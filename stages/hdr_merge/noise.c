@@ -2,9 +2,9 @@
  *
  * Of neighbouring exposures s < t with samples a and b of one place, d = a - b s / t has the mean 0 and the variance
  *   photon v (1 + s / t) + read^2 (1 + (s / t)^2),   v = b s / t being the better estimate of a.
- * d's spread is taken in bins of log v, as 1.4826 times its median absolute deviation about the bin's median, which leaves
- * out edges, moving things, and an exposure that is not quite what is stated. photon and read^2 then are the least-squares
- * fit over all bins of all pairs with relative weights, neither of them negative. */
+ * d's spread is taken in bins of log v, as 1.4826 times its median absolute deviation about the bin's median, which
+ * leaves out edges, moving things, and an exposure that is not quite what is stated. photon and read^2 then are the
+ * least-squares fit over all bins of all pairs with relative weights, neither of them negative. */
 #include "stages/hdr_merge/noise.h"
 
 #include <math.h>

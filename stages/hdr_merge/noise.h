@@ -17,8 +17,8 @@ struct brackets;
 /* electrons at white and electrons of reading, and the steps of photos of so many bits. */
 struct noise noise_given(const struct merge_params *params, const struct response *r, int bits);
 
-/* From how neighbouring exposures differ where both are well exposed: robust, by level of light, so that edges and small
- * shifts do not count. False: too few such samples; *noise is left alone. The same for any number of threads. */
+/* From how neighbouring exposures differ where both are well exposed: robust, by level of light, so that edges and
+ * small shifts do not count. False: too few such samples; *noise is left alone. The same for any number of threads. */
 enum status noise_measure(struct noise *noise, bool *measured, const struct brackets *b, struct err *err);
 
 #endif

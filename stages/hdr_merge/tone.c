@@ -2,12 +2,12 @@
  *
  * The response of a photoreceptor that is adapted to its surroundings (Naka and Rushton; Reinhard and Devlin 2005):
  *   s = Y / (Y + A),   ln A = a ln B + (1 - a) ln G,
- * Y being luminance, B the level of its surroundings, G middle grey, the same for all views. s is between 0 and 1 for any
- * radiance, so nothing is cut; it is the sRGB sample itself, for its contrast about grey, 1/4 per e-fold, is near that of the sRGB
- * curve. The range of surroundings is compressed to 1 - a of it, contrast within them is kept.
+ * Y being luminance, B the level of its surroundings, G middle grey, the same for all views. s is between 0 and 1 for
+ * any radiance, so nothing is cut; it is the sRGB sample itself, for its contrast about grey, 1/4 per e-fold, is near
+ * that of the sRGB curve. The range of surroundings is compressed to 1 - a of it, contrast within them is kept.
  *
- * B is ln Y smoothed by a guided filter (He, Sun and Tang 2010) with itself as guide, on a quarter of the pixels each way, so
- * that edges larger than EDGE stay edges and bright windows have no halo. Colours keep
+ * B is ln Y smoothed by a guided filter (He, Sun and Tang 2010) with itself as guide, on a quarter of the pixels each
+ * way, so that edges larger than EDGE stay edges and bright windows have no halo. Colours keep
  * SATURATION of their distance from grey. */
 #include "stages/hdr_merge/tone.h"
 
@@ -72,7 +72,8 @@ static void box_mean(struct small *s, double *sums, int radius)
     for (int x = 0; x < s->width; x++) box_line(s->v + x, sums, s->height, (size_t)s->width, radius);
 }
 
-/* The guided filter's mean coefficients: B = slope ln Y + offset. `level` is ln Y on entry; it and slope are overwritten. */
+/* The guided filter's mean coefficients: B = slope ln Y + offset. `level` is ln Y on entry; it and slope are
+ * overwritten. */
 static enum status surroundings(struct small *slope, struct small *offset, struct small *level, int radius,
                                 struct err *err)
 {

@@ -4,10 +4,10 @@
  * bracketing camera leaves a cycle of exposures: 1/500 1/125 1/30 1/500 1/125 1/30 ... A cycle has 2 to 16 exposures,
  * any two of them at least 1.2 apart; it counts if it is seen at least twice and in at least 6 photos. If it holds all
  * photos they are brackets. If it holds three quarters of them a few are missing or too many, which is an error. Else
- * they are single photos. TIFF, EXR and raw files that are no brackets are single exposures, each of a view of its own, and so are
- * all photos where [import_photos] brackets = single: then they are brought to one scale, too. Where no photo tells its
- * exposure these are taken to be alike. Pictures cut out of photos (split_photos.h) are taken lens by lens, so that one bracket of a
- * multi-lens camera is a cycle, too.
+ * they are single photos. TIFF, EXR and raw files that are no brackets are single exposures, each of a view of its own,
+ * and so are all photos where [import_photos] brackets = single: then they are brought to one scale, too. Where no
+ * photo tells its exposure these are taken to be alike. Pictures cut out of photos (split_photos.h) are taken lens by
+ * lens, so that one bracket of a multi-lens camera is a cycle, too.
  *
  * An exposure is seconds x ISO / (f-number^2 x filter): by EXIF, by exposures.txt in the photos' folder, by
  * SCENE/exposures.txt; the later one wins. */

@@ -1,10 +1,11 @@
 /* photo_scan.h - the photographs of a folder: their ids, what is left out, and which of them cannot be used.
  *
- * A photo is a file straight in the folder whose name ends as those of JPEG, PNG, TIFF, EXR or raw files do (any case) and
- * does not begin with a dot; a raw file beside a JPEG of the same name is none. An id is the name without that ending, every run of characters but letters, digits, _ and - made one _; it
- * does not begin with -. Where two photos would share an id (or take one of the scene's own names) the ending is added
- * to each, _jpg, and if that is taken -2, -3 in order of file name. Ids depend on the set of names alone, photos that
- * are left out included, so leaving one out renames no other. */
+ * A photo is a file straight in the folder whose name ends as those of JPEG, PNG, TIFF, EXR or raw files do (any case)
+ * and does not begin with a dot; a raw file beside a JPEG of the same name is none. An id is the name without that
+ * ending, every run of characters but letters, digits, _ and - made one _; it does not begin with -. Where two photos
+ * would share an id (or take one of the scene's own names) the ending is added to each, _jpg, and if that is taken -2,
+ * -3 in order of file name. Ids depend on the set of names alone, photos that are left out included, so leaving one out
+ * renames no other. */
 #ifndef REMODEL_PHOTO_SCAN_H
 #define REMODEL_PHOTO_SCAN_H
 

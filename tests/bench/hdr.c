@@ -1,10 +1,10 @@
 /* hdr.c - one sample of the bench `hdr`: reads and merges the exposures of a view, as hdr_merge does.
  *
- * --paint DIR makes the view: exposures of known radiance, four decades of it, as JPEGs with a camera's noise, DIR/NAME_eK.jpg.
- * A sample prints, a line each: seconds of reading, aligning and merging (median of as many runs as fit in a second, after
- * one that is not counted), read_s, align_s and merge_s of them, tone_s (the picture for structure from motion) and
- * write_s (the EXR, in memory where the machine has /dev/shm), mpixels (of all exposures), error (median relative error of
- * the luminance of pixels that an exposure shows well), its unit. */
+ * --paint DIR makes the view: exposures of known radiance, four decades of it, as JPEGs with a camera's noise,
+ * DIR/NAME_eK.jpg. A sample prints, a line each: seconds of reading, aligning and merging (median of as many runs as
+ * fit in a second, after one that is not counted), read_s, align_s and merge_s of them, tone_s (the picture for
+ * structure from motion) and write_s (the EXR, in memory where the machine has /dev/shm), mpixels (of all exposures),
+ * error (median relative error of the luminance of pixels that an exposure shows well), its unit. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -122,7 +122,7 @@ static void damaged_files(void **state)
     const char *const cases[][2] = {
         {"no-such.jpg", "cannot open"},       {"empty.jpg", "is empty"},
         {"two-bytes.jpg", "neither JPEG"},    {"gif.jpg", "47 49 46 38"},
-        {"text.png", "neither JPEG, PNG"}, {"cmyk.jpg", "is a CMYK JPEG"},
+        {"text.png", "neither JPEG, PNG"},    {"cmyk.jpg", "is a CMYK JPEG"},
         {"cut.jpg", "cut-off JPEG"},          {"cut-before-end.jpg", "cut-off JPEG"},
         {"cut-in-header.jpg", "header"},      {"progressive-cut.jpg", "cut-off JPEG"},
         {"bad-code.jpg", "damaged"},          {"zero-height.jpg", "damaged"},

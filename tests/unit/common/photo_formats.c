@@ -189,8 +189,9 @@ static void exr_is_linear(void **state)
     assert_err(err, ST_DATA, "is an EXR file; wanted JPEG, PNG or TIFF");
 }
 
-/* A DNG of an RGGB mosaic, 14 bits, black level 512: camera colours are XYZ's by the identity, neutral by the D50 white. Light
- * of the left half is 0.1 of the right half's, which is `level` of white in each camera colour after white balance. */
+/* A DNG of an RGGB mosaic, 14 bits, black level 512: camera colours are XYZ's by the identity, neutral by the D50
+ * white. Light of the left half is 0.1 of the right half's, which is `level` of white in each camera colour after white
+ * balance. */
 static const char *write_dng(const char *name, double level)
 {
     enum { SIDE = 64, BLACK = 512, WHITE = 16383 };

@@ -1,6 +1,8 @@
-/* cross_validation.c - a response and radiance that are fitted to every other exposure of a real scene must predict the others.
+/* cross_validation.c - a response and radiance that are fitted to every other exposure of a real scene must predict the
+ * others.
  *
- * ../shared/data/brackets-memorial is the church of Debevec and Malik, 16 exposures a stop apart, scanned from film: no sRGB curve. */
+ * ../shared/data/brackets-memorial is the church of Debevec and Malik, 16 exposures a stop apart, scanned from film: no
+ * sRGB curve. */
 #include "tests/unit/scratch.h"
 
 #include <math.h>

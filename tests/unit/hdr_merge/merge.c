@@ -1,9 +1,9 @@
 /* merge.c - brackets of known radiance, made as a camera makes them, must give that radiance back.
  *
- * The camera here: value = sRGB(clip(radiance x exposure + noise)), rounded to 8 bits. Rounding alone is an error of half
- * a step: 1.6 % of the value at code 70, a sixteenth of white's light, which is the least of the best exposed samples on
- * the ramp. There a sensor of 50000 electrons has noise of 1.8 % (one sigma), of 5000 electrons 5.8 %; the largest of
- * some 10 000 such samples is 4 to 5 sigma away.
+ * The camera here: value = sRGB(clip(radiance x exposure + noise)), rounded to 8 bits. Rounding alone is an error of
+ * half a step: 1.6 % of the value at code 70, a sixteenth of white's light, which is the least of the best exposed
+ * samples on the ramp. There a sensor of 50000 electrons has noise of 1.8 % (one sigma), of 5000 electrons 5.8 %; the
+ * largest of some 10 000 such samples is 4 to 5 sigma away.
  */
 #include "tests/unit/scratch.h"
 
@@ -306,8 +306,8 @@ struct errors {
 
 static double luminance(const double x[3]) { return 0.2126 * x[0] + 0.7152 * x[1] + 0.0722 * x[2]; }
 
-/* Of what an exposure shows well: no colour of the pixel comes near saturation in it, and what is compared is brighter than a
- * twentieth of white. */
+/* Of what an exposure shows well: no colour of the pixel comes near saturation in it, and what is compared is brighter
+ * than a twentieth of white. */
 static void find_errors(struct errors *e, const struct merged *m, const struct exr_image *truth,
                         const double *exposures, int count)
 {
