@@ -164,7 +164,7 @@ static enum status read_length(struct textfile *t, const char *which, double *va
 /* Of something that is there, or is not: then the line must say none. */
 static enum status read_error_of(struct textfile *t, const char *which, bool there, double *value, struct err *err)
 {
-    bool known;
+    bool known = false;
     if (next_line(t, "error", which, err) || number_or_none(t, "an error, or none", value, &known, err))
         return err->status;
     if (there && !known) return textfile_error(t, err, "none", "the error of the %s that the file states", which);

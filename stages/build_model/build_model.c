@@ -136,19 +136,19 @@ static enum status overlay(struct job *j, struct err *err)
     enum status st = read_frame(j, err);
     if (!st) st = solid_mesh_read(&mesh, j->model, err);
     if (!st) {
-        while (at < j->placer.photo_count && strcmp(j->placer.photos[at].photo, j->overlay)) at++;
+        while (at < j->placer.photo_count && strcmp(j->placer.photos[at].id, j->overlay)) at++;
         if (at == j->placer.photo_count)
             st = err_set(err, ST_DATA, "%s/lenses.txt has no photo %s.", j->views, j->overlay);
     }
     if (!st) st = photo_record_read(&record, j->records, j->overlay, err);
     if (!st) st = file_path(path, j->photos, record.file, "", err);
     if (!st) st = photo_read(&photo, path, err);
-    if (!st && (photo.info.width != j->placer.photos[at].camera->width ||
-                photo.info.height != j->placer.photos[at].camera->height))
+    if (!st && (photo.info.width != j->placer.photos[at].camera.lens.width ||
+                photo.info.height != j->placer.photos[at].camera.lens.height))
         st = err_set(err, ST_DATA, "%s is %d x %d pixels, but its lens says %d x %d; make the views again.", path,
-                     photo.info.width, photo.info.height, j->placer.photos[at].camera->width,
-                     j->placer.photos[at].camera->height);
-    if (!st) st = overlay_write(&mesh, &j->placer.photos[at], &photo, j->params.overlay_side, j->out, err);
+                     photo.info.width, photo.info.height, j->placer.photos[at].camera.lens.width,
+                     j->placer.photos[at].camera.lens.height);
+    if (!st) st = overlay_write(&mesh, &j->placer.photos[at].camera, &photo, j->params.overlay_side, j->out, err);
     photo_release(&photo);
     photo_record_release(&record);
     solid_mesh_release(&mesh);

@@ -27,15 +27,12 @@ void placer_release(struct placer *placer)
     *placer = (struct placer){0};
 }
 
-/* The photograph's camera from that of one of its views. */
-static struct photo_camera photo_camera(const struct lens *lens, const struct view *view, const struct model_axes *axes)
+static struct photo_camera model_camera(const struct photo_camera *world, const struct model_axes *axes)
 {
-    const struct view v = model_from_world_view(axes, view);
-    const struct mat3 photo_from_view = mat3_transpose(mat3_from_quat(lens->view_from_photo));
-    struct photo_camera c = {.photo = lens->photo, .camera = &lens->camera};
-    c.pose.rotation = quat_from_mat3(mat3_multiply(photo_from_view, v.cam_from_world));
-    c.pose.translation = mat3_apply(photo_from_view, v.translation);
-    c.center = v.center;
+    struct photo_camera c = *world;
+    c.cam_from_world = mat3_multiply(world->cam_from_world, mat3_transpose(mat3_from_quat(axes->rotation)));
+    c.center = model_from_world_point(axes, world->center);
+    c.translation = vec3_scale(mat3_apply(c.cam_from_world, c.center), -1);
     return c;
 }
 
@@ -53,10 +50,15 @@ enum status placer_init(struct placer *placer, const struct camera_set *set, con
     }
     for (int i = 0; i < lenses->count; i++) {
         const struct lens *lens = &lenses->lenses[i];
-        const int at = camera_set_find(set, lens->view);
-        bool known = at < 0;
-        for (int k = 0; k < placer->photo_count; k++) known |= !strcmp(placer->photos[k].photo, lens->photo);
-        if (!known) placer->photos[placer->photo_count++] = photo_camera(lens, &set->views[at], axes);
+        struct photo_camera camera;
+        bool known = camera_set_find(set, lens->view) < 0;
+        for (int k = 0; k < placer->photo_count; k++) known |= !strcmp(placer->photos[k].id, lens->photo);
+        if (known) continue;
+        if (photo_camera_find(&camera, lens->view, set, lenses, "lenses.txt", 0, err)) {
+            placer_release(placer);
+            return err->status;
+        }
+        placer->photos[placer->photo_count++] = (struct placer_photo){lens->photo, model_camera(&camera, axes)};
     }
     for (size_t i = 0; i < count; i++) {
         const struct cloud_point *p = &points->points[i];
@@ -77,7 +79,7 @@ static const char *known_photo(const void *ctx, int i)
 }
 
 /* By a photo's id or a view's name. */
-static enum status find_photo(const struct photo_camera **found, const struct placer *placer, const char *view,
+static enum status find_photo(const struct placer_photo **found, const struct placer *placer, const char *view,
                               const char *path, int line, struct err *err)
 {
     const char *photo = view;
@@ -85,7 +87,7 @@ static enum status find_photo(const struct photo_camera **found, const struct pl
     char shown[SCAN_SHOWN];
     if (at >= 0) photo = placer->lenses->lenses[at].photo;
     for (int i = 0; i < placer->photo_count; i++)
-        if (!strcmp(placer->photos[i].photo, photo)) {
+        if (!strcmp(placer->photos[i].id, photo)) {
             *found = &placer->photos[i];
             return ST_OK;
         }
@@ -98,48 +100,49 @@ static enum status find_photo(const struct photo_camera **found, const struct pl
                    line, shown);
 }
 
-static enum status check_pixels(const struct photo_camera *c, const struct place *p, const char *path, int line,
+static enum status check_pixels(const struct placer_photo *c, const struct place *p, const char *path, int line,
                                 struct err *err)
 {
-    if (p->a[0] >= 0 && p->a[1] >= 0 && p->a[2] <= c->camera->width && p->a[3] <= c->camera->height) return ST_OK;
+    if (p->a[0] >= 0 && p->a[1] >= 0 && p->a[2] <= c->camera.lens.width && p->a[3] <= c->camera.lens.height)
+        return ST_OK;
     return err_set(
         err, ST_DATA,
         "%s:%d: the rectangle %.9g %.9g %.9g %.9g is not inside the photo %s, which has %d x %d pixels as it is "
         "stored.",
-        path, line, p->a[0], p->a[1], p->a[2], p->a[3], c->photo, c->camera->width, c->camera->height);
+        path, line, p->a[0], p->a[1], p->a[2], p->a[3], c->id, c->camera.lens.width, c->camera.lens.height);
 }
 
 /* The ray through a pixel, in the model. */
-static enum status pixel_ray(struct vec3 *ray, const struct photo_camera *c, double x, double y, const char *path,
+static enum status pixel_ray(struct vec3 *ray, const struct placer_photo *c, double x, double y, const char *path,
                              int line, struct err *err)
 {
     struct vec3 r;
-    if (!camera_unproject(c->camera, x, y, &r))
+    if (!camera_unproject(&c->camera.lens, x, y, &r))
         return err_set(err, ST_DATA, "%s:%d: the lens of %s has no ray at pixel %.9g %.9g; choose another place.", path,
-                       line, c->photo, x, y);
-    *ray = mat3_apply(mat3_transpose(mat3_from_quat(c->pose.rotation)), r);
+                       line, c->id, x, y);
+    *ray = mat3_apply(mat3_transpose(c->camera.cam_from_world), r);
     return ST_OK;
 }
 
-static enum status meet_plane(struct vec3 *at, const struct photo_camera *c, double x, double y, struct vec3 n,
+static enum status meet_plane(struct vec3 *at, const struct placer_photo *c, double x, double y, struct vec3 n,
                               double d, const char *path, int line, struct err *err)
 {
     struct vec3 ray = {0, 0, 0};
     if (pixel_ray(&ray, c, x, y, path, line, err)) return err->status;
-    const double down = -vec3_dot(n, ray), height = vec3_dot(n, c->center) - d;
+    const double down = -vec3_dot(n, ray), height = vec3_dot(n, c->camera.center) - d;
     if (!(height > 0 && down > GRAZING))
         return err_set(err, ST_DATA,
                        "%s:%d: what pixel %.9g %.9g of %s shows does not lie on it: the ray %s; choose another photo.",
-                       path, line, x, y, c->photo,
+                       path, line, x, y, c->id,
                        height > 0 ? "passes it, or meets it at too low an angle" : "starts behind it");
-    *at = vec3_add(c->center, vec3_scale(ray, height / down));
+    *at = vec3_add(c->camera.center, vec3_scale(ray, height / down));
     return ST_OK;
 }
 
 enum status place_corners(struct vec3 corners[2], const struct placer *placer, const struct place *place, struct vec3 n,
                           double d, const char *path, int line, struct err *err)
 {
-    const struct photo_camera *c;
+    const struct placer_photo *c;
     if (find_photo(&c, placer, place->view, path, line, err) || check_pixels(c, place, path, line, err) ||
         meet_plane(&corners[0], c, place->a[0], place->a[1], n, d, path, line, err) ||
         meet_plane(&corners[1], c, place->a[2], place->a[3], n, d, path, line, err))
@@ -165,14 +168,14 @@ static int compare_shown(const void *a, const void *b)
 }
 
 /* A cone about the rectangle, that a point outside of does not need the lens for. */
-static double cone(const struct photo_camera *c, const struct place *p, struct vec3 *axis)
+static double cone(const struct placer_photo *c, const struct place *p, struct vec3 *axis)
 {
     double least = 1;
-    if (!camera_unproject(c->camera, 0.5 * (p->a[0] + p->a[2]), 0.5 * (p->a[1] + p->a[3]), axis)) return -1;
+    if (!camera_unproject(&c->camera.lens, 0.5 * (p->a[0] + p->a[2]), 0.5 * (p->a[1] + p->a[3]), axis)) return -1;
     for (int i = 0; i < 9; i++) {
         struct vec3 ray = {0, 0, 0};
         if (i == 4) continue;
-        if (!camera_unproject(c->camera, p->a[0] + (p->a[2] - p->a[0]) * (i % 3) / 2,
+        if (!camera_unproject(&c->camera.lens, p->a[0] + (p->a[2] - p->a[0]) * (i % 3) / 2,
                               p->a[1] + (p->a[3] - p->a[1]) * (i / 3) / 2, &ray))
             return -1;
         least = fmin(least, vec3_dot(ray, *axis));
@@ -182,23 +185,23 @@ static double cone(const struct photo_camera *c, const struct place *p, struct v
 
 /* shown: those that the camera sees in the rectangle. */
 static enum status show_points(struct shown_point **shown, size_t *count, const struct placer *placer,
-                               const struct photo_camera *c, const struct place *p, struct err *err)
+                               const struct placer_photo *c, const struct place *p, struct err *err)
 {
     struct vec3 axis;
     const double wide = cone(c, p, &axis);
-    const struct mat3 turn = mat3_from_quat(c->pose.rotation);
+    const struct mat3 turn = c->camera.cam_from_world;
     size_t room = 0;
     *shown = NULL;
     *count = 0;
     for (size_t i = 0; i < placer->count; i++) {
         const struct placed_point *q = &placer->points[i];
         const struct vec3 at = vec3_make(q->position[0], q->position[1], q->position[2]);
-        const struct vec3 to = vec3_sub(at, c->center);
+        const struct vec3 to = vec3_sub(at, c->camera.center);
         if (!(to.x * q->normal[0] + to.y * q->normal[1] + to.z * q->normal[2] < 0)) continue;
         const struct vec3 cam = mat3_apply(turn, to);
         const double distance = vec3_length(cam);
         double u, v;
-        if (vec3_dot(cam, axis) < wide * distance || !camera_project(c->camera, cam, &u, &v)) continue;
+        if (vec3_dot(cam, axis) < wide * distance || !camera_project(&c->camera.lens, cam, &u, &v)) continue;
         if (!(u >= p->a[0] && u < p->a[2] && v >= p->a[1] && v < p->a[3])) continue;
         if (*count == room) {
             room = room ? 2 * room : 1024;
@@ -267,14 +270,14 @@ static double mode(const struct position *p, size_t count, double window)
     return at;
 }
 
-static enum status too_few(const struct photo_camera *c, const struct place *p, const char *path, int line,
+static enum status too_few(const struct placer_photo *c, const struct place *p, const char *path, int line,
                            size_t found, int wanted, const char *what, struct err *err)
 {
     return err_set(
         err, ST_DATA,
         "%s:%d: the rectangle %.9g %.9g %.9g %.9g of %s shows %zu points%s, wanted %d or more; draw it larger, "
         "or in another photo, or give the wall by coordinates.",
-        path, line, p->a[0], p->a[1], p->a[2], p->a[3], c->photo, found, what, wanted);
+        path, line, p->a[0], p->a[1], p->a[2], p->a[3], c->id, found, what, wanted);
 }
 
 /* The direction that most normals have, horizontal: the canonical one, or, for an angled wall, the mean about the
@@ -364,7 +367,7 @@ static void fit_line(double n[2], double c, const struct shown_point *shown, siz
     if (fitted[0] * n[0] + fitted[1] * n[1] > cos(10 * DEGREE)) memcpy(n, fitted, sizeof fitted);
 }
 
-static enum status locate(struct placed_wall *wall, const struct placer *placer, const struct photo_camera *c,
+static enum status locate(struct placed_wall *wall, const struct placer *placer, const struct placer_photo *c,
                           const struct place *place, const double normal[2], bool angled, const char *path, int line,
                           const struct shown_point *shown, size_t count, struct position *p, struct err *err)
 {
@@ -398,7 +401,7 @@ static enum status locate(struct placed_wall *wall, const struct placer *placer,
 enum status place_wall(struct placed_wall *wall, const struct placer *placer, const struct place *place,
                        const double normal[2], bool angled, const char *path, int line, struct err *err)
 {
-    const struct photo_camera *c;
+    const struct placer_photo *c;
     struct shown_point *shown = NULL;
     size_t count = 0;
     *wall = (struct placed_wall){0};

@@ -9,6 +9,7 @@
 #include "common/camera_set.h"
 #include "common/lens_list.h"
 #include "common/model_axes.h"
+#include "common/photo_camera.h"
 #include "common/point_cloud.h"
 #include "stages/build_model/model_params.h"
 #include "stages/build_model/script.h"
@@ -17,16 +18,14 @@ struct placed_point {
     float position[3], normal[3], weight; /* of the model */
 };
 
-struct photo_camera { /* a photograph in the model's frame */
-    const char *photo;
-    const struct camera *camera;
-    struct pose pose; /* cam_from_model */
-    struct vec3 center;
+struct placer_photo {
+    const char *id;             /* of the lens list */
+    struct photo_camera camera; /* its world is the model */
 };
 
 struct placer {
     const struct lens_list *lenses;
-    struct photo_camera *photos; /* in order of id; views of one photo are one */
+    struct placer_photo *photos; /* in order of id; views of one photo are one */
     int photo_count;
     struct placed_point *points;
     size_t count;

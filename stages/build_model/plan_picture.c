@@ -90,20 +90,20 @@ static void put_opening(const struct sheet *s, const struct plan *p, const struc
 static void put_cameras(const struct sheet *s, const struct placer *placer, double size)
 {
     for (int i = 0; placer && i < placer->photo_count; i++) {
-        const struct photo_camera *c = &placer->photos[i];
-        const struct mat3 turn = mat3_transpose(mat3_from_quat(c->pose.rotation));
+        const struct photo_camera *c = &placer->photos[i].camera;
+        const struct mat3 turn = mat3_transpose(c->cam_from_world);
         double p[3][2] = {{c->center.x, c->center.y}, {0, 0}, {0, 0}};
         for (int k = 0; k < 2; k++) {
             struct vec3 ray;
-            const double u = k ? c->camera->width : 0;
-            if (!camera_unproject(c->camera, u, 0.5 * c->camera->height, &ray) || ray.z < 0.5)
+            const double u = k ? c->lens.width : 0;
+            if (!camera_unproject(&c->lens, u, 0.5 * c->lens.height, &ray) || ray.z < 0.5)
                 ray = vec3_make(k ? sin(60 * DEGREE) : -sin(60 * DEGREE), 0, cos(60 * DEGREE));
             const struct vec3 r = mat3_apply(turn, ray);
             p[k + 1][0] = c->center.x + size * r.x;
             p[k + 1][1] = c->center.y + size * r.y;
         }
         put_polygon(s, p, 3, "camera");
-        put_name(s, 0.5 * (p[1][0] + p[2][0]), 0.5 * (p[1][1] + p[2][1]), "photo", 0, c->photo);
+        put_name(s, 0.5 * (p[1][0] + p[2][0]), 0.5 * (p[1][1] + p[2][1]), "photo", 0, placer->photos[i].id);
     }
 }
 
@@ -167,7 +167,7 @@ static void find_bounds(const struct plan *plan, const struct placer *placer, do
             high[k] = fmax(high[k], plan->boxes[i].high[k]);
         }
     for (int i = 0; placer && i < placer->photo_count; i++) {
-        const double at[2] = {placer->photos[i].center.x, placer->photos[i].center.y};
+        const double at[2] = {placer->photos[i].camera.center.x, placer->photos[i].camera.center.y};
         for (int k = 0; k < 2; k++) {
             low[k] = fmin(low[k], at[k]);
             high[k] = fmax(high[k], at[k]);
@@ -351,13 +351,13 @@ static void draw_frusta(struct raster *r, const struct aerial *a, const struct p
 {
     static const unsigned char red[3] = {205, 40, 40};
     for (int i = 0; placer && i < placer->photo_count; i++) {
-        const struct photo_camera *c = &placer->photos[i];
-        const struct mat3 turn = mat3_transpose(mat3_from_quat(c->pose.rotation));
+        const struct photo_camera *c = &placer->photos[i].camera;
+        const struct mat3 turn = mat3_transpose(c->cam_from_world);
         struct vec3 corner[4];
         for (int k = 0; k < 4; k++) {
             struct vec3 ray;
-            const double u = k == 1 || k == 2 ? c->camera->width : 0, v = k >= 2 ? c->camera->height : 0;
-            if (!camera_unproject(c->camera, u, v, &ray) || ray.z < 0.4)
+            const double u = k == 1 || k == 2 ? c->lens.width : 0, v = k >= 2 ? c->lens.height : 0;
+            if (!camera_unproject(&c->lens, u, v, &ray) || ray.z < 0.4)
                 ray = vec3_normalize(vec3_make(k == 1 || k == 2 ? 1.2 : -1.2, k >= 2 ? 0.8 : -0.8, 1));
             corner[k] = vec3_add(c->center, vec3_scale(mat3_apply(turn, ray), size));
         }
@@ -510,13 +510,12 @@ static void draw_edge(unsigned char *rgb, int width, int height, double scale, c
                       const struct cube *cube, struct vec3 a, struct vec3 b, bool glass)
 {
     static const unsigned char seen[3] = {255, 70, 20}, blue[3] = {60, 150, 255}, hidden[3] = {250, 240, 90};
-    const struct mat3 turn = mat3_from_quat(camera->pose.rotation);
     enum { STEPS = 4096 };
     double last[2] = {-1e9, -1e9};
     for (int i = 0; i <= STEPS; i++) {
         const struct vec3 p = vec3_add(a, vec3_scale(vec3_sub(b, a), (double)i / STEPS));
         double u, v;
-        if (!camera_project(camera->camera, mat3_apply(turn, vec3_sub(p, camera->center)), &u, &v)) continue;
+        if (!photo_camera_project(camera, p, &u, &v)) continue;
         u *= scale, v *= scale;
         if (hypot(u - last[0], v - last[1]) < 0.7 || u < 0 || v < 0 || u > width || v > height) continue;
         last[0] = u, last[1] = v;
