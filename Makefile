@@ -299,6 +299,7 @@ $(B)/bin/find_subjects: private LDLIBS += -lopencv_objdetect -lopencv_imgproc -l
 $(B)/tests/fuzz/fuzz_model_script: $(addprefix $(B)/obj/stages/build_model/,script.o plan.o place.o layout.o solid.o model_params.o)
 $(B)/tests/fuzz/fuzz_marks: $(call objs,stages/find_axes/marks.c)
 $(B)/tests/fuzz/fuzz_true_room: $(call objs,stages/evaluate/true_room.c)
+$(B)/tests/fuzz/fuzz_wall_plan: $(call objs,stages/evaluate/wall_plan.c)
 $(B)/tests/fuzz/fuzz_regions: $(call objs,stages/find_subjects/region*.c)
 # what morph_views alone needs
 $(B)/bin/morph_views $(filter $(B)/tests/unit/morph_views/%,$(UNIT_TESTS)): $(B)/obj/common/opencv_features.o
@@ -595,11 +596,13 @@ $(1:%=$(H)/frames/%.exr) &: $(HELD_CAMERAS) $(CAMERAS) $(DEPTH_EXR) $(DEPTH_TXT)
 endef
 $(call chunks,heldout_rule,$(HELD))
 
+made = $(1)
+MODELLED := $(and $(filter model,$(PRODUCTS)),$(MODELS))
 $(O)/metrics.tsv: $(CAMERAS) $(O)/views/lenses.txt $(DEPTH_EXR) $(DEPTH_TXT) $(HELD_CAMERAS) $(HELD_EXR) $(HELD_FRAMES) \
-  $(wildcard $(AXES)) $(S)/photos/list.txt $(O)/stamp/truth.txt $(call needs,evaluate)
+  $(call $(if $(MODELLED),made,wildcard),$(AXES) $(if $(MODELS),$(O)/model/plan.txt)) $(S)/photos/list.txt $(O)/stamp/truth.txt \
+  $(call needs,evaluate)
 	$(call stage,evaluate,all,$(O),--folder $(O) --shared $(S) $${REMODEL_TRUTH:+--truth "$$REMODEL_TRUTH"} --out $@)
 
-made = $(1)
 SHOWN := $(if $(PAIR),$(M)/video.mp4,$(if $(HELDOUT)$(TRUTH),$(O)/metrics.tsv) $(EFFECTS:%=$(P)/%/video.mp4) $(wildcard $(EFFECTS:%=$(P)/%/pan_scan/video.mp4)) \
   $(EFFECTS:%=$(P)/%/path.txt) $(CAMERAS) $(DEPTH_EXR) $(DEPTH_TXT) $(wildcard $(AXES) $(M)/video.mp4)) \
   $(call $(if $(filter model,$(PRODUCTS)),made,wildcard),$(foreach m,$(MODELS),$(call model_files,$(m))) $(OVERLAYS))

@@ -19,6 +19,7 @@
 #include "stages/evaluate/picture_error.h"
 #include "stages/evaluate/true_room.h"
 #include "stages/evaluate/truth.h"
+#include "stages/evaluate/wall_plan.h"
 
 #define PARAM_STRUCT struct evaluate_params
 const struct param evaluate_param_table[] = {EVALUATE_PARAMS(PARAM_ROW) PARAM_END};
@@ -202,6 +203,73 @@ static enum status evaluate_axes(struct evaluation *e, const char *truth, struct
         metric_add(t, NULL, "axes.scale", 100 * fabs(axes.scale / e->truth_from_scene.scale - 1), "%", "lower", err))
         return err->status;
     return axes.ceiling > 0 ? ST_OK : metric_note(t, err, "skipped the ceiling: none was found");
+}
+
+/* A place of the model in the frame of the truth's rooms. */
+static struct vec3 room_from_model(const struct evaluation *e, const struct model_axes *axes,
+                                   const struct true_room *room, struct vec3 p)
+{
+    const struct similarity *s = &e->truth_from_scene;
+    const struct vec3 scene = world_from_model_point(axes, p);
+    const struct vec3 world = vec3_add(vec3_scale(mat3_apply(s->rotation, scene), s->scale), s->translation);
+    return mat3_apply(room->room_from_world, vec3_sub(world, room->origin));
+}
+
+static enum status add_walls(struct metric_table *t, const struct wall_errors *w, struct err *err)
+{
+    if (w->face_count) {
+        if (metric_add(t, NULL, "model.walls", w->faces[w->face_count - 1], "m", "lower", err) ||
+            metric_add(t, NULL, "model.walls_median", median(w->faces, w->face_count), "m", "lower", err) ||
+            metric_note(t, err, "model.walls is that of %s", w->worst_face))
+            return err->status;
+    }
+    if (w->hole_count) {
+        if (metric_add(t, NULL, "model.openings", w->holes[w->hole_count - 1], "m", "lower", err) ||
+            metric_add(t, NULL, "model.openings_median", median(w->holes, w->hole_count), "m", "lower", err) ||
+            metric_note(t, err, "model.openings is that of %s", w->worst_hole))
+            return err->status;
+    }
+    if (metric_add(t, NULL, "model.strange", w->strange, "", "lower", err)) return err->status;
+    return metric_add(t, NULL, "model.missing", w->missing, "", "lower", err);
+}
+
+static enum status evaluate_walls(struct evaluation *e, const char *truth, struct err *err)
+{
+    const double reach = 0.5; /* m: farther is another wall */
+    struct metric_table *t = &e->table;
+    struct model_axes axes;
+    struct true_room room = {0};
+    struct wall_plan model = {0}, wanted = {0};
+    struct wall_errors errors = {0};
+    char path[FILE_PATH], described[FILE_PATH];
+    if (file_path(path, e->folder, "model/plan.txt", "", err)) return err->status;
+    if (!is_file(path)) return metric_note(t, err, "skipped walls: there is no model/plan.txt");
+    if (!truth) return metric_note(t, err, "skipped walls: no TRUTH is given");
+    if (!e->aligned) return metric_note(t, err, "skipped walls: the cameras do not tell where the truth is");
+    struct provenance known = {0}; /* evaluate_axes() named these files already */
+    enum status st = true_room_read(&room, truth, &known, err);
+    provenance_release(&known);
+    if (!st && !room.known)
+        return metric_note(t, err, "skipped walls: the truth holds neither scene.txt nor scene-truth.txt");
+    if (!st) st = input(e, path, "model", "plan.txt", "", err);
+    if (!st) st = wall_plan_read(&model, path, PLAN_OF_MODEL, err);
+    if (!st) st = file_path(path, e->folder, "model/axes.txt", "", err);
+    if (!st) st = model_axes_read(&axes, path, err);
+    if (!st) st = file_path(described, truth, "scene.txt", "", err);
+    if (!st) st = file_path(path, truth, "scene-truth.txt", "", err);
+    const bool framed = !st && !is_file(described);
+    if (!st) st = wall_plan_read(&wanted, framed ? path : described, framed ? PLAN_FRAMED : PLAN_DESCRIBED, err);
+    for (int i = 0; !st && i < model.face_count; i++)
+        for (int k = 0; k < 2; k++) model.faces[i].ends[k] = room_from_model(e, &axes, &room, model.faces[i].ends[k]);
+    for (int i = 0; !st && i < model.hole_count; i++)
+        for (int k = 0; k < 2; k++)
+            model.holes[i].corners[k] = room_from_model(e, &axes, &room, model.holes[i].corners[k]);
+    if (!st) st = wall_errors_find(&errors, &model, &wanted, reach, err);
+    if (!st) st = add_walls(t, &errors, err);
+    wall_errors_release(&errors);
+    wall_plan_release(&wanted);
+    wall_plan_release(&model);
+    return st;
 }
 
 /* -------------------------------------------------------------------------------------------------------- depth */
@@ -658,6 +726,7 @@ enum status evaluate(const char *folder, const char *shared, const char *truth, 
     if (!st) st = note_missing(&e, err);
     if (!st && truth) st = evaluate_cameras(&e, err);
     if (!st) st = evaluate_axes(&e, truth, err);
+    if (!st) st = evaluate_walls(&e, truth, err);
     if (!st) st = evaluate_depths(&e, err);
     if (!st && e.has_held) st = evaluate_pictures(&e, err);
     if (!st) st = file_path(path, folder, "evaluate/views.tsv", "", err);

@@ -1,0 +1,400 @@
+/* wall_plan.c - see wall_plan.h. */
+#include "stages/evaluate/wall_plan.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/scan.h"
+#include "common/textfile.h"
+
+#define SAME_WAY 0.98480775301220802 /* cos 10 degrees */
+
+void wall_plan_release(struct wall_plan *plan)
+{
+    if (!plan) return;
+    free(plan->faces);
+    free(plan->holes);
+    *plan = (struct wall_plan){0};
+}
+
+/* Room for one more. */
+static enum status grow(void **items, int count, int *room, size_t size, struct err *err)
+{
+    if (count < *room) return ST_OK;
+    const int wanted = *room ? 2 * *room : 32;
+    void *more = realloc(*items, (size_t)wanted * size);
+    if (!more) return err_nomem(err, "walls to compare", (size_t)wanted * size);
+    *items = more;
+    *room = wanted;
+    return ST_OK;
+}
+
+static enum status add_face(struct wall_plan *p, const char *name, struct vec3 a, struct vec3 b, struct err *err)
+{
+    void *items = p->faces;
+    if (grow(&items, p->face_count, &p->face_room, sizeof *p->faces, err)) return err->status;
+    p->faces = items;
+    struct plan_face *f = &p->faces[p->face_count++];
+    *f = (struct plan_face){.ends = {a, b}};
+    snprintf(f->name, sizeof f->name, "%s", name);
+    return ST_OK;
+}
+
+static enum status add_hole(struct wall_plan *p, const char *name, struct vec3 a, struct vec3 b, struct err *err)
+{
+    void *items = p->holes;
+    if (grow(&items, p->hole_count, &p->hole_room, sizeof *p->holes, err)) return err->status;
+    p->holes = items;
+    struct wall_hole *h = &p->holes[p->hole_count++];
+    *h = (struct wall_hole){.corners = {a, b}};
+    snprintf(h->name, sizeof h->name, "%s", name);
+    return ST_OK;
+}
+
+/* Lines of walls, by which openings are placed. */
+struct line {
+    char name[64];
+    struct vec3 origin, along; /* an opening's S 0, and the way that S grows */
+};
+
+struct reader {
+    struct wall_plan *plan;
+    struct textfile t;
+    struct line *lines;
+    int line_count, line_room;
+    /* of a truth in the rooms' frame */
+    double low[2], high[2];
+    int partition; /* 0 or 1: the axis that it stands across; -1: there is none */
+    double middle; /* of the partition */
+};
+
+static enum status numbers(struct reader *r, const char *const what[], double *v, int count, struct err *err)
+{
+    for (int i = 0; i < count; i++)
+        if (textfile_double(&r->t, what[i], &v[i], err)) return err->status;
+    return ST_OK;
+}
+
+static enum status add_line(struct reader *r, const char *name, struct vec3 origin, struct vec3 along, struct err *err)
+{
+    void *items = r->lines;
+    if (grow(&items, r->line_count, &r->line_room, sizeof *r->lines, err)) return err->status;
+    r->lines = items;
+    struct line *l = &r->lines[r->line_count++];
+    *l = (struct line){.origin = origin, .along = along};
+    snprintf(l->name, sizeof l->name, "%s", name);
+    return ST_OK;
+}
+
+static enum status find_line(const struct reader *r, const char *name, const struct line **line, struct err *err)
+{
+    for (int i = 0; i < r->line_count; i++)
+        if (!strncmp(r->lines[i].name, name, sizeof r->lines[i].name - 1)) {
+            *line = &r->lines[i];
+            return ST_OK;
+        }
+    return textfile_error(&r->t, err, name, "the name of a wall that stands above");
+}
+
+static enum status hole_on(struct reader *r, const char *name, const struct line *l, const double s[2],
+                           const double z[2], struct err *err)
+{
+    struct vec3 c[2];
+    for (int k = 0; k < 2; k++) {
+        c[k] = vec3_add(l->origin, vec3_scale(l->along, s[k]));
+        c[k].z = z[k];
+    }
+    return add_hole(r->plan, name, c[0], c[1], err);
+}
+
+static enum status word(struct reader *r, const char *wanted, struct err *err)
+{
+    char *found;
+    if (textfile_word(&r->t, wanted, &found, err)) return err->status;
+    return strcmp(found, wanted) ? textfile_error(&r->t, err, found, "\"%s\"", wanted) : ST_OK;
+}
+
+/* ------------------------------------------------------------------------------------------------------ of a model */
+
+static enum status model_wall(struct reader *r, struct err *err)
+{
+    static const char *const direction[] = {"x of the normal", "y of the normal"};
+    char *name;
+    double n[2], c;
+    if (textfile_word(&r->t, "a wall's name", &name, err) || word(r, "normal", err) ||
+        numbers(r, direction, n, 2, err) || word(r, "at", err) || textfile_double(&r->t, "the wall's place", &c, err))
+        return err->status;
+    /* S is x or y; an angled wall counts it from a point that the plan does not tell */
+    if (fmin(fabs(n[0]), fabs(n[1])) > 1e-9) return ST_OK;
+    const struct vec3 along = fabs(n[0]) > 0.5 ? vec3_make(0, 1, 0) : vec3_make(1, 0, 0);
+    return add_line(r, name, vec3_make(n[0] * c, n[1] * c, 0), along, err);
+}
+
+static enum status model_opening(struct reader *r, struct err *err)
+{
+    char *name, *wall;
+    double a[2], b[2];
+    static const char *const from[] = {"where it begins", "its sill"}, *const to[] = {"where it ends", "its head"};
+    if (textfile_word(&r->t, "an opening's name", &name, err) || word(r, "on", err) ||
+        textfile_word(&r->t, "a wall's name", &wall, err) || word(r, "from", err) || numbers(r, from, a, 2, err) ||
+        word(r, "to", err) || numbers(r, to, b, 2, err))
+        return err->status;
+    for (int i = 0; i < r->line_count; i++)
+        if (!strncmp(r->lines[i].name, wall, sizeof r->lines[i].name - 1))
+            return hole_on(r, name, &r->lines[i], (double[]){a[0], b[0]}, (double[]){a[1], b[1]}, err);
+    return ST_OK; /* on an angled wall */
+}
+
+/* Each wall's name, and the corner where it ends; the last one is where the first begins. */
+static enum status model_room(struct reader *r, struct err *err)
+{
+    static const char *const ceiling[] = {"height", "slope along x", "slope along y"}, *const corner[] = {"x", "y"};
+    const int first = r->plan->face_count;
+    char *name;
+    double floor, c[3], p[2];
+    if (textfile_word(&r->t, "a room's name", &name, err) || word(r, "floor", err) ||
+        textfile_double(&r->t, "the floor's height", &floor, err) || word(r, "ceiling", err) ||
+        numbers(r, ceiling, c, 3, err))
+        return err->status;
+    do {
+        if (textfile_word(&r->t, "a wall's name", &name, err) || numbers(r, corner, p, 2, err) ||
+            add_face(r->plan, name, vec3_make(0, 0, floor), vec3_make(p[0], p[1], floor), err))
+            return err->status;
+    } while (textfile_more(&r->t));
+    struct plan_face *f = r->plan->faces;
+    for (int i = first, last = r->plan->face_count - 1; i <= last; i++)
+        f[i].ends[0] = f[i == first ? last : i - 1].ends[1];
+    return ST_OK;
+}
+
+static enum status model_statement(struct reader *r, const char *verb, struct err *err)
+{
+    if (!strcmp(verb, "wall")) return model_wall(r, err);
+    if (!strcmp(verb, "room")) return model_room(r, err);
+    if (!strcmp(verb, "door") || !strcmp(verb, "passage") || !strcmp(verb, "window")) return model_opening(r, err);
+    return ST_OK;
+}
+
+/* ------------------------------------------------------------------------------------------------------ of a truth */
+
+static enum status described_wall(struct reader *r, struct err *err)
+{
+    static const char *const what[] = {"x0", "y0", "x1", "y1", "z0", "z1", "thickness"};
+    char *name;
+    double v[7];
+    if (textfile_word(&r->t, "a wall's name", &name, err) || numbers(r, what, v, 7, err)) return err->status;
+    const struct vec3 a = vec3_make(v[0], v[1], v[4]), b = vec3_make(v[2], v[3], v[4]);
+    if (!(vec3_length(vec3_sub(b, a)) > 0)) return textfile_error(&r->t, err, name, "a wall of some length");
+    const struct vec3 d = vec3_normalize(vec3_sub(b, a)), off = vec3_scale(vec3_make(-d.y, d.x, 0), 0.5 * v[6]);
+    if (add_face(r->plan, name, vec3_add(a, off), vec3_add(b, off), err) ||
+        add_face(r->plan, name, vec3_sub(b, off), vec3_sub(a, off), err))
+        return err->status;
+    return add_line(r, name, a, d, err);
+}
+
+static enum status described_opening(struct reader *r, struct err *err)
+{
+    static const char *const what[] = {"s0", "s1", "z0", "z1"};
+    const struct line *line = NULL;
+    char *name, *wall;
+    double v[4];
+    if (textfile_word(&r->t, "an opening's name", &name, err) || textfile_word(&r->t, "a wall's name", &wall, err) ||
+        numbers(r, what, v, 4, err) || find_line(r, wall, &line, err))
+        return err->status;
+    return hole_on(r, name, line, v, v + 2, err);
+}
+
+static enum status described_statement(struct reader *r, const char *verb, struct err *err)
+{
+    if (!strcmp(verb, "wall")) return described_wall(r, err);
+    if (!strcmp(verb, "opening") || !strcmp(verb, "window")) return described_opening(r, err);
+    return ST_OK;
+}
+
+static enum status axis_of(struct reader *r, int *axis, struct err *err)
+{
+    char *name;
+    if (textfile_word(&r->t, "x or y", &name, err)) return err->status;
+    if (strcmp(name, "x") && strcmp(name, "y")) return textfile_error(&r->t, err, name, "x or y");
+    *axis = name[0] == 'y';
+    return ST_OK;
+}
+
+/* Along `axis` at the other coordinate `at`. */
+static enum status framed_hole(struct reader *r, const char *name, int axis, double at, const double s[2],
+                               const double z[2], struct err *err)
+{
+    const struct line l = {.origin = axis ? vec3_make(at, 0, 0) : vec3_make(0, at, 0),
+                           .along = axis ? vec3_make(0, 1, 0) : vec3_make(1, 0, 0)};
+    return hole_on(r, name, &l, s, z, err);
+}
+
+static enum status framed_window(struct reader *r, const char *name, struct err *err)
+{
+    static const char *const sides[] = {"window_west", "window_south", "window_east", "window_north"};
+    static const char *const what[] = {"where it begins", "where it ends", "its sill", "its head"};
+    double v[4];
+    int axis = 0, side = 0;
+    while (side < 4 && strcmp(name, sides[side])) side++;
+    if (side == 4) return textfile_error(&r->t, err, name, "window_south, window_north, window_west or window_east");
+    if (r->low[0] > r->high[0]) return textfile_error(&r->t, err, name, "a room above it");
+    if (axis_of(r, &axis, err) || numbers(r, what, v, 2, err) || word(r, "z", err) ||
+        numbers(r, what + 2, v + 2, 2, err))
+        return err->status;
+    if (axis == side % 2) return textfile_error(&r->t, err, axis ? "y" : "x", "the axis along its wall");
+    return framed_hole(r, name, axis, (side < 2 ? r->low : r->high)[side % 2], v, v + 2, err);
+}
+
+static enum status framed_statement(struct reader *r, const char *verb, struct err *err)
+{
+    static const char *const what[] = {"x0", "y0", "z0", "x1", "y1", "z1"};
+    double v[6], top;
+    int axis = 0;
+    char *next;
+    if (!strcmp(verb, "partition")) {
+        if (axis_of(r, &r->partition, err) || numbers(r, what, v, 2, err)) return err->status;
+        r->middle = 0.5 * (v[0] + v[1]);
+        return ST_OK;
+    }
+    if (!strcmp(verb, "door")) {
+        if (r->partition < 0) return textfile_error(&r->t, err, verb, "a partition above it");
+        if (axis_of(r, &axis, err) || numbers(r, what, v, 2, err) || word(r, "top", err) ||
+            textfile_double(&r->t, "its head", &top, err))
+            return err->status;
+        if (axis == r->partition) return textfile_error(&r->t, err, axis ? "y" : "x", "the axis along the partition");
+        return framed_hole(r, verb, axis, r->middle, v, (double[]){0, top}, err);
+    }
+    if (!strncmp(verb, "window_", 7)) return framed_window(r, verb, err);
+    for (int i = 0; i < 6; i++)
+        if (!textfile_more(&r->t) || textfile_word(&r->t, what[i], &next, err) || !scan_double(next, &v[i]))
+            return err->status; /* no room */
+    if (textfile_more(&r->t)) return ST_OK;
+    if (!(v[3] > v[0] && v[4] > v[1])) return textfile_error(&r->t, err, verb, "a room with x0 < x1 and y0 < y1");
+    for (int k = 0; k < 2; k++) {
+        r->low[k] = fmin(r->low[k], v[k]);
+        r->high[k] = fmax(r->high[k], v[3 + k]);
+    }
+    static const int corners[5][2] = {{0, 1}, {3, 1}, {3, 4}, {0, 4}, {0, 1}};
+    for (int i = 0; i < 4; i++)
+        if (add_face(r->plan, verb, vec3_make(v[corners[i][0]], v[corners[i][1]], v[2]),
+                     vec3_make(v[corners[i + 1][0]], v[corners[i + 1][1]], v[2]), err))
+            return err->status;
+    return ST_OK;
+}
+
+enum status wall_plan_read(struct wall_plan *plan, const char *path, enum wall_plan_kind kind, struct err *err)
+{
+    static enum status (*const statements[])(struct reader *, const char *, struct err *) = {
+        [PLAN_OF_MODEL] = model_statement, [PLAN_DESCRIBED] = described_statement, [PLAN_FRAMED] = framed_statement};
+    struct reader r = {.plan = plan, .partition = -1, .low = {INFINITY, INFINITY}, .high = {-INFINITY, -INFINITY}};
+    *plan = (struct wall_plan){0};
+    enum status st = textfile_open(&r.t, path, err);
+    while (!st && textfile_next(&r.t)) {
+        char *verb;
+        st = textfile_word(&r.t, "a word", &verb, err);
+        if (!st) st = statements[kind](&r, verb, err);
+    }
+    textfile_release(&r.t);
+    free(r.lines);
+    if (st) wall_plan_release(plan);
+    return st;
+}
+
+/* ---------------------------------------------------------------------------------------------------------- errors */
+
+/* In plan: distance of p from the line of a face, and where along it p lies, 0 to 1. */
+static double off_face(const struct plan_face *f, struct vec3 p, double *along)
+{
+    const double dx = f->ends[1].x - f->ends[0].x, dy = f->ends[1].y - f->ends[0].y, length = hypot(dx, dy);
+    const double x = p.x - f->ends[0].x, y = p.y - f->ends[0].y;
+    if (!(length > 0)) {
+        *along = 0;
+        return hypot(x, y);
+    }
+    *along = (x * dx + y * dy) / (length * length);
+    return fabs(x * dy - y * dx) / length;
+}
+
+static double face_error(const struct plan_face *found, const struct plan_face *truth, double reach)
+{
+    const double ax = found->ends[1].x - found->ends[0].x, ay = found->ends[1].y - found->ends[0].y;
+    const double bx = truth->ends[1].x - truth->ends[0].x, by = truth->ends[1].y - truth->ends[0].y;
+    double s[2], d[2];
+    if (!(ax * bx + ay * by > SAME_WAY * hypot(ax, ay) * hypot(bx, by))) return INFINITY;
+    for (int k = 0; k < 2; k++) d[k] = off_face(truth, found->ends[k], &s[k]);
+    const double most = fmax(d[0], d[1]);
+    return s[1] > 0 && s[0] < 1 && most <= reach ? most : INFINITY; /* they overlap */
+}
+
+static double hole_error(const struct wall_hole *found, const struct wall_hole *truth, double reach)
+{
+    const struct vec3 a = vec3_sub(found->corners[1], found->corners[0]);
+    const struct vec3 b = vec3_sub(truth->corners[1], truth->corners[0]);
+    const double width = hypot(b.x, b.y), dot = a.x * b.x + a.y * b.y;
+    if (!(width > 0) || !(fabs(dot) > SAME_WAY * hypot(a.x, a.y) * width)) return INFINITY;
+    double most = 0;
+    for (int k = 0; k < 2; k++) {
+        const struct vec3 off = vec3_sub(found->corners[dot < 0 ? 1 - k : k], truth->corners[k]);
+        if (hypot(off.x, off.y) > reach) return INFINITY; /* across the wall too: it may be another one */
+        most = fmax(most, fabs(off.x * b.x + off.y * b.y) / width);
+        most = fmax(most, fabs(found->corners[k].z - truth->corners[k].z));
+    }
+    return most <= reach ? most : INFINITY;
+}
+
+static int compare_doubles(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+enum status wall_errors_find(struct wall_errors *e, const struct wall_plan *model, const struct wall_plan *truth,
+                             double reach, struct err *err)
+{
+    *e = (struct wall_errors){0};
+    e->faces = calloc((size_t)model->face_count + 1, sizeof *e->faces);
+    e->holes = calloc((size_t)model->hole_count + 1, sizeof *e->holes);
+    if (!e->faces || !e->holes) {
+        wall_errors_release(e);
+        return err_nomem(err, "errors of walls", (size_t)model->face_count * sizeof *e->faces);
+    }
+    double worst[2] = {-1, -1};
+    for (int i = 0; i < model->face_count; i++) {
+        double least = INFINITY;
+        for (int k = 0; k < truth->face_count; k++)
+            least = fmin(least, face_error(&model->faces[i], &truth->faces[k], reach));
+        if (isfinite(least)) e->faces[e->face_count++] = least;
+        e->strange += !isfinite(least);
+        if (!isfinite(least) || !(least > worst[0])) continue;
+        worst[0] = least;
+        memcpy(e->worst_face, model->faces[i].name, sizeof e->worst_face);
+    }
+    for (int i = 0; i < model->hole_count; i++) {
+        double least = INFINITY;
+        for (int k = 0; k < truth->hole_count; k++)
+            least = fmin(least, hole_error(&model->holes[i], &truth->holes[k], reach));
+        if (isfinite(least)) e->holes[e->hole_count++] = least;
+        e->strange += !isfinite(least);
+        if (!isfinite(least) || !(least > worst[1])) continue;
+        worst[1] = least;
+        memcpy(e->worst_hole, model->holes[i].name, sizeof e->worst_hole);
+    }
+    for (int k = 0; k < truth->hole_count; k++) {
+        bool found = false;
+        for (int i = 0; i < model->hole_count && !found; i++)
+            found = isfinite(hole_error(&model->holes[i], &truth->holes[k], reach));
+        e->missing += !found;
+    }
+    qsort(e->faces, (size_t)e->face_count, sizeof *e->faces, compare_doubles);
+    qsort(e->holes, (size_t)e->hole_count, sizeof *e->holes, compare_doubles);
+    return ST_OK;
+}
+
+void wall_errors_release(struct wall_errors *e)
+{
+    if (!e) return;
+    free(e->faces);
+    free(e->holes);
+    *e = (struct wall_errors){0};
+}

@@ -1,0 +1,34 @@
+/* fuzz_wall_plan.c - the walls of a plan or a truth: any bytes give finite faces and openings, or a sentence. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "stages/evaluate/wall_plan.h"
+#include "tests/fuzz/fuzz.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    char path[] = "/tmp/remodel-fuzz-XXXXXX";
+    int fd = mkstemp(path);
+
+    if (fd < 0 || write(fd, data, size) != (ssize_t)size || close(fd)) abort();
+    for (int kind = PLAN_OF_MODEL; kind <= PLAN_FRAMED; kind++) {
+        struct wall_plan plan = {0};
+        struct wall_errors errors = {0};
+        struct err err = ERR_INIT;
+        if (wall_plan_read(&plan, path, (enum wall_plan_kind)kind, &err)) {
+            if (!strstr(err.text, path) || plan.face_count || plan.hole_count) abort();
+            continue;
+        }
+        if (wall_errors_find(&errors, &plan, &plan, 1, &err)) abort();
+        for (int i = 0; i < errors.face_count; i++)
+            if (!isfinite(errors.faces[i])) abort();
+        for (int i = 0; i < errors.hole_count; i++)
+            if (!isfinite(errors.holes[i])) abort();
+        wall_errors_release(&errors);
+        wall_plan_release(&plan);
+    }
+    unlink(path);
+    return 0;
+}

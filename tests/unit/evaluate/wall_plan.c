@@ -1,0 +1,122 @@
+/* Walls and openings of a model against those of a truth: known shifts come back as errors. */
+#include "stages/evaluate/wall_plan.h"
+
+#include "tests/unit/scratch.h"
+
+/* Two rooms, 0..5 and 5.15..8.65 by 0..4; `off` moves the south wall out, and the door along its wall. */
+static struct wall_plan model(double off, struct err *err)
+{
+    char text[2048];
+    struct wall_plan plan = {0};
+    snprintf(
+        text, sizeof text,
+        "remodel-plan 1\n"
+        "wall south normal 0 1 at %.17g thickness 0.25 from 0 to 8.65 foot 0 top 2.6 start corner west end corner e\n"
+        "wall partition normal -1 0 at -5 thickness 0.15 from 0 to 4 foot 0 top 2.6 start meets n end meets s\n"
+        "wall slant normal 0.6 0.8 at 90 thickness 0.15 from 0 to 4 foot 0 top 2.6 start free end free\n"
+        "passage door on partition from %.17g 0 to %.17g 2.1 open\n"
+        "window sunny on south from 1.5 0.9 to 3.3 2.2 closed\n"
+        "window odd on slant from 1 1 to 2 2 closed\n"
+        "room living floor 0 ceiling 2.6 0 0 south 5 %.17g partition 5 4 north 0 4 west 0 %.17g\n"
+        "room study floor 0 ceiling 2.6 0 0 south 8.65 %.17g east 8.65 4 north 5.15 4 partition 5.15 %.17g\n"
+        "box b 0 0 0 1 1 1 turn 0\n",
+        -off, 1.6 + off, 2.5 + off, -off, -off, -off, -off);
+    assert_ok(wall_plan_read(&plan, scratch_write("plan.txt", text), PLAN_OF_MODEL, err), *err);
+    assert_int_equal(plan.face_count, 8);
+    assert_int_equal(plan.hole_count, 2); /* where S of an angled wall is, the plan does not tell */
+    return plan;
+}
+
+static const char *const FRAMED = "yaw_degrees 23\nt 3 1 0.8\nliving 0 0 0 5 4 2.6\nstudy 5.15 0 0 8.65 4 2.6\n"
+                                  "partition x 5 5.15\ndoor y 1.6 2.5 top 2.1\nwindow_south x 1.5 3.3 z 0.9 2.2\n"
+                                  "window_east y 1.4 2.4 z 0.9 2\nexterior_wall_thickness 0.25\nlamp centre 1 2 3\n";
+static const char *const DESCRIBED = "remodel-scene 1\nroom living 0 0 5.075 4 0 2.6 f c\n"
+                                     "wall south -0.125 -0.125 8.775 -0.125 0 2.6 0.25 white\n"
+                                     "wall east 8.775 -0.125 8.775 4.125 0 2.6 0.25 white\n"
+                                     "wall north 8.775 4.125 -0.125 4.125 0 2.6 0.25 white\n"
+                                     "wall west -0.125 4.125 -0.125 -0.125 0 2.6 0.25 white\n"
+                                     "wall partition 5.075 0 5.075 4 0 2.6 0.15 white\n"
+                                     "opening door partition 1.6 2.5 0 2.1\nwindow sunny south 1.625 3.425 0.9 2.2\n"
+                                     "window light east 1.525 2.525 0.9 2\n";
+
+static void known_shifts_come_back(void **state)
+{
+    (void)state;
+    const struct {
+        const char *text;
+        enum wall_plan_kind kind;
+    } truths[] = {{FRAMED, PLAN_FRAMED}, {DESCRIBED, PLAN_DESCRIBED}};
+    for (int i = 0; i < 2; i++)
+        for (double off = 0; off < 0.05; off += 0.03) {
+            struct err err = ERR_INIT;
+            struct wall_plan found = model(off, &err), truth = {0};
+            struct wall_errors e = {0};
+            assert_ok(wall_plan_read(&truth, scratch_write("truth.txt", truths[i].text), truths[i].kind, &err), err);
+            assert_ok(wall_errors_find(&e, &found, &truth, 0.5, &err), err);
+            assert_int_equal(e.face_count, 8);
+            assert_int_equal(e.hole_count, 2);
+            assert_true(e.faces[0] < 1e-9 && fabs(e.faces[7] - off) < 1e-9);
+            assert_true(e.holes[0] < 1e-9 && fabs(e.holes[1] - off) < 1e-9);
+            assert_int_equal(e.strange, 0);
+            assert_int_equal(e.missing, 1); /* the window to the east */
+            if (off > 0) {
+                assert_string_equal(e.worst_face, "south");
+                assert_string_equal(e.worst_hole, "door");
+            }
+            wall_errors_release(&e);
+            wall_plan_release(&truth);
+            wall_plan_release(&found);
+        }
+}
+
+static void what_the_truth_does_not_have_is_counted(void **state)
+{
+    (void)state;
+    struct err err = ERR_INIT;
+    struct wall_plan found = model(0.6, &err), truth = {0};
+    struct wall_errors e = {0};
+    assert_ok(wall_plan_read(&truth, scratch_write("truth.txt", FRAMED), PLAN_FRAMED, &err), err);
+    assert_ok(wall_errors_find(&e, &found, &truth, 0.5, &err), err);
+    assert_int_equal(e.strange, 4); /* the south of both rooms, the door, the window */
+    assert_int_equal(e.missing, 3);
+    assert_int_equal(e.face_count, 6);
+    wall_errors_release(&e);
+    wall_plan_release(&truth);
+    wall_plan_release(&found);
+}
+
+static void broken_lines_are_named(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text, *words;
+        enum wall_plan_kind kind;
+    } cases[] = {
+        {"wall a normal 0 1 in 3\n", ":1: found \"in\", wanted \"at\"", PLAN_OF_MODEL},
+        {"room r floor 0 ceiling 2 0 0\n", "wanted a wall's name", PLAN_OF_MODEL},
+        {"wall a 1 1 1 1 0 2 0.3 m\n", "wanted a wall of some length", PLAN_DESCRIBED},
+        {"\nopening d nowhere 0 1 0 2\n", ":2: found \"nowhere\"", PLAN_DESCRIBED},
+        {"door y 1 2 top 2\n", "wanted a partition above it", PLAN_FRAMED},
+        {"partition z 1 2\n", "wanted x or y", PLAN_FRAMED},
+        {"window_south x 1 2 z 1 2\n", "wanted a room above it", PLAN_FRAMED},
+        {"a 0 0 0 1 1 1\nwindow_south y 1 2 z 1 2\n", "wanted the axis along its wall", PLAN_FRAMED},
+        {"a 1 0 0 0 1 1\n", "wanted a room with x0 < x1", PLAN_FRAMED},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct wall_plan plan = {0};
+        struct err err = ERR_INIT;
+        assert_int_equal(wall_plan_read(&plan, scratch_write("plan.txt", cases[i].text), cases[i].kind, &err), ST_DATA);
+        assert_err(err, ST_DATA, cases[i].words);
+        assert_int_equal(plan.face_count + plan.hole_count, 0);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(known_shifts_come_back),
+        cmocka_unit_test(what_the_truth_does_not_have_is_counted),
+        cmocka_unit_test(broken_lines_are_named),
+    };
+    return cmocka_run_group_tests_name("wall_plan", tests, scratch_make, scratch_remove);
+}
