@@ -226,8 +226,9 @@ static void resample_pixel(const struct resample *r, int x, int y, const struct 
     if (!down.seen) down = photo_from_pixel(r, x, y - 1);
     if (!down.seen) down = at;
     const double ru = right.u - at.u, du = down.u - at.u, rv = right.v - at.v, dv = down.v - at.v;
-    const double su = fmin(sqrt(fmax(ru * ru + du * du, 1)), MAX_REDUCTION);
-    const double sv = fmin(sqrt(fmax(rv * rv + dv * dv, 1)), MAX_REDUCTION);
+    const double across = ru * ru + du * du, along = rv * rv + dv * dv;
+    const double su = across > 1 ? fmin(sqrt(across), MAX_REDUCTION) : 1;
+    const double sv = along > 1 ? fmin(sqrt(along), MAX_REDUCTION) : 1;
     const int u = (int)floor(at.u - 0.5) - LOBES + 1, v = (int)floor(at.v - 0.5) - LOBES + 1;
     float *out = image_at(r->out, x, y);
     if (is_masked(r, at.u, at.v, su, sv)) return;
