@@ -1,0 +1,167 @@
+/* suggest_model.c - a first model script of a scene's rooms, from oriented points, to be corrected by hand.
+ *
+ * reads   VIEWS/cameras.txt, images.txt, points3D.txt   the cameras
+ *         POINTS                                        oriented points
+ *         AXES                                          the model's frame, ceiling, thickness of walls
+ * writes  OUT                                           a script (docs/model-script.md) that nothing reads by itself */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/cli.h"
+#include "common/log.h"
+#include "common/model_axes.h"
+#include "common/outfile.h"
+#include "stages/suggest_model/suggest.h"
+
+#define PARAM_STRUCT struct suggest_params
+const struct param suggest_param_table[] = {SUGGEST_PARAMS(PARAM_ROW) PARAM_END};
+#undef PARAM_STRUCT
+
+/* Of walls whose other face nobody saw, where no one told it, as a part of the ceiling's height. */
+static const double USUAL_THICKNESS = 0.06, USUAL_GLASS = 0.008;
+
+static void name_of(char name[32], int wall)
+{
+    static const char *const OUTER[] = {"south", "west", "north", "east"};
+    if (wall < 4)
+        snprintf(name, 32, "%s", OUTER[wall]);
+    else
+        snprintf(name, 32, "wall%d", wall - 3);
+}
+
+static void write_wall(FILE *fp, const struct suggestion *s, int wall)
+{
+    const struct plan_wall *w = &s->walls[wall];
+    char name[32];
+    name_of(name, wall);
+    /* the inside is on the right-hand side of the way from start to end */
+    const bool falls = (w->axis ? -1 : 1) * w->inward < 0;
+    const double from = falls ? w->end : w->begin, to = falls ? w->begin : w->end;
+    if (w->axis)
+        fprintf(fp, "wall %s from %.4f %.4f to %.4f %.4f", name, from, w->face, to, w->face);
+    else
+        fprintf(fp, "wall %s from %.4f %.4f to %.4f %.4f", name, w->face, from, w->face, to);
+    if (w->thickness > 0) fprintf(fp, " thickness %.4f", w->thickness);
+    fputc('\n', fp);
+    for (int end = 0; wall >= 4 && end < 2; end++) {
+        char side[32];
+        name_of(side, w->sides[falls ? 1 - end : end]);
+        fprintf(fp, "extend %s %s to %s\n", name, end ? "end" : "start", side);
+    }
+}
+
+static void write_script(FILE *fp, const struct suggestion *s, const struct model_axes *axes)
+{
+    char name[32], on[32];
+    int doors = 0, windows = 0, rooms = 0;
+    fputs("# A suggestion, made from points: compare it with the photographs, correct it, and keep it as\n"
+          "# scenes/NAME/model.txt; nothing reads it here. Lengths are those of axes.txt.\n",
+          fp);
+    fprintf(fp, "set ceiling %.4f\n", s->ceiling);
+    if (!(axes->thickness > 0))
+        fprintf(fp, "# nobody saw the outer walls' other faces: a guess\nset thickness %.4f\n",
+                USUAL_THICKNESS * s->ceiling);
+    fprintf(fp, "set glass %.4f\n\n", USUAL_GLASS * s->ceiling);
+    for (int w = 0; w < 4; w++) write_wall(fp, s, w);
+    fputs("join south west north east south\n", fp);
+    for (int w = 4; w < s->wall_count; w++) write_wall(fp, s, w);
+    fputc('\n', fp);
+    for (int r = 0; r < s->room_count; r++) {
+        if (!s->rooms[r].free) continue;
+        fprintf(fp, "room room%d", ++rooms);
+        for (int k = 0; k < 4; k++) {
+            name_of(name, s->rooms[r].walls[k]);
+            fprintf(fp, " %s", name);
+        }
+        fputc('\n', fp);
+    }
+    fputc('\n', fp);
+    for (int i = 0; i < s->opening_count; i++) {
+        const struct plan_opening *o = &s->openings[i];
+        name_of(on, o->wall);
+        fprintf(fp, "%s %s%d on %s from %.4f %.4f to %.4f %.4f\n", o->window ? "window" : "passage",
+                o->window ? "window" : "doorway", o->window ? ++windows : ++doors, on, o->begin, o->foot, o->end,
+                o->top);
+    }
+}
+
+static enum status write_suggestion(const struct suggestion *s, const struct model_axes *axes, const char *path,
+                                    const struct provenance *prov, struct err *err)
+{
+    struct outfile out = {0};
+    enum status st = outfile_open(&out, path, err);
+    if (!st) {
+        fputs("remodel-script 1\n", out.fp);
+        provenance_print(prov, out.fp);
+        write_script(out.fp, s, axes);
+        st = outfile_commit(&out, err);
+    }
+    outfile_discard(&out);
+    return st;
+}
+
+struct files {
+    const char *views, *points, *axes, *out;
+};
+
+static enum status suggest(const struct files *f, const struct suggest_params *params, struct provenance *prov,
+                           struct err *err)
+{
+    struct camera_set set = {0};
+    struct point_cloud cloud = {0};
+    struct model_axes axes = {0};
+    struct suggestion s;
+    enum status st = camera_set_read(&set, f->views, err);
+    if (!st) st = camera_set_add_inputs(prov, f->views, err);
+    if (!st && !set.view_count) st = err_set(err, ST_DATA, "%s holds no view.", f->views);
+    if (!st) st = model_axes_read(&axes, f->axes, err);
+    if (!st) st = provenance_add_file(prov, "model/axes.txt", f->axes, err);
+    if (!st) st = point_cloud_read(&cloud, f->points, err);
+    if (!st) st = provenance_add_file(prov, "points/points.ply", f->points, err);
+    for (int v = 0; !st && v < set.view_count; v++) set.views[v] = model_from_world_view(&axes, &set.views[v]);
+    for (size_t i = 0; !st && i < cloud.count; i++) {
+        struct cloud_point *p = &cloud.points[i];
+        const struct vec3 n = model_from_world_direction(
+            &axes, vec3_make((double)p->normal[0], (double)p->normal[1], (double)p->normal[2]));
+        p->position = model_from_world_point(&axes, p->position);
+        p->normal[0] = (float)n.x;
+        p->normal[1] = (float)n.y;
+        p->normal[2] = (float)n.z;
+    }
+    if (!st && suggest_plan(&s, &cloud, set.views, set.view_count, axes.ceiling, params, err))
+        st = err->status == ST_DATA ? err_context(err, "%s", f->points) : err->status;
+    if (!st) st = write_suggestion(&s, &axes, f->out, prov, err);
+    if (!st) {
+        int rooms = 0;
+        for (int i = 0; i < s.room_count; i++) rooms += s.rooms[i].free;
+        log_note("%d walls, %d rooms, %d openings", s.wall_count, rooms, s.opening_count);
+        log_note("%s is a suggestion that nothing reads: compare it with the photographs, correct it, and copy it to "
+                 "scenes/NAME/model.txt",
+                 f->out);
+    }
+    point_cloud_release(&cloud);
+    camera_set_release(&set);
+    return st;
+}
+
+int main(int argc, char **argv)
+{
+    struct provenance prov = {0};
+    struct files f = {0};
+    struct suggest_params params = SUGGEST_PARAMS_DEFAULT;
+    const struct cli_opt opts[] = {
+        CLI_ABOUT("Suggests a first model script of a scene's rooms, to be corrected by hand."),
+        CLI_STR("views", &f.views, CLI_REQUIRED, "folder of cameras"),
+        CLI_STR("points", &f.points, CLI_REQUIRED, "oriented points, points.ply"),
+        CLI_STR("axes", &f.axes, CLI_REQUIRED, "the model's frame, axes.txt"),
+        CLI_STR("out", &f.out, CLI_REQUIRED, "script to write"),
+        CLI_PARAMS(suggest_param_table, &params, NULL),
+        CLI_END,
+    };
+    struct err err = ERR_INIT;
+    if (cli_parse(argc, argv, "suggest_model", opts, &prov, &err) != CLI_RUN || suggest(&f, &params, &prov, &err))
+        err_report(&err);
+    provenance_release(&prov);
+    return err_exit_code(&err);
+}
