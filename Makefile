@@ -130,7 +130,7 @@ export REMODEL_TRUTH := $(call literal,TRUTH)
 
 export VIEWS_PER_JOB SLURM_ARGS
 dry = $(findstring n,$(filter-out --%,$(firstword -$(MAKEFLAGS))))
-GOALS := edited hdr sfm views depth points axes model subjects path frames video pan_scan morph evaluate report
+GOALS := edited hdr sfm views depth points axes suggest model subjects path frames video pan_scan morph evaluate report
 .PHONY: all help why resfm check fuzz bench bench-compare regress regress-accept man deps deps-check deps-bench clean $(GOALS)
 
 ifeq ($(SCENE),)
@@ -144,6 +144,7 @@ views:  ## + rectified, linear views
 depth:  ## + layered depth maps
 points: ## + oriented points on which they agree (no part of what follows)
 axes:   ## + the room's axes, floor, ceiling and scale, drawn on a few photos (no part of what follows)
+suggest: ## + a first model script from the points, to look at and correct: O/model/suggested.txt (nothing reads it)
 model:  ## the solid model of scenes/SCENE/model.txt, and of each edit in edits/, with pictures to check them
 subjects: ## + faces, or the rectangles of scenes/SCENE/subjects.txt
 path:   ## + the camera move
@@ -406,7 +407,7 @@ ORIGINALS := $(if $(SPLIT),$(S)/split,"$$REMODEL_PHOTOS")
 PICTURES := $(if $(BRACKETED),$(S)/hdr,$(ORIGINALS))
 picture = $(if $(BRACKETED),$(S)/hdr/$(1).exr,$(S)/photos/$(1).txt)
 
-.PHONY: hdr sfm views depth points axes model overlays subjects choice path frames video pan_frames pan_scan heldout evaluate report morph-path morph-frames morph
+.PHONY: hdr sfm views depth points axes suggest model overlays subjects choice path frames video pan_frames pan_scan heldout evaluate report morph-path morph-frames morph
 hdr: $(HDR)
 sfm: $(O)/views/views.mk
 views: $(VIEW_EXR) $(HELD_EXR)
@@ -415,6 +416,7 @@ points: $(POINTS)
 model: $(foreach m,$(MODELS),$(call model_files,$(m)))
 overlays: $(OVERLAYS)
 axes: $(AXES)
+suggest: $(O)/model/suggested.txt
 subjects: $(SUBJECTS)
 choice: $(CHOICE)
 path: $(foreach e,$(EFFECTS),$(call path_all,$(e)) $(if $(filter $(e),$(FILMS)),,$(call validity,$(e))))
@@ -496,6 +498,8 @@ $(AXES): $(CAMERAS) $(O)/views/lenses.txt $(VIEW_EXR) $(POINTS) $(MARKED) $(S)/p
   $(if $(filter-out $(notdir $(MARKED)),$(WAS_MARKED))$(filter-out $(WAS_MARKED),$(notdir $(MARKED))),FORCE)
 	$(call stage,find_axes,all,$(O),--views $(O)/views --records $(S)/photos --points $(POINTS) \
 	  $(if $(filter %/scale.txt,$(MARKED)),--scale scenes/$(SCENE)/scale.txt) $(if $(filter %/axes_fix.txt,$(MARKED)),--fix scenes/$(SCENE)/axes_fix.txt) --out $@)
+$(O)/model/suggested.txt: $(AXES) $(CAMERAS) $(POINTS) $(call needs,suggest_model)
+	$(call stage,suggest_model,all,$(O),--views $(O)/views --points $(POINTS) --axes $(AXES) --out $@)
 # a script that places nothing in photographs needs no points
 MODEL_POINTS := $(if $(MODEL_SCRIPT),$(if $(shell grep -lE '^[ \t]*(wall|adjust)[ \t]+[^ \t]+[ \t]+in[ \t]' $(MODEL_SCRIPT) $(EDITS:%=scenes/$(SCENE)/edits/%.txt)),$(POINTS)))
 MODEL_NEEDS := $(AXES) $(CAMERAS) $(O)/views/lenses.txt $(MODEL_POINTS) $(call needs,build_model)

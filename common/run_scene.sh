@@ -281,7 +281,7 @@ done
 one depth
 case $goal in
 depth) exit 0 ;;
-points | axes | subjects) one "$goal"; exit 0 ;;
+points | axes | suggest | subjects) one "$goal"; exit 0 ;;
 model) make_models; exit 0 ;;
 evaluate) evaluate; common/explain.sh metrics "$O"; exit 0 ;;
 esac

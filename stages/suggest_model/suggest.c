@@ -209,17 +209,18 @@ static const struct face *outermost(const struct finder *f, int axis, int sign)
     return found;
 }
 
-static bool is_free(const struct finder *f, const struct box *box)
+static enum status is_free(bool *found, const struct finder *f, const struct box *box, struct err *err)
 {
     const double c = f->params->cell * f->height;
     for (int v = 0; v < f->view_count; v++) {
         const struct vec3 p = f->views[v].center;
-        if (p.x > box->low[0] && p.x < box->high[0] && p.y > box->low[1] && p.y < box->high[1]) return true;
+        if (p.x > box->low[0] && p.x < box->high[0] && p.y > box->low[1] && p.y < box->high[1]) *found = true;
     }
     const int w = (int)((box->high[0] - box->low[0]) / c) + 1, h = (int)((box->high[1] - box->low[1]) / c) + 1;
     unsigned char *seen = calloc((size_t)w * (size_t)h, 1);
     int count = 0;
-    for (size_t i = 0; seen && i < f->cloud->count; i++) {
+    if (!seen) return err_nomem(err, "a floor's cells", (size_t)w * (size_t)h);
+    for (size_t i = 0; i < f->cloud->count; i++) {
         const struct cloud_point *p = &f->cloud->points[i];
         const double x = (p->position.x - box->low[0]) / c, y = (p->position.y - box->low[1]) / c;
         if (fabs(p->position.z) > FLOOR_NEAR * f->height || p->normal[2] < 0.9f || x < 0 || y < 0 || x >= w || y >= h)
@@ -229,11 +230,12 @@ static bool is_free(const struct finder *f, const struct box *box)
         *cell = 1;
     }
     free(seen);
-    return count > LEAST_FLOOR * w * h;
+    if (count > LEAST_FLOOR * w * h) *found = true;
+    return ST_OK;
 }
 
 /* Cuts a box in two at the wall that is most seen from both sides, and its parts likewise. */
-static void cut(struct suggestion *s, const struct finder *f, const struct box *box)
+static enum status cut(struct suggestion *s, const struct finder *f, const struct box *box, struct err *err)
 {
     const struct face *best[2] = {NULL, NULL};
     double most = f->params->least_wall;
@@ -254,31 +256,42 @@ static void cut(struct suggestion *s, const struct finder *f, const struct box *
                 best[1] = b;
             }
         }
+    /* a wall that only one side shows: as thick as walls usually are */
+    for (int i = 0; !best[1] && s->wall_count < MOST_WALLS && i < f->face_count; i++) {
+        const struct face *a = &f->faces[i];
+        const double away = (f->params->narrowest + WALL_THICKNESS) * f->height;
+        const double part = part_seen(f, a, box->low[1 - a->axis], box->high[1 - a->axis]);
+        if (a->at < box->low[a->axis] + away || a->at > box->high[a->axis] - away || part <= most) continue;
+        most = part;
+        best[0] = a;
+    }
     if (!best[0]) {
-        if (s->room_count == MOST_ROOMS) return;
+        if (s->room_count == MOST_ROOMS) return ST_OK;
         struct plan_room *room = &s->rooms[s->room_count++];
         memcpy(room->walls, box->walls, sizeof room->walls);
-        room->free = is_free(f, box);
-        return;
+        return is_free(&room->free, f, box, err);
     }
     const int axis = best[0]->axis, wall = s->wall_count++;
     const int low_side = axis ? 0 : 1, high_side = axis ? 2 : 3; /* south and north, or west and east */
+    const double guess = WALL_THICKNESS * f->height;
+    const double first = best[1] || best[0]->sign < 0 ? best[0]->at : best[0]->at - guess;
+    const double second = best[1] ? best[1]->at : first + guess;
     s->walls[wall] = (struct plan_wall){
         .axis = axis,
-        .face = best[0]->at,
-        .thickness = best[1]->at - best[0]->at,
+        .face = first,
+        .thickness = second - first,
+        .guessed = !best[1],
         .begin = box->low[1 - axis],
         .end = box->high[1 - axis],
         .sides = {box->walls[axis ? 1 : 0], box->walls[axis ? 3 : 2]},
         .inward = -1,
     };
     struct box low = *box, high = *box;
-    low.high[axis] = best[0]->at;
+    low.high[axis] = first;
     low.walls[high_side] = wall;
-    high.low[axis] = best[1]->at;
+    high.low[axis] = second;
     high.walls[low_side] = wall;
-    cut(s, f, &low);
-    cut(s, f, &high);
+    return cut(s, f, &low, err) ? err->status : cut(s, f, &high, err);
 }
 
 /* ---------------------------------------------------------------------------------------------------------- openings */
@@ -363,6 +376,25 @@ static bool next_run(const struct sheet *t, bool up, int first, int last, int *b
     return in;
 }
 
+/* Lines of sight tell where an opening is, points of the wall where it ends: each of its sides goes on over cells that
+ * nobody saw (sky, dark corners) to where most cells are solid, and stays if no such place comes. */
+static void grow(const struct sheet *t, int rect[4])
+{
+    for (int side = 0; side < 4; side++) { /* begin, foot, end, top */
+        const int step = side < 2 ? -1 : 1, limit = side < 2 ? 0 : (side == 2 ? t->across : t->up * 92 / 100);
+        const int other = side % 2 ? 0 : 1;
+        for (int at = rect[side]; at != limit; at += step) {
+            int solid = 0;
+            const int line = step < 0 ? at - 1 : at;
+            for (int k = rect[other]; k < rect[other + 2]; k++)
+                solid += t->solid[side % 2 ? k * t->up + line : line * t->up + k] > 0;
+            if (2 * solid < rect[other + 2] - rect[other]) continue;
+            rect[side] = at;
+            break;
+        }
+    }
+}
+
 static enum status openings_of(struct suggestion *s, const struct finder *f, int wall, struct err *err)
 {
     const struct plan_wall *w = &s->walls[wall];
@@ -376,9 +408,12 @@ static enum status openings_of(struct suggestion *s, const struct finder *f, int
             for (; next_run(&t, true, begin, end, &low, &high); low = high + 1)
                 if (high - low > best[1] - best[0]) best[0] = low, best[1] = high;
         if ((best[1] - best[0]) * c >= narrow && s->opening_count < MOST_OPENINGS) {
-            const bool window = best[0] * c > 0.15 * f->height;
+            int rect[4] = {begin, best[0], end, best[1]};
+            grow(&t, rect);
+            const bool window = rect[1] * c > 0.15 * f->height;
             s->openings[s->opening_count++] = (struct plan_opening){
-                wall, w->begin + begin * c, w->begin + end * c, window ? best[0] * c : 0, best[1] * c, window};
+                wall, w->begin + rect[0] * c, w->begin + rect[2] * c, window ? rect[1] * c : 0, rect[3] * c, window};
+            if (rect[2] > end) end = rect[2];
         }
         begin = end + 1;
     }
@@ -415,7 +450,7 @@ enum status suggest_plan(struct suggestion *s, const struct point_cloud *cloud, 
                                              .inward = outer[k]->sign};
         s->wall_count = 4;
         s->ceiling = f.height;
-        cut(s, &f, &box);
+        st = cut(s, &f, &box, err);
     }
     for (int w = 0; !st && w < s->wall_count; w++) st = openings_of(s, &f, w, err);
     for (int i = 0; i < f.face_count; i++) free(f.faces[i].cells);

@@ -12,12 +12,16 @@
 #include "stages/suggest_model/rays.h"
 #include "stages/suggest_model/suggest_params.h"
 
+/* Of walls whose other face nobody saw, where no one told it, as a part of the ceiling's height. */
+#define WALL_THICKNESS 0.06
+
 enum { MOST_WALLS = 64, MOST_OPENINGS = 64, MOST_ROOMS = 64 };
 
 struct plan_wall {
     int axis;          /* of its normal: 0 x, 1 y */
     double face;       /* position of its inner face */
     double thickness;  /* 0: only one face was seen */
+    bool guessed;      /* the thickness of a wall between rooms that was seen from one side */
     double begin, end; /* along the other axis */
     int sides[2];      /* walls that it ends at, at begin and end */
     int inward;        /* where the inside is along the axis: +1 or -1 */

@@ -18,8 +18,7 @@
 const struct param suggest_param_table[] = {SUGGEST_PARAMS(PARAM_ROW) PARAM_END};
 #undef PARAM_STRUCT
 
-/* Of walls whose other face nobody saw, where no one told it, as a part of the ceiling's height. */
-static const double USUAL_THICKNESS = 0.06, USUAL_GLASS = 0.008;
+static const double USUAL_GLASS = 0.008; /* thickness, as a part of the ceiling's height */
 
 static void name_of(char name[32], int wall)
 {
@@ -35,6 +34,7 @@ static void write_wall(FILE *fp, const struct suggestion *s, int wall)
     const struct plan_wall *w = &s->walls[wall];
     char name[32];
     name_of(name, wall);
+    if (w->guessed) fputs("# seen from one side only: its thickness is a guess\n", fp);
     /* the inside is on the right-hand side of the way from start to end */
     const bool falls = (w->axis ? -1 : 1) * w->inward < 0;
     const double from = falls ? w->end : w->begin, to = falls ? w->begin : w->end;
@@ -61,7 +61,7 @@ static void write_script(FILE *fp, const struct suggestion *s, const struct mode
     fprintf(fp, "set ceiling %.4f\n", s->ceiling);
     if (!(axes->thickness > 0))
         fprintf(fp, "# nobody saw the outer walls' other faces: a guess\nset thickness %.4f\n",
-                USUAL_THICKNESS * s->ceiling);
+                WALL_THICKNESS * s->ceiling);
     fprintf(fp, "set glass %.4f\n\n", USUAL_GLASS * s->ceiling);
     for (int w = 0; w < 4; w++) write_wall(fp, s, w);
     fputs("join south west north east south\n", fp);
