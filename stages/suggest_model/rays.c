@@ -3,7 +3,7 @@
 
 #include <stdlib.h>
 
-enum { COLUMNS = 96, MOST_RAYS = 8 };
+enum { COLUMNS = 64, MOST_RAYS = 8 };
 static const double BEHIND = 1.04; /* of the nearest depth in a cell: what lies farther is hidden */
 
 void ray_list_release(struct ray_list *list)

@@ -8,7 +8,8 @@ enum { MOST_FACES = 64 };
 /* Parts of the ceiling's height: heights between which walls are looked at, and how far behind a face a line of sight
  * must go on. */
 static const double LOWEST = 0.04, HIGHEST = 0.92, BEYOND = 0.06;
-static const double LEAST_FACE = 0.12, LEAST_OUTER = 0.25; /* parts: of height squared; of the best face's net area */
+static const double LEAST_FACE = 0.12, LEAST_OUTER = 0.25, SEEN_THROUGH = 0.9;
+/* parts: of height squared; of the best face's net area; of lines of sight */
 static const double FLOOR_NEAR = 0.03, LEAST_FLOOR = 0.3;
 
 struct face {
@@ -193,18 +194,38 @@ static double part_seen(const struct finder *f, const struct face *face, double 
     return net / ((last - first) * (HIGHEST - LOWEST) / f->params->cell);
 }
 
-/* The outermost face that looks inwards and is no less seen than a part of the most seen one. */
+/* What is seen through another wall's windows alone is a yard or a house opposite, no wall of this plan. */
+static bool is_beyond(const struct finder *f, const struct face *face, const struct face *nearer)
+{
+    size_t all = 0, through = 0;
+    double s, z;
+    for (size_t i = 0; i < f->rays.count; i++) {
+        const struct cloud_point *p = &f->cloud->points[f->rays.rays[i].point];
+        if (fabs(along(p->position, face->axis) - face->at) > 2 * f->params->window * f->height ||
+            !looks_along(f, p, face->axis, face->sign))
+            continue;
+        all++;
+        through += crosses(f, &f->rays.rays[i], face->axis, face->sign, nearer->at, &s, &z);
+    }
+    return (double)through > SEEN_THROUGH * (double)all;
+}
+
+/* The outermost face that looks inwards, is no less seen than a part of the most seen one, and not through another. */
 static const struct face *outermost(const struct finder *f, int axis, int sign)
 {
-    const struct face *found = NULL;
-    int best = 0;
+    const struct face *candidates[MOST_FACES];
+    int count = 0, best = 0;
     for (int i = 0; i < f->face_count; i++)
         if (f->faces[i].axis == axis && f->faces[i].sign == sign && f->faces[i].net > best) best = f->faces[i].net;
-    for (int i = 0; i < f->face_count; i++) {
-        const struct face *face = &f->faces[i];
-        if (face->axis == axis && face->sign == sign && face->net > LEAST_OUTER * best &&
-            (!found || sign * (found->at - face->at) > 0))
-            found = face;
+    for (int i = 0; i < f->face_count; i++)
+        if (f->faces[i].axis == axis && f->faces[i].sign == sign && f->faces[i].net > LEAST_OUTER * best)
+            candidates[count++] = &f->faces[i];
+    const struct face *found = NULL;
+    for (int i = 0; i < count; i++) {
+        bool beyond = found && sign * (found->at - candidates[i]->at) <= 0;
+        for (int k = 0; !beyond && k < count; k++)
+            beyond = sign * (candidates[k]->at - candidates[i]->at) > 0 && is_beyond(f, candidates[i], candidates[k]);
+        if (!beyond) found = candidates[i];
     }
     return found;
 }

@@ -1,0 +1,196 @@
+/* suggest.c - plans suggested from made points of two rooms with furniture and a doorway, whose measures are known. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "common/rng.h"
+#include "stages/suggest_model/suggest.h"
+
+enum { POINTS = 600000, VIEWS = 24 };
+/* metres: rooms of 5 x 4 and 3 x 4, a wall of 0.2 between them with a doorway, a window to a yard in the south */
+static const double X[4] = {0, 5, 5.2, 8.2}, DEPTH = 4, HIGH = 2.6, DOOR[2] = {1.5, 2.4}, DOOR_TOP = 2.1;
+static const double WINDOW[4] = {1.5, 0.9, 3.2, 2.2};
+
+struct made {
+    struct point_cloud cloud;
+    struct view views[VIEWS];
+};
+
+static double gauss(const struct rng *rng, uint64_t i, uint64_t k)
+{
+    return sqrt(-2 * log(1 - rng_uniform(rng, i, k))) * cos(2 * M_PI * rng_uniform(rng, i, k + 1));
+}
+
+/* A point of a surface by its number, false where there is a hole. */
+static bool surface_point(struct vec3 *p, struct vec3 *n, const struct rng *rng, uint64_t i, bool doorway)
+{
+    const double u = rng_uniform(rng, i, 0), v = rng_uniform(rng, i, 1);
+    const int room = i & 1 ? 1 : 0;
+    const double low = X[2 * room], high = X[2 * room + 1], x = low + u * (high - low), y = v * DEPTH, z = v * HIGH;
+    const bool hole = x > WINDOW[0] && x < WINDOW[2] && z > WINDOW[1] && z < WINDOW[3];
+    const bool door = doorway && u * DEPTH > DOOR[0] && u * DEPTH < DOOR[1] && z < DOOR_TOP;
+    switch ((i / 2) % 8) {
+    case 0:
+        *p = vec3_make(x, y, 0), *n = vec3_make(0, 0, 1);
+        return true;
+    case 1:
+        *p = vec3_make(x, y, HIGH), *n = vec3_make(0, 0, -1);
+        return true;
+    case 2:
+        *p = vec3_make(x, 0, z), *n = vec3_make(0, 1, 0);
+        return !hole;
+    case 3:
+        *p = vec3_make(x, DEPTH, z), *n = vec3_make(0, -1, 0);
+        return true;
+    case 4:
+        *p = vec3_make(low, u * DEPTH, z), *n = vec3_make(1, 0, 0);
+        return !room || !door;
+    case 5:
+        *p = vec3_make(high, u * DEPTH, z), *n = vec3_make(-1, 0, 0);
+        return room || !door;
+    case 6: /* a cupboard before the west wall, a table */
+        *p = room ? vec3_make(6 + u, 1 + v, 0.75) : vec3_make(0.45, 0.5 + 1.5 * u, 1.9 * v);
+        *n = room ? vec3_make(0, 0, 1) : vec3_make(1, 0, 0);
+        return true;
+    default: /* a fence in the yard */
+        *p = vec3_make(-2 + 9 * u, -3, 3 * v), *n = vec3_make(0, 1, 0);
+        return true;
+    }
+}
+
+static void make(struct made *m, bool doorway, uint64_t seed)
+{
+    const struct rng rng = rng_make(seed, "suggest", "made");
+    *m = (struct made){.cloud = {.points = calloc(POINTS, sizeof *m->cloud.points)}};
+    assert_non_null(m->cloud.points);
+    for (uint64_t i = 0; i < POINTS; i++) {
+        struct vec3 p, n;
+        if (!surface_point(&p, &n, &rng, i, doorway)) continue;
+        if (rng_uniform(&rng, i, 9) < 0.02)
+            p = vec3_make(8.2 * rng_uniform(&rng, i, 10), 4 * rng_uniform(&rng, i, 11), 2);
+        const double noise = 0.01;
+        p = vec3_add(p, vec3_make(noise * gauss(&rng, i, 2), noise * gauss(&rng, i, 4), noise * gauss(&rng, i, 6)));
+        n = vec3_normalize(vec3_add(n, vec3_make(0.1 * gauss(&rng, i, 12), 0.1 * gauss(&rng, i, 14), 0)));
+        m->cloud.points[m->cloud.count++] = (struct cloud_point){
+            .position = p, .normal = {(float)n.x, (float)n.y, (float)n.z}, .views = 6, .confidence = 1};
+    }
+    for (int v = 0; v < VIEWS; v++) { /* six places, in each four views around */
+        static const double PLACES[6][2] = {{1.2, 1}, {2.5, 2}, {4, 3}, {4, 1.2}, {6, 2}, {7.4, 3}};
+        const double a = v % 4 * M_PI / 2, c = cos(a), s = sin(a);
+        const struct vec3 at = vec3_make(PLACES[v / 4][0], PLACES[v / 4][1], 1.4);
+        struct view *view = &m->views[v];
+        *view = (struct view){.name = "v", .width = 400, .height = 400, .fx = 180, .fy = 180, .cx = 200, .cy = 200};
+        view->cam_from_world = (struct mat3){{{s, -c, 0}, {0, 0, -1}, {c, s, 0}}};
+        view->center = at;
+        view->translation = vec3_scale(mat3_apply(view->cam_from_world, at), -1);
+    }
+}
+
+static void suggest(struct suggestion *s, const struct made *m, double ceiling)
+{
+    const struct suggest_params params = SUGGEST_PARAMS_DEFAULT;
+    struct err err = ERR_INIT;
+    if (suggest_plan(s, &m->cloud, m->views, VIEWS, ceiling, &params, &err)) fail_msg("%s", err.text);
+}
+
+static void outer_walls_are_right(const struct suggestion *s)
+{
+    assert_float_equal(s->walls[0].face, 0, 0.05);
+    assert_float_equal(s->walls[1].face, 0, 0.05);
+    assert_float_equal(s->walls[2].face, DEPTH, 0.05);
+    assert_float_equal(s->walls[3].face, X[3], 0.05);
+}
+
+static void two_rooms_and_their_openings_are_found(void **state)
+{
+    (void)state;
+    for (uint64_t seed = 1; seed <= 3; seed++) {
+        struct made m;
+        struct suggestion s;
+        make(&m, true, seed);
+        suggest(&s, &m, HIGH);
+        outer_walls_are_right(&s);
+        assert_int_equal(s.wall_count, 5);
+        assert_int_equal(s.room_count, 2);
+        assert_true(s.rooms[0].free && s.rooms[1].free);
+        assert_float_equal(s.walls[4].face, X[1], 0.05);
+        assert_float_equal(s.walls[4].thickness, X[2] - X[1], 0.05);
+        assert_int_equal(s.opening_count, 2);
+        const struct plan_opening *window = &s.openings[0], *door = &s.openings[1];
+        assert_true(window->window && window->wall == 0 && !door->window && door->wall == 4);
+        assert_float_equal(door->begin, DOOR[0], 0.1);
+        assert_float_equal(door->end, DOOR[1], 0.1);
+        assert_float_equal(door->foot, 0, 0);
+        assert_float_equal(door->top, DOOR_TOP, 0.1);
+        assert_float_equal(window->begin, WINDOW[0], 0.1);
+        assert_float_equal(window->end, WINDOW[2], 0.1);
+        assert_float_equal(window->foot, WINDOW[1], 0.1);
+        assert_float_equal(window->top, WINDOW[3], 0.1);
+        free(m.cloud.points);
+    }
+}
+
+static void a_closed_wall_has_no_doorway(void **state)
+{
+    (void)state;
+    struct made m;
+    struct suggestion s;
+    make(&m, false, 4);
+    suggest(&s, &m, HIGH);
+    outer_walls_are_right(&s);
+    assert_int_equal(s.wall_count, 5);
+    for (int i = 0; i < s.opening_count; i++) assert_int_equal(s.openings[i].wall, 0);
+    free(m.cloud.points);
+}
+
+static void the_ceiling_may_be_unknown(void **state)
+{
+    (void)state;
+    struct made m;
+    struct suggestion s;
+    make(&m, true, 5);
+    suggest(&s, &m, 0);
+    outer_walls_are_right(&s);
+    assert_int_equal(s.room_count, 2);
+    free(m.cloud.points);
+}
+
+static void what_is_no_room_is_refused(void **state)
+{
+    (void)state;
+    const struct suggest_params params = SUGGEST_PARAMS_DEFAULT;
+    struct made m;
+    struct suggestion s;
+    struct err err = ERR_INIT;
+    make(&m, true, 6);
+    const size_t count = m.cloud.count;
+    m.cloud.count = 0;
+    assert_int_equal(suggest_plan(&s, &m.cloud, m.views, VIEWS, HIGH, &params, &err), ST_DATA);
+    err = (struct err)ERR_INIT;
+    m.cloud.count = 1;
+    assert_int_equal(suggest_plan(&s, &m.cloud, m.views, VIEWS, HIGH, &params, &err), ST_DATA);
+    assert_non_null(strstr(err.text, "no wall"));
+    err = (struct err)ERR_INIT;
+    m.cloud.count = count;
+    for (size_t i = 0; i < count; i++) /* the north wall is gone */
+        if (m.cloud.points[i].normal[1] < -0.5f) m.cloud.points[i].normal[1] *= -1;
+    assert_int_equal(suggest_plan(&s, &m.cloud, m.views, VIEWS, HIGH, &params, &err), ST_DATA);
+    assert_non_null(strstr(err.text, "+y"));
+    free(m.cloud.points);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(two_rooms_and_their_openings_are_found),
+        cmocka_unit_test(a_closed_wall_has_no_doorway),
+        cmocka_unit_test(the_ceiling_may_be_unknown),
+        cmocka_unit_test(what_is_no_room_is_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
