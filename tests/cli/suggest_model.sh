@@ -11,7 +11,7 @@ suggest()
 {
     local code=$1 word=$2 rc=0; shift 2
     rm -rf made
-    "$B/bin/suggest_model" --views out/t/views --points "${points:-out/t/points/points.ply}" --axes "${axes:-out/t/model/axes.txt}" --out made/suggested.txt "$@" >out.txt 2>err.txt </dev/null || rc=$?
+    "$B/bin/suggest_model" --views "${views:-out/t/views}" --points "${points:-out/t/points/points.ply}" --axes "${axes:-out/t/model/axes.txt}" --out made/suggested.txt "$@" >out.txt 2>err.txt </dev/null || rc=$?
     [ "$rc" = "$code" ] || { cat err.txt; fail "$*: exit $rc, wanted $code"; }
     grep -qF -- "$word" err.txt || { cat err.txt; fail "$*: nothing says '$word'"; }
     [ "$code" = 0 ] || grep -q 'suggest_model: error: .*[.?]$' err.txt || { cat err.txt; fail "$*: no sentence"; }
@@ -28,7 +28,7 @@ wrong_inputs_are_refused()
     points=nowhere.ply suggest 1 nowhere.ply
     sed 's/^rotation.*/rotation 1 1 0 0/' out/t/model/axes.txt >bent.txt
     axes=bent.txt suggest 1 bent.txt:
-    suggest 1 nowhere --views nowhere
+    views=nowhere suggest 1 nowhere
 }
 
 make_says_why_there_is_none()
