@@ -11,6 +11,7 @@ static const double LOWEST = 0.04, HIGHEST = 0.92, BEYOND = 0.06;
 static const double LEAST_FACE = 0.12, LEAST_OUTER = 0.25, SEEN_THROUGH = 0.9;
 /* parts: of height squared; of the best face's net area; of lines of sight */
 static const double FLOOR_NEAR = 0.03, LEAST_FLOOR = 0.3;
+static const double MOST_HEIGHTS = 50; /* across a plan */
 
 struct face {
     int axis, sign; /* of its normal */
@@ -75,7 +76,7 @@ static enum status bounds(struct finder *f, double ceiling, struct err *err)
         f->low[axis] -= c;
         f->high[axis] += c;
         const double cells = (f->high[axis] - f->low[axis]) / c;
-        if (cells > 20000)
+        if (cells * f->params->cell > MOST_HEIGHTS)
             return err_set(err, ST_DATA,
                            "the points are spread over %.0f times the ceiling's height, which is no room.",
                            cells * f->params->cell);

@@ -181,6 +181,10 @@ static void what_is_no_room_is_refused(void **state)
         if (m.cloud.points[i].normal[1] < -0.5f) m.cloud.points[i].normal[1] *= -1;
     assert_int_equal(suggest_plan(&s, &m.cloud, m.views, VIEWS, HIGH, &params, &err), ST_DATA);
     assert_non_null(strstr(err.text, "+y"));
+    err = (struct err)ERR_INIT;
+    for (size_t i = 0; i < count / 2; i++) m.cloud.points[i].position.x *= 100;
+    assert_int_equal(suggest_plan(&s, &m.cloud, m.views, VIEWS, HIGH, &params, &err), ST_DATA);
+    assert_non_null(strstr(err.text, "no room"));
     free(m.cloud.points);
 }
 
