@@ -346,7 +346,10 @@ static enum status sheet_make(struct sheet *t, const struct finder *f, const str
             const struct cloud_point *p = &f->cloud->points[r->point];
             double s, z, unused[2];
             int *count = t->solid;
-            if (fabs(along(p->position, w->axis) - at) < 2 * c && looks_along(f, p, w->axis, sign)) {
+            const double behind = sign * (at - along(p->position, w->axis));
+            const double within = w->thickness > 0 ? w->thickness : WALL_THICKNESS * f->height;
+            const bool on = fabs(behind) < 2 * c && looks_along(f, p, w->axis, sign);
+            if (on || (behind > c && behind < within - c && !looks_along(f, p, w->axis, sign))) { /* or a reveal */
                 s = along(p->position, 1 - w->axis);
                 z = p->position.z;
             } else if (crosses(f, r, w->axis, sign, at, &s, &z) &&
