@@ -130,6 +130,8 @@ export REMODEL_TRUTH := $(call literal,TRUTH)
 
 export VIEWS_PER_JOB SLURM_ARGS
 dry = $(findstring n,$(filter-out --%,$(firstword -$(MAKEFLAGS))))
+# several goals of a scene follow each other: a run locks it, and takes all cores by itself
+.NOTPARALLEL:
 GOALS := edited hdr sfm views depth points axes suggest model subjects path frames video pan_scan morph evaluate report
 .PHONY: all help why resfm check fuzz bench bench-compare regress regress-accept man deps deps-check deps-bench clean $(GOALS)
 

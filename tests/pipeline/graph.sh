@@ -297,6 +297,13 @@ jobs_times_threads_never_exceed_the_cores()
     ! grep -q 'threads 2' log || fail "two jobs of two threads on two cores"
 }
 
+several_goals_follow_each_other()
+{
+    rm -rf out/t/points out/t/depth/photo_1.exr
+    make -s DEPS=manual SCENE=t -j2 depth points >log 2>&1 || { cat log; fail "make -j2 depth points"; }
+    [ -s out/t/points/points.ply ] || fail "no points"
+}
+
 run chain_from_photos_to_video
 run second_make_does_nothing
 run comment_in_a_config_rebuilds_nothing
@@ -310,6 +317,7 @@ run given_depth_is_honoured_and_redoes_its_view_and_its_readers
 run a_photo_that_goes_redoes_sfm
 run draft_stands_beside_and_shares_sfm
 run a_second_run_is_refused
+run several_goals_follow_each_other
 run a_failed_stage_keeps_the_old_product_and_says_why
 run threads_splits_and_resumes_give_the_same_bytes
 run jobs_times_threads_never_exceed_the_cores
