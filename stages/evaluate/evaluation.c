@@ -220,17 +220,17 @@ static enum status add_walls(struct metric_table *t, const struct wall_errors *w
     if (w->face_count) {
         if (metric_add(t, NULL, "model.walls", w->faces[w->face_count - 1], "m", "lower", err) ||
             metric_add(t, NULL, "model.walls_median", median(w->faces, w->face_count), "m", "lower", err) ||
-            metric_note(t, err, "model.walls is that of %s", w->worst_face))
+            metric_note(t, err, "note: the wall that is farthest off is %s", w->worst_face))
             return err->status;
     }
     if (w->hole_count) {
         if (metric_add(t, NULL, "model.openings", w->holes[w->hole_count - 1], "m", "lower", err) ||
             metric_add(t, NULL, "model.openings_median", median(w->holes, w->hole_count), "m", "lower", err) ||
-            metric_note(t, err, "model.openings is that of %s", w->worst_hole))
+            metric_note(t, err, "note: the opening that is farthest off is %s", w->worst_hole))
             return err->status;
     }
-    if (metric_add(t, NULL, "model.strange", w->strange, "", "lower", err)) return err->status;
-    return metric_add(t, NULL, "model.missing", w->missing, "", "lower", err);
+    if (metric_add(t, NULL, "model.strange", w->strange, "1", "lower", err)) return err->status;
+    return metric_add(t, NULL, "model.missing", w->missing, "1", "lower", err);
 }
 
 static enum status evaluate_walls(struct evaluation *e, const char *truth, struct err *err)

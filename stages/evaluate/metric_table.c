@@ -13,6 +13,7 @@ enum status metric_add(struct metric_table *t, const char *view, const char *nam
 {
     size_t bytes = ((size_t)t->count + 1) * sizeof *t->metrics;
     if (!isfinite(value)) return err_set(err, ST_INTERNAL, "the metric %s has no finite value.", name);
+    if (!*unit || !*direction) return err_set(err, ST_INTERNAL, "the metric %s lacks its unit or direction.", name);
     struct metric *grown = realloc(t->metrics, bytes);
     if (!grown) return err_nomem(err, "metrics", bytes);
     t->metrics = grown;

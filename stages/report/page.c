@@ -242,8 +242,12 @@ static enum status put_effect(FILE *to, const struct effect_card *e, struct err 
     return ST_OK;
 }
 
+/* A scene of which a model alone is made lacks no video. */
+static bool shows_video(const struct contents *c) { return c->effect_count || !c->model_count; }
+
 static enum status put_videos(FILE *to, const struct contents *c, struct err *err)
 {
+    if (!shows_video(c)) return ST_OK;
     fputs("<section id=\"video\" aria-labelledby=\"video-title\">\n<h2 id=\"video-title\">Video</h2>\n", to);
     if (!c->effect_count) fputs("<p>No camera move was planned yet, so there is no video.</p>\n", to);
     for (int i = 0; i < c->effect_count; i++)
@@ -410,6 +414,12 @@ static const char *metric_words(const char *name)
         {"holdout.psnr_covered", "the same without holes"},
         {"holdout.ssim", "structural similarity, mean"},
         {"holdout.ssim_covered", "the same without holes"},
+        {"model.missing", "openings of the truth that the model has not"},
+        {"model.openings", "openings, the edge that is farthest off"},
+        {"model.openings_median", "openings, half of them are off by less"},
+        {"model.strange", "walls and openings that the truth has not"},
+        {"model.walls", "walls, the one that is farthest off"},
+        {"model.walls_median", "walls, half of them are off by less"},
     };
     for (size_t i = 0; i < sizeof WORDS / sizeof *WORDS; i++)
         if (!strcmp(WORDS[i][0], name)) return WORDS[i][1];
@@ -848,11 +858,12 @@ static void put_head(FILE *to, const char *scene, const struct contents *c)
     put_plural(to, c->depth_count, "depth map", "depth maps");
     int videos = 0;
     for (int i = 0; i < c->effect_count; i++) videos += c->effects[i].video != NULL;
-    fputs(" · ", to);
-    put_plural(to, videos, "video", "videos");
-    fputs(" · remodel " REMODEL_VERSION "</p>\n<nav aria-label=\"Contents\"><a href=\"#video\">Video</a>", to);
-    if (c->has_metrics || c->held.view_count) fputs("<a href=\"#evaluation\">Measured</a>", to);
+    if (shows_video(c)) fputs(" · ", to), put_plural(to, videos, "video", "videos");
+    if (c->model_count) fputs(" · ", to), put_plural(to, c->model_count, "model", "models");
+    fputs(" · remodel " REMODEL_VERSION "</p>\n<nav aria-label=\"Contents\">", to);
+    if (shows_video(c)) fputs("<a href=\"#video\">Video</a>", to);
     if (c->model_count) fputs("<a href=\"#model\">Model</a>", to);
+    if (c->has_metrics || c->held.view_count) fputs("<a href=\"#evaluation\">Measured</a>", to);
     fputs("<a href=\"#photos\">Photographs</a>"
           "<a href=\"#depth\">Depth</a>",
           to);
@@ -867,8 +878,8 @@ static void put_head(FILE *to, const char *scene, const struct contents *c)
 enum status page_write(FILE *to, const char *scene, const struct contents *c, struct err *err)
 {
     put_head(to, scene, c);
-    if (put_videos(to, c, err) || put_evaluation(to, c, err) || put_photos(to, c, err) || put_depths(to, c, err) ||
-        put_axes(to, c, err) || put_models(to, c, err))
+    if (put_videos(to, c, err) || put_models(to, c, err) || put_evaluation(to, c, err) || put_photos(to, c, err) ||
+        put_depths(to, c, err) || put_axes(to, c, err))
         return err->status;
     put_numbers(to, c);
     put_usage(to, c);
