@@ -78,7 +78,7 @@ if [ ! -e "$folder/scene.mk" ]; then
         [ -z "${REMODEL_TRUTH-}" ] || echo "TRUTH := $(for_make "$REMODEL_TRUTH")"
         echo "# photos to leave out, by id or file name; names with blanks in quotes"
         echo "EXCLUDE := $(for_make "${REMODEL_EXCLUDE-}")"
-        echo "PRODUCTS := parallax"
+        echo "PRODUCTS := ${REMODEL_PRODUCTS:-parallax}"
     } >"$folder/.scene.mk.tmp"
     [ -e "$folder/scene.cfg" ] || {
         echo "# Overrides of configs/default.cfg for this scene alone, a section a stage. For example:"
@@ -91,6 +91,11 @@ if [ ! -e "$folder/scene.mk" ]; then
 fi
 if [ -z "${REMODEL_PHOTOS-}" ]; then
     echo "$folder/scene.mk sets no PHOTOS. Write there PHOTOS := DIR, the folder of the photos." >&2
+    exit 2
+fi
+case $goal in model) wants_script=1 ;; all | report) wants_script=$model_wanted ;; *) wants_script= ;; esac
+if [ "$wants_script" ] && [ ! -e "$folder/model.txt" ]; then
+    echo "make $goal wants $folder/model.txt, the script of the model (docs/model-script.md). make suggest SCENE=$scene writes a first one, to be corrected." >&2
     exit 2
 fi
 mkdir -p "$S"
@@ -226,10 +231,6 @@ merge_brackets()
 # make_models: the solid model that the scene's script describes, those of its edits, and their edges on the photographs
 make_models()
 {
-    if [ ! -e "$folder/model.txt" ]; then
-        echo "make model wants $folder/model.txt, the script of the model (docs/model-script.md)." >&2
-        exit 2
-    fi
     one model
     farm build_model overlays 1 "${VIEWS_PER_JOB:-4}"
 }

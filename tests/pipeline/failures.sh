@@ -29,6 +29,14 @@ no_folder()
     grep -q 'nowhere' log || fail "no sentence"
     [ ! -e scenes/nowhere ] || fail "a scene was left behind"
 }
+a_model_without_its_script_is_told_before_any_work()
+{
+    rm -rf scenes/plain out/plain
+    if make -s DEPS=manual PHOTOS=set/photos SFM=set/model SCENE=plain PRODUCTS=model >log 2>&1; then fail "it was taken"; fi
+    grep -q 'scenes/plain/model.txt.*make suggest' log || { cat log; fail "no sentence"; }
+    grep -q '^PRODUCTS := model$' scenes/plain/scene.mk || fail "the scene forgot what to make"
+    [ ! -e out/plain/photos ] || fail "work was done"
+}
 unreadable_photo()
 {
     copy bad
@@ -157,6 +165,6 @@ photos_that_do_not_overlap_are_refused_with_a_reason()
     [ ! -e out/flat/sfm/models.txt ] || fail "a model was left"
 }
 
-for t in truncated_photo empty_photo not_a_photo cmyk_photo two_bad_photos_are_both_named no_photo one_photo no_folder \
+for t in truncated_photo empty_photo not_a_photo cmyk_photo two_bad_photos_are_both_named no_photo one_photo no_folder a_model_without_its_script_is_told_before_any_work \
     unreadable_photo odd_names odd_folder_names photos_held_upright_give_an_upright_video killed_stage full_disk photos_of_different_sizes_and_png \
     photos_that_do_not_overlap_are_refused_with_a_reason; do run "$t"; done
