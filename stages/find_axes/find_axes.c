@@ -7,9 +7,11 @@
  *         VIEWS/VIEW.exr                  of the views that are drawn on
  * writes  axes/VIEW.png beside OUT        the axes and outlines of floor and ceiling, drawn on a few views
  *         OUT                             the axes, last */
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "common/cli.h"
 #include "common/file_path.h"
@@ -120,6 +122,14 @@ static enum status place_corners(struct vec3 *corners, int *count, const struct 
     return ST_OK;
 }
 
+/* A view that an earlier run drew and this one does not is not shown any more. */
+static enum status remove_picture(const char *out, const char *view, struct err *err)
+{
+    char path[FILE_PATH];
+    if (picture_path(path, out, view, err)) return err->status;
+    return unlink(path) && errno != ENOENT ? err_errno(err, "remove", path) : ST_OK;
+}
+
 static enum status draw(const struct room *room, const struct room_inputs *in, const struct files *f, int pictures,
                         struct err *err)
 {
@@ -131,7 +141,8 @@ static enum status draw(const struct room *room, const struct room_inputs *in, c
                                        : err_nomem(err, "views", (size_t)views * sizeof *chosen);
     if (!st) st = place_corners(corners, &count, room, in, err);
     for (int i = 0; !st && i < views; i++)
-        if (chosen[i]) st = draw_view(&in->set->views[i], room, corners, count, f, err);
+        st = chosen[i] ? draw_view(&in->set->views[i], room, corners, count, f, err)
+                       : remove_picture(f->out, in->set->views[i].name, err);
     free(chosen);
     free(corners);
     return st;

@@ -93,6 +93,9 @@ marks_that_come_and_go_make_the_axes_again()
     rm scenes/t/scale.txt scenes/t/axes_fix.txt
     make_axes
     grep -v '^#' "$axes" | diff before - || fail "what was marked stays"
+    printf '[find_axes]\npictures = 2\n' >>scenes/t/scene.cfg
+    make_axes
+    [ "$(ls out/t/model/axes/*.png | wc -l)" = 2 ] || { ls out/t/model/axes; fail "pictures of an earlier choice stay"; }
 }
 
 run a_made_rooms_axes_are_found
