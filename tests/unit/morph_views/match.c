@@ -36,6 +36,14 @@ static void make(struct flows *f, const struct made_pair *pair)
     }
 }
 
+/* The flows of a pair as it was made, by the parameters' defaults. */
+static void make_and_match(struct flows *f, const struct made_pair *pair, const struct geometry *g)
+{
+    const struct morph_params params = MORPH_PARAMS_DEFAULT;
+    make(f, pair);
+    match(f, g, &params);
+}
+
 static double sure_part(const struct flow *f)
 {
     double sure = 0;
@@ -43,17 +51,26 @@ static double sure_part(const struct flow *f)
     return sure / (MADE_WIDTH * MADE_HEIGHT);
 }
 
+static void assert_still(const struct flow *f)
+{
+    for (int p = 0; p < 2 * MADE_WIDTH * MADE_HEIGHT; p++) assert_true(fabsf(f->uv[p]) < 1e-3f);
+    assert_true(sure_part(f) == 1);
+}
+
+static void assert_right(const struct flows *f, const struct made_pair *pair, double within)
+{
+    assert_true(made_right(&f->flow[0], pair, false, within) > 0.95);
+    assert_true(made_right(&f->flow[0], pair, true, within) > 0.95);
+}
+
 static void a_still_scene_is_matched_to_parts_of_a_pixel(void **state)
 {
     const struct made_pair pair = {{-4.4, 0}, {-11.7, 0}, true, 1};
-    const struct morph_params params = MORPH_PARAMS_DEFAULT;
     const struct geometry g = made_side_by_side();
     struct flows f;
     (void)state;
-    make(&f, &pair);
-    match(&f, &g, &params);
-    assert_true(made_right(&f.flow[0], &pair, false, 0.35) > 0.95);
-    assert_true(made_right(&f.flow[0], &pair, true, 0.35) > 0.95);
+    make_and_match(&f, &pair, &g);
+    assert_right(&f, &pair, 0.35);
     release(&f);
 }
 
@@ -64,10 +81,8 @@ static void what_moved_off_its_line_is_followed_by_the_soft_term_and_not_by_a_ha
     const struct geometry g = made_side_by_side();
     struct flows f;
     (void)state;
-    make(&f, &pair);
-    match(&f, &g, &params);
-    assert_true(made_right(&f.flow[0], &pair, false, 0.5) > 0.95);
-    assert_true(made_right(&f.flow[0], &pair, true, 0.5) > 0.95);
+    make_and_match(&f, &pair, &g);
+    assert_right(&f, &pair, 0.5);
     for (int i = 0; i < 2; i++) flow_release(&f.flow[i]);
     for (int i = 0; i < 2; i++) image_release(&f.looks[i]);
     params.epipolar = 10; /* more than any look can cost */
@@ -80,13 +95,11 @@ static void what_moved_off_its_line_is_followed_by_the_soft_term_and_not_by_a_ha
 static void what_is_hidden_goes_with_the_far_side(void **state)
 {
     const struct made_pair pair = {{-4, 0}, {-14, 0}, true, 1};
-    const struct morph_params params = MORPH_PARAMS_DEFAULT;
     const struct geometry g = made_side_by_side();
     struct flows f;
     int far = 0, count = 0;
     (void)state;
-    make(&f, &pair);
-    match(&f, &g, &params);
+    make_and_match(&f, &pair, &g);
     for (int y = 48; y < 78; y++) /* the square covers the ten columns at its left in the second picture */
         for (int x = 52; x < 58; x++, count++) far += fabsf(f.flow[0].uv[2 * (y * MADE_WIDTH + x)] + 4) < 1.5f;
     assert_true(far > 0.8 * count);
@@ -96,14 +109,11 @@ static void what_is_hidden_goes_with_the_far_side(void **state)
 static void identical_photos_do_not_flow(void **state)
 {
     const struct made_pair pair = {{0, 0}, {0, 0}, false, 1};
-    const struct morph_params params = MORPH_PARAMS_DEFAULT;
     const struct geometry g = {.kind = GEOMETRY_NONE};
     struct flows f;
     (void)state;
-    make(&f, &pair);
-    match(&f, &g, &params);
-    for (int p = 0; p < 2 * MADE_WIDTH * MADE_HEIGHT; p++) assert_true(fabsf(f.flow[0].uv[p]) < 1e-3f);
-    assert_true(sure_part(&f.flow[0]) == 1);
+    make_and_match(&f, &pair, &g);
+    assert_still(&f.flow[0]);
     release(&f);
 }
 
@@ -118,39 +128,38 @@ static void a_textureless_pair_does_not_flow(void **state)
     for (int i = 0; i < 2; i++)
         for (int p = 0; p < 3 * MADE_WIDTH * MADE_HEIGHT; p++) f.linear[i].data[p] = 0.3f;
     match(&f, &g, &params);
-    for (int p = 0; p < 2 * MADE_WIDTH * MADE_HEIGHT; p++) assert_true(fabsf(f.flow[0].uv[p]) < 1e-3f);
-    assert_true(sure_part(&f.flow[0]) == 1);
+    assert_still(&f.flow[0]);
     release(&f);
 }
 
 static void black_pictures_are_no_trouble(void **state)
 {
-    const struct made_pair pair = {{0, 0}, {0, 0}, false, 0};
-    const struct morph_params params = MORPH_PARAMS_DEFAULT;
+    const struct made_pair pair = {{0, 0}, {0, 0}, false, 0}; /* the second one is black */
     const struct geometry g = {.kind = GEOMETRY_NONE};
     struct flows f;
     (void)state;
-    make(&f, &pair); /* the second one */
-    match(&f, &g, &params);
+    make_and_match(&f, &pair, &g);
     release(&f);
 }
 
 static void another_exposure_matches_as_well_and_is_measured(void **state)
 {
     const struct made_pair pair = {{-6, 0}, {-13, 0}, true, 0.4};
-    const struct morph_params params = MORPH_PARAMS_DEFAULT;
     const struct geometry g = made_side_by_side();
     struct flows f;
     (void)state;
-    make(&f, &pair);
-    match(&f, &g, &params);
-    assert_true(made_right(&f.flow[0], &pair, false, 0.5) > 0.95);
-    assert_true(made_right(&f.flow[0], &pair, true, 0.5) > 0.95);
+    make_and_match(&f, &pair, &g);
+    assert_right(&f, &pair, 0.5);
     struct morph m = {.pictures = {f.linear[0], f.linear[1]}, .flows = {f.flow[0], f.flow[1]}};
     morph_find_gain(&m);
     for (int c = 0; c < 3; c++) assert_true(fabs(m.gain[c] - 0.4) < 0.02);
     release(&f);
 }
+
+/* A film that is its photo, pixel for pixel, of a camera that is not turned. */
+static const struct film_picture same_pixels = {.photo_from_film = {{1, 0, 0}, {0, 1, 0}},
+                                                .film_from_photo = {{1, 0, 0}, {0, 1, 0}}};
+static const struct mat3 unturned = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
 
 static void a_camera_that_only_turned_is_matched_without_lines(void **state)
 {
@@ -159,16 +168,12 @@ static void a_camera_that_only_turned_is_matched_without_lines(void **state)
     const struct morph_params params = MORPH_PARAMS_DEFAULT;
     const struct camera lens = {
         CAMERA_PINHOLE, MADE_WIDTH, MADE_HEIGHT, {focal, focal, MADE_WIDTH / 2., MADE_HEIGHT / 2.}};
-    struct film_picture films[2] = {
-        {.photo_from_film = {{1, 0, 0}, {0, 1, 0}}, .film_from_photo = {{1, 0, 0}, {0, 1, 0}}},
-        {.photo_from_film = {{1, 0, 0}, {0, 1, 0}}, .film_from_photo = {{1, 0, 0}, {0, 1, 0}}}};
-    const struct mat3 one = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
     const struct mat3 turn = {{{cos(angle), 0, -sin(angle)}, {0, 1, 0}, {sin(angle), 0, cos(angle)}}};
     const struct geometry g = {.kind = GEOMETRY_POSED,
                                .width = MADE_WIDTH,
                                .height = MADE_HEIGHT,
-                               .photos = {{lens, one, {0, 0, 0}, 1, 10}, {lens, turn, {0, 0, 0}, 1, 10}},
-                               .films = {&films[0], &films[1]}};
+                               .photos = {{lens, unturned, {0, 0, 0}, 1, 10}, {lens, turn, {0, 0, 0}, 1, 10}},
+                               .films = {&same_pixels, &same_pixels}};
     struct epipolar_line line;
     struct flows f;
     int right = 0, count = 0;
@@ -200,12 +205,9 @@ static void lines_of_cameras_and_of_their_fundamental_matrix_agree(void **state)
     const double focal = 200;
     const struct camera lens = {
         CAMERA_PINHOLE, MADE_WIDTH, MADE_HEIGHT, {focal, focal, MADE_WIDTH / 2., MADE_HEIGHT / 2.}};
-    const struct film_picture film = {.photo_from_film = {{1, 0, 0}, {0, 1, 0}},
-                                      .film_from_photo = {{1, 0, 0}, {0, 1, 0}}};
-    const struct mat3 one = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
     const struct geometry g = {.kind = GEOMETRY_POSED,
-                               .photos = {{lens, one, {0, 0, 0}, 2, 50}, {lens, one, {-0.2, 0, 0}, 2, 50}},
-                               .films = {&film, &film}};
+                               .photos = {{lens, unturned, {0, 0, 0}, 2, 50}, {lens, unturned, {-0.2, 0, 0}, 2, 50}},
+                               .films = {&same_pixels, &same_pixels}};
     const struct geometry f = made_side_by_side();
     (void)state;
     for (int from = 0; from < 2; from++)
@@ -222,12 +224,9 @@ static void through_a_lens_that_distorts_a_line_is_the_curves_tangent(void **sta
 {
     const struct camera lens = {
         CAMERA_SIMPLE_RADIAL, MADE_WIDTH, MADE_HEIGHT, {150, MADE_WIDTH / 2., MADE_HEIGHT / 2., -0.3}};
-    const struct film_picture film = {.photo_from_film = {{1, 0, 0}, {0, 1, 0}},
-                                      .film_from_photo = {{1, 0, 0}, {0, 1, 0}}};
-    const struct mat3 one = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
     const struct geometry g = {.kind = GEOMETRY_POSED,
-                               .photos = {{lens, one, {0, 0, 0}, 1, 100}, {lens, one, {-0.5, 0, 0}, 1, 100}},
-                               .films = {&film, &film}};
+                               .photos = {{lens, unturned, {0, 0, 0}, 1, 100}, {lens, unturned, {-0.5, 0, 0}, 1, 100}},
+                               .films = {&same_pixels, &same_pixels}};
     struct vec3 ray;
     double at[2], worst = 0, chord = 0;
     (void)state;
