@@ -15,14 +15,6 @@
 #define W 64
 #define H 48
 
-static void frame_make(struct rendered_frame *f)
-{
-    *f = (struct rendered_frame){.width = W, .height = H};
-    f->rgba = calloc(W * H * 4, sizeof *f->rgba);
-    f->z = calloc(W * H, sizeof *f->z);
-    f->hole = calloc(W * H, 1);
-}
-
 /* Red and near left of column `edge`, blue and far right of it. */
 static void frame_paint(struct rendered_frame *f, int edge)
 {
@@ -48,6 +40,24 @@ static void frame_cut(struct rendered_frame *f, int x0, int y0, int x1, int y1)
         }
 }
 
+static struct rendered_frame frame_make(int edge)
+{
+    struct rendered_frame f = {.width = W, .height = H};
+    f.rgba = calloc(W * H * 4, sizeof *f.rgba);
+    f.z = calloc(W * H, sizeof *f.z);
+    f.hole = calloc(W * H, 1);
+    assert_true(f.rgba && f.z && f.hole);
+    frame_paint(&f, edge);
+    return f;
+}
+
+static void fill(struct rendered_frame *f, int diameter)
+{
+    const struct soft_z soft = {3, 6};
+    struct err err = ERR_INIT;
+    assert_int_equal(hole_fill(f, &soft, 0.01f, diameter, &err), ST_OK);
+}
+
 static void assert_blue(const struct rendered_frame *f, int x0, int y0, int x1, int y1)
 {
     for (int y = y0; y < y1; y++)
@@ -63,15 +73,11 @@ static void assert_blue(const struct rendered_frame *f, int x0, int y0, int x1, 
 static void holes_are_filled_from_the_far_side(void **state)
 {
     (void)state;
-    const struct soft_z soft = {3, 6};
-    struct rendered_frame f;
-    struct err err = ERR_INIT;
-
-    frame_make(&f);
+    struct rendered_frame f = frame_make(20);
     for (int width = 1; width <= 20; width++) { /* narrow and wide, beside the near surface, over the whole height */
         frame_paint(&f, 20);
         frame_cut(&f, 20, 0, 20 + width, H);
-        assert_int_equal(hole_fill(&f, &soft, 0.01f, 6, &err), ST_OK);
+        fill(&f, 6);
         assert_near(f.unfilled_fraction, 0, 0);
         assert_blue(&f, 20, 0, 20 + width, H);
         assert_near(f.rgba[4 * 19], 1, 0); /* what was known is left alone */
@@ -82,16 +88,11 @@ static void holes_are_filled_from_the_far_side(void **state)
 static void borders_and_corners_are_filled(void **state)
 {
     (void)state;
-    const struct soft_z soft = {3, 6};
-    struct rendered_frame f;
-    struct err err = ERR_INIT;
-
-    frame_make(&f);
-    frame_paint(&f, 0);
+    struct rendered_frame f = frame_make(0);
     frame_cut(&f, 0, 0, W, 4);
     frame_cut(&f, 0, 0, 17, H);
     frame_cut(&f, W - 2, 0, W, H);
-    assert_int_equal(hole_fill(&f, &soft, 0.01f, 6, &err), ST_OK);
+    fill(&f, 6);
     assert_blue(&f, 0, 0, W, H);
     rendered_frame_release(&f);
 }
@@ -99,19 +100,14 @@ static void borders_and_corners_are_filled(void **state)
 static void nothing_is_filled_when_told_or_when_there_is_nothing(void **state)
 {
     (void)state;
-    const struct soft_z soft = {3, 6};
-    struct rendered_frame f;
-    struct err err = ERR_INIT;
-
-    frame_make(&f);
-    frame_paint(&f, 20);
+    struct rendered_frame f = frame_make(20);
     frame_cut(&f, 30, 10, 40, 20);
-    assert_int_equal(hole_fill(&f, &soft, 0.01f, 0, &err), ST_OK);
+    fill(&f, 0);
     assert_near(f.unfilled_fraction, 100.0 / (W * H), 1e-12);
     assert_near(f.rgba[4 * (12 * W + 32) + 3], 0, 0);
 
     frame_cut(&f, 0, 0, W, H);
-    assert_int_equal(hole_fill(&f, &soft, 0.01f, 6, &err), ST_OK);
+    fill(&f, 6);
     assert_near(f.unfilled_fraction, 1, 0);
     for (int i = 0; i < W * H * 4; i++) assert_near(f.rgba[i], 0, 0);
     rendered_frame_release(&f);

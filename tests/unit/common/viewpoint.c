@@ -18,21 +18,31 @@ static double h_of(const uint8_t *hole, int width, int height)
     return h;
 }
 
-static double square_hole(int width, int height, int side)
+static uint8_t *no_hole(int width, int height)
 {
     uint8_t *hole = calloc((size_t)width * (size_t)height, 1);
     assert_non_null(hole);
-    for (int y = 0; y < side; y++)
-        for (int x = 0; x < side; x++) hole[(height / 3 + y) * width + width / 3 + x] = 1;
+    return hole;
+}
+
+static double rectangle_hole(int width, int height, int x0, int y0, int wide, int high)
+{
+    uint8_t *hole = no_hole(width, height);
+    for (int y = y0; y < y0 + high; y++)
+        for (int x = x0; x < x0 + wide; x++) hole[y * width + x] = 1;
     const double h = h_of(hole, width, height);
     free(hole);
     return h;
 }
 
+static double square_hole(int width, int height, int side)
+{
+    return rectangle_hole(width, height, width / 3, height / 3, side, side);
+}
+
 static double disk_hole(int width, int height, double radius)
 {
-    uint8_t *hole = calloc((size_t)width * (size_t)height, 1);
-    assert_non_null(hole);
+    uint8_t *hole = no_hole(width, height);
     for (int y = 0; y < height; y++)
         for (int x = 0; x < width; x++)
             hole[y * width + x] = hypot(x + 0.5 - 0.5 * width, y + 0.5 - 0.5 * height) < radius;
@@ -60,13 +70,8 @@ static void a_strip_at_the_border_has_one_side(void **state)
 {
     (void)state;
     enum { WIDE = 600, HIGH = 400, STRIP = 20 };
-    uint8_t *hole = calloc(WIDE * HIGH, 1);
-    assert_non_null(hole);
-    for (int y = 0; y < HIGH; y++)
-        for (int x = 0; x < STRIP; x++) hole[y * WIDE + x] = 1;
     /* each row: 1 + 8 + ... + 20^3 = (20 * 21 / 2)^2, twice as far in px of 1200 */
-    assert_float_equal(h_of(hole, WIDE, HIGH), 8.0 * 210 * 210 / WIDE, 1e-9);
-    free(hole);
+    assert_float_equal(rectangle_hole(WIDE, HIGH, 0, 0, STRIP, HIGH), 8.0 * 210 * 210 / WIDE, 1e-9);
 }
 
 /* The integral of (R - r)^3 2 pi r is pi R^5 / 10. */
