@@ -69,72 +69,79 @@ static void sample(const struct image *im, float x, float y, float out[CHANNELS]
         out[c] = (1 - fy) * ((1 - fx) * a[c] + fx * a[c + CHANNELS]) + fy * ((1 - fx) * b[c] + fx * b[c + CHANNELS]);
 }
 
+/* Calls at() for pixel p = (x, y) of the rows: every pixel, or with step 2 those of one colour. */
+static inline void each_pixel(const struct refining *r, size_t begin, size_t end, int step,
+                              void (*at)(const struct refining *r, int x, int y, size_t p))
+{
+    const int w = r->flow->width;
+    for (int y = (int)begin; y < (int)end; y++)
+        for (int x = step == 1 ? 0 : (y + r->colour) & 1; x < w; x += step)
+            at(r, x, y, (size_t)y * (size_t)w + (size_t)x);
+}
+
+static void linearise(const struct refining *r, int x, int y, size_t p)
+{
+    const int w = r->flow->width, h = r->flow->height;
+    float *j = r->single + SUMS * p, here[CHANNELS], left[CHANNELS], right[CHANNELS], up[CHANNELS], down[CHANNELS];
+    float u = (float)x + r->flow->uv[2 * p], v = (float)y + r->flow->uv[2 * p + 1];
+    memset(j, 0, SUMS * sizeof *j);
+    if (u < 1 || v < 1 || u > (float)(w - 2) || v > (float)(h - 2)) return;
+    sample(r->to, u, v, here);
+    sample(r->to, u - 1, v, left);
+    sample(r->to, u + 1, v, right);
+    sample(r->to, u, v - 1, up);
+    sample(r->to, u, v + 1, down);
+    const float *own = image_at(r->from, x, y);
+    const float *l = image_at(r->from, clamp_int(x - 1, w - 1), y), *rt = image_at(r->from, clamp_int(x + 1, w - 1), y);
+    const float *t = image_at(r->from, x, clamp_int(y - 1, h - 1)), *d = image_at(r->from, x, clamp_int(y + 1, h - 1));
+    for (int c = 0; c < CHANNELS; c++) {
+        float it = here[c] - own[c];
+        float ix = 0.25f * (right[c] - left[c] + rt[c] - l[c]), iy = 0.25f * (down[c] - up[c] + d[c] - t[c]);
+        float weight = 1 / sqrtf(it * it + ROBUST * ROBUST);
+        j[0] += weight * ix * ix;
+        j[1] += weight * ix * iy;
+        j[2] += weight * iy * iy;
+        j[3] += weight * ix * it;
+        j[4] += weight * iy * it;
+    }
+}
+
 static void linearise_rows(void *ctx, size_t begin, size_t end, int thread)
 {
-    const struct refining *r = ctx;
-    const int w = r->flow->width, h = r->flow->height;
     (void)thread;
-    for (int y = (int)begin; y < (int)end; y++)
-        for (int x = 0; x < w; x++) {
-            size_t p = (size_t)y * (size_t)w + (size_t)x;
-            float *j = r->single + SUMS * p, here[CHANNELS], left[CHANNELS], right[CHANNELS], up[CHANNELS],
-                  down[CHANNELS];
-            float u = (float)x + r->flow->uv[2 * p], v = (float)y + r->flow->uv[2 * p + 1];
-            memset(j, 0, SUMS * sizeof *j);
-            if (u < 1 || v < 1 || u > (float)(w - 2) || v > (float)(h - 2)) continue;
-            sample(r->to, u, v, here);
-            sample(r->to, u - 1, v, left);
-            sample(r->to, u + 1, v, right);
-            sample(r->to, u, v - 1, up);
-            sample(r->to, u, v + 1, down);
-            const float *own = image_at(r->from, x, y);
-            const float *l = image_at(r->from, clamp_int(x - 1, w - 1), y),
-                        *rt = image_at(r->from, clamp_int(x + 1, w - 1), y);
-            const float *t = image_at(r->from, x, clamp_int(y - 1, h - 1)),
-                        *d = image_at(r->from, x, clamp_int(y + 1, h - 1));
-            for (int c = 0; c < CHANNELS; c++) {
-                float it = here[c] - own[c];
-                float ix = 0.25f * (right[c] - left[c] + rt[c] - l[c]), iy = 0.25f * (down[c] - up[c] + d[c] - t[c]);
-                float weight = 1 / sqrtf(it * it + ROBUST * ROBUST);
-                j[0] += weight * ix * ix;
-                j[1] += weight * ix * iy;
-                j[2] += weight * iy * iy;
-                j[3] += weight * ix * it;
-                j[4] += weight * iy * it;
-            }
+    each_pixel(ctx, begin, end, 1, linearise);
+}
+
+static void sum_around(const struct refining *r, int x, int y, size_t p)
+{
+    const int w = r->flow->width, h = r->flow->height;
+    float *sums = r->sums + SUMS * p;
+    const float *own = r->whole + 2 * p;
+    memset(sums, 0, SUMS * sizeof *sums);
+    for (int j = -1; j <= 1; j++)
+        for (int i = -1; i <= 1; i++) {
+            size_t q = (size_t)clamp_int(y + j, h - 1) * (size_t)w + (size_t)clamp_int(x + i, w - 1);
+            const float *other = r->whole + 2 * q;
+            if (fabsf(own[0] - other[0]) + fabsf(own[1] - other[1]) > JUMP) continue;
+            for (int k = 0; k < SUMS; k++) sums[k] += r->single[SUMS * q + (size_t)k];
         }
+    const struct epipolar_line *l = &r->lines[p];
+    if (l->dx == 0 && l->dy == 0) return;
+    float u = (float)x + 0.5f + r->flow->uv[2 * p], v = (float)y + 0.5f + r->flow->uv[2 * p + 1];
+    float off = l->dx * v - l->dy * u + l->c;
+    if (fabsf(off) > r->epipolar_width) return;
+    float weight = LINE_WEIGHT * (1 - fabsf(off) / r->epipolar_width);
+    sums[0] += weight * l->dy * l->dy;
+    sums[1] -= weight * l->dy * l->dx;
+    sums[2] += weight * l->dx * l->dx;
+    sums[3] -= weight * l->dy * off;
+    sums[4] += weight * l->dx * off;
 }
 
 static void sum_rows(void *ctx, size_t begin, size_t end, int thread)
 {
-    const struct refining *r = ctx;
-    const int w = r->flow->width, h = r->flow->height;
     (void)thread;
-    for (int y = (int)begin; y < (int)end; y++)
-        for (int x = 0; x < w; x++) {
-            size_t p = (size_t)y * (size_t)w + (size_t)x;
-            float *sums = r->sums + SUMS * p;
-            const float *own = r->whole + 2 * p;
-            memset(sums, 0, SUMS * sizeof *sums);
-            for (int j = -1; j <= 1; j++)
-                for (int i = -1; i <= 1; i++) {
-                    size_t q = (size_t)clamp_int(y + j, h - 1) * (size_t)w + (size_t)clamp_int(x + i, w - 1);
-                    const float *other = r->whole + 2 * q;
-                    if (fabsf(own[0] - other[0]) + fabsf(own[1] - other[1]) > JUMP) continue;
-                    for (int k = 0; k < SUMS; k++) sums[k] += r->single[SUMS * q + (size_t)k];
-                }
-            const struct epipolar_line *l = &r->lines[p];
-            if (l->dx == 0 && l->dy == 0) continue;
-            float u = (float)x + 0.5f + r->flow->uv[2 * p], v = (float)y + 0.5f + r->flow->uv[2 * p + 1];
-            float off = l->dx * v - l->dy * u + l->c;
-            if (fabsf(off) > r->epipolar_width) continue;
-            float weight = LINE_WEIGHT * (1 - fabsf(off) / r->epipolar_width);
-            sums[0] += weight * l->dy * l->dy;
-            sums[1] -= weight * l->dy * l->dx;
-            sums[2] += weight * l->dx * l->dx;
-            sums[3] -= weight * l->dy * off;
-            sums[4] += weight * l->dx * off;
-        }
+    each_pixel(ctx, begin, end, 1, sum_around);
 }
 
 static float weight_between(const struct refining *r, size_t p, size_t q)
@@ -145,20 +152,20 @@ static float weight_between(const struct refining *r, size_t p, size_t q)
     return SMOOTH * (0.1f + 0.9f * expf(-step / EDGE_SCALE));
 }
 
+static void weigh(const struct refining *r, int x, int y, size_t p)
+{
+    const int w = r->flow->width, h = r->flow->height;
+    r->weights[2 * p] = x + 1 < w ? weight_between(r, p, p + 1) : 0;
+    r->weights[2 * p + 1] = y + 1 < h ? weight_between(r, p, p + (size_t)w) : 0;
+    const double at[2] = {(double)x + 0.5 + r->whole[2 * p], (double)y + 0.5 + r->whole[2 * p + 1]};
+    if (!geometry_line(r->geometry, r->from_idx, (double)x + 0.5, (double)y + 0.5, at, &r->lines[p]))
+        r->lines[p] = (struct epipolar_line){0};
+}
+
 static void weigh_rows(void *ctx, size_t begin, size_t end, int thread)
 {
-    const struct refining *r = ctx;
-    const int w = r->flow->width, h = r->flow->height;
     (void)thread;
-    for (size_t y = begin; y < end; y++)
-        for (size_t x = 0; x < (size_t)w; x++) {
-            size_t p = y * (size_t)w + x;
-            r->weights[2 * p] = x + 1 < (size_t)w ? weight_between(r, p, p + 1) : 0;
-            r->weights[2 * p + 1] = y + 1 < (size_t)h ? weight_between(r, p, p + (size_t)w) : 0;
-            const double at[2] = {(double)x + 0.5 + r->whole[2 * p], (double)y + 0.5 + r->whole[2 * p + 1]};
-            if (!geometry_line(r->geometry, r->from_idx, (double)x + 0.5, (double)y + 0.5, at, &r->lines[p]))
-                r->lines[p] = (struct epipolar_line){0};
-        }
+    each_pixel(ctx, begin, end, 1, weigh);
 }
 
 static void pull(float weight, const struct refining *r, size_t p, size_t q, float *sum, float b[2])
@@ -168,27 +175,28 @@ static void pull(float weight, const struct refining *r, size_t p, size_t q, flo
         b[c] += weight * (r->flow->uv[2 * q + c] + r->change[2 * q + c] - r->flow->uv[2 * p + c]);
 }
 
+static void relax(const struct refining *r, int x, int y, size_t p)
+{
+    const int w = r->flow->width, h = r->flow->height;
+    const size_t row = (size_t)w;
+    const float *j = r->sums + SUMS * p;
+    float sum = 1e-6f, b[2] = {-j[3], -j[4]};
+    if (x > 0) pull(r->weights[2 * (p - 1)], r, p, p - 1, &sum, b);
+    if (x + 1 < w) pull(r->weights[2 * p], r, p, p + 1, &sum, b);
+    if (y > 0) pull(r->weights[2 * (p - row) + 1], r, p, p - row, &sum, b);
+    if (y + 1 < h) pull(r->weights[2 * p + 1], r, p, p + row, &sum, b);
+    float xx = j[0] + sum, yy = j[2] + sum, xy = j[1], det = xx * yy - xy * xy;
+    float change[2] = {(yy * b[0] - xy * b[1]) / det, (xx * b[1] - xy * b[0]) / det};
+    for (size_t c = 0; c < 2; c++) {
+        float least = r->whole[2 * p + c] - FARTHEST - r->flow->uv[2 * p + c];
+        r->change[2 * p + c] = fminf(fmaxf(change[c], least), least + 2 * FARTHEST);
+    }
+}
+
 static void relax_rows(void *ctx, size_t begin, size_t end, int thread)
 {
-    const struct refining *r = ctx;
-    const size_t w = (size_t)r->flow->width, h = (size_t)r->flow->height;
     (void)thread;
-    for (size_t y = begin; y < end; y++)
-        for (size_t x = (y + (size_t)r->colour) & 1; x < w; x += 2) {
-            size_t p = y * w + x;
-            const float *j = r->sums + SUMS * p;
-            float sum = 1e-6f, b[2] = {-j[3], -j[4]};
-            if (x > 0) pull(r->weights[2 * (p - 1)], r, p, p - 1, &sum, b);
-            if (x + 1 < w) pull(r->weights[2 * p], r, p, p + 1, &sum, b);
-            if (y > 0) pull(r->weights[2 * (p - w) + 1], r, p, p - w, &sum, b);
-            if (y + 1 < h) pull(r->weights[2 * p + 1], r, p, p + w, &sum, b);
-            float xx = j[0] + sum, yy = j[2] + sum, xy = j[1], det = xx * yy - xy * xy;
-            float change[2] = {(yy * b[0] - xy * b[1]) / det, (xx * b[1] - xy * b[0]) / det};
-            for (size_t c = 0; c < 2; c++) {
-                float least = r->whole[2 * p + c] - FARTHEST - r->flow->uv[2 * p + c];
-                r->change[2 * p + c] = fminf(fmaxf(change[c], least), least + 2 * FARTHEST);
-            }
-        }
+    each_pixel(ctx, begin, end, 2, relax);
 }
 
 enum status flow_refine(struct flow *flow, const struct image pictures[2], int from, const struct geometry *geometry,
