@@ -21,8 +21,7 @@
 #include "common/parallel.h"
 #include "common/photo_formats.h"
 
-#define MOST_PIXELS (UINT64_C(1) << 28)
-#define PNG_LEVEL   6 /* zlib's; part of the reproducible bytes */
+#define PNG_LEVEL 6 /* zlib's; part of the reproducible bytes */
 
 static enum status read_bytes(struct photo_bytes *file, const char *path, struct err *err)
 {
@@ -74,37 +73,6 @@ static enum status photo_kind(const struct photo_bytes *file, enum photo_kind *k
                        file->path, begin);
     }
     return ST_OK;
-}
-
-enum status photo_check_size(const char *path, uint64_t width, uint64_t height, struct err *err)
-{
-    if (width && height && width * height <= MOST_PIXELS) return ST_OK;
-    return err_set(err, ST_DATA, "%s says that it is %llu x %llu pixels; wanted 1 to 2^28 pixels.", path,
-                   (unsigned long long)width, (unsigned long long)height);
-}
-
-enum status photo_init_samples(struct photo *p, struct err *err)
-{
-    size_t bytes = (size_t)p->info.width * (size_t)p->info.height * 3 * sizeof *p->samples;
-    p->samples = malloc(bytes);
-    return p->samples ? ST_OK : err_nomem(err, "a photo", bytes);
-}
-
-enum status photo_init_values(struct photo *p, struct err *err)
-{
-    size_t bytes = (size_t)p->info.width * (size_t)p->info.height * 3 * sizeof *p->values;
-    p->values = malloc(bytes);
-    return p->values ? ST_OK : err_nomem(err, "a photo", bytes);
-}
-
-float photo_find_saturation(const struct photo *p)
-{
-    const size_t count = (size_t)p->info.width * (size_t)p->info.height * 3, plenty = 8 + count / 10000;
-    float most = 0;
-    size_t there = 0;
-    for (size_t i = 0; i < count; i++) most = p->values[i] > most ? p->values[i] : most;
-    for (size_t i = 0; i < count; i++) there += p->values[i] == most;
-    return there >= plenty ? most : 0;
 }
 
 /* ------------------------------------------------------------------------------------------------------------- EXIF */
@@ -164,19 +132,11 @@ static double exif_number(ExifData *data, ExifIfd ifd, ExifTag tag)
     return value;
 }
 
-/* A text as printable ASCII, blanks at its ends removed. */
 static void exif_text(ExifData *data, ExifTag tag, char *text, size_t size)
 {
     ExifEntry *e = exif_content_get_entry(data->ifd[EXIF_IFD_0], tag);
-    size_t n = 0;
-    text[0] = 0;
-    if (!e || !e->data || e->format != EXIF_FORMAT_ASCII) return;
-    for (unsigned i = 0; i < e->size && e->data[i] && n + 1 < size; i++) {
-        unsigned char c = e->data[i];
-        if (c >= 32 && c < 127 && (n || c != ' ')) text[n++] = (char)c;
-    }
-    while (n && text[n - 1] == ' ') n--;
-    text[n] = 0;
+    const bool there = e && e->data && e->format == EXIF_FORMAT_ASCII;
+    photo_keep_text(text, size, there ? (const char *)e->data : "", there ? e->size : 0);
 }
 
 static enum status read_exif(struct photo_info *info, const struct photo_bytes *file, enum photo_kind kind,
@@ -422,14 +382,6 @@ enum status photo_read_info(struct photo_info *info, const char *path, struct er
     enum status st = read_photo(&p, path, false, true, err);
     *info = p.info;
     return st;
-}
-
-void photo_release(struct photo *p)
-{
-    if (!p) return;
-    free(p->samples);
-    free(p->values);
-    *p = (struct photo){0};
 }
 
 struct linear_job {

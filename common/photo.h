@@ -5,26 +5,8 @@
 #ifndef REMODEL_PHOTO_H
 #define REMODEL_PHOTO_H
 
-#include <stddef.h>
-#include <stdint.h>
-
-#include "err.h"
 #include "image.h"
-
-struct photo_info { /* 0 or "" where the file does not say */
-    int width, height;
-    int bits;        /* a sample: 8 or 16; 32: linear already, as EXR and raw files are */
-    int orientation; /* EXIF 1..8; 1 if absent */
-    double focal_mm, focal35_mm, seconds, f_number, iso;
-    char make[64], model[64];
-};
-
-struct photo {
-    struct photo_info info;
-    uint16_t *samples; /* RGB interleaved, w * h * 3, owned; 8-bit files hold 0..255, 16-bit files 0..65535 */
-    float *values;     /* in place of samples where bits is 32: linear, finite, not negative; owned */
-    float saturation;  /* what values are cut at; 0: they are not */
-};
+#include "photo_data.h"
 
 /* JPEG, PNG and TIFF of 8 or 16 bits. Errors name the file and say what to do: another format (by content, not by
  * name), empty, truncated (a JPEG that ends early is an error, not a grey lower half), CMYK or YCCK, larger than 2^28
@@ -34,7 +16,6 @@ enum status photo_read(struct photo *p, const char *path, struct err *err);
  * 10 000, is cut there; else nothing in it saturates. Raw files are developed by libraw: common/photo_raw.c says how. */
 enum status photo_read_any(struct photo *p, const char *path, struct err *err);
 enum status photo_read_info(struct photo_info *info, const char *path, struct err *err); /* of any; headers only */
-void photo_release(struct photo *p);
 
 /* 3 channels, linearised by the sRGB curve: white is 1. p has samples. */
 enum status photo_to_linear(struct image *out, const struct photo *p, struct err *err);

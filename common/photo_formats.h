@@ -1,24 +1,10 @@
-/* photo_formats.h - what photo.c and its readers of single formats share. */
+/* photo_formats.h - the readers of formats that have a file of their own: photo_tiff.c, photo_raw.c. photo.c calls them. */
 #ifndef REMODEL_PHOTO_FORMATS_H
 #define REMODEL_PHOTO_FORMATS_H
 
 #include <stdbool.h>
 
-#include "photo.h"
-
-struct photo_bytes { /* a file in memory */
-    const char *path;
-    unsigned char *bytes; /* owned */
-    size_t size;
-};
-
-/* ST_DATA unless there are 1 to 2^28 pixels. */
-enum status photo_check_size(const char *path, uint64_t width, uint64_t height, struct err *err);
-/* Memory for as many samples, or values, as info says. */
-enum status photo_init_samples(struct photo *p, struct err *err);
-enum status photo_init_values(struct photo *p, struct err *err);
-/* The largest value if many have it, else 0. */
-float photo_find_saturation(const struct photo *p);
+#include "photo_data.h"
 
 /* A TIFF, whatever is in it; ask photo_is_raw() first. */
 bool photo_is_tiff(const struct photo_bytes *file);

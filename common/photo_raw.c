@@ -39,14 +39,6 @@ static enum status failed(const struct photo_bytes *file, const char *what, int 
 
 static double good(double value) { return value > 0 && value < 1e9 ? value : 0; }
 
-static void keep_text(char *to, size_t size, const char *from, size_t most)
-{
-    size_t n = 0;
-    for (size_t i = 0; i < most && from[i] && n + 1 < size; i++)
-        if (from[i] >= 32 && from[i] < 127) to[n++] = from[i];
-    to[n] = 0;
-}
-
 /* The size is that of the developed picture, but for sensors that are turned or have oblong pixels. */
 static void keep_info(struct photo_info *info, const libraw_data_t *raw)
 {
@@ -61,8 +53,8 @@ static void keep_info(struct photo_info *info, const libraw_data_t *raw)
     info->iso = good((double)raw->other.iso_speed);
     info->focal_mm = good((double)raw->other.focal_len);
     info->focal35_mm = good((double)raw->lens.FocalLengthIn35mmFormat);
-    keep_text(info->make, sizeof info->make, raw->idata.make, sizeof raw->idata.make);
-    keep_text(info->model, sizeof info->model, raw->idata.model, sizeof raw->idata.model);
+    photo_keep_text(info->make, sizeof info->make, raw->idata.make, sizeof raw->idata.make);
+    photo_keep_text(info->model, sizeof info->model, raw->idata.model, sizeof raw->idata.model);
 }
 
 static enum status develop(struct photo *p, libraw_data_t *raw, const struct photo_bytes *file, struct err *err)

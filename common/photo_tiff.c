@@ -133,12 +133,8 @@ static double good(double value) { return value > 0 && value < 1e9 ? value : 0; 
 static void keep_text(TIFF *t, uint32_t tag, char *text, size_t size)
 {
     const char *found = NULL;
-    size_t n = 0;
-    if (TIFFGetField(t, tag, &found) && found)
-        for (; *found && n + 1 < size; found++)
-            if (*found >= 32 && *found < 127 && (n || *found != ' ')) text[n++] = *found;
-    while (n && text[n - 1] == ' ') n--;
-    text[n] = 0;
+    if (!TIFFGetField(t, tag, &found) || !found) found = "";
+    photo_keep_text(text, size, found, SIZE_MAX);
 }
 
 static void read_exif(struct photo_info *info, TIFF *t)
