@@ -28,6 +28,7 @@
 #include <string.h>
 
 #include "common/delaunay.h"
+#include "common/sort.h"
 
 #define DUPLICATE_REACH 4.0  /* times the offset from the centroid */
 #define FACING          0.7  /* cosine between normal and viewing direction that a fitted plane must reach */
@@ -40,12 +41,6 @@
 #define ROW_CHUNK       2048
 
 /* ------------------------------------------------------------------------------------------------------- building */
-
-static int compare_doubles(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return x < y ? -1 : x > y;
-}
 
 /* Coordinates along axis_x, axis_y, normal, about the centroid. */
 static struct vec3 to_plane(const struct view_mesh *mesh, struct vec3 p)
@@ -88,7 +83,7 @@ static enum status scene_distance(const struct view_mesh *mesh, double *distance
     double *d = malloc((size_t)n * sizeof *d);
     if (!d) return err_nomem(err, "the distances of the sparse points", (size_t)n * sizeof *d);
     for (int i = 0; i < n; i++) d[i] = vec3_length(vec3_sub(mesh->set->model.points[i].position, mesh->centroid));
-    qsort(d, (size_t)n, sizeof *d, compare_doubles);
+    sort_doubles(d, (size_t)n);
     *distance = d[n / 2];
     free(d);
     return ST_OK;
@@ -196,7 +191,7 @@ static enum status median_spacing(struct view_mesh *mesh, struct err *err)
         for (int j = 0; j < n; j++)
             if (j != i) d[i] = fmin(d[i], vec3_length(vec3_sub(mesh->vertices[i], mesh->vertices[j])));
     }
-    qsort(d, (size_t)n, sizeof *d, compare_doubles);
+    sort_doubles(d, (size_t)n);
     mesh->spacing = n % 2 ? d[n / 2] : (d[n / 2 - 1] + d[n / 2]) / 2;
     free(d);
     return ST_OK;

@@ -3,6 +3,8 @@
 
 #include <stdlib.h>
 
+#include "common/sort.h"
+
 static const double line = 1e-6; /* second over first singular value: below it centres stand on one line */
 
 static const double rounding = 1e-24; /* of squared lengths: centres that differ by less stand in one place */
@@ -77,15 +79,9 @@ enum status align_cameras(struct similarity *a, const struct pose *found, const 
     return ST_OK;
 }
 
-static int compare_doubles(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 double median(double *values, int count)
 {
-    qsort(values, (size_t)count, sizeof *values, compare_doubles);
+    sort_doubles(values, (size_t)count);
     return (values[(count - 1) / 2] + values[count / 2]) / 2;
 }
 

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "common/scan.h"
+#include "common/sort.h"
 #include "common/textfile.h"
 
 #define SAME_WAY 0.98480775301220802 /* cos 10 degrees */
@@ -343,12 +344,6 @@ static double hole_error(const struct wall_hole *found, const struct wall_hole *
     return most <= reach ? most : INFINITY;
 }
 
-static int compare_doubles(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 enum status wall_errors_find(struct wall_errors *e, const struct wall_plan *model, const struct wall_plan *truth,
                              double reach, struct err *err)
 {
@@ -386,8 +381,8 @@ enum status wall_errors_find(struct wall_errors *e, const struct wall_plan *mode
             found = isfinite(hole_error(&model->holes[i], &truth->holes[k], reach));
         e->missing += !found;
     }
-    qsort(e->faces, (size_t)e->face_count, sizeof *e->faces, compare_doubles);
-    qsort(e->holes, (size_t)e->hole_count, sizeof *e->holes, compare_doubles);
+    sort_doubles(e->faces, (size_t)e->face_count);
+    sort_doubles(e->holes, (size_t)e->hole_count);
     return ST_OK;
 }
 

@@ -3,13 +3,9 @@
 
 #include <stdlib.h>
 
-static const double EDGE = 0.33; /* of a block, in sizes of the scene: four sizes are covered */
+#include "common/sort.h"
 
-static int compare_doubles(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
+static const double EDGE = 0.33; /* of a block, in sizes of the scene: four sizes are covered */
 
 enum status cloud_size(double *size, const struct point_cloud *cloud, struct vec3 origin, struct err *err)
 {
@@ -20,7 +16,7 @@ enum status cloud_size(double *size, const struct point_cloud *cloud, struct vec
     if (!d) return err_nomem(err, "distances", (cloud->count / step + 1) * sizeof *d);
     for (size_t i = 0; i < cloud->count; i += step)
         d[count++] = vec3_length(vec3_sub(cloud->points[i].position, origin));
-    qsort(d, count, sizeof *d, compare_doubles);
+    sort_doubles(d, count);
     *size = count ? d[count / 2] : 0;
     free(d);
     return ST_OK;

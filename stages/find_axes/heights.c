@@ -9,6 +9,7 @@
 #include <stdlib.h>
 
 #include "common/kmeans1d.h"
+#include "common/sort.h"
 #include "stages/find_axes/blocks.h"
 #include "stages/find_axes/directions.h"
 
@@ -85,12 +86,6 @@ static size_t lower_bound(const double *heights, size_t count, double value)
     return low;
 }
 
-static int compare_doubles(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 static double weight(double distance, double spread)
 {
     const double u = distance / (BIWEIGHT * spread);
@@ -106,7 +101,7 @@ static void settle(struct level *level, const double *heights, size_t count, dou
         double sum = 0, all = 0;
         if (begin == end) return;
         for (size_t i = begin; i < end; i++) scratch[i - begin] = fabs(heights[i] - level->height);
-        qsort(scratch, end - begin, sizeof *scratch, compare_doubles);
+        sort_doubles(scratch, end - begin);
         level->spread = fmax(scratch[(end - begin) / 2] / 0.6745, LEAST_SPREAD * size);
         level->count = 0;
         for (size_t i = begin; i < end; i++) {

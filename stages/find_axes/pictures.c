@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/sort.h"
+
 static const unsigned char X[3] = {235, 40, 40}, Y[3] = {40, 200, 60}, Z[3] = {60, 110, 255};
 static const unsigned char FLOOR[3] = {255, 215, 0}, CEILING[3] = {0, 225, 235}, WALL[3] = {235, 235, 235};
 static const double NEAR = 1e-3; /* of a line's length: what is nearer to the camera is cut off */
@@ -182,12 +184,6 @@ void draw_room(unsigned char *pixels, const struct view *view, const struct room
     if (!corner_count) arrows(&k, floor_ahead(view, room), length);
 }
 
-static int compare_floats(const void *a, const void *b)
-{
-    const float x = *(const float *)a, y = *(const float *)b;
-    return (x > y) - (x < y);
-}
-
 enum status picture_to_look_at(unsigned char *pixels, const struct image *im, struct err *err)
 {
     const size_t count = (size_t)im->width * (size_t)im->height, channels = (size_t)im->channels;
@@ -199,7 +195,7 @@ enum status picture_to_look_at(unsigned char *pixels, const struct image *im, st
         const float *p = im->data + i * channels;
         if (p[3] > 0) bright[known++] = fmaxf(p[0], fmaxf(p[1], p[2]));
     }
-    qsort(bright, known, sizeof *bright, compare_floats);
+    sort_floats(bright, known);
     const float white = known ? bright[known - 1 - known / 20] : 0;
     free(bright);
     if (image_init(&exposed, im->width, im->height, 3, err)) return err->status;

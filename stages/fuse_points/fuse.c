@@ -23,6 +23,7 @@
 
 #include "common/parallel.h"
 #include "common/progress.h"
+#include "common/sort.h"
 #include "stages/fuse_points/normal_fit.h"
 #include "stages/fuse_points/point_grid.h"
 
@@ -249,12 +250,6 @@ static enum status fuse_view(struct point_grid *grid, int view_idx, struct surfa
     return st;
 }
 
-static int compare_doubles(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 /* Of confident pixels; 0: there are none. */
 static enum status view_median(double *median, const struct surface *s, const struct fuse_params *params,
                                struct err *err)
@@ -270,7 +265,7 @@ static enum status view_median(double *median, const struct surface *s, const st
             const double z = surface_plane_z(&s->planes[id - 1], x + 0.5, y + 0.5);
             if (z > 0) depths[count++] = z;
         }
-    qsort(depths, count, sizeof *depths, compare_doubles);
+    sort_doubles(depths, count);
     *median = count ? depths[count / 2] : 0;
     free(depths);
     return ST_OK;
@@ -292,7 +287,7 @@ static enum status scene_depth(double *depth, struct surface_cache *cache, const
         progress_add(&progress, 1);
     }
     progress_end(&progress);
-    qsort(medians, (size_t)count, sizeof *medians, compare_doubles);
+    sort_doubles(medians, (size_t)count);
     *depth = count ? medians[count / 2] : 0;
     free(medians);
     if (!err->status && !count)

@@ -10,6 +10,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "common/sort.h"
 #include "stages/hdr_merge/merge.h"
 
 enum { BINS = 24, SAMPLES = 1 << 17, BIN_LEAST = 200 };
@@ -46,12 +47,6 @@ static int by_light(const void *x, const void *y)
     return (a->difference > b->difference) - (a->difference < b->difference);
 }
 
-static int by_size(const void *x, const void *y)
-{
-    const float a = *(const float *)x, b = *(const float *)y;
-    return (a > b) - (a < b);
-}
-
 struct fit { /* normal equations */
     double pp, pr, rr, p, r;
     int bins;
@@ -65,10 +60,10 @@ static void add_bin(struct fit *fit, struct pair_sample *s, size_t count, double
         light += (double)s[i].light / (double)count;
         values[i] = s[i].difference;
     }
-    qsort(values, count, sizeof *values, by_size);
+    sort_floats(values, count);
     const float middle = values[count / 2];
     for (size_t i = 0; i < count; i++) values[i] = fabsf(values[i] - middle);
-    qsort(values, count, sizeof *values, by_size);
+    sort_floats(values, count);
     const double sigma = 1.4826 * (double)values[count / 2], variance = sigma * sigma;
     if (!(variance > 0) || light < 3 * sigma) return; /* below, samples that are cut at black would bend the spread */
     const double a = light * (1 + ratio) / variance, b = (1 + ratio * ratio) / variance;

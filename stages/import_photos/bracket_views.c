@@ -10,6 +10,7 @@
 
 #include "common/bracket_list.h"
 #include "common/log.h"
+#include "common/sort.h"
 
 enum { CYCLE_MOST = 16, CYCLE_STARTS = 48, CYCLED_LEAST = 6, NAMED_MOST = 8, TEXT_SIZE = 160 };
 
@@ -477,19 +478,13 @@ static void leave_out_views(struct bracket_views *v, const char *const *exclude,
     v->count = kept;
 }
 
-static int compare_doubles(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 static enum status find_white(struct bracket_views *v, struct err *err)
 {
     double *middles = malloc((size_t)v->count * sizeof *middles);
     if (!middles) return err_nomem(err, "exposures", (size_t)v->count * sizeof *middles);
     for (int i = 0; i < v->count; i++)
         middles[i] = exposure_value(&v->exposures[v->views[i].photos[v->views[i].middle]]);
-    qsort(middles, (size_t)v->count, sizeof *middles, compare_doubles);
+    sort_doubles(middles, (size_t)v->count);
     v->white = middles[(v->count - 1) / 2];
     free(middles);
     return ST_OK;

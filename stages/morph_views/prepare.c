@@ -12,6 +12,7 @@
 #include "common/linear_photo.h"
 #include "common/log.h"
 #include "common/outfile.h"
+#include "common/sort.h"
 #include "stages/morph_views/morph.h"
 
 #define USUAL_FOCAL    1.2 /* of the longest side, where EXIF says nothing */
@@ -61,12 +62,6 @@ static enum status read_pair(struct pair *pair, struct morph *m, const struct mo
 
 /* -------------------------------------------------------------------------------------------------------- cameras */
 
-static int compare_doubles(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 /* Depths between which a photo's points lie, with room; without points from a few baselines to infinity. */
 static enum status depth_range(struct posed_photo *p, const struct sfm_model *model, double baseline, struct err *err)
 {
@@ -77,7 +72,7 @@ static enum status depth_range(struct posed_photo *p, const struct sfm_model *mo
         double depth = vec3_add(mat3_apply(p->photo_from_world, model->points[i].position), p->translation).z;
         if (depth > 0) z[count++] = depth;
     }
-    qsort(z, count, sizeof *z, compare_doubles);
+    sort_doubles(z, count);
     p->near = count ? z[(size_t)(DEPTH_TRIM * (double)(count - 1))] / DEPTH_ROOM : NEAR_BASELINES * baseline;
     p->far = count ? z[(size_t)((1 - DEPTH_TRIM) * (double)(count - 1))] * DEPTH_ROOM : INFINITY;
     free(z);

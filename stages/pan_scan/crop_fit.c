@@ -14,6 +14,8 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
+#include "common/sort.h"
+
 #define ROUNDS     200
 #define CONVERGED  1e-7 /* frame px */
 #define BISECTIONS 200
@@ -164,12 +166,6 @@ void crop_apply(const struct crop_task *task, const struct crop *crop, double x,
     *v = (y - crop->y) * task->frame_height / crop->height;
 }
 
-static int compare(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return x < y ? -1 : x > y;
-}
-
 enum status crop_misfit(double *misfit, const struct crop_task *task, const struct crop *crop, struct err *err)
 {
     *misfit = 0;
@@ -181,7 +177,7 @@ enum status crop_misfit(double *misfit, const struct crop_task *task, const stru
         crop_apply(task, crop, task->pairs[i].x, task->pairs[i].y, &u, &v);
         off[i] = hypot(u - task->pairs[i].u, v - task->pairs[i].v);
     }
-    qsort(off, task->count, sizeof *off, compare);
+    sort_doubles(off, task->count);
     *misfit = off[task->count / 2];
     free(off);
     return ST_OK;

@@ -7,6 +7,7 @@
 
 #include "common/parallel.h"
 #include "common/rng.h"
+#include "common/sort.h"
 
 #define FIRST_BATCH 8
 #define TILE        32
@@ -113,12 +114,6 @@ static void tile_errors(void *ctx, size_t begin, size_t end, int thread)
     }
 }
 
-static int by_value(const void *a, const void *b)
-{
-    const float x = *(const float *)a, y = *(const float *)b;
-    return (x > y) - (x < y);
-}
-
 static double error_of_mean(const struct sums *s, struct tiles *t, int before, int batch)
 {
     const int count = t->across * ((t->height + TILE - 1) / TILE);
@@ -128,7 +123,7 @@ static double error_of_mean(const struct sums *s, struct tiles *t, int before, i
     means.per_batch = 1.0 / batch;
     t->sums = &means;
     parallel_for((size_t)count, 16, tile_errors, t);
-    qsort(t->error, (size_t)count, sizeof *t->error, by_value);
+    sort_floats(t->error, (size_t)count);
     return sqrt(t->error[(int)(PERCENTILE * (count - 1))]) * sqrt((double)before * batch) / (before + batch);
 }
 

@@ -36,6 +36,7 @@
 
 #include "common/hole_fill.h"
 #include "common/parallel.h"
+#include "common/sort.h"
 
 #define MAX_RADIUS    7
 #define MAX_PATCH     ((2 * MAX_RADIUS + 1) * (2 * MAX_RADIUS + 1))
@@ -99,18 +100,12 @@ struct fill { /* of one hole */
 
 /* --------------------------------------------------------------------------------------------------- clusters */
 
-static int compare_floats(const void *a, const void *b)
-{
-    const float x = *(const float *)a, y = *(const float *)b;
-    return (x > y) - (x < y);
-}
-
 float exemplar_far_border(float *z, size_t count, float sigma)
 {
     double sum = 0, near_sum = 0, best = -1, border = 0, gap = 0;
     size_t first = 0, near_count = 0, between = 0;
 
-    qsort(z, count, sizeof *z, compare_floats);
+    sort_floats(z, count);
     while (first < count && !(z[first] > 0)) first++;
     first += (count - first) / STRAY_SHARE;
     count -= first + (count - first) / (STRAY_SHARE - 1);

@@ -12,6 +12,7 @@
 #include "common/parallel.h"
 #include "common/photo.h"
 #include "common/scan.h"
+#include "common/sort.h"
 
 static enum status add_note(struct contents *c, struct err *err, const char *fmt, ...) PRINTF_LIKE(3, 4);
 static enum status add_note(struct contents *c, struct err *err, const char *fmt, ...)
@@ -117,12 +118,6 @@ static enum status read_photos(struct contents *c, const char *shared, const cha
 
 /* -------------------------------------------------------------------------------------------------------- views */
 
-static int compare_doubles(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 static enum status measure_points(struct contents *c, struct err *err)
 {
     const struct sfm_model *m = &c->views.model;
@@ -141,7 +136,7 @@ static enum status measure_points(struct contents *c, struct err *err)
             squares += errors[n - 1] * errors[n - 1];
         }
     if (n) {
-        qsort(errors, n, sizeof *errors, compare_doubles);
+        sort_doubles(errors, n);
         c->error_median = errors[n / 2];
         c->error_rms = sqrt(squares / (double)n);
         c->track_mean = (double)total / m->point_count;

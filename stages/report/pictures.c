@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/sort.h"
+
 void picture_release(struct picture *p)
 {
     free(p->rgb);
@@ -176,12 +178,6 @@ enum status picture_from_depth(struct picture *p, const struct depth_thumb *d, d
     return ST_OK;
 }
 
-static int compare_floats(const void *a, const void *b)
-{
-    float x = *(const float *)a, y = *(const float *)b;
-    return (x > y) - (x < y);
-}
-
 bool depth_range(const struct depth_thumb *d, double cut, double *near, double *far)
 {
     size_t size = (size_t)d->width * (size_t)d->height, n = 0;
@@ -190,7 +186,7 @@ bool depth_range(const struct depth_thumb *d, double cut, double *near, double *
     for (size_t i = 0; i < size; i++)
         if (d->z[i] > 0) known[n++] = d->z[i];
     if (n) {
-        qsort(known, n, sizeof *known, compare_floats);
+        sort_floats(known, n);
         *near = known[(size_t)(cut * (double)(n - 1))];
         *far = known[(size_t)((1 - cut) * (double)(n - 1))];
     }

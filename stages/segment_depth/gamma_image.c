@@ -5,12 +5,7 @@
 #include <stdlib.h>
 
 #include "common/parallel.h"
-
-static int compare_floats(const void *a, const void *b)
-{
-    float x = *(const float *)a, y = *(const float *)b;
-    return (x > y) - (x < y);
-}
+#include "common/sort.h"
 
 #define POWER        0.5
 #define LEAST_POWER  0.2
@@ -29,7 +24,7 @@ struct tone tone_of(const struct image *im)
         if (p[3] >= 0.5f) brightest[count++] = fmaxf(p[0], fmaxf(p[1], p[2]));
     }
     if (count) {
-        qsort(brightest, count, sizeof *brightest, compare_floats);
+        sort_floats(brightest, count);
         const double bright = (double)brightest[count - 1 - count / 50], middle = (double)brightest[count / 2];
         if (bright > 1e-12) {
             if (middle > 1e-12 * bright && middle < bright)

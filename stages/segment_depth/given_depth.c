@@ -12,6 +12,7 @@
 
 #include "common/parallel.h"
 #include "common/rng.h"
+#include "common/sort.h"
 
 #define LEAST_SAMPLES 4
 #define LEAST_PART    8 /* one in so many pixels */
@@ -39,12 +40,6 @@ struct fit {
     size_t largest;
 };
 
-static int compare_doubles(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 bool given_depth_range(double *least, double *most, const float *z, size_t pixels)
 {
     enum { MANY = 1 << 16 };
@@ -59,7 +54,7 @@ bool given_depth_range(double *least, double *most, const float *z, size_t pixel
         if (inverse && known++ % step == 0) inverse[count++] = 1 / (double)z[i];
     }
     if (count > 100) { /* one in fifty at either end may be false */
-        qsort(inverse, count, sizeof *inverse, compare_doubles);
+        sort_doubles(inverse, count);
         low = inverse[count / 50];
         high = inverse[count - 1 - count / 50];
     }
@@ -82,7 +77,7 @@ double given_depth_ratio(const float *z, int width, int height, const struct see
         if (at > 0) ratios[count++] = (double)at * p->inverse_z;
     }
     if (count >= LEAST_POINTS) {
-        qsort(ratios, (size_t)count, sizeof *ratios, compare_doubles);
+        sort_doubles(ratios, (size_t)count);
         median = ratios[count / 2];
     }
     free(ratios);
@@ -99,7 +94,7 @@ static double median_residual(const struct sample *p, int count, struct plane at
     double r[LOOKED_AT];
     const int looked = count < LOOKED_AT ? count : LOOKED_AT;
     for (int k = 0; k < looked; k++) r[k] = residual(&p[(int64_t)k * count / looked], at);
-    qsort(r, (size_t)looked, sizeof *r, compare_doubles);
+    sort_doubles(r, (size_t)looked);
     return r[looked / 2];
 }
 
@@ -167,7 +162,7 @@ static void fit_segment(const struct fit *f, int i, const struct sample *p, int 
     double inverse[LOOKED_AT], least = INFINITY;
     const int looked = count < LOOKED_AT ? count : LOOKED_AT;
     for (int k = 0; k < looked; k++) inverse[k] = p[(int64_t)k * count / looked].d;
-    qsort(inverse, (size_t)looked, sizeof *inverse, compare_doubles);
+    sort_doubles(inverse, (size_t)looked);
     struct plane level = {0, 0, inverse[looked / 2]}, slanted = level;
     for (int k = -1; k < TRIPLES; k++) {
         struct plane tried = fitted(p, count, level, INFINITY, false);

@@ -5,6 +5,8 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
+#include "common/sort.h"
+
 #define LEAST_SHARED  8   /* points that two views must share before the points choose */
 #define LARGEST_ERROR 2.0 /* px, of a point that is believed */
 #define DEGREE        (M_PI / 180)
@@ -213,12 +215,6 @@ done:
     return st;
 }
 
-static int compare_doubles(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 /* Inverse depths of all points of the scene that lie in the view's frame, seen by it or not: what it sees without having
  * matched it is mostly no nearer and no farther than what other views matched there. *inverse is malloc'ed. */
 static enum status framed_points(double **inverse, int *count, const struct camera_set *set, const struct view *view,
@@ -232,7 +228,7 @@ static enum status framed_points(double **inverse, int *count, const struct came
         double u, v, z = view_project(view, m->points[i].position, &u, &v);
         if (z > 0 && u >= 0 && v >= 0 && u <= view->width && v <= view->height) (*inverse)[(*count)++] = 1 / z;
     }
-    qsort(*inverse, (size_t)*count, sizeof **inverse, compare_doubles);
+    sort_doubles(*inverse, (size_t)*count);
     return ST_OK;
 }
 

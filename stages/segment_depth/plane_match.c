@@ -12,6 +12,7 @@
 #include <string.h>
 
 #include "common/parallel.h"
+#include "common/sort.h"
 
 #define CHANNELS 8
 #define UNIT     127 /* corners' weights sum to it, so features are bytes times it */
@@ -291,12 +292,6 @@ static bool carry(const struct match_neighbour *n, double u, double v, double in
     return true;
 }
 
-static int compare_doubles(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 /* Median ratio of the view's colours to the neighbour's, at the points that both observed; where those are too few, the
  * photos are taken to have been exposed alike. */
 static enum status estimate_gain(double gain[3], const struct camera_set *set, const struct view *other,
@@ -325,7 +320,7 @@ static enum status estimate_gain(double gain[3], const struct camera_set *set, c
     }
     for (int c = 0; c < 3; c++) {
         double *r = ratios + (size_t)c * (size_t)seen->count;
-        qsort(r, (size_t)count, sizeof *r, compare_doubles);
+        sort_doubles(r, (size_t)count);
         gain[c] = count >= 12 ? fmin(fmax(r[count / 2], 0.25 * same_light), 4 * same_light) : same_light;
     }
     free(ratios);
@@ -666,7 +661,7 @@ double matcher_shift(const struct matcher *m, double least, double most)
             if (path > 0) paths[count++] = path;
         }
         if (!count) continue;
-        qsort(paths, (size_t)count, sizeof *paths, compare_doubles);
+        sort_doubles(paths, (size_t)count);
         largest = fmax(largest, paths[count * 3 / 4]);
     }
     return largest;

@@ -15,6 +15,7 @@
 #include "common/log.h"
 #include "common/outfile.h"
 #include "common/photo_match.h"
+#include "common/sort.h"
 #include "common/textfile.h"
 #include "stages/sfm_import/view_cameras.h"
 
@@ -304,12 +305,6 @@ static double reprojection_error(const struct input_image *im, const struct sfm_
     return hypot(u - o->u * im->scale_u, v - o->v * im->scale_v);
 }
 
-static int compare_doubles(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 static enum status check_errors(struct importer *imp, struct import_stats *stats, struct err *err)
 {
     const struct sfm_model *m = imp->in;
@@ -345,7 +340,7 @@ static enum status check_errors(struct importer *imp, struct import_stats *stats
         }
     }
     if (finite) {
-        qsort(sorted, (size_t)finite, sizeof *sorted, compare_doubles);
+        sort_doubles(sorted, (size_t)finite);
         stats->mean_error = sum / (double)finite;
         stats->median_error = (sorted[(finite - 1) / 2] + sorted[finite / 2]) / 2;
     }

@@ -12,6 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/sort.h"
 #include "stages/simulate/noise.h"
 
 #define MOST_TRIANGLES (1 << 23)
@@ -106,17 +107,11 @@ void wall_axes(const struct item *wall, struct vec3 *along, struct vec3 *left, d
     *left = vec3_make(-along->y, along->x, 0);
 }
 
-static int compare_doubles(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 /* Sorted, without repetitions, without what is outside [from, to]. */
 static int tidy_cuts(double *cuts, int count, double from, double to)
 {
     int kept = 0;
-    qsort(cuts, (size_t)count, sizeof *cuts, compare_doubles);
+    sort_doubles(cuts, (size_t)count);
     for (int i = 0; i < count; i++)
         if (cuts[i] >= from && cuts[i] <= to && (!kept || cuts[i] > cuts[kept - 1])) cuts[kept++] = cuts[i];
     return kept;

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/sort.h"
+
 enum { MOST_FACES = 64 };
 /* Parts of the ceiling's height: heights between which walls are looked at, and how far behind a face a line of sight
  * must go on. */
@@ -41,12 +43,6 @@ static bool looks_along(const struct finder *f, const struct cloud_point *p, int
     return sign * (double)p->normal[axis] >= cos(f->params->max_angle * 3.14159265358979323846 / 180);
 }
 
-static int compare(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 /* The part-quantiles of the points' coordinates: a plan is where nearly all points are. */
 static enum status bounds(struct finder *f, double ceiling, struct err *err)
 {
@@ -61,7 +57,7 @@ static enum status bounds(struct finder *f, double ceiling, struct err *err)
             else if (fabs((double)f->cloud->points[i].normal[2]) < 0.3)
                 v[n++] = p.z;
         }
-        qsort(v, n, sizeof *v, compare);
+        sort_doubles(v, n);
         if (axis < 2) {
             f->low[axis] = v[n / 500];
             f->high[axis] = v[n - 1 - n / 500];

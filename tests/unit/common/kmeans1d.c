@@ -6,13 +6,8 @@
 #include <string.h>
 
 #include "common/rng.h"
+#include "common/sort.h"
 #include "tests/unit/scratch.h"
-
-static int ascending(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
 
 /* The least cost of k ranges of the first n numbers, by trying every cut. */
 static double brute_force(const double *x, size_t n, int k)
@@ -46,7 +41,7 @@ static void nothing_is_better(void **state)
         const int k = 1 + (int)(trial / 14 % 5);
         for (size_t i = 0; i < n; i++) /* every other trial with many equal numbers */
             x[i] = trial % 2 ? 1000 + rng_uniform(&rng, trial, i) : floor(4 * rng_uniform(&rng, trial, i));
-        qsort(x, n, sizeof *x, ascending);
+        sort_doubles(x, n);
         assert_ok(kmeans1d(begin, x, n, k, &err), err);
         assert_int_equal(begin[0], 0);
         assert_int_equal(begin[k], n);
@@ -63,7 +58,7 @@ static void clusters_that_stand_apart_are_found(void **state)
     size_t begin[4];
     struct err err = ERR_INIT;
     memcpy(sorted, x, sizeof x);
-    qsort(sorted, 8, sizeof *sorted, ascending);
+    sort_doubles(sorted, 8);
     assert_ok(kmeans1d(begin, sorted, 8, 3, &err), err);
     assert_int_equal(begin[1], 3);
     assert_int_equal(begin[2], 7);
@@ -92,7 +87,7 @@ static void far_from_zero_it_stays_exact(void **state)
     struct err err = ERR_INIT;
     assert_non_null(x);
     for (size_t i = 0; i < N; i++) x[i] = 1e6 + (double)(i % 3) * 1e-3 + 1e-5 * rng_uniform(&rng, 0, i);
-    qsort(x, N, sizeof *x, ascending);
+    sort_doubles(x, N);
     assert_ok(kmeans1d(begin, x, N, 3, &err), err);
     assert_int_equal(begin[1], N / 3);
     assert_int_equal(begin[2], 2 * N / 3);

@@ -8,6 +8,7 @@
 #include <math.h>
 
 #include "common/exposure_list.h"
+#include "common/sort.h"
 #include "stages/fit_response/recover.h"
 #include "stages/hdr_merge/merge.h"
 
@@ -36,12 +37,6 @@ static void read_stack(struct stack *s, const char *folder)
         assert_true(!s->count || s->exposures[s->count] > s->exposures[s->count - 1]);
     }
     exposure_list_release(&list);
-}
-
-static int compare_doubles(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
 }
 
 static double luminance(const float *rgb) { return 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2]; }
@@ -101,12 +96,12 @@ static double predict(const struct stack *s, int odd)
         double *mine = errors + all;
         const size_t n = compare(mine, &merged, &s->photos[k], s->exposures[k] / scale, &response);
         if (!n) continue;
-        qsort(mine, n, sizeof *mine, compare_doubles);
+        sort_doubles(mine, n);
         print_message("  exposure %2d: median error %.4f, 90 %% below %.3f, of %.1f %% of the pixels\n", k, mine[n / 2],
                       mine[n * 9 / 10], 100.0 * (double)n / (double)pixels);
         all += n;
     }
-    qsort(errors, all, sizeof *errors, compare_doubles);
+    sort_doubles(errors, all);
     const double median = errors[all / 2];
     print_message("  median error %.4f of %zu pixels\n", median, all);
     free(errors);

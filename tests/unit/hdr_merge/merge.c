@@ -12,6 +12,7 @@
 #include "common/exr.h"
 #include "common/parallel.h"
 #include "common/rng.h"
+#include "common/sort.h"
 #include "stages/hdr_merge/merge.h"
 
 enum { WIDTH = 512, HEIGHT = 24, PIXELS = WIDTH * HEIGHT };
@@ -82,15 +83,9 @@ static struct merged merge(const struct shot *b)
     return m;
 }
 
-static int compare_doubles(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 static double quantile(double *values, size_t count, double q)
 {
-    qsort(values, count, sizeof *values, compare_doubles);
+    sort_doubles(values, count);
     return values[(size_t)(q * (double)(count - 1))];
 }
 
