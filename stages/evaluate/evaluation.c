@@ -215,22 +215,30 @@ static struct vec3 room_from_model(const struct evaluation *e, const struct mode
     return mat3_apply(room->room_from_world, vec3_sub(world, room->origin));
 }
 
+static enum status add_parts(struct metric_table *t, const char *name, const struct part_errors *p, struct err *err)
+{
+    char middle[64];
+    snprintf(middle, sizeof middle, "%s_median", name);
+    if (!p->count) return ST_OK;
+    if (metric_add(t, NULL, name, p->errors[p->count - 1], "m", "lower", err) ||
+        metric_add(t, NULL, middle, median(p->errors, p->count), "m", "lower", err))
+        return err->status;
+    return metric_note(t, err, "note: %s is that of %s", name, p->worst);
+}
+
 static enum status add_walls(struct metric_table *t, const struct wall_errors *w, struct err *err)
 {
-    if (w->face_count) {
-        if (metric_add(t, NULL, "model.walls", w->faces[w->face_count - 1], "m", "lower", err) ||
-            metric_add(t, NULL, "model.walls_median", median(w->faces, w->face_count), "m", "lower", err) ||
-            metric_note(t, err, "note: the wall that is farthest off is %s", w->worst_face))
-            return err->status;
-    }
-    if (w->hole_count) {
-        if (metric_add(t, NULL, "model.openings", w->holes[w->hole_count - 1], "m", "lower", err) ||
-            metric_add(t, NULL, "model.openings_median", median(w->holes, w->hole_count), "m", "lower", err) ||
-            metric_note(t, err, "note: the opening that is farthest off is %s", w->worst_hole))
-            return err->status;
-    }
-    if (metric_add(t, NULL, "model.strange", w->strange, "1", "lower", err)) return err->status;
+    if (add_parts(t, "model.walls", &w->faces, err) || add_parts(t, "model.openings", &w->openings, err) ||
+        metric_add(t, NULL, "model.strange", w->strange, "1", "lower", err))
+        return err->status;
     return metric_add(t, NULL, "model.missing", w->missing, "1", "lower", err);
+}
+
+static void parts_to_room(struct part_list *list, const struct evaluation *e, const struct model_axes *axes,
+                          const struct true_room *room)
+{
+    for (int i = 0; i < list->count; i++)
+        for (int k = 0; k < 2; k++) list->parts[i].at[k] = room_from_model(e, axes, room, list->parts[i].at[k]);
 }
 
 static enum status evaluate_walls(struct evaluation *e, const char *truth, struct err *err)
@@ -241,7 +249,7 @@ static enum status evaluate_walls(struct evaluation *e, const char *truth, struc
     struct true_room room = {0};
     struct wall_plan model = {0}, wanted = {0};
     struct wall_errors errors = {0};
-    char path[FILE_PATH], described[FILE_PATH];
+    char path[FILE_PATH];
     if (file_path(path, e->folder, "model/plan.txt", "", err)) return err->status;
     if (!is_file(path)) return metric_note(t, err, "skipped walls: there is no model/plan.txt");
     if (!truth) return metric_note(t, err, "skipped walls: no TRUTH is given");
@@ -255,16 +263,13 @@ static enum status evaluate_walls(struct evaluation *e, const char *truth, struc
     if (!st) st = wall_plan_read(&model, path, PLAN_OF_MODEL, err);
     if (!st) st = file_path(path, e->folder, "model/axes.txt", "", err);
     if (!st) st = model_axes_read(&axes, path, err);
-    if (!st) st = file_path(described, truth, "scene.txt", "", err);
-    if (!st) st = file_path(path, truth, "scene-truth.txt", "", err);
-    const bool framed = !st && !is_file(described);
-    if (!st) st = wall_plan_read(&wanted, framed ? path : described, framed ? PLAN_FRAMED : PLAN_DESCRIBED, err);
-    for (int i = 0; !st && i < model.face_count; i++)
-        for (int k = 0; k < 2; k++) model.faces[i].ends[k] = room_from_model(e, &axes, &room, model.faces[i].ends[k]);
-    for (int i = 0; !st && i < model.hole_count; i++)
-        for (int k = 0; k < 2; k++)
-            model.holes[i].corners[k] = room_from_model(e, &axes, &room, model.holes[i].corners[k]);
-    if (!st) st = wall_errors_find(&errors, &model, &wanted, reach, err);
+    if (!st) st = file_path(path, truth, room.framed ? "scene-truth.txt" : "scene.txt", "", err);
+    if (!st) st = wall_plan_read(&wanted, path, room.framed ? PLAN_FRAMED : PLAN_DESCRIBED, err);
+    if (!st) {
+        parts_to_room(&model.faces, e, &axes, &room);
+        parts_to_room(&model.openings, e, &axes, &room);
+        st = wall_errors_find(&errors, &model, &wanted, reach, err);
+    }
     if (!st) st = add_walls(t, &errors, err);
     wall_errors_release(&errors);
     wall_plan_release(&wanted);

@@ -77,7 +77,7 @@ enum status true_room_read_file(struct true_room *room, const char *path, bool f
 {
     struct textfile t = {0};
     double yaw = 0;
-    *room = (struct true_room){0};
+    *room = (struct true_room){.framed = frame};
     enum status st = textfile_open(&t, path, err);
     while (!st && textfile_next(&t)) {
         char *word;

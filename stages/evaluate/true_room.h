@@ -18,7 +18,8 @@
 #include "common/vec.h"
 
 struct true_room {
-    bool known; /* the truth has one of the files, with a room in it */
+    bool known;  /* the truth has one of the files, with a room in it */
+    bool framed; /* it is scene-truth.txt */
     struct mat3 room_from_world;
     struct vec3 origin; /* of the room's frame, in the world */
     double floor, ceiling;

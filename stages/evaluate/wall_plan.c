@@ -14,56 +14,30 @@
 void wall_plan_release(struct wall_plan *plan)
 {
     if (!plan) return;
-    free(plan->faces);
-    free(plan->holes);
+    free(plan->faces.parts);
+    free(plan->openings.parts);
     *plan = (struct wall_plan){0};
 }
 
-/* Room for one more. */
-static enum status grow(void **items, int count, int *room, size_t size, struct err *err)
+static enum status add_part(struct part_list *list, const char *name, struct vec3 a, struct vec3 b, struct err *err)
 {
-    if (count < *room) return ST_OK;
-    const int wanted = *room ? 2 * *room : 32;
-    void *more = realloc(*items, (size_t)wanted * size);
-    if (!more) return err_nomem(err, "walls to compare", (size_t)wanted * size);
-    *items = more;
-    *room = wanted;
+    if (list->count == list->room) {
+        const int room = list->room ? 2 * list->room : 32;
+        struct plan_part *more = realloc(list->parts, (size_t)room * sizeof *more);
+        if (!more) return err_nomem(err, "walls to compare", (size_t)room * sizeof *more);
+        list->parts = more;
+        list->room = room;
+    }
+    struct plan_part *p = &list->parts[list->count++];
+    *p = (struct plan_part){.at = {a, b}};
+    snprintf(p->name, sizeof p->name, "%s", name);
     return ST_OK;
 }
-
-static enum status add_face(struct wall_plan *p, const char *name, struct vec3 a, struct vec3 b, struct err *err)
-{
-    void *items = p->faces;
-    if (grow(&items, p->face_count, &p->face_room, sizeof *p->faces, err)) return err->status;
-    p->faces = items;
-    struct plan_face *f = &p->faces[p->face_count++];
-    *f = (struct plan_face){.ends = {a, b}};
-    snprintf(f->name, sizeof f->name, "%s", name);
-    return ST_OK;
-}
-
-static enum status add_hole(struct wall_plan *p, const char *name, struct vec3 a, struct vec3 b, struct err *err)
-{
-    void *items = p->holes;
-    if (grow(&items, p->hole_count, &p->hole_room, sizeof *p->holes, err)) return err->status;
-    p->holes = items;
-    struct wall_hole *h = &p->holes[p->hole_count++];
-    *h = (struct wall_hole){.corners = {a, b}};
-    snprintf(h->name, sizeof h->name, "%s", name);
-    return ST_OK;
-}
-
-/* Lines of walls, by which openings are placed. */
-struct line {
-    char name[64];
-    struct vec3 origin, along; /* an opening's S 0, and the way that S grows */
-};
 
 struct reader {
     struct wall_plan *plan;
     struct textfile t;
-    struct line *lines;
-    int line_count, line_room;
+    struct part_list lines; /* of walls, by which openings are placed: where an opening's S is 0, the way it grows */
     /* of a truth in the rooms' frame */
     double low[2], high[2];
     int partition; /* 0 or 1: the axis that it stands across; -1: there is none */
@@ -77,36 +51,23 @@ static enum status numbers(struct reader *r, const char *const what[], double *v
     return ST_OK;
 }
 
-static enum status add_line(struct reader *r, const char *name, struct vec3 origin, struct vec3 along, struct err *err)
+/* NULL: there is none. */
+static const struct plan_part *line_named(const struct reader *r, const char *name)
 {
-    void *items = r->lines;
-    if (grow(&items, r->line_count, &r->line_room, sizeof *r->lines, err)) return err->status;
-    r->lines = items;
-    struct line *l = &r->lines[r->line_count++];
-    *l = (struct line){.origin = origin, .along = along};
-    snprintf(l->name, sizeof l->name, "%s", name);
-    return ST_OK;
+    for (int i = 0; i < r->lines.count; i++)
+        if (!strncmp(r->lines.parts[i].name, name, sizeof r->lines.parts[i].name - 1)) return &r->lines.parts[i];
+    return NULL;
 }
 
-static enum status find_line(const struct reader *r, const char *name, const struct line **line, struct err *err)
-{
-    for (int i = 0; i < r->line_count; i++)
-        if (!strncmp(r->lines[i].name, name, sizeof r->lines[i].name - 1)) {
-            *line = &r->lines[i];
-            return ST_OK;
-        }
-    return textfile_error(&r->t, err, name, "the name of a wall that stands above");
-}
-
-static enum status hole_on(struct reader *r, const char *name, const struct line *l, const double s[2],
-                           const double z[2], struct err *err)
+static enum status add_opening(struct reader *r, const char *name, struct vec3 origin, struct vec3 along,
+                               const double s[2], const double z[2], struct err *err)
 {
     struct vec3 c[2];
     for (int k = 0; k < 2; k++) {
-        c[k] = vec3_add(l->origin, vec3_scale(l->along, s[k]));
+        c[k] = vec3_add(origin, vec3_scale(along, s[k]));
         c[k].z = z[k];
     }
-    return add_hole(r->plan, name, c[0], c[1], err);
+    return add_part(&r->plan->openings, name, c[0], c[1], err);
 }
 
 static enum status word(struct reader *r, const char *wanted, struct err *err)
@@ -129,7 +90,7 @@ static enum status model_wall(struct reader *r, struct err *err)
     /* S is x or y; an angled wall counts it from a point that the plan does not tell */
     if (fmin(fabs(n[0]), fabs(n[1])) > 1e-9) return ST_OK;
     const struct vec3 along = fabs(n[0]) > 0.5 ? vec3_make(0, 1, 0) : vec3_make(1, 0, 0);
-    return add_line(r, name, vec3_make(n[0] * c, n[1] * c, 0), along, err);
+    return add_part(&r->lines, name, vec3_make(n[0] * c, n[1] * c, 0), along, err);
 }
 
 static enum status model_opening(struct reader *r, struct err *err)
@@ -141,17 +102,16 @@ static enum status model_opening(struct reader *r, struct err *err)
         textfile_word(&r->t, "a wall's name", &wall, err) || word(r, "from", err) || numbers(r, from, a, 2, err) ||
         word(r, "to", err) || numbers(r, to, b, 2, err))
         return err->status;
-    for (int i = 0; i < r->line_count; i++)
-        if (!strncmp(r->lines[i].name, wall, sizeof r->lines[i].name - 1))
-            return hole_on(r, name, &r->lines[i], (double[]){a[0], b[0]}, (double[]){a[1], b[1]}, err);
-    return ST_OK; /* on an angled wall */
+    const struct plan_part *l = line_named(r, wall);
+    if (!l) return ST_OK; /* on an angled wall */
+    return add_opening(r, name, l->at[0], l->at[1], (double[]){a[0], b[0]}, (double[]){a[1], b[1]}, err);
 }
 
 /* Each wall's name, and the corner where it ends; the last one is where the first begins. */
 static enum status model_room(struct reader *r, struct err *err)
 {
     static const char *const ceiling[] = {"height", "slope along x", "slope along y"}, *const corner[] = {"x", "y"};
-    const int first = r->plan->face_count;
+    const int first = r->plan->faces.count;
     char *name;
     double floor, c[3], p[2];
     if (textfile_word(&r->t, "a room's name", &name, err) || word(r, "floor", err) ||
@@ -160,12 +120,12 @@ static enum status model_room(struct reader *r, struct err *err)
         return err->status;
     do {
         if (textfile_word(&r->t, "a wall's name", &name, err) || numbers(r, corner, p, 2, err) ||
-            add_face(r->plan, name, vec3_make(0, 0, floor), vec3_make(p[0], p[1], floor), err))
+            add_part(&r->plan->faces, name, vec3_make(0, 0, floor), vec3_make(p[0], p[1], floor), err))
             return err->status;
     } while (textfile_more(&r->t));
-    struct plan_face *f = r->plan->faces;
-    for (int i = first, last = r->plan->face_count - 1; i <= last; i++)
-        f[i].ends[0] = f[i == first ? last : i - 1].ends[1];
+    struct plan_part *f = r->plan->faces.parts;
+    for (int i = first, last = r->plan->faces.count - 1; i <= last; i++)
+        f[i].at[0] = f[i == first ? last : i - 1].at[1];
     return ST_OK;
 }
 
@@ -188,22 +148,23 @@ static enum status described_wall(struct reader *r, struct err *err)
     const struct vec3 a = vec3_make(v[0], v[1], v[4]), b = vec3_make(v[2], v[3], v[4]);
     if (!(vec3_length(vec3_sub(b, a)) > 0)) return textfile_error(&r->t, err, name, "a wall of some length");
     const struct vec3 d = vec3_normalize(vec3_sub(b, a)), off = vec3_scale(vec3_make(-d.y, d.x, 0), 0.5 * v[6]);
-    if (add_face(r->plan, name, vec3_add(a, off), vec3_add(b, off), err) ||
-        add_face(r->plan, name, vec3_sub(b, off), vec3_sub(a, off), err))
+    if (add_part(&r->plan->faces, name, vec3_add(a, off), vec3_add(b, off), err) ||
+        add_part(&r->plan->faces, name, vec3_sub(b, off), vec3_sub(a, off), err))
         return err->status;
-    return add_line(r, name, a, d, err);
+    return add_part(&r->lines, name, a, d, err);
 }
 
 static enum status described_opening(struct reader *r, struct err *err)
 {
     static const char *const what[] = {"s0", "s1", "z0", "z1"};
-    const struct line *line = NULL;
     char *name, *wall;
     double v[4];
     if (textfile_word(&r->t, "an opening's name", &name, err) || textfile_word(&r->t, "a wall's name", &wall, err) ||
-        numbers(r, what, v, 4, err) || find_line(r, wall, &line, err))
+        numbers(r, what, v, 4, err))
         return err->status;
-    return hole_on(r, name, line, v, v + 2, err);
+    const struct plan_part *l = line_named(r, wall);
+    if (!l) return textfile_error(&r->t, err, wall, "the name of a wall that stands above");
+    return add_opening(r, name, l->at[0], l->at[1], v, v + 2, err);
 }
 
 static enum status described_statement(struct reader *r, const char *verb, struct err *err)
@@ -223,12 +184,11 @@ static enum status axis_of(struct reader *r, int *axis, struct err *err)
 }
 
 /* Along `axis` at the other coordinate `at`. */
-static enum status framed_hole(struct reader *r, const char *name, int axis, double at, const double s[2],
-                               const double z[2], struct err *err)
+static enum status framed_opening(struct reader *r, const char *name, int axis, double at, const double s[2],
+                                  const double z[2], struct err *err)
 {
-    const struct line l = {.origin = axis ? vec3_make(at, 0, 0) : vec3_make(0, at, 0),
-                           .along = axis ? vec3_make(0, 1, 0) : vec3_make(1, 0, 0)};
-    return hole_on(r, name, &l, s, z, err);
+    return add_opening(r, name, axis ? vec3_make(at, 0, 0) : vec3_make(0, at, 0),
+                       axis ? vec3_make(0, 1, 0) : vec3_make(1, 0, 0), s, z, err);
 }
 
 static enum status framed_window(struct reader *r, const char *name, struct err *err)
@@ -244,7 +204,7 @@ static enum status framed_window(struct reader *r, const char *name, struct err 
         numbers(r, what + 2, v + 2, 2, err))
         return err->status;
     if (axis == side % 2) return textfile_error(&r->t, err, axis ? "y" : "x", "the axis along its wall");
-    return framed_hole(r, name, axis, (side < 2 ? r->low : r->high)[side % 2], v, v + 2, err);
+    return framed_opening(r, name, axis, (side < 2 ? r->low : r->high)[side % 2], v, v + 2, err);
 }
 
 static enum status framed_statement(struct reader *r, const char *verb, struct err *err)
@@ -264,7 +224,7 @@ static enum status framed_statement(struct reader *r, const char *verb, struct e
             textfile_double(&r->t, "its head", &top, err))
             return err->status;
         if (axis == r->partition) return textfile_error(&r->t, err, axis ? "y" : "x", "the axis along the partition");
-        return framed_hole(r, verb, axis, r->middle, v, (double[]){0, top}, err);
+        return framed_opening(r, verb, axis, r->middle, v, (double[]){0, top}, err);
     }
     if (!strncmp(verb, "window_", 7)) return framed_window(r, verb, err);
     for (int i = 0; i < 6; i++)
@@ -278,7 +238,7 @@ static enum status framed_statement(struct reader *r, const char *verb, struct e
     }
     static const int corners[5][2] = {{0, 1}, {3, 1}, {3, 4}, {0, 4}, {0, 1}};
     for (int i = 0; i < 4; i++)
-        if (add_face(r->plan, verb, vec3_make(v[corners[i][0]], v[corners[i][1]], v[2]),
+        if (add_part(&r->plan->faces, verb, vec3_make(v[corners[i][0]], v[corners[i][1]], v[2]),
                      vec3_make(v[corners[i + 1][0]], v[corners[i + 1][1]], v[2]), err))
             return err->status;
     return ST_OK;
@@ -297,7 +257,7 @@ enum status wall_plan_read(struct wall_plan *plan, const char *path, enum wall_p
         if (!st) st = statements[kind](&r, verb, err);
     }
     textfile_release(&r.t);
-    free(r.lines);
+    free(r.lines.parts);
     if (st) wall_plan_release(plan);
     return st;
 }
@@ -305,10 +265,10 @@ enum status wall_plan_read(struct wall_plan *plan, const char *path, enum wall_p
 /* ---------------------------------------------------------------------------------------------------------- errors */
 
 /* In plan: distance of p from the line of a face, and where along it p lies, 0 to 1. */
-static double off_face(const struct plan_face *f, struct vec3 p, double *along)
+static double off_face(const struct plan_part *f, struct vec3 p, double *along)
 {
-    const double dx = f->ends[1].x - f->ends[0].x, dy = f->ends[1].y - f->ends[0].y, length = hypot(dx, dy);
-    const double x = p.x - f->ends[0].x, y = p.y - f->ends[0].y;
+    const double dx = f->at[1].x - f->at[0].x, dy = f->at[1].y - f->at[0].y, length = hypot(dx, dy);
+    const double x = p.x - f->at[0].x, y = p.y - f->at[0].y;
     if (!(length > 0)) {
         *along = 0;
         return hypot(x, y);
@@ -317,79 +277,84 @@ static double off_face(const struct plan_face *f, struct vec3 p, double *along)
     return fabs(x * dy - y * dx) / length;
 }
 
-static double face_error(const struct plan_face *found, const struct plan_face *truth, double reach)
+static double face_error(const struct plan_part *found, const struct plan_part *truth, double reach)
 {
-    const double ax = found->ends[1].x - found->ends[0].x, ay = found->ends[1].y - found->ends[0].y;
-    const double bx = truth->ends[1].x - truth->ends[0].x, by = truth->ends[1].y - truth->ends[0].y;
+    const double ax = found->at[1].x - found->at[0].x, ay = found->at[1].y - found->at[0].y;
+    const double bx = truth->at[1].x - truth->at[0].x, by = truth->at[1].y - truth->at[0].y;
     double s[2], d[2];
     if (!(ax * bx + ay * by > SAME_WAY * hypot(ax, ay) * hypot(bx, by))) return INFINITY;
-    for (int k = 0; k < 2; k++) d[k] = off_face(truth, found->ends[k], &s[k]);
+    for (int k = 0; k < 2; k++) d[k] = off_face(truth, found->at[k], &s[k]);
     const double most = fmax(d[0], d[1]);
     return s[1] > 0 && s[0] < 1 && most <= reach ? most : INFINITY; /* they overlap */
 }
 
-static double hole_error(const struct wall_hole *found, const struct wall_hole *truth, double reach)
+static double opening_error(const struct plan_part *found, const struct plan_part *truth, double reach)
 {
-    const struct vec3 a = vec3_sub(found->corners[1], found->corners[0]);
-    const struct vec3 b = vec3_sub(truth->corners[1], truth->corners[0]);
+    const struct vec3 a = vec3_sub(found->at[1], found->at[0]);
+    const struct vec3 b = vec3_sub(truth->at[1], truth->at[0]);
     const double width = hypot(b.x, b.y), dot = a.x * b.x + a.y * b.y;
     if (!(width > 0) || !(fabs(dot) > SAME_WAY * hypot(a.x, a.y) * width)) return INFINITY;
     double most = 0;
     for (int k = 0; k < 2; k++) {
-        const struct vec3 off = vec3_sub(found->corners[dot < 0 ? 1 - k : k], truth->corners[k]);
+        const struct vec3 off = vec3_sub(found->at[dot < 0 ? 1 - k : k], truth->at[k]);
         if (hypot(off.x, off.y) > reach) return INFINITY; /* across the wall too: it may be another one */
         most = fmax(most, fabs(off.x * b.x + off.y * b.y) / width);
-        most = fmax(most, fabs(found->corners[k].z - truth->corners[k].z));
+        most = fmax(most, fabs(found->at[k].z - truth->at[k].z));
     }
     return most <= reach ? most : INFINITY;
+}
+
+typedef double part_error(const struct plan_part *found, const struct plan_part *truth, double reach);
+
+static double nearest(const struct plan_part *found, const struct part_list *truth, part_error *error, double reach)
+{
+    double least = INFINITY;
+    for (int k = 0; k < truth->count; k++) least = fmin(least, error(found, &truth->parts[k], reach));
+    return least;
+}
+
+/* *strange: grows by those that have no true one. */
+static enum status find_errors(struct part_errors *e, const struct part_list *model, const struct part_list *truth,
+                               part_error *error, double reach, int *strange, struct err *err)
+{
+    double worst = -1;
+    e->errors = calloc((size_t)model->count + 1, sizeof *e->errors);
+    if (!e->errors) return err_nomem(err, "errors of walls", (size_t)model->count * sizeof *e->errors);
+    for (int i = 0; i < model->count; i++) {
+        const double least = nearest(&model->parts[i], truth, error, reach);
+        *strange += !isfinite(least);
+        if (!isfinite(least)) continue;
+        e->errors[e->count++] = least;
+        if (!(least > worst)) continue;
+        worst = least;
+        memcpy(e->worst, model->parts[i].name, sizeof e->worst);
+    }
+    sort_doubles(e->errors, (size_t)e->count);
+    return ST_OK;
 }
 
 enum status wall_errors_find(struct wall_errors *e, const struct wall_plan *model, const struct wall_plan *truth,
                              double reach, struct err *err)
 {
     *e = (struct wall_errors){0};
-    e->faces = calloc((size_t)model->face_count + 1, sizeof *e->faces);
-    e->holes = calloc((size_t)model->hole_count + 1, sizeof *e->holes);
-    if (!e->faces || !e->holes) {
+    if (find_errors(&e->faces, &model->faces, &truth->faces, face_error, reach, &e->strange, err) ||
+        find_errors(&e->openings, &model->openings, &truth->openings, opening_error, reach, &e->strange, err)) {
         wall_errors_release(e);
-        return err_nomem(err, "errors of walls", (size_t)model->face_count * sizeof *e->faces);
+        return err->status;
     }
-    double worst[2] = {-1, -1};
-    for (int i = 0; i < model->face_count; i++) {
-        double least = INFINITY;
-        for (int k = 0; k < truth->face_count; k++)
-            least = fmin(least, face_error(&model->faces[i], &truth->faces[k], reach));
-        if (isfinite(least)) e->faces[e->face_count++] = least;
-        e->strange += !isfinite(least);
-        if (!isfinite(least) || !(least > worst[0])) continue;
-        worst[0] = least;
-        memcpy(e->worst_face, model->faces[i].name, sizeof e->worst_face);
-    }
-    for (int i = 0; i < model->hole_count; i++) {
-        double least = INFINITY;
-        for (int k = 0; k < truth->hole_count; k++)
-            least = fmin(least, hole_error(&model->holes[i], &truth->holes[k], reach));
-        if (isfinite(least)) e->holes[e->hole_count++] = least;
-        e->strange += !isfinite(least);
-        if (!isfinite(least) || !(least > worst[1])) continue;
-        worst[1] = least;
-        memcpy(e->worst_hole, model->holes[i].name, sizeof e->worst_hole);
-    }
-    for (int k = 0; k < truth->hole_count; k++) {
+    for (int k = 0; k < truth->openings.count; k++) {
         bool found = false;
-        for (int i = 0; i < model->hole_count && !found; i++)
-            found = isfinite(hole_error(&model->holes[i], &truth->holes[k], reach));
+        for (int i = 0; i < model->openings.count && !found; i++)
+            found = isfinite(opening_error(&model->openings.parts[i], &truth->openings.parts[k], reach));
         e->missing += !found;
     }
-    sort_doubles(e->faces, (size_t)e->face_count);
-    sort_doubles(e->holes, (size_t)e->hole_count);
     return ST_OK;
 }
 
 void wall_errors_release(struct wall_errors *e)
 {
     if (!e) return;
-    free(e->faces);
-    free(e->holes);
+    free(e->faces.errors);
+    free(e->openings.errors);
     *e = (struct wall_errors){0};
 }

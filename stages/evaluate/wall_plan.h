@@ -15,20 +15,18 @@
 #include "common/err.h"
 #include "common/vec.h"
 
-struct plan_face {
-    char name[64]; /* cut where it is longer */
-    struct vec3 ends[2];
+struct plan_part {
+    char name[64];     /* cut where it is longer */
+    struct vec3 at[2]; /* a face's ends; an opening's lower corner, and the upper one across from it */
 };
 
-struct wall_hole {
-    char name[64];
-    struct vec3 corners[2]; /* a lower one, and the upper one across from it */
+struct part_list {
+    struct plan_part *parts;
+    int count, room;
 };
 
 struct wall_plan {
-    struct plan_face *faces;
-    struct wall_hole *holes;
-    int face_count, hole_count, face_room, hole_room;
+    struct part_list faces, openings;
 };
 
 enum wall_plan_kind { PLAN_OF_MODEL, PLAN_DESCRIBED, PLAN_FRAMED };
@@ -37,12 +35,16 @@ enum wall_plan_kind { PLAN_OF_MODEL, PLAN_DESCRIBED, PLAN_FRAMED };
 enum status wall_plan_read(struct wall_plan *plan, const char *path, enum wall_plan_kind kind, struct err *err);
 void wall_plan_release(struct wall_plan *plan);
 
+struct part_errors {
+    double *errors; /* sorted; owned */
+    int count;
+    char worst[64]; /* whose the largest is */
+};
+
 struct wall_errors {
-    double *faces, *holes; /* of the model, sorted; owned */
-    int face_count, hole_count;
-    int strange; /* faces and openings of the model that the truth does not have */
-    int missing; /* openings of the truth that the model does not have */
-    char worst_face[64], worst_hole[64];
+    struct part_errors faces, openings; /* of the model */
+    int strange;                        /* faces and openings of the model that the truth does not have */
+    int missing;                        /* openings of the truth that the model does not have */
 };
 
 /* Both in one frame, z up, unit of the truth. A face belongs to the nearest true one that looks the same way within 10

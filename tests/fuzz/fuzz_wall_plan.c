@@ -18,14 +18,14 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         struct wall_errors errors = {0};
         struct err err = ERR_INIT;
         if (wall_plan_read(&plan, path, (enum wall_plan_kind)kind, &err)) {
-            if (!strstr(err.text, path) || plan.face_count || plan.hole_count) abort();
+            if (!strstr(err.text, path) || plan.faces.count || plan.openings.count) abort();
             continue;
         }
         if (wall_errors_find(&errors, &plan, &plan, 1, &err)) abort();
-        for (int i = 0; i < errors.face_count; i++)
-            if (!isfinite(errors.faces[i])) abort();
-        for (int i = 0; i < errors.hole_count; i++)
-            if (!isfinite(errors.holes[i])) abort();
+        for (int i = 0; i < errors.faces.count; i++)
+            if (!isfinite(errors.faces.errors[i])) abort();
+        for (int i = 0; i < errors.openings.count; i++)
+            if (!isfinite(errors.openings.errors[i])) abort();
         wall_errors_release(&errors);
         wall_plan_release(&plan);
     }

@@ -22,8 +22,8 @@ static struct wall_plan model(double off, struct err *err)
         "box b 0 0 0 1 1 1 turn 0\n",
         -off, 1.6 + off, 2.5 + off, -off, -off, -off, -off);
     assert_ok(wall_plan_read(&plan, scratch_write("plan.txt", text), PLAN_OF_MODEL, err), *err);
-    assert_int_equal(plan.face_count, 8);
-    assert_int_equal(plan.hole_count, 2); /* where S of an angled wall is, the plan does not tell */
+    assert_int_equal(plan.faces.count, 8);
+    assert_int_equal(plan.openings.count, 2); /* where S of an angled wall is, the plan does not tell */
     return plan;
 }
 
@@ -53,15 +53,15 @@ static void known_shifts_come_back(void **state)
             struct wall_errors e = {0};
             assert_ok(wall_plan_read(&truth, scratch_write("truth.txt", truths[i].text), truths[i].kind, &err), err);
             assert_ok(wall_errors_find(&e, &found, &truth, 0.5, &err), err);
-            assert_int_equal(e.face_count, 8);
-            assert_int_equal(e.hole_count, 2);
-            assert_true(e.faces[0] < 1e-9 && fabs(e.faces[7] - off) < 1e-9);
-            assert_true(e.holes[0] < 1e-9 && fabs(e.holes[1] - off) < 1e-9);
+            assert_int_equal(e.faces.count, 8);
+            assert_int_equal(e.openings.count, 2);
+            assert_true(e.faces.errors[0] < 1e-9 && fabs(e.faces.errors[7] - off) < 1e-9);
+            assert_true(e.openings.errors[0] < 1e-9 && fabs(e.openings.errors[1] - off) < 1e-9);
             assert_int_equal(e.strange, 0);
             assert_int_equal(e.missing, 1); /* the window to the east */
             if (off > 0) {
-                assert_string_equal(e.worst_face, "south");
-                assert_string_equal(e.worst_hole, "door");
+                assert_string_equal(e.faces.worst, "south");
+                assert_string_equal(e.openings.worst, "door");
             }
             wall_errors_release(&e);
             wall_plan_release(&truth);
@@ -79,7 +79,7 @@ static void what_the_truth_does_not_have_is_counted(void **state)
     assert_ok(wall_errors_find(&e, &found, &truth, 0.5, &err), err);
     assert_int_equal(e.strange, 4); /* the south of both rooms, the door, the window */
     assert_int_equal(e.missing, 3);
-    assert_int_equal(e.face_count, 6);
+    assert_int_equal(e.faces.count, 6);
     wall_errors_release(&e);
     wall_plan_release(&truth);
     wall_plan_release(&found);
@@ -107,7 +107,7 @@ static void broken_lines_are_named(void **state)
         struct err err = ERR_INIT;
         assert_int_equal(wall_plan_read(&plan, scratch_write("plan.txt", cases[i].text), cases[i].kind, &err), ST_DATA);
         assert_err(err, ST_DATA, cases[i].words);
-        assert_int_equal(plan.face_count + plan.hole_count, 0);
+        assert_int_equal(plan.faces.count + plan.openings.count, 0);
     }
 }
 
