@@ -44,12 +44,17 @@ static void wrong_files_are_told_by_line(void **state)
                    ":4: found a second thickness");
 }
 
+static void read_marks(struct mark_list *list, const char *text, enum mark_file file)
+{
+    struct err err = ERR_INIT;
+    assert_ok(mark_list_read(list, scratch_write("marks.txt", text), file, &err), err);
+}
+
 static void an_empty_correction_is_none(void **state)
 {
     (void)state;
     struct mark_list list;
-    struct err err = ERR_INIT;
-    assert_ok(mark_list_read(&list, scratch_write("marks.txt", "# nothing yet\n"), MARKS_FIX, &err), err);
+    read_marks(&list, "# nothing yet\n", MARKS_FIX);
     assert_int_equal(list.count, 0);
     mark_list_release(&list);
     mark_list_release(&list);
@@ -73,31 +78,52 @@ static struct made turned_room(void)
         .ceiling = 1, .world_from_room = turned_by(MADE_IDENTITY, w), .scale = 0.37, .origin = vec3_make(1, 2, 3)};
 }
 
+static struct mark_scene make_turned_room(struct made_room *r)
+{
+    const struct made m = turned_room();
+    make_room(r, &m);
+    const struct vec3 up = mat3_apply(m.world_from_room, vec3_make(0, 0, 1));
+    return (struct mark_scene){&r->set, &r->list, &r->cloud, up, vec3_dot(up, m.origin)};
+}
+
+static struct vec3 place_of(const char *name, const struct mark_list *list, const struct mark_scene *scene)
+{
+    struct vec3 at;
+    struct err err = ERR_INIT;
+    assert_ok(mark_locate(&at, MARK_POINT, name, list, scene, &err), err);
+    return at;
+}
+
+/* What these marks say of p cannot be. */
+static void assert_nowhere(const char *text, const struct mark_scene *scene, const char *words)
+{
+    struct mark_list list;
+    struct vec3 at;
+    struct err err = ERR_INIT;
+    read_marks(&list, text, MARKS_FIX);
+    assert_int_equal(mark_locate(&at, MARK_POINT, "p", &list, scene, &err), ST_DATA);
+    assert_err(err, ST_DATA, words);
+    mark_list_release(&list);
+}
+
 static void marks_are_placed(void **state)
 {
     (void)state;
-    const struct made m = turned_room();
     struct made_room r;
+    const struct mark_scene scene = make_turned_room(&r);
     struct mark_list list;
-    struct err err = ERR_INIT;
     char text[2048] = "";
     const struct vec3 p = {3.4, 2.2, 0.7}, q = {4.2, 2.5, 0}, s = {5, 3, 1.2};
-    struct vec3 at;
-    make_room(&r, &m);
     put(text, sizeof text, &r, "mark p", 0, p, "");
     put(text, sizeof text, &r, "mark p", 1, p, "");
     put(text, sizeof text, &r, "mark q", 0, q, "floor");
     put(text, sizeof text, &r, "mark s", 0, s, "surface");
     strcat(text, "length p q 1\n");
-    assert_ok(mark_list_read(&list, scratch_write("marks.txt", text), MARKS_SCALE, &err), err);
-    const struct vec3 up = mat3_apply(m.world_from_room, vec3_make(0, 0, 1));
-    const struct mark_scene scene = {&r.set, &r.list, &r.cloud, up, vec3_dot(up, m.origin)};
-    assert_ok(mark_locate(&at, MARK_POINT, "p", &list, &scene, &err), err);
-    assert_true(vec3_length(vec3_sub(at, made_world(&m, p))) < 1e-9);
-    assert_ok(mark_locate(&at, MARK_POINT, "q", &list, &scene, &err), err);
-    assert_true(vec3_length(vec3_sub(at, made_world(&m, q))) < 1e-9);
-    assert_ok(mark_locate(&at, MARK_POINT, "s", &list, &scene, &err), err); /* of points 3 cm apart */
-    assert_true(vec3_length(vec3_sub(at, made_world(&m, s))) < 0.02 * m.scale);
+    read_marks(&list, text, MARKS_SCALE);
+    assert_true(vec3_length(vec3_sub(place_of("p", &list, &scene), made_world(&r.made, p))) < 1e-9);
+    assert_true(vec3_length(vec3_sub(place_of("q", &list, &scene), made_world(&r.made, q))) < 1e-9);
+    /* of points 3 cm apart */
+    assert_true(vec3_length(vec3_sub(place_of("s", &list, &scene), made_world(&r.made, s))) < 0.02 * r.made.scale);
     mark_list_release(&list);
     made_release(&r);
 }
@@ -114,48 +140,19 @@ static void marks_that_place_nothing_are_told(void **state)
         {"mark p a 400 20 floor\n", ":1: the floor is not seen at the pixel 400 20 of a"},
         {"mark p a 400 300\nmark p b 30 300\n", "p part before"},
     };
-    const struct made m = turned_room();
-    const struct vec3 up = mat3_apply(m.world_from_room, vec3_make(0, 0, 1));
     struct made_room r;
-    make_room(&r, &m);
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        struct mark_list list;
-        struct err err = ERR_INIT;
-        struct vec3 at;
-        const struct mark_scene scene = {&r.set, &r.list, &r.cloud, up, vec3_dot(up, m.origin)};
-        assert_ok(mark_list_read(&list, scratch_write("marks.txt", cases[i].text), MARKS_FIX, &err), err);
-        assert_int_equal(mark_locate(&at, MARK_POINT, "p", &list, &scene, &err), ST_DATA);
-        assert_err(err, ST_DATA, cases[i].words);
-        mark_list_release(&list);
-    }
+    struct mark_scene scene = make_turned_room(&r);
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) assert_nowhere(cases[i].text, &scene, cases[i].words);
     /* no surface: an empty cloud; nearly the same place: two views side by side */
-    struct mark_list list;
-    struct err err = ERR_INIT;
-    struct vec3 at;
     const struct point_cloud none = {0};
-    struct mark_scene scene = {&r.set, &r.list, &none, up, vec3_dot(up, m.origin)};
-    assert_ok(mark_list_read(&list, scratch_write("marks.txt", "mark p a 400 300 surface\n"), MARKS_FIX, &err), err);
-    assert_int_equal(mark_locate(&at, MARK_POINT, "p", &list, &scene, &err), ST_DATA);
-    assert_err(err, ST_DATA, "no surface is known at the pixel 400 300 of a");
-    mark_list_release(&list);
-    err = (struct err)ERR_INIT;
+    scene.cloud = &none;
+    assert_nowhere("mark p a 400 300 surface\n", &scene, "no surface is known at the pixel 400 300 of a");
     r.views[1].cam_from_world = r.views[0].cam_from_world;
     r.views[1].translation = r.views[0].translation;
     r.views[1].center = r.views[0].center;
     scene.cloud = &r.cloud;
-    assert_ok(
-        mark_list_read(&list, scratch_write("marks.txt", "mark p a 400 300\nmark p b 401 300\n"), MARKS_FIX, &err),
-        err);
-    assert_int_equal(mark_locate(&at, MARK_POINT, "p", &list, &scene, &err), ST_DATA);
-    assert_err(err, ST_DATA, "p is seen from nearly the same side");
-    mark_list_release(&list);
+    assert_nowhere("mark p a 400 300\nmark p b 401 300\n", &scene, "p is seen from nearly the same side");
     made_release(&r);
-}
-
-static void read_fix(struct mark_list *list, const char *text, enum mark_file file)
-{
-    struct err err = ERR_INIT;
-    assert_ok(mark_list_read(list, scratch_write("marks.txt", text), file, &err), err);
 }
 
 /* Standard deviation of the height of corner c when marks miss by a pixel, by trying: two seen from much the same side. */
@@ -189,26 +186,24 @@ static double height_by_chance(const struct made_room *r, struct mark_list *fix)
 static void corners_and_edges_correct_axes_and_floor(void **state)
 {
     (void)state;
-    const struct made m = turned_room();
     struct made_room r;
+    const struct mark_scene scene = make_turned_room(&r);
     struct mark_list fix;
     struct err err = ERR_INIT;
     char text[2048] = "";
     const struct vec3 corner = {5, 4, 0};
-    make_room(&r, &m);
     put(text, sizeof text, &r, "corner c", 0, corner, "");
     put(text, sizeof text, &r, "corner c", 1, corner, "");
     put(text, sizeof text, &r, "edge c", 0, vec3_make(4, 4, 0), "");
     put(text, sizeof text, &r, "edge c", 0, vec3_make(5, 3, 0), "");
     put(text, sizeof text, &r, "edge c", 0, vec3_make(5, 4, 1.5), "");
-    read_fix(&fix, text, MARKS_FIX);
-    const struct mark_scene scene = {.set = &r.set, .lenses = &r.list, .cloud = &r.cloud};
-    const struct mat3 room_from_world = mat3_transpose(m.world_from_room);
+    read_marks(&fix, text, MARKS_FIX);
+    const struct mat3 room_from_world = mat3_transpose(r.made.world_from_room);
     struct mat3 axes = turned_by(room_from_world, vec3_make(0.03, -0.02, 0.04));
     struct vec3 errors = {1, 1, 1};
     struct correction c;
     assert_ok(correct_axes(&axes, &errors, &c, &fix, &scene, 1, &err), err);
-    const struct mat3 left = mat3_multiply(axes, m.world_from_room);
+    const struct mat3 left = mat3_multiply(axes, r.made.world_from_room);
     for (int i = 0; i < 9; i++) assert_true(fabs(left.m[i / 3][i % 3] - (i % 4 == 0)) < 1e-4);
     assert_true(fabs(c.turn - sqrt(0.03 * 0.03 + 0.02 * 0.02 + 0.04 * 0.04)) < 1e-3);
     assert_true(errors.x < 0.02 && errors.y < 0.02 && errors.z < 0.02 && errors.x > 1e-4);
@@ -218,7 +213,7 @@ static void corners_and_edges_correct_axes_and_floor(void **state)
         const double up = k ? 0.25 : 0.05, moved = k ? 0.2 : 0.05;
         for (size_t i = 0; i < r.cloud.count; i++) {
             struct vec3 *p = &r.cloud.points[i].position;
-            *p = vec3_add(*p, mat3_apply(m.world_from_room, vec3_make(0, 0, moved * m.scale)));
+            *p = vec3_add(*p, mat3_apply(r.made.world_from_room, vec3_make(0, 0, moved * r.made.scale)));
         }
         struct room_inputs in = made_inputs(&r);
         struct room room;
@@ -228,7 +223,7 @@ static void corners_and_edges_correct_axes_and_floor(void **state)
         assert_true(room.corner_height < 0);
         assert_true(room.floor_marked == (k == 1));
         assert_true(fabs(made_floor(&r, &room.axes) - (k ? 0 : up)) < 1e-6);
-        assert_true(fabs(room.axes.ceiling - (k ? 2.6 + up : 2.6) * m.scale) < 1e-5);
+        assert_true(fabs(room.axes.ceiling - (k ? 2.6 + up : 2.6) * r.made.scale) < 1e-5);
         if (k) assert_float_equal(room.axes.floor_error / height_by_chance(&r, &fix), 1, 0.15);
     }
     mark_list_release(&fix);
@@ -240,17 +235,15 @@ static void corners_and_edges_correct_axes_and_floor(void **state)
 static void axes_turn_only_as_far_as_marks_tell(void **state)
 {
     (void)state;
-    const struct made m = turned_room();
     struct made_room r;
+    const struct mark_scene scene = make_turned_room(&r);
     struct mark_list fix;
     struct err err = ERR_INIT;
     char text[1024] = "";
-    make_room(&r, &m);
     put(text, sizeof text, &r, "corner c", 0, vec3_make(5, 4, 0), "");
     put(text, sizeof text, &r, "edge c", 0, vec3_make(5, 3, 0), "");
-    read_fix(&fix, text, MARKS_FIX);
-    const struct mark_scene scene = {.set = &r.set, .lenses = &r.list, .cloud = &r.cloud};
-    const struct mat3 right = mat3_transpose(m.world_from_room);
+    read_marks(&fix, text, MARKS_FIX);
+    const struct mat3 right = mat3_transpose(r.made.world_from_room);
     struct mat3 axes = right;
     struct vec3 errors = {0.001, 0.001, 0.001};
     struct correction c;
@@ -272,21 +265,19 @@ static void axes_turn_only_as_far_as_marks_tell(void **state)
 static void edges_that_follow_no_axis_are_refused(void **state)
 {
     (void)state;
-    const struct made m = turned_room();
     struct made_room r;
+    const struct mark_scene scene = make_turned_room(&r);
     struct mark_list fix;
     struct err err = ERR_INIT;
     char text[1024] = "";
-    make_room(&r, &m);
-    const struct mark_scene scene = {.set = &r.set, .lenses = &r.list, .cloud = &r.cloud};
-    struct mat3 axes = mat3_transpose(m.world_from_room);
+    struct mat3 axes = mat3_transpose(r.made.world_from_room);
     struct vec3 errors = {0};
     struct correction c;
     int refused = 0;
     for (int i = 0; i < 36; i++) { /* from one place in all directions of the picture */
         snprintf(text, sizeof text, "corner c a 500 450\nedge c a %.9g %.9g\n", 500 + 99 * cos(M_PI * i / 18),
                  450 + 99 * sin(M_PI * i / 18));
-        read_fix(&fix, text, MARKS_FIX);
+        read_marks(&fix, text, MARKS_FIX);
         struct mat3 now = axes;
         struct err why = ERR_INIT;
         if (correct_axes(&now, &errors, &c, &fix, &scene, 1, &why)) {
@@ -298,7 +289,7 @@ static void edges_that_follow_no_axis_are_refused(void **state)
         mark_list_release(&fix);
     }
     assert_in_range(refused, 1, 35);
-    read_fix(&fix, "corner c a 100 100\nedge c a 101 101\n", MARKS_FIX);
+    read_marks(&fix, "corner c a 100 100\nedge c a 101 101\n", MARKS_FIX);
     assert_int_equal(correct_axes(&axes, &errors, &c, &fix, &scene, 1, &err), ST_DATA);
     assert_err(err, ST_DATA, "marks.txt:2: the point on the edge is only 1.41 px from its corner");
     mark_list_release(&fix);
@@ -308,23 +299,22 @@ static void edges_that_follow_no_axis_are_refused(void **state)
 static void lengths_give_metres_and_marks_a_thickness(void **state)
 {
     (void)state;
-    const struct made m = turned_room();
     struct made_room r;
+    make_turned_room(&r);
     struct mark_list scale, fix;
     struct err err = ERR_INIT;
     char text[2048] = "", walls[1024] = "";
     const struct vec3 p = {4.2, 2.5, 0}, q = {5, 3.1, 0}, t = {3.4, 2.2, 0.7};
-    make_room(&r, &m);
     put(text, sizeof text, &r, "mark p", 0, p, "floor");
     put(text, sizeof text, &r, "mark q", 0, q, "floor");
     put(text, sizeof text, &r, "mark t", 0, t, "");
     put(text, sizeof text, &r, "mark t", 1, t, "");
     strcat(text, "length p q 1\nlength q t 1.9748417658131499\n"); /* sqrt(0.64 + 0.36); sqrt(3.86) is 1.9647 */
-    read_fix(&scale, text, MARKS_SCALE);
+    read_marks(&scale, text, MARKS_SCALE);
     put(walls, sizeof walls, &r, "mark one", 0, vec3_make(4.4, 2.5, 0), "floor");
     put(walls, sizeof walls, &r, "mark two", 0, vec3_make(4.41, 2.65, 0), "floor");
     strcat(walls, "thickness one two\n");
-    read_fix(&fix, walls, MARKS_FIX);
+    read_marks(&fix, walls, MARKS_FIX);
     struct room_inputs in = made_inputs(&r);
     struct room room;
     in.scale = &scale;
@@ -333,7 +323,7 @@ static void lengths_give_metres_and_marks_a_thickness(void **state)
     assert_true(room.axes.metric);
     /* by least squares: the second one is 0.5 % too long */
     const double wanted = (1 + sqrt(3.86) * 1.9748417658131499) / (1 + 3.86);
-    assert_true(fabs(room.axes.scale * m.scale - wanted) < 1e-5);
+    assert_true(fabs(room.axes.scale * r.made.scale - wanted) < 1e-5);
     assert_true(room.axes.scale_error > 0.001 && room.axes.scale_error < 0.05);
     assert_true(fabs(room.axes.thickness - 0.15 * wanted) < 1e-5);
     assert_true(fabs(room.axes.ceiling - 2.6 * wanted) < 1e-4);
@@ -354,7 +344,7 @@ static void errors_of_marks_add_up(void **state)
 {
     (void)state;
     struct mark_list list;
-    read_fix(&list, "mark p a 10 20 floor\n", MARKS_FIX);
+    read_marks(&list, "mark p a 10 20 floor\n", MARKS_FIX);
     assert_float_equal(mark_error(&list, 1, sum_of_marks, &list), 5, 1e-12);
     assert_true(list.marks[0].x == 10 && list.marks[0].y == 20);
     mark_list_release(&list);

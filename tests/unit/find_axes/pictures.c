@@ -8,37 +8,55 @@ static const struct axes_params PARAMS = AXES_PARAMS_DEFAULT;
 
 static struct made made(void) { return (struct made){.ceiling = 1, .world_from_room = MADE_IDENTITY, .scale = 1}; }
 
-static const unsigned char *at(const unsigned char *pixels, double u, double v)
+/* A room that was found, and a black picture. */
+struct drawing {
+    struct made_room r;
+    struct room room;
+    unsigned char *pixels;
+};
+
+static void set_up(struct drawing *d)
 {
+    const struct made m = made();
+    struct err err = ERR_INIT;
+    make_room(&d->r, &m);
+    const struct room_inputs in = made_inputs(&d->r);
+    assert_ok(find_room(&d->room, &in, &PARAMS, &err), err);
+    d->pixels = calloc(3, 800 * 600);
+    assert_non_null(d->pixels);
+}
+
+static void tear_down(struct drawing *d)
+{
+    free(d->pixels);
+    made_release(&d->r);
+}
+
+/* The pixel that shows a point of the room. */
+static const unsigned char *at(const struct drawing *d, double x, double y, double z)
+{
+    double u, v;
+    made_pixel(&d->r, 0, vec3_make(x, y, z), &u, &v);
     assert_true(u > 1 && v > 1 && u < 799 && v < 599);
-    return pixels + 3 * ((int)v * 800 + (int)u);
+    return d->pixels + 3 * ((int)v * 800 + (int)u);
 }
 
 static void outlines_and_arrows_are_where_the_room_is(void **state)
 {
     (void)state;
-    const struct made m = made();
-    struct made_room r;
-    struct room room;
-    struct err err = ERR_INIT;
-    make_room(&r, &m);
-    const struct room_inputs in = made_inputs(&r);
-    assert_ok(find_room(&room, &in, &PARAMS, &err), err);
-    unsigned char *pixels = calloc(3, 800 * 600);
-    assert_non_null(pixels);
+    struct drawing d;
+    set_up(&d);
     const struct vec3 corner = {4, 2.5, 0};
-    draw_room(pixels, &r.views[0], &room, &corner, 1);
-    double u, v;
-    made_pixel(&r, 0, vec3_make(5, 2.8, 0), &u, &v); /* between wall and floor */
-    assert_true(at(pixels, u, v)[0] > 200 && at(pixels, u, v)[1] > 150 && at(pixels, u, v)[2] < 100);
-    made_pixel(&r, 0, vec3_make(5, 2.5, 2.6), &u, &v); /* between wall and ceiling */
-    assert_true(at(pixels, u, v)[0] < 100 && at(pixels, u, v)[1] > 150 && at(pixels, u, v)[2] > 150);
-    made_pixel(&r, 0, vec3_make(4, 2.5, 0.3), &u, &v); /* the blue arrow on the corner */
-    assert_true(at(pixels, u, v)[2] > 200 && at(pixels, u, v)[0] < 100);
-    made_pixel(&r, 0, vec3_make(5, 2, 1.3), &u, &v); /* the middle of a wall */
-    assert_true(at(pixels, u, v)[0] == 0 && at(pixels, u, v)[1] == 0 && at(pixels, u, v)[2] == 0);
-    free(pixels);
-    made_release(&r);
+    draw_room(d.pixels, &d.r.views[0], &d.room, &corner, 1);
+    const unsigned char *p = at(&d, 5, 2.8, 0); /* between wall and floor */
+    assert_true(p[0] > 200 && p[1] > 150 && p[2] < 100);
+    p = at(&d, 5, 2.5, 2.6); /* between wall and ceiling */
+    assert_true(p[0] < 100 && p[1] > 150 && p[2] > 150);
+    p = at(&d, 4, 2.5, 0.3); /* the blue arrow on the corner */
+    assert_true(p[2] > 200 && p[0] < 100);
+    p = at(&d, 5, 2, 1.3); /* the middle of a wall */
+    assert_true(p[0] == 0 && p[1] == 0 && p[2] == 0);
+    tear_down(&d);
 }
 
 /* A camera on the floor's outline, and one far behind everything: lines are cut, nothing is written beside the picture
@@ -46,25 +64,17 @@ static void outlines_and_arrows_are_where_the_room_is(void **state)
 static void cameras_anywhere_draw_within_their_picture(void **state)
 {
     (void)state;
-    const struct made m = made();
-    struct made_room r;
-    struct room room;
-    struct err err = ERR_INIT;
-    make_room(&r, &m);
-    const struct room_inputs in = made_inputs(&r);
-    assert_ok(find_room(&room, &in, &PARAMS, &err), err);
-    unsigned char *pixels = calloc(3, 800 * 600);
-    assert_non_null(pixels);
+    struct drawing d;
+    set_up(&d);
     static const double places[][3] = {{0, 0, 0}, {5, 2, 0}, {2, 2, 0}, {-50, 2, 1}, {2, 2, 2.6}, {1e6, 1e6, 1e6}};
     for (size_t i = 0; i < sizeof places / sizeof *places; i++)
         for (int k = 0; k < MADE_VIEWS; k++) {
-            struct view v = r.views[k];
+            struct view v = d.r.views[k];
             v.center = vec3_make(places[i][0], places[i][1], places[i][2]);
             v.translation = vec3_scale(mat3_apply(v.cam_from_world, v.center), -1);
-            draw_room(pixels, &v, &room, NULL, 0);
+            draw_room(d.pixels, &v, &d.room, NULL, 0);
         }
-    free(pixels);
-    made_release(&r);
+    tear_down(&d);
 }
 
 static void views_are_chosen_evenly(void **state)

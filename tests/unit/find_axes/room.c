@@ -25,6 +25,21 @@ static void find(struct room *room, const struct made_room *r)
     assert_ok(find_room(room, &in, &PARAMS, &err), err);
 }
 
+static void make_and_find(struct room *room, struct made_room *r, const struct made *m)
+{
+    make_room(r, m);
+    find(room, r);
+}
+
+static void assert_refused(const struct made_room *r, const char *words)
+{
+    const struct room_inputs in = made_inputs(r);
+    struct room room;
+    struct err err = ERR_INIT;
+    assert_int_equal(find_room(&room, &in, &PARAMS, &err), ST_DATA);
+    assert_err(err, ST_DATA, words);
+}
+
 static void a_perfect_room_is_found_to_rounding(void **state)
 {
     (void)state;
@@ -35,8 +50,7 @@ static void a_perfect_room_is_found_to_rounding(void **state)
         m.world_from_room = turned(37.0 * k);
         m.scale = k == 1 ? 1 / 3.0 : 1;
         m.origin = vec3_make(3.1 * k, -1.7 * k, 0.8 * k);
-        make_room(&r, &m);
-        find(&room, &r);
+        make_and_find(&room, &r, &m);
         assert_true(made_angle(&r, &room.axes) < 1e-5);
         assert_true(fabs(made_floor(&r, &room.axes)) < 1e-7);
         assert_true(fabs(room.axes.ceiling - 2.6 * m.scale) < 1e-6);
@@ -57,8 +71,7 @@ static void the_frame_is_that_of_the_central_camera(void **state)
     struct made_room r;
     struct room room;
     m.world_from_room = turned(50);
-    make_room(&r, &m);
-    find(&room, &r);
+    make_and_find(&room, &r, &m);
     assert_int_equal(room.central, 0); /* the centre nearest to the mean of all */
     const struct vec3 c = model_from_world_point(&room.axes, r.views[0].center);
     assert_true(fabs(c.x) < 1e-9 && fabs(c.y) < 1e-9 && fabs(c.z - 1.5) < 1e-6);
@@ -82,8 +95,7 @@ static void noise_outliers_and_furniture_move_it_little(void **state)
     m.outliers = 0.1;
     m.furniture = 0.4;
     m.world_from_room = turned(23);
-    make_room(&r, &m);
-    find(&room, &r);
+    make_and_find(&room, &r, &m);
     assert_true(made_angle(&r, &room.axes) < 0.02);
     assert_true(fabs(made_floor(&r, &room.axes)) < 0.001);
     assert_true(fabs(room.axes.ceiling - 2.6) < 0.001);
@@ -108,8 +120,7 @@ static void stated_errors_are_honest(void **state)
         m.seed = (uint64_t)i;
         m.normal_noise = 3;
         m.world_from_room = turned(11.0 * i);
-        make_room(&r, &m);
-        find(&room, &r);
+        make_and_find(&room, &r, &m);
         const struct vec3 up =
             mat3_apply(mat3_transpose(m.world_from_room), world_from_model_direction(&room.axes, vec3_make(0, 0, 1)));
         const double off = hypot(up.x, up.y) * 180 / M_PI / room.axes.tilt_error;
@@ -130,8 +141,7 @@ static void a_room_without_ceiling_says_so(void **state)
     struct room room;
     m.ceiling = 0;
     m.noise = 0.003;
-    make_room(&r, &m);
-    find(&room, &r);
+    make_and_find(&room, &r, &m);
     assert_true(room.axes.ceiling == 0 && room.axes.ceiling_error == 0);
     assert_true(fabs(made_floor(&r, &room.axes)) < 0.001);
     made_release(&r);
@@ -165,8 +175,7 @@ static void two_directions_are_enough(void **state)
     m.noise = 0.005;
     m.normal_noise = 3;
     m.world_from_room = turned(70);
-    make_room(&r, &m);
-    find(&room, &r);
+    make_and_find(&room, &r, &m);
     assert_true(made_angle(&r, &room.axes) < 0.05);
     assert_true(fabs(made_floor(&r, &room.axes)) < 0.001);
     made_release(&r);
@@ -181,8 +190,7 @@ static void tables_do_not_become_the_floor(void **state)
     struct room room;
     m.furniture = 0.6;
     m.noise = 0.003;
-    make_room(&r, &m);
-    find(&room, &r);
+    make_and_find(&room, &r, &m);
     assert_true(fabs(made_floor(&r, &room.axes)) < 0.001);
     made_release(&r);
 }
@@ -192,7 +200,6 @@ static void what_has_no_flat_part_has_no_axes(void **state)
     (void)state;
     struct made m = plain();
     struct made_room r;
-    struct room room;
     const struct rng rng = rng_make(5, "test", "ball");
     make_room(&r, &m);
     for (uint64_t i = 0; i < r.cloud.count; i++) { /* the inside of a ball */
@@ -203,14 +210,9 @@ static void what_has_no_flat_part_has_no_axes(void **state)
         p->normal[1] = (float)-d.y;
         p->normal[2] = (float)-d.z;
     }
-    const struct room_inputs in = made_inputs(&r);
-    struct err err = ERR_INIT;
-    assert_int_equal(find_room(&room, &in, &PARAMS, &err), ST_DATA);
-    assert_err(err, ST_DATA, "no two directions at right angles stand out");
+    assert_refused(&r, "no two directions at right angles stand out");
     r.cloud.count = 0;
-    err = (struct err)ERR_INIT;
-    assert_int_equal(find_room(&room, &in, &PARAMS, &err), ST_DATA);
-    assert_err(err, ST_DATA, "there are no points");
+    assert_refused(&r, "there are no points");
     made_release(&r);
 }
 
@@ -219,16 +221,12 @@ static void a_room_without_floor_is_an_error(void **state)
     (void)state;
     struct made m = plain();
     struct made_room r;
-    struct room room;
     make_room(&r, &m);
     size_t kept = 0;
     for (size_t i = 0; i < r.cloud.count; i++)
         if (!(r.cloud.points[i].normal[2] > 0.5F)) r.cloud.points[kept++] = r.cloud.points[i];
     r.cloud.count = kept;
-    const struct room_inputs in = made_inputs(&r);
-    struct err err = ERR_INIT;
-    assert_int_equal(find_room(&room, &in, &PARAMS, &err), ST_DATA);
-    assert_err(err, ST_DATA, "no floor is found");
+    assert_refused(&r, "no floor is found");
     made_release(&r);
 }
 
