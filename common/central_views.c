@@ -18,10 +18,7 @@ static int compare_places(const void *a, const void *b)
     return p->view - q->view;
 }
 
-static struct vec3 gaze_of(const struct view *v)
-{
-    return vec3_make(v->cam_from_world.m[2][0], v->cam_from_world.m[2][1], v->cam_from_world.m[2][2]);
-}
+static struct vec3 gaze_of(const struct view *v) { return mat3_row(v->cam_from_world, 2); }
 
 enum status central_views(int *order, const struct camera_set *set, struct err *err)
 {

@@ -25,7 +25,7 @@ static const char cell_word[] = "comment cell ";
 
 static bool good_point(const struct cloud_point *p)
 {
-    const double length = vec3_length(vec3_make(p->normal[0], p->normal[1], p->normal[2]));
+    const double length = vec3_length(cloud_normal(p));
     return isfinite(p->position.x) && isfinite(p->position.y) && isfinite(p->position.z) && fabs(length - 1) < 1e-3 &&
            p->views > 0 && p->confidence >= 0 && p->confidence <= 1;
 }

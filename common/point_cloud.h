@@ -33,4 +33,15 @@ enum status point_cloud_write(const struct point_cloud *cloud, const char *path,
 enum status point_cloud_read(struct point_cloud *cloud, const char *path, struct err *err);
 void point_cloud_release(struct point_cloud *cloud);
 
+static inline struct vec3 cloud_normal(const struct cloud_point *p)
+{
+    return vec3_make(p->normal[0], p->normal[1], p->normal[2]);
+}
+static inline void cloud_set_normal(struct cloud_point *p, struct vec3 n)
+{
+    p->normal[0] = (float)n.x;
+    p->normal[1] = (float)n.y;
+    p->normal[2] = (float)n.z;
+}
+
 #endif

@@ -39,6 +39,7 @@ static inline struct vec3 mat3_apply(struct mat3 a, struct vec3 v)
                      a.m[1][0] * v.x + a.m[1][1] * v.y + a.m[1][2] * v.z,
                      a.m[2][0] * v.x + a.m[2][1] * v.y + a.m[2][2] * v.z);
 }
+static inline struct vec3 mat3_row(struct mat3 m, int i) { return vec3_make(m.m[i][0], m.m[i][1], m.m[i][2]); }
 static inline struct mat3 mat3_transpose(struct mat3 a)
 {
     struct mat3 t;

@@ -49,8 +49,6 @@ static struct vec3 to_plane(const struct view_mesh *mesh, struct vec3 p)
     return vec3_make(vec3_dot(mesh->axis_x, r), vec3_dot(mesh->axis_y, r), vec3_dot(mesh->normal, r));
 }
 
-static struct vec3 row_of(struct mat3 m, int row) { return vec3_make(m.m[row][0], m.m[row][1], m.m[row][2]); }
-
 static struct vec3 perpendicular_part(struct vec3 v, struct vec3 unit)
 {
     return vec3_sub(v, vec3_scale(unit, vec3_dot(v, unit)));
@@ -60,8 +58,8 @@ static struct vec3 perpendicular_part(struct vec3 v, struct vec3 unit)
 static struct vec3 mean_axis(const struct camera_set *set, int row)
 {
     struct vec3 sum = {0};
-    for (int i = 0; i < set->view_count; i++) sum = vec3_add(sum, row_of(set->views[i].cam_from_world, row));
-    if (vec3_length(sum) < 1e-3 * set->view_count) sum = row_of(set->views[0].cam_from_world, row);
+    for (int i = 0; i < set->view_count; i++) sum = vec3_add(sum, mat3_row(set->views[i].cam_from_world, row));
+    if (vec3_length(sum) < 1e-3 * set->view_count) sum = mat3_row(set->views[0].cam_from_world, row);
     return vec3_normalize(sum);
 }
 
@@ -112,7 +110,7 @@ static enum status fit_plane(struct view_mesh *mesh, double *spread, double *asp
     struct mat3 vectors;
     mat3_eigen_symmetric(cov, values, &vectors);
     *spread = sqrt(fmax(values[2], 0));
-    struct vec3 ahead = mean_axis(set, 2), main_axis = row_of(vectors, 2), fitted = row_of(vectors, 0);
+    struct vec3 ahead = mean_axis(set, 2), main_axis = mat3_row(vectors, 2), fitted = mat3_row(vectors, 0);
     bool coincident = *spread <= fmax(COINCIDENT * distance, 1e-12 * farthest);
     struct vec3 across = perpendicular_part(ahead, main_axis);
     if (coincident)
@@ -134,7 +132,7 @@ static enum status fit_plane(struct view_mesh *mesh, double *spread, double *asp
         for (int j = 0; j < 3; j++)
             for (int k = 0; k < 3; k++) project.m[j][k] = (j == k) - nn[j] * nn[k];
         mat3_eigen_symmetric(mat3_multiply(project, mat3_multiply(cov, project)), values, &vectors);
-        mesh->axis_x = vec3_normalize(perpendicular_part(row_of(vectors, 2), mesh->normal));
+        mesh->axis_x = vec3_normalize(perpendicular_part(mat3_row(vectors, 2), mesh->normal));
     }
     mesh->axis_y = vec3_cross(mesh->normal, mesh->axis_x);
 

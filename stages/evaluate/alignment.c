@@ -9,8 +9,6 @@ static const double line = 1e-6; /* second over first singular value: below it c
 
 static const double rounding = 1e-24; /* of squared lengths: centres that differ by less stand in one place */
 
-static struct vec3 row(struct mat3 m, int i) { return vec3_make(m.m[i][0], m.m[i][1], m.m[i][2]); }
-
 static void add_outer(struct mat3 *m, struct vec3 a, struct vec3 b)
 {
     double u[3] = {a.x, a.y, a.z}, v[3] = {b.x, b.y, b.z};
@@ -26,7 +24,7 @@ static double nearest_rotation(struct mat3 m, struct mat3 *r, double *second)
     double values[3];
     struct mat3 rows;
     mat3_eigen_symmetric(mat3_multiply(mat3_transpose(m), m), values, &rows);
-    struct vec3 v1 = row(rows, 2), v2 = row(rows, 1), v3 = vec3_cross(v1, v2);
+    struct vec3 v1 = mat3_row(rows, 2), v2 = mat3_row(rows, 1), v3 = vec3_cross(v1, v2);
     struct vec3 m1 = mat3_apply(m, v1), m2 = mat3_apply(m, v2), u1 = vec3_normalize(m1);
     m2 = vec3_sub(m2, vec3_scale(u1, vec3_dot(u1, m2)));
     struct vec3 u2 = vec3_normalize(m2), u3 = vec3_cross(u1, u2);

@@ -11,8 +11,8 @@ static double angle_of(struct mat3 r)
 struct axes_errors axes_errors(const struct room_axes *found, const struct room_axes *truth)
 {
     static const struct mat3 QUARTER = {{{0, 1, 0}, {-1, 0, 0}, {0, 0, 1}}};
-    struct vec3 a = {found->axes.m[2][0], found->axes.m[2][1], found->axes.m[2][2]};
-    struct vec3 b = {truth->axes.m[2][0], truth->axes.m[2][1], truth->axes.m[2][2]};
+    struct vec3 a = mat3_row(found->axes, 2);
+    struct vec3 b = mat3_row(truth->axes, 2);
     struct mat3 turned = found->axes;
     struct axes_errors e = {.up = atan2(vec3_length(vec3_cross(a, b)), vec3_dot(a, b)) * 180 / M_PI,
                             .all = 180,

@@ -16,11 +16,6 @@ enum status find_directions(struct directions *d, const struct point_cloud *clou
 enum status direction_errors(struct vec3 *errors, const struct mat3 *axes, struct vec3 origin,
                              const struct point_cloud *cloud, struct err *err);
 
-static inline struct vec3 mat3_row(struct mat3 m, int i) { return vec3_make(m.m[i][0], m.m[i][1], m.m[i][2]); }
-static inline struct vec3 cloud_normal(const struct cloud_point *p)
-{
-    return vec3_make(p->normal[0], p->normal[1], p->normal[2]);
-}
 /* a turned by the length of w, radians, about w, in its target's axes; exactly orthogonal again. */
 struct mat3 turned_by(struct mat3 a, struct vec3 w);
 /* Of a symmetric matrix, where its eigenvalues tell anything; *unknown projects on the directions where they do not. */

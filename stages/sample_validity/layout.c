@@ -24,8 +24,6 @@ struct layout {
 
 static const struct view *center_view(const struct layout *l) { return &l->scene->set->views[l->center]; }
 
-static struct vec3 row_of(struct mat3 m, int row) { return vec3_make(m.m[row][0], m.m[row][1], m.m[row][2]); }
-
 static enum status find_center_view(struct layout *l, struct err *err)
 {
     int *order = malloc(((size_t)l->scene->set->view_count + 1) * sizeof *order);
@@ -40,7 +38,7 @@ static enum status find_center_view(struct layout *l, struct err *err)
 static bool median_coordinate(const struct layout *l, const bool *use, bool central, int axis, double *value)
 {
     const struct view *v = center_view(l);
-    const struct vec3 row = row_of(v->cam_from_world, axis);
+    const struct vec3 row = mat3_row(v->cam_from_world, axis);
     const double shift = axis == 0 ? v->translation.x : axis == 1 ? v->translation.y : v->translation.z;
     size_t n = 0;
     for (size_t i = 0; i < l->points->count; i++) {
@@ -57,7 +55,7 @@ static bool median_coordinate(const struct layout *l, const bool *use, bool cent
 static enum status find_centroid(struct layout *l, struct err *err)
 {
     const struct camera_set *set = l->scene->set;
-    const struct vec3 gaze = row_of(center_view(l)->cam_from_world, 2);
+    const struct vec3 gaze = mat3_row(center_view(l)->cam_from_world, 2);
     bool *use = calloc((size_t)set->view_count, sizeof *use);
     if (!use) return err_nomem(err, "a list of views", (size_t)set->view_count);
     for (int k = 0; k < CENTRAL_VIEWS && k < set->view_count; k++) {
@@ -65,7 +63,7 @@ static enum status find_centroid(struct layout *l, struct err *err)
         double nearest = HUGE_VAL;
         for (int i = 0; i < set->view_count; i++) {
             const double d = vec3_length(vec3_sub(set->views[i].center, center_view(l)->center));
-            if (vec3_dot(row_of(set->views[i].cam_from_world, 2), gaze) < SAME_WAY) continue;
+            if (vec3_dot(mat3_row(set->views[i].cam_from_world, 2), gaze) < SAME_WAY) continue;
             if (!use[i] && d < nearest) nearest = d, best = i;
         }
         if (best >= 0) use[best] = true;
@@ -116,10 +114,10 @@ static void find_frame(struct layout *l)
     s->axis_x = mesh->axis_x;
     s->axis_y = mesh->axis_y;
     s->axis_z = mesh->normal;
-    if (vec3_dot(s->axis_z, row_of(c->cam_from_world, 2)) >= SAME_WAY) return;
-    s->axis_x = row_of(c->cam_from_world, 0);
-    s->axis_y = row_of(c->cam_from_world, 1);
-    s->axis_z = row_of(c->cam_from_world, 2);
+    if (vec3_dot(s->axis_z, mat3_row(c->cam_from_world, 2)) >= SAME_WAY) return;
+    s->axis_x = mat3_row(c->cam_from_world, 0);
+    s->axis_y = mat3_row(c->cam_from_world, 1);
+    s->axis_z = mat3_row(c->cam_from_world, 2);
 }
 
 static void find_box(struct layout *l)

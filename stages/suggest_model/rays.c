@@ -8,6 +8,7 @@ static const double BEHIND = 1.04; /* of the nearest depth in a cell: what lies 
 
 void ray_list_release(struct ray_list *list)
 {
+    if (!list) return;
     free(list->rays);
     *list = (struct ray_list){0};
 }
@@ -17,7 +18,7 @@ static int cell_of(const struct view *v, const struct cloud_point *p, double *z)
 {
     double x, y;
     const struct vec3 to = vec3_sub(v->center, p->position);
-    if (vec3_dot(to, vec3_make(p->normal[0], p->normal[1], p->normal[2])) <= 0) return -1;
+    if (vec3_dot(to, cloud_normal(p)) <= 0) return -1;
     *z = view_project(v, p->position, &x, &y);
     if (*z <= 0 || !(x >= 0 && y >= 0 && x < v->width && y < v->height)) return -1;
     const int column = (int)(x * COLUMNS / v->width), row = (int)(y * COLUMNS / v->height);

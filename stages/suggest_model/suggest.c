@@ -40,7 +40,7 @@ static double along(struct vec3 p, int axis) { return axis ? p.y : p.x; }
 
 static bool looks_along(const struct finder *f, const struct cloud_point *p, int axis, int sign)
 {
-    return sign * (double)p->normal[axis] >= cos(f->params->max_angle * 3.14159265358979323846 / 180);
+    return sign * (double)p->normal[axis] >= cos(f->params->max_angle * M_PI / 180);
 }
 
 /* The part-quantiles of the points' coordinates: a plan is where nearly all points are. */

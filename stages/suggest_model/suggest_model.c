@@ -122,12 +122,8 @@ static enum status suggest(const struct files *f, const struct suggest_params *p
     for (int v = 0; !st && v < set.view_count; v++) set.views[v] = model_from_world_view(&axes, &set.views[v]);
     for (size_t i = 0; !st && i < cloud.count; i++) {
         struct cloud_point *p = &cloud.points[i];
-        const struct vec3 n = model_from_world_direction(
-            &axes, vec3_make((double)p->normal[0], (double)p->normal[1], (double)p->normal[2]));
         p->position = model_from_world_point(&axes, p->position);
-        p->normal[0] = (float)n.x;
-        p->normal[1] = (float)n.y;
-        p->normal[2] = (float)n.z;
+        cloud_set_normal(p, model_from_world_direction(&axes, cloud_normal(p)));
     }
     if (!st && suggest_plan(&s, &cloud, set.views, set.view_count, axes.ceiling, params, err))
         st = err->status == ST_DATA ? err_context(err, "%s", f->points) : err->status;

@@ -97,11 +97,8 @@ static inline bool made_point(const struct made *m, const struct rng *rng, uint6
 static inline void add_made_point(struct made_room *r, struct vec3 at, struct vec3 normal)
 {
     struct cloud_point *q = &r->cloud.points[r->cloud.count++];
-    const struct vec3 n = mat3_apply(r->made.world_from_room, normal);
     *q = (struct cloud_point){.position = made_world(&r->made, at), .views = 3, .confidence = 1};
-    q->normal[0] = (float)n.x;
-    q->normal[1] = (float)n.y;
-    q->normal[2] = (float)n.z;
+    cloud_set_normal(q, mat3_apply(r->made.world_from_room, normal));
 }
 
 /* Four cameras at 1.5 m, turned by 20 to 350 degrees, upright; each its own photo, with the same pinhole lens. */

@@ -206,9 +206,7 @@ static void what_has_no_flat_part_has_no_axes(void **state)
         const struct vec3 d = made_direction(&rng, i, 0);
         struct cloud_point *p = &r.cloud.points[i];
         p->position = vec3_scale(d, 3);
-        p->normal[0] = (float)-d.x;
-        p->normal[1] = (float)-d.y;
-        p->normal[2] = (float)-d.z;
+        cloud_set_normal(p, vec3_scale(d, -1));
     }
     assert_refused(&r, "no two directions at right angles stand out");
     r.cloud.count = 0;
