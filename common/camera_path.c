@@ -131,18 +131,10 @@ enum status camera_path_write(const struct camera_path *p, const char *folder, c
 
 /* -------------------------------------------------------------------------------------------------------- reading */
 
-static enum status keyword(struct textfile *t, const char *word, struct err *err)
-{
-    char *found, wanted[32];
-    snprintf(wanted, sizeof wanted, "\"%s\"", word);
-    if (textfile_word(t, wanted, &found, err)) return err->status;
-    return strcmp(found, word) ? textfile_error(t, err, found, "%s", wanted) : ST_OK;
-}
-
 static enum status next_line(struct textfile *t, const char *word, struct err *err)
 {
     if (!textfile_next(t)) return textfile_error(t, err, NULL, "a line \"%s ...\"", word);
-    return keyword(t, word, err);
+    return textfile_expect(t, word, err);
 }
 
 /* A word of at most size - 1 letters. */
@@ -254,11 +246,7 @@ enum status camera_path_read(struct camera_path *p, const char *folder, struct e
         head.scores = NULL;
     }
     for (int i = 0; !st && i < p->frame_count; i++) st = read_frame(&t, &p->frames[i], &set, &p->frames[0].camera, err);
-    if (!st && textfile_next(&t)) {
-        char *word;
-        st = textfile_rest(&t, "the end", &word, err) ? err->status
-                                                      : textfile_error(&t, err, word, "the end of the file");
-    }
+    if (!st) st = textfile_end_of_file(&t, err);
     free(head.scores);
     textfile_release(&t);
     camera_set_release(&set);

@@ -228,7 +228,7 @@ enum status layered_depth_read_segments(struct layered_depth *d, const char *pat
         st = read_segment(&d->segments[i], &t, i + 1, width * height, err);
         d->segment_count = i + 1;
     }
-    if (!st && textfile_next(&t)) st = textfile_error(&t, err, t.cursor, "the end of the file");
+    if (!st) st = textfile_end_of_file(&t, err);
     textfile_release(&t);
     if (st) layered_depth_release(d);
     return st;

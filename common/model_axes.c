@@ -112,35 +112,12 @@ enum status model_axes_write(const struct model_axes *axes, const char *path, co
 
 /* ---------------------------------------------------------------------------------------------------------- reading */
 
-static enum status expect(struct textfile *t, const char *word, const char *wanted, struct err *err)
-{
-    char *found;
-    if (textfile_word(t, wanted, &found, err)) return err->status;
-    return strcmp(found, word) ? textfile_error(t, err, found, "%s", wanted) : ST_OK;
-}
-
-/* A line that begins with one word, or with two. */
-static enum status next_line(struct textfile *t, const char *word, const char *second, struct err *err)
-{
-    char wanted[64];
-    snprintf(wanted, sizeof wanted, "a line \"%s%s%s ...\"", word, second ? " " : "", second ? second : "");
-    if (!textfile_next(t)) return textfile_error(t, err, NULL, "%s", wanted);
-    if (expect(t, word, wanted, err)) return err->status;
-    return second ? expect(t, second, wanted, err) : ST_OK;
-}
-
-static enum status wrong_number(const struct textfile *t, double found, const char *wanted, struct err *err)
-{
-    char text[32];
-    snprintf(text, sizeof text, "%.9g", found);
-    return textfile_error(t, err, text, "%s", wanted);
-}
-
 static enum status read_error(struct textfile *t, const char *which, double *value, struct err *err)
 {
-    if (next_line(t, "error", which, err) || textfile_double(t, "an error", value, err) || textfile_end(t, err))
+    if (textfile_expect_line(t, "error", err) || textfile_expect(t, which, err) ||
+        textfile_double(t, "an error", value, err) || textfile_end(t, err))
         return err->status;
-    return *value >= 0 ? ST_OK : wrong_number(t, *value, "an error of 0 or more", err);
+    return *value >= 0 ? ST_OK : textfile_wrong_number(t, *value, "an error of 0 or more", err);
 }
 
 /* "none", which leaves *value 0 and says so, or a number. */
@@ -156,41 +133,42 @@ static enum status number_or_none(struct textfile *t, const char *what, double *
 static enum status read_length(struct textfile *t, const char *which, double *value, struct err *err)
 {
     bool known;
-    if (next_line(t, which, NULL, err) || number_or_none(t, "a length, or none", value, &known, err))
+    if (textfile_expect_line(t, which, err) || number_or_none(t, "a length, or none", value, &known, err))
         return err->status;
-    return !known || *value > 0 ? ST_OK : wrong_number(t, *value, "a length above 0, or none", err);
+    return !known || *value > 0 ? ST_OK : textfile_wrong_number(t, *value, "a length above 0, or none", err);
 }
 
 /* Of something that is there, or is not: then the line must say none. */
 static enum status read_error_of(struct textfile *t, const char *which, bool there, double *value, struct err *err)
 {
     bool known = false;
-    if (next_line(t, "error", which, err) || number_or_none(t, "an error, or none", value, &known, err))
+    if (textfile_expect_line(t, "error", err) || textfile_expect(t, which, err) ||
+        number_or_none(t, "an error, or none", value, &known, err))
         return err->status;
     if (there && !known) return textfile_error(t, err, "none", "the error of the %s that the file states", which);
-    if (!there && known) return wrong_number(t, *value, "none: the file states none", err);
-    return *value >= 0 ? ST_OK : wrong_number(t, *value, "an error of 0 or more", err);
+    if (!there && known) return textfile_wrong_number(t, *value, "none: the file states none", err);
+    return *value >= 0 ? ST_OK : textfile_wrong_number(t, *value, "an error of 0 or more", err);
 }
 
 static enum status read_similarity(struct textfile *t, struct model_axes *a, struct err *err)
 {
     struct quat *q = &a->rotation;
     char *unit;
-    if (next_line(t, "rotation", NULL, err) || textfile_double(t, "w", &q->w, err) ||
+    if (textfile_expect_line(t, "rotation", err) || textfile_double(t, "w", &q->w, err) ||
         textfile_double(t, "x", &q->x, err) || textfile_double(t, "y", &q->y, err) ||
         textfile_double(t, "z", &q->z, err) || textfile_end(t, err))
         return err->status;
     const double length = sqrt(q->w * q->w + q->x * q->x + q->y * q->y + q->z * q->z);
-    if (!(fabs(length - 1) <= UNIT)) return wrong_number(t, length, "a quaternion of length 1", err);
-    if (next_line(t, "translation", NULL, err) || textfile_double(t, "x", &a->translation.x, err) ||
+    if (!(fabs(length - 1) <= UNIT)) return textfile_wrong_number(t, length, "a quaternion of length 1", err);
+    if (textfile_expect_line(t, "translation", err) || textfile_double(t, "x", &a->translation.x, err) ||
         textfile_double(t, "y", &a->translation.y, err) || textfile_double(t, "z", &a->translation.z, err) ||
-        textfile_end(t, err) || next_line(t, "scale", NULL, err) || textfile_double(t, "a scale", &a->scale, err) ||
-        textfile_word(t, "\"metres\" or \"unknown\"", &unit, err))
+        textfile_end(t, err) || textfile_expect_line(t, "scale", err) ||
+        textfile_double(t, "a scale", &a->scale, err) || textfile_word(t, "\"metres\" or \"unknown\"", &unit, err))
         return err->status;
     a->metric = !strcmp(unit, "metres");
     if (!a->metric && strcmp(unit, "unknown")) return textfile_error(t, err, unit, "\"metres\" or \"unknown\"");
-    if (!(a->scale > 0)) return wrong_number(t, a->scale, "a scale above 0", err);
-    if (!a->metric && a->scale != 1) return wrong_number(t, a->scale, "1, as the scale is unknown", err);
+    if (!(a->scale > 0)) return textfile_wrong_number(t, a->scale, "a scale above 0", err);
+    if (!a->metric && a->scale != 1) return textfile_wrong_number(t, a->scale, "1, as the scale is unknown", err);
     return textfile_end(t, err);
 }
 
@@ -199,20 +177,16 @@ enum status model_axes_read(struct model_axes *axes, const char *path, struct er
     struct textfile t = {0};
     struct model_axes a = {0};
     int64_t version;
-    char *word;
     enum status st =
-        textfile_open(&t, path, err) || next_line(&t, "remodel-axes", NULL, err) ||
+        textfile_open(&t, path, err) || textfile_expect_line(&t, "remodel-axes", err) ||
                 textfile_int(&t, "version", 1, 1, &version, err) || textfile_end(&t, err) ||
                 read_similarity(&t, &a, err) || read_length(&t, "ceiling", &a.ceiling, err) ||
                 read_length(&t, "thickness", &a.thickness, err) || read_error(&t, "tilt", &a.tilt_error, err) ||
                 read_error(&t, "heading", &a.heading_error, err) || read_error(&t, "floor", &a.floor_error, err) ||
                 read_error_of(&t, "ceiling", a.ceiling > 0, &a.ceiling_error, err) ||
-                read_error_of(&t, "scale", a.metric, &a.scale_error, err)
+                read_error_of(&t, "scale", a.metric, &a.scale_error, err) || textfile_end_of_file(&t, err)
             ? err->status
             : ST_OK;
-    if (!st && textfile_next(&t))
-        st = textfile_rest(&t, "the end", &word, err) ? err->status
-                                                      : textfile_error(&t, err, word, "the end of the file");
     textfile_release(&t);
     *axes = st ? (struct model_axes){0} : a;
     return st;

@@ -128,10 +128,7 @@ static enum status read_fields(struct photo_record *r, struct textfile *t, struc
             ? ST_DATA
             : ST_OK;
     if (!st && textfile_next(t)) st = read_brackets(r, t, err);
-    if (!st && textfile_next(t)) {
-        char *more = NULL;
-        if (!(st = textfile_rest(t, "a line", &more, err))) st = textfile_error(t, err, more, "the end of the file");
-    }
+    if (!st) st = textfile_end_of_file(t, err);
     return st;
 }
 

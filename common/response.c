@@ -49,23 +49,13 @@ float *response_tables(const struct response *r, int bits, struct err *err)
     return tables;
 }
 
-static enum status expect(struct textfile *t, const char *wanted, struct err *err)
-{
-    char *word = NULL;
-    if (!textfile_next(t)) return textfile_error(t, err, "the end of the file", "a line \"%s ...\"", wanted);
-    enum status st = textfile_word(t, wanted, &word, err);
-    if (!st && strcmp(word, wanted)) st = textfile_error(t, err, word, "a line \"%s ...\"", wanted);
-    return st;
-}
-
 static enum status read_levels(struct response *r, struct textfile *t, struct err *err)
 {
     static const char *const colours[] = {"red", "green", "blue"};
     enum status st = ST_OK;
     for (int i = 0; !st && i < RESPONSE_LEVELS; i++) {
         if (!textfile_next(t))
-            return textfile_error(t, err, "the end of the file", "%d lines \"R G B\"; there are %d",
-                                  (int)RESPONSE_LEVELS, i);
+            return textfile_error(t, err, NULL, "%d lines \"R G B\"; there are %d", (int)RESPONSE_LEVELS, i);
         for (int c = 0; !st && c < 3; c++) {
             double light = 0;
             char found[32];
@@ -93,10 +83,10 @@ enum status response_read(struct response *r, const char *path, struct err *err)
     int64_t number = 0;
     *r = (struct response){0};
     enum status st = textfile_open(&t, path, err);
-    if (!st) st = expect(&t, "remodel-response", err);
+    if (!st) st = textfile_expect_line(&t, "remodel-response", err);
     if (!st) st = textfile_int(&t, "format version", 1, 1, &number, err);
     if (!st) st = textfile_end(&t, err);
-    if (!st) st = expect(&t, "curve", err);
+    if (!st) st = textfile_expect_line(&t, "curve", err);
     if (!st) st = textfile_word(&t, "srgb or table", &curve, err);
     if (!st && strcmp(curve, "srgb") && strcmp(curve, "table")) st = textfile_error(&t, err, curve, "srgb or table");
     if (!st && !strcmp(curve, "table")) {
@@ -105,10 +95,7 @@ enum status response_read(struct response *r, const char *path, struct err *err)
     }
     if (!st) st = textfile_end(&t, err);
     if (!st && r->table) st = read_levels(r, &t, err);
-    if (!st && textfile_next(&t)) {
-        char *more = NULL;
-        if (!(st = textfile_rest(&t, "a line", &more, err))) st = textfile_error(&t, err, more, "the end of the file");
-    }
+    if (!st) st = textfile_end_of_file(&t, err);
     textfile_release(&t);
     if (st) *r = (struct response){0};
     return st;

@@ -604,7 +604,7 @@ enum status sfm_model_read_bundler(struct sfm_model *m, const char *path, const 
              read_bundler_point(&t, m, image_of, count, rooms, &track, &track_room, &p, err);
         if (!st) m->points[m->point_count++] = p;
     }
-    if (!st && textfile_next(&t)) st = textfile_error(&t, err, t.cursor, "the end of the file");
+    if (!st) st = textfile_end_of_file(&t, err);
     if (!st && !m->image_count) st = err_set(err, ST_DATA, "%s holds no camera that Bundler could place.", path);
     if (!st) {
         m->points = shrink(m->points, m->point_count, sizeof *m->points);

@@ -105,27 +105,11 @@ enum status subject_list_write(const struct subject_list *list, const char *path
 
 /* --------------------------------------------------------------------------------------------------------- reading */
 
-static enum status next_line(struct textfile *t, const char *word, struct err *err)
-{
-    char *found, wanted[48];
-    snprintf(wanted, sizeof wanted, "a line \"%s ...\"", word);
-    if (!textfile_next(t)) return textfile_error(t, err, NULL, "%s", wanted);
-    if (textfile_word(t, wanted, &found, err)) return err->status;
-    return strcmp(found, word) ? textfile_error(t, err, found, "%s", wanted) : ST_OK;
-}
-
-static enum status wrong_number(const struct textfile *t, double found, const char *wanted, struct err *err)
-{
-    char text[32];
-    snprintf(text, sizeof text, "%.9g", found);
-    return textfile_error(t, err, text, "%s", wanted);
-}
-
 static enum status read_subject(struct textfile *t, struct subject *s, struct err *err)
 {
     char *view, *source;
     int64_t confirmed, asked;
-    if (next_line(t, "subject", err) || textfile_word(t, "a view's name", &view, err) ||
+    if (textfile_expect_line(t, "subject", err) || textfile_word(t, "a view's name", &view, err) ||
         textfile_word(t, "\"face\" or \"user\"", &source, err))
         return err->status;
     if (!strcmp(source, source_names[SUBJECT_USER]))
@@ -142,14 +126,14 @@ static enum status read_subject(struct textfile *t, struct subject *s, struct er
         return err->status;
     s->confirmed = (int)confirmed;
     s->asked = (int)asked;
-    if (!(s->x1 > s->x0)) return wrong_number(t, s->x1, "an x1 above x0", err);
-    if (!(s->y1 > s->y0)) return wrong_number(t, s->y1, "a y1 above y0", err);
-    if (!(s->depth > 0)) return wrong_number(t, s->depth, "a depth above 0", err);
-    if (!(s->score >= 0)) return wrong_number(t, s->score, "a score of 0 or more", err);
+    if (!(s->x1 > s->x0)) return textfile_wrong_number(t, s->x1, "an x1 above x0", err);
+    if (!(s->y1 > s->y0)) return textfile_wrong_number(t, s->y1, "a y1 above y0", err);
+    if (!(s->depth > 0)) return textfile_wrong_number(t, s->depth, "a depth above 0", err);
+    if (!(s->score >= 0)) return textfile_wrong_number(t, s->score, "a score of 0 or more", err);
     for (int i = 0; i < 4; i++) {
         struct vec3 *c = &s->corner[i];
-        if (next_line(t, "corner", err) || textfile_double(t, "x", &c->x, err) || textfile_double(t, "y", &c->y, err) ||
-            textfile_double(t, "z", &c->z, err) || textfile_end(t, err))
+        if (textfile_expect_line(t, "corner", err) || textfile_double(t, "x", &c->x, err) ||
+            textfile_double(t, "y", &c->y, err) || textfile_double(t, "z", &c->z, err) || textfile_end(t, err))
             return err->status;
     }
     const struct vec3 across = vec3_sub(s->corner[1], s->corner[0]), down = vec3_sub(s->corner[3], s->corner[0]);
@@ -163,9 +147,9 @@ enum status subject_list_read(struct subject_list *list, const char *path, struc
     struct textfile t = {0};
     int64_t version, count = 0;
     *list = (struct subject_list){0};
-    enum status st = textfile_open(&t, path, err) || next_line(&t, "remodel-subjects", err) ||
+    enum status st = textfile_open(&t, path, err) || textfile_expect_line(&t, "remodel-subjects", err) ||
                              textfile_int(&t, "version", 1, 1, &version, err) || textfile_end(&t, err) ||
-                             next_line(&t, "subjects", err) ||
+                             textfile_expect_line(&t, "subjects", err) ||
                              textfile_int(&t, "number of subjects", 0, MOST_SUBJECTS, &count, err) ||
                              textfile_end(&t, err)
                          ? err->status
@@ -176,11 +160,7 @@ enum status subject_list_read(struct subject_list *list, const char *path, struc
         if (!st) st = subject_list_add(list, &s, err);
         subject_release(&s);
     }
-    if (!st && textfile_next(&t)) {
-        char *word;
-        st = textfile_rest(&t, "the end", &word, err) ? err->status
-                                                      : textfile_error(&t, err, word, "the end of the file");
-    }
+    if (!st) st = textfile_end_of_file(&t, err);
     textfile_release(&t);
     if (st) subject_list_release(list);
     return st;

@@ -122,6 +122,31 @@ enum status textfile_word(struct textfile *t, const char *what, char **word, str
     return ST_OK;
 }
 
+static enum status expect(struct textfile *t, const char *word, const char *wanted, struct err *err)
+{
+    char *found = NULL;
+
+    const enum status st = textfile_word(t, wanted, &found, err);
+
+    return !st && strcmp(found, word) ? textfile_error(t, err, found, "%s", wanted) : st;
+}
+
+enum status textfile_expect(struct textfile *t, const char *word, struct err *err)
+{
+    char wanted[64];
+
+    snprintf(wanted, sizeof wanted, "\"%s\"", word);
+    return expect(t, word, wanted, err);
+}
+
+enum status textfile_expect_line(struct textfile *t, const char *word, struct err *err)
+{
+    char wanted[64];
+
+    snprintf(wanted, sizeof wanted, "a line \"%s ...\"", word);
+    return textfile_next(t) ? expect(t, word, wanted, err) : textfile_error(t, err, NULL, "%s", wanted);
+}
+
 enum status textfile_int(struct textfile *t, const char *what, int64_t least, int64_t most, int64_t *value,
                          struct err *err)
 {
@@ -165,6 +190,23 @@ enum status textfile_end(struct textfile *t, struct err *err)
 {
     if (!textfile_more(t)) return ST_OK;
     return textfile_error(t, err, skip_blanks(t->cursor), "the end of the line");
+}
+
+enum status textfile_end_of_file(struct textfile *t, struct err *err)
+{
+    char *rest = NULL;
+
+    if (!textfile_next(t)) return ST_OK;
+    const enum status st = textfile_rest(t, "a line", &rest, err);
+    return st ? st : textfile_error(t, err, rest, "the end of the file");
+}
+
+enum status textfile_wrong_number(const struct textfile *t, double found, const char *wanted, struct err *err)
+{
+    char text[32];
+
+    snprintf(text, sizeof text, "%.9g", found);
+    return textfile_error(t, err, text, "%s", wanted);
 }
 
 enum status textfile_error(const struct textfile *t, struct err *err, const char *found, const char *wanted, ...)

@@ -34,6 +34,9 @@ bool textfile_next_raw(
 
 /* Next word of the line. A word may be quoted: "two words", with \" and \\ inside (see textfile_quote). */
 enum status textfile_word(struct textfile *t, const char *what, char **word, struct err *err);
+/* The next word must be this one; the next line must begin with this word. */
+enum status textfile_expect(struct textfile *t, const char *word, struct err *err);
+enum status textfile_expect_line(struct textfile *t, const char *word, struct err *err);
 enum status textfile_int(struct textfile *t, const char *what, int64_t least, int64_t most, int64_t *value,
                          struct err *err);
 enum status textfile_double(struct textfile *t, const char *what, double *value, struct err *err);
@@ -41,10 +44,13 @@ enum status textfile_double(struct textfile *t, const char *what, double *value,
 enum status textfile_rest(struct textfile *t, const char *what, char **rest, struct err *err);
 bool textfile_more(struct textfile *t); /* another word stands on this line */
 enum status textfile_end(struct textfile *t, struct err *err);
+enum status textfile_end_of_file(struct textfile *t, struct err *err); /* no record may follow */
 
 /* "PATH:LINE: found FOUND, wanted WANTED." as ST_DATA; found NULL means the end of the line. */
 enum status textfile_error(const struct textfile *t, struct err *err, const char *found, const char *wanted, ...)
     PRINTF_LIKE(4, 5);
+/* The same, of a number that was read. */
+enum status textfile_wrong_number(const struct textfile *t, double found, const char *wanted, struct err *err);
 
 void textfile_release(struct textfile *t);
 

@@ -40,19 +40,11 @@ static enum status read_vector(struct textfile *t, const char *what, struct vec3
                : ST_OK;
 }
 
-static enum status read_word(struct textfile *t, const char *word, struct err *err)
-{
-    char *found, wanted[64];
-    snprintf(wanted, sizeof wanted, "\"%s\"", word);
-    if (textfile_word(t, wanted, &found, err)) return err->status;
-    return strcmp(found, word) ? textfile_error(t, err, found, "%s", wanted) : ST_OK;
-}
-
 /* The next line's first word must be this one. */
 static enum status read_key(struct textfile *t, const char *key, struct err *err)
 {
     if (!textfile_next(t)) return textfile_error(t, err, NULL, "\"%s\"", key);
-    return read_word(t, key, err);
+    return textfile_expect(t, key, err);
 }
 
 static enum status read_numbers(struct textfile *t, const char *key, double *values, int count, struct err *err)
@@ -107,14 +99,14 @@ static enum status read_shot(struct textfile *t, struct validity *v, struct err 
 static enum status read_end(struct textfile *t, struct shot_end *e, struct err *err)
 {
     char *word;
-    if (read_key(t, "end", err) || read_word(t, "target", err) || read_vector(t, "the target", &e->target, err) ||
+    if (read_key(t, "end", err) || textfile_expect(t, "target", err) || read_vector(t, "the target", &e->target, err) ||
         textfile_word(t, "\"focal\" or \"size\"", &word, err))
         return err->status;
     if (!strcmp(word, "focal")) {
         if (textfile_double(t, "the focal length", &e->focal, err)) return err->status;
         if (!(e->focal > 0)) return textfile_error(t, err, "a focal length of 0 or less", "one above 0");
         if (!textfile_more(t)) return ST_OK;
-        if (read_word(t, "most", err)) return err->status;
+        if (textfile_expect(t, "most", err)) return err->status;
     } else if (strcmp(word, "size"))
         return textfile_error(t, err, word, "\"focal\" or \"size\"");
     if (textfile_double(t, "the size", &e->size, err)) return err->status;
@@ -139,7 +131,7 @@ static enum status read_region(struct textfile *t, struct validity_region *r, st
             return err->status;
         c->valid = strcmp(word, "none");
         if (c->valid && strcmp(word, "from")) return textfile_error(t, err, word, "\"from\" or \"none\"");
-        if (c->valid && (textfile_double(t, "the lowest z", &c->low, err) || read_word(t, "to", err) ||
+        if (c->valid && (textfile_double(t, "the lowest z", &c->low, err) || textfile_expect(t, "to", err) ||
                          textfile_double(t, "the highest z", &c->high, err)))
             return err->status;
         if (!(c->low <= c->high)) return textfile_error(t, err, "a lowest z above the highest", "from LOW_Z to HIGH_Z");

@@ -70,13 +70,6 @@ static enum status add_opening(struct reader *r, const char *name, struct vec3 o
     return add_part(&r->plan->openings, name, c[0], c[1], err);
 }
 
-static enum status word(struct reader *r, const char *wanted, struct err *err)
-{
-    char *found;
-    if (textfile_word(&r->t, wanted, &found, err)) return err->status;
-    return strcmp(found, wanted) ? textfile_error(&r->t, err, found, "\"%s\"", wanted) : ST_OK;
-}
-
 /* ------------------------------------------------------------------------------------------------------ of a model */
 
 static enum status model_wall(struct reader *r, struct err *err)
@@ -84,8 +77,9 @@ static enum status model_wall(struct reader *r, struct err *err)
     static const char *const direction[] = {"x of the normal", "y of the normal"};
     char *name;
     double n[2], c;
-    if (textfile_word(&r->t, "a wall's name", &name, err) || word(r, "normal", err) ||
-        numbers(r, direction, n, 2, err) || word(r, "at", err) || textfile_double(&r->t, "the wall's place", &c, err))
+    if (textfile_word(&r->t, "a wall's name", &name, err) || textfile_expect(&r->t, "normal", err) ||
+        numbers(r, direction, n, 2, err) || textfile_expect(&r->t, "at", err) ||
+        textfile_double(&r->t, "the wall's place", &c, err))
         return err->status;
     /* S is x or y; an angled wall counts it from a point that the plan does not tell */
     if (fmin(fabs(n[0]), fabs(n[1])) > 1e-9) return ST_OK;
@@ -98,9 +92,9 @@ static enum status model_opening(struct reader *r, struct err *err)
     char *name, *wall;
     double a[2], b[2];
     static const char *const from[] = {"where it begins", "its sill"}, *const to[] = {"where it ends", "its head"};
-    if (textfile_word(&r->t, "an opening's name", &name, err) || word(r, "on", err) ||
-        textfile_word(&r->t, "a wall's name", &wall, err) || word(r, "from", err) || numbers(r, from, a, 2, err) ||
-        word(r, "to", err) || numbers(r, to, b, 2, err))
+    if (textfile_word(&r->t, "an opening's name", &name, err) || textfile_expect(&r->t, "on", err) ||
+        textfile_word(&r->t, "a wall's name", &wall, err) || textfile_expect(&r->t, "from", err) ||
+        numbers(r, from, a, 2, err) || textfile_expect(&r->t, "to", err) || numbers(r, to, b, 2, err))
         return err->status;
     const struct plan_part *l = line_named(r, wall);
     if (!l) return ST_OK; /* on an angled wall */
@@ -114,8 +108,8 @@ static enum status model_room(struct reader *r, struct err *err)
     const int first = r->plan->faces.count;
     char *name;
     double floor, c[3], p[2];
-    if (textfile_word(&r->t, "a room's name", &name, err) || word(r, "floor", err) ||
-        textfile_double(&r->t, "the floor's height", &floor, err) || word(r, "ceiling", err) ||
+    if (textfile_word(&r->t, "a room's name", &name, err) || textfile_expect(&r->t, "floor", err) ||
+        textfile_double(&r->t, "the floor's height", &floor, err) || textfile_expect(&r->t, "ceiling", err) ||
         numbers(r, ceiling, c, 3, err))
         return err->status;
     do {
@@ -200,7 +194,7 @@ static enum status framed_window(struct reader *r, const char *name, struct err 
     while (side < 4 && strcmp(name, sides[side])) side++;
     if (side == 4) return textfile_error(&r->t, err, name, "window_south, window_north, window_west or window_east");
     if (r->low[0] > r->high[0]) return textfile_error(&r->t, err, name, "a room above it");
-    if (axis_of(r, &axis, err) || numbers(r, what, v, 2, err) || word(r, "z", err) ||
+    if (axis_of(r, &axis, err) || numbers(r, what, v, 2, err) || textfile_expect(&r->t, "z", err) ||
         numbers(r, what + 2, v + 2, 2, err))
         return err->status;
     if (axis == side % 2) return textfile_error(&r->t, err, axis ? "y" : "x", "the axis along its wall");
@@ -220,7 +214,7 @@ static enum status framed_statement(struct reader *r, const char *verb, struct e
     }
     if (!strcmp(verb, "door")) {
         if (r->partition < 0) return textfile_error(&r->t, err, verb, "a partition above it");
-        if (axis_of(r, &axis, err) || numbers(r, what, v, 2, err) || word(r, "top", err) ||
+        if (axis_of(r, &axis, err) || numbers(r, what, v, 2, err) || textfile_expect(&r->t, "top", err) ||
             textfile_double(&r->t, "its head", &top, err))
             return err->status;
         if (axis == r->partition) return textfile_error(&r->t, err, axis ? "y" : "x", "the axis along the partition");

@@ -107,6 +107,35 @@ static void bad_lines(void **state)
     }
 }
 
+static void expected_words_lines_and_ends(void **state)
+{
+    static const struct {
+        const char *text, *words;
+    } cases[] = {
+        {"size 3 of 4\n# a comment\n", NULL},
+        {"", "t.txt: found an empty file, wanted a line \"size ...\"."},
+        {"sizes 3 of 4\n", "t.txt:1: found \"sizes\", wanted a line \"size ...\"."},
+        {"size 3 off 4\n", "t.txt:1: found \"off\", wanted \"of\"."},
+        {"size 3\n", "t.txt:1: found the end of the line, wanted \"of\"."},
+        {"size 5 of 4\n", "t.txt:1: found \"5\", wanted no more than there are."},
+        {"size 3 of 4\n\nsize 2 of 4 \n", "t.txt:3: found \"size 2 of 4\", wanted the end of the file."},
+    };
+
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct textfile t = opened(cases[i].text);
+        struct err err = ERR_INIT;
+        double part = 0, all = 0;
+        const bool failed = textfile_expect_line(&t, "size", &err) || textfile_double(&t, "a part", &part, &err) ||
+                            textfile_expect(&t, "of", &err) || textfile_double(&t, "a whole", &all, &err) ||
+                            (part > all && textfile_wrong_number(&t, part, "no more than there are", &err)) ||
+                            textfile_end(&t, &err) || textfile_end_of_file(&t, &err);
+        assert_int_equal(failed, cases[i].words != NULL);
+        if (failed) assert_err(err, ST_DATA, cases[i].words);
+        textfile_release(&t);
+    }
+}
+
 static void quoting_reads_back(void **state)
 {
     static const char *const words[] = {"plain",     "",   "two words", "a\"b\\c",        "#1",
@@ -218,6 +247,7 @@ int main(void)
         cmocka_unit_test(records),
         cmocka_unit_test(raw_lines),
         cmocka_unit_test(bad_lines),
+        cmocka_unit_test(expected_words_lines_and_ends),
         cmocka_unit_test(quoting_reads_back),
         cmocka_unit_test(files_that_cannot_be_read),
         cmocka_unit_test(pipes_are_read_to_their_end),
