@@ -17,16 +17,6 @@ static enum status keep_word(char **kept, const char *word, struct err *err)
     return *kept ? ST_OK : err_nomem(err, "a name", strlen(word) + 1);
 }
 
-/* The next line must begin with this word. */
-static enum status expect_line(struct textfile *t, const char *keyword, struct err *err)
-{
-    char *word = NULL;
-    if (!textfile_next(t)) return textfile_error(t, err, "the end of the file", "a line \"%s ...\"", keyword);
-    enum status st = textfile_word(t, keyword, &word, err);
-    if (!st && strcmp(word, keyword)) st = textfile_error(t, err, word, "a line \"%s ...\"", keyword);
-    return st;
-}
-
 static enum status read_int(struct textfile *t, const char *what, int least, int most, int *value, struct err *err)
 {
     int64_t wide = 0;
@@ -75,10 +65,10 @@ static enum status read_bracket(struct photo_record *r, struct textfile *t, stru
 {
     struct bracket *b = &r->brackets[r->bracket_count], *before = r->bracket_count ? b - 1 : NULL;
     char *word = NULL;
-    enum status st =
-        expect_line(t, "bracket", err) || textfile_word(t, "file name", &word, err) || keep_word(&b->file, word, err)
-            ? ST_DATA
-            : ST_OK;
+    enum status st = textfile_expect_line(t, "bracket", err) || textfile_word(t, "file name", &word, err) ||
+                             keep_word(&b->file, word, err)
+                         ? ST_DATA
+                         : ST_OK;
     if (st) return st;
     r->bracket_count++; /* from here on it is released with the record */
     st = read_hash(t, b->hash, err);
@@ -110,20 +100,20 @@ static enum status read_fields(struct photo_record *r, struct textfile *t, struc
     char *word = NULL;
     int version = 0;
     enum status st =
-        expect_line(t, "remodel-photo", err) || read_int(t, "format version", 1, 1, &version, err) ||
-                textfile_end(t, err) || expect_line(t, "file", err) || textfile_word(t, "file name", &word, err) ||
-                keep_word(&r->file, word, err) || textfile_end(t, err) || expect_line(t, "hash", err) ||
-                read_hash(t, r->hash, err) || textfile_end(t, err) || expect_line(t, "size", err) ||
-                read_int(t, "width", 1, 1 << 28, &info->width, err) ||
+        textfile_expect_line(t, "remodel-photo", err) || read_int(t, "format version", 1, 1, &version, err) ||
+                textfile_end(t, err) || textfile_expect_line(t, "file", err) ||
+                textfile_word(t, "file name", &word, err) || keep_word(&r->file, word, err) || textfile_end(t, err) ||
+                textfile_expect_line(t, "hash", err) || read_hash(t, r->hash, err) || textfile_end(t, err) ||
+                textfile_expect_line(t, "size", err) || read_int(t, "width", 1, 1 << 28, &info->width, err) ||
                 read_int(t, "height", 1, 1 << 28, &info->height, err) || textfile_end(t, err) ||
-                expect_line(t, "bits", err) || read_int(t, "bits", 8, 32, &info->bits, err) || textfile_end(t, err) ||
-                expect_line(t, "orientation", err) || read_int(t, "orientation", 1, 8, &info->orientation, err) ||
-                textfile_end(t, err) || expect_line(t, "exif", err) ||
-                read_exif(t, "focal length", &info->focal_mm, err) ||
+                textfile_expect_line(t, "bits", err) || read_int(t, "bits", 8, 32, &info->bits, err) ||
+                textfile_end(t, err) || textfile_expect_line(t, "orientation", err) ||
+                read_int(t, "orientation", 1, 8, &info->orientation, err) || textfile_end(t, err) ||
+                textfile_expect_line(t, "exif", err) || read_exif(t, "focal length", &info->focal_mm, err) ||
                 read_exif(t, "35 mm focal length", &info->focal35_mm, err) ||
                 read_exif(t, "exposure time", &info->seconds, err) || read_exif(t, "f-number", &info->f_number, err) ||
-                read_exif(t, "ISO", &info->iso, err) || textfile_end(t, err) || expect_line(t, "camera", err) ||
-                read_text(t, "make", info->make, sizeof info->make, err) ||
+                read_exif(t, "ISO", &info->iso, err) || textfile_end(t, err) ||
+                textfile_expect_line(t, "camera", err) || read_text(t, "make", info->make, sizeof info->make, err) ||
                 read_text(t, "model", info->model, sizeof info->model, err) || textfile_end(t, err)
             ? ST_DATA
             : ST_OK;

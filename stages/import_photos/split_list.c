@@ -10,20 +10,6 @@
 
 enum { QUOTED_SIZE = 1024, SIDE_MOST = 1 << 28 };
 
-static enum status expect_word(struct textfile *t, const char *wanted, struct err *err)
-{
-    char *word = NULL;
-    enum status st = textfile_word(t, wanted, &word, err);
-    if (!st && strcmp(word, wanted)) st = textfile_error(t, err, word, "a line \"%s ...\"", wanted);
-    return st;
-}
-
-static enum status expect_line(struct textfile *t, const char *keyword, struct err *err)
-{
-    if (!textfile_next(t)) return textfile_error(t, err, "the end of the file", "a line \"%s ...\"", keyword);
-    return expect_word(t, keyword, err);
-}
-
 static enum status read_int(struct textfile *t, const char *what, int least, int most, int *value, struct err *err)
 {
     int64_t wide = 0;
@@ -49,7 +35,7 @@ static enum status read_file(struct textfile *t, char **file, char hash[HASH_TEX
 
 static enum status read_cut(struct split_cut *c, struct textfile *t, struct err *err)
 {
-    enum status st = expect_line(t, "cut", err);
+    enum status st = textfile_expect_line(t, "cut", err);
     if (!st) st = read_file(t, &c->file, c->hash, err);
     if (!st) st = read_int(t, "first column", 0, SIDE_MOST, &c->x, err);
     if (!st) st = read_int(t, "first row", 0, SIDE_MOST, &c->y, err);
@@ -65,7 +51,7 @@ static enum status read_photo(struct split_list *list, struct textfile *t, struc
     struct split_photo *p = &photos[list->count++];
     *p = (struct split_photo){.cuts = calloc(cuts, sizeof *p->cuts)};
     enum status st =
-        p->cuts ? expect_word(t, "photo", err) : err_nomem(err, "a list of pictures", cuts * sizeof *p->cuts);
+        p->cuts ? textfile_expect(t, "photo", err) : err_nomem(err, "a list of pictures", cuts * sizeof *p->cuts);
     if (!st) st = read_file(t, &p->file, p->hash, err);
     if (!st) st = read_int(t, "width", 1, SIDE_MOST, &p->width, err);
     if (!st) st = read_int(t, "height", 1, SIDE_MOST, &p->height, err);
@@ -78,10 +64,10 @@ static enum status read_all(struct split_list *list, struct textfile *t, struct 
 {
     struct split_grid *g = &list->grid;
     int version = 0;
-    enum status st = expect_line(t, "remodel-split", err);
+    enum status st = textfile_expect_line(t, "remodel-split", err);
     if (!st) st = read_int(t, "format version", 1, 1, &version, err);
     if (!st) st = textfile_end(t, err);
-    if (!st) st = expect_line(t, "grid", err);
+    if (!st) st = textfile_expect_line(t, "grid", err);
     if (!st) st = read_int(t, "columns", 1, SPLIT_MOST, &g->columns, err);
     if (!st) st = read_int(t, "rows", 1, SPLIT_MOST, &g->rows, err);
     if (!st) st = read_int(t, "border", 0, SIDE_MOST, &g->border, err);

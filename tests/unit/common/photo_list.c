@@ -157,7 +157,7 @@ static void bad_records(void **state)
         {"long-make", ":8:"},
         {"open-quote", ":8:"},
         {"extra-line", ":9:"},
-        {"brackets-cut", ": found \"the end of the file\", wanted a line \"bracket ...\""},
+        {"brackets-cut", ": found the end of the file, wanted a line \"bracket ...\""},
         {"brackets-order", ":11: found \"b.jpg\", wanted longer and longer exposures"},
         {"brackets-middle", ":9: found \"1\", wanted index of the middle exposure, an integer from 0 to 0"},
         {"brackets-zero", ":9: found \"0\", wanted exposure of white above 0"},
