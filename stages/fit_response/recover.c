@@ -175,11 +175,18 @@ static size_t find_pairs(struct pair *pairs, const struct response *r, const str
     return count;
 }
 
-enum status response_judge(struct response_evidence *e, const struct response *r, const struct places *p,
-                           struct err *err)
+/* How much the light ratio of neighbouring exposures varies with the level of light, as a part of it: 0 for the right
+ * curve, also where exposures are not quite what is stated, for that is the same at all levels. pairs: how many
+ * told; too few give 0. */
+struct evidence {
+    double spread;
+    size_t pairs;
+};
+
+static enum status judge(struct evidence *e, const struct response *r, const struct places *p, struct err *err)
 {
     struct pair *pairs = malloc((3 * p->sample_count + 1) * sizeof *pairs);
-    *e = (struct response_evidence){0};
+    *e = (struct evidence){0};
     if (!pairs) return err_nomem(err, "pairs of samples", 3 * p->sample_count * sizeof *pairs);
     e->pairs = find_pairs(pairs, r, p);
     /* each pair of exposures set right by its own median, over all colours and levels alike */
@@ -309,13 +316,14 @@ static bool solve_smooth(float light[N], struct system *s, double smoothness)
     return rises;
 }
 
-enum status response_recover(struct response *r, const struct places *p, struct err *err)
+/* Least squares. ST_DATA: too little to go by. */
+static enum status recover(struct response *r, const struct places *p, struct err *err)
 {
     static const double ladder[] = {10, 30, 100, 300, 1000, 3000, 10000};
     enum { RUNGS = sizeof ladder / sizeof *ladder };
     const double as_good = 1.2, as_small = 0.002;
     struct response curves[RUNGS];
-    struct response_evidence e[RUNGS];
+    struct evidence e[RUNGS];
     bool rises[RUNGS];
     struct system *s = malloc(4 * sizeof *s); /* the colours', and one to solve */
     double weights[3], least = HUGE_VAL;
@@ -329,7 +337,7 @@ enum status response_recover(struct response *r, const struct places *p, struct 
             s[3] = s[c];
             rises[i] &= solve_smooth(curves[i].light[c], &s[3], ladder[i] * weights[c]);
         }
-        if (rises[i]) st = response_judge(&e[i], &curves[i], p, err);
+        if (rises[i]) st = judge(&e[i], &curves[i], p, err);
         if (!st && rises[i]) least = fmin(least, e[i].spread);
     }
     for (int i = 0; !st && i < RUNGS; i++)
@@ -345,10 +353,10 @@ enum status response_decide(struct response *r, char told[RESPONSE_TOLD], const 
 {
     const double better = 0.5; /* a recovered curve must halve what the sRGB curve leaves */
     const bool must = !strcmp(params->response, "recover");
-    struct response_evidence srgb, table;
+    struct evidence srgb, table;
     struct response curve;
     *r = (struct response){0};
-    enum status st = response_judge(&srgb, r, p, err);
+    enum status st = judge(&srgb, r, p, err);
     if (st) return st;
     if (!strcmp(params->response, "srgb")) {
         snprintf(told, RESPONSE_TOLD, "the sRGB curve, as [fit_response] response = srgb says");
@@ -363,21 +371,19 @@ enum status response_decide(struct response *r, char told[RESPONSE_TOLD], const 
                  100 * srgb.spread);
         return ST_OK;
     }
-    st = response_recover(&curve, p, err);
-    if (!st) st = response_judge(&table, &curve, p, err);
+    st = recover(&curve, p, err);
+    if (!st) st = judge(&table, &curve, p, err);
     if (st) return st;
     if (must || table.spread < better * srgb.spread) {
         *r = curve;
         snprintf(told, RESPONSE_TOLD,
                  "recovered from the exposures: ratios of exposures vary by %.1f %% over the levels of light by the "
-                 "sRGB curve, "
-                 "by %.1f %% by this one",
+                 "sRGB curve, by %.1f %% by this one",
                  100 * srgb.spread, 100 * table.spread);
     } else {
         snprintf(told, RESPONSE_TOLD,
                  "the sRGB curve, though ratios of exposures vary by %.1f %% over the levels of light, for a recovered "
-                 "curve "
-                 "does no better (%.1f %%)",
+                 "curve does no better (%.1f %%)",
                  100 * srgb.spread, 100 * table.spread);
     }
     return ST_OK;

@@ -27,19 +27,6 @@ enum status places_add(struct places *p, const struct photo *photos, const doubl
                        struct err *err);
 void places_release(struct places *p);
 
-/* How much the light ratio of neighbouring exposures varies with the level of light, as a part of it: 0 for the right
- * curve, also where exposures are not quite what is stated, for that is the same at all levels. samples: how many pairs
- * told; too few give 0. */
-struct response_evidence {
-    double spread;
-    size_t pairs;
-};
-enum status response_judge(struct response_evidence *e, const struct response *r, const struct places *p,
-                           struct err *err);
-
-/* Least squares. ST_DATA: too little to go by. */
-enum status response_recover(struct response *r, const struct places *p, struct err *err);
-
 /* What params ask for. told: a sentence for the user about what was decided and why. */
 enum { RESPONSE_TOLD = 320 };
 enum status response_decide(struct response *r, char told[RESPONSE_TOLD], const struct places *p,
