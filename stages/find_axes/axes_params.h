@@ -9,7 +9,8 @@
     X(least_part, double, 0.05, 0, 1, "",                                                                              \
       "part of the points that must look along an axis (within 10 degrees), at least, of two axes")                    \
     X(up_angle, double, 25, 1, 45, "degrees", "points whose normals are nearer to up (down) seek the floor (ceiling)") \
-    X(least_floor, double, 0.001, 0, 1, "", "part of the points that must seek the floor; the same of the ceiling")    \
+    X(least_floor, double, 0.001, 0, 1, "", "part of the points that must seek the floor")                             \
+    X(least_ceiling, double, 0.0002, 0, 1, "", "part of the points that must seek the ceiling, which is often blank")  \
     X(plane_angle, double, 15, 1, 45, "degrees", "points whose normals are nearer to an axis may lie in its planes")   \
     X(least_plane, double, 0.01, 0, 1, "",                                                                             \
       "part of the points that a wall, floor or ceiling has, at least, to refine axes")                                \

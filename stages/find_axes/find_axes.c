@@ -56,7 +56,8 @@ static void tell(const struct room *room, const struct files *f, const struct ca
         log_note("ceiling at %.4g +- %.2g %s, told by %zu points", a->ceiling, a->ceiling_error, unit,
                  room->ceiling.count);
     else
-        log_note("no ceiling: only %zu points above the central camera look down", room->ceiling.asked);
+        log_note("no ceiling: only %zu points above the central camera look down ([find_axes] least_ceiling)",
+                 room->ceiling.asked);
     if (a->metric) log_note("1 scene unit is %.6g m, +- %.2g %%", a->scale, 100 * a->scale_error);
     if (a->thickness > 0) log_note("walls are %.4g %s thick", a->thickness, unit);
 

@@ -165,7 +165,8 @@ enum status find_level(struct level *level, int side, const struct mat3 *axes, s
     enum status st = cloud_size(&size, cloud, origin, err);
     if (!st) st = collect(&places, &heights, &count, side, axes, origin, cloud, params->up_angle, err);
     level->asked = count;
-    const double least = fmax(params->least_floor * (double)cloud->count, 1);
+    const double part = side > 0 ? params->least_floor : params->least_ceiling;
+    const double least = fmax(part * (double)cloud->count, 1);
     const int k = count < CLUSTERS ? (int)count : CLUSTERS;
     if (!st && (double)count >= least) {
         st = kmeans1d(begin, heights, count, k, err);
