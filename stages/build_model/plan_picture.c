@@ -180,6 +180,13 @@ static void find_bounds(const struct plan *plan, const struct placer *placer, do
 static void put_plan(const struct sheet *s, const struct plan *plan, const struct placer *placer, bool metric,
                      double unit)
 {
+    /* floors go on under walls; under one that was removed it is seen */
+    for (int i = 0; i < plan->wall_count; i++) {
+        double c[4][2];
+        if (!plan->walls[i].removed) continue;
+        wall_corners(plan, i, c);
+        put_polygon(s, c, 4, "room");
+    }
     put_rooms(s, plan, metric);
     for (int i = 0; i < plan->box_count; i++) {
         const struct plan_box *b = &plan->boxes[i];
