@@ -6,7 +6,6 @@
 
 #include "common/sort.h"
 
-enum { MOST_FACES = 64 };
 /* Parts of the ceiling's height: heights between which walls are looked at, and how far behind a face a line of sight
  * must go on. */
 static const double LOWEST = 0.04, HIGHEST = 0.92, BEYOND = 0.06;
@@ -28,13 +27,38 @@ struct finder {
     const struct suggest_params *params;
     struct ray_list rays;
     double height, low[2], high[2]; /* where points are */
-    struct face faces[MOST_FACES];
-    int face_count, across[2], up; /* cells along x, y (along a face of the other axis) and z */
+    struct face *faces;             /* owned */
+    int face_count, across[2], up;  /* cells along x, y (along a face of the other axis) and z */
 };
 struct box {
     double low[2], high[2];
     int walls[4];
 };
+
+void suggestion_release(struct suggestion *s)
+{
+    if (!s) return;
+    free(s->walls);
+    free(s->openings);
+    free(s->rooms);
+    *s = (struct suggestion){0};
+}
+
+/* Room for one more at the end of an array; it grows where the count is a power of two. NULL: no memory. */
+static void *one_more(void *array, int *count, size_t size, const char *what, struct err *err)
+{
+    char **items = array;
+    if (!(*count & (*count - 1))) {
+        const size_t bytes = (*count ? 2 * (size_t)*count : 1) * size;
+        char *more = realloc(*items, bytes);
+        if (!more) {
+            err_nomem(err, what, bytes);
+            return NULL;
+        }
+        *items = more;
+    }
+    return *items + (size_t)(*count)++ * size;
+}
 
 static double along(struct vec3 p, int axis) { return axis ? p.y : p.x; }
 
@@ -117,8 +141,12 @@ static enum status peaks(struct finder *f, int axis, int sign, struct err *err)
         for (int o = -apart; best && o <= apart; o++)
             if (o && b + o >= 0 && b + o < bins && (area[b + o] > area[b] || (o < 0 && area[b + o] == area[b])))
                 best = false;
-        if (!best || f->face_count == MOST_FACES) continue;
-        struct face *face = &f->faces[f->face_count++];
+        if (!best) continue;
+        struct face *face = one_more(&f->faces, &f->face_count, sizeof *face, "faces of walls", err);
+        if (!face) {
+            st = err->status;
+            break;
+        }
         *face = (struct face){.axis = axis, .sign = sign, .at = f->low[axis] + (b + 0.5) * step};
         for (int round = 0; round < 3; round++) { /* the mean of what gathers there */
             double sum = 0;
@@ -207,22 +235,27 @@ static bool is_beyond(const struct finder *f, const struct face *face, const str
     return (double)through > SEEN_THROUGH * (double)all;
 }
 
+static bool is_candidate(const struct face *face, int axis, int sign, int best)
+{
+    return face->axis == axis && face->sign == sign && face->net > LEAST_OUTER * best;
+}
+
 /* The outermost face that looks inwards, is no less seen than a part of the most seen one, and not through another. */
 static const struct face *outermost(const struct finder *f, int axis, int sign)
 {
-    const struct face *candidates[MOST_FACES];
-    int count = 0, best = 0;
+    int best = 0;
     for (int i = 0; i < f->face_count; i++)
         if (f->faces[i].axis == axis && f->faces[i].sign == sign && f->faces[i].net > best) best = f->faces[i].net;
-    for (int i = 0; i < f->face_count; i++)
-        if (f->faces[i].axis == axis && f->faces[i].sign == sign && f->faces[i].net > LEAST_OUTER * best)
-            candidates[count++] = &f->faces[i];
     const struct face *found = NULL;
-    for (int i = 0; i < count; i++) {
-        bool beyond = found && sign * (found->at - candidates[i]->at) <= 0;
-        for (int k = 0; !beyond && k < count; k++)
-            beyond = sign * (candidates[k]->at - candidates[i]->at) > 0 && is_beyond(f, candidates[i], candidates[k]);
-        if (!beyond) found = candidates[i];
+    for (int i = 0; i < f->face_count; i++) {
+        const struct face *a = &f->faces[i];
+        if (!is_candidate(a, axis, sign, best)) continue;
+        bool beyond = found && sign * (found->at - a->at) <= 0;
+        for (int k = 0; !beyond && k < f->face_count; k++) {
+            const struct face *b = &f->faces[k];
+            beyond = is_candidate(b, axis, sign, best) && sign * (b->at - a->at) > 0 && is_beyond(f, a, b);
+        }
+        if (!beyond) found = a;
     }
     return found;
 }
@@ -257,7 +290,7 @@ static enum status cut(struct suggestion *s, const struct finder *f, const struc
 {
     const struct face *best[2] = {NULL, NULL};
     double most = f->params->least_wall;
-    for (int i = 0; s->wall_count < MOST_WALLS && i < f->face_count; i++)
+    for (int i = 0; i < f->face_count; i++)
         for (int k = 0; k < f->face_count; k++) {
             const struct face *a = &f->faces[i], *b = &f->faces[k];
             const int axis = a->axis, other = 1 - axis;
@@ -275,7 +308,7 @@ static enum status cut(struct suggestion *s, const struct finder *f, const struc
             }
         }
     /* a wall that only one side shows: as thick as walls usually are */
-    for (int i = 0; !best[1] && s->wall_count < MOST_WALLS && i < f->face_count; i++) {
+    for (int i = 0; !best[1] && i < f->face_count; i++) {
         const struct face *a = &f->faces[i];
         const double away = (f->params->narrowest + WALL_THICKNESS) * f->height;
         const double part = part_seen(f, a, box->low[1 - a->axis], box->high[1 - a->axis]);
@@ -284,17 +317,19 @@ static enum status cut(struct suggestion *s, const struct finder *f, const struc
         best[0] = a;
     }
     if (!best[0]) {
-        if (s->room_count == MOST_ROOMS) return ST_OK;
-        struct plan_room *room = &s->rooms[s->room_count++];
+        struct plan_room *room = one_more(&s->rooms, &s->room_count, sizeof *room, "rooms", err);
+        if (!room) return err->status;
         memcpy(room->walls, box->walls, sizeof room->walls);
         return is_free(&room->free, f, box, err);
     }
-    const int axis = best[0]->axis, wall = s->wall_count++;
+    const int axis = best[0]->axis, wall = s->wall_count;
     const int low_side = axis ? 0 : 1, high_side = axis ? 2 : 3; /* south and north, or west and east */
     const double guess = WALL_THICKNESS * f->height;
     const double first = best[1] || best[0]->sign < 0 ? best[0]->at : best[0]->at - guess;
     const double second = best[1] ? best[1]->at : first + guess;
-    s->walls[wall] = (struct plan_wall){
+    struct plan_wall *w = one_more(&s->walls, &s->wall_count, sizeof *w, "walls", err);
+    if (!w) return err->status;
+    *w = (struct plan_wall){
         .axis = axis,
         .face = first,
         .thickness = second - first,
@@ -428,11 +463,16 @@ static enum status openings_of(struct suggestion *s, const struct finder *f, int
         if ((end - begin) * c >= narrow)
             for (; next_run(&t, true, begin, end, &low, &high); low = high + 1)
                 if (high - low > best[1] - best[0]) best[0] = low, best[1] = high;
-        if ((best[1] - best[0]) * c >= narrow && s->opening_count < MOST_OPENINGS) {
+        if ((best[1] - best[0]) * c >= narrow) {
             int rect[4] = {begin, best[0], end, best[1]};
             grow(&t, rect);
             const bool window = rect[1] * c > 0.15 * f->height;
-            s->openings[s->opening_count++] = (struct plan_opening){
+            struct plan_opening *o = one_more(&s->openings, &s->opening_count, sizeof *o, "openings", err);
+            if (!o) {
+                st = err->status;
+                break;
+            }
+            *o = (struct plan_opening){
                 wall, w->begin + rect[0] * c, w->begin + rect[2] * c, window ? rect[1] * c : 0, rect[3] * c, window};
             if (rect[2] > end) end = rect[2];
         }
@@ -462,19 +502,25 @@ enum status suggest_plan(struct suggestion *s, const struct point_cloud *cloud, 
         st = err_set(err, ST_DATA, "no four walls stand around the points; write the script by hand.");
     if (!st) {
         const struct box box = {{outer[1]->at, outer[0]->at}, {outer[3]->at, outer[2]->at}, {0, 1, 2, 3}};
-        for (int k = 0; k < 4; k++)
-            s->walls[k] = (struct plan_wall){.axis = outer[k]->axis,
-                                             .face = outer[k]->at,
-                                             .begin = box.low[1 - outer[k]->axis],
-                                             .end = box.high[1 - outer[k]->axis],
-                                             .sides = {-1, -1},
-                                             .inward = outer[k]->sign};
-        s->wall_count = 4;
+        for (int k = 0; k < 4 && !st; k++) {
+            struct plan_wall *w = one_more(&s->walls, &s->wall_count, sizeof *w, "walls", err);
+            if (!w)
+                st = err->status;
+            else
+                *w = (struct plan_wall){.axis = outer[k]->axis,
+                                        .face = outer[k]->at,
+                                        .begin = box.low[1 - outer[k]->axis],
+                                        .end = box.high[1 - outer[k]->axis],
+                                        .sides = {-1, -1},
+                                        .inward = outer[k]->sign};
+        }
         s->ceiling = f.height;
-        st = cut(s, &f, &box, err);
+        if (!st) st = cut(s, &f, &box, err);
     }
     for (int w = 0; !st && w < s->wall_count; w++) st = openings_of(s, &f, w, err);
     for (int i = 0; i < f.face_count; i++) free(f.faces[i].cells);
+    free(f.faces);
     ray_list_release(&f.rays);
+    if (st) suggestion_release(s);
     return st;
 }

@@ -15,8 +15,6 @@
 /* Of walls whose other face nobody saw, where no one told it, as a part of the ceiling's height. */
 #define WALL_THICKNESS 0.06
 
-enum { MOST_WALLS = 64, MOST_OPENINGS = 64, MOST_ROOMS = 64 };
-
 struct plan_wall {
     int axis;          /* of its normal: 0 x, 1 y */
     double face;       /* position of its inner face */
@@ -37,13 +35,15 @@ struct plan_room {
 };
 struct suggestion { /* walls 0..3 are the outer ones: south, west, north, east */
     double ceiling;
-    struct plan_wall walls[MOST_WALLS];
-    struct plan_opening openings[MOST_OPENINGS];
-    struct plan_room rooms[MOST_ROOMS];
+    struct plan_wall *walls; /* all owned */
+    struct plan_opening *openings;
+    struct plan_room *rooms;
     int wall_count, opening_count, room_count;
 };
 
-/* cloud and views in the model's frame; ceiling 0: the height below which nearly all points of walls lie. ST_DATA: a side
+void suggestion_release(struct suggestion *s);
+
+/* s is empty on entry; the caller releases it. cloud and views in the model's frame; ceiling 0: the height below which nearly all points of walls lie. ST_DATA: a side
  * of the plan has no wall. */
 enum status suggest_plan(struct suggestion *s, const struct point_cloud *cloud, const struct view *views,
                          int view_count, double ceiling, const struct suggest_params *params, struct err *err);

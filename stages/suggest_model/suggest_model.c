@@ -111,7 +111,7 @@ static enum status suggest(const struct files *f, const struct suggest_params *p
     struct camera_set set = {0};
     struct point_cloud cloud = {0};
     struct model_axes axes = {0};
-    struct suggestion s;
+    struct suggestion s = {0};
     enum status st = camera_set_read(&set, f->views, err);
     if (!st) st = camera_set_add_inputs(prov, f->views, err);
     if (!st && !set.view_count) st = err_set(err, ST_DATA, "%s holds no view.", f->views);
@@ -136,6 +136,7 @@ static enum status suggest(const struct files *f, const struct suggest_params *p
                  "scenes/NAME/model.txt",
                  f->out);
     }
+    suggestion_release(&s);
     point_cloud_release(&cloud);
     camera_set_release(&set);
     return st;

@@ -6,6 +6,7 @@
 
 #include "stages/find_axes/marks.h"
 #include "tests/fuzz/fuzz.h"
+#include "tests/fuzz/fuzz_scratch.h"
 
 static char name_a[] = "a", name_b[] = "b";
 static struct lens lenses[] = {
@@ -36,10 +37,9 @@ static void place(const struct mark *m, const struct mark_list *list)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    char path[] = "/tmp/remodel-fuzz-XXXXXX";
-    int fd = mkstemp(path);
+    char path[FUZZ_PATH];
 
-    if (fd < 0 || write(fd, data, size) != (ssize_t)size || close(fd)) abort();
+    fuzz_file(path, data, size);
     for (int file = MARKS_SCALE; file <= MARKS_FIX; file++) {
         struct mark_list list;
         struct err err = ERR_INIT;

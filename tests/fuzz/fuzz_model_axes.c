@@ -7,15 +7,15 @@
 
 #include "common/model_axes.h"
 #include "tests/fuzz/fuzz.h"
+#include "tests/fuzz/fuzz_scratch.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    char path[] = "/tmp/remodel-fuzz-XXXXXX";
-    int fd = mkstemp(path);
+    char path[FUZZ_PATH];
     struct model_axes axes, again;
     struct err err = ERR_INIT;
 
-    if (fd < 0 || write(fd, data, size) != (ssize_t)size || close(fd)) abort();
+    fuzz_file(path, data, size);
     if (model_axes_read(&axes, path, &err)) {
         if (!strstr(err.text, path) || axes.scale != 0) abort();
     } else {

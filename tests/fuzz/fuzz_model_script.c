@@ -5,6 +5,7 @@
 
 #include "stages/build_model/layout.h"
 #include "tests/fuzz/fuzz.h"
+#include "tests/fuzz/fuzz_scratch.h"
 
 enum { MOST = 64 }; /* statements that are looked at: what a few thousand do takes time and is nothing new */
 
@@ -25,12 +26,11 @@ static void apply(struct script *script, const char *path, bool edit)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    char path[] = "/tmp/remodel-fuzz-XXXXXX";
-    int fd = mkstemp(path);
+    char path[FUZZ_PATH];
     struct script script;
     struct err err = ERR_INIT;
 
-    if (fd < 0 || write(fd, data, size) != (ssize_t)size || close(fd)) abort();
+    fuzz_file(path, data, size);
     if (script_read(&script, path, &err)) {
         if (!strstr(err.text, path) || script.statements || script.count) abort();
     } else {

@@ -6,6 +6,7 @@
 
 #include "common/solid_mesh.h"
 #include "tests/fuzz/fuzz.h"
+#include "tests/fuzz/fuzz_scratch.h"
 
 static void use(const struct solid_mesh *mesh)
 {
@@ -27,12 +28,11 @@ static void use(const struct solid_mesh *mesh)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    char path[] = "/tmp/remodel-fuzz-XXXXXX";
-    const int fd = mkstemp(path);
+    char path[FUZZ_PATH];
     struct solid_mesh mesh, again;
     struct err err = ERR_INIT;
 
-    if (fd < 0 || write(fd, data, size) != (ssize_t)size || close(fd)) abort();
+    fuzz_file(path, data, size);
     if (solid_mesh_read(&mesh, path, &err)) {
         if (!strstr(err.text, path) || mesh.faces || mesh.face_count) abort();
     } else {

@@ -6,13 +6,13 @@
 
 #include "stages/evaluate/true_room.h"
 #include "tests/fuzz/fuzz.h"
+#include "tests/fuzz/fuzz_scratch.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    char path[] = "/tmp/remodel-fuzz-XXXXXX";
-    int fd = mkstemp(path);
+    char path[FUZZ_PATH];
 
-    if (fd < 0 || write(fd, data, size) != (ssize_t)size || close(fd)) abort();
+    fuzz_file(path, data, size);
     for (int frame = 0; frame < 2; frame++) {
         struct true_room room;
         struct err err = ERR_INIT;

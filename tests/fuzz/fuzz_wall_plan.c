@@ -6,13 +6,13 @@
 
 #include "stages/evaluate/wall_plan.h"
 #include "tests/fuzz/fuzz.h"
+#include "tests/fuzz/fuzz_scratch.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    char path[] = "/tmp/remodel-fuzz-XXXXXX";
-    int fd = mkstemp(path);
+    char path[FUZZ_PATH];
 
-    if (fd < 0 || write(fd, data, size) != (ssize_t)size || close(fd)) abort();
+    fuzz_file(path, data, size);
     for (int kind = PLAN_OF_MODEL; kind <= PLAN_FRAMED; kind++) {
         struct wall_plan plan = {0};
         struct wall_errors errors = {0};

@@ -57,6 +57,16 @@ static bool surface_point(struct vec3 *p, struct vec3 *n, const struct rng *rng,
     }
 }
 
+/* The k-th of four views around. */
+static void look_around(struct view *view, struct vec3 at, int k)
+{
+    const double a = k * M_PI / 2, c = cos(a), s = sin(a);
+    *view = (struct view){.name = "v", .width = 400, .height = 400, .fx = 180, .fy = 180, .cx = 200, .cy = 200};
+    view->cam_from_world = (struct mat3){{{s, -c, 0}, {0, 0, -1}, {c, s, 0}}};
+    view->center = at;
+    view->translation = vec3_scale(mat3_apply(view->cam_from_world, at), -1);
+}
+
 static void make(struct made *m, bool doorway, uint64_t seed)
 {
     const struct rng rng = rng_make(seed, "suggest", "made");
@@ -75,13 +85,7 @@ static void make(struct made *m, bool doorway, uint64_t seed)
     }
     for (int v = 0; v < VIEWS; v++) { /* six places, in each four views around */
         static const double PLACES[6][2] = {{1.2, 1}, {2.5, 2}, {4, 3}, {4, 1.2}, {6, 2}, {7.4, 3}};
-        const double a = v % 4 * M_PI / 2, c = cos(a), s = sin(a);
-        const struct vec3 at = vec3_make(PLACES[v / 4][0], PLACES[v / 4][1], 1.4);
-        struct view *view = &m->views[v];
-        *view = (struct view){.name = "v", .width = 400, .height = 400, .fx = 180, .fy = 180, .cx = 200, .cy = 200};
-        view->cam_from_world = (struct mat3){{{s, -c, 0}, {0, 0, -1}, {c, s, 0}}};
-        view->center = at;
-        view->translation = vec3_scale(mat3_apply(view->cam_from_world, at), -1);
+        look_around(&m->views[v], vec3_make(PLACES[v / 4][0], PLACES[v / 4][1], 1.4), v % 4);
     }
 }
 
@@ -135,6 +139,7 @@ static void two_rooms_and_their_openings_are_found(void **state)
         assert_float_equal(window->end, WINDOW[2], 0.1);
         assert_float_equal(window->foot, WINDOW[1], 0.1);
         assert_float_equal(window->top, WINDOW[3], 0.1);
+        suggestion_release(&s);
     }
 }
 
@@ -146,6 +151,7 @@ static void a_closed_wall_has_no_doorway(void **state)
     outer_walls_are_right(&s);
     assert_int_equal(s.wall_count, 5);
     for (int i = 0; i < s.opening_count; i++) assert_int_equal(s.openings[i].wall, 0);
+    suggestion_release(&s);
 }
 
 static void the_ceiling_may_be_unknown(void **state)
@@ -155,6 +161,51 @@ static void the_ceiling_may_be_unknown(void **state)
     suggest_made(&s, true, 5, 0);
     outer_walls_are_right(&s);
     assert_int_equal(s.room_count, 2);
+    suggestion_release(&s);
+}
+
+enum { MANY = 70, AROUND = 4 }; /* rooms, views in each */
+static const double STEP = 0.1, WIDE = 1.5, BETWEEN = 0.15, SHORT = 2;
+
+static void add_wall(struct point_cloud *cloud, int axis, int sign, double at, double begin, double end)
+{
+    for (double s = begin + STEP / 2; s < end; s += STEP)
+        for (double z = STEP / 2; z < HIGH; z += STEP) {
+            struct cloud_point *p = &cloud->points[cloud->count++];
+            *p = (struct cloud_point){.views = 1, .confidence = 1};
+            p->position = axis ? vec3_make(s, at, z) : vec3_make(at, s, z);
+            p->normal[axis] = (float)sign;
+        }
+}
+
+/* Nothing is left out because there is much: a row of rooms that has more faces, walls and rooms than 64. */
+static void as_many_rooms_as_there_are(void **state)
+{
+    (void)state;
+    const struct suggest_params params = SUGGEST_PARAMS_DEFAULT;
+    struct point_cloud cloud = {.points = calloc(POINTS, sizeof *cloud.points)};
+    struct view *views = calloc(MANY * AROUND, sizeof *views);
+    struct suggestion s;
+    struct err err = ERR_INIT;
+    assert_non_null(cloud.points);
+    assert_non_null(views);
+    for (int room = 0; room < MANY; room++) {
+        const double low = room * (WIDE + BETWEEN), high = low + WIDE;
+        add_wall(&cloud, 0, 1, low, 0, SHORT);
+        add_wall(&cloud, 0, -1, high, 0, SHORT);
+        add_wall(&cloud, 1, 1, 0, low, high);
+        add_wall(&cloud, 1, -1, SHORT, low, high);
+        for (int k = 0; k < AROUND; k++)
+            look_around(&views[room * AROUND + k], vec3_make(low + WIDE / 2, SHORT / 2, 1.3), k);
+    }
+    if (suggest_plan(&s, &cloud, views, MANY * AROUND, HIGH, &params, &err)) fail_msg("%s", err.text);
+    assert_int_equal(s.wall_count, 4 + MANY - 1);
+    assert_int_equal(s.room_count, MANY);
+    for (int i = 0; i < s.room_count; i++) assert_true(s.rooms[i].free);
+    suggestion_release(&s);
+    suggestion_release(&s);
+    free(views);
+    free(cloud.points);
 }
 
 static void what_is_no_room_is_refused(void **state)
@@ -182,6 +233,7 @@ int main(void)
         cmocka_unit_test(two_rooms_and_their_openings_are_found),
         cmocka_unit_test(a_closed_wall_has_no_doorway),
         cmocka_unit_test(the_ceiling_may_be_unknown),
+        cmocka_unit_test(as_many_rooms_as_there_are),
         cmocka_unit_test(what_is_no_room_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
