@@ -133,7 +133,7 @@ dry = $(findstring n,$(filter-out --%,$(firstword -$(MAKEFLAGS))))
 # several goals of a scene follow each other: a run locks it, and takes all cores by itself
 .NOTPARALLEL:
 GOALS := edited hdr sfm views depth points axes suggest model subjects path frames video pan_scan morph evaluate report
-.PHONY: all help why resfm check fuzz bench bench-compare regress regress-accept man deps deps-check deps-bench clean $(GOALS)
+.PHONY: all help why resfm check sequences fuzz bench bench-compare regress regress-accept man deps deps-check deps-bench clean $(GOALS)
 
 ifeq ($(SCENE),)
 all: deps ## everything a scene asks for; without SCENE builds the programs and runs SCENES, at draft quality if none is said
@@ -188,6 +188,9 @@ regress: ## run SCENES at draft quality and compare their metrics with tests/exp
 	+@tests/regress/run compare $(REGRESS)
 regress-accept: ## make what these runs gave the expected metrics
 	+@tests/regress/run accept $(REGRESS)
+sequences: deps-check ## SEQUENCES=N random scripts and sequences of edits, each step's model checked; 10000 if none is said (some minutes)
+	+@$(BUILD) $(B)/tests/unit/build_model/sequences
+	+@SEQUENCES='$(or $(SEQUENCES),10000)' $(B)/tests/unit/build_model/sequences
 fuzz: deps-check ## look for new inputs that break a parser: FUZZ=NAME FUZZ_SECONDS=60
 	+@tests/fuzz/fuzz.sh '$(FUZZ)' '$(or $(FUZZ_SECONDS),60)'
 help: ## this text

@@ -16,31 +16,53 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_SIDES = 16, NAME_SIZE = 192 };
+enum { NAME_SIZE = 192 };
 #define BODY "walls"
-#define NEAR 1e-9
+#define NEAR 1e-6 /* SOLID_STEP: what is nearer is the same place */
 
-struct shape { /* half-spaces of a solid, with room for their names */
-    struct half_space h[MOST_SIDES];
-    char names[MOST_SIDES][NAME_SIZE];
-    int count;
+struct shape { /* half-spaces of a solid and their names, until add_shape() */
+    struct half_space *h;
+    char (*names)[NAME_SIZE];
+    int count, capacity;
+    bool no_memory;
 };
+
+static void shape_release(struct shape *s)
+{
+    free(s->h);
+    free(s->names);
+    *s = (struct shape){0};
+}
 
 static void add_side(struct shape *s, double x, double y, double z, double offset, const char *fmt, ...)
     PRINTF_LIKE(6, 7);
 static void add_side(struct shape *s, double x, double y, double z, double offset, const char *fmt, ...)
 {
     va_list args;
+    if (s->count == s->capacity) {
+        const int capacity = 2 * s->capacity + 8;
+        struct half_space *h = realloc(s->h, (size_t)capacity * sizeof *h);
+        if (h) s->h = h;
+        char(*names)[NAME_SIZE] = h ? realloc(s->names, (size_t)capacity * sizeof *names) : NULL;
+        if (names) s->names = names;
+        s->no_memory |= !names;
+        if (!names) return;
+        s->capacity = capacity;
+    }
     va_start(args, fmt);
     vsnprintf(s->names[s->count], NAME_SIZE, fmt, args);
     va_end(args);
-    s->h[s->count] = (struct half_space){{x, y, z}, offset, s->names[s->count]};
-    s->count++;
+    s->h[s->count++] = (struct half_space){{x, y, z}, offset, NULL};
 }
 
-static enum status add_shape(struct solid_list *list, const char *body, const struct shape *s, struct err *err)
+/* Adds what the shape holds to the list and releases it. */
+static enum status add_shape(struct solid_list *list, const char *body, struct shape *s, struct err *err)
 {
-    return solid_list_add(list, body, s->h, s->count, err);
+    for (int i = 0; i < s->count; i++) s->h[i].name = s->names[i];
+    const enum status st = s->no_memory ? err_nomem(err, "a solid", (size_t)s->capacity * sizeof *s->names)
+                                        : solid_list_add(list, body, s->h, s->count, err);
+    shape_release(s);
+    return st;
 }
 
 /* -------------------------------------------------------------------------------------------------------------
@@ -172,7 +194,9 @@ struct column {
     const struct wall_parts *parts;
     int wall;
     bool first, last; /* ends at the wall's own ends, in S */
+    bool corner;      /* all of it beside another wall */
     double s[2];
+    double middle; /* by which it is under a room */
 };
 
 /* left or right for who stands inside: the low side in the wall's own direction is left. */
@@ -196,6 +220,11 @@ static const struct plan_opening *beyond(const struct column *c, int upper, doub
     return found;
 }
 
+static bool square(const struct plan_wall *a, const struct plan_wall *b)
+{
+    return fabs(a->d[0] * b->d[0] + a->d[1] * b->d[1]) < 1e-12;
+}
+
 static void add_column_side(struct shape *sh, const struct column *c, int upper, double z0, double z1)
 {
     const struct plan *p = c->parts->plan;
@@ -213,23 +242,33 @@ static void add_column_side(struct shape *sh, const struct column *c, int upper,
         return;
     }
     const struct plan_opening *o = beyond(c, upper, z0, z1, &count);
+    if (o && c->corner) { /* the reveal may be the face of the wall that comes there */
+        int other, far;
+        wall_cap(p, c->wall, !end, &other, &far);
+        if (other >= 0 && !p->walls[other].removed && square(w, &p->walls[other])) {
+            const struct plan_line face = wall_face(&p->walls[other], !far);
+            add_side(sh, face.n[0], face.n[1], 0, face.c, "wall/%s/%s", p->walls[other].name,
+                     far == SIDE_OUT ? "in" : "out");
+            return;
+        }
+    }
     const double along = w->sign * (c->s[upper] + w->origin), out = end == END_END ? 1 : -1;
     if (o)
         add_side(sh, out * w->d[0], out * w->d[1], 0, out * along, "%s/%s/%s", verb_name(o->kind), o->name,
                  reveal_side(w, !upper));
     else
-        add_side(sh, out * w->d[0], out * w->d[1], 0, out * along, "wall/%s/cut", w->name);
+        add_side(sh, out * w->d[0], out * w->d[1], 0, out * along, "wall/%s/top", w->name); /* a step of it, if seen */
 }
 
-/* A piece of a column from z0 (the head of `below`, or the wall's foot) up to the sill of `above`, or the top. */
+/* A piece of a column from z0 (the head of `below`, or the wall's foot) up to the sill of `above`, or to z1 and the
+ * ceiling. */
 static enum status add_piece(struct solid_list *list, const struct column *c, double z0,
                              const struct plan_opening *below, double z1, const struct plan_opening *above,
                              const struct top *top, bool cut, struct err *err)
 {
     const struct plan_wall *w = &c->parts->plan->walls[c->wall];
     const struct plan_line in = wall_face(w, SIDE_IN), out = wall_face(w, SIDE_OUT);
-    struct shape s = {.count = 0};
-    if (!top && !(z1 - z0 > NEAR)) return ST_OK;
+    struct shape s = {0};
     add_side(&s, in.n[0], in.n[1], 0, in.c, "wall/%s/in", w->name);
     add_side(&s, out.n[0], out.n[1], 0, out.c, "wall/%s/out", w->name);
     add_column_side(&s, c, 0, z0, z1);
@@ -240,10 +279,9 @@ static enum status add_piece(struct solid_list *list, const struct column *c, do
         add_side(&s, 0, 0, -1, -z0, "wall/%s/%s", w->name, cut ? "cut" : "bottom");
     if (above)
         add_side(&s, 0, 0, 1, z1, "%s/%s/sill", verb_name(above->kind), above->name);
-    else if (top)
-        add_side(&s, -top->a[1], -top->a[2], 1, top->a[0], "wall/%s/top", w->name);
-    else
+    else if (z1 < HUGE_VAL)
         add_side(&s, 0, 0, 1, z1, "wall/%s/cut", w->name);
+    if (!above) add_side(&s, -top->a[1], -top->a[2], 1, top->a[0], "wall/%s/top", w->name);
     return add_shape(list, BODY, &s, err);
 }
 
@@ -296,7 +334,7 @@ static enum status add_column(struct solid_list *list, const struct column *c, c
         const double to = above ? above->z[0] : HUGE_VAL;
         for (int k = 0; k < cut_count && !st; k++) {
             if (cuts[k] <= z + NEAR || cuts[k] >= to - NEAR || !reaches(c, top, cuts[k])) continue;
-            st = add_piece(list, c, z, below, cuts[k], NULL, NULL, cut, err);
+            st = add_piece(list, c, z, below, cuts[k], NULL, top, cut, err);
             z = cuts[k];
             below = NULL;
             cut = true;
@@ -317,10 +355,9 @@ static int tops_above(const struct column *c, struct top *tops)
 {
     const struct wall_parts *w = c->parts;
     const struct plan_wall *wall = &w->plan->walls[c->wall];
-    const double middle = 0.5 * (c->s[0] + c->s[1]);
     int n = 0;
     for (int i = w->first_top[c->wall]; !wall->has_top && i < w->first_top[c->wall + 1]; i++) {
-        if (middle < w->tops[i].s[0] || middle > w->tops[i].s[1]) continue;
+        if (c->middle < w->tops[i].s[0] || c->middle > w->tops[i].s[1]) continue;
         bool known = false;
         for (int k = 0; k < n; k++) known |= !memcmp(tops[k].a, w->tops[i].top.a, sizeof tops[k].a);
         if (!known) tops[n++] = w->tops[i].top;
@@ -329,33 +366,53 @@ static int tops_above(const struct column *c, struct top *tops)
     return n;
 }
 
+/* Does one of the wall's openings have its lower or upper side there. */
+static bool opens_at(const struct wall_parts *parts, int wall, int upper, double s)
+{
+    for (int i = parts->first[wall]; i < parts->first[wall + 1]; i++)
+        if (fabs(parts->openings[i]->s[upper] - s) <= NEAR) return true;
+    return false;
+}
+
 static enum status add_wall(struct solid_list *list, const struct wall_parts *parts, int wall, struct err *err)
 {
     const struct plan_wall *w = &parts->plan->walls[wall];
     const int openings = parts->first[wall + 1] - parts->first[wall];
     const int rooms = parts->first_top[wall + 1] - parts->first_top[wall];
     const size_t room = (size_t)(4 * openings + 2 * rooms) + 4;
-    double *s = calloc(room, sizeof *s), *cuts = calloc(room, sizeof *cuts), span[2];
+    double *s = calloc(room, sizeof *s), *cuts = calloc(room, sizeof *cuts), span[2], reach[2];
     const struct plan_opening **holes = calloc(room, sizeof *holes);
     struct top *tops = calloc((size_t)rooms + 1, sizeof *tops);
     int n = 0, kept = 0;
     enum status st = s && cuts && holes && tops ? ST_OK : err_nomem(err, "a wall's pieces", room * sizeof *s);
     if (!st) {
         wall_span(parts->plan, wall, span);
+        wall_reach(parts->plan, wall, reach);
+        s[n++] = span[0];
+        s[n++] = span[1];
         for (int i = parts->first[wall]; i < parts->first[wall + 1]; i++)
             for (int k = 0; k < 2; k++) s[n++] = parts->openings[i]->s[k];
         const struct top own = {{w->top, 0, 0}};
-        for (int i = parts->first_top[wall]; i < parts->first_top[wall + 1] && !w->has_top; i++)
-            for (int k = 0; k < 2; k++)
-                if (memcmp(parts->tops[i].top.a, own.a, sizeof own.a)) s[n++] = parts->tops[i].s[k];
-        n = unique(s, n);
-        for (int i = 0; i < n; i++) /* cuts strictly between the ends */
-            if (s[i] > span[0] + 1e-6 && s[i] < span[1] - 1e-6) s[kept++] = s[i];
+        bool level = true; /* one height all along */
+        for (int i = parts->first_top[wall]; i < parts->first_top[wall + 1]; i++)
+            level &= !memcmp(parts->tops[i].top.a, own.a, sizeof own.a);
+        for (int i = parts->first_top[wall]; i < parts->first_top[wall + 1] && !level && !w->has_top; i++)
+            for (int k = 0; k < 2; k++) s[n++] = parts->tops[i].s[k];
+        for (int i = 0; i < n; i++)
+            if ((s[i] > span[0] + NEAR && s[i] < span[1] - NEAR) || i < 2) s[kept++] = s[i];
+        kept = unique(s, kept);
     }
-    /* an opening that begins where the wall's clear span does leaves no column before it but the neighbour's corner:
-     * the first and the last column always reach to the caps */
-    for (int i = 0; i <= kept && !st; i++) {
-        struct column c = {parts, wall, i == 0, i == kept, {i ? s[i - 1] : span[0], i < kept ? s[i] : span[1]}};
+    /* The first and the last column reach to the caps; only where an opening begins beside the corner does that have a
+     * column of its own. */
+    const bool corner[2] = {!st && span[0] - reach[0] > NEAR && opens_at(parts, wall, 0, span[0]),
+                            !st && reach[1] - span[1] > NEAR && opens_at(parts, wall, 1, span[1])};
+    for (int i = corner[0] ? -1 : 0; i < kept - 1 + corner[1] && !st; i++) {
+        struct column c = {parts, wall, i <= -corner[0], i >= kept - 2 + corner[1], i < 0 || i > kept - 2, {0, 0}, 0};
+        /* a corner is under the rooms of what is beside it */
+        const int clear = i < 0 ? 0 : i > kept - 2 ? kept - 2 : i;
+        c.middle = 0.5 * (s[clear] + s[clear + 1]);
+        c.s[0] = i < 0 ? reach[0] : s[i];
+        c.s[1] = i < kept - 1 ? s[i + 1] : reach[1];
         const int count = tops_above(&c, tops);
         for (int k = 0; k < count && !st; k++) st = add_column(list, &c, &tops[k], holes, cuts, err);
     }
@@ -376,7 +433,7 @@ static enum status add_filling(struct solid_list *list, const struct plan *p, co
     const struct plan_line in = wall_face(w, SIDE_IN);
     const char *kind = glass ? "glass" : verb_name(o->kind), *leaf = glass ? "" : "leaf-";
     char body[NAME_SIZE];
-    struct shape s = {.count = 0};
+    struct shape s = {0};
     snprintf(body, sizeof body, glass ? "glass/%s" : BODY "%.0s", o->name);
     add_side(&s, in.n[0], in.n[1], 0, in.c - a, "%s/%s/%sin", kind, o->name, leaf);
     add_side(&s, -in.n[0], -in.n[1], 0, b - in.c, "%s/%s/%sout", kind, o->name, leaf);
@@ -393,15 +450,15 @@ static enum status add_leaf(struct solid_list *list, const struct plan *p, const
                             struct err *err)
 {
     const double middle = 0.5 * p->walls[o->wall].thickness;
-    return add_filling(list, p, o, middle - 0.5 * p->leaf, middle + 0.5 * p->leaf, false, err);
+    return add_filling(list, p, o, middle - 0.5 * o->leaf, middle + 0.5 * o->leaf, false, err);
 }
 
 static enum status add_pane(struct solid_list *list, const struct plan *p, const struct plan_opening *o, int side,
                             struct err *err)
 {
     const double t = p->walls[o->wall].thickness;
-    return side == SIDE_OUT ? add_filling(list, p, o, t - p->glass, t, true, err)
-                            : add_filling(list, p, o, 0, p->glass, true, err);
+    return side == SIDE_OUT ? add_filling(list, p, o, t - o->leaf, t, true, err)
+                            : add_filling(list, p, o, 0, o->leaf, true, err);
 }
 
 /* ----------------------------------------------------------------------------------------------- floors and
@@ -423,7 +480,6 @@ struct slabs {
     struct solid_list *list;
     const struct plan *plan;
     const struct plan_room *room;
-    double slab;
     struct err *err;
 };
 
@@ -442,15 +498,16 @@ static enum status add_slabs(const struct slabs *b, const struct corner *c, int 
 {
     const struct plan_room *r = b->room;
     const double *l = r->lower;
-    struct shape floor = {.count = 0}, ceiling = {.count = 0};
+    struct shape floor = {0}, ceiling = {0};
     slab_sides(&floor, b, c, n, "floor");
     add_side(&floor, 0, 0, 1, r->floor, "floor/%s", r->name);
-    add_side(&floor, 0, 0, -1, b->slab - r->floor, "floor/%s/bottom", r->name);
+    add_side(&floor, 0, 0, -1, r->slab - r->floor, "floor/%s/bottom", r->name);
     slab_sides(&ceiling, b, c, n, "ceiling");
     add_side(&ceiling, l[1], l[2], -1, -l[0], "ceiling/%s", r->name);
-    add_side(&ceiling, -l[1], -l[2], 1, l[0] + b->slab, "ceiling/%s/top", r->name);
-    if (add_shape(b->list, BODY, &floor, b->err)) return b->err->status;
-    return add_shape(b->list, BODY, &ceiling, b->err);
+    add_side(&ceiling, -l[1], -l[2], 1, l[0] + r->slab, "ceiling/%s/top", r->name);
+    if (!add_shape(b->list, BODY, &floor, b->err)) add_shape(b->list, BODY, &ceiling, b->err);
+    shape_release(&ceiling);
+    return b->err->status;
 }
 
 /* The polygon's convex parts. At a reflex corner the line of the side before it is drawn on to the nearest side that it
@@ -459,10 +516,7 @@ static enum status cut_convex(const struct slabs *b, struct corner *c, int n, in
 {
     int reflex = 0;
     while (reflex < n && !(turn_at(c, n, reflex) < -1e-12)) reflex++;
-    if (reflex == n && n <= MOST_SIDES - 2) return add_slabs(b, c, n);
-    if (reflex == n)
-        return err_set(b->err, ST_DATA, "room %s has more than %d walls round a convex part of it.", b->room->name,
-                       MOST_SIDES - 2);
+    if (reflex == n) return add_slabs(b, c, n);
     const double *p = c[reflex].p;
     const struct plan_line line = c[reflex].line;
     const double d[2] = {-line.n[1], line.n[0]}; /* counter-clockwise: the way the side goes */
@@ -515,7 +569,7 @@ static enum status cut_convex(const struct slabs *b, struct corner *c, int n, in
 
 static enum status add_room(struct solid_list *list, const struct plan *p, const struct plan_room *r, struct err *err)
 {
-    const struct slabs b = {list, p, r, p->slab > 0 ? p->slab : p->thickness, err};
+    const struct slabs b = {list, p, r, err};
     struct corner *c = calloc((size_t)r->edge_count, sizeof *c);
     if (!c) return err_nomem(err, "a room's corners", (size_t)r->edge_count * sizeof *c);
     for (int e = 0; e < r->edge_count; e++) {
@@ -542,7 +596,7 @@ static enum status add_box(struct solid_list *list, const struct plan_box *b, st
     double c = cos(turn), s = sin(turn);
     if (fmod(b->turn, 90) == 0) c = round(c), s = round(s);
     const double middle[2] = {0.5 * (b->low[0] + b->high[0]), 0.5 * (b->low[1] + b->high[1])};
-    struct shape sh = {.count = 0};
+    struct shape sh = {0};
     for (int k = 0; k < 4; k++) {
         const int axis = k / 2, out = k % 2 ? 1 : -1;
         const double n[2] = {axis ? -out * s : out * c, axis ? out * c : out * s};

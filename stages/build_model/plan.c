@@ -12,6 +12,7 @@
 #include <string.h>
 
 #include "common/scan.h"
+#include "stages/build_model/solid.h"
 
 /* A plan's lengths are taken for equal within LENGTH_EPS; walls within PARALLEL of each other (sine) do not cross. */
 #define LENGTH_EPS 1e-6
@@ -319,8 +320,7 @@ void wall_span(const struct plan *plan, int wall, double span[2])
     }
 }
 
-/* From cap to cap, all that the wall's solid may cover. */
-static void wall_reach(const struct plan *plan, int wall, double span[2])
+void wall_reach(const struct plan *plan, int wall, double span[2])
 {
     const struct plan_wall *w = &plan->walls[wall];
     for (int end = 0; end < 2; end++) {
@@ -522,7 +522,8 @@ static enum status do_opening(struct doer *d)
     if (place_on_wall(d, w, o.s, o.z)) return d->err->status;
     stand_on_floor(d, w, s->verb, o.z);
     if (new_name(d, s->name, &o.name)) return d->err->status;
-    if (o.filled && (s->verb == VERB_WINDOW ? p->glass : p->leaf) == 0) {
+    o.leaf = s->verb == VERB_WINDOW ? p->glass : p->leaf;
+    if (o.filled && o.leaf == 0) {
         free(o.name);
         return refuse(d, "how thick %s is not known without a scale; write \"set %s NUMBER\" before.",
                       s->verb == VERB_WINDOW ? "glass is" : "a door's leaf is",
@@ -592,7 +593,8 @@ static enum status do_room(struct doer *d)
     if (!(r.ceiling - r.floor >= THINNEST))
         return refuse(d, "room %s goes from %.9g up to %.9g, wanted a ceiling above the floor.", s->name, r.floor,
                       r.ceiling);
-    if (p->slab == 0 && p->thickness == 0)
+    r.slab = p->slab > 0 ? p->slab : p->thickness;
+    if (r.slab == 0)
         return refuse(d, "how thick floors are is not known without a scale; write \"set slab NUMBER\" before.");
     r.lower[0] = r.ceiling;
     r.walls = calloc((size_t)s->name_count, sizeof *r.walls);
@@ -876,10 +878,12 @@ static enum status do_fill(struct doer *d, bool fill)
         return refuse(d, "passage %s has no leaf that could be %s; a door has.", s->name, fill ? "closed" : "opened");
     if (o->filled == fill)
         return refuse(d, "%s %s is %s already.", verb_name(o->kind), s->name, fill ? "closed" : "open");
-    if (fill && (o->kind == VERB_WINDOW ? d->plan->glass : d->plan->leaf) == 0)
+    const double leaf = o->kind == VERB_WINDOW ? d->plan->glass : d->plan->leaf;
+    if (fill && leaf == 0)
         return refuse(d, "how thick it is is not known without a scale; write \"set %s NUMBER\" before.",
                       o->kind == VERB_WINDOW ? "glass" : "leaf");
     o->filled = fill;
+    if (fill) o->leaf = leaf;
     return ST_OK;
 }
 
@@ -972,8 +976,9 @@ static enum status check_walls(struct checker *c)
         double span[2], place[2];
         if (w->removed) continue;
         wall_span(p, i, span);
-        if (!(span[1] - span[0] > LENGTH_EPS))
-            return wrong(c, w->line, "wall %s would have no length: from %.9g to %.9g.", w->name, span[0], span[1]);
+        if (!(span[1] - span[0] >= THINNEST))
+            return wrong(c, w->line, "wall %s would be shorter than %g: from %.9g to %.9g.", w->name, THINNEST, span[0],
+                         span[1]);
         for (int e = 0; e < 2; e++) {
             if (w->ends[e].kind == FREE_END) continue;
             const struct plan_wall *o = &p->walls[w->ends[e].other];
@@ -1037,7 +1042,7 @@ static enum status check_openings(struct checker *c)
                 return wrong(c, o->line, "%s %s and %s %s, on wall %s, are in each other.", verb_name(q->kind), q->name,
                              verb_name(o->kind), o->name, w->name);
         }
-        if (o->filled && (o->kind == VERB_WINDOW ? p->glass : p->leaf) > w->thickness)
+        if (o->filled && o->leaf > w->thickness)
             return wrong(c, o->line, "%s %s is thicker than its wall %s.", verb_name(o->kind), o->name, w->name);
     }
     for (int i = 0; i < p->box_count; i++) {
@@ -1241,10 +1246,50 @@ static enum status check_rooms(struct checker *c)
     return st;
 }
 
+static enum status check_within(struct checker *c, int own, const char *what, const char *name, const double *values,
+                                int count)
+{
+    for (int i = 0; i < count; i++)
+        if (!(fabs(values[i]) <= SOLID_REACH))
+            return wrong(c, own, "%s %s reaches to %.9g; a model lies within %g units of the origin.", what, name,
+                         values[i], SOLID_REACH);
+    return ST_OK;
+}
+
+/* Solids have coordinates of so many digits and no more. */
+static enum status check_reach(struct checker *c)
+{
+    const struct plan *p = c->plan;
+    for (int i = 0; i < p->wall_count; i++) {
+        const struct plan_wall *w = &p->walls[i];
+        double at[10] = {w->foot, w->top}, reach[2];
+        if (w->removed) continue;
+        wall_reach(p, i, reach);
+        for (int k = 0; k < 4; k++) wall_point(w, reach[k & 1], k & 2 ? w->thickness : 0, at + 2 + 2 * k);
+        if (check_within(c, w->line, "wall", w->name, at, 10)) return c->err->status;
+    }
+    for (int i = 0; i < p->room_count; i++) {
+        const struct plan_room *r = &p->rooms[i];
+        for (int e = 0; !r->removed && e < r->edge_count; e++) {
+            const double *corner = r->edges[e].outer;
+            const double at[4] = {corner[0], corner[1], r->floor - r->slab, ceiling_at(r, corner) + r->slab};
+            if (check_within(c, r->line, "room", r->name, at, 4)) return c->err->status;
+        }
+    }
+    for (int i = 0; i < p->box_count; i++) {
+        const struct plan_box *b = &p->boxes[i];
+        const double turned = b->turn == 0 ? 0 : hypot(b->high[0] - b->low[0], b->high[1] - b->low[1]);
+        const double at[6] = {b->low[0] - turned,  b->low[1] - turned,  b->low[2],
+                              b->high[0] + turned, b->high[1] + turned, b->high[2]};
+        if (!b->removed && check_within(c, b->line, "box", b->name, at, 6)) return c->err->status;
+    }
+    return ST_OK;
+}
+
 static enum status plan_check(struct plan *plan, const char *path, int line, struct err *err)
 {
     struct checker c = {plan, path, line, err};
-    if (check_rooms(&c) || check_walls(&c) || check_openings(&c)) return err->status;
+    if (check_rooms(&c) || check_walls(&c) || check_openings(&c) || check_reach(&c)) return err->status;
     return ST_OK;
 }
 

@@ -45,6 +45,7 @@ struct plan_opening {
     enum verb kind; /* VERB_DOOR, VERB_PASSAGE, VERB_WINDOW */
     bool removed, interior;
     bool filled; /* a door's leaf, a window's glass */
+    double leaf; /* how thick that is; 0: not told yet */
     int wall;
     double s[2], z[2]; /* ascending */
 };
@@ -70,7 +71,7 @@ struct plan_room {
     bool removed;
     int *walls;
     int wall_count;
-    double floor, ceiling;
+    double floor, ceiling, slab; /* slab: how thick both are */
     bool sloped;
     int slope_walls[2];
     double slope_heights[2]; /* of the ceiling where it meets them */
@@ -121,6 +122,8 @@ void wall_point(const struct plan_wall *w, double s, double off, double p[2]); /
 bool line_cross(struct plan_line a, struct plan_line b, double p[2]);          /* false: nearly parallel */
 /* Where openings may be: between the neighbours. */
 void wall_span(const struct plan *plan, int wall, double span[2]);
+/* From cap to cap, all that the wall's solid may cover: its corners too. */
+void wall_reach(const struct plan *plan, int wall, double span[2]);
 /* The part of the wall above which a room's ceiling lies, for its edge. */
 void room_span(const struct plan *plan, const struct plan_room *room, int edge, int wall, double span[2]);
 double plan_wall_top(const struct plan *plan, int wall, double s0, double s1); /* least, over s0 .. s1 */

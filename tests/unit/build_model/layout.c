@@ -1,4 +1,6 @@
 /* layout.c - what each statement of a model script means: coordinates in, solids out. */
+#include <math.h>
+
 #include "tests/unit/build_model/scripted.h"
 
 static void a_room_is_closed_all_round(void **state)
@@ -291,6 +293,77 @@ static void boxes_stand_turned_or_not(void **state)
     drop(&plan, &list);
 }
 
+/* A wall's corner stays where an opening begins beside it, though the other wall does not fill it. */
+static void an_opening_leaves_the_corner_beside_it(void **state)
+{
+    static const char *const others[] = {"", "extend west start to south\n", "remove west\n"};
+    (void)state;
+    for (int i = 0; i < 3; i++) {
+        struct plan plan;
+        struct solid_list list;
+        char text[1024];
+        snprintf(text, sizeof text, ROOM "%swindow w on south from 0 0 to 1 2 open\n", others[i]);
+        build(&plan, &list, text, NULL);
+        assert_true(inside(&list, "walls", -0.1, -0.1, 1) > 0);
+        assert_int_equal(inside(&list, "walls", 0.5, -0.1, 1), 0);
+        assert_string_equal(face_at(&list, 0, -0.1, 1), i == 2 ? "window/w/right" : "wall/west/in");
+        drop(&plan, &list);
+    }
+}
+
+static void a_wall_steps_from_ceiling_to_ceiling(void **state)
+{
+    struct plan plan;
+    struct solid_list list;
+    (void)state;
+    build(&plan, &list,
+          ROOM "remove hall\nwall mid from 2 1 to 2 2\nextend mid start to south\nextend mid end to north\n"
+               "room low south west north mid\nroom high south mid north east ceiling 3.5\n",
+          NULL);
+    assert_int_equal(inside(&list, "walls", 1, -0.1, 3), 0);
+    assert_true(inside(&list, "walls", 3, -0.1, 3) > 0);
+    assert_string_equal(face_at(&list, 1.9, -0.1, 3), "wall/south/top"); /* from the middle of mid, which is 1.8 to 2 */
+    drop(&plan, &list);
+}
+
+static void set_counts_for_what_follows(void **state)
+{
+    struct plan plan;
+    struct solid_list list;
+    (void)state;
+    build(&plan, &list, ROOM "window w on south from 1 1 to 2 2\ndoor d on north from 1 0 to 2 2 closed\n",
+          "remodel-script 1\nset thickness 0.4\nset slab 0.4\nset glass 0.1\nset leaf 0.1\n");
+    assert_int_equal(inside(&list, "walls", 2, 1, -0.21), 0);
+    assert_int_equal(inside(&list, "glass/w", 1.5, -0.17, 1.5), 0);
+    assert_int_equal(inside(&list, "walls", 1.5, 3.125, 1), 0);
+    drop(&plan, &list);
+    build(&plan, &list, ROOM "door d on north from 1 0 to 2 2 closed\n",
+          "remodel-script 1\nset leaf 0.1\nopen d\nclose d\n");
+    assert_int_equal(inside(&list, "walls", 1.5, 3.125, 1), 1);
+    drop(&plan, &list);
+}
+
+static void a_round_room_may_have_many_walls(void **state)
+{
+    enum { WALLS = 24 };
+    struct plan plan;
+    struct solid_list list;
+    char text[8192] = "remodel-script 1\nset ceiling 2.5\nset thickness 0.1\n", loop[1024] = "";
+    (void)state;
+    for (int i = 0; i < WALLS; i++) {
+        const double a = 2 * M_PI * (i + 1) / WALLS, b = 2 * M_PI * i / WALLS;
+        snprintf(text + strlen(text), sizeof text - strlen(text), "wall w%d from %.6f %.6f to %.6f %.6f angled\n", i,
+                 4 * cos(a), 4 * sin(a), 4 * cos(b), 4 * sin(b));
+        snprintf(loop + strlen(loop), sizeof loop - strlen(loop), " w%d", i);
+    }
+    snprintf(text + strlen(text), sizeof text - strlen(text), "join%s w0\nroom round%s\n", loop, loop);
+    build(&plan, &list, text, NULL);
+    assert_int_equal(list.count, WALLS + 2);
+    assert_int_equal(inside(&list, "walls", 3.9, 0, -0.05), 1);
+    assert_int_equal(inside(&list, "walls", 0, 0, 1), 0);
+    drop(&plan, &list);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -307,6 +380,10 @@ int main(void)
         cmocka_unit_test(a_ceiling_slopes_and_walls_reach_it),
         cmocka_unit_test(an_angled_wall_joins_by_its_planes),
         cmocka_unit_test(boxes_stand_turned_or_not),
+        cmocka_unit_test(an_opening_leaves_the_corner_beside_it),
+        cmocka_unit_test(a_wall_steps_from_ceiling_to_ceiling),
+        cmocka_unit_test(set_counts_for_what_follows),
+        cmocka_unit_test(a_round_room_may_have_many_walls),
     };
     return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }

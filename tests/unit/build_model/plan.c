@@ -79,6 +79,11 @@ static void what_is_no_building_is_refused(void **state)
     } cases[] = {
         {BARE "wall a from 0 0 to 3 1\n", ":4: wall a from 0 0 to 3 1 is not along an axis; write angled"},
         {BARE "wall a from 1 1 to 1 1\n", ":4: wall a would have no length"},
+        {BARE "wall a from 1 1 to 1.0005 1\n", ":4: wall a would be shorter than 0.001"},
+        {BARE "wall a from 0 1 to 2000 1\n", ":4: wall a reaches to 2000; a model lies within 1000 units"},
+        {ROOM "box b from 999 0 to 999.5 1 turn 45\n", ":10: box b reaches to 10"},
+        {ROOM "box b from 0 0 to 1 1 top 1e5\n", ":10: box b reaches to 100000"},
+        {ROOM "slope hall from south 500 to north 1000\n", ":9: room hall reaches to 1033"},
         {BARE "wall a from 0 0 to 3 0\nwall a from 0 1 to 3 1\n",
          ":5: the name a is used already, for a wall (line 4)"},
         {BARE "wall a from 0 0 to 3 0\nbox a from 0 1 to 3 2\n", ":5: the name a is used already, for a wall"},

@@ -1,0 +1,555 @@
+/* told.h - what a script says of walls along the axes, worked out apart from the product, to be compared with it.
+ *
+ * Knows where there is matter from the script's words alone (docs/model-script.md): a wall between its faces and ends
+ * less its openings, slabs under and above rooms, boxes, leaves, panes. Volumes follow exactly, over the cells of the
+ * grid of all planes. What is angled, sloped or turned makes `exact` false: then only names are followed. The lines are
+ * legal (the product took them). */
+#ifndef REMODEL_TESTS_TOLD_H
+#define REMODEL_TESTS_TOLD_H
+
+#include "tests/unit/scratch.h"
+
+#include <math.h>
+
+enum { TOLD_MOST = 64, TOLD_NAME = 16, TOLD_WORDS = 40 };
+
+enum told_kind { TOLD_FREE, TOLD_CORNER, TOLD_MEET };
+
+struct told_end {
+    enum told_kind kind;
+    double s;
+    int other;
+};
+
+struct told_wall {
+    char name[TOLD_NAME];
+    bool gone, has_top;
+    int axis;       /* along x or y */
+    int start;      /* its start is ends[start] */
+    double in, out; /* its faces, across */
+    double foot, top;
+    struct told_end ends[2]; /* at low and at high S */
+};
+
+struct told_hole {
+    char name[TOLD_NAME];
+    bool gone, filled, interior;
+    int wall;
+    char kind; /* d, p, w */
+    double s[2], z[2], thick;
+};
+
+struct told_box {
+    char name[TOLD_NAME];
+    bool gone;
+    double low[3], high[3];
+};
+
+struct told_room {
+    char name[TOLD_NAME];
+    bool gone;
+    int walls[TOLD_MOST], wall_count;
+    double floor, ceiling, slab;
+    /* from the walls, by told_shape() */
+    int edges[TOLD_MOST], edge_count;
+    bool above[TOLD_MOST]; /* the room is at higher coordinates than the edge */
+    double face[TOLD_MOST], border[TOLD_MOST];
+};
+
+struct told {
+    double thickness, slab, glass, leaf, floor, ceiling;
+    bool exact;
+    struct told_wall walls[TOLD_MOST];
+    struct told_hole holes[TOLD_MOST];
+    struct told_box boxes[TOLD_MOST];
+    struct told_room rooms[TOLD_MOST];
+    int wall_count, hole_count, box_count, room_count;
+};
+
+static inline void told_begin(struct told *t)
+{
+    *t = (struct told){.thickness = 0.15, .glass = 0.02, .leaf = 0.04, .ceiling = 2.5, .exact = true};
+}
+
+#define TOLD_FIND(what, field)                                            \
+    static inline int told_##what(const struct told *t, const char *name) \
+    {                                                                     \
+        for (int i = 0; i < t->what##_count; i++)                         \
+            if (!strcmp(t->field[i].name, name)) return i;                \
+        return -1;                                                        \
+    }
+TOLD_FIND(wall, walls)
+TOLD_FIND(hole, holes)
+TOLD_FIND(box, boxes)
+TOLD_FIND(room, rooms)
+
+static inline double told_low(const struct told_wall *w) { return fmin(w->in, w->out); }
+static inline double told_high(const struct told_wall *w) { return fmax(w->in, w->out); }
+
+/* How far the wall goes along its S. */
+static inline double told_reach(const struct told *t, const struct told_wall *w, int high)
+{
+    const struct told_end *e = &w->ends[high];
+    if (e->kind == TOLD_FREE) return e->s;
+    const struct told_wall *o = &t->walls[e->other];
+    return (e->kind == TOLD_CORNER) == (high == 1) ? told_high(o) : told_low(o);
+}
+
+/* ----------------------------------------------------------------------------------------------------------- words */
+
+static inline double told_number(char **words, int count, const char *name, double otherwise)
+{
+    for (int i = 0; i + 1 < count; i++)
+        if (!strcmp(words[i], name)) return atof(words[i + 1]);
+    return otherwise;
+}
+
+static inline bool told_word(char **words, int count, const char *word)
+{
+    for (int i = 0; i < count; i++)
+        if (!strcmp(words[i], word)) return true;
+    return false;
+}
+
+static inline void told_name(char name[TOLD_NAME], const char *word)
+{
+    assert_true(strlen(word) < TOLD_NAME);
+    strcpy(name, word);
+}
+
+static inline void told_new_wall(struct told *t, char **w, int n)
+{
+    struct told_wall *x = &t->walls[t->wall_count++];
+    const double a[2] = {atof(w[3]), atof(w[4])}, b[2] = {atof(w[6]), atof(w[7])};
+    const double thickness = told_number(w, n, "thickness", t->thickness);
+    assert_true(t->wall_count < TOLD_MOST);
+    *x = (struct told_wall){.axis = fabs(a[0] - b[0]) < fabs(a[1] - b[1]), .foot = told_number(w, n, "foot", t->floor)};
+    told_name(x->name, w[1]);
+    if (told_word(w, n, "angled")) t->exact = false;
+    x->has_top = told_word(w, n, "top");
+    x->top = told_number(w, n, "top", t->ceiling);
+    x->start = a[x->axis] > b[x->axis];
+    x->in = a[!x->axis];
+    /* the inside is to the right: below a wall that goes to +x, at +x of one that goes to +y */
+    x->out = x->in + ((x->axis == 0) == (x->start == 0) ? thickness : -thickness);
+    x->ends[x->start] = (struct told_end){TOLD_FREE, a[x->axis], -1};
+    x->ends[!x->start] = (struct told_end){TOLD_FREE, b[x->axis], -1};
+}
+
+static inline int told_corner_end(const struct told *t, int a, int b)
+{
+    const struct told_wall *w = &t->walls[a];
+    for (int i = 0; i < 2; i++) {
+        const int e = i ? !w->start : w->start;
+        if (w->ends[e].kind != TOLD_FREE && w->ends[e].other == b) return e;
+    }
+    if (w->ends[0].kind != TOLD_FREE) return 1;
+    if (w->ends[1].kind != TOLD_FREE) return 0;
+    const double at = t->walls[b].in;
+    return fabs(w->ends[w->start].s - at) <= fabs(w->ends[!w->start].s - at) ? w->start : !w->start;
+}
+
+static inline void told_join(struct told *t, char **w, int n)
+{
+    for (int i = 1; i + 1 < n; i++) {
+        const int a = told_wall(t, w[i]), b = told_wall(t, w[i + 1]);
+        const int x = told_corner_end(t, a, b), y = told_corner_end(t, b, a);
+        t->walls[a].ends[x] = (struct told_end){TOLD_CORNER, 0, b};
+        t->walls[b].ends[y] = (struct told_end){TOLD_CORNER, 0, a};
+    }
+}
+
+static inline void told_split(struct told *t, char **w)
+{
+    const int old = told_wall(t, w[1]), new = t->wall_count++;
+    const double low = fmin(atof(w[3]), atof(w[5])), high = fmax(atof(w[3]), atof(w[5])), middle = (low + high) / 2;
+    struct told_wall *a = &t->walls[old], *b = &t->walls[new];
+    assert_true(t->wall_count < TOLD_MOST);
+    *b = *a;
+    told_name(b->name, w[7]);
+    a->ends[!a->start] = (struct told_end){TOLD_FREE, a->start ? high : low, -1};
+    b->ends[a->start] = (struct told_end){TOLD_FREE, a->start ? low : high, -1};
+    for (int i = 0; i < t->hole_count; i++)
+        if (t->holes[i].wall == old && (t->holes[i].s[0] > middle) == !a->start) t->holes[i].wall = new;
+    for (int i = 0; i < t->wall_count; i++)
+        for (int e = 0; e < 2; e++) {
+            struct told_wall *x = &t->walls[i];
+            if (i == old || i == new || x->ends[e].kind == TOLD_FREE || x->ends[e].other != old) continue;
+            if ((x->in > middle) == !a->start) x->ends[e].other = new;
+        }
+    for (int i = 0; i < t->room_count; i++) {
+        struct told_room *r = &t->rooms[i];
+        int at = 0;
+        while (at < r->wall_count && r->walls[at] != old) at++;
+        if (at == r->wall_count) continue;
+        assert_true(r->wall_count + 1 < TOLD_MOST);
+        memmove(r->walls + at + 1, r->walls + at, (size_t)(r->wall_count - at) * sizeof *r->walls);
+        r->walls[at + 1] = new;
+        r->wall_count++;
+    }
+}
+
+static inline void told_new_room(struct told *t, char **w, int n)
+{
+    struct told_room *r = &t->rooms[t->room_count++];
+    assert_true(t->room_count < TOLD_MOST);
+    *r = (struct told_room){.slab = t->slab > 0 ? t->slab : t->thickness};
+    told_name(r->name, w[1]);
+    r->floor = told_number(w, n, "floor", t->floor);
+    r->ceiling = told_number(w, n, "ceiling", t->ceiling);
+    for (int i = 2; i < n && strcmp(w[i], "floor") && strcmp(w[i], "ceiling"); i++)
+        r->walls[r->wall_count++] = told_wall(t, w[i]);
+}
+
+static inline void told_span(char **w, double s[2], double z[2])
+{
+    s[0] = fmin(atof(w[0]), atof(w[3]));
+    s[1] = fmax(atof(w[0]), atof(w[3]));
+    z[0] = fmin(atof(w[1]), atof(w[4]));
+    z[1] = fmax(atof(w[1]), atof(w[4]));
+}
+
+static inline void told_new_hole(struct told *t, char **w, int n)
+{
+    struct told_hole *h = &t->holes[t->hole_count++];
+    assert_true(t->hole_count < TOLD_MOST);
+    *h = (struct told_hole){.kind = w[0][0], .wall = told_wall(t, w[3])};
+    told_name(h->name, w[1]);
+    told_span(w + 5, h->s, h->z);
+    h->filled = h->kind == 'w' ? !told_word(w, n, "open") : told_word(w, n, "closed");
+    h->interior = told_word(w, n, "interior");
+    h->thick = h->kind == 'w' ? t->glass : t->leaf;
+}
+
+static inline void told_new_box(struct told *t, char **w, int n)
+{
+    struct told_box *b = &t->boxes[t->box_count++];
+    assert_true(t->box_count < TOLD_MOST);
+    *b = (struct told_box){.gone = false};
+    told_name(b->name, w[1]);
+    for (int k = 0; k < 2; k++) {
+        b->low[k] = fmin(atof(w[3 + k]), atof(w[6 + k]));
+        b->high[k] = fmax(atof(w[3 + k]), atof(w[6 + k]));
+    }
+    b->low[2] = told_number(w, n, "foot", t->floor);
+    b->high[2] = told_number(w, n, "top", t->ceiling);
+    if (told_number(w, n, "turn", 0) != 0) t->exact = false;
+}
+
+static inline void told_adjust(struct told *t, char **w)
+{
+    const int wall = told_wall(t, w[1]), hole = told_hole(t, w[1]), box = told_box(t, w[1]);
+    if (wall >= 0) {
+        struct told_wall *x = &t->walls[wall];
+        const double by = atof(w[x->axis ? 3 : 4]) - x->in;
+        x->in += by;
+        x->out += by;
+    } else if (hole >= 0) {
+        told_span(w + 3, t->holes[hole].s, t->holes[hole].z);
+    } else {
+        told_span(w + 3, (double[2]){0}, (double[2]){0});
+        for (int k = 0; k < 2; k++) {
+            t->boxes[box].low[k] = fmin(atof(w[3 + k]), atof(w[6 + k]));
+            t->boxes[box].high[k] = fmax(atof(w[3 + k]), atof(w[6 + k]));
+        }
+    }
+}
+
+static inline void told_move(struct told *t, char **w)
+{
+    const int wall = told_wall(t, w[1]), hole = told_hole(t, w[1]), box = told_box(t, w[1]);
+    const double by = atof(w[3]);
+    if (wall >= 0) {
+        struct told_wall *x = &t->walls[wall];
+        const double across = x->out > x->in ? by : -by; /* away from its inside */
+        x->in += across;
+        x->out += across;
+    } else if (hole >= 0) {
+        t->holes[hole].s[0] += by;
+        t->holes[hole].s[1] += by;
+    } else {
+        for (int k = 0; k < 2; k++) {
+            t->boxes[box].low[k] += atof(w[3 + k]);
+            t->boxes[box].high[k] += atof(w[3 + k]);
+        }
+    }
+}
+
+static inline void told_remove(struct told *t, const char *name)
+{
+    const int wall = told_wall(t, name), hole = told_hole(t, name), box = told_box(t, name), room = told_room(t, name);
+    if (wall >= 0) {
+        t->walls[wall].gone = true;
+        for (int i = 0; i < t->hole_count; i++)
+            if (t->holes[i].wall == wall) t->holes[i].gone = true;
+    } else if (hole >= 0) {
+        t->holes[hole].gone = true;
+    } else if (box >= 0) {
+        t->boxes[box].gone = true;
+    } else {
+        t->rooms[room].gone = true;
+    }
+}
+
+/* One legal statement. */
+static inline void told_apply(struct told *t, const char *line)
+{
+    char text[512], *w[TOLD_WORDS], *rest = text;
+    int n = 0;
+    snprintf(text, sizeof text, "%s", line);
+    for (char *word; n < TOLD_WORDS && (word = strtok_r(rest, " \n", &rest));) w[n++] = word;
+    if (n < 2) return;
+    if (!strcmp(w[0], "set")) {
+        double *const values[] = {&t->thickness, &t->slab, &t->glass, &t->leaf, &t->floor, &t->ceiling};
+        static const char *const names[] = {"thickness", "slab", "glass", "leaf", "floor", "ceiling"};
+        for (int i = 0; i < 6; i++)
+            if (!strcmp(names[i], w[1])) *values[i] = atof(w[2]);
+    } else if (!strcmp(w[0], "wall")) {
+        told_new_wall(t, w, n);
+    } else if (!strcmp(w[0], "join")) {
+        told_join(t, w, n);
+    } else if (!strcmp(w[0], "extend")) {
+        struct told_wall *x = &t->walls[told_wall(t, w[1])];
+        const int other = told_wall(t, w[4]), e = strcmp(w[2], "start") ? !x->start : x->start;
+        x->ends[e] = (struct told_end){other < 0 ? TOLD_FREE : TOLD_MEET, atof(w[4]), other};
+    } else if (!strcmp(w[0], "split")) {
+        told_split(t, w);
+    } else if (!strcmp(w[0], "room")) {
+        told_new_room(t, w, n);
+    } else if (!strcmp(w[0], "slope")) {
+        t->exact = false;
+    } else if (!strcmp(w[0], "box")) {
+        told_new_box(t, w, n);
+    } else if (!strcmp(w[0], "adjust")) {
+        told_adjust(t, w);
+    } else if (!strcmp(w[0], "move")) {
+        told_move(t, w);
+    } else if (!strcmp(w[0], "open") || !strcmp(w[0], "close")) {
+        struct told_hole *h = &t->holes[told_hole(t, w[1])];
+        h->filled = w[0][0] == 'c';
+        if (h->filled) h->thick = h->kind == 'w' ? t->glass : t->leaf;
+    } else if (!strcmp(w[0], "remove")) {
+        told_remove(t, w[1]);
+    } else {
+        told_new_hole(t, w, n);
+    }
+}
+
+/* ---------------------------------------------------------------------------------------------------------- matter */
+
+static inline bool told_one_line(const struct told_wall *a, const struct told_wall *b)
+{
+    return a->axis == b->axis && a->start == b->start && fabs(a->in - b->in) < 1e-6;
+}
+
+/* Edges of a room from its walls, on which side of each it is, and the faces towards it. */
+static inline void told_edges(const struct told *t, struct told_room *r)
+{
+    int first = 0;
+    while (first < r->wall_count &&
+           told_one_line(&t->walls[r->walls[first]], &t->walls[r->walls[(first + r->wall_count - 1) % r->wall_count]]))
+        first++;
+    r->edge_count = 0;
+    for (int k = 0; k < r->wall_count; k++) {
+        const int at = (first + k) % r->wall_count;
+        if (k && told_one_line(&t->walls[r->walls[at]], &t->walls[r->edges[r->edge_count - 1]])) continue;
+        r->edges[r->edge_count++] = r->walls[at];
+    }
+    for (int e = 0; e < r->edge_count;
+         e++) { /* matter of the room to one side: by crossings of a ray from its middle */
+        const struct told_wall *w = &t->walls[r->edges[e]];
+        double ends[2];
+        int beyond = 0;
+        for (int k = 0; k < 2; k++) {
+            const struct told_wall *o = &t->walls[r->edges[(e + (k ? 1 : r->edge_count - 1)) % r->edge_count]];
+            ends[k] = (o->in + o->out) / 2;
+        }
+        const double s = (ends[0] + ends[1]) / 2 + 1e-5, at = (w->in + w->out) / 2;
+        for (int f = 0; f < r->edge_count; f++) {
+            const struct told_wall *x = &t->walls[r->edges[f]];
+            const struct told_wall *before = &t->walls[r->edges[(f + r->edge_count - 1) % r->edge_count]],
+                                   *after = &t->walls[r->edges[(f + 1) % r->edge_count]];
+            const double a = (before->in + before->out) / 2, b = (after->in + after->out) / 2;
+            if (f == e || x->axis != w->axis || (x->in + x->out) / 2 <= at) continue;
+            beyond += (a < s) != (b < s);
+        }
+        r->above[e] = beyond % 2;
+        r->face[e] = r->above[e] ? told_high(w) : told_low(w);
+    }
+}
+
+/* Walls with rooms on both sides have the slabs' borders in their middle. */
+static inline void told_shape(struct told *t)
+{
+    unsigned char sides[TOLD_MOST] = {0};
+    for (int i = 0; i < t->room_count; i++) {
+        struct told_room *r = &t->rooms[i];
+        if (r->gone) continue;
+        told_edges(t, r);
+        for (int e = 0; e < r->edge_count; e++)
+            for (int k = 0; k < r->wall_count; k++)
+                if (told_one_line(&t->walls[r->edges[e]], &t->walls[r->walls[k]]))
+                    sides[r->walls[k]] |= (unsigned char)(1 << r->above[e]);
+    }
+    for (int i = 0; i < t->room_count; i++) {
+        struct told_room *r = &t->rooms[i];
+        for (int e = 0; !r->gone && e < r->edge_count; e++) {
+            const struct told_wall *w = &t->walls[r->edges[e]];
+            r->border[e] = sides[r->edges[e]] == 3 ? (w->in + w->out) / 2 : r->above[e] ? told_low(w) : told_high(w);
+        }
+    }
+}
+
+static inline bool told_between_rooms(const struct told *t, int wall)
+{
+    unsigned sides = 0;
+    for (int i = 0; i < t->room_count; i++) {
+        const struct told_room *r = &t->rooms[i];
+        for (int e = 0; !r->gone && e < r->edge_count; e++)
+            for (int k = 0; k < r->wall_count; k++)
+                if (r->walls[k] == wall && told_one_line(&t->walls[wall], &t->walls[r->edges[e]]))
+                    sides |= 1u << r->above[e];
+    }
+    return sides == 3;
+}
+
+static inline bool told_under_room(const struct told *t, const struct told_room *r, const double p[3])
+{
+    int crossed = 0;
+    for (int e = 0; e < r->edge_count; e++) {
+        if (t->walls[r->edges[e]].axis != 1 || r->border[e] <= p[0]) continue;
+        const double a = r->border[(e + r->edge_count - 1) % r->edge_count], b = r->border[(e + 1) % r->edge_count];
+        crossed += (a < p[1]) != (b < p[1]);
+    }
+    return crossed % 2;
+}
+
+static inline double told_top(const struct told *t, int wall, double s)
+{
+    const struct told_wall *w = &t->walls[wall];
+    double top = -HUGE_VAL;
+    if (w->has_top) return w->top;
+    for (int i = 0; i < t->room_count; i++) {
+        const struct told_room *r = &t->rooms[i];
+        bool listed = false;
+        for (int k = 0; k < r->wall_count; k++) listed |= r->walls[k] == wall;
+        for (int e = 0; listed && !r->gone && e < r->edge_count; e++) {
+            if (!told_one_line(w, &t->walls[r->edges[e]])) continue;
+            const int x = (e + r->edge_count - 1) % r->edge_count, y = (e + 1) % r->edge_count;
+            const double low = fmin(fmin(r->face[x], r->face[y]), fmin(r->border[x], r->border[y]));
+            const double high = fmax(fmax(r->face[x], r->face[y]), fmax(r->border[x], r->border[y]));
+            if (s > low && s < high) top = fmax(top, r->ceiling);
+        }
+    }
+    return top > -HUGE_VAL ? top : w->top;
+}
+
+static inline bool told_in_wall(const struct told *t, int wall, const double p[3])
+{
+    const struct told_wall *w = &t->walls[wall];
+    const double s = p[w->axis], across = p[!w->axis];
+    if (w->gone || across < told_low(w) || across > told_high(w)) return false;
+    if (s < told_reach(t, w, 0) || s > told_reach(t, w, 1) || p[2] < w->foot || p[2] > told_top(t, wall, s))
+        return false;
+    for (int i = 0; i < t->hole_count; i++) {
+        const struct told_hole *h = &t->holes[i];
+        if (h->gone || h->wall != wall || s < h->s[0] || s > h->s[1] || p[2] < h->z[0] || p[2] > h->z[1]) continue;
+        return h->kind == 'd' && h->filled && fabs(across - (w->in + w->out) / 2) < h->thick / 2;
+    }
+    return true;
+}
+
+static inline bool told_matter(const struct told *t, const double p[3])
+{
+    for (int i = 0; i < t->wall_count; i++)
+        if (told_in_wall(t, i, p)) return true;
+    for (int i = 0; i < t->box_count; i++) {
+        const struct told_box *b = &t->boxes[i];
+        bool in = !b->gone;
+        for (int k = 0; k < 3; k++) in &= p[k] > b->low[k] && p[k] < b->high[k];
+        if (in) return true;
+    }
+    for (int i = 0; i < t->room_count; i++) {
+        const struct told_room *r = &t->rooms[i];
+        const bool slab =
+            (p[2] < r->floor && p[2] > r->floor - r->slab) || (p[2] > r->ceiling && p[2] < r->ceiling + r->slab);
+        if (!r->gone && slab && told_under_room(t, r, p)) return true;
+    }
+    return false;
+}
+
+/* --------------------------------------------------------------------------------------------------------- volumes */
+
+struct told_planes {
+    double at[3][16 * TOLD_MOST];
+    int count[3];
+};
+
+static inline void told_plane(struct told_planes *g, int axis, double at) { g->at[axis][g->count[axis]++] = at; }
+
+static inline int told_compare(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* Of all but panes, and of the panes. t->exact. */
+static inline void told_volumes(struct told *t, double *solid, double *panes)
+{
+    static struct told_planes g;
+    memset(g.count, 0, sizeof g.count);
+    told_shape(t);
+    *solid = *panes = 0;
+    for (int i = 0; i < t->wall_count; i++) {
+        const struct told_wall *w = &t->walls[i];
+        told_plane(&g, !w->axis, w->in);
+        told_plane(&g, !w->axis, w->out);
+        told_plane(&g, !w->axis, (w->in + w->out) / 2);
+        told_plane(&g, 2, w->foot);
+        told_plane(&g, 2, w->top);
+        for (int e = 0; e < 2; e++)
+            if (w->ends[e].kind == TOLD_FREE) told_plane(&g, w->axis, w->ends[e].s);
+    }
+    for (int i = 0; i < t->hole_count; i++) {
+        const struct told_hole *h = &t->holes[i];
+        const struct told_wall *w = &t->walls[h->wall];
+        if (h->gone || w->gone) continue;
+        for (int k = 0; k < 2; k++) {
+            told_plane(&g, w->axis, h->s[k]);
+            told_plane(&g, 2, h->z[k]);
+            told_plane(&g, !w->axis, (w->in + w->out + (k ? h->thick : -h->thick)) / 2);
+        }
+        if (h->kind == 'w' && h->filled && !h->interior && !told_between_rooms(t, h->wall))
+            *panes += (h->s[1] - h->s[0]) * (h->z[1] - h->z[0]) * h->thick;
+    }
+    for (int i = 0; i < t->box_count; i++)
+        for (int k = 0; k < 3; k++) {
+            told_plane(&g, k, t->boxes[i].low[k]);
+            told_plane(&g, k, t->boxes[i].high[k]);
+        }
+    for (int i = 0; i < t->room_count; i++) {
+        const struct told_room *r = &t->rooms[i];
+        const double z[4] = {r->floor, r->floor - r->slab, r->ceiling, r->ceiling + r->slab};
+        for (int k = 0; k < 4; k++) told_plane(&g, 2, z[k]);
+    }
+    for (int k = 0; k < 3; k++) {
+        int n = 0;
+        if (g.count[k]) qsort(g.at[k], (size_t)g.count[k], sizeof g.at[k][0], told_compare);
+        for (int i = 0; i < g.count[k]; i++)
+            if (!n || g.at[k][i] - g.at[k][n - 1] > 1e-9) g.at[k][n++] = g.at[k][i];
+        g.count[k] = n;
+    }
+    for (int x = 0; x + 1 < g.count[0]; x++)
+        for (int y = 0; y + 1 < g.count[1]; y++)
+            for (int z = 0; z + 1 < g.count[2]; z++) {
+                const double *const c[3] = {&g.at[0][x], &g.at[1][y], &g.at[2][z]};
+                double p[3], cell = 1;
+                for (int k = 0; k < 3; k++) {
+                    p[k] = (c[k][0] + c[k][1]) / 2;
+                    cell *= c[k][1] - c[k][0];
+                }
+                if (told_matter(t, p)) *solid += cell;
+            }
+}
+
+#endif
