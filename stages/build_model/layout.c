@@ -65,8 +65,7 @@ static enum status add_shape(struct solid_list *list, const char *body, struct s
     return st;
 }
 
-/* -------------------------------------------------------------------------------------------------------------
- * walls */
+/* ------------------------------------------------------------------------------------------------------------ walls */
 
 struct top { /* of a part of a wall: z = a[0] + a[1] x + a[2] y */
     double a[3];
@@ -461,8 +460,7 @@ static enum status add_pane(struct solid_list *list, const struct plan *p, const
                             : add_filling(list, p, o, 0, o->leaf, true, err);
 }
 
-/* ----------------------------------------------------------------------------------------------- floors and
- * ceilings */
+/* ---------------------------------------------------------------------------------------------- floors and ceilings */
 
 struct corner {
     double p[2];
@@ -586,8 +584,7 @@ static enum status add_room(struct solid_list *list, const struct plan *p, const
     return st;
 }
 
-/* -------------------------------------------------------------------------------------------------------------
- * boxes */
+/* ------------------------------------------------------------------------------------------------------------ boxes */
 
 static enum status add_box(struct solid_list *list, const struct plan_box *b, struct err *err)
 {

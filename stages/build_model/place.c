@@ -231,8 +231,7 @@ static enum status show_points(struct shown_point **shown, size_t *count, const 
     return ST_OK;
 }
 
-/* ----------------------------------------------------------------------------------------------------- where a wall
- * is */
+/* -------------------------------------------------------------------------------------------------- where a wall is */
 
 struct position {
     double at, weight;

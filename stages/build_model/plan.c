@@ -97,8 +97,7 @@ static enum status add_name(struct plan *plan, const char *name, enum named kind
     return ST_OK;
 }
 
-/* --------------------------------------------------------------------------------------------------------
- * statements */
+/* ------------------------------------------------------------------------------------------------------- statements */
 
 struct doer {
     struct plan *plan;
@@ -229,8 +228,7 @@ static enum status do_set(struct doer *d)
     return ST_OK;
 }
 
-/* -------------------------------------------------------------------------------------------------------------
- * lines */
+/* ------------------------------------------------------------------------------------------------------------ lines */
 
 struct plan_line wall_face(const struct plan_wall *w, int side)
 {
@@ -388,8 +386,7 @@ double plan_wall_top(const struct plan *plan, int wall, double s0, double s1)
     return least < HUGE_VAL ? least : w->top;
 }
 
-/* -------------------------------------------------------------------------------------------------------------
- * walls */
+/* ------------------------------------------------------------------------------------------------------------ walls */
 
 static enum status set_wall_line(struct doer *d, struct plan_wall *w, const double a[2], const double b[2])
 {
@@ -641,8 +638,7 @@ static enum status do_slope(struct doer *d)
     return ST_OK;
 }
 
-/* -------------------------------------------------------------------------------------------------- walls with
- * walls */
+/* ------------------------------------------------------------------------------------------------- walls with walls */
 
 static double from_end(const struct plan *plan, int wall, int end, const double p[2])
 {
@@ -792,8 +788,7 @@ static enum status do_split(struct doer *d)
     return add_to_rooms(d, wall, new);
 }
 
-/* -------------------------------------------------------------------------------------------------------------
- * edits */
+/* ------------------------------------------------------------------------------------------------------------ edits */
 
 static enum status do_adjust(struct doer *d)
 {
@@ -947,8 +942,7 @@ static enum status apply_one(struct doer *d)
     }
 }
 
-/* ------------------------------------------------------------------------------------------------------------
- * checks */
+/* ----------------------------------------------------------------------------------------------------------- checks */
 
 struct checker {
     struct plan *plan;

@@ -256,8 +256,7 @@ enum status plan_picture_write(const struct plan *plan, const struct placer *pla
     return st;
 }
 
-/* ----------------------------------------------------------------------------------------------- the view from
- * above */
+/* ---------------------------------------------------------------------------------------------- the view from above */
 
 struct aerial {
     struct vec3 right, down, back; /* of the picture, and towards the viewer */

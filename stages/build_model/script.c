@@ -124,8 +124,7 @@ static enum status expect(struct reader *r, const char *wanted, enum verb verb)
     return textfile_error(&r->t, r->err, word, "\"%s\", in a line \"%s\"", wanted, GRAMMAR[verb].usage);
 }
 
-/* -------------------------------------------------------------------------------------------------------------
- * parts */
+/* ------------------------------------------------------------------------------------------------------------ parts */
 
 static enum status read_place(struct reader *r, struct place *p, enum verb verb)
 {
