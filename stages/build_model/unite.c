@@ -124,16 +124,21 @@ static enum status pair_around(struct joined *j, int *of, int count, const struc
         j->halves[of[1]].twin = of[0];
         return ST_OK;
     }
-    enum { MOST = 64 };
-    if (count % 2 || count > MOST) return broken(s, "an edge without its opposite", err);
+    if (count % 2) return broken(s, "an edge without its opposite", err);
     /* the normal, turned with the half-plane: at a right angle to it, on the same side for all */
-    int64_t u[MOST][3];
+    int64_t(*u)[3] = malloc((size_t)count * sizeof *u);
+    int *order = malloc(2 * (size_t)count * sizeof *order), *open, depth = 0, least = 0, start = 0;
+    if (!u || !order) {
+        free(u);
+        free(order);
+        return err_nomem(err, "the faces about an edge", (size_t)count * sizeof *u);
+    }
+    open = order + count;
     const int64_t *d = j->set.space.lines[borders[j->halves[of[0]].border].line].d;
     for (int i = 0; i < count; i++) {
         outward(j, of[i], u[i]);
         if (!FORWARD(of[i])) negated(u[i], u[i]);
     }
-    int order[MOST], open[MOST], depth = 0, least = 0, start = 0;
     for (int i = 0; i < count; i++) { /* by angle from the first */
         int k = i;
         for (; k > 0 && exact_before(u[0], u[i], u[order[k - 1]], d); k--) order[k] = order[k - 1];
@@ -146,8 +151,8 @@ static enum status pair_around(struct joined *j, int *of, int count, const struc
             start = i + 1;
         }
     }
-    if (depth) return broken(s, "an edge whose faces do not alternate", err);
-    for (int i = 0; i < count; i++) {
+    const enum status st = depth ? broken(s, "an edge whose faces do not alternate", err) : ST_OK;
+    for (int i = 0; !st && i < count; i++) {
         const int h = of[order[(start + i) % count]];
         if (!FORWARD(h)) {
             open[depth++] = h;
@@ -157,7 +162,9 @@ static enum status pair_around(struct joined *j, int *of, int count, const struc
         j->halves[h].twin = o;
         j->halves[o].twin = h;
     }
-    return ST_OK;
+    free(u);
+    free(order);
+    return st;
 #undef FORWARD
 }
 

@@ -376,6 +376,30 @@ static void a_hole_that_reaches_the_outer_edge_in_a_point(void **state)
     solid_report_release(&r);
 }
 
+static void many_solids_that_touch_in_one_edge(void **state)
+{
+    enum { WEDGES = 60 }; /* twice as many faces about the edge */
+    struct solid_list list = {0};
+    struct solid_report report;
+    double area = 0;
+    (void)state;
+    for (int i = 0; i < WEDGES; i++) {
+        const double a = (2 * i + 0.3) * M_PI / WEDGES, b = (2 * i + 1.3) * M_PI / WEDGES;
+        const double p[3][2] = {{0, 0},
+                                {round(3e3 * cos(a)) / 1e3, round(3e3 * sin(a)) / 1e3},
+                                {round(3e3 * cos(b)) / 1e3, round(3e3 * sin(b)) / 1e3}};
+        char name[16];
+        snprintf(name, sizeof name, "w%d", i);
+        add_prism(&list, name, p, 3, 0, 1);
+        area += 0.5 * (p[1][0] * p[2][1] - p[1][1] * p[2][0]);
+    }
+    unite(&mesh, &report, NULL, &list);
+    assert_int_equal(report.count, WEDGES);
+    assert_int_equal(mesh.face_count, 5 * WEDGES);
+    assert_near(report.volume, area, 1e-4);
+    solid_report_release(&report);
+}
+
 static void slivers_and_small_faces(void **state)
 {
     (void)state;
@@ -511,6 +535,7 @@ int main(void)
         cmocka_unit_test_teardown(angled_walls, forget),
         cmocka_unit_test_teardown(a_wall_at_45_degrees_through_its_corners, forget),
         cmocka_unit_test_teardown(a_hole_that_reaches_the_outer_edge_in_a_point, forget),
+        cmocka_unit_test_teardown(many_solids_that_touch_in_one_edge, forget),
         cmocka_unit_test_teardown(slivers_and_small_faces, forget),
         cmocka_unit_test_teardown(oblique_planes_that_nearly_coincide_are_one, forget),
         cmocka_unit_test_setup_teardown(the_same_bytes_every_time, scratch_make, scratch_remove),
