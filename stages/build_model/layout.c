@@ -102,18 +102,6 @@ static void wall_parts_release(struct wall_parts *w)
     free(w->first_top);
 }
 
-/* The edge of a room that a wall of it belongs to; -1: of none. */
-static int edge_of(const struct plan *p, const struct plan_room *r, int wall)
-{
-    const struct plan_wall *w = &p->walls[wall];
-    for (int e = 0; e < r->edge_count; e++) {
-        const struct plan_wall *x = &p->walls[r->edges[e].wall];
-        const double turn = w->d[0] * x->d[0] + w->d[1] * x->d[1];
-        if (r->edges[e].wall == wall || (turn > 1 - 1e-12 && fabs(w->c - x->c) < 1e-6)) return e;
-    }
-    return -1;
-}
-
 static enum status wall_parts_make(struct wall_parts *w, const struct plan *p, struct err *err)
 {
     const size_t walls = (size_t)p->wall_count;
@@ -141,8 +129,7 @@ static enum status wall_parts_make(struct wall_parts *w, const struct plan *p, s
         for (int i = 0; i < p->room_count; i++) {
             const struct plan_room *r = &p->rooms[i];
             for (int k = 0; !r->removed && k < r->wall_count; k++) {
-                const int wall = r->walls[k], e = edge_of(p, r, wall);
-                if (e < 0) continue;
+                const int wall = r->walls[k], e = r->edge_of[k];
                 if (pass == 0) {
                     w->first_top[wall + 1]++;
                     continue;
@@ -166,8 +153,7 @@ bool window_has_glass(const struct plan *plan, const struct plan_opening *o, int
         const struct plan_room *r = &plan->rooms[i];
         for (int k = 0; !r->removed && k < r->wall_count; k++) {
             if (r->walls[k] != o->wall) continue;
-            const int e = edge_of(plan, r, o->wall);
-            if (e >= 0) sides |= 1u << r->edges[e].side;
+            sides |= 1u << r->edges[r->edge_of[k]].side;
         }
     }
     *side = sides == 1u << SIDE_OUT ? SIDE_IN : SIDE_OUT;

@@ -33,6 +33,7 @@ void plan_release(struct plan *plan)
         free(plan->rooms[i].name);
         free(plan->rooms[i].walls);
         free(plan->rooms[i].edges);
+        free(plan->rooms[i].edge_of);
     }
     free(plan->walls);
     free(plan->openings);
@@ -350,18 +351,11 @@ static double ceiling_at(const struct plan_room *r, const double p[2])
     return r->lower[0] + r->lower[1] * p[0] + r->lower[2] * p[1];
 }
 
-static bool room_has_wall(const struct plan_room *r, const struct plan *plan, int edge, int wall)
+int room_edge_of(const struct plan_room *r, int wall)
 {
-    /* walls of one line count as the edge of their first */
-    const int first = r->edges[edge].wall;
-    if (first == wall) return true;
-    for (int i = 0; i < r->wall_count; i++) {
-        if (r->walls[i] != wall) continue;
-        const struct plan_wall *a = &plan->walls[first], *b = &plan->walls[wall];
-        return fabs(a->d[0] * b->d[0] + a->d[1] * b->d[1]) > 1 - 1e-12 &&
-               fabs(a->c - b->c * (a->d[0] * b->d[0] + a->d[1] * b->d[1])) < LENGTH_EPS;
-    }
-    return false;
+    for (int i = 0; i < r->wall_count; i++)
+        if (r->walls[i] == wall) return r->edge_of[i];
+    return -1;
 }
 
 double plan_wall_top(const struct plan *plan, int wall, double s0, double s1)
@@ -373,7 +367,7 @@ double plan_wall_top(const struct plan *plan, int wall, double s0, double s1)
         const struct plan_room *r = &plan->rooms[i];
         for (int e = 0; !r->removed && e < r->edge_count; e++) {
             double span[2];
-            if (!room_has_wall(r, plan, e, wall)) continue;
+            if (room_edge_of(r, wall) != e) continue;
             room_span(plan, r, e, wall, span);
             if (span[1] <= s0 || span[0] >= s1) continue;
             for (int k = 0; k < 4; k++) {
@@ -1064,10 +1058,11 @@ static bool touch(const struct plan *p, int a, int b)
     return false;
 }
 
-/* Walls of one line in a row become an edge: group[i] is the edge of walls[i]. */
-static enum status group_walls(struct checker *c, struct plan_room *r, int *group)
+/* Walls of one line in a row become an edge. */
+static enum status group_walls(struct checker *c, struct plan_room *r)
 {
     struct plan *p = c->plan;
+    int *group = r->edge_of;
     int start = 0; /* a wall that does not go on the line of the one before */
     while (start < r->wall_count &&
            same_line(&p->walls[r->walls[(start + r->wall_count - 1) % r->wall_count]], &p->walls[r->walls[start]]))
@@ -1105,6 +1100,14 @@ static double cross2(const double a[2], const double b[2], const double c[2])
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
 
+/* From a to b and from x to y; those of one line meet only where they have a point in common. */
+static bool segments_meet(const double a[2], const double b[2], const double x[2], const double y[2])
+{
+    for (int k = 0; k < 2; k++)
+        if (fmax(a[k], b[k]) < fmin(x[k], y[k]) || fmin(a[k], b[k]) > fmax(x[k], y[k])) return false;
+    return cross2(a, b, x) * cross2(a, b, y) <= 0 && cross2(x, y, a) * cross2(x, y, b) <= 0;
+}
+
 /* Corners by lines through the walls, `off` behind their in faces. */
 static void room_corners(const struct plan *p, struct plan_room *r, double off)
 {
@@ -1134,6 +1137,7 @@ static void reverse_edges(struct plan_room *r)
         r->edges[i] = r->edges[k];
         r->edges[k] = e;
     }
+    for (int i = 0; i < r->wall_count; i++) r->edge_of[i] = r->edge_count - 1 - r->edge_of[i];
 }
 
 /* The sides that face the room, and its corners; counter-clockwise. */
@@ -1163,7 +1167,7 @@ static enum status shape_room(struct checker *c, struct plan_room *r)
         for (int f = e + 2; f < r->edge_count; f++) { /* edges that are no neighbours may not touch */
             if (e == 0 && f == r->edge_count - 1) continue;
             const double *x = r->edges[f - 1].corner, *y = r->edges[f].corner;
-            if (cross2(a, b, x) * cross2(a, b, y) <= 0 && cross2(x, y, a) * cross2(x, y, b) <= 0)
+            if (segments_meet(a, b, x, y))
                 return wrong(c, r->line,
                              "walls %s and %s cross each other in room %s; name its walls in the order in "
                              "which they go round it.",
@@ -1184,7 +1188,7 @@ static enum status slope_room(struct checker *c, struct plan_room *r)
     struct plan_line first = {{0, 0}, 0};
     for (int i = 0; i < 2; i++)
         for (int e = 0; e < r->edge_count; e++) {
-            if (!room_has_wall(r, p, e, r->slope_walls[i])) continue;
+            if (room_edge_of(r, r->slope_walls[i]) != e) continue;
             const struct plan_line face = wall_face(&p->walls[r->edges[e].wall], r->edges[e].side);
             if (i == 0) first = face;
             at[i] = face.n[0] * first.n[0] + face.n[1] * first.n[1] > 0 ? face.c : -face.c;
@@ -1207,16 +1211,15 @@ static enum status check_rooms(struct checker *c)
     for (int i = 0; i < p->room_count && !st; i++) {
         struct plan_room *r = &p->rooms[i];
         if (r->removed) continue;
-        int *group = calloc((size_t)r->wall_count, sizeof *group);
         free(r->edges);
+        free(r->edge_of);
         r->edges = calloc((size_t)r->wall_count, sizeof *r->edges);
-        st = group && r->edges ? group_walls(c, r, group) : err_nomem(c->err, "a room's edges", (size_t)r->wall_count);
-        free(group);
+        r->edge_of = calloc((size_t)r->wall_count, sizeof *r->edge_of);
+        st = r->edges && r->edge_of ? group_walls(c, r) : err_nomem(c->err, "a room's edges", (size_t)r->wall_count);
         if (!st) st = shape_room(c, r);
         if (!st) st = slope_room(c, r);
-        for (int e = 0; !st && e < r->edge_count; e++)
-            for (int k = 0; k < r->wall_count; k++)
-                if (room_has_wall(r, p, e, r->walls[k])) sides[r->walls[k]] |= (unsigned char)(1 << r->edges[e].side);
+        for (int k = 0; !st && k < r->wall_count; k++)
+            sides[r->walls[k]] |= (unsigned char)(1 << r->edges[r->edge_of[k]].side);
     }
     for (int i = 0; i < p->room_count && !st; i++) {
         struct plan_room *r = &p->rooms[i];

@@ -70,6 +70,7 @@ struct plan_room {
     int line;
     bool removed;
     int *walls;
+    int *edge_of; /* of each of walls, as of the last plan_check() */
     int wall_count;
     double floor, ceiling, slab; /* slab: how thick both are */
     bool sloped;
@@ -126,6 +127,8 @@ void wall_span(const struct plan *plan, int wall, double span[2]);
 void wall_reach(const struct plan *plan, int wall, double span[2]);
 /* The part of the wall above which a room's ceiling lies, for its edge. */
 void room_span(const struct plan *plan, const struct plan_room *room, int edge, int wall, double span[2]);
+/* The edge of a room that a wall of it belongs to; -1: of none. */
+int room_edge_of(const struct plan_room *room, int wall);
 double plan_wall_top(const struct plan *plan, int wall, double s0, double s1); /* least, over s0 .. s1 */
 
 #endif

@@ -364,6 +364,27 @@ static void a_round_room_may_have_many_walls(void **state)
     drop(&plan, &list);
 }
 
+/* Two of its walls lie on one line, but not in a row. */
+static void a_room_goes_round_three_sides_of_a_yard(void **state)
+{
+    struct plan plan;
+    struct solid_list list;
+    (void)state;
+    build(&plan, &list,
+          "remodel-script 1\nset thickness 0.2\nset ceiling 2.5\nwall a from 6 0 to 0 0\nwall b from 0 0 to 0 4\n"
+          "wall c from 0 4 to 2 4\nwall d from 2 4 to 2 2\nwall e from 2 2 to 4 2\nwall f from 4 2 to 4 4\n"
+          "wall g from 4 4 to 6 4\nwall h from 6 4 to 6 0\njoin a b c d e f g h a\n"
+          "room hall a b c d e f g h ceiling 3\n",
+          NULL);
+    for (int i = 0; i < 2; i++) {
+        assert_true(inside(&list, "walls", 1 + 4 * i, 4.1, 2.9) > 0);
+        assert_int_equal(inside(&list, "walls", 1 + 4 * i, 3, 1), 0);
+    }
+    assert_int_equal(inside(&list, "walls", 3, 3, -0.1), 0); /* the yard */
+    assert_string_equal(face_at(&list, 3, 1, 0), "floor/hall");
+    drop(&plan, &list);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -382,6 +403,7 @@ int main(void)
         cmocka_unit_test(boxes_stand_turned_or_not),
         cmocka_unit_test(an_opening_leaves_the_corner_beside_it),
         cmocka_unit_test(a_wall_steps_from_ceiling_to_ceiling),
+        cmocka_unit_test(a_room_goes_round_three_sides_of_a_yard),
         cmocka_unit_test(set_counts_for_what_follows),
         cmocka_unit_test(a_round_room_may_have_many_walls),
     };

@@ -124,7 +124,7 @@ static void say_base(char *text)
     if (one_of(4) == 0) say(text, "set slab %.2f\n", uniform(0.1, 0.4));
     if (one_of(4) == 0) say(text, "set floor %.2f\n", uniform(-0.2, 0.2));
     if (one_of(4) == 0) say(text, "set ceiling %.2f\n", uniform(2, 3));
-    switch (one_of(7)) {
+    switch (one_of(8)) {
     case 0:
     case 1:
     case 2:
@@ -139,6 +139,12 @@ static void say_base(char *text)
         break;
     case 5:
         say_corners(text, (const double[5][2]){{0, 0}, {a, 0}, {a, d}, {c, b}, {0, b}}, 5);
+        break;
+    case 6:
+        say_corners(text,
+                    (const double[8][2]){
+                        {0, 0}, {a, 0}, {a, b}, {c + 0.8, b}, {c + 0.8, d}, {c - 0.2, d}, {c - 0.2, b}, {0, b}},
+                    8);
         break;
     default:
         say_wall(text, "alone", 0, 0, a, 0);
