@@ -327,7 +327,7 @@ void wall_reach(const struct plan *plan, int wall, double span[2])
         int face_wall, face_side;
         const int upper = (end == END_END) == (w->sign > 0);
         cut_range(w, wall_cap(plan, wall, end, &face_wall, &face_side), range);
-        span[upper] = range[upper];
+        span[upper] = range[upper] + 0.0; /* a -0 becomes 0 */
     }
 }
 
