@@ -1202,6 +1202,25 @@ static enum status slope_room(struct checker *c, struct plan_room *r)
     return ST_OK;
 }
 
+/* The slabs' border, behind the walls' thickness, goes round the room as its inside does: walls that are thicker than
+ * what is between two parts of a room are in each other. */
+static enum status check_border(struct checker *c, const struct plan_room *r)
+{
+    const struct plan *p = c->plan;
+    for (int e = 0; e < r->edge_count; e++) {
+        const double *a = r->edges[(e + r->edge_count - 1) % r->edge_count].outer, *b = r->edges[e].outer;
+        const struct plan_line face = wall_face(&p->walls[r->edges[e].wall], r->edges[e].side);
+        if (!(face.n[0] * (a[1] - b[1]) + face.n[1] * (b[0] - a[0]) > LENGTH_EPS))
+            return wrong(c, r->line, "the walls at both ends of %s, in room %s, are in each other.",
+                         p->walls[r->edges[e].wall].name, r->name);
+        for (int f = e + 2; f < r->edge_count; f++)
+            if ((e || f < r->edge_count - 1) && segments_meet(a, b, r->edges[f - 1].outer, r->edges[f].outer))
+                return wrong(c, r->line, "walls %s and %s of room %s are in each other.",
+                             p->walls[r->edges[e].wall].name, p->walls[r->edges[f].wall].name, r->name);
+    }
+    return ST_OK;
+}
+
 static enum status check_rooms(struct checker *c)
 {
     struct plan *p = c->plan;
@@ -1238,6 +1257,7 @@ static enum status check_rooms(struct checker *c)
             if (!(ceiling_at(r, r->edges[e].outer) - r->floor >= THINNEST))
                 st = wrong(c, r->line, "the ceiling of room %s comes down to its floor.", r->name);
         }
+        if (!r->removed && !st) st = check_border(c, r);
     }
     free(sides);
     return st;

@@ -83,6 +83,10 @@ static void what_is_no_building_is_refused(void **state)
         {BARE "wall a from 0 1 to 2000 1\n", ":4: wall a reaches to 2000; a model lies within 1000 units"},
         {ROOM "box b from 999 0 to 999.5 1 turn 45\n", ":10: box b reaches to 10"},
         {ROOM "box b from 0 0 to 1 1 top 1e5\n", ":10: box b reaches to 100000"},
+        {BARE "wall a from 6 0 to 0 0\nwall b from 0 0 to 0 4\nwall c from 0 4 to 2 4\nwall d from 2 4 to 2 2\n"
+              "wall e from 2 2 to 2.5 2\nwall f from 2.3 2 to 2.3 4\nwall g from 2.3 4 to 6 4\nwall h from 6 4 to 6 0\n"
+              "join a b c d e f g h a\nextend e end to 4\nroom hall a b c d e f g h\n",
+         ":14: walls g and d of room hall are in each other"},
         {ROOM "slope hall from south 500 to north 1000\n", ":9: room hall reaches to 1033"},
         {BARE "wall a from 0 0 to 3 0\nwall a from 0 1 to 3 1\n",
          ":5: the name a is used already, for a wall (line 4)"},
