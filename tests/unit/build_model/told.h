@@ -51,8 +51,8 @@ struct told_room {
     int walls[TOLD_MOST], wall_count;
     double floor, ceiling, slab;
     /* from the walls, by told_shape() */
-    int edges[TOLD_MOST], edge_count;
-    bool above[TOLD_MOST]; /* the room is at higher coordinates than the edge */
+    int edges[TOLD_MOST], edge_count, edge_of[TOLD_MOST]; /* edge_of: of each of walls */
+    bool above[TOLD_MOST];                                /* the room is at higher coordinates than the edge */
     double face[TOLD_MOST], border[TOLD_MOST];
 };
 
@@ -352,8 +352,9 @@ static inline void told_edges(const struct told *t, struct told_room *r)
     r->edge_count = 0;
     for (int k = 0; k < r->wall_count; k++) {
         const int at = (first + k) % r->wall_count;
-        if (k && told_one_line(&t->walls[r->walls[at]], &t->walls[r->edges[r->edge_count - 1]])) continue;
-        r->edges[r->edge_count++] = r->walls[at];
+        if (!k || !told_one_line(&t->walls[r->walls[at]], &t->walls[r->edges[r->edge_count - 1]]))
+            r->edges[r->edge_count++] = r->walls[at];
+        r->edge_of[at] = r->edge_count - 1;
     }
     for (int e = 0; e < r->edge_count;
          e++) { /* matter of the room to one side: by crossings of a ray from its middle */
@@ -386,10 +387,7 @@ static inline void told_shape(struct told *t)
         struct told_room *r = &t->rooms[i];
         if (r->gone) continue;
         told_edges(t, r);
-        for (int e = 0; e < r->edge_count; e++)
-            for (int k = 0; k < r->wall_count; k++)
-                if (told_one_line(&t->walls[r->edges[e]], &t->walls[r->walls[k]]))
-                    sides[r->walls[k]] |= (unsigned char)(1 << r->above[e]);
+        for (int k = 0; k < r->wall_count; k++) sides[r->walls[k]] |= (unsigned char)(1 << r->above[r->edge_of[k]]);
     }
     for (int i = 0; i < t->room_count; i++) {
         struct told_room *r = &t->rooms[i];
@@ -405,10 +403,8 @@ static inline bool told_between_rooms(const struct told *t, int wall)
     unsigned sides = 0;
     for (int i = 0; i < t->room_count; i++) {
         const struct told_room *r = &t->rooms[i];
-        for (int e = 0; !r->gone && e < r->edge_count; e++)
-            for (int k = 0; k < r->wall_count; k++)
-                if (r->walls[k] == wall && told_one_line(&t->walls[wall], &t->walls[r->edges[e]]))
-                    sides |= 1u << r->above[e];
+        for (int k = 0; !r->gone && k < r->wall_count; k++)
+            if (r->walls[k] == wall) sides |= 1u << r->above[r->edge_of[k]];
     }
     return sides == 3;
 }
@@ -431,10 +427,9 @@ static inline double told_top(const struct told *t, int wall, double s)
     if (w->has_top) return w->top;
     for (int i = 0; i < t->room_count; i++) {
         const struct told_room *r = &t->rooms[i];
-        bool listed = false;
-        for (int k = 0; k < r->wall_count; k++) listed |= r->walls[k] == wall;
-        for (int e = 0; listed && !r->gone && e < r->edge_count; e++) {
-            if (!told_one_line(w, &t->walls[r->edges[e]])) continue;
+        for (int k = 0; !r->gone && k < r->wall_count; k++) {
+            if (r->walls[k] != wall) continue;
+            const int e = r->edge_of[k];
             const int x = (e + r->edge_count - 1) % r->edge_count, y = (e + 1) % r->edge_count;
             const double low = fmin(fmin(r->face[x], r->face[y]), fmin(r->border[x], r->border[y]));
             const double high = fmax(fmax(r->face[x], r->face[y]), fmax(r->border[x], r->border[y]));
