@@ -353,7 +353,9 @@ model_files = $(addprefix $(1)/,model.txt model.obj plan.txt merged.txt plan.svg
 MODEL_SCRIPT := $(wildcard scenes/$(SCENE)/model.txt)
 EDITS := $(if $(MODEL_SCRIPT),$(patsubst scenes/$(SCENE)/edits/%.txt,%,$(wildcard scenes/$(SCENE)/edits/*.txt)))
 MODELS := $(if $(MODEL_SCRIPT),$(O)/model $(EDITS:%=$(O)/remodel/%))
-VIEWED := $(sort $(foreach v,$(VIEWS),$(firstword $(subst @, ,$(v))))) # photos that have a view
+# of a view
+photo_of = $(firstword $(subst @, ,$(1)))
+VIEWED := $(sort $(foreach v,$(VIEWS),$(call photo_of,$(v)))) # photos that have a view
 OVERLAYS := $(foreach m,$(MODELS),$(VIEWED:%=$(m)/overlay/%.jpg))
 SUBJECTS := $(P)/subjects.txt
 CHOICE := $(if $(CHOOSE),$(P)/$(CHOOSE)-effects.mk)
@@ -466,14 +468,17 @@ $(CAMERAS) $(O)/views/lenses.txt $(O)/views/views.mk $(HELD_CAMERAS) &: $(S)/sfm
 	$(call stage,sfm_import,all,$(O),--sfm $(S)/sfm --records $(S)/photos --out $(O)/views \
 	  $(if $(HOLDOUT),--holdout $(HOLDOUT)) $(if $(HOLDOUT_VIEWS),--holdout-views '$(HOLDOUT_VIEWS)'))
 
-# $(1): a view; $(2): the folder of its cameras
+# a photo's views are made together, for it is read once; only those that are missing or stale. $(1): a photo; $(2): the folder of the
+# cameras; $(3): the views that it has there
 define rectify_rule
-$(2)/$(1).exr: $(call picture,$(firstword $(subst @, ,$(1)))) $(addprefix $(2)/,cameras.txt images.txt points3D.txt lenses.txt) \
-  $(wildcard $(S)/stamp/mask/$(firstword $(subst @, ,$(1))).txt) $(call needs,rectify)
-	$$(hide)$$(call farm,rectify,$(1),$$@,--view $(1) --photos $$(PICTURES) $(MASKS) --records $(S)/photos --views $(2) --out $$@)
+$(3:%=$(2)/%.exr) &: $(call picture,$(1)) $(addprefix $(2)/,cameras.txt images.txt points3D.txt lenses.txt) \
+  $(wildcard $(S)/stamp/mask/$(1).txt) $(call needs,rectify)
+	$$(hide)stale=$$$$(common/stale.sh views $(3:%=$(2)/%.exr) -- $$^); \
+	  $$(call farm,rectify,$(if $(filter $(H)/%,$(2)),heldout-)$(1),$(3:%=$(2)/%.exr),--photo $(1) --photos $$(PICTURES) $(MASKS) --records $(S)/photos --views $(2) --out $(2),$$$$stale)
 endef
-$(foreach v,$(VIEWS),$(eval $(call rectify_rule,$(v),$(O)/views)))
-$(foreach v,$(HELD),$(eval $(call rectify_rule,$(v),$(H)/views)))
+rectify_rules = $(foreach p,$(sort $(foreach v,$(1),$(call photo_of,$(v)))),$(eval $(call rectify_rule,$(p),$(2),$(filter $(p) $(p)@%,$(1)))))
+$(call rectify_rules,$(VIEWS),$(O)/views)
+$(call rectify_rules,$(HELD),$(H)/views)
 
 GIVEN := $(if $(value REMODEL_DEPTH),--given "$$$$REMODEL_DEPTH")
 # $(1): a view; $(2): the folder of a round; $(3): that of the round before, empty for the first
@@ -563,7 +568,7 @@ $(foreach f,$(FILMS),$(eval $(call film_rule,$(f))))
 effect_layers = $(P)/$(1)/effects.txt $(if $(filter $(1),$(FILMS)),,$(wildcard scenes/$(SCENE)/effects.txt))
 define chunk_rule
 $(1:%=$(P)/$(2)/frames/%.exr) &: $(call path_txt,$(2)) $(call effect_layers,$(2)) $(CAMERAS) $(DEPTH_EXR) $(DEPTH_TXT) $(call needs,render_views)
-	$$(hide)stale=$$$$(common/stale.sh $(1:%=$(P)/$(2)/frames/%.exr) -- $$^); \
+	$$(hide)stale=$$$$(common/stale.sh frames $(1:%=$(P)/$(2)/frames/%.exr) -- $$^); \
 	  $$(call farm,render_views,$(2)-$(firstword $(1)),$(1:%=$(P)/$(2)/frames/%.exr),--views $(O)/views --depth $(O)/depth --path $(P)/$(2) $(addprefix --effects ,$(call effect_layers,$(2))) --out $(P)/$(2)/frames --frames,$$$$stale)
 endef
 chunks = $(if $(2),$(eval $(call $(1),$(wordlist 1,$(FRAMES_PER_JOB),$(2)),$(3)))$(call chunks,$(1),$(wordlist $(words x $(wordlist 1,$(FRAMES_PER_JOB),$(2))),$(words $(2)),$(2)),$(3)))
@@ -572,7 +577,7 @@ $(foreach e,$(EFFECTS),$(call chunks,chunk_rule,$(FRAMES_$(e)),$(e)))
 # the move in 2D, on request; which view it shows is told by the path
 define pan_rule
 $(1:%=$(P)/$(2)/pan_scan/frames/%.exr) &: $(call path_txt,$(2)) $(CAMERAS) $(VIEW_EXR) $(DEPTH_EXR) $(DEPTH_TXT) $(call needs,pan_scan)
-	$$(hide)stale=$$$$(common/stale.sh $(1:%=$(P)/$(2)/pan_scan/frames/%.exr) -- $$^); \
+	$$(hide)stale=$$$$(common/stale.sh frames $(1:%=$(P)/$(2)/pan_scan/frames/%.exr) -- $$^); \
 	  $$(call farm,pan_scan,$(2)-$(firstword $(1)),$(1:%=$(P)/$(2)/pan_scan/frames/%.exr),--views $(O)/views --depth $(O)/depth --path $(P)/$(2) --out $(P)/$(2)/pan_scan/frames --frames,$$$$stale)
 endef
 $(foreach e,$(EFFECTS),$(call chunks,pan_rule,$(FRAMES_$(e)),$(e)))
@@ -591,7 +596,7 @@ $(MORPH_TXT) $(M)/frames.mk &: $(foreach p,$(MORPH),$(call picture,$(p))) $(MORP
 	  $(if $(MORPH_POSES),--views $(O)/views) --out $(M))
 define morph_rule
 $(1:%=$(M)/frames/%.exr) &: $(MORPH_TXT) $(call needs,morph_views)
-	$$(hide)stale=$$$$(common/stale.sh $(1:%=$(M)/frames/%.exr) -- $$^); \
+	$$(hide)stale=$$$$(common/stale.sh frames $(1:%=$(M)/frames/%.exr) -- $$^); \
 	  $$(call farm,morph_views,$(firstword $(1)),$(1:%=$(M)/frames/%.exr),--morph $(M) --out $(M)/frames --frames,$$$$stale)
 endef
 $(call chunks,morph_rule,$(MORPH_FRAMES))

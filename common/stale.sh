@@ -1,19 +1,22 @@
 #!/usr/bin/env bash
-# stale.sh FRAME.exr... -- PREREQUISITE... - the numbers of the frames that are missing or not newer, as "3,4,12".
+# stale.sh frames|views PRODUCT.exr... -- PREREQUISITE... - those that are missing or not newer, as their stage wants to be told:
+# frames by number, "3,4,12"; views by name, "--view a --view b".
 set -euo pipefail
-frames=()
-while [ "$1" != -- ]; do frames+=("$1"); shift; done
+kind=$1; shift
+products=()
+while [ "$1" != -- ]; do products+=("$1"); shift; done
 shift
 newest=$1
 for p in "$@"; do [ ! "$p" -nt "$newest" ] || newest=$p; done
+stale=()
+for f in "${products[@]}"; do [ -e "$f" ] && [ ! "$newest" -nt "$f" ] || stale+=("$f"); done
+[ "${#stale[@]}" -gt 0 ] || stale=("${products[@]}") # make saw a change that time stamps do not tell: all of them
 out=
-for f in "${frames[@]}"; do
-    if [ ! -e "$f" ] || [ "$newest" -nt "$f" ]; then
-        n=${f##*/}; n=${n%.exr}
-        out+=${out:+,}$((10#$n))
-    fi
+for f in "${stale[@]}"; do
+    n=${f##*/}; n=${n%.exr}
+    case $kind in
+    frames) out+=${out:+,}$((10#$n)) ;;
+    views) out+=${out:+ }"--view $n" ;;
+    esac
 done
-if [ -z "$out" ]; then # make saw a change that time stamps do not tell: all of them
-    for f in "${frames[@]}"; do n=${f##*/}; n=${n%.exr}; out+=${out:+,}$((10#$n)); done
-fi
 echo "$out"

@@ -1,9 +1,13 @@
-/* rectify.c - resamples a photograph into its view's pinhole camera, in linear colour.
+/* rectify.c - resamples a photograph into its views' pinhole cameras, in linear colour.
  *
- * reads   VIEWS/cameras.txt, images.txt, lenses.txt   the view's camera, and the photo's lens
+ * reads   VIEWS/cameras.txt, images.txt, lenses.txt   the views' cameras, and the photo's lens
  *         RECORDS/ID.txt, PHOTOS/FILE                 the photo; of a view of several exposures PHOTOS/ID.exr, merged
- *         MASKS/ID.png                                black where the view is to have no pixel; need not be there
- * writes  OUT                                         VIEW.exr: R G B (linear), A */
+ *         MASKS/ID.png                                black where a view is to have no pixel; need not be there
+ * writes  OUT/VIEW.exr                                R G B (linear), A: of every view of the photo, or of those asked for
+ *
+ * A photo may have many views (of a fisheye, several), and reading it can take longer than making one: it is read once. */
+#include <string.h>
+
 #include "common/cli.h"
 #include "common/file_path.h"
 #include "common/lens_list.h"
@@ -12,46 +16,89 @@
 #include "common/view_image.h"
 #include "stages/rectify/resample.h"
 
-static enum status find_view(const struct view **view, const struct lens **lens, const struct camera_set *set,
-                             const struct lens_list *lenses, const char *name, const char *folder, struct err *err)
+struct request {
+    const char *photo, *photos, *masks, *records, *folder, *out; /* folder: of the cameras */
+    struct cli_list names;                                       /* of views; none: all of the photo's */
+};
+
+struct source { /* the photograph, as all of its views see it */
+    struct image linear;
+    struct photo_mask mask;
+    char radiometry[RADIOMETRY_SIZE];
+};
+
+static enum status read_source(struct source *s, const struct request *r, struct provenance *prov, struct err *err)
 {
-    int v = camera_set_find(set, name), l = lens_list_find(lenses, name);
-    if (v < 0 || l < 0)
-        return err_set(err, ST_USAGE, "there is no view %s in %s/%s; its views are listed in %s/views.mk.", name,
-                       folder, v < 0 ? "images.txt" : "lenses.txt", folder);
-    *view = &set->views[v];
-    *lens = &lenses->lenses[l];
+    struct photo_record record = {0};
+    enum status st = photo_record_read(&record, r->records, r->photo, err);
+    if (!st) st = linear_photo_read(&s->linear, s->radiometry, r->photos, &record, prov, err);
+    if (!st) st = photo_mask_read(&s->mask, r->masks, r->records, &record, prov, err);
+    photo_record_release(&record);
+    return st;
+}
+
+static enum status make_view(const struct source *s, const struct request *r, const struct lens *lens,
+                             const struct view *view, const struct provenance *prov, struct err *err)
+{
+    struct image rectified = {0};
+    char path[FILE_PATH];
+    const struct mat3 photo_from_view = mat3_transpose(mat3_from_quat(lens->view_from_photo));
+    enum status st = file_path(path, r->out, view->name, ".exr", err);
+    if (!st) {
+        st = resample_photo(&rectified, &s->linear, s->mask.masked, &lens->camera, &photo_from_view, view, err);
+        if (st) err_context(err, "photo %s", r->photo);
+    }
+    if (!st) st = view_image_write(&rectified, path, view, prov, s->radiometry, err);
+    image_release(&rectified);
+    return st;
+}
+
+static bool is_wanted(const struct request *r, const char *view)
+{
+    for (int i = 0; i < r->names.count; i++)
+        if (!strcmp(r->names.items[i], view)) return true;
+    return !r->names.count;
+}
+
+static enum status check_request(const struct request *r, const struct lens_list *lenses, struct err *err)
+{
+    int views = 0;
+    for (int l = 0; l < lenses->count; l++) views += !strcmp(lenses->lenses[l].photo, r->photo);
+    if (!views)
+        return err_set(err, ST_USAGE, "photo %s has no view in %s/lenses.txt; there each line begins VIEW PHOTO.",
+                       r->photo, r->folder);
+    for (int i = 0; i < r->names.count; i++) {
+        int l = lens_list_find(lenses, r->names.items[i]);
+        if (l < 0 || strcmp(lenses->lenses[l].photo, r->photo))
+            return err_set(err, ST_USAGE, "photo %s has no view %s; its views are listed in %s/lenses.txt.", r->photo,
+                           r->names.items[i], r->folder);
+    }
     return ST_OK;
 }
 
-static enum status rectify(const char *name, const char *photos, const char *masks, const char *records,
-                           const char *views, const char *out, struct provenance *prov, struct err *err)
+static enum status rectify(const struct request *r, struct provenance *prov, struct err *err)
 {
     struct camera_set set = {0};
     struct lens_list lenses = {0};
-    struct photo_record record = {0};
-    struct photo_mask mask = {0};
-    struct image linear = {0}, rectified = {0};
-    const struct view *view = NULL;
-    const struct lens *lens = NULL;
-    char lens_path[FILE_PATH], radiometry[RADIOMETRY_SIZE] = "";
-    enum status st = file_path(lens_path, views, "lenses.txt", "", err);
-    if (!st) st = camera_set_read(&set, views, err);
+    struct source source = {0};
+    char lens_path[FILE_PATH];
+    enum status st = file_path(lens_path, r->folder, "lenses.txt", "", err);
+    if (!st) st = camera_set_read(&set, r->folder, err);
     if (!st) st = lens_list_read(&lenses, lens_path, err);
-    if (!st) st = find_view(&view, &lens, &set, &lenses, name, views, err);
-    if (!st) st = photo_record_read(&record, records, lens->photo, err);
-    if (!st) st = linear_photo_read(&linear, radiometry, photos, &record, prov, err);
-    if (!st) st = photo_mask_read(&mask, masks, records, &record, prov, err);
-    if (!st) {
-        struct mat3 photo_from_view = mat3_transpose(mat3_from_quat(lens->view_from_photo));
-        st = resample_photo(&rectified, &linear, mask.masked, &lens->camera, &photo_from_view, view, err);
-        if (st) err_context(err, "%s/%s", photos, record.file);
+    if (!st) st = check_request(r, &lenses, err);
+    if (!st) st = read_source(&source, r, prov, err);
+    for (int l = 0; !st && l < lenses.count; l++) {
+        const struct lens *lens = &lenses.lenses[l];
+        if (strcmp(lens->photo, r->photo) || !is_wanted(r, lens->view)) continue;
+        int v = camera_set_find(&set, lens->view);
+        if (v < 0)
+            st = err_set(err, ST_DATA, "view %s is in %s/lenses.txt but not in images.txt; run sfm_import again.",
+                         lens->view, r->folder);
+        else
+            st = make_view(&source, r, lens, &set.views[v], prov, err);
     }
-    if (!st) st = view_image_write(&rectified, out, view, prov, radiometry, err);
-    image_release(&rectified);
-    image_release(&linear);
-    photo_mask_release(&mask);
-    photo_record_release(&record);
+    image_release(&source.linear);
+    photo_mask_release(&source.mask);
     lens_list_release(&lenses);
     camera_set_release(&set);
     return st;
@@ -59,22 +106,22 @@ static enum status rectify(const char *name, const char *photos, const char *mas
 
 int main(int argc, char **argv)
 {
-    const char *view = NULL, *photos = NULL, *masks = NULL, *records = NULL, *views = NULL, *out = NULL;
+    struct request r = {0};
     const struct cli_opt opts[] = {
-        CLI_ABOUT("Resamples a photograph into its view's pinhole camera, in linear colour."),
-        CLI_STR("view", &view, CLI_REQUIRED, "view to make"),
-        CLI_STR("photos", &photos, CLI_REQUIRED, "folder of photographs, or of merged exposures"),
-        CLI_STR("masks", &masks, CLI_OPTIONAL, "folder of masks ID.png, black where the view is to have no pixel"),
-        CLI_STR("records", &records, CLI_REQUIRED, "folder of the photos' records"),
-        CLI_STR("views", &views, CLI_REQUIRED, "folder of cameras and lenses"),
-        CLI_STR("out", &out, CLI_REQUIRED, "EXR to write"),
+        CLI_ABOUT("Resamples a photograph into its views' pinhole cameras, in linear colour."),
+        CLI_STR("photo", &r.photo, CLI_REQUIRED, "id of the photograph; all of its views are made"),
+        CLI_LIST("view", &r.names, CLI_OPTIONAL, "of them only this one; may be given several times"),
+        CLI_STR("photos", &r.photos, CLI_REQUIRED, "folder of photographs, or of merged exposures"),
+        CLI_STR("masks", &r.masks, CLI_OPTIONAL, "folder of masks ID.png, black where a view is to have no pixel"),
+        CLI_STR("records", &r.records, CLI_REQUIRED, "folder of the photos' records"),
+        CLI_STR("views", &r.folder, CLI_REQUIRED, "folder of cameras and lenses"),
+        CLI_STR("out", &r.out, CLI_REQUIRED, "folder to write VIEW.exr into"),
         CLI_END,
     };
     struct provenance prov = {0};
     struct err err = ERR_INIT;
-    if (cli_parse(argc, argv, "rectify", opts, &prov, &err) != CLI_RUN ||
-        rectify(view, photos, masks, records, views, out, &prov, &err))
-        err_report(&err);
+    if (cli_parse(argc, argv, "rectify", opts, &prov, &err) != CLI_RUN || rectify(&r, &prov, &err)) err_report(&err);
     provenance_release(&prov);
+    cli_list_release(&r.names);
     return err_exit_code(&err);
 }

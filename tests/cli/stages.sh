@@ -86,7 +86,7 @@ missing_inputs_fail_with_their_name()
     expect 1 "$d" "$B/bin/import_photos" --photos "$d" --out "$scratch/o"
     expect 1 "$d" "$B/bin/hdr_merge" --id v --photos "$d" --records "$d" --out "$scratch/o"
     expect 1 "$d" "$B/bin/sfm_import" --sfm "$d" --records "$d" --out "$scratch/o"
-    expect 1 "$d" "$B/bin/rectify" --view v --photos "$d" --records "$d" --views "$d" --out "$scratch/o/v.exr"
+    expect 1 "$d" "$B/bin/rectify" --photo v --photos "$d" --records "$d" --views "$d" --out "$scratch/o"
     expect 1 "$d" "$B/bin/segment_depth" --view v --views "$d" --out "$scratch/o/v.exr"
     expect 1 "$d" "$B/bin/fuse_points" --views "$d" --depth "$d" --out "$scratch/o/p.ply"
     expect 1 "$d" "$B/bin/find_subjects" --views "$d" --depth "$d" --out "$scratch/o/subjects.txt"
