@@ -276,7 +276,8 @@ $(UNIT_TESTS): $(B)/tests/unit/%: $(B)/obj/tests/unit/%.o $(B)/libremodel.a
 $(BENCHES): $(B)/tests/bench/%: $(B)/obj/tests/bench/%.o $(B)/libremodel.a
 	$(call link,-lstdc++)
 $(B)/tests/bench/exr: $(B)/obj/tests/bench/exr_openexr.o # the baseline
-$(B)/tests/bench/hdr: $(filter-out %/hdr_merge.o,$(call objs,stages/hdr_merge/*.c))
+$(B)/tests/bench/hdr $(B)/tests/bench/hdr_views: $(filter-out %/hdr_merge.o,$(call objs,stages/hdr_merge/*.c))
+$(B)/tests/bench/hdr_views: $(call objs,stages/rectify/resample.c stages/sfm_import/view_cameras.c)
 $(B)/tests/bench/render_rate: $(filter-out %/render_views.o,$(call objs,stages/render_views/*.c))
 $(B)/tests/bench/move_pairs: $(filter-out %/plan_path.o,$(call objs,stages/plan_path/*.c))
 $(B)/tests/bench/unite: $(filter-out %/build_model.o,$(call objs,stages/build_model/*.c))

@@ -18,6 +18,7 @@
 #include "common/exr_zip.h"
 #include "common/outfile.h"
 #include "common/parallel.h"
+#include "common/samples.h"
 
 #define MOST_PIXELS  (INT64_C(1) << 28)
 #define ZIP_ROWS     16
@@ -52,7 +53,7 @@ enum status exr_add_plane(struct exr_image *im, const char *name, enum exr_type 
     if (!planes) return err_nomem(err, "a list of channels", ((size_t)im->count + 1) * sizeof *planes);
     im->planes = planes;
     size_t samples = (size_t)im->width * (size_t)im->height;
-    void *data = calloc(samples, 4);
+    void *data = samples_alloc(samples * 4);
     if (!data) return err_nomem(err, "a channel", samples * 4);
 
     struct exr_plane *p = &planes[im->count++];

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "common/parallel.h"
+#include "common/samples.h"
 
 enum status image_init(struct image *im, int width, int height, int channels, struct err *err)
 {
@@ -20,10 +21,9 @@ enum status image_init(struct image *im, int width, int height, int channels, st
         return err_set(err, ST_DATA,
                        "a picture of %d x %d pixels with %d channels is too large; the limit is 2^31 samples.", width,
                        height, channels);
-    size_t bytes = ((size_t)area * (size_t)channels * sizeof(float) + 63) / 64 * 64;
-    im->data = aligned_alloc(64, bytes);
+    size_t bytes = (size_t)area * (size_t)channels * sizeof(float);
+    im->data = samples_alloc(bytes);
     if (!im->data) return err_nomem(err, "a picture", bytes);
-    memset(im->data, 0, bytes);
     im->width = width;
     im->height = height;
     im->channels = channels;

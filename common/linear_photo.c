@@ -1,7 +1,6 @@
 /* linear_photo.c - see linear_photo.h. */
 #include "common/linear_photo.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -29,10 +28,16 @@ static enum status read_merged(struct image *linear, const char *path, char radi
             st = err_set(err, ST_DATA, "%s: channel %s holds integers, wanted half or float; merge the view again.",
                          path, names[c]);
     if (!st) st = image_init(linear, exr.width, exr.height, 3, err);
-    for (size_t c = 0; !st && c < 3; c++) {
-        const float *from = exr_find(&exr, names[c])->f;
-        size_t pixels = (size_t)exr.width * (size_t)exr.height;
-        for (size_t i = 0; i < pixels; i++) linear->data[3 * i + c] = fmaxf(from[i], 0);
+    if (!st) {
+        const float *const r = exr_find(&exr, "R")->f, *const g = exr_find(&exr, "G")->f,
+                           *const b = exr_find(&exr, "B")->f;
+        const size_t pixels = (size_t)exr.width * (size_t)exr.height;
+        for (size_t i = 0; i < pixels; i++) {
+            float *to = linear->data + 3 * i;
+            to[0] = r[i] > 0 ? r[i] : 0;
+            to[1] = g[i] > 0 ? g[i] : 0;
+            to[2] = b[i] > 0 ? b[i] : 0;
+        }
     }
     const char *is = exr_attribute(&exr, "remodel:radiometry");
     if (!st && is) snprintf(radiometry, RADIOMETRY_SIZE, "%s", is);

@@ -10,6 +10,7 @@
  * good (error 3/128 of them). Where nothing is reduced, weights depend on the place between pixels alone and are tabled. */
 #include "stages/rectify/resample.h"
 
+#include <immintrin.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,11 +22,10 @@
 
 #define MAX_REDUCTION 64    /* a reduction beyond it aliases a little; it keeps the taps' memory small */
 #define SMOOTH        0.004 /* px: fourth differences of knots up to it; 1e-4 px of error */
-enum { MAX_TAPS = 2 * LOBES * MAX_REDUCTION + 1, CHUNK = 16, SHARP = 2 * LOBES, KNOTS = 8, MARGIN = 2 };
+enum { LANES = 8, MAX_TAPS = 2 * LOBES * MAX_REDUCTION + 1, CHUNK = 16, SHARP = 2 * LOBES, KNOTS = 8, MARGIN = 4 };
 
-struct place { /* where in the photo a view's pixel lies */
-    double u, v;
-    bool seen;
+struct place {   /* where in the photo a view's pixel lies */
+    double u, v; /* NAN: the lens does not see it */
 };
 
 struct resample {
@@ -35,10 +35,12 @@ struct resample {
     const struct camera *lens;
     struct mat3 photo_from_view;
     const struct view *view;
-    struct place *places; /* of each thread: two rows, each of the view's width + 1, then the knots of a row */
-    size_t places_of_thread;
+    double *places; /* of each thread: two rows, u then v, and the knots of a row */
+    size_t row, knots, places_of_thread;
+    double cubic[2][4]
+                [2 * KNOTS]; /* weights of four knots, and of every other, at each pixel from the second to the third */
     float kernel[LOBES * STEPS + 2];
-    float sharp[STEPS + 1][SHARP]; /* weights without reduction, by the place behind the third sample's centre */
+    float sharp[STEPS + 1][LANES]; /* weights without reduction, by the place behind the third sample's centre */
 };
 
 static void make_kernel(float *kernel)
@@ -49,7 +51,7 @@ static void make_kernel(float *kernel)
     }
 }
 
-static void make_sharp(float sharp[][SHARP], const float *kernel)
+static void make_sharp(float sharp[][LANES], const float *kernel)
 {
     for (int j = 0; j <= STEPS; j++) {
         float sum = 0;
@@ -61,45 +63,69 @@ static void make_sharp(float sharp[][SHARP], const float *kernel)
     }
 }
 
-static float kernel_at(const float *kernel, float steps)
+/* Factors, at each pixel between two knots `step` apart, of their values and of those beside them. */
+static void make_cubic(double cubic[4][2 * KNOTS], int step)
 {
-    float at = fabsf(steps);
-    if (at >= LOBES * STEPS) return 0;
-    int i = (int)at;
-    return kernel[i] + (at - (float)i) * (kernel[i + 1] - kernel[i]);
+    for (int i = 0; i < step; i++) {
+        const double t = (double)i / step;
+        cubic[0][i] = -t * (t - 1) * (t - 2) / 6;
+        cubic[1][i] = (t + 1) * (t - 1) * (t - 2) / 2;
+        cubic[2][i] = -(t + 1) * t * (t - 2) / 2;
+        cubic[3][i] = (t + 1) * t * (t - 1) / 6;
+    }
 }
 
 static struct place photo_from_pixel(const struct resample *r, int x, int y)
 {
     const struct view *view = r->view;
     struct vec3 ray = {(x + 0.5 - view->cx) / view->fx, (y + 0.5 - view->cy) / view->fy, 1};
-    struct place p = {0};
-    p.seen = camera_project(r->lens, mat3_apply(r->photo_from_view, ray), &p.u, &p.v);
-    return p;
+    struct place p;
+    return camera_project(r->lens, mat3_apply(r->photo_from_view, ray), &p.u, &p.v) ? p : (struct place){NAN, NAN};
 }
 
-/* Taps along one axis around `at` (pixel centres at +0.5); those within one lobe are near. */
+/* Taps along one axis around `at` (pixel centres at +0.5); those within one lobe are near. Weights are 0 from `count` to
+ * the next multiple of LANES. */
 struct taps {
     int first, count;
     int near_begin, near_end; /* counted from the first */
-    float weight[MAX_TAPS];
+    float weight[MAX_TAPS + LANES];
 };
+
+/* The kernel at eight places, in table entries. */
+static __m256 kernel_at(const float *kernel, __m256 steps)
+{
+    const __m256 end = _mm256_set1_ps(LOBES * STEPS), away = _mm256_andnot_ps(_mm256_set1_ps(-0.0f), steps);
+    const __m256i i = _mm256_cvttps_epi32(_mm256_min_ps(away, end));
+    const __m256 here = _mm256_i32gather_ps(kernel, i, 4), next = _mm256_i32gather_ps(kernel + 1, i, 4);
+    const __m256 part = _mm256_sub_ps(away, _mm256_cvtepi32_ps(i));
+    return _mm256_and_ps(_mm256_cmp_ps(away, end, _CMP_LT_OQ),
+                         _mm256_add_ps(here, _mm256_mul_ps(part, _mm256_sub_ps(next, here))));
+}
 
 static void make_taps(struct taps *t, const float *kernel, double at, double scale)
 {
-    double radius = LOBES * scale, steps = STEPS / scale;
-    int last = (int)floor(at - 0.5 + radius);
+    const double radius = LOBES * scale, steps = STEPS / scale;
+    const int last = (int)floor(at - 0.5 + radius);
     t->first = (int)ceil(at - 0.5 - radius);
     t->count = last - t->first + 1 < MAX_TAPS ? last - t->first + 1 : MAX_TAPS;
     t->near_begin = (int)ceil(at - 0.5 - scale) - t->first;
     t->near_end = (int)floor(at - 0.5 + scale) - t->first + 1;
-    float sum = 0;
-    for (int i = 0; i < t->count; i++) {
-        t->weight[i] = kernel_at(kernel, (float)((t->first + i + 0.5 - at) * steps));
-        sum += t->weight[i];
+    const __m256d centre = _mm256_set1_pd(at), spread = _mm256_set1_pd(steps), half = _mm256_set1_pd(0.5);
+    for (int i = 0; i < t->count; i += LANES) {
+        __m128 away[2];
+        for (int k = 0; k < 2; k++) {
+            const int x = t->first + i + 4 * k;
+            const __m256d from = _mm256_sub_pd(_mm256_add_pd(_mm256_setr_pd(x, x + 1, x + 2, x + 3), half), centre);
+            away[k] = _mm256_cvtpd_ps(_mm256_mul_pd(from, spread));
+        }
+        _mm256_storeu_ps(t->weight + i, kernel_at(kernel, _mm256_set_m128(away[1], away[0])));
     }
-    float share = 1 / sum;
-    for (int i = 0; i < t->count; i++) t->weight[i] *= share;
+    float sum = 0;
+    for (int i = 0; i < t->count; i++) sum += t->weight[i];
+    for (int i = t->count; i % LANES; i++) t->weight[i] = 0;
+    const __m256 share = _mm256_set1_ps(1 / sum);
+    for (int i = 0; i < t->count; i += LANES)
+        _mm256_storeu_ps(t->weight + i, _mm256_mul_ps(_mm256_loadu_ps(t->weight + i), share));
 }
 
 static int clamp_int(int x, int most) { return x < 0 ? 0 : x > most ? most : x; }
@@ -116,7 +142,7 @@ static const float *samples_under(const struct image *photo, int y, const struct
 }
 
 /* Down the columns first: there a row's samples, of whatever colour, share one weight. */
-static void filter(float rgb[3], const struct image *photo, const struct taps *tx, const struct taps *ty)
+static void filter_border(float rgb[3], const struct image *photo, const struct taps *tx, const struct taps *ty)
 {
     float columns[3 * MAX_TAPS], room[3 * MAX_TAPS], least[3], most[3] = {0};
     int samples = 3 * tx->count;
@@ -140,11 +166,53 @@ static void filter(float rgb[3], const struct image *photo, const struct taps *t
     }
 }
 
+/* The same where no tap and no lane reaches over the photo's border: eight samples at a time. */
+static void filter_inside(float rgba[4], const struct image *photo, const struct taps *tx, const struct taps *ty)
+{
+    float columns[3 * MAX_TAPS + 2 * LANES], low[3 * MAX_TAPS + 2 * LANES], high[3 * MAX_TAPS + 2 * LANES];
+    const size_t stride = 3 * (size_t)photo->width;
+    const float *rows = image_at(photo, tx->first, ty->first), *near = rows + (size_t)ty->near_begin * stride;
+    for (int k = 0; k < 3 * tx->count; k += LANES) {
+        __m256 sum = _mm256_setzero_ps();
+        const float *at = rows + k;
+        for (int j = 0; j < ty->count; j++, at += stride)
+            sum = _mm256_add_ps(sum, _mm256_mul_ps(_mm256_set1_ps(ty->weight[j]), _mm256_loadu_ps(at)));
+        _mm256_storeu_ps(columns + k, sum);
+    }
+    for (int k = 3 * tx->near_begin; k < 3 * tx->near_end; k += LANES) {
+        const float *at = near + k;
+        __m256 least = _mm256_loadu_ps(at), most = least;
+        for (int j = ty->near_begin + 1; j < ty->near_end; j++) {
+            const __m256 sample = _mm256_loadu_ps(at += stride);
+            least = _mm256_min_ps(least, sample);
+            most = _mm256_max_ps(most, sample);
+        }
+        _mm256_storeu_ps(low + k, least);
+        _mm256_storeu_ps(high + k, most);
+    }
+    __m128 sum = _mm_setzero_ps(), least = _mm_set1_ps(INFINITY), most = sum;
+    for (int i = 0; i < tx->count; i++)
+        sum = _mm_add_ps(sum, _mm_mul_ps(_mm_set1_ps(tx->weight[i]), _mm_loadu_ps(columns + 3 * i)));
+    for (int i = tx->near_begin; i < tx->near_end; i++) {
+        least = _mm_min_ps(least, _mm_loadu_ps(low + 3 * i));
+        most = _mm_max_ps(most, _mm_loadu_ps(high + 3 * i));
+    }
+    _mm_storeu_ps(rgba, _mm_blend_ps(_mm_min_ps(most, _mm_max_ps(least, sum)), _mm_set1_ps(1), 8));
+}
+
+/* Do the taps, and the lanes behind their last, lie inside the photo? */
+static bool is_inside(const struct image *photo, const struct taps *tx, const struct taps *ty)
+{
+    const int lanes = LANES / 3 + 1; /* pixels that the last load may reach beyond the taps */
+    return tx->first >= 0 && ty->first >= 0 && tx->first + tx->count + lanes <= photo->width &&
+           ty->first + ty->count <= photo->height && tx->near_begin < tx->near_end && ty->near_begin < ty->near_end;
+}
+
 /* Is one of the samples masked that are within one lobe of u, v, of so many pixels each way? */
 static bool is_masked(const struct resample *r, double u, double v, double wide, double high)
 {
     const int x1 = (int)floor(u - 0.5 + wide), y1 = (int)floor(v - 0.5 + high);
-    for (int y = (int)ceil(v - 0.5 - high); r->masked && y <= y1; y++) {
+    for (int y = (int)ceil(v - 0.5 - high); y <= y1; y++) {
         const size_t row = (size_t)clamp_int(y, r->photo->height - 1) * (size_t)r->photo->width;
         for (int x = (int)ceil(u - 0.5 - wide); x <= x1; x++)
             if (r->masked[row + (size_t)clamp_int(x, r->photo->width - 1)]) return true;
@@ -152,106 +220,157 @@ static bool is_masked(const struct resample *r, double u, double v, double wide,
     return false;
 }
 
-/* Do the knots about the interval from knot[0] to knot[1] lie on cubics? */
-static bool is_smooth(const struct place *knot)
+/* Do the knots about the interval from knot[0] to knot[n] lie on cubics? */
+static bool is_smooth(const double *knot, int n)
 {
-    for (int i = -MARGIN; i <= MARGIN + 1; i++)
-        if (!knot[i].seen) return false;
-    for (const struct place *k = knot; k < knot + 2; k++) {
-        const double u = k[-2].u - 4 * k[-1].u + 6 * k[0].u - 4 * k[1].u + k[2].u;
-        const double v = k[-2].v - 4 * k[-1].v + 6 * k[0].v - 4 * k[1].v + k[2].v;
-        if (!(fabs(u) <= SMOOTH && fabs(v) <= SMOOTH)) return false;
-    }
+    for (const double *k = knot; k <= knot + n; k += n)
+        if (!(fabs(k[-2 * n] - 4 * k[-n] + 6 * k[0] - 4 * k[n] + k[2 * n]) <= SMOOTH)) return false;
     return true;
 }
 
-static void project_row(const struct resample *r, int y, struct place *row, struct place *knots)
+/* n: 1 for neighbouring knots, 2 for every other. */
+static void interpolate(const struct resample *r, double *to, const double *knot, int n)
+{
+    const double(*w)[2 * KNOTS] = r->cubic[n - 1];
+    for (int i = 0; i < n * KNOTS; i++)
+        to[i] = w[0][i] * knot[-n] + w[1][i] * knot[0] + w[2][i] * knot[n] + w[3][i] * knot[2 * n];
+}
+
+/* The places of a row's pixels, and of the one behind its last. */
+struct row {
+    double *u, *v;
+};
+
+static void place_at(const struct resample *r, const struct row *to, int i, int x, int y)
+{
+    const struct place p = photo_from_pixel(r, x, y);
+    to->u[i] = p.u;
+    to->v[i] = p.v;
+}
+
+/* Every other knot will do where the map is as smooth as that: large views are. */
+static void project_row(const struct resample *r, int y, const struct row *row, const struct row *knots)
 {
     const int width = r->view->width, intervals = width / KNOTS + 1;
-    for (int k = -MARGIN; k <= intervals + MARGIN; k++) knots[k + MARGIN] = photo_from_pixel(r, k * KNOTS, y);
-    for (int k = 0; k < intervals; k++) {
-        const struct place *p = knots + k + MARGIN;
-        const int x0 = k * KNOTS, end = width - x0 < KNOTS ? width - x0 + 1 : KNOTS;
-        const bool smooth = is_smooth(p);
-        row[x0] = *p;
-        for (int i = 1; i < end; i++) {
-            if (!smooth) {
-                row[x0 + i] = photo_from_pixel(r, x0 + i, y);
+    for (int k = -MARGIN; k <= intervals + MARGIN; k += 2) place_at(r, knots, k + MARGIN, k * KNOTS, y);
+    for (int k = 0, odd = 1 - MARGIN; k < intervals; k += 2) {
+        const struct row at = {knots->u + k + MARGIN, knots->v + k + MARGIN};
+        const struct row to = {row->u + k * KNOTS, row->v + k * KNOTS};
+        if (is_smooth(at.u, 2) && is_smooth(at.v, 2)) {
+            interpolate(r, to.u, at.u, 2);
+            interpolate(r, to.v, at.v, 2);
+            continue;
+        }
+        if (odd < k - 1) odd = k - 1;
+        for (; odd <= k + 3; odd += 2) place_at(r, knots, odd + MARGIN, odd * KNOTS, y);
+        for (int n = 0; n < 2; n++) {
+            if (is_smooth(at.u + n, 1) && is_smooth(at.v + n, 1)) {
+                interpolate(r, to.u + n * KNOTS, at.u + n, 1);
+                interpolate(r, to.v + n * KNOTS, at.v + n, 1);
                 continue;
             }
-            const double t = (double)i / KNOTS, before = -t * (t - 1) * (t - 2) / 6,
-                         at = (t + 1) * (t - 1) * (t - 2) / 2;
-            const double next = -(t + 1) * t * (t - 2) / 2, after = (t + 1) * t * (t - 1) / 6;
-            row[x0 + i] = (struct place){before * p[-1].u + at * p[0].u + next * p[1].u + after * p[2].u,
-                                         before * p[-1].v + at * p[0].v + next * p[1].v + after * p[2].v, true};
+            for (int i = n * KNOTS; i < (n + 1) * KNOTS && k * KNOTS + i <= width; i++)
+                place_at(r, &to, i, k * KNOTS + i, y);
         }
     }
 }
 
-/* Six samples each way from x, y on. */
-static void filter_sharp(const struct resample *r, float rgb[3], int x, int y, double behind_x, double behind_y)
+static __m256 sharp_weights(const struct resample *r, double behind)
+{
+    const float at = (float)(behind * STEPS);
+    const int j = (int)at < STEPS ? (int)at : STEPS - 1;
+    const __m256 here = _mm256_loadu_ps(r->sharp[j]), next = _mm256_loadu_ps(r->sharp[j + 1]);
+    return _mm256_add_ps(here, _mm256_mul_ps(_mm256_set1_ps(at - (float)j), _mm256_sub_ps(next, here)));
+}
+
+/* Six samples each way from x, y on. A row's 18 numbers are loaded as pixels 0 and 1, 2 and 3, then 4 and 5 behind two
+ * numbers that do not count. */
+static void filter_sharp(const struct resample *r, float rgba[4], int x, int y, double behind_x, double behind_y)
 {
     const size_t stride = 3 * (size_t)r->photo->width;
-    const float *rows = image_at(r->photo, x, y);
-    float weights[2][SHARP], columns[3 * SHARP] = {0};
-    for (int k = 0; k < 2; k++) {
-        const float at = (float)((k ? behind_y : behind_x) * STEPS);
-        const int j = (int)at < STEPS ? (int)at : STEPS - 1;
-        const float part = at - (float)j;
-        for (int i = 0; i < SHARP; i++) weights[k][i] = r->sharp[j][i] + part * (r->sharp[j + 1][i] - r->sharp[j][i]);
+    const float *row = image_at(r->photo, x, y);
+    const __m256i second = _mm256_setr_epi32(3, 4, 5, 5, 5, 5, 5, 5);
+    const __m256 across = sharp_weights(r, behind_x);
+    __m256 first = _mm256_setzero_ps(), middle = first, last = first, near[2];
+    float down[LANES];
+    _mm256_storeu_ps(down, sharp_weights(r, behind_y));
+    for (int j = 0; j < SHARP; j++, row += stride) {
+        const __m256 weight = _mm256_set1_ps(down[j]), inner = _mm256_loadu_ps(row + 6);
+        first = _mm256_add_ps(first, _mm256_mul_ps(weight, _mm256_loadu_ps(row)));
+        middle = _mm256_add_ps(middle, _mm256_mul_ps(weight, inner));
+        last = _mm256_add_ps(last, _mm256_mul_ps(weight, _mm256_loadu_ps(row + 10)));
+        if (j == LOBES - 1 || j == LOBES) near[j - LOBES + 1] = inner;
     }
-    for (int j = 0; j < SHARP; j++)
-        for (int k = 0; k < 3 * SHARP; k++) columns[k] += weights[1][j] * rows[(size_t)j * stride + (size_t)k];
-    const float *near = rows + (LOBES - 1) * stride + 3 * (LOBES - 1), *below = near + stride;
-    for (int c = 0; c < 3; c++) {
-        const float a = near[c] < near[c + 3] ? near[c] : near[c + 3],
-                    b = near[c] < near[c + 3] ? near[c + 3] : near[c];
-        const float d = below[c] < below[c + 3] ? below[c] : below[c + 3],
-                    e = below[c] < below[c + 3] ? below[c + 3] : below[c];
-        const float least = a < d ? a : d, most = b > e ? b : e;
-        float sum = 0;
-        for (int i = 0; i < SHARP; i++) sum += weights[0][i] * columns[3 * i + c];
-        rgb[c] = sum < least ? least : sum > most ? most : sum;
-    }
+    first = _mm256_mul_ps(first, _mm256_permutevar8x32_ps(across, _mm256_setr_epi32(0, 0, 0, 1, 1, 1, 6, 6)));
+    middle = _mm256_mul_ps(middle, _mm256_permutevar8x32_ps(across, _mm256_setr_epi32(2, 2, 2, 3, 3, 3, 6, 6)));
+    last = _mm256_mul_ps(last, _mm256_permutevar8x32_ps(across, _mm256_setr_epi32(6, 6, 4, 4, 4, 5, 5, 5)));
+    __m128 sum = _mm_add_ps(_mm_setzero_ps(), _mm256_castps256_ps128(first));
+    sum = _mm_add_ps(sum, _mm256_castps256_ps128(_mm256_permutevar8x32_ps(first, second)));
+    sum = _mm_add_ps(sum, _mm256_castps256_ps128(middle));
+    sum = _mm_add_ps(sum, _mm256_castps256_ps128(_mm256_permutevar8x32_ps(middle, second)));
+    sum = _mm_add_ps(sum,
+                     _mm256_castps256_ps128(_mm256_permutevar8x32_ps(last, _mm256_setr_epi32(2, 3, 4, 4, 4, 4, 4, 4))));
+    sum = _mm_add_ps(sum,
+                     _mm256_castps256_ps128(_mm256_permutevar8x32_ps(last, _mm256_setr_epi32(5, 6, 7, 7, 7, 7, 7, 7))));
+    const __m256 low = _mm256_min_ps(near[0], near[1]), high = _mm256_max_ps(near[0], near[1]);
+    const __m128 least =
+        _mm_min_ps(_mm256_castps256_ps128(low), _mm256_castps256_ps128(_mm256_permutevar8x32_ps(low, second)));
+    const __m128 most =
+        _mm_max_ps(_mm256_castps256_ps128(high), _mm256_castps256_ps128(_mm256_permutevar8x32_ps(high, second)));
+    _mm_storeu_ps(rgba, _mm_blend_ps(_mm_min_ps(most, _mm_max_ps(least, sum)), _mm_set1_ps(1), 8));
+}
+
+/* On its own, so that the usual case has no large frame. */
+static __attribute__((noinline)) void filter_wide(const struct resample *r, float rgba[4], const struct place *at,
+                                                  double su, double sv)
+{
+    struct taps tx, ty;
+    make_taps(&tx, r->kernel, at->u, su);
+    make_taps(&ty, r->kernel, at->v, sv);
+    if (is_inside(r->photo, &tx, &ty))
+        filter_inside(rgba, r->photo, &tx, &ty);
+    else
+        filter_border(rgba, r->photo, &tx, &ty);
+    rgba[3] = 1;
 }
 
 /* One-sided differences suffice for a filter's width; where the lens ends they are taken to the other side. */
-static void resample_pixel(const struct resample *r, int x, int y, const struct place *here, const struct place *below)
+static void resample_pixel(const struct resample *r, int x, int y, const struct row *here, const struct row *below)
 {
-    struct place at = here[x], right = here[x + 1], down = below[x];
-    struct taps tx, ty;
-    if (!at.seen || at.u < 0 || at.v < 0 || at.u > r->photo->width || at.v > r->photo->height) return;
-    if (!right.seen) right = photo_from_pixel(r, x - 1, y);
-    if (!right.seen) right = at;
-    if (!down.seen) down = photo_from_pixel(r, x, y - 1);
-    if (!down.seen) down = at;
+    const struct image *photo = r->photo;
+    const struct place at = {here->u[x], here->v[x]};
+    struct place right = {here->u[x + 1], here->v[x + 1]}, down = {below->u[x], below->v[x]};
+    if (!(at.u >= 0 && at.v >= 0 && at.u <= photo->width && at.v <= photo->height)) return;
+    if (isnan(right.u)) right = photo_from_pixel(r, x - 1, y);
+    if (isnan(right.u)) right = at;
+    if (isnan(down.u)) down = photo_from_pixel(r, x, y - 1);
+    if (isnan(down.u)) down = at;
     const double ru = right.u - at.u, du = down.u - at.u, rv = right.v - at.v, dv = down.v - at.v;
     const double across = ru * ru + du * du, along = rv * rv + dv * dv;
     const double su = across > 1 ? fmin(sqrt(across), MAX_REDUCTION) : 1;
     const double sv = along > 1 ? fmin(sqrt(along), MAX_REDUCTION) : 1;
-    const int u = (int)floor(at.u - 0.5) - LOBES + 1, v = (int)floor(at.v - 0.5) - LOBES + 1;
+    const double left = floor(at.u - 0.5), top = floor(at.v - 0.5);
+    const int u = (int)left - LOBES + 1, v = (int)top - LOBES + 1;
     float *out = image_at(r->out, x, y);
-    if (is_masked(r, at.u, at.v, su, sv)) return;
-    out[3] = 1;
-    if (su > 1 || sv > 1 || u < 0 || v < 0 || u + SHARP > r->photo->width || v + SHARP > r->photo->height) {
-        make_taps(&tx, r->kernel, at.u, su);
-        make_taps(&ty, r->kernel, at.v, sv);
-        filter(out, r->photo, &tx, &ty);
-    } else {
-        filter_sharp(r, out, u, v, at.u - 0.5 - floor(at.u - 0.5), at.v - 0.5 - floor(at.v - 0.5));
+    if (r->masked && is_masked(r, at.u, at.v, su, sv)) return;
+    if (su == 1 && sv == 1 && u >= 0 && v >= 0 && u + SHARP <= photo->width && v + SHARP <= photo->height) {
+        filter_sharp(r, out, u, v, at.u - 0.5 - left, at.v - 0.5 - top);
+        return;
     }
+    filter_wide(r, out, &at, su, sv);
 }
 
 static void resample_rows(void *ctx, size_t begin, size_t end, int thread)
 {
     const struct resample *r = ctx;
-    size_t row = (size_t)r->view->width + 1;
-    struct place *here = r->places + r->places_of_thread * (size_t)thread, *below = here + row, *knots = below + row;
-    project_row(r, (int)begin, here, knots);
+    double *places = r->places + r->places_of_thread * (size_t)thread;
+    struct row here = {places, places + r->row}, below = {places + 2 * r->row, places + 3 * r->row};
+    const struct row knots = {places + 4 * r->row, places + 4 * r->row + r->knots};
+    project_row(r, (int)begin, &here, &knots);
     for (int y = (int)begin; y < (int)end; y++) {
-        project_row(r, y + 1, below, knots);
-        for (int x = 0; x < r->view->width; x++) resample_pixel(r, x, y, here, below);
-        struct place *done = here;
+        project_row(r, y + 1, &below, &knots);
+        for (int x = 0; x < r->view->width; x++) resample_pixel(r, x, y, &here, &below);
+        const struct row done = here;
         here = below;
         below = done;
     }
@@ -290,13 +409,17 @@ enum status resample_photo(struct image *out, const struct image *photo, const u
         }
         return ST_OK;
     }
-    r.places_of_thread = 2 * ((size_t)view->width + 1) + (size_t)view->width / KNOTS + 2 + 2 * MARGIN;
+    const size_t pairs = (size_t)view->width / (2 * KNOTS) + 1; /* of intervals */
+    r.row = pairs * 2 * KNOTS;
+    r.knots = 2 * pairs + 2 * MARGIN + 1;
+    r.places_of_thread = 4 * r.row + 2 * r.knots;
     size_t room = r.places_of_thread * (size_t)parallel_threads() * sizeof *r.places;
     r.places = malloc(room);
     if (!r.places) {
         image_release(out);
         return err_nomem(err, "rows of a view", room);
     }
+    for (int i = 0; i < 2; i++) make_cubic(r.cubic[i], (i + 1) * KNOTS);
     make_kernel(r.kernel);
     make_sharp(r.sharp, r.kernel);
     parallel_for((size_t)view->height, CHUNK, resample_rows, &r);

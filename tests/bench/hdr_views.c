@@ -1,0 +1,252 @@
+/* hdr_views.c - one sample of the bench `hdr`: from exposures to rectified views, by the stages' own code.
+ *
+ * Several photographs at once, a thread each, as `make -j` has them. The photos are the exposures that bench_hdr painted
+ * (DIR/eK.jpg), taken for those of an equisolid fisheye lens; its views are those that sfm_import decides. A sample
+ * prints, a line each: seconds, of what hdr_merge does (merge_s: reading the JPEGs, their hashes, shifts, noise, radiance) and of
+ * what rectify does (rectify_s: reading the radiance, all views of each photo); cpu_s: processor time of the same; write_s, apart from that: the EXRs of the
+ * radiance and of the views; mpixels, of all exposures; views and view_mpixels, of all photos. Times are medians of as many
+ * runs as fit in two seconds, after one that is not counted. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "common/cli.h"
+#include "common/file_path.h"
+#include "common/linear_photo.h"
+#include "common/parallel.h"
+#include "common/view_image.h"
+#include "stages/hdr_merge/bracketed_view.h"
+#include "stages/rectify/resample.h"
+#include "stages/sfm_import/view_cameras.h"
+
+enum { MOST_PHOTOS = 16, MOST_RUNS = 64 };
+#define RUN_SECONDS 2.0
+
+struct request {
+    const char *folder;
+    int width, height, exposures, photos, max_megapixels;
+};
+
+struct work { /* of one photo */
+    char id[16];
+    struct bracketed_view merged;
+    struct image linear, views[MOST_PARTS];
+    struct provenance prov;
+    struct err err;
+};
+
+struct bench {
+    const struct request *request;
+    struct camera lens;
+    struct photo_view views[MOST_PARTS];
+    int view_count;
+    struct work work[MOST_PHOTOS];
+};
+
+enum phase { MERGE, WRITE_RADIANCE, RECTIFY, WRITE_VIEWS, PHASES };
+
+static double now(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* Of all threads: what the same work takes where nothing else runs. */
+static double cpu_now(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static int compare_doubles(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static double median(double *values, int count)
+{
+    qsort(values, (size_t)count, sizeof *values, compare_doubles);
+    return values[count / 2];
+}
+
+static void release_work(struct work *w)
+{
+    bracketed_view_release(&w->merged);
+    image_release(&w->linear);
+    for (int k = 0; k < MOST_PARTS; k++) image_release(&w->views[k]);
+    provenance_release(&w->prov);
+}
+
+static enum status write_record(const struct request *r, char *id, struct err *err)
+{
+    char file[32], names[MERGE_MOST][32];
+    struct bracket brackets[MERGE_MOST] = {0};
+    struct photo_record record = {.id = id, .file = file, .white = 1, .brackets = brackets, .middle = r->exposures / 2};
+    record.info = (struct photo_info){.width = r->width, .height = r->height, .bits = 8, .orientation = 1};
+    record.bracket_count = r->exposures;
+    snprintf(file, sizeof file, "%s.jpg", id);
+    strcpy(record.hash, "0123456789abcdef0123456789abcdef"); /* nothing here goes by it */
+    for (int k = 0; k < r->exposures; k++) {
+        snprintf(names[k], sizeof names[k], "e%d.jpg", k);
+        brackets[k] = (struct bracket){.file = names[k], .exposure = pow(4, k - r->exposures / 2)};
+        strcpy(brackets[k].hash, record.hash);
+    }
+    return photo_record_write(&record, r->folder, err);
+}
+
+static struct view camera_of(const struct photo_view *v, const char *name)
+{
+    struct view view = {.name = name, .width = v->camera.width, .height = v->camera.height};
+    view.cam_from_world = mat3_from_quat((struct quat){1, 0, 0, 0});
+    camera_focal(&v->camera, &view.fx, &view.fy, &view.cx, &view.cy);
+    return view;
+}
+
+static enum status run_phase(const struct bench *b, struct work *w, enum phase phase, struct err *err)
+{
+    const struct merge_params params = MERGE_PARAMS_DEFAULT;
+    const char *folder = b->request->folder;
+    struct photo_record record = {0};
+    char radiometry[RADIOMETRY_SIZE], path[FILE_PATH], name[32];
+    size_t beyond;
+    enum status st = ST_OK;
+    switch (phase) {
+    case MERGE:
+        st = bracketed_view_read(&w->merged, w->id, folder, folder, NULL, &w->prov, err);
+        return st ? st : bracketed_view_merge(&w->merged, &params, err);
+    case WRITE_RADIANCE:
+        return bracketed_view_write_radiance(&w->merged, folder, &w->prov, &beyond, err);
+    case RECTIFY:
+        st = photo_record_read(&record, folder, w->id, err);
+        if (!st) st = linear_photo_read(&w->linear, radiometry, folder, &record, &w->prov, err);
+        photo_record_release(&record);
+        for (int k = 0; !st && k < b->view_count; k++) {
+            const struct mat3 photo_from_view = mat3_transpose(mat3_from_quat(b->views[k].view_from_photo));
+            const struct view view = camera_of(&b->views[k], "view");
+            st = resample_photo(&w->views[k], &w->linear, NULL, &b->lens, &photo_from_view, &view, err);
+        }
+        return st;
+    case WRITE_VIEWS:
+        for (int k = 0; !st && k < b->view_count; k++) {
+            const struct view view = camera_of(&b->views[k], "view");
+            snprintf(name, sizeof name, "%s-%d", w->id, k);
+            st = file_path(path, folder, name, ".exr", err);
+            if (!st) st = view_image_write(&w->views[k], path, &view, &w->prov, "exact", err);
+        }
+        return st;
+    default:
+        return ST_INTERNAL;
+    }
+}
+
+struct phase_job {
+    struct bench *bench;
+    enum phase phase;
+};
+
+static void run_some(void *ctx, size_t begin, size_t end, int thread)
+{
+    const struct phase_job *job = ctx;
+    (void)thread;
+    for (size_t i = begin; i < end; i++) {
+        struct work *w = &job->bench->work[i];
+        run_phase(job->bench, w, job->phase, &w->err);
+    }
+}
+
+static enum status run_once(struct bench *b, double seconds[PHASES], double *cpu, struct err *err)
+{
+    const int photos = b->request->photos;
+    for (int i = 0; i < photos; i++) release_work(&b->work[i]);
+    for (enum phase phase = 0; phase < PHASES; phase++) {
+        struct phase_job job = {b, phase};
+        const double begun = now(), cpu_begun = cpu_now();
+        parallel_for((size_t)photos, 1, run_some, &job);
+        seconds[phase] = now() - begun;
+        if (phase == MERGE || phase == RECTIFY) *cpu += cpu_now() - cpu_begun;
+        for (int i = 0; i < photos; i++)
+            if (b->work[i].err.status) return err_set(err, b->work[i].err.status, "%s", b->work[i].err.text);
+    }
+    return ST_OK;
+}
+
+static enum status sample(const struct request *r, struct err *err)
+{
+    double total[MOST_RUNS], merge[MOST_RUNS], rectify[MOST_RUNS], wrote[MOST_RUNS], cpu[MOST_RUNS];
+    double view_pixels = 0;
+    struct bench *b = calloc(1, sizeof *b);
+    int runs = -1; /* the first is not counted */
+    enum status st = b ? ST_OK : err_nomem(err, "photos", sizeof *b);
+    if (!st) {
+        const double focal = r->width * 16 / 36.0;
+        b->request = r;
+        b->lens = (struct camera){
+            CAMERA_OPENCV_FISHEYE,
+            r->width,
+            r->height,
+            {focal, focal, r->width / 2.0, r->height / 2.0, -1 / 24.0, 1 / 1920.0, -1 / 322560.0, 1 / 92897280.0}};
+        st = photo_views(b->views, &b->view_count, &b->lens, r->max_megapixels, 110, err);
+    }
+    for (int i = 0; !st && i < r->photos; i++) {
+        snprintf(b->work[i].id, sizeof b->work[i].id, "p%d", i);
+        b->work[i].err = (struct err)ERR_INIT;
+        st = write_record(r, b->work[i].id, err);
+    }
+    for (double begun = now(); !st && runs < MOST_RUNS && (runs < 1 || now() - begun < RUN_SECONDS); runs++) {
+        double seconds[PHASES], used = 0;
+        st = run_once(b, seconds, &used, err);
+        if (runs < 0) begun = now();
+        if (st || runs < 0) continue;
+        merge[runs] = seconds[MERGE];
+        rectify[runs] = seconds[RECTIFY];
+        total[runs] = merge[runs] + rectify[runs];
+        cpu[runs] = used;
+        wrote[runs] = seconds[WRITE_RADIANCE] + seconds[WRITE_VIEWS];
+    }
+    for (int k = 0; !st && k < b->view_count; k++)
+        view_pixels += 1.0 * b->views[k].camera.width * b->views[k].camera.height;
+    if (!st)
+        printf("seconds %.6f\ncpu_s %.6f\nmerge_s %.6f\nrectify_s %.6f\nwrite_s %.6f\nmpixels %.6g\nviews "
+               "%d\nview_mpixels %.6g\n",
+               median(total, runs), median(cpu, runs), median(merge, runs), median(rectify, runs), median(wrote, runs),
+               1e-6 * r->width * r->height * r->exposures * r->photos, b->view_count * r->photos,
+               1e-6 * view_pixels * r->photos);
+    for (int i = 0; b && i < MOST_PHOTOS; i++) release_work(&b->work[i]);
+    free(b);
+    return st;
+}
+
+int main(int argc, char **argv)
+{
+    struct request r = {.width = 3000, .height = 2000, .exposures = 3, .photos = 1, .max_megapixels = 2};
+    const struct cli_opt opts[] = {
+        CLI_ABOUT("One sample of the bench hdr: from exposures to rectified views."),
+        CLI_STR("folder", &r.folder, CLI_REQUIRED, "where the exposures are, and where is written"),
+        CLI_INT("width", &r.width, CLI_OPTIONAL, "of a photo (3000)"),
+        CLI_INT("height", &r.height, CLI_OPTIONAL, "of a photo (2000)"),
+        CLI_INT("exposures", &r.exposures, CLI_OPTIONAL, "of a photo (3)"),
+        CLI_INT("photos", &r.photos, CLI_OPTIONAL, "how many photos at a time, a thread each (1)"),
+        CLI_INT("max-megapixels", &r.max_megapixels, CLI_OPTIONAL, "larger views are scaled down to this; 0: none (2)"),
+        CLI_END,
+    };
+    struct provenance prov = {0};
+    struct err err = ERR_INIT;
+    if (cli_parse(argc, argv, "bench_hdr_views", opts, &prov, &err) == CLI_RUN) {
+        if (r.width < 64 || r.height < 64 || r.width > 30000 || r.height > 30000 || r.exposures < 1 ||
+            r.exposures > MERGE_MOST || r.photos < 1 || r.photos > MOST_PHOTOS || r.max_megapixels < 0)
+            err_set(&err, ST_USAGE,
+                    "found %d photos of %d x %d px and %d exposures, wanted 1 to %d photos of 64 to 30000 px and 1 to "
+                    "%d exposures.",
+                    r.photos, r.width, r.height, r.exposures, (int)MOST_PHOTOS, (int)MERGE_MOST);
+        else
+            sample(&r, &err);
+    }
+    err_report(&err);
+    provenance_release(&prov);
+    return err_exit_code(&err);
+}
