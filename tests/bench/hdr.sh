@@ -1,21 +1,26 @@
-# hdr.sh - how fast the exposures of a view are read and merged, by their number and by threads, and how exact the radiance is.
+# hdr.sh - how fast exposures are read and merged, by their number and by threads, how exact the radiance is, and how fast they become views.
 #
 # The view is made here, 3000 x 2000 px (BENCH_SIZE=WIDTHxHEIGHT names another size), JPEGs of quality 94 with a camera's noise,
 # so that its radiance is known. seconds: reading the JPEGs, looking for shifts, measuring the noise, merging; read_s, align_s,
 # merge_s: the parts. Apart from that: tone_s, the picture for structure from motion without encoding it, and write_s, the EXR.
 # error: median relative error of the luminance of pixels that an exposure shows well. Files are in memory where there is /dev/shm.
-title="hdr_merge: time of a view against the number of its exposures"
-note="Reading JPEGs, aligning, merging; writing not counted."
-line="threads" label=exposures
-x_label="Time of a view (s)" y=mpixels y_label="Megapixels of all exposures"
+#
+# merge and rectify: the exposures taken for those of an equisolid fisheye lens, as many photos at once as there are threads, up to all views of
+# each, by the stages' own code: the merge, then the radiance read again and resampled. Views of 2 megapixels at most (the default) and
+# of any size (QUALITY=final). rectify_s: that part; cpu_s: processor time of both parts together, which other work on the machine
+# hardly changes; write_s: the EXRs of radiance and views. asked: mpixels_per_s that were asked for, on 2 cores.
+title="hdr_merge and rectify: time against the number of exposures"
+note="Reading JPEGs, aligning, merging, resampling; writing not counted. Asked for: 20 megapixels of exposures a second on 2 cores."
+line="threads" label=exposures panel=series across=3
+x_label="Time (s)" y=mpixels y_label="Megapixels of all exposures"
 rate=mpixels
-timed="read_s align_s merge_s tone_s write_s"
+timed="cpu_s read_s align_s merge_s rectify_s tone_s write_s"
 repeats=3
 
 size=${BENCH_SIZE:-3000x2000}
 prepare()
 {
-    [ -x "$B/tests/bench/hdr" ] || missing "there is no program $B/tests/bench/hdr; this revision cannot be measured."
+    [ -x "$B/tests/bench/hdr" ] && [ -x "$B/tests/bench/hdr_views" ] || missing "there is no program $B/tests/bench/hdr; this revision cannot be measured."
     for n in ${BENCH_EXPOSURES:-1 3 5}; do
         mkdir -p "$fast/$n"
         "$B/tests/bench/hdr" --paint --folder "$fast/$n" --exposures "$n" --width "${size%x*}" --height "${size#*x}" 2>"$work/err" ||
@@ -25,13 +30,26 @@ prepare()
 
 settings()
 {
-    printf 'series\texposures\tthreads\n'
-    for t in ${BENCH_THREADS:-1 $([ "$(nproc)" = 1 ] || nproc)}; do
-        for n in ${BENCH_EXPOSURES:-1 3 5}; do printf 'hdr_merge\t%s\t%s\n' "$n" "$t"; done
+    local threads=${BENCH_THREADS:-1 $([ "$(nproc)" = 1 ] || nproc)} n t most
+    printf 'series\texposures\tthreads\tmax_megapixels\tasked\n'
+    for t in $threads; do
+        for n in ${BENCH_EXPOSURES:-1 3 5}; do printf 'hdr_merge\t%s\t%s\t-\t-\n' "$n" "$t"; done
+    done
+    for most in 2 0; do
+        for t in $threads; do
+            for n in ${BENCH_EXPOSURES:-3}; do
+                printf 'merge and rectify%s\t%s\t%s\t%s\t%s\n' "$([ $most != 0 ] || echo ', views of any size')" "$n" "$t" "$most" "$([ "$t" = 2 ] && echo 20 || echo -)"
+            done
+        done
     done
 }
 
-sample() # SERIES EXPOSURES THREADS
+sample() # SERIES EXPOSURES THREADS MAX_MEGAPIXELS
 {
-    measured "$B/tests/bench/hdr" --folder "$fast/$2" --exposures "$2" --threads "$3" --width "${size%x*}" --height "${size#*x}"
+    local view=(--folder "$fast/$2" --exposures "$2" --threads "$3" --width "${size%x*}" --height "${size#*x}")
+    if [ "$1" = hdr_merge ]; then
+        measured "$B/tests/bench/hdr" "${view[@]}"
+    else
+        measured "$B/tests/bench/hdr_views" "${view[@]}" --photos "$3" --max-megapixels "$4"
+    fi
 }
