@@ -27,34 +27,48 @@ const struct param sfm_param_table[] = {SFM_PARAMS(PARAM_ROW) PARAM_END};
 
 enum { STEPS = 4, MANY_PHOTOS = 200, FEW_FEATURES = 200, MOST_ARGS = 40 };
 
+static bool is_equisolid(const struct sfm_params *p) { return !strcmp(p->camera_model, "EQUISOLID"); }
+
+/* How many numbers with commas in between; -1: it is no such list. */
+static int read_numbers(double numbers[CAMERA_MAX_PARAMS], const char *at)
+{
+    for (int count = 0;; at++) {
+        char *end;
+        const double value = strtod(at, &end);
+        if (end == at || (*end && *end != ',')) return -1;
+        if (count < CAMERA_MAX_PARAMS) numbers[count] = value;
+        count++;
+        at = end;
+        if (!*at) return count;
+    }
+}
+
 enum status sfm_params_check(const void *values, struct err *err)
 {
     const struct sfm_params *p = values;
     struct camera c = {.width = 1, .height = 1};
-    const char *at = p->camera_params;
-    int count = 0;
-    if (!*at) {
+    if (!*p->camera_params) {
         if (!strcmp(p->refine_camera, "no"))
             return err_set(err, ST_USAGE, "[sfm] refine_camera = no needs the lens: give camera_params too.");
         return ST_OK;
     }
-    camera_model_from_name(p->camera_model, &c.model);
-    for (;; at++, count++) {
-        char *end;
-        double value = strtod(at, &end);
-        if (end == at || (*end && *end != ',')) {
-            count = -1;
-            break;
-        }
-        if (count < CAMERA_MAX_PARAMS) c.params[count] = value;
-        at = end;
-        if (!*at) break;
+    const int count = read_numbers(c.params, p->camera_params);
+    if (is_equisolid(p)) {
+        if (count != 1 && count != 3)
+            return err_set(
+                err, ST_USAGE,
+                "[sfm] camera_params is \"%s\", wanted F or F,CX,CY of EQUISOLID: the focal length in pixels, "
+                "and the principal point if it is not the middle.",
+                p->camera_params);
+        c.model = CAMERA_SIMPLE_PINHOLE; /* the same numbers */
+    } else {
+        camera_model_from_name(p->camera_model, &c.model);
+        const int wanted = camera_model_params(c.model);
+        if (count != wanted)
+            return err_set(err, ST_USAGE,
+                           "[sfm] camera_params is \"%s\", wanted the %d numbers of %s with commas in between.",
+                           p->camera_params, wanted, p->camera_model);
     }
-    int wanted = camera_model_params(c.model);
-    if (count + 1 != wanted)
-        return err_set(err, ST_USAGE,
-                       "[sfm] camera_params is \"%s\", wanted the %d numbers of %s with commas in between.",
-                       p->camera_params, wanted, p->camera_model);
     struct err why = ERR_INIT;
     if (camera_check(&c, &why)) return err_set(err, ST_USAGE, "[sfm] camera_params: %s", why.text);
     return ST_OK;
@@ -110,6 +124,39 @@ void sfm_png_lens(char text[SFM_LENS_TEXT], const struct photo_list *photos, con
     length +=
         snprintf(text + length, SFM_LENS_TEXT - (size_t)length, ",%.9g,%.9g", first->width / 2.0, first->height / 2.0);
     for (int i = one ? 3 : 4; i < count; i++) length += snprintf(text + length, SFM_LENS_TEXT - (size_t)length, ",0");
+}
+
+enum status sfm_equisolid_lens(char text[SFM_LENS_TEXT], const struct photo_list *photos,
+                               const struct sfm_params *params, struct err *err)
+{
+    static const double series[] = {-1 / 24.0, 1 / 1920.0, -1 / 322560.0, 1 / 92897280.0};
+    const double film_diagonal = hypot(36, 24); /* mm; what EXIF's length for 35 mm film refers to */
+    double numbers[CAMERA_MAX_PARAMS] = {0};
+    const int given = *params->camera_params ? read_numbers(numbers, params->camera_params) : 0;
+    const struct photo_record *first = photos->count ? &photos->photos[0] : NULL;
+    *text = '\0';
+    for (int i = 0; i < photos->count; i++) {
+        const struct photo_record *p = &photos->photos[i];
+        const bool same_size = p->info.width == first->info.width && p->info.height == first->info.height;
+        if (!given && !(p->info.focal35_mm > 0))
+            return err_set(err, ST_USAGE,
+                           "[sfm] camera_model = EQUISOLID starts from the focal length, and EXIF of photo \"%s\" does "
+                           "not state it for 35 mm film. Set camera_params = F in pixels: the lens' focal length over "
+                           "the width of the sensor, both in mm, times %d, the photo's width.",
+                           p->file, p->info.width);
+        if (!same_size || (!given && p->info.focal35_mm != first->info.focal35_mm))
+            return err_set(err, ST_USAGE,
+                           "[sfm] camera_model = EQUISOLID starts from one lens for all photos, but \"%s\" and \"%s\" "
+                           "differ in %s. Leave the odd ones out (EXCLUDE), or set camera_model = OPENCV_FISHEYE.",
+                           first->file, p->file, same_size ? "focal length" : "size");
+    }
+    if (!first) return ST_OK;
+    const double w = first->info.width, h = first->info.height;
+    const double focal = given ? numbers[0] : first->info.focal35_mm / film_diagonal * hypot(w, h);
+    int length = snprintf(text, SFM_LENS_TEXT, "%.9g,%.9g,%.9g,%.9g", focal, focal, given == 3 ? numbers[1] : w / 2,
+                          given == 3 ? numbers[2] : h / 2);
+    for (int i = 0; i < 4; i++) length += snprintf(text + length, SFM_LENS_TEXT - (size_t)length, ",%.12g", series[i]);
+    return ST_OK;
 }
 
 /* -------------------------------------------------------------------------------------------------- COLMAP's log */
@@ -280,7 +327,13 @@ static enum status run_prepare(struct run *r, const struct sfm_folder *f, const 
     const char *work = r->folder->work;
     enum status st = sfm_single_camera(&r->single, r->photos, r->params, err);
     if (st) return st;
-    sfm_png_lens(r->lens, r->photos, r->params);
+    if (is_equisolid(params))
+        st = sfm_equisolid_lens(r->lens, r->photos, params, err);
+    else if (*params->camera_params)
+        snprintf(r->lens, sizeof r->lens, "%s", params->camera_params);
+    else
+        sfm_png_lens(r->lens, r->photos, params);
+    if (st) return st;
     snprintf(r->threads, sizeof r->threads, "%d", parallel_threads());
     snprintf(r->most_features, sizeof r->most_features, "%d", r->params->max_features);
     snprintf(r->most_size, sizeof r->most_size, "%d", r->params->max_image_size);
@@ -328,7 +381,7 @@ static enum status extract(const struct run *r, struct err *err)
                                    "--image_path",
                                    r->images,
                                    "--ImageReader.camera_model",
-                                   p->camera_model,
+                                   is_equisolid(p) ? "OPENCV_FISHEYE" : p->camera_model,
                                    r->single ? "--ImageReader.single_camera" : "--ImageReader.single_camera_per_image",
                                    "1",
                                    "--SiftExtraction.use_gpu",
@@ -341,9 +394,9 @@ static enum status extract(const struct run *r, struct err *err)
                                    r->most_size};
     int n = 0;
     while (args[n]) n++;
-    if (*p->camera_params || *r->lens) {
+    if (*r->lens) {
         args[n++] = "--ImageReader.camera_params";
-        args[n++] = *p->camera_params ? p->camera_params : r->lens;
+        args[n++] = r->lens;
     }
     if (r->masks) {
         args[n++] = "--ImageReader.mask_path";
@@ -568,7 +621,12 @@ enum status run_colmap(struct sfm_folder *f, const struct sfm_input *in, const s
 /* The lens that COLMAP should check matches with: the model's, where there is but one. */
 static void params_of_model(struct sfm_params *params, const struct sfm_model *m)
 {
-    if (m->camera_count != 1) return;
+    if (m->camera_count != 1) {
+        if (!is_equisolid(params)) return;
+        strcpy(params->camera_model, "OPENCV_FISHEYE"); /* the lenses are known: no start is needed */
+        *params->camera_params = '\0';
+        return;
+    }
     const struct camera *c = &m->cameras[0].camera;
     char text[PARAM_TEXT_SIZE] = "";
     size_t used = 0;

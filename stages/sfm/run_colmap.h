@@ -8,17 +8,19 @@
 #include "common/param.h"
 #include "stages/sfm/sfm_folder.h"
 
-#define SFM_PARAMS(X)                                                                                               \
-    X(camera_model, choice, "SIMPLE_RADIAL", 0, 0,                                                                  \
-      "SIMPLE_RADIAL|SIMPLE_PINHOLE|PINHOLE|RADIAL|OPENCV|OPENCV_FISHEYE|FULL_OPENCV",                              \
-      "lens model that COLMAP fits; OPENCV_FISHEYE for fisheye lenses")                                             \
-    X(camera_params, text, "", 0, 0, "", "the lens to start from, in COLMAP's order with commas; empty: from EXIF") \
-    X(refine_camera, choice, "yes", 0, 0, "yes|no", "no keeps the lens that camera_params gives")                   \
-    X(single_camera, choice, "auto", 0, 0, "auto|yes|no",                                                           \
-      "one lens for all photos; auto: if size, focal length and make are the same")                                 \
-    X(matcher, choice, "auto", 0, 0, "auto|exhaustive|sequential",                                                  \
-      "pairs to match; auto: all, or for more than 200 photos neighbours in order of name")                         \
-    X(max_features, int, 8192, 100, 100000, "", "features a photo")                                                 \
+#define SFM_PARAMS(X)                                                                                                 \
+    X(camera_model, choice, "SIMPLE_RADIAL", 0, 0,                                                                    \
+      "SIMPLE_RADIAL|SIMPLE_PINHOLE|PINHOLE|RADIAL|OPENCV|OPENCV_FISHEYE|FULL_OPENCV|EQUISOLID",                      \
+      "lens model that COLMAP fits; for fisheye lenses EQUISOLID, fitted as OPENCV_FISHEYE from an equisolid start, " \
+      "or OPENCV_FISHEYE")                                                                                            \
+    X(camera_params, text, "", 0, 0, "",                                                                              \
+      "the lens to start from, in COLMAP's order with commas, of EQUISOLID F or F,CX,CY in px; empty: from EXIF")     \
+    X(refine_camera, choice, "yes", 0, 0, "yes|no", "no keeps the lens that camera_params gives")                     \
+    X(single_camera, choice, "auto", 0, 0, "auto|yes|no",                                                             \
+      "one lens for all photos; auto: if size, focal length and make are the same")                                   \
+    X(matcher, choice, "auto", 0, 0, "auto|exhaustive|sequential",                                                    \
+      "pairs to match; auto: all, or for more than 200 photos neighbours in order of name")                           \
+    X(max_features, int, 8192, 100, 100000, "", "features a photo")                                                   \
     X(max_image_size, int, 3200, 200, 20000, "px", "larger photos are scaled down to this to find features")
 
 struct sfm_params {
@@ -30,7 +32,7 @@ struct sfm_params {
     }
 extern const struct param sfm_param_table[];
 
-/* camera_params must be as many numbers as camera_model has, focal lengths > 0. */
+/* camera_params must be as many numbers as camera_model has (EQUISOLID: 1 or 3), focal lengths > 0. */
 enum status sfm_params_check(const void *values, struct err *err);
 
 /* One lens for all photos? ST_USAGE: "yes" was asked for but sizes differ. */
@@ -41,6 +43,12 @@ enum status sfm_single_camera(bool *single, const struct photo_list *photos, con
  * all have one size and one known focal length on 35 mm film. "" where that is not so. */
 enum { SFM_LENS_TEXT = 400 };
 void sfm_png_lens(char text[SFM_LENS_TEXT], const struct photo_list *photos, const struct sfm_params *params);
+
+/* The start of an equisolid fisheye, r = 2 f sin(theta / 2), as OPENCV_FISHEYE's eight numbers: with the series of
+ * 2 sin(theta / 2) / theta = 1 - theta^2 / 24 + theta^4 / 1920 - ... The focal length is that of camera_params, or what all photos' EXIF
+ * states for 35 mm film. ST_USAGE: not EQUISOLID's numbers, photos of several sizes or lenses, or no focal length. */
+enum status sfm_equisolid_lens(char text[SFM_LENS_TEXT], const struct photo_list *photos,
+                               const struct sfm_params *params, struct err *err);
 
 /* What the log of `colmap feature_extractor` says about one picture. */
 struct feature_count {

@@ -1,6 +1,8 @@
 /* run_colmap.c - what is decided before COLMAP runs and read from its log afterwards; COLMAP itself is not needed. */
 #include "tests/unit/scratch.h"
 
+#include <math.h>
+
 #include "stages/sfm/run_colmap.h"
 
 static void lens_parameters_must_fit_the_model(void **state)
@@ -20,6 +22,14 @@ static void lens_parameters_must_fit_the_model(void **state)
         {"PINHOLE", "500 500 320 240", "yes", "wanted the 4 numbers"},
         {"PINHOLE", "500,0,320,240", "yes", "focal length is 0"},
         {"PINHOLE", "500,nan,320,240", "yes", "parameter 2"},
+        {"EQUISOLID", "", "yes", NULL},
+        {"EQUISOLID", "426.7", "no", NULL},
+        {"EQUISOLID", "426.7,480,320", "yes", NULL},
+        {"EQUISOLID", "", "no", "needs the lens"},
+        {"EQUISOLID", "0", "yes", "focal length is 0"},
+        {"EQUISOLID", "426.7,480", "yes", "wanted F or F,CX,CY of EQUISOLID"},
+        {"EQUISOLID", "426.7,426.7,480,320,0,0,0,0", "yes", "wanted F or F,CX,CY of EQUISOLID"},
+        {"EQUISOLID", "wide", "yes", "wanted F or F,CX,CY of EQUISOLID"},
         {"PINHOLE", "1,2,3,4,5,6,7,8,9,10,11,12,13,14", "yes", "wanted the 4 numbers"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -101,6 +111,58 @@ static void pngs_bring_the_lens_of_their_exif(void **state)
     assert_string_equal(text, "");
 }
 
+/* The numbers that COLMAP gets are those of r = 2 f sin(theta / 2), wherever the focal length comes from. */
+static void an_equisolid_lens_is_written_as_opencv_fisheye(void **state)
+{
+    (void)state;
+    char ids[2][2] = {"a", "b"}, files[2][8] = {"a.jpg", "b.jpg"}, text[SFM_LENS_TEXT];
+    struct photo_record photos[2] = {
+        {.id = ids[0], .file = files[0], .info = {.width = 960, .height = 640, .focal35_mm = 16}},
+        {.id = ids[1], .file = files[1], .info = {.width = 960, .height = 640, .focal35_mm = 16}},
+    };
+    const struct photo_list list = {photos, 2};
+    struct sfm_params p = SFM_PARAMS_DEFAULT;
+    struct err err = ERR_INIT;
+    strcpy(p.camera_model, "EQUISOLID");
+    static const struct {
+        const char *given;
+        double focal, cx, cy;
+    } cases[] = {{"", 1280 / 3.0, 480, 320}, {"500", 500, 480, 320}, {"500,470.5,330.25", 500, 470.5, 330.25}};
+    for (int i = 0; i < 3; i++) {
+        struct camera c = {CAMERA_OPENCV_FISHEYE, 960, 640, {0}};
+        strcpy(p.camera_params, cases[i].given);
+        assert_ok(sfm_params_check(&p, &err), err);
+        assert_ok(sfm_equisolid_lens(text, &list, &p, &err), err);
+        char *at = text;
+        for (int k = 0; k < 8; k++, at++) {
+            c.params[k] = strtod(at, &at);
+            assert_true(*at == (k < 7 ? ',' : '\0'));
+        }
+        for (double degrees = 0; degrees <= 90; degrees += 5) {
+            const double theta = degrees * M_PI / 180;
+            double u, v;
+            assert_true(camera_project(&c, (struct vec3){sin(theta), 0, cos(theta)}, &u, &v));
+            assert_true(fabs(u - cases[i].cx - 2 * cases[i].focal * sin(theta / 2)) < 1e-3);
+            assert_true(fabs(v - cases[i].cy) < 1e-9);
+        }
+    }
+    *p.camera_params = '\0';
+    photos[1].info.focal35_mm = 0;
+    assert_int_equal(sfm_equisolid_lens(text, &list, &p, &err), ST_USAGE);
+    assert_err(err, ST_USAGE, "EXIF of photo \"b.jpg\" does not state it");
+    assert_contains(err.text, "Set camera_params = F in pixels");
+    assert_contains(err.text, "times 960");
+    err = (struct err)ERR_INIT;
+    photos[1].info.focal35_mm = 24;
+    assert_int_equal(sfm_equisolid_lens(text, &list, &p, &err), ST_USAGE);
+    assert_err(err, ST_USAGE, "\"a.jpg\" and \"b.jpg\" differ in focal length");
+    err = (struct err)ERR_INIT;
+    strcpy(p.camera_params, "500");
+    photos[1].info.width = 640;
+    assert_int_equal(sfm_equisolid_lens(text, &list, &p, &err), ST_USAGE);
+    assert_err(err, ST_USAGE, "differ in size");
+}
+
 static void features_are_counted_from_the_log(void **state)
 {
     (void)state;
@@ -128,6 +190,7 @@ int main(void)
         cmocka_unit_test(lens_parameters_must_fit_the_model),
         cmocka_unit_test(one_lens_only_where_photos_are_alike),
         cmocka_unit_test(pngs_bring_the_lens_of_their_exif),
+        cmocka_unit_test(an_equisolid_lens_is_written_as_opencv_fisheye),
         cmocka_unit_test(features_are_counted_from_the_log),
     };
     return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
