@@ -16,6 +16,8 @@ MAKEFLAGS += --no-builtin-rules
 ## SPLIT=CxR: each photo is of a multi-lens camera: C columns and R rows of small pictures, which become the photos
 ## SFM=DIR: a COLMAP (text, binary) or Bundler model of the photos, used in place of running COLMAP
 ## DEPTH=DIR: depth that is known already: DIR/VIEW.exr or .png of any view (docs/formats.md); the others are matched
+## LRI=DIR: folder of lighting reference images, for `make lri`: fisheye photos of the light outside, bracketed
+## LRI_SFM=DIR: a COLMAP text model that has their cameras
 ## EXCLUDE="NAMES": photos to leave out, by id or file name
 ## QUALITY=draft|default|final: configs/QUALITY.cfg; draft and final work beside the default, in out/SCENE+QUALITY
 QUALITY ?= default
@@ -125,6 +127,8 @@ export REMODEL_EFFECT := $(EFFECT)
 export REMODEL_EFFECT_NAMED := $(EFFECT_NAMED)
 export REMODEL_SFM := $(call literal,SFM)
 export REMODEL_DEPTH := $(call literal,DEPTH)
+export REMODEL_LRI := $(call literal,LRI)
+export REMODEL_LRI_SFM := $(call literal,LRI_SFM)
 export REMODEL_EXCLUDE := $(call literal,EXCLUDE)
 export REMODEL_TRUTH := $(call literal,TRUTH)
 
@@ -132,7 +136,7 @@ export VIEWS_PER_JOB SLURM_ARGS
 dry = $(findstring n,$(filter-out --%,$(firstword -$(MAKEFLAGS))))
 # several goals of a scene follow each other: a run locks it, and takes all cores by itself
 .NOTPARALLEL:
-GOALS := edited hdr sfm views depth points axes suggest model subjects path frames video pan_scan morph evaluate report
+GOALS := edited hdr lri sfm views depth points axes suggest model subjects path frames video pan_scan morph evaluate report
 .PHONY: all help why resfm check sequences fuzz bench bench-compare regress regress-accept man deps deps-check deps-bench clean $(GOALS)
 
 ifeq ($(SCENE),)
@@ -141,6 +145,7 @@ all: deps ## everything a scene asks for; without SCENE builds the programs and 
 	+@common/run_scenes.sh '$(if $(filter file,$(origin QUALITY)),draft,$(QUALITY))' '$(SCENES)' $(SUB)
 edited: ## what is true of the edited scene EDIT of a described one: its radiance from the same cameras
 hdr:    ## bracketed photos merged; nothing where photos are no brackets
+lri:    ## the lighting reference images of LRI merged: linear, on the scene's scale, still fisheye (no part of what follows)
 sfm:    ## + camera poses: COLMAP, or the model in SFM
 views:  ## + rectified, linear views
 depth:  ## + layered depth maps
@@ -322,9 +327,10 @@ $(B)/tests/fuzz/fuzz_scene $(B)/tests/fuzz/fuzz_shoot: $(filter-out %/simulate.o
 else
 # ---------------------------------------------------------------------------------------------------------- the graph
 
-# lists that products give: PHOTO_IDS and BRACKETED, VIEWS, FRAMES, HELD (held-out views); not by `include`, for which make would first
+# lists that products give: PHOTO_IDS and BRACKETED, LRI_IDS, VIEWS, FRAMES, HELD (held-out views); not by `include`, for which make would first
 # remake them, even under -n
 $(if $(HELDOUT),$(eval $(file <$(O)/holdout/views/views.mk))$(eval HELD := $(VIEWS))$(eval VIEWS :=))
+$(eval $(file <$(S)/lri/photos/photos.mk))$(eval LRI_IDS := $(PHOTO_IDS))$(eval PHOTO_IDS :=)$(eval BRACKETED :=)
 $(foreach f,$(S)/photos/photos.mk $(O)/views/views.mk $(O)/parallax/morph/frames.mk,$(eval $(file <$(f))))
 # the films of this run, and FRAMES_film of each
 EFFECTS ?= $(sort $(EFFECT))
@@ -415,8 +421,9 @@ ORIGINALS := $(if $(SPLIT),$(S)/split,"$$REMODEL_PHOTOS")
 PICTURES := $(if $(BRACKETED),$(S)/hdr,$(ORIGINALS))
 picture = $(if $(BRACKETED),$(S)/hdr/$(1).exr,$(S)/photos/$(1).txt)
 
-.PHONY: hdr sfm views depth points axes suggest model overlays subjects choice path frames video pan_frames pan_scan heldout evaluate report morph-path morph-frames morph
+.PHONY: hdr lri sfm views depth points axes suggest model overlays subjects choice path frames video pan_frames pan_scan heldout evaluate report morph-path morph-frames morph
 hdr: $(HDR)
+lri: $(LRI_IDS:%=$(S)/lri/%.exr) $(LRI_IDS:%=$(S)/lri/%.jpg)
 sfm: $(O)/views/views.mk
 views: $(VIEW_EXR) $(HELD_EXR)
 depth: $(DEPTH_EXR) $(DEPTH_TXT)
@@ -457,6 +464,17 @@ $(S)/hdr/$(1).exr $(S)/hdr/$(1).jpg &: $(S)/photos/$(1).txt $(RESPONSE) $(S)/sli
 	  --id $(1) --photos $$(ORIGINALS) --records $(S)/photos --response $(RESPONSE) --out $(S)/hdr,,$(S))
 endef
 $(if $(BRACKETED),$(foreach p,$(PHOTO_IDS),$(eval $(call hdr_rules,$(p)))))
+
+# lighting reference images: merged as a view's exposures are, with the scene's curve; what lens and pose they have is told by the EXR
+LRI_RESPONSE := $(if $(BRACKETED),$(RESPONSE),$(wildcard scenes/$(SCENE)/response.txt))
+LRI_FOLDER := "$$REMODEL_LRI"
+LRI_MODEL := $(if $(value REMODEL_LRI_SFM),--model "$$$$REMODEL_LRI_SFM")
+define lri_rule
+$(S)/lri/$(1).exr $(S)/lri/$(1).jpg &: $(S)/lri/photos/$(1).txt $(LRI_RESPONSE) $(S)/stamp/lri.txt $(S)/slice/hdr_merge.cfg $(B)/code/hdr_merge | $(if $(BRACKETED),$(RESPONSE_STAMP))
+	$$(hide)$$(call farm,hdr_merge,lri.$(1),$(S)/lri/$(1).jpg $(S)/lri/$(1).exr,\
+	  --id $(1) --photos $$(LRI_FOLDER) --records $(S)/lri/photos $(LRI_RESPONSE:%=--response %) $(LRI_MODEL) --out $(S)/lri,,$(S))
+endef
+$(foreach p,$(LRI_IDS),$(eval $(call lri_rule,$(p))))
 
 MASKS := $(if $(wildcard scenes/$(SCENE)/masks),--masks scenes/$(SCENE)/masks)
 # SfM runs once for a set of photos: COLMAP is not reproducible, so a changed photo or mask does not redo it (make resfm does)
@@ -626,7 +644,9 @@ $(O)/index.html: $(SHOWN) $(S)/photos/list.txt $(STAGES:%=$(O)/slice/%.cfg) $(ca
 
 # What is looked at afresh in every run, also under -n: configs, photos. Files are rewritten only if their text changed.
 CONFIGS := configs/default.cfg $(if $(filter-out default,$(QUALITY)),configs/$(QUALITY).cfg) $(wildcard scenes/$(SCENE)/scene.cfg)
-.PHONY: look look-simulate look-morph
+.PHONY: look look-simulate look-lri look-morph
+look-lri:
+	+@common/look.sh lri $(BIN) $(S)
 look-morph:
 	+@common/look.sh morph $(BIN) $(O) '$(MORPH)'
 look-simulate:

@@ -3,6 +3,7 @@
 #
 #   look.sh slices BIN FOLDER 'STAGE...' CONFIG...   each stage's effective parameters -> FOLDER/STAGE.cfg
 #   look.sh photos BIN S SCENE_FOLDER                the photos' records, their sizes, what SfM starts from, masks, depth that was given
+#   look.sh lri BIN S                                records of the lighting reference images, and what tells their cameras
 #   look.sh morph BIN O 'ID ID'                      which photos a morph goes between
 #   look.sh evaluation BIN O HOLDOUT HOLDOUT_VIEWS   what is held out, and the files of the truth
 set -euo pipefail
@@ -37,6 +38,13 @@ if [ "$what" = slices ]; then
     exit 0
 fi
 
+if [ "$what" = lri ]; then
+    common/run_stage.sh silent import_photos lri "$folder" "$bin/import_photos" --config "$folder/slice/import_photos.cfg" \
+        --photos "$REMODEL_LRI" --scene "$REMODEL_LRI" --like "$folder/photos" --out "$folder/lri/photos"
+    grep -h warning: "$folder/log/import_photos.lri.log" >&2 || true
+    { [ -z "${REMODEL_LRI_SFM-}" ] || (cd "$REMODEL_LRI_SFM" && cksum cameras.txt images.txt); } | keep "$folder/stamp/lri.txt"
+    exit 0
+fi
 if [ "$what" = morph ]; then
     if [ -n "$1" ]; then echo "$1" | keep "$folder/stamp/morph.txt"; else rm -f "$folder/stamp/morph.txt"; fi
     exit 0

@@ -75,6 +75,8 @@ if [ ! -e "$folder/scene.mk" ]; then
         [ -z "${REMODEL_SPLIT-}" ] || echo "SPLIT := $REMODEL_SPLIT"
         [ -z "${REMODEL_SFM-}" ] || echo "SFM := $(for_make "$REMODEL_SFM")"
         [ -z "${REMODEL_DEPTH-}" ] || echo "DEPTH := $(for_make "$REMODEL_DEPTH")"
+        [ -z "${REMODEL_LRI-}" ] || echo "LRI := $(for_make "$REMODEL_LRI")"
+        [ -z "${REMODEL_LRI_SFM-}" ] || echo "LRI_SFM := $(for_make "$REMODEL_LRI_SFM")"
         [ -z "${REMODEL_TRUTH-}" ] || echo "TRUTH := $(for_make "$REMODEL_TRUTH")"
         echo "# photos to leave out, by id or file name; names with blanks in quotes"
         echo "EXCLUDE := $(for_make "${REMODEL_EXCLUDE-}")"
@@ -157,7 +159,19 @@ if [ -n "${REMODEL_TRUTH-}" ] && [ ! -d "$REMODEL_TRUTH" ]; then
     exit 2
 fi
 
+if [ "$goal" = lri ]; then
+    if [ -z "${REMODEL_LRI-}" ] || [ ! -d "$REMODEL_LRI" ]; then
+        echo "make lri wants LRI=DIR, the folder of the lighting reference images${REMODEL_LRI:+; $REMODEL_LRI is none}." >&2
+        exit 2
+    fi
+    if [ -n "${REMODEL_LRI_SFM-}" ] && [ ! -d "$REMODEL_LRI_SFM" ]; then
+        echo "LRI_SFM=$REMODEL_LRI_SFM is no folder. Give the folder that holds cameras.txt and images.txt of the lighting reference images." >&2
+        exit 2
+    fi
+fi
+
 graph look
+[ "$goal" != lri ] || graph look-lri
 [ -z "$choose" ] || [ ! -e "$O/parallax/$choose-effects.mk" ] || read_choice
 # two photos are too few for a camera move, unless one is asked for by name
 pair=
@@ -252,6 +266,18 @@ make_morph()
     one morph
 }
 
+# the curve is the scene's: it is known before
+make_lri()
+{
+    if [ -e "$S/photos/brackets.txt" ]; then
+        [ -e "$S/hdr/response.txt" ] || rm -f "$S/stamp/response.txt"
+        one response
+    fi
+    farm hdr_merge lri 1 "${VIEWS_PER_JOB:-4}"
+    echo "light  $S/lri"
+}
+
+if [ "$goal" = lri ]; then make_lri; exit 0; fi
 if [ "$goal" = resfm ]; then
     merge_brackets
     one -W "$S/photos/list.txt" sfm

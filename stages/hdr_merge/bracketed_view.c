@@ -7,8 +7,12 @@
 #include <string.h>
 
 #include "common/exr.h"
+#include "common/file_path.h"
 #include "common/outfile.h"
 #include "common/parallel.h"
+#include "common/photo_match.h"
+#include "common/sfm_model.h"
+#include "common/view_image.h"
 #include "stages/hdr_merge/tone.h"
 
 #define LARGEST_HALF 65504.0f
@@ -80,6 +84,32 @@ enum status bracketed_view_read(struct bracketed_view *v, const char *id, const 
     v->brackets = (struct brackets){v->photos, v->exposures, v->record.bracket_count, &v->response, NULL};
     free(path);
     free(input);
+    return st;
+}
+
+enum status bracketed_view_place(struct bracketed_view *v, bool *known, const char *model, struct provenance *prov,
+                                 struct err *err)
+{
+    static const char *const files[] = {"cameras", "images"};
+    const struct photo_list self = {&v->record, 1};
+    struct sfm_model m = {0};
+    char path[FILE_PATH];
+    enum status st = sfm_model_read_cameras(&m, model, err);
+    for (int i = 0; !st && i < 2; i++) st = provenance_add_in(prov, "cameras", model, files[i], ".txt", path, err);
+    for (int i = 0; !st && !v->placed && i < m.image_count; i++) {
+        if (photo_list_match(&self, m.images[i].name) < 0) continue;
+        v->placed = true;
+        v->lens = m.cameras[m.images[i].camera_idx].camera;
+        v->cam_from_world = m.images[i].cam_from_world;
+    }
+    const struct photo_info *info = &v->record.info;
+    if (!st && v->placed && (v->lens.width != info->width || v->lens.height != info->height))
+        st = err_set(
+            err, ST_DATA,
+            "view %s has %d x %d pixels, but its camera in %s/cameras.txt %d x %d; give the cameras of these photos.",
+            v->record.id, info->width, info->height, model, v->lens.width, v->lens.height);
+    *known = v->placed;
+    sfm_model_release(&m);
     return st;
 }
 
@@ -211,6 +241,21 @@ static enum status set_attributes(struct exr_image *im, const struct bracketed_v
     return st;
 }
 
+/* The lens as in lenses.txt, and the pose as a view's. */
+static enum status set_place(struct exr_image *im, const struct bracketed_view *v, struct err *err)
+{
+    const struct camera *c = &v->lens;
+    const struct pose *p = &v->cam_from_world;
+    const struct view view = {.cam_from_world = mat3_from_quat(p->rotation), .translation = p->translation};
+    char text[256];
+    if (!v->placed) return ST_OK;
+    int used = snprintf(text, sizeof text, "%s %d %d", camera_model_name(c->model), c->width, c->height);
+    for (int i = 0; i < camera_model_params(c->model); i++)
+        used += snprintf(text + used, sizeof text - (size_t)used, " %.9g", c->params[i]);
+    exr_set_camera(im, &view);
+    return exr_set_attribute(im, "remodel:lens", text, err);
+}
+
 /* Eight binary digits: noise is not known better, and the rest would not be compressed. */
 static float rounded(float v)
 {
@@ -242,6 +287,7 @@ enum status bracketed_view_write_radiance(const struct bracketed_view *v, const 
     if (!st) st = exr_add_plane(&im, "variance", EXR_FLOAT, &plane, err);
     for (size_t i = 0; !st && i < pixels; i++) plane->f[i] = rounded(v->merged.variance[i]);
     if (!st) st = set_attributes(&im, v, err);
+    if (!st) st = set_place(&im, v, err);
     if (!st) st = exr_write(&im, path, prov, err);
     exr_image_release(&im);
     free(path);

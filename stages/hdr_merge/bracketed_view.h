@@ -2,6 +2,7 @@
 #ifndef REMODEL_BRACKETED_VIEW_H
 #define REMODEL_BRACKETED_VIEW_H
 
+#include "common/camera.h"
 #include "common/photo_list.h"
 #include "common/provenance.h"
 #include "stages/hdr_merge/align.h"
@@ -19,6 +20,9 @@ struct bracketed_view {
     struct exposure_agreement agreement;
     bool agree; /* exposures and response are what the photos show */
     struct merged merged;
+    bool placed; /* its lens and pose are known */
+    struct camera lens;
+    struct pose cam_from_world;
 };
 
 /* RECORDS/ID.txt, the photos it names in PHOTOS, and how samples follow light (response: NULL for the sRGB curve). v is
@@ -26,6 +30,10 @@ struct bracketed_view {
  * */
 enum status bracketed_view_read(struct bracketed_view *v, const char *id, const char *photos, const char *records,
                                 const char *response, struct provenance *prov, struct err *err);
+/* Lens and pose of the view in a COLMAP text model, by the photos' names, for the radiance to be written with; *known: it is
+ * there. ST_DATA: of another size. */
+enum status bracketed_view_place(struct bracketed_view *v, bool *known, const char *model, struct provenance *prov,
+                                 struct err *err);
 /* Shifts, agreement, noise, radiance. ST_DATA: exposures that cannot be what is stated. */
 enum status bracketed_view_merge(struct bracketed_view *v, const struct merge_params *params, struct err *err);
 /* OUT/ID.jpg: tone-mapped; or the middle exposure, a JPEG's own bytes, anything else encoded. */

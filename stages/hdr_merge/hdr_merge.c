@@ -2,12 +2,14 @@
  *
  * reads   RECORDS/ID.txt    which photos are the view's exposures, and how they were exposed
  *         PHOTOS/FILE       the photos: JPEG, PNG, TIFF, EXR, raw files
+ *         MODEL/cameras.txt, images.txt   the view's lens and pose, if it is there
  *         RESPONSE          how their samples follow light; the sRGB curve if none is given
  * writes  OUT/ID.jpg        the radiance, tone-mapped: what structure from motion sees
  *         OUT/ID.exr        R G B (half): 1 is white at the exposure remodel:white, which all views of a scene share;
  *                           clipped (uint): 1 a colour saturates in every exposure, 2 a colour is dark in every
  *                           exposure that does not saturate, 3 both;
- *                           variance (float): of the luminance, over its square; 1 where nothing sure is known
+ *                           variance (float): of the luminance, over its square; 1 where nothing sure is known;
+ *                           with MODEL worldToCamera and remodel:lens
  *
  * Each file appears whole or not at all, ID.exr last. */
 #include <math.h>
@@ -61,12 +63,17 @@ static void tell(const struct bracketed_view *v, const struct merge_params *para
 }
 
 static enum status hdr_merge(const char *id, const char *photos, const char *records, const char *response,
-                             const char *out, const struct merge_params *params, struct provenance *prov,
-                             struct err *err)
+                             const char *model, const char *out, const struct merge_params *params,
+                             struct provenance *prov, struct err *err)
 {
     struct bracketed_view v = {0};
     size_t beyond = 0;
+    bool placed = false;
     enum status st = bracketed_view_read(&v, id, photos, records, response, prov, err);
+    if (!st && model) st = bracketed_view_place(&v, &placed, model, prov, err);
+    if (!st && model && !placed)
+        log_warn("view %s: %s/images.txt has no image of it; its radiance is written without lens and pose.", id,
+                 model);
     if (!st) st = bracketed_view_merge(&v, params, err);
     if (!st) st = bracketed_view_write_picture(&v, photos, out, params, err);
     if (!st) st = bracketed_view_write_radiance(&v, out, prov, &beyond, err);
@@ -79,7 +86,7 @@ static enum status hdr_merge(const char *id, const char *photos, const char *rec
 
 int main(int argc, char **argv)
 {
-    const char *id = NULL, *photos = NULL, *records = NULL, *response = NULL, *out = NULL;
+    const char *id = NULL, *photos = NULL, *records = NULL, *response = NULL, *model = NULL, *out = NULL;
     struct merge_params params = MERGE_PARAMS_DEFAULT;
     const struct cli_opt opts[] = {
         CLI_ABOUT("Merges the bracketed exposures of one view into linear radiance."),
@@ -87,6 +94,8 @@ int main(int argc, char **argv)
         CLI_STR("photos", &photos, CLI_REQUIRED, "folder of photographs"),
         CLI_STR("records", &records, CLI_REQUIRED, "folder of records"),
         CLI_STR("response", &response, CLI_OPTIONAL, "response.txt; without it the sRGB curve"),
+        CLI_STR("model", &model, CLI_OPTIONAL,
+                "COLMAP text model that may know the view's camera, which ID.exr then tells"),
         CLI_STR("out", &out, CLI_REQUIRED, "folder to write ID.jpg and ID.exr into"),
         CLI_PARAMS(merge_param_table, &params, NULL),
         CLI_END,
@@ -94,7 +103,7 @@ int main(int argc, char **argv)
     struct provenance prov = {0};
     struct err err = ERR_INIT;
     if (cli_parse(argc, argv, "hdr_merge", opts, &prov, &err) != CLI_RUN ||
-        hdr_merge(id, photos, records, response, out, &params, &prov, &err))
+        hdr_merge(id, photos, records, response, model, out, &params, &prov, &err))
         err_report(&err);
     provenance_release(&prov);
     return err_exit_code(&err);

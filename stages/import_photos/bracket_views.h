@@ -9,6 +9,8 @@
  * photo tells its exposure these are taken to be alike. Pictures cut out of photos (split_photos.h) are taken lens by
  * lens, so that one bracket of a multi-lens camera is a cycle, too.
  *
+ * Lighting reference images without brackets.txt or cycle are one view if no two of them are exposed alike, else single exposures.
+ *
  * An exposure is seconds x ISO / (f-number^2 x filter): by EXIF, by exposures.txt in the photos' folder, by
  * SCENE/exposures.txt; the later one wins. */
 #ifndef REMODEL_BRACKET_VIEWS_H
@@ -30,13 +32,15 @@ struct bracket_views {
     bool bracketed;             /* else they are single photos */
     struct bracket_view *views; /* in order of id (strcmp) */
     int count;
-    double white;               /* median of the views' middle exposures */
+    double white;    /* median of the views' middle exposures */
+    bool untimed;    /* no photo states its exposure: they were taken to be alike */
+    bool references; /* lighting reference images: one view is enough, and all are views; set by the caller */
     struct exposure *exposures; /* of each photo of the scan; owned */
 };
 
 /* Every photo that is not left out is good (photo_scan_check). scene: NULL if the photos belong to none. A view that
  * `exclude` names is left out; used[i] is set where exclude[i] did so. ST_DATA, naming the photos: what cannot be
- * grouped, photos of a view with different sizes, without or with the same exposure. {0} is the empty state. */
+ * grouped, photos of a view with different sizes, without or with the same exposure. {0} is the empty state; on entry `references` alone may be set. */
 enum status bracket_views_find(struct bracket_views *v, const struct photo_scan *scan, const char *scene,
                                const struct import_params *params, const char *const *exclude, int exclude_count,
                                bool *used, struct err *err);

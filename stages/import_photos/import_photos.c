@@ -1,6 +1,7 @@
 /* import_photos.c - checks the photographs of a folder, gives them ids, finds which are exposures of one view.
  *
  * reads   --photos DIR   JPEG, PNG, TIFF, EXR, raw files straight in it, exposures.txt; nothing in there is written
+ *         --like DIR     records of a scene: these are its lighting reference images, on its scale
  *         --split CxR    each of them holds C x R pictures of a multi-lens camera, which are the photos
  *         --scene DIR    brackets.txt, exposures.txt if they are there
  * writes  --out DIR      ID.txt, a record a photo (content hash, size, EXIF); then list.txt; then photos.mk
@@ -85,19 +86,40 @@ static enum status cut(const char *photos, const char *split, const char *cuts, 
     return st;
 }
 
+/* The exposure that makes 1 white in the scene whose records are in `folder`: the views' too, whatever their own would be. */
+static enum status share_white(struct bracket_views *views, const char *folder, struct err *err)
+{
+    struct photo_list scene = {0};
+    enum status st = photo_list_read(&scene, folder, err);
+    const double white = st || !scene.count ? 0 : scene.photos[0].white; /* all of them have one */
+    if (!st && views->untimed)
+        st = err_set(err, ST_DATA,
+                     "no lighting reference image states its exposure, so that its light cannot be compared with the "
+                     "scene's; write lines \"FILE SECONDS F_NUMBER ISO\" into exposures.txt in their folder.");
+    if (!st && !(white > 0))
+        log_warn(
+            "the scene's photos are no bracketed exposures and have no common scale; the lighting reference images "
+            "get one of their own ([import_photos] brackets = single brings photos of known exposure to one scale).");
+    if (!st && white > 0) views->white = white;
+    photo_list_release(&scene);
+    return st;
+}
+
 /* Where photos are brackets their own records are in `members`, even when they cannot be grouped or one is bad: what
  * was known of the views stays untouched until all is well. */
-static enum status import(struct photo_scan *scan, const char *scene, struct left_out *leave, const char *out,
-                          const struct import_params *params, struct err *err)
+static enum status import(struct photo_scan *scan, const char *scene, const char *like, struct left_out *leave,
+                          const char *out, const struct import_params *params, struct err *err)
 {
     struct bracket_views views = {0};
     char *members = NULL;
     bool bad = photo_scan_bad(scan) > 0;
     enum status st = ST_OK;
     if (asprintf(&members, "%s/members", out) < 0) return err_nomem(err, "a path", 0);
+    views.references = like;
     if (!bad)
         st =
             bracket_views_find(&views, scan, scene, params, leave->names->items, leave->names->count, leave->used, err);
+    if (!bad && !st && like) st = share_white(&views, like, err);
     bool bracketed = st || views.bracketed || (bad && is_there(out, "brackets.txt"));
     report_left_out(scan, leave);
     if (!bracketed)
@@ -111,8 +133,8 @@ static enum status import(struct photo_scan *scan, const char *scene, struct lef
     return st;
 }
 
-static enum status run(struct photo_scan *scan, const char *photos, const char *scene, const char *split,
-                       const char *cuts, const struct cli_list *exclude, const char *out,
+static enum status run(struct photo_scan *scan, const char *photos, const char *scene, const char *like,
+                       const char *split, const char *cuts, const struct cli_list *exclude, const char *out,
                        const struct import_params *params, struct err *err)
 {
     struct left_out left = {exclude, calloc((size_t)exclude->count + 1, sizeof(bool))};
@@ -127,7 +149,7 @@ static enum status run(struct photo_scan *scan, const char *photos, const char *
     scan->cut = split;
     if (!st) leave_out(scan, &left);
     if (!st) st = photo_scan_check(scan, out, err);
-    if (!st) st = import(scan, scene, &left, out, params, err);
+    if (!st) st = import(scan, scene, like, &left, out, params, err);
     report_scan(scan);
     free(left.used);
     return st;
@@ -135,7 +157,7 @@ static enum status run(struct photo_scan *scan, const char *photos, const char *
 
 int main(int argc, char **argv)
 {
-    const char *photos = NULL, *scene = NULL, *split = NULL, *cuts = NULL, *out = NULL;
+    const char *photos = NULL, *scene = NULL, *like = NULL, *split = NULL, *cuts = NULL, *out = NULL;
     struct cli_list exclude = {0};
     struct import_params params = IMPORT_PARAMS_DEFAULT;
     const struct cli_opt opts[] = {
@@ -143,6 +165,8 @@ int main(int argc, char **argv)
         CLI_STR("photos", &photos, CLI_REQUIRED,
                 "folder of photos: JPEG, PNG, TIFF, EXR, raw; sub-folders are not looked into"),
         CLI_STR("scene", &scene, CLI_OPTIONAL, "folder that may hold brackets.txt and exposures.txt"),
+        CLI_STR("like", &like, CLI_OPTIONAL,
+                "folder of a scene's records: the photos are its lighting reference images, brought to its scale"),
         CLI_LIST("exclude", &exclude, CLI_OPTIONAL,
                  "photo to leave out: file name, with or without ending, or id; or a view"),
         CLI_STR("split", &split, CLI_OPTIONAL,
@@ -158,7 +182,7 @@ int main(int argc, char **argv)
 
     switch (cli_parse(argc, argv, "import_photos", opts, &prov, &err)) {
     case CLI_RUN:
-        run(&scan, photos, scene, split, cuts, &exclude, out, &params, &err);
+        run(&scan, photos, scene, like, split, cuts, &exclude, out, &params, &err);
         err_report(&err);
         break;
     case CLI_DONE:

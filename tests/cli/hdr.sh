@@ -151,5 +151,30 @@ a_wrong_curve_is_told_by_its_line()
     refused "nothing.txt" merged set/photos photo_3 --response nothing.txt
 }
 
+# the camera that a model tells; lighting reference images on the scale of another set
+cameras_and_references()
+{
+    mkdir -p model lri
+    printf '1 OPENCV_FISHEYE 320 240 150 150 160 120 0 0 0 0\n' >model/cameras.txt
+    printf '1 1 0 0 0 1 2 3 1 photo_3.jpg\n\n' >model/images.txt
+    merged set/photos photo_3 --model model || { cat err; fail "merge"; }
+    has set/photos-hdr/photo_3.exr 'OPENCV_FISHEYE 320 240 150 150 160 120 0 0 0 0'
+    has set/photos-hdr/photo_3.exr worldToCamera
+    merged set/photos photo_2 --model model || { cat err; fail "merge"; }
+    says "view photo_2: model/images.txt has no image of it"
+    ! grep -aq worldToCamera set/photos-hdr/photo_2.exr || fail "a pose from nowhere"
+    sed -i 's/320 240/321 240/' model/cameras.txt
+    refused "view photo_3 has 320 x 240 pixels, but its camera in model/cameras.txt 321 x 240" merged set/photos photo_3 --model model
+    cp set/photos/photo_[12]_e?.jpg lri
+    records lri --like set/photos-records || { cat err; fail "import of references"; }
+    says "2 views of 3 exposures each"
+    [ "$(awk '$1 == "brackets" { print $4 }' lri-records/photo_1.txt set/photos-records/photo_3.txt | uniq | wc -l)" = 1 ] || fail "another scale"
+    rm lri/photo_2*
+    records lri --like set/photos-records || { cat err; fail "import of one reference"; }
+    grep -qx 'PHOTO_IDS := photo_1' lri-records/photos.mk || { cat lri-records/photos.mk; fail "not one view"; }
+    rm lri/*; for i in 1 2; do ffmpeg -v error -i set/photos/photo_${i}_e1.jpg -vf scale=160:120 -pix_fmt gbrpf32le lri/photo_$i.exr; done
+    refused 'write lines "FILE SECONDS F_NUMBER ISO" into exposures.txt' records lri --like set/photos-records
+}
+
 for t in jpegs tiff_and_png_merge_as_jpeg_does exr_alone_is_one_exposure tiff_alone_is_one_exposure single_jpegs_are_brought_to_one_scale raw_files wrong_exposures_are_refused \
-    missing_brackets_and_times_are_named shifts_are_told_and_corrected a_wrong_curve_is_told_by_its_line; do run "$t"; done
+    missing_brackets_and_times_are_named shifts_are_told_and_corrected a_wrong_curve_is_told_by_its_line cameras_and_references; do run "$t"; done

@@ -62,6 +62,30 @@ the_edited_scene_on_demand()
     grep -q 'EDIT=E' log || fail "it does not say what it wants"
 }
 
+# r was taken with two exposures, and no other: they are one view, on the scale of the photos, with the camera that is told
+lighting_reference_images_are_merged_and_stay_as_they_are()
+{
+    project lri; describe room
+    sed -i 's/^reference r p/lens f equisolid 60 40 27 30 20\nreference r f/' scenes/room/cameras.txt
+    printf 'LRI := out/room/simulated/lri\nLRI_SFM := out/room/simulated/truth/lri\n' >>scenes/room/scene.mk
+    m lri
+    [ "$(cd out/room/lri && echo *)" = "photos r.exr r.jpg" ] || { ls -R out/room/lri; fail "there is not one picture"; }
+    [ ! -e out/room/hdr/a.exr ] || fail "photos were merged that nobody asked for"
+    grep -aq 'OPENCV_FISHEYE 60 40 27 27 30 20 -0.04' out/room/lri/r.exr && grep -aq worldToCamera out/room/lri/r.exr || fail "the camera is not told"
+    [ "$(awk '$1 == "brackets" { print $2, $4 }' out/room/lri/photos/r.txt)" = "2 $(awk '$1 == "brackets" { print $4 }' out/room/photos/a.txt)" ] ||
+        { cat out/room/lri/photos/r.txt; fail "not two exposures on the scene's scale"; }
+    "$root/$B/tests/bench/picture_error" out/room/lri/r.exr out/room/lri/r.exr >err || { cat err; fail "it cannot be read"; }
+    find out/room/lri -type f -printf '%P %T@\n' | sort >a; m lri; find out/room/lri -type f -printf '%P %T@\n' | sort >b
+    diff a b || fail "a second make did it again"
+    echo '[import_photos]' >>scenes/room/scene.cfg; echo 'brackets = no' >>scenes/room/scene.cfg # of the photos
+    m lri
+    grep -q 'have no common scale' log && grep -q '^brackets 2' out/room/lri/photos/r.txt || { cat log; fail "another scale is not told"; }
+    ! make -s DEPS=manual SCENE=room lri LRI= >log 2>&1 || fail "make lri without LRI was content"
+    grep -q 'LRI=DIR' log || { cat log; fail "it does not say what it wants"; }
+    ! make -s DEPS=manual SCENE=room lri LRI=nowhere >log 2>&1 || fail "make lri of no folder was content"
+    grep -q 'nowhere is none' log || { cat log; fail "the folder is not named"; }
+}
+
 same_bytes_for_one_and_two_cores()
 {
     project one; describe room; m hdr CORES=1; bytes out/room/simulated >"$scratch/one.bytes"
@@ -81,5 +105,5 @@ a_fault_in_the_description_is_told_and_leaves_nothing()
     [ -z "$(find out/room/simulated -type f 2>/dev/null)" ] || { find out/room/simulated; fail "a product was left"; }
 }
 
-for t in photographed_once_and_again_where_the_description_changed the_edited_scene_on_demand same_bytes_for_one_and_two_cores \
+for t in photographed_once_and_again_where_the_description_changed the_edited_scene_on_demand lighting_reference_images_are_merged_and_stay_as_they_are same_bytes_for_one_and_two_cores \
     a_fault_in_the_description_is_told_and_leaves_nothing; do run "$t"; done
