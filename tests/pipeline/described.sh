@@ -86,6 +86,30 @@ lighting_reference_images_are_merged_and_stay_as_they_are()
     grep -q 'nowhere is none' log || { cat log; fail "the folder is not named"; }
 }
 
+# through a fisheye each photo has several views: one process a photo, and of a deleted view only that view
+views_of_one_photo_are_made_in_one_call()
+{
+    project wide; describe room
+    sed -i 's/^photo a p/lens f equisolid 60 40 27 30 20\nphoto a f/; s/^photo \([bc]\) p/photo \1 f/' scenes/room/cameras.txt
+    echo 'SFM := out/room/simulated/truth' >>scenes/room/scene.mk
+    m views
+    for v in a@0 a@1 a@2 b@0 b@1 b@2 c@0 c@1 c@2; do [ -s "out/room/views/$v.exr" ] || { ls out/room/views; fail "there is no $v"; }; done
+    [ "$(cd out/room/log && echo rectify.*.log)" = "rectify.a.log rectify.b.log rectify.c.log" ] || { ls out/room/log; fail "not one call a photo"; }
+    (cd out/room/views && sha256sum -- *.exr) >before
+    find out/room/views -name '*.exr' -printf '%P %T@\n' | sort >a
+    rm out/room/views/b@1.exr
+    m views
+    find out/room/views -name '*.exr' -printf '%P %T@\n' | sort >b
+    [ "$(comm -13 a b | cut -d' ' -f1)" = b@1.exr ] || { comm -13 a b; fail "it was not the deleted view alone that was made again"; }
+    (cd out/room/views && sha256sum -c --quiet ../../../before) || fail "other bytes"
+    touch -d '2 hours ago' out/room/views/c@0.exr
+    m views
+    find out/room/views -name '*.exr' -printf '%P %T@\n' | sort >a
+    [ "$(comm -13 b a | cut -d' ' -f1)" = c@0.exr ] || { comm -13 b a; fail "it was not the stale view alone that was made again"; }
+    m views
+    find out/room/views -name '*.exr' -printf '%P %T@\n' | sort | diff a - || fail "a third make did it again"
+}
+
 same_bytes_for_one_and_two_cores()
 {
     project one; describe room; m hdr CORES=1; bytes out/room/simulated >"$scratch/one.bytes"
@@ -105,5 +129,6 @@ a_fault_in_the_description_is_told_and_leaves_nothing()
     [ -z "$(find out/room/simulated -type f 2>/dev/null)" ] || { find out/room/simulated; fail "a product was left"; }
 }
 
-for t in photographed_once_and_again_where_the_description_changed the_edited_scene_on_demand lighting_reference_images_are_merged_and_stay_as_they_are same_bytes_for_one_and_two_cores \
+for t in photographed_once_and_again_where_the_description_changed the_edited_scene_on_demand lighting_reference_images_are_merged_and_stay_as_they_are \
+    views_of_one_photo_are_made_in_one_call same_bytes_for_one_and_two_cores \
     a_fault_in_the_description_is_told_and_leaves_nothing; do run "$t"; done
