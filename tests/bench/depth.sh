@@ -149,12 +149,13 @@ settings()
 # views ITEM SIZE: the folder of its rectified views at this part of the photos' size; made once
 views()
 {
-    local from=$work/$1 to=$work/$1/views@$2 limit=0 v
+    local from=$work/$1 to=$work/$1/views@$2 limit=0 p
     if [ ! -e "$to/views.mk" ]; then
         [ "$2" = 1 ] || limit=$(cat "$from"/records/*.txt | awk -v s="$2" '$1 == "size" { print $2 * $3 * s * s * 1e-6; exit }')
         quietly "$B/bin/sfm_import" --sfm "$from/sfm/" --records "$from/records" --set "max_megapixels=$limit" --out "$to"
-        for v in $(sed -n 's/^VIEWS := //p' "$to/views.mk"); do
-            quietly "$B/bin/rectify" --view "$v" --photos "$from/photos/" --records "$from/records" --views "$to" --out "$to/$v.exr"
+        for p in $(sed -n 's/^VIEWS := //p' "$to/views.mk" | tr ' ' '\n' | sed 's/@.*//' | sort -u); do
+            # ours, also where an older revision is measured: its options were others
+            quietly "${builds[0]}/bin/rectify" --photo "$p" --photos "$from/photos/" --records "$from/records" --views "$to" --out "$to"
         done
     fi
     echo "$to"
