@@ -276,7 +276,7 @@ static enum status group_by_cycle(struct bracket_views *v, const struct photo_sc
     struct cycle c = {0};
     if (!st) c = find_cycle(&o);
     int held = c.count * c.length;
-    bool clear = held >= CYCLED_LEAST || ((must || v->references) && held);
+    bool clear = held >= CYCLED_LEAST || ((must || scan->references) && held);
     if (!st && clear && held == o.count) {
         st = add_cycles(v, &o, &c, err);
         show_cycle(text, sizeof text, v, &o, &c);
@@ -513,13 +513,13 @@ enum status bracket_views_find(struct bracket_views *v, const struct photo_scan 
     char *path = NULL;
     const char *linear = NULL;
     const bool single = !strcmp(params->brackets, "single"), developed = any_linear(scan, &linear);
-    *v = (struct bracket_views){.references = v->references};
-    if (!strcmp(params->brackets, "no") && developed && !v->references)
+    *v = (struct bracket_views){0};
+    if (!strcmp(params->brackets, "no") && developed && !scan->references)
         return err_set(err, ST_DATA,
                        "%s/%s is an EXR or a raw file, which is made a picture of where brackets are merged; set "
                        "[import_photos] brackets = auto, or leave it out (EXCLUDE).",
                        scan->folder, linear);
-    if (!strcmp(params->brackets, "no") && !v->references) return ST_OK;
+    if (!strcmp(params->brackets, "no") && !scan->references) return ST_OK;
     enum status st = find_exposures(v, scan, scene, err);
     if (!st && scene && asprintf(&path, "%s/brackets.txt", scene) < 0) {
         path = NULL;
@@ -528,9 +528,9 @@ enum status bracket_views_find(struct bracket_views *v, const struct photo_scan 
     bool listed = path && !access(path, F_OK);
     if (!st && listed) st = group_by_list(v, scan, path, err);
     if (!st && !listed && !single)
-        st = group_by_cycle(v, scan, !strcmp(params->brackets, "yes") && !v->references, err);
-    if (!st && !listed && !v->count && !single && v->references) st = group_distinct(v, scan, err);
-    if (!st && !listed && !v->count && (v->references || single || developed || any_tiff(scan)))
+        st = group_by_cycle(v, scan, !strcmp(params->brackets, "yes") && !scan->references, err);
+    if (!st && !listed && !v->count && !single && scan->references) st = group_distinct(v, scan, err);
+    if (!st && !listed && !v->count && (scan->references || single || developed || any_tiff(scan)))
         st = single_views(v, scan, err);
     if (!st && listed && v->count) qsort(v->views, (size_t)v->count, sizeof *v->views, by_view);
     if (!st && !listed && v->count) st = name_views(v, scan, err);
@@ -582,7 +582,7 @@ enum status bracket_views_write(const struct bracket_views *v, const struct phot
     if (!st) ids[v->count] = "brackets";
     if (!st) st = photo_scan_remove_others(records, ids, v->count + 1, err);
     for (int i = 0; !st && i < v->count; i++) st = photo_record_write(&list.photos[i], records, err);
-    if (!st && v->count < (v->references ? 1 : 2))
+    if (!st && v->count < (scan->references ? 1 : 2))
         st = err_set(err, ST_DATA,
                      "the photos in %s are exposures of %s; a parallax video needs at least 2 views, taken from "
                      "different places.",

@@ -32,15 +32,14 @@ struct bracket_views {
     bool bracketed;             /* else they are single photos */
     struct bracket_view *views; /* in order of id (strcmp) */
     int count;
-    double white;    /* median of the views' middle exposures */
-    bool untimed;    /* no photo states its exposure: they were taken to be alike */
-    bool references; /* lighting reference images: one view is enough, and all are views; set by the caller */
+    double white;               /* median of the views' middle exposures */
+    bool untimed;               /* no photo states its exposure: they were taken to be alike */
     struct exposure *exposures; /* of each photo of the scan; owned */
 };
 
 /* Every photo that is not left out is good (photo_scan_check). scene: NULL if the photos belong to none. A view that
  * `exclude` names is left out; used[i] is set where exclude[i] did so. ST_DATA, naming the photos: what cannot be
- * grouped, photos of a view with different sizes, without or with the same exposure. {0} is the empty state; on entry `references` alone may be set. */
+ * grouped, photos of a view with different sizes, without or with the same exposure. {0} is the empty state. */
 enum status bracket_views_find(struct bracket_views *v, const struct photo_scan *scan, const char *scene,
                                const struct import_params *params, const char *const *exclude, int exclude_count,
                                bool *used, struct err *err);

@@ -115,7 +115,6 @@ static enum status import(struct photo_scan *scan, const char *scene, const char
     bool bad = photo_scan_bad(scan) > 0;
     enum status st = ST_OK;
     if (asprintf(&members, "%s/members", out) < 0) return err_nomem(err, "a path", 0);
-    views.references = like;
     if (!bad)
         st =
             bracket_views_find(&views, scan, scene, params, leave->names->items, leave->names->count, leave->used, err);
@@ -147,6 +146,7 @@ static enum status run(struct photo_scan *scan, const char *photos, const char *
     if (!st && split) st = cut(photos, split, cuts, &left, params, err);
     if (!st) st = photo_scan_folder(scan, split ? cuts : photos, err);
     scan->cut = split;
+    scan->references = like;
     if (!st) leave_out(scan, &left);
     if (!st) st = photo_scan_check(scan, out, err);
     if (!st) st = import(scan, scene, like, &left, out, params, err);

@@ -24,9 +24,10 @@ struct photo_scan {
     char *folder;                 /* owned */
     struct scanned_photo *photos; /* in order of id (strcmp) */
     int count;
-    bool cut;    /* the photos are pictures cut out of others, ID_cXrY.png; set by who knows */
-    int doubled; /* raw files beside a JPEG of the same name */
-    int ignored; /* other files and folders in there; hidden ones, exposures.txt and split.txt are not counted */
+    bool cut;        /* the photos are pictures cut out of others, ID_cXrY.png; set by who knows */
+    bool references; /* the photos are lighting reference images; set by the caller */
+    int doubled;     /* raw files beside a JPEG of the same name */
+    int ignored;     /* other files and folders in there; hidden ones, exposures.txt and split.txt are not counted */
 };
 
 /* ST_IO, ST_DATA: the folder is missing, no folder, or unreadable. No photo at all is no error yet. */
