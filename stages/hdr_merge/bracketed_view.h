@@ -30,7 +30,8 @@ struct bracketed_view {
  * */
 enum status bracketed_view_read(struct bracketed_view *v, const char *id, const char *photos, const char *records,
                                 const char *response, struct provenance *prov, struct err *err);
-/* Lens and pose of the view in a COLMAP text model, by the photos' names, for the radiance to be written with; *known: it is
+/* Lens and pose of the view in a COLMAP text model, by the photos' names, for the radiance to be written with;
+ * *known: it is
  * there. ST_DATA: of another size. */
 enum status bracketed_view_place(struct bracketed_view *v, bool *known, const char *model, struct provenance *prov,
                                  struct err *err);

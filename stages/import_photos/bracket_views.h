@@ -9,7 +9,8 @@
  * photo tells its exposure these are taken to be alike. Pictures cut out of photos (split_photos.h) are taken lens by
  * lens, so that one bracket of a multi-lens camera is a cycle, too.
  *
- * Lighting reference images without brackets.txt or cycle are one view if no two of them are exposed alike, else single exposures.
+ * Lighting reference images without brackets.txt or cycle are one view if no two of them are exposed alike, else
+ * single exposures.
  *
  * An exposure is seconds x ISO / (f-number^2 x filter): by EXIF, by exposures.txt in the photos' folder, by
  * SCENE/exposures.txt; the later one wins. */

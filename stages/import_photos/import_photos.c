@@ -86,7 +86,8 @@ static enum status cut(const char *photos, const char *split, const char *cuts, 
     return st;
 }
 
-/* The exposure that makes 1 white in the scene whose records are in `folder`: the views' too, whatever their own would be. */
+/* The exposure that makes 1 white in the scene whose records are in `folder`: the views' too, whatever their own
+ * would be. */
 static enum status share_white(struct bracket_views *views, const char *folder, struct err *err)
 {
     struct photo_list scene = {0};

@@ -3,7 +3,7 @@
  * reads   VIEWS/cameras.txt, images.txt, lenses.txt   the views' cameras, and the photo's lens
  *         RECORDS/ID.txt, PHOTOS/FILE                 the photo; of a view of several exposures PHOTOS/ID.exr, merged
  *         MASKS/ID.png                                black where a view is to have no pixel; need not be there
- * writes  OUT/VIEW.exr                                R G B (linear), A: of every view of the photo, or of those asked for
+ * writes  OUT/VIEW.exr                                R G B (linear), A: of the photo's views, or of those asked for
  *
  * A photo may have many views (of a fisheye, several), and reading it can take longer than making one: it is read once. */
 #include <string.h>

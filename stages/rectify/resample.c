@@ -5,9 +5,10 @@
  * the reduction, and with it the picture stays free of aliasing. Lanczos' negative lobes would draw dark lines beside
  * bright windows in linear light, hence the clamp to the samples within one lobe.
  *
- * Most of the time would go into the lens and into kernels. Along a row the map is a smooth curve: it is computed at every
- * KNOTS-th pixel, and in between by the cubic through four of them where fourth differences say that this is as
- * good (error 3/128 of them). Where nothing is reduced, weights depend on the place between pixels alone and are tabled. */
+ * Most of the time would go into the lens and into kernels. Along a row the map is a smooth curve: it is computed at
+ * every 16th pixel, else at every 8th, and in between by the cubic through four of them where fourth differences say
+ * that this is as good (error 3/128 of them). Where nothing is reduced, weights depend on
+ * the place between pixels alone and are tabled. */
 #include "stages/rectify/resample.h"
 
 #include <immintrin.h>
@@ -83,8 +84,8 @@ static struct place photo_from_pixel(const struct resample *r, int x, int y)
     return camera_project(r->lens, mat3_apply(r->photo_from_view, ray), &p.u, &p.v) ? p : (struct place){NAN, NAN};
 }
 
-/* Taps along one axis around `at` (pixel centres at +0.5); those within one lobe are near. Weights are 0 from `count` to
- * the next multiple of LANES. */
+/* Taps along one axis around `at` (pixel centres at +0.5); those within one lobe are near. Weights are 0 from `count`
+ * to the next multiple of LANES. */
 struct taps {
     int first, count;
     int near_begin, near_end; /* counted from the first */

@@ -45,7 +45,8 @@ enum { SFM_LENS_TEXT = 400 };
 void sfm_png_lens(char text[SFM_LENS_TEXT], const struct photo_list *photos, const struct sfm_params *params);
 
 /* The start of an equisolid fisheye, r = 2 f sin(theta / 2), as OPENCV_FISHEYE's eight numbers: with the series of
- * 2 sin(theta / 2) / theta = 1 - theta^2 / 24 + theta^4 / 1920 - ... The focal length is that of camera_params, or what all photos' EXIF
+ * 2 sin(theta / 2) / theta = 1 - theta^2 / 24 + theta^4 / 1920 - ... The focal length is that of camera_params, or
+ * what all photos' EXIF
  * states for 35 mm film. ST_USAGE: not EQUISOLID's numbers, photos of several sizes or lenses, or no focal length. */
 enum status sfm_equisolid_lens(char text[SFM_LENS_TEXT], const struct photo_list *photos,
                                const struct sfm_params *params, struct err *err);

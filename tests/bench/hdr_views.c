@@ -1,11 +1,13 @@
 /* hdr_views.c - one sample of the bench `hdr`: from exposures to rectified views, by the stages' own code.
  *
- * Several photographs at once, a thread each, as `make -j` has them. The photos are the exposures that bench_hdr painted
+ * Several photographs at once, a thread each, as `make -j` has them. The photos are the exposures that bench_hdr
+ * painted
  * (DIR/eK.jpg), taken for those of an equisolid fisheye lens; its views are those that sfm_import decides. A sample
  * prints, a line each: seconds, and cpu_s, the processor time of the same, of
  *   merge_s     what hdr_merge does: reading the JPEGs, their hashes, shifts, noise, radiance
  *   rectify_s   what rectify does: reading the radiance, all views of each photo;
- * apart from that write_s: the EXRs of the radiance and of the views; mpixels, of all exposures; views and view_mpixels, of
+ * apart from that write_s: the EXRs of the radiance and of the views; mpixels, of all exposures; views and
+ * view_mpixels, of
  * all photos. Times are medians of as many runs as fit in two seconds, after one that is not counted. */
 #include <math.h>
 #include <stdio.h>
