@@ -19,7 +19,10 @@ static const double WINDOW = 0.008;  /* whose densest place is sought: about 2.5
 static const double REACH = 0.02;    /* around it, beyond which points never count */
 static const double NOT_SMALL = 0.2; /* of the largest cluster */
 static const double LEAST_SPREAD = 1e-6;
-static const double BIWEIGHT = 4.685;
+/* spreads beyond which points do not count: fewer than the usual 4.685, as what lies by a floor or a ceiling - carpets,
+ * beams, what noise rounds off - lies on one side of it and pulls */
+static const double BIWEIGHT = 2;
+static const double LEAST_SLOPE = 0.1; /* of the weights' sum: heights without a peak */
 
 struct place {
     struct vec3 p;
@@ -92,6 +95,13 @@ static double weight(double distance, double spread)
     return fabs(u) < 1 ? (1 - u * u) * (1 - u * u) : 0;
 }
 
+/* Derivative of weight times distance. */
+static double weight_slope(double distance, double spread)
+{
+    const double u = distance / (BIWEIGHT * spread);
+    return fabs(u) < 1 ? (1 - u * u) * (1 - 5 * u * u) : 0;
+}
+
 /* Robust mean of the heights in reach, from *height on. scratch: room for all of them. */
 static void settle(struct level *level, const double *heights, size_t count, double size, double *scratch)
 {
@@ -120,19 +130,23 @@ static void settle(struct level *level, const double *heights, size_t count, dou
 static enum status find_error(struct level *level, const struct place *places, const double *heights, size_t count,
                               double size, struct vec3 tilt_error, struct err *err)
 {
-    double *sums = calloc(BLOCKS, sizeof *sums), all = 0, x = 0, y = 0, sum = 0;
+    double *sums = calloc(BLOCKS, sizeof *sums), all = 0, slope = 0, x = 0, y = 0, sum = 0;
     if (!sums) return err_nomem(err, "blocks", BLOCKS * sizeof *sums);
     for (size_t i = lower_bound(heights, count, level->height - REACH * size);
          i < count && heights[i] < level->height + REACH * size; i++) {
         const double d = heights[i] - level->height, w = weight(d, level->spread);
         sums[block_of(places[i].p, size)] += w * d;
         all += w;
+        slope += weight_slope(d, level->spread);
         x += w * places[i].p.x;
         y += w * places[i].p.y;
     }
     for (int i = 0; i < BLOCKS; i++) sum += sums[i] * sums[i];
     free(sums);
-    if (all > 0) level->error = hypot(sqrt(sum) / all, hypot(y / all * tilt_error.x, x / all * tilt_error.y));
+    /* an M-estimator's: what its blocks pull, over how fast the pull falls with the height */
+    if (all > 0)
+        level->error =
+            hypot(sqrt(sum) / fmax(slope, LEAST_SLOPE * all), hypot(y / all * tilt_error.x, x / all * tilt_error.y));
     return ST_OK;
 }
 
