@@ -48,12 +48,19 @@ small()
     cat >"scenes/$1/scene.cfg" <<'CFG'
 [segment_depth]
 planes = 32
+passes = 1
 [sample_validity]
 max_side = 160
+check_side = 48
+grid = 3
+check_cells = 0
 [plan_path]
 seconds = 0.5
 fps = 12
 max_side = 160
+pairs = 2
+refine = no
+parallax_side = 48
 CFG
 }
 

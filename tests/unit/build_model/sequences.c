@@ -687,7 +687,7 @@ static void one_sequence(void)
     for (int i = 0; i < EDITS; i++) {
         random_statement(&told, line, ++step);
         if (with_crumbs()) add_crumbs(line);
-        snprintf(tried, sizeof tried, "%s%s", edit, line);
+        assert_true((size_t)snprintf(tried, sizeof tried, "%s%s", edit, line) < sizeof tried);
         if (!make_model(&edited, base, tried, lines + 1)) {
             refusals++;
             continue;
