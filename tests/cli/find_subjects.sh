@@ -4,7 +4,7 @@ data=$root/../shared/data
 project subjects
 photos set --views 3 --size 160x120 >/dev/null
 small t
-sed -i 's/^planes = .*/planes = 32\nrounds = 0\npasses = 1/' scenes/t/scene.cfg
+sed -i 's/^planes = .*/planes = 32\nrounds = 0/' scenes/t/scene.cfg
 make -s DEPS=manual PHOTOS=set/photos SFM=set/model SCENE=t subjects >log 2>&1 || { cat log; fail "make"; }
 views=$(sed 's/VIEWS := //' out/t/views/views.mk)
 first=${views%% *}

@@ -3,7 +3,7 @@
 project keyframes
 photos set --views 3 --size 160x120 >/dev/null
 small t
-sed -i 's/^planes = .*/planes = 32\nrounds = 0\npasses = 1/; s/^seconds = .*/seconds = 0.25/; s/^max_side = .*/max_side = 96/; s/^renderer = .*/renderer = fast/' scenes/t/scene.cfg
+sed -i 's/^planes = .*/planes = 32\nrounds = 0/; s/^seconds = .*/seconds = 0.25/; s/^max_side = .*/max_side = 96/; s/^renderer = .*/renderer = fast/' scenes/t/scene.cfg
 film=scenes/t/keyframes/film.txt
 made=out/t/parallax
 a_film() { make -s DEPS=manual PHOTOS=set/photos SFM=set/model SCENE=t EFFECT="${effect:-film}" "$@" >log 2>&1; }

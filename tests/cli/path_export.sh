@@ -3,7 +3,7 @@
 project export
 photos set --views 3 --size 160x120 >/dev/null
 small t
-sed -i 's/^planes = .*/planes = 32\nrounds = 0\npasses = 1/; s/^seconds = .*/seconds = 0.25/; s/^max_side = .*/max_side = 96/' scenes/t/scene.cfg
+sed -i 's/^planes = .*/planes = 32\nrounds = 0/; s/^seconds = .*/seconds = 0.25/; s/^max_side = .*/max_side = 96/' scenes/t/scene.cfg
 make -s DEPS=manual PHOTOS=set/photos SFM=set/model SCENE=t path >log 2>&1 || { cat log; fail "make"; }
 move=out/t/parallax/establishing_dolly
 

@@ -3,7 +3,7 @@
 project planner
 photos set --views 3 --size 160x120 >/dev/null
 small t
-sed -i 's/^planes = .*/planes = 32\nrounds = 0\npasses = 1/' scenes/t/scene.cfg
+sed -i 's/^planes = .*/planes = 32\nrounds = 0/' scenes/t/scene.cfg
 make -s DEPS=manual PHOTOS=set/photos SFM=set/model SCENE=t depth >log 2>&1 || { cat log; fail "make"; }
 "$B/bin/sample_validity" --views out/t/views --depth out/t/depth --set grid=3 --set max_side=96 --effect establishing_dolly --out . 2>log || { cat log; fail "sample_validity"; }
 

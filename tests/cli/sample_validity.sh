@@ -3,7 +3,7 @@
 project validity
 photos set --views 3 --size 160x120 >/dev/null
 small t
-sed -i 's/^planes = .*/planes = 32\nrounds = 0\npasses = 1/' scenes/t/scene.cfg
+sed -i 's/^planes = .*/planes = 32\nrounds = 0/' scenes/t/scene.cfg
 make -s DEPS=manual PHOTOS=set/photos SFM=set/model SCENE=t subjects >log 2>&1 || { cat log; fail "make"; }
 
 # sample CODE WORD ARGUMENT...

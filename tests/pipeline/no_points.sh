@@ -9,7 +9,7 @@ awk '/^#/ { print; next } { n++; print n % 2 ? $0 : "" }' set/model/images.txt >
 scene()
 {
     small "$1"
-    sed -i 's/^planes = .*/planes = 32\nrounds = 0\npasses = 1/' "scenes/$1/scene.cfg"
+    sed -i 's/^planes = .*/planes = 32\nrounds = 0/' "scenes/$1/scene.cfg"
     mkdir -p "$1/photos"
 }
 points() { grep -vc '^#' "out/$1/views/points3D.txt" || true; }

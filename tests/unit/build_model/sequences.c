@@ -74,7 +74,7 @@ static void say_room(char *text, const char *name, const char *walls)
 static void say_house(char *text, double x0, double y0, int columns, int rows, char tag)
 {
     double x[4] = {x0}, y[3] = {y0};
-    char outer[4][8], across[4][8], between[4][8], name[8], walls[LINE]; /* across[0]: the west wall */
+    char outer[4][32], across[4][32], between[4][32], name[32], walls[LINE]; /* across[0]: the west wall */
     for (int i = 0; i < columns; i++) x[i + 1] = x[i] + uniform(1.5, 4);
     for (int k = 0; k < rows; k++) y[k + 1] = y[k] + uniform(1.5, 4);
     for (int i = 0; i < 4; i++) snprintf(outer[i], sizeof outer[i], "%.2s%c", "sowenoea" + 2 * i, tag);
@@ -105,7 +105,7 @@ static void say_house(char *text, double x0, double y0, int columns, int rows, c
 
 static void say_corners(char *text, const double (*p)[2], int count)
 {
-    char name[8], walls[LINE] = "";
+    char name[32], walls[LINE] = "";
     say(text, "%s", "");
     for (int i = 0; i < count; i++) { /* counter-clockwise, so walls go backwards */
         snprintf(name, sizeof name, "w%d", i);
@@ -670,7 +670,8 @@ static void one_sequence(void)
     for (int i = 0; i < FURNISHINGS; i++) {
         random_statement(&told, line, ++step);
         if (with_crumbs()) add_crumbs(line);
-        snprintf(tried, sizeof tried, "%s%s", base, line);
+        strcpy(tried, base);
+        say(tried, "%s", line);
         if (!make_model(&m, tried, NULL, 0)) continue;
         drop_model(&m);
         strcpy(base, tried);
@@ -687,7 +688,8 @@ static void one_sequence(void)
     for (int i = 0; i < EDITS; i++) {
         random_statement(&told, line, ++step);
         if (with_crumbs()) add_crumbs(line);
-        assert_true((size_t)snprintf(tried, sizeof tried, "%s%s", edit, line) < sizeof tried);
+        strcpy(tried, edit);
+        say(tried, "%s", line);
         if (!make_model(&edited, base, tried, lines + 1)) {
             refusals++;
             continue;
