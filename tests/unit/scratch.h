@@ -22,16 +22,14 @@
 #include <unistd.h>
 
 #include "common/err.h"
+#include "tests/scratch_name.h"
 
 static char scratch[256]; /* the folder */
 
 static inline int scratch_make(void **state)
 {
-    const char *tmp = getenv("TMPDIR");
-
     (void)state;
-    snprintf(scratch, sizeof scratch, "%s/remodel-test-XXXXXX", tmp && *tmp ? tmp : "/tmp");
-    return mkdtemp(scratch) ? 0 : -1;
+    return scratch_name(scratch, sizeof scratch, "test") && mkdtemp(scratch) ? 0 : -1;
 }
 
 static inline int scratch_remove_one(const char *path, const struct stat *info, int type, struct FTW *at)
