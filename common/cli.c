@@ -7,9 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
-#include <time.h>
 #include <unistd.h>
 
+#include "common/clock.h"
 #include "common/log.h"
 #include "common/parallel.h"
 #include "common/scan.h"
@@ -21,14 +21,6 @@ enum { MOST_THREADS = 1024 };
 
 static double started;
 static pid_t owner;
-
-static double now(void)
-{
-    struct timespec t;
-
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 static double cpu_seconds(const struct rusage *u)
 {
@@ -44,8 +36,8 @@ static void report_use(void)
     getrusage(RUSAGE_SELF, &self);
     getrusage(RUSAGE_CHILDREN, &children);
     const long peak = self.ru_maxrss > children.ru_maxrss ? self.ru_maxrss : children.ru_maxrss; /* KiB */
-    log_note("used %.2f s wall, %.2f s cpu, %ld MiB peak", now() - started, cpu_seconds(&self) + cpu_seconds(&children),
-             (peak + 1023) / 1024);
+    log_note("used %.2f s wall, %.2f s cpu, %ld MiB peak", clock_seconds() - started,
+             cpu_seconds(&self) + cpu_seconds(&children), (peak + 1023) / 1024);
 }
 
 /* ---------------------------------------------------------------------------------------------------- the options */
@@ -293,7 +285,7 @@ enum cli_verdict cli_parse(int argc, char **argv, const char *stage, const struc
     enum cli_verdict verdict = CLI_RUN;
 
     log_set_name(stage);
-    started = now();
+    started = clock_seconds();
     owner = getpid();
     *prov = (struct provenance){.stage = stage, .version = REMODEL_VERSION};
     enum status st = parse(argc, argv, stage, opts, common_opts, &common, prov, err);

@@ -3,20 +3,12 @@
 
 #include <inttypes.h>
 #include <stdio.h>
-#include <time.h>
 #include <unistd.h>
 
+#include "common/clock.h"
 #include "common/log.h"
 
 static const double terminal_interval = 0.25, log_interval = 10; /* seconds */
-
-static double now(void)
-{
-    struct timespec t;
-
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 static void time_text(char *text, size_t size, double seconds)
 {
@@ -58,7 +50,7 @@ void progress_start(struct progress *p, const char *what, int64_t total, const c
     p->unit = unit;
     p->total = total;
     atomic_store(&p->done, 0);
-    p->started = p->shown = now();
+    p->started = p->shown = clock_seconds();
     atomic_flag_clear(&p->drawing);
     p->terminal = isatty(STDERR_FILENO);
 }
@@ -67,7 +59,7 @@ void progress_add(struct progress *p, int64_t n)
 {
     atomic_fetch_add(&p->done, n);
     if (atomic_flag_test_and_set(&p->drawing)) return;
-    const double time = now();
+    const double time = clock_seconds();
     if (time - p->shown >= (p->terminal ? terminal_interval : log_interval)) draw(p, time, false);
     atomic_flag_clear(&p->drawing);
 }
@@ -75,7 +67,7 @@ void progress_add(struct progress *p, int64_t n)
 void progress_end(struct progress *p)
 {
     if (!p->what) return;
-    const double time = now();
+    const double time = clock_seconds();
     if (p->terminal ? p->shown > p->started : time - p->started >= log_interval) draw(p, time, true);
     p->what = NULL;
 }

@@ -164,6 +164,12 @@ static enum status known(struct doer *d, const char *name, unsigned kinds, const
     return ST_OK;
 }
 
+static enum status known_solid(struct doer *d, const char *name, enum named *kind, int *at)
+{
+    return known(d, name, 1u << NAMED_WALL | 1u << NAMED_OPENING | 1u << NAMED_BOX, "a wall, an opening or a box", kind,
+                 at);
+}
+
 static enum status known_wall(struct doer *d, const char *name, int *wall)
 {
     enum named kind;
@@ -790,9 +796,7 @@ static enum status do_adjust(struct doer *d)
     struct plan *plan = d->plan;
     enum named kind;
     int at;
-    if (known(d, s->name, 1u << NAMED_WALL | 1u << NAMED_OPENING | 1u << NAMED_BOX, "a wall, an opening or a box",
-              &kind, &at))
-        return d->err->status;
+    if (known_solid(d, s->name, &kind, &at)) return d->err->status;
     if (kind == NAMED_OPENING) {
         struct plan_opening *o = &plan->openings[at];
         if (place_on_wall(d, &plan->walls[o->wall], o->s, o->z)) return d->err->status;
@@ -829,9 +833,7 @@ static enum status do_move(struct doer *d)
     struct plan *plan = d->plan;
     enum named kind;
     int at;
-    if (known(d, s->name, 1u << NAMED_WALL | 1u << NAMED_OPENING | 1u << NAMED_BOX, "a wall, an opening or a box",
-              &kind, &at))
-        return d->err->status;
+    if (known_solid(d, s->name, &kind, &at)) return d->err->status;
     if (kind == NAMED_BOX) {
         if (s->value_count != 2)
             return refuse(d, "a box moves by two distances, in x and y: \"move %s by DX DY\".", s->name);

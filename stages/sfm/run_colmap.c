@@ -10,9 +10,9 @@
 #include <string.h>
 #include <strings.h>
 #include <sys/stat.h>
-#include <time.h>
 #include <unistd.h>
 
+#include "common/clock.h"
 #include "common/log.h"
 #include "common/outfile.h"
 #include "common/parallel.h"
@@ -313,17 +313,10 @@ static enum status link_photos(struct run *r, const struct sfm_input *in, struct
     return st;
 }
 
-static double now(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 static enum status run_prepare(struct run *r, const struct sfm_folder *f, const struct sfm_input *in,
                                const struct sfm_params *params, struct err *err)
 {
-    *r = (struct run){.folder = f, .started = now(), .photos = in->list, .params = params};
+    *r = (struct run){.folder = f, .started = clock_seconds(), .photos = in->list, .params = params};
     const char *work = r->folder->work;
     enum status st = sfm_single_camera(&r->single, r->photos, r->params, err);
     if (st) return st;
@@ -568,7 +561,7 @@ static enum status features_and_matches(long long *features, const struct run *r
     enum status st = extract(r, err);
     if (!st) st = note_features(features, r, err);
     if (st || !*features) return st;
-    log_note("step 2 of %d: matches (%.1f s so far)", STEPS, now() - r->started);
+    log_note("step 2 of %d: matches (%.1f s so far)", STEPS, clock_seconds() - r->started);
     return match(r, err);
 }
 
@@ -601,7 +594,7 @@ enum status run_colmap(struct sfm_folder *f, const struct sfm_input *in, const s
                      "COLMAP found no feature in any of the %d photos; they are blank, masked, or cannot be read; its "
                      "log is %s.",
                      in->list->count, r.logs[0]);
-    if (!st) log_note("step 3 of %d: poses and points (%.1f s so far)", STEPS, now() - r.started);
+    if (!st) log_note("step 3 of %d: poses and points (%.1f s so far)", STEPS, clock_seconds() - r.started);
     if (!st) st = map(&r, false, err);
     if (!st && !(models = count_models(&r, err))) {
         log_note("no pair of photos is a good start; trying again with pairs that are closer together");
@@ -609,7 +602,7 @@ enum status run_colmap(struct sfm_folder *f, const struct sfm_input *in, const s
         if (!st) models = count_models(&r, err);
     }
     if (!st && !models) st = tell_why_nothing(&r, err);
-    if (!st) log_note("step 4 of %d: text of %d models (%.1f s so far)", STEPS, models, now() - r.started);
+    if (!st) log_note("step 4 of %d: text of %d models (%.1f s so far)", STEPS, models, clock_seconds() - r.started);
     for (int k = 0; !st && k < models; k++) st = add_model(&r, f, k, prov, err);
     if (!st) st = keep_logs(&r, err);
     run_release(&r);
@@ -750,7 +743,7 @@ enum status triangulate(struct sfm_model *m, const struct sfm_folder *f, const s
     if (!st) st = features_and_matches(&features, &r, err);
     if (!st) st = write_known(&r, m, known, err);
     if (!st && features) {
-        log_note("step 3 of %d: points (%.1f s so far)", STEPS, now() - r.started);
+        log_note("step 3 of %d: points (%.1f s so far)", STEPS, clock_seconds() - r.started);
         st = find_points(&points, &r, known, made, err);
     }
     if (!st && points) st = colmap(&r, 4, converter, 0, err);

@@ -6,21 +6,14 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
+#include "common/clock.h"
 #include "common/exr.h"
 #include "common/log.h"
 #include "common/photo.h"
 #include "stages/simulate/sensor.h"
 
 #define FILM_MM 36.0 /* the width of the sensor that focal lengths in millimetres are told for */
-
-static double now(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 static char *text_format(struct err *err, const char *fmt, ...) PRINTF_LIKE(2, 3);
 static char *text_format(struct err *err, const char *fmt, ...)
@@ -116,10 +109,10 @@ static enum status write_surfaces(const struct world *w, const struct camera_vie
 static enum status render(struct image *radiance, const struct world *w, const struct camera_view *view,
                           const struct shot *shot, const struct simulate_params *params, struct err *err)
 {
-    const double started = now();
+    const double started = clock_seconds();
     uint64_t rays = 0;
     enum status st = render_radiance(radiance, w, view, shot->name, params, &rays, err);
-    const double seconds = now() - started;
+    const double seconds = clock_seconds() - started;
     if (!st)
         log_note("%s: %d x %d px in %.1f s, %.2f million rays a second", shot->name, radiance->width, radiance->height,
                  seconds, (double)rays / seconds / 1e6);

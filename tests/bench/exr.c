@@ -11,9 +11,9 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <time.h>
 
 #include "common/cli.h"
+#include "common/clock.h"
 #include "common/exr.h"
 #include "common/outfile.h"
 #include "common/parallel.h"
@@ -108,13 +108,6 @@ static enum status codec_from_name(enum exr_codec *codec, const char *name, stru
     return err_set(err, ST_USAGE, "found --codec %s, wanted none, RLE, ZIPS or ZIP.", name);
 }
 
-static double now(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + (double)t.tv_nsec * 1e-9;
-}
-
 static int by_value(const void *a, const void *b)
 {
     const double x = *(const double *)a, y = *(const double *)b;
@@ -136,9 +129,9 @@ static enum status time_it(const struct request *r, const struct exr_image *im, 
     int count = 0;
     for (int i = -1; i < MOST_RUNS && total < RUN_SECONDS; i++) {
         exr_image_release(back);
-        const double begin = now();
+        const double begin = clock_seconds();
         enum status st = go(r, im, path, strcmp(r->direction, "write") ? back : NULL, err);
-        const double took = now() - begin;
+        const double took = clock_seconds() - begin;
         if (st) return st;
         if (i < 0) continue;
         runs[count++] = took;

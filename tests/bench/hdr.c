@@ -9,12 +9,13 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include "common/cli.h"
+#include "common/clock.h"
 #include "common/exr.h"
 #include "common/parallel.h"
 #include "common/rng.h"
+#include "common/sort.h"
 #include "stages/hdr_merge/align.h"
 #include "stages/hdr_merge/merge.h"
 #include "stages/hdr_merge/noise.h"
@@ -30,22 +31,9 @@ struct request {
     bool paint;
 };
 
-static double now(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
-static int compare_doubles(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 static double median(double *values, int count)
 {
-    qsort(values, (size_t)count, sizeof *values, compare_doubles);
+    sort_doubles(values, (size_t)count);
     return values[count / 2];
 }
 
@@ -142,22 +130,22 @@ static enum status merge_once(struct view *v, struct times *times, struct err *e
     struct alignment alignment;
     struct noise noise[MERGE_MOST], measured;
     bool known = false;
-    const double begun = now();
+    const double begun = clock_seconds();
     parallel_for((size_t)count, 1, read_some, v);
     for (int k = 0; k < count; k++) {
         if (v->errs[k].status) return err_set(err, v->errs[k].status, "%s", v->errs[k].text);
         v->exposures[k] = exposure_of(k, count);
     }
-    const double read = now();
+    const double read = clock_seconds();
     struct brackets b = {v->photos, v->exposures, count, &srgb, alignment.shifts};
     struct exposure_agreement agreement;
     enum status st = align_brackets(&alignment, &b, count / 2, params.most_shift, err);
-    const double aligned = now();
+    const double aligned = clock_seconds();
     if (!st) st = merge_agreement(&agreement, &b, err);
     if (!st) st = noise_measure(&measured, &known, &b, err);
     for (int k = 0; k < count; k++) noise[k] = known ? measured : noise_given(&params, &srgb, 8);
     if (!st) st = merge_brackets(&v->merged, &b, noise, &params, err);
-    *times = (struct times){read - begun, aligned - read, now() - aligned};
+    *times = (struct times){read - begun, aligned - read, clock_seconds() - aligned};
     return st;
 }
 
@@ -181,7 +169,7 @@ static enum status find_error(const struct view *v, double *error, struct err *e
                 errors[n++] =
                     fabs((0.2126 * (double)rgb[0] + 0.7152 * (double)rgb[1] + 0.0722 * (double)rgb[2]) / truth - 1);
         }
-    qsort(errors, n, sizeof *errors, compare_doubles);
+    sort_doubles(errors, n);
     *error = n ? errors[n / 2] : 0;
     free(errors);
     return ST_OK;
@@ -194,7 +182,7 @@ static enum status write_radiance(const struct view *v, double *seconds, struct 
     struct exr_image im = {0};
     struct exr_plane *plane = NULL;
     char path[FILE_PATH];
-    const double begun = now();
+    const double begun = clock_seconds();
     enum status st = file_path(path, v->request->folder, "merged", ".exr", err);
     if (!st) st = exr_image_init(&im, v->request->width, v->request->height, err);
     for (size_t c = 0; !st && c < 3; c++) {
@@ -202,7 +190,7 @@ static enum status write_radiance(const struct view *v, double *seconds, struct 
         for (size_t i = 0; !st && i < pixels; i++) plane->f[i] = v->merged.radiance.data[3 * i + c];
     }
     if (!st) st = exr_write(&im, path, NULL, err);
-    *seconds = now() - begun;
+    *seconds = clock_seconds() - begun;
     exr_image_release(&im);
     return st;
 }
@@ -213,12 +201,13 @@ static enum status sample(const struct request *r, struct err *err)
     double total[MOST_RUNS], read[MOST_RUNS], align[MOST_RUNS], merge[MOST_RUNS], error = 0, wrote = 0, toned = 0;
     int runs = -1; /* the first is not counted */
     enum status st = v ? ST_OK : err_nomem(err, "a view", sizeof *v);
-    for (double begun = now(); !st && runs < MOST_RUNS && (runs < 1 || now() - begun < RUN_SECONDS); runs++) {
+    for (double begun = clock_seconds(); !st && runs < MOST_RUNS && (runs < 1 || clock_seconds() - begun < RUN_SECONDS);
+         runs++) {
         struct times t = {0};
         release(v);
         *v = (struct view){.request = r};
         st = merge_once(v, &t, err);
-        if (runs < 0) begun = now();
+        if (runs < 0) begun = clock_seconds();
         if (st || runs < 0) continue;
         total[runs] = t.read + t.align + t.merge;
         read[runs] = t.read;
@@ -228,9 +217,9 @@ static enum status sample(const struct request *r, struct err *err)
     if (!st) st = find_error(v, &error, err);
     if (!st) {
         unsigned char *rgb = malloc((size_t)r->width * (size_t)r->height * 3);
-        const double begun = now();
+        const double begun = clock_seconds();
         st = rgb ? tone_map(rgb, &v->merged.radiance, err) : err_nomem(err, "a picture", 0);
-        toned = now() - begun;
+        toned = clock_seconds() - begun;
         free(rgb);
     }
     if (!st) st = write_radiance(v, &wrote, err);

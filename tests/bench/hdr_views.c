@@ -1,24 +1,23 @@
 /* hdr_views.c - one sample of the bench `hdr`: from exposures to rectified views, by the stages' own code.
  *
- * Several photographs at once, a thread each, as `make -j` has them. The photos are the exposures that bench_hdr
- * painted
- * (DIR/eK.jpg), taken for those of an equisolid fisheye lens; its views are those that sfm_import decides. A sample
- * prints, a line each: seconds, and cpu_s, the processor time of the same, of
+ * Several photographs at once, a thread each, as `make -j` has them. The photos are the exposures that the bench's hdr
+ * painted (DIR/eK.jpg), taken for those of an equisolid fisheye lens; its views are those that sfm_import decides. A
+ * sample prints, a line each: seconds, and cpu_s, the processor time of the same, of
  *   merge_s     what hdr_merge does: reading the JPEGs, their hashes, shifts, noise, radiance
  *   rectify_s   what rectify does: reading the radiance, all views of each photo;
  * apart from that write_s: the EXRs of the radiance and of the views; mpixels, of all exposures; views and
- * view_mpixels, of
- * all photos. Times are medians of as many runs as fit in two seconds, after one that is not counted. */
+ * view_mpixels, of all photos. Times are medians of as many runs as fit in two seconds, after one that is not counted. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include "common/cli.h"
+#include "common/clock.h"
 #include "common/file_path.h"
 #include "common/linear_photo.h"
 #include "common/parallel.h"
+#include "common/sort.h"
 #include "common/view_image.h"
 #include "stages/hdr_merge/bracketed_view.h"
 #include "stages/rectify/resample.h"
@@ -50,30 +49,9 @@ struct bench {
 
 enum phase { MERGE, WRITE_RADIANCE, RECTIFY, WRITE_VIEWS, PHASES };
 
-static double now(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
-/* Of all threads: what the same work takes where nothing else runs. */
-static double cpu_now(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
-static int compare_doubles(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 static double median(double *values, int count)
 {
-    qsort(values, (size_t)count, sizeof *values, compare_doubles);
+    sort_doubles(values, (size_t)count);
     return values[count / 2];
 }
 
@@ -168,10 +146,10 @@ static enum status run_once(struct bench *b, double seconds[PHASES], double *cpu
     for (int i = 0; i < photos; i++) release_work(&b->work[i]);
     for (enum phase phase = 0; phase < PHASES; phase++) {
         struct phase_job job = {b, phase};
-        const double begun = now(), cpu_begun = cpu_now();
+        const double begun = clock_seconds(), cpu_begun = clock_cpu_seconds();
         parallel_for((size_t)photos, 1, run_some, &job);
-        seconds[phase] = now() - begun;
-        if (phase == MERGE || phase == RECTIFY) *cpu += cpu_now() - cpu_begun;
+        seconds[phase] = clock_seconds() - begun;
+        if (phase == MERGE || phase == RECTIFY) *cpu += clock_cpu_seconds() - cpu_begun;
         for (int i = 0; i < photos; i++)
             if (b->work[i].err.status) return err_set(err, b->work[i].err.status, "%s", b->work[i].err.text);
     }
@@ -200,10 +178,11 @@ static enum status sample(const struct request *r, struct err *err)
         b->work[i].err = (struct err)ERR_INIT;
         st = write_record(r, b->work[i].id, err);
     }
-    for (double begun = now(); !st && runs < MOST_RUNS && (runs < 1 || now() - begun < RUN_SECONDS); runs++) {
+    for (double begun = clock_seconds(); !st && runs < MOST_RUNS && (runs < 1 || clock_seconds() - begun < RUN_SECONDS);
+         runs++) {
         double seconds[PHASES], used = 0;
         st = run_once(b, seconds, &used, err);
-        if (runs < 0) begun = now();
+        if (runs < 0) begun = clock_seconds();
         if (st || runs < 0) continue;
         merge[runs] = seconds[MERGE];
         rectify[runs] = seconds[RECTIFY];

@@ -14,9 +14,9 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <time.h>
 
 #include "common/cli.h"
+#include "common/clock.h"
 #include "common/parallel.h"
 #include "stages/plan_path/ends.h"
 #include "stages/plan_path/parallax.h"
@@ -51,13 +51,6 @@ struct brute {
     struct err *errors; /* a cell of the end that is drawn; of the start, where pairs are drawn anew */
     int end;
 };
-
-static double now(clockid_t clock)
-{
-    struct timespec t;
-    clock_gettime(clock, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 static double angle_of(const struct brute *b, const struct vec3 at[2])
 {
@@ -230,14 +223,14 @@ static enum status run(const struct job *job, struct err *err)
     enum status st = camera_set_read(&set, job->views, err);
     if (!st) st = validity_read(&v, job->validity, err);
     if (!st) st = layer_scene_read(&scene, &set, job->depth, NULL, err);
-    const double wall = now(CLOCK_MONOTONIC), core = now(CLOCK_PROCESS_CPUTIME_ID);
+    const double wall = clock_seconds(), core = clock_cpu_seconds();
     if (!st && job->all) st = best_of_all(&f, &scene, &v, job->anew, &job->params, err);
     if (!st && !job->all) {
         st = ends_choose(&f.ends, &notes, &scene, &v, &job->params, err);
         f.pairs = notes.pairs;
         f.renders = notes.renders;
     }
-    const double seconds = now(CLOCK_MONOTONIC) - wall, core_s = now(CLOCK_PROCESS_CPUTIME_ID) - core;
+    const double seconds = clock_seconds() - wall, core_s = clock_cpu_seconds() - core;
     if (!st) st = judge(&judged, &f, &scene, &v, err);
     if (!st) {
         printf("seconds %.6g\ncore_s %.6g\nparallax %.3f\nchosen %.3f\n", seconds, core_s, 1e2 * judged,

@@ -20,9 +20,9 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
-#include <time.h>
 
 #include "common/cli.h"
+#include "common/clock.h"
 #include "common/exr.h"
 #include "common/view_image.h"
 #include "stages/render_views/frames.h"
@@ -45,13 +45,6 @@ struct bench { /* what is rendered, and how */
     struct view *reduced;        /* as they are rendered */
     int count;
 };
-
-static double now(clockid_t clock)
-{
-    struct timespec t;
-    clock_gettime(clock, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 /* A frame that is as wide as before, its height cut or added: unlike view_resize, pixels stay square in any shape. */
 static void reframe(struct view *v, int width, int height)
@@ -159,11 +152,11 @@ static enum status measure(struct bench *b, const struct job *job, struct err *e
         if (round == 1) wall = cpu = holes = megapixels = done = 0;
         for (int i = 0; !st && i < b->count; i++) {
             const struct view *camera = &b->reduced[i], *shown = job->path ? camera : b->cameras[i];
-            const double wall_begin = now(CLOCK_MONOTONIC), cpu_begin = now(CLOCK_PROCESS_CPUTIME_ID);
+            const double wall_begin = clock_seconds(), cpu_begin = clock_cpu_seconds();
             st = job->coverage ? layer_coverage(&frame, &b->scene, camera, 1, err)
                                : renderer_camera(&b->renderer, camera, &frame, err);
-            wall += now(CLOCK_MONOTONIC) - wall_begin;
-            cpu += now(CLOCK_PROCESS_CPUTIME_ID) - cpu_begin;
+            wall += clock_seconds() - wall_begin;
+            cpu += clock_cpu_seconds() - cpu_begin;
             holes += frame.hole_fraction;
             megapixels += 1e-6 * shown->width * shown->height;
             done++;
@@ -200,10 +193,10 @@ static enum status measure_photos(struct bench *b, const struct job *job, struct
         if (!st) st = image_init(&copy, photo.width, photo.height, 4, err);
         if (!st && !(hole = malloc(pixels * sizeof *hole))) st = err_nomem(err, "holes", pixels * sizeof *hole);
         if (!st) {
-            const double wall_begin = now(CLOCK_MONOTONIC), cpu_begin = now(CLOCK_PROCESS_CPUTIME_ID);
+            const double wall_begin = clock_seconds(), cpu_begin = clock_cpu_seconds();
             memcpy(copy.data, photo.data, 4 * pixels * sizeof *copy.data);
-            wall += now(CLOCK_MONOTONIC) - wall_begin;
-            cpu += now(CLOCK_PROCESS_CPUTIME_ID) - cpu_begin;
+            wall += clock_seconds() - wall_begin;
+            cpu += clock_cpu_seconds() - cpu_begin;
             megapixels += 1e-6 * (double)pixels;
             double missing = 0;
             for (size_t p = 0; p < pixels; p++) missing += hole[p] = !(copy.data[4 * p + 3] > 0);

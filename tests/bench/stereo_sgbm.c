@@ -10,10 +10,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include "common/camera_set.h"
 #include "common/cli.h"
+#include "common/clock.h"
 #include "common/exr.h"
 #include "common/view_image.h"
 #include "tests/bench/depth_sgbm.h"
@@ -42,13 +42,6 @@ struct pair {
     unsigned char *rgb[2]; /* left, right */
     float *disparity[2];
 };
-
-static double now(clockid_t clock)
-{
-    struct timespec t;
-    clock_gettime(clock, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 static enum status read_pair(struct pair *p, struct camera_set *set, const char *views, struct err *err)
 {
@@ -178,10 +171,9 @@ int main(int argc, char **argv)
     struct pair p = {0};
     struct err err = ERR_INIT;
     if (cli_parse(argc, argv, "stereo_sgbm", opts, &prov, &err) == CLI_RUN && !read_pair(&p, &set, views, &err)) {
-        const double wall = now(CLOCK_MONOTONIC), cpu = now(CLOCK_PROCESS_CPUTIME_ID);
+        const double wall = clock_seconds(), cpu = clock_cpu_seconds();
         if (!solve(&p, &params, &err)) {
-            printf("seconds %.6f\ncpu_seconds %.6f\n", now(CLOCK_MONOTONIC) - wall,
-                   now(CLOCK_PROCESS_CPUTIME_ID) - cpu);
+            printf("seconds %.6f\ncpu_seconds %.6f\n", clock_seconds() - wall, clock_cpu_seconds() - cpu);
             write_depth(&p, out, &prov, &err);
         }
     }

@@ -9,9 +9,9 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <time.h>
 
 #include "common/cli.h"
+#include "common/clock.h"
 #include "common/scan.h"
 #include "stages/build_model/unite.h"
 
@@ -24,13 +24,6 @@ struct house {
     struct solid_list list;
     double angle; /* radians */
 };
-
-static double now(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 /* A box of the house before it is turned; `along` 1: x and y change places. */
 static enum status add(struct house *h, const char *name, int along, struct vec3 low, struct vec3 high, struct err *err)
@@ -100,15 +93,15 @@ int main(int argc, char **argv)
             for (int i = 0; !err.status && i < rooms; i++) add_wall(&h, along, k, i, &err);
     double seconds = 0, check = 0, triangulate = 0;
     if (!err.status) {
-        double began = now();
+        double began = clock_seconds();
         solids_unite(&mesh, &h.list, NULL, &err);
-        seconds = now() - began;
-        began = now();
+        seconds = clock_seconds() - began;
+        began = clock_seconds();
         if (!err.status) solid_mesh_check(&mesh, 0, &report, &err);
-        check = now() - began;
-        began = now();
+        check = clock_seconds() - began;
+        began = clock_seconds();
         if (!err.status) solid_mesh_triangulate(&triangles, &mesh, &err);
-        triangulate = now() - began;
+        triangulate = clock_seconds() - began;
     }
     if (err.status) {
         err_report(&err);

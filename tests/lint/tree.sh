@@ -10,7 +10,7 @@ every_header_compiles_alone()
 
 lower_layers_never_include_higher()
 {
-    local base="version scan err log progress outfile file_path hash param cli provenance textfile parallel rng process frame_list samples sort"
+    local base="version scan err log progress outfile file_path hash param cli provenance textfile parallel rng process frame_list samples sort clock"
     local data="vec image photo exr_zip exr camera sfm_model camera_set photo_list photo_data photo_formats photo_tiff photo_raw response photo_mask linear_photo lens_list layered_depth view_image camera_path photo_match rendered_frame exposure_list bracket_list point_cloud upright weighted subject_list photo_camera model_axes"
     layer() { case " $base " in *" $1 "*) echo 0; return ;; esac; case " $data " in *" $1 "*) echo 1 ;; *) echo 2 ;; esac; }
     for f in common/*.[ch]; do
