@@ -142,7 +142,7 @@ GOALS := edited hdr lri sfm views depth points axes suggest model subjects path 
 ifeq ($(SCENE),)
 all: deps ## everything a scene asks for; without SCENE builds the programs and runs SCENES, at draft quality if none is said
 	+@$(BUILD) build
-	+@common/run_scenes.sh '$(if $(filter file,$(origin QUALITY)),draft,$(QUALITY))' '$(SCENES)' $(SUB)
+	+@common/run/run_scenes.sh '$(if $(filter file,$(origin QUALITY)),draft,$(QUALITY))' '$(SCENES)' $(SUB)
 edited: ## what is true of the edited scene EDIT of a described one: its radiance from the same cameras
 hdr:    ## bracketed photos merged; nothing where photos are no brackets
 lri:    ## the lighting reference images of LRI merged: linear, on the scene's scale, still fisheye (no part of what follows)
@@ -168,15 +168,15 @@ $(GOALS) why resfm:
 else
 all $(GOALS) why resfm: deps
 	+@$(BUILD) build
-	+@common/run_scene.sh '$(SCENE)' '$(S)' '$(O)' '$@' '$(dry)' '$(JOBS)' '$(CORES)' '$(B)/bin' $(SUB)
+	+@common/run/run_scene.sh '$(SCENE)' '$(S)' '$(O)' '$@' '$(dry)' '$(JOBS)' '$(CORES)' '$(B)/bin' $(SUB)
 endif
 
 deps:
-	+@common/deps.sh $(DEPS) run
+	+@common/run/deps.sh $(DEPS) run
 deps-check:
-	+@common/deps.sh $(DEPS) run check
+	+@common/run/deps.sh $(DEPS) run check
 deps-bench:
-	+@common/deps.sh $(DEPS) run bench
+	+@common/run/deps.sh $(DEPS) run bench
 check: deps-check ## build and run all tests
 	+@$(BUILD) tests-build
 	+@tests/run '$(B)' $(CHECKS)
@@ -199,10 +199,10 @@ sequences: deps-check ## SEQUENCES=N random scripts and sequences of edits, each
 fuzz: deps-check ## look for new inputs that break a parser: FUZZ=NAME FUZZ_SECONDS=60
 	+@tests/fuzz/fuzz.sh '$(FUZZ)' '$(or $(FUZZ_SECONDS),60)'
 help: ## this text
-	@common/explain.sh help $(firstword $(MAKEFILE_LIST))
+	@common/run/explain.sh help $(firstword $(MAKEFILE_LIST))
 man: ## docs/man from the programs' --help
 	+@$(BUILD) build
-	@for s in $(STAGES); do common/man.sh $(B)/bin $$s >docs/man/$$s.1.tmp && mv docs/man/$$s.1.tmp docs/man/$$s.1; done
+	@for s in $(STAGES); do common/run/man.sh $(B)/bin $$s >docs/man/$$s.1.tmp && mv docs/man/$$s.1.tmp docs/man/$$s.1; done
 clean: ## remove what was built (products of scenes stay)
 	rm -rf out/build
 
@@ -234,9 +234,9 @@ CXXFLAGS := -std=c++17 -mavx2 -mno-fma -ffp-contract=off -Wall -Wextra -Wshadow 
 LDLIBS := -lOpenEXRCore $(shell pkg-config --libs $(PKGS) 2>/dev/null) -lm
 
 objs = $(patsubst %.c,$(B)/obj/%.o,$(wildcard $(1)))
-COMMON_OBJS := $(call objs,common/*.c)
+COMMON_OBJS := $(call objs,common/*/*.c)
 BINS := $(STAGES:%=$(B)/bin/%)
-UNIT_TESTS := $(patsubst tests/unit/%.c,$(B)/tests/unit/%,$(wildcard tests/unit/*/*.c))
+UNIT_TESTS := $(patsubst tests/unit/%.c,$(B)/tests/unit/%,$(wildcard tests/unit/*/*.c tests/unit/common/*/*.c))
 BENCHES := $(patsubst tests/bench/%.c,$(B)/tests/bench/%,$(wildcard tests/bench/*.c))
 # of them what needs more of OpenCV than find_subjects does: tests must do without
 OPENCV_BENCHES := $(B)/tests/bench/stereo_sgbm
@@ -275,7 +275,7 @@ $(patsubst tests/unit/%.c,$(B)/tests/unit/%,$(wildcard tests/unit/$(1)/*.c)): \
 endef
 $(foreach s,$(STAGES),$(eval $(call stage_rules,$(s))))
 
-# tests/unit/common/*.c test common/; tests/unit/STAGE/*.c test a stage's algorithm (its objects but for its main)
+# tests/unit/common/FOLDER/*.c test common/FOLDER/; tests/unit/STAGE/*.c test a stage's algorithm (its objects but for its main)
 $(UNIT_TESTS): $(B)/tests/unit/%: $(B)/obj/tests/unit/%.o $(B)/libremodel.a
 	$(call link,-lcmocka)
 $(BENCHES): $(B)/tests/bench/%: $(B)/obj/tests/bench/%.o $(B)/libremodel.a
@@ -301,12 +301,12 @@ $(B)/tests/unit/hdr_merge/cross_validation: $(call objs,stages/fit_response/reco
 $(B)/tests/unit/plan_path/plan_move: $(filter-out %/sample_validity.o,$(call objs,stages/sample_validity/*.c))
 # what plan_path alone needs: JSON, nonlinear least squares
 PLANNERS := $(B)/bin/plan_path $(B)/tests/fuzz/fuzz_keyframes $(B)/tests/bench/move_pairs $(filter $(B)/tests/unit/plan_path/%,$(UNIT_TESTS))
-$(PLANNERS): $(B)/obj/common/ceres_least_squares.o
+$(PLANNERS): $(B)/obj/common/math/ceres_least_squares.o
 $(PLANNERS): private LDLIBS += -ljansson -lceres -lglog -lstdc++
-$(B)/obj/common/ceres_least_squares.o: private CXXFLAGS += -isystem /usr/include/eigen3
+$(B)/obj/common/math/ceres_least_squares.o: private CXXFLAGS += -isystem /usr/include/eigen3
 $(B)/tests/fuzz/fuzz_split_list: $(call objs,stages/import_photos/split_list.c)
 # what find_subjects alone needs; its tests do without OpenCV
-$(B)/bin/find_subjects: $(B)/obj/common/opencv_faces.o
+$(B)/bin/find_subjects: $(B)/obj/stages/find_subjects/opencv_faces.o
 $(B)/bin/find_subjects: private LDLIBS += -lopencv_objdetect -lopencv_imgproc -lopencv_core -lstdc++
 $(B)/tests/fuzz/fuzz_model_script: $(addprefix $(B)/obj/stages/build_model/,script.o plan.o place.o layout.o solid.o model_params.o)
 $(B)/tests/fuzz/fuzz_marks: $(call objs,stages/find_axes/marks.c)
@@ -314,14 +314,14 @@ $(B)/tests/fuzz/fuzz_true_room: $(call objs,stages/evaluate/true_room.c)
 $(B)/tests/fuzz/fuzz_wall_plan: $(call objs,stages/evaluate/wall_plan.c)
 $(B)/tests/fuzz/fuzz_regions: $(call objs,stages/find_subjects/region*.c)
 # what morph_views alone needs
-$(B)/bin/morph_views $(filter $(B)/tests/unit/morph_views/%,$(UNIT_TESTS)): $(B)/obj/common/opencv_features.o
+$(B)/bin/morph_views $(filter $(B)/tests/unit/morph_views/%,$(UNIT_TESTS)): $(B)/obj/stages/morph_views/opencv_features.o
 $(B)/bin/morph_views $(filter $(B)/tests/unit/morph_views/%,$(UNIT_TESTS)): private LDLIBS += -lopencv_calib3d -lopencv_features2d -lopencv_core -lstdc++
-$(patsubst %.cc,$(B)/obj/%.o,$(wildcard common/opencv_*.cc)): private CXXFLAGS += -isystem /usr/include/opencv4
+$(patsubst %.cc,$(B)/obj/%.o,$(wildcard stages/*/opencv_*.cc)): private CXXFLAGS += -isystem /usr/include/opencv4
 # what simulate alone needs
 $(B)/bin/simulate $(B)/tests/unit/simulate/%: private LDLIBS += -lembree3
 $(B)/tests/fuzz/fuzz_scene $(B)/tests/fuzz/fuzz_shoot: private LDLIBS += -lembree3
 $(B)/tests/fuzz/fuzz_scene $(B)/tests/fuzz/fuzz_shoot: $(filter-out %/simulate.o,$(call objs,stages/simulate/*.c))
-.SECONDARY: $(call objs,tests/*/*.c tests/*/*/*.c)
+.SECONDARY: $(call objs,tests/*/*.c tests/*/*/*.c tests/*/*/*/*.c)
 -include $(shell find $(B)/obj -name '*.d' 2>/dev/null)
 
 else
@@ -388,10 +388,10 @@ needs = $(O)/slice/$(1).cfg $(B)/code/$(1)
 T := $(CORES)
 
 # $(call stage,NAME,ITEM,FOLDER,ARGS): runs it here, its words on screen and in FOLDER/log
-stage = $(hide)common/run_stage.sh live $(1) $(2) $(3) $(BIN)/$(1) --threads $(T) --config $(3)/slice/$(1).cfg $(4)
+stage = $(hide)common/run/run_stage.sh live $(1) $(2) $(3) $(BIN)/$(1) --threads $(T) --config $(3)/slice/$(1).cfg $(4)
 # $(call farm,NAME,ITEM,PRODUCTS,ARGS[,SHELLWORD[,FOLDER]]): the same for per-view work, which may be planned (LAUNCH=plan) for a
 # cluster; a plan's line is PRODUCTS, a tab, and the command with SHELLWORD already expanded behind it; FOLDER is O if not given
-farm_line = common/run_stage.sh quiet $(1) $(2) $(or $(6),$(O)) $(BIN)/$(1) --threads $(T) --config $(or $(6),$(O))/slice/$(1).cfg $(4)
+farm_line = common/run/run_stage.sh quiet $(1) $(2) $(or $(6),$(O)) $(BIN)/$(1) --threads $(T) --config $(or $(6),$(O))/slice/$(1).cfg $(4)
 farm = $(if $(filter plan,$(LAUNCH)),printf '%s\t%s %s\n' '$(3)' '$(farm_line)' "$(5)" >>$(PLAN),$(farm_line) $(5))
 
 SHOOT := $(if $(DESCRIBED),scenes/$(SCENE)/cameras.txt $(wildcard scenes/$(SCENE)/*.obj)) $(S)/slice/simulate.cfg $(B)/code/simulate
@@ -492,7 +492,7 @@ $(CAMERAS) $(O)/views/lenses.txt $(O)/views/views.mk $(HELD_CAMERAS) &: $(S)/sfm
 define rectify_rule
 $(3:%=$(2)/%.exr) &: $(call picture,$(1)) $(addprefix $(2)/,cameras.txt images.txt points3D.txt lenses.txt) \
   $(wildcard $(S)/stamp/mask/$(1).txt) $(call needs,rectify)
-	$$(hide)stale=$$$$(common/stale.sh views $(3:%=$(2)/%.exr) -- $$^); \
+	$$(hide)stale=$$$$(common/run/stale.sh views $(3:%=$(2)/%.exr) -- $$^); \
 	  $$(call farm,rectify,$(if $(filter $(H)/%,$(2)),heldout-)$(1),$(3:%=$(2)/%.exr),--photo $(1) --photos $$(PICTURES) $(MASKS) --records $(S)/photos --views $(2) --out $(2),$$$$stale)
 endef
 rectify_rules = $(foreach p,$(sort $(foreach v,$(1),$(call photo_of,$(v)))),$(eval $(call rectify_rule,$(p),$(2),$(filter $(p) $(p)@%,$(1)))))
@@ -587,7 +587,7 @@ $(foreach f,$(FILMS),$(eval $(call film_rule,$(f))))
 effect_layers = $(P)/$(1)/effects.txt $(if $(filter $(1),$(FILMS)),,$(wildcard scenes/$(SCENE)/effects.txt))
 define chunk_rule
 $(1:%=$(P)/$(2)/frames/%.exr) &: $(call path_txt,$(2)) $(call effect_layers,$(2)) $(CAMERAS) $(DEPTH_EXR) $(DEPTH_TXT) $(call needs,render_views)
-	$$(hide)stale=$$$$(common/stale.sh frames $(1:%=$(P)/$(2)/frames/%.exr) -- $$^); \
+	$$(hide)stale=$$$$(common/run/stale.sh frames $(1:%=$(P)/$(2)/frames/%.exr) -- $$^); \
 	  $$(call farm,render_views,$(2)-$(firstword $(1)),$(1:%=$(P)/$(2)/frames/%.exr),--views $(O)/views --depth $(O)/depth --path $(P)/$(2) $(addprefix --effects ,$(call effect_layers,$(2))) --out $(P)/$(2)/frames --frames,$$$$stale)
 endef
 chunks = $(if $(2),$(eval $(call $(1),$(wordlist 1,$(FRAMES_PER_JOB),$(2)),$(3)))$(call chunks,$(1),$(wordlist $(words x $(wordlist 1,$(FRAMES_PER_JOB),$(2))),$(words $(2)),$(2)),$(3)))
@@ -596,7 +596,7 @@ $(foreach e,$(EFFECTS),$(call chunks,chunk_rule,$(FRAMES_$(e)),$(e)))
 # the move in 2D, on request; which view it shows is told by the path
 define pan_rule
 $(1:%=$(P)/$(2)/pan_scan/frames/%.exr) &: $(call path_txt,$(2)) $(CAMERAS) $(VIEW_EXR) $(DEPTH_EXR) $(DEPTH_TXT) $(call needs,pan_scan)
-	$$(hide)stale=$$$$(common/stale.sh frames $(1:%=$(P)/$(2)/pan_scan/frames/%.exr) -- $$^); \
+	$$(hide)stale=$$$$(common/run/stale.sh frames $(1:%=$(P)/$(2)/pan_scan/frames/%.exr) -- $$^); \
 	  $$(call farm,pan_scan,$(2)-$(firstword $(1)),$(1:%=$(P)/$(2)/pan_scan/frames/%.exr),--views $(O)/views --depth $(O)/depth --path $(P)/$(2) --out $(P)/$(2)/pan_scan/frames --frames,$$$$stale)
 endef
 $(foreach e,$(EFFECTS),$(call chunks,pan_rule,$(FRAMES_$(e)),$(e)))
@@ -615,7 +615,7 @@ $(MORPH_TXT) $(M)/frames.mk &: $(foreach p,$(MORPH),$(call picture,$(p))) $(MORP
 	  $(if $(MORPH_POSES),--views $(O)/views) --out $(M))
 define morph_rule
 $(1:%=$(M)/frames/%.exr) &: $(MORPH_TXT) $(call needs,morph_views)
-	$$(hide)stale=$$$$(common/stale.sh frames $(1:%=$(M)/frames/%.exr) -- $$^); \
+	$$(hide)stale=$$$$(common/run/stale.sh frames $(1:%=$(M)/frames/%.exr) -- $$^); \
 	  $$(call farm,morph_views,$(firstword $(1)),$(1:%=$(M)/frames/%.exr),--morph $(M) --out $(M)/frames --frames,$$$$stale)
 endef
 $(call chunks,morph_rule,$(MORPH_FRAMES))
@@ -646,15 +646,15 @@ $(O)/index.html: $(SHOWN) $(S)/photos/list.txt $(STAGES:%=$(O)/slice/%.cfg) $(ca
 CONFIGS := configs/default.cfg $(if $(filter-out default,$(QUALITY)),configs/$(QUALITY).cfg) $(wildcard scenes/$(SCENE)/scene.cfg)
 .PHONY: look look-simulate look-lri look-morph
 look-lri:
-	+@common/look.sh lri $(BIN) $(S)
+	+@common/run/look.sh lri $(BIN) $(S)
 look-morph:
-	+@common/look.sh morph $(BIN) $(O) '$(MORPH)'
+	+@common/run/look.sh morph $(BIN) $(O) '$(MORPH)'
 look-simulate:
-	+@common/look.sh slices $(BIN) $(S)/slice simulate $(filter-out configs/draft.cfg configs/final.cfg,$(CONFIGS))
+	+@common/run/look.sh slices $(BIN) $(S)/slice simulate $(filter-out configs/draft.cfg configs/final.cfg,$(CONFIGS))
 look:
-	+@common/look.sh slices $(BIN) $(O)/slice '$(STAGES)' $(CONFIGS)
-	+@common/look.sh slices $(BIN) $(S)/slice 'import_photos fit_response hdr_merge sfm' $(filter-out configs/draft.cfg configs/final.cfg,$(CONFIGS))
-	+@common/look.sh photos $(BIN) $(S) scenes/$(SCENE)
-	+@common/look.sh morph $(BIN) $(O) '$(MORPH)'
-	+@common/look.sh evaluation $(BIN) $(O) '$(HOLDOUT)' '$(HOLDOUT_VIEWS)'
+	+@common/run/look.sh slices $(BIN) $(O)/slice '$(STAGES)' $(CONFIGS)
+	+@common/run/look.sh slices $(BIN) $(S)/slice 'import_photos fit_response hdr_merge sfm' $(filter-out configs/draft.cfg configs/final.cfg,$(CONFIGS))
+	+@common/run/look.sh photos $(BIN) $(S) scenes/$(SCENE)
+	+@common/run/look.sh morph $(BIN) $(O) '$(MORPH)'
+	+@common/run/look.sh evaluation $(BIN) $(O) '$(HOLDOUT)' '$(HOLDOUT_VIEWS)'
 endif

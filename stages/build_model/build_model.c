@@ -14,11 +14,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/cli.h"
-#include "common/file_path.h"
-#include "common/log.h"
-#include "common/outfile.h"
-#include "common/photo_list.h"
+#include "common/base/cli.h"
+#include "common/base/file_path.h"
+#include "common/base/log.h"
+#include "common/base/outfile.h"
+#include "common/capture/photo_list.h"
 #include "stages/build_model/layout.h"
 #include "stages/build_model/plan_file.h"
 #include "stages/build_model/plan_picture.h"

@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/scan.h"
+#include "common/base/scan.h"
 
 enum { CELLS = 24, IN_CELL = 60 }; /* each way at most; points in a cell, about, at least */
 #define DEGREE     (3.14159265358979323846 / 180)

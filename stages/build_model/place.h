@@ -6,11 +6,11 @@
 #ifndef REMODEL_BUILD_MODEL_PLACE_H
 #define REMODEL_BUILD_MODEL_PLACE_H
 
-#include "common/camera_set.h"
-#include "common/lens_list.h"
-#include "common/model_axes.h"
-#include "common/photo_camera.h"
-#include "common/point_cloud.h"
+#include "common/capture/camera_set.h"
+#include "common/capture/lens_list.h"
+#include "common/capture/photo_camera.h"
+#include "common/capture/point_cloud.h"
+#include "common/model/model_axes.h"
 #include "stages/build_model/model_params.h"
 #include "stages/build_model/script.h"
 

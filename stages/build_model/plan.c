@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/scan.h"
+#include "common/base/scan.h"
 #include "stages/build_model/solid.h"
 
 /* A plan's lengths are taken for equal within LENGTH_EPS; walls within PARALLEL of each other (sine) do not cross. */

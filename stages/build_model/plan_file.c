@@ -1,8 +1,8 @@
 /* plan_file.c - see plan_file.h. */
 #include "stages/build_model/plan_file.h"
 
-#include "common/outfile.h"
-#include "common/scan.h"
+#include "common/base/outfile.h"
+#include "common/base/scan.h"
 
 static void print_plan(const struct plan *plan, FILE *to)
 {

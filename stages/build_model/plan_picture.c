@@ -9,8 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/outfile.h"
-#include "common/scan.h"
+#include "common/base/outfile.h"
+#include "common/base/scan.h"
 #include "stages/build_model/raster.h"
 
 enum { VIEW_WIDTH = 1400, VIEW_HEIGHT = 1000, SMOOTH = 2, CUBE = 1024 };

@@ -3,8 +3,8 @@
 #ifndef REMODEL_BUILD_MODEL_PLAN_PICTURE_H
 #define REMODEL_BUILD_MODEL_PLAN_PICTURE_H
 
-#include "common/photo.h"
-#include "common/solid_mesh.h"
+#include "common/image/photo.h"
+#include "common/model/solid_mesh.h"
 #include "stages/build_model/layout.h"
 
 /* SVG: walls, openings and boxes with their names, rooms with their sizes, the photographs' places and fields of

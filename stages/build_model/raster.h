@@ -6,8 +6,8 @@
 #ifndef REMODEL_BUILD_MODEL_RASTER_H
 #define REMODEL_BUILD_MODEL_RASTER_H
 
-#include "common/err.h"
-#include "common/vec.h"
+#include "common/base/err.h"
+#include "common/math/vec.h"
 
 struct raster {
     int width, height;

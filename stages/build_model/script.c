@@ -9,8 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/scan.h"
-#include "common/textfile.h"
+#include "common/base/scan.h"
+#include "common/base/textfile.h"
 
 enum { MOST_STATEMENTS = 200000, LONGEST_NAME = 64 };
 #define FARTHEST 1e6

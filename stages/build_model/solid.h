@@ -9,8 +9,8 @@
 #ifndef REMODEL_BUILD_MODEL_SOLID_H
 #define REMODEL_BUILD_MODEL_SOLID_H
 
-#include "common/err.h"
-#include "common/vec.h"
+#include "common/base/err.h"
+#include "common/math/vec.h"
 
 #define SOLID_STEP  1e-6
 #define SOLID_REACH 1000.0 /* coordinates lie in -SOLID_REACH .. SOLID_REACH, in model units */

@@ -5,7 +5,7 @@
 #ifndef REMODEL_BUILD_MODEL_UNITE_H
 #define REMODEL_BUILD_MODEL_UNITE_H
 
-#include "common/solid_mesh.h"
+#include "common/model/solid_mesh.h"
 #include "stages/build_model/solid.h"
 
 enum unite_event {

@@ -6,11 +6,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/cli.h"
-#include "common/log.h"
-#include "common/outfile.h"
-#include "common/subject_list.h"
-#include "common/taxonomy.h"
+#include "common/base/cli.h"
+#include "common/base/log.h"
+#include "common/base/outfile.h"
+#include "common/film/subject_list.h"
+#include "common/film/taxonomy.h"
 
 /* name, type, default, least, most, unit, help */
 #define CHOICE_PARAMS(X) X(seed, int, 1, 0, 1000000, "", "of the chance that draws one effect for EFFECT=auto")

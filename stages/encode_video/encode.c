@@ -9,11 +9,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "common/exr.h"
-#include "common/image.h"
-#include "common/outfile.h"
-#include "common/process.h"
-#include "common/progress.h"
+#include "common/base/outfile.h"
+#include "common/base/process.h"
+#include "common/base/progress.h"
+#include "common/image/exr.h"
+#include "common/image/image.h"
 
 #define PARAM_STRUCT struct encode_params
 const struct param encode_param_table[] = {ENCODE_PARAMS(PARAM_ROW) PARAM_END};

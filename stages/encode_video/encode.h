@@ -3,8 +3,8 @@
 #ifndef REMODEL_ENCODE_VIDEO_ENCODE_H
 #define REMODEL_ENCODE_VIDEO_ENCODE_H
 
-#include "common/camera_path.h"
-#include "common/param.h"
+#include "common/base/param.h"
+#include "common/capture/camera_path.h"
 
 #define ENCODE_PARAMS(X)                                                                                      \
     X(crf, int, 18, 0, 51, "", "constant rate factor: 0 lossless, 18 hardly to be told apart, 51 worst")      \

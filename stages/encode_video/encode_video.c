@@ -3,7 +3,7 @@
  * reads   PATH/path.txt, path/NAME.txt   frames, their order and rate
  *         FRAMES/NNNN.exr               linear colour
  * writes  OUT                           MP4, H.264 */
-#include "common/cli.h"
+#include "common/base/cli.h"
 #include "stages/encode_video/encode.h"
 
 int main(int argc, char **argv)

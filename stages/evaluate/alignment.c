@@ -3,7 +3,7 @@
 
 #include <stdlib.h>
 
-#include "common/sort.h"
+#include "common/base/sort.h"
 
 static const double line = 1e-6; /* second over first singular value: below it centres stand on one line */
 

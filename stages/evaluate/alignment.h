@@ -7,7 +7,7 @@
 #ifndef REMODEL_ALIGNMENT_H
 #define REMODEL_ALIGNMENT_H
 
-#include "common/camera.h"
+#include "common/capture/camera.h"
 
 struct similarity { /* true = scale * rotation * found + translation */
     double scale;

@@ -2,7 +2,7 @@
 #ifndef REMODEL_AXES_ERROR_H
 #define REMODEL_AXES_ERROR_H
 
-#include "common/vec.h"
+#include "common/math/vec.h"
 
 struct axes_errors {
     double up;      /* degrees between the two directions up */

@@ -9,7 +9,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "common/err.h"
+#include "common/base/err.h"
 
 /* A histogram of non-negative numbers in bins of 2^-11 of their value, so that memory does not grow with pixels. */
 struct quantiles {

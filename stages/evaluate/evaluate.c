@@ -6,7 +6,7 @@
  * writes  FOLDER/evaluate/truth/VIEW.exr the true depth as the view would see it
  *         FOLDER/evaluate/views.tsv      metrics of each view
  *         OUT                            metrics of the scene; last. docs/evaluation.md defines them */
-#include "common/cli.h"
+#include "common/base/cli.h"
 #include "stages/evaluate/evaluation.h"
 
 int main(int argc, char **argv)

@@ -5,13 +5,13 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "common/exr.h"
-#include "common/file_path.h"
-#include "common/layered_depth.h"
-#include "common/log.h"
-#include "common/model_axes.h"
-#include "common/progress.h"
-#include "common/view_image.h"
+#include "common/base/file_path.h"
+#include "common/base/log.h"
+#include "common/base/progress.h"
+#include "common/capture/view_image.h"
+#include "common/image/exr.h"
+#include "common/layers/layered_depth.h"
+#include "common/model/model_axes.h"
 #include "stages/evaluate/alignment.h"
 #include "stages/evaluate/axes_error.h"
 #include "stages/evaluate/depth_error.h"

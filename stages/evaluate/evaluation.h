@@ -3,8 +3,8 @@
 #ifndef REMODEL_EVALUATION_H
 #define REMODEL_EVALUATION_H
 
-#include "common/param.h"
-#include "common/provenance.h"
+#include "common/base/param.h"
+#include "common/base/provenance.h"
 
 #define EVALUATE_PARAMS(X)                                                                                          \
     X(baseline, double, 0, 0, 1e9, "m",                                                                             \

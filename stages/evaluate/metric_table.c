@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/outfile.h"
+#include "common/base/outfile.h"
 
 enum status metric_add(struct metric_table *t, const char *view, const char *name, double value, const char *unit,
                        const char *direction, struct err *err)

@@ -8,7 +8,7 @@
 
 #include <stdbool.h>
 
-#include "common/provenance.h"
+#include "common/base/provenance.h"
 
 struct metric {
     char *view; /* owned; "" for the scene's */

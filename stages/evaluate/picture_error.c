@@ -3,7 +3,7 @@
 
 #include <stdlib.h>
 
-#include "common/metrics.h"
+#include "stages/evaluate/metrics.h"
 
 /* SSIM may not exist where PSNR does (no window is wholly in the mask): that is no error. */
 static bool ssim_exists(const uint8_t *a, const uint8_t *b, int width, int height, const uint8_t *mask,

@@ -8,7 +8,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "common/err.h"
+#include "common/base/err.h"
 
 struct picture_errors {
     double psnr, ssim;                 /* dB, 1: over all pixels that the photograph has */

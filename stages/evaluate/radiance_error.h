@@ -8,7 +8,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "common/err.h"
+#include "common/base/err.h"
 
 /* Over i with mask[i] == which (mask NULL: all). ST_DATA: no such point, or all of the truth is black. */
 enum status relative_rms(double *rms, const float *found, const float *truth, size_t count, const uint8_t *mask,

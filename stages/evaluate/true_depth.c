@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/parallel.h"
+#include "common/base/parallel.h"
 
 enum { CHUNK = 8192, ROWS = 8 };
 #define HIDDEN 0.02

@@ -8,8 +8,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "common/camera_set.h"
-#include "common/lens_list.h"
+#include "common/capture/camera_set.h"
+#include "common/capture/lens_list.h"
 
 struct true_photo {
     struct camera lens;

@@ -4,8 +4,8 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "common/scan.h"
-#include "common/textfile.h"
+#include "common/base/scan.h"
+#include "common/base/textfile.h"
 
 enum { NUMBERS = 6 };
 

@@ -14,8 +14,8 @@
 
 #include <stdbool.h>
 
-#include "common/provenance.h"
-#include "common/vec.h"
+#include "common/base/provenance.h"
+#include "common/math/vec.h"
 
 struct true_room {
     bool known;  /* the truth has one of the files, with a room in it */

@@ -5,8 +5,8 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "common/exr.h"
-#include "common/photo_match.h"
+#include "common/capture/photo_match.h"
+#include "common/image/exr.h"
 
 static enum status read_depth(struct true_photo *p, const char *path, double far, struct err *err)
 {

@@ -4,7 +4,7 @@
 #ifndef REMODEL_TRUTH_H
 #define REMODEL_TRUTH_H
 
-#include "common/photo_list.h"
+#include "common/capture/photo_list.h"
 #include "stages/evaluate/true_depth.h"
 
 struct truth {

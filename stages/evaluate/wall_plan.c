@@ -5,9 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/scan.h"
-#include "common/sort.h"
-#include "common/textfile.h"
+#include "common/base/scan.h"
+#include "common/base/sort.h"
+#include "common/base/textfile.h"
 
 #define SAME_WAY 0.98480775301220802 /* cos 10 degrees */
 

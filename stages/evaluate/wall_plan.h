@@ -12,8 +12,8 @@
 #ifndef REMODEL_WALL_PLAN_H
 #define REMODEL_WALL_PLAN_H
 
-#include "common/err.h"
-#include "common/vec.h"
+#include "common/base/err.h"
+#include "common/math/vec.h"
 
 struct plan_part {
     char name[64];     /* cut where it is longer */

@@ -3,7 +3,7 @@
 
 #include <stdlib.h>
 
-#include "common/sort.h"
+#include "common/base/sort.h"
 
 static const double EDGE = 0.33; /* of a block, in sizes of the scene: four sizes are covered */
 

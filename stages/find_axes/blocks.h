@@ -6,7 +6,7 @@
 #ifndef REMODEL_BLOCKS_H
 #define REMODEL_BLOCKS_H
 
-#include "common/point_cloud.h"
+#include "common/capture/point_cloud.h"
 
 enum { BLOCKS_ACROSS = 12, BLOCKS = BLOCKS_ACROSS * BLOCKS_ACROSS * BLOCKS_ACROSS };
 

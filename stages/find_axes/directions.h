@@ -2,7 +2,7 @@
 #ifndef REMODEL_DIRECTIONS_H
 #define REMODEL_DIRECTIONS_H
 
-#include "common/point_cloud.h"
+#include "common/capture/point_cloud.h"
 
 struct directions {
     struct mat3 axes; /* rows: unit vectors in the world, right-handed */

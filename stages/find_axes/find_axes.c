@@ -13,12 +13,12 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "common/cli.h"
-#include "common/file_path.h"
-#include "common/log.h"
-#include "common/photo.h"
-#include "common/upright.h"
-#include "common/view_image.h"
+#include "common/base/cli.h"
+#include "common/base/file_path.h"
+#include "common/base/log.h"
+#include "common/capture/upright.h"
+#include "common/capture/view_image.h"
+#include "common/image/photo.h"
 #include "stages/find_axes/pictures.h"
 #include "stages/find_axes/room.h"
 

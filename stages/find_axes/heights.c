@@ -1,17 +1,17 @@
 /* heights.c - see heights.h.
  *
  * Thesis 4.4.1: heights of points whose normals are within 25 degrees of up, in three clusters by k-means; the largest is
- * the floor. k-means is solved exactly (common/kmeans1d.h). A cluster's mean is pulled by whatever furniture fell to it,
+ * the floor. k-means is solved exactly (stages/find_axes/kmeans1d.h). A cluster's mean is pulled by whatever furniture fell to it,
  * so that a cluster only says where to look: the height is the densest window within it, about 2.5 cm of a room, then a
  * robust mean around that (Tukey's biweight). */
 #include "stages/find_axes/heights.h"
 
 #include <stdlib.h>
 
-#include "common/kmeans1d.h"
-#include "common/sort.h"
+#include "common/base/sort.h"
 #include "stages/find_axes/blocks.h"
 #include "stages/find_axes/directions.h"
+#include "stages/find_axes/kmeans1d.h"
 
 enum { CLUSTERS = 3, ITERATIONS = 20 };
 /* of the scene's size */

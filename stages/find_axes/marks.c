@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/textfile.h"
+#include "common/base/textfile.h"
 
 enum { MOST_MARKS = 10000 };
 static const double LEAST_ANGLE = 1 * M_PI / 180; /* between rays that are to meet */

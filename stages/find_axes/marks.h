@@ -15,9 +15,9 @@
 #ifndef REMODEL_MARKS_H
 #define REMODEL_MARKS_H
 
-#include "common/lens_list.h"
-#include "common/photo_camera.h"
-#include "common/point_cloud.h"
+#include "common/capture/lens_list.h"
+#include "common/capture/photo_camera.h"
+#include "common/capture/point_cloud.h"
 
 enum mark_kind { MARK_POINT, MARK_LENGTH, MARK_CORNER, MARK_EDGE, MARK_THICKNESS };
 enum mark_on { MARK_IN_VIEWS, MARK_ON_FLOOR, MARK_ON_SURFACE };

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/sort.h"
+#include "common/base/sort.h"
 
 static const unsigned char X[3] = {235, 40, 40}, Y[3] = {40, 200, 60}, Z[3] = {60, 110, 255};
 static const unsigned char FLOOR[3] = {255, 215, 0}, CEILING[3] = {0, 225, 235}, WALL[3] = {235, 235, 235};

@@ -6,7 +6,7 @@
 #ifndef REMODEL_AXES_PICTURES_H
 #define REMODEL_AXES_PICTURES_H
 
-#include "common/image.h"
+#include "common/image/image.h"
 #include "stages/find_axes/room.h"
 
 /* The views to draw on: of `count` photos, evenly by name, and of those with a corner, the view that looks straightest

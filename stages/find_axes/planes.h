@@ -7,7 +7,7 @@
 
 #include <stdbool.h>
 
-#include "common/point_cloud.h"
+#include "common/capture/point_cloud.h"
 #include "stages/find_axes/axes_params.h"
 
 struct room_plane {

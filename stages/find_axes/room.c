@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/central_views.h"
+#include "common/capture/central_views.h"
 #include "stages/find_axes/directions.h"
 
 static const double CONTRADICTS = 2; /* standard errors between the floor and its corners */

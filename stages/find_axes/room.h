@@ -2,7 +2,7 @@
 #ifndef REMODEL_ROOM_H
 #define REMODEL_ROOM_H
 
-#include "common/model_axes.h"
+#include "common/model/model_axes.h"
 #include "stages/find_axes/correct.h"
 #include "stages/find_axes/heights.h"
 #include "stages/find_axes/marks.h"

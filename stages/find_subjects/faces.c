@@ -16,7 +16,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/central_views.h"
+#include "common/capture/central_views.h"
 #include "stages/find_subjects/region_depth.h"
 
 #define PARAM_STRUCT struct find_params

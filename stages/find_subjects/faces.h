@@ -6,10 +6,10 @@
 #ifndef REMODEL_FACES_H
 #define REMODEL_FACES_H
 
-#include "common/layered_depth.h"
-#include "common/opencv_faces.h"
-#include "common/subject_list.h"
+#include "common/film/subject_list.h"
+#include "common/layers/layered_depth.h"
 #include "stages/find_subjects/find_params.h"
+#include "stages/find_subjects/opencv_faces.h"
 
 struct face_source {
     void *ctx;
@@ -43,7 +43,7 @@ struct face_report {
 
 #define MOST_FACES 2
 
-/* Adds at most MOST_FACES subjects, the largest first. ups: each view's upright direction (common/upright.h); NULL: -y.
+/* Adds at most MOST_FACES subjects, the largest first. ups: each view's upright direction (common/capture/upright.h); NULL: -y.
  * Same subjects for any number of threads. */
 enum status find_faces(struct subject_list *list, struct face_report *report, const struct camera_set *set,
                        const struct vec3 *ups, const struct face_source *source, const struct find_params *params,

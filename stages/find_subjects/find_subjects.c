@@ -10,12 +10,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/cli.h"
-#include "common/file_path.h"
-#include "common/lens_list.h"
-#include "common/log.h"
-#include "common/upright.h"
-#include "common/view_image.h"
+#include "common/base/cli.h"
+#include "common/base/file_path.h"
+#include "common/base/log.h"
+#include "common/capture/lens_list.h"
+#include "common/capture/upright.h"
+#include "common/capture/view_image.h"
 #include "stages/find_subjects/faces.h"
 #include "stages/find_subjects/region_depth.h"
 #include "stages/find_subjects/regions.h"

@@ -3,7 +3,7 @@
 
 #include <stdlib.h>
 
-#include "common/weighted.h"
+#include "common/math/weighted.h"
 
 bool clip_to_picture(struct subject *s, int width, int height)
 {

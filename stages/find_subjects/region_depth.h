@@ -2,8 +2,8 @@
 #ifndef REMODEL_REGION_DEPTH_H
 #define REMODEL_REGION_DEPTH_H
 
-#include "common/layered_depth.h"
-#include "common/subject_list.h"
+#include "common/film/subject_list.h"
+#include "common/layers/layered_depth.h"
 
 /* Clips the subject's rectangle to the picture; false if nothing is left. */
 bool clip_to_picture(struct subject *s, int width, int height);

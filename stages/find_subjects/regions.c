@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/scan.h"
-#include "common/textfile.h"
+#include "common/base/scan.h"
+#include "common/base/textfile.h"
 #include "stages/find_subjects/region_depth.h"
 
 enum { GRID = 33, MOST_REGIONS = 10000 }; /* GRID: places of a region, each way, that go through the lens */

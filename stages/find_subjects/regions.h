@@ -6,8 +6,8 @@
 #ifndef REMODEL_REGIONS_H
 #define REMODEL_REGIONS_H
 
-#include "common/lens_list.h"
-#include "common/subject_list.h"
+#include "common/capture/lens_list.h"
+#include "common/film/subject_list.h"
 
 struct region {
     char *view; /* as written; owned */

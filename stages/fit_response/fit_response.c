@@ -9,12 +9,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/cli.h"
-#include "common/file_path.h"
-#include "common/log.h"
-#include "common/outfile.h"
-#include "common/parallel.h"
-#include "common/photo_list.h"
+#include "common/base/cli.h"
+#include "common/base/file_path.h"
+#include "common/base/log.h"
+#include "common/base/outfile.h"
+#include "common/base/parallel.h"
+#include "common/capture/photo_list.h"
 #include "stages/fit_response/recover.h"
 
 struct view_job {

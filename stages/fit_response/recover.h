@@ -4,7 +4,7 @@
 
 #include <stddef.h>
 
-#include "common/response.h"
+#include "common/image/response.h"
 #include "stages/fit_response/fit_params.h"
 
 enum { RECOVER_MOST = 64 }; /* exposures of a place */

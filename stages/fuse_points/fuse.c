@@ -21,9 +21,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "common/parallel.h"
-#include "common/progress.h"
-#include "common/sort.h"
+#include "common/base/parallel.h"
+#include "common/base/progress.h"
+#include "common/base/sort.h"
 #include "stages/fuse_points/normal_fit.h"
 #include "stages/fuse_points/point_grid.h"
 

@@ -2,7 +2,7 @@
 #ifndef REMODEL_FUSE_H
 #define REMODEL_FUSE_H
 
-#include "common/point_cloud.h"
+#include "common/capture/point_cloud.h"
 #include "stages/fuse_points/fuse_params.h"
 #include "stages/fuse_points/surface.h"
 

@@ -8,9 +8,9 @@
 #include <inttypes.h>
 #include <stdio.h>
 
-#include "common/cli.h"
-#include "common/file_path.h"
-#include "common/log.h"
+#include "common/base/cli.h"
+#include "common/base/file_path.h"
+#include "common/base/log.h"
 #include "stages/fuse_points/fuse.h"
 
 enum { DEFAULT_MIB = 1024 };

@@ -2,7 +2,7 @@
 #ifndef REMODEL_NORMAL_FIT_H
 #define REMODEL_NORMAL_FIT_H
 
-#include "common/camera_set.h"
+#include "common/capture/camera_set.h"
 
 /* normal: world, length 1, towards the camera; on entry that of the pixel's segments, which the depths then correct as far as
  * they tell. inverse_z: w * h, 0 unknown, known at (x, y). window: half its width in px, at least 1. noise: of the

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/image.h"
+#include "common/image/image.h"
 
 #define LEAST_COSINE 0.5 /* between a sample's normal and its point's */
 #define LEAST_WEIGHT 1e-6

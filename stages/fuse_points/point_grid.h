@@ -6,7 +6,7 @@
 #ifndef REMODEL_POINT_GRID_H
 #define REMODEL_POINT_GRID_H
 
-#include "common/point_cloud.h"
+#include "common/capture/point_cloud.h"
 
 struct fused_sample {
     struct vec3 position, normal; /* the normal of length 1 */

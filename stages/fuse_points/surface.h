@@ -4,7 +4,7 @@
 
 #include <stdbool.h>
 
-#include "common/layered_depth.h"
+#include "common/layers/layered_depth.h"
 
 struct surface_plane {
     struct vec3 normal;  /* world, length 1, towards the camera; {0, 0, 0}: this segment says nothing */

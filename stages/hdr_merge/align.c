@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/parallel.h"
+#include "common/base/parallel.h"
 
 enum { LEVELS_MOST = 10, LEAST_SIDE = 48, NEAR = 3, QUANTILES = 11, LEAST_DISTANCE = 10 };
 

@@ -6,13 +6,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/exr.h"
-#include "common/file_path.h"
-#include "common/outfile.h"
-#include "common/parallel.h"
-#include "common/photo_match.h"
-#include "common/sfm_model.h"
-#include "common/view_image.h"
+#include "common/base/file_path.h"
+#include "common/base/outfile.h"
+#include "common/base/parallel.h"
+#include "common/capture/photo_match.h"
+#include "common/capture/sfm_model.h"
+#include "common/capture/view_image.h"
+#include "common/image/exr.h"
 #include "stages/hdr_merge/tone.h"
 
 #define LARGEST_HALF 65504.0f

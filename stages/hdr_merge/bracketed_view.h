@@ -2,9 +2,9 @@
 #ifndef REMODEL_BRACKETED_VIEW_H
 #define REMODEL_BRACKETED_VIEW_H
 
-#include "common/camera.h"
-#include "common/photo_list.h"
-#include "common/provenance.h"
+#include "common/base/provenance.h"
+#include "common/capture/camera.h"
+#include "common/capture/photo_list.h"
 #include "stages/hdr_merge/align.h"
 #include "stages/hdr_merge/merge.h"
 

@@ -14,8 +14,8 @@
  * Each file appears whole or not at all, ID.exr last. */
 #include <math.h>
 
-#include "common/cli.h"
-#include "common/log.h"
+#include "common/base/cli.h"
+#include "common/base/log.h"
 #include "stages/hdr_merge/bracketed_view.h"
 
 static void warn_of_disagreement(const struct bracketed_view *v)

@@ -28,7 +28,7 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
-#include "common/parallel.h"
+#include "common/base/parallel.h"
 
 #define PARAM_STRUCT struct merge_params
 const struct param merge_param_table[] = {MERGE_PARAMS(PARAM_ROW) PARAM_END};

@@ -7,8 +7,8 @@
 
 #include <stdint.h>
 
-#include "common/image.h"
-#include "common/response.h"
+#include "common/image/image.h"
+#include "common/image/response.h"
 #include "stages/hdr_merge/merge_params.h"
 #include "stages/hdr_merge/noise.h"
 

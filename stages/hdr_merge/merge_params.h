@@ -2,7 +2,7 @@
 #ifndef REMODEL_MERGE_PARAMS_H
 #define REMODEL_MERGE_PARAMS_H
 
-#include "common/param.h"
+#include "common/base/param.h"
 
 /* name, type, default, least, most, unit, help */
 #define MERGE_PARAMS(X)                                                                                               \

@@ -10,7 +10,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "common/sort.h"
+#include "common/base/sort.h"
 #include "stages/hdr_merge/merge.h"
 
 enum { BINS = 24, SAMPLES = 1 << 17, BIN_LEAST = 200 };

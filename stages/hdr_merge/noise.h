@@ -5,7 +5,7 @@
 #ifndef REMODEL_HDR_NOISE_H
 #define REMODEL_HDR_NOISE_H
 
-#include "common/response.h"
+#include "common/image/response.h"
 #include "stages/hdr_merge/merge_params.h"
 
 struct noise {

@@ -14,7 +14,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "common/parallel.h"
+#include "common/base/parallel.h"
 
 enum { REDUCE = 4, CURVE = 4096 };
 

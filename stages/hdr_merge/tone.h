@@ -3,7 +3,7 @@
 #ifndef REMODEL_HDR_TONE_H
 #define REMODEL_HDR_TONE_H
 
-#include "common/image.h"
+#include "common/image/image.h"
 
 /* rgb: 3 bytes a pixel, sRGB. Radiance of 1 is white at the exposure that all views share, so that a surface looks the
  * same in all of them but for what surrounds it. Deterministic. */

@@ -8,9 +8,9 @@
 #include <strings.h>
 #include <unistd.h>
 
-#include "common/bracket_list.h"
-#include "common/log.h"
-#include "common/sort.h"
+#include "common/base/log.h"
+#include "common/base/sort.h"
+#include "stages/import_photos/bracket_list.h"
 
 enum { CYCLE_MOST = 16, CYCLE_STARTS = 48, CYCLED_LEAST = 6, NAMED_MOST = 8, TEXT_SIZE = 160 };
 

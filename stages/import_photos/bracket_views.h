@@ -17,7 +17,7 @@
 #ifndef REMODEL_BRACKET_VIEWS_H
 #define REMODEL_BRACKET_VIEWS_H
 
-#include "common/exposure_list.h"
+#include "stages/import_photos/exposure_list.h"
 #include "stages/import_photos/import_params.h"
 #include "stages/import_photos/photo_scan.h"
 

@@ -15,8 +15,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "common/cli.h"
-#include "common/log.h"
+#include "common/base/cli.h"
+#include "common/base/log.h"
 #include "stages/import_photos/bracket_views.h"
 #include "stages/import_photos/split_photos.h"
 

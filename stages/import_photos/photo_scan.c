@@ -10,10 +10,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "common/outfile.h"
-#include "common/parallel.h"
-#include "common/progress.h"
-#include "common/textfile.h"
+#include "common/base/outfile.h"
+#include "common/base/parallel.h"
+#include "common/base/progress.h"
+#include "common/base/textfile.h"
 
 /* The same of raw files alone. */
 static size_t raw_stem(const char *file)

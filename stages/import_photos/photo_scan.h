@@ -11,7 +11,7 @@
 
 #include <stdbool.h>
 
-#include "common/photo_list.h"
+#include "common/capture/photo_list.h"
 
 struct scanned_photo {
     char *file, *id; /* owned */

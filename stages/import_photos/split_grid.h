@@ -10,7 +10,7 @@
 #ifndef REMODEL_SPLIT_GRID_H
 #define REMODEL_SPLIT_GRID_H
 
-#include "common/photo.h"
+#include "common/image/photo.h"
 #include "stages/import_photos/import_params.h"
 
 enum { SPLIT_MOST = 99, SPLIT_SIDE_LEAST = 16 }; /* pictures along a side; pixels along a picture's side */

@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/outfile.h"
-#include "common/textfile.h"
+#include "common/base/outfile.h"
+#include "common/base/textfile.h"
 
 enum { QUOTED_SIZE = 1024, SIDE_MOST = 1 << 28 };
 

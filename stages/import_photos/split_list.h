@@ -8,7 +8,7 @@
 #ifndef REMODEL_SPLIT_LIST_H
 #define REMODEL_SPLIT_LIST_H
 
-#include "common/hash.h"
+#include "common/base/hash.h"
 #include "stages/import_photos/split_grid.h"
 
 struct split_cut {

@@ -8,9 +8,9 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "common/log.h"
-#include "common/outfile.h"
-#include "common/parallel.h"
+#include "common/base/log.h"
+#include "common/base/outfile.h"
+#include "common/base/parallel.h"
 #include "stages/import_photos/split_list.h"
 
 static char *join_path(const char *folder, const char *name)

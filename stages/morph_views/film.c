@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/parallel.h"
+#include "common/base/parallel.h"
 
 enum { LEAST_SIDE = 32, CHUNK = 16 };
 

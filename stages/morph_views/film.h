@@ -4,7 +4,7 @@
 #ifndef REMODEL_MORPH_FILM_H
 #define REMODEL_MORPH_FILM_H
 
-#include "common/image.h"
+#include "common/image/image.h"
 
 struct film_picture {
     struct image rgb;

@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/parallel.h"
+#include "common/base/parallel.h"
 #include "stages/morph_views/match.h"
 
 enum { CHUNK = 8, DIRECTIONS = 8, LEAST_ISLAND = 60, SETTLE_ROUNDS = 3, RELAXED = 150 };

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/parallel.h"
+#include "common/base/parallel.h"
 #include "stages/morph_views/match.h"
 
 enum { CHANNELS = 3, WARPS = 3, SWEEPS = 24, CHUNK = 8, SUMS = 5 };

@@ -7,7 +7,7 @@
 
 #include <stdbool.h>
 
-#include "common/camera.h"
+#include "common/capture/camera.h"
 #include "stages/morph_views/film.h"
 
 enum geometry_kind { GEOMETRY_NONE, GEOMETRY_FUNDAMENTAL, GEOMETRY_POSED };

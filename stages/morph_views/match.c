@@ -16,7 +16,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/parallel.h"
+#include "common/base/parallel.h"
 
 #define PARAM_STRUCT struct morph_params
 const struct param morph_param_table[] = {MORPH_PARAMS(PARAM_ROW) PARAM_END};

@@ -4,9 +4,9 @@
 #ifndef REMODEL_MORPH_MATCH_H
 #define REMODEL_MORPH_MATCH_H
 
-#include "common/opencv_features.h"
 #include "stages/morph_views/geometry.h"
 #include "stages/morph_views/morph_params.h"
+#include "stages/morph_views/opencv_features.h"
 
 struct flow {
     int width, height;

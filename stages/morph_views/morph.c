@@ -12,9 +12,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/exr.h"
-#include "common/file_path.h"
-#include "common/view_image.h"
+#include "common/base/file_path.h"
+#include "common/capture/view_image.h"
+#include "common/image/exr.h"
 
 #define TEAR      1.0f  /* px: neighbours whose flows differ by more are not one surface */
 #define ROOM      0.02f /* px by which pieces of a sheet overlap */

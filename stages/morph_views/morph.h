@@ -6,11 +6,11 @@
 #ifndef REMODEL_MORPH_H
 #define REMODEL_MORPH_H
 
-#include "common/camera_set.h"
-#include "common/image.h"
-#include "common/linear_photo.h"
-#include "common/provenance.h"
-#include "common/rendered_frame.h"
+#include "common/base/provenance.h"
+#include "common/capture/camera_set.h"
+#include "common/capture/linear_photo.h"
+#include "common/image/image.h"
+#include "common/layers/rendered_frame.h"
 #include "stages/morph_views/match.h"
 
 struct morph {

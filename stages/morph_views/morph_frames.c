@@ -4,13 +4,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/camera_path.h"
-#include "common/exr.h"
-#include "common/file_path.h"
-#include "common/frame_list.h"
-#include "common/parallel.h"
-#include "common/progress.h"
-#include "common/view_image.h"
+#include "common/base/file_path.h"
+#include "common/base/frame_list.h"
+#include "common/base/parallel.h"
+#include "common/base/progress.h"
+#include "common/capture/camera_path.h"
+#include "common/capture/view_image.h"
+#include "common/image/exr.h"
 #include "stages/morph_views/morph.h"
 #include "stages/morph_views/prepare.h"
 

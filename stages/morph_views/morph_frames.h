@@ -3,7 +3,7 @@
 #ifndef REMODEL_MORPH_FRAMES_H
 #define REMODEL_MORPH_FRAMES_H
 
-#include "common/provenance.h"
+#include "common/base/provenance.h"
 #include "stages/morph_views/morph_params.h"
 
 /* folder: what morph_prepare wrote. A frame's bytes do not depend on the others that are made with it. */

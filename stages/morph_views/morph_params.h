@@ -2,7 +2,7 @@
 #ifndef REMODEL_MORPH_PARAMS_H
 #define REMODEL_MORPH_PARAMS_H
 
-#include "common/param.h"
+#include "common/base/param.h"
 
 /* name, type, default, least, most, unit, help */
 #define MORPH_PARAMS(X)                                                                                              \

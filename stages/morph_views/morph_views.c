@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/cli.h"
+#include "common/base/cli.h"
 #include "stages/morph_views/morph_frames.h"
 #include "stages/morph_views/prepare.h"
 

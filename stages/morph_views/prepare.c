@@ -6,13 +6,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/camera_path.h"
-#include "common/file_path.h"
-#include "common/lens_list.h"
-#include "common/linear_photo.h"
-#include "common/log.h"
-#include "common/outfile.h"
-#include "common/sort.h"
+#include "common/base/file_path.h"
+#include "common/base/log.h"
+#include "common/base/outfile.h"
+#include "common/base/sort.h"
+#include "common/capture/camera_path.h"
+#include "common/capture/lens_list.h"
+#include "common/capture/linear_photo.h"
 #include "stages/morph_views/morph.h"
 
 #define USUAL_FOCAL    1.2 /* of the longest side, where EXIF says nothing */

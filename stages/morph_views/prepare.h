@@ -2,7 +2,7 @@
 #ifndef REMODEL_MORPH_PREPARE_H
 #define REMODEL_MORPH_PREPARE_H
 
-#include "common/provenance.h"
+#include "common/base/provenance.h"
 #include "stages/morph_views/morph_params.h"
 
 struct morph_job {                                         /* what the command line says */

@@ -14,7 +14,7 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
-#include "common/sort.h"
+#include "common/base/sort.h"
 
 #define ROUNDS     200
 #define CONVERGED  1e-7 /* frame px */

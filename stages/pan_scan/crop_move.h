@@ -5,9 +5,9 @@
 #ifndef REMODEL_CROP_MOVE_H
 #define REMODEL_CROP_MOVE_H
 
-#include "common/camera_path.h"
-#include "common/image.h"
-#include "common/layered_depth.h"
+#include "common/capture/camera_path.h"
+#include "common/image/image.h"
+#include "common/layers/layered_depth.h"
 #include "stages/pan_scan/crop_fit.h"
 
 struct seen_point { /* as the view shows it */

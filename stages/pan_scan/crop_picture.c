@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "common/parallel.h"
+#include "common/base/parallel.h"
 
 enum { CHUNK = 8 };
 

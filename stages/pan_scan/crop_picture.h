@@ -2,7 +2,7 @@
 #ifndef REMODEL_CROP_PICTURE_H
 #define REMODEL_CROP_PICTURE_H
 
-#include "common/image.h"
+#include "common/image/image.h"
 #include "stages/pan_scan/crop_fit.h"
 
 /* out: initialised, of the frame's size and the picture's number of channels, all of which are filtered alike:

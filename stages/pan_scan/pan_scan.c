@@ -11,13 +11,13 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "common/cli.h"
-#include "common/exr.h"
-#include "common/file_path.h"
-#include "common/frame_list.h"
-#include "common/log.h"
-#include "common/progress.h"
-#include "common/view_image.h"
+#include "common/base/cli.h"
+#include "common/base/file_path.h"
+#include "common/base/frame_list.h"
+#include "common/base/log.h"
+#include "common/base/progress.h"
+#include "common/capture/view_image.h"
+#include "common/image/exr.h"
 #include "stages/pan_scan/crop_move.h"
 #include "stages/pan_scan/crop_picture.h"
 #include "stages/pan_scan/pan_params.h"

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/parallel.h"
+#include "common/base/parallel.h"
 #include "stages/plan_path/parallax.h"
 #include "stages/plan_path/refine.h"
 

@@ -17,7 +17,7 @@
 #ifndef REMODEL_ENDS_H
 #define REMODEL_ENDS_H
 
-#include "common/validity.h"
+#include "common/film/validity.h"
 #include "stages/plan_path/plan_params.h"
 
 struct move_ends {

@@ -10,8 +10,8 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "common/file_path.h"
-#include "common/monotone.h"
+#include "common/base/file_path.h"
+#include "common/math/monotone.h"
 #include "stages/plan_path/keyframes.h"
 #include "stages/plan_path/spline.h"
 

@@ -8,9 +8,9 @@
 
 #include <stdbool.h>
 
-#include "common/camera_path.h"
-#include "common/effects.h"
-#include "common/provenance.h"
+#include "common/base/provenance.h"
+#include "common/capture/camera_path.h"
+#include "common/film/effects.h"
 
 struct film {
     const char *name;             /* of the film, for path.txt */

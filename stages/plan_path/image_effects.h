@@ -3,9 +3,9 @@
 #ifndef REMODEL_IMAGE_EFFECTS_H
 #define REMODEL_IMAGE_EFFECTS_H
 
-#include "common/camera_path.h"
-#include "common/effects.h"
-#include "common/validity.h"
+#include "common/capture/camera_path.h"
+#include "common/film/effects.h"
+#include "common/film/validity.h"
 #include "stages/plan_path/plan_params.h"
 
 /* The widest aperture (diameter, scene units) at a camera that is in focus at `focus`, of the box around whose disk all

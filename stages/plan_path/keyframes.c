@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/scan.h"
-#include "common/textfile.h"
+#include "common/base/scan.h"
+#include "common/base/textfile.h"
 
 #define KEYS_MOST    100000
 #define SHOTS_MOST   1000

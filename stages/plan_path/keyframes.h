@@ -7,8 +7,8 @@
 
 #include <stdbool.h>
 
-#include "common/camera_set.h"
-#include "common/effects.h"
+#include "common/capture/camera_set.h"
+#include "common/film/effects.h"
 
 /* What a film's camera has beside its pose. */
 enum film_number { FILM_FX, FILM_FY, FILM_CX, FILM_CY, FILM_APERTURE, FILM_FOCUS, FILM_NUMBERS };

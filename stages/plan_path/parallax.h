@@ -7,7 +7,7 @@
 #ifndef REMODEL_PARALLAX_H
 #define REMODEL_PARALLAX_H
 
-#include "common/layer_render.h"
+#include "common/layers/layer_render.h"
 
 struct depth_picture {
     struct view camera; /* of its size */

@@ -12,8 +12,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/file_path.h"
-#include "common/outfile.h"
+#include "common/base/file_path.h"
+#include "common/base/outfile.h"
 
 enum { NUMBER = JSON_ENCODE_ANY | JSON_REAL_PRECISION(17) };
 

@@ -6,7 +6,7 @@
 #ifndef REMODEL_PATH_EXPORT_H
 #define REMODEL_PATH_EXPORT_H
 
-#include "common/camera_path.h"
+#include "common/capture/camera_path.h"
 
 /* Writes folder/blender.py, then folder/transforms.json, each whole or not at all. prov may be NULL. ST_DATA: no frame,
  * a value of a frame that is not finite, a name that is not UTF-8. */

@@ -15,13 +15,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/central_views.h"
-#include "common/cli.h"
-#include "common/file_path.h"
-#include "common/film_lens.h"
-#include "common/log.h"
-#include "common/outfile.h"
-#include "common/upright.h"
+#include "common/base/cli.h"
+#include "common/base/file_path.h"
+#include "common/base/log.h"
+#include "common/base/outfile.h"
+#include "common/capture/central_views.h"
+#include "common/capture/upright.h"
+#include "common/film/film_lens.h"
 #include "stages/plan_path/film.h"
 #include "stages/plan_path/path_export.h"
 #include "stages/plan_path/plan_move.h"

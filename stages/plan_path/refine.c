@@ -7,7 +7,7 @@
 
 #include <stdlib.h>
 
-#include "common/ceres_least_squares.h"
+#include "common/math/ceres_least_squares.h"
 #include "stages/plan_path/parallax.h"
 
 #define EDGE_SIDE  160  /* of the picture whose depth edges are taken */

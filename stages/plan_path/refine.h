@@ -2,7 +2,7 @@
 #ifndef REMODEL_REFINE_H
 #define REMODEL_REFINE_H
 
-#include "common/validity.h"
+#include "common/film/validity.h"
 
 /* at: the ends on entry, a local optimum of the surrogate on return. Whether the viewpoints are valid, and whether
  * there is more parallax, is the caller's to see. */

@@ -3,7 +3,7 @@
  * A path's shape and its timing are apart. The shape is a cubic Hermite spline over the length of the chords, its
  * tangent at a key the mean of the directions of the chords there, which is the direction that a centripetal
  * Catmull-Rom spline has: no loops, no cusps, and a line stays a line (Yuksel, Schaefer and Keyser, 2011). The timing
- * is a monotone cubic (common/monotone.h) from time to that length: a key's time changes how fast the camera goes,
+ * is a monotone cubic (common/math/monotone.h) from time to that length: a key's time changes how fast the camera goes,
  * never where, and it does not overshoot a key to come back to it, where a C2 spline over time would leave what the
  * photos show. Keys of constant velocity give constant velocity.
  *
@@ -13,7 +13,7 @@
 
 #include <stdlib.h>
 
-#include "common/monotone.h"
+#include "common/math/monotone.h"
 
 #define LEAST_STEP 1e-12 /* of the distance from the origin: a shorter way is none, its direction but rounding */
 #define LEAST_TURN 1e-9  /* radians, likewise */

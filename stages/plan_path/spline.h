@@ -8,10 +8,10 @@
 
 #include <stdbool.h>
 
-#include "common/err.h"
-#include "common/vec.h"
+#include "common/base/err.h"
+#include "common/math/vec.h"
 
-struct curve { /* of a number over time, monotone between its keys (common/monotone.h) */
+struct curve { /* of a number over time, monotone between its keys (common/math/monotone.h) */
     double *time, *value, *slope;
     int count;
 };

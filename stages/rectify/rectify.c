@@ -8,12 +8,12 @@
  * A photo may have many views (of a fisheye, several), and reading it can take longer than making one: it is read once. */
 #include <string.h>
 
-#include "common/cli.h"
-#include "common/file_path.h"
-#include "common/lens_list.h"
-#include "common/linear_photo.h"
-#include "common/photo_mask.h"
-#include "common/view_image.h"
+#include "common/base/cli.h"
+#include "common/base/file_path.h"
+#include "common/capture/lens_list.h"
+#include "common/capture/linear_photo.h"
+#include "common/capture/photo_mask.h"
+#include "common/capture/view_image.h"
 #include "stages/rectify/resample.h"
 
 struct request {

@@ -16,7 +16,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/parallel.h"
+#include "common/base/parallel.h"
 
 #define LOBES 3
 #define STEPS 256 /* table entries a unit; read with linear interpolation: error below 1e-5 */

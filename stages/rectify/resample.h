@@ -5,8 +5,8 @@
 #ifndef REMODEL_RESAMPLE_H
 #define REMODEL_RESAMPLE_H
 
-#include "common/camera_set.h"
-#include "common/image.h"
+#include "common/capture/camera_set.h"
+#include "common/image/image.h"
 
 /* out: R G B A of the view's size (empty on entry, the caller releases it), A 1 inside the photo and 0 outside, where the
  * colour is 0 too. photo: R G B of the lens' size. A view that is the photo's own pinhole camera gets its pixels as they

@@ -5,9 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/parallel.h"
-#include "common/rng.h"
-#include "common/sort.h"
+#include "common/base/parallel.h"
+#include "common/base/rng.h"
+#include "common/base/sort.h"
 
 #define FIRST_BATCH 8
 #define TILE        32

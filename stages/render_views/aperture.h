@@ -8,14 +8,14 @@
  * the lens's disk, |(a, b)| <= aperture / 2, becomes the circle of confusion, of diameter aperture fx |Z - focus| /
  * (Z focus) px. What is in focus is a plane parallel to the picture.
  *
- * Lens points: Sobol's first two dimensions, Owen-scrambled (common/rng.h), mapped to the disk with areas kept (P.
+ * Lens points: Sobol's first two dimensions, Owen-scrambled (common/base/rng.h), mapped to the disk with areas kept (P.
  * Shirley and K. Chiu 1997): the same for all frames, so that nothing flickers. Measured on smooth functions of the
  * lens their mean errs half as much at 32 and more points as that of the R2 sequence, and halves tell more of it. */
 #ifndef REMODEL_RENDER_VIEWS_APERTURE_H
 #define REMODEL_RENDER_VIEWS_APERTURE_H
 
-#include "common/camera_set.h"
-#include "common/rendered_frame.h"
+#include "common/capture/camera_set.h"
+#include "common/layers/rendered_frame.h"
 
 /* name, type, default, least, most, unit, help: for the table of the stage's parameters */
 #define APERTURE_PARAMS(X)                                                       \

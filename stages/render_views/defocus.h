@@ -24,8 +24,8 @@
 #ifndef REMODEL_RENDER_VIEWS_DEFOCUS_H
 #define REMODEL_RENDER_VIEWS_DEFOCUS_H
 
-#include "common/camera_set.h"
-#include "common/rendered_frame.h"
+#include "common/capture/camera_set.h"
+#include "common/layers/rendered_frame.h"
 
 #define DEFOCUS_LEVELS 24
 

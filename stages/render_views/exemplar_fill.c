@@ -34,9 +34,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/hole_fill.h"
-#include "common/parallel.h"
-#include "common/sort.h"
+#include "common/base/parallel.h"
+#include "common/base/sort.h"
+#include "common/layers/hole_fill.h"
 
 #define MAX_RADIUS    7
 #define MAX_PATCH     ((2 * MAX_RADIUS + 1) * (2 * MAX_RADIUS + 1))

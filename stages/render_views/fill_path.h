@@ -14,7 +14,7 @@
 #ifndef REMODEL_RENDER_VIEWS_FILL_PATH_H
 #define REMODEL_RENDER_VIEWS_FILL_PATH_H
 
-#include "common/camera_path.h"
+#include "common/capture/camera_path.h"
 #include "stages/render_views/exemplar_fill.h"
 
 #define FILL_PATH_PARAMS(X)                                                                                      \

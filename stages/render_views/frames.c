@@ -6,11 +6,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/exr.h"
-#include "common/file_path.h"
-#include "common/hole_measure.h"
-#include "common/progress.h"
-#include "common/view_image.h"
+#include "common/base/file_path.h"
+#include "common/base/progress.h"
+#include "common/capture/view_image.h"
+#include "common/image/exr.h"
+#include "common/layers/hole_measure.h"
 
 enum status frame_part_read(struct frame_part *part, const char *crop, const char *scale, struct err *err)
 {

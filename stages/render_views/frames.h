@@ -1,6 +1,6 @@
 /* frames.h - the frames of a camera path as EXR files: R G B A (half, linear, premultiplied) and Z (float, depth in the
  * frame's camera, 0 unknown), attributes remodel:holes and remodel:unfilled (fractions of the pixels), and remodel:h
- * (common/hole_measure.h; none where nothing is seen at all). */
+ * (common/layers/hole_measure.h; none where nothing is seen at all). */
 #ifndef REMODEL_RENDER_VIEWS_FRAMES_H
 #define REMODEL_RENDER_VIEWS_FRAMES_H
 

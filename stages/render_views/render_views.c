@@ -11,8 +11,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/cli.h"
-#include "common/frame_list.h"
+#include "common/base/cli.h"
+#include "common/base/frame_list.h"
 #include "stages/render_views/frames.h"
 
 static enum status add_inputs(struct provenance *prov, const char *views, const char *path_folder, const char *effect,

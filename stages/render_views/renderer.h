@@ -9,8 +9,8 @@
 #ifndef REMODEL_RENDER_VIEWS_RENDERER_H
 #define REMODEL_RENDER_VIEWS_RENDERER_H
 
-#include "common/effects.h"
-#include "common/layer_render.h"
+#include "common/film/effects.h"
+#include "common/layers/layer_render.h"
 #include "stages/render_views/aperture.h"
 #include "stages/render_views/defocus.h"
 #include "stages/render_views/fill_path.h"

@@ -1,4 +1,4 @@
-#include "contents.h"
+#include "stages/report/contents.h"
 
 #include <dirent.h>
 #include <errno.h>
@@ -9,10 +9,10 @@
 #include <strings.h>
 #include <sys/stat.h>
 
-#include "common/parallel.h"
-#include "common/photo.h"
-#include "common/scan.h"
-#include "common/sort.h"
+#include "common/base/parallel.h"
+#include "common/base/scan.h"
+#include "common/base/sort.h"
+#include "common/image/photo.h"
 
 static enum status add_note(struct contents *c, struct err *err, const char *fmt, ...) PRINTF_LIKE(3, 4);
 static enum status add_note(struct contents *c, struct err *err, const char *fmt, ...)

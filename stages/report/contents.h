@@ -5,13 +5,13 @@
 #ifndef REMODEL_CONTENTS_H
 #define REMODEL_CONTENTS_H
 
-#include "common/camera_path.h"
-#include "common/lens_list.h"
-#include "common/photo_list.h"
-#include "metric_rows.h"
-#include "pictures.h"
-#include "settings.h"
-#include "usage.h"
+#include "common/capture/camera_path.h"
+#include "common/capture/lens_list.h"
+#include "common/capture/photo_list.h"
+#include "stages/report/metric_rows.h"
+#include "stages/report/pictures.h"
+#include "stages/report/settings.h"
+#include "stages/report/usage.h"
 
 enum { NOTE_SIZE = 1024, PICTURE_HEIGHT = 240, HELD_HEIGHT = 360, AXES_HEIGHT = 480 };
 

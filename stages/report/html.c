@@ -1,4 +1,4 @@
-#include "html.h"
+#include "stages/report/html.h"
 
 #include <stdarg.h>
 #include <stdbool.h>

@@ -7,7 +7,7 @@
 #include <stddef.h>
 #include <stdio.h>
 
-#include "common/err.h"
+#include "common/base/err.h"
 
 /* Escaped for text and for quoted attributes: & < > " and '. Bytes that are not UTF-8, and characters HTML does not allow
  * (controls but tab and line feed, noncharacters), become U+FFFD. */

@@ -1,9 +1,9 @@
-#include "metric_rows.h"
+#include "stages/report/metric_rows.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/textfile.h"
+#include "common/base/textfile.h"
 
 static enum status read_word(struct textfile *t, const char *what, char *to, size_t size, struct err *err)
 {

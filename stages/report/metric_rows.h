@@ -7,7 +7,7 @@
 
 #include <stdbool.h>
 
-#include "common/err.h"
+#include "common/base/err.h"
 
 struct metric_row {
     char *view; /* owned; "" for the scene's */

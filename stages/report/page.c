@@ -1,12 +1,12 @@
-#include "page.h"
+#include "stages/report/page.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/version.h"
-#include "html.h"
-#include "style.h"
+#include "common/base/version.h"
+#include "stages/report/html.h"
+#include "stages/report/style.h"
 
 /* The order of the data's way; further stages follow in order of appearance. */
 static const char *const CHAIN[] = {"import_photos", "hdr_merge",   "sfm",         "sfm_import",  "rectify",

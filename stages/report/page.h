@@ -4,7 +4,7 @@
 #ifndef REMODEL_PAGE_H
 #define REMODEL_PAGE_H
 
-#include "contents.h"
+#include "stages/report/contents.h"
 
 /* Write errors of `to` are left to its owner (outfile_commit). ST_NOMEM, or ST_IO if a video cannot be read. */
 enum status page_write(FILE *to, const char *scene, const struct contents *c, struct err *err);

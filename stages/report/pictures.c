@@ -1,12 +1,12 @@
 /* Colours of depth: a path through OKLab (Ottosson 2020) with lightness linear in t, hue from blue-violet over red to
  * yellow, and chroma kept within sRGB's gamut, so that equal steps of 1/z look equal and grey print keeps their order. */
-#include "pictures.h"
+#include "stages/report/pictures.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/sort.h"
+#include "common/base/sort.h"
 
 void picture_release(struct picture *p)
 {

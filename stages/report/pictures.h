@@ -7,8 +7,8 @@
 
 #include <stdbool.h>
 
-#include "common/exr.h"
-#include "common/photo.h"
+#include "common/image/exr.h"
+#include "common/image/photo.h"
 
 struct picture {
     int width, height;

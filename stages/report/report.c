@@ -6,9 +6,9 @@
  *         PHOTOS/FILE                    the photographs, for thumbnails
  *         DEFAULTS                       the default parameters, so that changed ones stand out
  * writes  OUT                            HTML with everything inside; what is missing is said there */
-#include "common/cli.h"
-#include "common/outfile.h"
-#include "page.h"
+#include "common/base/cli.h"
+#include "common/base/outfile.h"
+#include "stages/report/page.h"
 
 int main(int argc, char **argv)
 {

@@ -1,4 +1,4 @@
-#include "settings.h"
+#include "stages/report/settings.h"
 
 #include <dirent.h>
 #include <errno.h>

@@ -6,7 +6,7 @@
 
 #include <stdbool.h>
 
-#include "common/err.h"
+#include "common/base/err.h"
 
 struct setting {
     char section[64], key[64], value[256];

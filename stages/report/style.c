@@ -1,4 +1,4 @@
-#include "style.h"
+#include "stages/report/style.h"
 
 const char page_style[] =
     ":root{color-scheme:light "

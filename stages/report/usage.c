@@ -1,4 +1,4 @@
-#include "usage.h"
+#include "stages/report/usage.h"
 
 #include <ctype.h>
 #include <dirent.h>

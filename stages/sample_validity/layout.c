@@ -3,9 +3,9 @@
 
 #include <stdlib.h>
 
-#include "common/central_views.h"
-#include "common/film_lens.h"
-#include "common/weighted.h"
+#include "common/capture/central_views.h"
+#include "common/film/film_lens.h"
+#include "common/math/weighted.h"
 
 #define CENTRAL_VIEWS   5    /* whose segments vote for the centroid */
 #define SAME_WAY        0.5  /* cosine of the angle between their axes and the centremost view's, at least */

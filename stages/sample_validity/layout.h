@@ -3,8 +3,8 @@
 #ifndef REMODEL_SAMPLE_VALIDITY_LAYOUT_H
 #define REMODEL_SAMPLE_VALIDITY_LAYOUT_H
 
-#include "common/scene_points.h"
-#include "common/shot.h"
+#include "common/film/shot.h"
+#include "common/layers/scene_points.h"
 #include "stages/sample_validity/validity_params.h"
 
 /* The centroid is the median of the segments in the middle of the central views' pictures; the frame's origin the

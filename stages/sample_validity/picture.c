@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/photo.h"
+#include "common/image/photo.h"
 
 enum { MAP = 384, MARGIN = 12, SIDE = 2 * MAP + 3 * MARGIN };
 

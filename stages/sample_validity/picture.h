@@ -6,7 +6,7 @@
 #ifndef REMODEL_SAMPLE_VALIDITY_PICTURE_H
 #define REMODEL_SAMPLE_VALIDITY_PICTURE_H
 
-#include "common/validity.h"
+#include "common/film/validity.h"
 
 enum status validity_picture_write(const struct validity *v, const struct view_mesh *mesh, const char *path,
                                    struct err *err);

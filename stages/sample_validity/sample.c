@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/parallel.h"
-#include "common/progress.h"
+#include "common/base/parallel.h"
+#include "common/base/progress.h"
 #include "stages/sample_validity/layout.h"
 
 #define PARAM_STRUCT struct validity_params

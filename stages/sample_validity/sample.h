@@ -10,7 +10,7 @@
 #ifndef REMODEL_SAMPLE_VALIDITY_SAMPLE_H
 #define REMODEL_SAMPLE_VALIDITY_SAMPLE_H
 
-#include "common/validity.h"
+#include "common/film/validity.h"
 #include "stages/sample_validity/validity_params.h"
 
 /* How far limits found in small pictures are from those found in pictures of the film's size, or of 1200 px if the film

@@ -9,10 +9,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "common/cli.h"
-#include "common/file_path.h"
-#include "common/log.h"
-#include "common/upright.h"
+#include "common/base/cli.h"
+#include "common/base/file_path.h"
+#include "common/base/log.h"
+#include "common/capture/upright.h"
 #include "stages/sample_validity/picture.h"
 #include "stages/sample_validity/sample.h"
 

@@ -6,7 +6,7 @@
 #ifndef REMODEL_CROSS_VIEW_H
 #define REMODEL_CROSS_VIEW_H
 
-#include "common/layered_depth.h"
+#include "common/layers/layered_depth.h"
 #include "stages/segment_depth/plane_match.h"
 
 /* Reads the depth of a view in the round before: segments and the interior's ids; d is {0} on entry. */

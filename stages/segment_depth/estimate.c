@@ -5,9 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/log.h"
-#include "common/parallel.h"
-#include "common/textfile.h"
+#include "common/base/log.h"
+#include "common/base/parallel.h"
+#include "common/base/textfile.h"
 #include "stages/segment_depth/neighbours.h"
 
 /* Measured with --threads 1 on one core of a 2-core machine, user seconds and peak of a view: an interior of 0.73 megapixels with 1, 2, 4

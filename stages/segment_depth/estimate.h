@@ -6,7 +6,7 @@
 
 #include <stdio.h>
 
-#include "common/camera_set.h"
+#include "common/capture/camera_set.h"
 #include "stages/segment_depth/segment_params.h"
 
 struct depth_work {

@@ -13,9 +13,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/parallel.h"
-#include "common/progress.h"
-#include "common/rng.h"
+#include "common/base/parallel.h"
+#include "common/base/progress.h"
+#include "common/base/rng.h"
 #include "stages/segment_depth/max_flow.h"
 
 #define SCALES 4

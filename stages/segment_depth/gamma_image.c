@@ -4,8 +4,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "common/parallel.h"
-#include "common/sort.h"
+#include "common/base/parallel.h"
+#include "common/base/sort.h"
 
 #define POWER        0.5
 #define LEAST_POWER  0.2

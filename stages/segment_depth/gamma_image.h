@@ -8,7 +8,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "common/image.h"
+#include "common/image/image.h"
 
 struct tone {
     double exposure, power;

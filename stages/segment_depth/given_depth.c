@@ -10,9 +10,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/parallel.h"
-#include "common/rng.h"
-#include "common/sort.h"
+#include "common/base/parallel.h"
+#include "common/base/rng.h"
+#include "common/base/sort.h"
 
 #define LEAST_SAMPLES 4
 #define LEAST_PART    8 /* one in so many pixels */

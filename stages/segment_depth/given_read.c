@@ -8,10 +8,10 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "common/exr.h"
-#include "common/log.h"
-#include "common/photo.h"
-#include "common/textfile.h"
+#include "common/base/log.h"
+#include "common/base/textfile.h"
+#include "common/image/exr.h"
+#include "common/image/photo.h"
 
 #define LEAST_Z 1e-30 /* what is nearer or farther cannot be told from 0 or infinity */
 #define MOST_Z  1e30

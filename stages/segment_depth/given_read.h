@@ -8,9 +8,9 @@
 #ifndef REMODEL_GIVEN_READ_H
 #define REMODEL_GIVEN_READ_H
 
-#include "common/camera_set.h"
-#include "common/lens_list.h"
-#include "common/provenance.h"
+#include "common/base/provenance.h"
+#include "common/capture/camera_set.h"
+#include "common/capture/lens_list.h"
 
 enum given_pixels { PIXELS_BY_SIZE, PIXELS_OF_VIEW, PIXELS_OF_PHOTO };
 

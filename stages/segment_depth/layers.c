@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/parallel.h"
+#include "common/base/parallel.h"
 
 #define REACH          2     /* px: how far light spreads over a jump */
 #define COLLECT        6     /* px: half width of the window of the two means */

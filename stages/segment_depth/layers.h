@@ -2,8 +2,8 @@
 #ifndef REMODEL_LAYERS_H
 #define REMODEL_LAYERS_H
 
-#include "common/image.h"
-#include "common/layered_depth.h"
+#include "common/image/image.h"
+#include "common/layers/layered_depth.h"
 #include "stages/segment_depth/plane_match.h"
 
 /* Fills the layers of `out` (sized like the view; its segments are set by the caller but for `pixels`, which is counted

@@ -5,7 +5,7 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
-#include "common/sort.h"
+#include "common/base/sort.h"
 
 #define LEAST_SHARED  8   /* points that two views must share before the points choose */
 #define LARGEST_ERROR 2.0 /* px, of a point that is believed */

@@ -2,7 +2,7 @@
 #ifndef REMODEL_NEIGHBOURS_H
 #define REMODEL_NEIGHBOURS_H
 
-#include "common/camera_set.h"
+#include "common/capture/camera_set.h"
 
 #define MAX_NEIGHBOURS 16
 

@@ -11,8 +11,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/parallel.h"
-#include "common/sort.h"
+#include "common/base/parallel.h"
+#include "common/base/sort.h"
 
 #define CHANNELS 8
 #define UNIT     127 /* corners' weights sum to it, so features are bytes times it */

@@ -4,8 +4,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "common/parallel.h"
-#include "common/progress.h"
+#include "common/base/parallel.h"
+#include "common/base/progress.h"
 #include "stages/segment_depth/smooth.h"
 
 #define HORIZON 0.03 /* |cosine| between a ray and the horizontal below which horizontal planes are not tried */

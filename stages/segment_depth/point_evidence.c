@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "common/parallel.h"
+#include "common/base/parallel.h"
 
 #define NEAR_COLOUR 6.0f /* Lab distance that counts like a distance of NEAR_PLACE of the picture's diagonal */
 #define NEAR_PLACE  0.08f

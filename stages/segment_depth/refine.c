@@ -11,8 +11,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/parallel.h"
-#include "common/progress.h"
+#include "common/base/parallel.h"
+#include "common/base/progress.h"
 
 struct refine {
     const struct plane_problem *p;

@@ -15,11 +15,11 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "common/cli.h"
-#include "common/file_path.h"
-#include "common/log.h"
-#include "common/outfile.h"
-#include "common/view_image.h"
+#include "common/base/cli.h"
+#include "common/base/file_path.h"
+#include "common/base/log.h"
+#include "common/base/outfile.h"
+#include "common/capture/view_image.h"
 #include "stages/segment_depth/estimate.h"
 #include "stages/segment_depth/given_depth.h"
 #include "stages/segment_depth/given_read.h"

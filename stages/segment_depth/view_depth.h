@@ -2,8 +2,8 @@
 #ifndef REMODEL_VIEW_DEPTH_H
 #define REMODEL_VIEW_DEPTH_H
 
-#include "common/image.h"
-#include "common/layered_depth.h"
+#include "common/image/image.h"
+#include "common/layers/layered_depth.h"
 #include "stages/segment_depth/neighbours.h"
 #include "stages/segment_depth/segment_params.h"
 

@@ -12,14 +12,14 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "common/clock.h"
-#include "common/log.h"
-#include "common/outfile.h"
-#include "common/parallel.h"
-#include "common/photo_mask.h"
-#include "common/photo_match.h"
-#include "common/process.h"
-#include "common/textfile.h"
+#include "common/base/clock.h"
+#include "common/base/log.h"
+#include "common/base/outfile.h"
+#include "common/base/parallel.h"
+#include "common/base/process.h"
+#include "common/base/textfile.h"
+#include "common/capture/photo_mask.h"
+#include "common/capture/photo_match.h"
 
 #define PARAM_STRUCT struct sfm_params
 const struct param sfm_param_table[] = {SFM_PARAMS(PARAM_ROW) PARAM_END};

@@ -5,7 +5,7 @@
 #ifndef REMODEL_RUN_COLMAP_H
 #define REMODEL_RUN_COLMAP_H
 
-#include "common/param.h"
+#include "common/base/param.h"
 #include "stages/sfm/sfm_folder.h"
 
 #define SFM_PARAMS(X)                                                                                                 \
@@ -65,7 +65,7 @@ void feature_counts_release(struct feature_counts *c);
 
 struct sfm_input {
     const char *photos, *masks,
-        *records; /* folders; masks: NULL or of ID.png (common/photo_mask.h): black is not looked at */
+        *records; /* folders; masks: NULL or of ID.png (common/capture/photo_mask.h): black is not looked at */
     const struct photo_list *list;
     const struct sfm_params *params;
 };

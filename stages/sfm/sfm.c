@@ -10,7 +10,7 @@
  * OUT is made in OUT.work and replaced as a whole. */
 #include <stdbool.h>
 
-#include "common/cli.h"
+#include "common/base/cli.h"
 #include "stages/sfm/run_colmap.h"
 #include "stages/sfm/user_model.h"
 

@@ -11,7 +11,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "common/outfile.h"
+#include "common/base/outfile.h"
 
 char *text_format(struct err *err, const char *fmt, ...)
 {

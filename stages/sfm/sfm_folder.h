@@ -2,8 +2,8 @@
 #ifndef REMODEL_SFM_FOLDER_H
 #define REMODEL_SFM_FOLDER_H
 
-#include "common/photo_list.h"
-#include "common/sfm_model.h"
+#include "common/capture/photo_list.h"
+#include "common/capture/sfm_model.h"
 
 /* printf into memory that the caller frees; NULL: no memory, err is set. */
 char *text_format(struct err *err, const char *fmt, ...) PRINTF_LIKE(2, 3);

@@ -7,11 +7,11 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "common/log.h"
-#include "common/outfile.h"
-#include "common/photo_match.h"
-#include "common/process.h"
-#include "common/textfile.h"
+#include "common/base/log.h"
+#include "common/base/outfile.h"
+#include "common/base/process.h"
+#include "common/base/textfile.h"
+#include "common/capture/photo_match.h"
 
 static bool has_file(const char *folder, const char *file)
 {

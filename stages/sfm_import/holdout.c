@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/log.h"
+#include "common/base/log.h"
 
 enum status holdout_choose(bool *held, const struct lens_list *lenses, int every, const char *names, struct err *err)
 {

@@ -12,11 +12,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/log.h"
-#include "common/outfile.h"
-#include "common/photo_match.h"
-#include "common/sort.h"
-#include "common/textfile.h"
+#include "common/base/log.h"
+#include "common/base/outfile.h"
+#include "common/base/sort.h"
+#include "common/base/textfile.h"
+#include "common/capture/photo_match.h"
 #include "stages/sfm_import/view_cameras.h"
 
 #define PARAM_STRUCT struct import_params

@@ -4,10 +4,10 @@
 #ifndef REMODEL_IMPORT_MODEL_H
 #define REMODEL_IMPORT_MODEL_H
 
-#include "common/lens_list.h"
-#include "common/param.h"
-#include "common/photo_list.h"
-#include "common/sfm_model.h"
+#include "common/base/param.h"
+#include "common/capture/lens_list.h"
+#include "common/capture/photo_list.h"
+#include "common/capture/sfm_model.h"
 
 #define IMPORT_PARAMS(X)                                                                                      \
     X(max_megapixels, double, 2, 0, 1000, "Mpx", "larger views are scaled down to this; 0: no limit")         \

@@ -10,9 +10,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/cli.h"
-#include "common/file_path.h"
-#include "common/outfile.h"
+#include "common/base/cli.h"
+#include "common/base/file_path.h"
+#include "common/base/outfile.h"
 #include "stages/sfm_import/holdout.h"
 
 static enum status add_inputs(struct provenance *prov, const char *sfm, const char *model, struct err *err)

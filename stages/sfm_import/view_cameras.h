@@ -13,7 +13,7 @@
 #ifndef REMODEL_VIEW_CAMERAS_H
 #define REMODEL_VIEW_CAMERAS_H
 
-#include "common/camera.h"
+#include "common/capture/camera.h"
 
 enum { MOST_PARTS = 5 };
 

@@ -11,7 +11,7 @@
 
 #include <stdbool.h>
 
-#include "common/vec.h"
+#include "common/math/vec.h"
 #include "stages/simulate/colour.h"
 
 enum brdf_kind { BRDF_LAMBERT, BRDF_PHONG, BRDF_WARD };

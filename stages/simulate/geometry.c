@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/sort.h"
+#include "common/base/sort.h"
 #include "stages/simulate/noise.h"
 
 #define MOST_TRIANGLES (1 << 23)

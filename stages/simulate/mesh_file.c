@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/scan.h"
-#include "common/textfile.h"
+#include "common/base/scan.h"
+#include "common/base/textfile.h"
 
 #define MOST_TRIANGLES (1 << 22)
 #define MOST_METRES    1e5

@@ -2,8 +2,8 @@
 #ifndef REMODEL_SIMULATE_MESH_FILE_H
 #define REMODEL_SIMULATE_MESH_FILE_H
 
-#include "common/err.h"
-#include "common/vec.h"
+#include "common/base/err.h"
+#include "common/math/vec.h"
 
 /* Lines v and f; polygons become fans of triangles, indices may be negative and carry /texture/normal; what else OBJ
  * knows (normals, groups, materials) is passed over. *triangles is malloc'ed. ST_DATA with file and line; a file without

@@ -7,10 +7,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/clock.h"
-#include "common/exr.h"
-#include "common/log.h"
-#include "common/photo.h"
+#include "common/base/clock.h"
+#include "common/base/log.h"
+#include "common/image/exr.h"
+#include "common/image/photo.h"
 #include "stages/simulate/sensor.h"
 
 #define FILM_MM 36.0 /* the width of the sensor that focal lengths in millimetres are told for */

@@ -3,8 +3,8 @@
 
 #include <stdlib.h>
 
-#include "common/parallel.h"
-#include "common/progress.h"
+#include "common/base/parallel.h"
+#include "common/base/progress.h"
 
 #define TILE 16 /* px; tiles are what threads share */
 

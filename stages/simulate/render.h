@@ -2,7 +2,7 @@
 #ifndef REMODEL_SIMULATE_RENDER_H
 #define REMODEL_SIMULATE_RENDER_H
 
-#include "common/image.h"
+#include "common/image/image.h"
 #include "stages/simulate/path_trace.h"
 #include "stages/simulate/shoot_file.h"
 #include "stages/simulate/simulate_params.h"

@@ -3,11 +3,11 @@
  * Sobol' points in groups of four dimensions, shuffled and Owen-scrambled by hashing (B. Burley, "Practical Hash-based
  * Owen Scrambling", JCGT 2020). Every number is by itself uniform in [0, 1), so estimates are unbiased for any number of
  * samples; over the samples of a pixel they are spread more evenly than independent ones. All seeds come from the
- * counter-based generator of common/rng.h, keyed by (seed, stage, view, pixel). */
+ * counter-based generator of common/base/rng.h, keyed by (seed, stage, view, pixel). */
 #ifndef REMODEL_SIMULATE_SAMPLER_H
 #define REMODEL_SIMULATE_SAMPLER_H
 
-#include "common/rng.h"
+#include "common/base/rng.h"
 
 struct sampler {
     uint32_t key;    /* of the pixel */

@@ -7,9 +7,9 @@
 
 #include <stdbool.h>
 
-#include "common/err.h"
-#include "common/provenance.h"
-#include "common/vec.h"
+#include "common/base/err.h"
+#include "common/base/provenance.h"
+#include "common/math/vec.h"
 #include "stages/simulate/brdf.h"
 #include "stages/simulate/texture.h"
 

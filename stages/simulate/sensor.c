@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-#include "common/parallel.h"
+#include "common/base/parallel.h"
 
 #define PI 3.14159265358979323846
 

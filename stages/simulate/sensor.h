@@ -6,8 +6,8 @@
 #ifndef REMODEL_SIMULATE_SENSOR_H
 #define REMODEL_SIMULATE_SENSOR_H
 
-#include "common/image.h"
-#include "common/rng.h"
+#include "common/base/rng.h"
+#include "common/image/image.h"
 #include "stages/simulate/shoot_file.h"
 
 /* rgb: 3 bytes a pixel. `rng` is the noise of this photograph and exposure. */

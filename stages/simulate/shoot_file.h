@@ -7,9 +7,9 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "common/camera.h"
-#include "common/err.h"
-#include "common/provenance.h"
+#include "common/base/err.h"
+#include "common/base/provenance.h"
+#include "common/capture/camera.h"
 
 enum lens_kind { LENS_PINHOLE, LENS_EQUISOLID };
 

@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/cli.h"
+#include "common/base/cli.h"
 #include "stages/simulate/photos.h"
 #include "stages/simulate/truth.h"
 

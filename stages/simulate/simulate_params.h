@@ -2,7 +2,7 @@
 #ifndef REMODEL_SIMULATE_PARAMS_H
 #define REMODEL_SIMULATE_PARAMS_H
 
-#include "common/param.h"
+#include "common/base/param.h"
 
 /* name, type, default, least, most, unit, help */
 #define SIMULATE_PARAMS(X)                                                                                        \

@@ -5,10 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/outfile.h"
-#include "common/parallel.h"
-#include "common/progress.h"
-#include "common/sfm_model.h"
+#include "common/base/outfile.h"
+#include "common/base/parallel.h"
+#include "common/base/progress.h"
+#include "common/capture/sfm_model.h"
 #include "stages/simulate/photos.h"
 
 #define OFF_SURFACE 0.02 /* m: where the irradiance is taken, as probes are held */

@@ -2,8 +2,8 @@
 #ifndef REMODEL_SUGGEST_RAYS_H
 #define REMODEL_SUGGEST_RAYS_H
 
-#include "common/camera_set.h"
-#include "common/point_cloud.h"
+#include "common/capture/camera_set.h"
+#include "common/capture/point_cloud.h"
 
 struct ray {
     int view;

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/sort.h"
+#include "common/base/sort.h"
 
 /* Parts of the ceiling's height: heights between which walls are looked at, and how far behind a face a line of sight
  * must go on. */

@@ -1,6 +1,6 @@
 /* suggest.h - a first plan of rooms from oriented points and lines of sight.
  *
- * All in the model's frame (common/model_axes.h); walls are along its axes. A wall's face is a peak of the positions of
+ * All in the model's frame (common/model/model_axes.h); walls are along its axes. A wall's face is a peak of the positions of
  * points that look along an axis. It is cut into cells: seen (points lie on it) or seen through (lines of sight go on
  * beyond it). The outermost faces that are seen bound the plan; two faces back to back that are seen all across a box
  * cut it in two, with a wall between; what is left are rooms. Openings are where walls are seen through. */

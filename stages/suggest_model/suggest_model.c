@@ -8,10 +8,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/cli.h"
-#include "common/log.h"
-#include "common/model_axes.h"
-#include "common/outfile.h"
+#include "common/base/cli.h"
+#include "common/base/log.h"
+#include "common/base/outfile.h"
+#include "common/model/model_axes.h"
 #include "stages/suggest_model/suggest.h"
 
 #define PARAM_STRUCT struct suggest_params

@@ -2,7 +2,7 @@
 #ifndef REMODEL_SUGGEST_PARAMS_H
 #define REMODEL_SUGGEST_PARAMS_H
 
-#include "common/param.h"
+#include "common/base/param.h"
 
 /* name, type, default, least, most, unit, help; parts are of the ceiling's height */
 #define SUGGEST_PARAMS(X)                                                                                        \

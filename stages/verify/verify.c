@@ -5,10 +5,10 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "common/cli.h"
-#include "common/exr.h"
-#include "common/photo.h"
-#include "common/point_cloud.h"
+#include "common/base/cli.h"
+#include "common/capture/point_cloud.h"
+#include "common/image/exr.h"
+#include "common/image/photo.h"
 
 static enum status verify_text(const char *path, struct err *err)
 {

@@ -6,7 +6,7 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
-#include "common/err.h"
+#include "common/base/err.h"
 
 struct sgbm_settings {
     int disparities; /* 0 .. this, a multiple of 16 */

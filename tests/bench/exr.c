@@ -1,4 +1,4 @@
-/* exr.c - one sample of the bench `exr`: writes or reads a picture by common/exr.c or by the OpenEXR library.
+/* exr.c - one sample of the bench `exr`: writes or reads a picture by common/image/exr.c or by the OpenEXR library.
  *
  * Prints, a line each: seconds of one write or read (median of as many as fit in a third of a second, after one that is
  * not counted), error (the largest relative difference of a sample that comes back from what was meant), its unit, mb
@@ -12,12 +12,12 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "common/cli.h"
-#include "common/clock.h"
-#include "common/exr.h"
-#include "common/outfile.h"
-#include "common/parallel.h"
-#include "common/rng.h"
+#include "common/base/cli.h"
+#include "common/base/clock.h"
+#include "common/base/outfile.h"
+#include "common/base/parallel.h"
+#include "common/base/rng.h"
+#include "common/image/exr.h"
 #include "tests/bench/exr_openexr.h"
 
 #define MOST_RUNS    64

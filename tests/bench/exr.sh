@@ -1,4 +1,4 @@
-# exr.sh - throughput of common/exr.c: codecs and threads, against the OpenEXR library itself.
+# exr.sh - throughput of common/image/exr.c: codecs and threads, against the OpenEXR library itself.
 #
 # Pictures: a synthetic one, 1920 x 1280, RGBA half, with a camera's noise; and a rectified view if a scene has been run
 # (VIEW=FILE names another, VIEW= none). BENCH_CODECS and BENCH_THREADS choose fewer settings. The baseline is the OpenEXR library's C++ interface, since that is what ImageMagick, OpenCV

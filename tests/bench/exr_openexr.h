@@ -1,12 +1,12 @@
 /* exr_openexr.h - the baseline of the bench `exr`: the OpenEXR library's own C++ interface, which is what programs that
- * write EXR files (ImageMagick, OpenCV, ...) call. It takes and gives the same pictures as common/exr.h. */
+ * write EXR files (ImageMagick, OpenCV, ...) call. It takes and gives the same pictures as common/image/exr.h. */
 #ifndef REMODEL_BENCH_EXR_OPENEXR_H
 #define REMODEL_BENCH_EXR_OPENEXR_H
 
 #ifdef __cplusplus
 extern "C" {
 #endif
-#include "common/exr.h"
+#include "common/image/exr.h"
 
 void openexr_set_threads(int threads);
 /* The file gets the picture's codec, half channels being rounded from float as in exr_write(). Not atomic, no fsync. */

@@ -7,8 +7,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "common/cli.h"
-#include "common/layered_depth.h"
+#include "common/base/cli.h"
+#include "common/layers/layered_depth.h"
 
 struct centroid {
     double u, v, weight;

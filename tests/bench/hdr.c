@@ -10,12 +10,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/cli.h"
-#include "common/clock.h"
-#include "common/exr.h"
-#include "common/parallel.h"
-#include "common/rng.h"
-#include "common/sort.h"
+#include "common/base/cli.h"
+#include "common/base/clock.h"
+#include "common/base/parallel.h"
+#include "common/base/rng.h"
+#include "common/base/sort.h"
+#include "common/image/exr.h"
 #include "stages/hdr_merge/align.h"
 #include "stages/hdr_merge/merge.h"
 #include "stages/hdr_merge/noise.h"

@@ -12,13 +12,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/cli.h"
-#include "common/clock.h"
-#include "common/file_path.h"
-#include "common/linear_photo.h"
-#include "common/parallel.h"
-#include "common/sort.h"
-#include "common/view_image.h"
+#include "common/base/cli.h"
+#include "common/base/clock.h"
+#include "common/base/file_path.h"
+#include "common/base/parallel.h"
+#include "common/base/sort.h"
+#include "common/capture/linear_photo.h"
+#include "common/capture/view_image.h"
 #include "stages/hdr_merge/bracketed_view.h"
 #include "stages/rectify/resample.h"
 #include "stages/sfm_import/view_cameras.h"

@@ -13,8 +13,8 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "common/cli.h"
-#include "common/layered_depth.h"
+#include "common/base/cli.h"
+#include "common/layers/layered_depth.h"
 
 #define ACROSS  5
 #define SPACING 0.3

@@ -15,9 +15,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "common/cli.h"
-#include "common/clock.h"
-#include "common/parallel.h"
+#include "common/base/cli.h"
+#include "common/base/clock.h"
+#include "common/base/parallel.h"
 #include "stages/plan_path/ends.h"
 #include "stages/plan_path/parallax.h"
 

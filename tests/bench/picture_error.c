@@ -8,7 +8,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "common/exr.h"
+#include "common/image/exr.h"
 
 static enum status compare(const char *picture, const char *truth, struct err *err)
 {

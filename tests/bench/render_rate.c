@@ -21,10 +21,10 @@
 #include <string.h>
 #include <sys/resource.h>
 
-#include "common/cli.h"
-#include "common/clock.h"
-#include "common/exr.h"
-#include "common/view_image.h"
+#include "common/base/cli.h"
+#include "common/base/clock.h"
+#include "common/capture/view_image.h"
+#include "common/image/exr.h"
 #include "stages/render_views/frames.h"
 
 #define SECONDS_LEAST 0.5

@@ -16,10 +16,10 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "common/cli.h"
-#include "common/exr.h"
-#include "common/outfile.h"
-#include "common/photo.h"
+#include "common/base/cli.h"
+#include "common/base/outfile.h"
+#include "common/image/exr.h"
+#include "common/image/photo.h"
 #include "tests/bench/stereo_pair.h"
 
 struct pair {

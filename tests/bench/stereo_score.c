@@ -17,10 +17,10 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "common/camera_set.h"
-#include "common/cli.h"
-#include "common/exr.h"
-#include "common/layered_depth.h"
+#include "common/base/cli.h"
+#include "common/capture/camera_set.h"
+#include "common/image/exr.h"
+#include "common/layers/layered_depth.h"
 #include "tests/bench/stereo_pair.h"
 
 struct truth {

@@ -11,11 +11,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/camera_set.h"
-#include "common/cli.h"
-#include "common/clock.h"
-#include "common/exr.h"
-#include "common/view_image.h"
+#include "common/base/cli.h"
+#include "common/base/clock.h"
+#include "common/capture/camera_set.h"
+#include "common/capture/view_image.h"
+#include "common/image/exr.h"
 #include "tests/bench/depth_sgbm.h"
 
 /* The best mean bad-2 over the pairs of the bench, of block 1, 3, 5, 7, p1 2 to 32, p2 16 to 96, uniqueness 0, 5 and 10. widen = no is

@@ -10,9 +10,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "common/cli.h"
-#include "common/clock.h"
-#include "common/scan.h"
+#include "common/base/cli.h"
+#include "common/base/clock.h"
+#include "common/base/scan.h"
 #include "stages/build_model/unite.h"
 
 #define ROOM      4.0

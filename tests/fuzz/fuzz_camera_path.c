@@ -9,7 +9,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "common/camera_path.h"
+#include "common/capture/camera_path.h"
 #include "tests/fuzz/fuzz_scratch.h"
 
 static char folder[FUZZ_PATH];

@@ -5,7 +5,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-#include "common/param.h"
+#include "common/base/param.h"
 #include "tests/fuzz/fuzz.h"
 
 #define TRY_PARAMS(X)                                      \

@@ -5,7 +5,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "common/effects.h"
+#include "common/film/effects.h"
 #include "tests/fuzz/fuzz.h"
 #include "tests/fuzz/fuzz_scratch.h"
 

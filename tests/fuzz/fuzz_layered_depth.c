@@ -9,8 +9,8 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "common/exr.h"
-#include "common/layered_depth.h"
+#include "common/image/exr.h"
+#include "common/layers/layered_depth.h"
 #include "tests/fuzz/fuzz.h"
 #include "tests/fuzz/fuzz_scratch.h"
 

@@ -5,7 +5,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "common/point_cloud.h"
+#include "common/capture/point_cloud.h"
 #include "tests/fuzz/fuzz.h"
 #include "tests/fuzz/fuzz_scratch.h"
 

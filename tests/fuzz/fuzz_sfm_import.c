@@ -10,7 +10,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "common/camera_set.h"
+#include "common/capture/camera_set.h"
 #include "tests/fuzz/fuzz.h"
 #include "tests/fuzz/fuzz_scratch.h"
 

@@ -5,7 +5,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-#include "common/textfile.h"
+#include "common/base/textfile.h"
 #include "tests/fuzz/fuzz.h"
 
 static enum status open_bytes(struct textfile *t, const void *bytes, size_t size, struct err *err)

@@ -55,7 +55,7 @@ man_pages_are_current()
 {
     for s in stages/*/; do
         s=$(basename "$s")
-        common/man.sh "$B/bin" "$s" | diff - "docs/man/$s.1" || fail "docs/man/$s.1 is not what common/man.sh makes; run make man"
+        common/run/man.sh "$B/bin" "$s" | diff - "docs/man/$s.1" || fail "docs/man/$s.1 is not what common/run/man.sh makes; run make man"
     done
 }
 

@@ -14,13 +14,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/cli.h"
-#include "common/exr.h"
-#include "common/outfile.h"
-#include "common/parallel.h"
-#include "common/photo.h"
-#include "common/version.h"
-#include "common/view_image.h"
+#include "common/base/cli.h"
+#include "common/base/outfile.h"
+#include "common/base/parallel.h"
+#include "common/base/version.h"
+#include "common/capture/view_image.h"
+#include "common/image/exr.h"
+#include "common/image/photo.h"
 
 enum { SAMPLES = 4, CANDIDATES = 500, MAX_VIEWS = 99 }; /* samples along each side of a pixel; points tried per view */
 enum surface { WALL = 1, FLOOR = 2, BOX = 3 };

@@ -12,8 +12,8 @@
 
 #include <cmocka.h>
 
-#include "common/layer_scene.h"
-#include "common/subject_list.h"
+#include "common/film/subject_list.h"
+#include "common/layers/layer_scene.h"
 
 enum { W = 160, H = 120, TILE = 10, MOST_VIEWS = 16, MOST_RECTANGLES = 3 };
 

@@ -1,7 +1,7 @@
 /* place.c - walls from rectangles on photographs: made points, known walls. */
 #include "tests/unit/scratch.h"
 
-#include "common/rng.h"
+#include "common/base/rng.h"
 #include "stages/build_model/place.h"
 
 /* A camera at (2, 2, 1.5) of the model that looks along +y, a fisheye and a pinhole; the world is the model turned

@@ -12,7 +12,7 @@
 #include "tests/unit/build_model/told.h"
 #include "tests/unit/build_model/unions.h"
 
-#include "common/rng.h"
+#include "common/base/rng.h"
 
 enum { USUAL = 300, TEXT = 16384, LINE = 256, FURNISHINGS = 6, EDITS = 8, LINES = 10, MOST_HITS = 1024 };
 enum { MOST_TOUCHED = 512 };

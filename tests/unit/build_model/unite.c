@@ -1,7 +1,7 @@
 /* unite.c - unions of which everything is known: counts, genus, names, volume. */
 #include "tests/unit/build_model/unions.h"
 
-#include "common/parallel.h"
+#include "common/base/parallel.h"
 
 struct wanted {
     int shells, genus, vertices, faces, loops; /* genus: of all shells */

@@ -4,7 +4,7 @@
  * REMODEL_EDIT_SEQUENCES=N: how many sequences of edits (200); REMODEL_SEED=N: which ones. */
 #include "tests/unit/build_model/unions.h"
 
-#include "common/rng.h"
+#include "common/base/rng.h"
 
 enum { SIDE = 6, MOST_BOXES = 12 };
 

@@ -2,8 +2,8 @@
  * nothing. */
 #include "tests/unit/scratch.h"
 
-#include "common/exr.h"
-#include "common/hash.h"
+#include "common/base/hash.h"
+#include "common/image/exr.h"
 #include "stages/encode_video/encode.h"
 
 #define W      64

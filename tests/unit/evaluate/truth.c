@@ -1,8 +1,8 @@
 /* Folders of truth: names, kinds of depth, and what is wrong with some. */
 #include "stages/evaluate/truth.h"
 
-#include "common/exr.h"
-#include "common/outfile.h"
+#include "common/base/outfile.h"
+#include "common/image/exr.h"
 #include "tests/unit/scratch.h"
 
 enum { W = 4, H = 3 };

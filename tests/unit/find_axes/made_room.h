@@ -12,7 +12,7 @@
 
 #include <cmocka.h>
 
-#include "common/rng.h"
+#include "common/base/rng.h"
 #include "stages/find_axes/directions.h"
 #include "stages/find_axes/room.h"
 

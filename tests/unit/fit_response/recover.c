@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-#include "common/rng.h"
+#include "common/base/rng.h"
 #include "stages/fit_response/recover.h"
 
 enum { WIDTH = 480, HEIGHT = 320, EXPOSURES = 5 };

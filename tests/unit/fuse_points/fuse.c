@@ -1,7 +1,7 @@
 /* Two planes seen by four cameras: what is known exactly comes out exactly, what is wrong is outvoted. */
 #include "planes.h"
 
-#include "common/parallel.h"
+#include "common/base/parallel.h"
 #include "stages/fuse_points/fuse.h"
 
 static const struct fuse_params defaults = FUSE_PARAMS_DEFAULT;

@@ -3,8 +3,8 @@
 
 #include <math.h>
 
-#include "common/parallel.h"
-#include "common/rng.h"
+#include "common/base/parallel.h"
+#include "common/base/rng.h"
 #include "stages/hdr_merge/align.h"
 
 enum { WIDTH = 320, HEIGHT = 240 };

@@ -7,10 +7,10 @@
 
 #include <math.h>
 
-#include "common/exposure_list.h"
-#include "common/sort.h"
+#include "common/base/sort.h"
 #include "stages/fit_response/recover.h"
 #include "stages/hdr_merge/merge.h"
+#include "stages/import_photos/exposure_list.h"
 
 struct stack { /* from the shortest exposure on */
     struct photo photos[MERGE_MOST];

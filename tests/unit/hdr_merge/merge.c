@@ -9,10 +9,10 @@
 
 #include <math.h>
 
-#include "common/exr.h"
-#include "common/parallel.h"
-#include "common/rng.h"
-#include "common/sort.h"
+#include "common/base/parallel.h"
+#include "common/base/rng.h"
+#include "common/base/sort.h"
+#include "common/image/exr.h"
 #include "stages/hdr_merge/merge.h"
 
 enum { WIDTH = 512, HEIGHT = 24, PIXELS = WIDTH * HEIGHT };

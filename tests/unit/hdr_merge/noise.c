@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-#include "common/rng.h"
+#include "common/base/rng.h"
 #include "stages/hdr_merge/merge.h"
 
 enum { WIDTH = 640, HEIGHT = 200, PIXELS = WIDTH * HEIGHT, COUNT = 3 };

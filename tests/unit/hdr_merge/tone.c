@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-#include "common/parallel.h"
+#include "common/base/parallel.h"
 #include "stages/hdr_merge/tone.h"
 
 enum { WIDTH = 400, HEIGHT = 300 };

@@ -1,9 +1,9 @@
 /* From photo files to frames: ends that are the photos, pictures between, farmed frames, and pairs that cannot be
  * morphed. */
 #include "../scratch.h"
-#include "common/exr.h"
-#include "common/parallel.h"
-#include "common/photo_list.h"
+#include "common/base/parallel.h"
+#include "common/capture/photo_list.h"
+#include "common/image/exr.h"
 #include "made_pair.h"
 #include "stages/morph_views/morph_frames.h"
 #include "stages/morph_views/prepare.h"

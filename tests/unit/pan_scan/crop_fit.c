@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-#include "common/rng.h"
+#include "common/base/rng.h"
 
 enum { POINTS = 60, W = 320, H = 200, PHOTO_W = 800, PHOTO_H = 600 };
 

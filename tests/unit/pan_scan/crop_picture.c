@@ -6,7 +6,7 @@
 
 #include <math.h>
 
-#include "common/parallel.h"
+#include "common/base/parallel.h"
 
 enum { W = 64, H = 48 };
 

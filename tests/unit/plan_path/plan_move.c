@@ -2,7 +2,7 @@
  * hard cases: few views, views in a line or at one place, nothing valid, an aperture that cannot open. */
 #include "stages/plan_path/plan_move.h"
 
-#include "common/parallel.h"
+#include "common/base/parallel.h"
 #include "stages/plan_path/parallax.h"
 #include "stages/sample_validity/sample.h"
 #include "tests/unit/scratch.h"

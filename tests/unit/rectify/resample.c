@@ -1,14 +1,14 @@
 /* resample.c - photographs of known textures through known lenses: what must be seen where, and how well.
  *
- * Lenses are written out here once more, so that a mistake in common/camera.c cannot hide itself. What a Lanczos-3 filter
+ * Lenses are written out here once more, so that a mistake in common/capture/camera.c cannot hide itself. What a Lanczos-3 filter
  * does to a grating follows from its definition: kernel_gain(). */
 #include "tests/unit/scratch.h"
 
 #include <complex.h>
 #include <math.h>
 
-#include "common/parallel.h"
-#include "common/rng.h"
+#include "common/base/parallel.h"
+#include "common/base/rng.h"
 #include "stages/rectify/resample.h"
 
 #define COUNT(a) (sizeof(a) / sizeof *(a))

@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-#include "common/parallel.h"
+#include "common/base/parallel.h"
 #include "stages/render_views/aperture.h"
 
 #define W 96

@@ -3,8 +3,8 @@
 
 #include <math.h>
 
-#include "common/exr.h"
-#include "common/parallel.h"
+#include "common/base/parallel.h"
+#include "common/image/exr.h"
 #include "stages/render_views/aperture.h"
 #include "stages/render_views/defocus.h"
 

@@ -3,8 +3,8 @@
 
 #include <math.h>
 
-#include "common/parallel.h"
-#include "common/rng.h"
+#include "common/base/parallel.h"
+#include "common/base/rng.h"
 #include "stages/render_views/exemplar_fill.h"
 
 static const struct exemplar_depth depth_of_scene = {{3, 10}, 0.01f};

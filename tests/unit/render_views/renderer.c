@@ -1,9 +1,9 @@
 /* renderer.c - finished frames of a path: with holes that are filled, depth of field and effect layers, whatever frames
  * are asked for. */
-#include "tests/unit/common/formula_scene.h"
+#include "tests/unit/common/layers/formula_scene.h"
 #include "tests/unit/scratch.h"
 
-#include "common/parallel.h"
+#include "common/base/parallel.h"
 #include "stages/render_views/renderer.h"
 
 enum { FRAMES = 7 };

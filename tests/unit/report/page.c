@@ -3,7 +3,7 @@
 
 #include "tests/unit/scratch.h"
 
-#include "common/outfile.h"
+#include "common/base/outfile.h"
 
 static char *page_of(const char *scene, const char *defaults)
 {

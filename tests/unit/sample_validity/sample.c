@@ -2,7 +2,7 @@
  * sampled. */
 #include "stages/sample_validity/sample.h"
 
-#include "common/parallel.h"
+#include "common/base/parallel.h"
 #include "tests/unit/scratch.h"
 #include "tests/unit/wall_scene.h"
 

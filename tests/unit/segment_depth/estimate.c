@@ -3,7 +3,7 @@
 #include "tests/unit/scratch.h"
 #include "tests/unit/segment_depth/scene.h"
 
-#include "common/parallel.h"
+#include "common/base/parallel.h"
 
 static struct scene scene;
 static const struct segment_params params = SEGMENT_PARAMS_DEFAULT;

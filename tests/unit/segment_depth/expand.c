@@ -3,7 +3,7 @@
 
 #include "tests/unit/segment_depth/problem.h"
 
-#include "common/parallel.h"
+#include "common/base/parallel.h"
 
 /* As a sweep leaves them where it is not sure: constant, and up to `most` steps off. */
 static void start_planes(struct plane *planes, double most)

@@ -4,8 +4,8 @@
 #include <math.h>
 #include <png.h>
 
-#include "common/exr.h"
-#include "common/photo.h"
+#include "common/image/exr.h"
+#include "common/image/photo.h"
 #include "stages/segment_depth/given_read.h"
 
 enum { W = 40, H = 30 };

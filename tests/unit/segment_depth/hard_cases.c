@@ -6,7 +6,7 @@
 #include <sys/resource.h>
 #include <time.h>
 
-#include "common/view_image.h"
+#include "common/capture/view_image.h"
 
 static const struct segment_params params = SEGMENT_PARAMS_DEFAULT;
 

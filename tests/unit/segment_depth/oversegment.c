@@ -3,7 +3,7 @@
 
 #include "tests/unit/segment_depth/scene.h"
 
-#include "common/parallel.h"
+#include "common/base/parallel.h"
 
 typedef void paint_fn(int x, int y, float rgba[4]);
 

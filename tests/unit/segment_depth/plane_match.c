@@ -3,7 +3,7 @@
 
 #include "tests/unit/segment_depth/scene.h"
 
-#include "common/parallel.h"
+#include "common/base/parallel.h"
 
 enum { W = 120, H = 90, FOCAL = 120 };
 

@@ -3,7 +3,7 @@
 
 #include "tests/unit/segment_depth/problem.h"
 
-#include "common/parallel.h"
+#include "common/base/parallel.h"
 
 static void start(void)
 {

@@ -3,7 +3,7 @@
 
 #include "tests/unit/segment_depth/problem.h"
 
-#include "common/parallel.h"
+#include "common/base/parallel.h"
 
 /* A wall that leans, blank if `contrast` is 0. */
 static void start(double lean, double contrast)

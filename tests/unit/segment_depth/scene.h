@@ -16,8 +16,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/camera_set.h"
-#include "common/image.h"
+#include "common/capture/camera_set.h"
+#include "common/image/image.h"
 
 #define assert_near(a, b, tolerance) assert_true(fabs((double)(a) - (double)(b)) <= (tolerance))
 

@@ -5,7 +5,7 @@
 #include "stages/segment_depth/view_depth.h"
 #include "tests/unit/segment_depth/scene.h"
 
-#include "common/parallel.h"
+#include "common/base/parallel.h"
 
 enum { W = 160, H = 120, FOCAL = 160 };
 

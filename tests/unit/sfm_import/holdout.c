@@ -1,7 +1,7 @@
 /* Which views are held out, and what of the model stays with which part. */
 #include "stages/sfm_import/holdout.h"
 
-#include "common/camera_set.h"
+#include "common/capture/camera_set.h"
 #include "tests/unit/scratch.h"
 
 enum { VIEWS = 5 };

@@ -4,9 +4,9 @@
 
 #include <math.h>
 
-#include "common/camera_set.h"
-#include "common/photo_match.h"
-#include "common/rng.h"
+#include "common/base/rng.h"
+#include "common/capture/camera_set.h"
+#include "common/capture/photo_match.h"
 #include "stages/sfm_import/import_model.h"
 
 #define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))

@@ -2,7 +2,7 @@
  * another seed, over coarse blocks. */
 #include "tests/unit/simulate/worlds.h"
 
-#include "common/outfile.h"
+#include "common/base/outfile.h"
 #include "stages/simulate/render.h"
 
 #define BOX    "../shared/data/cornell-box/"

@@ -1,10 +1,10 @@
 /* Whole photographs: what is written and what it holds, the same bytes for any number of threads, nothing in the dark. */
 #include "tests/unit/simulate/worlds.h"
 
-#include "common/exr.h"
-#include "common/parallel.h"
-#include "common/photo.h"
-#include "common/sfm_model.h"
+#include "common/base/parallel.h"
+#include "common/capture/sfm_model.h"
+#include "common/image/exr.h"
+#include "common/image/photo.h"
 #include "stages/simulate/photos.h"
 #include "stages/simulate/truth.h"
 

@@ -1,7 +1,7 @@
 /* Scene files: what is read, the faces that come of it, and sentences about what is wrong. */
 #include "tests/unit/simulate/worlds.h"
 
-#include "common/param.h"
+#include "common/base/param.h"
 #include "stages/simulate/mesh_file.h"
 
 #define HEAD "remodel-scene 1\ntexture t rgb 0.5 0.5 0.5\nmaterial m lambert t\n"

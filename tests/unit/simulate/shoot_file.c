@@ -1,7 +1,7 @@
 /* The photographer's file: lenses against closed forms, poses, the sensor, and sentences about what is wrong. */
 #include "tests/unit/simulate/worlds.h"
 
-#include "common/parallel.h"
+#include "common/base/parallel.h"
 #include "stages/simulate/sensor.h"
 #include "stages/simulate/shoot_file.h"
 

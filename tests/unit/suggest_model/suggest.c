@@ -3,7 +3,7 @@
 
 #include "tests/unit/scratch.h"
 
-#include "common/rng.h"
+#include "common/base/rng.h"
 
 enum { POINTS = 600000, VIEWS = 24 };
 /* metres: rooms of 5 x 4 and 3 x 4, a wall of 0.2 between them with a doorway, a window to a yard in the south */

@@ -1,0 +1,310 @@
+/* cli.c - see cli.h. */
+#include "common/base/cli.h"
+
+#include <assert.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include "common/base/clock.h"
+#include "common/base/log.h"
+#include "common/base/parallel.h"
+#include "common/base/scan.h"
+#include "common/base/version.h"
+
+enum { MOST_THREADS = 1024 };
+
+/* ------------------------------------------------------------------------------------------ the last line on stderr */
+
+static double started;
+static pid_t owner;
+
+static double cpu_seconds(const struct rusage *u)
+{
+    return (double)(u->ru_utime.tv_sec + u->ru_stime.tv_sec) +
+           1e-6 * (double)(u->ru_utime.tv_usec + u->ru_stime.tv_usec);
+}
+
+static void report_use(void)
+{
+    struct rusage self = {0}, children = {0};
+
+    if (getpid() != owner) return; /* a forked child that exits */
+    getrusage(RUSAGE_SELF, &self);
+    getrusage(RUSAGE_CHILDREN, &children);
+    const long peak = self.ru_maxrss > children.ru_maxrss ? self.ru_maxrss : children.ru_maxrss; /* KiB */
+    log_note("used %.2f s wall, %.2f s cpu, %ld MiB peak", clock_seconds() - started,
+             cpu_seconds(&self) + cpu_seconds(&children), (peak + 1023) / 1024);
+}
+
+/* ---------------------------------------------------------------------------------------------------- the options */
+
+static const struct param no_params[] = {PARAM_END};
+
+struct common_opts {
+    struct cli_list configs, sets;
+    int threads;
+    bool help, version, print_config, explain_config;
+};
+
+static enum status list_add(struct cli_list *list, const char *item, struct err *err)
+{
+    const size_t bytes = (size_t)(list->count + 1) * sizeof *list->items;
+    const char **grown = realloc(list->items, bytes);
+
+    if (!grown) return err_nomem(err, "the command line", bytes);
+    list->items = grown;
+    list->items[list->count++] = item;
+    return ST_OK;
+}
+
+void cli_list_release(struct cli_list *list)
+{
+    if (!list) return;
+    free(list->items);
+    *list = (struct cli_list){0};
+}
+
+static const char *kind_value(enum cli_kind kind)
+{
+    switch (kind) {
+    case CLI_KIND_STR:
+        return " TEXT";
+    case CLI_KIND_LIST:
+        return " TEXT...";
+    case CLI_KIND_INT:
+        return " N";
+    default:
+        return "";
+    }
+}
+
+static void print_option(const char *name, const char *value, const char *help, const char *note)
+{
+    char left[64];
+
+    snprintf(left, sizeof left, "--%s%s", name, value);
+    printf("  %-20s %s%s\n", left, help, note);
+}
+
+static void print_help(const char *stage, const struct cli_opt *opts, const struct cli_opt *common,
+                       const struct cli_opt *params)
+{
+    printf("usage: %s [OPTION]...\n", stage);
+    for (const struct cli_opt *o = opts; o->kind != CLI_KIND_END; o++)
+        if (o->kind == CLI_KIND_ABOUT) printf("%s\n", o->help);
+    printf("\noptions:\n");
+    for (const struct cli_opt *o = opts; o->kind != CLI_KIND_END; o++)
+        if (o->name)
+            print_option(o->name, kind_value(o->kind), o->help,
+                         o->required                ? " (required)"
+                         : o->kind == CLI_KIND_LIST ? " (may be given several times)"
+                                                    : "");
+    printf("\noptions that every stage has:\n");
+    for (const struct cli_opt *o = common; o->kind != CLI_KIND_END; o++)
+        print_option(o->name, kind_value(o->kind), o->help, "");
+    if (params->table->name) {
+        printf("\nparameters, in the section [%s] of a config file or by --set:\n", stage);
+        params_help(params->table, params->value, stdout);
+    }
+}
+
+struct known { /* for "did you mean" */
+    const struct cli_opt *opts, *common;
+};
+
+static const char *known_name(const void *ctx, int i)
+{
+    const struct known *k = ctx;
+    const struct cli_opt *lists[] = {k->opts, k->common};
+
+    for (int l = 0; l < 2; l++)
+        for (const struct cli_opt *o = lists[l]; o->kind != CLI_KIND_END; o++)
+            if (o->name && i-- == 0) return o->name;
+    return NULL;
+}
+
+static const struct cli_opt *find(const struct cli_opt *opts, const char *name, size_t n)
+{
+    for (; opts->kind != CLI_KIND_END; opts++)
+        if (opts->name && strlen(opts->name) == n && !memcmp(opts->name, name, n)) return opts;
+    return NULL;
+}
+
+static enum status store(const struct cli_opt *o, const char *value, bool again, struct err *err)
+{
+    char shown[SCAN_SHOWN];
+    int64_t v;
+
+    if (again && (o->kind == CLI_KIND_STR || o->kind == CLI_KIND_PARAM || o->kind == CLI_KIND_INT))
+        return err_set(err, ST_USAGE, "--%s is given twice; keep one.", o->name);
+    switch (o->kind) {
+    case CLI_KIND_STR:
+    case CLI_KIND_PARAM:
+        *(const char **)o->value = value;
+        return ST_OK;
+    case CLI_KIND_LIST:
+        return list_add(o->value, value, err);
+    case CLI_KIND_FLAG:
+        *(bool *)o->value = true;
+        return ST_OK;
+    default:
+        break;
+    }
+    if (!scan_int(value, &v) || v < INT_MIN || v > INT_MAX)
+        return err_set(err, ST_USAGE, "--%s %s: wanted an integer.", o->name, scan_show(shown, value));
+    *(int *)o->value = (int)v;
+    return ST_OK;
+}
+
+/* One argument, or two if the value stands apart; *i moves to the last one taken. seen: a flag for each of the stage's
+ * options. */
+static enum status take_arg(int argc, char **argv, int *i, const struct known *known, bool *seen, struct err *err)
+{
+    const char *arg = argv[*i], *name = arg + 2, *value = NULL;
+    char shown[SCAN_SHOWN], word[64];
+    bool again = false; /* --threads may be given again, and the last one counts */
+
+    if (strncmp(arg, "--", 2) || !*name)
+        return err_set(err, ST_USAGE, "unexpected argument %s; every argument is --option or --option value.",
+                       scan_show(shown, arg));
+    const size_t n = strcspn(name, "=");
+    if (name[n]) value = name + n + 1;
+    const struct cli_opt *o = find(known->opts, name, n);
+    if (o) {
+        again = seen[o - known->opts];
+        seen[o - known->opts] = true;
+    } else if (!(o = find(known->common, name, n))) {
+        snprintf(word, sizeof word, "%.*s", (int)n, name);
+        const char *near = scan_nearest(word, known_name, known);
+        return err_set(err, ST_USAGE, "unknown option %s%s%s%s", scan_show(shown, word),
+                       near ? "; did you mean --" : "; --help lists them", near ? near : "", near ? "?" : ".");
+    }
+    if (o->kind == CLI_KIND_FLAG && value) return err_set(err, ST_USAGE, "--%s takes no value.", o->name);
+    if (o->kind != CLI_KIND_FLAG && !value) {
+        if (*i + 1 == argc || !strncmp(argv[*i + 1], "--", 2))
+            return err_set(err, ST_USAGE, "--%s needs a value (write --%s=VALUE if it begins with --).", o->name,
+                           o->name);
+        value = argv[++*i];
+    }
+    return store(o, value, again, err);
+}
+
+static enum status set_param(const struct cli_opt *params, const struct cli_opt *o, struct err *err)
+{
+    const char *value = *(const char *const *)o->value;
+    char assignment[PARAM_TEXT_SIZE + 64];
+
+    if (!value) return ST_OK;
+    if (snprintf(assignment, sizeof assignment, "%s=%s", o->name, value) >= (int)sizeof assignment)
+        return err_set(err, ST_USAGE, "--%s: its value is too long.", o->name);
+    return params_set(params->table, params->value, assignment, err);
+}
+
+/* Config files, then --set and options that are parameters, then the relations between parameters; the outcome goes to
+ * the provenance. */
+static enum status effective_params(const struct cli_opt *opts, const struct cli_opt *params,
+                                    const struct common_opts *common, const char *stage, struct provenance *prov,
+                                    struct err *err)
+{
+    size_t size = 0;
+    enum status st = ST_OK;
+
+    for (int i = 0; !st && i < common->configs.count; i++)
+        st = params_read_file(params->table, params->value, stage, common->configs.items[i], err);
+    for (int i = 0; !st && i < common->sets.count; i++)
+        st = params_set(params->table, params->value, common->sets.items[i], err);
+    for (const struct cli_opt *o = opts; !st && o->kind != CLI_KIND_END; o++)
+        if (o->kind == CLI_KIND_PARAM) st = set_param(params, o, err);
+    if (!st && params->check) st = params->check(params->value, err);
+    if (st) return st;
+
+    FILE *to = open_memstream(&prov->params, &size);
+    if (!to) return err_nomem(err, "the parameters", 0);
+    params_print(params->table, params->value, stage, to);
+    const bool failed = ferror(to);
+    if (fclose(to) || failed) return err_nomem(err, "the parameters", size);
+    return ST_OK;
+}
+
+static enum status parse(int argc, char **argv, const char *stage, const struct cli_opt *opts,
+                         const struct cli_opt *common_opts, struct common_opts *common, struct provenance *prov,
+                         struct err *err)
+{
+    enum { MOST_OPTIONS = 64 };
+    static const struct cli_opt without = {CLI_KIND_PARAMS, NULL, NULL, false, NULL, no_params, NULL};
+    const struct known known = {opts, common_opts};
+    const struct cli_opt *params = &without;
+    bool seen[MOST_OPTIONS] = {false};
+    enum status st = ST_OK;
+
+    for (const struct cli_opt *o = opts; o->kind != CLI_KIND_END; o++) {
+        assert(o - opts < MOST_OPTIONS);
+        if (o->kind == CLI_KIND_PARAMS) params = o;
+    }
+    for (int i = 1; !st && i < argc; i++) {
+        st = take_arg(argc, argv, &i, &known, seen, err);
+        if (!st && common->help) {
+            print_help(stage, opts, common_opts, params);
+            return ST_OK;
+        }
+        if (!st && common->version) {
+            printf("remodel %s %s\n", stage, REMODEL_VERSION);
+            return ST_OK;
+        }
+    }
+    if (!st && (common->threads < 0 || common->threads > MOST_THREADS))
+        st = err_set(err, ST_USAGE, "--threads %d: wanted 0 (as many as there are cores) to %d.", common->threads,
+                     MOST_THREADS);
+    if (!st && common->explain_config) {
+        params_explain(params->table, params->value, stage, stdout);
+        return ST_OK;
+    }
+    if (!st) st = effective_params(opts, params, common, stage, prov, err);
+    if (st || common->print_config) {
+        if (!st) fputs(prov->params, stdout);
+        return st;
+    }
+    for (const struct cli_opt *o = opts; !st && o->kind != CLI_KIND_END; o++)
+        if (o->required && !seen[o - opts]) st = err_set(err, ST_USAGE, "--%s is missing: %s.", o->name, o->help);
+    return st;
+}
+
+enum cli_verdict cli_parse(int argc, char **argv, const char *stage, const struct cli_opt *opts,
+                           struct provenance *prov, struct err *err)
+{
+    struct common_opts common = {0};
+    const struct cli_opt common_opts[] = {
+        CLI_FLAG("help", &common.help, "print this and exit"),
+        CLI_FLAG("version", &common.version, "print the release and exit"),
+        CLI_FLAG("print-config", &common.print_config, "print the effective parameters and exit"),
+        CLI_FLAG("explain-config", &common.explain_config, "print the section of configs/default.cfg and exit"),
+        CLI_INT("threads", &common.threads, CLI_OPTIONAL, "threads to use; 0: as many as there are cores (default)"),
+        CLI_LIST("config", &common.configs, CLI_OPTIONAL, "read parameters from a config file; later files win"),
+        CLI_LIST("set", &common.sets, CLI_OPTIONAL, "key=value: set a parameter, after all config files"),
+        CLI_END,
+    };
+    enum cli_verdict verdict = CLI_RUN;
+
+    log_set_name(stage);
+    started = clock_seconds();
+    owner = getpid();
+    *prov = (struct provenance){.stage = stage, .version = REMODEL_VERSION};
+    enum status st = parse(argc, argv, stage, opts, common_opts, &common, prov, err);
+    if (common.help || common.version || common.print_config || common.explain_config) verdict = CLI_DONE;
+    if (!st && verdict == CLI_DONE && (fflush(stdout) || ferror(stdout)))
+        st = err_errno(err, "write", "standard output");
+    if (st) verdict = CLI_FAILED;
+    if (verdict == CLI_RUN) {
+        parallel_set_threads(common.threads);
+        atexit(report_use);
+    } else {
+        provenance_release(prov);
+    }
+    cli_list_release(&common.configs);
+    cli_list_release(&common.sets);
+    return verdict;
+}

@@ -1,0 +1,253 @@
+/* outfile.c - see outfile.h.
+ *
+ * Live temporary files stand in a list that exit handlers and signal handlers can walk: its nodes are never freed, only
+ * used again, and a node's path is valid while its owner is set. The name is listed before the file exists, so that no
+ * signal can come between. A forked child has another process id and removes nothing. */
+#include "common/base/outfile.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <pthread.h>
+#include <signal.h>
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/random.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+struct live {
+    struct live *next;
+    atomic_long owner; /* process id; 0: free */
+    char path[PATH_MAX];
+};
+
+static _Atomic(struct live *) lives;
+static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
+static pthread_once_t once = PTHREAD_ONCE_INIT;
+
+static void remove_all(void)
+{
+    const long self = (long)getpid();
+
+    for (struct live *l = atomic_load(&lives); l; l = l->next)
+        if (atomic_load(&l->owner) == self) unlink(l->path);
+}
+
+static void on_signal(int sig)
+{
+    remove_all();
+    raise(sig); /* SA_RESETHAND: the default action now */
+}
+
+static void arrange_removal(void)
+{
+    static const int signals[] = {SIGINT, SIGTERM, SIGHUP};
+    struct sigaction old, action = {.sa_handler = on_signal, .sa_flags = (int)SA_RESETHAND};
+
+    sigemptyset(&action.sa_mask);
+    for (size_t i = 0; i < sizeof signals / sizeof *signals; i++) /* nohup's ignored SIGHUP stays ignored */
+        if (!sigaction(signals[i], NULL, &old) && old.sa_handler == SIG_DFL) sigaction(signals[i], &action, NULL);
+    atexit(remove_all);
+}
+
+static struct live *live_find(const char *path)
+{
+    struct live *l = atomic_load(&lives);
+
+    while (l && !(atomic_load(&l->owner) == (long)getpid() && !strcmp(l->path, path))) l = l->next;
+    return l;
+}
+
+static enum status live_add(const char *path, struct err *err)
+{
+    pthread_once(&once, arrange_removal);
+    pthread_mutex_lock(&lock);
+    struct live *l = atomic_load(&lives);
+    while (l && atomic_load(&l->owner)) l = l->next;
+    if (!l && (l = calloc(1, sizeof *l))) {
+        l->next = atomic_load(&lives);
+        atomic_store(&lives, l);
+    }
+    if (l) {
+        strcpy(l->path, path);
+        atomic_store(&l->owner, (long)getpid());
+    }
+    pthread_mutex_unlock(&lock);
+    return l ? ST_OK : err_nomem(err, "a temporary file's name", sizeof *l);
+}
+
+static void live_drop(const char *path)
+{
+    pthread_mutex_lock(&lock);
+    struct live *l = live_find(path);
+    if (l) atomic_store(&l->owner, 0);
+    pthread_mutex_unlock(&lock);
+}
+
+enum status make_folders(const char *path, struct err *err)
+{
+    char *folder = strdup(path);
+    struct stat info;
+    enum status st = ST_OK;
+
+    if (!folder) return err_nomem(err, "a folder's name", strlen(path) + 1);
+    for (char *p = folder; !st && *p; p++) {
+        const char *slash = strchr(p + 1, '/');
+        p = slash ? folder + (slash - folder) : p + strlen(p);
+        const char kept = *p;
+        *p = '\0';
+        /* looking first: a folder above may be one that nobody may write to */
+        if (stat(folder, &info) || !S_ISDIR(info.st_mode)) {
+            if (mkdir(folder, 0777) && (errno != EEXIST || stat(folder, &info) || !S_ISDIR(info.st_mode)))
+                st = err_errno(err, "make the folder", folder);
+        }
+        if (!kept) break;
+        *p = kept;
+    }
+    free(folder);
+    return st;
+}
+
+/* ".NAME.XXXXXX.tmp" beside `path`, in `temp`; NAME is cut where the whole would be too long for a file name. */
+static enum status temp_name(char temp[PATH_MAX], const char *path, struct err *err)
+{
+    static const char letters[] = "abcdefghijklmnopqrstuvwxyz0123456789";
+    const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
+    unsigned char random[6];
+    char middle[7] = "";
+
+    if (getrandom(random, sizeof random, 0) != (ssize_t)sizeof random) return err_errno(err, "name a file for", path);
+    for (int i = 0; i < 6; i++) middle[i] = letters[random[i] % (sizeof letters - 1)];
+    const int n = snprintf(temp, PATH_MAX, "%.*s.%.200s.%s.tmp", (int)(name - path), path, name, middle);
+    if (n < PATH_MAX) return ST_OK;
+    errno = ENAMETOOLONG;
+    return err_errno(err, "write", path);
+}
+
+static enum status make_parent(const char *path, struct err *err)
+{
+    const char *slash = strrchr(path, '/');
+    enum status st;
+
+    if (!slash || slash == path) return ST_OK;
+    char *folder = strndup(path, (size_t)(slash - path));
+    if (!folder) return err_nomem(err, "a folder's name", strlen(path));
+    st = make_folders(folder, err);
+    free(folder);
+    return st;
+}
+
+enum status outfile_open(struct outfile *f, const char *path, struct err *err)
+{
+    char temp[PATH_MAX];
+    struct stat info;
+    enum status st;
+    int fd = -1;
+
+    *f = (struct outfile){0};
+    /* a rename would put a file in the place of /dev/null */
+    if (!stat(path, &info) && !S_ISREG(info.st_mode))
+        return err_set(err, ST_IO, "cannot write %s: it is there and no regular file; give another name.", path);
+    if ((st = make_parent(path, err))) return st;
+    for (int tries = 0; fd < 0; tries++) {
+        if ((st = temp_name(temp, path, err)) || (st = live_add(temp, err))) return st;
+        /* not mkstemp(): open() alone honours the umask without touching it, which threads share */
+        fd = open(temp, O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
+        if (fd >= 0) break;
+        live_drop(temp);
+        if (errno != EEXIST || tries == 100) return err_errno(err, "write", path);
+    }
+    f->fp = fdopen(fd, "wb");
+    f->path = strdup(path);
+    f->temp = strdup(temp);
+    if (f->fp && f->path && f->temp) return ST_OK;
+    if (!f->fp) close(fd);
+    unlink(temp);
+    live_drop(temp);
+    if (f->fp) fclose(f->fp);
+    free(f->path);
+    free(f->temp);
+    *f = (struct outfile){0};
+    return err_nomem(err, "a file to write", strlen(path) + strlen(temp));
+}
+
+/* By name, because a library may have put another file in the temporary one's place. */
+static int sync_path(const char *path, int flags)
+{
+    const int fd = open(path, O_RDONLY | O_CLOEXEC | flags);
+    int rc = -1;
+
+    if (fd < 0) return -1;
+    rc = fsync(fd);
+    const int saved = errno;
+    close(fd);
+    errno = saved;
+    return rc;
+}
+
+static void sync_parent(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    char *folder = slash ? strndup(path, slash == path ? 1 : (size_t)(slash - path)) : strdup(".");
+
+    /* the product is whole and in place; some network file systems cannot do this at all */
+    if (folder) sync_path(folder, O_DIRECTORY);
+    free(folder);
+}
+
+enum status outfile_commit(struct outfile *f, struct err *err)
+{
+    enum status st = ST_OK;
+
+    if (!f->fp) return err_set(err, ST_INTERNAL, "a file was committed that is not open.");
+    if (fflush(f->fp))
+        st = err_errno(err, "write", f->path);
+    else if (ferror(f->fp))
+        st = err_set(err, ST_IO, "cannot write %s: a write failed; the disk may be full.", f->path);
+    if (fclose(f->fp) && !st) st = err_errno(err, "write", f->path);
+    f->fp = NULL;
+    if (!st && sync_path(f->temp, 0)) st = err_errno(err, "write", f->path);
+    if (!st && rename(f->temp, f->path)) st = err_errno(err, "write", f->path);
+    if (!st) {
+        live_drop(f->temp);
+        sync_parent(f->path);
+        free(f->path);
+        free(f->temp);
+        *f = (struct outfile){0};
+        return ST_OK;
+    }
+    outfile_discard(f);
+    return st;
+}
+
+void outfile_discard(struct outfile *f)
+{
+    if (!f) return;
+    if (f->fp) fclose(f->fp);
+    if (f->temp) {
+        unlink(f->temp);
+        live_drop(f->temp);
+    }
+    free(f->path);
+    free(f->temp);
+    *f = (struct outfile){0};
+}
+
+enum status outfile_write_new(const char *path, const char *text, size_t size, struct err *err)
+{
+    FILE *old = fopen(path, "rb");
+    bool same = old != NULL;
+    for (size_t i = 0; same && i < size; i++) same = getc(old) == (unsigned char)text[i];
+    if (same) same = getc(old) == EOF;
+    if (old) fclose(old);
+    if (same) return ST_OK;
+
+    struct outfile f = {0};
+    enum status st = outfile_open(&f, path, err);
+    if (!st && fwrite(text, 1, size, f.fp) != size) st = err_errno(err, "write", path);
+    if (!st) st = outfile_commit(&f, err);
+    outfile_discard(&f);
+    return st;
+}

@@ -1,0 +1,248 @@
+/* process.c - see process.h.
+ *
+ * The child tells why it could not start through a pipe that a good execve() closes. All that needs memory (the path,
+ * the environment) is made before fork(): other threads of this process may hold locks. */
+#include "common/base/process.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <pthread.h>
+#include <signal.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/prctl.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+extern char **environ;
+
+static const struct {
+    const char *program, *package;
+} packages[] = {{"colmap", "colmap"}, {"ffmpeg", "ffmpeg"}, {"ffprobe", "ffmpeg"}};
+
+static enum status missing(const char *program, struct err *err)
+{
+    for (size_t i = 0; i < sizeof packages / sizeof *packages; i++)
+        if (!strcmp(program, packages[i].program))
+            return err_set(err, ST_IO, "the program %s is not in PATH; install Debian's package %s.", program,
+                           packages[i].package);
+    return err_set(err, ST_IO, "the program %s is not in PATH; install it.", program);
+}
+
+static bool executable(const char *path)
+{
+    struct stat info;
+
+    return !access(path, X_OK) && !stat(path, &info) && S_ISREG(info.st_mode);
+}
+
+static enum status find_program(char found[PATH_MAX], const char *program, struct err *err)
+{
+    const char *path = getenv("PATH");
+
+    if (strchr(program, '/')) {
+        snprintf(found, PATH_MAX, "%s", program);
+        return executable(found) ? ST_OK
+                                 : err_set(err, ST_IO, "the program %s is not there or cannot be run.", program);
+    }
+    for (const char *p = path ? path : "/usr/local/bin:/usr/bin:/bin"; *p;) {
+        const size_t n = strcspn(p, ":");
+        /* an empty entry means the current folder, from which nothing is run unasked */
+        if (n && snprintf(found, PATH_MAX, "%.*s/%s", (int)n, p, program) < PATH_MAX && executable(found)) return ST_OK;
+        p += n + (p[n] == ':');
+    }
+    return missing(program, err);
+}
+
+static bool same_name(const char *a, const char *b)
+{
+    const size_t n = strcspn(a, "=");
+
+    return !strncmp(a, b, n) && b[n] == '=';
+}
+
+/* environ with env's entries in the place of their namesakes; the array alone is owned. */
+static char **merge_environment(const char *const env[])
+{
+    size_t old = 0, more = 0, n = 0;
+
+    while (environ && environ[old]) old++;
+    while (env && env[more]) more++;
+    char **merged = calloc(old + more + 1, sizeof *merged);
+    if (!merged) return NULL;
+    for (size_t i = 0; i < old; i++) {
+        bool replaced = false;
+        for (size_t j = 0; j < more; j++) replaced = replaced || same_name(env[j], environ[i]);
+        if (!replaced) merged[n++] = environ[i];
+    }
+    for (size_t j = 0; j < more; j++) merged[n++] = (char *)env[j];
+    return merged;
+}
+
+/* What runs between fork() and execve(): nothing that is not async-signal-safe. */
+static void run_child(const char *path, char *const argv[], char *const envp[], int in, int out, int tell, pid_t parent)
+{
+    static const int signals[] = {SIGINT, SIGTERM, SIGHUP, SIGPIPE};
+    sigset_t none;
+    int reason;
+
+    for (size_t i = 0; i < sizeof signals / sizeof *signals; i++) {
+        struct sigaction old;
+        /* what was ignored before this program began (nohup) stays ignored; SIGPIPE is ignored only for the writer */
+        if (!sigaction(signals[i], NULL, &old) && (old.sa_handler != SIG_IGN || signals[i] == SIGPIPE))
+            signal(signals[i], SIG_DFL);
+    }
+    sigemptyset(&none);
+    sigprocmask(SIG_SETMASK, &none, NULL);
+    if (!prctl(PR_SET_PDEATHSIG, SIGKILL) && getppid() == parent && dup2(in, STDIN_FILENO) >= 0 &&
+        (out < 0 || (dup2(out, STDOUT_FILENO) >= 0 && dup2(out, STDERR_FILENO) >= 0)))
+        execve(path, argv, envp);
+    reason = errno;
+    if (write(tell, &reason, sizeof reason) < 0) _exit(126);
+    _exit(127);
+}
+
+/* Starts the program with `in` as its standard input. */
+static enum status start(long *pid, const char *const argv[], const char *const env[], int in, const char *log,
+                         struct err *err)
+{
+    char path[PATH_MAX];
+    int tell[2] = {-1, -1}, out = -1, reason = 0;
+    char **envp = NULL;
+    enum status st;
+    ssize_t n;
+
+    if ((st = find_program(path, argv[0], err))) return st;
+    if (!(envp = merge_environment(env))) {
+        st = err_nomem(err, "the environment of a program", 0);
+    } else if (log && (out = open(log, O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0666)) < 0) {
+        st = err_errno(err, "write", log);
+    } else if (pipe2(tell, O_CLOEXEC)) {
+        st = err_errno(err, "start", argv[0]);
+    } else {
+        const pid_t parent = getpid(), child = fork();
+        if (!child) run_child(path, (char *const *)argv, envp, in, out, tell[1], parent);
+        close(tell[1]);
+        if (child < 0) {
+            st = err_errno(err, "start", argv[0]);
+        } else {
+            while ((n = read(tell[0], &reason, sizeof reason)) < 0 && errno == EINTR) continue;
+            if (n == (ssize_t)sizeof reason) {
+                while (waitpid(child, NULL, 0) < 0 && errno == EINTR) continue;
+                errno = reason;
+                st = err_errno(err, "start", path);
+            } else {
+                *pid = child;
+            }
+        }
+        close(tell[0]);
+    }
+    if (out >= 0) close(out);
+    free(envp);
+    return st;
+}
+
+static enum status wait_for(long pid, int *code, struct err *err)
+{
+    int status = 0;
+    pid_t got;
+
+    while ((got = waitpid((pid_t)pid, &status, 0)) < 0 && errno == EINTR) continue;
+    if (got < 0) return err_errno(err, "wait for", "a program");
+    *code = WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
+    return ST_OK;
+}
+
+enum status process_run_env(const char *const argv[], const char *const env[], const char *log, int *code,
+                            struct err *err)
+{
+    const int in = open("/dev/null", O_RDONLY | O_CLOEXEC);
+    enum status st;
+    long pid = 0;
+
+    if (in < 0) return err_errno(err, "open", "/dev/null");
+    st = start(&pid, argv, env, in, log, err);
+    close(in);
+    return st ? st : wait_for(pid, code, err);
+}
+
+enum status process_run(const char *const argv[], const char *log, int *code, struct err *err)
+{
+    return process_run_env(argv, NULL, log, code, err);
+}
+
+/* SIGPIPE is ignored while any pipe to a program is open. */
+static pthread_mutex_t pipes_lock = PTHREAD_MUTEX_INITIALIZER;
+static struct sigaction pipes_before;
+static int pipes_open;
+
+static void pipe_opened(void)
+{
+    const struct sigaction ignore = {.sa_handler = SIG_IGN};
+
+    pthread_mutex_lock(&pipes_lock);
+    if (pipes_open++ == 0) sigaction(SIGPIPE, &ignore, &pipes_before);
+    pthread_mutex_unlock(&pipes_lock);
+}
+
+static void pipe_closed(void)
+{
+    pthread_mutex_lock(&pipes_lock);
+    if (--pipes_open == 0) sigaction(SIGPIPE, &pipes_before, NULL);
+    pthread_mutex_unlock(&pipes_lock);
+}
+
+enum status process_start(struct process *p, const char *const argv[], const char *log, struct err *err)
+{
+    int ends[2];
+    enum status st;
+
+    *p = (struct process){0};
+    if (pipe2(ends, O_CLOEXEC)) return err_errno(err, "make a pipe to", argv[0]);
+    st = start(&p->pid, argv, NULL, ends[0], log, err);
+    close(ends[0]);
+    if (!st && !(p->input = fdopen(ends[1], "wb"))) {
+        st = err_nomem(err, "a pipe", BUFSIZ);
+        process_kill(p);
+    }
+    if (st) {
+        close(ends[1]);
+        *p = (struct process){0};
+        return st;
+    }
+    pipe_opened();
+    return ST_OK;
+}
+
+enum status process_finish(struct process *p, int *code, struct err *err)
+{
+    enum status st;
+
+    *code = 0;
+    if (!p || !p->pid) return ST_OK;
+    bool lost = ferror(p->input);
+    if (fclose(p->input)) lost = true;
+    pipe_closed();
+    st = wait_for(p->pid, code, err);
+    /* a program that ended well without reading all that it was given did not do what it was asked */
+    if (!st && lost && !*code) *code = 128 + SIGPIPE;
+    *p = (struct process){0};
+    return st;
+}
+
+void process_kill(struct process *p)
+{
+    int code;
+
+    if (!p || !p->pid) return;
+    kill((pid_t)p->pid, SIGKILL);
+    if (p->input) {
+        fclose(p->input);
+        pipe_closed();
+    }
+    wait_for(p->pid, &code, NULL);
+    *p = (struct process){0};
+}

@@ -1,0 +1,83 @@
+/* provenance.c - see provenance.h. */
+#include "common/base/provenance.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/base/textfile.h"
+
+enum { QUOTED_SIZE = 2048 };
+
+enum status provenance_add_file(struct provenance *prov, const char *name, const char *path, struct err *err)
+{
+    struct provenance_input input = {0}, *grown;
+    char quoted[QUOTED_SIZE];
+    enum status st;
+
+    for (int i = 0; i < prov->count; i++)
+        if (!strcmp(prov->inputs[i].name, name)) return ST_OK;
+    /* a name that could not be written must not get as far as the writing */
+    if ((st = textfile_quote(name, quoted, sizeof quoted, err)) || (st = hash_file(input.hash, path, err))) return st;
+    const size_t bytes = (size_t)(prov->count + 1) * sizeof *grown;
+    if (!(input.name = strdup(name)) || !(grown = realloc(prov->inputs, bytes))) {
+        free(input.name);
+        return err_nomem(err, "the list of inputs", bytes);
+    }
+    prov->inputs = grown;
+    prov->inputs[prov->count++] = input;
+    return ST_OK;
+}
+
+static void print_inputs(const struct provenance *prov, const char *prefix, FILE *to)
+{
+    char quoted[QUOTED_SIZE];
+
+    for (int i = 0; i < prov->count; i++)
+        if (!textfile_quote(prov->inputs[i].name, quoted, sizeof quoted, NULL))
+            fprintf(to, "%s%s %s\n", prefix, quoted, prov->inputs[i].hash);
+}
+
+enum status provenance_add_in(struct provenance *prov, const char *as, const char *folder, const char *file,
+                              const char *suffix, char path[FILE_PATH], struct err *err)
+{
+    char name[FILE_PATH], own[FILE_PATH];
+    if (!path) path = own;
+    if (file_path(path, folder, file, suffix, err) || file_path(name, as, file, suffix, err)) return err->status;
+    return provenance_add_file(prov, name, path, err);
+}
+
+void provenance_print(const struct provenance *prov, FILE *to)
+{
+    fprintf(to, "# remodel %s %s\n", prov->stage, prov->version);
+    for (const char *p = prov->params; p && *p;) {
+        const size_t n = strcspn(p, "\n");
+        if (*p != '[') fprintf(to, "# %.*s\n", (int)n, p);
+        p += n + (p[n] == '\n');
+    }
+    print_inputs(prov, "# input ", to);
+}
+
+char *provenance_inputs_text(const struct provenance *prov)
+{
+    char *text = NULL;
+    size_t size = 0;
+    FILE *to = open_memstream(&text, &size);
+
+    if (!to) return NULL;
+    print_inputs(prov, "", to);
+    const int failed = ferror(to);
+    if (fclose(to) || failed) {
+        free(text);
+        return NULL;
+    }
+    return text;
+}
+
+void provenance_release(struct provenance *prov)
+{
+    if (!prov) return;
+    for (int i = 0; i < prov->count; i++) free(prov->inputs[i].name);
+    free(prov->inputs);
+    free(prov->params);
+    *prov = (struct provenance){0};
+}

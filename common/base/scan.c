@@ -1,0 +1,119 @@
+/* scan.c - see scan.h. */
+#include "common/base/scan.h"
+
+#include <errno.h>
+#include <math.h>
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static locale_t c_locale;
+static pthread_once_t c_locale_once = PTHREAD_ONCE_INIT;
+
+static void make_c_locale(void) { c_locale = newlocale(LC_ALL_MASK, "C", (locale_t)0); }
+
+locale_t scan_c_locale(void)
+{
+    pthread_once(&c_locale_once, make_c_locale);
+    return c_locale;
+}
+
+static bool digit(char c) { return c >= '0' && c <= '9'; }
+
+bool scan_int(const char *text, int64_t *value)
+{
+    const char *p = text + (*text == '-' || *text == '+');
+    const bool negative = *text == '-';
+    int64_t v = 0;
+
+    if (!*p) return false;
+    for (; *p; p++) {
+        if (!digit(*p)) return false;
+        /* summed below zero, where the range is one larger */
+        if (__builtin_mul_overflow(v, 10, &v) || __builtin_sub_overflow(v, *p - '0', &v)) return false;
+    }
+    if (!negative && __builtin_sub_overflow(0, v, &v)) return false;
+    *value = v;
+    return true;
+}
+
+bool scan_double(const char *text, double *value)
+{
+    char *end = NULL;
+    const char *p = text + (*text == '-' || *text == '+');
+
+    /* strtod takes blanks, 0x1p3, "nan" and "infinity" too */
+    if (!digit(*p) && !(*p == '.' && digit(p[1]))) return false;
+    if (*p == '0' && (p[1] == 'x' || p[1] == 'X')) return false;
+    const double v = strtod_l(text, &end, scan_c_locale());
+    if (*end || !isfinite(v)) return false;
+    *value = v;
+    return true;
+}
+
+/* Damerau's distance without its rarest case: insertions, deletions, replacements, neighbours swapped. Words are short:
+ * longer ones than the table are no near miss of anything. */
+enum { LONGEST = 63 };
+
+static int distance(const char *a, const char *b)
+{
+    int rows[3][LONGEST + 1];
+    const size_t na = strlen(a), nb = strlen(b);
+
+    if (na > LONGEST || nb > LONGEST) return LONGEST;
+    for (size_t j = 0; j <= nb; j++) rows[0][j] = (int)j;
+    for (size_t i = 1; i <= na; i++) {
+        int *row = rows[i % 3];
+        const int *above = rows[(i + 2) % 3], *above2 = rows[(i + 1) % 3];
+        row[0] = (int)i;
+        for (size_t j = 1; j <= nb; j++) {
+            int least = above[j - 1] + (a[i - 1] != b[j - 1]);
+            if (above[j] + 1 < least) least = above[j] + 1;
+            if (row[j - 1] + 1 < least) least = row[j - 1] + 1;
+            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] && above2[j - 2] + 1 < least)
+                least = above2[j - 2] + 1;
+            row[j] = least;
+        }
+    }
+    return rows[na % 3][nb];
+}
+
+const char *scan_nearest(const char *word, const char *(*next)(const void *ctx, int i), const void *ctx)
+{
+    const char *nearest = NULL, *known;
+    int least = 1 + (int)strlen(word) / 3;
+
+    for (int i = 0; (known = next(ctx, i)); i++) {
+        const int d = distance(word, known);
+        if (d <= least && (!nearest || d < least)) {
+            least = d;
+            nearest = known;
+        }
+    }
+    return nearest;
+}
+
+const char *scan_show(char shown[SCAN_SHOWN], const char *found)
+{
+    size_t n = 0;
+    int characters = 0;
+    const char *p = found;
+
+    shown[n++] = '"';
+    for (; *p; p++) {
+        const unsigned char c = (unsigned char)*p;
+        const bool continued = (c & 0xC0) == 0x80; /* inside a UTF-8 character */
+        if ((!continued && characters == 40) || n > SCAN_SHOWN - 12) break;
+        characters += !continued;
+        if (c == '\t' || c == '\r' || c == '\n')
+            n += (size_t)sprintf(shown + n, "\\%c", c == '\t' ? 't' : c == '\r' ? 'r' : 'n');
+        else if (c < 0x20 || c == 0x7F)
+            n += (size_t)sprintf(shown + n, "\\x%02x", c);
+        else
+            shown[n++] = (char)c;
+    }
+    shown[n++] = '"';
+    strcpy(shown + n, *p ? "..." : "");
+    return shown;
+}

@@ -1,0 +1,256 @@
+/* textfile.c - see textfile.h. */
+#include "common/base/textfile.h"
+
+#include <inttypes.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "common/base/scan.h"
+
+static bool blank(char c) { return c == ' ' || c == '\t'; }
+
+static char *skip_blanks(char *p)
+{
+    while (blank(*p)) p++;
+    return p;
+}
+
+static enum status read_all(struct textfile *t, FILE *fp, struct err *err)
+{
+    struct stat info;
+    size_t room = 1 << 16, n;
+
+    /* one byte more than the file holds, so that its end is seen without growing */
+    if (!fstat(fileno(fp), &info) && S_ISREG(info.st_mode) && info.st_size > 0) room = (size_t)info.st_size + 1;
+    for (;;) {
+        char *grown = realloc(t->bytes, room + 1); /* and one for the final NUL */
+        if (!grown) {
+            err_nomem(err, "a text file", room + 1);
+            return err_context(err, "%s", t->path);
+        }
+        t->bytes = grown;
+        while (t->size < room && (n = fread(t->bytes + t->size, 1, room - t->size, fp)) > 0) t->size += n;
+        if (ferror(fp)) return err_errno(err, "read", t->path);
+        if (t->size < room) break;
+        room *= 2;
+    }
+    t->bytes[t->size] = '\0';
+    return ST_OK;
+}
+
+enum status textfile_open(struct textfile *t, const char *path, struct err *err)
+{
+    enum status st = ST_OK;
+    FILE *fp = NULL;
+    const char *nul;
+
+    *t = (struct textfile){0};
+    if (!(t->path = strdup(path)))
+        st = err_nomem(err, "a file name", strlen(path) + 1);
+    else if (!(fp = fopen(path, "rbe")))
+        st = err_errno(err, "open", path);
+    else if (!(st = read_all(t, fp, err)) && (nul = memchr(t->bytes, '\0', t->size))) {
+        for (const char *p = t->bytes; p < nul; p++) t->line += *p == '\n';
+        t->line++;
+        st = textfile_error(t, err, "\\0", "text without NUL bytes; the file is damaged or no text");
+    }
+    if (fp) fclose(fp);
+    if (st) textfile_release(t);
+    return st;
+}
+
+bool textfile_next_raw(struct textfile *t)
+{
+    if (t->at >= t->size) {
+        t->cursor = NULL;
+        return false;
+    }
+    char *begin = t->bytes + t->at, *end = memchr(begin, '\n', t->size - t->at);
+    if (!end) end = t->bytes + t->size;
+    t->at = (size_t)(end - t->bytes) + 1;
+    if (end > begin && end[-1] == '\r') end--;
+    *end = '\0';
+    t->cursor = begin;
+    t->line++;
+    return true;
+}
+
+bool textfile_next(struct textfile *t)
+{
+    while (textfile_next_raw(t)) {
+        t->cursor = skip_blanks(t->cursor);
+        if (*t->cursor && *t->cursor != '#') return true;
+    }
+    return false;
+}
+
+/* A quoted word, unescaped in place: p stands behind the first quote. */
+static enum status quoted_word(struct textfile *t, const char *what, char *p, struct err *err)
+{
+    char *to = p;
+
+    for (; *p && *p != '"'; p++) {
+        if (*p == '\\' && *++p != '"' && *p != '\\')
+            return textfile_error(t, err, p - 1, "\\\" or \\\\ inside the quotes of %s", what);
+        *to++ = *p;
+    }
+    if (!*p) return textfile_error(t, err, NULL, "the closing quote of %s", what);
+    p++;
+    if (*p && !blank(*p)) return textfile_error(t, err, p, "a blank after the closing quote of %s", what);
+    t->cursor = p;
+    *to = '\0';
+    return ST_OK;
+}
+
+enum status textfile_word(struct textfile *t, const char *what, char **word, struct err *err)
+{
+    char *p = t->cursor ? skip_blanks(t->cursor) : NULL;
+
+    if (!p || !*p) return textfile_error(t, err, NULL, "%s", what);
+    if (*p == '"') {
+        const enum status st = quoted_word(t, what, p + 1, err);
+        if (!st) *word = p + 1;
+        return st;
+    }
+    *word = p;
+    while (*p && !blank(*p)) p++;
+    t->cursor = *p ? p + 1 : p;
+    *p = '\0';
+    return ST_OK;
+}
+
+static enum status expect(struct textfile *t, const char *word, const char *wanted, struct err *err)
+{
+    char *found = NULL;
+
+    const enum status st = textfile_word(t, wanted, &found, err);
+
+    return !st && strcmp(found, word) ? textfile_error(t, err, found, "%s", wanted) : st;
+}
+
+enum status textfile_expect(struct textfile *t, const char *word, struct err *err)
+{
+    char wanted[64];
+
+    snprintf(wanted, sizeof wanted, "\"%s\"", word);
+    return expect(t, word, wanted, err);
+}
+
+enum status textfile_expect_line(struct textfile *t, const char *word, struct err *err)
+{
+    char wanted[64];
+
+    snprintf(wanted, sizeof wanted, "a line \"%s ...\"", word);
+    return textfile_next(t) ? expect(t, word, wanted, err) : textfile_error(t, err, NULL, "%s", wanted);
+}
+
+enum status textfile_int(struct textfile *t, const char *what, int64_t least, int64_t most, int64_t *value,
+                         struct err *err)
+{
+    char *word;
+    int64_t v;
+    const enum status st = textfile_word(t, what, &word, err);
+
+    if (st) return st;
+    if (!scan_int(word, &v) || v < least || v > most)
+        return textfile_error(t, err, word, "%s, an integer from %" PRId64 " to %" PRId64, what, least, most);
+    *value = v;
+    return ST_OK;
+}
+
+enum status textfile_double(struct textfile *t, const char *what, double *value, struct err *err)
+{
+    char *word;
+    const enum status st = textfile_word(t, what, &word, err);
+
+    if (st) return st;
+    if (!scan_double(word, value)) return textfile_error(t, err, word, "%s, a finite number", what);
+    return ST_OK;
+}
+
+enum status textfile_rest(struct textfile *t, const char *what, char **rest, struct err *err)
+{
+    char *p = t->cursor ? skip_blanks(t->cursor) : NULL;
+
+    if (!p || !*p) return textfile_error(t, err, NULL, "%s", what);
+    char *end = p + strlen(p);
+    t->cursor = end;
+    while (blank(end[-1])) end--;
+    *end = '\0';
+    *rest = p;
+    return ST_OK;
+}
+
+bool textfile_more(struct textfile *t) { return t->cursor && *skip_blanks(t->cursor); }
+
+enum status textfile_end(struct textfile *t, struct err *err)
+{
+    if (!textfile_more(t)) return ST_OK;
+    return textfile_error(t, err, skip_blanks(t->cursor), "the end of the line");
+}
+
+enum status textfile_end_of_file(struct textfile *t, struct err *err)
+{
+    char *rest = NULL;
+
+    if (!textfile_next(t)) return ST_OK;
+    const enum status st = textfile_rest(t, "a line", &rest, err);
+    return st ? st : textfile_error(t, err, rest, "the end of the file");
+}
+
+enum status textfile_wrong_number(const struct textfile *t, double found, const char *wanted, struct err *err)
+{
+    char text[32];
+
+    snprintf(text, sizeof text, "%.9g", found);
+    return textfile_error(t, err, text, "%s", wanted);
+}
+
+enum status textfile_error(const struct textfile *t, struct err *err, const char *found, const char *wanted, ...)
+{
+    char text[1024], shown[SCAN_SHOWN];
+    va_list args;
+
+    va_start(args, wanted);
+    vsnprintf(text, sizeof text, wanted, args);
+    va_end(args);
+    if (!t->line) return err_set(err, ST_DATA, "%s: found an empty file, wanted %s.", t->path, text);
+    return err_set(err, ST_DATA, "%s:%d: found %s, wanted %s.", t->path, t->line,
+                   found       ? scan_show(shown, found)
+                   : t->cursor ? "the end of the line"
+                               : "the end of the file",
+                   text);
+}
+
+void textfile_release(struct textfile *t)
+{
+    if (!t) return;
+    free(t->path);
+    free(t->bytes);
+    *t = (struct textfile){0};
+}
+
+enum status textfile_quote(const char *word, char *out, size_t size, struct err *err)
+{
+    const bool plain = *word && !strpbrk(word, " \t\"\\#");
+    char shown[SCAN_SHOWN];
+    size_t need = plain ? 1 : 3; /* the final NUL, and two quotes */
+
+    if (strpbrk(word, "\n\r"))
+        return err_set(err, ST_DATA, "the name %s holds a line break, which a text file cannot; rename it.",
+                       scan_show(shown, word));
+    for (const char *p = word; *p; p++) need += 1 + (*p == '"' || *p == '\\');
+    if (need > size)
+        return err_set(err, ST_DATA, "the name %s is longer than %zu bytes; shorten it.", scan_show(shown, word), size);
+    if (!plain) *out++ = '"';
+    for (const char *p = word; *p; p++) {
+        if (*p == '"' || *p == '\\') *out++ = '\\';
+        *out++ = *p;
+    }
+    if (!plain) *out++ = '"';
+    *out = '\0';
+    return ST_OK;
+}

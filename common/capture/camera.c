@@ -1,0 +1,337 @@
+/* camera.c - projection through COLMAP's camera models, and its inverse.
+ *
+ * A perspective model takes the plane coordinates (x, y) = (X / Z, Y / Z) to distorted ones,
+ *   x_d = x g(s) + 2 p1 x y + p2 (s + 2 x^2),  y_d = y g(s) + 2 p2 x y + p1 (s + 2 y^2),  s = x^2 + y^2,
+ *   g(s) = N(s) / D(s),  N = 1 + n1 s + n2 s^2 + ..., D = 1 + d1 s + d2 s^2 + d3 s^3,
+ * and the fisheye takes the angle t from the axis to the radius t N(t^2). Every model is a case of this.
+ *
+ * Such a polynomial is one-to-one only up to the first radius where its slope r -> r g(r^2) is 0; what lies beyond
+ * folds back onto pixels of other rays. The slope's numerator is a polynomial in s with coefficients
+ *   P_k = sum over i + j = k of N_i D_j (1 + 2 i - 2 j),
+ * so "P > 0 and D > 0 on [0, s]" is decided exactly. With tangential terms the Jacobian's determinant must be positive
+ * too. */
+#include "common/capture/camera.h"
+
+#include <stddef.h>
+#include <string.h>
+
+static const struct {
+    const char *name;
+    int params;
+} models[CAMERA_MODEL_COUNT] = {
+    [CAMERA_SIMPLE_PINHOLE] = {"SIMPLE_PINHOLE", 3},
+    [CAMERA_PINHOLE] = {"PINHOLE", 4},
+    [CAMERA_SIMPLE_RADIAL] = {"SIMPLE_RADIAL", 4},
+    [CAMERA_RADIAL] = {"RADIAL", 5},
+    [CAMERA_OPENCV] = {"OPENCV", 8},
+    [CAMERA_OPENCV_FISHEYE] = {"OPENCV_FISHEYE", 8},
+    [CAMERA_FULL_OPENCV] = {"FULL_OPENCV", 12},
+};
+
+const char *camera_model_name(enum camera_model model) { return models[model].name; }
+int camera_model_params(enum camera_model model) { return models[model].params; }
+
+bool camera_model_from_name(const char *name, enum camera_model *model)
+{
+    for (int i = 0; i < CAMERA_MODEL_COUNT; i++)
+        if (!strcmp(name, models[i].name)) {
+            *model = (enum camera_model)i;
+            return true;
+        }
+    return false;
+}
+
+static bool single_focal(enum camera_model model)
+{
+    return model == CAMERA_SIMPLE_PINHOLE || model == CAMERA_SIMPLE_RADIAL || model == CAMERA_RADIAL;
+}
+
+enum status camera_check(const struct camera *c, struct err *err)
+{
+    if ((int)c->model < 0 || c->model >= CAMERA_MODEL_COUNT)
+        return err_set(err, ST_DATA, "camera model number %d is unknown.", (int)c->model);
+    if (c->width < 1 || c->height < 1)
+        return err_set(err, ST_DATA, "the camera's size is %d x %d px; both must be at least 1.", c->width, c->height);
+    for (int i = 0; i < models[c->model].params; i++)
+        if (!isfinite(c->params[i]))
+            return err_set(err, ST_DATA, "parameter %d of the %s camera is not a finite number.", i + 1,
+                           models[c->model].name);
+    for (int i = 0; i < (single_focal(c->model) ? 1 : 2); i++)
+        if (!(c->params[i] > 0))
+            return err_set(err, ST_DATA, "the %s camera's focal length is %.9g px; it must be greater than 0.",
+                           models[c->model].name, c->params[i]);
+    return ST_OK;
+}
+
+void camera_focal(const struct camera *c, double *fx, double *fy, double *cx, double *cy)
+{
+    const double *p = c->params;
+    bool single = single_focal(c->model);
+    *fx = p[0];
+    *fy = single ? p[0] : p[1];
+    *cx = single ? p[1] : p[2];
+    *cy = single ? p[2] : p[3];
+}
+
+/* ------------------------------------------------------------------------------------------------- distortion */
+
+enum { N_TERMS = 5, D_TERMS = 4, SLOPE_TERMS = N_TERMS + D_TERMS - 1 };
+
+struct distortion {
+    double n[N_TERMS], d[D_TERMS]; /* coefficients of s^0, s^1, ... */
+    double p1, p2;
+    bool none, tangential;
+};
+
+static struct distortion distortion_of(const struct camera *c)
+{
+    struct distortion q = {.n = {1}, .d = {1}};
+    const double *p = c->params;
+    switch (c->model) {
+    case CAMERA_SIMPLE_RADIAL:
+        q.n[1] = p[3];
+        break;
+    case CAMERA_RADIAL:
+        q.n[1] = p[3];
+        q.n[2] = p[4];
+        break;
+    case CAMERA_OPENCV_FISHEYE:
+        memcpy(q.n + 1, p + 4, 4 * sizeof *p);
+        break;
+    case CAMERA_FULL_OPENCV:
+        q.n[3] = p[8];
+        memcpy(q.d + 1, p + 9, 3 * sizeof *p);
+        /* fall through */
+    case CAMERA_OPENCV:
+        q.n[1] = p[4];
+        q.n[2] = p[5];
+        q.p1 = p[6];
+        q.p2 = p[7];
+        break;
+    default:
+        q.none = true;
+    }
+    q.tangential = q.p1 != 0 || q.p2 != 0;
+    return q;
+}
+
+static double poly(const double *c, int terms, double s)
+{
+    double v = 0;
+    for (int i = terms - 1; i >= 0; i--) v = v * s + c[i];
+    return v;
+}
+
+/* g(s) and its derivative. */
+static void radial(const struct distortion *q, double s, double *g, double *dg)
+{
+    double n = poly(q->n, N_TERMS, s), d = poly(q->d, D_TERMS, s), dn = 0, dd = 0;
+    for (int i = N_TERMS - 1; i > 0; i--) dn = dn * s + i * q->n[i];
+    for (int i = D_TERMS - 1; i > 0; i--) dd = dd * s + i * q->d[i];
+    *g = n / d;
+    *dg = (dn * d - n * dd) / (d * d);
+}
+
+static void slope_poly(const struct distortion *q, double slope[SLOPE_TERMS])
+{
+    memset(slope, 0, SLOPE_TERMS * sizeof *slope);
+    for (int i = 0; i < N_TERMS; i++)
+        for (int j = 0; j < D_TERMS; j++) slope[i + j] += q->n[i] * q->d[j] * (1 + 2 * i - 2 * j);
+}
+
+/* The roots in (0, end] at which the polynomial changes its sign, ascending: bisection between the roots of its
+ * derivative. */
+static int poly_roots(const double *c, int terms, double end, double roots[SLOPE_TERMS])
+{
+    if (terms < 2) return 0;
+    double derivative[SLOPE_TERMS], stops[SLOPE_TERMS + 1] = {0};
+    for (int i = 1; i < terms; i++) derivative[i - 1] = i * c[i];
+    int n = poly_roots(derivative, terms - 1, end, stops + 1), found = 0;
+    stops[n + 1] = end;
+    for (int i = 0; i <= n; i++) {
+        double a = stops[i], b = stops[i + 1];
+        bool positive = poly(c, terms, a) > 0;
+        if (positive == (poly(c, terms, b) > 0)) continue;
+        for (double m = (a + b) / 2; m > a && m < b; m = (a + b) / 2) {
+            if ((poly(c, terms, m) > 0) == positive)
+                a = m;
+            else
+                b = m;
+        }
+        roots[found++] = a;
+    }
+    return found;
+}
+
+/* Largest s up to `end` such that the polynomial (1 at 0) is positive on [0, s]. */
+static double positive_until(const double *c, int terms, double end)
+{
+    double least = 1, power = 1, roots[SLOPE_TERMS];
+    for (int i = 1; i < terms; i++) {
+        power *= end;
+        if (c[i] < 0) least += c[i] * power;
+    }
+    if (least > 0) return end;
+    return poly_roots(c, terms, end, roots) ? roots[0] : end;
+}
+
+/* Largest s up to `end` on which the radial part is one-to-one. */
+static double one_to_one_until(const struct distortion *q, double end)
+{
+    double slope[SLOPE_TERMS];
+    slope_poly(q, slope);
+    return positive_until(slope, SLOPE_TERMS, positive_until(q->d, D_TERMS, end));
+}
+
+/* Distorted point and Jacobian ([0] dx/dx, [1] dx/dy = dy/dx, [2] dy/dy); false where the map is not one-to-one. */
+static bool distort(const struct distortion *q, double x, double y, double *xd, double *yd, double jacobian[3])
+{
+    double s = x * x + y * y, g, dg;
+    if (!isfinite(s) || one_to_one_until(q, s) < s) return false;
+    radial(q, s, &g, &dg);
+    *xd = x * g + 2 * q->p1 * x * y + q->p2 * (s + 2 * x * x);
+    *yd = y * g + 2 * q->p2 * x * y + q->p1 * (s + 2 * y * y);
+    jacobian[0] = g + 2 * x * x * dg + 2 * q->p1 * y + 6 * q->p2 * x;
+    jacobian[1] = 2 * x * y * dg + 2 * q->p1 * x + 2 * q->p2 * y;
+    jacobian[2] = g + 2 * y * y * dg + 2 * q->p2 * x + 6 * q->p1 * y;
+    return jacobian[0] * jacobian[2] > jacobian[1] * jacobian[1];
+}
+
+/* r in [0, end] with r g(r^2) = rd, by Newton kept inside a shrinking bracket. False: there is none; *r is then where
+ * the map ends. */
+static bool undistort_radius(const struct distortion *q, double rd, double end, double *r)
+{
+    double low = 0, high = fmin(rd, end), g, dg;
+    for (;; high = fmin(2 * high, end)) {
+        double limit = one_to_one_until(q, high * high);
+        bool last = limit < high * high || high >= end;
+        if (limit < high * high) high = sqrt(limit);
+        radial(q, high * high, &g, &dg);
+        if (high * g >= rd) break;
+        low = high;
+        if (last) {
+            *r = high;
+            return false;
+        }
+    }
+    double at = (low + high) / 2;
+    for (int i = 0; i < 200 && high > low; i++) {
+        radial(q, at * at, &g, &dg);
+        double e = at * g - rd, slope = g + 2 * at * at * dg;
+        if (e < 0)
+            low = at;
+        else
+            high = at;
+        double next = at - e / slope;
+        if (!(next > low && next < high)) next = low + (high - low) / 2;
+        if (e == 0 || fabs(next - at) <= 1e-15 * at) break;
+        at = next;
+    }
+    *r = at;
+    return true;
+}
+
+/* Newton in the plane from (x, y), steps halved until they get nearer. */
+static bool undistort_tangential(const struct distortion *q, double xd, double yd, double *x, double *y)
+{
+    double a, b, j[3];
+    for (int i = 0; !distort(q, *x, *y, &a, &b, j); i++) {
+        if (i == 20) return false;
+        *x *= 0.75;
+        *y *= 0.75;
+    }
+    double ex = a - xd, ey = b - yd, tolerance = 1e-14 * (1 + hypot(xd, yd));
+    for (int i = 0; i < 100 && hypot(ex, ey) > tolerance; i++) {
+        double det = j[0] * j[2] - j[1] * j[1], step = 1;
+        double dx = (j[2] * ex - j[1] * ey) / det, dy = (j[0] * ey - j[1] * ex) / det;
+        for (; step > 1e-6; step /= 2) {
+            double nj[3], nx = *x - step * dx, ny = *y - step * dy;
+            if (!distort(q, nx, ny, &a, &b, nj) || !(hypot(a - xd, b - yd) < hypot(ex, ey))) continue;
+            *x = nx;
+            *y = ny;
+            ex = a - xd;
+            ey = b - yd;
+            memcpy(j, nj, sizeof j);
+            break;
+        }
+        if (step <= 1e-6) break;
+    }
+    return hypot(ex, ey) <= 1e-10;
+}
+
+/* -------------------------------------------------------------------------------------------------- projection */
+
+bool camera_project(const struct camera *c, struct vec3 p, double *u, double *v)
+{
+    double fx, fy, cx, cy, x, y;
+    struct distortion q = distortion_of(c);
+    camera_focal(c, &fx, &fy, &cx, &cy);
+    if (c->model == CAMERA_OPENCV_FISHEYE) {
+        double rho = hypot(p.x, p.y), theta = atan2(rho, p.z), scale = p.z > 0 ? 1 / p.z : 0;
+        if (rho > 0) {
+            if (one_to_one_until(&q, theta * theta) < theta * theta || theta >= M_PI) return false;
+            scale = theta * poly(q.n, N_TERMS, theta * theta) / rho;
+        } else if (!(p.z > 0)) {
+            return false;
+        }
+        x = p.x * scale;
+        y = p.y * scale;
+    } else {
+        if (!(p.z > 0)) return false;
+        x = p.x / p.z;
+        y = p.y / p.z;
+        double s = x * x + y * y, g, dg, j[3];
+        if (q.tangential) {
+            if (!distort(&q, x, y, &x, &y, j)) return false;
+        } else if (!q.none) {
+            if (!isfinite(s) || one_to_one_until(&q, s) < s) return false;
+            radial(&q, s, &g, &dg);
+            x *= g;
+            y *= g;
+        }
+    }
+    double a = fx * x + cx, b = fy * y + cy;
+    if (!isfinite(a) || !isfinite(b)) return false;
+    *u = a;
+    *v = b;
+    return true;
+}
+
+/* A ray this many focal lengths off the axis cannot be told from one across it. */
+static const double WIDEST = 1e8;
+
+bool camera_unproject(const struct camera *c, double u, double v, struct vec3 *ray)
+{
+    double fx, fy, cx, cy;
+    struct distortion q = distortion_of(c);
+    camera_focal(c, &fx, &fy, &cx, &cy);
+    double xd = (u - cx) / fx, yd = (v - cy) / fy, rd = hypot(xd, yd), r = rd;
+    if (!isfinite(rd)) return false;
+    if (c->model == CAMERA_OPENCV_FISHEYE) {
+        if (rd > 0 && (!undistort_radius(&q, rd, M_PI, &r) || r >= M_PI)) return false;
+        double across = rd > 0 ? sin(r) / rd : 0;
+        *ray = vec3_normalize(vec3_make(xd * across, yd * across, cos(r)));
+        return true;
+    }
+    double x = xd, y = yd;
+    if (q.none && rd > WIDEST) return false;
+    if (rd > 0 && !q.none) {
+        bool found = undistort_radius(&q, rd, WIDEST, &r);
+        x = xd * (r / rd);
+        y = yd * (r / rd);
+        if (q.tangential ? !undistort_tangential(&q, xd, yd, &x, &y) : !found) return false;
+    }
+    *ray = vec3_normalize(vec3_make(x, y, 1));
+    return true;
+}
+
+struct vec3 pose_apply(const struct pose *cam_from_world, struct vec3 world)
+{
+    return vec3_add(mat3_apply(mat3_from_quat(cam_from_world->rotation), world), cam_from_world->translation);
+}
+
+struct vec3 pose_center(const struct pose *cam_from_world)
+{
+    struct mat3 world_from_cam = mat3_transpose(mat3_from_quat(cam_from_world->rotation));
+    return vec3_scale(mat3_apply(world_from_cam, cam_from_world->translation), -1);
+}

@@ -1,0 +1,61 @@
+/* camera.h - COLMAP's camera models.
+ *
+ * Camera axes: x right, y down, z forward. Pixel (x, y) has its centre at (x + 0.5, y + 0.5), so (cx, cy) of a centred
+ * camera is (width / 2, height / 2). Parameters are in COLMAP's order:
+ *   SIMPLE_PINHOLE f cx cy; PINHOLE fx fy cx cy; SIMPLE_RADIAL f cx cy k; RADIAL f cx cy k1 k2;
+ *   OPENCV fx fy cx cy k1 k2 p1 p2; OPENCV_FISHEYE fx fy cx cy k1 k2 k3 k4;
+ *   FULL_OPENCV fx fy cx cy k1 k2 p1 p2 k3 k4 k5 k6 */
+#ifndef REMODEL_CAMERA_H
+#define REMODEL_CAMERA_H
+
+#include <stdbool.h>
+
+#include "common/base/err.h"
+#include "common/math/vec.h"
+
+enum camera_model {
+    CAMERA_SIMPLE_PINHOLE,
+    CAMERA_PINHOLE,
+    CAMERA_SIMPLE_RADIAL,
+    CAMERA_RADIAL,
+    CAMERA_OPENCV,
+    CAMERA_OPENCV_FISHEYE,
+    CAMERA_FULL_OPENCV,
+    CAMERA_MODEL_COUNT,
+};
+
+#define CAMERA_MAX_PARAMS 12
+
+struct camera {
+    enum camera_model model;
+    int width, height;
+    double params[CAMERA_MAX_PARAMS];
+};
+
+/* Rigid: p_cam = R(rotation) p_world + translation. */
+struct pose {
+    struct quat rotation;
+    struct vec3 translation;
+};
+
+const char *camera_model_name(enum camera_model model);
+int camera_model_params(enum camera_model model);
+bool camera_model_from_name(const char *name, enum camera_model *model);
+
+/* Finite parameters, focal lengths > 0, sizes >= 1; the error says which is not. */
+enum status camera_check(const struct camera *c, struct err *err);
+
+void camera_focal(const struct camera *c, double *fx, double *fy, double *cx, double *cy);
+
+/* Point in camera coordinates -> pixel. False behind the camera (z <= 0; a fisheye only at the origin and straight
+ * back), or beyond the radius where the distortion stops being one-to-one. */
+bool camera_project(const struct camera *c, struct vec3 p, double *u, double *v);
+
+/* Pixel -> unit ray in camera coordinates; Newton on the distortion to 1e-10 of the focal length. False if no ray maps
+ * there. */
+bool camera_unproject(const struct camera *c, double u, double v, struct vec3 *ray);
+
+struct vec3 pose_apply(const struct pose *cam_from_world, struct vec3 world);
+struct vec3 pose_center(const struct pose *cam_from_world); /* the camera's centre in the world */
+
+#endif

@@ -1,0 +1,255 @@
+/* camera_path.c - see camera_path.h. */
+#include "common/capture/camera_path.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/base/file_path.h"
+#include "common/base/outfile.h"
+#include "common/base/textfile.h"
+
+enum { MOST_FRAMES = 1000000, LINE_SIZE = 256 };
+
+enum status camera_path_init(struct camera_path *p, const char *effect, double fps, int frames, struct err *err)
+{
+    *p = (struct camera_path){.fps = fps};
+    if (frames < 1 || frames > MOST_FRAMES)
+        return err_set(err, ST_DATA, "a path of %d frames cannot be made; wanted 1 to %d.", frames, MOST_FRAMES);
+    if (!(fps > 0)) return err_set(err, ST_DATA, "%g frames a second make no path; wanted more than 0.", fps);
+    if (strlen(effect) >= sizeof p->effect)
+        return err_set(err, ST_DATA, "the effect's name \"%s\" is longer than %zu letters.", effect,
+                       sizeof p->effect - 1);
+    strcpy(p->effect, effect);
+    p->frames = calloc((size_t)frames, sizeof *p->frames);
+    if (!p->frames) return err_nomem(err, "a path", (size_t)frames * sizeof *p->frames);
+    int digits = frames < 10000 ? 4 : frames < 100000 ? 5 : 7;
+    for (int i = 0; i < frames; i++) {
+        char name[16];
+        snprintf(name, sizeof name, "%0*d", digits, i + 1);
+        p->frames[i].time = i / fps;
+        p->frames[i].camera.name = strdup(name);
+        p->frame_count = i + 1;
+        if (!p->frames[i].camera.name) {
+            camera_path_release(p);
+            return err_nomem(err, "a path", sizeof name);
+        }
+    }
+    return ST_OK;
+}
+
+enum status camera_path_add_score(struct camera_path *p, const char *name, double value, const char *unit,
+                                  struct err *err)
+{
+    struct path_score s = {.value = value};
+    if (strlen(name) >= sizeof s.name || strlen(unit) >= sizeof s.unit)
+        return err_set(err, ST_DATA,
+                       "the score \"%s\" in \"%s\" has too long a name; wanted at most %zu and %zu letters.", name,
+                       unit, sizeof s.name - 1, sizeof s.unit - 1);
+    if (!isfinite(value)) return err_set(err, ST_INTERNAL, "the score %s is not a finite number.", name);
+    strcpy(s.name, name);
+    strcpy(s.unit, unit);
+    struct path_score *more = realloc(p->scores, ((size_t)p->score_count + 1) * sizeof *more);
+    if (!more) return err_nomem(err, "a path's scores", ((size_t)p->score_count + 1) * sizeof *more);
+    p->scores = more;
+    p->scores[p->score_count++] = s;
+    return ST_OK;
+}
+
+void camera_path_release(struct camera_path *p)
+{
+    if (!p) return;
+    for (int i = 0; i < p->frame_count; i++) free((char *)p->frames[i].camera.name);
+    free(p->frames);
+    free(p->scores);
+    *p = (struct camera_path){0};
+}
+
+/* -------------------------------------------------------------------------------------------------------- writing */
+
+static enum status write_poses(const struct camera_path *p, const char *folder, const struct provenance *prov,
+                               struct err *err)
+{
+    struct sfm_model m = {0};
+    size_t n = (size_t)p->frame_count;
+    enum status st = ST_OK;
+    m.cameras = calloc(n, sizeof *m.cameras);
+    m.images = calloc(n, sizeof *m.images);
+    if (!m.cameras || !m.images) st = err_nomem(err, "a path's cameras", n * sizeof *m.images);
+    for (int i = 0; !st && i < p->frame_count; i++) {
+        const struct view *v = &p->frames[i].camera;
+        char name[32];
+        snprintf(name, sizeof name, "%s.exr", v->name);
+        m.cameras[i].id = i + 1;
+        m.cameras[i].camera = (struct camera){CAMERA_PINHOLE, v->width, v->height, {v->fx, v->fy, v->cx, v->cy}};
+        m.images[i].id = i + 1;
+        m.images[i].camera_idx = i;
+        m.images[i].cam_from_world = (struct pose){quat_from_mat3(v->cam_from_world), v->translation};
+        m.images[i].name = strdup(name);
+        m.camera_count = m.image_count = i + 1;
+        if (!m.images[i].name) st = err_nomem(err, "a path's cameras", sizeof name);
+    }
+    if (!st) st = sfm_model_write_text(&m, folder, prov, err);
+    sfm_model_release(&m);
+    return st;
+}
+
+static enum status write_list(const struct camera_path *p, const char *path, const struct provenance *prov,
+                              struct err *err)
+{
+    struct outfile f = {0};
+    char effect[LINE_SIZE], name[LINE_SIZE], unit[LINE_SIZE];
+    enum status st = outfile_open(&f, path, err);
+    if (!st && prov) provenance_print(prov, f.fp);
+    if (!st) st = textfile_quote(p->effect, effect, sizeof effect, err);
+    if (!st) fprintf(f.fp, "remodel-path 1\neffect %s\nfps %.17g\n", effect, p->fps);
+    for (int i = 0; !st && i < p->score_count; i++) {
+        const struct path_score *s = &p->scores[i];
+        st = textfile_quote(s->name, name, sizeof name, err);
+        if (!st) st = textfile_quote(s->unit, unit, sizeof unit, err);
+        if (!st) fprintf(f.fp, "score %s %.17g %s\n", name, s->value, unit);
+    }
+    if (!st) fprintf(f.fp, "frames %d\n", p->frame_count);
+    for (int i = 0; !st && i < p->frame_count; i++) {
+        const struct path_frame *fr = &p->frames[i];
+        fprintf(f.fp, "frame %s %.17g %.17g %.17g\n", fr->camera.name, fr->time, fr->aperture, fr->focus);
+    }
+    if (!st) st = outfile_commit(&f, err);
+    outfile_discard(&f);
+    return st;
+}
+
+enum status camera_path_write(const struct camera_path *p, const char *folder, const struct provenance *prov,
+                              struct err *err)
+{
+    char poses[FILE_PATH], list[FILE_PATH];
+    if (file_path(poses, folder, "path", "", err) || file_path(list, folder, "path.txt", "", err) ||
+        write_poses(p, poses, prov, err) || write_list(p, list, prov, err))
+        return err->status;
+    return ST_OK;
+}
+
+/* -------------------------------------------------------------------------------------------------------- reading */
+
+static enum status next_line(struct textfile *t, const char *word, struct err *err)
+{
+    if (!textfile_next(t)) return textfile_error(t, err, NULL, "a line \"%s ...\"", word);
+    return textfile_expect(t, word, err);
+}
+
+/* A word of at most size - 1 letters. */
+static enum status short_word(struct textfile *t, const char *what, char *out, size_t size, struct err *err)
+{
+    char *word;
+    if (textfile_word(t, what, &word, err)) return err->status;
+    if (strlen(word) >= size) return textfile_error(t, err, word, "%s of at most %zu letters", what, size - 1);
+    strcpy(out, word);
+    return ST_OK;
+}
+
+/* A number from 0 on. */
+static enum status amount(struct textfile *t, const char *what, double *value, struct err *err)
+{
+    if (textfile_double(t, what, value, err)) return err->status;
+    if (*value >= 0) return ST_OK;
+    char found[32];
+    snprintf(found, sizeof found, "%.9g", *value);
+    return textfile_error(t, err, found, "%s of 0 or more", what);
+}
+
+static enum status read_score(struct textfile *t, struct camera_path *p, struct err *err)
+{
+    struct path_score s = {0};
+    if (short_word(t, "a score's name", s.name, sizeof s.name, err) ||
+        textfile_double(t, "a score's value", &s.value, err) ||
+        short_word(t, "a score's unit", s.unit, sizeof s.unit, err) || textfile_end(t, err))
+        return err->status;
+    return camera_path_add_score(p, s.name, s.value, s.unit, err);
+}
+
+/* Everything up to the frames. */
+static enum status read_head(struct textfile *t, struct camera_path *p, int64_t *frames, struct err *err)
+{
+    int64_t version;
+    if (next_line(t, "remodel-path", err) || textfile_int(t, "version", 1, 1, &version, err) || textfile_end(t, err) ||
+        next_line(t, "effect", err) || short_word(t, "the effect's name", p->effect, sizeof p->effect, err) ||
+        textfile_end(t, err) || next_line(t, "fps", err) || amount(t, "frames a second", &p->fps, err) ||
+        textfile_end(t, err))
+        return err->status;
+    if (!(p->fps > 0)) return textfile_error(t, err, "0", "frames a second above 0");
+    for (;;) {
+        char *word;
+        if (!textfile_next(t)) return textfile_error(t, err, NULL, "a line \"frames N\"");
+        if (textfile_word(t, "\"score\" or \"frames\"", &word, err)) return err->status;
+        if (!strcmp(word, "frames")) break;
+        if (strcmp(word, "score")) return textfile_error(t, err, word, "\"score\" or \"frames\"");
+        if (read_score(t, p, err)) return err->status;
+    }
+    return textfile_int(t, "number of frames", 1, MOST_FRAMES, frames, err) || textfile_end(t, err) ? err->status
+                                                                                                    : ST_OK;
+}
+
+static enum status check_camera(const struct textfile *t, const struct view *v, const struct view *first,
+                                struct err *err)
+{
+    char found[128];
+    if (!(v->fx > 0) || !(v->fy > 0)) {
+        snprintf(found, sizeof found, "focal lengths %.9g %.9g of frame %.16s", v->fx, v->fy, v->name);
+        return textfile_error(t, err, found, "numbers above 0 in path/cameras.txt");
+    }
+    snprintf(found, sizeof found, "a size of %d x %d of frame %.16s", v->width, v->height, v->name);
+    if (v->width % 2 || v->height % 2) return textfile_error(t, err, found, "even numbers in path/cameras.txt");
+    if (v->width != first->width || v->height != first->height)
+        return textfile_error(t, err, found, "%d x %d as of the first frame", first->width, first->height);
+    return ST_OK;
+}
+
+static enum status read_frame(struct textfile *t, struct path_frame *f, const struct camera_set *set,
+                              const struct view *first, struct err *err)
+{
+    char *name;
+    const char *wanted = f->camera.name;
+    if (next_line(t, "frame", err) || textfile_word(t, "a frame's name", &name, err)) return err->status;
+    if (strcmp(name, wanted)) return textfile_error(t, err, name, "frame %s", wanted);
+    if (amount(t, "time in seconds", &f->time, err) || amount(t, "aperture", &f->aperture, err) ||
+        amount(t, "focus", &f->focus, err) || textfile_end(t, err))
+        return err->status;
+    int at = camera_set_find(set, wanted);
+    if (at < 0) return textfile_error(t, err, name, "a frame that path/images.txt has, as %s.exr", wanted);
+    f->camera = set->views[at];
+    f->camera.name = wanted;
+    return check_camera(t, &f->camera, first, err);
+}
+
+enum status camera_path_read(struct camera_path *p, const char *folder, struct err *err)
+{
+    struct camera_set set = {0};
+    struct textfile t = {0};
+    struct camera_path head = {0};
+    char poses[FILE_PATH], list[FILE_PATH];
+    int64_t frames = 0;
+    *p = (struct camera_path){0};
+    enum status st = file_path(poses, folder, "path", "", err) || file_path(list, folder, "path.txt", "", err) ||
+                             camera_set_read(&set, poses, err) || textfile_open(&t, list, err) ||
+                             read_head(&t, &head, &frames, err)
+                         ? err->status
+                         : ST_OK;
+    if (!st && frames != set.view_count) {
+        char found[32];
+        snprintf(found, sizeof found, "%d", (int)frames);
+        st = textfile_error(&t, err, found, "%d frames as in %s/images.txt", set.view_count, poses);
+    }
+    if (!st) st = camera_path_init(p, head.effect, head.fps, (int)frames, err);
+    if (!st) {
+        p->scores = head.scores;
+        p->score_count = head.score_count;
+        head.scores = NULL;
+    }
+    for (int i = 0; !st && i < p->frame_count; i++) st = read_frame(&t, &p->frames[i], &set, &p->frames[0].camera, err);
+    if (!st) st = textfile_end_of_file(&t, err);
+    free(head.scores);
+    textfile_release(&t);
+    camera_set_release(&set);
+    if (st) camera_path_release(p);
+    return st;
+}

@@ -1,0 +1,156 @@
+/* camera_set.c - see camera_set.h. */
+#include "common/capture/camera_set.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char suffix[] = ".exr";
+
+static enum status make_view(struct view *v, const struct sfm_model *m, const struct sfm_image *im, const char *folder,
+                             struct err *err)
+{
+    const struct camera *c = &m->cameras[im->camera_idx].camera;
+    size_t length = strlen(im->name), tail = sizeof suffix - 1;
+    if (length <= tail || strcmp(im->name + length - tail, suffix))
+        return err_set(err, ST_DATA, "%s/images.txt: found image \"%s\", wanted names like VIEW.exr.", folder,
+                       im->name);
+    if (c->model != CAMERA_PINHOLE && c->model != CAMERA_SIMPLE_PINHOLE)
+        return err_set(err, ST_DATA,
+                       "%s/cameras.txt: found a %s camera for image \"%s\", wanted PINHOLE or SIMPLE_PINHOLE: the "
+                       "cameras of rectified views.",
+                       folder, camera_model_name(c->model), im->name);
+    v->name = strndup(im->name, length - tail);
+    if (!v->name) return err_nomem(err, "a view's name", length);
+    v->width = c->width;
+    v->height = c->height;
+    camera_focal(c, &v->fx, &v->fy, &v->cx, &v->cy);
+    v->cam_from_world = mat3_from_quat(im->cam_from_world.rotation);
+    v->translation = im->cam_from_world.translation;
+    v->center = pose_center(&im->cam_from_world);
+    return ST_OK;
+}
+
+struct place {
+    struct view view;
+    struct sfm_image image;
+    int idx;
+};
+
+static int compare_places(const void *a, const void *b)
+{
+    return strcmp(((const struct place *)a)->view.name, ((const struct place *)b)->view.name);
+}
+
+/* The model is in order of "VIEW.exr", which differs from the order of VIEW where one name begins another. */
+static enum status sort_views(struct camera_set *set, struct err *err)
+{
+    struct sfm_model *m = &set->model;
+    size_t n = (size_t)set->view_count;
+    struct place *places = calloc(n, sizeof *places);
+    int *new_idx = calloc(n, sizeof *new_idx);
+    enum status st = places && new_idx ? ST_OK : err_nomem(err, "views", n * sizeof *places);
+    if (!st) {
+        for (size_t i = 0; i < n; i++) places[i] = (struct place){set->views[i], m->images[i], (int)i};
+        qsort(places, n, sizeof *places, compare_places);
+        for (size_t i = 0; i < n; i++) {
+            set->views[i] = places[i].view;
+            m->images[i] = places[i].image;
+            new_idx[places[i].idx] = (int)i;
+        }
+        for (int i = 0; i < m->point_count; i++)
+            for (int k = 0; k < m->points[i].track_count; k++)
+                m->points[i].track[k].image_idx = new_idx[m->points[i].track[k].image_idx];
+    }
+    free(places);
+    free(new_idx);
+    return st;
+}
+
+enum status camera_set_read(struct camera_set *set, const char *folder, struct err *err)
+{
+    *set = (struct camera_set){0};
+    enum status st = sfm_model_read_text(&set->model, folder, err);
+    if (!st) {
+        set->views = calloc((size_t)set->model.image_count, sizeof *set->views);
+        if (!set->views) st = err_nomem(err, "views", (size_t)set->model.image_count * sizeof *set->views);
+    }
+    for (int i = 0; !st && i < set->model.image_count; i++) {
+        st = make_view(&set->views[i], &set->model, &set->model.images[i], folder, err);
+        if (!st) set->view_count++;
+    }
+    if (!st) st = sort_views(set, err);
+    if (st) camera_set_release(set);
+    return st;
+}
+
+enum status camera_set_add_inputs(struct provenance *prov, const char *folder, struct err *err)
+{
+    static const char *const files[] = {"cameras.txt", "images.txt", "points3D.txt"};
+    enum status st = ST_OK;
+    for (int i = 0; !st && i < 3; i++) st = provenance_add_in(prov, "views", folder, files[i], "", NULL, err);
+    return st;
+}
+
+int camera_set_find(const struct camera_set *set, const char *name)
+{
+    int low = 0, high = set->view_count;
+    while (low < high) {
+        int mid = low + (high - low) / 2, order = strcmp(set->views[mid].name, name);
+        if (order == 0) return mid;
+        if (order < 0)
+            low = mid + 1;
+        else
+            high = mid;
+    }
+    return -1;
+}
+
+void camera_set_release(struct camera_set *set)
+{
+    if (!set) return;
+    for (int i = 0; i < set->view_count; i++) free((char *)set->views[i].name);
+    free(set->views);
+    sfm_model_release(&set->model);
+    *set = (struct camera_set){0};
+}
+
+double view_project(const struct view *view, struct vec3 world, double *u, double *v)
+{
+    struct vec3 p = vec3_add(mat3_apply(view->cam_from_world, world), view->translation);
+    if (p.z > 0) {
+        *u = view->fx * (p.x / p.z) + view->cx;
+        *v = view->fy * (p.y / p.z) + view->cy;
+    }
+    return p.z;
+}
+
+struct vec3 view_unproject(const struct view *view, double u, double v, double z)
+{
+    struct vec3 p = vec3_make((u - view->cx) / view->fx * z, (v - view->cy) / view->fy * z, z);
+    return mat3_apply(mat3_transpose(view->cam_from_world), vec3_sub(p, view->translation));
+}
+
+struct view view_from_lens_point(const struct view *camera, double a, double b, double focus)
+{
+    const struct vec3 offset = mat3_apply(mat3_transpose(camera->cam_from_world), vec3_make(a, b, 0));
+    struct view v = *camera;
+
+    v.center = vec3_add(camera->center, offset);
+    v.translation.x -= a;
+    v.translation.y -= b;
+    v.cx += camera->fx * a / focus;
+    v.cy += camera->fy * b / focus;
+    return v;
+}
+
+void view_resize(struct view *view, int width, int height)
+{
+    const double x = (double)width / view->width, y = (double)height / view->height;
+    view->fx *= x;
+    view->cx *= x;
+    view->fy *= y;
+    view->cy *= y;
+    view->width = width;
+    view->height = height;
+}

@@ -1,0 +1,130 @@
+/* lens_list.c - see lens_list.h. */
+#include "common/capture/lens_list.h"
+
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/base/outfile.h"
+#include "common/base/textfile.h"
+
+enum { NAME_SIZE = 1024 };
+
+static enum status read_lens(struct textfile *t, struct lens *l, struct err *err)
+{
+    char *view, *photo, *model, *turn;
+    int64_t width = 0, height = 0;
+    struct camera *c = &l->camera;
+    struct quat *q = &l->view_from_photo;
+    struct err why = ERR_INIT;
+    if (textfile_word(t, "view", &view, err) || textfile_word(t, "photo", &photo, err) ||
+        textfile_word(t, "camera model", &model, err))
+        return err->status;
+    if (!camera_model_from_name(model, &c->model)) return textfile_error(t, err, model, "a camera model of COLMAP");
+    if (textfile_int(t, "width", 1, INT_MAX, &width, err) || textfile_int(t, "height", 1, INT_MAX, &height, err))
+        return err->status;
+    c->width = (int)width;
+    c->height = (int)height;
+    for (int i = 0; i < camera_model_params(c->model); i++)
+        if (textfile_double(t, "camera parameter", &c->params[i], err)) return err->status;
+    if (camera_check(c, &why)) return err_set(err, ST_DATA, "%s:%d: %s", t->path, t->line, why.text);
+    if (textfile_word(t, "\"turn\"", &turn, err)) return err->status;
+    if (strcmp(turn, "turn")) return textfile_error(t, err, turn, "\"turn\"");
+    if (textfile_double(t, "W of the turn", &q->w, err) || textfile_double(t, "X of the turn", &q->x, err) ||
+        textfile_double(t, "Y of the turn", &q->y, err) || textfile_double(t, "Z of the turn", &q->z, err) ||
+        textfile_end(t, err))
+        return err->status;
+    double length = sqrt(q->w * q->w + q->x * q->x + q->y * q->y + q->z * q->z);
+    if (!(fabs(length - 1) < 1e-9))
+        return err_set(err, ST_DATA, "%s:%d: found a turn of length %.9g, wanted a quaternion of length 1.", t->path,
+                       t->line, length);
+    l->view = strdup(view);
+    l->photo = strdup(photo);
+    return l->view && l->photo ? ST_OK : err_nomem(err, "names", strlen(view) + strlen(photo));
+}
+
+enum status lens_list_read(struct lens_list *list, const char *path, struct err *err)
+{
+    struct textfile t = {0};
+    char *word = NULL;
+    int64_t version = 0;
+    int room = 0;
+    *list = (struct lens_list){0};
+    enum status st = textfile_open(&t, path, err);
+    if (!st && !textfile_next(&t)) st = textfile_error(&t, err, NULL, "\"remodel-lenses 1\"");
+    if (!st) st = textfile_word(&t, "\"remodel-lenses\"", &word, err);
+    if (!st && strcmp(word, "remodel-lenses")) st = textfile_error(&t, err, word, "\"remodel-lenses\"");
+    if (!st) st = textfile_int(&t, "version", 1, 1, &version, err);
+    if (!st) st = textfile_end(&t, err);
+    while (!st && textfile_next(&t)) {
+        if (list->count == room) {
+            int more = room ? 2 * room : 16;
+            struct lens *lenses = realloc(list->lenses, (size_t)more * sizeof *lenses);
+            if (!lenses) {
+                st = err_nomem(err, "lenses", (size_t)more * sizeof *lenses);
+                break;
+            }
+            list->lenses = lenses;
+            room = more;
+        }
+        struct lens *l = &list->lenses[list->count++];
+        *l = (struct lens){0};
+        st = read_lens(&t, l, err);
+        if (!st && list->count > 1 && strcmp(l[-1].view, l->view) >= 0)
+            st = err_set(err, ST_DATA, "%s:%d: found view %s after %s, wanted each view once, in order of name.", path,
+                         t.line, l->view, l[-1].view);
+    }
+    if (!st && !list->count) st = textfile_error(&t, err, NULL, "a line for each view");
+    textfile_release(&t);
+    if (st) lens_list_release(list);
+    return st;
+}
+
+enum status lens_list_write(const struct lens_list *list, const char *path, const struct provenance *prov,
+                            struct err *err)
+{
+    struct outfile f = {0};
+    enum status st = outfile_open(&f, path, err);
+    if (!st && prov) provenance_print(prov, f.fp);
+    if (!st) fputs("remodel-lenses 1\n", f.fp);
+    for (int i = 0; !st && i < list->count; i++) {
+        const struct lens *l = &list->lenses[i];
+        struct quat q = l->view_from_photo;
+        char view[NAME_SIZE], photo[NAME_SIZE];
+        st = textfile_quote(l->view, view, sizeof view, err);
+        if (!st) st = textfile_quote(l->photo, photo, sizeof photo, err);
+        if (st) break;
+        fprintf(f.fp, "%s %s %s %d %d", view, photo, camera_model_name(l->camera.model), l->camera.width,
+                l->camera.height);
+        for (int k = 0; k < camera_model_params(l->camera.model); k++) fprintf(f.fp, " %.17g", l->camera.params[k]);
+        fprintf(f.fp, " turn %.17g %.17g %.17g %.17g\n", q.w, q.x, q.y, q.z);
+    }
+    if (!st) st = outfile_commit(&f, err);
+    outfile_discard(&f);
+    return st;
+}
+
+int lens_list_find(const struct lens_list *list, const char *view)
+{
+    int low = 0, high = list->count;
+    while (low < high) {
+        int mid = low + (high - low) / 2, order = strcmp(list->lenses[mid].view, view);
+        if (order == 0) return mid;
+        if (order < 0)
+            low = mid + 1;
+        else
+            high = mid;
+    }
+    return -1;
+}
+
+void lens_list_release(struct lens_list *list)
+{
+    if (!list) return;
+    for (int i = 0; i < list->count; i++) {
+        free(list->lenses[i].view);
+        free(list->lenses[i].photo);
+    }
+    free(list->lenses);
+    *list = (struct lens_list){0};
+}

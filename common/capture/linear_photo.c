@@ -1,0 +1,58 @@
+/* linear_photo.c - see linear_photo.h. */
+#include "common/capture/linear_photo.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "common/base/file_path.h"
+#include "common/image/exr.h"
+#include "common/image/photo.h"
+
+static enum status read_single(struct image *linear, const char *path, struct err *err)
+{
+    struct photo photo = {0};
+    enum status st = photo_read(&photo, path, err);
+    if (!st) st = photo_to_linear(linear, &photo, err);
+    photo_release(&photo);
+    return st;
+}
+
+static enum status read_merged(struct image *linear, const char *path, char radiometry[RADIOMETRY_SIZE],
+                               struct err *err)
+{
+    static const char *const names[] = {"R", "G", "B"};
+    struct exr_image exr = {0};
+    enum status st = exr_read(&exr, path, names, 3, err);
+    for (int c = 0; !st && c < 3; c++)
+        if (!exr_find(&exr, names[c])->f)
+            st = err_set(err, ST_DATA, "%s: channel %s holds integers, wanted half or float; merge the view again.",
+                         path, names[c]);
+    if (!st) st = image_init(linear, exr.width, exr.height, 3, err);
+    if (!st) {
+        const float *const r = exr_find(&exr, "R")->f, *const g = exr_find(&exr, "G")->f,
+                           *const b = exr_find(&exr, "B")->f;
+        const size_t pixels = (size_t)exr.width * (size_t)exr.height;
+        for (size_t i = 0; i < pixels; i++) {
+            float *to = linear->data + 3 * i;
+            to[0] = r[i] > 0 ? r[i] : 0;
+            to[1] = g[i] > 0 ? g[i] : 0;
+            to[2] = b[i] > 0 ? b[i] : 0;
+        }
+    }
+    const char *is = exr_attribute(&exr, "remodel:radiometry");
+    if (!st && is) snprintf(radiometry, RADIOMETRY_SIZE, "%s", is);
+    exr_image_release(&exr);
+    return st;
+}
+
+enum status linear_photo_read(struct image *linear, char radiometry[RADIOMETRY_SIZE], const char *photos,
+                              const struct photo_record *record, struct provenance *prov, struct err *err)
+{
+    const bool merged = record->bracket_count > 0;
+    const char *file = merged ? record->id : record->file, *suffix = merged ? ".exr" : "";
+    char path[FILE_PATH];
+    strcpy(radiometry, "approximate");
+    enum status st = provenance_add_in(prov, merged ? "hdr" : "photos", photos, file, suffix, path, err);
+    if (!st) st = merged ? read_merged(linear, path, radiometry, err) : read_single(linear, path, err);
+    return st;
+}

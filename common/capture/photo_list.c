@@ -1,0 +1,328 @@
+/* photo_list.c - reading and writing the records of a scene's photographs. */
+#include "common/capture/photo_list.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/base/outfile.h"
+#include "common/base/textfile.h"
+
+#define QUOTED_SIZE   1024 /* a file name has at most 255 bytes */
+#define MOST_BRACKETS 1000 /* of one view */
+
+static enum status keep_word(char **kept, const char *word, struct err *err)
+{
+    *kept = strdup(word);
+    return *kept ? ST_OK : err_nomem(err, "a name", strlen(word) + 1);
+}
+
+static enum status read_int(struct textfile *t, const char *what, int least, int most, int *value, struct err *err)
+{
+    int64_t wide = 0;
+    enum status st = textfile_int(t, what, least, most, &wide, err);
+    if (!st) *value = (int)wide;
+    return st;
+}
+
+/* A number of EXIF: 0 where the photo does not say. */
+static enum status read_exif(struct textfile *t, const char *what, double *value, struct err *err)
+{
+    enum status st = textfile_double(t, what, value, err);
+    if (!st && *value < 0) st = textfile_error(t, err, "a negative number", "%s, 0 or more", what);
+    return st;
+}
+
+static enum status read_text(struct textfile *t, const char *what, char *text, size_t size, struct err *err)
+{
+    char *word = NULL;
+    enum status st = textfile_word(t, what, &word, err);
+    if (!st && strlen(word) >= size) st = textfile_error(t, err, word, "%s of at most %zu bytes", what, size - 1);
+    if (!st) strcpy(text, word);
+    return st;
+}
+
+static enum status read_hash(struct textfile *t, char hash[HASH_TEXT], struct err *err)
+{
+    char *word = NULL;
+    enum status st = textfile_word(t, "hash", &word, err);
+    if (!st && (strlen(word) != HASH_TEXT - 1 || strspn(word, "0123456789abcdef") != HASH_TEXT - 1))
+        st = textfile_error(t, err, word, "a hash of %d hexadecimal digits", HASH_TEXT - 1);
+    if (!st) strcpy(hash, word);
+    return st;
+}
+
+static enum status read_exposure(struct textfile *t, const char *what, double *value, struct err *err)
+{
+    enum status st = textfile_double(t, what, value, err);
+    char found[32];
+    if (st || *value > 0) return st;
+    snprintf(found, sizeof found, "%.9g", *value);
+    return textfile_error(t, err, found, "%s above 0", what);
+}
+
+static enum status read_bracket(struct photo_record *r, struct textfile *t, struct err *err)
+{
+    struct bracket *b = &r->brackets[r->bracket_count], *before = r->bracket_count ? b - 1 : NULL;
+    char *word = NULL;
+    enum status st = textfile_expect_line(t, "bracket", err) || textfile_word(t, "file name", &word, err) ||
+                             keep_word(&b->file, word, err)
+                         ? ST_DATA
+                         : ST_OK;
+    if (st) return st;
+    r->bracket_count++; /* from here on it is released with the record */
+    st = read_hash(t, b->hash, err);
+    if (!st) st = read_exposure(t, "exposure", &b->exposure, err);
+    if (!st && before && before->exposure >= b->exposure)
+        st = textfile_error(t, err, b->file, "longer and longer exposures");
+    return st ? st : textfile_end(t, err);
+}
+
+static enum status read_brackets(struct photo_record *r, struct textfile *t, struct err *err)
+{
+    int count = 0;
+    char *word = NULL;
+    enum status st = textfile_word(t, "brackets", &word, err);
+    if (!st && strcmp(word, "brackets")) st = textfile_error(t, err, word, "a line \"brackets ...\", or the end");
+    if (!st) st = read_int(t, "number of exposures", 1, MOST_BRACKETS, &count, err);
+    if (!st) st = read_int(t, "index of the middle exposure", 0, count - 1, &r->middle, err);
+    if (!st) st = read_exposure(t, "exposure of white", &r->white, err);
+    if (!st) st = textfile_end(t, err);
+    if (!st && !(r->brackets = calloc((size_t)count, sizeof *r->brackets)))
+        st = err_nomem(err, "a list of exposures", (size_t)count * sizeof *r->brackets);
+    while (!st && r->bracket_count < count) st = read_bracket(r, t, err);
+    return st;
+}
+
+static enum status read_fields(struct photo_record *r, struct textfile *t, struct err *err)
+{
+    struct photo_info *info = &r->info;
+    char *word = NULL;
+    int version = 0;
+    enum status st =
+        textfile_expect_line(t, "remodel-photo", err) || read_int(t, "format version", 1, 1, &version, err) ||
+                textfile_end(t, err) || textfile_expect_line(t, "file", err) ||
+                textfile_word(t, "file name", &word, err) || keep_word(&r->file, word, err) || textfile_end(t, err) ||
+                textfile_expect_line(t, "hash", err) || read_hash(t, r->hash, err) || textfile_end(t, err) ||
+                textfile_expect_line(t, "size", err) || read_int(t, "width", 1, 1 << 28, &info->width, err) ||
+                read_int(t, "height", 1, 1 << 28, &info->height, err) || textfile_end(t, err) ||
+                textfile_expect_line(t, "bits", err) || read_int(t, "bits", 8, 32, &info->bits, err) ||
+                textfile_end(t, err) || textfile_expect_line(t, "orientation", err) ||
+                read_int(t, "orientation", 1, 8, &info->orientation, err) || textfile_end(t, err) ||
+                textfile_expect_line(t, "exif", err) || read_exif(t, "focal length", &info->focal_mm, err) ||
+                read_exif(t, "35 mm focal length", &info->focal35_mm, err) ||
+                read_exif(t, "exposure time", &info->seconds, err) || read_exif(t, "f-number", &info->f_number, err) ||
+                read_exif(t, "ISO", &info->iso, err) || textfile_end(t, err) ||
+                textfile_expect_line(t, "camera", err) || read_text(t, "make", info->make, sizeof info->make, err) ||
+                read_text(t, "model", info->model, sizeof info->model, err) || textfile_end(t, err)
+            ? ST_DATA
+            : ST_OK;
+    if (!st && textfile_next(t)) st = read_brackets(r, t, err);
+    if (!st) st = textfile_end_of_file(t, err);
+    return st;
+}
+
+static char *record_path(const char *folder, const char *id)
+{
+    char *path = NULL;
+    return asprintf(&path, "%s/%s.txt", folder, id) < 0 ? NULL : path;
+}
+
+enum status photo_record_read(struct photo_record *r, const char *folder, const char *id, struct err *err)
+{
+    struct textfile t = {0};
+    char *path = record_path(folder, id);
+    enum status st = ST_OK;
+
+    *r = (struct photo_record){0};
+    if (!path) return err_nomem(err, "a path", 0);
+    st = keep_word(&r->id, id, err);
+    if (!st) st = textfile_open(&t, path, err);
+    if (!st) st = read_fields(r, &t, err);
+    textfile_release(&t);
+    free(path);
+    if (st) photo_record_release(r);
+    return err && err->status ? err->status : st;
+}
+
+/* Ends a text begun with open_memstream and writes it if it is new. */
+static enum status finish_text(FILE *to, char **text, size_t *size, const char *path, enum status st, struct err *err)
+{
+    bool failed = ferror(to) != 0;
+    failed |= fclose(to) != 0;
+    if (!st && failed) st = err_nomem(err, "a text", *size);
+    if (!st) st = outfile_write_new(path, *text, *size, err);
+    free(*text);
+    return st;
+}
+
+enum status photo_record_write(const struct photo_record *r, const char *folder, struct err *err)
+{
+    const struct photo_info *info = &r->info;
+    char file[QUOTED_SIZE], make[QUOTED_SIZE], model[QUOTED_SIZE];
+    char *path = NULL, *text = NULL;
+    size_t size = 0;
+
+    enum status st = textfile_quote(r->file, file, sizeof file, err);
+    if (!st) st = textfile_quote(info->make, make, sizeof make, err);
+    if (!st) st = textfile_quote(info->model, model, sizeof model, err);
+    if (st) return st;
+    path = record_path(folder, r->id);
+    FILE *to = open_memstream(&text, &size);
+    if (!path || !to) {
+        st = err_nomem(err, "a record", 0);
+        if (to) finish_text(to, &text, &size, path, st, err);
+    } else {
+        fprintf(to, "remodel-photo 1\nfile %s\nhash %s\nsize %d %d\nbits %d\norientation %d\n", file, r->hash,
+                info->width, info->height, info->bits, info->orientation);
+        fprintf(to, "exif %.17g %.17g %.17g %.17g %.17g\n", info->focal_mm, info->focal35_mm, info->seconds,
+                info->f_number, info->iso);
+        fprintf(to, "camera %s %s\n", make, model);
+        if (r->bracket_count) fprintf(to, "brackets %d %d %.17g\n", r->bracket_count, r->middle, r->white);
+        for (int i = 0; !st && i < r->bracket_count; i++) {
+            const struct bracket *b = &r->brackets[i];
+            st = textfile_quote(b->file, file, sizeof file, err);
+            if (!st) fprintf(to, "bracket %s %s %.17g\n", file, b->hash, b->exposure);
+        }
+        st = finish_text(to, &text, &size, path, st, err);
+    }
+    free(path);
+    return st;
+}
+
+static enum status print_list(const struct photo_list *list, FILE *to, struct err *err)
+{
+    char file[QUOTED_SIZE];
+    enum status st = ST_OK;
+    for (int i = 0; !st && i < list->count; i++) {
+        st = textfile_quote(list->photos[i].file, file, sizeof file, err);
+        if (!st) fprintf(to, "%s %s\n", list->photos[i].id, file);
+    }
+    return st;
+}
+
+static enum status print_make(const struct photo_list *list, FILE *to, struct err *err)
+{
+    (void)err;
+    fputs("PHOTO_IDS :=", to);
+    for (int i = 0; i < list->count; i++) fprintf(to, " %s", list->photos[i].id);
+    fputs(list->count && list->photos[0].bracket_count ? "\nBRACKETED := yes\n" : "\n", to);
+    return ST_OK;
+}
+
+static enum status print_brackets(const struct photo_list *list, FILE *to, struct err *err)
+{
+    char file[QUOTED_SIZE];
+    enum status st = ST_OK;
+    fputs("# VIEW FILE FILE ... from the shortest exposure on\n", to);
+    for (int i = 0; !st && i < list->count; i++) {
+        fputs(list->photos[i].id, to);
+        for (int k = 0; !st && k < list->photos[i].bracket_count; k++) {
+            st = textfile_quote(list->photos[i].brackets[k].file, file, sizeof file, err);
+            if (!st) fprintf(to, " %s", file);
+        }
+        fputc('\n', to);
+    }
+    return st;
+}
+
+enum status photo_list_write(const struct photo_list *list, const char *folder, struct err *err)
+{
+    static const struct {
+        const char *name;
+        enum status (*print)(const struct photo_list *list, FILE *to, struct err *err);
+    } texts[] = {{"brackets.txt", print_brackets}, {"list.txt", print_list}, {"photos.mk", print_make}};
+    bool bracketed = list->count && list->photos[0].bracket_count;
+    enum status st = ST_OK;
+    for (int i = bracketed ? 0 : 1; !st && i < 3; i++) {
+        char *path = NULL, *text = NULL;
+        size_t size = 0;
+        FILE *to = open_memstream(&text, &size);
+        if (!to) return err_nomem(err, "a list of photos", 0);
+        if (asprintf(&path, "%s/%s", folder, texts[i].name) < 0) {
+            path = NULL;
+            st = err_nomem(err, "a path", 0);
+        }
+        if (!st) st = texts[i].print(list, to, err);
+        st = finish_text(to, &text, &size, path, st, err);
+        free(path);
+    }
+    return st;
+}
+
+static enum status read_list_line(struct photo_list *list, struct textfile *t, const char *folder, struct err *err)
+{
+    char *id = NULL, *file = NULL;
+    enum status st = textfile_word(t, "photo id", &id, err);
+    if (!st && (strspn(id, "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-") != strlen(id) ||
+                *id == '-' || !*id))
+        st = textfile_error(t, err, id, "a photo id of letters, digits, _ and -");
+    if (!st && list->count && strcmp(list->photos[list->count - 1].id, id) >= 0)
+        st = textfile_error(t, err, id, "ids in order, each once");
+    if (!st) st = textfile_word(t, "file name", &file, err);
+    if (!st) st = textfile_end(t, err);
+    if (st) return st;
+
+    struct photo_record *photos = realloc(list->photos, ((size_t)list->count + 1) * sizeof *photos);
+    if (!photos) return err_nomem(err, "a list of photos", ((size_t)list->count + 1) * sizeof *photos);
+    list->photos = photos;
+    st = photo_record_read(&photos[list->count], folder, id, err);
+    if (st) return st;
+    if (strcmp(photos[list->count++].file, file))
+        st = textfile_error(t, err, file, "the file that the record %s.txt names; import the photos again", id);
+    return st;
+}
+
+enum status photo_list_read(struct photo_list *list, const char *folder, struct err *err)
+{
+    struct textfile t = {0};
+    char *path = record_path(folder, "list");
+    *list = (struct photo_list){0};
+    if (!path) return err_nomem(err, "a path", 0);
+    enum status st = textfile_open(&t, path, err);
+    while (!st && textfile_next(&t)) st = read_list_line(list, &t, folder, err);
+    if (!st && !list->count) st = err_set(err, ST_DATA, "%s lists no photo; import the photos again.", path);
+    textfile_release(&t);
+    free(path);
+    if (st) photo_list_release(list);
+    return st;
+}
+
+int photo_list_find_id(const struct photo_list *list, const char *id)
+{
+    int begin = 0, end = list->count;
+    while (begin < end) {
+        int middle = begin + (end - begin) / 2, order = strcmp(list->photos[middle].id, id);
+        if (!order) return middle;
+        if (order < 0)
+            begin = middle + 1;
+        else
+            end = middle;
+    }
+    return -1;
+}
+
+int photo_list_find_file(const struct photo_list *list, const char *file)
+{
+    for (int i = 0; i < list->count; i++)
+        if (!strcmp(list->photos[i].file, file)) return i;
+    return -1;
+}
+
+void photo_record_release(struct photo_record *r)
+{
+    if (!r) return;
+    for (int i = 0; i < r->bracket_count; i++) free(r->brackets[i].file);
+    free(r->brackets);
+    free(r->id);
+    free(r->file);
+    *r = (struct photo_record){0};
+}
+
+void photo_list_release(struct photo_list *list)
+{
+    if (!list) return;
+    for (int i = 0; i < list->count; i++) photo_record_release(&list->photos[i]);
+    free(list->photos);
+    *list = (struct photo_list){0};
+}

@@ -1,0 +1,106 @@
+/* photo_mask.c - see photo_mask.h. */
+#include "common/capture/photo_mask.h"
+
+#include <dirent.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+void photo_mask_release(struct photo_mask *m)
+{
+    if (!m) return;
+    free(m->masked);
+    *m = (struct photo_mask){0};
+}
+
+static enum status add_samples(struct photo_mask *m, const struct photo *p, struct err *err)
+{
+    const size_t pixels = (size_t)m->width * (size_t)m->height;
+    const unsigned half = p->info.bits == 16 ? 32768 : 128;
+    if (!m->masked && !(m->masked = calloc(pixels, 1))) return err_nomem(err, "a mask", pixels);
+    for (size_t i = 0; i < pixels; i++) {
+        const uint16_t *rgb = p->samples + 3 * i;
+        m->masked[i] |= rgb[0] < half && rgb[1] < half && rgb[2] < half;
+    }
+    return ST_OK;
+}
+
+/* FOLDER/ID.png, which need not be there. */
+static enum status add_mask(struct photo_mask *m, const char *folder, const char *id, const struct photo_record *r,
+                            struct provenance *prov, struct err *err)
+{
+    struct photo p = {0};
+    char *path = NULL, *input = NULL;
+    enum status st = ST_OK;
+    if (asprintf(&path, "%s/%s.png", folder, id) < 0 || asprintf(&input, "masks/%s.png", id) < 0) {
+        st = err_nomem(err, "a file name", strlen(folder) + strlen(id));
+    } else if (!access(path, F_OK)) {
+        st = photo_read(&p, path, err);
+        if (!st && (p.info.width != m->width || p.info.height != m->height))
+            st = err_set(
+                err, ST_DATA,
+                "%s has %d x %d pixels, but the photo \"%s\" that it masks has %d x %d; paint the mask over the "
+                "photo as it is stored, at its full size.",
+                path, p.info.width, p.info.height, r->file, m->width, m->height);
+        if (!st) st = add_samples(m, &p, err);
+        if (!st && prov) st = provenance_add_file(prov, input, path, err);
+    }
+    photo_release(&p);
+    free(path);
+    free(input);
+    return st;
+}
+
+/* Is `id` one of the exposures that the photo stands for? */
+static bool is_exposure(const struct photo_record *r, const char *records, const char *id)
+{
+    struct photo_record member = {0};
+    struct err ignored = ERR_INIT;
+    char *members = NULL;
+    bool found = false;
+    if (asprintf(&members, "%s/members", records) < 0) return false;
+    if (!photo_record_read(&member, members, id, &ignored))
+        for (int i = 0; i < r->bracket_count && !found; i++) found = !strcmp(r->brackets[i].file, member.file);
+    photo_record_release(&member);
+    free(members);
+    return found;
+}
+
+static enum status add_exposures(struct photo_mask *m, const char *folder, const char *records,
+                                 const struct photo_record *r, struct provenance *prov, struct err *err)
+{
+    struct dirent **entries = NULL;
+    const int count = scandir(folder, &entries, NULL, alphasort);
+    enum status st = count < 0 ? err_errno(err, "open", folder) : ST_OK;
+    for (int i = 0; i < count; i++) {
+        char *name = entries[i]->d_name;
+        const size_t length = strlen(name);
+        if (!st && length > 4 && !strcmp(name + length - 4, ".png")) {
+            name[length - 4] = 0;
+            if (strcmp(name, r->id) && is_exposure(r, records, name)) st = add_mask(m, folder, name, r, prov, err);
+        }
+        free(entries[i]);
+    }
+    free(entries);
+    return st;
+}
+
+enum status photo_mask_read(struct photo_mask *m, const char *folder, const char *records, const struct photo_record *r,
+                            struct provenance *prov, struct err *err)
+{
+    enum status st = ST_OK;
+    *m = (struct photo_mask){.width = r->info.width, .height = r->info.height};
+    if (folder) st = add_mask(m, folder, r->id, r, prov, err);
+    if (!st && folder && r->bracket_count) st = add_exposures(m, folder, records, r, prov, err);
+    const size_t pixels = (size_t)m->width * (size_t)m->height;
+    if (!st && m->masked && !memchr(m->masked, 0, pixels))
+        st = err_set(
+            err, ST_DATA,
+            "the mask of photo %s in %s hides all of it: no sample is brighter than half of white. What is to be "
+            "looked at must be white (255), not 1; to do without the photo, leave it out (EXCLUDE).",
+            r->id, folder);
+    if (st || !m->masked) photo_mask_release(m);
+    return st;
+}

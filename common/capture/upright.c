@@ -1,0 +1,50 @@
+/* upright.c - see upright.h. */
+#include "common/capture/upright.h"
+
+#include "common/base/file_path.h"
+#include "common/capture/lens_list.h"
+#include "common/capture/photo_list.h"
+
+struct vec3 upright_from_orientation(int orientation)
+{
+    switch (orientation) {
+    case 3:
+    case 4:
+        return vec3_make(0, 1, 0); /* the first row is at the bottom */
+    case 5:
+    case 6:
+        return vec3_make(-1, 0, 0); /* the first column is at the top */
+    case 7:
+    case 8:
+        return vec3_make(1, 0, 0);
+    default:
+        return vec3_make(0, -1, 0);
+    }
+}
+
+enum status upright_read(struct vec3 *ups, const struct camera_set *set, const char *views, const char *records,
+                         struct provenance *prov, struct err *err)
+{
+    struct lens_list lenses = {0};
+    char path[FILE_PATH];
+    enum status st = provenance_add_in(prov, "views", views, "lenses.txt", "", path, err);
+    if (!st) st = lens_list_read(&lenses, path, err);
+    for (int i = 0; !st && i < set->view_count; i++) {
+        struct photo_record record = {0};
+        int at = lens_list_find(&lenses, set->views[i].name);
+        if (at < 0) {
+            st = err_set(err, ST_DATA, "%s has no view %s, but images.txt has. Import the views again.", path,
+                         set->views[i].name);
+            break;
+        }
+        const struct lens *lens = &lenses.lenses[at];
+        st = photo_record_read(&record, records, lens->photo, err);
+        if (!st) st = provenance_add_in(prov, "photos", records, lens->photo, ".txt", NULL, err);
+        if (!st)
+            ups[i] =
+                mat3_apply(mat3_from_quat(lens->view_from_photo), upright_from_orientation(record.info.orientation));
+        photo_record_release(&record);
+    }
+    lens_list_release(&lenses);
+    return st;
+}

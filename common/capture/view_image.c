@@ -1,0 +1,69 @@
+/* view_image.c - the picture of a rectified view on disk. */
+#include "common/capture/view_image.h"
+
+#include "common/base/file_path.h"
+#include "common/image/exr.h"
+
+static const char *const channel_names[4] = {"R", "G", "B", "A"};
+
+enum status view_image_read(struct image *im, const char *folder, const struct view *view, struct err *err)
+{
+    struct exr_image exr = {0};
+    char path[FILE_PATH];
+
+    *im = (struct image){0};
+    enum status st = file_path(path, folder, view->name, ".exr", err);
+    if (!st) st = exr_read(&exr, path, channel_names, 4, err);
+    if (!st && (exr.width != view->width || exr.height != view->height))
+        st = err_set(err, ST_DATA, "%s is %d x %d pixels, but its camera says %d x %d; make the views again.", path,
+                     exr.width, exr.height, view->width, view->height);
+    for (int c = 0; !st && c < 4; c++)
+        if (!exr_find(&exr, channel_names[c])->f)
+            st = err_set(err, ST_DATA, "%s: channel %s holds integers, wanted half or float; make the views again.",
+                         path, channel_names[c]);
+    if (!st) st = image_init(im, exr.width, exr.height, 4, err);
+    for (int c = 0; !st && c < 4; c++) {
+        const float *from = exr_find(&exr, channel_names[c])->f;
+        size_t pixels = (size_t)exr.width * (size_t)exr.height;
+        for (size_t i = 0; i < pixels; i++) im->data[4 * i + (size_t)c] = from[i];
+    }
+    exr_image_release(&exr);
+    return st;
+}
+
+enum status view_image_write(const struct image *im, const char *path, const struct view *view,
+                             const struct provenance *prov, const char *radiometry, struct err *err)
+{
+    struct exr_image exr = {0};
+    enum status st = ST_OK;
+
+    if (im->channels != 4 || im->width != view->width || im->height != view->height)
+        st = err_set(err, ST_INTERNAL, "cannot write %s: a picture of %d x %d with %d channels is not view %s.", path,
+                     im->width, im->height, im->channels, view->name);
+    if (!st) st = exr_init_rgba(&exr, im->data, im->width, im->height, err);
+    if (!st) st = exr_set_attribute(&exr, "remodel:radiometry", radiometry, err);
+    if (!st) {
+        exr_set_camera(&exr, view);
+        st = exr_write(&exr, path, prov, err);
+    }
+    exr_image_release(&exr);
+    return st;
+}
+
+/* The attribute is OpenEXR's standard worldToCamera: p_cam = p_world M for row vectors (x y z 1), so the translation is
+ * the last row; its camera axes are x right, y UP, z forward, left-handed, whereas a view's y points down. Hence
+ *   M = [ R^T F  0 ]    F = diag(1, -1, 1), R = cam_from_world, t = translation,
+ *       [ t^T F  1 ]    stored row by row. */
+void exr_set_camera(struct exr_image *im, const struct view *view)
+{
+    static const double flip[3] = {1, -1, 1};
+    const double t[3] = {view->translation.x, view->translation.y, view->translation.z};
+    for (int column = 0; column < 3; column++) {
+        for (int row = 0; row < 3; row++)
+            im->world_to_camera[4 * row + column] = (float)(flip[column] * view->cam_from_world.m[column][row]);
+        im->world_to_camera[12 + column] = (float)(flip[column] * t[column]);
+        im->world_to_camera[4 * column + 3] = 0;
+    }
+    im->world_to_camera[15] = 1;
+    im->has_world_to_camera = true;
+}

@@ -1,0 +1,19 @@
+/* view_image.h - a rectified view's picture: out/SCENE/views/VIEW.exr, scene-linear R G B (half), A (half, 1 where the
+ * photo has a pixel). */
+#ifndef REMODEL_VIEW_IMAGE_H
+#define REMODEL_VIEW_IMAGE_H
+
+#include "common/base/provenance.h"
+#include "common/capture/camera_set.h"
+#include "common/image/image.h"
+
+/* 4 channels R G B A. ST_DATA if the size is not the camera's. */
+enum status view_image_read(struct image *im, const char *folder, const struct view *view, struct err *err);
+enum status view_image_write(const struct image *im, const char *path, const struct view *view,
+                             const struct provenance *prov, const char *radiometry, struct err *err);
+
+/* Sets the EXR's worldToCamera from the view. */
+struct exr_image;
+void exr_set_camera(struct exr_image *im, const struct view *view);
+
+#endif

@@ -1,0 +1,473 @@
+/* effects.c - see effects.h. */
+#include "common/film/effects.h"
+
+#include <assert.h>
+#include <ctype.h>
+#include <locale.h>
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/base/outfile.h"
+#include "common/base/parallel.h"
+#include "common/base/scan.h"
+#include "common/base/textfile.h"
+#include "common/math/monotone.h"
+
+#define KEYS_MOST  100000
+#define NAME_MOST  64
+#define VALUE_MOST 100.0
+#define PLACE_MOST 1e9
+#define TIME_MOST  1e6
+
+static const char *const kind_words[] = {"saturation", "brightness", "color"};
+static const char *const region_words[] = {"all", "inside", "outside"};
+static const char *const curve_words[] = {"linear", "cubic"};
+
+static bool name_is_good(const char *name)
+{
+    for (const char *c = name; *c; c++)
+        if (iscntrl((unsigned char)*c)) return false;
+    return *name && strlen(name) <= NAME_MOST;
+}
+
+static int values_of(enum effect_kind kind) { return kind == EFFECT_COLOR ? 3 : 1; }
+
+enum status effects_append(struct effects *e, struct effects *from, struct err *err)
+{
+    const int count = e->layer_count + from->layer_count;
+    if (!from->layer_count) return ST_OK;
+    if (count > EFFECT_LAYERS_MOST)
+        return err_set(err, ST_DATA, "%d effect layers are laid over one film; at most %d can be.", count,
+                       EFFECT_LAYERS_MOST);
+    struct effect_layer *layers = realloc(e->layers, (size_t)count * sizeof *layers);
+    if (!layers) return err_nomem(err, "effect layers", (size_t)count * sizeof *layers);
+    memcpy(layers + e->layer_count, from->layers, (size_t)from->layer_count * sizeof *layers);
+    e->layers = layers;
+    e->layer_count = count;
+    free(from->layers);
+    *from = (struct effects){0};
+    return ST_OK;
+}
+
+void effects_release(struct effects *e)
+{
+    if (!e) return;
+    for (int i = 0; i < e->layer_count; i++) {
+        free(e->layers[i].name);
+        free(e->layers[i].keys);
+    }
+    free(e->layers);
+    *e = (struct effects){0};
+}
+
+/* ----------------------------------------------------------------------------------------------------- reading */
+
+static enum status read_word(struct textfile *t, const char *what, const char *const words[3], int *which,
+                             struct err *err)
+{
+    char *word;
+    enum status st = textfile_word(t, what, &word, err);
+    if (st) return st;
+    for (*which = 0; *which < 3; ++*which)
+        if (!strcmp(word, words[*which])) return ST_OK;
+    return textfile_error(t, err, word, "%s: %s, %s or %s", what, words[0], words[1], words[2]);
+}
+
+static enum status read_number(struct textfile *t, const char *what, double least, double most, double *value,
+                               struct err *err)
+{
+    char *word;
+    enum status st = textfile_word(t, what, &word, err);
+    if (st) return st;
+    if (!scan_double(word, value) || !(*value >= least && *value <= most))
+        return textfile_error(t, err, word, "%s, a number from %.9g to %.9g", what, least, most);
+    return ST_OK;
+}
+
+/* What a layer needs before the next one, or the end of the file, may come. */
+static const char *still_wanted(const struct effects *e, bool has_region)
+{
+    if (!e->layer_count) return NULL;
+    if (!has_region) return "region";
+    return e->layers[e->layer_count - 1].key_count ? NULL : "key";
+}
+
+static enum status read_layer(struct textfile *t, struct effects *e, bool has_region, struct err *err)
+{
+    const char *wanted = still_wanted(e, has_region);
+    char *name;
+    int kind = 0;
+
+    if (wanted)
+        return textfile_error(t, err, "layer", "a %s of the layer %s", wanted, e->layers[e->layer_count - 1].name);
+    enum status st = textfile_word(t, "the layer's name", &name, err);
+    if (st) return st;
+    if (!name_is_good(name)) return textfile_error(t, err, name, "a name of 1 to %d printed letters", NAME_MOST);
+    for (int i = 0; i < e->layer_count; i++)
+        if (!strcmp(e->layers[i].name, name)) return textfile_error(t, err, name, "a name that no layer has yet");
+    if (e->layer_count == EFFECT_LAYERS_MOST)
+        return textfile_error(t, err, name, "the end of the file, after %d layers", EFFECT_LAYERS_MOST);
+    if ((st = read_word(t, "what the layer changes", kind_words, &kind, err)) || (st = textfile_end(t, err))) return st;
+
+    struct effect_layer *more = realloc(e->layers, ((size_t)e->layer_count + 1) * sizeof *more);
+    char *copy = strdup(name);
+    if (more) e->layers = more;
+    if (!more || !copy) {
+        free(copy);
+        return err_nomem(err, "effect layers", ((size_t)e->layer_count + 1) * sizeof *more);
+    }
+    e->layers[e->layer_count++] = (struct effect_layer){.name = copy, .kind = (enum effect_kind)kind};
+    return ST_OK;
+}
+
+static enum status read_region(struct textfile *t, struct effect_layer *l, struct err *err)
+{
+    static const char *const corners[] = {"x0", "y0", "z0", "x1", "y1", "z1"};
+    double *const to[] = {&l->low.x, &l->low.y, &l->low.z, &l->high.x, &l->high.y, &l->high.z};
+    int region = 0;
+    enum status st = read_word(t, "a region", region_words, &region, err);
+
+    l->region = (enum effect_region)region;
+    if (st || l->region == EFFECT_ALL) return st;
+    for (int i = 0; !st && i < 6; i++)
+        st = read_number(t, corners[i], i < 3 ? -PLACE_MOST : *to[i - 3], PLACE_MOST, to[i], err);
+    if (!st) st = read_number(t, "the fall-off", 0, PLACE_MOST, &l->falloff, err);
+    return st;
+}
+
+static enum status read_curve(struct textfile *t, struct effect_layer *l, struct err *err)
+{
+    char *word;
+    enum status st = textfile_word(t, "linear or cubic", &word, err);
+    if (st) return st;
+    if (!strcmp(word, curve_words[EFFECT_LINEAR])) return ST_OK;
+    l->curve = EFFECT_CUBIC;
+    return strcmp(word, curve_words[EFFECT_CUBIC]) ? textfile_error(t, err, word, "linear or cubic") : ST_OK;
+}
+
+static enum status read_key(struct textfile *t, struct effect_layer *l, struct err *err)
+{
+    static const char *const colors[] = {"red", "green", "blue"};
+    const int values = values_of(l->kind);
+    struct effect_key key = {0};
+    char *word;
+    enum status st = textfile_word(t, "a time in seconds", &word, err);
+
+    if (st) return st;
+    const bool good = scan_double(word, &key.time) && key.time >= 0 && key.time <= TIME_MOST;
+    if (!good) return textfile_error(t, err, word, "a time, a number from 0 to %.9g", TIME_MOST);
+    if (l->key_count && !(key.time > l->keys[l->key_count - 1].time))
+        return textfile_error(t, err, word, "a time after %.9g, the key's before", l->keys[l->key_count - 1].time);
+    for (int i = 0; !st && i < values; i++)
+        st = read_number(t, values == 1 ? kind_words[l->kind] : colors[i], 0, VALUE_MOST, &key.value[i], err);
+    if (st) return st;
+    if (l->key_count == KEYS_MOST) return textfile_error(t, err, word, "at most %d keys of a layer", KEYS_MOST);
+    if (!(l->key_count & (l->key_count - 1))) { /* a power of two: room for as many again */
+        const size_t room = l->key_count ? 2 * (size_t)l->key_count : 1;
+        struct effect_key *more = realloc(l->keys, room * sizeof *more);
+        if (!more) return err_nomem(err, "keys of a layer", room * sizeof *more);
+        l->keys = more;
+    }
+    l->keys[l->key_count++] = key;
+    return ST_OK;
+}
+
+static enum status read_header(struct textfile *t, struct err *err)
+{
+    char *word;
+    int64_t version;
+
+    if (!textfile_next(t)) return textfile_error(t, err, NULL, "remodel-effects 1");
+    enum status st = textfile_word(t, "remodel-effects", &word, err);
+    if (st) return st;
+    if (strcmp(word, "remodel-effects")) return textfile_error(t, err, word, "remodel-effects 1, the first line");
+    if ((st = textfile_int(t, "the version", 1, 1, &version, err))) return st;
+    return textfile_end(t, err);
+}
+
+enum status effects_read_layers(struct effects *e, struct textfile *t, struct err *err)
+{
+    bool has_region = false;
+    enum status st = ST_OK;
+
+    *e = (struct effects){0};
+    while (!st && textfile_next(t)) {
+        struct effect_layer *l = e->layer_count ? &e->layers[e->layer_count - 1] : NULL;
+        char *word;
+        if ((st = textfile_word(t, "layer, region, curve or key", &word, err))) break;
+        if (!strcmp(word, "layer")) {
+            st = read_layer(t, e, has_region, err);
+            has_region = false;
+        } else if (l && !has_region && !strcmp(word, "region")) {
+            st = read_region(t, l, err);
+            has_region = true;
+        } else if (l && has_region && !l->key_count && l->curve == EFFECT_LINEAR && !strcmp(word, "curve")) {
+            st = read_curve(t, l, err);
+        } else if (l && has_region && !strcmp(word, "key")) {
+            st = read_key(t, l, err);
+        } else {
+            st = textfile_error(t, err, word, !l ? "layer" : has_region ? "key or layer" : "region");
+        }
+        if (!st) st = textfile_end(t, err);
+    }
+    const char *wanted = still_wanted(e, has_region);
+    if (!st && wanted)
+        st = err_set(err, ST_DATA, "%s:%d: found the end of the file, wanted a %s of the layer %s.", t->path, t->line,
+                     wanted, e->layers[e->layer_count - 1].name);
+    if (st) effects_release(e);
+    return st;
+}
+
+enum status effects_read(struct effects *e, const char *path, struct err *err)
+{
+    struct textfile t = {0};
+
+    *e = (struct effects){0};
+    enum status st = textfile_open(&t, path, err);
+    if (st) return st;
+    st = read_header(&t, err);
+    if (!st) st = effects_read_layers(e, &t, err);
+    textfile_release(&t);
+    return st;
+}
+
+/* ----------------------------------------------------------------------------------------------------- writing */
+
+static bool within(double value, double least, double most) { return value >= least && value <= most; }
+
+/* A file may have this layer. */
+static bool layer_is_good(const struct effects *e, int index)
+{
+    const struct effect_layer *l = &e->layers[index];
+    bool good = l->name && name_is_good(l->name) && within(l->key_count, 1, KEYS_MOST);
+
+    for (int i = 0; good && i < index; i++) good = strcmp(e->layers[i].name, l->name) != 0;
+    if (l->region != EFFECT_ALL)
+        good = good && within(l->low.x, -PLACE_MOST, PLACE_MOST) && within(l->high.x, l->low.x, PLACE_MOST) &&
+               within(l->low.y, -PLACE_MOST, PLACE_MOST) && within(l->high.y, l->low.y, PLACE_MOST) &&
+               within(l->low.z, -PLACE_MOST, PLACE_MOST) && within(l->high.z, l->low.z, PLACE_MOST) &&
+               within(l->falloff, 0, PLACE_MOST);
+    for (int i = 0; good && i < l->key_count; i++) {
+        good = within(l->keys[i].time, 0, TIME_MOST) && (!i || l->keys[i].time > l->keys[i - 1].time);
+        for (int k = 0; k < values_of(l->kind); k++) good = good && within(l->keys[i].value[k], 0, VALUE_MOST);
+    }
+    return good;
+}
+
+static void write_layer(const struct effect_layer *l, const char *name, FILE *to)
+{
+    fprintf(to, "layer %s %s\nregion %s", name, kind_words[l->kind], region_words[l->region]);
+    if (l->region != EFFECT_ALL)
+        fprintf(to, " %.17g %.17g %.17g %.17g %.17g %.17g %.17g", l->low.x, l->low.y, l->low.z, l->high.x, l->high.y,
+                l->high.z, l->falloff);
+    fprintf(to, "\n");
+    if (l->curve != EFFECT_LINEAR) fprintf(to, "curve %s\n", curve_words[l->curve]);
+    for (int i = 0; i < l->key_count; i++) {
+        fprintf(to, "key %.17g", l->keys[i].time);
+        for (int k = 0; k < values_of(l->kind); k++) fprintf(to, " %.17g", l->keys[i].value[k]);
+        fprintf(to, "\n");
+    }
+}
+
+enum status effects_write(const struct effects *e, const char *path, const struct provenance *prov, struct err *err)
+{
+    struct outfile f = {0};
+
+    if (e->layer_count > EFFECT_LAYERS_MOST)
+        return err_set(err, ST_DATA, "%s: %d effect layers cannot be written, wanted at most %d.", path, e->layer_count,
+                       EFFECT_LAYERS_MOST);
+    for (int i = 0; i < e->layer_count; i++)
+        if (!layer_is_good(e, i))
+            return err_set(err, ST_DATA,
+                           "%s: layer %d of %d cannot be written: its name is bad or another's, or a number is out of "
+                           "range.",
+                           path, i + 1, e->layer_count);
+    enum status st = outfile_open(&f, path, err);
+    if (st) return st;
+    const locale_t before = uselocale(scan_c_locale());
+    if (prov) provenance_print(prov, f.fp);
+    fprintf(f.fp, "remodel-effects 1\n");
+    for (int i = 0; !st && i < e->layer_count; i++) {
+        char name[2 * NAME_MOST + 3];
+        st = textfile_quote(e->layers[i].name, name, sizeof name, err);
+        if (!st) write_layer(&e->layers[i], name, f.fp);
+    }
+    uselocale(before);
+    if (!st) return outfile_commit(&f, err);
+    outfile_discard(&f);
+    return st;
+}
+
+/* ---------------------------------------------------------------------------------------------------- applying */
+
+/* Of a value at a key of a cubic layer; level at the first and the last, as what is held there is. */
+static double key_slope(const struct effect_layer *l, int i, int k)
+{
+    if (i == 0 || i == l->key_count - 1) return 0;
+    const struct effect_key *key = &l->keys[i];
+    const double h0 = key->time - key[-1].time, h1 = key[1].time - key->time;
+    return monotone_slope(h0, (key->value[k] - key[-1].value[k]) / h0, h1, (key[1].value[k] - key->value[k]) / h1);
+}
+
+void effect_layer_value(const struct effect_layer *l, double time, double value[3])
+{
+    int after = 0;
+    while (after < l->key_count && l->keys[after].time <= time) after++;
+    const struct effect_key *b = &l->keys[after < l->key_count ? after : after - 1], *a = after ? b - 1 : b;
+    if (after == l->key_count) a = b;
+    const double h = b->time - a->time, t = a == b ? 0 : (time - a->time) / h;
+    for (int k = 0; k < 3; k++)
+        if (l->curve == EFFECT_CUBIC && a != b)
+            value[k] =
+                monotone_value(a->value[k], b->value[k], h, key_slope(l, after - 1, k), key_slope(l, after, k), t);
+        else
+            value[k] = a->value[k] + t * (b->value[k] - a->value[k]);
+}
+
+typedef float v4 __attribute__((vector_size(16)));
+typedef float v8 __attribute__((vector_size(32)));
+typedef int32_t v8i __attribute__((vector_size(32)));
+
+#define STRIP    64   /* pixels of a row that are worked on together */
+#define FARTHEST 1e9f /* depths beyond this are farther than any box */
+#define CUT      16   /* exponents below minus this give 0, which no eye and no half float tells from 1e-7 */
+
+struct active { /* a layer at a time, ready for its pixels */
+    const struct effect_layer *layer;
+    float change[3]; /* value - 1 */
+    /* of the box's centre: the camera's, and steps for a pixel's x, y at depth 1; half the box */
+    double center[3], ray[3][3], half[3];
+    float per; /* -1 / (2 falloff^2 ln 2), or 0 */
+};
+
+struct effects_pass {
+    const struct active *layers;
+    int count;
+    struct rendered_frame *frame;
+};
+
+static struct active activate(const struct effect_layer *l, const double value[3], const struct view *v)
+{
+    const double *r = &v->cam_from_world.m[0][0]; /* its columns lead to world axes */
+    const double low[] = {l->low.x, l->low.y, l->low.z}, high[] = {l->high.x, l->high.y, l->high.z};
+    const double at[] = {v->center.x, v->center.y, v->center.z};
+    struct active a = {.layer = l};
+
+    for (int k = 0; k < 3; k++) {
+        a.change[k] = (float)(value[l->kind == EFFECT_COLOR ? k : 0] - 1);
+        a.half[k] = (high[k] - low[k]) / 2;
+        a.center[k] = at[k] - (low[k] + a.half[k]);
+        a.ray[0][k] = r[k] / v->fx;
+        a.ray[1][k] = r[3 + k] / v->fy;
+        a.ray[2][k] = r[6 + k] + (0.5 - v->cx) * a.ray[0][k] + (0.5 - v->cy) * a.ray[1][k];
+    }
+    a.per = l->falloff > 0 ? (float)(-1 / (2 * l->falloff * l->falloff * M_LN2)) : 0;
+    return a;
+}
+
+/* 2^x for -30 < x <= 0, to 2e-7. */
+static inline v8 exp2_of(v8 x)
+{
+    const v8i whole = __builtin_convertvector(x - 0.5f, v8i); /* towards 0: to the nearest */
+    const v8 f = (x - __builtin_convertvector(whole, v8)) * (float)M_LN2;
+    const v8 series = 1 + f * (1 + f * (1 / 2.0f + f * (1 / 6.0f + f * (1 / 24.0f + f * (1 / 120.0f + f / 720.0f)))));
+    return series * (v8)((whole + 127) << 23);
+}
+
+/* Weights of a strip of a row, from its depths. */
+static void strip_weights(float *weights, const struct active *a, const float *z, int x, int y, int count)
+{
+    const bool outside = a->layer->region == EFFECT_OUTSIDE;
+    const v8 step = {0, 1, 2, 3, 4, 5, 6, 7};
+    float start[3];
+
+    for (int k = 0; k < 3; k++) start[k] = (float)(a->ray[2][k] + y * a->ray[1][k] + x * a->ray[0][k]);
+    for (int i = 0; i < count; i += 8) {
+        v8 depth, square = {0};
+        memcpy(&depth, z + i, sizeof depth);
+        const v8i known = (depth > 0) & (depth < FARTHEST);
+        for (int k = 0; k < 3; k++) {
+            const v8 at = (float)a->center[k] + depth * (start[k] + ((float)i + step) * (float)a->ray[0][k]);
+            const v8 beyond = (v8)((v8i)at & 0x7fffffff) - (float)a->half[k];
+            const v8 d = (v8)((v8i)beyond & (beyond > 0));
+            square += d * d;
+        }
+        v8 exponent = square * a->per;
+        /* a hard edge has per 0: what is beyond the box is cut by its distance alone */
+        const v8i there = known & (a->per < 0 ? exponent > -(float)CUT / (float)M_LN2 : square == 0);
+        exponent = (v8)((v8i)exponent & there);
+        const v8 inside = (v8)((v8i)exp2_of(exponent) & there), weight = outside ? 1 - inside : inside;
+        memcpy(weights + i, &weight, sizeof weight);
+    }
+}
+
+static void strip_scale(float *rgba, const float *weights, const float change[3], int count)
+{
+    const v4 by = {change[0], change[1], change[2], 0};
+    for (int i = 0; i < count; i++) {
+        v4 c;
+        memcpy(&c, rgba + 4 * i, sizeof c);
+        c *= 1 + weights[i] * by; /* change is not below -1 */
+        memcpy(rgba + 4 * i, &c, sizeof c);
+    }
+}
+
+static void strip_saturate(float *rgba, const float *weights, float change, int count)
+{
+    for (int i = 0; i < count; i++) {
+        float *c = rgba + 4 * i;
+        const float y = 0.2126f * c[0] + 0.7152f * c[1] + 0.0722f * c[2];
+        const float dark = c[0] < c[1] ? (c[0] < c[2] ? c[0] : c[2]) : (c[1] < c[2] ? c[1] : c[2]);
+        float by = weights[i] * change;
+        if (by == 0) continue;
+        /* dark + by (dark - y) is not to be below 0 */
+        if (by * (y - dark) > dark) by = dark / (y - dark);
+        for (int k = 0; k < 3; k++) {
+            const float v = c[k] + by * (c[k] - y);
+            c[k] = v > 0 ? v : 0;
+        }
+    }
+}
+
+static void effect_rows(void *ctx, size_t begin, size_t end, int thread)
+{
+    const struct effects_pass *p = ctx;
+    const int w = p->frame->width;
+    (void)thread;
+
+    for (int y = (int)begin; y < (int)end; y++)
+        for (int x = 0; x < w; x += STRIP) {
+            const int count = w - x < STRIP ? w - x : STRIP;
+            const size_t at = (size_t)y * (size_t)w + (size_t)x;
+            float weights[STRIP], z[STRIP] = {0};
+            memcpy(z, p->frame->z + at, (size_t)count * sizeof *z);
+            for (int i = 0; i < p->count; i++) {
+                const struct active *a = &p->layers[i];
+                if (a->layer->region == EFFECT_ALL)
+                    for (int k = 0; k < STRIP; k++) weights[k] = 1;
+                else
+                    strip_weights(weights, a, z, x, y, count);
+                if (a->layer->kind == EFFECT_SATURATION)
+                    strip_saturate(p->frame->rgba + 4 * at, weights, a->change[0], count);
+                else
+                    strip_scale(p->frame->rgba + 4 * at, weights, a->change, count);
+            }
+        }
+}
+
+void effects_apply(const struct effects *e, double time, const struct view *camera, struct rendered_frame *frame)
+{
+    struct active active[EFFECT_LAYERS_MOST];
+    struct effects_pass pass = {active, 0, frame};
+
+    assert(e->layer_count <= EFFECT_LAYERS_MOST);
+    for (int i = 0; i < e->layer_count; i++) {
+        double value[3];
+        effect_layer_value(&e->layers[i], time, value);
+        if (value[0] == 1 && (e->layers[i].kind != EFFECT_COLOR || (value[1] == 1 && value[2] == 1))) continue;
+        active[pass.count++] = activate(&e->layers[i], value, camera);
+    }
+    if (pass.count) parallel_for((size_t)frame->height, 16, effect_rows, &pass);
+}

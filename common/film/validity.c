@@ -1,0 +1,241 @@
+/* validity.c - see validity.h. */
+#include "common/film/validity.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/base/outfile.h"
+#include "common/base/textfile.h"
+
+enum { MOST_CELLS = 4096 };
+
+enum status validity_region_init(struct validity_region *r, int columns, int rows, struct err *err)
+{
+    const size_t count = (size_t)columns * (size_t)rows;
+    *r = (struct validity_region){columns, rows, calloc(count, sizeof *r->cells)};
+    return r->cells ? ST_OK : err_nomem(err, "a region of viewpoints", count * sizeof *r->cells);
+}
+
+int validity_region_count(const struct validity_region *r)
+{
+    int count = 0;
+    for (int i = 0; i < r->columns * r->rows; i++) count += r->cells[i].valid;
+    return count;
+}
+
+void validity_release(struct validity *v)
+{
+    if (!v) return;
+    for (int i = 0; i < 2; i++) free(v->region[i].cells);
+    *v = (struct validity){0};
+}
+
+/* -------------------------------------------------------------------------------------------------------- reading */
+
+static enum status read_vector(struct textfile *t, const char *what, struct vec3 *v, struct err *err)
+{
+    return textfile_double(t, what, &v->x, err) || textfile_double(t, what, &v->y, err) ||
+                   textfile_double(t, what, &v->z, err)
+               ? err->status
+               : ST_OK;
+}
+
+/* The next line's first word must be this one. */
+static enum status read_key(struct textfile *t, const char *key, struct err *err)
+{
+    if (!textfile_next(t)) return textfile_error(t, err, NULL, "\"%s\"", key);
+    return textfile_expect(t, key, err);
+}
+
+static enum status read_numbers(struct textfile *t, const char *key, double *values, int count, struct err *err)
+{
+    enum status st = read_key(t, key, err);
+    for (int i = 0; !st && i < count; i++) st = textfile_double(t, key, &values[i], err);
+    return st ? st : textfile_end(t, err);
+}
+
+static enum status read_shot(struct textfile *t, struct validity *v, struct err *err)
+{
+    struct shot *s = &v->shot;
+    struct view *l = &s->lens;
+    struct vec3 *const vectors[] = {&s->up, &s->origin, &s->axis_x, &s->axis_y, &s->axis_z, &s->centroid};
+    static const char *const keys[] = {"up", "origin", "axis_x", "axis_y", "axis_z", "centroid"};
+    double film[5], near[1], box[4], limits[3];
+
+    if (read_numbers(t, "film", film, 5, err)) return err->status;
+    for (int i = 0; i < 2; i++)
+        if (!(film[i] >= 2 && film[i] <= 65536 && fmod(film[i], 2) == 0))
+            return textfile_error(t, err, "a film of another size", "even numbers from 2 to 65536");
+    if (!(film[2] > 0)) return textfile_error(t, err, "a focal length of 0 or less", "one above 0");
+    *l = (struct view){.name = "film",
+                       .width = (int)film[0],
+                       .height = (int)film[1],
+                       .fx = film[2],
+                       .fy = film[2],
+                       .cx = film[3],
+                       .cy = film[4]};
+    if (read_numbers(t, "zoom", &v->zoom, 1, err)) return err->status;
+    if (!(v->zoom > 0)) return textfile_error(t, err, "a zoom of 0 or less", "one above 0");
+    if (read_numbers(t, "near_limit", near, 1, err) || read_numbers(t, "median_depth", &s->median_depth, 1, err))
+        return err->status;
+    s->near_limit = near[0];
+    if (!(s->median_depth > 0)) return textfile_error(t, err, "a median depth of 0 or less", "one above 0");
+    for (int i = 0; i < 6; i++)
+        if (read_key(t, keys[i], err) || read_vector(t, keys[i], vectors[i], err) || textfile_end(t, err))
+            return err->status;
+    if (read_numbers(t, "box", box, 4, err)) return err->status;
+    for (int i = 0; i < 2; i++) {
+        s->low[i] = box[i];
+        s->high[i] = box[2 + i];
+        if (!(s->low[i] < s->high[i])) return textfile_error(t, err, "an empty box", "LOW_X LOW_Y HIGH_X HIGH_Y");
+    }
+    if (read_numbers(t, "limits", limits, 3, err)) return err->status;
+    if (!(limits[2] >= 1 && limits[2] <= 65536)) return textfile_error(t, err, "another side", "1 to 65536 px");
+    v->limits = (struct viewpoint_limits){limits[0], limits[1], (int)limits[2]};
+    if (read_numbers(t, "step", &v->step, 1, err)) return err->status;
+    return v->step > 0 ? ST_OK : textfile_error(t, err, "a step of 0 or less", "one above 0");
+}
+
+static enum status read_end(struct textfile *t, struct shot_end *e, struct err *err)
+{
+    char *word;
+    if (read_key(t, "end", err) || textfile_expect(t, "target", err) || read_vector(t, "the target", &e->target, err) ||
+        textfile_word(t, "\"focal\" or \"size\"", &word, err))
+        return err->status;
+    if (!strcmp(word, "focal")) {
+        if (textfile_double(t, "the focal length", &e->focal, err)) return err->status;
+        if (!(e->focal > 0)) return textfile_error(t, err, "a focal length of 0 or less", "one above 0");
+        if (!textfile_more(t)) return ST_OK;
+        if (textfile_expect(t, "most", err)) return err->status;
+    } else if (strcmp(word, "size"))
+        return textfile_error(t, err, word, "\"focal\" or \"size\"");
+    if (textfile_double(t, "the size", &e->size, err)) return err->status;
+    if (!(e->size > 0)) return textfile_error(t, err, "a size of 0 or less", "one above 0");
+    for (int i = 0; i < 4; i++)
+        if (read_vector(t, "a corner", &e->corner[i], err)) return err->status;
+    return textfile_end(t, err);
+}
+
+static enum status read_region(struct textfile *t, struct validity_region *r, struct err *err)
+{
+    int64_t columns, rows;
+    if (read_key(t, "region", err) || textfile_int(t, "columns", 1, MOST_CELLS, &columns, err) ||
+        textfile_int(t, "rows", 1, MOST_CELLS / columns, &rows, err) || textfile_end(t, err) ||
+        validity_region_init(r, (int)columns, (int)rows, err))
+        return err->status;
+    for (int i = 0; i < r->columns * r->rows; i++) {
+        struct validity_cell *c = &r->cells[i];
+        char *word;
+        if (read_key(t, "cell", err) || textfile_double(t, "x", &c->x, err) || textfile_double(t, "y", &c->y, err) ||
+            textfile_word(t, "\"from\" or \"none\"", &word, err))
+            return err->status;
+        c->valid = strcmp(word, "none");
+        if (c->valid && strcmp(word, "from")) return textfile_error(t, err, word, "\"from\" or \"none\"");
+        if (c->valid && (textfile_double(t, "the lowest z", &c->low, err) || textfile_expect(t, "to", err) ||
+                         textfile_double(t, "the highest z", &c->high, err)))
+            return err->status;
+        if (!(c->low <= c->high)) return textfile_error(t, err, "a lowest z above the highest", "from LOW_Z to HIGH_Z");
+        if (textfile_end(t, err)) return err->status;
+    }
+    return ST_OK;
+}
+
+enum status validity_read(struct validity *v, const char *path, struct err *err)
+{
+    struct textfile t = {0};
+    char *word;
+    int64_t number;
+    struct err why = ERR_INIT;
+
+    *v = (struct validity){0};
+    enum status st = textfile_open(&t, path, err);
+    if (!st) st = read_key(&t, "remodel-validity", err);
+    if (!st) st = textfile_int(&t, "version", 1, 1, &number, err);
+    if (!st) st = textfile_end(&t, err);
+    if (!st) st = read_key(&t, "effect", err);
+    if (!st) st = textfile_word(&t, "an effect", &word, err);
+    if (!st && film_effect_parse(&v->effect, word, &why))
+        st = err_set(err, ST_DATA, "%s:%d: %s", path, t.line, why.text);
+    if (!st) st = textfile_end(&t, err);
+    v->move.move = v->effect.move;
+    if (!st) st = read_shot(&t, v, err);
+    if (!st) st = read_key(&t, "on_axis", err);
+    if (!st) st = textfile_int(&t, "on_axis", 0, 1, &number, err);
+    if (!st) st = textfile_end(&t, err);
+    if (!st) v->move.on_axis = number;
+    for (int i = 0; !st && i < 2; i++) {
+        st = read_end(&t, &v->move.end[i], err);
+        if (!st) st = read_region(&t, &v->region[i], err);
+    }
+    if (!st && textfile_next(&t)) st = textfile_error(&t, err, "another line", "the end of the file");
+    textfile_release(&t);
+    if (st) validity_release(v);
+    return st;
+}
+
+/* -------------------------------------------------------------------------------------------------------- writing */
+
+static void print_vector(FILE *fp, struct vec3 v) { fprintf(fp, " %.17g %.17g %.17g", v.x, v.y, v.z); }
+
+static void print_key_vector(FILE *fp, const char *key, struct vec3 v)
+{
+    fputs(key, fp);
+    print_vector(fp, v);
+    fputc('\n', fp);
+}
+
+static void print_end(FILE *fp, const struct shot_end *e)
+{
+    fputs("end target", fp);
+    print_vector(fp, e->target);
+    if (e->focal > 0) fprintf(fp, " focal %.17g", e->focal);
+    if (e->size > 0) {
+        fprintf(fp, " %s %.17g", e->focal > 0 ? "most" : "size", e->size);
+        for (int i = 0; i < 4; i++) print_vector(fp, e->corner[i]);
+    }
+    fputc('\n', fp);
+}
+
+static void print_region(FILE *fp, const struct validity_region *r)
+{
+    fprintf(fp, "region %d %d\n", r->columns, r->rows);
+    for (int i = 0; i < r->columns * r->rows; i++) {
+        const struct validity_cell *c = &r->cells[i];
+        fprintf(fp, "cell %.17g %.17g", c->x, c->y);
+        if (c->valid)
+            fprintf(fp, " from %.17g to %.17g\n", c->low, c->high);
+        else
+            fputs(" none\n", fp);
+    }
+}
+
+enum status validity_write(const struct validity *v, const char *path, const struct provenance *prov, struct err *err)
+{
+    const struct shot *s = &v->shot;
+    struct outfile f = {0};
+    char effect[EFFECT_NAME_SIZE];
+    enum status st = outfile_open(&f, path, err);
+
+    if (st) return st;
+    if (prov) provenance_print(prov, f.fp);
+    film_effect_name(&v->effect, effect);
+    fprintf(f.fp, "remodel-validity 1\neffect %s\nfilm %d %d %.17g %.17g %.17g\nzoom %.17g\n", effect, s->lens.width,
+            s->lens.height, s->lens.fx, s->lens.cx, s->lens.cy, v->zoom);
+    fprintf(f.fp, "near_limit %.17g\nmedian_depth %.17g\n", s->near_limit, s->median_depth);
+    print_key_vector(f.fp, "up", s->up);
+    print_key_vector(f.fp, "origin", s->origin);
+    print_key_vector(f.fp, "axis_x", s->axis_x);
+    print_key_vector(f.fp, "axis_y", s->axis_y);
+    print_key_vector(f.fp, "axis_z", s->axis_z);
+    print_key_vector(f.fp, "centroid", s->centroid);
+    fprintf(f.fp, "box %.17g %.17g %.17g %.17g\n", s->low[0], s->low[1], s->high[0], s->high[1]);
+    fprintf(f.fp, "limits %.17g %.17g %d\nstep %.17g\non_axis %d\n", v->limits.max_h, v->limits.max_outside,
+            v->limits.side, v->step, v->move.on_axis);
+    for (int i = 0; i < 2; i++) {
+        print_end(f.fp, &v->move.end[i]);
+        print_region(f.fp, &v->region[i]);
+    }
+    st = outfile_commit(&f, err);
+    outfile_discard(&f);
+    return st;
+}

@@ -1,0 +1,148 @@
+/* viewpoint.c - see viewpoint.h. */
+#include "common/film/viewpoint.h"
+
+#include <stdlib.h>
+
+#include "common/base/parallel.h"
+#include "common/layers/hole_measure.h"
+
+#define OUTSIDE_SIDE   64    /* of the picture in which what is outside is counted */
+#define NEAR_TOLERANCE 0.005 /* of the picture */
+
+static enum status measure_holes(struct viewpoint *v, struct viewpoint_test *test, const struct view *camera,
+                                 struct err *err)
+{
+    const int longer = camera->width > camera->height ? camera->width : camera->height;
+    const double scale = test->limits.side < longer ? (double)test->limits.side / longer : 1;
+    struct rendered_frame *c = &test->coverage;
+
+    if (layer_coverage(c, test->scene, camera, scale, err)) return err->status;
+    test->renders++;
+    const size_t pixels = (size_t)c->width * (size_t)c->height;
+    if (pixels > test->distance_room) {
+        free(test->distance);
+        test->distance_room = 0;
+        test->distance = malloc(pixels * sizeof *test->distance);
+        if (!test->distance) return err_nomem(err, "distances in holes", pixels * sizeof *test->distance);
+        test->distance_room = pixels;
+    }
+    v->holes = c->hole_fraction;
+    v->h = 0;
+    return c->hole_fraction > 0 ? hole_measure(&v->h, c->hole, c->width, c->height, test->distance, err) : ST_OK;
+}
+
+/* At the centroid's depth; each pixel counts by the weight of the views that do not contain it. */
+static double outside(const struct viewpoint_test *test, const struct view *camera)
+{
+    const struct camera_set *set = test->scene->set;
+    struct view_weights row[OUTSIDE_SIDE];
+    struct view_mesh_camera mesh;
+    struct view small = *camera;
+    const double scale = (double)OUTSIDE_SIDE / (camera->width > camera->height ? camera->width : camera->height);
+    double sum = 0, x, y;
+    const double depth = view_project(camera, test->shot->centroid, &x, &y);
+
+    if (!(depth > 0)) return 1;
+    view_resize(&small, (int)fmax(1, floor(camera->width * scale)), (int)fmax(1, floor(camera->height * scale)));
+    view_mesh_prepare(&mesh, &test->scene->mesh, &small);
+    for (int j = 0; j < small.height; j++) {
+        view_mesh_row(&mesh, j, row);
+        for (int i = 0; i < small.width; i++) {
+            const struct vec3 point = view_unproject(&small, i + 0.5, j + 0.5, depth);
+            for (int k = 0; k < row[i].count; k++) {
+                const struct view *of = &set->views[row[i].view[k]];
+                double u = -1, t = -1;
+                if (!(view_project(of, point, &u, &t) > 0) || u < 0 || u > of->width || t < 0 || t > of->height)
+                    sum += (double)row[i].weight[k];
+            }
+        }
+    }
+    return sum / (small.width * small.height);
+}
+
+static double near_part(const struct viewpoint_test *test, const struct view *camera)
+{
+    double near = 0, total = 0;
+    for (size_t i = 0; i < test->points->count; i++) {
+        const struct scene_point *p = &test->points->points[i];
+        double u = -1, t = -1;
+        const double z = view_project(camera, p->position, &u, &t);
+        if (z <= 0 || u < 0 || u > camera->width || t < 0 || t > camera->height) continue;
+        total += p->weight;
+        if (z < test->shot->near_limit) near += p->weight;
+    }
+    return total > 0 ? near / total : 1;
+}
+
+enum status viewpoint_measure(struct viewpoint *v, struct viewpoint_test *test, const struct view *camera,
+                              struct err *err)
+{
+    *v = (struct viewpoint){.h = INFINITY, .holes = 1, .outside = 1, .near = 1};
+    if (!(camera->fx > 0)) return ST_OK;
+    v->near = near_part(test, camera);
+    v->outside = outside(test, camera);
+    if (measure_holes(v, test, camera, err)) return err->status;
+    v->valid = v->near <= NEAR_TOLERANCE && v->outside <= test->limits.max_outside && v->h < test->limits.max_h;
+    return ST_OK;
+}
+
+enum status viewpoint_is_valid(bool *valid, struct viewpoint_test *test, const struct view *camera, struct err *err)
+{
+    struct viewpoint v;
+    *valid = false;
+    if (!(camera->fx > 0) || near_part(test, camera) > NEAR_TOLERANCE ||
+        outside(test, camera) > test->limits.max_outside)
+        return ST_OK;
+    if (measure_holes(&v, test, camera, err)) return err->status;
+    *valid = v.h < test->limits.max_h;
+    return ST_OK;
+}
+
+void viewpoint_test_like(struct viewpoint_test *test, const struct viewpoint_test *like)
+{
+    *test = (struct viewpoint_test){
+        .scene = like->scene, .points = like->points, .shot = like->shot, .limits = like->limits};
+}
+
+void viewpoint_test_release(struct viewpoint_test *test)
+{
+    rendered_frame_release(&test->coverage);
+    free(test->distance);
+    test->distance = NULL;
+    test->distance_room = 0;
+}
+
+struct measuring {
+    struct viewpoint *out;
+    const struct view *cameras;
+    struct viewpoint_test *tests; /* a thread */
+    struct err *errors;           /* a camera */
+};
+
+static void measure_some(void *ctx, size_t begin, size_t end, int thread)
+{
+    const struct measuring *m = ctx;
+    for (size_t i = begin; i < end; i++)
+        viewpoint_measure(&m->out[i], &m->tests[thread], &m->cameras[i], &m->errors[i]);
+}
+
+enum status viewpoints_measure(struct viewpoint *out, const struct view *cameras, int count,
+                               struct viewpoint_test *like, struct err *err)
+{
+    const int threads = parallel_threads();
+    struct measuring m = {out, cameras, calloc((size_t)threads, sizeof *m.tests),
+                          calloc((size_t)count + 1, sizeof *m.errors)};
+    enum status st = m.tests && m.errors ? ST_OK : err_nomem(err, "viewpoints", (size_t)count * sizeof *m.errors);
+
+    for (int t = 0; !st && t < threads; t++) viewpoint_test_like(&m.tests[t], like);
+    if (!st) parallel_for((size_t)count, 1, measure_some, &m);
+    for (int i = 0; !st && i < count; i++)
+        if (m.errors[i].status) st = err_set(err, m.errors[i].status, "%s", m.errors[i].text);
+    for (int t = 0; m.tests && t < threads; t++) {
+        like->renders += m.tests[t].renders;
+        viewpoint_test_release(&m.tests[t]);
+    }
+    free(m.tests);
+    free(m.errors);
+    return st;
+}

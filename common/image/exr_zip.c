@@ -1,0 +1,90 @@
+/* exr_zip.c - see exr_zip.h. */
+#include "common/image/exr_zip.h"
+
+#include <immintrin.h>
+#include <libdeflate.h>
+#include <stdlib.h>
+
+#define LEVEL 4 /* libdeflate's; part of the reproducible bytes */
+
+static bool grow(uint8_t **bytes, size_t *size, size_t wanted)
+{
+    if (*bytes && *size >= wanted) return true;
+    free(*bytes);
+    *bytes = malloc(wanted ? wanted : 1);
+    *size = *bytes ? wanted : 0;
+    return *bytes;
+}
+
+/* Even bytes, then odd ones, and of that row of bytes the differences, about 128. */
+static void split(uint8_t *restrict to, uint8_t *restrict halves, const uint8_t *restrict from, size_t size)
+{
+    const size_t odd = size / 2, even = size - odd;
+    for (size_t i = 0; i < odd; i++) {
+        halves[i] = from[2 * i];
+        halves[even + i] = from[2 * i + 1];
+    }
+    if (even > odd) halves[odd] = from[size - 1];
+    if (size) to[0] = halves[0];
+    for (size_t i = 1; i < size; i++) to[i] = (uint8_t)(halves[i] - halves[i - 1] + 128);
+}
+
+/* Running sums in place, then the halves interleaved. */
+static void join(uint8_t *restrict to, uint8_t *restrict halves, size_t size)
+{
+    uint8_t last = 0;
+    size_t i = 0;
+    if (size) last = halves[i++];
+    const __m128i middle = _mm_set1_epi8((char)128);
+    __m128i carry = _mm_set1_epi8((char)last);
+    for (; i + 16 <= size; i += 16) { /* sums of 2, 4, 8, 16 neighbours */
+        __m128i v = _mm_add_epi8(_mm_loadu_si128((const __m128i *)(halves + i)), middle);
+        v = _mm_add_epi8(v, _mm_slli_si128(v, 1));
+        v = _mm_add_epi8(v, _mm_slli_si128(v, 2));
+        v = _mm_add_epi8(v, _mm_slli_si128(v, 4));
+        v = _mm_add_epi8(v, _mm_slli_si128(v, 8));
+        v = _mm_add_epi8(v, carry);
+        _mm_storeu_si128((__m128i *)(halves + i), v);
+        carry = _mm_shuffle_epi8(v, _mm_set1_epi8(15));
+    }
+    if (i > 1) last = halves[i - 1];
+    for (; i < size; i++) halves[i] = last = (uint8_t)(last + halves[i] - 128);
+
+    const size_t odd = size / 2, even = size - odd;
+    for (size_t k = 0; k < odd; k++) {
+        to[2 * k] = halves[k];
+        to[2 * k + 1] = halves[even + k];
+    }
+    if (even > odd) to[size - 1] = halves[odd];
+}
+
+bool exr_zip_pack(struct exr_zip *z, const uint8_t *from, size_t size, size_t *packed)
+{
+    if (!z->compressor) z->compressor = libdeflate_alloc_compressor(LEVEL);
+    if (!z->compressor || !grow(&z->split, &z->split_size, 2 * size) || !grow(&z->bytes, &z->bytes_size, size))
+        return false;
+    split(z->split, z->split + size, from, size);
+    *packed = size ? libdeflate_zlib_compress(z->compressor, z->split, size, z->bytes, size - 1) : 0;
+    if (!*packed) *packed = size; /* it did not fit */
+    return true;
+}
+
+enum exr_zip_result exr_zip_unpack(struct exr_zip *z, const uint8_t *from, size_t packed, uint8_t *to, size_t size)
+{
+    if (!z->decompressor) z->decompressor = libdeflate_alloc_decompressor();
+    if (!z->decompressor || !grow(&z->split, &z->split_size, size)) return EXR_ZIP_NOMEM;
+    if (libdeflate_zlib_decompress(z->decompressor, from, packed, z->split, size, NULL) != LIBDEFLATE_SUCCESS)
+        return EXR_ZIP_DAMAGED;
+    join(to, z->split, size);
+    return EXR_ZIP_GOOD;
+}
+
+void exr_zip_release(struct exr_zip *z)
+{
+    if (!z) return;
+    libdeflate_free_compressor(z->compressor);
+    libdeflate_free_decompressor(z->decompressor);
+    free(z->split);
+    free(z->bytes);
+    *z = (struct exr_zip){0};
+}

@@ -1,0 +1,112 @@
+/* photo_raw.c - cameras' raw files, developed by libraw into linear light.
+ *
+ * Settings, the same for every file so that exposures can be compared: black level subtracted; the camera's own white
+ * balance as the file tells it; demosaicing by AHD; Rec.709 primaries; no gamma, no brightening, no change of the
+ * saturation level by what the picture holds; highlights cut, not rebuilt; not turned. 1 is where the sensor saturates
+ * in the colour whose white balance factor is least. White balance is the file's: it should be fixed on the camera, for
+ * what differs between photos differs in their colours. */
+#include "common/image/photo_formats.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <libraw/libraw.h>
+
+bool photo_is_raw(const struct photo_bytes *file)
+{
+    static const struct {
+        size_t at;
+        const char *mark;
+        size_t size;
+    } marks[] = {
+        {0, "FUJIFILMCCD-RAW", 15}, {0, "IIRO", 4}, {0, "IIRS", 4},  {0, "MMOR", 4},     {0, "IIU\0", 4},
+        {6, "HEAPCCDR", 8},         {0, "FOVb", 4}, {0, "\0MRM", 4}, {4, "ftypcrx ", 8}, {8, "CR\2\0", 4},
+    };
+    for (size_t i = 0; i < sizeof marks / sizeof *marks; i++)
+        if (file->size >= marks[i].at + marks[i].size &&
+            !memcmp(file->bytes + marks[i].at, marks[i].mark, marks[i].size))
+            return true;
+    return photo_tiff_is_raw(file);
+}
+
+static enum status failed(const struct photo_bytes *file, const char *what, int code, struct err *err)
+{
+    return err_set(err, ST_DATA,
+                   "%s is a raw file that cannot be %s (libraw: %s); copy it again, or develop it to a 16-bit TIFF.",
+                   file->path, what, libraw_strerror(code));
+}
+
+static double good(double value) { return value > 0 && value < 1e9 ? value : 0; }
+
+/* The size is that of the developed picture, but for sensors that are turned or have oblong pixels. */
+static void keep_info(struct photo_info *info, const libraw_data_t *raw)
+{
+    static const int orientation[] = {[0] = 1, [3] = 3, [5] = 8, [6] = 6};
+    const int flip = raw->sizes.flip;
+    info->width = raw->sizes.width;
+    info->height = raw->sizes.height;
+    info->bits = 32;
+    info->orientation = flip == 3 || flip == 5 || flip == 6 ? orientation[flip] : 1;
+    info->seconds = good((double)raw->other.shutter);
+    info->f_number = good((double)raw->other.aperture);
+    info->iso = good((double)raw->other.iso_speed);
+    info->focal_mm = good((double)raw->other.focal_len);
+    info->focal35_mm = good((double)raw->lens.FocalLengthIn35mmFormat);
+    photo_keep_text(info->make, sizeof info->make, raw->idata.make, sizeof raw->idata.make);
+    photo_keep_text(info->model, sizeof info->model, raw->idata.model, sizeof raw->idata.model);
+}
+
+static enum status develop(struct photo *p, libraw_data_t *raw, const struct photo_bytes *file, struct err *err)
+{
+    int code = libraw_unpack(raw);
+    if (code) return failed(file, "decoded", code, err);
+    code = libraw_dcraw_process(raw);
+    if (code) return failed(file, "developed", code, err);
+    libraw_processed_image_t *picture = libraw_dcraw_make_mem_image(raw, &code);
+    if (!picture) return failed(file, "developed", code, err);
+    enum status st = ST_OK;
+    if (picture->type != LIBRAW_IMAGE_BITMAP || picture->bits != 16 || (picture->colors != 3 && picture->colors != 1))
+        st = err_set(err, ST_DATA, "%s: libraw makes a picture of %d colours of it, wanted 3; develop it to a TIFF.",
+                     file->path, picture->colors);
+    p->info.width = picture->width;
+    p->info.height = picture->height;
+    if (!st) st = photo_init_values(p, err);
+    const size_t pixels = (size_t)p->info.width * (size_t)p->info.height, colours = picture->colors;
+    for (size_t i = 0; !st && i < pixels; i++)
+        for (size_t c = 0; c < 3; c++) {
+            uint16_t value;
+            memcpy(&value, picture->data + 2 * (colours * i + (colours == 3 ? c : 0)), sizeof value);
+            p->values[3 * i + c] = (float)value / 65535;
+        }
+    p->saturation = 1;
+    libraw_dcraw_clear_mem(picture);
+    return st;
+}
+
+enum status photo_read_raw(struct photo *p, const struct photo_bytes *file, bool pixels, struct err *err)
+{
+    libraw_data_t *raw = libraw_init(LIBRAW_OPTIONS_NONE);
+    if (!raw) return err_nomem(err, "a reader of raw files", 0);
+    libraw_set_dataerror_handler(raw, NULL, NULL); /* it would print */
+    libraw_output_params_t *o = &raw->params;
+    o->use_camera_wb = 1;
+    o->use_auto_wb = 0;
+    o->output_color = 1;
+    o->output_bps = 16;
+    o->gamm[0] = o->gamm[1] = 1;
+    o->no_auto_bright = 1;
+    o->adjust_maximum_thr = 0;
+    o->highlight = 0;
+    o->user_qual = 3;
+    o->user_flip = 0;
+    int code = libraw_open_buffer(raw, file->bytes, file->size);
+    enum status st = code ? failed(file, "read", code, err) : ST_OK;
+    if (!st) {
+        keep_info(&p->info, raw);
+        st = photo_check_size(file->path, (uint64_t)p->info.width, (uint64_t)p->info.height, err);
+    }
+    if (!st && pixels) st = develop(p, raw, file, err);
+    libraw_close(raw);
+    return st;
+}

@@ -1,0 +1,102 @@
+/* response.c - see response.h. */
+#include "common/image/response.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/base/textfile.h"
+
+float response_light(const struct response *r, int colour, float sample)
+{
+    if (!r->table) return linear_from_srgb(sample);
+    const float at = (sample > 0 ? sample < 1 ? sample : 1 : 0) * (RESPONSE_LEVELS - 1);
+    const int below = at < RESPONSE_LEVELS - 2 ? (int)at : RESPONSE_LEVELS - 2;
+    const float *light = r->light[colour];
+    return light[below] + (at - (float)below) * (light[below + 1] - light[below]);
+}
+
+float response_sample(const struct response *r, int colour, float light)
+{
+    if (!r->table) return srgb_from_linear(light);
+    const float *table = r->light[colour];
+    int below = 0, above = RESPONSE_LEVELS - 1;
+    if (!(light > table[0])) return 0;
+    if (light >= table[above]) return 1;
+    while (above - below > 1) {
+        const int middle = (below + above) / 2;
+        if (table[middle] <= light)
+            below = middle;
+        else
+            above = middle;
+    }
+    const float step = table[above] - table[below];
+    return ((float)below + (step > 0 ? (light - table[below]) / step : 0)) / (RESPONSE_LEVELS - 1);
+}
+
+float *response_tables(const struct response *r, int bits, struct err *err)
+{
+    const size_t levels = bits == 16 ? 65536 : 256;
+    float *tables = malloc(3 * levels * sizeof *tables);
+    if (!tables) err_nomem(err, "tone curves", 3 * levels * sizeof *tables);
+    for (int c = 0; tables && c < 3; c++) {
+        float *to = tables + (size_t)c * levels;
+        if (c && !r->table)
+            memcpy(to, tables, levels * sizeof *to);
+        else
+            for (size_t i = 0; i < levels; i++) to[i] = response_light(r, c, (float)i / (float)(levels - 1));
+    }
+    return tables;
+}
+
+static enum status read_levels(struct response *r, struct textfile *t, struct err *err)
+{
+    static const char *const colours[] = {"red", "green", "blue"};
+    enum status st = ST_OK;
+    for (int i = 0; !st && i < RESPONSE_LEVELS; i++) {
+        if (!textfile_next(t))
+            return textfile_error(t, err, NULL, "%d lines \"R G B\"; there are %d", (int)RESPONSE_LEVELS, i);
+        for (int c = 0; !st && c < 3; c++) {
+            double light = 0;
+            char found[32];
+            st = textfile_double(t, colours[c], &light, err);
+            if (st) break;
+            snprintf(found, sizeof found, "%.9g", light);
+            if (light < 0 || light > 1e6)
+                st = textfile_error(t, err, found, "light from 0 to 1e6");
+            else if (i && (float)light < r->light[c][i - 1])
+                st = textfile_error(t, err, found, "a curve that does not fall (%s)", colours[c]);
+            r->light[c][i] = (float)light;
+        }
+        if (!st) st = textfile_end(t, err);
+    }
+    for (int c = 0; !st && c < 3; c++)
+        if (!(r->light[c][RESPONSE_LEVELS - 1] > r->light[c][0]))
+            st = textfile_error(t, err, "a level curve", "a curve that rises (%s)", colours[c]);
+    return st;
+}
+
+enum status response_read(struct response *r, const char *path, struct err *err)
+{
+    struct textfile t = {0};
+    char *curve = NULL;
+    int64_t number = 0;
+    *r = (struct response){0};
+    enum status st = textfile_open(&t, path, err);
+    if (!st) st = textfile_expect_line(&t, "remodel-response", err);
+    if (!st) st = textfile_int(&t, "format version", 1, 1, &number, err);
+    if (!st) st = textfile_end(&t, err);
+    if (!st) st = textfile_expect_line(&t, "curve", err);
+    if (!st) st = textfile_word(&t, "srgb or table", &curve, err);
+    if (!st && strcmp(curve, "srgb") && strcmp(curve, "table")) st = textfile_error(&t, err, curve, "srgb or table");
+    if (!st && !strcmp(curve, "table")) {
+        r->table = true;
+        st = textfile_int(&t, "number of levels", RESPONSE_LEVELS, RESPONSE_LEVELS, &number, err);
+    }
+    if (!st) st = textfile_end(&t, err);
+    if (!st && r->table) st = read_levels(r, &t, err);
+    if (!st) st = textfile_end_of_file(&t, err);
+    textfile_release(&t);
+    if (st) *r = (struct response){0};
+    return st;
+}

@@ -1,0 +1,687 @@
+/* layer_render.c - see layer_render.h: a frame, tile by tile.
+ *
+ * Blending weights are the view mesh's at the corners of a lattice of LATTICE px, and bilinear between. A tile draws
+ * one view after another, where the lattice names it; then, where no view covers a pixel, the other views. What a view
+ * shows of a pixel becomes one sample; the soft z blends a pixel's samples, eight pixels at a time. Tiles share
+ * nothing, so threads and the split of a path into jobs do not change a bit. */
+#include "common/layers/layer_render.h"
+
+#include <immintrin.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/base/parallel.h"
+#include "common/layers/hole_fill.h"
+#include "common/layers/layer_visibility.h"
+#include "common/layers/soft_z.h"
+
+#define LATTICE      16 /* px */
+#define PATCHES      (TILE_WIDTH / LATTICE)
+#define COVERED      0.5f /* alpha from which a view covers a pixel */
+#define MESH_SLOTS   6    /* views that a patch of the lattice blends by the mesh, at most */
+#define SLOTS        (MESH_SLOTS + LAYER_MORE_VIEWS)
+#define OTHER        SLOTS /* the slot of a view that steps in */
+#define AGAINST_MOST 0.5f  /* part, by weight, of the views that can tell that may see through what fills a hole */
+#define LEAST_INSIDE 1e-3f /* a view alone at its border still shows */
+#define LEAST_WEIGHT 1e-6f /* and so does one alone where its weight is 0 */
+#define MORE_WEIGHT  0.5f  /* of the nearest view, beyond the mesh's weights */
+#define LEAST_VOTE   0.05f /* of a view at its border */
+#define VOTE_INSIDE  0.25f /* a view this far inside its picture has its whole vote */
+
+_Static_assert(2 * (SLOTS + 1) <= SOFT_Z_MERGE_MOST, "all fragments of a pixel are merged");
+_Static_assert(SLOTS + 1 <= SOFT_Z_BLEND_MOST, "all views of a pixel are blended");
+_Static_assert(TILE_HEIGHT == LATTICE && TILE_WIDTH % LATTICE == 0, "a tile is a row of patches");
+
+/* ------------------------------------------------------------------------------------------------- one frame */
+
+struct other_view {
+    int view;
+    double distance; /* of its centre to the novel one's */
+};
+
+struct patch { /* of the lattice: the views that it blends, and their weights at its corners */
+    int count;
+    int view[SLOTS];
+    float weight[SLOTS][4]; /* upper left, upper right, lower left, lower right */
+};
+
+struct slot {                          /* what one view shows of each pixel; views change from patch to patch */
+    struct view_samples shown, behind; /* behind: by the offline renderer alone */
+    float blend[TILE_PIXELS];          /* blending weight; 0 where nothing is shown */
+};
+
+struct scratch { /* of one thread, for a tile */
+    struct tile_visibility seen;
+    struct slot slots[SLOTS + 1];
+    struct view_samples spare;
+    struct patch patches[PATCHES];
+    uint8_t covered[TILE_PIXELS];
+    bool other[PATCHES]; /* whether the slot OTHER has something */
+};
+
+struct frame_job {
+    const struct layer_scene *scene;
+    struct view novel;
+    struct soft_z soft;
+    struct view_weights *lattice; /* lattice_width a row */
+    int lattice_width;
+    struct drawn_view *drawn; /* a view */
+    struct other_view *by_distance;
+    float *more_weight, *standing; /* a view: what it adds to the mesh's weights, and counts among views that vote */
+    bool offline, nearest_alone;
+    struct scratch *scratch; /* a thread */
+    struct rendered_frame *out;
+    enum status *prepared; /* a view */
+    int tiles_x, tiles;
+};
+
+static int compare_distance(const void *a, const void *b)
+{
+    const struct other_view *x = a, *y = b;
+    if (x->distance != y->distance) return x->distance < y->distance ? -1 : 1;
+    return x->view - y->view;
+}
+
+static void prepare_views(void *ctx, size_t begin, size_t end, int thread)
+{
+    struct frame_job *job = ctx;
+    (void)thread;
+    for (size_t i = begin; i < end; i++)
+        job->prepared[i] = drawn_view_prepare(&job->drawn[i], &job->scene->depths[i], &job->scene->views[i],
+                                              &job->scene->set->views[i], &job->novel, NULL);
+}
+
+static void job_release(struct frame_job *job)
+{
+    for (int i = 0; job->drawn && i < job->scene->set->view_count; i++) drawn_view_release(&job->drawn[i]);
+    free(job->drawn);
+    free(job->by_distance);
+    free(job->scratch);
+    free(job->more_weight);
+    free(job->standing);
+    free(job->prepared);
+    free(job->lattice);
+}
+
+/* The weights at the lattice's points: a camera whose pixels they are. */
+static enum status lattice_init(struct frame_job *job, struct err *err)
+{
+    const struct view *novel = &job->novel;
+    struct view camera = *novel;
+    struct view_mesh_camera mesh;
+
+    camera.width = (novel->width + LATTICE - 1) / LATTICE + 1;
+    camera.height = (novel->height + LATTICE - 1) / LATTICE + 1;
+    camera.fx /= LATTICE;
+    camera.fy /= LATTICE;
+    camera.cx = novel->cx / LATTICE + 0.5;
+    camera.cy = novel->cy / LATTICE + 0.5;
+    job->lattice_width = camera.width;
+    job->lattice = malloc((size_t)camera.width * (size_t)camera.height * sizeof *job->lattice);
+    if (!job->lattice) return err_nomem(err, "a frame's blending weights", sizeof *job->lattice);
+    view_mesh_prepare(&mesh, &job->scene->mesh, &camera);
+    for (int y = 0; y < camera.height; y++) view_mesh_row(&mesh, y, job->lattice + (size_t)y * (size_t)camera.width);
+    return ST_OK;
+}
+
+/* The views nearest to the camera add to the mesh's weights, by nearness, and vote on what is there; both fade before a
+ * view drops out of their number. */
+static void weigh_more_views(struct frame_job *job, int more)
+{
+    const int views = job->scene->set->view_count;
+    const struct other_view *nearest = job->by_distance;
+
+    for (int n = 0; n < more && n < views; n++) {
+        const double edge = more < views ? nearest[more].distance : INFINITY;
+        const double fade = nearest[n].distance < edge ? fmin(1, 2 * (1 - nearest[n].distance / edge)) : 0;
+        const double near = nearest[n].distance > 0 ? nearest[0].distance / nearest[n].distance : 1;
+        job->more_weight[nearest[n].view] = (float)(MORE_WEIGHT * near * fade);
+        job->standing[nearest[n].view] = (float)fade;
+    }
+}
+
+static enum status job_init(struct frame_job *job, struct rendered_frame *out, const struct layer_scene *scene,
+                            const struct view *novel, const struct layer_render_options *options, bool color,
+                            struct err *err)
+{
+    const int views = scene->set->view_count;
+    const size_t count = (size_t)views + 1, threads = (size_t)parallel_threads();
+
+    *job = (struct frame_job){.scene = scene, .novel = *novel, .out = out, .offline = options->offline};
+    job->nearest_alone = options->nearest_alone;
+    job->soft = layer_scene_soft_z(scene, options->soft_z);
+    job->tiles_x = (novel->width + TILE_WIDTH - 1) / TILE_WIDTH;
+    job->tiles = job->tiles_x * ((novel->height + TILE_HEIGHT - 1) / TILE_HEIGHT);
+    job->drawn = calloc(count, sizeof *job->drawn);
+    job->by_distance = calloc(count, sizeof *job->by_distance);
+    job->prepared = calloc(count, sizeof *job->prepared);
+    job->scratch = malloc(threads * sizeof *job->scratch);
+    job->more_weight = calloc(count, sizeof *job->more_weight);
+    job->standing = calloc(count, sizeof *job->standing);
+    if (!job->drawn || !job->by_distance || !job->prepared || !job->scratch || !job->more_weight || !job->standing)
+        return err_nomem(err, "a frame's views", count * sizeof *job->drawn + threads * sizeof *job->scratch);
+
+    enum status st = rendered_frame_resize(out, novel->width, novel->height, color, err);
+    if (!st) st = lattice_init(job, err);
+    if (st) return st;
+    parallel_for((size_t)views, 1, prepare_views, job);
+    for (int i = 0; i < views; i++) {
+        if (job->prepared[i]) return err_nomem(err, "a view's segments", sizeof(struct drawn_segment));
+        job->by_distance[i].view = i;
+        job->by_distance[i].distance = vec3_length(vec3_sub(scene->set->views[i].center, novel->center));
+    }
+    qsort(job->by_distance, (size_t)views, sizeof *job->by_distance, compare_distance);
+    if (job->offline && !job->nearest_alone) weigh_more_views(job, options->more_views);
+    return ST_OK;
+}
+
+static double hole_fraction(const struct rendered_frame *f)
+{
+    const size_t pixels = (size_t)f->width * (size_t)f->height;
+    size_t holes = 0;
+    for (size_t p = 0; p < pixels; p++) holes += f->hole[p];
+    return (double)holes / (double)pixels;
+}
+
+/* -------------------------------------------------------------------------------------------------- a tile's views */
+
+struct place { /* of a tile in the frame */
+    int tile, x, y, width, height, patches;
+};
+
+static struct place place_of(const struct frame_job *job, int tile)
+{
+    struct place at = {.tile = tile, .x = tile % job->tiles_x * TILE_WIDTH, .y = tile / job->tiles_x * TILE_HEIGHT};
+    at.width = job->novel.width - at.x < TILE_WIDTH ? job->novel.width - at.x : TILE_WIDTH;
+    at.height = job->novel.height - at.y < TILE_HEIGHT ? job->novel.height - at.y : TILE_HEIGHT;
+    at.patches = (at.width + LATTICE - 1) / LATTICE;
+    return at;
+}
+
+static int patch_slot(const struct patch *p, int view)
+{
+    for (int k = 0; k < p->count; k++)
+        if (p->view[k] == view) return k;
+    return -1;
+}
+
+static float corner_sum(const float weight[4]) { return weight[0] + weight[1] + weight[2] + weight[3]; }
+
+/* Drops the least of a patch's views. */
+static void patch_drop(struct patch *p)
+{
+    int least = 0;
+    for (int k = 1; k < p->count; k++)
+        if (corner_sum(p->weight[k]) < corner_sum(p->weight[least])) least = k;
+    p->count--;
+    memmove(&p->view[least], &p->view[least + 1], (size_t)(p->count - least) * sizeof p->view[0]);
+    memmove(&p->weight[least], &p->weight[least + 1], (size_t)(p->count - least) * sizeof p->weight[0]);
+}
+
+static void patch_init(struct patch *p, const struct frame_job *job, int x, int y)
+{
+    p->count = 0;
+    if (job->nearest_alone) {
+        *p = (struct patch){.count = 1, .view = {job->by_distance[0].view}, .weight = {{1, 1, 1, 1}}};
+        return;
+    }
+    for (int corner = 0; corner < 4; corner++) {
+        const struct view_weights *w =
+            &job->lattice[(size_t)(y + corner / 2) * (size_t)job->lattice_width + (size_t)(x + corner % 2)];
+        for (int i = 0; i < w->count; i++) {
+            if (!(w->weight[i] > 0)) continue;
+            int k = patch_slot(p, w->view[i]);
+            if (k < 0) {
+                if (p->count == MESH_SLOTS) patch_drop(p);
+                k = p->count++;
+                p->view[k] = w->view[i];
+                memset(p->weight[k], 0, sizeof p->weight[k]);
+            }
+            p->weight[k][corner] = w->weight[i];
+        }
+    }
+    for (int v = 0; job->offline && v < job->scene->set->view_count; v++) {
+        if (!(job->more_weight[v] > 0)) continue;
+        int k = patch_slot(p, v);
+        if (k < 0) {
+            k = p->count++;
+            p->view[k] = v;
+            memset(p->weight[k], 0, sizeof p->weight[k]);
+        }
+        for (int corner = 0; corner < 4; corner++) p->weight[k][corner] += job->more_weight[v];
+    }
+}
+
+/* A view's blending weights at eight pixels of a patch from (x, y) on, counted from its upper left corner. */
+static inline __m256 patch_weights(const float weight[4], int x, int y)
+{
+    const float v = ((float)y + 0.5f) / LATTICE;
+    const float left = weight[0] + v * (weight[2] - weight[0]), right = weight[1] + v * (weight[3] - weight[1]);
+    const __m256 lanes = _mm256_setr_ps(0, 1, 2, 3, 4, 5, 6, 7);
+    const __m256 u =
+        _mm256_mul_ps(_mm256_add_ps(lanes, _mm256_set1_ps((float)x + 0.5f)), _mm256_set1_ps(1.0f / LATTICE));
+    const __m256 w = _mm256_add_ps(_mm256_set1_ps(left), _mm256_mul_ps(u, _mm256_set1_ps(right - left)));
+    return _mm256_max_ps(w, _mm256_set1_ps(LEAST_WEIGHT));
+}
+
+/* Marks the pixels of eight that the samples cover. */
+static inline void mark_covered(uint8_t *covered, const float *alpha, const float *behind)
+{
+    for (int k = 0; k < 8; k++) covered[k] |= alpha[k] + (behind ? behind[k] : 0) >= COVERED;
+}
+
+static bool any_visible(const struct tile_visibility *seen, size_t i)
+{
+    const __m256i places = _mm256_loadu_si256((const __m256i *)(const void *)(seen->front + i));
+    return _mm256_movemask_epi8(_mm256_cmpeq_epi32(places, _mm256_set1_epi32(-1))) != -1;
+}
+
+static void clear_tile(struct tile_visibility *seen, size_t begin, size_t end, float inverse)
+{
+    for (size_t i = begin; i < end; i++) seen->inverse_front[i] = seen->inverse_behind[i] = inverse;
+    for (size_t i = begin; i < end; i++) seen->front[i] = seen->behind[i] = VISIBLE_NONE;
+}
+
+static int patch_end(const struct place *at, int k) /* in the tile's columns */
+{
+    return (k + 1) * LATTICE < at->width ? (k + 1) * LATTICE : at->width;
+}
+
+/* The patches that name the view are cleared, those between them shut; false if none names it. */
+static bool clear_named(struct scratch *s, const struct place *at, int view, int *first, int *last)
+{
+    *first = PATCHES;
+    *last = -1;
+    for (int k = 0; k < at->patches; k++) {
+        if (patch_slot(&s->patches[k], view) < 0) continue;
+        if (*first > k) *first = k;
+        *last = k;
+    }
+    for (int y = 0; y < at->height; y++)
+        for (int k = *first; k <= *last; k++) {
+            const size_t begin = (size_t)y * TILE_STRIDE + (size_t)k * LATTICE;
+            clear_tile(&s->seen, begin, begin + LATTICE, patch_slot(&s->patches[k], view) < 0 ? INFINITY : 0);
+        }
+    for (int y = 0; y < TILE_HEIGHT; y++) {
+        s->seen.first[y] = *first * LATTICE;
+        s->seen.last[y] = y < at->height && *last >= 0 ? patch_end(at, *last) - 1 : -1;
+    }
+    return *last >= 0;
+}
+
+static void draw_view(const struct frame_job *job, struct scratch *s, const struct place *at, int view)
+{
+    const struct drawn_view *drawn = &job->drawn[view];
+    const struct layer_view *lv = &job->scene->views[view];
+    const __m256 least = _mm256_set1_ps(LEAST_INSIDE);
+    int first, last;
+
+    if (!clear_named(s, at, view, &first, &last)) return;
+    visibility_draw(&s->seen, drawn, lv, at->tile);
+    for (int k = first; k <= last; k++) {
+        const int n = patch_slot(&s->patches[k], view);
+        if (n < 0) continue;
+        struct slot *slot = &s->slots[n];
+        for (int y = 0; y < at->height; y++)
+            for (int x = 0; x < LATTICE; x += 8) {
+                const size_t i = (size_t)y * TILE_STRIDE + (size_t)(k * LATTICE + x);
+                visibility_sample8(&slot->shown, job->offline ? &slot->behind : NULL, &s->seen, drawn, lv, i, at->x,
+                                   at->y);
+                mark_covered(s->covered + i, slot->shown.alpha + i, job->offline ? slot->behind.alpha + i : NULL);
+                __m256 alpha = _mm256_loadu_ps(slot->shown.alpha + i);
+                if (job->offline) alpha = _mm256_add_ps(alpha, _mm256_loadu_ps(slot->behind.alpha + i));
+                const __m256 shown = _mm256_cmp_ps(alpha, _mm256_setzero_ps(), _CMP_GT_OQ);
+                const __m256 weight = _mm256_mul_ps(patch_weights(s->patches[k].weight[n], x, y),
+                                                    _mm256_max_ps(least, _mm256_loadu_ps(slot->shown.inside + i)));
+                _mm256_storeu_ps(slot->blend + i, _mm256_and_ps(shown, weight));
+            }
+    }
+}
+
+static void draw_named_views(const struct frame_job *job, struct scratch *s, const struct place *at)
+{
+    for (int k = 0; k < at->patches; k++) patch_init(&s->patches[k], job, at->x / LATTICE + k, at->y / LATTICE);
+    for (int v = 0; v < job->scene->set->view_count; v++) draw_view(job, s, at, v);
+}
+
+enum sight { SIGHT_NONE, SIGHT_THROUGH, SIGHT_STOPPED };
+
+/* Whether a view looks through this world point, at a surface clearly farther: then nothing can be there. It cannot
+ * tell if the point is outside its picture or it has no depth there. */
+static enum sight sight_of(const struct frame_job *job, int view, struct vec3 point, float sigma)
+{
+    const struct layer_view *lv = &job->scene->views[view];
+    double u, v;
+    const double z = view_project(&job->scene->set->views[view], point, &u, &v);
+    if (!(z > 0) || !(u >= 0 && v >= 0 && u < lv->width && v < lv->height)) return SIGHT_NONE;
+
+    const struct texel *t = &lv->texels[((size_t)v + 1) * (size_t)lv->stride + (size_t)u + 1];
+    const uint32_t id = t->id[0] & ~TEXEL_JOINED;
+    if (!id) return SIGHT_NONE;
+    const struct depth_segment *seg = &job->scene->depths[view].segments[id - 1];
+    const double inverse = seg->plane[0] * u + seg->plane[1] * v + seg->plane[2];
+    if (!(inverse > 0)) return SIGHT_THROUGH;
+    const float rho = soft_z_rho(&job->soft, (float)z, sigma, (float)(1 / inverse), (float)seg->sigma);
+    return soft_z_weight((float)(1 / inverse - z), 0.1f * rho, rho) == 0 ? SIGHT_THROUGH : SIGHT_STOPPED;
+}
+
+/* Of the patch's views that can tell, by most of their weight, none looks through what another view shows here. What is
+ * there was hidden from them, so it must lie behind what they show; else a segment at a wrong depth would hang in the
+ * hole. */
+static bool may_step_in(const struct frame_job *job, const struct patch *patch, const struct place *at, int x, int y,
+                        float z, float sigma)
+{
+    const struct vec3 point = view_unproject(&job->novel, at->x + x + 0.5, at->y + y + 0.5, z);
+    float told[3] = {0};
+    for (int k = 0; k < patch->count; k++)
+        told[sight_of(job, patch->view[k], point, sigma)] +=
+            _mm256_cvtss_f32(patch_weights(patch->weight[k], x % LATTICE, y));
+    return !(told[SIGHT_THROUGH] > AGAINST_MOST * (told[SIGHT_THROUGH] + told[SIGHT_STOPPED]));
+}
+
+static bool any_hole(const struct scratch *s, const struct place *at)
+{
+    for (int y = 0; y < at->height; y++)
+        if (memchr(s->covered + (size_t)y * TILE_STRIDE, 0, (size_t)at->width)) return true;
+    return false;
+}
+
+/* Opens the pixels that nothing covers yet, of the patches that name the view or of those that do not; the columns
+ * from the first to the last. False if there are none. */
+static bool clear_uncovered(struct scratch *s, const struct place *at, int view, bool named)
+{
+    const __m256 shut = _mm256_set1_ps(INFINITY);
+    const __m256i none = _mm256_set1_epi32(-1), lanes = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
+    bool open[PATCHES], any = false;
+
+    for (int y = 0; y < TILE_HEIGHT; y++) {
+        s->seen.first[y] = at->width;
+        s->seen.last[y] = -1;
+    }
+    if (!any_hole(s, at)) return false;
+    for (int k = 0; k < at->patches; k++) open[k] = (patch_slot(&s->patches[k], view) >= 0) == named;
+    for (int y = 0; y < at->height; y++)
+        for (int x = 0; x < at->width; x += 8) {
+            const size_t i = (size_t)y * TILE_STRIDE + (size_t)x;
+            const __m256i covered =
+                _mm256_cvtepu8_epi32(_mm_loadl_epi64((const __m128i *)(const void *)(s->covered + i)));
+            const __m256i within = _mm256_cmpgt_epi32(_mm256_set1_epi32(open[x / LATTICE] ? at->width - x : 0), lanes);
+            const __m256i is_open = _mm256_andnot_si256(_mm256_cmpgt_epi32(covered, _mm256_setzero_si256()), within);
+            const __m256 inverse = _mm256_andnot_ps(_mm256_castsi256_ps(is_open), shut);
+            const unsigned bits = (unsigned)_mm256_movemask_ps(_mm256_castsi256_ps(is_open));
+            _mm256_storeu_ps(s->seen.inverse_front + i, inverse);
+            _mm256_storeu_ps(s->seen.inverse_behind + i, inverse);
+            _mm256_storeu_si256((__m256i *)(void *)(s->seen.front + i), none);
+            _mm256_storeu_si256((__m256i *)(void *)(s->seen.behind + i), none);
+            if (!bits) continue;
+            any = true;
+            if (s->seen.last[y] < 0) s->seen.first[y] = x;
+            s->seen.last[y] = x + 7 < at->width ? x + 7 : at->width - 1;
+        }
+    return any;
+}
+
+/* What the slot OTHER has of a patch is cleared once, when it gets its first. */
+static void open_other(struct scratch *s, int patch)
+{
+    struct slot *slot = &s->slots[OTHER];
+    if (s->other[patch]) return;
+    s->other[patch] = true;
+    for (int y = 0; y < TILE_HEIGHT; y++)
+        for (int x = patch * LATTICE; x < (patch + 1) * LATTICE; x++) {
+            const size_t i = (size_t)y * TILE_STRIDE + (size_t)x;
+            memset(slot->shown.rgba[i], 0, sizeof slot->shown.rgba[i]);
+            slot->shown.alpha[i] = slot->shown.z[i] = slot->shown.sigma[i] = slot->blend[i] = 0;
+        }
+}
+
+/* Of eight pixels what another view shows, where it covers a hole and may. */
+static void step_in(const struct frame_job *job, struct scratch *s, const struct place *at, size_t i, bool color)
+{
+    struct slot *slot = &s->slots[OTHER];
+    const struct view_samples *from = &s->spare;
+    const int y = (int)(i / TILE_STRIDE);
+
+    for (size_t p = i; p < i + 8; p++) {
+        const int x = (int)(p % TILE_STRIDE);
+        if (!(from->alpha[p] >= COVERED) || x >= at->width) continue;
+        if (!may_step_in(job, &s->patches[x / LATTICE], at, x, y, from->z[p], from->sigma[p])) continue;
+        s->covered[p] = 1;
+        if (!color) continue;
+        open_other(s, x / LATTICE);
+        memcpy(slot->shown.rgba[p], from->rgba[p], sizeof from->rgba[p]);
+        slot->shown.alpha[p] = from->alpha[p];
+        slot->shown.z[p] = from->z[p];
+        slot->shown.sigma[p] = from->sigma[p];
+        slot->blend[p] = from->inside[p] > LEAST_INSIDE ? from->inside[p] : LEAST_INSIDE;
+    }
+}
+
+/* In pixels that the named views leave a hole: the nearest of the other views that shows something there. */
+static void draw_other_views(const struct frame_job *job, struct scratch *s, const struct place *at, bool color)
+{
+    for (int n = 0; n < job->scene->set->view_count; n++) {
+        const int view = job->by_distance[n].view;
+        const struct drawn_view *drawn = &job->drawn[view];
+        const struct layer_view *lv = &job->scene->views[view];
+        if (drawn->tile_begin[at->tile] == drawn->tile_begin[at->tile + 1]) continue;
+        if (!clear_uncovered(s, at, view, false)) continue;
+        visibility_draw(&s->seen, drawn, lv, at->tile);
+        for (int y = 0; y < at->height; y++)
+            for (int x = s->seen.first[y]; x <= s->seen.last[y]; x += 8) {
+                const size_t i = (size_t)y * TILE_STRIDE + (size_t)x;
+                if (!any_visible(&s->seen, i)) continue;
+                visibility_sample8(&s->spare, NULL, &s->seen, drawn, lv, i, at->x, at->y);
+                step_in(job, s, at, i, color);
+            }
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------------- blending */
+
+/* Eight pixels from i on: the samples of `slots`; a constant for each usual count. */
+static inline __attribute__((always_inline)) void blend_eight(const struct frame_job *job, const struct scratch *s,
+                                                              const int *slots, int count, size_t i, float (*rgba)[4],
+                                                              float *z)
+{
+    struct soft_z_samples8 views[SOFT_Z_BLEND_MOST];
+    for (int k = 0; k < count; k++) {
+        const struct slot *slot = &s->slots[slots[k]];
+        const struct view_samples *shown = &slot->shown;
+        views[k] = (struct soft_z_samples8){shown->rgba + i, shown->alpha + i, shown->z + i, shown->sigma + i,
+                                            slot->blend + i};
+    }
+    soft_z_blend8(&job->soft, views, count, rgba, z);
+}
+
+/* Of a view's fragment in pixel i. */
+static void take_fragment(struct soft_z_fragment *f, const struct view_samples *from, size_t i, float blend, float vote)
+{
+    memcpy(f->rgba, from->rgba[i], sizeof f->rgba);
+    f->z = from->z[i];
+    f->uncertainty = from->z[i] * from->sigma[i];
+    f->blend = blend;
+    f->vote = vote;
+    f->before = 0;
+}
+
+/* A pixel, of all fragments of the views in `slots`. */
+static void merge_pixel(const struct frame_job *job, const struct scratch *s, const struct patch *patch,
+                        const int *slots, int count, size_t i, float rgba[4], float *z)
+{
+    struct soft_z_fragment fragments[2 * (SLOTS + 1)];
+    int n = 0;
+
+    for (int k = 0; k < count; k++) {
+        const struct slot *slot = &s->slots[slots[k]];
+        const float blend = slot->blend[i];
+        const bool behind = slots[k] != OTHER && slot->behind.alpha[i] > 0; /* be it with nothing in front */
+        if (!(slot->shown.alpha[i] > 0) && !behind) continue;
+        const float standing = slots[k] == OTHER ? 1 : job->standing[patch->view[slots[k]]];
+        const float inside = fminf(1, fmaxf(LEAST_VOTE, slot->shown.inside[i] / VOTE_INSIDE));
+        const float vote = inside * fmaxf(standing, fminf(1, blend / SOFT_Z_BLEND_WHOLE));
+        if (slot->shown.alpha[i] > 0) take_fragment(&fragments[n++], &slot->shown, i, blend, vote);
+        if (!behind) continue;
+        take_fragment(&fragments[n], &slot->behind, i, blend, vote);
+        fragments[n++].before = slot->shown.alpha[i];
+    }
+    if (n) soft_z_merge(&job->soft, fragments, n, rgba, z);
+}
+
+static void blend_patch(const struct frame_job *job, const struct scratch *s, const struct place *at, int k)
+{
+    const int begin = k * LATTICE, end = patch_end(at, k);
+    int slots[SLOTS + 1], count = 0;
+
+    for (int n = 0; n < s->patches[k].count; n++) slots[count++] = n;
+    if (s->other[k]) slots[count++] = OTHER;
+    for (int y = 0; y < at->height; y++)
+        for (int x0 = begin; x0 < end; x0 += 8) {
+            const size_t i = (size_t)y * TILE_STRIDE + (size_t)x0;
+            const size_t p = (size_t)(at->y + y) * (size_t)job->novel.width + (size_t)(at->x + x0);
+            const int n = end - x0 < 8 ? end - x0 : 8;
+            float rgba[8][4], z[8];
+            if (job->offline)
+                for (size_t x = 0; x < (size_t)n; x++)
+                    merge_pixel(job, s, &s->patches[k], slots, count, i + x, rgba[x], &z[x]);
+            else if (count == 1)
+                blend_eight(job, s, slots, 1, i, rgba, z);
+            else if (count == 2)
+                blend_eight(job, s, slots, 2, i, rgba, z);
+            else if (count == 3)
+                blend_eight(job, s, slots, 3, i, rgba, z);
+            else
+                blend_eight(job, s, slots, count, i, rgba, z);
+            for (int x = 0; x < n; x++)
+                if (!s->covered[i + (size_t)x]) {
+                    memset(rgba[x], 0, sizeof rgba[x]);
+                    z[x] = 0;
+                }
+            memcpy(job->out->rgba + 4 * p, rgba, (size_t)n * sizeof rgba[0]);
+            memcpy(job->out->z + p, z, (size_t)n * sizeof z[0]);
+        }
+}
+
+static void write_holes(const struct frame_job *job, const struct scratch *s, const struct place *at)
+{
+    for (int y = 0; y < at->height; y++) {
+        uint8_t *hole = job->out->hole + (size_t)(at->y + y) * (size_t)job->novel.width + (size_t)at->x;
+        for (int x = 0; x < at->width; x++) hole[x] = !s->covered[y * TILE_STRIDE + x];
+    }
+}
+
+static void render_tiles(void *ctx, size_t begin, size_t end, int thread)
+{
+    struct frame_job *job = ctx;
+    struct scratch *s = &job->scratch[thread];
+
+    for (size_t t = begin; t < end; t++) {
+        const struct place at = place_of(job, (int)t);
+        memset(s->covered, 0, sizeof s->covered);
+        memset(s->other, 0, sizeof s->other);
+        draw_named_views(job, s, &at);
+        if (!job->nearest_alone && any_hole(s, &at)) draw_other_views(job, s, &at, true);
+        for (int k = 0; k < at.patches; k++) blend_patch(job, s, &at, k);
+        write_holes(job, s, &at);
+    }
+}
+
+enum status layer_render(struct rendered_frame *out, const struct layer_scene *scene, const struct view *novel,
+                         const struct layer_render_options *options, struct err *err)
+{
+    struct frame_job job;
+    enum status st = job_init(&job, out, scene, novel, options, true, err);
+
+    if (!st) {
+        parallel_for((size_t)job.tiles, 1, render_tiles, &job);
+        out->hole_fraction = hole_fraction(out);
+        const struct soft_z soft = layer_scene_soft_z(scene, SOFT_Z_FILL_WIDTHS);
+        st = hole_fill(out, &soft, (float)scene->sigma, options->fill_diameter, err);
+    }
+    job_release(&job);
+    return st;
+}
+
+/* ------------------------------------------------------------------------------------------------------- coverage */
+
+static void cover_view(const struct frame_job *job, struct scratch *s, const struct place *at, int view)
+{
+    const struct drawn_view *drawn = &job->drawn[view];
+    const struct layer_view *lv = &job->scene->views[view];
+
+    if (!clear_uncovered(s, at, view, true)) return;
+    visibility_draw(&s->seen, drawn, lv, at->tile);
+    for (int y = 0; y < at->height; y++)
+        for (int x = s->seen.first[y]; x <= s->seen.last[y]; x += 8) {
+            const size_t i = (size_t)y * TILE_STRIDE + (size_t)x;
+            const __m256i places = _mm256_loadu_si256((const __m256i *)(const void *)(s->seen.front + i));
+            const __m256i none = _mm256_cmpeq_epi32(places, _mm256_set1_epi32(-1));
+            const int shown = ~_mm256_movemask_ps(_mm256_castsi256_ps(none)) & 0xFF;
+            const int full = _mm256_movemask_ps(_mm256_castsi256_ps(places)) & shown;
+            for (int k = 0; k < 8; k++) s->covered[i + (size_t)k] |= full >> k & 1;
+            if (full == shown) continue;
+            visibility_sample8(&s->spare, NULL, &s->seen, drawn, lv, i, at->x, at->y);
+            mark_covered(s->covered + i, s->spare.alpha + i, NULL);
+        }
+}
+
+/* The views of a tile's patches, those that count for most first: the first covers nearly all. */
+static void cover_named_views(const struct frame_job *job, struct scratch *s, const struct place *at)
+{
+    int views[PATCHES * SLOTS], count = 0;
+    float sums[PATCHES * SLOTS];
+
+    for (int k = 0; k < at->patches; k++) {
+        patch_init(&s->patches[k], job, at->x / LATTICE + k, at->y / LATTICE);
+        for (int n = 0; n < s->patches[k].count; n++) {
+            int i = 0;
+            while (i < count && views[i] != s->patches[k].view[n]) i++;
+            if (i == count) {
+                views[count] = s->patches[k].view[n];
+                sums[count++] = 0;
+            }
+            sums[i] += corner_sum(s->patches[k].weight[n]);
+        }
+    }
+    for (; count > 0; count--) {
+        int most = 0;
+        for (int i = 1; i < count; i++)
+            if (sums[i] > sums[most]) most = i;
+        cover_view(job, s, at, views[most]);
+        views[most] = views[count - 1];
+        sums[most] = sums[count - 1];
+    }
+}
+
+static void cover_tiles(void *ctx, size_t begin, size_t end, int thread)
+{
+    const struct frame_job *job = ctx;
+    struct scratch *s = &job->scratch[thread];
+
+    for (size_t t = begin; t < end; t++) {
+        const struct place at = place_of(job, (int)t);
+        memset(s->covered, 0, sizeof s->covered);
+        cover_named_views(job, s, &at);
+        if (any_hole(s, &at)) draw_other_views(job, s, &at, false);
+        write_holes(job, s, &at);
+    }
+}
+
+enum status layer_coverage(struct rendered_frame *out, const struct layer_scene *scene, const struct view *novel,
+                           double scale, struct err *err)
+{
+    struct view reduced = *novel;
+    struct frame_job job;
+
+    view_resize(&reduced, (int)fmax(1, lround(novel->width * scale)), (int)fmax(1, lround(novel->height * scale)));
+    const struct layer_render_options options = {.soft_z = SOFT_Z_WIDTHS};
+    const enum status st = job_init(&job, out, scene, &reduced, &options, false, err);
+    if (!st) {
+        parallel_for((size_t)job.tiles, 1, cover_tiles, &job);
+        out->hole_fraction = hole_fraction(out);
+        out->unfilled_fraction = out->hole_fraction;
+    }
+    job_release(&job);
+    return st;
+}

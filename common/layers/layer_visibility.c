@@ -1,0 +1,460 @@
+/* layer_visibility.c - see layer_visibility.h. */
+#include "common/layers/layer_visibility.h"
+
+#include <immintrin.h>
+#include <math.h>
+#include <stdlib.h>
+
+#include "common/layers/soft_z.h"
+
+#define BORDER 0.05f /* of the picture's long side: where a view fades out towards its border */
+
+/* --------------------------------------------------------------------------------------------- segments in tiles */
+
+static enum status room(void *buffer, size_t *have, size_t count, size_t size, struct err *err)
+{
+    void **at = buffer;
+    if (count <= *have) return ST_OK;
+    free(*at);
+    *at = malloc((count + count / 4) * size);
+    *have = *at ? count + count / 4 : 0;
+    return *at ? ST_OK : err_nomem(err, "a view's segments in a frame", count * size);
+}
+
+static void form_at(float form[3], const double row[3], double x, double y)
+{
+    form[0] = (float)(row[0] * x + row[1] * y + row[2]);
+    form[1] = (float)row[0];
+    form[2] = (float)row[1];
+}
+
+static struct drawn_segment drawn(const struct projected_segment *p, const struct depth_segment *segment)
+{
+    struct drawn_segment s = {.u0 = (float)p->u0, .v0 = (float)p->v0, .u1 = (float)p->u1, .v1 = (float)p->v1};
+    const double x = p->x0 + 0.5, y = p->y0 + 0.5;
+    s.id = segment->id;
+    s.apart = (float)(JOIN_SIGMAS * M_SQRT2 * fmax(segment->sigma, SOFT_Z_SIGMA_LEAST));
+    s.x0 = p->x0;
+    s.y0 = p->y0;
+    s.x1 = p->x1;
+    s.y1 = p->y1;
+    form_at(s.u, p->from_target[0], x, y);
+    form_at(s.v, p->from_target[1], x, y);
+    form_at(s.w, p->from_target[2], x, y);
+    form_at(s.inverse_z, p->inverse_z, x, y);
+    return s;
+}
+
+enum status drawn_view_prepare(struct drawn_view *dv, const struct layered_depth *depth, const struct layer_view *lv,
+                               const struct view *view, const struct view *novel, struct err *err)
+{
+    const int tiles_x = (novel->width + TILE_WIDTH - 1) / TILE_WIDTH;
+    const int tiles_y = (novel->height + TILE_HEIGHT - 1) / TILE_HEIGHT;
+    struct view_relation relation;
+    enum status st =
+        room(&dv->segments, &dv->segment_room, (size_t)depth->segment_count + 1, sizeof *dv->segments, err);
+
+    if (!st) st = room(&dv->sigmas, &dv->sigma_room, (size_t)depth->segment_count + 1, sizeof *dv->sigmas, err);
+    if (!st)
+        st = room(&dv->tile_begin, &dv->tile_room, (size_t)tiles_x * (size_t)tiles_y + 2, sizeof *dv->tile_begin, err);
+    if (st) return st;
+    dv->tiles_x = tiles_x;
+    dv->tile_count = tiles_x * tiles_y;
+    dv->count = 0;
+    for (int t = 0; t <= dv->tile_count + 1; t++) dv->tile_begin[t] = 0;
+    view_relation_make(&relation, view, novel);
+    uint32_t *begins = dv->tile_begin + 1; /* while they are counted and filled: of tile t at t + 1 */
+    size_t places = 0;
+    for (int i = 0; i < depth->segment_count; i++) {
+        struct projected_segment p;
+        if (!segment_project(&p, &relation, &depth->segments[i], &lv->shapes[i])) continue;
+        const float sigma = (float)depth->segments[i].sigma;
+        dv->sigmas[dv->count] = sigma > SOFT_Z_SIGMA_LEAST ? sigma : SOFT_Z_SIGMA_LEAST;
+        dv->segments[dv->count++] = drawn(&p, &depth->segments[i]);
+        for (int ty = p.y0 / TILE_HEIGHT; ty <= p.y1 / TILE_HEIGHT; ty++)
+            for (int tx = p.x0 / TILE_WIDTH; tx <= p.x1 / TILE_WIDTH; tx++) {
+                begins[ty * tiles_x + tx]++;
+                places++;
+            }
+    }
+    st = room(&dv->tile_segments, &dv->list_room, places + 1, sizeof *dv->tile_segments, err);
+    if (st) return st;
+    uint32_t sum = 0; /* begins[t]: from counts to where tile t begins */
+    for (int t = 0; t < dv->tile_count; t++) {
+        const uint32_t count = begins[t];
+        begins[t] = sum;
+        sum += count;
+    }
+    for (int i = 0; i < dv->count; i++) {
+        const struct drawn_segment *s = &dv->segments[i];
+        for (int ty = s->y0 / TILE_HEIGHT; ty <= s->y1 / TILE_HEIGHT; ty++)
+            for (int tx = s->x0 / TILE_WIDTH; tx <= s->x1 / TILE_WIDTH; tx++)
+                dv->tile_segments[begins[ty * tiles_x + tx]++] = (uint32_t)i; /* ends where the next one begins */
+    }
+    return ST_OK;
+}
+
+void drawn_view_release(struct drawn_view *dv)
+{
+    if (!dv) return;
+    free(dv->segments);
+    free(dv->sigmas);
+    free(dv->tile_begin);
+    free(dv->tile_segments);
+    *dv = (struct drawn_view){0};
+}
+
+/* ------------------------------------------------------------------------------------------------------ drawing */
+
+/* Of lanes in cells of many segments, those whose cell has a texel of the segment. */
+static inline int many_hits(int lanes, __m256i first, const struct layer_view *lv, __m256i id)
+{
+    uint32_t word[8];
+    int hits = 0;
+
+    _mm256_storeu_si256((__m256i *)word, first);
+    for (; lanes; lanes &= lanes - 1) {
+        const int k = __builtin_ctz((unsigned)lanes);
+        const __m256i ids =
+            _mm256_load_si256((const __m256i *)(const void *)lv->many[word[k] & ~(CELL_MANY | CELL_SPLIT)].id);
+        const __m256i equal = _mm256_cmpeq_epi32(ids, id);
+        hits |= (_mm256_testz_si256(equal, equal) ? 0 : 1) << k;
+    }
+    return hits;
+}
+
+static inline __m256i mask_of(int lanes)
+{
+    const __m256i bits = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
+    return _mm256_cmpeq_epi32(_mm256_and_si256(_mm256_set1_epi32(lanes), bits), bits);
+}
+
+/* Words at eight places; near: those are at base + near, 0 .. 15 each. */
+static inline __m256i words_near(const uint32_t *words, int base, __m256i near)
+{
+    const __m256i low = _mm256_loadu_si256((const __m256i *)(const void *)(words + base));
+    const __m256i high = _mm256_loadu_si256((const __m256i *)(const void *)(words + base + 8));
+    return _mm256_blendv_epi8(_mm256_permutevar8x32_epi32(low, near), _mm256_permutevar8x32_epi32(high, near),
+                              _mm256_cmpgt_epi32(near, _mm256_set1_epi32(7)));
+}
+
+/* The words of the cells at eight places, of which lane `first` is the leftmost that matters. */
+static inline void cell_words(uint32_t *const cells[2], __m256i at, int first, __m256i *word, __m256i *second)
+{
+    const __m256i base = _mm256_permutevar8x32_epi32(at, _mm256_set1_epi32(first));
+    const __m256i near = _mm256_sub_epi32(at, base);
+    const __m256i is_near =
+        _mm256_cmpeq_epi32(_mm256_andnot_si256(_mm256_set1_epi32(15), near), _mm256_setzero_si256());
+
+    if (_mm256_movemask_epi8(is_near) == -1) { /* a gather takes three times as long */
+        const int begin = _mm_cvtsi128_si32(_mm256_castsi256_si128(base));
+        *word = words_near(cells[0], begin, near);
+        *second = words_near(cells[1], begin, near);
+    } else {
+        *word = _mm256_i32gather_epi32((const int *)(const void *)cells[0], at, 4);
+        *second = _mm256_i32gather_epi32((const int *)(const void *)cells[1], at, 4);
+    }
+}
+
+static void draw_row(struct tile_visibility *tv, size_t row, int first, int last, const struct drawn_segment *s,
+                     uint32_t place, const struct layer_view *lv, float y, int tile_x)
+{
+    const __m256 lanes = _mm256_setr_ps(0, 1, 2, 3, 4, 5, 6, 7), zero = _mm256_setzero_ps();
+    const __m256 one = _mm256_set1_ps(1);
+    const __m256 u_step = _mm256_set1_ps(s->u[1]), v_step = _mm256_set1_ps(s->v[1]), w_step = _mm256_set1_ps(s->w[1]);
+    const __m256 z_step = _mm256_set1_ps(s->inverse_z[1]);
+    const __m256 u_row = _mm256_set1_ps(s->u[0] + y * s->u[2]), v_row = _mm256_set1_ps(s->v[0] + y * s->v[2]);
+    const __m256 w_row = _mm256_set1_ps(s->w[0] + y * s->w[2]);
+    const __m256 z_row = _mm256_set1_ps(s->inverse_z[0] + y * s->inverse_z[2]);
+    const __m256 u0 = _mm256_set1_ps(s->u0), u1 = _mm256_set1_ps(s->u1), v0 = _mm256_set1_ps(s->v0),
+                 v1 = _mm256_set1_ps(s->v1);
+    const __m256i id = _mm256_set1_epi32((int)s->id), me = _mm256_set1_epi32((int)place);
+    const __m256 apart = _mm256_set1_ps(s->apart);
+    const __m256i full_bit = _mm256_set1_epi32((int)VISIBLE_FULL);
+
+    for (int x = first; x <= last; x += 8) {
+        const size_t at = row + (size_t)(x - tile_x);
+        const __m256 dx = _mm256_add_ps(_mm256_set1_ps((float)(x - s->x0)), lanes);
+        const __m256 inverse = _mm256_add_ps(z_row, _mm256_mul_ps(dx, z_step));
+        const __m256 front = _mm256_loadu_ps(tv->inverse_front + at);
+        const __m256 behind = _mm256_loadu_ps(tv->inverse_behind + at);
+        const __m256i front_place = _mm256_loadu_si256((const __m256i *)(const void *)(tv->front + at));
+        /* nearer than the front; or behind a front that is not full, as another surface, and the nearest of those */
+        const __m256 nearest = _mm256_cmp_ps(inverse, front, _CMP_GT_OQ);
+        const __m256 beyond = _mm256_cmp_ps(_mm256_sub_ps(front, inverse), _mm256_mul_ps(front, apart), _CMP_GT_OQ);
+        const __m256 second = _mm256_andnot_ps(_mm256_castsi256_ps(front_place),
+                                               _mm256_and_ps(beyond, _mm256_cmp_ps(inverse, behind, _CMP_GT_OQ)));
+        int wanted = _mm256_movemask_ps(_mm256_or_ps(nearest, second));
+        if (last - x < 7) wanted &= (2 << (last - x)) - 1;
+        if (!wanted) continue;
+
+        const __m256 w = _mm256_add_ps(w_row, _mm256_mul_ps(dx, w_step));
+        const __m256 scale = _mm256_div_ps(one, w);
+        const __m256 u = _mm256_mul_ps(_mm256_add_ps(u_row, _mm256_mul_ps(dx, u_step)), scale);
+        const __m256 v = _mm256_mul_ps(_mm256_add_ps(v_row, _mm256_mul_ps(dx, v_step)), scale);
+        const __m256 there =
+            _mm256_and_ps(_mm256_and_ps(_mm256_cmp_ps(u, u0, _CMP_GE_OQ), _mm256_cmp_ps(u, u1, _CMP_LT_OQ)),
+                          _mm256_and_ps(_mm256_cmp_ps(v, v0, _CMP_GE_OQ), _mm256_cmp_ps(v, v1, _CMP_LT_OQ)));
+        wanted &= _mm256_movemask_ps(_mm256_and_ps(there, _mm256_cmp_ps(w, zero, _CMP_GT_OQ)));
+        if (!wanted) continue;
+
+        /* lanes that are not there look where the first one does that is */
+        const int leftmost = __builtin_ctz((unsigned)wanted);
+        const __m256i column = _mm256_cvttps_epi32(u), line = _mm256_cvttps_epi32(v);
+        const __m256i place_of = _mm256_add_epi32(column, _mm256_mullo_epi32(line, _mm256_set1_epi32(lv->stride)));
+        const __m256i own_place = _mm256_permutevar8x32_epi32(place_of, _mm256_set1_epi32(leftmost));
+        const __m256i cell = _mm256_blendv_epi8(own_place, place_of, _mm256_castps_si256(there));
+        __m256i split, other; /* the sign of the first word is CELL_SPLIT */
+        cell_words(lv->cells, cell, leftmost, &split, &other);
+        const __m256i owner = _mm256_andnot_si256(_mm256_set1_epi32((int)CELL_SPLIT), split);
+        const __m256i own = _mm256_or_si256(_mm256_cmpeq_epi32(owner, id), _mm256_cmpeq_epi32(other, id));
+        int hits = wanted & _mm256_movemask_ps(_mm256_castsi256_ps(own));
+        const int many = wanted & _mm256_movemask_ps(_mm256_castsi256_ps(_mm256_slli_epi32(split, 1)));
+        if (many) hits |= many_hits(many, split, lv, id);
+        if (!hits) continue;
+
+        const __m256i hit = mask_of(hits);
+        const __m256 as_front = _mm256_and_ps(_mm256_castsi256_ps(hit), nearest);
+        const __m256 as_second = _mm256_andnot_ps(nearest, _mm256_and_ps(_mm256_castsi256_ps(hit), second));
+        const __m256i full = _mm256_andnot_si256(_mm256_srai_epi32(split, 31), full_bit);
+        const __m256i behind_place = _mm256_loadu_si256((const __m256i *)(const void *)(tv->behind + at));
+        /* the old front moves back, if it is another surface */
+        const __m256 before = _mm256_cmp_ps(_mm256_sub_ps(inverse, front), _mm256_mul_ps(inverse, apart), _CMP_GT_OQ);
+        const __m256 back = _mm256_and_ps(as_front, before);
+        __m256 new_behind = _mm256_blendv_ps(behind, front, back);
+        __m256 new_behind_place =
+            _mm256_blendv_ps(_mm256_castsi256_ps(behind_place), _mm256_castsi256_ps(front_place), back);
+        new_behind = _mm256_blendv_ps(new_behind, inverse, as_second);
+        new_behind_place =
+            _mm256_blendv_ps(new_behind_place, _mm256_castsi256_ps(_mm256_or_si256(me, full)), as_second);
+        _mm256_storeu_ps(tv->inverse_behind + at, new_behind);
+        _mm256_storeu_ps((float *)(void *)(tv->behind + at), new_behind_place);
+        if (!_mm256_movemask_ps(as_front)) continue;
+        _mm256_storeu_ps(tv->inverse_front + at, _mm256_blendv_ps(front, inverse, as_front));
+        _mm256_storeu_ps((float *)(void *)(tv->front + at),
+                         _mm256_blendv_ps(_mm256_castsi256_ps(front_place),
+                                          _mm256_castsi256_ps(_mm256_or_si256(me, full)), as_front));
+        _mm256_storeu_ps(tv->u + at, _mm256_blendv_ps(_mm256_loadu_ps(tv->u + at), u, as_front));
+        _mm256_storeu_ps(tv->v + at, _mm256_blendv_ps(_mm256_loadu_ps(tv->v + at), v, as_front));
+    }
+}
+
+void visibility_draw(struct tile_visibility *tv, const struct drawn_view *dv, const struct layer_view *lv, int tile)
+{
+    const int tile_x = tile % dv->tiles_x * TILE_WIDTH, tile_y = tile / dv->tiles_x * TILE_HEIGHT;
+
+    for (uint32_t i = dv->tile_begin[tile]; i < dv->tile_begin[tile + 1]; i++) {
+        const uint32_t place = dv->tile_segments[i];
+        const struct drawn_segment *s = &dv->segments[place];
+        const int top = s->y0 > tile_y ? s->y0 - tile_y : 0;
+        const int bottom = s->y1 < tile_y + TILE_HEIGHT - 1 ? s->y1 - tile_y : TILE_HEIGHT - 1;
+        for (int y = top; y <= bottom; y++) {
+            const int first = s->x0 > tile_x + tv->first[y] ? s->x0 : tile_x + tv->first[y];
+            const int last = s->x1 < tile_x + tv->last[y] ? s->x1 : tile_x + tv->last[y];
+            if (first > last) continue;
+            draw_row(tv, (size_t)y * TILE_STRIDE, first, last, s, place, lv, (float)(tile_y + y - s->y0), tile_x);
+        }
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------------ sampling */
+
+/* The photo in the cell that begins at texel `at`. */
+static inline __m128 photo_texel(const struct layer_view *lv, int at, float fu, float fv)
+{
+    const uint16_t(*t)[4] = (const uint16_t(*)[4])lv->photo + at;
+    const __m256 top = _mm256_cvtph_ps(_mm_loadu_si128((const __m128i *)(const void *)t));
+    const __m256 bottom = _mm256_cvtph_ps(_mm_loadu_si128((const __m128i *)(const void *)(t + lv->stride)));
+    const __m256 mean = _mm256_add_ps(top, _mm256_mul_ps(_mm256_sub_ps(bottom, top), _mm256_set1_ps(fv)));
+    const __m128 left = _mm256_castps256_ps128(mean), right = _mm256_extractf128_ps(mean, 1);
+    return _mm_add_ps(left, _mm_mul_ps(_mm_sub_ps(right, left), _mm_set1_ps(fu)));
+}
+
+static void cubic_weights(float w[4], float t)
+{
+    const float t2 = t * t, t3 = t2 * t;
+    w[0] = -0.5f * t3 + t2 - 0.5f * t;
+    w[1] = 1.5f * t3 - 2.5f * t2 + 1;
+    w[2] = -1.5f * t3 + 2 * t2 + 0.5f * t;
+    w[3] = 0.5f * t3 - 0.5f * t2;
+}
+
+/* As photo_texel, by the four texels each way around; bilinear where any of the cells between them is split. */
+static __m128 photo_cubic(const struct layer_view *lv, int at, float fu, float fv)
+{
+    float wu[4], wv[4];
+    __m128 sum = _mm_setzero_ps();
+
+    if (at < lv->stride + 1) return photo_texel(lv, at, fu, fv);
+    for (int y = -1; y <= 1; y++)
+        for (int x = -1; x <= 1; x++) {
+            const uint32_t word = lv->cells[0][at + y * lv->stride + x];
+            if (!word || word & CELL_SPLIT) return photo_texel(lv, at, fu, fv);
+        }
+    cubic_weights(wu, fu);
+    cubic_weights(wv, fv);
+    for (int y = 0; y < 4; y++) {
+        const uint16_t(*t)[4] = (const uint16_t(*)[4])lv->photo + at + (y - 1) * lv->stride - 1;
+        __m128 row = _mm_setzero_ps();
+        for (int x = 0; x < 4; x++) {
+            const __m128 texel = _mm_cvtph_ps(_mm_loadl_epi64((const __m128i *)(const void *)t[x]));
+            row = _mm_add_ps(row, _mm_mul_ps(_mm_set1_ps(wu[x]), texel));
+        }
+        sum = _mm_add_ps(sum, _mm_mul_ps(_mm_set1_ps(wv[y]), row));
+    }
+    return _mm_max_ps(sum, _mm_setzero_ps());
+}
+
+static __m128 photo_at(const struct layer_view *lv, float u, float v)
+{
+    const int i = (int)u, j = (int)v;
+    return photo_texel(lv, j * lv->stride + i, u - (float)i, v - (float)j);
+}
+
+/* Where the ids of a texel's layers are one of `ids`, as a mask of eight lanes: 0..3 interior, 4..7 boundary. */
+static inline __m256 layers_of(const struct texel *t, const uint32_t *ids, int count)
+{
+    const __m256i spread = _mm256_set_epi32(1, 1, 1, 1, 0, 0, 0, 0);
+    const __m128i id_bits = _mm_set1_epi32((int)~TEXEL_JOINED);
+    const __m128i own = _mm_and_si128(_mm_loadl_epi64((const __m128i *)(const void *)t->id), id_bits);
+    __m128i is = _mm_setzero_si128();
+    for (int i = 0; i < count; i++) is = _mm_or_si128(is, _mm_cmpeq_epi32(own, _mm_set1_epi32((int)ids[i])));
+    return _mm256_castsi256_ps(_mm256_permutevar8x32_epi32(_mm256_castsi128_si256(is), spread));
+}
+
+/* Those of the cell's segments that are of one surface with segment `id`; how many. */
+static int same_surface(const struct layer_view *lv, size_t at, uint32_t id, uint32_t ids[CELL_IDS])
+{
+    const uint32_t word = lv->cells[0][at];
+    int count = 0, own = 0;
+
+    ids[0] = id;
+    if (!(word & CELL_MANY)) return 1;
+    const struct many_cell *cell = &lv->many[word & ~(CELL_MANY | CELL_SPLIT)];
+    while (own < CELL_IDS - 1 && cell->id[own] != id) own++;
+    for (int i = 0; i < CELL_IDS && cell->id[i]; i++)
+        if (cell->surface[i] == cell->surface[own]) ids[count++] = cell->id[i];
+    return count;
+}
+
+/* Coverage and premultiplied colour of the surface of segment `id` in a split cell. */
+static __m128 surface_at(const struct layer_view *lv, uint32_t id, float u, float v)
+{
+    const int i = (int)u, j = (int)v;
+    const float fu = u - (float)i, fv = v - (float)j;
+    const size_t at = (size_t)j * (size_t)lv->stride + (size_t)i;
+    const struct texel *t = lv->texels + at;
+    const struct texel *cell[4] = {t, t + 1, t + lv->stride, t + lv->stride + 1};
+    const float weights[4] = {(1 - fu) * (1 - fv), fu * (1 - fv), (1 - fu) * fv, fu * fv};
+    uint32_t ids[CELL_IDS];
+    const int count = same_surface(lv, at, id, ids);
+    __m256 sum = _mm256_setzero_ps();
+
+    for (int k = 0; k < 4; k++) {
+        const __m256 w = _mm256_and_ps(layers_of(cell[k], ids, count), _mm256_set1_ps(weights[k]));
+        const __m256 color = _mm256_cvtph_ps(_mm_loadu_si128((const __m128i *)(const void *)cell[k]->rgba));
+        sum = _mm256_add_ps(sum, _mm256_mul_ps(w, color));
+    }
+    return _mm_add_ps(_mm256_castps256_ps128(sum), _mm256_extractf128_ps(sum, 1));
+}
+
+static inline float alpha_of(__m128 rgba) { return _mm_cvtss_f32(_mm_shuffle_ps(rgba, rgba, 0xFF)); }
+
+/* How far texel positions are inside the picture: 0 at its border, 1 from BORDER of its long side on. */
+static inline __m256 inside8(const struct layer_view *lv, __m256 u, __m256 v)
+{
+    const float across = (float)(lv->width > lv->height ? lv->width : lv->height) * BORDER;
+    const __m256 half = _mm256_set1_ps(0.5f);
+    const __m256 x = _mm256_min_ps(_mm256_sub_ps(u, half), _mm256_sub_ps(_mm256_set1_ps((float)lv->width + 0.5f), u));
+    const __m256 y = _mm256_min_ps(_mm256_sub_ps(v, half), _mm256_sub_ps(_mm256_set1_ps((float)lv->height + 0.5f), v));
+    const __m256 part =
+        _mm256_mul_ps(_mm256_max_ps(_mm256_setzero_ps(), _mm256_min_ps(x, y)), _mm256_set1_ps(1 / across));
+    return _mm256_min_ps(_mm256_set1_ps(1), part);
+}
+
+/* What is behind a front that leaves something free: saturating, front to back. */
+static __m128 behind_at(const struct drawn_segment *b, bool full, const struct layer_view *lv, int x, int y)
+{
+    const float dx = (float)(x - b->x0), dy = (float)(y - b->y0);
+    const float scale = 1 / (b->w[0] + dx * b->w[1] + dy * b->w[2]);
+    const float u = (b->u[0] + dx * b->u[1] + dy * b->u[2]) * scale;
+    const float v = (b->v[0] + dx * b->v[1] + dy * b->v[2]) * scale;
+    return full ? photo_at(lv, u, v) : surface_at(lv, b->id, u, v);
+}
+
+/* A pixel whose front does not fill it. */
+static void sample_split(struct view_samples *s, struct view_samples *behind, const struct tile_visibility *tv,
+                         const struct drawn_view *dv, const struct layer_view *lv, size_t i, int x, int y)
+{
+    const uint32_t place = tv->behind[i];
+    __m128 sum = surface_at(lv, dv->segments[tv->front[i]].id, tv->u[i], tv->v[i]);
+    const float alpha = alpha_of(sum);
+
+    if (place != VISIBLE_NONE && alpha < 1) {
+        const uint32_t at = place & ~VISIBLE_FULL;
+        const __m128 back = behind_at(&dv->segments[at], place & VISIBLE_FULL, lv, x, y);
+        const float back_alpha = alpha_of(back), weight = back_alpha < 1 - alpha ? back_alpha : 1 - alpha;
+        const __m128 rest = weight > 0 ? _mm_mul_ps(back, _mm_set1_ps(weight / back_alpha)) : _mm_setzero_ps();
+        struct view_samples *to = behind ? behind : s;
+        if (behind) {
+            _mm_storeu_ps(behind->rgba[i], rest);
+            behind->alpha[i] = weight > 0 ? weight : 0;
+        } else
+            sum = _mm_add_ps(sum, rest);
+        if (behind || weight > alpha) { /* a pixel's depth is that of one surface, never a mean across a jump */
+            to->z[i] = 1 / tv->inverse_behind[i];
+            to->sigma[i] = dv->sigmas[at];
+        }
+    }
+    _mm_storeu_ps(s->rgba[i], sum);
+    s->alpha[i] = alpha_of(sum);
+}
+
+static void sample_nothing(struct view_samples *s, size_t i)
+{
+    _mm_storeu_ps(s->rgba[i], _mm_setzero_ps());
+    s->alpha[i] = s->z[i] = s->sigma[i] = s->inside[i] = 0;
+}
+
+void visibility_sample8(struct view_samples *s, struct view_samples *behind, const struct tile_visibility *tv,
+                        const struct drawn_view *dv, const struct layer_view *lv, size_t i, int tile_x, int tile_y)
+{
+    const __m256i place = _mm256_loadu_si256((const __m256i *)(const void *)(tv->front + i));
+    const __m256i none = _mm256_cmpeq_epi32(place, _mm256_set1_epi32(-1));
+    const int empty = _mm256_movemask_ps(_mm256_castsi256_ps(none));
+    const int full = _mm256_movemask_ps(_mm256_castsi256_ps(place)) & ~empty;
+    const __m256 there = _mm256_castsi256_ps(_mm256_xor_si256(none, _mm256_set1_epi32(-1)));
+    const __m256 u = _mm256_and_ps(there, _mm256_loadu_ps(tv->u + i)),
+                 v = _mm256_and_ps(there, _mm256_loadu_ps(tv->v + i));
+    const __m256i segment = _mm256_andnot_si256(none, _mm256_and_si256(place, _mm256_set1_epi32((int)~VISIBLE_FULL)));
+
+    if (behind) _mm256_storeu_ps(behind->alpha + i, _mm256_setzero_ps());
+    if (empty == 0xFF) {
+        for (size_t k = i; k < i + 8; k++) sample_nothing(s, k);
+        return;
+    }
+    _mm256_storeu_ps(s->z + i, _mm256_div_ps(_mm256_set1_ps(1), _mm256_loadu_ps(tv->inverse_front + i)));
+    _mm256_storeu_ps(s->sigma + i, _mm256_i32gather_ps(dv->sigmas, segment, 4));
+    _mm256_storeu_ps(s->inside + i, inside8(lv, u, v));
+    _mm256_storeu_ps(s->alpha + i, _mm256_set1_ps(1));
+
+    const __m256i column = _mm256_cvttps_epi32(u), line = _mm256_cvttps_epi32(v);
+    float fu[8], fv[8];
+    int at[8];
+    _mm256_storeu_ps(fu, _mm256_sub_ps(u, _mm256_cvtepi32_ps(column)));
+    _mm256_storeu_ps(fv, _mm256_sub_ps(v, _mm256_cvtepi32_ps(line)));
+    _mm256_storeu_si256((__m256i *)at,
+                        _mm256_add_epi32(column, _mm256_mullo_epi32(line, _mm256_set1_epi32(lv->stride))));
+    if (behind)
+        for (int k = 0; k < 8; k++) _mm_storeu_ps(s->rgba[i + (size_t)k], photo_cubic(lv, at[k], fu[k], fv[k]));
+    else
+        for (int k = 0; k < 8; k++) _mm_storeu_ps(s->rgba[i + (size_t)k], photo_texel(lv, at[k], fu[k], fv[k]));
+    if (full == 0xFF) return;
+    for (int k = 0; k < 8; k++) {
+        const size_t p = i + (size_t)k;
+        if (empty >> k & 1)
+            sample_nothing(s, p);
+        else if (!(full >> k & 1))
+            sample_split(s, behind, tv, dv, lv, p, tile_x + (int)(p % TILE_STRIDE), tile_y + (int)(p / TILE_STRIDE));
+    }
+}

@@ -1,0 +1,193 @@
+/* model_axes.c - see model_axes.h. */
+#include "common/model/model_axes.h"
+
+#include <string.h>
+
+#include "common/base/outfile.h"
+#include "common/base/scan.h"
+#include "common/base/textfile.h"
+
+static const double UNIT = 1e-6; /* of a quaternion's length */
+
+/* ------------------------------------------------------------------------------------------------------- transforms */
+
+struct vec3 model_from_world_point(const struct model_axes *axes, struct vec3 world)
+{
+    return vec3_add(vec3_scale(model_from_world_direction(axes, world), axes->scale), axes->translation);
+}
+
+struct vec3 world_from_model_point(const struct model_axes *axes, struct vec3 model)
+{
+    return world_from_model_direction(axes, vec3_scale(vec3_sub(model, axes->translation), 1 / axes->scale));
+}
+
+struct vec3 model_from_world_direction(const struct model_axes *axes, struct vec3 world)
+{
+    return mat3_apply(mat3_from_quat(axes->rotation), world);
+}
+
+struct vec3 world_from_model_direction(const struct model_axes *axes, struct vec3 model)
+{
+    return mat3_apply(mat3_transpose(mat3_from_quat(axes->rotation)), model);
+}
+
+/* The camera's own axes grow with the world: s p_cam = Rc R^T p_model + (s tc - Rc R^T t). */
+static void to_model(const struct model_axes *axes, struct mat3 *rotation, struct vec3 *translation)
+{
+    *rotation = mat3_multiply(*rotation, mat3_transpose(mat3_from_quat(axes->rotation)));
+    *translation = vec3_sub(vec3_scale(*translation, axes->scale), mat3_apply(*rotation, axes->translation));
+}
+
+static void to_world(const struct model_axes *axes, struct mat3 *rotation, struct vec3 *translation)
+{
+    *translation = vec3_scale(vec3_add(*translation, mat3_apply(*rotation, axes->translation)), 1 / axes->scale);
+    *rotation = mat3_multiply(*rotation, mat3_from_quat(axes->rotation));
+}
+
+struct pose cam_from_model_pose(const struct model_axes *axes, const struct pose *cam_from_world)
+{
+    struct mat3 r = mat3_from_quat(cam_from_world->rotation);
+    struct vec3 t = cam_from_world->translation;
+    to_model(axes, &r, &t);
+    return (struct pose){quat_from_mat3(r), t};
+}
+
+struct pose cam_from_world_pose(const struct model_axes *axes, const struct pose *cam_from_model)
+{
+    struct mat3 r = mat3_from_quat(cam_from_model->rotation);
+    struct vec3 t = cam_from_model->translation;
+    to_world(axes, &r, &t);
+    return (struct pose){quat_from_mat3(r), t};
+}
+
+struct view model_from_world_view(const struct model_axes *axes, const struct view *world)
+{
+    struct view v = *world;
+    to_model(axes, &v.cam_from_world, &v.translation);
+    v.center = model_from_world_point(axes, world->center);
+    return v;
+}
+
+struct view world_from_model_view(const struct model_axes *axes, const struct view *model)
+{
+    struct view v = *model;
+    to_world(axes, &v.cam_from_world, &v.translation);
+    v.center = world_from_model_point(axes, model->center);
+    return v;
+}
+
+/* ---------------------------------------------------------------------------------------------------------- writing */
+
+static void print_maybe(FILE *to, const char *name, bool known, double value)
+{
+    if (known)
+        fprintf(to, "%s %.17g\n", name, value);
+    else
+        fprintf(to, "%s none\n", name);
+}
+
+enum status model_axes_write(const struct model_axes *axes, const char *path, const struct provenance *prov,
+                             struct err *err)
+{
+    struct outfile f = {0};
+    const struct quat q = axes->rotation;
+    const struct vec3 t = axes->translation;
+    enum status st = outfile_open(&f, path, err);
+    if (!st && prov) provenance_print(prov, f.fp);
+    if (!st) {
+        fprintf(f.fp, "remodel-axes 1\nrotation %.17g %.17g %.17g %.17g\ntranslation %.17g %.17g %.17g\n", q.w, q.x,
+                q.y, q.z, t.x, t.y, t.z);
+        fprintf(f.fp, "scale %.17g %s\n", axes->scale, axes->metric ? "metres" : "unknown");
+        print_maybe(f.fp, "ceiling", axes->ceiling > 0, axes->ceiling);
+        print_maybe(f.fp, "thickness", axes->thickness > 0, axes->thickness);
+        fprintf(f.fp, "error tilt %.17g\nerror heading %.17g\nerror floor %.17g\n", axes->tilt_error,
+                axes->heading_error, axes->floor_error);
+        print_maybe(f.fp, "error ceiling", axes->ceiling > 0, axes->ceiling_error);
+        print_maybe(f.fp, "error scale", axes->metric, axes->scale_error);
+        st = outfile_commit(&f, err);
+    }
+    outfile_discard(&f);
+    return st;
+}
+
+/* ---------------------------------------------------------------------------------------------------------- reading */
+
+static enum status read_error(struct textfile *t, const char *which, double *value, struct err *err)
+{
+    if (textfile_expect_line(t, "error", err) || textfile_expect(t, which, err) ||
+        textfile_double(t, "an error", value, err) || textfile_end(t, err))
+        return err->status;
+    return *value >= 0 ? ST_OK : textfile_wrong_number(t, *value, "an error of 0 or more", err);
+}
+
+/* "none", which leaves *value 0 and says so, or a number. */
+static enum status number_or_none(struct textfile *t, const char *what, double *value, bool *known, struct err *err)
+{
+    char *word;
+    if (textfile_word(t, what, &word, err)) return err->status;
+    *known = strcmp(word, "none");
+    if (*known && !scan_double(word, value)) return textfile_error(t, err, word, "%s", what);
+    return textfile_end(t, err);
+}
+
+static enum status read_length(struct textfile *t, const char *which, double *value, struct err *err)
+{
+    bool known;
+    if (textfile_expect_line(t, which, err) || number_or_none(t, "a length, or none", value, &known, err))
+        return err->status;
+    return !known || *value > 0 ? ST_OK : textfile_wrong_number(t, *value, "a length above 0, or none", err);
+}
+
+/* Of something that is there, or is not: then the line must say none. */
+static enum status read_error_of(struct textfile *t, const char *which, bool there, double *value, struct err *err)
+{
+    bool known = false;
+    if (textfile_expect_line(t, "error", err) || textfile_expect(t, which, err) ||
+        number_or_none(t, "an error, or none", value, &known, err))
+        return err->status;
+    if (there && !known) return textfile_error(t, err, "none", "the error of the %s that the file states", which);
+    if (!there && known) return textfile_wrong_number(t, *value, "none: the file states none", err);
+    return *value >= 0 ? ST_OK : textfile_wrong_number(t, *value, "an error of 0 or more", err);
+}
+
+static enum status read_similarity(struct textfile *t, struct model_axes *a, struct err *err)
+{
+    struct quat *q = &a->rotation;
+    char *unit;
+    if (textfile_expect_line(t, "rotation", err) || textfile_double(t, "w", &q->w, err) ||
+        textfile_double(t, "x", &q->x, err) || textfile_double(t, "y", &q->y, err) ||
+        textfile_double(t, "z", &q->z, err) || textfile_end(t, err))
+        return err->status;
+    const double length = sqrt(q->w * q->w + q->x * q->x + q->y * q->y + q->z * q->z);
+    if (!(fabs(length - 1) <= UNIT)) return textfile_wrong_number(t, length, "a quaternion of length 1", err);
+    if (textfile_expect_line(t, "translation", err) || textfile_double(t, "x", &a->translation.x, err) ||
+        textfile_double(t, "y", &a->translation.y, err) || textfile_double(t, "z", &a->translation.z, err) ||
+        textfile_end(t, err) || textfile_expect_line(t, "scale", err) ||
+        textfile_double(t, "a scale", &a->scale, err) || textfile_word(t, "\"metres\" or \"unknown\"", &unit, err))
+        return err->status;
+    a->metric = !strcmp(unit, "metres");
+    if (!a->metric && strcmp(unit, "unknown")) return textfile_error(t, err, unit, "\"metres\" or \"unknown\"");
+    if (!(a->scale > 0)) return textfile_wrong_number(t, a->scale, "a scale above 0", err);
+    if (!a->metric && a->scale != 1) return textfile_wrong_number(t, a->scale, "1, as the scale is unknown", err);
+    return textfile_end(t, err);
+}
+
+enum status model_axes_read(struct model_axes *axes, const char *path, struct err *err)
+{
+    struct textfile t = {0};
+    struct model_axes a = {0};
+    int64_t version;
+    enum status st =
+        textfile_open(&t, path, err) || textfile_expect_line(&t, "remodel-axes", err) ||
+                textfile_int(&t, "version", 1, 1, &version, err) || textfile_end(&t, err) ||
+                read_similarity(&t, &a, err) || read_length(&t, "ceiling", &a.ceiling, err) ||
+                read_length(&t, "thickness", &a.thickness, err) || read_error(&t, "tilt", &a.tilt_error, err) ||
+                read_error(&t, "heading", &a.heading_error, err) || read_error(&t, "floor", &a.floor_error, err) ||
+                read_error_of(&t, "ceiling", a.ceiling > 0, &a.ceiling_error, err) ||
+                read_error_of(&t, "scale", a.metric, &a.scale_error, err) || textfile_end_of_file(&t, err)
+            ? err->status
+            : ST_OK;
+    textfile_release(&t);
+    *axes = st ? (struct model_axes){0} : a;
+    return st;
+}

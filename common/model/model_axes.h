@@ -1,0 +1,56 @@
+/* model_axes.h - where a room's model stands in its scene: canonical axes, floor, ceiling, scale;
+ * out/SCENE/model/axes.txt.
+ *
+ * Model frame: right-handed, z up, floor at z = 0, x and y along the walls; metres if a scale was given, else scene
+ * units. The world is the frame of out/SCENE/views and points. A similarity takes one to the other:
+ *   p_model = scale * R(rotation) p_world + translation
+ *
+ *   remodel-axes 1
+ *   rotation W X Y Z                     unit quaternion, model_from_world
+ *   translation X Y Z                    model units
+ *   scale S metres|unknown               model units per scene unit; unknown: S is 1
+ *   ceiling H|none                       height above the floor, model units
+ *   thickness T|none                     of all walls, as a user measured it, model units
+ *   error tilt D                         estimated standard errors: of the direction up, degrees
+ *   error heading D                      of the turn about it, degrees
+ *   error floor E                        of the floor's height, model units
+ *   error ceiling E|none                 of the ceiling's height above the floor, model units
+ *   error scale E|none                   of the scale, as a part of it */
+#ifndef REMODEL_MODEL_AXES_H
+#define REMODEL_MODEL_AXES_H
+
+#include <stdbool.h>
+
+#include "common/base/provenance.h"
+#include "common/capture/camera_set.h"
+
+struct model_axes {
+    struct quat rotation;              /* model_from_world */
+    struct vec3 translation;           /* model units */
+    double scale;                      /* model units per scene unit, > 0; 1 unless metric */
+    bool metric;                       /* model units are metres */
+    double ceiling;                    /* above the floor, > 0; 0: none was seen */
+    double thickness;                  /* of the walls, > 0; 0: none was given */
+    double tilt_error, heading_error;  /* degrees, standard errors */
+    double floor_error, ceiling_error; /* model units, standard errors; ceiling_error is 0 without a ceiling */
+    double scale_error;                /* a part of the scale; 0 unless metric */
+};
+
+/* ST_DATA with file and line: a quaternion whose length is not 1, numbers out of the ranges above, lines missing. */
+enum status model_axes_read(struct model_axes *axes, const char *path, struct err *err);
+enum status model_axes_write(const struct model_axes *axes, const char *path, const struct provenance *prov,
+                             struct err *err);
+
+struct vec3 model_from_world_point(const struct model_axes *axes, struct vec3 world);
+struct vec3 world_from_model_point(const struct model_axes *axes, struct vec3 model);
+/* Turned, not scaled: lengths stay. */
+struct vec3 model_from_world_direction(const struct model_axes *axes, struct vec3 world);
+struct vec3 world_from_model_direction(const struct model_axes *axes, struct vec3 model);
+
+/* A camera of the world as one of the model and back: the same picture; its depths are in model (scene) units. */
+struct pose cam_from_model_pose(const struct model_axes *axes, const struct pose *cam_from_world);
+struct pose cam_from_world_pose(const struct model_axes *axes, const struct pose *cam_from_model);
+struct view model_from_world_view(const struct model_axes *axes, const struct view *world);
+struct view world_from_model_view(const struct model_axes *axes, const struct view *model);
+
+#endif

@@ -1,0 +1,366 @@
+/* solid_mesh.c - see solid_mesh.h: making meshes, names and ids, volume and area. */
+#include "common/model/solid_mesh.h"
+
+#include <limits.h>
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+void solid_mesh_release(struct solid_mesh *mesh)
+{
+    if (!mesh) return;
+    for (int i = 0; i < mesh->body_count; i++) free(mesh->bodies[i].name);
+    for (int i = 0; i < mesh->name_count; i++) free(mesh->names[i].name);
+    free(mesh->vertices);
+    free(mesh->half_edges);
+    free(mesh->loops);
+    free(mesh->faces);
+    free(mesh->bodies);
+    free(mesh->names);
+    *mesh = (struct solid_mesh){0};
+}
+
+/* ---------------------------------------------------------------------------------------------------------- tables */
+
+static uint64_t hash_text(const char *text)
+{
+    uint64_t h = 1469598103934665603u;
+    for (; *text; text++) h = (h ^ (unsigned char)*text) * 1099511628211u;
+    return h ^ (h >> 32);
+}
+
+static uint64_t hash_edge(int from, int to)
+{
+    uint64_t h = ((uint64_t)(unsigned)from << 32 | (unsigned)to) * 0x9e3779b97f4a7c15u;
+    return h ^ (h >> 29);
+}
+
+static unsigned table_size(int count)
+{
+    unsigned size = 16;
+    while (size < 2 * (unsigned)count + 2) size *= 2;
+    return size;
+}
+
+static int *table_make(unsigned size)
+{
+    int *slots = malloc(size * sizeof *slots);
+    for (unsigned i = 0; slots && i < size; i++) slots[i] = -1;
+    return slots;
+}
+
+/* Where the name is among the mesh's, or where it would be put. */
+static unsigned name_slot(const struct solid_mesh *mesh, const int *slots, unsigned size, const char *name)
+{
+    unsigned at = (unsigned)hash_text(name) & (size - 1);
+    while (slots[at] >= 0 && strcmp(mesh->names[slots[at]].name, name)) at = (at + 1) & (size - 1);
+    return at;
+}
+
+static unsigned body_slot(const struct solid_mesh *mesh, const int *slots, unsigned size, const char *name)
+{
+    unsigned at = (unsigned)hash_text(name) & (size - 1);
+    while (slots[at] >= 0 && strcmp(mesh->bodies[slots[at]].name, name)) at = (at + 1) & (size - 1);
+    return at;
+}
+
+static int destination(const struct solid_mesh *mesh, int half_edge)
+{
+    return mesh->half_edges[mesh->half_edges[half_edge].next].origin;
+}
+
+static unsigned edge_slot(const struct solid_mesh *mesh, const int *slots, unsigned size, int from, int to)
+{
+    unsigned at = (unsigned)hash_edge(from, to) & (size - 1);
+    while (slots[at] >= 0 && (mesh->half_edges[slots[at]].origin != from || destination(mesh, slots[at]) != to))
+        at = (at + 1) & (size - 1);
+    return at;
+}
+
+/* ---------------------------------------------------------------------------------------------------------- making */
+
+static int face_of(const struct solid_mesh *mesh, int half_edge)
+{
+    return mesh->loops[mesh->half_edges[half_edge].loop].face;
+}
+
+static bool finite3(struct vec3 v) { return isfinite(v.x) && isfinite(v.y) && isfinite(v.z); }
+
+struct maker { /* what making has at hand */
+    struct solid_mesh *mesh;
+    int *names, *bodies, *edges; /* hash tables */
+    unsigned name_size, body_size, edge_size;
+    int *wrong;
+};
+
+#define FAULT(m, i, polygon, ...)                           \
+    (*(m)->wrong = (i), err_set(err, ST_DATA, __VA_ARGS__), \
+     err_context(err, "face %d, %s", (i) + 1, (polygon)->name ? (polygon)->name : "(none)"))
+
+static enum status add_name(struct maker *m, const char *name, int *index, struct err *err)
+{
+    struct solid_mesh *mesh = m->mesh;
+    const unsigned at = name_slot(mesh, m->names, m->name_size, name);
+    *index = m->names[at];
+    if (*index >= 0) return ST_OK;
+    struct solid_name n = {strdup(name), mesh->name_count + 1};
+    if (!n.name) return err_nomem(err, "a face's name", strlen(name));
+    mesh->names[mesh->name_count] = n;
+    *index = m->names[at] = mesh->name_count++;
+    return ST_OK;
+}
+
+static enum status add_body(struct maker *m, int i, const struct solid_polygon *p, int *index, struct err *err)
+{
+    struct solid_mesh *mesh = m->mesh;
+    const int last = mesh->body_count - 1;
+    if (last >= 0 && !strcmp(mesh->bodies[last].name, p->body)) {
+        *index = last;
+        mesh->bodies[last].faces++;
+        return ST_OK;
+    }
+    const unsigned at = body_slot(mesh, m->bodies, m->body_size, p->body);
+    if (m->bodies[at] >= 0)
+        return FAULT(m, i, p, "found body %s a second time, wanted its faces one after the other.", p->body);
+    struct solid_body b = {strdup(p->body), mesh->face_count, 1};
+    if (!b.name) return err_nomem(err, "a body's name", strlen(p->body));
+    mesh->bodies[mesh->body_count] = b;
+    *index = m->bodies[at] = mesh->body_count++;
+    return ST_OK;
+}
+
+static enum status add_polygon(struct maker *m, int i, const struct solid_polygon *p, int *of_body, struct err *err)
+{
+    struct solid_mesh *mesh = m->mesh;
+    struct solid_face f = {.normal = p->normal, .offset = p->offset, .loop = mesh->loop_count, .loops = p->loops};
+    if (!p->name || !*p->name || !p->body || !*p->body) return FAULT(m, i, p, "found an empty name, wanted one.");
+    if (p->loops < 1) return FAULT(m, i, p, "found no loop, wanted the outer one at least.");
+    if (!finite3(p->normal) || !isfinite(p->offset)) return FAULT(m, i, p, "found a plane that is not finite.");
+    if (fabs(vec3_length(p->normal) - 1) > 1e-6)
+        return FAULT(m, i, p, "found a normal of length %.9g, wanted 1.", vec3_length(p->normal));
+    if (add_name(m, p->name, &f.name, err) || add_body(m, i, p, &f.body, err)) return err->status;
+    const int *corner = p->corners;
+    for (int k = 0; k < p->loops; corner += p->sizes[k++]) {
+        const int first = mesh->half_edge_count, n = p->sizes[k];
+        if (n < 3) return FAULT(m, i, p, "found a loop of %d corners, wanted 3 or more.", n);
+        for (int c = 0; c < n; c++) {
+            const int v = corner[c];
+            if (v < 0 || v >= mesh->vertex_count)
+                return FAULT(m, i, p, "found vertex %d, wanted one from 0 to %d.", v, mesh->vertex_count - 1);
+            if (v == corner[(c + 1) % n]) return FAULT(m, i, p, "found vertex %d twice in a row, wanted it once.", v);
+            if (of_body[v] < 0) of_body[v] = f.body;
+            if (of_body[v] != f.body)
+                return FAULT(m, i, p, "found vertex %d of body %s, wanted one of body %s alone.", v,
+                             mesh->bodies[of_body[v]].name, p->body);
+            mesh->vertices[v].half_edge = first + c;
+            mesh->half_edges[first + c] = (struct solid_half_edge){.origin = v,
+                                                                   .next = first + (c + 1) % n,
+                                                                   .prev = first + (c + n - 1) % n,
+                                                                   .twin = -1,
+                                                                   .loop = mesh->loop_count};
+        }
+        mesh->half_edge_count += n;
+        for (int h = first; h < mesh->half_edge_count; h++) {
+            const int from = mesh->half_edges[h].origin, to = destination(mesh, h);
+            const unsigned at = edge_slot(mesh, m->edges, m->edge_size, from, to);
+            if (m->edges[at] >= 0)
+                return FAULT(m, i, p, "found the edge from vertex %d to vertex %d a second time, wanted it once.", from,
+                             to);
+            m->edges[at] = h;
+        }
+        mesh->loops[mesh->loop_count++] = (struct solid_loop){first, mesh->face_count};
+    }
+    mesh->faces[mesh->face_count++] = f;
+    return ST_OK;
+}
+
+static enum status pair_edges(struct maker *m, const struct solid_polygon *polygons, struct err *err)
+{
+    struct solid_mesh *mesh = m->mesh;
+    for (int h = 0; h < mesh->half_edge_count; h++) {
+        struct solid_half_edge *e = &mesh->half_edges[h];
+        const int from = e->origin, to = destination(mesh, h), i = face_of(mesh, h);
+        e->twin = m->edges[edge_slot(mesh, m->edges, m->edge_size, to, from)];
+        if (e->twin < 0)
+            return FAULT(m, i, &polygons[i],
+                         "found the edge from vertex %d to vertex %d, but in no face the edge back, wanted it in one.",
+                         from, to);
+    }
+    return ST_OK;
+}
+
+/* All half-edges that leave a vertex are of one fan. */
+static enum status one_fan_each(struct maker *m, const struct solid_polygon *polygons, int *leaving, struct err *err)
+{
+    struct solid_mesh *mesh = m->mesh;
+    for (int v = 0; v < mesh->vertex_count; v++) leaving[v] = 0;
+    for (int h = 0; h < mesh->half_edge_count; h++) leaving[mesh->half_edges[h].origin]++;
+    for (int v = 0; v < mesh->vertex_count; v++) {
+        if (!leaving[v]) return err_set(err, ST_DATA, "vertex %d is of no face, wanted it in three or more.", v);
+        int h = mesh->vertices[v].half_edge, count = 0;
+        const int i = face_of(mesh, h);
+        do {
+            h = mesh->half_edges[mesh->half_edges[h].prev].twin;
+            count++;
+        } while (h != mesh->vertices[v].half_edge);
+        if (count != leaving[v])
+            return FAULT(m, i, &polygons[i],
+                         "found %d faces around vertex %d and %d more that touch there, wanted a vertex of their own "
+                         "for those.",
+                         count, v, leaving[v] - count);
+    }
+    return ST_OK;
+}
+
+enum status solid_mesh_make_saying(struct solid_mesh *mesh, const struct vec3 *vertices, int vertex_count,
+                                   const struct solid_polygon *polygons, int count, int *wrong, struct err *err)
+{
+    int64_t corners = 0, loops = 0;
+    *wrong = -1;
+    for (int i = 0; i < count; i++)
+        for (int k = 0; k < polygons[i].loops; k++, loops++)
+            corners += polygons[i].sizes[k] > 0 ? polygons[i].sizes[k] : 0;
+    if (corners > INT_MAX / 8) return err_nomem(err, "a mesh", (size_t)corners * sizeof *mesh->half_edges);
+    struct maker m = {.mesh = mesh,
+                      .name_size = table_size(count),
+                      .body_size = table_size(count),
+                      .edge_size = table_size((int)corners),
+                      .wrong = wrong};
+    m.names = table_make(m.name_size);
+    m.bodies = table_make(m.body_size);
+    m.edges = table_make(m.edge_size);
+    int *of_vertex = malloc(((size_t)vertex_count + 1) * sizeof *of_vertex);
+    mesh->vertices = calloc((size_t)vertex_count + 1, sizeof *mesh->vertices);
+    mesh->half_edges = calloc((size_t)corners + 1, sizeof *mesh->half_edges);
+    mesh->loops = calloc((size_t)loops + 1, sizeof *mesh->loops);
+    mesh->faces = calloc((size_t)count + 1, sizeof *mesh->faces);
+    mesh->bodies = calloc((size_t)count + 1, sizeof *mesh->bodies);
+    mesh->names = calloc((size_t)count + 1, sizeof *mesh->names);
+    enum status st = m.names && m.bodies && m.edges && of_vertex && mesh->vertices && mesh->half_edges && mesh->loops &&
+                             mesh->faces && mesh->bodies && mesh->names
+                         ? ST_OK
+                         : err_nomem(err, "a mesh", (size_t)corners * sizeof *mesh->half_edges);
+    if (!st) mesh->vertex_count = vertex_count;
+    for (int i = 0; !st && i < vertex_count; i++) {
+        mesh->vertices[i] = (struct solid_vertex){vertices[i], -1};
+        of_vertex[i] = -1;
+        if (!finite3(vertices[i])) st = err_set(err, ST_DATA, "vertex %d is not finite.", i);
+    }
+    for (int i = 0; !st && i < count; i++) st = add_polygon(&m, i, &polygons[i], of_vertex, err);
+    if (!st) st = pair_edges(&m, polygons, err);
+    if (!st) st = one_fan_each(&m, polygons, of_vertex, err);
+    free(m.names);
+    free(m.bodies);
+    free(m.edges);
+    free(of_vertex);
+    if (st) solid_mesh_release(mesh);
+    return st;
+}
+
+enum status solid_mesh_make(struct solid_mesh *mesh, const struct vec3 *vertices, int vertex_count,
+                            const struct solid_polygon *polygons, int count, struct err *err)
+{
+    int wrong;
+    return solid_mesh_make_saying(mesh, vertices, vertex_count, polygons, count, &wrong, err);
+}
+
+/* ------------------------------------------------------------------------------------------------------------ ids */
+
+struct id_order {
+    int id, name;
+};
+
+static int compare_ids(const void *a, const void *b)
+{
+    const struct id_order *p = a, *q = b;
+    return (p->id > q->id) - (p->id < q->id);
+}
+
+enum status solid_mesh_set_ids(struct solid_mesh *mesh, const int *ids, struct err *err)
+{
+    const size_t n = (size_t)mesh->name_count;
+    struct id_order *order = malloc((n + 1) * sizeof *order);
+    struct solid_name *names = malloc((n + 1) * sizeof *names);
+    int *now = malloc((n + 1) * sizeof *now);
+    enum status st = order && names && now ? ST_OK : err_nomem(err, "ids of faces", n * sizeof *order);
+    if (!st) {
+        for (int i = 0; i < mesh->name_count; i++) order[i] = (struct id_order){ids[i], i};
+        qsort(order, n, sizeof *order, compare_ids);
+        for (int i = 0; i < mesh->name_count; i++) {
+            names[i] = (struct solid_name){mesh->names[order[i].name].name, order[i].id};
+            now[order[i].name] = i;
+        }
+        memcpy(mesh->names, names, n * sizeof *names);
+        for (int i = 0; i < mesh->face_count; i++) mesh->faces[i].name = now[mesh->faces[i].name];
+    }
+    free(order);
+    free(names);
+    free(now);
+    return st;
+}
+
+enum status solid_mesh_carry_ids(struct solid_mesh *mesh, const struct solid_mesh *base, struct err *err)
+{
+    const unsigned size = table_size(base->name_count);
+    int *slots = table_make(size), *ids = malloc(((size_t)mesh->name_count + 1) * sizeof *ids), next = 1;
+    enum status st = slots && ids ? ST_OK : err_nomem(err, "ids of faces", size * sizeof *slots);
+    for (int i = 0; !st && i < base->name_count; i++) {
+        slots[name_slot(base, slots, size, base->names[i].name)] = i;
+        if (base->names[i].id >= next) next = base->names[i].id + 1;
+    }
+    for (int i = 0; !st && i < mesh->name_count; i++) {
+        const int at = slots[name_slot(base, slots, size, mesh->names[i].name)];
+        ids[i] = at >= 0 ? base->names[at].id : next++;
+    }
+    if (!st) st = solid_mesh_set_ids(mesh, ids, err);
+    free(slots);
+    free(ids);
+    return st;
+}
+
+/* ------------------------------------------------------------------------------------------------- volume and area */
+
+/* Twice the area of a loop as a vector along its normal, about `origin`. */
+static struct vec3 loop_area(const struct solid_mesh *mesh, int loop, struct vec3 origin)
+{
+    const int first = mesh->loops[loop].half_edge;
+    struct vec3 sum = {0, 0, 0};
+    int h = first;
+    do {
+        const struct vec3 a = vec3_sub(mesh->vertices[mesh->half_edges[h].origin].p, origin);
+        h = mesh->half_edges[h].next;
+        const struct vec3 b = vec3_sub(mesh->vertices[mesh->half_edges[h].origin].p, origin);
+        sum = vec3_add(sum, vec3_cross(a, b));
+    } while (h != first);
+    return sum;
+}
+
+double solid_mesh_loop_area(const struct solid_mesh *mesh, int loop)
+{
+    const struct vec3 origin = mesh->vertices[mesh->half_edges[mesh->loops[loop].half_edge].origin].p;
+    return 0.5 * vec3_dot(loop_area(mesh, loop, origin), mesh->faces[mesh->loops[loop].face].normal);
+}
+
+double solid_mesh_area(const struct solid_mesh *mesh, int face)
+{
+    double sum = 0;
+    for (int i = 0; i < mesh->faces[face].loops; i++) sum += solid_mesh_loop_area(mesh, mesh->faces[face].loop + i);
+    return sum;
+}
+
+double solid_mesh_volume(const struct solid_mesh *mesh, int body)
+{
+    double sum = 0;
+    for (int b = body < 0 ? 0 : body; b < (body < 0 ? mesh->body_count : body + 1); b++) {
+        const struct solid_body *o = &mesh->bodies[b];
+        /* about a point of the body, so that one far from the origin loses no digits */
+        const struct solid_loop *first = &mesh->loops[mesh->faces[o->face].loop];
+        const struct vec3 origin = mesh->vertices[mesh->half_edges[first->half_edge].origin].p;
+        for (int f = o->face; f < o->face + o->faces; f++) {
+            const double distance = mesh->faces[f].offset - vec3_dot(mesh->faces[f].normal, origin);
+            sum += solid_mesh_area(mesh, f) * distance / 3;
+        }
+    }
+    return sum;
+}

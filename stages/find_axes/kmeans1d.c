@@ -1,0 +1,90 @@
+/* kmeans1d.c - see kmeans1d.h.
+ *
+ * D[j][i], the least cost of the first i + 1 numbers in j + 1 ranges, is the least over m of D[j - 1][m - 1] + cost(m, i).
+ * The best m does not decrease with i (the cost of ranges obeys the quadrangle inequality), so a row is filled by halves:
+ * the middle's m bounds those of both sides. That makes k n log n of Wang and Song's k n^2. Costs come from running sums
+ * of the numbers less their mean, in long double: what cancels is far below a double's rounding. */
+#include "stages/find_axes/kmeans1d.h"
+
+#include <stdlib.h>
+
+struct rows {
+    const long double *sum, *square; /* of the first i numbers, i = 0 .. count */
+    const double *before;            /* D of one range fewer */
+    double *now;
+    size_t *first; /* where the last range begins */
+};
+
+static double cost(const struct rows *r, size_t from, size_t last)
+{
+    const long double n = (long double)(last + 1 - from), s = r->sum[last + 1] - r->sum[from];
+    const long double c = r->square[last + 1] - r->square[from] - s * s / n;
+    return c > 0 ? (double)c : 0;
+}
+
+/* Numbers low .. high; their last ranges begin in from .. to. */
+static void fill(const struct rows *r, size_t low, size_t high, size_t from, size_t to)
+{
+    while (low <= high) {
+        const size_t middle = low + (high - low) / 2;
+        size_t best = from;
+        double least = -1;
+        for (size_t m = from; m <= to && m <= middle; m++) {
+            const double c = r->before[m - 1] + cost(r, m, middle);
+            if (least >= 0 && !(c < least)) continue;
+            least = c;
+            best = m;
+        }
+        r->now[middle] = least;
+        r->first[middle] = best;
+        if (middle > low) fill(r, low, middle - 1, from, best);
+        low = middle + 1;
+        from = best;
+    }
+}
+
+double kmeans1d_cost(const double *values, size_t count)
+{
+    long double mean = 0, c = 0;
+    for (size_t i = 0; i < count; i++) mean += values[i];
+    mean /= (long double)(count ? count : 1);
+    for (size_t i = 0; i < count; i++) c += (values[i] - mean) * (values[i] - mean);
+    return (double)c;
+}
+
+enum status kmeans1d(size_t *begin, const double *values, size_t count, int k, struct err *err)
+{
+    const size_t clusters = (size_t)k;
+    long double *sum = calloc(count + 1, sizeof *sum), *square = calloc(count + 1, sizeof *square), mean = 0;
+    double *costs[2] = {malloc(count * sizeof **costs), malloc(count * sizeof **costs)};
+    size_t *first = malloc(clusters * count * sizeof *first);
+    enum status st = sum && square && costs[0] && costs[1] && first
+                         ? ST_OK
+                         : err_nomem(err, "clusters of numbers", (clusters + 6) * count * sizeof *first);
+    for (size_t i = 0; i < count; i++) mean += values[i];
+    mean /= (long double)count;
+    for (size_t i = 0; !st && i < count; i++) {
+        const long double x = values[i] - mean;
+        sum[i + 1] = sum[i] + x;
+        square[i + 1] = square[i] + x * x;
+    }
+    struct rows r = {sum, square, NULL, costs[0], first};
+    for (size_t i = 0; !st && i < count; i++) r.now[i] = cost(&r, 0, i);
+    for (size_t j = 1; !st && j < clusters; j++) {
+        r.before = costs[(j + 1) % 2];
+        r.now = costs[j % 2];
+        r.first = first + j * count;
+        fill(&r, j, count - 1, j, count - 1);
+    }
+    if (!st) {
+        begin[clusters] = count;
+        for (size_t j = clusters - 1; j > 0; j--) begin[j] = first[j * count + begin[j + 1] - 1];
+        begin[0] = 0;
+    }
+    free(sum);
+    free(square);
+    free(costs[0]);
+    free(costs[1]);
+    free(first);
+    return st;
+}

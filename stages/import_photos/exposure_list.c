@@ -1,0 +1,72 @@
+/* exposure_list.c - see exposure_list.h. */
+#include "stages/import_photos/exposure_list.h"
+
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/base/textfile.h"
+
+double exposure_value(const struct exposure *e)
+{
+    double value = e->seconds / (e->filter > 0 ? e->filter : 1);
+    if (e->iso > 0) value *= e->iso;
+    if (e->f_number > 0) value /= e->f_number * e->f_number;
+    return value;
+}
+
+/* zero: 0 may stand for what is not stated. */
+static enum status read_number(struct textfile *t, const char *what, bool zero, double *value, struct err *err)
+{
+    enum status st = textfile_double(t, what, value, err);
+    char found[32];
+    if (st || (*value >= 1e-9 && *value <= 1e9) || (zero && *value == 0)) return st;
+    snprintf(found, sizeof found, "%.9g", *value);
+    return textfile_error(t, err, found, "%s from 1e-9 to 1e9%s", what, zero ? ", or 0 for EXIF's" : "");
+}
+
+static enum status read_line(struct exposure_list *list, struct textfile *t, struct err *err)
+{
+    struct exposure e = {.filter = 1};
+    char *file = NULL;
+    enum status st = textfile_word(t, "the file name of a photo", &file, err);
+    for (int i = 0; !st && i < list->count; i++)
+        if (!strcmp(list->lines[i].file, file))
+            st = textfile_error(t, err, file, "each photo once (it also stands in line %d)", list->lines[i].line);
+    if (!st) st = read_number(t, "an exposure time in seconds", false, &e.seconds, err);
+    if (!st && textfile_more(t)) {
+        st = read_number(t, "an f-number", true, &e.f_number, err);
+        if (!st) st = read_number(t, "an ISO value", true, &e.iso, err);
+        if (!st && textfile_more(t)) st = read_number(t, "a neutral density factor", false, &e.filter, err);
+    }
+    if (!st) st = textfile_end(t, err);
+    if (st) return st;
+
+    size_t bytes = ((size_t)list->count + 1) * sizeof *list->lines;
+    struct exposure_line *lines = realloc(list->lines, bytes);
+    if (!lines) return err_nomem(err, "a list of exposures", bytes);
+    list->lines = lines;
+    lines[list->count] = (struct exposure_line){strdup(file), e, t->line};
+    return lines[list->count++].file ? ST_OK : err_nomem(err, "a file name", strlen(file) + 1);
+}
+
+enum status exposure_list_read(struct exposure_list *list, const char *path, struct err *err)
+{
+    struct textfile t = {0};
+    *list = (struct exposure_list){.path = strdup(path)};
+    enum status st = list->path ? textfile_open(&t, path, err) : err_nomem(err, "a path", strlen(path) + 1);
+    while (!st && textfile_next(&t)) st = read_line(list, &t, err);
+    textfile_release(&t);
+    if (st) exposure_list_release(list);
+    return st;
+}
+
+void exposure_list_release(struct exposure_list *list)
+{
+    if (!list) return;
+    for (int i = 0; i < list->count; i++) free(list->lines[i].file);
+    free(list->lines);
+    free(list->path);
+    *list = (struct exposure_list){0};
+}

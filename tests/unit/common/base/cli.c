@@ -1,0 +1,268 @@
+/* The command line: every stage's own options and those that all have. */
+#include "tests/unit/scratch.h"
+
+#include "common/base/cli.h"
+#include "common/base/log.h"
+#include "common/base/parallel.h"
+#include "common/base/version.h"
+
+#define TRY_PARAMS(X)                                   \
+    X(near_z, double, 1, 0, 100, "m", "nearest depth")  \
+    X(far_z, double, 10, 0, 100, "m", "farthest depth") \
+    X(planes, int, 16, 1, 64, "", "planes between the two")
+
+struct try_params {
+    TRY_PARAMS(PARAM_FIELD)
+};
+#define TRY_PARAMS_DEFAULT        \
+    {                             \
+        TRY_PARAMS(PARAM_DEFAULT) \
+    }
+#define PARAM_STRUCT struct try_params
+static const struct param try_table[] = {TRY_PARAMS(PARAM_ROW) PARAM_END};
+#undef PARAM_STRUCT
+
+static enum status check(const void *values, struct err *err)
+{
+    const struct try_params *p = values;
+
+    if (p->near_z < p->far_z) return ST_OK;
+    return err_set(err, ST_USAGE, "near_z = %g must be less than far_z = %g.", p->near_z, p->far_z);
+}
+
+enum { MOST_ARGS = 16 };
+
+/* A stage's main that says what it was given. */
+static int stage_main(void *ctx)
+{
+    char **argv = ctx;
+    const char *out = NULL, *view = "none";
+    struct cli_list exclude = {0};
+    int count = 3, argc = 0;
+    bool fast = false;
+    const char *planes = NULL;
+    struct try_params params = TRY_PARAMS_DEFAULT;
+    const struct cli_opt opts[] = {
+        CLI_ABOUT("Tries the command line."),
+        CLI_STR("out", &out, CLI_REQUIRED, "file to write"),
+        CLI_STR("view", &view, CLI_OPTIONAL, "view to work on"),
+        CLI_LIST("exclude", &exclude, CLI_OPTIONAL, "file to leave out"),
+        CLI_INT("count", &count, CLI_OPTIONAL, "how many"),
+        CLI_FLAG("fast", &fast, "be quick"),
+        CLI_PARAM("planes", &planes, "planes, as a word of its own"),
+        CLI_PARAMS(try_table, &params, check),
+        CLI_END,
+    };
+    struct provenance prov = {0};
+    struct err err = ERR_INIT;
+
+    while (argv[argc]) argc++;
+    const enum cli_verdict verdict = cli_parse(argc, argv, "try", opts, &prov, &err);
+    if (verdict == CLI_RUN) {
+        printf("out=%s view=%s count=%d fast=%d threads=%d", out, view, count, fast, parallel_threads());
+        for (int i = 0; i < exclude.count; i++) printf(" exclude=%s", exclude.items[i]);
+        printf("\n%s %s\n%s", prov.stage, prov.version, prov.params);
+        fflush(stdout);
+    }
+    err_report(&err);
+    cli_list_release(&exclude);
+    provenance_release(&prov);
+    return err_exit_code(&err);
+}
+
+/* Runs the stage with the arguments up to a NULL; its exit status, and what it said. */
+static int try_args(char **said, ...)
+{
+    const char *argv[MOST_ARGS] = {"try"};
+    va_list args;
+    int n = 1;
+
+    va_start(args, said);
+    while ((argv[n] = va_arg(args, const char *))) n++;
+    va_end(args);
+    return child_run(stage_main, argv, said);
+}
+
+#define assert_try(code, part, ...)                                                        \
+    do {                                                                                   \
+        char *said_;                                                                       \
+        const int code_ = try_args(&said_, __VA_ARGS__, NULL);                             \
+        if (code_ != (code)) fail_msg("exit %d in place of %d: %s", code_, (code), said_); \
+        assert_contains(said_, part);                                                      \
+        free(said_);                                                                       \
+    } while (0)
+
+static void options(void **state)
+{
+    (void)state;
+    assert_try(0, "out=a b view=none count=3 fast=0", "--out", "a b");
+    assert_try(0, "out=--x view= count=-4 fast=1 threads=2 exclude=a exclude=b", "--exclude", "a", "--out=--x",
+               "--view=", "--count", "-4", "--exclude=b", "--fast", "--threads=7", "--threads", "2");
+}
+
+static void usage_errors(void **state)
+{
+    (void)state;
+    assert_try(2, "try: error: --out is missing: file to write.", "--fast");
+    assert_try(2, "unknown option \"ouy\"; did you mean --out?", "--ouy", "x");
+    assert_try(2, "unknown option \"treads\"; did you mean --threads?", "--treads=2");
+    assert_try(2, "unknown option \"qqqqqqqqqqq\"; --help lists them.", "--qqqqqqqqqqq=2");
+    assert_try(2, "--out needs a value", "--out");
+    assert_try(2, "--out needs a value", "--out", "--fast");
+    assert_try(2, "--fast takes no value.", "--out=x", "--fast=yes");
+    assert_try(2, "--out is given twice; keep one.", "--out=x", "--out=x");
+    assert_try(2, "--count \"4x\": wanted an integer.", "--out=x", "--count=4x");
+    assert_try(2, "--threads -1: wanted 0", "--out=x", "--threads=-1");
+    assert_try(2, "--threads \"two\": wanted an integer.", "--out=x", "--threads=two");
+    assert_try(2, "unexpected argument \"x\"", "x");
+    assert_try(2, "unexpected argument \"-h\"", "-h");
+    assert_try(2, "unexpected argument \"--\"", "--");
+}
+
+static void help_version_config(void **state)
+{
+    char *said;
+
+    (void)state;
+    assert_int_equal(try_args(&said, "--help", NULL), 0);
+    assert_contains(said, "usage: try [OPTION]...\nTries the command line.\n");
+    assert_contains(said, "  --out TEXT           file to write (required)\n");
+    assert_contains(said, "--exclude TEXT...");
+    assert_contains(said, "(may be given several times)");
+    assert_contains(said, "--print-config");
+    assert_contains(said, "--threads N");
+    assert_contains(said, "section [try]");
+    assert_contains(said, "default 10 m, from 0 to 100");
+    assert_lacks(said, "MiB peak"); /* nothing was run */
+    free(said);
+
+    assert_int_equal(try_args(&said, "--version", NULL), 0);
+    assert_string_equal(said, "remodel try " REMODEL_VERSION "\n");
+    free(said);
+
+    /* asks for no required option */
+    assert_int_equal(try_args(&said, "--print-config", "--set", "planes=3", NULL), 0);
+    assert_string_equal(said, "[try]\nnear_z = 1\nfar_z = 10\nplanes = 3\n");
+    free(said);
+}
+
+static int help_on_a_full_disk(void *ctx)
+{
+    const int fd = open("/dev/full", O_WRONLY);
+
+    if (fd < 0 || dup2(fd, STDOUT_FILENO) < 0) return 99;
+    return stage_main(ctx);
+}
+
+static void output_that_cannot_be_written(void **state)
+{
+    const char *argv[] = {"try", "--print-config", NULL};
+    char *said;
+
+    (void)state;
+    assert_int_equal(child_run(help_on_a_full_disk, argv, &said), 1);
+    assert_contains(said, "try: error: cannot write standard output: No space left on device.");
+    free(said);
+}
+
+static void configs_then_sets(void **state)
+{
+    char a[PATH_MAX], b[PATH_MAX], bad[PATH_MAX];
+
+    (void)state;
+    strcpy(a, scratch_write("a.cfg", "[try]\nplanes = 1\nfar_z = 50\n[other]\nx = 1\n"));
+    strcpy(b, scratch_write("b.cfg", "[try]\nplanes = 2\n"));
+    strcpy(bad, scratch_write("bad.cfg", "[try]\nplane = 2\n"));
+    assert_try(0, "try " REMODEL_VERSION "\n[try]\nnear_z = 3\nfar_z = 50\nplanes = 2\n", "--set", "near_z=2",
+               "--config", a, "--out=x", "--config", b, "--set=near_z=3");
+    assert_try(0, "planes = 1\n", "--out=x", "--config", b, "--config", a);
+    assert_try(0, "planes = 64\n", "--out=x", "--set=planes=64", "--config", a);
+    assert_try(2, "near_z = 60 must be less than far_z = 50.", "--out=x", "--config", a, "--set=near_z=60");
+    assert_try(2, "bad.cfg:2: unknown parameter \"plane\"; did you mean planes?", "--out=x", "--config", bad);
+    assert_try(2, "cannot open", "--out=x", "--config=none.cfg");
+    assert_try(2, "did you mean planes?", "--out=x", "--set=planse=3");
+}
+
+static void an_option_that_is_a_parameter(void **state)
+{
+    char a[PATH_MAX];
+
+    (void)state;
+    strcpy(a, scratch_write("planes.cfg", "[try]\nplanes = 5\n"));
+    /* it wins over config files and --set, wherever it stands, and is among the effective parameters */
+    assert_try(0, "planes = 7\n", "--out=x", "--planes=7");
+    assert_try(0, "planes = 7\n", "--planes", "7", "--set=planes=6", "--config", a, "--out=x");
+    assert_try(0, "planes = 5\n", "--out=x", "--config", a);
+    assert_try(0, "[try]\nnear_z = 1\nfar_z = 10\nplanes = 9\n", "--print-config", "--planes=9");
+    /* and is checked as one */
+    assert_try(2, "planes", "--out=x", "--planes=65");
+    assert_try(2, "planes", "--out=x", "--planes=few");
+    assert_try(2, "planes", "--out=x", "--planes=");
+    assert_try(2, "--planes is given twice; keep one.", "--out=x", "--planes=7", "--planes=7");
+    assert_try(2, "--planes needs a value", "--out=x", "--planes");
+    assert_try(2, "did you mean --planes?", "--out=x", "--plane=7");
+
+    char lengthy[2000] = "--planes=";
+    memset(lengthy + 9, '1', sizeof lengthy - 10);
+    assert_try(2, "--planes: its value is too long.", "--out=x", lengthy);
+}
+
+static void the_last_line(void **state)
+{
+    char *said;
+    double wall, cpu;
+    long peak;
+    char newline;
+
+    (void)state;
+    assert_int_equal(try_args(&said, "--out=x", NULL), 0);
+    const char *line = strstr(said, "try: used ");
+    if (!line) fail_msg("no last line in \"%s\"", said);
+    assert_int_equal(sscanf(line, "try: used %lf s wall, %lf s cpu, %ld MiB peak%c", &wall, &cpu, &peak, &newline), 4);
+    assert_int_equal(newline, '\n');
+    assert_int_equal(strchr(line, '\n')[1], '\0');
+    assert_true(wall >= 0 && wall < 60 && cpu >= 0 && peak > 0);
+    free(said);
+}
+
+static int forking_main(void *ctx)
+{
+    const struct cli_opt opts[] = {CLI_END};
+    struct provenance prov = {0};
+    struct err err = ERR_INIT;
+
+    if (cli_parse(1, ctx, "forking", opts, &prov, &err) != CLI_RUN) return 1;
+    const pid_t pid = fork();
+    if (!pid) exit(0);
+    waitpid(pid, NULL, 0);
+    provenance_release(&prov);
+    return 0;
+}
+
+static void children_say_nothing(void **state)
+{
+    const char *argv[] = {"forking", NULL};
+    char *said;
+
+    (void)state;
+    assert_int_equal(child_run(forking_main, argv, &said), 0);
+    const char *first = strstr(said, "forking: used ");
+    if (!first || strstr(first + 1, "forking: used ")) fail_msg("not one last line: \"%s\"", said);
+    free(said);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(options),
+        cmocka_unit_test(usage_errors),
+        cmocka_unit_test(help_version_config),
+        cmocka_unit_test(output_that_cannot_be_written),
+        cmocka_unit_test(configs_then_sets),
+        cmocka_unit_test(an_option_that_is_a_parameter),
+        cmocka_unit_test(the_last_line),
+        cmocka_unit_test(children_say_nothing),
+    };
+
+    return cmocka_run_group_tests_name("cli", tests, scratch_make, scratch_remove);
+}

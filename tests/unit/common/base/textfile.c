@@ -1,0 +1,258 @@
+/* The text reader: records, quotes, numbers, and errors that say where and what. */
+#include "tests/unit/scratch.h"
+
+#include <sys/resource.h>
+
+#include "common/base/textfile.h"
+
+static struct textfile opened(const char *text)
+{
+    struct textfile t;
+    struct err err = ERR_INIT;
+
+    assert_ok(textfile_open(&t, scratch_write("t.txt", text), &err), err);
+    return t;
+}
+
+static void records(void **state)
+{
+    struct textfile t = opened("# head\r\n\n  \t\n  7 a -0.5 two  words \r\n#8\nlast");
+    struct err err = ERR_INIT;
+    int64_t id;
+    double x;
+    char *word, *rest;
+
+    (void)state;
+    assert_true(textfile_next(&t));
+    assert_int_equal(t.line, 4);
+    assert_ok(textfile_int(&t, "id", 0, 9, &id, &err), err);
+    assert_ok(textfile_word(&t, "model", &word, &err), err);
+    assert_ok(textfile_double(&t, "x", &x, &err), err);
+    assert_true(textfile_more(&t));
+    assert_ok(textfile_rest(&t, "name", &rest, &err), err);
+    assert_false(textfile_more(&t));
+    assert_ok(textfile_end(&t, &err), err);
+    assert_true(id == 7 && x == -0.5);
+    assert_string_equal(word, "a");
+    assert_string_equal(rest, "two  words");
+    assert_true(textfile_next(&t)); /* without a line break at the end */
+    assert_int_equal(t.line, 6);
+    assert_ok(textfile_word(&t, "w", &word, &err), err);
+    assert_string_equal(word, "last");
+    assert_ok(textfile_end(&t, &err), err);
+    assert_false(textfile_next(&t));
+    assert_false(textfile_next(&t));
+    assert_false(textfile_more(&t));
+    textfile_release(&t);
+    textfile_release(&t);
+    textfile_release(NULL);
+}
+
+static void raw_lines(void **state)
+{
+    struct textfile t = opened("a\n\n#c\n");
+
+    (void)state;
+    assert_true(textfile_next_raw(&t));
+    assert_true(textfile_next_raw(&t));
+    assert_false(textfile_more(&t));
+    assert_int_equal(t.line, 2);
+    assert_true(textfile_next_raw(&t));
+    assert_true(textfile_more(&t));
+    assert_false(textfile_next_raw(&t)); /* a line break at the end begins no line */
+    textfile_release(&t);
+    t = opened("");
+    assert_false(textfile_next_raw(&t));
+    textfile_release(&t);
+}
+
+static void bad_lines(void **state)
+{
+    static const struct {
+        const char *text, *words;
+    } cases[] = {
+        {"", "t.txt:1: found the end of the file, wanted an id."},
+        {"x", "t.txt:1: found \"x\", wanted an id, an integer from 0 to 9."},
+        {"10", "found \"10\", wanted an id, an integer from 0 to 9."},
+        {"-1", "found \"-1\""},
+        {"1.5", "found \"1.5\""},
+        {"3", "found the end of the line, wanted a size."},
+        {"3 nan", "found \"nan\", wanted a size, a finite number."},
+        {"3 1e400", "found \"1e400\""},
+        {"3 1,5", "found \"1,5\""},
+        {"3 1 \"abc", "found the end of the line, wanted the closing quote of a name."},
+        {"3 1 \"abc\\", "found \"\\\", wanted \\\" or \\\\ inside the quotes of a name."},
+        {"3 1 \"a\\nc\"", "found \"\\nc\"\", wanted \\\" or"},
+        {"3 1 \"a\"b", "found \"b\", wanted a blank after the closing quote of a name."},
+        {"3 1 a more \033", "found \"more \\x1b\", wanted the end of the line."},
+        {"3 1 a 0123456789012345678901234567890123456789more",
+         "found \"0123456789012345678901234567890123456789\"..., wanted the end of the line."},
+    };
+
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct textfile t = opened(cases[i].text);
+        struct err err = ERR_INIT;
+        int64_t id;
+        double x;
+        char *word;
+        t.line = 1;
+        textfile_next(&t);
+        t.line = 1;
+        const bool failed = textfile_int(&t, "an id", 0, 9, &id, &err) || textfile_double(&t, "a size", &x, &err) ||
+                            textfile_word(&t, "a name", &word, &err) || textfile_end(&t, &err);
+        if (!failed) fail_msg("\"%s\" was read", cases[i].text);
+        assert_err(err, ST_DATA, cases[i].words);
+        textfile_release(&t);
+    }
+}
+
+static void expected_words_lines_and_ends(void **state)
+{
+    static const struct {
+        const char *text, *words;
+    } cases[] = {
+        {"size 3 of 4\n# a comment\n", NULL},
+        {"", "t.txt: found an empty file, wanted a line \"size ...\"."},
+        {"sizes 3 of 4\n", "t.txt:1: found \"sizes\", wanted a line \"size ...\"."},
+        {"size 3 off 4\n", "t.txt:1: found \"off\", wanted \"of\"."},
+        {"size 3\n", "t.txt:1: found the end of the line, wanted \"of\"."},
+        {"size 5 of 4\n", "t.txt:1: found \"5\", wanted no more than there are."},
+        {"size 3 of 4\n\nsize 2 of 4 \n", "t.txt:3: found \"size 2 of 4\", wanted the end of the file."},
+    };
+
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct textfile t = opened(cases[i].text);
+        struct err err = ERR_INIT;
+        double part = 0, all = 0;
+        const bool failed = textfile_expect_line(&t, "size", &err) || textfile_double(&t, "a part", &part, &err) ||
+                            textfile_expect(&t, "of", &err) || textfile_double(&t, "a whole", &all, &err) ||
+                            (part > all && textfile_wrong_number(&t, part, "no more than there are", &err)) ||
+                            textfile_end(&t, &err) || textfile_end_of_file(&t, &err);
+        assert_int_equal(failed, cases[i].words != NULL);
+        if (failed) assert_err(err, ST_DATA, cases[i].words);
+        textfile_release(&t);
+    }
+}
+
+static void quoting_reads_back(void **state)
+{
+    static const char *const words[] = {"plain",     "",   "two words", "a\"b\\c",        "#1",
+                                        "tab\there", "\"", "\\",        "\xc3\xa9\x01$'`"};
+    char quoted[64], line[128];
+
+    (void)state;
+    for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
+        struct err err = ERR_INIT;
+        char *word;
+        assert_ok(textfile_quote(words[i], quoted, sizeof quoted, &err), err);
+        snprintf(line, sizeof line, "%s next\n", quoted);
+        struct textfile t = opened(line);
+        assert_true(textfile_next(&t));
+        assert_ok(textfile_word(&t, "word", &word, &err), err);
+        assert_string_equal(word, words[i]);
+        assert_ok(textfile_word(&t, "word", &word, &err), err);
+        assert_string_equal(word, "next");
+        textfile_release(&t);
+    }
+    struct err line_break = ERR_INIT, room = ERR_INIT, good = ERR_INIT;
+    assert_int_equal(textfile_quote("a\nb", quoted, sizeof quoted, &line_break), ST_DATA);
+    assert_err(line_break, ST_DATA, "the name \"a\\nb\" holds a line break");
+    assert_ok(textfile_quote("a b", quoted, 6, &good), good); /* two quotes, three letters, the end */
+    assert_string_equal(quoted, "\"a b\"");
+    assert_int_equal(textfile_quote("a b", quoted, 5, &room), ST_DATA);
+    assert_err(room, ST_DATA, "longer than");
+}
+
+static void files_that_cannot_be_read(void **state)
+{
+    struct textfile t;
+    struct err none = ERR_INIT, folder = ERR_INIT, nul = ERR_INIT;
+
+    (void)state;
+    assert_int_equal(textfile_open(&t, scratch_path("none"), &none), ST_IO);
+    assert_err(none, ST_IO, "cannot open");
+    assert_int_equal(textfile_open(&t, scratch, &folder), ST_IO);
+    assert_err(folder, ST_IO, "Is a directory");
+    assert_int_equal(textfile_open(&t, scratch_write_bytes("nul", "a\nb\0c\n", 6), &nul), ST_DATA);
+    assert_err(nul, ST_DATA, "nul:2: found");
+    assert_null(t.bytes);
+}
+
+static void pipes_are_read_to_their_end(void **state)
+{
+    struct textfile t;
+    struct err err = ERR_INIT;
+    int ends[2], lines = 0;
+    char path[64];
+
+    (void)state;
+    assert_int_equal(pipe(ends), 0);
+    fflush(NULL);
+    const pid_t pid = fork();
+    if (!pid) {
+        FILE *fp = fdopen(ends[1], "w");
+        for (int i = 0; i < 50000; i++) fprintf(fp, "%d\n", i); /* more than the first buffer holds */
+        fclose(fp);
+        _exit(0);
+    }
+    close(ends[1]);
+    snprintf(path, sizeof path, "/proc/self/fd/%d", ends[0]);
+    assert_ok(textfile_open(&t, path, &err), err);
+    while (textfile_next(&t)) {
+        int64_t i;
+        assert_ok(textfile_int(&t, "i", lines, lines, &i, &err), err);
+        lines++;
+    }
+    assert_int_equal(lines, 50000);
+    assert_int_equal(child_wait(pid), 0);
+    close(ends[0]);
+    textfile_release(&t);
+}
+
+#ifndef __SANITIZE_ADDRESS__
+static int without_memory(void *ctx)
+{
+    const struct rlimit limit = {1u << 30, 1u << 30};
+    struct textfile t;
+    struct err err = ERR_INIT;
+
+    if (setrlimit(RLIMIT_AS, &limit)) return 1;
+    const enum status st = textfile_open(&t, ctx, &err);
+    printf("%s", err.text);
+    return st == ST_NOMEM && !t.path && !t.bytes ? 0 : 2;
+}
+#endif
+
+static void no_memory(void **state)
+{
+    (void)state;
+#ifdef __SANITIZE_ADDRESS__
+    print_message("the sanitizer needs more address space than this test leaves\n");
+    skip();
+#else
+    char *said, *path = strdup(scratch_write("big", ""));
+    assert_int_equal(truncate(path, (off_t)1 << 33), 0); /* sparse */
+    assert_int_equal(child_run(without_memory, path, &said), 0);
+    assert_contains(said, "big: not enough memory for a text file (8589934594 bytes).");
+    free(said);
+    free(path);
+#endif
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(records),
+        cmocka_unit_test(raw_lines),
+        cmocka_unit_test(bad_lines),
+        cmocka_unit_test(expected_words_lines_and_ends),
+        cmocka_unit_test(quoting_reads_back),
+        cmocka_unit_test(files_that_cannot_be_read),
+        cmocka_unit_test(pipes_are_read_to_their_end),
+        cmocka_unit_test(no_memory),
+    };
+
+    return cmocka_run_group_tests_name("textfile", tests, scratch_make, scratch_remove);
+}

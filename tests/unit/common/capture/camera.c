@@ -1,0 +1,227 @@
+/* camera.c - camera models: closed forms, round trips to the corners, and where a distortion stops being one-to-one. */
+#include "tests/unit/scratch.h"
+#include <setjmp.h>
+
+#include <math.h>
+
+#include "common/base/rng.h"
+#include "common/capture/camera.h"
+
+#define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance)) /* cmocka compares float only */
+
+static const struct camera lenses[] = {
+    {CAMERA_SIMPLE_PINHOLE, 640, 480, {500, 320, 240}},
+    {CAMERA_PINHOLE, 640, 480, {500, 480, 310, 255.5}},
+    {CAMERA_SIMPLE_RADIAL, 640, 480, {691, 320, 240, -0.1376}},
+    {CAMERA_SIMPLE_RADIAL, 640, 480, {400, 320, 240, 0.3}},
+    {CAMERA_RADIAL, 1600, 1202, {1679, 800, 601, -0.25, 0.06}},
+    {CAMERA_OPENCV, 1536, 1024, {1380, 1375, 760, 503, -0.08, 0.09, 0.0011, -0.0007}},
+    {CAMERA_OPENCV, 800, 600, {500, 510, 390, 320, -0.22, 0.04, -0.01, 0.02}},
+    {CAMERA_FULL_OPENCV, 1920, 1080, {1100, 1090, 950, 545, 0.4, 0.1, 0.001, 0.0005, 0.02, 0.7, 0.15, 0.01}},
+    {CAMERA_OPENCV_FISHEYE, 2000, 2000, {640, 640, 1000, 1000, 0.02, -0.004, 0.0005, -0.00002}},
+    {CAMERA_OPENCV_FISHEYE, 1000, 800, {350, 352, 505, 396, -1.0 / 24, 1.0 / 1920, -1.0 / 322560, 1.0 / 92897280}},
+};
+enum { LENSES = sizeof lenses / sizeof *lenses };
+
+static void names_are_colmaps(void **state)
+{
+    (void)state;
+    enum camera_model m = CAMERA_PINHOLE;
+    for (int i = 0; i < CAMERA_MODEL_COUNT; i++) {
+        assert_true(camera_model_from_name(camera_model_name((enum camera_model)i), &m));
+        assert_int_equal(m, i);
+    }
+    assert_string_equal(camera_model_name(CAMERA_OPENCV_FISHEYE), "OPENCV_FISHEYE");
+    assert_int_equal(camera_model_params(CAMERA_FULL_OPENCV), CAMERA_MAX_PARAMS);
+    assert_false(camera_model_from_name("FOV", &m));
+}
+
+static void bad_cameras_are_refused_with_a_reason(void **state)
+{
+    (void)state;
+    struct camera c = lenses[0];
+    struct err err = ERR_INIT;
+    assert_int_equal(camera_check(&c, &err), ST_OK);
+    c.params[0] = 0;
+    assert_int_equal(camera_check(&c, &err), ST_DATA);
+    assert_non_null(strstr(err.text, "focal length is 0"));
+    err = (struct err)ERR_INIT;
+    c = lenses[5];
+    c.params[6] = NAN;
+    assert_int_equal(camera_check(&c, &err), ST_DATA);
+    assert_non_null(strstr(err.text, "parameter 7 of the OPENCV camera"));
+    err = (struct err)ERR_INIT;
+    c = lenses[1];
+    c.height = 0;
+    assert_int_equal(camera_check(&c, &err), ST_DATA);
+}
+
+static void projection_follows_the_formulas(void **state)
+{
+    (void)state;
+    double u, v, x = 0.21, y = -0.34, s = x * x + y * y;
+    assert_true(camera_project(&lenses[1], vec3_make(0.42, -0.68, 2), &u, &v));
+    assert_near(u, 500 * x + 310, 1e-12);
+    assert_near(v, 480 * y + 255.5, 1e-12);
+
+    const double *p = lenses[7].params;
+    double g = (1 + p[4] * s + p[5] * s * s + p[8] * s * s * s) / (1 + p[9] * s + p[10] * s * s + p[11] * s * s * s);
+    assert_true(camera_project(&lenses[7], vec3_make(x, y, 1), &u, &v));
+    assert_near(u, p[0] * (x * g + 2 * p[6] * x * y + p[7] * (s + 2 * x * x)) + p[2], 1e-10);
+    assert_near(v, p[1] * (y * g + p[6] * (s + 2 * y * y) + 2 * p[7] * x * y) + p[3], 1e-10);
+
+    /* a fisheye without coefficients is equidistant: 100 degrees from the axis is still in the picture */
+    struct camera f = {CAMERA_OPENCV_FISHEYE, 1000, 1000, {300, 300, 500, 500}};
+    double t = 100 * M_PI / 180;
+    assert_true(camera_project(&f, vec3_make(0, sin(t), cos(t)), &u, &v));
+    assert_near(u, 500, 1e-10);
+    assert_near(v, 500 + 300 * t, 1e-10);
+    assert_true(camera_project(&f, vec3_make(0, 0, 7), &u, &v));
+    assert_near(u, 500, 0);
+    assert_false(camera_project(&f, vec3_make(0, 0, -1), &u, &v));
+    assert_false(camera_project(&f, vec3_make(0, 0, 0), &u, &v));
+    assert_false(camera_project(&lenses[0], vec3_make(1, 1, 0), &u, &v));
+    assert_false(camera_project(&lenses[2], vec3_make(1, 1, -3), &u, &v));
+    assert_false(camera_project(&lenses[0], vec3_make(1e300, 1, 1e-300), &u, &v));
+}
+
+static void every_pixel_of_every_model_round_trips(void **state)
+{
+    (void)state;
+    enum { STEPS = 40 };
+    double worst = 0;
+    for (int i = 0; i < LENSES; i++)
+        for (int a = 0; a <= STEPS; a++)
+            for (int b = 0; b <= STEPS; b++) {
+                double u = (double)lenses[i].width * a / STEPS, v = (double)lenses[i].height * b / STEPS, u2, v2;
+                struct vec3 ray;
+                if (!camera_unproject(&lenses[i], u, v, &ray)) {
+                    /* the corners of the equisolid one lie beyond its 180 degrees */
+                    assert_int_equal(lenses[i].model, CAMERA_OPENCV_FISHEYE);
+                    continue;
+                }
+                assert_near(vec3_length(ray), 1, 1e-14);
+                assert_true(camera_project(&lenses[i], ray, &u2, &v2));
+                worst = fmax(worst, hypot(u2 - u, v2 - v) / lenses[i].params[0]);
+            }
+    print_message("worst round trip: %.3g of the focal length\n", worst);
+    assert_true(worst < 1e-10);
+}
+
+static void equisolid_fisheye_reaches_straight_back(void **state)
+{
+    (void)state;
+    const struct camera *c = &lenses[9];
+    for (int degrees = 1; degrees < 179; degrees++)
+        for (int side = 0; side < 8; side++) {
+            double t = degrees * M_PI / 180, a = side * M_PI / 4, u, v;
+            struct vec3 ray = vec3_make(cos(a) * sin(t), sin(a) * sin(t), cos(t)), back;
+            assert_true(camera_project(c, ray, &u, &v));
+            /* the series ends behind t^9: its next term, and no more, may be missing */
+            double r = hypot((u - 505) / 350, (v - 396) / 352), rest = pow(t, 11) / 4e10;
+            assert_near(r, 2 * sin(t / 2), rest + 1e-12);
+            assert_true(camera_unproject(c, u, v, &back));
+            /* towards 180 degrees the radius hardly changes with the angle, so that less of the angle survives */
+            assert_near(vec3_length(vec3_sub(back, ray)), 0, 1e-13 / cos(t / 2));
+        }
+}
+
+static void what_folds_back_is_refused(void **state)
+{
+    (void)state;
+    /* r (1 - 0.2 r^2) climbs up to r = sqrt(1 / 0.6), where it is 0.8606629658 */
+    struct camera c = {CAMERA_SIMPLE_RADIAL, 640, 480, {300, 320, 240, -0.2}};
+    double fold = sqrt(1 / 0.6), u, v;
+    struct vec3 ray;
+    assert_true(camera_project(&c, vec3_make(fold - 1e-9, 0, 1), &u, &v));
+    assert_near(u, 320 + 300 * 0.8606629658, 1e-6);
+    assert_false(camera_project(&c, vec3_make(fold + 1e-9, 0, 1), &u, &v));
+    assert_false(camera_project(&c, vec3_make(2.2, 0.1, 1), &u, &v)); /* would land inside the picture */
+    assert_true(camera_unproject(&c, 320 + 300 * 0.86066, 240, &ray));
+    assert_true(ray.x / ray.z < fold);
+    assert_false(camera_unproject(&c, 320 + 300 * 0.86067, 240, &ray));
+
+    /* a pole of the rational model at r^2 = 2 */
+    struct camera full = {CAMERA_FULL_OPENCV, 640, 480, {300, 300, 320, 240, 0, 0, 0, 0, 0, -0.5, 0, 0}};
+    assert_true(camera_project(&full, vec3_make(1.41, 0, 1), &u, &v));
+    assert_false(camera_project(&full, vec3_make(1.42, 0, 1), &u, &v));
+    assert_true(camera_unproject(&full, 1e6, 240, &ray));
+    assert_true(ray.x / ray.z < sqrt(2));
+
+    /* tangential terms alone fold where the Jacobian's determinant is 0: here at y = -1 / 6 p1 on the y axis */
+    struct camera tangential = {CAMERA_OPENCV, 640, 480, {300, 300, 320, 240, 0, 0, 0.1, 0}};
+    assert_true(camera_project(&tangential, vec3_make(0, -1.66, 1), &u, &v));
+    assert_false(camera_project(&tangential, vec3_make(0, -1.67, 1), &u, &v));
+    assert_false(camera_unproject(&tangential, 320, 240 - 300 * 0.9, &ray));
+    assert_true(camera_unproject(&tangential, 320, 240 - 300 * 0.83, &ray));
+}
+
+/* Any coefficients: the first fold found by dense sampling is the one that projection knows. */
+static void folds_of_random_lenses_match_sampling(void **state)
+{
+    (void)state;
+    struct rng rng = rng_make(7, "camera", "test");
+    int folds = 0;
+    for (uint64_t trial = 0; trial < 300; trial++) {
+        struct camera c = {CAMERA_FULL_OPENCV, 640, 480, {300, 300, 320, 240}};
+        for (int i = 0; i < 8; i++)
+            if (i != 2 && i != 3) c.params[4 + i] = (rng_uniform(&rng, trial, (uint64_t)i) - 0.5) * (i % 4 ? 0.4 : 1);
+        double u = 0, v = 0, last = -1, fold = 3;
+        for (double r = 1e-4; r < 3; r += 1e-4) {
+            double s = r * r, n = 1 + s * (c.params[4] + s * (c.params[5] + s * c.params[8])),
+                   d = 1 + s * (c.params[9] + s * (c.params[10] + s * c.params[11]));
+            if (!(d > 0) || r * n / d <= last) {
+                fold = r;
+                break;
+            }
+            last = r * n / d;
+        }
+        folds += fold < 3;
+        if (!camera_project(&c, vec3_make(fold - 4e-4, 0, 1), &u, &v)) fail_msg("trial %d", (int)trial);
+        assert_true(u > 320);
+        if (fold < 3) assert_false(camera_project(&c, vec3_make(fold + 4e-4, 0, 1), &u, &v));
+    }
+    assert_true(folds > 50);
+}
+
+static void no_pixel_far_away_gives_nonsense(void **state)
+{
+    (void)state;
+    for (int i = 0; i < LENSES; i++)
+        for (double far = 1e3; far < 1e300; far *= 1e3) {
+            struct vec3 ray = {0, 0, 0};
+            double u, v;
+            if (camera_unproject(&lenses[i], far, -far, &ray)) {
+                assert_near(vec3_length(ray), 1, 1e-12);
+                if (camera_project(&lenses[i], ray, &u, &v)) assert_true(isfinite(u) && isfinite(v));
+            }
+        }
+}
+
+static void pose_and_its_centre_agree(void **state)
+{
+    (void)state;
+    double h = sqrt(0.5);
+    struct pose p = {{h, 0, h, 0}, {1, 2, 3}}; /* a quarter turn about y: world z is camera x */
+    struct vec3 c = pose_apply(&p, vec3_make(0, 0, 5)), o = pose_apply(&p, pose_center(&p));
+    assert_near(c.x, 6, 1e-12);
+    assert_near(c.y, 2, 1e-12);
+    assert_near(c.z, 3, 1e-12);
+    assert_near(vec3_length(o), 0, 1e-12);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(names_are_colmaps),
+        cmocka_unit_test(bad_cameras_are_refused_with_a_reason),
+        cmocka_unit_test(projection_follows_the_formulas),
+        cmocka_unit_test(every_pixel_of_every_model_round_trips),
+        cmocka_unit_test(equisolid_fisheye_reaches_straight_back),
+        cmocka_unit_test(what_folds_back_is_refused),
+        cmocka_unit_test(folds_of_random_lenses_match_sampling),
+        cmocka_unit_test(no_pixel_far_away_gives_nonsense),
+        cmocka_unit_test(pose_and_its_centre_agree),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,103 @@
+/* linear_photo.c - photos of one exposure and of several become the same kind of picture. */
+#include "common/capture/linear_photo.h"
+
+#include "tests/unit/scratch.h"
+
+#include <math.h>
+
+#include "common/image/exr.h"
+
+struct reading {
+    struct image im;
+    char radiometry[RADIOMETRY_SIZE];
+    struct provenance prov;
+    struct err err;
+};
+
+static void read_photo(struct reading *r, const char *folder, const struct photo_record *record)
+{
+    *r = (struct reading){.err = ERR_INIT};
+    linear_photo_read(&r->im, r->radiometry, folder, record, &r->prov, &r->err);
+}
+
+static void assert_read(const struct reading *r, const char *radiometry, int width, int height, const char *input)
+{
+    assert_ok(r->err.status, r->err);
+    assert_string_equal(r->radiometry, radiometry);
+    assert_true(r->im.width == width && r->im.height == height && r->im.channels == 3);
+    assert_int_equal(r->prov.count, 1);
+    assert_string_equal(r->prov.inputs[0].name, input);
+}
+
+static void release(struct reading *r)
+{
+    provenance_release(&r->prov);
+    image_release(&r->im);
+}
+
+static void assert_refused(const struct photo_record *record, enum status status, const char *words)
+{
+    struct reading r;
+    read_photo(&r, scratch, record);
+    assert_err(r.err, status, words);
+    release(&r);
+}
+
+static void one_exposure_is_decoded(void **state)
+{
+    char id[] = "a", file[] = "rgb8.png";
+    const struct photo_record record = {.id = id, .file = file};
+    struct reading r;
+    (void)state;
+    read_photo(&r, "tests/fuzz/corpus/photo", &record);
+    assert_read(&r, "approximate", 7, 5, "photos/rgb8.png");
+    /* red is 16 x of 255: by the sRGB curve 48 is 0.0296 */
+    assert_true(r.im.data[0] == 0 && fabsf(r.im.data[3 * 3] - 0.02956f) < 1e-4f);
+    release(&r);
+}
+
+static void several_are_what_was_merged(void **state)
+{
+    char id[] = "b", file[] = "b1.jpg";
+    const struct photo_record record = {.id = id, .file = file, .bracket_count = 2};
+    const float rgba[] = {2, 4, 8, 1, -1, 0.5f, 0.25f, 1};
+    const float expected[] = {2, 4, 8, 0, 0.5f, 0.25f}; /* nothing is darker than black */
+    struct exr_image exr;
+    struct reading r;
+    struct err err = ERR_INIT;
+    (void)state;
+    assert_ok(exr_init_rgba(&exr, rgba, 2, 1, &err), err);
+    assert_ok(exr_set_attribute(&exr, "remodel:radiometry", "exact", &err), err);
+    assert_ok(exr_write(&exr, scratch_path("b.exr"), NULL, &err), err);
+    exr_image_release(&exr);
+    read_photo(&r, scratch, &record);
+    assert_read(&r, "exact", 2, 1, "hdr/b.exr");
+    for (int i = 0; i < 6; i++) assert_true(r.im.data[i] == expected[i]);
+    release(&r);
+}
+
+static void what_cannot_be_read_is_told(void **state)
+{
+    char gone_id[] = "c", gone_file[] = "c.jpg", whole_id[] = "d";
+    const struct photo_record gone = {.id = gone_id, .file = gone_file}, whole = {.id = whole_id, .bracket_count = 2};
+    static const char *const names[] = {"R", "G", "B"};
+    struct exr_image exr;
+    struct err err = ERR_INIT;
+    (void)state;
+    assert_refused(&gone, ST_IO, "c.jpg");
+    assert_ok(exr_image_init(&exr, 2, 1, &err), err);
+    for (int c = 0; c < 3; c++) assert_ok(exr_add_plane(&exr, names[c], EXR_UINT, NULL, &err), err);
+    assert_ok(exr_write(&exr, scratch_path("d.exr"), NULL, &err), err);
+    exr_image_release(&exr);
+    assert_refused(&whole, ST_DATA, "integers");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(one_exposure_is_decoded),
+        cmocka_unit_test(several_are_what_was_merged),
+        cmocka_unit_test(what_cannot_be_read_is_told),
+    };
+    return cmocka_run_group_tests_name("linear_photo", tests, scratch_make, scratch_remove);
+}

@@ -1,0 +1,191 @@
+/* view_image.c - a view's picture on disk: what comes back, what is refused, what a failed write leaves. (Its camera
+ * attribute is tested with the format, in exr.c.) */
+#include "tests/unit/scratch.h"
+
+#include <math.h>
+
+#include "common/capture/view_image.h"
+#include "common/image/exr.h"
+
+static struct view make_view(int width, int height)
+{
+    return (struct view){.name = "IMG_1",
+                         .width = width,
+                         .height = height,
+                         .fx = 50,
+                         .fy = 60,
+                         .cx = 8,
+                         .cy = 7,
+                         .cam_from_world = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}};
+}
+
+static struct image make_image(int width, int height)
+{
+    struct image im;
+    struct err err = ERR_INIT;
+    assert_ok(image_init(&im, width, height, 4, &err), err);
+    for (int i = 0; i < width * height * 4; i++) im.data[i] = (float)(i % 1999) / 1024; /* exact in half */
+    return im;
+}
+
+/* The file's name is the folder, the view and .exr; the view is IMG_1. */
+static void assert_refused(const struct view *view, enum status status, const char *words)
+{
+    struct image im;
+    struct err err = ERR_INIT;
+    assert_int_equal(view_image_read(&im, scratch, view, &err), status);
+    assert_err(err, status, words);
+    assert_contains(err.text, scratch_path("IMG_1.exr"));
+    assert_true(!im.data && !im.width && !im.channels);
+}
+
+static void a_picture_round_trips(void **state)
+{
+    static const int sizes[][2] = {{17, 33}, {1, 1}, {2000, 1}, {1, 300}};
+    (void)state;
+    for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
+        struct view view = make_view(sizes[i][0], sizes[i][1]);
+        struct image im = make_image(view.width, view.height), back;
+        struct err err = ERR_INIT;
+        assert_ok(view_image_write(&im, scratch_path("IMG_1.exr"), &view, NULL, "approximate", &err), err);
+        assert_ok(view_image_read(&back, scratch, &view, &err), err);
+        assert_true(back.width == view.width && back.height == view.height && back.channels == 4);
+        assert_memory_equal(back.data, im.data, (size_t)view.width * (size_t)view.height * 4 * sizeof(float));
+        image_release(&back);
+        image_release(&back);
+        image_release(&im);
+    }
+}
+
+static void colours_are_kept_to_half_precision(void **state)
+{
+    static const float values[] = {1e-5F, 0.2F, 0.7F, 1 / 3.0F, 1.1F, 100.3F, 65504, 1e6F};
+    struct view view = make_view(2, 1);
+    struct image im = make_image(2, 1), back;
+    struct err err = ERR_INIT;
+    (void)state;
+    memcpy(im.data, values, sizeof values);
+    assert_ok(view_image_write(&im, scratch_path("IMG_1.exr"), &view, NULL, "approximate", &err), err);
+    assert_ok(view_image_read(&back, scratch, &view, &err), err);
+    for (int i = 0; i < 7; i++) assert_true(fabsf(back.data[i] - values[i]) <= fmaxf(values[i] / 2048, 3e-8F));
+    assert_true(back.data[7] == 65504); /* the largest half */
+    image_release(&back);
+    image_release(&im);
+}
+
+static void radiometry_and_provenance_are_in_the_file(void **state)
+{
+    struct view view = make_view(5, 4);
+    struct image im = make_image(5, 4);
+    struct provenance prov = {.stage = "rectify", .version = "1.2.3"};
+    struct exr_image exr;
+    struct err err = ERR_INIT;
+    char bytes[4096];
+    (void)state;
+    assert_ok(provenance_add_file(&prov, "photos/a b.jpg", scratch_write("a b.jpg", "words"), &err), err);
+    assert_ok(view_image_write(&im, scratch_path("IMG_1.exr"), &view, &prov, "absolute", &err), err);
+    assert_ok(exr_read(&exr, scratch_path("IMG_1.exr"), NULL, 0, &err), err);
+    assert_string_equal(exr_attribute(&exr, "remodel:radiometry"), "absolute");
+    assert_true(exr.has_world_to_camera);
+    assert_int_equal(exr.count, 4);
+    static const char *const names[] = {"R", "G", "B", "A"};
+    for (int c = 0; c < 4; c++) {
+        assert_int_equal(exr_find(&exr, names[c])->type, EXR_HALF);
+        for (int i = 0; i < 20; i++) assert_true(exr_find(&exr, names[c])->f[i] == im.data[4 * i + c]);
+    }
+    exr_image_release(&exr);
+    FILE *fp = fopen(scratch_path("IMG_1.exr"), "rb");
+    assert_non_null(fp);
+    size_t size = fread(bytes, 1, sizeof bytes, fp);
+    fclose(fp);
+    assert_non_null(memmem(bytes, size, "rectify", 7));
+    assert_non_null(memmem(bytes, size, "1.2.3", 5));
+    assert_non_null(memmem(bytes, size, "\"photos/a b.jpg\" ", 17));
+    image_release(&im);
+    provenance_release(&prov);
+}
+
+static void a_picture_that_is_not_the_views_is_refused(void **state)
+{
+    struct view view = make_view(17, 33), wide = make_view(33, 17), narrow = make_view(16, 33);
+    struct image im = make_image(17, 33), grey = {0};
+    struct err err = ERR_INIT;
+    (void)state;
+    unlink(scratch_path("IMG_1.exr"));
+    assert_refused(&view, ST_IO, "cannot open");
+    assert_ok(view_image_write(&im, scratch_path("IMG_1.exr"), &view, NULL, "approximate", &err), err);
+    assert_refused(&wide, ST_DATA, "is 17 x 33 pixels, but its camera says 33 x 17; make the views again.");
+    assert_refused(&narrow, ST_DATA, "its camera says 16 x 33");
+    assert_int_equal(truncate(scratch_path("IMG_1.exr"), 700), 0);
+    assert_refused(&view, ST_DATA, "make it again");
+    scratch_write("IMG_1.exr", "no picture");
+    assert_refused(&view, ST_DATA, "make it again");
+
+    /* and one that is not the view's is not written */
+    assert_int_equal(view_image_write(&im, scratch_path("new/IMG_1.exr"), &wide, NULL, "approximate", &err),
+                     ST_INTERNAL);
+    assert_err(err, ST_INTERNAL, "a picture of 17 x 33 with 4 channels is not view IMG_1.");
+    err = (struct err)ERR_INIT;
+    assert_int_equal(view_image_write(&im, scratch_path("new/IMG_1.exr"), &narrow, NULL, "approximate", &err),
+                     ST_INTERNAL);
+    err = (struct err)ERR_INIT;
+    assert_ok(image_init(&grey, 17, 33, 1, &err), err);
+    assert_int_equal(view_image_write(&grey, scratch_path("new/IMG_1.exr"), &view, NULL, "approximate", &err),
+                     ST_INTERNAL);
+    assert_err(err, ST_INTERNAL, "with 1 channels");
+    assert_int_equal(access(scratch_path("new"), F_OK), -1);
+    image_release(&grey);
+    image_release(&im);
+}
+
+static void channels_that_are_missing_or_integers(void **state)
+{
+    static const char *const names[] = {"R", "G", "B", "A"};
+    struct view view = make_view(3, 2);
+    (void)state;
+    for (int bad = 0; bad < 4; bad++)
+        for (int integers = 0; integers < 2; integers++) {
+            struct exr_image exr = {0};
+            struct err err = ERR_INIT;
+            char words[100];
+            assert_ok(exr_image_init(&exr, 3, 2, &err), err);
+            for (int c = 0; c < 4; c++)
+                if (c != bad || integers)
+                    assert_ok(exr_add_plane(&exr, names[c], c == bad ? EXR_UINT : EXR_FLOAT, NULL, &err), err);
+            assert_ok(exr_write(&exr, scratch_path("IMG_1.exr"), NULL, &err), err);
+            snprintf(words, sizeof words,
+                     integers ? "channel %s holds integers, wanted half or float" : "no channel %s;", names[bad]);
+            assert_refused(&view, ST_DATA, words);
+            exr_image_release(&exr);
+        }
+}
+
+static void a_failed_write_keeps_the_old_picture(void **state)
+{
+    struct view view = make_view(17, 33);
+    struct image im = make_image(17, 33), back;
+    struct err err = ERR_INIT;
+    (void)state;
+    assert_ok(view_image_write(&im, scratch_path("keep/IMG_1.exr"), &view, NULL, "approximate", &err), err);
+    im.data[4 * (20 * 17 + 3) + 1] = NAN;
+    assert_int_equal(view_image_write(&im, scratch_path("keep/IMG_1.exr"), &view, NULL, "approximate", &err), ST_DATA);
+    assert_err(err, ST_DATA, "channel G holds NaN or infinity at pixel (3, 20)");
+    err = (struct err)ERR_INIT;
+    assert_ok(view_image_read(&back, scratch_path("keep"), &view, &err), err);
+    assert_int_equal(count_entries(scratch_path("keep")), 1);
+    image_release(&back);
+    image_release(&im);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_picture_round_trips),
+        cmocka_unit_test(colours_are_kept_to_half_precision),
+        cmocka_unit_test(radiometry_and_provenance_are_in_the_file),
+        cmocka_unit_test(a_picture_that_is_not_the_views_is_refused),
+        cmocka_unit_test(channels_that_are_missing_or_integers),
+        cmocka_unit_test(a_failed_write_keeps_the_old_picture),
+    };
+    return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
+}
