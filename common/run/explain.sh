@@ -13,22 +13,6 @@ To make a 3D pan & scan video of your own, give a folder of photos of one scene,
     make check                      the tests
 TEXT
     ;;
-help)
-    echo "remodel: from a folder of photographs to a 3D pan & scan video"
-    echo
-    echo "targets"
-    sed -nE 's/^([a-z%-]+):[^#]*## (.*)/\1\t\2/p' "$1" | awk -F'\t' '{ sub(/%/, "NAME", $1); printf "  %-14s %s\n", $1, $2 }'
-    echo "variables"
-    sed -nE 's/^## ([^:]*): (.*)/\1\t\2/p' "$1" | awk -F'\t' '{ printf "  %-28s %s\n", $1, $2 }'
-    echo "scenes"
-    found=
-    for s in scenes/*/scene.mk; do
-        [ -e "$s" ] || continue
-        found=1
-        printf '  %-28s %s\n' "$(basename "$(dirname "$s")")" "$(sed -nE 's/^PHOTOS *:?= *//p' "$s" | head -n 1)"
-    done
-    [ -n "$found" ] || echo "  none yet: make PHOTOS=DIR SCENE=NAME makes one"
-    ;;
 why) # standard input: make -n --debug=b
     said=$(awk -v S="$1" '
         /^ *File .* does not exist\.$/ { gsub(/^ *File .|. does not exist\.$/, ""); reason[$0] = "it does not exist" }
@@ -48,35 +32,6 @@ why) # standard input: make -n --debug=b
     for s in $(grep -oE '[^ ]*/slice/[a-z_]*\.cfg is newer' <<<"$said" | cut -d' ' -f1 | sort -u); do
         [ ! -e "$s.old" ] || diff "$s.old" "$s" | sed -nE "s|^< (.*)|$s: was \1|p; s|^> (.*)|$s: is \1|p" || true
     done
-    ;;
-changed-photos) # photos whose content is not what SfM saw
-    S=$1 scene=$2
-    [ -e "$S/sfm/photos.txt" ] && [ -z "${REMODEL_SFM-}" ] || exit 0
-    changed=$(awk 'FNR == 1 { f = FILENAME; sub(/.*\//, "", f); sub(/\.txt$/, "", f) }
-        FILENAME ~ /sfm\/photos\.txt$/ { saw[$1] = $2; next }
-        $1 == "hash" && f in saw && saw[f] != $2 { print f }' "$S/sfm/photos.txt" "$S"/photos/*.txt | tr '\n' ' ')
-    [ ! -e "scenes/$scene/masks" ] || changed+=$(find "scenes/$scene/masks" -name '*.png' -newer "$S/sfm/models.txt" -printf 'masks/%P ' | tr ' ' '\n' | LC_ALL=C sort | tr '\n' ' ')
-    [ -z "${changed// /}" ] || echo "Changed since the camera poses were found: ${changed# }- the poses are kept; make resfm SCENE=$scene finds them anew."
-    ;;
-given-depth) # which views have a file in DEPTH, and which files there are of no view
-    S=$1 O=$2
-    [ -n "${REMODEL_DEPTH-}" ] || exit 0
-    views=$(sed 's/^VIEWS :=//' "$O/views/views.mk")
-    held=$([ ! -e "$O/holdout/views/views.mk" ] || sed 's/^VIEWS :=//' "$O/holdout/views/views.mk")
-    of_views=0 of_none=
-    for f in "$S"/stamp/given/*.txt; do
-        [ -e "$f" ] && ! grep -qx none "$f" || continue
-        f=${f##*/}; f=${f%.txt}
-        case " $views " in *" $f "*) of_views=$((of_views + 1)); continue ;; esac
-        case " $held " in *" $f "*) ;; *) of_none+=" $f" ;; esac
-    done
-    echo "DEPTH=$REMODEL_DEPTH gives the depth of $of_views of $(wc -w <<<"$views") views."
-    [ -z "$of_none" ] || echo "warning: DEPTH=$REMODEL_DEPTH has files of what is no view:$of_none; $O/views/views.mk lists the views." >&2
-    ;;
-metrics)
-    grep '^# skipped' "$1/metrics.tsv" | sed 's/^# /  /' || true
-    awk -F'\t' '!/^#/ { printf "  %-36s %12.6g %s\n", $1, $2, $3 == "1" ? "" : $3 }' "$1/metrics.tsv"
-    echo "table  $1/metrics.tsv"
     ;;
 products)
     for v in "$1"/parallax/*/video.mp4 "$1"/parallax/*/pan_scan/video.mp4; do [ ! -e "$v" ] || echo "video  $v"; done

@@ -1,0 +1,93 @@
+# build.mk - the programs, under out/build/FLAVOR.
+
+say = $(if $(V),,@echo '  $(1)';)
+.DELETE_ON_ERROR:
+
+CC := gcc
+CXX := g++
+PKGS := OpenEXR libturbojpeg libpng libtiff-4 libraw_r libexif inih libxxhash qhull_r libdeflate
+WARN := -Wall -Wextra -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Wvla -Wpointer-arith -Wwrite-strings
+FLAGS.release := -O3 -g
+FLAGS.asan := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer
+FLAGS.debug := -O0 -g
+FLAGS.clang := -O2 -g
+ifeq ($(FLAGS.$(FLAVOR)),)
+  $(error FLAVOR=$(FLAVOR) is not one of: release asan debug clang)
+endif
+ifeq ($(FLAVOR),clang)
+  CC := clang
+  CXX := clang++
+endif
+# -ffp-contract=off: the same bits from every compiler version; AVX2 and F16C (every processor with
+# the one has the other) are what the hot loops are written for
+CFLAGS := -std=c11 -D_GNU_SOURCE -mavx2 -mf16c -mno-fma -ffp-contract=off -fopenmp $(WARN) $(FLAGS.$(FLAVOR)) \
+  -I. $(shell pkg-config --cflags $(PKGS) 2>/dev/null)
+# apart from the flags that decide what is compiled anew: tests unset CI
+STRICT := $(if $(CI),-Werror)
+# C++ only where a library has no C interface: OpenCV, Ceres, OpenEXR's C++ library
+CXXFLAGS := -std=c++17 -mavx2 -mno-fma -ffp-contract=off -Wall -Wextra -Wshadow $(FLAGS.$(FLAVOR)) \
+  -I. -isystem /usr/include/eigen3 -isystem /usr/include/opencv4 $(shell pkg-config --cflags OpenEXR 2>/dev/null)
+LDLIBS := -lOpenEXRCore $(shell pkg-config --libs $(PKGS) 2>/dev/null) -lm
+# what a stage alone needs, and common/math and common/light; a program gets those libraries that its objects use
+MORE_LIBS := $(sort $(foreach s,$(STAGES),$(LIBS.$(s)))) -lembree3 -lceres -lglog -lstdc++
+
+objs = $(patsubst %.c,$(B)/obj/%.o,$(patsubst %.cc,$(B)/obj/%.o,$(wildcard $(1))))
+COMMON_OBJS := $(call objs,common/*/*.c common/*/*.cc)
+BINS := $(STAGES:%=$(B)/bin/%)
+UNIT_TESTS := $(patsubst %.c,$(B)/%,$(wildcard tests/unit/*/*.c tests/unit/common/*/*.c))
+BENCHES := $(patsubst %.c,$(B)/%,$(wildcard tests/bench/*.c))
+FUZZ_TESTS := $(patsubst %.c,$(B)/%,$(wildcard tests/fuzz/fuzz_*.c))
+TOOLS := $(B)/tests/pipeline/make_photos
+
+.PHONY: build tests-build bench-build
+build: $(BINS) $(STAGES:%=$(B)/code/%)
+tests-build: build $(BENCHES) $(UNIT_TESTS) $(FUZZ_TESTS) $(TOOLS)
+bench-build: build $(BENCHES)
+
+# temporary names of their own: runs of two scenes look at the same programs
+$(B)/flags: FORCE
+	+@mkdir -p $(@D); t=$@.$$$$.tmp; echo '$(CC) $(CFLAGS) $(CXX) $(CXXFLAGS) $(LDLIBS)' >$$t; cmp -s $$t $@ && rm $$t || mv $$t $@
+
+$(B)/obj/%.o: %.c $(B)/flags
+	$(call say,CC $<)mkdir -p $(@D); $(CC) $(CFLAGS) $(STRICT) -MMD -MP -c -o $@ $<
+
+$(B)/obj/%.o: %.cc $(B)/flags
+	$(call say,CXX $<)mkdir -p $(@D); $(CXX) $(CXXFLAGS) $(STRICT) -MMD -MP -c -o $@ $<
+
+# libraries: common/, each stage without its main, and what benches share
+archive = $(call say,AR $@)mkdir -p $(@D); rm -f $@; ar rcsD $@ $^
+$(B)/libremodel.a: $(COMMON_OBJS)
+	$(archive)
+define stage_rules
+$(B)/lib/$(1).a: $(filter-out $(B)/obj/stages/$(1)/$(1).o,$(call objs,stages/$(1)/*.c stages/$(1)/*.cc))
+	$$(archive)
+$(B)/bin/$(1): $(B)/obj/stages/$(1)/$(1).o $(B)/lib/$(1).a
+endef
+$(foreach s,$(STAGES),$(eval $(call stage_rules,$(s))))
+$(B)/lib/bench.a: $(call objs,tests/bench/*.cc)
+	$(archive)
+
+# what a product depends on is the code, not the file: a stamp of the stripped program, rewritten only if that changed
+$(B)/code/%: $(B)/bin/%
+	+@[ -e $< ] || exit 0; mkdir -p $(@D); t=$@.$$$$; strip -s -o $$t.bin $<; cksum <$$t.bin >$$t.tmp; rm $$t.bin; \
+	  cmp -s $$t.tmp $@ && rm $$t.tmp || mv $$t.tmp $@
+
+# archives may need each other; libraries that nothing needs are left out
+link = $(call say,LD $@)mkdir -p $(@D); $(CC) $(CFLAGS) -o $@ $(filter %.o,$^) -Wl,--start-group $(filter %.a,$^) -Wl,--end-group \
+  -Wl,--as-needed $(LDLIBS) $(MORE_LIBS) $(1)
+$(BINS): $(B)/libremodel.a
+	$(call link)
+TESTS := $(UNIT_TESTS) $(FUZZ_TESTS) $(BENCHES) $(TOOLS)
+$(TESTS): $(B)/tests/%: $(B)/obj/tests/%.o $(B)/libremodel.a
+	$(call link,$(if $(filter $(B)/tests/unit/%,$@),-lcmocka))
+$(FUZZ_TESTS): $(B)/obj/tests/fuzz/run_corpus.o
+$(BENCHES): $(B)/lib/bench.a
+$(BENCHES): private MORE_LIBS += -lopencv_calib3d -lopencv_imgproc -lopencv_core $(shell pkg-config --libs OpenEXR 2>/dev/null)
+# a test of stage NAME, tests/unit/NAME/*.c, has the stage's library; so has every program that includes a header of the stage
+USES := $(sort $(shell grep -roE --include='*.[ch]' '^\#include "stages/[a-z_0-9]+/' tests | sed -E 's|(.*):.*/(.*)/|\1:\2|'))
+uses = $(patsubst $(1).c:%,$(B)/lib/%.a,$(filter $(1).c:%,$(USES)))
+$(foreach t,$(TESTS),$(eval $(t): $(call uses,$(t:$(B)/%=%))))
+$(foreach s,$(STAGES),$(eval $(filter $(B)/tests/unit/$(s)/%,$(UNIT_TESTS)): $(B)/lib/$(s).a \
+  $(sort $(patsubst %,$(B)/lib/%.a,$(foreach u,$(filter tests/unit/$(s)/%,$(USES)),$(lastword $(subst :, ,$(u))))))))
+.SECONDARY: $(call objs,tests/*/*.c tests/*/*/*.c tests/*/*/*/*.c stages/*/*.c) $(STAGES:%=$(B)/lib/%.a)
+-include $(shell find $(B)/obj -name '*.d' 2>/dev/null)

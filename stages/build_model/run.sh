@@ -1,0 +1,18 @@
+# run.sh - the solid model, its edits, and their edges on the photographs. Sourced by common/run/run_scene.sh.
+
+check_build_model()
+{
+    case $goal in
+    model) ;;
+    all | report) [[ " $REMODEL_PRODUCTS " == *" model "* ]] || return 0 ;;
+    *) return 0 ;;
+    esac
+    [ -e "$folder/model.txt" ] ||
+        usage "make $goal wants $folder/model.txt, the script of the model (docs/model-script.md). make suggest SCENE=$scene writes a first one, for you to correct."
+}
+
+run_model()
+{
+    one model
+    farm build_model overlays
+}

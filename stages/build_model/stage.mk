@@ -1,0 +1,43 @@
+# build_model: solid models of rooms, by a script and its edits.
+FOLLOWS.build_model := find_axes suggest_model
+READS.build_model := scenes/NAME/model.txt and edits/E.txt, axes.txt, cameras, points.ply; the photos for overlays
+WRITES.build_model := model/, remodel/E/: model.txt, model.obj, plan.txt, merged.txt, plan.svg, view.png, overlay/PHOTO.jpg
+STEPS.build_model := model
+HELP.model := the solid model of scenes/SCENE/model.txt and of each edit in edits/, with pictures to check them
+NEEDS.model := depth
+PRODUCT.model := model
+
+ifdef GRAPH
+# the model of model.txt, and one of each edit
+model_files = $(addprefix $(1)/,model.txt model.obj plan.txt merged.txt plan.svg view.png)
+MODEL_SCRIPT := $(wildcard scenes/$(SCENE)/model.txt)
+EDITS := $(if $(MODEL_SCRIPT),$(patsubst scenes/$(SCENE)/edits/%.txt,%,$(wildcard scenes/$(SCENE)/edits/*.txt)))
+MODELS := $(if $(MODEL_SCRIPT),$(O)/model $(EDITS:%=$(O)/remodel/%))
+OVERLAYS := $(foreach m,$(MODELS),$(VIEWED:%=$(m)/overlay/%.jpg))
+.PHONY: model overlays
+model: $(foreach m,$(MODELS),$(call model_files,$(m)))
+overlays: $(OVERLAYS)
+# a script that places nothing in photographs needs no points
+MODEL_POINTS := $(if $(MODEL_SCRIPT),$(if $(shell grep -lE '^[ \t]*(wall|adjust)[ \t]+[^ \t]+[ \t]+in[ \t]' \
+  $(MODEL_SCRIPT) $(EDITS:%=scenes/$(SCENE)/edits/%.txt)),$(POINTS)))
+MODEL_NEEDS := $(AXES) $(CAMERAS) $(O)/views/lenses.txt $(MODEL_POINTS) $(call needs,build_model)
+MODEL_ARGS := --axes $(AXES) --views $(O)/views $(MODEL_POINTS:%=--points %)
+$(call model_files,$(O)/model) &: $(MODEL_SCRIPT) $(MODEL_NEEDS)
+	$(call stage,build_model,model,$(O),--script $(MODEL_SCRIPT) $(MODEL_ARGS) --out $(O)/model)
+define edit_rule
+$(call model_files,$(O)/remodel/$(1)) &: $(MODEL_SCRIPT) scenes/$(SCENE)/edits/$(1).txt $(O)/model/model.txt $(MODEL_NEEDS)
+	$$(call stage,build_model,$(1),$(O),--script $(MODEL_SCRIPT) --edit scenes/$(SCENE)/edits/$(1).txt \
+	  --base $(O)/model/model.txt $(MODEL_ARGS) --out $(O)/remodel/$(1))
+endef
+$(foreach e,$(EDITS),$(eval $(call edit_rule,$(e))))
+# $(1): a model's folder; $(2): a photo
+define overlay_rule
+$(1)/overlay/$(2).jpg: $(1)/model.txt $(AXES) $(CAMERAS) $(O)/views/lenses.txt $(call picture,$(2)) $(call needs,build_model)
+	$$(hide)$$(call farm,build_model,$(notdir $(1))-$(2),$$@,--overlay $(2) --model $(1)/model.txt --axes $(AXES) \
+	  --views $(O)/views --photos $$(PICTURES) --records $(S)/photos --out $$@)
+endef
+$(foreach m,$(MODELS),$(foreach p,$(VIEWED),$(eval $(call overlay_rule,$(m),$(p)))))
+MODELLED := $(filter model,$(PRODUCTS))
+MEASURED += $(call $(if $(and $(MODELLED),$(MODELS)),made,wildcard),$(AXES) $(if $(MODELS),$(O)/model/plan.txt))
+SHOWN_ALWAYS += $(call $(if $(MODELLED),made,wildcard),$(foreach m,$(MODELS),$(call model_files,$(m))) $(OVERLAYS))
+endif

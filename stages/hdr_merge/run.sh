@@ -1,0 +1,35 @@
+# run.sh - merges exposures before anything sees the photos. Sourced by common/run/run_scene.sh.
+
+# look_hdr_merge: after the photos have been looked at
+look_hdr_merge()
+{
+    [ "$goal" = lri ] || return 0
+    [ -n "${REMODEL_LRI-}" ] && [ -d "$REMODEL_LRI" ] ||
+        usage "make lri wants LRI=DIR, the folder of the lighting reference images${REMODEL_LRI:+; $REMODEL_LRI is not a folder}."
+    [ -z "${REMODEL_LRI_SFM-}" ] || [ -d "$REMODEL_LRI_SFM" ] ||
+        usage "LRI_SFM=$REMODEL_LRI_SFM is not a folder. Give the folder that holds cameras.txt and images.txt of the lighting reference images."
+    graph look-lri
+}
+
+# the response curve comes before the merges are planned
+find_response()
+{
+    [ -e "$S/photos/brackets.txt" ] || return 0
+    # a curve that was deleted is found anew
+    [ -e "$S/hdr/response.txt" ] || rm -f "$S/stamp/response.txt"
+    one response
+}
+
+run_hdr()
+{
+    [ -e "$S/photos/brackets.txt" ] || return 0
+    find_response
+    farm hdr_merge hdr
+}
+
+run_lri()
+{
+    find_response
+    farm hdr_merge lri
+    echo "light  $S/lri"
+}

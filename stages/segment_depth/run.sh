@@ -1,0 +1,54 @@
+# run.sh - depth in rounds, with an estimate of time and memory before. Sourced by common/run/run_scene.sh.
+
+check_segment_depth()
+{
+    [ -z "${REMODEL_DEPTH-}" ] || [ -d "$REMODEL_DEPTH" ] ||
+        usage "DEPTH=$REMODEL_DEPTH is not a folder. Give the folder that holds VIEW.exr or VIEW.png, the depth of views."
+}
+
+# says which views have a file in DEPTH, and which files belong to no view
+report_given_depth()
+{
+    local views held of_views=0 of_none='' f
+    [ -n "${REMODEL_DEPTH-}" ] || return 0
+    views=$(sed 's/^VIEWS :=//' "$O/views/views.mk")
+    held=$([ ! -e "$O/holdout/views/views.mk" ] || sed 's/^VIEWS :=//' "$O/holdout/views/views.mk")
+    for f in "$S"/stamp/given/*.txt; do
+        [ -e "$f" ] && [ "$(<"$f")" != none ] || continue
+        f=${f##*/} f=${f%.txt}
+        case " $views " in *" $f "*) of_views=$((of_views + 1)); continue ;; esac
+        case " $held " in *" $f "*) ;; *) of_none+=" $f" ;; esac
+    done
+    echo "DEPTH=$REMODEL_DEPTH gives the depth of $of_views of $(wc -w <<<"$views") views."
+    [ -z "$of_none" ] || echo "warning: DEPTH=$REMODEL_DEPTH has files that belong to no view:$of_none; $O/views/views.mk lists the views." >&2
+}
+
+# estimate_depth LAST: time and memory of what is stale in all rounds up to LAST
+estimate_depth()
+{
+    local list=$work/depth.list wide
+    # where this fails, making it will fail and say why
+    graph -n -s depth 2>/dev/null | awk -v last="$1" '
+        {
+            view = out = ""
+            for (i = 2; i < NF; i++) { if ($i == "segment_depth" && $(i - 2) ~ /run_stage.sh$/) view = $(i + 1); if ($i == "--out") out = $(i + 1) }
+            if (view == "") next
+            print view, match(out, /\/round[0-9]+\//) ? substr(out, RSTART + 6, RLENGTH - 7) : last
+        }' >"$list" || return 0
+    [ -s "$list" ] || return 0
+    wide=$(cut -d' ' -f2 "$list" | sort | uniq -c | awk '$1 > n { n = $1 } END { print n }')
+    wide=$((wide < max_jobs ? wide : max_jobs))
+    [ "$jobs" != slurm ] || wide=0
+    "$bin/segment_depth" --config "$O/slice/segment_depth.cfg" --threads $((wide ? cores / wide : 1)) --views "$O/views" \
+        --estimate "$list" --jobs "$wide" >&2 2>"$work/words" || cat "$work/words" >&2
+}
+
+run_depth()
+{
+    local last round
+    report_given_depth
+    last=$(sed -n 's/^rounds = //p' "$O/slice/segment_depth.cfg")
+    estimate_depth "$last"
+    for round in $(seq 0 "$last"); do farm segment_depth "depth-round$round"; done
+    one depth
+}

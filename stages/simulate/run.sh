@@ -1,0 +1,25 @@
+# run.sh - photographs a described scene, before its photos can be read. Sourced by common/run/run_scene.sh.
+
+check_simulate()
+{
+    [ "$goal" = edited ] || return 0
+    [ -n "${EDIT-}" ] || usage "make edited wants EDIT=E, where $folder/scene-E.txt describes the edited scene."
+}
+
+prepare_simulate()
+{
+    [ -e "$folder/scene.txt" ] || return 0
+    if [ "$dry" = n ] || [ "$goal" = why ]; then
+        [ -e "$S/simulated/photos.mk" ] || { echo "# nothing is known before the scene is simulated: make SCENE=$scene"; exit 0; }
+        return 0
+    fi
+    graph look-simulate
+    one "$S/simulated/photos.mk"
+    if [ "$goal" = edited ]; then
+        one "$S/simulated/truth/edited-$EDIT/faces.txt"
+        farm simulate edited
+        echo "truth  $S/simulated/truth/edited-$EDIT"
+        exit 0
+    fi
+    farm simulate simulated
+}
