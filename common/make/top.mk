@@ -11,7 +11,7 @@ export VIEWS_PER_JOB SLURM_ARGS
 dry = $(findstring n,$(filter-out --%,$(firstword -$(MAKEFLAGS))))
 # several goals of a scene follow each other: a run locks it, and takes all cores by itself
 .NOTPARALLEL:
-.PHONY: all help why check check-long sequences fuzz bench bench-compare regress regress-accept generated deps deps-check deps-bench clean $(GOALS)
+.PHONY: all list-stages help why check check-long sequences fuzz bench bench-compare regress regress-accept generated deps deps-check deps-bench clean $(GOALS)
 
 ifeq ($(SCENE),)
 all: deps ## everything a scene asks for; without SCENE builds the programs and runs SCENES, at draft quality by default
@@ -61,5 +61,7 @@ help: ## this text
 generated: ## the files that come from the stages: docs/man, configs/default.cfg, the table of stages in docs/architecture.md
 	+@$(BUILD) build
 	@common/run/generate.sh '$(B)/bin' '$(STAGES)' .
+list-stages:
+	@echo "$(STAGES)"
 clean: ## remove what was built (products of scenes stay)
 	rm -rf out/build

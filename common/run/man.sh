@@ -10,7 +10,7 @@ echo ".SH NAME"
 head -n 1 <<<"$head" | sed -E "s/^$stage\.c - /$stage \\\\- /; s/\.\$//"
 echo ".SH SYNOPSIS"
 echo ".B $stage"
-echo "[\\fIOPTION\\fR]..."
+printf "%s\n" "[\\fIOPTION\\fR]..."
 echo ".SH DESCRIPTION"
 echo ".nf"
 tail -n +2 <<<"$head" | sed '/./,$!d' | roff

@@ -36,7 +36,7 @@ while state=$(squeue -h -r -j "$id" -o '%T' 2>&1) || [[ $state != *[Ii]nvalid\ j
     done=$(find "$folder" -name '*.rc' | wc -l)
     if [ "$done" -ne "$shown" ]; then
         shown=$done
-        left=$(((($(date +%s) - began)) * (count - done) / (done > 0 ? done : 1)))
+        left=$((($(date +%s) - began) * (count - done) / (done > 0 ? done : 1)))
         printf '%s %d/%d on the cluster%s\n' "$stage" "$done" "$count" "$([ "$done" = 0 ] || printf ', about %d:%02d left' $((left / 60)) $((left % 60)))" >&2
     fi
     sleep 0.5

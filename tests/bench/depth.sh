@@ -15,6 +15,7 @@
 # pictures get no margin for the columns on the left. It makes the depth of one view, ours of two.
 # seconds: wall time of the programs over all items of the set, in BENCH_THREADS (1) threads; core_s_per_mp: processor time over the
 # megapixels of all views that got a depth, all rounds included; size: of the views, as a part of the photos'; the rows of the sweeps `threads` and `jobs` are about seconds alone.
+# shellcheck disable=SC2030,SC2031 # jobs side by side measure in work folders of their own
 title="Depth maps: error against time"
 note="Lower left is better. A panel turns one knob; the other knobs are at their defaults."
 baseline=SGBM

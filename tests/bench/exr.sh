@@ -17,7 +17,7 @@ rate=mb
 prepare()
 {
     "$B/tests/bench/exr" --paint --picture "$fast/synthetic.exr" 2>/dev/null
-    view=${VIEW-$(find out -path out/build -prune -o -path '*/views/*.exr' -print 2>/dev/null | sort | head -n 1)}
+    view=${VIEW-$(find out -path out/build -prune -o -path '*/views/*.exr' -print 2>/dev/null | sort | sed -n 1p)}
     [ -n "$view" ] || echo "exr: no scene has rectified views under out/, so there is only the synthetic picture." >&2
 }
 

@@ -28,7 +28,7 @@ bench() { local rc=0; REPEATS=1 BENCH_OUT=$scratch/tables tests/bench/run moves 
 a_small_scene_gets_its_table()
 {
     make_layers
-    BENCH_SCENES="$made nowhere" BENCH_FULL= BENCH_SIDES="32 64" BENCH_CELLS=4 bench 0
+    BENCH_SCENES="$made nowhere" BENCH_FULL="" BENCH_SIDES="32 64" BENCH_CELLS=4 bench 0
     grep -qF 'nowhere is skipped' "$scratch/err" || fail "nothing says that a scene is skipped"
     t=$scratch/tables/moves.tsv
     [ "$(grep -vc '^#' "$t")" = 6 ] || { cat "$t"; fail "not a row a setting"; }

@@ -94,8 +94,8 @@ the_nearest_photo_is_the_view_itself()
     rate --views out/t+holdout/views --cameras out/t+holdout/views --photo --out "$scratch/photo"
     for v in photo_1 photo_5; do same "$scratch/photo/$v.exr" "out/t+holdout/views/$v.exr"; done
     rate --views out/t+holdout/views --cameras out/t+holdout/holdout/views --photo --out "$scratch/photo"
-    "$B/tests/bench/picture_error" "$scratch/photo/photo_3.exr" out/t+holdout/views/photo_2.exr | grep -q '^error 0$' ||
-        "$B/tests/bench/picture_error" "$scratch/photo/photo_3.exr" out/t+holdout/views/photo_4.exr | grep -q '^error 0$' || fail "no neighbour stands for the view held out"
+    "$B/tests/bench/picture_error" "$scratch/photo/photo_3.exr" out/t+holdout/views/photo_2.exr | matches '^error 0$' ||
+        "$B/tests/bench/picture_error" "$scratch/photo/photo_3.exr" out/t+holdout/views/photo_4.exr | matches '^error 0$' || fail "no neighbour stands for the view held out"
 }
 
 the_bench_says_what_it_misses()

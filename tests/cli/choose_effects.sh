@@ -29,11 +29,11 @@ all_are_what_the_subjects_allow()
     subjects 0 1 >s.txt; choose 0 '0 subjects: 2 effects' --subjects s.txt --effect all
     [ "$(made)" = "establishing_dolly establishing_dolly_out" ] || { cat made.mk; fail "no subject"; }
     subjects 1 1 >s.txt; choose 0 '1 subject: ' --subjects s.txt --effect all
-    made | grep -q 'dolly_zoom_in+dim' && ! made | grep -qE 'pull_focus|(^| )dolly( |$|\+)' || { cat made.mk; fail "one subject"; }
+    made | matches 'dolly_zoom_in+dim' && ! made | matches -E 'pull_focus|(^| )dolly( |$|\+)' || { cat made.mk; fail "one subject"; }
     subjects 2 2 >s.txt; choose 0 '2 subjects: ' --subjects s.txt --effect all
-    made | grep -q ' dolly+pull_focus' || { cat made.mk; fail "two subjects"; }
+    made | matches ' dolly+pull_focus' || { cat made.mk; fail "two subjects"; }
     subjects 2 1.1 >s.txt; choose 0 '2 subjects: ' --subjects s.txt --effect all
-    made | grep -qE ' dolly$' || { cat made.mk; fail "two subjects as far as each other"; }
+    made | matches -E ' dolly$' || { cat made.mk; fail "two subjects as far as each other"; }
 }
 
 chance_is_seeded()

@@ -12,7 +12,7 @@ says() { grep -qF -- "$1" err || { cat err; fail "nothing says '$1'"; }; }
 refused() { local words=$1 rc=0; shift; "$@" || rc=$?; [ "$rc" = 1 ] || { cat err; fail "$*: exit $rc, wanted 1"; }; says "$words"; }
 has() { grep -aqF -- "$2" "$1" || fail "$1 has no '$2'"; }
 # times FOLDER ENDING: exposures.txt of photos that tell none
-times() { for k in 0 1 2; do for p in "$1"/*_e$k.*; do echo "$(basename "$p") $(awk -v k=$k 'BEGIN { print 4 ^ k / 16384 }') 8 100"; done; done >"$1-scene/exposures.txt"; }
+times() { for k in 0 1 2; do for p in "$1"/*_e"$k".*; do echo "$(basename "$p") $(awk -v k=$k 'BEGIN { print 4 ^ k / 16384 }') 8 100"; done; done >"$1-scene/exposures.txt"; }
 
 jpegs()
 {

@@ -27,7 +27,7 @@ better_worse_and_same_by_direction_and_tolerance()
     new 'a 1.1 px lower' 'b 29.7 dB higher' 'c 1.8 1 lower' 'd 2.6 1 higher' 'e 6 1 none' 'f -2.1 1 higher'
     verdicts 0
     is same a; is same b; is better c; is better d; is changed e; is same f
-    tail -n 1 "$scratch/table" | grep -qx 'old: 0 worse, 0 missing, 2 better, 3 same, 1 changed' || fail "the last line does not count them"
+    tail -n 1 "$scratch/table" | matches -x 'old: 0 worse, 0 missing, 2 better, 3 same, 1 changed' || fail "the last line does not count them"
     new 'a 1.11 px lower' 'b 29.69 dB higher' 'c 2 1 lower' 'd 2 1 higher' 'e 5 1 none' 'f -2.3 1 higher'
     verdicts 1
     is worse a; is worse b; is same c; is same d; is same e; is worse f
@@ -97,7 +97,7 @@ colours_only_on_a_terminal()
 runs_of_scenes_are_compared_and_accepted()
 {
     project regress
-    cat >make <<'SH'
+    cat >./make <<'SH'
 #!/bin/sh
 for w; do case $w in SCENE=*) s=${w#SCENE=} ;; QUALITY=*) q=${w#QUALITY=} ;; esac; done
 [ "$s" != broken ] || exit 1

@@ -1,67 +1,118 @@
-# the rules of the tree: layers, headers, format, words
+# the rules of the tree: which folder includes which, headers, format, scripts
 . tests/lib.sh
+
+sources() { git ls-files --cached --others --exclude-standard -- "$@" | while read -r f; do [ ! -e "$f" ] || echo "$f"; done; }
+scripts() { sources '*.sh' tests .ci common/run | sort -u | while read -r f; do case $f in *.sh) echo "$f" ;; *) [[ $(head -c 20 "$f" | tr -d '\0') != '#!'*bash* ]] || echo "$f" ;; esac; done; }
 
 every_header_compiles_alone()
 {
-    for h in common/*.h stages/*/*.h; do
-        echo "#include \"$h\"" | gcc -std=c11 -D_GNU_SOURCE -mavx2 -mf16c -Wall -Wextra -Werror -I. -fsyntax-only -xc - || fail "$h does not compile alone"
-    done
+    sources 'common/*.h' 'stages/*.h' | xargs -P "$(nproc)" -I{} bash -c '
+        echo "#include \"{}\"" | gcc -std=c11 -D_GNU_SOURCE -mavx2 -mf16c -Wall -Wextra -Werror -I. -fsyntax-only -xc - || echo {} >>"$0"' "$scratch/alone"
+    [ ! -e "$scratch/alone" ] || fail "these headers do not compile alone: $(tr '\n' ' ' <"$scratch/alone")"
 }
 
-lower_layers_never_include_higher()
+# check_includes FILE...: those that break the order of common/folders.txt, one a line
+check_includes()
 {
-    local base="version scan err log progress outfile file_path hash param cli provenance textfile parallel rng process frame_list samples sort clock"
-    local data="vec image photo exr_zip exr camera sfm_model camera_set photo_list photo_data photo_formats photo_tiff photo_raw response photo_mask linear_photo lens_list layered_depth view_image camera_path photo_match rendered_frame exposure_list bracket_list point_cloud upright weighted subject_list photo_camera model_axes"
-    layer() { case " $base " in *" $1 "*) echo 0; return ;; esac; case " $data " in *" $1 "*) echo 1 ;; *) echo 2 ;; esac; }
-    for f in common/*.[ch]; do
-        n=$(basename "${f%.*}")
-        for i in $(sed -nE 's|^#include "common/([a-z_0-9]+)\.h".*|\1|p' "$f"); do
-            [ "$(layer "$i")" -le "$(layer "$n")" ] || fail "$f (layer $(layer "$n")) includes common/$i.h (layer $(layer "$i"))"
-        done
-        ! grep -n '#include "stages/' "$f" || fail "$f includes from stages/"
-    done
+    awk -v folders="${FOLDERS:-common/folders.txt}" '
+        BEGIN {
+            while ((getline line <folders) > 0) {
+                if (line ~ /^#/ || line !~ /:/) continue
+                split(line, part, /: */); below[part[1]] = " " part[1] " " part[2] " "
+            } }
+        FNR == 1 { n = split(FILENAME, at, "/"); stage = at[1] == "stages"; own = at[2] }
+        FNR == 1 && !stage && !(own in below) { print FILENAME ": common/" own " is not in " folders; nextfile }
+        match($0, /^[ \t]*#[ \t]*include[ \t]*"[^"]*"/) {
+            split(substr($0, RSTART, RLENGTH), quoted, "\""); split(quoted[2], to, "/")
+            ok = to[1] == "common" && (to[2] in below) && (stage || index(below[own], " " to[2] " ")) || stage && to[1] == "stages" && to[2] == own
+            if (!ok) print FILENAME ":" FNR ": includes " quoted[2]
+        }' "$@"
 }
 
-a_stage_includes_only_common_and_itself()
+folders_include_only_folders_below()
 {
-    for f in stages/*/*.[ch]; do
-        s=$(basename "$(dirname "$f")")
-        bad=$(grep -oE '#include "[^"]+"' "$f" | sed 's/.*"\(.*\)"/\1/' | grep -vE "^(common/|stages/$s/|[a-z_0-9]+\.h$)" || true)
-        [ -z "$bad" ] || fail "$f includes $bad"
-    done
+    local bad
+    bad=$(sources 'common/*.[ch]' 'common/*.cc' 'stages/*.[ch]' 'stages/*.cc' | xargs -d '\n' bash -c "$(declare -f check_includes)"'; check_includes "$@"' -)
+    [ -z "$bad" ] || { echo "$bad"; fail "includes against common/folders.txt: $(wc -l <<<"$bad")"; }
+}
+
+the_check_of_includes_finds_what_is_wrong()
+{
+    mkdir -p "$scratch/tree/common/base" "$scratch/tree/common/film" "$scratch/tree/common/odd" "$scratch/tree/stages/a"
+    cd "$scratch/tree" || exit 1
+    echo '#include "common/film/shot.h"' >common/base/up.c
+    echo '#include "err.h"' >common/base/bare.cc
+    echo '#include "common/base/err.h"' >common/odd/unlisted.c
+    echo '#include "stages/b/b.h"' >stages/a/other.c
+    printf '#include "common/film/shot.h"\n#include "stages/a/own.h"\n#include <stdio.h>\n' >stages/a/good.c
+    echo '#include "common/base/err.h"' >common/film/good.h
+    FOLDERS=$root/common/folders.txt check_includes common/*/* stages/*/* >found
+    diff - found <<'TEXT'
+common/base/bare.cc:1: includes err.h
+common/base/up.c:1: includes common/film/shot.h
+common/odd/unlisted.c: common/odd is not in FOLDERS
+stages/a/other.c:1: includes stages/b/b.h
+TEXT
 }
 
 formatted()
 {
     command -v clang-format >/dev/null || skip "clang-format is not installed"
-    find common stages tests -name '*.[ch]' | xargs clang-format --dry-run -Werror --style=file
+    sources '*.[ch]' | xargs clang-format --dry-run -Werror --style=file
 }
 
-default_config_is_the_programs_defaults()
+generated_files_are_current()
 {
-    for s in stages/*/; do
-        s=$(basename "$s")
+    local stages
+    stages=$(make -s --no-print-directory list-stages)
+    common/run/generate.sh "$B/bin" "$stages" "$scratch/generated"
+    for s in $stages; do
         "$B/bin/$s" --print-config | sed 's/[[:space:]]*$//' >"$scratch/compiled"
         "$B/bin/$s" --print-config --config configs/default.cfg | sed 's/[[:space:]]*$//' >"$scratch/default"
-        diff "$scratch/compiled" "$scratch/default" || fail "configs/default.cfg differs from the defaults of $s"
-        for p in $(sed -nE 's/^([a-z_0-9]+) *=.*/\1/p' "$scratch/compiled"); do
-            awk -v s="[$s]" -v p="$p" '/^\[/ { here = $1 == s } here && $1 == p { found = 1 } END { exit !found }' configs/default.cfg ||
-                fail "configs/default.cfg does not name $p of [$s]"
-        done
+        diff "$scratch/compiled" "$scratch/default" || fail "configs/default.cfg differs from the defaults of $s; run make generated"
     done
+    (cd "$scratch/generated" && find . -type f) | while read -r f; do
+        diff "$f" "$scratch/generated/$f" || fail "$f is not what the stages say; run make generated"
+    done
+    for f in docs/man/*.1; do [ -e "$scratch/generated/$f" ] || fail "$f is of no stage; remove it"; done
 }
 
-man_pages_are_current()
+# grep -q leaves at the first match, and what writes into the pipe then dies of SIGPIPE: under pipefail a test fails by chance
+no_pipe_ends_in_grep_q()
 {
-    for s in stages/*/; do
-        s=$(basename "$s")
-        common/run/man.sh "$B/bin" "$s" | diff - "docs/man/$s.1" || fail "docs/man/$s.1 is not what common/run/man.sh makes; run make man"
-    done
+    local bad
+    bad=$(scripts | xargs grep -nE '\|[[:space:]]*(LC_ALL=C )?grep [^|]*(-[a-zA-Z]*q|-m ?[0-9]|--quiet|--max-count)|\|[[:space:]]*head\b.*#.*never' | grep -v 'tests/lint/tree.sh' || true)
+    [ -z "$bad" ] || { echo "$bad"; fail "a pipe ends in grep -q or grep -m; use grep -c, or a file"; }
+}
+
+scripts_pass_shellcheck()
+{
+    command -v shellcheck >/dev/null || skip "shellcheck is not installed"
+    scripts | xargs -P "$(nproc)" -n 8 shellcheck || fail "shellcheck has findings (.shellcheckrc says what is left out, and why)"
+}
+
+documents_are_at_most_120_columns_wide()
+{
+    local bad
+    bad=$(sources '*.md' | xargs awk '{ line = $0; gsub(/\]\([^)]*\)/, "]", line) } FNR == 1 { code = 0 } /^```/ { code = !code }
+        length(line) > 120 && !/^\|/ && !code { print FILENAME ":" FNR ": " length(line) " columns" }')
+    [ -z "$bad" ] || { echo "$bad"; fail "lines of documents over 120 columns (rows of tables may be longer)"; }
+}
+
+cited_sources_are_in_the_list()
+{
+    local missing
+    missing=$(sources 'common/*' 'stages/*' | xargs grep -ohE '\[[A-Z][A-Za-z-]+ (19|20)[0-9]{2}[a-z]?' | sort -u | cut -c2- |
+        while read -r key; do grep -qF "[$key]" docs/references.md || echo "$key"; done)
+    [ -z "$missing" ] || fail "docs/references.md does not have: ${missing//$'\n'/, }"
 }
 
 run every_header_compiles_alone
-run lower_layers_never_include_higher
-run a_stage_includes_only_common_and_itself
+run folders_include_only_folders_below
+run the_check_of_includes_finds_what_is_wrong
 run formatted
-run default_config_is_the_programs_defaults
-run man_pages_are_current
+run generated_files_are_current
+run no_pipe_ends_in_grep_q
+run scripts_pass_shellcheck
+run documents_are_at_most_120_columns_wide
+run cited_sources_are_in_the_list

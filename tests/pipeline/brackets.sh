@@ -30,7 +30,7 @@ the_next_make_does_nothing()
     run_scene >log
     times_file b
     diff a b || fail "a second make made something again"
-    run_scene why | grep -q 'Nothing is stale' || fail "make why sees something stale"
+    run_scene why | matches 'Nothing is stale' || fail "make why sees something stale"
     [ -z "$(run_scene -n report | grep run_stage)" ] || fail "make -n wants to run something"
 }
 

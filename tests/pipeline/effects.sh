@@ -5,7 +5,7 @@ photos set --views 4 --size 160x120 >/dev/null
 
 near='subject photo_2 76 58 108 94' far='subject photo_2 20 20 56 48' # the box, the wall
 m() { make -s DEPS=manual PHOTOS=set/photos SFM=set/model "$@" >log 2>&1; }
-made() { (cd "out/$1/parallax" && ls -d */video.mp4 2>/dev/null | sed 's|/video.mp4||' | LC_ALL=C sort); }
+made() { (cd "out/$1/parallax" && ls -d -- */video.mp4 2>/dev/null | sed 's|/video.mp4||' | LC_ALL=C sort); }
 # of one subject; tones and depths of field with each of its moves
 establishing='establishing_dolly establishing_dolly_out'
 of_one()
@@ -57,7 +57,7 @@ the_next_make_does_nothing()
     m SCENE=one EFFECT=all || { cat log; fail "make"; }
     snapshot out/one >b
     diff a b || fail "a second make made something again"
-    make -s DEPS=manual SCENE=one EFFECT=all why | grep -q 'Nothing is stale' || fail "make why sees something stale"
+    make -s DEPS=manual SCENE=one EFFECT=all why | matches 'Nothing is stale' || fail "make why sees something stale"
     ! make -n -s DEPS=manual SCENE=one EFFECT=all | grep run_stage || fail "make -n wants to run something"
     for e in dolly_in dolly_zoom+dim "dolly_in establishing_dolly_out dolly_in"; do
         m SCENE=one "EFFECT=$e" || { cat log; fail "make EFFECT=$e"; }
@@ -87,7 +87,7 @@ what_is_lost_or_changed_redoes_its_film_alone()
     make -n -s DEPS=manual SCENE=one EFFECT=all >log
     ! grep run_stage log | grep -vE 'render_views dolly_in[+]dim-|encode_video dolly_in[+]dim |report page ' || fail "make -n is not exact"
     [ "$(grep -c run_stage log)" = 3 ] || { cat log; fail "make -n does not tell all"; }
-    make -s DEPS=manual SCENE=one EFFECT=all why | grep -q 'dolly_in+dim/frames/0002.exr: it does not exist' || fail "make why does not name the frame"
+    make -s DEPS=manual SCENE=one EFFECT=all why | matches 'dolly_in+dim/frames/0002.exr: it does not exist' || fail "make why does not name the frame"
     m SCENE=one EFFECT=all || { cat log; fail "make"; }
 }
 
@@ -96,15 +96,15 @@ auto_draws_one_that_suits()
     snapshot out/one >a
     m SCENE=one EFFECT=auto || { cat log; fail "make"; }
     e=$(sed -n 's/^EFFECTS := //p' out/one/parallax/auto-effects.mk)
-    { of_one | grep -vE '[+](de)?saturate|brighten|dim'; } | grep -qxF "$e" || fail "'$e' was drawn"
+    { of_one | grep -vE '[+](de)?saturate|brighten|dim'; } | matches -xF "$e" || fail "'$e' was drawn"
     snapshot out/one >b
     [ "$(changed a b | grep -v '^index.html$')" = parallax/auto-effects.mk ] || { changed a b; fail "films were made again"; }
     tiny none; : >scenes/none/subjects.txt
     m SCENE=none EFFECT=auto video || { cat log; fail "make without a subject"; }
-    [ "$(made none | wc -l)" = 1 ] && printf '%s\n' $establishing | grep -qxF "$(made none)" || { made none; fail "wrong film without a subject"; }
+    [ "$(made none | wc -l)" = 1 ] && printf '%s\n' $establishing | matches -xF "$(made none)" || { made none; fail "wrong film without a subject"; }
     m SCENE=none EFFECT=auto video || { cat log; fail "make again"; }
     [ "$(made none | wc -l)" = 1 ] || fail "another one was drawn"
-    for s in 1 2 3 4 5 6; do "$B/bin/choose_effects" --subjects out/none/parallax/subjects.txt --effect auto --set seed=$s --out drawn.mk 2>/dev/null; grep EFFECTS drawn.mk; done | sort -u | wc -l | grep -qx 2 || fail "other seeds draw nothing else"
+    for s in 1 2 3 4 5 6; do "$B/bin/choose_effects" --subjects out/none/parallax/subjects.txt --effect auto --set seed=$s --out drawn.mk 2>/dev/null; grep EFFECTS drawn.mk; done | sort -u | wc -l | matches -x 2 || fail "other seeds draw nothing else"
 }
 
 a_subject_more_adds_the_moves_for_two()

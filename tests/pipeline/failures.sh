@@ -58,7 +58,7 @@ odd_names()
     small odd
     make -s DEPS=manual PHOTOS='o d d' SFM=odd-model SCENE=odd >log 2>&1 || { cat log; fail "make"; }
     n=$(grep -c '\.exr$' out/odd/views/images.txt)
-    [ "$n" = 6 ] || { cat out/odd/views/images.txt | cut -c1-80; fail "$n views, wanted 6"; }
+    [ "$n" = 6 ] || { cut -c1-80 out/odd/views/images.txt; fail "$n views, wanted 6"; }
     make -s DEPS=manual SCENE=odd why >log 2>&1
     grep -q 'Nothing is stale' log || { cat log; fail "a second make would not be idle"; }
 }
@@ -84,7 +84,7 @@ killed_stage()
     for _ in $(seq 2000); do
         for p in /proc/[0-9]*; do
             [ "$(readlink "$p/exe")" = "$root/$B/bin/segment_depth" ] || continue
-            tr '\0' ' ' <"$p/cmdline" | grep -q -- '--view photo_3 .*--out out/large/' || continue
+            tr '\0' ' ' <"$p/cmdline" | matches -- '--view photo_3 .*--out out/large/' || continue
             sleep 0.2
             kill -9 "${p#/proc/}" && break 2
         done

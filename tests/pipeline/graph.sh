@@ -13,7 +13,7 @@ chain_from_photos_to_video()
     [ -s out/t/index.html ] || fail "no page"
     grep -qE '100\.0 % known, [0-9.]+ % inherited' out/t/index.html || fail "the page does not tell what depth is inherited"
     grep -q 'Inherited depth.*most in photo_[0-9] (' out/t/index.html || fail "the page does not name the views with most of it"
-    tail -n 2 first.log | grep -q 'video  out/t/parallax/establishing_dolly/video.mp4' || fail "the run does not end with the video's path"
+    tail -n 2 first.log | matches 'video  out/t/parallax/establishing_dolly/video.mp4' || fail "the run does not end with the video's path"
     n=$(ffprobe -v error -count_frames -select_streams v -show_entries stream=nb_read_frames,pix_fmt,codec_name,width,height -of csv=p=0 out/t/parallax/establishing_dolly/video.mp4)
     [ "$n" = "h264,160,120,yuv420p,6" ] || fail "the video is $n, wanted h264,160,120,yuv420p,6"
 }
@@ -24,7 +24,7 @@ second_make_does_nothing()
     run_scene >log
     snapshot out/t >b
     diff a b || fail "a second make made something again"
-    run_scene why | grep -q 'Nothing is stale' || fail "make why sees something stale"
+    run_scene why | matches 'Nothing is stale' || fail "make why sees something stale"
     [ -z "$(run_scene -n report | grep run_stage)" ] || fail "make -n wants to run something"
 }
 
@@ -74,7 +74,7 @@ depth_is_told_before_it_is_made()
 {
     rm out/t/depth/photo_3.exr
     run_scene CORES=1 depth >log || { cat log; fail "make depth"; }
-    sed -n '/^depth: /,$p' log | head -n 2 >told
+    sed -n '/^depth: /,$p' log | sed -n 1,2p >told
     { read -r first; read -r second; } <told
     [[ $first =~ ^depth:\ 1\ view\ of\ 320\ x\ 240,\ [0-9]\ neighbours,\ 1\ round:\ about\ [0-9]+\ s\ on\ 1\ core,\ [0-9]+\ MiB\ at\ a\ time$ ]] || { cat log; fail "told '$first'"; }
     [[ $second == 'segment_depth 1/1 photo_3'* ]] || { cat log; fail "'$second' follows what is told"; }
@@ -90,7 +90,7 @@ points_are_made_when_they_are_asked_for()
 {
     [ ! -e out/t/points ] || fail "points were made though nobody asked"
     run_scene points >log || { cat log; fail "make points"; }
-    head -n 3 out/t/points/points.ply | grep -aqx 'comment remodel-points 1' || fail "these are no points"
+    head -n 3 out/t/points/points.ply | matches -ax 'comment remodel-points 1' || fail "these are no points"
     ! grep -aqF "$PWD" out/t/points/points.ply || fail "the points name a folder of this machine"
     n=$(grep -am 1 '^element vertex' out/t/points/points.ply | cut -d' ' -f3)
     [ "$n" -gt 5000 ] || fail "only $n points"
@@ -198,10 +198,10 @@ given_depth_is_honoured_and_redoes_its_view_and_its_readers()
         gave=photo_5; [ $what != other ] || gave='photo_[56]'
         grep -q "gives the depth of 1 of 6 views" log || { cat log; fail "it is not said how many views have depth"; }
         grep -q "depth is given for 76800 of 76800 pixels" out/t/log/segment_depth.photo_$([ $what = other ] && echo 6 || echo 5).log || fail "it is not said how many pixels are given"
-        ! grep -E '^depth/round0/.*exr' c | grep -qv "round0/$gave.exr" || { cat c; fail "views whose depth is not given were made again in the first round"; }
+        ! grep -E '^depth/round0/.*exr' c | matches -v "round0/$gave.exr" || { cat c; fail "views whose depth is not given were made again in the first round"; }
         for d in out/t/depth/photo_?.d; do
             v=$(basename "$d" .d)
-            if [[ $v == $gave ]] || sed 1d "$d" | grep -q "/depth/round0/$gave.exr"; then grep -q "^depth/$v.exr" c || fail "$v looks at given depth, but was not made again"
+            if [[ $v == "$gave" ]] || sed 1d "$d" | matches "/depth/round0/$gave.exr"; then grep -q "^depth/$v.exr" c || fail "$v looks at given depth, but was not made again"
             else ! grep -q "^depth/$v.exr" c || fail "$v does not look at given depth, but was made again"; fi
         done
         case $what in
@@ -231,7 +231,7 @@ a_photo_that_goes_redoes_sfm()
     run_scene EXCLUDE=photo_6.jpg >log 2>&1 || { cat log; fail "make EXCLUDE"; }
     grep -q photo_6 out/t/views/images.txt && fail "photo_6 is still a view"
     snapshot out/t >b
-    changed a b | grep -q '^sfm/' || fail "SfM was not done again"
+    changed a b | matches '^sfm/' || fail "SfM was not done again"
     run_scene >log 2>&1
     grep -q photo_6 out/t/views/images.txt || fail "photo_6 did not come back"
 }

@@ -113,7 +113,7 @@ a_cancelled_job_is_not_called_good()
     rm -f out/cluster/depth/*.exr
     make -s DEPS=manual SCENE=cluster JOBS=slurm VIEWS_PER_JOB=9 depth >log 2>&1 &
     run=$!
-    for _ in $(seq 100); do squeue -h -o '%i' | grep -q . && break; sleep 0.1; done
+    for _ in $(seq 100); do squeue -h -o '%i' | matches . && break; sleep 0.1; done
     scancel -u root
     if wait "$run"; then fail "the run was called good"; fi
     make -s DEPS=manual SCENE=cluster JOBS=slurm >log 2>&1 || { cat log; fail "the run after it"; }
