@@ -1,0 +1,139 @@
+# docs/adding-a-stage.md, done: a stage that did not exist is added to a copy of the tree, in its own folder alone, and run with make
+. tests/lib.sh
+mkdir "$scratch/copy"
+cp -a Makefile .clang-format stages common configs docs "$scratch/copy/"
+mkdir -p "$scratch/copy/tests" "$scratch/copy/scenes" "$scratch/copy/out/build/$FLAVOR"
+cp -a "$B"/{bin,code,flags,lib,libremodel.a,obj} "$scratch/copy/out/build/$FLAVOR/"
+cd "$scratch/copy" || exit 1
+photos set --views 4 --size 160x120 >/dev/null
+small t
+m() { make -s DEPS=manual PHOTOS=set/photos SFM=set/model SCENE=t "$@" >log 2>&1 || { cat log; fail "make $*"; }; }
+
+# the whole stage: two files
+add_the_stage()
+{
+    mkdir stages/mean_colour
+    cat >stages/mean_colour/stage.mk <<'MK'
+# mean_colour: the mean colour of each view.
+FOLLOWS.mean_colour := rectify
+READS.mean_colour := views
+WRITES.mean_colour := mean_colour.txt
+STEPS.mean_colour := mean_colour
+HELP.mean_colour := + the mean colour of each view
+NEEDS.mean_colour := views
+
+ifdef GRAPH
+.PHONY: mean_colour
+mean_colour: $(O)/mean_colour.txt
+$(O)/mean_colour.txt: $(CAMERAS) $(VIEW_EXR) $(call needs,mean_colour)
+	$(call stage,mean_colour,all,$(O),--views $(O)/views --out $@)
+endif
+MK
+    cat >stages/mean_colour/mean_colour.c <<'C'
+/* mean_colour.c - the mean colour of each view.
+ *
+ * reads   VIEWS/cameras.txt, images.txt, points3D.txt, VIEW.exr   the views
+ * writes  OUT                                                     a line for each view: its name and mean radiance */
+#include "common/base/cli.h"
+#include "common/base/outfile.h"
+#include "common/capture/view_image.h"
+
+#define MEAN_PARAMS(X) X(gain, double, 1, 0, 1000, "", "factor of the written means")
+struct mean_params {
+    MEAN_PARAMS(PARAM_FIELD)
+};
+#define PARAM_STRUCT struct mean_params
+static const struct param mean_param_table[] = {MEAN_PARAMS(PARAM_ROW) PARAM_END};
+#undef PARAM_STRUCT
+
+static enum status write_means(const char *views, const struct mean_params *params, struct outfile *f,
+                               struct provenance *prov, struct err *err)
+{
+    struct camera_set set = {0};
+    enum status st = camera_set_read(&set, views, err);
+    if (!st) st = camera_set_add_inputs(prov, views, err);
+    if (!st) provenance_print(prov, f->fp);
+    for (int i = 0; !st && i < set.view_count; i++) {
+        struct image im = {0};
+        double sum[3] = {0};
+        st = view_image_read(&im, views, &set.views[i], err);
+        const size_t count = st ? 0 : (size_t)im.width * (size_t)im.height;
+        for (size_t k = 0; k < count; k++)
+            for (int c = 0; c < 3; c++) sum[c] += (double)im.data[k * 4 + (size_t)c];
+        if (!st) fprintf(f->fp, "%s", set.views[i].name);
+        for (int c = 0; !st && c < 3; c++) fprintf(f->fp, " %.9g", params->gain * sum[c] / (double)count);
+        if (!st) fputc('\n', f->fp);
+        image_release(&im);
+    }
+    camera_set_release(&set);
+    return st;
+}
+
+int main(int argc, char **argv)
+{
+    const char *views = NULL, *out = NULL;
+    struct mean_params params = {MEAN_PARAMS(PARAM_DEFAULT)};
+    const struct cli_opt opts[] = {
+        CLI_ABOUT("The mean colour of each view."),
+        CLI_STR("views", &views, CLI_REQUIRED, "folder of cameras and rectified views"),
+        CLI_STR("out", &out, CLI_REQUIRED, "text file to write"),
+        CLI_PARAMS(mean_param_table, &params, NULL),
+        CLI_END,
+    };
+    struct provenance prov = {0};
+    struct outfile f = {0};
+    struct err err = ERR_INIT;
+    if (cli_parse(argc, argv, "mean_colour", opts, &prov, &err) != CLI_RUN || outfile_open(&f, out, &err) ||
+        write_means(views, &params, &f, &prov, &err) || outfile_commit(&f, &err))
+        err_report(&err);
+    outfile_discard(&f);
+    provenance_release(&prov);
+    return err_exit_code(&err);
+}
+C
+}
+
+a_new_stage_is_built_and_run()
+{
+    m sfm
+    cp -a . ../before
+    add_the_stage
+    m mean_colour
+    [ "$(grep -cE '^photo_[1-4] [0-9.]+ [0-9.]+ [0-9.]+$' out/t/mean_colour.txt)" = 4 ] || { cat out/t/mean_colour.txt; fail "wrong product"; }
+    grep -q '^# *stage mean_colour\|mean_colour' out/t/mean_colour.txt || fail "no provenance"
+    m mean_colour
+    ! grep -q run_stage log || fail "a second make made something again"
+}
+
+a_parameter_of_it_redoes_it_alone()
+{
+    cp out/t/mean_colour.txt before.txt
+    stat -c %y out/t/views/photo_1.exr >a
+    printf '[mean_colour]\ngain = 2\n' >>scenes/t/scene.cfg
+    m mean_colour
+    ! cmp -s before.txt out/t/mean_colour.txt || fail "the parameter changed nothing"
+    stat -c %y out/t/views/photo_1.exr | diff a - || fail "the views were made again"
+}
+
+everything_that_lists_stages_lists_it()
+{
+    make -s help >log
+    grep -qE '^  mean_colour +\+ the mean colour of each view$' log || fail "make help leaves it out"
+    make -s DEPS=manual generated >log 2>&1 || { cat log; fail "make generated"; }
+    grep -qF '| `mean_colour` | views | mean_colour.txt |' docs/architecture.md || fail "the table of stages leaves it out"
+    grep -qx '\[mean_colour\]' configs/default.cfg && grep -qx 'gain = 1' configs/default.cfg || fail "default.cfg leaves it out"
+    [ -s docs/man/mean_colour.1 ] || fail "it has no manual page"
+    m depth
+    m report
+    grep -q mean_colour out/t/index.html || fail "the page leaves it out"
+}
+
+nothing_else_was_touched_by_hand()
+{
+    diff -rq ../before . | grep -vE '[:/] ?(out|log|set|scenes|before.txt|a)( |$)|^Only in \./?out|^(Files|Only in) (\.\./before/|\./)?(out|scenes|set)' |
+        sed -E 's|^Only in \./?([^:]*): (.*)|\1/\2|; s|^Files \.\./before/(.*) and .*|\1|' | LC_ALL=C sort >touched
+    printf '%s\n' configs/default.cfg docs/architecture.md docs/man/mean_colour.1 stages/mean_colour | diff - <(grep -v '^/\|touched\|log' touched) ||
+        fail "a new stage touches more than its folder and generated files"
+}
+
+for t in a_new_stage_is_built_and_run a_parameter_of_it_redoes_it_alone everything_that_lists_stages_lists_it nothing_else_was_touched_by_hand; do run "$t"; done
