@@ -37,10 +37,11 @@ project()
     cd "$scratch/$1" || exit 1
 }
 
-# photos DIR [OPTION...]: a synthetic scene, DIR/photos and DIR/model
+# photos DIR [OPTION...]: a synthetic scene, DIR/photos and DIR/model; 6 photos of 160x120 by default
 photos()
 {
     case "$*" in *--views*) ;; *) set -- "$@" --views 6 ;; esac
+    case "$*" in *--size*) ;; *) set -- "$@" --size 160x120 ;; esac
     "$root/$B/tests/pipeline/make_photos" --out "$@" 2>&1
 }
 
@@ -102,8 +103,8 @@ products()
 snapshot() { find "$1"/ -type f \( -path '*/views/*' -o -path '*/depth/*' -o -path '*/parallax/*' -o -path '*/sfm/*' -o -name index.html \) -printf '%P %T@\n' | LC_ALL=C sort; }
 # changed BEFORE AFTER: the names whose time changed, or that are new
 changed() { comm -13 "$1" "$2" | cut -d' ' -f1; }
-# painted FILE X Y: a mask of a photo of 320 x 240, black in 60 x 50 pixels from (X, Y) on
-painted() { ffmpeg -v error -f lavfi -i color=white:s=320x240 -vf "drawbox=x=$2:y=$3:w=60:h=50:color=black:t=fill" -frames:v 1 -y "$1"; }
+# painted FILE X Y: a mask of a photo of 160 x 120, black in 30 x 25 pixels from (X, Y) on
+painted() { ffmpeg -v error -f lavfi -i color=white:s=160x120 -vf "drawbox=x=$2:y=$3:w=30:h=25:color=black:t=fill" -frames:v 1 -y "$1"; }
 # alpha EXR X Y [LAYER]: the four bytes of a pixel's alpha
 alpha() { ffmpeg -v error ${4:+-layer "$4"} -i "$1" -vf "extractplanes=a,crop=1:1:$2:$3" -f rawvideo - | od -An -tx1 | tr -d ' \n'; }
 # reads DEPS PHOTO: whether a depth map with these make dependencies comes from that photo's view, be it by way of a round before

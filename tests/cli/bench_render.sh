@@ -2,7 +2,7 @@
 . tests/lib.sh
 project rendering
 export DEPS=manual
-photos set >/dev/null
+photos set --size 320x240 >/dev/null
 small t
 printf 'PHOTOS := set/photos\nSFM := set/model\n' >scenes/t/scene.mk
 

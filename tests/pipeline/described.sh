@@ -83,7 +83,7 @@ lighting_reference_images_are_merged_and_stay_as_they_are()
     ! make -s DEPS=manual SCENE=room lri LRI= >log 2>&1 || fail "make lri without LRI was content"
     grep -q 'LRI=DIR' log || { cat log; fail "it does not say what it wants"; }
     ! make -s DEPS=manual SCENE=room lri LRI=nowhere >log 2>&1 || fail "make lri of no folder was content"
-    grep -q 'nowhere is none' log || { cat log; fail "the folder is not named"; }
+    grep -q 'nowhere is not a folder' log || { cat log; fail "the folder is not named"; }
 }
 
 # through a fisheye each photo has several views: one process a photo, and of a deleted view only that view

@@ -1,7 +1,7 @@
 # what is held out and what is measured; on a synthetic scene with known poses and depths
 . tests/lib.sh
 project evaluation
-photos set >/dev/null
+photos set --size 320x240 >/dev/null
 small t
 
 # the truth as users lay it out, and a model of half its size: scene units that are no metres
@@ -113,7 +113,7 @@ names_choose_views_and_a_new_choice_is_seen()
     if run_scene HOLDOUT=1 views >log; then fail "everything may be held out"; fi
     grep -q '0 of 6 placed photos would be kept' log || { cat log; fail "no sentence about too few views"; }
     if run_scene TRUTH=nowhere evaluate >log; then fail "a missing truth was taken"; fi
-    grep -q 'TRUTH=nowhere is no folder' log || { cat log; fail "no sentence about the truth"; }
+    grep -q 'TRUTH=nowhere is not a folder' log || { cat log; fail "no sentence about the truth"; }
 }
 
 without_truth_and_holdout_the_rest_is_measured()

@@ -76,7 +76,7 @@ cluster_gives_the_bytes_of_local()
 
 films_of_all_effects_are_rendered_on_the_cluster()
 {
-    for s in effects_local effects_cluster; do tiny $s; echo 'subject photo_2 152 116 216 188' >scenes/$s/subjects.txt; done
+    for s in effects_local effects_cluster; do tiny $s; echo 'subject photo_2 76 58 108 94' >scenes/$s/subjects.txt; done
     make -s DEPS=manual PHOTOS=set/photos SFM=set/model SCENE=effects_local EFFECT=all video >log 2>&1 || { cat log; fail "local run"; }
     make -s DEPS=manual PHOTOS=set/photos SFM=set/model SCENE=effects_cluster EFFECT=all JOBS=slurm FRAMES_PER_JOB=2 video >log 2>&1 || { cat log; fail "cluster run"; }
     grep -q 'render_views: job .* of 60 tasks' log || { cat log; fail "the films were not one job"; }
