@@ -1,7 +1,7 @@
 # run.sh - what the products are worth. Sourced by common/run/run_scene.sh.
 
 # after a described scene was photographed, which makes its truth too
-look_evaluate()
+prepare_evaluate()
 {
     [ -z "${REMODEL_TRUTH-}" ] || [ -d "$REMODEL_TRUTH" ] ||
         usage "TRUTH=$REMODEL_TRUTH is not a folder. Give the folder that holds cameras.txt and images.txt of the truth."
