@@ -8,7 +8,8 @@
  *   .json                   text that begins with { or [ and ends with the same bracket
  *   .txt .tsv .csv .mk .cfg .obj .mtl .py .log .md
  *                           text: not empty, no NUL byte, a line break at the end
- *   any other, or none      not empty. A cluster job that made its products must not fail because this list lacks one. */
+ *   any other, or none      not empty: a job must not fail because its product's kind is not listed here
+ */
 #ifndef REMODEL_PRODUCT_H
 #define REMODEL_PRODUCT_H
 
