@@ -1,4 +1,4 @@
-/* evaluate_cameras.c - found against true cameras: camera.* and the alignment that all metric comparisons use. */
+/* evaluate_cameras.c - found against true cameras: camera.* and the alignment that the other comparisons use. */
 #include <stdlib.h>
 
 #include "stages/evaluate/evaluation_parts.h"

@@ -1,4 +1,4 @@
-/* evaluation_parts.h - the metrics of an evaluation, by group, and what the groups share. */
+/* evaluation_parts.h - the metrics of an evaluation, by group, and the helpers of the groups. */
 #ifndef REMODEL_EVALUATION_PARTS_H
 #define REMODEL_EVALUATION_PARTS_H
 

@@ -45,12 +45,12 @@ static enum status add_room(struct true_room *room, const struct textfile *t, do
 /* The line after "room": NAME X0 Y0 X1 Y1 Z0 Z1 ... */
 static enum status described_room(struct true_room *room, struct textfile *t, struct err *err)
 {
-    static const char *const what[NUMBERS] = {"x0", "y0", "x1", "y1", "z0", "z1"};
+    static const char *const fields[NUMBERS] = {"x0", "y0", "x1", "y1", "z0", "z1"};
     double v[NUMBERS];
     char *name;
     if (textfile_word(t, "a room's name", &name, err)) return err->status;
     for (int i = 0; i < NUMBERS; i++)
-        if (textfile_double(t, what[i], &v[i], err)) return err->status;
+        if (textfile_double(t, fields[i], &v[i], err)) return err->status;
     return add_room(room, t, v[4], v[5], err);
 }
 

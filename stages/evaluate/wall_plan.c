@@ -46,10 +46,10 @@ struct reader {
     double middle;          /* of the partition, along that axis */
 };
 
-static enum status numbers(struct reader *r, const char *const what[], double *v, int count, struct err *err)
+static enum status numbers(struct reader *r, const char *const fields[], double *v, int count, struct err *err)
 {
     for (int i = 0; i < count; i++)
-        if (textfile_double(&r->t, what[i], &v[i], err)) return err->status;
+        if (textfile_double(&r->t, fields[i], &v[i], err)) return err->status;
     return ST_OK;
 }
 
@@ -137,10 +137,10 @@ static enum status model_statement(struct reader *r, const char *verb, struct er
 
 static enum status described_wall(struct reader *r, struct err *err)
 {
-    static const char *const what[] = {"x0", "y0", "x1", "y1", "z0", "z1", "thickness"};
+    static const char *const fields[] = {"x0", "y0", "x1", "y1", "z0", "z1", "thickness"};
     char *name;
     double v[7];
-    if (textfile_word(&r->t, "a wall's name", &name, err) || numbers(r, what, v, 7, err)) return err->status;
+    if (textfile_word(&r->t, "a wall's name", &name, err) || numbers(r, fields, v, 7, err)) return err->status;
     const struct vec3 a = vec3_make(v[0], v[1], v[4]), b = vec3_make(v[2], v[3], v[4]);
     if (!(vec3_length(vec3_sub(b, a)) > 0)) return textfile_error(&r->t, err, name, "a wall with a length");
     const struct vec3 d = vec3_normalize(vec3_sub(b, a)), off = vec3_scale(vec3_make(-d.y, d.x, 0), 0.5 * v[6]);
@@ -152,11 +152,11 @@ static enum status described_wall(struct reader *r, struct err *err)
 
 static enum status described_opening(struct reader *r, struct err *err)
 {
-    static const char *const what[] = {"s0", "s1", "z0", "z1"};
+    static const char *const fields[] = {"s0", "s1", "z0", "z1"};
     char *name, *wall;
     double v[4];
     if (textfile_word(&r->t, "an opening's name", &name, err) || textfile_word(&r->t, "a wall's name", &wall, err) ||
-        numbers(r, what, v, 4, err))
+        numbers(r, fields, v, 4, err))
         return err->status;
     const struct measured_part *l = line_named(r, wall);
     if (!l) return textfile_error(&r->t, err, wall, "the name of a wall on a line above");
@@ -190,14 +190,14 @@ static enum status framed_opening(struct reader *r, const char *name, int axis, 
 static enum status framed_window(struct reader *r, const char *name, struct err *err)
 {
     static const char *const sides[] = {"window_west", "window_south", "window_east", "window_north"};
-    static const char *const what[] = {"its start", "its end", "its sill", "its head"};
+    static const char *const fields[] = {"its start", "its end", "its sill", "its head"};
     double v[4];
     int axis = 0, side = 0;
     while (side < 4 && strcmp(name, sides[side])) side++;
     if (side == 4) return textfile_error(&r->t, err, name, "window_south, window_north, window_west or window_east");
     if (r->low[0] > r->high[0]) return textfile_error(&r->t, err, name, "a room on a line above");
-    if (axis_of(r, &axis, err) || numbers(r, what, v, 2, err) || textfile_expect(&r->t, "z", err) ||
-        numbers(r, what + 2, v + 2, 2, err))
+    if (axis_of(r, &axis, err) || numbers(r, fields, v, 2, err) || textfile_expect(&r->t, "z", err) ||
+        numbers(r, fields + 2, v + 2, 2, err))
         return err->status;
     if (axis == side % 2) return textfile_error(&r->t, err, axis ? "y" : "x", "the axis along its wall");
     return framed_opening(r, name, axis, (side < 2 ? r->low : r->high)[side % 2], v, v + 2, err);
@@ -205,18 +205,18 @@ static enum status framed_window(struct reader *r, const char *name, struct err 
 
 static enum status framed_statement(struct reader *r, const char *verb, struct err *err)
 {
-    static const char *const what[] = {"x0", "y0", "z0", "x1", "y1", "z1"};
+    static const char *const fields[] = {"x0", "y0", "z0", "x1", "y1", "z1"};
     double v[6], top;
     int axis = 0;
     char *next;
     if (!strcmp(verb, "partition")) {
-        if (axis_of(r, &r->partition, err) || numbers(r, what, v, 2, err)) return err->status;
+        if (axis_of(r, &r->partition, err) || numbers(r, fields, v, 2, err)) return err->status;
         r->middle = 0.5 * (v[0] + v[1]);
         return ST_OK;
     }
     if (!strcmp(verb, "door")) {
         if (r->partition < 0) return textfile_error(&r->t, err, verb, "a partition on a line above");
-        if (axis_of(r, &axis, err) || numbers(r, what, v, 2, err) || textfile_expect(&r->t, "top", err) ||
+        if (axis_of(r, &axis, err) || numbers(r, fields, v, 2, err) || textfile_expect(&r->t, "top", err) ||
             textfile_double(&r->t, "its head", &top, err))
             return err->status;
         if (axis == r->partition) return textfile_error(&r->t, err, axis ? "y" : "x", "the axis along the partition");
@@ -224,7 +224,7 @@ static enum status framed_statement(struct reader *r, const char *verb, struct e
     }
     if (!strncmp(verb, "window_", 7)) return framed_window(r, verb, err);
     for (int i = 0; i < 6; i++)
-        if (!textfile_more(&r->t) || textfile_word(&r->t, what[i], &next, err) || !scan_double(next, &v[i]))
+        if (!textfile_more(&r->t) || textfile_word(&r->t, fields[i], &next, err) || !scan_double(next, &v[i]))
             return err->status; /* another line */
     if (textfile_more(&r->t)) return ST_OK;
     if (!(v[3] > v[0] && v[4] > v[1])) return textfile_error(&r->t, err, verb, "a room with x0 < x1 and y0 < y1");

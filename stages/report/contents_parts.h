@@ -1,4 +1,4 @@
-/* contents_parts.h - the readers of contents_*.c, one a part of the page, and what they share. */
+/* contents_parts.h - the readers of contents_*.c, one per part of the page, and their helpers. */
 #ifndef REMODEL_CONTENTS_PARTS_H
 #define REMODEL_CONTENTS_PARTS_H
 

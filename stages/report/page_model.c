@@ -20,17 +20,17 @@ enum status page_axes(FILE *to, const struct contents *c, struct err *err)
     return ST_OK;
 }
 
-static enum status put_model_picture(FILE *to, const char *file, const char *type, const char *what, const char *name,
-                                     struct err *err)
+static enum status put_model_picture(FILE *to, const char *file, const char *type, const char *caption,
+                                     const char *name, struct err *err)
 {
     if (!file) return ST_OK;
-    fprintf(to, "<figure><img loading=\"lazy\" alt=\"%s ", what);
+    fprintf(to, "<figure><img loading=\"lazy\" alt=\"%s ", caption);
     html_text(to, name);
     fprintf(to, "\" src=\"data:image/%s;base64,", type);
     if (html_base64_file(to, file, err)) return err->status;
     fprintf(to, "\"><figcaption><b>");
     html_text(to, name);
-    fprintf(to, "</b> %s</figcaption></figure>\n", what);
+    fprintf(to, "</b> %s</figcaption></figure>\n", caption);
     return ST_OK;
 }
 
