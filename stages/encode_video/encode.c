@@ -1,5 +1,7 @@
-/* encode.c - see encode.h. ffmpeg reads raw RGB from a pipe and writes to the output's temporary file, which takes the
- * output's place only if every frame went in and ffmpeg ended well. */
+/* encode.c - see encode.h.
+ *
+ * ffmpeg reads raw RGB from a pipe and writes to the temporary file of the output, which is committed only if ffmpeg
+ * took every frame and exited with 0. */
 #include "stages/encode_video/encode.h"
 
 #include <errno.h>
@@ -19,7 +21,7 @@
 const struct param encode_param_table[] = {ENCODE_PARAMS(PARAM_ROW) PARAM_END};
 #undef PARAM_STRUCT
 
-/* x264's bytes depend on its number of threads, so that is fixed and no option */
+/* x264's output depends on its number of threads, so the number is fixed */
 #define ENCODER_THREADS "2"
 
 static enum status start_encoder(struct process *ffmpeg, const struct camera_path *path, const char *file,
@@ -45,7 +47,7 @@ static enum status start_encoder(struct process *ffmpeg, const struct camera_pat
     return process_start(ffmpeg, argv, NULL, err);
 }
 
-/* The frame as 8-bit sRGB. */
+/* Reads a frame as 8-bit sRGB. */
 static enum status read_frame(unsigned char *rgb, const struct camera_path *path, int frame, const char *folder,
                               struct err *err)
 {
@@ -60,11 +62,11 @@ static enum status read_frame(unsigned char *rgb, const struct camera_path *path
     if (!file) return err_nomem(err, "a file name", size);
     snprintf(file, size, "%s/%.32s.exr", folder, camera->name);
     if (access(file, F_OK))
-        st = err_set(err, ST_DATA, "frame %d of %d is missing: there is no %s. Render it, then encode again.",
+        st = err_set(err, ST_DATA, "frame %d of %d is missing: there is no %s; render it, then encode again.",
                      frame + 1, path->frame_count, file);
     if (!st) st = exr_read(&exr, file, names, 3, err);
     if (!st && (exr.width != camera->width || exr.height != camera->height))
-        st = err_set(err, ST_DATA, "%s has %d x %d pixels, but the path's frames have %d x %d. Render it again.", file,
+        st = err_set(err, ST_DATA, "%s has %d x %d pixels, wanted %d x %d as in the path; render it again.", file,
                      exr.width, exr.height, camera->width, camera->height);
     if (!st) st = image_init(&linear, exr.width, exr.height, 3, err);
     if (!st) {
@@ -87,10 +89,11 @@ static enum status check_result(int code, int written, const struct camera_path 
     struct stat info;
     if (code || written < path->frame_count)
         return err_set(err, ST_IO,
-                       "ffmpeg ended with status %d after %d of %d frames; its words are above or in the log.", code,
+                       "ffmpeg ended with status %d after %d of %d frames; its messages are above or in the log.", code,
                        written, path->frame_count);
-    if (stat(file, &info)) return err_errno(err, "look at", file);
-    if (info.st_size == 0) return err_set(err, ST_IO, "ffmpeg ended well, but its output %s is empty.", file);
+    if (stat(file, &info)) return err_errno(err, "read", file);
+    if (info.st_size == 0)
+        return err_set(err, ST_IO, "ffmpeg succeeded, but its output %s is empty; encode again.", file);
     return ST_OK;
 }
 
@@ -108,10 +111,10 @@ enum status encode_frames(const struct camera_path *path, const char *folder, co
 
     if (!path->frame_count) return err_set(err, ST_DATA, "the path has no frames; plan it again.");
     if (width % 2 || height % 2)
-        return err_set(
-            err, ST_DATA,
-            "the path's frames have %d x %d pixels, but H.264 with half colour needs even sizes; plan the path again.",
-            width, height);
+        return err_set(err, ST_DATA,
+                       "the path's frames have %d x %d pixels, wanted even sizes for H.264 with 4:2:0 chroma; plan the "
+                       "path again.",
+                       width, height);
     if (!(rgb = malloc(bytes))) return err_nomem(err, "a frame", bytes);
 
     progress_start(&progress, "encoding", path->frame_count, "frames");

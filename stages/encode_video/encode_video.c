@@ -1,4 +1,4 @@
-/* encode_video.c - the video of a camera move: its frames through ffmpeg.
+/* encode_video.c - encodes the frames of a camera move as a video, with ffmpeg.
  *
  * reads   PATH/path.txt, path/NAME.txt   frames, their order and rate
  *         FRAMES/NNNN.exr               linear colour
@@ -13,7 +13,7 @@ int main(int argc, char **argv)
     const struct cli_opt opts[] = {
         CLI_ABOUT("Encodes the frames of a camera move as an H.264 video."),
         CLI_STR("path", &path_folder, CLI_REQUIRED, "folder of the move: path.txt and path/"),
-        CLI_STR("frames", &frames, CLI_REQUIRED, "folder of its frames, NNNN.exr"),
+        CLI_STR("frames", &frames, CLI_REQUIRED, "folder of the frames, NNNN.exr"),
         CLI_STR("out", &out, CLI_REQUIRED, "MP4 file to write"),
         CLI_PARAMS(encode_param_table, &params, NULL),
         CLI_END,

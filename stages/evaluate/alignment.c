@@ -1,13 +1,20 @@
-/* alignment.c - see alignment.h. */
+/* alignment.c - the similarity that aligns found with true cameras [Umeyama 1991].
+ *
+ * With x_i the found and y_i the true centres, both from their means, R is the rotation with the largest trace(R^T M),
+ * M = sum y_i x_i^T, s = trace(R^T M) / sum |x_i|^2, t = mean y - s R mean x.
+ *
+ * Differs from the source: R comes from the eigenvectors of M^T M and not from an SVD of M, and if the centres are on a
+ * line (the second singular value of M is 0), R is the rotation nearest to sum Q_i^T P_i instead, the sum of the turns
+ * between the rotations P_i of the found and Q_i of the true cameras. */
 #include "stages/evaluate/alignment.h"
 
 #include <stdlib.h>
 
 #include "common/base/sort.h"
 
-static const double line = 1e-6; /* second over first singular value: below it centres stand on one line */
+static const double min_ratio = 1e-6; /* of the second to the first singular value; below: the centres are on a line */
 
-static const double rounding = 1e-24; /* of squared lengths: centres that differ by less stand in one place */
+static const double rounding = 1e-24; /* relative, of squared lengths: centres that differ by less coincide */
 
 static void add_outer(struct mat3 *m, struct vec3 a, struct vec3 b)
 {
@@ -16,9 +23,9 @@ static void add_outer(struct mat3 *m, struct vec3 a, struct vec3 b)
         for (int j = 0; j < 3; j++) m->m[i][j] += u[i] * v[j];
 }
 
-/* The rotation R with the largest trace(R^T m), that trace, and m's second singular value over the first. Singular
- * vectors come from m^T m; both triples are made right-handed, so that R is a rotation and the third term has its
- * sign. */
+/* Returns the largest trace(R^T m) of a rotation R, and sets *r to that R and *second to the ratio of m's second to
+ * first singular value. Both triples of singular vectors are made right-handed, so that R is a rotation and the
+ * third term of the trace has its sign. */
 static double nearest_rotation(struct mat3 m, struct mat3 *r, double *second)
 {
     double values[3];
@@ -63,7 +70,7 @@ enum status align_cameras(struct similarity *a, const struct pose *found, const 
                        "and at least two in different places are needed.",
                        count);
     double trace = nearest_rotation(covariance, &a->rotation, &second);
-    if (second < line) {
+    if (second < min_ratio) {
         nearest_rotation(turns, &a->rotation, &second);
         trace = 0;
         for (int i = 0; i < count; i++)

@@ -1,9 +1,8 @@
-/* alignment.h - how far cameras are from the true ones, after the similarity that brings both scenes together.
+/* alignment.h - errors of cameras, after the similarity that best aligns them with the true ones.
  *
- * S. Umeyama, "Least-squares estimation of transformation parameters between two point patterns", 1991: the scale s,
- * rotation R and translation t that minimise sum |true - (s R found + t)|^2 over the centres. Where the centres stand on
- * one line (two cameras do) they leave the turn about it open: then R is the mean of the turns between found and true
- * cameras, nearest in the Frobenius norm. */
+ * The scale s, rotation R and translation t minimise sum |true - (s R found + t)|^2 over the centres [Umeyama 1991]. If
+ * the centres are on a line (as two cameras always are), they leave the rotation about it open; then R is the mean of
+ * the rotations between found and true cameras, nearest in the Frobenius norm. */
 #ifndef REMODEL_ALIGNMENT_H
 #define REMODEL_ALIGNMENT_H
 
@@ -15,20 +14,21 @@ struct similarity { /* true = scale * rotation * found + translation */
     struct vec3 translation;
 };
 
-/* ST_DATA: fewer than two cameras, or all found or all true centres in one place: there is no scale. */
+/* ST_DATA: there is no scale, because there are fewer than two cameras, or all found or all true centres coincide, or
+ * no positive scale fits. metrics.tsv quotes this error. */
 enum status align_cameras(struct similarity *a, const struct pose *found, const struct pose *truth, int count,
                           struct err *err);
 
 struct camera_errors {
-    double center_median, center_max;     /* in units of the truth */
+    double center_median, center_max;     /* in the unit of the truth */
     double rotation_median, rotation_max; /* degrees */
 };
 
-/* The median of an even number is the mean of the middle two. count > 0. */
+/* count > 0. ST_NOMEM. */
 enum status measure_cameras(struct camera_errors *e, const struct similarity *a, const struct pose *found,
                             const struct pose *truth, int count, struct err *err);
 
-/* Of count > 0 numbers, which it sorts. */
+/* Sorts the values; count > 0. The median of an even number is the mean of the middle two. */
 double median(double *values, int count);
 
 #endif

@@ -1,7 +1,7 @@
 /* axes_error.c - see axes_error.h. */
 #include "stages/evaluate/axes_error.h"
 
-/* Of a rotation, degrees; by its quaternion, which stays exact where the angle is small. */
+/* The angle of a rotation, degrees; from its quaternion, which is exact for small angles. */
 static double angle_of(struct mat3 r)
 {
     struct quat q = quat_from_mat3(r);

@@ -1,19 +1,19 @@
-/* axes_error.h - how far a room's canonical axes, floor and ceiling are from the true ones. */
+/* axes_error.h - errors of a room's canonical axes, floor and ceiling. */
 #ifndef REMODEL_AXES_ERROR_H
 #define REMODEL_AXES_ERROR_H
 
 #include "common/math/vec.h"
 
 struct axes_errors {
-    double up;      /* degrees between the two directions up */
-    double all;     /* degrees of the turn that takes the found axes to the true ones; which wall is x is nobody's
-                       error, so the least of the four quarter turns about up counts */
-    double floor;   /* |found height - true height|, in units of the truth */
+    double up;      /* angle between the two up directions, degrees */
+    double all;     /* angle between found and true axes, degrees: the minimum over the four quarter turns about up,
+                       because either wall may be x */
+    double floor;   /* |found height - true height|, in the unit of the truth */
     double ceiling; /* the same */
 };
 
-/* Axes are the rows x, y, z (up) of right-handed rotations into the room's frame, from the same world frame (that of
- * the truth); heights are along the own axis up, from that frame's origin. */
+/* The axes are the rows x, y, z (up) of a right-handed rotation from the truth's world into the room's frame; heights
+ * are along its own up axis, from the origin of that world. */
 struct room_axes {
     struct mat3 axes;
     double floor, ceiling;

@@ -1,6 +1,6 @@
 /* depth_error.c - see depth_error.h.
  *
- * A bin is the upper 20 bits of the number as a float: sign, exponent and 11 bits of fraction. */
+ * The bin of a number is the upper 20 bits of its float: sign, exponent and 11 bits of fraction. */
 #include "stages/evaluate/depth_error.h"
 
 #include <math.h>
@@ -23,12 +23,12 @@ void quantiles_add(struct quantiles *q, float value)
     q->count++;
 }
 
-double quantiles_get(const struct quantiles *q, double part)
+double quantiles_get(const struct quantiles *q, double share)
 {
-    uint64_t wanted = (uint64_t)fmax(ceil(part * (double)q->count), 1), so_far = 0;
+    uint64_t target = (uint64_t)fmax(ceil(share * (double)q->count), 1), so_far = 0;
     uint32_t bin = 0, bits;
     float value;
-    while ((so_far += q->bins[bin]) < wanted) bin++;
+    while ((so_far += q->bins[bin]) < target) bin++;
     if (bin == 0) return 0;
     bits = bin << BIN_SHIFT | 1u << (BIN_SHIFT - 1); /* the bin's middle */
     memcpy(&value, &bits, sizeof value);

@@ -1,11 +1,12 @@
-/* evaluate.c - a scene's products against the truth, and against photographs that were held out.
+/* evaluate.c - metrics of a scene's products, against a truth and against held-out photographs.
  *
  * reads   FOLDER/views, depth, holdout   cameras, depth maps, held-out photographs and their rendered frames
  *         SHARED/photos                  the photos' records
- *         TRUTH/cameras.txt, images.txt, depth/NAME.exr   true cameras and depths, if there are any
- * writes  FOLDER/evaluate/truth/VIEW.exr the true depth as the view would see it
+ *         TRUTH/cameras.txt, images.txt, depth/NAME.exr   true cameras and depths (optional)
+ *         TRUTH/scene.txt or scene-truth.txt   true rooms, walls and openings (optional)
+ * writes  FOLDER/evaluate/truth/VIEW.exr the true depth resampled to the view
  *         FOLDER/evaluate/views.tsv      metrics of each view
- *         OUT                            metrics of the scene; last. docs/evaluation.md defines them */
+ *         OUT                            metrics of the scene, written last; docs/evaluation.md defines them */
 #include "common/base/cli.h"
 #include "stages/evaluate/evaluation.h"
 
@@ -14,11 +15,11 @@ int main(int argc, char **argv)
     const char *folder = NULL, *shared = NULL, *truth = NULL, *out = NULL;
     struct evaluate_params params = EVALUATE_PARAMS_DEFAULT;
     const struct cli_opt opts[] = {
-        CLI_ABOUT("Measures a scene's products against the truth and against photographs that were held out."),
+        CLI_ABOUT("Measures a scene's products against a truth and against held-out photographs."),
         CLI_STR("folder", &folder, CLI_REQUIRED, "folder of the scene's products"),
-        CLI_STR("shared", &shared, CLI_REQUIRED, "folder of its photo records, shared by qualities"),
-        CLI_STR("truth", &truth, CLI_OPTIONAL, "folder of true cameras and depths"),
-        CLI_STR("out", &out, CLI_REQUIRED, "table to write, metrics.tsv"),
+        CLI_STR("shared", &shared, CLI_REQUIRED, "folder of its photo records, shared by all qualities"),
+        CLI_STR("truth", &truth, CLI_OPTIONAL, "folder of the truth: true cameras and depths"),
+        CLI_STR("out", &out, CLI_REQUIRED, "table of metrics to write (metrics.tsv)"),
         CLI_PARAMS(evaluate_param_table, &params, NULL),
         CLI_END,
     };

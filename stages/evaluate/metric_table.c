@@ -6,21 +6,19 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/base/array.h"
 #include "common/base/outfile.h"
 
 enum status metric_add(struct metric_table *t, const char *view, const char *name, double value, const char *unit,
                        const char *direction, struct err *err)
 {
-    size_t bytes = ((size_t)t->count + 1) * sizeof *t->metrics;
     if (!isfinite(value)) return err_set(err, ST_INTERNAL, "the metric %s has no finite value.", name);
     if (!*unit || !*direction) return err_set(err, ST_INTERNAL, "the metric %s lacks its unit or direction.", name);
-    struct metric *grown = realloc(t->metrics, bytes);
-    if (!grown) return err_nomem(err, "metrics", bytes);
-    t->metrics = grown;
-    struct metric *m = &grown[t->count];
+    if (array_append(&t->metrics, (size_t)t->count, sizeof *t->metrics, "metrics", err)) return err->status;
+    struct metric *m = &t->metrics[t->count];
     *m = (struct metric){.view = strdup(view ? view : ""), .value = value, .unit = unit, .direction = direction};
     snprintf(m->name, sizeof m->name, "%s", name);
-    if (!m->view) return err_nomem(err, "metrics", bytes);
+    if (!m->view) return err_nomem(err, "metrics", sizeof *m);
     t->count++;
     return ST_OK;
 }
@@ -34,11 +32,8 @@ enum status metric_note(struct metric_table *t, struct err *err, const char *fmt
     va_end(args);
     for (char *p = text; *p; p++)
         if (*p == '\n' || *p == '\r') *p = ' ';
-    size_t bytes = ((size_t)t->note_count + 1) * sizeof *t->notes;
-    char **grown = realloc(t->notes, bytes);
-    if (!grown) return err_nomem(err, "notes", bytes);
-    t->notes = grown;
-    if (!(grown[t->note_count] = strdup(text))) return err_nomem(err, "a note", strlen(text));
+    if (array_append(&t->notes, (size_t)t->note_count, sizeof *t->notes, "notes", err)) return err->status;
+    if (!(t->notes[t->note_count] = strdup(text))) return err_nomem(err, "a note", strlen(text));
     t->note_count++;
     return ST_OK;
 }

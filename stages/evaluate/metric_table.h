@@ -1,7 +1,7 @@
-/* metric_table.h - named values on their way into metrics.tsv and evaluate/views.tsv, and the reasons for what is not there.
+/* metric_table.h - the metrics of metrics.tsv and evaluate/views.tsv, and notes about those that are missing.
  *
- * A line is "NAME VALUE UNIT DIRECTION" between tabs, in order of name; in a table of views the view's name stands
- * before it. DIRECTION is lower or higher, whichever is better, or none. What cannot be computed is a comment line
+ * A line is "NAME VALUE UNIT DIRECTION", separated by tabs, in order of name; in views.tsv the name of the view comes
+ * first. DIRECTION is lower or higher, whichever is better, or none. A metric that cannot be computed becomes a comment
  * "# skipped WHAT: WHY", never a NaN. */
 #ifndef REMODEL_METRIC_TABLE_H
 #define REMODEL_METRIC_TABLE_H
@@ -11,7 +11,7 @@
 #include "common/base/provenance.h"
 
 struct metric {
-    char *view; /* owned; "" for the scene's */
+    char *view; /* owned; "" for the scene */
     char name[64];
     double value;
     const char *unit, *direction; /* string literals */
@@ -24,12 +24,13 @@ struct metric_table {
     int note_count;
 };
 
-/* view NULL: of the whole scene. A value that is not finite is ST_INTERNAL: the caller leaves it out with a reason. */
+/* view: NULL for the whole scene. ST_INTERNAL: a value that is not finite; the caller must write a note instead. */
 enum status metric_add(struct metric_table *t, const char *view, const char *name, double value, const char *unit,
                        const char *direction, struct err *err);
+/* Adds a comment line; its line breaks become spaces. */
 enum status metric_note(struct metric_table *t, struct err *err, const char *fmt, ...) PRINTF_LIKE(3, 4);
 
-/* Sorts, then writes the scene's metrics, or (of_views) those of views. */
+/* Sorts, then writes the metrics of the scene with the notes, or (of_views) those of the views. prov may be NULL. */
 enum status metric_table_write(struct metric_table *t, bool of_views, const char *path, const struct provenance *prov,
                                struct err *err);
 void metric_table_release(struct metric_table *t);

@@ -1,10 +1,12 @@
 /* metrics.c - PSNR and SSIM.
  *
- * SSIM after Z. Wang, A. C. Bovik, H. R. Sheikh, E. P. Simoncelli, "Image quality assessment: from error visibility to
- * structural similarity", 2004: means, variances and covariance under a Gaussian window of 11x11, its weights' sum 1,
+ * SSIM [Wang 2004]: with the means ma, mb, variances sa^2, sb^2 and covariance sab under a Gaussian window of 11 x 11
+ * whose weights sum to 1,
  *   ssim = (2 ma mb + C1)(2 sab + C2) / ((ma^2 + mb^2 + C1)(sa^2 + sb^2 + C2)),  C1 = (K1 L)^2, C2 = (K2 L)^2.
- * The window is separable: rows are filtered first, then columns. The paper takes luminance; here each of R, G, B is
- * compared and the three are averaged. Sums are kept per chunk of rows and added in order. */
+ * The window is separable: rows are filtered first, then columns. Sums are kept per chunk of rows and added in order,
+ * so that they do not depend on the number of threads.
+ *
+ * Differs from the source: the paper compares luminance; here R, G and B are compared and averaged. */
 #include "stages/evaluate/metrics.h"
 
 #include <math.h>
@@ -17,7 +19,7 @@
 #define SIGMA      1.5
 #define CHUNK_ROWS 32
 #define MOMENTS    5 /* a, b, a a, b b, a b */
-#define PSNR_MOST  99.0
+#define MAX_PSNR   99.0
 
 enum status metrics_psnr(const uint8_t *a, const uint8_t *b, int width, int height, const uint8_t *mask, double *db,
                          struct err *err)
@@ -33,8 +35,8 @@ enum status metrics_psnr(const uint8_t *a, const uint8_t *b, int width, int heig
         pixels++;
     }
     if (!pixels) return err_set(err, ST_DATA, "no PSNR: not one pixel of %d x %d is to be compared.", width, height);
-    *db = PSNR_MOST;
-    if (sum) *db = fmin(PSNR_MOST, 10 * log10(255.0 * 255.0 * 3 * (double)pixels / (double)sum));
+    *db = MAX_PSNR;
+    if (sum) *db = fmin(MAX_PSNR, 10 * log10(255.0 * 255.0 * 3 * (double)pixels / (double)sum));
     return ST_OK;
 }
 
@@ -47,11 +49,11 @@ struct ssim_job {
     const uint8_t *a, *b, *mask;
     int width, height; /* of the pictures */
     double kernel[WINDOW];
-    double *scratch;       /* a thread's: MOMENTS x (CHUNK_ROWS + WINDOW - 1) rows x columns of windows */
-    struct ssim_sum *sums; /* a chunk's */
+    double *scratch;       /* per thread: MOMENTS x (CHUNK_ROWS + WINDOW - 1) rows x columns of windows */
+    struct ssim_sum *sums; /* per chunk */
 };
 
-/* Row y of channel c, filtered along x: the moments of each column of windows. */
+/* Filters row y of channel c along x: the moments of each column of windows. */
 static void filter_row(const struct ssim_job *job, int y, int c, double *out, size_t stride)
 {
     int columns = job->width - WINDOW + 1;
@@ -145,14 +147,15 @@ enum status metrics_ssim(const uint8_t *a, const uint8_t *b, int width, int heig
 void metrics_ssim_windows(uint8_t *windows, const uint8_t *mask, int width, int height)
 {
     memset(windows, 0, (size_t)width * (size_t)height);
-    for (int y = 0; y < height; y++) { /* first of pixels whose row of the window is masked */
+    for (int y = 0; y < height; y++) { /* first pass: pixels whose row of the window is in the mask */
         int run = 0;
         for (int x = 0; x < width; x++) {
             run = mask[(size_t)y * (size_t)width + (size_t)x] ? run + 1 : 0;
             if (run >= WINDOW) windows[(size_t)y * (size_t)width + (size_t)(x - WINDOW / 2)] = 1;
         }
     }
-    for (int x = 0; x < width; x++) { /* then of those with WINDOW such rows; what is overwritten was read before */
+    for (int x = 0; x < width;
+         x++) { /* second pass: pixels with WINDOW of those rows; overwritten pixels have been read */
         uint32_t rows = 0;
         for (int y = 0; y < height + WINDOW / 2; y++) {
             uint8_t row = y < height ? windows[(size_t)y * (size_t)width + (size_t)x] : 0;

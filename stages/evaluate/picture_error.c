@@ -5,7 +5,7 @@
 
 #include "stages/evaluate/metrics.h"
 
-/* SSIM may not exist where PSNR does (no window is wholly in the mask): that is no error. */
+/* False, without an error, if no window is wholly in the mask. */
 static bool ssim_exists(const uint8_t *a, const uint8_t *b, int width, int height, const uint8_t *mask,
                         uint8_t *windows, double *ssim, struct err *err)
 {

@@ -1,7 +1,7 @@
-/* picture_error.h - a rendered picture against the photograph that was held out.
+/* picture_error.h - errors of a picture that was rendered in place of a held-out photograph.
  *
- * Both are 8-bit sRGB of the view's own size. Pixels that the photograph does not reach are never compared:
- * SSIM is over windows of which every pixel is compared. */
+ * Both are 8-bit sRGB of the view's own size. Pixels outside the photograph are never compared: SSIM is over windows
+ * without them. */
 #ifndef REMODEL_PICTURE_ERROR_H
 #define REMODEL_PICTURE_ERROR_H
 
@@ -11,13 +11,13 @@
 #include "common/base/err.h"
 
 struct picture_errors {
-    double psnr, ssim;                 /* dB, 1: over all pixels that the photograph has */
-    double psnr_covered, ssim_covered; /* over those of them that are no hole */
-    double holes;                      /* part of the photograph's pixels that no view covered, before filling */
-    bool has_ssim, has_covered, has_ssim_covered; /* false: no window of 11x11 pixels, no covered pixel */
+    double psnr, ssim;                 /* over all pixels of the photograph; psnr: dB */
+    double psnr_covered, ssim_covered; /* without holes */
+    double holes;                      /* share of the photograph's pixels that no view covers, before filling */
+    bool has_ssim, has_covered, has_ssim_covered; /* false: no window of 11 x 11 pixels; no covered pixel */
 };
 
-/* photo, frame: RGB, w * h * 3; inside, hole: w * h. ST_DATA: the photograph has no pixel. */
+/* photo, frame: RGB, w * h * 3; inside (the photograph), hole: w * h. ST_DATA: no pixel is inside. */
 enum status picture_errors(struct picture_errors *e, const uint8_t *photo, const uint8_t *frame, const uint8_t *inside,
                            const uint8_t *hole, int width, int height, struct err *err);
 

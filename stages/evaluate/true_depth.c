@@ -1,10 +1,10 @@
 /* true_depth.c - see true_depth.h.
  *
- * Occlusion against another photo's true depth: the point is hidden if all known depths of the 3x3 pixels about it are
- * nearer than the point by more than HIDDEN; a pixel without depth shows something far. By forward warping: all points are drawn,
- * each into one pixel, the nearest staying; the point is hidden if its pixel, or the pixels on both sides of it
- * (left and right, or above and below: the gaps between points that spread), hold something nearer by more than
- * HIDDEN. */
+ * Whether another photo sees a point: with that photo's true depth map, the point is hidden if all known depths of
+ * the 3 x 3 pixels around its projection are nearer than the point by more than HIDDEN; a pixel without depth shows
+ * something distant. Without one, all points are warped forward into that photo, each to one pixel, and each pixel
+ * keeps the nearest; the point is hidden if its pixel, or both its left and right neighbours, or both the upper and
+ * lower one (the gaps between points that spread), hold a point that is nearer by more than HIDDEN. */
 #include "stages/evaluate/true_depth.h"
 
 #include <stdlib.h>
@@ -13,7 +13,7 @@
 #include "common/base/parallel.h"
 
 enum { CHUNK = 8192, ROWS = 8 };
-#define HIDDEN 0.02
+#define HIDDEN 0.02 /* of the distance */
 
 struct points_job {
     struct vec3 *points;
@@ -46,13 +46,13 @@ void true_points(struct vec3 *points, const struct true_photo *photo)
     parallel_for((size_t)photo->lens.height, ROWS, points_rows, &job);
 }
 
-struct place { /* of a point in another photo: its pixel, -1 outside the picture, and its distance */
+struct projection { /* of a point into another photo: its pixel, -1 outside the picture, and its distance */
     int x, y;
     float range;
 };
 
 struct warp_job {
-    struct place *places;
+    struct projection *projections;
     const struct vec3 *points;
     struct mat3 rotation; /* other_from_photo */
     struct vec3 translation;
@@ -64,27 +64,27 @@ static void warp_points(void *ctx, size_t begin, size_t end, int thread)
     const struct warp_job *job = ctx;
     (void)thread;
     for (size_t i = begin; i < end; i++) {
-        struct place *to = &job->places[i];
+        struct projection *to = &job->projections[i];
         double u, v;
-        *to = (struct place){-1, -1, 0};
+        *to = (struct projection){-1, -1, 0};
         if (vec3_length(job->points[i]) <= 0) continue;
         struct vec3 p = vec3_add(mat3_apply(job->rotation, job->points[i]), job->translation);
         if (!camera_project(job->lens, p, &u, &v) ||
             !(u >= 0 && v >= 0 && u < job->lens->width && v < job->lens->height))
             continue;
-        *to = (struct place){(int)u, (int)v, (float)vec3_length(p)};
+        *to = (struct projection){(int)u, (int)v, (float)vec3_length(p)};
     }
 }
 
-/* Nearest of the warped points in each pixel of the other photo, INFINITY where there is none. */
-static void draw(float *nearest, const struct camera *lens, const struct place *places, size_t count)
+/* nearest: distance of the nearest warped point in each pixel of the other photo; INFINITY: none. */
+static void draw_points(float *nearest, const struct camera *lens, const struct projection *projections, size_t count)
 {
     size_t pixels = (size_t)lens->width * (size_t)lens->height;
     for (size_t i = 0; i < pixels; i++) nearest[i] = INFINITY;
     for (size_t i = 0; i < count; i++) {
-        if (places[i].x < 0) continue;
-        float *at = &nearest[(size_t)places[i].y * (size_t)lens->width + (size_t)places[i].x];
-        *at = fminf(*at, places[i].range);
+        if (projections[i].x < 0) continue;
+        float *at = &nearest[(size_t)projections[i].y * (size_t)lens->width + (size_t)projections[i].x];
+        *at = fminf(*at, projections[i].range);
     }
 }
 
@@ -94,7 +94,7 @@ static bool nearer(const float *nearest, const struct camera *lens, int x, int y
     return nearest[(size_t)y * (size_t)lens->width + (size_t)x] < range * (1 - HIDDEN);
 }
 
-static bool hidden_by_points(const float *nearest, const struct camera *lens, const struct place *p)
+static bool hidden_by_points(const float *nearest, const struct camera *lens, const struct projection *p)
 {
     int x = p->x, y = p->y;
     double r = p->range;
@@ -103,8 +103,8 @@ static bool hidden_by_points(const float *nearest, const struct camera *lens, co
            (nearer(nearest, lens, x, y - 1, r) && nearer(nearest, lens, x, y + 1, r));
 }
 
-/* ranges: distance from the other photo's centre, INFINITY unknown. */
-static bool hidden_by_truth(const float *ranges, const struct camera *lens, const struct place *p)
+/* ranges: true distances from the centre of the other photo; INFINITY: unknown. */
+static bool hidden_by_truth(const float *ranges, const struct camera *lens, const struct projection *p)
 {
     for (int y = p->y - 1; y <= p->y + 1; y++)
         for (int x = p->x - 1; x <= p->x + 1; x++)
@@ -130,17 +130,17 @@ static enum status true_ranges(float *ranges, const struct true_photo *photo, st
 enum status true_occlusion(uint8_t *occluded, const struct true_photo *photo, const struct vec3 *points,
                            const struct true_photo *const *others, int count, struct err *err)
 {
-    size_t pixels = (size_t)photo->lens.width * (size_t)photo->lens.height, left = 0;
+    size_t pixels = (size_t)photo->lens.width * (size_t)photo->lens.height, candidates = 0;
     struct mat3 world_from_photo = mat3_transpose(mat3_from_quat(photo->pose.rotation));
-    struct place *places = malloc(pixels * sizeof *places);
+    struct projection *projections = malloc(pixels * sizeof *projections);
     float *ranges = NULL;
-    enum status st = places ? ST_OK : err_nomem(err, "warped points", pixels * sizeof *places);
+    enum status st = projections ? ST_OK : err_nomem(err, "warped points", pixels * sizeof *projections);
 
-    for (size_t i = 0; i < pixels; i++) left += occluded[i] = vec3_length(points[i]) > 0;
-    for (int k = 0; !st && left && k < count; k++) {
+    for (size_t i = 0; i < pixels; i++) candidates += occluded[i] = vec3_length(points[i]) > 0;
+    for (int k = 0; !st && candidates && k < count; k++) {
         const struct true_photo *other = others[k];
         size_t size = (size_t)other->lens.width * (size_t)other->lens.height * sizeof *ranges;
-        struct warp_job job = {.places = places, .points = points, .lens = &other->lens};
+        struct warp_job job = {.projections = projections, .points = points, .lens = &other->lens};
         job.rotation = mat3_multiply(mat3_from_quat(other->pose.rotation), world_from_photo);
         job.translation = vec3_sub(other->pose.translation, mat3_apply(job.rotation, photo->pose.translation));
         parallel_for(pixels, CHUNK, warp_points, &job);
@@ -151,20 +151,20 @@ enum status true_occlusion(uint8_t *occluded, const struct true_photo *photo, co
         }
         ranges = grown;
         if (!other->depth)
-            draw(ranges, &other->lens, places, pixels);
+            draw_points(ranges, &other->lens, projections, pixels);
         else if ((st = true_ranges(ranges, other, err)))
             break;
         for (size_t i = 0; i < pixels; i++) {
-            if (!occluded[i] || places[i].x < 0) continue;
-            if (other->depth ? hidden_by_truth(ranges, &other->lens, &places[i])
-                             : hidden_by_points(ranges, &other->lens, &places[i]))
+            if (!occluded[i] || projections[i].x < 0) continue;
+            if (other->depth ? hidden_by_truth(ranges, &other->lens, &projections[i])
+                             : hidden_by_points(ranges, &other->lens, &projections[i]))
                 continue;
             occluded[i] = 0;
-            left--;
+            candidates--;
         }
     }
     free(ranges);
-    free(places);
+    free(projections);
     return st;
 }
 
@@ -194,7 +194,7 @@ static void view_rows(void *ctx, size_t begin, size_t end, int thread)
             job->z[i] = 0;
             job->occluded[i] = 0;
             if (!camera_project(c, mat3_apply(photo_from_view, ray), &px, &py)) continue;
-            px *= (double)t->width / c->width; /* the truth may be of another size than the photo */
+            px *= (double)t->width / c->width; /* the truth may have another size than the photo */
             py *= (double)t->height / c->height;
             if (!(px >= 0 && py >= 0 && px < t->width && py < t->height)) continue;
             size_t at = (size_t)py * (size_t)t->width + (size_t)px;

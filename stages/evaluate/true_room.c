@@ -9,8 +9,9 @@
 
 enum { NUMBERS = 6 };
 
-/* The numbers that follow on the line, NUMBERS at most; *all: nothing else follows. */
-static int numbers_of(struct textfile *t, double values[NUMBERS], bool *all, struct err *err)
+/* Reads the numbers that follow on the line, at most NUMBERS, and returns their number; -1: an error. *all: nothing
+ * else follows. */
+static int read_numbers(struct textfile *t, double values[NUMBERS], bool *all, struct err *err)
 {
     int count = 0;
     char *word;
@@ -41,15 +42,15 @@ static enum status add_room(struct true_room *room, const struct textfile *t, do
     return ST_OK;
 }
 
-/* After the word "room": NAME X0 Y0 X1 Y1 Z0 Z1 and more. */
+/* The line after "room": NAME X0 Y0 X1 Y1 Z0 Z1 ... */
 static enum status described_room(struct true_room *room, struct textfile *t, struct err *err)
 {
-    static const char *const what[NUMBERS] = {"x0", "y0", "x1", "y1", "z0", "z1"};
+    static const char *const fields[NUMBERS] = {"x0", "y0", "x1", "y1", "z0", "z1"};
     double v[NUMBERS];
     char *name;
     if (textfile_word(t, "a room's name", &name, err)) return err->status;
     for (int i = 0; i < NUMBERS; i++)
-        if (textfile_double(t, what[i], &v[i], err)) return err->status;
+        if (textfile_double(t, fields[i], &v[i], err)) return err->status;
     return add_room(room, t, v[4], v[5], err);
 }
 
@@ -58,7 +59,7 @@ static enum status framed_line(struct true_room *room, double *yaw, struct textf
 {
     double v[NUMBERS];
     bool all;
-    const int count = numbers_of(t, v, &all, err);
+    const int count = read_numbers(t, v, &all, err);
     if (count < 0) return err->status;
     if (!strcmp(word, "yaw_degrees")) {
         if (count != 1 || !all || !(fabs(v[0]) <= 360))

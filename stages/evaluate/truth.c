@@ -14,7 +14,7 @@ static enum status read_depth(struct true_photo *p, const char *path, double far
     struct exr_image im = {0};
     enum status st = exr_read(&im, path, NAMES, 1, err);
     const struct exr_plane *z = st ? NULL : exr_find(&im, "Z");
-    if (!st && !z->f) st = err_set(err, ST_DATA, "%s: the channel Z holds no floats.", path);
+    if (!st && !z->f) st = err_set(err, ST_DATA, "%s: channel Z holds integers, wanted half or float.", path);
     if (!st && (im.width != p->lens.width || im.height != p->lens.height))
         st = err_set(err, ST_DATA, "%s is %d x %d px, but the truth's camera is %d x %d px.", path, im.width, im.height,
                      p->lens.width, p->lens.height);
@@ -32,7 +32,7 @@ static enum status read_depth(struct true_photo *p, const char *path, double far
     return st;
 }
 
-/* depth/NAME.exr, NAME being the image's without its ending; most images may have none. */
+/* Reads depth/NAME.exr if it exists; NAME is the image's without its extension. */
 static enum status find_depth(struct truth *t, struct true_photo *p, const char *folder, const char *image, double far,
                               struct provenance *prov, struct err *err)
 {
@@ -70,12 +70,12 @@ enum status truth_read(struct truth *t, const char *folder, const struct photo_l
     for (int i = 0; !st && i < m.image_count; i++) {
         int at = photo_list_match(photos, m.images[i].name);
         if (at < 0) {
-            t->strangers++;
+            t->unknown_images++;
             continue;
         }
         if (t->photos[at].lens.width)
-            st = err_set(err, ST_DATA, "%s/images.txt: two images are named like photo \"%s\".", folder,
-                         photos->photos[at].file);
+            st = err_set(err, ST_DATA, "%s/images.txt: found two images with the name of photo \"%s\", wanted one.",
+                         folder, photos->photos[at].file);
         t->photos[at].lens = m.cameras[m.images[i].camera_idx].camera;
         t->photos[at].pose = m.images[i].cam_from_world;
         if (!st) st = find_depth(t, &t->photos[at], folder, m.images[i].name, far, prov, err);

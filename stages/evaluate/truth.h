@@ -1,6 +1,7 @@
-/* truth.h - a folder of truth: cameras.txt and images.txt (COLMAP text, an image named as its photo, with any ending), and
- * depth/NAME.exr for some of the images (Z, as large as the image; attribute remodel:depth "z" or "ray", without it
- * the length of the ray for fisheye lenses and z for others). Unit: metres, or whatever the cameras are in. */
+/* truth.h - a folder with a truth: cameras.txt and images.txt (COLMAP text; an image has the name of its photo, with
+ * any extension), and depth/NAME.exr for some of the images: channel Z, the size of the image, with the attribute
+ * remodel:depth "z" or "ray"; without it, the length of the ray for fisheye lenses and z for others. The unit is
+ * that of the cameras, normally metres. */
 #ifndef REMODEL_TRUTH_H
 #define REMODEL_TRUTH_H
 
@@ -8,13 +9,14 @@
 #include "stages/evaluate/true_depth.h"
 
 struct truth {
-    struct true_photo *photos; /* of photo i of the list; lens.width 0: the truth does not know it */
+    struct true_photo *photos; /* one per photo of the list; lens.width 0: the truth lacks it */
     int count;
-    int images, strangers; /* in images.txt; those that are none of the photos */
-    int depths;            /* photos with a depth map */
+    int images;         /* in images.txt */
+    int unknown_images; /* of them, those that are not in the list of photos */
+    int depths;         /* photos with a depth map */
 };
 
-/* Depths beyond `far` are taken for unknown. Adds what it reads to prov. */
+/* Depths beyond `far` count as unknown. Adds the files it reads to prov. ST_DATA names the file. */
 enum status truth_read(struct truth *t, const char *folder, const struct photo_list *photos, double far,
                        struct provenance *prov, struct err *err);
 void truth_release(struct truth *t);

@@ -1,58 +1,60 @@
-/* wall_plan.c - see wall_plan.h. */
+/* wall_plan.c - see wall_plan.h.
+ *
+ * A face's error is the larger of the distances of its two ends from the line of a true face, in plan. Candidates run
+ * the same way within 10 degrees, overlap the face along the line, and are within max_distance; the nearest one counts.
+ * An opening's error is the largest difference of its two sides along the wall, its sill and its head; a candidate's
+ * corners must be within max_distance across the wall too, because farther ones are in another wall. */
 #include "stages/evaluate/wall_plan.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/base/array.h"
 #include "common/base/scan.h"
 #include "common/base/sort.h"
 #include "common/base/textfile.h"
 
-#define SAME_WAY 0.98480775301220802 /* cos 10 degrees */
+#define MIN_COSINE 0.98480775301220802 /* cos 10 degrees */
 
-void wall_plan_release(struct wall_plan *plan)
+void measured_plan_release(struct measured_plan *plan)
 {
     if (!plan) return;
     free(plan->faces.parts);
     free(plan->openings.parts);
-    *plan = (struct wall_plan){0};
+    *plan = (struct measured_plan){0};
 }
 
-static enum status add_part(struct part_list *list, const char *name, struct vec3 a, struct vec3 b, struct err *err)
+static enum status add_part(struct measured_parts *list, const char *name, struct vec3 a, struct vec3 b,
+                            struct err *err)
 {
-    if (list->count == list->room) {
-        const int room = list->room ? 2 * list->room : 32;
-        struct plan_part *more = realloc(list->parts, (size_t)room * sizeof *more);
-        if (!more) return err_nomem(err, "walls to compare", (size_t)room * sizeof *more);
-        list->parts = more;
-        list->room = room;
-    }
-    struct plan_part *p = &list->parts[list->count++];
-    *p = (struct plan_part){.at = {a, b}};
+    if (array_append(&list->parts, (size_t)list->count, sizeof *list->parts, "walls to compare", err))
+        return err->status;
+    struct measured_part *p = &list->parts[list->count++];
+    *p = (struct measured_part){.at = {a, b}};
     snprintf(p->name, sizeof p->name, "%s", name);
     return ST_OK;
 }
 
 struct reader {
-    struct wall_plan *plan;
+    struct measured_plan *plan;
     struct textfile t;
-    struct part_list lines; /* of walls, by which openings are placed: where an opening's S is 0, the way it grows */
-    /* of a truth in the rooms' frame */
-    double low[2], high[2];
-    int partition; /* 0 or 1: the axis that it stands across; -1: there is none */
-    double middle; /* of the partition */
+    struct measured_parts lines; /* of walls; at: the point where S of an opening is 0, and the direction of S */
+    /* scene-truth.txt */
+    double low[2], high[2]; /* bounds of the rooms */
+    int partition;          /* the axis across the partition, 0 or 1; -1: there is none */
+    double middle;          /* of the partition, along that axis */
 };
 
-static enum status numbers(struct reader *r, const char *const what[], double *v, int count, struct err *err)
+static enum status numbers(struct reader *r, const char *const fields[], double *v, int count, struct err *err)
 {
     for (int i = 0; i < count; i++)
-        if (textfile_double(&r->t, what[i], &v[i], err)) return err->status;
+        if (textfile_double(&r->t, fields[i], &v[i], err)) return err->status;
     return ST_OK;
 }
 
-/* NULL: there is none. */
-static const struct plan_part *line_named(const struct reader *r, const char *name)
+/* NULL: not found. */
+static const struct measured_part *line_named(const struct reader *r, const char *name)
 {
     for (int i = 0; i < r->lines.count; i++)
         if (!strncmp(r->lines.parts[i].name, name, sizeof r->lines.parts[i].name - 1)) return &r->lines.parts[i];
@@ -70,7 +72,7 @@ static enum status add_opening(struct reader *r, const char *name, struct vec3 o
     return add_part(&r->plan->openings, name, c[0], c[1], err);
 }
 
-/* ------------------------------------------------------------------------------------------------------ of a model */
+/* -------------------------------------------------------------------------------------------------- model/plan.txt */
 
 static enum status model_wall(struct reader *r, struct err *err)
 {
@@ -79,9 +81,9 @@ static enum status model_wall(struct reader *r, struct err *err)
     double n[2], c;
     if (textfile_word(&r->t, "a wall's name", &name, err) || textfile_expect(&r->t, "normal", err) ||
         numbers(r, direction, n, 2, err) || textfile_expect(&r->t, "at", err) ||
-        textfile_double(&r->t, "the wall's place", &c, err))
+        textfile_double(&r->t, "the wall's offset", &c, err))
         return err->status;
-    /* S is x or y; an angled wall counts it from a point that the plan does not tell */
+    /* S is x or y; on an angled wall it begins at a point that the plan does not hold */
     if (fmin(fabs(n[0]), fabs(n[1])) > 1e-9) return ST_OK;
     const struct vec3 along = fabs(n[0]) > 0.5 ? vec3_make(0, 1, 0) : vec3_make(1, 0, 0);
     return add_part(&r->lines, name, vec3_make(n[0] * c, n[1] * c, 0), along, err);
@@ -91,17 +93,17 @@ static enum status model_opening(struct reader *r, struct err *err)
 {
     char *name, *wall;
     double a[2], b[2];
-    static const char *const from[] = {"where it begins", "its sill"}, *const to[] = {"where it ends", "its head"};
+    static const char *const from[] = {"its start", "its sill"}, *const to[] = {"its end", "its head"};
     if (textfile_word(&r->t, "an opening's name", &name, err) || textfile_expect(&r->t, "on", err) ||
         textfile_word(&r->t, "a wall's name", &wall, err) || textfile_expect(&r->t, "from", err) ||
         numbers(r, from, a, 2, err) || textfile_expect(&r->t, "to", err) || numbers(r, to, b, 2, err))
         return err->status;
-    const struct plan_part *l = line_named(r, wall);
+    const struct measured_part *l = line_named(r, wall);
     if (!l) return ST_OK; /* on an angled wall */
     return add_opening(r, name, l->at[0], l->at[1], (double[]){a[0], b[0]}, (double[]){a[1], b[1]}, err);
 }
 
-/* Each wall's name, and the corner where it ends; the last one is where the first begins. */
+/* The name of each wall, and the corner at its end; the last corner is also the start of the first wall. */
 static enum status model_room(struct reader *r, struct err *err)
 {
     static const char *const ceiling[] = {"height", "slope along x", "slope along y"}, *const corner[] = {"x", "y"};
@@ -117,7 +119,7 @@ static enum status model_room(struct reader *r, struct err *err)
             add_part(&r->plan->faces, name, vec3_make(0, 0, floor), vec3_make(p[0], p[1], floor), err))
             return err->status;
     } while (textfile_more(&r->t));
-    struct plan_part *f = r->plan->faces.parts;
+    struct measured_part *f = r->plan->faces.parts;
     for (int i = first, last = r->plan->faces.count - 1; i <= last; i++)
         f[i].at[0] = f[i == first ? last : i - 1].at[1];
     return ST_OK;
@@ -131,16 +133,16 @@ static enum status model_statement(struct reader *r, const char *verb, struct er
     return ST_OK;
 }
 
-/* ------------------------------------------------------------------------------------------------------ of a truth */
+/* ----------------------------------------------------------------------------------- scene.txt and scene-truth.txt */
 
 static enum status described_wall(struct reader *r, struct err *err)
 {
-    static const char *const what[] = {"x0", "y0", "x1", "y1", "z0", "z1", "thickness"};
+    static const char *const fields[] = {"x0", "y0", "x1", "y1", "z0", "z1", "thickness"};
     char *name;
     double v[7];
-    if (textfile_word(&r->t, "a wall's name", &name, err) || numbers(r, what, v, 7, err)) return err->status;
+    if (textfile_word(&r->t, "a wall's name", &name, err) || numbers(r, fields, v, 7, err)) return err->status;
     const struct vec3 a = vec3_make(v[0], v[1], v[4]), b = vec3_make(v[2], v[3], v[4]);
-    if (!(vec3_length(vec3_sub(b, a)) > 0)) return textfile_error(&r->t, err, name, "a wall of some length");
+    if (!(vec3_length(vec3_sub(b, a)) > 0)) return textfile_error(&r->t, err, name, "a wall with a length");
     const struct vec3 d = vec3_normalize(vec3_sub(b, a)), off = vec3_scale(vec3_make(-d.y, d.x, 0), 0.5 * v[6]);
     if (add_part(&r->plan->faces, name, vec3_add(a, off), vec3_add(b, off), err) ||
         add_part(&r->plan->faces, name, vec3_sub(b, off), vec3_sub(a, off), err))
@@ -150,14 +152,14 @@ static enum status described_wall(struct reader *r, struct err *err)
 
 static enum status described_opening(struct reader *r, struct err *err)
 {
-    static const char *const what[] = {"s0", "s1", "z0", "z1"};
+    static const char *const fields[] = {"s0", "s1", "z0", "z1"};
     char *name, *wall;
     double v[4];
     if (textfile_word(&r->t, "an opening's name", &name, err) || textfile_word(&r->t, "a wall's name", &wall, err) ||
-        numbers(r, what, v, 4, err))
+        numbers(r, fields, v, 4, err))
         return err->status;
-    const struct plan_part *l = line_named(r, wall);
-    if (!l) return textfile_error(&r->t, err, wall, "the name of a wall that stands above");
+    const struct measured_part *l = line_named(r, wall);
+    if (!l) return textfile_error(&r->t, err, wall, "the name of a wall on a line above");
     return add_opening(r, name, l->at[0], l->at[1], v, v + 2, err);
 }
 
@@ -177,7 +179,7 @@ static enum status axis_of(struct reader *r, int *axis, struct err *err)
     return ST_OK;
 }
 
-/* Along `axis` at the other coordinate `at`. */
+/* An opening along `axis`, with the other coordinate `at`. */
 static enum status framed_opening(struct reader *r, const char *name, int axis, double at, const double s[2],
                                   const double z[2], struct err *err)
 {
@@ -188,14 +190,14 @@ static enum status framed_opening(struct reader *r, const char *name, int axis, 
 static enum status framed_window(struct reader *r, const char *name, struct err *err)
 {
     static const char *const sides[] = {"window_west", "window_south", "window_east", "window_north"};
-    static const char *const what[] = {"where it begins", "where it ends", "its sill", "its head"};
+    static const char *const fields[] = {"its start", "its end", "its sill", "its head"};
     double v[4];
     int axis = 0, side = 0;
     while (side < 4 && strcmp(name, sides[side])) side++;
     if (side == 4) return textfile_error(&r->t, err, name, "window_south, window_north, window_west or window_east");
-    if (r->low[0] > r->high[0]) return textfile_error(&r->t, err, name, "a room above it");
-    if (axis_of(r, &axis, err) || numbers(r, what, v, 2, err) || textfile_expect(&r->t, "z", err) ||
-        numbers(r, what + 2, v + 2, 2, err))
+    if (r->low[0] > r->high[0]) return textfile_error(&r->t, err, name, "a room on a line above");
+    if (axis_of(r, &axis, err) || numbers(r, fields, v, 2, err) || textfile_expect(&r->t, "z", err) ||
+        numbers(r, fields + 2, v + 2, 2, err))
         return err->status;
     if (axis == side % 2) return textfile_error(&r->t, err, axis ? "y" : "x", "the axis along its wall");
     return framed_opening(r, name, axis, (side < 2 ? r->low : r->high)[side % 2], v, v + 2, err);
@@ -203,18 +205,18 @@ static enum status framed_window(struct reader *r, const char *name, struct err 
 
 static enum status framed_statement(struct reader *r, const char *verb, struct err *err)
 {
-    static const char *const what[] = {"x0", "y0", "z0", "x1", "y1", "z1"};
+    static const char *const fields[] = {"x0", "y0", "z0", "x1", "y1", "z1"};
     double v[6], top;
     int axis = 0;
     char *next;
     if (!strcmp(verb, "partition")) {
-        if (axis_of(r, &r->partition, err) || numbers(r, what, v, 2, err)) return err->status;
+        if (axis_of(r, &r->partition, err) || numbers(r, fields, v, 2, err)) return err->status;
         r->middle = 0.5 * (v[0] + v[1]);
         return ST_OK;
     }
     if (!strcmp(verb, "door")) {
-        if (r->partition < 0) return textfile_error(&r->t, err, verb, "a partition above it");
-        if (axis_of(r, &axis, err) || numbers(r, what, v, 2, err) || textfile_expect(&r->t, "top", err) ||
+        if (r->partition < 0) return textfile_error(&r->t, err, verb, "a partition on a line above");
+        if (axis_of(r, &axis, err) || numbers(r, fields, v, 2, err) || textfile_expect(&r->t, "top", err) ||
             textfile_double(&r->t, "its head", &top, err))
             return err->status;
         if (axis == r->partition) return textfile_error(&r->t, err, axis ? "y" : "x", "the axis along the partition");
@@ -222,8 +224,8 @@ static enum status framed_statement(struct reader *r, const char *verb, struct e
     }
     if (!strncmp(verb, "window_", 7)) return framed_window(r, verb, err);
     for (int i = 0; i < 6; i++)
-        if (!textfile_more(&r->t) || textfile_word(&r->t, what[i], &next, err) || !scan_double(next, &v[i]))
-            return err->status; /* no room */
+        if (!textfile_more(&r->t) || textfile_word(&r->t, fields[i], &next, err) || !scan_double(next, &v[i]))
+            return err->status; /* another line */
     if (textfile_more(&r->t)) return ST_OK;
     if (!(v[3] > v[0] && v[4] > v[1])) return textfile_error(&r->t, err, verb, "a room with x0 < x1 and y0 < y1");
     for (int k = 0; k < 2; k++) {
@@ -238,12 +240,15 @@ static enum status framed_statement(struct reader *r, const char *verb, struct e
     return ST_OK;
 }
 
-enum status wall_plan_read(struct wall_plan *plan, const char *path, enum wall_plan_kind kind, struct err *err)
+enum status measured_plan_read(struct measured_plan *plan, const char *path, enum measured_plan_kind kind,
+                               struct err *err)
 {
-    static enum status (*const statements[])(struct reader *, const char *, struct err *) = {
-        [PLAN_OF_MODEL] = model_statement, [PLAN_DESCRIBED] = described_statement, [PLAN_FRAMED] = framed_statement};
+    static enum status (*const statements[])(struct reader *, const char *,
+                                             struct err *) = {[PLAN_FROM_MODEL] = model_statement,
+                                                              [PLAN_FROM_SCENE] = described_statement,
+                                                              [PLAN_FROM_SCENE_TRUTH] = framed_statement};
     struct reader r = {.plan = plan, .partition = -1, .low = {INFINITY, INFINITY}, .high = {-INFINITY, -INFINITY}};
-    *plan = (struct wall_plan){0};
+    *plan = (struct measured_plan){0};
     enum status st = textfile_open(&r.t, path, err);
     while (!st && textfile_next(&r.t)) {
         char *verb;
@@ -252,14 +257,14 @@ enum status wall_plan_read(struct wall_plan *plan, const char *path, enum wall_p
     }
     textfile_release(&r.t);
     free(r.lines.parts);
-    if (st) wall_plan_release(plan);
+    if (st) measured_plan_release(plan);
     return st;
 }
 
 /* ---------------------------------------------------------------------------------------------------------- errors */
 
-/* In plan: distance of p from the line of a face, and where along it p lies, 0 to 1. */
-static double off_face(const struct plan_part *f, struct vec3 p, double *along)
+/* In plan: the distance of p from the line of a face; *along: its position on the face, 0 to 1. */
+static double distance_to_face(const struct measured_part *f, struct vec3 p, double *along)
 {
     const double dx = f->at[1].x - f->at[0].x, dy = f->at[1].y - f->at[0].y, length = hypot(dx, dy);
     const double x = p.x - f->at[0].x, y = p.y - f->at[0].y;
@@ -271,75 +276,78 @@ static double off_face(const struct plan_part *f, struct vec3 p, double *along)
     return fabs(x * dy - y * dx) / length;
 }
 
-static double face_error(const struct plan_part *found, const struct plan_part *truth, double reach)
+static double face_error(const struct measured_part *found, const struct measured_part *truth, double max_distance)
 {
     const double ax = found->at[1].x - found->at[0].x, ay = found->at[1].y - found->at[0].y;
     const double bx = truth->at[1].x - truth->at[0].x, by = truth->at[1].y - truth->at[0].y;
     double s[2], d[2];
-    if (!(ax * bx + ay * by > SAME_WAY * hypot(ax, ay) * hypot(bx, by))) return INFINITY;
-    for (int k = 0; k < 2; k++) d[k] = off_face(truth, found->at[k], &s[k]);
-    const double most = fmax(d[0], d[1]);
-    return s[1] > 0 && s[0] < 1 && most <= reach ? most : INFINITY; /* they overlap */
+    if (!(ax * bx + ay * by > MIN_COSINE * hypot(ax, ay) * hypot(bx, by))) return INFINITY;
+    for (int k = 0; k < 2; k++) d[k] = distance_to_face(truth, found->at[k], &s[k]);
+    const double error = fmax(d[0], d[1]);
+    return s[1] > 0 && s[0] < 1 && error <= max_distance ? error : INFINITY;
 }
 
-static double opening_error(const struct plan_part *found, const struct plan_part *truth, double reach)
+static double opening_error(const struct measured_part *found, const struct measured_part *truth, double max_distance)
 {
     const struct vec3 a = vec3_sub(found->at[1], found->at[0]);
     const struct vec3 b = vec3_sub(truth->at[1], truth->at[0]);
     const double width = hypot(b.x, b.y), dot = a.x * b.x + a.y * b.y;
-    if (!(width > 0) || !(fabs(dot) > SAME_WAY * hypot(a.x, a.y) * width)) return INFINITY;
-    double most = 0;
+    if (!(width > 0) || !(fabs(dot) > MIN_COSINE * hypot(a.x, a.y) * width)) return INFINITY;
+    double error = 0;
     for (int k = 0; k < 2; k++) {
         const struct vec3 off = vec3_sub(found->at[dot < 0 ? 1 - k : k], truth->at[k]);
-        if (hypot(off.x, off.y) > reach) return INFINITY; /* across the wall too: it may be another one */
-        most = fmax(most, fabs(off.x * b.x + off.y * b.y) / width);
-        most = fmax(most, fabs(found->at[k].z - truth->at[k].z));
+        if (hypot(off.x, off.y) > max_distance) return INFINITY; /* also across the wall: it may be another wall */
+        error = fmax(error, fabs(off.x * b.x + off.y * b.y) / width);
+        error = fmax(error, fabs(found->at[k].z - truth->at[k].z));
     }
-    return most <= reach ? most : INFINITY;
+    return error <= max_distance ? error : INFINITY;
 }
 
-typedef double part_error(const struct plan_part *found, const struct plan_part *truth, double reach);
+/* INFINITY: they do not belong together. */
+typedef double part_error(const struct measured_part *found, const struct measured_part *truth, double max_distance);
 
-static double nearest(const struct plan_part *found, const struct part_list *truth, part_error *error, double reach)
+static double nearest(const struct measured_part *found, const struct measured_parts *truth, part_error *error,
+                      double max_distance)
 {
-    double least = INFINITY;
-    for (int k = 0; k < truth->count; k++) least = fmin(least, error(found, &truth->parts[k], reach));
-    return least;
+    double min = INFINITY;
+    for (int k = 0; k < truth->count; k++) min = fmin(min, error(found, &truth->parts[k], max_distance));
+    return min;
 }
 
-/* *strange: grows by those that have no true one. */
-static enum status find_errors(struct part_errors *e, const struct part_list *model, const struct part_list *truth,
-                               part_error *error, double reach, int *strange, struct err *err)
+/* Adds to *extra the parts of the model without a true one. */
+static enum status find_errors(struct part_errors *e, const struct measured_parts *model,
+                               const struct measured_parts *truth, part_error *error, double max_distance, int *extra,
+                               struct err *err)
 {
     double worst = -1;
     e->errors = calloc((size_t)model->count + 1, sizeof *e->errors);
     if (!e->errors) return err_nomem(err, "errors of walls", (size_t)model->count * sizeof *e->errors);
     for (int i = 0; i < model->count; i++) {
-        const double least = nearest(&model->parts[i], truth, error, reach);
-        *strange += !isfinite(least);
-        if (!isfinite(least)) continue;
-        e->errors[e->count++] = least;
-        if (!(least > worst)) continue;
-        worst = least;
+        const double min = nearest(&model->parts[i], truth, error, max_distance);
+        *extra += !isfinite(min);
+        if (!isfinite(min)) continue;
+        e->errors[e->count++] = min;
+        if (!(min > worst)) continue;
+        worst = min;
         memcpy(e->worst, model->parts[i].name, sizeof e->worst);
     }
     sort_doubles(e->errors, (size_t)e->count);
     return ST_OK;
 }
 
-enum status wall_errors_find(struct wall_errors *e, const struct wall_plan *model, const struct wall_plan *truth,
-                             double reach, struct err *err)
+enum status wall_errors_find(struct wall_errors *e, const struct measured_plan *model,
+                             const struct measured_plan *truth, double max_distance, struct err *err)
 {
     *e = (struct wall_errors){0};
-    if (find_errors(&e->faces, &model->faces, &truth->faces, face_error, reach, &e->strange, err) ||
-        find_errors(&e->openings, &model->openings, &truth->openings, opening_error, reach, &e->strange, err)) {
+    if (find_errors(&e->faces, &model->faces, &truth->faces, face_error, max_distance, &e->extra, err) ||
+        find_errors(&e->openings, &model->openings, &truth->openings, opening_error, max_distance, &e->extra, err)) {
         wall_errors_release(e);
         return err->status;
     }
     for (int k = 0; k < truth->openings.count; k++) {
         bool found = false;
         for (int i = 0; i < model->openings.count && !found; i++)
-            found = isfinite(opening_error(&model->openings.parts[i], &truth->openings.parts[k], reach));
+            found = isfinite(opening_error(&model->openings.parts[i], &truth->openings.parts[k], max_distance));
         e->missing += !found;
     }
     return ST_OK;

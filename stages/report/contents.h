@@ -1,7 +1,7 @@
-/* contents.h - what a scene's folders hold for the page, thumbnails included.
+/* contents.h - everything that the page shows of a scene, thumbnails included.
  *
- * folder is out/SCENE of one quality, shared the folder of its photographs and SfM (they may be the same). What is missing
- * or cannot be read is a sentence in `notes`, not an error: a page tells about half-made scenes too. */
+ * A product that is missing or cannot be read becomes a sentence in `notes`, not an error: a scene that is only partly
+ * made has a page too. */
 #ifndef REMODEL_CONTENTS_H
 #define REMODEL_CONTENTS_H
 
@@ -11,69 +11,73 @@
 #include "stages/report/metric_rows.h"
 #include "stages/report/pictures.h"
 #include "stages/report/settings.h"
+#include "stages/report/stage_list.h"
 #include "stages/report/usage.h"
+
+#define REPORT_STAGE "report" /* this stage, whose own log is still open */
 
 enum { NOTE_SIZE = 1024, PICTURE_HEIGHT = 240, HELD_HEIGHT = 360, AXES_HEIGHT = 480 };
 
 struct photo_card {
     const struct photo_record *record;
-    int views; /* made from it; 0: SfM could not place it, or it is held out */
+    int views; /* number of views made from it; 0: SfM could not place it, or it is held out */
     bool held_out;
     struct picture picture;
-    char trouble[NOTE_SIZE]; /* why there is no picture, or "" */
+    char problem[NOTE_SIZE]; /* why there is no picture, or "" */
 };
 
 struct view_card {
     const struct view *view;
-    const struct photo_record *photo;                     /* NULL if it cannot be told */
-    struct picture picture, depth_picture, truth_picture; /* both depths in the same colours */
-    struct depth_thumb depth, truth;                      /* truth: as `evaluate` left it; empty if it did not */
+    const struct photo_record *photo;                     /* NULL: unknown */
+    struct picture picture, depth_picture, truth_picture; /* both depths in one colour range */
+    struct depth_thumb depth, truth;                      /* truth: written by `evaluate`; may be empty */
     uint32_t segments;
-    double inherited; /* share of the pixels that have only their neighbours' depth; -1: the depth map does not say */
-    double near,
-        far; /* the true depths, else its own, without 2 % at either end: the colours' ends; 0 if none is known */
-    char trouble[NOTE_SIZE];
+    double inherited; /* share of the pixels whose depth comes from adjacent segments; -1: unknown */
+    /* range of the colours: the true depths, or else its own, without 2 % at either end; 0: no pixel has a depth */
+    double near, far;
+    char problem[NOTE_SIZE]; /* the last product that could not be read, or "" */
 };
 
-struct held_card { /* a view that was held out */
+struct held_card { /* a held-out view */
     const struct view *view;
-    struct picture picture, frame; /* the photograph, and what was rendered in its place */
-    char trouble[NOTE_SIZE];
+    struct picture picture, frame; /* the photograph, and the picture rendered in its place */
+    char problem[NOTE_SIZE];       /* the last product that could not be read, or "" */
 };
 
-struct pan_card { /* the same move in 2D, if it was made */
-    char *video;  /* file name, owned; NULL if there is none */
+struct pan_card { /* the same move in 2D */
+    char *video;  /* file name, owned; NULL: not made */
     long long video_bytes;
-    char view[256];        /* whose photograph it shows; "" unknown */
-    double misfit[2];      /* of the first and the last frame: px by which it misses the scene's points; -1 unknown */
+    char view[256];        /* the view that it shows; "": unknown */
+    double misfit[2];      /* median error of the scene's points in the first and last frame, px; -1: unknown */
     struct picture poster; /* the first frame */
 };
 
 struct effect_card {
     char name[256];
-    struct camera_path path; /* frame_count 0: not planned, or it cannot be read */
-    char *video;             /* file name, owned; NULL if there is none */
+    struct camera_path path; /* frame_count 0: missing, or it cannot be read */
+    char *video;             /* file name, owned; NULL: not made */
     long long video_bytes;
-    double *holes, *unfilled; /* a frame: share of its pixels, before and after filling; -1 unknown */
+    double *holes, *unfilled; /* of each frame: share of its pixels before and after filling; -1: unknown */
     int frames_found;
     struct picture poster; /* the first frame */
-    char *validity;        /* file name of the picture of its move's valid viewpoints, owned; NULL if there is none */
+    char *validity;        /* file name of the picture of valid viewpoints, owned; NULL: not made */
     struct pan_card pan;
 };
 
-struct axes_card { /* a view on which the room's axes are drawn */
+struct axes_card { /* a view with the room's axes drawn on it */
     char view[256];
     struct picture picture;
 };
 
-struct model_card {           /* a solid model: that of the scene's script, or of an edit */
-    char name[256];           /* "" for the unedited one */
-    char *plan, *view;        /* files of its pictures, owned; NULL if there is none */
-    char **overlays, **named; /* files with its edges on photographs, owned, and the photographs' ids */
+struct model_card {                 /* a solid model */
+    char name[256];                 /* the edit; "": the unedited model */
+    char *plan, *view;              /* files of its pictures, owned; NULL: not made */
+    char **overlays, **overlay_ids; /* files with its edges on photographs, and the photographs' ids; owned */
     int overlay_count;
 };
 
 struct contents {
+    struct stage_list stages;
     struct photo_list photos;
     struct camera_set views;
     struct lens_list lenses;
@@ -92,15 +96,15 @@ struct contents {
     int model_count;
     bool has_metrics;
     struct metric_rows metrics, view_metrics;
-    char (*left_out)[256]; /* photographs in the folder that are not in the list */
+    char (*left_out)[256]; /* photographs of the folder that are not in the list */
     int left_out_count;
 
     double known;                   /* mean share of pixels with a depth, over views that have a depth map */
-    double inherited;               /* the same of inherited ones; -1: some depth map does not say */
-    int depth_count;                /* views that have one */
-    long long segments;             /* of all views */
+    double inherited;               /* the same for inherited depths; -1: unknown for some depth map */
+    int depth_count;                /* views with a depth map */
+    long long segments;             /* sum over the views */
     double error_median, error_rms; /* reprojection of the points into the rectified views, px */
-    double track_mean;              /* observations a point */
+    double track_mean;              /* observations per point */
 
     struct usage_table usage;
     struct settings settings;
@@ -109,9 +113,17 @@ struct contents {
     int note_count;
 };
 
-/* defaults may be NULL. ST_IO if `folder` is not there; ST_NOMEM. */
-enum status contents_read(struct contents *c, const char *folder, const char *shared, const char *photos,
-                          const char *defaults, struct err *err);
+struct contents_sources {
+    const char *folder;   /* out/SCENE of one quality */
+    const char *shared;   /* the folder of photo records and SfM; may be the same */
+    const char *photos;   /* the folder of the photographs */
+    const char *stages;   /* names of the pipeline's stages in data-flow order, separated by spaces */
+    const char *defaults; /* default configuration, or NULL */
+};
+
+/* c is empty on entry; the caller releases it, also after an error. ST_IO: there is no `folder`; ST_USAGE: `stages` is
+ * not a list of names; ST_NOMEM. */
+enum status contents_read(struct contents *c, const struct contents_sources *from, struct err *err);
 void contents_release(struct contents *c);
 
 #endif

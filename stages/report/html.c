@@ -1,3 +1,4 @@
+/* html.c - see html.h. */
 #include "stages/report/html.h"
 
 #include <stdarg.h>
@@ -5,10 +6,10 @@
 #include <stdint.h>
 #include <string.h>
 
-/* Length of the UTF-8 character at `s` and its code; 0 if the bytes are none (overlong forms and surrogates included). */
+/* Length and code of the UTF-8 character at `s`; 0 if it is not one (an overlong form or a surrogate is not). */
 static size_t utf8_next(const unsigned char *s, size_t size, uint32_t *code)
 {
-    static const uint32_t LEAST[5] = {0, 0, 0x80, 0x800, 0x10000};
+    static const uint32_t MIN_CODE[5] = {0, 0, 0x80, 0x800, 0x10000};
     size_t length = s[0] < 0x80             ? 1
                     : (s[0] & 0xe0) == 0xc0 ? 2
                     : (s[0] & 0xf0) == 0xe0 ? 3
@@ -20,7 +21,7 @@ static size_t utf8_next(const unsigned char *s, size_t size, uint32_t *code)
         if ((s[i] & 0xc0) != 0x80) return 0;
         *code = *code << 6 | (s[i] & 0x3fu);
     }
-    if (*code < LEAST[length] || *code > 0x10ffff || (*code >= 0xd800 && *code <= 0xdfff)) return 0;
+    if (*code < MIN_CODE[length] || *code > 0x10ffff || (*code >= 0xd800 && *code <= 0xdfff)) return 0;
     return length;
 }
 
@@ -83,7 +84,7 @@ void html_base64(FILE *to, const void *bytes, size_t size)
 
 enum status html_base64_file(FILE *to, const char *path, struct err *err)
 {
-    unsigned char part[3 * 16384]; /* whole groups of three, so that only the last part is padded */
+    unsigned char part[3 * 16384]; /* a multiple of three, so that only the last part is padded */
     size_t size;
     FILE *from = fopen(path, "rb");
     enum status st = from ? ST_OK : err_errno(err, "open", path);

@@ -1,8 +1,10 @@
+/* metric_rows.c - see metric_rows.h. */
 #include "stages/report/metric_rows.h"
 
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/base/array.h"
 #include "common/base/textfile.h"
 
 static enum status read_word(struct textfile *t, const char *what, char *to, size_t size, struct err *err)
@@ -16,30 +18,26 @@ static enum status read_word(struct textfile *t, const char *what, char *to, siz
 
 static enum status read_row(struct metric_rows *r, struct textfile *t, bool of_views, struct err *err)
 {
-    size_t bytes = ((size_t)r->count + 1) * sizeof *r->rows;
-    struct metric_row *grown = realloc(r->rows, bytes), m = {0};
+    struct metric_row m = {0};
     char *view = NULL;
-    if (!grown) return err_nomem(err, "metrics", bytes);
-    r->rows = grown;
-    if ((of_views && textfile_word(t, "view", &view, err)) || read_word(t, "metric", m.name, sizeof m.name, err) ||
+    if (array_append(&r->rows, (size_t)r->count, sizeof *r->rows, "metrics", err) ||
+        (of_views && textfile_word(t, "view", &view, err)) || read_word(t, "metric", m.name, sizeof m.name, err) ||
         textfile_double(t, "value", &m.value, err) || read_word(t, "unit", m.unit, sizeof m.unit, err) ||
         read_word(t, "direction", m.direction, sizeof m.direction, err) || textfile_end(t, err))
         return err->status;
-    if (!(m.view = strdup(view ? view : ""))) return err_nomem(err, "metrics", bytes);
+    if (!(m.view = strdup(view ? view : ""))) return err_nomem(err, "metrics", sizeof m);
     r->rows[r->count++] = m;
     return ST_OK;
 }
 
-/* The comment's text, if it is one for people. */
+/* Keeps the text of a comment that is for the page. */
 static enum status read_note(struct metric_rows *r, const char *text, struct err *err)
 {
-    size_t bytes = ((size_t)r->note_count + 1) * sizeof *r->notes;
     if (strncmp(text, "# skipped ", 10) && strncmp(text, "# note: ", 8)) return ST_OK;
-    char **grown = realloc(r->notes, bytes);
-    if (!grown) return err_nomem(err, "notes", bytes);
-    r->notes = grown;
-    if (!(grown[r->note_count] = strdup(text + (text[2] == 'n' ? 8 : 2)))) return err_nomem(err, "notes", bytes);
-    r->note_count++;
+    if (array_append(&r->notes, (size_t)r->note_count, sizeof *r->notes, "notes", err)) return err->status;
+    char *note = strdup(text + (text[2] == 'n' ? 8 : 2));
+    if (!note) return err_nomem(err, "a note", strlen(text));
+    r->notes[r->note_count++] = note;
     return ST_OK;
 }
 

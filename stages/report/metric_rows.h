@@ -1,7 +1,7 @@
-/* metric_rows.h - what `evaluate` measured: metrics.tsv of a scene, evaluate/views.tsv of its views.
+/* metric_rows.h - the metrics that `evaluate` wrote: metrics.tsv of a scene, evaluate/views.tsv of its views.
  *
- * Lines "NAME VALUE UNIT DIRECTION", in a table of views with the view's name before them. Of the comments those that
- * begin with "skipped" or "note:" are for people. */
+ * A line is "NAME VALUE UNIT DIRECTION"; in views.tsv the name of the view comes first. Comments that begin with
+ * "skipped" or "note:" are kept for the page. */
 #ifndef REMODEL_METRIC_ROWS_H
 #define REMODEL_METRIC_ROWS_H
 
@@ -10,7 +10,7 @@
 #include "common/base/err.h"
 
 struct metric_row {
-    char *view; /* owned; "" for the scene's */
+    char *view; /* owned; "" for the scene */
     char name[64], unit[16], direction[16];
     double value;
 };
@@ -21,7 +21,7 @@ struct metric_rows {
     int count, note_count;
 };
 
-/* ST_DATA with file and line: a line that is none of these. */
+/* r is overwritten, and empty after an error. ST_DATA with file and line: a line of another form. */
 enum status metric_rows_read(struct metric_rows *r, const char *path, bool of_views, struct err *err);
 const struct metric_row *metric_rows_find(const struct metric_rows *r, const char *view,
                                           const char *name); /* or NULL */

@@ -1,5 +1,7 @@
-/* Colours of depth: a path through OKLab (Ottosson 2020) with lightness linear in t, hue from blue-violet over red to
- * yellow, and chroma kept within sRGB's gamut, so that equal steps of 1/z look equal and grey print keeps their order. */
+/* pictures.c - see pictures.h.
+ *
+ * The colours of depth are a path through OKLab [Ottosson 2020]: lightness linear in t, hue from blue-violet through
+ * red to yellow, chroma within sRGB's gamut. So equal steps of 1/z look equal, and greyscale prints keep the order. */
 #include "stages/report/pictures.h"
 
 #include <math.h>
@@ -7,6 +9,7 @@
 #include <string.h>
 
 #include "common/base/sort.h"
+#include "common/math/numbers.h"
 
 void picture_release(struct picture *p)
 {
@@ -50,19 +53,19 @@ void upright_source(int orientation, int width, int height, int x, int y, int *s
     }
 }
 
-/* Size of the thumb in stored rows: `upright` px high once turned, never larger than the source. */
+/* Size of the thumbnail before it is turned: `upright` px high afterwards, never larger than the source. */
 static void thumb_size(int width, int height, int orientation, int upright, int *thumb_width, int *thumb_height)
 {
-    int side = orientation >= 5 ? width : height; /* what will be the height */
+    int side = orientation >= 5 ? width : height; /* the upright height */
     double scale = side > upright ? (double)upright / side : 1;
     *thumb_width = (int)fmax(1, floor(width * scale + 0.5));
     *thumb_height = (int)fmax(1, floor(height * scale + 0.5));
 }
 
-/* Linear samples, one of the two kinds. */
+/* Either samples to look up in a table, or planes of linear light. */
 struct source {
     int width, height, orientation;
-    const uint16_t *samples; /* interleaved, looked up in `linear` */
+    const uint16_t *samples; /* interleaved; indices into `linear` */
     const float *linear;
     const float *planes[3];
 };
@@ -107,7 +110,7 @@ enum status picture_from_photo(struct picture *p, const struct photo *photo, int
 {
     int levels = photo->info.bits == 16 ? 65536 : 256;
     float *linear = malloc((size_t)levels * sizeof *linear);
-    if (!linear) return err_nomem(err, "a table of sRGB", (size_t)levels * sizeof *linear);
+    if (!linear) return err_nomem(err, "an sRGB table", (size_t)levels * sizeof *linear);
     for (int i = 0; i < levels; i++) linear[i] = linear_from_srgb((float)i / (float)(levels - 1));
     struct source s = {photo->info.width, photo->info.height, photo->info.orientation, photo->samples, linear, {NULL}};
     enum status st = shrink(p, &s, height, err);
@@ -122,7 +125,7 @@ enum status picture_from_exr(struct picture *p, const struct exr_image *im, int 
     struct source s = {im->width, im->height, orientation, NULL, NULL, {NULL}};
     for (int c = 0; c < 3; c++) {
         const struct exr_plane *plane = exr_find(im, NAMES[c]);
-        if (!plane || !plane->f) return err_set(err, ST_DATA, "The picture has no channel %s of floats.", NAMES[c]);
+        if (!plane || !plane->f) return err_set(err, ST_DATA, "the picture has no float channel %s.", NAMES[c]);
         s.planes[c] = plane->f;
     }
     return shrink(p, &s, height, err);
@@ -152,7 +155,7 @@ enum status depth_thumb_make(struct depth_thumb *d, const float *z, int width, i
 void depth_colour(double t, unsigned char rgb[3])
 {
     t = t > 0 ? t < 1 ? t : 1 : 0;
-    double light = 0.20 + 0.72 * t, hue = (285 + 165 * t) * (3.14159265358979323846 / 180);
+    double light = 0.20 + 0.72 * t, hue = (285 + 165 * t) * DEGREE;
     double chroma = 0.095 + 0.42 * t * pow(1 - t, 1.5), a = chroma * cos(hue), b = chroma * sin(hue);
     double l = pow(light + 0.3963377774 * a + 0.2158037573 * b, 3);
     double m = pow(light - 0.1055613458 * a - 0.0638541728 * b, 3);

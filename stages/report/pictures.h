@@ -1,7 +1,7 @@
-/* pictures.h - small pictures for the page: thumbnails, turned upright, and colour-mapped depth.
+/* pictures.h - small pictures for the page: upright thumbnails, and depth in colours.
  *
- * 8-bit sRGB, RGB interleaved, row-major. Depth is z along the camera's axis, 0 unknown; it is shown by 1/z between two
- * stated depths, near bright and far dark. */
+ * 8-bit sRGB, RGB interleaved, row-major. Depth is z along the camera's axis, 0 unknown; colours are linear in 1/z
+ * between a near and a far depth, near bright and far dark. */
 #ifndef REMODEL_PICTURES_H
 #define REMODEL_PICTURES_H
 
@@ -17,33 +17,35 @@ struct picture {
 
 struct depth_thumb {
     int width, height;
-    float *z;     /* owned; the nearest pixel's, never a mean over an edge */
+    float *z;     /* owned; samples of single pixels, because a mean across an edge is no depth */
     double known; /* share of the full-size pixels that have a depth */
 };
 
 void picture_release(struct picture *p);
 void depth_thumb_release(struct depth_thumb *d);
 
-/* Shrinks by box means of linear light to `height` px once it is turned upright (never enlarges), and turns it. */
+/* Turns the photo upright and shrinks it to `height` px by box means of linear light; never enlarges it. */
 enum status picture_from_photo(struct picture *p, const struct photo *photo, int height, struct err *err);
-/* The same for planes R, G, B (scene-linear, 1 is white). orientation as EXIF's. */
+/* The same for float channels R, G, B (scene-linear, 1 is white). orientation: EXIF's, 1 to 8. ST_DATA: no such
+ * channel. */
 enum status picture_from_exr(struct picture *p, const struct exr_image *im, int orientation, int height,
                              struct err *err);
 
+/* z: width x height in the stored orientation; upright: the maximum height once turned, px. */
 enum status depth_thumb_make(struct depth_thumb *d, const float *z, int width, int height, int orientation, int upright,
                              struct err *err);
 
-/* A pixel of the upright picture of a stored one of width x height: where it is in the stored rows. */
+/* The stored pixel of pixel (x, y) of the upright picture; width x height is the stored size. */
 void upright_source(int orientation, int width, int height, int x, int y, int *source_x, int *source_y);
 
-/* 0 far .. 1 near; lightness grows strictly. */
+/* t: 0 far, 1 near, clamped; a NaN is far. Lightness grows strictly with t. */
 void depth_colour(double t, unsigned char rgb[3]);
 
-/* Colours by (1/z - 1/far) / (1/near - 1/far), clamped; unknown is hatched in greys. */
+/* t is (1/z - 1/far) / (1/near - 1/far); unknown pixels are hatched in grey. */
 enum status picture_from_depth(struct picture *p, const struct depth_thumb *d, double near, double far,
                                struct err *err);
 
-/* The depths that bound a share of 1 - 2 * cut of the known pixels. False if none is known, or there is no memory. */
+/* The range of the known depths, without a share of `cut` at either end. False: none is known, or no memory. */
 bool depth_range(const struct depth_thumb *d, double cut, double *near, double *far);
 
 #endif

@@ -1,25 +1,28 @@
-/* report.c - one page about a scene: video, photographs, depth, figures, times, parameters, and what was left out.
+/* report.c - one page about a scene: videos, photographs, depth, key numbers, times, parameters, and what was left out.
  *
- * reads   FOLDER/{views,depth,parallax,log,slice}, SHARED/{photos,log,slice}   whatever is there of them
- *         FOLDER/metrics.tsv, evaluate, holdout   what was measured, the truth, held-out photographs
- *         FOLDER/model, remodel          the solid models' pictures
+ * reads   FOLDER/{views,depth,parallax,log,slice}, SHARED/{photos,log,slice}   as far as they exist
+ *         FOLDER/metrics.tsv, evaluate, holdout   metrics, the truth, held-out photographs
+ *         FOLDER/model, remodel          pictures of the solid models
  *         PHOTOS/FILE                    the photographs, for thumbnails
- *         DEFAULTS                       the default parameters, so that changed ones stand out
- * writes  OUT                            HTML with everything inside; what is missing is said there */
+ *         DEFAULTS                       the default parameters; the page marks those that differ
+ * writes  OUT                            self-contained HTML; it lists the products that are missing */
 #include "common/base/cli.h"
 #include "common/base/outfile.h"
 #include "stages/report/page.h"
 
 int main(int argc, char **argv)
 {
-    const char *scene = NULL, *folder = NULL, *shared = NULL, *photos = NULL, *defaults = NULL, *out = NULL;
+    const char *scene = NULL, *out = NULL;
+    struct contents_sources from = {0};
     const struct cli_opt opts[] = {
-        CLI_ABOUT("writes one HTML page about a scene, with its video, pictures and figures inside"),
-        CLI_STR("scene", &scene, CLI_REQUIRED, "the scene's name, for the title"),
-        CLI_STR("folder", &folder, CLI_REQUIRED, "folder of the scene's products"),
-        CLI_STR("shared", &shared, CLI_REQUIRED, "folder of its photo records and SfM, shared by qualities"),
-        CLI_STR("photos", &photos, CLI_REQUIRED, "folder of the photographs"),
-        CLI_STR("defaults", &defaults, CLI_OPTIONAL, "default configuration, to mark parameters that differ"),
+        CLI_ABOUT("Writes one self-contained HTML page about a scene: videos, pictures, key numbers."),
+        CLI_STR("scene", &scene, CLI_REQUIRED, "name of the scene, for the title"),
+        CLI_STR("folder", &from.folder, CLI_REQUIRED, "folder of the scene's products"),
+        CLI_STR("shared", &from.shared, CLI_REQUIRED, "folder of its photo records and SfM, shared by all qualities"),
+        CLI_STR("photos", &from.photos, CLI_REQUIRED, "folder of the photographs"),
+        CLI_STR("stages", &from.stages, CLI_REQUIRED, "names of all stages in data-flow order, separated by spaces"),
+        CLI_STR("defaults", &from.defaults, CLI_OPTIONAL,
+                "default configuration; the page marks parameters that differ"),
         CLI_STR("out", &out, CLI_REQUIRED, "HTML file to write"),
         CLI_END,
     };
@@ -29,8 +32,8 @@ int main(int argc, char **argv)
     struct err err = ERR_INIT;
     enum cli_verdict verdict = cli_parse(argc, argv, "report", opts, &prov, &err);
 
-    if (verdict == CLI_RUN && !contents_read(&contents, folder, shared, photos, defaults, &err) &&
-        !outfile_open(&page, out, &err) && !page_write(page.fp, scene, &contents, &err))
+    if (verdict == CLI_RUN && !contents_read(&contents, &from, &err) && !outfile_open(&page, out, &err) &&
+        !page_write(page.fp, scene, &contents, &err))
         outfile_commit(&page, &err);
     err_report(&err);
 

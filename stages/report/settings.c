@@ -1,3 +1,4 @@
+/* settings.c - see settings.h. */
 #include "stages/report/settings.h"
 
 #include <dirent.h>
@@ -7,6 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/base/array.h"
+
 static struct setting *find(const struct settings *s, const char *section, const char *key)
 {
     for (int i = 0; i < s->count; i++)
@@ -14,19 +17,24 @@ static struct setting *find(const struct settings *s, const char *section, const
     return NULL;
 }
 
-static int take(void *user, const char *section, const char *key, const char *value)
+struct reader {
+    struct settings *settings;
+    struct err *err;
+};
+
+/* Callback of ini_parse(); 0 stops it at the line. */
+static int add_setting(void *user, const char *section, const char *key, const char *value)
 {
-    struct settings *s = user;
+    const struct reader *reader = user;
+    struct settings *s = reader->settings;
     struct setting *item = find(s, section, key);
     if (!item) {
-        int at = s->count; /* behind the last of its section */
+        int at = s->count; /* after the last item of its section */
         for (int i = 0; i < s->count; i++)
             if (!strcmp(s->items[i].section, section)) at = i + 1;
-        struct setting *grown = realloc(s->items, ((size_t)s->count + 1) * sizeof *grown);
-        if (!grown) return 0;
-        s->items = grown;
-        memmove(grown + at + 1, grown + at, (size_t)(s->count++ - at) * sizeof *grown);
-        item = &grown[at];
+        if (array_append(&s->items, (size_t)s->count, sizeof *s->items, "parameters", reader->err)) return 0;
+        item = &s->items[at];
+        memmove(item + 1, item, (size_t)(s->count++ - at) * sizeof *item);
         *item = (struct setting){0};
         snprintf(item->section, sizeof item->section, "%s", section);
         snprintf(item->key, sizeof item->key, "%s", key);
@@ -37,10 +45,11 @@ static int take(void *user, const char *section, const char *key, const char *va
 
 enum status settings_add_file(struct settings *s, const char *path, struct err *err)
 {
-    int rc = ini_parse(path, take, s);
+    struct reader reader = {s, err};
+    int rc = ini_parse(path, add_setting, &reader);
     if (rc == -1) return err_errno(err, "open", path);
-    if (rc) return err_set(err, ST_DATA, "%s:%d: this line is no \"key = value\" nor [section].", path, rc);
-    return ST_OK;
+    if (rc) err_set(err, ST_DATA, "%s:%d: found another line, wanted \"key = value\" or \"[section]\".", path, rc);
+    return err->status;
 }
 
 static int is_config(const struct dirent *e)
@@ -77,10 +86,10 @@ void settings_compare(struct settings *s, const struct settings *defaults)
 {
     for (int i = 0; i < s->count; i++) {
         struct setting *item = &s->items[i];
-        const struct setting *usual = find(defaults, item->section, item->key);
-        if (usual) memcpy(item->usual, usual->value, sizeof item->usual);
-        item->known = usual != NULL;
-        item->changed = usual && !same_value(item->value, usual->value);
+        const struct setting *d = find(defaults, item->section, item->key);
+        if (d) memcpy(item->default_value, d->value, sizeof item->default_value);
+        item->known = d != NULL;
+        item->changed = d && !same_value(item->value, d->value);
     }
 }
 

@@ -1,6 +1,6 @@
 /* settings.h - the parameters that stages ran with, from their slices of the configuration: slice/STAGE.cfg.
  *
- * A key given twice counts as given last, as the stages read it. */
+ * Of a key that occurs twice the last value counts, as in the stages. */
 #ifndef REMODEL_SETTINGS_H
 #define REMODEL_SETTINGS_H
 
@@ -10,19 +10,20 @@
 
 struct setting {
     char section[64], key[64], value[256];
-    char usual[256]; /* the default, if it is known */
-    bool known, changed;
+    char default_value[256]; /* "" unless `known` */
+    bool known;              /* there is a default */
+    bool changed;            /* the value differs from it */
 };
 
 struct settings {
-    struct setting *items; /* sections together, in order of first appearance */
+    struct setting *items; /* grouped by section, sections in order of first appearance */
     int count;
 };
 
-/* Adds all *.cfg of a folder, in order of name. A folder that is not there adds nothing. */
+/* Adds all *.cfg of a folder, in order of name; a missing folder adds nothing. ST_IO; ST_DATA with file and line. */
 enum status settings_add_folder(struct settings *s, const char *folder, struct err *err);
 enum status settings_add_file(struct settings *s, const char *path, struct err *err);
-/* Fills usual, known and changed from the defaults' sections and keys. Numbers are compared as numbers. */
+/* Sets default_value, known and changed. Numbers are compared as numbers: 2 is 2.0. */
 void settings_compare(struct settings *s, const struct settings *defaults);
 void settings_release(struct settings *s);
 

@@ -1,3 +1,4 @@
+/* style.c - see style.h. */
 #include "stages/report/style.h"
 
 const char page_style[] =

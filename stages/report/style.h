@@ -1,4 +1,4 @@
-/* style.h - the page's CSS: light and dark, wide and narrow. */
+/* style.h - the CSS of the page: light and dark modes, wide and narrow windows, print. */
 #ifndef REMODEL_STYLE_H
 #define REMODEL_STYLE_H
 

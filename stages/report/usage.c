@@ -1,3 +1,4 @@
+/* usage.c - see usage.h. */
 #include "stages/report/usage.h"
 
 #include <ctype.h>
@@ -8,9 +9,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { WARNINGS_MOST = 200, WARNING_LONGEST = 1000 };
+#include "common/base/array.h"
 
-/* Copies the letters, digits, _ and - at the line's beginning; false if there are none or too many. */
+enum { MAX_WARNINGS = 200, MAX_WARNING_LENGTH = 1000 };
+
+/* Copies the leading letters, digits, _ and - of the line; false if there are none or more than 63. */
 static bool stage_name(char name[64], const char *line, size_t size)
 {
     size_t n = 0;
@@ -21,14 +24,14 @@ static bool stage_name(char name[64], const char *line, size_t size)
     return true;
 }
 
-/* "NUMBER WORDS" at *at; moves behind it. */
-static bool take_number(const char **at, const char *words, double *value)
+/* Reads a number and the text after it at *at, and moves *at past both. */
+static bool take_number(const char **at, const char *text, double *value)
 {
     char *end;
-    if (!isdigit((unsigned char)**at)) return false; /* strtod would take blanks, signs, "inf" and "nan" */
+    if (!isdigit((unsigned char)**at)) return false; /* strtod would accept spaces, signs, "inf" and "nan" */
     *value = strtod(*at, &end);
-    if (!(*value <= 1e12) || strncmp(end, words, strlen(words))) return false;
-    *at = end + strlen(words);
+    if (!(*value <= 1e12) || strncmp(end, text, strlen(text))) return false;
+    *at = end + strlen(text);
     return true;
 }
 
@@ -59,10 +62,9 @@ static enum status find_stage(struct usage_table *table, const char *name, struc
             *stage = &table->stages[i];
             return ST_OK;
         }
-    struct stage_usage *grown = realloc(table->stages, ((size_t)table->stage_count + 1) * sizeof *grown);
-    if (!grown) return err_nomem(err, "the stages' times", ((size_t)table->stage_count + 1) * sizeof *grown);
-    table->stages = grown;
-    *stage = &grown[table->stage_count++];
+    if (array_append(&table->stages, (size_t)table->stage_count, sizeof *table->stages, "times of stages", err))
+        return err->status;
+    *stage = &table->stages[table->stage_count++];
     **stage = (struct stage_usage){0};
     snprintf((*stage)->sum.stage, sizeof(*stage)->sum.stage, "%s", name);
     return ST_OK;
@@ -71,7 +73,7 @@ static enum status find_stage(struct usage_table *table, const char *name, struc
 static enum status add_warning(struct usage_table *table, const char *stage, const char *log, const char *text,
                                size_t size, struct err *err)
 {
-    if (size > WARNING_LONGEST) size = WARNING_LONGEST;
+    if (size > MAX_WARNING_LENGTH) size = MAX_WARNING_LENGTH;
     for (int i = 0; i < table->warning_count; i++) {
         struct log_warning *w = &table->warnings[i];
         if (!strcmp(w->stage, stage) && strlen(w->text) == size && !memcmp(w->text, text, size)) {
@@ -79,14 +81,13 @@ static enum status add_warning(struct usage_table *table, const char *stage, con
             return ST_OK;
         }
     }
-    if (table->warning_count == WARNINGS_MOST) {
+    if (table->warning_count == MAX_WARNINGS) {
         table->warnings_dropped++;
         return ST_OK;
     }
-    struct log_warning *grown = realloc(table->warnings, ((size_t)table->warning_count + 1) * sizeof *grown);
-    if (!grown) return err_nomem(err, "warnings", ((size_t)table->warning_count + 1) * sizeof *grown);
-    table->warnings = grown;
-    struct log_warning *w = &grown[table->warning_count];
+    if (array_append(&table->warnings, (size_t)table->warning_count, sizeof *table->warnings, "warnings", err))
+        return err->status;
+    struct log_warning *w = &table->warnings[table->warning_count];
     *w = (struct log_warning){.text = strndup(text, size), .count = 1};
     if (!w->text) return err_nomem(err, "a warning", size);
     table->warning_count++;
@@ -103,11 +104,11 @@ enum status usage_add_log(struct usage_table *table, const char *name, const cha
     static const char WARNING[] = ": warning: ";
     struct usage last = {0};
     struct stage_usage *stage = NULL;
-    char of[64], word[64];
+    char log_stage[64], line_stage[64];
     bool ended = false;
     enum status st = ST_OK;
 
-    if (!stage_name(of, name, strcspn(name, "."))) return ST_OK; /* not a stage's log */
+    if (!stage_name(log_stage, name, strcspn(name, "."))) return ST_OK; /* not the log of a stage */
     for (size_t at = 0; at < size && !st;) {
         const char *line = bytes + at, *end = memchr(line, '\n', size - at);
         size_t length = end ? (size_t)(end - line) : size - at;
@@ -117,12 +118,12 @@ enum status usage_add_log(struct usage_table *table, const char *name, const cha
             ended = true;
             continue;
         }
-        if (!stage_name(word, line, length)) continue;
-        size_t head = strlen(word) + strlen(WARNING);
-        if (length >= head && !memcmp(line + strlen(word), WARNING, strlen(WARNING)) && !memchr(line, 0, length))
-            st = add_warning(table, word, name, line + head, length - head, err);
+        if (!stage_name(line_stage, line, length)) continue;
+        size_t head = strlen(line_stage) + strlen(WARNING);
+        if (length >= head && !memcmp(line + strlen(line_stage), WARNING, strlen(WARNING)) && !memchr(line, 0, length))
+            st = add_warning(table, line_stage, name, line + head, length - head, err);
     }
-    if (st || (st = find_stage(table, of, &stage, err))) return st;
+    if (st || (st = find_stage(table, log_stage, &stage, err))) return st;
     stage->runs += ended;
     stage->unfinished += !ended;
     stage->sum.wall += last.wall;
@@ -134,21 +135,21 @@ enum status usage_add_log(struct usage_table *table, const char *name, const cha
 static enum status read_all(const char *path, char **bytes, size_t *size, struct err *err)
 {
     FILE *fp = fopen(path, "rb");
-    size_t room = 0, got;
+    size_t capacity = 0, got;
 
     *bytes = NULL;
     *size = 0;
     if (!fp) return err_errno(err, "open", path);
     do {
-        char *grown = realloc(*bytes, room += 65536);
+        char *grown = realloc(*bytes, capacity += 65536);
         if (!grown) {
             fclose(fp);
             free(*bytes);
-            return err_nomem(err, path, room);
+            return err_nomem(err, path, capacity);
         }
         *bytes = grown;
-        *size += got = fread(*bytes + *size, 1, room - *size, fp);
-    } while (got && *size == room);
+        *size += got = fread(*bytes + *size, 1, capacity - *size, fp);
+    } while (got && *size == capacity);
     enum status st = ferror(fp) ? err_errno(err, "read", path) : ST_OK;
     fclose(fp);
     if (st) free(*bytes);

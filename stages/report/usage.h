@@ -1,8 +1,7 @@
-/* usage.h - what the stages' logs say: time and memory used, and warnings.
+/* usage.h - time, memory and warnings from the stages' logs.
  *
- * A stage's last line on stderr is "STAGE: used SECONDS s wall, SECONDS s cpu, MIB MiB peak"; its log stands in a
- * folder log/ as STAGE.ITEM.log. Warnings are lines "STAGE: warning: TEXT". Logs may hold anything: what is not such a line
- * is passed over. */
+ * The log of a run is log/STAGE.ITEM.log. Its last line is "STAGE: used SECONDS s wall, SECONDS s cpu, MIB MiB peak";
+ * warnings are lines "STAGE: warning: TEXT". All other lines are ignored. */
 #ifndef REMODEL_USAGE_H
 #define REMODEL_USAGE_H
 
@@ -16,33 +15,34 @@ struct usage {
     double wall, cpu, mib; /* seconds, seconds, MiB at the peak */
 };
 
-struct stage_usage {  /* all logs of a stage together */
-    struct usage sum; /* wall and cpu added, mib the largest */
-    int runs;         /* logs that end with a usage line */
-    int unfinished;   /* logs that do not: killed, or still running */
+struct stage_usage {  /* totals of a stage's logs */
+    struct usage sum; /* wall and cpu: sums; mib: the maximum */
+    int runs;         /* logs with a usage line */
+    int unfinished;   /* logs without one: killed, or still running */
 };
 
 struct log_warning {
     char stage[64];
-    char item[128]; /* of the first log that has it */
+    char item[128]; /* of the first log with this warning */
     char *text;     /* owned */
-    int count;      /* equal warnings of a stage, over all its logs */
+    int count;      /* equal warnings in all logs of the stage */
 };
 
 struct usage_table {
     struct stage_usage *stages; /* in order of first appearance */
     int stage_count;
     struct log_warning *warnings;
-    int warning_count, warnings_dropped; /* beyond the first 200 different ones */
+    int warning_count, warnings_dropped; /* dropped: after the first 200 different ones */
 };
 
-/* False if the line (without its line break) is not a usage line: an odd stage name, a number that is negative, not
- * finite or above 1e12, words more or fewer. */
+/* line: without its line break. False, with *u unchanged: it is not a usage line (an invalid stage name, a number that
+ * is negative, not finite or above 1e12, other words). */
 bool usage_parse(struct usage *u, const char *line, size_t size);
 
 /* Adds one log's text. name: STAGE.ITEM.log. */
 enum status usage_add_log(struct usage_table *table, const char *name, const char *bytes, size_t size, struct err *err);
-/* Adds all *.log of a folder in order of name, but for the logs of the stage `except` (NULL: none). A folder that is not there adds nothing. */
+/* Adds all *.log of a folder in order of name, except those of the stage `except` (may be NULL). A missing folder adds
+ * nothing. */
 enum status usage_add_folder(struct usage_table *table, const char *folder, const char *except, struct err *err);
 void usage_table_release(struct usage_table *table);
 

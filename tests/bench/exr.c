@@ -1,11 +1,12 @@
-/* exr.c - one sample of the bench `exr`: writes or reads a picture by common/image/exr.c or by the OpenEXR library.
+/* exr.c - one sample of the bench `exr`: writes or reads a picture with common/image/exr.c or with the OpenEXR
+ * library.
  *
- * Prints, a line each: seconds of one write or read (median of as many as fit in a third of a second, after one that is
- * not counted), error (the largest relative difference of a sample that comes back from what was meant), its unit, mb
- * (the samples' bytes in the file before compression, in 10^6), bytes (of the file), pixels.
+ * Prints one value per line: seconds of one write or read (median of as many as fit in a third of a second, after
+ * one that does not count), error (maximum relative difference of the samples read back) and its unit, mb (size of
+ * the samples in the file before compression, 10^6 bytes), bytes (of the file), pixels.
  *
- * The picture is a file: a view's, or one made here by --paint: structure of all sizes falling off as 1/f, edges, a
- * bright lamp, and a camera's photon noise, because noise is what the codecs really compress. */
+ * The picture is a file: a view, or a picture made by --paint, with structure of all sizes that falls off as 1/f,
+ * edges, a bright lamp, and photon noise, because codecs spend most of their bytes on noise. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -32,7 +33,7 @@ struct request {
 
 /* ------------------------------------------------------------------------------------------------------ the picture */
 
-/* Value noise: random values on a grid of cells of `size` pixels, smoothly between them. */
+/* Value noise: random values on a grid of cells of `size` pixels, interpolated smoothly. */
 static double value_noise(const struct rng *rng, uint64_t layer, double x, double y, double size)
 {
     const double u = x / size, v = y / size, fu = u - floor(u), fv = v - floor(v);
@@ -63,14 +64,14 @@ static void paint_rows(void *ctx, size_t begin, size_t end, int thread)
             double texture = 0;
             for (int octave = 0; octave < 8; octave++)
                 texture += value_noise(&p->rng, (uint64_t)octave, x, (double)y, 2 << octave) * (1 << octave) / 128;
-            /* a wall, a floor, a row of boxes before them, a lamp */
+            /* a wall, a floor, a row of boxes in front, a lamp */
             double light = v > 0.7 ? 0.5 : 0.9 - 0.5 * u;
             const bool box = fmod(u * 6, 1) > 0.35 && v > 0.45 && v < 0.8;
             if (box) light *= 0.3 + 0.1 * floor(u * 6);
             if (hypot(u - 0.7, (v - 0.2) * im->height / width) < 0.03) light = 60;
             for (int c = 0; c < 3; c++) {
                 double radiance = light * (1 + texture) * (box ? 0.5 + 0.2 * c : 1.0 - 0.1 * c);
-                /* photons of a camera with 2^13 of them at radiance 1; a sum of uniforms is normal enough */
+                /* photon noise of a camera that counts 2^13 at radiance 1, approximated by a sum of uniforms */
                 double normal = -2;
                 for (unsigned k = 0; k < 4; k++) normal += rng_uniform(&p->rng, at, 16 + 4 * (uint64_t)c + k);
                 radiance += normal * sqrt(3 * radiance / 8192);
@@ -121,7 +122,7 @@ static enum status go(const struct request *r, const struct exr_image *im, const
     return r->by_openexr ? openexr_read(read, path, err) : exr_read(read, path, NULL, 0, err);
 }
 
-/* back: what the last read gave; untouched when writing */
+/* back: the result of the last read; unchanged when writing */
 static enum status time_it(const struct request *r, const struct exr_image *im, const char *path, double *seconds,
                            struct exr_image *back, struct err *err)
 {
@@ -142,24 +143,24 @@ static enum status time_it(const struct request *r, const struct exr_image *im, 
     return ST_OK;
 }
 
-/* Largest relative difference; an integer that differs counts as 1. */
+/* The maximum relative difference; different integers count as 1. */
 static double difference(const struct exr_image *a, const struct exr_image *b)
 {
-    double most = a->count == b->count && a->width == b->width && a->height == b->height ? 0 : INFINITY;
-    for (int i = 0; most < 1 && i < a->count; i++) {
+    double max = a->count == b->count && a->width == b->width && a->height == b->height ? 0 : INFINITY;
+    for (int i = 0; max < 1 && i < a->count; i++) {
         const struct exr_plane *p = &a->planes[i], *q = exr_find(b, p->name);
         if (!q || q->type != p->type) return INFINITY;
         for (size_t s = 0; s < (size_t)a->width * (size_t)a->height; s++) {
             if (p->type == EXR_UINT) {
-                if (p->u[s] != q->u[s]) most = fmax(most, 1);
+                if (p->u[s] != q->u[s]) max = fmax(max, 1);
                 continue;
             }
             double meant = p->f[s];
             if (p->type == EXR_HALF) meant = fmin(fmax(meant, -LARGEST_HALF), LARGEST_HALF);
-            most = fmax(most, fabs(q->f[s] - meant) / fmax(fabs(meant), 0x1p-14)); /* the least normal half */
+            max = fmax(max, fabs(q->f[s] - meant) / fmax(fabs(meant), 0x1p-14)); /* the smallest normal half */
         }
     }
-    return most;
+    return max;
 }
 
 static enum status sample(const struct request *r, struct err *err)
@@ -173,13 +174,13 @@ static enum status sample(const struct request *r, struct err *err)
 
     enum status st = codec_from_name(&codec, r->codec, err);
     if (!st) st = exr_read(&im, r->picture, NULL, 0, err);
-    for (int i = 0; i < im.count; i++) /* colours go to files as half, as in all products */
+    for (int i = 0; i < im.count; i++) /* colours are half in the file, as in all products */
         if (strlen(im.planes[i].name) == 1 && strchr("RGBA", im.planes[i].name[0])) im.planes[i].type = EXR_HALF;
     im.codec = codec;
     if (!st) st = strcmp(r->direction, "write") ? exr_write(&im, path, NULL, err) : make_folders(r->folder, err);
     if (!st) st = time_it(r, &im, path, &seconds, &back, err);
     if (!st && !back.count) st = exr_read(&back, path, NULL, 0, err);
-    if (!st && stat(path, &file)) st = err_errno(err, "look at", path);
+    if (!st && stat(path, &file)) st = err_errno(err, "read", path);
     for (int i = 0; i < im.count; i++) bytes += (double)im.width * im.height * (im.planes[i].type == EXR_HALF ? 2 : 4);
     if (!st)
         printf("seconds %.6f\nerror %.3g\nunit 1\nmb %.6g\nbytes %lld\npixels %lld\n", seconds, difference(&im, &back),
@@ -207,14 +208,14 @@ int main(int argc, char **argv)
         .direction = "write", .folder = ".", .by = "remodel", .codec = "ZIP", .width = 1920, .height = 1280};
     const struct cli_opt opts[] = {
         CLI_ABOUT("One sample of the bench exr: writes or reads a picture."),
-        CLI_STR("direction", &r.direction, CLI_OPTIONAL, "write or read"),
-        CLI_STR("folder", &r.folder, CLI_OPTIONAL, "where the file is written"),
-        CLI_STR("picture", &r.picture, CLI_REQUIRED, "an EXR file"),
-        CLI_STR("by", &r.by, CLI_OPTIONAL, "who does it: remodel or OpenEXR"),
-        CLI_STR("codec", &r.codec, CLI_OPTIONAL, "none, RLE, ZIPS or ZIP"),
-        CLI_FLAG("paint", &r.paint, "writes the synthetic picture to the file PICTURE, nothing else"),
-        CLI_INT("width", &r.width, CLI_OPTIONAL, "of the synthetic picture"),
-        CLI_INT("height", &r.height, CLI_OPTIONAL, "of the synthetic picture"),
+        CLI_STR("direction", &r.direction, CLI_OPTIONAL, "write or read (default write)"),
+        CLI_STR("folder", &r.folder, CLI_OPTIONAL, "folder for the file (default .)"),
+        CLI_STR("picture", &r.picture, CLI_REQUIRED, "EXR file of the picture"),
+        CLI_STR("by", &r.by, CLI_OPTIONAL, "implementation: remodel or OpenEXR (default remodel)"),
+        CLI_STR("codec", &r.codec, CLI_OPTIONAL, "compression: none, RLE, ZIPS or ZIP (default ZIP)"),
+        CLI_FLAG("paint", &r.paint, "only write the synthetic picture to the file PICTURE"),
+        CLI_INT("width", &r.width, CLI_OPTIONAL, "width of the synthetic picture, px (default 1920)"),
+        CLI_INT("height", &r.height, CLI_OPTIONAL, "height of the synthetic picture, px (default 1280)"),
         CLI_END,
     };
     struct provenance prov = {0};

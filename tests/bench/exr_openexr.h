@@ -1,5 +1,5 @@
-/* exr_openexr.h - the baseline of the bench `exr`: the OpenEXR library's own C++ interface, which is what programs that
- * write EXR files (ImageMagick, OpenCV, ...) call. It takes and gives the same pictures as common/image/exr.h. */
+/* exr_openexr.h - the baseline of the bench `exr`: the C++ interface of the OpenEXR library, which programs that
+ * write EXR files (ImageMagick, OpenCV, ...) use. Its pictures are those of common/image/exr.h. */
 #ifndef REMODEL_BENCH_EXR_OPENEXR_H
 #define REMODEL_BENCH_EXR_OPENEXR_H
 
@@ -9,9 +9,9 @@ extern "C" {
 #include "common/image/exr.h"
 
 void openexr_set_threads(int threads);
-/* The file gets the picture's codec, half channels being rounded from float as in exr_write(). Not atomic, no fsync. */
+/* Writes with the picture's codec; half channels are rounded from float as in exr_write(). Not atomic, no fsync. */
 enum status openexr_write(const struct exr_image *im, const char *path, struct err *err);
-/* All channels of a scanline file, in order of name. */
+/* Reads all channels of a scanline file, in order of name. */
 enum status openexr_read(struct exr_image *im, const char *path, struct err *err);
 
 #ifdef __cplusplus

@@ -1,9 +1,10 @@
-/* flatten_depth.c - the same depth maps with segments of constant z, the thesis' form: each at its middle's depth.
+/* flatten_depth.c - layered depth maps with segments of constant z, as in [Colburn 2014, 3.5]: the depth of each
+ * segment's centroid.
  *
  *   flatten_depth --views DIR --depth DIR --out DIR
  *
- * 1/z is linear over a segment, so its value at the centroid of the segment's pixels is its mean over them. Pixels, colours and
- * ids stay. */
+ * 1/z is linear over a segment, so its value at the centroid of the segment's pixels is the mean over them. Pixels,
+ * colours and ids do not change. */
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -14,7 +15,7 @@ struct centroid {
     double u, v, weight;
 };
 
-/* A segment's pixels, each by the part of it that belongs to the segment. */
+/* Adds the pixels of a layer to their segments' centroids, weighted by alpha. */
 static void gather(struct centroid *c, const struct layer *l, int width, int height)
 {
     for (int y = 0; y < height; y++)
@@ -43,7 +44,7 @@ static enum status flatten(struct layered_depth *d, struct err *err)
     gather(c, &d->boundary, d->width, d->height);
     for (int i = 0; i < d->segment_count; i++) {
         double *plane = d->segments[i].plane;
-        if (!(c[i].weight > 0)) continue; /* it shows nowhere */
+        if (!(c[i].weight > 0)) continue; /* it has no pixel */
         plane[2] += (plane[0] * c[i].u + plane[1] * c[i].v) / c[i].weight;
         plane[0] = plane[1] = 0;
     }
@@ -57,10 +58,10 @@ int main(int argc, char **argv)
 {
     const char *views = NULL, *depth = NULL, *out = NULL;
     const struct cli_opt opts[] = {
-        CLI_ABOUT("The same depth maps with segments of constant z."),
+        CLI_ABOUT("Makes the segments of depth maps constant in z."),
         CLI_STR("views", &views, CLI_REQUIRED, "folder of cameras"),
         CLI_STR("depth", &depth, CLI_REQUIRED, "folder of layered depth maps"),
-        CLI_STR("out", &out, CLI_REQUIRED, "folder for the flattened ones"),
+        CLI_STR("out", &out, CLI_REQUIRED, "folder for the flattened depth maps"),
         CLI_END,
     };
     struct provenance prov = {0};

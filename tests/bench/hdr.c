@@ -1,10 +1,14 @@
 /* hdr.c - one sample of the bench `hdr`: reads and merges the exposures of a view, as hdr_merge does.
  *
- * --paint DIR makes the view: exposures of known radiance, four decades of it, as JPEGs with a camera's noise,
- * DIR/NAME_eK.jpg. A sample prints, a line each: seconds of reading, aligning and merging (median of as many runs as
- * fit in a second, after one that is not counted), read_s, align_s and merge_s of them, tone_s (the picture for
- * structure from motion) and write_s (the EXR, in memory where the machine has /dev/shm), mpixels (of all exposures),
- * error (median relative error of the luminance of pixels that an exposure shows well), its unit. */
+ * With --paint it makes the exposures instead, FOLDER/eK.jpg: JPEGs of a known radiance over four decades, with camera
+ * noise. A sample prints one value per line:
+ *   seconds                   reading, aligning and merging
+ *   read_s, align_s, merge_s  its parts
+ *   tone_s                    the tone-mapped picture for structure from motion
+ *   write_s                   the EXR, in memory where the machine has /dev/shm
+ *   mpixels                   of all exposures
+ *   error, unit               median relative luminance error of the pixels that an exposure captures well
+ * seconds and its parts are medians of as many runs as fit in a second, after one that does not count. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,12 +20,13 @@
 #include "common/base/rng.h"
 #include "common/base/sort.h"
 #include "common/image/exr.h"
+#include "common/math/numbers.h"
 #include "stages/hdr_merge/align.h"
 #include "stages/hdr_merge/merge.h"
 #include "stages/hdr_merge/noise.h"
 #include "stages/hdr_merge/tone.h"
 
-enum { MOST_RUNS = 64, QUALITY = 94 };
+enum { MAX_RUNS = 64, QUALITY = 94 };
 #define RUN_SECONDS 1.0
 #define ELECTRONS   30000
 
@@ -37,7 +42,7 @@ static double median(double *values, int count)
     return values[count / 2];
 }
 
-/* Panels of a room: structure of several sizes over four decades, smooth enough for a JPEG to hold it. */
+/* Panels with structure of several sizes over four decades, smooth enough for JPEG. */
 static double radiance_at(int x, int y, int c)
 {
     const double u = x / 37.0, v = y / 29.0;
@@ -51,7 +56,7 @@ static double exposure_of(int k, int count) { return pow(4, k - count / 2); }
 static double normal(const struct rng *rng, uint64_t i, uint32_t k)
 {
     const double a = rng_uniform(rng, i, 2 * k), b = rng_uniform(rng, i, 2 * k + 1);
-    return sqrt(-2 * log(1 - a)) * cos(2 * 3.14159265358979323846 * b);
+    return sqrt(-2 * log(1 - a)) * cos(2 * PI * b);
 }
 
 struct paint_job {
@@ -100,7 +105,7 @@ struct view {
     struct merged merged;
 };
 
-static void read_some(void *ctx, size_t begin, size_t end, int thread)
+static void read_photos(void *ctx, size_t begin, size_t end, int thread)
 {
     struct view *v = ctx;
     (void)thread;
@@ -131,7 +136,7 @@ static enum status merge_once(struct view *v, struct times *times, struct err *e
     struct noise noise[MERGE_MOST], measured;
     bool known = false;
     const double begun = clock_seconds();
-    parallel_for((size_t)count, 1, read_some, v);
+    parallel_for((size_t)count, 1, read_photos, v);
     for (int k = 0; k < count; k++) {
         if (v->errs[k].status) return err_set(err, v->errs[k].status, "%s", v->errs[k].text);
         v->exposures[k] = exposure_of(k, count);
@@ -159,13 +164,13 @@ static enum status find_error(const struct view *v, double *error, struct err *e
     for (int y = 0; y < r->height; y++)
         for (int x = 0; x < r->width; x++) {
             const float *rgb = image_at(&v->merged.radiance, x, y);
-            double is[3], most = 0;
-            for (int c = 0; c < 3; c++) most = fmax(most, is[c] = radiance_at(x, y, c));
-            const double truth = 0.2126 * is[0] + 0.7152 * is[1] + 0.0722 * is[2];
-            bool well = false;
+            double color[3], max = 0;
+            for (int c = 0; c < 3; c++) max = fmax(max, color[c] = radiance_at(x, y, c));
+            const double truth = 0.2126 * color[0] + 0.7152 * color[1] + 0.0722 * color[2];
+            bool well_exposed = false;
             for (int k = 0; k < r->exposures; k++)
-                well |= most * v->exposures[k] < 0.76 && truth * v->exposures[k] > 0.05;
-            if (well)
+                well_exposed |= max * v->exposures[k] < 0.76 && truth * v->exposures[k] > 0.05;
+            if (well_exposed)
                 errors[n++] =
                     fabs((0.2126 * (double)rgb[0] + 0.7152 * (double)rgb[1] + 0.0722 * (double)rgb[2]) / truth - 1);
         }
@@ -198,10 +203,10 @@ static enum status write_radiance(const struct view *v, double *seconds, struct 
 static enum status sample(const struct request *r, struct err *err)
 {
     struct view *v = calloc(1, sizeof *v);
-    double total[MOST_RUNS], read[MOST_RUNS], align[MOST_RUNS], merge[MOST_RUNS], error = 0, wrote = 0, toned = 0;
-    int runs = -1; /* the first is not counted */
+    double total[MAX_RUNS], read[MAX_RUNS], align[MAX_RUNS], merge[MAX_RUNS], error = 0, wrote = 0, toned = 0;
+    int runs = -1; /* the first run does not count */
     enum status st = v ? ST_OK : err_nomem(err, "a view", sizeof *v);
-    for (double begun = clock_seconds(); !st && runs < MOST_RUNS && (runs < 1 || clock_seconds() - begun < RUN_SECONDS);
+    for (double begun = clock_seconds(); !st && runs < MAX_RUNS && (runs < 1 || clock_seconds() - begun < RUN_SECONDS);
          runs++) {
         struct times t = {0};
         release(v);
@@ -239,11 +244,11 @@ int main(int argc, char **argv)
     struct request r = {.width = 3000, .height = 2000, .exposures = 3};
     const struct cli_opt opts[] = {
         CLI_ABOUT("One sample of the bench hdr: reads and merges the exposures of a view."),
-        CLI_STR("folder", &r.folder, CLI_REQUIRED, "where the exposures are"),
-        CLI_FLAG("paint", &r.paint, "writes the exposures, nothing else"),
-        CLI_INT("width", &r.width, CLI_OPTIONAL, "of the view (3000)"),
-        CLI_INT("height", &r.height, CLI_OPTIONAL, "of the view (2000)"),
-        CLI_INT("exposures", &r.exposures, CLI_OPTIONAL, "of the view (3)"),
+        CLI_STR("folder", &r.folder, CLI_REQUIRED, "folder of the exposures"),
+        CLI_FLAG("paint", &r.paint, "only write the exposures"),
+        CLI_INT("width", &r.width, CLI_OPTIONAL, "width of the view, px (default 3000)"),
+        CLI_INT("height", &r.height, CLI_OPTIONAL, "height of the view, px (default 2000)"),
+        CLI_INT("exposures", &r.exposures, CLI_OPTIONAL, "number of exposures (default 3)"),
         CLI_END,
     };
     struct provenance prov = {0};

@@ -1,12 +1,15 @@
-/* hdr_views.c - one sample of the bench `hdr`: from exposures to rectified views, by the stages' own code.
+/* hdr_views.c - one sample of the bench `hdr`: from exposures to rectified views, with the code of the stages.
  *
- * Several photographs at once, a thread each, as `make -j` has them. The photos are the exposures that the bench's hdr
- * painted (DIR/eK.jpg), taken for those of an equisolid fisheye lens; its views are those that sfm_import decides. A
- * sample prints, a line each: seconds, and cpu_s, the processor time of the same, of
- *   merge_s     what hdr_merge does: reading the JPEGs, their hashes, shifts, noise, radiance
- *   rectify_s   what rectify does: reading the radiance, all views of each photo;
- * apart from that write_s: the EXRs of the radiance and of the views; mpixels, of all exposures; views and
- * view_mpixels, of all photos. Times are medians of as many runs as fit in two seconds, after one that is not counted. */
+ * Several photographs run at once, one thread each, as under `make -j`. The photos are the exposures that the
+ * program hdr painted (FOLDER/eK.jpg), taken as pictures of an equisolid fisheye lens; sfm_import decides their
+ * views. A sample prints one value per line:
+ *   seconds, cpu_s          wall and CPU time of merging and rectifying
+ *   merge_s                 hdr_merge: reading the JPEGs, hashes, shifts, noise, radiance
+ *   rectify_s               rectify: reading the radiance, resampling all views of each photo
+ *   write_s                 the EXRs of the radiance and of the views; not part of seconds
+ *   mpixels                 of all exposures
+ *   views, view_mpixels     of all photos
+ * Times are medians of as many runs as fit in two seconds, after one that does not count. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -23,7 +26,7 @@
 #include "stages/rectify/resample.h"
 #include "stages/sfm_import/view_cameras.h"
 
-enum { MOST_PHOTOS = 16, MOST_RUNS = 64 };
+enum { MAX_PHOTOS = 16, MAX_RUNS = 64 };
 #define RUN_SECONDS 2.0
 
 struct request {
@@ -31,7 +34,7 @@ struct request {
     int width, height, exposures, photos, max_megapixels;
 };
 
-struct work { /* of one photo */
+struct work { /* one photo */
     char id[16];
     struct bracketed_view merged;
     struct image linear, views[MOST_PARTS];
@@ -44,7 +47,7 @@ struct bench {
     struct camera lens;
     struct photo_view views[MOST_PARTS];
     int view_count;
-    struct work work[MOST_PHOTOS];
+    struct work work[MAX_PHOTOS];
 };
 
 enum phase { MERGE, WRITE_RADIANCE, RECTIFY, WRITE_VIEWS, PHASES };
@@ -71,7 +74,7 @@ static enum status write_record(const struct request *r, char *id, struct err *e
     record.info = (struct photo_info){.width = r->width, .height = r->height, .bits = 8, .orientation = 1};
     record.bracket_count = r->exposures;
     snprintf(file, sizeof file, "%s.jpg", id);
-    strcpy(record.hash, "0123456789abcdef0123456789abcdef"); /* nothing here goes by it */
+    strcpy(record.hash, "0123456789abcdef0123456789abcdef"); /* unused here */
     for (int k = 0; k < r->exposures; k++) {
         snprintf(names[k], sizeof names[k], "e%d.jpg", k);
         brackets[k] = (struct bracket){.file = names[k], .exposure = pow(4, k - r->exposures / 2)};
@@ -130,7 +133,7 @@ struct phase_job {
     enum phase phase;
 };
 
-static void run_some(void *ctx, size_t begin, size_t end, int thread)
+static void run_photos(void *ctx, size_t begin, size_t end, int thread)
 {
     const struct phase_job *job = ctx;
     (void)thread;
@@ -147,7 +150,7 @@ static enum status run_once(struct bench *b, double seconds[PHASES], double *cpu
     for (enum phase phase = 0; phase < PHASES; phase++) {
         struct phase_job job = {b, phase};
         const double begun = clock_seconds(), cpu_begun = clock_cpu_seconds();
-        parallel_for((size_t)photos, 1, run_some, &job);
+        parallel_for((size_t)photos, 1, run_photos, &job);
         seconds[phase] = clock_seconds() - begun;
         if (phase == MERGE || phase == RECTIFY) *cpu += clock_cpu_seconds() - cpu_begun;
         for (int i = 0; i < photos; i++)
@@ -158,10 +161,10 @@ static enum status run_once(struct bench *b, double seconds[PHASES], double *cpu
 
 static enum status sample(const struct request *r, struct err *err)
 {
-    double total[MOST_RUNS], merge[MOST_RUNS], rectify[MOST_RUNS], wrote[MOST_RUNS], cpu[MOST_RUNS];
+    double total[MAX_RUNS], merge[MAX_RUNS], rectify[MAX_RUNS], wrote[MAX_RUNS], cpu[MAX_RUNS];
     double view_pixels = 0;
     struct bench *b = calloc(1, sizeof *b);
-    int runs = -1; /* the first is not counted */
+    int runs = -1; /* the first run does not count */
     enum status st = b ? ST_OK : err_nomem(err, "photos", sizeof *b);
     if (!st) {
         const double focal = r->width * 16 / 36.0;
@@ -178,7 +181,7 @@ static enum status sample(const struct request *r, struct err *err)
         b->work[i].err = (struct err)ERR_INIT;
         st = write_record(r, b->work[i].id, err);
     }
-    for (double begun = clock_seconds(); !st && runs < MOST_RUNS && (runs < 1 || clock_seconds() - begun < RUN_SECONDS);
+    for (double begun = clock_seconds(); !st && runs < MAX_RUNS && (runs < 1 || clock_seconds() - begun < RUN_SECONDS);
          runs++) {
         double seconds[PHASES], used = 0;
         st = run_once(b, seconds, &used, err);
@@ -198,7 +201,7 @@ static enum status sample(const struct request *r, struct err *err)
                median(total, runs), median(cpu, runs), median(merge, runs), median(rectify, runs), median(wrote, runs),
                1e-6 * r->width * r->height * r->exposures * r->photos, b->view_count * r->photos,
                1e-6 * view_pixels * r->photos);
-    for (int i = 0; b && i < MOST_PHOTOS; i++) release_work(&b->work[i]);
+    for (int i = 0; b && i < MAX_PHOTOS; i++) release_work(&b->work[i]);
     free(b);
     return st;
 }
@@ -208,23 +211,24 @@ int main(int argc, char **argv)
     struct request r = {.width = 3000, .height = 2000, .exposures = 3, .photos = 1, .max_megapixels = 2};
     const struct cli_opt opts[] = {
         CLI_ABOUT("One sample of the bench hdr: from exposures to rectified views."),
-        CLI_STR("folder", &r.folder, CLI_REQUIRED, "where the exposures are, and where is written"),
-        CLI_INT("width", &r.width, CLI_OPTIONAL, "of a photo (3000)"),
-        CLI_INT("height", &r.height, CLI_OPTIONAL, "of a photo (2000)"),
-        CLI_INT("exposures", &r.exposures, CLI_OPTIONAL, "of a photo (3)"),
-        CLI_INT("photos", &r.photos, CLI_OPTIONAL, "how many photos at a time, a thread each (1)"),
-        CLI_INT("max-megapixels", &r.max_megapixels, CLI_OPTIONAL, "larger views are scaled down to this; 0: none (2)"),
+        CLI_STR("folder", &r.folder, CLI_REQUIRED, "folder of the exposures; products are written there too"),
+        CLI_INT("width", &r.width, CLI_OPTIONAL, "width of a photo, px (default 3000)"),
+        CLI_INT("height", &r.height, CLI_OPTIONAL, "height of a photo, px (default 2000)"),
+        CLI_INT("exposures", &r.exposures, CLI_OPTIONAL, "exposures per photo (default 3)"),
+        CLI_INT("photos", &r.photos, CLI_OPTIONAL, "number of concurrent photos, one thread each (default 1)"),
+        CLI_INT("max-megapixels", &r.max_megapixels, CLI_OPTIONAL,
+                "maximum size of a view, larger ones are scaled down; 0: no limit (default 2)"),
         CLI_END,
     };
     struct provenance prov = {0};
     struct err err = ERR_INIT;
     if (cli_parse(argc, argv, "bench_hdr_views", opts, &prov, &err) == CLI_RUN) {
         if (r.width < 64 || r.height < 64 || r.width > 30000 || r.height > 30000 || r.exposures < 1 ||
-            r.exposures > MERGE_MOST || r.photos < 1 || r.photos > MOST_PHOTOS || r.max_megapixels < 0)
+            r.exposures > MERGE_MOST || r.photos < 1 || r.photos > MAX_PHOTOS || r.max_megapixels < 0)
             err_set(&err, ST_USAGE,
                     "found %d photos of %d x %d px and %d exposures, wanted 1 to %d photos of 64 to 30000 px and 1 to "
                     "%d exposures.",
-                    r.photos, r.width, r.height, r.exposures, (int)MOST_PHOTOS, (int)MERGE_MOST);
+                    r.photos, r.width, r.height, r.exposures, (int)MAX_PHOTOS, (int)MERGE_MOST);
         else
             sample(&r, &err);
     }

@@ -1,11 +1,11 @@
-/* made_layers.c - layered depth maps of any number and size, made without photographs: what rendering them costs.
+/* made_layers.c - synthetic layered depth maps of any number and size, to measure the cost of rendering them.
  *
  *   made_layers --out DIR [--views N] [--width W --height H] [--side S]
  *
- * Cameras stand on a grid, five in a row, and look the same way at a wavy wall, z = 4 + sin(2 x) cos(2 y) / 2. A view's segments
- * are squares of S px, each in a plane that touches the wall; where two of them meet, one column or row of pixels is half the
- * one's and half the other's. Writes DIR/views/{cameras,images,points3D}.txt, DIR/depth/VIEW.exr and VIEW.txt, and in DIR/cameras a camera
- * of the views' size between them. */
+ * The cameras are on a grid, five per row, with parallel axes, in front of a wavy wall z = 4 + sin(2 x) cos(2 y) /
+ * 2. The segments of a view are squares of S px, each in a plane that is tangent to the wall; where two meet, one
+ * column or row of pixels belongs to both by half. Writes DIR/views/{cameras,images,points3D}.txt,
+ * DIR/depth/VIEW.exr and VIEW.txt, and DIR/cameras with one camera between the views, of their size. */
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
@@ -24,7 +24,7 @@ struct made {
     int views, width, height, side;
 };
 
-/* 1/z of the wall as a camera at (x, y, 0) sees it at the pixel (u, v). */
+/* 1/z of the wall at the pixel (u, v) of a camera at (x, y, 0). */
 static double inverse_depth(const struct view *view, double u, double v)
 {
     double z = 4;
@@ -72,7 +72,7 @@ static enum status make_depth(struct layered_depth *d, const struct view *view, 
     return ST_OK;
 }
 
-/* Cameras on the grid, the first at (column, row). */
+/* Writes cameras on the grid, the first at (column, row). */
 static enum status write_cameras(const struct made *m, const char *name, int count, double column, double row,
                                  char folder[4096], struct err *err)
 {
@@ -127,12 +127,12 @@ int main(int argc, char **argv)
 {
     struct made m = {.views = 15, .width = 1224, .height = 817, .side = 11};
     const struct cli_opt opts[] = {
-        CLI_ABOUT("Layered depth maps of any number and size, made without photographs."),
+        CLI_ABOUT("Makes synthetic layered depth maps of any number and size."),
         CLI_STR("out", &m.out, CLI_REQUIRED, "folder to write"),
-        CLI_INT("views", &m.views, CLI_OPTIONAL, "how many"),
-        CLI_INT("width", &m.width, CLI_OPTIONAL, "of a view, px"),
-        CLI_INT("height", &m.height, CLI_OPTIONAL, "of a view, px"),
-        CLI_INT("side", &m.side, CLI_OPTIONAL, "of a segment, px"),
+        CLI_INT("views", &m.views, CLI_OPTIONAL, "number of views"),
+        CLI_INT("width", &m.width, CLI_OPTIONAL, "width of a view, px"),
+        CLI_INT("height", &m.height, CLI_OPTIONAL, "height of a view, px"),
+        CLI_INT("side", &m.side, CLI_OPTIONAL, "side of a segment, px"),
         CLI_END,
     };
     struct provenance prov = {0};

@@ -1,10 +1,10 @@
-/* measure.c - runs a command and says what it took.
+/* measure.c - runs a command and measures its time and memory.
  *
  *   measure FILE COMMAND [ARGUMENT...]
  *
- * Writes "seconds S" (wall clock), "cpu_seconds S" and "peak_mib M" to FILE and exits as the command did. It is a
- * program, not a shell's `time`, because a child's peak begins at the memory of the process that forked it: this one
- * is small. */
+ * Writes "seconds S" (wall time), "cpu_seconds S" and "peak_mib M" to FILE and exits with the command's status. The
+ * shell's `time` would not do: the peak of a child starts at the memory of the process that forked it, so that process
+ * must be small. */
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,16 +1,17 @@
-/* move_pairs.c - what the ends of a camera move are worth, and what finding them costs.
+/* move_pairs.c - quality of the ends of a camera move, and the cost of finding them.
  *
  *   move_pairs --views DIR --depth DIR --validity FILE [--all [--anew]]
  *
- * and the parameters of plan_path. Without --all: the ends that plan_path chooses (ends.h). With it, what these are
- * compared with: every cell's candidate is drawn once, and then the parallax of every pair of them that keeps max_angle
- * is measured; the pairs are then looked at from the best downwards until one is valid all along its way. With --anew
- * too, both ends of every pair are drawn for that pair alone, as a search without memory would.
+ * and the parameters of plan_path. Without --all it measures the ends that plan_path chooses (ends.h). --all is the
+ * reference: it renders the candidate of every cell once, measures the parallax of all pairs that keep max_angle,
+ * and tests the pairs in descending order of parallax until one is valid along its whole path. With --anew it also
+ * renders both ends of every pair for that pair alone, as a search without a cache would.
  *
- * Prints, of the ends found, "parallax P" (% of the frames, in pictures of JUDGE_SIDE px, in which nothing was chosen),
- * "chosen P" (the same in those in which it was), "angle A" (degrees), "worst_h H" (of the way), "valid 0|1", "pairs N"
- * whose parallax was measured, "renders N" of depth pictures; with --all "best P" too, of the best pair whatever its
- * way is like, as chosen; and "seconds S" and "core_s C" (processor time), reading apart. */
+ * Prints, for the ends found: "parallax P" (% of the frames, in pictures of JUDGE_SIDE px, which were not used for
+ * the choice), "chosen P" (the same in the pictures used for the choice), "angle A" (degrees), "worst_h H" (along
+ * the path), "valid 0|1", "pairs N" (with measured parallax), "renders N" (of depth pictures); with --all "best P"
+ * (parallax as chosen of the best pair, valid or not); and "seconds S" and "core_s C" (CPU time), both without
+ * reading. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -31,7 +32,7 @@ struct job {
 
 struct found {
     struct move_ends ends;
-    double best; /* --all: parallax */
+    double best; /* --all: parallax of the best pair */
     long pairs, renders;
 };
 
@@ -45,10 +46,10 @@ struct brute {
     const struct validity *v;
     const struct plan_params *params;
     int cells[2];
-    struct depth_picture *pictures[2]; /* a cell; z NULL where it is not valid, and where pairs are drawn anew */
+    struct depth_picture *pictures[2]; /* per cell; z NULL: not valid, or --anew */
     bool anew;
-    struct pair *pairs; /* start by start; parallax below 0: none */
-    struct err *errors; /* a cell of the end that is drawn; of the start, where pairs are drawn anew */
+    struct pair *pairs; /* grouped by start; parallax below 0: none */
+    struct err *errors; /* per cell of the end being rendered; with --anew, of the start */
     int end;
 };
 
@@ -70,7 +71,7 @@ static void draw_some(void *ctx, size_t begin, size_t end, int thread)
     }
 }
 
-/* Both ends drawn for this pair alone. */
+/* Renders both ends for this pair alone. */
 static enum status measure_anew(struct pair *p, const struct brute *b, const struct vec3 at[2], struct err *err)
 {
     struct depth_picture pictures[2] = {{.z = NULL}};
@@ -110,8 +111,9 @@ static int more_parallax_first(const void *a, const void *b)
     return p->cell[0] != q->cell[0] ? p->cell[0] - q->cell[0] : p->cell[1] - q->cell[1];
 }
 
-/* What all of a pair's way is like. */
-static enum status measure_way(const struct brute *b, struct viewpoint_test *test, struct move_ends *e, struct err *err)
+/* Tests the whole path between the ends of a pair. */
+static enum status measure_path(const struct brute *b, struct viewpoint_test *test, struct move_ends *e,
+                                struct err *err)
 {
     struct view cameras[WAY_PLACES];
     struct viewpoint seen[WAY_PLACES];
@@ -183,7 +185,7 @@ static enum status best_of_all(struct found *f, const struct layer_scene *scene,
         if (f->ends.valid) continue;
         f->ends = (struct move_ends){.parallax = b.pairs[i].parallax};
         for (int k = 0; k < 2; k++) f->ends.at[k] = ends_candidate(v, k, b.pairs[i].cell[k]);
-        st = measure_way(&b, &test, &f->ends, err);
+        st = measure_path(&b, &test, &f->ends, err);
     }
     f->renders += test.renders;
     for (int k = 0; k < 2; k++) {
@@ -196,7 +198,7 @@ static enum status best_of_all(struct found *f, const struct layer_scene *scene,
     return st;
 }
 
-/* The parallax of the ends in larger pictures. */
+/* The parallax of the ends in pictures of JUDGE_SIDE px. */
 static enum status judge(double *parallax, const struct found *f, const struct layer_scene *scene,
                          const struct validity *v, struct err *err)
 {
@@ -249,12 +251,12 @@ int main(int argc, char **argv)
 {
     struct job job = {.params = PLAN_PARAMS_DEFAULT};
     const struct cli_opt opts[] = {
-        CLI_ABOUT("What the ends of a camera move are worth, and what finding them costs."),
+        CLI_ABOUT("Measures the quality of the ends of a camera move and the cost of finding them."),
         CLI_STR("views", &job.views, CLI_REQUIRED, "folder of cameras"),
-        CLI_STR("depth", &job.depth, CLI_REQUIRED, "folder of the views' layers"),
-        CLI_STR("validity", &job.validity, CLI_REQUIRED, "file of the move's valid viewpoints"),
-        CLI_FLAG("all", &job.all, "the best of all pairs of the regions' cells"),
-        CLI_FLAG("anew", &job.anew, "with --all: both ends of every pair are drawn for it alone"),
+        CLI_STR("depth", &job.depth, CLI_REQUIRED, "folder of the layered depth maps"),
+        CLI_STR("validity", &job.validity, CLI_REQUIRED, "file with the valid viewpoints of the move"),
+        CLI_FLAG("all", &job.all, "search all pairs of cells of the two regions"),
+        CLI_FLAG("anew", &job.anew, "with --all: render both ends of every pair for it alone"),
         CLI_PARAMS(plan_param_table, &job.params, plan_params_check),
         CLI_END,
     };

@@ -1,10 +1,10 @@
-/* picture_error.c - how far a picture is from the truth, for benches.
+/* picture_error.c - the relative error of a picture, for benches.
  *
  *   picture_error PICTURE.exr TRUTH.exr
  *
- * Prints "error E", "unit 1", "pixels N": E is the root of the mean, over pixels and the channels R G B, of
- * ((v - t) / (t + m / 100))^2, t the truth's value and m its mean over the picture, which keeps
- * black pixels from counting without bound. */
+ * Prints "error E", "unit 1", "pixels N": E is the root mean square, over pixels and the channels R G B, of
+ * (v - t) / (t + m / 100), with t the true value and m its mean over the picture, which bounds the error of black
+ * pixels. */
 #include <math.h>
 #include <stdio.h>
 
@@ -17,14 +17,15 @@ static enum status compare(const char *picture, const char *truth, struct err *e
     enum status st = exr_read(&a, picture, names, 3, err);
     if (!st) st = exr_read(&b, truth, names, 3, err);
     if (!st && (a.width != b.width || a.height != b.height))
-        st = err_set(err, ST_DATA, "%s has %d x %d pixels, %s %d x %d; they must be of one size.", picture, a.width,
-                     a.height, truth, b.width, b.height);
+        st = err_set(err, ST_DATA, "%s has %d x %d pixels, but %s has %d x %d; give pictures of one size.", picture,
+                     a.width, a.height, truth, b.width, b.height);
     if (!st) {
         const size_t pixels = (size_t)a.width * (size_t)a.height;
         double mean = 0, sum = 0;
         for (int c = 0; c < 3; c++)
             for (size_t i = 0; i < pixels; i++) mean += (double)b.planes[c].f[i] / (3 * (double)pixels);
-        if (!(mean > 0)) st = err_set(err, ST_DATA, "%s is black; there is nothing to be relative to.", truth);
+        if (!(mean > 0))
+            st = err_set(err, ST_DATA, "%s is black, so no relative error is defined; give another truth.", truth);
         for (int c = 0; !st && c < 3; c++) {
             const struct exr_plane *v = exr_find(&a, names[c]), *t = exr_find(&b, names[c]);
             for (size_t i = 0; i < pixels; i++) {

@@ -1,20 +1,20 @@
-/* render_rate.c - how long a frame takes, files apart: of a camera move, or of given cameras, whose frames it can
- * write.
+/* render_rate.c - rendering time of a frame, without files: of a camera move, or of given cameras, whose frames it
+ * can write.
  *
  *   render_rate --views DIR --depth DIR --path DIR [--frames N] [--width W --height H] [--coverage]
  *   render_rate --views DIR --depth DIR --cameras DIR [--scale S] [--out DIR]
  *   render_rate --views DIR --cameras DIR --photo [--out DIR]
  *
- * and the parameters of render_views. The frames of a move are N that are spread over it, each as large as said;
- * rendered by themselves, without aperture and effects. Of cameras each gives a frame of its own size times S. What is
- * written (CAMERA.exr: R, G, B, hole) has the camera's own size again, between pixels by bilinear interpolation: what a
- * reduced picture is worth when it is shown as large. --photo is what a user has without any rendering: the photo of
- * the view whose centre is nearest, as it is.
+ * and the parameters of render_views. Of a move, N frames are spread over it, each W x H, rendered separately
+ * without aperture and effects. Each of the given cameras makes one frame of its own size times S; the written frame
+ * (CAMERA.exr: R, G, B, hole) is resized to the camera's own size by bilinear interpolation, which shows the quality
+ * of a reduced picture at full size. --photo is the baseline without rendering: the photo of the view with the
+ * nearest centre.
  *
- * All frames are rendered again until half a second is measured; the first round counts only if it took as long. Prints
- * "seconds S" (a frame), "frames_per_s F", "core_ms M" (processor time a frame), "core_s_per_mp C" (processor time a
- * megapixel of the frame as it is shown, so before --scale), "holes H" (% of all pixels) and "peak_mib P" (of the
- * process, reading included). */
+ * All frames are rendered repeatedly until half a second is measured; the first round counts only if it took that
+ * long. Prints "seconds S" (per frame), "frames_per_s F", "core_ms M" (CPU time per frame), "core_s_per_mp C" (CPU
+ * time per megapixel of the frame at full size, before --scale), "holes H" (% of all pixels) and "peak_mib P" (of
+ * the process, reading included). */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -29,24 +29,25 @@
 
 #define SECONDS_LEAST 0.5
 
-struct job { /* what the command line says */
+struct job { /* the command line */
     const char *views, *depth, *path, *cameras, *scale, *out;
     int frames, width, height;
     bool coverage, photo;
     struct render_params params;
 };
 
-struct bench { /* what is rendered, and how */
+struct bench {
     struct camera_set set, set_of_cameras;
     struct camera_path path;
     struct layer_scene scene;
     struct renderer renderer;
-    const struct view **cameras; /* of the set or the path; owned list */
-    struct view *reduced;        /* as they are rendered */
+    const struct view **cameras; /* owned list; the cameras belong to the set or the path */
+    struct view *reduced;        /* at the rendered size */
     int count;
 };
 
-/* A frame that is as wide as before, its height cut or added: unlike view_resize, pixels stay square in any shape. */
+/* Keeps the field of view of the width and cuts or extends the height: unlike with view_resize(), pixels stay
+ * square. */
 static void reframe(struct view *v, int width, int height)
 {
     const double scale = (double)width / v->width;
@@ -58,10 +59,10 @@ static void reframe(struct view *v, int width, int height)
     v->height = height;
 }
 
-/* ------------------------------------------------------------------------------------------------ what is written */
+/* ---------------------------------------------------------------------------------------------- the written frames */
 
-/* out from in of w x h: between pixel centres bilinearly, beyond the outer ones as there; of its own size it stays as
- * it is. */
+/* Resizes `in` of w x h to `out`: bilinear between pixel centres, constant beyond the outer ones; a copy at equal
+ * size. */
 static void enlarge(float *out, int out_width, int out_height, const float *in, int w, int h, int channels)
 {
     if (out_width == w && out_height == h) {
@@ -87,7 +88,7 @@ static void enlarge(float *out, int out_width, int out_height, const float *in, 
     }
 }
 
-/* rgba and hole are of w x h; the file gets the camera's size. */
+/* rgba and hole: w x h; the file has the camera's size. */
 static enum status write_frame(const char *folder, const struct view *camera, const float *rgba, const float *hole,
                                int w, int h, struct err *err)
 {
@@ -178,7 +179,7 @@ static int nearest_view(const struct camera_set *set, const struct view *camera)
     return nearest;
 }
 
-/* Its photo is at hand: what is measured is finding it and copying it. */
+/* The photos are in memory: this measures finding and copying one. */
 static enum status measure_photos(struct bench *b, const struct job *job, struct err *err)
 {
     double wall = 0, cpu = 0, holes = 0, megapixels = 0;
@@ -211,7 +212,7 @@ static enum status measure_photos(struct bench *b, const struct job *job, struct
     return st;
 }
 
-/* --------------------------------------------------------------------------------------------------- what is asked */
+/* ------------------------------------------------------------------------------------------------ the command line */
 
 static enum status choose_cameras(struct bench *b, const struct job *job, struct err *err)
 {
@@ -262,17 +263,17 @@ int main(int argc, char **argv)
 {
     struct job job = {.frames = 20, .width = 1200, .height = 800, .params = RENDER_PARAMS_DEFAULT};
     const struct cli_opt opts[] = {
-        CLI_ABOUT("How long a frame takes, files apart: of a camera move, or of given cameras."),
+        CLI_ABOUT("Measures the rendering time of frames of a camera move or of given cameras."),
         CLI_STR("views", &job.views, CLI_REQUIRED, "folder of cameras"),
         CLI_STR("depth", &job.depth, CLI_OPTIONAL, "folder of layered depth maps"),
         CLI_STR("path", &job.path, CLI_OPTIONAL, "folder of the move: path.txt and path/"),
-        CLI_INT("frames", &job.frames, CLI_OPTIONAL, "of the move: how many, spread over it"),
-        CLI_INT("width", &job.width, CLI_OPTIONAL, "of a frame of the move, px"),
-        CLI_INT("height", &job.height, CLI_OPTIONAL, "of a frame of the move, px"),
-        CLI_STR("cameras", &job.cameras, CLI_OPTIONAL, "in place of a move: folder of cameras, a frame each"),
-        CLI_STR("scale", &job.scale, CLI_OPTIONAL, "of the cameras' frames: renders them larger or smaller"),
-        CLI_FLAG("coverage", &job.coverage, "only which pixels some view covers"),
-        CLI_FLAG("photo", &job.photo, "in place of rendering: the photo of the nearest view"),
+        CLI_INT("frames", &job.frames, CLI_OPTIONAL, "number of frames, spread over the move"),
+        CLI_INT("width", &job.width, CLI_OPTIONAL, "width of a frame of the move, px"),
+        CLI_INT("height", &job.height, CLI_OPTIONAL, "height of a frame of the move, px"),
+        CLI_STR("cameras", &job.cameras, CLI_OPTIONAL, "instead of a move: folder of cameras, one frame each"),
+        CLI_STR("scale", &job.scale, CLI_OPTIONAL, "factor of the rendered size of the cameras' frames"),
+        CLI_FLAG("coverage", &job.coverage, "only find the pixels that a view covers"),
+        CLI_FLAG("photo", &job.photo, "instead of rendering: the photo of the nearest view"),
         CLI_STR("out", &job.out, CLI_OPTIONAL, "folder for the cameras' frames, CAMERA.exr"),
         CLI_PARAMS(render_param_table, &job.params, NULL),
         CLI_END,

@@ -1,12 +1,12 @@
-/* stereo_pair.c - a rectified pair with known disparities (Middlebury's layouts) as a scene: photos, poses, truth.
+/* stereo_pair.c - makes a scene of a rectified pair with known disparities (Middlebury layouts): photos, poses, truth.
  *
- * reads   PAIR/im2.png im6.png disp2.png disp6.png                 disparities times 4, or 8 where the folder is venus
+ * reads   PAIR/im2.png im6.png disp2.png disp6.png                 disparities times 4, or 8 in a folder named venus
  *      or PAIR/view1.png view5.png disp1.png disp5.png             full-size disparities of a third-size pair
- *      or PAIR/NAME_left.png NAME_right.png NAME_disp.npz          float disparities of the left picture; infinity: unknown
+ *      or PAIR/NAME_left.png NAME_right.png NAME_disp.npz          float disparities of the left one; infinity: unknown
  * writes  OUT/photos/left.png right.png
- *         OUT/model/{cameras,images,points3D}.txt                  no points
+ *         OUT/model/{cameras,images,points3D}.txt                  without points
  *         OUT/truth/{cameras,images}.txt, depth/{left,right}.exr   Z = PAIR_FOCAL PAIR_BASELINE / disparity, 0 unknown
- * prints  "disparities N", the smallest multiple of 16 above every true disparity, and "near Z", the depth of that disparity */
+ * prints  "disparities N": the smallest multiple of 16 above all true disparities; "near Z": the depth of N */
 #include <errno.h>
 #include <glob.h>
 #include <libdeflate.h>
@@ -23,8 +23,8 @@
 #include "tests/bench/stereo_pair.h"
 
 struct pair {
-    char pictures[2][1000], disparities[2][1000]; /* left, right; "": there is none */
-    double unit;                                  /* px a step of an 8-bit disparity */
+    char pictures[2][1000], disparities[2][1000]; /* left, right; "": missing */
+    double unit;                                  /* px per step of an 8-bit disparity */
     int width, height;
     float *disparity[2]; /* px, 0 unknown */
 };
@@ -42,7 +42,7 @@ static bool find_file(char to[1000], const char *folder, const char *pattern)
 
 static enum status find_pair(struct pair *p, const char *folder, struct err *err)
 {
-    /* the last of each: the right picture's disparities, which a pair may lack */
+    /* the last of each is the disparities of the right picture, which are optional */
     static const char *const names[3][4] = {{"im2.png", "im6.png", "disp2.png", "disp6.png"},
                                             {"view1.png", "view5.png", "disp1.png", "disp5.png"},
                                             {"*_left.png", "*_right.png", "*_disp.npz", NULL}};
@@ -86,7 +86,7 @@ static uint32_t little(const unsigned char *p, int bytes)
     return v;
 }
 
-/* Of a zip archive the first file, if it is deflated: its bytes. 0: it is not that. */
+/* Inflates the first file of a zip archive; 0: not an archive, or not deflated. */
 static size_t first_file(unsigned char *to, size_t room, const unsigned char *zip, size_t size)
 {
     size_t got = 0;
@@ -100,7 +100,7 @@ static size_t first_file(unsigned char *to, size_t room, const unsigned char *zi
     return got;
 }
 
-/* The first array of an .npz archive: little-endian float32, C order, of the pictures' size. */
+/* The first array of an .npz archive: little-endian float32, C order, the size of the pictures. */
 static enum status read_npz(float *to, const char *path, int width, int height, struct err *err)
 {
     const size_t wanted = (size_t)width * (size_t)height * sizeof(float), room = wanted + 65536;
@@ -204,7 +204,7 @@ static enum status make_scene(const char *folder, const char *out, const struct 
     static const char *const folders[] = {"", "/photos", "/model", "/truth", "/truth/depth"};
     struct pair p = {.unit = 1};
     struct photo_info info;
-    float most = 0;
+    float max = 0;
     char path[1000];
     enum status st = find_pair(&p, folder, err);
     for (int i = 0; !st && i < 5; i++) {
@@ -218,12 +218,12 @@ static enum status make_scene(const char *folder, const char *out, const struct 
         if (st || !p.disparities[side][0]) continue;
         st = read_disparities(&p, side, err);
         if (!st) st = write_truth(&p, side, out, prov, err);
-        for (int i = 0; !st && i < p.width * p.height; i++) most = fmaxf(most, p.disparity[side][i]);
+        for (int i = 0; !st && i < p.width * p.height; i++) max = fmaxf(max, p.disparity[side][i]);
     }
     if (!st) st = write_cameras(&p, out, "model", err);
     if (!st) st = write_cameras(&p, out, "truth", err);
     if (!st) {
-        const int disparities = (int)most / 16 * 16 + 16;
+        const int disparities = (int)max / 16 * 16 + 16;
         printf("disparities %d\nnear %.17g\n", disparities, PAIR_FOCAL * PAIR_BASELINE / disparities);
     }
     free(p.disparity[0]);
@@ -235,7 +235,7 @@ int main(int argc, char **argv)
 {
     const char *pair = NULL, *out = NULL;
     const struct cli_opt opts[] = {
-        CLI_ABOUT("A rectified pair with known disparities as a scene: photos, poses, truth."),
+        CLI_ABOUT("Makes a scene of a rectified pair with known disparities: photos, poses, truth."),
         CLI_STR("pair", &pair, CLI_REQUIRED, "folder of the pair"),
         CLI_STR("out", &out, CLI_REQUIRED, "folder to make"),
         CLI_END,

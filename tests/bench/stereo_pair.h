@@ -1,7 +1,7 @@
-/* stereo_pair.h - the cameras that stereo_pair gives to a rectified pair, whose own are not known.
+/* stereo_pair.h - the cameras that stereo_pair assigns to a rectified pair, because its own are unknown.
  *
- * Left and right look along z, PAIR_BASELINE apart along x, with this focal length at the size of the pictures and the principal point
- * in their middle. So z = PAIR_FOCAL PAIR_BASELINE / disparity. */
+ * Left and right have parallel axes along z, PAIR_BASELINE apart along x, this focal length at the size of the
+ * pictures, and the principal point in their centre. So z = PAIR_FOCAL PAIR_BASELINE / disparity. */
 #ifndef REMODEL_BENCH_STEREO_PAIR_H
 #define REMODEL_BENCH_STEREO_PAIR_H
 

@@ -1,16 +1,16 @@
-/* stereo_score.c - how far the left view's depth is from the truth of a rectified pair.
+/* stereo_score.c - errors of the left view's depth against the truth of a rectified pair.
  *
- * reads   TRUTH/depth/left.exr, right.exr     as stereo_pair writes them; the right one may be absent
- *         VIEWS/cameras.txt, images.txt       the view `left`, in whose pixels the depth is: as large as the truth, or smaller
+ * reads   TRUTH/depth/left.exr, right.exr     from stereo_pair; the right one is optional
+ *         VIEWS/cameras.txt, images.txt       the view `left` of that depth, of the truth's size or smaller
  *         DEPTH                               layered depth, or a picture with a channel Z; 0 unknown
- * prints  "error E", "unit %"                 bad-2: pixels that are off by more than two, unknown ones included
- *         "bad1 E", "bad05 E"                 by more than one, a half
- *         "bad2_all E"                        bad-2 of occluded pixels too
- *         "known P", "pixels N"               what has a depth of the N pixels that are judged
+ * prints  "error E", "unit %"                 bad-2: pixels with an error above 2 px, unknown ones included
+ *         "bad1 E", "bad05 E"                 above 1 px, 0.5 px
+ *         "bad2_all E"                        bad-2 with occluded pixels included
+ *         "known P", "pixels N"               share of the N evaluated pixels with a depth
  *
- * Disparities are in pixels of the truth at any size of the view. A pixel is judged if its disparity is known and the
- * right picture sees the point: with both truths, if they agree there to 1 px; with the left one alone, if no other point
- * lands on the same pixel with a disparity that is larger by more than 1 px. */
+ * Disparities are in pixels of the truth, whatever the size of the view. A pixel is evaluated if its disparity is
+ * known and the right picture sees the point: if both truths agree there within 1 px, or, with the left one alone,
+ * if no other point with a disparity larger by more than 1 px projects to the same pixel. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -26,18 +26,18 @@
 struct truth {
     int width, height;
     float *left, *right; /* disparities, px; 0 unknown */
-    bool *seen;          /* by the right picture too */
+    bool *seen;          /* also by the right picture */
 };
 
 struct result {
-    struct layered_depth layers; /* of one of the two */
+    struct layered_depth layers; /* either layers or a picture */
     struct exr_image plain;
     struct view view;
 };
 
 static double disparity_of(double z) { return z > 0 ? PAIR_FOCAL * PAIR_BASELINE / z : 0; }
 
-/* *disparity stays NULL if there is no such file and it may be absent. */
+/* *disparity stays NULL if an optional file is missing. */
 static enum status read_side(struct truth *t, float **disparity, const char *folder, const char *side, bool optional,
                              struct err *err)
 {
@@ -59,7 +59,7 @@ static enum status read_side(struct truth *t, float **disparity, const char *fol
     return st;
 }
 
-/* The right picture's pixel of a left one; -1: outside. */
+/* The pixel of the right picture for a left one; -1: outside. */
 static int partner(const struct truth *t, int x, int y)
 {
     const float d = t->left[y * t->width + x];
@@ -83,7 +83,7 @@ static enum status find_seen(struct truth *t, struct err *err)
                 if (k < 0) continue;
                 if (!pass)
                     nearest[k] = fmaxf(nearest[k], t->left[i]);
-                else if (t->right) /* a hair more than 1: rounded thirds of a pixel */
+                else if (t->right) /* slightly more than 1, because of rounded thirds of a pixel */
                     t->seen[i] = t->right[k] > 0 && fabsf(t->right[k] - t->left[i]) < 1.01f;
                 else
                     t->seen[i] = nearest[k] < t->left[i] + 1.01f;
@@ -115,7 +115,7 @@ static enum status read_result(struct result *r, struct camera_set *set, const c
     return st;
 }
 
-/* Disparity of the result at a place of the true picture; 0 unknown. */
+/* Disparity of the result at a position in the true picture; 0 unknown. */
 static double result_at(const struct result *r, const struct truth *t, double x, double y)
 {
     const struct view *v = &r->view;
@@ -133,7 +133,7 @@ static double result_at(const struct result *r, const struct truth *t, double x,
 
 static enum status score(const struct truth *t, const struct result *r, struct err *err)
 {
-    long judged = 0, known = 0, all = 0, all2 = 0, off[3] = {0};
+    long evaluated = 0, known = 0, all = 0, all2 = 0, off[3] = {0};
     for (int i = 0; i < t->width * t->height; i++) {
         if (!(t->left[i] > 0)) continue;
         const double d = result_at(r, t, i % t->width + 0.5, i / t->width + 0.5);
@@ -141,15 +141,15 @@ static enum status score(const struct truth *t, const struct result *r, struct e
         all++;
         all2 += e > 2;
         if (!t->seen[i]) continue;
-        judged++;
+        evaluated++;
         known += d > 0;
         for (int k = 0; k < 3; k++) off[k] += e > (double[]){0.5, 1, 2}[k];
     }
-    if (!judged) return err_set(err, ST_DATA, "the truth has no pixel that both pictures see.");
+    if (!evaluated) return err_set(err, ST_DATA, "the truth has no pixel that is visible in both pictures.");
     printf("error %.4f\nunit %%\nbad1 %.4f\nbad05 %.4f\nbad2_all %.4f\nknown %.4f\npixels %ld\n",
-           100.0 * (double)off[2] / (double)judged, 100.0 * (double)off[1] / (double)judged,
-           100.0 * (double)off[0] / (double)judged, 100.0 * (double)all2 / (double)all,
-           100.0 * (double)known / (double)judged, judged);
+           100.0 * (double)off[2] / (double)evaluated, 100.0 * (double)off[1] / (double)evaluated,
+           100.0 * (double)off[0] / (double)evaluated, 100.0 * (double)all2 / (double)all,
+           100.0 * (double)known / (double)evaluated, evaluated);
     return ST_OK;
 }
 
@@ -157,9 +157,9 @@ int main(int argc, char **argv)
 {
     const char *truth = NULL, *views = NULL, *depth = NULL;
     const struct cli_opt opts[] = {
-        CLI_ABOUT("How far the left view's depth is from the truth of a rectified pair."),
+        CLI_ABOUT("Measures the errors of the left view's depth against the truth of a rectified pair."),
         CLI_STR("truth", &truth, CLI_REQUIRED, "folder of the truth"),
-        CLI_STR("views", &views, CLI_REQUIRED, "folder of the views' cameras"),
+        CLI_STR("views", &views, CLI_REQUIRED, "folder of the cameras of the views"),
         CLI_STR("depth", &depth, CLI_REQUIRED, "depth of the left view"),
         CLI_END,
     };

@@ -4,8 +4,8 @@
  * writes  OUT                                                     Z of the left view
  * prints  "seconds S", "cpu_seconds S": both matches, the check and the filling, without files
  *
- * Both pictures are matched, each with the other as reference; a disparity stands if they agree to one pixel. What does
- * not takes the farther of the nearest two that stand in its row: what is hidden from one picture is background. */
+ * Each picture is matched with the other one as reference; a disparity is kept if the two agree within one pixel. Other
+ * pixels take the more distant of the nearest two kept ones in their row, because hidden surfaces are background. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -18,10 +18,11 @@
 #include "common/image/exr.h"
 #include "tests/bench/depth_sgbm.h"
 
-/* The best mean bad-2 over the pairs of the bench, of block 1, 3, 5, 7, p1 2 to 32, p2 16 to 96, uniqueness 0, 5 and 10. widen = no is
- * how OpenCV is called without thought: columns without a partner at the largest disparity are filled, not matched. */
+/* The defaults have the best mean bad-2 over the pairs of the bench, of block 1, 3, 5, 7, p1 2 to 32, p2 16 to 96 and
+ * uniqueness 0, 5 and 10. widen = no is OpenCV's plain call: columns without a partner at the maximum disparity are
+ * filled, not matched. */
 #define SGBM_PARAMS(X)                                                                                            \
-    X(near, double, 1, 1e-30, 1e30, "scene units", "least depth that is looked for")                              \
+    X(near, double, 1, 1e-30, 1e30, "scene units", "minimum depth of the search")                                 \
     X(block, int, 1, 1, 31, "px", "width of what is compared; odd")                                               \
     X(p1, int, 16, 1, 1000, "", "cost of a change of disparity by one, for every pixel and channel of the block") \
     X(p2, int, 32, 2, 1000, "", "cost of a larger change")                                                        \
@@ -55,7 +56,9 @@ static enum status read_pair(struct pair *p, struct camera_set *set, const char 
         const size_t pixels = (size_t)view->width * (size_t)view->height;
         if (!side) p->view = *view;
         if (side && (view->width != p->view.width || view->height != p->view.height || view->fx != p->view.fx))
-            return err_set(err, ST_DATA, "the views left and right of %s differ in their cameras.", views);
+            return err_set(err, ST_DATA,
+                           "the views left and right of %s have different cameras; they must be a rectified pair.",
+                           views);
         if (side) p->baseline = vec3_length(vec3_sub(view->center, p->view.center));
         p->rgb[side] = malloc(3 * pixels);
         p->disparity[side] = malloc(pixels * sizeof(float));
@@ -76,7 +79,7 @@ static void mirror(void *pixels, int width, int height, size_t size)
                 t = row[a * size + k], row[a * size + k] = row[b * size + k], row[b * size + k] = t;
 }
 
-/* Disparities of the right picture: of the left one of the mirrored pair. The pictures come back as they were. */
+/* Disparities of the right picture: those of the left one of the mirrored pair. The pictures are restored. */
 static enum status match_right(struct pair *p, const struct sgbm_settings *settings, struct err *err)
 {
     const int w = p->view.width, h = p->view.height;
@@ -99,11 +102,11 @@ static void keep_what_agrees(struct pair *p, double apart)
     }
 }
 
-/* A row of which nothing stands is a copy of the nearest that has something, from above first. */
+/* A row without a kept disparity is a copy of the nearest row with one, above first. */
 static void fill(struct pair *p)
 {
     const int w = p->view.width, h = p->view.height;
-    float *before = p->disparity[1]; /* of the row, no longer needed */
+    float *before = p->disparity[1]; /* the row before filling; this buffer is no longer needed */
     for (int y = 0; y < h; y++) {
         float *d = p->disparity[0] + (size_t)y * (size_t)w, last = 0;
         for (int x = 0; x < w; x++) before[x] = last = d[x] > 0 ? d[x] : last;
@@ -160,7 +163,8 @@ int main(int argc, char **argv)
     const char *views = NULL, *out = NULL;
     struct sgbm_params params = {SGBM_PARAMS(PARAM_DEFAULT)};
     const struct cli_opt opts[] = {
-        CLI_ABOUT("Depth of a rectified pair by OpenCV's semi-global matching, left-right checked and filled."),
+        CLI_ABOUT(
+            "Computes depth of a rectified pair by OpenCV's semi-global matching, left-right checked and filled."),
         CLI_STR("views", &views, CLI_REQUIRED, "folder of the views left and right"),
         CLI_STR("out", &out, CLI_REQUIRED, "EXR to write"),
         CLI_PARAMS(sgbm_param_table, &params, NULL),

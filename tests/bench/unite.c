@@ -1,11 +1,11 @@
-/* unite.c - how long the union of walls takes: a house of equal rooms, each wall with a window in it.
+/* unite.c - time of the union of walls: a house of equal rooms, each wall with a window.
  *
  *   unite [--walls N] [--turned DEGREES]
  *
- * Rooms stand in a square grid on one floor slab; there are at least N walls, each cut into four boxes around its
- * window, and each reaching into its corners. --turned turns the house, so that no wall is along an axis. Prints
- * "seconds S" (the union), "check_s S", "triangulate_s S", "error E" (the volume's, relative to what it must be),
- * "walls N", "solids N", "faces N", "vertices N", "genus N". */
+ * The rooms form a square grid on one floor slab, with at least N walls; each wall is cut into four boxes around its
+ * window and reaches into its corners. --turned rotates the house, so that no wall is along an axis. Prints "seconds S"
+ * (the union), "check_s S", "triangulate_s S", "error E" (relative error of the volume), "walls N", "solids N",
+ * "faces N", "vertices N", "genus N". */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -18,14 +18,14 @@
 #define ROOM      4.0
 #define THICKNESS 0.2
 #define HEIGHT    2.6
-#define WINDOW    1.2 /* its width and height */
+#define WINDOW    1.2 /* width and height of a window */
 
 struct house {
     struct solid_list list;
     double angle; /* radians */
 };
 
-/* A box of the house before it is turned; `along` 1: x and y change places. */
+/* A box of the house before the rotation; `along` 1: x and y are swapped. */
 static enum status add(struct house *h, const char *name, int along, struct vec3 low, struct vec3 high, struct err *err)
 {
     static const char *const sides[6] = {"start", "end", "out", "in", "bottom", "top"};
@@ -63,9 +63,9 @@ int main(int argc, char **argv)
 {
     const char *walls_text = "1000", *turned_text = "0";
     const struct cli_opt opts[] = {
-        CLI_ABOUT("times the union of the walls of a house"),
-        CLI_STR("walls", &walls_text, 0, "at least so many walls"),
-        CLI_STR("turned", &turned_text, 0, "degrees"),
+        CLI_ABOUT("Measures the time of the union of the walls of a house."),
+        CLI_STR("walls", &walls_text, 0, "minimum number of walls"),
+        CLI_STR("turned", &turned_text, 0, "rotation of the house, degrees"),
         CLI_END,
     };
     struct provenance prov = {0};

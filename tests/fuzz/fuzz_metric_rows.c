@@ -1,4 +1,4 @@
-/* The report's reader of metric tables, of scenes and of views. */
+/* fuzz_metric_rows.c - the report's reader of metrics, of scenes and of views: finite values, or an error. */
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -6,7 +6,7 @@
 #include <unistd.h>
 
 #include "fuzz.h"
-#include "stages/report/metric_rows.c" /* a stage's file, which is in no library */
+#include "stages/report/metric_rows.c" /* stages are in no library */
 #include "tests/fuzz/fuzz_scratch.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)

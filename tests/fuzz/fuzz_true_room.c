@@ -1,4 +1,4 @@
-/* fuzz_true_room.c - the rooms of a truth: any bytes give a floor below its ceiling, none, or a sentence. */
+/* fuzz_true_room.c - reader of true rooms: any bytes give a floor below a ceiling, no room, or an error. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

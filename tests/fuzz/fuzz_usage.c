@@ -1,10 +1,10 @@
-/* The report's reader of logs. The first line of the input is the log's name. */
+/* fuzz_usage.c - the report's reader of logs. The first line of the input is the log's name. */
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "fuzz.h"
-#include "stages/report/usage.c" /* a stage's file, which is in no library */
+#include "stages/report/usage.c" /* stages are in no library */
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
@@ -19,7 +19,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         size -= (size_t)(end + 1 - data);
         data = end + 1;
     }
-    if (usage_add_log(&table, name, (const char *)data, size, &err)) abort(); /* no log is an error */
+    if (usage_add_log(&table, name, (const char *)data, size, &err)) abort(); /* any log is valid */
     for (int i = 0; i < table.stage_count; i++)
         if (!(table.stages[i].sum.wall >= 0 && table.stages[i].sum.mib <= 1e12)) abort();
     usage_table_release(&table);

@@ -1,4 +1,4 @@
-/* fuzz_wall_plan.c - the walls of a plan or a truth: any bytes give finite faces and openings, or a sentence. */
+/* fuzz_wall_plan.c - reader of plans and truths: any bytes give finite faces and openings, or an error. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,11 +13,11 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     char path[FUZZ_PATH];
 
     fuzz_file(path, data, size);
-    for (int kind = PLAN_OF_MODEL; kind <= PLAN_FRAMED; kind++) {
-        struct wall_plan plan = {0};
+    for (int kind = PLAN_FROM_MODEL; kind <= PLAN_FROM_SCENE_TRUTH; kind++) {
+        struct measured_plan plan = {0};
         struct wall_errors errors = {0};
         struct err err = ERR_INIT;
-        if (wall_plan_read(&plan, path, (enum wall_plan_kind)kind, &err)) {
+        if (measured_plan_read(&plan, path, (enum measured_plan_kind)kind, &err)) {
             if (!strstr(err.text, path) || plan.faces.count || plan.openings.count) abort();
             continue;
         }
@@ -27,7 +27,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         for (int i = 0; i < errors.openings.count; i++)
             if (!isfinite(errors.openings.errors[i])) abort();
         wall_errors_release(&errors);
-        wall_plan_release(&plan);
+        measured_plan_release(&plan);
     }
     unlink(path);
     return 0;

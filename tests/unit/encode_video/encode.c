@@ -1,5 +1,5 @@
-/* encode.c - frames become a video that players take: counted, tagged, the same bytes each time; or a sentence and
- * nothing. */
+/* encode.c - videos have all frames and the right tags, and are reproducible; a failure is an error and leaves no
+ * file. */
 #include "tests/unit/scratch.h"
 
 #include "common/base/hash.h"
@@ -20,7 +20,7 @@ static void path_make(struct camera_path *path, int width, int height)
     }
 }
 
-/* Flat colour (linear): encoding must not move it. */
+/* A flat colour (linear), which encoding must keep. */
 static void frame_make(const char *name, int width, int height, const float rgb[3])
 {
     static const char *const names[] = {"R", "G", "B"};
@@ -48,8 +48,8 @@ static void frames_make(const char *folder)
     }
 }
 
-/* What a shell command prints. */
-static void said(char *text, size_t size, const char *format, const char *file)
+/* The output of a shell command about a file. */
+static void run_command(char *text, size_t size, const char *format, const char *file)
 {
     char command[1024];
     snprintf(command, sizeof command, format, file);
@@ -59,7 +59,7 @@ static void said(char *text, size_t size, const char *format, const char *file)
     assert_int_equal(pclose(fp), 0);
 }
 
-static void videos_are_whole_and_tagged(void **state)
+static void videos_have_all_frames_and_tags(void **state)
 {
     (void)state;
     const struct encode_params params = ENCODE_PARAMS_DEFAULT;
@@ -68,14 +68,15 @@ static void videos_are_whole_and_tagged(void **state)
     char text[4096], a[HASH_TEXT], b[HASH_TEXT];
 
     path_make(&path, W, H);
-    frames_make("good");
-    assert_ok(encode_frames(&path, scratch_path("good"), scratch_path("a.mp4"), &params, &err), err);
-    assert_ok(encode_frames(&path, scratch_path("good"), scratch_path("b.mp4"), &params, &err), err);
+    frames_make("complete");
+    assert_ok(encode_frames(&path, scratch_path("complete"), scratch_path("a.mp4"), &params, &err), err);
+    assert_ok(encode_frames(&path, scratch_path("complete"), scratch_path("b.mp4"), &params, &err), err);
     assert_ok(hash_file(a, scratch_path("a.mp4"), &err), err);
     assert_ok(hash_file(b, scratch_path("b.mp4"), &err), err);
     assert_string_equal(a, b);
 
-    said(text, sizeof text, "ffprobe -v error -count_frames -show_streams -of default=nk=0 %s", scratch_path("a.mp4"));
+    run_command(text, sizeof text, "ffprobe -v error -count_frames -show_streams -of default=nk=0 %s",
+                scratch_path("a.mp4"));
     assert_contains(text, "codec_name=h264");
     assert_contains(text, "width=64\nheight=48");
     assert_contains(text, "pix_fmt=yuv420p");
@@ -84,23 +85,23 @@ static void videos_are_whole_and_tagged(void **state)
     assert_contains(text, "r_frame_rate=25/1");
     assert_contains(text, "nb_read_frames=5");
 
-    /* faststart: the index stands before the data */
-    said(text, sizeof text, "grep -abo -e moov -e mdat %s | head -1", scratch_path("a.mp4"));
+    /* faststart: the index comes before the data */
+    run_command(text, sizeof text, "grep -abo -e moov -e mdat %s | head -1", scratch_path("a.mp4"));
     assert_contains(text, "moov");
 
-    /* colour: linear 0.8 and 0.2 are 231 and 124 in sRGB; 8-bit YUV and half chroma keep a flat picture to 2 */
+    /* colour: linear 0.8 and 0.2 are 231 and 124 in sRGB; 8-bit YUV with 4:2:0 chroma keeps a flat picture within 2 */
     unsigned char rgb[4] = {0};
-    said((char *)rgb, sizeof rgb,
-         "ffmpeg -v error -i %s -vf scale=in_color_matrix=bt709,crop=1:1:20:20 -frames:v 1 "
-         "-f rawvideo -pix_fmt rgb24 -",
-         scratch_path("a.mp4"));
+    run_command((char *)rgb, sizeof rgb,
+                "ffmpeg -v error -i %s -vf scale=in_color_matrix=bt709,crop=1:1:20:20 -frames:v 1 "
+                "-f rawvideo -pix_fmt rgb24 -",
+                scratch_path("a.mp4"));
     assert_in_range(rgb[0], 229, 233);
     assert_in_range(rgb[1], 122, 126);
     assert_in_range(rgb[2], 0, 3);
     camera_path_release(&path);
 }
 
-static void what_is_missing_is_named(void **state)
+static void missing_and_odd_frames_are_refused(void **state)
 {
     (void)state;
     const struct encode_params params = ENCODE_PARAMS_DEFAULT;
@@ -111,11 +112,11 @@ static void what_is_missing_is_named(void **state)
     path_make(&path, W, H);
     frames_make("holed");
     assert_int_equal(remove(scratch_path("holed/0003.exr")), 0);
-    scratch_write("old.mp4", "what was there");
+    scratch_write("old.mp4", "an older video");
     const int before = count_entries(scratch);
     assert_int_equal(encode_frames(&path, scratch_path("holed"), scratch_path("old.mp4"), &params, &err), ST_DATA);
     assert_err(err, ST_DATA, "frame 3 of 5 is missing");
-    assert_file_text(scratch_path("old.mp4"), "what was there");
+    assert_file_text(scratch_path("old.mp4"), "an older video");
     assert_int_equal(count_entries(scratch), before); /* no temporary file is left */
 
     err = (struct err)ERR_INIT;
@@ -131,7 +132,7 @@ static void what_is_missing_is_named(void **state)
     camera_path_release(&path);
 }
 
-static void an_encoder_that_fails_leaves_nothing(void **state)
+static void a_failed_encoder_leaves_no_file(void **state)
 {
     (void)state;
     const struct encode_params params = {.crf = 18, .preset = "nonsense"};
@@ -149,9 +150,9 @@ static void an_encoder_that_fails_leaves_nothing(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(videos_are_whole_and_tagged),
-        cmocka_unit_test(what_is_missing_is_named),
-        cmocka_unit_test(an_encoder_that_fails_leaves_nothing),
+        cmocka_unit_test(videos_have_all_frames_and_tags),
+        cmocka_unit_test(missing_and_odd_frames_are_refused),
+        cmocka_unit_test(a_failed_encoder_leaves_no_file),
     };
     return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }

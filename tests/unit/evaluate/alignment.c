@@ -1,4 +1,4 @@
-/* Cameras against the true ones: similarities known beforehand, errors computed by hand. */
+/* alignment.c - known similarities are found; errors are those computed by hand. */
 #include "stages/evaluate/alignment.h"
 
 #include "tests/unit/scratch.h"
@@ -18,7 +18,7 @@ static struct pose pose_at(struct vec3 center, struct quat rotation)
     return (struct pose){rotation, vec3_scale(mat3_apply(mat3_from_quat(rotation), center), -1)};
 }
 
-/* The same camera in the world that s, r, t lead to. */
+/* The camera after the similarity s, r, t of its world. */
 static struct pose moved(const struct pose *p, double s, struct mat3 r, struct vec3 t)
 {
     struct vec3 center = vec3_add(vec3_scale(mat3_apply(r, pose_center(p)), s), t);
@@ -39,7 +39,7 @@ static void a_known_similarity_is_found(void **state)
         found[i] = pose_at(centers[i], turn(10 * i, 0, 1, 0));
         truth[i] = moved(&found[i], 2.5, r, vec3_make(7, -3, 1));
     }
-    for (int count = 2; count <= COUNT; count++) { /* two stand on a line: their turns decide */
+    for (int count = 2; count <= COUNT; count++) { /* two are on a line: their rotations decide */
         assert_ok(align_cameras(&a, found, truth, count, &err), err);
         assert_near(a.scale, 2.5, 1e-9);
         for (int i = 0; i < 9; i++) assert_near(a.rotation.m[i / 3][i % 3], r.m[i / 3][i % 3], 1e-9);
@@ -50,9 +50,9 @@ static void a_known_similarity_is_found(void **state)
     }
 }
 
-/* A square whose one diagonal grew by a tenth and whose other one shrank by as much: nothing is gained by moving,
- * turning or scaling it, so every centre is off by 0.1. */
-static void errors_of_a_bent_square(void **state)
+/* A square with one diagonal longer by a tenth and the other one shorter by a tenth: no similarity improves it, so the
+ * error of every centre is 0.1. */
+static void a_sheared_square_has_known_errors(void **state)
 {
     static const struct vec3 from[COUNT] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}};
     static const struct vec3 to[COUNT] = {{1.1, 0, 0}, {-1.1, 0, 0}, {0, 0.9, 0}, {0, -0.9, 0}};
@@ -74,8 +74,8 @@ static void errors_of_a_bent_square(void **state)
     assert_near(e.rotation_median, 0.5, 1e-9); /* of 0 0 1 3 */
 }
 
-/* A mirrored scene is not aligned by mirroring it back: the third term of the trace is negative (Umeyama's S). */
-static void a_mirror_stays_one(void **state)
+/* A mirrored scene is aligned by a rotation, not a reflection: the third term of the trace is negative. */
+static void a_mirrored_scene_is_aligned_by_a_rotation(void **state)
 {
     static const struct vec3 from[COUNT] = {{3, 0, 0}, {0, 2, 0}, {0, 0, 1}, {-3, -2, -1}};
     struct pose found[COUNT], truth[COUNT];
@@ -95,7 +95,7 @@ static void a_mirror_stays_one(void **state)
     assert_true(a.scale > 0 && a.scale < 1);
 }
 
-static void without_two_places_there_is_no_scale(void **state)
+static void coincident_cameras_have_no_scale(void **state)
 {
     struct pose found[2] = {pose_at(vec3_make(1, 2, 3), turn(0, 1, 0, 0)),
                             pose_at(vec3_make(1, 2, 3), turn(9, 1, 0, 0))};
@@ -109,7 +109,7 @@ static void without_two_places_there_is_no_scale(void **state)
     assert_int_equal(align_cameras(&a, truth, found, 2, &err), ST_DATA);
 }
 
-static void medians(void **state)
+static void a_median_of_an_even_number_is_a_mean(void **state)
 {
     double odd[] = {5, 1, 3}, even[] = {4, 1, 2, 9};
     (void)state;
@@ -122,10 +122,10 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_known_similarity_is_found),
-        cmocka_unit_test(errors_of_a_bent_square),
-        cmocka_unit_test(a_mirror_stays_one),
-        cmocka_unit_test(without_two_places_there_is_no_scale),
-        cmocka_unit_test(medians),
+        cmocka_unit_test(a_sheared_square_has_known_errors),
+        cmocka_unit_test(a_mirrored_scene_is_aligned_by_a_rotation),
+        cmocka_unit_test(coincident_cameras_have_no_scale),
+        cmocka_unit_test(a_median_of_an_even_number_is_a_mean),
     };
     return cmocka_run_group_tests_name("alignment", tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-/* Axes that are turned by known angles. */
+/* axes_error.c - errors of axes that are rotated by known angles. */
 #include "stages/evaluate/axes_error.h"
 
 #include "tests/unit/scratch.h"
@@ -9,7 +9,7 @@ static struct mat3 turn(double degrees, double x, double y, double z)
     return mat3_from_quat((struct quat){cos(a), sin(a) * x, sin(a) * y, sin(a) * z});
 }
 
-static void angles_by_hand(void **state)
+static void known_rotations_are_measured(void **state)
 {
     struct room_axes truth = {turn(23, 0, 0, 1), 0.8, 3.4}, found = truth;
     struct axes_errors e = axes_errors(&found, &truth);
@@ -32,6 +32,6 @@ static void angles_by_hand(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(angles_by_hand)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(known_rotations_are_measured)};
     return cmocka_run_group_tests_name("axes_error", tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-/* Depth errors of a few pixels, counted by hand. */
+/* depth_error.c - depth errors of a few pixels, counted by hand. */
 #include "stages/evaluate/depth_error.h"
 
 #include <math.h>
@@ -7,7 +7,7 @@
 
 static void assert_close(double a, double b) { assert_true(fabs(a - b) <= fabs(b) / 4096); }
 
-static void counts_and_quantiles(void **state)
+static void pixels_and_quantiles_are_counted(void **state)
 {
     /* f B = 10: disparities 5 5, 5 4, 5 2.5, 2 0.5, 5 none; the last pixel has no truth */
     static const float truth[] = {2, 2, 2, 5, 2, 0}, z[] = {2, 2.5f, 4, 20, 0, 1};
@@ -20,7 +20,7 @@ static void counts_and_quantiles(void **state)
     assert_int_equal(e.all.pixels, 5);
     assert_int_equal(e.all.known, 4);
     assert_int_equal(e.all.within2, 1);
-    assert_int_equal(e.all.bad1, 3); /* off by 2.5, by 1.5, and the unknown one; off by exactly 1 is not bad */
+    assert_int_equal(e.all.bad1, 3); /* errors of 2.5 and 1.5 px, and the unknown one; exactly 1 px is not bad */
     assert_int_equal(e.all.bad2, 2);
     assert_int_equal(e.visible.pixels, 4);
     assert_int_equal(e.visible.known, 3);
@@ -35,7 +35,7 @@ static void counts_and_quantiles(void **state)
     depth_errors_release(&e);
 }
 
-static void merging_is_adding(void **state)
+static void merging_adds_the_counts(void **state)
 {
     static const float truth[] = {1, 1, 4, 4}, z[] = {1.5f, 0, 5, 4};
     struct depth_errors a, b, both;
@@ -59,7 +59,7 @@ static void merging_is_adding(void **state)
     depth_errors_release(&both);
 }
 
-static void quantiles_are_sharp_over_many_magnitudes(void **state)
+static void quantiles_are_precise_at_all_magnitudes(void **state)
 {
     struct quantiles q;
     struct err err = ERR_INIT;
@@ -79,9 +79,9 @@ static void quantiles_are_sharp_over_many_magnitudes(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(counts_and_quantiles),
-        cmocka_unit_test(merging_is_adding),
-        cmocka_unit_test(quantiles_are_sharp_over_many_magnitudes),
+        cmocka_unit_test(pixels_and_quantiles_are_counted),
+        cmocka_unit_test(merging_adds_the_counts),
+        cmocka_unit_test(quantiles_are_precise_at_all_magnitudes),
     };
     return cmocka_run_group_tests_name("depth_error", tests, NULL, NULL);
 }

@@ -1,11 +1,11 @@
-/* The tables' text: sorted, the same for the same values, never a NaN. */
+/* metric_table.c - the text of the tables: sorted, with notes, never a NaN. */
 #include "stages/evaluate/metric_table.h"
 
 #include <math.h>
 
 #include "tests/unit/scratch.h"
 
-static void sorted_with_reasons(void **state)
+static void tables_are_sorted_and_finite(void **state)
 {
     struct metric_table t = {0};
     struct err err = ERR_INIT;
@@ -30,6 +30,6 @@ static void sorted_with_reasons(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(sorted_with_reasons)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(tables_are_sorted_and_finite)};
     return cmocka_run_group_tests_name("metric_table", tests, scratch_make, scratch_remove);
 }

@@ -1,4 +1,4 @@
-/* PSNR and SSIM against closed forms and a direct double sum over the window. */
+/* metrics.c - PSNR and SSIM against closed forms, and against a direct sum over each window. */
 #include "tests/unit/scratch.h"
 
 #include <math.h>
@@ -21,7 +21,7 @@ static void fill_noise(void)
     }
 }
 
-static void psnr_closed_form(void **state)
+static void psnr_matches_its_closed_form(void **state)
 {
     struct err err = ERR_INIT;
     uint8_t mask[W * H] = {0};
@@ -34,7 +34,7 @@ static void psnr_closed_form(void **state)
     assert_ok(metrics_psnr(a, a, W, H, NULL, &db, &err), err);
     assert_true(db == 99);
 
-    /* one pixel off by 1, 2, 2: mean square 3 over it alone */
+    /* one pixel differs by 1, 2, 2: its mean square is 3 */
     memcpy(b, a, sizeof b);
     b[3 * 50] = 101, b[3 * 50 + 1] = 98, b[3 * 50 + 2] = 102;
     mask[50] = 1;
@@ -48,7 +48,7 @@ static void psnr_closed_form(void **state)
     assert_err(err, ST_DATA, "not one pixel");
 }
 
-static void ssim_of_equals_is_one(void **state)
+static void ssim_of_equal_pictures_is_one(void **state)
 {
     struct err err = ERR_INIT;
     double ssim = 0;
@@ -58,7 +58,7 @@ static void ssim_of_equals_is_one(void **state)
     assert_true(fabs(ssim - 1) < 1e-12);
 }
 
-static void ssim_of_constants(void **state)
+static void ssim_of_flat_pictures_matches_its_closed_form(void **state)
 {
     struct err err = ERR_INIT;
     double ssim = 0, c1 = 2.55 * 2.55;
@@ -68,11 +68,11 @@ static void ssim_of_constants(void **state)
     assert_ok(metrics_ssim(a, b, W, H, NULL, &ssim, &err), err);
     assert_true(fabs(ssim - (2 * 60.0 * 200 + c1) / (60.0 * 60 + 200.0 * 200 + c1)) < 1e-9);
     memset(b, 0, sizeof b);
-    assert_ok(metrics_ssim(b, b, W, H, NULL, &ssim, &err), err); /* 0 / 0 but for the constants */
+    assert_ok(metrics_ssim(b, b, W, H, NULL, &ssim, &err), err); /* 0 / 0 without the constants */
     assert_true(fabs(ssim - 1) < 1e-12);
 }
 
-/* The window at (x, y), straight from the paper's definitions, in two dimensions. */
+/* SSIM of the window at (x, y) from the definitions in [Wang 2004], in two dimensions. */
 static double window_directly(int x, int y, int c)
 {
     double weight = 0, ma = 0, mb = 0, saa = 0, sbb = 0, sab = 0, c1 = 2.55 * 2.55, c2 = 7.65 * 7.65;
@@ -97,7 +97,7 @@ static double window_directly(int x, int y, int c)
     return (2 * ma * mb + c1) * (2 * sab + c2) / ((ma * ma + mb * mb + c1) * (saa + sbb + c2));
 }
 
-static void ssim_window_by_window(void **state)
+static void ssim_matches_a_direct_sum_per_window(void **state)
 {
     struct err err = ERR_INIT;
     uint8_t mask[W * H] = {0};
@@ -123,7 +123,7 @@ static void ssim_window_by_window(void **state)
     assert_err(err, ST_DATA, "not one window");
 }
 
-static void ssim_single_window(void **state)
+static void a_picture_of_one_window_has_an_ssim(void **state)
 {
     static uint8_t small_a[11 * 11 * 3], small_b[11 * 11 * 3];
     struct err err = ERR_INIT;
@@ -141,7 +141,7 @@ static void ssim_single_window(void **state)
     assert_err(err, ST_DATA, "10 x 12");
 }
 
-static void same_for_any_threads(void **state)
+static void ssim_is_the_same_for_any_threads(void **state)
 {
     struct err err = ERR_INIT;
     double one = 0, more = 0;
@@ -157,8 +157,8 @@ static void same_for_any_threads(void **state)
     parallel_set_threads(0);
 }
 
-/* Against a look at every pixel of every window; some masks reach all borders. */
-static void windows_wholly_in_a_mask(void **state)
+/* Compared with a test of every pixel of every window; some masks reach all borders. */
+static void windows_lie_wholly_in_the_mask(void **state)
 {
     uint8_t mask[W * H], windows[W * H];
     uint32_t s = 5;
@@ -187,10 +187,13 @@ static void windows_wholly_in_a_mask(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(psnr_closed_form),         cmocka_unit_test(ssim_of_equals_is_one),
-        cmocka_unit_test(ssim_of_constants),        cmocka_unit_test(ssim_window_by_window),
-        cmocka_unit_test(ssim_single_window),       cmocka_unit_test(same_for_any_threads),
-        cmocka_unit_test(windows_wholly_in_a_mask),
+        cmocka_unit_test(psnr_matches_its_closed_form),
+        cmocka_unit_test(ssim_of_equal_pictures_is_one),
+        cmocka_unit_test(ssim_of_flat_pictures_matches_its_closed_form),
+        cmocka_unit_test(ssim_matches_a_direct_sum_per_window),
+        cmocka_unit_test(a_picture_of_one_window_has_an_ssim),
+        cmocka_unit_test(ssim_is_the_same_for_any_threads),
+        cmocka_unit_test(windows_lie_wholly_in_the_mask),
     };
     return cmocka_run_group_tests_name("metrics", tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-/* A rendered picture against a photograph: holes and borders by hand. */
+/* picture_error.c - a rendered picture with holes and borders against a photograph, computed by hand. */
 #include "stages/evaluate/picture_error.h"
 
 #include <math.h>
@@ -9,8 +9,8 @@ enum { W = 20, H = 16 };
 
 static uint8_t photo[W * H * 3], frame[W * H * 3], inside[W * H], hole[W * H];
 
-/* Photo 100; frame 110 and, in the last two rows, a black hole; the photo lacks its first column. */
-static void make(void)
+/* Photo 100, without its first column; frame 110, with a black hole in the last two rows. */
+static void make_pictures(void)
 {
     memset(photo, 100, sizeof photo);
     memset(frame, 110, sizeof frame);
@@ -23,17 +23,17 @@ static void make(void)
     }
 }
 
-static void covered_and_all_pixels(void **state)
+static void holes_are_left_out_of_the_covered_metrics(void **state)
 {
     struct picture_errors e;
     struct err err = ERR_INIT;
     (void)state;
-    make();
+    make_pictures();
     assert_ok(picture_errors(&e, photo, frame, inside, hole, W, H, &err), err);
     assert_true(fabs(e.holes - 2.0 / 16) < 1e-12);
     assert_true(fabs(e.psnr_covered - 20 * log10(255.0 / 10)) < 1e-12);
     assert_true(fabs(e.psnr - 10 * log10(255.0 * 255 / ((14 * 100.0 + 2 * 10000.0) / 16))) < 1e-12);
-    /* SSIM of two greys is (2 a b + C1) / (a a + b b + C1); no window of the covered ones touches hole or border */
+    /* SSIM of two flat greys is (2 a b + C1) / (a a + b b + C1); covered windows touch neither hole nor border */
     double c1 = 2.55 * 2.55;
     assert_true(e.has_covered && e.has_ssim && e.has_ssim_covered && e.ssim < e.ssim_covered);
     assert_true(fabs(e.ssim_covered - (22000 + c1) / (22100 + c1)) < 1e-9);
@@ -46,12 +46,12 @@ static void covered_and_all_pixels(void **state)
     assert_true(e.holes == 0 && e.ssim == e.ssim_covered && e.psnr == e.psnr_covered);
 }
 
-static void what_cannot_be_computed_is_said(void **state)
+static void missing_metrics_are_flagged(void **state)
 {
     struct picture_errors e;
     struct err err = ERR_INIT;
     (void)state;
-    make();
+    make_pictures();
     memset(hole, 1, sizeof hole); /* nothing is covered */
     assert_ok(picture_errors(&e, photo, frame, inside, hole, W, H, &err), err);
     assert_true(e.holes == 1 && e.has_ssim && !e.has_covered && !e.has_ssim_covered);
@@ -66,8 +66,8 @@ static void what_cannot_be_computed_is_said(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(covered_and_all_pixels),
-        cmocka_unit_test(what_cannot_be_computed_is_said),
+        cmocka_unit_test(holes_are_left_out_of_the_covered_metrics),
+        cmocka_unit_test(missing_metrics_are_flagged),
     };
     return cmocka_run_group_tests_name("picture_error", tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-/* True depths of planes: rays and axes, lenses and turns, jumps, and which pixels the other camera cannot see. */
+/* true_depth.c - true depths of planes: through lenses and rotations, at depth edges, and their occlusion. */
 #include "stages/evaluate/true_depth.h"
 
 #include "tests/unit/scratch.h"
@@ -26,7 +26,7 @@ static struct vec3 points[3600];
 static uint8_t hidden[3600], occluded[3600];
 static float z[3600];
 
-static void rays_become_depth_along_the_views_axis(void **state)
+static void ray_lengths_become_depths_along_the_views_axis(void **state)
 {
     struct true_photo p = photo_of(&fisheye, true);
     struct lens lens = {.camera = fisheye, .view_from_photo = {1, 0, 0, 0}};
@@ -34,7 +34,7 @@ static void rays_become_depth_along_the_views_axis(void **state)
     struct view v = view_of(&square);
     struct vec3 ray;
     (void)state;
-    for (int i = 0; i < 3600; i++) { /* a wall at z = 2 before the photo, one at x = -3 to its left */
+    for (int i = 0; i < 3600; i++) { /* a wall at z = 2 in front of the photo, another at x = -3 to its left */
         if (!camera_unproject(&fisheye, i % 60 + 0.5, i / 60 + 0.5, &ray)) continue;
         double front = ray.z > 0 ? 2 / ray.z : INFINITY, left = ray.x < 0 ? -3 / ray.x : INFINITY;
         if (fmin(front, left) < 100) p.depth[i] = (float)fmin(front, left);
@@ -50,11 +50,11 @@ static void rays_become_depth_along_the_views_axis(void **state)
     free(p.depth);
 }
 
-static void no_depth_lies_between_two_sides_of_a_jump(void **state)
+static void no_depth_is_between_the_sides_of_an_edge(void **state)
 {
     struct true_photo p = photo_of(&pinhole, false);
     struct camera larger = {
-        CAMERA_PINHOLE, 3 * W, 3 * H, {30, 30, 3 * W / 2.0, 3 * H / 2.0}}; /* photo of 3x the truth */
+        CAMERA_PINHOLE, 3 * W, 3 * H, {30, 30, 3 * W / 2.0, 3 * H / 2.0}}; /* the photo is 3x as large as the truth */
     struct lens lens = {.camera = larger, .view_from_photo = {1, 0, 0, 0}};
     struct camera between = {CAMERA_PINHOLE, 57, 17, {14, 14, 28.5, 8.5}};
     struct view v = view_of(&between);
@@ -68,7 +68,7 @@ static void no_depth_lies_between_two_sides_of_a_jump(void **state)
     for (int i = 0; i < 57 * 17; i++) {
         near += z[i] == 1;
         far += z[i] == 5;
-        if (i % 57 < 2 && i / 57 < 2) continue;     /* where the truth has none */
+        if (i % 57 < 2 && i / 57 < 2) continue;     /* the truth is unknown there */
         if (i % 57 == 28 || i % 57 == 56) continue; /* centres on the edges of the true pixels */
         assert_true(z[i] == (i % 57 < 28 ? 1 : 5));
     }
@@ -80,9 +80,9 @@ static void no_depth_lies_between_two_sides_of_a_jump(void **state)
     free(p.depth);
 }
 
-/* A wall at 4 with a post at 2 before it in columns 18..21; the other camera stands 0.96 to the right. There the post is
- * shifted by 4.8 px and the wall by 2.4 px: the wall's columns 0 and 1 leave the picture, and those whose centres come to
- * lie in columns 13..16 stand behind the post: 15, 16 and 17. */
+/* A wall at depth 4 with a post at depth 2 in columns 18..21; the other camera is 0.96 to the right. There the post is
+ * shifted by 4.8 px and the wall by 2.4 px: the wall's columns 0 and 1 leave the picture, and columns 15, 16 and 17,
+ * whose centres move into columns 13..16, are behind the post. */
 static void occluded_columns(uint8_t columns[W], bool other_has_depth)
 {
     struct true_photo a = photo_of(&pinhole, false), b = photo_of(&pinhole, false);
@@ -99,7 +99,7 @@ static void occluded_columns(uint8_t columns[W], bool other_has_depth)
     true_points(points, &a);
     assert_ok(true_occlusion(hidden, &a, points, others, 1, &err), err);
     for (int x = 0; x < W; x++) columns[x] = hidden[5 * W + x];
-    /* with itself in its place everything is seen, with nobody nothing is */
+    /* the photo itself as the other one sees everything; with no other photo nothing is seen */
     others[0] = &a;
     assert_ok(true_occlusion(hidden, &a, points, others, 1, &err), err);
     for (int i = 0; i < W * H; i++) assert_int_equal(hidden[i], 0);
@@ -109,7 +109,7 @@ static void occluded_columns(uint8_t columns[W], bool other_has_depth)
     free(depth);
 }
 
-static void what_the_post_hides_by_forward_warping(void **state)
+static void a_post_occludes_by_forward_warping(void **state)
 {
     uint8_t columns[W];
     (void)state;
@@ -117,8 +117,8 @@ static void what_the_post_hides_by_forward_warping(void **state)
     for (int x = 0; x < W; x++) assert_int_equal(columns[x], x <= 1 || (x >= 15 && x <= 17));
 }
 
-/* The other photo's depth is looked at in 3x3 pixels, so that column 15, beside the post's edge there, is seen. */
-static void what_the_post_hides_by_the_others_depth(void **state)
+/* The test uses 3 x 3 pixels of the other photo's depth, so that column 15, beside the edge of the post, is visible. */
+static void a_post_occludes_by_the_other_photos_depth(void **state)
 {
     uint8_t columns[W];
     (void)state;
@@ -129,10 +129,10 @@ static void what_the_post_hides_by_the_others_depth(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rays_become_depth_along_the_views_axis),
-        cmocka_unit_test(no_depth_lies_between_two_sides_of_a_jump),
-        cmocka_unit_test(what_the_post_hides_by_forward_warping),
-        cmocka_unit_test(what_the_post_hides_by_the_others_depth),
+        cmocka_unit_test(ray_lengths_become_depths_along_the_views_axis),
+        cmocka_unit_test(no_depth_is_between_the_sides_of_an_edge),
+        cmocka_unit_test(a_post_occludes_by_forward_warping),
+        cmocka_unit_test(a_post_occludes_by_the_other_photos_depth),
     };
     return cmocka_run_group_tests_name("true_depth", tests, NULL, NULL);
 }

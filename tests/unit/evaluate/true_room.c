@@ -1,9 +1,9 @@
-/* true_room.c - floors and ceilings of a truth's rooms, in either of its files. */
+/* true_room.c - floors and ceilings of true rooms, from either file. */
 #include "stages/evaluate/true_room.h"
 
 #include "tests/unit/scratch.h"
 
-static void a_described_scene_is_its_own_frame(void **state)
+static void a_described_scene_has_the_frame_of_the_world(void **state)
 {
     (void)state;
     struct true_room room;
@@ -17,7 +17,7 @@ static void a_described_scene_is_its_own_frame(void **state)
     assert_true(room.room_from_world.m[0][0] == 1 && room.room_from_world.m[0][1] == 0);
 }
 
-static void rooms_may_have_a_frame_of_their_own(void **state)
+static void rooms_can_have_a_frame_of_their_own(void **state)
 {
     (void)state;
     struct true_room room;
@@ -34,11 +34,11 @@ static void rooms_may_have_a_frame_of_their_own(void **state)
     assert_true(fabs(p.x - 2) < 1e-12 && fabs(p.y) < 1e-12 && fabs(p.z) < 1e-12);
 }
 
-static void what_cannot_be_compared_is_refused(void **state)
+static void damaged_and_different_rooms_are_refused(void **state)
 {
     (void)state;
     static const struct {
-        const char *text, *words;
+        const char *text, *error;
         bool frame;
     } cases[] = {
         {"room a 0 0 1 1 0 2\nroom b 0 0 1 1 0 3\n", ":2: found \"heights from 0 to 3\"", false},
@@ -53,12 +53,12 @@ static void what_cannot_be_compared_is_refused(void **state)
         struct err err = ERR_INIT;
         assert_int_equal(true_room_read_file(&room, scratch_write("room.txt", cases[i].text), cases[i].frame, &err),
                          ST_DATA);
-        assert_err(err, ST_DATA, cases[i].words);
+        assert_err(err, ST_DATA, cases[i].error);
         assert_false(room.known);
     }
 }
 
-static void a_truth_without_rooms_is_no_error(void **state)
+static void a_truth_may_lack_rooms(void **state)
 {
     (void)state;
     struct true_room room;
@@ -73,10 +73,10 @@ static void a_truth_without_rooms_is_no_error(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_described_scene_is_its_own_frame),
-        cmocka_unit_test(rooms_may_have_a_frame_of_their_own),
-        cmocka_unit_test(what_cannot_be_compared_is_refused),
-        cmocka_unit_test(a_truth_without_rooms_is_no_error),
+        cmocka_unit_test(a_described_scene_has_the_frame_of_the_world),
+        cmocka_unit_test(rooms_can_have_a_frame_of_their_own),
+        cmocka_unit_test(damaged_and_different_rooms_are_refused),
+        cmocka_unit_test(a_truth_may_lack_rooms),
     };
     return cmocka_run_group_tests_name("true_room", tests, scratch_make, scratch_remove);
 }

@@ -1,4 +1,4 @@
-/* Folders of truth: names, kinds of depth, and what is wrong with some. */
+/* truth.c - folders with a truth: names, kinds of depth, damage. */
 #include "stages/evaluate/truth.h"
 
 #include "common/base/outfile.h"
@@ -44,7 +44,7 @@ static void write_cameras(void)
     assert_ok(make_folders(scratch_path("depth"), &err), err);
 }
 
-static void names_kinds_and_limits(void **state)
+static void photos_and_depths_are_read(void **state)
 {
     struct truth t;
     struct err err = ERR_INIT;
@@ -54,21 +54,21 @@ static void names_kinds_and_limits(void **state)
     write_depth("depth/b.exr", W, NULL);
     assert_ok(read_it(&t, &err), err);
     assert_int_equal(t.images, 3);
-    assert_int_equal(t.strangers, 1);
+    assert_int_equal(t.unknown_images, 1);
     assert_int_equal(t.depths, 2);
     assert_int_equal(t.photos[2].lens.width, 0);
-    assert_true(t.photos[1].along_ray && !t.photos[0].along_ray); /* by the lens */
+    assert_true(t.photos[1].along_ray && !t.photos[0].along_ray); /* from the lens */
     assert_true(t.photos[1].pose.translation.z == 3);
     assert_true(t.photos[0].depth[9] == 9 && t.photos[0].depth[10] == 0 && t.photos[0].depth[0] == 0); /* far is 9 */
     truth_release(&t);
     truth_release(&t);
-    write_depth("depth/b.exr", W, "z"); /* the file says otherwise */
+    write_depth("depth/b.exr", W, "z"); /* the attribute overrides the lens */
     assert_ok(read_it(&t, &err), err);
     assert_false(t.photos[1].along_ray);
     truth_release(&t);
 }
 
-static void wrong_folders_are_told(void **state)
+static void damaged_folders_are_refused(void **state)
 {
     struct truth t;
     struct err err = ERR_INIT;
@@ -95,8 +95,8 @@ static void wrong_folders_are_told(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(names_kinds_and_limits),
-        cmocka_unit_test(wrong_folders_are_told),
+        cmocka_unit_test(photos_and_depths_are_read),
+        cmocka_unit_test(damaged_folders_are_refused),
     };
     return cmocka_run_group_tests_name("truth", tests, scratch_make, scratch_remove);
 }

@@ -1,13 +1,13 @@
-/* Walls and openings of a model against those of a truth: known shifts come back as errors. */
+/* wall_plan.c - walls and openings of a model against those of a truth: errors are the known shifts. */
 #include "stages/evaluate/wall_plan.h"
 
 #include "tests/unit/scratch.h"
 
-/* Two rooms, 0..5 and 5.15..8.65 by 0..4; `off` moves the south wall out, and the door along its wall. */
-static struct wall_plan model(double off, struct err *err)
+/* Two rooms, x 0..5 and 5.15..8.65, y 0..4; `off` moves the south wall outwards, and the door along its wall. */
+static struct measured_plan model(double off, struct err *err)
 {
     char text[2048];
-    struct wall_plan plan = {0};
+    struct measured_plan plan = {0};
     snprintf(
         text, sizeof text,
         "remodel-plan 1\n"
@@ -21,9 +21,9 @@ static struct wall_plan model(double off, struct err *err)
         "room study floor 0 ceiling 2.6 0 0 south 8.65 %.17g east 8.65 4 north 5.15 4 partition 5.15 %.17g\n"
         "box b 0 0 0 1 1 1 turn 0\n",
         -off, 1.6 + off, 2.5 + off, -off, -off, -off, -off);
-    assert_ok(wall_plan_read(&plan, scratch_write("plan.txt", text), PLAN_OF_MODEL, err), *err);
+    assert_ok(measured_plan_read(&plan, scratch_write("plan.txt", text), PLAN_FROM_MODEL, err), *err);
     assert_int_equal(plan.faces.count, 8);
-    assert_int_equal(plan.openings.count, 2); /* where S of an angled wall is, the plan does not tell */
+    assert_int_equal(plan.openings.count, 2); /* the window in the angled wall is left out */
     return plan;
 }
 
@@ -39,74 +39,76 @@ static const char *const DESCRIBED = "remodel-scene 1\nroom living 0 0 5.075 4 0
                                      "opening door partition 1.6 2.5 0 2.1\nwindow sunny south 1.625 3.425 0.9 2.2\n"
                                      "window light east 1.525 2.525 0.9 2\n";
 
-static void known_shifts_come_back(void **state)
+static void errors_are_the_known_shifts(void **state)
 {
     (void)state;
     const struct {
         const char *text;
-        enum wall_plan_kind kind;
-    } truths[] = {{FRAMED, PLAN_FRAMED}, {DESCRIBED, PLAN_DESCRIBED}};
+        enum measured_plan_kind kind;
+    } truths[] = {{FRAMED, PLAN_FROM_SCENE_TRUTH}, {DESCRIBED, PLAN_FROM_SCENE}};
     for (int i = 0; i < 2; i++)
         for (double off = 0; off < 0.05; off += 0.03) {
             struct err err = ERR_INIT;
-            struct wall_plan found = model(off, &err), truth = {0};
+            struct measured_plan found = model(off, &err), truth = {0};
             struct wall_errors e = {0};
-            assert_ok(wall_plan_read(&truth, scratch_write("truth.txt", truths[i].text), truths[i].kind, &err), err);
+            assert_ok(measured_plan_read(&truth, scratch_write("truth.txt", truths[i].text), truths[i].kind, &err),
+                      err);
             assert_ok(wall_errors_find(&e, &found, &truth, 0.5, &err), err);
             assert_int_equal(e.faces.count, 8);
             assert_int_equal(e.openings.count, 2);
             assert_true(e.faces.errors[0] < 1e-9 && fabs(e.faces.errors[7] - off) < 1e-9);
             assert_true(e.openings.errors[0] < 1e-9 && fabs(e.openings.errors[1] - off) < 1e-9);
-            assert_int_equal(e.strange, 0);
-            assert_int_equal(e.missing, 1); /* the window to the east */
+            assert_int_equal(e.extra, 0);
+            assert_int_equal(e.missing, 1); /* the east window */
             if (off > 0) {
                 assert_string_equal(e.faces.worst, "south");
                 assert_string_equal(e.openings.worst, "door");
             }
             wall_errors_release(&e);
-            wall_plan_release(&truth);
-            wall_plan_release(&found);
+            measured_plan_release(&truth);
+            measured_plan_release(&found);
         }
 }
 
-static void what_the_truth_does_not_have_is_counted(void **state)
+static void extra_and_missing_parts_are_counted(void **state)
 {
     (void)state;
     struct err err = ERR_INIT;
-    struct wall_plan found = model(0.6, &err), truth = {0};
+    struct measured_plan found = model(0.6, &err), truth = {0};
     struct wall_errors e = {0};
-    assert_ok(wall_plan_read(&truth, scratch_write("truth.txt", FRAMED), PLAN_FRAMED, &err), err);
+    assert_ok(measured_plan_read(&truth, scratch_write("truth.txt", FRAMED), PLAN_FROM_SCENE_TRUTH, &err), err);
     assert_ok(wall_errors_find(&e, &found, &truth, 0.5, &err), err);
-    assert_int_equal(e.strange, 4); /* the south of both rooms, the door, the window */
+    assert_int_equal(e.extra, 4); /* the south walls of both rooms, the door, the window */
     assert_int_equal(e.missing, 3);
     assert_int_equal(e.faces.count, 6);
     wall_errors_release(&e);
-    wall_plan_release(&truth);
-    wall_plan_release(&found);
+    measured_plan_release(&truth);
+    measured_plan_release(&found);
 }
 
-static void broken_lines_are_named(void **state)
+static void broken_lines_are_refused(void **state)
 {
     (void)state;
     static const struct {
-        const char *text, *words;
-        enum wall_plan_kind kind;
+        const char *text, *error;
+        enum measured_plan_kind kind;
     } cases[] = {
-        {"wall a normal 0 1 in 3\n", ":1: found \"in\", wanted \"at\"", PLAN_OF_MODEL},
-        {"room r floor 0 ceiling 2 0 0\n", "wanted a wall's name", PLAN_OF_MODEL},
-        {"wall a 1 1 1 1 0 2 0.3 m\n", "wanted a wall of some length", PLAN_DESCRIBED},
-        {"\nopening d nowhere 0 1 0 2\n", ":2: found \"nowhere\"", PLAN_DESCRIBED},
-        {"door y 1 2 top 2\n", "wanted a partition above it", PLAN_FRAMED},
-        {"partition z 1 2\n", "wanted x or y", PLAN_FRAMED},
-        {"window_south x 1 2 z 1 2\n", "wanted a room above it", PLAN_FRAMED},
-        {"a 0 0 0 1 1 1\nwindow_south y 1 2 z 1 2\n", "wanted the axis along its wall", PLAN_FRAMED},
-        {"a 1 0 0 0 1 1\n", "wanted a room with x0 < x1", PLAN_FRAMED},
+        {"wall a normal 0 1 in 3\n", ":1: found \"in\", wanted \"at\"", PLAN_FROM_MODEL},
+        {"room r floor 0 ceiling 2 0 0\n", "wanted a wall's name", PLAN_FROM_MODEL},
+        {"wall a 1 1 1 1 0 2 0.3 m\n", "wanted a wall with a length", PLAN_FROM_SCENE},
+        {"\nopening d nowhere 0 1 0 2\n", ":2: found \"nowhere\"", PLAN_FROM_SCENE},
+        {"door y 1 2 top 2\n", "wanted a partition on a line above", PLAN_FROM_SCENE_TRUTH},
+        {"partition z 1 2\n", "wanted x or y", PLAN_FROM_SCENE_TRUTH},
+        {"window_south x 1 2 z 1 2\n", "wanted a room on a line above", PLAN_FROM_SCENE_TRUTH},
+        {"a 0 0 0 1 1 1\nwindow_south y 1 2 z 1 2\n", "wanted the axis along its wall", PLAN_FROM_SCENE_TRUTH},
+        {"a 1 0 0 0 1 1\n", "wanted a room with x0 < x1", PLAN_FROM_SCENE_TRUTH},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        struct wall_plan plan = {0};
+        struct measured_plan plan = {0};
         struct err err = ERR_INIT;
-        assert_int_equal(wall_plan_read(&plan, scratch_write("plan.txt", cases[i].text), cases[i].kind, &err), ST_DATA);
-        assert_err(err, ST_DATA, cases[i].words);
+        assert_int_equal(measured_plan_read(&plan, scratch_write("plan.txt", cases[i].text), cases[i].kind, &err),
+                         ST_DATA);
+        assert_err(err, ST_DATA, cases[i].error);
         assert_int_equal(plan.faces.count + plan.openings.count, 0);
     }
 }
@@ -114,9 +116,9 @@ static void broken_lines_are_named(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(known_shifts_come_back),
-        cmocka_unit_test(what_the_truth_does_not_have_is_counted),
-        cmocka_unit_test(broken_lines_are_named),
+        cmocka_unit_test(errors_are_the_known_shifts),
+        cmocka_unit_test(extra_and_missing_parts_are_counted),
+        cmocka_unit_test(broken_lines_are_refused),
     };
     return cmocka_run_group_tests_name("wall_plan", tests, scratch_make, scratch_remove);
 }

@@ -1,9 +1,9 @@
-/* What comes from outside reaches the page escaped, whatever its bytes; base64 is RFC 4648's. */
+/* html.c - text of any bytes is escaped; base64 follows RFC 4648. */
 #include "stages/report/html.h"
 
 #include "tests/unit/scratch.h"
 
-static void expect(const char *in, size_t size, const char *wanted)
+static void expect_escaped(const char *in, size_t size, const char *wanted)
 {
     char *text = NULL;
     size_t length;
@@ -16,29 +16,29 @@ static void expect(const char *in, size_t size, const char *wanted)
 
 #define REPLACED "\xef\xbf\xbd"
 
-static void escapes(void **state)
+static void markup_is_escaped(void **state)
 {
     (void)state;
-    expect("a&b<c>\"d'", 9, "a&amp;b&lt;c&gt;&quot;d&#39;");
-    expect("</script><img onerror=x>", 24, "&lt;/script&gt;&lt;img onerror=x&gt;");
-    expect("a\tb\nc", 5, "a\tb\nc");
-    expect("", 0, "");
+    expect_escaped("a&b<c>\"d'", 9, "a&amp;b&lt;c&gt;&quot;d&#39;");
+    expect_escaped("</script><img onerror=x>", 24, "&lt;/script&gt;&lt;img onerror=x&gt;");
+    expect_escaped("a\tb\nc", 5, "a\tb\nc");
+    expect_escaped("", 0, "");
 }
 
-static void keeps_utf8_and_replaces_the_rest(void **state)
+static void utf8_is_kept_and_other_bytes_are_replaced(void **state)
 {
     (void)state;
-    expect("\xc3\xa9 \xe2\x82\xac \xf0\x9f\x93\xb7", 11, "\xc3\xa9 \xe2\x82\xac \xf0\x9f\x93\xb7");
-    expect("\xe9t\xe9", 3, REPLACED "t" REPLACED);         /* Latin-1 */
-    expect("\xc0\xbc", 2, REPLACED REPLACED);              /* an overlong < */
-    expect("\xed\xa0\x80", 3, REPLACED REPLACED REPLACED); /* a surrogate */
-    expect("\xf4\x90\x80\x80", 4, REPLACED REPLACED REPLACED REPLACED);
-    expect("a\xe2\x82", 3, "a" REPLACED REPLACED); /* cut off */
-    expect("a\0b\x1b[31m\x7f\r", 10, "a" REPLACED "b" REPLACED "[31m" REPLACED REPLACED);
-    expect("\xc2\x85\xef\xbf\xbe", 5, REPLACED REPLACED); /* a C1 control, a noncharacter */
+    expect_escaped("\xc3\xa9 \xe2\x82\xac \xf0\x9f\x93\xb7", 11, "\xc3\xa9 \xe2\x82\xac \xf0\x9f\x93\xb7");
+    expect_escaped("\xe9t\xe9", 3, REPLACED "t" REPLACED);         /* Latin-1 */
+    expect_escaped("\xc0\xbc", 2, REPLACED REPLACED);              /* an overlong < */
+    expect_escaped("\xed\xa0\x80", 3, REPLACED REPLACED REPLACED); /* a surrogate */
+    expect_escaped("\xf4\x90\x80\x80", 4, REPLACED REPLACED REPLACED REPLACED);
+    expect_escaped("a\xe2\x82", 3, "a" REPLACED REPLACED); /* cut off */
+    expect_escaped("a\0b\x1b[31m\x7f\r", 10, "a" REPLACED "b" REPLACED "[31m" REPLACED REPLACED);
+    expect_escaped("\xc2\x85\xef\xbf\xbe", 5, REPLACED REPLACED); /* a C1 control, a noncharacter */
 }
 
-static void formats_and_escapes(void **state)
+static void formatted_text_is_escaped(void **state)
 {
     char *text = NULL;
     size_t length;
@@ -50,7 +50,7 @@ static void formats_and_escapes(void **state)
     free(text);
 }
 
-static void base64(void **state)
+static void base64_matches_the_rfc(void **state)
 {
     static const char *const PAIRS[][2] = {{"", ""},
                                            {"f", "Zg=="},
@@ -72,8 +72,8 @@ static void base64(void **state)
     }
 }
 
-/* A file longer than the reader's buffer gives the text of its bytes in one piece. */
-static void base64_of_a_file(void **state)
+/* The file is longer than the reader's buffer. */
+static void a_file_is_encoded_like_its_bytes(void **state)
 {
     enum { SIZE = 100001 };
     unsigned char *bytes = malloc(SIZE);
@@ -102,11 +102,11 @@ static void base64_of_a_file(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(escapes),
-        cmocka_unit_test(keeps_utf8_and_replaces_the_rest),
-        cmocka_unit_test(formats_and_escapes),
-        cmocka_unit_test(base64),
-        cmocka_unit_test(base64_of_a_file),
+        cmocka_unit_test(markup_is_escaped),
+        cmocka_unit_test(utf8_is_kept_and_other_bytes_are_replaced),
+        cmocka_unit_test(formatted_text_is_escaped),
+        cmocka_unit_test(base64_matches_the_rfc),
+        cmocka_unit_test(a_file_is_encoded_like_its_bytes),
     };
     return cmocka_run_group_tests_name("html", tests, scratch_make, scratch_remove);
 }

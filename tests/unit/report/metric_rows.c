@@ -1,9 +1,9 @@
-/* The tables that `evaluate` writes, and damaged ones. */
+/* metric_rows.c - tables as `evaluate` writes them, and damaged ones. */
 #include "stages/report/metric_rows.h"
 
 #include "tests/unit/scratch.h"
 
-static void rows_and_notes(void **state)
+static void rows_and_notes_are_read(void **state)
 {
     struct metric_rows r;
     struct err err = ERR_INIT;
@@ -27,7 +27,7 @@ static void rows_and_notes(void **state)
     metric_rows_release(&r);
 }
 
-static void damage_is_named_with_its_line(void **state)
+static void a_damaged_line_is_named(void **state)
 {
     static const char *const bad[] = {"a\tnan\t1\tnone\n", "a\t1\t1\n", "a\t1\t1\tnone\tmore\n",
                                       "a\t1\tmicroscopic-units\tnone\n"};
@@ -43,8 +43,8 @@ static void damage_is_named_with_its_line(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rows_and_notes),
-        cmocka_unit_test(damage_is_named_with_its_line),
+        cmocka_unit_test(rows_and_notes_are_read),
+        cmocka_unit_test(a_damaged_line_is_named),
     };
     return cmocka_run_group_tests_name("metric_rows", tests, scratch_make, scratch_remove);
 }

@@ -1,18 +1,21 @@
-/* A page is made of whatever there is: of nothing, of a real photograph with an odd name, of parameters that differ. */
+/* page.c - pages of an empty scene, of a photograph with an odd name, of changed parameters, of some stages. */
 #include "stages/report/page.h"
 
 #include "tests/unit/scratch.h"
 
 #include "common/base/outfile.h"
 
+/* The page of the scratch folder; the caller frees it. */
 static char *page_of(const char *scene, const char *defaults)
 {
+    const struct contents_sources from = {scratch, scratch, scratch_path("originals"), "rectify sfm other report",
+                                          defaults};
     struct contents c = {0};
     struct err err = ERR_INIT;
     char *text = NULL;
     size_t size;
     FILE *to = open_memstream(&text, &size);
-    assert_int_equal(contents_read(&c, scratch, scratch, scratch_path("originals"), defaults, &err), ST_OK);
+    assert_int_equal(contents_read(&c, &from, &err), ST_OK);
     assert_int_equal(page_write(to, scene, &c, &err), ST_OK);
     fclose(to);
     contents_release(&c);
@@ -20,16 +23,16 @@ static char *page_of(const char *scene, const char *defaults)
     return text;
 }
 
-static void says_what_is_missing(void **state)
+static void missing_products_are_listed(void **state)
 {
     char *page = page_of("<b>&", NULL);
     (void)state;
     assert_non_null(strstr(page, "<h1>&lt;b&gt;&amp;</h1>"));
     assert_null(strstr(page, "<b>&"));
-    assert_non_null(strstr(page, "No camera move was planned yet"));
+    assert_non_null(strstr(page, "No camera move has been planned yet"));
     assert_non_null(strstr(page, "There are no views yet."));
     assert_non_null(strstr(page, "There is no list of photographs."));
-    assert_non_null(strstr(page, "No stage left a log."));
+    assert_non_null(strstr(page, "There are no logs."));
     assert_null(strstr(page, "http://"));
     assert_null(strstr(page, "https://"));
     free(page);
@@ -37,15 +40,16 @@ static void says_what_is_missing(void **state)
 
 static void a_missing_scene_is_an_error(void **state)
 {
+    const struct contents_sources from = {scratch_path("no-such-scene"), scratch, scratch, "rectify", NULL};
     struct contents c = {0};
     struct err err = ERR_INIT;
     (void)state;
-    assert_int_equal(contents_read(&c, scratch_path("no-such-scene"), scratch, scratch, NULL, &err), ST_IO);
+    assert_int_equal(contents_read(&c, &from, &err), ST_IO);
     assert_non_null(strstr(err.text, "no-such-scene"));
     contents_release(&c);
 }
 
-static void shows_photographs_and_names_those_left_out(void **state)
+static void photographs_are_shown_and_unlisted_ones_named(void **state)
 {
     static const unsigned char GREY[6 * 4 * 3] = {0};
     char id[] = "a_b", file[] = "a <b>.jpg";
@@ -62,12 +66,12 @@ static void shows_photographs_and_names_those_left_out(void **state)
 
     char *page = page_of("scene", NULL);
     assert_non_null(strstr(page, "alt=\"Photograph a &lt;b&gt;.jpg\" src=\"data:image/jpeg;base64,/9j/"));
-    assert_non_null(strstr(page, "<b>unused.JPG</b> stands in the folder"));
-    assert_null(strstr(page, "not placed by SfM")); /* nobody tried yet */
+    assert_non_null(strstr(page, "<b>unused.JPG</b> is in the folder"));
+    assert_null(strstr(page, "not placed by SfM")); /* there are no views yet */
     free(page);
 }
 
-static void marks_parameters_that_differ(void **state)
+static void changed_parameters_are_marked(void **state)
 {
     struct err err = ERR_INIT;
     (void)state;
@@ -85,13 +89,61 @@ static void marks_parameters_that_differ(void **state)
     free(page);
 }
 
+static int position(const char *page, const char *text)
+{
+    const char *at = strstr(page, text);
+    assert_non_null(at);
+    return (int)(at - page);
+}
+
+static void stages_are_listed_in_the_given_order(void **state)
+{
+    static const char USED[] = "x: used 1 s wall, 1 s cpu, 1 MiB peak\n";
+    struct err err = ERR_INIT;
+    (void)state;
+    assert_int_equal(make_folders(scratch_path("log"), &err), ST_OK);
+    assert_int_equal(make_folders(scratch_path("slice"), &err), ST_OK);
+    scratch_write("log/a_program.x.log", USED);
+    scratch_write("log/other.x.log", USED);
+    scratch_write("log/rectify.x.log", USED);
+    scratch_write("slice/other.cfg", "[other]\na = 1\n");
+    scratch_write("slice/rectify.cfg", "[rectify]\na = 1\n");
+    char *page = page_of("scene", NULL);
+    assert_true(position(page, "<th scope=\"row\">rectify") < position(page, "<th scope=\"row\">other"));
+    assert_true(position(page, "<th scope=\"row\">other") < position(page, "<th scope=\"row\">a_program"));
+    assert_true(position(page, "<summary><code>rectify") < position(page, "<summary><code>other"));
+    assert_non_null(strstr(page, "have not run for this scene: <code>sfm</code>.</li>")); /* report is running */
+    free(page);
+}
+
+static void a_wrong_list_of_stages_is_refused(void **state)
+{
+    static const char *const CASES[][2] = {
+        {"", "found no name"},
+        {"  ", "found no name"},
+        {"rectify <b>", "found \"<b>\""},
+        {"rectify sfm rectify", "found rectify twice"},
+        {"a23456789012345678901234567890123456789012345678901234567890wxyz", "at most 63"},
+    };
+    (void)state;
+    for (size_t i = 0; i < sizeof CASES / sizeof *CASES; i++) {
+        struct stage_list list = {0};
+        struct err err = ERR_INIT;
+        assert_int_equal(stage_list_parse(&list, CASES[i][0], &err), ST_USAGE);
+        assert_err(err, ST_USAGE, CASES[i][1]);
+        assert_int_equal(list.count, 0);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(says_what_is_missing, scratch_make, scratch_remove),
+        cmocka_unit_test_setup_teardown(missing_products_are_listed, scratch_make, scratch_remove),
         cmocka_unit_test_setup_teardown(a_missing_scene_is_an_error, scratch_make, scratch_remove),
-        cmocka_unit_test_setup_teardown(shows_photographs_and_names_those_left_out, scratch_make, scratch_remove),
-        cmocka_unit_test_setup_teardown(marks_parameters_that_differ, scratch_make, scratch_remove),
+        cmocka_unit_test_setup_teardown(photographs_are_shown_and_unlisted_ones_named, scratch_make, scratch_remove),
+        cmocka_unit_test_setup_teardown(changed_parameters_are_marked, scratch_make, scratch_remove),
+        cmocka_unit_test_setup_teardown(stages_are_listed_in_the_given_order, scratch_make, scratch_remove),
+        cmocka_unit_test(a_wrong_list_of_stages_is_refused),
     };
     return cmocka_run_group_tests_name("page", tests, NULL, NULL);
 }

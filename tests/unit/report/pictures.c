@@ -1,4 +1,4 @@
-/* Thumbnails stand upright, means are those of light, and the colours of depth grow lighter all the way to the camera. */
+/* pictures.c - thumbnails are upright and average light, not codes; depth colours grow lighter towards the camera. */
 #include "stages/report/pictures.h"
 
 #include <math.h>
@@ -9,9 +9,9 @@
 
 #include <cmocka.h>
 
-/* The letter F of three columns and four rows, stored as each of EXIF's eight orientations: turned upright all are the
- * same. Where the picture's first row and first column lie is taken from the EXIF standard's table. */
-static void turns_every_orientation_upright(void **state)
+/* The letter F in 3 x 4 pixels, stored in each of EXIF's eight orientations, which follow the table of the standard:
+ * turned upright, all are the same. */
+static void every_orientation_is_turned_upright(void **state)
 {
     static const char *const STORED[9] = {NULL,
                                           "###"
@@ -62,7 +62,7 @@ static void turns_every_orientation_upright(void **state)
     }
 }
 
-static void shrinks_to_the_upright_height(void **state)
+static void thumbnails_have_the_upright_height(void **state)
 {
     struct err err = ERR_INIT;
     struct picture p = {0};
@@ -70,7 +70,7 @@ static void shrinks_to_the_upright_height(void **state)
     (void)state;
     photo.samples = calloc(1000 * 400 * 3, sizeof *photo.samples);
     assert_non_null(photo.samples);
-    for (size_t i = 0; i < 1000 * 400; i++) /* columns of black and white: half the light, sRGB 188 */
+    for (size_t i = 0; i < 1000 * 400; i++) /* black and white columns: half the light is sRGB 188 */
         for (int c = 0; c < 3; c++) photo.samples[3 * i + (size_t)c] = i % 2 ? 65535 : 0;
     photo.info.orientation = 1;
     assert_int_equal(picture_from_photo(&p, &photo, 100, &err), ST_OK);
@@ -95,7 +95,7 @@ static double lightness(const unsigned char rgb[3])
     return y > 0.008856 ? 116 * cbrt(y) - 16 : 903.3 * y;
 }
 
-static void colours_grow_lighter(void **state)
+static void depth_colours_grow_lighter(void **state)
 {
     unsigned char rgb[3];
     double last = 0;
@@ -110,7 +110,7 @@ static void colours_grow_lighter(void **state)
     assert_true(lightness(rgb) < 20);
 }
 
-static void colours_depth_and_hatches_the_unknown(void **state)
+static void depth_is_coloured_and_the_unknown_hatched(void **state)
 {
     float z[6] = {1, 2, 4, 8, 0, 0};
     struct err err = ERR_INIT;
@@ -133,7 +133,7 @@ static void colours_depth_and_hatches_the_unknown(void **state)
     assert_memory_equal(p.rgb + 9, rgb, 3);
     assert_int_equal(p.rgb[12], p.rgb[13]); /* grey */
     picture_release(&p);
-    assert_int_equal(picture_from_depth(&p, &d, 2, 2, &err), ST_OK); /* a range of no extent is no division by zero */
+    assert_int_equal(picture_from_depth(&p, &d, 2, 2, &err), ST_OK); /* near equals far: no division by zero */
     picture_release(&p);
     depth_thumb_release(&d);
 
@@ -147,10 +147,10 @@ static void colours_depth_and_hatches_the_unknown(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(turns_every_orientation_upright),
-        cmocka_unit_test(shrinks_to_the_upright_height),
-        cmocka_unit_test(colours_grow_lighter),
-        cmocka_unit_test(colours_depth_and_hatches_the_unknown),
+        cmocka_unit_test(every_orientation_is_turned_upright),
+        cmocka_unit_test(thumbnails_have_the_upright_height),
+        cmocka_unit_test(depth_colours_grow_lighter),
+        cmocka_unit_test(depth_is_coloured_and_the_unknown_hatched),
     };
     return cmocka_run_group_tests_name("pictures", tests, NULL, NULL);
 }

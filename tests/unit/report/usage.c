@@ -1,4 +1,4 @@
-/* The reader of logs takes usage lines and warnings, and nothing that merely looks like them. */
+/* usage.c - usage lines and warnings are read from logs; similar lines are not. */
 #include "stages/report/usage.h"
 
 #include <setjmp.h>
@@ -13,12 +13,12 @@
 static bool parses(const char *line)
 {
     struct usage u = {"untouched", -1, -1, -1};
-    bool good = usage_parse(&u, line, strlen(line));
-    if (!good) assert_string_equal(u.stage, "untouched");
-    return good;
+    bool parsed = usage_parse(&u, line, strlen(line));
+    if (!parsed) assert_string_equal(u.stage, "untouched");
+    return parsed;
 }
 
-static void takes_a_usage_line(void **state)
+static void a_usage_line_is_parsed(void **state)
 {
     struct usage u;
     const char *line = "segment_depth: used 12.50 s wall, 24.9 s cpu, 812 MiB peak";
@@ -30,7 +30,7 @@ static void takes_a_usage_line(void **state)
     assert_float_equal(u.mib, 812, 1e-12);
 }
 
-static void refuses_what_is_none(void **state)
+static void other_lines_are_refused(void **state)
 {
     static const char *const LINES[] = {
         "",
@@ -69,7 +69,7 @@ static void add(struct usage_table *t, const char *name, const char *text)
     assert_int_equal(usage_add_log(t, name, text, strlen(text), &err), ST_OK);
 }
 
-static void sums_runs_and_keeps_the_largest_peak(void **state)
+static void runs_are_summed_and_the_largest_peak_kept(void **state)
 {
     struct usage_table t = {0};
     (void)state;
@@ -85,13 +85,13 @@ static void sums_runs_and_keeps_the_largest_peak(void **state)
     assert_float_equal(t.stages[0].sum.wall, 3, 1e-12);
     assert_float_equal(t.stages[0].sum.cpu, 5, 1e-12);
     assert_float_equal(t.stages[0].sum.mib, 30, 1e-12);
-    assert_float_equal(t.stages[1].sum.wall, 5, 1e-12); /* the last line counts */
+    assert_float_equal(t.stages[1].sum.wall, 5, 1e-12); /* the last usage line counts */
     usage_table_release(&t);
     usage_table_release(&t);
     assert_int_equal(t.stage_count, 0);
 }
 
-static void gathers_warnings(void **state)
+static void warnings_are_collected_once(void **state)
 {
     struct usage_table t = {0};
     char name[64], text[128], large[3000];
@@ -131,10 +131,10 @@ static void a_missing_folder_adds_nothing(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(takes_a_usage_line),
-        cmocka_unit_test(refuses_what_is_none),
-        cmocka_unit_test(sums_runs_and_keeps_the_largest_peak),
-        cmocka_unit_test(gathers_warnings),
+        cmocka_unit_test(a_usage_line_is_parsed),
+        cmocka_unit_test(other_lines_are_refused),
+        cmocka_unit_test(runs_are_summed_and_the_largest_peak_kept),
+        cmocka_unit_test(warnings_are_collected_once),
         cmocka_unit_test(a_missing_folder_adds_nothing),
     };
     return cmocka_run_group_tests_name("usage", tests, NULL, NULL);

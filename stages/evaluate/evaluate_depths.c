@@ -1,0 +1,280 @@
+/* evaluate_depths.c - depth maps against true depths: depth.*; the definitions are in docs/evaluation.md. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "common/base/progress.h"
+#include "common/capture/view_image.h"
+#include "common/image/exr.h"
+#include "common/layers/layered_depth.h"
+#include "stages/evaluate/depth_error.h"
+#include "stages/evaluate/evaluation_parts.h"
+
+/* kept[i]: photo i has a view and a true camera. */
+static void mark_kept(const struct evaluation *e, bool *kept)
+{
+    for (int i = 0; i < e->views.cameras.view_count; i++) {
+        int photo = photo_of_view(e, &e->views, i);
+        kept[photo] = e->truth.photos[photo].lens.width > 0;
+    }
+}
+
+/* e->baseline: the parameter, or else the median over kept photos of the true distance to the nearest other one. */
+static enum status find_baseline(struct evaluation *e, const bool *kept, struct err *err)
+{
+    double *distances = malloc(((size_t)e->photos.count + 1) * sizeof *distances);
+    int count = 0;
+    if (!distances) return err_nomem(err, "distances", (size_t)e->photos.count * sizeof *distances);
+    for (int i = 0; i < e->photos.count; i++) {
+        double nearest = INFINITY;
+        for (int j = 0; kept[i] && j < e->photos.count; j++)
+            if (j != i && kept[j])
+                nearest = fmin(nearest, vec3_length(vec3_sub(pose_center(&e->truth.photos[i].pose),
+                                                             pose_center(&e->truth.photos[j].pose))));
+        if (nearest > 0 && nearest < INFINITY) distances[count++] = nearest;
+    }
+    e->baseline = e->params->baseline > 0 ? e->params->baseline : count ? median(distances, count) : 0;
+    free(distances);
+    return ST_OK;
+}
+
+struct neighbour {
+    const struct true_photo *photo;
+    double distance;
+    int idx;
+};
+
+static int compare_neighbours(const void *a, const void *b)
+{
+    const struct neighbour *x = a, *y = b;
+    if (x->distance != y->distance) return x->distance < y->distance ? -1 : 1;
+    return x->idx - y->idx;
+}
+
+static enum status occlusion_of(const struct evaluation *e, int photo, const bool *kept, const struct vec3 *points,
+                                uint8_t *occluded, struct err *err)
+{
+    const struct true_photo *self = &e->truth.photos[photo];
+    const size_t capacity = (size_t)e->photos.count + 1;
+    struct neighbour *list = malloc(capacity * sizeof *list);
+    const struct true_photo **others = malloc(capacity * sizeof *others);
+    int count = 0;
+    enum status st = list && others ? ST_OK : err_nomem(err, "neighbours", capacity * sizeof *list);
+    for (int j = 0; !st && j < e->photos.count; j++) {
+        const struct true_photo *p = &e->truth.photos[j];
+        if (j != photo && kept[j])
+            list[count++] =
+                (struct neighbour){p, vec3_length(vec3_sub(pose_center(&p->pose), pose_center(&self->pose))), j};
+    }
+    if (!st) {
+        qsort(list, (size_t)count, sizeof *list, compare_neighbours);
+        for (int j = 0; j < count; j++) others[j] = list[j].photo;
+        st = true_occlusion(occluded, self, points, others, count, err);
+    }
+    free(list);
+    free(others);
+    return st;
+}
+
+/* The depth of the layer with more alpha, 0 outside the view; adds the view's pixels to *pixels, those with a depth to
+ * *known. */
+static void visible_depth(float *z, const struct layered_depth *d, uint64_t *pixels, uint64_t *known)
+{
+    for (size_t i = 0; i < (size_t)d->width * (size_t)d->height; i++) {
+        float a = d->interior.rgba[4 * i + 3], b = d->boundary.rgba[4 * i + 3];
+        z[i] = a + b > 0 ? (a >= b ? d->interior.z[i] : d->boundary.z[i]) : 0;
+        *pixels += a + b > 0;
+        *known += z[i] > 0;
+    }
+}
+
+static double percent(uint64_t part, uint64_t whole) { return 100 * (double)part / (double)whole; }
+
+static enum status add_tally(struct metric_table *t, const char *view, const struct depth_tally *d, const char *suffix,
+                             bool disparity, struct err *err)
+{
+    static const double PARTS[3] = {0.50, 0.90, 0.95};
+    char name[64];
+    snprintf(name, sizeof name, "depth.bad1%s", suffix);
+    if (disparity && metric_add(t, view, name, percent(d->bad1, d->pixels), "%", "lower", err)) return err->status;
+    snprintf(name, sizeof name, "depth.bad2%s", suffix);
+    if (disparity && metric_add(t, view, name, percent(d->bad2, d->pixels), "%", "lower", err)) return err->status;
+    for (int k = 0; k < 3 && d->known; k++) {
+        snprintf(name, sizeof name, "depth.error%.0f%s", 100 * PARTS[k], suffix);
+        if (metric_add(t, view, name, 100 * quantiles_get(&d->errors, PARTS[k]), "%", "lower", err)) return err->status;
+    }
+    snprintf(name, sizeof name, "depth.within2%s", suffix);
+    if (d->known && metric_add(t, view, name, percent(d->within2, d->known), "%", "higher", err)) return err->status;
+    return ST_OK;
+}
+
+static enum status add_depth_errors(struct evaluation *e, const char *view, const struct depth_errors *d,
+                                    struct err *err)
+{
+    struct metric_table *t = &e->table;
+    if (!d->all.pixels) return ST_OK;
+    if (add_tally(t, view, &d->all, "", e->baseline > 0, err) ||
+        metric_add(t, view, "depth.occluded", percent(d->all.pixels - d->visible.pixels, d->all.pixels), "%", "none",
+                   err))
+        return err->status;
+    return d->visible.pixels ? add_tally(t, view, &d->visible, "_visible", e->baseline > 0, err) : ST_OK;
+}
+
+/* The true depth for the page: Z in scene units, and the mask of occluded pixels. */
+static enum status write_truth(const struct evaluation *e, const struct view *view, const float *truth,
+                               const uint8_t *occluded, struct err *err)
+{
+    struct exr_image im = {0};
+    struct exr_plane *z = NULL, *o = NULL;
+    char folder[FILE_PATH], path[FILE_PATH];
+    size_t pixels = (size_t)view->width * (size_t)view->height;
+    if (file_path(folder, e->folder, "evaluate/truth", "", err) || file_path(path, folder, view->name, ".exr", err) ||
+        exr_image_init(&im, view->width, view->height, err) || exr_add_plane(&im, "Z", EXR_FLOAT, &z, err) ||
+        exr_add_plane(&im, "occluded", EXR_UINT, &o, err)) {
+        exr_image_release(&im);
+        return err->status;
+    }
+    z = exr_find(&im, "Z");
+    for (size_t i = 0; i < pixels; i++) {
+        z->f[i] = (float)(truth[i] / e->truth_from_scene.scale);
+        o->u[i] = occluded[i];
+    }
+    exr_set_camera(&im, view);
+    struct provenance prov = *e->prov; /* shares its arrays with e->prov */
+    prov.count = e->shared_inputs;
+    const enum status st = exr_write(&im, path, &prov, err);
+    exr_image_release(&im);
+    return st;
+}
+
+struct photo_truth { /* true points of a photo, which all its views use */
+    int photo;
+    struct vec3 *points;
+    uint8_t *occluded;
+};
+
+static void photo_truth_release(struct photo_truth *v)
+{
+    free(v->points);
+    free(v->occluded);
+    *v = (struct photo_truth){.photo = -1};
+}
+
+static enum status photo_truth_make(struct photo_truth *v, const struct evaluation *e, int photo, const bool *kept,
+                                    struct err *err)
+{
+    const struct true_photo *p = &e->truth.photos[photo];
+    size_t pixels = (size_t)p->lens.width * (size_t)p->lens.height;
+    if (v->photo == photo) return ST_OK;
+    photo_truth_release(v);
+    v->points = malloc(pixels * sizeof *v->points);
+    v->occluded = malloc(pixels);
+    if (!v->points || !v->occluded) return err_nomem(err, "true points", pixels * sizeof *v->points);
+    true_points(v->points, p);
+    v->photo = photo;
+    return occlusion_of(e, photo, kept, v->points, v->occluded, err);
+}
+
+/* Adds the errors of a view's depth map to the table and to `scene`. z: in scene units; overwritten. */
+static enum status compare_depth(struct evaluation *e, int i, struct photo_truth *tv, float *z,
+                                 struct depth_errors *scene, struct err *err)
+{
+    const struct view *view = &e->views.cameras.views[i];
+    size_t pixels = (size_t)view->width * (size_t)view->height;
+    struct depth_errors errors = {0};
+    float *truth = malloc(pixels * sizeof *truth);
+    uint8_t *occluded = malloc(pixels);
+    enum status st = truth && occluded ? depth_errors_init(&errors, err) : err_nomem(err, "true depths", pixels);
+    if (!st) {
+        int side = view->width > view->height ? view->width : view->height;
+        double ratio = e->params->disparity_side ? (double)e->params->disparity_side / side : 1;
+        true_depth_in_view(truth, occluded, view, lens_of_view(&e->views, i), &e->truth.photos[tv->photo], tv->points,
+                           tv->occluded);
+        for (size_t k = 0; k < pixels; k++) z[k] = (float)(z[k] * e->truth_from_scene.scale);
+        depth_errors_add(&errors, z, truth, occluded, pixels, view->fx * ratio * e->baseline);
+        depth_errors_merge(scene, &errors);
+        st = add_depth_errors(e, view->name, &errors, err);
+        if (!st && errors.all.pixels) st = write_truth(e, view, truth, occluded, err);
+    }
+    depth_errors_release(&errors);
+    free(truth);
+    free(occluded);
+    return st;
+}
+
+static enum status evaluate_view(struct evaluation *e, int i, const bool *kept, struct photo_truth *tv,
+                                 struct depth_errors *scene, uint64_t *pixels, uint64_t *known, struct err *err)
+{
+    const struct view *view = &e->views.cameras.views[i];
+    int photo = photo_of_view(e, &e->views, i);
+    struct layered_depth d = {0};
+    uint64_t here = 0, known_here = 0;
+    char path[FILE_PATH];
+    float *z = malloc((size_t)view->width * (size_t)view->height * sizeof *z);
+    enum status st = z ? ST_OK : err_nomem(err, "a depth map", (size_t)view->width * (size_t)view->height);
+    if (!st) st = evaluation_input(e, path, "depth", view->name, ".exr", err);
+    if (!st) st = layered_depth_read(&d, path, err);
+    if (!st && (d.width != view->width || d.height != view->height))
+        st = err_set(err, ST_DATA, "%s is %d x %d px, but its view is %d x %d px; make the depth map again.", path,
+                     d.width, d.height, view->width, view->height);
+    if (!st) {
+        visible_depth(z, &d, &here, &known_here);
+        *pixels += here;
+        *known += known_here;
+    }
+    layered_depth_release(&d);
+    if (!st && here)
+        st = metric_add(&e->table, view->name, "depth.known", percent(known_here, here), "%", "higher", err);
+    if (!st && e->aligned && e->truth.photos[photo].depth) {
+        st = photo_truth_make(tv, e, photo, kept, err);
+        if (!st) st = compare_depth(e, i, tv, z, scene, err);
+    }
+    free(z);
+    return st;
+}
+
+enum status evaluate_depths(struct evaluation *e, struct err *err)
+{
+    const struct camera_set *views = &e->views.cameras;
+    struct depth_errors scene = {0};
+    struct photo_truth tv = {.photo = -1};
+    struct progress progress;
+    uint64_t pixels = 0, known = 0;
+    int missing = 0;
+    bool *kept = calloc((size_t)e->photos.count + 1, sizeof *kept);
+    enum status st = kept ? depth_errors_init(&scene, err) : err_nomem(err, "marks", (size_t)e->photos.count);
+    if (!st && e->truth_folder) {
+        mark_kept(e, kept);
+        st = find_baseline(e, kept, err);
+    }
+    progress_start(&progress, "depth maps", views->view_count, "views");
+    for (int i = 0; !st && i < views->view_count; i++) {
+        char path[FILE_PATH];
+        snprintf(path, sizeof path, "%s/depth/%s.exr", e->folder, views->views[i].name);
+        if (path_is_file(path))
+            st = evaluate_view(e, i, kept, &tv, &scene, &pixels, &known, err);
+        else
+            missing++;
+        progress_add(&progress, 1);
+    }
+    progress_end(&progress);
+    if (!st && missing)
+        st = metric_note(&e->table, err, "skipped %d of %d views: they have no depth map", missing, views->view_count);
+    if (!st && pixels) st = metric_add(&e->table, NULL, "depth.known", percent(known, pixels), "%", "higher", err);
+    if (!st && scene.all.pixels) {
+        st = add_depth_errors(e, NULL, &scene, err);
+        if (!st && e->baseline > 0)
+            st = metric_add(&e->table, NULL, "depth.baseline", e->baseline, "m", "none", err);
+        else if (!st)
+            st = metric_note(&e->table, err,
+                             "skipped depth.bad1 and bad2: the truth places fewer than two of the kept photos apart; "
+                             "a baseline can be given");
+    } else if (!st && e->truth_folder && e->aligned) {
+        st = metric_note(&e->table, err, "skipped depth errors: %s",
+                         e->truth.depths ? "no view with a depth map is of a photo with a true depth"
+                                         : "the truth has no depth of these photos");
+    }
+    depth_errors_release(&scene);
+    photo_truth_release(&tv);
+    free(kept);
+    return st;
+}

@@ -1,0 +1,51 @@
+/* evaluation_parts.h - the metrics of an evaluation, by group, and the helpers of the groups. */
+#ifndef REMODEL_EVALUATION_PARTS_H
+#define REMODEL_EVALUATION_PARTS_H
+
+#include <stdbool.h>
+
+#include "common/base/file_path.h"
+#include "stages/evaluate/alignment.h"
+#include "stages/evaluate/evaluation.h"
+#include "stages/evaluate/metric_table.h"
+#include "stages/evaluate/truth.h"
+
+struct view_set { /* the cameras of the kept or of the held-out views, and the lenses of their photographs */
+    struct camera_set cameras;
+    struct lens_list lenses;
+};
+
+struct evaluation {
+    const char *folder;
+    const char *truth_folder; /* NULL: no truth is given */
+    const struct evaluate_params *params;
+    struct provenance *prov;
+    int shared_inputs; /* of prov: cameras and truth, without the files of single views */
+    struct photo_list photos;
+    struct view_set views, held;
+    bool has_held, aligned;
+    struct truth truth;
+    struct similarity truth_from_scene; /* if aligned */
+    double baseline;                    /* of disparities; 0: there is none */
+    struct metric_table table;
+};
+
+/* Each group adds its metrics to the table, or a note that says why it has none. Cameras come first: they set `aligned`
+ * and truth_from_scene. */
+enum status evaluate_cameras(struct evaluation *e, struct err *err);  /* camera.* */
+enum status evaluate_axes(struct evaluation *e, struct err *err);     /* axes.* */
+enum status evaluate_walls(struct evaluation *e, struct err *err);    /* model.* */
+enum status evaluate_depths(struct evaluation *e, struct err *err);   /* depth.* */
+enum status evaluate_pictures(struct evaluation *e, struct err *err); /* holdout.* */
+
+/* path: FOLDER/WHERE/FILESUFFIX, an input of the evaluation; its hash goes into the provenance as WHERE/FILESUFFIX. */
+enum status evaluation_input(struct evaluation *e, char path[FILE_PATH], const char *where, const char *file,
+                             const char *suffix, struct err *err);
+
+/* The lens and the index in e->photos of a view's photograph. */
+const struct lens *lens_of_view(const struct view_set *set, int view);
+int photo_of_view(const struct evaluation *e, const struct view_set *set, int view);
+
+bool path_is_file(const char *path);
+
+#endif

@@ -1,0 +1,118 @@
+/* contents_model.c - pictures of the room's axes and of the solid models. */
+#include "stages/report/contents_parts.h"
+
+#include <dirent.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/base/array.h"
+#include "common/image/photo.h"
+
+static enum status read_axes_card(struct contents *c, const char *path, const char *view, struct err *err)
+{
+    struct photo photo = {0};
+    struct err problem = ERR_INIT;
+    struct axes_card *card = &c->axes[c->axes_count];
+    if (photo_read(&photo, path, &problem))
+        return contents_note(c, err, "A picture of the axes cannot be read. %s", problem.text);
+    snprintf(card->view, sizeof card->view, "%s", view);
+    const int at = camera_set_find(&c->views, view);
+    if (at >= 0 && c->view_cards[at].photo) photo.info.orientation = c->view_cards[at].photo->info.orientation;
+    const enum status st = picture_from_photo(&card->picture, &photo, AXES_HEIGHT, err);
+    c->axes_count += !st;
+    photo_release(&photo);
+    return st;
+}
+
+/* model/axes/VIEW.png, if the axes were found */
+enum status read_axes(struct contents *c, const char *folder, struct err *err)
+{
+    struct dirent **names = NULL;
+    char path[PATH_SIZE];
+    snprintf(path, sizeof path, "%s/model/axes.txt", folder);
+    if (!path_is_file(path)) return ST_OK;
+    snprintf(path, sizeof path, "%s/model/axes", folder);
+    int count = scandir(path, &names, NULL, alphasort);
+    enum status st = ST_OK;
+    c->axes = calloc((size_t)(count > 0 ? count : 0) + 1, sizeof *c->axes);
+    if (!c->axes) st = err_nomem(err, "pictures of axes", (size_t)count * sizeof *c->axes);
+    for (int i = 0; i < count; i++) {
+        char *name = names[i]->d_name, *dot = strrchr(name, '.');
+        snprintf(path, sizeof path, "%s/model/axes/%s", folder, name);
+        if (!st && dot && dot != name && name[0] != '.' && !strcmp(dot, ".png")) {
+            *dot = '\0';
+            st = read_axes_card(c, path, name, err);
+        }
+        free(names[i]);
+    }
+    free(names);
+    return st;
+}
+
+/* folder/name if it is a file, owned by the caller; NULL if not. */
+static char *file_if_there(const char *folder, const char *name)
+{
+    char path[PATH_SIZE + 512];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    return path_is_file(path) ? strdup(path) : NULL;
+}
+
+static enum status read_model(struct contents *c, const char *folder, const char *name, struct err *err)
+{
+    struct dirent **names = NULL;
+    char path[PATH_SIZE];
+    snprintf(path, sizeof path, "%s/model.txt", folder);
+    if (!path_is_file(path)) return ST_OK;
+    if (array_append(&c->models, (size_t)c->model_count, sizeof *c->models, "models", err)) return err->status;
+    struct model_card *m = &c->models[c->model_count++];
+    *m = (struct model_card){.plan = file_if_there(folder, "plan.svg"), .view = file_if_there(folder, "view.png")};
+    snprintf(m->name, sizeof m->name, "%s", name);
+    snprintf(path, sizeof path, "%s/overlay", folder);
+    const int count = scandir(path, &names, NULL, alphasort);
+    enum status st = ST_OK;
+    m->overlays = calloc((size_t)(count > 0 ? count : 0) + 1, sizeof *m->overlays);
+    m->overlay_ids = calloc((size_t)(count > 0 ? count : 0) + 1, sizeof *m->overlay_ids);
+    if (!m->overlays || !m->overlay_ids)
+        st = err_nomem(err, "pictures of a model", (size_t)count * sizeof *m->overlay_ids);
+    for (int i = 0; i < count; i++) {
+        const char *file = names[i]->d_name, *dot = strrchr(file, '.');
+        if (!st && dot && dot != file && file[0] != '.' && !strcmp(dot, ".jpg")) {
+            m->overlays[m->overlay_count] = file_if_there(path, file);
+            m->overlay_ids[m->overlay_count] = strndup(file, (size_t)(dot - file));
+            m->overlay_count += m->overlays[m->overlay_count] && m->overlay_ids[m->overlay_count];
+        }
+        free(names[i]);
+    }
+    free(names);
+    return st;
+}
+
+/* model/, and remodel/EDIT/ for every edit */
+enum status read_models(struct contents *c, const char *folder, struct err *err)
+{
+    struct dirent **names = NULL;
+    char path[PATH_SIZE], below[PATH_SIZE + 256];
+    snprintf(path, sizeof path, "%s/model", folder);
+    enum status st = read_model(c, path, "", err);
+    snprintf(path, sizeof path, "%s/remodel", folder);
+    const int count = scandir(path, &names, NULL, alphasort);
+    for (int i = 0; i < count; i++) {
+        snprintf(below, sizeof below, "%s/%s", path, names[i]->d_name);
+        if (!st && names[i]->d_name[0] != '.') st = read_model(c, below, names[i]->d_name, err);
+        free(names[i]);
+    }
+    free(names);
+    return st;
+}
+
+void model_card_release(struct model_card *m)
+{
+    for (int i = 0; m->overlays && m->overlay_ids && i < m->overlay_count; i++) {
+        free(m->overlays[i]);
+        free(m->overlay_ids[i]);
+    }
+    free(m->overlays);
+    free(m->overlay_ids);
+    free(m->plan);
+    free(m->view);
+}

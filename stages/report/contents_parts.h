@@ -1,0 +1,33 @@
+/* contents_parts.h - the readers of contents_*.c, one per part of the page, and their helpers. */
+#ifndef REMODEL_CONTENTS_PARTS_H
+#define REMODEL_CONTENTS_PARTS_H
+
+#include "common/base/file_path.h"
+#include "stages/report/contents.h"
+
+enum { PATH_SIZE = FILE_PATH + 512 }; /* bytes of a folder's path and of a file below it */
+
+/* Adds a sentence to `notes`, cut at NOTE_SIZE. */
+enum status contents_note(struct contents *c, struct err *err, const char *fmt, ...) PRINTF_LIKE(3, 4);
+
+bool path_is_folder(const char *path);
+bool path_is_file(const char *path);
+
+/* The number from 0 to 1 that an attribute of a picture holds; -1: NULL, or another text. */
+double share_from_text(const char *text);
+
+/* Products that are missing or cannot be read become notes; only ST_NOMEM is an error. Views come after photographs
+ * and metrics, the age of the metrics, held-out views and axes after views. */
+enum status read_photos(struct contents *c, const char *shared, const char *folder, struct err *err);
+enum status read_metrics(struct contents *c, const char *folder, struct err *err);
+enum status read_views(struct contents *c, const char *folder, struct err *err);
+enum status read_held(struct contents *c, const char *folder, struct err *err);
+enum status check_age(struct contents *c, const char *folder, struct err *err);
+enum status read_effects(struct contents *c, const char *folder, struct err *err);
+enum status read_axes(struct contents *c, const char *folder, struct err *err);
+enum status read_models(struct contents *c, const char *folder, struct err *err);
+
+void effect_card_release(struct effect_card *e);
+void model_card_release(struct model_card *m);
+
+#endif

@@ -1,0 +1,75 @@
+/* page_depths.c - each view beside its depth map, and the true depth where there is one. */
+#include "stages/report/page_parts.h"
+
+static enum status put_depth(FILE *to, const struct view_card *card, struct err *err)
+{
+    if (!card->depth.z) {
+        fputs("<div class=\"none\">no depth yet</div>", to);
+        return ST_OK;
+    }
+    if (!card->depth_picture.rgb) {
+        fputs("<div class=\"none\">no pixel has a depth</div>", to);
+        return ST_OK;
+    }
+    if (put_picture(to, &card->depth_picture, 90, "Depth of view", card->view->name, err)) return err->status;
+    fprintf(to,
+            "<div class=\"ramp\"></div><div class=\"ticks\"><span>%.3g</span><span>%.3g</span><span>%.3g</span></div>",
+            card->near, 2 / (1 / card->near + 1 / card->far), card->far);
+    return ST_OK;
+}
+
+static enum status put_view(FILE *to, const struct contents *c, const struct view_card *card, struct err *err)
+{
+    fprintf(to, "<figure>\n<div class=\"pair%s\"><div>", card->truth_picture.rgb ? " three" : "");
+    if (!card->picture.rgb)
+        fputs("<div class=\"none\">no picture yet</div>", to);
+    else if (put_picture(to, &card->picture, 80, "View", card->view->name, err))
+        return err->status;
+    fputs("</div><div>", to);
+    if (put_depth(to, card, err)) return err->status;
+    if (card->truth_picture.rgb) {
+        fputs("</div><div>", to);
+        if (put_picture(to, &card->truth_picture, 90, "True depth of view", card->view->name, err)) return err->status;
+        fputs("<p class=\"under\">truth</p>", to);
+    }
+    fputs("</div></div>\n<figcaption><b>", to);
+    html_text(to, card->view->name);
+    fprintf(to, "</b> <span class=\"size\">%d × %d</span>", card->view->width, card->view->height);
+    if (card->depth.z) fprintf(to, ", %.1f %% known", 100 * card->depth.known);
+    if (card->depth.z && card->inherited >= 0) fprintf(to, ", %.1f %% inherited", 100 * card->inherited);
+    if (card->depth.z) fprintf(to, ", %u segments", card->segments);
+    put_view_metric(to, c, card->view->name, "depth.bad1", "off by more than 1 px");
+    put_view_metric(to, c, card->view->name, "depth.error50", "median error");
+    put_tag(to, card->problem);
+    fputs("</figcaption>\n</figure>\n", to);
+    return ST_OK;
+}
+
+enum status page_depths(FILE *to, const struct contents *c, struct err *err)
+{
+    fputs("<section id=\"depth\" aria-labelledby=\"depth-title\">\n<h2 id=\"depth-title\">Views and their depth</h2>\n",
+          to);
+    if (!c->views.view_count) {
+        fputs("<p>There are no views yet.</p>\n</section>\n", to);
+        return ST_OK;
+    }
+    if (c->depth_count)
+        fputs(
+            "<p class=\"muted\">Depth along the camera's axis, in scene units. Near is bright; equal colour steps are "
+            "equal steps of 1/depth. The colours of a view span its own depths (the true ones where there is a truth) "
+            "without the nearest and farthest 2 %. <span class=\"hatch\"></span>unknown: masked, or outside the lens. "
+            "Inherited: no other view determines the depth (the point is not visible there, or the surface has no "
+            "texture or repeats), so it is that of adjacent segments.</p>\n",
+            to);
+    fputs("<div class=\"pairs\" style=\"--ramp:linear-gradient(90deg", to);
+    for (int k = 16; k >= 0; k--) {
+        unsigned char rgb[3];
+        depth_colour(k / 16.0, rgb);
+        fprintf(to, ",#%02x%02x%02x", rgb[0], rgb[1], rgb[2]);
+    }
+    fputs(")\">\n", to);
+    for (int i = 0; i < c->views.view_count; i++)
+        if (put_view(to, c, &c->view_cards[i], err)) return err->status;
+    fputs("</div>\n</section>\n", to);
+    return ST_OK;
+}

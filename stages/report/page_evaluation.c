@@ -1,0 +1,121 @@
+/* page_evaluation.c - the metrics of the scene, and held-out photographs beside what was rendered in their place. */
+#include <string.h>
+
+#include "stages/report/page_parts.h"
+
+/* "" for an unknown metric. */
+static const char *metric_meaning(const char *name)
+{
+    static const char *const MEANINGS[][2] = {
+        {"camera.center_max", "camera position error, maximum"},
+        {"camera.center_median", "camera position error, median"},
+        {"camera.placed", "photographs with a pose, of those in the truth"},
+        {"camera.rotation_max", "camera rotation error, maximum"},
+        {"camera.rotation_median", "camera rotation error, median"},
+        {"camera.scale", "length of one scene unit, in units of the truth"},
+        {"axes.angle", "angle between the found and the true axes"},
+        {"axes.ceiling", "error of the ceiling height"},
+        {"axes.floor", "error of the floor height"},
+        {"axes.scale", "difference between scale.txt and the scale of the cameras"},
+        {"axes.up", "angle between the found and the true up direction"},
+        {"depth.bad1", "pixels with a disparity error above 1 px, or without a depth"},
+        {"depth.bad1_visible", "the same over points that another photograph sees"},
+        {"depth.bad2", "pixels with a disparity error above 2 px, or without a depth"},
+        {"depth.bad2_visible", "the same over points that another photograph sees"},
+        {"depth.baseline", "baseline of these disparities"},
+        {"depth.error50", "relative depth error, median"},
+        {"depth.error50_visible", "the same over points that another photograph sees"},
+        {"depth.error90", "relative depth error, 90th percentile"},
+        {"depth.error90_visible", "the same over points that another photograph sees"},
+        {"depth.error95", "relative depth error, 95th percentile"},
+        {"depth.error95_visible", "the same over points that another photograph sees"},
+        {"depth.known", "pixels with a depth"},
+        {"depth.occluded", "pixels whose point no other photograph sees"},
+        {"depth.within2", "pixels with a relative depth error of at most 2 %, of those with a depth"},
+        {"depth.within2_visible", "the same over points that another photograph sees"},
+        {"holdout.holes", "pixels of the held-out photographs that no view covers"},
+        {"holdout.pictures", "number of held-out photographs compared"},
+        {"holdout.psnr", "PSNR of rendered against held-out photographs, mean"},
+        {"holdout.psnr_covered", "the same without holes"},
+        {"holdout.ssim", "structural similarity, mean"},
+        {"holdout.ssim_covered", "the same without holes"},
+        {"model.missing", "openings of the truth that the model lacks"},
+        {"model.openings", "error of an opening, maximum"},
+        {"model.openings_median", "error of an opening, median"},
+        {"model.strange", "walls and openings of the model that the truth lacks"},
+        {"model.walls", "error of a wall, maximum"},
+        {"model.walls_median", "error of a wall, median"},
+    };
+    for (size_t i = 0; i < sizeof MEANINGS / sizeof *MEANINGS; i++)
+        if (!strcmp(MEANINGS[i][0], name)) return MEANINGS[i][1];
+    return "";
+}
+
+static enum status put_held(FILE *to, const struct contents *c, const struct held_card *card, struct err *err)
+{
+    const struct picture *pictures[2] = {&card->picture, &card->frame};
+    static const char *const ALT_TEXTS[2] = {"Held-out photograph", "Rendered in place of"};
+    static const char *const LABELS[2] = {"photograph", "rendered"};
+    fputs("<figure>\n<div class=\"pair\">", to);
+    for (int k = 0; k < 2; k++) {
+        fputs("<div>", to);
+        if (!pictures[k]->rgb)
+            fputs("<div class=\"none\">no picture yet</div>", to);
+        else if (put_picture(to, pictures[k], 85, ALT_TEXTS[k], card->view->name, err))
+            return err->status;
+        fprintf(to, "<p class=\"under\">%s</p></div>", LABELS[k]);
+    }
+    fputs("</div>\n<figcaption><b>", to);
+    html_text(to, card->view->name);
+    fprintf(to, "</b> <span class=\"size\">%d × %d</span>", card->view->width, card->view->height);
+    put_view_metric(to, c, card->view->name, "holdout.psnr", "PSNR");
+    put_view_metric(to, c, card->view->name, "holdout.ssim", "SSIM");
+    put_view_metric(to, c, card->view->name, "holdout.holes", "holes");
+    put_tag(to, card->problem);
+    fputs("</figcaption>\n</figure>\n", to);
+    return ST_OK;
+}
+
+static void put_metrics(FILE *to, const struct metric_rows *r)
+{
+    fputs("<div class=\"card wide\" role=\"region\" aria-labelledby=\"evaluation-title\" tabindex=\"0\"><table>\n"
+          "<thead><tr><th scope=\"col\">Metric</th><th scope=\"col\" class=\"n\">Value</th><th scope=\"col\">Unit</th>"
+          "<th scope=\"col\">Better</th><th scope=\"col\">Meaning</th></tr></thead>\n<tbody>\n",
+          to);
+    for (int i = 0; i < r->count; i++) {
+        const struct metric_row *m = &r->rows[i];
+        fputs("<tr><th scope=\"row\"><code>", to);
+        html_text(to, m->name);
+        fprintf(to, "</code></th><td class=\"n\">%.5g</td><td>", m->value);
+        html_text(to, strcmp(m->unit, "1") ? m->unit : "");
+        fputs("</td><td>", to);
+        html_text(to, strcmp(m->direction, "none") ? m->direction : "");
+        fprintf(to, "</td><td class=\"how\">%s</td></tr>\n", metric_meaning(m->name));
+    }
+    fputs("</tbody>\n</table></div>\n", to);
+}
+
+enum status page_evaluation(FILE *to, const struct contents *c, struct err *err)
+{
+    if (!c->has_metrics && !c->held.view_count) return ST_OK;
+    fputs("<section id=\"evaluation\" aria-labelledby=\"evaluation-title\">\n<h2 id=\"evaluation-title\">Evaluation "
+          "against truth and held-out photographs</h2>\n",
+          to);
+    if (c->metrics.count)
+        put_metrics(to, &c->metrics);
+    else
+        fputs("<p>There are no metrics yet.</p>\n", to);
+    if (c->metrics.note_count) fputs("<ul class=\"list muted\">\n", to);
+    for (int i = 0; i < c->metrics.note_count; i++) {
+        fputs("<li>", to);
+        html_text(to, c->metrics.notes[i]);
+        fputs("</li>\n", to);
+    }
+    if (c->metrics.note_count) fputs("</ul>\n", to);
+    if (c->held.view_count) fputs("<h3>Held-out photographs</h3>\n<div class=\"pairs\">\n", to);
+    for (int i = 0; i < c->held.view_count; i++)
+        if (put_held(to, c, &c->held_cards[i], err)) return err->status;
+    if (c->held.view_count) fputs("</div>\n", to);
+    fputs("</section>\n", to);
+    return ST_OK;
+}

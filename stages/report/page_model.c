@@ -1,0 +1,61 @@
+/* page_model.c - the axes of the room and the solid models, to be checked by eye. */
+#include "stages/report/page_parts.h"
+
+enum status page_axes(FILE *to, const struct contents *c, struct err *err)
+{
+    if (!c->axes_count) return ST_OK;
+    fputs("<section id=\"axes\" aria-labelledby=\"axes-title\">\n<h2 id=\"axes-title\">Axes of the room</h2>\n"
+          "<p class=\"muted\">x is red, y green, z blue. Yellow outlines the floor, cyan the ceiling: the rectangle of "
+          "the "
+          "outermost walls, drawn over whatever is in front of it.</p>\n<div class=\"pairs\">\n",
+          to);
+    for (int i = 0; i < c->axes_count; i++) {
+        fputs("<figure>", to);
+        if (put_picture(to, &c->axes[i].picture, 85, "Axes drawn on view", c->axes[i].view, err)) return err->status;
+        fputs("<figcaption><b>", to);
+        html_text(to, c->axes[i].view);
+        fputs("</b></figcaption></figure>\n", to);
+    }
+    fputs("</div>\n</section>\n", to);
+    return ST_OK;
+}
+
+static enum status put_model_picture(FILE *to, const char *file, const char *type, const char *caption,
+                                     const char *name, struct err *err)
+{
+    if (!file) return ST_OK;
+    fprintf(to, "<figure><img loading=\"lazy\" alt=\"%s ", caption);
+    html_text(to, name);
+    fprintf(to, "\" src=\"data:image/%s;base64,", type);
+    if (html_base64_file(to, file, err)) return err->status;
+    fprintf(to, "\"><figcaption><b>");
+    html_text(to, name);
+    fprintf(to, "</b> %s</figcaption></figure>\n", caption);
+    return ST_OK;
+}
+
+/* Plan, view from above, and edges on the photographs. */
+enum status page_models(FILE *to, const struct contents *c, struct err *err)
+{
+    if (!c->model_count) return ST_OK;
+    fputs("<section id=\"model\" aria-labelledby=\"model-title\">\n<h2 id=\"model-title\">Model</h2>\n", to);
+    for (int i = 0; i < c->model_count; i++) {
+        const struct model_card *m = &c->models[i];
+        const char *name = m->name[0] ? m->name : "model";
+        fputs("<h3>", to);
+        html_text(to, m->name[0] ? m->name : "as photographed");
+        fputs("</h3>\n<div class=\"pairs\">\n", to);
+        if (put_model_picture(to, m->plan, "svg+xml", "plan", name, err) ||
+            put_model_picture(to, m->view, "png", "from above, cut below the ceiling", name, err))
+            return err->status;
+        fputs("</div>\n<details><summary>Edges on the photographs <span class=\"muted\">red: visible; thin: hidden "
+              "by another part of the model; blue: glass</span></summary>\n<div class=\"pairs\">\n",
+              to);
+        for (int k = 0; k < m->overlay_count; k++)
+            if (put_model_picture(to, m->overlays[k], "jpeg", "edges of the model", m->overlay_ids[k], err))
+                return err->status;
+        fputs("</div>\n</details>\n", to);
+    }
+    fputs("</section>\n", to);
+    return ST_OK;
+}

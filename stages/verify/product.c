@@ -1,0 +1,194 @@
+/* product.c - see product.h. */
+#include "stages/verify/product.h"
+
+#include <ctype.h>
+#include <inttypes.h>
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
+
+#include "common/capture/point_cloud.h"
+#include "common/image/exr.h"
+#include "common/image/photo.h"
+
+static enum status verify_exr(const char *path, struct err *err)
+{
+    struct exr_image im = {0};
+    enum status st = exr_read(&im, path, NULL, 0, err);
+    exr_image_release(&im);
+    return st;
+}
+
+static enum status verify_points(const char *path, struct err *err)
+{
+    struct point_cloud cloud = {0};
+    enum status st = point_cloud_read(&cloud, path, err);
+    point_cloud_release(&cloud);
+    return st;
+}
+
+/* Decodes a picture whose first bytes are `signature`. */
+static enum status verify_picture(const char *path, const char *signature, const char *format, struct err *err)
+{
+    struct photo photo = {0};
+    char head[8] = {0};
+    FILE *f = fopen(path, "rb");
+    if (!f) return err_errno(err, "open", path);
+    const size_t size = fread(head, 1, strlen(signature), f);
+    const bool failed = ferror(f);
+    fclose(f);
+    if (failed) return err_errno(err, "read", path);
+    if (size && memcmp(head, signature, strlen(signature)) != 0)
+        return err_set(err, ST_DATA, "%s: found no %s signature, wanted %s by its extension; make it again.", path,
+                       format, format);
+    enum status st = photo_read(&photo, path, err);
+    photo_release(&photo);
+    return st;
+}
+
+static enum status verify_png(const char *path, struct err *err) { return verify_picture(path, "\x89PNG", "PNG", err); }
+static enum status verify_jpeg(const char *path, struct err *err)
+{
+    return verify_picture(path, "\xff\xd8\xff", "JPEG", err);
+}
+
+static uint64_t big_endian(const unsigned char *bytes, int count)
+{
+    uint64_t value = 0;
+    for (int i = 0; i < count; i++) value = value << 8 | bytes[i];
+    return value;
+}
+
+/* ISO/IEC 14496-12: a box is a 32-bit size and a type of four letters; size 1: a 64-bit size follows; size 0: the box
+ * reaches to the end of the file. Sizes include the head. */
+static enum status verify_boxes(FILE *f, uint64_t size, const char *path, struct err *err)
+{
+    bool has_moov = false, has_mdat = false;
+    for (uint64_t at = 0; at < size;) {
+        unsigned char head[16] = {0};
+        if (fseeko(f, (off_t)at, SEEK_SET)) return err_errno(err, "read", path);
+        const size_t got = fread(head, 1, sizeof head, f);
+        if (ferror(f)) return err_errno(err, "read", path);
+        uint64_t box = big_endian(head, 4), head_size = 8;
+        if (box == 1) box = big_endian(head + 8, 8), head_size = 16;
+        if (box == 0) box = size - at;
+        if (got < head_size || box < head_size || box > size - at)
+            return err_set(err, ST_DATA,
+                           "%s: the box at byte %" PRIu64 " does not fit into the file of %" PRIu64
+                           " bytes; the video is cut off, make it again.",
+                           path, at, size);
+        if (at == 0 && memcmp(head + 4, "ftyp", 4) != 0)
+            return err_set(err, ST_DATA, "%s: found another first box, wanted ftyp; it is not an MP4, make it again.",
+                           path);
+        has_moov |= !memcmp(head + 4, "moov", 4);
+        has_mdat |= !memcmp(head + 4, "mdat", 4);
+        at += box;
+    }
+    if (!has_moov || !has_mdat)
+        return err_set(err, ST_DATA, "%s: found no %s box, wanted one; the video is cut off, make it again.", path,
+                       has_moov ? "mdat" : "moov");
+    return ST_OK;
+}
+
+static enum status verify_mp4(const char *path, struct err *err)
+{
+    struct stat info;
+    FILE *f = fopen(path, "rb");
+    if (!f) return err_errno(err, "open", path);
+    enum status st = fstat(fileno(f), &info) ? err_errno(err, "read", path) : ST_OK;
+    if (!st) st = verify_boxes(f, (uint64_t)info.st_size, path, err);
+    fclose(f);
+    return st;
+}
+
+struct text_ends {
+    char first;    /* that is not white space; 0: there is none */
+    char tail[32]; /* the last characters before the white space at the end, padded in front with 0 */
+};
+
+static enum status verify_text_ends(const char *path, struct text_ends *ends, struct err *err)
+{
+    char block[65536], last = 0;
+    size_t size;
+    FILE *f = fopen(path, "rb");
+    if (!f) return err_errno(err, "open", path);
+    *ends = (struct text_ends){0};
+    bool has_nul = false;
+    while ((size = fread(block, 1, sizeof block, f)) > 0) {
+        has_nul |= memchr(block, 0, size) != NULL;
+        for (size_t i = 0; i < size; i++) {
+            last = block[i];
+            if (isspace((unsigned char)last)) continue;
+            if (!ends->first) ends->first = last;
+            memmove(ends->tail, ends->tail + 1, sizeof ends->tail - 1);
+            ends->tail[sizeof ends->tail - 1] = last;
+        }
+    }
+    enum status st = ferror(f) ? err_errno(err, "read", path) : ST_OK;
+    fclose(f);
+    if (!st && (!last || last != '\n' || has_nul))
+        st = err_set(err, ST_DATA, "%s: found %s, wanted lines of text; make it again.", path,
+                     has_nul ? "a NUL byte"
+                     : !last ? "nothing"
+                             : "no line break at the end");
+    return st;
+}
+
+static enum status verify_text(const char *path, struct err *err)
+{
+    struct text_ends ends;
+    return verify_text_ends(path, &ends, err);
+}
+
+static enum status verify_markup(const char *path, const char *closing, struct err *err)
+{
+    struct text_ends ends;
+    if (verify_text_ends(path, &ends, err)) return err->status;
+    const char *tail = ends.tail + sizeof ends.tail - strlen(closing);
+    if (memcmp(tail, closing, strlen(closing)) != 0)
+        return err_set(err, ST_DATA, "%s: found another end, wanted %s; it is cut off, make it again.", path, closing);
+    return ST_OK;
+}
+
+static enum status verify_svg(const char *path, struct err *err) { return verify_markup(path, "</svg>", err); }
+static enum status verify_html(const char *path, struct err *err) { return verify_markup(path, "</html>", err); }
+
+static enum status verify_json(const char *path, struct err *err)
+{
+    struct text_ends ends;
+    if (verify_text_ends(path, &ends, err)) return err->status;
+    const char last = ends.tail[sizeof ends.tail - 1];
+    if (!((ends.first == '{' && last == '}') || (ends.first == '[' && last == ']')))
+        return err_set(err, ST_DATA, "%s: wanted an object or an array of JSON with both its brackets; make it again.",
+                       path);
+    return ST_OK;
+}
+
+static enum status verify_not_empty(const char *path, struct err *err)
+{
+    struct stat info;
+    if (stat(path, &info)) return err_errno(err, "open", path);
+    if (!S_ISREG(info.st_mode)) return err_set(err, ST_DATA, "%s is not a regular file; make it again.", path);
+    return info.st_size ? ST_OK : err_set(err, ST_DATA, "%s: found nothing, wanted a product; make it again.", path);
+}
+
+enum status product_verify(const char *path, struct err *err)
+{
+    static const struct {
+        const char *extension;
+        enum status (*verify)(const char *path, struct err *err);
+    } kinds[] = {
+        {".exr", verify_exr},    {".png", verify_png},  {".jpg", verify_jpeg}, {".jpeg", verify_jpeg},
+        {".ply", verify_points}, {".mp4", verify_mp4},  {".svg", verify_svg},  {".html", verify_html},
+        {".json", verify_json},  {".txt", verify_text}, {".tsv", verify_text}, {".csv", verify_text},
+        {".mk", verify_text},    {".cfg", verify_text}, {".obj", verify_text}, {".mtl", verify_text},
+        {".py", verify_text},    {".log", verify_text}, {".md", verify_text},
+    };
+    const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
+    for (size_t i = 0; dot && i < sizeof kinds / sizeof *kinds; i++)
+        if (!strcasecmp(dot, kinds[i].extension)) return kinds[i].verify(path, err);
+    return verify_not_empty(path, err);
+}
