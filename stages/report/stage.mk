@@ -13,5 +13,5 @@ report: $(O)/index.html
 $(O)/index.html: $(if $(PAIR),$(M)/video.mp4,$(CAMERAS) $(SHOWN)) $(SHOWN_ALWAYS) $(S)/photos/list.txt \
   $(STAGES:%=$(O)/slice/%.cfg) $(call needs,report)
 	$(call stage,report,page,$(O),--scene $(SCENE) --folder $(O) --shared $(S) --photos $(PICTURES) \
-	  --defaults configs/default.cfg --out $@)
+	  --defaults configs/default.cfg --stages '$(STAGES)' --out $@)
 endif
