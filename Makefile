@@ -318,7 +318,7 @@ $(B)/bin/morph_views $(filter $(B)/tests/unit/morph_views/%,$(UNIT_TESTS)): $(B)
 $(B)/bin/morph_views $(filter $(B)/tests/unit/morph_views/%,$(UNIT_TESTS)): private LDLIBS += -lopencv_calib3d -lopencv_features2d -lopencv_core -lstdc++
 $(patsubst %.cc,$(B)/obj/%.o,$(wildcard stages/*/opencv_*.cc)): private CXXFLAGS += -isystem /usr/include/opencv4
 # what simulate alone needs
-$(B)/bin/simulate $(B)/tests/unit/simulate/%: private LDLIBS += -lembree3
+$(B)/bin/simulate $(B)/tests/unit/simulate/% $(B)/tests/unit/common/light/%: private LDLIBS += -lembree3
 $(B)/tests/fuzz/fuzz_scene $(B)/tests/fuzz/fuzz_shoot: private LDLIBS += -lembree3
 $(B)/tests/fuzz/fuzz_scene $(B)/tests/fuzz/fuzz_shoot: $(filter-out %/simulate.o,$(call objs,stages/simulate/*.c))
 .SECONDARY: $(call objs,tests/*/*.c tests/*/*/*.c tests/*/*/*/*.c)

@@ -13,10 +13,11 @@
 #include <string.h>
 
 #include "common/base/sort.h"
-#include "stages/simulate/noise.h"
+#include "common/light/frame.h"
+#include "common/light/noise.h"
+#include "common/math/numbers.h"
 
 #define MOST_TRIANGLES (1 << 23)
-#define PI             3.14159265358979323846
 
 /* -------------------------------------------------------------------------------------------------------------- faces */
 

@@ -8,9 +8,10 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "stages/simulate/fast.h"
+#include "common/light/fast.h"
+#include "common/light/frame.h"
+#include "common/math/numbers.h"
 
-#define PI            3.14159265358979323846
 #define LEAST_SOLID   1e-4 /* sr: below it a rectangle is sampled by area */
 #define SUN_NO_WINDOW 0.05 /* of its guess, where no window shows the sun */
 
@@ -39,8 +40,8 @@ static struct spherical spherical_make(const struct light *l, struct vec3 point)
     const double n2 = q.y1 / sqrt(zz + q.y1 * q.y1), n3 = -q.x0 / sqrt(zz + q.x0 * q.x0);
     q.b0 = n0;
     q.b1 = n2;
-    q.k = 2 * PI - acos(clip(-n2 * n3, -1, 1)) - acos(clip(-n3 * n0, -1, 1));
-    q.solid = acos(clip(-n0 * n1, -1, 1)) + acos(clip(-n1 * n2, -1, 1)) - q.k;
+    q.k = 2 * PI - acos(clamp(-n2 * n3, -1, 1)) - acos(clamp(-n3 * n0, -1, 1));
+    q.solid = acos(clamp(-n0 * n1, -1, 1)) + acos(clamp(-n1 * n2, -1, 1)) - q.k;
     return q;
 }
 
@@ -48,11 +49,11 @@ static struct spherical spherical_make(const struct light *l, struct vec3 point)
 static struct vec3 spherical_sample(const struct spherical *q, const struct light *l, double u, double v)
 {
     const double a = u * q->solid + q->k, f = (cos(a) * q->b0 - q->b1) / sin(a);
-    const double c = clip((f > 0 ? 1 : -1) / sqrt(f * f + q->b0 * q->b0), -1, 1);
-    const double x = clip(-c * q->z0 / sqrt(most(1e-300, 1 - c * c)), q->x0, q->x1);
+    const double c = clamp((f > 0 ? 1 : -1) / sqrt(f * f + q->b0 * q->b0), -1, 1);
+    const double x = clamp(-c * q->z0 / sqrt(fast_max(1e-300, 1 - c * c)), q->x0, q->x1);
     const double dd = x * x + q->z0 * q->z0;
     const double h0 = q->y0 / sqrt(dd + q->y0 * q->y0), h1 = q->y1 / sqrt(dd + q->y1 * q->y1), h = h0 + v * (h1 - h0);
-    const double y = h * h < 1 - 1e-12 ? clip(h * sqrt(dd / (1 - h * h)), q->y0, q->y1) : q->y1;
+    const double y = h * h < 1 - 1e-12 ? clamp(h * sqrt(dd / (1 - h * h)), q->y0, q->y1) : q->y1;
     return vec3_add(vec3_add(vec3_scale(l->x, x), vec3_scale(l->y, y)), vec3_scale(q->z, q->z0));
 }
 
@@ -127,7 +128,7 @@ static struct light window(const struct item *it, const struct item *wall, const
 enum status lights_init(struct lights *l, const struct scene *s, const struct geometry *g, struct err *err)
 {
     *l = (struct lights){0};
-    sky_init(&l->sky, s);
+    sky_init(&l->sky, &s->sky);
     if (!(l->of_face = malloc((size_t)(g->face_count + 1) * sizeof *l->of_face)))
         return err_nomem(err, "lights", (size_t)g->face_count * sizeof *l->of_face);
     for (int i = 0; i < g->face_count; i++) l->of_face[i] = -1;
@@ -135,7 +136,7 @@ enum status lights_init(struct lights *l, const struct scene *s, const struct ge
     for (int i = 0; !st && i < s->item_count; i++) {
         const struct item *it = &s->items[i];
         const bool lamp = it->kind == ITEM_LAMP_QUAD || it->kind == ITEM_LAMP_DISK;
-        if (!lamp && (it->kind != ITEM_WINDOW || !(s->has_panorama || s->has_sun))) continue;
+        if (!lamp && (it->kind != ITEM_WINDOW || !(s->sky.has_panorama || s->sky.has_sun))) continue;
         if (l->count == MOST_LIGHTS - 1) { /* one is left for the sun */
             st = err_set(err, ST_DATA, "the scene has more than %d lamps and windows; make fewer of them.", l->count);
             break;
@@ -145,10 +146,10 @@ enum status lights_init(struct lights *l, const struct scene *s, const struct ge
                               : it->kind == ITEM_LAMP_DISK ? disk(it)
                                                            : rectangle(LIGHT_QUAD, it->at, it->u, it->v, it->radiance);
     }
-    if (!st && s->has_sun) {
+    if (!st && s->sky.has_sun) {
         struct light sun = {
-            .kind = LIGHT_SUN, .n = l->sky.sun, .cos_cone = l->sky.sun_cos, .radiance = s->sun.radiance};
-        sun.tan_cone = tan(s->sun.angular_radius * PI / 180);
+            .kind = LIGHT_SUN, .n = l->sky.to_sun, .cos_cone = l->sky.sun_cos, .radiance = s->sky.sun.radiance};
+        sun.tan_cone = tan(s->sky.sun.angular_radius * PI / 180);
         sun.area = 2 * PI * (1 - sun.cos_cone); /* sr */
         sun.luminance = rgb_luminance(sun.radiance);
         l->list[l->count++] = sun;
@@ -171,7 +172,7 @@ static double highest_corner(const struct light *l, struct vec3 d, struct vec3 n
 {
     const double a = vec3_dot(d, normal), x = l->width * vec3_dot(l->x, normal), y = l->height * vec3_dot(l->y, normal);
     *middle = vec3_add(d, vec3_add(vec3_scale(l->x, l->width / 2), vec3_scale(l->y, l->height / 2)));
-    return a + most(0, x) + most(0, y);
+    return a + fast_max(0, x) + fast_max(0, y);
 }
 
 /* Whether the window lets some of the sun's disk through to the point. */
@@ -180,7 +181,7 @@ static bool window_shows_sun(const struct light *w, const struct light *sun, str
     const double slope = vec3_dot(sun->n, w->n), t = vec3_dot(vec3_sub(w->corner, point), w->n) / slope;
     if (!(t > 0) || !(t < 1e6)) return false;
     const struct vec3 d = vec3_sub(vec3_add(point, vec3_scale(sun->n, t)), w->corner);
-    const double x = vec3_dot(d, w->x), y = vec3_dot(d, w->y), margin = t * sun->tan_cone / most(0.05, fabs(slope));
+    const double x = vec3_dot(d, w->x), y = vec3_dot(d, w->y), margin = t * sun->tan_cone / fast_max(0.05, fabs(slope));
     return x > -margin && x < w->width + margin && y > -margin && y < w->height + margin;
 }
 
@@ -198,13 +199,13 @@ static double guess(const struct lights *all, const struct light *l, struct vec3
             window = true;
             shown = window_shows_sun(&all->list[i], l, point);
         }
-        return l->luminance * l->area * most(0.05, cos_s) * (window && !shown ? SUN_NO_WINDOW : 1);
+        return l->luminance * l->area * fast_max(0.05, cos_s) * (window && !shown ? SUN_NO_WINDOW : 1);
     }
     case LIGHT_DISK: {
         const double h = -vec3_dot(to, l->n), d2 = vec3_dot(to, to), cos_s = vec3_dot(normal, to);
-        const double aside2 = most(0, d2 - h * h), reach = l->radius + h * l->tan_cone;
+        const double aside2 = fast_max(0, d2 - h * h), reach = l->radius + h * l->tan_cone;
         if (h <= 0 || aside2 >= reach * reach || cos_s <= -l->radius) return 0;
-        const double d = sqrt(d2), cos_l = most(h / d, l->cos_cone);
+        const double d = sqrt(d2), cos_l = fast_max(h / d, l->cos_cone);
         seen = l->area * cos_l / d2;
         facing = cos_s / d;
         break;
@@ -221,7 +222,7 @@ static double guess(const struct lights *all, const struct light *l, struct vec3
         break;
     }
     }
-    return l->luminance * least(seen, 2 * PI) * most(facing, 0.1);
+    return l->luminance * fast_min(seen, 2 * PI) * fast_max(facing, 0.1);
 }
 
 void lights_chances(struct light_chances *c, const struct lights *l, struct vec3 point, struct vec3 normal)
@@ -311,14 +312,14 @@ bool lights_sample(struct light_sample *s, const struct lights *l, const struct 
     const struct light *light = &l->list[i];
     if (light->kind == LIGHT_SUN) {
         const double cos_t = 1 - u[1] * (1 - light->cos_cone);
-        s->direction = direction_about(light->n, sqrt(most(0, 1 - cos_t * cos_t)), cos_t, u[2]);
+        s->direction = frame_direction(light->n, sqrt(fast_max(0, 1 - cos_t * cos_t)), cos_t, u[2]);
         s->pdf = c->chance[i] / light->area + sky_pdf_but(l, c, s->direction, i);
     } else {
         struct vec3 to;
         double pdf;
         if (light->kind == LIGHT_DISK) {
             to = vec3_add(vec3_sub(light->corner, c->point),
-                          direction_about(light->n, light->radius * sqrt(u[1]), 0, u[2]));
+                          frame_direction(light->n, light->radius * sqrt(u[1]), 0, u[2]));
             pdf = disk_pdf(light, to);
         } else {
             const struct spherical q = spherical_make(light, c->point);
@@ -334,7 +335,7 @@ bool lights_sample(struct light_sample *s, const struct lights *l, const struct 
         s->pdf = c->chance[i] * pdf;
         if (light->kind != LIGHT_WINDOW) {
             s->radiance = emitted(light, -vec3_dot(s->direction, light->n));
-            return s->pdf > 0 && rgb_most(s->radiance) > 0;
+            return s->pdf > 0 && rgb_max(s->radiance) > 0;
         }
         s->pdf += sky_pdf_but(l, c, s->direction, i);
     }

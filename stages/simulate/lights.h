@@ -7,8 +7,8 @@
 #ifndef REMODEL_SIMULATE_LIGHTS_H
 #define REMODEL_SIMULATE_LIGHTS_H
 
+#include "common/light/sky.h"
 #include "stages/simulate/geometry.h"
-#include "stages/simulate/sky.h"
 
 #define MOST_LIGHTS 32
 

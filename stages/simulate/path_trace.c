@@ -7,12 +7,12 @@
 
 #include <math.h>
 
-#include "stages/simulate/fast.h"
+#include "common/light/fast.h"
+#include "common/math/numbers.h"
 
 #define SURE_BOUNCES  3
 #define MOST_SURVIVAL 0.95 /* so that a path in a white box ends, too */
 #define HARD_END      4096 /* bounces; never reached but by a program gone wrong */
-#define PI            3.14159265358979323846
 
 enum status world_read(struct world *w, const char *folder, const char *file, struct provenance *prov, struct err *err)
 {
@@ -36,7 +36,7 @@ void world_release(struct world *w)
 
 struct path {
     const struct world *world;
-    const struct sampler *sampler;
+    const struct sobol *sampler;
     struct ray ray;
     struct rgb light, weight;
     struct light_chances chances; /* at the surface that the ray left */
@@ -59,7 +59,7 @@ static void look_for_light(struct path *p, const struct brdf *b, struct vec3 n, 
     double pdf;
     if (!lights_sample(&s, &w->lights, &p->chances, u)) return;
     const struct rgb f = brdf_eval(b, n, view, s.direction, &pdf);
-    if (!(rgb_most(f) > 0)) return;
+    if (!(rgb_max(f) > 0)) return;
     p->rays++;
     if (geometry_blocked(&w->geometry, p->chances.point, s.direction, s.distance - 2 * w->geometry.epsilon)) return;
     const struct rgb gain = rgb_multiply(rgb_multiply(p->weight, f), s.radiance);
@@ -73,11 +73,11 @@ static bool scatter(struct path *p, const struct brdf *b, struct vec3 point, str
     const struct world *w = p->world;
     double light_u[4], surface_u[4];
     struct vec3 direction;
-    sampler_group(p->sampler, 2 * bounce + 1, light_u);
-    sampler_group(p->sampler, 2 * bounce + 2, surface_u);
+    sobol_group(p->sampler, 2 * bounce + 1, light_u);
+    sobol_group(p->sampler, 2 * bounce + 2, surface_u);
 
     if (bounce >= SURE_BOUNCES) {
-        const double survival = least(MOST_SURVIVAL, sqrt(rgb_most(p->weight)));
+        const double survival = fast_min(MOST_SURVIVAL, sqrt(rgb_max(p->weight)));
         if (light_u[3] >= survival) return false;
         p->weight = rgb_scale(p->weight, 1 / survival);
     }
@@ -87,7 +87,7 @@ static bool scatter(struct path *p, const struct brdf *b, struct vec3 point, str
 
     if (!brdf_sample(b, n, view, surface_u, &direction)) return false;
     const struct rgb f = brdf_eval(b, n, view, direction, &p->surface_pdf);
-    if (!(p->surface_pdf > 0) || !(rgb_most(f) > 0)) return false;
+    if (!(p->surface_pdf > 0) || !(rgb_max(f) > 0)) return false;
     p->weight = rgb_scale(rgb_multiply(p->weight, f), 1 / p->surface_pdf);
     p->ray = (struct ray){start, direction};
     return true;
@@ -112,13 +112,13 @@ static void follow(struct path *p, uint32_t bounce)
         geometry_hit(&w->geometry, p->ray.from, d, &hit);
         if (hit.face < 0) {
             const struct rgb sky = sky_radiance(&w->lights.sky, d);
-            if (rgb_most(sky) > 0) meet(p, sky, p->surface_pdf > 0 ? lights_pdf_sky(&w->lights, &p->chances, d) : 0);
+            if (rgb_max(sky) > 0) meet(p, sky, p->surface_pdf > 0 ? lights_pdf_sky(&w->lights, &p->chances, d) : 0);
             return;
         }
         const struct face *f = &w->geometry.faces[hit.face];
         if (f->material < 0) { /* a lamp reflects nothing */
             const struct rgb lamp = lights_emitted(&w->lights, hit.face, &hit, d);
-            if (rgb_most(lamp) > 0)
+            if (rgb_max(lamp) > 0)
                 meet(p, lamp, p->surface_pdf > 0 ? lights_pdf_face(&w->lights, &p->chances, hit.face, &hit, d) : 0);
             return;
         }
@@ -129,7 +129,7 @@ static void follow(struct path *p, uint32_t bounce)
     }
 }
 
-struct rgb path_radiance(const struct world *w, struct ray ray, const struct sampler *s, uint64_t *rays)
+struct rgb path_radiance(const struct world *w, struct ray ray, const struct sobol *s, uint64_t *rays)
 {
     struct path p = {.world = w, .sampler = s, .ray = ray, .weight = {1, 1, 1}};
     follow(&p, 0);
@@ -137,7 +137,7 @@ struct rgb path_radiance(const struct world *w, struct ray ray, const struct sam
     return p.light;
 }
 
-struct rgb path_irradiance(const struct world *w, struct vec3 point, struct vec3 normal, const struct sampler *s,
+struct rgb path_irradiance(const struct world *w, struct vec3 point, struct vec3 normal, const struct sobol *s,
                            uint64_t *rays)
 {
     /* what a white surface reflects is E / pi */

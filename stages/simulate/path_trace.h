@@ -6,8 +6,8 @@
 #ifndef REMODEL_SIMULATE_PATH_TRACE_H
 #define REMODEL_SIMULATE_PATH_TRACE_H
 
+#include "common/light/sobol.h"
 #include "stages/simulate/lights.h"
-#include "stages/simulate/sampler.h"
 
 /* A scene ready for rays. */
 struct world {
@@ -27,10 +27,10 @@ struct ray {
 };
 
 /* One estimate. Adds to *rays how many rays it took. The sampler's group 0 is the caller's. */
-struct rgb path_radiance(const struct world *w, struct ray ray, const struct sampler *s, uint64_t *rays);
+struct rgb path_radiance(const struct world *w, struct ray ray, const struct sobol *s, uint64_t *rays);
 
 /* One estimate of the irradiance on the front of a surface element: the integral of radiance by cosine. */
-struct rgb path_irradiance(const struct world *w, struct vec3 point, struct vec3 normal, const struct sampler *s,
+struct rgb path_irradiance(const struct world *w, struct vec3 point, struct vec3 normal, const struct sobol *s,
                            uint64_t *rays);
 
 #endif

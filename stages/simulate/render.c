@@ -41,12 +41,12 @@ struct job {
 static struct rgb pixel_radiance(const struct job *job, int x, int y, uint64_t *rays)
 {
     const uint64_t pixel = (uint64_t)y * (uint64_t)job->view->lens->width + (uint64_t)x;
-    struct sampler s = sampler_make(&job->rng, pixel, job->samples);
+    struct sobol s = sobol_make(&job->rng, pixel, job->samples);
     struct rgb sum = {0, 0, 0};
     for (; s.sample < (uint32_t)job->samples; s.sample++) {
         double u[4];
         struct ray ray;
-        sampler_group(&s, 0, u);
+        sobol_group(&s, 0, u);
         if (camera_view_ray(job->view, x + u[0], y + u[1], &ray))
             sum = rgb_add(sum, path_radiance(job->world, ray, &s, rays));
     }

@@ -444,26 +444,26 @@ static enum status read_item(struct reader *r, enum item_kind kind, item_reader 
 
 static enum status read_sun(struct reader *r, struct err *err)
 {
-    struct sun *sun = &r->scene->sun;
-    if (r->scene->has_sun) return textfile_error(&r->file, err, "a second sun", "one at most");
+    struct sun *sun = &r->scene->sky.sun;
+    if (r->scene->sky.has_sun) return textfile_error(&r->file, err, "a second sun", "one at most");
     enum status st = number(r, "the sun's azimuth in degrees", -360, 360, &sun->azimuth, err);
     if (!st) st = number(r, "the sun's elevation in degrees", -90, 90, &sun->elevation, err);
     if (!st) st = number(r, "the sun's angular radius in degrees", 0.05, 30, &sun->angular_radius, err);
     if (!st) st = colour(r, "a radiance", MOST_RADIANCE, &sun->radiance, err);
     if (!st) st = textfile_end(&r->file, err);
-    r->scene->has_sun = !st;
+    r->scene->sky.has_sun = !st;
     return st;
 }
 
 static enum status read_panorama(struct reader *r, struct err *err)
 {
-    struct panorama *p = &r->scene->panorama;
-    if (r->scene->has_panorama) return textfile_error(&r->file, err, "a second panorama", "one at most");
+    struct panorama *p = &r->scene->sky.panorama;
+    if (r->scene->sky.has_panorama) return textfile_error(&r->file, err, "a second panorama", "one at most");
     enum status st = seed(r, &p->seed, err);
     if (!st) st = colour(r, "the sky's radiance", MOST_RADIANCE, &p->sky, err);
     if (!st) st = colour(r, "the ground's radiance", MOST_RADIANCE, &p->ground, err);
     if (!st) st = textfile_end(&r->file, err);
-    r->scene->has_panorama = !st;
+    r->scene->sky.has_panorama = !st;
     return st;
 }
 
@@ -484,12 +484,12 @@ static enum status read_line(struct reader *r, struct err *err)
     return word < LINES ? lines[word](r, err) : read_item(r, (enum item_kind)(word - LINES), items[word - LINES], err);
 }
 
-static bool emits(struct rgb c) { return rgb_most(c) > 0; }
+static bool emits(struct rgb c) { return rgb_max(c) > 0; }
 
 static bool has_light(const struct scene *s)
 {
-    if (s->has_sun && emits(s->sun.radiance)) return true;
-    if (s->has_panorama && (emits(s->panorama.sky) || emits(s->panorama.ground))) return true;
+    if (s->sky.has_sun && emits(s->sky.sun.radiance)) return true;
+    if (s->sky.has_panorama && (emits(s->sky.panorama.sky) || emits(s->sky.panorama.ground))) return true;
     for (int i = 0; i < s->item_count; i++)
         if (emits(s->items[i].radiance)) return true;
     for (int i = 0; i < s->material_count; i++)

@@ -9,8 +9,9 @@
 
 #include "common/base/err.h"
 #include "common/base/provenance.h"
+#include "common/light/brdf.h"
+#include "common/light/sky.h"
 #include "common/math/vec.h"
-#include "stages/simulate/brdf.h"
 #include "stages/simulate/texture.h"
 
 struct named_texture {
@@ -56,24 +57,12 @@ struct item {
     int triangle_count;
 };
 
-struct sun {
-    double azimuth, elevation, angular_radius; /* degrees */
-    struct rgb radiance;
-};
-
-struct panorama {
-    uint32_t seed;
-    struct rgb sky, ground;
-};
-
 struct scene {
     struct named_texture *textures;
     struct material *materials;
     struct item *items;
     int texture_count, material_count, item_count;
-    bool has_sun, has_panorama;
-    struct sun sun;
-    struct panorama panorama;
+    struct sky_params sky;
 };
 
 /* Reads FOLDER/FILE and the meshes it names beside it. ST_DATA with file, line, what was found and what was wanted:

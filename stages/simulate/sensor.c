@@ -4,8 +4,7 @@
 #include <math.h>
 
 #include "common/base/parallel.h"
-
-#define PI 3.14159265358979323846
+#include "common/math/numbers.h"
 
 struct job {
     unsigned char *rgb;

@@ -9,8 +9,8 @@
 
 #include "common/base/scan.h"
 #include "common/base/textfile.h"
+#include "common/math/numbers.h"
 
-#define PI             3.14159265358979323846
 #define MOST_METRES    1e5
 #define MOST_SIDE      16384
 #define MOST_LINES     10000

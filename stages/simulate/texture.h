@@ -9,7 +9,7 @@
 
 #include <stdint.h>
 
-#include "stages/simulate/colour.h"
+#include "common/light/colour.h"
 
 enum texture_kind {
     TEXTURE_RGB,

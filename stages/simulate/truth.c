@@ -93,7 +93,7 @@ static void find_irradiance(void *ctx, size_t begin, size_t end, int thread)
         struct rgb sum = {0, 0, 0};
         uint64_t rays = 0;
         job->found[i] = find_place(job, i, p);
-        struct sampler s = sampler_make(&job->rng, ~(uint64_t)i, job->samples);
+        struct sobol s = sobol_make(&job->rng, ~(uint64_t)i, job->samples);
         for (; job->found[i] && s.sample < (uint32_t)job->samples; s.sample++)
             sum = rgb_add(sum, path_irradiance(job->world, p->point, p->normal, &s, &rays));
         p->irradiance = rgb_scale(sum, 1.0 / job->samples);

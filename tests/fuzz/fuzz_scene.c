@@ -18,7 +18,7 @@ static void use_scene(const struct scene *s)
     for (int i = 0; i < s->texture_count; i++)
         for (int k = 0; k < 16; k++) {
             const struct rgb c = texture_at(&s->textures[i].texture, 7, k * 0.37 - 2, k * k * 0.11 - 3);
-            if (!(c.r >= 0 && c.g >= 0 && c.b >= 0 && rgb_most(c) <= texture_bound(&s->textures[i].texture) + 1e-9))
+            if (!(c.r >= 0 && c.g >= 0 && c.b >= 0 && rgb_max(c) <= texture_bound(&s->textures[i].texture) + 1e-9))
                 abort();
         }
     if (geometry_init(&g, s, &err)) {

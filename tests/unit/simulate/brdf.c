@@ -1,8 +1,8 @@
 /* Surfaces: reflectance never above 1, sampling densities that integrate to one, sampled estimates against quadrature. */
 #include "tests/unit/simulate/worlds.h"
 
-#include "stages/simulate/brdf.h"
-#include "stages/simulate/sampler.h"
+#include "common/light/brdf.h"
+#include "common/light/sobol.h"
 
 static struct brdf make(enum brdf_kind kind, double albedo, double ks, double shape)
 {
@@ -26,7 +26,7 @@ static void quadrature(const struct brdf *b, struct vec3 view, double *reflected
         const double weight = (cos(PI * x0 * x0) - cos(PI * x1 * x1)) * 2 * PI / SECTORS;
         for (int k = 0; k < SECTORS; k++) {
             double pdf;
-            const struct vec3 light = direction_about(axis, sin(a), cos(a), (k + 0.5) / SECTORS);
+            const struct vec3 light = frame_direction(axis, sin(a), cos(a), (k + 0.5) / SECTORS);
             *reflected += brdf_eval(b, n, view, light, &pdf).g * weight;
             *density += pdf * weight;
         }
@@ -49,14 +49,14 @@ static void energy_density_estimate(void **state)
             const struct vec3 view = viewer(angles[k]);
             double reflected, density, estimate = 0, lost = 0;
             enum { SAMPLES = 65536 };
-            struct sampler s = sampler_make(&rng, i * 16 + k, SAMPLES);
+            struct sobol s = sobol_make(&rng, i * 16 + k, SAMPLES);
             quadrature(b, view, &reflected, &density);
             assert_true(reflected <= b->albedo.g + b->gloss + 1e-3);
             assert_true(reflected <= 1.001);
             for (; s.sample < SAMPLES; s.sample++) {
                 struct vec3 light;
                 double u[4], pdf;
-                sampler_group(&s, 0, u);
+                sobol_group(&s, 0, u);
                 if (!brdf_sample(b, n, view, u, &light)) {
                     lost++;
                     continue;
@@ -94,11 +94,11 @@ static void even_numbers(void **state)
     const struct rng rng = rng_make(3, "test", "sampler");
     double mean[4] = {0, 0, 0, 0};
     for (uint64_t pixel = 0; pixel < 1000; pixel++) {
-        struct sampler s = sampler_make(&rng, pixel, 16);
+        struct sobol s = sobol_make(&rng, pixel, 16);
         int cells[4][16] = {{0}}, squares[16] = {0};
         for (; s.sample < 16; s.sample++) {
             double u[4];
-            sampler_group(&s, 5, u);
+            sobol_group(&s, 5, u);
             for (int d = 0; d < 4; d++) {
                 assert_true(u[d] >= 0 && u[d] < 1);
                 cells[d][(int)(16 * u[d])]++;
@@ -112,11 +112,11 @@ static void even_numbers(void **state)
         }
     }
     for (int d = 0; d < 4; d++) assert_near(mean[d], 0.5, 0.003);
-    struct sampler a = sampler_make(&rng, 1, 4), b = a; /* beyond the table, other sets follow */
+    struct sobol a = sobol_make(&rng, 1, 4), b = a; /* beyond the table, other sets follow */
     double u[4], v[4];
     b.sample = 4;
-    sampler_group(&a, 0, u);
-    sampler_group(&b, 0, v);
+    sobol_group(&a, 0, u);
+    sobol_group(&b, 0, v);
     assert_true(u[0] != v[0]);
 }
 

@@ -188,7 +188,7 @@ static void textures_keep_their_bounds(void **state)
         double sum = 0, square = 0;
         for (int k = 0; k < 40000; k++) {
             const struct rgb c = texture_at(t, 5, k % 200 * 0.0137 - 0.7, k / 200 * 0.0091 - 0.9);
-            assert_true(c.r >= 0 && c.g >= 0 && c.b >= 0 && rgb_most(c) <= bound + 1e-9);
+            assert_true(c.r >= 0 && c.g >= 0 && c.b >= 0 && rgb_max(c) <= bound + 1e-9);
             sum += c.g / 40000;
             square += c.g * c.g / 40000;
         }

@@ -6,9 +6,8 @@
 
 #include <math.h>
 
+#include "common/math/numbers.h"
 #include "stages/simulate/path_trace.h"
-
-#define PI 3.14159265358979323846
 
 /* |got - wanted| within a part of the wanted value. */
 #define assert_near(got, wanted, part)                                                                   \
@@ -38,7 +37,7 @@ static inline struct rgb mean_irradiance(const struct world *w, struct vec3 poin
     struct rgb sum = {0, 0, 0};
     uint64_t rays = 0;
     for (int done = 0; done < paths; done += 4096) {
-        struct sampler s = sampler_make(&rng, (uint64_t)done, 4096);
+        struct sobol s = sobol_make(&rng, (uint64_t)done, 4096);
         for (; s.sample < 4096; s.sample++) sum = rgb_add(sum, path_irradiance(w, point, normal, &s, &rays));
     }
     return rgb_scale(sum, 1.0 / ((paths + 4095) / 4096 * 4096));
@@ -52,7 +51,7 @@ static inline struct rgb mean_radiance(const struct world *w, struct vec3 from, 
     struct rgb sum = {0, 0, 0};
     uint64_t rays = 0;
     for (int done = 0; done < paths; done += 4096) {
-        struct sampler s = sampler_make(&rng, (uint64_t)done, 4096);
+        struct sobol s = sobol_make(&rng, (uint64_t)done, 4096);
         for (; s.sample < 4096; s.sample++) sum = rgb_add(sum, path_radiance(w, ray, &s, &rays));
     }
     return rgb_scale(sum, 1.0 / ((paths + 4095) / 4096 * 4096));
