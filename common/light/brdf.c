@@ -1,7 +1,7 @@
 /* brdf.c - evaluation and importance sampling of the reflectance models.
  *
- * A sample first chooses the diffuse part or the lobe. The lobe is chosen with probability gloss / (gloss + luminance of the
- * albedo), its share of the reflected light; the density is that of the mixture. Then:
+ * A sample first chooses the diffuse part or the lobe. The lobe is chosen with probability gloss / (gloss + luminance
+ * of the albedo), its share of the reflected light; the density is that of the mixture. Then:
  *   diffuse  cosine-weighted: density cos / pi
  *   Phong    about the mirror image of the view, density (n + 1) / (2 pi) cos^n
  *   Ward     the half vector, tan(N,H) = alpha sqrt(-ln u) [Ward 1992]; with D the lobe without ks and its square root, the

@@ -1,8 +1,8 @@
 /* sky.c - the procedural panorama.
  *
- * By azimuth and elevation: a sky that pales towards the horizon, with clouds; a row of buildings with windows, in cells of
- * equal azimuth; trees in front of them; fields below the horizon. Textured enough for features on it to be matched between
- * photographs. Buildings and trees are darker or brighter with the luminance of the sky. */
+ * By azimuth and elevation: a sky that pales towards the horizon, with clouds; a row of buildings with windows, in
+ * cells of equal azimuth; trees in front of them; fields below the horizon. Textured enough for features on it to be
+ * matched between photographs. Buildings and trees are darker or brighter with the luminance of the sky. */
 #include "common/light/sky.h"
 
 #include <math.h>

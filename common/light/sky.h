@@ -1,7 +1,8 @@
-/* sky.h - radiance of the outdoors by direction: a procedural panorama of sky, skyline, trees and ground, and the sun's disk.
+/* sky.h - radiance of the outdoors by direction: a procedural panorama of sky, skyline, trees and ground, and the sun's
+ * disk.
  *
- * Everything is infinitely far away. Directions are unit vectors with z up; azimuth counts from x towards y. Radiance is
- * scene-linear Rec.709, in the scene's unit. */
+ * Everything is infinitely far away. Directions are unit vectors with z up; azimuth counts from x towards y. Radiance
+ * is scene-linear Rec.709, in the scene's unit. */
 #ifndef REMODEL_SKY_H
 #define REMODEL_SKY_H
 

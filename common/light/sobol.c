@@ -1,10 +1,11 @@
 /* sobol.c - hash-based Owen-scrambled Sobol' points [Burley 2020].
  *
- * A group is one set of four-dimensional Sobol' points, at most 2^16 of them. The order of the points is an Owen-scrambled
- * permutation of the sample index; each dimension is then Owen-scrambled with a seed of its own. Owen scrambling of a number
- * is a hash in which each bit depends on higher bits only; the code keeps the points with their bits reversed, where "higher"
- * becomes "lower" and the hash is built of multiplications and additions [Laine 2011]. The result is reversed at the end.
- * Differs from the source: the four dimensions are scrambled at once in a vector register. */
+ * A group is one set of four-dimensional Sobol' points, at most 2^16 of them. The order of the points is an
+ * Owen-scrambled permutation of the sample index; each dimension is then Owen-scrambled with a seed of its own. Owen
+ * scrambling of a number is a hash in which each bit depends on higher bits only; the code keeps the points with their
+ * bits reversed, where "higher" becomes "lower" and the hash is built of multiplications and additions [Laine 2011].
+ * The result is reversed at the end. Differs from the source: the four dimensions are scrambled at once in a vector
+ * register. */
 #include "common/light/sobol.h"
 
 #include "common/light/noise.h"

@@ -23,7 +23,7 @@ struct spherical {
     double x0, x1, y0, y1, z0, b0, b1, k, solid;
 };
 
-static struct spherical spherical_make(const struct light *l, struct vec3 point)
+static struct spherical spherical_make(const struct scene_light *l, struct vec3 point)
 {
     struct spherical q = {.z = vec3_cross(l->x, l->y)};
     const struct vec3 d = vec3_sub(l->corner, point);
@@ -46,7 +46,7 @@ static struct spherical spherical_make(const struct light *l, struct vec3 point)
 }
 
 /* From the point to a place on the rectangle. */
-static struct vec3 spherical_sample(const struct spherical *q, const struct light *l, double u, double v)
+static struct vec3 spherical_sample(const struct spherical *q, const struct scene_light *l, double u, double v)
 {
     const double a = u * q->solid + q->k, f = (cos(a) * q->b0 - q->b1) / sin(a);
     const double c = clamp((f > 0 ? 1 : -1) / sqrt(f * f + q->b0 * q->b0), -1, 1);
@@ -58,7 +58,7 @@ static struct vec3 spherical_sample(const struct spherical *q, const struct ligh
 }
 
 /* Per solid angle, for a place on it at `to` from the point. */
-static double rectangle_pdf(const struct light *l, const struct spherical *q, struct vec3 to)
+static double rectangle_pdf(const struct scene_light *l, const struct spherical *q, struct vec3 to)
 {
     if (q->solid > LEAST_SOLID) return 1 / q->solid;
     const double d = vec3_length(to);
@@ -67,10 +67,10 @@ static double rectangle_pdf(const struct light *l, const struct spherical *q, st
 
 /* ------------------------------------------------------------------------------------------------------------- gathering */
 
-static struct light rectangle(enum light_kind kind, struct vec3 corner, struct vec3 u, struct vec3 v,
-                              struct rgb radiance)
+static struct scene_light rectangle(enum light_kind kind, struct vec3 corner, struct vec3 u, struct vec3 v,
+                                    struct rgb radiance)
 {
-    struct light l = {.kind = kind, .corner = corner, .x = vec3_normalize(u), .y = vec3_normalize(v)};
+    struct scene_light l = {.kind = kind, .corner = corner, .x = vec3_normalize(u), .y = vec3_normalize(v)};
     l.width = vec3_length(u);
     l.height = vec3_length(v);
     l.area = l.width * l.height;
@@ -80,9 +80,9 @@ static struct light rectangle(enum light_kind kind, struct vec3 corner, struct v
     return l;
 }
 
-static struct light disk(const struct item *it)
+static struct scene_light disk(const struct scene_item *it)
 {
-    struct light l = {.kind = LIGHT_DISK, .corner = it->at, .n = vec3_normalize(it->u), .radius = it->radius};
+    struct scene_light l = {.kind = LIGHT_DISK, .corner = it->at, .n = vec3_normalize(it->u), .radius = it->radius};
     const double half = it->half_angle * PI / 180;
     l.area = PI * l.radius * l.radius;
     l.cos_cone = it->half_angle < 90 ? cos(half) : 0;
@@ -94,7 +94,7 @@ static struct light disk(const struct item *it)
 }
 
 /* How many of some rays from the middle of a window to one side of its wall meet nothing. */
-static int escapes(const struct geometry *g, struct vec3 middle, struct vec3 n, double depth)
+static int escapes(const struct ray_scene *rays, struct vec3 middle, struct vec3 n, double depth)
 {
     int count = 0;
     struct vec3 x, y;
@@ -103,14 +103,14 @@ static int escapes(const struct geometry *g, struct vec3 middle, struct vec3 n, 
         const double cos_t = (i + 0.5) / 64, sin_t = sqrt(1 - cos_t * cos_t), phi = 2.399963 * i; /* golden angle */
         const struct vec3 d =
             vec3_add(vec3_scale(n, cos_t), vec3_add(vec3_scale(x, sin_t * cos(phi)), vec3_scale(y, sin_t * sin(phi))));
-        count += !geometry_blocked(g, vec3_add(middle, vec3_scale(n, depth + g->epsilon)), d, INFINITY);
+        count += !ray_scene_blocked(rays, vec3_add(middle, vec3_scale(n, depth + rays->epsilon)), d, INFINITY);
     }
     return count;
 }
 
 /* In the outer face of the wall, so that all of the reveals lies inside. Outdoors is where more rays meet nothing. */
-static struct light window(const struct item *it, const struct item *wall, const struct sky *sky,
-                           const struct geometry *g)
+static struct scene_light window(const struct scene_item *it, const struct scene_item *wall, const struct sky *sky,
+                                 const struct scene_geometry *g)
 {
     struct vec3 along, left;
     double length;
@@ -120,12 +120,13 @@ static struct light window(const struct item *it, const struct item *wall, const
     const struct vec3 corner = vec3_add(vec3_make(wall->x0, wall->y0, it->z0), vec3_scale(along, it->s0));
     const struct vec3 middle = vec3_add(corner, vec3_scale(vec3_add(u, v), 0.5)), right = vec3_scale(left, -1);
     const struct rgb seen = rgb_add(rgb_scale(sky->panorama.sky, 0.6), rgb_scale(sky->panorama.ground, 0.4));
-    if (escapes(g, middle, left, depth) > escapes(g, middle, right, depth)) /* u x v points to the right */
+    if (escapes(&g->rays, middle, left, depth) >
+        escapes(&g->rays, middle, right, depth)) /* u x v points to the right */
         return rectangle(LIGHT_WINDOW, vec3_add(corner, vec3_scale(left, depth)), u, v, seen);
     return rectangle(LIGHT_WINDOW, vec3_add(vec3_add(corner, u), vec3_scale(right, depth)), vec3_scale(u, -1), v, seen);
 }
 
-enum status lights_init(struct lights *l, const struct scene *s, const struct geometry *g, struct err *err)
+enum status lights_init(struct lights *l, const struct scene *s, const struct scene_geometry *g, struct err *err)
 {
     *l = (struct lights){0};
     sky_init(&l->sky, &s->sky);
@@ -134,7 +135,7 @@ enum status lights_init(struct lights *l, const struct scene *s, const struct ge
     for (int i = 0; i < g->face_count; i++) l->of_face[i] = -1;
     enum status st = ST_OK;
     for (int i = 0; !st && i < s->item_count; i++) {
-        const struct item *it = &s->items[i];
+        const struct scene_item *it = &s->items[i];
         const bool lamp = it->kind == ITEM_LAMP_QUAD || it->kind == ITEM_LAMP_DISK;
         if (!lamp && (it->kind != ITEM_WINDOW || !(s->sky.has_panorama || s->sky.has_sun))) continue;
         if (l->count == MOST_LIGHTS - 1) { /* one is left for the sun */
@@ -147,7 +148,7 @@ enum status lights_init(struct lights *l, const struct scene *s, const struct ge
                                                            : rectangle(LIGHT_QUAD, it->at, it->u, it->v, it->radiance);
     }
     if (!st && s->sky.has_sun) {
-        struct light sun = {
+        struct scene_light sun = {
             .kind = LIGHT_SUN, .n = l->sky.to_sun, .cos_cone = l->sky.sun_cos, .radiance = s->sky.sun.radiance};
         sun.tan_cone = tan(s->sky.sun.angular_radius * PI / 180);
         sun.area = 2 * PI * (1 - sun.cos_cone); /* sr */
@@ -168,7 +169,7 @@ void lights_release(struct lights *l)
 /* -------------------------------------------------------------------------------------------------------------- choosing */
 
 /* How high above the surface the highest corner of a rectangle is, and its middle from the point. */
-static double highest_corner(const struct light *l, struct vec3 d, struct vec3 normal, struct vec3 *middle)
+static double highest_corner(const struct scene_light *l, struct vec3 d, struct vec3 normal, struct vec3 *middle)
 {
     const double a = vec3_dot(d, normal), x = l->width * vec3_dot(l->x, normal), y = l->height * vec3_dot(l->y, normal);
     *middle = vec3_add(d, vec3_add(vec3_scale(l->x, l->width / 2), vec3_scale(l->y, l->height / 2)));
@@ -176,7 +177,7 @@ static double highest_corner(const struct light *l, struct vec3 d, struct vec3 n
 }
 
 /* Whether the window lets some of the sun's disk through to the point. */
-static bool window_shows_sun(const struct light *w, const struct light *sun, struct vec3 point)
+static bool window_shows_sun(const struct scene_light *w, const struct scene_light *sun, struct vec3 point)
 {
     const double slope = vec3_dot(sun->n, w->n), t = vec3_dot(vec3_sub(w->corner, point), w->n) / slope;
     if (!(t > 0) || !(t < 1e6)) return false;
@@ -185,7 +186,7 @@ static bool window_shows_sun(const struct light *w, const struct light *sun, str
     return x > -margin && x < w->width + margin && y > -margin && y < w->height + margin;
 }
 
-static double guess(const struct lights *all, const struct light *l, struct vec3 point, struct vec3 normal)
+static double guess(const struct lights *all, const struct scene_light *l, struct vec3 point, struct vec3 normal)
 {
     struct vec3 to = vec3_sub(l->corner, point);
     double seen = 0, facing = 0;
@@ -234,7 +235,7 @@ void lights_chances(struct light_chances *c, const struct lights *l, struct vec3
 }
 
 /* Whether a ray passes through a window; *to is the place from the point. */
-static bool through(const struct light *w, struct vec3 point, struct vec3 direction, struct vec3 *to)
+static bool through(const struct scene_light *w, struct vec3 point, struct vec3 direction, struct vec3 *to)
 {
     const struct vec3 d = vec3_sub(w->corner, point);
     const double t = vec3_dot(d, w->n) / vec3_dot(direction, w->n);
@@ -250,7 +251,7 @@ static double sky_pdf_but(const struct lights *l, const struct light_chances *c,
 {
     double pdf = 0;
     for (int i = 0; i < l->count; i++) {
-        const struct light *light = &l->list[i];
+        const struct scene_light *light = &l->list[i];
         struct vec3 to;
         if (i == but || !(c->chance[i] > 0)) continue;
         if (light->kind == LIGHT_SUN && vec3_dot(direction, light->n) > light->cos_cone)
@@ -268,25 +269,25 @@ double lights_pdf_sky(const struct lights *l, const struct light_chances *c, str
     return sky_pdf_but(l, c, direction, -1);
 }
 
-static double disk_pdf(const struct light *l, struct vec3 to)
+static double disk_pdf(const struct scene_light *l, struct vec3 to)
 {
     const double d = vec3_length(to);
     return d * d * d / (l->area * fabs(vec3_dot(to, l->n)));
 }
 
-double lights_pdf_face(const struct lights *l, const struct light_chances *c, int face, const struct hit *hit,
+double lights_pdf_face(const struct lights *l, const struct light_chances *c, const struct ray_hit *hit,
                        struct vec3 direction)
 {
-    const int i = l->of_face[face];
+    const int i = l->of_face[hit->id];
     if (i < 0 || !(c->chance[i] > 0) || !hit->front) return 0;
-    const struct light *light = &l->list[i];
+    const struct scene_light *light = &l->list[i];
     const struct vec3 to = vec3_scale(direction, vec3_length(vec3_sub(hit->point, c->point)));
     if (light->kind == LIGHT_DISK) return c->chance[i] * disk_pdf(light, to);
     const struct spherical q = spherical_make(light, c->point);
     return c->chance[i] * rectangle_pdf(light, &q, to);
 }
 
-static struct rgb emitted(const struct light *l, double cos_l)
+static struct rgb emitted(const struct scene_light *l, double cos_l)
 {
     if (!(cos_l > 0)) return rgb_grey(0);
     if (l->kind == LIGHT_QUAD) return l->radiance;
@@ -294,9 +295,9 @@ static struct rgb emitted(const struct light *l, double cos_l)
     return l->exponent > 0 ? rgb_scale(l->radiance, pow(cos_l, l->exponent)) : l->radiance;
 }
 
-struct rgb lights_emitted(const struct lights *l, int face, const struct hit *hit, struct vec3 direction)
+struct rgb lights_emitted(const struct lights *l, const struct ray_hit *hit, struct vec3 direction)
 {
-    const int i = l->of_face[face];
+    const int i = l->of_face[hit->id];
     return i < 0 || !hit->front ? rgb_grey(0) : emitted(&l->list[i], -vec3_dot(direction, hit->normal));
 }
 
@@ -309,7 +310,7 @@ bool lights_sample(struct light_sample *s, const struct lights *l, const struct 
         while (i > 0 && !(c->chance[i - 1] > 0)) i--;
         if (i-- == 0) return false;
     }
-    const struct light *light = &l->list[i];
+    const struct scene_light *light = &l->list[i];
     if (light->kind == LIGHT_SUN) {
         const double cos_t = 1 - u[1] * (1 - light->cos_cone);
         s->direction = frame_direction(light->n, sqrt(fast_max(0, 1 - cos_t * cos_t)), cos_t, u[2]);

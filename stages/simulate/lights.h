@@ -14,7 +14,7 @@
 
 enum light_kind { LIGHT_QUAD, LIGHT_DISK, LIGHT_WINDOW, LIGHT_SUN };
 
-struct light {
+struct scene_light {
     enum light_kind kind;
     struct vec3 corner, x, y,
         n; /* quads, windows: unit edges x, y; disks: centre in corner; n: where it shines, of windows indoors */
@@ -25,7 +25,7 @@ struct light {
 };
 
 struct lights {
-    struct light list[MOST_LIGHTS];
+    struct scene_light list[MOST_LIGHTS];
     int count;
     struct sky sky;
     int *of_face; /* which light a face is; -1: none; owned */
@@ -45,7 +45,7 @@ struct light_sample {
 };
 
 /* The geometry must be committed. ST_DATA: more than MOST_LIGHTS lamps and windows. */
-enum status lights_init(struct lights *l, const struct scene *s, const struct geometry *g, struct err *err);
+enum status lights_init(struct lights *l, const struct scene *s, const struct scene_geometry *g, struct err *err);
 void lights_release(struct lights *l);
 
 void lights_chances(struct light_chances *c, const struct lights *l, struct vec3 point, struct vec3 normal);
@@ -54,11 +54,11 @@ void lights_chances(struct light_chances *c, const struct lights *l, struct vec3
 bool lights_sample(struct light_sample *s, const struct lights *l, const struct light_chances *c, const double u[3]);
 
 /* The density with which a lamp's face, or the outdoors, would have been chosen in this direction. */
-double lights_pdf_face(const struct lights *l, const struct light_chances *c, int face, const struct hit *hit,
+double lights_pdf_face(const struct lights *l, const struct light_chances *c, const struct ray_hit *hit,
                        struct vec3 direction);
 double lights_pdf_sky(const struct lights *l, const struct light_chances *c, struct vec3 direction);
 
 /* What a lamp's face emits against a ray that hits it. */
-struct rgb lights_emitted(const struct lights *l, int face, const struct hit *hit, struct vec3 direction);
+struct rgb lights_emitted(const struct lights *l, const struct ray_hit *hit, struct vec3 direction);
 
 #endif

@@ -61,7 +61,8 @@ static void look_for_light(struct path *p, const struct brdf *b, struct vec3 n, 
     const struct rgb f = brdf_eval(b, n, view, s.direction, &pdf);
     if (!(rgb_max(f) > 0)) return;
     p->rays++;
-    if (geometry_blocked(&w->geometry, p->chances.point, s.direction, s.distance - 2 * w->geometry.epsilon)) return;
+    if (ray_scene_blocked(&w->geometry.rays, p->chances.point, s.direction, s.distance - 2 * w->geometry.rays.epsilon))
+        return;
     const struct rgb gain = rgb_multiply(rgb_multiply(p->weight, f), s.radiance);
     p->light = rgb_add(p->light, rgb_scale(gain, 1 / (s.pdf + pdf)));
 }
@@ -81,7 +82,7 @@ static bool scatter(struct path *p, const struct brdf *b, struct vec3 point, str
         if (light_u[3] >= survival) return false;
         p->weight = rgb_scale(p->weight, 1 / survival);
     }
-    const struct vec3 start = vec3_add(point, vec3_scale(n, w->geometry.epsilon));
+    const struct vec3 start = vec3_add(point, vec3_scale(n, w->geometry.rays.epsilon));
     lights_chances(&p->chances, &w->lights, start, n);
     if (!w->only_surface) look_for_light(p, b, n, view, light_u);
 
@@ -93,11 +94,11 @@ static bool scatter(struct path *p, const struct brdf *b, struct vec3 point, str
     return true;
 }
 
-static struct brdf surface_at(const struct world *w, const struct face *f, const struct hit *hit)
+static struct brdf surface_at(const struct world *w, const struct scene_face *f, const struct ray_hit *hit)
 {
-    const struct material *m = &w->scene.materials[f->material];
+    const struct scene_material *m = &w->scene.materials[f->material];
     double u, v;
-    geometry_texture_place(f, hit, &u, &v);
+    geometry_texture_coordinates(f, hit, &u, &v);
     return (struct brdf){m->kind, texture_at(&w->scene.textures[m->texture].texture, f->seed, u, v), m->ks, m->shape,
                          m->gloss};
 }
@@ -106,20 +107,19 @@ static void follow(struct path *p, uint32_t bounce)
 {
     const struct world *w = p->world;
     for (; bounce < HARD_END; bounce++) {
-        struct hit hit;
+        struct ray_hit hit;
         const struct vec3 d = p->ray.direction;
         p->rays++;
-        geometry_hit(&w->geometry, p->ray.from, d, &hit);
-        if (hit.face < 0) {
+        if (!ray_scene_hit(&w->geometry.rays, p->ray.from, d, &hit)) {
             const struct rgb sky = sky_radiance(&w->lights.sky, d);
             if (rgb_max(sky) > 0) meet(p, sky, p->surface_pdf > 0 ? lights_pdf_sky(&w->lights, &p->chances, d) : 0);
             return;
         }
-        const struct face *f = &w->geometry.faces[hit.face];
+        const struct scene_face *f = &w->geometry.faces[hit.id];
         if (f->material < 0) { /* a lamp reflects nothing */
-            const struct rgb lamp = lights_emitted(&w->lights, hit.face, &hit, d);
+            const struct rgb lamp = lights_emitted(&w->lights, &hit, d);
             if (rgb_max(lamp) > 0)
-                meet(p, lamp, p->surface_pdf > 0 ? lights_pdf_face(&w->lights, &p->chances, hit.face, &hit, d) : 0);
+                meet(p, lamp, p->surface_pdf > 0 ? lights_pdf_face(&w->lights, &p->chances, &hit, d) : 0);
             return;
         }
         meet(p, w->scene.materials[f->material].glow, 0);

@@ -12,7 +12,7 @@
 /* A scene ready for rays. */
 struct world {
     struct scene scene;
-    struct geometry geometry;
+    struct scene_geometry geometry;
     struct lights lights;
     int max_bounces;   /* reflections followed; 0: as many as the roulette lets */
     bool only_surface; /* no light is looked for: the slow way, which must give the same */

@@ -119,14 +119,14 @@ static void surface_rows(void *ctx, size_t begin, size_t end, int thread)
             const size_t at = y * (size_t)lens->width + (size_t)x;
             struct vec3 in_camera;
             struct ray ray;
-            struct hit hit;
+            struct ray_hit hit;
             job->depth[at] = 0;
             job->ids[at] = 0;
             if (!lens_ray(lens, x + 0.5, (double)y + 0.5, &in_camera)) continue;
             ray = (struct ray){job->view->centre, mat3_apply(job->view->world_from_cam, in_camera)};
-            if (!geometry_hit(&job->world->geometry, ray.from, ray.direction, &hit)) continue;
+            if (!ray_scene_hit(&job->world->geometry.rays, ray.from, ray.direction, &hit)) continue;
             job->depth[at] = (float)(lens->kind == LENS_PINHOLE ? hit.t * in_camera.z : hit.t);
-            job->ids[at] = (uint32_t)hit.face + 1;
+            job->ids[at] = hit.id + 1;
         }
 }
 

@@ -174,7 +174,7 @@ static enum status size_of(struct reader *r, const char *what, double *value, st
 static enum status read_texture(struct reader *r, struct err *err)
 {
     struct scene *s = r->scene;
-    struct named_texture made = {0};
+    struct scene_texture made = {0};
     struct texture *t = &made.texture;
     int kind = 0;
     void *list = s->textures;
@@ -217,7 +217,7 @@ static enum status read_material(struct reader *r, struct err *err)
 {
     static const char *const words[] = {"lambert", "phong", "ward"};
     struct scene *s = r->scene;
-    struct material made = {0};
+    struct scene_material made = {0};
     int kind = 0;
     void *list = s->materials;
     enum status st = new_name(r, &made.name, err);
@@ -268,7 +268,7 @@ static enum status material_of(struct reader *r, int *material, struct err *err)
     return known(r, "material", next_material, material, err);
 }
 
-static enum status read_wall(struct reader *r, struct item *it, struct err *err)
+static enum status read_wall(struct reader *r, struct scene_item *it, struct err *err)
 {
     enum status st = number(r, "x of the wall's begin", -MOST_METRES, MOST_METRES, &it->x0, err);
     if (!st) st = number(r, "y of the wall's begin", -MOST_METRES, MOST_METRES, &it->y0, err);
@@ -282,7 +282,7 @@ static enum status read_wall(struct reader *r, struct item *it, struct err *err)
     return st;
 }
 
-static enum status read_opening(struct reader *r, struct item *it, struct err *err)
+static enum status read_opening(struct reader *r, struct scene_item *it, struct err *err)
 {
     const struct scene *s = r->scene;
     int wall = 0;
@@ -292,7 +292,7 @@ static enum status read_opening(struct reader *r, struct item *it, struct err *e
     if (!st) st = range(r, "the place along the wall: S0, then a larger S1", &it->s0, &it->s1, err);
     if (!st) st = range(r, "the height: Z0, then a larger Z1", &it->z0, &it->z1, err);
     if (st) return st;
-    const struct item *w = &s->items[wall];
+    const struct scene_item *w = &s->items[wall];
     const double length = hypot(w->x1 - w->x0, w->y1 - w->y0);
     it->wall = wall;
     it->material = w->material;
@@ -303,7 +303,7 @@ static enum status read_opening(struct reader *r, struct item *it, struct err *e
                               length, w->z0, w->z1);
     }
     for (int i = 0; i < s->item_count; i++) {
-        const struct item *o = &s->items[i];
+        const struct scene_item *o = &s->items[i];
         if ((o->kind != ITEM_OPENING && o->kind != ITEM_WINDOW) || o->wall != wall) continue;
         if (it->s0 < o->s1 && o->s0 < it->s1 && it->z0 < o->z1 && o->z0 < it->z1)
             return textfile_error(&r->file, err, it->name, "an opening that does not reach into %s", o->name);
@@ -311,12 +311,12 @@ static enum status read_opening(struct reader *r, struct item *it, struct err *e
     return ST_OK;
 }
 
-static enum status read_turn(struct reader *r, struct item *it, struct err *err)
+static enum status read_turn(struct reader *r, struct scene_item *it, struct err *err)
 {
     return number(r, "an angle in degrees", -360, 360, &it->turn, err);
 }
 
-static enum status read_box(struct reader *r, struct item *it, struct err *err)
+static enum status read_box(struct reader *r, struct scene_item *it, struct err *err)
 {
     static const char *const words[] = {"turn"};
     struct vec3 a, b;
@@ -336,7 +336,7 @@ static enum status read_box(struct reader *r, struct item *it, struct err *err)
     return ST_OK;
 }
 
-static enum status read_edges(struct reader *r, struct item *it, struct err *err)
+static enum status read_edges(struct reader *r, struct scene_item *it, struct err *err)
 {
     enum status st = place(r, "a corner", &it->at, err);
     if (!st) st = place(r, "the first edge", &it->u, err);
@@ -346,14 +346,14 @@ static enum status read_edges(struct reader *r, struct item *it, struct err *err
     return st;
 }
 
-static enum status read_quad(struct reader *r, struct item *it, struct err *err)
+static enum status read_quad(struct reader *r, struct scene_item *it, struct err *err)
 {
     enum status st = read_edges(r, it, err);
     if (!st) st = material_of(r, &it->material, err);
     return st;
 }
 
-static enum status read_room(struct reader *r, struct item *it, struct err *err)
+static enum status read_room(struct reader *r, struct scene_item *it, struct err *err)
 {
     enum status st = number(r, "X0", -MOST_METRES, MOST_METRES, &it->x0, err);
     if (!st) st = number(r, "Y0", -MOST_METRES, MOST_METRES, &it->y0, err);
@@ -365,7 +365,7 @@ static enum status read_room(struct reader *r, struct item *it, struct err *err)
     return st;
 }
 
-static enum status read_mesh(struct reader *r, struct item *it, struct err *err)
+static enum status read_mesh(struct reader *r, struct scene_item *it, struct err *err)
 {
     static const char *const words[] = {"at", "scale", "turn"};
     char *file = NULL, *path = NULL;
@@ -392,7 +392,7 @@ static enum status read_mesh(struct reader *r, struct item *it, struct err *err)
     return st;
 }
 
-static enum status read_lamp(struct reader *r, struct item *it, struct err *err)
+static enum status read_lamp(struct reader *r, struct scene_item *it, struct err *err)
 {
     static const char *const words[] = {"quad", "disk"};
     int kind = 0;
@@ -417,12 +417,12 @@ static enum status read_lamp(struct reader *r, struct item *it, struct err *err)
     return st;
 }
 
-typedef enum status item_reader(struct reader *r, struct item *it, struct err *err);
+typedef enum status item_reader(struct reader *r, struct scene_item *it, struct err *err);
 
 static enum status read_item(struct reader *r, enum item_kind kind, item_reader *read, struct err *err)
 {
     struct scene *s = r->scene;
-    struct item made = {.kind = kind};
+    struct scene_item made = {.kind = kind};
     void *list = s->items;
     enum status st = new_name(r, &made.name, err);
     if (!st && find(s, made.name, next_item) >= 0)

@@ -14,12 +14,12 @@
 #include "common/math/vec.h"
 #include "stages/simulate/texture.h"
 
-struct named_texture {
+struct scene_texture {
     char *name;
     struct texture texture;
 };
 
-struct material {
+struct scene_material {
     char *name;
     enum brdf_kind kind;
     int texture;
@@ -42,7 +42,7 @@ enum item_kind {
 };
 
 /* What stands in the scene, in file order. */
-struct item {
+struct scene_item {
     enum item_kind kind;
     char *name;
     int material, ceiling;                    /* a lamp has none: -1; ceiling: a room's second one */
@@ -58,9 +58,9 @@ struct item {
 };
 
 struct scene {
-    struct named_texture *textures;
-    struct material *materials;
-    struct item *items;
+    struct scene_texture *textures;
+    struct scene_material *materials;
+    struct scene_item *items;
     int texture_count, material_count, item_count;
     struct sky_params sky;
 };

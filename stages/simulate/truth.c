@@ -71,12 +71,12 @@ static bool find_place(const struct irradiance_job *job, size_t index, struct ir
         const double u = rng_uniform(&job->rng, index, 3 * k + 1) * view.lens->width;
         const double v = rng_uniform(&job->rng, index, 3 * k + 2) * view.lens->height;
         struct ray ray;
-        struct hit hit;
+        struct ray_hit hit;
         if (shot->reference || !camera_view_ray(&view, u, v, &ray)) continue;
-        if (!geometry_hit(&job->world->geometry, ray.from, ray.direction, &hit)) continue;
-        if (job->world->geometry.faces[hit.face].material < 0) continue;
-        const struct vec3 off = vec3_add(hit.point, vec3_scale(hit.normal, job->world->geometry.epsilon));
-        if (geometry_blocked(&job->world->geometry, off, hit.normal, 2 * OFF_SURFACE)) continue;
+        if (!ray_scene_hit(&job->world->geometry.rays, ray.from, ray.direction, &hit)) continue;
+        if (job->world->geometry.faces[hit.id].material < 0) continue;
+        const struct vec3 off = vec3_add(hit.point, vec3_scale(hit.normal, job->world->geometry.rays.epsilon));
+        if (ray_scene_blocked(&job->world->geometry.rays, off, hit.normal, 2 * OFF_SURFACE)) continue;
         p->point = vec3_add(hit.point, vec3_scale(hit.normal, OFF_SURFACE));
         p->normal = hit.normal;
         return true;
@@ -135,10 +135,10 @@ struct text_job {
 
 static void print_faces(FILE *to, const struct text_job *job)
 {
-    const struct geometry *g = &job->world->geometry;
+    const struct scene_geometry *g = &job->world->geometry;
     fputs("remodel-faces 1\n# id name area normal\n", to);
     for (int i = 0; i < g->face_count; i++) {
-        const struct face *f = &g->faces[i];
+        const struct scene_face *f = &g->faces[i];
         fprintf(to, "%d %s %.9g %.9g %.9g %.9g\n", i + 1, f->name, f->area, f->normal.x, f->normal.y, f->normal.z);
     }
 }

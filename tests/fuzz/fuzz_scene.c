@@ -13,7 +13,7 @@
 
 static void use_scene(const struct scene *s)
 {
-    struct geometry g;
+    struct scene_geometry g;
     struct err err = ERR_INIT;
     for (int i = 0; i < s->texture_count; i++)
         for (int k = 0; k < 16; k++) {
@@ -26,7 +26,7 @@ static void use_scene(const struct scene *s)
         return;
     }
     for (int i = 0; i < g.face_count; i++) {
-        const struct face *f = &g.faces[i];
+        const struct scene_face *f = &g.faces[i];
         if (!(f->area >= 0) || !isfinite(f->area) || f->item < 0 || f->item >= s->item_count) abort();
         if (f->material >= s->material_count || !(vec3_length(f->normal) < 1.001)) abort();
     }

@@ -81,7 +81,7 @@ static void check_surfaces(const char *out, const struct world *w)
             assert_true(exr_find(&depth, "Z")->f[i] == 0);
             continue;
         }
-        const struct face *f = &w->geometry.faces[id - 1];
+        const struct scene_face *f = &w->geometry.faces[id - 1];
         assert_true(camera_view_ray(&view, i % 60 + 0.5, i / 60 + 0.5, &ray));
         const struct vec3 p = vec3_add(ray.from, vec3_scale(ray.direction, exr_find(&depth, "Z")->f[i]));
         assert_true(fabs(vec3_dot(vec3_sub(p, f->origin), f->normal)) < 1e-5);

@@ -97,7 +97,7 @@ static void meshes(void **state)
     refused(HEAD "mesh x broken.obj m\n", "scene.txt:4: ");
 }
 
-static int find_face(const struct geometry *g, const char *name)
+static int find_face(const struct scene_geometry *g, const char *name)
 {
     for (int i = 0; i < g->face_count; i++)
         if (!strcmp(g->faces[i].name, name)) return i;
@@ -105,7 +105,8 @@ static int find_face(const struct geometry *g, const char *name)
     return -1;
 }
 
-static void check_face(const struct geometry *g, const char *name, int id, double area, double x, double y, double z)
+static void check_face(const struct scene_geometry *g, const char *name, int id, double area, double x, double y,
+                       double z)
 {
     const int i = find_face(g, name);
     if (id) assert_int_equal(i + 1, id);
@@ -125,7 +126,7 @@ static void faces(void **state)
                                 "box b 1 1 0 2 1.5 0.9 m turn 90\nquad q 0 0 1 0 1 0 0 0 2 m\n"
                                 "mesh tri tri.obj m at 1 1 1 scale 2\nlamp l disk 2 2 1.9 0 0 -1 0.1 1 1 1 30\n"
                                 "lamp s quad 3 2 1.9 0 1 0 1 0 0 1 1 1\n");
-    const struct geometry *g = &w.geometry;
+    const struct scene_geometry *g = &w.geometry;
     check_face(g, "r.floor", 1, 12, 0, 0, 1);
     check_face(g, "r.ceiling", 2, 12, 0, 0, -1);
     check_face(g, "w.left", 3, 8 - 1.5 - 1.5, 0, 1, 0);
@@ -160,15 +161,15 @@ static void faces(void **state)
         {{1.3, 0.5, 0.5}, {0, 1, 0}, "b.left", 0.25},
     };
     for (size_t i = 0; i < sizeof rays / sizeof *rays; i++) {
-        struct hit hit;
-        const bool met = geometry_hit(g, rays[i].from, rays[i].direction, &hit);
+        struct ray_hit hit;
+        const bool met = ray_scene_hit(&g->rays, rays[i].from, rays[i].direction, &hit);
         if (met != (rays[i].face != NULL)) fail_msg("ray %zu", i);
         if (!met) continue;
-        assert_string_equal(g->faces[hit.face].name, rays[i].face);
+        assert_string_equal(g->faces[hit.id].name, rays[i].face);
         assert_near(hit.t, rays[i].t, 1e-9);
         assert_true(vec3_dot(hit.normal, rays[i].direction) < 0);
-        assert_true(geometry_blocked(g, rays[i].from, rays[i].direction, 1.01 * rays[i].t));
-        assert_false(geometry_blocked(g, rays[i].from, rays[i].direction, 0.99 * rays[i].t));
+        assert_true(ray_scene_blocked(&g->rays, rays[i].from, rays[i].direction, 1.01 * rays[i].t));
+        assert_false(ray_scene_blocked(&g->rays, rays[i].from, rays[i].direction, 0.99 * rays[i].t));
     }
     assert_int_equal(w.lights.count, 2); /* the window counts only if there is something to see through it */
     world_release(&w);
