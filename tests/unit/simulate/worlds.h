@@ -4,18 +4,9 @@
 
 #include "tests/unit/scratch.h"
 
-#include <math.h>
-
 #include "common/math/numbers.h"
 #include "stages/simulate/path_trace.h"
-
-/* |got - wanted| within a part of the wanted value. */
-#define assert_near(got, wanted, part)                                                                   \
-    do {                                                                                                 \
-        const double got_ = (got), wanted_ = (wanted);                                                   \
-        if (!(fabs(got_ - wanted_) <= (part)*fabs(wanted_)))                                             \
-            fail_msg("%s is %.6g, wanted %.6g within %g %%", #got, got_, wanted_, 100 * (double)(part)); \
-    } while (0)
+#include "tests/unit/common/light/near.h"
 
 static inline struct world world_from(const char *text)
 {
