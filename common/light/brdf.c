@@ -4,10 +4,10 @@
  * of the albedo), its share of the reflected light; the density is that of the mixture. Then:
  *   diffuse  cosine-weighted: density cos / pi
  *   Phong    about the mirror image of the view, density (n + 1) / (2 pi) cos^n
- *   Ward     the half vector, tan(N,H) = alpha sqrt(-ln u) [Ward 1992]; with D the lobe without ks and its square root, the
- *            density of L is D / (cos^3(N,H) (H.L))
- * Phong is the form of [Colburn 2014, 5.4], with the cosine cancelled: f cos = albedo cos / pi + ks (R.V)^n, finite at
- * grazing light. The isotropic Ward model is that of [Ward 1992]. */
+ *   Ward     the half vector, tan(N,H) = alpha sqrt(-ln u) [Ward 1992]; the density of L is
+ *            D / (cos^3(N,H) (H.L)), D = exp(-tan^2(N,H) / alpha^2) / (4 pi alpha^2)
+ * Phong is the form of [Colburn 2014, 5.4], with the cosine cancelled: f cos = albedo cos / pi + ks (R.V)^n, finite
+ * at grazing light. The isotropic Ward model is that of [Ward 1992]. */
 #include "common/light/brdf.h"
 
 #include <math.h>

@@ -1,11 +1,13 @@
-/* noise.h - integer hashes, and repeatable value noise over the plane. Everything is a pure function of its arguments. */
+/* noise.h - integer hashes, and repeatable value noise over the plane. Everything is a pure function of its
+ * arguments. */
 #ifndef REMODEL_LIGHT_NOISE_H
 #define REMODEL_LIGHT_NOISE_H
 
 #include <math.h>
 #include <stdint.h>
 
-/* A bijection on 32 bits in which every input bit changes about half of the output bits: the finaliser of MurmurHash3. */
+/* A bijection on 32 bits in which every input bit changes about half of the output bits: the finaliser of
+ * MurmurHash3. */
 static inline uint32_t noise_mix(uint32_t h)
 {
     h = (h ^ h >> 16) * 0x85ebca6bu;

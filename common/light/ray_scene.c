@@ -24,7 +24,7 @@
 
 enum { GEOMETRY_TRIANGLES, GEOMETRY_DISKS }; /* Embree's geometry ids */
 
-/* ----------------------------------------------------------------------------------------------------------- building */
+/* --------------------------------------------------------------------------------------------------------- building */
 
 static enum status too_many(const char *what, struct err *err)
 {
@@ -153,7 +153,7 @@ void ray_scene_release(struct ray_scene *s)
     *s = (struct ray_scene){0};
 }
 
-/* ------------------------------------------------------------------------------------------------------------ tracing */
+/* ---------------------------------------------------------------------------------------------------------- tracing */
 
 /* What Embree found at t_embree, computed in double precision. */
 static struct ray_hit exact_hit(const struct ray_scene *s, struct vec3 from, struct vec3 direction, unsigned geometry,

@@ -1,9 +1,10 @@
 /* sobol.h - low-discrepancy random numbers for the samples of a pixel.
  *
- * Sobol' points in groups of four dimensions, shuffled and Owen-scrambled by hashing [Burley 2020]. Each number alone
- * is uniform in [0, 1), so that estimates are unbiased for any number of samples; over the samples of a pixel the
- * numbers are stratified, which gives less noise than independent ones. All seeds come from the counter-based
- * generator of common/base/rng.h, keyed by (seed, stage, view, pixel): the numbers do not depend on threads or order. */
+ * Sobol' points in groups of four dimensions, shuffled and Owen-scrambled by hashing [Burley 2020]. Each number
+ * alone is uniform in [0, 1), so that estimates are unbiased for any number of samples; over the samples of a pixel
+ * the numbers are stratified, which gives less noise than independent ones. All seeds come from the counter-based
+ * generator of common/base/rng.h, keyed by (seed, stage, view, pixel): the numbers do not depend on threads or
+ * order. */
 #ifndef REMODEL_SOBOL_H
 #define REMODEL_SOBOL_H
 

@@ -1,7 +1,7 @@
 /* geometry.c - described items as faces, cut into triangles.
  *
- * A wall's side with openings is cut along the lines of all their edges into a grid of rectangles; those inside an opening
- * are left out. The grid has no T-junctions, so there are no cracks between its triangles. */
+ * A wall's side with openings is cut along the lines of all their edges into a grid of rectangles; those inside an
+ * opening are left out. The grid has no T-junctions, so there are no cracks between its triangles. */
 #include "stages/simulate/geometry.h"
 
 #include <math.h>

@@ -1,8 +1,8 @@
 /* geometry.h - the faces of a described scene, and the triangles and disks that rays are traced against.
  *
- * Each planar piece of an item is a face with a name ("wall.left", "box.top"; the item's own name if it has only one) and
- * an id, counted from 1 in file order; a mesh is one face. Faces are visible from both sides. Normals point out of solids,
- * into rooms, along U x V for quads, and in the direction in which a lamp shines. */
+ * Each planar piece of an item is a face with a name ("wall.left", "box.top"; the item's own name if it has only one)
+ * and an id, counted from 1 in file order; a mesh is one face. Faces are visible from both sides. Normals point out of
+ * solids, into rooms, along U x V for quads, and in the direction in which a lamp shines. */
 #ifndef REMODEL_SIMULATE_GEOMETRY_H
 #define REMODEL_SIMULATE_GEOMETRY_H
 

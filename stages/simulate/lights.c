@@ -1,8 +1,13 @@
-/* lights.c - see lights.h.
+/* lights.c - sampling of lamps, windows and the sun.
  *
- * Square lamps and windows are sampled uniformly over the solid angle that they fill (C. Urena, M. Fajardo, A. King, "An
- * Area-Preserving Parametrization for Spherical Rectangles", 2013), very small ones over their area; disks over their
- * area; the sun over its cone. The circle that a spot lights is known exactly, so points outside it never ask for it. */
+ * Square lamps and windows are sampled uniformly over the solid angle that they subtend [Urena 2013]; below
+ * MIN_SOLID_ANGLE, where that loses precision, over their area. Disks are sampled over their area, the sun over its
+ * cone.
+ *
+ * The probability of a light is in proportion to its luminance, times the solid angle of its area seen from the point,
+ * times the cosine at the surface, each roughly estimated. Any positive probability gives the same expectation; the
+ * estimate only sets the noise. Zero is exact: below the horizon, behind a lamp, outside the circle that a spot can
+ * light. */
 #include "stages/simulate/lights.h"
 
 #include <math.h>
@@ -12,12 +17,12 @@
 #include "common/light/frame.h"
 #include "common/math/numbers.h"
 
-#define LEAST_SOLID   1e-4 /* sr: below it a rectangle is sampled by area */
-#define SUN_NO_WINDOW 0.05 /* of its guess, where no window shows the sun */
+#define MIN_SOLID_ANGLE   1e-4 /* sr */
+#define HIDDEN_SUN_FACTOR 0.05 /* of the estimate, if the sun is visible through no window */
 
-/* ------------------------------------------------------------------------------------------------ spherical rectangles */
+/* --------------------------------------------------------------------------------------------- spherical rectangles */
 
-/* A rectangle as a point sees it: x0..x1 and y0..y1 along its edges, at z0 < 0. */
+/* A rectangle in the frame of a point: x0..x1 and y0..y1 along its edges, at z0 < 0; notation of [Urena 2013]. */
 struct spherical {
     struct vec3 z;
     double x0, x1, y0, y1, z0, b0, b1, k, solid;
@@ -45,7 +50,7 @@ static struct spherical spherical_make(const struct scene_light *l, struct vec3 
     return q;
 }
 
-/* From the point to a place on the rectangle. */
+/* The vector from the point to a sample on the rectangle. */
 static struct vec3 spherical_sample(const struct spherical *q, const struct scene_light *l, double u, double v)
 {
     const double a = u * q->solid + q->k, f = (cos(a) * q->b0 - q->b1) / sin(a);
@@ -57,15 +62,15 @@ static struct vec3 spherical_sample(const struct spherical *q, const struct scen
     return vec3_add(vec3_add(vec3_scale(l->x, x), vec3_scale(l->y, y)), vec3_scale(q->z, q->z0));
 }
 
-/* Per solid angle, for a place on it at `to` from the point. */
+/* Density per solid angle; `to`: from the point to the sample. */
 static double rectangle_pdf(const struct scene_light *l, const struct spherical *q, struct vec3 to)
 {
-    if (q->solid > LEAST_SOLID) return 1 / q->solid;
+    if (q->solid > MIN_SOLID_ANGLE) return 1 / q->solid;
     const double d = vec3_length(to);
     return d * d * d / (l->area * fabs(vec3_dot(to, l->n)));
 }
 
-/* ------------------------------------------------------------------------------------------------------------- gathering */
+/* --------------------------------------------------------------------------------------------------------- building */
 
 static struct scene_light rectangle(enum light_kind kind, struct vec3 corner, struct vec3 u, struct vec3 v,
                                     struct rgb radiance)
@@ -93,8 +98,8 @@ static struct scene_light disk(const struct scene_item *it)
     return l;
 }
 
-/* How many of some rays from the middle of a window to one side of its wall meet nothing. */
-static int escapes(const struct ray_scene *rays, struct vec3 middle, struct vec3 n, double depth)
+/* How many of 64 rays from the middle of a window, to one side of its wall, hit nothing. */
+static int count_escaping(const struct ray_scene *rays, struct vec3 middle, struct vec3 n, double depth)
 {
     int count = 0;
     struct vec3 x, y;
@@ -108,7 +113,8 @@ static int escapes(const struct ray_scene *rays, struct vec3 middle, struct vec3
     return count;
 }
 
-/* In the outer face of the wall, so that all of the reveals lies inside. Outdoors is where more rays meet nothing. */
+/* The portal lies in the outer face of the wall, so that the reveals are inside. Outdoors is the side on which more
+ * rays hit nothing. */
 static struct scene_light window(const struct scene_item *it, const struct scene_item *wall, const struct sky *sky,
                                  const struct scene_geometry *g)
 {
@@ -120,8 +126,8 @@ static struct scene_light window(const struct scene_item *it, const struct scene
     const struct vec3 corner = vec3_add(vec3_make(wall->x0, wall->y0, it->z0), vec3_scale(along, it->s0));
     const struct vec3 middle = vec3_add(corner, vec3_scale(vec3_add(u, v), 0.5)), right = vec3_scale(left, -1);
     const struct rgb seen = rgb_add(rgb_scale(sky->panorama.sky, 0.6), rgb_scale(sky->panorama.ground, 0.4));
-    if (escapes(&g->rays, middle, left, depth) >
-        escapes(&g->rays, middle, right, depth)) /* u x v points to the right */
+    if (count_escaping(&g->rays, middle, left, depth) >
+        count_escaping(&g->rays, middle, right, depth)) /* u x v points to the right */
         return rectangle(LIGHT_WINDOW, vec3_add(corner, vec3_scale(left, depth)), u, v, seen);
     return rectangle(LIGHT_WINDOW, vec3_add(vec3_add(corner, u), vec3_scale(right, depth)), vec3_scale(u, -1), v, seen);
 }
@@ -138,8 +144,8 @@ enum status lights_init(struct lights *l, const struct scene *s, const struct sc
         const struct scene_item *it = &s->items[i];
         const bool lamp = it->kind == ITEM_LAMP_QUAD || it->kind == ITEM_LAMP_DISK;
         if (!lamp && (it->kind != ITEM_WINDOW || !(s->sky.has_panorama || s->sky.has_sun))) continue;
-        if (l->count == MOST_LIGHTS - 1) { /* one is left for the sun */
-            st = err_set(err, ST_DATA, "the scene has more than %d lamps and windows; make fewer of them.", l->count);
+        if (l->count == MAX_LIGHTS - 1) { /* the last entry is for the sun */
+            st = err_set(err, ST_DATA, "the scene has more than %d lamps and windows; remove some.", l->count);
             break;
         }
         if (lamp) l->of_face[g->lamp_faces[i]] = l->count;
@@ -166,9 +172,9 @@ void lights_release(struct lights *l)
     *l = (struct lights){0};
 }
 
-/* -------------------------------------------------------------------------------------------------------------- choosing */
+/* --------------------------------------------------------------------------------------------------------- sampling */
 
-/* How high above the surface the highest corner of a rectangle is, and its middle from the point. */
+/* Height of a rectangle's highest corner above the surface. *middle: from the point to the rectangle's middle. */
 static double highest_corner(const struct scene_light *l, struct vec3 d, struct vec3 normal, struct vec3 *middle)
 {
     const double a = vec3_dot(d, normal), x = l->width * vec3_dot(l->x, normal), y = l->height * vec3_dot(l->y, normal);
@@ -176,7 +182,7 @@ static double highest_corner(const struct scene_light *l, struct vec3 d, struct 
     return a + fast_max(0, x) + fast_max(0, y);
 }
 
-/* Whether the window lets some of the sun's disk through to the point. */
+/* Whether part of the sun's disk is visible from the point through the window. */
 static bool window_shows_sun(const struct scene_light *w, const struct scene_light *sun, struct vec3 point)
 {
     const double slope = vec3_dot(sun->n, w->n), t = vec3_dot(vec3_sub(w->corner, point), w->n) / slope;
@@ -186,7 +192,9 @@ static bool window_shows_sun(const struct scene_light *w, const struct scene_lig
     return x > -margin && x < w->width + margin && y > -margin && y < w->height + margin;
 }
 
-static double guess(const struct lights *all, const struct scene_light *l, struct vec3 point, struct vec3 normal)
+/* The estimate that a light's probability is in proportion to; 0: it cannot reach the point. */
+static double expected_light(const struct lights *all, const struct scene_light *l, struct vec3 point,
+                             struct vec3 normal)
 {
     struct vec3 to = vec3_sub(l->corner, point);
     double seen = 0, facing = 0;
@@ -200,7 +208,7 @@ static double guess(const struct lights *all, const struct scene_light *l, struc
             window = true;
             shown = window_shows_sun(&all->list[i], l, point);
         }
-        return l->luminance * l->area * fast_max(0.05, cos_s) * (window && !shown ? SUN_NO_WINDOW : 1);
+        return l->luminance * l->area * fast_max(0.05, cos_s) * (window && !shown ? HIDDEN_SUN_FACTOR : 1);
     }
     case LIGHT_DISK: {
         const double h = -vec3_dot(to, l->n), d2 = vec3_dot(to, to), cos_s = vec3_dot(normal, to);
@@ -226,16 +234,16 @@ static double guess(const struct lights *all, const struct scene_light *l, struc
     return l->luminance * fast_min(seen, 2 * PI) * fast_max(facing, 0.1);
 }
 
-void lights_chances(struct light_chances *c, const struct lights *l, struct vec3 point, struct vec3 normal)
+void lights_select(struct light_selection *c, const struct lights *l, struct vec3 point, struct vec3 normal)
 {
     double sum = 0;
     c->point = point;
-    for (int i = 0; i < l->count; i++) sum += c->chance[i] = guess(l, &l->list[i], point, normal);
-    for (int i = 0; i < l->count; i++) c->chance[i] = sum > 0 ? c->chance[i] / sum : 0;
+    for (int i = 0; i < l->count; i++) sum += c->probability[i] = expected_light(l, &l->list[i], point, normal);
+    for (int i = 0; i < l->count; i++) c->probability[i] = sum > 0 ? c->probability[i] / sum : 0;
 }
 
-/* Whether a ray passes through a window; *to is the place from the point. */
-static bool through(const struct scene_light *w, struct vec3 point, struct vec3 direction, struct vec3 *to)
+/* Whether a ray crosses a window; *to: from the point to the crossing. */
+static bool crosses_window(const struct scene_light *w, struct vec3 point, struct vec3 direction, struct vec3 *to)
 {
     const struct vec3 d = vec3_sub(w->corner, point);
     const double t = vec3_dot(d, w->n) / vec3_dot(direction, w->n);
@@ -246,27 +254,27 @@ static bool through(const struct scene_light *w, struct vec3 point, struct vec3 
     return x >= 0 && x <= w->width && y >= 0 && y <= w->height;
 }
 
-/* Of all lights that show the outdoors but for one (-1: none). */
-static double sky_pdf_but(const struct lights *l, const struct light_chances *c, struct vec3 direction, int but)
+/* Density of all lights that show the outdoors, except one (-1: none). */
+static double sky_pdf_except(const struct lights *l, const struct light_selection *c, struct vec3 direction, int except)
 {
     double pdf = 0;
     for (int i = 0; i < l->count; i++) {
         const struct scene_light *light = &l->list[i];
         struct vec3 to;
-        if (i == but || !(c->chance[i] > 0)) continue;
+        if (i == except || !(c->probability[i] > 0)) continue;
         if (light->kind == LIGHT_SUN && vec3_dot(direction, light->n) > light->cos_cone)
-            pdf += c->chance[i] / light->area;
-        if (light->kind == LIGHT_WINDOW && through(light, c->point, direction, &to)) {
+            pdf += c->probability[i] / light->area;
+        if (light->kind == LIGHT_WINDOW && crosses_window(light, c->point, direction, &to)) {
             const struct spherical q = spherical_make(light, c->point);
-            pdf += c->chance[i] * rectangle_pdf(light, &q, to);
+            pdf += c->probability[i] * rectangle_pdf(light, &q, to);
         }
     }
     return pdf;
 }
 
-double lights_pdf_sky(const struct lights *l, const struct light_chances *c, struct vec3 direction)
+double lights_pdf_sky(const struct lights *l, const struct light_selection *c, struct vec3 direction)
 {
-    return sky_pdf_but(l, c, direction, -1);
+    return sky_pdf_except(l, c, direction, -1);
 }
 
 static double disk_pdf(const struct scene_light *l, struct vec3 to)
@@ -275,16 +283,16 @@ static double disk_pdf(const struct scene_light *l, struct vec3 to)
     return d * d * d / (l->area * fabs(vec3_dot(to, l->n)));
 }
 
-double lights_pdf_face(const struct lights *l, const struct light_chances *c, const struct ray_hit *hit,
+double lights_pdf_face(const struct lights *l, const struct light_selection *c, const struct ray_hit *hit,
                        struct vec3 direction)
 {
     const int i = l->of_face[hit->id];
-    if (i < 0 || !(c->chance[i] > 0) || !hit->front) return 0;
+    if (i < 0 || !(c->probability[i] > 0) || !hit->front) return 0;
     const struct scene_light *light = &l->list[i];
     const struct vec3 to = vec3_scale(direction, vec3_length(vec3_sub(hit->point, c->point)));
-    if (light->kind == LIGHT_DISK) return c->chance[i] * disk_pdf(light, to);
+    if (light->kind == LIGHT_DISK) return c->probability[i] * disk_pdf(light, to);
     const struct spherical q = spherical_make(light, c->point);
-    return c->chance[i] * rectangle_pdf(light, &q, to);
+    return c->probability[i] * rectangle_pdf(light, &q, to);
 }
 
 static struct rgb emitted(const struct scene_light *l, double cos_l)
@@ -301,20 +309,20 @@ struct rgb lights_emitted(const struct lights *l, const struct ray_hit *hit, str
     return i < 0 || !hit->front ? rgb_grey(0) : emitted(&l->list[i], -vec3_dot(direction, hit->normal));
 }
 
-bool lights_sample(struct light_sample *s, const struct lights *l, const struct light_chances *c, const double u[3])
+bool lights_sample(struct light_sample *s, const struct lights *l, const struct light_selection *c, const double u[3])
 {
     int i = 0;
     double left = u[0];
-    while (i < l->count && left >= c->chance[i]) left -= c->chance[i++];
-    if (i == l->count) { /* rounding: the last one that can be chosen */
-        while (i > 0 && !(c->chance[i - 1] > 0)) i--;
+    while (i < l->count && left >= c->probability[i]) left -= c->probability[i++];
+    if (i == l->count) { /* rounding: take the last light that can be chosen */
+        while (i > 0 && !(c->probability[i - 1] > 0)) i--;
         if (i-- == 0) return false;
     }
     const struct scene_light *light = &l->list[i];
     if (light->kind == LIGHT_SUN) {
         const double cos_t = 1 - u[1] * (1 - light->cos_cone);
         s->direction = frame_direction(light->n, sqrt(fast_max(0, 1 - cos_t * cos_t)), cos_t, u[2]);
-        s->pdf = c->chance[i] / light->area + sky_pdf_but(l, c, s->direction, i);
+        s->pdf = c->probability[i] / light->area + sky_pdf_except(l, c, s->direction, i);
     } else {
         struct vec3 to;
         double pdf;
@@ -324,7 +332,7 @@ bool lights_sample(struct light_sample *s, const struct lights *l, const struct 
             pdf = disk_pdf(light, to);
         } else {
             const struct spherical q = spherical_make(light, c->point);
-            if (q.solid > LEAST_SOLID)
+            if (q.solid > MIN_SOLID_ANGLE)
                 to = spherical_sample(&q, light, u[1], u[2]);
             else
                 to = vec3_add(vec3_sub(light->corner, c->point), vec3_add(vec3_scale(light->x, u[1] * light->width),
@@ -333,12 +341,12 @@ bool lights_sample(struct light_sample *s, const struct lights *l, const struct 
         }
         s->distance = vec3_length(to);
         s->direction = vec3_scale(to, 1 / s->distance);
-        s->pdf = c->chance[i] * pdf;
+        s->pdf = c->probability[i] * pdf;
         if (light->kind != LIGHT_WINDOW) {
             s->radiance = emitted(light, -vec3_dot(s->direction, light->n));
             return s->pdf > 0 && rgb_max(s->radiance) > 0;
         }
-        s->pdf += sky_pdf_but(l, c, s->direction, i);
+        s->pdf += sky_pdf_except(l, c, s->direction, i);
     }
     s->distance = INFINITY;
     s->radiance = sky_radiance(&l->sky, s->direction);

@@ -1,7 +1,7 @@
-/* texture.c - see texture.h.
+/* texture.c - procedural textures from cells and noise.
  *
- * Everything is made of cells (a plank, a brick, a book, a poster) whose hash decides their look, and of value noise.
- * Printed things hold marks of many sizes that never repeat, which is what feature matching lives on. */
+ * A surface is divided into cells (planks, bricks, books, posters); a hash of the cell's indices decides its look, and
+ * value noise adds detail. Posters and books carry marks of many sizes that never repeat, for feature matching. */
 #include "stages/simulate/texture.h"
 
 #include <math.h>
@@ -10,7 +10,8 @@
 #include "common/light/noise.h"
 #include "common/math/numbers.h"
 
-#define SOFT 0.0015 /* m: half the width of an edge */
+#define PI_15 3.14159265358979 /* 15 digits: PI would change the last bits of textures */
+#define SOFT  0.0015           /* m: half the width of a softened edge */
 
 /* 1 inside [from, to], 0 outside, soft at both ends. */
 static double band(double from, double to, double x)
@@ -23,7 +24,7 @@ static struct rgb varied(struct rgb c, double by)
     return rgb_make(clamp(c.r * (1 + by), 0, 1), clamp(c.g * (1 + by), 0, 1), clamp(c.b * (1 + by), 0, 1));
 }
 
-/* A saturated or a pale colour of a hash: what paper, cloth and book covers have. */
+/* A colour for paper, cloth or a book cover, saturated or pale, chosen by a hash. */
 static struct rgb dye(uint32_t hash)
 {
     const double hue = 6 * noise_unit(hash, 40), dark = noise_unit(hash, 41), pure = 0.25 + 0.7 * noise_unit(hash, 42);
@@ -41,7 +42,7 @@ static struct rgb checker(const struct texture *t, double u, double v)
     return rgb_mix(t->colour[0], t->colour[1], 0.5 - 0.5 * sa * sb);
 }
 
-/* Planks along u, size wide and 8 to 14 sizes long, each row shifted; grain, rings and knots run along them. */
+/* Planks along u, `size` wide and 8 to 14 times as long, each row shifted, with grain, rings and knots along them. */
 static struct rgb wood(const struct texture *t, uint32_t seed, double u, double v)
 {
     const double wide = t->size[0];
@@ -53,7 +54,7 @@ static struct rgb wood(const struct texture *t, uint32_t seed, double u, double 
 
     const double x = du / wide + 31 * noise_unit(plank, 0), y = dv / wide + 17 * noise_unit(plank, 1);
     const double warp = noise_value(plank, 0.45 * x, 1.3 * y);
-    const double rings = 0.5 + 0.5 * sin(2 * 3.14159265358979 * (3.5 * y + 1.6 * warp + 0.15 * x));
+    const double rings = 0.5 + 0.5 * sin(2 * PI_15 * (3.5 * y + 1.6 * warp + 0.15 * x));
     const double grain = noise_value(plank + 9, 1.8 * x, 26 * y), fine = noise_value(plank + 11, 7 * x, 70 * y);
     const double knot = noise_value(plank + 21, 1.1 * x, 2.2 * y);
     double dark = 0.15 + 0.3 * rings * rings + 0.22 * grain + 0.12 * fine + 0.5 * (noise_unit(plank, 2) - 0.5);
@@ -88,7 +89,7 @@ static struct rgb plaster(const struct texture *t, uint32_t seed, double u, doub
     return varied(t->colour[0], t->size[1] * (1.4 * coarse - 0.8 * specks));
 }
 
-/* How much of a mark of a print covers the place (x, y), in units of the print's smaller side. */
+/* Coverage (0..1) of the point (x, y) by one mark of a print. Lengths are in units of the print's smaller side. */
 static double mark_cover(uint32_t hash, double x, double y, double wide, double high, double soft)
 {
     const double dx = x - wide * noise_unit(hash, 0), dy = y - high * noise_unit(hash, 1);
@@ -115,7 +116,8 @@ static double mark_cover(uint32_t hash, double x, double y, double wide, double 
     return 1 - smooth_step(-soft, soft, d);
 }
 
-/* Rows of blocks as wide as letters and blanks are: 1 where there is ink. x runs along the row, both in letter heights. */
+/* Ink (0..1) of rows of blocks that look like letters from afar. x runs along the row; x and y are in letter
+ * heights. */
 static double lettering(uint32_t seed, double x, double y, double soft)
 {
     const double line = floor(y / 1.7), dy = y - 1.7 * line, cell = floor(x / 0.72), dx = x - 0.72 * cell;
@@ -146,7 +148,7 @@ static struct rgb print(const struct texture *t, uint32_t seed, double u, double
         const double cover = mark_cover(hash, x, y, w, h, soft);
         if (cover > 0) c = rgb_mix(c, varied(dye(hash), 0.3 * noise_value(hash, 24 * x, 24 * y)), cover);
     }
-    /* a block of text on pale ground, low on the sheet, with a headline above it */
+    /* a block of text on a pale ground in the lower part of the sheet, with a headline above it */
     const double left = 0.12 + 0.25 * noise_unit(sheet, 7), text_wide = 0.4 * w, top = 0.32 * h;
     if (x > left && x < left + text_wide && y > 0.1 && y < top) {
         const double letter = y > top - 0.075 ? 0.05 : 0.018;
@@ -156,7 +158,8 @@ static struct rgb print(const struct texture *t, uint32_t seed, double u, double
     return rgb_mix(rgb_grey(0.75), c, paper);
 }
 
-/* Spines side by side, 2 to 6 cm wide, a row as high as the texture, with gaps above the lower ones. */
+/* Spines of books side by side, 2 to 6 cm wide; each row has the height of the texture, with dark gaps above lower
+ * books. */
 static struct rgb books(const struct texture *t, uint32_t seed, double u, double v)
 {
     const double high = t->size[1], pitch = 0.04;
@@ -185,8 +188,7 @@ static struct rgb books(const struct texture *t, uint32_t seed, double u, double
         const double ink = lettering(hash + 2, (y - begin) / letter, (x - wide / 2) / letter + 0.5, SOFT / letter);
         c = rgb_mix(c, noise_unit(hash, 41) < 0.6 ? rgb_make(0.75, 0.7, 0.5) : rgb_grey(0.04), ink);
     }
-    const double rounded =
-        0.55 + 0.45 * sin(3.14159265358979 * clamp(x / wide, 0, 1)); /* a spine darkens at its edges */
+    const double rounded = 0.55 + 0.45 * sin(PI_15 * clamp(x / wide, 0, 1)); /* spines are darker at their edges */
     return rgb_scale(c, rounded * band(0.0015, wide - 0.0015, x));
 }
 

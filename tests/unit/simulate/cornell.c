@@ -68,7 +68,7 @@ static void against_more_samples(void **state)
                   "remodel-shoot 1\nlens p pinhole 48 48 67.2 67.2 24 24\nexposure 1\nsensor 30000 6 1 1\n"
                   "photo a p 278 273 -800  278 273 -799\n");
     assert_ok(shoot_read(&s, scratch, 1, NULL, &err), err);
-    const struct camera_view view = camera_view_make(&s, &s.shots[0]);
+    const struct camera_view view = camera_view_make(&s, &s.photos[0]);
     struct image im[2] = {{0}, {0}};
     for (int i = 0; i < 2; i++) {
         const struct simulate_params params = {.samples = i ? 1024 : 64, .scale = 1, .seed = 1 + i};

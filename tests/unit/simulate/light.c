@@ -67,14 +67,14 @@ static void square_lamp(void **state)
         const struct vec3 p = places[i];
         const double factor = rectangle_factor(0 - p.x, 1 - p.x, 0 - p.y, 0.6 - p.y, 2 - p.z);
         for (int way = 0; way < 2; way++) {
-            w.only_surface = way;
+            w.brdf_sampling_only = way;
             const int paths = way ? 1000000 : 20000;
-            if (way && i > 1) continue; /* too small from there to be met by chance */
+            if (way && i > 1) continue; /* too small from there to be met by probability */
             const struct rgb e = mean_irradiance(&w, p, up, paths, i);
             assert_near(e.r, PI * 10 * factor, 0.005);
             assert_near(e.g, PI * 20 * factor, 0.005);
         }
-        w.only_surface = false; /* what a camera sees of the floor */
+        w.brdf_sampling_only = false; /* what a camera sees of the floor */
         const struct rgb l = mean_radiance(&w, vec3_make(p.x, p.y, 1), vec3_make(0, 0, -1), 20000, i);
         assert_near(l.r, 0.5 * 10 * factor, 0.005);
         assert_near(l.b, 0.1 * 5 * factor, 0.005);
@@ -96,7 +96,7 @@ static void round_lamp(void **state)
         const double d = 0.01 + 0.7 * i, h = 2 / d, r = 0.5 / d, z = 1 + h * h + r * r;
         const double factor = 0.5 * (1 - (1 + h * h - r * r) / sqrt(z * z - 4 * r * r));
         for (int way = 0; way < 2; way++) {
-            w.only_surface = way;
+            w.brdf_sampling_only = way;
             const struct rgb e = mean_irradiance(&w, vec3_make(0.6 * d, -0.8 * d, 0), up, way ? 1000000 : 20000, i);
             assert_near(e.r, PI * 10 * factor, way ? 0.007 : 0.005);
         }
@@ -151,7 +151,7 @@ static void nothing_is_lost_or_made(void **state)
     struct world w =
         world_from("texture white rgb 1 1 1\nmaterial m lambert white\nbox room 0 0 0 2 2 2 m\n" LAMP_FOR_A_CEILING);
     for (int way = 0; way < 2; way++) {
-        w.only_surface = way;
+        w.brdf_sampling_only = way;
         assert_near(mean_radiance(&w, vec3_make(0.2, 0.2, 0.2), vec3_make(0.2, 1, 0.1), 300000, 1).r, 3, 0.005);
         assert_near(mean_radiance(&w, vec3_make(0.2, 0.2, 1.9), vec3_make(-0.2, 0.3, -0.1), 300000, 2).g, 3, 0.005);
     }
@@ -178,7 +178,7 @@ static void both_ways_agree(void **state)
     for (int i = 0; i < 6; i++) {
         double l[2];
         for (int way = 0; way < 2; way++) {
-            w.only_surface = way;
+            w.brdf_sampling_only = way;
             l[way] = rgb_luminance(mean_radiance(&w, eye, vec3_sub(at[i], eye), way ? 200000 : 30000, 10 * i + way));
         }
         assert_near(l[0], l[1], 0.015);

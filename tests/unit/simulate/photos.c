@@ -26,7 +26,7 @@ static void make_all(const char *out, const struct world *w, const struct shoot 
     struct err err = ERR_INIT;
     struct provenance prov = {.stage = "simulate", .version = "0"};
     assert_ok(truth_write(w, s, scratch, out, &params, &prov, &err), err);
-    for (int i = 0; i < s->shot_count; i++) assert_ok(photo_make(w, s, &s->shots[i], out, &params, &prov, &err), err);
+    for (int i = 0; i < s->photo_count; i++) assert_ok(photo_make(w, s, &s->photos[i], out, &params, &prov, &err), err);
 }
 
 static const char *const files[] = {
@@ -71,11 +71,11 @@ static void check_surfaces(const char *out, const struct world *w)
     /* the fisheye's rays by their length end on the face that the id names */
     struct shoot s;
     assert_ok(shoot_read(&s, scratch, 1, NULL, &err), err);
-    const struct camera_view view = camera_view_make(&s, &s.shots[1]);
+    const struct camera_view view = camera_view_make(&s, &s.photos[1]);
     int sky = 0;
     for (int i = 0; i < 60 * 40; i++) {
         const uint32_t id = exr_find(&ids, "id")->u[i];
-        struct ray ray;
+        struct path_ray ray;
         if (!id) {
             sky++;
             assert_true(exr_find(&depth, "Z")->f[i] == 0);
@@ -166,7 +166,7 @@ static void edited(void **state)
     scratch_write("scene-bare.txt", "x");
     assert_ok(shoot_read(&s, scratch, 1, NULL, &err), err);
     snprintf(out, sizeof out, "%s/edited", scratch);
-    assert_ok(photo_make_edited(&w, &s, &s.shots[0], out, "bare", &params, NULL, &err), err);
+    assert_ok(photo_make_edited(&w, &s, &s.photos[0], out, "bare", &params, NULL, &err), err);
     assert_ok(truth_write_edited(&w, scratch, out, "bare", NULL, &err), err);
     const char *const made[] = {"hdr/a.exr", "scene.txt", "faces.txt"};
     for (int i = 0; i < 3; i++) {
@@ -189,7 +189,7 @@ static void in_the_dark(void **state)
     scratch_write("cameras.txt", "remodel-shoot 1\nlens p pinhole 6 4 4 4 3 2\nexposure 1\nsensor 30000 6 60 1\n"
                                  "photo a p 1 1 1 2 2 1\n");
     assert_ok(shoot_read(&s, scratch, 1, NULL, &err), err);
-    assert_true(photo_make(&w, &s, &s.shots[0], scratch, &params, NULL, &err));
+    assert_true(photo_make(&w, &s, &s.photos[0], scratch, &params, NULL, &err));
     assert_err(err, ST_DATA, "no light reaches photo a");
     assert_int_not_equal(access(scratch_path("photos/a.jpg"), R_OK), 0);
     shoot_release(&s);

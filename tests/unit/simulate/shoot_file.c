@@ -57,23 +57,23 @@ static void what_is_read(void **state)
                        "reference-exposure 0.001\nsensor 30000 5 60 7\nquality 80\n"
                        "photo a p 1 2 3  1 2 4\nphoto b f 1 2 3  3 2 3 roll 90\nreference r f 0 0 0 0 1 0\n");
     assert_ok(shoot_read(&s, scratch, 0.5, NULL, &err), err);
-    assert_true(s.lens_count == 2 && s.shot_count == 3 && s.quality == 80 && s.sensor.seed == 7);
+    assert_true(s.lens_count == 2 && s.photo_count == 3 && s.quality == 80 && s.sensor.seed == 7);
     assert_true(s.lenses[0].width == 320 && s.lenses[0].height == 240 && s.lenses[0].fy == 255 &&
                 s.lenses[1].cx == 150);
     assert_near(s.lenses[1].fx, 133.333, 1e-9);
-    const struct exposures *photos = shoot_exposures(&s, &s.shots[0]), *references = shoot_exposures(&s, &s.shots[2]);
+    const struct shoot_exposure_list *photos = shoot_exposures(&s, &s.photos[0]), *references = shoot_exposures(&s, &s.photos[2]);
     assert_true(photos->count == 2 && photos->list[0].f_number == 8 && photos->list[0].filter == 1);
     assert_true(photos->list[1].iso == 200 && photos->list[1].filter == 10);
     assert_true(references->count == 1 && references->list[0].seconds == 0.001);
     assert_true(shoot_find(&s, "b") == 1 && shoot_find(&s, "c") == -1);
 
     /* straight up: y of the world is at the picture's top; so x of the world is at its left */
-    const struct pose *up = &s.shots[0].cam_from_world;
+    const struct pose *up = &s.photos[0].cam_from_world;
     const struct vec3 p = pose_apply(up, vec3_make(1.5, 2, 4)), c = pose_center(up);
     assert_true(fabs(c.x - 1) + fabs(c.y - 2) + fabs(c.z - 3) < 1e-12);
     assert_true(fabs(p.x + 0.5) < 1e-12 && fabs(p.y) < 1e-12 && fabs(p.z - 1) < 1e-12);
     /* along x and turned clockwise by 90 degrees: what is above comes to the left */
-    const struct vec3 above = pose_apply(&s.shots[1].cam_from_world, vec3_make(2, 2, 3.5));
+    const struct vec3 above = pose_apply(&s.photos[1].cam_from_world, vec3_make(2, 2, 3.5));
     assert_true(fabs(above.x + 0.5) < 1e-12 && fabs(above.y) < 1e-12 && fabs(above.z - 1) < 1e-12);
     shoot_release(&s);
     shoot_release(&s);
@@ -82,30 +82,30 @@ static void what_is_read(void **state)
 static void lenses(void **state)
 {
     (void)state;
-    const struct lens pinhole = {NULL, LENS_PINHOLE, 640, 480, 500, 510, 320, 240};
-    const struct lens fish = {NULL, LENS_EQUISOLID, 960, 640, 426.667, 426.667, 480, 320};
+    const struct shoot_lens pinhole = {NULL, SHOOT_PINHOLE, 640, 480, 500, 510, 320, 240};
+    const struct shoot_lens fish = {NULL, SHOOT_EQUISOLID, 960, 640, 426.667, 426.667, 480, 320};
     struct vec3 ray;
     double u, v;
-    assert_true(lens_ray(&pinhole, 320 + 250, 240 - 102, &ray));
+    assert_true(shoot_lens_ray(&pinhole, 320 + 250, 240 - 102, &ray));
     assert_near(ray.x / ray.z, 0.5, 1e-12);
     assert_near(ray.y / ray.z, -0.2, 1e-12);
-    assert_false(lens_project(&pinhole, vec3_make(0, 0, -1), &u, &v));
+    assert_false(shoot_lens_project(&pinhole, vec3_make(0, 0, -1), &u, &v));
     /* r = 2 f sin(theta / 2) */
-    assert_true(lens_ray(&fish, 480 + 2 * 426.667 * sin(0.6), 320, &ray));
+    assert_true(shoot_lens_ray(&fish, 480 + 2 * 426.667 * sin(0.6), 320, &ray));
     assert_near(atan2(ray.x, ray.z), 1.2, 1e-12);
-    assert_false(lens_ray(&fish, 480 + 854, 320, &ray));
+    assert_false(shoot_lens_ray(&fish, 480 + 854, 320, &ray));
 
-    const struct camera series = lens_camera(&fish);
+    const struct camera series = shoot_lens_camera(&fish);
     assert_int_equal(series.model, CAMERA_OPENCV_FISHEYE);
     for (int i = 0; i < 200; i++) {
         const double x = 960 * (i % 17 / 16.0), y = 640 * (i % 13 / 12.0);
-        const struct lens *both[2] = {&pinhole, &fish};
+        const struct shoot_lens *both[2] = {&pinhole, &fish};
         for (int k = 0; k < 2; k++) {
-            assert_true(lens_ray(both[k], x, y, &ray));
+            assert_true(shoot_lens_ray(both[k], x, y, &ray));
             assert_near(vec3_length(ray), 1, 1e-12);
-            assert_true(lens_project(both[k], vec3_scale(ray, 3), &u, &v));
+            assert_true(shoot_lens_project(both[k], vec3_scale(ray, 3), &u, &v));
             assert_true(fabs(u - x) < 1e-9 && fabs(v - y) < 1e-9);
-            const struct camera c = lens_camera(both[k]);
+            const struct camera c = shoot_lens_camera(both[k]);
             assert_true(camera_project(&c, ray, &u, &v));
             assert_true(fabs(u - x) < 1e-4 && fabs(v - y) < 1e-4); /* the series ends */
         }
@@ -118,8 +118,8 @@ static void noise(void **state)
     enum { SIDE = 200 };
     struct image im = {0};
     struct err err = ERR_INIT;
-    const struct sensor sensor = {1000, 8, 50, 1};
-    const struct exposure exposure = {0.02, 4, 200, 2}; /* 0.02 * 2 * 4 / 2: four times f/8, ISO 100 */
+    const struct shoot_sensor sensor = {1000, 8, 50, 1};
+    const struct shoot_exposure exposure = {0.02, 4, 200, 2}; /* 0.02 * 2 * 4 / 2: four times f/8, ISO 100 */
     const struct rng rng = rng_make(1, "test", "sensor");
     unsigned char *rgb = malloc(SIDE * SIDE * 3), *again = malloc(SIDE * SIDE * 3);
     assert_ok(image_init(&im, SIDE, SIDE, 3, &err), err);
@@ -145,8 +145,8 @@ static void noise(void **state)
     assert_memory_equal(rgb, again, SIDE * SIDE * 3);
 
     /* hardly any noise: the curve itself, and white above 1 */
-    const struct sensor quiet = {1e9, 0, 1, 1};
-    const struct exposure plain = {1, 8, 100, 1};
+    const struct shoot_sensor quiet = {1e9, 0, 1, 1};
+    const struct shoot_exposure plain = {1, 8, 100, 1};
     for (int i = 0; i < SIDE * SIDE * 3; i++) im.data[i] = (float)i / 60000;
     sensor_expose(rgb, &im, &quiet, &plain, &rng);
     for (int i = 0; i < SIDE * SIDE * 3; i++)

@@ -38,7 +38,7 @@ static inline struct rgb mean_radiance(const struct world *w, struct vec3 from, 
                                        int seed)
 {
     const struct rng rng = rng_make((uint64_t)seed, "test", "radiance");
-    const struct ray ray = {from, vec3_normalize(direction)};
+    const struct path_ray ray = {from, vec3_normalize(direction)};
     struct rgb sum = {0, 0, 0};
     uint64_t rays = 0;
     for (int done = 0; done < paths; done += 4096) {
