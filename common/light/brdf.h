@@ -31,7 +31,7 @@ struct brdf {
 struct rgb brdf_eval(const struct brdf *b, struct vec3 n, struct vec3 view, struct vec3 light, double *pdf);
 
 /* Chooses a unit direction from three numbers in [0, 1). False: it is below the horizon, where brdf_eval() is zero;
- * such a sample counts as zero. */
+ * count that sample as zero. */
 bool brdf_sample(const struct brdf *b, struct vec3 n, struct vec3 view, const double u[3], struct vec3 *light);
 
 /* The lobe's reflectance towards the viewer who sees most of it: 2 pi ks / (n + 1) for Phong, a maximum over 20 viewing

@@ -1,5 +1,5 @@
-/* fuzz_scene.c - described scenes: any bytes give faces with areas and textures with colours, or a sentence says why not.
- * Bytes that do not begin as a scene does are read as a mesh. */
+/* fuzz_scene.c - scene files: any bytes give faces with finite areas and textures within their bounds, or an error
+ * message. Bytes that do not begin with "remodel" are read as a mesh. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,7 +11,7 @@
 #include "tests/fuzz/fuzz.h"
 #include "tests/fuzz/fuzz_scratch.h"
 
-static void use_scene(const struct scene *s)
+static void check_scene(const struct scene *s)
 {
     struct scene_geometry g;
     struct err err = ERR_INIT;
@@ -33,7 +33,7 @@ static void use_scene(const struct scene *s)
     geometry_release(&g);
 }
 
-static void use_mesh(const char *path)
+static void check_mesh(const char *path)
 {
     struct vec3(*triangles)[3];
     struct err err = ERR_INIT;
@@ -52,11 +52,11 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     FILE *fp = fopen(path, "wb");
     if (!fp || fwrite(data, 1, size, fp) != size || fclose(fp)) abort();
     if (size < 7 || memcmp(data, "remodel", 7)) {
-        use_mesh(path);
+        check_mesh(path);
     } else if (scene_read(&s, folder, "scene.txt", NULL, &err)) {
         if (!err.text[0] || s.items) abort();
     } else {
-        use_scene(&s);
+        check_scene(&s);
         scene_release(&s);
     }
     unlink(path);

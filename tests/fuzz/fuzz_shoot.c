@@ -1,5 +1,5 @@
-/* fuzz_shoot.c - the photographer's file: what is read has lenses whose rays go out and come back, and poses that are
- * rotations; or a sentence says why not. */
+/* fuzz_shoot.c - cameras.txt: any bytes give lenses whose rays project back to their pixels and poses with the given
+ * positions, or an error message. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -9,7 +9,7 @@
 #include "tests/fuzz/fuzz.h"
 #include "tests/fuzz/fuzz_scratch.h"
 
-static void use_lens(const struct shoot_lens *l)
+static void check_lens(const struct shoot_lens *l)
 {
     for (int i = 0; i <= 16; i++) {
         const double x = l->width * (i % 5 / 4.0), y = l->height * (i % 4 / 3.0);
@@ -36,7 +36,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     if (shoot_read(&s, folder, 1, NULL, &err)) {
         if (!err.text[0] || s.photos) abort();
     } else {
-        for (int i = 0; i < s.lens_count; i++) use_lens(&s.lenses[i]);
+        for (int i = 0; i < s.lens_count; i++) check_lens(&s.lenses[i]);
         for (int i = 0; i < s.photo_count; i++) {
             const struct vec3 c = pose_center(&s.photos[i].cam_from_world), at = s.photos[i].at;
             if (!(vec3_length(vec3_sub(c, at)) <= 1e-6 * (1 + vec3_length(at)))) abort();

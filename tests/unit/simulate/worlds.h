@@ -1,4 +1,4 @@
-/* worlds.h - what the tests of simulate share: scenes from text, means of many light paths. */
+/* worlds.h - helpers of the tests of simulate: scenes from text, means over many light paths. */
 #ifndef REMODEL_TESTS_WORLDS_H
 #define REMODEL_TESTS_WORLDS_H
 
@@ -20,7 +20,7 @@ static inline struct world world_from(const char *text)
     return w;
 }
 
-/* The mean of `paths` estimates, in sets of 4096 that are spread evenly. */
+/* The mean of at least `paths` estimates, in stratified sets of 4096. */
 static inline struct rgb mean_irradiance(const struct world *w, struct vec3 point, struct vec3 normal, int paths,
                                          int seed)
 {
