@@ -6,8 +6,9 @@
  *   Phong    about the mirror image of the view, density (n + 1) / (2 pi) cos^n
  *   Ward     the half vector, tan(N,H) = alpha sqrt(-ln u) [Ward 1992]; the density of L is
  *            D / (cos^3(N,H) (H.L)), D = exp(-tan^2(N,H) / alpha^2) / (4 pi alpha^2)
- * Phong is the form of [Colburn 2014, 5.4], with the cosine cancelled: f cos = albedo cos / pi + ks (R.V)^n, finite
- * at grazing light. The isotropic Ward model is that of [Ward 1992]. */
+ * Phong is the form of [Colburn 2014, A.1.10], with the cosine cancelled: f cos = albedo cos / pi + ks (R.V)^n,
+ * finite at grazing light; the diffuse part is albedo / pi in place of the source's k_d. Ward is the isotropic model
+ * of [Ward 1992], as in [Colburn 2014, A.1.11]. */
 #include "common/light/brdf.h"
 
 #include <math.h>

@@ -23,7 +23,7 @@ struct brdf {
     enum brdf_kind kind;
     struct rgb albedo; /* of the diffuse part */
     double ks, shape;  /* Phong: shape is the exponent n; Ward: the roughness alpha */
-    double gloss;      /* brdf_gloss_albedo(kind, ks, shape): sets how often brdf_sample() chooses the lobe */
+    double gloss;      /* brdf_gloss_albedo(kind, ks, shape): how often the lobe is sampled; 0 leaves the lobe out */
 };
 
 /* Returns f cos(N,L). *pdf is the density (1/sr) with which brdf_sample() chooses `light`. Both are zero when the

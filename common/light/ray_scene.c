@@ -155,30 +155,28 @@ void ray_scene_release(struct ray_scene *s)
 
 /* ---------------------------------------------------------------------------------------------------------- tracing */
 
-/* What Embree found at t_embree, computed in double precision. */
-static struct ray_hit exact_hit(const struct ray_scene *s, struct vec3 from, struct vec3 direction, unsigned geometry,
-                                unsigned primitive, double t_embree)
+/* Computes in double precision what Embree found at t_embree. */
+static inline void exact_hit(struct ray_hit *hit, const struct ray_scene *s, struct vec3 from, struct vec3 direction,
+                             unsigned geometry, unsigned primitive, double t_embree)
 {
-    struct ray_hit hit;
     struct vec3 on_plane, n;
     if (geometry == GEOMETRY_DISKS) {
         const struct ray_disk *d = &s->disks[primitive / 2];
-        hit.id = d->id;
+        hit->id = d->id;
         on_plane = d->centre;
         n = d->normal;
     } else {
         const struct ray_triangle *t = &s->triangles[primitive];
-        hit.id = t->id;
+        hit->id = t->id;
         on_plane = t->corner[0];
         n = t->normal;
     }
     const double slope = vec3_dot(direction, n);
-    hit.front = slope < 0;
-    hit.normal = hit.front ? n : vec3_scale(n, -1);
-    hit.t = vec3_dot(vec3_sub(on_plane, from), n) / slope;
-    if (!(fabs(hit.t - t_embree) <= 1e-3 * (1 + t_embree))) hit.t = t_embree; /* grazing, or 0 / 0 */
-    hit.point = vec3_add(from, vec3_scale(direction, hit.t));
-    return hit;
+    hit->front = slope < 0;
+    hit->normal = hit->front ? n : vec3_scale(n, -1);
+    hit->t = vec3_dot(vec3_sub(on_plane, from), n) / slope;
+    if (!(fabs(hit->t - t_embree) <= 1e-3 * (1 + t_embree))) hit->t = t_embree; /* grazing, or 0 / 0 */
+    hit->point = vec3_add(from, vec3_scale(direction, hit->t));
 }
 
 bool ray_scene_hit(const struct ray_scene *s, struct vec3 from, struct vec3 direction, struct ray_hit *hit)
@@ -198,7 +196,7 @@ bool ray_scene_hit(const struct ray_scene *s, struct vec3 from, struct vec3 dire
     rtcInitIntersectContext(&context);
     rtcIntersect1(s->embree, &context, &r);
     if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
-    *hit = exact_hit(s, from, direction, r.hit.geomID, r.hit.primID, (double)r.ray.tfar);
+    exact_hit(hit, s, from, direction, r.hit.geomID, r.hit.primID, (double)r.ray.tfar);
     return true;
 }
 
@@ -256,7 +254,7 @@ unsigned ray_scene_hit_packet(const struct ray_scene *s, const struct vec3 from[
     for (int i = 0; i < RAY_PACKET; i++) {
         if (!valid[i] || r.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
         found |= 1u << i;
-        hit[i] = exact_hit(s, from[i], direction[i], r.hit.geomID[i], r.hit.primID[i], (double)r.ray.tfar[i]);
+        exact_hit(&hit[i], s, from[i], direction[i], r.hit.geomID[i], r.hit.primID[i], (double)r.ray.tfar[i]);
     }
     return found;
 }

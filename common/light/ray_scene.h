@@ -33,8 +33,8 @@ struct ray_scene {
     struct ray_triangle *triangles;
     struct ray_disk *disks;
     int triangle_count, disk_count;
-    /* How far off a surface rays must begin: 4e-6 of the largest coordinate of a triangle, about 70 times the spacing of
-     * single-precision numbers there. Valid as soon as the triangles were added. */
+    /* How far off a surface rays must begin: 4e-6 of the largest coordinate of a triangle, about 70 times the spacing
+     * of single-precision numbers there. Valid as soon as the triangles were added. */
     double epsilon;
     struct RTCDeviceTy *device; /* Embree's; NULL before ray_scene_commit() */
     struct RTCSceneTy *embree;
@@ -47,7 +47,8 @@ struct ray_hit {
     bool front; /* hit from the side that the triangle's or the disk's own normal points to */
 };
 
-/* Adds a surface; before ray_scene_commit(). `normal` has any length but 0. ST_DATA: more than 2^23 triangles or disks; ST_NOMEM. */
+/* Adds a surface; before ray_scene_commit(). `normal` has any length but 0. ST_DATA: more than 2^23 triangles or disks;
+ * ST_NOMEM. */
 enum status ray_scene_add_triangle(struct ray_scene *s, const struct vec3 corner[3], uint32_t id, struct err *err);
 enum status ray_scene_add_disk(struct ray_scene *s, struct vec3 centre, struct vec3 normal, double radius, uint32_t id,
                                struct err *err);

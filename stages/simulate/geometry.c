@@ -297,8 +297,6 @@ enum status geometry_init(struct scene_geometry *g, const struct scene *s, struc
     return ST_OK;
 }
 
-enum status geometry_commit(struct scene_geometry *g, struct err *err) { return ray_scene_commit(&g->rays, err); }
-
 void geometry_release(struct scene_geometry *g)
 {
     if (!g) return;

@@ -29,10 +29,9 @@ struct scene_geometry {
     struct ray_scene rays; /* ids are indices of faces */
 };
 
-/* Builds the faces. The scene must outlive the geometry. On failure nothing has to be released. */
+/* Builds the faces and adds them to g->rays, which the caller commits before tracing. The scene must outlive the
+ * geometry. On failure nothing has to be released. */
 enum status geometry_init(struct scene_geometry *g, const struct scene *s, struct err *err);
-/* Prepares g->rays for tracing; not needed to list the faces. */
-enum status geometry_commit(struct scene_geometry *g, struct err *err);
 void geometry_release(struct scene_geometry *g);
 
 /* Texture coordinates (m) of a point on a face. */

@@ -45,7 +45,7 @@ struct light_sample {
     struct rgb radiance;   /* if nothing is in the way */
 };
 
-/* The geometry must be committed. ST_DATA: more than MAX_LIGHTS - 1 lamps and windows; ST_NOMEM. */
+/* g->rays must be committed. ST_DATA: more than MAX_LIGHTS - 1 lamps and windows; ST_NOMEM. */
 enum status lights_init(struct lights *l, const struct scene *s, const struct scene_geometry *g, struct err *err);
 void lights_release(struct lights *l);
 

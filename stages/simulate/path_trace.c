@@ -21,7 +21,7 @@ enum status world_read(struct world *w, const char *folder, const char *file, st
     *w = (struct world){0};
     enum status st = scene_read(&w->scene, folder, file, prov, err);
     if (!st) st = geometry_init(&w->geometry, &w->scene, err);
-    if (!st) st = geometry_commit(&w->geometry, err);
+    if (!st) st = ray_scene_commit(&w->geometry.rays, err);
     if (!st) st = lights_init(&w->lights, &w->scene, &w->geometry, err);
     if (st) world_release(w);
     return st;

@@ -38,7 +38,6 @@ enum item_kind {
     ITEM_ROOM,
     ITEM_LAMP_QUAD,
     ITEM_LAMP_DISK,
-    ITEM_KINDS,
 };
 
 /* An object of the scene; items keep the order of the file. */
