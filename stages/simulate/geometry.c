@@ -1,40 +1,23 @@
-/* geometry.c - see geometry.h.
+/* geometry.c - described items as faces, cut into triangles.
  *
- * A wall's side with openings is cut along all their edges into a grid of rectangles, of which those inside an opening
- * are left out: no T junctions, so no cracks. Embree finds the triangle in single precision; the point is then taken on
- * the triangle's plane in double precision, so that depth is exact. */
+ * A wall's side with openings is cut along the lines of all their edges into a grid of rectangles; those inside an
+ * opening are left out. The grid has no T-junctions, so there are no cracks between its triangles. */
 #include "stages/simulate/geometry.h"
 
 #include <math.h>
-#include <stdarg.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/base/array.h"
 #include "common/base/sort.h"
-#include "stages/simulate/noise.h"
-
-#define MOST_TRIANGLES (1 << 23)
-#define PI             3.14159265358979323846
-
-/* -------------------------------------------------------------------------------------------------------------- faces */
-
-/* Doubles an array when `count` fills it: the array is full at 0 and at powers of two. */
-static enum status grow(void **list, int count, size_t size, const char *what, struct err *err)
-{
-    if (count & (count - 1)) return ST_OK;
-    if (count >= MOST_TRIANGLES)
-        return err_set(err, ST_DATA, "the scene has more than %d %s; make it simpler.", count, what);
-    const size_t bytes = (size_t)(count ? 2 * count : 1) * size;
-    void *grown = realloc(*list, bytes);
-    if (!grown) return err_nomem(err, what, bytes);
-    *list = grown;
-    return ST_OK;
-}
+#include "common/light/frame.h"
+#include "common/light/noise.h"
+#include "common/math/numbers.h"
 
 struct builder {
-    struct geometry *g;
+    struct scene_geometry *g;
     const struct scene *scene;
     int item;
 };
@@ -46,19 +29,17 @@ static uint32_t name_seed(const char *name)
     return seed;
 }
 
-/* A face without triangles yet; `side` NULL: it is called as its item. */
+/* Adds a face without triangles. `side` NULL: it is named like its item. */
 static enum status add_face(struct builder *b, const char *side, int material, struct vec3 origin, struct vec3 u,
                             struct vec3 v, struct err *err)
 {
-    struct geometry *g = b->g;
+    struct scene_geometry *g = b->g;
     const char *item = b->scene->items[b->item].name;
-    void *list = g->faces;
-    enum status st = grow(&list, g->face_count, sizeof *g->faces, "faces", err);
-    g->faces = list;
-    if (st) return st;
     char *name = NULL;
+    enum status st = array_append(&g->faces, (size_t)g->face_count, sizeof *g->faces, "faces", err);
+    if (st) return st;
     if (asprintf(&name, side ? "%s.%s" : "%s", item, side) < 0) return err_nomem(err, "a face's name", strlen(item));
-    g->faces[g->face_count++] = (struct face){
+    g->faces[g->face_count++] = (struct scene_face){
         .name = name,
         .item = b->item,
         .material = material,
@@ -74,15 +55,11 @@ static enum status add_face(struct builder *b, const char *side, int material, s
 /* Adds a triangle to the last face. */
 static enum status add_triangle(struct builder *b, struct vec3 p, struct vec3 q, struct vec3 r, struct err *err)
 {
-    struct geometry *g = b->g;
-    void *list = g->triangles;
-    enum status st = grow(&list, g->triangle_count, sizeof *g->triangles, "triangles", err);
-    g->triangles = list;
-    if (st) return st;
-    const struct vec3 n = vec3_cross(vec3_sub(q, p), vec3_sub(r, p));
-    g->triangles[g->triangle_count++] = (struct triangle){{p, q, r}, vec3_normalize(n), g->face_count - 1};
-    g->faces[g->face_count - 1].area += vec3_length(n) / 2;
-    return ST_OK;
+    struct scene_geometry *g = b->g;
+    const struct vec3 corner[3] = {p, q, r};
+    const int face = g->face_count - 1;
+    g->faces[face].area += vec3_length(vec3_cross(vec3_sub(q, p), vec3_sub(r, p))) / 2;
+    return ray_scene_add_triangle(&g->rays, corner, (uint32_t)face, err);
 }
 
 static enum status add_parallelogram(struct builder *b, struct vec3 p, struct vec3 u, struct vec3 v, struct err *err)
@@ -99,7 +76,7 @@ static enum status add_quad(struct builder *b, const char *side, int material, s
     return st ? st : add_parallelogram(b, p, u, v, err);
 }
 
-void wall_axes(const struct item *wall, struct vec3 *along, struct vec3 *left, double *length)
+void wall_axes(const struct scene_item *wall, struct vec3 *along, struct vec3 *left, double *length)
 {
     const struct vec3 line = {wall->x1 - wall->x0, wall->y1 - wall->y0, 0};
     *length = vec3_length(line);
@@ -107,7 +84,7 @@ void wall_axes(const struct item *wall, struct vec3 *along, struct vec3 *left, d
     *left = vec3_make(-along->y, along->x, 0);
 }
 
-/* Sorted, without repetitions, without what is outside [from, to]. */
+/* Sorts cuts, and removes duplicates and those outside [from, to]; returns how many remain. */
 static int tidy_cuts(double *cuts, int count, double from, double to)
 {
     int kept = 0;
@@ -117,16 +94,16 @@ static int tidy_cuts(double *cuts, int count, double from, double to)
     return kept;
 }
 
-static bool is_opening_of(const struct item *o, int wall)
+static bool is_opening_of(const struct scene_item *o, int wall)
 {
     return (o->kind == ITEM_OPENING || o->kind == ITEM_WINDOW) && o->wall == wall;
 }
 
-/* The left (side 1) or right (-1) face of a wall, its openings left out. */
+/* The left (side 1) or right (-1) face of a wall, with holes at its openings. */
 static enum status add_wall_side(struct builder *b, int side, struct err *err)
 {
     const struct scene *s = b->scene;
-    const struct item *w = &s->items[b->item];
+    const struct scene_item *w = &s->items[b->item];
     struct vec3 along, left;
     double length;
     int openings = 0, s_count = 0, z_count = 0;
@@ -139,7 +116,7 @@ static enum status add_wall_side(struct builder *b, int side, struct err *err)
     s_cuts[s_count++] = 0, s_cuts[s_count++] = length;
     z_cuts[z_count++] = w->z0, z_cuts[z_count++] = w->z1;
     for (int i = 0; i < s->item_count; i++) {
-        const struct item *o = &s->items[i];
+        const struct scene_item *o = &s->items[i];
         if (!is_opening_of(o, b->item)) continue;
         s_cuts[s_count++] = o->s0, s_cuts[s_count++] = fmin(o->s1, length);
         z_cuts[z_count++] = o->z0, z_cuts[z_count++] = o->z1;
@@ -147,7 +124,7 @@ static enum status add_wall_side(struct builder *b, int side, struct err *err)
     s_count = tidy_cuts(s_cuts, s_count, 0, length);
     z_count = tidy_cuts(z_cuts, z_count, w->z0, w->z1);
 
-    /* u to the right for who looks at the face, so that it runs against the wall's direction on its left side */
+    /* u points right as seen from outside, so on the left side it runs against the wall's direction */
     const struct vec3 foot = vec3_add(vec3_make(w->x0, w->y0, w->z0), vec3_scale(left, side * w->thickness / 2));
     const struct vec3 up = {0, 0, 1}, u = vec3_scale(along, -side);
     const struct vec3 origin = side > 0 ? vec3_add(foot, vec3_scale(along, length)) : foot;
@@ -157,7 +134,7 @@ static enum status add_wall_side(struct builder *b, int side, struct err *err)
             const double sm = (s_cuts[i] + s_cuts[i + 1]) / 2, zm = (z_cuts[j] + z_cuts[j + 1]) / 2;
             bool hole = false;
             for (int k = 0; k < s->item_count && !hole; k++) {
-                const struct item *o = &s->items[k];
+                const struct scene_item *o = &s->items[k];
                 hole = is_opening_of(o, b->item) && sm > o->s0 && sm < o->s1 && zm > o->z0 && zm < o->z1;
             }
             if (hole) continue;
@@ -171,7 +148,7 @@ static enum status add_wall_side(struct builder *b, int side, struct err *err)
 
 static enum status add_wall(struct builder *b, struct err *err)
 {
-    const struct item *w = &b->scene->items[b->item];
+    const struct scene_item *w = &b->scene->items[b->item];
     struct vec3 along, left;
     double length;
     wall_axes(w, &along, &left, &length);
@@ -188,10 +165,10 @@ static enum status add_wall(struct builder *b, struct err *err)
     return st;
 }
 
-/* The reveals of an opening, but for those that would lie on the wall's own edge. */
+/* The reveals of an opening, except those that would lie on the wall's own edge. */
 static enum status add_reveals(struct builder *b, struct err *err)
 {
-    const struct item *o = &b->scene->items[b->item], *w = &b->scene->items[o->wall];
+    const struct scene_item *o = &b->scene->items[b->item], *w = &b->scene->items[o->wall];
     struct vec3 along, left;
     double length;
     wall_axes(w, &along, &left, &length);
@@ -210,14 +187,14 @@ static enum status add_reveals(struct builder *b, struct err *err)
 
 static struct vec3 turned(struct vec3 p, double degrees)
 {
-    const double a = degrees * (PI / 180), c = cos(a), s = sin(a);
+    const double a = degrees * DEGREE, c = cos(a), s = sin(a);
     return vec3_make(c * p.x - s * p.y, s * p.x + c * p.y, p.z);
 }
 
 static enum status add_box(struct builder *b, struct err *err)
 {
     static const char *const sides[6] = {"left", "right", "front", "back", "bottom", "top"};
-    const struct item *it = &b->scene->items[b->item];
+    const struct scene_item *it = &b->scene->items[b->item];
     const struct vec3 middle = {(it->x0 + it->x1) / 2, (it->y0 + it->y1) / 2, it->z0};
     const double wx = it->x1 - it->x0, wy = it->y1 - it->y0, wz = it->z1 - it->z0;
     const struct vec3 x = {wx, 0, 0}, y = {0, wy, 0}, z = {0, 0, wz}, low = {-wx / 2, -wy / 2, 0};
@@ -239,7 +216,7 @@ static enum status add_box(struct builder *b, struct err *err)
 
 static enum status add_room(struct builder *b, struct err *err)
 {
-    const struct item *it = &b->scene->items[b->item];
+    const struct scene_item *it = &b->scene->items[b->item];
     const struct vec3 x = {it->x1 - it->x0, 0, 0}, y = {0, it->y1 - it->y0, 0};
     enum status st = add_quad(b, "floor", it->material, vec3_make(it->x0, it->y0, it->z0), x, y, err);
     return st ? st : add_quad(b, "ceiling", it->ceiling, vec3_make(it->x0, it->y0, it->z1), y, x, err);
@@ -247,7 +224,7 @@ static enum status add_room(struct builder *b, struct err *err)
 
 static enum status add_mesh(struct builder *b, struct err *err)
 {
-    const struct item *it = &b->scene->items[b->item];
+    const struct scene_item *it = &b->scene->items[b->item];
     struct vec3 sum = {0, 0, 0};
     enum status st = add_face(b, NULL, it->material, it->at, vec3_make(1, 0, 0), vec3_make(0, 1, 0), err);
     for (int i = 0; !st && i < it->triangle_count; i++) {
@@ -260,7 +237,7 @@ static enum status add_mesh(struct builder *b, struct err *err)
         st = add_triangle(b, p[0], p[1], p[2], err);
     }
     if (!st) {
-        struct face *f = &b->g->faces[b->g->face_count - 1];
+        struct scene_face *f = &b->g->faces[b->g->face_count - 1];
         f->mesh = true;
         f->normal = vec3_normalize(sum);
     }
@@ -269,23 +246,20 @@ static enum status add_mesh(struct builder *b, struct err *err)
 
 static enum status add_disk(struct builder *b, struct err *err)
 {
-    const struct item *it = &b->scene->items[b->item];
-    struct geometry *g = b->g;
+    const struct scene_item *it = &b->scene->items[b->item];
+    struct scene_geometry *g = b->g;
     struct vec3 x, y;
     frame_from_normal(vec3_normalize(it->u), &x, &y);
     enum status st = add_face(b, NULL, -1, it->at, x, y, err);
-    void *list = g->disks;
-    if (!st) st = grow(&list, g->disk_count, sizeof *g->disks, "lamps", err);
-    g->disks = list;
     if (st) return st;
-    g->faces[g->face_count - 1].area = PI * it->radius * it->radius;
-    g->disks[g->disk_count++] = (struct disk_face){it->at, it->radius, g->face_count - 1};
-    return ST_OK;
+    const int face = g->face_count - 1;
+    g->faces[face].area = PI * it->radius * it->radius;
+    return ray_scene_add_disk(&g->rays, it->at, it->u, it->radius, (uint32_t)face, err);
 }
 
 static enum status add_item(struct builder *b, struct err *err)
 {
-    const struct item *it = &b->scene->items[b->item];
+    const struct scene_item *it = &b->scene->items[b->item];
     switch (it->kind) {
     case ITEM_WALL:
         return add_wall(b, err);
@@ -305,11 +279,11 @@ static enum status add_item(struct builder *b, struct err *err)
     }
 }
 
-enum status geometry_init(struct geometry *g, const struct scene *s, struct err *err)
+enum status geometry_init(struct scene_geometry *g, const struct scene *s, struct err *err)
 {
     struct builder b = {g, s, 0};
     enum status st = ST_OK;
-    *g = (struct geometry){0};
+    *g = (struct scene_geometry){0};
     if (!(g->lamp_faces = malloc((size_t)(s->item_count + 1) * sizeof *g->lamp_faces)))
         st = err_nomem(err, "lamps", (size_t)s->item_count * sizeof *g->lamp_faces);
     for (; !st && b.item < s->item_count; b.item++) {
@@ -320,174 +294,27 @@ enum status geometry_init(struct geometry *g, const struct scene *s, struct err 
         geometry_release(g);
         return st;
     }
-    double farthest = 0;
-    for (int i = 0; i < 3 * g->triangle_count; i++) {
-        const struct vec3 p = g->triangles[i / 3].corner[i % 3];
-        farthest = fmax(farthest, fmax(fabs(p.x), fmax(fabs(p.y), fabs(p.z))));
-    }
-    g->epsilon = 4e-6 * farthest; /* single precision resolves 6e-8 of the largest coordinate */
     return ST_OK;
 }
 
-/* ------------------------------------------------------------------------------------------------------------- tracing */
-
-enum { GEOMETRY_TRIANGLES, GEOMETRY_DISKS };
-
-/* Embree asks whether the corner of a round lamp's square is lamp. Rays are traced one by one, so N is 1 and what it
- * gives is a plain ray and hit. */
-static void disk_filter(const struct RTCFilterFunctionNArguments *args)
-{
-    const struct disk_face *disks = args->geometryUserPtr;
-    const struct RTCRay *ray = (const struct RTCRay *)args->ray;
-    const struct disk_face *d = &disks[((const struct RTCHit *)args->hit)->primID / 2];
-    const double t = (double)ray->tfar;
-    const struct vec3 p = {(double)ray->org_x + t * (double)ray->dir_x, (double)ray->org_y + t * (double)ray->dir_y,
-                           (double)ray->org_z + t * (double)ray->dir_z};
-    if (vec3_length(vec3_sub(p, d->centre)) > d->radius) args->valid[0] = 0;
-}
-
-static float *put_vertex(float *v, struct vec3 p)
-{
-    *v++ = (float)p.x, *v++ = (float)p.y, *v++ = (float)p.z;
-    return v;
-}
-
-/* All triangles, or two for every round lamp, as an Embree geometry. */
-static enum status attach(struct geometry *g, unsigned id, struct err *err)
-{
-    const size_t count = id == GEOMETRY_DISKS ? 2 * (size_t)g->disk_count : (size_t)g->triangle_count;
-    if (!count) return ST_OK;
-    RTCGeometry made = rtcNewGeometry(g->device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    float *v = rtcSetNewGeometryBuffer(made, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof *v, 3 * count);
-    uint32_t *index =
-        rtcSetNewGeometryBuffer(made, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof *index, count);
-    const bool made_room = v && index;
-    for (size_t i = 0; made_room && i < 3 * count; i++) {
-        index[i] = (uint32_t)i;
-        if (id == GEOMETRY_TRIANGLES) v = put_vertex(v, g->triangles[i / 3].corner[i % 3]);
-    }
-    for (int i = 0; made_room && id == GEOMETRY_DISKS && i < g->disk_count; i++) {
-        const struct disk_face *d = &g->disks[i];
-        const struct vec3 x = vec3_scale(g->faces[d->face].u, 1.00001 * d->radius);
-        const struct vec3 y = vec3_scale(g->faces[d->face].v, 1.00001 * d->radius);
-        const struct vec3 a = vec3_add(x, y), b = vec3_sub(x, y), c = d->centre;
-        const struct vec3 corners[6] = {vec3_sub(c, a), vec3_add(c, b), vec3_add(c, a),
-                                        vec3_sub(c, a), vec3_add(c, a), vec3_sub(c, b)};
-        for (int k = 0; k < 6; k++) v = put_vertex(v, corners[k]);
-    }
-    if (made_room && id == GEOMETRY_DISKS) {
-        rtcSetGeometryUserData(made, g->disks);
-        rtcSetGeometryIntersectFilterFunction(made, disk_filter);
-        rtcSetGeometryOccludedFilterFunction(made, disk_filter);
-    }
-    if (made_room) {
-        rtcCommitGeometry(made);
-        rtcAttachGeometryByID(g->scene, made, id);
-    }
-    rtcReleaseGeometry(made);
-    return made_room ? ST_OK : err_nomem(err, "a scene for ray tracing", count * 48);
-}
-
-enum status geometry_commit(struct geometry *g, struct err *err)
-{
-    /* one thread builds, and its instructions are named, so that the tree, and with it which of two faces in one place
-       is hit, is the same on every processor */
-    g->device = rtcNewDevice("threads=1,isa=avx2");
-    if (!g->device)
-        return err_set(err, ST_INTERNAL, "Embree does not start (error %d); a processor with AVX2 is needed.",
-                       (int)rtcGetDeviceError(NULL));
-    g->scene = rtcNewScene(g->device);
-    rtcSetSceneFlags(g->scene, RTC_SCENE_FLAG_ROBUST);
-    enum status st = attach(g, GEOMETRY_TRIANGLES, err);
-    if (!st) st = attach(g, GEOMETRY_DISKS, err);
-    if (st) return st;
-    rtcCommitScene(g->scene);
-    const enum RTCError error = rtcGetDeviceError(g->device);
-    if (error != RTC_ERROR_NONE)
-        st = err_set(err, ST_INTERNAL, "Embree could not build the scene (error %d).", (int)error);
-    return st;
-}
-
-void geometry_release(struct geometry *g)
+void geometry_release(struct scene_geometry *g)
 {
     if (!g) return;
-    if (g->scene) rtcReleaseScene(g->scene);
-    if (g->device) rtcReleaseDevice(g->device);
+    ray_scene_release(&g->rays);
     for (int i = 0; i < g->face_count; i++) free(g->faces[i].name);
     free(g->faces);
-    free(g->triangles);
-    free(g->disks);
     free(g->lamp_faces);
-    *g = (struct geometry){0};
+    *g = (struct scene_geometry){0};
 }
 
-bool geometry_hit(const struct geometry *g, struct vec3 from, struct vec3 direction, struct hit *hit)
-{
-    struct RTCIntersectContext context;
-    struct RTCRayHit r = {
-        .ray = {.org_x = (float)from.x,
-                .org_y = (float)from.y,
-                .org_z = (float)from.z,
-                .dir_x = (float)direction.x,
-                .dir_y = (float)direction.y,
-                .dir_z = (float)direction.z,
-                .tfar = INFINITY,
-                .mask = UINT32_MAX},
-        .hit = {.geomID = RTC_INVALID_GEOMETRY_ID, .instID = {RTC_INVALID_GEOMETRY_ID}},
-    };
-    rtcInitIntersectContext(&context);
-    rtcIntersect1(g->scene, &context, &r);
-    hit->face = -1;
-    if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
-
-    struct vec3 anchor, n;
-    if (r.hit.geomID == GEOMETRY_DISKS) {
-        const struct disk_face *d = &g->disks[r.hit.primID / 2];
-        hit->face = d->face;
-        anchor = d->centre;
-        n = g->faces[d->face].normal;
-    } else {
-        const struct triangle *t = &g->triangles[r.hit.primID];
-        hit->face = t->face;
-        anchor = t->corner[0];
-        n = t->normal;
-    }
-    const double slope = vec3_dot(direction, n);
-    hit->front = slope < 0;
-    hit->normal = hit->front ? n : vec3_scale(n, -1);
-    hit->t = vec3_dot(vec3_sub(anchor, from), n) / slope;
-    /* seen along its plane a face has no one distance: Embree's is kept */
-    if (!(fabs(hit->t - (double)r.ray.tfar) <= 1e-3 * (1 + (double)r.ray.tfar))) hit->t = (double)r.ray.tfar;
-    hit->point = vec3_add(from, vec3_scale(direction, hit->t));
-    return true;
-}
-
-bool geometry_blocked(const struct geometry *g, struct vec3 from, struct vec3 direction, double distance)
-{
-    struct RTCIntersectContext context;
-    struct RTCRay r = {
-        .org_x = (float)from.x,
-        .org_y = (float)from.y,
-        .org_z = (float)from.z,
-        .dir_x = (float)direction.x,
-        .dir_y = (float)direction.y,
-        .dir_z = (float)direction.z,
-        .tfar = (float)distance,
-        .mask = UINT32_MAX,
-    };
-    rtcInitIntersectContext(&context);
-    rtcOccluded1(g->scene, &context, &r);
-    return r.tfar < 0;
-}
-
-void geometry_texture_place(const struct face *f, const struct hit *hit, double *u, double *v)
+void geometry_texture_coordinates(const struct scene_face *f, const struct ray_hit *hit, double *u, double *v)
 {
     const struct vec3 p = vec3_sub(hit->point, f->origin);
     const struct vec3 n = hit->normal;
     if (!f->mesh) {
         *u = vec3_dot(p, f->u);
         *v = vec3_dot(p, f->v);
-    } else if (fabs(n.z) >= fabs(n.x) && fabs(n.z) >= fabs(n.y)) { /* a mesh: along the axis it looks to most */
+    } else if (fabs(n.z) >= fabs(n.x) && fabs(n.z) >= fabs(n.y)) { /* a mesh: projected along the normal's main axis */
         *u = p.x, *v = p.y;
     } else {
         *u = fabs(n.x) > fabs(n.y) ? p.y : p.x;

@@ -1,70 +1,43 @@
-/* geometry.h - the faces of a scene, as triangles that rays can be traced against (Embree).
+/* geometry.h - the faces of a described scene, and the triangles and disks that rays are traced against.
  *
- * Every planar piece of an item is a face with a name ("wall.left", "box.top"; the item's own name where it has but one)
- * and an id from 1 in file order; a mesh is one face. Faces are seen from both sides; their normals point out of solids,
- * into rooms, along U x V for quads, and where a lamp shines. */
+ * Each planar piece of an item is a face with a name ("wall.left", "box.top"; the item's own name if it has only one)
+ * and an id, counted from 1 in file order; a mesh is one face. Faces are visible from both sides. Normals point out of
+ * solids, into rooms, along U x V for quads, and in the direction in which a lamp shines. */
 #ifndef REMODEL_SIMULATE_GEOMETRY_H
 #define REMODEL_SIMULATE_GEOMETRY_H
 
-#include <embree3/rtcore.h>
 #include <stdbool.h>
 
+#include "common/light/ray_scene.h"
 #include "stages/simulate/scene_file.h"
 
-struct face {
+struct scene_face {
     char *name;
-    int item;                 /* that it belongs to */
+    int item;                 /* index of its item */
     int material;             /* -1: a lamp */
-    struct vec3 origin, u, v; /* texture coordinates are along the unit vectors u, v from the origin */
+    struct vec3 origin, u, v; /* texture coordinates are measured from the origin along the unit vectors u and v */
     struct vec3 normal;       /* of a mesh: the mean */
-    double area;
-    uint32_t seed; /* of its texture: by its name, so that it stays when the scene is edited elsewhere */
+    double area;              /* m^2 */
+    uint32_t seed; /* of its texture: a hash of the name, so that edits elsewhere in the scene do not change it */
     bool mesh;
 };
 
-struct triangle {
-    struct vec3 corner[3], normal; /* unit */
-    int face;
+struct scene_geometry {
+    struct scene_face *faces;
+    int face_count;
+    int *lamp_faces;       /* for each item: the index of its face if it is a lamp, else -1 */
+    struct ray_scene rays; /* ids are indices of faces */
 };
 
-struct geometry {
-    struct face *faces;
-    struct triangle *triangles;
-    int face_count, triangle_count;
-    int *lamp_faces;   /* of an item: its face if it is a lamp, else -1 */
-    struct disk_face { /* round lamps: for Embree squares, outside the radius of which rays go on */
-        struct vec3 centre;
-        double radius;
-        int face;
-    } * disks;
-    int disk_count;
-    double epsilon; /* m: how far off a surface rays begin, so that they do not meet it again */
-    RTCDevice device;
-    RTCScene scene;
-};
+/* Builds the faces and adds them to g->rays, which the caller commits before tracing. The scene must outlive the
+ * geometry. On failure nothing has to be released. */
+enum status geometry_init(struct scene_geometry *g, const struct scene *s, struct err *err);
+void geometry_release(struct scene_geometry *g);
 
-struct hit {
-    struct vec3 point, normal; /* the normal of the side that was hit */
-    double t;
-    int face; /* index; -1: nothing */
-    bool front;
-};
+/* Texture coordinates (m) of a point on a face. */
+void geometry_texture_coordinates(const struct scene_face *f, const struct ray_hit *hit, double *u, double *v);
 
-/* The faces alone; enough to list them. The scene must outlive the geometry. */
-enum status geometry_init(struct geometry *g, const struct scene *s, struct err *err);
-/* Prepares for tracing. */
-enum status geometry_commit(struct geometry *g, struct err *err);
-void geometry_release(struct geometry *g);
-
-/* The nearest surface in a unit direction. */
-bool geometry_hit(const struct geometry *g, struct vec3 from, struct vec3 direction, struct hit *hit);
-/* Whether anything stands between a point and another one `distance` away. */
-bool geometry_blocked(const struct geometry *g, struct vec3 from, struct vec3 direction, double distance);
-
-/* Where the texture of a face is looked up for a point on it. */
-void geometry_texture_place(const struct face *f, const struct hit *hit, double *u, double *v);
-
-/* A wall's centre line: unit direction, unit normal to the left of it, length. */
-void wall_axes(const struct item *wall, struct vec3 *along, struct vec3 *left, double *length);
+/* The centre line of a wall: unit direction, unit normal to its left, length. */
+void wall_axes(const struct scene_item *wall, struct vec3 *along, struct vec3 *left, double *length);
 
 #endif

@@ -1,28 +1,34 @@
-/* lights.c - see lights.h.
+/* lights.c - sampling of lamps, windows and the sun.
  *
- * Square lamps and windows are sampled uniformly over the solid angle that they fill (C. Urena, M. Fajardo, A. King, "An
- * Area-Preserving Parametrization for Spherical Rectangles", 2013), very small ones over their area; disks over their
- * area; the sun over its cone. The circle that a spot lights is known exactly, so points outside it never ask for it. */
+ * Square lamps and windows are sampled uniformly over the solid angle that they subtend [Urena 2013]; below
+ * MIN_SOLID_ANGLE, where that loses precision, over their area. Disks are sampled over their area, the sun over its
+ * cone.
+ *
+ * The probability of a light is in proportion to its luminance, times the solid angle of its area seen from the point,
+ * times the cosine at the surface, each roughly estimated. Any positive probability gives the same expectation; the
+ * estimate only sets the noise. Zero is exact: below the horizon, behind a lamp, outside the circle that a spot can
+ * light. */
 #include "stages/simulate/lights.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-#include "stages/simulate/fast.h"
+#include "common/light/fast.h"
+#include "common/light/frame.h"
+#include "common/math/numbers.h"
 
-#define PI            3.14159265358979323846
-#define LEAST_SOLID   1e-4 /* sr: below it a rectangle is sampled by area */
-#define SUN_NO_WINDOW 0.05 /* of its guess, where no window shows the sun */
+#define MIN_SOLID_ANGLE   1e-4 /* sr */
+#define HIDDEN_SUN_FACTOR 0.05 /* of the estimate, if the sun is visible through no window */
 
-/* ------------------------------------------------------------------------------------------------ spherical rectangles */
+/* --------------------------------------------------------------------------------------------- spherical rectangles */
 
-/* A rectangle as a point sees it: x0..x1 and y0..y1 along its edges, at z0 < 0. */
+/* A rectangle in the frame of a point: x0..x1 and y0..y1 along its edges, at z0 < 0; notation of [Urena 2013]. */
 struct spherical {
     struct vec3 z;
     double x0, x1, y0, y1, z0, b0, b1, k, solid;
 };
 
-static struct spherical spherical_make(const struct light *l, struct vec3 point)
+static struct spherical spherical_make(const struct scene_light *l, struct vec3 point)
 {
     struct spherical q = {.z = vec3_cross(l->x, l->y)};
     const struct vec3 d = vec3_sub(l->corner, point);
@@ -39,37 +45,37 @@ static struct spherical spherical_make(const struct light *l, struct vec3 point)
     const double n2 = q.y1 / sqrt(zz + q.y1 * q.y1), n3 = -q.x0 / sqrt(zz + q.x0 * q.x0);
     q.b0 = n0;
     q.b1 = n2;
-    q.k = 2 * PI - acos(clip(-n2 * n3, -1, 1)) - acos(clip(-n3 * n0, -1, 1));
-    q.solid = acos(clip(-n0 * n1, -1, 1)) + acos(clip(-n1 * n2, -1, 1)) - q.k;
+    q.k = 2 * PI - acos(clamp(-n2 * n3, -1, 1)) - acos(clamp(-n3 * n0, -1, 1));
+    q.solid = acos(clamp(-n0 * n1, -1, 1)) + acos(clamp(-n1 * n2, -1, 1)) - q.k;
     return q;
 }
 
-/* From the point to a place on the rectangle. */
-static struct vec3 spherical_sample(const struct spherical *q, const struct light *l, double u, double v)
+/* The vector from the point to a sample on the rectangle. */
+static struct vec3 spherical_sample(const struct spherical *q, const struct scene_light *l, double u, double v)
 {
     const double a = u * q->solid + q->k, f = (cos(a) * q->b0 - q->b1) / sin(a);
-    const double c = clip((f > 0 ? 1 : -1) / sqrt(f * f + q->b0 * q->b0), -1, 1);
-    const double x = clip(-c * q->z0 / sqrt(most(1e-300, 1 - c * c)), q->x0, q->x1);
+    const double c = clamp((f > 0 ? 1 : -1) / sqrt(f * f + q->b0 * q->b0), -1, 1);
+    const double x = clamp(-c * q->z0 / sqrt(fast_max(1e-300, 1 - c * c)), q->x0, q->x1);
     const double dd = x * x + q->z0 * q->z0;
     const double h0 = q->y0 / sqrt(dd + q->y0 * q->y0), h1 = q->y1 / sqrt(dd + q->y1 * q->y1), h = h0 + v * (h1 - h0);
-    const double y = h * h < 1 - 1e-12 ? clip(h * sqrt(dd / (1 - h * h)), q->y0, q->y1) : q->y1;
+    const double y = h * h < 1 - 1e-12 ? clamp(h * sqrt(dd / (1 - h * h)), q->y0, q->y1) : q->y1;
     return vec3_add(vec3_add(vec3_scale(l->x, x), vec3_scale(l->y, y)), vec3_scale(q->z, q->z0));
 }
 
-/* Per solid angle, for a place on it at `to` from the point. */
-static double rectangle_pdf(const struct light *l, const struct spherical *q, struct vec3 to)
+/* Density per solid angle; `to`: from the point to the sample. */
+static double rectangle_pdf(const struct scene_light *l, const struct spherical *q, struct vec3 to)
 {
-    if (q->solid > LEAST_SOLID) return 1 / q->solid;
+    if (q->solid > MIN_SOLID_ANGLE) return 1 / q->solid;
     const double d = vec3_length(to);
     return d * d * d / (l->area * fabs(vec3_dot(to, l->n)));
 }
 
-/* ------------------------------------------------------------------------------------------------------------- gathering */
+/* --------------------------------------------------------------------------------------------------------- building */
 
-static struct light rectangle(enum light_kind kind, struct vec3 corner, struct vec3 u, struct vec3 v,
-                              struct rgb radiance)
+static struct scene_light rectangle(enum light_kind kind, struct vec3 corner, struct vec3 u, struct vec3 v,
+                                    struct rgb radiance)
 {
-    struct light l = {.kind = kind, .corner = corner, .x = vec3_normalize(u), .y = vec3_normalize(v)};
+    struct scene_light l = {.kind = kind, .corner = corner, .x = vec3_normalize(u), .y = vec3_normalize(v)};
     l.width = vec3_length(u);
     l.height = vec3_length(v);
     l.area = l.width * l.height;
@@ -79,9 +85,9 @@ static struct light rectangle(enum light_kind kind, struct vec3 corner, struct v
     return l;
 }
 
-static struct light disk(const struct item *it)
+static struct scene_light disk(const struct scene_item *it)
 {
-    struct light l = {.kind = LIGHT_DISK, .corner = it->at, .n = vec3_normalize(it->u), .radius = it->radius};
+    struct scene_light l = {.kind = LIGHT_DISK, .corner = it->at, .n = vec3_normalize(it->u), .radius = it->radius};
     const double half = it->half_angle * PI / 180;
     l.area = PI * l.radius * l.radius;
     l.cos_cone = it->half_angle < 90 ? cos(half) : 0;
@@ -92,8 +98,8 @@ static struct light disk(const struct item *it)
     return l;
 }
 
-/* How many of some rays from the middle of a window to one side of its wall meet nothing. */
-static int escapes(const struct geometry *g, struct vec3 middle, struct vec3 n, double depth)
+/* How many of 64 rays from the middle of a window, to one side of its wall, hit nothing. */
+static int count_escaping(const struct ray_scene *rays, struct vec3 middle, struct vec3 n, double depth)
 {
     int count = 0;
     struct vec3 x, y;
@@ -102,14 +108,15 @@ static int escapes(const struct geometry *g, struct vec3 middle, struct vec3 n, 
         const double cos_t = (i + 0.5) / 64, sin_t = sqrt(1 - cos_t * cos_t), phi = 2.399963 * i; /* golden angle */
         const struct vec3 d =
             vec3_add(vec3_scale(n, cos_t), vec3_add(vec3_scale(x, sin_t * cos(phi)), vec3_scale(y, sin_t * sin(phi))));
-        count += !geometry_blocked(g, vec3_add(middle, vec3_scale(n, depth + g->epsilon)), d, INFINITY);
+        count += !ray_scene_blocked(rays, vec3_add(middle, vec3_scale(n, depth + rays->epsilon)), d, INFINITY);
     }
     return count;
 }
 
-/* In the outer face of the wall, so that all of the reveals lies inside. Outdoors is where more rays meet nothing. */
-static struct light window(const struct item *it, const struct item *wall, const struct sky *sky,
-                           const struct geometry *g)
+/* The portal lies in the outer face of the wall, so that the reveals are inside. Outdoors is the side on which more
+ * rays hit nothing. */
+static struct scene_light window(const struct scene_item *it, const struct scene_item *wall, const struct sky *sky,
+                                 const struct scene_geometry *g)
 {
     struct vec3 along, left;
     double length;
@@ -119,25 +126,26 @@ static struct light window(const struct item *it, const struct item *wall, const
     const struct vec3 corner = vec3_add(vec3_make(wall->x0, wall->y0, it->z0), vec3_scale(along, it->s0));
     const struct vec3 middle = vec3_add(corner, vec3_scale(vec3_add(u, v), 0.5)), right = vec3_scale(left, -1);
     const struct rgb seen = rgb_add(rgb_scale(sky->panorama.sky, 0.6), rgb_scale(sky->panorama.ground, 0.4));
-    if (escapes(g, middle, left, depth) > escapes(g, middle, right, depth)) /* u x v points to the right */
+    if (count_escaping(&g->rays, middle, left, depth) >
+        count_escaping(&g->rays, middle, right, depth)) /* u x v points to the right */
         return rectangle(LIGHT_WINDOW, vec3_add(corner, vec3_scale(left, depth)), u, v, seen);
     return rectangle(LIGHT_WINDOW, vec3_add(vec3_add(corner, u), vec3_scale(right, depth)), vec3_scale(u, -1), v, seen);
 }
 
-enum status lights_init(struct lights *l, const struct scene *s, const struct geometry *g, struct err *err)
+enum status lights_init(struct lights *l, const struct scene *s, const struct scene_geometry *g, struct err *err)
 {
     *l = (struct lights){0};
-    sky_init(&l->sky, s);
+    sky_init(&l->sky, &s->sky);
     if (!(l->of_face = malloc((size_t)(g->face_count + 1) * sizeof *l->of_face)))
         return err_nomem(err, "lights", (size_t)g->face_count * sizeof *l->of_face);
     for (int i = 0; i < g->face_count; i++) l->of_face[i] = -1;
     enum status st = ST_OK;
     for (int i = 0; !st && i < s->item_count; i++) {
-        const struct item *it = &s->items[i];
+        const struct scene_item *it = &s->items[i];
         const bool lamp = it->kind == ITEM_LAMP_QUAD || it->kind == ITEM_LAMP_DISK;
-        if (!lamp && (it->kind != ITEM_WINDOW || !(s->has_panorama || s->has_sun))) continue;
-        if (l->count == MOST_LIGHTS - 1) { /* one is left for the sun */
-            st = err_set(err, ST_DATA, "the scene has more than %d lamps and windows; make fewer of them.", l->count);
+        if (!lamp && (it->kind != ITEM_WINDOW || !(s->sky.has_panorama || s->sky.has_sun))) continue;
+        if (l->count == MAX_LIGHTS - 1) { /* the last entry is for the sun */
+            st = err_set(err, ST_DATA, "the scene has more than %d lamps and windows; remove some.", l->count);
             break;
         }
         if (lamp) l->of_face[g->lamp_faces[i]] = l->count;
@@ -145,10 +153,10 @@ enum status lights_init(struct lights *l, const struct scene *s, const struct ge
                               : it->kind == ITEM_LAMP_DISK ? disk(it)
                                                            : rectangle(LIGHT_QUAD, it->at, it->u, it->v, it->radiance);
     }
-    if (!st && s->has_sun) {
-        struct light sun = {
-            .kind = LIGHT_SUN, .n = l->sky.sun, .cos_cone = l->sky.sun_cos, .radiance = s->sun.radiance};
-        sun.tan_cone = tan(s->sun.angular_radius * PI / 180);
+    if (!st && s->sky.has_sun) {
+        struct scene_light sun = {
+            .kind = LIGHT_SUN, .n = l->sky.to_sun, .cos_cone = l->sky.sun_cos, .radiance = s->sky.sun.radiance};
+        sun.tan_cone = tan(s->sky.sun.angular_radius * PI / 180);
         sun.area = 2 * PI * (1 - sun.cos_cone); /* sr */
         sun.luminance = rgb_luminance(sun.radiance);
         l->list[l->count++] = sun;
@@ -164,27 +172,29 @@ void lights_release(struct lights *l)
     *l = (struct lights){0};
 }
 
-/* -------------------------------------------------------------------------------------------------------------- choosing */
+/* --------------------------------------------------------------------------------------------------------- sampling */
 
-/* How high above the surface the highest corner of a rectangle is, and its middle from the point. */
-static double highest_corner(const struct light *l, struct vec3 d, struct vec3 normal, struct vec3 *middle)
+/* Height of a rectangle's highest corner above the surface. *middle: from the point to the rectangle's middle. */
+static double highest_corner(const struct scene_light *l, struct vec3 d, struct vec3 normal, struct vec3 *middle)
 {
     const double a = vec3_dot(d, normal), x = l->width * vec3_dot(l->x, normal), y = l->height * vec3_dot(l->y, normal);
     *middle = vec3_add(d, vec3_add(vec3_scale(l->x, l->width / 2), vec3_scale(l->y, l->height / 2)));
-    return a + most(0, x) + most(0, y);
+    return a + fast_max(0, x) + fast_max(0, y);
 }
 
-/* Whether the window lets some of the sun's disk through to the point. */
-static bool window_shows_sun(const struct light *w, const struct light *sun, struct vec3 point)
+/* Whether part of the sun's disk is visible from the point through the window. */
+static bool window_shows_sun(const struct scene_light *w, const struct scene_light *sun, struct vec3 point)
 {
     const double slope = vec3_dot(sun->n, w->n), t = vec3_dot(vec3_sub(w->corner, point), w->n) / slope;
     if (!(t > 0) || !(t < 1e6)) return false;
     const struct vec3 d = vec3_sub(vec3_add(point, vec3_scale(sun->n, t)), w->corner);
-    const double x = vec3_dot(d, w->x), y = vec3_dot(d, w->y), margin = t * sun->tan_cone / most(0.05, fabs(slope));
+    const double x = vec3_dot(d, w->x), y = vec3_dot(d, w->y), margin = t * sun->tan_cone / fast_max(0.05, fabs(slope));
     return x > -margin && x < w->width + margin && y > -margin && y < w->height + margin;
 }
 
-static double guess(const struct lights *all, const struct light *l, struct vec3 point, struct vec3 normal)
+/* The estimate that a light's probability is in proportion to; 0: it cannot reach the point. */
+static double expected_light(const struct lights *all, const struct scene_light *l, struct vec3 point,
+                             struct vec3 normal)
 {
     struct vec3 to = vec3_sub(l->corner, point);
     double seen = 0, facing = 0;
@@ -198,13 +208,13 @@ static double guess(const struct lights *all, const struct light *l, struct vec3
             window = true;
             shown = window_shows_sun(&all->list[i], l, point);
         }
-        return l->luminance * l->area * most(0.05, cos_s) * (window && !shown ? SUN_NO_WINDOW : 1);
+        return l->luminance * l->area * fast_max(0.05, cos_s) * (window && !shown ? HIDDEN_SUN_FACTOR : 1);
     }
     case LIGHT_DISK: {
         const double h = -vec3_dot(to, l->n), d2 = vec3_dot(to, to), cos_s = vec3_dot(normal, to);
-        const double aside2 = most(0, d2 - h * h), reach = l->radius + h * l->tan_cone;
+        const double aside2 = fast_max(0, d2 - h * h), reach = l->radius + h * l->tan_cone;
         if (h <= 0 || aside2 >= reach * reach || cos_s <= -l->radius) return 0;
-        const double d = sqrt(d2), cos_l = most(h / d, l->cos_cone);
+        const double d = sqrt(d2), cos_l = fast_max(h / d, l->cos_cone);
         seen = l->area * cos_l / d2;
         facing = cos_s / d;
         break;
@@ -221,19 +231,19 @@ static double guess(const struct lights *all, const struct light *l, struct vec3
         break;
     }
     }
-    return l->luminance * least(seen, 2 * PI) * most(facing, 0.1);
+    return l->luminance * fast_min(seen, 2 * PI) * fast_max(facing, 0.1);
 }
 
-void lights_chances(struct light_chances *c, const struct lights *l, struct vec3 point, struct vec3 normal)
+void lights_select(struct light_selection *c, const struct lights *l, struct vec3 point, struct vec3 normal)
 {
     double sum = 0;
     c->point = point;
-    for (int i = 0; i < l->count; i++) sum += c->chance[i] = guess(l, &l->list[i], point, normal);
-    for (int i = 0; i < l->count; i++) c->chance[i] = sum > 0 ? c->chance[i] / sum : 0;
+    for (int i = 0; i < l->count; i++) sum += c->probability[i] = expected_light(l, &l->list[i], point, normal);
+    for (int i = 0; i < l->count; i++) c->probability[i] = sum > 0 ? c->probability[i] / sum : 0;
 }
 
-/* Whether a ray passes through a window; *to is the place from the point. */
-static bool through(const struct light *w, struct vec3 point, struct vec3 direction, struct vec3 *to)
+/* Whether a ray crosses a window; *to: from the point to the crossing. */
+static bool crosses_window(const struct scene_light *w, struct vec3 point, struct vec3 direction, struct vec3 *to)
 {
     const struct vec3 d = vec3_sub(w->corner, point);
     const double t = vec3_dot(d, w->n) / vec3_dot(direction, w->n);
@@ -244,48 +254,48 @@ static bool through(const struct light *w, struct vec3 point, struct vec3 direct
     return x >= 0 && x <= w->width && y >= 0 && y <= w->height;
 }
 
-/* Of all lights that show the outdoors but for one (-1: none). */
-static double sky_pdf_but(const struct lights *l, const struct light_chances *c, struct vec3 direction, int but)
+/* Density of all lights that show the outdoors, except one (-1: none). */
+static double sky_pdf_except(const struct lights *l, const struct light_selection *c, struct vec3 direction, int except)
 {
     double pdf = 0;
     for (int i = 0; i < l->count; i++) {
-        const struct light *light = &l->list[i];
+        const struct scene_light *light = &l->list[i];
         struct vec3 to;
-        if (i == but || !(c->chance[i] > 0)) continue;
+        if (i == except || !(c->probability[i] > 0)) continue;
         if (light->kind == LIGHT_SUN && vec3_dot(direction, light->n) > light->cos_cone)
-            pdf += c->chance[i] / light->area;
-        if (light->kind == LIGHT_WINDOW && through(light, c->point, direction, &to)) {
+            pdf += c->probability[i] / light->area;
+        if (light->kind == LIGHT_WINDOW && crosses_window(light, c->point, direction, &to)) {
             const struct spherical q = spherical_make(light, c->point);
-            pdf += c->chance[i] * rectangle_pdf(light, &q, to);
+            pdf += c->probability[i] * rectangle_pdf(light, &q, to);
         }
     }
     return pdf;
 }
 
-double lights_pdf_sky(const struct lights *l, const struct light_chances *c, struct vec3 direction)
+double lights_pdf_sky(const struct lights *l, const struct light_selection *c, struct vec3 direction)
 {
-    return sky_pdf_but(l, c, direction, -1);
+    return sky_pdf_except(l, c, direction, -1);
 }
 
-static double disk_pdf(const struct light *l, struct vec3 to)
+static double disk_pdf(const struct scene_light *l, struct vec3 to)
 {
     const double d = vec3_length(to);
     return d * d * d / (l->area * fabs(vec3_dot(to, l->n)));
 }
 
-double lights_pdf_face(const struct lights *l, const struct light_chances *c, int face, const struct hit *hit,
+double lights_pdf_face(const struct lights *l, const struct light_selection *c, const struct ray_hit *hit,
                        struct vec3 direction)
 {
-    const int i = l->of_face[face];
-    if (i < 0 || !(c->chance[i] > 0) || !hit->front) return 0;
-    const struct light *light = &l->list[i];
+    const int i = l->of_face[hit->id];
+    if (i < 0 || !(c->probability[i] > 0) || !hit->front) return 0;
+    const struct scene_light *light = &l->list[i];
     const struct vec3 to = vec3_scale(direction, vec3_length(vec3_sub(hit->point, c->point)));
-    if (light->kind == LIGHT_DISK) return c->chance[i] * disk_pdf(light, to);
+    if (light->kind == LIGHT_DISK) return c->probability[i] * disk_pdf(light, to);
     const struct spherical q = spherical_make(light, c->point);
-    return c->chance[i] * rectangle_pdf(light, &q, to);
+    return c->probability[i] * rectangle_pdf(light, &q, to);
 }
 
-static struct rgb emitted(const struct light *l, double cos_l)
+static struct rgb emitted(const struct scene_light *l, double cos_l)
 {
     if (!(cos_l > 0)) return rgb_grey(0);
     if (l->kind == LIGHT_QUAD) return l->radiance;
@@ -293,36 +303,36 @@ static struct rgb emitted(const struct light *l, double cos_l)
     return l->exponent > 0 ? rgb_scale(l->radiance, pow(cos_l, l->exponent)) : l->radiance;
 }
 
-struct rgb lights_emitted(const struct lights *l, int face, const struct hit *hit, struct vec3 direction)
+struct rgb lights_emitted(const struct lights *l, const struct ray_hit *hit, struct vec3 direction)
 {
-    const int i = l->of_face[face];
+    const int i = l->of_face[hit->id];
     return i < 0 || !hit->front ? rgb_grey(0) : emitted(&l->list[i], -vec3_dot(direction, hit->normal));
 }
 
-bool lights_sample(struct light_sample *s, const struct lights *l, const struct light_chances *c, const double u[3])
+bool lights_sample(struct light_sample *s, const struct lights *l, const struct light_selection *c, const double u[3])
 {
     int i = 0;
     double left = u[0];
-    while (i < l->count && left >= c->chance[i]) left -= c->chance[i++];
-    if (i == l->count) { /* rounding: the last one that can be chosen */
-        while (i > 0 && !(c->chance[i - 1] > 0)) i--;
+    while (i < l->count && left >= c->probability[i]) left -= c->probability[i++];
+    if (i == l->count) { /* rounding: take the last light that can be chosen */
+        while (i > 0 && !(c->probability[i - 1] > 0)) i--;
         if (i-- == 0) return false;
     }
-    const struct light *light = &l->list[i];
+    const struct scene_light *light = &l->list[i];
     if (light->kind == LIGHT_SUN) {
         const double cos_t = 1 - u[1] * (1 - light->cos_cone);
-        s->direction = direction_about(light->n, sqrt(most(0, 1 - cos_t * cos_t)), cos_t, u[2]);
-        s->pdf = c->chance[i] / light->area + sky_pdf_but(l, c, s->direction, i);
+        s->direction = frame_direction(light->n, sqrt(fast_max(0, 1 - cos_t * cos_t)), cos_t, u[2]);
+        s->pdf = c->probability[i] / light->area + sky_pdf_except(l, c, s->direction, i);
     } else {
         struct vec3 to;
         double pdf;
         if (light->kind == LIGHT_DISK) {
             to = vec3_add(vec3_sub(light->corner, c->point),
-                          direction_about(light->n, light->radius * sqrt(u[1]), 0, u[2]));
+                          frame_direction(light->n, light->radius * sqrt(u[1]), 0, u[2]));
             pdf = disk_pdf(light, to);
         } else {
             const struct spherical q = spherical_make(light, c->point);
-            if (q.solid > LEAST_SOLID)
+            if (q.solid > MIN_SOLID_ANGLE)
                 to = spherical_sample(&q, light, u[1], u[2]);
             else
                 to = vec3_add(vec3_sub(light->corner, c->point), vec3_add(vec3_scale(light->x, u[1] * light->width),
@@ -331,12 +341,12 @@ bool lights_sample(struct light_sample *s, const struct lights *l, const struct 
         }
         s->distance = vec3_length(to);
         s->direction = vec3_scale(to, 1 / s->distance);
-        s->pdf = c->chance[i] * pdf;
+        s->pdf = c->probability[i] * pdf;
         if (light->kind != LIGHT_WINDOW) {
             s->radiance = emitted(light, -vec3_dot(s->direction, light->n));
-            return s->pdf > 0 && rgb_most(s->radiance) > 0;
+            return s->pdf > 0 && rgb_max(s->radiance) > 0;
         }
-        s->pdf += sky_pdf_but(l, c, s->direction, i);
+        s->pdf += sky_pdf_except(l, c, s->direction, i);
     }
     s->distance = INFINITY;
     s->radiance = sky_radiance(&l->sky, s->direction);

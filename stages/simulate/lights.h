@@ -1,64 +1,65 @@
-/* lights.h - what light is looked for at, from a point of a surface: lamps, windows, the sun.
+/* lights.h - the lights of a scene as seen from a surface point: lamps, windows, the sun.
  *
- * A window is a portal: a direction through it is chosen, and if nothing stands in the way the sky and the sun are seen
- * there. One light is chosen at a time, by a guess of what it gives; a light that cannot reach the point (behind its
- * face, out of its cone) is not chosen. Rays that meet a light by chance ask lights_pdf() for the density with which it
- * would have been chosen, so that both ways can be weighed (E. Veach, 1995). */
+ * For next-event estimation one light is chosen at a time, with a probability in proportion to an estimate of its
+ * contribution; a light that cannot reach the point (behind its face, outside its cone) is never chosen. A window is a
+ * portal: a direction through it is sampled, and if nothing blocks it, the sky and the sun are seen there. For rays
+ * that hit a light by chance, lights_pdf_face() and lights_pdf_sky() give the density with which the light would have
+ * been sampled in that direction, for multiple importance sampling of both strategies [Veach 1995]. */
 #ifndef REMODEL_SIMULATE_LIGHTS_H
 #define REMODEL_SIMULATE_LIGHTS_H
 
 #include "stages/simulate/geometry.h"
-#include "stages/simulate/sky.h"
 
-#define MOST_LIGHTS 32
+#define MAX_LIGHTS 32
 
 enum light_kind { LIGHT_QUAD, LIGHT_DISK, LIGHT_WINDOW, LIGHT_SUN };
 
-struct light {
+struct scene_light {
     enum light_kind kind;
-    struct vec3 corner, x, y,
-        n; /* quads, windows: unit edges x, y; disks: centre in corner; n: where it shines, of windows indoors */
-    double width, height, area, radius; /* m */
+    struct vec3 corner; /* of quads and windows; the centre of a disk */
+    struct vec3 x, y;   /* unit edges of quads and windows */
+    struct vec3 n;      /* the direction in which it shines: of windows indoors; of the sun towards it */
+    double width, height, area, radius; /* m, m^2; area of the sun: sr */
     double cos_cone, tan_cone, exponent;
     struct rgb radiance;
-    double luminance; /* expected; of a window the sky's */
+    double luminance; /* of the radiance; of a window, of the sky on average */
 };
 
 struct lights {
-    struct light list[MOST_LIGHTS];
+    struct scene_light list[MAX_LIGHTS];
     int count;
     struct sky sky;
-    int *of_face; /* which light a face is; -1: none; owned */
+    int *of_face; /* for each face: the index of its light, or -1; owned */
 };
 
-/* What the lights promise to one point of a surface. */
-struct light_chances {
+/* How often each light is sampled from one point of a surface. */
+struct light_selection {
     struct vec3 point;
-    double chance[MOST_LIGHTS]; /* sum to 1, or are all 0: no light reaches the point directly */
+    double probability[MAX_LIGHTS]; /* they sum to 1, or are all 0 if no light reaches the point directly */
 };
 
 struct light_sample {
-    struct vec3 direction; /* towards the light */
+    struct vec3 direction; /* unit, towards the light */
     double distance;       /* INFINITY: outdoors */
     double pdf;            /* per solid angle, of all lights together */
-    struct rgb radiance;   /* if nothing stands in the way */
+    struct rgb radiance;   /* if nothing is in the way */
 };
 
-/* The geometry must be committed. ST_DATA: more than MOST_LIGHTS lamps and windows. */
-enum status lights_init(struct lights *l, const struct scene *s, const struct geometry *g, struct err *err);
+/* g->rays must be committed. ST_DATA: more than MAX_LIGHTS - 1 lamps and windows; ST_NOMEM. */
+enum status lights_init(struct lights *l, const struct scene *s, const struct scene_geometry *g, struct err *err);
 void lights_release(struct lights *l);
 
-void lights_chances(struct light_chances *c, const struct lights *l, struct vec3 point, struct vec3 normal);
+void lights_select(struct light_selection *c, const struct lights *l, struct vec3 point, struct vec3 normal);
 
-/* For a number that chooses the light and two that choose a place on it. False: no light there. */
-bool lights_sample(struct light_sample *s, const struct lights *l, const struct light_chances *c, const double u[3]);
+/* u[0] chooses the light, u[1] and u[2] a point on it. False: no light can be seen there. */
+bool lights_sample(struct light_sample *s, const struct lights *l, const struct light_selection *c, const double u[3]);
 
-/* The density with which a lamp's face, or the outdoors, would have been chosen in this direction. */
-double lights_pdf_face(const struct lights *l, const struct light_chances *c, int face, const struct hit *hit,
+/* Density (1/sr) with which lights_sample() chooses this direction, for a ray that hit a face, or nothing. */
+double lights_pdf_face(const struct lights *l, const struct light_selection *c, const struct ray_hit *hit,
                        struct vec3 direction);
-double lights_pdf_sky(const struct lights *l, const struct light_chances *c, struct vec3 direction);
+double lights_pdf_sky(const struct lights *l, const struct light_selection *c, struct vec3 direction);
 
-/* What a lamp's face emits against a ray that hits it. */
-struct rgb lights_emitted(const struct lights *l, int face, const struct hit *hit, struct vec3 direction);
+/* Radiance that a lamp's face emits back along a ray that hits it. */
+struct rgb lights_emitted(const struct lights *l, const struct ray_hit *hit, struct vec3 direction);
 
 #endif

@@ -5,28 +5,18 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/base/array.h"
 #include "common/base/scan.h"
 #include "common/base/textfile.h"
+#include "stages/simulate/description.h"
 
-#define MOST_TRIANGLES (1 << 22)
-#define MOST_METRES    1e5
+#define MAX_TRIANGLES (1 << 22)
 
 struct mesh {
     struct vec3 *vertices;
     struct vec3 (*triangles)[3];
-    int vertex_count, vertex_room, triangle_count, triangle_room;
+    int vertex_count, triangle_count;
 };
-
-static enum status grow(void **list, int count, int *room, size_t size, struct err *err)
-{
-    if (count < *room) return ST_OK;
-    const int more = *room ? 2 * *room : 64;
-    void *grown = realloc(*list, (size_t)more * size);
-    if (!grown) return err_nomem(err, "a mesh", (size_t)more * size);
-    *list = grown;
-    *room = more;
-    return ST_OK;
-}
 
 static enum status read_vertex(struct mesh *m, struct textfile *t, struct err *err)
 {
@@ -34,12 +24,10 @@ static enum status read_vertex(struct mesh *m, struct textfile *t, struct err *e
     enum status st = ST_OK;
     for (int i = 0; !st && i < 3; i++) {
         st = textfile_double(t, "a vertex's coordinate", &v[i], err);
-        if (!st && fabs(v[i]) > MOST_METRES)
-            st = textfile_error(t, err, "a larger number", "a vertex's coordinate, at most %g", MOST_METRES);
+        if (!st && fabs(v[i]) > MAX_METRES)
+            st = textfile_error(t, err, "a larger number", "a vertex's coordinate, at most %g", MAX_METRES);
     }
-    void *list = m->vertices;
-    if (!st) st = grow(&list, m->vertex_count, &m->vertex_room, sizeof *m->vertices, err);
-    m->vertices = list;
+    if (!st) st = array_append(&m->vertices, (size_t)m->vertex_count, sizeof *m->vertices, "vertices", err);
     if (!st) m->vertices[m->vertex_count++] = vec3_make(v[0], v[1], v[2]);
     return st;
 }
@@ -52,7 +40,7 @@ static enum status read_corner(const struct mesh *m, struct textfile *t, struct 
     if (st) return st;
     if ((slash = strchr(word, '/'))) *slash = '\0';
     if (!scan_int(word, &index) || index == 0 || index > m->vertex_count || -index > m->vertex_count)
-        return textfile_error(t, err, word, "a vertex from 1 to %d, or counted back from -1", m->vertex_count);
+        return textfile_error(t, err, word, "a vertex from 1 to %d, or from -1 backwards", m->vertex_count);
     *corner = m->vertices[index > 0 ? index - 1 : m->vertex_count + index];
     return ST_OK;
 }
@@ -64,18 +52,16 @@ static enum status read_face(struct mesh *m, struct textfile *t, struct err *err
     if (!st) st = read_corner(m, t, &before, err);
     do {
         if (!st) st = read_corner(m, t, &corner, err);
-        if (!st && m->triangle_count == MOST_TRIANGLES)
-            st = textfile_error(t, err, "one more", "at most %d triangles", MOST_TRIANGLES);
-        void *list = m->triangles;
-        if (!st) st = grow(&list, m->triangle_count, &m->triangle_room, sizeof *m->triangles, err);
-        m->triangles = list;
+        if (!st && m->triangle_count == MAX_TRIANGLES)
+            st = textfile_error(t, err, "one more", "at most %d triangles", MAX_TRIANGLES);
+        if (!st) st = array_append(&m->triangles, (size_t)m->triangle_count, sizeof *m->triangles, "triangles", err);
         if (!st) {
             struct vec3 *triangle = m->triangles[m->triangle_count];
             triangle[0] = first;
             triangle[1] = before;
             triangle[2] = corner;
             const struct vec3 n = vec3_cross(vec3_sub(before, first), vec3_sub(corner, first));
-            if (vec3_length(n) > 0) m->triangle_count++; /* one without an area shows nothing */
+            if (vec3_length(n) > 0) m->triangle_count++; /* triangles without area are left out */
         }
         before = corner;
     } while (!st && textfile_more(t));
@@ -96,8 +82,8 @@ enum status mesh_file_read(struct vec3 (**triangles)[3], int *count, const char 
             st = read_face(&m, &t, err);
     }
     if (!st && !m.triangle_count)
-        st = err_set(err, ST_DATA, "%s has no face with an area (lines that begin with f); export it as Wavefront OBJ.",
-                     path);
+        st = err_set(err, ST_DATA,
+                     "%s has no faces with an area (lines that begin with f); export it as Wavefront OBJ.", path);
     textfile_release(&t);
     free(m.vertices);
     if (st) free(m.triangles);

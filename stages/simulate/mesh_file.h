@@ -5,9 +5,9 @@
 #include "common/base/err.h"
 #include "common/math/vec.h"
 
-/* Lines v and f; polygons become fans of triangles, indices may be negative and carry /texture/normal; what else OBJ
- * knows (normals, groups, materials) is passed over. *triangles is malloc'ed. ST_DATA with file and line; a file without
- * a face is one. */
+/* Reads lines v and f. Polygons become fans of triangles; indices may be negative and may carry /texture/normal; all
+ * other lines (normals, groups, materials) are ignored, as are triangles without area. The caller frees *triangles; it
+ * is NULL on failure. ST_DATA names file and line; a file without faces is an error. */
 enum status mesh_file_read(struct vec3 (**triangles)[3], int *count, const char *path, struct err *err);
 
 #endif

@@ -13,7 +13,7 @@
 #include "common/image/photo.h"
 #include "stages/simulate/sensor.h"
 
-#define FILM_MM 36.0 /* the width of the sensor that focal lengths in millimetres are told for */
+#define FILM_MM 36.0 /* width of the sensor that focal lengths in millimetres refer to */
 
 static char *text_format(struct err *err, const char *fmt, ...) PRINTF_LIKE(2, 3);
 static char *text_format(struct err *err, const char *fmt, ...)
@@ -27,39 +27,39 @@ static char *text_format(struct err *err, const char *fmt, ...)
     return text;
 }
 
-char *photo_file_name(const struct shoot *s, const struct shot *shot, int exposure)
+char *photo_file_name(const struct shoot *s, const struct shoot_photo *photo, int exposure)
 {
     char *name = NULL;
-    const int made = shoot_exposures(s, shot)->count > 1 ? asprintf(&name, "%s_e%d.jpg", shot->name, exposure)
-                                                         : asprintf(&name, "%s.jpg", shot->name);
+    const int made = shoot_exposures(s, photo)->count > 1 ? asprintf(&name, "%s_e%d.jpg", photo->name, exposure)
+                                                          : asprintf(&name, "%s.jpg", photo->name);
     return made < 0 ? NULL : name;
 }
 
-static struct photo_info exif_of(const struct lens *l, const struct exposure *e)
+static struct photo_info exif_of(const struct shoot_lens *l, const struct shoot_exposure *e)
 {
     struct photo_info info = {.orientation = 1, .make = "remodel"};
     info.seconds = e->seconds;
     info.f_number = e->f_number;
     info.iso = e->iso;
     info.focal_mm = l->fx * FILM_MM / l->width;
-    /* programs take this one for a pinhole's */
-    if (l->kind == LENS_PINHOLE) info.focal35_mm = l->fx * hypot(36, 24) / hypot(l->width, l->height);
+    /* for pinholes only: programs take it for the focal length of one */
+    if (l->kind == SHOOT_PINHOLE) info.focal35_mm = l->fx * hypot(36, 24) / hypot(l->width, l->height);
     snprintf(info.model, sizeof info.model, "%.63s", l->name);
     return info;
 }
 
-static enum status write_exposure(const struct image *radiance, const struct shoot *s, const struct shot *shot, int k,
-                                  const char *out, struct err *err)
+static enum status write_exposure(const struct image *radiance, const struct shoot *s, const struct shoot_photo *photo,
+                                  int k, const char *out, struct err *err)
 {
-    const struct photo_info info = exif_of(&s->lenses[shot->lens], &shoot_exposures(s, shot)->list[k]);
+    const struct photo_info info = exif_of(&s->lenses[photo->lens], &shoot_exposures(s, photo)->list[k]);
     const size_t bytes = (size_t)radiance->width * (size_t)radiance->height * 3;
     unsigned char *rgb = malloc(bytes);
-    char *file = photo_file_name(s, shot, k);
-    char *path = file ? text_format(err, "%s/%s/%s", out, shot->reference ? "lri" : "photos", file) : NULL;
+    char *file = photo_file_name(s, photo, k);
+    char *path = file ? text_format(err, "%s/%s/%s", out, photo->reference ? "lri" : "photos", file) : NULL;
     enum status st = rgb && path ? ST_OK : err_nomem(err, "a photo", bytes);
     if (!st) {
         const struct rng rng = rng_make(s->sensor.seed, "sensor", file);
-        sensor_expose(rgb, radiance, &s->sensor, &shoot_exposures(s, shot)->list[k], &rng);
+        sensor_expose(rgb, radiance, &s->sensor, &shoot_exposures(s, photo)->list[k], &rng);
         st = photo_write_jpeg(path, rgb, radiance->width, radiance->height, s->quality, &info, err);
     }
     free(path);
@@ -90,12 +90,12 @@ static enum status write_surfaces(const struct world *w, const struct camera_vie
 {
     struct exr_image depth = {0}, ids = {0};
     struct exr_plane *z = NULL, *id = NULL;
-    const struct lens *l = view->lens;
+    const struct shoot_lens *l = view->lens;
     enum status st = exr_image_init(&depth, l->width, l->height, err);
     if (!st) st = exr_image_init(&ids, l->width, l->height, err);
     if (!st) st = exr_add_plane(&depth, "Z", EXR_FLOAT, &z, err);
     if (!st) st = exr_add_plane(&ids, "id", EXR_UINT, &id, err);
-    if (!st) st = exr_set_attribute(&depth, "remodel:depth", l->kind == LENS_PINHOLE ? "z" : "ray", err);
+    if (!st) st = exr_set_attribute(&depth, "remodel:depth", l->kind == SHOOT_PINHOLE ? "z" : "ray", err);
     if (!st) {
         render_surfaces(z->f, id->u, w, view);
         st = exr_write(&depth, depth_path, prov, err);
@@ -107,33 +107,33 @@ static enum status write_surfaces(const struct world *w, const struct camera_vie
 }
 
 static enum status render(struct image *radiance, const struct world *w, const struct camera_view *view,
-                          const struct shot *shot, const struct simulate_params *params, struct err *err)
+                          const struct shoot_photo *photo, const struct simulate_params *params, struct err *err)
 {
     const double started = clock_seconds();
     uint64_t rays = 0;
-    enum status st = render_radiance(radiance, w, view, shot->name, params, &rays, err);
+    enum status st = render_radiance(radiance, w, view, photo->name, params, &rays, err);
     const double seconds = clock_seconds() - started;
     if (!st)
-        log_note("%s: %d x %d px in %.1f s, %.2f million rays a second", shot->name, radiance->width, radiance->height,
-                 seconds, (double)rays / seconds / 1e6);
+        log_note("%s: %d x %d px in %.1f s, %.2f million rays per second", photo->name, radiance->width,
+                 radiance->height, seconds, (double)rays / seconds / 1e6);
     return st;
 }
 
-enum status photo_make(const struct world *w, const struct shoot *s, const struct shot *shot, const char *out,
+enum status photo_make(const struct world *w, const struct shoot *s, const struct shoot_photo *photo, const char *out,
                        const struct simulate_params *params, const struct provenance *prov, struct err *err)
 {
     struct image radiance = {0};
-    const struct camera_view view = camera_view_make(s, shot);
-    char *depth = text_format(err, "%s/truth/depth/%s.exr", out, shot->name);
-    char *ids = text_format(err, "%s/truth/ids/%s.exr", out, shot->name);
-    char *hdr = text_format(err, "%s/truth/hdr/%s.exr", out, shot->name);
+    const struct camera_view view = camera_view_make(s, photo);
+    char *depth = text_format(err, "%s/truth/depth/%s.exr", out, photo->name);
+    char *ids = text_format(err, "%s/truth/ids/%s.exr", out, photo->name);
+    char *hdr = text_format(err, "%s/truth/hdr/%s.exr", out, photo->name);
     enum status st = depth && ids && hdr ? ST_OK : err->status;
-    const bool truth = !shot->reference && !strcmp(params->truth, "yes");
-    if (!st) st = render(&radiance, w, &view, shot, params, err);
+    const bool truth = !photo->reference && !strcmp(params->truth, "yes");
+    if (!st) st = render(&radiance, w, &view, photo, params, err);
     if (!st && truth) st = write_surfaces(w, &view, depth, ids, prov, err);
     if (!st && truth) st = write_radiance(&radiance, hdr, prov, err);
-    for (int k = 0; !st && k < shoot_exposures(s, shot)->count; k++)
-        st = write_exposure(&radiance, s, shot, k, out, err);
+    for (int k = 0; !st && k < shoot_exposures(s, photo)->count; k++)
+        st = write_exposure(&radiance, s, photo, k, out, err);
     image_release(&radiance);
     free(depth);
     free(ids);
@@ -141,14 +141,14 @@ enum status photo_make(const struct world *w, const struct shoot *s, const struc
     return st;
 }
 
-enum status photo_make_edited(const struct world *w, const struct shoot *s, const struct shot *shot, const char *out,
-                              const char *edit, const struct simulate_params *params, const struct provenance *prov,
-                              struct err *err)
+enum status photo_make_edited(const struct world *w, const struct shoot *s, const struct shoot_photo *photo,
+                              const char *out, const char *edit, const struct simulate_params *params,
+                              const struct provenance *prov, struct err *err)
 {
     struct image radiance = {0};
-    const struct camera_view view = camera_view_make(s, shot);
-    char *path = text_format(err, "%s/truth/edited-%s/hdr/%s.exr", out, edit, shot->name);
-    enum status st = path ? render(&radiance, w, &view, shot, params, err) : err->status;
+    const struct camera_view view = camera_view_make(s, photo);
+    char *path = text_format(err, "%s/truth/edited-%s/hdr/%s.exr", out, edit, photo->name);
+    enum status st = path ? render(&radiance, w, &view, photo, params, err) : err->status;
     if (!st) st = write_radiance(&radiance, path, prov, err);
     image_release(&radiance);
     free(path);

@@ -1,4 +1,7 @@
-/* render.c - see render.h. */
+/* render.c - see render.h.
+ *
+ * Surfaces are found by single rays, not by packets (common/light/ray_scene.h): at an edge that
+ * two faces share, a packet may find a different face than a single ray. */
 #include "stages/simulate/render.h"
 
 #include <stdlib.h>
@@ -6,23 +9,23 @@
 #include "common/base/parallel.h"
 #include "common/base/progress.h"
 
-#define TILE 16 /* px; tiles are what threads share */
+#define TILE 16 /* px; a tile is the unit of work of a thread */
 
 #define PARAM_STRUCT struct simulate_params
 const struct param simulate_param_table[] = {SIMULATE_PARAMS(PARAM_ROW) PARAM_END};
 #undef PARAM_STRUCT
 
-struct camera_view camera_view_make(const struct shoot *s, const struct shot *shot)
+struct camera_view camera_view_make(const struct shoot *s, const struct shoot_photo *photo)
 {
-    return (struct camera_view){&s->lenses[shot->lens], pose_center(&shot->cam_from_world),
-                                mat3_transpose(mat3_from_quat(shot->cam_from_world.rotation))};
+    return (struct camera_view){&s->lenses[photo->lens], pose_center(&photo->cam_from_world),
+                                mat3_transpose(mat3_from_quat(photo->cam_from_world.rotation))};
 }
 
-bool camera_view_ray(const struct camera_view *v, double u, double w, struct ray *ray)
+bool camera_view_ray(const struct camera_view *v, double u, double w, struct path_ray *ray)
 {
     struct vec3 in_camera;
-    if (!lens_ray(v->lens, u, w, &in_camera)) return false;
-    *ray = (struct ray){v->centre, mat3_apply(v->world_from_cam, in_camera)};
+    if (!shoot_lens_ray(v->lens, u, w, &in_camera)) return false;
+    *ray = (struct path_ray){v->centre, mat3_apply(v->world_from_cam, in_camera)};
     return true;
 }
 
@@ -30,7 +33,7 @@ struct job {
     const struct world *world;
     const struct camera_view *view;
     struct rng rng;
-    int samples, across; /* tiles in a row */
+    int samples, across; /* across: tiles in a row */
     struct image *radiance;
     uint64_t *rays; /* of each tile */
     struct progress *progress;
@@ -41,12 +44,12 @@ struct job {
 static struct rgb pixel_radiance(const struct job *job, int x, int y, uint64_t *rays)
 {
     const uint64_t pixel = (uint64_t)y * (uint64_t)job->view->lens->width + (uint64_t)x;
-    struct sampler s = sampler_make(&job->rng, pixel, job->samples);
+    struct sobol s = sobol_make(&job->rng, pixel, job->samples);
     struct rgb sum = {0, 0, 0};
     for (; s.sample < (uint32_t)job->samples; s.sample++) {
         double u[4];
-        struct ray ray;
-        sampler_group(&s, 0, u);
+        struct path_ray ray;
+        sobol_group(&s, 0, u);
         if (camera_view_ray(job->view, x + u[0], y + u[1], &ray))
             sum = rgb_add(sum, path_radiance(job->world, ray, &s, rays));
     }
@@ -76,11 +79,10 @@ static enum status check_light(const struct image *radiance, const char *name, s
     const size_t count = (size_t)radiance->width * (size_t)radiance->height * 3;
     for (size_t i = 0; i < count; i++)
         if (radiance->data[i] > 0) return ST_OK;
-    return err_set(
-        err, ST_DATA,
-        "no light reaches photo %s: it would be black; see that its camera does not stand inside a wall or a box, "
-        "and that a lamp or a window lights its room.",
-        name);
+    return err_set(err, ST_DATA,
+                   "no light reaches photo %s: it would be black; check that its camera is not inside a wall or a box, "
+                   "and that a lamp or a window lights the room.",
+                   name);
 }
 
 enum status render_radiance(struct image *radiance, const struct world *w, const struct camera_view *view,
@@ -113,20 +115,20 @@ static void surface_rows(void *ctx, size_t begin, size_t end, int thread)
 {
     (void)thread;
     const struct job *job = ctx;
-    const struct lens *lens = job->view->lens;
+    const struct shoot_lens *lens = job->view->lens;
     for (size_t y = begin; y < end; y++)
         for (int x = 0; x < lens->width; x++) {
             const size_t at = y * (size_t)lens->width + (size_t)x;
             struct vec3 in_camera;
-            struct ray ray;
-            struct hit hit;
+            struct path_ray ray;
+            struct ray_hit hit;
             job->depth[at] = 0;
             job->ids[at] = 0;
-            if (!lens_ray(lens, x + 0.5, (double)y + 0.5, &in_camera)) continue;
-            ray = (struct ray){job->view->centre, mat3_apply(job->view->world_from_cam, in_camera)};
-            if (!geometry_hit(&job->world->geometry, ray.from, ray.direction, &hit)) continue;
-            job->depth[at] = (float)(lens->kind == LENS_PINHOLE ? hit.t * in_camera.z : hit.t);
-            job->ids[at] = (uint32_t)hit.face + 1;
+            if (!shoot_lens_ray(lens, x + 0.5, (double)y + 0.5, &in_camera)) continue;
+            ray = (struct path_ray){job->view->centre, mat3_apply(job->view->world_from_cam, in_camera)};
+            if (!ray_scene_hit(&job->world->geometry.rays, ray.from, ray.direction, &hit)) continue;
+            job->depth[at] = (float)(lens->kind == SHOOT_PINHOLE ? hit.t * in_camera.z : hit.t);
+            job->ids[at] = hit.id + 1;
         }
 }
 

@@ -1,4 +1,4 @@
-/* render.h - what a camera in a scene sees. */
+/* render.h - images of a scene: radiance, depth and face ids. */
 #ifndef REMODEL_SIMULATE_RENDER_H
 #define REMODEL_SIMULATE_RENDER_H
 
@@ -8,23 +8,24 @@
 #include "stages/simulate/simulate_params.h"
 
 struct camera_view {
-    const struct lens *lens;
+    const struct shoot_lens *lens;
     struct vec3 centre;
     struct mat3 world_from_cam;
 };
 
-struct camera_view camera_view_make(const struct shoot *s, const struct shot *shot);
+struct camera_view camera_view_make(const struct shoot *s, const struct shoot_photo *photo);
 
-/* The ray through a place of the picture; false: the lens shows nothing there. */
-bool camera_view_ray(const struct camera_view *v, double u, double w, struct ray *ray);
+/* The ray through the image point (u, w), in pixels; false outside the image circle of the lens. */
+bool camera_view_ray(const struct camera_view *v, double u, double w, struct path_ray *ray);
 
-/* Radiance, 3 channels: the mean over each pixel's square. The random numbers are those of (seed, name), the same for
- * any number of threads. *rays (may be NULL) counts what was traced. ST_DATA: no light reaches the picture. */
+/* Radiance, 3 channels: the mean over each pixel's area. Random numbers are keyed by (seed, name, pixel): the result
+ * is the same for any number of threads. Adds the number of rays traced to *rays (may be NULL). ST_DATA: no light
+ * reaches the camera, the image would be black; ST_NOMEM. The caller releases the image. */
 enum status render_radiance(struct image *radiance, const struct world *w, const struct camera_view *view,
                             const char *name, const struct simulate_params *params, uint64_t *rays, struct err *err);
 
-/* By one ray through each pixel's centre: depth (z along the axis for a pinhole, length of the ray for a fisheye) and
- * the id of the face; 0 where there is none. Planes of width * height. */
+/* Traces one ray through each pixel's centre. Depth is z along the axis for a pinhole, the length of the ray for a
+ * fisheye; ids count faces from 1. Both are 0 where nothing is hit. Arrays of width * height. */
 void render_surfaces(float *depth, uint32_t *ids, const struct world *w, const struct camera_view *view);
 
 #endif

@@ -1,7 +1,7 @@
-/* scene_file.h - a described scene, as scenes/NAME/scene.txt tells it (docs/scenes.md).
+/* scene_file.h - a described scene: scenes/NAME/scene.txt (docs/scenes.md).
  *
- * Metres, z up, degrees as the file has them; radiance is scene-linear Rec.709. Nothing is built yet: geometry.h makes
- * faces of it, lights.h lights. */
+ * Metres, z up, degrees as in the file; radiance is scene-linear Rec.709. This is the description only: geometry.h
+ * builds the faces, lights.h the lights. */
 #ifndef REMODEL_SIMULATE_SCENE_FILE_H
 #define REMODEL_SIMULATE_SCENE_FILE_H
 
@@ -9,22 +9,23 @@
 
 #include "common/base/err.h"
 #include "common/base/provenance.h"
+#include "common/light/brdf.h"
+#include "common/light/sky.h"
 #include "common/math/vec.h"
-#include "stages/simulate/brdf.h"
 #include "stages/simulate/texture.h"
 
-struct named_texture {
+struct scene_texture {
     char *name;
     struct texture texture;
 };
 
-struct material {
+struct scene_material {
     char *name;
     enum brdf_kind kind;
-    int texture;
+    int texture; /* index */
     double ks, shape;
-    double gloss;    /* largest reflectance of the lobe */
-    struct rgb glow; /* radiance that every surface of it emits */
+    double gloss;    /* maximum reflectance of the lobe */
+    struct rgb glow; /* radiance that each surface of the material emits */
 };
 
 enum item_kind {
@@ -37,49 +38,36 @@ enum item_kind {
     ITEM_ROOM,
     ITEM_LAMP_QUAD,
     ITEM_LAMP_DISK,
-    ITEM_KINDS,
 };
 
-/* What stands in the scene, in file order. */
-struct item {
+/* An object of the scene; items keep the order of the file. */
+struct scene_item {
     enum item_kind kind;
     char *name;
-    int material, ceiling;                    /* a lamp has none: -1; ceiling: a room's second one */
-    int wall;                                 /* of an opening: which item */
+    int material, ceiling;                    /* indices; material -1: a lamp; ceiling: a room's second material */
+    int wall;                                 /* opening, window: index of the wall */
     double x0, y0, x1, y1, z0, z1, thickness; /* wall, box, room */
-    double s0, s1;                            /* opening, window: along the wall's centre line; heights in z0, z1 */
-    double turn, scale;                       /* box, mesh */
-    struct vec3 at, u, v;                     /* quad: corner and edges; mesh: at; disk: centre, and its normal in u */
-    double radius, half_angle, exponent;      /* disk */
-    struct rgb radiance;                      /* lamps */
-    struct vec3 (*triangles)[3];              /* mesh, as its file has them; owned */
+    double s0, s1;                       /* opening, window: range along the wall's centre line; heights in z0, z1 */
+    double turn, scale;                  /* box, mesh */
+    struct vec3 at, u, v;                /* quad: corner and edges; mesh: position; disk: centre, and normal in u */
+    double radius, half_angle, exponent; /* disk */
+    struct rgb radiance;                 /* lamps */
+    struct vec3 (*triangles)[3];         /* mesh, in the coordinates of its file; owned */
     int triangle_count;
 };
 
-struct sun {
-    double azimuth, elevation, angular_radius; /* degrees */
-    struct rgb radiance;
-};
-
-struct panorama {
-    uint32_t seed;
-    struct rgb sky, ground;
-};
-
 struct scene {
-    struct named_texture *textures;
-    struct material *materials;
-    struct item *items;
+    struct scene_texture *textures;
+    struct scene_material *materials;
+    struct scene_item *items;
     int texture_count, material_count, item_count;
-    bool has_sun, has_panorama;
-    struct sun sun;
-    struct panorama panorama;
+    struct sky_params sky;
 };
 
-/* Reads FOLDER/FILE and the meshes it names beside it. ST_DATA with file, line, what was found and what was wanted:
- * unknown words, names used twice or not known, sizes that are none, materials that would reflect more than all light,
- * openings outside their wall or through one another. A scene in which nothing emits light is refused. prov (may be
- * NULL) gets what was read. */
+/* Reads FOLDER/FILE and the meshes beside it that it names. ST_DATA names file, line, the word found and the word
+ * expected: unknown words, names that are unknown or used twice, sizes out of range, materials that reflect more light
+ * than they receive, openings outside their wall or overlapping. A scene without a light source is rejected. prov (may
+ * be NULL) gets the hashes of the files. The caller releases *s; on failure there is nothing to release. */
 enum status scene_read(struct scene *s, const char *folder, const char *file, struct provenance *prov, struct err *err);
 void scene_release(struct scene *s);
 

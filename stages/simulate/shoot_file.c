@@ -1,4 +1,8 @@
-/* shoot_file.c - see shoot_file.h. */
+/* shoot_file.c - the reader of cameras.txt, and the lens models.
+ *
+ * A pinhole has (u - cx) / fx = x / z. An equisolid fisheye has r = 2 f sin(theta / 2), theta the angle from the axis,
+ * so that equal solid angles have equal areas. Its series in COLMAP's OPENCV_FISHEYE, whose radius is theta (1 + k1
+ * theta^2 + k2 theta^4 + ...), is that of 2 sin(theta / 2): k = -1/24, 1/1920, -1/322560, 1/92897280. */
 #include "stages/simulate/shoot_file.h"
 
 #include <ctype.h>
@@ -7,14 +11,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/base/scan.h"
 #include "common/base/textfile.h"
+#include "common/math/numbers.h"
+#include "stages/simulate/description.h"
 
-#define PI             3.14159265358979323846
-#define MOST_METRES    1e5
-#define MOST_SIDE      16384
-#define MOST_LINES     10000
-#define MOST_EXPOSURES 16
+#define MAX_SIDE      16384
+#define MAX_LINES     10000
+#define MAX_EXPOSURES 16
 
 struct reader {
     struct shoot *shoot;
@@ -23,45 +26,13 @@ struct reader {
     bool has_sensor, has_quality;
 };
 
-static enum status number(struct reader *r, const char *what, double least, double most, double *value, struct err *err)
-{
-    char *word = NULL;
-    enum status st = textfile_word(&r->file, what, &word, err);
-    if (st) return st;
-    if (!scan_double(word, value) || *value < least || *value > most)
-        return textfile_error(&r->file, err, word, "%s, a number from %g to %g", what, least, most);
-    return ST_OK;
-}
-
-static enum status place(struct reader *r, const char *what, struct vec3 *p, struct err *err)
-{
-    enum status st = number(r, what, -MOST_METRES, MOST_METRES, &p->x, err);
-    if (!st) st = number(r, what, -MOST_METRES, MOST_METRES, &p->y, err);
-    if (!st) st = number(r, what, -MOST_METRES, MOST_METRES, &p->z, err);
-    return st;
-}
-
-/* A new name, letters, digits, _ and -; the caller frees it. */
+/* A name that can begin a file's name: not with _ or -. */
 static enum status new_name(struct reader *r, char **name, struct err *err)
 {
-    char *word = NULL;
-    enum status st = textfile_word(&r->file, "a name", &word, err);
-    if (st) return st;
-    bool good = isalnum((unsigned char)*word) && strlen(word) <= 64;
-    for (const char *p = word; *p; p++) good = good && (isalnum((unsigned char)*p) || *p == '_' || *p == '-');
-    if (!good) return textfile_error(&r->file, err, word, "a name of at most 64 letters, digits, _ and -");
-    *name = strdup(word);
-    return *name ? ST_OK : err_nomem(err, "a name", strlen(word) + 1);
-}
-
-static enum status add(struct reader *r, void **list, int count, int most, size_t size, struct err *err)
-{
-    if (count == most) return textfile_error(&r->file, err, "one more", "at most %d such lines", most);
-    if (count & (count - 1)) return ST_OK;
-    void *grown = realloc(*list, (size_t)(count ? 2 * count : 1) * size);
-    if (!grown) return err_nomem(err, "a list of photos", (size_t)(count ? 2 * count : 1) * size);
-    *list = grown;
-    return ST_OK;
+    enum status st = description_name(&r->file, name, err);
+    if (!st && !isalnum((unsigned char)**name))
+        st = textfile_error(&r->file, err, *name, "a name of letters, digits, _ and - that does not begin with _ or -");
+    return st;
 }
 
 static int find_lens(const struct shoot *s, const char *name)
@@ -71,22 +42,22 @@ static int find_lens(const struct shoot *s, const char *name)
     return -1;
 }
 
-static enum status read_lens_numbers(struct reader *r, struct lens *l, struct err *err)
+static enum status read_lens_numbers(struct reader *r, struct shoot_lens *l, struct err *err)
 {
     int64_t width = 0, height = 0;
     double farthest = 0;
-    const bool pinhole = l->kind == LENS_PINHOLE;
-    enum status st = textfile_int(&r->file, "a width in pixels", 1, MOST_SIDE, &width, err);
-    if (!st) st = textfile_int(&r->file, "a height in pixels", 1, MOST_SIDE, &height, err);
-    if (!st) st = number(r, "a focal length in pixels", 1, 1e6, &l->fx, err);
-    if (!st && pinhole) st = number(r, "a focal length in pixels", 1, 1e6, &l->fy, err);
-    if (!st) st = number(r, "the principal point's x in pixels", 0, (double)width, &l->cx, err);
-    if (!st) st = number(r, "the principal point's y in pixels", 0, (double)height, &l->cy, err);
+    const bool pinhole = l->kind == SHOOT_PINHOLE;
+    enum status st = textfile_int(&r->file, "a width in pixels", 1, MAX_SIDE, &width, err);
+    if (!st) st = textfile_int(&r->file, "a height in pixels", 1, MAX_SIDE, &height, err);
+    if (!st) st = description_number(&r->file, "a focal length in pixels", 1, 1e6, &l->fx, err);
+    if (!st && pinhole) st = description_number(&r->file, "a focal length in pixels", 1, 1e6, &l->fy, err);
+    if (!st) st = description_number(&r->file, "the principal point's x in pixels", 0, (double)width, &l->cx, err);
+    if (!st) st = description_number(&r->file, "the principal point's y in pixels", 0, (double)height, &l->cy, err);
     if (st) return st;
     if (!pinhole) l->fy = l->fx;
     l->width = (int)fmax(1, round((double)width * r->scale));
     l->height = (int)fmax(1, round((double)height * r->scale));
-    /* by what the rounded sizes really are, so that the field of view stays */
+    /* the scale that rounding really gave, so that the field of view stays the same */
     const double sx = l->width / (double)width, sy = l->height / (double)height;
     l->fx *= sx, l->cx *= sx, l->fy *= sy, l->cy *= sy;
     if (!pinhole) l->fx = l->fy = (l->fx + l->fy) / 2;
@@ -104,21 +75,19 @@ static enum status read_lens_numbers(struct reader *r, struct lens *l, struct er
 static enum status read_lens(struct reader *r, struct err *err)
 {
     struct shoot *s = r->shoot;
-    struct lens made = {0};
+    struct shoot_lens made = {0};
     char *kind = NULL;
-    void *list = s->lenses;
     enum status st = new_name(r, &made.name, err);
     if (!st && find_lens(s, made.name) >= 0)
         st = textfile_error(&r->file, err, made.name, "a name that no other lens has");
     if (!st) st = textfile_word(&r->file, "a kind of lens: pinhole or equisolid", &kind, err);
     if (!st && strcmp(kind, "pinhole") && strcmp(kind, "equisolid"))
         st = textfile_error(&r->file, err, kind, "a kind of lens: pinhole or equisolid");
-    if (!st) made.kind = strcmp(kind, "pinhole") ? LENS_EQUISOLID : LENS_PINHOLE;
+    if (!st) made.kind = strcmp(kind, "pinhole") ? SHOOT_EQUISOLID : SHOOT_PINHOLE;
     if (!st) st = read_lens_numbers(r, &made, err);
     if (!st) st = textfile_end(&r->file, err);
-    if (!st) st = add(r, &list, s->lens_count, MOST_LINES, sizeof made, err);
+    if (!st) st = description_append(&r->file, &s->lenses, s->lens_count, MAX_LINES, sizeof made, err);
     if (!st) {
-        s->lenses = list;
         s->lenses[s->lens_count++] = made;
     } else {
         free(made.name);
@@ -126,32 +95,31 @@ static enum status read_lens(struct reader *r, struct err *err)
     return st;
 }
 
-static enum status read_exposure(struct reader *r, struct exposures *e, struct err *err)
+static enum status read_exposure(struct reader *r, struct shoot_exposure_list *e, struct err *err)
 {
-    struct exposure made = {0, 8, 100, 1};
-    void *list = e->list;
-    enum status st = number(r, "an exposure time in seconds", 1e-6, 1e4, &made.seconds, err);
+    struct shoot_exposure made = {0, 8, 100, 1};
+    enum status st = description_number(&r->file, "an exposure time in seconds", 1e-6, 1e4, &made.seconds, err);
     if (!st && textfile_more(&r->file)) {
-        st = number(r, "an f-number", 0.5, 128, &made.f_number, err);
-        if (!st) st = number(r, "an ISO speed", 1, 65535, &made.iso, err);
+        st = description_number(&r->file, "an f-number", 0.5, 128, &made.f_number, err);
+        if (!st) st = description_number(&r->file, "an ISO speed", 1, 65535, &made.iso, err);
     }
-    if (!st && textfile_more(&r->file)) st = number(r, "a filter's factor", 1, 1e9, &made.filter, err);
+    if (!st && textfile_more(&r->file))
+        st = description_number(&r->file, "a filter's neutral-density factor", 1, 1e9, &made.filter, err);
     if (!st) st = textfile_end(&r->file, err);
-    if (!st) st = add(r, &list, e->count, MOST_EXPOSURES, sizeof made, err);
+    if (!st) st = description_append(&r->file, &e->list, e->count, MAX_EXPOSURES, sizeof made, err);
     if (st) return st;
-    e->list = list;
     e->list[e->count++] = made;
     return ST_OK;
 }
 
 static enum status read_sensor(struct reader *r, struct err *err)
 {
-    struct sensor *sensor = &r->shoot->sensor;
+    struct shoot_sensor *sensor = &r->shoot->sensor;
     int64_t seed = 0;
-    if (r->has_sensor) return textfile_error(&r->file, err, "a second sensor", "one");
-    enum status st = number(r, "a full well in electrons", 10, 1e9, &sensor->full_well, err);
-    if (!st) st = number(r, "a read noise in electrons", 0, 1e6, &sensor->read_noise, err);
-    if (!st) st = number(r, "a gain", 1e-9, 1e9, &sensor->gain, err);
+    if (r->has_sensor) return textfile_error(&r->file, err, "a second sensor line", "one");
+    enum status st = description_number(&r->file, "a full well in electrons", 10, 1e9, &sensor->full_well, err);
+    if (!st) st = description_number(&r->file, "a read noise in electrons", 0, 1e6, &sensor->read_noise, err);
+    if (!st) st = description_number(&r->file, "a gain", 1e-9, 1e9, &sensor->gain, err);
     if (!st) st = textfile_int(&r->file, "a seed", 0, INT64_MAX, &seed, err);
     if (!st) st = textfile_end(&r->file, err);
     sensor->seed = (uint64_t)seed;
@@ -162,7 +130,7 @@ static enum status read_sensor(struct reader *r, struct err *err)
 static enum status read_quality(struct reader *r, struct err *err)
 {
     int64_t quality = 0;
-    if (r->has_quality) return textfile_error(&r->file, err, "a second quality", "one");
+    if (r->has_quality) return textfile_error(&r->file, err, "a second quality line", "one");
     enum status st = textfile_int(&r->file, "a JPEG quality", 1, 100, &quality, err);
     if (!st) st = textfile_end(&r->file, err);
     r->shoot->quality = (int)quality;
@@ -170,7 +138,7 @@ static enum status read_quality(struct reader *r, struct err *err)
     return st;
 }
 
-/* z up in the world; a camera that looks straight up or down has y of the world at its top. */
+/* World z points up in the image; for a camera that looks straight up or down, world y does. */
 static struct pose pose_looking(struct vec3 at, struct vec3 look_at, double roll)
 {
     const struct vec3 forward = vec3_normalize(vec3_sub(look_at, at));
@@ -181,37 +149,35 @@ static struct pose pose_looking(struct vec3 at, struct vec3 look_at, double roll
     const struct vec3 y = vec3_add(vec3_scale(right, -s), vec3_scale(down, c));
     const struct mat3 turn = {{{x.x, x.y, x.z}, {y.x, y.y, y.z}, {forward.x, forward.y, forward.z}}};
     const struct quat q = quat_from_mat3(turn);
-    /* the translation is of the rotation that is written */
+    /* from the rounded rotation, so that the pose written to files has this exact centre */
     return (struct pose){q, vec3_scale(mat3_apply(mat3_from_quat(q), at), -1)};
 }
 
-static enum status read_shot(struct reader *r, bool reference, struct err *err)
+static enum status read_photo(struct reader *r, bool reference, struct err *err)
 {
     struct shoot *s = r->shoot;
-    struct shot made = {.reference = reference};
+    struct shoot_photo made = {.reference = reference};
     char *word = NULL;
-    void *list = s->shots;
     enum status st = new_name(r, &made.name, err);
     if (!st && shoot_find(s, made.name) >= 0)
         st = textfile_error(&r->file, err, made.name, "a name that no other photo has");
     if (!st) st = textfile_word(&r->file, "the name of a lens above", &word, err);
     if (!st && (made.lens = find_lens(s, word)) < 0)
         st = textfile_error(&r->file, err, word, "the name of a lens above");
-    if (!st) st = place(r, "where the camera is", &made.at, err);
-    if (!st) st = place(r, "where it looks", &made.look_at, err);
+    if (!st) st = description_point(&r->file, "the camera's position", &made.at, err);
+    if (!st) st = description_point(&r->file, "the point that the camera looks at", &made.look_at, err);
     if (!st && vec3_length(vec3_sub(made.look_at, made.at)) < 1e-9)
-        st = textfile_error(&r->file, err, "the camera's own place", "another place to look at");
+        st = textfile_error(&r->file, err, "the camera's own position", "another point to look at");
     if (!st && textfile_more(&r->file)) {
         st = textfile_word(&r->file, "roll", &word, err);
         if (!st && strcmp(word, "roll")) st = textfile_error(&r->file, err, word, "roll or the end of the line");
-        if (!st) st = number(r, "an angle in degrees", -360, 360, &made.roll, err);
+        if (!st) st = description_number(&r->file, "an angle in degrees", -360, 360, &made.roll, err);
     }
     if (!st) st = textfile_end(&r->file, err);
-    if (!st) st = add(r, &list, s->shot_count, MOST_LINES, sizeof made, err);
+    if (!st) st = description_append(&r->file, &s->photos, s->photo_count, MAX_LINES, sizeof made, err);
     if (!st) {
         made.cam_from_world = pose_looking(made.at, made.look_at, made.roll);
-        s->shots = list;
-        s->shots[s->shot_count++] = made;
+        s->photos[s->photo_count++] = made;
     } else {
         free(made.name);
     }
@@ -221,43 +187,29 @@ static enum status read_shot(struct reader *r, bool reference, struct err *err)
 static enum status read_line(struct reader *r, struct err *err)
 {
     char *word = NULL;
-    enum status st = textfile_word(&r->file, "a line of a shoot", &word, err);
+    enum status st = textfile_word(&r->file, "a line of cameras.txt", &word, err);
     if (st) return st;
     if (!strcmp(word, "lens")) return read_lens(r, err);
     if (!strcmp(word, "exposure")) return read_exposure(r, &r->shoot->exposures[0], err);
     if (!strcmp(word, "reference-exposure")) return read_exposure(r, &r->shoot->exposures[1], err);
     if (!strcmp(word, "sensor")) return read_sensor(r, err);
     if (!strcmp(word, "quality")) return read_quality(r, err);
-    if (!strcmp(word, "photo")) return read_shot(r, false, err);
-    if (!strcmp(word, "reference")) return read_shot(r, true, err);
+    if (!strcmp(word, "photo")) return read_photo(r, false, err);
+    if (!strcmp(word, "reference")) return read_photo(r, true, err);
     return textfile_error(&r->file, err, word,
                           "one of lens, exposure, reference-exposure, sensor, quality, photo, reference");
-}
-
-static enum status read_header(struct reader *r, struct err *err)
-{
-    char *word = NULL;
-    int64_t version = 0;
-    if (!textfile_next(&r->file))
-        return err_set(err, ST_DATA, "%s is empty, wanted cameras, which begin with the line: remodel-shoot 1.",
-                       r->file.path);
-    enum status st = textfile_word(&r->file, "remodel-shoot", &word, err);
-    if (!st && strcmp(word, "remodel-shoot")) st = textfile_error(&r->file, err, word, "remodel-shoot");
-    if (!st) st = textfile_int(&r->file, "the format's version", 1, 1, &version, err);
-    if (!st) st = textfile_end(&r->file, err);
-    return st;
 }
 
 static enum status check_complete(const struct reader *r, struct err *err)
 {
     const char *missing = NULL;
     int photos = 0;
-    for (int i = 0; i < r->shoot->shot_count; i++) photos += !r->shoot->shots[i].reference;
+    for (int i = 0; i < r->shoot->photo_count; i++) photos += !r->shoot->photos[i].reference;
     if (!photos) missing = "photo NAME LENS X Y Z LOOK_X LOOK_Y LOOK_Z";
     if (!r->has_sensor) missing = "sensor FULL_WELL READ_NOISE GAIN SEED";
     if (!r->shoot->exposures[0].count) missing = "exposure SECONDS";
     if (!missing) return ST_OK;
-    return err_set(err, ST_DATA, "%s lacks a line; add: %s.", r->file.path, missing);
+    return err_set(err, ST_DATA, "%s is incomplete; add a line: %s.", r->file.path, missing);
 }
 
 enum status shoot_read(struct shoot *s, const char *folder, double scale, struct provenance *prov, struct err *err)
@@ -267,7 +219,7 @@ enum status shoot_read(struct shoot *s, const char *folder, double scale, struct
     *s = (struct shoot){.quality = 94};
     if (asprintf(&path, "%s/cameras.txt", folder) < 0) return err_nomem(err, "a file name", strlen(folder));
     enum status st = textfile_open(&r.file, path, err);
-    if (!st) st = read_header(&r, err);
+    if (!st) st = description_header(&r.file, "remodel-shoot", err);
     while (!st && textfile_next(&r.file)) st = read_line(&r, err);
     if (!st) st = check_complete(&r, err);
     if (!st && prov) st = provenance_add_file(prov, "cameras.txt", path, err);
@@ -281,31 +233,31 @@ void shoot_release(struct shoot *s)
 {
     if (!s) return;
     for (int i = 0; i < s->lens_count; i++) free(s->lenses[i].name);
-    for (int i = 0; i < s->shot_count; i++) free(s->shots[i].name);
+    for (int i = 0; i < s->photo_count; i++) free(s->photos[i].name);
     free(s->lenses);
     for (int i = 0; i < 2; i++) free(s->exposures[i].list);
-    free(s->shots);
+    free(s->photos);
     *s = (struct shoot){0};
 }
 
-const struct exposures *shoot_exposures(const struct shoot *s, const struct shot *shot)
+const struct shoot_exposure_list *shoot_exposures(const struct shoot *s, const struct shoot_photo *photo)
 {
-    return &s->exposures[shot->reference && s->exposures[1].count];
+    return &s->exposures[photo->reference && s->exposures[1].count];
 }
 
 int shoot_find(const struct shoot *s, const char *name)
 {
-    for (int i = 0; i < s->shot_count; i++)
-        if (!strcmp(s->shots[i].name, name)) return i;
+    for (int i = 0; i < s->photo_count; i++)
+        if (!strcmp(s->photos[i].name, name)) return i;
     return -1;
 }
 
-/* -------------------------------------------------------------------------------------------------------------- lenses */
+/* ----------------------------------------------------------------------------------------------------------- lenses */
 
-bool lens_ray(const struct lens *l, double u, double v, struct vec3 *ray)
+bool shoot_lens_ray(const struct shoot_lens *l, double u, double v, struct vec3 *ray)
 {
     const double x = (u - l->cx) / l->fx, y = (v - l->cy) / l->fy;
-    if (l->kind == LENS_PINHOLE) {
+    if (l->kind == SHOOT_PINHOLE) {
         *ray = vec3_normalize(vec3_make(x, y, 1));
         return true;
     }
@@ -317,10 +269,10 @@ bool lens_ray(const struct lens *l, double u, double v, struct vec3 *ray)
     return true;
 }
 
-bool lens_project(const struct lens *l, struct vec3 p, double *u, double *v)
+bool shoot_lens_project(const struct shoot_lens *l, struct vec3 p, double *u, double *v)
 {
     double scale;
-    if (l->kind == LENS_PINHOLE) {
+    if (l->kind == SHOOT_PINHOLE) {
         if (!(p.z > 0)) return false;
         scale = 1 / p.z;
     } else {
@@ -333,10 +285,10 @@ bool lens_project(const struct lens *l, struct vec3 p, double *u, double *v)
     return true;
 }
 
-struct camera lens_camera(const struct lens *l)
+struct camera shoot_lens_camera(const struct shoot_lens *l)
 {
     struct camera c = {CAMERA_PINHOLE, l->width, l->height, {l->fx, l->fy, l->cx, l->cy}};
-    if (l->kind == LENS_EQUISOLID) {
+    if (l->kind == SHOOT_EQUISOLID) {
         const double k[4] = {-1.0 / 24, 1.0 / 1920, -1.0 / 322560, 1.0 / 92897280};
         c.model = CAMERA_OPENCV_FISHEYE;
         for (int i = 0; i < 4; i++) c.params[4 + i] = k[i];

@@ -1,4 +1,5 @@
-/* shoot_file.h - what the photographer did, as scenes/NAME/cameras.txt tells it (docs/scenes.md), and the lenses.
+/* shoot_file.h - lenses, exposures, sensor and camera positions of a described scene: scenes/NAME/cameras.txt
+ * (docs/scenes.md).
  *
  * Camera axes: x right, y down, z forward; pixel (x, y) has its centre at (x + 0.5, y + 0.5). */
 #ifndef REMODEL_SIMULATE_SHOOT_FILE_H
@@ -11,59 +12,63 @@
 #include "common/base/provenance.h"
 #include "common/capture/camera.h"
 
-enum lens_kind { LENS_PINHOLE, LENS_EQUISOLID };
+enum shoot_lens_kind { SHOOT_PINHOLE, SHOOT_EQUISOLID };
 
-struct lens {
+struct shoot_lens {
     char *name;
-    enum lens_kind kind;
+    enum shoot_lens_kind kind;
     int width, height;
     double fx, fy, cx, cy; /* px; equisolid: r = 2 fx sin(theta / 2), fy = fx */
 };
 
-struct exposure {
-    double seconds, f_number, iso, filter; /* filter: a neutral one divides the light by this */
+struct shoot_exposure {
+    double seconds, f_number, iso, filter; /* filter: a neutral-density filter divides the light by this factor */
 };
 
-struct sensor {
+struct shoot_exposure_list {
+    struct shoot_exposure *list;
+    int count;
+};
+
+struct shoot_sensor {
     double full_well, read_noise; /* electrons */
-    double gain;                  /* signal of radiance 1 in 1 s at f/8, ISO 100; 1 is white */
+    double gain;                  /* signal of radiance 1 after 1 s at f/8, ISO 100; signal 1 is white */
     uint64_t seed;
 };
 
-struct shot {
+/* A photo, or a lighting reference image. */
+struct shoot_photo {
     char *name;
-    int lens;
-    bool reference; /* a lighting reference image */
+    int lens; /* index */
+    bool reference;
     struct vec3 at, look_at;
-    double roll; /* degrees, clockwise as the photographer sees it */
+    double roll; /* degrees, clockwise as seen by the photographer */
     struct pose cam_from_world;
 };
 
 struct shoot {
-    struct lens *lenses;
-    struct exposures {
-        struct exposure *list;
-        int count;
-    } exposures[2]; /* of photos, of reference images */
-    struct shot *shots;
-    int lens_count, shot_count;
-    struct sensor sensor;
-    int quality; /* of the JPEGs */
+    struct shoot_lens *lenses;
+    struct shoot_exposure_list exposures[2]; /* of photos, of reference images */
+    struct shoot_photo *photos;
+    int lens_count, photo_count;
+    struct shoot_sensor sensor;
+    int quality; /* of the JPEGs, 1..100 */
 };
 
-/* Reads FOLDER/cameras.txt; sizes and focal lengths are multiplied by `scale`. ST_DATA with file, line, what was found
- * and what was wanted. */
+/* Reads FOLDER/cameras.txt; image sizes and focal lengths are multiplied by `scale`. ST_DATA names file, line, the word
+ * found and the word expected. The caller releases *s; on failure there is nothing to release. prov may be NULL. */
 enum status shoot_read(struct shoot *s, const char *folder, double scale, struct provenance *prov, struct err *err);
 void shoot_release(struct shoot *s);
-const struct exposures *shoot_exposures(const struct shoot *s, const struct shot *shot);
-int shoot_find(const struct shoot *s, const char *name); /* -1: none */
+/* Reference images without exposures of their own have those of the photos. */
+const struct shoot_exposure_list *shoot_exposures(const struct shoot *s, const struct shoot_photo *photo);
+int shoot_find(const struct shoot *s, const char *name); /* index of a photo or reference image; -1: none */
 
-/* Pixel -> unit ray in camera coordinates, and back. False: an equisolid lens shows nothing there; a pinhole sees
- * nothing behind it. */
-bool lens_ray(const struct lens *l, double u, double v, struct vec3 *ray);
-bool lens_project(const struct lens *l, struct vec3 p, double *u, double *v);
+/* Pixel to unit ray in camera coordinates, and back. False outside the image circle of an equisolid lens, and behind a
+ * pinhole. */
+bool shoot_lens_ray(const struct shoot_lens *l, double u, double v, struct vec3 *ray);
+bool shoot_lens_project(const struct shoot_lens *l, struct vec3 p, double *u, double *v);
 
-/* COLMAP's model of it: PINHOLE, or OPENCV_FISHEYE with the series of 2 sin(theta / 2). */
-struct camera lens_camera(const struct lens *l);
+/* The lens as a COLMAP camera: PINHOLE, or OPENCV_FISHEYE with the series of 2 sin(theta / 2). */
+struct camera shoot_lens_camera(const struct shoot_lens *l);
 
 #endif

@@ -4,15 +4,15 @@
 
 #include "common/base/param.h"
 
-/* name, type, default, least, most, unit, help */
-#define SIMULATE_PARAMS(X)                                                                                        \
-    X(samples, int, 16, 1, 65536, "", "light paths for every pixel of a photo; the noise halves with four times") \
-    X(max_bounces, int, 0, 0, 1000, "", "reflections that are followed; 0: all of them, by Russian roulette")     \
-    X(scale, double, 1, 0.02, 16, "", "size of the photos, as a multiple of what cameras.txt says")               \
-    X(seed, int, 1, 0, 2147483647, "", "of the light paths; the noise of the sensor has its own in cameras.txt")  \
-    X(truth, choice, "yes", 0, 0, "yes|no", "radiance, depth and faces of every photo")                           \
-    X(irradiance_points, int, 120, 0, 100000, "", "places at which the true irradiance is found")                 \
-    X(irradiance_samples, int, 16384, 1, 65536, "", "light paths for each of them")
+/* name, type, default, min, max, unit, help */
+#define SIMULATE_PARAMS(X)                                                                                             \
+    X(samples, int, 16, 1, 65536, "", "light paths per pixel of a photo; four times as many halve the noise")          \
+    X(max_bounces, int, 0, 0, 1000, "", "reflections to follow; 0: no limit, paths end by Russian roulette")           \
+    X(scale, double, 1, 0.02, 16, "", "size of the photos, as a multiple of the sizes in cameras.txt")                 \
+    X(seed, int, 1, 0, 2147483647, "", "seed of the light paths; the sensor noise has its own seed in cameras.txt")    \
+    X(truth, choice, "yes", 0, 0, "yes|no", "write the true radiance, depth and face ids of each photo")               \
+    X(irradiance_points, int, 120, 0, 100000, "", "number of points at which to compute the true irradiance; 0: none") \
+    X(irradiance_samples, int, 16384, 1, 65536, "", "light paths per irradiance point")
 
 struct simulate_params {
     SIMULATE_PARAMS(PARAM_FIELD)

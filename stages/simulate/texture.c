@@ -1,15 +1,17 @@
-/* texture.c - see texture.h.
+/* texture.c - procedural textures from cells and noise.
  *
- * Everything is made of cells (a plank, a brick, a book, a poster) whose hash decides their look, and of value noise.
- * Printed things hold marks of many sizes that never repeat, which is what feature matching lives on. */
+ * A surface is divided into cells (planks, bricks, books, posters); a hash of the cell's indices decides its look, and
+ * value noise adds detail. Posters and books carry marks of many sizes that never repeat, for feature matching. */
 #include "stages/simulate/texture.h"
 
 #include <math.h>
 
-#include "stages/simulate/fast.h"
-#include "stages/simulate/noise.h"
+#include "common/light/fast.h"
+#include "common/light/noise.h"
+#include "common/math/numbers.h"
 
-#define SOFT 0.0015 /* m: half the width of an edge */
+#define PI_15 3.14159265358979 /* 15 digits: PI would change the last bits of textures */
+#define SOFT  0.0015           /* m: half the width of a softened edge */
 
 /* 1 inside [from, to], 0 outside, soft at both ends. */
 static double band(double from, double to, double x)
@@ -19,15 +21,16 @@ static double band(double from, double to, double x)
 
 static struct rgb varied(struct rgb c, double by)
 {
-    return rgb_make(clip(c.r * (1 + by), 0, 1), clip(c.g * (1 + by), 0, 1), clip(c.b * (1 + by), 0, 1));
+    return rgb_make(clamp(c.r * (1 + by), 0, 1), clamp(c.g * (1 + by), 0, 1), clamp(c.b * (1 + by), 0, 1));
 }
 
-/* A saturated or a pale colour of a hash: what paper, cloth and book covers have. */
+/* A colour for paper, cloth or a book cover, saturated or pale, chosen by a hash. */
 static struct rgb dye(uint32_t hash)
 {
     const double hue = 6 * noise_unit(hash, 40), dark = noise_unit(hash, 41), pure = 0.25 + 0.7 * noise_unit(hash, 42);
     const double value = 0.08 + 0.72 * dark * dark;
-    const struct rgb c = {clip(fabs(hue - 3) - 1, 0, 1), clip(2 - fabs(hue - 2), 0, 1), clip(2 - fabs(hue - 4), 0, 1)};
+    const struct rgb c = {clamp(fabs(hue - 3) - 1, 0, 1), clamp(2 - fabs(hue - 2), 0, 1),
+                          clamp(2 - fabs(hue - 4), 0, 1)};
     return rgb_scale(rgb_mix(rgb_grey(1), c, pure), value);
 }
 
@@ -39,7 +42,7 @@ static struct rgb checker(const struct texture *t, double u, double v)
     return rgb_mix(t->colour[0], t->colour[1], 0.5 - 0.5 * sa * sb);
 }
 
-/* Planks along u, size wide and 8 to 14 sizes long, each row shifted; grain, rings and knots run along them. */
+/* Planks along u, `size` wide and 8 to 14 times as long, each row shifted, with grain, rings and knots along them. */
 static struct rgb wood(const struct texture *t, uint32_t seed, double u, double v)
 {
     const double wide = t->size[0];
@@ -51,13 +54,13 @@ static struct rgb wood(const struct texture *t, uint32_t seed, double u, double 
 
     const double x = du / wide + 31 * noise_unit(plank, 0), y = dv / wide + 17 * noise_unit(plank, 1);
     const double warp = noise_value(plank, 0.45 * x, 1.3 * y);
-    const double rings = 0.5 + 0.5 * sin(2 * 3.14159265358979 * (3.5 * y + 1.6 * warp + 0.15 * x));
+    const double rings = 0.5 + 0.5 * sin(2 * PI_15 * (3.5 * y + 1.6 * warp + 0.15 * x));
     const double grain = noise_value(plank + 9, 1.8 * x, 26 * y), fine = noise_value(plank + 11, 7 * x, 70 * y);
     const double knot = noise_value(plank + 21, 1.1 * x, 2.2 * y);
     double dark = 0.15 + 0.3 * rings * rings + 0.22 * grain + 0.12 * fine + 0.5 * (noise_unit(plank, 2) - 0.5);
     dark += 0.7 * smooth_step(0.72, 0.95, knot);
     const double seam = 1 - band(SOFT, wide - SOFT, dv) * band(SOFT, length - SOFT, du);
-    return rgb_scale(rgb_mix(t->colour[0], t->colour[1], clip(dark, 0, 1)), 1 - 0.75 * seam);
+    return rgb_scale(rgb_mix(t->colour[0], t->colour[1], clamp(dark, 0, 1)), 1 - 0.75 * seam);
 }
 
 static struct rgb brick(const struct texture *t, uint32_t seed, double u, double v)
@@ -86,7 +89,7 @@ static struct rgb plaster(const struct texture *t, uint32_t seed, double u, doub
     return varied(t->colour[0], t->size[1] * (1.4 * coarse - 0.8 * specks));
 }
 
-/* How much of a mark of a print covers the place (x, y), in units of the print's smaller side. */
+/* Coverage (0..1) of the point (x, y) by one mark of a print. Lengths are in units of the print's smaller side. */
 static double mark_cover(uint32_t hash, double x, double y, double wide, double high, double soft)
 {
     const double dx = x - wide * noise_unit(hash, 0), dy = y - high * noise_unit(hash, 1);
@@ -101,28 +104,29 @@ static double mark_cover(uint32_t hash, double x, double y, double wide, double 
         if (hash & 64) d = fabs(d) - 0.25 * size;
         break;
     case 1: /* box */
-        d = most(fabs(a) - size, fabs(b) - size * (0.2 + 0.8 * noise_unit(hash, 5)));
+        d = fast_max(fabs(a) - size, fabs(b) - size * (0.2 + 0.8 * noise_unit(hash, 5)));
         break;
     case 2: /* triangle */
-        d = most(fabs(a) * 0.866 + b * 0.5, -b) - 0.5 * size;
+        d = fast_max(fabs(a) * 0.866 + b * 0.5, -b) - 0.5 * size;
         break;
     default: /* line */
-        d = most(fabs(a) - 2.2 * size, fabs(b) - 0.012 - 0.02 * noise_unit(hash, 5));
+        d = fast_max(fabs(a) - 2.2 * size, fabs(b) - 0.012 - 0.02 * noise_unit(hash, 5));
         break;
     }
     return 1 - smooth_step(-soft, soft, d);
 }
 
-/* Rows of blocks as wide as letters and blanks are: 1 where there is ink. x runs along the row, both in letter heights. */
+/* Ink (0..1) of rows of blocks that look like letters from afar. x runs along the row; x and y are in letter
+ * heights. */
 static double lettering(uint32_t seed, double x, double y, double soft)
 {
     const double line = floor(y / 1.7), dy = y - 1.7 * line, cell = floor(x / 0.72), dx = x - 0.72 * cell;
     const uint32_t h = noise_hash(seed, noise_floor(cell), noise_floor(line));
     if (dy > 1 || noise_unit(h, 0) < 0.17) return 0;
     const double bottom = noise_unit(h, 1) < 0.3 ? 0 : 0.25, top = noise_unit(h, 2) < 0.5 ? 1 : 0.7;
-    const double box = most(fabs(dx - 0.3) - 0.26, most(bottom - dy, dy - top));
-    const double hole =
-        most(fabs(dx - 0.3 - 0.12 * (noise_unit(h, 3) - 0.5)) - 0.1, fabs(dy - 0.5) - 0.08 - 0.3 * noise_unit(h, 4));
+    const double box = fast_max(fabs(dx - 0.3) - 0.26, fast_max(bottom - dy, dy - top));
+    const double hole = fast_max(fabs(dx - 0.3 - 0.12 * (noise_unit(h, 3) - 0.5)) - 0.1,
+                                 fabs(dy - 0.5) - 0.08 - 0.3 * noise_unit(h, 4));
     return (1 - smooth_step(-soft, soft, box)) * smooth_step(-soft, soft, hole);
 }
 
@@ -130,7 +134,7 @@ static double lettering(uint32_t seed, double x, double y, double soft)
 
 static struct rgb print(const struct texture *t, uint32_t seed, double u, double v)
 {
-    const double wide = t->size[0], high = t->size[1], unit = least(wide, high), soft = SOFT / unit;
+    const double wide = t->size[0], high = t->size[1], unit = fast_min(wide, high), soft = SOFT / unit;
     const uint32_t sheet = noise_hash(seed, noise_floor(u / wide), noise_floor(v / high));
     const double du = u - wide * floor(u / wide), dv = v - high * floor(v / high);
     const double x = du / unit, y = dv / unit, w = wide / unit, h = high / unit, border = 0.05;
@@ -144,7 +148,7 @@ static struct rgb print(const struct texture *t, uint32_t seed, double u, double
         const double cover = mark_cover(hash, x, y, w, h, soft);
         if (cover > 0) c = rgb_mix(c, varied(dye(hash), 0.3 * noise_value(hash, 24 * x, 24 * y)), cover);
     }
-    /* a block of text on pale ground, low on the sheet, with a headline above it */
+    /* a block of text on a pale ground in the lower part of the sheet, with a headline above it */
     const double left = 0.12 + 0.25 * noise_unit(sheet, 7), text_wide = 0.4 * w, top = 0.32 * h;
     if (x > left && x < left + text_wide && y > 0.1 && y < top) {
         const double letter = y > top - 0.075 ? 0.05 : 0.018;
@@ -154,7 +158,8 @@ static struct rgb print(const struct texture *t, uint32_t seed, double u, double
     return rgb_mix(rgb_grey(0.75), c, paper);
 }
 
-/* Spines side by side, 2 to 6 cm wide, a row as high as the texture, with gaps above the lower ones. */
+/* Spines of books side by side, 2 to 6 cm wide; each row has the height of the texture, with dark gaps above lower
+ * books. */
 static struct rgb books(const struct texture *t, uint32_t seed, double u, double v)
 {
     const double high = t->size[1], pitch = 0.04;
@@ -177,14 +182,13 @@ static struct rgb books(const struct texture *t, uint32_t seed, double u, double
     const struct rgb second = dye(hash + 1);
     const double low = tall * (0.1 + 0.1 * noise_unit(hash, 2)), upper = tall * (0.8 + 0.1 * noise_unit(hash, 3));
     c = rgb_mix(c, second, band(low, low + 0.012, y) + band(upper, upper + 0.01, y));
-    const double letter = least(0.55 * wide, 0.022), begin = low + 0.03,
+    const double letter = fast_min(0.55 * wide, 0.022), begin = low + 0.03,
                  end = upper - 0.02 - 0.3 * tall * noise_unit(hash, 4);
     if (y > begin && y < end && fabs(x - wide / 2) < letter / 2) {
         const double ink = lettering(hash + 2, (y - begin) / letter, (x - wide / 2) / letter + 0.5, SOFT / letter);
         c = rgb_mix(c, noise_unit(hash, 41) < 0.6 ? rgb_make(0.75, 0.7, 0.5) : rgb_grey(0.04), ink);
     }
-    const double rounded =
-        0.55 + 0.45 * sin(3.14159265358979 * clip(x / wide, 0, 1)); /* a spine darkens at its edges */
+    const double rounded = 0.55 + 0.45 * sin(PI_15 * clamp(x / wide, 0, 1)); /* spines are darker at their edges */
     return rgb_scale(c, rounded * band(0.0015, wide - 0.0015, x));
 }
 
@@ -211,12 +215,12 @@ struct rgb texture_at(const struct texture *t, uint32_t face, double u, double v
 
 double texture_bound(const struct texture *t)
 {
-    const double strongest = most(rgb_most(t->colour[0]), rgb_most(t->colour[1]));
+    const double strongest = fast_max(rgb_max(t->colour[0]), rgb_max(t->colour[1]));
     switch (t->kind) {
     case TEXTURE_BRICK:
-        return least(1, 1.8 * strongest);
+        return fast_min(1, 1.8 * strongest);
     case TEXTURE_PLASTER:
-        return least(1, rgb_most(t->colour[0]) * (1 + 1.4 * t->size[1]));
+        return fast_min(1, rgb_max(t->colour[0]) * (1 + 1.4 * t->size[1]));
     case TEXTURE_PRINT:
     case TEXTURE_BOOKS:
         return 1;

@@ -1,15 +1,14 @@
-/* texture.h - procedural textures: the colour (albedo, 0..1) of a face at a place on it.
+/* texture.h - procedural textures: the albedo (0..1) of a face at a point on it.
  *
- * u and v are metres along the face's axes from its corner, v upwards where the face stands. A texture is a fixed
- * function of the place, the same for every ray that meets it; edges are softened over a millimetre or two, and what is
- * finer than a pixel is averaged by the samples of that pixel. A number that belongs to the face varies it, so that no two
- * faces bear the same marks. */
+ * u and v are metres from the face's corner along its axes; on vertical faces v points up. A texture is a pure
+ * function of the point and of the face's seed, which varies it so that no two faces look the same. Edges are softened
+ * over 3 mm; detail finer than a pixel is averaged by the pixel's samples. */
 #ifndef REMODEL_SIMULATE_TEXTURE_H
 #define REMODEL_SIMULATE_TEXTURE_H
 
 #include <stdint.h>
 
-#include "stages/simulate/colour.h"
+#include "common/light/colour.h"
 
 enum texture_kind {
     TEXTURE_RGB,
@@ -24,16 +23,16 @@ enum texture_kind {
 
 struct texture {
     enum texture_kind kind;
-    double
-        size[3]; /* checker: size; wood: scale; brick: width height mortar; plaster: scale amount; print, books: width
-                       height */
+    /* m, by kind. checker: size of a square; wood: scale; brick: width, height, mortar; plaster: scale, amount (no
+     * unit); print, books: width, height */
+    double size[3];
     uint32_t seed;
     struct rgb colour[2];
 };
 
 struct rgb texture_at(const struct texture *t, uint32_t face, double u, double v);
 
-/* No channel of the texture is above this anywhere. */
+/* An upper bound of all channels of the texture. */
 double texture_bound(const struct texture *t);
 
 #endif

@@ -1,4 +1,7 @@
-/* truth.c - see truth.h. */
+/* truth.c - ground truth of a scene as a whole.
+ *
+ * Irradiance points: a random pixel of a random photo, its surface, and a point OFF_SURFACE in front of it, if there
+ * is room for a probe. Random numbers are keyed by the point's index. */
 #include "stages/simulate/truth.h"
 
 #include <stdio.h>
@@ -11,10 +14,10 @@
 #include "common/capture/sfm_model.h"
 #include "stages/simulate/photos.h"
 
-#define OFF_SURFACE 0.02 /* m: where the irradiance is taken, as probes are held */
-#define MOST_TRIES  1000
+#define OFF_SURFACE 0.02 /* m: distance of an irradiance probe from its surface */
+#define MAX_TRIES   1000
 
-/* ------------------------------------------------------------------------------------------------------------- cameras */
+/* ---------------------------------------------------------------------------------------------------------- cameras */
 
 static void model_release(struct sfm_model *m)
 {
@@ -29,19 +32,19 @@ static enum status write_cameras(const struct shoot *s, bool reference, const ch
     struct sfm_model m = {0};
     enum status st = ST_OK;
     m.cameras = calloc((size_t)s->lens_count + 1, sizeof *m.cameras);
-    m.images = calloc((size_t)s->shot_count + 1, sizeof *m.images);
-    if (!m.cameras || !m.images) st = err_nomem(err, "cameras", (size_t)s->shot_count * sizeof *m.images);
+    m.images = calloc((size_t)s->photo_count + 1, sizeof *m.images);
+    if (!m.cameras || !m.images) st = err_nomem(err, "cameras", (size_t)s->photo_count * sizeof *m.images);
     for (int i = 0; !st && i < s->lens_count; i++)
-        m.cameras[m.camera_count++] = (struct sfm_camera){i + 1, lens_camera(&s->lenses[i])};
-    for (int i = 0; !st && i < s->shot_count; i++) {
-        const struct shot *shot = &s->shots[i];
+        m.cameras[m.camera_count++] = (struct sfm_camera){i + 1, shoot_lens_camera(&s->lenses[i])};
+    for (int i = 0; !st && i < s->photo_count; i++) {
+        const struct shoot_photo *photo = &s->photos[i];
         char *name = NULL;
-        if (shot->reference != reference) continue;
-        if (asprintf(&name, "%s.jpg", shot->name) < 0)
-            st = err_nomem(err, "a name", strlen(shot->name));
+        if (photo->reference != reference) continue;
+        if (asprintf(&name, "%s.jpg", photo->name) < 0)
+            st = err_nomem(err, "a name", strlen(photo->name));
         else
             m.images[m.image_count] =
-                (struct sfm_image){m.image_count + 1, shot->cam_from_world, shot->lens, name, NULL, 0},
+                (struct sfm_image){m.image_count + 1, photo->cam_from_world, photo->lens, name, NULL, 0},
             m.image_count++;
     }
     if (!st) st = sfm_model_write_text(&m, folder, prov, err);
@@ -49,7 +52,7 @@ static enum status write_cameras(const struct shoot *s, bool reference, const ch
     return st;
 }
 
-/* ---------------------------------------------------------------------------------------------------------- irradiance */
+/* ------------------------------------------------------------------------------------------------------- irradiance */
 
 struct irradiance_job {
     struct irradiance_point *points;
@@ -61,22 +64,22 @@ struct irradiance_job {
     struct progress *progress;
 };
 
-/* A place that a photo sees, with room to hold a probe in front of it. */
-static bool find_place(const struct irradiance_job *job, size_t index, struct irradiance_point *p)
+/* A surface point that a photo sees, with room for a probe in front of it. */
+static bool find_point(const struct irradiance_job *job, size_t index, struct irradiance_point *p)
 {
     const struct shoot *s = job->shoot;
-    for (uint64_t k = 0; k < MOST_TRIES; k++) {
-        const struct shot *shot = &s->shots[(int)(rng_uniform(&job->rng, index, 3 * k) * s->shot_count)];
-        const struct camera_view view = camera_view_make(s, shot);
+    for (uint64_t k = 0; k < MAX_TRIES; k++) {
+        const struct shoot_photo *photo = &s->photos[(int)(rng_uniform(&job->rng, index, 3 * k) * s->photo_count)];
+        const struct camera_view view = camera_view_make(s, photo);
         const double u = rng_uniform(&job->rng, index, 3 * k + 1) * view.lens->width;
         const double v = rng_uniform(&job->rng, index, 3 * k + 2) * view.lens->height;
-        struct ray ray;
-        struct hit hit;
-        if (shot->reference || !camera_view_ray(&view, u, v, &ray)) continue;
-        if (!geometry_hit(&job->world->geometry, ray.from, ray.direction, &hit)) continue;
-        if (job->world->geometry.faces[hit.face].material < 0) continue;
-        const struct vec3 off = vec3_add(hit.point, vec3_scale(hit.normal, job->world->geometry.epsilon));
-        if (geometry_blocked(&job->world->geometry, off, hit.normal, 2 * OFF_SURFACE)) continue;
+        struct path_ray ray;
+        struct ray_hit hit;
+        if (photo->reference || !camera_view_ray(&view, u, v, &ray)) continue;
+        if (!ray_scene_hit(&job->world->geometry.rays, ray.from, ray.direction, &hit)) continue;
+        if (job->world->geometry.faces[hit.id].material < 0) continue;
+        const struct vec3 off = vec3_add(hit.point, vec3_scale(hit.normal, job->world->geometry.rays.epsilon));
+        if (ray_scene_blocked(&job->world->geometry.rays, off, hit.normal, 2 * OFF_SURFACE)) continue;
         p->point = vec3_add(hit.point, vec3_scale(hit.normal, OFF_SURFACE));
         p->normal = hit.normal;
         return true;
@@ -92,8 +95,8 @@ static void find_irradiance(void *ctx, size_t begin, size_t end, int thread)
         struct irradiance_point *p = &job->points[i];
         struct rgb sum = {0, 0, 0};
         uint64_t rays = 0;
-        job->found[i] = find_place(job, i, p);
-        struct sampler s = sampler_make(&job->rng, ~(uint64_t)i, job->samples);
+        job->found[i] = find_point(job, i, p);
+        struct sobol s = sobol_make(&job->rng, ~(uint64_t)i, job->samples);
         for (; job->found[i] && s.sample < (uint32_t)job->samples; s.sample++)
             sum = rgb_add(sum, path_irradiance(job->world, p->point, p->normal, &s, &rays));
         p->irradiance = rgb_scale(sum, 1.0 / job->samples);
@@ -117,14 +120,15 @@ enum status truth_irradiance(struct irradiance_point *points, int count, const s
     }
     for (int i = 0; !st && i < count; i++)
         if (!found[i])
-            st = err_set(err, ST_DATA,
-                         "no surface was found in the photos at which irradiance could be taken; see where the cameras "
-                         "look, or set [simulate] irradiance_points = 0.");
+            st = err_set(
+                err, ST_DATA,
+                "the photos see no surface at which to compute irradiance; check where the cameras look, or set "
+                "[simulate] irradiance_points = 0.");
     free(found);
     return st;
 }
 
-/* ---------------------------------------------------------------------------------------------------------- text files */
+/* ------------------------------------------------------------------------------------------------------- text files */
 
 struct text_job {
     const struct world *world;
@@ -135,10 +139,10 @@ struct text_job {
 
 static void print_faces(FILE *to, const struct text_job *job)
 {
-    const struct geometry *g = &job->world->geometry;
+    const struct scene_geometry *g = &job->world->geometry;
     fputs("remodel-faces 1\n# id name area normal\n", to);
     for (int i = 0; i < g->face_count; i++) {
-        const struct face *f = &g->faces[i];
+        const struct scene_face *f = &g->faces[i];
         fprintf(to, "%d %s %.9g %.9g %.9g %.9g\n", i + 1, f->name, f->area, f->normal.x, f->normal.y, f->normal.z);
     }
 }
@@ -160,29 +164,29 @@ static void print_exposures(FILE *to, const struct text_job *job)
 {
     const struct shoot *s = job->shoot;
     fputs("# file seconds f-number iso neutral-density-factor\n", to);
-    for (int i = 0; i < s->shot_count; i++)
-        for (int k = 0; s->shots[i].reference && k < shoot_exposures(s, &s->shots[i])->count; k++) {
-            const struct exposure *e = &shoot_exposures(s, &s->shots[i])->list[k];
-            char *file = photo_file_name(s, &s->shots[i], k);
+    for (int i = 0; i < s->photo_count; i++)
+        for (int k = 0; s->photos[i].reference && k < shoot_exposures(s, &s->photos[i])->count; k++) {
+            const struct shoot_exposure *e = &shoot_exposures(s, &s->photos[i])->list[k];
+            char *file = photo_file_name(s, &s->photos[i], k);
             fprintf(to, "%s %.9g %.9g %.9g %.9g\n", file ? file : "", e->seconds, e->f_number, e->iso, e->filter);
             free(file);
         }
 }
 
-/* For Make: the shots, and of each the files that come of it, its photos last. */
+/* For Make: the names of photos and reference images, and the files of each, its JPEGs last. */
 static void print_lists(FILE *to, const struct text_job *job)
 {
     fputs("SHOTS :=", to);
-    for (int i = 0; i < job->shoot->shot_count; i++) fprintf(to, " %s", job->shoot->shots[i].name);
-    for (int i = 0; i < job->shoot->shot_count; i++) {
-        const struct shot *shot = &job->shoot->shots[i];
-        const struct exposures *exposures = shoot_exposures(job->shoot, shot);
-        fprintf(to, "\nSHOT_%s :=", shot->name);
-        if (!shot->reference && !strcmp(job->params->truth, "yes"))
-            fprintf(to, " truth/depth/%s.exr truth/ids/%s.exr truth/hdr/%s.exr", shot->name, shot->name, shot->name);
+    for (int i = 0; i < job->shoot->photo_count; i++) fprintf(to, " %s", job->shoot->photos[i].name);
+    for (int i = 0; i < job->shoot->photo_count; i++) {
+        const struct shoot_photo *photo = &job->shoot->photos[i];
+        const struct shoot_exposure_list *exposures = shoot_exposures(job->shoot, photo);
+        fprintf(to, "\nSHOT_%s :=", photo->name);
+        if (!photo->reference && !strcmp(job->params->truth, "yes"))
+            fprintf(to, " truth/depth/%s.exr truth/ids/%s.exr truth/hdr/%s.exr", photo->name, photo->name, photo->name);
         for (int k = 0; k < exposures->count; k++) {
-            char *name = photo_file_name(job->shoot, shot, k);
-            if (name) fprintf(to, " %s/%s", shot->reference ? "lri" : "photos", name);
+            char *name = photo_file_name(job->shoot, photo, k);
+            if (name) fprintf(to, " %s/%s", photo->reference ? "lri" : "photos", name);
             free(name);
         }
     }
@@ -206,7 +210,7 @@ static enum status write_text(const char *out, const char *file, void (*print)(F
     return st;
 }
 
-/* FOLDER/FILE to OUT/TO, byte by byte. */
+/* Copies FOLDER/FILE to OUT/TO. */
 static enum status copy_text(const char *folder, const char *file, const char *out, const char *to, struct err *err)
 {
     struct outfile f = {0};
@@ -232,7 +236,7 @@ static enum status write_references(const struct shoot *s, const char *out, cons
 {
     char *folder = NULL;
     bool any = false;
-    for (int i = 0; i < s->shot_count; i++) any = any || s->shots[i].reference;
+    for (int i = 0; i < s->photo_count; i++) any = any || s->photos[i].reference;
     if (!any) return ST_OK;
     enum status st = asprintf(&folder, "%s/truth/lri", out) < 0 ? err_nomem(err, "a file name", strlen(out)) : ST_OK;
     if (!st) st = write_cameras(s, true, folder, prov, err);

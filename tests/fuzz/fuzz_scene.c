@@ -1,5 +1,5 @@
-/* fuzz_scene.c - described scenes: any bytes give faces with areas and textures with colours, or a sentence says why not.
- * Bytes that do not begin as a scene does are read as a mesh. */
+/* fuzz_scene.c - scene files: any bytes give faces with finite areas and textures within their bounds, or an error
+ * message. Bytes that do not begin with "remodel" are read as a mesh. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,14 +11,14 @@
 #include "tests/fuzz/fuzz.h"
 #include "tests/fuzz/fuzz_scratch.h"
 
-static void use_scene(const struct scene *s)
+static void check_scene(const struct scene *s)
 {
-    struct geometry g;
+    struct scene_geometry g;
     struct err err = ERR_INIT;
     for (int i = 0; i < s->texture_count; i++)
         for (int k = 0; k < 16; k++) {
             const struct rgb c = texture_at(&s->textures[i].texture, 7, k * 0.37 - 2, k * k * 0.11 - 3);
-            if (!(c.r >= 0 && c.g >= 0 && c.b >= 0 && rgb_most(c) <= texture_bound(&s->textures[i].texture) + 1e-9))
+            if (!(c.r >= 0 && c.g >= 0 && c.b >= 0 && rgb_max(c) <= texture_bound(&s->textures[i].texture) + 1e-9))
                 abort();
         }
     if (geometry_init(&g, s, &err)) {
@@ -26,14 +26,14 @@ static void use_scene(const struct scene *s)
         return;
     }
     for (int i = 0; i < g.face_count; i++) {
-        const struct face *f = &g.faces[i];
+        const struct scene_face *f = &g.faces[i];
         if (!(f->area >= 0) || !isfinite(f->area) || f->item < 0 || f->item >= s->item_count) abort();
         if (f->material >= s->material_count || !(vec3_length(f->normal) < 1.001)) abort();
     }
     geometry_release(&g);
 }
 
-static void use_mesh(const char *path)
+static void check_mesh(const char *path)
 {
     struct vec3(*triangles)[3];
     struct err err = ERR_INIT;
@@ -52,11 +52,11 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     FILE *fp = fopen(path, "wb");
     if (!fp || fwrite(data, 1, size, fp) != size || fclose(fp)) abort();
     if (size < 7 || memcmp(data, "remodel", 7)) {
-        use_mesh(path);
+        check_mesh(path);
     } else if (scene_read(&s, folder, "scene.txt", NULL, &err)) {
         if (!err.text[0] || s.items) abort();
     } else {
-        use_scene(&s);
+        check_scene(&s);
         scene_release(&s);
     }
     unlink(path);

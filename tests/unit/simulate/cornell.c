@@ -1,5 +1,5 @@
-/* The Cornell box of ../shared/data/cornell-box, for developers who have it: a run against one of 16 times the samples and
- * another seed, over coarse blocks. */
+/* The Cornell box of ../shared/data/cornell-box, for developers who have it: a run is compared over coarse blocks
+ * with one that has 16 times the samples and another seed. */
 #include "tests/unit/simulate/worlds.h"
 
 #include "common/base/outfile.h"
@@ -19,7 +19,7 @@ static void copy_mesh(const char *name)
     free(text);
 }
 
-/* "rgb name=... value="R, G, B"" that follows a mark in an XML file. */
+/* The next rgb element, value="R, G, B", after a mark in an XML file. */
 static void xml_rgb(char rgb[80], const char *file, const char *mark)
 {
     char *text = scratch_read(file), *at = strstr(text, mark), *value = at ? strstr(at, "value=\"") : NULL;
@@ -54,13 +54,13 @@ static struct world cornell_box(void)
     return world_from(text);
 }
 
-static void against_more_samples(void **state)
+static void few_samples_agree_with_many(void **state)
 {
     struct err err = ERR_INIT;
     struct shoot s;
     (void)state;
     if (access(BOX "fragments/bsdfs-rgb.xml", R_OK)) {
-        print_message(BOX " is not there: skipped\n");
+        print_message(BOX " does not exist: skipped\n");
         skip();
     }
     struct world w = cornell_box();
@@ -68,7 +68,7 @@ static void against_more_samples(void **state)
                   "remodel-shoot 1\nlens p pinhole 48 48 67.2 67.2 24 24\nexposure 1\nsensor 30000 6 1 1\n"
                   "photo a p 278 273 -800  278 273 -799\n");
     assert_ok(shoot_read(&s, scratch, 1, NULL, &err), err);
-    const struct camera_view view = camera_view_make(&s, &s.shots[0]);
+    const struct camera_view view = camera_view_make(&s, &s.photos[0]);
     struct image im[2] = {{0}, {0}};
     for (int i = 0; i < 2; i++) {
         const struct simulate_params params = {.samples = i ? 1024 : 64, .scale = 1, .seed = 1 + i};
@@ -91,7 +91,7 @@ static void against_more_samples(void **state)
     print_message("mean relative difference of %d blocks: %.4f\n", counted, error / counted);
     assert_int_equal(counted, BLOCKS * BLOCKS);
     assert_true(error / counted < 0.02);
-    /* the red wall is at the left, the green one at the right */
+    /* the red wall is on the left, the green one on the right */
     const float *left = image_at(&im[1], 3, 24), *right = image_at(&im[1], 44, 24);
     assert_true(left[0] > 3 * left[1] && right[1] > 1.1f * right[0]);
     image_release(&im[0]);
@@ -102,6 +102,6 @@ static void against_more_samples(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(against_more_samples)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(few_samples_agree_with_many)};
     return cmocka_run_group_tests_name("simulate cornell box", tests, scratch_make, scratch_remove);
 }

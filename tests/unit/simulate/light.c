@@ -1,11 +1,11 @@
 /* Light transport against closed forms: furnaces, lamps over a floor, the sun through a window, a box that absorbs
- * nothing, and the two ways of finding light against each other. */
+ * nothing; and next-event estimation against brdf sampling alone. */
 #include "tests/unit/simulate/worlds.h"
 
 static const struct vec3 up = {0, 0, 1};
 
 /* In a closed room that reflects half of the light and emits 1/2 everywhere, the radiance is 1. */
-static void furnace(void **state)
+static void a_closed_room_that_reflects_and_emits_half_has_radiance_one(void **state)
 {
     (void)state;
     const struct vec3 directions[] = {{1, 0.2, 0.1}, {-0.3, 0.4, -1}, {0.1, 0.9, 0.5}};
@@ -23,9 +23,9 @@ static void furnace(void **state)
     world_release(&w);
 }
 
-/* The same with glossy walls: what the lobe loses below the horizon is known only by its bound, so: no more than 1, and
- * no less than without gloss. */
-static void glossy_furnace(void **state)
+/* The same with glossy walls. The lobe loses what falls below the horizon, so the radiance has only bounds: above
+ * that of the diffuse part alone, below that of the full lobe. */
+static void glossy_walls_keep_the_furnace_within_its_bound(void **state)
 {
     (void)state;
     const char *const kinds[] = {"phong half 0.8 20", "ward half 0.45 0.2", "ward half 0.4 0.6"};
@@ -41,8 +41,8 @@ static void glossy_furnace(void **state)
     }
 }
 
-/* Form factor of a rectangle parallel to a surface element, one corner above the element, a and b its sides by its
- * height. */
+/* Form factor of a rectangle parallel to a surface element, with one corner above the element; a and b are the sides
+ * divided by the height. */
 static double corner_factor(double a, double b)
 {
     return (a / sqrt(1 + a * a) * atan(b / sqrt(1 + a * a)) + b / sqrt(1 + b * b) * atan(a / sqrt(1 + b * b))) /
@@ -56,7 +56,7 @@ static double rectangle_factor(double x0, double x1, double y0, double y1, doubl
 #undef F
 }
 
-static void square_lamp(void **state)
+static void a_square_lamp_gives_the_irradiance_of_its_form_factor(void **state)
 {
     (void)state;
     const struct vec3 places[] = {{0, 0, 0.001}, {0.5, 0.3, 0.001}, {-2, 1, 0.001}, {4, 4, 0.001}};
@@ -67,26 +67,26 @@ static void square_lamp(void **state)
         const struct vec3 p = places[i];
         const double factor = rectangle_factor(0 - p.x, 1 - p.x, 0 - p.y, 0.6 - p.y, 2 - p.z);
         for (int way = 0; way < 2; way++) {
-            w.only_surface = way;
+            w.brdf_sampling_only = way;
             const int paths = way ? 1000000 : 20000;
-            if (way && i > 1) continue; /* too small from there to be met by chance */
+            if (way && i > 1) continue; /* too small from there to be hit by chance */
             const struct rgb e = mean_irradiance(&w, p, up, paths, i);
             assert_near(e.r, PI * 10 * factor, 0.005);
             assert_near(e.g, PI * 20 * factor, 0.005);
         }
-        w.only_surface = false; /* what a camera sees of the floor */
+        w.brdf_sampling_only = false; /* as a camera sees the floor */
         const struct rgb l = mean_radiance(&w, vec3_make(p.x, p.y, 1), vec3_make(0, 0, -1), 20000, i);
         assert_near(l.r, 0.5 * 10 * factor, 0.005);
         assert_near(l.b, 0.1 * 5 * factor, 0.005);
     }
-    /* it is dark above it, and the lamp itself looks as bright as it is told to be */
+    /* dark above the lamp; the lamp itself has the radiance of its description */
     assert_true(mean_irradiance(&w, vec3_make(0.5, 0.3, 2.5), vec3_make(0, 0, -1), 4096, 1).r < 10);
     assert_near(mean_radiance(&w, vec3_make(0.5, 0.3, 1), up, 4096, 1).g, 20, 1e-12);
     assert_true(mean_radiance(&w, vec3_make(0.5, 0.3, 3), vec3_make(0, 0, -1), 4096, 1).g == 0);
     world_release(&w);
 }
 
-static void round_lamp(void **state)
+static void a_round_lamp_gives_the_irradiance_of_its_form_factor(void **state)
 {
     (void)state;
     struct world w =
@@ -96,7 +96,7 @@ static void round_lamp(void **state)
         const double d = 0.01 + 0.7 * i, h = 2 / d, r = 0.5 / d, z = 1 + h * h + r * r;
         const double factor = 0.5 * (1 - (1 + h * h - r * r) / sqrt(z * z - 4 * r * r));
         for (int way = 0; way < 2; way++) {
-            w.only_surface = way;
+            w.brdf_sampling_only = way;
             const struct rgb e = mean_irradiance(&w, vec3_make(0.6 * d, -0.8 * d, 0), up, way ? 1000000 : 20000, i);
             assert_near(e.r, PI * 10 * factor, way ? 0.007 : 0.005);
         }
@@ -104,7 +104,7 @@ static void round_lamp(void **state)
     world_release(&w);
 }
 
-static void spot(void **state)
+static void a_spot_lights_its_cone_only(void **state)
 {
     (void)state;
     struct world w =
@@ -112,7 +112,7 @@ static void spot(void **state)
                    "lamp l disk 0 0 2  0 0 -1  0.1  100 100 100  30 3\n");
     const double h = 2, r = 0.1, power = 1 + 1.5, wanted = PI * 100 / power * (1 - pow(h * h / (h * h + r * r), power));
     assert_near(mean_irradiance(&w, vec3_make(0, 0, 0), up, 20000, 1).r, wanted, 0.005);
-    /* beyond the cone of its rim there is nothing; just inside that of its centre nearly half of it shines */
+    /* beyond the cone of the lamp's rim there is no light; at the border of the centre's cone, nearly half */
     const double reach = 2 * tan(30 * PI / 180);
     assert_true(mean_irradiance(&w, vec3_make(reach + 0.101, 0, 0), up, 4096, 1).r == 0);
     assert_true(mean_irradiance(&w, vec3_make(reach + 0.095, 0, 0), up, 4096, 1).r > 0);
@@ -126,8 +126,8 @@ static void spot(void **state)
     "room r 0 0 5 4 0 2.5 m m\nwall s 0 0 5 0 0 2.5 0.2 m\nwall e 5 0 5 4 0 2.5 0.2 m\n" \
     "wall n 5 4 0 4 0 2.5 0.2 m\nwall w 0 4 0 0 0 2.5 0.2 m\nwindow o s 1.5 3.5 0.8 2.2\n"
 
-/* A disk of light of angular radius a, all of it seen, gives pi L sin^2 a cos. */
-static void sun_through_window(void **state)
+/* A fully visible disk of angular radius a and radiance L gives the irradiance pi L sin^2(a) cos. */
+static void the_sun_through_a_window_gives_its_irradiance(void **state)
 {
     (void)state;
     struct world w =
@@ -143,20 +143,20 @@ static void sun_through_window(void **state)
 
 #define LAMP_FOR_A_CEILING "lamp l quad 0 0 1.9999  0 2 0  2 0 0  3 3 3\n"
 
-/* In a box that absorbs nothing, under a ceiling that is all lamp and absorbs what meets it, every path ends at the
- * lamp: the radiance is the lamp's everywhere, no more and no less. */
-static void nothing_is_lost_or_made(void **state)
+/* In a white box under a ceiling that is one lamp, every path ends at the lamp: the radiance is the lamp's
+ * everywhere. */
+static void a_box_that_absorbs_nothing_keeps_its_light(void **state)
 {
     (void)state;
     struct world w =
         world_from("texture white rgb 1 1 1\nmaterial m lambert white\nbox room 0 0 0 2 2 2 m\n" LAMP_FOR_A_CEILING);
     for (int way = 0; way < 2; way++) {
-        w.only_surface = way;
+        w.brdf_sampling_only = way;
         assert_near(mean_radiance(&w, vec3_make(0.2, 0.2, 0.2), vec3_make(0.2, 1, 0.1), 300000, 1).r, 3, 0.005);
         assert_near(mean_radiance(&w, vec3_make(0.2, 0.2, 1.9), vec3_make(-0.2, 0.3, -0.1), 300000, 2).g, 3, 0.005);
     }
     world_release(&w);
-    /* the same where half of the whiteness is gloss: its lobe loses what falls below the horizon, and makes nothing */
+    /* half of the reflectance is gloss: the lobe loses what falls below the horizon, and must not gain */
     w = world_from(
         "texture part rgb 0.5 0.5 0.5\nmaterial m phong part 0.8 9.3\nbox room 0 0 0 2 2 2 m\n" LAMP_FOR_A_CEILING);
     const double l = mean_radiance(&w, vec3_make(0.2, 0.2, 0.2), vec3_make(0.2, 1, 0.1), 300000, 1).r;
@@ -164,8 +164,8 @@ static void nothing_is_lost_or_made(void **state)
     world_release(&w);
 }
 
-/* A room with everything in it, seen with and without looking for lights. */
-static void both_ways_agree(void **state)
+/* A room with all kinds of lights and materials. */
+static void next_event_estimation_agrees_with_brdf_sampling(void **state)
 {
     (void)state;
     struct world w = world_from(
@@ -178,7 +178,7 @@ static void both_ways_agree(void **state)
     for (int i = 0; i < 6; i++) {
         double l[2];
         for (int way = 0; way < 2; way++) {
-            w.only_surface = way;
+            w.brdf_sampling_only = way;
             l[way] = rgb_luminance(mean_radiance(&w, eye, vec3_sub(at[i], eye), way ? 200000 : 30000, 10 * i + way));
         }
         assert_near(l[0], l[1], 0.015);
@@ -189,14 +189,14 @@ static void both_ways_agree(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(furnace),
-        cmocka_unit_test(glossy_furnace),
-        cmocka_unit_test(square_lamp),
-        cmocka_unit_test(round_lamp),
-        cmocka_unit_test(spot),
-        cmocka_unit_test(sun_through_window),
-        cmocka_unit_test(nothing_is_lost_or_made),
-        cmocka_unit_test(both_ways_agree),
+        cmocka_unit_test(a_closed_room_that_reflects_and_emits_half_has_radiance_one),
+        cmocka_unit_test(glossy_walls_keep_the_furnace_within_its_bound),
+        cmocka_unit_test(a_square_lamp_gives_the_irradiance_of_its_form_factor),
+        cmocka_unit_test(a_round_lamp_gives_the_irradiance_of_its_form_factor),
+        cmocka_unit_test(a_spot_lights_its_cone_only),
+        cmocka_unit_test(the_sun_through_a_window_gives_its_irradiance),
+        cmocka_unit_test(a_box_that_absorbs_nothing_keeps_its_light),
+        cmocka_unit_test(next_event_estimation_agrees_with_brdf_sampling),
     };
     return cmocka_run_group_tests_name("simulate light", tests, scratch_make, scratch_remove);
 }

@@ -1,4 +1,4 @@
-/* Whole photographs: what is written and what it holds, the same bytes for any number of threads, nothing in the dark. */
+/* Whole photographs: the files and their contents, equal bytes for any number of threads, errors in the dark. */
 #include "tests/unit/simulate/worlds.h"
 
 #include "common/base/parallel.h"
@@ -26,7 +26,7 @@ static void make_all(const char *out, const struct world *w, const struct shoot 
     struct err err = ERR_INIT;
     struct provenance prov = {.stage = "simulate", .version = "0"};
     assert_ok(truth_write(w, s, scratch, out, &params, &prov, &err), err);
-    for (int i = 0; i < s->shot_count; i++) assert_ok(photo_make(w, s, &s->shots[i], out, &params, &prov, &err), err);
+    for (int i = 0; i < s->photo_count; i++) assert_ok(photo_make(w, s, &s->photos[i], out, &params, &prov, &err), err);
 }
 
 static const char *const files[] = {
@@ -51,7 +51,7 @@ static void check_photo(const char *out)
     assert_string_equal(info.model, "p");
 }
 
-/* Photo a looks south, level: the wall's inner face is 2.9 m along the axis everywhere that it is seen. */
+/* Photo a looks south and level: the wall's inner face has a depth of 2.9 m wherever it is visible. */
 static void check_surfaces(const char *out, const struct world *w)
 {
     struct exr_image depth = {0}, ids = {0};
@@ -68,20 +68,20 @@ static void check_surfaces(const char *out, const struct world *w)
     exr_image_release(&depth);
     assert_ok(exr_read(&depth, path, NULL, 0, &err), err);
     assert_string_equal(exr_attribute(&depth, "remodel:depth"), "ray");
-    /* the fisheye's rays by their length end on the face that the id names */
+    /* a fisheye ray of the written length ends on the face with the written id */
     struct shoot s;
     assert_ok(shoot_read(&s, scratch, 1, NULL, &err), err);
-    const struct camera_view view = camera_view_make(&s, &s.shots[1]);
+    const struct camera_view view = camera_view_make(&s, &s.photos[1]);
     int sky = 0;
     for (int i = 0; i < 60 * 40; i++) {
         const uint32_t id = exr_find(&ids, "id")->u[i];
-        struct ray ray;
+        struct path_ray ray;
         if (!id) {
             sky++;
             assert_true(exr_find(&depth, "Z")->f[i] == 0);
             continue;
         }
-        const struct face *f = &w->geometry.faces[id - 1];
+        const struct scene_face *f = &w->geometry.faces[id - 1];
         assert_true(camera_view_ray(&view, i % 60 + 0.5, i / 60 + 0.5, &ray));
         const struct vec3 p = vec3_add(ray.from, vec3_scale(ray.direction, exr_find(&depth, "Z")->f[i]));
         assert_true(fabs(vec3_dot(vec3_sub(p, f->origin), f->normal)) < 1e-5);
@@ -113,7 +113,7 @@ static void check_texts(const char *out)
     assert_file_text(path, "# file seconds f-number iso neutral-density-factor\nr.jpg 0.001 8 100 1000\n");
 }
 
-static void photos_and_truth(void **state)
+static void photos_and_truth_do_not_depend_on_threads(void **state)
 {
     struct shoot s;
     struct err err = ERR_INIT;
@@ -134,7 +134,7 @@ static void photos_and_truth(void **state)
         struct stat a, b;
         snprintf(path, sizeof path, "%s/%s", one, files[i]);
         FILE *x = fopen(path, "rb");
-        if (stat(path, &a)) fail_msg("there is no %s", path);
+        if (stat(path, &a)) fail_msg("%s was not written", path);
         snprintf(path, sizeof path, "%s/%s", two, files[i]);
         FILE *y = fopen(path, "rb");
         if (stat(path, &b) || a.st_size != b.st_size) fail_msg("%s differs in size", files[i]);
@@ -151,8 +151,8 @@ static void photos_and_truth(void **state)
     world_release(&w);
 }
 
-/* An edited scene, seen by the same cameras: faces that are not edited keep their textures. */
-static void edited(void **state)
+/* An edited scene with the same cameras. */
+static void unedited_faces_keep_their_textures(void **state)
 {
     struct shoot s;
     struct err err = ERR_INIT;
@@ -166,7 +166,7 @@ static void edited(void **state)
     scratch_write("scene-bare.txt", "x");
     assert_ok(shoot_read(&s, scratch, 1, NULL, &err), err);
     snprintf(out, sizeof out, "%s/edited", scratch);
-    assert_ok(photo_make_edited(&w, &s, &s.shots[0], out, "bare", &params, NULL, &err), err);
+    assert_ok(photo_make_edited(&w, &s, &s.photos[0], out, "bare", &params, NULL, &err), err);
     assert_ok(truth_write_edited(&w, scratch, out, "bare", NULL, &err), err);
     const char *const made[] = {"hdr/a.exr", "scene.txt", "faces.txt"};
     for (int i = 0; i < 3; i++) {
@@ -179,7 +179,7 @@ static void edited(void **state)
     world_release(&before);
 }
 
-static void in_the_dark(void **state)
+static void a_photo_without_light_is_an_error(void **state)
 {
     struct shoot s;
     struct err err = ERR_INIT;
@@ -189,15 +189,15 @@ static void in_the_dark(void **state)
     scratch_write("cameras.txt", "remodel-shoot 1\nlens p pinhole 6 4 4 4 3 2\nexposure 1\nsensor 30000 6 60 1\n"
                                  "photo a p 1 1 1 2 2 1\n");
     assert_ok(shoot_read(&s, scratch, 1, NULL, &err), err);
-    assert_true(photo_make(&w, &s, &s.shots[0], scratch, &params, NULL, &err));
+    assert_true(photo_make(&w, &s, &s.photos[0], scratch, &params, NULL, &err));
     assert_err(err, ST_DATA, "no light reaches photo a");
     assert_int_not_equal(access(scratch_path("photos/a.jpg"), R_OK), 0);
     shoot_release(&s);
     world_release(&w);
 }
 
-/* The irradiance that is written is that of the points: under one lamp, over black surfaces, by another way. */
-static void irradiance_points(void **state)
+/* One small lamp over a black floor: the irradiance has a closed form. */
+static void irradiance_points_have_the_irradiance_of_a_small_lamp(void **state)
 {
     struct shoot s;
     struct err err = ERR_INIT;
@@ -214,7 +214,7 @@ static void irradiance_points(void **state)
         const double d2 = p.x * p.x + p.y * p.y + (2 - p.z) * (2 - p.z), c = (2 - p.z) / sqrt(d2);
         assert_near(p.z, 0.02, 1e-9);
         assert_near(points[i].normal.z, 1, 1e-9);
-        assert_near(points[i].irradiance.r, 100 * 0.01 * c * c / d2, 0.005); /* a small lamp is a point */
+        assert_near(points[i].irradiance.r, 100 * 0.01 * c * c / d2, 0.005); /* a lamp this small is a point */
         assert_near(points[i].irradiance.b, points[i].irradiance.r / 4, 1e-9);
     }
     shoot_release(&s);
@@ -224,10 +224,10 @@ static void irradiance_points(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(photos_and_truth),
-        cmocka_unit_test(edited),
-        cmocka_unit_test(in_the_dark),
-        cmocka_unit_test(irradiance_points),
+        cmocka_unit_test(photos_and_truth_do_not_depend_on_threads),
+        cmocka_unit_test(unedited_faces_keep_their_textures),
+        cmocka_unit_test(a_photo_without_light_is_an_error),
+        cmocka_unit_test(irradiance_points_have_the_irradiance_of_a_small_lamp),
     };
     return cmocka_run_group_tests_name("simulate photos", tests, scratch_make, scratch_remove);
 }

@@ -1,4 +1,4 @@
-/* Scene files: what is read, the faces that come of it, and sentences about what is wrong. */
+/* Scene files: their contents, the faces built from them, and error messages. */
 #include "tests/unit/simulate/worlds.h"
 
 #include "common/base/param.h"
@@ -7,76 +7,76 @@
 #define HEAD "remodel-scene 1\ntexture t rgb 0.5 0.5 0.5\nmaterial m lambert t\n"
 #define SUN  "sun 0 45 1 5 5 5\n"
 
-/* Reads a scene that must be refused, with these words in the reason. */
-static void refused(const char *text, const char *words)
+/* Reads an invalid scene; the error must contain these words. */
+static void assert_invalid(const char *text, const char *words)
 {
     struct scene s;
     struct err err = ERR_INIT;
     scratch_write("scene.txt", text);
-    if (!scene_read(&s, scratch, "scene.txt", NULL, &err)) fail_msg("read in spite of: %s", words);
+    if (!scene_read(&s, scratch, "scene.txt", NULL, &err)) fail_msg("no error, expected: %s", words);
     assert_err(err, ST_DATA, words);
     assert_contains(err.text, "scene.txt");
     assert_true(!s.items && !s.textures);
 }
 
-static void what_is_wrong_is_told(void **state)
+static void errors_name_line_found_and_expected_word(void **state)
 {
     (void)state;
-    refused("", "is empty");
-    refused("remodel-scene 2\n", ":1: found \"2\"");
-    refused("scene\n", ":1: found \"scene\", wanted remodel-scene");
-    refused(HEAD "wal a 0 0 1 0 0 1 0.1 m\n", ":4: found \"wal\", wanted a line of a scene: one of texture");
-    refused(HEAD "texture t rgb 1 1 1\n", ":4: found \"t\", wanted a name that no other texture");
-    refused(HEAD "texture u rgb 1 1 2\n", ":4: found \"2\", wanted a colour from 0 to 1");
-    refused(HEAD "texture u wood 0 1 1 1 1 0 0 0\n", "wanted a scale");
-    refused(HEAD "texture u plaster 0.1 2 1 1 1 1\n", "wanted an amount, a number from 0 to 1");
-    refused(HEAD "texture u brick 0.2 0.1 0.3 1 1 1 1 0 0 0\n", "the width of the mortar");
-    refused(HEAD "texture u print 1 0.5\n", ":4: found the end of the line, wanted a height");
-    refused(HEAD "texture u rgb 1 1 1 1\n", "wanted the end of the line");
-    refused(HEAD "texture a.b rgb 1 1 1\n", "letters, digits, _ and -");
-    refused(HEAD "material n lambert tt\n", "did you mean t");
-    refused(HEAD "material n phong t 1 10\n",
-            ":4: found \"albedo up to 0.5 and gloss of 0.571\", wanted no more than 1");
-    refused(HEAD "material n ward t 0.6 0.2\n", "wanted no more than 1 together");
-    refused(HEAD "material n ward t 0.1 0\n", "a roughness");
-    refused(HEAD "box b 0 0 0 1 1 0 m\n", ":4: found \"0\", wanted Z1, larger than Z0");
-    refused(HEAD "box b 0 0 0 1 1 1 m turn\n", "an angle in degrees");
-    refused(HEAD "box b 0 0 0 1 1 1 mm\n", "wanted the name of a material above; did you mean m");
-    refused(HEAD "quad q 0 0 0 1 0 0 2 0 0 m\n", "two edges that span");
-    refused(HEAD "quad q 0 0 nan 1 0 0 0 1 0 m\n", "found \"nan\"");
-    refused(HEAD "wall w 1 1 1 1 0 2 0.1 m\n", "a wall with a length");
-    refused(HEAD "wall w 0 0 4 0 0 2 0.1 m\nopening o w 3 5 0 1\n", ":5: found \"3 to 5 m along");
-    refused(HEAD "wall w 0 0 4 0 0 2 0.1 m\nopening o w 1 2 0 1\nwindow x w 1.5 3 0.5 1\n",
-            ":6: found \"x\", wanted an opening that does not reach into o");
-    refused(HEAD "box w 0 0 0 1 1 1 m\nopening o w 0 1 0 1\n", ":5: found \"w\", wanted the name of a wall");
-    refused(HEAD "opening o ww 0 1 0 1\n", "the name of a wall above");
-    refused(HEAD "lamp l quad 0 0 0 1 0 0 1 1 0 1 1 1\n", "right angle");
-    refused(HEAD "lamp l ball 0 0 0 1\n", "one of quad, disk");
-    refused(HEAD "lamp l disk 0 0 0 0 0 0 1 1 1 1 30\n", "found \"0 0 0\", wanted a direction");
-    refused(HEAD SUN SUN, ":5: found \"a second sun\"");
-    refused(HEAD "mesh x ../a.obj m\n", "without a folder");
-    refused(HEAD SUN, "has nothing in it");
-    refused(HEAD "glow m 1 2\n", ":4: found the end of the line, wanted a radiance");
+    assert_invalid("", "is empty");
+    assert_invalid("remodel-scene 2\n", ":1: found \"2\"");
+    assert_invalid("scene\n", ":1: found \"scene\", wanted remodel-scene");
+    assert_invalid(HEAD "wal a 0 0 1 0 0 1 0.1 m\n", ":4: found \"wal\", wanted a line of a scene: one of texture");
+    assert_invalid(HEAD "texture t rgb 1 1 1\n", ":4: found \"t\", wanted a name that no other texture");
+    assert_invalid(HEAD "texture u rgb 1 1 2\n", ":4: found \"2\", wanted a colour from 0 to 1");
+    assert_invalid(HEAD "texture u wood 0 1 1 1 1 0 0 0\n", "wanted a scale");
+    assert_invalid(HEAD "texture u plaster 0.1 2 1 1 1 1\n", "wanted an amount, a number from 0 to 1");
+    assert_invalid(HEAD "texture u brick 0.2 0.1 0.3 1 1 1 1 0 0 0\n", "the width of the mortar");
+    assert_invalid(HEAD "texture u print 1 0.5\n", ":4: found the end of the line, wanted a height");
+    assert_invalid(HEAD "texture u rgb 1 1 1 1\n", "wanted the end of the line");
+    assert_invalid(HEAD "texture a.b rgb 1 1 1\n", "letters, digits, _ and -");
+    assert_invalid(HEAD "material n lambert tt\n", "did you mean t");
+    assert_invalid(HEAD "material n phong t 1 10\n",
+                   ":4: found \"albedo up to 0.5 and gloss of 0.571\", wanted no more than 1");
+    assert_invalid(HEAD "material n ward t 0.6 0.2\n", "wanted no more than 1 together");
+    assert_invalid(HEAD "material n ward t 0.1 0\n", "a roughness");
+    assert_invalid(HEAD "box b 0 0 0 1 1 0 m\n", ":4: found \"0\", wanted Z1, larger than Z0");
+    assert_invalid(HEAD "box b 0 0 0 1 1 1 m turn\n", "an angle in degrees");
+    assert_invalid(HEAD "box b 0 0 0 1 1 1 mm\n", "wanted the name of a material above; did you mean m");
+    assert_invalid(HEAD "quad q 0 0 0 1 0 0 2 0 0 m\n", "two edges that span");
+    assert_invalid(HEAD "quad q 0 0 nan 1 0 0 0 1 0 m\n", "found \"nan\"");
+    assert_invalid(HEAD "wall w 1 1 1 1 0 2 0.1 m\n", "a wall with a length");
+    assert_invalid(HEAD "wall w 0 0 4 0 0 2 0.1 m\nopening o w 3 5 0 1\n", ":5: found \"3 to 5 m along");
+    assert_invalid(HEAD "wall w 0 0 4 0 0 2 0.1 m\nopening o w 1 2 0 1\nwindow x w 1.5 3 0.5 1\n",
+                   ":6: found \"x\", wanted an opening that does not overlap o");
+    assert_invalid(HEAD "box w 0 0 0 1 1 1 m\nopening o w 0 1 0 1\n", ":5: found \"w\", wanted the name of a wall");
+    assert_invalid(HEAD "opening o ww 0 1 0 1\n", "the name of a wall above");
+    assert_invalid(HEAD "lamp l quad 0 0 0 1 0 0 1 1 0 1 1 1\n", "right angle");
+    assert_invalid(HEAD "lamp l ball 0 0 0 1\n", "one of quad, disk");
+    assert_invalid(HEAD "lamp l disk 0 0 0 0 0 0 1 1 1 1 30\n", "found \"0 0 0\", wanted a direction");
+    assert_invalid(HEAD SUN SUN, ":5: found \"a second sun\"");
+    assert_invalid(HEAD "mesh x ../a.obj m\n", "without a folder");
+    assert_invalid(HEAD SUN, "has no surfaces");
+    assert_invalid(HEAD "glow m 1 2\n", ":4: found the end of the line, wanted a radiance");
 }
 
-static void a_scene_without_light_is_refused(void **state)
+static void a_scene_without_light_is_rejected(void **state)
 {
     (void)state;
-    refused(HEAD "box b 0 0 0 1 1 1 m\n", "has no light, and every photo would be black; add a lamp");
-    refused(HEAD "box b 0 0 0 1 1 1 m\nlamp l quad 0 0 0 1 0 0 0 1 0 0 0 0\nglow m 0 0 0\n", "has no light");
+    assert_invalid(HEAD "box b 0 0 0 1 1 1 m\n", "has no light: every photo would be black; add a lamp");
+    assert_invalid(HEAD "box b 0 0 0 1 1 1 m\nlamp l quad 0 0 0 1 0 0 0 1 0 0 0 0\nglow m 0 0 0\n", "has no light");
 }
 
-static void meshes(void **state)
+static void meshes_are_read_from_obj_files(void **state)
 {
     struct vec3(*triangles)[3];
     int count;
     struct err err = ERR_INIT;
     (void)state;
-    const char *good =
-        scratch_write("good.obj", "# a square and a triangle\nvn 0 0 1\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\no x\n"
-                                  "f 1 2/5 3//6 4/1/1\nf -1 -2 -3\nf 1 1 2\n");
-    assert_ok(mesh_file_read(&triangles, &count, good, &err), err);
-    assert_int_equal(count, 3); /* the one without an area is left out */
+    const char *valid =
+        scratch_write("valid.obj", "# a square and a triangle\nvn 0 0 1\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\no x\n"
+                                   "f 1 2/5 3//6 4/1/1\nf -1 -2 -3\nf 1 1 2\n");
+    assert_ok(mesh_file_read(&triangles, &count, valid, &err), err);
+    assert_int_equal(count, 3); /* the triangle without area is left out */
     assert_true(triangles[1][2].y == 1 && triangles[2][0].x == 0 && triangles[2][1].x == 1);
     free(triangles);
     const char *const bad[][2] = {
@@ -85,7 +85,7 @@ static void meshes(void **state)
         {"v 0 0 0\nf 0 1 1\n", "found \"0\""},
         {"v 0 0 0\nf 1 1\n", ":2: found the end of the line"},
         {"v 0 0 1e9\n", "at most 100000"},
-        {"v 0 0 0\n", "has no face"},
+        {"v 0 0 0\n", "has no faces"},
     };
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         err = (struct err)ERR_INIT;
@@ -94,18 +94,19 @@ static void meshes(void **state)
         assert_null(triangles);
     }
     scratch_write("broken.obj", "v 0 0\n");
-    refused(HEAD "mesh x broken.obj m\n", "scene.txt:4: ");
+    assert_invalid(HEAD "mesh x broken.obj m\n", "scene.txt:4: ");
 }
 
-static int find_face(const struct geometry *g, const char *name)
+static int find_face(const struct scene_geometry *g, const char *name)
 {
     for (int i = 0; i < g->face_count; i++)
         if (!strcmp(g->faces[i].name, name)) return i;
-    fail_msg("there is no face %s", name);
+    fail_msg("no face %s", name);
     return -1;
 }
 
-static void check_face(const struct geometry *g, const char *name, int id, double area, double x, double y, double z)
+static void check_face(const struct scene_geometry *g, const char *name, int id, double area, double x, double y,
+                       double z)
 {
     const int i = find_face(g, name);
     if (id) assert_int_equal(i + 1, id);
@@ -115,7 +116,7 @@ static void check_face(const struct geometry *g, const char *name, int id, doubl
         fail_msg("the normal of %s is %g %g %g", name, n.x, n.y, n.z);
 }
 
-static void faces(void **state)
+static void faces_have_their_areas_normals_and_ids(void **state)
 {
     (void)state;
     scratch_write("tri.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
@@ -125,7 +126,7 @@ static void faces(void **state)
                                 "box b 1 1 0 2 1.5 0.9 m turn 90\nquad q 0 0 1 0 1 0 0 0 2 m\n"
                                 "mesh tri tri.obj m at 1 1 1 scale 2\nlamp l disk 2 2 1.9 0 0 -1 0.1 1 1 1 30\n"
                                 "lamp s quad 3 2 1.9 0 1 0 1 0 0 1 1 1\n");
-    const struct geometry *g = &w.geometry;
+    const struct scene_geometry *g = &w.geometry;
     check_face(g, "r.floor", 1, 12, 0, 0, 1);
     check_face(g, "r.ceiling", 2, 12, 0, 0, -1);
     check_face(g, "w.left", 3, 8 - 1.5 - 1.5, 0, 1, 0);
@@ -134,11 +135,11 @@ static void faces(void **state)
     check_face(g, "w.end", 6, 0.4, 1, 0, 0);
     check_face(g, "w.top", 7, 0.8, 0, 0, 1);
     check_face(g, "w.bottom", 8, 0.8, 0, 0, -1);
-    check_face(g, "door.begin", 9, 0.3, 1, 0, 0); /* the reveal looks into the opening */
+    check_face(g, "door.begin", 9, 0.3, 1, 0, 0); /* the reveal faces the opening */
     check_face(g, "door.end", 10, 0.3, -1, 0, 0);
-    check_face(g, "door.head", 11, 0.2, 0, 0, -1); /* no sill: it reaches the wall's foot */
+    check_face(g, "door.head", 11, 0.2, 0, 0, -1); /* no sill: the opening reaches the wall's lower edge */
     check_face(g, "win.begin", 12, 0.2, 1, 0, 0);
-    check_face(g, "win.head", 13, 0.3, 0, 0, -1); /* no end: it reaches the wall's */
+    check_face(g, "win.head", 13, 0.3, 0, 0, -1); /* no end: the window reaches the wall's end */
     check_face(g, "win.sill", 14, 0.3, 0, 0, 1);
     check_face(g, "b.left", 15, 0.45, 0, -1, 0); /* -x turned by 90 degrees */
     check_face(g, "b.top", 20, 0.5, 0, 0, 1);
@@ -147,7 +148,7 @@ static void faces(void **state)
     check_face(g, "l", 23, PI * 0.01, 0, 0, -1);
     check_face(g, "s", 24, 1, 0, 0, -1);
 
-    /* what rays meet: floor, wall, air in the window, the mesh, the lamp but not the corner of its square */
+    /* hits: floor, wall, nothing in the window, mesh, round lamp but not the corner of its square */
     const struct {
         struct vec3 from, direction;
         const char *face;
@@ -160,22 +161,22 @@ static void faces(void **state)
         {{1.3, 0.5, 0.5}, {0, 1, 0}, "b.left", 0.25},
     };
     for (size_t i = 0; i < sizeof rays / sizeof *rays; i++) {
-        struct hit hit;
-        const bool met = geometry_hit(g, rays[i].from, rays[i].direction, &hit);
+        struct ray_hit hit;
+        const bool met = ray_scene_hit(&g->rays, rays[i].from, rays[i].direction, &hit);
         if (met != (rays[i].face != NULL)) fail_msg("ray %zu", i);
         if (!met) continue;
-        assert_string_equal(g->faces[hit.face].name, rays[i].face);
+        assert_string_equal(g->faces[hit.id].name, rays[i].face);
         assert_near(hit.t, rays[i].t, 1e-9);
         assert_true(vec3_dot(hit.normal, rays[i].direction) < 0);
-        assert_true(geometry_blocked(g, rays[i].from, rays[i].direction, 1.01 * rays[i].t));
-        assert_false(geometry_blocked(g, rays[i].from, rays[i].direction, 0.99 * rays[i].t));
+        assert_true(ray_scene_blocked(&g->rays, rays[i].from, rays[i].direction, 1.01 * rays[i].t));
+        assert_false(ray_scene_blocked(&g->rays, rays[i].from, rays[i].direction, 0.99 * rays[i].t));
     }
-    assert_int_equal(w.lights.count, 2); /* the window counts only if there is something to see through it */
+    assert_int_equal(w.lights.count, 2); /* a window is a light only if there is a sky or a sun */
     world_release(&w);
     world_release(&w);
 }
 
-static void textures_keep_their_bounds(void **state)
+static void textures_stay_below_their_bounds(void **state)
 {
     (void)state;
     struct world w = world_from(
@@ -188,15 +189,15 @@ static void textures_keep_their_bounds(void **state)
         double sum = 0, square = 0;
         for (int k = 0; k < 40000; k++) {
             const struct rgb c = texture_at(t, 5, k % 200 * 0.0137 - 0.7, k / 200 * 0.0091 - 0.9);
-            assert_true(c.r >= 0 && c.g >= 0 && c.b >= 0 && rgb_most(c) <= bound + 1e-9);
+            assert_true(c.r >= 0 && c.g >= 0 && c.b >= 0 && rgb_max(c) <= bound + 1e-9);
             sum += c.g / 40000;
             square += c.g * c.g / 40000;
         }
-        assert_true(sum > 0.02 && square - sum * sum > 0.003); /* there is something to see */
+        assert_true(sum > 0.02 && square - sum * sum > 0.003); /* not black, not uniform */
         const struct rgb far = texture_at(t, 5, 1e12, -1e12);
         assert_true(isfinite(far.r) && far.r >= 0);
     }
-    /* a checker's squares: at their middles the two colours, side by side the mean */
+    /* a checker has its two colours in the middles of squares, and their mean on an edge */
     const struct texture *t = &w.scene.textures[0].texture;
     assert_near(texture_at(t, 5, 0.1, 0.1).r + texture_at(t, 5, 0.3, 0.1).r, 0.9, 1e-9);
     assert_near(texture_at(t, 5, 0.2, 0.1).r, 0.45, 1e-6);
@@ -206,11 +207,11 @@ static void textures_keep_their_bounds(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_is_wrong_is_told),
-        cmocka_unit_test(a_scene_without_light_is_refused),
-        cmocka_unit_test(meshes),
-        cmocka_unit_test(faces),
-        cmocka_unit_test(textures_keep_their_bounds),
+        cmocka_unit_test(errors_name_line_found_and_expected_word),
+        cmocka_unit_test(a_scene_without_light_is_rejected),
+        cmocka_unit_test(meshes_are_read_from_obj_files),
+        cmocka_unit_test(faces_have_their_areas_normals_and_ids),
+        cmocka_unit_test(textures_stay_below_their_bounds),
     };
     return cmocka_run_group_tests_name("simulate scene", tests, scratch_make, scratch_remove);
 }

@@ -1,22 +1,12 @@
-/* worlds.h - what the tests of simulate share: scenes from text, means of many light paths. */
+/* worlds.h - helpers of the tests of simulate: scenes from text, means over many light paths. */
 #ifndef REMODEL_TESTS_WORLDS_H
 #define REMODEL_TESTS_WORLDS_H
 
 #include "tests/unit/scratch.h"
 
-#include <math.h>
-
+#include "common/math/numbers.h"
 #include "stages/simulate/path_trace.h"
-
-#define PI 3.14159265358979323846
-
-/* |got - wanted| within a part of the wanted value. */
-#define assert_near(got, wanted, part)                                                                   \
-    do {                                                                                                 \
-        const double got_ = (got), wanted_ = (wanted);                                                   \
-        if (!(fabs(got_ - wanted_) <= (part)*fabs(wanted_)))                                             \
-            fail_msg("%s is %.6g, wanted %.6g within %g %%", #got, got_, wanted_, 100 * (double)(part)); \
-    } while (0)
+#include "tests/unit/common/light/near.h"
 
 static inline struct world world_from(const char *text)
 {
@@ -30,7 +20,7 @@ static inline struct world world_from(const char *text)
     return w;
 }
 
-/* The mean of `paths` estimates, in sets of 4096 that are spread evenly. */
+/* The mean of at least `paths` estimates, in stratified sets of 4096. */
 static inline struct rgb mean_irradiance(const struct world *w, struct vec3 point, struct vec3 normal, int paths,
                                          int seed)
 {
@@ -38,7 +28,7 @@ static inline struct rgb mean_irradiance(const struct world *w, struct vec3 poin
     struct rgb sum = {0, 0, 0};
     uint64_t rays = 0;
     for (int done = 0; done < paths; done += 4096) {
-        struct sampler s = sampler_make(&rng, (uint64_t)done, 4096);
+        struct sobol s = sobol_make(&rng, (uint64_t)done, 4096);
         for (; s.sample < 4096; s.sample++) sum = rgb_add(sum, path_irradiance(w, point, normal, &s, &rays));
     }
     return rgb_scale(sum, 1.0 / ((paths + 4095) / 4096 * 4096));
@@ -48,11 +38,11 @@ static inline struct rgb mean_radiance(const struct world *w, struct vec3 from, 
                                        int seed)
 {
     const struct rng rng = rng_make((uint64_t)seed, "test", "radiance");
-    const struct ray ray = {from, vec3_normalize(direction)};
+    const struct path_ray ray = {from, vec3_normalize(direction)};
     struct rgb sum = {0, 0, 0};
     uint64_t rays = 0;
     for (int done = 0; done < paths; done += 4096) {
-        struct sampler s = sampler_make(&rng, (uint64_t)done, 4096);
+        struct sobol s = sobol_make(&rng, (uint64_t)done, 4096);
         for (; s.sample < 4096; s.sample++) sum = rgb_add(sum, path_radiance(w, ray, &s, &rays));
     }
     return rgb_scale(sum, 1.0 / ((paths + 4095) / 4096 * 4096));

@@ -1,23 +1,20 @@
-/* brdf.c - see brdf.h.
+/* brdf.c - evaluation and importance sampling of the reflectance models.
  *
- * Sampling: the diffuse part by the cosine; Phong's lobe by (n + 1) / (2 pi) cos^n about the mirrored view; Ward's by
- * its half vector (G. Ward, "Measuring and Modeling Anisotropic Reflection", 1992): tan(N,H) = alpha sqrt(-ln u). The
- * part is chosen by a fixed share, and the density is that of both together. */
-#include "stages/simulate/brdf.h"
+ * A sample first chooses the diffuse part or the lobe. The lobe is chosen with probability gloss / (gloss + luminance
+ * of the albedo), its share of the reflected light; the density is that of the mixture. Then:
+ *   diffuse  cosine-weighted: density cos / pi
+ *   Phong    about the mirror image of the view, density (n + 1) / (2 pi) cos^n
+ *   Ward     the half vector, tan(N,H) = alpha sqrt(-ln u) [Ward 1992]; the density of L is
+ *            D / (cos^3(N,H) (H.L)), D = exp(-tan^2(N,H) / alpha^2) / (4 pi alpha^2)
+ * Phong is the form of [Colburn 2014, A.1.10], with the cosine cancelled: f cos = albedo cos / pi + ks (R.V)^n,
+ * finite at grazing light; the diffuse part is albedo / pi in place of the source's k_d. Ward is the isotropic model
+ * of [Ward 1992], as in [Colburn 2014, A.1.11]. */
+#include "common/light/brdf.h"
 
 #include <math.h>
 
-#include "stages/simulate/fast.h"
-
-#define PI 3.14159265358979323846
-
-void frame_from_normal(struct vec3 z, struct vec3 *x, struct vec3 *y)
-{
-    /* Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 2017 */
-    const double sign = z.z < 0 ? -1 : 1, a = -1 / (sign + z.z), b = z.x * z.y * a;
-    *x = vec3_make(1 + sign * z.x * z.x * a, sign * b, -sign * z.x);
-    *y = vec3_make(b, sign + z.y * z.y * a, -z.y);
-}
+#include "common/light/frame.h"
+#include "common/math/numbers.h"
 
 static double gloss_share(const struct brdf *b)
 {
@@ -48,31 +45,23 @@ struct rgb brdf_eval(const struct brdf *b, struct vec3 n, struct vec3 view, stru
     return rgb_add(rgb_scale(b->albedo, cos_l / PI), rgb_grey(gloss));
 }
 
-struct vec3 direction_about(struct vec3 axis, double sin_t, double cos_t, double turns)
-{
-    struct vec3 x, y;
-    double c, s;
-    frame_from_normal(axis, &x, &y);
-    circle(turns, &c, &s);
-    return vec3_add(vec3_add(vec3_scale(x, sin_t * c), vec3_scale(y, sin_t * s)), vec3_scale(axis, cos_t));
-}
-
 bool brdf_sample(const struct brdf *b, struct vec3 n, struct vec3 view, const double u[3], struct vec3 *light)
 {
     const double share = gloss_share(b);
     if (u[0] >= share) {
-        *light = direction_about(n, sqrt(u[1]), sqrt(1 - u[1]), u[2]);
+        *light = frame_direction(n, sqrt(u[1]), sqrt(1 - u[1]), u[2]);
     } else if (b->kind == BRDF_PHONG) {
         const double cos_t = pow(1 - u[1], 1 / (b->shape + 1));
-        *light = direction_about(mirrored(n, view), sqrt(most(0, 1 - cos_t * cos_t)), cos_t, u[2]);
+        *light = frame_direction(mirrored(n, view), sqrt(fast_max(0, 1 - cos_t * cos_t)), cos_t, u[2]);
     } else {
         const double tan_h = b->shape * sqrt(-log(1 - u[1])), cos_h = 1 / sqrt(1 + tan_h * tan_h);
-        *light = mirrored(direction_about(n, tan_h * cos_h, cos_h, u[2]), view);
+        *light = mirrored(frame_direction(n, tan_h * cos_h, cos_h, u[2]), view);
     }
     return vec3_dot(n, *light) > 0;
 }
 
-/* Ward's lobe with ks = 1 towards a viewer at cos_v: the mean of f cos / density over a grid of the sampling square. */
+/* Reflectance of Ward's lobe with ks = 1 towards a viewer at cos_v: the mean of f cos / density over a grid of the unit
+ * square that directions are sampled from. */
 static double ward_albedo(double alpha, double cos_v)
 {
     enum { STEPS = 96 };
@@ -93,9 +82,9 @@ static double ward_albedo(double alpha, double cos_v)
 
 double brdf_gloss_albedo(enum brdf_kind kind, double ks, double shape)
 {
-    double most = 0;
+    double max = 0;
     if (kind == BRDF_PHONG) return 2 * PI * ks / (shape + 1);
     if (kind == BRDF_WARD)
-        for (int i = 1; i <= 20; i++) most = fmax(most, ward_albedo(shape, i / 20.0));
-    return ks * most;
+        for (int i = 1; i <= 20; i++) max = fmax(max, ward_albedo(shape, i / 20.0));
+    return ks * max;
 }

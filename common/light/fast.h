@@ -1,18 +1,15 @@
-/* fast.h - functions of the inner loop, in place of calls into the mathematical library: inlined, and with the same bits
- * on every system. */
-#ifndef REMODEL_SIMULATE_FAST_H
-#define REMODEL_SIMULATE_FAST_H
+/* fast.h - inline replacements for library functions in inner loops, with the same bits on every system. */
+#ifndef REMODEL_FAST_H
+#define REMODEL_FAST_H
 
-#include <math.h>
+/* Unlike fmin() and fmax(), these return b when either argument is a NaN. */
+static inline double fast_min(double a, double b) { return a < b ? a : b; }
+static inline double fast_max(double a, double b) { return a > b ? a : b; }
 
-static inline double least(double a, double b) { return a < b ? a : b; }
-static inline double most(double a, double b) { return a > b ? a : b; }
-static inline double clip(double x, double from, double to) { return x > from ? (x < to ? x : to) : from; }
-
-/* Cosine and sine of `turns` full turns, 0 <= turns <= 1; within 1e-13. */
-static inline void circle(double turns, double *c, double *s)
+/* Cosine and sine of `turns` full turns, 0 <= turns <= 1, to within 1e-13: Taylor series of the angle to the nearest
+ * quarter turn. */
+static inline void fast_cos_sin(double turns, double *c, double *s)
 {
-    /* one of eight octants, each folded to an angle within an eighth of a turn */
     const int quarter = (int)(4 * turns + 0.5);
     const double a = (turns - 0.25 * quarter) * 6.283185307179586477, aa = a * a;
     const double sine =

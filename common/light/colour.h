@@ -1,6 +1,7 @@
-/* colour.h - scene-linear Rec.709 triples, by value. */
-#ifndef REMODEL_SIMULATE_COLOUR_H
-#define REMODEL_SIMULATE_COLOUR_H
+/* colour.h - rgb triples, by value: scene-linear, Rec.709 primaries. A triple is an albedo (0..1), a radiance or an
+ * irradiance; the code that holds it says which. */
+#ifndef REMODEL_COLOUR_H
+#define REMODEL_COLOUR_H
 
 struct rgb {
     double r, g, b;
@@ -11,11 +12,12 @@ static inline struct rgb rgb_grey(double v) { return (struct rgb){v, v, v}; }
 static inline struct rgb rgb_add(struct rgb a, struct rgb b) { return rgb_make(a.r + b.r, a.g + b.g, a.b + b.b); }
 static inline struct rgb rgb_scale(struct rgb a, double s) { return rgb_make(a.r * s, a.g * s, a.b * s); }
 static inline struct rgb rgb_multiply(struct rgb a, struct rgb b) { return rgb_make(a.r * b.r, a.g * b.g, a.b * b.b); }
+/* a at t = 0, b at t = 1 */
 static inline struct rgb rgb_mix(struct rgb a, struct rgb b, double t)
 {
     return rgb_add(rgb_scale(a, 1 - t), rgb_scale(b, t));
 }
-static inline double rgb_most(struct rgb a)
+static inline double rgb_max(struct rgb a)
 {
     double m = a.r > a.g ? a.r : a.g;
     return m > a.b ? m : a.b;

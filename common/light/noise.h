@@ -1,11 +1,13 @@
-/* noise.h - repeatable noise of the plane, for textures and the outdoors. */
-#ifndef REMODEL_SIMULATE_NOISE_H
-#define REMODEL_SIMULATE_NOISE_H
+/* noise.h - integer hashes, and repeatable value noise over the plane. Everything is a pure function of its
+ * arguments. */
+#ifndef REMODEL_LIGHT_NOISE_H
+#define REMODEL_LIGHT_NOISE_H
 
 #include <math.h>
 #include <stdint.h>
 
-/* A bijection of 32 bits that spreads them well (the finaliser of MurmurHash3). */
+/* A bijection on 32 bits in which every input bit changes about half of the output bits: the finaliser of
+ * MurmurHash3. */
 static inline uint32_t noise_mix(uint32_t h)
 {
     h = (h ^ h >> 16) * 0x85ebca6bu;
@@ -18,15 +20,16 @@ static inline uint32_t noise_hash(uint32_t seed, int x, int y)
     return noise_mix(noise_mix(seed + 0x9e3779b9u * (uint32_t)x) + 0x7f4a7c15u * (uint32_t)y);
 }
 
-/* The k-th number in [0, 1) that belongs to a hash. */
+/* The k-th uniform number in [0, 1) derived from a hash. */
 static inline double noise_unit(uint32_t hash, int k)
 {
     return noise_mix(hash + 0x632be5abu * (uint32_t)(k + 1)) * 0x1p-32;
 }
 
-/* The integer below x, as an int; far out it wraps around. */
+/* floor(x) as an int; wraps around outside the range of int. */
 static inline int noise_floor(double x) { return (int)(uint32_t)(int64_t)floor(x); }
 
+/* 0 below `from`, 1 above `to`, a cubic with zero end slopes between them; from < to. */
 static inline double smooth_step(double from, double to, double x)
 {
     double t = (x - from) / (to - from);
@@ -45,7 +48,8 @@ static inline noise_u32x4 noise_mix4(noise_u32x4 h)
     return h ^ h >> 16;
 }
 
-/* Value noise in [-1, 1]; features about 1 wide. The hashes of the four corners are those of noise_hash(). */
+/* Value noise in [-1, 1] with features about 1 wide: noise_hash() of the four corners of the cell of the integer grid,
+ * interpolated by smooth_step(). */
 static inline double noise_value(uint32_t seed, double x, double y)
 {
     const double fx = floor(x), fy = floor(y);
@@ -59,7 +63,8 @@ static inline double noise_value(uint32_t seed, double x, double y)
     return (double)((top + (bottom - top) * wy) * 0x1p-23f - 1);
 }
 
-/* Octaves of it, each of half the size and 0.6 of the strength; within [-1, 1]. */
+/* A sum of `octaves` layers of value noise, each with half the feature size and 0.6 of the amplitude of the one before,
+ * normalised to [-1, 1]. */
 static inline double noise_octaves(uint32_t seed, double x, double y, int octaves)
 {
     double sum = 0, weight = 1, total = 0;

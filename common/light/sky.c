@@ -1,29 +1,31 @@
-/* sky.c - see sky.h.
+/* sky.c - the procedural panorama.
  *
- * By azimuth and elevation: a sky that pales towards the horizon, with clouds; a row of buildings with windows, cells in
- * azimuth; in front of it trees; below the horizon fields. Strong enough in detail to be matched between photographs. */
-#include "stages/simulate/sky.h"
+ * By azimuth and elevation: a sky that pales towards the horizon, with clouds; a row of buildings with windows, in
+ * cells of equal azimuth; trees in front of them; fields below the horizon. Textured enough for features on it to be
+ * matched between photographs. Buildings and trees are darker or brighter with the luminance of the sky. */
+#include "common/light/sky.h"
 
 #include <math.h>
 
-#include "stages/simulate/fast.h"
-#include "stages/simulate/noise.h"
+#include "common/light/fast.h"
+#include "common/light/noise.h"
+#include "common/math/numbers.h"
 
-#define PI           3.14159265358979323846
-#define BUILDINGS    54  /* around the horizon */
-#define TALLEST_TREE 7.3 /* degrees */
+#define BUILDINGS       54  /* cells around the horizon */
+#define MAX_TREE_HEIGHT 7.3 /* degrees of elevation */
 
-void sky_init(struct sky *sky, const struct scene *s)
+void sky_init(struct sky *sky, const struct sky_params *params)
 {
-    const double az = s->sun.azimuth * PI / 180, el = s->sun.elevation * PI / 180;
-    *sky = (struct sky){.has_sun = s->has_sun, .has_panorama = s->has_panorama, .panorama = s->panorama};
-    /* azimuth counts from x to y */
-    sky->sun = vec3_make(cos(el) * cos(az), cos(el) * sin(az), sin(el));
-    sky->sun_cos = cos(s->sun.angular_radius * PI / 180);
-    sky->sun_radiance = s->sun.radiance;
+    const struct sun *sun = &params->sun;
+    /* the order of these products is part of the results: DEGREE would change their last bits */
+    const double az = sun->azimuth * PI / 180, el = sun->elevation * PI / 180;
+    *sky = (struct sky){.has_sun = params->has_sun, .has_panorama = params->has_panorama, .panorama = params->panorama};
+    sky->to_sun = vec3_make(cos(el) * cos(az), cos(el) * sin(az), sin(el));
+    sky->sun_cos = cos(sun->angular_radius * PI / 180);
+    sky->sun_radiance = sun->radiance;
 }
 
-/* Noise around the horizon, periodic in azimuth: two noises mixed where they meet. */
+/* Noise around the horizon, periodic in azimuth (`turn` 0..1): two periods are blended where they meet. */
 static double ring(uint32_t seed, double turn, double cells, double y)
 {
     const double t = smooth_step(0.95, 1, turn), x = turn * cells;
@@ -31,23 +33,23 @@ static double ring(uint32_t seed, double turn, double cells, double y)
     return t > 0 ? (1 - t) * noise + t * noise_octaves(seed, x - cells, y, 2) : noise;
 }
 
-static struct rgb panorama(const struct panorama *p, struct vec3 d)
+static struct rgb panorama_radiance(const struct panorama *p, struct vec3 d)
 {
-    const double el = asin(most(-1, least(1, d.z))) * (180 / PI), turn = 0.5 + atan2(d.y, d.x) / (2 * PI);
+    const double el = asin(fast_max(-1, fast_min(1, d.z))) * (180 / PI), turn = 0.5 + atan2(d.y, d.x) / (2 * PI);
     const double bright = rgb_luminance(p->sky);
     if (el < 0) { /* fields on a plane */
-        const double near = 1 / most(0.02, -d.z);
+        const double near = 1 / fast_max(0.02, -d.z);
         return rgb_scale(p->ground, 0.9 + 0.5 * noise_octaves(p->seed + 5, 2 * d.x * near, 2 * d.y * near, 4));
     }
-    if (el > 30) { /* nothing stands so high */
+    if (el > 30) { /* above all buildings and trees */
         const double cloud =
             smooth_step(0, 0.5, noise_octaves(p->seed, 4 * d.x / (d.z + 0.3), 4 * d.y / (d.z + 0.3), 5));
         return rgb_mix(p->sky, rgb_grey(1.3 * bright), 0.45 * cloud);
     }
 
-    const double tree_top = el > TALLEST_TREE ? 0
-                                              : 1.6 + 4.5 * most(0, ring(p->seed + 1, turn, 90, 0.5)) +
-                                                    1.2 * ring(p->seed + 2, turn, 700, 0.5);
+    const double tree_top = el > MAX_TREE_HEIGHT ? 0
+                                                 : 1.6 + 4.5 * fast_max(0, ring(p->seed + 1, turn, 90, 0.5)) +
+                                                       1.2 * ring(p->seed + 2, turn, 700, 0.5);
     if (el < tree_top) {
         const double leaf = ring(p->seed + 3, turn, 1100, 3 * el), lit = 0.5 + 0.5 * el / (tree_top + 0.5);
         const struct rgb green =
@@ -76,7 +78,7 @@ static struct rgb panorama(const struct panorama *p, struct vec3 d)
 
 struct rgb sky_radiance(const struct sky *sky, struct vec3 direction)
 {
-    struct rgb c = sky->has_panorama ? panorama(&sky->panorama, direction) : rgb_grey(0);
-    if (sky->has_sun && vec3_dot(direction, sky->sun) > sky->sun_cos) c = rgb_add(c, sky->sun_radiance);
+    struct rgb c = sky->has_panorama ? panorama_radiance(&sky->panorama, direction) : rgb_grey(0);
+    if (sky->has_sun && vec3_dot(direction, sky->to_sun) > sky->sun_cos) c = rgb_add(c, sky->sun_radiance);
     return c;
 }

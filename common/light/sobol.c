@@ -1,11 +1,16 @@
-/* sampler.c - see sampler.h.
+/* sobol.c - hash-based Owen-scrambled Sobol' points [Burley 2020].
  *
- * The points are kept with their bits reversed: scrambling then is a hash whose every bit depends on lower bits only. */
-#include "stages/simulate/sampler.h"
+ * A group is one set of four-dimensional Sobol' points, at most 2^16 of them. The order of the points is an
+ * Owen-scrambled permutation of the sample index; each dimension is then Owen-scrambled with a seed of its own. Owen
+ * scrambling of a number is a hash in which each bit depends on higher bits only; the code keeps the points with their
+ * bits reversed, where "higher" becomes "lower" and the hash is built of multiplications and additions [Laine 2011].
+ * The result is reversed at the end. Differs from the source: the four dimensions are scrambled at once in a vector
+ * register. */
+#include "common/light/sobol.h"
 
-#include "stages/simulate/noise.h"
+#include "common/light/noise.h"
 
-/* Sobol' direction numbers of S. Joe and F. Kuo (2008), dimensions 1 to 4, first 16 bits, bits reversed. */
+/* Direction numbers of [Joe 2008], dimensions 1 to 4, first 16 bits, bits reversed. */
 #define BITS 16
 static const noise_u32x4 directions[BITS] = {
     {0x1, 0x1, 0x1, 0x1},
@@ -26,7 +31,7 @@ static const noise_u32x4 directions[BITS] = {
     {0x8000, 0xffff, 0xaa09, 0xa0c3},
 };
 
-/* S. Laine and T. Karras (2011), with the constants found by N. Vegdahl. */
+/* The permutation of [Laine 2011], with constants by N. Vegdahl that scramble better. */
 static uint32_t scrambled(uint32_t x, uint32_t seed)
 {
     x ^= x * 0x3d20adeau;
@@ -37,7 +42,7 @@ static uint32_t scrambled(uint32_t x, uint32_t seed)
     return x;
 }
 
-/* The same, and then the bits reversed, of four numbers at once. */
+/* The same for four numbers at once, followed by the reversal of the bits. */
 static noise_u32x4 scrambled_reversed4(noise_u32x4 x, noise_u32x4 seed)
 {
     x ^= x * 0x3d20adeau;
@@ -52,16 +57,16 @@ static noise_u32x4 scrambled_reversed4(noise_u32x4 x, noise_u32x4 seed)
     return x >> 16 | x << 16;
 }
 
-struct sampler sampler_make(const struct rng *rng, uint64_t pixel, int samples)
+struct sobol sobol_make(const struct rng *rng, uint64_t pixel, int samples)
 {
     uint32_t mask = 1;
     while (mask < (uint32_t)samples && mask < 1u << BITS) mask *= 2;
-    return (struct sampler){rng_u32(rng, pixel, 0), mask - 1, 0};
+    return (struct sobol){rng_u32(rng, pixel, 0), mask - 1, 0};
 }
 
-void sampler_group(const struct sampler *s, uint32_t group, double u[4])
+void sobol_group(const struct sobol *s, uint32_t group, double u[4])
 {
-    /* beyond the points that the tables reach, sets with other seeds follow */
+    /* sample indices beyond the mask belong to further sets, with other seeds */
     const uint32_t set = s->sample & ~s->mask;
     const uint32_t seed = noise_mix(s->key ^ noise_mix(group + 0x68bc21ebu * (set + 1)));
     const uint32_t index = scrambled(s->sample & s->mask, noise_mix(seed + 0x9e3779b9u)) & s->mask;
