@@ -3,7 +3,7 @@
  * The squared distance D(x, y) = min over (u, v) outside of (x - u)^2 + (y - v)^2 separates into two passes. Columns:
  * g(x, y) = min over v of (y - v)^2 for outside pixels (x, v), by one sweep down and one up. Rows: D(x, y) = min over u
  * of (x - u)^2 + g(u, y) is the lower envelope of the parabolas with apex (u, g(u, y)). The envelope is built from left
- * to right: a parabola is removed when the next one crosses its left neighbour before it does. Both passes are linear
+ * to right: the last parabola is removed while the new one crosses it left of where it begins. Both passes are linear
  * in the number of pixels.
  *
  * Differs from the source: columns use the two sweeps of distances, since the input is binary, and columns without an
@@ -32,8 +32,8 @@ static void columns(float *squared, const uint8_t *inside, int width, int height
     for (size_t p = 0; p < (size_t)width * (size_t)height; p++) squared[p] *= squared[p];
 }
 
-struct
-    envelope { /* lower envelope of a row: parabola k has its apex at (at[k], height[k]) and is lowest from from[k] on */
+/* The lower envelope of a row: parabola k has its apex at (at[k], height[k]) and is the lowest from from[k] on. */
+struct envelope {
     double *from;
     int *at;
     float *height;

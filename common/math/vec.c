@@ -1,9 +1,9 @@
 /* vec.c - rotations, and eigenvectors of symmetric 3x3 matrices.
  *
- * A rotation matrix becomes a quaternion by the method of [Shepperd 1978]: of the four components, the largest is
- * computed from the diagonal and divides the others, which is stable for every angle. Eigenvectors are found by cyclic
- * Jacobi rotations [Golub 2013, 8.5]: each rotation zeroes one element off the diagonal, until all are below 1e-18 of
- * the diagonal. The matrix becomes diagonal, and the rows of v its eigenvectors. */
+ * A rotation matrix becomes a quaternion by the method of [Shepperd 1978]: the component of largest magnitude is taken
+ * from the diagonal and the others relative to it, which is stable for every angle. Eigenvectors are found by cyclic
+ * Jacobi rotations [Golub 2013, 8.5]: each zeroes one element off the diagonal, until their sum is below 1e-18 of the
+ * diagonal's. The matrix becomes diagonal, and the rows of v its eigenvectors. */
 #include "common/math/vec.h"
 
 struct mat3 mat3_from_quat(struct quat q)
