@@ -110,7 +110,7 @@ static enum status unknown(const struct param *table, const char *name, const ch
                    near ? near : "", near ? "?" : ".");
 }
 
-struct reading {
+struct config_reader {
     const struct param *table;
     void *values;
     const char *section, *path;
@@ -121,7 +121,7 @@ struct reading {
     enum status status;
 };
 
-static void where_text(const struct reading *r, char *where, size_t size)
+static void where_text(const struct config_reader *r, char *where, size_t size)
 {
     snprintf(where, size, "%s:%d: ", r->path, r->line);
 }
@@ -130,7 +130,7 @@ static void where_text(const struct reading *r, char *where, size_t size)
  * comments of any length. */
 static char *read_line(char *to, int room, void *ctx)
 {
-    struct reading *r = ctx;
+    struct config_reader *r = ctx;
 
     if (r->status || !*r->at) return NULL;
     r->line++;
@@ -151,7 +151,7 @@ static char *read_line(char *to, int room, void *ctx)
 
 static int take_pair(void *ctx, const char *section, const char *name, const char *value)
 {
-    struct reading *r = ctx;
+    struct config_reader *r = ctx;
     char where[512], shown[SCAN_SHOWN];
 
     if (r->status) return 1;
@@ -178,7 +178,7 @@ enum status params_read_file(const struct param *table, void *values, const char
                              struct err *err)
 {
     struct textfile file = {0};
-    struct reading r = {.table = table, .values = values, .section = section, .path = path, .err = err};
+    struct config_reader r = {.table = table, .values = values, .section = section, .path = path, .err = err};
     char shown[SCAN_SHOWN];
     size_t count = 0;
 

@@ -17,7 +17,7 @@
 #include "common/image/exr_file.h"
 #include "common/image/exr_zip.h"
 
-struct reader {
+struct exr_reader {
     struct exr_image *im;
     exr_context_t ctxt;
     exr_attr_box2i_t window;
@@ -31,8 +31,8 @@ struct reader {
     struct exr_chunk_fault *faults;
 };
 
-struct read_job {
-    struct reader *r;
+struct unpack_job {
+    struct exr_reader *r;
     struct exr_zip *zip;
     struct exr_chunk_fault *fault;
     int x, y; /* the chunk's first pixel in the image */
@@ -66,7 +66,7 @@ static int unpack_float(float *to, const uint8_t *from, int width, bool any)
 
 static exr_result_t unpack_chunk(exr_decode_pipeline_t *pipe)
 {
-    const struct read_job *job = pipe->decoding_user_data;
+    const struct unpack_job *job = pipe->decoding_user_data;
     const struct exr_image *im = job->r->im;
     int width = pipe->chunk.width, height = pipe->chunk.height;
     const uint8_t *from = pipe->unpacked_buffer ? pipe->unpacked_buffer : pipe->packed_buffer;
@@ -108,7 +108,7 @@ static exr_result_t unzip_chunk(exr_decode_pipeline_t *pipe)
     static const exr_result_t results[] = {[EXR_ZIP_OK] = EXR_ERR_SUCCESS,
                                            [EXR_ZIP_DAMAGED] = EXR_ERR_CORRUPT_CHUNK,
                                            [EXR_ZIP_NOMEM] = EXR_ERR_OUT_OF_MEMORY};
-    const struct read_job *job = pipe->decoding_user_data;
+    const struct unpack_job *job = pipe->decoding_user_data;
     const size_t packed = pipe->chunk.packed_size, size = pipe->chunk.unpacked_size;
     if (packed < size)
         return results[exr_zip_unpack(job->zip, pipe->packed_buffer, packed, pipe->unpacked_buffer, size)];
@@ -117,7 +117,7 @@ static exr_result_t unzip_chunk(exr_decode_pipeline_t *pipe)
     return EXR_ERR_SUCCESS;
 }
 
-static exr_result_t chunk_info(const struct reader *r, size_t chunk, exr_chunk_info_t *info)
+static exr_result_t chunk_info(const struct exr_reader *r, size_t chunk, exr_chunk_info_t *info)
 {
     int across = (int)(chunk % (size_t)r->chunks_across), down = (int)(chunk / (size_t)r->chunks_across);
     if (r->tiled) return exr_read_tile_chunk_info(r->ctxt, 0, across, down, 0, 0, info);
@@ -126,10 +126,10 @@ static exr_result_t chunk_info(const struct reader *r, size_t chunk, exr_chunk_i
 
 static void decode_chunks(void *ctx, size_t begin, size_t end, int thread)
 {
-    struct reader *r = ctx;
+    struct exr_reader *r = ctx;
     exr_decode_pipeline_t *pipe = &r->pipes[thread];
     for (size_t i = begin; i < end; i++) {
-        struct read_job job = {r, &r->zips[thread], &r->faults[i], (int)(i % (size_t)r->chunks_across) * r->chunk_width,
+        struct unpack_job job = {r, &r->zips[thread], &r->faults[i], (int)(i % (size_t)r->chunks_across) * r->chunk_width,
                                (int)(i / (size_t)r->chunks_across) * r->chunk_height};
         exr_chunk_info_t info;
         exr_result_t rv = chunk_info(r, i, &info);
@@ -155,7 +155,7 @@ static void decode_chunks(void *ctx, size_t begin, size_t end, int thread)
 }
 
 /* Adds the wanted planes and maps the file's channels to them. */
-static enum status choose_channels(struct reader *r, const char *path, const char *const *names, int name_count,
+static enum status choose_channels(struct exr_reader *r, const char *path, const char *const *names, int name_count,
                                    struct err *err)
 {
     const exr_attr_chlist_t *list = NULL;
@@ -194,7 +194,7 @@ static enum status choose_channels(struct reader *r, const char *path, const cha
 
 /* Reads worldToCamera and the string attributes, except provenance, the format's own, and those of more than 255
  * bytes. */
-static enum status read_attributes(struct reader *r, struct err *err)
+static enum status read_attributes(struct exr_reader *r, struct err *err)
 {
     int32_t count = 0;
     exr_get_attribute_count(r->ctxt, 0, &count);
@@ -215,7 +215,7 @@ static enum status read_attributes(struct reader *r, struct err *err)
     return ST_OK;
 }
 
-static enum status read_header(struct reader *r, const char *path, struct err *err)
+static enum status read_header(struct exr_reader *r, const char *path, struct err *err)
 {
     exr_attr_box2i_t display = {0};
     exr_storage_t storage = EXR_STORAGE_LAST_TYPE;
@@ -258,7 +258,7 @@ static enum status read_header(struct reader *r, const char *path, struct err *e
 static enum status read_file(struct exr_image *im, const char *path, const char *const *names, int name_count, bool any,
                              struct err *err)
 {
-    struct reader r = {.im = im, .any = any};
+    struct exr_reader r = {.im = im, .any = any};
     exr_context_initializer_t init = exr_library_init();
     exr_chunk_info_t info;
     int threads = parallel_threads();

@@ -29,7 +29,7 @@ struct packed_chunk {
     size_t size;
 };
 
-struct writer {
+struct exr_writer {
     const struct exr_image *im;
     exr_context_t ctxt;
     int part;
@@ -42,8 +42,8 @@ struct writer {
     int rows; /* of a chunk */
 };
 
-struct write_job {
-    struct writer *w;
+struct pack_job {
+    struct exr_writer *w;
     struct exr_zip *zip;
     size_t chunk;
 };
@@ -78,7 +78,7 @@ static int pack_float(uint8_t *to, const float *from, int width)
 
 static exr_result_t pack_chunk(exr_encode_pipeline_t *pipe)
 {
-    const struct write_job *job = pipe->encoding_user_data;
+    const struct pack_job *job = pipe->encoding_user_data;
     const struct exr_image *im = job->w->im;
     uint8_t *to = pipe->packed_buffer;
     for (int y = pipe->chunk.start_y; y < pipe->chunk.start_y + pipe->chunk.height; y++) {
@@ -109,7 +109,7 @@ static bool zips(const struct exr_image *im) { return im->codec == EXR_ZIP || im
 /* Replaces the library's write function: chunks are compressed in any order and written in order by write_chunks(). */
 static exr_result_t keep_chunk(exr_encode_pipeline_t *pipe)
 {
-    const struct write_job *job = pipe->encoding_user_data;
+    const struct pack_job *job = pipe->encoding_user_data;
     struct packed_chunk *packed = &job->w->packed[job->chunk];
     const void *bytes = pipe->compressed_buffer;
     packed->size = pipe->compressed_bytes;
@@ -126,10 +126,10 @@ static exr_result_t keep_chunk(exr_encode_pipeline_t *pipe)
 
 static void compress_chunks(void *ctx, size_t begin, size_t end, int thread)
 {
-    struct writer *w = ctx;
+    struct exr_writer *w = ctx;
     exr_encode_pipeline_t *pipe = &w->pipes[thread];
     for (size_t i = begin; i < end; i++) {
-        struct write_job job = {w, &w->zips[thread], i};
+        struct pack_job job = {w, &w->zips[thread], i};
         exr_result_t rv = EXR_ERR_SUCCESS;
         if (pipe->context) {
             rv = exr_encoding_update(w->ctxt, w->part, &w->infos[i], pipe);
@@ -155,7 +155,7 @@ static void compress_chunks(void *ctx, size_t begin, size_t end, int thread)
     }
 }
 
-static exr_result_t write_header(struct writer *w, const struct provenance *prov, const char *inputs)
+static exr_result_t write_header(struct exr_writer *w, const struct provenance *prov, const char *inputs)
 {
     static const exr_attr_chromaticities_t rec709 = {0.64F, 0.33F, 0.30F, 0.60F, 0.15F, 0.06F, 0.3127F, 0.3290F};
     static const exr_pixel_type_t type[] = {
@@ -192,7 +192,7 @@ static exr_result_t write_header(struct writer *w, const struct provenance *prov
     return rv;
 }
 
-static enum status write_chunks(struct writer *w, const char *path, struct err *err)
+static enum status write_chunks(struct exr_writer *w, const char *path, struct err *err)
 {
     w->rows = w->im->codec == EXR_ZIP ? ZIP_ROWS : 1;
     w->chunks = ((size_t)w->im->height + (size_t)w->rows - 1) / (size_t)w->rows;
@@ -224,7 +224,7 @@ static enum status write_chunks(struct writer *w, const char *path, struct err *
 
 enum status exr_write(const struct exr_image *im, const char *path, const struct provenance *prov, struct err *err)
 {
-    struct writer w = {.im = im};
+    struct exr_writer w = {.im = im};
     struct outfile file = {0};
     exr_context_initializer_t init = exr_library_init();
     char *inputs = NULL;

@@ -157,15 +157,15 @@ static void read_exif(struct photo_info *info, TIFF *t)
 
 /* ----------------------------------------------------------------------------------------------------------- pixels */
 
-struct layout {
+struct tiff_layout {
     uint16_t bits, samples, planar, photometric, format, compression;
     bool plain; /* rows of RGB or grey, 8 or 16 bits */
 };
 
-static enum status read_layout(struct layout *l, struct photo_info *info, TIFF *t, const char *path, struct err *err)
+static enum status read_layout(struct tiff_layout *l, struct photo_info *info, TIFF *t, const char *path, struct err *err)
 {
     uint32_t width = 0, height = 0;
-    *l = (struct layout){.photometric = PHOTOMETRIC_MINISBLACK};
+    *l = (struct tiff_layout){.photometric = PHOTOMETRIC_MINISBLACK};
     TIFFGetField(t, TIFFTAG_IMAGEWIDTH, &width);
     TIFFGetField(t, TIFFTAG_IMAGELENGTH, &height);
     TIFFGetFieldDefaulted(t, TIFFTAG_BITSPERSAMPLE, &l->bits);
@@ -193,7 +193,7 @@ static enum status read_layout(struct layout *l, struct photo_info *info, TIFF *
     return ST_OK;
 }
 
-static enum status read_plain(struct photo *p, TIFF *t, const struct layout *l, const struct tiff_reader *r,
+static enum status read_plain(struct photo *p, TIFF *t, const struct tiff_layout *l, const struct tiff_reader *r,
                               struct err *err)
 {
     const size_t row = (size_t)TIFFScanlineSize(t), width = (size_t)p->info.width;
@@ -242,7 +242,7 @@ static enum status read_converted(struct photo *p, TIFF *t, const struct tiff_re
 enum status photo_read_tiff(struct photo *p, const struct photo_bytes *file, bool pixels, struct err *err)
 {
     struct tiff_reader r = {.file = file};
-    struct layout layout;
+    struct tiff_layout layout;
     TIFF *t = open_tiff(&r);
     if (!t) return damaged(&r, err);
     enum status st = read_layout(&layout, &p->info, t, file->path, err);
