@@ -4,9 +4,9 @@
  * near the median are ignored. Bitmaps are compared by exclusive or, 64 pixels at a time, over a pyramid: all shifts at
  * the smallest level, then the nine shifts around twice the result at each larger level.
  *
- * Differs from the source: - The threshold of a pair is the quantile, from 9 to 91 %, that is farthest from black and
- * white in both exposures, so that
- *   exposures many stops apart can be compared.
+ * Differs from the source:
+ * - The threshold of a pair is the quantile, from 9 to 91 %, that is farthest from black and white in both exposures,
+ *   so that exposures many stops apart can be compared.
  * - The score of a shift is the fraction of differing pixels among the compared ones, not their number.
  * - A shift must remove at least a third of the differences; otherwise it is 0. */
 #include "stages/hdr_merge/align.h"
