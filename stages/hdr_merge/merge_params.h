@@ -22,15 +22,15 @@
       "electrons that a pixel collects at white, for the photon noise; see noise")                                     \
     X(read_noise, double, 6, 0, 1e6, "", "standard deviation of the read noise, in electrons; see noise")              \
     X(align, choice, "correct", 0, 0, "correct|report|no",                                                             \
-      "shifts of exposures against the middle one, in whole pixels: find and correct them, find and report them, or "  \
-      "do not "                                                                                                        \
-      "look for them")                                                                                                 \
+      "shifts of exposures against the middle one, in whole pixels; correct: found and corrected, report: found and "  \
+      "logged, no: ignored")                                                                                           \
     X(max_shift, int, 16, 1, 256, "px", "largest shift between neighbouring exposures to search")                      \
     X(max_disagreement, double, 1.5, 1, 1000, "",                                                                      \
-      "largest allowed factor between the measured and the stated ratio of two exposures; beyond it the view is an "   \
-      "error")                                                                                                         \
+      "largest allowed factor between the measured and the stated ratio of two exposures; if it is exceeded, the "     \
+      "view "                                                                                                          \
+      "fails")                                                                                                         \
     X(picture, choice, "tone", 0, 0, "tone|middle",                                                                    \
-      "picture for structure from motion: the tone-mapped radiance, or the middle exposure")
+      "picture for structure from motion: the tone-mapped radiance (tone) or the middle exposure (middle)")
 
 struct merge_params {
     MERGE_PARAMS(PARAM_FIELD)

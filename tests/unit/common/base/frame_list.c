@@ -1,9 +1,9 @@
-/* frame_list.c - which frames are asked for. */
+/* frame_list.c - lists of frames. */
 #include "common/base/frame_list.h"
 
 #include "tests/unit/scratch.h"
 
-static void lists_of_frames(void **state)
+static void frame_lists_are_parsed(void **state)
 {
     (void)state;
     static const struct {
@@ -27,6 +27,6 @@ static void lists_of_frames(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(lists_of_frames)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(frame_lists_are_parsed)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
