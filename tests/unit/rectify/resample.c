@@ -619,7 +619,7 @@ static void rays_outside_the_lens_are_empty(void **state)
     for (int i = 0; i < 160 * 140 * 4; i++) assert_true(out.data[i] == 0);
     image_release(&out);
 
-    view = centred_view(40, 40, 1); /* half of the rays point away from the camera's front */
+    view = centred_view(40, 40, 1); /* half of the rays are more than 90 degrees off the lens's axis */
     out = look(&photo, &lens, turn(90, 0, 1, 0), &view);
     for (int i = 0; i < 40 * 40; i++) assert_true(out.data[4 * i + 3] == 0 || out.data[4 * i + 3] == 1);
     image_release(&out);
