@@ -44,7 +44,7 @@ enum status exr_first_fault(struct err *err, const char *verb, const char *path,
         if (f->plane >= 0)
             return err_set(
                 err, ST_DATA,
-                "cannot %s %s: channel %s has a NaN or infinity at pixel (%d, %d); every sample must be finite.", verb,
+                "cannot %s %s: channel %s holds NaN or infinity at pixel (%d, %d); every sample must be finite.", verb,
                 path, im->planes[f->plane].name, f->x, f->y);
         if (f->code == EXR_ERR_OUT_OF_MEMORY)
             return err_set(err, ST_NOMEM, "cannot %s %s: not enough memory for a chunk.", verb, path);

@@ -89,7 +89,7 @@ static void srgb_photos_keep_the_srgb_curve(void **state)
     shoot(&s, srgb, 4, 1);
     decide(&r, summary, &s, "auto");
     assert_false(r.table);
-    assert_contains(summary, "the sRGB curve: ratios of exposures vary by");
+    assert_contains(summary, "sRGB: exposure ratios vary by");
     s.exposures[3] *= 1.3; /* a wrong exposure does not change the curve */
     s.exposures[4] *= 1.3;
     decide(&r, summary, &s, "auto");
@@ -123,7 +123,7 @@ static void other_curves_are_recovered(void **state)
         shoot(&s, cases[n].f, cases[n].step, 1);
         decide(&r, summary, &s, "auto");
         assert_true(r.table);
-        assert_contains(summary, "recovered from the exposures");
+        assert_contains(summary, "recovered: ");
         const double worst = worst_error(&r, cases[n].f, cases[n].from, 226);
         print_message("%s: worst error %.4f\n", cases[n].name, worst);
         assert_true(worst < cases[n].most);

@@ -135,7 +135,7 @@ static void files_are_hashed_with_xxh3(void **state)
     assert_string_equal(hash, "99aa06d3014798d86001c324468d497f");
     for (size_t i = 0; i < sizeof megabytes; i++) megabytes[i] = (char)(i * 7);
     assert_ok(hash_file(hash, scratch_write_bytes("h", megabytes, sizeof megabytes), &err), err);
-    assert_string_equal(hash, "HASHOFMEGABYTES");
+    assert_string_equal(hash, "45c0512e8055d22e0a8c810c3b658f42");
     assert_int_equal(hash_file(hash, scratch_path("none"), &none), ST_IO);
     assert_err(none, ST_IO, "cannot open");
     assert_int_equal(hash_file(hash, scratch, &folder), ST_IO);

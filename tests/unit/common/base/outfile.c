@@ -77,9 +77,9 @@ static void invalid_paths_are_refused(void **state)
 
     (void)state;
     assert_int_equal(outfile_open(&f, "/dev/null", &null), ST_IO);
-    assert_err(null, ST_IO, "no regular file");
+    assert_err(null, ST_IO, "not a regular file");
     assert_int_equal(outfile_open(&f, scratch, &folder), ST_IO);
-    assert_err(folder, ST_IO, "no regular file");
+    assert_err(folder, ST_IO, "not a regular file");
     scratch_write("file", "");
     assert_int_equal(outfile_open(&f, scratch_path("file/below"), &below), ST_IO);
     assert_err(below, ST_IO, "cannot make the folder");

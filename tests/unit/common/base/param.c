@@ -75,7 +75,7 @@ static void invalid_files_are_refused(void **state)
     } cases[] = {
         {"[sweep]\nplaness = 3\n", "a.cfg:2: unknown parameter \"planess\"; did you mean planes?"},
         {"[sweep]\nzzzzzz = 3\n", "a.cfg:2: unknown parameter \"zzzzzz\"; --help lists them."},
-        {"[sweep]\nplanes = 3\n\nplanes = 3\n", "a.cfg:4: planes is given twice, first in line 2"},
+        {"[sweep]\nplanes = 3\n\nplanes = 3\n", "a.cfg:4: planes is set twice, first in line 2"},
         {"[sweep]\nplanes = 1\n", "a.cfg:2: planes = \"1\", wanted an integer from 2 to 4096."},
         {"[sweep]\nplanes = 4097\n", "4096"},
         {"[sweep]\nplanes = 12x\n", "\"12x\""},
@@ -90,9 +90,9 @@ static void invalid_files_are_refused(void **state)
         {"[sweep]\nmetric = sad\n", "metric = \"sad\", wanted one of ad|census."},
         {"[sweep]\nmetric = ad|census\n", "one of"},
         {"[sweep]\nmetric =\n", "one of"},
-        {"[sweep]\nplanes = 7\nwhat is this\n", "a.cfg:3: found \"what is this\", wanted [section] or key = value"},
+        {"[sweep]\nplanes = 7\nwhat is this\n", "a.cfg:3: found \"what is this\", wanted [section], key = value"},
         {"[other\n", "a.cfg:1: found \"[other\""},
-        {"planes = 3\n", "a.cfg:1: \"planes\" stands before any [section]; put it under its stage's, as [sweep]."},
+        {"planes = 3\n", "a.cfg:1: \"planes\" comes before the first [section]; move it below its stage's section, such as [sweep]."},
         {"[sweep]\nnote = a\033b\n", "a.cfg:2: note = \"a\\x1bb\""},
     };
 

@@ -158,7 +158,7 @@ static void quoted_words_read_back(void **state)
     }
     struct err line_break = ERR_INIT, room = ERR_INIT, good = ERR_INIT;
     assert_int_equal(textfile_quote("a\nb", quoted, sizeof quoted, &line_break), ST_DATA);
-    assert_err(line_break, ST_DATA, "the name \"a\\nb\" holds a line break");
+    assert_err(line_break, ST_DATA, "the name \"a\\nb\" contains a line break");
     assert_ok(textfile_quote("a b", quoted, 6, &good), good); /* two quotes, three letters, NUL */
     assert_string_equal(quoted, "\"a b\"");
     assert_int_equal(textfile_quote("a b", quoted, 5, &room), ST_DATA);

@@ -28,7 +28,7 @@ static void invalid_sizes_are_refused(void **state)
         struct image im;
         struct err err = ERR_INIT;
         assert_int_equal(image_init(&im, sizes[i][0], sizes[i][1], sizes[i][2], &err), ST_DATA);
-        assert_err(err, ST_DATA, "picture");
+        assert_err(err, ST_DATA, "image");
         assert_null(im.data);
     }
 }

@@ -77,7 +77,7 @@ static void invalid_curves_are_refused(void **state)
     refused("remodel-response 1\ncurve table 256\n0 0 -1\n", "wanted light");
     refused("remodel-response 1\ncurve srgb\nmore\n", "wanted the end of the file");
     assert_int_equal(response_read(&r, write_table(200), &err), ST_DATA);
-    assert_err(err, ST_DATA, "256 lines \"R G B\"; there are 200");
+    assert_err(err, ST_DATA, "256 lines \"R G B\", not 200");
 }
 
 int main(void)
