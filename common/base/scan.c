@@ -82,7 +82,7 @@ static int distance(const char *a, const char *b)
 const char *scan_nearest(const char *word, const char *(*next)(const void *ctx, int i), const void *ctx)
 {
     const char *nearest = NULL, *known;
-    int min = 1 + (int)strlen(word) / 3; /* larger distances are no suggestion */
+    int min = 1 + (int)strlen(word) / 3; /* a larger distance gives no suggestion */
 
     for (int i = 0; (known = next(ctx, i)); i++) {
         const int d = distance(word, known);

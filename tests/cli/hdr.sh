@@ -93,7 +93,7 @@ single_jpegs_share_one_scale()
 raw_files_are_recognised()
 {
     mkdir -p raw; cp set/photos/photo_[12]_e1.jpg raw/
-    echo "not looked at" >raw/photo_1_e1.CR2
+    echo "not read" >raw/photo_1_e1.CR2
     records raw || { cat err; fail "import"; }
     says "1 raw files beside a JPEG of the same name"
     printf 'FUJIFILMCCD-RAW 0201' >raw/photo_9.raf

@@ -112,7 +112,7 @@ static void other_curves_are_recovered(void **state)
         curve *f;
         double step;
         int from;
-        double most;
+        double max_error;
     } cases[] = {
         {"gamma 1.8", gamma_18, 4, 20, 0.03}, {"film", film, 2, 40, 0.05}, {"film, 2 stops", film, 4, 40, 0.05}};
     struct response r;
@@ -126,7 +126,7 @@ static void other_curves_are_recovered(void **state)
         assert_contains(summary, "recovered: ");
         const double worst = worst_error(&r, cases[n].f, cases[n].from, 226);
         print_message("%s: worst error %.4f\n", cases[n].name, worst);
-        assert_true(worst < cases[n].most);
+        assert_true(worst < cases[n].max_error);
         for (int c = 0; c < 3; c++)
             for (int z = 1; z < RESPONSE_LEVELS; z++) assert_true(r.light[c][z] > r.light[c][z - 1]);
         decide(&r, summary, &s, "srgb");

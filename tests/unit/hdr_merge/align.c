@@ -51,13 +51,13 @@ static void release(struct stack *s)
     for (int k = 0; k < s->count; k++) photo_release(&s->photos[k]);
 }
 
-static void expect(const struct stack *s, int middle, int most, const struct shift *wanted)
+static void expect(const struct stack *s, int middle, int max_shift, const struct shift *wanted)
 {
     const struct response srgb = {0};
     const struct brackets b = {s->photos, s->exposures, s->count, &srgb, NULL};
     struct alignment a;
     struct err err = ERR_INIT;
-    assert_ok(align_brackets(&a, &b, middle, most, &err), err);
+    assert_ok(align_brackets(&a, &b, middle, max_shift, &err), err);
     for (int k = 0; k < s->count; k++) {
         const int dx = wanted[k].dx - wanted[middle].dx, dy = wanted[k].dy - wanted[middle].dy;
         if (a.shifts[k].dx != dx || a.shifts[k].dy != dy)

@@ -19,11 +19,11 @@ static double normal(const struct rng *rng, uint64_t i, uint32_t k)
     return sqrt(-2 * log(1 - a)) * cos(2 * 3.14159265358979323846 * b);
 }
 
-static double ramp(int i, double least, double most) { return least * pow(most / least, (i % WIDTH) / (WIDTH - 1.0)); }
+static double ramp(int i, double min, double max) { return min * pow(max / min, (i % WIDTH) / (WIDTH - 1.0)); }
 
 /* 16-bit samples, or values if linear: rounding is negligible. electrons: full well; reading: read noise in
  * electrons. */
-static void shoot(struct stack *s, double electrons, double reading, double least, double most, bool linear)
+static void shoot(struct stack *s, double electrons, double reading, double min, double max, bool linear)
 {
     const struct rng rng = rng_make(11, "noise", "test");
     for (int k = 0; k < COUNT; k++) {
@@ -36,7 +36,7 @@ static void shoot(struct stack *s, double electrons, double reading, double leas
             s->photos[k].samples = malloc(sizeof(uint16_t) * 3 * PIXELS);
         assert_true(s->photos[k].values || s->photos[k].samples);
         for (int i = 0; i < 3 * PIXELS; i++) {
-            const double v = ramp(i / 3, least, most) * s->exposures[k];
+            const double v = ramp(i / 3, min, max) * s->exposures[k];
             const double seen =
                 v + normal(&rng, (uint64_t)i, (uint32_t)k) * sqrt(v * electrons + reading * reading) / electrons;
             if (linear)
@@ -171,7 +171,7 @@ static void noise_is_measured_over_six_decades(void **state)
         }
     }
     for (int x = 0; x < WIDTH; x++) worst = fmax(worst, fabs(sums[x] / ramp(x, 1e-3, 1e3) - 1));
-    print_message("1e6:1: the mean of a column is off by at most %.4f\n", worst);
+    print_message("1e6:1: the mean of a column is off by at max %.4f\n", worst);
     assert_true(worst < 0.02);
     merged_release(&m);
     for (int k = 0; k < SHOTS; k++) photo_release(&photos[k]);

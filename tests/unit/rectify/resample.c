@@ -76,17 +76,17 @@ static struct image look(const struct image *photo, const struct camera *lens, s
 {
     struct image out = {0};
     struct err err = ERR_INIT;
-    float least = INFINITY, most = -INFINITY;
+    float least = INFINITY, max = -INFINITY;
     for (size_t i = 0; i < (size_t)photo->width * (size_t)photo->height * 3; i++) {
-        least = fminf(least, photo->data[i]);
-        most = fmaxf(most, photo->data[i]);
+        min = fminf(min, photo->data[i]);
+        max = fmaxf(max, photo->data[i]);
     }
     assert_ok(resample_photo(&out, photo, NULL, lens, &photo_from_view, view, &err), err);
     assert_true(out.width == view->width && out.height == view->height && out.channels == 4);
     for (size_t i = 0; i < (size_t)out.width * (size_t)out.height; i++) {
         const float *p = out.data + 4 * i;
         assert_true(p[3] == 0 || p[3] == 1);
-        for (int c = 0; c < 3; c++) assert_true(p[3] == 1 ? p[c] >= least && p[c] <= most : p[c] == 0);
+        for (int c = 0; c < 3; c++) assert_true(p[3] == 1 ? p[c] >= min && p[c] <= max : p[c] == 0);
     }
     return out;
 }
@@ -119,24 +119,24 @@ static double complex gain_at(double f, double scale, double phase)
 /* The largest remaining amplitude of a grating of f cycles per sample, for any position of the filter. */
 static double kernel_gain(double f, double scale)
 {
-    double most = 0;
-    for (int p = 0; p < PHASES; p++) most = fmax(most, cabs(gain_at(f, scale, (double)p / PHASES)));
-    return most;
+    double max = 0;
+    for (int p = 0; p < PHASES; p++) max = fmax(max, cabs(gain_at(f, scale, (double)p / PHASES)));
+    return max;
 }
 
 /* The largest change of a grating, relative to its amplitude, for scales up to `widest`. */
 static double kernel_change(double f, double widest)
 {
-    double most = 0;
+    double max = 0;
     for (double scale = 1; scale <= widest; scale += 0.05)
-        for (int p = 0; p < PHASES; p++) most = fmax(most, cabs(gain_at(f, scale, (double)p / PHASES) - 1));
-    return most;
+        for (int p = 0; p < PHASES; p++) max = fmax(max, cabs(gain_at(f, scale, (double)p / PHASES) - 1));
+    return max;
 }
 
 /* The offset of the filter's centre of gravity, in samples: the error of a ramp. */
 static double kernel_shift(double narrowest, double widest)
 {
-    double most = 0;
+    double max = 0;
     for (double scale = narrowest; scale <= widest; scale += 0.05)
         for (int p = 0; p < PHASES; p++) {
             double sum = 0, weights = 0, phase = (double)p / PHASES;
@@ -144,9 +144,9 @@ static double kernel_shift(double narrowest, double widest)
                 sum += lanczos((n - phase) / scale) * (n - phase);
                 weights += lanczos((n - phase) / scale);
             }
-            most = fmax(most, fabs(sum / weights));
+            max = fmax(max, fabs(sum / weights));
         }
-    return most;
+    return max;
 }
 
 /* The error of float arithmetic and of the kernel's table, in samples. */

@@ -70,13 +70,13 @@ static int talk(void *ctx)
 
 static void log_lines_begin_with_the_stage(void **state)
 {
-    char *said;
+    char *output;
 
     (void)state;
-    assert_int_equal(child_run(talk, NULL, &said), 1);
-    assert_string_equal(said, "remodel: before\nrectify: 3 views\nrectify: warning: view a is dark\n"
-                              "rectify: error: no disk.\n");
-    free(said);
+    assert_int_equal(child_run(talk, NULL, &output), 1);
+    assert_string_equal(output, "remodel: before\nrectify: 3 views\nrectify: warning: view a is dark\n"
+                                "rectify: error: no disk.\n");
+    free(output);
 }
 
 static void numbers_are_parsed_strictly(void **state)

@@ -141,17 +141,17 @@ static int over_the_file_limit(void *ctx)
 static void a_file_size_limit_is_an_error(void **state)
 {
     struct err err = ERR_INIT;
-    char *said;
+    char *output;
 
     (void)state;
     assert_ok(make_folders(scratch_path("limit"), &err), err);
     char *path = strdup(scratch_write("limit/old", "old"));
-    const int code = child_run(over_the_file_limit, path, &said);
-    if (code) fail_msg("exit %d: %s", code, said);
+    const int code = child_run(over_the_file_limit, path, &output);
+    if (code) fail_msg("exit %d: %s", code, output);
     assert_file_text(path, "old");
     assert_int_equal(count_entries(scratch_path("limit")), 1);
     free(path);
-    free(said);
+    free(output);
 }
 
 enum { CANNOT_MOUNT = 77 };
@@ -176,20 +176,20 @@ static int on_a_full_disk(void *ctx)
 static void a_full_disk_is_an_error(void **state)
 {
     struct err err = ERR_INIT;
-    char *said;
+    char *output;
 
     (void)state;
     assert_ok(make_folders(scratch_path("disk"), &err), err);
     char *folder = strdup(scratch_path("disk"));
-    const int code = child_run(on_a_full_disk, folder, &said);
+    const int code = child_run(on_a_full_disk, folder, &output);
     free(folder);
     if (code == CANNOT_MOUNT) {
-        free(said);
+        free(output);
         print_message("a small tmpfs cannot be mounted here\n");
         skip();
     }
-    if (code) fail_msg("exit %d: %s", code, said);
-    free(said);
+    if (code) fail_msg("exit %d: %s", code, output);
+    free(output);
 }
 
 /* ----------------------------------------------------------------------------------------------- exits and signals */

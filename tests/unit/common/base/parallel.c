@@ -11,7 +11,7 @@ struct loop {
     int visits[COUNT];
     size_t ends[COUNT]; /* end of the chunk that begins here */
     double sums[COUNT]; /* sum of that chunk */
-    int most_thread;
+    int max_thread;
     int busy[64]; /* calls running under a thread number */
     int shared;   /* a thread number was used twice at a time */
 };
@@ -26,8 +26,8 @@ static void visit(void *ctx, size_t begin, size_t end, int thread)
         l->visits[i]++;
         l->sums[begin] += 1.0 / (double)(i + 1);
     }
-    if (thread > __atomic_load_n(&l->most_thread, __ATOMIC_RELAXED))
-        __atomic_store_n(&l->most_thread, thread, __ATOMIC_RELAXED);
+    if (thread > __atomic_load_n(&l->max_thread, __ATOMIC_RELAXED))
+        __atomic_store_n(&l->max_thread, thread, __ATOMIC_RELAXED);
     __atomic_store_n(&l->busy[thread], 0, __ATOMIC_RELEASE);
 }
 
@@ -38,7 +38,7 @@ static struct loop *run_loop(size_t count, size_t chunk, int threads)
     assert_non_null(l);
     parallel_set_threads(threads);
     parallel_for(count, chunk, visit, l);
-    assert_true(l->most_thread < threads);
+    assert_true(l->max_thread < threads);
     assert_false(l->shared);
     return l;
 }

@@ -92,7 +92,8 @@ static void invalid_files_are_refused(void **state)
         {"[sweep]\nmetric =\n", "one of"},
         {"[sweep]\nplanes = 7\nwhat is this\n", "a.cfg:3: found \"what is this\", wanted [section], key = value"},
         {"[other\n", "a.cfg:1: found \"[other\""},
-        {"planes = 3\n", "a.cfg:1: \"planes\" comes before the first [section]; move it below its stage's section, such as [sweep]."},
+        {"planes = 3\n",
+         "a.cfg:1: \"planes\" comes before the first [section]; move it below its stage's section, such as [sweep]."},
         {"[sweep]\nnote = a\033b\n", "a.cfg:2: note = \"a\\x1bb\""},
     };
 
@@ -125,13 +126,13 @@ static void long_lines_are_read_or_refused(void **state)
 {
     static char text[5000];
     struct sweep_params p = SWEEP_PARAMS_DEFAULT;
-    struct err good = ERR_INIT, long_value = ERR_INIT, long_line = ERR_INIT;
+    struct err ok = ERR_INIT, long_value = ERR_INIT, long_line = ERR_INIT;
 
     (void)state;
     /* a comment of any length, and the longest possible value */
     const int n = sprintf(text, "#%02000d\n[sweep]\n", 0);
     sprintf(text + n, "note = %0255d\nplanes = 5\n", 7);
-    assert_ok(read_text(&p, text, &good), good);
+    assert_ok(read_text(&p, text, &ok), ok);
     assert_int_equal(strlen(p.note), 255);
     assert_int_equal(p.planes, 5);
     sprintf(text, "[sweep]\nnote = %0256d\n", 7);

@@ -49,22 +49,22 @@ static int in_a_log(void *ctx)
 
 static void a_log_gets_plain_lines(void **state)
 {
-    char *said;
+    char *output;
 
     (void)state;
-    assert_int_equal(child_run(in_a_log, NULL, &said), 0);
-    char *last = strstr(said, "sweep: short step 10/10 views, 0.0");
+    assert_int_equal(child_run(in_a_log, NULL, &output), 0);
+    char *last = strstr(output, "sweep: short step 10/10 views, 0.0");
     assert_non_null(last);
     assert_contains(last, ", 1 min 5"); /* 51 s or a little more */
     *last = '\0';
-    assert_string_equal(said, "sweep: plane sweep 200/1000 planes, 0.1 planes/s, 2 h 13 min left\n"
-                              "sweep: plane sweep 1000/1000 planes, 0.125 planes/s, 2 h 13 min\n");
-    free(said);
+    assert_string_equal(output, "sweep: plane sweep 200/1000 planes, 0.1 planes/s, 2 h 13 min left\n"
+                                "sweep: plane sweep 1000/1000 planes, 0.125 planes/s, 2 h 13 min\n");
+    free(output);
 }
 
 static void a_terminal_line_is_redrawn(void **state)
 {
-    char said[4096];
+    char output[4096];
     size_t n = 0;
     ssize_t got;
     int master;
@@ -88,14 +88,14 @@ static void a_terminal_line_is_redrawn(void **state)
         progress_end(&p);
         _exit(p.terminal ? 0 : 1);
     }
-    while (n < sizeof said - 1 && (got = read(master, said + n, sizeof said - 1 - n)) > 0) n += (size_t)got;
-    said[n] = '\0';
+    while (n < sizeof output - 1 && (got = read(master, output + n, sizeof output - 1 - n)) > 0) n += (size_t)got;
+    output[n] = '\0';
     assert_int_equal(child_wait(pid), 0);
     close(master);
-    assert_string_equal(said, "\r\033[Ksweep: step 1/4 views, 0.000167 views/s, 4 h 59 min left"
-                              "\r\033[Ksweep: a word\r\n"
-                              "\r\033[Ksweep: step 2/4 views, 0.000167 views/s, 3 h 19 min left"
-                              "\r\033[Ksweep: step 2/4 views, 0.000167 views/s, 3 h 19 min\r\n");
+    assert_string_equal(output, "\r\033[Ksweep: step 1/4 views, 0.000167 views/s, 4 h 59 min left"
+                                "\r\033[Ksweep: a word\r\n"
+                                "\r\033[Ksweep: step 2/4 views, 0.000167 views/s, 3 h 19 min left"
+                                "\r\033[Ksweep: step 2/4 views, 0.000167 views/s, 3 h 19 min\r\n");
 }
 
 static void a_total_of_0_is_accepted(void **state)

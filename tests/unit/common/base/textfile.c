@@ -156,10 +156,10 @@ static void quoted_words_read_back(void **state)
         assert_string_equal(word, "next");
         textfile_release(&t);
     }
-    struct err line_break = ERR_INIT, room = ERR_INIT, good = ERR_INIT;
+    struct err line_break = ERR_INIT, room = ERR_INIT, ok = ERR_INIT;
     assert_int_equal(textfile_quote("a\nb", quoted, sizeof quoted, &line_break), ST_DATA);
     assert_err(line_break, ST_DATA, "the name \"a\\nb\" contains a line break");
-    assert_ok(textfile_quote("a b", quoted, 6, &good), good); /* two quotes, three letters, NUL */
+    assert_ok(textfile_quote("a b", quoted, 6, &ok), ok); /* two quotes, three letters, NUL */
     assert_string_equal(quoted, "\"a b\"");
     assert_int_equal(textfile_quote("a b", quoted, 5, &room), ST_DATA);
     assert_err(room, ST_DATA, "longer than");
@@ -232,11 +232,11 @@ static void a_file_too_large_for_memory_is_an_error(void **state)
     print_message("the sanitizer needs more address space than this test leaves\n");
     skip();
 #else
-    char *said, *path = strdup(scratch_write("big", ""));
+    char *output, *path = strdup(scratch_write("big", ""));
     assert_int_equal(truncate(path, (off_t)1 << 33), 0); /* sparse */
-    assert_int_equal(child_run(without_memory, path, &said), 0);
-    assert_contains(said, "big: not enough memory for a text file (8589934594 bytes).");
-    free(said);
+    assert_int_equal(child_run(without_memory, path, &output), 0);
+    assert_contains(output, "big: not enough memory for a text file (8589934594 bytes).");
+    free(output);
     free(path);
 #endif
 }

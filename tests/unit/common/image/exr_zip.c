@@ -6,7 +6,7 @@
 #include "common/base/rng.h"
 #include "common/image/exr_zip.h"
 
-#define MOST 5000
+#define MAX_SIZE 5000
 
 /* Noise of a few bits on a ramp: compressible unless wide is 256. */
 static void fill(uint8_t *bytes, size_t size, uint32_t wide)
@@ -19,8 +19,8 @@ static void any_bytes_read_back(void **state)
 {
     (void)state;
     struct exr_zip z = {0};
-    uint8_t from[MOST], to[MOST];
-    for (size_t size = 0; size <= MOST; size = size < 70 ? size + 1 : size * 2 + 1) {
+    uint8_t from[MAX_SIZE], to[MAX_SIZE];
+    for (size_t size = 0; size <= MAX_SIZE; size = size < 70 ? size + 1 : size * 2 + 1) {
         for (uint32_t wide = 1; wide <= 256; wide *= 16) {
             size_t packed = 0;
             fill(from, size, wide);

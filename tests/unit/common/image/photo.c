@@ -240,9 +240,9 @@ static void exif_is_written(void **state)
     (void)state;
     for (int i = 0; i < 16 * 12 * 3; i++) rgb[i] = (unsigned char)(i * 5);
     for (size_t i = 0; i < sizeof seconds / sizeof *seconds; i++) {
-        const struct photo_info told = {0, 0, 0, 1, 24.5, 33, seconds[i], 5.6, 400, "remodel", "lens of 24 mm"};
+        const struct photo_info info_written = {0, 0, 0, 1, 24.5, 33, seconds[i], 5.6, 400, "remodel", "lens of 24 mm"};
         const char *path = scratch_path("exif.jpg");
-        assert_ok(photo_write_jpeg(path, rgb, 16, 12, 90, &told, &err), err);
+        assert_ok(photo_write_jpeg(path, rgb, 16, 12, 90, &info_written, &err), err);
         assert_ok(photo_read_info(&info, path, &err), err);
         assert_true(info.width == 16 && info.height == 12 && info.bits == 8 && info.orientation == 1);
         assert_true(fabs(info.seconds - seconds[i]) < 1e-12 && info.f_number == 5.6 && info.iso == 400);
@@ -266,10 +266,10 @@ static void a_written_part_keeps_the_samples(void **state)
     struct err err = ERR_INIT;
     (void)state;
     for (int bits = 8; bits <= 16; bits += 8) {
-        const struct photo_info told = {0, 0, 0, 6, 24.5, 70, 1.0 / 60, 5.6, 400, "remodel", "nine lenses"};
+        const struct photo_info info_written = {0, 0, 0, 6, 24.5, 70, 1.0 / 60, 5.6, 400, "remodel", "nine lenses"};
         struct photo part, p = {.info = {.width = 20, .height = 10, .bits = bits}, .samples = samples};
         for (int i = 0; i < 20 * 10 * 3; i++) samples[i] = (uint16_t)(i * 109 % (bits == 8 ? 256 : 65536));
-        assert_ok(photo_write_part(scratch_path("part.png"), &p, 13, 4, 7, 6, &told, &err), err);
+        assert_ok(photo_write_part(scratch_path("part.png"), &p, 13, 4, 7, 6, &info_written, &err), err);
         assert_ok(photo_read(&part, scratch_path("part.png"), &err), err);
         assert_true(part.info.width == 7 && part.info.height == 6 && part.info.bits == bits);
         for (int y = 0; y < 6; y++)

@@ -148,7 +148,7 @@ static void damaged_tiffs_are_errors(void **state)
     free(all);
 }
 
-static const char *write_exr(const char *name, float most, int plenty)
+static const char *write_exr(const char *name, float max, int clipped)
 {
     static const char *const names[] = {"R", "G", "B"};
     struct exr_image im = {0};
@@ -158,7 +158,7 @@ static const char *write_exr(const char *name, float most, int plenty)
     for (int c = 0; c < 3; c++) {
         struct exr_plane *plane = NULL;
         assert_ok(exr_add_plane(&im, names[c], EXR_FLOAT, &plane, &err), err);
-        for (int i = 0; i < 400; i++) plane->f[i] = i < plenty ? most : (float)i * 0.001f * (float)(c + 1);
+        for (int i = 0; i < 400; i++) plane->f[i] = i < clipped ? max : (float)i * 0.001f * (float)(c + 1);
     }
     im.planes[0].f[399] = -0.25f;
     assert_ok(exr_write(&im, path, NULL, &err), err);
