@@ -171,7 +171,7 @@ static void noise_is_measured_over_six_decades(void **state)
         }
     }
     for (int x = 0; x < WIDTH; x++) worst = fmax(worst, fabs(sums[x] / ramp(x, 1e-3, 1e3) - 1));
-    print_message("1e6:1: the mean of a column is off by at max %.4f\n", worst);
+    print_message("1e6:1: the mean of a column is off by at most %.4f\n", worst);
     assert_true(worst < 0.02);
     merged_release(&m);
     for (int k = 0; k < SHOTS; k++) photo_release(&photos[k]);

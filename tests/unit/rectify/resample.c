@@ -76,7 +76,7 @@ static struct image look(const struct image *photo, const struct camera *lens, s
 {
     struct image out = {0};
     struct err err = ERR_INIT;
-    float least = INFINITY, max = -INFINITY;
+    float min = INFINITY, max = -INFINITY;
     for (size_t i = 0; i < (size_t)photo->width * (size_t)photo->height * 3; i++) {
         min = fminf(min, photo->data[i]);
         max = fmaxf(max, photo->data[i]);
