@@ -1,7 +1,7 @@
 /* point_cloud.h - oriented points of a scene: out/SCENE/points/points.ply (docs/formats.md).
  *
- * Positions and normals are in the world's axes, positions in scene units; a normal has length 1 and points to where
- * the surface was seen from. */
+ * Positions and normals are in the world's axes, positions in scene units; a normal has length 1 and points to where the
+ * surface was seen from. */
 #ifndef REMODEL_POINT_CLOUD_H
 #define REMODEL_POINT_CLOUD_H
 
@@ -25,12 +25,11 @@ struct point_cloud {
     double cell; /* edge of the grid on which points were merged, in scene units; 0: they were not */
 };
 
-/* Binary little-endian PLY; the same bytes for the same cloud. prov may be NULL. ST_DATA: a value that reading would
- * refuse. */
+/* Binary little-endian PLY; the same bytes for the same cloud. prov may be NULL. ST_DATA: a value that reading would refuse. */
 enum status point_cloud_write(const struct point_cloud *cloud, const char *path, const struct provenance *prov,
                               struct err *err);
-/* Only what point_cloud_write() writes. ST_DATA names the header's line or the point where a file is something else:
- * cut, longer than it says, values not finite, normals whose length is not 1, confidence outside 0 .. 1, no view. */
+/* Only what point_cloud_write() writes. ST_DATA names the header's line or the point where a file is something else: cut, longer
+ * than it says, values not finite, normals whose length is not 1, confidence outside 0 .. 1, no view. */
 enum status point_cloud_read(struct point_cloud *cloud, const char *path, struct err *err);
 void point_cloud_release(struct point_cloud *cloud);
 

@@ -51,8 +51,8 @@ enum status effects_write(const struct effects *e, const char *path, const struc
 enum status effects_append(struct effects *e, struct effects *from, struct err *err);
 void effects_release(struct effects *e);
 
-/* Linear or a monotone cubic (common/math/monotone.h) between keys, held before the first and after the last; a cubic
- * starts and ends level. */
+/* Linear or a monotone cubic (common/math/monotone.h) between keys, held before the first and after the last; a cubic starts
+ * and ends level. */
 void effect_layer_value(const struct effect_layer *layer, double time, double value[3]);
 
 /* Changes rgba of a frame of that camera; a pixel with z 0 is farther than any box. Layers that change nothing at

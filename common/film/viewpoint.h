@@ -1,9 +1,8 @@
 /* viewpoint.h - whether a scene can be shown from a camera (thesis 3.4.2, "Valid viewpoint sampling").
  *
- * A viewpoint is valid if H < max_h (common/layers/hole_measure.h). Two more limits are not in the thesis, and keep
- * pictures from being worse than their holes tell: how much of the frame may lie beyond the borders of the views that
- * the view mesh blends there (others step in, with a seam), and that what is near may not come nearer than
- * shot.near_limit. */
+ * A viewpoint is valid if H < max_h (common/layers/hole_measure.h). Two more limits are not in the thesis, and keep pictures
+ * from being worse than their holes tell: how much of the frame may lie beyond the borders of the views that the view
+ * mesh blends there (others step in, with a seam), and that what is near may not come nearer than shot.near_limit. */
 #ifndef REMODEL_VIEWPOINT_H
 #define REMODEL_VIEWPOINT_H
 

@@ -1,8 +1,8 @@
 /* layer_render.h - layered depth maps seen from a novel camera (thesis 3.6), in two ways.
  *
  * Each segment is a plane (1/z linear in its view's pixels), so its picture in the novel camera is a homography: a
- * target pixel is taken back to the segment's view (common/layers/segment_project.h), where the cells' ids tell whether
- * it belongs to the segment (common/layers/layer_visibility.h).
+ * target pixel is taken back to the segment's view (common/layers/segment_project.h), where the cells' ids tell whether it
+ * belongs to the segment (common/layers/layer_visibility.h).
  *
  *   fast     in each view the two nearest surfaces, front to back and saturating; across the views that the view mesh
  *            names for the pixel, a soft z-buffer (thesis eq. 3.1, common/layers/soft_z.h) blends by weight x w x alpha
@@ -11,9 +11,9 @@
  *
  * Four things are not in the thesis. The offline renderer's further views, and their votes. Blending weights are the
  * view mesh's at points 16 px apart, bilinear between. A view's weight falls off towards the border of its picture, so
- * that the border leaves no line. And a pixel is a hole only if nothing else covers it either: where the views that the
- * mesh names leave it below alpha 0.5, the nearest other view (by centre) that sees something there takes their place,
- * unless most of them, by weight, see through it at something farther. Of what is left common/layers/hole_fill.h fills
+ * that the border leaves no line. And a pixel is a hole only if nothing else covers it either: where the views that
+ * the mesh names leave it below alpha 0.5, the nearest other view (by centre) that sees something there takes their
+ * place, unless most of them, by weight, see through it at something farther. Of what is left common/layers/hole_fill.h fills
  * as much as the options say, from the far side.
  *
  * Depth is z along the novel camera's axis, in scene units; colour is scene-linear. */

@@ -71,8 +71,8 @@ static int cell_ids(const struct texel *t, int stride, uint32_t ids[CELL_IDS], b
 /* Whether two ids do not tell a cell's surfaces. */
 static bool is_many(int count, bool empty) { return count > 2 || (count == 2 && empty); }
 
-/* Numbers the surfaces in the middle of a cell, at (u, v): each segment's plane meets another's until all of its
- * surface are linked. (On a slope, those at opposite corners need not meet.) How many there are. */
+/* Numbers the surfaces in the middle of a cell, at (u, v): each segment's plane meets another's until all of its surface
+ * are linked. (On a slope, those at opposite corners need not meet.) How many there are. */
 static int cell_surfaces(const uint32_t ids[CELL_IDS], int count, const struct layered_depth *d, double u, double v,
                          uint8_t surface[CELL_IDS])
 {

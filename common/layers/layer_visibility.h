@@ -1,11 +1,11 @@
 /* layer_visibility.h - which segments of a view a novel camera sees, tile by tile: what both renderers are made of.
  *
- * Drawing a segment writes no colour: for each pixel of a tile the two nearest surfaces that have texels there are
- * kept, each by its nearest segment, with the place in the view that the nearer one shows. Colour is looked up once a
- * pixel after that, however many segments were drawn. Segments need no sorting, and eight pixels are drawn at once.
+ * Drawing a segment writes no colour: for each pixel of a tile the two nearest surfaces that have texels there are kept,
+ * each by its nearest segment, with the place in the view that the nearer one shows. Colour is looked up once a pixel
+ * after that, however many segments were drawn. Segments need no sorting, and eight pixels are drawn at once.
  *
- * The two surfaces do not depend on the order in which segments are drawn, except where three or more at one pixel make
- * a chain, each within the tolerance of the next but the first and last not: where the chain is cut then depends on the
+ * The two surfaces do not depend on the order in which segments are drawn, except where three or more at one pixel make a
+ * chain, each within the tolerance of the next but the first and last not: where the chain is cut then depends on the
  * order. That order is the tile's list, which is always the same. */
 #ifndef REMODEL_LAYER_VISIBILITY_H
 #define REMODEL_LAYER_VISIBILITY_H
@@ -17,8 +17,8 @@
 #define TILE_STRIDE (TILE_WIDTH + 8) /* of the buffers: eight pixels are written where one is meant */
 #define TILE_PIXELS (TILE_STRIDE * TILE_HEIGHT)
 
-/* A segment in the novel camera. Its linear forms in target pixels - place in the padded texels (u, v, both times w),
- * w, 1/z - are relative to the pixel (x0, y0), where single precision is enough. */
+/* A segment in the novel camera. Its linear forms in target pixels - place in the padded texels (u, v, both times w), w,
+ * 1/z - are relative to the pixel (x0, y0), where single precision is enough. */
 struct drawn_segment {
     float u[3], v[3], w[3], inverse_z[3]; /* at (x0, y0), by x, by y */
     float u0, v0, u1, v1;                 /* where in the padded texels it may have coverage */

@@ -148,9 +148,9 @@ struct soft_z_fragment {
  * more of than it leaves them - their views look through it - and in part those before it, by what they have more of
  * than its own view has there. It hides others and counts by its standing; of what is hidden by the views in front, the
  * most counts, so that at a rim the part that the front leaves stays with what is behind. A view's own fragments are
- * averaged as they are: they share the pixel's area. Views' colours are averaged as square roots: a mean over views
- * that disagree is then about what the eye takes for their mean, where one of radiances is too bright. The depth is
- * that of the surface that counts most, never a mean across a jump. rgba gets alpha 1. */
+ * averaged as they are: they share the pixel's area. Views' colours are averaged as square roots: a mean over views that
+ * disagree is then about what the eye takes for their mean, where one of radiances is too bright. The
+ * depth is that of the surface that counts most, never a mean across a jump. rgba gets alpha 1. */
 void soft_z_merge(const struct soft_z *s, const struct soft_z_fragment *fragments, int count, float rgba[4], float *z);
 
 #endif
