@@ -1,4 +1,4 @@
-/* scratch_name.h - where tests make files and folders: in $TMPDIR, or where the system has its temporary files. */
+/* scratch_name.h - names for temporary files and folders of tests, in $TMPDIR or the system's folder for them. */
 #ifndef REMODEL_TESTS_SCRATCH_NAME_H
 #define REMODEL_TESTS_SCRATCH_NAME_H
 
@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* path: a template for mkstemp and mkdtemp; false where size is too small. */
+/* Sets path to a template for mkstemp() or mkdtemp(). False: size is too small. */
 static inline bool scratch_name(char *path, size_t size, const char *kind)
 {
     const char *folder = getenv("TMPDIR");

@@ -1,4 +1,4 @@
-/* array.c - see array.h. */
+/* array.c - growing arrays. */
 #include "common/base/array.h"
 
 #include <stdint.h>
@@ -9,7 +9,7 @@ static enum status resize(void *array, size_t count, size_t item_size, const cha
 {
     void *items;
 
-    memcpy(&items, array, sizeof items); /* *array is a pointer to any type */
+    memcpy(&items, array, sizeof items); /* a pointer to any type */
     if (count > SIZE_MAX / item_size) return err_nomem(err, what, SIZE_MAX);
     void *grown = realloc(items, count * item_size);
     if (!grown) return err_nomem(err, what, count * item_size);
@@ -19,7 +19,7 @@ static enum status resize(void *array, size_t count, size_t item_size, const cha
 
 enum status array_append(void *array, size_t count, size_t item_size, const char *what, struct err *err)
 {
-    if (count & (count - 1)) return ST_OK; /* below the power of two that it has room for */
+    if (count & (count - 1)) return ST_OK; /* below the capacity, a power of two */
     return resize(array, count ? 2 * count : 1, item_size, what, err);
 }
 

@@ -1,4 +1,4 @@
-/* cli.c - see cli.h. */
+/* cli.c - parses a stage's command line. */
 #include "common/base/cli.h"
 
 #include <assert.h>
@@ -9,13 +9,14 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include "common/base/array.h"
 #include "common/base/clock.h"
 #include "common/base/log.h"
 #include "common/base/parallel.h"
 #include "common/base/scan.h"
 #include "common/base/version.h"
 
-enum { MOST_THREADS = 1024 };
+enum { MAX_THREADS = 1024 };
 
 /* ------------------------------------------------------------------------------------------ the last line on stderr */
 
@@ -32,7 +33,7 @@ static void report_use(void)
 {
     struct rusage self = {0}, children = {0};
 
-    if (getpid() != owner) return; /* a forked child that exits */
+    if (getpid() != owner) return; /* the exit of a forked child */
     getrusage(RUSAGE_SELF, &self);
     getrusage(RUSAGE_CHILDREN, &children);
     const long peak = self.ru_maxrss > children.ru_maxrss ? self.ru_maxrss : children.ru_maxrss; /* KiB */
@@ -52,13 +53,10 @@ struct common_opts {
 
 static enum status list_add(struct cli_list *list, const char *item, struct err *err)
 {
-    const size_t bytes = (size_t)(list->count + 1) * sizeof *list->items;
-    const char **grown = realloc(list->items, bytes);
+    const enum status st = array_append(&list->items, (size_t)list->count, sizeof *list->items, "options", err);
 
-    if (!grown) return err_nomem(err, "the command line", bytes);
-    list->items = grown;
-    list->items[list->count++] = item;
-    return ST_OK;
+    if (!st) list->items[list->count++] = item;
+    return st;
 }
 
 void cli_list_release(struct cli_list *list)
@@ -101,18 +99,18 @@ static void print_help(const char *stage, const struct cli_opt *opts, const stru
         if (o->name)
             print_option(o->name, kind_value(o->kind), o->help,
                          o->required                ? " (required)"
-                         : o->kind == CLI_KIND_LIST ? " (may be given several times)"
+                         : o->kind == CLI_KIND_LIST ? " (repeatable)"
                                                     : "");
-    printf("\noptions that every stage has:\n");
+    printf("\noptions of every stage:\n");
     for (const struct cli_opt *o = common; o->kind != CLI_KIND_END; o++)
         print_option(o->name, kind_value(o->kind), o->help, "");
     if (params->table->name) {
-        printf("\nparameters, in the section [%s] of a config file or by --set:\n", stage);
+        printf("\nparameters (section [%s] of a config file, or --set):\n", stage);
         params_help(params->table, params->value, stdout);
     }
 }
 
-struct known { /* for "did you mean" */
+struct known { /* the candidates for "did you mean" */
     const struct cli_opt *opts, *common;
 };
 
@@ -134,12 +132,12 @@ static const struct cli_opt *find(const struct cli_opt *opts, const char *name, 
     return NULL;
 }
 
-static enum status store(const struct cli_opt *o, const char *value, bool again, struct err *err)
+static enum status store(const struct cli_opt *o, const char *value, bool repeated, struct err *err)
 {
     char shown[SCAN_SHOWN];
     int64_t v;
 
-    if (again && (o->kind == CLI_KIND_STR || o->kind == CLI_KIND_PARAM || o->kind == CLI_KIND_INT))
+    if (repeated && (o->kind == CLI_KIND_STR || o->kind == CLI_KIND_PARAM || o->kind == CLI_KIND_INT))
         return err_set(err, ST_USAGE, "--%s is given twice; keep one.", o->name);
     switch (o->kind) {
     case CLI_KIND_STR:
@@ -160,13 +158,13 @@ static enum status store(const struct cli_opt *o, const char *value, bool again,
     return ST_OK;
 }
 
-/* One argument, or two if the value stands apart; *i moves to the last one taken. seen: a flag for each of the stage's
- * options. */
+/* Takes the argument at *i, and the next one if that is its value; *i moves to the last one taken. seen: a flag for
+ * each of the stage's options. */
 static enum status take_arg(int argc, char **argv, int *i, const struct known *known, bool *seen, struct err *err)
 {
     const char *arg = argv[*i], *name = arg + 2, *value = NULL;
     char shown[SCAN_SHOWN], word[64];
-    bool again = false; /* --threads may be given again, and the last one counts */
+    bool repeated = false; /* a common option (--threads) may be repeated; the last one counts */
 
     if (strncmp(arg, "--", 2) || !*name)
         return err_set(err, ST_USAGE, "unexpected argument %s; every argument is --option or --option value.",
@@ -175,7 +173,7 @@ static enum status take_arg(int argc, char **argv, int *i, const struct known *k
     if (name[n]) value = name + n + 1;
     const struct cli_opt *o = find(known->opts, name, n);
     if (o) {
-        again = seen[o - known->opts];
+        repeated = seen[o - known->opts];
         seen[o - known->opts] = true;
     } else if (!(o = find(known->common, name, n))) {
         snprintf(word, sizeof word, "%.*s", (int)n, name);
@@ -190,7 +188,7 @@ static enum status take_arg(int argc, char **argv, int *i, const struct known *k
                            o->name);
         value = argv[++*i];
     }
-    return store(o, value, again, err);
+    return store(o, value, repeated, err);
 }
 
 static enum status set_param(const struct cli_opt *params, const struct cli_opt *o, struct err *err)
@@ -200,12 +198,13 @@ static enum status set_param(const struct cli_opt *params, const struct cli_opt 
 
     if (!value) return ST_OK;
     if (snprintf(assignment, sizeof assignment, "%s=%s", o->name, value) >= (int)sizeof assignment)
-        return err_set(err, ST_USAGE, "--%s: its value is too long.", o->name);
+        return err_set(err, ST_USAGE, "--%s: the value is longer than %d bytes; shorten it.", o->name,
+                       PARAM_TEXT_SIZE - 1);
     return params_set(params->table, params->value, assignment, err);
 }
 
-/* Config files, then --set and options that are parameters, then the relations between parameters; the outcome goes to
- * the provenance. */
+/* Reads config files, then --set, then the options of parameters; checks relations between parameters; stores the
+ * effective parameters in the provenance. */
 static enum status effective_params(const struct cli_opt *opts, const struct cli_opt *params,
                                     const struct common_opts *common, const char *stage, struct provenance *prov,
                                     struct err *err)
@@ -234,15 +233,15 @@ static enum status parse(int argc, char **argv, const char *stage, const struct 
                          const struct cli_opt *common_opts, struct common_opts *common, struct provenance *prov,
                          struct err *err)
 {
-    enum { MOST_OPTIONS = 64 };
-    static const struct cli_opt without = {CLI_KIND_PARAMS, NULL, NULL, false, NULL, no_params, NULL};
+    enum { MAX_OPTIONS = 64 };
+    static const struct cli_opt none = {CLI_KIND_PARAMS, NULL, NULL, false, NULL, no_params, NULL};
     const struct known known = {opts, common_opts};
-    const struct cli_opt *params = &without;
-    bool seen[MOST_OPTIONS] = {false};
+    const struct cli_opt *params = &none;
+    bool seen[MAX_OPTIONS] = {false};
     enum status st = ST_OK;
 
     for (const struct cli_opt *o = opts; o->kind != CLI_KIND_END; o++) {
-        assert(o - opts < MOST_OPTIONS);
+        assert(o - opts < MAX_OPTIONS);
         if (o->kind == CLI_KIND_PARAMS) params = o;
     }
     for (int i = 1; !st && i < argc; i++) {
@@ -256,9 +255,8 @@ static enum status parse(int argc, char **argv, const char *stage, const struct 
             return ST_OK;
         }
     }
-    if (!st && (common->threads < 0 || common->threads > MOST_THREADS))
-        st = err_set(err, ST_USAGE, "--threads %d: wanted 0 (as many as there are cores) to %d.", common->threads,
-                     MOST_THREADS);
+    if (!st && (common->threads < 0 || common->threads > MAX_THREADS))
+        st = err_set(err, ST_USAGE, "--threads %d: wanted 0 (one per core) to %d.", common->threads, MAX_THREADS);
     if (!st && common->explain_config) {
         params_explain(params->table, params->value, stage, stdout);
         return ST_OK;
@@ -278,13 +276,14 @@ enum cli_verdict cli_parse(int argc, char **argv, const char *stage, const struc
 {
     struct common_opts common = {0};
     const struct cli_opt common_opts[] = {
-        CLI_FLAG("help", &common.help, "print this and exit"),
+        CLI_FLAG("help", &common.help, "print this help and exit"),
         CLI_FLAG("version", &common.version, "print the release and exit"),
         CLI_FLAG("print-config", &common.print_config, "print the effective parameters and exit"),
-        CLI_FLAG("explain-config", &common.explain_config, "print the section of configs/default.cfg and exit"),
-        CLI_INT("threads", &common.threads, CLI_OPTIONAL, "threads to use; 0: as many as there are cores (default)"),
-        CLI_LIST("config", &common.configs, CLI_OPTIONAL, "read parameters from a config file; later files win"),
-        CLI_LIST("set", &common.sets, CLI_OPTIONAL, "key=value: set a parameter, after all config files"),
+        CLI_FLAG("explain-config", &common.explain_config,
+                 "print the stage's section of configs/default.cfg, with comments, and exit"),
+        CLI_INT("threads", &common.threads, CLI_OPTIONAL, "number of threads; 0: one per core (default)"),
+        CLI_LIST("config", &common.configs, CLI_OPTIONAL, "config file to read parameters from; later files win"),
+        CLI_LIST("set", &common.sets, CLI_OPTIONAL, "parameter to set, as key=value; wins over config files"),
         CLI_END,
     };
     enum cli_verdict verdict = CLI_RUN;

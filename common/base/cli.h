@@ -1,7 +1,8 @@
-/* cli.h - the command line every stage has: its own options, and
+/* cli.h - the command line of a stage: its own options, and those of every stage:
  *   --help --version --print-config --explain-config --threads N --config FILE --set key=value
  *
- * Config files are read in the order given, then every --set; later wins. A stage's section carries its name. */
+ * Config files are read in the order given, then every --set; the last value wins. A stage reads the config section of
+ * its own name. */
 #ifndef REMODEL_CLI_H
 #define REMODEL_CLI_H
 
@@ -22,7 +23,7 @@ enum cli_kind {
     CLI_KIND_PARAMS
 };
 
-struct cli_list { /* of an option that may be given several times; items point into argv, the array is owned */
+struct cli_list { /* values of a repeatable option; items point into argv, the array is owned */
     const char **items;
     int count;
 };
@@ -30,12 +31,13 @@ void cli_list_release(struct cli_list *list);
 
 struct cli_opt {
     enum cli_kind kind;
-    const char *name; /* without the dashes */
+    const char *name; /* without dashes */
     void *value;
     bool required;
     const char *help;
-    const struct param *table;                                 /* CLI_PARAMS */
-    enum status (*check)(const void *values, struct err *err); /* CLI_PARAMS: relations between parameters, or NULL */
+    const struct param *table; /* CLI_PARAMS */
+    enum status (*check)(const void *values,
+                         struct err *err); /* CLI_PARAMS: checks relations between parameters; or NULL */
 };
 
 #define CLI_REQUIRED true
@@ -60,7 +62,7 @@ struct cli_opt {
     {                                                     \
         CLI_KIND_FLAG, name, ptr, false, help, NULL, NULL \
     } /* bool * */
-/* A parameter that has an option of its own: --NAME VALUE is the last --set NAME=VALUE. */
+/* A parameter with an option of its own: --NAME VALUE means --set NAME=VALUE, applied last. */
 #define CLI_PARAM(name, ptr, help)                         \
     {                                                      \
         CLI_KIND_PARAM, name, ptr, false, help, NULL, NULL \
@@ -76,11 +78,13 @@ struct cli_opt {
 
 enum cli_verdict { CLI_RUN, CLI_DONE, CLI_FAILED };
 
-/* CLI_RUN: go on; CLI_DONE: help, version or the config was printed, exit 0; CLI_FAILED: ST_USAGE is set (and the
- * caller reports it). Sets the log's name, the number of threads (common/base/parallel.h) and the provenance's stage,
- * version and effective parameters; arranges that the process's last line on stderr is
+/* CLI_RUN: continue. CLI_DONE: help, version or the configuration was printed; exit 0. CLI_FAILED: err is set, usually
+ * to ST_USAGE; the caller reports it. The error about an unknown option suggests the nearest known one.
+ *
+ * Sets the log's name, the number of threads (common/base/parallel.h), and the provenance's stage, version and
+ * effective parameters. With CLI_RUN, the last line on stderr will be
  *   STAGE: used SECONDS s wall, SECONDS s cpu, MIB MiB peak
- * which the report reads. An unknown option is answered with the nearest known one. */
+ * which stages/report reads. */
 enum cli_verdict cli_parse(int argc, char **argv, const char *stage, const struct cli_opt *opts,
                            struct provenance *prov, struct err *err);
 

@@ -1,4 +1,4 @@
-/* clock.h - how long things take. Only for what is told to people, never in products. */
+/* clock.h - elapsed time, for log lines only: never in products. */
 #ifndef REMODEL_CLOCK_H
 #define REMODEL_CLOCK_H
 
@@ -11,10 +11,10 @@ static inline double clock_read(clockid_t clock)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-/* Seconds, from a beginning of no meaning; never set back. */
+/* Seconds since an arbitrary start; monotonic. */
 static inline double clock_seconds(void) { return clock_read(CLOCK_MONOTONIC); }
 
-/* Processor seconds of all threads of this process. */
+/* CPU seconds of all threads of this process. */
 static inline double clock_cpu_seconds(void) { return clock_read(CLOCK_PROCESS_CPUTIME_ID); }
 
 #endif

@@ -1,4 +1,4 @@
-/* err.c - see err.h. */
+/* err.c - sets and reports errors. */
 #include "common/base/err.h"
 
 #include <errno.h>
@@ -8,7 +8,7 @@
 
 #include "common/base/log.h"
 
-/* What does not fit ends in "..." rather than in the middle of a word that looks whole. */
+/* Truncated text ends in "...", so that it does not look complete. */
 static void mark_cut(char *text, size_t size, int length)
 {
     if (length >= (int)size) strcpy(text + size - 4, "...");

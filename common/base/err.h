@@ -1,8 +1,8 @@
-/* err.h - statuses, and errors as complete sentences.
+/* err.h - status codes, and errors as complete sentences.
  *
- * A function that can fail returns `enum status` (0 is good) and takes `struct err *` last; callers chain with ||.
- * Library code never prints and never exits: it fills the error, and the stage's main reports it once. The first
- * error set is the one kept; err_context() puts words in front of it. */
+ * A function that can fail returns `enum status` (0: success) and takes `struct err *` last; callers chain with ||.
+ * Library code never prints or exits: it sets the error, and the stage's main reports it once. The first error wins:
+ * later ones are ignored. err_context() puts text in front of it. */
 #ifndef REMODEL_ERR_H
 #define REMODEL_ERR_H
 
@@ -12,16 +12,16 @@
 
 enum status {
     ST_OK = 0,
-    ST_USAGE,    /* wrong command line or configuration: exit 2 */
-    ST_IO,       /* the system said no: open, read, write, spawn */
-    ST_DATA,     /* bytes that cannot be used as what they claim to be */
-    ST_NOMEM,    /* no memory */
-    ST_INTERNAL, /* a broken promise of this program or of a library */
+    ST_USAGE,    /* invalid command line or configuration; exit code 2 */
+    ST_IO,       /* a system call failed: open, read, write, spawn */
+    ST_DATA,     /* invalid input data */
+    ST_NOMEM,    /* out of memory */
+    ST_INTERNAL, /* a bug in this program or in a library */
 };
 
 struct err {
     enum status status;
-    char text[2048]; /* a sentence: file, place, what was found, what to do */
+    char text[2048]; /* a sentence: file, line, what was found, what to do */
 };
 
 #define ERR_INIT  \
@@ -29,22 +29,22 @@ struct err {
         ST_OK, "" \
     }
 
-/* Sets the error if none is set yet; returns `status` (of the error that is kept). err may be NULL. */
+/* Sets the error unless one is already set. Returns the status of the error now set (`status` if err is NULL). */
 enum status err_set(struct err *err, enum status status, const char *fmt, ...) PRINTF_LIKE(3, 4);
 
-/* ST_IO with strerror(errno): "cannot VERB PATH: REASON." */
+/* Sets ST_IO: "cannot VERB PATH: REASON.", the reason from errno. */
 enum status err_errno(struct err *err, const char *verb, const char *path);
 
-/* ST_NOMEM: "not enough memory for WHAT (N bytes)." */
+/* Sets ST_NOMEM: "not enough memory for WHAT (N bytes)." */
 enum status err_nomem(struct err *err, const char *what, size_t bytes);
 
-/* Puts "PREFIX: " in front of an error that is set; returns err->status. */
+/* Puts "PREFIX: " in front of the error, if one is set. Returns its status. */
 enum status err_context(struct err *err, const char *fmt, ...) PRINTF_LIKE(2, 3);
 
-/* Prints "STAGE: error: SENTENCE" on stderr (log_name() is the stage); nothing if no error is set. */
+/* Prints "STAGE: error: SENTENCE" on stderr (STAGE is log_name()) if an error is set. */
 void err_report(const struct err *err);
 
-/* 0 if no error, 2 for ST_USAGE, otherwise 1. */
+/* 0 without an error, 2 for ST_USAGE, 1 for all others. */
 int err_exit_code(const struct err *err);
 
 #endif

@@ -1,4 +1,4 @@
-/* file_path.c - see file_path.h. */
+/* file_path.c - paths of files. */
 #include "common/base/file_path.h"
 
 #include <stdio.h>
@@ -6,5 +6,6 @@
 enum status file_path(char path[FILE_PATH], const char *folder, const char *file, const char *suffix, struct err *err)
 {
     if (snprintf(path, FILE_PATH, "%s/%s%s", folder, file, suffix) < FILE_PATH) return ST_OK;
-    return err_set(err, ST_IO, "the path %s/%s%s is too long.", folder, file, suffix);
+    return err_set(err, ST_IO, "the path %s/%s%s is longer than %d bytes; use a shorter folder or file name.", folder,
+                   file, suffix, FILE_PATH - 1);
 }

@@ -1,17 +1,17 @@
-/* frame_list.c - see frame_list.h. */
+/* frame_list.c - parses lists of frame numbers. */
 #include "common/base/frame_list.h"
 
 #include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* A number of 1 .. most at *text, which is moved behind it; 0 if there is none. */
-static int frame_number(const char **text, int most)
+/* Reads a number from 1 to max at *text and moves *text past it; 0 if there is none. */
+static int frame_number(const char **text, int max)
 {
     long n = 0;
     char *end = NULL;
     if (isdigit((unsigned char)**text)) n = strtol(*text, &end, 10);
-    if (n < 1 || n > most) return 0;
+    if (n < 1 || n > max) return 0;
     *text = end;
     return (int)n;
 }

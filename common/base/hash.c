@@ -1,4 +1,4 @@
-/* hash.c - see hash.h. */
+/* hash.c - hashes files. */
 #include "common/base/hash.h"
 
 #include <stdio.h>
@@ -9,8 +9,6 @@ static void hex_from_hash(char hex[HASH_TEXT], XXH128_hash_t hash)
 {
     snprintf(hex, HASH_TEXT, "%016llx%016llx", (unsigned long long)hash.high64, (unsigned long long)hash.low64);
 }
-
-void hash_bytes(char hex[HASH_TEXT], const void *bytes, size_t size) { hex_from_hash(hex, XXH3_128bits(bytes, size)); }
 
 enum status hash_file(char hex[HASH_TEXT], const char *path, struct err *err)
 {

@@ -1,12 +1,11 @@
-/* hash.h - content hashes (XXH3, 128 bits, as 32 hexadecimal digits). */
+/* hash.h - hashes of file contents: XXH3, 128 bits, as 32 hexadecimal digits. */
 #ifndef REMODEL_HASH_H
 #define REMODEL_HASH_H
 
 #include "common/base/err.h"
 
-#define HASH_TEXT 33
+enum { HASH_TEXT = 33 }; /* bytes of a hash as text, with the final NUL */
 
-void hash_bytes(char hex[HASH_TEXT], const void *bytes, size_t size);
 enum status hash_file(char hex[HASH_TEXT], const char *path, struct err *err);
 
 #endif

@@ -1,4 +1,4 @@
-/* log.c - see log.h. One write() a line, so that lines of jobs that share a log never mix. */
+/* log.c - writes log lines, each with one write(), so that lines of jobs that share a log never mix. */
 #include "common/base/log.h"
 
 #include <pthread.h>
@@ -8,13 +8,13 @@
 #include <unistd.h>
 
 static const char *name = "remodel";
-static bool redrawing; /* a line without its line break stands on the terminal */
+static bool redrawing; /* the terminal shows a line that has no line break yet */
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
 
 void log_set_name(const char *stage) { name = stage; }
 const char *log_name(void) { return name; }
 
-/* Words for people are not worth failing for: a closed or full stderr is passed over. */
+/* Logging never fails the program: a closed or full stderr is ignored. */
 static void put(const char *text, size_t size)
 {
     while (size) {

@@ -1,8 +1,8 @@
-/* outfile.c - see outfile.h.
+/* outfile.c - writes a temporary file and renames it; removes leftovers at exit.
  *
- * Live temporary files stand in a list that exit handlers and signal handlers can walk: its nodes are never freed, only
- * used again, and a node's path is valid while its owner is set. The name is listed before the file exists, so that no
- * signal can come between. A forked child has another process id and removes nothing. */
+ * Live temporary files are in a list that exit and signal handlers can walk: nodes are reused but never freed, and a
+ * node's path is valid while its owner is set. A name is listed before its file is created, so that a signal in between
+ * leaves no file behind. A forked child has another process id and removes nothing. */
 #include "common/base/outfile.h"
 
 #include <errno.h>
@@ -19,7 +19,7 @@
 
 struct live {
     struct live *next;
-    atomic_long owner; /* process id; 0: free */
+    atomic_long owner; /* process id; 0: unused node */
     char path[PATH_MAX];
 };
 
@@ -38,7 +38,7 @@ static void remove_all(void)
 static void on_signal(int sig)
 {
     remove_all();
-    raise(sig); /* SA_RESETHAND: the default action now */
+    raise(sig); /* the default action now, because of SA_RESETHAND */
 }
 
 static void arrange_removal(void)
@@ -47,7 +47,7 @@ static void arrange_removal(void)
     struct sigaction old, action = {.sa_handler = on_signal, .sa_flags = (int)SA_RESETHAND};
 
     sigemptyset(&action.sa_mask);
-    for (size_t i = 0; i < sizeof signals / sizeof *signals; i++) /* nohup's ignored SIGHUP stays ignored */
+    for (size_t i = 0; i < sizeof signals / sizeof *signals; i++) /* a SIGHUP that nohup ignores stays ignored */
         if (!sigaction(signals[i], NULL, &old) && old.sa_handler == SIG_DFL) sigaction(signals[i], &action, NULL);
     atexit(remove_all);
 }
@@ -98,7 +98,7 @@ enum status make_folders(const char *path, struct err *err)
         p = slash ? folder + (slash - folder) : p + strlen(p);
         const char kept = *p;
         *p = '\0';
-        /* looking first: a folder above may be one that nobody may write to */
+        /* stat() first: mkdir() may fail with EACCES or EROFS in an existing parent folder */
         if (stat(folder, &info) || !S_ISDIR(info.st_mode)) {
             if (mkdir(folder, 0777) && (errno != EEXIST || stat(folder, &info) || !S_ISDIR(info.st_mode)))
                 st = err_errno(err, "make the folder", folder);
@@ -110,7 +110,7 @@ enum status make_folders(const char *path, struct err *err)
     return st;
 }
 
-/* ".NAME.XXXXXX.tmp" beside `path`, in `temp`; NAME is cut where the whole would be too long for a file name. */
+/* Sets temp to ".NAME.XXXXXX.tmp" in the folder of `path`. NAME is cut to 200 bytes, to fit a file name. */
 static enum status temp_name(char temp[PATH_MAX], const char *path, struct err *err)
 {
     static const char letters[] = "abcdefghijklmnopqrstuvwxyz0123456789";
@@ -147,13 +147,13 @@ enum status outfile_open(struct outfile *f, const char *path, struct err *err)
     int fd = -1;
 
     *f = (struct outfile){0};
-    /* a rename would put a file in the place of /dev/null */
+    /* renaming would replace a device such as /dev/null by a file */
     if (!stat(path, &info) && !S_ISREG(info.st_mode))
-        return err_set(err, ST_IO, "cannot write %s: it is there and no regular file; give another name.", path);
+        return err_set(err, ST_IO, "cannot write %s: it exists and is not a regular file; give another name.", path);
     if ((st = make_parent(path, err))) return st;
     for (int tries = 0; fd < 0; tries++) {
         if ((st = temp_name(temp, path, err)) || (st = live_add(temp, err))) return st;
-        /* not mkstemp(): open() alone honours the umask without touching it, which threads share */
+        /* not mkstemp(), which makes mode 0600: open() applies the umask, which threads share and must not change */
         fd = open(temp, O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
         if (fd >= 0) break;
         live_drop(temp);
@@ -173,7 +173,7 @@ enum status outfile_open(struct outfile *f, const char *path, struct err *err)
     return err_nomem(err, "a file to write", strlen(path) + strlen(temp));
 }
 
-/* By name, because a library may have put another file in the temporary one's place. */
+/* Opens by name, because a library may have replaced the temporary file. */
 static int sync_path(const char *path, int flags)
 {
     const int fd = open(path, O_RDONLY | O_CLOEXEC | flags);
@@ -192,7 +192,7 @@ static void sync_parent(const char *path)
     const char *slash = strrchr(path, '/');
     char *folder = slash ? strndup(path, slash == path ? 1 : (size_t)(slash - path)) : strdup(".");
 
-    /* the product is whole and in place; some network file systems cannot do this at all */
+    /* errors are ignored: the product is complete and in place, and some network file systems cannot sync folders */
     if (folder) sync_path(folder, O_DIRECTORY);
     free(folder);
 }
@@ -201,7 +201,7 @@ enum status outfile_commit(struct outfile *f, struct err *err)
 {
     enum status st = ST_OK;
 
-    if (!f->fp) return err_set(err, ST_INTERNAL, "a file was committed that is not open.");
+    if (!f->fp) return err_set(err, ST_INTERNAL, "outfile_commit() was called for a file that is not open.");
     if (fflush(f->fp))
         st = err_errno(err, "write", f->path);
     else if (ferror(f->fp))

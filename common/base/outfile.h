@@ -1,8 +1,8 @@
-/* outfile.h - outputs that appear whole or not at all.
+/* outfile.h - output files that appear complete or not at all.
  *
- * A temporary file in the same folder (".NAME.XXXXXX.tmp") is written, fsynced and renamed. What is not committed is
- * removed by outfile_discard() or at exit, also after SIGINT, SIGTERM and SIGHUP; SIGKILL leaves a dot file that
- * nothing takes for a product. */
+ * A temporary file in the same folder (".NAME.XXXXXX.tmp") is written, fsynced and renamed. Without a commit it is
+ * removed by outfile_discard() or at exit, also after SIGINT, SIGTERM and SIGHUP. SIGKILL leaves a dot file, which
+ * nothing reads as a product. */
 #ifndef REMODEL_OUTFILE_H
 #define REMODEL_OUTFILE_H
 
@@ -11,24 +11,25 @@
 #include "common/base/err.h"
 
 struct outfile {
-    FILE *fp;   /* open for writing; a library that writes by name may write to `temp` instead and leave fp alone */
+    FILE *fp;   /* open for writing; a library that opens files by name writes to `temp` and ignores fp */
     char *path; /* owned */
     char *temp; /* owned */
 };
 
-/* Makes missing parent folders. {0} is the empty state. */
+/* Makes missing parent folders. {0} is the empty state. ST_IO: path exists and is not a regular file, or cannot be
+ * made. */
 enum status outfile_open(struct outfile *f, const char *path, struct err *err);
 
-/* Flushes, checks for write errors (a full disk), fsyncs, renames, fsyncs the folder. On failure the temporary file is
- * gone and an older product of that name is untouched. */
+/* Flushes, checks for write errors (full disk), fsyncs, renames, fsyncs the folder. On failure the temporary file is
+ * removed and an older file at the path is unchanged. */
 enum status outfile_commit(struct outfile *f, struct err *err);
 
-void outfile_discard(struct outfile *f); /* idempotent; harmless after a commit */
+void outfile_discard(struct outfile *f); /* idempotent; does nothing after a commit */
 
-/* Writes a file only if its text is new, so that its time tells Make when it last changed. */
+/* Writes the file only if its text changes, so that Make rebuilds what depends on it only then. */
 enum status outfile_write_new(const char *path, const char *text, size_t size, struct err *err);
 
-/* mkdir -p */
+/* Makes a folder and its missing parents, like mkdir -p. */
 enum status make_folders(const char *path, struct err *err);
 
 #endif

@@ -1,4 +1,4 @@
-/* parallel.c - see parallel.h. */
+/* parallel.c - parallel loops on OpenMP. */
 #include "common/base/parallel.h"
 
 #include <assert.h>
@@ -18,7 +18,7 @@ void parallel_for(size_t count, size_t chunk, void (*fn)(void *ctx, size_t begin
     const int threads = (int)(chunks < limit ? chunks : limit);
 
     if (threads <= 1 || omp_in_parallel()) {
-        /* a nested loop keeps its thread's number, and with it the scratch memory nobody else touches */
+        /* a nested loop keeps its thread's number, so that it uses that thread's scratch memory */
         const int thread = omp_get_thread_num();
         for (size_t c = 0; c < chunks; c++)
             fn(ctx, c * chunk, count - c * chunk > chunk ? (c + 1) * chunk : count, thread);

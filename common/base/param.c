@@ -1,7 +1,7 @@
-/* param.c - see param.h.
+/* param.c - reads, checks and prints parameters.
  *
- * Config files are INI files as inih reads them: "[section]", "key = value", comments from # or ; at the beginning of a
- * line, or from " ;" behind a value. */
+ * Config files are INI files in the dialect of inih: "[section]", "key = value", comments that begin with # or ; at the
+ * start of a line, or with " ;" after a value. */
 #include "common/base/param.h"
 
 #include <ini.h>
@@ -14,7 +14,7 @@
 #include "common/base/scan.h"
 #include "common/base/textfile.h"
 
-/* The names that may be suggested: of a renamed parameter the new one. */
+/* Names for suggestions; the new name for a renamed parameter. */
 static const char *table_name(const void *ctx, int i)
 {
     const struct param *p = (const struct param *)ctx + i;
@@ -28,11 +28,11 @@ static const struct param *find(const struct param *table, const char *name)
     return NULL;
 }
 
-static bool is_choice(const char *words, const char *word)
+static bool is_choice(const char *choices, const char *word)
 {
     const size_t n = strlen(word);
 
-    for (const char *p = words; n; p++) {
+    for (const char *p = choices; n; p++) {
         const size_t m = strcspn(p, "|");
         if (m == n && !memcmp(p, word, n)) return true;
         p += m;
@@ -41,9 +41,9 @@ static bool is_choice(const char *words, const char *word)
     return false;
 }
 
-/* What params_print() writes must read back as it was: no line breaks, no blanks at the ends, nothing that begins a
+/* Text must read back unchanged from params_print(): no line breaks, no blanks at the ends, nothing that begins a
  * comment. */
-static bool survives(const char *text)
+static bool reads_back(const char *text)
 {
     const size_t n = strlen(text);
 
@@ -53,7 +53,7 @@ static bool survives(const char *text)
     return true;
 }
 
-/* `where` begins the error's sentence: "a.cfg:3: " or "--set ". */
+/* `where` is the start of the error: "a.cfg:3: " or "--set ". */
 static enum status assign(const struct param *p, void *values, const char *value, const char *where, struct err *err)
 {
     void *to = (char *)values + p->offset;
@@ -66,16 +66,16 @@ static enum status assign(const struct param *p, void *values, const char *value
         return err_set(err, ST_USAGE, "%s%s is now called %s; write %s = %s.", where, p->name, p->help, p->help,
                        scan_show(shown, value));
     case PARAM_int:
-        if (!scan_int(value, &i) || (double)i < p->least || (double)i > p->most || i < INT_MIN || i > INT_MAX)
+        if (!scan_int(value, &i) || (double)i < p->min || (double)i > p->max || i < INT_MIN || i > INT_MAX)
             return err_set(err, ST_USAGE, "%s%s = %s, wanted an integer from %.0f to %.0f%s%s.", where, p->name,
-                           scan_show(shown, value), p->least, p->most, *p->unit ? " " : "", p->unit);
+                           scan_show(shown, value), p->min, p->max, *p->unit ? " " : "", p->unit);
         *(int *)to = (int)i;
         return ST_OK;
     case PARAM_double:
-        if (!scan_double(value, &d) || d < p->least || d > p->most)
+        if (!scan_double(value, &d) || d < p->min || d > p->max)
             return err_set(err, ST_USAGE, "%s%s = %s, wanted a number from %.10g to %.10g%s%s.", where, p->name,
-                           scan_show(shown, value), p->least, p->most, *p->unit ? " " : "", p->unit);
-        *(double *)to = d + 0.0; /* -0 is 0: equal parameters, equal bytes */
+                           scan_show(shown, value), p->min, p->max, *p->unit ? " " : "", p->unit);
+        *(double *)to = d + 0.0; /* -0 becomes 0, so that equal parameters print the same bytes */
         return ST_OK;
     case PARAM_choice:
         if (!is_choice(p->unit, value))
@@ -83,10 +83,10 @@ static enum status assign(const struct param *p, void *values, const char *value
                            p->unit);
         break;
     case PARAM_text:
-        if (!survives(value))
+        if (!reads_back(value))
             return err_set(
                 err, ST_USAGE,
-                "%s%s = %s, wanted text without control characters, blanks at its ends or a blank before a ;.", where,
+                "%s%s = %s, wanted text without control characters, blanks at the ends, or a blank before ';'.", where,
                 p->name, scan_show(shown, value));
         break;
     }
@@ -105,32 +105,32 @@ static enum status unknown(const struct param *table, const char *name, const ch
 
     return err_set(err, ST_USAGE, "%sunknown parameter %s%s%s%s", where, scan_show(shown, name),
                    near           ? "; did you mean "
-                   : !table->name ? "; this stage has none"
+                   : !table->name ? "; this stage has no parameters"
                                   : "; --help lists them",
                    near ? near : "", near ? "?" : ".");
 }
 
-struct reading {
+struct config_reader {
     const struct param *table;
     void *values;
     const char *section, *path;
-    const char *at; /* the file's text from the next line on */
-    int line;       /* the one that inih has in hand */
-    int *given;     /* line of each parameter, 0: not given */
+    const char *at; /* the next line */
+    int line;       /* number of the line that inih is parsing */
+    int *given;     /* line of each parameter; 0: not set */
     struct err *err;
     enum status status;
 };
 
-static void where_text(const struct reading *r, char *where, size_t size)
+static void where_text(const struct config_reader *r, char *where, size_t size)
 {
     snprintf(where, size, "%s:%d: ", r->path, r->line);
 }
 
-/* inih's fgets. Blanks at the beginning are dropped: inih takes an indented line for more of the line above. Comments
- * of any length are passed over here. */
+/* Replaces fgets() for inih. Drops leading blanks, since inih takes an indented line for a continuation, and skips
+ * comments of any length. */
 static char *read_line(char *to, int room, void *ctx)
 {
-    struct reading *r = ctx;
+    struct config_reader *r = ctx;
 
     if (r->status || !*r->at) return NULL;
     r->line++;
@@ -140,7 +140,7 @@ static char *read_line(char *to, int room, void *ctx)
     while (end > begin && strchr(" \t\r", end[-1])) end--;
     if (*begin == '#' || *begin == ';') end = begin;
     if (end - begin > room - 2) {
-        r->status = err_set(r->err, ST_USAGE, "%s:%d: the line has %td bytes, wanted at most %d; break it up.", r->path,
+        r->status = err_set(r->err, ST_USAGE, "%s:%d: the line has %td bytes, wanted at most %d; shorten it.", r->path,
                             r->line, end - begin, room - 2);
         return NULL;
     }
@@ -151,20 +151,21 @@ static char *read_line(char *to, int room, void *ctx)
 
 static int take_pair(void *ctx, const char *section, const char *name, const char *value)
 {
-    struct reading *r = ctx;
+    struct config_reader *r = ctx;
     char where[512], shown[SCAN_SHOWN];
 
     if (r->status) return 1;
     where_text(r, where, sizeof where);
     if (!*section) {
-        r->status = err_set(r->err, ST_USAGE, "%s%s stands before any [section]; put it under its stage's, as [%s].",
+        r->status = err_set(r->err, ST_USAGE,
+                            "%s%s comes before the first [section]; move it below its stage's section, such as [%s].",
                             where, scan_show(shown, name), r->section);
     } else if (!strcmp(section, r->section)) {
         const struct param *p = find(r->table, name);
         if (!p)
             r->status = unknown(r->table, name, where, r->err);
         else if (r->given[p - r->table])
-            r->status = err_set(r->err, ST_USAGE, "%s%s is given twice, first in line %d; keep one.", where, name,
+            r->status = err_set(r->err, ST_USAGE, "%s%s is set twice, first in line %d; keep one.", where, name,
                                 r->given[p - r->table]);
         else
             r->status = assign(p, r->values, value, where, r->err);
@@ -177,7 +178,7 @@ enum status params_read_file(const struct param *table, void *values, const char
                              struct err *err)
 {
     struct textfile file = {0};
-    struct reading r = {.table = table, .values = values, .section = section, .path = path, .err = err};
+    struct config_reader r = {.table = table, .values = values, .section = section, .path = path, .err = err};
     char shown[SCAN_SHOWN];
     size_t count = 0;
 
@@ -187,7 +188,7 @@ enum status params_read_file(const struct param *table, void *values, const char
         r.status = err_nomem(err, "a config file", (count + 1) * sizeof *r.given);
         goto done;
     }
-    /* lines of up to INI_LINE bytes in place of 200: twelve numbers of a lens need more */
+    /* inih's limit of 200 bytes a line is too small for the twelve parameters of a lens */
     enum { INI_LINE = 1024 };
     ini_use_stack = false;
     ini_initial_alloc = INI_LINE;
@@ -196,12 +197,12 @@ enum status params_read_file(const struct param *table, void *values, const char
     if (!r.status && bad > 0) {
         file.at = 0;
         while (file.line < bad && textfile_next_raw(&file)) continue;
-        r.status = err_set(err, ST_USAGE, "%s:%d: found %s, wanted [section] or key = value or a # comment.", path, bad,
+        r.status = err_set(err, ST_USAGE, "%s:%d: found %s, wanted [section], key = value, or a # comment.", path, bad,
                            scan_show(shown, file.cursor));
     }
     if (!r.status && bad < 0) r.status = err_nomem(err, "a line of a config file", INI_LINE);
 done:
-    if (r.status == ST_IO || r.status == ST_DATA) { /* a config file that cannot be read is wrong usage */
+    if (r.status == ST_IO || r.status == ST_DATA) { /* an unreadable config file is a usage error */
         r.status = ST_USAGE;
         if (err) err->status = ST_USAGE;
     }
@@ -222,7 +223,7 @@ enum status params_set(const struct param *table, void *values, const char *assi
     return p ? assign(p, values, equals + 1, "--set ", err) : unknown(table, name, "--set: ", err);
 }
 
-/* As few digits as read back the same double, but never fewer than %g has. */
+/* Prints the fewest digits, at least 6, that read back as the same double. */
 static void print_double(double value, FILE *to)
 {
     char text[32];
@@ -260,7 +261,7 @@ void params_print(const struct param *table, const void *values, const char *sec
     uselocale(old);
 }
 
-/* `text` as a comment, broken at blanks so that no line is longer than COLUMNS. */
+/* Prints text as a comment, broken at blanks into lines of at most COLUMNS characters. */
 static void print_comment(const char *text, FILE *to)
 {
     enum { COLUMNS = 120 };
@@ -292,8 +293,8 @@ void params_explain(const struct param *table, const void *values, const char *s
         else if (p->kind == PARAM_text)
             snprintf(text, sizeof text, "%s", p->help);
         else
-            snprintf(text, sizeof text, "%s (%s%sfrom %.10g to %.10g)", p->help, p->unit, *p->unit ? ", " : "",
-                     p->least, p->most);
+            snprintf(text, sizeof text, "%s (%s%sfrom %.10g to %.10g)", p->help, p->unit, *p->unit ? ", " : "", p->min,
+                     p->max);
         print_comment(text, to);
         fprintf(to, empty ? "%s =" : "%s = ", p->name);
         print_value(p, values, to);
@@ -316,7 +317,7 @@ void params_help(const struct param *table, const void *values, FILE *to)
         else if (p->kind == PARAM_text)
             fputc('"', to);
         else
-            fprintf(to, "%s%s, from %.10g to %.10g", *p->unit ? " " : "", p->unit, p->least, p->most);
+            fprintf(to, "%s%s, from %.10g to %.10g", *p->unit ? " " : "", p->unit, p->min, p->max);
         fputc('\n', to);
     }
     uselocale(old);

@@ -1,13 +1,14 @@
-/* param.h - parameters, each declared once.
+/* param.h - parameters of stages, each declared once.
  *
- * A stage lists its parameters in one X macro; the struct, the defaults, the config reader, --help, --print-config and
- * the provenance come from that list:
+ * A stage lists its parameters in one X macro. The struct, the defaults, the config reader, --help, --print-config,
+ * configs/default.cfg and the provenance come from that list:
  *
+ *   // name, type, default, min, max, unit, help
  *   #define SWEEP_PARAMS(X) \
- *       X(planes, int,    128,  2, 4096, "",         "planes, spaced evenly in 1/z") \
- *       X(gain,   double, 1.0,  0, 10,   "",         "photometric gain")             \
- *       X(metric, choice, "ad", 0, 0,    "ad|census", "cost of a match")             \
- *       X(note,   text,   "",   0, 0,    "",         "free text")
+ *       X(planes, int,    128,  2, 4096, "",          "planes, spaced evenly in 1/z") \
+ *       X(width,  double, 0.5,  0, 10,   "m",         "width of the tape")            \
+ *       X(metric, choice, "ad", 0, 0,    "ad|census", "matching cost")                \
+ *       X(note,   text,   "",   0, 0,    "",          "free text")
  *   struct sweep_params { SWEEP_PARAMS(PARAM_FIELD) };
  *   #define SWEEP_PARAMS_DEFAULT { SWEEP_PARAMS(PARAM_DEFAULT) }
  *   extern const struct param sweep_param_table[];
@@ -33,13 +34,13 @@ enum param_kind { PARAM_int, PARAM_double, PARAM_text, PARAM_choice, PARAM_renam
 #define PARAM_C_text   param_text
 #define PARAM_C_choice param_text
 
-#define PARAM_FIELD(name, type, value, least, most, unit, help)   PARAM_C_##type name;
-#define PARAM_DEFAULT(name, type, value, least, most, unit, help) .name = value,
-/* a row of a table; PARAM_STRUCT must be #defined to the struct where the table is written */
-#define PARAM_ROW(name, type, value, least, most, unit, help) \
-    {#name, PARAM_##type, offsetof(PARAM_STRUCT, name), least, most, unit, help},
-/* a row for a name that a parameter no longer has; whoever gives it is refused and told the new name */
-#define PARAM_RENAMED(old, now) {#old, PARAM_renamed, 0, 0, 0, "", #now},
+#define PARAM_FIELD(name, type, value, min, max, unit, help)   PARAM_C_##type name;
+#define PARAM_DEFAULT(name, type, value, min, max, unit, help) .name = value,
+/* A row of a table. Where the table is defined, PARAM_STRUCT must be the struct. */
+#define PARAM_ROW(name, type, value, min, max, unit, help) \
+    {#name, PARAM_##type, offsetof(PARAM_STRUCT, name), min, max, unit, help},
+/* A row for the former name of a parameter. Setting it is an error that names the new one. */
+#define PARAM_RENAMED(old, new_name) {#old, PARAM_renamed, 0, 0, 0, "", #new_name},
 #define PARAM_END                            \
     {                                        \
         NULL, PARAM_int, 0, 0, 0, NULL, NULL \
@@ -48,28 +49,29 @@ enum param_kind { PARAM_int, PARAM_double, PARAM_text, PARAM_choice, PARAM_renam
 struct param {
     const char *name;
     enum param_kind kind;
-    size_t offset;      /* of the value in the stage's struct */
-    double least, most; /* inclusive; numbers only */
-    const char *unit;   /* for a choice: its words, "auto|yes|no" */
-    const char *help;   /* of a renamed parameter: its new name */
+    size_t offset;    /* of the value in the stage's struct */
+    double min, max;  /* inclusive; numbers only */
+    const char *unit; /* for a choice: the choices, "auto|yes|no" */
+    const char *help; /* a noun phrase; for a renamed parameter: the new name */
 };
 
-/* Reads the section [section] of an INI file into `values`; other sections are left to their stages. Unknown keys, a
- * key given twice, values that are no number, not finite or out of range are ST_USAGE with file and line. */
+/* Reads [section] of an INI file into `values` and ignores other sections. ST_USAGE, with file and line: an unknown
+ * key, a key set twice, a value that is not a finite number or is out of range. */
 enum status params_read_file(const struct param *table, void *values, const char *section, const char *path,
                              struct err *err);
 
-/* "key=value", as --set gives it. */
+/* Sets one parameter from "key=value", the argument of --set. */
 enum status params_set(const struct param *table, void *values, const char *assignment, struct err *err);
 
-/* "[section]", then "key = value" lines in the table's order: canonical, so that equal parameters give equal bytes
- * (doubles as the shortest decimal number that reads back the same). An empty table prints the section line alone. */
+/* Prints "[section]", then a line "key = value" per parameter in the table's order. The text is canonical: equal
+ * parameters give equal bytes (a double is the shortest decimal number that reads back the same). */
 void params_print(const struct param *table, const void *values, const char *section, FILE *to);
 
-/* The section of configs/default.cfg: "[section]", then each parameter with a comment that holds its help, unit and range. */
+/* Prints a section of configs/default.cfg: "[section]", then each parameter below a comment with its help, unit and
+ * range. */
 void params_explain(const struct param *table, const void *values, const char *section, FILE *to);
 
-/* The lines of --help: name, default (what values holds), range, unit, help. */
+/* Prints the parameters for --help: name, help, default (from `values`), unit, range. */
 void params_help(const struct param *table, const void *values, FILE *to);
 
 #endif

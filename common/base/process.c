@@ -1,7 +1,7 @@
-/* process.c - see process.h.
+/* process.c - starts programs by fork() and execve().
  *
- * The child tells why it could not start through a pipe that a good execve() closes. All that needs memory (the path,
- * the environment) is made before fork(): other threads of this process may hold locks. */
+ * If the child cannot start the program, it writes errno to a pipe that a successful execve() closes. Everything that
+ * needs memory (path, environment) is prepared before fork(), because other threads of this process may hold locks. */
 #include "common/base/process.h"
 
 #include <errno.h>
@@ -46,11 +46,11 @@ static enum status find_program(char found[PATH_MAX], const char *program, struc
     if (strchr(program, '/')) {
         snprintf(found, PATH_MAX, "%s", program);
         return executable(found) ? ST_OK
-                                 : err_set(err, ST_IO, "the program %s is not there or cannot be run.", program);
+                                 : err_set(err, ST_IO, "the program %s does not exist or is not executable.", program);
     }
     for (const char *p = path ? path : "/usr/local/bin:/usr/bin:/bin"; *p;) {
         const size_t n = strcspn(p, ":");
-        /* an empty entry means the current folder, from which nothing is run unasked */
+        /* an empty entry means the current folder; skipped for safety */
         if (n && snprintf(found, PATH_MAX, "%.*s/%s", (int)n, p, program) < PATH_MAX && executable(found)) return ST_OK;
         p += n + (p[n] == ':');
     }
@@ -64,26 +64,27 @@ static bool same_name(const char *a, const char *b)
     return !strncmp(a, b, n) && b[n] == '=';
 }
 
-/* environ with env's entries in the place of their namesakes; the array alone is owned. */
+/* environ with the variables of env added or replaced. The caller frees the array, not the strings. */
 static char **merge_environment(const char *const env[])
 {
-    size_t old = 0, more = 0, n = 0;
+    size_t old = 0, added = 0, n = 0;
 
     while (environ && environ[old]) old++;
-    while (env && env[more]) more++;
-    char **merged = calloc(old + more + 1, sizeof *merged);
+    while (env && env[added]) added++;
+    char **merged = calloc(old + added + 1, sizeof *merged);
     if (!merged) return NULL;
     for (size_t i = 0; i < old; i++) {
         bool replaced = false;
-        for (size_t j = 0; j < more; j++) replaced = replaced || same_name(env[j], environ[i]);
+        for (size_t j = 0; j < added; j++) replaced = replaced || same_name(env[j], environ[i]);
         if (!replaced) merged[n++] = environ[i];
     }
-    for (size_t j = 0; j < more; j++) merged[n++] = (char *)env[j];
+    for (size_t j = 0; j < added; j++) merged[n++] = (char *)env[j];
     return merged;
 }
 
-/* What runs between fork() and execve(): nothing that is not async-signal-safe. */
-static void run_child(const char *path, char *const argv[], char *const envp[], int in, int out, int tell, pid_t parent)
+/* Runs in the child between fork() and execve(): only async-signal-safe calls. error_pipe gets errno on failure. */
+static void run_child(const char *path, char *const argv[], char *const envp[], int in, int out, int error_pipe,
+                      pid_t parent)
 {
     static const int signals[] = {SIGINT, SIGTERM, SIGHUP, SIGPIPE};
     sigset_t none;
@@ -91,7 +92,7 @@ static void run_child(const char *path, char *const argv[], char *const envp[], 
 
     for (size_t i = 0; i < sizeof signals / sizeof *signals; i++) {
         struct sigaction old;
-        /* what was ignored before this program began (nohup) stays ignored; SIGPIPE is ignored only for the writer */
+        /* signals ignored at our start (nohup) stay ignored; SIGPIPE is ignored for our own writes only */
         if (!sigaction(signals[i], NULL, &old) && (old.sa_handler != SIG_IGN || signals[i] == SIGPIPE))
             signal(signals[i], SIG_DFL);
     }
@@ -101,7 +102,7 @@ static void run_child(const char *path, char *const argv[], char *const envp[], 
         (out < 0 || (dup2(out, STDOUT_FILENO) >= 0 && dup2(out, STDERR_FILENO) >= 0)))
         execve(path, argv, envp);
     reason = errno;
-    if (write(tell, &reason, sizeof reason) < 0) _exit(126);
+    if (write(error_pipe, &reason, sizeof reason) < 0) _exit(126);
     _exit(127);
 }
 
@@ -110,7 +111,7 @@ static enum status start(long *pid, const char *const argv[], const char *const 
                          struct err *err)
 {
     char path[PATH_MAX];
-    int tell[2] = {-1, -1}, out = -1, reason = 0;
+    int error_pipe[2] = {-1, -1}, out = -1, reason = 0;
     char **envp = NULL;
     enum status st;
     ssize_t n;
@@ -120,16 +121,16 @@ static enum status start(long *pid, const char *const argv[], const char *const 
         st = err_nomem(err, "the environment of a program", 0);
     } else if (log && (out = open(log, O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0666)) < 0) {
         st = err_errno(err, "write", log);
-    } else if (pipe2(tell, O_CLOEXEC)) {
+    } else if (pipe2(error_pipe, O_CLOEXEC)) {
         st = err_errno(err, "start", argv[0]);
     } else {
         const pid_t parent = getpid(), child = fork();
-        if (!child) run_child(path, (char *const *)argv, envp, in, out, tell[1], parent);
-        close(tell[1]);
+        if (!child) run_child(path, (char *const *)argv, envp, in, out, error_pipe[1], parent);
+        close(error_pipe[1]);
         if (child < 0) {
             st = err_errno(err, "start", argv[0]);
         } else {
-            while ((n = read(tell[0], &reason, sizeof reason)) < 0 && errno == EINTR) continue;
+            while ((n = read(error_pipe[0], &reason, sizeof reason)) < 0 && errno == EINTR) continue;
             if (n == (ssize_t)sizeof reason) {
                 while (waitpid(child, NULL, 0) < 0 && errno == EINTR) continue;
                 errno = reason;
@@ -138,7 +139,7 @@ static enum status start(long *pid, const char *const argv[], const char *const 
                 *pid = child;
             }
         }
-        close(tell[0]);
+        close(error_pipe[0]);
     }
     if (out >= 0) close(out);
     free(envp);
@@ -169,12 +170,7 @@ enum status process_run_env(const char *const argv[], const char *const env[], c
     return st ? st : wait_for(pid, code, err);
 }
 
-enum status process_run(const char *const argv[], const char *log, int *code, struct err *err)
-{
-    return process_run_env(argv, NULL, log, code, err);
-}
-
-/* SIGPIPE is ignored while any pipe to a program is open. */
+/* SIGPIPE is ignored while a pipe to a program is open. */
 static pthread_mutex_t pipes_lock = PTHREAD_MUTEX_INITIALIZER;
 static struct sigaction pipes_before;
 static int pipes_open;
@@ -223,12 +219,12 @@ enum status process_finish(struct process *p, int *code, struct err *err)
 
     *code = 0;
     if (!p || !p->pid) return ST_OK;
-    bool lost = ferror(p->input);
-    if (fclose(p->input)) lost = true;
+    bool failed = ferror(p->input);
+    if (fclose(p->input)) failed = true;
     pipe_closed();
     st = wait_for(p->pid, code, err);
-    /* a program that ended well without reading all that it was given did not do what it was asked */
-    if (!st && lost && !*code) *code = 128 + SIGPIPE;
+    /* exit code 0 without reading all of the input is a failure too */
+    if (!st && failed && !*code) *code = 128 + SIGPIPE;
     *p = (struct process){0};
     return st;
 }

@@ -1,4 +1,4 @@
-/* process.h - runs another program (COLMAP, ffmpeg) and waits for it. */
+/* process.h - runs other programs (COLMAP, ffmpeg). */
 #ifndef REMODEL_PROCESS_H
 #define REMODEL_PROCESS_H
 
@@ -6,26 +6,23 @@
 
 #include "common/base/err.h"
 
-/* argv[0] is looked up in PATH; no shell is involved, so any file name is safe. Standard output and error are appended
- * to `log` (NULL: inherited); standard input is empty. *code gets the exit status, or 128 + signal. A program that is
- * not there is ST_IO and says which package holds it when that is known. If this process is interrupted the child is
- * ended with it. */
-enum status process_run(const char *const argv[], const char *log, int *code, struct err *err);
-
-/* As process_run, with an environment variable NAME=VALUE more. */
+/* Runs a program and waits for it. argv[0] is looked up in PATH; no shell is involved, so any file name is safe. env:
+ * more environment variables, "NAME=VALUE", up to a NULL; or NULL. Standard output and error are appended to `log`
+ * (NULL: inherited); standard input is empty. *code gets the exit status, or 128 + signal. ST_IO: the program is not in
+ * PATH (the error names its package, if known) or cannot be started. The child is killed when this process ends. */
 enum status process_run_env(const char *const argv[], const char *const env[], const char *log, int *code,
                             struct err *err);
 
-/* A program that reads what this process writes to `input` (ffmpeg). */
+/* A running program that reads its standard input from this process (ffmpeg). {0} is the empty state. */
 struct process {
     long pid;
     FILE *input;
 };
 enum status process_start(struct process *p, const char *const argv[], const char *log, struct err *err);
-/* Closes the input and waits. A program that ends early is not a SIGPIPE for the writer but *code != 0 here. {0} is the
- * empty state, and harmless. */
+/* Closes the input and waits. If the program ends before it has read everything, writes fail without a SIGPIPE, and
+ * *code is not 0 here. Does nothing on {0}. */
 enum status process_finish(struct process *p, int *code, struct err *err);
-/* Ends the program, if it still runs, and waits. */
+/* Kills the program, if it is running, and waits for it. Does nothing on {0}. */
 void process_kill(struct process *p);
 
 #endif

@@ -1,4 +1,5 @@
-/* progress.c - see progress.h. Whoever counts and finds nobody drawing looks at the clock and, if it is time, draws. */
+/* progress.c - draws progress lines. A thread that adds to the count draws if the interval is over and no other thread
+ * is drawing. */
 #include "common/base/progress.h"
 
 #include <inttypes.h>
@@ -41,7 +42,7 @@ static void draw(struct progress *p, double time, bool last)
         log_redraw(line, last);
     else
         log_line("", line);
-    p->shown = time;
+    p->drawn = time;
 }
 
 void progress_start(struct progress *p, const char *what, int64_t total, const char *unit)
@@ -50,7 +51,7 @@ void progress_start(struct progress *p, const char *what, int64_t total, const c
     p->unit = unit;
     p->total = total;
     atomic_store(&p->done, 0);
-    p->started = p->shown = clock_seconds();
+    p->started = p->drawn = clock_seconds();
     atomic_flag_clear(&p->drawing);
     p->terminal = isatty(STDERR_FILENO);
 }
@@ -60,7 +61,7 @@ void progress_add(struct progress *p, int64_t n)
     atomic_fetch_add(&p->done, n);
     if (atomic_flag_test_and_set(&p->drawing)) return;
     const double time = clock_seconds();
-    if (time - p->shown >= (p->terminal ? terminal_interval : log_interval)) draw(p, time, false);
+    if (time - p->drawn >= (p->terminal ? terminal_interval : log_interval)) draw(p, time, false);
     atomic_flag_clear(&p->drawing);
 }
 
@@ -68,6 +69,6 @@ void progress_end(struct progress *p)
 {
     if (!p->what) return;
     const double time = clock_seconds();
-    if (p->terminal ? p->shown > p->started : time - p->started >= log_interval) draw(p, time, true);
+    if (p->terminal ? p->drawn > p->started : time - p->started >= log_interval) draw(p, time, true);
     p->what = NULL;
 }

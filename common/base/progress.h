@@ -1,7 +1,7 @@
-/* progress.h - how far a long step is, its rate, and the time left.
+/* progress.h - progress of a long step: count, rate, time left.
  *
- * On a terminal one line is redrawn a few times a second; in a log (stderr is not a terminal) a plain line comes
- * every ten seconds and at the end of steps that took longer than that. Safe to call from several threads. */
+ * On a terminal, one line is redrawn a few times a second. In a log (stderr is not a terminal), a line is printed every
+ * ten seconds and at the end of steps that take longer. progress_add() may be called from several threads. */
 #ifndef REMODEL_PROGRESS_H
 #define REMODEL_PROGRESS_H
 
@@ -10,10 +10,10 @@
 #include <stdint.h>
 
 struct progress {
-    const char *what, *unit; /* "plane sweep", "planes" */
+    const char *what, *unit; /* "plane sweep", "planes"; pointers are kept */
     int64_t total;
     atomic_llong done;
-    double started, shown; /* seconds, monotonic */
+    double started, drawn; /* time of the start and of the last line, s, monotonic */
     atomic_flag drawing;
     bool terminal;
 };

@@ -1,29 +1,26 @@
-/* provenance.c - see provenance.h. */
+/* provenance.c - records and prints what a product was made from. */
 #include "common/base/provenance.h"
 
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/base/array.h"
 #include "common/base/textfile.h"
 
 enum { QUOTED_SIZE = 2048 };
 
 enum status provenance_add_file(struct provenance *prov, const char *name, const char *path, struct err *err)
 {
-    struct provenance_input input = {0}, *grown;
+    struct provenance_input input = {0};
     char quoted[QUOTED_SIZE];
     enum status st;
 
     for (int i = 0; i < prov->count; i++)
         if (!strcmp(prov->inputs[i].name, name)) return ST_OK;
-    /* a name that could not be written must not get as far as the writing */
+    /* refuse names that cannot be printed now, not when the product is written */
     if ((st = textfile_quote(name, quoted, sizeof quoted, err)) || (st = hash_file(input.hash, path, err))) return st;
-    const size_t bytes = (size_t)(prov->count + 1) * sizeof *grown;
-    if (!(input.name = strdup(name)) || !(grown = realloc(prov->inputs, bytes))) {
-        free(input.name);
-        return err_nomem(err, "the list of inputs", bytes);
-    }
-    prov->inputs = grown;
+    if ((st = array_append(&prov->inputs, (size_t)prov->count, sizeof input, "inputs", err))) return st;
+    if (!(input.name = strdup(name))) return err_nomem(err, "the name of an input", strlen(name) + 1);
     prov->inputs[prov->count++] = input;
     return ST_OK;
 }

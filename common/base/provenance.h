@@ -1,7 +1,7 @@
 /* provenance.h - what a product was made from: stage, version, effective parameters, hashes of its inputs.
  *
- * Nothing that does not change the product: no threads, job lists, absolute paths, times. Inputs are named by what
- * they are to the scene ("views/IMG_1.exr"), in the order they were added. */
+ * It holds only what affects the product: no thread counts, job lists, absolute paths or times. Inputs are named by
+ * their path in the scene ("views/IMG_1.exr") and listed in the order in which they were added. */
 #ifndef REMODEL_PROVENANCE_H
 #define REMODEL_PROVENANCE_H
 
@@ -18,22 +18,23 @@ struct provenance_input {
 
 struct provenance {
     const char *stage, *version;
-    char *params; /* params_print() text; owned */
+    char *params; /* text of params_print(); owned */
     struct provenance_input *inputs;
     int count;
 };
 
-/* Hashes the file at `path` and records it as `name`; the same name twice is recorded once. */
+/* Hashes the file at `path` and records it as `name`. A name that is already recorded is skipped. */
 enum status provenance_add_file(struct provenance *prov, const char *name, const char *path, struct err *err);
 
-/* The same of FOLDER/FILESUFFIX as AS/FILESUFFIX; path gets the file's path, if it is not NULL. */
+/* Records FOLDER/FILESUFFIX as AS/FILESUFFIX. path, if not NULL, gets FOLDER/FILESUFFIX. */
 enum status provenance_add_in(struct provenance *prov, const char *as, const char *folder, const char *file,
                               const char *suffix, char path[FILE_PATH], struct err *err);
 
-/* "# remodel STAGE VERSION", "# key = value" a parameter, "# input NAME HASH" an input: the head of text products. */
+/* Prints the header of text products: "# remodel STAGE VERSION", a line "# key = value" per parameter, a line
+ * "# input NAME HASH" per input. */
 void provenance_print(const struct provenance *prov, FILE *to);
 
-/* The inputs as text, "NAME HASH\n" each: an EXR attribute. Caller frees. NULL if there is no memory. */
+/* The inputs as text for an EXR attribute: a line "NAME HASH" per input. The caller frees it. NULL: out of memory. */
 char *provenance_inputs_text(const struct provenance *prov);
 
 void provenance_release(struct provenance *prov);

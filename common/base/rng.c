@@ -1,8 +1,6 @@
-/* rng.c - Philox 4x32-10.
+/* rng.c - Philox 4x32-10 [Salmon 2011].
  *
- * J. Salmon, M. Moraes, R. Dror, D. Shaw, "Parallel Random Numbers: As Easy as 1, 2, 3", SC 2011.
- *
- * Ten rounds of a bijection of the 128-bit counter; the key moves on by a Weyl sequence between rounds. */
+ * Ten rounds of a bijection of the 128-bit counter. Between rounds the key advances by a Weyl sequence. */
 #include "common/base/rng.h"
 
 #include <string.h>
@@ -10,7 +8,7 @@
 
 struct rng rng_make(uint64_t seed, const char *stage, const char *view)
 {
-    /* the stage's hash seeds the view's, so ("ab", "c") and ("a", "bc") differ */
+    /* the hash of the stage seeds that of the view, so that ("ab", "c") and ("a", "bc") differ */
     uint64_t key = XXH3_64bits_withSeed(stage, strlen(stage), seed);
     key = XXH3_64bits_withSeed(view, strlen(view), key);
     return (struct rng){{(uint32_t)key, (uint32_t)(key >> 32)}};

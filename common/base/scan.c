@@ -1,4 +1,4 @@
-/* scan.c - see scan.h. */
+/* scan.c - parses numbers; finds the nearest known word; quotes text for errors. */
 #include "common/base/scan.h"
 
 #include <errno.h>
@@ -30,7 +30,7 @@ bool scan_int(const char *text, int64_t *value)
     if (!*p) return false;
     for (; *p; p++) {
         if (!digit(*p)) return false;
-        /* summed below zero, where the range is one larger */
+        /* negative sums, because INT64_MIN has no positive counterpart */
         if (__builtin_mul_overflow(v, 10, &v) || __builtin_sub_overflow(v, *p - '0', &v)) return false;
     }
     if (!negative && __builtin_sub_overflow(0, v, &v)) return false;
@@ -43,7 +43,7 @@ bool scan_double(const char *text, double *value)
     char *end = NULL;
     const char *p = text + (*text == '-' || *text == '+');
 
-    /* strtod takes blanks, 0x1p3, "nan" and "infinity" too */
+    /* strtod() would also accept leading blanks, 0x1p3, "nan" and "infinity" */
     if (!digit(*p) && !(*p == '.' && digit(p[1]))) return false;
     if (*p == '0' && (p[1] == 'x' || p[1] == 'X')) return false;
     const double v = strtod_l(text, &end, scan_c_locale());
@@ -52,28 +52,28 @@ bool scan_double(const char *text, double *value)
     return true;
 }
 
-/* Damerau's distance without its rarest case: insertions, deletions, replacements, neighbours swapped. Words are short:
- * longer ones than the table are no near miss of anything. */
-enum { LONGEST = 63 };
+/* Damerau-Levenshtein distance (optimal string alignment): insertions, deletions, replacements, swaps of neighbours.
+ * Words longer than MAX_WORD count as far from everything. */
+enum { MAX_WORD = 63 };
 
 static int distance(const char *a, const char *b)
 {
-    int rows[3][LONGEST + 1];
+    int rows[3][MAX_WORD + 1];
     const size_t na = strlen(a), nb = strlen(b);
 
-    if (na > LONGEST || nb > LONGEST) return LONGEST;
+    if (na > MAX_WORD || nb > MAX_WORD) return MAX_WORD;
     for (size_t j = 0; j <= nb; j++) rows[0][j] = (int)j;
     for (size_t i = 1; i <= na; i++) {
         int *row = rows[i % 3];
         const int *above = rows[(i + 2) % 3], *above2 = rows[(i + 1) % 3];
         row[0] = (int)i;
         for (size_t j = 1; j <= nb; j++) {
-            int least = above[j - 1] + (a[i - 1] != b[j - 1]);
-            if (above[j] + 1 < least) least = above[j] + 1;
-            if (row[j - 1] + 1 < least) least = row[j - 1] + 1;
-            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] && above2[j - 2] + 1 < least)
-                least = above2[j - 2] + 1;
-            row[j] = least;
+            int min = above[j - 1] + (a[i - 1] != b[j - 1]);
+            if (above[j] + 1 < min) min = above[j] + 1;
+            if (row[j - 1] + 1 < min) min = row[j - 1] + 1;
+            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] && above2[j - 2] + 1 < min)
+                min = above2[j - 2] + 1;
+            row[j] = min;
         }
     }
     return rows[na % 3][nb];
@@ -82,12 +82,12 @@ static int distance(const char *a, const char *b)
 const char *scan_nearest(const char *word, const char *(*next)(const void *ctx, int i), const void *ctx)
 {
     const char *nearest = NULL, *known;
-    int least = 1 + (int)strlen(word) / 3;
+    int min = 1 + (int)strlen(word) / 3; /* a larger distance gives no suggestion */
 
     for (int i = 0; (known = next(ctx, i)); i++) {
         const int d = distance(word, known);
-        if (d <= least && (!nearest || d < least)) {
-            least = d;
+        if (d <= min && (!nearest || d < min)) {
+            min = d;
             nearest = known;
         }
     }

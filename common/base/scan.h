@@ -1,4 +1,4 @@
-/* scan.h - numbers and words as people type them: strict, in the C locale, with a guess at what was meant. */
+/* scan.h - parses numbers strictly in the C locale; suggests known words; quotes text for errors. */
 #ifndef REMODEL_SCAN_H
 #define REMODEL_SCAN_H
 
@@ -7,17 +7,18 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* A decimal number that fills all of `text`: no blanks, no hexadecimal, no NaN or infinity. */
+/* Parses a decimal number that is all of `text`: no blanks, hexadecimal digits, NaN or infinity. False: *value is
+ * unchanged. */
 bool scan_int(const char *text, int64_t *value);
 bool scan_double(const char *text, double *value);
 
-locale_t scan_c_locale(void); /* for uselocale() around printing numbers */
+locale_t scan_c_locale(void); /* for uselocale() around code that prints numbers */
 
-/* The known word nearest to `word`, or NULL if none is near enough to be what was meant. next(ctx, i) is the i-th known
- * word, NULL after the last. */
+/* The known word nearest to `word` in edit distance, for "did you mean"; NULL if none is near. next(ctx, i) returns the
+ * i-th known word, NULL after the last. */
 const char *scan_nearest(const char *word, const char *(*next)(const void *ctx, int i), const void *ctx);
 
-/* `found` as an error message may show it: in quotes, at most 40 characters of it, control characters escaped. */
+/* Quotes `found` for an error message: at most 40 characters, control characters escaped. Returns `shown`. */
 #define SCAN_SHOWN 200
 const char *scan_show(char shown[SCAN_SHOWN], const char *found);
 

@@ -1,4 +1,4 @@
-/* sort.c - see sort.h. */
+/* sort.c - sorts numbers. */
 #include "common/base/sort.h"
 
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-/* sort.h - numbers in ascending order; none may be NaN. */
+/* sort.h - sorts numbers in ascending order. None may be NaN. */
 #ifndef REMODEL_SORT_H
 #define REMODEL_SORT_H
 

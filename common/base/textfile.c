@@ -1,4 +1,4 @@
-/* textfile.c - see textfile.h. */
+/* textfile.c - reads line-based text records. */
 #include "common/base/textfile.h"
 
 #include <inttypes.h>
@@ -23,10 +23,10 @@ static enum status read_all(struct textfile *t, FILE *fp, struct err *err)
     struct stat info;
     size_t room = 1 << 16, n;
 
-    /* one byte more than the file holds, so that its end is seen without growing */
+    /* one byte more than the file's size, so that fread() meets the end without growing the buffer */
     if (!fstat(fileno(fp), &info) && S_ISREG(info.st_mode) && info.st_size > 0) room = (size_t)info.st_size + 1;
     for (;;) {
-        char *grown = realloc(t->bytes, room + 1); /* and one for the final NUL */
+        char *grown = realloc(t->bytes, room + 1); /* one more for the final NUL */
         if (!grown) {
             err_nomem(err, "a text file", room + 1);
             return err_context(err, "%s", t->path);
@@ -55,7 +55,7 @@ enum status textfile_open(struct textfile *t, const char *path, struct err *err)
     else if (!(st = read_all(t, fp, err)) && (nul = memchr(t->bytes, '\0', t->size))) {
         for (const char *p = t->bytes; p < nul; p++) t->line += *p == '\n';
         t->line++;
-        st = textfile_error(t, err, "\\0", "text without NUL bytes; the file is damaged or no text");
+        st = textfile_error(t, err, "\\0", "text without NUL bytes; the file is damaged or not a text file");
     }
     if (fp) fclose(fp);
     if (st) textfile_release(t);
@@ -87,7 +87,7 @@ bool textfile_next(struct textfile *t)
     return false;
 }
 
-/* A quoted word, unescaped in place: p stands behind the first quote. */
+/* Unescapes a quoted word in place; p points after the opening quote. */
 static enum status quoted_word(struct textfile *t, const char *what, char *p, struct err *err)
 {
     char *to = p;
@@ -147,7 +147,7 @@ enum status textfile_expect_line(struct textfile *t, const char *word, struct er
     return textfile_next(t) ? expect(t, word, wanted, err) : textfile_error(t, err, NULL, "%s", wanted);
 }
 
-enum status textfile_int(struct textfile *t, const char *what, int64_t least, int64_t most, int64_t *value,
+enum status textfile_int(struct textfile *t, const char *what, int64_t min, int64_t max, int64_t *value,
                          struct err *err)
 {
     char *word;
@@ -155,8 +155,8 @@ enum status textfile_int(struct textfile *t, const char *what, int64_t least, in
     const enum status st = textfile_word(t, what, &word, err);
 
     if (st) return st;
-    if (!scan_int(word, &v) || v < least || v > most)
-        return textfile_error(t, err, word, "%s, an integer from %" PRId64 " to %" PRId64, what, least, most);
+    if (!scan_int(word, &v) || v < min || v > max)
+        return textfile_error(t, err, word, "%s, an integer from %" PRId64 " to %" PRId64, what, min, max);
     *value = v;
     return ST_OK;
 }
@@ -240,7 +240,7 @@ enum status textfile_quote(const char *word, char *out, size_t size, struct err 
     size_t need = plain ? 1 : 3; /* the final NUL, and two quotes */
 
     if (strpbrk(word, "\n\r"))
-        return err_set(err, ST_DATA, "the name %s holds a line break, which a text file cannot; rename it.",
+        return err_set(err, ST_DATA, "the name %s contains a line break, which a text file cannot hold; rename it.",
                        scan_show(shown, word));
     for (const char *p = word; *p; p++) need += 1 + (*p == '"' || *p == '\\');
     if (need > size)

@@ -1,4 +1,4 @@
-/* textfile.h - line-based text records, with errors that name file, line, what was found and what was wanted.
+/* textfile.h - reads line-based text records. Errors name the file, the line, what was found and what was wanted.
  *
  *   struct textfile t = {0};
  *   if (textfile_open(&t, path, err)) return err->status;
@@ -8,8 +8,8 @@
  *   }
  *   textfile_release(&t);
  *
- * The whole file is read at once; words point into its buffer and live until textfile_release(). Numbers are read in
- * the C locale; NaN and infinity are refused. A NUL byte in the file is an error. */
+ * The whole file is read at once. Words point into its buffer and are valid until textfile_release(). Numbers are read
+ * in the C locale; NaN and infinity are errors, and so is a NUL byte in the file. `what` names an item in errors. */
 #ifndef REMODEL_TEXTFILE_H
 #define REMODEL_TEXTFILE_H
 
@@ -21,41 +21,43 @@
 
 struct textfile {
     char *path, *bytes; /* owned */
-    size_t size, at;    /* where the next line begins */
+    size_t size, at;    /* at: offset of the next line */
     char *cursor;       /* the rest of the current line */
-    int line;           /* of the current line, from 1 */
+    int line;           /* number of the current line, from 1 */
 };
 
 enum status textfile_open(struct textfile *t, const char *path, struct err *err);
 
-bool textfile_next(struct textfile *t); /* next record; false at the end */
-bool textfile_next_raw(
-    struct textfile *t); /* next line even if blank or a comment (COLMAP's images.txt has blank ones) */
+/* Moves to the next record; false at the end. */
+bool textfile_next(struct textfile *t);
+/* Moves to the next line, even if it is blank or a comment (COLMAP's images.txt has blank lines). */
+bool textfile_next_raw(struct textfile *t);
 
-/* Next word of the line. A word may be quoted: "two words", with \" and \\ inside (see textfile_quote). */
+/* The next word of the line. It may be quoted: "two words", with \" and \\ inside (see textfile_quote). */
 enum status textfile_word(struct textfile *t, const char *what, char **word, struct err *err);
-/* The next word must be this one; the next line must begin with this word. */
+/* ST_DATA unless the next word is `word`; unless there is a next line that begins with `word`. */
 enum status textfile_expect(struct textfile *t, const char *word, struct err *err);
 enum status textfile_expect_line(struct textfile *t, const char *word, struct err *err);
-enum status textfile_int(struct textfile *t, const char *what, int64_t least, int64_t most, int64_t *value,
+enum status textfile_int(struct textfile *t, const char *what, int64_t min, int64_t max, int64_t *value,
                          struct err *err);
 enum status textfile_double(struct textfile *t, const char *what, double *value, struct err *err);
-/* All that is left of the line, blanks at both ends removed (COLMAP's image names hold blanks); may not be empty. */
+/* The rest of the line, without blanks at its ends (COLMAP's image names may contain blanks). ST_DATA: empty. */
 enum status textfile_rest(struct textfile *t, const char *what, char **rest, struct err *err);
-bool textfile_more(struct textfile *t); /* another word stands on this line */
+bool textfile_more(struct textfile *t); /* the line has another word */
+/* ST_DATA if the line has another word; if the file has another record. */
 enum status textfile_end(struct textfile *t, struct err *err);
-enum status textfile_end_of_file(struct textfile *t, struct err *err); /* no record may follow */
+enum status textfile_end_of_file(struct textfile *t, struct err *err);
 
-/* "PATH:LINE: found FOUND, wanted WANTED." as ST_DATA; found NULL means the end of the line. */
+/* Sets ST_DATA: "PATH:LINE: found FOUND, wanted WANTED." found is NULL at the end of a line or file. */
 enum status textfile_error(const struct textfile *t, struct err *err, const char *found, const char *wanted, ...)
     PRINTF_LIKE(4, 5);
-/* The same, of a number that was read. */
+/* The same for a number. */
 enum status textfile_wrong_number(const struct textfile *t, double found, const char *wanted, struct err *err);
 
 void textfile_release(struct textfile *t);
 
-/* Writes a word so that textfile_word() reads it back: quoted if it is empty or holds blanks, quotes, \ or #. A line
- * break cannot be written: returns ST_DATA. */
+/* Writes a word so that textfile_word() reads it back: in quotes if it is empty or contains blanks, quotes, \ or #.
+ * ST_DATA: it contains a line break, or does not fit in `size` bytes. */
 enum status textfile_quote(const char *word, char *out, size_t size, struct err *err);
 
 #endif

@@ -1,4 +1,4 @@
-/* version.h - the release; it is part of every product's provenance. */
+/* version.h - the release number, part of every product's provenance. */
 #ifndef REMODEL_VERSION_H
 #define REMODEL_VERSION_H
 

@@ -1,11 +1,15 @@
-/* exr_zip.c - see exr_zip.h. */
+/* exr_zip.c - the ZIP codec of OpenEXR files, by libdeflate.
+ *
+ * A chunk's bytes are reordered, even offsets first, then odd ones, so that bytes of equal significance in half samples
+ * are adjacent; each byte is replaced by its difference from the one before, plus 128; the result is compressed in
+ * zlib's format. */
 #include "common/image/exr_zip.h"
 
 #include <immintrin.h>
 #include <libdeflate.h>
 #include <stdlib.h>
 
-#define LEVEL 4 /* libdeflate's; part of the reproducible bytes */
+#define LEVEL 4 /* libdeflate's compression level; determines the bytes */
 
 static bool grow(uint8_t **bytes, size_t *size, size_t wanted)
 {
@@ -16,7 +20,7 @@ static bool grow(uint8_t **bytes, size_t *size, size_t wanted)
     return *bytes;
 }
 
-/* Even bytes, then odd ones, and of that row of bytes the differences, about 128. */
+/* Moves even bytes before odd ones, then takes differences plus 128. */
 static void split(uint8_t *restrict to, uint8_t *restrict halves, const uint8_t *restrict from, size_t size)
 {
     const size_t odd = size / 2, even = size - odd;
@@ -29,7 +33,7 @@ static void split(uint8_t *restrict to, uint8_t *restrict halves, const uint8_t 
     for (size_t i = 1; i < size; i++) to[i] = (uint8_t)(halves[i] - halves[i - 1] + 128);
 }
 
-/* Running sums in place, then the halves interleaved. */
+/* The inverse of split(): prefix sums in place, then interleaves the halves. */
 static void join(uint8_t *restrict to, uint8_t *restrict halves, size_t size)
 {
     uint8_t last = 0;
@@ -37,7 +41,7 @@ static void join(uint8_t *restrict to, uint8_t *restrict halves, size_t size)
     if (size) last = halves[i++];
     const __m128i middle = _mm_set1_epi8((char)128);
     __m128i carry = _mm_set1_epi8((char)last);
-    for (; i + 16 <= size; i += 16) { /* sums of 2, 4, 8, 16 neighbours */
+    for (; i + 16 <= size; i += 16) { /* prefix sums of 16 bytes, by doubling */
         __m128i v = _mm_add_epi8(_mm_loadu_si128((const __m128i *)(halves + i)), middle);
         v = _mm_add_epi8(v, _mm_slli_si128(v, 1));
         v = _mm_add_epi8(v, _mm_slli_si128(v, 2));
@@ -65,7 +69,7 @@ bool exr_zip_pack(struct exr_zip *z, const uint8_t *from, size_t size, size_t *p
         return false;
     split(z->split, z->split + size, from, size);
     *packed = size ? libdeflate_zlib_compress(z->compressor, z->split, size, z->bytes, size - 1) : 0;
-    if (!*packed) *packed = size; /* it did not fit */
+    if (!*packed) *packed = size; /* not smaller */
     return true;
 }
 
@@ -76,7 +80,7 @@ enum exr_zip_result exr_zip_unpack(struct exr_zip *z, const uint8_t *from, size_
     if (libdeflate_zlib_decompress(z->decompressor, from, packed, z->split, size, NULL) != LIBDEFLATE_SUCCESS)
         return EXR_ZIP_DAMAGED;
     join(to, z->split, size);
-    return EXR_ZIP_GOOD;
+    return EXR_ZIP_OK;
 }
 
 void exr_zip_release(struct exr_zip *z)

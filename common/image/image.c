@@ -1,4 +1,4 @@
-/* image.c - memory and tone curve of float pictures. */
+/* image.c - float images, and the sRGB curve. */
 #include "common/image/image.h"
 
 #include <math.h>
@@ -14,16 +14,16 @@ enum status image_init(struct image *im, int width, int height, int channels, st
     *im = (struct image){0};
     if (width < 1 || height < 1 || channels < 1)
         return err_set(err, ST_DATA,
-                       "a picture of %d x %d pixels with %d channels cannot be made; each must be at least 1.", width,
+                       "an image of %d x %d pixels with %d channels is not possible; each must be at least 1.", width,
                        height, channels);
     uint64_t area = (uint64_t)width * (uint64_t)height;
     if (area > (UINT64_C(1) << 31) / (uint64_t)channels)
         return err_set(err, ST_DATA,
-                       "a picture of %d x %d pixels with %d channels is too large; the limit is 2^31 samples.", width,
+                       "an image of %d x %d pixels with %d channels is too large; the limit is 2^31 samples.", width,
                        height, channels);
     size_t bytes = (size_t)area * (size_t)channels * sizeof(float);
     im->data = samples_alloc(bytes);
-    if (!im->data) return err_nomem(err, "a picture", bytes);
+    if (!im->data) return err_nomem(err, "an image", bytes);
     im->width = width;
     im->height = height;
     im->channels = channels;

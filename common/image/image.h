@@ -1,7 +1,7 @@
-/* image.h - a float picture in memory.
+/* image.h - float images in memory.
  *
- * Row-major, channels interleaved: data[(y * width + x) * channels + c]. Pixel (x, y) has its centre at (x + 0.5,
- * y + 0.5). Colour is scene-linear, Rec.709 primaries, unless a function says otherwise. */
+ * Row-major, channels interleaved: data[(y * width + x) * channels + c]. The centre of pixel (x, y) is at (x + 0.5, y +
+ * 0.5). Colour is scene-linear with Rec.709 primaries unless a function says otherwise. */
 #ifndef REMODEL_IMAGE_H
 #define REMODEL_IMAGE_H
 
@@ -14,7 +14,8 @@ struct image {
     float *data; /* owned, 64-byte aligned, zeroed by image_init */
 };
 
-/* {0} is the empty state. ST_NOMEM, or ST_DATA for sizes below 1 or above 2^31 samples. */
+/* Allocates a zeroed image. {0} is the empty state. ST_DATA: a dimension below 1, or more than 2^31 samples;
+ * ST_NOMEM. */
 enum status image_init(struct image *im, int width, int height, int channels, struct err *err);
 void image_release(struct image *im);
 
@@ -23,10 +24,11 @@ static inline float *image_at(const struct image *im, int x, int y)
     return im->data + ((size_t)y * (size_t)im->width + (size_t)x) * (size_t)im->channels;
 }
 
-float srgb_from_linear(float linear); /* IEC 61966-2-1; clamps to [0, 1]; NaN gives 0 */
+float srgb_from_linear(float linear); /* IEC 61966-2-1; clamped to [0, 1]; 0 for NaN */
 float linear_from_srgb(float srgb);   /* in [0, 1] */
 
-/* 8-bit sRGB from linear, 3 channels (further channels are ignored, 1 channel is repeated). out: 3 * w * h bytes. */
+/* Converts linear to 8-bit sRGB of 3 channels, 3 * w * h bytes. A fourth channel is ignored; a single one is
+ * repeated. */
 void image_to_srgb8(const struct image *im, unsigned char *out);
 
 #endif

@@ -1,4 +1,4 @@
-/* photo_data.h - a photograph in memory, and what readers of its formats share. */
+/* photo_data.h - photographs in memory, and helpers for the readers of their formats. */
 #ifndef REMODEL_PHOTO_DATA_H
 #define REMODEL_PHOTO_DATA_H
 
@@ -7,9 +7,9 @@
 
 #include "common/base/err.h"
 
-struct photo_info { /* 0 or "" where the file does not say */
+struct photo_info { /* unknown values are 0 or "" */
     int width, height;
-    int bits;        /* a sample: 8 or 16; 32: linear already, as EXR and raw files are */
+    int bits;        /* of a sample: 8, 16, or 32 for linear values (EXR and raw files) */
     int orientation; /* EXIF 1..8; 1 if absent */
     double focal_mm, focal35_mm, seconds, f_number, iso;
     char make[64], model[64];
@@ -18,26 +18,26 @@ struct photo_info { /* 0 or "" where the file does not say */
 struct photo {
     struct photo_info info;
     uint16_t *samples; /* RGB interleaved, w * h * 3, owned; 8-bit files hold 0..255, 16-bit files 0..65535 */
-    float *values;     /* in place of samples where bits is 32: linear, finite, not negative; owned */
-    float saturation;  /* what values are cut at; 0: they are not */
+    float *values;     /* instead of samples if bits is 32: linear, finite, not negative; owned */
+    float saturation;  /* the value at which `values` are clipped; 0: not clipped */
 };
 
 void photo_release(struct photo *p);
 
-struct photo_bytes { /* a file in memory */
+struct photo_bytes { /* a file's contents in memory */
     const char *path;
     unsigned char *bytes; /* owned */
     size_t size;
 };
 
-/* ST_DATA unless there are 1 to 2^28 pixels. */
+/* ST_DATA unless the size is 1 to 2^28 pixels. */
 enum status photo_check_size(const char *path, uint64_t width, uint64_t height, struct err *err);
-/* Memory for as many samples, or values, as info says. */
+/* Allocate samples, or values, for the size in p->info. */
 enum status photo_init_samples(struct photo *p, struct err *err);
 enum status photo_init_values(struct photo *p, struct err *err);
-/* The largest value if many have it, else 0. */
+/* The largest value if more than 1 in 10 000 samples have it, else 0. */
 float photo_find_saturation(const struct photo *p);
-/* What a file says of itself: up to a NUL, and `most` characters; the printable ASCII of it, no blanks at its ends. */
-void photo_keep_text(char *to, size_t size, const char *from, size_t most);
+/* Copies text from a file, up to a NUL or max_length characters: only printable ASCII, without blanks at the ends. */
+void photo_keep_text(char *to, size_t size, const char *from, size_t max_length);
 
 #endif

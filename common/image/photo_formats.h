@@ -1,4 +1,5 @@
-/* photo_formats.h - the readers of formats that have a file of their own: photo_tiff.c, photo_raw.c. photo.c calls them. */
+/* photo_formats.h - readers of single photo formats, and EXIF: what photo.c calls in photo_jpeg.c, photo_png.c,
+ * photo_tiff.c, photo_raw.c and photo_exif.c. */
 #ifndef REMODEL_PHOTO_FORMATS_H
 #define REMODEL_PHOTO_FORMATS_H
 
@@ -6,17 +7,26 @@
 
 #include "common/image/photo_data.h"
 
-/* A TIFF, whatever is in it; ask photo_is_raw() first. */
-bool photo_is_tiff(const struct photo_bytes *file);
-/* pixels: else the header alone. The EXIF that is there goes to p->info. */
+/* Readers fill p->info, with EXIF data if there are any, and with `pixels` also the samples or values. On failure p may
+ * be partly filled; the caller releases it. */
+enum status photo_read_jpeg(struct photo *p, const struct photo_bytes *file, bool pixels, struct err *err);
+enum status photo_read_png(struct photo *p, const struct photo_bytes *file, bool pixels, struct err *err);
 enum status photo_read_tiff(struct photo *p, const struct photo_bytes *file, bool pixels, struct err *err);
-
-/* A camera's raw file: by its own mark, or a TIFF whose first picture is small, a mosaic of colours, or packed by no
- * method of TIFF's own. */
-bool photo_is_raw(const struct photo_bytes *file);
 enum status photo_read_raw(struct photo *p, const struct photo_bytes *file, bool pixels, struct err *err);
-/* What a TIFF says of itself that makes it a raw file: DNG's version, a reduced first picture, a mosaic, an unknown
- * method. */
+
+/* Any TIFF; raw files too, so ask photo_is_raw() first. */
+bool photo_is_tiff(const struct photo_bytes *file);
+/* A camera's raw file: it has the magic bytes of a raw format, or photo_tiff_is_raw(). */
+bool photo_is_raw(const struct photo_bytes *file);
+/* A TIFF that is a raw file: it has a DNG version, its first image is reduced or a colour filter mosaic, or its
+ * compression is unknown to libtiff. */
 bool photo_tiff_is_raw(const struct photo_bytes *file);
+
+/* Reads the EXIF data of a JPEG or PNG file into info; without any, sets the orientation to 1. ST_NOMEM. */
+enum status photo_exif_read(struct photo_info *info, const struct photo_bytes *file, bool png, struct err *err);
+/* An EXIF block for an APP1 segment: "Exif" and two zeros (PHOTO_EXIF_MARK bytes), then the TIFF block with what info
+ * holds. The caller frees it. ST_NOMEM. */
+enum { PHOTO_EXIF_MARK = 6 };
+enum status photo_exif_block(unsigned char **block, unsigned *size, const struct photo_info *info, struct err *err);
 
 #endif

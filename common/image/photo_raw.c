@@ -1,10 +1,10 @@
-/* photo_raw.c - cameras' raw files, developed by libraw into linear light.
+/* photo_raw.c - develops cameras' raw files to linear radiance, by libraw.
  *
- * Settings, the same for every file so that exposures can be compared: black level subtracted; the camera's own white
- * balance as the file tells it; demosaicing by AHD; Rec.709 primaries; no gamma, no brightening, no change of the
- * saturation level by what the picture holds; highlights cut, not rebuilt; not turned. 1 is where the sensor saturates
- * in the colour whose white balance factor is least. White balance is the file's: it should be fixed on the camera, for
- * what differs between photos differs in their colours. */
+ * The settings are the same for every file, so that exposures can be compared: black level subtracted; the camera's
+ * white balance from the file; AHD demosaicing; Rec.709 primaries; no gamma, no automatic brightness, no saturation
+ * level adjusted to the image; highlights clipped, not reconstructed; not rotated. A value of 1 is where the sensor
+ * saturates in the colour with the smallest white balance factor. Fix the white balance on the camera: if it differs
+ * between photos, so do their colours. */
 #include "common/image/photo_formats.h"
 
 #include <math.h>
@@ -37,9 +37,9 @@ static enum status failed(const struct photo_bytes *file, const char *what, int 
                    file->path, what, libraw_strerror(code));
 }
 
-static double good(double value) { return value > 0 && value < 1e9 ? value : 0; }
+static double plausible(double value) { return value > 0 && value < 1e9 ? value : 0; }
 
-/* The size is that of the developed picture, but for sensors that are turned or have oblong pixels. */
+/* The size is that of the developed image, except for rotated sensors and non-square pixels. */
 static void keep_info(struct photo_info *info, const libraw_data_t *raw)
 {
     static const int orientation[] = {[0] = 1, [3] = 3, [5] = 8, [6] = 6};
@@ -48,11 +48,11 @@ static void keep_info(struct photo_info *info, const libraw_data_t *raw)
     info->height = raw->sizes.height;
     info->bits = 32;
     info->orientation = flip == 3 || flip == 5 || flip == 6 ? orientation[flip] : 1;
-    info->seconds = good((double)raw->other.shutter);
-    info->f_number = good((double)raw->other.aperture);
-    info->iso = good((double)raw->other.iso_speed);
-    info->focal_mm = good((double)raw->other.focal_len);
-    info->focal35_mm = good((double)raw->lens.FocalLengthIn35mmFormat);
+    info->seconds = plausible((double)raw->other.shutter);
+    info->f_number = plausible((double)raw->other.aperture);
+    info->iso = plausible((double)raw->other.iso_speed);
+    info->focal_mm = plausible((double)raw->other.focal_len);
+    info->focal35_mm = plausible((double)raw->lens.FocalLengthIn35mmFormat);
     photo_keep_text(info->make, sizeof info->make, raw->idata.make, sizeof raw->idata.make);
     photo_keep_text(info->model, sizeof info->model, raw->idata.model, sizeof raw->idata.model);
 }
@@ -67,7 +67,7 @@ static enum status develop(struct photo *p, libraw_data_t *raw, const struct pho
     if (!picture) return failed(file, "developed", code, err);
     enum status st = ST_OK;
     if (picture->type != LIBRAW_IMAGE_BITMAP || picture->bits != 16 || (picture->colors != 3 && picture->colors != 1))
-        st = err_set(err, ST_DATA, "%s: libraw makes a picture of %d colours of it, wanted 3; develop it to a TIFF.",
+        st = err_set(err, ST_DATA, "%s: libraw developed it to %d colours, wanted 3; develop it to a TIFF yourself.",
                      file->path, picture->colors);
     p->info.width = picture->width;
     p->info.height = picture->height;
@@ -88,7 +88,7 @@ enum status photo_read_raw(struct photo *p, const struct photo_bytes *file, bool
 {
     libraw_data_t *raw = libraw_init(LIBRAW_OPTIONS_NONE);
     if (!raw) return err_nomem(err, "a reader of raw files", 0);
-    libraw_set_dataerror_handler(raw, NULL, NULL); /* it would print */
+    libraw_set_dataerror_handler(raw, NULL, NULL); /* the default handler prints */
     libraw_output_params_t *o = &raw->params;
     o->use_camera_wb = 1;
     o->use_auto_wb = 0;

@@ -1,5 +1,7 @@
-/* photo_tiff.c - TIFF of 8 and 16 bits, by libtiff: RGB and grey as they are stored, other kinds of 8 bits by libtiff's
- * own conversion to RGB. libtiff and not OpenCV's reader of pictures: it is C, keeps 16 bits, and tells the EXIF. */
+/* photo_tiff.c - TIFF files of 8 and 16 bits, by libtiff.
+ *
+ * RGB and grey samples are read as stored; libtiff converts other 8-bit kinds to RGB. libtiff rather than OpenCV's
+ * reader, because it is C, keeps 16 bits and gives the EXIF data. */
 #include "common/image/photo_formats.h"
 
 #include <stdarg.h>
@@ -14,10 +16,10 @@
 struct tiff_reader {
     const struct photo_bytes *file;
     toff_t at;
-    char message[200]; /* libtiff's first complaint */
+    char message[200]; /* libtiff's first error message */
 };
 
-static tmsize_t take(thandle_t handle, void *to, tmsize_t size)
+static tmsize_t read_bytes(thandle_t handle, void *to, tmsize_t size)
 {
     struct tiff_reader *r = (struct tiff_reader *)handle;
     if (r->at >= r->file->size || size < 0) return 0;
@@ -27,7 +29,7 @@ static tmsize_t take(thandle_t handle, void *to, tmsize_t size)
     return (tmsize_t)n;
 }
 
-static tmsize_t give_nothing(thandle_t handle, void *from, tmsize_t size)
+static tmsize_t write_nothing(thandle_t handle, void *from, tmsize_t size)
 {
     return (void)handle, (void)from, (void)size, 0;
 }
@@ -62,9 +64,9 @@ static TIFF *open_tiff(struct tiff_reader *r)
     if (!options) return NULL;
     TIFFOpenOptionsSetErrorHandlerExtR(options, keep_message, r);
     TIFFOpenOptionsSetWarningHandlerExtR(options, ignore, NULL);
-    /* m: not mapped; what it reads is in memory already */
-    TIFF *t = TIFFClientOpenExt(r->file->path, "rm", (thandle_t)r, take, give_nothing, seek, close_nothing, size_of,
-                                NULL, NULL, options);
+    /* m: no memory mapping, since the file is in memory */
+    TIFF *t = TIFFClientOpenExt(r->file->path, "rm", (thandle_t)r, read_bytes, write_nothing, seek, close_nothing,
+                                size_of, NULL, NULL, options);
     TIFFOpenOptionsFree(options);
     return t;
 }
@@ -72,7 +74,7 @@ static TIFF *open_tiff(struct tiff_reader *r)
 static enum status damaged(const struct tiff_reader *r, struct err *err)
 {
     return err_set(err, ST_DATA, "%s is a damaged or cut-off TIFF (%s); copy or export the photo again.", r->file->path,
-                   *r->message ? r->message : "it cannot be decoded");
+                   *r->message ? r->message : "decoding failed");
 }
 
 bool photo_is_tiff(const struct photo_bytes *file)
@@ -105,7 +107,7 @@ bool photo_tiff_is_raw(const struct photo_bytes *file)
 
 /* ------------------------------------------------------------------------------------------------------------- EXIF */
 
-/* A number that libtiff returns as float, double, or a list of shorts (ISO speed). */
+/* A number; libtiff returns it as float, double, or a list of shorts (ISO speed). */
 static double exif_number(TIFF *t, uint32_t tag)
 {
     const TIFFField *field = TIFFFindField(t, tag, TIFF_ANY);
@@ -128,7 +130,7 @@ static double exif_number(TIFF *t, uint32_t tag)
     return TIFFGetField(t, tag, &value) ? (double)value : 0;
 }
 
-static double good(double value) { return value > 0 && value < 1e9 ? value : 0; }
+static double plausible(double value) { return value > 0 && value < 1e9 ? value : 0; }
 
 static void keep_text(TIFF *t, uint32_t tag, char *text, size_t size)
 {
@@ -146,24 +148,24 @@ static void read_exif(struct photo_info *info, TIFF *t)
     keep_text(t, TIFFTAG_MAKE, info->make, sizeof info->make);
     keep_text(t, TIFFTAG_MODEL, info->model, sizeof info->model);
     if (!TIFFGetField(t, TIFFTAG_EXIFIFD, &exif) || !TIFFReadEXIFDirectory(t, exif)) return;
-    info->seconds = good(exif_number(t, EXIFTAG_EXPOSURETIME));
-    info->f_number = good(exif_number(t, EXIFTAG_FNUMBER));
-    info->iso = good(exif_number(t, EXIFTAG_ISOSPEEDRATINGS));
-    info->focal_mm = good(exif_number(t, EXIFTAG_FOCALLENGTH));
-    info->focal35_mm = good(exif_number(t, EXIFTAG_FOCALLENGTHIN35MMFILM));
+    info->seconds = plausible(exif_number(t, EXIFTAG_EXPOSURETIME));
+    info->f_number = plausible(exif_number(t, EXIFTAG_FNUMBER));
+    info->iso = plausible(exif_number(t, EXIFTAG_ISOSPEEDRATINGS));
+    info->focal_mm = plausible(exif_number(t, EXIFTAG_FOCALLENGTH));
+    info->focal35_mm = plausible(exif_number(t, EXIFTAG_FOCALLENGTHIN35MMFILM));
 }
 
 /* ----------------------------------------------------------------------------------------------------------- pixels */
 
-struct layout {
+struct tiff_layout {
     uint16_t bits, samples, planar, photometric, format, compression;
-    bool plain; /* rows of RGB or grey, of 8 or 16 bits */
+    bool plain; /* rows of RGB or grey, 8 or 16 bits */
 };
 
-static enum status read_layout(struct layout *l, struct photo_info *info, TIFF *t, const char *path, struct err *err)
+static enum status read_layout(struct tiff_layout *l, struct photo_info *info, TIFF *t, const char *path, struct err *err)
 {
     uint32_t width = 0, height = 0;
-    *l = (struct layout){.photometric = PHOTOMETRIC_MINISBLACK};
+    *l = (struct tiff_layout){.photometric = PHOTOMETRIC_MINISBLACK};
     TIFFGetField(t, TIFFTAG_IMAGEWIDTH, &width);
     TIFFGetField(t, TIFFTAG_IMAGELENGTH, &height);
     TIFFGetFieldDefaulted(t, TIFFTAG_BITSPERSAMPLE, &l->bits);
@@ -182,24 +184,25 @@ static enum status read_layout(struct layout *l, struct photo_info *info, TIFF *
     l->plain = (rgb || grey) && (l->bits == 8 || l->bits == 16) && l->format == SAMPLEFORMAT_UINT && l->samples <= 8 &&
                !TIFFIsTiled(t);
     if (!l->plain && (l->bits > 8 || l->format != SAMPLEFORMAT_UINT || l->photometric == PHOTOMETRIC_SEPARATED))
-        return err_set(err, ST_DATA,
-                       "%s is a TIFF of a kind that is not read (%d samples of %d bits%s%s); save it as RGB of 8 or 16 "
-                       "bits without tiles, or as EXR.",
-                       path, l->samples, l->bits, l->format == SAMPLEFORMAT_IEEEFP ? ", floating point" : "",
-                       TIFFIsTiled(t) ? ", in tiles" : "");
+        return err_set(
+            err, ST_DATA,
+            "%s is a TIFF of an unsupported kind (%d samples of %d bits%s%s); save it as RGB of 8 or 16 bits "
+            "without tiles, or as EXR.",
+            path, l->samples, l->bits, l->format == SAMPLEFORMAT_IEEEFP ? ", floating point" : "",
+            TIFFIsTiled(t) ? ", in tiles" : "");
     return ST_OK;
 }
 
-static enum status read_plain(struct photo *p, TIFF *t, const struct layout *l, const struct tiff_reader *r,
+static enum status read_plain(struct photo *p, TIFF *t, const struct tiff_layout *l, const struct tiff_reader *r,
                               struct err *err)
 {
     const size_t row = (size_t)TIFFScanlineSize(t), width = (size_t)p->info.width;
-    const bool apart = l->planar == PLANARCONFIG_SEPARATE, grey = l->photometric == PHOTOMETRIC_MINISBLACK;
-    const size_t step = apart ? 1 : l->samples;
+    const bool separate = l->planar == PLANARCONFIG_SEPARATE, grey = l->photometric == PHOTOMETRIC_MINISBLACK;
+    const size_t step = separate ? 1 : l->samples;
     if (row < width * step * (l->bits / 8)) return damaged(r, err);
     unsigned char *line = malloc(row);
     enum status st = line ? photo_init_samples(p, err) : err_nomem(err, "a row of a photo", row);
-    for (uint16_t plane = 0; !st && plane < (apart && !grey ? 3 : 1); plane++)
+    for (uint16_t plane = 0; !st && plane < (separate && !grey ? 3 : 1); plane++)
         for (int y = 0; !st && y < p->info.height; y++) {
             uint16_t *to = p->samples + (size_t)y * width * 3;
             if (TIFFReadScanline(t, line, (uint32_t)y, plane) != 1) {
@@ -207,8 +210,8 @@ static enum status read_plain(struct photo *p, TIFF *t, const struct layout *l, 
                 break;
             }
             for (size_t x = 0; x < width; x++)
-                for (size_t c = apart && !grey ? plane : 0; c < (apart && !grey ? plane + 1u : 3u); c++) {
-                    const size_t at = x * step + (apart || grey ? 0 : c);
+                for (size_t c = separate && !grey ? plane : 0; c < (separate && !grey ? plane + 1u : 3u); c++) {
+                    const size_t at = x * step + (separate || grey ? 0 : c);
                     to[3 * x + c] = l->bits == 8 ? line[at] : ((const uint16_t *)(const void *)line)[at];
                 }
         }
@@ -216,13 +219,13 @@ static enum status read_plain(struct photo *p, TIFF *t, const struct layout *l, 
     return st;
 }
 
-/* Palettes, few bits, YCbCr, tiles: libtiff makes 8-bit RGB of them. */
+/* Palettes, fewer bits, YCbCr, tiles: libtiff converts them to 8-bit RGB. */
 static enum status read_converted(struct photo *p, TIFF *t, const struct tiff_reader *r, struct err *err)
 {
     const size_t pixels = (size_t)p->info.width * (size_t)p->info.height;
     uint32_t *rgba = malloc(pixels * sizeof *rgba);
     enum status st = rgba ? photo_init_samples(p, err) : err_nomem(err, "a photo", pixels * sizeof *rgba);
-    /* rows are told from the top: as they are stored, whatever the orientation says */
+    /* rows from the top as stored, whatever the orientation */
     TIFFSetField(t, TIFFTAG_ORIENTATION, ORIENTATION_TOPLEFT);
     if (!st &&
         !TIFFReadRGBAImageOriented(t, (uint32_t)p->info.width, (uint32_t)p->info.height, rgba, ORIENTATION_TOPLEFT, 1))
@@ -239,16 +242,16 @@ static enum status read_converted(struct photo *p, TIFF *t, const struct tiff_re
 enum status photo_read_tiff(struct photo *p, const struct photo_bytes *file, bool pixels, struct err *err)
 {
     struct tiff_reader r = {.file = file};
-    struct layout layout;
+    struct tiff_layout layout;
     TIFF *t = open_tiff(&r);
     if (!t) return damaged(&r, err);
     enum status st = read_layout(&layout, &p->info, t, file->path, err);
-    /* a header may promise more than a file can hold: memory is for what is there (packed at most 1000 times) */
+    /* refuse sizes that the file cannot hold, at a compression of at most 1000:1, before allocating memory */
     if (!st && pixels && (double)p->info.width * p->info.height > 1000.0 * (double)file->size) st = damaged(&r, err);
     if (!st && pixels) st = layout.plain ? read_plain(p, t, &layout, &r, err) : read_converted(p, t, &r, err);
     TIFFClose(t);
     if (st) return st;
-    r = (struct tiff_reader){.file = file}; /* looking for EXIF leaves the picture's directory */
+    r = (struct tiff_reader){.file = file}; /* reading EXIF changes the current directory, so open again */
     t = open_tiff(&r);
     if (t) {
         read_exif(&p->info, t);

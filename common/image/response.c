@@ -1,4 +1,4 @@
-/* response.c - see response.h. */
+/* response.c - reads and evaluates response curves. */
 #include "common/image/response.h"
 
 #include <stdio.h>
@@ -14,24 +14,6 @@ float response_light(const struct response *r, int colour, float sample)
     const int below = at < RESPONSE_LEVELS - 2 ? (int)at : RESPONSE_LEVELS - 2;
     const float *light = r->light[colour];
     return light[below] + (at - (float)below) * (light[below + 1] - light[below]);
-}
-
-float response_sample(const struct response *r, int colour, float light)
-{
-    if (!r->table) return srgb_from_linear(light);
-    const float *table = r->light[colour];
-    int below = 0, above = RESPONSE_LEVELS - 1;
-    if (!(light > table[0])) return 0;
-    if (light >= table[above]) return 1;
-    while (above - below > 1) {
-        const int middle = (below + above) / 2;
-        if (table[middle] <= light)
-            below = middle;
-        else
-            above = middle;
-    }
-    const float step = table[above] - table[below];
-    return ((float)below + (step > 0 ? (light - table[below]) / step : 0)) / (RESPONSE_LEVELS - 1);
 }
 
 float *response_tables(const struct response *r, int bits, struct err *err)
@@ -55,7 +37,7 @@ static enum status read_levels(struct response *r, struct textfile *t, struct er
     enum status st = ST_OK;
     for (int i = 0; !st && i < RESPONSE_LEVELS; i++) {
         if (!textfile_next(t))
-            return textfile_error(t, err, NULL, "%d lines \"R G B\"; there are %d", (int)RESPONSE_LEVELS, i);
+            return textfile_error(t, err, NULL, "%d lines \"R G B\", not %d", (int)RESPONSE_LEVELS, i);
         for (int c = 0; !st && c < 3; c++) {
             double light = 0;
             char found[32];
@@ -72,7 +54,7 @@ static enum status read_levels(struct response *r, struct textfile *t, struct er
     }
     for (int c = 0; !st && c < 3; c++)
         if (!(r->light[c][RESPONSE_LEVELS - 1] > r->light[c][0]))
-            st = textfile_error(t, err, "a level curve", "a curve that rises (%s)", colours[c]);
+            st = textfile_error(t, err, "a constant curve", "a curve that rises (%s)", colours[c]);
     return st;
 }
 

@@ -1,14 +1,13 @@
-/* response.h - how a camera's samples follow light: response.txt.
+/* response.h - the response curve of a camera, from sample to light: response.txt.
  *
  *   remodel-response 1
  *   curve srgb
  * or
  *   remodel-response 1
  *   curve table 256
- *   R G B           256 lines: linear light of the samples 0/255, 1/255, ... 255/255, each column rising or level
+ *   R G B           256 lines: linear light of the samples 0/255, 1/255, ... 255/255; no column may fall
  *
- * Between its lines a table goes linearly. Light of 1 is white by the sRGB curve; a table's own white may differ from
- * it. */
+ * A table is interpolated linearly. Light of 1 is white by the sRGB curve; white by a table may differ from 1. */
 #ifndef REMODEL_RESPONSE_H
 #define REMODEL_RESPONSE_H
 
@@ -19,18 +18,17 @@
 enum { RESPONSE_LEVELS = 256 };
 
 struct response {
-    bool table; /* else the sRGB curve; {0} is sRGB */
+    bool table; /* false: the sRGB curve, which {0} is */
     float light[3][RESPONSE_LEVELS];
 };
 
-/* Light of a sample, colour by colour; sample in [0, 1]. */
+/* Linear light of a sample in [0, 1]. colour: 0 red, 1 green, 2 blue. */
 float response_light(const struct response *r, int colour, float sample);
-/* The sample that has this light; clamps to [0, 1]. */
-float response_sample(const struct response *r, int colour, float light);
-/* Light of every sample of 8 or 16 bits, three tables one after the other; the caller frees them. NULL: no memory. */
+/* Light of every sample of 8 or 16 bits: three tables in a row, red first. The caller frees them. NULL: ST_NOMEM is
+ * set. */
 float *response_tables(const struct response *r, int bits, struct err *err);
 
-/* ST_DATA with file and line: unknown version or curve, numbers that are negative or fall. */
+/* ST_DATA with file and line: unknown version or curve, a negative number, a curve that falls or is constant. */
 enum status response_read(struct response *r, const char *path, struct err *err);
 
 #endif

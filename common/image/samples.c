@@ -1,4 +1,4 @@
-/* samples.c - see samples.h. */
+/* samples.c - allocates samples of images. */
 #include "common/image/samples.h"
 
 #include <stdint.h>
@@ -15,7 +15,7 @@ void *samples_alloc(size_t bytes)
     const size_t size = bytes ? (bytes + unit - 1) / unit * unit : unit;
     void *data = aligned_alloc(unit, size);
     if (!data) return NULL;
-    if (unit == HUGE_PAGE) madvise(data, bytes / unit * unit, MADV_HUGEPAGE); /* where it fails pages stay small */
+    if (unit == HUGE_PAGE) madvise(data, bytes / unit * unit, MADV_HUGEPAGE); /* on failure pages stay small */
     memset(data, 0, size);
     return data;
 }

@@ -1,4 +1,4 @@
-/* ceres_least_squares.cc - see ceres_least_squares.h. */
+/* ceres_least_squares.cc - C interface to the Ceres solver. */
 #include "common/math/ceres_least_squares.h"
 
 #include <ceres/ceres.h>
@@ -33,5 +33,5 @@ enum status ceres_least_squares(const struct least_squares *problem, double *x, 
     ceres::Solver::Summary summary;
     ceres::Solve(options, &ceres_problem, &summary);
     if (summary.IsSolutionUsable()) return ST_OK;
-    return err_set(err, ST_DATA, "the least-squares solver found no step: %s", summary.message.c_str());
+    return err_set(err, ST_DATA, "the least-squares solver failed: %s", summary.message.c_str());
 }

@@ -1,4 +1,5 @@
-/* ceres_least_squares.h - nonlinear least squares by Ceres: Levenberg-Marquardt, derivatives by central differences. */
+/* ceres_least_squares.h - nonlinear least squares by Ceres: Levenberg-Marquardt with numeric derivatives (central
+ * differences). */
 #ifndef REMODEL_CERES_LEAST_SQUARES_H
 #define REMODEL_CERES_LEAST_SQUARES_H
 
@@ -10,13 +11,13 @@ extern "C" {
 
 struct least_squares {
     int unknowns, residuals;
-    void (*evaluate)(void *ctx, const double *x, double *residuals); /* finite for any finite x */
+    void (*evaluate)(void *ctx, const double *x, double *residuals); /* residuals must be finite for any finite x */
     void *ctx;
-    int iterations; /* at most */
+    int iterations; /* maximum */
 };
 
-/* x: a start on entry, a local minimum on return, or as near to it as the iterations come. One thread: same bits
- * always. ST_DATA: no step could be made from the start. */
+/* x: the initial values on entry, the solution on return; it may not be converged after the maximum of iterations. Runs
+ * in one thread, so that the same input gives the same bits. ST_DATA: Ceres found no usable solution. */
 enum status ceres_least_squares(const struct least_squares *problem, double *x, struct err *err);
 
 #ifdef __cplusplus

@@ -1,8 +1,8 @@
-/* delaunay.c - Delaunay triangulation in the plane.
+/* delaunay.c - Delaunay triangulation in the plane, by qhull [Barber 1996].
  *
- * qhull lifts the points onto a paraboloid, whose lower hull is the triangulation. Points on a common circle (grids)
- * make facets of more than three vertices; qhull splits them without changing the points (option Qt; no joggle),
- * which may leave triangles of no area along the hull: they are dropped here. */
+ * qhull lifts the points onto a paraboloid; the lower convex hull of the lifted points is the triangulation. Cocircular
+ * points (grids) make facets of more than three vertices. qhull splits these facets without moving the points (option
+ * Qt, no joggling), which can leave triangles of zero area along the hull; they are dropped here. */
 #include "common/math/delaunay.h"
 
 #include <math.h>
@@ -13,14 +13,14 @@
 
 #include <libqhull_r/qhull_ra.h>
 
-#define FLAT 1e-9 /* of the extent: thinner than this is a line */
+#define FLAT 1e-9 /* points within this part of their extent from a line are collinear */
 
 static double cross_at(const double *a, const double *b, const double *c)
 {
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
 
-/* Shifts and scales the points to a unit box, where tolerances have a meaning. False if they lie on a line. */
+/* Shifts and scales the points to the unit square, for the tolerances. False if they are collinear. */
 static bool normalize(const double (*points)[2], int count, double (*unit)[2])
 {
     double low[2] = {points[0][0], points[0][1]}, high[2] = {points[0][0], points[0][1]};
@@ -50,7 +50,7 @@ static int compare_triangles(const void *a, const void *b)
     return 0;
 }
 
-/* Turns a triangle counter-clockwise with its least index first. False if it has no area. */
+/* Orders a triangle counter-clockwise, smallest index first. False if its area is zero. */
 static bool arrange(int t[3], const double (*unit)[2])
 {
     double area = cross_at(unit[t[0]], unit[t[1]], unit[t[2]]);
@@ -102,14 +102,14 @@ enum status delaunay(const double (*points)[2], int point_count, int (**triangle
     enum status st = ST_OK;
     char *text = NULL;
     size_t text_size = 0;
-    FILE *words = NULL;
+    FILE *messages = NULL; /* qhull's output */
     bool opened = false;
     char command[] = "qhull d Qt Qbb Qc Qz";
     qhT qh;
     double(*unit)[2] = malloc((size_t)point_count * sizeof *unit);
     if (!unit) return err_nomem(err, "a triangulation", (size_t)point_count * sizeof *unit);
     if (!normalize(points, point_count, unit)) goto done;
-    if (point_count == 3) { /* fewer than qhull's first simplex needs */
+    if (point_count == 3) { /* too few for qhull's initial simplex */
         *triangles = malloc(sizeof **triangles);
         if (!*triangles) {
             st = err_nomem(err, "a triangulation", sizeof **triangles);
@@ -119,15 +119,15 @@ enum status delaunay(const double (*points)[2], int point_count, int (**triangle
         *count = arrange(**triangles, unit) ? 1 : 0;
         goto done;
     }
-    words = open_memstream(&text, &text_size); /* qhull's messages */
-    if (!words) {
+    messages = open_memstream(&text, &text_size);
+    if (!messages) {
         st = err_nomem(err, "qhull's messages", 1);
         goto done;
     }
-    qh_zero(&qh, words);
+    qh_zero(&qh, messages);
     opened = true;
-    if (qh_new_qhull(&qh, 2, point_count, &unit[0][0], False, command, NULL, words)) {
-        fflush(words);
+    if (qh_new_qhull(&qh, 2, point_count, &unit[0][0], False, command, NULL, messages)) {
+        fflush(messages);
         st = err_set(err, ST_INTERNAL, "qhull cannot triangulate %d points: %.200s", point_count, text ? text : "");
         goto done;
     }
@@ -138,7 +138,7 @@ done:
         qh_freeqhull(&qh, !qh_ALL);
         qh_memfreeshort(&qh, &left, &total);
     }
-    if (words) fclose(words);
+    if (messages) fclose(messages);
     free(text);
     free(unit);
     return st;

@@ -1,15 +1,24 @@
-/* distance.c - see distance.h. Columns first, by two sweeps; then each row is the lower envelope of parabolas. */
+/* distance.c - exact Euclidean distance transform [Felzenszwalb 2012].
+ *
+ * The squared distance D(x, y) = min over (u, v) outside of (x - u)^2 + (y - v)^2 separates into two passes. Columns:
+ * g(x, y) = min over v of (y - v)^2 for outside pixels (x, v), by one sweep down and one up. Rows: D(x, y) = min over u
+ * of (x - u)^2 + g(u, y) is the lower envelope of the parabolas with apex (u, g(u, y)). The envelope is built from left
+ * to right: the last parabola is removed while the new one crosses it left of where it begins. Both passes are linear
+ * in the number of pixels.
+ *
+ * Differs from the source: columns use the two sweeps of distances, since the input is binary, and columns without an
+ * outside pixel (infinite g) are left out of the envelope. */
 #include "common/math/distance.h"
 
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
 
-/* Squared distances to the nearest 0 of the same column. */
+/* Squared distances to the nearest 0 in the same column. */
 static void columns(float *squared, const uint8_t *inside, int width, int height)
 {
     const float far = INFINITY;
-    for (int y = 0; y < height; y++) /* distances first, from above */
+    for (int y = 0; y < height; y++) /* distances from above, not squared yet */
         for (int x = 0; x < width; x++) {
             const size_t p = (size_t)y * (size_t)width + (size_t)x;
             squared[p] = !inside[p] ? 0 : y ? squared[p - (size_t)width] + 1 : far;
@@ -23,7 +32,8 @@ static void columns(float *squared, const uint8_t *inside, int width, int height
     for (size_t p = 0; p < (size_t)width * (size_t)height; p++) squared[p] *= squared[p];
 }
 
-struct envelope { /* of a row: parabola k stands at `at`, is lowest from `from` on, and has `height` there */
+/* The lower envelope of a row: parabola k has its apex at (at[k], height[k]) and is the lowest from from[k] on. */
+struct envelope {
     double *from;
     int *at;
     float *height;
@@ -57,13 +67,14 @@ enum status distance_squared(float *squared, const uint8_t *inside, int width, i
 {
     const size_t n = (size_t)width;
     struct envelope e = {malloc(n * sizeof *e.from), malloc(n * sizeof *e.at), malloc(n * sizeof *e.height)};
-    const bool good = e.from && e.at && e.height;
-    if (good) {
+    const bool allocated = e.from && e.at && e.height;
+    if (allocated) {
         columns(squared, inside, width, height);
         for (int y = 0; y < height; y++) row(squared + (size_t)y * n, width, &e);
     }
     free(e.from);
     free(e.at);
     free(e.height);
-    return good ? ST_OK : err_nomem(err, "a row of distances", n * (sizeof *e.from + sizeof *e.at + sizeof *e.height));
+    return allocated ? ST_OK
+                     : err_nomem(err, "a row of distances", n * (sizeof *e.from + sizeof *e.at + sizeof *e.height));
 }

@@ -1,4 +1,9 @@
-/* vec.c - rotations and the symmetric eigenproblem of 3x3 matrices. */
+/* vec.c - rotations, and eigenvectors of symmetric 3x3 matrices.
+ *
+ * A rotation matrix becomes a quaternion by the method of [Shepperd 1978]: the component of largest magnitude is taken
+ * from the diagonal and the others relative to it, which is stable for every angle. Eigenvectors are found by cyclic
+ * Jacobi rotations [Golub 2013, 8.5]: each zeroes one element off the diagonal, until their sum is below 1e-18 of the
+ * diagonal's. The matrix becomes diagonal, and the rows of v its eigenvectors. */
 #include "common/math/vec.h"
 
 struct mat3 mat3_from_quat(struct quat q)
@@ -9,11 +14,10 @@ struct mat3 mat3_from_quat(struct quat q)
                           {2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)}}};
 }
 
-/* Shepperd (1978): divides by the largest of the four components, so that it is stable for every angle. */
 struct quat quat_from_mat3(struct mat3 r)
 {
     double t = r.m[0][0] + r.m[1][1] + r.m[2][2];
-    double q[4]; /* w x y z, times a common factor */
+    double q[4]; /* w x y z, up to a common factor */
     if (t >= r.m[0][0] && t >= r.m[1][1] && t >= r.m[2][2]) {
         q[0] = 1 + t;
         q[1] = r.m[2][1] - r.m[1][2];
@@ -33,7 +37,6 @@ struct quat quat_from_mat3(struct mat3 r)
     return (struct quat){q[0] * s, q[1] * s, q[2] * s, q[3] * s};
 }
 
-/* Cyclic Jacobi (Golub and Van Loan, Matrix Computations, 8.5): a becomes diagonal, the rows of v its eigenvectors. */
 void mat3_eigen_symmetric(struct mat3 a, double values[3], struct mat3 *vectors)
 {
     struct mat3 v = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
@@ -52,7 +55,7 @@ void mat3_eigen_symmetric(struct mat3 a, double values[3], struct mat3 *vectors)
                     a.m[k][p] = c * x - s * y;
                     a.m[k][q] = s * x + c * y;
                 }
-                for (int k = 0; k < 3; k++) { /* rows p and q, of the eigenvectors too */
+                for (int k = 0; k < 3; k++) { /* rows p and q, also of the eigenvectors */
                     double x = a.m[p][k], y = a.m[q][k];
                     a.m[p][k] = c * x - s * y;
                     a.m[q][k] = s * x + c * y;

@@ -1,7 +1,7 @@
-/* vec.h - 3-vectors, 3x3 matrices, unit quaternions; double; by value.
+/* vec.h - 3-vectors, 3x3 matrices, unit quaternions, in double precision, passed by value.
  *
- * Matrices are row-major, m[row][column], and act on column vectors. Quaternions are w x y z. A rotation R named
- * a_from_b takes coordinates in b to coordinates in a. */
+ * Matrices are row-major, m[row][column], and multiply column vectors. Quaternions are w x y z. A rotation named
+ * a_from_b maps coordinates in b to coordinates in a. */
 #ifndef REMODEL_VEC_H
 #define REMODEL_VEC_H
 
@@ -55,12 +55,12 @@ static inline struct mat3 mat3_multiply(struct mat3 a, struct mat3 b)
     return c;
 }
 
-/* Of a unit quaternion (not checked). */
+/* q must have unit length (not checked). */
 struct mat3 mat3_from_quat(struct quat q);
-/* Unit quaternion with w >= 0. */
+/* The unit quaternion with w >= 0. */
 struct quat quat_from_mat3(struct mat3 r);
-/* Eigenvalues ascending, eigenvectors as rows of `vectors`; symmetric input; Jacobi, deterministic signs (the largest
- * component positive). */
+/* Eigenvalues of a symmetric matrix in ascending order, and the eigenvectors as rows of `vectors`, signed so that the
+ * component of largest magnitude is positive. */
 void mat3_eigen_symmetric(struct mat3 a, double values[3], struct mat3 *vectors);
 
 #endif

@@ -1,4 +1,4 @@
-/* weighted.h - percentiles of numbers that do not count alike. */
+/* weighted.h - weighted percentiles. */
 #ifndef REMODEL_WEIGHTED_H
 #define REMODEL_WEIGHTED_H
 
@@ -8,7 +8,7 @@ struct weighted {
     double value, weight;
 };
 
-/* The value up to which `part` (0..1) of the weight lies; 0 if there is none. Sorts the values. */
-double weighted_percentile(struct weighted *values, size_t count, double part);
+/* The smallest value up to which `fraction` (0 to 1) of the total weight lies; 0 if count is 0. Sorts the values. */
+double weighted_percentile(struct weighted *values, size_t count, double fraction);
 
 #endif

@@ -1,19 +1,19 @@
-/* fit_params.h - the stage's parameters. */
+/* fit_params.h - parameters of fit_response. */
 #ifndef REMODEL_FIT_PARAMS_H
 #define REMODEL_FIT_PARAMS_H
 
 #include "common/base/param.h"
 
-/* name, type, default, least, most, unit, help */
-#define FIT_PARAMS(X)                                                                                                 \
-    X(response, choice, "auto", 0, 0, "auto|srgb|recover",                                                            \
-      "how samples of bracketed photos follow light; auto: by the sRGB curve, unless their exposures say otherwise; " \
-      "a scene's response.txt wins over all of them")                                                                 \
-    X(views, int, 8, 1, 1000, "", "that are looked at, spread over the list")                                         \
-    X(places, int, 3000, 50, 100000, "", "of each view at most, where it is even")                                    \
-    X(most_spread, double, 0.05, 0, 10, "",                                                                           \
-      "by how much, relatively, the ratio of two exposures may vary with the level of light before the sRGB curve "   \
-      "is given up")
+/* name, type, default, min, max, unit, help */
+#define FIT_PARAMS(X)                                                                                           \
+    X(response, choice, "auto", 0, 0, "auto|srgb|recover",                                                      \
+      "response curve of bracketed photos: the sRGB curve, a curve recovered from the exposures, or auto: the " \
+      "sRGB curve unless the exposures contradict it; ignored if the scene has a response.txt")                 \
+    X(views, int, 8, 1, 1000, "", "number of bracketed views used for the fit, spread evenly over the list")    \
+    X(max_patches, int, 3000, 50, 100000, "", "largest number of uniform patches sampled in each view")         \
+    X(max_spread, double, 0.05, 0, 10, "",                                                                      \
+      "largest relative variation of exposure ratios over the levels of light at which response = auto keeps "  \
+      "the sRGB curve")
 
 struct fit_params {
     FIT_PARAMS(PARAM_FIELD)

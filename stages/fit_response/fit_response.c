@@ -1,11 +1,11 @@
-/* fit_response.c - finds out how the samples of bracketed photos follow light: one curve for all of a scene.
+/* fit_response.c - finds the response curve of bracketed photos, one for the whole scene.
  *
- * reads   RECORDS/list.txt, ID.txt   the views and how their photos were exposed
+ * reads   RECORDS/list.txt, ID.txt   the views and the exposures of their photos
  *         PHOTOS/FILE                the photos of some of the views
- * writes  OUT                        response.txt: the sRGB curve, or a table that was recovered (docs/formats.md)
+ * writes  OUT                        response.txt: the sRGB curve or a recovered table (docs/formats.md)
  *
- * It is rewritten only if its text changes, so that Make merges views again only then; so it does not name the photos.
- * */
+ * OUT is rewritten only if its text changes, so that Make merges the views again only then. Its provenance therefore
+ * leaves out the photos. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -17,21 +17,21 @@
 #include "common/capture/photo_list.h"
 #include "stages/fit_response/recover.h"
 
-struct view_job {
+struct sample_job {
     const struct photo_record *record;
     const char *photos;
-    int most;
-    struct places places;
+    int max_patches;
+    struct patches patches;
     struct err err;
 };
 
-/* Linear photos need no curve; a view that has one tells nothing. */
-static enum status sample_view(struct view_job *job)
+/* Skips views with linear photos, which need no curve. */
+static enum status sample_view(struct sample_job *job)
 {
     const struct photo_record *r = job->record;
-    const int count = r->bracket_count < RECOVER_MOST ? r->bracket_count : RECOVER_MOST;
+    const int count = r->bracket_count < RECOVER_MAX_EXPOSURES ? r->bracket_count : RECOVER_MAX_EXPOSURES;
     struct photo *photos = calloc((size_t)count + 1, sizeof *photos);
-    double exposures[RECOVER_MOST];
+    double exposures[RECOVER_MAX_EXPOSURES];
     bool linear = false;
     enum status st = photos ? ST_OK : err_nomem(&job->err, "photos", (size_t)count * sizeof *photos);
     for (int k = 0; !st && !linear && k < count; k++) {
@@ -40,11 +40,12 @@ static enum status sample_view(struct view_job *job)
         if (!st) st = photo_read_any(&photos[k], path, &job->err);
         if (!st && (photos[k].info.width != photos[0].info.width || photos[k].info.height != photos[0].info.height))
             st = err_set(&job->err, ST_DATA,
-                         "%s is not as large as the other exposures of view %s; import the photos again.", path, r->id);
+                         "%s differs in size from the other exposures of view %s; import the photos again.", path,
+                         r->id);
         linear |= photos[k].values != NULL;
         exposures[k] = r->brackets[k].exposure;
     }
-    if (!st && !linear) st = places_add(&job->places, photos, exposures, count, job->most, &job->err);
+    if (!st && !linear) st = patches_add(&job->patches, photos, exposures, count, job->max_patches, &job->err);
     for (int k = 0; photos && k < count; k++) photo_release(&photos[k]);
     free(photos);
     return st;
@@ -52,14 +53,14 @@ static enum status sample_view(struct view_job *job)
 
 static void sample_views(void *ctx, size_t begin, size_t end, int thread)
 {
-    struct view_job *jobs = ctx;
+    struct sample_job *jobs = ctx;
     (void)thread;
     for (size_t i = begin; i < end; i++) sample_view(&jobs[i]);
 }
 
-static enum status join(struct places *all, const struct places *p, struct err *err)
+static enum status append(struct patches *all, const struct patches *p, struct err *err)
 {
-    struct place_sample *samples = realloc(all->samples, (all->sample_count + p->sample_count + 1) * sizeof *samples);
+    struct patch_sample *samples = realloc(all->samples, (all->sample_count + p->sample_count + 1) * sizeof *samples);
     if (samples) all->samples = samples;
     int *counts = realloc(all->counts, (all->count + p->count + 1) * sizeof *counts);
     if (counts) all->counts = counts;
@@ -71,24 +72,25 @@ static enum status join(struct places *all, const struct places *p, struct err *
     return ST_OK;
 }
 
-static enum status gather(struct places *all, const struct photo_list *list, const char *photos,
+/* Samples up to params->views bracketed views, spread evenly over the list. */
+static enum status gather(struct patches *all, const struct photo_list *list, const char *photos,
                           const struct fit_params *params, struct err *err)
 {
     int bracketed = 0, n = 0;
     for (int i = 0; i < list->count; i++) bracketed += list->photos[i].bracket_count > 1;
     const int count = bracketed < params->views ? bracketed : params->views;
-    struct view_job *jobs = calloc((size_t)count + 1, sizeof *jobs);
+    struct sample_job *jobs = calloc((size_t)count + 1, sizeof *jobs);
     enum status st = jobs ? ST_OK : err_nomem(err, "views", (size_t)count * sizeof *jobs);
     for (int i = 0, seen = 0; !st && i < list->count; i++) {
         if (list->photos[i].bracket_count < 2) continue;
         if (n < count && seen++ * count >= n * bracketed)
-            jobs[n++] = (struct view_job){&list->photos[i], photos, params->places, {0}, ERR_INIT};
+            jobs[n++] = (struct sample_job){&list->photos[i], photos, params->max_patches, {0}, ERR_INIT};
     }
     if (!st) parallel_for((size_t)n, 1, sample_views, jobs);
     for (int i = 0; i < n; i++) {
         if (!st && jobs[i].err.status) st = err_set(err, jobs[i].err.status, "%s", jobs[i].err.text);
-        if (!st) st = join(all, &jobs[i].places, err);
-        places_release(&jobs[i].places);
+        if (!st) st = append(all, &jobs[i].patches, err);
+        patches_release(&jobs[i].patches);
     }
     free(jobs);
     return st;
@@ -115,15 +117,15 @@ static enum status fit_response(const char *photos, const char *records, const c
                                 const struct fit_params *params, const struct provenance *prov, struct err *err)
 {
     struct photo_list list = {0};
-    struct places places = {0};
+    struct patches patches = {0};
     struct response response;
-    char told[RESPONSE_TOLD];
+    char summary[RESPONSE_SUMMARY];
     enum status st = photo_list_read(&list, records, err);
-    if (!st) st = gather(&places, &list, photos, params, err);
-    if (!st) st = response_decide(&response, told, &places, params, err);
+    if (!st) st = gather(&patches, &list, photos, params, err);
+    if (!st) st = response_decide(&response, summary, &patches, params, err);
     if (!st) st = write_response(&response, out, prov, err);
-    if (!st) log_note("samples follow light by %s", told);
-    places_release(&places);
+    if (!st) log_note("response curve: %s", summary);
+    patches_release(&patches);
     photo_list_release(&list);
     return st;
 }
@@ -133,10 +135,10 @@ int main(int argc, char **argv)
     const char *photos = NULL, *records = NULL, *out = NULL;
     struct fit_params params = FIT_PARAMS_DEFAULT;
     const struct cli_opt opts[] = {
-        CLI_ABOUT("Finds out how the samples of bracketed photos follow light: one curve for all of a scene."),
+        CLI_ABOUT("Finds the response curve of bracketed photos, one for the whole scene."),
         CLI_STR("photos", &photos, CLI_REQUIRED, "folder of photographs"),
-        CLI_STR("records", &records, CLI_REQUIRED, "folder of records"),
-        CLI_STR("out", &out, CLI_REQUIRED, "response.txt to write, if its text changes"),
+        CLI_STR("records", &records, CLI_REQUIRED, "folder of the photos' records"),
+        CLI_STR("out", &out, CLI_REQUIRED, "response.txt to write; left alone if its text does not change"),
         CLI_PARAMS(fit_param_table, &params, NULL),
         CLI_END,
     };

@@ -1,4 +1,4 @@
-/* recover.h - the curve by which samples follow light, from exposures of the same places. */
+/* recover.h - recovers the response curve of a camera from bracketed exposures. */
 #ifndef REMODEL_FIT_RECOVER_H
 #define REMODEL_FIT_RECOVER_H
 
@@ -7,29 +7,31 @@
 #include "common/image/response.h"
 #include "stages/fit_response/fit_params.h"
 
-enum { RECOVER_MOST = 64 }; /* exposures of a place */
+enum { RECOVER_MAX_EXPOSURES = 64 }; /* exposures of a view; longer ones are ignored */
 
-struct place_sample {
-    int exposure; /* of its view, from 0, the shortest first */
+struct patch_sample {
+    int exposure; /* index in its view, 0 the shortest */
     double time;  /* ln of the exposure */
-    float rgb[3]; /* sample, [0, 1] */
+    float rgb[3]; /* mean sample, [0, 1]; negative: do not use */
 };
 
-struct places {
-    struct place_sample *samples; /* owned; those of a place follow each other */
-    int *counts;                  /* of each place; owned */
+/* Patches of the scene, each sampled in several exposures. */
+struct patches {
+    struct patch_sample *samples; /* grouped by patch, exposures ascending; owned */
+    int *counts;                  /* samples of each patch; owned */
     size_t count, sample_count;
 };
 
-/* Adds places of a view: on a grid, where 3 x 3 pixels are alike in the exposure that shows them best; samples are
- * their means. photos: of one size, with samples; exposures ascending. */
-enum status places_add(struct places *p, const struct photo *photos, const double *exposures, int count, int most,
-                       struct err *err);
-void places_release(struct places *p);
+/* Adds patches of a view: 3 x 3 pixels on a grid that are uniform in all exposures; samples are their means. photos: of
+ * one size, with samples; exposures ascending. Fewer than two photos or 3 x 3 pixels add nothing. ST_NOMEM. */
+enum status patches_add(struct patches *p, const struct photo *photos, const double *exposures, int count,
+                        int max_patches, struct err *err);
+void patches_release(struct patches *p);
 
-/* What params ask for. told: a sentence for the user about what was decided and why. */
-enum { RESPONSE_TOLD = 320 };
-enum status response_decide(struct response *r, char told[RESPONSE_TOLD], const struct places *p,
+/* Chooses the response curve according to params. summary: the choice and the reason, for the log. ST_DATA: the patches
+ * do not determine a curve. */
+enum { RESPONSE_SUMMARY = 320 };
+enum status response_decide(struct response *r, char summary[RESPONSE_SUMMARY], const struct patches *p,
                             const struct fit_params *params, struct err *err);
 
 #endif

@@ -1,13 +1,14 @@
-/* align.c - see align.h.
+/* align.c - finds shifts between exposures by threshold bitmaps [Ward 2003].
  *
- * Ward 2003, Fast, robust image registration for compositing high dynamic range photographs from hand-held exposures:
- * an exposure is made black and white at its own median, which is the same in the scene whatever the exposure; pixels
- * near the median do not count. Bitmaps are compared by exclusive or, 64 pixels at a time, over a pyramid: all shifts
- * at its smallest level, and at each other one the nine about twice the shift of the level above.
+ * Each exposure is thresholded at its own median, which separates the same parts of the scene at any exposure; pixels
+ * near the median are ignored. Bitmaps are compared by exclusive or, 64 pixels at a time, over a pyramid: all shifts at
+ * the smallest level, then the nine shifts around twice the result at each larger level.
  *
- * Differs in that the threshold of a pair is the quantile of 9 to 91 % that is farthest from black and white in both
- * exposures, so that exposures many stops apart can be compared; that shifts are compared by the part of the pixels
- * compared; and that a shift must explain a third of what differs without one, or there is none. */
+ * Differs from the source:
+ * - The threshold of a pair is the quantile, from 9 to 91 %, that is farthest from black and white in both exposures,
+ *   so that exposures many stops apart can be compared.
+ * - The score of a shift is the fraction of differing pixels among the compared ones, not their number.
+ * - A shift must remove at least a third of the differences; otherwise it is 0. */
 #include "stages/hdr_merge/align.h"
 
 #include <stdlib.h>
@@ -15,22 +16,28 @@
 
 #include "common/base/parallel.h"
 
-enum { LEVELS_MOST = 10, LEAST_SIDE = 48, NEAR = 3, QUANTILES = 11, LEAST_DISTANCE = 10 };
+enum {
+    MAX_LEVELS = 10,
+    MIN_SIDE = 48,    /* px, of the smallest level */
+    NEAR = 3,         /* grey levels around the threshold that are ignored */
+    QUANTILES = 11,   /* candidates for the threshold */
+    MIN_DISTANCE = 10 /* grey levels of the threshold from black and white */
+};
 
 struct grey_level {
     int width, height;
     uint8_t *grey; /* owned */
 };
 
-struct pyramid {
-    struct grey_level levels[LEVELS_MOST];
+struct grey_pyramid {
+    struct grey_level levels[MAX_LEVELS];
     uint8_t quantiles[QUANTILES]; /* of level 0 */
-    bool no_memory;
+    bool out_of_memory;
 };
 
 struct bitmap {
     int width, height, words; /* a row */
-    uint64_t *above, *sure;   /* owned */
+    uint64_t *above, *valid;  /* above the threshold; not near it; owned */
 };
 
 /* ------------------------------------------------------------------------------------------------------- pyramids */
@@ -39,7 +46,7 @@ static void grey_samples(uint8_t *to, const struct photo *p, size_t pixels)
 {
     if (p->values) {
         const float white = p->saturation > 0 ? p->saturation : 1;
-        for (size_t i = 0; i < pixels; i++) { /* a root is a tone curve that keeps the order */
+        for (size_t i = 0; i < pixels; i++) { /* any monotone tone curve will do */
             const float *v = p->values + 3 * i, light = (0.25f * v[0] + 0.625f * v[1] + 0.125f * v[2]) / white;
             to[i] = (uint8_t)(255 * srgb_from_linear(light));
         }
@@ -80,7 +87,7 @@ static bool halve(struct grey_level *to, const struct grey_level *from)
 
 struct pyramid_job {
     const struct brackets *b;
-    struct pyramid *pyramids;
+    struct grey_pyramid *pyramids;
     int levels;
 };
 
@@ -89,15 +96,16 @@ static void make_pyramids(void *ctx, size_t begin, size_t end, int thread)
     const struct pyramid_job *job = ctx;
     (void)thread;
     for (size_t k = begin; k < end; k++) {
-        struct pyramid *p = &job->pyramids[k];
+        struct grey_pyramid *p = &job->pyramids[k];
         const struct photo_info *info = &job->b->photos[k].info;
         const size_t pixels = (size_t)info->width * (size_t)info->height;
         p->levels[0] = (struct grey_level){info->width, info->height, malloc(pixels)};
-        p->no_memory = !p->levels[0].grey;
-        if (p->no_memory) continue;
+        p->out_of_memory = !p->levels[0].grey;
+        if (p->out_of_memory) continue;
         grey_samples(p->levels[0].grey, &job->b->photos[k], pixels);
         find_quantiles(p->quantiles, &p->levels[0]);
-        for (int l = 1; l < job->levels && !p->no_memory; l++) p->no_memory = !halve(&p->levels[l], &p->levels[l - 1]);
+        for (int l = 1; l < job->levels && !p->out_of_memory; l++)
+            p->out_of_memory = !halve(&p->levels[l], &p->levels[l - 1]);
     }
 }
 
@@ -108,20 +116,20 @@ static enum status make_bitmap(struct bitmap *m, const struct grey_level *l, int
     *m = (struct bitmap){.width = l->width, .height = l->height, .words = (l->width + 63) / 64};
     const size_t words = (size_t)m->words * (size_t)m->height;
     m->above = calloc(words, sizeof *m->above);
-    m->sure = calloc(words, sizeof *m->sure);
-    if (!m->above || !m->sure) return err_nomem(err, "bitmaps", 2 * words * sizeof *m->above);
+    m->valid = calloc(words, sizeof *m->valid);
+    if (!m->above || !m->valid) return err_nomem(err, "bitmaps", 2 * words * sizeof *m->above);
     for (int y = 0; y < l->height; y++) {
         const uint8_t *row = l->grey + (size_t)y * (size_t)l->width;
         for (int w = 0; w < m->words; w++) {
             const int begin = 64 * w, n = l->width - begin < 64 ? l->width - begin : 64;
-            uint64_t above = 0, sure = 0;
+            uint64_t above = 0, valid = 0;
             for (int i = 0; i < n; i++) {
                 const int v = row[begin + i];
                 above |= (uint64_t)(v > threshold) << i;
-                sure |= (uint64_t)(v > threshold + NEAR || v < threshold - NEAR) << i;
+                valid |= (uint64_t)(v > threshold + NEAR || v < threshold - NEAR) << i;
             }
             m->above[(size_t)y * (size_t)m->words + (size_t)w] = above;
-            m->sure[(size_t)y * (size_t)m->words + (size_t)w] = sure;
+            m->valid[(size_t)y * (size_t)m->words + (size_t)w] = valid;
         }
     }
     return ST_OK;
@@ -130,10 +138,10 @@ static enum status make_bitmap(struct bitmap *m, const struct grey_level *l, int
 static void release_bitmap(struct bitmap *m)
 {
     free(m->above);
-    free(m->sure);
+    free(m->valid);
 }
 
-/* 64 bits of a row from the bit `at` on; 0 outside. */
+/* 64 bits of a row, beginning with bit `at`; bits outside the row are 0. */
 static inline uint64_t bits_from(const uint64_t *row, int words, int at)
 {
     const int word = at >> 6, bit = at & 63;
@@ -143,18 +151,18 @@ static inline uint64_t bits_from(const uint64_t *row, int words, int at)
     return low >> bit | high << (64 - bit);
 }
 
-/* The part of the compared pixels that differ when b's (x + dx, y + dy) is laid on a's (x, y). */
+/* The fraction of compared pixels that differ when pixel (x + dx, y + dy) of b is laid on (x, y) of a. */
 static double difference(const struct bitmap *a, const struct bitmap *b, int dx, int dy)
 {
     size_t differ = 0, compared = 0;
     for (int y = dy < 0 ? -dy : 0; y < a->height && y + dy < b->height; y++) {
-        const uint64_t *aa = a->above + (size_t)y * (size_t)a->words, *as = a->sure + (size_t)y * (size_t)a->words;
+        const uint64_t *aa = a->above + (size_t)y * (size_t)a->words, *as = a->valid + (size_t)y * (size_t)a->words;
         const uint64_t *ba = b->above + (size_t)(y + dy) * (size_t)b->words,
-                       *bs = b->sure + (size_t)(y + dy) * (size_t)b->words;
+                       *bs = b->valid + (size_t)(y + dy) * (size_t)b->words;
         for (int w = 0; w < a->words; w++) {
-            const uint64_t sure = as[w] & bits_from(bs, b->words, 64 * w + dx);
-            compared += (size_t)__builtin_popcountll(sure);
-            differ += (size_t)__builtin_popcountll(sure & (aa[w] ^ bits_from(ba, b->words, 64 * w + dx)));
+            const uint64_t valid = as[w] & bits_from(bs, b->words, 64 * w + dx);
+            compared += (size_t)__builtin_popcountll(valid);
+            differ += (size_t)__builtin_popcountll(valid & (aa[w] ^ bits_from(ba, b->words, 64 * w + dx)));
         }
     }
     return compared > 0 ? (double)differ / (double)compared : 1;
@@ -162,33 +170,34 @@ static double difference(const struct bitmap *a, const struct bitmap *b, int dx,
 
 /* ---------------------------------------------------------------------------------------------------------- pairs */
 
-static int farness(int v) { return v < 255 - v ? v : 255 - v; }
+/* Distance of a grey level from black and white. */
+static int distance_to_ends(int v) { return v < 255 - v ? v : 255 - v; }
 
 struct pair_job {
-    const struct pyramid *fixed, *moved;
-    int levels, most_shift;
+    const struct grey_pyramid *fixed, *moved;
+    int levels, max_shift;
     struct shift shift; /* of moved against fixed */
-    bool told;
+    bool found;
     struct err err;
 };
 
-static enum status compare_at(struct pair_job *p, int level, int quantile, double *least, double *unmoved)
+static enum status compare_at(struct pair_job *p, int level, int quantile, double *min, double *unmoved)
 {
     struct bitmap a = {0}, b = {0};
     enum status st = make_bitmap(&a, &p->fixed->levels[level], p->fixed->quantiles[quantile], &p->err);
     if (!st) st = make_bitmap(&b, &p->moved->levels[level], p->moved->quantiles[quantile], &p->err);
-    /* all shifts at the smallest level, then the nine about twice the one above; the middle one first: of equals it
-     * stays */
-    const int most = p->most_shift >> level, reach = level == p->levels - 1 ? (most > 1 ? most : 1) : 1;
+    /* all shifts at the smallest level, then the nine around twice the level above's; the centre first, so that it wins
+     * ties */
+    const int limit = p->max_shift >> level, reach = level == p->levels - 1 ? (limit > 1 ? limit : 1) : 1;
     const struct shift centre = {2 * p->shift.dx, 2 * p->shift.dy};
     struct shift best = centre;
-    if (!st) *least = difference(&a, &b, centre.dx, centre.dy);
+    if (!st) *min = difference(&a, &b, centre.dx, centre.dy);
     for (int j = -reach; !st && j <= reach; j++)
         for (int i = -reach; i <= reach; i++) {
             const int dx = centre.dx + i, dy = centre.dy + j;
-            if ((!i && !j) || abs(dx) > most || abs(dy) > most) continue;
+            if ((!i && !j) || abs(dx) > limit || abs(dy) > limit) continue;
             const double d = difference(&a, &b, dx, dy);
-            if (d < *least) *least = d, best = (struct shift){dx, dy};
+            if (d < *min) *min = d, best = (struct shift){dx, dy};
         }
     if (!st) *unmoved = difference(&a, &b, 0, 0);
     p->shift = best;
@@ -199,18 +208,20 @@ static enum status compare_at(struct pair_job *p, int level, int quantile, doubl
 
 static void find_shift(struct pair_job *p)
 {
-    const double must_explain = 1.0 / 3;
+    const double min_reduction = 1.0 / 3;
     int quantile = 0, farthest = -1;
     for (int q = 0; q < QUANTILES; q++) {
-        const int a = farness(p->fixed->quantiles[q]), b = farness(p->moved->quantiles[q]), least = a < b ? a : b;
-        if (least > farthest) farthest = least, quantile = q;
+        const int a = distance_to_ends(p->fixed->quantiles[q]), b = distance_to_ends(p->moved->quantiles[q]),
+                  distance = a < b ? a : b;
+        if (distance > farthest) farthest = distance, quantile = q;
     }
-    if (farthest < LEAST_DISTANCE) return; /* one is white where the other is not black yet */
-    double least = 1, unmoved = 0;
+    if (farthest < MIN_DISTANCE)
+        return; /* no threshold separates both: one is nearly white wherever the other is not black */
+    double min = 1, unmoved = 0;
     for (int l = p->levels - 1; l >= 0; l--)
-        if (compare_at(p, l, quantile, &least, &unmoved)) return;
-    p->told = unmoved < 1;
-    if (!(least < (1 - must_explain) * unmoved)) p->shift = (struct shift){0, 0};
+        if (compare_at(p, l, quantile, &min, &unmoved)) return;
+    p->found = unmoved < 1;
+    if (!(min < (1 - min_reduction) * unmoved)) p->shift = (struct shift){0, 0};
 }
 
 static void find_shifts(void *ctx, size_t begin, size_t end, int thread)
@@ -220,32 +231,32 @@ static void find_shifts(void *ctx, size_t begin, size_t end, int thread)
     for (size_t i = begin; i < end; i++) find_shift(&pairs[i]);
 }
 
-static int count_levels(const struct photo_info *info, int most_shift)
+static int count_levels(const struct photo_info *info, int max_shift)
 {
     const int side = info->width < info->height ? info->width : info->height;
     int levels = 1;
-    while (levels < LEVELS_MOST && 1 << levels <= most_shift && side >> levels >= LEAST_SIDE) levels++;
+    while (levels < MAX_LEVELS && 1 << levels <= max_shift && side >> levels >= MIN_SIDE) levels++;
     return levels;
 }
 
-enum status align_brackets(struct alignment *a, const struct brackets *b, int middle, int most_shift, struct err *err)
+enum status align_brackets(struct alignment *a, const struct brackets *b, int middle, int max_shift, struct err *err)
 {
     *a = (struct alignment){0};
-    a->told[middle] = true;
+    a->found[middle] = true;
     if (b->count < 2) return ST_OK;
-    struct pyramid *pyramids = calloc((size_t)b->count, sizeof *pyramids);
-    struct pair_job *pairs = calloc((size_t)b->count, sizeof *pairs); /* k: exposure k against its neighbour */
-    struct pyramid_job job = {b, pyramids, count_levels(&b->photos[0].info, most_shift)};
+    struct grey_pyramid *pyramids = calloc((size_t)b->count, sizeof *pyramids);
+    struct pair_job *pairs = calloc((size_t)b->count, sizeof *pairs); /* pair k: exposure k and its neighbour */
+    struct pyramid_job job = {b, pyramids, count_levels(&b->photos[0].info, max_shift)};
     enum status st = pyramids && pairs ? ST_OK : err_nomem(err, "pyramids", (size_t)b->count * sizeof *pyramids);
     if (!st) parallel_for((size_t)b->count, 1, make_pyramids, &job);
     for (int k = 0; !st && k < b->count; k++) {
-        if (pyramids[k].no_memory) st = err_nomem(err, "pyramids", 0);
+        if (pyramids[k].out_of_memory) st = err_nomem(err, "pyramids", 0);
         pairs[k] = (struct pair_job){.fixed = &pyramids[k < middle   ? k + 1
                                                         : k > middle ? k - 1
                                                                      : k],
                                      .moved = &pyramids[k],
                                      .levels = job.levels,
-                                     .most_shift = most_shift,
+                                     .max_shift = max_shift,
                                      .err = ERR_INIT};
     }
     if (!st) parallel_for((size_t)b->count, 1, find_shifts, pairs);
@@ -254,13 +265,13 @@ enum status align_brackets(struct alignment *a, const struct brackets *b, int mi
             const int k = middle + side * step, before = k - side;
             if (k < 0 || k >= b->count) continue;
             if (pairs[k].err.status) st = err_set(err, pairs[k].err.status, "%s", pairs[k].err.text);
-            a->told[k] = pairs[k].told;
-            a->at_limit[k] = abs(pairs[k].shift.dx) == most_shift || abs(pairs[k].shift.dy) == most_shift;
+            a->found[k] = pairs[k].found;
+            a->at_limit[k] = abs(pairs[k].shift.dx) == max_shift || abs(pairs[k].shift.dy) == max_shift;
             a->shifts[k] =
                 (struct shift){a->shifts[before].dx + pairs[k].shift.dx, a->shifts[before].dy + pairs[k].shift.dy};
         }
     for (int k = 0; pyramids && k < b->count; k++)
-        for (int l = 0; l < LEVELS_MOST; l++) free(pyramids[k].levels[l].grey);
+        for (int l = 0; l < MAX_LEVELS; l++) free(pyramids[k].levels[l].grey);
     free(pyramids);
     free(pairs);
     return st;

@@ -1,4 +1,4 @@
-/* align.h - small shifts between the exposures of a view: whole pixels, found by median threshold bitmaps. */
+/* align.h - finds shifts between the exposures of a view, in whole pixels. */
 #ifndef REMODEL_HDR_ALIGN_H
 #define REMODEL_HDR_ALIGN_H
 
@@ -6,11 +6,11 @@
 
 struct alignment {
     struct shift shifts[MERGE_MOST]; /* against the middle exposure */
-    bool told[MERGE_MOST];           /* else the exposure has too little to go by, and its shift is its neighbour's */
-    bool at_limit[MERGE_MOST];       /* the shift may be larger */
+    bool found[MERGE_MOST];          /* false: too little contrast to compare; the shift is the neighbour's */
+    bool at_limit[MERGE_MOST];       /* against the neighbour the shift is max_shift, the largest searched */
 };
 
-/* b->shifts are not looked at. Each exposure is compared with its neighbour towards `middle`. */
-enum status align_brackets(struct alignment *a, const struct brackets *b, int middle, int most_shift, struct err *err);
+/* Compares each exposure with its neighbour towards `middle` and adds up the shifts. Ignores b->shifts. ST_NOMEM. */
+enum status align_brackets(struct alignment *a, const struct brackets *b, int middle, int max_shift, struct err *err);
 
 #endif

@@ -1,4 +1,4 @@
-/* bracketed_view.c - see bracketed_view.h. */
+/* bracketed_view.c - reads, merges and writes a view of several exposures. */
 #include "stages/hdr_merge/bracketed_view.h"
 
 #include <math.h>
@@ -15,9 +15,9 @@
 #include "common/image/exr.h"
 #include "stages/hdr_merge/tone.h"
 
-#define LARGEST_HALF 65504.0f
+#define MAX_HALF 65504.0f
 
-enum { QUALITY = 95 };
+enum { QUALITY = 95 }; /* of JPEGs */
 
 /* The caller frees it. */
 static enum status join(char **path, const char *folder, const char *name, const char *ending, struct err *err)
@@ -27,7 +27,7 @@ static enum status join(char **path, const char *folder, const char *name, const
     return err_nomem(err, "a file name", strlen(folder) + strlen(name));
 }
 
-struct read_job {
+struct photo_job {
     struct photo *photos;
     char *paths[MERGE_MOST];
     struct err errs[MERGE_MOST];
@@ -35,7 +35,7 @@ struct read_job {
 
 static void read_some(void *ctx, size_t begin, size_t end, int thread)
 {
-    struct read_job *job = ctx;
+    struct photo_job *job = ctx;
     (void)thread;
     for (size_t i = begin; i < end; i++) photo_read_any(&job->photos[i], job->paths[i], &job->errs[i]);
 }
@@ -43,7 +43,7 @@ static void read_some(void *ctx, size_t begin, size_t end, int thread)
 static enum status read_photos(struct bracketed_view *v, const char *photos, struct provenance *prov, struct err *err)
 {
     const int count = v->record.bracket_count;
-    struct read_job *job = calloc(1, sizeof *job);
+    struct photo_job *job = calloc(1, sizeof *job);
     enum status st = job ? ST_OK : err_nomem(err, "photos", sizeof *job);
     for (int i = 0; !st && i < count; i++) st = join(&job->paths[i], photos, v->record.brackets[i].file, "", err);
     if (!st) {
@@ -70,10 +70,12 @@ enum status bracketed_view_read(struct bracketed_view *v, const char *id, const 
     char *path = NULL, *input = NULL;
     enum status st = photo_record_read(&v->record, records, id, err);
     if (!st && !v->record.bracket_count)
-        st =
-            err_set(err, ST_DATA, "%s/%s.txt is the record of a single photo; there is nothing to merge.", records, id);
+        st = err_set(err, ST_DATA,
+                     "%s/%s.txt is the record of a single photo, wanted that of a view of several exposures; run "
+                     "import_photos again.",
+                     records, id);
     if (!st && v->record.bracket_count > MERGE_MOST)
-        st = err_set(err, ST_DATA, "view %s has %d exposures, wanted at most %d; leave some out (EXCLUDE).", id,
+        st = err_set(err, ST_DATA, "view %s has %d exposures, wanted at most %d; exclude some of them (EXCLUDE).", id,
                      v->record.bracket_count, (int)MERGE_MOST);
     if (!st)
         st = join(&path, records, id, ".txt", err) || join(&input, "photos", id, ".txt", err) ? err->status : ST_OK;
@@ -113,7 +115,7 @@ enum status bracketed_view_place(struct bracketed_view *v, bool *known, const ch
     return st;
 }
 
-/* Noise as it is measured holds for all exposures; what is given is for each photo's own steps. */
+/* Measured noise applies to all exposures; given noise includes the quantization of each photo's bits. */
 static enum status find_noise(struct bracketed_view *v, const struct merge_params *params, struct err *err)
 {
     struct noise measured;
@@ -124,30 +126,30 @@ static enum status find_noise(struct bracketed_view *v, const struct merge_param
     return ST_OK;
 }
 
-/* Linear light needs exposures and a curve that are true; photos tell whether they are. */
+/* Compares the stated exposures with the photos. Wrong exposures or a wrong response give wrong radiance. */
 static enum status check_agreement(struct bracketed_view *v, const struct merge_params *params, struct err *err)
 {
-    const double most = 1.15; /* JPEG, noise and clipped colours move it by a few percent */
+    const double tolerance = 1.15; /* JPEG, noise and clipped colours change it by a few percent */
     const struct exposure_agreement *a = &v->agreement;
     const struct photo_record *r = &v->record;
-    struct brackets aligned = v->brackets; /* light is compared where it is, even if shifts are only told */
+    struct brackets aligned = v->brackets; /* compare aligned, even if shifts are only reported */
     if (strcmp(params->align, "no")) aligned.shifts = v->alignment.shifts;
     if (merge_agreement(&v->agreement, &aligned, err)) return err->status;
-    const double off = fmax(a->seen / a->stated, a->stated / a->seen);
-    v->agree = off <= most;
-    if (!a->pair || off <= params->most_disagreement) return ST_OK;
+    const double off = fmax(a->measured / a->stated, a->stated / a->measured);
+    v->agree = off <= tolerance;
+    if (!a->pair || off <= params->max_disagreement) return ST_OK;
     return err_set(err, ST_DATA,
-                   "%s should have %.3g times the light of %s, but shows %.3g times as much; their exposures "
-                   "cannot be what EXIF or exposures.txt states, or they are not of one view. Correct exposures.txt or "
-                   "brackets.txt, or leave one out (EXCLUDE); [hdr_merge] most_disagreement says what is taken.",
-                   r->brackets[a->pair].file, a->stated, r->brackets[a->pair - 1].file, a->seen);
+                   "%s should have %.3g times the light of %s, but shows %.3g times as much; the exposures in EXIF or "
+                   "exposures.txt are wrong, or the photos are not of one view. Correct exposures.txt or brackets.txt, "
+                   "exclude one of the photos (EXCLUDE), or raise [hdr_merge] max_disagreement.",
+                   r->brackets[a->pair].file, a->stated, r->brackets[a->pair - 1].file, a->measured);
 }
 
 enum status bracketed_view_merge(struct bracketed_view *v, const struct merge_params *params, struct err *err)
 {
     enum status st = ST_OK;
     if (strcmp(params->align, "no"))
-        st = align_brackets(&v->alignment, &v->brackets, v->record.middle, params->most_shift, err);
+        st = align_brackets(&v->alignment, &v->brackets, v->record.middle, params->max_shift, err);
     if (!strcmp(params->align, "correct")) v->brackets.shifts = v->alignment.shifts;
     if (!st) st = check_agreement(v, params, err);
     if (!st) st = find_noise(v, params, err);
@@ -241,8 +243,8 @@ static enum status set_attributes(struct exr_image *im, const struct bracketed_v
     return st;
 }
 
-/* The lens as in lenses.txt, and the pose as a view's. */
-static enum status set_place(struct exr_image *im, const struct bracketed_view *v, struct err *err)
+/* Writes the lens as in lenses.txt, and the pose as a view's. */
+static enum status set_camera(struct exr_image *im, const struct bracketed_view *v, struct err *err)
 {
     const struct camera *c = &v->lens;
     const struct pose *p = &v->cam_from_world;
@@ -256,7 +258,7 @@ static enum status set_place(struct exr_image *im, const struct bracketed_view *
     return exr_set_attribute(im, "remodel:lens", text, err);
 }
 
-/* Eight binary digits: noise is not known better, and the rest would not be compressed. */
+/* Rounds to eight binary digits: noise is not known more precisely, and the rest would not compress. */
 static float rounded(float v)
 {
     uint32_t bits;
@@ -267,7 +269,7 @@ static float rounded(float v)
 }
 
 enum status bracketed_view_write_radiance(const struct bracketed_view *v, const char *out,
-                                          const struct provenance *prov, size_t *beyond, struct err *err)
+                                          const struct provenance *prov, size_t *clamped, struct err *err)
 {
     static const char *const names[] = {"R", "G", "B"};
     struct exr_image im = {0};
@@ -275,19 +277,19 @@ enum status bracketed_view_write_radiance(const struct bracketed_view *v, const 
     char *path = NULL;
     const struct image *radiance = &v->merged.radiance;
     size_t pixels = (size_t)radiance->width * (size_t)radiance->height;
-    *beyond = 0;
+    *clamped = 0;
     enum status st = join(&path, out, v->record.id, ".exr", err);
     if (!st) st = exr_image_init(&im, radiance->width, radiance->height, err);
     for (size_t c = 0; !st && c < 3; c++) {
         st = exr_add_plane(&im, names[c], EXR_HALF, &plane, err);
-        for (size_t i = 0; !st && i < pixels; i++) *beyond += (plane->f[i] = radiance->data[3 * i + c]) > LARGEST_HALF;
+        for (size_t i = 0; !st && i < pixels; i++) *clamped += (plane->f[i] = radiance->data[3 * i + c]) > MAX_HALF;
     }
     if (!st) st = exr_add_plane(&im, "clipped", EXR_UINT, &plane, err);
     for (size_t i = 0; !st && i < pixels; i++) plane->u[i] = v->merged.marks[i];
     if (!st) st = exr_add_plane(&im, "variance", EXR_FLOAT, &plane, err);
     for (size_t i = 0; !st && i < pixels; i++) plane->f[i] = rounded(v->merged.variance[i]);
     if (!st) st = set_attributes(&im, v, err);
-    if (!st) st = set_place(&im, v, err);
+    if (!st) st = set_camera(&im, v, err);
     if (!st) st = exr_write(&im, path, prov, err);
     exr_image_release(&im);
     free(path);

@@ -1,27 +1,26 @@
-/* merge.c - weighted mean of exposures in linear radiance.
+/* merge.c - merges exposures into linear radiance by a weighted mean [Debevec 1997].
  *
- * A sample v (linear, 1 is white) of exposure t estimates the radiance x as v / t. Its noise (noise.h) has a part that
- * grows with the light and a part that does not: var(v) = photon v + read^2. The best weight of v / t is 1 / var(v / t)
- * = t^2 / (photon t x + read^2).
+ * A sample v (linear, 1 is white) at exposure t estimates the radiance x as v / t. Its noise (noise.h) has a part
+ * proportional to the light and a constant part: var(v) = photon v + read^2. The optimal weight of v / t is the inverse
+ * of its variance, 1 / var(v / t) = t^2 / (photon t x + read^2).
  *
- * Weights taken from the noisy samples themselves would pull the mean towards the samples that happen to look sure. So
- * there are two rounds: the first has weights t, for which the mean is sum(v) / sum(t), nearly the best already; the
- * second takes all that weights depend on from what the first predicts, t x. (Where photos do not keep to the curve the
- * two disagree: a sample that looks saturated itself is never trusted more than it looks, so that the result has no
- * steps.)
+ * Weights computed from the noisy samples themselves would bias the mean. So there are two rounds. The first has
+ * weights t, for which the mean is sum(v) / sum(t), already nearly optimal. The second computes noise, saturation and
+ * darkness from the prediction t x of the first. (If photos do not follow the curve, the two disagree. The weight for
+ * saturation is then the smaller of those of sample and prediction, so that the result has no steps.)
  *
- * Saturation counts for the pixel: where one colour saturates, JPEG's shared colour channels spoil the others too. A
- * pixel that has a saturated colour in every exposure is merged colour by colour. What is then left without weight
- * takes the exposure that knows most: the shortest if all saturate (a lower bound), else the longest that does not
- * saturate, but no less than the saturated ones say. Both are marked.
+ * Saturation applies to the whole pixel: if one colour saturates, JPEG's chroma channels spoil the others. A pixel with
+ * a saturated colour in every exposure is merged per colour. A colour that still has no weight is taken from one
+ * exposure: the shortest if all saturate (a lower bound), otherwise the longest that does not saturate, but no less
+ * than the bound of the saturated ones. Both cases are marked.
  *
- * With weights w the mean sum(w v) / sum(w t) has the variance sum(w^2 var(v)) / sum(w t)^2.
+ * With weights w, the mean sum(w v) / sum(w t) has the variance sum(w^2 var(v)) / sum(w t)^2.
  *
- * Differs from Debevec and Malik 1997 (hat weights on the samples' own values, logarithmic mean) in that weights follow
+ * Differs from the source, which has hat weights on the samples' own values and a logarithmic mean: weights follow
  * noise and prediction, and the mean is of radiance, which has no bias towards dark samples.
  *
- * Blocks of pixels go through plain loops over planes, which the compiler turns into AVX2; pixels that are merged
- * colour by colour, or have a colour without weight, are then done one by one. */
+ * Blocks of pixels are processed in plain loops over planes, which the compiler vectorizes; pixels that are merged per
+ * colour or have a colour without weight are then done one by one. */
 #include "stages/hdr_merge/merge.h"
 
 #include <math.h>
@@ -31,19 +30,20 @@
 #include "common/base/parallel.h"
 
 #define PARAM_STRUCT struct merge_params
-const struct param merge_param_table[] = {MERGE_PARAMS(PARAM_ROW) PARAM_END};
+const struct param merge_param_table[] = {MERGE_PARAMS(PARAM_ROW) PARAM_RENAMED(most_shift, max_shift)
+                                              PARAM_RENAMED(most_disagreement, max_disagreement) PARAM_END};
 #undef PARAM_STRUCT
 
 enum { ROWS = 8, BLOCK = 64 };
 
 static const float SATURATED_FROM = 0.8f; /* of `saturated`: the weight falls from here */
 static const float DARK_UNTIL = 3;        /* of `dark`: the weight rises to here */
-static const float ABSENT = -1;           /* the exposure does not show this place */
+static const float ABSENT = -1;           /* the shifted exposure does not cover this pixel */
 static const float luma[3] = {0.2126f, 0.7152f, 0.0722f};
 
-struct exposure_job { /* one exposure */
+struct exposure_job {
     const uint16_t *samples;
-    const float *values;    /* in place of samples: linear already */
+    const float *values;    /* instead of samples: linear already */
     const float *tables[3]; /* linear value of a sample */
     float t;
     int dx, dy;
@@ -52,7 +52,7 @@ struct exposure_job { /* one exposure */
     float photon, read2;
 };
 
-struct merge {
+struct merge_job {
     struct merged *out;
     struct exposure_job exposures[MERGE_MOST]; /* ascending in t */
     int count;
@@ -67,20 +67,21 @@ static inline float clamp01(float v)
 static inline float larger(float a, float b) { return a > b ? a : b; }
 static inline float smaller(float a, float b) { return a < b ? a : b; }
 
-/* 0 also for what is absent */
+/* Weight for saturation, 0 to 1; 0 for ABSENT. */
 static inline float trust(const struct exposure_job *e, float v)
 {
     return v < 0 ? 0 : clamp01((e->saturated - v) * e->falling);
 }
 
+/* Weight for darkness, 0 to 1. */
 static inline float clarity(const struct exposure_job *e, float v) { return clamp01((v - e->dark) * e->rising); }
 
 /* ------------------------------------------------------------------------------------------------- pixel by pixel */
 
-/* A colour that no weighted sample tells; v: that colour in every exposure. */
-static float bound(const struct merge *m, const float *v, int c, uint8_t *mark)
+/* A colour that has no weight in any exposure; v: the samples of the pixel. */
+static float bound(const struct merge_job *m, const float *v, int c, uint8_t *mark)
 {
-    int known = -1, shortest = -1; /* the longest exposure that does not saturate; the shortest that is there */
+    int known = -1, shortest = -1; /* the longest exposure that does not saturate; the shortest that covers the pixel */
     for (int k = m->count - 1; k >= 0; k--) {
         if (v[3 * k + c] < 0) continue;
         shortest = k;
@@ -96,7 +97,7 @@ static float bound(const struct merge *m, const float *v, int c, uint8_t *mark)
     return x;
 }
 
-static void merge_colours(const struct merge *m, const float *v, float rgb[3], float variance[3], uint8_t *mark)
+static void merge_colours(const struct merge_job *m, const float *v, float rgb[3], float variance[3], uint8_t *mark)
 {
     for (int c = 0; c < 3; c++) {
         float sum = 0, times = 0, weighted = 0, weights = 0, squares = 0;
@@ -124,7 +125,7 @@ static void merge_colours(const struct merge *m, const float *v, float rgb[3], f
 
 typedef float plane[BLOCK];
 
-/* The samples of an exposure for n pixels of a row from (x, y) on. */
+/* Loads the samples of an exposure for n pixels of a row, from (x, y) on. */
 static void load(plane to[3], const struct exposure_job *e, int width, int height, int x, int y, int n)
 {
     const int sx = x + e->dx, sy = y + e->dy;
@@ -149,8 +150,8 @@ static void load(plane to[3], const struct exposure_job *e, int width, int heigh
     }
 }
 
-/* The first round: what the second predicts exposures from; times 0 where every exposure saturates. */
-static void first_round(const struct merge *m, plane (*const v)[3], plane first[3], plane most_first, plane times,
+/* The first round: the radiance for predictions, and its largest colour. times is 0 where every exposure saturates. */
+static void first_round(const struct merge_job *m, plane (*const v)[3], plane first[3], plane max_first, plane times,
                         int n)
 {
     for (int i = 0; i < n; i++) times[i] = 0;
@@ -161,8 +162,8 @@ static void first_round(const struct merge *m, plane (*const v)[3], plane first[
         const float saturated = e->saturated, falling = e->falling, t = e->t;
         const float *r = v[k][0], *g = v[k][1], *b = v[k][2];
         for (int i = 0; i < n; i++) {
-            const float most = larger(r[i], larger(g[i], b[i]));
-            const float trusted = clamp01((saturated - most) * falling), w = most < 0 ? 0 : trusted;
+            const float max = larger(r[i], larger(g[i], b[i]));
+            const float trusted = clamp01((saturated - max) * falling), w = max < 0 ? 0 : trusted;
             first[0][i] += w * r[i];
             first[1][i] += w * g[i];
             first[2][i] += w * b[i];
@@ -174,16 +175,16 @@ static void first_round(const struct merge *m, plane (*const v)[3], plane first[
         first[0][i] *= per_time;
         first[1][i] *= per_time;
         first[2][i] *= per_time;
-        most_first[i] = larger(first[0][i], larger(first[1][i], first[2][i]));
+        max_first[i] = larger(first[0][i], larger(first[1][i], first[2][i]));
     }
 }
 
-struct sums { /* of a colour */
+struct colour_sums { /* of a colour */
     plane weighted, weights, squares;
 };
 
-static void second_round(const struct merge *m, plane (*const v)[3], plane first[3], const float *most_first,
-                         struct sums sums[3], int n)
+static void second_round(const struct merge_job *m, plane (*const v)[3], plane first[3], const float *max_first,
+                         struct colour_sums sums[3], int n)
 {
     plane shared, clear;
     for (int c = 0; c < 3; c++)
@@ -192,15 +193,15 @@ static void second_round(const struct merge *m, plane (*const v)[3], plane first
         const struct exposure_job e = m->exposures[k];
         const float *r = v[k][0], *g = v[k][1], *b = v[k][2];
         for (int i = 0; i < n; i++) {
-            const float most = larger(r[i], larger(g[i], b[i]));
-            const float seen = clamp01((e.saturated - most) * e.falling),
-                        meant = clamp01((e.saturated - e.t * most_first[i]) * e.falling);
-            shared[i] = most < 0 ? 0 : smaller(seen, meant);
+            const float max = larger(r[i], larger(g[i], b[i]));
+            const float measured = clamp01((e.saturated - max) * e.falling),
+                        predicted = clamp01((e.saturated - e.t * max_first[i]) * e.falling);
+            shared[i] = max < 0 ? 0 : smaller(measured, predicted);
         }
         for (int c = 0; c < 3; c++) {
             const float *s = v[k][c], *x = first[c];
             float *weighted = sums[c].weighted, *weights = sums[c].weights, *squares = sums[c].squares;
-            /* a loop of its own: the compiler would part the other one by the cases of the clamp */
+            /* a separate loop: inside the next one the clamp would prevent vectorization */
             for (int i = 0; i < n; i++) clear[i] = clamp01((e.t * x[i] - e.dark) * e.rising);
             for (int i = 0; i < n; i++) {
                 const float trusted = shared[i] * clear[i] * e.t, w = trusted / (e.photon * (e.t * x[i]) + e.read2);
@@ -225,14 +226,14 @@ static float relative_variance(const float rgb[3], const float variance[3], uint
     return v > 1e-12f ? v : 1e-12f;
 }
 
-static void merge_block(const struct merge *m, int x, int y, int n)
+static void merge_block(const struct merge_job *m, int x, int y, int n)
 {
-    plane v[MERGE_MOST][3], first[3], most_first, times;
-    struct sums sums[3];
+    plane v[MERGE_MOST][3], first[3], max_first, times;
+    struct colour_sums sums[3];
     const int width = m->out->radiance.width, height = m->out->radiance.height;
     for (int k = 0; k < m->count; k++) load(v[k], &m->exposures[k], width, height, x, y, n);
-    first_round(m, v, first, most_first, times, n);
-    second_round(m, v, first, most_first, sums, n);
+    first_round(m, v, first, max_first, times, n);
+    second_round(m, v, first, max_first, sums, n);
     const size_t at = (size_t)y * (size_t)width + (size_t)x;
     for (int i = 0; i < n; i++) {
         float rgb[3], variance[3];
@@ -244,13 +245,13 @@ static void merge_block(const struct merge *m, int x, int y, int n)
                 variance[c] = weights > 0 ? sums[c].squares[i] / (weights * weights) : 0;
             }
         }
-        const bool untold = !(times[i] > 0);
+        const bool saturated = !(times[i] > 0);
         float pixel[3 * MERGE_MOST];
-        if (untold || !(sums[0].weights[i] > 0) || !(sums[1].weights[i] > 0) || !(sums[2].weights[i] > 0)) {
+        if (saturated || !(sums[0].weights[i] > 0) || !(sums[1].weights[i] > 0) || !(sums[2].weights[i] > 0)) {
             for (int k = 0; k < m->count; k++)
                 for (int c = 0; c < 3; c++) pixel[3 * k + c] = v[k][c][i];
-            if (untold) merge_colours(m, pixel, rgb, variance, &mark);
-            for (int c = 0; !untold && c < 3; c++)
+            if (saturated) merge_colours(m, pixel, rgb, variance, &mark);
+            for (int c = 0; !saturated && c < 3; c++)
                 if (!(sums[c].weights[i] > 0)) {
                     rgb[c] = bound(m, pixel, c, &mark);
                     variance[c] = rgb[c] * rgb[c];
@@ -264,7 +265,7 @@ static void merge_block(const struct merge *m, int x, int y, int n)
 
 static void merge_rows(void *ctx, size_t begin, size_t end, int thread)
 {
-    const struct merge *m = ctx;
+    const struct merge_job *m = ctx;
     const int width = m->out->radiance.width;
     (void)thread;
     for (size_t y = begin; y < end; y++)
@@ -280,28 +281,27 @@ static enum status check(const struct brackets *b, struct err *err)
     for (int k = 0; k < b->count; k++) {
         const struct photo_info *info = &b->photos[k].info, *first = &b->photos[0].info;
         if (info->width != first->width || info->height != first->height)
-            return err_set(
-                err, ST_DATA,
-                "exposure %d has %d x %d pixels, but the first one %d x %d; the exposures of a view have one "
-                "size.",
-                k + 1, info->width, info->height, first->width, first->height);
+            return err_set(err, ST_DATA,
+                           "exposure %d has %d x %d pixels, but the first one %d x %d; the exposures of a view must "
+                           "have one size.",
+                           k + 1, info->width, info->height, first->width, first->height);
         if (!(b->exposures[k] >= 1e-12 && b->exposures[k] <= 1e12))
             return err_set(err, ST_DATA,
-                           "exposure %d is %g times that of white, which cannot be; correct it in exposures.txt.",
+                           "exposure %d is %g times that of white, wanted 1e-12 to 1e12; correct it in exposures.txt.",
                            k + 1, b->exposures[k]);
     }
     return ST_OK;
 }
 
-/* Limits are told for the sRGB curve: those of another one are at the same samples, of its least or most sure colour.
- * */
+/* Parameters are limits on the sRGB curve. For another curve, limits are at the same sample values, and of the three
+ * colours the strictest applies. */
 static void set_limits(struct exposure_job *e, const struct photo *p, const struct response *r,
                        const struct merge_params *params)
 {
     const float clear = (float)fmin(DARK_UNTIL * params->dark, 1);
     float saturated = (float)params->saturated, trusted = SATURATED_FROM * saturated, dark = (float)params->dark,
           from = clear;
-    if (p->values) { /* EXR may go beyond 1, or end below it */
+    if (p->values) { /* an EXR may have values above 1, or be clipped below it */
         saturated = p->saturation > 0 ? saturated * p->saturation : HUGE_VALF;
         trusted = SATURATED_FROM * saturated;
     } else if (r->table) {
@@ -320,14 +320,14 @@ static void set_limits(struct exposure_job *e, const struct photo *p, const stru
     e->saturated = saturated;
     e->trusted = trusted;
     e->falling = saturated > trusted ? 1 / (saturated - trusted) : 1e30f;
-    e->dark = dark > 0 ? dark : -2; /* no light at all counts too, where it may */
+    e->dark = dark > 0 ? dark : -2; /* dark = 0: black samples count too */
     e->rising = dark > 0 && from > dark ? 1 / (from - dark) : 1;
 }
 
 enum status merge_brackets(struct merged *out, const struct brackets *b, const struct noise *noise,
                            const struct merge_params *params, struct err *err)
 {
-    struct merge m = {.out = out, .count = b->count};
+    struct merge_job m = {.out = out, .count = b->count};
     float *tables[2] = {NULL, NULL}; /* of 8 and of 16 bits */
     *out = (struct merged){0};
     enum status st = check(b, err);
@@ -370,6 +370,7 @@ void merged_release(struct merged *m)
 
 /* ------------------------------------------------------------------------------------------------------- agreement */
 
+/* The linear light of sample i. */
 static double light_of(const struct photo *p, const struct response *r, size_t i)
 {
     if (p->values) return (double)p->values[i];
@@ -379,7 +380,7 @@ static double light_of(const struct photo *p, const struct response *r, size_t i
 enum status merge_agreement(struct exposure_agreement *worst, const struct brackets *b, struct err *err)
 {
     enum { SAMPLES = 1 << 16 };
-    const double least = 0.02, most = 0.7; /* linear: neither dark nor near white */
+    const double min = 0.02, max = 0.7; /* linear: neither dark nor near white */
     *worst = (struct exposure_agreement){0, 1, 1, 0};
     enum status st = check(b, err);
     for (int k = 1; !st && k < b->count; k++) {
@@ -398,16 +399,16 @@ enum status merge_agreement(struct exposure_agreement *worst, const struct brack
             for (size_t c = 0; c < 3; c++) {
                 const double vp = light_of(p, b->response, 3 * ((size_t)yp * (size_t)width + (size_t)xp) + c),
                              vq = light_of(q, b->response, 3 * ((size_t)yq * (size_t)width + (size_t)xq) + c);
-                if (vp < least || vq < least || vp > most || vq > most) continue;
+                if (vp < min || vq < min || vp > max || vq > max) continue;
                 sum_p += vp;
                 sum_q += vq;
                 n++;
             }
         }
         if (n < SAMPLES / 256) continue;
-        const double stated = b->exposures[k] / b->exposures[k - 1], seen = sum_q / sum_p;
-        if (fabs(log(seen / stated)) > fabs(log(worst->seen / worst->stated)))
-            *worst = (struct exposure_agreement){k, stated, seen, n};
+        const double stated = b->exposures[k] / b->exposures[k - 1], measured = sum_q / sum_p;
+        if (fabs(log(measured / stated)) > fabs(log(worst->measured / worst->stated)))
+            *worst = (struct exposure_agreement){k, stated, measured, n};
     }
     return st;
 }

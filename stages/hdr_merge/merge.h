@@ -1,7 +1,7 @@
-/* merge.h - linear radiance from photographs of one view in several exposures (brackets).
+/* merge.h - merges photographs of one view in several exposures (brackets) into linear radiance.
  *
- * Photos are linearised by a response curve; a sample v of exposure t says radiance v / t. Exposures are relative: at
- * exposure 1 radiance 1 is white. */
+ * Photos are linearised by a response curve; a linear sample v at exposure t measures radiance v / t. Exposures are
+ * relative: at exposure 1, radiance 1 is white. */
 #ifndef REMODEL_MERGE_H
 #define REMODEL_MERGE_H
 
@@ -14,44 +14,46 @@
 
 enum { MERGE_MOST = 64 }; /* exposures of a view */
 
-/* Marks of a pixel: what its exposures cannot tell. */
+/* Marks of pixels whose radiance the exposures do not measure. */
 enum {
-    MERGE_BRIGHT = 1, /* a colour saturates even in the shortest exposure: its radiance is at least what stands there */
-    MERGE_DARK = 2,   /* a colour is dark even in the longest exposure that does not saturate: nearly only noise */
+    MERGE_BRIGHT = 1, /* a colour saturates even in the shortest exposure: its radiance is a lower bound */
+    MERGE_DARK = 2,   /* a colour is dark even in the longest exposure that does not saturate: mostly noise */
 };
 
-/* Where an exposure shows what the picture shows: its pixel (x + dx, y + dy) is the picture's (x, y). */
+/* Pixel (x + dx, y + dy) of the exposure shows the same point as (x, y) of the merged image. */
 struct shift {
     int dx, dy;
 };
 
+/* The exposures of a view. */
 struct brackets {
-    const struct photo *photos; /* of one size */
+    const struct photo *photos; /* all of one size */
     const double *exposures;    /* ascending */
     int count;
     const struct response *response;
-    const struct shift *shifts; /* NULL: none */
+    const struct shift *shifts; /* NULL: no shifts */
 };
 
 struct merged {
     struct image radiance; /* R G B; finite, not negative */
-    uint8_t *marks;        /* a pixel; owned */
-    float *variance;       /* a pixel's, of its luminance over the luminance's square; (0, 1]; owned */
+    uint8_t *marks;        /* per pixel: MERGE_BRIGHT, MERGE_DARK; owned */
+    float *variance;       /* per pixel: variance of the luminance over its square, (0, 1]; owned */
 };
 
-/* m is {0} on entry; release it also after a failure. ST_DATA: photos of different sizes, exposures that are not 1e-12
- * to 1e12, not 1 to MERGE_MOST of them. The same bits for any number of threads. */
+/* Merges the exposures; noise: the model of each one. m is {0} on entry; release it also after a failure. The result
+ * does not depend on the number of threads. ST_DATA: photos of different sizes, an exposure outside 1e-12 to 1e12,
+ * fewer than 1 or more than MERGE_MOST exposures. */
 enum status merge_brackets(struct merged *m, const struct brackets *b, const struct noise *noise,
                            const struct merge_params *params, struct err *err);
 void merged_release(struct merged *m);
 
-/* How much more light an exposure seems to have had than the one before it, from the samples that are well exposed in
- * both, and how much more its exposure states; of the pair that agrees least. pair 0: there is none to compare. */
+/* The ratio of two neighbouring exposures, as stated and as measured on samples that are well exposed in both. */
 struct exposure_agreement {
-    int pair; /* this exposure and the one before it */
-    double stated, seen;
+    int pair;                /* the later exposure; the other one is pair - 1. 0: none could be compared */
+    double stated, measured; /* ratios */
     size_t samples;
 };
+/* Finds the pair that agrees worst. */
 enum status merge_agreement(struct exposure_agreement *worst, const struct brackets *b, struct err *err);
 
 #endif

@@ -1,10 +1,11 @@
-/* noise.c - see noise.h.
+/* noise.c - measures the noise of samples from bracketed exposures.
  *
- * Of neighbouring exposures s < t with samples a and b of one place, d = a - b s / t has the mean 0 and the variance
- *   photon v (1 + s / t) + read^2 (1 + (s / t)^2),   v = b s / t being the better estimate of a.
- * d's spread is taken in bins of log v, as 1.4826 times its median absolute deviation about the bin's median, which
- * leaves out edges, moving things, and an exposure that is not quite what is stated. photon and read^2 then are the
- * least-squares fit over all bins of all pairs with relative weights, neither of them negative. */
+ * For neighbouring exposures s < t with samples a and b of one pixel, d = a - b s / t has mean 0 and variance
+ *   photon v (1 + s / t) + read^2 (1 + (s / t)^2),
+ * where v = b s / t is the better estimate of a. The standard deviation of d is estimated in bins of log v as 1.4826
+ * times its median absolute deviation from the bin's median, which is robust against edges, moving objects and slightly
+ * wrong exposures. photon and read^2 are the least-squares fit to the bins of all pairs, with relative weights; neither
+ * may be negative. */
 #include "stages/hdr_merge/noise.h"
 
 #include <math.h>
@@ -13,16 +14,16 @@
 #include "common/base/sort.h"
 #include "stages/hdr_merge/merge.h"
 
-enum { BINS = 24, SAMPLES = 1 << 17, BIN_LEAST = 200 };
+enum { BINS = 24, SAMPLES = 1 << 17, MIN_BIN = 200 }; /* samples of a pair; of a bin that counts */
 
-static const double least_light = 0.002, most_light = 0.7, most_longer = 0.75;
+static const double min_light = 0.002, max_light = 0.7, max_longer = 0.75; /* of v; of v; of b */
 
 struct noise noise_given(const struct merge_params *params, const struct response *r, int bits)
 {
     struct noise n = {1 / params->electrons, pow(params->read_noise / params->electrons, 2)};
     if (bits == 32) return n;
     const double levels = bits == 16 ? 65535 : 255;
-    /* steps near black, and the mean of step^2 / light over the brighter half of the samples */
+    /* the mean step near black, and the mean of step^2 / light over the brighter half of the samples */
     double near_black = 0, per_light = 0;
     for (int i = 0; i < RESPONSE_LEVELS - 1; i++) {
         const float from = (float)i / (RESPONSE_LEVELS - 1), to = (float)(i + 1) / (RESPONSE_LEVELS - 1);
@@ -47,13 +48,13 @@ static int by_light(const void *x, const void *y)
     return (a->difference > b->difference) - (a->difference < b->difference);
 }
 
-struct fit { /* normal equations */
+struct noise_fit { /* normal equations */
     double pp, pr, rr, p, r;
     int bins;
 };
 
-/* A bin's samples; they are reordered. */
-static void add_bin(struct fit *fit, struct pair_sample *s, size_t count, double ratio, float *values)
+/* Adds the samples of a bin to the fit and reorders them. */
+static void add_bin(struct noise_fit *fit, struct pair_sample *s, size_t count, double ratio, float *values)
 {
     double light = 0;
     for (size_t i = 0; i < count; i++) {
@@ -65,7 +66,7 @@ static void add_bin(struct fit *fit, struct pair_sample *s, size_t count, double
     for (size_t i = 0; i < count; i++) values[i] = fabsf(values[i] - middle);
     sort_floats(values, count);
     const double sigma = 1.4826 * (double)values[count / 2], variance = sigma * sigma;
-    if (!(variance > 0) || light < 3 * sigma) return; /* below, samples that are cut at black would bend the spread */
+    if (!(variance > 0) || light < 3 * sigma) return; /* clipping at black would distort the deviation */
     const double a = light * (1 + ratio) / variance, b = (1 + ratio * ratio) / variance;
     fit->pp += a * a;
     fit->pr += a * b;
@@ -75,16 +76,16 @@ static void add_bin(struct fit *fit, struct pair_sample *s, size_t count, double
     fit->bins++;
 }
 
-static void add_pair(struct fit *fit, struct pair_sample *s, size_t count, double ratio, float *values)
+static void add_pair(struct noise_fit *fit, struct pair_sample *s, size_t count, double ratio, float *values)
 {
     qsort(s, count, sizeof *s, by_light);
-    const double step = log(most_light / least_light) / BINS;
+    const double step = log(max_light / min_light) / BINS;
     size_t begin = 0;
     for (int bin = 0; bin < BINS; bin++) {
-        const float end_light = (float)(least_light * exp(step * (bin + 1)));
+        const float end_light = (float)(min_light * exp(step * (bin + 1)));
         size_t end = begin;
         while (end < count && s[end].light < end_light) end++;
-        if (end - begin >= BIN_LEAST) add_bin(fit, s + begin, end - begin, ratio, values);
+        if (end - begin >= MIN_BIN) add_bin(fit, s + begin, end - begin, ratio, values);
         begin = end;
     }
 }
@@ -96,7 +97,7 @@ static float sample_at(const struct photo *p, const float *tables, size_t i, int
     return tables[(size_t)c * levels + p->samples[3 * i + (size_t)c]];
 }
 
-/* Samples of a pair of exposures that tell their noise; their number. */
+/* Collects the differences of a pair of exposures; returns their number. */
 static size_t gather(struct pair_sample *to, const struct brackets *b, int k, const float *const tables[2])
 {
     const struct photo *a = &b->photos[k - 1], *l = &b->photos[k];
@@ -114,7 +115,7 @@ static size_t gather(struct pair_sample *to, const struct brackets *b, int k, co
             const double va = (double)sample_at(a, tables[0], (size_t)ya * (size_t)width + (size_t)xa, c),
                          vl = (double)sample_at(l, tables[1], (size_t)yl * (size_t)width + (size_t)xl, c);
             const double light = vl * ratio;
-            if (light < least_light || light > most_light || vl > most_longer) continue;
+            if (light < min_light || light > max_light || vl > max_longer) continue;
             to[count++] = (struct pair_sample){(float)light, (float)(va - light)};
         }
     }
@@ -123,8 +124,8 @@ static size_t gather(struct pair_sample *to, const struct brackets *b, int k, co
 
 enum status noise_measure(struct noise *noise, bool *measured, const struct brackets *b, struct err *err)
 {
-    enum { LEAST_BINS = 3 };
-    struct fit fit = {0};
+    enum { MIN_BINS = 3 };
+    struct noise_fit fit = {0};
     const size_t room = SAMPLES + 3;
     struct pair_sample *samples = malloc(room * sizeof *samples);
     float *values = malloc(room * sizeof *values), *tables[2] = {NULL, NULL}; /* of 8 and of 16 bits */
@@ -141,7 +142,7 @@ enum status noise_measure(struct noise *noise, bool *measured, const struct brac
         add_pair(&fit, samples, count, b->exposures[k - 1] / b->exposures[k], values);
     }
     const double det = fit.pp * fit.rr - fit.pr * fit.pr;
-    if (!st && fit.bins >= LEAST_BINS && det > 0) {
+    if (!st && fit.bins >= MIN_BINS && det > 0) {
         double photon = (fit.p * fit.rr - fit.r * fit.pr) / det, read2 = (fit.pp * fit.r - fit.pr * fit.p) / det;
         if (photon < 0) photon = 0, read2 = fit.r / fit.rr;
         if (read2 < 0) read2 = 0, photon = fit.p / fit.pp;

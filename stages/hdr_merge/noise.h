@@ -1,7 +1,7 @@
-/* noise.h - noise of a linear sample: var(v) = photon v + read^2, v = 1 being white.
+/* noise.h - noise model of linear samples: var(v) = photon v + read^2, where v = 1 is white.
  *
- * What rounding to 8 bits adds has nearly the same form, since the steps of tone curves grow with the light; it is in
- * what is measured, and added to what is given. */
+ * Quantization to 8 bits adds noise of nearly the same form, since the steps of tone curves grow with the light.
+ * Measured noise includes it; to given noise it is added. */
 #ifndef REMODEL_HDR_NOISE_H
 #define REMODEL_HDR_NOISE_H
 
@@ -9,16 +9,17 @@
 #include "stages/hdr_merge/merge_params.h"
 
 struct noise {
-    double photon, read2; /* variance at white without reading; variance of reading */
+    double photon, read2; /* variance of photon noise at white; variance of read noise (read^2) */
 };
 
 struct brackets;
 
-/* electrons at white and electrons of reading, and the steps of photos of so many bits. */
+/* From electrons and read_noise of params, and the quantization of a photo of `bits` bits. */
 struct noise noise_given(const struct merge_params *params, const struct response *r, int bits);
 
-/* From how neighbouring exposures differ where both are well exposed: robust, by level of light, so that edges and
- * small shifts do not count. False: too few such samples; *noise is left alone. The same for any number of threads. */
+/* Measures noise from the differences between neighbouring exposures where both are well exposed. Robust against edges
+ * and small shifts. *measured is false if there are too few samples; *noise is then unchanged. Independent of
+ * threads. */
 enum status noise_measure(struct noise *noise, bool *measured, const struct brackets *b, struct err *err);
 
 #endif

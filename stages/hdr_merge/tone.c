@@ -1,14 +1,15 @@
-/* tone.c - see tone.h.
+/* tone.c - local tone mapping by the response of an adapted photoreceptor [Naka 1966], [Reinhard 2005].
  *
- * The response of a photoreceptor that is adapted to its surroundings (Naka and Rushton; Reinhard and Devlin 2005):
  *   s = Y / (Y + A),   ln A = a ln B + (1 - a) ln G,
- * Y being luminance, B the level of its surroundings, G middle grey, the same for all views. s is between 0 and 1 for
- * any radiance, so nothing is cut; it is the sRGB sample itself, for its contrast about grey, 1/4 per e-fold, is near
- * that of the sRGB curve. The range of surroundings is compressed to 1 - a of it, contrast within them is kept.
+ * where Y is luminance, B the local adaptation level, and G middle grey, the same for all views. s lies between 0 and 1
+ * for any radiance, so nothing is clipped. s is used as the sRGB sample itself: its contrast at grey, 1/4 per e-fold,
+ * is close to that of the sRGB curve. The dynamic range of B is compressed by the factor 1 - a; local contrast is kept.
  *
- * B is ln Y smoothed by a guided filter (He, Sun and Tang 2010) with itself as guide, on a quarter of the pixels each
- * way, so that edges larger than EDGE stay edges and bright windows have no halo. Colours keep
- * SATURATION of their distance from grey. */
+ * ln B is ln Y smoothed by a guided filter [He 2010] with itself as guide, at a quarter of the resolution: edges in ln
+ * Y larger than EDGE are kept, so that bright windows have no halo. Colours keep SATURATION of their distance from
+ * grey.
+ *
+ * Differs from the sources: the adaptation level is local and edge-preserving, and the global level is a constant. */
 #include "stages/hdr_merge/tone.h"
 
 #include <math.h>
@@ -18,24 +19,25 @@
 
 enum { REDUCE = 4, CURVE = 4096 };
 
-static const float GREY = 0.18f, FLOOR = 1e-7f, ADAPTED = 0.65f, EDGE = 0.8f, SATURATION = 0.8f;
-static const int RADIUS_OF_SIDE = 40; /* the radius is the long side over this */
+static const float GREY = 0.18f, FLOOR = 1e-7f, EDGE = 0.8f, SATURATION = 0.8f;
+static const float ADAPTATION = 0.65f; /* a */
+static const int SIDE_PER_RADIUS = 40; /* long side over the filter's radius */
 
-struct small { /* a plane on the reduced grid */
+struct reduced { /* a plane at reduced resolution */
     int width, height;
     float *v; /* owned */
 };
 
-static enum status init_small(struct small *s, int width, int height, struct err *err)
+static enum status init_reduced(struct reduced *s, int width, int height, struct err *err)
 {
-    *s = (struct small){width, height, calloc((size_t)width * (size_t)height, sizeof(float))};
+    *s = (struct reduced){width, height, calloc((size_t)width * (size_t)height, sizeof(float))};
     return s->v ? ST_OK : err_nomem(err, "a reduced picture", (size_t)width * (size_t)height * sizeof(float));
 }
 
 static float luminance(const float *rgb) { return 0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2]; }
 
 struct reduce_job {
-    struct small *to;
+    struct reduced *to;
     const struct image *from;
 };
 
@@ -55,7 +57,7 @@ static void reduce_rows(void *ctx, size_t begin, size_t end, int thread)
         }
 }
 
-/* Means of boxes of 2 radius + 1, cut at the picture's edge, along a line of n samples `step` apart. */
+/* Box means of 2 radius + 1 samples, clipped at the border, along a line of n samples `step` apart. */
 static void box_line(float *line, double *sums, int n, size_t step, int radius)
 {
     sums[0] = 0;
@@ -66,16 +68,15 @@ static void box_line(float *line, double *sums, int n, size_t step, int radius)
     }
 }
 
-static void box_mean(struct small *s, double *sums, int radius)
+static void box_mean(struct reduced *s, double *sums, int radius)
 {
     for (int y = 0; y < s->height; y++) box_line(s->v + (size_t)y * (size_t)s->width, sums, s->width, 1, radius);
     for (int x = 0; x < s->width; x++) box_line(s->v + x, sums, s->height, (size_t)s->width, radius);
 }
 
-/* The guided filter's mean coefficients: B = slope ln Y + offset. `level` is ln Y on entry; it and slope are
- * overwritten. */
-static enum status surroundings(struct small *slope, struct small *offset, struct small *level, int radius,
-                                struct err *err)
+/* The guided filter's mean coefficients: ln B = slope ln Y + offset. `level` is ln Y on entry and is overwritten. */
+static enum status guided_filter(struct reduced *slope, struct reduced *offset, struct reduced *level, int radius,
+                                 struct err *err)
 {
     const size_t count = (size_t)level->width * (size_t)level->height;
     const int side = level->width > level->height ? level->width : level->height;
@@ -98,12 +99,12 @@ static enum status surroundings(struct small *slope, struct small *offset, struc
 struct tone_job {
     unsigned char *to;
     const struct image *from;
-    const struct small *slope, *offset;
+    const struct reduced *slope, *offset;
     float code_from_light[CURVE + 1], light_from_code[CURVE + 1]; /* sRGB */
 };
 
-/* Bilinear between the middles of the reduced pixels. */
-static float upsampled(const struct small *s, float x, float y)
+/* Bilinear interpolation between the centres of the reduced pixels. */
+static float upsampled(const struct reduced *s, float x, float y)
 {
     const float fx = fminf(fmaxf((x + 0.5f) / REDUCE - 0.5f, 0), (float)(s->width - 1)),
                 fy = fminf(fmaxf((y + 0.5f) / REDUCE - 0.5f, 0), (float)(s->height - 1));
@@ -113,7 +114,7 @@ static float upsampled(const struct small *s, float x, float y)
     return (a[x0] + (a[x1] - a[x0]) * u) * (1 - v) + (b[x0] + (b[x1] - b[x0]) * u) * v;
 }
 
-static float look_up(const float *table, float at)
+static float interpolate(const float *table, float at)
 {
     const float scaled = fminf(fmaxf(at, 0), 1) * CURVE;
     const int below = scaled < CURVE - 1 ? (int)scaled : CURVE - 1;
@@ -131,12 +132,12 @@ static void tone_rows(void *ctx, size_t begin, size_t end, int thread)
             const float *rgb = image_at(im, x, (int)y), light = luminance(rgb), level = logf(light + FLOOR);
             const float base =
                 upsampled(job->slope, (float)x, (float)y) * level + upsampled(job->offset, (float)x, (float)y);
-            const float sample = 1 / (1 + expf(ADAPTED * base + (1 - ADAPTED) * grey - level));
-            const float shown = look_up(job->light_from_code, sample);
+            const float sample = 1 / (1 + expf(ADAPTATION * base + (1 - ADAPTATION) * grey - level));
+            const float mapped = interpolate(job->light_from_code, sample); /* luminance */
             unsigned char *to = job->to + 3 * (y * (size_t)im->width + (size_t)x);
             for (int c = 0; c < 3; c++) {
                 const float ratio = light > 0 ? rgb[c] / light : 1;
-                const float code = look_up(job->code_from_light, shown * (1 + SATURATION * (ratio - 1)));
+                const float code = interpolate(job->code_from_light, mapped * (1 + SATURATION * (ratio - 1)));
                 to[c] = (unsigned char)(255 * code + 0.5f);
             }
         }
@@ -145,16 +146,16 @@ static void tone_rows(void *ctx, size_t begin, size_t end, int thread)
 enum status tone_map(unsigned char *rgb, const struct image *radiance, struct err *err)
 {
     const int width = (radiance->width + REDUCE - 1) / REDUCE, height = (radiance->height + REDUCE - 1) / REDUCE;
-    const int side = width > height ? width : height, radius = side / RADIUS_OF_SIDE > 1 ? side / RADIUS_OF_SIDE : 1;
-    struct small level = {0}, slope = {0}, offset = {0};
+    const int side = width > height ? width : height, radius = side / SIDE_PER_RADIUS > 1 ? side / SIDE_PER_RADIUS : 1;
+    struct reduced level = {0}, slope = {0}, offset = {0};
     struct tone_job *job = malloc(sizeof *job);
     enum status st = job ? ST_OK : err_nomem(err, "a tone curve", sizeof *job);
-    if (!st) st = init_small(&level, width, height, err);
-    if (!st) st = init_small(&slope, width, height, err);
-    if (!st) st = init_small(&offset, width, height, err);
+    if (!st) st = init_reduced(&level, width, height, err);
+    if (!st) st = init_reduced(&slope, width, height, err);
+    if (!st) st = init_reduced(&offset, width, height, err);
     if (!st) {
         parallel_for((size_t)height, 8, reduce_rows, &(struct reduce_job){&level, radiance});
-        st = surroundings(&slope, &offset, &level, radius, err);
+        st = guided_filter(&slope, &offset, &level, radius, err);
     }
     if (!st) {
         *job = (struct tone_job){.to = rgb, .from = radiance, .slope = &slope, .offset = &offset};

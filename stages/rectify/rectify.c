@@ -1,11 +1,12 @@
-/* rectify.c - resamples a photograph into its views' pinhole cameras, in linear colour.
+/* rectify.c - resamples a photograph to the pinhole cameras of its views, in linear colour.
  *
- * reads   VIEWS/cameras.txt, images.txt, lenses.txt   the views' cameras, and the photo's lens
- *         RECORDS/ID.txt, PHOTOS/FILE                 the photo; of a view of several exposures PHOTOS/ID.exr, merged
- *         MASKS/ID.png                                black where a view is to have no pixel; need not be there
- * writes  OUT/VIEW.exr                                R G B (linear), A: of the photo's views, or of those asked for
+ * reads   VIEWS/cameras.txt, images.txt, lenses.txt   the cameras of the views, the lens of the photo
+ *         RECORDS/ID.txt, PHOTOS/FILE                 the photo, or PHOTOS/ID.exr, merged from several exposures
+ *         MASKS/ID.png                                optional mask; black pixels get alpha 0
+ * writes  OUT/VIEW.exr                                R G B (linear) and A, for each view of the photo or each --view
  *
- * A photo may have many views (of a fisheye, several), and reading it can take longer than making one: it is read once. */
+ * A photo is read once for all of its views (a fisheye photo has several), since reading can take longer than
+ * resampling. */
 #include <string.h>
 
 #include "common/base/cli.h"
@@ -16,18 +17,19 @@
 #include "common/capture/view_image.h"
 #include "stages/rectify/resample.h"
 
-struct request {
-    const char *photo, *photos, *masks, *records, *folder, *out; /* folder: of the cameras */
-    struct cli_list names;                                       /* of views; none: all of the photo's */
+struct rectify_request {
+    const char *photo, *photos, *masks, *records, *views, *out; /* the options of these names */
+    struct cli_list names;                                      /* the views to write; empty: all views of the photo */
 };
 
-struct source { /* the photograph, as all of its views see it */
+struct photo_source { /* the photograph, read once for all views */
     struct image linear;
     struct photo_mask mask;
     char radiometry[RADIOMETRY_SIZE];
 };
 
-static enum status read_source(struct source *s, const struct request *r, struct provenance *prov, struct err *err)
+static enum status read_source(struct photo_source *s, const struct rectify_request *r, struct provenance *prov,
+                               struct err *err)
 {
     struct photo_record record = {0};
     enum status st = photo_record_read(&record, r->records, r->photo, err);
@@ -37,7 +39,7 @@ static enum status read_source(struct source *s, const struct request *r, struct
     return st;
 }
 
-static enum status make_view(const struct source *s, const struct request *r, const struct lens *lens,
+static enum status make_view(const struct photo_source *s, const struct rectify_request *r, const struct lens *lens,
                              const struct view *view, const struct provenance *prov, struct err *err)
 {
     struct image rectified = {0};
@@ -53,37 +55,37 @@ static enum status make_view(const struct source *s, const struct request *r, co
     return st;
 }
 
-static bool is_wanted(const struct request *r, const char *view)
+static bool is_wanted(const struct rectify_request *r, const char *view)
 {
     for (int i = 0; i < r->names.count; i++)
         if (!strcmp(r->names.items[i], view)) return true;
     return !r->names.count;
 }
 
-static enum status check_request(const struct request *r, const struct lens_list *lenses, struct err *err)
+static enum status check_request(const struct rectify_request *r, const struct lens_list *lenses, struct err *err)
 {
     int views = 0;
     for (int l = 0; l < lenses->count; l++) views += !strcmp(lenses->lenses[l].photo, r->photo);
     if (!views)
-        return err_set(err, ST_USAGE, "photo %s has no view in %s/lenses.txt; there each line begins VIEW PHOTO.",
-                       r->photo, r->folder);
+        return err_set(err, ST_USAGE, "photo %s has no view in %s/lenses.txt, whose lines begin with VIEW PHOTO.",
+                       r->photo, r->views);
     for (int i = 0; i < r->names.count; i++) {
         int l = lens_list_find(lenses, r->names.items[i]);
         if (l < 0 || strcmp(lenses->lenses[l].photo, r->photo))
-            return err_set(err, ST_USAGE, "photo %s has no view %s; its views are listed in %s/lenses.txt.", r->photo,
-                           r->names.items[i], r->folder);
+            return err_set(err, ST_USAGE, "photo %s has no view %s; %s/lenses.txt lists its views.", r->photo,
+                           r->names.items[i], r->views);
     }
     return ST_OK;
 }
 
-static enum status rectify(const struct request *r, struct provenance *prov, struct err *err)
+static enum status rectify(const struct rectify_request *r, struct provenance *prov, struct err *err)
 {
     struct camera_set set = {0};
     struct lens_list lenses = {0};
-    struct source source = {0};
+    struct photo_source source = {0};
     char lens_path[FILE_PATH];
-    enum status st = file_path(lens_path, r->folder, "lenses.txt", "", err);
-    if (!st) st = camera_set_read(&set, r->folder, err);
+    enum status st = file_path(lens_path, r->views, "lenses.txt", "", err);
+    if (!st) st = camera_set_read(&set, r->views, err);
     if (!st) st = lens_list_read(&lenses, lens_path, err);
     if (!st) st = check_request(r, &lenses, err);
     if (!st) st = read_source(&source, r, prov, err);
@@ -93,7 +95,7 @@ static enum status rectify(const struct request *r, struct provenance *prov, str
         int v = camera_set_find(&set, lens->view);
         if (v < 0)
             st = err_set(err, ST_DATA, "view %s is in %s/lenses.txt but not in images.txt; run sfm_import again.",
-                         lens->view, r->folder);
+                         lens->view, r->views);
         else
             st = make_view(&source, r, lens, &set.views[v], prov, err);
     }
@@ -106,15 +108,15 @@ static enum status rectify(const struct request *r, struct provenance *prov, str
 
 int main(int argc, char **argv)
 {
-    struct request r = {0};
+    struct rectify_request r = {0};
     const struct cli_opt opts[] = {
-        CLI_ABOUT("Resamples a photograph into its views' pinhole cameras, in linear colour."),
-        CLI_STR("photo", &r.photo, CLI_REQUIRED, "id of the photograph; all of its views are made"),
-        CLI_LIST("view", &r.names, CLI_OPTIONAL, "of them only this one; may be given several times"),
+        CLI_ABOUT("Resamples a photograph to the pinhole cameras of its views, in linear colour."),
+        CLI_STR("photo", &r.photo, CLI_REQUIRED, "id of the photograph"),
+        CLI_LIST("view", &r.names, CLI_OPTIONAL, "view to write; default: all views of the photograph"),
         CLI_STR("photos", &r.photos, CLI_REQUIRED, "folder of photographs, or of merged exposures"),
-        CLI_STR("masks", &r.masks, CLI_OPTIONAL, "folder of masks ID.png, black where a view is to have no pixel"),
+        CLI_STR("masks", &r.masks, CLI_OPTIONAL, "folder of masks ID.png; black pixels get alpha 0"),
         CLI_STR("records", &r.records, CLI_REQUIRED, "folder of the photos' records"),
-        CLI_STR("views", &r.folder, CLI_REQUIRED, "folder of cameras and lenses"),
+        CLI_STR("views", &r.views, CLI_REQUIRED, "folder of cameras.txt, images.txt and lenses.txt"),
         CLI_STR("out", &r.out, CLI_REQUIRED, "folder to write VIEW.exr into"),
         CLI_END,
     };

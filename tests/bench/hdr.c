@@ -144,7 +144,7 @@ static enum status merge_once(struct view *v, struct times *times, struct err *e
     const double read = clock_seconds();
     struct brackets b = {v->photos, v->exposures, count, &srgb, alignment.shifts};
     struct exposure_agreement agreement;
-    enum status st = align_brackets(&alignment, &b, count / 2, params.most_shift, err);
+    enum status st = align_brackets(&alignment, &b, count / 2, params.max_shift, err);
     const double aligned = clock_seconds();
     if (!st) st = merge_agreement(&agreement, &b, err);
     if (!st) st = noise_measure(&measured, &known, &b, err);

@@ -1,36 +1,36 @@
-# hdr_merge and fit_response: every kind of photo, single exposures, shifts, and what is said of wrong input
+# hdr_merge and fit_response: photo formats, single exposures, shifts, errors about wrong input
 . tests/lib.sh
 photos "$scratch/set" --size 320x240 --brackets 3 >/dev/null
 cd "$scratch" || exit 1
 export PATH=$root/$B/bin:$PATH
 
-# records FOLDER [OPTION...]: import_photos into FOLDER-records; the scene's folder is FOLDER-scene
+# records FOLDER [OPTION...]: runs import_photos into FOLDER-records; the scene's folder is FOLDER-scene
 records() { local d=$1; shift; mkdir -p "$d-scene"; import_photos --photos "$d" --scene "$d-scene" --out "$d-records" "$@" 2>err; }
-# merged FOLDER ID [OPTION...]
+# merged FOLDER ID [OPTION...]: runs hdr_merge into FOLDER-hdr
 merged() { local d=$1 id=$2; shift 2; hdr_merge --id "$id" --photos "$d" --records "$d-records" --out "$d-hdr" "$@" 2>err; }
-says() { grep -qF -- "$1" err || { cat err; fail "nothing says '$1'"; }; }
+says() { grep -qF -- "$1" err || { cat err; fail "no message '$1'"; }; }
 refused() { local words=$1 rc=0; shift; "$@" || rc=$?; [ "$rc" = 1 ] || { cat err; fail "$*: exit $rc, wanted 1"; }; says "$words"; }
 has() { grep -aqF -- "$2" "$1" || fail "$1 has no '$2'"; }
-# times FOLDER ENDING: exposures.txt of photos that tell none
+# times FOLDER: writes exposures.txt for photos without exposure times
 times() { for k in 0 1 2; do for p in "$1"/*_e"$k".*; do echo "$(basename "$p") $(awk -v k=$k 'BEGIN { print 4 ^ k / 16384 }') 8 100"; done; done >"$1-scene/exposures.txt"; }
 
-jpegs()
+jpegs_are_fitted_and_merged()
 {
     records set/photos || { cat err; fail "import"; }
     fit_response --photos set/photos --records set/photos-records --out set/response.txt 2>err || { cat err; fail "fit_response"; }
-    says "samples follow light by the sRGB curve: ratios of exposures vary by"
-    tail -n 2 set/response.txt | cmp - <(printf 'remodel-response 1\ncurve srgb\n') || fail "another curve"
+    says "response curve: sRGB: exposure ratios vary by"
+    tail -n 2 set/response.txt | cmp - <(printf 'remodel-response 1\ncurve srgb\n') || fail "not the sRGB curve"
     merged set/photos photo_3 --response set/response.txt || { cat err; fail "merge"; }
     has set/photos-hdr/photo_3.exr exact
     has set/photos-hdr/photo_3.exr variance
     cp set/photos-hdr/photo_3.exr first.exr
     merged set/photos photo_3 --threads 1 --response set/response.txt
-    cmp first.exr set/photos-hdr/photo_3.exr || fail "one thread gives other bytes"
+    cmp first.exr set/photos-hdr/photo_3.exr || fail "one thread gives different bytes"
     merged set/photos photo_3 --set picture=middle
     cmp set/photos-hdr/photo_3.jpg set/photos/photo_3_e1.jpg || fail "picture=middle is not the middle exposure's bytes"
 }
 
-tiff_and_png_merge_as_jpeg_does()
+tiff_and_png_merge_like_jpeg()
 {
     mkdir -p tif tif-scene; n=0
     for p in set/photos/photo_[123]_e?.jpg; do
@@ -46,10 +46,10 @@ tiff_and_png_merge_as_jpeg_does()
     says "3 views of 3 exposures each"
     merged tif photo_3 || { cat err; fail "merge"; }
     "$root/$B/tests/bench/picture_error" tif-hdr/photo_3.exr first.exr >out || fail "no comparison"
-    awk '$1 == "error" { exit !($2 < 0.03) }' out || { cat out; fail "other radiance"; }
+    awk '$1 == "error" { exit !($2 < 0.03) }' out || { cat out; fail "different radiance"; }
 }
 
-exr_alone_is_one_exposure()
+an_exr_is_a_single_exposure()
 {
     mkdir -p exr
     for i in 1 2 3; do ffmpeg -v error -i set/photos/photo_${i}_e1.jpg -vf scale=160:120 -pix_fmt gbrpf32le exr/photo_$i.exr; done
@@ -72,7 +72,7 @@ exr_alone_is_one_exposure()
     refused "the exposure time of photo_1.exr is not known" records exr
 }
 
-tiff_alone_is_one_exposure()
+a_tiff_is_a_single_exposure()
 {
     mkdir -p lone; for i in 1 2; do ffmpeg -v error -i set/photos/photo_${i}_e1.jpg -pix_fmt rgb48le lone/photo_$i.tif; done
     records lone || { cat err; fail "import"; }
@@ -81,7 +81,7 @@ tiff_alone_is_one_exposure()
     has lone-hdr/photo_2.exr "one exposure"
 }
 
-single_jpegs_are_brought_to_one_scale()
+single_jpegs_share_one_scale()
 {
     mkdir -p one; for i in 1 2 3; do cp set/photos/photo_${i}_e$((i - 1)).jpg one/photo_$i.jpg; done
     records one --set brackets=single || { cat err; fail "import"; }
@@ -90,10 +90,10 @@ single_jpegs_are_brought_to_one_scale()
     has one-hdr/photo_1.exr remodel:white
 }
 
-raw_files()
+raw_files_are_recognised()
 {
     mkdir -p raw; cp set/photos/photo_[12]_e1.jpg raw/
-    echo "not looked at" >raw/photo_1_e1.CR2
+    echo "not read" >raw/photo_1_e1.CR2
     records raw || { cat err; fail "import"; }
     says "1 raw files beside a JPEG of the same name"
     printf 'FUJIFILMCCD-RAW 0201' >raw/photo_9.raf
@@ -108,13 +108,13 @@ wrong_exposures_are_refused()
     sed -i 's/photo_[123]_e2.jpg//' wrong-scene/brackets.txt; rm wrong/*_e2.jpg
     records wrong || { cat err; fail "import"; }
     refused "view photo_2: photo_2_e0.jpg should have 4 times the light of photo_2_e1.jpg, but shows 0.2" merged wrong photo_2
-    [ ! -e wrong-hdr/photo_2.exr ] || fail "a product was left"
-    merged wrong photo_2 --set most_disagreement=1000 || { cat err; fail "told to take it"; }
+    [ ! -e wrong-hdr/photo_2.exr ] || fail "a failed merge left a product"
+    merged wrong photo_2 --set max_disagreement=1000 || { cat err; fail "a larger max_disagreement does not help"; }
     says "warning: view photo_2"
     has wrong-hdr/photo_2.exr approximate
 }
 
-missing_brackets_and_times_are_named()
+missing_exposures_and_times_are_named()
 {
     mkdir -p few few-scene; cp set/photos/photo_?_e?.jpg few/; rm few/photo_4_e2.jpg
     refused "photo_4_e0.jpg (1/16384 s), photo_4_e1.jpg (1/4096 s)" records few
@@ -125,7 +125,7 @@ missing_brackets_and_times_are_named()
     refused "bare-scene/exposures.txt:1: found photo_1_e7.png, wanted a photo of" records bare
 }
 
-shifts_are_told_and_corrected()
+shifts_are_reported_and_corrected()
 {
     mkdir -p moved moved-scene
     for i in 1 2 3; do for k in 0 1 2; do
@@ -139,20 +139,20 @@ shifts_are_told_and_corrected()
     has moved-hdr/photo_2.exr remodel:shift.3
     merged moved photo_2 --set align=report || { cat err; fail "merge"; }
     says "shifted by 4, -2 px against photo_2_e1.png"
-    ! grep -aq remodel:shift moved-hdr/photo_2.exr || fail "a shift that is only told was corrected"
+    ! grep -aq remodel:shift moved-hdr/photo_2.exr || fail "align=report corrected a shift"
     merged moved photo_1 || { cat err; fail "merge"; }
-    ! grep -q shifted err || { cat err; fail "a shift where there is none"; }
+    ! grep -q shifted err || { cat err; fail "a shift in an aligned view"; }
 }
 
-a_wrong_curve_is_told_by_its_line()
+errors_in_a_response_name_the_line()
 {
     printf 'remodel-response 1\ncurve table 256\n0 0 0\n0.1 0.1 x\n' >bad.txt
     refused "bad.txt:4: found" merged set/photos photo_3 --response bad.txt
     refused "nothing.txt" merged set/photos photo_3 --response nothing.txt
 }
 
-# the camera that a model tells; lighting reference images on the scale of another set
-cameras_and_references()
+# the camera from a model; lighting reference images on the scale of another set
+cameras_are_copied_and_references_scaled()
 {
     mkdir -p model lri
     printf '1 OPENCV_FISHEYE 320 240 150 150 160 120 0 0 0 0\n' >model/cameras.txt
@@ -162,13 +162,13 @@ cameras_and_references()
     has set/photos-hdr/photo_3.exr worldToCamera
     merged set/photos photo_2 --model model || { cat err; fail "merge"; }
     says "view photo_2: model/images.txt has no image of it"
-    ! grep -aq worldToCamera set/photos-hdr/photo_2.exr || fail "a pose from nowhere"
+    ! grep -aq worldToCamera set/photos-hdr/photo_2.exr || fail "a pose without an image in the model"
     sed -i 's/320 240/321 240/' model/cameras.txt
     refused "view photo_3 has 320 x 240 pixels, but its camera in model/cameras.txt 321 x 240" merged set/photos photo_3 --model model
     cp set/photos/photo_[12]_e?.jpg lri
     records lri --like set/photos-records || { cat err; fail "import of references"; }
     says "2 views of 3 exposures each"
-    [ "$(awk '$1 == "brackets" { print $4 }' lri-records/photo_1.txt set/photos-records/photo_3.txt | uniq | wc -l)" = 1 ] || fail "another scale"
+    [ "$(awk '$1 == "brackets" { print $4 }' lri-records/photo_1.txt set/photos-records/photo_3.txt | uniq | wc -l)" = 1 ] || fail "the scales differ"
     rm lri/photo_2*
     records lri --like set/photos-records || { cat err; fail "import of one reference"; }
     grep -qx 'PHOTO_IDS := photo_1' lri-records/photos.mk || { cat lri-records/photos.mk; fail "not one view"; }
@@ -176,5 +176,5 @@ cameras_and_references()
     refused 'write lines "FILE SECONDS F_NUMBER ISO" into exposures.txt' records lri --like set/photos-records
 }
 
-for t in jpegs tiff_and_png_merge_as_jpeg_does exr_alone_is_one_exposure tiff_alone_is_one_exposure single_jpegs_are_brought_to_one_scale raw_files wrong_exposures_are_refused \
-    missing_brackets_and_times_are_named shifts_are_told_and_corrected a_wrong_curve_is_told_by_its_line cameras_and_references; do run "$t"; done
+for t in jpegs_are_fitted_and_merged tiff_and_png_merge_like_jpeg an_exr_is_a_single_exposure a_tiff_is_a_single_exposure single_jpegs_share_one_scale raw_files_are_recognised wrong_exposures_are_refused \
+    missing_exposures_and_times_are_named shifts_are_reported_and_corrected errors_in_a_response_name_the_line cameras_are_copied_and_references_scaled; do run "$t"; done

@@ -1,4 +1,4 @@
-/* fuzz.h - what a fuzz target exports: one input; it returns 0, and aborts where a promise is broken. */
+/* fuzz.h - the entry point of a fuzz target: runs one input, returns 0, and aborts if an assertion fails. */
 #ifndef REMODEL_TESTS_FUZZ_H
 #define REMODEL_TESTS_FUZZ_H
 

@@ -1,4 +1,4 @@
-/* fuzz_config.c - config files: any bytes give parameters that print and read back the same, or a sentence. */
+/* fuzz_config.c - config files: any input gives parameters that print and read back unchanged, or an error. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

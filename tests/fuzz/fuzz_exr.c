@@ -1,4 +1,4 @@
-/* fuzz_exr.c - OpenEXR files: any bytes give finite samples, or a sentence that names the file. */
+/* fuzz_exr.c - OpenEXR files: any input gives finite samples, or an error that names the file. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-/* fuzz_photo.c - photographs: any bytes give a picture of the size its header says, or a sentence naming the file. */
+/* fuzz_photo.c - photographs: any input gives an image of the size in its header, or an error that names the file. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,4 +1,4 @@
-/* fuzz_response.c - response.txt: any bytes give a curve that rises, or a sentence naming the file. */
+/* fuzz_response.c - response.txt: any input gives a valid curve, or an error that names the file. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -20,12 +20,14 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     snprintf(path, sizeof path, "/proc/self/fd/%d", fd);
     enum status st = response_read(&r, path, &err);
     if (st != err.status || (st && (r.table || !strstr(err.text, path)))) abort();
-    for (int c = 0; c < 3; c++)
+    for (int c = 0; c < 3; c++) {
+        float last = 0;
         for (int i = 0; !st && i < RESPONSE_LEVELS; i++) {
             const float light = response_light(&r, c, (float)i / (RESPONSE_LEVELS - 1));
-            const float back = response_sample(&r, c, light);
-            if (!(light >= 0) || !isfinite(light) || !(back >= 0 && back <= 1)) abort();
+            if (!(light >= last) || !isfinite(light)) abort();
+            last = light;
         }
+    }
     close(fd);
     return 0;
 }

@@ -1,4 +1,4 @@
-/* fuzz_scratch.h - files and folders of fuzz targets; whoever makes one removes it. */
+/* fuzz_scratch.h - temporary files and folders for fuzz targets; the caller removes them. */
 #ifndef REMODEL_TESTS_FUZZ_SCRATCH_H
 #define REMODEL_TESTS_FUZZ_SCRATCH_H
 
@@ -11,14 +11,14 @@
 
 enum { FUZZ_PATH = 256 };
 
-/* path: becomes that of a new file of these bytes. */
+/* Makes a file with these bytes and sets path. */
 static inline void fuzz_file(char path[FUZZ_PATH], const uint8_t *data, size_t size)
 {
     const int fd = scratch_name(path, FUZZ_PATH, "fuzz") ? mkstemp(path) : -1;
     if (fd < 0 || write(fd, data, size) != (ssize_t)size || close(fd)) abort();
 }
 
-/* path: becomes that of a new folder. */
+/* Makes a folder and sets path. */
 static inline void fuzz_folder(char path[FUZZ_PATH])
 {
     if (!scratch_name(path, FUZZ_PATH, "fuzz") || !mkdtemp(path)) abort();

@@ -1,4 +1,4 @@
-/* fuzz_textfile.c - the text reader: any bytes give words that can be quoted and read back, or a sentence. */
+/* fuzz_textfile.c - the text reader: any input gives words that can be quoted and read back, or an error. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -39,7 +39,7 @@ static void check_quoting(const char *word)
     free(quoted);
 }
 
-/* The first byte chooses how the words are read. */
+/* The first byte selects how words are read. */
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     struct textfile t;

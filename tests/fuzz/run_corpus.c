@@ -1,6 +1,6 @@
-/* run_corpus.c - main() of a fuzz target without a fuzzer: runs every file of the folders and files given as arguments.
+/* run_corpus.c - main() of a fuzz target without a fuzzer: runs the target on all files in the given files and folders.
  *
- * Each input is copied to memory of exactly its size, so that the address sanitizer sees a read past its end. */
+ * Each input is copied to memory of its exact size, so that the address sanitizer detects reads past its end. */
 #include <dirent.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -22,7 +22,7 @@ static int run_file(const char *path)
     if (failed) {
         fprintf(stderr, "cannot read %s\n", path);
     } else {
-        /* an input that crashes is then the last one named */
+        /* the last line names the input that crashed */
         fprintf(stderr, "%s (%zu bytes)\n", path, size);
         LLVMFuzzerTestOneInput(data, size);
     }
@@ -36,7 +36,7 @@ static int run_path(const char *path, int *count)
 {
     struct stat info;
     struct dirent **entries = NULL;
-    char below[4096];
+    char entry[4096];
     int failed = 0;
 
     if (stat(path, &info) || !S_ISDIR(info.st_mode)) {
@@ -49,8 +49,8 @@ static int run_path(const char *path, int *count)
         return 1;
     }
     for (int i = 0; i < n; i++) {
-        snprintf(below, sizeof below, "%s/%s", path, entries[i]->d_name);
-        failed |= run_path(below, count);
+        snprintf(entry, sizeof entry, "%s/%s", path, entries[i]->d_name);
+        failed |= run_path(entry, count);
         free(entries[i]);
     }
     free(entries);
@@ -63,7 +63,7 @@ int main(int argc, char **argv)
 
     for (int i = 1; i < argc; i++) failed |= run_path(argv[i], &count);
     if (!count) {
-        fprintf(stderr, "no inputs: give files or folders of them\n");
+        fprintf(stderr, "no inputs: give files or folders\n");
         return 1;
     }
     printf("%d inputs\n", count);

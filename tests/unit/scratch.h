@@ -1,4 +1,4 @@
-/* scratch.h - what unit tests share: a scratch folder, files in it, children whose words and ends can be looked at. */
+/* scratch.h - shared by unit tests: a scratch folder with files, more assertions, child processes with their output. */
 #ifndef REMODEL_TESTS_SCRATCH_H
 #define REMODEL_TESTS_SCRATCH_H
 
@@ -71,7 +71,7 @@ static inline const char *scratch_write(const char *name, const char *text)
     return scratch_write_bytes(name, text, strlen(text));
 }
 
-/* The text of a file, "(no file)" if it is not there; the caller frees it. */
+/* The text of a file, "(no file)" if it does not exist. The caller frees it. */
 static inline char *scratch_read(const char *path)
 {
     FILE *fp = fopen(path, "rb");
@@ -95,7 +95,7 @@ static inline void assert_file_text(const char *path, const char *wanted)
     free(text);
 }
 
-/* How many entries a folder has, dot files included. */
+/* The number of entries of a folder, dot files included. */
 static inline int count_entries(const char *folder)
 {
     DIR *dir = opendir(folder);
@@ -118,11 +118,11 @@ static inline int count_entries(const char *folder)
         if (strstr(text, part)) fail_msg("\"%s\" in \"%s\"", part, text); \
     } while (0)
 
-/* The error has this status and these words, and is a sentence. */
+/* The error has this status, contains `part`, and ends like a sentence. */
 #define assert_err(err, wanted_status, part)                                                                 \
     do {                                                                                                     \
         if ((err).status != (wanted_status))                                                                 \
-            fail_msg("status %d in place of %d: %s", (err).status, (wanted_status), (err).text);             \
+            fail_msg("status %d, wanted %d: %s", (err).status, (wanted_status), (err).text);                 \
         assert_contains((err).text, part);                                                                   \
         if (!strchr(".?", (err).text[strlen((err).text) - 1])) fail_msg("no full stop: \"%s\"", (err).text); \
     } while (0)
@@ -132,21 +132,22 @@ static inline int count_entries(const char *folder)
         if ((call) != ST_OK) fail_msg("%s failed: %s", #call, (err).text); \
     } while (0)
 
-/* Begins fn(ctx) in a child, which exits with what it returns; its stdout and stderr go to the scratch file "said". */
+/* Starts fn(ctx) in a child, which exits with its result. Its stdout and stderr go to the scratch file "output". */
 static inline pid_t child_start(int (*fn)(void *ctx), void *ctx)
 {
-    const char *said = scratch_path("said");
+    const char *output = scratch_path("output");
 
     fflush(NULL);
     const pid_t pid = fork();
     if (!pid) {
-        const int fd = open(said, O_WRONLY | O_CREAT | O_TRUNC, 0666);
+        const int fd = open(output, O_WRONLY | O_CREAT | O_TRUNC, 0666);
         if (fd < 0 || dup2(fd, STDOUT_FILENO) < 0 || dup2(fd, STDERR_FILENO) < 0) _exit(99);
         exit(fn(ctx));
     }
     return pid;
 }
 
+/* Waits for a child. Returns its exit code, or 128 + signal. */
 static inline int child_wait(pid_t pid)
 {
     int status = 0;
@@ -155,12 +156,13 @@ static inline int child_wait(pid_t pid)
     return WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
 }
 
-/* The exit status, 128 + signal if it was killed; *said gets what it printed, the caller frees it. */
-static inline int child_run(int (*fn)(void *ctx), void *ctx, char **said)
+/* Runs fn(ctx) in a child. Returns its exit code, or 128 + signal if it was killed. *output gets what it printed; the
+ * caller frees it. */
+static inline int child_run(int (*fn)(void *ctx), void *ctx, char **output)
 {
     const int code = child_wait(child_start(fn, ctx));
 
-    *said = scratch_read(scratch_path("said"));
+    *output = scratch_read(scratch_path("output"));
     return code;
 }
 

@@ -1,5 +1,4 @@
-/* wall_scene.h - scenes of upright rectangles, such as a wall with a box before it, whose layers are made by ray
- * casting. */
+/* wall_scene.h - scenes of upright rectangles, for example a wall with a box in front of it; layers by ray casting. */
 #ifndef REMODEL_TESTS_WALL_SCENE_H
 #define REMODEL_TESTS_WALL_SCENE_H
 
@@ -15,23 +14,23 @@
 #include "common/film/subject_list.h"
 #include "common/layers/layer_scene.h"
 
-enum { W = 160, H = 120, TILE = 10, MOST_VIEWS = 16, MOST_RECTANGLES = 3 };
+enum { W = 160, H = 120, TILE = 10, MAX_VIEWS = 16, MAX_RECTANGLES = 3 };
 
-struct rectangle { /* faces -z: |x - cx| <= half_x, |y - cy| <= half_y at depth z of the world */
+struct rectangle { /* faces -z: |x - cx| <= half_x, |y - cy| <= half_y at world depth z */
     double cx, cy, z, half_x, half_y;
 };
 
 static const struct rectangle wall_and_box[] = {{0, 0, 10, 40, 40}, {0.5, 0.3, 6, 1.2, 1.5}};
 
 struct wall_scene {
-    struct view views[MOST_VIEWS];
+    struct view views[MAX_VIEWS];
     struct camera_set set;
-    struct layered_depth depths[MOST_VIEWS];
+    struct layered_depth depths[MAX_VIEWS];
     struct layer_scene scene;
-    struct vec3 ups[MOST_VIEWS];
+    struct vec3 ups[MAX_VIEWS];
 };
 
-/* A view at `center` looking at `target`, its y axis towards `down`. */
+/* Adds a view at `center` towards `target`, its y axis towards `down`. */
 static inline void add_view(struct wall_scene *f, struct vec3 center, struct vec3 target, struct vec3 down)
 {
     struct view *v = &f->views[f->set.view_count++];
@@ -49,7 +48,7 @@ static inline void add_straight(struct wall_scene *f, double x, double y, double
     add_view(f, vec3_make(x, y, z), vec3_make(x, y, z + 1), vec3_make(0, 1, 0));
 }
 
-/* The nearest rectangle along a pixel's ray, -1 none; *depth along the camera's axis. */
+/* The nearest rectangle along a pixel's ray, or -1; *depth is along the camera's axis. */
 static inline int hit(const struct view *v, double px, double py, const struct rectangle *r, int count, double *depth)
 {
     const struct vec3 d = vec3_sub(view_unproject(v, px, py, 1), v->center);
@@ -64,7 +63,7 @@ static inline int hit(const struct view *v, double px, double py, const struct r
     return best;
 }
 
-/* 1/z of the world plane z = Z in a view's pixels. */
+/* Coefficients of 1/z over a view's pixels, for the world plane z = world_z. */
 static inline void plane_in_view(const struct view *v, double world_z, double plane[3])
 {
     const struct vec3 n = mat3_apply(v->cam_from_world, vec3_make(0, 0, 1));
@@ -74,15 +73,15 @@ static inline void plane_in_view(const struct view *v, double world_z, double pl
     plane[2] = (n.z - n.x * v->cx / v->fx - n.y * v->cy / v->fy) / d;
 }
 
-/* Tiles of each rectangle are segments. */
+/* Makes the layers of a view; tiles of each rectangle are segments. */
 static inline void make_layers(struct layered_depth *l, const struct view *v, const struct rectangle *r, int count)
 {
     struct err err = ERR_INIT;
     const int columns = W / TILE, tiles = columns * (H / TILE);
-    int ids[MOST_RECTANGLES * (W / TILE) * (H / TILE)] = {0};
-    assert_true(count <= MOST_RECTANGLES);
+    int ids[MAX_RECTANGLES * (W / TILE) * (H / TILE)] = {0};
+    assert_true(count <= MAX_RECTANGLES);
     assert_int_equal(layered_depth_init(l, v->width, v->height, &err), ST_OK);
-    l->segments = calloc((size_t)tiles * MOST_RECTANGLES, sizeof *l->segments);
+    l->segments = calloc((size_t)tiles * MAX_RECTANGLES, sizeof *l->segments);
     assert_non_null(l->segments);
     for (int y = 0; y < H; y++)
         for (int x = 0; x < W; x++) {
@@ -113,7 +112,7 @@ static inline void finish(struct wall_scene *f, const struct rectangle *r, int c
 
 static inline struct vec3 row_of(struct mat3 m, int row) { return vec3_make(m.m[row][0], m.m[row][1], m.m[row][2]); }
 
-/* Upright, facing -z, as a view along z sees it. */
+/* An upright subject that faces -z. */
 static inline struct subject upright_subject(double x, double y, double z, double half_x, double half_y)
 {
     struct subject s = {.view = (char *)"view", .source = SUBJECT_USER, .x1 = 1, .y1 = 1, .depth = z};
@@ -124,7 +123,7 @@ static inline struct subject upright_subject(double x, double y, double z, doubl
     return s;
 }
 
-/* A camera that can film: a rotation, a lens, a centre that all fit together. */
+/* Checks that a view is valid for video: even size, orthonormal rotation, one focal length, consistent centre. */
 static inline void assert_camera(const struct view *v)
 {
     assert_true(v->width > 0 && v->width % 2 == 0 && v->height > 0 && v->height % 2 == 0);
@@ -134,7 +133,7 @@ static inline void assert_camera(const struct view *v)
     assert_true(vec3_length(c) < 1e-12 * (1 + vec3_length(v->center)));
 }
 
-/* Where a world point is in a camera's picture, from the principal point, px; it must be in front. */
+/* Distance of a projected world point from the principal point, px; the point must be in front of the camera. */
 static inline double off_axis(const struct view *v, struct vec3 point)
 {
     double u = 0, w = 0;

@@ -1,4 +1,4 @@
-/* recover.c - curves of cameras that are known must come back from exposures. */
+/* recover.c - known response curves are recovered from exposures. */
 #include "tests/unit/scratch.h"
 
 #include <math.h>
@@ -8,11 +8,11 @@
 
 enum { WIDTH = 480, HEIGHT = 320, EXPOSURES = 5 };
 
-typedef double curve(double light, int colour); /* sample of light, both in [0, 1] */
+typedef double curve(double light, int colour); /* the sample of light, both in [0, 1] */
 
 static double srgb(double light, int c) { return (void)c, (double)srgb_from_linear((float)light); }
 static double gamma_18(double light, int c) { return (void)c, pow(light, 1 / 1.8); }
-/* film: a toe, a shoulder, a black level of 5 %, colours apart */
+/* Film: a toe, a shoulder, a black level of 5 %, colours that differ. */
 static double film(double light, int c)
 {
     const double x = pow(light, 0.75 + 0.05 * c);
@@ -24,7 +24,7 @@ struct stack {
     double exposures[EXPOSURES];
 };
 
-/* Even patches of 12 px, radiance over five decades; noise of a step or so. */
+/* Uniform patches of 12 px, radiance over five decades. noise: in steps of 8 bits. */
 static void shoot(struct stack *s, curve *f, double step, double noise)
 {
     for (int k = 0; k < EXPOSURES; k++) {
@@ -45,19 +45,19 @@ static void shoot(struct stack *s, curve *f, double step, double noise)
     }
 }
 
-static void decide(struct response *r, char told[RESPONSE_TOLD], const struct stack *s, const char *how)
+static void decide(struct response *r, char summary[RESPONSE_SUMMARY], const struct stack *s, const char *how)
 {
-    struct places places = {0};
+    struct patches patches = {0};
     struct fit_params params = FIT_PARAMS_DEFAULT;
     struct err err = ERR_INIT;
     strcpy(params.response, how);
-    assert_ok(places_add(&places, s->photos, s->exposures, EXPOSURES, params.places, &err), err);
-    assert_ok(response_decide(r, told, &places, &params, &err), err);
-    print_message("%s\n", told);
-    places_release(&places);
+    assert_ok(patches_add(&patches, s->photos, s->exposures, EXPOSURES, params.max_patches, &err), err);
+    assert_ok(response_decide(r, summary, &patches, &params, &err), err);
+    print_message("%s\n", summary);
+    patches_release(&patches);
 }
 
-/* The largest relative error of light from sample `from` to `to`, both of 255, after the scale at 128 is taken out. */
+/* The largest relative error of light for samples `from` to `to` of 255, after scaling both to agree at 128. */
 static double worst_error(const struct response *r, curve *f, int from, int to)
 {
     double worst = 0;
@@ -80,23 +80,23 @@ static void release(struct stack *s)
     for (int k = 0; k < EXPOSURES; k++) photo_release(&s->photos[k]);
 }
 
-static void srgb_is_seen_to_be_srgb(void **state)
+static void srgb_photos_keep_the_srgb_curve(void **state)
 {
     struct response r;
     struct stack s;
-    char told[RESPONSE_TOLD];
+    char summary[RESPONSE_SUMMARY];
     (void)state;
     shoot(&s, srgb, 4, 1);
-    decide(&r, told, &s, "auto");
+    decide(&r, summary, &s, "auto");
     assert_false(r.table);
-    assert_contains(told, "the sRGB curve: ratios of exposures vary by");
-    s.exposures[3] *= 1.3; /* a wrong exposure is no other curve */
+    assert_contains(summary, "sRGB: exposure ratios vary by");
+    s.exposures[3] *= 1.3; /* a wrong exposure does not change the curve */
     s.exposures[4] *= 1.3;
-    decide(&r, told, &s, "auto");
+    decide(&r, summary, &s, "auto");
     assert_false(r.table);
     s.exposures[3] /= 1.3;
     s.exposures[4] /= 1.3;
-    decide(&r, told, &s, "recover");
+    decide(&r, summary, &s, "recover");
     assert_true(r.table);
     const double worst = worst_error(&r, srgb, 20, 250);
     print_message("sRGB recovered: worst error %.4f\n", worst);
@@ -104,59 +104,59 @@ static void srgb_is_seen_to_be_srgb(void **state)
     release(&s);
 }
 
-/* Up to where merging begins to trust samples less, 226. */
-static void other_curves_come_back(void **state)
+/* Up to 226, where the weights of the merge begin to fall. */
+static void other_curves_are_recovered(void **state)
 {
     static const struct {
         const char *name;
         curve *f;
         double step;
         int from;
-        double most;
+        double max_error;
     } cases[] = {
         {"gamma 1.8", gamma_18, 4, 20, 0.03}, {"film", film, 2, 40, 0.05}, {"film, 2 stops", film, 4, 40, 0.05}};
     struct response r;
-    char told[RESPONSE_TOLD];
+    char summary[RESPONSE_SUMMARY];
     (void)state;
     for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
         struct stack s;
         shoot(&s, cases[n].f, cases[n].step, 1);
-        decide(&r, told, &s, "auto");
+        decide(&r, summary, &s, "auto");
         assert_true(r.table);
-        assert_contains(told, "recovered from the exposures");
+        assert_contains(summary, "recovered: ");
         const double worst = worst_error(&r, cases[n].f, cases[n].from, 226);
         print_message("%s: worst error %.4f\n", cases[n].name, worst);
-        assert_true(worst < cases[n].most);
+        assert_true(worst < cases[n].max_error);
         for (int c = 0; c < 3; c++)
             for (int z = 1; z < RESPONSE_LEVELS; z++) assert_true(r.light[c][z] > r.light[c][z - 1]);
-        decide(&r, told, &s, "srgb");
+        decide(&r, summary, &s, "srgb");
         assert_false(r.table);
         release(&s);
     }
 }
 
-static void too_little_is_told(void **state)
+static void too_few_patches_are_reported(void **state)
 {
-    struct places none = {0};
+    struct patches none = {0};
     struct response r;
     struct fit_params params = FIT_PARAMS_DEFAULT;
     struct err err = ERR_INIT;
-    char told[RESPONSE_TOLD];
+    char summary[RESPONSE_SUMMARY];
     (void)state;
-    assert_ok(response_decide(&r, told, &none, &params, &err), err);
+    assert_ok(response_decide(&r, summary, &none, &params, &err), err);
     assert_false(r.table);
-    assert_contains(told, "too few places");
+    assert_contains(summary, "too few patches");
     strcpy(params.response, "recover");
-    assert_int_equal(response_decide(&r, told, &none, &params, &err), ST_DATA);
-    assert_err(err, ST_DATA, "too few places are well exposed in two photos");
+    assert_int_equal(response_decide(&r, summary, &none, &params, &err), ST_DATA);
+    assert_err(err, ST_DATA, "too few patches are well exposed in two photos");
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(srgb_is_seen_to_be_srgb),
-        cmocka_unit_test(other_curves_come_back),
-        cmocka_unit_test(too_little_is_told),
+        cmocka_unit_test(srgb_photos_keep_the_srgb_curve),
+        cmocka_unit_test(other_curves_are_recovered),
+        cmocka_unit_test(too_few_patches_are_reported),
     };
     return cmocka_run_group_tests_name("recover", tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-/* align.c - exposures with known shifts against each other. */
+/* align.c - exposures with known shifts. */
 #include "tests/unit/scratch.h"
 
 #include <math.h>
@@ -9,7 +9,7 @@
 
 enum { WIDTH = 320, HEIGHT = 240 };
 
-/* Radiance of a room of boxes and noise; finer than the shifts, four decades of it. */
+/* Radiance of boxes and noise over four decades, with detail finer than the shifts. */
 static double scene(int x, int y)
 {
     const int bx = (x + 4096) / 23, by = (y + 4096) / 17;
@@ -24,7 +24,7 @@ struct stack {
     int count;
 };
 
-/* Exposure k shows the scene's (x - dx, y - dy) at (x, y); noise in steps of 8 bits. */
+/* Exposure k shows (x - dx, y - dy) of the scene at (x, y). noise: in steps of 8 bits. */
 static void shoot(struct stack *s, int count, double shortest, double step, const struct shift *shifts, double noise)
 {
     *s = (struct stack){.count = count};
@@ -51,18 +51,18 @@ static void release(struct stack *s)
     for (int k = 0; k < s->count; k++) photo_release(&s->photos[k]);
 }
 
-static void expect(const struct stack *s, int middle, int most, const struct shift *wanted)
+static void expect(const struct stack *s, int middle, int max_shift, const struct shift *wanted)
 {
     const struct response srgb = {0};
     const struct brackets b = {s->photos, s->exposures, s->count, &srgb, NULL};
     struct alignment a;
     struct err err = ERR_INIT;
-    assert_ok(align_brackets(&a, &b, middle, most, &err), err);
+    assert_ok(align_brackets(&a, &b, middle, max_shift, &err), err);
     for (int k = 0; k < s->count; k++) {
         const int dx = wanted[k].dx - wanted[middle].dx, dy = wanted[k].dy - wanted[middle].dy;
         if (a.shifts[k].dx != dx || a.shifts[k].dy != dy)
             fail_msg("exposure %d: found %d, %d, wanted %d, %d", k, a.shifts[k].dx, a.shifts[k].dy, dx, dy);
-        assert_true(a.told[k]);
+        assert_true(a.found[k]);
     }
 }
 
@@ -86,8 +86,8 @@ static void known_shifts_are_found(void **state)
         }
 }
 
-/* Eight exposures drift; each is compared with its neighbour, so that the sum may be larger than what is looked for. */
-static void a_drift_adds_up(void **state)
+/* Each of eight drifting exposures is compared with its neighbour; the sum may exceed max_shift. */
+static void shifts_of_neighbours_add_up(void **state)
 {
     struct shift shifts[8];
     struct stack s;
@@ -98,7 +98,7 @@ static void a_drift_adds_up(void **state)
     release(&s);
 }
 
-static void what_cannot_be_compared_stays(void **state)
+static void exposures_without_contrast_are_not_shifted(void **state)
 {
     const struct shift none[3] = {{0, 0}, {0, 0}, {0, 0}};
     const struct response srgb = {0};
@@ -109,17 +109,17 @@ static void what_cannot_be_compared_stays(void **state)
     shoot(&s, 3, 1e-9, 1e9, none, 0); /* black, white, white */
     const struct brackets b = {s.photos, s.exposures, 3, &srgb, NULL};
     assert_ok(align_brackets(&a, &b, 1, 16, &err), err);
-    for (int k = 0; k < 3; k++) assert_true(!a.shifts[k].dx && !a.shifts[k].dy && a.told[k] == (k == 1));
+    for (int k = 0; k < 3; k++) assert_true(!a.shifts[k].dx && !a.shifts[k].dy && a.found[k] == (k == 1));
     release(&s);
-    shoot(&s, 2, 0.5, 4, none, 250); /* nothing but noise: no shift is made of it */
+    shoot(&s, 2, 0.5, 4, none, 250); /* only noise: no shift */
     const struct brackets noise = {s.photos, s.exposures, 2, &srgb, NULL};
     assert_ok(align_brackets(&a, &noise, 0, 16, &err), err);
     assert_true(!a.shifts[1].dx && !a.shifts[1].dy);
     release(&s);
 }
 
-/* A shifted stack merges to what an unshifted one does, and without correction does not. */
-static void merging_follows_the_shifts(void **state)
+/* A shifted stack merges to the same radiance as an unshifted one, and without correction does not. */
+static void merging_applies_the_shifts(void **state)
 {
     const struct shift none[3] = {{0, 0}, {0, 0}, {0, 0}}, moved[3] = {{-7, 5}, {0, 0}, {13, 2}};
     const struct response srgb = {0};
@@ -145,7 +145,7 @@ static void merging_follows_the_shifts(void **state)
             for (int i = 0; i < 3; i++)
                 assert_true(isfinite(found.radiance.data[3 * at + i]) && found.radiance.data[3 * at + i] >= 0);
             assert_true(found.variance[at] > 0 && found.variance[at] <= 1);
-            if (x < 7 || x >= WIDTH - 13 || y < 0 || y >= HEIGHT - 5) continue; /* some exposure does not show it */
+            if (x < 7 || x >= WIDTH - 13 || y < 0 || y >= HEIGHT - 5) continue; /* outside of some exposure */
             for (int i = 0; i < 3; i++) {
                 differ += found.radiance.data[3 * at + i] != wanted.radiance.data[3 * at + i];
                 differ_wrong += wrong.radiance.data[3 * at + i] != wanted.radiance.data[3 * at + i];
@@ -164,9 +164,9 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(known_shifts_are_found),
-        cmocka_unit_test(a_drift_adds_up),
-        cmocka_unit_test(what_cannot_be_compared_stays),
-        cmocka_unit_test(merging_follows_the_shifts),
+        cmocka_unit_test(shifts_of_neighbours_add_up),
+        cmocka_unit_test(exposures_without_contrast_are_not_shifted),
+        cmocka_unit_test(merging_applies_the_shifts),
     };
     return cmocka_run_group_tests_name("align", tests, NULL, NULL);
 }

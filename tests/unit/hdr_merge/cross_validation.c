@@ -1,8 +1,7 @@
-/* cross_validation.c - a response and radiance that are fitted to every other exposure of a real scene must predict the
- * others.
+/* cross_validation.c - response and radiance fitted to every other exposure of a real scene predict the others.
  *
- * ../shared/data/brackets-memorial is the church of Debevec and Malik, 16 exposures a stop apart, scanned from film: no
- * sRGB curve. */
+ * ../shared/data/brackets-memorial is the church of [Debevec 1997]: 16 exposures one stop apart, scanned from film,
+ * which does not follow the sRGB curve. */
 #include "tests/unit/scratch.h"
 
 #include <math.h>
@@ -12,7 +11,7 @@
 #include "stages/hdr_merge/merge.h"
 #include "stages/import_photos/exposure_list.h"
 
-struct stack { /* from the shortest exposure on */
+struct stack { /* exposures ascending */
     struct photo photos[MERGE_MOST];
     double exposures[MERGE_MOST];
     int count;
@@ -25,12 +24,12 @@ static void read_stack(struct stack *s, const char *folder)
     char path[300];
     *s = (struct stack){0};
     if (access(folder, R_OK)) {
-        print_message("%s is not there\n", folder);
+        print_message("%s does not exist\n", folder);
         skip();
     }
     snprintf(path, sizeof path, "%s/exposures.txt", folder);
     assert_ok(exposure_list_read(&list, path, &err), err);
-    for (int i = list.count - 1; i >= 0; i--, s->count++) { /* the list begins with the longest */
+    for (int i = list.count - 1; i >= 0; i--, s->count++) { /* the list has the longest first */
         snprintf(path, sizeof path, "%s/%s", folder, list.lines[i].file);
         assert_ok(photo_read(&s->photos[s->count], path, &err), err);
         s->exposures[s->count] = exposure_value(&list.lines[i].exposure);
@@ -41,8 +40,8 @@ static void read_stack(struct stack *s, const char *folder)
 
 static double luminance(const float *rgb) { return 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2]; }
 
-/* Relative errors of the luminance that `merged` predicts for an exposure t, of its well exposed pixels: no colour near
- * saturation, the pixel brighter than a twentieth of white, as in the comparisons with truth. */
+/* Relative errors of the luminance that `merged` predicts at exposure t, for well exposed pixels: no colour near
+ * saturation, brighter than a twentieth of white, as in the comparisons with truth. */
 static size_t compare(double *errors, const struct merged *merged, const struct photo *p, double t,
                       const struct response *response)
 {
@@ -59,7 +58,7 @@ static size_t compare(double *errors, const struct merged *merged, const struct 
     return n;
 }
 
-/* Fits to the exposures whose index is `odd` mod 2 and predicts the others; the median error over all of them. */
+/* Fits to the exposures of index `odd` mod 2 and predicts the others; returns the median error. */
 static double predict(const struct stack *s, int odd)
 {
     struct photo fitted[MERGE_MOST];
@@ -68,21 +67,21 @@ static double predict(const struct stack *s, int odd)
     int count = 0;
     const struct fit_params fit = FIT_PARAMS_DEFAULT;
     const struct merge_params params = MERGE_PARAMS_DEFAULT;
-    struct places places = {0};
+    struct patches patches = {0};
     struct response response;
     struct merged merged = {0};
     struct noise noise[MERGE_MOST], measured;
     bool known = false;
     struct err err = ERR_INIT;
-    char told[RESPONSE_TOLD];
+    char summary[RESPONSE_SUMMARY];
     for (int k = odd; k < s->count; k += 2, count++) {
         fitted[count] = s->photos[k];
         exposures[count] = s->exposures[k] / scale;
     }
     const struct brackets b = {fitted, exposures, count, &response, NULL};
-    assert_ok(places_add(&places, fitted, exposures, count, fit.places, &err), err);
-    assert_ok(response_decide(&response, told, &places, &fit, &err), err);
-    print_message("samples follow light by %s\n", told);
+    assert_ok(patches_add(&patches, fitted, exposures, count, fit.max_patches, &err), err);
+    assert_ok(response_decide(&response, summary, &patches, &fit, &err), err);
+    print_message("response curve: %s\n", summary);
     assert_true(response.table);
     assert_ok(noise_measure(&measured, &known, &b, &err), err);
     for (int k = 0; k < count; k++) noise[k] = known ? measured : noise_given(&params, &response, 8);
@@ -106,11 +105,11 @@ static double predict(const struct stack *s, int odd)
     print_message("  median error %.4f of %zu pixels\n", median, all);
     free(errors);
     merged_release(&merged);
-    places_release(&places);
+    patches_release(&patches);
     return median;
 }
 
-static void memorial_predicts_what_is_left_out(void **state)
+static void memorial_predicts_held_out_exposures(void **state)
 {
     struct stack s;
     (void)state;
@@ -119,8 +118,8 @@ static void memorial_predicts_what_is_left_out(void **state)
     for (int k = 0; k < s.count; k++) photo_release(&s.photos[k]);
 }
 
-/* Its list of times is not what the photos show: those of 1 and 0.5 s, and more pairs, are equally bright. */
-static void living_room_is_seen_to_be_stated_wrongly(void **state)
+/* The stated times are wrong: the photos of 1 s and 0.5 s, and other pairs, are equally bright. */
+static void living_room_has_wrong_exposures(void **state)
 {
     struct stack s;
     struct exposure_agreement worst;
@@ -130,16 +129,17 @@ static void living_room_is_seen_to_be_stated_wrongly(void **state)
     read_stack(&s, "../shared/data/brackets-living-room");
     const struct brackets b = {s.photos, s.exposures, s.count, &srgb, NULL};
     assert_ok(merge_agreement(&worst, &b, &err), err);
-    print_message("exposure %d: stated %.3g times the one before, seen %.3g\n", worst.pair, worst.stated, worst.seen);
-    assert_true(worst.pair > 0 && worst.seen < 1.1 && worst.stated > 1.9);
+    print_message("exposure %d: stated %.3g times the one before, measured %.3g\n", worst.pair, worst.stated,
+                  worst.measured);
+    assert_true(worst.pair > 0 && worst.measured < 1.1 && worst.stated > 1.9);
     for (int k = 0; k < s.count; k++) photo_release(&s.photos[k]);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(memorial_predicts_what_is_left_out),
-        cmocka_unit_test(living_room_is_seen_to_be_stated_wrongly),
+        cmocka_unit_test(memorial_predicts_held_out_exposures),
+        cmocka_unit_test(living_room_has_wrong_exposures),
     };
     return cmocka_run_group_tests_name("cross_validation", tests, NULL, NULL);
 }

@@ -1,10 +1,9 @@
-/* merge.c - brackets of known radiance, made as a camera makes them, must give that radiance back.
+/* merge.c - simulated brackets of known radiance merge to that radiance.
  *
- * The camera here: value = sRGB(clip(radiance x exposure + noise)), rounded to 8 bits. Rounding alone is an error of
- * half a step: 1.6 % of the value at code 70, a sixteenth of white's light, which is the least of the best exposed
- * samples on the ramp. There a sensor of 50000 electrons has noise of 1.8 % (one sigma), of 5000 electrons 5.8 %; the
- * largest of some 10 000 such samples is 4 to 5 sigma away.
- */
+ * The simulated camera: value = sRGB(clip(radiance x exposure + noise)), rounded to 8 bits. Rounding alone is an error
+ * of half a step: 1.6 % of the value at code 70, a sixteenth of white, the darkest of the best exposed samples on the
+ * ramp. There a sensor of 50000 electrons has noise of 1.8 % (one sigma), one of 5000 electrons 5.8 %; the largest
+ * error of some 10 000 samples is 4 to 5 sigma. */
 #include "tests/unit/scratch.h"
 
 #include <math.h>
@@ -23,15 +22,15 @@ struct shot {
     int count;
 };
 
-/* Radiance of a pixel: from `least` at the left to `most` at the right, geometrically; the three colours differ. */
-static double ramp(int i, int c, double least, double most)
+/* Radiance of a pixel: a geometric ramp from `min` at the left to `max` at the right; the three colours differ. */
+static double ramp(int i, int c, double min, double max)
 {
     double tint[3] = {1, 0.8, 0.6};
-    return least * pow(most / least, (i % WIDTH) / (WIDTH - 1.0)) * tint[c];
+    return min * pow(max / min, (i % WIDTH) / (WIDTH - 1.0)) * tint[c];
 }
 
 /* electrons: the full well, 0 for no noise. */
-static void shoot(struct shot *b, int count, double shortest, double step, double least, double most, double electrons)
+static void shoot(struct shot *b, int count, double shortest, double step, double min, double max, double electrons)
 {
     *b = (struct shot){.count = count};
     for (int k = 0; k < count; k++) {
@@ -42,8 +41,8 @@ static void shoot(struct shot *b, int count, double shortest, double step, doubl
         assert_non_null(b->photos[k].samples);
         for (int i = 0; i < PIXELS; i++)
             for (int c = 0; c < 3; c++) {
-                double v = ramp(i, c, least, most) * b->exposures[k];
-                if (electrons > 0) { /* photons, and reading: 5 electrons */
+                double v = ramp(i, c, min, max) * b->exposures[k];
+                if (electrons > 0) { /* photon noise, and read noise of 5 electrons */
                     double n = 0;
                     for (uint32_t j = 0; j < 12; j++)
                         n += rng_uniform(&rng, (uint64_t)(3 * i + c) * 16 + j, (uint32_t)k) - 0.5;
@@ -89,11 +88,11 @@ static double quantile(double *values, size_t count, double q)
     return values[(size_t)(q * (double)(count - 1))];
 }
 
-/* Nine brackets two stops apart cover 1e5:1 with two well exposed samples or more. */
-static void a_ramp_of_1e5_comes_back(void **state)
+/* Nine exposures two stops apart cover 1e5:1 with at least two well exposed samples. */
+static void a_ramp_of_1e5_is_recovered(void **state)
 {
-    const double noise[] = {0, 50000, 5000}, most_error[] = {0.02, 0.1, 0.3}, most_median[] = {0.004, 0.008, 0.02},
-                 most_bias[] = {0.001, 0.001, 0.003};
+    const double noise[] = {0, 50000, 5000}, max_error[] = {0.02, 0.1, 0.3}, max_median[] = {0.004, 0.008, 0.02},
+                 max_bias[] = {0.001, 0.001, 0.003};
     static double errors[3 * PIXELS];
     (void)state;
     for (int n = 0; n < 3; n++) {
@@ -112,14 +111,14 @@ static void a_ramp_of_1e5_comes_back(void **state)
         double median = quantile(errors, 3 * PIXELS, 0.5), worst = errors[3 * PIXELS - 1];
         print_message("noise of %g electrons: median error %.4f, largest %.4f, bias %.5f\n", noise[n], median, worst,
                       bias);
-        assert_true(median < most_median[n] && worst < most_error[n] && fabs(bias) < most_bias[n]);
+        assert_true(median < max_median[n] && worst < max_error[n] && fabs(bias) < max_bias[n]);
         merged_release(&out);
         release(&b);
     }
 }
 
-/* A ramp from below what the longest exposure can tell to above what the shortest can. */
-static void what_no_exposure_tells_is_bounded_and_marked(void **state)
+/* A ramp from below the range of the longest exposure to above that of the shortest. */
+static void saturated_and_dark_pixels_are_bounded_and_marked(void **state)
 {
     struct shot b;
     (void)state;
@@ -130,7 +129,7 @@ static void what_no_exposure_tells_is_bounded_and_marked(void **state)
         const float *rgb = image_at(&out.radiance, x, 5);
         for (int c = 0; c < 3; c++) truth[c] = ramp(x, c, 1e-7, 1e3);
         int mark = out.marks[5 * WIDTH + x];
-        if (truth[2] > 4) { /* all colours saturate in the shortest: radiance 1 / 0.25 is what it shows */
+        if (truth[2] > 4) { /* all colours saturate in the shortest exposure, at radiance 1 / 0.25 */
             assert_int_equal(mark, MERGE_BRIGHT);
             for (int c = 0; c < 3; c++) assert_float_equal(rgb[c], 4, 1e-6);
         }
@@ -147,7 +146,8 @@ static void what_no_exposure_tells_is_bounded_and_marked(void **state)
     release(&b);
 }
 
-/* Between an exposure and one through a strong filter there is radiance that one cuts and the other does not see. */
+/* Radiance between the ranges of two exposures: one clips it, for the other (through a strong filter) it is too
+ * dark. */
 static void a_gap_between_exposures_is_bounded_from_below(void **state)
 {
     struct shot b;
@@ -182,7 +182,7 @@ static void a_saturated_colour_does_not_spoil_the_others(void **state)
     release(&b);
 }
 
-static void one_exposure_is_the_photo_in_linear_light(void **state)
+static void a_single_exposure_is_the_linear_photo(void **state)
 {
     struct shot b;
     struct image linear;
@@ -200,8 +200,8 @@ static void one_exposure_is_the_photo_in_linear_light(void **state)
     release(&b);
 }
 
-/* 16-bit photos beside 8-bit ones, and no light at all. */
-static void depths_may_differ_and_black_is_black(void **state)
+/* 16-bit photos with 8-bit ones, and black. */
+static void bit_depths_may_differ_and_black_stays_black(void **state)
 {
     struct shot b;
     (void)state;
@@ -220,7 +220,7 @@ static void depths_may_differ_and_black_is_black(void **state)
     release(&b);
 }
 
-static void threads_do_not_matter(void **state)
+static void the_result_does_not_depend_on_threads(void **state)
 {
     struct shot b;
     struct merged out[2];
@@ -245,19 +245,19 @@ static void agreement(struct exposure_agreement *worst, const struct shot *b, in
     assert_ok(merge_agreement(worst, &brackets, &err), err);
 }
 
-static void exposures_that_do_not_agree_are_seen(void **state)
+static void disagreeing_exposures_are_found(void **state)
 {
     struct shot b;
     struct exposure_agreement worst;
     (void)state;
     shoot(&b, 4, 0.25, 4, 1e-3, 3, 0);
     agreement(&worst, &b, 4);
-    assert_true(worst.pair > 0 && fabs(worst.seen / worst.stated - 1) < 0.01);
-    b.exposures[2] *= 2; /* and the next: 8 times the one before is stated */
+    assert_true(worst.pair > 0 && fabs(worst.measured / worst.stated - 1) < 0.01);
+    b.exposures[2] *= 2; /* now 8 times the one before is stated */
     b.exposures[3] *= 2;
     agreement(&worst, &b, 4);
     assert_int_equal(worst.pair, 2);
-    assert_true(fabs(worst.stated - 8) < 1e-9 && fabs(worst.seen - 4) < 0.05);
+    assert_true(fabs(worst.stated - 8) < 1e-9 && fabs(worst.measured - 4) < 0.05);
     agreement(&worst, &b, 1);
     assert_int_equal(worst.pair, 0);
     release(&b);
@@ -267,7 +267,7 @@ static void exposures_that_do_not_agree_are_seen(void **state)
     release(&b);
 }
 
-static void bad_input_is_refused(void **state)
+static void invalid_input_is_refused(void **state)
 {
     struct shot b;
     struct merged out;
@@ -291,18 +291,19 @@ static void bad_input_is_refused(void **state)
     release(&b);
 }
 
-/* ------------------------------------------------------------------------------------------------ photos with truth */
+/* ------------------------------------------------------------------------------------------------ photos with known
+ * radiance */
 
 struct errors {
-    double *colour, *luma, *block; /* relative, of samples, of pixels, of colours of 2 x 2 pixels */
+    double *colour, *luma, *block; /* relative errors: of samples, of pixels, of colours of 2 x 2 pixels */
     size_t colours, lumas, blocks, pixels;
-    double bias, within; /* mean of colours' errors; part of the pixels whose luminance is within 3 sigma */
+    double bias, within; /* mean of colours' errors; fraction of pixels whose luminance is within 3 sigma */
 };
 
 static double luminance(const double x[3]) { return 0.2126 * x[0] + 0.7152 * x[1] + 0.0722 * x[2]; }
 
-/* Of what an exposure shows well: no colour of the pixel comes near saturation in it, and what is compared is brighter
- * than a twentieth of white. */
+/* Compares well exposed samples: no colour of the pixel is near saturation, and the value is above a twentieth of
+ * white. */
 static void find_errors(struct errors *e, const struct merged *m, const struct exr_image *truth,
                         const double *exposures, int count)
 {
@@ -318,15 +319,15 @@ static void find_errors(struct errors *e, const struct merged *m, const struct e
             double true_sum[3] = {0}, sum[3] = {0}, brightest = 0;
             for (int i = 0; i < 4; i++) {
                 const size_t at = (size_t)(y + i / 2) * (size_t)width + (size_t)(x + i % 2);
-                double is[3], rgb[3], most = 0, longest = 0;
+                double is[3], rgb[3], max = 0, longest = 0;
                 for (int c = 0; c < 3; c++) {
                     true_sum[c] += is[c] = exr_find(truth, names[c])->f[at];
                     sum[c] += rgb[c] = m->radiance.data[3 * at + (size_t)c];
-                    most = fmax(most, is[c]);
+                    max = fmax(max, is[c]);
                 }
-                brightest = fmax(brightest, most);
+                brightest = fmax(brightest, max);
                 for (int k = 0; k < count; k++)
-                    if (most * exposures[k] < 0.76) longest = exposures[k];
+                    if (max * exposures[k] < 0.76) longest = exposures[k];
                 for (int c = 0; c < 3; c++) {
                     if (is[c] * longest < 0.05) continue;
                     e->colour[e->colours] = fabs(rgb[c] / is[c] - 1);
@@ -348,13 +349,13 @@ static void find_errors(struct errors *e, const struct merged *m, const struct e
     e->within /= (double)e->lumas;
 }
 
-/* exposures: relative to those that make it white. colours: whether the JPEGs hold every pixel's colour. */
+/* exposures: relative to that of white. colours: do the JPEGs have full chroma resolution? */
 static void compare_with_truth(const char *folder, const char *const *views, int view_count, const double *exposures,
                                int count, bool colours)
 {
     static const char *const names[] = {"R", "G", "B"};
     if (access(folder, R_OK)) {
-        print_message("%s is not there\n", folder);
+        print_message("%s does not exist\n", folder);
         skip();
     }
     for (int n = 0; n < view_count; n++) {
@@ -398,8 +399,8 @@ static void compare_with_truth(const char *folder, const char *const *views, int
     }
 }
 
-/* Photos of a flat that exists only in a renderer. */
-static void rendered_brackets_give_the_true_radiance(void **state)
+/* Rendered photos of a flat. */
+static void rendered_brackets_merge_to_the_true_radiance(void **state)
 {
     static const char *const views[] = {"v00", "v05", "v15", "v24"};
     const double exposures[] = {120.0 / 500, 120.0 / 125, 120.0 / 30};
@@ -407,8 +408,8 @@ static void rendered_brackets_give_the_true_radiance(void **state)
     compare_with_truth("../shared/data/apartment", views, 4, exposures, 3, true);
 }
 
-/* The built-in scene, if it has been run: its gain is 60 at f/8 and ISO 100. Its JPEGs hold colours of 2 x 2 pixels. */
-static void simulated_brackets_give_the_true_radiance(void **state)
+/* The built-in scene, if it has been run: gain 60 at f/8 and ISO 100. Its JPEGs subsample chroma 2 x 2. */
+static void simulated_brackets_merge_to_the_true_radiance(void **state)
 {
     static const char *const views[] = {"v00", "v06", "v12", "v20"};
     const double exposures[] = {60.0 / 240, 60.0 / 60, 60.0 / 15};
@@ -419,17 +420,17 @@ static void simulated_brackets_give_the_true_radiance(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_ramp_of_1e5_comes_back),
-        cmocka_unit_test(what_no_exposure_tells_is_bounded_and_marked),
+        cmocka_unit_test(a_ramp_of_1e5_is_recovered),
+        cmocka_unit_test(saturated_and_dark_pixels_are_bounded_and_marked),
         cmocka_unit_test(a_gap_between_exposures_is_bounded_from_below),
         cmocka_unit_test(a_saturated_colour_does_not_spoil_the_others),
-        cmocka_unit_test(one_exposure_is_the_photo_in_linear_light),
-        cmocka_unit_test(depths_may_differ_and_black_is_black),
-        cmocka_unit_test(threads_do_not_matter),
-        cmocka_unit_test(exposures_that_do_not_agree_are_seen),
-        cmocka_unit_test(bad_input_is_refused),
-        cmocka_unit_test(rendered_brackets_give_the_true_radiance),
-        cmocka_unit_test(simulated_brackets_give_the_true_radiance),
+        cmocka_unit_test(a_single_exposure_is_the_linear_photo),
+        cmocka_unit_test(bit_depths_may_differ_and_black_stays_black),
+        cmocka_unit_test(the_result_does_not_depend_on_threads),
+        cmocka_unit_test(disagreeing_exposures_are_found),
+        cmocka_unit_test(invalid_input_is_refused),
+        cmocka_unit_test(rendered_brackets_merge_to_the_true_radiance),
+        cmocka_unit_test(simulated_brackets_merge_to_the_true_radiance),
     };
     return cmocka_run_group_tests_name("merge", tests, NULL, NULL);
 }

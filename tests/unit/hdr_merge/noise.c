@@ -1,4 +1,4 @@
-/* noise.c - noise of a known sensor is measured from its exposures, and what the merge says of its variance is true. */
+/* noise.c - noise of a known sensor is measured, and the variance of the merge matches its error. */
 #include "tests/unit/scratch.h"
 
 #include <math.h>
@@ -19,10 +19,11 @@ static double normal(const struct rng *rng, uint64_t i, uint32_t k)
     return sqrt(-2 * log(1 - a)) * cos(2 * 3.14159265358979323846 * b);
 }
 
-static double ramp(int i, double least, double most) { return least * pow(most / least, (i % WIDTH) / (WIDTH - 1.0)); }
+static double ramp(int i, double min, double max) { return min * pow(max / min, (i % WIDTH) / (WIDTH - 1.0)); }
 
-/* 16-bit samples, or values where linear: nothing is lost by rounding. Electrons of a well and of reading. */
-static void shoot(struct stack *s, double electrons, double reading, double least, double most, bool linear)
+/* 16-bit samples, or values if linear: rounding is negligible. electrons: full well; reading: read noise in
+ * electrons. */
+static void shoot(struct stack *s, double electrons, double reading, double min, double max, bool linear)
 {
     const struct rng rng = rng_make(11, "noise", "test");
     for (int k = 0; k < COUNT; k++) {
@@ -35,7 +36,7 @@ static void shoot(struct stack *s, double electrons, double reading, double leas
             s->photos[k].samples = malloc(sizeof(uint16_t) * 3 * PIXELS);
         assert_true(s->photos[k].values || s->photos[k].samples);
         for (int i = 0; i < 3 * PIXELS; i++) {
-            const double v = ramp(i / 3, least, most) * s->exposures[k];
+            const double v = ramp(i / 3, min, max) * s->exposures[k];
             const double seen =
                 v + normal(&rng, (uint64_t)i, (uint32_t)k) * sqrt(v * electrons + reading * reading) / electrons;
             if (linear)
@@ -51,7 +52,7 @@ static void release(struct stack *s)
     for (int k = 0; k < COUNT; k++) photo_release(&s->photos[k]);
 }
 
-static void a_sensor_s_noise_is_measured(void **state)
+static void sensor_noise_is_measured(void **state)
 {
     static const struct {
         double electrons, reading;
@@ -77,8 +78,8 @@ static void a_sensor_s_noise_is_measured(void **state)
         }
 }
 
-/* The mean square of the errors over the variance that is told is 1, level by level. */
-static void the_variance_is_true(void **state)
+/* The mean of squared error over stated variance is 1 at each level. */
+static void merged_variance_matches_the_error(void **state)
 {
     enum { LEVELS = 8 };
     const struct response srgb = {0};
@@ -92,7 +93,7 @@ static void the_variance_is_true(void **state)
     (void)state;
     params.electrons = 5000;
     params.read_noise = 20;
-    params.dark = 0; /* what is below counts too: no cut that would bend the noise */
+    params.dark = 0; /* dark samples count too: a cut would distort the noise */
     shoot(&s, 5000, 20, 5e-3, 2.5, true);
     for (int k = 0; k < COUNT; k++) noise[k] = noise_given(&params, &srgb, 32);
     const struct brackets b = {s.photos, s.exposures, COUNT, &srgb, NULL};
@@ -112,7 +113,7 @@ static void the_variance_is_true(void **state)
     release(&s);
 }
 
-static void nothing_to_measure_by(void **state)
+static void too_few_samples_give_no_measurement(void **state)
 {
     const struct response srgb = {0};
     struct stack s;
@@ -130,8 +131,8 @@ static void nothing_to_measure_by(void **state)
     release(&s);
 }
 
-/* 1e6:1 in eight bits and seven exposures: nothing is lost at either end, and nothing is NaN, negative or cut. */
-static void six_decades(void **state)
+/* 1e6:1 in eight bits and seven exposures: both ends are kept, and nothing is NaN, negative or clipped. */
+static void noise_is_measured_over_six_decades(void **state)
 {
     enum { SHOTS = 7 };
     const struct response srgb = {0};
@@ -179,10 +180,10 @@ static void six_decades(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_sensor_s_noise_is_measured),
-        cmocka_unit_test(the_variance_is_true),
-        cmocka_unit_test(nothing_to_measure_by),
-        cmocka_unit_test(six_decades),
+        cmocka_unit_test(sensor_noise_is_measured),
+        cmocka_unit_test(merged_variance_matches_the_error),
+        cmocka_unit_test(too_few_samples_give_no_measurement),
+        cmocka_unit_test(noise_is_measured_over_six_decades),
     };
     return cmocka_run_group_tests_name("noise", tests, NULL, NULL);
 }

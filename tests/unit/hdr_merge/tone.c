@@ -1,4 +1,4 @@
-/* tone.c - tone-mapped pictures: detail in dark and bright parts, the same for the same light, whatever the threads. */
+/* tone.c - tone mapping keeps detail in dark and bright parts and is deterministic. */
 #include "tests/unit/scratch.h"
 
 #include <math.h>
@@ -8,7 +8,7 @@
 
 enum { WIDTH = 400, HEIGHT = 300 };
 
-/* A checker of 20 % contrast; the right half is `times` brighter. */
+/* A checkerboard of 20 % contrast; the right half is `times` brighter. */
 static void paint(struct image *im, double dark, double times)
 {
     struct err err = ERR_INIT;
@@ -54,7 +54,7 @@ static void dark_and_bright_parts_keep_their_detail(void **state)
     }
 }
 
-static void any_radiance_has_a_picture(void **state)
+static void any_radiance_can_be_mapped(void **state)
 {
     struct image im;
     struct err err = ERR_INIT;
@@ -74,7 +74,7 @@ static void any_radiance_has_a_picture(void **state)
     image_release(&im);
 }
 
-static void threads_do_not_matter(void **state)
+static void the_result_does_not_depend_on_threads(void **state)
 {
     struct image im;
     unsigned char *rgb[2];
@@ -95,8 +95,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(dark_and_bright_parts_keep_their_detail),
-        cmocka_unit_test(any_radiance_has_a_picture),
-        cmocka_unit_test(threads_do_not_matter),
+        cmocka_unit_test(any_radiance_can_be_mapped),
+        cmocka_unit_test(the_result_does_not_depend_on_threads),
     };
     return cmocka_run_group_tests_name("tone", tests, NULL, NULL);
 }

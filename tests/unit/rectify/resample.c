@@ -1,7 +1,7 @@
-/* resample.c - photographs of known textures through known lenses: what must be seen where, and how well.
+/* resample.c - photographs of known textures through known lenses: position and sharpness of the result.
  *
- * Lenses are written out here once more, so that a mistake in common/capture/camera.c cannot hide itself. What a Lanczos-3 filter
- * does to a grating follows from its definition: kernel_gain(). */
+ * Lens models are implemented here independently, to detect mistakes in common/capture/camera.c. The response of a
+ * Lanczos-3 filter to a grating follows from its definition: kernel_gain(). */
 #include "tests/unit/scratch.h"
 
 #include <complex.h>
@@ -51,7 +51,7 @@ static struct image make_photo(int width, int height)
     return photo;
 }
 
-/* Black and white by turns, 1 by 1. */
+/* A checkerboard of single pixels. */
 static struct image checkerboard(int width, int height)
 {
     struct image photo = make_photo(width, height);
@@ -69,29 +69,30 @@ static struct image noise(int width, int height)
     return photo;
 }
 
-/* The view, after what holds for every view: each sample is a number within the photo's range; alpha is 0 or 1; where it
- * is 0 so is the colour. */
+/* Resamples, and checks what holds for every view: samples are finite and within the photo's range; alpha is 0 or 1;
+ * colour is 0 where alpha is. */
 static struct image look(const struct image *photo, const struct camera *lens, struct mat3 photo_from_view,
                          const struct view *view)
 {
     struct image out = {0};
     struct err err = ERR_INIT;
-    float least = INFINITY, most = -INFINITY;
+    float min = INFINITY, max = -INFINITY;
     for (size_t i = 0; i < (size_t)photo->width * (size_t)photo->height * 3; i++) {
-        least = fminf(least, photo->data[i]);
-        most = fmaxf(most, photo->data[i]);
+        min = fminf(min, photo->data[i]);
+        max = fmaxf(max, photo->data[i]);
     }
     assert_ok(resample_photo(&out, photo, NULL, lens, &photo_from_view, view, &err), err);
     assert_true(out.width == view->width && out.height == view->height && out.channels == 4);
     for (size_t i = 0; i < (size_t)out.width * (size_t)out.height; i++) {
         const float *p = out.data + 4 * i;
         assert_true(p[3] == 0 || p[3] == 1);
-        for (int c = 0; c < 3; c++) assert_true(p[3] == 1 ? p[c] >= least && p[c] <= most : p[c] == 0);
+        for (int c = 0; c < 3; c++) assert_true(p[3] == 1 ? p[c] >= min && p[c] <= max : p[c] == 0);
     }
     return out;
 }
 
-/* ------------------------------------------------------------------------------------------- the filter's mathematics */
+/* ------------------------------------------------------------------------------------------- the filter's
+ * mathematics */
 
 static double lanczos(double x)
 {
@@ -100,9 +101,9 @@ static double lanczos(double x)
     return sin(M_PI * x) / (M_PI * x) * sin(M_PI * x / 3) / (M_PI * x / 3);
 }
 
-enum { PHASES = 64 }; /* of the filter's centre between two samples */
+enum { PHASES = 64 }; /* positions of the filter's centre between two samples */
 
-/* What the filter of half width 3 `scale` makes of e^(2 pi i f x), relative to its value at the filter's centre. */
+/* The response of the filter of half width 3 `scale` to e^(2 pi i f x), relative to the value at its centre. */
 static double complex gain_at(double f, double scale, double phase)
 {
     double complex sum = 0;
@@ -115,27 +116,27 @@ static double complex gain_at(double f, double scale, double phase)
     return sum / weights;
 }
 
-/* The largest amplitude that is left of a grating of f cycles a sample, wherever the filter stands. */
+/* The largest remaining amplitude of a grating of f cycles per sample, for any position of the filter. */
 static double kernel_gain(double f, double scale)
 {
-    double most = 0;
-    for (int p = 0; p < PHASES; p++) most = fmax(most, cabs(gain_at(f, scale, (double)p / PHASES)));
-    return most;
+    double max = 0;
+    for (int p = 0; p < PHASES; p++) max = fmax(max, cabs(gain_at(f, scale, (double)p / PHASES)));
+    return max;
 }
 
 /* The largest change of a grating, relative to its amplitude, for scales up to `widest`. */
 static double kernel_change(double f, double widest)
 {
-    double most = 0;
+    double max = 0;
     for (double scale = 1; scale <= widest; scale += 0.05)
-        for (int p = 0; p < PHASES; p++) most = fmax(most, cabs(gain_at(f, scale, (double)p / PHASES) - 1));
-    return most;
+        for (int p = 0; p < PHASES; p++) max = fmax(max, cabs(gain_at(f, scale, (double)p / PHASES) - 1));
+    return max;
 }
 
-/* How far the filter's centre of gravity is off, in samples: the error of a ramp. */
+/* The offset of the filter's centre of gravity, in samples: the error of a ramp. */
 static double kernel_shift(double narrowest, double widest)
 {
-    double most = 0;
+    double max = 0;
     for (double scale = narrowest; scale <= widest; scale += 0.05)
         for (int p = 0; p < PHASES; p++) {
             double sum = 0, weights = 0, phase = (double)p / PHASES;
@@ -143,17 +144,18 @@ static double kernel_shift(double narrowest, double widest)
                 sum += lanczos((n - phase) / scale) * (n - phase);
                 weights += lanczos((n - phase) / scale);
             }
-            most = fmax(most, fabs(sum / weights));
+            max = fmax(max, fabs(sum / weights));
         }
-    return most;
+    return max;
 }
 
-/* What arithmetic in float and the kernel's table add, in samples. */
+/* The error of float arithmetic and of the kernel's table, in samples. */
 static const double rounding = 1e-3;
 
-/* ------------------------------------------------------------------------------------------------------------ lenses */
+/* ------------------------------------------------------------------------------------------------------------
+ * lenses */
 
-/* Textbook formulas, from a ray in the photo's axes to its pixel. */
+/* Textbook formulas for the projection of a ray in the photo's axes. */
 static void lens_pixel(const struct camera *lens, struct vec3 ray, double *u, double *v)
 {
     const double *p = lens->params;
@@ -199,7 +201,7 @@ static const struct camera lenses[] = {
     {CAMERA_FULL_OPENCV, 640, 480, {420, 410, 318, 242, 0.4, 0.1, 0.001, 0.0005, 0.02, 0.7, 0.15, 0.01}},
 };
 
-/* Red is the pixel's u and green its v, in [0, 1] across the photo: a view of it shows where its rays go. */
+/* Red is u and green is v, in [0, 1] across the photo: a view shows where its rays are projected. */
 static struct image ramps(int width, int height)
 {
     struct image photo = make_photo(width, height);
@@ -212,9 +214,9 @@ static struct image ramps(int width, int height)
 }
 
 /* Errors are in photo pixels. */
-static void ramps_lie_where_the_lens_puts_them(void **state)
+static void ramps_are_where_the_lens_projects_them(void **state)
 {
-    static const double focals[] = {0.6, 1, 2.5}; /* of the lens': smaller, alike, enlarged */
+    static const double focals[] = {0.6, 1, 2.5}; /* relative to the lens's: reduced, equal, enlarged */
     const double widest = 3, bound = kernel_shift(1, widest) + rounding, border = 3 * widest + 1;
     (void)state;
     assert_true(bound < 0.025);
@@ -250,9 +252,9 @@ static void ramps_lie_where_the_lens_puts_them(void **state)
 /* A smooth texture at infinity, of amplitude 1/2. */
 static double sky(struct vec3 d) { return 0.5 + 0.25 * sin(40 * d.x + 1) + 0.25 * cos(36 * d.y); }
 
-static void a_distant_texture_is_seen_as_a_pinhole_camera_would(void **state)
+static void a_distant_texture_matches_a_pinhole_camera(void **state)
 {
-    /* its period is 78 or more pixels at a focal length of 500, a lens may shrink that to 45 */
+    /* its period is at least 78 px at a focal length of 500; a lens may shrink that to 45 */
     const double f = 1 / 45.0, bound = 0.5 * kernel_change(f, 2) + 0.5 * (1 - cos(M_PI * f));
     (void)state;
     assert_true(bound < 0.01);
@@ -287,7 +289,7 @@ static void a_distant_texture_is_seen_as_a_pinhole_camera_would(void **state)
     }
 }
 
-static void a_fisheye_shows_what_lies_beside_the_camera(void **state)
+static void a_fisheye_view_covers_the_side(void **state)
 {
     const double bound = kernel_shift(1, 3) + rounding;
     struct camera lens = {CAMERA_OPENCV_FISHEYE, 400, 400, {120, 120, 200, 200, 0, 0, 0, 0}}; /* 191 degrees across */
@@ -313,22 +315,22 @@ static void a_fisheye_shows_what_lies_beside_the_camera(void **state)
     image_release(&out);
 
     view = centred_view(80, 60, 80);
-    out = look(&photo, &lens, turn(180, 0, 1, 0), &view); /* nothing behind it */
+    out = look(&photo, &lens, turn(180, 0, 1, 0), &view); /* nothing behind the camera */
     for (int i = 0; i < 80 * 60 * 4; i++) assert_true(out.data[i] == 0);
     image_release(&out);
     image_release(&photo);
 }
 
-/* ------------------------------------------------------------------------------------------------- what is left alone */
+/* ------------------------------------------------------------------------------------------------- unchanged pixels */
 
-static void the_photos_own_pinhole_camera_gets_its_pixels(void **state)
+static void the_photos_own_pinhole_camera_copies_its_pixels(void **state)
 {
     static const struct camera cameras[] = {
         {CAMERA_PINHOLE, 37, 23, {41.5, 40.25, 17.125, 12.5}},
         {CAMERA_SIMPLE_PINHOLE, 37, 23, {41.5, 18.5, 11.5}},
     };
     struct image photo = noise(37, 23);
-    photo.data[100] = 6e4F; /* of which not the least bit gets into its neighbour */
+    photo.data[100] = 6e4F; /* must not affect its neighbour at all */
     photo.data[103] = 1e-12F;
     (void)state;
     for (size_t i = 0; i < COUNT(cameras); i++) {
@@ -345,7 +347,7 @@ static void the_photos_own_pinhole_camera_gets_its_pixels(void **state)
     image_release(&photo);
 }
 
-static void a_camera_that_is_nearly_the_photos_is_resampled(void **state)
+static void a_nearly_identical_camera_is_resampled(void **state)
 {
     struct image photo = noise(37, 23);
     (void)state;
@@ -366,7 +368,7 @@ static void a_camera_that_is_nearly_the_photos_is_resampled(void **state)
     image_release(&photo);
 }
 
-static void whole_pixels_of_shift_or_turn_blur_nothing(void **state)
+static void shifts_and_rotations_by_whole_pixels_do_not_blur(void **state)
 {
     struct image photo = noise(40, 40);
     struct camera lens = pinhole(40, 40, 50);
@@ -391,10 +393,11 @@ static void whole_pixels_of_shift_or_turn_blur_nothing(void **state)
     image_release(&photo);
 }
 
-/* --------------------------------------------------------------------------------------------------------- reduction */
+/* ---------------------------------------------------------------------------------------------------------
+ * reduction */
 
 struct grating {
-    double fx, fy; /* cycles a photo pixel */
+    double fx, fy; /* cycles per photo pixel */
 };
 
 static double grating_at(struct grating g, double x, double y)
@@ -402,7 +405,7 @@ static double grating_at(struct grating g, double x, double y)
     return 0.5 + 0.5 * cos(2 * M_PI * (g.fx * x + g.fy * y) + 0.3);
 }
 
-/* A photo of the grating, seen at 1 / reduction of its size, off its grid by a quarter of a pixel. */
+/* A photo of the grating at 1 / reduction of its size, offset from its grid by a quarter of a pixel. */
 static struct image reduced_grating(struct grating g, int reduction, struct view *view)
 {
     const int size = 24;
@@ -418,10 +421,10 @@ static struct image reduced_grating(struct grating g, int reduction, struct view
     return out;
 }
 
-enum { EDGE = 4 }; /* view pixels whose filter reaches over the photo's border */
+enum { EDGE = 4 }; /* view pixels whose filter crosses the photo's border */
 
-/* Gratings finer than the view's can be: 3/4 of a cycle a view pixel and more, a checkerboard among them. What is left of
- * their energy is what the filter's gain says, and that is little. */
+/* Gratings too fine for the view: from 3/4 cycle per view pixel, including a checkerboard. The remaining energy follows
+ * from the filter's gain and is small. */
 static void reduction_does_not_alias(void **state)
 {
     static const int reductions[] = {2, 4, 7, 20};
@@ -449,9 +452,9 @@ static void reduction_does_not_alias(void **state)
     }
 }
 
-/* Gratings that the view can show keep place and amplitude. Beside the filter's gain, a crest may be cut to the highest
- * sample near it, which is at most half a pixel away. */
-static void reduction_keeps_what_the_view_can_show(void **state)
+/* Gratings that the view can resolve keep position and amplitude. Apart from the filter's gain, a crest may be clamped
+ * to the highest sample nearby, at most half a pixel away. */
+static void reduction_keeps_resolvable_detail(void **state)
 {
     static const int reductions[] = {2, 4, 7};
     (void)state;
@@ -478,8 +481,8 @@ static void reduction_keeps_what_the_view_can_show(void **state)
     }
 }
 
-/* Reduced along one axis only, the other stays sharp; the axes are the photo's, however the view is turned. */
-static void each_axis_has_its_own_width(void **state)
+/* With a reduction along one axis, the other stays sharp; the axes are the photo's, for any rotation of the view. */
+static void each_axis_has_its_own_filter_width(void **state)
 {
     struct image photo = make_photo(160, 40);
     struct camera lens = {CAMERA_PINHOLE, 160, 40, {100, 100, 80, 20}};
@@ -500,8 +503,8 @@ static void each_axis_has_its_own_width(void **state)
     image_release(&photo);
 }
 
-/* A reduction of 200 is filtered as one of 64: nothing overflows, and what is even stays so. */
-static void a_reduction_beyond_the_widest_filter(void **state)
+/* A reduction of 200 is filtered like one of 64: nothing overflows, and uniform colour stays uniform. */
+static void a_reduction_beyond_the_widest_filter_is_resampled(void **state)
 {
     struct image photo = make_photo(1000, 800);
     struct camera lens = pinhole(1000, 800, 900);
@@ -517,17 +520,18 @@ static void a_reduction_beyond_the_widest_filter(void **state)
     out = look(&photo, &lens, same_axes, &view);
     for (int i = 0; i < 20; i++) assert_true(fabs(out.data[4 * i] - 0.5) < 0.01);
     image_release(&out);
-    view = centred_view(1, 1, 1e-9); /* the whole photo is in a millionth of the pixel */
+    view = centred_view(1, 1, 1e-9); /* the whole photo covers a millionth of the pixel */
     out = look(&photo, &lens, same_axes, &view);
     assert_true(out.data[3] == 1 && fabs(out.data[0] - 0.5) < 0.01);
     image_release(&out);
     image_release(&photo);
 }
 
-/* --------------------------------------------------------------------------------------------------- bright and dark */
+/* --------------------------------------------------------------------------------------------------- bright and
+ * dark */
 
-/* A lit window in a dark wall: in linear light a ringing filter would draw black and bright lines around it, negative
- * ones on the wall. Beyond one lobe from its frame both are exactly what they were. */
+/* A bright window in a dark wall: in linear light a ringing filter would draw bright and dark lines around it, with
+ * negative values on the wall. Farther than one lobe from the edge both keep their exact values. */
 static void a_bright_window_has_no_halo(void **state)
 {
     static const double reductions[] = {0.4, 1, 1.7, 2.6, 5};
@@ -557,7 +561,7 @@ static void a_bright_window_has_no_halo(void **state)
                     assert_true(p[0] == 0 && p[1] == 0 && p[2] == 0);
                     dark++;
                 }
-                /* from the wall into the window it only gets brighter */
+                /* brightness rises monotonically from the wall into the window */
                 if (x && v > top + lobe && v < bottom - lobe && u < 130) assert_true(p[0] >= p[-4]);
             }
         assert_true(lit > 100 && dark > 100);
@@ -566,9 +570,9 @@ static void a_bright_window_has_no_halo(void **state)
     image_release(&photo);
 }
 
-/* ---------------------------------------------------------------------------------------------- where there is no photo */
+/* ---------------------------------------------------------------------------------------------- outside the photo */
 
-static void outside_the_photo_there_is_nothing(void **state)
+static void pixels_outside_the_photo_are_empty(void **state)
 {
     struct image photo = noise(50, 30);
     struct camera lens = {CAMERA_SIMPLE_RADIAL, 50, 30, {40, 25, 15, 0.01}};
@@ -589,9 +593,9 @@ static void outside_the_photo_there_is_nothing(void **state)
     image_release(&photo);
 }
 
-/* r (1 - 0.3 r^2) turns back at r^2 = 1 / 0.9: what lies beyond is on no photo. At that end a pixel's neighbour may have
- * no ray, and is filtered all the same. */
-static void rays_that_the_lens_cannot_see(void **state)
+/* r (1 - 0.3 r^2) has its maximum at r^2 = 1 / 0.9: rays beyond are not in the photo. At that limit a pixel is filtered
+ * even if its neighbour has no projection. */
+static void rays_outside_the_lens_are_empty(void **state)
 {
     struct image photo = checkerboard(640, 480);
     struct camera lens = {CAMERA_SIMPLE_RADIAL, 640, 480, {200, 320, 240, -0.3}};
@@ -615,16 +619,17 @@ static void rays_that_the_lens_cannot_see(void **state)
     for (int i = 0; i < 160 * 140 * 4; i++) assert_true(out.data[i] == 0);
     image_release(&out);
 
-    view = centred_view(40, 40, 1); /* half of the rays go past the camera's side */
+    view = centred_view(40, 40, 1); /* half of the rays are more than 90 degrees off the lens's axis */
     out = look(&photo, &lens, turn(90, 0, 1, 0), &view);
     for (int i = 0; i < 40 * 40; i++) assert_true(out.data[4 * i + 3] == 0 || out.data[4 * i + 3] == 1);
     image_release(&out);
     image_release(&photo);
 }
 
-/* ----------------------------------------------------------------------------------------------------- sizes, threads */
+/* ----------------------------------------------------------------------------------------------------- sizes,
+ * threads */
 
-static void the_smallest_and_the_longest(void **state)
+static void the_smallest_and_the_longest_sizes_are_resampled(void **state)
 {
     struct image dot = noise(1, 1);
     struct camera lens = {CAMERA_SIMPLE_RADIAL, 1, 1, {1, 0.5, 0.5, 0.1}};
@@ -634,7 +639,7 @@ static void the_smallest_and_the_longest(void **state)
     assert_memory_equal(out.data, dot.data, 3 * sizeof(float));
     assert_true(out.data[3] == 1);
     image_release(&out);
-    view = centred_view(9, 7, 10); /* one pixel enlarged is that pixel */
+    view = centred_view(9, 7, 10); /* a single pixel enlarged keeps its value */
     out = look(&dot, &lens, same_axes, &view);
     for (int i = 0; i < 63; i++) assert_memory_equal(out.data + 4 * i, dot.data, 3 * sizeof(float));
     image_release(&out);
@@ -651,7 +656,8 @@ static void the_smallest_and_the_longest(void **state)
         assert_true(out.data[4 * x + 2] == 0.25F);
     }
     image_release(&out);
-    lens = (struct camera){CAMERA_OPENCV, 20000, 16, {9000, 9000, 10000, 8, 0, 0, 0, 0}}; /* no lens, but filtered */
+    lens =
+        (struct camera){CAMERA_OPENCV, 20000, 16, {9000, 9000, 10000, 8, 0, 0, 0, 0}}; /* no distortion, but filtered */
     view = make_view(20000, 16, 9000, 9000, 10000, 8);
     out = look(&strip, &lens, same_axes, &view);
     for (int i = 0; i < 20000 * 16; i++) assert_true(fabsf(out.data[4 * i] - strip.data[3 * i]) < 1e-5F);
@@ -659,7 +665,7 @@ static void the_smallest_and_the_longest(void **state)
     image_release(&strip);
 }
 
-static void any_number_of_threads_gives_the_same_bits(void **state)
+static void the_result_does_not_depend_on_threads(void **state)
 {
     const struct camera *lens = &lenses[2];
     struct image photo = noise(lens->width, lens->height);
@@ -694,9 +700,9 @@ static void a_photo_of_another_size_is_refused(void **state)
 
 /* ------------------------------------------------------------------------------------------------------------ masks */
 
-/* Through the photo's own camera, a reduction and a bent lens: no pixel shows light of what is masked, though that is brighter than all
- * else by far; out of its reach nothing changes. */
-static void what_is_masked_is_no_part_of_the_view(void **state)
+/* With the photo's own camera, a reduction, and a distorted lens: no pixel shows light of the masked part, although
+ * that is by far the brightest; out of its reach nothing changes. */
+static void masked_pixels_are_empty(void **state)
 {
     enum { SIDE = 60 };
     const struct camera cameras[] = {pinhole(SIDE, SIDE, 60),
@@ -725,7 +731,7 @@ static void what_is_masked_is_no_part_of_the_view(void **state)
                 const double r2 = ((u - 30) * (u - 30) + (v - 30) * (v - 30)) / 3600;
                 if (k == 2) u = 30 + (u - 30) * (1 - 0.1 * r2);
                 if (k == 2) v = 30 + (v - 30) * (1 - 0.1 * r2);
-                const double away = fmax(fmax(25 - u, u - 40), fmax(20 - v, v - 33)); /* below 0: inside */
+                const double away = fmax(fmax(25 - u, u - 40), fmax(20 - v, v - 33)); /* negative: inside */
                 assert_true(p[3] == 0 || p[3] == 1);
                 if (away < 0) assert_true(p[3] == 0);
                 if (away > 2 * scale) assert_true(p[3] == q[3]);
@@ -746,23 +752,23 @@ static void what_is_masked_is_no_part_of_the_view(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(ramps_lie_where_the_lens_puts_them),
-        cmocka_unit_test(a_distant_texture_is_seen_as_a_pinhole_camera_would),
-        cmocka_unit_test(a_fisheye_shows_what_lies_beside_the_camera),
-        cmocka_unit_test(the_photos_own_pinhole_camera_gets_its_pixels),
-        cmocka_unit_test(a_camera_that_is_nearly_the_photos_is_resampled),
-        cmocka_unit_test(whole_pixels_of_shift_or_turn_blur_nothing),
+        cmocka_unit_test(ramps_are_where_the_lens_projects_them),
+        cmocka_unit_test(a_distant_texture_matches_a_pinhole_camera),
+        cmocka_unit_test(a_fisheye_view_covers_the_side),
+        cmocka_unit_test(the_photos_own_pinhole_camera_copies_its_pixels),
+        cmocka_unit_test(a_nearly_identical_camera_is_resampled),
+        cmocka_unit_test(shifts_and_rotations_by_whole_pixels_do_not_blur),
         cmocka_unit_test(reduction_does_not_alias),
-        cmocka_unit_test(reduction_keeps_what_the_view_can_show),
-        cmocka_unit_test(each_axis_has_its_own_width),
-        cmocka_unit_test(a_reduction_beyond_the_widest_filter),
+        cmocka_unit_test(reduction_keeps_resolvable_detail),
+        cmocka_unit_test(each_axis_has_its_own_filter_width),
+        cmocka_unit_test(a_reduction_beyond_the_widest_filter_is_resampled),
         cmocka_unit_test(a_bright_window_has_no_halo),
-        cmocka_unit_test(outside_the_photo_there_is_nothing),
-        cmocka_unit_test(rays_that_the_lens_cannot_see),
-        cmocka_unit_test(the_smallest_and_the_longest),
-        cmocka_unit_test(any_number_of_threads_gives_the_same_bits),
+        cmocka_unit_test(pixels_outside_the_photo_are_empty),
+        cmocka_unit_test(rays_outside_the_lens_are_empty),
+        cmocka_unit_test(the_smallest_and_the_longest_sizes_are_resampled),
+        cmocka_unit_test(the_result_does_not_depend_on_threads),
         cmocka_unit_test(a_photo_of_another_size_is_refused),
-        cmocka_unit_test(what_is_masked_is_no_part_of_the_view),
+        cmocka_unit_test(masked_pixels_are_empty),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

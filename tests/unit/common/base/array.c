@@ -1,4 +1,4 @@
-/* Arrays that grow. */
+/* array.c - growing arrays. */
 #include "tests/unit/scratch.h"
 
 #include <stdint.h>
@@ -39,7 +39,7 @@ static void reserving_at_least_doubles(void **state)
     free(items);
 }
 
-static void too_much_is_refused_and_nothing_is_lost(void **state)
+static void a_failed_allocation_keeps_the_items(void **state)
 {
     double *items = NULL;
     size_t capacity = 0;
@@ -60,7 +60,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(appended_items_are_kept),
         cmocka_unit_test(reserving_at_least_doubles),
-        cmocka_unit_test(too_much_is_refused_and_nothing_is_lost),
+        cmocka_unit_test(a_failed_allocation_keeps_the_items),
     };
     return cmocka_run_group_tests_name("array", tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-/* The command line: every stage's own options and those that all have. */
+/* cli.c - the command line: a stage's own options and the common ones. */
 #include "tests/unit/scratch.h"
 
 #include "common/base/cli.h"
@@ -30,9 +30,9 @@ static enum status check(const void *values, struct err *err)
     return err_set(err, ST_USAGE, "near_z = %g must be less than far_z = %g.", p->near_z, p->far_z);
 }
 
-enum { MOST_ARGS = 16 };
+enum { MAX_ARGS = 16 };
 
-/* A stage's main that says what it was given. */
+/* A stage's main that prints its options. */
 static int stage_main(void *ctx)
 {
     char **argv = ctx;
@@ -49,7 +49,7 @@ static int stage_main(void *ctx)
         CLI_LIST("exclude", &exclude, CLI_OPTIONAL, "file to leave out"),
         CLI_INT("count", &count, CLI_OPTIONAL, "how many"),
         CLI_FLAG("fast", &fast, "be quick"),
-        CLI_PARAM("planes", &planes, "planes, as a word of its own"),
+        CLI_PARAM("planes", &planes, "planes, as an option of its own"),
         CLI_PARAMS(try_table, &params, check),
         CLI_END,
     };
@@ -70,29 +70,29 @@ static int stage_main(void *ctx)
     return err_exit_code(&err);
 }
 
-/* Runs the stage with the arguments up to a NULL; its exit status, and what it said. */
-static int try_args(char **said, ...)
+/* Runs the stage with the arguments up to a NULL. Returns its exit code and its output. */
+static int try_args(char **output, ...)
 {
-    const char *argv[MOST_ARGS] = {"try"};
+    const char *argv[MAX_ARGS] = {"try"};
     va_list args;
     int n = 1;
 
-    va_start(args, said);
+    va_start(args, output);
     while ((argv[n] = va_arg(args, const char *))) n++;
     va_end(args);
-    return child_run(stage_main, argv, said);
+    return child_run(stage_main, argv, output);
 }
 
-#define assert_try(code, part, ...)                                                        \
-    do {                                                                                   \
-        char *said_;                                                                       \
-        const int code_ = try_args(&said_, __VA_ARGS__, NULL);                             \
-        if (code_ != (code)) fail_msg("exit %d in place of %d: %s", code_, (code), said_); \
-        assert_contains(said_, part);                                                      \
-        free(said_);                                                                       \
+#define assert_try(code, part, ...)                                                          \
+    do {                                                                                     \
+        char *output_;                                                                       \
+        const int code_ = try_args(&output_, __VA_ARGS__, NULL);                             \
+        if (code_ != (code)) fail_msg("exit %d in place of %d: %s", code_, (code), output_); \
+        assert_contains(output_, part);                                                      \
+        free(output_);                                                                       \
     } while (0)
 
-static void options(void **state)
+static void options_are_parsed(void **state)
 {
     (void)state;
     assert_try(0, "out=a b view=none count=3 fast=0", "--out", "a b");
@@ -100,7 +100,7 @@ static void options(void **state)
                "--view=", "--count", "-4", "--exclude=b", "--fast", "--threads=7", "--threads", "2");
 }
 
-static void usage_errors(void **state)
+static void usage_errors_name_the_option(void **state)
 {
     (void)state;
     assert_try(2, "try: error: --out is missing: file to write.", "--fast");
@@ -119,31 +119,31 @@ static void usage_errors(void **state)
     assert_try(2, "unexpected argument \"--\"", "--");
 }
 
-static void help_version_config(void **state)
+static void help_version_and_config_are_printed(void **state)
 {
-    char *said;
+    char *output;
 
     (void)state;
-    assert_int_equal(try_args(&said, "--help", NULL), 0);
-    assert_contains(said, "usage: try [OPTION]...\nTries the command line.\n");
-    assert_contains(said, "  --out TEXT           file to write (required)\n");
-    assert_contains(said, "--exclude TEXT...");
-    assert_contains(said, "(may be given several times)");
-    assert_contains(said, "--print-config");
-    assert_contains(said, "--threads N");
-    assert_contains(said, "section [try]");
-    assert_contains(said, "default 10 m, from 0 to 100");
-    assert_lacks(said, "MiB peak"); /* nothing was run */
-    free(said);
+    assert_int_equal(try_args(&output, "--help", NULL), 0);
+    assert_contains(output, "usage: try [OPTION]...\nTries the command line.\n");
+    assert_contains(output, "  --out TEXT           file to write (required)\n");
+    assert_contains(output, "--exclude TEXT...");
+    assert_contains(output, "(repeatable)");
+    assert_contains(output, "--print-config");
+    assert_contains(output, "--threads N");
+    assert_contains(output, "section [try]");
+    assert_contains(output, "default 10 m, from 0 to 100");
+    assert_lacks(output, "MiB peak"); /* only with CLI_RUN */
+    free(output);
 
-    assert_int_equal(try_args(&said, "--version", NULL), 0);
-    assert_string_equal(said, "remodel try " REMODEL_VERSION "\n");
-    free(said);
+    assert_int_equal(try_args(&output, "--version", NULL), 0);
+    assert_string_equal(output, "remodel try " REMODEL_VERSION "\n");
+    free(output);
 
-    /* asks for no required option */
-    assert_int_equal(try_args(&said, "--print-config", "--set", "planes=3", NULL), 0);
-    assert_string_equal(said, "[try]\nnear_z = 1\nfar_z = 10\nplanes = 3\n");
-    free(said);
+    /* works without the required option */
+    assert_int_equal(try_args(&output, "--print-config", "--set", "planes=3", NULL), 0);
+    assert_string_equal(output, "[try]\nnear_z = 1\nfar_z = 10\nplanes = 3\n");
+    free(output);
 }
 
 static int help_on_a_full_disk(void *ctx)
@@ -154,18 +154,18 @@ static int help_on_a_full_disk(void *ctx)
     return stage_main(ctx);
 }
 
-static void output_that_cannot_be_written(void **state)
+static void failing_standard_output_is_an_error(void **state)
 {
     const char *argv[] = {"try", "--print-config", NULL};
-    char *said;
+    char *output;
 
     (void)state;
-    assert_int_equal(child_run(help_on_a_full_disk, argv, &said), 1);
-    assert_contains(said, "try: error: cannot write standard output: No space left on device.");
-    free(said);
+    assert_int_equal(child_run(help_on_a_full_disk, argv, &output), 1);
+    assert_contains(output, "try: error: cannot write standard output: No space left on device.");
+    free(output);
 }
 
-static void configs_then_sets(void **state)
+static void set_wins_over_config_files(void **state)
 {
     char a[PATH_MAX], b[PATH_MAX], bad[PATH_MAX];
 
@@ -183,18 +183,18 @@ static void configs_then_sets(void **state)
     assert_try(2, "did you mean planes?", "--out=x", "--set=planse=3");
 }
 
-static void an_option_that_is_a_parameter(void **state)
+static void an_option_can_set_a_parameter(void **state)
 {
     char a[PATH_MAX];
 
     (void)state;
     strcpy(a, scratch_write("planes.cfg", "[try]\nplanes = 5\n"));
-    /* it wins over config files and --set, wherever it stands, and is among the effective parameters */
+    /* it wins over config files and --set in any order, and is one of the effective parameters */
     assert_try(0, "planes = 7\n", "--out=x", "--planes=7");
     assert_try(0, "planes = 7\n", "--planes", "7", "--set=planes=6", "--config", a, "--out=x");
     assert_try(0, "planes = 5\n", "--out=x", "--config", a);
     assert_try(0, "[try]\nnear_z = 1\nfar_z = 10\nplanes = 9\n", "--print-config", "--planes=9");
-    /* and is checked as one */
+    /* and is checked like one */
     assert_try(2, "planes", "--out=x", "--planes=65");
     assert_try(2, "planes", "--out=x", "--planes=few");
     assert_try(2, "planes", "--out=x", "--planes=");
@@ -204,25 +204,25 @@ static void an_option_that_is_a_parameter(void **state)
 
     char lengthy[2000] = "--planes=";
     memset(lengthy + 9, '1', sizeof lengthy - 10);
-    assert_try(2, "--planes: its value is too long.", "--out=x", lengthy);
+    assert_try(2, "--planes: the value is longer than 255 bytes", "--out=x", lengthy);
 }
 
-static void the_last_line(void **state)
+static void the_last_line_reports_resource_use(void **state)
 {
-    char *said;
+    char *output;
     double wall, cpu;
     long peak;
     char newline;
 
     (void)state;
-    assert_int_equal(try_args(&said, "--out=x", NULL), 0);
-    const char *line = strstr(said, "try: used ");
-    if (!line) fail_msg("no last line in \"%s\"", said);
+    assert_int_equal(try_args(&output, "--out=x", NULL), 0);
+    const char *line = strstr(output, "try: used ");
+    if (!line) fail_msg("no last line in \"%s\"", output);
     assert_int_equal(sscanf(line, "try: used %lf s wall, %lf s cpu, %ld MiB peak%c", &wall, &cpu, &peak, &newline), 4);
     assert_int_equal(newline, '\n');
     assert_int_equal(strchr(line, '\n')[1], '\0');
     assert_true(wall >= 0 && wall < 60 && cpu >= 0 && peak > 0);
-    free(said);
+    free(output);
 }
 
 static int forking_main(void *ctx)
@@ -239,29 +239,29 @@ static int forking_main(void *ctx)
     return 0;
 }
 
-static void children_say_nothing(void **state)
+static void forked_children_print_no_report(void **state)
 {
     const char *argv[] = {"forking", NULL};
-    char *said;
+    char *output;
 
     (void)state;
-    assert_int_equal(child_run(forking_main, argv, &said), 0);
-    const char *first = strstr(said, "forking: used ");
-    if (!first || strstr(first + 1, "forking: used ")) fail_msg("not one last line: \"%s\"", said);
-    free(said);
+    assert_int_equal(child_run(forking_main, argv, &output), 0);
+    const char *first = strstr(output, "forking: used ");
+    if (!first || strstr(first + 1, "forking: used ")) fail_msg("not one last line: \"%s\"", output);
+    free(output);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(options),
-        cmocka_unit_test(usage_errors),
-        cmocka_unit_test(help_version_config),
-        cmocka_unit_test(output_that_cannot_be_written),
-        cmocka_unit_test(configs_then_sets),
-        cmocka_unit_test(an_option_that_is_a_parameter),
-        cmocka_unit_test(the_last_line),
-        cmocka_unit_test(children_say_nothing),
+        cmocka_unit_test(options_are_parsed),
+        cmocka_unit_test(usage_errors_name_the_option),
+        cmocka_unit_test(help_version_and_config_are_printed),
+        cmocka_unit_test(failing_standard_output_is_an_error),
+        cmocka_unit_test(set_wins_over_config_files),
+        cmocka_unit_test(an_option_can_set_a_parameter),
+        cmocka_unit_test(the_last_line_reports_resource_use),
+        cmocka_unit_test(forked_children_print_no_report),
     };
 
     return cmocka_run_group_tests_name("cli", tests, scratch_make, scratch_remove);

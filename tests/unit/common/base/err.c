@@ -1,4 +1,4 @@
-/* Errors and log lines: the first error is kept, context goes in front, nothing overflows. */
+/* err.c - errors, log lines, parsing of numbers, quoting, hashes. */
 #include "tests/unit/scratch.h"
 
 #include <errno.h>
@@ -7,7 +7,7 @@
 #include "common/base/log.h"
 #include "common/base/scan.h"
 
-static void first_error_is_kept(void **state)
+static void the_first_error_is_kept(void **state)
 {
     struct err err = ERR_INIT;
 
@@ -24,7 +24,7 @@ static void first_error_is_kept(void **state)
     assert_int_equal(err_exit_code(&(struct err){ST_USAGE, "x"}), 2);
 }
 
-static void sentences(void **state)
+static void errors_are_sentences(void **state)
 {
     struct err io = ERR_INIT, memory = ERR_INIT;
 
@@ -36,7 +36,7 @@ static void sentences(void **state)
     assert_string_equal(memory.text, "not enough memory for a mask (12 bytes).");
 }
 
-static void long_text_is_cut_visibly(void **state)
+static void truncated_text_ends_in_dots(void **state)
 {
     static char long_text[5000];
     struct err err = ERR_INIT;
@@ -68,18 +68,18 @@ static int talk(void *ctx)
     return err_exit_code(&err);
 }
 
-static void log_lines(void **state)
+static void log_lines_begin_with_the_stage(void **state)
 {
-    char *said;
+    char *output;
 
     (void)state;
-    assert_int_equal(child_run(talk, NULL, &said), 1);
-    assert_string_equal(said, "remodel: before\nrectify: 3 views\nrectify: warning: view a is dark\n"
-                              "rectify: error: no disk.\n");
-    free(said);
+    assert_int_equal(child_run(talk, NULL, &output), 1);
+    assert_string_equal(output, "remodel: before\nrectify: 3 views\nrectify: warning: view a is dark\n"
+                                "rectify: error: no disk.\n");
+    free(output);
 }
 
-static void numbers_are_strict(void **state)
+static void numbers_are_parsed_strictly(void **state)
 {
     static const char *const not_ints[] = {"",   "-", "+", " 1", "1 ", "1.0", "0x10", "1e3", "9223372036854775808",
                                            "--1"};
@@ -99,11 +99,11 @@ static void numbers_are_strict(void **state)
     assert_true(scan_int("+007", &i) && i == 7);
     assert_true(scan_double("-.5e1", &d) && d == -5);
     assert_true(scan_double("5.", &d) && d == 5);
-    assert_true(scan_double("1e-310", &d) && d > 0); /* subnormal is a number */
+    assert_true(scan_double("1e-310", &d) && d > 0); /* subnormal */
     assert_true(scan_double("0.1", &d) && d == 0.1);
 }
 
-static void shown_text_is_safe(void **state)
+static void quoted_text_escapes_control_characters(void **state)
 {
     char shown[SCAN_SHOWN];
 
@@ -113,7 +113,7 @@ static void shown_text_is_safe(void **state)
                         "\"0123456789012345678901234567890123456789\"");
     assert_string_equal(scan_show(shown, "01234567890123456789012345678901234567890"),
                         "\"0123456789012345678901234567890123456789\"...");
-    /* 39 letters and a character of two bytes are 40; it is not cut in half */
+    /* 39 letters and a character of two bytes are 40 characters; the last one is kept whole */
     assert_string_equal(scan_show(shown, "012345678901234567890123456789012345678\xc3\xa9x"),
                         "\"012345678901234567890123456789012345678\xc3\xa9\"...");
     static char controls[300];
@@ -123,35 +123,32 @@ static void shown_text_is_safe(void **state)
     assert_true(strlen(scan_show(shown, controls)) < SCAN_SHOWN);
 }
 
-static void hashes(void **state)
+static void files_are_hashed_with_xxh3(void **state)
 {
-    char a[HASH_TEXT], b[HASH_TEXT];
+    char hash[HASH_TEXT];
     struct err err = ERR_INIT, none = ERR_INIT, folder = ERR_INIT;
-    static char megabytes[(1 << 21) + 5];
+    static char megabytes[(1 << 21) + 5]; /* more than one block of the reader */
 
     (void)state;
-    hash_bytes(a, "", 0);
-    assert_string_equal(a, "99aa06d3014798d86001c324468d497f"); /* XXH3-128 of nothing, as xxhsum -H2 prints it */
+    /* as printed by xxhsum -H2 */
+    assert_ok(hash_file(hash, scratch_write("h", ""), &err), err);
+    assert_string_equal(hash, "99aa06d3014798d86001c324468d497f");
     for (size_t i = 0; i < sizeof megabytes; i++) megabytes[i] = (char)(i * 7);
-    hash_bytes(a, megabytes, sizeof megabytes);
-    assert_ok(hash_file(b, scratch_write_bytes("h", megabytes, sizeof megabytes), &err), err);
-    assert_string_equal(a, b);
-    assert_int_equal(hash_file(b, scratch_path("none"), &none), ST_IO);
+    assert_ok(hash_file(hash, scratch_write_bytes("h", megabytes, sizeof megabytes), &err), err);
+    assert_string_equal(hash, "45c0512e8055d22e0a8c810c3b658f42");
+    assert_int_equal(hash_file(hash, scratch_path("none"), &none), ST_IO);
     assert_err(none, ST_IO, "cannot open");
-    assert_int_equal(hash_file(b, scratch, &folder), ST_IO);
+    assert_int_equal(hash_file(hash, scratch, &folder), ST_IO);
     assert_err(folder, ST_IO, "Is a directory");
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(first_error_is_kept),
-        cmocka_unit_test(sentences),
-        cmocka_unit_test(long_text_is_cut_visibly),
-        cmocka_unit_test(log_lines),
-        cmocka_unit_test(numbers_are_strict),
-        cmocka_unit_test(shown_text_is_safe),
-        cmocka_unit_test(hashes),
+        cmocka_unit_test(the_first_error_is_kept),     cmocka_unit_test(errors_are_sentences),
+        cmocka_unit_test(truncated_text_ends_in_dots), cmocka_unit_test(log_lines_begin_with_the_stage),
+        cmocka_unit_test(numbers_are_parsed_strictly), cmocka_unit_test(quoted_text_escapes_control_characters),
+        cmocka_unit_test(files_are_hashed_with_xxh3),
     };
 
     return cmocka_run_group_tests_name("err", tests, scratch_make, scratch_remove);

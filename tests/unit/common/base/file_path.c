@@ -1,4 +1,4 @@
-/* file_path.c - paths are joined whole or not at all. */
+/* file_path.c - paths are joined completely or not at all. */
 #include "common/base/file_path.h"
 
 #include <setjmp.h>
@@ -11,7 +11,7 @@
 
 #include "tests/unit/scratch.h"
 
-static void a_path_is_folder_file_and_suffix(void **state)
+static void a_path_joins_folder_file_and_suffix(void **state)
 {
     char path[FILE_PATH];
     struct err err = ERR_INIT;
@@ -22,8 +22,8 @@ static void a_path_is_folder_file_and_suffix(void **state)
     assert_string_equal(path, "out/x/list.txt");
 }
 
-/* The longest that fits has FILE_PATH - 1 letters; one letter more, in any of the parts, is refused. */
-static void the_longest_fits_and_one_letter_more_does_not(void **state)
+/* The longest path has FILE_PATH - 1 letters; one more, in any part, is an error. */
+static void paths_up_to_the_limit_fit(void **state)
 {
     char folder[FILE_PATH + 1], path[FILE_PATH];
     const size_t longest = FILE_PATH - 1 - strlen("/f.exr");
@@ -47,8 +47,8 @@ static void the_longest_fits_and_one_letter_more_does_not(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_path_is_folder_file_and_suffix),
-        cmocka_unit_test(the_longest_fits_and_one_letter_more_does_not),
+        cmocka_unit_test(a_path_joins_folder_file_and_suffix),
+        cmocka_unit_test(paths_up_to_the_limit_fit),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,22 +1,22 @@
-/* frame_list.c - which frames are asked for. */
+/* frame_list.c - lists of frames. */
 #include "common/base/frame_list.h"
 
 #include "tests/unit/scratch.h"
 
-static void lists_of_frames(void **state)
+static void frame_lists_are_parsed(void **state)
 {
     (void)state;
     static const struct {
         const char *list, *wanted; /* of 6 frames */
-    } good[] = {{"1:6", "111111"}, {"1", "100000"}, {"2:4", "011100"}, {"1:2,5", "110010"}, {"6,3,3:4", "001101"}};
+    } valid[] = {{"1:6", "111111"}, {"1", "100000"}, {"2:4", "011100"}, {"1:2,5", "110010"}, {"6,3,3:4", "001101"}};
     static const char *const bad[] = {"",   "0",    "7", "1:7", "3:2", "1:",    ":3", ",",
                                       "1,", "1,,2", "a", "1-3", "-1",  "1:2:3", " 1", "99999999999999999999"};
     bool wanted[6];
 
-    for (size_t i = 0; i < sizeof good / sizeof *good; i++) {
+    for (size_t i = 0; i < sizeof valid / sizeof *valid; i++) {
         struct err err = ERR_INIT;
-        assert_ok(frame_list_read(wanted, 6, good[i].list, &err), err);
-        for (int k = 0; k < 6; k++) assert_int_equal(wanted[k], good[i].wanted[k] == '1');
+        assert_ok(frame_list_read(wanted, 6, valid[i].list, &err), err);
+        for (int k = 0; k < 6; k++) assert_int_equal(wanted[k], valid[i].wanted[k] == '1');
     }
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         struct err err = ERR_INIT;
@@ -27,6 +27,6 @@ static void lists_of_frames(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(lists_of_frames)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(frame_lists_are_parsed)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

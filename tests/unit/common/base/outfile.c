@@ -1,4 +1,4 @@
-/* Outputs appear whole or not at all: commits, full disks, kills, signals, concurrent writers. */
+/* outfile.c - output files appear complete or not at all: commits, full disks, signals, concurrent writers. */
 #include "tests/unit/scratch.h"
 
 #include <sched.h>
@@ -9,7 +9,7 @@
 #include "common/base/outfile.h"
 #include "common/base/parallel.h"
 
-static void commit_makes_the_product(void **state)
+static void commit_creates_the_file(void **state)
 {
     struct outfile f = {0};
     struct err err = ERR_INIT;
@@ -31,7 +31,7 @@ static void commit_makes_the_product(void **state)
     assert_file_text(path, "words");
     assert_int_equal(stat(path, &info), 0);
     assert_int_equal(info.st_mode & 0777, 0640);
-    outfile_discard(&f); /* harmless */
+    outfile_discard(&f); /* does nothing */
     outfile_discard(&f);
     outfile_discard(NULL);
     assert_int_equal(count_entries(folder), 1);
@@ -44,7 +44,7 @@ static void a_library_may_write_by_name(void **state)
 
     (void)state;
     assert_ok(outfile_open(&f, scratch_path("by-name"), &err), err);
-    assert_int_equal(unlink(f.temp), 0); /* and put another file in its place */
+    assert_int_equal(unlink(f.temp), 0); /* and replaces the file */
     FILE *fp = fopen(f.temp, "wb");
     assert_non_null(fp);
     fputs("library", fp);
@@ -53,7 +53,7 @@ static void a_library_may_write_by_name(void **state)
     assert_file_text(scratch_path("by-name"), "library");
 }
 
-static void discard_leaves_the_older_product(void **state)
+static void discard_keeps_the_older_file(void **state)
 {
     struct outfile f = {0};
     struct err err = ERR_INIT;
@@ -69,7 +69,7 @@ static void discard_leaves_the_older_product(void **state)
     assert_int_equal(count_entries(scratch_path("keep")), 1);
 }
 
-static void wrong_paths(void **state)
+static void invalid_paths_are_refused(void **state)
 {
     struct outfile f = {0};
     struct err null = ERR_INIT, folder = ERR_INIT, below = ERR_INIT, none = ERR_INIT;
@@ -77,16 +77,16 @@ static void wrong_paths(void **state)
 
     (void)state;
     assert_int_equal(outfile_open(&f, "/dev/null", &null), ST_IO);
-    assert_err(null, ST_IO, "no regular file");
+    assert_err(null, ST_IO, "not a regular file");
     assert_int_equal(outfile_open(&f, scratch, &folder), ST_IO);
-    assert_err(folder, ST_IO, "no regular file");
+    assert_err(folder, ST_IO, "not a regular file");
     scratch_write("file", "");
     assert_int_equal(outfile_open(&f, scratch_path("file/below"), &below), ST_IO);
     assert_err(below, ST_IO, "cannot make the folder");
     assert_null(f.fp);
     assert_int_equal(outfile_commit(&f, &none), ST_INTERNAL);
 
-    /* a name of the greatest length works, though the temporary one is longer than it */
+    /* a name of maximum length works, although the temporary name is cut */
     struct err err = ERR_INIT;
     memset(name, 'n', 255);
     name[255] = '\0';
@@ -96,7 +96,7 @@ static void wrong_paths(void **state)
     assert_int_equal(unlink(path), 0);
 }
 
-static void folders(void **state)
+static void missing_folders_are_made(void **state)
 {
     struct err err = ERR_INIT, blocked = ERR_INIT;
 
@@ -113,7 +113,7 @@ static void folders(void **state)
 
 /* ----------------------------------------------------------------------------------------------------- full disks */
 
-/* Writes a megabyte over an older product where there is not so much room; 0 if all went as it must. */
+/* Writes a megabyte over an older product where there is less space; returns 0 if all checks pass. */
 static int write_too_much(const char *path, const char *reason)
 {
     static char block[1 << 16];
@@ -138,20 +138,20 @@ static int over_the_file_limit(void *ctx)
     return write_too_much(ctx, "File too large");
 }
 
-static void file_limit(void **state)
+static void a_file_size_limit_is_an_error(void **state)
 {
     struct err err = ERR_INIT;
-    char *said;
+    char *output;
 
     (void)state;
     assert_ok(make_folders(scratch_path("limit"), &err), err);
     char *path = strdup(scratch_write("limit/old", "old"));
-    const int code = child_run(over_the_file_limit, path, &said);
-    if (code) fail_msg("exit %d: %s", code, said);
+    const int code = child_run(over_the_file_limit, path, &output);
+    if (code) fail_msg("exit %d: %s", code, output);
     assert_file_text(path, "old");
     assert_int_equal(count_entries(scratch_path("limit")), 1);
     free(path);
-    free(said);
+    free(output);
 }
 
 enum { CANNOT_MOUNT = 77 };
@@ -173,26 +173,26 @@ static int on_a_full_disk(void *ctx)
     return code ? code : kept ? 0 : 5;
 }
 
-static void full_disk(void **state)
+static void a_full_disk_is_an_error(void **state)
 {
     struct err err = ERR_INIT;
-    char *said;
+    char *output;
 
     (void)state;
     assert_ok(make_folders(scratch_path("disk"), &err), err);
     char *folder = strdup(scratch_path("disk"));
-    const int code = child_run(on_a_full_disk, folder, &said);
+    const int code = child_run(on_a_full_disk, folder, &output);
     free(folder);
     if (code == CANNOT_MOUNT) {
-        free(said);
+        free(output);
         print_message("a small tmpfs cannot be mounted here\n");
         skip();
     }
-    if (code) fail_msg("exit %d: %s", code, said);
-    free(said);
+    if (code) fail_msg("exit %d: %s", code, output);
+    free(output);
 }
 
-/* ----------------------------------------------------------------------------------------------- ends of a writer */
+/* ----------------------------------------------------------------------------------------------- exits and signals */
 
 struct writer {
     char *path;
@@ -203,7 +203,7 @@ struct writer {
 static int write_half(void *ctx)
 {
     const struct writer *w = ctx;
-    static struct outfile f; /* reachable at the exit: no leak */
+    static struct outfile f; /* reachable at exit, so not a leak */
     struct err err = ERR_INIT;
 
     if (outfile_open(&f, w->path, &err)) return 1;
@@ -211,16 +211,16 @@ static int write_half(void *ctx)
     fflush(f.fp);
     if (write(w->tell[1], "x", 1) != 1) return 1;
     if (w->exits) {
-        /* a forked child that exits takes nothing of its parent's with it */
+        /* the exit of a forked child removes nothing of its parent's */
         const pid_t pid = fork();
         if (!pid) exit(0);
         waitpid(pid, NULL, 0);
-        return access(f.temp, F_OK) ? 2 : 3; /* 3, and then the exit removes it */
+        return access(f.temp, F_OK) ? 2 : 3; /* 3; then the exit removes the file */
     }
     for (;;) pause();
 }
 
-/* Begins a writer, ends it by `sig` (0: it exits), and returns how many files are left in its folder. */
+/* Starts a writer, ends it by `sig` (0: it exits), and returns the number of files left in its folder. */
 static int left_behind(const char *folder, int sig, int *code)
 {
     struct writer w = {.exits = sig == 0};
@@ -241,7 +241,7 @@ static int left_behind(const char *folder, int sig, int *code)
     return count_entries(scratch_path(folder));
 }
 
-static void ends_of_a_writer(void **state)
+static void exits_and_signals_remove_temporary_files(void **state)
 {
     static const int polite[] = {SIGINT, SIGTERM, SIGHUP};
     int code;
@@ -253,9 +253,9 @@ static void ends_of_a_writer(void **state)
         char folder[32];
         snprintf(folder, sizeof folder, "signal%d", polite[i]);
         assert_int_equal(left_behind(folder, polite[i], &code), 0);
-        assert_int_equal(code, 128 + polite[i]); /* and it is the signal that ends it */
+        assert_int_equal(code, 128 + polite[i]); /* the signal ended it */
     }
-    assert_int_equal(left_behind("kill", SIGKILL, &code), 1); /* a dot file: no product */
+    assert_int_equal(left_behind("kill", SIGKILL, &code), 1); /* a dot file, which is no product */
     assert_int_equal(code, 128 + SIGKILL);
 }
 
@@ -270,7 +270,7 @@ static void write_many(void *ctx, size_t begin, size_t end, int thread)
         struct outfile f = {0};
         struct err err = ERR_INIT;
         char path[PATH_MAX];
-        snprintf(path, sizeof path, "%s/many/%zu", scratch, i % 10); /* ten names: many writers of one product */
+        snprintf(path, sizeof path, "%s/many/%zu", scratch, i % 10); /* ten names, so that several writers share one */
         if (outfile_open(&f, path, &err)) {
             failed[i] = 1;
             continue;
@@ -283,7 +283,7 @@ static void write_many(void *ctx, size_t begin, size_t end, int thread)
     }
 }
 
-static void concurrent_writers(void **state)
+static void concurrent_writers_do_not_mix(void **state)
 {
     int failed[200] = {0};
 
@@ -294,7 +294,7 @@ static void concurrent_writers(void **state)
     for (int i = 0; i < 200; i++)
         if (failed[i]) fail_msg("writer %d failed", i);
     assert_int_equal(count_entries(scratch_path("many")), 10);
-    for (int i = 0; i < 10; i++) { /* each product is whole, and one writer's */
+    for (int i = 0; i < 10; i++) { /* each product is complete and by a single writer */
         char name[32];
         snprintf(name, sizeof name, "many/%d", i);
         FILE *fp = fopen(scratch_path(name), "r");
@@ -314,15 +314,11 @@ static void concurrent_writers(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(commit_makes_the_product),
-        cmocka_unit_test(a_library_may_write_by_name),
-        cmocka_unit_test(discard_leaves_the_older_product),
-        cmocka_unit_test(wrong_paths),
-        cmocka_unit_test(folders),
-        cmocka_unit_test(file_limit),
-        cmocka_unit_test(full_disk),
-        cmocka_unit_test(ends_of_a_writer),
-        cmocka_unit_test(concurrent_writers),
+        cmocka_unit_test(commit_creates_the_file),       cmocka_unit_test(a_library_may_write_by_name),
+        cmocka_unit_test(discard_keeps_the_older_file),  cmocka_unit_test(invalid_paths_are_refused),
+        cmocka_unit_test(missing_folders_are_made),      cmocka_unit_test(a_file_size_limit_is_an_error),
+        cmocka_unit_test(a_full_disk_is_an_error),       cmocka_unit_test(exits_and_signals_remove_temporary_files),
+        cmocka_unit_test(concurrent_writers_do_not_mix),
     };
 
     return cmocka_run_group_tests_name("outfile", tests, scratch_make, scratch_remove);

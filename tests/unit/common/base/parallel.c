@@ -1,4 +1,4 @@
-/* Parallel loops: every index once, the same chunks for any number of threads. */
+/* parallel.c - every index runs once, in the same chunks for any number of threads. */
 #include "tests/unit/scratch.h"
 
 #include <omp.h>
@@ -9,11 +9,11 @@ enum { COUNT = 10007 };
 
 struct loop {
     int visits[COUNT];
-    size_t ends[COUNT]; /* of the chunk that begins here */
-    double sums[COUNT]; /* of that chunk */
-    int most_thread;
-    int busy[64]; /* a thread's number is its alone */
-    int shared;   /* but was not */
+    size_t ends[COUNT]; /* end of the chunk that begins here */
+    double sums[COUNT]; /* sum of that chunk */
+    int max_thread;
+    int busy[64]; /* calls running under a thread number */
+    int shared;   /* a thread number was used twice at a time */
 };
 
 static void visit(void *ctx, size_t begin, size_t end, int thread)
@@ -26,8 +26,8 @@ static void visit(void *ctx, size_t begin, size_t end, int thread)
         l->visits[i]++;
         l->sums[begin] += 1.0 / (double)(i + 1);
     }
-    if (thread > __atomic_load_n(&l->most_thread, __ATOMIC_RELAXED))
-        __atomic_store_n(&l->most_thread, thread, __ATOMIC_RELAXED);
+    if (thread > __atomic_load_n(&l->max_thread, __ATOMIC_RELAXED))
+        __atomic_store_n(&l->max_thread, thread, __ATOMIC_RELAXED);
     __atomic_store_n(&l->busy[thread], 0, __ATOMIC_RELEASE);
 }
 
@@ -38,7 +38,7 @@ static struct loop *run_loop(size_t count, size_t chunk, int threads)
     assert_non_null(l);
     parallel_set_threads(threads);
     parallel_for(count, chunk, visit, l);
-    assert_true(l->most_thread < threads);
+    assert_true(l->max_thread < threads);
     assert_false(l->shared);
     return l;
 }
@@ -88,7 +88,7 @@ static void outer_loop(void *ctx, size_t begin, size_t end, int thread)
     }
 }
 
-static void nested_loops_keep_their_thread(void **state)
+static void nested_loops_keep_their_thread_number(void **state)
 {
     struct nest n = {0};
 
@@ -102,7 +102,7 @@ static void nested_loops_keep_their_thread(void **state)
     }
 }
 
-static void thread_counts(void **state)
+static void the_thread_count_can_be_set(void **state)
 {
     (void)state;
     parallel_set_threads(5);
@@ -115,8 +115,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(chunks_do_not_depend_on_threads),
-        cmocka_unit_test(nested_loops_keep_their_thread),
-        cmocka_unit_test(thread_counts),
+        cmocka_unit_test(nested_loops_keep_their_thread_number),
+        cmocka_unit_test(the_thread_count_can_be_set),
     };
 
     return cmocka_run_group_tests_name("parallel", tests, NULL, NULL);

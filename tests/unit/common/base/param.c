@@ -1,4 +1,4 @@
-/* Parameters: what is declared is what is read, printed, checked and explained. */
+/* param.c - parameters are read, checked, printed and explained as declared. */
 #include "tests/unit/scratch.h"
 
 #include <locale.h>
@@ -39,7 +39,7 @@ static char *printed(const struct sweep_params *p)
     return text;
 }
 
-static void reads_its_section(void **state)
+static void the_section_of_the_stage_is_read(void **state)
 {
     struct sweep_params p = SWEEP_PARAMS_DEFAULT;
     struct err err = ERR_INIT;
@@ -68,14 +68,14 @@ static void a_file_without_the_section_changes_nothing(void **state)
     assert_int_equal(p.planes, 128);
 }
 
-static void refusals(void **state)
+static void invalid_files_are_refused(void **state)
 {
     static const struct {
         const char *text, *words;
     } cases[] = {
         {"[sweep]\nplaness = 3\n", "a.cfg:2: unknown parameter \"planess\"; did you mean planes?"},
         {"[sweep]\nzzzzzz = 3\n", "a.cfg:2: unknown parameter \"zzzzzz\"; --help lists them."},
-        {"[sweep]\nplanes = 3\n\nplanes = 3\n", "a.cfg:4: planes is given twice, first in line 2"},
+        {"[sweep]\nplanes = 3\n\nplanes = 3\n", "a.cfg:4: planes is set twice, first in line 2"},
         {"[sweep]\nplanes = 1\n", "a.cfg:2: planes = \"1\", wanted an integer from 2 to 4096."},
         {"[sweep]\nplanes = 4097\n", "4096"},
         {"[sweep]\nplanes = 12x\n", "\"12x\""},
@@ -90,9 +90,10 @@ static void refusals(void **state)
         {"[sweep]\nmetric = sad\n", "metric = \"sad\", wanted one of ad|census."},
         {"[sweep]\nmetric = ad|census\n", "one of"},
         {"[sweep]\nmetric =\n", "one of"},
-        {"[sweep]\nplanes = 7\nwhat is this\n", "a.cfg:3: found \"what is this\", wanted [section] or key = value"},
+        {"[sweep]\nplanes = 7\nwhat is this\n", "a.cfg:3: found \"what is this\", wanted [section], key = value"},
         {"[other\n", "a.cfg:1: found \"[other\""},
-        {"planes = 3\n", "a.cfg:1: \"planes\" stands before any [section]; put it under its stage's, as [sweep]."},
+        {"planes = 3\n",
+         "a.cfg:1: \"planes\" comes before the first [section]; move it below its stage's section, such as [sweep]."},
         {"[sweep]\nnote = a\033b\n", "a.cfg:2: note = \"a\\x1bb\""},
     };
 
@@ -105,7 +106,7 @@ static void refusals(void **state)
     }
 }
 
-static void odd_files(void **state)
+static void unusual_files_are_read(void **state)
 {
     struct sweep_params p = SWEEP_PARAMS_DEFAULT;
     struct err none = ERR_INIT, nul = ERR_INIT, folder = ERR_INIT;
@@ -121,17 +122,17 @@ static void odd_files(void **state)
     assert_int_equal(params_read_file(table, &p, "sweep", scratch_path("none.cfg"), NULL), ST_USAGE);
 }
 
-static void long_lines(void **state)
+static void long_lines_are_read_or_refused(void **state)
 {
     static char text[5000];
     struct sweep_params p = SWEEP_PARAMS_DEFAULT;
-    struct err good = ERR_INIT, long_value = ERR_INIT, long_line = ERR_INIT;
+    struct err ok = ERR_INIT, long_value = ERR_INIT, long_line = ERR_INIT;
 
     (void)state;
-    /* a comment of any length, and the longest value there is */
+    /* a comment of any length, and the longest possible value */
     const int n = sprintf(text, "#%02000d\n[sweep]\n", 0);
     sprintf(text + n, "note = %0255d\nplanes = 5\n", 7);
-    assert_ok(read_text(&p, text, &good), good);
+    assert_ok(read_text(&p, text, &ok), ok);
     assert_int_equal(strlen(p.note), 255);
     assert_int_equal(p.planes, 5);
     sprintf(text, "[sweep]\nnote = %0256d\n", 7);
@@ -142,7 +143,7 @@ static void long_lines(void **state)
     assert_err(long_line, ST_USAGE, "a.cfg:3: the line has 1107 bytes, wanted at most");
 }
 
-static void set_on_the_command_line(void **state)
+static void set_assigns_a_parameter(void **state)
 {
     struct sweep_params p = SWEEP_PARAMS_DEFAULT;
     struct err err = ERR_INIT, e1 = ERR_INIT, e2 = ERR_INIT, e3 = ERR_INIT, e4 = ERR_INIT;
@@ -151,7 +152,7 @@ static void set_on_the_command_line(void **state)
     assert_ok(params_set(table, &p, "note=x=y", &err), err);
     assert_string_equal(p.note, "x=y");
     assert_ok(params_set(table, &p, "gain=-0", &err), err);
-    assert_false(1 / p.gain < 0); /* -0 and 0 are equal, and so are their bytes */
+    assert_false(1 / p.gain < 0); /* -0 becomes 0 */
     assert_int_equal(params_set(table, &p, "planes", &e1), ST_USAGE);
     assert_err(e1, ST_USAGE, "--set \"planes\": wanted key=value.");
     assert_int_equal(params_set(table, &p, "plane=3", &e2), ST_USAGE);
@@ -162,7 +163,7 @@ static void set_on_the_command_line(void **state)
     assert_err(e4, ST_USAGE, "wanted text without");
 }
 
-static void printing_reads_back(void **state)
+static void printed_parameters_read_back(void **state)
 {
     struct sweep_params p = SWEEP_PARAMS_DEFAULT, q = SWEEP_PARAMS_DEFAULT;
     struct err err = ERR_INIT;
@@ -181,7 +182,7 @@ static void printing_reads_back(void **state)
     free(text);
 }
 
-static void numbers_know_no_locale(void **state)
+static void numbers_ignore_the_locale(void **state)
 {
     static const char *const commas[] = {"de_DE.UTF-8", "fr_FR.UTF-8", "de_DE"};
     struct sweep_params p = SWEEP_PARAMS_DEFAULT;
@@ -202,7 +203,7 @@ static void numbers_know_no_locale(void **state)
     free(text);
 }
 
-static void help_tells_all(void **state)
+static void help_lists_default_unit_and_range(void **state)
 {
     const struct sweep_params p = SWEEP_PARAMS_DEFAULT;
     char *text = NULL;
@@ -260,15 +261,15 @@ static void explained_parameters_read_back_as_the_defaults(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(reads_its_section),
+        cmocka_unit_test(the_section_of_the_stage_is_read),
         cmocka_unit_test(a_file_without_the_section_changes_nothing),
-        cmocka_unit_test(refusals),
-        cmocka_unit_test(odd_files),
-        cmocka_unit_test(long_lines),
-        cmocka_unit_test(set_on_the_command_line),
-        cmocka_unit_test(printing_reads_back),
-        cmocka_unit_test(numbers_know_no_locale),
-        cmocka_unit_test(help_tells_all),
+        cmocka_unit_test(invalid_files_are_refused),
+        cmocka_unit_test(unusual_files_are_read),
+        cmocka_unit_test(long_lines_are_read_or_refused),
+        cmocka_unit_test(set_assigns_a_parameter),
+        cmocka_unit_test(printed_parameters_read_back),
+        cmocka_unit_test(numbers_ignore_the_locale),
+        cmocka_unit_test(help_lists_default_unit_and_range),
         cmocka_unit_test(a_renamed_parameter_is_refused_with_its_new_name),
         cmocka_unit_test(explained_parameters_read_back_as_the_defaults),
     };

@@ -1,4 +1,4 @@
-/* Other programs: exit statuses, logs, strange arguments, pipes, and children that end with their parent. */
+/* process.c - exit codes, logs, unusual arguments, pipes, and children that are killed with their parent. */
 #include "tests/unit/scratch.h"
 
 #include <errno.h>
@@ -7,7 +7,7 @@
 
 #include "common/base/process.h"
 
-static void exit_statuses(void **state)
+static void exit_codes_and_signals_are_returned(void **state)
 {
     static const struct {
         const char *script;
@@ -19,12 +19,12 @@ static void exit_statuses(void **state)
         const char *const argv[] = {"sh", "-c", cases[i].script, NULL};
         struct err err = ERR_INIT;
         int code = -1;
-        assert_ok(process_run(argv, NULL, &code, &err), err);
+        assert_ok(process_run_env(argv, NULL, NULL, &code, &err), err);
         assert_int_equal(code, cases[i].code);
     }
 }
 
-static void arguments_pass_no_shell(void **state)
+static void arguments_bypass_the_shell(void **state)
 {
     const char *const argv[] = {"printf", "%s|", "a b", "$HOME", "`id`", "'", "\"", "*", "", "#;&", NULL};
     struct err err = ERR_INIT;
@@ -32,7 +32,7 @@ static void arguments_pass_no_shell(void **state)
     const char *log = scratch_write("log", "before\n");
 
     (void)state;
-    assert_ok(process_run(argv, log, &code, &err), err);
+    assert_ok(process_run_env(argv, NULL, log, &code, &err), err);
     assert_int_equal(code, 0);
     assert_file_text(log, "before\na b|$HOME|`id`|'|\"|*||#;&|"); /* appended */
 }
@@ -44,11 +44,11 @@ static void both_outputs_go_to_the_log_and_input_is_empty(void **state)
     int code;
 
     (void)state;
-    assert_ok(process_run(argv, scratch_path("log2"), &code, &err), err);
+    assert_ok(process_run_env(argv, NULL, scratch_path("log2"), &code, &err), err);
     assert_file_text(scratch_path("log2"), "out\nerr\nend\n");
 }
 
-static void environment(void **state)
+static void environment_variables_are_added(void **state)
 {
     const char *const argv[] = {"sh", "-c", "echo $REMODEL_A,$REMODEL_B,$REMODEL_AB", NULL};
     const char *const env[] = {"REMODEL_A=new", "REMODEL_B=b c", NULL};
@@ -63,7 +63,7 @@ static void environment(void **state)
     assert_string_equal(getenv("REMODEL_A"), "old");
 }
 
-static void missing_programs(void **state)
+static void missing_programs_name_their_package(void **state)
 {
     const char *const colmap[] = {"colmap", NULL}, *const other[] = {"no-such-program", NULL},
                       *const path[] = {"./no-such-program", NULL};
@@ -74,16 +74,16 @@ static void missing_programs(void **state)
 
     (void)state;
     setenv("PATH", scratch, 1);
-    assert_int_equal(process_run(colmap, NULL, &code, &e1), ST_IO);
-    assert_int_equal(process_run(other, NULL, &code, &e2), ST_IO);
+    assert_int_equal(process_run_env(colmap, NULL, NULL, &code, &e1), ST_IO);
+    assert_int_equal(process_run_env(other, NULL, NULL, &code, &e2), ST_IO);
     assert_int_equal(process_start(&p, other, NULL, &e3), ST_IO);
-    assert_int_equal(process_finish(&p, &code, NULL), ST_OK); /* the empty state is harmless */
+    assert_int_equal(process_finish(&p, &code, NULL), ST_OK); /* the empty state */
     process_kill(&p);
-    assert_int_equal(process_run(path, NULL, &code, &e4), ST_IO);
-    /* a file that may be run but is no program */
+    assert_int_equal(process_run_env(path, NULL, NULL, &code, &e4), ST_IO);
+    /* an executable file that is not a program */
     assert_int_equal(chmod(scratch_write("garbage", "\x01\x02"), 0755), 0);
     const char *const garbage[] = {"garbage", NULL};
-    assert_int_equal(process_run(garbage, NULL, &code, &e5), ST_IO);
+    assert_int_equal(process_run_env(garbage, NULL, NULL, &code, &e5), ST_IO);
     setenv("PATH", old, 1);
     free(old);
     assert_err(e1, ST_IO, "the program colmap is not in PATH; install Debian's package colmap.");
@@ -93,18 +93,18 @@ static void missing_programs(void **state)
     assert_err(e5, ST_IO, "Exec format error");
 }
 
-static void a_log_that_cannot_be_written(void **state)
+static void an_unwritable_log_is_an_error(void **state)
 {
     const char *const argv[] = {"true", NULL};
     struct err err = ERR_INIT;
     int code;
 
     (void)state;
-    assert_int_equal(process_run(argv, scratch_path("no/such/log"), &code, &err), ST_IO);
+    assert_int_equal(process_run_env(argv, NULL, scratch_path("no/such/log"), &code, &err), ST_IO);
     assert_err(err, ST_IO, "cannot write");
 }
 
-static void pipes(void **state)
+static void input_is_piped_to_a_program(void **state)
 {
     const char *const argv[] = {"wc", "-c", NULL};
     static char block[100000];
@@ -121,13 +121,13 @@ static void pipes(void **state)
     assert_ok(process_finish(&p, &code, &err), err); /* idempotent */
 }
 
-static void readers_that_end_early(void **state)
+static void a_reader_that_ends_early_is_a_failure(void **state)
 {
     static const struct {
         const char *script;
         int code;
     } cases[] = {{"exit 5", 5}, {"head -c 10 >/dev/null", 128 + SIGPIPE}};
-    static char block[1 << 20]; /* more than a pipe holds */
+    static char block[1 << 20]; /* larger than a pipe's buffer */
 
     (void)state;
     for (int i = 0; i < 2; i++) {
@@ -142,7 +142,7 @@ static void readers_that_end_early(void **state)
     }
     struct sigaction now;
     sigaction(SIGPIPE, NULL, &now);
-    assert_true(now.sa_handler == SIG_DFL); /* as it was */
+    assert_true(now.sa_handler == SIG_DFL); /* restored */
 }
 
 static void children_have_the_default_sigpipe(void **state)
@@ -153,8 +153,8 @@ static void children_have_the_default_sigpipe(void **state)
     int code = -1;
 
     (void)state;
-    assert_ok(process_start(&p, reader, NULL, &err), err); /* SIGPIPE is ignored here now */
-    assert_ok(process_run(argv, NULL, &code, &err), err);
+    assert_ok(process_start(&p, reader, NULL, &err), err); /* now SIGPIPE is ignored here */
+    assert_ok(process_run_env(argv, NULL, NULL, &code, &err), err);
     assert_int_equal(code, 128 + SIGPIPE);
     process_kill(&p);
     process_kill(&p);
@@ -168,7 +168,7 @@ static bool runs(pid_t pid)
     snprintf(path, sizeof path, "/proc/%d/stat", (int)pid);
     text = scratch_read(path);
     const char *after = strrchr(text, ')');
-    const bool running = after && after[1] == ' ' && after[2] != 'Z'; /* a zombie waits only to be noticed */
+    const bool running = after && after[1] == ' ' && after[2] != 'Z'; /* a zombie has ended */
     free(text);
     return running;
 }
@@ -179,10 +179,10 @@ static int run_forever(void *ctx)
     struct err err = ERR_INIT;
     int code;
 
-    return process_run(argv, NULL, &code, &err) != ST_OK;
+    return process_run_env(argv, NULL, NULL, &code, &err) != ST_OK;
 }
 
-static void children_end_with_their_parent(void **state)
+static void children_are_killed_with_their_parent(void **state)
 {
     static const int signals[] = {SIGTERM, SIGKILL};
     const struct timespec tick = {0, 10000000};
@@ -211,16 +211,16 @@ static void children_end_with_their_parent(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(exit_statuses),
-        cmocka_unit_test(arguments_pass_no_shell),
+        cmocka_unit_test(exit_codes_and_signals_are_returned),
+        cmocka_unit_test(arguments_bypass_the_shell),
         cmocka_unit_test(both_outputs_go_to_the_log_and_input_is_empty),
-        cmocka_unit_test(environment),
-        cmocka_unit_test(missing_programs),
-        cmocka_unit_test(a_log_that_cannot_be_written),
-        cmocka_unit_test(pipes),
-        cmocka_unit_test(readers_that_end_early),
+        cmocka_unit_test(environment_variables_are_added),
+        cmocka_unit_test(missing_programs_name_their_package),
+        cmocka_unit_test(an_unwritable_log_is_an_error),
+        cmocka_unit_test(input_is_piped_to_a_program),
+        cmocka_unit_test(a_reader_that_ends_early_is_a_failure),
         cmocka_unit_test(children_have_the_default_sigpipe),
-        cmocka_unit_test(children_end_with_their_parent),
+        cmocka_unit_test(children_are_killed_with_their_parent),
     };
 
     return cmocka_run_group_tests_name("process", tests, scratch_make, scratch_remove);

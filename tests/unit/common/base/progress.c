@@ -1,4 +1,4 @@
-/* Progress: plain lines in a log, one line redrawn on a terminal, safe from many threads. */
+/* progress.c - plain lines in a log, one redrawn line on a terminal, any number of threads. */
 #include "tests/unit/scratch.h"
 
 #include <pty.h>
@@ -13,11 +13,11 @@ static void add_one(void *ctx, size_t begin, size_t end, int thread)
     progress_add(ctx, (int64_t)(end - begin));
 }
 
-/* As if the step had begun, and last been shown, so many seconds ago. */
+/* Pretends that the step started and was last drawn `seconds` ago. */
 static void age(struct progress *p, double seconds)
 {
     p->started -= seconds;
-    p->shown -= seconds;
+    p->drawn -= seconds;
 }
 
 static int in_a_log(void *ctx)
@@ -31,9 +31,9 @@ static int in_a_log(void *ctx)
     progress_end(&p); /* too short for a line */
     progress_start(&p, "plane sweep", 1000, "planes");
     progress_add(&p, 1);   /* no line yet */
-    age(&p, 1995);         /* all ages leave room for a busy machine's delays */
-    progress_add(&p, 199); /* a line: 200 in about 2000 s */
-    progress_add(&p, 100); /* none: too soon */
+    age(&p, 1995);         /* ages leave room for delays on a busy machine */
+    progress_add(&p, 199); /* prints a line: 200 in about 2000 s */
+    progress_add(&p, 100); /* no line: too soon */
     parallel_set_threads(4);
     parallel_for(700, 1, add_one, &p);
     age(&p, 6000);
@@ -47,24 +47,24 @@ static int in_a_log(void *ctx)
     return p.terminal || !counted;
 }
 
-static void lines_in_a_log(void **state)
+static void a_log_gets_plain_lines(void **state)
 {
-    char *said;
+    char *output;
 
     (void)state;
-    assert_int_equal(child_run(in_a_log, NULL, &said), 0);
-    char *last = strstr(said, "sweep: short step 10/10 views, 0.0");
+    assert_int_equal(child_run(in_a_log, NULL, &output), 0);
+    char *last = strstr(output, "sweep: short step 10/10 views, 0.0");
     assert_non_null(last);
-    assert_contains(last, ", 1 min 5"); /* 51 s, or some more */
+    assert_contains(last, ", 1 min 5"); /* 51 s or a little more */
     *last = '\0';
-    assert_string_equal(said, "sweep: plane sweep 200/1000 planes, 0.1 planes/s, 2 h 13 min left\n"
-                              "sweep: plane sweep 1000/1000 planes, 0.125 planes/s, 2 h 13 min\n");
-    free(said);
+    assert_string_equal(output, "sweep: plane sweep 200/1000 planes, 0.1 planes/s, 2 h 13 min left\n"
+                                "sweep: plane sweep 1000/1000 planes, 0.125 planes/s, 2 h 13 min\n");
+    free(output);
 }
 
-static void on_a_terminal(void **state)
+static void a_terminal_line_is_redrawn(void **state)
 {
-    char said[4096];
+    char output[4096];
     size_t n = 0;
     ssize_t got;
     int master;
@@ -88,17 +88,17 @@ static void on_a_terminal(void **state)
         progress_end(&p);
         _exit(p.terminal ? 0 : 1);
     }
-    while (n < sizeof said - 1 && (got = read(master, said + n, sizeof said - 1 - n)) > 0) n += (size_t)got;
-    said[n] = '\0';
+    while (n < sizeof output - 1 && (got = read(master, output + n, sizeof output - 1 - n)) > 0) n += (size_t)got;
+    output[n] = '\0';
     assert_int_equal(child_wait(pid), 0);
     close(master);
-    assert_string_equal(said, "\r\033[Ksweep: step 1/4 views, 0.000167 views/s, 4 h 59 min left"
-                              "\r\033[Ksweep: a word\r\n"
-                              "\r\033[Ksweep: step 2/4 views, 0.000167 views/s, 3 h 19 min left"
-                              "\r\033[Ksweep: step 2/4 views, 0.000167 views/s, 3 h 19 min\r\n");
+    assert_string_equal(output, "\r\033[Ksweep: step 1/4 views, 0.000167 views/s, 4 h 59 min left"
+                                "\r\033[Ksweep: a word\r\n"
+                                "\r\033[Ksweep: step 2/4 views, 0.000167 views/s, 3 h 19 min left"
+                                "\r\033[Ksweep: step 2/4 views, 0.000167 views/s, 3 h 19 min\r\n");
 }
 
-static void unknown_totals(void **state)
+static void a_total_of_0_is_accepted(void **state)
 {
     struct progress p = {0};
 
@@ -113,9 +113,9 @@ static void unknown_totals(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(lines_in_a_log),
-        cmocka_unit_test(on_a_terminal),
-        cmocka_unit_test(unknown_totals),
+        cmocka_unit_test(a_log_gets_plain_lines),
+        cmocka_unit_test(a_terminal_line_is_redrawn),
+        cmocka_unit_test(a_total_of_0_is_accepted),
     };
 
     return cmocka_run_group_tests_name("progress", tests, scratch_make, scratch_remove);

@@ -1,9 +1,9 @@
-/* Provenance: what products say they were made from. */
+/* provenance.c - what products record of their making. */
 #include "tests/unit/scratch.h"
 
 #include "common/base/provenance.h"
 
-static void text_of_a_product(void **state)
+static void provenance_is_printed(void **state)
 {
     struct provenance prov = {.stage = "rectify", .version = "1.2.3"};
     struct err err = ERR_INIT;
@@ -12,10 +12,10 @@ static void text_of_a_product(void **state)
 
     (void)state;
     prov.params = strdup("[rectify]\nmegapixels = 2\nnote = [x]\nempty =\n");
-    hash_bytes(a, "one", 3);
-    hash_bytes(b, "two", 3);
-    assert_ok(provenance_add_file(&prov, "photos/b.jpg", scratch_write("one", "one"), &err), err);
-    assert_ok(provenance_add_file(&prov, "photos/a b.jpg", scratch_write("two", "two"), &err), err);
+    assert_ok(hash_file(a, scratch_write("one", "one"), &err), err);
+    assert_ok(hash_file(b, scratch_write("two", "two"), &err), err);
+    assert_ok(provenance_add_file(&prov, "photos/b.jpg", scratch_path("one"), &err), err);
+    assert_ok(provenance_add_file(&prov, "photos/a b.jpg", scratch_path("two"), &err), err);
     assert_ok(provenance_add_file(&prov, "photos/b.jpg", scratch_path("one"), &err), err); /* recorded once */
     assert_int_equal(prov.count, 2);
 
@@ -39,7 +39,7 @@ static void text_of_a_product(void **state)
     provenance_release(NULL);
 }
 
-static void inputs_that_cannot_be_named(void **state)
+static void unprintable_input_names_are_refused(void **state)
 {
     struct provenance prov = {.stage = "s", .version = "v"};
     struct err none = ERR_INIT, name = ERR_INIT;
@@ -48,7 +48,7 @@ static void inputs_that_cannot_be_named(void **state)
     assert_int_equal(provenance_add_file(&prov, "x", scratch_path("none"), &none), ST_IO);
     assert_err(none, ST_IO, "cannot open");
     assert_int_equal(provenance_add_file(&prov, "a\nb", scratch_write("f", "f"), &name), ST_DATA);
-    assert_err(name, ST_DATA, "holds a line break");
+    assert_err(name, ST_DATA, "contains a line break");
     assert_int_equal(prov.count, 0);
     char *text = provenance_inputs_text(&prov);
     assert_string_equal(text, "");
@@ -59,8 +59,8 @@ static void inputs_that_cannot_be_named(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(text_of_a_product),
-        cmocka_unit_test(inputs_that_cannot_be_named),
+        cmocka_unit_test(provenance_is_printed),
+        cmocka_unit_test(unprintable_input_names_are_refused),
     };
 
     return cmocka_run_group_tests_name("provenance", tests, scratch_make, scratch_remove);

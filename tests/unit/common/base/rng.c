@@ -1,12 +1,12 @@
-/* Random numbers: Philox's published vectors, keys, and the shape of the distribution. */
+/* rng.c - Philox against its published test vectors, keys, and the distribution. */
 #include "tests/unit/scratch.h"
 
 #include <math.h>
 
 #include "common/base/rng.h"
 
-/* From the file kat_vectors of Random123, the generator's reference implementation. */
-static void known_answers(void **state)
+/* From kat_vectors of Random123, the reference implementation. */
+static void philox_matches_its_test_vectors(void **state)
 {
     static const struct {
         uint32_t key[2];
@@ -32,7 +32,7 @@ static void known_answers(void **state)
     }
 }
 
-static void numbers_are_words_of_blocks(void **state)
+static void numbers_come_from_blocks_in_order(void **state)
 {
     const struct rng rng = rng_make(1, "stage", "view");
     uint32_t block[4];
@@ -46,7 +46,7 @@ static void numbers_are_words_of_blocks(void **state)
     for (uint64_t i = 0; i < 1000; i++) assert_true(rng_uniform(&ones, 0, i) >= 0 && rng_uniform(&ones, 0, i) < 1);
 }
 
-static void keys_differ(void **state)
+static void seed_stage_and_view_change_the_key(void **state)
 {
     const struct rng keys[] = {
         rng_make(1, "stage", "view"),  rng_make(2, "stage", "view"), rng_make(1, "stag", "eview"),
@@ -60,8 +60,9 @@ static void keys_differ(void **state)
     assert_memory_equal(keys[0].key, again.key, sizeof again.key);
 }
 
-/* Mean, variance, chi-squared over bins, correlation of neighbours along both counters: four standard deviations. */
-static void uniform_is_uniform(void **state)
+/* Mean, variance, chi-squared over bins, correlation of neighbours along both counters; within four standard
+ * deviations. */
+static void uniform_numbers_are_uniform(void **state)
 {
     enum { N = 100000, BINS = 64 };
     const struct rng rng = rng_make(42, "test", "uniform");
@@ -89,10 +90,10 @@ static void uniform_is_uniform(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(known_answers),
-        cmocka_unit_test(numbers_are_words_of_blocks),
-        cmocka_unit_test(keys_differ),
-        cmocka_unit_test(uniform_is_uniform),
+        cmocka_unit_test(philox_matches_its_test_vectors),
+        cmocka_unit_test(numbers_come_from_blocks_in_order),
+        cmocka_unit_test(seed_stage_and_view_change_the_key),
+        cmocka_unit_test(uniform_numbers_are_uniform),
     };
 
     return cmocka_run_group_tests_name("rng", tests, NULL, NULL);

@@ -1,4 +1,4 @@
-/* The text reader: records, quotes, numbers, and errors that say where and what. */
+/* textfile.c - records, quotes, numbers, and errors with file and line. */
 #include "tests/unit/scratch.h"
 
 #include <sys/resource.h>
@@ -14,7 +14,7 @@ static struct textfile opened(const char *text)
     return t;
 }
 
-static void records(void **state)
+static void records_are_read(void **state)
 {
     struct textfile t = opened("# head\r\n\n  \t\n  7 a -0.5 two  words \r\n#8\nlast");
     struct err err = ERR_INIT;
@@ -48,7 +48,7 @@ static void records(void **state)
     textfile_release(NULL);
 }
 
-static void raw_lines(void **state)
+static void raw_lines_include_blanks_and_comments(void **state)
 {
     struct textfile t = opened("a\n\n#c\n");
 
@@ -59,14 +59,14 @@ static void raw_lines(void **state)
     assert_int_equal(t.line, 2);
     assert_true(textfile_next_raw(&t));
     assert_true(textfile_more(&t));
-    assert_false(textfile_next_raw(&t)); /* a line break at the end begins no line */
+    assert_false(textfile_next_raw(&t)); /* the last line break does not begin a line */
     textfile_release(&t);
     t = opened("");
     assert_false(textfile_next_raw(&t));
     textfile_release(&t);
 }
 
-static void bad_lines(void **state)
+static void invalid_lines_are_located(void **state)
 {
     static const struct {
         const char *text, *words;
@@ -107,7 +107,7 @@ static void bad_lines(void **state)
     }
 }
 
-static void expected_words_lines_and_ends(void **state)
+static void expected_words_lines_and_ends_are_checked(void **state)
 {
     static const struct {
         const char *text, *words;
@@ -136,7 +136,7 @@ static void expected_words_lines_and_ends(void **state)
     }
 }
 
-static void quoting_reads_back(void **state)
+static void quoted_words_read_back(void **state)
 {
     static const char *const words[] = {"plain",     "",   "two words", "a\"b\\c",        "#1",
                                         "tab\there", "\"", "\\",        "\xc3\xa9\x01$'`"};
@@ -156,16 +156,16 @@ static void quoting_reads_back(void **state)
         assert_string_equal(word, "next");
         textfile_release(&t);
     }
-    struct err line_break = ERR_INIT, room = ERR_INIT, good = ERR_INIT;
+    struct err line_break = ERR_INIT, room = ERR_INIT, ok = ERR_INIT;
     assert_int_equal(textfile_quote("a\nb", quoted, sizeof quoted, &line_break), ST_DATA);
-    assert_err(line_break, ST_DATA, "the name \"a\\nb\" holds a line break");
-    assert_ok(textfile_quote("a b", quoted, 6, &good), good); /* two quotes, three letters, the end */
+    assert_err(line_break, ST_DATA, "the name \"a\\nb\" contains a line break");
+    assert_ok(textfile_quote("a b", quoted, 6, &ok), ok); /* two quotes, three letters, NUL */
     assert_string_equal(quoted, "\"a b\"");
     assert_int_equal(textfile_quote("a b", quoted, 5, &room), ST_DATA);
     assert_err(room, ST_DATA, "longer than");
 }
 
-static void files_that_cannot_be_read(void **state)
+static void unreadable_files_are_errors(void **state)
 {
     struct textfile t;
     struct err none = ERR_INIT, folder = ERR_INIT, nul = ERR_INIT;
@@ -180,7 +180,7 @@ static void files_that_cannot_be_read(void **state)
     assert_null(t.bytes);
 }
 
-static void pipes_are_read_to_their_end(void **state)
+static void pipes_are_read_to_the_end(void **state)
 {
     struct textfile t;
     struct err err = ERR_INIT;
@@ -193,7 +193,7 @@ static void pipes_are_read_to_their_end(void **state)
     const pid_t pid = fork();
     if (!pid) {
         FILE *fp = fdopen(ends[1], "w");
-        for (int i = 0; i < 50000; i++) fprintf(fp, "%d\n", i); /* more than the first buffer holds */
+        for (int i = 0; i < 50000; i++) fprintf(fp, "%d\n", i); /* more than the first buffer */
         fclose(fp);
         _exit(0);
     }
@@ -225,18 +225,18 @@ static int without_memory(void *ctx)
 }
 #endif
 
-static void no_memory(void **state)
+static void a_file_too_large_for_memory_is_an_error(void **state)
 {
     (void)state;
 #ifdef __SANITIZE_ADDRESS__
     print_message("the sanitizer needs more address space than this test leaves\n");
     skip();
 #else
-    char *said, *path = strdup(scratch_write("big", ""));
+    char *output, *path = strdup(scratch_write("big", ""));
     assert_int_equal(truncate(path, (off_t)1 << 33), 0); /* sparse */
-    assert_int_equal(child_run(without_memory, path, &said), 0);
-    assert_contains(said, "big: not enough memory for a text file (8589934594 bytes).");
-    free(said);
+    assert_int_equal(child_run(without_memory, path, &output), 0);
+    assert_contains(output, "big: not enough memory for a text file (8589934594 bytes).");
+    free(output);
     free(path);
 #endif
 }
@@ -244,14 +244,10 @@ static void no_memory(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(records),
-        cmocka_unit_test(raw_lines),
-        cmocka_unit_test(bad_lines),
-        cmocka_unit_test(expected_words_lines_and_ends),
-        cmocka_unit_test(quoting_reads_back),
-        cmocka_unit_test(files_that_cannot_be_read),
-        cmocka_unit_test(pipes_are_read_to_their_end),
-        cmocka_unit_test(no_memory),
+        cmocka_unit_test(records_are_read),          cmocka_unit_test(raw_lines_include_blanks_and_comments),
+        cmocka_unit_test(invalid_lines_are_located), cmocka_unit_test(expected_words_lines_and_ends_are_checked),
+        cmocka_unit_test(quoted_words_read_back),    cmocka_unit_test(unreadable_files_are_errors),
+        cmocka_unit_test(pipes_are_read_to_the_end), cmocka_unit_test(a_file_too_large_for_memory_is_an_error),
     };
 
     return cmocka_run_group_tests_name("textfile", tests, scratch_make, scratch_remove);

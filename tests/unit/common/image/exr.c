@@ -1,4 +1,4 @@
-/* OpenEXR files: what is written comes back, byte for byte the same; foreign and damaged files; the view's picture. */
+/* exr.c - OpenEXR files: written samples read back, bytes are reproducible; foreign and damaged files; view images. */
 #include "tests/unit/scratch.h"
 
 #include <math.h>
@@ -23,7 +23,7 @@ static char *file_bytes(const char *path, size_t *size)
     return bytes;
 }
 
-/* A picture with every kind of channel; its height leaves a last chunk that is not full. */
+/* An image with every type of channel, and a height that leaves the last chunk incomplete. */
 static struct exr_image sample(int width, int height)
 {
     struct exr_image im = {0};
@@ -44,7 +44,7 @@ static struct exr_image sample(int width, int height)
     return im;
 }
 
-static void round_trip(void **state)
+static void written_images_read_back(void **state)
 {
     struct err err = ERR_INIT;
     struct exr_image im = sample(37, 45), in;
@@ -78,7 +78,7 @@ static void round_trip(void **state)
     exr_image_release(NULL);
 }
 
-static void every_codec_comes_back(void **state)
+static void every_codec_reads_back(void **state)
 {
     struct err err = ERR_INIT;
     (void)state;
@@ -96,7 +96,7 @@ static void every_codec_comes_back(void **state)
     }
 }
 
-static void half_is_the_nearest_and_saturates(void **state)
+static void half_is_rounded_to_nearest_and_clamped(void **state)
 {
     struct err err = ERR_INIT;
     struct exr_image im = {0}, in;
@@ -115,7 +115,7 @@ static void half_is_the_nearest_and_saturates(void **state)
     exr_image_release(&im);
 }
 
-static void same_bytes_for_any_threads_and_order(void **state)
+static void bytes_do_not_depend_on_threads_or_channel_order(void **state)
 {
     struct err err = ERR_INIT;
     struct exr_image im = sample(100, 133);
@@ -124,7 +124,7 @@ static void same_bytes_for_any_threads_and_order(void **state)
     parallel_set_threads(1);
     assert_ok(exr_write(&im, scratch_path("one.exr"), NULL, &err), err);
     char *one = file_bytes(scratch_path("one.exr"), &one_size);
-    struct exr_plane first = im.planes[0]; /* the file keeps its channels in order of name */
+    struct exr_plane first = im.planes[0]; /* the file sorts its channels by name */
     im.planes[0] = im.planes[2];
     im.planes[2] = first;
     for (int threads = 1; threads < 6; threads++) {
@@ -140,7 +140,7 @@ static void same_bytes_for_any_threads_and_order(void **state)
     exr_image_release(&im);
 }
 
-static void refused_samples_leave_the_old_file(void **state)
+static void invalid_samples_keep_the_old_file(void **state)
 {
     struct err err = ERR_INIT;
     struct exr_image im = sample(20, 40);
@@ -185,7 +185,7 @@ static void provenance_is_in_the_file(void **state)
     assert_null(memmem(bytes, size, scratch, strlen(scratch))); /* no absolute path */
     free(bytes);
 
-    /* read and written again it carries the new provenance alone */
+    /* read and written again, it has the new provenance only */
     assert_ok(exr_read(&in, scratch_path("p.exr"), NULL, 0, &err), err);
     assert_int_equal(in.attribute_count, 1);
     prov.stage = "another";
@@ -198,7 +198,7 @@ static void provenance_is_in_the_file(void **state)
     provenance_release(&prov);
 }
 
-static void interleaved_samples_and_numbers(void **state)
+static void rgba_images_and_numeric_attributes(void **state)
 {
     const float rgba[] = {0, 0.5f, 1, 0.25f, 2, 4, 8, 0.75f};
     static const char *const names[] = {"R", "G", "B", "A"};
@@ -218,7 +218,7 @@ static void interleaved_samples_and_numbers(void **state)
     exr_image_release(&im);
 }
 
-static void names_and_sizes(void **state)
+static void names_and_sizes_have_limits(void **state)
 {
     struct err err = ERR_INIT;
     struct exr_image im = {0}, in;
@@ -235,10 +235,10 @@ static void names_and_sizes(void **state)
     name[EXR_NAME_SIZE] = 0;
     assert_int_equal(exr_add_plane(&im, name, EXR_HALF, NULL, &err), ST_DATA);
     err = (struct err)ERR_INIT;
-    name[EXR_NAME_SIZE - 1] = 0; /* longer than 31, which old readers take */
+    name[EXR_NAME_SIZE - 1] = 0; /* longer than 31, the limit of old readers */
     assert_ok(exr_add_plane(&im, name, EXR_HALF, NULL, &err), err);
     assert_int_equal(exr_add_plane(&im, name, EXR_HALF, NULL, &err), ST_DATA);
-    assert_err(err, ST_DATA, "twice");
+    assert_err(err, ST_DATA, "exists already");
     err = (struct err)ERR_INIT;
     assert_ok(exr_write(&im, scratch_path("long.exr"), NULL, &err), err);
     assert_ok(exr_read(&in, scratch_path("long.exr"), NULL, 0, &err), err);
@@ -248,8 +248,8 @@ static void names_and_sizes(void **state)
     exr_image_release(&im);
 }
 
-/* The corpus' pictures hold B = x y / 8, G = y / 4, R = x + y / 16, Z = -1000.5 x - y, id = x + 1000 y. */
-static void foreign_codecs_and_layouts(void **state)
+/* The images of the corpus hold B = x y / 8, G = y / 4, R = x + y / 16, Z = -1000.5 x - y, id = x + 1000 y. */
+static void foreign_codecs_and_layouts_are_read(void **state)
 {
     const char *const files[] = {"none", "rle", "zips", "zip", "tiled", "tiled-none", "offset-window", "attributes"};
     (void)state;
@@ -274,7 +274,7 @@ static void foreign_codecs_and_layouts(void **state)
     }
 }
 
-static void broken_files(void **state)
+static void damaged_files_are_errors(void **state)
 {
     const char *const cases[][2] = {
         {"no-such", "cannot open"},
@@ -314,7 +314,7 @@ static void broken_files(void **state)
         assert_contains(err.text, path);
         assert_null(im.planes);
     }
-    /* what is not asked for is not looked at */
+    /* channels that are not requested are not checked */
     const char *alpha = "A";
     struct err err = ERR_INIT;
     struct exr_image im;
@@ -330,7 +330,7 @@ static struct view sample_view(int width, int height)
     return v;
 }
 
-static void view_pictures(void **state)
+static void view_images_are_written(void **state)
 {
     struct err err = ERR_INIT;
     struct view view = sample_view(17, 33);
@@ -357,7 +357,7 @@ static void view_pictures(void **state)
 }
 
 /* OpenEXR's camera looks along +z with y up: a point above and right of the axis has positive x and y there. */
-static void world_to_camera(void **state)
+static void world_to_camera_follows_openexr(void **state)
 {
     struct exr_image im = {0};
     struct view view = sample_view(16, 14);
@@ -376,18 +376,18 @@ static void world_to_camera(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(round_trip),
-        cmocka_unit_test(every_codec_comes_back),
-        cmocka_unit_test(half_is_the_nearest_and_saturates),
-        cmocka_unit_test(same_bytes_for_any_threads_and_order),
-        cmocka_unit_test(refused_samples_leave_the_old_file),
+        cmocka_unit_test(written_images_read_back),
+        cmocka_unit_test(every_codec_reads_back),
+        cmocka_unit_test(half_is_rounded_to_nearest_and_clamped),
+        cmocka_unit_test(bytes_do_not_depend_on_threads_or_channel_order),
+        cmocka_unit_test(invalid_samples_keep_the_old_file),
         cmocka_unit_test(provenance_is_in_the_file),
-        cmocka_unit_test(interleaved_samples_and_numbers),
-        cmocka_unit_test(names_and_sizes),
-        cmocka_unit_test(foreign_codecs_and_layouts),
-        cmocka_unit_test(broken_files),
-        cmocka_unit_test(view_pictures),
-        cmocka_unit_test(world_to_camera),
+        cmocka_unit_test(rgba_images_and_numeric_attributes),
+        cmocka_unit_test(names_and_sizes_have_limits),
+        cmocka_unit_test(foreign_codecs_and_layouts_are_read),
+        cmocka_unit_test(damaged_files_are_errors),
+        cmocka_unit_test(view_images_are_written),
+        cmocka_unit_test(world_to_camera_follows_openexr),
     };
     return cmocka_run_group_tests_name("exr", tests, scratch_make, scratch_remove);
 }

@@ -1,4 +1,4 @@
-/* The ZIP codec: any bytes come back; what it makes is what the format says; damage. */
+/* exr_zip.c - the ZIP codec: round trips, the format, damage. */
 #include "tests/unit/scratch.h"
 
 #include <libdeflate.h>
@@ -6,31 +6,31 @@
 #include "common/base/rng.h"
 #include "common/image/exr_zip.h"
 
-#define MOST 5000
+#define MAX_SIZE 5000
 
-/* Noise of a few bits on a slope: compressible, but for wide == 256. */
+/* Noise of a few bits on a ramp: compressible unless wide is 256. */
 static void fill(uint8_t *bytes, size_t size, uint32_t wide)
 {
     const struct rng rng = rng_make(7, "exr_zip", "test");
     for (size_t i = 0; i < size; i++) bytes[i] = (uint8_t)(i / 8 + rng_u32(&rng, i, wide) % wide);
 }
 
-static void any_bytes_come_back(void **state)
+static void any_bytes_read_back(void **state)
 {
     (void)state;
     struct exr_zip z = {0};
-    uint8_t from[MOST], to[MOST];
-    for (size_t size = 0; size <= MOST; size = size < 70 ? size + 1 : size * 2 + 1) {
+    uint8_t from[MAX_SIZE], to[MAX_SIZE];
+    for (size_t size = 0; size <= MAX_SIZE; size = size < 70 ? size + 1 : size * 2 + 1) {
         for (uint32_t wide = 1; wide <= 256; wide *= 16) {
             size_t packed = 0;
             fill(from, size, wide);
             assert_true(exr_zip_pack(&z, from, size, &packed));
             assert_true(packed <= size);
-            if (packed == size) continue;    /* stored as it is */
-            uint8_t *exact = malloc(packed); /* so that a sanitizer sees what is read behind it */
+            if (packed == size) continue;    /* stored uncompressed */
+            uint8_t *exact = malloc(packed); /* exact size, so that a sanitizer detects reads past the end */
             assert_non_null(exact);
             memcpy(exact, z.bytes, packed);
-            assert_int_equal(exr_zip_unpack(&z, exact, packed, to, size), EXR_ZIP_GOOD);
+            assert_int_equal(exr_zip_unpack(&z, exact, packed, to, size), EXR_ZIP_OK);
             assert_memory_equal(from, to, size);
             free(exact);
         }
@@ -40,8 +40,8 @@ static void any_bytes_come_back(void **state)
     exr_zip_release(NULL);
 }
 
-/* zlib's format, running sums, halves: byte by byte as the format's description has it */
-static void the_bytes_are_the_formats(void **state)
+/* Decodes byte by byte as the format is described: zlib, prefix sums, halves. */
+static void compressed_bytes_follow_the_format(void **state)
 {
     (void)state;
     struct exr_zip z = {0};
@@ -60,7 +60,7 @@ static void the_bytes_are_the_formats(void **state)
     exr_zip_release(&z);
 }
 
-static void damage_is_told(void **state)
+static void damage_is_an_error(void **state)
 {
     (void)state;
     struct exr_zip z = {0};
@@ -80,9 +80,9 @@ static void damage_is_told(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(any_bytes_come_back),
-        cmocka_unit_test(the_bytes_are_the_formats),
-        cmocka_unit_test(damage_is_told),
+        cmocka_unit_test(any_bytes_read_back),
+        cmocka_unit_test(compressed_bytes_follow_the_format),
+        cmocka_unit_test(damage_is_an_error),
     };
     return cmocka_run_group_tests_name("exr_zip", tests, scratch_make, scratch_remove);
 }

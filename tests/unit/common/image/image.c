@@ -1,11 +1,11 @@
-/* Float pictures: memory, limits, and the sRGB curve against its definition. */
+/* image.c - float images: memory, limits, and the sRGB curve against its definition. */
 #include "tests/unit/scratch.h"
 
 #include <math.h>
 
 #include "common/image/image.h"
 
-static void memory(void **state)
+static void images_are_allocated_zeroed(void **state)
 {
     struct image im = {0};
     struct err err = ERR_INIT;
@@ -20,7 +20,7 @@ static void memory(void **state)
     assert_null(im.data);
 }
 
-static void refused_sizes(void **state)
+static void invalid_sizes_are_refused(void **state)
 {
     const int sizes[][3] = {{0, 3, 1}, {3, 0, 1}, {3, 3, 0}, {-1, 3, 1}, {INT_MAX, INT_MAX, 4}, {1 << 16, 1 << 15, 2}};
     (void)state;
@@ -28,12 +28,12 @@ static void refused_sizes(void **state)
         struct image im;
         struct err err = ERR_INIT;
         assert_int_equal(image_init(&im, sizes[i][0], sizes[i][1], sizes[i][2], &err), ST_DATA);
-        assert_err(err, ST_DATA, "picture");
+        assert_err(err, ST_DATA, "image");
         assert_null(im.data);
     }
 }
 
-static void srgb_curve(void **state)
+static void the_srgb_curve_matches_its_definition(void **state)
 {
     (void)state;
     assert_true(srgb_from_linear(0) == 0 && srgb_from_linear(1) == 1);
@@ -47,8 +47,8 @@ static void srgb_curve(void **state)
     }
 }
 
-/* Every 8-bit value survives the way to linear light and back, in three channels, four and one. */
-static void eight_bits_round_trip(void **state)
+/* Every 8-bit value survives conversion to linear and back, with one, three and four channels. */
+static void eight_bit_values_survive_the_round_trip(void **state)
 {
     (void)state;
     for (int channels = 1; channels <= 4; channels++) {
@@ -70,10 +70,10 @@ static void eight_bits_round_trip(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(memory),
-        cmocka_unit_test(refused_sizes),
-        cmocka_unit_test(srgb_curve),
-        cmocka_unit_test(eight_bits_round_trip),
+        cmocka_unit_test(images_are_allocated_zeroed),
+        cmocka_unit_test(invalid_sizes_are_refused),
+        cmocka_unit_test(the_srgb_curve_matches_its_definition),
+        cmocka_unit_test(eight_bit_values_survive_the_round_trip),
     };
     return cmocka_run_group_tests_name("image", tests, NULL, NULL);
 }

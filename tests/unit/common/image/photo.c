@@ -1,4 +1,4 @@
-/* Photographs: every kind of JPEG and PNG, EXIF, damaged files, and the pictures written for people. */
+/* photo.c - all kinds of JPEG and PNG, EXIF, damaged files, written files. */
 #include "tests/unit/scratch.h"
 
 #include <math.h>
@@ -20,8 +20,8 @@ static struct photo read_good(const char *name)
     return p;
 }
 
-/* The corpus' 7x5 PNGs hold 16 x, 16 y, 8 (x + y) in 8 bits, 4096 x + 1, 4096 y + 2, 2048 (x + y) + 3 in 16. */
-static void png_colour(void **state)
+/* The 7x5 PNGs of the corpus hold 16 x, 16 y, 8 (x + y) in 8 bits, 4096 x + 1, 4096 y + 2, 2048 (x + y) + 3 in 16. */
+static void colour_pngs_are_read(void **state)
 {
     const char *const eight[] = {"rgb8.png", "rgba8.png", "rgb-transparent.png", "interlaced.png"};
     const char *const sixteen[] = {"rgb16.png", "rgba16.png"};
@@ -42,7 +42,7 @@ static void png_colour(void **state)
     }
 }
 
-static void png_grey_and_palette(void **state)
+static void grey_and_palette_pngs_are_read(void **state)
 {
     const char *const grey[] = {"grey8.png", "grey-alpha.png", "grey-transparent.png", "grey16.png"};
     const char *const palette[] = {"palette.png", "palette-transparent.png"};
@@ -67,8 +67,8 @@ static void png_grey_and_palette(void **state)
     photo_release(&p);
 }
 
-/* 16x12, about 15 x, 20 y, 128; what a decoder may make of them is a few steps off. */
-static void jpeg_colour(void **state)
+/* 16x12, about 15 x, 20 y, 128; decoders may differ by a few steps. */
+static void colour_jpegs_are_read(void **state)
 {
     const char *const files[] = {"rgb.jpg", "progressive.jpg", "full-chroma.jpg", "padded-end.jpg", "trailing.jpg"};
     (void)state;
@@ -87,7 +87,7 @@ static void jpeg_colour(void **state)
     photo_release(&p);
 }
 
-static void exif(void **state)
+static void exif_is_read(void **state)
 {
     const char *const files[] = {"exif.jpg", "exif-big-endian.jpg", "exif.png", "exif-after-data.png"};
     (void)state;
@@ -103,8 +103,8 @@ static void exif(void **state)
     }
 }
 
-/* EXIF that lies or breaks off costs its own values, never the picture. */
-static void broken_exif(void **state)
+/* False or truncated EXIF loses its values, never the pixels. */
+static void damaged_exif_keeps_the_pixels(void **state)
 {
     const char *const files[] = {"exif-bad-offsets.jpg",    "exif-cut.jpg",        "exif-empty.jpg", "exif-loop.jpg",
                                  "exif-no-denominator.jpg", "exif-wrong-types.jpg"};
@@ -117,7 +117,7 @@ static void broken_exif(void **state)
     }
 }
 
-static void damaged_files(void **state)
+static void damaged_files_are_errors(void **state)
 {
     const char *const cases[][2] = {
         {"no-such.jpg", "cannot open"},       {"empty.jpg", "is empty"},
@@ -149,8 +149,8 @@ static void damaged_files(void **state)
     assert_err(err, ST_IO, "tests");
 }
 
-/* Wherever a file is cut it is refused: no picture with a grey lower half. */
-static void cut_anywhere(void **state)
+/* A file truncated anywhere is an error, not an image with a grey lower half. */
+static void truncated_files_are_errors(void **state)
 {
     const char *const files[] = {CORPUS "rgb.jpg", CORPUS "progressive.jpg", CORPUS "rgb8.png",
                                  CORPUS "interlaced.png"};
@@ -170,7 +170,7 @@ static void cut_anywhere(void **state)
     }
 }
 
-static void linear_light(void **state)
+static void photos_are_linearised(void **state)
 {
     const char *const files[] = {"rgb8.png", "rgb16.png"};
     (void)state;
@@ -190,7 +190,7 @@ static void linear_light(void **state)
     }
 }
 
-static void written_pictures_read_back(void **state)
+static void written_images_read_back(void **state)
 {
     static unsigned char rgb[40 * 30 * 3], grey[40 * 30];
     struct err err = ERR_INIT;
@@ -230,7 +230,7 @@ static void written_pictures_read_back(void **state)
     assert_int_equal(png_write(scratch_path("rgb.png/x.png"), rgb, 40, 30, 3, &err), ST_IO);
 }
 
-/* A JPEG with EXIF says again what it was told, exposure times to the last digit; nothing is said that was not told. */
+/* Written EXIF reads back, exposure times exactly; unknown values stay unknown. */
 static void exif_is_written(void **state)
 {
     const double seconds[] = {1.0 / 8000, 1.0 / 240, 1.0 / 60, 0.3, 1, 2.5, 30};
@@ -240,9 +240,9 @@ static void exif_is_written(void **state)
     (void)state;
     for (int i = 0; i < 16 * 12 * 3; i++) rgb[i] = (unsigned char)(i * 5);
     for (size_t i = 0; i < sizeof seconds / sizeof *seconds; i++) {
-        const struct photo_info told = {0, 0, 0, 1, 24.5, 33, seconds[i], 5.6, 400, "remodel", "lens of 24 mm"};
+        const struct photo_info info_written = {0, 0, 0, 1, 24.5, 33, seconds[i], 5.6, 400, "remodel", "lens of 24 mm"};
         const char *path = scratch_path("exif.jpg");
-        assert_ok(photo_write_jpeg(path, rgb, 16, 12, 90, &told, &err), err);
+        assert_ok(photo_write_jpeg(path, rgb, 16, 12, 90, &info_written, &err), err);
         assert_ok(photo_read_info(&info, path, &err), err);
         assert_true(info.width == 16 && info.height == 12 && info.bits == 8 && info.orientation == 1);
         assert_true(fabs(info.seconds - seconds[i]) < 1e-12 && info.f_number == 5.6 && info.iso == 400);
@@ -259,17 +259,17 @@ static void exif_is_written(void **state)
     assert_int_equal(photo_write_jpeg(scratch_path("bare.jpg/x.jpg"), rgb, 16, 12, 90, &nothing, &err), ST_IO);
 }
 
-/* Samples of 8 and of 16 bits, and EXIF, come back from a part as they are in the photo. */
-static void a_part_has_the_photos_own_samples(void **state)
+/* Samples of 8 and 16 bits and EXIF of a part read back as in the photo. */
+static void a_written_part_keeps_the_samples(void **state)
 {
     static uint16_t samples[20 * 10 * 3];
     struct err err = ERR_INIT;
     (void)state;
     for (int bits = 8; bits <= 16; bits += 8) {
-        const struct photo_info told = {0, 0, 0, 6, 24.5, 70, 1.0 / 60, 5.6, 400, "remodel", "nine lenses"};
+        const struct photo_info info_written = {0, 0, 0, 6, 24.5, 70, 1.0 / 60, 5.6, 400, "remodel", "nine lenses"};
         struct photo part, p = {.info = {.width = 20, .height = 10, .bits = bits}, .samples = samples};
         for (int i = 0; i < 20 * 10 * 3; i++) samples[i] = (uint16_t)(i * 109 % (bits == 8 ? 256 : 65536));
-        assert_ok(photo_write_part(scratch_path("part.png"), &p, 13, 4, 7, 6, &told, &err), err);
+        assert_ok(photo_write_part(scratch_path("part.png"), &p, 13, 4, 7, 6, &info_written, &err), err);
         assert_ok(photo_read(&part, scratch_path("part.png"), &err), err);
         assert_true(part.info.width == 7 && part.info.height == 6 && part.info.bits == bits);
         for (int y = 0; y < 6; y++)
@@ -285,17 +285,17 @@ static void a_part_has_the_photos_own_samples(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(png_colour),
-        cmocka_unit_test(png_grey_and_palette),
-        cmocka_unit_test(jpeg_colour),
-        cmocka_unit_test(exif),
-        cmocka_unit_test(broken_exif),
-        cmocka_unit_test(damaged_files),
-        cmocka_unit_test(cut_anywhere),
-        cmocka_unit_test(linear_light),
-        cmocka_unit_test(written_pictures_read_back),
+        cmocka_unit_test(colour_pngs_are_read),
+        cmocka_unit_test(grey_and_palette_pngs_are_read),
+        cmocka_unit_test(colour_jpegs_are_read),
+        cmocka_unit_test(exif_is_read),
+        cmocka_unit_test(damaged_exif_keeps_the_pixels),
+        cmocka_unit_test(damaged_files_are_errors),
+        cmocka_unit_test(truncated_files_are_errors),
+        cmocka_unit_test(photos_are_linearised),
+        cmocka_unit_test(written_images_read_back),
         cmocka_unit_test(exif_is_written),
-        cmocka_unit_test(a_part_has_the_photos_own_samples),
+        cmocka_unit_test(a_written_part_keeps_the_samples),
     };
     return cmocka_run_group_tests_name("photo", tests, scratch_make, scratch_remove);
 }

@@ -1,4 +1,4 @@
-/* Photographs in other formats than JPEG and PNG: TIFF, EXR, and a raw file: a DNG made here, of known light. */
+/* photo_formats.c - TIFF, EXR, and raw files (a DNG of known radiance, made here). */
 #include "tests/unit/scratch.h"
 
 #include <math.h>
@@ -93,7 +93,7 @@ static const char *write_tiff(const struct kind *k)
     return path;
 }
 
-static void tiff_of_every_kind(void **state)
+static void every_kind_of_tiff_is_read(void **state)
 {
     (void)state;
     for (size_t n = 0; n < sizeof kinds / sizeof *kinds; n++) {
@@ -128,7 +128,7 @@ static void tiff_of_every_kind(void **state)
     }
 }
 
-static void damaged_tiff_is_told(void **state)
+static void damaged_tiffs_are_errors(void **state)
 {
     struct photo p;
     struct stat s;
@@ -139,7 +139,7 @@ static void damaged_tiff_is_told(void **state)
     FILE *fp = fopen(path, "rb");
     assert_true(all && fp && fread(all, 1, (size_t)s.st_size, fp) == (size_t)s.st_size);
     fclose(fp);
-    for (size_t cut = 8; cut < (size_t)s.st_size; cut += 13) { /* wherever it ends: a picture, or a sentence */
+    for (size_t cut = 8; cut < (size_t)s.st_size; cut += 13) { /* truncated anywhere: an image or an error */
         struct err err = ERR_INIT;
         const enum status st = photo_read(&p, scratch_write_bytes("cut.tif", all, cut), &err);
         if (st) assert_contains(err.text, "cut.tif");
@@ -148,7 +148,7 @@ static void damaged_tiff_is_told(void **state)
     free(all);
 }
 
-static const char *write_exr(const char *name, float most, int plenty)
+static const char *write_exr(const char *name, float max, int clipped)
 {
     static const char *const names[] = {"R", "G", "B"};
     struct exr_image im = {0};
@@ -158,7 +158,7 @@ static const char *write_exr(const char *name, float most, int plenty)
     for (int c = 0; c < 3; c++) {
         struct exr_plane *plane = NULL;
         assert_ok(exr_add_plane(&im, names[c], EXR_FLOAT, &plane, &err), err);
-        for (int i = 0; i < 400; i++) plane->f[i] = i < plenty ? most : (float)i * 0.001f * (float)(c + 1);
+        for (int i = 0; i < 400; i++) plane->f[i] = i < clipped ? max : (float)i * 0.001f * (float)(c + 1);
     }
     im.planes[0].f[399] = -0.25f;
     assert_ok(exr_write(&im, path, NULL, &err), err);
@@ -166,7 +166,7 @@ static const char *write_exr(const char *name, float most, int plenty)
     return path;
 }
 
-static void exr_is_linear(void **state)
+static void exr_is_read_as_linear(void **state)
 {
     struct photo p;
     struct photo_info info;
@@ -180,7 +180,7 @@ static void exr_is_linear(void **state)
     assert_true(p.saturation == 3);
     for (int i = 30; i < 399; i++)
         for (int c = 0; c < 3; c++) assert_float_equal(p.values[3 * i + c], (float)i * 0.001f * (float)(c + 1), 1e-7);
-    assert_true(p.values[3 * 399] == 0); /* no light is negative */
+    assert_true(p.values[3 * 399] == 0); /* negative values become 0 */
     photo_release(&p);
     assert_ok(photo_read_any(&p, write_exr("whole.exr", 3, 1), &err), err);
     assert_true(p.saturation == 0);
@@ -189,9 +189,8 @@ static void exr_is_linear(void **state)
     assert_err(err, ST_DATA, "is an EXR file; wanted JPEG, PNG or TIFF");
 }
 
-/* A DNG of an RGGB mosaic, 14 bits, black level 512: camera colours are XYZ's by the identity, neutral by the D50
- * white. Light of the left half is 0.1 of the right half's, which is `level` of white in each camera colour after white
- * balance. */
+/* A DNG of an RGGB mosaic, 14 bits, black level 512; camera colours are XYZ, white is D50. After white balance the
+ * right half is `level` of white in each camera colour, the left half 0.1 of that. */
 static const char *write_dng(const char *name, double level)
 {
     enum { SIDE = 64, BLACK = 512, WHITE = 16383 };
@@ -234,7 +233,7 @@ static const char *write_dng(const char *name, double level)
     return path;
 }
 
-static void raw_is_developed_to_linear_light(void **state)
+static void raw_files_are_developed_to_linear_light(void **state)
 {
     struct photo a, b;
     struct photo_info info;
@@ -255,7 +254,7 @@ static void raw_is_developed_to_linear_light(void **state)
     print_message("left %g %g %g, right %g %g %g, dimmer %g %g %g\n", (double)left[0], (double)left[1], (double)left[2],
                   (double)right[0], (double)right[1], (double)right[2], (double)dimmer[0], (double)dimmer[1],
                   (double)dimmer[2]);
-    for (int c = 0; c < 3; c++) { /* neutral is grey; light is proportional, in the picture and between pictures */
+    for (int c = 0; c < 3; c++) { /* neutral is grey; radiance is proportional, within an image and between images */
         assert_float_equal(right[c], right[1], 0.01 * right[1]);
         assert_float_equal(left[c] / right[c], 0.1, 0.002);
         assert_float_equal(dimmer[c] / right[c], 0.25, 0.002);
@@ -267,7 +266,7 @@ static void raw_is_developed_to_linear_light(void **state)
     assert_err(err, ST_DATA, "is a camera's raw file; wanted JPEG");
 }
 
-static void broken_raw_is_told(void **state)
+static void damaged_raw_files_are_errors(void **state)
 {
     struct photo p;
     struct stat s;
@@ -292,7 +291,7 @@ static void broken_raw_is_told(void **state)
     free(all);
 }
 
-static void another_format_is_named(void **state)
+static void unknown_formats_are_refused(void **state)
 {
     struct photo p;
     struct err err = ERR_INIT;
@@ -304,9 +303,9 @@ static void another_format_is_named(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(tiff_of_every_kind), cmocka_unit_test(damaged_tiff_is_told),
-        cmocka_unit_test(exr_is_linear),      cmocka_unit_test(raw_is_developed_to_linear_light),
-        cmocka_unit_test(broken_raw_is_told), cmocka_unit_test(another_format_is_named),
+        cmocka_unit_test(every_kind_of_tiff_is_read),   cmocka_unit_test(damaged_tiffs_are_errors),
+        cmocka_unit_test(exr_is_read_as_linear),        cmocka_unit_test(raw_files_are_developed_to_linear_light),
+        cmocka_unit_test(damaged_raw_files_are_errors), cmocka_unit_test(unknown_formats_are_refused),
     };
     return cmocka_run_group_tests_name("photo_formats", tests, scratch_make, scratch_remove);
 }

@@ -1,5 +1,5 @@
-/* delaunay.c - the triangulation is a Delaunay one, covers the hull, turns counter-clockwise, and degenerate input
- * makes none. */
+/* delaunay.c - the triangulation is Delaunay, covers the hull, is counter-clockwise, and is empty for degenerate
+ * input. */
 #include "common/math/delaunay.h"
 
 #include <math.h>
@@ -47,7 +47,7 @@ static void check_delaunay(points_t p, int n, double hull_area)
     free(t);
 }
 
-static void random_points(void **state)
+static void random_points_are_triangulated(void **state)
 {
     (void)state;
     double p[60][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
@@ -57,7 +57,7 @@ static void random_points(void **state)
     check_delaunay((points_t)p, 60, 1);
 }
 
-static void grid_of_equal_circles(void **state)
+static void cocircular_grid_points_are_triangulated(void **state)
 {
     (void)state;
     double p[35][2];
@@ -65,7 +65,7 @@ static void grid_of_equal_circles(void **state)
     check_delaunay((points_t)p, 35, 24);
 }
 
-static void triangle_square_and_far_from_the_origin(void **state)
+static void simple_shapes_far_from_the_origin_are_triangulated(void **state)
 {
     (void)state;
     double p[4][2] = {{1e6, -1e6}, {1e6 + 1, -1e6}, {1e6 + 1, -1e6 + 1}, {1e6, -1e6 + 1}};
@@ -80,7 +80,7 @@ static void triangle_square_and_far_from_the_origin(void **state)
     free(t);
 }
 
-static void degenerate_input_makes_no_triangle(void **state)
+static void degenerate_input_gives_no_triangles(void **state)
 {
     (void)state;
     double line[9][2], same[5][2] = {{0}};
@@ -97,14 +97,14 @@ static void degenerate_input_makes_no_triangle(void **state)
     assert_null(t);
 }
 
-static void equal_points_use_one(void **state)
+static void one_of_coincident_points_is_used(void **state)
 {
     (void)state;
     double p[8][2] = {{0, 0}, {2, 0}, {2, 2}, {0, 2}, {1, 0.9}, {1, 0.9}, {2, 2}, {0, 0}};
     check_delaunay((points_t)p, 8, 4);
 }
 
-static void same_points_same_triangles(void **state)
+static void the_result_is_deterministic(void **state)
 {
     (void)state;
     double p[16][2];
@@ -122,12 +122,12 @@ static void same_points_same_triangles(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(random_points),
-        cmocka_unit_test(grid_of_equal_circles),
-        cmocka_unit_test(triangle_square_and_far_from_the_origin),
-        cmocka_unit_test(degenerate_input_makes_no_triangle),
-        cmocka_unit_test(equal_points_use_one),
-        cmocka_unit_test(same_points_same_triangles),
+        cmocka_unit_test(random_points_are_triangulated),
+        cmocka_unit_test(cocircular_grid_points_are_triangulated),
+        cmocka_unit_test(simple_shapes_far_from_the_origin_are_triangulated),
+        cmocka_unit_test(degenerate_input_gives_no_triangles),
+        cmocka_unit_test(one_of_coincident_points_is_used),
+        cmocka_unit_test(the_result_is_deterministic),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

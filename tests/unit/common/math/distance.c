@@ -1,4 +1,4 @@
-/* distance.c - the distance transform against every pair of pixels. */
+/* distance.c - the distance transform against brute force. */
 #include "common/math/distance.h"
 
 #include <setjmp.h>
@@ -13,7 +13,7 @@
 
 enum { W = 37, H = 23 };
 
-static void it_is_the_nearest_of_all(void **state)
+static void distances_match_brute_force(void **state)
 {
     (void)state;
     const struct rng rng = rng_make(1, "test", "distance");
@@ -37,7 +37,7 @@ static void it_is_the_nearest_of_all(void **state)
     }
 }
 
-static void nothing_outside_is_infinitely_far(void **state)
+static void without_an_outside_pixel_distances_are_infinite(void **state)
 {
     (void)state;
     uint8_t inside[6] = {1, 1, 1, 1, 1, 1};
@@ -49,7 +49,7 @@ static void nothing_outside_is_infinitely_far(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(it_is_the_nearest_of_all),
-                                       cmocka_unit_test(nothing_outside_is_infinitely_far)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(distances_match_brute_force),
+                                       cmocka_unit_test(without_an_outside_pixel_distances_are_infinite)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-/* Rotations, quaternions and the eigenproblem, against their definitions. */
+/* vec.c - rotations, quaternions and eigenvectors against their definitions. */
 #include "tests/unit/scratch.h"
 
 #include <math.h>
@@ -19,7 +19,7 @@ static struct quat about(struct vec3 axis, double angle)
     return (struct quat){cos(angle / 2), n.x, n.y, n.z};
 }
 
-static void quaternion_turns_as_its_axis_says(void **state)
+static void a_quaternion_rotates_about_its_axis(void **state)
 {
     (void)state;
     struct mat3 quarter = mat3_from_quat(about(vec3_make(0, 0, 1), acos(-1) / 2)); /* x to y, y to -x */
@@ -28,8 +28,8 @@ static void quaternion_turns_as_its_axis_says(void **state)
     assert_true(fabs(v.x + 2) < 1e-15 && fabs(v.y - 1) < 1e-15 && v.z == 3);
 }
 
-/* All axes at angles up to a half turn, where w vanishes and the largest component must carry the division. */
-static void quaternion_round_trip(void **state)
+/* All axes and angles up to a half turn, where w vanishes and the largest component is the divisor. */
+static void quaternions_survive_the_round_trip(void **state)
 {
     (void)state;
     const double angles[] = {0, 1e-9, 0.1, 1, 2, 3, 3.14159, acos(-1), -1, -3};
@@ -50,7 +50,7 @@ static void quaternion_round_trip(void **state)
     }
 }
 
-static void vectors_follow_the_right_hand(void **state)
+static void products_are_right_handed(void **state)
 {
     (void)state;
     struct vec3 z = vec3_cross(vec3_make(1, 0, 0), vec3_make(0, 1, 0));
@@ -77,7 +77,7 @@ static void check_eigen(struct mat3 a, double scale)
     }
 }
 
-static void eigenvectors(void **state)
+static void eigenvectors_match_their_definition(void **state)
 {
     (void)state;
     double values[3];
@@ -104,10 +104,10 @@ static void eigenvectors(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(quaternion_turns_as_its_axis_says),
-        cmocka_unit_test(quaternion_round_trip),
-        cmocka_unit_test(vectors_follow_the_right_hand),
-        cmocka_unit_test(eigenvectors),
+        cmocka_unit_test(a_quaternion_rotates_about_its_axis),
+        cmocka_unit_test(quaternions_survive_the_round_trip),
+        cmocka_unit_test(products_are_right_handed),
+        cmocka_unit_test(eigenvectors_match_their_definition),
     };
     return cmocka_run_group_tests_name("vec", tests, NULL, NULL);
 }

@@ -1,0 +1,126 @@
+/* photo_jpeg.c - JPEG files, by libjpeg-turbo. */
+#include <stdlib.h>
+#include <string.h>
+
+#include <turbojpeg.h>
+
+#include "common/base/outfile.h"
+#include "common/image/photo.h"
+#include "common/image/photo_formats.h"
+
+/* ---------------------------------------------------------------------------------------------------------- reading */
+
+static enum status jpeg_damaged(const struct photo_bytes *file, tjhandle handle, struct err *err)
+{
+    return err_set(err, ST_DATA, "%s is a damaged or cut-off JPEG (%s); copy or export the photo again.", file->path,
+                   tjGetErrorStr2(handle));
+}
+
+static enum status read_jpeg_header(struct photo_info *info, const struct photo_bytes *file, tjhandle handle,
+                                    struct err *err)
+{
+    int subsampling = 0, space = 0;
+    if (tjDecompressHeader3(handle, file->bytes, file->size, &info->width, &info->height, &subsampling, &space))
+        return jpeg_damaged(file, handle, err);
+    if (info->width < 1) /* not an error to the decoder, which waits for more data */
+        return err_set(err, ST_DATA, "%s is a JPEG that ends within its header; copy the photo again.", file->path);
+    if (space == TJCS_CMYK || space == TJCS_YCCK)
+        return err_set(err, ST_DATA, "%s is a CMYK JPEG, made for printing; export the photo as RGB.", file->path);
+    info->bits = 8;
+    return photo_check_size(file->path, (uint64_t)info->width, (uint64_t)info->height, err);
+}
+
+/* A decoder's warning means that pixels are missing or invented. One warning is harmless: some cameras write padding
+ * between the complete image and the end marker 0xd9. */
+static enum status read_jpeg_pixels(struct photo *p, const struct photo_bytes *file, tjhandle handle, struct err *err)
+{
+    size_t samples = (size_t)p->info.width * (size_t)p->info.height * 3;
+    unsigned char *rgb = malloc(samples);
+    if (!rgb) return err_nomem(err, "a photo", samples);
+
+    int rv = tjDecompress2(handle, file->bytes, file->size, rgb, p->info.width, 0, p->info.height, TJPF_RGB,
+                           TJFLAG_STOPONWARNING | TJFLAG_LIMITSCANS);
+    if (rv && strstr(tjGetErrorStr2(handle), "extraneous bytes before marker 0xd9")) {
+        rv = tjDecompress2(handle, file->bytes, file->size, rgb, p->info.width, 0, p->info.height, TJPF_RGB,
+                           TJFLAG_LIMITSCANS);
+        if (rv && tjGetErrorCode(handle) == TJERR_WARNING) rv = 0;
+    }
+    enum status st = rv ? jpeg_damaged(file, handle, err) : photo_init_samples(p, err);
+    for (size_t i = 0; !st && i < samples; i++) p->samples[i] = rgb[i];
+    free(rgb);
+    return st;
+}
+
+enum status photo_read_jpeg(struct photo *p, const struct photo_bytes *file, bool pixels, struct err *err)
+{
+    tjhandle handle = tjInitDecompress();
+    if (!handle) return err_nomem(err, "a JPEG decoder", 0);
+    enum status st = read_jpeg_header(&p->info, file, handle, err);
+    if (!st && pixels) st = read_jpeg_pixels(p, file, handle, err);
+    if (!st) st = photo_exif_read(&p->info, file, false, err);
+    tjDestroy(handle);
+    return st;
+}
+
+/* ---------------------------------------------------------------------------------------------------------- writing */
+
+enum status jpeg_encode(unsigned char **bytes, size_t *size, const unsigned char *rgb, int width, int height,
+                        int quality, struct err *err)
+{
+    unsigned char *made = NULL; /* allocated by libjpeg-turbo */
+    unsigned long length = 0;
+    tjhandle handle = tjInitCompress();
+    enum status st = handle ? ST_OK : err_nomem(err, "a JPEG encoder", 0);
+
+    *bytes = NULL;
+    *size = 0;
+    if (!st && tjCompress2(handle, rgb, width, 0, height, TJPF_RGB, &made, &length, TJSAMP_420, quality, 0))
+        st = err_set(err, ST_INTERNAL, "cannot encode a JPEG of %d x %d pixels at quality %d: %s.", width, height,
+                     quality, tjGetErrorStr2(handle));
+    if (!st && !(*bytes = malloc(length))) st = err_nomem(err, "a JPEG", length);
+    if (!st) {
+        memcpy(*bytes, made, length);
+        *size = length;
+    }
+    tjFree(made);
+    if (handle) tjDestroy(handle);
+    return st;
+}
+
+enum status jpeg_write(const char *path, const unsigned char *rgb, int width, int height, int quality, struct err *err)
+{
+    struct outfile f = {0};
+    unsigned char *bytes = NULL;
+    size_t size = 0;
+    enum status st = jpeg_encode(&bytes, &size, rgb, width, height, quality, err);
+    if (!st) st = outfile_open(&f, path, err);
+    if (!st && fwrite(bytes, 1, size, f.fp) != size) st = err_errno(err, "write", path);
+    if (!st) st = outfile_commit(&f, err);
+    outfile_discard(&f);
+    free(bytes);
+    return st;
+}
+
+enum status photo_write_jpeg(const char *path, const unsigned char *rgb, int width, int height, int quality,
+                             const struct photo_info *info, struct err *err)
+{
+    struct outfile f = {0};
+    unsigned char *bytes = NULL, *exif = NULL;
+    size_t size = 0;
+    unsigned exif_size = 0;
+    enum status st = jpeg_encode(&bytes, &size, rgb, width, height, quality, err);
+    if (!st) st = photo_exif_block(&exif, &exif_size, info, err);
+    if (!st) st = outfile_open(&f, path, err);
+    if (!st) { /* the APP1 segment follows the start marker */
+        const unsigned char segment[4] = {0xff, 0xe1, (unsigned char)((exif_size + 2) >> 8),
+                                          (unsigned char)(exif_size + 2)};
+        if (fwrite(bytes, 1, 2, f.fp) != 2 || fwrite(segment, 1, 4, f.fp) != 4 ||
+            fwrite(exif, 1, exif_size, f.fp) != exif_size || fwrite(bytes + 2, 1, size - 2, f.fp) != size - 2)
+            st = err_errno(err, "write", path);
+    }
+    if (!st) st = outfile_commit(&f, err);
+    outfile_discard(&f);
+    free(exif);
+    free(bytes);
+    return st;
+}
