@@ -134,7 +134,7 @@ static const struct cli_opt *find(const struct cli_opt *opts, const char *name, 
 
 static enum status store(const struct cli_opt *o, const char *value, bool repeated, struct err *err)
 {
-    char shown[SCAN_SHOWN];
+    char shown[SCAN_QUOTED];
     int64_t v;
 
     if (repeated && (o->kind == CLI_KIND_STR || o->kind == CLI_KIND_PARAM || o->kind == CLI_KIND_INT))
@@ -153,7 +153,7 @@ static enum status store(const struct cli_opt *o, const char *value, bool repeat
         break;
     }
     if (!scan_int(value, &v) || v < INT_MIN || v > INT_MAX)
-        return err_set(err, ST_USAGE, "--%s %s: wanted an integer.", o->name, scan_show(shown, value));
+        return err_set(err, ST_USAGE, "--%s %s: wanted an integer.", o->name, scan_quote(shown, value));
     *(int *)o->value = (int)v;
     return ST_OK;
 }
@@ -163,12 +163,12 @@ static enum status store(const struct cli_opt *o, const char *value, bool repeat
 static enum status take_arg(int argc, char **argv, int *i, const struct known *known, bool *seen, struct err *err)
 {
     const char *arg = argv[*i], *name = arg + 2, *value = NULL;
-    char shown[SCAN_SHOWN], word[64];
+    char shown[SCAN_QUOTED], word[64];
     bool repeated = false; /* a common option (--threads) may be repeated; the last one counts */
 
     if (strncmp(arg, "--", 2) || !*name)
         return err_set(err, ST_USAGE, "unexpected argument %s; every argument is --option or --option value.",
-                       scan_show(shown, arg));
+                       scan_quote(shown, arg));
     const size_t n = strcspn(name, "=");
     if (name[n]) value = name + n + 1;
     const struct cli_opt *o = find(known->opts, name, n);
@@ -178,7 +178,7 @@ static enum status take_arg(int argc, char **argv, int *i, const struct known *k
     } else if (!(o = find(known->common, name, n))) {
         snprintf(word, sizeof word, "%.*s", (int)n, name);
         const char *near = scan_nearest(word, known_name, known);
-        return err_set(err, ST_USAGE, "unknown option %s%s%s%s", scan_show(shown, word),
+        return err_set(err, ST_USAGE, "unknown option %s%s%s%s", scan_quote(shown, word),
                        near ? "; did you mean --" : "; --help lists them", near ? near : "", near ? "?" : ".");
     }
     if (o->kind == CLI_KIND_FLAG && value) return err_set(err, ST_USAGE, "--%s takes no value.", o->name);

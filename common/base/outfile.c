@@ -235,7 +235,7 @@ void outfile_discard(struct outfile *f)
     *f = (struct outfile){0};
 }
 
-enum status outfile_write_new(const char *path, const char *text, size_t size, struct err *err)
+enum status outfile_write_if_changed(const char *path, const char *text, size_t size, struct err *err)
 {
     FILE *old = fopen(path, "rb");
     bool same = old != NULL;

@@ -27,7 +27,7 @@ enum status outfile_commit(struct outfile *f, struct err *err);
 void outfile_discard(struct outfile *f); /* idempotent; does nothing after a commit */
 
 /* Writes the file only if its text changes, so that Make rebuilds what depends on it only then. */
-enum status outfile_write_new(const char *path, const char *text, size_t size, struct err *err);
+enum status outfile_write_if_changed(const char *path, const char *text, size_t size, struct err *err);
 
 /* Makes a folder and its missing parents, like mkdir -p. */
 enum status make_folders(const char *path, struct err *err);

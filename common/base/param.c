@@ -57,29 +57,29 @@ static bool reads_back(const char *text)
 static enum status assign(const struct param *p, void *values, const char *value, const char *where, struct err *err)
 {
     void *to = (char *)values + p->offset;
-    char shown[SCAN_SHOWN];
+    char shown[SCAN_QUOTED];
     int64_t i;
     double d;
 
     switch (p->kind) {
     case PARAM_renamed:
         return err_set(err, ST_USAGE, "%s%s is now called %s; write %s = %s.", where, p->name, p->help, p->help,
-                       scan_show(shown, value));
+                       scan_quote(shown, value));
     case PARAM_int:
         if (!scan_int(value, &i) || (double)i < p->min || (double)i > p->max || i < INT_MIN || i > INT_MAX)
             return err_set(err, ST_USAGE, "%s%s = %s, wanted an integer from %.0f to %.0f%s%s.", where, p->name,
-                           scan_show(shown, value), p->min, p->max, *p->unit ? " " : "", p->unit);
+                           scan_quote(shown, value), p->min, p->max, *p->unit ? " " : "", p->unit);
         *(int *)to = (int)i;
         return ST_OK;
     case PARAM_double:
         if (!scan_double(value, &d) || d < p->min || d > p->max)
             return err_set(err, ST_USAGE, "%s%s = %s, wanted a number from %.10g to %.10g%s%s.", where, p->name,
-                           scan_show(shown, value), p->min, p->max, *p->unit ? " " : "", p->unit);
+                           scan_quote(shown, value), p->min, p->max, *p->unit ? " " : "", p->unit);
         *(double *)to = d + 0.0; /* -0 becomes 0, so that equal parameters print the same bytes */
         return ST_OK;
     case PARAM_choice:
         if (!is_choice(p->unit, value))
-            return err_set(err, ST_USAGE, "%s%s = %s, wanted one of %s.", where, p->name, scan_show(shown, value),
+            return err_set(err, ST_USAGE, "%s%s = %s, wanted one of %s.", where, p->name, scan_quote(shown, value),
                            p->unit);
         break;
     case PARAM_text:
@@ -87,12 +87,12 @@ static enum status assign(const struct param *p, void *values, const char *value
             return err_set(
                 err, ST_USAGE,
                 "%s%s = %s, wanted text without control characters, blanks at the ends, or a blank before ';'.", where,
-                p->name, scan_show(shown, value));
+                p->name, scan_quote(shown, value));
         break;
     }
     if (strlen(value) >= PARAM_TEXT_SIZE)
         return err_set(err, ST_USAGE, "%s%s = %s has %zu bytes, wanted at most %d.", where, p->name,
-                       scan_show(shown, value), strlen(value), PARAM_TEXT_SIZE - 1);
+                       scan_quote(shown, value), strlen(value), PARAM_TEXT_SIZE - 1);
     memset(to, 0, PARAM_TEXT_SIZE);
     strcpy(to, value);
     return ST_OK;
@@ -101,9 +101,9 @@ static enum status assign(const struct param *p, void *values, const char *value
 static enum status unknown(const struct param *table, const char *name, const char *where, struct err *err)
 {
     const char *near = scan_nearest(name, table_name, table);
-    char shown[SCAN_SHOWN];
+    char shown[SCAN_QUOTED];
 
-    return err_set(err, ST_USAGE, "%sunknown parameter %s%s%s%s", where, scan_show(shown, name),
+    return err_set(err, ST_USAGE, "%sunknown parameter %s%s%s%s", where, scan_quote(shown, name),
                    near           ? "; did you mean "
                    : !table->name ? "; this stage has no parameters"
                                   : "; --help lists them",
@@ -152,14 +152,14 @@ static char *read_line(char *to, int room, void *ctx)
 static int take_pair(void *ctx, const char *section, const char *name, const char *value)
 {
     struct config_reader *r = ctx;
-    char where[512], shown[SCAN_SHOWN];
+    char where[512], shown[SCAN_QUOTED];
 
     if (r->status) return 1;
     where_text(r, where, sizeof where);
     if (!*section) {
         r->status = err_set(r->err, ST_USAGE,
                             "%s%s comes before the first [section]; move it below its stage's section, such as [%s].",
-                            where, scan_show(shown, name), r->section);
+                            where, scan_quote(shown, name), r->section);
     } else if (!strcmp(section, r->section)) {
         const struct param *p = find(r->table, name);
         if (!p)
@@ -179,7 +179,7 @@ enum status params_read_file(const struct param *table, void *values, const char
 {
     struct textfile file = {0};
     struct config_reader r = {.table = table, .values = values, .section = section, .path = path, .err = err};
-    char shown[SCAN_SHOWN];
+    char shown[SCAN_QUOTED];
     size_t count = 0;
 
     while (table[count].name) count++;
@@ -198,7 +198,7 @@ enum status params_read_file(const struct param *table, void *values, const char
         file.at = 0;
         while (file.line < bad && textfile_next_raw(&file)) continue;
         r.status = err_set(err, ST_USAGE, "%s:%d: found %s, wanted [section], key = value, or a # comment.", path, bad,
-                           scan_show(shown, file.cursor));
+                           scan_quote(shown, file.cursor));
     }
     if (!r.status && bad < 0) r.status = err_nomem(err, "a line of a config file", INI_LINE);
 done:
@@ -214,10 +214,10 @@ done:
 enum status params_set(const struct param *table, void *values, const char *assignment, struct err *err)
 {
     const char *equals = strchr(assignment, '=');
-    char name[64], shown[SCAN_SHOWN];
+    char name[64], shown[SCAN_QUOTED];
 
     if (!equals || equals == assignment)
-        return err_set(err, ST_USAGE, "--set %s: wanted key=value.", scan_show(shown, assignment));
+        return err_set(err, ST_USAGE, "--set %s: wanted key=value.", scan_quote(shown, assignment));
     snprintf(name, sizeof name, "%.*s", (int)(equals - assignment), assignment);
     const struct param *p = find(table, name);
     return p ? assign(p, values, equals + 1, "--set ", err) : unknown(table, name, "--set: ", err);

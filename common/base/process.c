@@ -157,8 +157,7 @@ static enum status wait_for(long pid, int *code, struct err *err)
     return ST_OK;
 }
 
-enum status process_run_env(const char *const argv[], const char *const env[], const char *log, int *code,
-                            struct err *err)
+enum status process_run(const char *const argv[], const char *const env[], const char *log, int *code, struct err *err)
 {
     const int in = open("/dev/null", O_RDONLY | O_CLOEXEC);
     enum status st;

@@ -10,8 +10,7 @@
  * more environment variables, "NAME=VALUE", up to a NULL; or NULL. Standard output and error are appended to `log`
  * (NULL: inherited); standard input is empty. *code gets the exit status, or 128 + signal. ST_IO: the program is not in
  * PATH (the error names its package, if known) or cannot be started. The child is killed when this process ends. */
-enum status process_run_env(const char *const argv[], const char *const env[], const char *log, int *code,
-                            struct err *err);
+enum status process_run(const char *const argv[], const char *const env[], const char *log, int *code, struct err *err);
 
 /* A running program that reads its standard input from this process (ffmpeg). {0} is the empty state. */
 struct process {

@@ -94,7 +94,7 @@ const char *scan_nearest(const char *word, const char *(*next)(const void *ctx, 
     return nearest;
 }
 
-const char *scan_show(char shown[SCAN_SHOWN], const char *found)
+const char *scan_quote(char shown[SCAN_QUOTED], const char *found)
 {
     size_t n = 0;
     int characters = 0;
@@ -104,7 +104,7 @@ const char *scan_show(char shown[SCAN_SHOWN], const char *found)
     for (; *p; p++) {
         const unsigned char c = (unsigned char)*p;
         const bool continued = (c & 0xC0) == 0x80; /* inside a UTF-8 character */
-        if ((!continued && characters == 40) || n > SCAN_SHOWN - 12) break;
+        if ((!continued && characters == 40) || n > SCAN_QUOTED - 12) break;
         characters += !continued;
         if (c == '\t' || c == '\r' || c == '\n')
             n += (size_t)sprintf(shown + n, "\\%c", c == '\t' ? 't' : c == '\r' ? 'r' : 'n');

@@ -19,7 +19,7 @@ locale_t scan_c_locale(void); /* for uselocale() around code that prints numbers
 const char *scan_nearest(const char *word, const char *(*next)(const void *ctx, int i), const void *ctx);
 
 /* Quotes `found` for an error message: at most 40 characters, control characters escaped. Returns `shown`. */
-#define SCAN_SHOWN 200
-const char *scan_show(char shown[SCAN_SHOWN], const char *found);
+#define SCAN_QUOTED 200
+const char *scan_quote(char shown[SCAN_QUOTED], const char *found);
 
 #endif

@@ -211,7 +211,7 @@ enum status textfile_wrong_number(const struct textfile *t, double found, const 
 
 enum status textfile_error(const struct textfile *t, struct err *err, const char *found, const char *wanted, ...)
 {
-    char text[1024], shown[SCAN_SHOWN];
+    char text[1024], shown[SCAN_QUOTED];
     va_list args;
 
     va_start(args, wanted);
@@ -219,7 +219,7 @@ enum status textfile_error(const struct textfile *t, struct err *err, const char
     va_end(args);
     if (!t->line) return err_set(err, ST_DATA, "%s: found an empty file, wanted %s.", t->path, text);
     return err_set(err, ST_DATA, "%s:%d: found %s, wanted %s.", t->path, t->line,
-                   found       ? scan_show(shown, found)
+                   found       ? scan_quote(shown, found)
                    : t->cursor ? "the end of the line"
                                : "the end of the file",
                    text);
@@ -236,15 +236,16 @@ void textfile_release(struct textfile *t)
 enum status textfile_quote(const char *word, char *out, size_t size, struct err *err)
 {
     const bool plain = *word && !strpbrk(word, " \t\"\\#");
-    char shown[SCAN_SHOWN];
+    char shown[SCAN_QUOTED];
     size_t need = plain ? 1 : 3; /* the final NUL, and two quotes */
 
     if (strpbrk(word, "\n\r"))
         return err_set(err, ST_DATA, "the name %s contains a line break, which a text file cannot hold; rename it.",
-                       scan_show(shown, word));
+                       scan_quote(shown, word));
     for (const char *p = word; *p; p++) need += 1 + (*p == '"' || *p == '\\');
     if (need > size)
-        return err_set(err, ST_DATA, "the name %s is longer than %zu bytes; shorten it.", scan_show(shown, word), size);
+        return err_set(err, ST_DATA, "the name %s is longer than %zu bytes; shorten it.", scan_quote(shown, word),
+                       size);
     if (!plain) *out++ = '"';
     for (const char *p = word; *p; p++) {
         if (*p == '"' || *p == '\\') *out++ = '\\';

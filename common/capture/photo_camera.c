@@ -26,11 +26,11 @@ enum status photo_camera_find(struct photo_camera *camera, const char *name, con
                                         mat3_apply(photo_from_view, view->translation), view->center, at};
         return ST_OK;
     }
-    char shown[SCAN_SHOWN];
+    char shown[SCAN_QUOTED];
     const char *near = scan_nearest(name, known_name, lenses);
     return err_set(err, ST_DATA,
                    "%s:%d: found %s, wanted a photo's id or a view's name, as views/lenses.txt has them%s%s%s", path,
-                   line, scan_show(shown, name), near ? "; did you mean " : ".", near ? near : "", near ? "?" : "");
+                   line, scan_quote(shown, name), near ? "; did you mean " : ".", near ? near : "", near ? "?" : "");
 }
 
 bool photo_camera_ray(const struct photo_camera *camera, double u, double v, struct vec3 *ray)

@@ -151,7 +151,7 @@ static enum status finish_text(FILE *to, char **text, size_t *size, const char *
     bool failed = ferror(to) != 0;
     failed |= fclose(to) != 0;
     if (!st && failed) st = err_nomem(err, "a text", *size);
-    if (!st) st = outfile_write_new(path, *text, *size, err);
+    if (!st) st = outfile_write_if_changed(path, *text, *size, err);
     free(*text);
     return st;
 }

@@ -123,10 +123,10 @@ struct header {
 
 static enum status wanted(const struct header *h, const char *what, struct err *err)
 {
-    char shown[SCAN_SHOWN];
+    char shown[SCAN_QUOTED];
     return err_set(err, ST_DATA,
                    "%s:%d: found %s, wanted %s; these are no points of remodel's, or the file is damaged.", h->path,
-                   h->line, h->text ? scan_show(shown, h->text) : "the end of the file", what);
+                   h->line, h->text ? scan_quote(shown, h->text) : "the end of the file", what);
 }
 
 static bool next_line(struct header *h)

@@ -60,14 +60,14 @@ static const char *next_image_effect(const void *ctx, int i)
 static enum status unknown(const char *what, const char *word, const char *whole,
                            const char *(*next)(const void *, int), struct err *err)
 {
-    char shown[SCAN_SHOWN], list[512] = "";
+    char shown[SCAN_QUOTED], list[512] = "";
     const char *nearest = scan_nearest(word, next, NULL), *known;
     for (int i = 0; (known = next(NULL, i)); i++)
         snprintf(list + strlen(list), sizeof list - strlen(list), "%s%s", i ? ", " : "", known);
     if (nearest)
-        return err_set(err, ST_USAGE, "%s is no %s; did you mean %s? Known are: %s.", scan_show(shown, word), what,
+        return err_set(err, ST_USAGE, "%s is no %s; did you mean %s? Known are: %s.", scan_quote(shown, word), what,
                        nearest, list);
-    return err_set(err, ST_USAGE, "%s is no %s (in \"%.80s\"). Known are: %s.", scan_show(shown, word), what, whole,
+    return err_set(err, ST_USAGE, "%s is no %s (in \"%.80s\"). Known are: %s.", scan_quote(shown, word), what, whole,
                    list);
 }
 

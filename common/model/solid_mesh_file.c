@@ -186,13 +186,13 @@ static enum status take_ids(struct solid_mesh *mesh, const struct reading *r, co
 {
     int *ids = calloc((size_t)mesh->name_count + 1, sizeof *ids);
     struct id_line *all = malloc(((size_t)mesh->face_count + 1) * sizeof *all);
-    char shown[SCAN_SHOWN];
+    char shown[SCAN_QUOTED];
     enum status st = ids && all ? ST_OK : err_nomem(err, "ids of faces", (size_t)mesh->face_count * sizeof *all);
     for (int i = 0; !st && i < mesh->face_count; i++) {
         int *id = &ids[mesh->faces[i].name];
         if (*id && *id != r->ids[i])
             st = err_set(err, ST_DATA, "%s:%d: found id %d for %s, wanted %d, which it had before.", path, r->lines[i],
-                         r->ids[i], scan_show(shown, solid_face_name(mesh, i)), *id);
+                         r->ids[i], scan_quote(shown, solid_face_name(mesh, i)), *id);
         *id = r->ids[i];
         all[i] = (struct id_line){r->ids[i], mesh->faces[i].name, r->lines[i]};
     }
@@ -200,7 +200,7 @@ static enum status take_ids(struct solid_mesh *mesh, const struct reading *r, co
     for (int i = 1; !st && i < mesh->face_count; i++)
         if (all[i].id == all[i - 1].id && all[i].name != all[i - 1].name)
             st = err_set(err, ST_DATA, "%s:%d: found id %d for %s, wanted one that no other name has.", path,
-                         all[i].line, all[i].id, scan_show(shown, mesh->names[all[i].name].name));
+                         all[i].line, all[i].id, scan_quote(shown, mesh->names[all[i].name].name));
     if (!st) st = solid_mesh_set_ids(mesh, ids, err);
     free(ids);
     free(all);

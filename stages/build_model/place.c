@@ -84,7 +84,7 @@ static enum status find_photo(const struct placer_photo **found, const struct pl
 {
     const char *photo = view;
     const int at = lens_list_find(placer->lenses, view);
-    char shown[SCAN_SHOWN];
+    char shown[SCAN_QUOTED];
     if (at >= 0) photo = placer->lenses->lenses[at].photo;
     for (int i = 0; i < placer->photo_count; i++)
         if (!strcmp(placer->photos[i].id, photo)) {
@@ -92,7 +92,7 @@ static enum status find_photo(const struct placer_photo **found, const struct pl
             return ST_OK;
         }
     const char *near = scan_nearest(view, known_photo, placer->lenses);
-    scan_show(shown, view);
+    scan_quote(shown, view);
     if (near)
         return err_set(err, ST_DATA, "%s:%d: found %s, wanted a photo's id or a view's name; did you mean %s?", path,
                        line, shown, near);

@@ -131,10 +131,10 @@ enum status region_in_view(struct subject *s, int *view_idx, double *part, const
         *view_idx = at;
     }
     if (!known) {
-        char shown[SCAN_SHOWN];
+        char shown[SCAN_QUOTED];
         const char *near = scan_nearest(region->view, known_name, lenses);
         const char *wanted = "wanted a photo's id or a view's name, as lenses.txt has them";
-        scan_show(shown, region->view);
+        scan_quote(shown, region->view);
         if (near)
             return err_set(err, ST_DATA, "%s:%d: found %s, %s; did you mean %s?", path, region->line, shown, wanted,
                            near);

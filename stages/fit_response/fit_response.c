@@ -108,7 +108,7 @@ static enum status write_response(const struct response *r, const char *path, co
     for (int i = 0; r->table && i < RESPONSE_LEVELS; i++)
         fprintf(to, "%.9g %.9g %.9g\n", (double)r->light[0][i], (double)r->light[1][i], (double)r->light[2][i]);
     const bool failed = fclose(to) != 0;
-    enum status st = failed ? err_nomem(err, "a text", size) : outfile_write_new(path, text, size, err);
+    enum status st = failed ? err_nomem(err, "a text", size) : outfile_write_if_changed(path, text, size, err);
     free(text);
     return st;
 }

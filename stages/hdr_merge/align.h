@@ -5,9 +5,9 @@
 #include "stages/hdr_merge/merge.h"
 
 struct alignment {
-    struct shift shifts[MERGE_MOST]; /* against the middle exposure */
-    bool found[MERGE_MOST];          /* false: too little contrast to compare; the shift is the neighbour's */
-    bool at_limit[MERGE_MOST];       /* against the neighbour the shift is max_shift, the largest searched */
+    struct shift shifts[MERGE_MAX_EXPOSURES]; /* against the middle exposure */
+    bool found[MERGE_MAX_EXPOSURES];          /* false: too little contrast to compare; the shift is the neighbour's */
+    bool at_limit[MERGE_MAX_EXPOSURES];       /* against the neighbour the shift is max_shift, the largest searched */
 };
 
 /* Compares each exposure with its neighbour towards `middle` and adds up the shifts. Ignores b->shifts. ST_NOMEM. */

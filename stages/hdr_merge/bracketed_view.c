@@ -29,8 +29,8 @@ static enum status join(char **path, const char *folder, const char *name, const
 
 struct photo_job {
     struct photo *photos;
-    char *paths[MERGE_MOST];
-    struct err errs[MERGE_MOST];
+    char *paths[MERGE_MAX_EXPOSURES];
+    struct err errs[MERGE_MAX_EXPOSURES];
 };
 
 static void read_some(void *ctx, size_t begin, size_t end, int thread)
@@ -74,9 +74,9 @@ enum status bracketed_view_read(struct bracketed_view *v, const char *id, const 
                      "%s/%s.txt is the record of a single photo, wanted that of a view of several exposures; run "
                      "import_photos again.",
                      records, id);
-    if (!st && v->record.bracket_count > MERGE_MOST)
+    if (!st && v->record.bracket_count > MERGE_MAX_EXPOSURES)
         st = err_set(err, ST_DATA, "view %s has %d exposures, wanted at most %d; exclude some of them (EXCLUDE).", id,
-                     v->record.bracket_count, (int)MERGE_MOST);
+                     v->record.bracket_count, (int)MERGE_MAX_EXPOSURES);
     if (!st)
         st = join(&path, records, id, ".txt", err) || join(&input, "photos", id, ".txt", err) ? err->status : ST_OK;
     if (!st) st = provenance_add_file(prov, input, path, err);
@@ -299,7 +299,7 @@ enum status bracketed_view_write_radiance(const struct bracketed_view *v, const 
 void bracketed_view_release(struct bracketed_view *v)
 {
     if (!v) return;
-    for (int i = 0; i < MERGE_MOST; i++) photo_release(&v->photos[i]);
+    for (int i = 0; i < MERGE_MAX_EXPOSURES; i++) photo_release(&v->photos[i]);
     photo_record_release(&v->record);
     merged_release(&v->merged);
     *v = (struct bracketed_view){0};

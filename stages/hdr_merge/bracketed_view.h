@@ -10,12 +10,12 @@
 
 struct bracketed_view {
     struct photo_record record;
-    struct photo photos[MERGE_MOST];
-    double exposures[MERGE_MOST]; /* relative to that of white */
+    struct photo photos[MERGE_MAX_EXPOSURES];
+    double exposures[MERGE_MAX_EXPOSURES]; /* relative to that of white */
     struct response response;
     struct brackets brackets; /* refers to the above; shifts: those to correct, or NULL */
     struct alignment alignment;
-    struct noise noise[MERGE_MOST];
+    struct noise noise[MERGE_MAX_EXPOSURES];
     bool noise_measured;
     struct exposure_agreement agreement;
     bool agree; /* the photos agree with the stated exposures and the response */
@@ -26,7 +26,7 @@ struct bracketed_view {
 };
 
 /* Reads RECORDS/ID.txt, the photos in PHOTOS that it names, and the response curve (NULL: sRGB). v is {0} on entry;
- * release it also after a failure. ST_DATA: the record of a single photo, or more than MERGE_MOST exposures. */
+ * release it also after a failure. ST_DATA: the record of a single photo, or more than MERGE_MAX_EXPOSURES exposures. */
 enum status bracketed_view_read(struct bracketed_view *v, const char *id, const char *photos, const char *records,
                                 const char *response, struct provenance *prov, struct err *err);
 /* Reads the view's lens and pose from a COLMAP text model, by its photos' names, to be written with the radiance.

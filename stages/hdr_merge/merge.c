@@ -54,7 +54,7 @@ struct exposure_job {
 
 struct merge_job {
     struct merged *out;
-    struct exposure_job exposures[MERGE_MOST]; /* ascending in t */
+    struct exposure_job exposures[MERGE_MAX_EXPOSURES]; /* ascending in t */
     int count;
 };
 
@@ -228,7 +228,7 @@ static float relative_variance(const float rgb[3], const float variance[3], uint
 
 static void merge_block(const struct merge_job *m, int x, int y, int n)
 {
-    plane v[MERGE_MOST][3], first[3], max_first, times;
+    plane v[MERGE_MAX_EXPOSURES][3], first[3], max_first, times;
     struct colour_sums sums[3];
     const int width = m->out->radiance.width, height = m->out->radiance.height;
     for (int k = 0; k < m->count; k++) load(v[k], &m->exposures[k], width, height, x, y, n);
@@ -246,7 +246,7 @@ static void merge_block(const struct merge_job *m, int x, int y, int n)
             }
         }
         const bool saturated = !(times[i] > 0);
-        float pixel[3 * MERGE_MOST];
+        float pixel[3 * MERGE_MAX_EXPOSURES];
         if (saturated || !(sums[0].weights[i] > 0) || !(sums[1].weights[i] > 0) || !(sums[2].weights[i] > 0)) {
             for (int k = 0; k < m->count; k++)
                 for (int c = 0; c < 3; c++) pixel[3 * k + c] = v[k][c][i];
@@ -276,8 +276,9 @@ static void merge_rows(void *ctx, size_t begin, size_t end, int thread)
 
 static enum status check(const struct brackets *b, struct err *err)
 {
-    if (b->count < 1 || b->count > MERGE_MOST)
-        return err_set(err, ST_DATA, "%d exposures cannot be merged; wanted 1 to %d.", b->count, (int)MERGE_MOST);
+    if (b->count < 1 || b->count > MERGE_MAX_EXPOSURES)
+        return err_set(err, ST_DATA, "%d exposures cannot be merged; wanted 1 to %d.", b->count,
+                       (int)MERGE_MAX_EXPOSURES);
     for (int k = 0; k < b->count; k++) {
         const struct photo_info *info = &b->photos[k].info, *first = &b->photos[0].info;
         if (info->width != first->width || info->height != first->height)

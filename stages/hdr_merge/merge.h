@@ -12,7 +12,7 @@
 #include "stages/hdr_merge/merge_params.h"
 #include "stages/hdr_merge/noise.h"
 
-enum { MERGE_MOST = 64 }; /* exposures of a view */
+enum { MERGE_MAX_EXPOSURES = 64 }; /* exposures of a view */
 
 /* Marks of pixels whose radiance the exposures do not measure. */
 enum {
@@ -42,7 +42,7 @@ struct merged {
 
 /* Merges the exposures; noise: the model of each one. m is {0} on entry; release it also after a failure. The result
  * does not depend on the number of threads. ST_DATA: photos of different sizes, an exposure outside 1e-12 to 1e12,
- * fewer than 1 or more than MERGE_MOST exposures. */
+ * fewer than 1 or more than MERGE_MAX_EXPOSURES exposures. */
 enum status merge_brackets(struct merged *m, const struct brackets *b, const struct noise *noise,
                            const struct merge_params *params, struct err *err);
 void merged_release(struct merged *m);

@@ -346,7 +346,7 @@ static enum status colmap_exit(int *status, const struct run *r, int step, const
     static const char *const env[] = {"QT_QPA_PLATFORM=offscreen", NULL};
     const char *argv[MOST_ARGS + 2] = {"colmap"};
     for (int n = 1; args[n - 1]; n++) argv[n] = args[n - 1];
-    return process_run_env(argv, env, r->logs[step - 1], status, err);
+    return process_run(argv, env, r->logs[step - 1], status, err);
 }
 
 static enum status colmap_failed(const struct run *r, int step, const char *command, int status, struct err *err)

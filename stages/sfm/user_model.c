@@ -97,7 +97,7 @@ static enum status add_binary(struct sfm_folder *f, const char *folder, const st
                           text,     "--output_type",   "TXT",          NULL};
     int code = 0;
     enum status st = text && log ? make_folders(text, err) : err->status;
-    if (!st) st = process_run_env(argv, env, log, &code, err);
+    if (!st) st = process_run(argv, env, log, &code, err);
     if (!st && code)
         st = err_set(err, ST_DATA, "colmap could not read the binary model in %s (exit status %d); its log is %s.",
                      folder, code, log);

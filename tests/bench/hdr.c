@@ -99,9 +99,9 @@ static enum status paint(const struct request *r, struct err *err)
 
 struct view {
     const struct request *request;
-    struct photo photos[MERGE_MOST];
-    double exposures[MERGE_MOST];
-    struct err errs[MERGE_MOST];
+    struct photo photos[MERGE_MAX_EXPOSURES];
+    double exposures[MERGE_MAX_EXPOSURES];
+    struct err errs[MERGE_MAX_EXPOSURES];
     struct merged merged;
 };
 
@@ -123,7 +123,7 @@ struct times {
 
 static void release(struct view *v)
 {
-    for (int k = 0; k < MERGE_MOST; k++) photo_release(&v->photos[k]);
+    for (int k = 0; k < MERGE_MAX_EXPOSURES; k++) photo_release(&v->photos[k]);
     merged_release(&v->merged);
 }
 
@@ -133,7 +133,7 @@ static enum status merge_once(struct view *v, struct times *times, struct err *e
     const struct merge_params params = MERGE_PARAMS_DEFAULT;
     const int count = v->request->exposures;
     struct alignment alignment;
-    struct noise noise[MERGE_MOST], measured;
+    struct noise noise[MERGE_MAX_EXPOSURES], measured;
     bool known = false;
     const double begun = clock_seconds();
     parallel_for((size_t)count, 1, read_photos, v);
@@ -255,9 +255,9 @@ int main(int argc, char **argv)
     struct err err = ERR_INIT;
     if (cli_parse(argc, argv, "bench_hdr", opts, &prov, &err) == CLI_RUN) {
         if (r.width < 8 || r.height < 8 || r.width > 30000 || r.height > 30000 || r.exposures < 1 ||
-            r.exposures > MERGE_MOST)
+            r.exposures > MERGE_MAX_EXPOSURES)
             err_set(&err, ST_USAGE, "found %d x %d px and %d exposures, wanted 8 to 30000 px and 1 to %d exposures.",
-                    r.width, r.height, r.exposures, (int)MERGE_MOST);
+                    r.width, r.height, r.exposures, (int)MERGE_MAX_EXPOSURES);
         else if (r.paint)
             paint(&r, &err);
         else

@@ -68,8 +68,8 @@ static void release_work(struct work *w)
 
 static enum status write_record(const struct request *r, char *id, struct err *err)
 {
-    char file[32], names[MERGE_MOST][32];
-    struct bracket brackets[MERGE_MOST] = {0};
+    char file[32], names[MERGE_MAX_EXPOSURES][32];
+    struct bracket brackets[MERGE_MAX_EXPOSURES] = {0};
     struct photo_record record = {.id = id, .file = file, .white = 1, .brackets = brackets, .middle = r->exposures / 2};
     record.info = (struct photo_info){.width = r->width, .height = r->height, .bits = 8, .orientation = 1};
     record.bracket_count = r->exposures;
@@ -224,11 +224,11 @@ int main(int argc, char **argv)
     struct err err = ERR_INIT;
     if (cli_parse(argc, argv, "bench_hdr_views", opts, &prov, &err) == CLI_RUN) {
         if (r.width < 64 || r.height < 64 || r.width > 30000 || r.height > 30000 || r.exposures < 1 ||
-            r.exposures > MERGE_MOST || r.photos < 1 || r.photos > MAX_PHOTOS || r.max_megapixels < 0)
+            r.exposures > MERGE_MAX_EXPOSURES || r.photos < 1 || r.photos > MAX_PHOTOS || r.max_megapixels < 0)
             err_set(&err, ST_USAGE,
                     "found %d photos of %d x %d px and %d exposures, wanted 1 to %d photos of 64 to 30000 px and 1 to "
                     "%d exposures.",
-                    r.photos, r.width, r.height, r.exposures, (int)MAX_PHOTOS, (int)MERGE_MOST);
+                    r.photos, r.width, r.height, r.exposures, (int)MAX_PHOTOS, (int)MERGE_MAX_EXPOSURES);
         else
             sample(&r, &err);
     }

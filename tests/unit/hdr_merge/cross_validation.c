@@ -12,8 +12,8 @@
 #include "stages/import_photos/exposure_list.h"
 
 struct stack { /* exposures ascending */
-    struct photo photos[MERGE_MOST];
-    double exposures[MERGE_MOST];
+    struct photo photos[MERGE_MAX_EXPOSURES];
+    double exposures[MERGE_MAX_EXPOSURES];
     int count;
 };
 
@@ -61,8 +61,8 @@ static size_t compare(double *errors, const struct merged *merged, const struct 
 /* Fits to the exposures of index `odd` mod 2 and predicts the others; returns the median error. */
 static double predict(const struct stack *s, int odd)
 {
-    struct photo fitted[MERGE_MOST];
-    double exposures[MERGE_MOST];
+    struct photo fitted[MERGE_MAX_EXPOSURES];
+    double exposures[MERGE_MAX_EXPOSURES];
     const double scale = s->exposures[s->count / 2];
     int count = 0;
     const struct fit_params fit = FIT_PARAMS_DEFAULT;
@@ -70,7 +70,7 @@ static double predict(const struct stack *s, int odd)
     struct patches patches = {0};
     struct response response;
     struct merged merged = {0};
-    struct noise noise[MERGE_MOST], measured;
+    struct noise noise[MERGE_MAX_EXPOSURES], measured;
     bool known = false;
     struct err err = ERR_INIT;
     char summary[RESPONSE_SUMMARY];

@@ -17,8 +17,8 @@
 enum { WIDTH = 512, HEIGHT = 24, PIXELS = WIDTH * HEIGHT };
 
 struct shot {
-    struct photo photos[MERGE_MOST];
-    double exposures[MERGE_MOST];
+    struct photo photos[MERGE_MAX_EXPOSURES];
+    double exposures[MERGE_MAX_EXPOSURES];
     int count;
 };
 
@@ -63,7 +63,7 @@ static const struct response srgb;
 static enum status try_merge(struct merged *m, const struct shot *b, const struct shift *shifts, struct err *err)
 {
     struct merge_params params = MERGE_PARAMS_DEFAULT;
-    struct noise noise[MERGE_MOST];
+    struct noise noise[MERGE_MAX_EXPOSURES];
     struct brackets brackets = {b->photos, b->exposures, b->count, &srgb, shifts};
     for (int k = 0; k < b->count; k++) noise[k] = noise_given(&params, &srgb, b->photos[k].info.bits);
     return merge_brackets(m, &brackets, noise, &params, err);
@@ -365,7 +365,7 @@ static void compare_with_truth(const char *folder, const char *const *views, int
         struct merged out = {0};
         struct brackets brackets = {b.photos, b.exposures, count, &srgb, NULL};
         struct merge_params params = MERGE_PARAMS_DEFAULT;
-        struct noise noise[MERGE_MOST], measured;
+        struct noise noise[MERGE_MAX_EXPOSURES], measured;
         struct errors e;
         bool known = false;
         struct err err = ERR_INIT;

@@ -105,22 +105,22 @@ static void numbers_are_parsed_strictly(void **state)
 
 static void quoted_text_escapes_control_characters(void **state)
 {
-    char shown[SCAN_SHOWN];
+    char shown[SCAN_QUOTED];
 
     (void)state;
-    assert_string_equal(scan_show(shown, "a\tb\033[31m"), "\"a\\tb\\x1b[31m\"");
-    assert_string_equal(scan_show(shown, "0123456789012345678901234567890123456789"),
+    assert_string_equal(scan_quote(shown, "a\tb\033[31m"), "\"a\\tb\\x1b[31m\"");
+    assert_string_equal(scan_quote(shown, "0123456789012345678901234567890123456789"),
                         "\"0123456789012345678901234567890123456789\"");
-    assert_string_equal(scan_show(shown, "01234567890123456789012345678901234567890"),
+    assert_string_equal(scan_quote(shown, "01234567890123456789012345678901234567890"),
                         "\"0123456789012345678901234567890123456789\"...");
     /* 39 letters and a character of two bytes are 40 characters; the last one is kept whole */
-    assert_string_equal(scan_show(shown, "012345678901234567890123456789012345678\xc3\xa9x"),
+    assert_string_equal(scan_quote(shown, "012345678901234567890123456789012345678\xc3\xa9x"),
                         "\"012345678901234567890123456789012345678\xc3\xa9\"...");
     static char controls[300];
     memset(controls, 1, sizeof controls - 1);
-    assert_true(strlen(scan_show(shown, controls)) < SCAN_SHOWN);
+    assert_true(strlen(scan_quote(shown, controls)) < SCAN_QUOTED);
     memset(controls, 0x80, sizeof controls - 1);
-    assert_true(strlen(scan_show(shown, controls)) < SCAN_SHOWN);
+    assert_true(strlen(scan_quote(shown, controls)) < SCAN_QUOTED);
 }
 
 static void files_are_hashed_with_xxh3(void **state)

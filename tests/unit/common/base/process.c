@@ -19,7 +19,7 @@ static void exit_codes_and_signals_are_returned(void **state)
         const char *const argv[] = {"sh", "-c", cases[i].script, NULL};
         struct err err = ERR_INIT;
         int code = -1;
-        assert_ok(process_run_env(argv, NULL, NULL, &code, &err), err);
+        assert_ok(process_run(argv, NULL, NULL, &code, &err), err);
         assert_int_equal(code, cases[i].code);
     }
 }
@@ -32,7 +32,7 @@ static void arguments_bypass_the_shell(void **state)
     const char *log = scratch_write("log", "before\n");
 
     (void)state;
-    assert_ok(process_run_env(argv, NULL, log, &code, &err), err);
+    assert_ok(process_run(argv, NULL, log, &code, &err), err);
     assert_int_equal(code, 0);
     assert_file_text(log, "before\na b|$HOME|`id`|'|\"|*||#;&|"); /* appended */
 }
@@ -44,7 +44,7 @@ static void both_outputs_go_to_the_log_and_input_is_empty(void **state)
     int code;
 
     (void)state;
-    assert_ok(process_run_env(argv, NULL, scratch_path("log2"), &code, &err), err);
+    assert_ok(process_run(argv, NULL, scratch_path("log2"), &code, &err), err);
     assert_file_text(scratch_path("log2"), "out\nerr\nend\n");
 }
 
@@ -58,7 +58,7 @@ static void environment_variables_are_added(void **state)
     (void)state;
     setenv("REMODEL_A", "old", 1);
     setenv("REMODEL_AB", "kept", 1);
-    assert_ok(process_run_env(argv, env, scratch_path("env"), &code, &err), err);
+    assert_ok(process_run(argv, env, scratch_path("env"), &code, &err), err);
     assert_file_text(scratch_path("env"), "new,b c,kept\n");
     assert_string_equal(getenv("REMODEL_A"), "old");
 }
@@ -74,16 +74,16 @@ static void missing_programs_name_their_package(void **state)
 
     (void)state;
     setenv("PATH", scratch, 1);
-    assert_int_equal(process_run_env(colmap, NULL, NULL, &code, &e1), ST_IO);
-    assert_int_equal(process_run_env(other, NULL, NULL, &code, &e2), ST_IO);
+    assert_int_equal(process_run(colmap, NULL, NULL, &code, &e1), ST_IO);
+    assert_int_equal(process_run(other, NULL, NULL, &code, &e2), ST_IO);
     assert_int_equal(process_start(&p, other, NULL, &e3), ST_IO);
     assert_int_equal(process_finish(&p, &code, NULL), ST_OK); /* the empty state */
     process_kill(&p);
-    assert_int_equal(process_run_env(path, NULL, NULL, &code, &e4), ST_IO);
+    assert_int_equal(process_run(path, NULL, NULL, &code, &e4), ST_IO);
     /* an executable file that is not a program */
     assert_int_equal(chmod(scratch_write("garbage", "\x01\x02"), 0755), 0);
     const char *const garbage[] = {"garbage", NULL};
-    assert_int_equal(process_run_env(garbage, NULL, NULL, &code, &e5), ST_IO);
+    assert_int_equal(process_run(garbage, NULL, NULL, &code, &e5), ST_IO);
     setenv("PATH", old, 1);
     free(old);
     assert_err(e1, ST_IO, "the program colmap is not in PATH; install Debian's package colmap.");
@@ -100,7 +100,7 @@ static void an_unwritable_log_is_an_error(void **state)
     int code;
 
     (void)state;
-    assert_int_equal(process_run_env(argv, NULL, scratch_path("no/such/log"), &code, &err), ST_IO);
+    assert_int_equal(process_run(argv, NULL, scratch_path("no/such/log"), &code, &err), ST_IO);
     assert_err(err, ST_IO, "cannot write");
 }
 
@@ -154,7 +154,7 @@ static void children_have_the_default_sigpipe(void **state)
 
     (void)state;
     assert_ok(process_start(&p, reader, NULL, &err), err); /* now SIGPIPE is ignored here */
-    assert_ok(process_run_env(argv, NULL, NULL, &code, &err), err);
+    assert_ok(process_run(argv, NULL, NULL, &code, &err), err);
     assert_int_equal(code, 128 + SIGPIPE);
     process_kill(&p);
     process_kill(&p);
@@ -179,7 +179,7 @@ static int run_forever(void *ctx)
     struct err err = ERR_INIT;
     int code;
 
-    return process_run_env(argv, NULL, NULL, &code, &err) != ST_OK;
+    return process_run(argv, NULL, NULL, &code, &err) != ST_OK;
 }
 
 static void children_are_killed_with_their_parent(void **state)
