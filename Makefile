@@ -308,7 +308,7 @@ $(B)/tests/fuzz/fuzz_split_list: $(call objs,stages/import_photos/split_list.c)
 # what find_subjects alone needs; its tests do without OpenCV
 $(B)/bin/find_subjects: $(B)/obj/stages/find_subjects/opencv_faces.o
 $(B)/bin/find_subjects: private LDLIBS += -lopencv_objdetect -lopencv_imgproc -lopencv_core -lstdc++
-$(B)/tests/fuzz/fuzz_model_script: $(addprefix $(B)/obj/stages/build_model/,script.o plan.o place.o layout.o solid.o model_params.o)
+$(B)/tests/fuzz/fuzz_model_script: $(filter-out %/build_model.o,$(call objs,stages/build_model/*.c))
 $(B)/tests/fuzz/fuzz_marks: $(call objs,stages/find_axes/marks.c)
 $(B)/tests/fuzz/fuzz_true_room: $(call objs,stages/evaluate/true_room.c)
 $(B)/tests/fuzz/fuzz_wall_plan: $(call objs,stages/evaluate/wall_plan.c)

@@ -100,7 +100,7 @@ static enum status find_photo(const struct placer_photo **found, const struct pl
                    line, shown);
 }
 
-static enum status check_pixels(const struct placer_photo *c, const struct place *p, const char *path, int line,
+static enum status check_pixels(const struct placer_photo *c, const struct script_place *p, const char *path, int line,
                                 struct err *err)
 {
     if (p->a[0] >= 0 && p->a[1] >= 0 && p->a[2] <= c->camera.lens.width && p->a[3] <= c->camera.lens.height)
@@ -139,7 +139,7 @@ static enum status meet_plane(struct vec3 *at, const struct placer_photo *c, dou
     return ST_OK;
 }
 
-enum status place_corners(struct vec3 corners[2], const struct placer *placer, const struct place *place, struct vec3 n,
+enum status place_corners(struct vec3 corners[2], const struct placer *placer, const struct script_place *place, struct vec3 n,
                           double d, const char *path, int line, struct err *err)
 {
     const struct placer_photo *c;
@@ -168,7 +168,7 @@ static int compare_shown(const void *a, const void *b)
 }
 
 /* A cone about the rectangle, that a point outside of does not need the lens for. */
-static double cone(const struct placer_photo *c, const struct place *p, struct vec3 *axis)
+static double cone(const struct placer_photo *c, const struct script_place *p, struct vec3 *axis)
 {
     double least = 1;
     if (!camera_unproject(&c->camera.lens, 0.5 * (p->a[0] + p->a[2]), 0.5 * (p->a[1] + p->a[3]), axis)) return -1;
@@ -185,7 +185,7 @@ static double cone(const struct placer_photo *c, const struct place *p, struct v
 
 /* shown: those that the camera sees in the rectangle. */
 static enum status show_points(struct shown_point **shown, size_t *count, const struct placer *placer,
-                               const struct placer_photo *c, const struct place *p, struct err *err)
+                               const struct placer_photo *c, const struct script_place *p, struct err *err)
 {
     struct vec3 axis;
     const double wide = cone(c, p, &axis);
@@ -269,7 +269,7 @@ static double mode(const struct position *p, size_t count, double window)
     return at;
 }
 
-static enum status too_few(const struct placer_photo *c, const struct place *p, const char *path, int line,
+static enum status too_few(const struct placer_photo *c, const struct script_place *p, const char *path, int line,
                            size_t found, int wanted, const char *what, struct err *err)
 {
     return err_set(
@@ -367,7 +367,7 @@ static void fit_line(double n[2], double c, const struct shown_point *shown, siz
 }
 
 static enum status locate(struct placed_wall *wall, const struct placer *placer, const struct placer_photo *c,
-                          const struct place *place, const double normal[2], bool angled, const char *path, int line,
+                          const struct script_place *place, const double normal[2], bool angled, const char *path, int line,
                           const struct shown_point *shown, size_t count, struct position *p, struct err *err)
 {
     const struct model_params *params = placer->params;
@@ -397,7 +397,7 @@ static enum status locate(struct placed_wall *wall, const struct placer *placer,
     return ST_OK;
 }
 
-enum status place_wall(struct placed_wall *wall, const struct placer *placer, const struct place *place,
+enum status place_wall(struct placed_wall *wall, const struct placer *placer, const struct script_place *place,
                        const double normal[2], bool angled, const char *path, int line, struct err *err)
 {
     const struct placer_photo *c;

@@ -49,11 +49,11 @@ struct placed_wall {
 /* normal: the wall's own, which is kept (adjust), or NULL. Without it the canonical axis by the majority of the
  * normals, or, if `angled`, the direction that fits the points. path and line: to name. ST_DATA: no such view; no
  * points; ... */
-enum status place_wall(struct placed_wall *wall, const struct placer *placer, const struct place *place,
+enum status place_wall(struct placed_wall *wall, const struct placer *placer, const struct script_place *place,
                        const double normal[2], bool angled, const char *path, int line, struct err *err);
 
 /* Where the rays through the rectangle's corners X0 Y0 and X1 Y1 meet the plane n p = d. */
-enum status place_corners(struct vec3 corners[2], const struct placer *placer, const struct place *place, struct vec3 n,
+enum status place_corners(struct vec3 corners[2], const struct placer *placer, const struct script_place *place, struct vec3 n,
                           double d, const char *path, int line, struct err *err);
 
 #endif

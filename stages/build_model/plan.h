@@ -81,11 +81,11 @@ struct plan_room {
     int edge_count;
 };
 
-enum named { NAMED_NONE, NAMED_WALL, NAMED_OPENING, NAMED_BOX, NAMED_ROOM };
+enum name_kind { NAMED_NONE, NAMED_WALL, NAMED_OPENING, NAMED_BOX, NAMED_ROOM };
 
 struct plan_name {
     const char *name; /* NULL: free slot */
-    enum named kind;
+    enum name_kind kind;
     int at;
 };
 
@@ -98,7 +98,7 @@ struct plan {
     struct plan_room *rooms;
     int wall_count, opening_count, box_count, room_count;
     struct plan_name *names; /* a hash table */
-    int name_room, name_count;
+    int name_capacity, name_count;
 };
 
 /* What a model of these axes starts from; lengths are those of homes in metres, unknown without a scale but for

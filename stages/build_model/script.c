@@ -126,7 +126,7 @@ static enum status expect(struct reader *r, const char *wanted, enum verb verb)
 
 /* ------------------------------------------------------------------------------------------------------------ parts */
 
-static enum status read_place(struct reader *r, struct place *p, enum verb verb)
+static enum status read_place(struct reader *r, struct script_place *p, enum verb verb)
 {
     char *word, *view;
     if (!textfile_more(&r->t)) return usage_error(r, NULL, verb);

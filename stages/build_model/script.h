@@ -32,7 +32,7 @@ enum verb {
 
 enum place_kind { PLACE_NONE, PLACE_COORDINATES, PLACE_VIEW };
 
-struct place {
+struct script_place {
     enum place_kind kind;
     const char *view; /* PLACE_VIEW */
     double a[4];      /* as written: A B C D, or X0 Y0 X1 Y1 */
@@ -58,7 +58,7 @@ struct statement {
     const char *other;  /* door, passage, window: the wall; extend: the wall to reach, or NULL; split: the new wall */
     const char **names; /* join, room: walls in order; slope: the two walls */
     int name_count;
-    struct place place;
+    struct script_place place;
     int end;          /* extend: END_START or END_END */
     double values[2]; /* set: the value; extend: where; split: from, to; slope: two heights; move: by */
     int value_count;

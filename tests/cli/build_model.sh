@@ -111,9 +111,9 @@ wall south from 0 5 to 1 5|the name south is used already
 wall x from 0 0 to 1 1|is not along an axis
 wall x in v00 1 2 30 40|no views are known
 join south north|they are parallel
-door d on south from 3.5 0 to 4.5 2|is outside of its wall south
+door d on south from 3.5 0 to 4.5 2|is outside its wall south
 door d on suoth from 3 0 to 3.5 2|did you mean south?
-window w on south from 1.5 1 to 3 2|are in each other
+window w on south from 1.5 1 to 3 2|overlap
 room r south north east|are parallel
 close south|south is a wall
 box b from 1 1 to 1 2|box b would be 0 x 1

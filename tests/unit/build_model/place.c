@@ -75,7 +75,7 @@ static int stop(void **state)
 static enum status place(struct placed_wall *w, const char *view, double x0, double y0, double x1, double y1,
                          const double *normal, bool angled, struct err *err)
 {
-    const struct place p = {PLACE_VIEW, view, {x0, y0, x1, y1}};
+    const struct script_place p = {PLACE_VIEW, view, {x0, y0, x1, y1}};
     *err = (struct err)ERR_INIT;
     return place_wall(w, &placer, &p, normal, angled, "model.txt", 9, err);
 }
@@ -172,7 +172,7 @@ static void corners_lie_where_their_rays_meet_the_plane(void **state)
     (void)state;
     pixel(1.7, 4, 2.1, &u0, &v0);
     pixel(2.6, 4, 0.2, &u1, &v1);
-    const struct place p = {PLACE_VIEW, "fish", {u0, v0, u1, v1}};
+    const struct script_place p = {PLACE_VIEW, "fish", {u0, v0, u1, v1}};
     assert_ok(place_corners(c, &placer, &p, vec3_make(0, -1, 0), -4, "m", 1, &err), err);
     assert_true(vec3_length(vec3_sub(c[0], vec3_make(1.7, 4, 2.1))) < 1e-6);
     assert_true(vec3_length(vec3_sub(c[1], vec3_make(2.6, 4, 0.2))) < 1e-6);
