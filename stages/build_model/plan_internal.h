@@ -1,4 +1,4 @@
-/* plan_internal.h - shared by the files that make a plan: its names, geometry, statements and checks. Others include plan.h. */
+/* plan_internal.h - what the files that make a plan share; everything else includes plan.h. */
 #ifndef REMODEL_BUILD_MODEL_PLAN_INTERNAL_H
 #define REMODEL_BUILD_MODEL_PLAN_INTERNAL_H
 

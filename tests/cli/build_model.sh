@@ -97,7 +97,7 @@ what_is_wrong_is_told_with_its_line()
 {
     build 2 --script
     build 1 nowhere.txt --script nowhere.txt
-    build 2 -- '--base is for --edit' --script room.txt --base x.txt
+    build 2 -- '--base is only for --edit' --script room.txt --base x.txt
     while IFS='|' read -r line words; do
         { cat room.txt; echo "$line"; } >bad.txt
         build 1 "$words" --script bad.txt
@@ -121,7 +121,7 @@ END
     : >empty.txt
     build 1 'remodel-script 1' --script empty.txt
     printf 'remodel-script 1\n' >empty.txt
-    build 1 'nothing in it is a solid' --script empty.txt
+    build 1 'describes no solid' --script empty.txt
 }
 
 make_models_and_their_overlays()

@@ -1,9 +1,9 @@
-/* plan.c - what a model script may not say: told with its line and why; and its words. */
+/* plan.c - the script language, and the errors of invalid scripts and plans, with line and reason. */
 #include "tests/unit/build_model/scripted.h"
 
 #define BARE "remodel-script 1\nset thickness 0.2\nset ceiling 2.5\n"
 
-static void words_that_are_no_statement_are_refused(void **state)
+static void invalid_statements_are_refused(void **state)
 {
     static const struct {
         const char *text, *words;
@@ -16,7 +16,7 @@ static void words_that_are_no_statement_are_refused(void **state)
         {"remodel-script 1\nwall a from 0 0 up 1 0\n", "wanted \"to\""},
         {"remodel-script 1\nwall a at 0 0 to 1 0\n", "wanted \"in VIEW\" or \"from\""},
         {"remodel-script 1\nwall a/b from 0 0 to 1 0\n", "letters, digits"},
-        {"remodel-script 1\nwall 12 from 0 0 to 1 0\n", "that is no number"},
+        {"remodel-script 1\nwall 12 from 0 0 to 1 0\n", "not a number"},
         {"remodel-script 1\nwall a from 0 0 to 1 nan\n", "nan"},
         {"remodel-script 1\nwall a from 0 0 to 1e7 0\n", "within 1e6"},
         {"remodel-script 1\nwall a from 0 0 to 1 0 thicknes 1\n", "did you mean thickness?"},
@@ -43,7 +43,7 @@ static void words_that_are_no_statement_are_refused(void **state)
     }
 }
 
-static void all_of_the_language_is_read(void **state)
+static void the_whole_language_is_read(void **state)
 {
     struct script s;
     struct err err = ERR_INIT;
@@ -72,12 +72,12 @@ static void all_of_the_language_is_read(void **state)
     script_release(&s);
 }
 
-static void what_is_no_building_is_refused(void **state)
+static void invalid_buildings_are_refused(void **state)
 {
     static const struct {
         const char *text, *words;
     } cases[] = {
-        {BARE "wall a from 0 0 to 3 1\n", ":4: wall a from 0 0 to 3 1 is not along an axis; write angled"},
+        {BARE "wall a from 0 0 to 3 1\n", ":4: wall a from 0 0 to 3 1 is not along an axis; add the word angled"},
         {BARE "wall a from 1 1 to 1 1\n", ":4: wall a would have no length"},
         {BARE "wall a from 1 1 to 1.0005 1\n", ":4: wall a would be shorter than 0.001"},
         {BARE "wall a from 0 1 to 2000 1\n", ":4: wall a reaches to 2000; a model lies within 1000 units"},
@@ -93,7 +93,7 @@ static void what_is_no_building_is_refused(void **state)
         {BARE "wall a from 0 0 to 3 0\nbox a from 0 1 to 3 2\n", ":5: the name a is used already, for a wall"},
         {BARE "wall a from 0 0 to 3 0 top -1\n", "wanted a top above its foot"},
         {BARE "wall a from 0 0 to 3 0 thickness 0\n", "found thickness 0"},
-        {BARE "wall a in v1 0 0 10 10\n", ":4: it names the view v1, but no views are known"},
+        {BARE "wall a in v1 0 0 10 10\n", ":4: the statement names the view v1, but no views are known"},
         {BARE "wall ab from 0 0 to 3 0\ndoor d on ac from 0 0 to 1 2\n", "did you mean ab?"},
         {BARE "wall a from 0 0 to 3 0\nbox b from 0 1 to 3 2\ndoor d on b from 0 0 to 1 2\n",
          ":6: b is a box; wanted a wall"},
@@ -134,7 +134,7 @@ static void what_is_no_building_is_refused(void **state)
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) refused(cases[i].text, NULL, cases[i].words);
 }
 
-static void an_edit_that_leaves_no_building_is_refused(void **state)
+static void an_edit_that_breaks_the_building_is_refused(void **state)
 {
     static const char base[] = ROOM "door d on south from 3 0 to 3.9 2\nwindow w on north from 1 1 to 2 2\n"
                                     "passage p on west from 1 0 to 2 2\n";
@@ -159,7 +159,7 @@ static void an_edit_that_leaves_no_building_is_refused(void **state)
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) refused(base, cases[i].edit, cases[i].words);
 }
 
-static void without_a_scale_lengths_must_be_told(void **state)
+static void without_a_scale_lengths_must_be_set(void **state)
 {
     const struct model_axes axes = {.rotation = {1, 0, 0, 0}, .scale = 1};
     static const char *const texts[] = {"remodel-script 1\nwall a from 0 0 to 1 0\n",
@@ -182,11 +182,11 @@ static void without_a_scale_lengths_must_be_told(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(words_that_are_no_statement_are_refused),
-        cmocka_unit_test(all_of_the_language_is_read),
-        cmocka_unit_test(what_is_no_building_is_refused),
-        cmocka_unit_test(an_edit_that_leaves_no_building_is_refused),
-        cmocka_unit_test(without_a_scale_lengths_must_be_told),
+        cmocka_unit_test(invalid_statements_are_refused),
+        cmocka_unit_test(the_whole_language_is_read),
+        cmocka_unit_test(invalid_buildings_are_refused),
+        cmocka_unit_test(an_edit_that_breaks_the_building_is_refused),
+        cmocka_unit_test(without_a_scale_lengths_must_be_set),
     };
     return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }

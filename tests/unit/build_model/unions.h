@@ -1,4 +1,4 @@
-/* unions.h - what tests of unions share: boxes and prisms by few words, and everything that must hold of any mesh. */
+/* unions.h - shared by tests of unions: makes boxes and prisms, and checks what holds for every mesh. */
 #ifndef REMODEL_TESTS_UNIONS_H
 #define REMODEL_TESTS_UNIONS_H
 
@@ -72,8 +72,7 @@ static inline int compare_edges(const void *a, const void *b)
     return p[0] != q[0] ? (p[0] > q[0]) - (p[0] < q[0]) : (p[1] > q[1]) - (p[1] < q[1]);
 }
 
-/* Triangles have area (flat ones are thinner than 1e-12, and none is turned over), and each of their edges its
- * opposite, once. */
+/* Triangles are not reversed (or are flatter than 1e-12), and each of their edges has its opposite exactly once. */
 static inline void assert_triangles_closed(const struct solid_mesh *mesh)
 {
     struct solid_triangles t = {0};
@@ -103,7 +102,7 @@ static inline void assert_triangles_closed(const struct solid_mesh *mesh)
     solid_triangles_release(&t);
 }
 
-/* Unites, checks all that can be checked without knowing the solids, releases the list. */
+/* Unites, checks everything that does not depend on the solids, releases the list (unless there is a log). */
 static inline void unite(struct solid_mesh *mesh, struct solid_report *report, struct unite_log *log,
                          struct solid_list *list)
 {
@@ -112,7 +111,7 @@ static inline void unite(struct solid_mesh *mesh, struct solid_report *report, s
     assert_ok(solid_mesh_check(mesh, 0, report, &err), err);
     assert_true(report->planarity < 1e-9);
     assert_triangles_closed(mesh);
-    if (!log) solid_list_release(list); /* the log has its names */
+    if (!log) solid_list_release(list); /* the log refers to its names */
 }
 
 #define assert_near(found, wanted, tolerance)                                                                      \
