@@ -1,4 +1,4 @@
-/* unite_random.c - unions of random solids against independent results: counted lattice cells, inclusion and exclusion of
+/* unite_random.c - unions of random solids against independent results: counted lattice cells, inclusion-exclusion of
  * convex solids; and of random edits, which keep the identity of faces.
  *
  * REMODEL_EDIT_SEQUENCES=N: number of sequences of edits (200); REMODEL_SEED=N: seed of the random numbers. */
