@@ -2,8 +2,8 @@
  *
  * Lattice units (SOLID_STEP). A plane is n . p = d with |n| <= 2^22 in each component and |d| < 2^54; the point of
  * three planes has reduced homogeneous coordinates of at most 100 bits, so that every sign computed here fits into 127
- * bits (docs/decisions/0015). Equal planes, points and lines have equal indices, so equality is one comparison. Predicates
- * are evaluated in doubles with an error bound first, and in integers where that does not decide. */
+ * bits (docs/decisions/0015). Equal planes, points and lines have equal indices, so equality is one comparison.
+ * Predicates are evaluated in doubles with an error bound first, and in integers where that does not decide. */
 #ifndef REMODEL_BUILD_MODEL_EXACT_H
 #define REMODEL_BUILD_MODEL_EXACT_H
 

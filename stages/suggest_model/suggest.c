@@ -2,8 +2,8 @@
  *
  * Faces. For each axis and sign, a histogram of positions is made of the points with that normal. It counts the wall's
  * cells with points, not the points, so that a table's edge with many points is not a wall. Each peak is a face,
- * refined to the mean of the points near it. A face's cell is solid if more points lie on it than lines of sight cross it and
- * end well behind it, and seen through in the opposite case.
+ * refined to the mean of the points near it. A face's cell is solid if more points lie on it than lines of sight cross
+ * it and end well behind it, and seen through in the opposite case.
  *
  * Rooms. The outermost prominent face on each side that is not only seen through another wall's windows bounds the
  * plan: a box. A box is cut in two by the pair of faces back to back (or the single face) with the largest solid

@@ -66,12 +66,12 @@ wrong_marks_are_named_with_their_line()
     printf 'mark p nobody 10 200 floor\nmark q %s 200 200 floor\nlength p q 1\n' "$photo" >marks.txt
     find_them 1 "marks.txt:1: found \"nobody\", wanted a photo's id" --scale marks.txt
     printf 'mark p %s 10 0 floor\nmark q %s 200 200 floor\nlength p q 1\n' "$photo" "$photo" >marks.txt
-    find_them 1 'marks.txt:1: the floor is not seen' --scale marks.txt
+    find_them 1 'marks.txt:1: the floor is not visible' --scale marks.txt
     printf 'corner c %s 10 10\n' "$photo" >marks.txt
     find_them 1 'marks.txt:1: the corner c corrects nothing yet' --fix marks.txt
     find_them 1 nowhere.txt --fix nowhere.txt
-    find_them 1 'no two directions' --set least_part=0.9
-    find_them 2 'least_part' --set least_part=2
+    find_them 1 'no two perpendicular directions' --set min_part=0.9
+    find_them 2 'min_part' --set min_part=2
     head -c 3000 out/t/points/points.ply >cut.ply
     points=cut.ply find_them 1 cut.ply
 }
