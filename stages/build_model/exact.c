@@ -295,7 +295,7 @@ int exact_turn(const int64_t a[3], const int64_t b[3], const int64_t n[3])
     return sign(s);
 }
 
-int exact_dot(const int64_t a[3], const int64_t b[3])
+static int dot_sign(const int64_t a[3], const int64_t b[3])
 {
     return sign((wide)a[0] * b[0] + (wide)a[1] * b[1] + (wide)a[2] * b[2]);
 }
@@ -304,7 +304,7 @@ int exact_dot(const int64_t a[3], const int64_t b[3])
 static int quarter(const int64_t r[3], const int64_t a[3], const int64_t n[3])
 {
     const int t = exact_turn(r, a, n);
-    return t > 0 ? 1 : t < 0 ? 3 : exact_dot(r, a) > 0 ? 0 : 2;
+    return t > 0 ? 1 : t < 0 ? 3 : dot_sign(r, a) > 0 ? 0 : 2;
 }
 
 bool exact_before(const int64_t r[3], const int64_t a[3], const int64_t b[3], const int64_t n[3])

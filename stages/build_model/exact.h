@@ -76,9 +76,8 @@ static inline int exact_compare_along(const struct exact_space *s, const struct 
     return line->d[line->axis] < 0 ? -c : c;
 }
 
-/* Sign of (a x b) . n, and of a . b. */
+/* Sign of (a x b) . n. */
 int exact_turn(const int64_t a[3], const int64_t b[3], const int64_t n[3]);
-int exact_dot(const int64_t a[3], const int64_t b[3]);
 
 /* Turning counter-clockwise about n from direction r, a comes before b. All three are perpendicular to n; a direction
  * equal to r comes first. */

@@ -49,7 +49,6 @@ static const char *const OPTIONS[OPTION_COUNT] = {"thickness", "foot", "top", "f
 static const char *const QUANTITIES[] = {"thickness", "slab", "glass", "leaf", "floor", "ceiling", NULL};
 
 const char *verb_name(enum verb verb) { return GRAMMAR[verb].verb; }
-const char *option_name(enum option option) { return OPTIONS[option]; }
 
 void script_release(struct script *script)
 {

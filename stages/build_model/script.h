@@ -75,7 +75,6 @@ struct script {
 };
 
 const char *verb_name(enum verb verb);
-const char *option_name(enum option option);
 
 /* The caller releases the script, which a failure leaves empty. ST_DATA with file and line for an invalid
  * statement: an unknown word (with a guess at what was meant), a name with characters other than letters, digits, `_`

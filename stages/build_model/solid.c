@@ -75,16 +75,6 @@ enum status solid_list_add(struct solid_list *list, const char *body, const stru
     return ST_OK;
 }
 
-enum status solid_list_add_box(struct solid_list *list, const char *body, struct vec3 low, struct vec3 high,
-                               const char *const names[6], struct err *err)
-{
-    const struct half_space h[6] = {
-        {{-1, 0, 0}, -low.x, names[0]}, {{1, 0, 0}, high.x, names[1]},  {{0, -1, 0}, -low.y, names[2]},
-        {{0, 1, 0}, high.y, names[3]},  {{0, 0, -1}, -low.z, names[4]}, {{0, 0, 1}, high.z, names[5]},
-    };
-    return solid_list_add(list, body, h, 6, err);
-}
-
 void solid_list_release(struct solid_list *list)
 {
     if (!list) return;

@@ -41,10 +41,6 @@ struct solid_list {
 enum status solid_list_add(struct solid_list *list, const char *body, const struct half_space *half_spaces, int count,
                            struct err *err);
 
-/* The faces of a box: names[0], [1] at low and high x, [2], [3] y, [4], [5] z. */
-enum status solid_list_add_box(struct solid_list *list, const char *body, struct vec3 low, struct vec3 high,
-                               const char *const names[6], struct err *err);
-
 void solid_list_release(struct solid_list *list);
 
 #endif

@@ -931,7 +931,7 @@ enum status solids_unite(struct solid_mesh *mesh, const struct solid_list *solid
         r.polygons[i].corners = r.corners + r.at[2 * i];
         r.polygons[i].sizes = r.sizes + r.at[2 * i + 1];
     }
-    if (!st) st = solid_mesh_make(mesh, r.vertices, r.vertex_count, r.polygons, r.polygon_count, err);
+    if (!st) st = solid_mesh_make(mesh, r.vertices, r.vertex_count, r.polygons, r.polygon_count, NULL, err);
     if (!st && log) st = write_log(log, &merges, &names, err);
     if (st) {
         solid_mesh_release(mesh);

@@ -54,7 +54,11 @@ static int start(void **state)
         v.cam_from_world = mat3_multiply(mat3_from_quat(lenses[i].view_from_photo), look);
         v.center = vec3_make(2, 2, 1.5);
         v.translation = vec3_scale(mat3_apply(v.cam_from_world, v.center), -1);
-        views[i] = world_from_model_view(&axes, &v);
+        views[i] = v;
+        views[i].translation =
+            vec3_scale(vec3_add(v.translation, mat3_apply(v.cam_from_world, axes.translation)), 1 / axes.scale);
+        views[i].cam_from_world = mat3_multiply(v.cam_from_world, mat3_from_quat(axes.rotation));
+        views[i].center = world_from_model_point(&axes, v.center);
     }
     /* in front of the camera a wall at y = 4 with its normal along -y; 40 cm in front of it a board at y = 3.6, behind
      * it a wall of another room, to the side an angled wall */

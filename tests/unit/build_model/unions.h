@@ -8,6 +8,17 @@
 
 #include "stages/build_model/unite.h"
 
+/* A box; the faces names[0], [1] are at low and high x, [2], [3] y, [4], [5] z. */
+static inline enum status add_named_box(struct solid_list *list, const char *body, struct vec3 low, struct vec3 high,
+                                        const char *const names[6], struct err *err)
+{
+    const struct half_space h[6] = {
+        {{-1, 0, 0}, -low.x, names[0]}, {{1, 0, 0}, high.x, names[1]},  {{0, -1, 0}, -low.y, names[2]},
+        {{0, 1, 0}, high.y, names[3]},  {{0, 0, -1}, -low.z, names[4]}, {{0, 0, 1}, high.z, names[5]},
+    };
+    return solid_list_add(list, body, h, 6, err);
+}
+
 /* A box with faces NAME/x0, NAME/x1, ... */
 static inline void add_box(struct solid_list *list, const char *name, double x0, double y0, double z0, double x1,
                            double y1, double z1)
@@ -20,7 +31,7 @@ static inline void add_box(struct solid_list *list, const char *name, double x0,
         snprintf(text[i], sizeof text[i], "%s/%s", name, sides[i]);
         names[i] = text[i];
     }
-    assert_ok(solid_list_add_box(list, "walls", vec3_make(x0, y0, z0), vec3_make(x1, y1, z1), names, &err), err);
+    assert_ok(add_named_box(list, "walls", vec3_make(x0, y0, z0), vec3_make(x1, y1, z1), names, &err), err);
 }
 
 /* An upright prism over a convex polygon, counter-clockwise; faces NAME/0, ..., NAME/z0, NAME/z1. */

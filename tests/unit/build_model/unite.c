@@ -209,9 +209,9 @@ static void glass_in_a_window_is_a_separate_body(void **state)
     static const char *const above[6] = {"h", "h", "wall/y0", "wall/y1", "lintel", "wall/z1"};
     static const char *const pane[6] = {"g/0", "g/1", "g/out", "g/in", "g/4", "g/5"};
     struct err err = ERR_INIT;
-    assert_ok(solid_list_add_box(&l, "walls", vec3_make(1, 0, 0), vec3_make(2, 0.2, 0.9), below, &err), err);
-    assert_ok(solid_list_add_box(&l, "walls", vec3_make(1, 0, 2.1), vec3_make(2, 0.2, 2.6), above, &err), err);
-    assert_ok(solid_list_add_box(&l, "glass", vec3_make(1, 0, 0.9), vec3_make(2, 0.01, 2.1), pane, &err), err);
+    assert_ok(add_named_box(&l, "walls", vec3_make(1, 0, 0), vec3_make(2, 0.2, 0.9), below, &err), err);
+    assert_ok(add_named_box(&l, "walls", vec3_make(1, 0, 2.1), vec3_make(2, 0.2, 2.6), above, &err), err);
+    assert_ok(add_named_box(&l, "glass", vec3_make(1, 0, 0.9), vec3_make(2, 0.01, 2.1), pane, &err), err);
     check_union(&l, (struct wanted){2, 1, 24, 16, 18, 4 * 0.2 * 2.6 - 0.2 * 1.2 + 0.012});
     assert_int_equal(mesh.body_count, 2); /* glass remains a separate body */
     assert_int_equal(mesh.bodies[1].faces, 6);
