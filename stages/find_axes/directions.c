@@ -272,9 +272,7 @@ enum status find_directions(struct directions *d, const struct point_cloud *clou
     if (!bins) return err_nomem(err, "bins of directions", BINS * sizeof *bins);
     const int known = best_triple(axes, bins, fill_bins(bins, cloud));
     free(bins);
-    if (!known)
-        return err_set(err, ST_DATA,
-                       "there are no points to find axes from; run the stages before with more photographs.");
+    if (!known) return err_set(err, ST_DATA, "there are no points to find axes from; add photographs that overlap.");
     if (known > 1) {
         const struct vec3 x = axes[0];
         const struct vec3 y = vec3_normalize(vec3_sub(axes[1], vec3_scale(x, vec3_dot(x, axes[1]))));

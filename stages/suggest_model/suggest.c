@@ -526,7 +526,8 @@ enum status suggest_plan(struct suggestion *s, const struct point_cloud *cloud, 
     struct finder f = {.cloud = cloud, .views = views, .view_count = view_count, .params = params};
     const struct wall_side *outer[4];
     *s = (struct suggestion){0};
-    enum status st = cloud->count ? find_bounds(&f, ceiling, err) : err_set(err, ST_DATA, "there are no points.");
+    enum status st = cloud->count ? find_bounds(&f, ceiling, err)
+                                  : err_set(err, ST_DATA, "there are no points; add photographs that overlap.");
     if (!st) st = rays_find(&f.rays, cloud, views, view_count, err);
     for (int axis = 0; !st && axis < 2; axis++)
         for (int sign = -1; !st && sign <= 1; sign += 2) st = find_faces(&f, axis, sign, err);

@@ -578,11 +578,11 @@ static void check_identity(const struct model *base, struct model *m, const stru
     const struct solid_mesh *b = &base->mesh, *e = &m->mesh;
     struct err err = ERR_INIT;
     assert_ok(solid_mesh_carry_ids(&m->mesh, &base->mesh, &err), err);
-    const int most = b->names[b->name_count - 1].id;
+    const int max_id = b->names[b->name_count - 1].id;
     for (int i = 0; i < e->name_count; i++) {
         int k = 0;
         while (k < b->name_count && strcmp(b->names[k].name, e->names[i].name)) k++;
-        if (k < b->name_count ? e->names[i].id == b->names[k].id : e->names[i].id > most) continue;
+        if (k < b->name_count ? e->names[i].id == b->names[k].id : e->names[i].id > max_id) continue;
         explain(text, edit);
         fail_msg("%s has the id %d", e->names[i].name, e->names[i].id);
     }
