@@ -513,9 +513,8 @@ static enum status no_wall(const struct finder *f, int k, struct err *err)
         "%zu have normals along x or y, and %zu of these along %s. Likely causes, the most frequent first: (1) too few "
         "points on the wall: take more photographs of it, or write the script by hand; (2) a wrong lens model, with "
         "fisheye photographs: see the residuals that sfm_import reports; if they are large, set [sfm] camera_model "
-        "(EQUISOLID "
-        "for most fisheye lenses) and run make resfm; (3) wrong axes or heights: look at the pictures in model/axes, "
-        "and correct them with axes_fix.txt.",
+        "(EQUISOLID for most fisheye lenses) and run make resfm; (3) wrong axes or heights: look at the pictures in "
+        "model/axes, and correct them with axes_fix.txt.",
         SIDES[k], f->params->max_angle, NORMALS[k], MIN_FACE, f->height, f->cloud->count, along_axes, facing,
         NORMALS[k]);
 }
