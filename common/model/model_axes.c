@@ -1,4 +1,4 @@
-/* model_axes.c - see model_axes.h. */
+/* model_axes.c - the frame of a room's model: transforms and its file. */
 #include "common/model/model_axes.h"
 
 #include <string.h>
@@ -7,7 +7,7 @@
 #include "common/base/scan.h"
 #include "common/base/textfile.h"
 
-static const double UNIT = 1e-6; /* of a quaternion's length */
+static const double UNIT = 1e-6; /* tolerance of a quaternion's length */
 
 /* ------------------------------------------------------------------------------------------------------- transforms */
 
@@ -31,54 +31,20 @@ struct vec3 world_from_model_direction(const struct model_axes *axes, struct vec
     return mat3_apply(mat3_transpose(mat3_from_quat(axes->rotation)), model);
 }
 
-/* The camera's own axes grow with the world: s p_cam = Rc R^T p_model + (s tc - Rc R^T t). */
-static void to_model(const struct model_axes *axes, struct mat3 *rotation, struct vec3 *translation)
-{
-    *rotation = mat3_multiply(*rotation, mat3_transpose(mat3_from_quat(axes->rotation)));
-    *translation = vec3_sub(vec3_scale(*translation, axes->scale), mat3_apply(*rotation, axes->translation));
-}
-
-static void to_world(const struct model_axes *axes, struct mat3 *rotation, struct vec3 *translation)
-{
-    *translation = vec3_scale(vec3_add(*translation, mat3_apply(*rotation, axes->translation)), 1 / axes->scale);
-    *rotation = mat3_multiply(*rotation, mat3_from_quat(axes->rotation));
-}
-
-struct pose cam_from_model_pose(const struct model_axes *axes, const struct pose *cam_from_world)
-{
-    struct mat3 r = mat3_from_quat(cam_from_world->rotation);
-    struct vec3 t = cam_from_world->translation;
-    to_model(axes, &r, &t);
-    return (struct pose){quat_from_mat3(r), t};
-}
-
-struct pose cam_from_world_pose(const struct model_axes *axes, const struct pose *cam_from_model)
-{
-    struct mat3 r = mat3_from_quat(cam_from_model->rotation);
-    struct vec3 t = cam_from_model->translation;
-    to_world(axes, &r, &t);
-    return (struct pose){quat_from_mat3(r), t};
-}
-
+/* The camera's axes are scaled with the world: s p_cam = Rc R^T p_model + (s tc - Rc R^T t). */
 struct view model_from_world_view(const struct model_axes *axes, const struct view *world)
 {
     struct view v = *world;
-    to_model(axes, &v.cam_from_world, &v.translation);
+    v.cam_from_world = mat3_multiply(world->cam_from_world, mat3_transpose(mat3_from_quat(axes->rotation)));
+    v.translation =
+        vec3_sub(vec3_scale(world->translation, axes->scale), mat3_apply(v.cam_from_world, axes->translation));
     v.center = model_from_world_point(axes, world->center);
-    return v;
-}
-
-struct view world_from_model_view(const struct model_axes *axes, const struct view *model)
-{
-    struct view v = *model;
-    to_world(axes, &v.cam_from_world, &v.translation);
-    v.center = world_from_model_point(axes, model->center);
     return v;
 }
 
 /* ---------------------------------------------------------------------------------------------------------- writing */
 
-static void print_maybe(FILE *to, const char *name, bool known, double value)
+static void print_or_none(FILE *to, const char *name, bool known, double value)
 {
     if (known)
         fprintf(to, "%s %.17g\n", name, value);
@@ -98,12 +64,12 @@ enum status model_axes_write(const struct model_axes *axes, const char *path, co
         fprintf(f.fp, "remodel-axes 1\nrotation %.17g %.17g %.17g %.17g\ntranslation %.17g %.17g %.17g\n", q.w, q.x,
                 q.y, q.z, t.x, t.y, t.z);
         fprintf(f.fp, "scale %.17g %s\n", axes->scale, axes->metric ? "metres" : "unknown");
-        print_maybe(f.fp, "ceiling", axes->ceiling > 0, axes->ceiling);
-        print_maybe(f.fp, "thickness", axes->thickness > 0, axes->thickness);
+        print_or_none(f.fp, "ceiling", axes->ceiling > 0, axes->ceiling);
+        print_or_none(f.fp, "thickness", axes->thickness > 0, axes->thickness);
         fprintf(f.fp, "error tilt %.17g\nerror heading %.17g\nerror floor %.17g\n", axes->tilt_error,
                 axes->heading_error, axes->floor_error);
-        print_maybe(f.fp, "error ceiling", axes->ceiling > 0, axes->ceiling_error);
-        print_maybe(f.fp, "error scale", axes->metric, axes->scale_error);
+        print_or_none(f.fp, "error ceiling", axes->ceiling > 0, axes->ceiling_error);
+        print_or_none(f.fp, "error scale", axes->metric, axes->scale_error);
         st = outfile_commit(&f, err);
     }
     outfile_discard(&f);
@@ -120,7 +86,7 @@ static enum status read_error(struct textfile *t, const char *which, double *val
     return *value >= 0 ? ST_OK : textfile_wrong_number(t, *value, "an error of 0 or more", err);
 }
 
-/* "none", which leaves *value 0 and says so, or a number. */
+/* Reads a number, or "none", which leaves *value unchanged and clears *known. */
 static enum status number_or_none(struct textfile *t, const char *what, double *value, bool *known, struct err *err)
 {
     char *word;
@@ -138,15 +104,15 @@ static enum status read_length(struct textfile *t, const char *which, double *va
     return !known || *value > 0 ? ST_OK : textfile_wrong_number(t, *value, "a length above 0, or none", err);
 }
 
-/* Of something that is there, or is not: then the line must say none. */
-static enum status read_error_of(struct textfile *t, const char *which, bool there, double *value, struct err *err)
+/* The error of an optional value: a number if `given`, "none" otherwise. */
+static enum status read_error_of(struct textfile *t, const char *which, bool given, double *value, struct err *err)
 {
     bool known = false;
     if (textfile_expect_line(t, "error", err) || textfile_expect(t, which, err) ||
         number_or_none(t, "an error, or none", value, &known, err))
         return err->status;
-    if (there && !known) return textfile_error(t, err, "none", "the error of the %s that the file states", which);
-    if (!there && known) return textfile_wrong_number(t, *value, "none: the file states none", err);
+    if (given && !known) return textfile_error(t, err, "none", "an error, as the file has a %s", which);
+    if (!given && known) return textfile_wrong_number(t, *value, "none, as the file has no such value", err);
     return *value >= 0 ? ST_OK : textfile_wrong_number(t, *value, "an error of 0 or more", err);
 }
 

@@ -1,9 +1,9 @@
-/* solid_check.c - whether a mesh is a closed solid (solid_mesh.h).
+/* solid_check.c - checks that a mesh is a closed solid (solid_mesh.h).
  *
- * Self-intersection is looked for in three ways, which together leave only faults that meet edge to edge: no edge of
- * a body goes through the inside of a face of that body; no two of its faces in one plane cover each other; and each
- * shell is, by the solid angle under which the others are seen from one of its faces, in no other one (a cavity in
- * one). What is nearer than the tolerance touches. */
+ * Three tests find self-intersections, except where faces only meet edge to edge: no edge of a body passes through the
+ * inside of a face of that body; no two of its faces in one plane overlap; and no shell is inside another one (a cavity
+ * is in exactly one), which follows from the solid angle of the other shells seen from one of its faces
+ * [vanOosterom 1983]. Parts closer than the tolerance only touch. */
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
@@ -22,7 +22,7 @@ struct box3 {
     double low[3], high[3];
 };
 
-struct checker {
+struct solid_checker {
     const struct solid_mesh *mesh;
     double tolerance;
     struct solid_triangles triangles;
@@ -35,7 +35,7 @@ struct checker {
 #define EDGES(c)   ((c)->mesh->half_edges)
 #define FACE(c, h) ((c)->mesh->loops[EDGES(c)[h].loop].face)
 
-static enum status fault(const struct checker *c, int face, struct err *err, const char *what)
+static enum status fault(const struct solid_checker *c, int face, struct err *err, const char *what)
 {
     return err_set(err, ST_DATA, "face %d, %s: %s.", face + 1, solid_face_name(c->mesh, face), what);
 }
@@ -52,40 +52,42 @@ static enum status check_indices(const struct solid_mesh *m, struct err *err)
         const struct solid_half_edge *e = &m->half_edges[h];
         if (!in(e->next, n) || !in(e->prev, n) || !in(e->twin, n) || !in(e->loop, m->loop_count) ||
             !in(e->origin, m->vertex_count))
-            return err_set(err, ST_DATA, "half-edge %d points out of the mesh.", h);
+            return err_set(err, ST_DATA, "half-edge %d has an index outside the mesh.", h);
     }
     for (int h = 0; h < n; h++) {
         const struct solid_half_edge *e = &m->half_edges[h], *t = &m->half_edges[e->twin];
         if (m->half_edges[e->next].prev != h || m->half_edges[e->prev].next != h ||
             m->half_edges[e->next].loop != e->loop)
-            return err_set(err, ST_DATA, "half-edge %d: next and prev do not agree.", h);
+            return err_set(err, ST_DATA, "half-edge %d: next and prev are inconsistent.", h);
         if (e->twin == h || t->twin != h || t->origin != m->half_edges[e->next].origin ||
             m->half_edges[t->next].origin != e->origin)
             return err_set(err, ST_DATA, "half-edge %d is not paired with its opposite.", h);
     }
     for (int b = 0; b < m->body_count; b++) {
         if (m->bodies[b].face != face || m->bodies[b].faces < 1)
-            return err_set(err, ST_DATA, "body %s: its faces are not one after the other.", m->bodies[b].name);
+            return err_set(err, ST_DATA, "body %s: its faces are not contiguous.", m->bodies[b].name);
         for (const int end = face + m->bodies[b].faces; face < end; face++) {
             if (face >= m->face_count || m->faces[face].body != b || m->faces[face].loop != loop ||
                 m->faces[face].loops < 1 || !in(m->faces[face].name, m->name_count))
-                return err_set(err, ST_DATA, "face %d does not fit the lists of bodies, loops and names.", face + 1);
+                return err_set(err, ST_DATA, "face %d is inconsistent with the lists of bodies, loops and names.",
+                               face + 1);
             for (const int last = loop + m->faces[face].loops; loop < last; loop++)
                 if (loop >= m->loop_count || m->loops[loop].face != face || !in(m->loops[loop].half_edge, n) ||
                     m->half_edges[m->loops[loop].half_edge].loop != loop)
-                    return err_set(err, ST_DATA, "loop %d does not fit the lists of faces and half-edges.", loop);
+                    return err_set(err, ST_DATA, "loop %d is inconsistent with the lists of faces and half-edges.",
+                                   loop);
         }
     }
     if (face != m->face_count || loop != m->loop_count)
         return err_set(err, ST_DATA, "a face or loop belongs to no body.");
     for (int i = 0; i < m->name_count; i++)
         if (m->names[i].id <= (i ? m->names[i - 1].id : 0))
-            return err_set(err, ST_DATA, "name %s has the id %d, wanted ids above 0 that ascend.", m->names[i].name,
+            return err_set(err, ST_DATA, "name %s has the id %d, wanted ascending ids above 0.", m->names[i].name,
                            m->names[i].id);
     return ST_OK;
 }
 
-/* Each loop is one ring, each vertex one fan, all half-edges in them. */
+/* Each loop must be one ring, each vertex one fan, and these must contain all half-edges. */
 static enum status check_rings(const struct solid_mesh *m, struct err *err)
 {
     int rings = 0, fans = 0;
@@ -96,18 +98,18 @@ static enum status check_rings(const struct solid_mesh *m, struct err *err)
             h = m->half_edges[h].next;
         } while (h != m->loops[l].half_edge);
     }
-    if (rings != m->half_edge_count) return err_set(err, ST_DATA, "a loop is more than one ring of half-edges.");
+    if (rings != m->half_edge_count) return err_set(err, ST_DATA, "a loop has more than one ring of half-edges.");
     for (int v = 0; v < m->vertex_count; v++) {
         int h = m->vertices[v].half_edge;
         if (!in(h, m->half_edge_count) || m->half_edges[h].origin != v)
-            return err_set(err, ST_DATA, "vertex %d has no half-edge of its own.", v);
+            return err_set(err, ST_DATA, "vertex %d has no half-edge that starts there.", v);
         do {
             fans++;
-            if (m->half_edges[h].origin != v) return err_set(err, ST_DATA, "vertex %d: its fan goes astray.", v);
+            if (m->half_edges[h].origin != v) return err_set(err, ST_DATA, "vertex %d: its fan leaves the vertex.", v);
             h = m->half_edges[m->half_edges[h].prev].twin;
         } while (h != m->vertices[v].half_edge);
     }
-    if (fans != m->half_edge_count) return err_set(err, ST_DATA, "more than one fan of faces meets in a vertex.");
+    if (fans != m->half_edge_count) return err_set(err, ST_DATA, "a vertex has more than one fan of faces.");
     return ST_OK;
 }
 
@@ -117,7 +119,7 @@ static int root(int *parent, int i)
     return i;
 }
 
-static enum status find_shells(struct checker *c, struct err *err)
+static enum status find_shells(struct solid_checker *c, struct err *err)
 {
     const struct solid_mesh *m = c->mesh;
     struct solid_report *r = c->report;
@@ -138,7 +140,7 @@ static enum status find_shells(struct checker *c, struct err *err)
             shell[a] = b;
     }
     for (int f = 0; f < m->face_count; f++) {
-        const int first = root(shell, f); /* the least face of the shell */
+        const int first = root(shell, f); /* the shell's first face */
         c->shell_of[f] = first == f ? r->count : c->shell_of[first];
         struct solid_shell *s = &r->shells[c->shell_of[f]];
         if (first == f) {
@@ -159,7 +161,7 @@ static enum status find_shells(struct checker *c, struct err *err)
         if (s->euler > 2 || s->euler % 2)
             return err_set(err, ST_DATA,
                            "a shell of body %s has %d vertices, %d edges, %d faces and %d loops: their Euler "
-                           "characteristic is %d, wanted 2 or an even number below it.",
+                           "characteristic is %d, wanted an even number of at most 2.",
                            m->bodies[s->body].name, s->vertices, s->edges, s->faces, s->loops, s->euler);
     }
     return ST_OK;
@@ -167,7 +169,7 @@ static enum status find_shells(struct checker *c, struct err *err)
 
 /* ------------------------------------------------------------------------------------------------------- geometry */
 
-static enum status check_faces(struct checker *c, struct err *err)
+static enum status check_faces(struct solid_checker *c, struct err *err)
 {
     const struct solid_mesh *m = c->mesh;
     struct solid_report *r = c->report;
@@ -186,13 +188,13 @@ static enum status check_faces(struct checker *c, struct err *err)
             const double one = solid_mesh_loop_area(m, l);
             if (!(l == m->faces[f].loop ? one > 0 : one < 0))
                 return fault(c, f, err,
-                             l == m->faces[f].loop ? "its outer loop turns clockwise, seen from outside"
-                                                   : "a hole turns counter-clockwise, seen from outside");
+                             l == m->faces[f].loop ? "its outer loop is clockwise, seen from outside"
+                                                   : "a hole is counter-clockwise, seen from outside");
             area += one;
         }
-        if (!(area > 0)) return fault(c, f, err, "its holes are larger than itself");
+        if (!(area > 0)) return fault(c, f, err, "its holes are larger than the face");
         r->area += area;
-        /* about the body's first vertex, as solid_mesh_volume() */
+        /* relative to the body's first vertex, as in solid_mesh_volume() */
         const struct solid_loop *first = &m->loops[m->faces[m->bodies[m->faces[f].body].face].loop];
         const struct vec3 origin = AT(c, m->half_edges[first->half_edge].origin);
         const double volume = area * (m->faces[f].offset - vec3_dot(m->faces[f].normal, origin)) / 3;
@@ -202,7 +204,7 @@ static enum status check_faces(struct checker *c, struct err *err)
     }
     for (int b = 0; b < m->body_count; b++)
         if (!(solid_mesh_volume(m, b) > 0))
-            return err_set(err, ST_DATA, "body %s has the volume %.9g, wanted one above 0: it is turned inside out.",
+            return err_set(err, ST_DATA, "body %s has the volume %.9g, wanted one above 0: it is inside out.",
                            m->bodies[b].name, solid_mesh_volume(m, b));
     for (int s = 0; s < r->count; s++)
         if (r->shells[s].volume == 0)
@@ -235,8 +237,8 @@ static double segment_distance(struct vec3 p, struct vec3 a, struct vec3 b)
     return vec3_length(vec3_sub(e, vec3_scale(d, t)));
 }
 
-/* A point of the face's plane is inside it, further than the tolerance from its border. */
-static bool inside_face(const struct checker *c, int face, struct vec3 p)
+/* Whether a point of the face's plane is inside the face, farther than the tolerance from its border. */
+static bool inside_face(const struct solid_checker *c, int face, struct vec3 p)
 {
     bool found = false;
     for (int i = c->triangles.first[face]; !found && i < c->triangles.first[face + 1]; i++) {
@@ -261,7 +263,7 @@ static bool inside_face(const struct checker *c, int face, struct vec3 p)
     return true;
 }
 
-static bool edge_pierces(const struct checker *c, int half_edge, int face)
+static bool edge_pierces(const struct solid_checker *c, int half_edge, int face)
 {
     const struct solid_face *f = &c->mesh->faces[face];
     const struct vec3 a = AT(c, EDGES(c)[half_edge].origin), b = AT(c, EDGES(c)[EDGES(c)[half_edge].next].origin);
@@ -270,11 +272,11 @@ static bool edge_pierces(const struct checker *c, int half_edge, int face)
     return inside_face(c, face, vec3_add(a, vec3_scale(vec3_sub(b, a), da / (da - db))));
 }
 
-/* Width of the overlap of two triangles in one plane, along the direction in which they are parted best; below 0 they
- * are apart. */
-static double overlap_width(const struct checker *c, const int *v, const int *w, struct vec3 normal)
+/* Overlap of two triangles in one plane along the separating axis with the smallest overlap; negative: they are
+ * apart. */
+static double overlap_width(const struct solid_checker *c, const int *v, const int *w, struct vec3 normal)
 {
-    double least = INFINITY;
+    double min_overlap = INFINITY;
     for (int k = 0; k < 6; k++) {
         const int *t = k < 3 ? v : w;
         const struct vec3 along = vec3_sub(AT(c, t[(k + 1) % 3]), AT(c, t[k % 3]));
@@ -285,18 +287,18 @@ static double overlap_width(const struct checker *c, const int *v, const int *w,
             low[i / 3] = fmin(low[i / 3], d);
             high[i / 3] = fmax(high[i / 3], d);
         }
-        least = fmin(least, fmin(high[0], high[1]) - fmax(low[0], low[1]));
+        min_overlap = fmin(min_overlap, fmin(high[0], high[1]) - fmax(low[0], low[1]));
     }
-    return least;
+    return min_overlap;
 }
 
-static bool faces_cover(const struct checker *c, int f, int g)
+static bool faces_overlap(const struct solid_checker *c, int f, int g)
 {
     const struct solid_face *a = &c->mesh->faces[f], *b = &c->mesh->faces[g];
     const double same = vec3_dot(a->normal, b->normal) > 0 ? 1 : -1;
     if (vec3_length(vec3_cross(a->normal, b->normal)) > 1e-6 || fabs(a->offset - same * b->offset) > c->tolerance * 1e3)
         return false;
-    /* in one plane where they are, not only at the origin */
+    /* in one plane at the faces, not only at the origin */
     const struct vec3 p = AT(c, c->triangles.triangles[c->triangles.first[g]].v[0]);
     if (fabs(vec3_dot(a->normal, p) - a->offset) > c->tolerance) return false;
     for (int i = c->triangles.first[f]; i < c->triangles.first[f + 1]; i++) {
@@ -313,7 +315,7 @@ static bool faces_cover(const struct checker *c, int f, int g)
     return false;
 }
 
-struct item { /* a face, or a half-edge */
+struct sweep_item { /* a face or a half-edge */
     struct box3 box;
     int index;
     bool is_edge;
@@ -321,29 +323,30 @@ struct item { /* a face, or a half-edge */
 
 static int compare_items(const void *a, const void *b, void *axis)
 {
-    const struct item *p = a, *q = b;
+    const struct sweep_item *p = a, *q = b;
     const double low = p->box.low[*(int *)axis], other = q->box.low[*(int *)axis];
     if (low != other) return low < other ? -1 : 1;
     if (p->is_edge != q->is_edge) return p->is_edge ? 1 : -1;
     return (p->index > q->index) - (p->index < q->index);
 }
 
-static enum status check_pair(const struct checker *c, const struct item *a, const struct item *b, struct err *err)
+static enum status check_pair(const struct solid_checker *c, const struct sweep_item *a, const struct sweep_item *b,
+                              struct err *err)
 {
     if (a->is_edge && b->is_edge) return ST_OK;
     if (!a->is_edge && !b->is_edge) {
-        if (!faces_cover(c, a->index, b->index)) return ST_OK;
-        return err_set(err, ST_DATA, "face %d, %s, and face %d, %s, lie on each other.", a->index + 1,
+        if (!faces_overlap(c, a->index, b->index)) return ST_OK;
+        return err_set(err, ST_DATA, "face %d, %s, and face %d, %s, overlap.", a->index + 1,
                        solid_face_name(c->mesh, a->index), b->index + 1, solid_face_name(c->mesh, b->index));
     }
     const int edge = a->is_edge ? a->index : b->index, face = a->is_edge ? b->index : a->index;
     if (!edge_pierces(c, edge, face)) return ST_OK;
-    return err_set(err, ST_DATA, "an edge of face %d, %s, goes through face %d, %s.", FACE(c, edge) + 1,
+    return err_set(err, ST_DATA, "an edge of face %d, %s, passes through face %d, %s.", FACE(c, edge) + 1,
                    solid_face_name(c->mesh, FACE(c, edge)), face + 1, solid_face_name(c->mesh, face));
 }
 
-/* All pairs of a body whose boxes overlap: a sweep along the body's longest side. */
-static enum status check_crossings(const struct checker *c, int body, struct err *err)
+/* Checks all pairs of a body's faces and edges whose boxes overlap, by a sweep along the body's longest side. */
+static enum status check_crossings(const struct solid_checker *c, int body, struct err *err)
 {
     const struct solid_mesh *m = c->mesh;
     const struct solid_body *b = &m->bodies[body];
@@ -356,14 +359,14 @@ static enum status check_crossings(const struct checker *c, int body, struct err
                 h = EDGES(c)[h].next;
             } while (h != m->loops[l].half_edge);
         }
-    const size_t most = (size_t)b->faces + (size_t)edges + 1;
-    struct item *items = malloc(most * sizeof *items);
-    int *active[2] = {malloc(most * sizeof **active), malloc(most * sizeof **active)};
-    enum status st = items && active[0] && active[1] ? ST_OK : err_nomem(err, "a sweep", most * sizeof *items);
+    const size_t max_items = (size_t)b->faces + (size_t)edges + 1;
+    struct sweep_item *items = malloc(max_items * sizeof *items);
+    int *active[2] = {malloc(max_items * sizeof **active), malloc(max_items * sizeof **active)};
+    enum status st = items && active[0] && active[1] ? ST_OK : err_nomem(err, "a sweep", max_items * sizeof *items);
     struct box3 whole = {{0}, {0}};
     for (int f = b->face; !st && f < b->face + b->faces; f++) {
-        struct item *face = &items[count++];
-        *face = (struct item){.index = f};
+        struct sweep_item *face = &items[count++];
+        *face = (struct sweep_item){.index = f};
         bool first = true;
         for (int l = m->faces[f].loop; l < m->faces[f].loop + m->faces[f].loops; l++) {
             int h = m->loops[l].half_edge;
@@ -373,8 +376,8 @@ static enum status check_crossings(const struct checker *c, int body, struct err
                 box_add(&whole, AT(c, EDGES(c)[h].origin), first && f == b->face);
                 first = false;
                 if (h < EDGES(c)[h].twin) {
-                    struct item *e = &items[count++];
-                    *e = (struct item){.index = h, .is_edge = true};
+                    struct sweep_item *e = &items[count++];
+                    *e = (struct sweep_item){.index = h, .is_edge = true};
                     box_add(&e->box, AT(c, EDGES(c)[h].origin), true);
                     box_add(&e->box, AT(c, EDGES(c)[next].origin), false);
                 }
@@ -388,14 +391,14 @@ static enum status check_crossings(const struct checker *c, int body, struct err
     if (!st) qsort_r(items, (size_t)count, sizeof *items, compare_items, &axis);
     int alive[2] = {0, 0};
     for (int i = 0; !st && i < count; i++)
-        for (int kind = 0; !st && kind < 2; kind++) { /* against faces, and a face against edges too */
+        for (int kind = 0; !st && kind < 2; kind++) { /* all items against faces, faces against edges too */
             int kept = 0;
             if (kind && items[i].is_edge) {
                 active[1][alive[1]++] = i;
                 continue;
             }
             for (int k = 0; k < alive[kind]; k++) {
-                const struct item *o = &items[active[kind][k]];
+                const struct sweep_item *o = &items[active[kind][k]];
                 if (o->box.high[axis] < items[i].box.low[axis]) continue;
                 active[kind][kept++] = active[kind][k];
                 if (!st && boxes_overlap(&o->box, &items[i].box)) st = check_pair(c, o, &items[i], err);
@@ -409,9 +412,9 @@ static enum status check_crossings(const struct checker *c, int body, struct err
     return st;
 }
 
-/* Part of the sphere, 1 the whole, that a triangle covers as seen from p; positive if its inner side is seen (Van
- * Oosterom and Strackee 1983). */
-static double solid_angle(const struct checker *c, const int *v, struct vec3 p)
+/* Solid angle of a triangle seen from p, as a fraction of the sphere; positive if its inner side is visible
+ * [vanOosterom 1983]. */
+static double solid_angle(const struct solid_checker *c, const int *v, struct vec3 p)
 {
     const struct vec3 a = vec3_sub(AT(c, v[0]), p), b = vec3_sub(AT(c, v[1]), p), d = vec3_sub(AT(c, v[2]), p);
     const double la = vec3_length(a), lb = vec3_length(b), ld = vec3_length(d);
@@ -420,7 +423,7 @@ static double solid_angle(const struct checker *c, const int *v, struct vec3 p)
     return over == 0 && under == 0 ? 0 : 2 * atan2(over, under) / (4 * M_PI);
 }
 
-static enum status check_shells(const struct checker *c, struct err *err)
+static enum status check_shells(const struct solid_checker *c, struct err *err)
 {
     const struct solid_mesh *m = c->mesh;
     const struct solid_report *r = c->report;
@@ -436,9 +439,9 @@ static enum status check_shells(const struct checker *c, struct err *err)
         const int s = c->shell_of[f];
         if (done[s]) continue;
         done[s] = 1;
-        if (fabs(r->shells[s].volume) <= c->tolerance * c->shell_area[s]) continue; /* too thin to be in anything */
+        if (fabs(r->shells[s].volume) <= c->tolerance * c->shell_area[s]) continue; /* too thin for a test */
         const int *v = c->triangles.triangles[c->triangles.first[f]].v;
-        /* at no special place of the face: others may touch it in edges */
+        /* a generic point of the face: other faces may touch its edges */
         const struct vec3 p = vec3_add(vec3_scale(AT(c, v[0]), 0.2371),
                                        vec3_add(vec3_scale(AT(c, v[1]), 0.3093), vec3_scale(AT(c, v[2]), 0.4536)));
         struct box3 at;
@@ -452,8 +455,8 @@ static enum status check_shells(const struct checker *c, struct err *err)
         }
         if (fabs(around - (r->shells[s].volume < 0 ? 1 : 0)) > 0.25)
             st = fault(c, f, err,
-                       r->shells[s].volume < 0 ? "its shell is turned inside out and in no other one"
-                                               : "its shell is in another one of the same body");
+                       r->shells[s].volume < 0 ? "its shell is inside out and not inside another one"
+                                               : "its shell is inside another one of the same body");
     }
     free(boxes);
     free(begun);
@@ -465,7 +468,8 @@ enum status solid_mesh_check(const struct solid_mesh *mesh, double tolerance, st
                              struct err *err)
 {
     struct solid_report own = {0};
-    struct checker c = {.mesh = mesh, .tolerance = tolerance > 0 ? tolerance : 1e-6, .report = report ? report : &own};
+    struct solid_checker c = {
+        .mesh = mesh, .tolerance = tolerance > 0 ? tolerance : 1e-6, .report = report ? report : &own};
     *c.report = (struct solid_report){0};
     enum status st = check_indices(mesh, err);
     if (!st) st = check_rings(mesh, err);

@@ -1,4 +1,4 @@
-/* solid_mesh.c - see solid_mesh.h: making meshes, names and ids, volume and area. */
+/* solid_mesh.c - makes meshes from polygons; names and ids, volume and area. */
 #include "common/model/solid_mesh.h"
 
 #include <limits.h>
@@ -50,7 +50,7 @@ static int *table_make(unsigned size)
     return slots;
 }
 
-/* Where the name is among the mesh's, or where it would be put. */
+/* The slot of a name, or the free one where it would be stored. */
 static unsigned name_slot(const struct solid_mesh *mesh, const int *slots, unsigned size, const char *name)
 {
     unsigned at = (unsigned)hash_text(name) & (size - 1);
@@ -87,15 +87,15 @@ static int face_of(const struct solid_mesh *mesh, int half_edge)
 
 static bool finite3(struct vec3 v) { return isfinite(v.x) && isfinite(v.y) && isfinite(v.z); }
 
-struct maker { /* what making has at hand */
+struct maker {
     struct solid_mesh *mesh;
     int *names, *bodies, *edges; /* hash tables */
     unsigned name_size, body_size, edge_size;
-    int *wrong;
+    int *faulty;
 };
 
-#define FAULT(m, i, polygon, ...)                           \
-    (*(m)->wrong = (i), err_set(err, ST_DATA, __VA_ARGS__), \
+#define FAULT(m, i, polygon, ...)                            \
+    (*(m)->faulty = (i), err_set(err, ST_DATA, __VA_ARGS__), \
      err_context(err, "face %d, %s", (i) + 1, (polygon)->name ? (polygon)->name : "(none)"))
 
 static enum status add_name(struct maker *m, const char *name, int *index, struct err *err)
@@ -122,7 +122,7 @@ static enum status add_body(struct maker *m, int i, const struct solid_polygon *
     }
     const unsigned at = body_slot(mesh, m->bodies, m->body_size, p->body);
     if (m->bodies[at] >= 0)
-        return FAULT(m, i, p, "found body %s a second time, wanted its faces one after the other.", p->body);
+        return FAULT(m, i, p, "found body %s a second time, wanted its faces to be contiguous.", p->body);
     struct solid_body b = {strdup(p->body), mesh->face_count, 1};
     if (!b.name) return err_nomem(err, "a body's name", strlen(p->body));
     mesh->bodies[mesh->body_count] = b;
@@ -135,7 +135,7 @@ static enum status add_polygon(struct maker *m, int i, const struct solid_polygo
     struct solid_mesh *mesh = m->mesh;
     struct solid_face f = {.normal = p->normal, .offset = p->offset, .loop = mesh->loop_count, .loops = p->loops};
     if (!p->name || !*p->name || !p->body || !*p->body) return FAULT(m, i, p, "found an empty name, wanted one.");
-    if (p->loops < 1) return FAULT(m, i, p, "found no loop, wanted the outer one at least.");
+    if (p->loops < 1) return FAULT(m, i, p, "found no loop, wanted at least the outer one.");
     if (!finite3(p->normal) || !isfinite(p->offset)) return FAULT(m, i, p, "found a plane that is not finite.");
     if (fabs(vec3_length(p->normal) - 1) > 1e-6)
         return FAULT(m, i, p, "found a normal of length %.9g, wanted 1.", vec3_length(p->normal));
@@ -151,7 +151,7 @@ static enum status add_polygon(struct maker *m, int i, const struct solid_polygo
             if (v == corner[(c + 1) % n]) return FAULT(m, i, p, "found vertex %d twice in a row, wanted it once.", v);
             if (of_body[v] < 0) of_body[v] = f.body;
             if (of_body[v] != f.body)
-                return FAULT(m, i, p, "found vertex %d of body %s, wanted one of body %s alone.", v,
+                return FAULT(m, i, p, "found vertex %d of body %s, wanted a vertex of body %s alone.", v,
                              mesh->bodies[of_body[v]].name, p->body);
             mesh->vertices[v].half_edge = first + c;
             mesh->half_edges[first + c] = (struct solid_half_edge){.origin = v,
@@ -184,20 +184,20 @@ static enum status pair_edges(struct maker *m, const struct solid_polygon *polyg
         e->twin = m->edges[edge_slot(mesh, m->edges, m->edge_size, to, from)];
         if (e->twin < 0)
             return FAULT(m, i, &polygons[i],
-                         "found the edge from vertex %d to vertex %d, but in no face the edge back, wanted it in one.",
-                         from, to);
+                         "found the edge from vertex %d to vertex %d, but no face has its opposite, wanted one.", from,
+                         to);
     }
     return ST_OK;
 }
 
-/* All half-edges that leave a vertex are of one fan. */
+/* Checks that all half-edges that leave a vertex belong to one fan. */
 static enum status one_fan_each(struct maker *m, const struct solid_polygon *polygons, int *leaving, struct err *err)
 {
     struct solid_mesh *mesh = m->mesh;
     for (int v = 0; v < mesh->vertex_count; v++) leaving[v] = 0;
     for (int h = 0; h < mesh->half_edge_count; h++) leaving[mesh->half_edges[h].origin]++;
     for (int v = 0; v < mesh->vertex_count; v++) {
-        if (!leaving[v]) return err_set(err, ST_DATA, "vertex %d is of no face, wanted it in three or more.", v);
+        if (!leaving[v]) return err_set(err, ST_DATA, "vertex %d belongs to no face, wanted three or more.", v);
         int h = mesh->vertices[v].half_edge, count = 0;
         const int i = face_of(mesh, h);
         do {
@@ -206,18 +206,20 @@ static enum status one_fan_each(struct maker *m, const struct solid_polygon *pol
         } while (h != mesh->vertices[v].half_edge);
         if (count != leaving[v])
             return FAULT(m, i, &polygons[i],
-                         "found %d faces around vertex %d and %d more that touch there, wanted a vertex of their own "
-                         "for those.",
+                         "found %d faces around vertex %d and %d more that touch there, wanted a separate vertex for "
+                         "those.",
                          count, v, leaving[v] - count);
     }
     return ST_OK;
 }
 
-enum status solid_mesh_make_saying(struct solid_mesh *mesh, const struct vec3 *vertices, int vertex_count,
-                                   const struct solid_polygon *polygons, int count, int *wrong, struct err *err)
+enum status solid_mesh_make(struct solid_mesh *mesh, const struct vec3 *vertices, int vertex_count,
+                            const struct solid_polygon *polygons, int count, int *faulty, struct err *err)
 {
     int64_t corners = 0, loops = 0;
-    *wrong = -1;
+    int unused;
+    if (!faulty) faulty = &unused;
+    *faulty = -1;
     for (int i = 0; i < count; i++)
         for (int k = 0; k < polygons[i].loops; k++, loops++)
             corners += polygons[i].sizes[k] > 0 ? polygons[i].sizes[k] : 0;
@@ -226,7 +228,7 @@ enum status solid_mesh_make_saying(struct solid_mesh *mesh, const struct vec3 *v
                       .name_size = table_size(count),
                       .body_size = table_size(count),
                       .edge_size = table_size((int)corners),
-                      .wrong = wrong};
+                      .faulty = faulty};
     m.names = table_make(m.name_size);
     m.bodies = table_make(m.body_size);
     m.edges = table_make(m.edge_size);
@@ -256,13 +258,6 @@ enum status solid_mesh_make_saying(struct solid_mesh *mesh, const struct vec3 *v
     free(of_vertex);
     if (st) solid_mesh_release(mesh);
     return st;
-}
-
-enum status solid_mesh_make(struct solid_mesh *mesh, const struct vec3 *vertices, int vertex_count,
-                            const struct solid_polygon *polygons, int count, struct err *err)
-{
-    int wrong;
-    return solid_mesh_make_saying(mesh, vertices, vertex_count, polygons, count, &wrong, err);
 }
 
 /* ------------------------------------------------------------------------------------------------------------ ids */
@@ -321,7 +316,7 @@ enum status solid_mesh_carry_ids(struct solid_mesh *mesh, const struct solid_mes
 
 /* ------------------------------------------------------------------------------------------------- volume and area */
 
-/* Twice the area of a loop as a vector along its normal, about `origin`. */
+/* Twice the area of a loop, as a vector along its normal; origin: any point near it. */
 static struct vec3 loop_area(const struct solid_mesh *mesh, int loop, struct vec3 origin)
 {
     const int first = mesh->loops[loop].half_edge;
@@ -354,7 +349,7 @@ double solid_mesh_volume(const struct solid_mesh *mesh, int body)
     double sum = 0;
     for (int b = body < 0 ? 0 : body; b < (body < 0 ? mesh->body_count : body + 1); b++) {
         const struct solid_body *o = &mesh->bodies[b];
-        /* about a point of the body, so that one far from the origin loses no digits */
+        /* relative to a point of the body, to avoid cancellation far from the origin */
         const struct solid_loop *first = &mesh->loops[mesh->faces[o->face].loop];
         const struct vec3 origin = mesh->vertices[mesh->half_edges[first->half_edge].origin].p;
         for (int f = o->face; f < o->face + o->faces; f++) {

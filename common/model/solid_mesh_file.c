@@ -1,4 +1,4 @@
-/* solid_mesh_file.c - model.txt and OBJ (solid_mesh.h). */
+/* solid_mesh_file.c - reads and writes model.txt, writes OBJ. */
 #include <inttypes.h>
 #include <limits.h>
 #include <stdbool.h>
@@ -10,7 +10,7 @@
 #include "common/base/textfile.h"
 #include "common/model/solid_mesh.h"
 
-enum { MOST = 100000000, NAME_SIZE = 1024 };
+enum { MAX_COUNT = 100000000, NAME_SIZE = 1024 };
 
 /* ------------------------------------------------------------------------------------------------------- model.txt */
 
@@ -60,7 +60,7 @@ enum status solid_mesh_write(const struct solid_mesh *mesh, const char *path, co
     return st;
 }
 
-struct reading { /* what has been read; offsets stand in place of pointers until the end */
+struct mesh_reader { /* the records so far; offsets replace pointers until the end */
     struct vec3 *vertices;
     struct solid_polygon *polygons;
     int *ids, *lines, *corners, *sizes;
@@ -92,10 +92,10 @@ static enum status next_line(struct textfile *t, const char *word, struct err *e
     return strcmp(found, word) ? textfile_error(t, err, found, "%s", wanted) : ST_OK;
 }
 
-static enum status read_loop(struct textfile *t, struct reading *r, struct err *err)
+static enum status read_loop(struct textfile *t, struct mesh_reader *r, struct err *err)
 {
     int64_t count, v;
-    if (next_line(t, "loop", err) || textfile_int(t, "number of corners", 3, MOST, &count, err) ||
+    if (next_line(t, "loop", err) || textfile_int(t, "number of corners", 3, MAX_COUNT, &count, err) ||
         grow(&r->sizes, &r->size_capacity, r->size_count + 1, sizeof *r->sizes, err))
         return err->status;
     r->sizes[r->size_count++] = (int)count;
@@ -108,7 +108,7 @@ static enum status read_loop(struct textfile *t, struct reading *r, struct err *
     return textfile_end(t, err);
 }
 
-static enum status read_face(struct textfile *t, struct reading *r, const char *body, struct err *err)
+static enum status read_face(struct textfile *t, struct mesh_reader *r, const char *body, struct err *err)
 {
     struct solid_polygon p = {.body = body};
     int64_t id, loops;
@@ -118,7 +118,7 @@ static enum status read_face(struct textfile *t, struct reading *r, const char *
         textfile_word(t, "the face's name", &name, err) || textfile_double(t, "x of the normal", &p.normal.x, err) ||
         textfile_double(t, "y of the normal", &p.normal.y, err) ||
         textfile_double(t, "z of the normal", &p.normal.z, err) || textfile_double(t, "offset", &p.offset, err) ||
-        textfile_int(t, "number of loops", 1, MOST, &loops, err) || textfile_end(t, err) ||
+        textfile_int(t, "number of loops", 1, MAX_COUNT, &loops, err) || textfile_end(t, err) ||
         grow(&r->polygons, &r->polygon_capacity, n + 1, sizeof *r->polygons, err) ||
         grow(&r->ids, &r->id_capacity, n + 1, sizeof *r->ids, err) ||
         grow(&r->lines, &r->line_capacity, n + 1, sizeof *r->lines, err) ||
@@ -138,12 +138,12 @@ static enum status read_face(struct textfile *t, struct reading *r, const char *
     return ST_OK;
 }
 
-static enum status read_records(struct textfile *t, struct reading *r, struct err *err)
+static enum status read_records(struct textfile *t, struct mesh_reader *r, struct err *err)
 {
     int64_t version, count, faces;
     char *body;
     if (next_line(t, "remodel-model", err) || textfile_int(t, "version", 1, 1, &version, err) || textfile_end(t, err) ||
-        next_line(t, "vertices", err) || textfile_int(t, "number of vertices", 0, MOST, &count, err) ||
+        next_line(t, "vertices", err) || textfile_int(t, "number of vertices", 0, MAX_COUNT, &count, err) ||
         textfile_end(t, err))
         return err->status;
     for (int64_t i = 0; i < count; i++) {
@@ -154,12 +154,12 @@ static enum status read_records(struct textfile *t, struct reading *r, struct er
             return err->status;
         r->vertices[r->vertex_count++] = p;
     }
-    if (next_line(t, "bodies", err) || textfile_int(t, "number of bodies", 0, MOST, &count, err) ||
+    if (next_line(t, "bodies", err) || textfile_int(t, "number of bodies", 0, MAX_COUNT, &count, err) ||
         textfile_end(t, err))
         return err->status;
     for (int64_t i = 0; i < count; i++) {
         if (next_line(t, "body", err) || textfile_word(t, "the body's name", &body, err) ||
-            textfile_int(t, "number of faces", 1, MOST, &faces, err) || textfile_end(t, err))
+            textfile_int(t, "number of faces", 1, MAX_COUNT, &faces, err) || textfile_end(t, err))
             return err->status;
         if (!*body) return textfile_error(t, err, body, "the body's name");
         for (int64_t k = 0; k < faces; k++)
@@ -181,26 +181,26 @@ static int compare_ids(const void *a, const void *b)
     return (p->line > q->line) - (p->line < q->line);
 }
 
-/* Ids as the file has them: one for each name, another for another name. */
-static enum status take_ids(struct solid_mesh *mesh, const struct reading *r, const char *path, struct err *err)
+/* Sets the file's ids: one for each name, different for different names. */
+static enum status set_ids(struct solid_mesh *mesh, const struct mesh_reader *r, const char *path, struct err *err)
 {
     int *ids = calloc((size_t)mesh->name_count + 1, sizeof *ids);
     struct id_line *all = malloc(((size_t)mesh->face_count + 1) * sizeof *all);
-    char shown[SCAN_QUOTED];
+    char quoted[SCAN_QUOTED];
     enum status st = ids && all ? ST_OK : err_nomem(err, "ids of faces", (size_t)mesh->face_count * sizeof *all);
     for (int i = 0; !st && i < mesh->face_count; i++) {
         int *id = &ids[mesh->faces[i].name];
         if (*id && *id != r->ids[i])
-            st = err_set(err, ST_DATA, "%s:%d: found id %d for %s, wanted %d, which it had before.", path, r->lines[i],
-                         r->ids[i], scan_quote(shown, solid_face_name(mesh, i)), *id);
+            st = err_set(err, ST_DATA, "%s:%d: found id %d for %s, wanted %d, as before.", path, r->lines[i], r->ids[i],
+                         scan_quote(quoted, solid_face_name(mesh, i)), *id);
         *id = r->ids[i];
         all[i] = (struct id_line){r->ids[i], mesh->faces[i].name, r->lines[i]};
     }
     if (!st && mesh->face_count) qsort(all, (size_t)mesh->face_count, sizeof *all, compare_ids);
     for (int i = 1; !st && i < mesh->face_count; i++)
         if (all[i].id == all[i - 1].id && all[i].name != all[i - 1].name)
-            st = err_set(err, ST_DATA, "%s:%d: found id %d for %s, wanted one that no other name has.", path,
-                         all[i].line, all[i].id, scan_quote(shown, mesh->names[all[i].name].name));
+            st = err_set(err, ST_DATA, "%s:%d: found id %d for %s, wanted an id that no other name has.", path,
+                         all[i].line, all[i].id, scan_quote(quoted, mesh->names[all[i].name].name));
     if (!st) st = solid_mesh_set_ids(mesh, ids, err);
     free(ids);
     free(all);
@@ -210,8 +210,8 @@ static enum status take_ids(struct solid_mesh *mesh, const struct reading *r, co
 enum status solid_mesh_read(struct solid_mesh *mesh, const char *path, struct err *err)
 {
     struct textfile t = {0};
-    struct reading r = {0};
-    int wrong = -1;
+    struct mesh_reader r = {0};
+    int faulty = -1;
     *mesh = (struct solid_mesh){0};
     enum status st = textfile_open(&t, path, err);
     if (!st) st = read_records(&t, &r, err);
@@ -220,13 +220,13 @@ enum status solid_mesh_read(struct solid_mesh *mesh, const char *path, struct er
         r.polygons[i].sizes = r.sizes + r.at[2 * i + 1];
     }
     if (!st) {
-        st = solid_mesh_make_saying(mesh, r.vertices, r.vertex_count, r.polygons, r.polygon_count, &wrong, err);
-        if (st == ST_DATA && wrong >= 0)
-            err_context(err, "%s:%d", path, r.lines[wrong]);
+        st = solid_mesh_make(mesh, r.vertices, r.vertex_count, r.polygons, r.polygon_count, &faulty, err);
+        if (st == ST_DATA && faulty >= 0)
+            err_context(err, "%s:%d", path, r.lines[faulty]);
         else if (st)
             err_context(err, "%s", path);
     }
-    if (!st) st = take_ids(mesh, &r, path, err);
+    if (!st) st = set_ids(mesh, &r, path, err);
     free(r.vertices);
     free(r.polygons);
     free(r.ids);
@@ -241,7 +241,7 @@ enum status solid_mesh_read(struct solid_mesh *mesh, const char *path, struct er
 
 /* ------------------------------------------------------------------------------------------------------------- OBJ */
 
-/* Names in OBJ end at a blank. */
+/* Replaces blanks, at which names in OBJ end. */
 static void print_name(FILE *to, const char *what, const char *name)
 {
     fprintf(to, "%s ", what);

@@ -1,17 +1,17 @@
-/* solid_triangulate.c - faces with holes to triangles (solid_mesh.h).
+/* solid_triangulate.c - triangulates faces with holes by ear clipping [Meisters 1975].
  *
- * A face is projected along the axis that its normal is most along. Each hole is joined to the loop around it by a
- * bridge, a pair of edges from its rightmost corner to the nearest corner that it sees (holes from right to left, so
- * that there always is one among the loops joined so far); then ears are clipped (Meisters 1975; bridges as in
- * Eberly, Triangulation by Ear Clipping). What differs: corners in the middle of an edge stay corners, so that
- * neighbours agree; a triangle is an ear only if no other corner is in it or on its border; and since bridges, and
- * holes that reach the outer loop in a point, let corners coincide, a diagonal is not drawn where an edge joins the
- * same two places.
+ * A face is projected along the axis of its normal's largest component. Each hole is joined to the loop around it by a
+ * bridge [Eberly 2008], a pair of edges from its rightmost corner to the nearest visible corner; holes are joined from
+ * right to left, so that there always is such a corner among the loops joined so far. Then ears are clipped.
  *
- * Places along the axes are exact in doubles; on oblique edges corners are a rounding off, so that lengths below a
- * few units in the last place of the largest coordinate count as 0. Ears that only this tolerance forbids, in the
- * end flat ones, are taken when there are no others: where corners are that near each other. The area of all
- * triangles is compared with that of the face in the end. */
+ * What differs: corners in the middle of an edge remain corners, so that neighbouring faces agree; a triangle is an ear
+ * only if no other corner is in it or on its border; and since bridges, and holes that touch the outer loop in a point,
+ * make corners coincide, a diagonal is not drawn where an edge joins the same two positions.
+ *
+ * Positions along the axes are exact in doubles; corners on oblique edges are rounded, so that lengths below a few
+ * units in the last place of the largest coordinate count as 0. Ears that only this tolerance forbids, and finally flat
+ * ones, are clipped when there are no others, which happens where corners are that close. At the end the area of the
+ * triangles is compared with that of the face. */
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
@@ -19,18 +19,18 @@
 
 #include "common/model/solid_mesh.h"
 
-struct corner {
+struct face_corner {
     double x, y;
     int vertex, next, prev;
-    int cell_next; /* the next one in its grid cell, or -1 */
+    int cell_next; /* the next corner in its grid cell, or -1 */
     bool gone;
 };
 
 struct clipper {
-    struct corner *corners; /* owned */
+    struct face_corner *corners; /* owned */
     int count, capacity;
     double tolerance;
-    int *cells, columns, rows; /* owned: first corner of each, or -1; no grid if columns is 0 */
+    int *cells, columns, rows; /* owned: first corner of each cell, or -1; no grid if columns is 0 */
     int cell_capacity;
     double low_x, low_y, cell_size;
 };
@@ -45,10 +45,14 @@ void solid_triangles_release(struct solid_triangles *t)
 
 /* ------------------------------------------------------------------------------------------------------ predicates */
 
-static bool same_place(const struct corner *a, const struct corner *b) { return a->x == b->x && a->y == b->y; }
+static bool same_position(const struct face_corner *a, const struct face_corner *b)
+{
+    return a->x == b->x && a->y == b->y;
+}
 
-/* Twice the area of a, b, c: positive if they turn counter-clockwise; 0 if it is so thin that it may be flat. */
-static double turn(const struct clipper *t, const struct corner *a, const struct corner *b, const struct corner *c)
+/* Twice the signed area of a, b, c, positive if counter-clockwise; 0 if the triangle is flat within rounding. */
+static double turn(const struct clipper *t, const struct face_corner *a, const struct face_corner *b,
+                   const struct face_corner *c)
 {
     const double bx = b->x - a->x, by = b->y - a->y, cx = c->x - a->x, cy = c->y - a->y;
     const double area = bx * cy - by * cx;
@@ -56,30 +60,30 @@ static double turn(const struct clipper *t, const struct corner *a, const struct
     return fabs(area) <= t->tolerance * longest ? 0 : area;
 }
 
-/* The direction from a corner to p points into the face: into the corner's interior angle. */
-static bool sees(const struct clipper *t, const struct corner *at, const struct corner *p)
+/* Whether the direction from a corner to p is inside the corner's interior angle. */
+static bool faces_towards(const struct clipper *t, const struct face_corner *at, const struct face_corner *p)
 {
-    const struct corner *before = &t->corners[at->prev], *after = &t->corners[at->next];
+    const struct face_corner *before = &t->corners[at->prev], *after = &t->corners[at->next];
     const double a = turn(t, before, at, p), b = turn(t, at, after, p);
     return turn(t, before, at, after) > 0 ? a > 0 && b > 0 : a > 0 || b > 0;
 }
 
-/* p, on the line through a and b, is between them or at one of them. */
-static bool between(const struct corner *a, const struct corner *b, const struct corner *p)
+/* Whether p, on the line through a and b, is between them or at one of them. */
+static bool between(const struct face_corner *a, const struct face_corner *b, const struct face_corner *p)
 {
     const double dx = b->x - a->x, dy = b->y - a->y;
     const double along = dx * (p->x - a->x) + dy * (p->y - a->y);
     return along >= 0 && along <= dx * dx + dy * dy;
 }
 
-/* The edge c to d crosses or touches the segment from a to b, other than at a place of both. */
-static bool blocks(const struct clipper *t, const struct corner *a, const struct corner *b, const struct corner *c,
-                   const struct corner *d)
+/* Whether the edge c to d crosses or touches the segment from a to b, other than at a common end. */
+static bool blocks(const struct clipper *t, const struct face_corner *a, const struct face_corner *b,
+                   const struct face_corner *c, const struct face_corner *d)
 {
     if (fmax(c->x, d->x) < fmin(a->x, b->x) || fmin(c->x, d->x) > fmax(a->x, b->x) ||
         fmax(c->y, d->y) < fmin(a->y, b->y) || fmin(c->y, d->y) > fmax(a->y, b->y))
         return false;
-    const bool c_end = same_place(c, a) || same_place(c, b), d_end = same_place(d, a) || same_place(d, b);
+    const bool c_end = same_position(c, a) || same_position(c, b), d_end = same_position(d, a) || same_position(d, b);
     if (c_end && d_end) return true; /* the same segment */
     const double tc = turn(t, a, b, c), td = turn(t, a, b, d);
     if (!c_end && tc == 0 && between(a, b, c)) return true;
@@ -92,17 +96,17 @@ static bool blocks(const struct clipper *t, const struct corner *a, const struct
 
 /* ---------------------------------------------------------------------------------------------------------- bridges */
 
-static int add_corner(struct clipper *t, const struct corner *c)
+static int add_corner(struct clipper *t, const struct face_corner *c)
 {
     t->corners[t->count] = *c;
     return t->count++;
 }
 
-/* Whether corner m of a hole and corner p see each other, past all edges of the face. */
-static bool in_sight(const struct clipper *t, int m, int p)
+/* Whether corners m of a hole and p are visible from each other. */
+static bool are_visible(const struct clipper *t, int m, int p)
 {
-    const struct corner *a = &t->corners[m], *b = &t->corners[p];
-    if (!sees(t, a, b) || !sees(t, b, a)) return false;
+    const struct face_corner *a = &t->corners[m], *b = &t->corners[p];
+    if (!faces_towards(t, a, b) || !faces_towards(t, b, a)) return false;
     for (int i = 0; i < t->count; i++)
         if (blocks(t, a, b, &t->corners[i], &t->corners[t->corners[i].next])) return false;
     return true;
@@ -128,21 +132,21 @@ static bool bridge(struct clipper *t, int m, int outer)
             i = t->corners[i].next;
         } while (i != outer);
         if (p < 0) return false;
-        int from = m; /* or another corner of the hole in the same place */
+        int from = m; /* or another corner of the hole at the same position */
         do {
-            if (same_place(&t->corners[from], &t->corners[m]) && in_sight(t, from, p)) break;
+            if (same_position(&t->corners[from], &t->corners[m]) && are_visible(t, from, p)) break;
             from = t->corners[from].next;
         } while (from != m);
-        if (from != m || in_sight(t, m, p)) {
+        if (from != m || are_visible(t, m, p)) {
             m = from;
             break;
         }
         last = best;
         last_corner = p;
     }
-    /* p -> m ... -> copy of m -> copy of p -> what followed p */
+    /* p -> m ... -> copy of m -> copy of p -> successor of p */
     const int m2 = add_corner(t, &t->corners[m]), p2 = add_corner(t, &t->corners[p]);
-    struct corner *c = t->corners;
+    struct face_corner *c = t->corners;
     c[m2].prev = c[m].prev;
     c[c[m].prev].next = m2;
     c[m2].next = p2;
@@ -164,18 +168,18 @@ static int column_of(const struct clipper *t, double x)
 }
 static int row_of(const struct clipper *t, double y) { return clamp_cell((y - t->low_y) / t->cell_size, t->rows); }
 
-/* Corner q forbids the ear a, b, c. A corner that coincides with a or c does if an edge goes from it to the other's
- * place. */
+/* Whether corner q forbids the ear a, b, c. A corner that coincides with a or c does if an edge joins it to the
+ * position of c or a. */
 static bool forbids(const struct clipper *t, int ia, int ib, int ic, int iq, bool strict)
 {
-    const struct corner *a = &t->corners[ia], *b = &t->corners[ib], *c = &t->corners[ic], *q = &t->corners[iq];
+    const struct face_corner *a = &t->corners[ia], *b = &t->corners[ib], *c = &t->corners[ic], *q = &t->corners[iq];
     if (iq == ib || q->gone) return false;
-    if (same_place(q, a) || same_place(q, c)) {
-        const struct corner *other = same_place(q, a) ? c : a;
-        return (q->next != ib && same_place(&t->corners[q->next], other)) ||
-               (q->prev != ib && same_place(&t->corners[q->prev], other));
+    if (same_position(q, a) || same_position(q, c)) {
+        const struct face_corner *other = same_position(q, a) ? c : a;
+        return (q->next != ib && same_position(&t->corners[q->next], other)) ||
+               (q->prev != ib && same_position(&t->corners[q->prev], other));
     }
-    if (same_place(q, b)) return false;
+    if (same_position(q, b)) return false;
     if (q->x < fmin(fmin(a->x, b->x), c->x) - t->tolerance || q->x > fmax(fmax(a->x, b->x), c->x) + t->tolerance ||
         q->y < fmin(fmin(a->y, b->y), c->y) - t->tolerance || q->y > fmax(fmax(a->y, b->y), c->y) + t->tolerance)
         return false;
@@ -183,17 +187,17 @@ static bool forbids(const struct clipper *t, int ia, int ib, int ic, int iq, boo
     return strict ? d0 >= 0 && d1 >= 0 && d2 >= 0 : d0 > 0 && d1 > 0 && d2 > 0;
 }
 
-/* How much an ear may be off: nothing; corners on its border; flat, too. */
+/* Which ears are allowed: strict ones; also those with corners on their border; also flat ones. */
 enum { EXACT, LOOSE, FLAT };
 
 static bool is_ear(struct clipper *t, int b, int how)
 {
-    struct corner *k = t->corners;
+    struct face_corner *k = t->corners;
     const int a = k[b].prev, c = k[b].next;
     const double area = turn(t, &k[a], &k[b], &k[c]);
     const bool strict = how == EXACT;
     if (how == FLAT ? area < 0 : !(area > 0)) return false;
-    if (k[c].next == a) return true; /* the last one */
+    if (k[c].next == a) return true; /* the last triangle */
     if (!t->columns) {
         int q = c;
         do {
@@ -256,10 +260,11 @@ static bool make_grid(struct clipper *t)
     return true;
 }
 
-/* The polygon that has corner `at`, of t->count corners, into triangles; how many, or -1 if ears ran out. */
+/* Cuts the polygon with corner `at`, of t->count corners, into triangles; returns their number, or -1 if there are no
+ * ears left. */
 static int clip_ears(struct clipper *t, int at, struct solid_triangle *out, int face)
 {
-    struct corner *k = t->corners;
+    struct face_corner *k = t->corners;
     int left = t->count, made = 0, tried = 0;
     int how = EXACT;
     while (left >= 3) {
@@ -270,7 +275,7 @@ static int clip_ears(struct clipper *t, int at, struct solid_triangle *out, int 
             k[a].next = c;
             k[c].prev = a;
             k[at].gone = true;
-            at = k[c].next; /* not the next one: triangles would fan out from one corner */
+            at = k[c].next; /* skipping a corner avoids fans of thin triangles */
             tried = 0;
             how = EXACT;
         } else {
@@ -285,14 +290,14 @@ static int clip_ears(struct clipper *t, int at, struct solid_triangle *out, int 
 
 /* ------------------------------------------------------------------------------------------------------------ faces */
 
-struct hole {
+struct face_hole {
     int rightmost;
     double x, y;
 };
 
 static int compare_holes(const void *a, const void *b)
 {
-    const struct hole *p = a, *q = b;
+    const struct face_hole *p = a, *q = b;
     if (p->x != q->x) return p->x > q->x ? -1 : 1;
     if (p->y != q->y) return p->y > q->y ? -1 : 1;
     return (p->rightmost > q->rightmost) - (p->rightmost < q->rightmost);
@@ -300,9 +305,9 @@ static int compare_holes(const void *a, const void *b)
 
 static double coordinate(struct vec3 p, int axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
 
-/* The face's triangles at out; how many there must be is known from its corners. */
+/* Stores the face's triangles at out: clipper.count - 2 of them. False: the face cannot be triangulated. */
 static bool triangulate_face(struct clipper *t, const struct solid_mesh *mesh, int face, struct solid_triangle *out,
-                             struct hole *holes)
+                             struct face_hole *holes)
 {
     const struct solid_face *f = &mesh->faces[face];
     const double n[3] = {f->normal.x, f->normal.y, f->normal.z};
@@ -317,12 +322,12 @@ static bool triangulate_face(struct clipper *t, const struct solid_mesh *mesh, i
         int h = first, right = begin;
         do {
             const struct vec3 p = mesh->vertices[mesh->half_edges[h].origin].p;
-            const struct corner c = {.x = coordinate(p, u),
-                                     .y = coordinate(p, v),
-                                     .vertex = mesh->half_edges[h].origin,
-                                     .prev = t->count - 1,
-                                     .next = t->count + 1,
-                                     .cell_next = -1};
+            const struct face_corner c = {.x = coordinate(p, u),
+                                          .y = coordinate(p, v),
+                                          .vertex = mesh->half_edges[h].origin,
+                                          .prev = t->count - 1,
+                                          .next = t->count + 1,
+                                          .cell_next = -1};
             largest = fmax(largest, fmax(fabs(p.x), fmax(fabs(p.y), fabs(p.z))));
             const int i = add_corner(t, &c);
             if (c.x > t->corners[right].x || (c.x == t->corners[right].x && c.y > t->corners[right].y)) right = i;
@@ -330,7 +335,7 @@ static bool triangulate_face(struct clipper *t, const struct solid_mesh *mesh, i
         } while (h != first);
         t->corners[begin].prev = t->count - 1;
         t->corners[t->count - 1].next = begin;
-        if (l > f->loop) holes[hole_count++] = (struct hole){right, t->corners[right].x, t->corners[right].y};
+        if (l > f->loop) holes[hole_count++] = (struct face_hole){right, t->corners[right].x, t->corners[right].y};
     }
     t->tolerance = 16 * 0x1p-53 * largest;
     qsort(holes, (size_t)hole_count, sizeof *holes, compare_holes);
@@ -356,23 +361,23 @@ static bool triangulate_face(struct clipper *t, const struct solid_mesh *mesh, i
 
 enum status solid_mesh_triangulate(struct solid_triangles *t, const struct solid_mesh *mesh, struct err *err)
 {
-    const size_t most = (size_t)mesh->half_edge_count + 2 * (size_t)mesh->loop_count + 1;
-    struct clipper clipper = {.corners = malloc(most * sizeof *clipper.corners)};
-    struct hole *holes = malloc(((size_t)mesh->loop_count + 1) * sizeof *holes);
-    t->triangles = malloc(most * sizeof *t->triangles);
+    const size_t max_corners = (size_t)mesh->half_edge_count + 2 * (size_t)mesh->loop_count + 1;
+    struct clipper clipper = {.corners = malloc(max_corners * sizeof *clipper.corners)};
+    struct face_hole *holes = malloc(((size_t)mesh->loop_count + 1) * sizeof *holes);
+    t->triangles = malloc(max_corners * sizeof *t->triangles);
     t->first = malloc(((size_t)mesh->face_count + 1) * sizeof *t->first);
     enum status st = clipper.corners && holes && t->triangles && t->first
                          ? ST_OK
-                         : err_nomem(err, "triangles", most * sizeof *t->triangles);
+                         : err_nomem(err, "triangles", max_corners * sizeof *t->triangles);
     for (int i = 0; !st && i < mesh->face_count; i++) {
         t->first[i] = t->count;
         if (triangulate_face(&clipper, mesh, i, t->triangles + t->count, holes))
             t->count += clipper.count - 2;
         else
-            st = err_set(err, ST_DATA,
-                         "face %d, %s: its loops cross or turn the wrong way, wanted a polygon with holes that can be "
-                         "cut into triangles.",
-                         i + 1, solid_face_name(mesh, i));
+            st = err_set(
+                err, ST_DATA,
+                "face %d, %s: its loops cross or have the wrong orientation, wanted a simple polygon with holes.",
+                i + 1, solid_face_name(mesh, i));
     }
     if (!st) t->first[mesh->face_count] = t->count;
     free(clipper.corners);

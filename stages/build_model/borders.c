@@ -1,15 +1,15 @@
-/* borders.c - see borders.h.
+/* borders.c - the borders of a union's surface in each plane.
  *
- * In a plane P let `below` be where there is solid just below it (on the side from which its normal points away) and
- * `above` where there is solid just above. Both are unions of convex polygons: a facet in P with its solid below adds
- * to `below`, one with its solid above to `above`, and the section of a solid that P cuts to both. The union's surface
- * in P with the normal outwards is below \ above, that with the normal inwards above \ below. So coplanar facets merge,
- * opposite ones vanish and covered ones go, without cases.
+ * In a plane P let `below` be the region with solid just below it (on the side opposite to its normal) and `above` the
+ * region with solid just above. Both are unions of convex polygons: a facet in P with its solid below adds to `below`,
+ * a facet with its solid above to `above`, and the section of a solid that P cuts to both. The union's surface in P is
+ * below \ above, with the normal outwards, and above \ below, with the normal inwards. So coplanar facets merge, and
+ * opposite and covered facets vanish, without special cases.
  *
- * Where these regions end is found line by line, in the same way. Each polygon that comes to a line of P adds an
- * interval to the line's left side, its right side (if it has an edge there) or both (if the line cuts it). The surface
- * ends where it is on one side of the line and not on the other. Intervals end in points where three planes meet, which
- * are compared exactly: nothing here is a matter of tolerance. */
+ * The borders of these regions are found in the same way, line by line. Each polygon that touches a line of P adds an
+ * interval to the line's left or right side (if it has an edge there) or to both (if the line cuts it). The surface has
+ * a border where it is on one side of the line only. Intervals end in points where three planes meet, which are
+ * compared exactly: there are no tolerances. */
 #include "stages/build_model/borders.h"
 
 #include <math.h>
@@ -31,24 +31,24 @@ struct entry { /* an edge of a polygon in the plane */
 struct sweep {
     struct convex_set *set;
     struct border_set *borders;
-    int facets;        /* polygons before this are facets, the others sections */
-    int *first, *near; /* solids whose boxes meet that of solid s, itself too: near[first[s] .. first[s + 1]) */
+    int facets;        /* polygons before this index are facets, the others sections */
+    int *first, *near; /* solids whose boxes meet the box of solid s, with s: near[first[s] .. first[s + 1]) */
     int *plane_first, *plane_facets; /* facets by plane */
-    int *polygon_of;                 /* of each solid in the plane at hand, or -1 */
+    int *polygon_of;                 /* of each solid in the current plane, or -1 */
     char *bordered, *visible;        /* facets */
-    /* of the plane at hand */
+    /* of the current plane */
     int *polygons, polygon_count, polygon_capacity;
     struct entry *entries;
     int entry_count, entry_capacity;
-    /* of the line at hand */
-    int *stamp, stamp_capacity; /* polygon: the last line it was looked at for */
+    /* of the current line */
+    int *stamp, stamp_capacity; /* of each polygon: the last line that it was tested with */
     int line;
     struct interval *intervals;
     int interval_count, interval_capacity;
     int *events, event_count, event_capacity;
     int *index, index_capacity; /* of points among the events */
-    int (*covers)[2][2];        /* at an event: how many intervals more from here, BELOW and ABOVE, LEFT and RIGHT */
-    int (*border_at)[2];        /* after an event: the border of either side of the surface, or -1 */
+    int (*covers)[2][2];        /* change of the number of intervals at an event: BELOW, ABOVE by LEFT, RIGHT */
+    int (*border_at)[2];        /* the border after an event of either orientation of the surface, or -1 */
     int covers_capacity, border_at_capacity;
 };
 
@@ -76,7 +76,7 @@ static int compare_low(const void *a, const void *b)
     return (p->solid > q->solid) - (p->solid < q->solid);
 }
 
-/* Pairs of boxes that meet, by a sweep along the axis in which they are spread most. */
+/* Finds pairs of boxes that meet by a sweep along the longest axis of their bounding box. */
 static enum status find_near(struct sweep *w, struct err *err)
 {
     const struct convex_set *set = w->set;
@@ -144,8 +144,8 @@ static enum status add_event(struct sweep *w, int point, struct err *err)
     return ST_OK;
 }
 
-/* What a polygon of plane `plane` has of the line, in which the plane meets `other`; a point of `other` with
- * exact_side() * turn > 0 is to the left. */
+/* Adds the interval of a polygon of plane `plane` on the line in which it meets plane `other`. Points with
+ * exact_side() * turn > 0 with respect to `other` are to the left. */
 static enum status add_interval(struct sweep *w, int polygon, int plane, int other, int turn, struct err *err)
 {
     struct exact_space *space = &w->set->space;
@@ -179,7 +179,7 @@ static bool on_surface(const int cover[2][2], int which, int side)
     return cover[which][side] > 0 && !cover[!which][side];
 }
 
-/* Borders from the counts of what covers each stretch. */
+/* Makes borders from the numbers of intervals that cover each part of the line. */
 static enum status add_borders(struct sweep *w, int plane, bool *any, struct err *err)
 {
     int cover[2][2] = {{0}}, run[2] = {-1, -1};
@@ -210,13 +210,13 @@ static enum status add_borders(struct sweep *w, int plane, bool *any, struct err
             }
             w->border_at[i][which] = *at;
         }
-        /* what the names need to know: is the surface on this side of the line? */
+        /* for add_names(): whether the surface is on this side of the line */
         for (int k = 0; k < 4; k++) w->covers[i][k / 2][k % 2] = on_surface(cover, k / 2, k % 2);
     }
     return ST_OK;
 }
 
-/* Names of the facets that are part of the surface along the line. */
+/* Records the names of the facets that are part of the surface along the line. */
 static enum status add_names(struct sweep *w, struct err *err)
 {
     for (int i = 0; i < w->interval_count; i++) {
@@ -242,7 +242,7 @@ static enum status add_names(struct sweep *w, struct err *err)
     return ST_OK;
 }
 
-/* All edges of the plane's polygons on one line. */
+/* Finds the borders on one line. entries: all edges of the plane's polygons on it. */
 static enum status sweep_line(struct sweep *w, int plane, const struct entry *entries, int count, struct err *err)
 {
     struct convex_set *set = w->set;

@@ -1,18 +1,18 @@
-/* borders.h - where the surface of a union of convex solids ends in each plane: from planes to lines to intervals. */
+/* borders.h - finds the borders of a union's surface in each plane: from planes to lines to intervals. */
 #ifndef REMODEL_BUILD_MODEL_BORDERS_H
 #define REMODEL_BUILD_MODEL_BORDERS_H
 
 #include "stages/build_model/convex.h"
 
-/* A stretch of a line along which the surface in one plane ends; as long as it can be. The surface is to the left of
- * the way from `from` to `to`, seen from outside. */
+/* A maximal segment of a line along which the surface in one plane ends. Seen from outside, the surface is to the left
+ * of the direction from `from` to `to`. */
 struct border {
     int plane, side; /* the outward normal is side times the plane's */
     int line, from, to;
     bool forward; /* along the line's direction */
 };
 
-struct border_name { /* a facet of this name is part of the surface there */
+struct border_name { /* a facet of this name is part of the surface at the border */
     int border, name;
 };
 
@@ -23,12 +23,13 @@ struct line_point {
 struct border_set {
     struct border *borders; /* all owned */
     struct border_name *names;
-    struct line_point *points; /* on lines of borders: wherever a polygon of the plane begins or ends on the line */
-    int *inner;                /* facets (polygons) that are part of the surface and of no border */
+    struct line_point *points; /* on lines of borders: where polygons of the plane begin or end on the line */
+    int *inner;                /* facets (polygons) that are part of the surface but touch no border */
     int border_count, border_capacity, name_count, name_capacity, point_count, point_capacity, inner_count;
     int inner_capacity;
 };
 
+/* borders is empty on entry; the caller releases it, also after a failure. Adds sections, lines and points to set. */
 enum status borders_find(struct border_set *borders, struct convex_set *set, struct err *err);
 
 void border_set_release(struct border_set *borders);

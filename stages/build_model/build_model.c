@@ -1,11 +1,11 @@
-/* build_model.c - solid models of rooms from scripts: walls, rooms, doors, windows; and the models' edges on
+/* build_model.c - makes solid models of rooms from scripts (walls, rooms, doors, windows), and draws a model's edges on
  * photographs.
  *
  * reads   SCRIPT, EDIT                                  docs/model-script.md
- *         AXES                                          where the model stands in the scene, ceiling
+ *         AXES                                          the model's frame, the ceiling's height
  *         VIEWS/cameras.txt, images.txt, lenses.txt     with --views: for places in photographs, and for the pictures
- *         POINTS                                        with --points: where walls are that rectangles show
- *         BASE                                          with --edit: the unedited model, whose ids are kept
+ *         POINTS                                        with --points: for walls given by rectangles
+ *         BASE                                          with --edit: the unedited model, whose face ids are kept
  * writes  OUT/plan.svg, view.png, plan.txt, merged.txt, model.obj, then model.txt
  * With --overlay PHOTO instead:
  * reads   MODEL, AXES, VIEWS, RECORDS/PHOTO.txt, PHOTOS/FILE
@@ -54,8 +54,8 @@ static enum status read_frame(struct job *j, struct err *err)
     return st;
 }
 
-/* Names a script's file by its own name: where the scene's folder is does not change the product. */
-static enum status do_script(struct job *j, struct plan *plan, const char *path, bool edit, struct err *err)
+/* The provenance has the script's file name without its folder: the product does not depend on the scene's folder. */
+static enum status apply_script(struct job *j, struct plan *plan, const char *path, bool edit, struct err *err)
 {
     struct script script = {0};
     const char *slash = strrchr(path, '/');
@@ -81,8 +81,8 @@ static enum status write_model(struct job *j, const struct plan *plan, const str
     return ST_OK;
 }
 
-static void tell(const struct plan *plan, const struct solid_mesh *mesh, const struct unite_log *log,
-                 const struct solid_report *report)
+static void log_summary(const struct plan *plan, const struct solid_mesh *mesh, const struct unite_log *log,
+                        const struct solid_report *report)
 {
     int merged = 0;
     for (int i = 0; i < log->count; i++) {
@@ -105,18 +105,19 @@ static enum status build(struct job *j, struct err *err)
     enum status st = read_frame(j, err);
     if (!st) {
         plan_begin(&plan, &j->frame);
-        st = do_script(j, &plan, j->script, false, err);
+        st = apply_script(j, &plan, j->script, false, err);
     }
-    if (!st && j->edit) st = do_script(j, &plan, j->edit, true, err);
+    if (!st && j->edit) st = apply_script(j, &plan, j->edit, true, err);
     if (!st) st = layout_solids(&solids, &plan, err);
-    if (!st && !solids.count) st = err_set(err, ST_DATA, "%s: nothing in it is a solid.", j->script);
+    if (!st && !solids.count)
+        st = err_set(err, ST_DATA, "%s: the script describes no solid; add walls, rooms or boxes.", j->script);
     if (!st) st = solids_unite(&mesh, &solids, &log, err);
     if (!st) st = solid_mesh_check(&mesh, 0, &report, err);
     if (!st && j->base) st = solid_mesh_read(&base, j->base, err);
     if (!st && j->base) st = provenance_add_file(&j->prov, "model/model.txt", j->base, err);
     if (!st && j->base) st = solid_mesh_carry_ids(&mesh, &base, err);
     if (!st) st = write_model(j, &plan, &mesh, &log, err);
-    if (!st) tell(&plan, &mesh, &log, &report);
+    if (!st) log_summary(&plan, &mesh, &log, &report);
     solid_report_release(&report);
     unite_log_release(&log);
     solid_mesh_release(&base);
@@ -145,7 +146,7 @@ static enum status overlay(struct job *j, struct err *err)
     if (!st) st = photo_read(&photo, path, err);
     if (!st && (photo.info.width != j->placer.photos[at].camera.lens.width ||
                 photo.info.height != j->placer.photos[at].camera.lens.height))
-        st = err_set(err, ST_DATA, "%s is %d x %d pixels, but its lens says %d x %d; make the views again.", path,
+        st = err_set(err, ST_DATA, "%s has %d x %d pixels, but its lens is for %d x %d; make the views again.", path,
                      photo.info.width, photo.info.height, j->placer.photos[at].camera.lens.width,
                      j->placer.photos[at].camera.lens.height);
     if (!st) st = overlay_write(&mesh, &j->placer.photos[at].camera, &photo, j->params.overlay_side, j->out, err);
@@ -157,11 +158,12 @@ static enum status overlay(struct job *j, struct err *err)
 
 static enum status check_usage(const struct job *j, struct err *err)
 {
-    if (!j->overlay && !j->script) return err_set(err, ST_USAGE, "--script is missing (or --overlay); see --help.");
+    if (!j->overlay && !j->script) return err_set(err, ST_USAGE, "--script or --overlay is missing; see --help.");
     if (j->overlay && (!j->model || !j->views || !j->photos || !j->records))
-        return err_set(err, ST_USAGE, "--overlay wants --model, --views, --photos and --records too.");
-    if (j->base && !j->edit) return err_set(err, ST_USAGE, "--base is for --edit: the model before the edit.");
-    if (j->points && !j->views) return err_set(err, ST_USAGE, "--points wants --views too.");
+        return err_set(err, ST_USAGE, "--overlay also needs --model, --views, --photos and --records.");
+    if (j->base && !j->edit)
+        return err_set(err, ST_USAGE, "--base is only for --edit: it is the model before the edit.");
+    if (j->points && !j->views) return err_set(err, ST_USAGE, "--points also needs --views.");
     return ST_OK;
 }
 
@@ -171,16 +173,17 @@ int main(int argc, char **argv)
     const struct cli_opt opts[] = {
         CLI_ABOUT("Builds the solid model that a script describes, or draws a model's edges on a photograph."),
         CLI_STR("script", &j.script, CLI_OPTIONAL, "model script: walls, rooms, openings (docs/model-script.md)"),
-        CLI_STR("edit", &j.edit, CLI_OPTIONAL, "script of changes to that model"),
-        CLI_STR("base", &j.base, CLI_OPTIONAL, "with --edit: the unedited model.txt, whose ids of faces are kept"),
+        CLI_STR("edit", &j.edit, CLI_OPTIONAL, "script of changes to the model"),
+        CLI_STR("base", &j.base, CLI_OPTIONAL, "with --edit: model.txt of the unedited model, whose face ids are kept"),
         CLI_STR("axes", &j.axes, CLI_REQUIRED, "the model's frame, axes.txt"),
-        CLI_STR("views", &j.views, CLI_OPTIONAL, "folder of cameras: for places in photographs, and the pictures"),
-        CLI_STR("points", &j.points, CLI_OPTIONAL, "PLY of oriented points, for walls by rectangles"),
-        CLI_STR("overlay", &j.overlay, CLI_OPTIONAL, "photo on which to draw the edges of --model, to --out"),
+        CLI_STR("views", &j.views, CLI_OPTIONAL, "folder of cameras, for places in photographs and for the pictures"),
+        CLI_STR("points", &j.points, CLI_OPTIONAL, "PLY of oriented points, for walls given by rectangles"),
+        CLI_STR("overlay", &j.overlay, CLI_OPTIONAL,
+                "photo on which to draw the edges of --model; --out is then a JPEG"),
         CLI_STR("model", &j.model, CLI_OPTIONAL, "with --overlay: model.txt"),
         CLI_STR("photos", &j.photos, CLI_OPTIONAL, "with --overlay: folder of the photographs"),
         CLI_STR("records", &j.records, CLI_OPTIONAL, "with --overlay: folder of the photos' records"),
-        CLI_STR("out", &j.out, CLI_REQUIRED, "folder to write the model to; with --overlay the JPEG"),
+        CLI_STR("out", &j.out, CLI_REQUIRED, "folder to write the model to, or with --overlay the JPEG"),
         CLI_PARAMS(model_param_table, &j.params, NULL),
         CLI_END,
     };

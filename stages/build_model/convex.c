@@ -1,13 +1,15 @@
-/* convex.c - see convex.h. A facet's polygon begins as a square in its plane, far out, and is cut by one half-space
- * after the other; corners are points in which three planes meet, so that no rounding adds up. */
+/* convex.c - convex solids on the lattice.
+ *
+ * A facet's polygon begins as a square in its plane with corners beyond the reach of solids, and is cut by one
+ * half-space after the other. Corners are intersections of three planes, so rounding errors do not accumulate. */
 #include "stages/build_model/convex.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define FAR_OUT ((int64_t)(SOLID_REACH / SOLID_STEP) + 1000000) /* where a facet's square begins: just out of reach */
-#define SNAP    2                                               /* steps in normal and offset that make no difference */
+#define FAR_OUT ((int64_t)(SOLID_REACH / SOLID_STEP) + 1000000) /* of a facet's first square: just out of reach */
+#define SNAP    2                                               /* max steps in normal and offset of equal planes */
 
 void convex_set_release(struct convex_set *set)
 {
@@ -24,11 +26,11 @@ void convex_set_release(struct convex_set *set)
 
 /* ---------------------------------------------------------------------------------------------------- the lattice */
 
-struct oblique {         /* a plane, the first component of its normal that is not 0 positive */
-    int64_t n[3], q;     /* to compare with others: the largest component 2^22, the offset in steps */
-    int64_t whole[3], d; /* what it is on the lattice */
+struct oblique {         /* a plane; the first nonzero component of its normal is positive */
+    int64_t n[3], q;     /* for comparison: scaled to a largest component of 2^22; the offset in steps */
+    int64_t whole[3], d; /* the plane on the lattice */
     size_t of;           /* half-space */
-    bool turned;
+    bool turned;         /* the half-space has the opposite normal */
 };
 
 static int by_plane(const void *a, const void *b)
@@ -49,7 +51,7 @@ static bool nearly_same(const struct oblique *a, const struct oblique *b)
 
 static int64_t divisor(int64_t a, int64_t b) { return b ? divisor(b, a % b) : llabs(a); }
 
-/* p / q = x to 1e-13, q at most EXACT_NORMAL: by continued fractions; false if there is none. |x| is at most 1. */
+/* p / q = x within 1e-13, with q at most EXACT_NORMAL, by continued fractions; false: none. |x| is at most 1. */
 static bool ratio(double x, int64_t *p, int64_t *q)
 {
     int64_t p0 = 0, q0 = 1, p1 = 1, q1 = 0;
@@ -73,14 +75,15 @@ static bool ratio(double x, int64_t *p, int64_t *q)
     return false;
 }
 
-/* The normal in whole numbers: exact where its components are to each other as small ones are (walls between corners
- * that were typed), to 2^-22 otherwise; and the offset, in steps, times its length. */
-static void to_whole(struct oblique *o, const double n[3], double most, double offset)
+/* Makes the normal an integer vector: exact where the ratios of its components are those of small integers (walls
+ * between typed corners), otherwise rounded to 2^-22. d is the offset, in steps, times the normal's length. max: the
+ * largest component's magnitude. */
+static void to_integers(struct oblique *o, const double n[3], double max, double offset)
 {
     int64_t p[3], q[3], common = 1;
     bool exact = true;
     for (int i = 0; i < 3 && exact; i++) {
-        exact = ratio(n[i] / most, &p[i], &q[i]);
+        exact = ratio(n[i] / max, &p[i], &q[i]);
         if (exact) common *= q[i] / divisor(common, q[i]);
         exact = exact && common <= EXACT_NORMAL;
     }
@@ -102,10 +105,10 @@ static struct lattice_half_space half_space_of(const struct oblique *o, bool tur
     return h;
 }
 
-/* Each takes the first plane, in the order of by_plane(), that it nearly is and that has not taken another. */
+/* Replaces each plane by the first nearly equal plane, in the order of by_plane(), that was not replaced itself. */
 static void snap_oblique(const struct oblique *planes, size_t *first, size_t count, struct lattice_half_space *out)
 {
-    size_t kept = 0, window = 0; /* first[0 .. kept): those that have not taken another */
+    size_t kept = 0, window = 0; /* first[0 .. kept): the planes that were not replaced */
     for (size_t i = 0; i < count; i++) {
         while (window < kept && planes[first[window]].n[0] < planes[i].n[0] - SNAP) window++;
         size_t k = window;
@@ -128,19 +131,19 @@ enum status lattice_half_spaces(struct lattice_half_space **half_spaces, const s
         for (int k = 0; k < list->solids[i].count; k++, at++) {
             const struct half_space *h = &list->solids[i].half_spaces[k];
             const double n[3] = {h->normal.x, h->normal.y, h->normal.z};
-            const double most = fmax(fmax(fabs(n[0]), fabs(n[1])), fabs(n[2]));
+            const double max = fmax(fmax(fabs(n[0]), fabs(n[1])), fabs(n[2]));
             double offset = h->offset / vec3_length(h->normal) / SOLID_STEP;
             struct oblique o = {.of = at};
             out[at].everywhere = offset > 2.0 * FAR_OUT;
             if (out[at].everywhere) continue;
             offset = fmax(offset, -2.0 * FAR_OUT);
-            for (int a = 0; a < 3; a++) o.n[a] = llround(n[a] / most * EXACT_NORMAL);
+            for (int a = 0; a < 3; a++) o.n[a] = llround(n[a] / max * EXACT_NORMAL);
             const int64_t lead = o.n[0] ? o.n[0] : o.n[1] ? o.n[1] : o.n[2];
             o.turned = lead < 0;
             double up[3];
             for (int a = 0; a < 3; a++) {
                 up[a] = o.turned ? -n[a] : n[a];
-                o.n[a] = llround(up[a] / most * EXACT_NORMAL);
+                o.n[a] = llround(up[a] / max * EXACT_NORMAL);
             }
             offset = o.turned ? -offset : offset;
             o.q = llround(offset);
@@ -149,7 +152,7 @@ enum status lattice_half_spaces(struct lattice_half_space **half_spaces, const s
                 o.d = o.q;
                 out[at] = half_space_of(&o, o.turned);
             } else {
-                to_whole(&o, up, most, offset);
+                to_integers(&o, up, max, offset);
                 planes[oblique++] = o;
             }
         }
@@ -168,8 +171,8 @@ enum status lattice_half_spaces(struct lattice_half_space **half_spaces, const s
 
 /* ------------------------------------------------------------------------------------------------------- polygons */
 
-/* Cuts the polygon of *count edges in scratch[0], in `plane`, down to what has exact_side() * side <= 0 of plane `by`;
- * *count 0 if no area is left. */
+/* Cuts the polygon of *count edges in scratch[0], in `plane`, down to the part with exact_side() * side <= 0 of plane
+ * `by`; *count is 0 if no area is left. */
 static enum status cut(struct convex_set *set, int plane, int *count, int by, int side, struct err *err)
 {
     const int n = *count;
@@ -211,7 +214,7 @@ static enum status cut(struct convex_set *set, int plane, int *count, int by, in
     return ST_OK;
 }
 
-/* A square in the plane, with corners just out of reach along the two axes that it is least along. */
+/* A quadrilateral in the plane with corners just out of reach along the axes of the normal's smaller components. */
 static enum status square(struct convex_set *set, int plane, int *count, const int far[6], struct err *err)
 {
     const struct exact_plane *p = &set->space.planes[plane];
@@ -229,7 +232,7 @@ static enum status square(struct convex_set *set, int plane, int *count, const i
     return ST_OK;
 }
 
-/* The polygon in scratch[0], as one of the set's. */
+/* Adds the polygon in scratch[0] to the set. */
 static enum status keep(struct convex_set *set, struct polygon p, struct err *err)
 {
     if (exact_grow(&set->edges, &set->edge_capacity, set->edge_count + p.count, sizeof *set->edges, err) ||
@@ -293,7 +296,7 @@ enum status convex_set_add(struct convex_set *set, const struct solid *solid,
                 st = cut(set, planes[i], &count, planes[k], sides[k], err);
             else if (!half_spaces[k].everywhere && k != i &&
                      sides[k] * exact_side(&set->space, set->scratch[0][0].corner, planes[k]) > 0)
-                count = 0; /* beyond a parallel one */
+                count = 0; /* outside a parallel plane */
         for (int k = 0; !st && k < count; k++)
             for (int f = 0; f < 6; f++) bounded = bounded && set->scratch[0][k].plane != far[f];
         if (!st && count)
@@ -305,7 +308,7 @@ enum status convex_set_add(struct convex_set *set, const struct solid *solid,
     if (planes != few) free(planes);
     if (st) return st;
     c.count = set->polygon_count - c.first;
-    if (!bounded) return wrong(solid, "is not bounded, or reaches beyond 1000 units from the origin", err);
+    if (!bounded) return wrong(solid, "is not bounded, or extends beyond 1000 units from the origin", err);
     if (c.count < 4) return wrong(solid, "is empty, or flat when rounded to a millionth of a unit", err);
     for (int i = c.first; i < c.first + c.count; i++)
         for (int a = 0; a < 3; a++) {

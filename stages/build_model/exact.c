@@ -1,4 +1,7 @@
-/* exact.c - see exact.h. */
+/* exact.c - exact predicates on planes, points and lines.
+ *
+ * Items are stored once, in hash tables, in reduced form, so that equal items have equal indices. Predicates are
+ * filtered: the double result decides if it exceeds its error bound, 128-bit integers otherwise. */
 #include "stages/build_model/exact.h"
 
 #include <assert.h>
@@ -8,8 +11,8 @@
 
 __extension__ typedef unsigned __int128 uwide;
 
-/* of differences of rounded coordinates: coordinates stay below 2^31, and are off by a few 2^-53 of that */
-#define SURE (1.0 / (1 << 18))
+/* error bound of differences of rounded coordinates: these are below 2^31, with an error of a few 2^-53 of that */
+#define ERROR_BOUND (1.0 / (1 << 18))
 
 void exact_release(struct exact_space *s)
 {
@@ -48,7 +51,6 @@ static uint64_t mix(uint64_t hash, uint64_t x)
 
 static uint64_t mix_wide(uint64_t hash, wide x) { return mix(mix(hash, (uint64_t)x), (uint64_t)((uwide)x >> 64)); }
 
-/* Of planes and lines: whole numbers one after the other. */
 static uint64_t hash_plane(const struct exact_plane *p)
 {
     return mix(mix(mix(mix(1, (uint64_t)p->n[0]), (uint64_t)p->n[1]), (uint64_t)p->n[2]), (uint64_t)p->d);
@@ -80,7 +82,7 @@ static bool same_line(const struct exact_line *a, const struct exact_line *b)
     return !memcmp(a->d, b->d, sizeof a->d) && !memcmp(a->m, b->m, sizeof a->m);
 }
 
-/* Twice as many slots; every item is put in again. */
+/* Doubles the number of slots and enters every item again. */
 #define REHASH(table, items, count, hash_of, err)                                                  \
     do {                                                                                           \
         if ((table)->size >= 2 * ((count) + 1)) break;                                             \
@@ -98,7 +100,7 @@ static bool same_line(const struct exact_line *a, const struct exact_line *b)
         (table)->size = size_;                                                                     \
     } while (0)
 
-/* Index of the equal item, or of the new one. */
+/* Sets *index to the equal item, or adds the item. */
 #define ADD(kind, s, item, index, err)                                                                            \
     do {                                                                                                          \
         REHASH(&(s)->kind##_table, (s)->kind##s, (s)->kind##_count, hash_##kind, err);                            \
@@ -116,13 +118,13 @@ static bool same_line(const struct exact_line *a, const struct exact_line *b)
         *(index) = (s)->kind##_count++;                                                                           \
     } while (0)
 
-/* --------------------------------------------------------------------------------------------------- whole numbers */
+/* -------------------------------------------------------------------------------------------------------- integers */
 
 static uwide magnitude(wide x) { return x < 0 ? -(uwide)x : (uwide)x; }
 
 static int zeros(uwide x) { return (uint64_t)x ? __builtin_ctzll((uint64_t)x) : 64 + __builtin_ctzll(x >> 64); }
 
-/* Greatest common divisor; of 0 and b it is b. */
+/* Greatest common divisor; that of 0 and b is b. */
 static uwide divisor(uwide a, uwide b)
 {
     if (!a || !b) return a | b;
@@ -259,7 +261,7 @@ int exact_side(const struct exact_space *s, int point, int plane)
     double v = -(double)q->d, size = fabs(v);
     if (q->axis >= 0) {
         v += p->p[q->axis];
-        if (fabs(v) > SURE) return v > 0 ? 1 : -1;
+        if (fabs(v) > ERROR_BOUND) return v > 0 ? 1 : -1;
         return sign(p->h[q->axis] - (wide)q->d * p->h[3]);
     }
     wide exact = -(wide)q->d * p->h[3];
@@ -278,7 +280,7 @@ int exact_compare(const struct exact_space *s, int a, int b, int axis)
     if (a == b) return 0;
     const struct exact_point *p = &s->points[a], *q = &s->points[b];
     const double v = p->p[axis] - q->p[axis];
-    if (fabs(v) > SURE) return v > 0 ? 1 : -1;
+    if (fabs(v) > ERROR_BOUND) return v > 0 ? 1 : -1;
     if (p->h[3] == 1 && q->h[3] == 1) return sign(p->h[axis] - q->h[axis]);
     return compare_products(p->h[axis], q->h[3], q->h[axis], p->h[3]);
 }
@@ -293,16 +295,16 @@ int exact_turn(const int64_t a[3], const int64_t b[3], const int64_t n[3])
     return sign(s);
 }
 
-int exact_dot(const int64_t a[3], const int64_t b[3])
+static int dot_sign(const int64_t a[3], const int64_t b[3])
 {
     return sign((wide)a[0] * b[0] + (wide)a[1] * b[1] + (wide)a[2] * b[2]);
 }
 
-/* 0: along r; 1: less than half a turn on; 2: half a turn; 3: more. */
+/* Angle from r to a about n: 0 if equal, 1 below half a turn, 2 half a turn, 3 above. */
 static int quarter(const int64_t r[3], const int64_t a[3], const int64_t n[3])
 {
     const int t = exact_turn(r, a, n);
-    return t > 0 ? 1 : t < 0 ? 3 : exact_dot(r, a) > 0 ? 0 : 2;
+    return t > 0 ? 1 : t < 0 ? 3 : dot_sign(r, a) > 0 ? 0 : 2;
 }
 
 bool exact_before(const int64_t r[3], const int64_t a[3], const int64_t b[3], const int64_t n[3])

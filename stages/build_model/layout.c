@@ -1,13 +1,13 @@
-/* layout.c - see layout.h.
+/* layout.c - lays out a plan as convex solids.
  *
- * A wall is cut into columns at the sides of its openings and where a sloping ceiling begins, a column at the sills and
- * heads into pieces. Where two openings share a side the pieces beside it are cut at their heights too, so that each
- * reveal has its own name. Pieces take the planes of their wall by the same numbers, so that what is one plane stays
- * one. Ends lie in the planes of the walls that they are joined to: the corner includes the intersection of both.
+ * A wall is cut into columns at the sides of its openings and where a sloping ceiling begins, and a column into pieces
+ * at the sills and heads. Where two openings share a side, the pieces beside it are cut at their heights too, so that
+ * each reveal has its own name. All pieces of a wall get its planes by the same numbers, so that a plane stays one
+ * plane. Ends lie in the planes of the walls that they are joined to: a corner includes the intersection of both.
  *
- * Floors and ceilings cover the walls' thickness too, up to the middle of a wall between two rooms: they support the
- * walls, go on through doorways, and no two things touch in an edge alone. A room's polygon is cut into convex ones
- * along the lines of its own walls. */
+ * Floors and ceilings extend under the walls, to the middle of a wall between two rooms: they support the walls,
+ * continue through doorways, and keep solids from touching in an edge alone. A room's polygon is cut into convex
+ * polygons along the lines of its walls. */
 #include "stages/build_model/layout.h"
 
 #include <math.h>
@@ -16,9 +16,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/math/numbers.h"
+
 enum { NAME_SIZE = 192 };
 #define BODY "walls"
-#define NEAR 1e-6 /* SOLID_STEP: what is nearer is the same place */
+#define NEAR 1e-6 /* SOLID_STEP: positions closer than this are equal */
 
 struct shape { /* half-spaces of a solid and their names, until add_shape() */
     struct half_space *h;
@@ -67,7 +69,7 @@ static enum status add_shape(struct solid_list *list, const char *body, struct s
 
 /* ------------------------------------------------------------------------------------------------------------ walls */
 
-struct top { /* of a part of a wall: z = a[0] + a[1] x + a[2] y */
+struct top { /* of a wall's part: z = a[0] + a[1] x + a[2] y */
     double a[3];
 };
 
@@ -76,12 +78,12 @@ struct span_top {
     struct top top;
 };
 
-struct wall_parts { /* what is needed of the plan, sorted by wall */
+struct wall_parts { /* openings and ceilings sorted by wall */
     const struct plan *plan;
     const struct plan_opening **openings; /* of all walls, in order of wall, then of S */
     int *first;                           /* openings of wall w: first[w] .. first[w + 1] - 1 */
-    struct span_top *tops;                /* the rooms' ceilings above walls, in order of wall */
-    int *filled;                          /* of first_top[w]: how many of wall w are there */
+    struct span_top *tops;                /* ceilings of the rooms at each wall, in order of wall */
+    int *filled;                          /* filled[first_top[w]]: how many of wall w's tops are set */
     int *first_top;
 };
 
@@ -124,7 +126,7 @@ static enum status wall_parts_make(struct wall_parts *w, const struct plan *p, s
         w->first[o->wall + 1]++;
     }
     if (n) qsort(w->openings, (size_t)n, sizeof *w->openings, compare_openings);
-    /* tops: counted, then put in their places in order of rooms */
+    /* count the tops, then store them in order of rooms */
     for (int pass = 0; pass < 2; pass++) {
         for (int i = 0; i < p->room_count; i++) {
             const struct plan_room *r = &p->rooms[i];
@@ -178,19 +180,19 @@ static int unique(double *x, int count)
 struct column {
     const struct wall_parts *parts;
     int wall;
-    bool first, last; /* ends at the wall's own ends, in S */
-    bool corner;      /* all of it beside another wall */
+    bool first, last; /* reaches the wall's end at low, at high S */
+    bool corner;      /* lies in a corner with another wall, beyond the wall's span */
     double s[2];
-    double middle; /* by which it is under a room */
+    double middle; /* S that decides which rooms are beside it */
 };
 
-/* left or right for who stands inside: the low side in the wall's own direction is left. */
+/* Left or right as seen from inside: the side nearer to the wall's start is left. */
 static const char *reveal_side(const struct plan_wall *w, int upper_bound_of_hole)
 {
     return (w->sign > 0) == (upper_bound_of_hole == 1) ? "right" : "left";
 }
 
-/* The openings that have their side at S, on the column's side `upper` (the opening is beyond it). */
+/* Counts the openings next to the column at its low or `upper` side, and returns one that overlaps z0 .. z1 if any. */
 static const struct plan_opening *beyond(const struct column *c, int upper, double z0, double z1, int *count)
 {
     const struct wall_parts *w = c->parts;
@@ -227,7 +229,7 @@ static void add_column_side(struct shape *sh, const struct column *c, int upper,
         return;
     }
     const struct plan_opening *o = beyond(c, upper, z0, z1, &count);
-    if (o && c->corner) { /* the reveal may be the face of the wall that comes there */
+    if (o && c->corner) { /* the reveal may be the face of the wall at that corner */
         int other, far;
         wall_cap(p, c->wall, !end, &other, &far);
         if (other >= 0 && !p->walls[other].removed && square(w, &p->walls[other])) {
@@ -242,11 +244,12 @@ static void add_column_side(struct shape *sh, const struct column *c, int upper,
         add_side(sh, out * w->d[0], out * w->d[1], 0, out * along, "%s/%s/%s", verb_name(o->kind), o->name,
                  reveal_side(w, !upper));
     else
-        add_side(sh, out * w->d[0], out * w->d[1], 0, out * along, "wall/%s/top", w->name); /* a step of it, if seen */
+        add_side(sh, out * w->d[0], out * w->d[1], 0, out * along, "wall/%s/top",
+                 w->name); /* a step of the top, where visible */
 }
 
-/* A piece of a column from z0 (the head of `below`, or the wall's foot) up to the sill of `above`, or to z1 and the
- * ceiling. */
+/* A piece of a column, from z0 (the head of `below`, or the wall's foot) up to the sill of `above`, or to z1 or the
+ * top. cut: z0 is a cut inside the column. */
 static enum status add_piece(struct solid_list *list, const struct column *c, double z0,
                              const struct plan_opening *below, double z1, const struct plan_opening *above,
                              const struct top *top, bool cut, struct err *err)
@@ -276,7 +279,7 @@ static int compare_heights(const void *a, const void *b)
     return x->z[0] < y->z[0] ? -1 : x->z[0] > y->z[0];
 }
 
-/* Whether the ceiling falls below z somewhere over the column. */
+/* Whether the top is above z somewhere over the column. */
 static bool reaches(const struct column *c, const struct top *top, double z)
 {
     const struct plan_wall *w = &c->parts->plan->walls[c->wall];
@@ -288,18 +291,12 @@ static bool reaches(const struct column *c, const struct top *top, double z)
     return false;
 }
 
-static enum status add_column(struct solid_list *list, const struct column *c, const struct top *top,
-                              const struct plan_opening **holes, double *cuts, struct err *err)
+/* Heights at which a column is cut because several openings share one of its sides: a piece for each reveal. */
+static int shared_side_cuts(const struct column *c, double *cuts)
 {
     const struct wall_parts *w = c->parts;
-    const struct plan_wall *wall = &w->plan->walls[c->wall];
-    int hole_count = 0, cut_count = 0;
-    for (int i = w->first[c->wall]; i < w->first[c->wall + 1]; i++) {
-        const struct plan_opening *o = w->openings[i];
-        if (o->s[0] < c->s[1] - NEAR && o->s[1] > c->s[0] + NEAR) holes[hole_count++] = o;
-    }
-    if (hole_count) qsort(holes, (size_t)hole_count, sizeof *holes, compare_heights);
-    for (int upper = 0; upper < 2; upper++) { /* two openings that share this side: a piece for each reveal */
+    int cut_count = 0;
+    for (int upper = 0; upper < 2; upper++) {
         int count;
         beyond(c, upper, 0, 0, &count);
         for (int i = w->first[c->wall]; count > 1 && i < w->first[c->wall + 1]; i++) {
@@ -309,7 +306,21 @@ static enum status add_column(struct solid_list *list, const struct column *c, c
             cuts[cut_count++] = o->z[1];
         }
     }
-    cut_count = unique(cuts, cut_count);
+    return unique(cuts, cut_count);
+}
+
+static enum status add_column(struct solid_list *list, const struct column *c, const struct top *top,
+                              const struct plan_opening **holes, double *cuts, struct err *err)
+{
+    const struct wall_parts *w = c->parts;
+    const struct plan_wall *wall = &w->plan->walls[c->wall];
+    int hole_count = 0;
+    for (int i = w->first[c->wall]; i < w->first[c->wall + 1]; i++) {
+        const struct plan_opening *o = w->openings[i];
+        if (o->s[0] < c->s[1] - NEAR && o->s[1] > c->s[0] + NEAR) holes[hole_count++] = o;
+    }
+    if (hole_count) qsort(holes, (size_t)hole_count, sizeof *holes, compare_heights);
+    const int cut_count = shared_side_cuts(c, cuts);
     double z = wall->foot;
     const struct plan_opening *below = NULL;
     enum status st = ST_OK;
@@ -335,7 +346,7 @@ static enum status add_column(struct solid_list *list, const struct column *c, c
     return st;
 }
 
-/* The ceilings above a column, each once; without a room the wall's own top. */
+/* The different ceilings above a column; without a room the wall's own top. */
 static int tops_above(const struct column *c, struct top *tops)
 {
     const struct wall_parts *w = c->parts;
@@ -351,7 +362,7 @@ static int tops_above(const struct column *c, struct top *tops)
     return n;
 }
 
-/* Does one of the wall's openings have its lower or upper side there. */
+/* Whether one of the wall's openings has its low or upper side at s. */
 static bool opens_at(const struct wall_parts *parts, int wall, int upper, double s)
 {
     for (int i = parts->first[wall]; i < parts->first[wall + 1]; i++)
@@ -359,41 +370,49 @@ static bool opens_at(const struct wall_parts *parts, int wall, int upper, double
     return false;
 }
 
-static enum status add_wall(struct solid_list *list, const struct wall_parts *parts, int wall, struct err *err)
+/* The limits of a wall's columns along S: its span, the sides of its openings and, where its ceilings differ from its
+ * own top, the ends of rooms. */
+static int column_limits(const struct wall_parts *parts, int wall, const double span[2], double *s)
 {
     const struct plan_wall *w = &parts->plan->walls[wall];
+    int n = 0, kept = 0;
+    s[n++] = span[0];
+    s[n++] = span[1];
+    for (int i = parts->first[wall]; i < parts->first[wall + 1]; i++)
+        for (int k = 0; k < 2; k++) s[n++] = parts->openings[i]->s[k];
+    const struct top own = {{w->top, 0, 0}};
+    bool level = true; /* the same height all along */
+    for (int i = parts->first_top[wall]; i < parts->first_top[wall + 1]; i++)
+        level &= !memcmp(parts->tops[i].top.a, own.a, sizeof own.a);
+    for (int i = parts->first_top[wall]; i < parts->first_top[wall + 1] && !level && !w->has_top; i++)
+        for (int k = 0; k < 2; k++) s[n++] = parts->tops[i].s[k];
+    for (int i = 0; i < n; i++)
+        if ((s[i] > span[0] + NEAR && s[i] < span[1] - NEAR) || i < 2) s[kept++] = s[i];
+    return unique(s, kept);
+}
+
+static enum status add_wall(struct solid_list *list, const struct wall_parts *parts, int wall, struct err *err)
+{
     const int openings = parts->first[wall + 1] - parts->first[wall];
     const int rooms = parts->first_top[wall + 1] - parts->first_top[wall];
     const size_t room = (size_t)(4 * openings + 2 * rooms) + 4;
     double *s = calloc(room, sizeof *s), *cuts = calloc(room, sizeof *cuts), span[2], reach[2];
     const struct plan_opening **holes = calloc(room, sizeof *holes);
     struct top *tops = calloc((size_t)rooms + 1, sizeof *tops);
-    int n = 0, kept = 0;
+    int kept = 0;
     enum status st = s && cuts && holes && tops ? ST_OK : err_nomem(err, "a wall's pieces", room * sizeof *s);
     if (!st) {
         wall_span(parts->plan, wall, span);
         wall_reach(parts->plan, wall, reach);
-        s[n++] = span[0];
-        s[n++] = span[1];
-        for (int i = parts->first[wall]; i < parts->first[wall + 1]; i++)
-            for (int k = 0; k < 2; k++) s[n++] = parts->openings[i]->s[k];
-        const struct top own = {{w->top, 0, 0}};
-        bool level = true; /* one height all along */
-        for (int i = parts->first_top[wall]; i < parts->first_top[wall + 1]; i++)
-            level &= !memcmp(parts->tops[i].top.a, own.a, sizeof own.a);
-        for (int i = parts->first_top[wall]; i < parts->first_top[wall + 1] && !level && !w->has_top; i++)
-            for (int k = 0; k < 2; k++) s[n++] = parts->tops[i].s[k];
-        for (int i = 0; i < n; i++)
-            if ((s[i] > span[0] + NEAR && s[i] < span[1] - NEAR) || i < 2) s[kept++] = s[i];
-        kept = unique(s, kept);
+        kept = column_limits(parts, wall, span, s);
     }
-    /* The first and the last column reach to the caps; only where an opening begins beside the corner does that have a
-     * column of its own. */
+    /* The first and the last column reach to the caps, unless an opening begins at the corner: then the corner is a
+     * separate column. */
     const bool corner[2] = {!st && span[0] - reach[0] > NEAR && opens_at(parts, wall, 0, span[0]),
                             !st && reach[1] - span[1] > NEAR && opens_at(parts, wall, 1, span[1])};
     for (int i = corner[0] ? -1 : 0; i < kept - 1 + corner[1] && !st; i++) {
         struct column c = {parts, wall, i <= -corner[0], i >= kept - 2 + corner[1], i < 0 || i > kept - 2, {0, 0}, 0};
-        /* a corner is under the rooms of what is beside it */
+        /* a corner has the rooms of the column next to it */
         const int clear = i < 0 ? 0 : i > kept - 2 ? kept - 2 : i;
         c.middle = 0.5 * (s[clear] + s[clear + 1]);
         c.s[0] = i < 0 ? reach[0] : s[i];
@@ -410,7 +429,7 @@ static enum status add_wall(struct solid_list *list, const struct wall_parts *pa
 
 /* ---------------------------------------------------------------------------------------------- leaves and panes */
 
-/* A slab in an opening, from `a` to `b` behind the wall's in face. */
+/* A slab that fills an opening, from `a` to `b` behind the wall's in face. */
 static enum status add_filling(struct solid_list *list, const struct plan *p, const struct plan_opening *o, double a,
                                double b, bool glass, struct err *err)
 {
@@ -448,13 +467,13 @@ static enum status add_pane(struct solid_list *list, const struct plan *p, const
 
 /* ---------------------------------------------------------------------------------------------- floors and ceilings */
 
-struct corner {
+struct slab_corner {
     double p[2];
-    struct plan_line line; /* of the side that ends here, n out of the polygon */
-    int wall, side;        /* whose face that side lies in; wall -1: a cut, -2: the middle of a wall */
+    struct plan_line line; /* of the polygon's side that ends here, n outwards */
+    int wall, side;        /* the wall face that this side lies in; wall -1: a cut, -2: the middle of a wall */
 };
 
-static double turn_at(const struct corner *c, int n, int i)
+static double turn_at(const struct slab_corner *c, int n, int i)
 {
     const double *a = c[(i + n - 1) % n].p, *b = c[i].p, *d = c[(i + 1) % n].p;
     return (b[0] - a[0]) * (d[1] - b[1]) - (b[1] - a[1]) * (d[0] - b[0]);
@@ -467,7 +486,7 @@ struct slabs {
     struct err *err;
 };
 
-static void slab_sides(struct shape *s, const struct slabs *b, const struct corner *c, int n, const char *what)
+static void slab_sides(struct shape *s, const struct slabs *b, const struct slab_corner *c, int n, const char *what)
 {
     const struct plan *p = b->plan;
     for (int i = 0; i < n; i++)
@@ -478,7 +497,7 @@ static void slab_sides(struct shape *s, const struct slabs *b, const struct corn
             add_side(s, c[i].line.n[0], c[i].line.n[1], 0, c[i].line.c, "%s/%s/side", what, b->room->name);
 }
 
-static enum status add_slabs(const struct slabs *b, const struct corner *c, int n)
+static enum status add_slabs(const struct slabs *b, const struct slab_corner *c, int n)
 {
     const struct plan_room *r = b->room;
     const double *l = r->lower;
@@ -494,16 +513,12 @@ static enum status add_slabs(const struct slabs *b, const struct corner *c, int 
     return b->err->status;
 }
 
-/* The polygon's convex parts. At a reflex corner the line of the side before it is drawn on to the nearest side that it
- * meets, which gives two polygons with fewer such corners. */
-static enum status cut_convex(const struct slabs *b, struct corner *c, int n, int depth)
+/* Extends the side that ends at a reflex corner to the nearest side that it hits, at the point `at`; -1: none. */
+static int extend_side(const struct slab_corner *c, int n, int reflex, double at[2])
 {
-    int reflex = 0;
-    while (reflex < n && !(turn_at(c, n, reflex) < -1e-12)) reflex++;
-    if (reflex == n) return add_slabs(b, c, n);
     const double *p = c[reflex].p;
     const struct plan_line line = c[reflex].line;
-    const double d[2] = {-line.n[1], line.n[0]}; /* counter-clockwise: the way the side goes */
+    const double d[2] = {-line.n[1], line.n[0]}; /* direction of the side, counter-clockwise */
     double nearest = HUGE_VAL;
     int hit = -1;
     for (int k = 0; k < n; k++) {
@@ -520,26 +535,41 @@ static enum status cut_convex(const struct slabs *b, struct corner *c, int n, in
             hit = k;
         }
     }
-    struct corner *part = hit < 0 || depth > n + 64 ? NULL : calloc(2 * (size_t)n + 8, sizeof *part);
+    at[0] = p[0] + nearest * d[0];
+    at[1] = p[1] + nearest * d[1];
+    return hit;
+}
+
+/* Cuts the polygon into convex parts. At a reflex corner the line of the side before it is extended to the nearest side
+ * that it hits, which makes two polygons with fewer reflex corners. */
+static enum status cut_convex(const struct slabs *b, struct slab_corner *c, int n, int depth)
+{
+    int reflex = 0;
+    while (reflex < n && !(turn_at(c, n, reflex) < -1e-12)) reflex++;
+    if (reflex == n) return add_slabs(b, c, n);
+    const struct plan_line line = c[reflex].line;
+    double at[2];
+    const int hit = extend_side(c, n, reflex, at);
+    struct slab_corner *part = hit < 0 || depth > n + 64 ? NULL : calloc(2 * (size_t)n + 8, sizeof *part);
     if (!part)
-        return err_set(b->err, ST_INTERNAL, "the floor of room %s could not be cut into convex parts.", b->room->name);
-    const double at[2] = {p[0] + nearest * d[0], p[1] + nearest * d[1]};
+        return err_set(b->err, ST_INTERNAL, "the floor of room %s could not be cut into convex parts; this is a bug.",
+                       b->room->name);
     enum status st = ST_OK;
     for (int half = 0; half < 2 && !st; half++) {
         int m = 0;
-        /* half 0: from the reflex corner along the border to the hit side, and back over the cut; half 1: the rest */
+        /* half 0: from the reflex corner along the border to the side hit, and back along the cut; half 1: the rest */
         const int from = half == 0 ? reflex : hit, to = half == 0 ? hit : reflex;
         for (int k = from; k != to; k = (k + 1) % n) part[m++] = c[k];
         if (half == 0) {
             part[0].wall = -1; /* the cut ends at the reflex corner */
-            part[m] = c[hit];  /* the hit side, up to the cut */
+            part[m] = c[hit];  /* the side hit, up to the cut */
             memcpy(part[m++].p, at, sizeof at);
             part[0].line = (struct plan_line){{-line.n[0], -line.n[1]}, -line.c};
         } else {
-            part[m] = c[reflex]; /* the side before the corner goes on to the cut's other end */
+            part[m] = c[reflex]; /* the side before the corner continues to the cut's other end */
             memcpy(part[m++].p, at, sizeof at);
         }
-        /* a corner that fell on another is no corner */
+        /* drop corners that coincide with the one before */
         int kept = 0;
         for (int k = 0; k < m; k++) {
             const double *q = part[k].p, *prev = part[(k + m - 1) % m].p;
@@ -554,7 +584,7 @@ static enum status cut_convex(const struct slabs *b, struct corner *c, int n, in
 static enum status add_room(struct solid_list *list, const struct plan *p, const struct plan_room *r, struct err *err)
 {
     const struct slabs b = {list, p, r, err};
-    struct corner *c = calloc((size_t)r->edge_count, sizeof *c);
+    struct slab_corner *c = calloc((size_t)r->edge_count, sizeof *c);
     if (!c) return err_nomem(err, "a room's corners", (size_t)r->edge_count * sizeof *c);
     for (int e = 0; e < r->edge_count; e++) {
         const struct room_edge *edge = &r->edges[e];
@@ -575,7 +605,7 @@ static enum status add_room(struct solid_list *list, const struct plan *p, const
 static enum status add_box(struct solid_list *list, const struct plan_box *b, struct err *err)
 {
     static const char *const names[4] = {"left", "right", "front", "back"};
-    const double turn = fmod(b->turn, 360) * (3.14159265358979323846 / 180);
+    const double turn = fmod(b->turn, 360) * DEGREE;
     double c = cos(turn), s = sin(turn);
     if (fmod(b->turn, 90) == 0) c = round(c), s = round(s);
     const double middle[2] = {0.5 * (b->low[0] + b->high[0]), 0.5 * (b->low[1] + b->high[1])};

@@ -1,19 +1,20 @@
-/* layout.h - a plan as convex solids: walls cut at their openings, floors and ceilings, boxes, leaves, panes.
+/* layout.h - lays out a plan as convex solids: walls cut at their openings, floors and ceilings, boxes, leaves, panes.
  *
  * Names of faces (docs/formats.md): wall/W/in out start end top bottom; KIND/O/left right sill head, the reveals of
- * a door, passage or window, left and right as one sees them from the wall's inside, door/O/leaf-in leaf-out;
- * glass/O/in out left right sill head, a body of its own; floor/R, floor/R/bottom, ceiling/R, ceiling/R/top, and
- * their sides floor/R/side; box/B/left right front back bottom top. Everything but glass is of the body "walls". */
+ * a door, passage or window, left and right as seen from the wall's inside, and door/O/leaf-in leaf-out;
+ * glass/O/in out left right sill head, a separate body; floor/R, floor/R/bottom, ceiling/R, ceiling/R/top, and
+ * their sides floor/R/side; box/B/left right front back bottom top. Everything except glass belongs to the body
+ * "walls". */
 #ifndef REMODEL_BUILD_MODEL_LAYOUT_H
 #define REMODEL_BUILD_MODEL_LAYOUT_H
 
 #include "stages/build_model/plan.h"
 #include "stages/build_model/solid.h"
 
-/* list is empty on entry; the caller releases it. The plan is checked. */
+/* list is empty on entry, and again after a failure; the caller releases it. The plan must have been checked. */
 enum status layout_solids(struct solid_list *list, const struct plan *plan, struct err *err);
 
-/* Does glass stand in the window (not in an interior one), and by which face of its wall. */
+/* Whether a window has glass (interior ones have none), and the side of the wall that it is flush with. */
 bool window_has_glass(const struct plan *plan, const struct plan_opening *o, int *side);
 
 #endif

@@ -1,23 +1,28 @@
-/* place.c - see place.h.
+/* place.c - walls from rectangles on photographs [Colburn 2014, 4.4.2].
  *
- * A wall by a rectangle (thesis 4.4.2): of the points that the rectangle shows, those whose normals are near one of the
- * four canonical directions vote for it; along the winner the densest window of positions is the wall, refined to
- * the weighted mean of what lies in it. What the camera cannot see is left out first: points that turn away from it,
- * and points behind others (the rectangle is cut into cells, in each of which what is farther than the front by a
- * part of its distance is hidden). */
+ * The points visible in the rectangle vote, by confidence, for the one of the four directions along the axes that is
+ * within max_angle of their normals. Along the winner n the positions n . p of the points with that normal are sorted;
+ * the wall is the densest window of positions, refined to the weighted mean of its content (mean shift, 8 rounds).
+ *
+ * Hidden points are removed first: points that face away from the camera, and points behind others. The rectangle is
+ * cut into cells; in each of them points farther than 1.08 times the cell's front are hidden.
+ *
+ * Beyond the source: angled walls. Their normal is the mean normal about the fullest 5 degree bin, then three rounds of
+ * a total least squares fit of the wall's line in plan to the points near it. */
 #include "stages/build_model/place.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/base/array.h"
 #include "common/base/scan.h"
+#include "common/math/numbers.h"
 
-enum { CELLS = 24, IN_CELL = 60 }; /* each way at most; points in a cell, about, at least */
-#define DEGREE     (3.14159265358979323846 / 180)
-#define BEHIND     1.08 /* of the front's distance: farther is hidden */
-#define FRONT_PART 0.05 /* of a cell's points are before its front: stray ones */
-#define GRAZING    0.02 /* least cosine at which a ray meets a plane at a place */
+enum { MAX_CELLS = 24, MIN_IN_CELL = 60 }; /* along each side; mean number of points in a cell */
+#define BEHIND         1.08                /* times the front's distance: points beyond are hidden */
+#define FRONT_FRACTION 0.05                /* of a cell's points, taken as outliers, lie before its front */
+#define MIN_COSINE     0.02                /* between a ray and a plane's normal for an intersection */
 
 void placer_release(struct placer *placer)
 {
@@ -67,7 +72,7 @@ enum status placer_init(struct placer *placer, const struct camera_set *set, con
         placer->points[i] = (struct placed_point){
             {(float)at.x, (float)at.y, (float)at.z}, {(float)n.x, (float)n.y, (float)n.z}, p->confidence};
     }
-    placer->step = params->window * (axes->ceiling > 0 ? axes->ceiling : 2.5);
+    placer->window = params->window * (axes->ceiling > 0 ? axes->ceiling : 2.5);
     return ST_OK;
 }
 
@@ -84,7 +89,7 @@ static enum status find_photo(const struct placer_photo **found, const struct pl
 {
     const char *photo = view;
     const int at = lens_list_find(placer->lenses, view);
-    char shown[SCAN_QUOTED];
+    char quoted[SCAN_QUOTED];
     if (at >= 0) photo = placer->lenses->lenses[at].photo;
     for (int i = 0; i < placer->photo_count; i++)
         if (!strcmp(placer->photos[i].id, photo)) {
@@ -92,55 +97,55 @@ static enum status find_photo(const struct placer_photo **found, const struct pl
             return ST_OK;
         }
     const char *near = scan_nearest(view, known_photo, placer->lenses);
-    scan_quote(shown, view);
+    scan_quote(quoted, view);
     if (near)
         return err_set(err, ST_DATA, "%s:%d: found %s, wanted a photo's id or a view's name; did you mean %s?", path,
-                       line, shown, near);
-    return err_set(err, ST_DATA, "%s:%d: found %s, wanted a photo's id or a view's name, as lenses.txt has them.", path,
-                   line, shown);
+                       line, quoted, near);
+    return err_set(err, ST_DATA, "%s:%d: found %s, wanted a photo's id or a view's name from lenses.txt.", path, line,
+                   quoted);
 }
 
-static enum status check_pixels(const struct placer_photo *c, const struct place *p, const char *path, int line,
+static enum status check_pixels(const struct placer_photo *c, const struct script_place *p, const char *path, int line,
                                 struct err *err)
 {
     if (p->a[0] >= 0 && p->a[1] >= 0 && p->a[2] <= c->camera.lens.width && p->a[3] <= c->camera.lens.height)
         return ST_OK;
-    return err_set(
-        err, ST_DATA,
-        "%s:%d: the rectangle %.9g %.9g %.9g %.9g is not inside the photo %s, which has %d x %d pixels as it is "
-        "stored.",
-        path, line, p->a[0], p->a[1], p->a[2], p->a[3], c->id, c->camera.lens.width, c->camera.lens.height);
+    return err_set(err, ST_DATA,
+                   "%s:%d: the rectangle %.9g %.9g %.9g %.9g is not inside the photo %s, which has %d x %d pixels.",
+                   path, line, p->a[0], p->a[1], p->a[2], p->a[3], c->id, c->camera.lens.width, c->camera.lens.height);
 }
 
-/* The ray through a pixel, in the model. */
+/* The ray through a pixel, in the model's frame. */
 static enum status pixel_ray(struct vec3 *ray, const struct placer_photo *c, double x, double y, const char *path,
                              int line, struct err *err)
 {
     struct vec3 r;
     if (!camera_unproject(&c->camera.lens, x, y, &r))
-        return err_set(err, ST_DATA, "%s:%d: the lens of %s has no ray at pixel %.9g %.9g; choose another place.", path,
+        return err_set(err, ST_DATA, "%s:%d: the lens of %s has no ray at pixel %.9g %.9g; choose another pixel.", path,
                        line, c->id, x, y);
     *ray = mat3_apply(mat3_transpose(c->camera.cam_from_world), r);
     return ST_OK;
 }
 
+/* The intersection of a pixel's ray with the plane n p = d, from the side of n. */
 static enum status meet_plane(struct vec3 *at, const struct placer_photo *c, double x, double y, struct vec3 n,
                               double d, const char *path, int line, struct err *err)
 {
     struct vec3 ray = {0, 0, 0};
     if (pixel_ray(&ray, c, x, y, path, line, err)) return err->status;
     const double down = -vec3_dot(n, ray), height = vec3_dot(n, c->camera.center) - d;
-    if (!(height > 0 && down > GRAZING))
-        return err_set(err, ST_DATA,
-                       "%s:%d: what pixel %.9g %.9g of %s shows does not lie on it: the ray %s; choose another photo.",
-                       path, line, x, y, c->id,
-                       height > 0 ? "passes it, or meets it at too low an angle" : "starts behind it");
+    if (!(height > 0 && down > MIN_COSINE))
+        return err_set(
+            err, ST_DATA,
+            "%s:%d: the ray through pixel %.9g %.9g of %s does not hit the plane: it %s; choose another photo.", path,
+            line, x, y, c->id,
+            height > 0 ? "is parallel to the plane, or nearly so, or leads away" : "starts behind it");
     *at = vec3_add(c->camera.center, vec3_scale(ray, height / down));
     return ST_OK;
 }
 
-enum status place_corners(struct vec3 corners[2], const struct placer *placer, const struct place *place, struct vec3 n,
-                          double d, const char *path, int line, struct err *err)
+enum status place_corners(struct vec3 corners[2], const struct placer *placer, const struct script_place *place,
+                          struct vec3 n, double d, const char *path, int line, struct err *err)
 {
     const struct placer_photo *c;
     if (find_photo(&c, placer, place->view, path, line, err) || check_pixels(c, place, path, line, err) ||
@@ -150,27 +155,27 @@ enum status place_corners(struct vec3 corners[2], const struct placer *placer, c
     return ST_OK;
 }
 
-/* ------------------------------------------------------------------------------------------- what a rectangle shows */
+/* --------------------------------------------------------------------------------------------------- visible points */
 
-struct shown_point {
+struct visible_point {
     const struct placed_point *point;
     double distance;
     float u, v; /* in the rectangle, 0 .. 1 */
     int cell;
 };
 
-static int compare_shown(const void *a, const void *b)
+static int compare_visible(const void *a, const void *b)
 {
-    const struct shown_point *x = a, *y = b;
+    const struct visible_point *x = a, *y = b;
     if (x->cell != y->cell) return x->cell - y->cell;
     if (x->distance != y->distance) return x->distance < y->distance ? -1 : 1;
     return x->point < y->point ? -1 : x->point > y->point;
 }
 
-/* A cone about the rectangle, that a point outside of does not need the lens for. */
-static double cone(const struct placer_photo *c, const struct place *p, struct vec3 *axis)
+/* Cosine of a cone about the rectangle; points outside it need not be projected. -1: all directions. */
+static double bounding_cone(const struct placer_photo *c, const struct script_place *p, struct vec3 *axis)
 {
-    double least = 1;
+    double min_cos = 1;
     if (!camera_unproject(&c->camera.lens, 0.5 * (p->a[0] + p->a[2]), 0.5 * (p->a[1] + p->a[3]), axis)) return -1;
     for (int i = 0; i < 9; i++) {
         struct vec3 ray = {0, 0, 0};
@@ -178,20 +183,19 @@ static double cone(const struct placer_photo *c, const struct place *p, struct v
         if (!camera_unproject(&c->camera.lens, p->a[0] + (p->a[2] - p->a[0]) * (i % 3) / 2,
                               p->a[1] + (p->a[3] - p->a[1]) * (i / 3) / 2, &ray))
             return -1;
-        least = fmin(least, vec3_dot(ray, *axis));
+        min_cos = fmin(min_cos, vec3_dot(ray, *axis));
     }
-    return cos(fmin(acos(fmax(-1, least)) * 1.1 + 0.01, 3.14));
+    return cos(fmin(acos(fmax(-1, min_cos)) * 1.1 + 0.01, 3.14));
 }
 
-/* shown: those that the camera sees in the rectangle. */
-static enum status show_points(struct shown_point **shown, size_t *count, const struct placer *placer,
-                               const struct placer_photo *c, const struct place *p, struct err *err)
+/* The points that are visible in the rectangle; the caller frees them, also after a failure. */
+static enum status find_visible(struct visible_point **visible, size_t *count, const struct placer *placer,
+                                const struct placer_photo *c, const struct script_place *p, struct err *err)
 {
     struct vec3 axis;
-    const double wide = cone(c, p, &axis);
+    const double cone = bounding_cone(c, p, &axis);
     const struct mat3 turn = c->camera.cam_from_world;
-    size_t room = 0;
-    *shown = NULL;
+    *visible = NULL;
     *count = 0;
     for (size_t i = 0; i < placer->count; i++) {
         const struct placed_point *q = &placer->points[i];
@@ -201,37 +205,31 @@ static enum status show_points(struct shown_point **shown, size_t *count, const 
         const struct vec3 cam = mat3_apply(turn, to);
         const double distance = vec3_length(cam);
         double u, v;
-        if (vec3_dot(cam, axis) < wide * distance || !camera_project(&c->camera.lens, cam, &u, &v)) continue;
+        if (vec3_dot(cam, axis) < cone * distance || !camera_project(&c->camera.lens, cam, &u, &v)) continue;
         if (!(u >= p->a[0] && u < p->a[2] && v >= p->a[1] && v < p->a[3])) continue;
-        if (*count == room) {
-            room = room ? 2 * room : 1024;
-            struct shown_point *more = realloc(*shown, room * sizeof *more);
-            if (!more) return err_nomem(err, "points of a rectangle", room * sizeof *more);
-            *shown = more;
-        }
-        (*shown)[(*count)++] = (struct shown_point){q, distance, (float)((u - p->a[0]) / (p->a[2] - p->a[0])),
-                                                    (float)((v - p->a[1]) / (p->a[3] - p->a[1])), 0};
+        if (array_append(visible, *count, sizeof **visible, "points of a rectangle", err)) return err->status;
+        (*visible)[(*count)++] = (struct visible_point){q, distance, (float)((u - p->a[0]) / (p->a[2] - p->a[0])),
+                                                        (float)((v - p->a[1]) / (p->a[3] - p->a[1])), 0};
     }
-    /* where points are few cells are larger, so that a cell with points behind a sparse wall has some of the wall
-     * too */
-    const int cells = (int)fmax(1, fmin(CELLS, sqrt((double)*count / IN_CELL)));
+    /* fewer points make larger cells, so that a cell that sees through a sparse wall contains points of the wall too */
+    const int cells = (int)fmax(1, fmin(MAX_CELLS, sqrt((double)*count / MIN_IN_CELL)));
     for (size_t i = 0; i < *count; i++) {
-        const int x = (int)((*shown)[i].u * (float)cells), y = (int)((*shown)[i].v * (float)cells);
-        (*shown)[i].cell = (y < cells ? y : cells - 1) * cells + (x < cells ? x : cells - 1);
+        const int x = (int)((*visible)[i].u * (float)cells), y = (int)((*visible)[i].v * (float)cells);
+        (*visible)[i].cell = (y < cells ? y : cells - 1) * cells + (x < cells ? x : cells - 1);
     }
-    if (*count) qsort(*shown, *count, sizeof **shown, compare_shown);
+    if (*count) qsort(*visible, *count, sizeof **visible, compare_visible);
     size_t kept = 0;
     for (size_t from = 0, end; from < *count; from = end) {
-        for (end = from; end < *count && (*shown)[end].cell == (*shown)[from].cell;) end++;
-        const double front = (*shown)[from + (size_t)(FRONT_PART * (double)(end - from))].distance;
+        for (end = from; end < *count && (*visible)[end].cell == (*visible)[from].cell;) end++;
+        const double front = (*visible)[from + (size_t)(FRONT_FRACTION * (double)(end - from))].distance;
         for (size_t i = from; i < end; i++)
-            if ((*shown)[i].distance <= front * BEHIND) (*shown)[kept++] = (*shown)[i];
+            if ((*visible)[i].distance <= front * BEHIND) (*visible)[kept++] = (*visible)[i];
     }
     *count = kept;
     return ST_OK;
 }
 
-/* -------------------------------------------------------------------------------------------------- where a wall is */
+/* ------------------------------------------------------------------------------------------------ a wall's position */
 
 struct position {
     double at, weight;
@@ -244,15 +242,15 @@ static int compare_positions(const void *a, const void *b)
     return (x->weight > y->weight) - (x->weight < y->weight);
 }
 
-/* Positions sorted: the middle of the heaviest window, then the mean of what lies in the window about it. */
+/* The mode of sorted positions: the middle of the window with the greatest weight, refined by mean shift. */
 static double mode(const struct position *p, size_t count, double window)
 {
-    double sum = 0, most = -1, at = 0;
+    double sum = 0, max_sum = -1, at = 0;
     for (size_t i = 0, from = 0; i < count; i++) {
         sum += p[i].weight;
         while (p[i].at - p[from].at > window) sum -= p[from++].weight;
-        if (sum > most) {
-            most = sum;
+        if (sum > max_sum) {
+            max_sum = sum;
             at = 0.5 * (p[i].at + p[from].at);
         }
     }
@@ -269,27 +267,27 @@ static double mode(const struct position *p, size_t count, double window)
     return at;
 }
 
-static enum status too_few(const struct placer_photo *c, const struct place *p, const char *path, int line,
+static enum status too_few(const struct placer_photo *c, const struct script_place *p, const char *path, int line,
                            size_t found, int wanted, const char *what, struct err *err)
 {
     return err_set(
         err, ST_DATA,
-        "%s:%d: the rectangle %.9g %.9g %.9g %.9g of %s shows %zu points%s, wanted %d or more; draw it larger, "
-        "or in another photo, or give the wall by coordinates.",
+        "%s:%d: the rectangle %.9g %.9g %.9g %.9g in %s contains %zu visible points%s, wanted %d or more; draw it "
+        "larger, draw it in another photo, or give the wall by coordinates.",
         path, line, p->a[0], p->a[1], p->a[2], p->a[3], c->id, found, what, wanted);
 }
 
-/* The direction that most normals have, horizontal: the canonical one, or, for an angled wall, the mean about the
- * fullest five degrees. False: none has a horizontal normal. */
-static bool vote(double n[2], const struct shown_point *shown, size_t count, double max_angle, bool angled)
+/* The horizontal direction for which most normals vote: along an axis or, for an angled wall, the mean normal about the
+ * fullest bin of 5 degrees. False: there are no horizontal normals. */
+static bool vote(double n[2], const struct visible_point *visible, size_t count, double max_angle, bool angled)
 {
     enum { BINS = 72 };
-    const double upright = cos(max_angle * DEGREE);
+    const double min_horizontal = cos(max_angle * DEGREE);
     double bins[BINS] = {0}, axes[4] = {0};
     for (size_t i = 0; i < count; i++) {
-        const struct placed_point *q = shown[i].point;
+        const struct placed_point *q = visible[i].point;
         const double flat = hypot(q->normal[0], q->normal[1]);
-        if (flat < upright) continue;
+        if (flat < min_horizontal) continue;
         const double turn = atan2(q->normal[1], q->normal[0]);
         const int axis = ((int)floor(turn / (90 * DEGREE) + 0.5) + 4) % 4;
         if (fabs(remainder(turn - axis * 90 * DEGREE, 360 * DEGREE)) <= max_angle * DEGREE) axes[axis] += q->weight;
@@ -310,9 +308,10 @@ static bool vote(double n[2], const struct shown_point *shown, size_t count, dou
     const double middle = (best + 0.5) * 360 * DEGREE / BINS;
     double sum[2] = {0, 0};
     for (size_t i = 0; i < count; i++) {
-        const struct placed_point *q = shown[i].point;
+        const struct placed_point *q = visible[i].point;
         const double turn = atan2(q->normal[1], q->normal[0]);
-        if (hypot(q->normal[0], q->normal[1]) < upright || fabs(remainder(turn - middle, 360 * DEGREE)) > 10 * DEGREE)
+        if (hypot(q->normal[0], q->normal[1]) < min_horizontal ||
+            fabs(remainder(turn - middle, 360 * DEGREE)) > 10 * DEGREE)
             continue;
         for (int k = 0; k < 2; k++) sum[k] += q->weight * q->normal[k];
     }
@@ -322,13 +321,13 @@ static bool vote(double n[2], const struct shown_point *shown, size_t count, dou
 }
 
 /* Positions along n of the points whose normals are within max_angle of it, sorted. */
-static size_t gather(struct position *p, const struct shown_point *shown, size_t count, const double n[2],
+static size_t gather(struct position *p, const struct visible_point *visible, size_t count, const double n[2],
                      double max_angle)
 {
     const double near = cos(max_angle * DEGREE);
     size_t used = 0;
     for (size_t i = 0; i < count; i++) {
-        const struct placed_point *q = shown[i].point;
+        const struct placed_point *q = visible[i].point;
         if (q->normal[0] * n[0] + q->normal[1] * n[1] >= near)
             p[used++] = (struct position){q->position[0] * n[0] + q->position[1] * n[1], q->weight};
     }
@@ -336,15 +335,15 @@ static size_t gather(struct position *p, const struct shown_point *shown, size_t
     return used;
 }
 
-/* Turns n to the line that fits the points within `window` of it best (plan, total least squares). */
-static void fit_line(double n[2], double c, const struct shown_point *shown, size_t count, double max_angle,
+/* Turns n to the line in plan that fits the points within `window` of it best, by total least squares. */
+static void fit_line(double n[2], double c, const struct visible_point *visible, size_t count, double max_angle,
                      double window)
 {
     const double near = cos(max_angle * DEGREE);
     double weight = 0, mean[2] = {0, 0}, xx = 0, xy = 0, yy = 0;
     for (int pass = 0; pass < 2; pass++) {
         for (size_t i = 0; i < count; i++) {
-            const struct placed_point *q = shown[i].point;
+            const struct placed_point *q = visible[i].point;
             const double x = q->position[0], y = q->position[1];
             if (q->normal[0] * n[0] + q->normal[1] * n[1] < near || fabs(x * n[0] + y * n[1] - c) > window) continue;
             if (pass == 0) {
@@ -366,30 +365,31 @@ static void fit_line(double n[2], double c, const struct shown_point *shown, siz
     if (fitted[0] * n[0] + fitted[1] * n[1] > cos(10 * DEGREE)) memcpy(n, fitted, sizeof fitted);
 }
 
-static enum status locate(struct placed_wall *wall, const struct placer *placer, const struct placer_photo *c,
-                          const struct place *place, const double normal[2], bool angled, const char *path, int line,
-                          const struct shown_point *shown, size_t count, struct position *p, struct err *err)
+static enum status locate_wall(struct placed_wall *wall, const struct placer *placer, const struct placer_photo *c,
+                               const struct script_place *place, const double normal[2], bool angled, const char *path,
+                               int line, const struct visible_point *visible, size_t count, struct position *p,
+                               struct err *err)
 {
     const struct model_params *params = placer->params;
-    if (count < (size_t)params->least_points)
-        return too_few(c, place, path, line, count, params->least_points, "", err);
+    if (count < (size_t)params->min_points) return too_few(c, place, path, line, count, params->min_points, "", err);
     if (normal)
         memcpy(wall->n, normal, sizeof wall->n);
-    else if (!vote(wall->n, shown, count, params->max_angle, angled))
-        return too_few(c, place, path, line, 0, params->least_points, " with the normal of a wall", err);
-    size_t used = gather(p, shown, count, wall->n, params->max_angle);
-    if (used < (size_t)params->least_points)
-        return too_few(c, place, path, line, used, params->least_points, " with the wall's normal", err);
-    wall->c = mode(p, used, placer->step);
-    for (int round = 0; angled && !normal && round < 3; round++) { /* wider at first: the direction is only near */
-        fit_line(wall->n, wall->c, shown, count, params->max_angle, placer->step * (round ? 2 : 8));
-        used = gather(p, shown, count, wall->n, params->max_angle);
-        if (used < (size_t)params->least_points)
-            return too_few(c, place, path, line, used, params->least_points, " with the wall's normal", err);
-        wall->c = mode(p, used, placer->step);
+    else if (!vote(wall->n, visible, count, params->max_angle, angled))
+        return too_few(c, place, path, line, 0, params->min_points, " with the normal of a wall", err);
+    size_t used = gather(p, visible, count, wall->n, params->max_angle);
+    if (used < (size_t)params->min_points)
+        return too_few(c, place, path, line, used, params->min_points, " with the wall's normal", err);
+    wall->c = mode(p, used, placer->window);
+    for (int round = 0; angled && !normal && round < 3;
+         round++) { /* a wider window at first, while the direction is rough */
+        fit_line(wall->n, wall->c, visible, count, params->max_angle, placer->window * (round ? 2 : 8));
+        used = gather(p, visible, count, wall->n, params->max_angle);
+        if (used < (size_t)params->min_points)
+            return too_few(c, place, path, line, used, params->min_points, " with the wall's normal", err);
+        wall->c = mode(p, used, placer->window);
     }
     size_t near = 0;
-    for (size_t i = 0; i < used; i++) near += fabs(p[i].at - wall->c) <= placer->step;
+    for (size_t i = 0; i < used; i++) near += fabs(p[i].at - wall->c) <= placer->window;
     for (size_t i = 0; i < used; i++) p[i].at = fabs(p[i].at - wall->c);
     qsort(p, used, sizeof *p, compare_positions);
     wall->spread = p[used / 2].at;
@@ -397,11 +397,11 @@ static enum status locate(struct placed_wall *wall, const struct placer *placer,
     return ST_OK;
 }
 
-enum status place_wall(struct placed_wall *wall, const struct placer *placer, const struct place *place,
+enum status place_wall(struct placed_wall *wall, const struct placer *placer, const struct script_place *place,
                        const double normal[2], bool angled, const char *path, int line, struct err *err)
 {
     const struct placer_photo *c;
-    struct shown_point *shown = NULL;
+    struct visible_point *visible = NULL;
     size_t count = 0;
     *wall = (struct placed_wall){0};
     if (find_photo(&c, placer, place->view, path, line, err) || check_pixels(c, place, path, line, err))
@@ -409,12 +409,12 @@ enum status place_wall(struct placed_wall *wall, const struct placer *placer, co
     if (!placer->count)
         return err_set(
             err, ST_DATA,
-            "%s:%d: a wall by a rectangle needs the scene's points; make them, or give the wall by coordinates.", path,
+            "%s:%d: a wall by a rectangle needs the scene's points; give --points, or the wall's coordinates.", path,
             line);
-    enum status st = show_points(&shown, &count, placer, c, place, err);
+    enum status st = find_visible(&visible, &count, placer, c, place, err);
     struct position *p = st ? NULL : calloc(count + 1, sizeof *p);
     if (!st)
-        st = p ? locate(wall, placer, c, place, normal, angled, path, line, shown, count, p, err)
+        st = p ? locate_wall(wall, placer, c, place, normal, angled, path, line, visible, count, p, err)
                : err_nomem(err, "points of a rectangle", count * sizeof *p);
     const double middle = 0.5 * (place->a[1] + place->a[3]);
     for (int i = 0; i < 2 && !st; i++) {
@@ -426,6 +426,6 @@ enum status place_wall(struct placed_wall *wall, const struct placer *placer, co
         wall->ends[i][1] = at.y;
     }
     free(p);
-    free(shown);
+    free(visible);
     return st;
 }

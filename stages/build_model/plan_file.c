@@ -1,4 +1,4 @@
-/* plan_file.c - see plan_file.h. */
+/* plan_file.c - writes plan.txt and merged.txt. */
 #include "stages/build_model/plan_file.h"
 
 #include "common/base/outfile.h"

@@ -1,5 +1,5 @@
-/* plan_file.h - what is left of a script beside its solids: where its walls, openings and rooms came to lie, and which
- * faces' names are no more; docs/formats.md. */
+/* plan_file.h - text products beside the solids: plan.txt with positions of walls, openings and rooms, and merged.txt
+ * with the face names that vanished; docs/formats.md. */
 #ifndef REMODEL_BUILD_MODEL_PLAN_FILE_H
 #define REMODEL_BUILD_MODEL_PLAN_FILE_H
 

@@ -1,7 +1,7 @@
-/* plan_picture.c - see plan_picture.h.
+/* plan_picture.c - pictures of a model: plan, view from above, edges on photographs.
  *
- * What is hidden in a photograph is told by six pictures about its camera, a cube, in each of which the model's
- * triangles are put by perspective; any lens can then ask in any direction. */
+ * Whether an edge is visible in a photograph is decided by a cube map of depth about the camera: six square perspective
+ * pictures of the model's triangles. So any lens can ask in any direction. */
 #include "stages/build_model/plan_picture.h"
 
 #include <math.h>
@@ -11,11 +11,11 @@
 
 #include "common/base/outfile.h"
 #include "common/base/scan.h"
+#include "common/math/numbers.h"
 #include "stages/build_model/raster.h"
 
-enum { VIEW_WIDTH = 1400, VIEW_HEIGHT = 1000, SMOOTH = 2, CUBE = 1024 };
-#define DEGREE  (3.14159265358979323846 / 180)
-#define FRUSTUM 0.35 /* length of a frustum's edges, model units of a room 2.5 high */
+enum { VIEW_WIDTH = 1400, VIEW_HEIGHT = 1000, SUPERSAMPLING = 2, CUBE = 1024 };
+#define FRUSTUM 0.35 /* length of a frustum's edges, for a room 2.5 units high */
 
 static bool starts_with(const char *text, const char *with) { return !strncmp(text, with, strlen(with)); }
 
@@ -47,7 +47,7 @@ static void put_name(const struct sheet *s, double x, double y, const char *clas
             sheet_x(s, x), sheet_y(s, y), turn, name);
 }
 
-/* Turned so that it can be read. */
+/* Degrees of a text along d, turned to be upright. */
 static double readable(const double d[2])
 {
     double turn = -atan2(d[1], d[0]) / DEGREE;
@@ -180,7 +180,7 @@ static void find_bounds(const struct plan *plan, const struct placer *placer, do
 static void put_plan(const struct sheet *s, const struct plan *plan, const struct placer *placer, bool metric,
                      double unit)
 {
-    /* floors go on under walls; under one that was removed it is seen */
+    /* floors continue under walls; under a removed wall the floor is visible */
     for (int i = 0; i < plan->wall_count; i++) {
         double c[4][2];
         if (!plan->walls[i].removed) continue;
@@ -283,7 +283,7 @@ static void aerial_line(struct raster *r, const struct aerial *a, struct vec3 p,
     }
 }
 
-/* A triangle's part below a height. */
+/* Draws a triangle's part below a height. */
 static void aerial_triangle(struct raster *r, const struct aerial *a, const struct vec3 p[3], double top,
                             const unsigned char color[3])
 {
@@ -299,7 +299,7 @@ static void aerial_triangle(struct raster *r, const struct aerial *a, const stru
         raster_triangle(r, aerial_point(a, kept[0]), aerial_point(a, kept[k]), aerial_point(a, kept[k + 1]), color);
 }
 
-/* Where the model is cut below its ceilings the walls are dark. */
+/* Draws the cut tops of the walls dark. */
 static void draw_cuts(struct raster *r, const struct aerial *a, const struct plan *plan, double top)
 {
     static const unsigned char dark[3] = {92, 96, 104}, ink[3] = {40, 42, 48};
@@ -317,13 +317,13 @@ static void draw_cuts(struct raster *r, const struct aerial *a, const struct pla
     }
 }
 
-static bool left_out(const struct solid_mesh *mesh, int face)
+static bool is_ceiling(const struct solid_mesh *mesh, int face)
 {
     return starts_with(solid_face_name(mesh, face), "ceiling/");
 }
 
-/* The picture's place: all vertices but those of ceilings alone. */
-static void fit(struct aerial *a, const struct solid_mesh *mesh, const struct raster *r)
+/* Scales and centres the view on the mesh's vertices. */
+static void fit_view(struct aerial *a, const struct solid_mesh *mesh, const struct raster *r)
 {
     double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
     a->scale = 1;
@@ -374,20 +374,57 @@ static void draw_frusta(struct raster *r, const struct aerial *a, const struct p
     }
 }
 
-static enum status write_small(const struct raster *r, const char *path, struct err *err)
+/* All faces that look towards the viewer, except ceilings. */
+static void draw_faces(struct raster *r, const struct aerial *a, const struct solid_mesh *mesh,
+                       const struct solid_triangles *tris, double top)
 {
-    const int w = r->width / SMOOTH, h = r->height / SMOOTH;
+    for (int i = 0; i < tris->count; i++) {
+        const struct solid_triangle *t = &tris->triangles[i];
+        unsigned char color[3];
+        if (is_ceiling(mesh, t->face) || vec3_dot(mesh->faces[t->face].normal, a->back) <= 0) continue;
+        face_color(mesh, t->face, color);
+        aerial_triangle(
+            r, a,
+            (const struct vec3[3]){mesh->vertices[t->v[0]].p, mesh->vertices[t->v[1]].p, mesh->vertices[t->v[2]].p},
+            top, color);
+    }
+}
+
+/* The visible parts below the top of all edges, except those between ceilings. */
+static void draw_mesh_edges(struct raster *r, const struct aerial *a, const struct solid_mesh *mesh, double top)
+{
+    static const unsigned char ink[3] = {40, 42, 48};
+    for (int h = 0; h < mesh->half_edge_count; h++) {
+        const struct solid_half_edge *e = &mesh->half_edges[h];
+        const int f = mesh->loops[e->loop].face, g = mesh->loops[mesh->half_edges[e->twin].loop].face;
+        if (e->twin < h || (is_ceiling(mesh, f) && is_ceiling(mesh, g))) continue;
+        struct vec3 p = mesh->vertices[e->origin].p, q = mesh->vertices[mesh->half_edges[e->next].origin].p;
+        if (p.z > q.z) {
+            const struct vec3 swap = p;
+            p = q;
+            q = swap;
+        }
+        if (p.z >= top) continue;
+        if (q.z > top) q = vec3_add(p, vec3_scale(vec3_sub(q, p), (top - p.z) / (q.z - p.z)));
+        aerial_line(r, a, p, q, false, 0.7, ink);
+    }
+}
+
+static enum status write_downsampled(const struct raster *r, const char *path, struct err *err)
+{
+    const int w = r->width / SUPERSAMPLING, h = r->height / SUPERSAMPLING;
     unsigned char *small = malloc(3 * (size_t)w * (size_t)h);
     if (!small) return err_nomem(err, "a picture", 3 * (size_t)w * (size_t)h);
     for (int y = 0; y < h; y++)
         for (int x = 0; x < w; x++)
             for (int c = 0; c < 3; c++) {
                 int sum = 0;
-                for (int k = 0; k < SMOOTH * SMOOTH; k++)
-                    sum += r->rgb[3 * ((size_t)(SMOOTH * y + k / SMOOTH) * (size_t)r->width +
-                                       (size_t)(SMOOTH * x + k % SMOOTH)) +
+                for (int k = 0; k < SUPERSAMPLING * SUPERSAMPLING; k++)
+                    sum += r->rgb[3 * ((size_t)(SUPERSAMPLING * y + k / SUPERSAMPLING) * (size_t)r->width +
+                                       (size_t)(SUPERSAMPLING * x + k % SUPERSAMPLING)) +
                                   (size_t)c];
-                small[3 * ((size_t)y * (size_t)w + (size_t)x) + (size_t)c] = (unsigned char)(sum / (SMOOTH * SMOOTH));
+                small[3 * ((size_t)y * (size_t)w + (size_t)x) + (size_t)c] =
+                    (unsigned char)(sum / (SUPERSAMPLING * SUPERSAMPLING));
             }
     const enum status st = png_write(path, small, w, h, 3, err);
     free(small);
@@ -397,7 +434,7 @@ static enum status write_small(const struct raster *r, const char *path, struct 
 enum status view_picture_write(const struct solid_mesh *mesh, const struct plan *plan, const struct placer *placer,
                                const char *path, struct err *err)
 {
-    static const unsigned char paper[3] = {248, 248, 246}, ink[3] = {40, 42, 48};
+    static const unsigned char paper[3] = {248, 248, 246};
     struct solid_triangles tris = {0};
     struct raster r = {0};
     double high = 0;
@@ -410,36 +447,14 @@ enum status view_picture_write(const struct solid_mesh *mesh, const struct plan 
     a.right = vec3_normalize(vec3_cross(vec3_make(0, 0, 1), a.back));
     a.down = vec3_cross(a.right, a.back);
     a.down = vec3_scale(a.down, a.down.z < 0 ? 1 : -1);
-    if (raster_init(&r, SMOOTH * VIEW_WIDTH, SMOOTH * VIEW_HEIGHT, paper, err)) return err->status;
+    if (raster_init(&r, SUPERSAMPLING * VIEW_WIDTH, SUPERSAMPLING * VIEW_HEIGHT, paper, err)) return err->status;
     enum status st = solid_mesh_triangulate(&tris, mesh, err);
-    if (!st) fit(&a, mesh, &r);
-    for (int i = 0; !st && i < tris.count; i++) {
-        const struct solid_triangle *t = &tris.triangles[i];
-        unsigned char color[3];
-        if (left_out(mesh, t->face) || vec3_dot(mesh->faces[t->face].normal, a.back) <= 0) continue;
-        face_color(mesh, t->face, color);
-        aerial_triangle(
-            &r, &a,
-            (const struct vec3[3]){mesh->vertices[t->v[0]].p, mesh->vertices[t->v[1]].p, mesh->vertices[t->v[2]].p},
-            high, color);
-    }
-    for (int h = 0; !st && h < mesh->half_edge_count; h++) {
-        const struct solid_half_edge *e = &mesh->half_edges[h];
-        const int f = mesh->loops[e->loop].face, g = mesh->loops[mesh->half_edges[e->twin].loop].face;
-        if (e->twin < h || (left_out(mesh, f) && left_out(mesh, g))) continue;
-        struct vec3 p = mesh->vertices[e->origin].p, q = mesh->vertices[mesh->half_edges[e->next].origin].p;
-        if (p.z > q.z) {
-            const struct vec3 swap = p;
-            p = q;
-            q = swap;
-        }
-        if (p.z >= high) continue;
-        if (q.z > high) q = vec3_add(p, vec3_scale(vec3_sub(q, p), (high - p.z) / (q.z - p.z)));
-        aerial_line(&r, &a, p, q, false, 0.7, ink);
-    }
+    if (!st) fit_view(&a, mesh, &r);
+    if (!st) draw_faces(&r, &a, mesh, &tris, high);
+    if (!st) draw_mesh_edges(&r, &a, mesh, high);
     if (!st) draw_cuts(&r, &a, plan, high);
     if (!st) draw_frusta(&r, &a, placer, FRUSTUM * (high > 0 ? high / 2.5 : 1));
-    if (!st) st = write_small(&r, path, err);
+    if (!st) st = write_downsampled(&r, path, err);
     solid_triangles_release(&tris);
     raster_release(&r);
     return st;
@@ -452,7 +467,7 @@ struct cube {
     struct vec3 center;
 };
 
-/* Coordinates as one of the cube's six cameras has them: z the largest. */
+/* Coordinates in the frame of one of the cube's six cameras: z the largest. */
 static struct vec3 cube_turn(int side, struct vec3 p)
 {
     switch (side) {
@@ -478,16 +493,16 @@ static struct vec3 cube_pixel(struct vec3 p)
 
 static void cube_triangle(struct cube *c, const struct vec3 corners[3])
 {
-    const double least = 1e-3;
+    const double min_z = 1e-3;
     for (int side = 0; side < 6; side++) {
         struct vec3 p[3], clipped[4];
         int n = 0;
         for (int k = 0; k < 3; k++) p[k] = cube_turn(side, vec3_sub(corners[k], c->center));
-        for (int k = 0; k < 3; k++) { /* what lies behind is cut off */
+        for (int k = 0; k < 3; k++) { /* clip at min_z */
             const struct vec3 a = p[k], b = p[(k + 1) % 3];
-            if (a.z > least) clipped[n++] = a;
-            if ((a.z > least) != (b.z > least))
-                clipped[n++] = vec3_add(a, vec3_scale(vec3_sub(b, a), (least - a.z) / (b.z - a.z)));
+            if (a.z > min_z) clipped[n++] = a;
+            if ((a.z > min_z) != (b.z > min_z))
+                clipped[n++] = vec3_add(a, vec3_scale(vec3_sub(b, a), (min_z - a.z) / (b.z - a.z)));
         }
         for (int k = 1; k + 1 < n; k++)
             raster_triangle(&c->side[side], cube_pixel(clipped[0]), cube_pixel(clipped[k]), cube_pixel(clipped[k + 1]),
@@ -503,7 +518,7 @@ static bool cube_sees(const struct cube *c, struct vec3 point)
     const struct vec3 p = cube_turn(side, to);
     if (!(p.z > 1e-3)) return true;
     const struct vec3 at = cube_pixel(p);
-    /* seen if one of the pixels around has nothing clearly before it: an edge lies on the border of what it bounds */
+    /* visible if nothing is clearly in front of one of the 3 x 3 pixels: an edge lies on the border of its faces */
     for (int k = 0; k < 9; k++) {
         const int u = (int)at.x + k % 3 - 1, v = (int)at.y + k / 3 - 1;
         if (u < 0 || v < 0 || u >= CUBE || v >= CUBE) continue;
@@ -530,7 +545,7 @@ static void draw_edge(unsigned char *rgb, int width, int height, double scale, c
     }
 }
 
-/* The photo, shrunk by a whole factor. */
+/* The photo, downsampled by an integer factor. */
 static enum status shrink(unsigned char **rgb, int *width, int *height, double *scale, const struct photo *photo,
                           int side, struct err *err)
 {

@@ -1,4 +1,4 @@
-/* raster.c - see raster.h. */
+/* raster.c - draws triangles with a depth buffer, and soft discs. */
 #include "stages/build_model/raster.h"
 
 #include <math.h>

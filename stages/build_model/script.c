@@ -1,7 +1,7 @@
-/* script.c - see script.h.
+/* script.c - reads model scripts.
  *
- * One table says what stands in a line of each verb; the reader goes through its letters:
- *   n a new or known name; p a place; w the name of a wall behind a word; L a list of names; v a number; o options. */
+ * A table holds each verb's usage line, options and flags; read_statement() reads the verb's fixed words and names,
+ * then read_options() the rest of the line. All names are copied to one buffer of the file's size. */
 #include "stages/build_model/script.h"
 
 #include <math.h>
@@ -9,16 +9,17 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/base/array.h"
 #include "common/base/scan.h"
 #include "common/base/textfile.h"
 
-enum { MOST_STATEMENTS = 200000, LONGEST_NAME = 64 };
-#define FARTHEST 1e6
+enum { MAX_STATEMENTS = 200000, MAX_NAME = 64 };
+#define MAX_NUMBER 1e6
 
 struct grammar {
     const char *verb, *usage;
-    unsigned options;  /* bits of enum option */
-    const char *flags; /* words that stand alone, each between blanks */
+    unsigned options;  /* the verb's options: bits of enum option */
+    const char *flags; /* the verb's flags, each between blanks */
 };
 
 #define BIT(o) (1u << OPTION_##o)
@@ -48,7 +49,6 @@ static const char *const OPTIONS[OPTION_COUNT] = {"thickness", "foot", "top", "f
 static const char *const QUANTITIES[] = {"thickness", "slab", "glass", "leaf", "floor", "ceiling", NULL};
 
 const char *verb_name(enum verb verb) { return GRAMMAR[verb].verb; }
-const char *option_name(enum option option) { return OPTIONS[option]; }
 
 void script_release(struct script *script)
 {
@@ -64,7 +64,7 @@ void script_release(struct script *script)
 
 struct reader {
     struct textfile t;
-    char *words; /* room for all words of the file */
+    char *words; /* buffer for all words of the file */
     size_t used;
     struct err *err;
 };
@@ -89,7 +89,7 @@ static bool is_name(const char *word)
     const size_t length = strlen(word);
     static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
     double number;
-    return length && length <= LONGEST_NAME && word[0] != '-' && strspn(word, letters) == length &&
+    return length && length <= MAX_NAME && word[0] != '-' && strspn(word, letters) == length &&
            !scan_double(word, &number);
 }
 
@@ -98,9 +98,8 @@ static enum status read_name(struct reader *r, const char *what, const char **na
     char *word;
     if (textfile_word(&r->t, what, &word, r->err)) return r->err->status;
     if (!is_name(word))
-        return textfile_error(&r->t, r->err, word,
-                              "%s: a name of at most %d letters, digits, _ and -, that is no number", what,
-                              LONGEST_NAME);
+        return textfile_error(&r->t, r->err, word, "%s: a name of at most %d letters, digits, _ and -, not a number",
+                              what, MAX_NAME);
     *name = keep_word(r, word);
     return ST_OK;
 }
@@ -108,13 +107,13 @@ static enum status read_name(struct reader *r, const char *what, const char **na
 static enum status read_number(struct reader *r, const char *what, double *value)
 {
     if (textfile_double(&r->t, what, value, r->err)) return r->err->status;
-    if (fabs(*value) <= FARTHEST) return ST_OK;
+    if (fabs(*value) <= MAX_NUMBER) return ST_OK;
     char text[32];
     snprintf(text, sizeof text, "%.9g", *value);
     return textfile_error(&r->t, r->err, text, "%s within 1e6", what);
 }
 
-/* The word that must come next. */
+/* Reads the word that must come next. */
 static enum status expect(struct reader *r, const char *wanted, enum verb verb)
 {
     char *word;
@@ -126,7 +125,7 @@ static enum status expect(struct reader *r, const char *wanted, enum verb verb)
 
 /* ------------------------------------------------------------------------------------------------------------ parts */
 
-static enum status read_place(struct reader *r, struct place *p, enum verb verb)
+static enum status read_place(struct reader *r, struct script_place *p, enum verb verb)
 {
     char *word, *view;
     if (!textfile_more(&r->t)) return usage_error(r, NULL, verb);
@@ -153,26 +152,24 @@ static enum status read_place(struct reader *r, struct place *p, enum verb verb)
     return ST_OK;
 }
 
-/* Names until the line's end or an option's word. */
-static enum status read_list(struct reader *r, struct statement *s, int least, unsigned options)
+/* Reads names until an option or the end of the line. */
+static enum status read_list(struct reader *r, struct statement *s, int min_count, unsigned options)
 {
     while (textfile_more(&r->t)) {
         char *before = r->t.cursor;
-        for (int o = 0; o < OPTION_COUNT; o++) { /* an option's word ends the list */
+        for (int o = 0; o < OPTION_COUNT; o++) {
             const size_t length = strlen(OPTIONS[o]);
             const char *at = before + strspn(before, " \t");
             if (options & (1u << o) && !strncmp(at, OPTIONS[o], length) && (at[length] == ' ' || at[length] == '\t'))
                 goto done;
         }
-        const size_t bytes = ((size_t)s->name_count + 1) * sizeof *s->names;
-        const char **more = realloc(s->names, bytes);
-        if (!more) return err_nomem(r->err, "names of walls", bytes);
-        s->names = more;
-        if (read_name(r, "a wall", &s->names[s->name_count])) return r->err->status;
+        if (array_append(&s->names, (size_t)s->name_count, sizeof *s->names, "names of walls", r->err) ||
+            read_name(r, "a wall", &s->names[s->name_count]))
+            return r->err->status;
         s->name_count++;
     }
 done:
-    return s->name_count < least ? usage_error(r, NULL, s->verb) : ST_OK;
+    return s->name_count < min_count ? usage_error(r, NULL, s->verb) : ST_OK;
 }
 
 static const char *known_flag_or_option(const void *ctx, int i)
@@ -212,10 +209,9 @@ static enum status read_options(struct reader *r, struct statement *s)
             const char *near = scan_nearest(word, known_flag_or_option, g);
             if (near)
                 return textfile_error(&r->t, r->err, word,
-                                      "the line's end or an option; did you mean %s? The line is "
-                                      "\"%s\"",
-                                      near, g->usage);
-            return textfile_error(&r->t, r->err, word, "the line's end or an option, in a line \"%s\"", g->usage);
+                                      "the end of the line or an option; did you mean %s? The line is \"%s\"", near,
+                                      g->usage);
+            return textfile_error(&r->t, r->err, word, "the end of the line or an option, in a line \"%s\"", g->usage);
         }
         if (*flag) return textfile_error(&r->t, r->err, word, "each option once");
         *flag = true;
@@ -262,7 +258,7 @@ static enum status read_extend(struct reader *r, struct statement *s)
         return r->err->status;
     if (scan_double(word, &s->values[0])) {
         s->value_count = 1;
-        if (fabs(s->values[0]) <= FARTHEST) return ST_OK;
+        if (fabs(s->values[0]) <= MAX_NUMBER) return ST_OK;
         return textfile_error(&r->t, r->err, word, "a coordinate within 1e6");
     }
     if (!is_name(word)) return textfile_error(&r->t, r->err, word, "the name of a wall, or a coordinate");
@@ -367,31 +363,22 @@ static enum status read_header(struct reader *r)
 enum status script_read(struct script *script, const char *path, struct err *err)
 {
     struct reader r = {.err = err};
-    int room = 0;
     *script = (struct script){0};
     enum status st = textfile_open(&r.t, path, err);
     if (!st) {
         script->path = strdup(path);
-        /* a word and its end take no more than the word and the blank behind it */
+        /* a word and its terminating zero need no more than the word and the blank after it */
         r.words = script->words = malloc(r.t.size + 2);
         if (!script->path || !script->words) st = err_nomem(err, "a script", r.t.size);
     }
     if (!st) st = read_header(&r);
     while (!st && textfile_next(&r.t)) {
-        if (script->count == MOST_STATEMENTS) {
-            st = err_set(err, ST_DATA, "%s:%d: found more than %d statements.", path, r.t.line, MOST_STATEMENTS);
+        if (script->count == MAX_STATEMENTS) {
+            st = err_set(err, ST_DATA, "%s:%d: found more than %d statements.", path, r.t.line, MAX_STATEMENTS);
             break;
         }
-        if (script->count == room) {
-            const int wanted = room ? 2 * room : 64;
-            struct statement *more = realloc(script->statements, (size_t)wanted * sizeof *more);
-            if (!more) {
-                st = err_nomem(err, "statements", (size_t)wanted * sizeof *more);
-                break;
-            }
-            script->statements = more;
-            room = wanted;
-        }
+        st = array_append(&script->statements, (size_t)script->count, sizeof *script->statements, "statements", err);
+        if (st) break;
         struct statement *s = &script->statements[script->count++];
         *s = (struct statement){0};
         st = read_statement(&r, s);

@@ -1,4 +1,4 @@
-/* solid.c - see solid.h. */
+/* solid.c - lists of convex solids; each name is stored once. */
 #include "stages/build_model/solid.h"
 
 #include <math.h>
@@ -6,6 +6,8 @@
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "common/base/array.h"
 
 static size_t hash_text(const char *text)
 {
@@ -21,7 +23,7 @@ static char **slot_of(char **texts, int capacity, const char *text)
     return &texts[at];
 }
 
-/* The list's one copy of a text; NULL if there is no memory. */
+/* The list's copy of a text; NULL if there is no memory. */
 static const char *keep_text(struct solid_list *list, const char *text)
 {
     if (list->text_capacity < 2 * (list->text_count + 1)) {
@@ -42,7 +44,7 @@ static const char *keep_text(struct solid_list *list, const char *text)
 enum status solid_list_add(struct solid_list *list, const char *body, const struct half_space *half_spaces, int count,
                            struct err *err)
 {
-    if (!body || !*body) return err_set(err, ST_DATA, "found a solid without a body's name, wanted one.");
+    if (!body || !*body) return err_set(err, ST_DATA, "a solid has no body name, wanted one.");
     if (count < 4)
         return err_set(err, ST_DATA, "a solid of body %s has %d half-spaces, wanted 4 or more.", body, count);
     for (int i = 0; i < count; i++) {
@@ -56,37 +58,21 @@ enum status solid_list_add(struct solid_list *list, const char *body, const stru
                            "normal other than 0.",
                            h->name, body, h->normal.x, h->normal.y, h->normal.z, h->offset);
     }
-    if (list->count == list->capacity) {
-        const int capacity = 2 * list->capacity + 16;
-        struct solid *more = realloc(list->solids, (size_t)capacity * sizeof *more);
-        if (!more) return err_nomem(err, "solids", (size_t)capacity * sizeof *more);
-        list->solids = more;
-        list->capacity = capacity;
-    }
+    if (array_append(&list->solids, (size_t)list->count, sizeof *list->solids, "solids", err)) return err->status;
     struct solid s = {.count = count, .body = keep_text(list, body)};
     s.half_spaces = malloc((size_t)count * sizeof *s.half_spaces);
-    bool good = s.body && s.half_spaces;
-    for (int i = 0; good && i < count; i++) {
+    bool complete = s.body && s.half_spaces;
+    for (int i = 0; complete && i < count; i++) {
         s.half_spaces[i] = half_spaces[i];
         s.half_spaces[i].name = keep_text(list, half_spaces[i].name);
-        good = s.half_spaces[i].name;
+        complete = s.half_spaces[i].name;
     }
-    if (!good) {
+    if (!complete) {
         free(s.half_spaces);
         return err_nomem(err, "a solid", (size_t)count * sizeof *s.half_spaces);
     }
     list->solids[list->count++] = s;
     return ST_OK;
-}
-
-enum status solid_list_add_box(struct solid_list *list, const char *body, struct vec3 low, struct vec3 high,
-                               const char *const names[6], struct err *err)
-{
-    const struct half_space h[6] = {
-        {{-1, 0, 0}, -low.x, names[0]}, {{1, 0, 0}, high.x, names[1]},  {{0, -1, 0}, -low.y, names[2]},
-        {{0, 1, 0}, high.y, names[3]},  {{0, 0, -1}, -low.z, names[4]}, {{0, 0, 1}, high.z, names[5]},
-    };
-    return solid_list_add(list, body, h, 6, err);
 }
 
 void solid_list_release(struct solid_list *list)

@@ -1,20 +1,18 @@
-/* unite.c - see unite.h.
+/* unite.c - the union of convex solids as closed half-edge meshes.
  *
- * borders_find() says where the surface ends in each plane: stretches of lines, each with the surface on its left.
- * What remains is to join them.
+ * borders_find() returns the borders of the surface in each plane: segments of lines with the surface on their left.
+ * They are joined to a half-edge mesh in these steps.
  *
- * - Stretches are cut at the ends of others that lie on them, so that two faces have the same edges where they meet.
- * - Around an edge faces are sorted by angle, exactly. Each face is either where solid begins or where it ends;
- *   those between which there is solid become each other's neighbours. So solids that touch in an edge stay apart
- *   there.
- * - In a face the half-edge that follows is the one that bounds the same corner of the face: the first one
- *   clockwise.
+ * - Segments are cut at the ends of others that lie on them, so that faces that meet have the same edges.
+ * - The faces around an edge are sorted by angle, exactly. Each face is where solid begins or where it ends; faces with
+ *   solid between them become neighbours (twins). So solids that touch in an edge stay separate there.
+ * - The next half-edge in a face is the one that bounds the same corner of the face: the first one clockwise.
  * - Half-edges around a corner of the solid, one fan of faces, share a vertex; another fan gets another vertex.
- * - A vertex with two faces only, in the middle of an edge, goes. Where two edges join the same two vertices all but
- *   one get a vertex in their middle, so that vertices name an edge; so does an edge that touches a third face from
- *   one of its corners to another, so that triangles of that face cannot have the same side.
+ * - A vertex with two faces only, in the middle of an edge, is removed. Where several edges join the same two vertices,
+ *   all but one are split in the middle, so that a pair of vertices identifies an edge; so is an edge that crosses a
+ *   third face from corner to corner, so that no triangle of that face has the same side.
  *
- * See docs/decisions/0015 for why each step is exact. */
+ * docs/decisions/0015 explains why each step is exact. */
 #include "stages/build_model/unite.h"
 
 #include <math.h>
@@ -24,35 +22,35 @@
 #include "stages/build_model/borders.h"
 
 struct half {
-    int border, from;     /* point where it begins, or -1: in the middle of its edge, at `middle` */
-    int next, prev, twin; /* twin -1: it is gone */
+    int border, from;     /* point where it begins; -1: in the middle of an edge, at `middle` */
+    int next, prev, twin; /* twin -1: removed */
     int vertex, loop;
     double middle[3];
 };
 
-struct loop {
-    int half; /* one of it that stays */
-    int face; /* -1: not known yet */
+struct union_loop {
+    int half; /* one of its half-edges that is not removed */
+    int face; /* -1: unknown yet */
     bool hole;
-    double area; /* of the projection along the axis that the normal is most along */
+    double area; /* of the projection along the axis of the normal's largest component */
 };
 
-struct face {
-    int plane, side, name; /* name: least rank */
-    int loop, holes;       /* outer loop, and how many others */
+struct union_face {
+    int plane, side, name; /* name: the lowest rank */
+    int loop, holes;       /* outer loop, number of holes */
 };
 
-struct joined { /* a body at work */
+struct body_union { /* the body being united */
     struct convex_set set;
     struct border_set borders;
     struct half *halves; /* all owned */
-    struct loop *loops;
-    struct face *faces;
+    struct union_loop *loops;
+    struct union_face *faces;
     int half_count, half_capacity, loop_count, loop_capacity, face_count, face_capacity;
     int vertex_count;
 };
 
-struct result { /* polygons of all bodies, with offsets in place of pointers */
+struct polygon_soup { /* the faces of all bodies as polygons, with offsets instead of pointers */
     struct vec3 *vertices;
     struct solid_polygon *polygons;
     int *corners, *sizes;
@@ -62,9 +60,9 @@ struct result { /* polygons of all bodies, with offsets in place of pointers */
 };
 
 struct name_table {
-    const char **texts; /* by rank: the order of first occurrence in the list */
+    const char **texts; /* by rank: in the order of first occurrence in the list */
     int *rank;          /* of each half-space's name */
-    char *present;      /* by rank: on the surface somewhere */
+    char *present;      /* by rank: is on the surface */
     int count;
 };
 
@@ -79,18 +77,17 @@ struct merges {
 
 static enum status broken(const struct solid *s, const char *what, struct err *err)
 {
-    return err_set(err, ST_INTERNAL, "the surface of body %s does not close: %s. This is a fault of the program.",
-                   s->body, what);
+    return err_set(err, ST_INTERNAL, "the surface of body %s does not close: %s; this is a bug.", s->body, what);
 }
 
-/* Half-edge's direction, and its face's outward normal. */
-static void direction(const struct joined *j, int half, int64_t d[3])
+/* The direction of a half-edge; outward(): the outward normal of its face. */
+static void direction(const struct body_union *j, int half, int64_t d[3])
 {
     const struct border *b = &j->borders.borders[j->halves[half].border];
     for (int i = 0; i < 3; i++) d[i] = j->set.space.lines[b->line].d[i] * (b->forward ? 1 : -1);
 }
 
-static void outward(const struct joined *j, int half, int64_t n[3])
+static void outward(const struct body_union *j, int half, int64_t n[3])
 {
     const struct border *b = &j->borders.borders[j->halves[half].border];
     for (int i = 0; i < 3; i++) n[i] = j->set.space.planes[b->plane].n[i] * b->side;
@@ -103,7 +100,7 @@ static void negated(const int64_t a[3], int64_t out[3])
 
 /* ------------------------------------------------------------------------------------------------ edges and twins */
 
-static enum status add_half(struct joined *j, int border, int from, struct err *err)
+static enum status add_half(struct body_union *j, int border, int from, struct err *err)
 {
     if (exact_grow(&j->halves, &j->half_capacity, j->half_count + 1, sizeof *j->halves, err)) return err->status;
     j->halves[j->half_count++] =
@@ -111,11 +108,10 @@ static enum status add_half(struct joined *j, int border, int from, struct err *
     return ST_OK;
 }
 
-/* The half-edges of one edge, halves[of[0 .. count)]: those between which there is solid become twins.
- * Counter-clockwise about the line from a face whose half-edge goes backward there is solid, from one that goes
- * forward there is none. A face that passes flat is not among them, so that what lies within its half-turn is
- * matched like brackets. */
-static enum status pair_around(struct joined *j, int *of, int count, const struct solid *s, struct err *err)
+/* Pairs the half-edges of one edge, halves[of[0 .. count)]: those with solid between them become twins. Turning
+ * counter-clockwise about the line, solid begins at a face whose half-edge goes backward and ends at one that goes
+ * forward. A plane that passes straight through has no border here, so pairs nest like brackets. */
+static enum status pair_around(struct body_union *j, int *of, int count, const struct solid *s, struct err *err)
 {
     const struct border *borders = j->borders.borders;
 #define FORWARD(h) borders[j->halves[h].border].forward
@@ -124,10 +120,10 @@ static enum status pair_around(struct joined *j, int *of, int count, const struc
         j->halves[of[1]].twin = of[0];
         return ST_OK;
     }
-    if (count % 2) return broken(s, "an edge without its opposite", err);
-    /* the normal, turned with the half-plane: at a right angle to it, on the same side for all */
+    if (count % 2) return broken(s, "an edge has no opposite", err);
+    /* normals, negated where needed so that all are on the same side of their half-plane */
     int64_t(*u)[3] = malloc((size_t)count * sizeof *u);
-    int *order = malloc(2 * (size_t)count * sizeof *order), *open, depth = 0, least = 0, start = 0;
+    int *order = malloc(2 * (size_t)count * sizeof *order), *open, depth = 0, min_depth = 0, start = 0;
     if (!u || !order) {
         free(u);
         free(order);
@@ -146,12 +142,12 @@ static enum status pair_around(struct joined *j, int *of, int count, const struc
     }
     for (int i = 0; i < count; i++) {
         depth += FORWARD(of[order[i]]) ? -1 : 1;
-        if (depth < least) {
-            least = depth;
+        if (depth < min_depth) {
+            min_depth = depth;
             start = i + 1;
         }
     }
-    const enum status st = depth ? broken(s, "an edge whose faces do not alternate", err) : ST_OK;
+    const enum status st = depth ? broken(s, "the faces around an edge do not alternate", err) : ST_OK;
     for (int i = 0; !st && i < count; i++) {
         const int h = of[order[(start + i) % count]];
         if (!FORWARD(h)) {
@@ -179,8 +175,8 @@ static int compare_along(const void *a, const void *b, void *ctx)
     return exact_compare_along(l->space, l->line, *(const int *)a, *(const int *)b);
 }
 
-/* The borders of one line, and the points to cut them at. index is scratch, by point. */
-static enum status cut_line(struct joined *j, const int *borders, int border_count, int *points, int point_count,
+/* Cuts the borders of one line at the given points into half-edges, and pairs these. index is scratch, by point. */
+static enum status cut_line(struct body_union *j, const int *borders, int border_count, int *points, int point_count,
                             int *index, const struct solid *s, struct err *err)
 {
     const struct along along = {&j->set.space, &j->set.space.lines[j->borders.borders[borders[0]].line]};
@@ -222,7 +218,7 @@ static enum status cut_line(struct joined *j, const int *borders, int border_cou
     return st;
 }
 
-static enum status make_halves(struct joined *j, const struct solid *s, struct err *err)
+static enum status make_halves(struct body_union *j, const struct solid *s, struct err *err)
 {
     struct border_set *b = &j->borders;
     const size_t lines = (size_t)j->set.space.line_count, points = (size_t)j->set.space.point_count;
@@ -264,8 +260,8 @@ static enum status make_halves(struct joined *j, const struct solid *s, struct e
 
 /* ---------------------------------------------------------------------------------------------------------- loops */
 
-/* Of the half-edges that leave the point in which h ends, in h's face: the first clockwise from where h comes from. */
-static int following(const struct joined *j, int h, const int *leaving, int count)
+/* The half-edge that follows h in its face: of those that leave h's end, the first one clockwise from h's reverse. */
+static int following(const struct body_union *j, int h, const int *leaving, int count)
 {
     const struct border *b = &j->borders.borders[j->halves[h].border];
     int best = -1, found = 0;
@@ -293,7 +289,7 @@ static int following(const struct joined *j, int h, const int *leaving, int coun
     return best;
 }
 
-static enum status link_halves(struct joined *j, const struct solid *s, struct err *err)
+static enum status link_halves(struct body_union *j, const struct solid *s, struct err *err)
 {
     const size_t points = (size_t)j->set.space.point_count;
     int *first = calloc(points + 2, sizeof *first), *leaving = malloc(((size_t)j->half_count + 1) * sizeof *leaving);
@@ -307,7 +303,7 @@ static enum status link_halves(struct joined *j, const struct solid *s, struct e
         const int to = j->halves[j->halves[i].twin].from;
         const int next = following(j, i, &leaving[first[to]], first[to + 1] - first[to]);
         if (next < 0 || j->halves[next].prev >= 0) {
-            st = broken(s, "the edge of a face that does not go on", err);
+            st = broken(s, "the edge of a face has no successor", err);
             break;
         }
         j->halves[i].next = next;
@@ -320,13 +316,13 @@ static enum status link_halves(struct joined *j, const struct solid *s, struct e
         st = exact_grow(&j->loops, &j->loop_capacity, j->loop_count + 1, sizeof *j->loops, err);
         if (st) break;
         for (int h = i; j->halves[h].loop < 0; h = j->halves[h].next) j->halves[h].loop = j->loop_count;
-        j->loops[j->loop_count++] = (struct loop){.half = i, .face = -1};
+        j->loops[j->loop_count++] = (struct union_loop){.half = i, .face = -1};
     }
     return st;
 }
 
-/* Vertices, one for each fan of faces; those in the middle of an edge go. */
-static void make_vertices(struct joined *j)
+/* Makes a vertex for each fan of faces, and removes those in the middle of an edge. */
+static void make_vertices(struct body_union *j)
 {
     struct half *h = j->halves;
     for (int i = 0; i < j->half_count; i++) {
@@ -352,7 +348,7 @@ static void make_vertices(struct joined *j)
     }
 }
 
-static void coordinates(const struct joined *j, int half, double p[3])
+static void coordinates(const struct body_union *j, int half, double p[3])
 {
     const struct half *h = &j->halves[half];
     memcpy(p, h->from >= 0 ? j->set.space.points[h->from].p : h->middle, 3 * sizeof *p);
@@ -360,8 +356,8 @@ static void coordinates(const struct joined *j, int half, double p[3])
 
 /* ---------------------------------------------------------------------------------------------------------- faces */
 
-/* Axes u, v of the projection in which a face seen from outside keeps its sense of turning. */
-static void projection(const struct joined *j, const struct border *b, int *u, int *v)
+/* Axes u, v of the projection in which a face seen from outside keeps its orientation. */
+static void projection(const struct body_union *j, const struct border *b, int *u, int *v)
 {
     const int64_t *n = j->set.space.planes[b->plane].n;
     int k = 0;
@@ -372,25 +368,25 @@ static void projection(const struct joined *j, const struct border *b, int *u, i
     *v = (k + (same ? 2 : 1)) % 3;
 }
 
-/* A loop is a hole if the face goes on beyond the loop's corner that is least in u, then v, towards less u. */
-static void judge_loop(struct joined *j, int loop)
+/* A loop is a hole if the face continues towards lower u at the loop's corner with the lowest u (then v). */
+static void classify_loop(struct body_union *j, int loop)
 {
     const struct half *h = j->halves;
     const struct exact_space *s = &j->set.space;
     const int first = j->loops[loop].half;
     const struct border *b = &j->borders.borders[h[first].border];
-    int u, v, least = h[first].from;
+    int u, v, lowest = h[first].from;
     projection(j, b, &u, &v);
-    const double *origin = s->points[least].p;
+    const double *origin = s->points[lowest].p;
     double area = 0;
     for (int i = h[first].next; i != first; i = h[i].next) {
-        const int c = exact_compare(s, h[i].from, least, u);
-        if (c < 0 || (!c && exact_compare(s, h[i].from, least, v) < 0)) least = h[i].from;
+        const int c = exact_compare(s, h[i].from, lowest, u);
+        if (c < 0 || (!c && exact_compare(s, h[i].from, lowest, v) < 0)) lowest = h[i].from;
         const double *p = s->points[h[i].from].p, *q = s->points[h[h[i].next].from].p;
         area += 0.5 * ((p[u] - origin[u]) * (q[v] - origin[v]) - (q[u] - origin[u]) * (p[v] - origin[v]));
     }
     j->loops[loop].area = fabs(area);
-    /* in the plane, towards less u at the same v */
+    /* the direction in the plane towards lower u at the same v */
     int64_t n[3], down[3], west[3] = {0};
     const int k = 3 - u - v;
     outward(j, first, n);
@@ -399,7 +395,7 @@ static void judge_loop(struct joined *j, int loop)
     negated(n, down);
     int i = first;
     do {
-        if (h[i].from == least) {
+        if (h[i].from == lowest) {
             int64_t back[3], on[3];
             direction(j, h[i].prev, back);
             negated(back, back);
@@ -410,8 +406,8 @@ static void judge_loop(struct joined *j, int loop)
     } while (i != first);
 }
 
-/* -1 outside, 0 on, 1 inside: a point of the face's plane and a loop, by winding in the projection. */
-static int point_in_loop(const struct joined *j, int point, int loop)
+/* A point of the face's plane is outside (-1), on (0) or inside (1) a loop: its winding number in the projection. */
+static int point_in_loop(const struct body_union *j, int point, int loop)
 {
     const struct half *h = j->halves;
     const struct exact_space *s = &j->set.space;
@@ -445,8 +441,8 @@ static int point_in_loop(const struct joined *j, int point, int loop)
     return winding ? 1 : -1;
 }
 
-/* The same of any place, in doubles: of places that are well inside or outside. */
-static bool place_in_loop(const struct joined *j, const double p[3], int loop)
+/* The same for coordinates, in floating point, for positions well inside or outside. */
+static bool position_in_loop(const struct body_union *j, const double p[3], int loop)
 {
     const struct half *h = j->halves;
     const int first = j->loops[loop].half;
@@ -461,7 +457,7 @@ static bool place_in_loop(const struct joined *j, const double p[3], int loop)
     return in;
 }
 
-static bool loop_in_loop(const struct joined *j, int loop, int outer)
+static bool loop_in_loop(const struct body_union *j, int loop, int outer)
 {
     const struct half *h = j->halves;
     const int first = j->loops[loop].half;
@@ -471,17 +467,17 @@ static bool loop_in_loop(const struct joined *j, int loop, int outer)
         if (in) return in > 0;
         i = h[i].next;
     } while (i != first);
-    /* all its corners are on the other: the middle of an edge that is not on it decides */
+    /* all its corners are on the other loop: the middle of an edge decides */
     const double *a = j->set.space.points[h[first].from].p, *b = j->set.space.points[h[h[first].next].from].p;
-    return place_in_loop(j, (double[3]){0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]), 0.5 * (a[2] + b[2])}, outer);
+    return position_in_loop(j, (double[3]){0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]), 0.5 * (a[2] + b[2])}, outer);
 }
 
-static const struct border *loop_border(const struct joined *j, int loop)
+static const struct border *loop_border(const struct body_union *j, int loop)
 {
     return &j->borders.borders[j->halves[j->loops[loop].half].border];
 }
 
-static int loop_side(const struct joined *j, int loop)
+static int loop_side(const struct body_union *j, int loop)
 {
     return 2 * loop_border(j, loop)->plane + (loop_border(j, loop)->side > 0);
 }
@@ -497,8 +493,8 @@ static int compare_loops(const void *a, const void *b)
     return (p->loop > q->loop) - (p->loop < q->loop);
 }
 
-/* Loops of one side of one plane to faces; facets inside a face give it their names. */
-static enum status faces_of_side(struct joined *j, const struct loop_order *loops, int count, const struct solid *s,
+/* Makes faces from the loops on one side of one plane. */
+static enum status faces_of_side(struct body_union *j, const struct loop_order *loops, int count, const struct solid *s,
                                  struct err *err)
 {
     for (int i = 0; i < count; i++) {
@@ -507,7 +503,7 @@ static enum status faces_of_side(struct joined *j, const struct loop_order *loop
         if (exact_grow(&j->faces, &j->face_capacity, j->face_count + 1, sizeof *j->faces, err)) return err->status;
         const struct border *b = loop_border(j, l);
         j->loops[l].face = j->face_count;
-        j->faces[j->face_count++] = (struct face){b->plane, b->side, INT32_MAX, l, 0};
+        j->faces[j->face_count++] = (struct union_face){b->plane, b->side, INT32_MAX, l, 0};
     }
     for (int i = 0; i < count; i++) {
         const int l = loops[i].loop;
@@ -519,19 +515,19 @@ static enum status faces_of_side(struct joined *j, const struct loop_order *loop
             if (best >= 0 && j->loops[o].area >= j->loops[best].area) continue;
             if (loop_in_loop(j, l, o)) best = o;
         }
-        if (best < 0) return broken(s, "a hole without a face around it", err);
+        if (best < 0) return broken(s, "a hole has no face around it", err);
         j->loops[l].face = j->loops[best].face;
         j->faces[j->loops[best].face].holes++;
     }
     return ST_OK;
 }
 
-static int face_at(const struct joined *j, const struct loop_order *loops, int count, const double p[3])
+static int face_at(const struct body_union *j, const struct loop_order *loops, int count, const double p[3])
 {
     int best = -1;
     for (int i = 0; i < count; i++) {
         const int l = loops[i].loop;
-        if (j->loops[l].hole || !place_in_loop(j, p, l)) continue;
+        if (j->loops[l].hole || !position_in_loop(j, p, l)) continue;
         if (best < 0 || j->loops[l].area < j->loops[best].area) best = l;
     }
     return best < 0 ? -1 : j->loops[best].face;
@@ -550,32 +546,21 @@ static int side_begin(const struct loop_order *order, int count, int key)
     return low;
 }
 
-/* Faces, their names (the least rank of what they are made of), and which names they took up. loop_of_border: a loop of
- * each border. */
-static enum status make_faces(struct joined *j, const int *loop_of_border, struct merges *merges, char *present,
-                              const struct solid *s, struct err *err)
+/* Names each face after the lowest rank among its facets, and records the names that it merged. loop_of_border: a loop
+ * of each border. */
+static enum status name_faces(struct body_union *j, const struct loop_order *order, const int *loop_of_border,
+                              struct merges *merges, char *present, struct err *err)
 {
-    struct loop_order *order = malloc(((size_t)j->loop_count + 1) * sizeof *order);
-    enum status st = order ? ST_OK : err_nomem(err, "faces of a union", (size_t)j->loop_count * sizeof *order);
-    const int first = merges->count;
-    for (int i = 0; !st && i < j->loop_count; i++) {
-        judge_loop(j, i);
-        order[i] = (struct loop_order){loop_side(j, i), i};
-    }
-    if (!st && j->loop_count) qsort(order, (size_t)j->loop_count, sizeof *order, compare_loops);
-    for (int i = 0, k; !st && i < j->loop_count; i = k) {
-        for (k = i + 1; k < j->loop_count && order[k].key == order[i].key;) k++;
-        st = faces_of_side(j, &order[i], k - i, s, err);
-    }
-    /* for now a merge's `into` is the face */
     const struct border_set *b = &j->borders;
-    if (!st)
-        st = exact_grow(&merges->merges, &merges->capacity, first + b->name_count + b->inner_count,
-                        sizeof *merges->merges, err);
-    for (int i = 0; !st && i < b->name_count; i++)
+    const int first = merges->count;
+    if (exact_grow(&merges->merges, &merges->capacity, first + b->name_count + b->inner_count, sizeof *merges->merges,
+                   err))
+        return err->status;
+    /* until names are known, a merge's `into` is the face */
+    for (int i = 0; i < b->name_count; i++)
         merges->merges[merges->count++] =
             (struct merge){b->names[i].name, j->loops[loop_of_border[b->names[i].border]].face};
-    for (int i = 0; !st && i < b->inner_count; i++) {
+    for (int i = 0; i < b->inner_count; i++) {
         const struct polygon *p = &j->set.polygons[b->inner[i]];
         double middle[3] = {0};
         for (int k = p->first; k < p->first + p->count; k++)
@@ -584,24 +569,42 @@ static enum status make_faces(struct joined *j, const int *loop_of_border, struc
         const int face = face_at(j, &order[begin], side_begin(order, j->loop_count, key + 1) - begin, middle);
         if (face >= 0) merges->merges[merges->count++] = (struct merge){p->name, face};
     }
-    for (int i = first; !st && i < merges->count; i++) {
-        struct face *f = &j->faces[merges->merges[i].into];
+    for (int i = first; i < merges->count; i++) {
+        struct union_face *f = &j->faces[merges->merges[i].into];
         if (merges->merges[i].name < f->name) f->name = merges->merges[i].name;
     }
     int kept = first;
-    for (int i = first; !st && i < merges->count; i++) {
+    for (int i = first; i < merges->count; i++) {
         const struct merge m = {merges->merges[i].name, j->faces[merges->merges[i].into].name};
         present[m.name] = 1;
         if (m.name != m.into) merges->merges[kept++] = m;
     }
-    if (!st) merges->count = kept;
+    merges->count = kept;
+    return ST_OK;
+}
+
+static enum status make_faces(struct body_union *j, const int *loop_of_border, struct merges *merges, char *present,
+                              const struct solid *s, struct err *err)
+{
+    struct loop_order *order = malloc(((size_t)j->loop_count + 1) * sizeof *order);
+    enum status st = order ? ST_OK : err_nomem(err, "faces of a union", (size_t)j->loop_count * sizeof *order);
+    for (int i = 0; !st && i < j->loop_count; i++) {
+        classify_loop(j, i);
+        order[i] = (struct loop_order){loop_side(j, i), i};
+    }
+    if (!st && j->loop_count) qsort(order, (size_t)j->loop_count, sizeof *order, compare_loops);
+    for (int i = 0, k; !st && i < j->loop_count; i = k) {
+        for (k = i + 1; k < j->loop_count && order[k].key == order[i].key;) k++;
+        st = faces_of_side(j, &order[i], k - i, s, err);
+    }
+    if (!st) st = name_faces(j, order, loop_of_border, merges, present, err);
     free(order);
     return st;
 }
 
 struct edge_ends {
     int low, high, half;
-    bool part;
+    bool split;
 };
 
 static int compare_ends(const void *a, const void *b)
@@ -612,8 +615,8 @@ static int compare_ends(const void *a, const void *b)
     return (p->half > q->half) - (p->half < q->half);
 }
 
-/* A place on half-edge h's line is on an edge of the loop along that line. */
-static bool edge_along(const struct joined *j, const double p[3], int h, int loop)
+/* Whether a position on half-edge h's line is on an edge of the loop along that line. */
+static bool edge_along(const struct body_union *j, const double p[3], int h, int loop)
 {
     const struct half *k = j->halves;
     const int line = j->borders.borders[k[h].border].line, axis = j->set.space.lines[line].axis;
@@ -628,8 +631,8 @@ static bool edge_along(const struct joined *j, const double p[3], int h, int loo
     return false;
 }
 
-/* Half-edge h runs through the inside of a face of neither of its sides, from one corner of that face to another. */
-static bool lies_in_a_face(const struct joined *j, int h)
+/* Whether half-edge h crosses the inside of a third face, from one of that face's corners to another. */
+static bool crosses_a_face(const struct body_union *j, int h)
 {
     const struct half *k = j->halves;
     const int end = k[h].twin, own[2] = {j->loops[k[h].loop].face, j->loops[k[end].loop].face};
@@ -645,17 +648,18 @@ static bool lies_in_a_face(const struct joined *j, int h)
         coordinates(j, end, q);
         for (int i = 0; i < 3; i++) p[i] = 0.5 * (p[i] + q[i]);
         const int outer = j->faces[face].loop;
-        bool in = !edge_along(j, p, h, outer) && place_in_loop(j, p, outer);
+        bool in = !edge_along(j, p, h, outer) && position_in_loop(j, p, outer);
         for (int l = 0; in && j->faces[face].holes && l < j->loop_count; l++)
-            in = !(j->loops[l].hole && j->loops[l].face == face && (edge_along(j, p, h, l) || place_in_loop(j, p, l)));
+            in = !(j->loops[l].hole && j->loops[l].face == face &&
+                   (edge_along(j, p, h, l) || position_in_loop(j, p, l)));
         if (in) return true;
     }
     return false;
 }
 
-/* A vertex in the middle of each edge that another one joins the ends of, or that a triangle of a third face might have
- * as a side: a vertex pair is one edge, also of the triangles. */
-static enum status part_edges(struct joined *j, struct err *err)
+/* Splits in the middle each edge whose ends another edge joins too, or that may be a side of a third face's triangle:
+ * a pair of vertices then identifies an edge, also of the triangles. */
+static enum status split_edges(struct body_union *j, struct err *err)
 {
     struct edge_ends *ends = malloc(((size_t)j->half_count + 1) * sizeof *ends);
     int count = 0, kept = 0;
@@ -668,10 +672,10 @@ static enum status part_edges(struct joined *j, struct err *err)
     if (!st && count) qsort(ends, (size_t)count, sizeof *ends, compare_ends);
     for (int i = 0; !st && i < count; i++) {
         const bool again = i && ends[i].low == ends[i - 1].low && ends[i].high == ends[i - 1].high;
-        ends[i].part = again || lies_in_a_face(j, ends[i].half);
+        ends[i].split = again || crosses_a_face(j, ends[i].half);
     }
     for (int i = 0; !st && i < count; i++)
-        if (ends[i].part) ends[kept++] = ends[i];
+        if (ends[i].split) ends[kept++] = ends[i];
     for (int i = 0; !st && i < kept; i++) {
         const int pair[2] = {ends[i].half, j->halves[ends[i].half].twin}, made = j->half_count;
         double p[2][3];
@@ -709,7 +713,7 @@ static int compare_faces(const void *a, const void *b)
     return (p->face > q->face) - (p->face < q->face);
 }
 
-static enum status add_loop(struct joined *j, struct result *r, int loop, int *vertex, struct err *err)
+static enum status add_loop(struct body_union *j, struct polygon_soup *r, int loop, int *vertex, struct err *err)
 {
     const int first = j->loops[loop].half;
     int h = first, count = 0;
@@ -720,7 +724,7 @@ static enum status add_loop(struct joined *j, struct result *r, int loop, int *v
             if (exact_grow(&r->vertices, &r->vertex_capacity, r->vertex_count + 1, sizeof *r->vertices, err))
                 return err->status;
             coordinates(j, h, p);
-            /* divided, so that 2700000 becomes the double 2.7; + 0: no negative zero */
+            /* divided, so that 2700000 becomes the double 2.7; + 0 removes negative zeros */
             r->vertices[r->vertex_count] = vec3_make(p[0] / 1e6 + 0., p[1] / 1e6 + 0., p[2] / 1e6 + 0.);
             *v = r->vertex_count++;
         }
@@ -735,7 +739,7 @@ static enum status add_loop(struct joined *j, struct result *r, int loop, int *v
     return ST_OK;
 }
 
-static enum status add_result(struct joined *j, struct result *r, const char *body, const char *const *names,
+static enum status add_result(struct body_union *j, struct polygon_soup *r, const char *body, const char *const *names,
                               struct err *err)
 {
     struct face_order *order = malloc(((size_t)j->face_count + 1) * sizeof *order);
@@ -754,7 +758,7 @@ static enum status add_result(struct joined *j, struct result *r, const char *bo
             if (j->loops[i].hole) holes[hole_first[j->loops[i].face + 1]++] = i;
     }
     for (int i = 0; !st && i < j->face_count; i++) {
-        const struct face *f = &j->faces[order[i].face];
+        const struct union_face *f = &j->faces[order[i].face];
         const struct exact_plane *p = &j->set.space.planes[f->plane];
         const double n[3] = {(double)(p->n[0] * f->side), (double)(p->n[1] * f->side), (double)(p->n[2] * f->side)};
         const double length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
@@ -783,7 +787,7 @@ static enum status add_result(struct joined *j, struct result *r, const char *bo
     return st;
 }
 
-static void joined_release(struct joined *j)
+static void joined_release(struct body_union *j)
 {
     convex_set_release(&j->set);
     border_set_release(&j->borders);
@@ -792,12 +796,12 @@ static void joined_release(struct joined *j)
     free(j->faces);
 }
 
-/* The solids of one body: list->solids[i] for which body_of[i] is `body`. */
-static enum status unite_body(struct result *r, const struct solid_list *list, const int *members, int count,
+/* Unites the solids of one body: list->solids[members[0 .. count)]. half_space_of: first half-space of each solid. */
+static enum status unite_body(struct polygon_soup *r, const struct solid_list *list, const int *members, int count,
                               const size_t *half_space_of, const struct lattice_half_space *half_spaces,
                               const struct name_table *names, struct merges *merges, struct err *err)
 {
-    struct joined j = {0};
+    struct body_union j = {0};
     const struct solid *first = &list->solids[members[0]];
     enum status st = ST_OK;
     for (int i = 0; !st && i < count; i++) {
@@ -814,7 +818,7 @@ static enum status unite_body(struct result *r, const struct solid_list *list, c
         make_vertices(&j);
         st = make_faces(&j, loop_of_border, merges, names->present, first, err);
     }
-    if (!st) st = part_edges(&j, err);
+    if (!st) st = split_edges(&j, err);
     if (!st) st = add_result(&j, r, first->body, names->texts, err);
     free(loop_of_border);
     joined_release(&j);
@@ -830,7 +834,7 @@ static uint64_t hash_text(const char *text)
     return h ^ (h >> 32);
 }
 
-/* Index of a text among those that came before it, or the next one. */
+/* Rank of a text: the index of its first occurrence. */
 static int rank_of(const char *text, const char **texts, int *count, int *slots, int size)
 {
     unsigned at = (unsigned)hash_text(text) & (unsigned)(size - 1);
@@ -876,9 +880,9 @@ static int compare_merges(const void *a, const void *b)
 static enum status write_log(struct unite_log *log, struct merges *merges, const struct name_table *names,
                              struct err *err)
 {
-    const size_t most = (size_t)merges->count + (size_t)names->count + 1;
-    log->notes = malloc(most * sizeof *log->notes);
-    if (!log->notes) return err_nomem(err, "the log of a union", most * sizeof *log->notes);
+    const size_t max_notes = (size_t)merges->count + (size_t)names->count + 1;
+    log->notes = malloc(max_notes * sizeof *log->notes);
+    if (!log->notes) return err_nomem(err, "the log of a union", max_notes * sizeof *log->notes);
     if (merges->count) qsort(merges->merges, (size_t)merges->count, sizeof *merges->merges, compare_merges);
     for (int i = 0, k = 0; i < names->count; i++) {
         if (!names->present[i]) log->notes[log->count++] = (struct unite_note){UNITE_HIDDEN, names->texts[i], NULL};
@@ -904,7 +908,7 @@ enum status solids_unite(struct solid_mesh *mesh, const struct solid_list *solid
     struct lattice_half_space *half_spaces = NULL;
     struct name_table names = {0};
     struct merges merges = {0};
-    struct result r = {0};
+    struct polygon_soup r = {0};
     int *body = malloc((n + 1) * sizeof *body), *members = malloc((n + 1) * sizeof *members), bodies = 0;
     int *first = calloc(n + 2, sizeof *first);
     size_t *half_space_of = malloc((n + 1) * sizeof *half_space_of), at = 0;
@@ -927,7 +931,7 @@ enum status solids_unite(struct solid_mesh *mesh, const struct solid_list *solid
         r.polygons[i].corners = r.corners + r.at[2 * i];
         r.polygons[i].sizes = r.sizes + r.at[2 * i + 1];
     }
-    if (!st) st = solid_mesh_make(mesh, r.vertices, r.vertex_count, r.polygons, r.polygon_count, err);
+    if (!st) st = solid_mesh_make(mesh, r.vertices, r.vertex_count, r.polygons, r.polygon_count, NULL, err);
     if (!st && log) st = write_log(log, &merges, &names, err);
     if (st) {
         solid_mesh_release(mesh);

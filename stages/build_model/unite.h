@@ -1,7 +1,7 @@
-/* unite.h - the union of convex solids as closed half-edge meshes, exact in its topology.
+/* unite.h - the union of convex solids as closed half-edge meshes, with exact topology.
  *
- * Each body is united by itself. Inner faces vanish, coplanar faces that meet along an edge become one face, with holes
- * as loops; solids that touch in an edge or a point stay apart there. The same input gives the same bytes. */
+ * Each body is united separately. Inner faces vanish; coplanar faces that meet along an edge become one face, with
+ * holes as loops; solids that touch in an edge or a point stay separate there. The same input gives the same bytes. */
 #ifndef REMODEL_BUILD_MODEL_UNITE_H
 #define REMODEL_BUILD_MODEL_UNITE_H
 
@@ -9,13 +9,13 @@
 #include "stages/build_model/solid.h"
 
 enum unite_event {
-    UNITE_MERGED, /* some of `name` became part of a face called `into` */
-    UNITE_HIDDEN, /* nothing of `name` is on the surface */
+    UNITE_MERGED, /* a part of `name` became part of the face `into` */
+    UNITE_HIDDEN, /* no part of `name` is on the surface */
 };
 
 struct unite_note {
     enum unite_event event;
-    const char *name, *into; /* of the solids' names: live as long as the list; into NULL where nothing is left */
+    const char *name, *into; /* owned by the list of solids; into is NULL for UNITE_HIDDEN */
 };
 
 struct unite_log {
@@ -23,10 +23,10 @@ struct unite_log {
     int count;
 };
 
-/* mesh and log are empty on entry (log may be NULL); the caller releases both. Bodies come in the order in which they
- * first occur, faces of a body in the order of their names in the list; ids are 1, 2, ... likewise.
- * ST_DATA: a solid that is empty, flat after rounding to the lattice, or not bounded, or beyond SOLID_REACH; the
- * sentence names its body and first face. No solids make an empty mesh. */
+/* mesh and log are empty on entry (log may be NULL) and after a failure; the caller releases both. Bodies come in the
+ * order of their first occurrence, faces of a body in the order of their names in the list; ids are 1, 2, ... in the
+ * same order. ST_DATA: a solid is empty, flat after rounding to the lattice, unbounded, or beyond SOLID_REACH; the
+ * message names its body and first face. No solids make an empty mesh. */
 enum status solids_unite(struct solid_mesh *mesh, const struct solid_list *solids, struct unite_log *log,
                          struct err *err);
 

@@ -1,16 +1,16 @@
-/* blocks.c - see blocks.h. */
+/* blocks.c - blocks of space, and the size of a scene. */
 #include "stages/find_axes/blocks.h"
 
 #include <stdlib.h>
 
 #include "common/base/sort.h"
 
-static const double EDGE = 0.33; /* of a block, in sizes of the scene: four sizes are covered */
+static const double EDGE = 0.33; /* of a block, in scene sizes: 12 blocks cover four scene sizes */
 
 enum status cloud_size(double *size, const struct point_cloud *cloud, struct vec3 origin, struct err *err)
 {
-    enum { MOST = 20000 }; /* evenly spaced points tell it well enough */
-    const size_t step = cloud->count / MOST + 1;
+    enum { MAX_SAMPLES = 20000 }; /* of evenly spaced points */
+    const size_t step = cloud->count / MAX_SAMPLES + 1;
     double *d = malloc((cloud->count / step + 1) * sizeof *d);
     size_t count = 0;
     if (!d) return err_nomem(err, "distances", (cloud->count / step + 1) * sizeof *d);

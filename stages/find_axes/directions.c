@@ -1,14 +1,13 @@
-/* directions.c - see directions.h.
+/* directions.c - three orthogonal directions of most normals [Furukawa 2009].
  *
- * Y. Furukawa, B. Curless, S. Seitz, R. Szeliski, "Manhattan-world stereo", 2009: normals are counted in bins of the
- * half sphere (a surface and its back are one direction); the first axis is where most look, the second where most look
- * at about a right angle to it, the third at about right angles to both. Theirs is greedy. Here each of the densest
- * places begins a triple, and the triple counts that most points look along in all: a sofa's side may be denser than a
- * wall, but nothing much stands at right angles to it.
+ * Normals are counted in bins of the half sphere (a surface and its back have the same direction). The first axis is
+ * the densest direction, the second the densest about perpendicular to it, the third the densest about perpendicular to
+ * both. The source is greedy. Here each of the densest directions starts a triple, and the triple with the most points
+ * in total wins: the side of a sofa may be denser than a wall, but few surfaces are perpendicular to it.
  *
- * The triple is then made exactly orthogonal and refined by robust least squares over the points: a normal's residual is
- * its angle to the nearest axis, Tukey's biweight leaves out what has nothing to do with one. Where there are only two
- * clusters their cross product is the third axis. */
+ * The triple is then made exactly orthogonal and refined by robust least squares over the points: a normal's residual
+ * is its angle to the nearest axis, and Tukey's biweight excludes normals that are not along any axis. Where there are
+ * only two clusters, their cross product is the third axis. */
 #include "stages/find_axes/directions.h"
 
 #include <stdlib.h>
@@ -16,17 +15,17 @@
 #include "stages/find_axes/blocks.h"
 
 enum {
-    GRID = 32, /* bins along a side of the cube onto which directions are projected: up to 3.6 degrees wide */
+    GRID = 32, /* bins along an edge of the cube onto which directions are projected: up to 3.6 degrees wide */
     BINS = 3 * GRID * GRID,
-    STARTS = 24,     /* densest places that begin a triple */
+    STARTS = 24,     /* number of directions that start a triple */
     ITERATIONS = 12, /* of the refinement */
     STEPS = 2000,    /* of the histogram of angles */
 };
-static const double CAP = 10 * M_PI / 180;   /* of what looks along an axis */
-static const double REACH = 15 * M_PI / 180; /* beyond it, normals never count for an axis */
-static const double LEAST_SPREAD = 0.3 * M_PI / 180;
-static const double KNOWN = 1e-4;     /* of the largest eigenvalue, from which on a direction is told by the data */
-static const double BIWEIGHT = 4.685; /* standard deviations at which a residual counts for nothing (95 % efficiency) */
+static const double CAP = 10 * M_PI / 180;   /* max angle between an axis and the normals that count for it */
+static const double REACH = 15 * M_PI / 180; /* max angle between an axis and the normals that refine it */
+static const double MIN_SPREAD = 0.3 * M_PI / 180;
+static const double KNOWN = 1e-4;     /* of the largest eigenvalue: smaller ones are undetermined by the data */
+static const double BIWEIGHT = 4.685; /* standard deviations at which a residual's weight is zero (95 % efficiency) */
 
 struct bin {
     struct vec3 sum, direction;
@@ -78,7 +77,7 @@ static int cell_of(double part) /* of -1 .. 1 */
     return at < 0 ? 0 : at >= GRID ? GRID - 1 : at;
 }
 
-/* n or its opposite, whichever looks along the half axis of the cube's face; *at: its bin. */
+/* n or its opposite, with the largest component positive; *at: its bin. */
 static struct vec3 fold(struct vec3 n, int *at)
 {
     const double c[3] = {n.x, n.y, n.z};
@@ -110,20 +109,20 @@ static int fill_bins(struct bin *bins, const struct point_cloud *cloud)
     return used;
 }
 
-/* The densest bin at about right angles to the axes; -1: there is none. */
+/* The densest bin about perpendicular to the given axes; -1: none. */
 static int densest(const struct bin *bins, int count, const struct vec3 *axes, int given)
 {
     int best = -1;
     for (int i = 0; i < count; i++) {
-        bool good = best < 0 || bins[i].mass > bins[best].mass;
-        for (int k = 0; k < given; k++) good = good && fabs(vec3_dot(bins[i].direction, axes[k])) < sin(CAP);
-        if (good) best = i;
+        bool better = best < 0 || bins[i].mass > bins[best].mass;
+        for (int k = 0; k < given; k++) better = better && fabs(vec3_dot(bins[i].direction, axes[k])) < sin(CAP);
+        if (better) best = i;
     }
     return best;
 }
 
-/* The middle of the normals around a direction. */
-static struct vec3 centre(const struct bin *bins, int count, struct vec3 d)
+/* Mean shift from a direction to the mean of the normals around it. */
+static struct vec3 mean_shift(const struct bin *bins, int count, struct vec3 d)
 {
     for (int round = 0; round < 3; round++) {
         struct vec3 sum = {0};
@@ -136,34 +135,35 @@ static struct vec3 centre(const struct bin *bins, int count, struct vec3 d)
     return d;
 }
 
-static bool begins(const struct bin *bins, int count, int at, const struct vec3 *starts, int known)
+/* Whether a bin may start a triple: it is apart from the earlier starts. */
+static bool may_start(const struct bin *bins, int count, int at, const struct vec3 *starts, int known)
 {
     for (int k = 0; k < known; k++)
         if (fabs(vec3_dot(bins[at].direction, starts[k])) > cos(CAP)) return false;
     return at < count;
 }
 
-/* axes of the triple that most points look along, not yet orthogonal; returns how many there are, 1 to 3. */
+/* The axes of the triple with the most points, not yet orthogonal; returns their number, 1 to 3, or 0: no points. */
 static int best_triple(struct vec3 axes[3], const struct bin *bins, int count)
 {
     struct vec3 starts[STARTS];
-    double most = -1;
+    double max_mass = -1;
     int found = 0;
     for (int s = 0; s < STARTS; s++) {
         int first = -1;
         for (int i = 0; i < count; i++)
-            if ((first < 0 || bins[i].mass > bins[first].mass) && begins(bins, count, i, starts, s)) first = i;
+            if ((first < 0 || bins[i].mass > bins[first].mass) && may_start(bins, count, i, starts, s)) first = i;
         if (first < 0) break;
         starts[s] = bins[first].direction;
-        struct vec3 triple[3] = {centre(bins, count, starts[s])};
+        struct vec3 triple[3] = {mean_shift(bins, count, starts[s])};
         double mass = bins[first].mass;
         int known = 1;
         for (int at; known < 3 && (at = densest(bins, count, triple, known)) >= 0; known++) {
-            triple[known] = centre(bins, count, bins[at].direction);
+            triple[known] = mean_shift(bins, count, bins[at].direction);
             mass += bins[at].mass;
         }
-        if (!(mass > most)) continue;
-        most = mass;
+        if (!(mass > max_mass)) continue;
+        max_mass = mass;
         found = known;
         for (int k = 0; k < 3; k++) axes[k] = triple[k];
     }
@@ -172,7 +172,7 @@ static int best_triple(struct vec3 axes[3], const struct bin *bins, int count)
 
 /* ------------------------------------------------------------------------------------------------------- refinement */
 
-/* The axis that n is nearest to, n in the frame of the axes, and the angle to it. */
+/* The axis nearest to n, which is in the frame of the axes, and the angle between them. */
 static int nearest_axis(struct vec3 n, double *angle)
 {
     const double c[3] = {fabs(n.x), fabs(n.y), fabs(n.z)};
@@ -181,7 +181,7 @@ static int nearest_axis(struct vec3 n, double *angle)
     return k;
 }
 
-/* Standard deviation of angles to the axes in each of the two directions across, by their median. */
+/* Standard deviation of the angles to the axes in each of the two directions across, from their median. */
 static double spread_of_angles(const struct point_cloud *cloud, struct mat3 axes)
 {
     size_t histogram[STEPS] = {0}, count = 0, seen = 0;
@@ -197,8 +197,8 @@ static double spread_of_angles(const struct point_cloud *cloud, struct mat3 axes
     return REACH * (at + 0.5) / STEPS / sqrt(2 * log(2)); /* of a Rayleigh distribution */
 }
 
-/* The axis of a normal in the frame of the axes, and the turn that would bring it to the normal, weighted; its weight. */
-static double pull(struct vec3 n, double cut, int *axis, struct vec3 *turn)
+/* A normal's axis, and the weighted rotation that would bring the axis to the normal. Returns the weight. */
+static double weighted_turn(struct vec3 n, double cut, int *axis, struct vec3 *turn)
 {
     const double c[3] = {n.x, n.y, n.z};
     double angle, t[3] = {0};
@@ -213,10 +213,10 @@ static double pull(struct vec3 n, double cut, int *axis, struct vec3 *turn)
 
 static double cut_of(const struct point_cloud *cloud, struct mat3 axes)
 {
-    return fmin(REACH, BIWEIGHT * fmax(spread_of_angles(cloud, axes), LEAST_SPREAD));
+    return fmin(REACH, BIWEIGHT * fmax(spread_of_angles(cloud, axes), MIN_SPREAD));
 }
 
-/* Of the turn: a normal tells nothing of the turn about its own axis. */
+/* Information of the rotation: a normal does not constrain the rotation about its own axis. */
 static struct mat3 information_of(const double weights[3])
 {
     struct mat3 m = {0};
@@ -233,7 +233,7 @@ static void refine(struct mat3 *axes, const struct point_cloud *cloud)
         struct mat3 unknown;
         for (size_t i = 0; i < cloud->count; i++) {
             int k;
-            const double w = pull(mat3_apply(*axes, cloud_normal(&cloud->points[i])), cut, &k, &turn);
+            const double w = weighted_turn(mat3_apply(*axes, cloud_normal(&cloud->points[i])), cut, &k, &turn);
             if (!(w > 0)) continue;
             weights[k] += w;
             sum = vec3_add(sum, turn);
@@ -253,7 +253,7 @@ enum status direction_errors(struct vec3 *errors, const struct mat3 *axes, struc
     for (size_t i = 0; !st && i < cloud->count; i++) {
         int k;
         const struct cloud_point *p = &cloud->points[i];
-        const double w = pull(mat3_apply(*axes, cloud_normal(p)), cut, &k, &turn);
+        const double w = weighted_turn(mat3_apply(*axes, cloud_normal(p)), cut, &k, &turn);
         if (!(w > 0)) continue;
         weights[k] += w;
         struct vec3 *sum = &sums[block_of(vec3_sub(p->position, origin), size)];
@@ -264,7 +264,7 @@ enum status direction_errors(struct vec3 *errors, const struct mat3 *axes, struc
     return st;
 }
 
-enum status find_directions(struct directions *d, const struct point_cloud *cloud, double least_part, struct err *err)
+enum status find_directions(struct directions *d, const struct point_cloud *cloud, double min_part, struct err *err)
 {
     struct bin *bins = calloc(BINS, sizeof *bins);
     struct vec3 axes[3] = {{0}};
@@ -272,7 +272,7 @@ enum status find_directions(struct directions *d, const struct point_cloud *clou
     if (!bins) return err_nomem(err, "bins of directions", BINS * sizeof *bins);
     const int known = best_triple(axes, bins, fill_bins(bins, cloud));
     free(bins);
-    if (!known) return err_set(err, ST_DATA, "there are no points, so there are no surfaces to find axes from.");
+    if (!known) return err_set(err, ST_DATA, "there are no points to find axes from; add photographs that overlap.");
     if (known > 1) {
         const struct vec3 x = axes[0];
         const struct vec3 y = vec3_normalize(vec3_sub(axes[1], vec3_scale(x, vec3_dot(x, axes[1]))));
@@ -286,14 +286,14 @@ enum status find_directions(struct directions *d, const struct point_cloud *clou
         }
         for (int k = 0; k < 3; k++) d->part[k] /= (double)cloud->count;
     }
-    int good = 0;
-    for (int k = 0; k < 3; k++) good += d->part[k] >= least_part;
-    if (good < 2)
-        return err_set(err, ST_DATA,
-                       "no two directions at right angles stand out among the normals of %zu points: along the best "
-                       "three look %.1f, %.1f and %.1f %% of them, and two of them must have %.1f %% or more. A room "
-                       "needs flat walls and a floor or ceiling in its points; if they are there but small, lower "
-                       "[find_axes] least_part.",
-                       cloud->count, 100 * d->part[0], 100 * d->part[1], 100 * d->part[2], 100 * least_part);
+    int enough = 0;
+    for (int k = 0; k < 3; k++) enough += d->part[k] >= min_part;
+    if (enough < 2)
+        return err_set(
+            err, ST_DATA,
+            "no two perpendicular directions have enough of the normals of %zu points: the best three have "
+            "%.1f, %.1f and %.1f %% of them, wanted %.1f %% or more for two of them. The points must show flat "
+            "walls and a floor or a ceiling; if these are only small, lower [find_axes] min_part.",
+            cloud->count, 100 * d->part[0], 100 * d->part[1], 100 * d->part[2], 100 * min_part);
     return ST_OK;
 }

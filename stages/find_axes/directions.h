@@ -1,4 +1,4 @@
-/* directions.h - the three directions at right angles along which most of a scene's surfaces look. */
+/* directions.h - the three orthogonal directions of most of a scene's normals. */
 #ifndef REMODEL_DIRECTIONS_H
 #define REMODEL_DIRECTIONS_H
 
@@ -6,21 +6,22 @@
 
 struct directions {
     struct mat3 axes; /* rows: unit vectors in the world, right-handed */
-    double part[3];   /* of the points' normals, those within 10 degrees of the axis or its opposite */
+    double part[3];   /* fraction of the normals within 10 degrees of the axis or its opposite */
 };
 
-/* least_part: of the points, that must look along each of two axes. ST_DATA: no point, or there are no such two. */
-enum status find_directions(struct directions *d, const struct point_cloud *cloud, double least_part, struct err *err);
+/* min_part: fraction of the points that two of the axes must have. ST_DATA: there are no points, or no two axes. */
+enum status find_directions(struct directions *d, const struct point_cloud *cloud, double min_part, struct err *err);
 
-/* Standard errors of the turns about the axes that these normals leave, radians. origin: the middle of the scene. */
+/* Standard errors of the rotations about the axes, from the normals, radians. origin: the middle of the scene. */
 enum status direction_errors(struct vec3 *errors, const struct mat3 *axes, struct vec3 origin,
                              const struct point_cloud *cloud, struct err *err);
 
-/* a turned by the length of w, radians, about w, in its target's axes; exactly orthogonal again. */
+/* a rotated by the length of w, radians, about w, in its target's frame, and orthogonalized. */
 struct mat3 turned_by(struct mat3 a, struct vec3 w);
-/* Of a symmetric matrix, where its eigenvalues tell anything; *unknown projects on the directions where they do not. */
+/* Pseudo-inverse of a symmetric matrix; *unknown: projection to the directions of negligible eigenvalues. */
 struct mat3 inverse_of_known(struct mat3 a, struct mat3 *unknown);
-/* Standard errors of least squares whose inverse information this is, from the gradients of blocks (blocks.h). */
+/* Standard errors of least squares: the sandwich estimator, from the inverse information and the gradients of blocks
+ * (blocks.h). */
 struct vec3 sandwich(struct mat3 inverse, const struct vec3 *gradients, int count);
 
 #endif

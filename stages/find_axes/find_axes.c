@@ -1,9 +1,9 @@
-/* find_axes.c - a room's canonical axes, floor, ceiling and scale, from oriented points.
+/* find_axes.c - finds a room's axes, floor, ceiling and scale from oriented points.
  *
  * reads   VIEWS/cameras.txt, images.txt, points3D.txt, lenses.txt   the cameras
- *         RECORDS/ID.txt                  which way up the photos are
+ *         RECORDS/ID.txt                  the photos' orientations
  *         POINTS                          oriented points on which views agree
- *         SCALE, FIX                      with --scale, --fix: what a user marked (marks.h)
+ *         SCALE, FIX                      with --scale, --fix: the user's marks (marks.h)
  *         VIEWS/VIEW.exr                  of the views that are drawn on
  * writes  axes/VIEW.png beside OUT        the axes and outlines of floor and ceiling, drawn on a few views
  *         OUT                             the axes, last */
@@ -23,54 +23,56 @@
 #include "stages/find_axes/room.h"
 
 #define PARAM_STRUCT struct axes_params
-const struct param axes_param_table[] = {AXES_PARAMS(PARAM_ROW) PARAM_END};
+const struct param axes_param_table[] = {AXES_PARAMS(PARAM_ROW) PARAM_RENAMED(least_part, min_part) PARAM_RENAMED(
+    least_floor, min_floor) PARAM_RENAMED(least_ceiling, min_ceiling) PARAM_RENAMED(least_plane, min_plane) PARAM_END};
 #undef PARAM_STRUCT
 
-static const double MOST_LEANING = 20, MOST_TURNED = 10; /* degrees, from which on something is amiss */
-static const double MOST_BEYOND = 0.2;                   /* part of the points that look up, below the floor */
+/* warnings beyond these */
+static const double MAX_LEANING = 20, MAX_TURN = 10; /* degrees */
+static const double MAX_BEYOND = 0.2;                /* fraction of the upward normals that are below the floor */
 
 struct files {
     const char *views, *records, *points, *scale, *fix, *out;
     struct provenance *prov;
 };
 
-static void tell(const struct room *room, const struct files *f, const struct camera_set *set)
+static void log_summary(const struct room *room, const struct files *f, const struct camera_set *set)
 {
     const struct model_axes *a = &room->axes;
     const char *unit = a->metric ? "m" : "scene units";
     const double turned = room->fix.turn * 180 / M_PI;
-    log_note("normals along x, y and up: %.0f, %.0f and %.0f %%; up leans by %.1f degrees from the cameras' mean",
+    log_note("normals along x, y and up: %.0f, %.0f and %.0f %%; up is %.1f degrees off the cameras' mean",
              100 * room->part[0], 100 * room->part[1], 100 * room->part[2], room->leaning);
     log_note("standard errors: up %.3f degrees, heading %.3f degrees, floor %.2g %s", a->tilt_error, a->heading_error,
              a->floor_error, unit);
     log_note("the origin lies on the floor below view %s, %.4g %s under its camera; %s", set->views[room->central].name,
              -room->floor.height * a->scale, unit,
-             room->floor_marked ? "marked corners say so" : "most points that look up say so");
+             room->floor_marked ? "its height is that of the marked corners" : "its height is that of the points");
     if (turned > 0)
         log_note("%s turns the axes by %.2f degrees", f->fix, turned);
     else if (room->fix.edges)
-        log_note("%s: the edges agree with the axes as well as marks can tell; the axes stay", f->fix);
+        log_note("%s: the marked edges agree with the axes within their errors; the axes are unchanged", f->fix);
     if (room->corner_height < 0 && !room->floor_marked)
-        log_note("%s: the corners agree with the floor as well as marks can tell; the floor stays", f->fix);
+        log_note("%s: the marked corners agree with the floor within their errors; the floor is unchanged", f->fix);
     if (a->ceiling > 0)
-        log_note("ceiling at %.4g +- %.2g %s, told by %zu points", a->ceiling, a->ceiling_error, unit,
+        log_note("ceiling at %.4g +- %.2g %s, from %zu points", a->ceiling, a->ceiling_error, unit,
                  room->ceiling.count);
     else
-        log_note("no ceiling: only %zu points above the central camera look down ([find_axes] least_ceiling)",
-                 room->ceiling.asked);
+        log_note("no ceiling: only %zu points above the central camera have downward normals ([find_axes] min_ceiling)",
+                 room->ceiling.candidates);
     if (a->metric) log_note("1 scene unit is %.6g m, +- %.2g %%", a->scale, 100 * a->scale_error);
     if (a->thickness > 0) log_note("walls are %.4g %s thick", a->thickness, unit);
 
-    if (room->leaning > MOST_LEANING)
-        log_warn("up leans by %.0f degrees from where the photos' upper sides point: look at the pictures of the axes",
+    if (room->leaning > MAX_LEANING)
+        log_warn("up is %.0f degrees off the mean of the photos' upper sides: check the pictures of the axes",
                  room->leaning);
-    if (turned > MOST_TURNED)
-        log_warn("%s turns the axes by %.0f degrees, which is more than a correction: look at the pictures of the axes",
+    if (turned > MAX_TURN)
+        log_warn("%s turns the axes by %.0f degrees, more than a usual correction: check the pictures of the axes",
                  f->fix, turned);
-    if (!room->floor_marked && (double)room->floor.beyond > MOST_BEYOND * (double)room->floor.asked)
-        log_warn("%.0f %% of the points that look up lie below the floor that was found: it may be a table; a floor's "
-                 "corner, marked in two views in axes_fix.txt, corrects it",
-                 100.0 * (double)room->floor.beyond / (double)room->floor.asked);
+    if (!room->floor_marked && (double)room->floor.beyond > MAX_BEYOND * (double)room->floor.candidates)
+        log_warn("%.0f %% of the points with upward normals lie below the floor, which may be a table; if so, mark a "
+                 "corner of the floor in two views in axes_fix.txt",
+                 100.0 * (double)room->floor.beyond / (double)room->floor.candidates);
 }
 
 /* axes/VIEW.png beside OUT. */
@@ -94,7 +96,7 @@ static enum status draw_view(const struct view *view, const struct room *room, c
     if (!st) st = view_image_read(&im, f->views, view, err);
     if (!st && !(pixels = malloc(3 * (size_t)im.width * (size_t)im.height)))
         st = err_nomem(err, "a picture", 3 * (size_t)im.width * (size_t)im.height);
-    if (!st) st = picture_to_look_at(pixels, &im, err);
+    if (!st) st = expose_picture(pixels, &im, err);
     if (!st) draw_room(pixels, view, room, corners, count);
     if (!st) st = picture_path(path, f->out, view->name, err);
     if (!st) st = png_write(path, pixels, im.width, im.height, 3, err);
@@ -103,7 +105,7 @@ static enum status draw_view(const struct view *view, const struct room *room, c
     return st;
 }
 
-/* Where the marked corners are that lie on the floor: by their first mark. */
+/* The positions on the floor of the marked corners, one for each mark. */
 static enum status place_corners(struct vec3 *corners, int *count, const struct room *room,
                                  const struct room_inputs *in, struct err *err)
 {
@@ -123,7 +125,7 @@ static enum status place_corners(struct vec3 *corners, int *count, const struct 
     return ST_OK;
 }
 
-/* A view that an earlier run drew and this one does not is not shown any more. */
+/* Removes the picture of a view that an earlier run may have chosen and this one did not. */
 static enum status remove_picture(const char *out, const char *view, struct err *err)
 {
     char path[FILE_PATH];
@@ -166,9 +168,9 @@ static enum status find(const struct files *f, const struct axes_params *params,
     char path[FILE_PATH];
     enum status st = camera_set_read(&set, f->views, err);
     if (!st) st = camera_set_add_inputs(f->prov, f->views, err);
-    if (!st && !set.view_count) st = err_set(err, ST_DATA, "%s holds no view.", f->views);
+    if (!st && !set.view_count) st = err_set(err, ST_DATA, "%s contains no views; run sfm_import again.", f->views);
     if (!st && !(ups = calloc((size_t)set.view_count, sizeof *ups)))
-        st = err_nomem(err, "a direction a view", (size_t)set.view_count * sizeof *ups);
+        st = err_nomem(err, "up directions of views", (size_t)set.view_count * sizeof *ups);
     if (!st) st = upright_read(ups, &set, f->views, f->records, f->prov, err);
     if (!st) st = file_path(path, f->views, "lenses.txt", "", err);
     if (!st) st = lens_list_read(&lenses, path, err);
@@ -178,7 +180,7 @@ static enum status find(const struct files *f, const struct axes_params *params,
     if (!st && f->fix) st = read_marks(&fix, f->fix, "axes_fix.txt", MARKS_FIX, f->prov, err);
     const struct room_inputs in = {&set, &lenses, ups, &cloud, f->scale ? &scale : NULL, f->fix ? &fix : NULL};
     if (!st) st = find_room(&room, &in, params, err);
-    if (!st) tell(&room, f, &set);
+    if (!st) log_summary(&room, f, &set);
     if (!st) st = draw(&room, &in, f, params->pictures, err);
     if (!st) st = model_axes_write(&room.axes, f->out, f->prov, err);
     mark_list_release(&fix);
@@ -198,11 +200,11 @@ int main(int argc, char **argv)
     const struct cli_opt opts[] = {
         CLI_ABOUT("Finds a room's axes, floor, ceiling and scale."),
         CLI_STR("views", &f.views, CLI_REQUIRED, "folder of cameras and rectified views"),
-        CLI_STR("records", &f.records, CLI_REQUIRED, "folder of the photos' records: which way up they are"),
+        CLI_STR("records", &f.records, CLI_REQUIRED, "folder of the photos' records, for their orientations"),
         CLI_STR("points", &f.points, CLI_REQUIRED, "oriented points, points.ply"),
-        CLI_STR("scale", &f.scale, CLI_OPTIONAL, "file of marked points and the metres between them"),
+        CLI_STR("scale", &f.scale, CLI_OPTIONAL, "file of marked points and the distances between them in metres"),
         CLI_STR("fix", &f.fix, CLI_OPTIONAL, "file of marked corners of the floor, edges and a wall's thickness"),
-        CLI_STR("out", &f.out, CLI_REQUIRED, "axes to write; pictures go to axes/ beside it"),
+        CLI_STR("out", &f.out, CLI_REQUIRED, "axes to write; pictures go to the folder axes beside them"),
         CLI_PARAMS(axes_param_table, &params, NULL),
         CLI_END,
     };

@@ -1,9 +1,10 @@
-/* kmeans1d.c - see kmeans1d.h.
+/* kmeans1d.c - exact k-means of numbers on a line [Wang 2011].
  *
- * D[j][i], the least cost of the first i + 1 numbers in j + 1 ranges, is the least over m of D[j - 1][m - 1] + cost(m, i).
- * The best m does not decrease with i (the cost of ranges obeys the quadrangle inequality), so a row is filled by halves:
- * the middle's m bounds those of both sides. That makes k n log n of Wang and Song's k n^2. Costs come from running sums
- * of the numbers less their mean, in long double: what cancels is far below a double's rounding. */
+ * Clusters of sorted numbers are ranges. D[j][i], the min cost of the first i + 1 numbers in j + 1 ranges, is the
+ * minimum over m of D[j - 1][m - 1] + cost(m, i). The best m does not decrease with i (the cost satisfies the
+ * quadrangle inequality), so a row is filled by divide and conquer: the middle's m bounds the m of both halves. That
+ * takes O(k n log n) time instead of the source's O(k n^2). Costs come from prefix sums of the numbers minus their
+ * mean, in long double, so that cancellation stays far below the rounding of doubles. */
 #include "stages/find_axes/kmeans1d.h"
 
 #include <stdlib.h>
@@ -12,7 +13,7 @@ struct rows {
     const long double *sum, *square; /* of the first i numbers, i = 0 .. count */
     const double *before;            /* D of one range fewer */
     double *now;
-    size_t *first; /* where the last range begins */
+    size_t *first; /* begin of the last range */
 };
 
 static double cost(const struct rows *r, size_t from, size_t last)
@@ -22,34 +23,25 @@ static double cost(const struct rows *r, size_t from, size_t last)
     return c > 0 ? (double)c : 0;
 }
 
-/* Numbers low .. high; their last ranges begin in from .. to. */
+/* Fills the row for numbers low .. high, whose last ranges begin in from .. to. */
 static void fill(const struct rows *r, size_t low, size_t high, size_t from, size_t to)
 {
     while (low <= high) {
         const size_t middle = low + (high - low) / 2;
         size_t best = from;
-        double least = -1;
+        double min_cost = -1;
         for (size_t m = from; m <= to && m <= middle; m++) {
             const double c = r->before[m - 1] + cost(r, m, middle);
-            if (least >= 0 && !(c < least)) continue;
-            least = c;
+            if (min_cost >= 0 && !(c < min_cost)) continue;
+            min_cost = c;
             best = m;
         }
-        r->now[middle] = least;
+        r->now[middle] = min_cost;
         r->first[middle] = best;
         if (middle > low) fill(r, low, middle - 1, from, best);
         low = middle + 1;
         from = best;
     }
-}
-
-double kmeans1d_cost(const double *values, size_t count)
-{
-    long double mean = 0, c = 0;
-    for (size_t i = 0; i < count; i++) mean += values[i];
-    mean /= (long double)(count ? count : 1);
-    for (size_t i = 0; i < count; i++) c += (values[i] - mean) * (values[i] - mean);
-    return (double)c;
 }
 
 enum status kmeans1d(size_t *begin, const double *values, size_t count, int k, struct err *err)

@@ -1,16 +1,17 @@
-/* marks.c - see marks.h. */
+/* marks.c - reads the marks of users and finds their positions. */
 #include "stages/find_axes/marks.h"
 
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/base/array.h"
 #include "common/base/textfile.h"
 
-enum { MOST_MARKS = 10000 };
-static const double LEAST_ANGLE = 1 * M_PI / 180; /* between rays that are to meet */
-static const double MOST_MISS = 0.02; /* of the photo's longer side: where a point is seen, and where it was marked */
-static const double CONE = 0.003;     /* surfaces are sought within this part of their distance from the ray */
-static const double THIN = 0.02;      /* points this much farther than the first belong to the same surface */
+enum { MAX_MARKS = 10000 };
+static const double MIN_ANGLE = 1 * M_PI / 180; /* between rays for triangulation, and between a ray and the floor */
+static const double MAX_MISS = 0.02;            /* max reprojection error, as a fraction of the photo's longer side */
+static const double CONE = 0.003; /* max distance of a surface's points from the ray, as a fraction of their depth */
+static const double THIN = 0.02;  /* max depth of a surface's points behind the first, as a fraction of its depth */
 
 static const char *const kinds[] = {[MARK_POINT] = "mark",
                                     [MARK_LENGTH] = "length",
@@ -39,8 +40,8 @@ static enum status read_kind(struct textfile *t, struct mark *m, enum mark_file 
     char *word;
     if (textfile_word(t, wanted_kinds[file], &word, err)) return err->status;
     for (int k = MARK_POINT; k <= MARK_THICKNESS; k++) {
-        const bool here = k == MARK_POINT || (k == MARK_LENGTH) == (file == MARKS_SCALE);
-        if (!here || strcmp(word, kinds[k])) continue;
+        const bool allowed = k == MARK_POINT || (k == MARK_LENGTH) == (file == MARKS_SCALE);
+        if (!allowed || strcmp(word, kinds[k])) continue;
         m->kind = (enum mark_kind)k;
         return ST_OK;
     }
@@ -96,7 +97,7 @@ static enum status check_pair(const struct mark_list *list, const struct mark *m
     for (int k = 0; k < 2; k++)
         if (!count_of(list, MARK_POINT, names[k], NULL))
             return err_set(err, ST_DATA,
-                           "%s:%d: %s is named, but nothing of that name is marked; add a line \"mark %s VIEW X Y\".",
+                           "%s:%d: %s is named, but there is no mark of that name; add a line \"mark %s VIEW X Y\".",
                            list->path, m->line, names[k], names[k]);
     if (!strcmp(names[0], names[1]))
         return err_set(err, ST_DATA, "%s:%d: found %s twice, wanted two different marks.", list->path, m->line,
@@ -104,7 +105,7 @@ static enum status check_pair(const struct mark_list *list, const struct mark *m
     return ST_OK;
 }
 
-/* What a line says together with the others. */
+/* Checks a line against the others. */
 static enum status check_mark(const struct mark_list *list, const struct mark *m, struct err *err)
 {
     if (m->kind == MARK_LENGTH || m->kind == MARK_THICKNESS) return check_pair(list, m, err);
@@ -113,24 +114,25 @@ static enum status check_mark(const struct mark_list *list, const struct mark *m
                        "%s:%d: the corner %s of this edge is not marked in %s; add a line \"corner %s %s X Y\".",
                        list->path, m->line, m->name, m->view, m->name, m->view);
     if (m->kind != MARK_EDGE && count_of(list, m->kind, m->name, m->view) > 1)
-        return err_set(err, ST_DATA, "%s:%d: %s is marked twice in %s; leave one of the lines out.", list->path,
-                       m->line, m->name, m->view);
+        return err_set(err, ST_DATA, "%s:%d: %s is marked twice in %s; delete one of the lines.", list->path, m->line,
+                       m->name, m->view);
     const int views = count_of(list, m->kind, m->name, NULL);
     if (m->kind == MARK_POINT && m->on != MARK_IN_VIEWS && views > 1)
-        return err_set(err, ST_DATA,
-                       "%s:%d: %s is marked in %d views; a point on the floor or on a surface is marked in one, and "
-                       "one in several views has nothing behind X Y.",
-                       list->path, m->line, m->name, views);
+        return err_set(
+            err, ST_DATA,
+            "%s:%d: %s is marked in %d views, wanted one for a point on the floor or on a surface; delete the "
+            "other lines, or the words after X Y.",
+            list->path, m->line, m->name, views);
     if (m->kind == MARK_POINT && m->on == MARK_IN_VIEWS && views < 2)
         return err_set(
             err, ST_DATA,
-            "%s:%d: %s is marked in one view alone, which does not say how far it is; mark it in another one "
-            "too, or add \"floor\" or \"surface\" to the line if it lies there.",
+            "%s:%d: %s is marked in one view alone, so its distance is unknown; mark it in another view too, or "
+            "add \"floor\" or \"surface\" to the line if it lies there.",
             list->path, m->line, m->name);
     if (m->kind == MARK_CORNER && views < 2 && !count_of(list, MARK_EDGE, m->name, NULL))
         return err_set(err, ST_DATA,
                        "%s:%d: the corner %s corrects nothing yet; mark it in another view too, for the height of the "
-                       "floor, or points on its edges, for the axes.",
+                       "floor, or mark points on its edges, for the axes.",
                        list->path, m->line, m->name);
     return ST_OK;
 }
@@ -141,15 +143,10 @@ enum status mark_list_read(struct mark_list *list, const char *path, enum mark_f
     *list = (struct mark_list){.path = strdup(path)};
     enum status st = list->path ? textfile_open(&t, path, err) : err_nomem(err, "a file name", strlen(path));
     while (!st && textfile_next(&t)) {
-        const size_t bytes = ((size_t)list->count + 1) * sizeof *list->marks;
-        struct mark *more = list->count < MOST_MARKS ? realloc(list->marks, bytes) : NULL;
-        if (!more) {
-            st = list->count < MOST_MARKS
-                     ? err_nomem(err, "marks", bytes)
-                     : err_set(err, ST_DATA, "%s:%d: found more than %d lines.", path, t.line, MOST_MARKS);
-            break;
-        }
-        list->marks = more;
+        st = list->count < MAX_MARKS
+                 ? array_append(&list->marks, (size_t)list->count, sizeof *list->marks, "marks", err)
+                 : err_set(err, ST_DATA, "%s:%d: found more than %d lines.", path, t.line, MAX_MARKS);
+        if (st) break;
         struct mark *m = &list->marks[list->count++];
         *m = (struct mark){0};
         st = read_mark(&t, m, file, err);
@@ -162,7 +159,7 @@ enum status mark_list_read(struct mark_list *list, const char *path, enum mark_f
         lengths += m->kind == MARK_LENGTH;
         thicknesses += m->kind == MARK_THICKNESS;
         if (!st && thicknesses > 1)
-            st = err_set(err, ST_DATA, "%s:%d: found a second thickness; all walls share one.", path, m->line);
+            st = err_set(err, ST_DATA, "%s:%d: found a second thickness, wanted one for all walls.", path, m->line);
     }
     if (!st && file == MARKS_SCALE && !lengths)
         st = err_set(err, ST_DATA, "%s: no length is given; add a line \"length NAME NAME METRES\".", path);
@@ -177,26 +174,28 @@ enum status mark_ray(const struct mark *m, const struct mark_list *list, const s
 {
     if (photo_camera_find(camera, m->view, scene->set, scene->lenses, list->path, m->line, err)) return err->status;
     if (photo_camera_ray(camera, m->x, m->y, ray)) return ST_OK;
-    return err_set(
-        err, ST_DATA,
-        "%s:%d: the pixel %.9g %.9g lies outside of what %s shows: the photo has %d x %d pixels; give pixels "
-        "of the photo as it is stored.",
-        list->path, m->line, m->x, m->y, m->view, camera->lens.width, camera->lens.height);
+    return err_set(err, ST_DATA,
+                   "%s:%d: the pixel %.9g %.9g is outside the picture of %s, which has %d x %d pixels; give pixels of "
+                   "the photo as "
+                   "it is stored.",
+                   list->path, m->line, m->x, m->y, m->view, camera->lens.width, camera->lens.height);
 }
 
 static enum status on_floor(struct vec3 *world, const struct mark *m, const struct mark_list *list,
                             const struct mark_scene *scene, struct vec3 center, struct vec3 ray, struct err *err)
 {
     const double above = vec3_dot(center, scene->up) - scene->floor, down = -vec3_dot(ray, scene->up);
-    if (!(down > sin(LEAST_ANGLE)) || !(above > 0))
-        return err_set(err, ST_DATA,
-                       "%s:%d: the floor is not seen at the pixel %.9g %.9g of %s: it lies at or above the horizon.",
-                       list->path, m->line, m->x, m->y, m->view);
+    if (!(down > sin(MIN_ANGLE)) || !(above > 0))
+        return err_set(
+            err, ST_DATA,
+            "%s:%d: the floor is not visible at the pixel %.9g %.9g of %s, which is at or above the horizon; "
+            "mark a pixel on the floor.",
+            list->path, m->line, m->x, m->y, m->view);
     *world = vec3_add(center, vec3_scale(ray, above / down));
     return ST_OK;
 }
 
-/* The mean of the points about the ray that are not much farther than the first of them. */
+/* The mean of the points near the ray that are not much farther away than the first of them. */
 static enum status on_surface(struct vec3 *world, const struct mark *m, const struct mark_list *list,
                               const struct point_cloud *cloud, struct vec3 center, struct vec3 ray, struct err *err)
 {
@@ -215,14 +214,14 @@ static enum status on_surface(struct vec3 *world, const struct mark *m, const st
         }
     if (!(count > 0))
         return err_set(err, ST_DATA,
-                       "%s:%d: no surface is known at the pixel %.9g %.9g of %s; mark the point in a second view in "
-                       "place of \"surface\".",
+                       "%s:%d: there are no points at the pixel %.9g %.9g of %s; mark it in a second view instead of "
+                       "writing \"surface\".",
                        list->path, m->line, m->x, m->y, m->view);
     *world = vec3_add(center, vec3_scale(ray, sum / count));
     return ST_OK;
 }
 
-/* Solves a x = b, a symmetric. */
+/* Solves a x = b for a symmetric a. */
 static struct vec3 solve(const double a[6], struct vec3 b) /* a: xx xy xz yy yz zz */
 {
     const struct vec3 r0 = {a[0], a[1], a[2]}, r1 = {a[1], a[3], a[4]}, r2 = {a[2], a[4], a[5]};
@@ -231,32 +230,32 @@ static struct vec3 solve(const double a[6], struct vec3 b) /* a: xx xy xz yy yz 
     return vec3_scale(vec3_add(vec3_add(vec3_scale(c0, b.x), vec3_scale(c1, b.y)), vec3_scale(c2, b.z)), 1 / det);
 }
 
-/* The point nearest to all rays, by squared distance; and it must be seen near where it was marked. */
-static enum status where_rays_meet(struct vec3 *world, enum mark_kind kind, const char *name,
-                                   const struct mark_list *list, const struct mark_scene *scene, struct err *err)
+/* Triangulates a point: the least squares intersection of its rays. Its reprojection errors must be small. */
+static enum status triangulate(struct vec3 *world, enum mark_kind kind, const char *name, const struct mark_list *list,
+                               const struct mark_scene *scene, struct err *err)
 {
     double a[6] = {0}, angle = 0;
     struct vec3 b = {0}, first = {0};
-    const struct mark *one = NULL;
+    const struct mark *last = NULL;
     struct photo_camera camera;
     for (int i = 0; i < list->count; i++) {
         const struct mark *m = &list->marks[i];
         struct vec3 r;
         if (m->kind != kind || strcmp(m->name, name)) continue;
         if (mark_ray(m, list, scene, &camera, &r, err)) return err->status;
-        if (!one) first = r;
-        one = m;
+        if (!last) first = r;
+        last = m;
         angle = fmax(angle, atan2(vec3_length(vec3_cross(r, first)), vec3_dot(r, first)));
         const double across[6] = {1 - r.x * r.x, -r.x * r.y, -r.x * r.z, 1 - r.y * r.y, -r.y * r.z, 1 - r.z * r.z};
         for (int k = 0; k < 6; k++) a[k] += across[k];
         b = vec3_add(b, vec3_sub(camera.center, vec3_scale(r, vec3_dot(r, camera.center))));
     }
-    if (!(angle > LEAST_ANGLE))
-        return err_set(
-            err, ST_DATA,
-            "%s:%d: %s is seen from nearly the same side in all its views (%.2g degrees apart), which does not "
-            "say how far it is; mark it in a view from elsewhere.",
-            list->path, one->line, name, angle * 180 / M_PI);
+    if (!(angle > MIN_ANGLE))
+        return err_set(err, ST_DATA,
+                       "%s:%d: the rays of %s are nearly parallel (%.2g degrees apart), so its distance is unknown; "
+                       "mark it in a view "
+                       "from elsewhere.",
+                       list->path, last->line, name, angle * 180 / M_PI);
     *world = solve(a, b);
     for (int i = 0; i < list->count; i++) {
         const struct mark *m = &list->marks[i];
@@ -265,18 +264,19 @@ static enum status where_rays_meet(struct vec3 *world, enum mark_kind kind, cons
         if (m->kind != kind || strcmp(m->name, name)) continue;
         if (mark_ray(m, list, scene, &camera, &r, err)) return err->status;
         const double side = fmax(camera.lens.width, camera.lens.height);
-        const bool seen =
+        const bool visible =
             vec3_dot(vec3_sub(*world, camera.center), r) > 0 && photo_camera_project(&camera, *world, &u, &v);
-        const double miss = seen ? hypot(u - m->x, v - m->y) : HUGE_VAL;
-        if (miss <= MOST_MISS * side) continue;
-        if (!seen)
+        const double miss = visible ? hypot(u - m->x, v - m->y) : HUGE_VAL;
+        if (miss <= MAX_MISS * side) continue;
+        if (!visible)
             return err_set(err, ST_DATA,
-                           "%s:%d: the rays of %s part before %s instead of meeting; its marks are not the same point.",
+                           "%s:%d: the rays of %s diverge in front of %s; mark the same point in all views.",
                            list->path, m->line, name, m->view);
-        return err_set(err, ST_DATA,
-                       "%s:%d: the marks of %s are not the same point: where their rays are nearest to each other, %s "
-                       "sees it %.1f px from its mark.",
-                       list->path, m->line, name, m->view, miss);
+        return err_set(
+            err, ST_DATA,
+            "%s:%d: the marks of %s are not the same point: its reprojection error in %s is %.1f px; mark the "
+            "same point in all views.",
+            list->path, m->line, name, m->view, miss);
     }
     return ST_OK;
 }
@@ -287,8 +287,8 @@ enum status mark_locate(struct vec3 *world, enum mark_kind kind, const char *nam
     const struct mark *m = list->marks;
     struct photo_camera camera;
     struct vec3 ray;
-    while (m->kind != kind || strcmp(m->name, name)) m++; /* reading the list made sure of it */
-    if (m->on == MARK_IN_VIEWS) return where_rays_meet(world, kind, name, list, scene, err);
+    while (m->kind != kind || strcmp(m->name, name)) m++; /* mark_list_read() checked that it exists */
+    if (m->on == MARK_IN_VIEWS) return triangulate(world, kind, name, list, scene, err);
     if (mark_ray(m, list, scene, &camera, &ray, err)) return err->status;
     return m->on == MARK_ON_FLOOR ? on_floor(world, m, list, scene, camera.center, ray, err)
                                   : on_surface(world, m, list, scene->cloud, camera.center, ray, err);
@@ -304,7 +304,7 @@ double mark_error(struct mark_list *list, double click, bool (*measure)(void *ct
             const double before = *c[k];
             *c[k] = before + click;
             bool known = measure(ctx, &moved);
-            if (!known) { /* off the photo on that side */
+            if (!known) { /* outside the photo */
                 *c[k] = before - click;
                 known = measure(ctx, &moved);
             }

@@ -1,4 +1,4 @@
-/* pictures.c - see pictures.h. */
+/* pictures.c - draws axes, floor and ceiling on photographs. */
 #include "stages/find_axes/pictures.h"
 
 #include <stdlib.h>
@@ -8,8 +8,8 @@
 
 static const unsigned char X[3] = {235, 40, 40}, Y[3] = {40, 200, 60}, Z[3] = {60, 110, 255};
 static const unsigned char FLOOR[3] = {255, 215, 0}, CEILING[3] = {0, 225, 235}, WALL[3] = {235, 235, 235};
-static const double NEAR = 1e-3; /* of a line's length: what is nearer to the camera is cut off */
-static const double ARROW = 0.2; /* of the room's width */
+static const double NEAR = 1e-3; /* near clipping plane, as a fraction of a line's length */
+static const double ARROW = 0.2; /* length, as a fraction of the room's width */
 
 struct canvas {
     unsigned char *pixels;
@@ -18,21 +18,21 @@ struct canvas {
     double half; /* of a line's width, px */
 };
 
-/* ---------------------------------------------------------------------------------------------------------- choosing */
+/* --------------------------------------------------------------------------------------------------------- choosing */
 
-/* How far a view looks from its photo's axis: cosine. */
-static double straight(const struct lens *lens) { return mat3_from_quat(lens->view_from_photo).m[2][2]; }
+/* Cosine of the angle between a view's axis and its photo's. */
+static double axis_cosine(const struct lens *lens) { return mat3_from_quat(lens->view_from_photo).m[2][2]; }
 
 static int view_of_photo(const struct room_inputs *in, const char *photo)
 {
     int best = -1;
-    double most = -2;
+    double max_cosine = -2;
     for (int i = 0; i < in->lenses->count; i++) {
         const struct lens *lens = &in->lenses->lenses[i];
         const int at = camera_set_find(in->set, lens->view);
-        if (strcmp(lens->photo, photo) || at < 0 || !(straight(lens) > most)) continue;
+        if (strcmp(lens->photo, photo) || at < 0 || !(axis_cosine(lens) > max_cosine)) continue;
         best = at;
-        most = straight(lens);
+        max_cosine = axis_cosine(lens);
     }
     return best;
 }
@@ -41,7 +41,7 @@ enum status choose_pictures(bool *chosen, int count, const struct room_inputs *i
 {
     int *photos = malloc(((size_t)in->lenses->count + 1) * sizeof *photos), known = 0; /* a lens each */
     if (!photos) return err_nomem(err, "photos", (size_t)in->lenses->count * sizeof *photos);
-    for (int i = 0; i < in->lenses->count; i++) { /* a photo's views follow each other */
+    for (int i = 0; i < in->lenses->count; i++) { /* the views of a photo are consecutive */
         const char *photo = in->lenses->lenses[i].photo;
         if (view_of_photo(in, photo) < 0 || (known && !strcmp(in->lenses->lenses[photos[known - 1]].photo, photo)))
             continue;
@@ -62,14 +62,14 @@ enum status choose_pictures(bool *chosen, int count, const struct room_inputs *i
     return ST_OK;
 }
 
-/* ----------------------------------------------------------------------------------------------------------- drawing */
+/* ---------------------------------------------------------------------------------------------------------- drawing */
 
 static void blend(unsigned char *to, const unsigned char color[3], double part)
 {
     for (int c = 0; c < 3; c++) to[c] = (unsigned char)lround(to[c] + part * (color[c] - to[c]));
 }
 
-/* A line with round ends and soft sides. */
+/* Draws a line with round ends and soft edges. */
 static void stroke(struct canvas *k, double x0, double y0, double x1, double y1, const unsigned char color[3])
 {
     const int w = k->view->width, h = k->view->height;
@@ -77,7 +77,7 @@ static void stroke(struct canvas *k, double x0, double y0, double x1, double y1,
     const int top = (int)fmin(fmax(fmin(y0, y1) - reach, 0), h);
     const int bottom = (int)fmin(fmax(fmax(y0, y1) + reach, -1), h - 1);
     for (int y = top; y <= bottom; y++) {
-        /* where the line passes this row's neighbourhood */
+        /* the part of the line near this row */
         double left = fmin(x0, x1), right = fmax(x0, x1);
         if (fabs(dy) > 0) {
             const double a = x0 + (y + 0.5 - reach - y0) / dy * dx, b = x0 + (y + 0.5 + reach - y0) / dy * dx;
@@ -94,7 +94,7 @@ static void stroke(struct canvas *k, double x0, double y0, double x1, double y1,
     }
 }
 
-/* Cuts the segment to the rectangle (Liang and Barsky); false: nothing is left. */
+/* Clips the segment to the rectangle [Liang 1984]; false: nothing is left. */
 static bool clip(double *x0, double *y0, double *x1, double *y1, double w, double h)
 {
     const double dx = *x1 - *x0, dy = *y1 - *y0;
@@ -116,7 +116,7 @@ static bool clip(double *x0, double *y0, double *x1, double *y1, double w, doubl
     return true;
 }
 
-/* Between two points of the model. */
+/* Draws the line between two points of the model. */
 static void line(struct canvas *k, struct vec3 a, struct vec3 b, const unsigned char color[3])
 {
     const struct view *v = k->view;
@@ -137,8 +137,8 @@ static void outline(struct canvas *k, const struct room *room, double z, const u
         static const int along[5][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0, 0}};
         struct vec3 ends[2];
         for (int e = 0; e < 2; e++)
-            ends[e] = vec3_make(along[i + e][0] ? room->most[0] : room->least[0],
-                                along[i + e][1] ? room->most[1] : room->least[1], z);
+            ends[e] = vec3_make(along[i + e][0] ? room->high[0] : room->low[0],
+                                along[i + e][1] ? room->high[1] : room->low[1], z);
         line(k, ends[0], ends[1], color);
     }
 }
@@ -150,7 +150,7 @@ static void arrows(struct canvas *k, struct vec3 at, double length)
     line(k, at, vec3_add(at, vec3_make(length, 0, 0)), X);
 }
 
-/* The floor's point that the lower middle of the picture shows, within the outline. */
+/* The point of the floor in the lower middle of the picture, moved into the outline. */
 static struct vec3 floor_ahead(const struct view *view, const struct room *room)
 {
     const struct vec3 ray = {0, (0.85 * view->height - view->cy) / view->fy, 1};
@@ -158,18 +158,18 @@ static struct vec3 floor_ahead(const struct view *view, const struct room *room)
     const struct vec3 d =
         model_from_world_direction(&room->axes, mat3_apply(mat3_transpose(view->cam_from_world), ray));
     const double t = d.z < 0 && c.z > 0 ? -c.z / d.z : 0;
-    return vec3_make(fmin(fmax(c.x + t * d.x, room->least[0]), room->most[0]),
-                     fmin(fmax(c.y + t * d.y, room->least[1]), room->most[1]), 0);
+    return vec3_make(fmin(fmax(c.x + t * d.x, room->low[0]), room->high[0]),
+                     fmin(fmax(c.y + t * d.y, room->low[1]), room->high[1]), 0);
 }
 
 void draw_room(unsigned char *pixels, const struct view *view, const struct room *room, const struct vec3 *corners,
                int corner_count)
 {
     struct canvas k = {pixels, view, &room->axes, fmax(0.75, hypot(view->width, view->height) / 900)};
-    const double length = ARROW * fmin(room->most[0] - room->least[0], room->most[1] - room->least[1]);
+    const double length = ARROW * fmin(room->high[0] - room->low[0], room->high[1] - room->low[1]);
     if (room->axes.ceiling > 0) {
         for (int i = 0; i < 4; i++) {
-            const double x = i % 2 ? room->most[0] : room->least[0], y = i / 2 ? room->most[1] : room->least[1];
+            const double x = i % 2 ? room->high[0] : room->low[0], y = i / 2 ? room->high[1] : room->low[1];
             line(&k, vec3_make(x, y, 0), vec3_make(x, y, room->axes.ceiling), WALL);
         }
         outline(&k, room, room->axes.ceiling, CEILING);
@@ -184,7 +184,7 @@ void draw_room(unsigned char *pixels, const struct view *view, const struct room
     if (!corner_count) arrows(&k, floor_ahead(view, room), length);
 }
 
-enum status picture_to_look_at(unsigned char *pixels, const struct image *im, struct err *err)
+enum status expose_picture(unsigned char *pixels, const struct image *im, struct err *err)
 {
     const size_t count = (size_t)im->width * (size_t)im->height, channels = (size_t)im->channels;
     struct image exposed = {0};

@@ -1,10 +1,10 @@
-/* planes.c - see planes.h.
+/* planes.c - planes across the axes, and axes refined by them.
  *
- * Points whose normals are near an axis, with its sign, are counted by their place along it; peaks of the counts are
- * planes. Of all planes together the turn of the axes and every plane's offset are found by robust least squares on the
- * points' distances (Tukey's biweight, with each plane's own spread); each plane's offset is eliminated, which leaves
- * three unknowns. Then planes are sought again with better axes and a narrower reach, from coarse to fine.
- * Standard errors come from blocks of space (blocks.h). */
+ * For each axis and sign, the points with that normal are counted by their position along the axis; peaks of the
+ * histogram are planes. The rotation of the axes and the offsets of all planes are found together by robust least
+ * squares on the points' distances (Tukey's biweight, with a spread per plane); eliminating the offsets leaves three
+ * unknowns. This is repeated with better axes and narrower bins, from coarse to fine. Standard errors come from blocks
+ * of space (blocks.h). */
 #include "stages/find_axes/planes.h"
 
 #include <stdint.h>
@@ -14,25 +14,25 @@
 #include "stages/find_axes/directions.h"
 
 enum {
-    CLASSES = 6,       /* axis and side */
-    MOST_PLANES = 256, /* in all */
-    BINS = 4096,       /* of a class's histogram */
+    CLASSES = 6,      /* axis and side */
+    MAX_PLANES = 256, /* in total */
+    BINS = 4096,      /* of a class's histogram */
     LEVELS = 3,
     ITERATIONS = 8,
     STEPS = 128, /* of a plane's histogram of distances */
     NONE = 255,  /* no class */
 };
-/* of the median distance of points from the origin */
-static const double WIDTHS[LEVELS] = {0.03, 0.012, 0.006}; /* bins, from level to level */
-static const double LEAST_SPREAD = 1e-6;
+/* as fractions of the scene's size (blocks.h) */
+static const double WIDTHS[LEVELS] = {0.03, 0.012, 0.006}; /* of bins, by level */
+static const double MIN_SPREAD = 1e-6;
 static const double BIWEIGHT = 4.685;
 
-struct search {
+struct plane_search {
     const struct point_cloud *cloud;
     struct vec3 origin;
     struct mat3 axes;
     uint8_t *classes; /* of each point */
-    double size;      /* median distance of points from the origin */
+    double size;      /* of the scene */
     struct room_plane *planes;
     int count;
     int begin[CLASSES + 1]; /* planes of a class */
@@ -41,24 +41,24 @@ struct search {
 
 static double along(struct vec3 p, int axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
 
-static struct vec3 in_room(const struct search *s, size_t i)
+static struct vec3 in_room(const struct plane_search *s, size_t i)
 {
     return mat3_apply(s->axes, vec3_sub(s->cloud->points[i].position, s->origin));
 }
 
-static void classify(struct search *s, double angle)
+static void classify(struct plane_search *s, double angle)
 {
-    const double least = cos(angle * M_PI / 180);
+    const double min_cos = cos(angle * M_PI / 180);
     for (size_t i = 0; i < s->cloud->count; i++) {
         const struct vec3 n = mat3_apply(s->axes, cloud_normal(&s->cloud->points[i]));
         s->classes[i] = NONE;
         for (int k = 0; k < 3; k++)
-            if (fabs(along(n, k)) > least) s->classes[i] = (uint8_t)(2 * k + (along(n, k) > 0));
+            if (fabs(along(n, k)) > min_cos) s->classes[i] = (uint8_t)(2 * k + (along(n, k) > 0));
     }
 }
 
-/* Peaks of each class's histogram, those of most points first, until they have too few. */
-static enum status seek(struct search *s, double width, double least, struct err *err)
+/* Makes planes from the peaks of each class's histogram, highest first, down to min_plane of the points. */
+static enum status find_peaks(struct plane_search *s, double width, double min_plane, struct err *err)
 {
     size_t *histogram = calloc((size_t)CLASSES * BINS, sizeof *histogram);
     if (!histogram) return err_nomem(err, "a histogram", CLASSES * BINS * sizeof *histogram);
@@ -71,12 +71,12 @@ static enum status seek(struct search *s, double width, double least, struct err
     for (int c = 0; c < CLASSES; c++) {
         size_t *h = histogram + (size_t)c * BINS;
         s->begin[c] = s->count;
-        while (s->count < MOST_PLANES) {
+        while (s->count < MAX_PLANES) {
             int best = 1;
             for (int i = 1; i < BINS - 1; i++)
                 if (h[i - 1] + h[i] + h[i + 1] > h[best - 1] + h[best] + h[best + 1]) best = i;
             const double mass = (double)(h[best - 1] + h[best] + h[best + 1]);
-            if (!(mass > 0) || mass < least * (double)s->cloud->count) break;
+            if (!(mass > 0) || mass < min_plane * (double)s->cloud->count) break;
             const double middle = ((double)h[best + 1] - (double)h[best - 1]) / mass;
             s->planes[s->count++] = (struct room_plane){.axis = c / 2,
                                                         .side = c % 2 ? 1 : -1,
@@ -91,8 +91,8 @@ static enum status seek(struct search *s, double width, double least, struct err
     return ST_OK;
 }
 
-/* The plane on which a point lies, and its distance; -1: none. */
-static int plane_of(const struct search *s, size_t i, struct vec3 p, double *distance)
+/* The nearest plane within reach of a point of its class, and its distance; -1: none. */
+static int plane_of(const struct plane_search *s, size_t i, struct vec3 p, double *distance)
 {
     const int c = s->classes[i];
     int best = -1;
@@ -112,13 +112,13 @@ static double weight(const struct room_plane *plane, double distance)
     return fabs(u) < 1 ? (1 - u * u) * (1 - u * u) : 0;
 }
 
-/* How a point's height over its plane changes with a turn of the axes: by p x axis. */
+/* Derivative of a point's height over its plane with respect to the rotation of the axes: p x axis. */
 static struct vec3 lever(struct vec3 p, int axis)
 {
     return axis == 0 ? vec3_make(0, p.z, -p.y) : axis == 1 ? vec3_make(-p.z, 0, p.x) : vec3_make(p.y, -p.x, 0);
 }
 
-struct sums { /* of a plane's points, weighted */
+struct plane_sums { /* weighted sums over a plane's points */
     double w, d;
     struct vec3 lever, lever_d;
     struct mat3 lever_lever;
@@ -132,14 +132,14 @@ static void add_outer(struct mat3 *m, struct vec3 a, double w)
         for (int j = 0; j < 3; j++) m->m[i][j] += w * v[i] * v[j];
 }
 
-static void sum_up(const struct search *s, struct sums *sums)
+static void sum_up(const struct plane_search *s, struct plane_sums *sums)
 {
     for (size_t i = 0; i < s->cloud->count; i++) {
         double d;
         const struct vec3 p = in_room(s, i);
         const int j = plane_of(s, i, p, &d);
         if (j < 0) continue;
-        struct sums *q = &sums[j];
+        struct plane_sums *q = &sums[j];
         const double w = weight(&s->planes[j], d);
         const struct vec3 a = lever(p, s->planes[j].axis);
         q->histogram[(int)(fabs(d) / s->reach * STEPS)]++;
@@ -152,7 +152,7 @@ static void sum_up(const struct search *s, struct sums *sums)
     }
 }
 
-static double median_of(const struct sums *q, double reach)
+static double median_of(const struct plane_sums *q, double reach)
 {
     size_t all = 0, seen = 0;
     int at = 0;
@@ -162,14 +162,14 @@ static double median_of(const struct sums *q, double reach)
     return reach * (at + part) / STEPS;
 }
 
-/* One step of Gauss and Newton: the turn, then every plane's offset and spread. *information: of the turn. */
-static void step(struct search *s, const struct sums *sums, bool turn, struct mat3 *information)
+/* A Gauss-Newton step: the rotation, then every plane's offset and spread. *information: of the rotation. */
+static void step(struct plane_search *s, const struct plane_sums *sums, bool turn, struct mat3 *information)
 {
     struct mat3 unknown;
     struct vec3 right = {0}, w = {0};
     *information = (struct mat3){0};
     for (int j = 0; j < s->count; j++) {
-        const struct sums *q = &sums[j];
+        const struct plane_sums *q = &sums[j];
         const double scale = 1 / (s->planes[j].spread * s->planes[j].spread);
         if (!(q->w > 0)) continue;
         const struct vec3 mean = vec3_scale(q->lever, 1 / q->w);
@@ -180,20 +180,20 @@ static void step(struct search *s, const struct sums *sums, bool turn, struct ma
     if (turn) w = vec3_scale(mat3_apply(inverse_of_known(*information, &unknown), right), -1);
     s->axes = turned_by(s->axes, w);
     for (int j = 0; j < s->count; j++) {
-        const struct sums *q = &sums[j];
+        const struct plane_sums *q = &sums[j];
         struct room_plane *p = &s->planes[j];
         p->count = q->count;
         if (!(q->w > 0)) continue;
         p->offset += q->d / q->w + vec3_dot(w, vec3_scale(q->lever, 1 / q->w));
-        p->spread = fmin(fmax(median_of(q, s->reach) / 0.6745, LEAST_SPREAD * s->size), s->reach);
+        p->spread = fmin(fmax(median_of(q, s->reach) / 0.6745, MIN_SPREAD * s->size), s->reach);
     }
 }
 
 /* ----------------------------------------------------------------------------------------------------------- errors */
 
-/* What the planes do not tell keeps the error that it had. */
-static enum status find_errors(const struct search *s, const struct sums *sums, const struct mat3 *information,
-                               struct vec3 *tilt, struct err *err)
+/* Rotations that the planes do not determine keep the error that they had. */
+static enum status find_errors(const struct plane_search *s, const struct plane_sums *sums,
+                               const struct mat3 *information, struct vec3 *tilt, struct err *err)
 {
     struct vec3 *gradients = calloc((size_t)BLOCKS * CLASSES, sizeof *gradients);
     struct mat3 unknown;
@@ -210,10 +210,10 @@ static enum status find_errors(const struct search *s, const struct sums *sums, 
         *g = vec3_add(*g, vec3_scale(a, w * d));
     }
     const struct mat3 inverse = inverse_of_known(*information, &unknown);
-    const struct vec3 told = sandwich(inverse, gradients, BLOCKS * CLASSES);
-    tilt->x = hypot(told.x, sqrt(fmax(unknown.m[0][0], 0)) * tilt->x);
-    tilt->y = hypot(told.y, sqrt(fmax(unknown.m[1][1], 0)) * tilt->y);
-    tilt->z = hypot(told.z, sqrt(fmax(unknown.m[2][2], 0)) * tilt->z);
+    const struct vec3 errors = sandwich(inverse, gradients, BLOCKS * CLASSES);
+    tilt->x = hypot(errors.x, sqrt(fmax(unknown.m[0][0], 0)) * tilt->x);
+    tilt->y = hypot(errors.y, sqrt(fmax(unknown.m[1][1], 0)) * tilt->y);
+    tilt->z = hypot(errors.z, sqrt(fmax(unknown.m[2][2], 0)) * tilt->z);
     free(gradients);
     return ST_OK;
 }
@@ -222,22 +222,21 @@ enum status find_planes(struct room_planes *planes, struct mat3 *axes, bool turn
                         struct vec3 origin, const struct point_cloud *cloud, const struct axes_params *params,
                         struct err *err)
 {
-    struct search s = {.cloud = cloud, .origin = origin, .axes = *axes};
-    struct sums *sums = malloc(MOST_PLANES * sizeof *sums);
+    struct plane_search s = {.cloud = cloud, .origin = origin, .axes = *axes};
+    struct plane_sums *sums = malloc(MAX_PLANES * sizeof *sums);
     struct mat3 information = {0};
     *planes = (struct room_planes){0};
     s.classes = malloc(cloud->count + 1);
-    s.planes = calloc(MOST_PLANES, sizeof *s.planes);
-    enum status st = sums && s.classes && s.planes
-                         ? cloud_size(&s.size, cloud, origin, err)
-                         : err_nomem(err, "planes", cloud->count + MOST_PLANES * sizeof *sums);
+    s.planes = calloc(MAX_PLANES, sizeof *s.planes);
+    enum status st = sums && s.classes && s.planes ? cloud_size(&s.size, cloud, origin, err)
+                                                   : err_nomem(err, "planes", cloud->count + MAX_PLANES * sizeof *sums);
     for (int level = 0; !st && level < LEVELS && s.size > 0; level++) {
         const double width = WIDTHS[level] * s.size;
         classify(&s, params->plane_angle);
-        st = seek(&s, width, params->least_plane, err);
+        st = find_peaks(&s, width, params->min_plane, err);
         s.reach = 2 * width;
         for (int i = 0; !st && i < ITERATIONS; i++) {
-            for (int j = 0; j < s.count; j++) sums[j] = (struct sums){0};
+            for (int j = 0; j < s.count; j++) sums[j] = (struct plane_sums){0};
             sum_up(&s, sums);
             step(&s, sums, turn, &information);
         }

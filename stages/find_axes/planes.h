@@ -1,7 +1,6 @@
-/* planes.h - walls, floors and ceilings as the planes across three axes on which most points lie; axes that follow
- * them.
+/* planes.h - walls, floors and ceilings as the planes across three axes with the most points, and axes refined by them.
  *
- * Where a plane is wide, where its points are tells its direction far better than their normals do. */
+ * The points' positions on a wide plane determine its direction far better than their normals do. */
 #ifndef REMODEL_PLANES_H
 #define REMODEL_PLANES_H
 
@@ -12,9 +11,9 @@
 
 struct room_plane {
     int axis, side; /* the plane's normal is axis (0 x, 1 y, 2 z) times side (1 or -1) */
-    double offset;  /* of the plane along the axis, from the origin of room_planes */
+    double offset;  /* of the plane along the axis, from find_planes()' origin */
     double spread;  /* standard deviation of its points across it, robust */
-    size_t count;   /* of its points */
+    size_t count;   /* number of its points */
 };
 
 struct room_planes {
@@ -22,8 +21,9 @@ struct room_planes {
     int count;
 };
 
-/* axes: rows in the world; if turn, they are refined, and *tilt_error, standard errors of the turns about them, radians,
- * becomes what the planes leave of it. origin: offsets are measured from there. No plane at all is no error. */
+/* axes: rows in the world. If turn: they are refined, and *tilt_error, standard errors of the rotations about them in
+ * radians, is updated. origin: offsets are measured from there. planes is empty on entry; the caller releases it.
+ * Finding no planes is not an error. */
 enum status find_planes(struct room_planes *planes, struct mat3 *axes, bool turn, struct vec3 *tilt_error,
                         struct vec3 origin, const struct point_cloud *cloud, const struct axes_params *params,
                         struct err *err);

@@ -1,14 +1,18 @@
-/* room.c - see room.h. */
+/* room.c - a room's axes, floor, ceiling, scale and extent.
+ *
+ * Directions of most normals give the axes, planes refine them, marked edges correct them. Heights of upward and
+ * downward normals give floor and ceiling; marked corners replace the floor where they contradict it. Marked lengths
+ * give the scale. */
 #include "stages/find_axes/room.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 #include "common/capture/central_views.h"
+#include "common/math/numbers.h"
 #include "stages/find_axes/directions.h"
 
-static const double CONTRADICTS = 2; /* standard errors between the floor and its corners */
-static const double DEGREE = M_PI / 180;
+static const double CONTRADICTS = 2; /* min difference between the floor and its marked corners, in standard errors */
 
 static enum status central_view(int *central, const struct camera_set *set, struct err *err)
 {
@@ -28,7 +32,7 @@ static struct vec3 mean_up(const struct room_inputs *in)
     return vec3_normalize(sum);
 }
 
-/* The rows in the model's order and signs: z the one nearest to up, x the one nearest to right. */
+/* Orders the rows and sets their signs: z is nearest to up, x nearest to right. */
 static struct mat3 model_order(struct mat3 rows, double part[3], struct vec3 up, struct vec3 right)
 {
     struct vec3 axis[3] = {mat3_row(rows, 0), mat3_row(rows, 1), mat3_row(rows, 2)};
@@ -48,16 +52,15 @@ static struct mat3 model_order(struct mat3 rows, double part[3], struct vec3 up,
 
 /* ------------------------------------------------------------------------------------------------------------ marks */
 
-struct measured {
+struct mark_context {
     const struct mark_list *list;
     struct mark_scene scene;
     struct mat3 axes;
     struct vec3 origin;
 };
 
-/* Height of the floor's corners that are seen in several views, their mean, from the origin; false: there is none, or
- * err is set. */
-static bool corner_height(const struct measured *m, double *height, struct err *err)
+/* Mean height, from the origin, of the floor's corners that are marked in several views; false: none, or err is set. */
+static bool corner_height(const struct mark_context *m, double *height, struct err *err)
 {
     double sum = 0;
     int count = 0;
@@ -87,8 +90,8 @@ static bool measure_corners(void *ctx, double *value)
     return corner_height(ctx, value, &ignored);
 }
 
-/* Metres per scene unit that fit the lengths best. */
-static bool lengths_scale(const struct measured *m, double *scale, double *misfit, struct err *err)
+/* Metres per scene unit, by least squares over the lengths; *misfit: its standard error from their residuals. */
+static bool lengths_scale(const struct mark_context *m, double *scale, double *misfit, struct err *err)
 {
     double product = 0, square = 0, sum = 0;
     int count = 0;
@@ -106,8 +109,9 @@ static bool lengths_scale(const struct measured *m, double *scale, double *misfi
                 square += d * d;
                 count++;
                 if (!(d > 0)) {
-                    err_set(err, ST_DATA, "%s:%d: %s and %s are marked at the same place.", m->list->path, a->line,
-                            a->name, a->view);
+                    err_set(err, ST_DATA,
+                            "%s:%d: %s and %s are marked at the same position; mark two different points.",
+                            m->list->path, a->line, a->name, a->view);
                     return false;
                 }
             } else {
@@ -115,7 +119,7 @@ static bool lengths_scale(const struct measured *m, double *scale, double *misfi
             }
             if (!pass) *scale = product / square;
         }
-    *misfit = count > 1 ? sqrt(sum / (count - 1) / square) : 0; /* of the scale, as least squares has it */
+    *misfit = count > 1 ? sqrt(sum / (count - 1) / square) : 0;
     return true;
 }
 
@@ -126,8 +130,8 @@ static bool measure_scale(void *ctx, double *value)
     return lengths_scale(ctx, value, &misfit, &ignored);
 }
 
-/* Of the mark on one side of a wall's end from that on the other, along the wall direction that it follows most. */
-static enum status find_thickness(double *thickness, const struct measured *m, struct err *err)
+/* Distance of the marks on both sides of a wall's end, along the axis of the larger difference. */
+static enum status find_thickness(double *thickness, const struct mark_context *m, struct err *err)
 {
     for (int i = 0; i < m->list->count; i++) {
         const struct mark *a = &m->list->marks[i];
@@ -139,42 +143,42 @@ static enum status find_thickness(double *thickness, const struct measured *m, s
         const struct vec3 d = mat3_apply(m->axes, vec3_sub(q, p));
         *thickness = fmax(fabs(d.x), fabs(d.y));
         if (!(*thickness > 0))
-            return err_set(err, ST_DATA, "%s:%d: %s and %s are marked at the same place.", m->list->path, a->line,
-                           a->name, a->view);
+            return err_set(err, ST_DATA, "%s:%d: %s and %s are marked at the same position; mark two different points.",
+                           m->list->path, a->line, a->name, a->view);
     }
     return ST_OK;
 }
 
-/* ------------------------------------------------------------------------------------------------------------ whole */
+/* --------------------------------------------------------------------------------------------------------- the room */
 
-/* Along x and y: of the outermost walls that look inwards; where there is none, of nearly all points. */
+/* The room's extent along x and y: between the outermost walls that face inwards, or else of all points. */
 static void find_extent(struct room *room, const struct room_planes *planes, const struct point_cloud *cloud)
 {
     for (int k = 0; k < 2; k++) {
-        double least = HUGE_VAL, most = -HUGE_VAL, lowest = HUGE_VAL, highest = -HUGE_VAL;
+        double low = HUGE_VAL, high = -HUGE_VAL, lowest = HUGE_VAL, highest = -HUGE_VAL;
         for (int i = 0; i < planes->count; i++) {
             const struct room_plane *p = &planes->planes[i];
             if (p->axis != k) continue;
             if (p->side > 0)
-                least = fmin(least, p->offset);
+                low = fmin(low, p->offset);
             else
-                most = fmax(most, p->offset);
+                high = fmax(high, p->offset);
         }
         for (size_t i = 0; i < cloud->count; i++) {
             const struct vec3 p = model_from_world_point(&room->axes, cloud->points[i].position);
             lowest = fmin(lowest, k ? p.y : p.x);
             highest = fmax(highest, k ? p.y : p.x);
         }
-        room->least[k] = least < HUGE_VAL ? least * room->axes.scale : lowest;
-        room->most[k] = most > -HUGE_VAL ? most * room->axes.scale : highest;
-        if (room->most[k] > room->least[k]) continue;
-        room->least[k] = lowest;
-        room->most[k] = highest;
+        room->low[k] = low < HUGE_VAL ? low * room->axes.scale : lowest;
+        room->high[k] = high > -HUGE_VAL ? high * room->axes.scale : highest;
+        if (room->high[k] > room->low[k]) continue;
+        room->low[k] = lowest;
+        room->high[k] = highest;
     }
 }
 
-static enum status find_heights(struct room *room, struct measured *m, const struct room_inputs *in, struct vec3 errors,
-                                const struct axes_params *params, struct err *err)
+static enum status find_heights(struct room *room, struct mark_context *m, const struct room_inputs *in,
+                                struct vec3 errors, const struct axes_params *params, struct err *err)
 {
     if (find_level(&room->floor, 1, &m->axes, m->origin, errors, in->cloud, params, err) ||
         find_level(&room->ceiling, -1, &m->axes, m->origin, errors, in->cloud, params, err))
@@ -193,19 +197,20 @@ static enum status find_heights(struct room *room, struct measured *m, const str
     if (!room->floor_marked && !room->floor.count)
         return err_set(
             err, ST_DATA,
-            "no floor is found: of %zu points only %zu lie below the central camera and look up (within %.3g "
+            "no floor was found: of %zu points only %zu lie below the central camera and have upward normals (within "
+            "%.3g "
             "degrees). Photograph more of the floor, or mark one of its corners in two views in axes_fix.txt.",
-            in->cloud->count, room->floor.asked, params->up_angle);
+            in->cloud->count, room->floor.candidates, params->up_angle);
     if (!(room->floor.height < 0))
-        return err_set(
-            err, ST_DATA,
-            "%s: the corners lie above the central camera, so they are not on its floor; mark a corner where "
-            "two walls meet the floor.",
-            in->fix->path);
+        return err_set(err, ST_DATA,
+                       "%s: the corners lie above the central camera, so they are not on its floor; mark a corner "
+                       "where two walls meet "
+                       "the floor.",
+                       in->fix->path);
     return ST_OK;
 }
 
-static enum status find_scale(struct room *room, struct measured *m, const struct room_inputs *in, double click,
+static enum status find_scale(struct room *room, struct mark_context *m, const struct room_inputs *in, double click,
                               struct err *err)
 {
     struct model_axes *a = &room->axes;
@@ -226,11 +231,11 @@ static enum status find_all(struct room *room, const struct room_inputs *in, con
     struct directions d;
     struct vec3 errors;
     struct model_axes *a = &room->axes;
-    if (central_view(&room->central, in->set, err) || find_directions(&d, in->cloud, params->least_part, err))
+    if (central_view(&room->central, in->set, err) || find_directions(&d, in->cloud, params->min_part, err))
         return err->status;
     const struct view *central = &in->set->views[room->central];
-    struct measured m = {.scene = {.set = in->set, .lenses = in->lenses, .cloud = in->cloud},
-                         .origin = central->center};
+    struct mark_context m = {.scene = {.set = in->set, .lenses = in->lenses, .cloud = in->cloud},
+                             .origin = central->center};
     const struct vec3 down = vec3_scale(in->ups[room->central], -1), right = vec3_cross(down, vec3_make(0, 0, 1));
     const struct vec3 up = mean_up(in);
     m.axes = model_order(d.axes, d.part, up, mat3_apply(mat3_transpose(central->cam_from_world), right));

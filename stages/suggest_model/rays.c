@@ -1,10 +1,15 @@
-/* rays.c - see rays.h. */
+/* rays.c - lines of sight from points alone.
+ *
+ * A coarse depth buffer per view holds the nearest point in each of 64 x 64 cells; a point within 4 % of that depth is
+ * visible. */
 #include "stages/suggest_model/rays.h"
 
 #include <stdlib.h>
 
-enum { COLUMNS = 64, MOST_RAYS = 8 };
-static const double BEHIND = 1.04; /* of the nearest depth in a cell: what lies farther is hidden */
+#include "common/base/array.h"
+
+enum { COLUMNS = 64, MAX_RAYS = 8 }; /* of a depth buffer, per side; of a point */
+static const double BEHIND = 1.04;   /* times the nearest depth in a cell: points farther away are hidden */
 
 void ray_list_release(struct ray_list *list)
 {
@@ -13,7 +18,7 @@ void ray_list_release(struct ray_list *list)
     *list = (struct ray_list){0};
 }
 
-/* The cell of the view's depth buffer, -1 where the point is not in its picture; *z its depth. */
+/* The point's cell in the view's depth buffer, -1 if it is outside the picture or faces away; *z: its depth. */
 static int cell_of(const struct view *v, const struct cloud_point *p, double *z)
 {
     double x, y;
@@ -25,7 +30,7 @@ static int cell_of(const struct view *v, const struct cloud_point *p, double *z)
     return row * COLUMNS + column;
 }
 
-struct seen {
+struct sighting {
     int view;
     double distance;
 };
@@ -35,7 +40,7 @@ enum status rays_find(struct ray_list *list, const struct point_cloud *cloud, co
 {
     const size_t cells = (size_t)COLUMNS * COLUMNS * (size_t)view_count;
     float *nearest = malloc((cells + 1) * sizeof *nearest);
-    size_t room = 0;
+    size_t capacity = 0;
     enum status st = nearest ? ST_OK : err_nomem(err, "depth buffers", cells * sizeof *nearest);
     *list = (struct ray_list){0};
     for (size_t i = 0; !st && i < cells; i++) nearest[i] = 1e30f;
@@ -47,29 +52,23 @@ enum status rays_find(struct ray_list *list, const struct point_cloud *cloud, co
             if (at >= 0 && z < *n) *n = (float)z;
         }
     for (size_t i = 0; !st && i < cloud->count; i++) {
-        struct seen seen[MOST_RAYS];
-        const int most = cloud->points[i].views < MOST_RAYS ? cloud->points[i].views : MOST_RAYS;
+        struct sighting nearby[MAX_RAYS];
+        const int max_count = cloud->points[i].views < MAX_RAYS ? cloud->points[i].views : MAX_RAYS;
         int count = 0;
         for (int v = 0; v < view_count; v++) {
             double z;
             const int at = cell_of(&views[v], &cloud->points[i], &z);
             if (at < 0 || z > BEHIND * (double)nearest[(size_t)v * COLUMNS * COLUMNS + (size_t)at]) continue;
             const double d = vec3_length(vec3_sub(views[v].center, cloud->points[i].position));
-            if (count == most && d >= seen[most - 1].distance) continue;
-            int k = count < most ? count++ : most - 1;
-            for (; k > 0 && seen[k - 1].distance > d; k--) seen[k] = seen[k - 1];
-            seen[k] = (struct seen){v, d};
+            if (count == max_count && d >= nearby[max_count - 1].distance) continue;
+            int k = count < max_count ? count++ : max_count - 1;
+            for (; k > 0 && nearby[k - 1].distance > d; k--) nearby[k] = nearby[k - 1];
+            nearby[k] = (struct sighting){v, d};
         }
-        if (list->count + (size_t)count > room) {
-            room = 2 * room + 4096;
-            struct ray *more = realloc(list->rays, room * sizeof *more);
-            if (!more) {
-                st = err_nomem(err, "lines of sight", room * sizeof *more);
-                break;
-            }
-            list->rays = more;
-        }
-        for (int k = 0; k < count; k++) list->rays[list->count++] = (struct ray){seen[k].view, i};
+        st = array_reserve(&list->rays, &capacity, list->count + (size_t)count, sizeof *list->rays, "lines of sight",
+                           err);
+        if (st) break;
+        for (int k = 0; k < count; k++) list->rays[list->count++] = (struct ray){nearby[k].view, i};
     }
     free(nearest);
     if (st) ray_list_release(list);

@@ -1,4 +1,4 @@
-/* rays.h - which points a camera sees, from points alone: lines of sight through free space. */
+/* rays.h - which points are visible from which views, from the points alone: lines of sight through free space. */
 #ifndef REMODEL_SUGGEST_RAYS_H
 #define REMODEL_SUGGEST_RAYS_H
 
@@ -14,8 +14,9 @@ struct ray_list {
     size_t count;
 };
 
-/* A point is seen from the nearest of the views that it faces, whose picture it lies in and where no other point stands
- * before it (a coarse depth buffer of all points); as many of them as its views that agree. */
+/* A point is visible from a view if it faces the camera, lies in its picture, and is not hidden by other points (in a
+ * coarse depth buffer of all points). A point gets rays to the nearest of these views: as many as the number of views
+ * that agree on it, at most 8. The caller releases the list, which a failure leaves empty. */
 enum status rays_find(struct ray_list *list, const struct point_cloud *cloud, const struct view *views, int view_count,
                       struct err *err);
 void ray_list_release(struct ray_list *list);

@@ -1,24 +1,41 @@
-/* suggest.c - see suggest.h. */
+/* suggest.c - suggests a plan of rooms from oriented points and lines of sight.
+ *
+ * Faces. For each axis and sign, a histogram of positions is made of the points with that normal. It counts the wall's
+ * cells with points, not the points, so that a table's edge with many points is not a wall. Each peak is a face,
+ * refined to the mean of the points near it. A face's cell is solid if more points lie on it than lines of sight cross
+ * it and end well behind it, and seen through in the opposite case.
+ *
+ * Rooms. The outermost prominent face on each side that is not only seen through another wall's windows bounds the
+ * plan: a box. A box is cut in two by the pair of faces back to back (or the single face) with the largest solid
+ * fraction across it, and its parts likewise; boxes that cannot be cut are rooms.
+ *
+ * Openings. In finer cells, columns of a wall that are more seen through than solid form runs; the largest run of such
+ * rows in them is an opening, which then grows over unseen cells to where the wall is solid. */
 #include "stages/suggest_model/suggest.h"
 
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/base/array.h"
 #include "common/base/sort.h"
+#include "common/math/numbers.h"
 
-/* Parts of the ceiling's height: heights between which walls are looked at, and how far behind a face a line of sight
- * must go on. */
-static const double LOWEST = 0.04, HIGHEST = 0.92, BEYOND = 0.06;
-static const double LEAST_FACE = 0.12, LEAST_OUTER = 0.25, SEEN_THROUGH = 0.9;
-/* parts: of height squared; of the best face's net area; of lines of sight */
-static const double FLOOR_NEAR = 0.03, LEAST_FLOOR = 0.3;
-static const double MOST_HEIGHTS = 50; /* across a plan */
+/* As fractions of the ceiling's height: */
+static const double MIN_Z = 0.04, MAX_Z = 0.92; /* range of heights in which walls are examined */
+static const double BEYOND = 0.06;              /* by which a line of sight must pass a face to cross it */
+static const double MAX_FLOOR_Z = 0.03;         /* of points of the floor */
+static const double MAX_HEIGHTS = 50;           /* extent of a plan */
+static const double MIN_FACE = 0.12;            /* area of a face, ceiling heights squared */
+/* As other fractions: */
+static const double MIN_OUTER = 0.25;   /* net area of an outer face, of the best face's */
+static const double SEEN_THROUGH = 0.9; /* of a face's lines of sight: it lies beyond another face */
+static const double MIN_FLOOR = 0.3;    /* of a room's floor cells with points */
 
-struct face {
+struct wall_side {  /* a face of a wall */
     int axis, sign; /* of its normal */
     double at;
-    signed char *cells; /* +1 seen, -1 seen through, 0 not known; across x up */
-    int net;
+    signed char *cells; /* +1 solid, -1 seen through, 0 unknown; across x up */
+    int net;            /* sum of cells */
 };
 struct finder {
     const struct point_cloud *cloud;
@@ -26,9 +43,9 @@ struct finder {
     int view_count;
     const struct suggest_params *params;
     struct ray_list rays;
-    double height, low[2], high[2]; /* where points are */
-    struct face *faces;             /* owned */
-    int face_count, across[2], up;  /* cells along x, y (along a face of the other axis) and z */
+    double height, low[2], high[2]; /* the ceiling's height; bounds of the points in x and y */
+    struct wall_side *faces;        /* owned */
+    int face_count, across[2], up;  /* numbers of cells along x, y and z */
 };
 struct box {
     double low[2], high[2];
@@ -44,31 +61,15 @@ void suggestion_release(struct suggestion *s)
     *s = (struct suggestion){0};
 }
 
-/* Room for one more at the end of an array; it grows where the count is a power of two. NULL: no memory. */
-static void *one_more(void *array, int *count, size_t size, const char *what, struct err *err)
-{
-    char **items = array;
-    if (!(*count & (*count - 1))) {
-        const size_t bytes = (*count ? 2 * (size_t)*count : 1) * size;
-        char *more = realloc(*items, bytes);
-        if (!more) {
-            err_nomem(err, what, bytes);
-            return NULL;
-        }
-        *items = more;
-    }
-    return *items + (size_t)(*count)++ * size;
-}
-
 static double along(struct vec3 p, int axis) { return axis ? p.y : p.x; }
 
-static bool looks_along(const struct finder *f, const struct cloud_point *p, int axis, int sign)
+static bool faces_along(const struct finder *f, const struct cloud_point *p, int axis, int sign)
 {
-    return sign * (double)p->normal[axis] >= cos(f->params->max_angle * M_PI / 180);
+    return sign * (double)p->normal[axis] >= cos(f->params->max_angle * PI / 180);
 }
 
-/* The part-quantiles of the points' coordinates: a plan is where nearly all points are. */
-static enum status bounds(struct finder *f, double ceiling, struct err *err)
+/* Finds the bounds of the plan and the ceiling's height as quantiles of the points' coordinates. */
+static enum status find_bounds(struct finder *f, double ceiling, struct err *err)
 {
     double *v = malloc((f->cloud->count + 1) * sizeof *v);
     if (!v) return err_nomem(err, "coordinates", f->cloud->count * sizeof *v);
@@ -90,34 +91,37 @@ static enum status bounds(struct finder *f, double ceiling, struct err *err)
     }
     free(v);
     if (!(f->height > 0))
-        return err_set(err, ST_DATA, "no points of walls lie above the floor; look at the pictures of the axes.");
+        return err_set(
+            err, ST_DATA,
+            "no points of walls lie above the floor; check the axes and the floor in the pictures in model/axes.");
     const double c = f->params->cell * f->height;
     for (int axis = 0; axis < 2; axis++) {
         f->low[axis] -= c;
         f->high[axis] += c;
         const double cells = (f->high[axis] - f->low[axis]) / c;
-        if (cells * f->params->cell > MOST_HEIGHTS)
+        if (cells * f->params->cell > MAX_HEIGHTS)
             return err_set(err, ST_DATA,
-                           "the points are spread over %.0f times the ceiling's height, which is no room.",
-                           cells * f->params->cell);
+                           "the points extend over %.0f times the ceiling's height, wanted at most %.0f, the size of a "
+                           "building; check the heights of floor and ceiling in the pictures in model/axes.",
+                           cells * f->params->cell, MAX_HEIGHTS);
         f->across[axis] = (int)cells + 1;
     }
     f->up = (int)ceil(1 / f->params->cell);
     return ST_OK;
 }
 
-/* The cell of a face of that axis, -1 outside. */
+/* The cell of a face with that axis at (s, z), -1 outside. */
 static int cell_at(const struct finder *f, int axis, double s, double z)
 {
     const double c = f->params->cell * f->height;
-    if (z < LOWEST * f->height || z >= HIGHEST * f->height) return -1;
+    if (z < MIN_Z * f->height || z >= MAX_Z * f->height) return -1;
     const double k = (s - f->low[1 - axis]) / c;
     if (k < 0 || k >= f->across[1 - axis]) return -1;
     return (int)k * f->up + (int)(z / c);
 }
 
-/* Peaks of how many cells have points, by position: a wall has many cells, a table's edge few, however many points. */
-static enum status peaks(struct finder *f, int axis, int sign, struct err *err)
+/* Finds the faces of an axis and sign: peaks of the number of cells with points, by position. */
+static enum status find_faces(struct finder *f, int axis, int sign, struct err *err)
 {
     const double step = f->params->window * f->height / 2;
     const int bins = (int)((f->high[axis] - f->low[axis]) / step) + 3, cells = f->across[1 - axis] * f->up;
@@ -126,7 +130,7 @@ static enum status peaks(struct finder *f, int axis, int sign, struct err *err)
     enum status st = seen && area ? ST_OK : err_nomem(err, "cells of walls", (size_t)cells * (size_t)bins);
     for (size_t i = 0; !st && i < f->cloud->count; i++) {
         const struct cloud_point *p = &f->cloud->points[i];
-        if (!looks_along(f, p, axis, sign)) continue;
+        if (!faces_along(f, p, axis, sign)) continue;
         const double bin = (along(p->position, axis) - f->low[axis]) / step;
         const int cell = cell_at(f, axis, along(p->position, 1 - axis), p->position.z);
         if (cell < 0 || bin < 1 || bin >= bins - 1) continue;
@@ -135,26 +139,24 @@ static enum status peaks(struct finder *f, int axis, int sign, struct err *err)
     }
     for (int b = 0; !st && b < bins; b++)
         for (int c = 0; c < cells; c++) area[b] += seen[(size_t)b * (size_t)cells + (size_t)c];
-    const int least = (int)(LEAST_FACE / (f->params->cell * f->params->cell)), apart = 4;
+    const int min_area = (int)(MIN_FACE / (f->params->cell * f->params->cell)), apart = 4;
     for (int b = 1; !st && b < bins - 1; b++) {
-        bool best = area[b] >= least;
+        bool best = area[b] >= min_area;
         for (int o = -apart; best && o <= apart; o++)
             if (o && b + o >= 0 && b + o < bins && (area[b + o] > area[b] || (o < 0 && area[b + o] == area[b])))
                 best = false;
         if (!best) continue;
-        struct face *face = one_more(&f->faces, &f->face_count, sizeof *face, "faces of walls", err);
-        if (!face) {
-            st = err->status;
-            break;
-        }
-        *face = (struct face){.axis = axis, .sign = sign, .at = f->low[axis] + (b + 0.5) * step};
-        for (int round = 0; round < 3; round++) { /* the mean of what gathers there */
+        st = array_append(&f->faces, (size_t)f->face_count, sizeof *f->faces, "faces of walls", err);
+        if (st) break;
+        struct wall_side *face = &f->faces[f->face_count++];
+        *face = (struct wall_side){.axis = axis, .sign = sign, .at = f->low[axis] + (b + 0.5) * step};
+        for (int round = 0; round < 3; round++) { /* refine to the mean of the points near it */
             double sum = 0;
             size_t n = 0;
             for (size_t i = 0; i < f->cloud->count; i++) {
                 const struct cloud_point *p = &f->cloud->points[i];
                 const double d = along(p->position, axis) - face->at;
-                if (fabs(d) < 2 * step && looks_along(f, p, axis, sign)) sum += d, n++;
+                if (fabs(d) < 2 * step && faces_along(f, p, axis, sign)) sum += d, n++;
             }
             if (n) face->at += sum / (double)n;
         }
@@ -164,7 +166,7 @@ static enum status peaks(struct finder *f, int axis, int sign, struct err *err)
     return st;
 }
 
-/* Where a line of sight crosses a plane from the side that its face looks to, and goes on. */
+/* Whether a line of sight crosses a face's plane from its front, and ends well behind it; *s, *z: the crossing. */
 static bool crosses(const struct finder *f, const struct ray *r, int axis, int sign, double at, double *s, double *z)
 {
     const struct vec3 a = f->views[r->view].center, b = f->cloud->points[r->point].position;
@@ -176,7 +178,8 @@ static bool crosses(const struct finder *f, const struct ray *r, int axis, int s
     return true;
 }
 
-static enum status look_at_face(struct finder *f, struct face *face, struct err *err)
+/* Decides which cells of a face are solid and which are seen through, by majority of the lines of sight. */
+static enum status count_cells(struct finder *f, struct wall_side *face, struct err *err)
 {
     const int cells = f->across[1 - face->axis] * f->up;
     int *votes = calloc((size_t)cells + 1, sizeof *votes);
@@ -191,7 +194,7 @@ static enum status look_at_face(struct finder *f, struct face *face, struct err 
         double s, z;
         if (fabs(along(p->position, face->axis) - face->at) < 2 * f->params->window * f->height) {
             const int c = cell_at(f, face->axis, along(p->position, 1 - face->axis), p->position.z);
-            if (c >= 0 && looks_along(f, p, face->axis, face->sign)) votes[c]++;
+            if (c >= 0 && faces_along(f, p, face->axis, face->sign)) votes[c]++;
         } else if (crosses(f, r, face->axis, face->sign, face->at, &s, &z)) {
             const int c = cell_at(f, face->axis, s, z);
             if (c >= 0) votes[c]--;
@@ -205,8 +208,8 @@ static enum status look_at_face(struct finder *f, struct face *face, struct err 
     return ST_OK;
 }
 
-/* Cells that are seen less those that are seen through, as a part of those from begin to end. */
-static double part_seen(const struct finder *f, const struct face *face, double begin, double end)
+/* Solid cells minus those seen through, as a fraction of the cells from begin to end. */
+static double solid_fraction(const struct finder *f, const struct wall_side *face, double begin, double end)
 {
     const double c = f->params->cell * f->height;
     const int other = 1 - face->axis;
@@ -216,18 +219,18 @@ static double part_seen(const struct finder *f, const struct face *face, double 
     if (last <= first) return -1;
     for (int k = first; k < last; k++)
         for (int z = 0; z < f->up; z++) net += face->cells[k * f->up + z];
-    return net / ((last - first) * (HIGHEST - LOWEST) / f->params->cell);
+    return net / ((last - first) * (MAX_Z - MIN_Z) / f->params->cell);
 }
 
-/* What is seen through another wall's windows alone is a yard or a house opposite, no wall of this plan. */
-static bool is_beyond(const struct finder *f, const struct face *face, const struct face *nearer)
+/* Whether a face is seen only through the windows of a nearer one: it belongs to a yard or to a house opposite. */
+static bool is_beyond(const struct finder *f, const struct wall_side *face, const struct wall_side *nearer)
 {
     size_t all = 0, through = 0;
     double s, z;
     for (size_t i = 0; i < f->rays.count; i++) {
         const struct cloud_point *p = &f->cloud->points[f->rays.rays[i].point];
         if (fabs(along(p->position, face->axis) - face->at) > 2 * f->params->window * f->height ||
-            !looks_along(f, p, face->axis, face->sign))
+            !faces_along(f, p, face->axis, face->sign))
             continue;
         all++;
         through += crosses(f, &f->rays.rays[i], face->axis, face->sign, nearer->at, &s, &z);
@@ -235,31 +238,32 @@ static bool is_beyond(const struct finder *f, const struct face *face, const str
     return (double)through > SEEN_THROUGH * (double)all;
 }
 
-static bool is_candidate(const struct face *face, int axis, int sign, int best)
+static bool is_prominent(const struct wall_side *face, int axis, int sign, int best)
 {
-    return face->axis == axis && face->sign == sign && face->net > LEAST_OUTER * best;
+    return face->axis == axis && face->sign == sign && face->net > MIN_OUTER * best;
 }
 
-/* The outermost face that looks inwards, is no less seen than a part of the most seen one, and not through another. */
-static const struct face *outermost(const struct finder *f, int axis, int sign)
+/* The outermost prominent face towards the inside that is not beyond another one; NULL: none. */
+static const struct wall_side *find_outermost(const struct finder *f, int axis, int sign)
 {
     int best = 0;
     for (int i = 0; i < f->face_count; i++)
         if (f->faces[i].axis == axis && f->faces[i].sign == sign && f->faces[i].net > best) best = f->faces[i].net;
-    const struct face *found = NULL;
+    const struct wall_side *found = NULL;
     for (int i = 0; i < f->face_count; i++) {
-        const struct face *a = &f->faces[i];
-        if (!is_candidate(a, axis, sign, best)) continue;
+        const struct wall_side *a = &f->faces[i];
+        if (!is_prominent(a, axis, sign, best)) continue;
         bool beyond = found && sign * (found->at - a->at) <= 0;
         for (int k = 0; !beyond && k < f->face_count; k++) {
-            const struct face *b = &f->faces[k];
-            beyond = is_candidate(b, axis, sign, best) && sign * (b->at - a->at) > 0 && is_beyond(f, a, b);
+            const struct wall_side *b = &f->faces[k];
+            beyond = is_prominent(b, axis, sign, best) && sign * (b->at - a->at) > 0 && is_beyond(f, a, b);
         }
         if (!beyond) found = a;
     }
     return found;
 }
 
+/* *found is set if cameras or enough floor are in the box. */
 static enum status is_free(bool *found, const struct finder *f, const struct box *box, struct err *err)
 {
     const double c = f->params->cell * f->height;
@@ -274,51 +278,60 @@ static enum status is_free(bool *found, const struct finder *f, const struct box
     for (size_t i = 0; i < f->cloud->count; i++) {
         const struct cloud_point *p = &f->cloud->points[i];
         const double x = (p->position.x - box->low[0]) / c, y = (p->position.y - box->low[1]) / c;
-        if (fabs(p->position.z) > FLOOR_NEAR * f->height || p->normal[2] < 0.9f || x < 0 || y < 0 || x >= w || y >= h)
+        if (fabs(p->position.z) > MAX_FLOOR_Z * f->height || p->normal[2] < 0.9f || x < 0 || y < 0 || x >= w || y >= h)
             continue;
         unsigned char *cell = &seen[(size_t)y * (size_t)w + (size_t)x];
         count += !*cell;
         *cell = 1;
     }
     free(seen);
-    if (count > LEAST_FLOOR * w * h) *found = true;
+    if (count > MIN_FLOOR * w * h) *found = true;
     return ST_OK;
 }
 
-/* Cuts a box in two at the wall that is most seen from both sides, and its parts likewise. */
-static enum status cut(struct suggestion *s, const struct finder *f, const struct box *box, struct err *err)
+/* The wall with the largest solid fraction that cuts a box: two faces back to back, or else a single face (best[1] is
+ * then NULL); best[0] is NULL if there is none. */
+static void find_partition(const struct wall_side *best[2], const struct finder *f, const struct box *box)
 {
-    const struct face *best[2] = {NULL, NULL};
-    double most = f->params->least_wall;
+    const double narrow = f->params->min_opening * f->height;
+    double best_fraction = f->params->min_wall;
+    best[0] = best[1] = NULL;
     for (int i = 0; i < f->face_count; i++)
         for (int k = 0; k < f->face_count; k++) {
-            const struct face *a = &f->faces[i], *b = &f->faces[k];
+            const struct wall_side *a = &f->faces[i], *b = &f->faces[k];
             const int axis = a->axis, other = 1 - axis;
-            const double narrow = f->params->narrowest * f->height, thick = b->at - a->at;
-            if (b->axis != axis || a->sign > 0 || b->sign < 0 || thick < 2 * f->params->window * f->height ||
-                thick > f->params->thickest * f->height || a->at < box->low[axis] + narrow ||
+            const double thickness = b->at - a->at;
+            if (b->axis != axis || a->sign > 0 || b->sign < 0 || thickness < 2 * f->params->window * f->height ||
+                thickness > f->params->max_thickness * f->height || a->at < box->low[axis] + narrow ||
                 b->at > box->high[axis] - narrow)
                 continue;
-            const double pa = part_seen(f, a, box->low[other], box->high[other]);
-            const double pb = part_seen(f, b, box->low[other], box->high[other]);
-            if (fmin(pa, pb) > most) {
-                most = fmin(pa, pb);
+            const double pa = solid_fraction(f, a, box->low[other], box->high[other]);
+            const double pb = solid_fraction(f, b, box->low[other], box->high[other]);
+            if (fmin(pa, pb) > best_fraction) {
+                best_fraction = fmin(pa, pb);
                 best[0] = a;
                 best[1] = b;
             }
         }
-    /* a wall that only one side shows: as thick as walls usually are */
-    for (int i = 0; !best[1] && i < f->face_count; i++) {
-        const struct face *a = &f->faces[i];
-        const double away = (f->params->narrowest + WALL_THICKNESS) * f->height;
-        const double part = part_seen(f, a, box->low[1 - a->axis], box->high[1 - a->axis]);
-        if (a->at < box->low[a->axis] + away || a->at > box->high[a->axis] - away || part <= most) continue;
-        most = part;
+    for (int i = 0; !best[1] && i < f->face_count; i++) { /* a wall that was seen from one side */
+        const struct wall_side *a = &f->faces[i];
+        const double away = (f->params->min_opening + WALL_THICKNESS) * f->height;
+        const double fraction = solid_fraction(f, a, box->low[1 - a->axis], box->high[1 - a->axis]);
+        if (a->at < box->low[a->axis] + away || a->at > box->high[a->axis] - away || fraction <= best_fraction)
+            continue;
+        best_fraction = fraction;
         best[0] = a;
     }
+}
+
+/* Cuts a box in two at its best wall, and its parts likewise; boxes without such a wall become rooms. */
+static enum status cut_box(struct suggestion *s, const struct finder *f, const struct box *box, struct err *err)
+{
+    const struct wall_side *best[2];
+    find_partition(best, f, box);
     if (!best[0]) {
-        struct plan_room *room = one_more(&s->rooms, &s->room_count, sizeof *room, "rooms", err);
-        if (!room) return err->status;
+        if (array_append(&s->rooms, (size_t)s->room_count, sizeof *s->rooms, "rooms", err)) return err->status;
+        struct suggested_room *room = &s->rooms[s->room_count++];
         memcpy(room->walls, box->walls, sizeof room->walls);
         return is_free(&room->free, f, box, err);
     }
@@ -327,9 +340,8 @@ static enum status cut(struct suggestion *s, const struct finder *f, const struc
     const double guess = WALL_THICKNESS * f->height;
     const double first = best[1] || best[0]->sign < 0 ? best[0]->at : best[0]->at - guess;
     const double second = best[1] ? best[1]->at : first + guess;
-    struct plan_wall *w = one_more(&s->walls, &s->wall_count, sizeof *w, "walls", err);
-    if (!w) return err->status;
-    *w = (struct plan_wall){
+    if (array_append(&s->walls, (size_t)s->wall_count, sizeof *s->walls, "walls", err)) return err->status;
+    s->walls[s->wall_count++] = (struct suggested_wall){
         .axis = axis,
         .face = first,
         .thickness = second - first,
@@ -344,23 +356,24 @@ static enum status cut(struct suggestion *s, const struct finder *f, const struc
     low.walls[high_side] = wall;
     high.low[axis] = second;
     high.walls[low_side] = wall;
-    return cut(s, f, &low, err) ? err->status : cut(s, f, &high, err);
+    return cut_box(s, f, &low, err) ? err->status : cut_box(s, f, &high, err);
 }
 
-/* ---------------------------------------------------------------------------------------------------------- openings */
+/* --------------------------------------------------------------------------------------------------------- openings */
 
-struct sheet { /* a wall in fine cells */
+struct wall_grid { /* a wall in cells of the window's width */
     int across, up;
-    int *solid, *open; /* points on it, lines of sight through it */
+    int *solid, *open; /* numbers of points on it, of lines of sight through it */
 };
 
-static void sheet_release(struct sheet *t)
+static void wall_grid_release(struct wall_grid *t)
 {
     free(t->solid);
     free(t->open);
 }
 
-static enum status sheet_make(struct sheet *t, const struct finder *f, const struct plan_wall *w, struct err *err)
+static enum status wall_grid_make(struct wall_grid *t, const struct finder *f, const struct suggested_wall *w,
+                                  struct err *err)
 {
     const double c = f->params->window * f->height;
     t->across = (int)((w->end - w->begin) / c) + 1;
@@ -379,8 +392,9 @@ static enum status sheet_make(struct sheet *t, const struct finder *f, const str
             int *count = t->solid;
             const double behind = sign * (at - along(p->position, w->axis));
             const double within = w->thickness > 0 ? w->thickness : WALL_THICKNESS * f->height;
-            const bool on = fabs(behind) < 2 * c && looks_along(f, p, w->axis, sign);
-            if (on || (behind > c && behind < within - c && !looks_along(f, p, w->axis, sign))) { /* or a reveal */
+            const bool on = fabs(behind) < 2 * c && faces_along(f, p, w->axis, sign);
+            if (on ||
+                (behind > c && behind < within - c && !faces_along(f, p, w->axis, sign))) { /* the second: a reveal */
                 s = along(p->position, 1 - w->axis);
                 z = p->position.z;
             } else if (crosses(f, r, w->axis, sign, at, &s, &z) &&
@@ -395,8 +409,8 @@ static enum status sheet_make(struct sheet *t, const struct finder *f, const str
     return ST_OK;
 }
 
-/* More open than solid cells, and enough of them to tell: +1; more solid ones: -1. */
-static int column_state(const struct sheet *t, int first, int last, int low, int high)
+/* +1: more open than solid cells; -1: the opposite; 0: too few cells are known. */
+static int column_state(const struct wall_grid *t, int first, int last, int low, int high)
 {
     int open = 0, solid = 0;
     for (int x = first; x < last; x++)
@@ -409,8 +423,9 @@ static int column_state(const struct sheet *t, int first, int last, int low, int
     return open > solid ? 1 : -1;
 }
 
-/* The next run of open columns (rows of the columns first..last if up) from *begin on; gaps of unknown ones are open. */
-static bool next_run(const struct sheet *t, bool up, int first, int last, int *begin, int *end)
+/* The next run of open columns (or, if `up`, of open rows of the columns first .. last) from *begin on. Short gaps of
+ * unknown ones belong to the run. */
+static bool next_run(const struct wall_grid *t, bool up, int first, int last, int *begin, int *end)
 {
     const int n = up ? t->up : t->across;
     bool in = false;
@@ -422,7 +437,7 @@ static bool next_run(const struct sheet *t, bool up, int first, int last, int *b
             in = true;
             *end = i + 1;
         } else if (in && (state < 0 || i - *end > 3)) {
-            /* a single solid column in the open is a leg or a lamp */
+            /* a single solid column inside the run is a leg or a lamp */
             const int after = i + 1 < n ? (up ? column_state(t, first, last, i + 1, i + 2)
                                               : column_state(t, i + 1, i + 2, (int)(0.1 * t->up), (int)(0.7 * t->up)))
                                         : -1;
@@ -432,9 +447,10 @@ static bool next_run(const struct sheet *t, bool up, int first, int last, int *b
     return in;
 }
 
-/* Lines of sight tell where an opening is, points of the wall where it ends: each of its sides goes on over cells that
- * nobody saw (sky, dark corners) to where most cells are solid, and stays if no such place comes. */
-static void grow(const struct sheet *t, int rect[4])
+/* Lines of sight locate an opening, points of the wall its border: each side moves outwards over unseen cells (sky,
+ * dark corners) to where most cells are solid, and stays where it is if there is no such line. rect: begin, foot, end,
+ * top. */
+static void grow_opening(const struct wall_grid *t, int rect[4])
 {
     for (int side = 0; side < 4; side++) { /* begin, foot, end, top */
         const int step = side < 2 ? -1 : 1, limit = side < 2 ? 0 : (side == 2 ? t->across : t->up * 92 / 100);
@@ -453,11 +469,11 @@ static void grow(const struct sheet *t, int rect[4])
 
 static enum status openings_of(struct suggestion *s, const struct finder *f, int wall, struct err *err)
 {
-    const struct plan_wall *w = &s->walls[wall];
-    const double c = f->params->window * f->height, narrow = f->params->narrowest * f->height;
-    struct sheet t = {0};
+    const struct suggested_wall *w = &s->walls[wall];
+    const double c = f->params->window * f->height, narrow = f->params->min_opening * f->height;
+    struct wall_grid t = {0};
     int begin = 0, end = 0;
-    enum status st = sheet_make(&t, f, w, err);
+    enum status st = wall_grid_make(&t, f, w, err);
     while (!st && next_run(&t, false, 0, 0, &begin, &end)) {
         int low = 0, high = 0, best[2] = {0, 0};
         if ((end - begin) * c >= narrow)
@@ -465,57 +481,76 @@ static enum status openings_of(struct suggestion *s, const struct finder *f, int
                 if (high - low > best[1] - best[0]) best[0] = low, best[1] = high;
         if ((best[1] - best[0]) * c >= narrow) {
             int rect[4] = {begin, best[0], end, best[1]};
-            grow(&t, rect);
+            grow_opening(&t, rect);
             const bool window = rect[1] * c > 0.15 * f->height;
-            struct plan_opening *o = one_more(&s->openings, &s->opening_count, sizeof *o, "openings", err);
-            if (!o) {
-                st = err->status;
-                break;
-            }
-            *o = (struct plan_opening){
+            st = array_append(&s->openings, (size_t)s->opening_count, sizeof *s->openings, "openings", err);
+            if (st) break;
+            s->openings[s->opening_count++] = (struct suggested_opening){
                 wall, w->begin + rect[0] * c, w->begin + rect[2] * c, window ? rect[1] * c : 0, rect[3] * c, window};
             if (rect[2] > end) end = rect[2];
         }
         begin = end + 1;
     }
-    sheet_release(&t);
+    wall_grid_release(&t);
     return st;
+}
+
+/* The error where side k of the plan (south, west, north, east) has no wall. */
+static enum status no_wall(const struct finder *f, int k, struct err *err)
+{
+    static const char *const SIDES[] = {"-y", "-x", "+y", "+x"}, *const NORMALS[] = {"+y", "+x", "-y", "-x"};
+    const int axis = k % 2 ? 0 : 1, sign = k < 2 ? 1 : -1;
+    size_t facing = 0, along_axes = 0;
+    for (size_t i = 0; i < f->cloud->count; i++) {
+        const struct cloud_point *p = &f->cloud->points[i];
+        facing += faces_along(f, p, axis, sign);
+        for (int n = 0; n < 4; n++) along_axes += faces_along(f, p, n % 2, n < 2 ? 1 : -1);
+    }
+    return err_set(
+        err, ST_DATA,
+        "no wall was found on the %s side of the model's frame. A wall is a plane of points whose normals are within "
+        "%g degrees of %s, and which cover at least %g times the square of the ceiling's height (%.3g); of %zu points "
+        "%zu have normals along x or y, and %zu of these along %s. Likely causes, the most frequent first: (1) too few "
+        "points on the wall: take more photographs of it, or write the script by hand; (2) a wrong lens model, with "
+        "fisheye photographs: see the residuals that sfm_import reports; if they are large, set [sfm] camera_model "
+        "(EQUISOLID for most fisheye lenses) and run make resfm; (3) wrong axes or heights: look at the pictures in "
+        "model/axes, and correct them with axes_fix.txt.",
+        SIDES[k], f->params->max_angle, NORMALS[k], MIN_FACE, f->height, f->cloud->count, along_axes, facing,
+        NORMALS[k]);
 }
 
 enum status suggest_plan(struct suggestion *s, const struct point_cloud *cloud, const struct view *views,
                          int view_count, double ceiling, const struct suggest_params *params, struct err *err)
 {
-    static const char *const SIDES[] = {"-y", "-x", "+y", "+x"};
     struct finder f = {.cloud = cloud, .views = views, .view_count = view_count, .params = params};
-    const struct face *outer[4];
+    const struct wall_side *outer[4];
     *s = (struct suggestion){0};
-    enum status st = cloud->count ? bounds(&f, ceiling, err) : err_set(err, ST_DATA, "there are no points.");
+    enum status st = cloud->count ? find_bounds(&f, ceiling, err)
+                                  : err_set(err, ST_DATA, "there are no points; add photographs that overlap.");
     if (!st) st = rays_find(&f.rays, cloud, views, view_count, err);
     for (int axis = 0; !st && axis < 2; axis++)
-        for (int sign = -1; !st && sign <= 1; sign += 2) st = peaks(&f, axis, sign, err);
-    for (int i = 0; !st && i < f.face_count; i++) st = look_at_face(&f, &f.faces[i], err);
+        for (int sign = -1; !st && sign <= 1; sign += 2) st = find_faces(&f, axis, sign, err);
+    for (int i = 0; !st && i < f.face_count; i++) st = count_cells(&f, &f.faces[i], err);
     for (int k = 0; !st && k < 4; k++)
-        if (!(outer[k] = outermost(&f, k % 2 ? 0 : 1, k < 2 ? 1 : -1)))
-            st = err_set(err, ST_DATA,
-                         "no wall is seen on the side of %s of the model's frame; write the script by hand.", SIDES[k]);
+        if (!(outer[k] = find_outermost(&f, k % 2 ? 0 : 1, k < 2 ? 1 : -1))) st = no_wall(&f, k, err);
     if (!st && (outer[1]->at >= outer[3]->at || outer[0]->at >= outer[2]->at))
-        st = err_set(err, ST_DATA, "no four walls stand around the points; write the script by hand.");
+        st = err_set(err, ST_DATA,
+                     "the outermost walls do not enclose the points: they face away from each other; check the axes in "
+                     "the pictures in model/axes, or write the script by hand.");
     if (!st) {
         const struct box box = {{outer[1]->at, outer[0]->at}, {outer[3]->at, outer[2]->at}, {0, 1, 2, 3}};
         for (int k = 0; k < 4 && !st; k++) {
-            struct plan_wall *w = one_more(&s->walls, &s->wall_count, sizeof *w, "walls", err);
-            if (!w)
-                st = err->status;
-            else
-                *w = (struct plan_wall){.axis = outer[k]->axis,
-                                        .face = outer[k]->at,
-                                        .begin = box.low[1 - outer[k]->axis],
-                                        .end = box.high[1 - outer[k]->axis],
-                                        .sides = {-1, -1},
-                                        .inward = outer[k]->sign};
+            st = array_append(&s->walls, (size_t)s->wall_count, sizeof *s->walls, "walls", err);
+            if (!st)
+                s->walls[s->wall_count++] = (struct suggested_wall){.axis = outer[k]->axis,
+                                                                    .face = outer[k]->at,
+                                                                    .begin = box.low[1 - outer[k]->axis],
+                                                                    .end = box.high[1 - outer[k]->axis],
+                                                                    .sides = {-1, -1},
+                                                                    .inward = outer[k]->sign};
         }
         s->ceiling = f.height;
-        if (!st) st = cut(s, &f, &box, err);
+        if (!st) st = cut_box(s, &f, &box, err);
     }
     for (int w = 0; !st && w < s->wall_count; w++) st = openings_of(s, &f, w, err);
     for (int i = 0; i < f.face_count; i++) free(f.faces[i].cells);

@@ -1,9 +1,9 @@
-/* suggest_model.c - a first model script of a scene's rooms, from oriented points, to be corrected by hand.
+/* suggest_model.c - suggests a model script of a scene's rooms from oriented points, for a person to correct.
  *
  * reads   VIEWS/cameras.txt, images.txt, points3D.txt   the cameras
  *         POINTS                                        oriented points
  *         AXES                                          the model's frame, ceiling, thickness of walls
- * writes  OUT                                           a script (docs/model-script.md) that nothing reads by itself */
+ * writes  OUT                                           a script (docs/model-script.md); no other stage reads it */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,10 +15,11 @@
 #include "stages/suggest_model/suggest.h"
 
 #define PARAM_STRUCT struct suggest_params
-const struct param suggest_param_table[] = {SUGGEST_PARAMS(PARAM_ROW) PARAM_END};
+const struct param suggest_param_table[] = {SUGGEST_PARAMS(PARAM_ROW) PARAM_RENAMED(least_wall, min_wall) PARAM_RENAMED(
+    thickest, max_thickness) PARAM_RENAMED(narrowest, min_opening) PARAM_END};
 #undef PARAM_STRUCT
 
-static const double USUAL_GLASS = 0.008; /* thickness, as a part of the ceiling's height */
+static const double GLASS_THICKNESS = 0.008; /* as a fraction of the ceiling's height */
 
 static void name_of(char name[32], int wall)
 {
@@ -31,11 +32,11 @@ static void name_of(char name[32], int wall)
 
 static void write_wall(FILE *fp, const struct suggestion *s, int wall)
 {
-    const struct plan_wall *w = &s->walls[wall];
+    const struct suggested_wall *w = &s->walls[wall];
     char name[32];
     name_of(name, wall);
     if (w->guessed) fputs("# seen from one side only: its thickness is a guess\n", fp);
-    /* the inside is on the right-hand side of the way from start to end */
+    /* the inside is to the right of the direction from start to end */
     const bool falls = (w->axis ? -1 : 1) * w->inward < 0;
     const double from = falls ? w->end : w->begin, to = falls ? w->begin : w->end;
     if (w->axis)
@@ -62,7 +63,7 @@ static void write_script(FILE *fp, const struct suggestion *s, const struct mode
     if (!(axes->thickness > 0))
         fprintf(fp, "# nobody saw the outer walls' other faces: a guess\nset thickness %.4f\n",
                 WALL_THICKNESS * s->ceiling);
-    fprintf(fp, "set glass %.4f\n\n", USUAL_GLASS * s->ceiling);
+    fprintf(fp, "set glass %.4f\n\n", GLASS_THICKNESS * s->ceiling);
     for (int w = 0; w < 4; w++) write_wall(fp, s, w);
     fputs("join south west north east south\n", fp);
     for (int w = 4; w < s->wall_count; w++) write_wall(fp, s, w);
@@ -78,7 +79,7 @@ static void write_script(FILE *fp, const struct suggestion *s, const struct mode
     }
     fputc('\n', fp);
     for (int i = 0; i < s->opening_count; i++) {
-        const struct plan_opening *o = &s->openings[i];
+        const struct suggested_opening *o = &s->openings[i];
         name_of(on, o->wall);
         fprintf(fp, "%s %s%d on %s from %.4f %.4f to %.4f %.4f\n", o->window ? "window" : "passage",
                 o->window ? "window" : "doorway", o->window ? ++windows : ++doors, on, o->begin, o->foot, o->end,
@@ -114,7 +115,7 @@ static enum status suggest(const struct files *f, const struct suggest_params *p
     struct suggestion s = {0};
     enum status st = camera_set_read(&set, f->views, err);
     if (!st) st = camera_set_add_inputs(prov, f->views, err);
-    if (!st && !set.view_count) st = err_set(err, ST_DATA, "%s holds no view.", f->views);
+    if (!st && !set.view_count) st = err_set(err, ST_DATA, "%s contains no views; run sfm_import again.", f->views);
     if (!st) st = model_axes_read(&axes, f->axes, err);
     if (!st) st = provenance_add_file(prov, "model/axes.txt", f->axes, err);
     if (!st) st = point_cloud_read(&cloud, f->points, err);
@@ -132,7 +133,7 @@ static enum status suggest(const struct files *f, const struct suggest_params *p
         int rooms = 0;
         for (int i = 0; i < s.room_count; i++) rooms += s.rooms[i].free;
         log_note("%d walls, %d rooms, %d openings", s.wall_count, rooms, s.opening_count);
-        log_note("%s is a suggestion that nothing reads: compare it with the photographs, correct it, and copy it to "
+        log_note("%s is a suggestion that no stage reads: compare it with the photographs, correct it, and copy it to "
                  "scenes/NAME/model.txt",
                  f->out);
     }
@@ -148,7 +149,7 @@ int main(int argc, char **argv)
     struct files f = {0};
     struct suggest_params params = SUGGEST_PARAMS_DEFAULT;
     const struct cli_opt opts[] = {
-        CLI_ABOUT("Suggests a first model script of a scene's rooms, to be corrected by hand."),
+        CLI_ABOUT("Suggests a model script of a scene's rooms, for you to correct by hand."),
         CLI_STR("views", &f.views, CLI_REQUIRED, "folder of cameras"),
         CLI_STR("points", &f.points, CLI_REQUIRED, "oriented points, points.ply"),
         CLI_STR("axes", &f.axes, CLI_REQUIRED, "the model's frame, axes.txt"),

@@ -1,4 +1,4 @@
-# build_model: what its scripts make, what is refused with file and line, edits keep ids, make redoes only what changed
+# build_model: models of scripts, errors with file and line, edits keep ids, make rebuilds only what changed
 . tests/lib.sh
 project model
 cat >axes.txt <<'END'
@@ -26,7 +26,7 @@ door way on south from 1 0 to 2 2
 window sun on north from 1 0.9 to 3 2.1
 END
 
-# build CODE WORD ARGUMENT...: exit status and a word on standard error
+# build CODE WORD ARGUMENT...: runs build_model; checks its exit status and a word on standard error
 build()
 {
     local code=$1 word=$2 rc=0; shift 2
@@ -52,7 +52,7 @@ a_room_is_a_closed_solid()
     ! grep -rqF "$PWD" made || fail "a product names a folder of this machine"
 }
 
-# what another program sees of it: triangles, each edge once each way in its object, groups by name once, volumes above 0
+# as another program reads it: triangles, each edge of an object once in each direction, a group per name, volumes above 0
 another_program_can_read_the_obj()
 {
     { cat room.txt; echo 'box b from 1 1 to 2 2 top 1 turn 30'; echo 'window w on west from 0 0 to 3 2.5'; echo 'slope hall from south 2.6 to north 3'; } >more.txt
@@ -93,11 +93,11 @@ an_edit_keeps_the_ids_of_its_base()
     grep -q 'window/more/sill' made/model.txt && ! grep -q door/way made/model.txt || fail "the edit's faces"
 }
 
-what_is_wrong_is_told_with_its_line()
+errors_name_file_and_line()
 {
     build 2 --script
     build 1 nowhere.txt --script nowhere.txt
-    build 2 -- '--base is for --edit' --script room.txt --base x.txt
+    build 2 -- '--base is only for --edit' --script room.txt --base x.txt
     while IFS='|' read -r line words; do
         { cat room.txt; echo "$line"; } >bad.txt
         build 1 "$words" --script bad.txt
@@ -111,9 +111,9 @@ wall south from 0 5 to 1 5|the name south is used already
 wall x from 0 0 to 1 1|is not along an axis
 wall x in v00 1 2 30 40|no views are known
 join south north|they are parallel
-door d on south from 3.5 0 to 4.5 2|is outside of its wall south
+door d on south from 3.5 0 to 4.5 2|is outside its wall south
 door d on suoth from 3 0 to 3.5 2|did you mean south?
-window w on south from 1.5 1 to 3 2|are in each other
+window w on south from 1.5 1 to 3 2|overlap
 room r south north east|are parallel
 close south|south is a wall
 box b from 1 1 to 1 2|box b would be 0 x 1
@@ -121,10 +121,10 @@ END
     : >empty.txt
     build 1 'remodel-script 1' --script empty.txt
     printf 'remodel-script 1\n' >empty.txt
-    build 1 'nothing in it is a solid' --script empty.txt
+    build 1 'describes no solid' --script empty.txt
 }
 
-make_models_and_their_overlays()
+make_builds_models_and_overlays()
 {
     photos set --views 6 --size 320x240 >/dev/null
     mkdir -p scenes/t/edits
@@ -146,7 +146,7 @@ make_models_and_their_overlays()
     diff before after >changes || true
     ! grep -q 'out/t/model/' changes || { cat changes; fail "an edit redid the model"; }
     grep -q 'out/t/remodel/far/model.txt' changes || fail "a changed edit was not made again"
-    # by a rectangle on the wall that the photos show
+    # a rectangle on the wall in the photos
     { cat scenes/t/model.txt; echo "wall seen in $first 60 40 260 120"; } >script.txt
     "$B/bin/build_model" --script script.txt --axes out/t/model/axes.txt --views out/t/views --points out/t/points/points.ply --out made >out.txt 2>err.txt || { cat err.txt; fail "a rectangle"; }
     grep -q 'wall seen: [0-9]* points' err.txt || { cat err.txt; fail "nothing tells of its points"; }
@@ -155,4 +155,4 @@ make_models_and_their_overlays()
     grep -q "script.txt:[0-9]*: found .*did you mean $first?" err.txt || { cat err.txt; fail "no guess"; }
 }
 
-for t in a_room_is_a_closed_solid another_program_can_read_the_obj an_edit_keeps_the_ids_of_its_base what_is_wrong_is_told_with_its_line make_models_and_their_overlays; do run "$t"; done
+for t in a_room_is_a_closed_solid another_program_can_read_the_obj an_edit_keeps_the_ids_of_its_base errors_name_file_and_line make_builds_models_and_overlays; do run "$t"; done

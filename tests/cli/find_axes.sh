@@ -1,4 +1,4 @@
-# find_axes: a made room's axes and floor, corrections and scale from marks on photos, and when they are made again
+# find_axes: axes and floor of a synthetic room, corrections and scale from marks on photos, and when make reruns it
 . tests/lib.sh
 project axes
 photos set --views 6 --size 320x240 >/dev/null
@@ -9,7 +9,7 @@ make_axes
 axes=out/t/model/axes.txt
 photo=$(sed -n 's/^VIEWS := \([^ ]*\).*/\1/p' out/t/views/views.mk)
 
-# find CODE WORD ARGUMENT...: exit status and a word on standard error
+# find_them CODE WORD ARGUMENT...: runs find_axes; checks its exit status and a word on standard error
 find_them()
 {
     local code=$1 word=$2 rc=0; shift 2
@@ -21,7 +21,7 @@ find_them()
     [ "$code" = 0 ] || [ ! -e made/axes.txt ] || fail "$*: axes were left"
 }
 
-# of the rotation's rows, degrees to the made room's: its floor looks along -y, its wall along (1 0 -4) / sqrt(17)
+# tilt and turn, in degrees, of the rotation's rows against the room's normals: floor -y, wall (1 0 -4) / sqrt(17)
 degrees_off()
 {
     awk '$1 == "rotation" {
@@ -35,7 +35,7 @@ degrees_off()
         }' "$1"
 }
 
-a_made_rooms_axes_are_found()
+axes_of_a_synthetic_room_are_found()
 {
     read -r tilt turn < <(degrees_off "$axes")
     awk -v a="$tilt" -v b="$turn" 'BEGIN { exit !(a < 0.2 && b < 0.2) }' || { cat log "$axes"; fail "axes off by $tilt and $turn degrees"; }
@@ -47,7 +47,7 @@ a_made_rooms_axes_are_found()
     ! grep -qF "$PWD" "$axes" || fail "the axes name a folder of this machine"
 }
 
-threads_change_nothing()
+the_result_does_not_depend_on_threads()
 {
     find_them 0 'the origin lies on the floor below view' --threads 1
     cmp made/axes.txt "$axes" || diff <(grep -v '^#' made/axes.txt) <(grep -v '^#' "$axes")
@@ -56,7 +56,7 @@ threads_change_nothing()
     [ ! -e made/axes ] || fail "pictures that nobody wants"
 }
 
-wrong_marks_are_named_with_their_line()
+errors_in_marks_name_the_line()
 {
     for c in 'meter p q 1|wanted "mark" or "length"' "mark p $photo 10 10|in one view alone" 'length p q 1|p is named' "mark p $photo 1 nan floor|nan"; do
         printf '# marks\n%s\n' "${c%|*}" >marks.txt
@@ -66,17 +66,17 @@ wrong_marks_are_named_with_their_line()
     printf 'mark p nobody 10 200 floor\nmark q %s 200 200 floor\nlength p q 1\n' "$photo" >marks.txt
     find_them 1 "marks.txt:1: found \"nobody\", wanted a photo's id" --scale marks.txt
     printf 'mark p %s 10 0 floor\nmark q %s 200 200 floor\nlength p q 1\n' "$photo" "$photo" >marks.txt
-    find_them 1 'marks.txt:1: the floor is not seen' --scale marks.txt
+    find_them 1 'marks.txt:1: the floor is not visible' --scale marks.txt
     printf 'corner c %s 10 10\n' "$photo" >marks.txt
     find_them 1 'marks.txt:1: the corner c corrects nothing yet' --fix marks.txt
     find_them 1 nowhere.txt --fix nowhere.txt
-    find_them 1 'no two directions' --set least_part=0.9
-    find_them 2 'least_part' --set least_part=2
+    find_them 1 'no two perpendicular directions' --set min_part=0.9
+    find_them 2 'min_part' --set min_part=2
     head -c 3000 out/t/points/points.ply >cut.ply
     points=cut.ply find_them 1 cut.ply
 }
 
-marks_that_come_and_go_make_the_axes_again()
+changed_marks_rebuild_the_axes()
 {
     make_axes
     ! grep -q find_axes log || { cat log; fail "made again without a reason"; }
@@ -98,7 +98,7 @@ marks_that_come_and_go_make_the_axes_again()
     [ "$(ls out/t/model/axes/*.png | wc -l)" = 2 ] || { ls out/t/model/axes; fail "pictures of an earlier choice stay"; }
 }
 
-run a_made_rooms_axes_are_found
-run threads_change_nothing
-run wrong_marks_are_named_with_their_line
-run marks_that_come_and_go_make_the_axes_again
+run axes_of_a_synthetic_room_are_found
+run the_result_does_not_depend_on_threads
+run errors_in_marks_name_the_line
+run changed_marks_rebuild_the_axes

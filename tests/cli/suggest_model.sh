@@ -1,4 +1,4 @@
-# suggest_model: what it refuses, with file and reason; that its suggestion is a script, that nothing reads by itself
+# suggest_model: errors name file and reason; a failure leaves no script
 . tests/lib.sh
 project suggest
 photos set --views 6 --size 320x240 >/dev/null
@@ -6,7 +6,7 @@ mkdir -p scenes/t
 printf '[segment_depth]\nplanes = 48\n' >scenes/t/scene.cfg
 make -s DEPS=manual PHOTOS=set/photos SFM=set/model SCENE=t axes >log 2>&1 || { cat log; fail "make axes"; }
 
-# suggest CODE WORD ARGUMENT...: exit status and a word on standard error
+# suggest CODE WORD ARGUMENT...: runs suggest_model; checks its exit status and a word on standard error
 suggest()
 {
     local code=$1 word=$2 rc=0; shift 2
@@ -18,7 +18,7 @@ suggest()
     [ "$code" = 0 ] || [ ! -e made/suggested.txt ] || fail "$*: a suggestion was left"
 }
 
-wrong_inputs_are_refused()
+invalid_inputs_are_refused()
 {
     suggest 1 'write the script by hand' # a floor and one wall
     grep -qF 'points.ply: no ' err.txt || { cat err.txt; fail "the file is not named"; }
@@ -31,12 +31,12 @@ wrong_inputs_are_refused()
     views=nowhere suggest 1 nowhere
 }
 
-make_says_why_there_is_none()
+make_reports_why_there_is_no_suggestion()
 {
     ! make -s DEPS=manual PHOTOS=set/photos SFM=set/model SCENE=t suggest >log 2>&1 || { cat log; fail "a plan of one wall"; }
     grep -q 'write the script by hand' log || { cat log; fail "no reason"; }
     [ ! -e out/t/model/suggested.txt ] || fail "a suggestion was left"
 }
 
-run wrong_inputs_are_refused
-run make_says_why_there_is_none
+run invalid_inputs_are_refused
+run make_reports_why_there_is_no_suggestion

@@ -1,4 +1,4 @@
-/* fuzz_marks.c - what users mark on photos: any bytes give marks that can be placed, or a sentence with the file. */
+/* fuzz_marks.c - users' marks on photos: any bytes give marks with finite positions, or an error with the file. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -19,7 +19,7 @@ static struct view views[] = {{.name = "a", .cam_from_world = {{{1, 0, 0}, {0, 1
                                .center = {1, 0, 0}}};
 static struct cloud_point points[] = {{.position = {0.1, 0.1, 2}, .views = 1}, {.position = {0, 0, 3}, .views = 1}};
 
-static void place(const struct mark *m, const struct mark_list *list)
+static void locate(const struct mark *m, const struct mark_list *list)
 {
     const struct lens_list lens_list = {lenses, 2};
     const struct camera_set set = {.views = views, .view_count = 2};
@@ -47,7 +47,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
             if (!strstr(err.text, path) || list.marks || list.count) abort();
             continue;
         }
-        for (int i = 0; i < list.count && i < 100; i++) place(&list.marks[i], &list);
+        for (int i = 0; i < list.count && i < 100; i++) locate(&list.marks[i], &list);
         mark_list_release(&list);
     }
     unlink(path);

@@ -1,5 +1,5 @@
-/* fuzz_model_axes.c - the model's axes: what is read takes points there and back, and is written and read back the same,
- * or a sentence says why not. */
+/* fuzz_model_axes.c - the model's axes: any bytes give a valid transform, which is written and read back unchanged, or
+ * an error. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

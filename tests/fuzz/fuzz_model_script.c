@@ -1,4 +1,4 @@
-/* fuzz_model_script.c - model scripts: any bytes give solids, or a sentence with file and line. */
+/* fuzz_model_script.c - model scripts: any bytes give solids, or an error with file and line. */
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -7,7 +7,7 @@
 #include "tests/fuzz/fuzz.h"
 #include "tests/fuzz/fuzz_scratch.h"
 
-enum { MOST = 64 }; /* statements that are looked at: what a few thousand do takes time and is nothing new */
+enum { MAX_STATEMENTS = 64 }; /* that are applied: thousands take long and test nothing new */
 
 static void apply(struct script *script, const char *path, bool edit)
 {
@@ -35,7 +35,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         if (!strstr(err.text, path) || script.statements || script.count) abort();
     } else {
         const int count = script.count;
-        script.count = count < MOST ? count : MOST;
+        script.count = count < MAX_STATEMENTS ? count : MAX_STATEMENTS;
         apply(&script, path, false);
         apply(&script, path, true);
         script.count = count;

@@ -1,5 +1,5 @@
-/* fuzz_solid_mesh.c - model.txt: what is read is whole, can be checked and cut into triangles, and is written and read
- * back the same; or a sentence says why not. */
+/* fuzz_solid_mesh.c - model.txt: any bytes give a consistent mesh, which can be checked, triangulated, and written and
+ * read back unchanged, or an error. */
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -16,7 +16,7 @@ static void use(const struct solid_mesh *mesh)
         const struct solid_half_edge *e = &mesh->half_edges[h];
         if (mesh->half_edges[e->twin].twin != h || mesh->half_edges[e->next].prev != h) abort();
     }
-    if (solid_mesh_check(mesh, 0, NULL, &err) && !*err.text) abort(); /* coordinates may be anything */
+    if (solid_mesh_check(mesh, 0, NULL, &err) && !*err.text) abort(); /* coordinates are arbitrary */
     err = (struct err)ERR_INIT;
     if (solid_mesh_triangulate(&triangles, mesh, &err)) {
         if (!*err.text || triangles.triangles) abort();

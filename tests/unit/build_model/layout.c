@@ -1,15 +1,15 @@
-/* layout.c - what each statement of a model script means: coordinates in, solids out. */
+/* layout.c - the solids that each statement of a model script makes. */
 #include <math.h>
 
 #include "tests/unit/build_model/scripted.h"
 
-static void a_room_is_closed_all_round(void **state)
+static void a_room_is_closed_on_all_sides(void **state)
 {
     struct plan plan;
     struct solid_list list;
     (void)state;
     build(&plan, &list, ROOM, NULL);
-    for (int k = 0; k < 50; k++) { /* air inside, matter in every wall, floor, ceiling, and in all four corners */
+    for (int k = 0; k < 50; k++) { /* air inside; matter in walls, floor, ceiling and all four corners */
         const double t = (k + 0.5) / 50;
         assert_int_equal(inside(&list, "walls", 4 * t, 1.5, 1.2), 0);
         assert_true(inside(&list, "walls", 4.4 * t - 0.2, -0.1, 1.2) > 0);
@@ -24,7 +24,7 @@ static void a_room_is_closed_all_round(void **state)
     assert_string_equal(face_at(&list, 2, 0, 1), "wall/south/in");
     assert_string_equal(face_at(&list, 2, -0.2, 1), "wall/south/out");
     assert_string_equal(face_at(&list, -0.1, -0.2, 1), "wall/south/out");
-    assert_string_equal(face_at(&list, -0.2, -0.1, 1), "wall/west/out"); /* the corner, whichever wall it is of */
+    assert_string_equal(face_at(&list, -0.2, -0.1, 1), "wall/west/out"); /* the corner */
     assert_string_equal(face_at(&list, 4.2, 3.1, 1), "wall/east/out");
     assert_string_equal(face_at(&list, 2, 1, 0), "floor/hall");
     assert_string_equal(face_at(&list, 2, 1, 2.5), "ceiling/hall");
@@ -33,7 +33,7 @@ static void a_room_is_closed_all_round(void **state)
     drop(&plan, &list);
 }
 
-static void the_inside_is_to_the_right_of_the_way_from_start_to_end(void **state)
+static void the_inside_is_to_the_right_from_start_to_end(void **state)
 {
     struct plan plan;
     struct solid_list list;
@@ -49,7 +49,7 @@ static void the_inside_is_to_the_right_of_the_way_from_start_to_end(void **state
     drop(&plan, &list);
 }
 
-static void openings_have_reveals_with_names(void **state)
+static void openings_have_named_reveals(void **state)
 {
     struct plan plan;
     struct solid_list list;
@@ -60,15 +60,15 @@ static void openings_have_reveals_with_names(void **state)
     assert_true(inside(&list, "walls", 2.2, -0.1, 1) > 0);
     assert_int_equal(inside(&list, "walls", 3, -0.1, 1.5), 0);
     assert_true(inside(&list, "walls", 3, -0.1, 0.5) > 0);
-    /* who stands inside before the south wall has x going to the left */
+    /* seen from inside, x increases to the left along the south wall */
     assert_string_equal(face_at(&list, 1, -0.1, 1), "door/way/right");
     assert_string_equal(face_at(&list, 2, -0.1, 1), "door/way/left");
     assert_string_equal(face_at(&list, 1.5, -0.1, 2), "door/way/head");
-    assert_string_equal(face_at(&list, 1.5, -0.1, 0), "floor/hall"); /* goes on through the door */
+    assert_string_equal(face_at(&list, 1.5, -0.1, 0), "floor/hall"); /* continues through the door */
     assert_string_equal(face_at(&list, 3, -0.1, 0.9), "window/sun/sill");
     assert_string_equal(face_at(&list, 3, -0.1, 2.1), "window/sun/head");
     assert_string_equal(face_at(&list, 3.5, -0.1, 1), "window/sun/left");
-    /* glass: a slab of its own, flush with the outer face */
+    /* glass: a separate slab, flush with the outer face */
     assert_int_equal(inside(&list, "glass/sun", 3, -0.19, 1.5), 1);
     assert_int_equal(inside(&list, "glass/sun", 3, -0.17, 1.5), 0);
     assert_string_equal(face_at(&list, 3, -0.2, 1.5), "glass/sun/out");
@@ -92,7 +92,7 @@ static void openings_that_share_a_side_keep_their_own_reveals(void **state)
     assert_string_equal(face_at(&list, 1.5, 3.1, 2), "window/light/sill");
     assert_true(inside(&list, "walls", 1.5, 3.1, 1.9) > 0);
     assert_true(inside(&list, "walls", 0.5, 3.1, 1.9) > 0);
-    assert_int_equal(inside(&list, "walls", 2.7, 3.1, 2.4), 0); /* a passage may go up to the ceiling */
+    assert_int_equal(inside(&list, "walls", 2.7, 3.1, 2.4), 0); /* a passage may reach the ceiling */
     drop(&plan, &list);
 }
 
@@ -108,7 +108,7 @@ static void a_wall_that_moves_takes_its_neighbours_ends_along(void **state)
     assert_string_equal(face_at(&list, 4.4, 1, 0), "floor/hall");
     assert_true(inside(&list, "walls", 4.6, -0.1, 1) > 0);
     assert_int_equal(inside(&list, "walls", 4.8, -0.1, 1), 0);
-    assert_int_equal(inside(&list, "walls", 4.6, 1.5, 1.5), 0); /* the window went along */
+    assert_int_equal(inside(&list, "walls", 4.6, 1.5, 1.5), 0); /* the window moved too */
     assert_int_equal(inside(&list, "glass/w", 4.69, 1.5, 1.5), 1);
     drop(&plan, &list);
     build(&plan, &list, ROOM, "remodel-script 1\nmove east by -1\n");
@@ -121,13 +121,13 @@ static void a_wall_that_moves_takes_its_neighbours_ends_along(void **state)
     ROOM "wall middle from 2 1 to 2 2 thickness 0.1\nextend middle start to south\nextend middle end to north\n" \
          "remove hall\nroom left south west north middle\nroom right middle north east south\n"
 
-static void a_wall_between_two_rooms_bears_the_floor_of_both(void **state)
+static void floors_of_two_rooms_meet_in_the_middle_of_their_wall(void **state)
 {
     struct plan plan;
     struct solid_list list;
     (void)state;
     build(&plan, &list, TWO "door d on middle from 1 0 to 2 2\nwindow w on middle from 2.2 1 to 2.8 2\n", NULL);
-    /* it goes from y 0 to 3, its inside to the right of its way: x above 2 */
+    /* it goes from y 0 to 3, so its inside, to the right, is x above 2 */
     assert_string_equal(face_at(&list, 2, 0.5, 1), "wall/middle/in");
     assert_string_equal(face_at(&list, 1.9, 2.9, 1), "wall/middle/out");
     assert_string_equal(face_at(&list, 1.92, 1.5, 0), "floor/left");
@@ -136,14 +136,14 @@ static void a_wall_between_two_rooms_bears_the_floor_of_both(void **state)
     assert_int_equal(inside(&list, "walls", 1.95, 1.5, 1), 0);
     assert_int_equal(inside(&list, "glass/w", 1.91, 2.5, 1.5), 0); /* no glass between rooms */
     drop(&plan, &list);
-    /* its ends follow the walls that it meets, also when it moves itself */
+    /* its ends follow the walls that it meets, also when the wall itself moves */
     build(&plan, &list, TWO, "remodel-script 1\nmove north by 1\nmove middle by 0.5\n");
     assert_string_equal(face_at(&list, 1.5, 3.9, 1), "wall/middle/in");
     assert_string_equal(face_at(&list, 1.4, 0.1, 1), "wall/middle/out");
     drop(&plan, &list);
 }
 
-static void a_split_leaves_two_walls_of_one_line(void **state)
+static void a_split_leaves_two_walls_on_one_line(void **state)
 {
     struct plan plan;
     struct solid_list list;
@@ -156,7 +156,7 @@ static void a_split_leaves_two_walls_of_one_line(void **state)
     assert_string_equal(face_at(&list, 1.95, 2, 1), "wall/rest/start");
     assert_string_equal(face_at(&list, 1.97, 1.5, 0), "floor/right");
     drop(&plan, &list);
-    /* what was joined to the part joins it still, and its openings are in it */
+    /* walls joined to the new part stay joined to it; openings stay in their part */
     build(&plan, &list, ROOM "window w on south from 3 1 to 3.5 2\n",
           "remodel-script 1\nsplit south from 1 to 2 into other\nmove south by 0\nmove west by 1\n");
     assert_string_equal(face_at(&list, -0.5, 0, 1), "wall/other/in");
@@ -187,7 +187,7 @@ static void doors_and_windows_open_and_close(void **state)
     drop(&plan, &list);
 }
 
-static void a_wall_that_is_gone_leaves_its_rooms(void **state)
+static void a_removed_wall_leaves_its_rooms(void **state)
 {
     struct plan plan;
     struct solid_list list;
@@ -199,7 +199,7 @@ static void a_wall_that_is_gone_leaves_its_rooms(void **state)
     drop(&plan, &list);
 }
 
-static void a_room_with_a_reflex_corner_has_its_floor(void **state)
+static void a_room_with_a_reflex_corner_has_a_whole_floor(void **state)
 {
     struct plan plan;
     struct solid_list list;
@@ -241,14 +241,14 @@ static void a_ceiling_slopes_and_walls_reach_it(void **state)
     assert_string_equal(face_at(&list, 2, 1, 3), "ceiling/hall");
     assert_string_equal(face_at(&list, 3.9, 0, 3.9), "wall/south/in");
     drop(&plan, &list);
-    /* a wall between rooms reaches the higher ceiling, over the lower room it goes on */
+    /* a wall along two rooms reaches the ceiling of each */
     build(&plan, &list, TWO "slope right from middle 2.5 to east 3.5\n", NULL);
     assert_true(inside(&list, "walls", 3, -0.1, 2.95) > 0);
     assert_int_equal(inside(&list, "walls", 1, -0.1, 2.75), 0);
     drop(&plan, &list);
 }
 
-static void an_angled_wall_joins_by_its_planes(void **state)
+static void an_angled_wall_is_joined_at_its_planes(void **state)
 {
     struct plan plan;
     struct solid_list list;
@@ -268,7 +268,7 @@ static void an_angled_wall_joins_by_its_planes(void **state)
             assert_int_equal(inside(&list, "walls", x, y, 0.5) > 0, all && !room);
             assert_int_equal(inside(&list, "walls", x, y, -0.1) > 0, all);
         }
-    /* S counts from its first point, (3, 3) */
+    /* S is the distance from its first point, (3, 3) */
     const double at[2] = {3 + 1.5 / sqrt(10), 3 - 4.5 / sqrt(10)};
     assert_int_equal(inside(&list, "walls", at[0] - 0.1 * n[0], at[1] - 0.1 * n[1], 1.5), 0);
     assert_int_equal(inside(&list, "glass/w", at[0] - 0.19 * n[0], at[1] - 0.19 * n[1], 1.5), 1);
@@ -276,7 +276,7 @@ static void an_angled_wall_joins_by_its_planes(void **state)
     drop(&plan, &list);
 }
 
-static void boxes_stand_turned_or_not(void **state)
+static void boxes_may_be_turned(void **state)
 {
     struct plan plan;
     struct solid_list list;
@@ -286,15 +286,15 @@ static void boxes_stand_turned_or_not(void **state)
     assert_string_equal(face_at(&list, 1.1, 1, 2.3), "box/beam/bottom");
     assert_string_equal(face_at(&list, 1, 1, 2.4), "box/beam/left");
     assert_string_equal(face_at(&list, 1.2, 1, 2.4), "box/beam/right");
-    /* about (3, 1.45): turned by 90 degrees its right side looks to +y */
+    /* turned by 90 degrees about (3, 1.45): its right side faces +y */
     assert_string_equal(face_at(&list, 3, 1.95, 0.4), "box/chest/right");
     assert_string_equal(face_at(&list, 2.8, 1.45, 0.4), "box/chest/back");
     assert_string_equal(face_at(&list, 3, 1.45, 0.8), "box/chest/top");
     drop(&plan, &list);
 }
 
-/* A wall's corner stays where an opening begins beside it, though the other wall does not fill it. */
-static void an_opening_leaves_the_corner_beside_it(void **state)
+/* The corner of a wall remains where an opening begins beside it, even if the other wall does not fill it. */
+static void an_opening_beside_a_corner_leaves_the_corner(void **state)
 {
     static const char *const others[] = {"", "extend west start to south\n", "remove west\n"};
     (void)state;
@@ -311,7 +311,7 @@ static void an_opening_leaves_the_corner_beside_it(void **state)
     }
 }
 
-static void a_wall_steps_from_ceiling_to_ceiling(void **state)
+static void the_top_of_a_wall_steps_between_ceilings_of_two_rooms(void **state)
 {
     struct plan plan;
     struct solid_list list;
@@ -322,11 +322,11 @@ static void a_wall_steps_from_ceiling_to_ceiling(void **state)
           NULL);
     assert_int_equal(inside(&list, "walls", 1, -0.1, 3), 0);
     assert_true(inside(&list, "walls", 3, -0.1, 3) > 0);
-    assert_string_equal(face_at(&list, 1.9, -0.1, 3), "wall/south/top"); /* from the middle of mid, which is 1.8 to 2 */
+    assert_string_equal(face_at(&list, 1.9, -0.1, 3), "wall/south/top"); /* at the middle of mid, which is 1.8 to 2 */
     drop(&plan, &list);
 }
 
-static void set_counts_for_what_follows(void **state)
+static void set_affects_later_statements_only(void **state)
 {
     struct plan plan;
     struct solid_list list;
@@ -343,7 +343,7 @@ static void set_counts_for_what_follows(void **state)
     drop(&plan, &list);
 }
 
-static void a_round_room_may_have_many_walls(void **state)
+static void a_round_room_has_many_walls(void **state)
 {
     enum { WALLS = 24 };
     struct plan plan;
@@ -364,8 +364,8 @@ static void a_round_room_may_have_many_walls(void **state)
     drop(&plan, &list);
 }
 
-/* Two of its walls lie on one line, but not in a row. */
-static void a_room_goes_round_three_sides_of_a_yard(void **state)
+/* Two of its walls are on one line, but not consecutive. */
+static void a_room_may_surround_three_sides_of_a_yard(void **state)
 {
     struct plan plan;
     struct solid_list list;
@@ -388,24 +388,24 @@ static void a_room_goes_round_three_sides_of_a_yard(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_room_is_closed_all_round),
-        cmocka_unit_test(the_inside_is_to_the_right_of_the_way_from_start_to_end),
-        cmocka_unit_test(openings_have_reveals_with_names),
+        cmocka_unit_test(a_room_is_closed_on_all_sides),
+        cmocka_unit_test(the_inside_is_to_the_right_from_start_to_end),
+        cmocka_unit_test(openings_have_named_reveals),
         cmocka_unit_test(openings_that_share_a_side_keep_their_own_reveals),
         cmocka_unit_test(a_wall_that_moves_takes_its_neighbours_ends_along),
-        cmocka_unit_test(a_wall_between_two_rooms_bears_the_floor_of_both),
-        cmocka_unit_test(a_split_leaves_two_walls_of_one_line),
+        cmocka_unit_test(floors_of_two_rooms_meet_in_the_middle_of_their_wall),
+        cmocka_unit_test(a_split_leaves_two_walls_on_one_line),
         cmocka_unit_test(doors_and_windows_open_and_close),
-        cmocka_unit_test(a_wall_that_is_gone_leaves_its_rooms),
-        cmocka_unit_test(a_room_with_a_reflex_corner_has_its_floor),
+        cmocka_unit_test(a_removed_wall_leaves_its_rooms),
+        cmocka_unit_test(a_room_with_a_reflex_corner_has_a_whole_floor),
         cmocka_unit_test(a_ceiling_slopes_and_walls_reach_it),
-        cmocka_unit_test(an_angled_wall_joins_by_its_planes),
-        cmocka_unit_test(boxes_stand_turned_or_not),
-        cmocka_unit_test(an_opening_leaves_the_corner_beside_it),
-        cmocka_unit_test(a_wall_steps_from_ceiling_to_ceiling),
-        cmocka_unit_test(a_room_goes_round_three_sides_of_a_yard),
-        cmocka_unit_test(set_counts_for_what_follows),
-        cmocka_unit_test(a_round_room_may_have_many_walls),
+        cmocka_unit_test(an_angled_wall_is_joined_at_its_planes),
+        cmocka_unit_test(boxes_may_be_turned),
+        cmocka_unit_test(an_opening_beside_a_corner_leaves_the_corner),
+        cmocka_unit_test(the_top_of_a_wall_steps_between_ceilings_of_two_rooms),
+        cmocka_unit_test(a_room_may_surround_three_sides_of_a_yard),
+        cmocka_unit_test(set_affects_later_statements_only),
+        cmocka_unit_test(a_round_room_has_many_walls),
     };
     return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }

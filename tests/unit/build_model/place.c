@@ -1,11 +1,11 @@
-/* place.c - walls from rectangles on photographs: made points, known walls. */
+/* place.c - walls from rectangles on photographs: synthetic points on known walls. */
 #include "tests/unit/scratch.h"
 
 #include "common/base/rng.h"
 #include "stages/build_model/place.h"
 
-/* A camera at (2, 2, 1.5) of the model that looks along +y, a fisheye and a pinhole; the world is the model turned
- * by 30 degrees, moved, and half as large. */
+/* A camera at (2, 2, 1.5) of the model that looks along +y, as a fisheye and as a pinhole; the world is the model
+ * rotated by 30 degrees, translated, and half as large. */
 static char fish[] = "fish", pin[] = "pin", pin0[] = "pin@0";
 static struct lens lenses[] = {
     {fish, fish, {CAMERA_OPENCV_FISHEYE, 960, 640, {426, 426, 480, 320, -1.0 / 24, 1.0 / 1920, 0, 0}}, {1, 0, 0, 0}},
@@ -27,7 +27,7 @@ static void add_point(double x, double y, double z, double nx, double ny, double
     cloud.points[cloud.count++] = (struct cloud_point){p, {(float)n.x, (float)n.y, (float)n.z}, {0}, 3, 0.9F};
 }
 
-/* Points of noise on a wall n p = c about (x, y): `width` to either side, from z 0 to 2.5. */
+/* Adds noisy points on a wall n p = c about (x, y): `width` to either side, from z 0 to 2.5. */
 static void add_wall(double nx, double ny, double c, double x, double y, double width, int count, double noise)
 {
     const struct rng r = rng_make(1, "place", "points");
@@ -54,10 +54,14 @@ static int start(void **state)
         v.cam_from_world = mat3_multiply(mat3_from_quat(lenses[i].view_from_photo), look);
         v.center = vec3_make(2, 2, 1.5);
         v.translation = vec3_scale(mat3_apply(v.cam_from_world, v.center), -1);
-        views[i] = world_from_model_view(&axes, &v);
+        views[i] = v;
+        views[i].translation =
+            vec3_scale(vec3_add(v.translation, mat3_apply(v.cam_from_world, axes.translation)), 1 / axes.scale);
+        views[i].cam_from_world = mat3_multiply(v.cam_from_world, mat3_from_quat(axes.rotation));
+        views[i].center = world_from_model_point(&axes, v.center);
     }
-    /* before the camera a wall at y = 4, whose normal looks to -y, a picture's width before it a board at y = 3.9,
-     * behind it a wall of another room, aside one that stands askew */
+    /* in front of the camera a wall at y = 4 with its normal along -y; 40 cm in front of it a board at y = 3.6, behind
+     * it a wall of another room, to the side an angled wall */
     add_wall(0, -1, -4, 2, 4, 1.5, 6000, 0.02);
     add_wall(0, -1, -3.6, 1.2, 3.6, 0.3, 1500, 0.02);
     add_wall(0, -1, -6, 2, 6, 3, 20000, 0.02);
@@ -75,7 +79,7 @@ static int stop(void **state)
 static enum status place(struct placed_wall *w, const char *view, double x0, double y0, double x1, double y1,
                          const double *normal, bool angled, struct err *err)
 {
-    const struct place p = {PLACE_VIEW, view, {x0, y0, x1, y1}};
+    const struct script_place p = {PLACE_VIEW, view, {x0, y0, x1, y1}};
     *err = (struct err)ERR_INIT;
     return place_wall(w, &placer, &p, normal, angled, "model.txt", 9, err);
 }
@@ -86,7 +90,7 @@ static void pixel(double x, double y, double z, double *u, double *v)
     assert_true(camera_project(&lenses[0].camera, vec3_make(x - 2, 1.5 - z, y - 2), u, v));
 }
 
-static void a_rectangle_on_a_wall_makes_it(void **state)
+static void a_rectangle_places_a_wall(void **state)
 {
     struct placed_wall w;
     struct err err;
@@ -95,13 +99,13 @@ static void a_rectangle_on_a_wall_makes_it(void **state)
     pixel(1.6, 4, 1.5, &u0, &v);
     pixel(2.8, 4, 1.5, &u1, &v);
     assert_ok(place(&w, "fish", u0, 250, u1, 390, NULL, false, &err), err);
-    assert_true(w.n[0] == 0 && w.n[1] == -1); /* snapped square */
-    assert_true(fabs(w.c + 4) < 0.003);       /* noise of 2 cm, a wall of another room behind it */
+    assert_true(w.n[0] == 0 && w.n[1] == -1); /* snapped to an axis */
+    assert_true(fabs(w.c + 4) < 0.003);       /* noise of 2 cm, a wall of another room behind */
     assert_true(fabs(w.ends[0][0] - 1.6) < 0.01 && fabs(w.ends[1][0] - 2.8) < 0.01);
     assert_true(w.points > 500 && w.spread < 0.02);
 }
 
-static void a_board_before_it_is_outvoted(void **state)
+static void a_board_in_front_is_outvoted(void **state)
 {
     struct placed_wall w;
     struct err err;
@@ -113,7 +117,7 @@ static void a_board_before_it_is_outvoted(void **state)
     assert_true(fabs(w.c + 4) < 0.005);
 }
 
-static void pixels_are_the_photos_own_whatever_view_is_named(void **state)
+static void pixels_are_those_of_the_photo_for_any_of_its_views(void **state)
 {
     struct placed_wall a, b;
     struct err err;
@@ -151,13 +155,13 @@ static void adjust_keeps_the_direction(void **state)
     assert_err(err, ST_DATA, "with the wall's normal");
 }
 
-static void rectangles_that_show_no_wall_are_refused(void **state)
+static void rectangles_without_a_wall_are_refused(void **state)
 {
     struct placed_wall w;
     struct err err;
     (void)state;
     assert_int_not_equal(place(&w, "fish", 400, 20, 500, 60, NULL, false, &err), ST_OK);
-    assert_err(err, ST_DATA, "model.txt:9: the rectangle 400 20 500 60 of fish shows 0 points, wanted 30");
+    assert_err(err, ST_DATA, "model.txt:9: the rectangle 400 20 500 60 in fish contains 0 visible points, wanted 30");
     assert_int_not_equal(place(&w, "fsh", 400, 20, 500, 60, NULL, false, &err), ST_OK);
     assert_err(err, ST_DATA, "did you mean fish?");
     assert_int_not_equal(place(&w, "pin", 400, 20, 500, 60, NULL, false, &err), ST_OK);
@@ -172,7 +176,7 @@ static void corners_lie_where_their_rays_meet_the_plane(void **state)
     (void)state;
     pixel(1.7, 4, 2.1, &u0, &v0);
     pixel(2.6, 4, 0.2, &u1, &v1);
-    const struct place p = {PLACE_VIEW, "fish", {u0, v0, u1, v1}};
+    const struct script_place p = {PLACE_VIEW, "fish", {u0, v0, u1, v1}};
     assert_ok(place_corners(c, &placer, &p, vec3_make(0, -1, 0), -4, "m", 1, &err), err);
     assert_true(vec3_length(vec3_sub(c[0], vec3_make(1.7, 4, 2.1))) < 1e-6);
     assert_true(vec3_length(vec3_sub(c[1], vec3_make(2.6, 4, 0.2))) < 1e-6);
@@ -183,12 +187,12 @@ static void corners_lie_where_their_rays_meet_the_plane(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_rectangle_on_a_wall_makes_it),
-        cmocka_unit_test(a_board_before_it_is_outvoted),
-        cmocka_unit_test(pixels_are_the_photos_own_whatever_view_is_named),
+        cmocka_unit_test(a_rectangle_places_a_wall),
+        cmocka_unit_test(a_board_in_front_is_outvoted),
+        cmocka_unit_test(pixels_are_those_of_the_photo_for_any_of_its_views),
         cmocka_unit_test(an_angled_wall_gets_the_direction_of_its_points),
         cmocka_unit_test(adjust_keeps_the_direction),
-        cmocka_unit_test(rectangles_that_show_no_wall_are_refused),
+        cmocka_unit_test(rectangles_without_a_wall_are_refused),
         cmocka_unit_test(corners_lie_where_their_rays_meet_the_plane),
     };
     return cmocka_run_group_tests(tests, start, stop);

@@ -1,9 +1,9 @@
-/* plan.c - what a model script may not say: told with its line and why; and its words. */
+/* plan.c - the script language, and the errors of invalid scripts and plans, with line and reason. */
 #include "tests/unit/build_model/scripted.h"
 
 #define BARE "remodel-script 1\nset thickness 0.2\nset ceiling 2.5\n"
 
-static void words_that_are_no_statement_are_refused(void **state)
+static void invalid_statements_are_refused(void **state)
 {
     static const struct {
         const char *text, *words;
@@ -16,7 +16,7 @@ static void words_that_are_no_statement_are_refused(void **state)
         {"remodel-script 1\nwall a from 0 0 up 1 0\n", "wanted \"to\""},
         {"remodel-script 1\nwall a at 0 0 to 1 0\n", "wanted \"in VIEW\" or \"from\""},
         {"remodel-script 1\nwall a/b from 0 0 to 1 0\n", "letters, digits"},
-        {"remodel-script 1\nwall 12 from 0 0 to 1 0\n", "that is no number"},
+        {"remodel-script 1\nwall 12 from 0 0 to 1 0\n", "not a number"},
         {"remodel-script 1\nwall a from 0 0 to 1 nan\n", "nan"},
         {"remodel-script 1\nwall a from 0 0 to 1e7 0\n", "within 1e6"},
         {"remodel-script 1\nwall a from 0 0 to 1 0 thicknes 1\n", "did you mean thickness?"},
@@ -43,7 +43,7 @@ static void words_that_are_no_statement_are_refused(void **state)
     }
 }
 
-static void all_of_the_language_is_read(void **state)
+static void the_whole_language_is_read(void **state)
 {
     struct script s;
     struct err err = ERR_INIT;
@@ -72,12 +72,12 @@ static void all_of_the_language_is_read(void **state)
     script_release(&s);
 }
 
-static void what_is_no_building_is_refused(void **state)
+static void invalid_buildings_are_refused(void **state)
 {
     static const struct {
         const char *text, *words;
     } cases[] = {
-        {BARE "wall a from 0 0 to 3 1\n", ":4: wall a from 0 0 to 3 1 is not along an axis; write angled"},
+        {BARE "wall a from 0 0 to 3 1\n", ":4: wall a from 0 0 to 3 1 is not along an axis; add the word angled"},
         {BARE "wall a from 1 1 to 1 1\n", ":4: wall a would have no length"},
         {BARE "wall a from 1 1 to 1.0005 1\n", ":4: wall a would be shorter than 0.001"},
         {BARE "wall a from 0 1 to 2000 1\n", ":4: wall a reaches to 2000; a model lies within 1000 units"},
@@ -86,34 +86,34 @@ static void what_is_no_building_is_refused(void **state)
         {BARE "wall a from 6 0 to 0 0\nwall b from 0 0 to 0 4\nwall c from 0 4 to 2 4\nwall d from 2 4 to 2 2\n"
               "wall e from 2 2 to 2.5 2\nwall f from 2.3 2 to 2.3 4\nwall g from 2.3 4 to 6 4\nwall h from 6 4 to 6 0\n"
               "join a b c d e f g h a\nextend e end to 4\nroom hall a b c d e f g h\n",
-         ":14: walls g and d of room hall are in each other"},
+         ":14: walls g and d of room hall overlap"},
         {ROOM "slope hall from south 500 to north 1000\n", ":9: room hall reaches to 1033"},
         {BARE "wall a from 0 0 to 3 0\nwall a from 0 1 to 3 1\n",
          ":5: the name a is used already, for a wall (line 4)"},
         {BARE "wall a from 0 0 to 3 0\nbox a from 0 1 to 3 2\n", ":5: the name a is used already, for a wall"},
         {BARE "wall a from 0 0 to 3 0 top -1\n", "wanted a top above its foot"},
         {BARE "wall a from 0 0 to 3 0 thickness 0\n", "found thickness 0"},
-        {BARE "wall a in v1 0 0 10 10\n", ":4: it names the view v1, but no views are known"},
+        {BARE "wall a in v1 0 0 10 10\n", ":4: the statement names the view v1, but no views are known"},
         {BARE "wall ab from 0 0 to 3 0\ndoor d on ac from 0 0 to 1 2\n", "did you mean ab?"},
         {BARE "wall a from 0 0 to 3 0\nbox b from 0 1 to 3 2\ndoor d on b from 0 0 to 1 2\n",
          ":6: b is a box; wanted a wall"},
         {BARE "wall a from 0 0 to 3 0\nwall b from 0 1 to 3 1\njoin a b\n",
-         ":6: walls a and b can't be joined: they are parallel"},
-        {BARE "wall a from 0 0 to 3 0\njoin a a\n", "can't be joined to itself"},
-        {ROOM "wall x from 1 1 to 1 2\njoin south x\n", ":11: walls south and x can't be joined: both ends of south"},
+         ":6: walls a and b cannot be joined: they are parallel"},
+        {BARE "wall a from 0 0 to 3 0\njoin a a\n", "cannot be joined to itself"},
+        {ROOM "wall x from 1 1 to 1 2\njoin south x\n", ":11: walls south and x cannot be joined: both ends of south"},
         {ROOM "wall x from 1 1 to 1 2\nextend x end to south\nextend x start to south\n",
-         ":12: wall x can't be extended to south: its other end is there"},
+         ":12: wall x cannot be extended to south: its other end is there"},
         {BARE "wall a from 0 0 to 3 0\nwall b from 5 1 to 5 4\nextend b start to a\n",
          "the start of wall b does not meet wall a, which goes from 0 to 3"},
         {ROOM "door d on south from 3.5 0 to 4.5 2\n",
-         ":10: door d, from 3.5 to 4.5, is outside of its wall south, which goes from 0 to 4"},
-        {ROOM "window w on south from 1 1 to 2 2.6\n", ":10: window w, from 1 up to 2.6, is outside of its wall south"},
+         ":10: door d, from 3.5 to 4.5, is outside its wall south, which goes from 0 to 4"},
+        {ROOM "window w on south from 1 1 to 2 2.6\n", ":10: window w, from 1 up to 2.6, is outside its wall south"},
         {ROOM "window w on south from 1 -0.1 to 2 2\n", ":10: window w, from -0.1"},
         {ROOM "window w on south from 1 1 to 1 2\n", ":10: window w would be 0 wide"},
         {ROOM "window w on south from 1 1 to 2 2\ndoor d on south from 1.5 0 to 3 2\n",
-         ":11: window w and door d, on wall south, are in each other"},
+         ":11: window w and door d, on wall south, overlap"},
         {ROOM "window w on south from 1 1 to 2 2\nwall x from 1.5 1 to 1.5 2\nextend x start to south\n",
-         ":10: window w, from 1 to 2 on wall south, is where wall x meets it"},
+         ":10: window w, from 1 to 2 on wall south, overlaps wall x, which meets it"},
         {ROOM "split south from 3 to 5 into rest\n", ":10: the gap from 3 to 5 does not lie in wall south"},
         {ROOM "door d on south from 1 0 to 2 2\nsplit south from 1.5 to 2.5 into rest\n",
          ":11: the gap from 1.5 to 2.5 cuts door d"},
@@ -123,7 +123,7 @@ static void what_is_no_building_is_refused(void **state)
          "walls south and north, which follow each other round room again, are parallel"},
         {BARE "wall a from 3 0 to 0 0\nwall b from 0 0 to 0 3\nwall c from 0 3 to 3 0 angled\njoin a b\nroom r a b c\n",
          ":8: walls b and c, which follow each other round room r, do not meet"},
-        {ROOM "slope hall from south 2 to west 3\n", ":10: a ceiling slopes from one wall to another that is parallel"},
+        {ROOM "slope hall from south 2 to west 3\n", ":10: a ceiling slopes between two parallel walls"},
         {ROOM "slope hall from south 2 to north -1\n", "not above the floor"},
         {ROOM "room r south west north ceiling 0\n", ":10: "},
         {ROOM "box b from 1 1 to 1 2\n", ":10: box b would be 0 x 1 x 2.5 large"},
@@ -134,14 +134,14 @@ static void what_is_no_building_is_refused(void **state)
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) refused(cases[i].text, NULL, cases[i].words);
 }
 
-static void an_edit_that_leaves_no_building_is_refused(void **state)
+static void an_edit_that_breaks_the_building_is_refused(void **state)
 {
     static const char base[] = ROOM "door d on south from 3 0 to 3.9 2\nwindow w on north from 1 1 to 2 2\n"
                                     "passage p on west from 1 0 to 2 2\n";
     static const struct {
         const char *edit, *words;
     } cases[] = {
-        {"remodel-script 1\nmove east by -0.2\n", "edit.txt:2: door d, from 3 to 3.9, is outside of its wall south"},
+        {"remodel-script 1\nmove east by -0.2\n", "edit.txt:2: door d, from 3 to 3.9, is outside its wall south"},
         {"remodel-script 1\nmove east by -5\n", "edit.txt:2: "},
         {"remodel-script 1\nmove d by 0.5\n", "edit.txt:2: door d"},
         {"remodel-script 1\nopen d\n", "door d is open already"},
@@ -159,7 +159,7 @@ static void an_edit_that_leaves_no_building_is_refused(void **state)
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) refused(base, cases[i].edit, cases[i].words);
 }
 
-static void without_a_scale_lengths_must_be_told(void **state)
+static void without_a_scale_lengths_must_be_set(void **state)
 {
     const struct model_axes axes = {.rotation = {1, 0, 0, 0}, .scale = 1};
     static const char *const texts[] = {"remodel-script 1\nwall a from 0 0 to 1 0\n",
@@ -182,11 +182,11 @@ static void without_a_scale_lengths_must_be_told(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(words_that_are_no_statement_are_refused),
-        cmocka_unit_test(all_of_the_language_is_read),
-        cmocka_unit_test(what_is_no_building_is_refused),
-        cmocka_unit_test(an_edit_that_leaves_no_building_is_refused),
-        cmocka_unit_test(without_a_scale_lengths_must_be_told),
+        cmocka_unit_test(invalid_statements_are_refused),
+        cmocka_unit_test(the_whole_language_is_read),
+        cmocka_unit_test(invalid_buildings_are_refused),
+        cmocka_unit_test(an_edit_that_breaks_the_building_is_refused),
+        cmocka_unit_test(without_a_scale_lengths_must_be_set),
     };
     return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }

@@ -1,4 +1,4 @@
-/* scripted.h - plans and solids of scripts that stand in a test. */
+/* scripted.h - makes plans and solids from scripts in a test's source. */
 #ifndef REMODEL_TESTS_SCRIPTED_H
 #define REMODEL_TESTS_SCRIPTED_H
 
@@ -24,7 +24,7 @@ static inline enum status scripted(struct plan *plan, const char *text, const ch
     return st;
 }
 
-/* Solids of the text, and of an edit behind it (or NULL). */
+/* The solids of a script with an edit (or NULL). */
 static inline void build(struct plan *plan, struct solid_list *list, const char *text, const char *edit)
 {
     struct err err = ERR_INIT;
@@ -38,7 +38,7 @@ static inline void drop(struct plan *plan, struct solid_list *list)
     plan_release(plan);
 }
 
-/* How many solids of a body a point lies inside of. */
+/* The number of a body's solids that contain a point. */
 static inline int inside(const struct solid_list *list, const char *body, double x, double y, double z)
 {
     int n = 0;
@@ -52,8 +52,8 @@ static inline int inside(const struct solid_list *list, const char *body, double
     return n;
 }
 
-/* The face of the solids on which a point lies: there is matter behind it by a little and none before it. The name is
- * of the first solid that has a plane there which bounds it at that point; "" for none. */
+/* The face on which a point lies: just behind the point there is matter, just in front there is none. The name is that
+ * of the first solid bounded there; "" for none. */
 static inline const char *face_at(const struct solid_list *list, double x, double y, double z)
 {
     for (int i = 0; i < list->count; i++) {

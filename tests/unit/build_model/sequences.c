@@ -1,36 +1,37 @@
-/* sequences.c - random scripts and random sequences of edits: what comes of them is a solid, and the one that is meant.
+/* sequences.c - random scripts and random sequences of edits give the solids that they describe.
  *
- * A base script is drawn (a house of rooms, an L, a room with a cut corner, walls that stand alone, two houses back to
- * back), furnished by random statements, then edited by random ones. Statements that are refused must be refused with
- * file and line, and are left out. After each that is taken: the model is closed, 2-manifold and does not cut itself;
- * along random lines there is matter where the solids have it; where all is along the axes its volume is what told.h
- * makes of the words; ids are those of the base by name; a place of the surface that was the base's keeps its name
- * unless what it is called after was touched, or the log tells of a merger.
+ * Each sequence draws a base script (a house of rooms, an L, a room with a cut corner, single walls, two houses back to
+ * back), adds random statements to it, then applies random edits. A rejected statement must be rejected with file and
+ * line, and is left out. After each accepted one: the model is closed, 2-manifold and free of self-intersections; along
+ * random lines it has matter where the solids do; if everything is along the axes, its volume is that of
+ * script_model.h; faces have the ids of the base by name; a point of the surface that was on the base's surface keeps
+ * its face name unless the named thing was touched, or the log records a merge.
  *
- * `make sequences` draws 10 000; SEQUENCES=N in the environment so many; SEQUENCE=N that one alone, and tells it. */
+ * `make sequences` draws 10 000. In the environment, SEQUENCES=N sets their number, and SEQUENCE=N runs and prints
+ * sequence N alone. */
+#include "tests/unit/build_model/script_model.h"
 #include "tests/unit/build_model/scripted.h"
-#include "tests/unit/build_model/told.h"
 #include "tests/unit/build_model/unions.h"
 
 #include "common/base/rng.h"
 
-enum { USUAL = 300, TEXT = 16384, LINE = 256, FURNISHINGS = 6, EDITS = 8, LINES = 10, MOST_HITS = 1024 };
-enum { MOST_TOUCHED = 512 };
+enum { DEFAULT_SEQUENCES = 300, TEXT = 16384, LINE = 256, FURNISHINGS = 6, EDITS = 8, LINES = 10, MAX_HITS = 1024 };
+enum { MAX_TOUCHED = 512 };
 
 static struct rng numbers;
 static uint64_t sequence, drawn;
-static int taken, refusals, exact_models, places;
+static int accepted, rejected, exact_models, points;
 
 static double random_unit(void) { return rng_uniform(&numbers, sequence, drawn++); }
 static int one_of(int count) { return (int)(random_unit() * count); }
 
-/* On a grid of 5 cm: coincidences are wanted. */
+/* On a grid of 5 cm, so that coincidences occur. */
 static double uniform(double low, double high) { return round((low + (high - low) * random_unit()) * 20) / 20; }
 
 /* -------------------------------------------------------------------------------------------------- base scripts */
 
-static void say(char *text, const char *fmt, ...) PRINTF_LIKE(2, 3);
-static void say(char *text, const char *fmt, ...)
+static void append(char *text, const char *fmt, ...) PRINTF_LIKE(2, 3);
+static void append(char *text, const char *fmt, ...)
 {
     const size_t used = strlen(text);
     va_list args;
@@ -39,125 +40,125 @@ static void say(char *text, const char *fmt, ...)
     va_end(args);
 }
 
-/* Now and then its body is on the other side: true, and it goes from its second point to the first. */
-static bool say_wall(char *text, const char *name, double x0, double y0, double x1, double y1)
+/* Adds a wall; one in five has its body on the other side, from its second point to the first: returns true. */
+static bool add_wall(char *text, const char *name, double x0, double y0, double x1, double y1)
 {
     const bool turned = one_of(5) == 0;
     if (turned)
-        say(text, "wall %s from %.2f %.2f to %.2f %.2f", name, x1, y1, x0, y0);
+        append(text, "wall %s from %.2f %.2f to %.2f %.2f", name, x1, y1, x0, y0);
     else
-        say(text, "wall %s from %.2f %.2f to %.2f %.2f", name, x0, y0, x1, y1);
-    if (one_of(6) == 0) say(text, " thickness %.2f", uniform(0.05, 0.4));
-    if (one_of(12) == 0) say(text, " top %.2f", uniform(1.5, 3.5));
-    say(text, "%s\n", x0 != x1 && y0 != y1 ? " angled" : "");
+        append(text, "wall %s from %.2f %.2f to %.2f %.2f", name, x0, y0, x1, y1);
+    if (one_of(6) == 0) append(text, " thickness %.2f", uniform(0.05, 0.4));
+    if (one_of(12) == 0) append(text, " top %.2f", uniform(1.5, 3.5));
+    append(text, "%s\n", x0 != x1 && y0 != y1 ? " angled" : "");
     return turned;
 }
 
-/* A wall between two others, which it meets. */
-static void say_partition(char *text, const char *name, double x0, double y0, double x1, double y1, const char *from,
+/* Adds a wall that meets two others. */
+static void add_partition(char *text, const char *name, double x0, double y0, double x1, double y1, const char *from,
                           const char *to)
 {
-    const bool turned = say_wall(text, name, x0, y0, x1, y1);
-    say(text, "extend %s %s to %s\nextend %s %s to %s\n", name, turned ? "end" : "start", from, name,
-        turned ? "start" : "end", to);
+    const bool turned = add_wall(text, name, x0, y0, x1, y1);
+    append(text, "extend %s %s to %s\nextend %s %s to %s\n", name, turned ? "end" : "start", from, name,
+           turned ? "start" : "end", to);
 }
 
-static void say_room(char *text, const char *name, const char *walls)
+static void add_room(char *text, const char *name, const char *walls)
 {
-    say(text, "room %s %s", name, walls);
-    if (one_of(6) == 0) say(text, " floor %.2f", uniform(-0.3, 0.3));
-    if (one_of(6) == 0) say(text, " ceiling %.2f", uniform(2.2, 3));
-    say(text, "\n");
+    append(text, "room %s %s", name, walls);
+    if (one_of(6) == 0) append(text, " floor %.2f", uniform(-0.3, 0.3));
+    if (one_of(6) == 0) append(text, " ceiling %.2f", uniform(2.2, 3));
+    append(text, "\n");
 }
 
-/* Columns x rows of rooms; every name ends with `tag`. Partitions go through from south to north, others between. */
-static void say_house(char *text, double x0, double y0, int columns, int rows, char tag)
+/* Adds columns x rows of rooms; all names end with `tag`. Partitions run from south to north, other walls between. */
+static void add_house(char *text, double x0, double y0, int columns, int rows, char tag)
 {
     double x[4] = {x0}, y[3] = {y0};
     char outer[4][32], across[4][32], between[4][32], name[32], walls[LINE]; /* across[0]: the west wall */
     for (int i = 0; i < columns; i++) x[i + 1] = x[i] + uniform(1.5, 4);
     for (int k = 0; k < rows; k++) y[k + 1] = y[k] + uniform(1.5, 4);
     for (int i = 0; i < 4; i++) snprintf(outer[i], sizeof outer[i], "%.2s%c", "sowenoea" + 2 * i, tag);
-    say_wall(text, outer[0], x[columns], y0, x0, y0);
-    say_wall(text, outer[1], x0, y0, x0, y[rows]);
-    say_wall(text, outer[2], x0, y[rows], x[columns], y[rows]);
-    say_wall(text, outer[3], x[columns], y[rows], x[columns], y0);
-    say(text, "join %s %s %s %s %s\n", outer[0], outer[1], outer[2], outer[3], outer[0]);
+    add_wall(text, outer[0], x[columns], y0, x0, y0);
+    add_wall(text, outer[1], x0, y0, x0, y[rows]);
+    add_wall(text, outer[2], x0, y[rows], x[columns], y[rows]);
+    add_wall(text, outer[3], x[columns], y[rows], x[columns], y0);
+    append(text, "join %s %s %s %s %s\n", outer[0], outer[1], outer[2], outer[3], outer[0]);
     strcpy(across[0], outer[1]);
     strcpy(across[columns], outer[3]);
     for (int i = 1; i < columns; i++) {
         snprintf(across[i], sizeof across[i], "v%d%c", i, tag);
-        say_partition(text, across[i], x[i], y0 + 0.5, x[i], y[rows] - 0.5, outer[0], outer[2]);
+        add_partition(text, across[i], x[i], y0 + 0.5, x[i], y[rows] - 0.5, outer[0], outer[2]);
     }
     for (int i = 0; i < columns && rows > 1; i++) {
         snprintf(between[i], sizeof between[i], "h%d%c", i, tag);
         const double at = i && one_of(2) ? uniform(y0 + 1, y[2] - 1) : y[1];
-        say_partition(text, between[i], x[i] + 0.5, at, x[i + 1] - 0.5, at, across[i], across[i + 1]);
+        add_partition(text, between[i], x[i] + 0.5, at, x[i + 1] - 0.5, at, across[i], across[i + 1]);
     }
     for (int i = 0; i < columns; i++)
         for (int k = 0; k < rows; k++) {
             snprintf(name, sizeof name, "r%d%d%c", i, k, tag);
             snprintf(walls, sizeof walls, "%s %s %s %s", k ? between[i] : outer[0], across[i],
                      rows > 1 && !k ? between[i] : outer[2], across[i + 1]);
-            say_room(text, name, walls);
+            add_room(text, name, walls);
         }
 }
 
-static void say_corners(char *text, const double (*p)[2], int count)
+static void add_corners(char *text, const double (*p)[2], int count)
 {
     char name[32], walls[LINE] = "";
-    say(text, "%s", "");
-    for (int i = 0; i < count; i++) { /* counter-clockwise, so walls go backwards */
+    append(text, "%s", "");
+    for (int i = 0; i < count; i++) { /* corners are counter-clockwise, walls clockwise */
         snprintf(name, sizeof name, "w%d", i);
-        say_wall(text, name, p[(i + 1) % count][0], p[(i + 1) % count][1], p[i][0], p[i][1]);
-        say(walls, "%s ", name);
+        add_wall(text, name, p[(i + 1) % count][0], p[(i + 1) % count][1], p[i][0], p[i][1]);
+        append(walls, "%s ", name);
     }
-    say(text, "join %sw0\n", walls);
-    say_room(text, "hall", walls);
+    append(text, "join %sw0\n", walls);
+    add_room(text, "hall", walls);
 }
 
-static void say_base(char *text)
+static void add_base(char *text)
 {
     const double a = uniform(3, 6), b = uniform(3, 6), c = uniform(0.5, a - 1), d = uniform(0.5, b - 1);
     strcpy(text, "remodel-script 1\n");
-    if (one_of(2)) say(text, "set thickness %.2f\n", uniform(0.1, 0.3));
-    if (one_of(4) == 0) say(text, "set slab %.2f\n", uniform(0.1, 0.4));
-    if (one_of(4) == 0) say(text, "set floor %.2f\n", uniform(-0.2, 0.2));
-    if (one_of(4) == 0) say(text, "set ceiling %.2f\n", uniform(2, 3));
+    if (one_of(2)) append(text, "set thickness %.2f\n", uniform(0.1, 0.3));
+    if (one_of(4) == 0) append(text, "set slab %.2f\n", uniform(0.1, 0.4));
+    if (one_of(4) == 0) append(text, "set floor %.2f\n", uniform(-0.2, 0.2));
+    if (one_of(4) == 0) append(text, "set ceiling %.2f\n", uniform(2, 3));
     switch (one_of(8)) {
     case 0:
     case 1:
     case 2:
-        say_house(text, 0, 0, 1 + one_of(3), 1 + one_of(2), 'a');
+        add_house(text, 0, 0, 1 + one_of(3), 1 + one_of(2), 'a');
         break;
-    case 3: /* back to back, or near to it, or in each other's walls */
-        say_house(text, 0, 0, 1, 1 + one_of(2), 'a');
-        say_house(text, uniform(-1, 4), uniform(-4, 4), 1 + one_of(2), 1, 'b');
+    case 3: /* back to back, close together, or with overlapping walls */
+        add_house(text, 0, 0, 1, 1 + one_of(2), 'a');
+        add_house(text, uniform(-1, 4), uniform(-4, 4), 1 + one_of(2), 1, 'b');
         break;
     case 4:
-        say_corners(text, (const double[6][2]){{0, 0}, {a, 0}, {a, d}, {c, d}, {c, b}, {0, b}}, 6);
+        add_corners(text, (const double[6][2]){{0, 0}, {a, 0}, {a, d}, {c, d}, {c, b}, {0, b}}, 6);
         break;
     case 5:
-        say_corners(text, (const double[5][2]){{0, 0}, {a, 0}, {a, d}, {c, b}, {0, b}}, 5);
+        add_corners(text, (const double[5][2]){{0, 0}, {a, 0}, {a, d}, {c, b}, {0, b}}, 5);
         break;
     case 6:
-        say_corners(text,
+        add_corners(text,
                     (const double[8][2]){
                         {0, 0}, {a, 0}, {a, b}, {c + 0.8, b}, {c + 0.8, d}, {c - 0.2, d}, {c - 0.2, b}, {0, b}},
                     8);
         break;
     default:
-        say_wall(text, "alone", 0, 0, a, 0);
-        say_wall(text, "other", c, uniform(-2, 2), c, b);
-        if (one_of(2)) say(text, "join alone other\n");
+        add_wall(text, "alone", 0, 0, a, 0);
+        add_wall(text, "other", c, uniform(-2, 2), c, b);
+        if (one_of(2)) append(text, "join alone other\n");
     }
 }
 
 /* ---------------------------------------------------------------------------------------------------- statements */
 
-static const char *some_wall(const struct told *t) { return t->walls[one_of(t->wall_count)].name; }
+static const char *some_wall(const struct expected *t) { return t->walls[one_of(t->wall_count)].name; }
 
-static const char *some_thing(const struct told *t)
+static const char *some_thing(const struct expected *t)
 {
     switch (one_of(4)) {
     case 0:
@@ -169,15 +170,15 @@ static const char *some_thing(const struct told *t)
     }
 }
 
-static void random_place(const struct told *t, int wall, double s[2])
+static void random_place(const struct expected *t, int wall, double s[2])
 {
-    const struct told_wall *w = &t->walls[wall];
-    const double low = told_reach(t, w, 0), high = told_reach(t, w, 1);
+    const struct expected_wall *w = &t->walls[wall];
+    const double low = expected_reach(t, w, 0), high = expected_reach(t, w, 1);
     s[0] = uniform(low - 0.2, high);
     s[1] = s[0] + uniform(0.1, 1.6);
 }
 
-static void new_hole(const struct told *t, char *line, int step)
+static void new_hole(const struct expected *t, char *line, int step)
 {
     static const char *const words[3][3] = {{"", " closed", " closed"}, {"", "", ""}, {"", " open", " interior"}};
     static const char *const kinds[3] = {"door", "passage", "window"};
@@ -199,10 +200,10 @@ static void new_box(char *line, int step)
     strcat(line, "\n");
 }
 
-static void adjust(const struct told *t, char *line)
+static void adjust(const struct expected *t, char *line)
 {
     const char *name = some_thing(t);
-    const int wall = told_wall(t, name), hole = told_hole(t, name);
+    const int wall = expected_wall(t, name), hole = expected_hole(t, name);
     if (wall >= 0) {
         const double at = t->walls[wall].in + uniform(-0.5, 0.5);
         const double p[4] = {t->walls[wall].axis ? at : 0, t->walls[wall].axis ? 0 : at, t->walls[wall].axis ? at : 1,
@@ -220,7 +221,7 @@ static void adjust(const struct told *t, char *line)
     }
 }
 
-static void new_wall(const struct told *t, char *line, int step)
+static void new_wall(const struct expected *t, char *line, int step)
 {
     const double x = uniform(-1, 6), y = uniform(-1, 6), by = uniform(-3, 3);
     const int kind = one_of(8);
@@ -236,7 +237,7 @@ static void new_wall(const struct told *t, char *line, int step)
     (void)t;
 }
 
-static void random_statement(const struct told *t, char *line, int step)
+static void random_statement(const struct expected *t, char *line, int step)
 {
     static const char *const quantities[] = {"thickness", "slab", "glass", "leaf", "floor", "ceiling"};
     const char *wall = some_wall(t);
@@ -249,7 +250,7 @@ static void random_statement(const struct told *t, char *line, int step)
         break;
     case 3:
     case 4:
-        if (told_box(t, wall = some_thing(t)) >= 0)
+        if (expected_box(t, wall = some_thing(t)) >= 0)
             snprintf(line, LINE, "move %s by %.2f %.2f\n", wall, uniform(-0.6, 0.6), uniform(-0.6, 0.6));
         else
             snprintf(line, LINE, "move %s by %.2f\n", wall, uniform(-0.6, 0.6));
@@ -304,8 +305,7 @@ static void random_statement(const struct told *t, char *line, int step)
     }
 }
 
-/* Every fourth sequence has numbers that are nearly the same: millionths, which is what a model can tell apart, and
- * parts of them. */
+/* Every fourth sequence has nearly equal numbers: differences of millionths, the resolution of models, and less. */
 static bool with_crumbs(void) { return sequence % 4 == 3; }
 
 static void add_crumbs(char *line)
@@ -344,8 +344,8 @@ static void explain(const char *base, const char *edit)
     fprintf(stderr, "sequence %d:\n%s%s%s", (int)sequence, base, edit ? "---- edit\n" : "", edit ? edit : "");
 }
 
-/* The model of a script and an edit (or NULL); false if the plan refuses, with a sentence. line: that of the statement
- * that is tried, 0 if any. */
+/* Makes the model of a script and an edit (or NULL). False: the plan was rejected with an error message; line: of the
+ * statement that it must name, 0 for any. */
 static bool make_model(struct model *m, const char *base, const char *edit, int line)
 {
     struct err err = ERR_INIT;
@@ -358,7 +358,7 @@ static bool make_model(struct model *m, const char *base, const char *edit, int 
             strcpy(place, edit ? "/edit.txt:" : "/model.txt:");
         if (err.status != ST_DATA || !strstr(err.text, place) || !strchr(".?", err.text[strlen(err.text) - 1])) {
             explain(base, edit);
-            fail_msg("refused without its place: %s", err.text);
+            fail_msg("rejected without file and line: %s", err.text);
         }
         plan_release(&m->plan);
         return false;
@@ -366,7 +366,7 @@ static bool make_model(struct model *m, const char *base, const char *edit, int 
     if (layout_solids(&m->list, &m->plan, &err) || solids_unite(&m->mesh, &m->list, &m->log, &err) ||
         solid_mesh_check(&m->mesh, 0, &m->report, &err)) {
         explain(base, edit);
-        fail_msg("taken, but no solid: %s", err.text);
+        fail_msg("accepted, but not a solid: %s", err.text);
     }
     return true;
 }
@@ -410,7 +410,7 @@ static bool on_face(const struct solid_mesh *mesh, const struct solid_face *f, s
     return in;
 }
 
-static int hit_mesh(const struct solid_mesh *mesh, const struct ray *r, struct hit hits[MOST_HITS])
+static int hit_mesh(const struct solid_mesh *mesh, const struct ray *r, struct hit hits[MAX_HITS])
 {
     int n = 0;
     for (int f = 0; f < mesh->face_count; f++) {
@@ -418,15 +418,15 @@ static int hit_mesh(const struct solid_mesh *mesh, const struct ray *r, struct h
         const double slant = vec3_dot(face->normal, r->d);
         const double t = (face->offset - vec3_dot(face->normal, r->o)) / slant;
         if (!isfinite(t) || !on_face(mesh, face, vec3_add(r->o, vec3_scale(r->d, t)))) continue;
-        assert_true(n < MOST_HITS);
+        assert_true(n < MAX_HITS);
         hits[n++] = (struct hit){t, slant < 0 ? 1 : -1, solid_face_name(mesh, f), mesh->bodies[face->body].name};
     }
     if (n) qsort(hits, (size_t)n, sizeof *hits, compare_hits);
     return n;
 }
 
-/* Where the line goes into and out of each solid; false: it grazes a plane, where rounding would count. */
-static bool hit_solids(const struct solid_list *list, const struct ray *r, struct hit hits[MOST_HITS], int *count)
+/* Where the line enters and leaves each solid; false: it grazes a plane, so that rounding would matter. */
+static bool hit_solids(const struct solid_list *list, const struct ray *r, struct hit hits[MAX_HITS], int *count)
 {
     *count = 0;
     for (int i = 0; i < list->count; i++) {
@@ -442,7 +442,7 @@ static bool hit_solids(const struct solid_list *list, const struct ray *r, struc
                 to = fmin(to, t);
         }
         if (to <= from) continue;
-        assert_true(*count + 2 <= MOST_HITS);
+        assert_true(*count + 2 <= MAX_HITS);
         hits[(*count)++] = (struct hit){from, 1, NULL, s->body};
         hits[(*count)++] = (struct hit){to, -1, NULL, s->body};
     }
@@ -450,7 +450,7 @@ static bool hit_solids(const struct solid_list *list, const struct ray *r, struc
     return true;
 }
 
-/* Length of the line on which one has matter of the body and the other does not, or the mesh is not in and out. */
+/* Length of the line on which only one of mesh and solids has matter of the body. */
 static double line_difference(const struct hit *mesh, int mesh_count, const struct hit *solids, int solid_count,
                               const char *body)
 {
@@ -488,19 +488,19 @@ static struct ray random_ray(const struct solid_mesh *mesh)
 /* -------------------------------------------------------------------------------------------------------- identity */
 
 struct touched {
-    char names[MOST_TOUCHED][TOLD_NAME];
+    char names[MAX_TOUCHED][NAME_SIZE];
     int count;
-    char beside[MOST_TOUCHED][TOLD_NAME]; /* rooms and walls at a touched wall: between two of them it may have moved */
+    char beside[MAX_TOUCHED][NAME_SIZE]; /* rooms and walls at a touched wall, whose common border may have moved */
     int beside_count;
 };
 
-static void keep_name(char names[MOST_TOUCHED][TOLD_NAME], int *count, const char *name)
+static void keep_name(char names[MAX_TOUCHED][NAME_SIZE], int *count, const char *name)
 {
-    assert_true(*count < MOST_TOUCHED);
-    snprintf(names[(*count)++], TOLD_NAME, "%s", name);
+    assert_true(*count < MAX_TOUCHED);
+    snprintf(names[(*count)++], NAME_SIZE, "%s", name);
 }
 
-static void touch_wall(struct touched *touched, const struct told *t, int wall)
+static void touch_wall(struct touched *touched, const struct expected *t, int wall)
 {
     for (int i = 0; i < t->hole_count; i++)
         if (t->holes[i].wall == wall) keep_name(touched->names, &touched->count, t->holes[i].name);
@@ -509,24 +509,24 @@ static void touch_wall(struct touched *touched, const struct told *t, int wall)
             if (t->rooms[i].walls[k] == wall) keep_name(touched->beside, &touched->beside_count, t->rooms[i].name);
     for (int i = 0; i < t->wall_count; i++)
         for (int e = 0; e < 2; e++)
-            if (t->walls[i].ends[e].kind != TOLD_FREE && t->walls[i].ends[e].other == wall)
+            if (t->walls[i].ends[e].kind != MODEL_FREE && t->walls[i].ends[e].other == wall)
                 keep_name(touched->beside, &touched->beside_count, t->walls[i].name);
 }
 
-/* All names in the line, the openings of its walls, which go with them, and what is beside those. */
-static void touch_line(struct touched *touched, const struct told *t, const char *line)
+/* Records all names in the line, the openings of its walls, which move with them, and the things beside these. */
+static void touch_line(struct touched *touched, const struct expected *t, const char *line)
 {
     char text[LINE], *rest = text;
     snprintf(text, sizeof text, "%s", line);
     for (char *word; (word = strtok_r(rest, " \n", &rest));) {
-        const int wall = told_wall(t, word);
-        if (wall < 0 && told_hole(t, word) < 0 && told_box(t, word) < 0 && told_room(t, word) < 0) continue;
+        const int wall = expected_wall(t, word);
+        if (wall < 0 && expected_hole(t, word) < 0 && expected_box(t, word) < 0 && expected_room(t, word) < 0) continue;
         keep_name(touched->names, &touched->count, word);
         if (wall >= 0) touch_wall(touched, t, wall);
     }
 }
 
-static bool is_among(const char (*names)[TOLD_NAME], int count, const char *face)
+static bool is_among(const char (*names)[NAME_SIZE], int count, const char *face)
 {
     const char *from = strchr(face, '/') + 1;
     const size_t length = strcspn(from, "/");
@@ -544,7 +544,7 @@ static bool merges(const struct unite_log *log, const char *name, const char *in
     return found;
 }
 
-/* Some surface of the scripts may be called `a` in the one model and `b` in the other. */
+/* Whether a surface may be named `a` in model m and `b` in model n. */
 static bool same_surface(const struct model *m, const char *a, const struct model *n, const char *b)
 {
     if (merges(&m->log, b, a) || merges(&n->log, a, b)) return true;
@@ -555,7 +555,7 @@ static bool same_surface(const struct model *m, const char *a, const struct mode
     return false;
 }
 
-/* The face's own name, or one that became part of it, is of what is beside a touched wall. */
+/* Whether the face's name, or one merged into it, belongs to something beside a touched wall. */
 static bool is_beside(const struct touched *t, const struct unite_log *log, const char *face)
 {
     bool found = is_among(t->beside, t->beside_count, face);
@@ -574,15 +574,15 @@ static bool may_differ(const struct touched *t, const struct model *m, const cha
 static void check_identity(const struct model *base, struct model *m, const struct touched *touched,
                            const struct ray *rays, const char *text, const char *edit)
 {
-    static struct hit old[MOST_HITS], new[MOST_HITS];
+    static struct hit old[MAX_HITS], new[MAX_HITS];
     const struct solid_mesh *b = &base->mesh, *e = &m->mesh;
     struct err err = ERR_INIT;
     assert_ok(solid_mesh_carry_ids(&m->mesh, &base->mesh, &err), err);
-    const int most = b->names[b->name_count - 1].id;
+    const int max_id = b->names[b->name_count - 1].id;
     for (int i = 0; i < e->name_count; i++) {
         int k = 0;
         while (k < b->name_count && strcmp(b->names[k].name, e->names[i].name)) k++;
-        if (k < b->name_count ? e->names[i].id == b->names[k].id : e->names[i].id > most) continue;
+        if (k < b->name_count ? e->names[i].id == b->names[k].id : e->names[i].id > max_id) continue;
         explain(text, edit);
         fail_msg("%s has the id %d", e->names[i].name, e->names[i].id);
     }
@@ -593,18 +593,18 @@ static void check_identity(const struct model *base, struct model *m, const stru
             if (k == edited || new[k].t > old[i].t + 1e-9 || new[k].way != old[i].way ||
                 strcmp(new[k].body, old[i].body))
                 continue;
-            places++;
+            points++;
             if (!strcmp(new[k].name, old[i].name) || may_differ(touched, base, old[i].name, m, new[k].name)) continue;
             explain(text, edit);
-            fail_msg("the place of %s is called %s", old[i].name, new[k].name);
+            fail_msg("a point of %s is now on %s", old[i].name, new[k].name);
         }
     }
 }
 
-static void check_model(const struct model *m, struct told *told, const struct ray *rays, const char *text,
+static void check_model(const struct model *m, struct expected *expected, const struct ray *rays, const char *text,
                         const char *edit)
 {
-    static struct hit mesh[MOST_HITS], solids[MOST_HITS];
+    static struct hit mesh[MAX_HITS], solids[MAX_HITS];
     for (int i = 0; i < m->mesh.name_count; i++) {
         const char *end = strrchr(m->mesh.names[i].name, '/');
         if (strcmp(end, "/cut")) continue;
@@ -619,43 +619,43 @@ static void check_model(const struct model *m, struct told *told, const struct r
             const double off = line_difference(mesh, found, solids, count, m->mesh.bodies[b].name);
             if (off < 1e-3) continue;
             explain(text, edit);
-            fail_msg("along a line %g of body %s differs from its solids", off, m->mesh.bodies[b].name);
+            fail_msg("along a line, body %s differs from its solids over a length of %g", m->mesh.bodies[b].name, off);
         }
     }
-    if (!told->exact) return;
+    if (!expected->exact) return;
     double solid, panes, found[2] = {0, 0};
-    told_volumes(told, &solid, &panes);
+    expected_volumes(expected, &solid, &panes);
     exact_models++;
     for (int b = 0; b < m->mesh.body_count; b++)
         found[!!strcmp(m->mesh.bodies[b].name, "walls")] += solid_mesh_volume(&m->mesh, b);
-    /* a surface is on the lattice, half a step off at most, where the words are not; two places are one within a step */
+    /* surfaces are rounded to the lattice, by half a step at most; positions within a step of each other are equal */
     const double tolerance = 1e-8 * (1 + solid) + (with_crumbs() ? 1.5e-6 * m->report.area : 0);
     if (fabs(found[0] - solid) < tolerance && fabs(found[1] - panes) < tolerance) return;
     explain(text, edit);
-    for (int i = 0, told_of = 0; i < 1000000 && told_of < 3; i++) { /* where */
+    for (int i = 0, shown = 0; i < 1000000 && shown < 3; i++) { /* where */
         const double p[3] = {random_unit() * 14 - 4, random_unit() * 14 - 5, random_unit() * 5 - 1};
-        if (told_matter(told, p) == (inside(&m->list, "walls", p[0], p[1], p[2]) > 0)) continue;
-        print_message("at %.3f %.3f %.3f there is %smatter by the words\n", p[0], p[1], p[2],
-                      told_matter(told, p) ? "" : "no ");
-        told_of++;
+        if (expected_has_matter(expected, p) == (inside(&m->list, "walls", p[0], p[1], p[2]) > 0)) continue;
+        print_message("at %.3f %.3f %.3f the script has %smatter\n", p[0], p[1], p[2],
+                      expected_has_matter(expected, p) ? "" : "no ");
+        shown++;
     }
-    fail_msg("a volume of %.12g and panes of %.12g, but the words say %.12g and %.12g", found[0], found[1], solid,
+    fail_msg("volume %.12g and panes %.12g, but the script describes %.12g and %.12g", found[0], found[1], solid,
              panes);
 }
 
-static void tell_words(struct told *told, const char *text)
+static void interpret(struct expected *expected, const char *text)
 {
     char copy[TEXT], *rest = copy;
-    told_begin(told);
+    expected_begin(expected);
     snprintf(copy, sizeof copy, "%s", text);
     for (char *line; (line = strtok_r(rest, "\n", &rest));)
-        if (strncmp(line, "remodel", 7)) told_apply(told, line);
+        if (strncmp(line, "remodel", 7)) expected_apply(expected, line);
 }
 
 static void one_sequence(void)
 {
     static char base[TEXT], edit[TEXT], tried[TEXT];
-    static struct told told, before;
+    static struct expected expected, before;
     struct touched touched = {.count = 0};
     struct model m, edited;
     struct ray rays[LINES];
@@ -663,19 +663,19 @@ static void one_sequence(void)
     int step = 0, lines = 1;
 
     drawn = 0;
-    do say_base(base);
-    while (!make_model(&m, base, NULL, 0)); /* walls thicker than rooms are wide */
+    do add_base(base);
+    while (!make_model(&m, base, NULL, 0)); /* rejected if walls are thicker than rooms */
     drop_model(&m);
-    tell_words(&told, base);
+    interpret(&expected, base);
     for (int i = 0; i < FURNISHINGS; i++) {
-        random_statement(&told, line, ++step);
+        random_statement(&expected, line, ++step);
         if (with_crumbs()) add_crumbs(line);
         strcpy(tried, base);
-        say(tried, "%s", line);
+        append(tried, "%s", line);
         if (!make_model(&m, tried, NULL, 0)) continue;
         drop_model(&m);
         strcpy(base, tried);
-        told_apply(&told, line);
+        expected_apply(&expected, line);
     }
     assert_true(make_model(&m, base, NULL, 0));
     if (!m.mesh.face_count) {
@@ -683,25 +683,25 @@ static void one_sequence(void)
         return;
     }
     for (int r = 0; r < LINES; r++) rays[r] = random_ray(&m.mesh);
-    check_model(&m, &told, rays, base, NULL);
+    check_model(&m, &expected, rays, base, NULL);
     strcpy(edit, "remodel-script 1\n");
     for (int i = 0; i < EDITS; i++) {
-        random_statement(&told, line, ++step);
+        random_statement(&expected, line, ++step);
         if (with_crumbs()) add_crumbs(line);
         strcpy(tried, edit);
-        say(tried, "%s", line);
+        append(tried, "%s", line);
         if (!make_model(&edited, base, tried, lines + 1)) {
-            refusals++;
+            rejected++;
             continue;
         }
         strcpy(edit, tried);
         lines++;
-        taken++;
-        before = told;
-        told_apply(&told, line);
+        accepted++;
+        before = expected;
+        expected_apply(&expected, line);
         touch_line(&touched, &before, line);
-        touch_line(&touched, &told, line);
-        check_model(&edited, &told, rays, base, edit);
+        touch_line(&touched, &expected, line);
+        check_model(&edited, &expected, rays, base, edit);
         check_identity(&m, &edited, &touched, rays, base, edit);
         if (i == EDITS - 1) assert_triangles_closed(&edited.mesh);
         drop_model(&edited);
@@ -710,10 +710,10 @@ static void one_sequence(void)
     if (getenv("SEQUENCE")) explain(base, edit);
 }
 
-static void random_sequences_of_edits_are_solids_that_are_meant(void **state)
+static void random_sequences_of_edits_give_the_described_solids(void **state)
 {
     const char *wanted = getenv("SEQUENCES"), *one = getenv("SEQUENCE");
-    const int count = wanted ? atoi(wanted) : USUAL;
+    const int count = wanted ? atoi(wanted) : DEFAULT_SEQUENCES;
     (void)state;
     numbers = rng_make(11, "build_model", "sequences");
     for (int i = 0; i < count && !one; i++) {
@@ -725,13 +725,13 @@ static void random_sequences_of_edits_are_solids_that_are_meant(void **state)
         one_sequence();
         return;
     }
-    print_message("%d sequences: %d edits taken, %d refused; %d volumes, %d places compared\n", count, taken, refusals,
-                  exact_models, places);
-    assert_true(taken >= 3 * count / 2 && refusals >= count && exact_models >= 2 * count && places >= 10 * count);
+    print_message("%d sequences: %d edits accepted, %d rejected; %d volumes, %d points compared\n", count, accepted,
+                  rejected, exact_models, points);
+    assert_true(accepted >= 3 * count / 2 && rejected >= count && exact_models >= 2 * count && points >= 10 * count);
 }
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(random_sequences_of_edits_are_solids_that_are_meant)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(random_sequences_of_edits_give_the_described_solids)};
     return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }

@@ -1,4 +1,4 @@
-/* unions.h - what tests of unions share: boxes and prisms by few words, and everything that must hold of any mesh. */
+/* unions.h - shared by tests of unions: makes boxes and prisms, and checks what holds for every mesh. */
 #ifndef REMODEL_TESTS_UNIONS_H
 #define REMODEL_TESTS_UNIONS_H
 
@@ -7,6 +7,17 @@
 #include <math.h>
 
 #include "stages/build_model/unite.h"
+
+/* A box; the faces names[0], [1] are at low and high x, [2], [3] y, [4], [5] z. */
+static inline enum status add_named_box(struct solid_list *list, const char *body, struct vec3 low, struct vec3 high,
+                                        const char *const names[6], struct err *err)
+{
+    const struct half_space h[6] = {
+        {{-1, 0, 0}, -low.x, names[0]}, {{1, 0, 0}, high.x, names[1]},  {{0, -1, 0}, -low.y, names[2]},
+        {{0, 1, 0}, high.y, names[3]},  {{0, 0, -1}, -low.z, names[4]}, {{0, 0, 1}, high.z, names[5]},
+    };
+    return solid_list_add(list, body, h, 6, err);
+}
 
 /* A box with faces NAME/x0, NAME/x1, ... */
 static inline void add_box(struct solid_list *list, const char *name, double x0, double y0, double z0, double x1,
@@ -20,7 +31,7 @@ static inline void add_box(struct solid_list *list, const char *name, double x0,
         snprintf(text[i], sizeof text[i], "%s/%s", name, sides[i]);
         names[i] = text[i];
     }
-    assert_ok(solid_list_add_box(list, "walls", vec3_make(x0, y0, z0), vec3_make(x1, y1, z1), names, &err), err);
+    assert_ok(add_named_box(list, "walls", vec3_make(x0, y0, z0), vec3_make(x1, y1, z1), names, &err), err);
 }
 
 /* An upright prism over a convex polygon, counter-clockwise; faces NAME/0, ..., NAME/z0, NAME/z1. */
@@ -72,8 +83,7 @@ static inline int compare_edges(const void *a, const void *b)
     return p[0] != q[0] ? (p[0] > q[0]) - (p[0] < q[0]) : (p[1] > q[1]) - (p[1] < q[1]);
 }
 
-/* Triangles have area (flat ones are thinner than 1e-12, and none is turned over), and each of their edges its
- * opposite, once. */
+/* Triangles are not reversed (or are flatter than 1e-12), and each of their edges has its opposite exactly once. */
 static inline void assert_triangles_closed(const struct solid_mesh *mesh)
 {
     struct solid_triangles t = {0};
@@ -103,7 +113,7 @@ static inline void assert_triangles_closed(const struct solid_mesh *mesh)
     solid_triangles_release(&t);
 }
 
-/* Unites, checks all that can be checked without knowing the solids, releases the list. */
+/* Unites, checks everything that does not depend on the solids, releases the list (unless there is a log). */
 static inline void unite(struct solid_mesh *mesh, struct solid_report *report, struct unite_log *log,
                          struct solid_list *list)
 {
@@ -112,7 +122,7 @@ static inline void unite(struct solid_mesh *mesh, struct solid_report *report, s
     assert_ok(solid_mesh_check(mesh, 0, report, &err), err);
     assert_true(report->planarity < 1e-9);
     assert_triangles_closed(mesh);
-    if (!log) solid_list_release(list); /* the log has its names */
+    if (!log) solid_list_release(list); /* the log refers to its names */
 }
 
 #define assert_near(found, wanted, tolerance)                                                                      \

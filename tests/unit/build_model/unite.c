@@ -1,4 +1,4 @@
-/* unite.c - unions of which everything is known: counts, genus, names, volume. */
+/* unite.c - unions with known counts, genus, names and volume. */
 #include "tests/unit/build_model/unions.h"
 
 #include "common/base/parallel.h"
@@ -21,7 +21,7 @@ static void assert_union(const struct solid_mesh *mesh, const struct solid_repor
     assert_near(solid_mesh_volume(mesh, -1), w.volume, 1e-12 * fmax(1, w.volume));
 }
 
-/* Unites a list and compares; mesh stays for more questions. */
+/* Unites a list and compares; the mesh stays for more checks. */
 static struct solid_mesh mesh;
 
 static void check_union(struct solid_list *list, struct wanted w)
@@ -33,14 +33,14 @@ static void check_union(struct solid_list *list, struct wanted w)
     solid_report_release(&r);
 }
 
-static int forget(void **state)
+static int release_mesh(void **state)
 {
     (void)state;
     solid_mesh_release(&mesh);
     return 0;
 }
 
-static void one_box(void **state)
+static void a_box_is_its_own_union(void **state)
 {
     (void)state;
     struct solid_list l = {0};
@@ -49,7 +49,7 @@ static void one_box(void **state)
     assert_int_equal(mesh.half_edge_count, 24);
     assert_string_equal(solid_face_name(&mesh, 0), "a/x0");
     assert_int_equal(solid_face_id(&mesh, 5), 6);
-    for (int i = 0; i < 8; i++) { /* coordinates come back as they were typed */
+    for (int i = 0; i < 8; i++) { /* coordinates are exactly the given ones */
         const struct vec3 p = mesh.vertices[i].p;
         assert_true((p.x == 0.1 || p.x == 2.7) && (p.y == 0.2 || p.y == 3.1) && (p.z == 0.3 || p.z == 4.3));
     }
@@ -63,7 +63,7 @@ static void no_solids_make_an_empty_mesh(void **state)
     check_union(&l, (struct wanted){0, 0, 0, 0, 0, 0});
 }
 
-static void boxes_that_abut_become_one(void **state)
+static void adjacent_boxes_become_one(void **state)
 {
     (void)state;
     struct solid_list l = {0};
@@ -89,7 +89,7 @@ static void boxes_that_abut_become_one(void **state)
     solid_list_release(&l);
 }
 
-static void sums_that_are_a_rounding_off_are_the_same_plane(void **state)
+static void planes_that_differ_by_rounding_are_one(void **state)
 {
     (void)state;
     struct solid_list l = {0};
@@ -98,7 +98,7 @@ static void sums_that_are_a_rounding_off_are_the_same_plane(void **state)
     check_union(&l, (struct wanted){1, 0, 8, 6, 6, 1});
 }
 
-static void boxes_that_overlap(void **state)
+static void overlapping_boxes_are_united(void **state)
 {
     (void)state;
     struct solid_list l = {0};
@@ -107,7 +107,7 @@ static void boxes_that_overlap(void **state)
     check_union(&l, (struct wanted){1, 0, 20, 12, 12, 15});
 }
 
-static void what_is_inside_vanishes(void **state)
+static void solids_inside_others_vanish(void **state)
 {
     (void)state;
     struct solid_list l = {0};
@@ -119,7 +119,7 @@ static void what_is_inside_vanishes(void **state)
     solid_mesh_release(&mesh);
     unite(&mesh, &r, &log, &l);
     assert_union(&mesh, &r, (struct wanted){1, 0, 8, 6, 6, 27});
-    /* the earliest name, though its facet touches no border of the face */
+    /* the earliest name wins, although its facet touches no border of the face */
     assert_int_equal(faces_called(&mesh, "flush/z0"), 1);
     assert_int_equal(faces_called(&mesh, "big/z0"), 0);
     int hidden = 0;
@@ -132,7 +132,7 @@ static void what_is_inside_vanishes(void **state)
     solid_list_release(&l);
 }
 
-static void what_touches_in_an_edge_or_a_point_stays_apart(void **state)
+static void solids_that_touch_in_an_edge_or_a_point_stay_separate(void **state)
 {
     (void)state;
     struct solid_list l = {0};
@@ -140,16 +140,16 @@ static void what_touches_in_an_edge_or_a_point_stays_apart(void **state)
     add_box(&l, "b", 1, 1, 0, 2, 2, 1);
     check_union(&l, (struct wanted){2, 0, 16, 12, 12, 2});
     add_box(&l, "a", 0, 0, 0, 1, 1, 1);
-    add_box(&l, "b", 1, 1, 0.5, 2, 2, 1.5); /* in a part of the edge */
+    add_box(&l, "b", 1, 1, 0.5, 2, 2, 1.5); /* in part of the edge */
     check_union(&l, (struct wanted){2, 0, 16, 12, 12, 2});
     add_box(&l, "a", 0, 0, 0, 1, 1, 1);
     add_box(&l, "b", 1, 1, 1, 2, 2, 2);
     check_union(&l, (struct wanted){2, 0, 16, 12, 12, 2});
 }
 
-/* Two cubes that touch in an edge between two plates: both ends of the edge are one vertex each, so that one of the two
- * edges gets a vertex in its middle. */
-static void two_edges_between_the_same_vertices(void **state)
+/* Two cubes that touch in an edge, between two plates: each end of the edge is one vertex, so one of the two edges is
+ * split in the middle. */
+static void one_of_two_edges_between_the_same_vertices_is_split(void **state)
 {
     (void)state;
     struct solid_list l = {0};
@@ -199,7 +199,7 @@ static void four_walls_are_a_ring(void **state)
     assert_int_equal(faces_called(&mesh, "east/z1"), 0);
 }
 
-static void a_wall_with_a_window(void **state)
+static void glass_in_a_window_is_a_separate_body(void **state)
 {
     (void)state;
     struct solid_list l = {0};
@@ -209,11 +209,11 @@ static void a_wall_with_a_window(void **state)
     static const char *const above[6] = {"h", "h", "wall/y0", "wall/y1", "lintel", "wall/z1"};
     static const char *const pane[6] = {"g/0", "g/1", "g/out", "g/in", "g/4", "g/5"};
     struct err err = ERR_INIT;
-    assert_ok(solid_list_add_box(&l, "walls", vec3_make(1, 0, 0), vec3_make(2, 0.2, 0.9), below, &err), err);
-    assert_ok(solid_list_add_box(&l, "walls", vec3_make(1, 0, 2.1), vec3_make(2, 0.2, 2.6), above, &err), err);
-    assert_ok(solid_list_add_box(&l, "glass", vec3_make(1, 0, 0.9), vec3_make(2, 0.01, 2.1), pane, &err), err);
+    assert_ok(add_named_box(&l, "walls", vec3_make(1, 0, 0), vec3_make(2, 0.2, 0.9), below, &err), err);
+    assert_ok(add_named_box(&l, "walls", vec3_make(1, 0, 2.1), vec3_make(2, 0.2, 2.6), above, &err), err);
+    assert_ok(add_named_box(&l, "glass", vec3_make(1, 0, 0.9), vec3_make(2, 0.01, 2.1), pane, &err), err);
     check_union(&l, (struct wanted){2, 1, 24, 16, 18, 4 * 0.2 * 2.6 - 0.2 * 1.2 + 0.012});
-    assert_int_equal(mesh.body_count, 2); /* glass stays a body of its own */
+    assert_int_equal(mesh.body_count, 2); /* glass remains a separate body */
     assert_int_equal(mesh.bodies[1].faces, 6);
     assert_near(solid_mesh_volume(&mesh, 1), 0.012, 1e-15);
     for (int i = 0; i < mesh.face_count; i++)
@@ -225,14 +225,14 @@ static void a_wall_with_a_window(void **state)
     assert_int_equal(faces_called(&mesh, "wall/x1"), 2); /* the end, and the jamb of the same name */
 }
 
-static void junctions(void **state)
+static void walls_join_in_t_l_and_cross_junctions(void **state)
 {
     (void)state;
     struct solid_list l = {0};
     add_box(&l, "a", 0, 0, 0, 6, 0.2, 2.5); /* T */
     add_box(&l, "b", 3, 0.2, 0, 3.2, 4, 2.5);
     check_union(&l, (struct wanted){1, 0, 16, 10, 10, (1.2 + 0.76) * 2.5});
-    assert_int_equal(faces_called(&mesh, "a/y1"), 2); /* on either side of what stands against it */
+    assert_int_equal(faces_called(&mesh, "a/y1"), 2); /* on either side of the other wall */
     assert_int_equal(mesh.name_count, 9);
     add_box(&l, "a", 0, 0, 0, 6, 0.2, 2.5); /* L, the corner shared */
     add_box(&l, "b", 0, 0, 0, 0.2, 4, 2.5);
@@ -254,7 +254,7 @@ static void coincident_solids_count_once(void **state)
     assert_int_equal(faces_called(&mesh, "a/x0"), 1);
 }
 
-static void a_cavity_has_a_shell_of_its_own(void **state)
+static void a_cavity_is_a_separate_shell(void **state)
 {
     (void)state;
     struct solid_list l = {0};
@@ -273,7 +273,7 @@ static void a_cavity_has_a_shell_of_its_own(void **state)
     solid_report_release(&r);
 }
 
-static void a_sloped_ceiling(void **state)
+static void pieces_under_one_slope_share_its_plane(void **state)
 {
     (void)state;
     /* a gable roof in two pieces that share the slope, on walls that end under it */
@@ -292,7 +292,7 @@ static void a_sloped_ceiling(void **state)
     assert_int_equal(mesh.vertex_count, 8);
     assert_int_equal(mesh.face_count, 6);
     assert_int_equal(faces_called(&mesh, "slope/a"), 1);
-    /* heights 3 and 1.8 over 4 x 4; the normal is whole to 2^-22 */
+    /* heights 3 and 1.8 over 4 x 4; the normal is rounded to 2^-22 */
     assert_near(r.volume, 2.4 * 16, 1e-4);
     for (int i = 0; i < mesh.face_count; i++)
         if (!strcmp(solid_face_name(&mesh, i), "slope/a")) {
@@ -302,7 +302,7 @@ static void a_sloped_ceiling(void **state)
     solid_report_release(&r);
 }
 
-static void angled_walls(void **state)
+static void angled_walls_have_the_right_volume(void **state)
 {
     (void)state;
     static const double angles[] = {45, 30.3, 90.0001, 0.5};
@@ -320,14 +320,14 @@ static void angled_walls(void **state)
             assert_int_equal(mesh.face_count, 14);
             assert_int_equal(mesh.vertex_count, 24);
             assert_near(r.volume, (20 * t + length * t - t * t / sin(a)) * 2.6, 2e-5);
-        } else { /* they leave each other before the ends of the long one, beyond those of the short one */
+        } else { /* they separate before the ends of the long wall, beyond those of the short one */
             assert_true(r.volume < (20 * t + length * t) * 2.6 && r.volume > length * t * 2.6);
         }
         solid_report_release(&r);
     }
 }
 
-static void a_wall_at_45_degrees_through_its_corners(void **state)
+static void a_wall_at_45_degrees_may_pass_through_corners(void **state)
 {
     (void)state;
     /* its sides pass exactly through corners of the boxes it meets */
@@ -341,12 +341,12 @@ static void a_wall_at_45_degrees_through_its_corners(void **state)
     struct solid_report r = {0};
     solid_mesh_release(&mesh);
     unite(&mesh, &r, NULL, &l);
-    assert_int_equal(r.count, 4); /* a, b and c touch in edges alone */
+    assert_int_equal(r.count, 4); /* a, b and c only touch it in edges */
     assert_near(r.volume, 3 + 7, 1e-12);
     solid_report_release(&r);
 }
 
-static void a_hole_that_reaches_the_outer_edge_in_a_point(void **state)
+static void a_hole_may_touch_the_outer_edge_in_a_point(void **state)
 {
     (void)state;
     struct solid_list l = {0};
@@ -362,7 +362,7 @@ static void a_hole_that_reaches_the_outer_edge_in_a_point(void **state)
     assert_int_equal(r.count, 1);
     assert_near(r.volume, 12 - 2, 1e-12);
     solid_report_release(&r);
-    /* a column at a corner of a slab's opening: the slab's face comes by that place twice */
+    /* a column at a corner of a slab's opening: the slab's face passes that point twice */
     add_box(&l, "l", 0, 0, 0, 1, 4, 1);
     add_box(&l, "m", 0, 2, 0, 4, 4, 1);
     add_box(&l, "n", 2, 0, 0, 4, 4, 1);
@@ -376,7 +376,7 @@ static void a_hole_that_reaches_the_outer_edge_in_a_point(void **state)
     solid_report_release(&r);
 }
 
-static void many_solids_that_touch_in_one_edge(void **state)
+static void many_solids_may_touch_in_one_edge(void **state)
 {
     enum { WEDGES = 60 }; /* twice as many faces about the edge */
     struct solid_list list = {0};
@@ -400,7 +400,7 @@ static void many_solids_that_touch_in_one_edge(void **state)
     solid_report_release(&report);
 }
 
-static void slivers_and_small_faces(void **state)
+static void slivers_and_small_faces_are_kept(void **state)
 {
     (void)state;
     struct solid_list l = {0};
@@ -413,7 +413,7 @@ static void slivers_and_small_faces(void **state)
     add_box(&l, "floor", 0, 0, -1, 10, 10, 0);
     add_box(&l, "post", 5, 5, 0, 5.001, 5.001, 1); /* a top of a millionth */
     check_union(&l, (struct wanted){1, 0, 16, 11, 12, 100 + 1e-6});
-    /* turned by four units of a normal, next to nothing: faces that are nearly parallel */
+    /* turned by four units of a normal: faces that are nearly parallel */
     const double tiny = ldexp(1, -20);
     add_turned_wall(&l, "a", -500, 0, 0, 1000, 0.2, 0, 2.6);
     add_turned_wall(&l, "b", -500, 0, tiny * 180 / M_PI, 1000, 0.2, 0, 2.6);
@@ -440,7 +440,7 @@ static void oblique_planes_that_nearly_coincide_are_one(void **state)
     solid_report_release(&r);
 }
 
-static void the_same_bytes_every_time(void **state)
+static void the_file_is_the_same_every_time(void **state)
 {
     (void)state;
     struct err err = ERR_INIT;
@@ -467,7 +467,7 @@ static void the_same_bytes_every_time(void **state)
     parallel_set_threads(0);
 }
 
-static void what_is_no_solid_is_refused(void **state)
+static void invalid_solids_are_refused(void **state)
 {
     (void)state;
     static const struct {
@@ -517,29 +517,29 @@ static void what_is_no_solid_is_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_teardown(one_box, forget),
-        cmocka_unit_test_teardown(no_solids_make_an_empty_mesh, forget),
-        cmocka_unit_test_teardown(boxes_that_abut_become_one, forget),
-        cmocka_unit_test_teardown(sums_that_are_a_rounding_off_are_the_same_plane, forget),
-        cmocka_unit_test_teardown(boxes_that_overlap, forget),
-        cmocka_unit_test_teardown(what_is_inside_vanishes, forget),
-        cmocka_unit_test_teardown(what_touches_in_an_edge_or_a_point_stays_apart, forget),
-        cmocka_unit_test_teardown(two_edges_between_the_same_vertices, forget),
-        cmocka_unit_test_teardown(a_face_partly_shared_gets_a_hole, forget),
-        cmocka_unit_test_teardown(four_walls_are_a_ring, forget),
-        cmocka_unit_test_teardown(a_wall_with_a_window, forget),
-        cmocka_unit_test_teardown(junctions, forget),
-        cmocka_unit_test_teardown(coincident_solids_count_once, forget),
-        cmocka_unit_test_teardown(a_cavity_has_a_shell_of_its_own, forget),
-        cmocka_unit_test_teardown(a_sloped_ceiling, forget),
-        cmocka_unit_test_teardown(angled_walls, forget),
-        cmocka_unit_test_teardown(a_wall_at_45_degrees_through_its_corners, forget),
-        cmocka_unit_test_teardown(a_hole_that_reaches_the_outer_edge_in_a_point, forget),
-        cmocka_unit_test_teardown(many_solids_that_touch_in_one_edge, forget),
-        cmocka_unit_test_teardown(slivers_and_small_faces, forget),
-        cmocka_unit_test_teardown(oblique_planes_that_nearly_coincide_are_one, forget),
-        cmocka_unit_test_setup_teardown(the_same_bytes_every_time, scratch_make, scratch_remove),
-        cmocka_unit_test_teardown(what_is_no_solid_is_refused, forget),
+        cmocka_unit_test_teardown(a_box_is_its_own_union, release_mesh),
+        cmocka_unit_test_teardown(no_solids_make_an_empty_mesh, release_mesh),
+        cmocka_unit_test_teardown(adjacent_boxes_become_one, release_mesh),
+        cmocka_unit_test_teardown(planes_that_differ_by_rounding_are_one, release_mesh),
+        cmocka_unit_test_teardown(overlapping_boxes_are_united, release_mesh),
+        cmocka_unit_test_teardown(solids_inside_others_vanish, release_mesh),
+        cmocka_unit_test_teardown(solids_that_touch_in_an_edge_or_a_point_stay_separate, release_mesh),
+        cmocka_unit_test_teardown(one_of_two_edges_between_the_same_vertices_is_split, release_mesh),
+        cmocka_unit_test_teardown(a_face_partly_shared_gets_a_hole, release_mesh),
+        cmocka_unit_test_teardown(four_walls_are_a_ring, release_mesh),
+        cmocka_unit_test_teardown(glass_in_a_window_is_a_separate_body, release_mesh),
+        cmocka_unit_test_teardown(walls_join_in_t_l_and_cross_junctions, release_mesh),
+        cmocka_unit_test_teardown(coincident_solids_count_once, release_mesh),
+        cmocka_unit_test_teardown(a_cavity_is_a_separate_shell, release_mesh),
+        cmocka_unit_test_teardown(pieces_under_one_slope_share_its_plane, release_mesh),
+        cmocka_unit_test_teardown(angled_walls_have_the_right_volume, release_mesh),
+        cmocka_unit_test_teardown(a_wall_at_45_degrees_may_pass_through_corners, release_mesh),
+        cmocka_unit_test_teardown(a_hole_may_touch_the_outer_edge_in_a_point, release_mesh),
+        cmocka_unit_test_teardown(many_solids_may_touch_in_one_edge, release_mesh),
+        cmocka_unit_test_teardown(slivers_and_small_faces_are_kept, release_mesh),
+        cmocka_unit_test_teardown(oblique_planes_that_nearly_coincide_are_one, release_mesh),
+        cmocka_unit_test_setup_teardown(the_file_is_the_same_every_time, scratch_make, scratch_remove),
+        cmocka_unit_test_teardown(invalid_solids_are_refused, release_mesh),
     };
     const int failed = cmocka_run_group_tests(tests, NULL, NULL);
     solid_mesh_release(&mesh);

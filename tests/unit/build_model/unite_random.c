@@ -1,12 +1,12 @@
-/* unite_random.c - unions of random solids, compared with what can be known otherwise: cells counted on a lattice,
- * inclusion and exclusion of convex solids; and of random edits, with the identity of faces kept.
+/* unite_random.c - unions of random solids against independent results: counted lattice cells, inclusion-exclusion of
+ * convex solids; and of random edits, which keep the identity of faces.
  *
- * REMODEL_EDIT_SEQUENCES=N: how many sequences of edits (200); REMODEL_SEED=N: which ones. */
+ * REMODEL_EDIT_SEQUENCES=N: number of sequences of edits (200); REMODEL_SEED=N: seed of the random numbers. */
 #include "tests/unit/build_model/unions.h"
 
 #include "common/base/rng.h"
 
-enum { SIDE = 6, MOST_BOXES = 12 };
+enum { SIDE = 6, MAX_BOXES = 12 };
 
 struct stream {
     struct rng rng;
@@ -62,7 +62,7 @@ static int count_cells(const struct cells *boxes, int count)
     return n;
 }
 
-static void boxes_on_a_coarse_lattice(void **state)
+static void boxes_on_a_coarse_lattice_have_the_volume_of_their_cells(void **state)
 {
     (void)state;
     for (int i = 0; i < 1000; i++) {
@@ -85,20 +85,20 @@ static void boxes_on_a_coarse_lattice(void **state)
     }
 }
 
-/* The other order of solids gives the same surface. */
-static void the_order_of_solids_changes_names_alone(void **state)
+/* Solids in reverse order give the same surface. */
+static void the_order_of_solids_changes_only_names(void **state)
 {
     (void)state;
     for (int i = 0; i < 100; i++) {
         struct stream s = stream_of("order", i);
-        struct cells boxes[MOST_BOXES];
+        struct cells boxes[MAX_BOXES];
         struct solid_mesh meshes[2] = {{0}};
         struct solid_report reports[2] = {{0}};
-        for (int k = 0; k < MOST_BOXES; k++) boxes[k] = random_cells(&s, SIDE, 3);
+        for (int k = 0; k < MAX_BOXES; k++) boxes[k] = random_cells(&s, SIDE, 3);
         for (int o = 0; o < 2; o++) {
             struct solid_list l = {0};
-            for (int k = 0; k < MOST_BOXES; k++) {
-                const int b = o ? MOST_BOXES - 1 - k : k;
+            for (int k = 0; k < MAX_BOXES; k++) {
+                const int b = o ? MAX_BOXES - 1 - k : k;
                 const struct cells *c = &boxes[b];
                 add_box(&l, "b", c->low[0], c->low[1], c->low[2], c->high[0], c->high[1], c->high[2]);
                 const double a = 25.0 * b;
@@ -121,14 +121,14 @@ static void the_order_of_solids_changes_names_alone(void **state)
 
 /* ------------------------------------------------------------------------------------------------ convex polyhedra */
 
-enum { MOST_PLANES = 14 };
+enum { MAX_PLANES = 14 };
 
 struct polyhedron {
-    struct half_space h[MOST_PLANES];
+    struct half_space h[MAX_PLANES];
     int count;
 };
 
-/* A rotated box, prism or clipped ball, around a place near the middle. */
+/* A rotated box, a prism or a clipped ball, near the middle. */
 static struct polyhedron random_polyhedron(struct stream *s, double scale)
 {
     struct polyhedron p = {.count = 6};
@@ -136,7 +136,7 @@ static struct polyhedron random_polyhedron(struct stream *s, double scale)
     const int kind = draw(s, 3);
     const double a = real(s, 0, M_PI);
     const struct vec3 axes[3] = {{cos(a), sin(a), 0}, {-sin(a), cos(a), 0}, {0, 0, 1}};
-    if (kind == 2) p.count = 8 + draw(s, MOST_PLANES - 7);
+    if (kind == 2) p.count = 8 + draw(s, MAX_PLANES - 7);
     for (int i = 0; i < p.count; i++) {
         struct vec3 n = vec3_scale(axes[i / 2 % 3], i % 2 ? 1 : -1);
         if (kind && i > 3)
@@ -146,10 +146,10 @@ static struct polyhedron random_polyhedron(struct stream *s, double scale)
     return p;
 }
 
-/* Volume of what several have in common: one convex solid. */
+/* Volume of the intersection of several polyhedra, one convex solid. */
 static double common_volume(const struct polyhedron *p, int count, unsigned members)
 {
-    struct half_space h[4 * MOST_PLANES];
+    struct half_space h[4 * MAX_PLANES];
     struct solid_list l = {0};
     struct solid_mesh mesh = {0};
     struct err err = ERR_INIT;
@@ -166,7 +166,7 @@ static double common_volume(const struct polyhedron *p, int count, unsigned memb
     return v;
 }
 
-static void convex_polyhedra_by_inclusion_and_exclusion(void **state)
+static void polyhedra_agree_with_inclusion_and_exclusion(void **state)
 {
     (void)state;
     for (int i = 0; i < 300; i++) {
@@ -177,21 +177,21 @@ static void convex_polyhedra_by_inclusion_and_exclusion(void **state)
         struct solid_report r = {0};
         struct err err = ERR_INIT;
         const int count = 2 + draw(&s, 3);
-        const double scale = i % 3 ? 1 : 100; /* the larger the numbers, the nearer to their bounds */
+        const double scale = i % 3 ? 1 : 100; /* large numbers come near their bounds */
         double volume = 0;
         for (int k = 0; k < count; k++) {
             p[k] = random_polyhedron(&s, scale);
-            /* some share a plane with the one before, facing it or alike */
+            /* some share a plane with the one before, with the same or the opposite normal */
             if (k && draw(&s, 2)) {
                 const struct half_space *from = &p[k - 1].h[draw(&s, p[k - 1].count)];
-                struct half_space *to = &p[k].h[p[k].count < MOST_PLANES ? p[k].count++ : 0];
+                struct half_space *to = &p[k].h[p[k].count < MAX_PLANES ? p[k].count++ : 0];
                 *to = *from;
                 if (draw(&s, 2)) {
                     to->normal = vec3_scale(from->normal, -1);
                     to->offset = -from->offset;
                 }
             }
-            if (common_volume(&p[k], 1, 1) == 0) p[k] = p[0]; /* cut away: the first one again */
+            if (common_volume(&p[k], 1, 1) == 0) p[k] = p[0]; /* nothing is left: take the first one again */
             assert_ok(solid_list_add(&l, "walls", p[k].h, p[k].count, &err), err);
         }
         for (unsigned m = 1; m < 1u << count; m++)
@@ -203,9 +203,8 @@ static void convex_polyhedra_by_inclusion_and_exclusion(void **state)
     }
 }
 
-/* Prisms over polygons whose corners lie on a lattice, so that oblique planes, too, meet in points, edges and
- * planes. */
-static void prisms_on_a_lattice(void **state)
+/* Prisms over polygons with corners on a lattice, so that oblique planes also meet in points, edges and planes. */
+static void prisms_on_a_lattice_have_the_volume_of_their_slices(void **state)
 {
     (void)state;
     for (int i = 0; i < 300; i++) {
@@ -235,7 +234,7 @@ static void prisms_on_a_lattice(void **state)
         assert_near(r.volume, r2.volume, 1e-9);
         assert_int_equal(mesh.vertex_count, other.vertex_count);
         assert_int_equal(mesh.face_count, other.face_count);
-        /* each layer by itself, its area by slices at places off the lattice */
+        /* each layer separately, its area from slices off the lattice */
         double volume = 0;
         enum { SLICES = 2000 };
         for (int layer = 0; layer < 4; layer++)
@@ -281,16 +280,16 @@ static void prisms_on_a_lattice(void **state)
 
 struct piece {
     struct cells cells;
-    int name; /* 0: not there */
+    int name; /* 0: absent */
 };
 
 static void unite_pieces(struct solid_mesh *mesh, const struct piece *pieces)
 {
     struct solid_list l = {0};
     struct solid_report r = {0};
-    struct cells boxes[MOST_BOXES];
+    struct cells boxes[MAX_BOXES];
     int count = 0;
-    for (int i = 0; i < MOST_BOXES; i++) {
+    for (int i = 0; i < MAX_BOXES; i++) {
         char name[16];
         if (!pieces[i].name) continue;
         const struct cells *c = &pieces[i].cells;
@@ -304,7 +303,7 @@ static void unite_pieces(struct solid_mesh *mesh, const struct piece *pieces)
     solid_report_release(&r);
 }
 
-/* Names of both meshes have the same id; those of the edit alone have ids that the base never gave. */
+/* Names in both meshes have the same id; names in the edited mesh alone have ids that the base never used. */
 static void assert_identity(const struct solid_mesh *base, const struct solid_mesh *edited)
 {
     const int last = base->name_count ? base->names[base->name_count - 1].id : 0;
@@ -320,7 +319,7 @@ static void assert_identity(const struct solid_mesh *base, const struct solid_me
 
 static void edit(struct piece *pieces, int *names, struct stream *s)
 {
-    const int i = draw(s, MOST_BOXES);
+    const int i = draw(s, MAX_BOXES);
     struct piece *p = &pieces[i];
     struct cells *c = &p->cells;
     switch (p->name ? 1 + draw(s, 4) : 0) {
@@ -346,7 +345,7 @@ static void edit(struct piece *pieces, int *names, struct stream *s)
     }
 }
 
-static void any_sequence_of_edits_keeps_the_solid_whole(void **state)
+static void any_sequence_of_edits_gives_a_closed_solid(void **state)
 {
     (void)state;
     const char *text = getenv("REMODEL_EDIT_SEQUENCES");
@@ -354,7 +353,7 @@ static void any_sequence_of_edits_keeps_the_solid_whole(void **state)
     long unions = 0;
     for (int i = 0; i < sequences; i++) {
         struct stream s = stream_of("edits", i);
-        struct piece pieces[MOST_BOXES] = {{{{0}, {0}}, 0}};
+        struct piece pieces[MAX_BOXES] = {{{{0}, {0}}, 0}};
         struct solid_mesh base = {0};
         struct err err = ERR_INIT;
         int names = 0;
@@ -378,11 +377,11 @@ static void any_sequence_of_edits_keeps_the_solid_whole(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(boxes_on_a_coarse_lattice),
-        cmocka_unit_test(the_order_of_solids_changes_names_alone),
-        cmocka_unit_test(convex_polyhedra_by_inclusion_and_exclusion),
-        cmocka_unit_test(prisms_on_a_lattice),
-        cmocka_unit_test(any_sequence_of_edits_keeps_the_solid_whole),
+        cmocka_unit_test(boxes_on_a_coarse_lattice_have_the_volume_of_their_cells),
+        cmocka_unit_test(the_order_of_solids_changes_only_names),
+        cmocka_unit_test(polyhedra_agree_with_inclusion_and_exclusion),
+        cmocka_unit_test(prisms_on_a_lattice_have_the_volume_of_their_slices),
+        cmocka_unit_test(any_sequence_of_edits_gives_a_closed_solid),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-/* kmeans1d.c - exact clusters, against all ways to cut. */
+/* kmeans1d.c - exact clusters, against a brute-force search. */
 #include "stages/find_axes/kmeans1d.h"
 
 #include <math.h>
@@ -9,14 +9,24 @@
 #include "common/base/sort.h"
 #include "tests/unit/scratch.h"
 
-/* The least cost of k ranges of the first n numbers, by trying every cut. */
+/* The sum of squared distances to the mean. */
+static double range_cost(const double *values, size_t count)
+{
+    long double mean = 0, c = 0;
+    for (size_t i = 0; i < count; i++) mean += values[i];
+    mean /= (long double)(count ? count : 1);
+    for (size_t i = 0; i < count; i++) c += (values[i] - mean) * (values[i] - mean);
+    return (double)c;
+}
+
+/* The min cost of k ranges of the first n numbers, by trying every cut. */
 static double brute_force(const double *x, size_t n, int k)
 {
-    if (k == 1) return kmeans1d_cost(x, n);
-    double least = INFINITY;
+    if (k == 1) return range_cost(x, n);
+    double min_cost = INFINITY;
     for (size_t m = (size_t)k - 1; m < n; m++)
-        least = fmin(least, brute_force(x, m, k - 1) + kmeans1d_cost(x + m, n - m));
-    return least;
+        min_cost = fmin(min_cost, brute_force(x, m, k - 1) + range_cost(x + m, n - m));
+    return min_cost;
 }
 
 static double cost_of(const double *x, const size_t *begin, int k)
@@ -24,12 +34,12 @@ static double cost_of(const double *x, const size_t *begin, int k)
     double sum = 0;
     for (int j = 0; j < k; j++) {
         assert_true(begin[j] < begin[j + 1]);
-        sum += kmeans1d_cost(x + begin[j], begin[j + 1] - begin[j]);
+        sum += range_cost(x + begin[j], begin[j + 1] - begin[j]);
     }
     return sum;
 }
 
-static void nothing_is_better(void **state)
+static void the_cost_is_minimal(void **state)
 {
     (void)state;
     const struct rng rng = rng_make(7, "test", "kmeans1d");
@@ -50,7 +60,7 @@ static void nothing_is_better(void **state)
     }
 }
 
-static void clusters_that_stand_apart_are_found(void **state)
+static void separate_clusters_are_found(void **state)
 {
     (void)state;
     static const double x[] = {-1, -0.9, -1.0 + 1e-9, 4, 4.1, 4.2, 4.3, 9};
@@ -64,7 +74,7 @@ static void clusters_that_stand_apart_are_found(void **state)
     assert_int_equal(begin[2], 7);
 }
 
-static void as_many_clusters_as_numbers(void **state)
+static void there_may_be_as_many_clusters_as_numbers(void **state)
 {
     (void)state;
     const double x[4] = {2, 2, 2, 2};
@@ -76,8 +86,8 @@ static void as_many_clusters_as_numbers(void **state)
     }
 }
 
-/* Many numbers far from zero, three narrow clusters: nothing cancels, and it takes no minute. */
-static void far_from_zero_it_stays_exact(void **state)
+/* Many numbers far from zero in three narrow clusters: there is no cancellation, and it is fast. */
+static void numbers_far_from_zero_are_clustered_exactly(void **state)
 {
     (void)state;
     enum { N = 300000 };
@@ -97,10 +107,10 @@ static void far_from_zero_it_stays_exact(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(nothing_is_better),
-        cmocka_unit_test(clusters_that_stand_apart_are_found),
-        cmocka_unit_test(as_many_clusters_as_numbers),
-        cmocka_unit_test(far_from_zero_it_stays_exact),
+        cmocka_unit_test(the_cost_is_minimal),
+        cmocka_unit_test(separate_clusters_are_found),
+        cmocka_unit_test(there_may_be_as_many_clusters_as_numbers),
+        cmocka_unit_test(numbers_far_from_zero_are_clustered_exactly),
     };
     return cmocka_run_group_tests_name("kmeans1d", tests, NULL, NULL);
 }

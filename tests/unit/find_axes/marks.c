@@ -1,8 +1,8 @@
-/* marks.c - what a user marks: files, places in the room, corrections, scale. */
+/* marks.c - the user's marks: files, positions in the room, corrections, scale. */
 #include "stages/find_axes/marks.h"
 
 #include "stages/find_axes/correct.h"
-#include "tests/unit/find_axes/made_room.h"
+#include "tests/unit/find_axes/synthetic_room.h"
 #include "tests/unit/scratch.h"
 
 static const struct axes_params PARAMS = AXES_PARAMS_DEFAULT;
@@ -18,7 +18,7 @@ static void assert_refused(enum mark_file file, const char *text, const char *wo
     assert_null(list.marks);
 }
 
-static void wrong_files_are_told_by_line(void **state)
+static void errors_in_files_name_the_line(void **state)
 {
     (void)state;
     assert_refused(MARKS_SCALE, "mark p a 1 2\nmark p b 1 2\nmark q a 1 2 floor\nmeter p q 1\n",
@@ -27,7 +27,7 @@ static void wrong_files_are_told_by_line(void **state)
     assert_refused(MARKS_SCALE, "mark p a 1\n", ":1:");
     assert_refused(MARKS_SCALE, "mark p a 1 2 wall\n", "found \"wall\", wanted \"floor\", \"surface\"");
     assert_refused(MARKS_SCALE, "# nothing\n", "no length is given");
-    assert_refused(MARKS_SCALE, "mark p a 1 2 floor\nlength p q 2\n", ":2: q is named, but nothing");
+    assert_refused(MARKS_SCALE, "mark p a 1 2 floor\nlength p q 2\n", ":2: q is named, but there is no mark");
     assert_refused(MARKS_SCALE, "mark p a 1 2 floor\nlength p p 2\n", ":2: found p twice");
     assert_refused(MARKS_SCALE, "mark p a 1 2 floor\nmark q a 1 2 floor\nlength p q 0\n",
                    ":3: found \"0\", wanted a length above 0");
@@ -50,7 +50,7 @@ static void read_marks(struct mark_list *list, const char *text, enum mark_file 
     assert_ok(mark_list_read(list, scratch_write("marks.txt", text), file, &err), err);
 }
 
-static void an_empty_correction_is_none(void **state)
+static void an_empty_file_of_corrections_is_valid(void **state)
 {
     (void)state;
     struct mark_list list;
@@ -60,33 +60,33 @@ static void an_empty_correction_is_none(void **state)
     mark_list_release(&list);
 }
 
-/* A line for a room's point in a view. */
-static void put(char *text, size_t size, const struct made_room *r, const char *what, int view, struct vec3 p,
+/* Appends a line for a room's point in a view. */
+static void put(char *text, size_t size, const struct synthetic_room *r, const char *what, int view, struct vec3 p,
                 const char *on)
 {
     double u, v;
     const size_t used = strlen(text);
-    made_pixel(r, view, p, &u, &v);
+    room_pixel(r, view, p, &u, &v);
     assert_true(u > 0 && v > 0 && u < 800 && v < 600);
     snprintf(text + used, size - used, "%s %s %.17g %.17g %s\n", what, r->views[view].name, u, v, on);
 }
 
-static struct made turned_room(void)
+static struct room_spec turned_room(void)
 {
     const struct vec3 w = vec3_scale(vec3_normalize(vec3_make(1, 2, -1)), 0.7);
-    return (struct made){
-        .ceiling = 1, .world_from_room = turned_by(MADE_IDENTITY, w), .scale = 0.37, .origin = vec3_make(1, 2, 3)};
+    return (struct room_spec){
+        .ceiling = 1, .world_from_room = turned_by(ROOM_IDENTITY, w), .scale = 0.37, .origin = vec3_make(1, 2, 3)};
 }
 
-static struct mark_scene make_turned_room(struct made_room *r)
+static struct mark_scene make_turned_room(struct synthetic_room *r)
 {
-    const struct made m = turned_room();
-    make_room(r, &m);
+    const struct room_spec m = turned_room();
+    synthetic_room_make(r, &m);
     const struct vec3 up = mat3_apply(m.world_from_room, vec3_make(0, 0, 1));
     return (struct mark_scene){&r->set, &r->list, &r->cloud, up, vec3_dot(up, m.origin)};
 }
 
-static struct vec3 place_of(const char *name, const struct mark_list *list, const struct mark_scene *scene)
+static struct vec3 position_of(const char *name, const struct mark_list *list, const struct mark_scene *scene)
 {
     struct vec3 at;
     struct err err = ERR_INIT;
@@ -94,7 +94,7 @@ static struct vec3 place_of(const char *name, const struct mark_list *list, cons
     return at;
 }
 
-/* What these marks say of p cannot be. */
+/* These marks give no position of p. */
 static void assert_nowhere(const char *text, const struct mark_scene *scene, const char *words)
 {
     struct mark_list list;
@@ -106,10 +106,10 @@ static void assert_nowhere(const char *text, const struct mark_scene *scene, con
     mark_list_release(&list);
 }
 
-static void marks_are_placed(void **state)
+static void marks_have_the_right_positions(void **state)
 {
     (void)state;
-    struct made_room r;
+    struct synthetic_room r;
     const struct mark_scene scene = make_turned_room(&r);
     struct mark_list list;
     char text[2048] = "";
@@ -120,47 +120,46 @@ static void marks_are_placed(void **state)
     put(text, sizeof text, &r, "mark s", 0, s, "surface");
     strcat(text, "length p q 1\n");
     read_marks(&list, text, MARKS_SCALE);
-    assert_true(vec3_length(vec3_sub(place_of("p", &list, &scene), made_world(&r.made, p))) < 1e-9);
-    assert_true(vec3_length(vec3_sub(place_of("q", &list, &scene), made_world(&r.made, q))) < 1e-9);
-    /* of points 3 cm apart */
-    assert_true(vec3_length(vec3_sub(place_of("s", &list, &scene), made_world(&r.made, s))) < 0.02 * r.made.scale);
+    assert_true(vec3_length(vec3_sub(position_of("p", &list, &scene), room_world(&r.spec, p))) < 1e-9);
+    assert_true(vec3_length(vec3_sub(position_of("q", &list, &scene), room_world(&r.spec, q))) < 1e-9);
+    /* the points are 3 cm apart */
+    assert_true(vec3_length(vec3_sub(position_of("s", &list, &scene), room_world(&r.spec, s))) < 0.02 * r.spec.scale);
     mark_list_release(&list);
-    made_release(&r);
+    synthetic_room_release(&r);
 }
 
-static void marks_that_place_nothing_are_told(void **state)
+static void marks_without_a_position_are_refused(void **state)
 {
     (void)state;
     static const struct {
         const char *text, *words;
     } cases[] = {
         {"mark p a 1 2\nmark p e 1 2\n", ":2: found \"e\", wanted a photo's id or a view's name"},
-        {"mark p a 1 2\nmark p b 1000 2\n",
-         ":2: the pixel 1000 2 lies outside of what b shows: the photo has 800 x 600"},
-        {"mark p a 400 20 floor\n", ":1: the floor is not seen at the pixel 400 20 of a"},
-        {"mark p a 400 300\nmark p b 30 300\n", "p part before"},
+        {"mark p a 1 2\nmark p b 1000 2\n", ":2: the pixel 1000 2 is outside the picture of b, which has 800 x 600"},
+        {"mark p a 400 20 floor\n", ":1: the floor is not visible at the pixel 400 20 of a"},
+        {"mark p a 400 300\nmark p b 30 300\n", "the rays of p diverge in front of"},
     };
-    struct made_room r;
+    struct synthetic_room r;
     struct mark_scene scene = make_turned_room(&r);
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) assert_nowhere(cases[i].text, &scene, cases[i].words);
-    /* no surface: an empty cloud; nearly the same place: two views side by side */
+    /* no surface: an empty cloud; parallel rays: two views at the same position */
     const struct point_cloud none = {0};
     scene.cloud = &none;
-    assert_nowhere("mark p a 400 300 surface\n", &scene, "no surface is known at the pixel 400 300 of a");
+    assert_nowhere("mark p a 400 300 surface\n", &scene, "there are no points at the pixel 400 300 of a");
     r.views[1].cam_from_world = r.views[0].cam_from_world;
     r.views[1].translation = r.views[0].translation;
     r.views[1].center = r.views[0].center;
     scene.cloud = &r.cloud;
-    assert_nowhere("mark p a 400 300\nmark p b 401 300\n", &scene, "p is seen from nearly the same side");
-    made_release(&r);
+    assert_nowhere("mark p a 400 300\nmark p b 401 300\n", &scene, "the rays of p are nearly parallel");
+    synthetic_room_release(&r);
 }
 
-/* Standard deviation of the height of corner c when marks miss by a pixel, by trying: two seen from much the same side. */
-static double height_by_chance(const struct made_room *r, struct mark_list *fix)
+/* Standard deviation of the height of corner c for random errors of a pixel in its two marks. */
+static double random_height_error(const struct synthetic_room *r, struct mark_list *fix)
 {
     enum { TRIES = 2000 };
     const struct rng rng = rng_make(1, "test", "clicks");
-    const struct vec3 up = mat3_apply(r->made.world_from_room, vec3_make(0, 0, 1));
+    const struct vec3 up = mat3_apply(r->spec.world_from_room, vec3_make(0, 0, 1));
     const struct mark_scene scene = {.set = &r->set, .lenses = &r->list};
     double sum = 0, square = 0;
     for (uint64_t i = 0; i < TRIES; i++) {
@@ -168,11 +167,11 @@ static double height_by_chance(const struct made_room *r, struct mark_list *fix)
         struct vec3 at;
         const struct mark before[2] = {fix->marks[0], fix->marks[1]};
         for (uint64_t k = 0; k < 2; k++) {
-            fix->marks[k].x += made_gauss(&rng, i, 4 * k);
-            fix->marks[k].y += made_gauss(&rng, i, 4 * k + 2);
+            fix->marks[k].x += room_gauss(&rng, i, 4 * k);
+            fix->marks[k].y += room_gauss(&rng, i, 4 * k + 2);
         }
         assert_ok(mark_locate(&at, MARK_CORNER, "c", fix, &scene, &err), err);
-        const double height = vec3_dot(vec3_sub(at, r->made.origin), up);
+        const double height = vec3_dot(vec3_sub(at, r->spec.origin), up);
         sum += height / TRIES;
         square += height * height / TRIES;
         fix->marks[0] = before[0];
@@ -181,12 +180,12 @@ static double height_by_chance(const struct made_room *r, struct mark_list *fix)
     return sqrt(square - sum * sum);
 }
 
-/* Axes that are off by 3 degrees about all three axes, and a floor off by 5 cm, are brought back by a corner with its
- * three edges in one view, and the corner in a second view. */
+/* Axes that are off by 1 to 2 degrees about all three axes, and a wrong floor, are corrected by a corner with its three
+ * edges in one view, and the corner in a second view. */
 static void corners_and_edges_correct_axes_and_floor(void **state)
 {
     (void)state;
-    struct made_room r;
+    struct synthetic_room r;
     const struct mark_scene scene = make_turned_room(&r);
     struct mark_list fix;
     struct err err = ERR_INIT;
@@ -198,44 +197,44 @@ static void corners_and_edges_correct_axes_and_floor(void **state)
     put(text, sizeof text, &r, "edge c", 0, vec3_make(5, 3, 0), "");
     put(text, sizeof text, &r, "edge c", 0, vec3_make(5, 4, 1.5), "");
     read_marks(&fix, text, MARKS_FIX);
-    const struct mat3 room_from_world = mat3_transpose(r.made.world_from_room);
+    const struct mat3 room_from_world = mat3_transpose(r.spec.world_from_room);
     struct mat3 axes = turned_by(room_from_world, vec3_make(0.03, -0.02, 0.04));
     struct vec3 errors = {1, 1, 1};
     struct correction c;
     assert_ok(correct_axes(&axes, &errors, &c, &fix, &scene, 1, &err), err);
-    const struct mat3 left = mat3_multiply(axes, r.made.world_from_room);
+    const struct mat3 left = mat3_multiply(axes, r.spec.world_from_room);
     for (int i = 0; i < 9; i++) assert_true(fabs(left.m[i / 3][i % 3] - (i % 4 == 0)) < 1e-4);
     assert_true(fabs(c.turn - sqrt(0.03 * 0.03 + 0.02 * 0.02 + 0.04 * 0.04)) < 1e-3);
     assert_true(errors.x < 0.02 && errors.y < 0.02 && errors.z < 0.02 && errors.x > 1e-4);
 
-    /* the whole: points 5 cm too high look like the floor, which these marks cannot tell; 25 cm they can */
+    /* find_room(): points 5 cm too high agree with these marks within their errors, points 25 cm too high do not */
     for (int k = 0; k < 2; k++) {
         const double up = k ? 0.25 : 0.05, moved = k ? 0.2 : 0.05;
         for (size_t i = 0; i < r.cloud.count; i++) {
             struct vec3 *p = &r.cloud.points[i].position;
-            *p = vec3_add(*p, mat3_apply(r.made.world_from_room, vec3_make(0, 0, moved * r.made.scale)));
+            *p = vec3_add(*p, mat3_apply(r.spec.world_from_room, vec3_make(0, 0, moved * r.spec.scale)));
         }
-        struct room_inputs in = made_inputs(&r);
+        struct room_inputs in = room_inputs(&r);
         struct room room;
         in.fix = &fix;
         assert_ok(find_room(&room, &in, &PARAMS, &err), err);
-        assert_true(room.fix.edges == 3 && room.fix.turn == 0); /* the axes are right as they are */
+        assert_true(room.fix.edges == 3 && room.fix.turn == 0); /* the axes are right */
         assert_true(room.corner_height < 0);
         assert_true(room.floor_marked == (k == 1));
-        assert_true(fabs(made_floor(&r, &room.axes) - (k ? 0 : up)) < 1e-6);
-        assert_true(fabs(room.axes.ceiling - (k ? 2.6 + up : 2.6) * r.made.scale) < 1e-5);
-        if (k) assert_float_equal(room.axes.floor_error / height_by_chance(&r, &fix), 1, 0.15);
+        assert_true(fabs(room_floor(&r, &room.axes) - (k ? 0 : up)) < 1e-6);
+        assert_true(fabs(room.axes.ceiling - (k ? 2.6 + up : 2.6) * r.spec.scale) < 1e-5);
+        if (k) assert_float_equal(room.axes.floor_error / random_height_error(&r, &fix), 1, 0.15);
     }
     mark_list_release(&fix);
-    made_release(&r);
+    synthetic_room_release(&r);
 }
 
-/* An edge leaves two turns open, and a mark that is off by no more than marks are corrects nothing; one that is off by
- * more turns the axes about what it tells alone. */
-static void axes_turn_only_as_far_as_marks_tell(void **state)
+/* An edge leaves two rotations undetermined. A mark that is off by less than its error corrects nothing; otherwise the
+ * axes are rotated only about the determined axis. */
+static void axes_are_rotated_only_where_marks_determine_them(void **state)
 {
     (void)state;
-    struct made_room r;
+    struct synthetic_room r;
     const struct mark_scene scene = make_turned_room(&r);
     struct mark_list fix;
     struct err err = ERR_INIT;
@@ -243,38 +242,38 @@ static void axes_turn_only_as_far_as_marks_tell(void **state)
     put(text, sizeof text, &r, "corner c", 0, vec3_make(5, 4, 0), "");
     put(text, sizeof text, &r, "edge c", 0, vec3_make(5, 3, 0), "");
     read_marks(&fix, text, MARKS_FIX);
-    const struct mat3 right = mat3_transpose(r.made.world_from_room);
+    const struct mat3 right = mat3_transpose(r.spec.world_from_room);
     struct mat3 axes = right;
     struct vec3 errors = {0.001, 0.001, 0.001};
     struct correction c;
     assert_ok(correct_axes(&axes, &errors, &c, &fix, &scene, 1, &err), err);
     assert_true(c.turn == 0 && c.edges == 1); /* nothing to correct */
     assert_true(errors.x == 0.001 && errors.y == 0.001 && errors.z == 0.001);
-    fix.marks[1].y += 1.5; /* of one px, twice */
+    fix.marks[1].y += 1.5; /* px; the error of a mark is 1 px */
     assert_ok(correct_axes(&axes, &errors, &c, &fix, &scene, 1, &err), err);
     assert_true(c.turn == 0);
     fix.marks[1].y += 30;
     assert_ok(correct_axes(&axes, &errors, &c, &fix, &scene, 1, &err), err);
     assert_true(c.turn > 0.02 && c.turn < 0.5);
-    const struct mat3 off = mat3_multiply(axes, mat3_transpose(right)); /* about one axis alone, that of the turn */
+    const struct mat3 off = mat3_multiply(axes, mat3_transpose(right)); /* about one axis alone */
     assert_float_equal(acos((off.m[0][0] + off.m[1][1] + off.m[2][2] - 1) / 2), c.turn, 1e-3);
     mark_list_release(&fix);
-    made_release(&r);
+    synthetic_room_release(&r);
 }
 
-static void edges_that_follow_no_axis_are_refused(void **state)
+static void edges_along_no_axis_are_refused(void **state)
 {
     (void)state;
-    struct made_room r;
+    struct synthetic_room r;
     const struct mark_scene scene = make_turned_room(&r);
     struct mark_list fix;
     struct err err = ERR_INIT;
     char text[1024] = "";
-    struct mat3 axes = mat3_transpose(r.made.world_from_room);
+    struct mat3 axes = mat3_transpose(r.spec.world_from_room);
     struct vec3 errors = {0};
     struct correction c;
     int refused = 0;
-    for (int i = 0; i < 36; i++) { /* from one place in all directions of the picture */
+    for (int i = 0; i < 36; i++) { /* from one pixel in all directions */
         snprintf(text, sizeof text, "corner c a 500 450\nedge c a %.9g %.9g\n", 500 + 99 * cos(M_PI * i / 18),
                  450 + 99 * sin(M_PI * i / 18));
         read_marks(&fix, text, MARKS_FIX);
@@ -293,13 +292,13 @@ static void edges_that_follow_no_axis_are_refused(void **state)
     assert_int_equal(correct_axes(&axes, &errors, &c, &fix, &scene, 1, &err), ST_DATA);
     assert_err(err, ST_DATA, "marks.txt:2: the point on the edge is only 1.41 px from its corner");
     mark_list_release(&fix);
-    made_release(&r);
+    synthetic_room_release(&r);
 }
 
-static void lengths_give_metres_and_marks_a_thickness(void **state)
+static void lengths_give_the_scale_and_marks_the_thickness(void **state)
 {
     (void)state;
-    struct made_room r;
+    struct synthetic_room r;
     make_turned_room(&r);
     struct mark_list scale, fix;
     struct err err = ERR_INIT;
@@ -315,29 +314,29 @@ static void lengths_give_metres_and_marks_a_thickness(void **state)
     put(walls, sizeof walls, &r, "mark two", 0, vec3_make(4.41, 2.65, 0), "floor");
     strcat(walls, "thickness one two\n");
     read_marks(&fix, walls, MARKS_FIX);
-    struct room_inputs in = made_inputs(&r);
+    struct room_inputs in = room_inputs(&r);
     struct room room;
     in.scale = &scale;
     in.fix = &fix;
     assert_ok(find_room(&room, &in, &PARAMS, &err), err);
     assert_true(room.axes.metric);
-    /* by least squares: the second one is 0.5 % too long */
+    /* by least squares: the second length is 0.5 % too long */
     const double wanted = (1 + sqrt(3.86) * 1.9748417658131499) / (1 + 3.86);
-    assert_true(fabs(room.axes.scale * r.made.scale - wanted) < 1e-5);
+    assert_true(fabs(room.axes.scale * r.spec.scale - wanted) < 1e-5);
     assert_true(room.axes.scale_error > 0.001 && room.axes.scale_error < 0.05);
     assert_true(fabs(room.axes.thickness - 0.15 * wanted) < 1e-5);
     assert_true(fabs(room.axes.ceiling - 2.6 * wanted) < 1e-4);
     mark_list_release(&fix);
     mark_list_release(&scale);
-    made_release(&r);
+    synthetic_room_release(&r);
 }
 
-/* A pixel's error moves what depends on it, and the marks are as they were. */
+/* A value that depends on a mark's pixel, and does not exist right of the photo. */
 static bool sum_of_marks(void *ctx, double *value)
 {
     const struct mark_list *list = ctx;
     *value = 3 * list->marks[0].x + 4 * list->marks[0].y;
-    return list->marks[0].x < 10.5; /* off the photo to the right */
+    return list->marks[0].x < 10.5; /* right of the photo */
 }
 
 static void errors_of_marks_add_up(void **state)
@@ -353,14 +352,14 @@ static void errors_of_marks_add_up(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(wrong_files_are_told_by_line),
-        cmocka_unit_test(an_empty_correction_is_none),
-        cmocka_unit_test(marks_are_placed),
-        cmocka_unit_test(marks_that_place_nothing_are_told),
+        cmocka_unit_test(errors_in_files_name_the_line),
+        cmocka_unit_test(an_empty_file_of_corrections_is_valid),
+        cmocka_unit_test(marks_have_the_right_positions),
+        cmocka_unit_test(marks_without_a_position_are_refused),
         cmocka_unit_test(corners_and_edges_correct_axes_and_floor),
-        cmocka_unit_test(axes_turn_only_as_far_as_marks_tell),
-        cmocka_unit_test(edges_that_follow_no_axis_are_refused),
-        cmocka_unit_test(lengths_give_metres_and_marks_a_thickness),
+        cmocka_unit_test(axes_are_rotated_only_where_marks_determine_them),
+        cmocka_unit_test(edges_along_no_axis_are_refused),
+        cmocka_unit_test(lengths_give_the_scale_and_marks_the_thickness),
         cmocka_unit_test(errors_of_marks_add_up),
     };
     return cmocka_run_group_tests_name("marks", tests, scratch_make, scratch_remove);

@@ -1,4 +1,4 @@
-/* suggest.c - plans suggested from made points of two rooms with furniture and a doorway, whose measures are known. */
+/* suggest.c - plans suggested from synthetic points of two rooms with furniture and a doorway, of known dimensions. */
 #include "stages/suggest_model/suggest.h"
 
 #include "tests/unit/scratch.h"
@@ -10,7 +10,7 @@ enum { POINTS = 600000, VIEWS = 24 };
 static const double X[4] = {0, 5, 5.2, 8.2}, DEPTH = 4, HIGH = 2.6, DOOR[2] = {1.5, 2.4}, DOOR_TOP = 2.1;
 static const double WINDOW[4] = {1.5, 0.9, 3.2, 2.2};
 
-struct made {
+struct synthetic {
     struct point_cloud cloud;
     struct view views[VIEWS];
 };
@@ -20,7 +20,7 @@ static double gauss(const struct rng *rng, uint64_t i, uint64_t k)
     return sqrt(-2 * log(1 - rng_uniform(rng, i, k))) * cos(2 * M_PI * rng_uniform(rng, i, k + 1));
 }
 
-/* A point of a surface by its number, false where there is a hole. */
+/* The i-th point of the scene's surfaces; false: it is in a hole. */
 static bool surface_point(struct vec3 *p, struct vec3 *n, const struct rng *rng, uint64_t i, bool doorway)
 {
     const double u = rng_uniform(rng, i, 0), v = rng_uniform(rng, i, 1);
@@ -47,7 +47,7 @@ static bool surface_point(struct vec3 *p, struct vec3 *n, const struct rng *rng,
     case 5:
         *p = vec3_make(high, u * DEPTH, z), *n = vec3_make(-1, 0, 0);
         return room || !door;
-    case 6: /* a cupboard before the west wall, a table */
+    case 6: /* a cupboard in front of the west wall, a table */
         *p = room ? vec3_make(6 + u, 1 + v, 0.75) : vec3_make(0.45, 0.5 + 1.5 * u, 1.9 * v);
         *n = room ? vec3_make(0, 0, 1) : vec3_make(1, 0, 0);
         return true;
@@ -57,7 +57,7 @@ static bool surface_point(struct vec3 *p, struct vec3 *n, const struct rng *rng,
     }
 }
 
-/* The k-th of four views around. */
+/* The k-th of four views in all directions. */
 static void look_around(struct view *view, struct vec3 at, int k)
 {
     const double a = k * M_PI / 2, c = cos(a), s = sin(a);
@@ -67,10 +67,10 @@ static void look_around(struct view *view, struct vec3 at, int k)
     view->translation = vec3_scale(mat3_apply(view->cam_from_world, at), -1);
 }
 
-static void make(struct made *m, bool doorway, uint64_t seed)
+static void make(struct synthetic *m, bool doorway, uint64_t seed)
 {
     const struct rng rng = rng_make(seed, "suggest", "made");
-    *m = (struct made){.cloud = {.points = calloc(POINTS, sizeof *m->cloud.points)}};
+    *m = (struct synthetic){.cloud = {.points = calloc(POINTS, sizeof *m->cloud.points)}};
     assert_non_null(m->cloud.points);
     for (uint64_t i = 0; i < POINTS; i++) {
         struct vec3 p, n;
@@ -83,7 +83,7 @@ static void make(struct made *m, bool doorway, uint64_t seed)
         m->cloud.points[m->cloud.count++] = (struct cloud_point){
             .position = p, .normal = {(float)n.x, (float)n.y, (float)n.z}, .views = 6, .confidence = 1};
     }
-    for (int v = 0; v < VIEWS; v++) { /* six places, in each four views around */
+    for (int v = 0; v < VIEWS; v++) { /* six positions with four views each */
         static const double PLACES[6][2] = {{1.2, 1}, {2.5, 2}, {4, 3}, {4, 1.2}, {6, 2}, {7.4, 3}};
         look_around(&m->views[v], vec3_make(PLACES[v / 4][0], PLACES[v / 4][1], 1.4), v % 4);
     }
@@ -92,14 +92,14 @@ static void make(struct made *m, bool doorway, uint64_t seed)
 static void suggest_made(struct suggestion *s, bool doorway, uint64_t seed, double ceiling)
 {
     const struct suggest_params params = SUGGEST_PARAMS_DEFAULT;
-    struct made m;
+    struct synthetic m;
     struct err err = ERR_INIT;
     make(&m, doorway, seed);
     assert_ok(suggest_plan(s, &m.cloud, m.views, VIEWS, ceiling, &params, &err), err);
     point_cloud_release(&m.cloud);
 }
 
-static void assert_refused(const struct made *m, const char *words)
+static void assert_refused(const struct synthetic *m, const char *words)
 {
     const struct suggest_params params = SUGGEST_PARAMS_DEFAULT;
     struct suggestion s;
@@ -129,7 +129,7 @@ static void two_rooms_and_their_openings_are_found(void **state)
         assert_float_equal(s.walls[4].face, X[1], 0.05);
         assert_float_equal(s.walls[4].thickness, X[2] - X[1], 0.05);
         assert_int_equal(s.opening_count, 2);
-        const struct plan_opening *window = &s.openings[0], *door = &s.openings[1];
+        const struct suggested_opening *window = &s.openings[0], *door = &s.openings[1];
         assert_true(window->window && window->wall == 0 && !door->window && door->wall == 4);
         assert_float_equal(door->begin, DOOR[0], 0.1);
         assert_float_equal(door->end, DOOR[1], 0.1);
@@ -164,7 +164,7 @@ static void the_ceiling_may_be_unknown(void **state)
     suggestion_release(&s);
 }
 
-enum { MANY = 70, AROUND = 4 }; /* rooms, views in each */
+enum { ROOMS = 70, VIEWS_PER_ROOM = 4 };
 static const double STEP = 0.1, WIDE = 1.5, BETWEEN = 0.15, SHORT = 2;
 
 static void add_wall(struct point_cloud *cloud, int axis, int sign, double at, double begin, double end)
@@ -178,29 +178,29 @@ static void add_wall(struct point_cloud *cloud, int axis, int sign, double at, d
         }
 }
 
-/* Nothing is left out because there is much: a row of rooms that has more faces, walls and rooms than 64. */
-static void as_many_rooms_as_there_are(void **state)
+/* There is no limit on numbers: a row of rooms with more than 64 faces, walls and rooms. */
+static void the_number_of_rooms_is_not_limited(void **state)
 {
     (void)state;
     const struct suggest_params params = SUGGEST_PARAMS_DEFAULT;
     struct point_cloud cloud = {.points = calloc(POINTS, sizeof *cloud.points)};
-    struct view *views = calloc(MANY * AROUND, sizeof *views);
+    struct view *views = calloc(ROOMS * VIEWS_PER_ROOM, sizeof *views);
     struct suggestion s;
     struct err err = ERR_INIT;
     assert_non_null(cloud.points);
     assert_non_null(views);
-    for (int room = 0; room < MANY; room++) {
+    for (int room = 0; room < ROOMS; room++) {
         const double low = room * (WIDE + BETWEEN), high = low + WIDE;
         add_wall(&cloud, 0, 1, low, 0, SHORT);
         add_wall(&cloud, 0, -1, high, 0, SHORT);
         add_wall(&cloud, 1, 1, 0, low, high);
         add_wall(&cloud, 1, -1, SHORT, low, high);
-        for (int k = 0; k < AROUND; k++)
-            look_around(&views[room * AROUND + k], vec3_make(low + WIDE / 2, SHORT / 2, 1.3), k);
+        for (int k = 0; k < VIEWS_PER_ROOM; k++)
+            look_around(&views[room * VIEWS_PER_ROOM + k], vec3_make(low + WIDE / 2, SHORT / 2, 1.3), k);
     }
-    if (suggest_plan(&s, &cloud, views, MANY * AROUND, HIGH, &params, &err)) fail_msg("%s", err.text);
-    assert_int_equal(s.wall_count, 4 + MANY - 1);
-    assert_int_equal(s.room_count, MANY);
+    if (suggest_plan(&s, &cloud, views, ROOMS * VIEWS_PER_ROOM, HIGH, &params, &err)) fail_msg("%s", err.text);
+    assert_int_equal(s.wall_count, 4 + ROOMS - 1);
+    assert_int_equal(s.room_count, ROOMS);
     for (int i = 0; i < s.room_count; i++) assert_true(s.rooms[i].free);
     suggestion_release(&s);
     suggestion_release(&s);
@@ -208,10 +208,10 @@ static void as_many_rooms_as_there_are(void **state)
     free(cloud.points);
 }
 
-static void what_is_no_room_is_refused(void **state)
+static void points_that_do_not_enclose_a_room_are_refused(void **state)
 {
     (void)state;
-    struct made m;
+    struct synthetic m;
     make(&m, true, 6);
     const size_t count = m.cloud.count;
     m.cloud.count = 0;
@@ -219,11 +219,12 @@ static void what_is_no_room_is_refused(void **state)
     m.cloud.count = 1;
     assert_refused(&m, "no wall");
     m.cloud.count = count;
-    for (size_t i = 0; i < count; i++) /* the north wall is gone */
+    for (size_t i = 0; i < count; i++) /* there is no north wall */
         if (m.cloud.points[i].normal[1] < -0.5f) m.cloud.points[i].normal[1] *= -1;
-    assert_refused(&m, "+y");
+    assert_refused(&m, "no wall was found on the +y side");
+    assert_refused(&m, " of these along -y. Likely causes");
     for (size_t i = 0; i < count / 2; i++) m.cloud.points[i].position.x *= 100;
-    assert_refused(&m, "no room");
+    assert_refused(&m, "times the ceiling's height, wanted at most 50");
     point_cloud_release(&m.cloud);
 }
 
@@ -233,8 +234,8 @@ int main(void)
         cmocka_unit_test(two_rooms_and_their_openings_are_found),
         cmocka_unit_test(a_closed_wall_has_no_doorway),
         cmocka_unit_test(the_ceiling_may_be_unknown),
-        cmocka_unit_test(as_many_rooms_as_there_are),
-        cmocka_unit_test(what_is_no_room_is_refused),
+        cmocka_unit_test(the_number_of_rooms_is_not_limited),
+        cmocka_unit_test(points_that_do_not_enclose_a_room_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

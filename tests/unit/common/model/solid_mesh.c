@@ -1,9 +1,9 @@
-/* solid_mesh.c - meshes made by hand: what is refused, what the checks find, ids, triangles, files. */
+/* solid_mesh.c - small meshes: invalid input, checks, ids, triangles, files. */
 #include "common/model/solid_mesh.h"
 
 #include "tests/unit/scratch.h"
 
-/* A box of 8 vertices and 6 quadrilaterals, or a part of one. */
+/* One or two boxes of 8 vertices and 6 quadrilaterals each. */
 struct box {
     struct vec3 vertices[16];
     int corners[12][4], sizes[12];
@@ -38,7 +38,7 @@ static void add_box(struct box *b, const char *body, struct vec3 low, struct vec
 static enum status make(struct solid_mesh *mesh, const struct box *b, struct err *err)
 {
     *err = (struct err)ERR_INIT;
-    return solid_mesh_make(mesh, b->vertices, b->vertex_count, b->polygons, b->count, err);
+    return solid_mesh_make(mesh, b->vertices, b->vertex_count, b->polygons, b->count, NULL, err);
 }
 
 static void unit_box(struct box *b)
@@ -47,7 +47,7 @@ static void unit_box(struct box *b)
     add_box(b, "body", vec3_make(0, 0, 0), vec3_make(1, 2, 3), false);
 }
 
-static void a_box_by_hand(void **state)
+static void a_box_is_a_valid_mesh(void **state)
 {
     (void)state;
     struct box b;
@@ -82,13 +82,13 @@ static void a_box_by_hand(void **state)
         unit_box(&b);                                       \
     } while (0)
 
-static void what_is_no_closed_mesh_is_refused(void **state)
+static void meshes_that_are_not_closed_are_refused(void **state)
 {
     (void)state;
     struct box b;
     unit_box(&b);
     b.count = 5;
-    refused("in no face the edge back");
+    refused("no face has its opposite");
     b.corners[2][1] = 8;
     refused("face 3, y0: found vertex 8, wanted one from 0 to 7");
     b.corners[2][1] = 0;
@@ -97,14 +97,14 @@ static void what_is_no_closed_mesh_is_refused(void **state)
     refused("a loop of 2 corners");
     b.polygons[1].loops = 0;
     refused("found no loop");
-    for (int k = 0; k < 2; k++) { /* one face turned over */
+    for (int k = 0; k < 2; k++) { /* one face reversed */
         const int c = b.corners[0][k];
         b.corners[0][k] = b.corners[0][3 - k];
         b.corners[0][3 - k] = c;
     }
     refused("a second time");
     b.vertices[b.vertex_count++] = vec3_make(9, 9, 9);
-    refused("vertex 8 is of no face");
+    refused("vertex 8 belongs to no face");
     b.polygons[3].normal.y = 2;
     refused("a normal of length 2");
     b.polygons[3].offset = NAN;
@@ -114,7 +114,7 @@ static void what_is_no_closed_mesh_is_refused(void **state)
     b.polygons[4].name = "";
     refused("an empty name");
     b.polygons[2].body = "other";
-    refused("wanted one of body other alone");
+    refused("wanted a vertex of body other alone");
     add_box(&b, "other", vec3_make(5, 5, 5), vec3_make(6, 6, 6), false);
     b.polygons[11].body = "body";
     refused("found body body a second time");
@@ -127,7 +127,7 @@ static void what_is_no_closed_mesh_is_refused(void **state)
                 b.corners[i][k]--;
     for (int i = 8; i < 15; i++) b.vertices[i] = b.vertices[i + 1];
     b.vertex_count = 15;
-    for (int i = 6; i < 12; i++) /* the one that was 8 came to be 7 */
+    for (int i = 6; i < 12; i++) /* vertex 8 became 7 */
         for (int k = 0; k < 4; k++) assert_true(b.corners[i][k] >= 7);
     refused("that touch there");
 }
@@ -143,7 +143,7 @@ static void what_is_no_closed_mesh_is_refused(void **state)
         unit_box(&b);                                                        \
     } while (0)
 
-static void the_checks_find_what_is_wrong(void **state)
+static void checks_find_faults(void **state)
 {
     (void)state;
     struct box b;
@@ -156,31 +156,31 @@ static void the_checks_find_what_is_wrong(void **state)
     add_box(&b, "body", vec3_make(0, 0, 0), vec3_make(1, 1, 1), true);
     faulty("inside out");
     add_box(&b, "body", vec3_make(0.5, 0.5, -0.5), vec3_make(1.5, 1.5, 0.5), false);
-    faulty("goes through");
+    faulty("passes through");
     add_box(&b, "body", vec3_make(0.25, 0.25, 0.25), vec3_make(0.75, 0.75, 0.75), false);
-    faulty("its shell is in another one");
+    faulty("its shell is inside another one");
     add_box(&b, "body", vec3_make(5, 5, 5), vec3_make(5.5, 5.5, 5.5), true);
-    faulty("turned inside out and in no other one");
+    faulty("inside out and not inside another one");
     add_box(&b, "body", vec3_make(1, 0.5, 0.5), vec3_make(2, 1, 1), false);
-    faulty("lie on each other");
+    faulty("overlap");
     add_box(&b, "body", vec3_make(0, 0, 0), vec3_make(1, 2, 3), false);
-    faulty("lie on each other");
+    faulty("overlap");
 
-    /* what only touches is good; so is another body, wherever it is; a cavity too */
+    /* bodies that only touch are valid; so are other bodies anywhere, and cavities */
     static const struct {
         struct vec3 low, high;
         const char *body;
         bool inside_out;
-    } good[] = {{{1, 2, 0}, {2, 3, 1}, "body", false},
-                {{1, 2, 3}, {2, 3, 4}, "body", false},
-                {{0.5, 0.5, 0.5}, {2, 3, 4}, "glass", false},
-                {{0.25, 0.25, 0.25}, {0.75, 0.75, 0.75}, "body", true}};
+    } valid[] = {{{1, 2, 0}, {2, 3, 1}, "body", false},
+                 {{1, 2, 3}, {2, 3, 4}, "body", false},
+                 {{0.5, 0.5, 0.5}, {2, 3, 4}, "glass", false},
+                 {{0.25, 0.25, 0.25}, {0.75, 0.75, 0.75}, "body", true}};
     for (int i = 0; i < 4; i++) {
         struct solid_mesh m = {0};
         struct solid_report r = {0};
         struct err err;
         unit_box(&b);
-        add_box(&b, good[i].body, good[i].low, good[i].high, good[i].inside_out);
+        add_box(&b, valid[i].body, valid[i].low, valid[i].high, valid[i].inside_out);
         assert_ok(make(&m, &b, &err), err);
         assert_ok(solid_mesh_check(&m, 0, &r, &err), err);
         assert_int_equal(r.count, 2);
@@ -189,7 +189,7 @@ static void the_checks_find_what_is_wrong(void **state)
     }
 }
 
-static void indices_are_looked_at(void **state)
+static void inconsistent_indices_are_found(void **state)
 {
     (void)state;
     for (int i = 0; i < 8; i++) {
@@ -220,7 +220,7 @@ static void ids_are_carried_by_name(void **state)
     struct err err;
     unit_box(&b);
     assert_ok(make(&base, &b, &err), err);
-    b.polygons[0].name = "new/b"; /* x0 is gone */
+    b.polygons[0].name = "new/b"; /* removes x0 */
     b.polygons[3].name = "new/a";
     b.polygons[1].name = "z0"; /* in another order */
     b.polygons[4].name = "x1";
@@ -244,8 +244,7 @@ static void ids_are_carried_by_name(void **state)
 
 /* ---------------------------------------------------------------------------------------------------------- plates */
 
-/* A plate of thickness 1 with rows x rows holes through it, triangular or square, or none; corners also in the
- * middle of its sides. */
+/* A plate of thickness 1 with rows x rows triangular or square holes; with corners in the middle of its sides too. */
 static void make_plate(struct solid_mesh *m, int rows, int sides)
 {
     const int holes = rows * rows, rim = 8, n = rim + holes * sides;
@@ -293,7 +292,7 @@ static void make_plate(struct solid_mesh *m, int rows, int sides)
             const int quad[4] = {a, b, n + b, n + a};
             for (int c = 0; c < 4; c++) corners[used++] = quad[c];
         }
-    assert_ok(solid_mesh_make(m, v, 2 * n, p, count, &err), err);
+    assert_ok(solid_mesh_make(m, v, 2 * n, p, count, NULL, &err), err);
     free(v);
     free(p);
     free(corners);
@@ -331,14 +330,14 @@ static void faces_with_holes_become_triangles(void **state)
         }
 }
 
-static void a_face_that_crosses_itself_has_no_triangles(void **state)
+static void a_face_that_crosses_itself_is_refused(void **state)
 {
     (void)state;
     struct solid_mesh m = {0};
     struct solid_triangles t = {0};
     struct err err = ERR_INIT;
     make_plate(&m, 0, 4);
-    for (int i = 0; i < m.vertex_count; i++) /* the middle of one side to beyond the other */
+    for (int i = 0; i < m.vertex_count; i++) /* move the middle of one side beyond the other side */
         if (m.vertices[i].p.x == 0.5 && m.vertices[i].p.y == 0) m.vertices[i].p.y = 3;
     assert_int_equal(solid_mesh_triangulate(&t, &m, &err), ST_DATA);
     assert_err(err, ST_DATA, "its loops cross");
@@ -348,7 +347,7 @@ static void a_face_that_crosses_itself_has_no_triangles(void **state)
 
 /* ----------------------------------------------------------------------------------------------------------- files */
 
-static void what_is_written_is_read_back(void **state)
+static void a_written_mesh_is_read_back_exactly(void **state)
 {
     (void)state;
     struct solid_mesh m = {0}, again = {0};
@@ -377,7 +376,7 @@ static void what_is_written_is_read_back(void **state)
     solid_mesh_release(&again);
 }
 
-static void an_empty_model(void **state)
+static void an_empty_mesh_is_valid(void **state)
 {
     (void)state;
     struct solid_mesh m = {0};
@@ -393,7 +392,7 @@ static void an_empty_model(void **state)
     "remodel-model 1\nvertices 4\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nvertex 0 0 1\nbodies 1\nbody t 4\n" \
     "face 1 z -0 -0 -1 0 1\nloop 3 0 2 1\nface 2 y 0 -1 0 0 1\nloop 3 0 1 3\nface 3 x -1 0 0 0 1\nloop 3 0 3 2\n"
 
-static void bad_files_are_refused_with_their_line(void **state)
+static void errors_in_files_name_the_line(void **state)
 {
     (void)state;
     static const struct {
@@ -431,7 +430,7 @@ static void bad_files_are_refused_with_their_line(void **state)
     assert_int_equal(solid_mesh_read(&m, scratch_path("none.txt"), &err), ST_IO);
 }
 
-static void obj_has_an_object_a_body_and_a_group_a_name(void **state)
+static void obj_has_an_object_per_body_and_a_group_per_name(void **state)
 {
     (void)state;
     struct solid_mesh m = {0};
@@ -469,17 +468,17 @@ static void obj_has_an_object_a_body_and_a_group_a_name(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_box_by_hand),
-        cmocka_unit_test(what_is_no_closed_mesh_is_refused),
-        cmocka_unit_test(the_checks_find_what_is_wrong),
-        cmocka_unit_test(indices_are_looked_at),
+        cmocka_unit_test(a_box_is_a_valid_mesh),
+        cmocka_unit_test(meshes_that_are_not_closed_are_refused),
+        cmocka_unit_test(checks_find_faults),
+        cmocka_unit_test(inconsistent_indices_are_found),
         cmocka_unit_test(ids_are_carried_by_name),
         cmocka_unit_test(faces_with_holes_become_triangles),
-        cmocka_unit_test(a_face_that_crosses_itself_has_no_triangles),
-        cmocka_unit_test(what_is_written_is_read_back),
-        cmocka_unit_test(an_empty_model),
-        cmocka_unit_test(bad_files_are_refused_with_their_line),
-        cmocka_unit_test(obj_has_an_object_a_body_and_a_group_a_name),
+        cmocka_unit_test(a_face_that_crosses_itself_is_refused),
+        cmocka_unit_test(a_written_mesh_is_read_back_exactly),
+        cmocka_unit_test(an_empty_mesh_is_valid),
+        cmocka_unit_test(errors_in_files_name_the_line),
+        cmocka_unit_test(obj_has_an_object_per_body_and_a_group_per_name),
     };
     return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }

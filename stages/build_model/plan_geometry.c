@@ -1,0 +1,154 @@
+/* plan_geometry.c - lines of walls in the plan: faces, ends, and the parts of a wall that openings and rooms may use.
+ *
+ * A wall's end is stored as what it is joined to. The line across the wall there, its cap, is a face of the other wall:
+ * at a corner the farther face, so that both walls contain the corner's solid; where a wall only meets another the
+ * nearer one. The span of a wall is what remains of it between its neighbours, its reach goes from cap to cap. */
+#include <math.h>
+
+#include "stages/build_model/plan_internal.h"
+
+struct plan_line wall_face(const struct plan_wall *w, int side)
+{
+    /* 0 - x instead of -x avoids -0 in the files */
+    const struct plan_line in = {{w->d[1], 0 - w->d[0]}, w->c};
+    return side == SIDE_IN ? in : (struct plan_line){{0 - in.n[0], 0 - in.n[1]}, w->thickness - w->c};
+}
+
+void wall_point(const struct plan_wall *w, double s, double off, double p[2])
+{
+    const double t = w->sign * (s + w->origin), k = w->c - off;
+    p[0] = w->d[0] * t + w->d[1] * k;
+    p[1] = w->d[1] * t - w->d[0] * k;
+}
+
+double wall_s(const struct plan_wall *w, const double p[2])
+{
+    return w->sign * (w->d[0] * p[0] + w->d[1] * p[1]) - w->origin;
+}
+
+bool line_cross(struct plan_line a, struct plan_line b, double p[2])
+{
+    const double det = a.n[0] * b.n[1] - a.n[1] * b.n[0];
+    if (!(fabs(det) > PARALLEL_SINE / 10)) return false;
+    p[0] = (a.c * b.n[1] - b.c * a.n[1]) / det;
+    p[1] = (a.n[0] * b.c - b.n[0] * a.c) / det;
+    return true;
+}
+
+struct plan_line face_ahead(const struct plan_wall *w, int end, const struct plan_wall *other, bool far, int *side)
+{
+    const double e[2] = {end == END_END ? w->d[0] : -w->d[0], end == END_END ? w->d[1] : -w->d[1]};
+    struct plan_line in = wall_face(other, SIDE_IN);
+    const bool in_is_far = in.n[0] * e[0] + in.n[1] * e[1] > 0;
+    *side = in_is_far == far ? SIDE_IN : SIDE_OUT;
+    struct plan_line l = wall_face(other, *side);
+    if (l.n[0] * e[0] + l.n[1] * e[1] < 0) l = (struct plan_line){{-l.n[0], -l.n[1]}, -l.c};
+    return l;
+}
+
+struct plan_line wall_cap(const struct plan *plan, int wall, int end, int *face_wall, int *face_side)
+{
+    const struct plan_wall *w = &plan->walls[wall];
+    const struct wall_end *e = &w->ends[end];
+    *face_wall = -1;
+    *face_side = SIDE_IN;
+    if (e->kind == FREE_END) {
+        const double t = w->sign * (e->s + w->origin);
+        return end == END_END ? (struct plan_line){{w->d[0], w->d[1]}, t}
+                              : (struct plan_line){{-w->d[0], -w->d[1]}, -t};
+    }
+    const struct plan_line l = face_ahead(w, end, &plan->walls[e->other], e->kind == CORNER_END, face_side);
+    if (e->kind == CORNER_END) *face_wall = e->other;
+    return l;
+}
+
+void cut_range(const struct plan_wall *w, struct plan_line across, double range[2])
+{
+    double p[2] = {0, 0};
+    range[0] = HUGE_VAL;
+    range[1] = -HUGE_VAL;
+    for (int side = 0; side < 2; side++) {
+        if (!line_cross(wall_face(w, side), across, p)) continue;
+        const double s = wall_s(w, p);
+        range[0] = fmin(range[0], s);
+        range[1] = fmax(range[1], s);
+    }
+}
+
+void wall_span(const struct plan *plan, int wall, double span[2])
+{
+    const struct plan_wall *w = &plan->walls[wall];
+    for (int end = 0; end < 2; end++) {
+        const struct wall_end *e = &w->ends[end];
+        const int upper = (end == END_END) == (w->sign > 0); /* which bound of S this end is */
+        if (e->kind == FREE_END) {
+            span[upper] = e->s;
+            continue;
+        }
+        double range[2];
+        int side;
+        cut_range(w, face_ahead(w, end, &plan->walls[e->other], false, &side), range);
+        span[upper] = (upper ? range[0] : range[1]) + 0.0; /* a -0 becomes 0 */
+    }
+}
+
+void wall_reach(const struct plan *plan, int wall, double span[2])
+{
+    const struct plan_wall *w = &plan->walls[wall];
+    for (int end = 0; end < 2; end++) {
+        double range[2];
+        int face_wall, face_side;
+        const int upper = (end == END_END) == (w->sign > 0);
+        cut_range(w, wall_cap(plan, wall, end, &face_wall, &face_side), range);
+        span[upper] = range[upper] + 0.0; /* a -0 becomes 0 */
+    }
+}
+
+void room_span(const struct plan *plan, const struct plan_room *room, int edge, int wall, double span[2])
+{
+    const struct plan_wall *w = &plan->walls[wall];
+    const struct room_edge *e = &room->edges[edge],
+                           *before = &room->edges[(edge + room->edge_count - 1) % room->edge_count];
+    const double a = fmin(wall_s(w, e->corner), wall_s(w, before->corner));
+    const double b = fmax(wall_s(w, e->corner), wall_s(w, before->corner));
+    double reach[2];
+    span[0] = fmin(a, fmin(wall_s(w, e->outer), wall_s(w, before->outer)));
+    span[1] = fmax(b, fmax(wall_s(w, e->outer), wall_s(w, before->outer)));
+    wall_reach(plan, wall, reach);
+    span[0] = fmax(span[0], reach[0]);
+    span[1] = fmin(span[1], reach[1]);
+}
+
+double ceiling_at(const struct plan_room *r, const double p[2])
+{
+    return r->lower[0] + r->lower[1] * p[0] + r->lower[2] * p[1];
+}
+
+int room_edge_of(const struct plan_room *r, int wall)
+{
+    for (int i = 0; i < r->wall_count; i++)
+        if (r->walls[i] == wall) return r->edge_of[i];
+    return -1;
+}
+
+double plan_wall_top(const struct plan *plan, int wall, double s0, double s1)
+{
+    const struct plan_wall *w = &plan->walls[wall];
+    double top = HUGE_VAL;
+    if (w->has_top) return w->top;
+    for (int i = 0; i < plan->room_count; i++) {
+        const struct plan_room *r = &plan->rooms[i];
+        for (int e = 0; !r->removed && e < r->edge_count; e++) {
+            double span[2];
+            if (room_edge_of(r, wall) != e) continue;
+            room_span(plan, r, e, wall, span);
+            if (span[1] <= s0 || span[0] >= s1) continue;
+            for (int k = 0; k < 4; k++) {
+                double p[2];
+                wall_point(w, k & 1 ? s1 : s0, k & 2 ? w->thickness : 0, p);
+                top = fmin(top, ceiling_at(r, p));
+            }
+        }
+    }
+    return top < HUGE_VAL ? top : w->top;
+}

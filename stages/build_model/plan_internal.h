@@ -1,0 +1,58 @@
+/* plan_internal.h - what the files that make a plan share; everything else includes plan.h. */
+#ifndef REMODEL_BUILD_MODEL_PLAN_INTERNAL_H
+#define REMODEL_BUILD_MODEL_PLAN_INTERNAL_H
+
+#include "stages/build_model/plan.h"
+
+#define LENGTH_EPS    1e-6   /* lengths are equal within this, model units */
+#define PARALLEL_SINE 0.0872 /* of 5 degrees: walls closer to parallel cannot be joined */
+#define MIN_SIZE      0.001  /* of anything in a plan, model units */
+#define MAX_SIZE      1000.0
+
+struct plan_context { /* of the statement that is being applied */
+    struct plan *plan;
+    const char *path;
+    const struct statement *s;
+    const struct placer *placer;
+    struct err *err;
+};
+
+/* Sets ST_DATA with the statement's file and line before the text. */
+enum status statement_error(struct plan_context *c, const char *fmt, ...) PRINTF_LIKE(2, 3);
+
+/* plan_names.c */
+
+/* Looks up a name. ST_DATA: it is unknown, removed, or its kind is not in `kinds` (bits of enum name_kind); `wanted`
+ * is the message's words for those kinds. */
+enum status find_named(struct plan_context *c, const char *name, unsigned kinds, const char *wanted,
+                       enum name_kind *kind, int *at);
+enum status find_solid(struct plan_context *c, const char *name, enum name_kind *kind, int *at);
+enum status find_wall(struct plan_context *c, const char *name, int *wall);
+
+/* *copy: the name, for the caller to own. ST_DATA: it was used before. */
+enum status copy_new_name(struct plan_context *c, const char *name, char **copy);
+
+/* Enters the name, which the plan's item must keep alive, into the plan's hash table. */
+enum status add_name(struct plan *plan, const char *name, enum name_kind kind, int at, struct err *err);
+
+/* plan_geometry.c */
+
+/* S of the point's projection onto the wall's line. */
+double wall_s(const struct plan_wall *w, const double p[2]);
+
+/* The near or far face of `other`, seen by wall w whose end `end` runs up to it; n points onwards, away from w. */
+struct plan_line face_ahead(const struct plan_wall *w, int end, const struct plan_wall *other, bool far, int *side);
+
+/* The min and max S at which a line crosses the wall's two faces. */
+void cut_range(const struct plan_wall *w, struct plan_line across, double range[2]);
+
+/* Height of the ceiling's lower face. */
+double ceiling_at(const struct plan_room *r, const double p[2]);
+
+/* plan_checks.c */
+
+/* Derives the rooms' edges and checks the whole plan. line: of the statement of an edit, to blame for any error; 0:
+ * errors name the line that made the faulty item. */
+enum status plan_check(struct plan *plan, const char *path, int line, struct err *err);
+
+#endif

@@ -1,0 +1,557 @@
+/* script_model.h - an independent interpreter of model scripts, for comparison with build_model.
+ *
+ * Computes where there is matter from the script alone (docs/model-script.md): walls between their faces and ends minus
+ * openings, slabs under and above rooms, boxes, leaves, panes. Volumes are exact sums over the cells of the grid of all
+ * planes. Anything angled, sloped or turned clears `exact`: then only names are tracked. Statements must be valid
+ * (build_model accepted them). */
+#ifndef REMODEL_TESTS_SCRIPT_MODEL_H
+#define REMODEL_TESTS_SCRIPT_MODEL_H
+
+#include "tests/unit/scratch.h"
+
+#include <math.h>
+
+enum { MAX_ITEMS = 64, NAME_SIZE = 16, MAX_WORDS = 40 };
+
+enum expected_kind { MODEL_FREE, MODEL_CORNER, MODEL_MEET };
+
+struct expected_end {
+    enum expected_kind kind;
+    double s;
+    int other;
+};
+
+struct expected_wall {
+    char name[NAME_SIZE];
+    bool gone, has_top;
+    int axis;       /* along x or y */
+    int start;      /* its start is ends[start] */
+    double in, out; /* its faces, across */
+    double foot, top;
+    struct expected_end ends[2]; /* at low and at high S */
+};
+
+struct expected_hole {
+    char name[NAME_SIZE];
+    bool gone, filled, interior;
+    int wall;
+    char kind; /* d, p, w */
+    double s[2], z[2], thick;
+};
+
+struct expected_box {
+    char name[NAME_SIZE];
+    bool gone;
+    double low[3], high[3];
+};
+
+struct expected_room {
+    char name[NAME_SIZE];
+    bool gone;
+    int walls[MAX_ITEMS], wall_count;
+    double floor, ceiling, slab;
+    /* from the walls, by expected_shape() */
+    int edges[MAX_ITEMS], edge_count, edge_of[MAX_ITEMS]; /* edge_of: by index in walls */
+    bool above[MAX_ITEMS];                                /* the room is at higher coordinates than the edge */
+    double face[MAX_ITEMS], border[MAX_ITEMS];
+};
+
+struct expected {
+    double thickness, slab, glass, leaf, floor, ceiling;
+    bool exact;
+    struct expected_wall walls[MAX_ITEMS];
+    struct expected_hole holes[MAX_ITEMS];
+    struct expected_box boxes[MAX_ITEMS];
+    struct expected_room rooms[MAX_ITEMS];
+    int wall_count, hole_count, box_count, room_count;
+};
+
+static inline void expected_begin(struct expected *t)
+{
+    *t = (struct expected){.thickness = 0.15, .glass = 0.02, .leaf = 0.04, .ceiling = 2.5, .exact = true};
+}
+
+#define FIND_BY_NAME(what, field)                                                 \
+    static inline int expected_##what(const struct expected *t, const char *name) \
+    {                                                                             \
+        for (int i = 0; i < t->what##_count; i++)                                 \
+            if (!strcmp(t->field[i].name, name)) return i;                        \
+        return -1;                                                                \
+    }
+FIND_BY_NAME(wall, walls)
+FIND_BY_NAME(hole, holes)
+FIND_BY_NAME(box, boxes)
+FIND_BY_NAME(room, rooms)
+
+static inline double expected_low(const struct expected_wall *w) { return fmin(w->in, w->out); }
+static inline double expected_high(const struct expected_wall *w) { return fmax(w->in, w->out); }
+
+/* The low or high end of the wall along S. */
+static inline double expected_reach(const struct expected *t, const struct expected_wall *w, int high)
+{
+    const struct expected_end *e = &w->ends[high];
+    if (e->kind == MODEL_FREE) return e->s;
+    const struct expected_wall *o = &t->walls[e->other];
+    return (e->kind == MODEL_CORNER) == (high == 1) ? expected_high(o) : expected_low(o);
+}
+
+/* ------------------------------------------------------------------------------------------------------ statements */
+
+static inline double expected_option(char **words, int count, const char *name, double otherwise)
+{
+    for (int i = 0; i + 1 < count; i++)
+        if (!strcmp(words[i], name)) return atof(words[i + 1]);
+    return otherwise;
+}
+
+static inline bool expected_has_word(char **words, int count, const char *word)
+{
+    for (int i = 0; i < count; i++)
+        if (!strcmp(words[i], word)) return true;
+    return false;
+}
+
+static inline void expected_copy_name(char name[NAME_SIZE], const char *word)
+{
+    assert_true(strlen(word) < NAME_SIZE);
+    strcpy(name, word);
+}
+
+static inline void expected_add_wall(struct expected *t, char **w, int n)
+{
+    struct expected_wall *x = &t->walls[t->wall_count++];
+    const double a[2] = {atof(w[3]), atof(w[4])}, b[2] = {atof(w[6]), atof(w[7])};
+    const double thickness = expected_option(w, n, "thickness", t->thickness);
+    assert_true(t->wall_count < MAX_ITEMS);
+    *x = (struct expected_wall){.axis = fabs(a[0] - b[0]) < fabs(a[1] - b[1]),
+                                .foot = expected_option(w, n, "foot", t->floor)};
+    expected_copy_name(x->name, w[1]);
+    if (expected_has_word(w, n, "angled")) t->exact = false;
+    x->has_top = expected_has_word(w, n, "top");
+    x->top = expected_option(w, n, "top", t->ceiling);
+    x->start = a[x->axis] > b[x->axis];
+    x->in = a[!x->axis];
+    /* the inside is to the right: below a wall that goes to +x, on the +x side of a wall that goes to +y */
+    x->out = x->in + ((x->axis == 0) == (x->start == 0) ? thickness : -thickness);
+    x->ends[x->start] = (struct expected_end){MODEL_FREE, a[x->axis], -1};
+    x->ends[!x->start] = (struct expected_end){MODEL_FREE, b[x->axis], -1};
+}
+
+static inline int expected_corner_end(const struct expected *t, int a, int b)
+{
+    const struct expected_wall *w = &t->walls[a];
+    for (int i = 0; i < 2; i++) {
+        const int e = i ? !w->start : w->start;
+        if (w->ends[e].kind != MODEL_FREE && w->ends[e].other == b) return e;
+    }
+    if (w->ends[0].kind != MODEL_FREE) return 1;
+    if (w->ends[1].kind != MODEL_FREE) return 0;
+    const double at = t->walls[b].in;
+    return fabs(w->ends[w->start].s - at) <= fabs(w->ends[!w->start].s - at) ? w->start : !w->start;
+}
+
+static inline void expected_join(struct expected *t, char **w, int n)
+{
+    for (int i = 1; i + 1 < n; i++) {
+        const int a = expected_wall(t, w[i]), b = expected_wall(t, w[i + 1]);
+        const int x = expected_corner_end(t, a, b), y = expected_corner_end(t, b, a);
+        t->walls[a].ends[x] = (struct expected_end){MODEL_CORNER, 0, b};
+        t->walls[b].ends[y] = (struct expected_end){MODEL_CORNER, 0, a};
+    }
+}
+
+static inline void expected_split(struct expected *t, char **w)
+{
+    const int old = expected_wall(t, w[1]), new = t->wall_count++;
+    const double low = fmin(atof(w[3]), atof(w[5])), high = fmax(atof(w[3]), atof(w[5])), middle = (low + high) / 2;
+    struct expected_wall *a = &t->walls[old], *b = &t->walls[new];
+    assert_true(t->wall_count < MAX_ITEMS);
+    *b = *a;
+    expected_copy_name(b->name, w[7]);
+    a->ends[!a->start] = (struct expected_end){MODEL_FREE, a->start ? high : low, -1};
+    b->ends[a->start] = (struct expected_end){MODEL_FREE, a->start ? low : high, -1};
+    for (int i = 0; i < t->hole_count; i++)
+        if (t->holes[i].wall == old && (t->holes[i].s[0] > middle) == !a->start) t->holes[i].wall = new;
+    for (int i = 0; i < t->wall_count; i++)
+        for (int e = 0; e < 2; e++) {
+            struct expected_wall *x = &t->walls[i];
+            if (i == old || i == new || x->ends[e].kind == MODEL_FREE || x->ends[e].other != old) continue;
+            if ((x->in > middle) == !a->start) x->ends[e].other = new;
+        }
+    for (int i = 0; i < t->room_count; i++) {
+        struct expected_room *r = &t->rooms[i];
+        int at = 0;
+        while (at < r->wall_count && r->walls[at] != old) at++;
+        if (at == r->wall_count) continue;
+        assert_true(r->wall_count + 1 < MAX_ITEMS);
+        memmove(r->walls + at + 1, r->walls + at, (size_t)(r->wall_count - at) * sizeof *r->walls);
+        r->walls[at + 1] = new;
+        r->wall_count++;
+    }
+}
+
+static inline void expected_add_room(struct expected *t, char **w, int n)
+{
+    struct expected_room *r = &t->rooms[t->room_count++];
+    assert_true(t->room_count < MAX_ITEMS);
+    *r = (struct expected_room){.slab = t->slab > 0 ? t->slab : t->thickness};
+    expected_copy_name(r->name, w[1]);
+    r->floor = expected_option(w, n, "floor", t->floor);
+    r->ceiling = expected_option(w, n, "ceiling", t->ceiling);
+    for (int i = 2; i < n && strcmp(w[i], "floor") && strcmp(w[i], "ceiling"); i++)
+        r->walls[r->wall_count++] = expected_wall(t, w[i]);
+}
+
+static inline void expected_rectangle(char **w, double s[2], double z[2])
+{
+    s[0] = fmin(atof(w[0]), atof(w[3]));
+    s[1] = fmax(atof(w[0]), atof(w[3]));
+    z[0] = fmin(atof(w[1]), atof(w[4]));
+    z[1] = fmax(atof(w[1]), atof(w[4]));
+}
+
+static inline void expected_add_hole(struct expected *t, char **w, int n)
+{
+    struct expected_hole *h = &t->holes[t->hole_count++];
+    assert_true(t->hole_count < MAX_ITEMS);
+    *h = (struct expected_hole){.kind = w[0][0], .wall = expected_wall(t, w[3])};
+    expected_copy_name(h->name, w[1]);
+    expected_rectangle(w + 5, h->s, h->z);
+    h->filled = h->kind == 'w' ? !expected_has_word(w, n, "open") : expected_has_word(w, n, "closed");
+    h->interior = expected_has_word(w, n, "interior");
+    h->thick = h->kind == 'w' ? t->glass : t->leaf;
+}
+
+static inline void expected_add_box(struct expected *t, char **w, int n)
+{
+    struct expected_box *b = &t->boxes[t->box_count++];
+    assert_true(t->box_count < MAX_ITEMS);
+    *b = (struct expected_box){.gone = false};
+    expected_copy_name(b->name, w[1]);
+    for (int k = 0; k < 2; k++) {
+        b->low[k] = fmin(atof(w[3 + k]), atof(w[6 + k]));
+        b->high[k] = fmax(atof(w[3 + k]), atof(w[6 + k]));
+    }
+    b->low[2] = expected_option(w, n, "foot", t->floor);
+    b->high[2] = expected_option(w, n, "top", t->ceiling);
+    if (expected_option(w, n, "turn", 0) != 0) t->exact = false;
+}
+
+static inline void expected_adjust(struct expected *t, char **w)
+{
+    const int wall = expected_wall(t, w[1]), hole = expected_hole(t, w[1]), box = expected_box(t, w[1]);
+    if (wall >= 0) {
+        struct expected_wall *x = &t->walls[wall];
+        const double by = atof(w[x->axis ? 3 : 4]) - x->in;
+        x->in += by;
+        x->out += by;
+    } else if (hole >= 0) {
+        expected_rectangle(w + 3, t->holes[hole].s, t->holes[hole].z);
+    } else {
+        expected_rectangle(w + 3, (double[2]){0}, (double[2]){0});
+        for (int k = 0; k < 2; k++) {
+            t->boxes[box].low[k] = fmin(atof(w[3 + k]), atof(w[6 + k]));
+            t->boxes[box].high[k] = fmax(atof(w[3 + k]), atof(w[6 + k]));
+        }
+    }
+}
+
+static inline void expected_move(struct expected *t, char **w)
+{
+    const int wall = expected_wall(t, w[1]), hole = expected_hole(t, w[1]), box = expected_box(t, w[1]);
+    const double by = atof(w[3]);
+    if (wall >= 0) {
+        struct expected_wall *x = &t->walls[wall];
+        const double across = x->out > x->in ? by : -by; /* away from its inside */
+        x->in += across;
+        x->out += across;
+    } else if (hole >= 0) {
+        t->holes[hole].s[0] += by;
+        t->holes[hole].s[1] += by;
+    } else {
+        for (int k = 0; k < 2; k++) {
+            t->boxes[box].low[k] += atof(w[3 + k]);
+            t->boxes[box].high[k] += atof(w[3 + k]);
+        }
+    }
+}
+
+static inline void expected_remove(struct expected *t, const char *name)
+{
+    const int wall = expected_wall(t, name), hole = expected_hole(t, name), box = expected_box(t, name),
+              room = expected_room(t, name);
+    if (wall >= 0) {
+        t->walls[wall].gone = true;
+        for (int i = 0; i < t->hole_count; i++)
+            if (t->holes[i].wall == wall) t->holes[i].gone = true;
+    } else if (hole >= 0) {
+        t->holes[hole].gone = true;
+    } else if (box >= 0) {
+        t->boxes[box].gone = true;
+    } else {
+        t->rooms[room].gone = true;
+    }
+}
+
+/* Applies one valid statement. */
+static inline void expected_apply(struct expected *t, const char *line)
+{
+    char text[512], *w[MAX_WORDS], *rest = text;
+    int n = 0;
+    snprintf(text, sizeof text, "%s", line);
+    for (char *word; n < MAX_WORDS && (word = strtok_r(rest, " \n", &rest));) w[n++] = word;
+    if (n < 2) return;
+    if (!strcmp(w[0], "set")) {
+        double *const values[] = {&t->thickness, &t->slab, &t->glass, &t->leaf, &t->floor, &t->ceiling};
+        static const char *const names[] = {"thickness", "slab", "glass", "leaf", "floor", "ceiling"};
+        for (int i = 0; i < 6; i++)
+            if (!strcmp(names[i], w[1])) *values[i] = atof(w[2]);
+    } else if (!strcmp(w[0], "wall")) {
+        expected_add_wall(t, w, n);
+    } else if (!strcmp(w[0], "join")) {
+        expected_join(t, w, n);
+    } else if (!strcmp(w[0], "extend")) {
+        struct expected_wall *x = &t->walls[expected_wall(t, w[1])];
+        const int other = expected_wall(t, w[4]), e = strcmp(w[2], "start") ? !x->start : x->start;
+        x->ends[e] = (struct expected_end){other < 0 ? MODEL_FREE : MODEL_MEET, atof(w[4]), other};
+    } else if (!strcmp(w[0], "split")) {
+        expected_split(t, w);
+    } else if (!strcmp(w[0], "room")) {
+        expected_add_room(t, w, n);
+    } else if (!strcmp(w[0], "slope")) {
+        t->exact = false;
+    } else if (!strcmp(w[0], "box")) {
+        expected_add_box(t, w, n);
+    } else if (!strcmp(w[0], "adjust")) {
+        expected_adjust(t, w);
+    } else if (!strcmp(w[0], "move")) {
+        expected_move(t, w);
+    } else if (!strcmp(w[0], "open") || !strcmp(w[0], "close")) {
+        struct expected_hole *h = &t->holes[expected_hole(t, w[1])];
+        h->filled = w[0][0] == 'c';
+        if (h->filled) h->thick = h->kind == 'w' ? t->glass : t->leaf;
+    } else if (!strcmp(w[0], "remove")) {
+        expected_remove(t, w[1]);
+    } else {
+        expected_add_hole(t, w, n);
+    }
+}
+
+/* ---------------------------------------------------------------------------------------------------------- matter */
+
+static inline bool expected_same_line(const struct expected_wall *a, const struct expected_wall *b)
+{
+    return a->axis == b->axis && a->start == b->start && fabs(a->in - b->in) < 1e-6;
+}
+
+/* Makes a room's edges from its walls, with the side on which the room is and the face towards it. */
+static inline void expected_edges(const struct expected *t, struct expected_room *r)
+{
+    int first = 0;
+    while (first < r->wall_count &&
+           expected_same_line(&t->walls[r->walls[first]],
+                              &t->walls[r->walls[(first + r->wall_count - 1) % r->wall_count]]))
+        first++;
+    r->edge_count = 0;
+    for (int k = 0; k < r->wall_count; k++) {
+        const int at = (first + k) % r->wall_count;
+        if (!k || !expected_same_line(&t->walls[r->walls[at]], &t->walls[r->edges[r->edge_count - 1]]))
+            r->edges[r->edge_count++] = r->walls[at];
+        r->edge_of[at] = r->edge_count - 1;
+    }
+    for (int e = 0; e < r->edge_count; e++) { /* the room's side, by the crossings of a ray from the edge's middle */
+        const struct expected_wall *w = &t->walls[r->edges[e]];
+        double ends[2];
+        int beyond = 0;
+        for (int k = 0; k < 2; k++) {
+            const struct expected_wall *o = &t->walls[r->edges[(e + (k ? 1 : r->edge_count - 1)) % r->edge_count]];
+            ends[k] = (o->in + o->out) / 2;
+        }
+        const double s = (ends[0] + ends[1]) / 2 + 1e-5, at = (w->in + w->out) / 2;
+        for (int f = 0; f < r->edge_count; f++) {
+            const struct expected_wall *x = &t->walls[r->edges[f]];
+            const struct expected_wall *before = &t->walls[r->edges[(f + r->edge_count - 1) % r->edge_count]],
+                                       *after = &t->walls[r->edges[(f + 1) % r->edge_count]];
+            const double a = (before->in + before->out) / 2, b = (after->in + after->out) / 2;
+            if (f == e || x->axis != w->axis || (x->in + x->out) / 2 <= at) continue;
+            beyond += (a < s) != (b < s);
+        }
+        r->above[e] = beyond % 2;
+        r->face[e] = r->above[e] ? expected_high(w) : expected_low(w);
+    }
+}
+
+/* The slabs' borders; in a wall with rooms on both sides they are in its middle. */
+static inline void expected_shape(struct expected *t)
+{
+    unsigned char sides[MAX_ITEMS] = {0};
+    for (int i = 0; i < t->room_count; i++) {
+        struct expected_room *r = &t->rooms[i];
+        if (r->gone) continue;
+        expected_edges(t, r);
+        for (int k = 0; k < r->wall_count; k++) sides[r->walls[k]] |= (unsigned char)(1 << r->above[r->edge_of[k]]);
+    }
+    for (int i = 0; i < t->room_count; i++) {
+        struct expected_room *r = &t->rooms[i];
+        for (int e = 0; !r->gone && e < r->edge_count; e++) {
+            const struct expected_wall *w = &t->walls[r->edges[e]];
+            r->border[e] = sides[r->edges[e]] == 3 ? (w->in + w->out) / 2
+                           : r->above[e]           ? expected_low(w)
+                                                   : expected_high(w);
+        }
+    }
+}
+
+static inline bool expected_between_rooms(const struct expected *t, int wall)
+{
+    unsigned sides = 0;
+    for (int i = 0; i < t->room_count; i++) {
+        const struct expected_room *r = &t->rooms[i];
+        for (int k = 0; !r->gone && k < r->wall_count; k++)
+            if (r->walls[k] == wall) sides |= 1u << r->above[r->edge_of[k]];
+    }
+    return sides == 3;
+}
+
+static inline bool expected_under_room(const struct expected *t, const struct expected_room *r, const double p[3])
+{
+    int crossed = 0;
+    for (int e = 0; e < r->edge_count; e++) {
+        if (t->walls[r->edges[e]].axis != 1 || r->border[e] <= p[0]) continue;
+        const double a = r->border[(e + r->edge_count - 1) % r->edge_count], b = r->border[(e + 1) % r->edge_count];
+        crossed += (a < p[1]) != (b < p[1]);
+    }
+    return crossed % 2;
+}
+
+static inline double expected_top(const struct expected *t, int wall, double s)
+{
+    const struct expected_wall *w = &t->walls[wall];
+    double top = -HUGE_VAL;
+    if (w->has_top) return w->top;
+    for (int i = 0; i < t->room_count; i++) {
+        const struct expected_room *r = &t->rooms[i];
+        for (int k = 0; !r->gone && k < r->wall_count; k++) {
+            if (r->walls[k] != wall) continue;
+            const int e = r->edge_of[k];
+            const int x = (e + r->edge_count - 1) % r->edge_count, y = (e + 1) % r->edge_count;
+            const double low = fmin(fmin(r->face[x], r->face[y]), fmin(r->border[x], r->border[y]));
+            const double high = fmax(fmax(r->face[x], r->face[y]), fmax(r->border[x], r->border[y]));
+            if (s > low && s < high) top = fmax(top, r->ceiling);
+        }
+    }
+    return top > -HUGE_VAL ? top : w->top;
+}
+
+static inline bool expected_in_wall(const struct expected *t, int wall, const double p[3])
+{
+    const struct expected_wall *w = &t->walls[wall];
+    const double s = p[w->axis], across = p[!w->axis];
+    if (w->gone || across < expected_low(w) || across > expected_high(w)) return false;
+    if (s < expected_reach(t, w, 0) || s > expected_reach(t, w, 1) || p[2] < w->foot || p[2] > expected_top(t, wall, s))
+        return false;
+    for (int i = 0; i < t->hole_count; i++) {
+        const struct expected_hole *h = &t->holes[i];
+        if (h->gone || h->wall != wall || s < h->s[0] || s > h->s[1] || p[2] < h->z[0] || p[2] > h->z[1]) continue;
+        return h->kind == 'd' && h->filled && fabs(across - (w->in + w->out) / 2) < h->thick / 2;
+    }
+    return true;
+}
+
+static inline bool expected_has_matter(const struct expected *t, const double p[3])
+{
+    for (int i = 0; i < t->wall_count; i++)
+        if (expected_in_wall(t, i, p)) return true;
+    for (int i = 0; i < t->box_count; i++) {
+        const struct expected_box *b = &t->boxes[i];
+        bool in = !b->gone;
+        for (int k = 0; k < 3; k++) in &= p[k] > b->low[k] && p[k] < b->high[k];
+        if (in) return true;
+    }
+    for (int i = 0; i < t->room_count; i++) {
+        const struct expected_room *r = &t->rooms[i];
+        const bool slab =
+            (p[2] < r->floor && p[2] > r->floor - r->slab) || (p[2] > r->ceiling && p[2] < r->ceiling + r->slab);
+        if (!r->gone && slab && expected_under_room(t, r, p)) return true;
+    }
+    return false;
+}
+
+/* --------------------------------------------------------------------------------------------------------- volumes */
+
+struct expected_planes {
+    double at[3][16 * MAX_ITEMS];
+    int count[3];
+};
+
+static inline void expected_add_plane(struct expected_planes *g, int axis, double at)
+{
+    g->at[axis][g->count[axis]++] = at;
+}
+
+static inline int compare_planes(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* Volumes of everything but panes, and of the panes. t->exact must be true. */
+static inline void expected_volumes(struct expected *t, double *solid, double *panes)
+{
+    static struct expected_planes g;
+    memset(g.count, 0, sizeof g.count);
+    expected_shape(t);
+    *solid = *panes = 0;
+    for (int i = 0; i < t->wall_count; i++) {
+        const struct expected_wall *w = &t->walls[i];
+        expected_add_plane(&g, !w->axis, w->in);
+        expected_add_plane(&g, !w->axis, w->out);
+        expected_add_plane(&g, !w->axis, (w->in + w->out) / 2);
+        expected_add_plane(&g, 2, w->foot);
+        expected_add_plane(&g, 2, w->top);
+        for (int e = 0; e < 2; e++)
+            if (w->ends[e].kind == MODEL_FREE) expected_add_plane(&g, w->axis, w->ends[e].s);
+    }
+    for (int i = 0; i < t->hole_count; i++) {
+        const struct expected_hole *h = &t->holes[i];
+        const struct expected_wall *w = &t->walls[h->wall];
+        if (h->gone || w->gone) continue;
+        for (int k = 0; k < 2; k++) {
+            expected_add_plane(&g, w->axis, h->s[k]);
+            expected_add_plane(&g, 2, h->z[k]);
+            expected_add_plane(&g, !w->axis, (w->in + w->out + (k ? h->thick : -h->thick)) / 2);
+        }
+        if (h->kind == 'w' && h->filled && !h->interior && !expected_between_rooms(t, h->wall))
+            *panes += (h->s[1] - h->s[0]) * (h->z[1] - h->z[0]) * h->thick;
+    }
+    for (int i = 0; i < t->box_count; i++)
+        for (int k = 0; k < 3; k++) {
+            expected_add_plane(&g, k, t->boxes[i].low[k]);
+            expected_add_plane(&g, k, t->boxes[i].high[k]);
+        }
+    for (int i = 0; i < t->room_count; i++) {
+        const struct expected_room *r = &t->rooms[i];
+        const double z[4] = {r->floor, r->floor - r->slab, r->ceiling, r->ceiling + r->slab};
+        for (int k = 0; k < 4; k++) expected_add_plane(&g, 2, z[k]);
+    }
+    for (int k = 0; k < 3; k++) {
+        int n = 0;
+        if (g.count[k]) qsort(g.at[k], (size_t)g.count[k], sizeof g.at[k][0], compare_planes);
+        for (int i = 0; i < g.count[k]; i++)
+            if (!n || g.at[k][i] - g.at[k][n - 1] > 1e-9) g.at[k][n++] = g.at[k][i];
+        g.count[k] = n;
+    }
+    for (int x = 0; x + 1 < g.count[0]; x++)
+        for (int y = 0; y + 1 < g.count[1]; y++)
+            for (int z = 0; z + 1 < g.count[2]; z++) {
+                const double *const c[3] = {&g.at[0][x], &g.at[1][y], &g.at[2][z]};
+                double p[3], cell = 1;
+                for (int k = 0; k < 3; k++) {
+                    p[k] = (c[k][0] + c[k][1]) / 2;
+                    cell *= c[k][1] - c[k][0];
+                }
+                if (expected_has_matter(t, p)) *solid += cell;
+            }
+}
+
+#endif
