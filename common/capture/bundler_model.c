@@ -32,7 +32,7 @@ static bool is_rotation(struct mat3 r)
     return vec3_dot(vec3_cross(x, y), z) > 0;
 }
 
-struct reader {
+struct bundler_reader {
     struct textfile file;
     struct sfm_model *model;
     int camera_count;        /* in the file */
@@ -74,7 +74,8 @@ static enum status read_camera(struct textfile *t, const int size[2], int number
     return ST_OK;
 }
 
-static enum status read_cameras(struct reader *r, const char *const *names, const int (*sizes)[2], struct err *err)
+static enum status read_cameras(struct bundler_reader *r, const char *const *names, const int (*sizes)[2],
+                                struct err *err)
 {
     struct sfm_model *m = r->model;
     size_t n = (size_t)r->camera_count + 1;
@@ -100,7 +101,7 @@ static enum status read_cameras(struct reader *r, const char *const *names, cons
 
 /* Reads the line of a point's views into r->track and into the observations of their images. *count: length of the
  * track, without cameras that were not placed. */
-static enum status read_views(struct reader *r, int64_t point_id, int *count, struct err *err)
+static enum status read_views(struct bundler_reader *r, int64_t point_id, int *count, struct err *err)
 {
     struct textfile *t = &r->file;
     struct sfm_model *m = r->model;
@@ -129,7 +130,7 @@ static enum status read_views(struct reader *r, int64_t point_id, int *count, st
     return textfile_end(t, err);
 }
 
-static enum status read_point(struct reader *r, struct sfm_point *p, struct err *err)
+static enum status read_point(struct bundler_reader *r, struct sfm_point *p, struct err *err)
 {
     struct textfile *t = &r->file;
     double position[3], rgb[3];
@@ -153,7 +154,7 @@ static enum status read_point(struct reader *r, struct sfm_point *p, struct err 
     return ST_OK;
 }
 
-static enum status read_points(struct reader *r, int64_t points, struct err *err)
+static enum status read_points(struct bundler_reader *r, int64_t points, struct err *err)
 {
     struct sfm_model *m = r->model;
     for (int64_t i = 0; i < points; i++) {
@@ -185,7 +186,7 @@ static enum status sort_images(struct sfm_model *m, const char *path, struct err
 enum status sfm_model_read_bundler(struct sfm_model *m, const char *path, const char *const *names,
                                    const int (*sizes)[2], int count, struct err *err)
 {
-    struct reader r = {.model = m, .camera_count = count};
+    struct bundler_reader r = {.model = m, .camera_count = count};
     struct textfile *t = &r.file;
     int64_t cameras = 0, points = 0;
     *m = (struct sfm_model){0};

@@ -15,6 +15,8 @@
 #include <stddef.h>
 #include <string.h>
 
+#include "common/math/numbers.h"
+
 static const struct {
     const char *name;
     int params;
@@ -269,7 +271,7 @@ bool camera_project(const struct camera *c, struct vec3 p, double *u, double *v)
     if (c->model == CAMERA_OPENCV_FISHEYE) {
         double rho = hypot(p.x, p.y), theta = atan2(rho, p.z), scale = p.z > 0 ? 1 / p.z : 0;
         if (rho > 0) {
-            if (one_to_one_until(&q, theta * theta) < theta * theta || theta >= M_PI) return false;
+            if (one_to_one_until(&q, theta * theta) < theta * theta || theta >= PI) return false;
             scale = theta * poly(q.n, N_TERMS, theta * theta) / rho;
         } else if (!(p.z > 0)) {
             return false;
@@ -308,7 +310,7 @@ bool camera_unproject(const struct camera *c, double u, double v, struct vec3 *r
     double xd = (u - cx) / fx, yd = (v - cy) / fy, rd = hypot(xd, yd), r = rd;
     if (!isfinite(rd)) return false;
     if (c->model == CAMERA_OPENCV_FISHEYE) {
-        if (rd > 0 && (!undistort_radius(&q, rd, M_PI, &r) || r >= M_PI)) return false;
+        if (rd > 0 && (!undistort_radius(&q, rd, PI, &r) || r >= PI)) return false;
         double across = rd > 0 ? sin(r) / rd : 0;
         *ray = vec3_normalize(vec3_make(xd * across, yd * across, cos(r)));
         return true;

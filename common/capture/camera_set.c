@@ -31,7 +31,7 @@ static enum status make_view(struct view *v, const struct sfm_model *m, const st
     return ST_OK;
 }
 
-struct sort_entry {
+struct view_entry {
     struct view view;
     struct sfm_image image;
     int idx;
@@ -39,7 +39,7 @@ struct sort_entry {
 
 static int compare_entries(const void *a, const void *b)
 {
-    return strcmp(((const struct sort_entry *)a)->view.name, ((const struct sort_entry *)b)->view.name);
+    return strcmp(((const struct view_entry *)a)->view.name, ((const struct view_entry *)b)->view.name);
 }
 
 /* The model is in order of "VIEW.exr", which differs from the order of VIEW if one name is the beginning of another. */
@@ -47,11 +47,11 @@ static enum status sort_views(struct camera_set *set, struct err *err)
 {
     struct sfm_model *m = &set->model;
     size_t n = (size_t)set->view_count;
-    struct sort_entry *entries = calloc(n, sizeof *entries);
+    struct view_entry *entries = calloc(n, sizeof *entries);
     int *new_idx = calloc(n, sizeof *new_idx);
     enum status st = entries && new_idx ? ST_OK : err_nomem(err, "views", n * sizeof *entries);
     if (!st) {
-        for (size_t i = 0; i < n; i++) entries[i] = (struct sort_entry){set->views[i], m->images[i], (int)i};
+        for (size_t i = 0; i < n; i++) entries[i] = (struct view_entry){set->views[i], m->images[i], (int)i};
         qsort(entries, n, sizeof *entries, compare_entries);
         for (size_t i = 0; i < n; i++) {
             set->views[i] = entries[i].view;

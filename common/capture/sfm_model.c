@@ -35,14 +35,14 @@ bool sfm_normalize_rotation(struct quat *q)
     return true;
 }
 
-struct sort_entry {
+struct image_entry {
     struct sfm_image image;
     int idx;
 };
 
 static int compare_names(const void *a, const void *b)
 {
-    const struct sort_entry *x = a, *y = b;
+    const struct image_entry *x = a, *y = b;
     int order = strcmp(x->image.name, y->image.name);
     return order ? order : (x->idx > y->idx) - (x->idx < y->idx);
 }
@@ -50,12 +50,12 @@ static int compare_names(const void *a, const void *b)
 enum status sfm_sort_images(struct sfm_model *m, int **old_idx, struct err *err)
 {
     size_t n = (size_t)m->image_count;
-    struct sort_entry *sorted = calloc(n + 1, sizeof *sorted);
+    struct image_entry *sorted = calloc(n + 1, sizeof *sorted);
     int *new_idx = calloc(n + 1, sizeof *new_idx);
     *old_idx = calloc(n + 1, sizeof **old_idx);
     enum status st = sorted && new_idx && *old_idx ? ST_OK : err_nomem(err, "images", n * sizeof *sorted);
     if (!st) {
-        for (size_t i = 0; i < n; i++) sorted[i] = (struct sort_entry){m->images[i], (int)i};
+        for (size_t i = 0; i < n; i++) sorted[i] = (struct image_entry){m->images[i], (int)i};
         qsort(sorted, n, sizeof *sorted, compare_names);
         for (size_t i = 0; i < n; i++) {
             m->images[i] = sorted[i].image;

@@ -9,6 +9,8 @@
 
 #include <float.h>
 
+#include "common/math/numbers.h"
+
 enum { BORDER_SAMPLES = 256, GRID = 64 };
 
 static const double MAX_ANGLE = 85; /* degrees from the axis that a single pinhole view may show */
@@ -38,8 +40,8 @@ static double angle_to_axis(struct vec3 ray) { return atan2(hypot(ray.x, ray.y),
 void lens_field(const struct camera *lens, double *horizontal, double *vertical)
 {
     double w = lens->width, h = lens->height;
-    *horizontal = angle_to_axis(border_ray(lens, 0, h / 2, M_PI)) + angle_to_axis(border_ray(lens, w, h / 2, M_PI));
-    *vertical = angle_to_axis(border_ray(lens, w / 2, 0, M_PI)) + angle_to_axis(border_ray(lens, w / 2, h, M_PI));
+    *horizontal = angle_to_axis(border_ray(lens, 0, h / 2, PI)) + angle_to_axis(border_ray(lens, w, h / 2, PI));
+    *vertical = angle_to_axis(border_ray(lens, w / 2, 0, PI)) + angle_to_axis(border_ray(lens, w / 2, h, PI));
 }
 
 /* Fraction of the view that is inside the photo, sampled on a grid. */
@@ -84,7 +86,7 @@ static int wide_views(struct photo_view views[MOST_PARTS], const struct camera *
 
 static bool one_view(struct photo_view *view, const struct camera *lens, double max_pixels)
 {
-    double fx, fy, cx, cy, w = lens->width, h = lens->height, limit = MAX_ANGLE * M_PI / 180;
+    double fx, fy, cx, cy, w = lens->width, h = lens->height, limit = MAX_ANGLE * PI / 180;
     double left = -DBL_MAX, right = DBL_MAX, top = -DBL_MAX, bottom = DBL_MAX;
     camera_focal(lens, &fx, &fy, &cx, &cy);
     for (int i = 0; i <= BORDER_SAMPLES; i++) {
@@ -118,7 +120,7 @@ enum status photo_views(struct photo_view views[MOST_PARTS], int *count, const s
     double horizontal, vertical, max_pixels = max_megapixels > 0 ? max_megapixels * 1e6 : DBL_MAX;
     bool pinhole = lens->model == CAMERA_SIMPLE_PINHOLE || lens->model == CAMERA_PINHOLE;
     lens_field(lens, &horizontal, &vertical);
-    if (fmax(horizontal, vertical) > max_field * M_PI / 180) {
+    if (fmax(horizontal, vertical) > max_field * PI / 180) {
         *count = wide_views(views, lens, max_pixels);
     } else if (pinhole && (double)lens->width * lens->height <= max_pixels) {
         views[0] = (struct photo_view){-1, *lens, {1, 0, 0, 0}};
