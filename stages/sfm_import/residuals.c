@@ -85,8 +85,7 @@ enum status importer_measure_errors(struct importer *imp, struct import_stats *s
     return st;
 }
 
-/* ----------------------------------------------------------------------------------------------------- the lens
- * model */
+/* -------------------------------------------------------------------------------------------------- the lens model */
 
 /* Models to try in place of one that does not fit. */
 static const char *fisheye_models(enum camera_model model)
@@ -97,7 +96,7 @@ static const char *fisheye_models(enum camera_model model)
 static const char *other_models(enum camera_model model)
 {
     if (model == CAMERA_RADIAL) return "OPENCV";
-    return model == CAMERA_OPENCV || model == CAMERA_FULL_OPENCV ? "FULL_OPENCV" : "OPENCV or RADIAL";
+    return model == CAMERA_OPENCV ? "FULL_OPENCV" : "OPENCV or RADIAL";
 }
 
 /* The first photo whose EXIF suggests a fisheye but whose lens model is not one; NULL: none. */

@@ -1,5 +1,5 @@
-/* fuzz_sfm_lists.c - text written by other programs: Bundler's list of images and COLMAP's log. Any bytes give names and
- * counts, or an error. Every input is read as both. */
+/* fuzz_sfm_lists.c - text written by other programs: Bundler's list of images and COLMAP's log. Any bytes give names
+ * and counts, or an error. Every input is read as both. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
