@@ -1,19 +1,21 @@
 /* camera.c - projection through COLMAP's camera models, and its inverse.
  *
- * A perspective model takes the plane coordinates (x, y) = (X / Z, Y / Z) to distorted ones,
+ * A perspective model maps the plane coordinates (x, y) = (X / Z, Y / Z) to distorted ones,
  *   x_d = x g(s) + 2 p1 x y + p2 (s + 2 x^2),  y_d = y g(s) + 2 p2 x y + p1 (s + 2 y^2),  s = x^2 + y^2,
  *   g(s) = N(s) / D(s),  N = 1 + n1 s + n2 s^2 + ..., D = 1 + d1 s + d2 s^2 + d3 s^3,
- * and the fisheye takes the angle t from the axis to the radius t N(t^2). Every model is a case of this.
+ * and the fisheye maps the angle t from the axis to the radius t N(t^2). Every model is a special case.
  *
- * Such a polynomial is one-to-one only up to the first radius where its slope r -> r g(r^2) is 0; what lies beyond
- * folds back onto pixels of other rays. The slope's numerator is a polynomial in s with coefficients
+ * The radial map r -> r g(r^2) is one-to-one only up to the first radius where its derivative is 0; rays beyond it fold
+ * back onto pixels of other rays. The numerator of the derivative is a polynomial in s with coefficients
  *   P_k = sum over i + j = k of N_i D_j (1 + 2 i - 2 j),
- * so "P > 0 and D > 0 on [0, s]" is decided exactly. With tangential terms the Jacobian's determinant must be positive
- * too. */
+ * so "P > 0 and D > 0 on [0, s]" is decided by the roots of P and D. With tangential terms the Jacobian's determinant
+ * must be positive, too. The inverse is found by Newton's method inside that range. */
 #include "common/capture/camera.h"
 
 #include <stddef.h>
 #include <string.h>
+
+#include "common/math/numbers.h"
 
 static const struct {
     const char *name;
@@ -139,7 +141,7 @@ static void slope_poly(const struct distortion *q, double slope[SLOPE_TERMS])
         for (int j = 0; j < D_TERMS; j++) slope[i + j] += q->n[i] * q->d[j] * (1 + 2 * i - 2 * j);
 }
 
-/* The roots in (0, end] at which the polynomial changes its sign, ascending: bisection between the roots of its
+/* The roots in (0, end] where the polynomial changes sign, ascending, by bisection between the roots of its
  * derivative. */
 static int poly_roots(const double *c, int terms, double end, double roots[SLOPE_TERMS])
 {
@@ -166,12 +168,12 @@ static int poly_roots(const double *c, int terms, double end, double roots[SLOPE
 /* Largest s up to `end` such that the polynomial (1 at 0) is positive on [0, s]. */
 static double positive_until(const double *c, int terms, double end)
 {
-    double least = 1, power = 1, roots[SLOPE_TERMS];
+    double bound = 1, power = 1, roots[SLOPE_TERMS];
     for (int i = 1; i < terms; i++) {
         power *= end;
-        if (c[i] < 0) least += c[i] * power;
+        if (c[i] < 0) bound += c[i] * power; /* lower bound of the polynomial on [0, end] */
     }
-    if (least > 0) return end;
+    if (bound > 0) return end;
     return poly_roots(c, terms, end, roots) ? roots[0] : end;
 }
 
@@ -197,8 +199,8 @@ static bool distort(const struct distortion *q, double x, double y, double *xd, 
     return jacobian[0] * jacobian[2] > jacobian[1] * jacobian[1];
 }
 
-/* r in [0, end] with r g(r^2) = rd, by Newton kept inside a shrinking bracket. False: there is none; *r is then where
- * the map ends. */
+/* Finds r in [0, end] with r g(r^2) = rd, by Newton's method within a shrinking bracket. False: there is none; *r is
+ * then the end of the one-to-one range. */
 static bool undistort_radius(const struct distortion *q, double rd, double end, double *r)
 {
     double low = 0, high = fmin(rd, end), g, dg;
@@ -231,7 +233,7 @@ static bool undistort_radius(const struct distortion *q, double rd, double end, 
     return true;
 }
 
-/* Newton in the plane from (x, y), steps halved until they get nearer. */
+/* Newton's method in the plane from (x, y); steps are halved until the error decreases. */
 static bool undistort_tangential(const struct distortion *q, double xd, double yd, double *x, double *y)
 {
     double a, b, j[3];
@@ -269,7 +271,7 @@ bool camera_project(const struct camera *c, struct vec3 p, double *u, double *v)
     if (c->model == CAMERA_OPENCV_FISHEYE) {
         double rho = hypot(p.x, p.y), theta = atan2(rho, p.z), scale = p.z > 0 ? 1 / p.z : 0;
         if (rho > 0) {
-            if (one_to_one_until(&q, theta * theta) < theta * theta || theta >= M_PI) return false;
+            if (one_to_one_until(&q, theta * theta) < theta * theta || theta >= PI) return false;
             scale = theta * poly(q.n, N_TERMS, theta * theta) / rho;
         } else if (!(p.z > 0)) {
             return false;
@@ -297,8 +299,8 @@ bool camera_project(const struct camera *c, struct vec3 p, double *u, double *v)
     return true;
 }
 
-/* A ray this many focal lengths off the axis cannot be told from one across it. */
-static const double WIDEST = 1e8;
+/* Largest distance from the axis on the plane z = 1, practically perpendicular to it. */
+static const double MAX_PLANE_RADIUS = 1e8;
 
 bool camera_unproject(const struct camera *c, double u, double v, struct vec3 *ray)
 {
@@ -308,15 +310,15 @@ bool camera_unproject(const struct camera *c, double u, double v, struct vec3 *r
     double xd = (u - cx) / fx, yd = (v - cy) / fy, rd = hypot(xd, yd), r = rd;
     if (!isfinite(rd)) return false;
     if (c->model == CAMERA_OPENCV_FISHEYE) {
-        if (rd > 0 && (!undistort_radius(&q, rd, M_PI, &r) || r >= M_PI)) return false;
+        if (rd > 0 && (!undistort_radius(&q, rd, PI, &r) || r >= PI)) return false;
         double across = rd > 0 ? sin(r) / rd : 0;
         *ray = vec3_normalize(vec3_make(xd * across, yd * across, cos(r)));
         return true;
     }
     double x = xd, y = yd;
-    if (q.none && rd > WIDEST) return false;
+    if (q.none && rd > MAX_PLANE_RADIUS) return false;
     if (rd > 0 && !q.none) {
-        bool found = undistort_radius(&q, rd, WIDEST, &r);
+        bool found = undistort_radius(&q, rd, MAX_PLANE_RADIUS, &r);
         x = xd * (r / rd);
         y = yd * (r / rd);
         if (q.tangential ? !undistort_tangential(&q, xd, yd, &x, &y) : !found) return false;

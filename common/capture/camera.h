@@ -32,7 +32,7 @@ struct camera {
     double params[CAMERA_MAX_PARAMS];
 };
 
-/* Rigid: p_cam = R(rotation) p_world + translation. */
+/* p_cam = R(rotation) p_world + translation. */
 struct pose {
     struct quat rotation;
     struct vec3 translation;
@@ -42,20 +42,19 @@ const char *camera_model_name(enum camera_model model);
 int camera_model_params(enum camera_model model);
 bool camera_model_from_name(const char *name, enum camera_model *model);
 
-/* Finite parameters, focal lengths > 0, sizes >= 1; the error says which is not. */
+/* ST_DATA: a parameter is not finite, a focal length not > 0, a side < 1. */
 enum status camera_check(const struct camera *c, struct err *err);
 
 void camera_focal(const struct camera *c, double *fx, double *fy, double *cx, double *cy);
 
-/* Point in camera coordinates -> pixel. False behind the camera (z <= 0; a fisheye only at the origin and straight
- * back), or beyond the radius where the distortion stops being one-to-one. */
+/* Point in camera coordinates -> pixel. False: behind the camera (z <= 0; for a fisheye only the origin and the
+ * negative axis), or beyond the radius up to which the distortion is one-to-one. */
 bool camera_project(const struct camera *c, struct vec3 p, double *u, double *v);
 
-/* Pixel -> unit ray in camera coordinates; Newton on the distortion to 1e-10 of the focal length. False if no ray maps
- * there. */
+/* Pixel -> ray of length 1 in camera coordinates, accurate to 1e-10 focal lengths. False: no ray maps to this pixel. */
 bool camera_unproject(const struct camera *c, double u, double v, struct vec3 *ray);
 
 struct vec3 pose_apply(const struct pose *cam_from_world, struct vec3 world);
-struct vec3 pose_center(const struct pose *cam_from_world); /* the camera's centre in the world */
+struct vec3 pose_center(const struct pose *cam_from_world); /* the camera's centre in world coordinates */
 
 #endif

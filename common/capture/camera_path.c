@@ -1,24 +1,25 @@
-/* camera_path.c - see camera_path.h. */
+/* camera_path.c - reading and writing camera moves. */
 #include "common/capture/camera_path.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/base/array.h"
 #include "common/base/file_path.h"
 #include "common/base/outfile.h"
 #include "common/base/textfile.h"
 
-enum { MOST_FRAMES = 1000000, LINE_SIZE = 256 };
+enum { MAX_FRAMES = 1000000, LINE_SIZE = 256 };
 
 enum status camera_path_init(struct camera_path *p, const char *effect, double fps, int frames, struct err *err)
 {
     *p = (struct camera_path){.fps = fps};
-    if (frames < 1 || frames > MOST_FRAMES)
-        return err_set(err, ST_DATA, "a path of %d frames cannot be made; wanted 1 to %d.", frames, MOST_FRAMES);
-    if (!(fps > 0)) return err_set(err, ST_DATA, "%g frames a second make no path; wanted more than 0.", fps);
+    if (frames < 1 || frames > MAX_FRAMES)
+        return err_set(err, ST_DATA, "the path has %d frames, wanted 1 to %d.", frames, MAX_FRAMES);
+    if (!(fps > 0)) return err_set(err, ST_DATA, "the path has %g frames per second, wanted more than 0.", fps);
     if (strlen(effect) >= sizeof p->effect)
-        return err_set(err, ST_DATA, "the effect's name \"%s\" is longer than %zu letters.", effect,
+        return err_set(err, ST_DATA, "the name of the effect \"%s\" is longer than %zu bytes.", effect,
                        sizeof p->effect - 1);
     strcpy(p->effect, effect);
     p->frames = calloc((size_t)frames, sizeof *p->frames);
@@ -44,14 +45,12 @@ enum status camera_path_add_score(struct camera_path *p, const char *name, doubl
     struct path_score s = {.value = value};
     if (strlen(name) >= sizeof s.name || strlen(unit) >= sizeof s.unit)
         return err_set(err, ST_DATA,
-                       "the score \"%s\" in \"%s\" has too long a name; wanted at most %zu and %zu letters.", name,
-                       unit, sizeof s.name - 1, sizeof s.unit - 1);
+                       "the name of the score \"%s\" or its unit \"%s\" is too long; wanted at most %zu and %zu bytes.",
+                       name, unit, sizeof s.name - 1, sizeof s.unit - 1);
     if (!isfinite(value)) return err_set(err, ST_INTERNAL, "the score %s is not a finite number.", name);
     strcpy(s.name, name);
     strcpy(s.unit, unit);
-    struct path_score *more = realloc(p->scores, ((size_t)p->score_count + 1) * sizeof *more);
-    if (!more) return err_nomem(err, "a path's scores", ((size_t)p->score_count + 1) * sizeof *more);
-    p->scores = more;
+    if (array_append(&p->scores, (size_t)p->score_count, sizeof *p->scores, "scores", err)) return err->status;
     p->scores[p->score_count++] = s;
     return ST_OK;
 }
@@ -137,18 +136,18 @@ static enum status next_line(struct textfile *t, const char *word, struct err *e
     return textfile_expect(t, word, err);
 }
 
-/* A word of at most size - 1 letters. */
+/* A word of at most size - 1 bytes. */
 static enum status short_word(struct textfile *t, const char *what, char *out, size_t size, struct err *err)
 {
     char *word;
     if (textfile_word(t, what, &word, err)) return err->status;
-    if (strlen(word) >= size) return textfile_error(t, err, word, "%s of at most %zu letters", what, size - 1);
+    if (strlen(word) >= size) return textfile_error(t, err, word, "%s of at most %zu bytes", what, size - 1);
     strcpy(out, word);
     return ST_OK;
 }
 
-/* A number from 0 on. */
-static enum status amount(struct textfile *t, const char *what, double *value, struct err *err)
+/* A number of 0 or more. */
+static enum status read_amount(struct textfile *t, const char *what, double *value, struct err *err)
 {
     if (textfile_double(t, what, value, err)) return err->status;
     if (*value >= 0) return ST_OK;
@@ -167,16 +166,16 @@ static enum status read_score(struct textfile *t, struct camera_path *p, struct 
     return camera_path_add_score(p, s.name, s.value, s.unit, err);
 }
 
-/* Everything up to the frames. */
+/* Everything before the frames. */
 static enum status read_head(struct textfile *t, struct camera_path *p, int64_t *frames, struct err *err)
 {
     int64_t version;
     if (next_line(t, "remodel-path", err) || textfile_int(t, "version", 1, 1, &version, err) || textfile_end(t, err) ||
         next_line(t, "effect", err) || short_word(t, "the effect's name", p->effect, sizeof p->effect, err) ||
-        textfile_end(t, err) || next_line(t, "fps", err) || amount(t, "frames a second", &p->fps, err) ||
+        textfile_end(t, err) || next_line(t, "fps", err) || read_amount(t, "frames per second", &p->fps, err) ||
         textfile_end(t, err))
         return err->status;
-    if (!(p->fps > 0)) return textfile_error(t, err, "0", "frames a second above 0");
+    if (!(p->fps > 0)) return textfile_error(t, err, "0", "frames per second above 0");
     for (;;) {
         char *word;
         if (!textfile_next(t)) return textfile_error(t, err, NULL, "a line \"frames N\"");
@@ -185,8 +184,8 @@ static enum status read_head(struct textfile *t, struct camera_path *p, int64_t 
         if (strcmp(word, "score")) return textfile_error(t, err, word, "\"score\" or \"frames\"");
         if (read_score(t, p, err)) return err->status;
     }
-    return textfile_int(t, "number of frames", 1, MOST_FRAMES, frames, err) || textfile_end(t, err) ? err->status
-                                                                                                    : ST_OK;
+    return textfile_int(t, "number of frames", 1, MAX_FRAMES, frames, err) || textfile_end(t, err) ? err->status
+                                                                                                   : ST_OK;
 }
 
 static enum status check_camera(const struct textfile *t, const struct view *v, const struct view *first,
@@ -200,7 +199,7 @@ static enum status check_camera(const struct textfile *t, const struct view *v, 
     snprintf(found, sizeof found, "a size of %d x %d of frame %.16s", v->width, v->height, v->name);
     if (v->width % 2 || v->height % 2) return textfile_error(t, err, found, "even numbers in path/cameras.txt");
     if (v->width != first->width || v->height != first->height)
-        return textfile_error(t, err, found, "%d x %d as of the first frame", first->width, first->height);
+        return textfile_error(t, err, found, "%d x %d, the size of the first frame", first->width, first->height);
     return ST_OK;
 }
 
@@ -211,11 +210,11 @@ static enum status read_frame(struct textfile *t, struct path_frame *f, const st
     const char *wanted = f->camera.name;
     if (next_line(t, "frame", err) || textfile_word(t, "a frame's name", &name, err)) return err->status;
     if (strcmp(name, wanted)) return textfile_error(t, err, name, "frame %s", wanted);
-    if (amount(t, "time in seconds", &f->time, err) || amount(t, "aperture", &f->aperture, err) ||
-        amount(t, "focus", &f->focus, err) || textfile_end(t, err))
+    if (read_amount(t, "time in seconds", &f->time, err) || read_amount(t, "aperture", &f->aperture, err) ||
+        read_amount(t, "focus", &f->focus, err) || textfile_end(t, err))
         return err->status;
     int at = camera_set_find(set, wanted);
-    if (at < 0) return textfile_error(t, err, name, "a frame that path/images.txt has, as %s.exr", wanted);
+    if (at < 0) return textfile_error(t, err, name, "a frame in path/images.txt, as %s.exr", wanted);
     f->camera = set->views[at];
     f->camera.name = wanted;
     return check_camera(t, &f->camera, first, err);

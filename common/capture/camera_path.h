@@ -1,23 +1,23 @@
 /* camera_path.h - a camera move: out/SCENE/parallax/EFFECT/path/{cameras,images,points3D}.txt and path.txt beside it.
  *
- * The poses are COLMAP text, a PINHOLE camera a frame, image names "0001.exr"; all frames have one size, even in both
- * directions. path.txt holds what COLMAP's format cannot say:
+ * The poses are a COLMAP text model with one PINHOLE camera per frame and image names "0001.exr"; all frames have the
+ * same size, even in both directions. path.txt has the values that COLMAP's format lacks:
  *   remodel-path 1
  *   effect establishing_dolly
- *   fps 30                           frames a second
- *   score NAME VALUE UNIT            any number of them; UNIT "" where there is none
+ *   fps 30                           frames per second
+ *   score NAME VALUE UNIT            any number of lines; UNIT "" if there is none
  *   frames N
- *   frame 0001 TIME APERTURE FOCUS   N of them: seconds from the start; diameter and depth in focus in scene units */
+ *   frame 0001 TIME APERTURE FOCUS   N lines: seconds from the start; diameter and depth of focus in scene units */
 #ifndef REMODEL_CAMERA_PATH_H
 #define REMODEL_CAMERA_PATH_H
 
 #include "common/capture/camera_set.h"
 
 struct path_frame {
-    struct view camera; /* its name is the frame's number, "0001"; owned by the path */
+    struct view camera; /* name: the frame's number, "0001"; owned by the path */
     double time;        /* seconds from the start */
-    double aperture;    /* diameter in scene units, 0 pinhole */
-    double focus;       /* depth in focus, 0 if aperture is 0 */
+    double aperture;    /* diameter in scene units; 0: pinhole */
+    double focus;       /* depth of the focal plane; 0 if aperture is 0 */
 };
 
 struct path_score {
@@ -35,7 +35,7 @@ struct camera_path {
     int frame_count;
 };
 
-/* Frames are named and timed; their cameras are the caller's to fill. ST_DATA: no frame, fps not above 0. */
+/* Names the frames and sets their times; the caller fills in their cameras. ST_DATA: no frames, fps not above 0. */
 enum status camera_path_init(struct camera_path *p, const char *effect, double fps, int frames, struct err *err);
 enum status camera_path_add_score(struct camera_path *p, const char *name, double value, const char *unit,
                                   struct err *err);

@@ -1,4 +1,4 @@
-/* camera_set.c - see camera_set.h. */
+/* camera_set.c - the rectified views of a scene. */
 #include "common/capture/camera_set.h"
 
 #include <stdio.h>
@@ -13,11 +13,11 @@ static enum status make_view(struct view *v, const struct sfm_model *m, const st
     const struct camera *c = &m->cameras[im->camera_idx].camera;
     size_t length = strlen(im->name), tail = sizeof suffix - 1;
     if (length <= tail || strcmp(im->name + length - tail, suffix))
-        return err_set(err, ST_DATA, "%s/images.txt: found image \"%s\", wanted names like VIEW.exr.", folder,
+        return err_set(err, ST_DATA, "%s/images.txt: found image \"%s\", wanted a name like VIEW.exr.", folder,
                        im->name);
     if (c->model != CAMERA_PINHOLE && c->model != CAMERA_SIMPLE_PINHOLE)
         return err_set(err, ST_DATA,
-                       "%s/cameras.txt: found a %s camera for image \"%s\", wanted PINHOLE or SIMPLE_PINHOLE: the "
+                       "%s/cameras.txt: found a %s camera for image \"%s\", wanted PINHOLE or SIMPLE_PINHOLE, the "
                        "cameras of rectified views.",
                        folder, camera_model_name(c->model), im->name);
     v->name = strndup(im->name, length - tail);
@@ -31,38 +31,38 @@ static enum status make_view(struct view *v, const struct sfm_model *m, const st
     return ST_OK;
 }
 
-struct place {
+struct view_entry {
     struct view view;
     struct sfm_image image;
     int idx;
 };
 
-static int compare_places(const void *a, const void *b)
+static int compare_entries(const void *a, const void *b)
 {
-    return strcmp(((const struct place *)a)->view.name, ((const struct place *)b)->view.name);
+    return strcmp(((const struct view_entry *)a)->view.name, ((const struct view_entry *)b)->view.name);
 }
 
-/* The model is in order of "VIEW.exr", which differs from the order of VIEW where one name begins another. */
+/* The model is in order of "VIEW.exr", which differs from the order of VIEW if one name is the beginning of another. */
 static enum status sort_views(struct camera_set *set, struct err *err)
 {
     struct sfm_model *m = &set->model;
     size_t n = (size_t)set->view_count;
-    struct place *places = calloc(n, sizeof *places);
+    struct view_entry *entries = calloc(n, sizeof *entries);
     int *new_idx = calloc(n, sizeof *new_idx);
-    enum status st = places && new_idx ? ST_OK : err_nomem(err, "views", n * sizeof *places);
+    enum status st = entries && new_idx ? ST_OK : err_nomem(err, "views", n * sizeof *entries);
     if (!st) {
-        for (size_t i = 0; i < n; i++) places[i] = (struct place){set->views[i], m->images[i], (int)i};
-        qsort(places, n, sizeof *places, compare_places);
+        for (size_t i = 0; i < n; i++) entries[i] = (struct view_entry){set->views[i], m->images[i], (int)i};
+        qsort(entries, n, sizeof *entries, compare_entries);
         for (size_t i = 0; i < n; i++) {
-            set->views[i] = places[i].view;
-            m->images[i] = places[i].image;
-            new_idx[places[i].idx] = (int)i;
+            set->views[i] = entries[i].view;
+            m->images[i] = entries[i].image;
+            new_idx[entries[i].idx] = (int)i;
         }
         for (int i = 0; i < m->point_count; i++)
             for (int k = 0; k < m->points[i].track_count; k++)
                 m->points[i].track[k].image_idx = new_idx[m->points[i].track[k].image_idx];
     }
-    free(places);
+    free(entries);
     free(new_idx);
     return st;
 }

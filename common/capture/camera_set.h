@@ -1,6 +1,6 @@
-/* camera_set.h - the rectified views of a scene: pinhole cameras with names, and the sparse points they saw.
+/* camera_set.h - the rectified views of a scene: named pinhole cameras and the sparse points that they see.
  *
- * out/SCENE/views/{cameras,images,points3D}.txt; an image's name there is "VIEW.exr", its view is "VIEW". */
+ * out/SCENE/views/{cameras,images,points3D}.txt; an image is named "VIEW.exr", its view "VIEW". */
 #ifndef REMODEL_CAMERA_SET_H
 #define REMODEL_CAMERA_SET_H
 
@@ -18,25 +18,25 @@ struct view {
 struct camera_set {
     struct view *views; /* in order of name */
     int view_count;
-    struct sfm_model model; /* points, observations (in rectified pixels), same order of images */
+    struct sfm_model model; /* points, observations (in rectified pixels); images in the order of the views */
 };
 
-/* PINHOLE and SIMPLE_PINHOLE only. */
+/* ST_DATA for camera models other than PINHOLE and SIMPLE_PINHOLE. */
 enum status camera_set_read(struct camera_set *set, const char *folder, struct err *err);
-/* Names the three files of the folder as inputs: views/cameras.txt, images.txt, points3D.txt. */
+/* Adds the three files of the folder to the provenance as views/cameras.txt, images.txt, points3D.txt. */
 enum status camera_set_add_inputs(struct provenance *prov, const char *folder, struct err *err);
-int camera_set_find(const struct camera_set *set, const char *name); /* -1: not there */
+int camera_set_find(const struct camera_set *set, const char *name); /* -1: not found */
 void camera_set_release(struct camera_set *set);
 
-/* Depth along the camera's z axis and pixel of a world point; z <= 0: behind, u and v unset. */
+/* Returns the depth of a world point along the camera's z axis, and its pixel if the depth is > 0. */
 double view_project(const struct view *view, struct vec3 world, double *u, double *v);
-/* World point of a pixel at depth z (along the axis, never along the ray). */
+/* World point of a pixel at depth z (along the axis, not along the ray). */
 struct vec3 view_unproject(const struct view *view, double u, double v, double z);
 
-/* The camera from a point (a, b) of a lens, an offset of its centre in the camera's x and y, scene units: what lies at
- * the depth `focus` stays where it is in the picture, by the principal point. */
+/* The camera moved to a point (a, b) of the lens, an offset of its centre along its x and y axes in scene units. The
+ * principal point is shifted so that points at the depth `focus` keep their pixels. */
 struct view view_from_lens_point(const struct view *view, double a, double b, double focus);
-/* The same picture with that many pixels. */
+/* The same picture with another number of pixels. */
 void view_resize(struct view *view, int width, int height);
 
 #endif

@@ -1,10 +1,11 @@
-/* lens_list.c - see lens_list.h. */
+/* lens_list.c - reading and writing lenses.txt. */
 #include "common/capture/lens_list.h"
 
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/base/array.h"
 #include "common/base/outfile.h"
 #include "common/base/textfile.h"
 
@@ -48,7 +49,6 @@ enum status lens_list_read(struct lens_list *list, const char *path, struct err 
     struct textfile t = {0};
     char *word = NULL;
     int64_t version = 0;
-    int room = 0;
     *list = (struct lens_list){0};
     enum status st = textfile_open(&t, path, err);
     if (!st && !textfile_next(&t)) st = textfile_error(&t, err, NULL, "\"remodel-lenses 1\"");
@@ -57,16 +57,8 @@ enum status lens_list_read(struct lens_list *list, const char *path, struct err 
     if (!st) st = textfile_int(&t, "version", 1, 1, &version, err);
     if (!st) st = textfile_end(&t, err);
     while (!st && textfile_next(&t)) {
-        if (list->count == room) {
-            int more = room ? 2 * room : 16;
-            struct lens *lenses = realloc(list->lenses, (size_t)more * sizeof *lenses);
-            if (!lenses) {
-                st = err_nomem(err, "lenses", (size_t)more * sizeof *lenses);
-                break;
-            }
-            list->lenses = lenses;
-            room = more;
-        }
+        st = array_append(&list->lenses, (size_t)list->count, sizeof *list->lenses, "lenses", err);
+        if (st) break;
         struct lens *l = &list->lenses[list->count++];
         *l = (struct lens){0};
         st = read_lens(&t, l, err);

@@ -1,9 +1,9 @@
-/* lens_list.h - which photograph each view comes from, and through which lens: out/SCENE/views/lenses.txt.
+/* lens_list.h - the photograph and the lens of each view: out/SCENE/views/lenses.txt.
  *
  *   remodel-lenses 1
  *   VIEW PHOTO MODEL WIDTH HEIGHT PARAMS... turn W X Y Z
- * a line a view, in order of view: the photo's id, its camera as COLMAP writes it (size and parameters in stored photo
- * pixels), and the rotation view_from_photo as a quaternion (1 0 0 0 unless the photo became several views,
+ * One line per view, in order of view: the photo's id, its camera as COLMAP writes it (size and parameters in pixels of
+ * the stored photo), and the rotation view_from_photo as a quaternion (1 0 0 0 unless the photo became several views,
  * PHOTO@k). */
 #ifndef REMODEL_LENS_LIST_H
 #define REMODEL_LENS_LIST_H
@@ -25,7 +25,7 @@ struct lens_list {
 enum status lens_list_read(struct lens_list *list, const char *path, struct err *err);
 enum status lens_list_write(const struct lens_list *list, const char *path, const struct provenance *prov,
                             struct err *err);
-int lens_list_find(const struct lens_list *list, const char *view); /* -1: not there */
+int lens_list_find(const struct lens_list *list, const char *view); /* -1: not found */
 void lens_list_release(struct lens_list *list);
 
 #endif

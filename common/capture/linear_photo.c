@@ -1,4 +1,4 @@
-/* linear_photo.c - see linear_photo.h. */
+/* linear_photo.c - a photograph as scene-linear colour. */
 #include "common/capture/linear_photo.h"
 
 #include <stdio.h>
@@ -25,7 +25,7 @@ static enum status read_merged(struct image *linear, const char *path, char radi
     enum status st = exr_read(&exr, path, names, 3, err);
     for (int c = 0; !st && c < 3; c++)
         if (!exr_find(&exr, names[c])->f)
-            st = err_set(err, ST_DATA, "%s: channel %s holds integers, wanted half or float; merge the view again.",
+            st = err_set(err, ST_DATA, "%s: channel %s contains integers, wanted half or float; merge the view again.",
                          path, names[c]);
     if (!st) st = image_init(linear, exr.width, exr.height, 3, err);
     if (!st) {
@@ -39,8 +39,8 @@ static enum status read_merged(struct image *linear, const char *path, char radi
             to[2] = b[i] > 0 ? b[i] : 0;
         }
     }
-    const char *is = exr_attribute(&exr, "remodel:radiometry");
-    if (!st && is) snprintf(radiometry, RADIOMETRY_SIZE, "%s", is);
+    const char *stored = exr_attribute(&exr, "remodel:radiometry");
+    if (!st && stored) snprintf(radiometry, RADIOMETRY_SIZE, "%s", stored);
     exr_image_release(&exr);
     return st;
 }

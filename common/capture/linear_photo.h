@@ -1,4 +1,4 @@
-/* linear_photo.h - a photograph as scene-linear colour, whether it is one exposure or merged from several. */
+/* linear_photo.h - a photograph as scene-linear colour, from one exposure or merged from several. */
 #ifndef REMODEL_LINEAR_PHOTO_H
 #define REMODEL_LINEAR_PHOTO_H
 
@@ -8,9 +8,9 @@
 
 enum { RADIOMETRY_SIZE = 256 };
 
-/* linear: R G B as the photo is stored. Of one exposure PHOTOS/FILE, linear by the sRGB curve; of several
- * PHOTOS/ID.exr, which hdr_merge made of them. radiometry: what is known of the values, "approximate" of one exposure.
- * The file becomes an input. */
+/* linear: R G B in the orientation of the stored photo. One exposure: PHOTOS/FILE, linearised by the sRGB curve.
+ * Several: PHOTOS/ID.exr, made by hdr_merge. radiometry: how exact the values are; "approximate" for one exposure. The
+ * file is added to prov as an input. */
 enum status linear_photo_read(struct image *linear, char radiometry[RADIOMETRY_SIZE], const char *photos,
                               const struct photo_record *record, struct provenance *prov, struct err *err);
 

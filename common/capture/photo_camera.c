@@ -1,11 +1,11 @@
-/* photo_camera.c - see photo_camera.h. */
+/* photo_camera.c - a stored photograph as a camera in the world. */
 #include "common/capture/photo_camera.h"
 
 #include <string.h>
 
 #include "common/base/scan.h"
 
-/* Photos and views, for a guess at what was meant. */
+/* All names of photos and views, to suggest a similar one. */
 static const char *known_name(const void *ctx, int i)
 {
     const struct lens_list *lenses = ctx;
@@ -28,9 +28,9 @@ enum status photo_camera_find(struct photo_camera *camera, const char *name, con
     }
     char shown[SCAN_QUOTED];
     const char *near = scan_nearest(name, known_name, lenses);
-    return err_set(err, ST_DATA,
-                   "%s:%d: found %s, wanted a photo's id or a view's name, as views/lenses.txt has them%s%s%s", path,
-                   line, scan_quote(shown, name), near ? "; did you mean " : ".", near ? near : "", near ? "?" : "");
+    return err_set(err, ST_DATA, "%s:%d: found %s, wanted a photo's id or a view's name from views/lenses.txt%s%s%s",
+                   path, line, scan_quote(shown, name), near ? "; did you mean " : ".", near ? near : "",
+                   near ? "?" : "");
 }
 
 bool photo_camera_ray(const struct photo_camera *camera, double u, double v, struct vec3 *ray)

@@ -5,11 +5,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/base/array.h"
 #include "common/base/outfile.h"
 #include "common/base/textfile.h"
 
-#define QUOTED_SIZE   1024 /* a file name has at most 255 bytes */
-#define MOST_BRACKETS 1000 /* of one view */
+enum { QUOTED_SIZE = 1024 /* a file name has at most 255 bytes */, MAX_BRACKETS = 1000 /* of one view */ };
 
 static enum status keep_word(char **kept, const char *word, struct err *err)
 {
@@ -17,15 +17,15 @@ static enum status keep_word(char **kept, const char *word, struct err *err)
     return *kept ? ST_OK : err_nomem(err, "a name", strlen(word) + 1);
 }
 
-static enum status read_int(struct textfile *t, const char *what, int least, int most, int *value, struct err *err)
+static enum status read_int(struct textfile *t, const char *what, int min, int max, int *value, struct err *err)
 {
     int64_t wide = 0;
-    enum status st = textfile_int(t, what, least, most, &wide, err);
+    enum status st = textfile_int(t, what, min, max, &wide, err);
     if (!st) *value = (int)wide;
     return st;
 }
 
-/* A number of EXIF: 0 where the photo does not say. */
+/* A number from EXIF; 0: unknown. */
 static enum status read_exif(struct textfile *t, const char *what, double *value, struct err *err)
 {
     enum status st = textfile_double(t, what, value, err);
@@ -74,7 +74,7 @@ static enum status read_bracket(struct photo_record *r, struct textfile *t, stru
     st = read_hash(t, b->hash, err);
     if (!st) st = read_exposure(t, "exposure", &b->exposure, err);
     if (!st && before && before->exposure >= b->exposure)
-        st = textfile_error(t, err, b->file, "longer and longer exposures");
+        st = textfile_error(t, err, b->file, "exposures in ascending order");
     return st ? st : textfile_end(t, err);
 }
 
@@ -84,7 +84,7 @@ static enum status read_brackets(struct photo_record *r, struct textfile *t, str
     char *word = NULL;
     enum status st = textfile_word(t, "brackets", &word, err);
     if (!st && strcmp(word, "brackets")) st = textfile_error(t, err, word, "a line \"brackets ...\", or the end");
-    if (!st) st = read_int(t, "number of exposures", 1, MOST_BRACKETS, &count, err);
+    if (!st) st = read_int(t, "number of exposures", 1, MAX_BRACKETS, &count, err);
     if (!st) st = read_int(t, "index of the middle exposure", 0, count - 1, &r->middle, err);
     if (!st) st = read_exposure(t, "exposure of white", &r->white, err);
     if (!st) st = textfile_end(t, err);
@@ -145,7 +145,7 @@ enum status photo_record_read(struct photo_record *r, const char *folder, const 
     return err && err->status ? err->status : st;
 }
 
-/* Ends a text begun with open_memstream and writes it if it is new. */
+/* Closes a text begun with open_memstream and writes it if it differs from the file. */
 static enum status finish_text(FILE *to, char **text, size_t *size, const char *path, enum status st, struct err *err)
 {
     bool failed = ferror(to) != 0;
@@ -263,13 +263,11 @@ static enum status read_list_line(struct photo_list *list, struct textfile *t, c
     if (!st) st = textfile_end(t, err);
     if (st) return st;
 
-    struct photo_record *photos = realloc(list->photos, ((size_t)list->count + 1) * sizeof *photos);
-    if (!photos) return err_nomem(err, "a list of photos", ((size_t)list->count + 1) * sizeof *photos);
-    list->photos = photos;
-    st = photo_record_read(&photos[list->count], folder, id, err);
+    if (array_append(&list->photos, (size_t)list->count, sizeof *list->photos, "photos", err)) return err->status;
+    st = photo_record_read(&list->photos[list->count], folder, id, err);
     if (st) return st;
-    if (strcmp(photos[list->count++].file, file))
-        st = textfile_error(t, err, file, "the file that the record %s.txt names; import the photos again", id);
+    if (strcmp(list->photos[list->count++].file, file))
+        st = textfile_error(t, err, file, "the file named in the record %s.txt; import the photos again", id);
     return st;
 }
 
@@ -281,7 +279,7 @@ enum status photo_list_read(struct photo_list *list, const char *folder, struct 
     if (!path) return err_nomem(err, "a path", 0);
     enum status st = textfile_open(&t, path, err);
     while (!st && textfile_next(&t)) st = read_list_line(list, &t, folder, err);
-    if (!st && !list->count) st = err_set(err, ST_DATA, "%s lists no photo; import the photos again.", path);
+    if (!st && !list->count) st = err_set(err, ST_DATA, "%s contains no photo; import the photos again.", path);
     textfile_release(&t);
     free(path);
     if (st) photo_list_release(list);

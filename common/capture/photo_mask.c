@@ -1,4 +1,4 @@
-/* photo_mask.c - see photo_mask.h. */
+/* photo_mask.c - regions of a photo to ignore. */
 #include "common/capture/photo_mask.h"
 
 #include <dirent.h>
@@ -27,7 +27,7 @@ static enum status add_samples(struct photo_mask *m, const struct photo *p, stru
     return ST_OK;
 }
 
-/* FOLDER/ID.png, which need not be there. */
+/* Adds FOLDER/ID.png, if it exists. */
 static enum status add_mask(struct photo_mask *m, const char *folder, const char *id, const struct photo_record *r,
                             struct provenance *prov, struct err *err)
 {
@@ -53,7 +53,7 @@ static enum status add_mask(struct photo_mask *m, const char *folder, const char
     return st;
 }
 
-/* Is `id` one of the exposures that the photo stands for? */
+/* Whether `id` is one of the exposures of the view. */
 static bool is_exposure(const struct photo_record *r, const char *records, const char *id)
 {
     struct photo_record member = {0};
@@ -98,8 +98,8 @@ enum status photo_mask_read(struct photo_mask *m, const char *folder, const char
     if (!st && m->masked && !memchr(m->masked, 0, pixels))
         st = err_set(
             err, ST_DATA,
-            "the mask of photo %s in %s hides all of it: no sample is brighter than half of white. What is to be "
-            "looked at must be white (255), not 1; to do without the photo, leave it out (EXCLUDE).",
+            "the mask of photo %s in %s hides all of it: no sample is brighter than half of white. Regions to use must "
+            "be white (255), not 1; to do without the photo, leave it out (EXCLUDE).",
             r->id, folder);
     if (st || !m->masked) photo_mask_release(m);
     return st;

@@ -1,7 +1,7 @@
-/* photo_mask.h - what people painted over in a photo: scenes/NAME/masks/ID.png, black where it is not to be looked at.
+/* photo_mask.h - regions of a photo to ignore, painted black by the user: scenes/NAME/masks/ID.png.
  *
- * A mask is as large as the photo is stored. Samples below half of white are black: the soft edge of a brush counts by
- * its middle. */
+ * A mask has the size of the stored photo. Samples below half of white count as black, so the soft edge of a brush is
+ * cut at its middle. */
 #ifndef REMODEL_PHOTO_MASK_H
 #define REMODEL_PHOTO_MASK_H
 
@@ -10,13 +10,13 @@
 
 struct photo_mask {
     int width, height;
-    unsigned char *masked; /* w * h, 1: not to be looked at; owned; NULL: the photo has no mask */
+    unsigned char *masked; /* width * height, 1: ignore; owned; NULL: the photo has no mask */
 };
 
-/* m is {0} on entry and stays so if there is no mask. folder: of the masks, NULL: there are none. A photo that stands for several
- * exposures has the masks of its own id and of each exposure's (records/members has their ids): what one of them hides is
- * hidden, for the merged picture holds light of all. prov (NULL: not wanted) gets the files as masks/ID.png. ST_DATA: another size than
- * the photo's, or nothing is left to look at. */
+/* m is {0} on entry and stays so if there is no mask. folder: of the masks; NULL: none. A view of several exposures has
+ * the masks of its own id and of its exposures (their ids are in records/members). A pixel is ignored if any of them
+ * masks it, because the merged picture contains light of all exposures. The files are added to prov (may be NULL) as
+ * masks/ID.png. ST_DATA: the size differs from the photo's, or nothing remains. */
 enum status photo_mask_read(struct photo_mask *m, const char *folder, const char *records, const struct photo_record *r,
                             struct provenance *prov, struct err *err);
 void photo_mask_release(struct photo_mask *m);

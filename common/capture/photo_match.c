@@ -1,4 +1,4 @@
-/* photo_match.c - see photo_match.h. */
+/* photo_match.c - finds the photograph that an image of a model is. */
 #include "common/capture/photo_match.h"
 
 #include <string.h>

@@ -1,11 +1,11 @@
-/* photo_match.h - which photograph a name in a structure-from-motion model means. */
+/* photo_match.h - finds the photograph that an image of a structure-from-motion model is. */
 #ifndef REMODEL_PHOTO_MATCH_H
 #define REMODEL_PHOTO_MATCH_H
 
 #include "common/capture/photo_list.h"
 
-/* By exact file name, else by the name behind its last slash, else by the photo's id with or without an extension, else
- * by the file name of a view's middle exposure. Index into the list; -1: none. */
+/* Matches, in this order: the exact file name; the name after its last slash; the photo's id, with or without
+ * extension; the file name of a view's middle exposure. Returns the index into the list; -1: none. */
 int photo_list_match(const struct photo_list *photos, const char *name);
 
 #endif

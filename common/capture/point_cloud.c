@@ -1,4 +1,4 @@
-/* point_cloud.c - see point_cloud.h. */
+/* point_cloud.c - reading and writing oriented points. */
 #include "common/capture/point_cloud.h"
 
 #include <inttypes.h>
@@ -23,14 +23,14 @@ enum { PROPERTIES = sizeof properties / sizeof *properties };
 static const char kind[] = "comment remodel-points 1";
 static const char cell_word[] = "comment cell ";
 
-static bool good_point(const struct cloud_point *p)
+static bool is_valid(const struct cloud_point *p)
 {
     const double length = vec3_length(cloud_normal(p));
     return isfinite(p->position.x) && isfinite(p->position.y) && isfinite(p->position.z) && fabs(length - 1) < 1e-3 &&
            p->views > 0 && p->confidence >= 0 && p->confidence <= 1;
 }
 
-static enum status bad_point(const struct cloud_point *p, size_t i, const char *path, struct err *err)
+static enum status invalid_point(const struct cloud_point *p, size_t i, const char *path, struct err *err)
 {
     return err_set(
         err, ST_DATA,
@@ -40,7 +40,7 @@ static enum status bad_point(const struct cloud_point *p, size_t i, const char *
         (double)p->normal[2], p->views, (double)p->confidence);
 }
 
-/* The machine is little-endian (the build asks for AVX2), as the file is. */
+/* Machine (the build requires AVX2) and file are both little-endian. */
 static void pack(uint8_t *to, const struct cloud_point *p)
 {
     const double position[3] = {p->position.x, p->position.y, p->position.z};
@@ -62,7 +62,7 @@ static void unpack(struct cloud_point *p, const uint8_t *from)
     memcpy(&p->confidence, from + 41, 4);
 }
 
-/* The provenance's lines, which begin with "# ", as comments. */
+/* Writes the provenance, whose lines begin with "# ", as comments. */
 static enum status print_provenance(FILE *to, const struct provenance *prov, struct err *err)
 {
     char *text = NULL;
@@ -88,7 +88,7 @@ enum status point_cloud_write(const struct point_cloud *cloud, const char *path,
                               struct err *err)
 {
     for (size_t i = 0; i < cloud->count; i++)
-        if (!good_point(&cloud->points[i])) return bad_point(&cloud->points[i], i, path, err);
+        if (!is_valid(&cloud->points[i])) return invalid_point(&cloud->points[i], i, path, err);
 
     struct outfile file = {0};
     enum status st = outfile_open(&file, path, err);
@@ -121,11 +121,11 @@ struct header {
     int line;
 };
 
-static enum status wanted(const struct header *h, const char *what, struct err *err)
+static enum status header_error(const struct header *h, const char *what, struct err *err)
 {
     char shown[SCAN_QUOTED];
     return err_set(err, ST_DATA,
-                   "%s:%d: found %s, wanted %s; these are no points of remodel's, or the file is damaged.", h->path,
+                   "%s:%d: found %s, wanted %s; this is not a point cloud of remodel, or the file is damaged.", h->path,
                    h->line, h->text ? scan_quote(shown, h->text) : "the end of the file", what);
 }
 
@@ -149,7 +149,7 @@ static enum status expect_line(struct header *h, const char *text, struct err *e
     char shown[64];
     if (next_line(h) && !strcmp(h->text, text)) return ST_OK;
     snprintf(shown, sizeof shown, "\"%s\"", text);
-    return wanted(h, shown, err);
+    return header_error(h, shown, err);
 }
 
 static enum status read_header(struct header *h, double *cell, int64_t *count, struct err *err)
@@ -161,17 +161,17 @@ static enum status read_header(struct header *h, double *cell, int64_t *count, s
         return err->status;
     *cell = -1;
     for (;;) {
-        if (!next_line(h)) return wanted(h, "a line of a PLY header", err);
+        if (!next_line(h)) return header_error(h, "a line of a PLY header", err);
         if (*cell < 0 && !strncmp(h->text, cell_word, cell_length)) {
             if (!scan_double(h->text + cell_length, cell) || *cell < 0)
-                return wanted(h, "the edge of a cell, 0 or more", err);
+                return header_error(h, "a cell size of 0 or more", err);
         } else if (strncmp(h->text, "comment ", 8)) {
             break;
         }
     }
-    if (*cell < 0) return wanted(h, "\"comment cell SIZE\" before it", err);
+    if (*cell < 0) return header_error(h, "\"comment cell SIZE\" before it", err);
     if (strncmp(h->text, element, element_length) || !scan_int(h->text + element_length, count) || *count < 0)
-        return wanted(h, "\"element vertex COUNT\"", err);
+        return header_error(h, "\"element vertex COUNT\"", err);
     for (int i = 0; i < PROPERTIES; i++)
         if (expect_line(h, properties[i], err)) return err->status;
     return expect_line(h, "end_header", err);
@@ -189,7 +189,7 @@ static enum status read_points(struct point_cloud *cloud, FILE *fp, const char *
         }
         for (size_t i = 0; !st && i < n; i++) {
             unpack(&cloud->points[at + i], block + i * RECORD_SIZE);
-            if (!good_point(&cloud->points[at + i])) st = bad_point(&cloud->points[at + i], at + i, path, err);
+            if (!is_valid(&cloud->points[at + i])) st = invalid_point(&cloud->points[at + i], at + i, path, err);
         }
     }
     free(block);
@@ -204,14 +204,14 @@ enum status point_cloud_read(struct point_cloud *cloud, const char *path, struct
     *cloud = (struct point_cloud){0};
     h.fp = fopen(path, "rbe");
     if (!h.fp) return err_errno(err, "open", path);
-    enum status st = fstat(fileno(h.fp), &info) ? err_errno(err, "look at", path) : ST_OK;
+    enum status st = fstat(fileno(h.fp), &info) ? err_errno(err, "get the size of", path) : ST_OK;
     if (!st) st = read_header(&h, &cloud->cell, &count, err);
     if (!st) {
-        /* a count that the file cannot hold is not believed */
+        /* memory is allocated only for as many points as the file contains */
         const int64_t left = (int64_t)info.st_size - (int64_t)ftello(h.fp);
         if (left % RECORD_SIZE || left / RECORD_SIZE != count)
             st = err_set(err, ST_DATA,
-                         "%s: found %" PRId64 " bytes behind the header, wanted %d for each of %" PRId64
+                         "%s: found %" PRId64 " bytes after the header, wanted %d for each of %" PRId64
                          " points; make the points again.",
                          path, left, RECORD_SIZE, count);
     }

@@ -1,7 +1,7 @@
 /* point_cloud.h - oriented points of a scene: out/SCENE/points/points.ply (docs/formats.md).
  *
- * Positions and normals are in the world's axes, positions in scene units; a normal has length 1 and points to where the
- * surface was seen from. */
+ * Positions and normals are in world coordinates, positions in scene units; a normal has length 1 and points to the
+ * side from which the surface was seen. */
 #ifndef REMODEL_POINT_CLOUD_H
 #define REMODEL_POINT_CLOUD_H
 
@@ -14,22 +14,23 @@
 struct cloud_point {
     struct vec3 position;
     float normal[3];
-    uint8_t color[3]; /* sRGB: to look at, cut at white; the views have the radiance */
-    uint16_t views;   /* that agree, at least 1 */
+    uint8_t color[3]; /* sRGB for display, clipped at white; the views have the radiance */
+    uint16_t views;   /* number of views that agree, at least 1 */
     float confidence; /* 0 .. 1 */
 };
 
 struct point_cloud {
     struct cloud_point *points; /* owned */
     size_t count;
-    double cell; /* edge of the grid on which points were merged, in scene units; 0: they were not */
+    double cell; /* cell size of the grid on which points were merged, in scene units; 0: not merged */
 };
 
-/* Binary little-endian PLY; the same bytes for the same cloud. prov may be NULL. ST_DATA: a value that reading would refuse. */
+/* Writes a binary little-endian PLY file; equal clouds give equal bytes. prov may be NULL. ST_DATA: a point that
+ * reading would reject. */
 enum status point_cloud_write(const struct point_cloud *cloud, const char *path, const struct provenance *prov,
                               struct err *err);
-/* Only what point_cloud_write() writes. ST_DATA names the header's line or the point where a file is something else: cut, longer
- * than it says, values not finite, normals whose length is not 1, confidence outside 0 .. 1, no view. */
+/* Reads only files of point_cloud_write(). ST_DATA, with the line of the header or the point: other headers, a wrong
+ * file size, values that are not finite, normals of another length, confidence outside 0 .. 1, no view. */
 enum status point_cloud_read(struct point_cloud *cloud, const char *path, struct err *err);
 void point_cloud_release(struct point_cloud *cloud);
 

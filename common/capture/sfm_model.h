@@ -1,6 +1,6 @@
-/* sfm_model.h - cameras, posed images and sparse points, in COLMAP's text format; Bundler's is read too.
+/* sfm_model.h - cameras, posed images and sparse points. Reads and writes COLMAP's text format, reads Bundler's.
  *
- * Written by this program so that reading back gives the same bits (%.17g). */
+ * Numbers are written with %.17g, so that reading them back gives the same bits. */
 #ifndef REMODEL_SFM_MODEL_H
 #define REMODEL_SFM_MODEL_H
 
@@ -36,7 +36,7 @@ struct sfm_point {
     int64_t id;
     struct vec3 position;
     uint8_t rgb[3];
-    double error; /* px, as the file says */
+    double error; /* px, as stated by the file */
     struct sfm_track *track;
     int track_count;
 };
@@ -48,21 +48,22 @@ struct sfm_model {
     int camera_count, image_count, point_count;
 };
 
-/* Reads cameras.txt, images.txt, points3D.txt of a folder. ST_DATA with file and line for: unknown camera model (the
- * models that can be used are listed), NaN, an id twice or missing, a track or observation that points nowhere, a
- * quaternion of length 0 (others are normalised). Empty points3D.txt is fine. */
+/* Reads cameras.txt, images.txt and points3D.txt of a folder; points3D.txt may be empty. ST_DATA with file and line:
+ * unsupported camera model (the message lists the supported ones), NaN, duplicate or missing id, a track or observation
+ * that refers to nothing, a quaternion of length 0 (other lengths are normalised). */
 enum status sfm_model_read_text(struct sfm_model *m, const char *folder, struct err *err);
 
-/* cameras.txt and images.txt alone: poses and lenses, no points and no observations. */
+/* Reads cameras.txt and images.txt only: poses and lenses, no points and no observations. */
 enum status sfm_model_read_cameras(struct sfm_model *m, const char *folder, struct err *err);
 
-/* Reads a Bundler v0.3 file. names[i], sizes[i]: the file name and size in pixels of its camera i; count must be the
- * file's. Cameras with focal length 0 are those Bundler could not place: left out, like those of size 0 x 0. The axes
- * are turned to this program's; RADIAL cameras, principal point in the middle. Point errors are -1: it states none. */
+/* Reads a Bundler v0.3 file. names[i], sizes[i]: file name and size in pixels of its camera i; count must be the number
+ * of cameras in the file. Cameras that Bundler could not place (focal length 0) and those of size 0 x 0 are left out.
+ * The result has this program's axes and RADIAL cameras with the principal point in the centre; point errors are -1
+ * because the format has none. */
 enum status sfm_model_read_bundler(struct sfm_model *m, const char *path, const char *const *names,
                                    const int (*sizes)[2], int count, struct err *err);
 
-/* Writes the three files, each atomically, points3D.txt first and images.txt last. */
+/* Writes the three files, each atomically, points3D.txt first and images.txt last. prov may be NULL. */
 enum status sfm_model_write_text(const struct sfm_model *m, const char *folder, const struct provenance *prov,
                                  struct err *err);
 

@@ -1,4 +1,4 @@
-/* upright.c - see upright.h. */
+/* upright.c - the upright direction of photographs in the cameras of their views. */
 #include "common/capture/upright.h"
 
 #include "common/base/file_path.h"
@@ -33,7 +33,7 @@ enum status upright_read(struct vec3 *ups, const struct camera_set *set, const c
         struct photo_record record = {0};
         int at = lens_list_find(&lenses, set->views[i].name);
         if (at < 0) {
-            st = err_set(err, ST_DATA, "%s has no view %s, but images.txt has. Import the views again.", path,
+            st = err_set(err, ST_DATA, "%s has no view %s, which is in images.txt; import the views again.", path,
                          set->views[i].name);
             break;
         }

@@ -15,11 +15,11 @@ enum status view_image_read(struct image *im, const char *folder, const struct v
     enum status st = file_path(path, folder, view->name, ".exr", err);
     if (!st) st = exr_read(&exr, path, channel_names, 4, err);
     if (!st && (exr.width != view->width || exr.height != view->height))
-        st = err_set(err, ST_DATA, "%s is %d x %d pixels, but its camera says %d x %d; make the views again.", path,
+        st = err_set(err, ST_DATA, "%s has %d x %d pixels, but its camera %d x %d; make the views again.", path,
                      exr.width, exr.height, view->width, view->height);
     for (int c = 0; !st && c < 4; c++)
         if (!exr_find(&exr, channel_names[c])->f)
-            st = err_set(err, ST_DATA, "%s: channel %s holds integers, wanted half or float; make the views again.",
+            st = err_set(err, ST_DATA, "%s: channel %s contains integers, wanted half or float; make the views again.",
                          path, channel_names[c]);
     if (!st) st = image_init(im, exr.width, exr.height, 4, err);
     for (int c = 0; !st && c < 4; c++) {
@@ -50,8 +50,8 @@ enum status view_image_write(const struct image *im, const char *path, const str
     return st;
 }
 
-/* The attribute is OpenEXR's standard worldToCamera: p_cam = p_world M for row vectors (x y z 1), so the translation is
- * the last row; its camera axes are x right, y UP, z forward, left-handed, whereas a view's y points down. Hence
+/* OpenEXR's standard attribute worldToCamera: p_cam = p_world M for row vectors (x y z 1), so the translation is the
+ * last row; its camera axes are x right, y UP, z forward, left-handed, whereas a view's y points down. Hence
  *   M = [ R^T F  0 ]    F = diag(1, -1, 1), R = cam_from_world, t = translation,
  *       [ t^T F  1 ]    stored row by row. */
 void exr_set_camera(struct exr_image *im, const struct view *view)

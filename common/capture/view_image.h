@@ -1,5 +1,5 @@
-/* view_image.h - a rectified view's picture: out/SCENE/views/VIEW.exr, scene-linear R G B (half), A (half, 1 where the
- * photo has a pixel). */
+/* view_image.h - the picture of a rectified view: out/SCENE/views/VIEW.exr, scene-linear R G B (half), A (half, 1
+ * inside the photo). */
 #ifndef REMODEL_VIEW_IMAGE_H
 #define REMODEL_VIEW_IMAGE_H
 
@@ -7,7 +7,7 @@
 #include "common/capture/camera_set.h"
 #include "common/image/image.h"
 
-/* 4 channels R G B A. ST_DATA if the size is not the camera's. */
+/* 4 channels R G B A. ST_DATA: the size differs from the camera's. */
 enum status view_image_read(struct image *im, const char *folder, const struct view *view, struct err *err);
 enum status view_image_write(const struct image *im, const char *path, const struct view *view,
                              const struct provenance *prov, const char *radiometry, struct err *err);

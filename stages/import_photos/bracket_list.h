@@ -1,7 +1,7 @@
 /* bracket_list.h - brackets.txt: which photographs are exposures of one view.
  *
  *   VIEW FILE FILE ...
- * a line a view: its name, and its photos in any order. Names are made of letters, digits, _ and -. */
+ * One line per view: its name (letters, digits, _ and -) and its photos in any order. */
 #ifndef REMODEL_BRACKET_LIST_H
 #define REMODEL_BRACKET_LIST_H
 
@@ -11,7 +11,7 @@ struct bracket_line {
     char *view;   /* owned */
     char **files; /* owned */
     int count;
-    int line; /* of the file, from 1 */
+    int line; /* in the file, from 1 */
 };
 
 struct bracket_list {
@@ -20,8 +20,8 @@ struct bracket_list {
     int count;
 };
 
-/* ST_DATA with file and line: no view at all, a view twice or with a name that is not safe, a view without photos, a
- * photo twice. {0} is the empty list. */
+/* ST_DATA with file and line: no views, a duplicate view or an unsafe name, a view without photos, a duplicate photo.
+ * {0} is the empty list. */
 enum status bracket_list_read(struct bracket_list *list, const char *path, struct err *err);
 void bracket_list_release(struct bracket_list *list);
 

@@ -1,4 +1,8 @@
-/* bracket_views.c - see bracket_views.h. */
+/* bracket_views.c - which photographs are exposures of one view.
+ *
+ * The rules are in bracket_views.h. A cycle is found by trial: for every length from 2 to MAX_CYCLE and every start
+ * among the first CYCLE_STARTS photos, the exposures there are the candidate; its occurrences are counted without
+ * overlap. The candidate that covers most photos wins. */
 #include "stages/import_photos/bracket_views.h"
 
 #include <math.h>
@@ -8,17 +12,18 @@
 #include <strings.h>
 #include <unistd.h>
 
+#include "common/base/array.h"
 #include "common/base/log.h"
 #include "common/base/sort.h"
 #include "stages/import_photos/bracket_list.h"
 
-enum { CYCLE_MOST = 16, CYCLE_STARTS = 48, CYCLED_LEAST = 6, NAMED_MOST = 8, TEXT_SIZE = 160 };
+enum { MAX_CYCLE = 16, CYCLE_STARTS = 48, MIN_CYCLED = 6, MAX_NAMED = 8, TEXT_SIZE = 160 };
 
-static const double same = 1.01, apart = 1.2; /* ratios of exposures */
+static const double MAX_EQUAL = 1.01, MIN_DISTINCT = 1.2; /* ratios of exposures */
 
-static bool equal_exposures(double a, double b) { return a > 0 && b > 0 && a < same * b && b < same * a; }
+static bool equal_exposures(double a, double b) { return a > 0 && b > 0 && a < MAX_EQUAL * b && b < MAX_EQUAL * a; }
 
-/* The time as people read it on the camera. */
+/* The time as cameras display it. */
 static const char *show_seconds(char text[32], const struct exposure *e)
 {
     if (!(e->seconds > 0))
@@ -57,8 +62,9 @@ static enum status apply_list(struct exposure *exposures, const struct photo_sca
         int at = find_file(scan, line->file);
         snprintf(shown, sizeof shown, "%s", line->file);
         if (at < 0) {
-            st = err_set(err, ST_DATA, "%s:%d: found %s, wanted a photo of %s; mend the name or remove the line.", path,
-                         line->line, shown, scan->folder);
+            st = err_set(err, ST_DATA,
+                         "%s:%d: found %s, wanted the name of a photo in %s; correct the name or remove the line.",
+                         path, line->line, shown, scan->folder);
             break;
         }
         struct exposure *e = &exposures[at];
@@ -89,10 +95,8 @@ static enum status find_exposures(struct bracket_views *v, const struct photo_sc
 
 static enum status add_view(struct bracket_views *v, const char *id, const int *photos, int count, struct err *err)
 {
-    struct bracket_view *views = realloc(v->views, ((size_t)v->count + 1) * sizeof *views);
-    if (!views) return err_nomem(err, "a list of views", ((size_t)v->count + 1) * sizeof *views);
-    v->views = views;
-    struct bracket_view *view = &views[v->count++];
+    if (array_append(&v->views, (size_t)v->count, sizeof *v->views, "views", err)) return err->status;
+    struct bracket_view *view = &v->views[v->count++];
     *view = (struct bracket_view){strdup(id), malloc((size_t)count * sizeof *photos), count, 0};
     if (!view->id || !view->photos) return err_nomem(err, "a view", (size_t)count * sizeof *photos);
     memcpy(view->photos, photos, (size_t)count * sizeof *photos);
@@ -108,7 +112,8 @@ static enum status views_of_line(struct bracket_views *v, const struct photo_sca
     for (int k = 0; !st && k < line->count; k++) {
         int at = find_file(scan, line->files[k]);
         if (at < 0) {
-            st = err_set(err, ST_DATA, "%s:%d: found %.100s, wanted a photo of %s; mend the name or remove it.",
+            st = err_set(err, ST_DATA,
+                         "%s:%d: found %.100s, wanted the name of a photo in %s; correct the name or remove it.",
                          list->path, line->line, line->files[k], scan->folder);
             break;
         }
@@ -130,37 +135,37 @@ static enum status group_by_list(struct bracket_views *v, const struct photo_sca
     enum status st = listed ? bracket_list_read(&list, path, err) : err_nomem(err, "photos", (size_t)scan->count);
     for (int i = 0; !st && i < list.count; i++) st = views_of_line(v, scan, &list, &list.lines[i], listed, err);
     for (int i = 0; !st && i < scan->count; i++)
-        if (!listed[i] && !scan->photos[i].excluded && missing++ < NAMED_MOST)
+        if (!listed[i] && !scan->photos[i].excluded && missing++ < MAX_NAMED)
             append(names, sizeof names, ", ", scan->photos[i].file);
     if (!st && missing)
-        st = err_set(err, ST_DATA,
-                     "%s has no view with %s%s (%d of the photos in %s); add them to a line, or leave them out "
-                     "(EXCLUDE).",
-                     path, names, missing > NAMED_MOST ? ", ..." : "", missing, scan->folder);
+        st = err_set(
+            err, ST_DATA,
+            "%s has no view with %s%s (%d of the photos in %s); add them to a line, or leave them out (EXCLUDE).", path,
+            names, missing > MAX_NAMED ? ", ..." : "", missing, scan->folder);
     bracket_list_release(&list);
     free(listed);
     return st;
 }
 
-struct ordered { /* the photos that are not left out, in the camera's order */
+struct ordered { /* the photos that are not excluded, in the order of the camera */
     int *photos;
     double *values; /* exposures */
     int count;
 };
 
 struct cycle {
-    int begin, length; /* of `ordered` */
-    int count;         /* how often it is there */
+    int begin, length; /* in `ordered` */
+    int count;         /* number of occurrences */
 };
 
-struct named {
-    const char *lens, *file; /* lens: _cXrY.png of a picture that was cut out, else "" */
+struct photo_name {
+    const char *lens, *file; /* lens: _cXrY.png of a picture cut out of a photo, otherwise "" */
     int photo;
 };
 
 static int by_name(const void *a, const void *b)
 {
-    const struct named *x = a, *y = b;
+    const struct photo_name *x = a, *y = b;
     int order = strverscmp(x->lens, y->lens);
     if (!order) order = strverscmp(x->file, y->file);
     return order ? order : strcmp(x->file, y->file);
@@ -170,14 +175,14 @@ static enum status order_photos(struct ordered *o, const struct bracket_views *v
                                 struct err *err)
 {
     size_t count = (size_t)scan->count;
-    struct named *names = calloc(count + 1, sizeof *names);
+    struct photo_name *names = calloc(count + 1, sizeof *names);
     o->photos = calloc(count + 1, sizeof *o->photos);
     o->values = calloc(count + 1, sizeof *o->values);
     enum status st = names && o->photos && o->values ? ST_OK : err_nomem(err, "photos", count * sizeof *names);
     for (int i = 0; !st && i < scan->count; i++)
         if (!scan->photos[i].excluded) {
             const char *file = scan->photos[i].file, *end = scan->cut ? strrchr(file, '_') : NULL;
-            names[o->count++] = (struct named){end ? end : "", file, i};
+            names[o->count++] = (struct photo_name){end ? end : "", file, i};
         }
     if (!st) qsort(names, (size_t)o->count, sizeof *names, by_name);
     for (int i = 0; !st && i < o->count; i++) {
@@ -193,7 +198,7 @@ static bool distinct(const double *values, int count)
     for (int i = 0; i < count; i++) {
         if (!(values[i] > 0)) return false;
         for (int k = 0; k < i; k++)
-            if (values[i] < apart * values[k] && values[k] < apart * values[i]) return false;
+            if (values[i] < MIN_DISTINCT * values[k] && values[k] < MIN_DISTINCT * values[i]) return false;
     }
     return true;
 }
@@ -206,18 +211,18 @@ static bool cycle_at(const struct ordered *o, const struct cycle *c, int at)
     return true;
 }
 
-/* The cycle that holds most photos; of equals the longest, and the first. length 0: there is none. */
+/* The cycle that covers most photos; of equal ones the longest, then the first. length 0: none. */
 static struct cycle find_cycle(const struct ordered *o)
 {
     struct cycle best = {0};
-    for (int length = 2; length <= CYCLE_MOST && length <= o->count; length++)
+    for (int length = 2; length <= MAX_CYCLE && length <= o->count; length++)
         for (int begin = 0; begin + length <= o->count && begin < CYCLE_STARTS; begin++) {
             struct cycle c = {begin, length, 0};
             if (!distinct(o->values + begin, length)) continue;
             for (int at = 0; at < o->count;) {
-                bool here = cycle_at(o, &c, at);
-                c.count += here;
-                at += here ? length : 1;
+                bool occurs = cycle_at(o, &c, at);
+                c.count += occurs;
+                at += occurs ? length : 1;
             }
             int more = c.count * length - best.count * best.length;
             if (c.count >= 2 && (more > 0 || (!more && length > best.length))) best = c;
@@ -240,9 +245,9 @@ static enum status incomplete(const struct bracket_views *v, const struct photo_
     char cycle[400], odd[700] = "", ids[400] = "", one[32];
     int count = 0;
     for (int at = 0; at < o->count;) {
-        bool here = cycle_at(o, c, at);
+        bool occurs = cycle_at(o, c, at);
         const struct scanned_photo *p = &scan->photos[o->photos[at]];
-        if (!here && count++ < NAMED_MOST) {
+        if (!occurs && count++ < MAX_NAMED) {
             char *text = NULL;
             if (asprintf(&text, "%s (%s)", p->file, show_seconds(one, &v->exposures[o->photos[at]])) < 0)
                 return err_nomem(err, "a text", 0);
@@ -250,15 +255,16 @@ static enum status incomplete(const struct bracket_views *v, const struct photo_
             append(ids, sizeof ids, " ", p->id);
             free(text);
         }
-        at += here ? c->length : 1;
+        at += occurs ? c->length : 1;
     }
-    const char *more = count > NAMED_MOST ? " ..." : "";
+    const char *more = count > MAX_NAMED ? " ..." : "";
     show_cycle(cycle, sizeof cycle, v, o, c);
-    return err_set(err, ST_DATA,
-                   "the photos in %s are brackets of %s in order of file name, but these belong to no complete one: "
-                   "%s%s. Add what is missing (a time: in exposures.txt), leave them out (EXCLUDE = %s%s), say in the "
-                   "scene's brackets.txt which photos make a view, or set [import_photos] brackets = no.",
-                   scan->folder, cycle, odd, more, ids, more);
+    return err_set(
+        err, ST_DATA,
+        "the photos in %s are brackets of %s in order of file name, but these belong to no complete one: "
+        "%s%s. Add the missing photos (a missing time: to exposures.txt), leave these out (EXCLUDE = %s%s), list "
+        "the photos of each view in the scene's brackets.txt, or set [import_photos] brackets = no.",
+        scan->folder, cycle, odd, more, ids, more);
 }
 
 static enum status add_cycles(struct bracket_views *v, const struct ordered *o, const struct cycle *c, struct err *err)
@@ -268,25 +274,26 @@ static enum status add_cycles(struct bracket_views *v, const struct ordered *o, 
     return st;
 }
 
-static enum status group_by_cycle(struct bracket_views *v, const struct photo_scan *scan, bool must, struct err *err)
+static enum status group_by_cycle(struct bracket_views *v, const struct photo_scan *scan, bool required,
+                                  struct err *err)
 {
     struct ordered o = {0};
     char text[400];
     enum status st = order_photos(&o, v, scan, err);
     struct cycle c = {0};
     if (!st) c = find_cycle(&o);
-    int held = c.count * c.length;
-    bool clear = held >= CYCLED_LEAST || ((must || scan->references) && held);
-    if (!st && clear && held == o.count) {
+    int covered = c.count * c.length;
+    bool clear = covered >= MIN_CYCLED || ((required || scan->references) && covered);
+    if (!st && clear && covered == o.count) {
         st = add_cycles(v, &o, &c, err);
         show_cycle(text, sizeof text, v, &o, &c);
         if (!st) log_note("%d views of %d exposures each: %s", c.count, c.length, text);
-    } else if (!st && clear && (must || 4 * held >= 3 * o.count)) {
+    } else if (!st && clear && (required || 4 * covered >= 3 * o.count)) {
         st = incomplete(v, scan, &o, &c, err);
-    } else if (!st && must) {
+    } else if (!st && required) {
         st = err_set(err, ST_DATA,
-                     "[import_photos] brackets is yes, but the exposures of the %d photos in %s form no cycle that is "
-                     "there at least twice; say in the scene's brackets.txt which photos make a view.",
+                     "[import_photos] brackets is yes, but the exposures of the %d photos in %s form no cycle that "
+                     "occurs at least twice; list the photos of each view in the scene's brackets.txt.",
                      o.count, scan->folder);
     }
     free(o.photos);
@@ -304,7 +311,7 @@ static bool any_linear(const struct photo_scan *scan, const char **file)
     return false;
 }
 
-/* COLMAP does not read TIFF of 16 bits. */
+/* COLMAP does not read 16-bit TIFF. */
 static bool any_tiff(const struct photo_scan *scan)
 {
     for (int i = 0; i < scan->count; i++) {
@@ -314,14 +321,14 @@ static bool any_tiff(const struct photo_scan *scan)
     return false;
 }
 
-/* All photos, where no two are exposed alike: one bracket, not seen twice. */
+/* All photos as one view, if no two exposures are equal: a bracket that does not repeat. */
 static enum status group_distinct(struct bracket_views *v, const struct photo_scan *scan, struct err *err)
 {
-    int photos[CYCLE_MOST], count = 0;
+    int photos[MAX_CYCLE], count = 0;
     for (int i = 0; i < scan->count; i++) {
         if (scan->photos[i].excluded) continue;
         const double value = exposure_value(&v->exposures[i]);
-        if (count == CYCLE_MOST || !(value > 0)) return ST_OK;
+        if (count == MAX_CYCLE || !(value > 0)) return ST_OK;
         for (int k = 0; k < count; k++)
             if (equal_exposures(value, exposure_value(&v->exposures[photos[k]]))) return ST_OK;
         photos[count++] = i;
@@ -331,33 +338,33 @@ static enum status group_distinct(struct bracket_views *v, const struct photo_sc
 
 static enum status single_views(struct bracket_views *v, const struct photo_scan *scan, struct err *err)
 {
-    int stated = 0, count = 0;
+    int timed = 0, count = 0;
     enum status st = ST_OK;
     for (int i = 0; !st && i < scan->count; i++) {
         if (scan->photos[i].excluded) continue;
         count++;
-        stated += v->exposures[i].seconds > 0;
+        timed += v->exposures[i].seconds > 0;
         st = add_view(v, "", &i, 1, err);
     }
-    v->untimed = !stated;
-    for (int i = 0; !st && !stated && i < scan->count; i++) v->exposures[i] = (struct exposure){1, 0, 0, 1};
+    v->untimed = !timed;
+    for (int i = 0; !st && !timed && i < scan->count; i++) v->exposures[i] = (struct exposure){1, 0, 0, 1};
     if (!st && count)
         log_note("%d views of one exposure each%s", count,
-                 stated ? "" : ", of which no time is known: taken to be alike");
+                 timed ? "" : "; no exposure time is known, so all are assumed to be equal");
     return st;
 }
 
 /* ------------------------------------------------------------------------------------------------- views and checks */
 
-/* Where the names of the view's photos first differ, back to the last whole word before it. */
+/* Length of the common beginning of the names of the view's photos, cut after a whole word. */
 static size_t common_stem(const struct photo_scan *scan, const struct bracket_view *view)
 {
     const char *first = scan->photos[view->photos[0]].file;
     size_t length = photo_stem(first);
     for (int i = 1; i < view->count; i++) {
         const char *file = scan->photos[view->photos[i]].file;
-        size_t n = 0, most = photo_stem(file);
-        while (n < length && n < most && file[n] == first[n]) n++;
+        size_t n = 0, stem = photo_stem(file);
+        while (n < length && n < stem && file[n] == first[n]) n++;
         length = n;
     }
     if (view->count > 1) {
@@ -375,10 +382,10 @@ static int by_view(const void *a, const void *b)
 static enum status name_views(struct bracket_views *v, const struct photo_scan *scan, struct err *err)
 {
     bool stems = true;
-    for (int pass = 0; pass < 2; pass++) { /* by stems; by first photos where two stems are the same */
+    for (int pass = 0; pass < 2; pass++) { /* by stems; by first photos if two stems are equal */
         for (int i = 0; i < v->count; i++) {
             const struct scanned_photo *first = &scan->photos[v->views[i].photos[0]];
-            char id[PHOTO_ID_MOST + 1];
+            char id[MAX_PHOTO_ID + 1];
             photo_id_from_stem(id, first->file, common_stem(scan, &v->views[i]));
             free(v->views[i].id);
             v->views[i].id = strdup(pass ? first->id : id);
@@ -426,19 +433,20 @@ static enum status check_view(const struct bracket_view *view, const struct brac
 {
     const struct scanned_photo *first = &scan->photos[view->photos[0]];
     char one[32];
-    for (int i = 0; i < view->count; i++) { /* in order of exposure: what has none comes first */
+    for (int i = 0; i < view->count; i++) { /* in order of exposure; unknown ones are first */
         const struct scanned_photo *p = &scan->photos[view->photos[i]];
         const struct photo_info *info = &p->record.info;
         double value = exposure_value(&v->exposures[view->photos[i]]);
         if (!(value > 0))
-            return err_set(err, ST_DATA,
-                           "view %s: the exposure time of %s is not known (EXIF does not tell it); write a line \"%s "
-                           "SECONDS\" into exposures.txt.",
-                           view->id, p->file, p->file);
+            return err_set(
+                err, ST_DATA,
+                "view %s: the exposure time of %s is not known (not in EXIF); write a line \"%s SECONDS\" into "
+                "exposures.txt.",
+                view->id, p->file, p->file);
         if (info->width != first->record.info.width || info->height != first->record.info.height)
             return err_set(err, ST_DATA,
-                           "view %s: %s has %d x %d pixels, but %s %d x %d; the exposures of a view have one size. "
-                           "Leave one out (EXCLUDE), or mend brackets.txt.",
+                           "view %s: %s has %d x %d pixels, but %s %d x %d; all exposures of a view must have the same "
+                           "size. Leave one out (EXCLUDE), or correct brackets.txt.",
                            view->id, p->file, info->width, info->height, first->file, first->record.info.width,
                            first->record.info.height);
         if (i && equal_exposures(value, exposure_value(&v->exposures[view->photos[i - 1]])))
@@ -451,7 +459,7 @@ static enum status check_view(const struct bracket_view *view, const struct brac
     return ST_OK;
 }
 
-/* Exposures can be compared only if all of them state the f-number and the ISO, or none. */
+/* Exposures can be compared only if the f-number is known for all or none, and so is the ISO value. */
 static enum status check_comparable(const struct bracket_views *v, const struct photo_scan *scan, struct err *err)
 {
     const struct exposure *first = NULL;
@@ -463,12 +471,12 @@ static enum status check_comparable(const struct bracket_views *v, const struct 
             if (!first) first = e, first_file = scan->photos[p].file;
             bool number = (e->f_number > 0) != (first->f_number > 0);
             if (!number && (e->iso > 0) == (first->iso > 0)) continue;
-            bool mine = number ? e->f_number > 0 : e->iso > 0;
+            bool known = number ? e->f_number > 0 : e->iso > 0;
             return err_set(err, ST_DATA,
                            "the %s of %s is known, but not that of %s, so their exposures cannot be compared; write a "
                            "line \"FILE SECONDS F_NUMBER ISO\" into exposures.txt.",
-                           number ? "f-number" : "ISO value", mine ? scan->photos[p].file : first_file,
-                           mine ? first_file : scan->photos[p].file);
+                           number ? "f-number" : "ISO value", known ? scan->photos[p].file : first_file,
+                           known ? first_file : scan->photos[p].file);
         }
     return ST_OK;
 }
@@ -479,7 +487,7 @@ static void release_view(struct bracket_view *view)
     free(view->photos);
 }
 
-static void leave_out_views(struct bracket_views *v, const char *const *exclude, int exclude_count, bool *used)
+static void exclude_views(struct bracket_views *v, const char *const *exclude, int exclude_count, bool *used)
 {
     int kept = 0;
     for (int i = 0; i < v->count; i++) {
@@ -507,18 +515,19 @@ static enum status find_white(struct bracket_views *v, struct err *err)
 }
 
 enum status bracket_views_find(struct bracket_views *v, const struct photo_scan *scan, const char *scene,
-                               const struct import_params *params, const char *const *exclude, int exclude_count,
+                               const struct photo_params *params, const char *const *exclude, int exclude_count,
                                bool *used, struct err *err)
 {
     char *path = NULL;
     const char *linear = NULL;
-    const bool single = !strcmp(params->brackets, "single"), developed = any_linear(scan, &linear);
+    const bool single = !strcmp(params->brackets, "single"), has_linear = any_linear(scan, &linear);
     *v = (struct bracket_views){0};
-    if (!strcmp(params->brackets, "no") && developed && !scan->references)
-        return err_set(err, ST_DATA,
-                       "%s/%s is an EXR or a raw file, which is made a picture of where brackets are merged; set "
-                       "[import_photos] brackets = auto, or leave it out (EXCLUDE).",
-                       scan->folder, linear);
+    if (!strcmp(params->brackets, "no") && has_linear && !scan->references)
+        return err_set(
+            err, ST_DATA,
+            "%s/%s is an EXR or a raw file, which can only be used if brackets are merged; set [import_photos] "
+            "brackets = auto, or leave it out (EXCLUDE).",
+            scan->folder, linear);
     if (!strcmp(params->brackets, "no") && !scan->references) return ST_OK;
     enum status st = find_exposures(v, scan, scene, err);
     if (!st && scene && asprintf(&path, "%s/brackets.txt", scene) < 0) {
@@ -530,13 +539,13 @@ enum status bracket_views_find(struct bracket_views *v, const struct photo_scan 
     if (!st && !listed && !single)
         st = group_by_cycle(v, scan, !strcmp(params->brackets, "yes") && !scan->references, err);
     if (!st && !listed && !v->count && !single && scan->references) st = group_distinct(v, scan, err);
-    if (!st && !listed && !v->count && (scan->references || single || developed || any_tiff(scan)))
+    if (!st && !listed && !v->count && (scan->references || single || has_linear || any_tiff(scan)))
         st = single_views(v, scan, err);
     if (!st && listed && v->count) qsort(v->views, (size_t)v->count, sizeof *v->views, by_view);
     if (!st && !listed && v->count) st = name_views(v, scan, err);
     for (int i = 0; !st && i < v->count; i++) st = sort_view(&v->views[i], v, scan, err);
     v->bracketed = v->count > 0;
-    if (!st) leave_out_views(v, exclude, exclude_count, used);
+    if (!st) exclude_views(v, exclude, exclude_count, used);
     for (int i = 0; !st && i < v->count; i++) st = check_view(&v->views[i], v, scan, err);
     if (!st) st = check_comparable(v, scan, err);
     if (!st && v->count) st = find_white(v, err);
@@ -586,7 +595,7 @@ enum status bracket_views_write(const struct bracket_views *v, const struct phot
         st = err_set(err, ST_DATA,
                      "the photos in %s are exposures of %s; a parallax video needs at least 2 views, taken from "
                      "different places.",
-                     scan->folder, v->count ? "one view" : "no view that is not left out");
+                     scan->folder, v->count ? "one view" : "views that are all left out");
     if (!st) st = photo_list_write(&list, records, err);
     photo_list_release(&list);
     free(ids);

@@ -1,4 +1,4 @@
-/* exposure_list.c - see exposure_list.h. */
+/* exposure_list.c - reading exposures.txt. */
 #include "stages/import_photos/exposure_list.h"
 
 #include <stdbool.h>
@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/base/array.h"
 #include "common/base/textfile.h"
 
 double exposure_value(const struct exposure *e)
@@ -16,14 +17,14 @@ double exposure_value(const struct exposure *e)
     return value;
 }
 
-/* zero: 0 may stand for what is not stated. */
-static enum status read_number(struct textfile *t, const char *what, bool zero, double *value, struct err *err)
+/* allow_zero: 0 means that the value is taken from EXIF. */
+static enum status read_number(struct textfile *t, const char *what, bool allow_zero, double *value, struct err *err)
 {
     enum status st = textfile_double(t, what, value, err);
     char found[32];
-    if (st || (*value >= 1e-9 && *value <= 1e9) || (zero && *value == 0)) return st;
+    if (st || (*value >= 1e-9 && *value <= 1e9) || (allow_zero && *value == 0)) return st;
     snprintf(found, sizeof found, "%.9g", *value);
-    return textfile_error(t, err, found, "%s from 1e-9 to 1e9%s", what, zero ? ", or 0 for EXIF's" : "");
+    return textfile_error(t, err, found, "%s from 1e-9 to 1e9%s", what, allow_zero ? ", or 0 to use EXIF" : "");
 }
 
 static enum status read_line(struct exposure_list *list, struct textfile *t, struct err *err)
@@ -33,7 +34,7 @@ static enum status read_line(struct exposure_list *list, struct textfile *t, str
     enum status st = textfile_word(t, "the file name of a photo", &file, err);
     for (int i = 0; !st && i < list->count; i++)
         if (!strcmp(list->lines[i].file, file))
-            st = textfile_error(t, err, file, "each photo once (it also stands in line %d)", list->lines[i].line);
+            st = textfile_error(t, err, file, "each photo once (it is also in line %d)", list->lines[i].line);
     if (!st) st = read_number(t, "an exposure time in seconds", false, &e.seconds, err);
     if (!st && textfile_more(t)) {
         st = read_number(t, "an f-number", true, &e.f_number, err);
@@ -43,12 +44,9 @@ static enum status read_line(struct exposure_list *list, struct textfile *t, str
     if (!st) st = textfile_end(t, err);
     if (st) return st;
 
-    size_t bytes = ((size_t)list->count + 1) * sizeof *list->lines;
-    struct exposure_line *lines = realloc(list->lines, bytes);
-    if (!lines) return err_nomem(err, "a list of exposures", bytes);
-    list->lines = lines;
-    lines[list->count] = (struct exposure_line){strdup(file), e, t->line};
-    return lines[list->count++].file ? ST_OK : err_nomem(err, "a file name", strlen(file) + 1);
+    if (array_append(&list->lines, (size_t)list->count, sizeof *list->lines, "exposures", err)) return err->status;
+    list->lines[list->count] = (struct exposure_line){strdup(file), e, t->line};
+    return list->lines[list->count++].file ? ST_OK : err_nomem(err, "a file name", strlen(file) + 1);
 }
 
 enum status exposure_list_read(struct exposure_list *list, const char *path, struct err *err)

@@ -1,26 +1,26 @@
-/* exposure_list.h - exposures.txt: how photographs were exposed, as people write it down.
+/* exposure_list.h - exposures.txt: exposures of photographs, written by the user.
  *
  *   FILE SECONDS [F_NUMBER ISO [FILTER]]
- * a line a photo. FILTER is a neutral density filter's factor, 1000 letting a thousandth pass. What is not written, or
- * written as 0, is taken from EXIF. No exposure can be told without SECONDS. */
+ * One line per photo. FILTER is the factor of a neutral density filter: 1000 transmits a thousandth of the light.
+ * F_NUMBER and ISO are taken from EXIF if they are missing or 0. */
 #ifndef REMODEL_EXPOSURE_LIST_H
 #define REMODEL_EXPOSURE_LIST_H
 
 #include "common/base/err.h"
 
 struct exposure {
-    double seconds, f_number, iso; /* 0: not stated */
+    double seconds, f_number, iso; /* 0: unknown */
     double filter;                 /* factor; 1 without one */
 };
 
-/* How much light counts: seconds x ISO / (f-number^2 x filter). An f-number or ISO that is not stated is left out, so
- * only exposures that state the same can be compared. 0 without seconds. */
+/* seconds x ISO / (f-number^2 x filter), proportional to the recorded value of a given radiance. An unknown f-number or
+ * ISO is left out, so exposures can only be compared if the same quantities are known. 0 if the time is unknown. */
 double exposure_value(const struct exposure *e);
 
 struct exposure_line {
     char *file; /* owned */
     struct exposure exposure;
-    int line; /* of the file, from 1 */
+    int line; /* in the file, from 1 */
 };
 
 struct exposure_list {
@@ -29,7 +29,7 @@ struct exposure_list {
     int count;
 };
 
-/* ST_DATA with file and line: a photo twice, a number that is negative, seconds or filter of 0. {0} is the empty list. */
+/* ST_DATA with file and line: duplicate photo, negative number, seconds or filter of 0. {0} is the empty list. */
 enum status exposure_list_read(struct exposure_list *list, const char *path, struct err *err);
 void exposure_list_release(struct exposure_list *list);
 

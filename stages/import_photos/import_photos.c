@@ -1,16 +1,16 @@
-/* import_photos.c - checks the photographs of a folder, gives them ids, finds which are exposures of one view.
+/* import_photos.c - checks the photographs of a folder, gives them ids, groups exposures of one view.
  *
- * reads   --photos DIR   JPEG, PNG, TIFF, EXR, raw files straight in it, exposures.txt; nothing in there is written
- *         --like DIR     records of a scene: these are its lighting reference images, on its scale
- *         --split CxR    each of them holds C x R pictures of a multi-lens camera, which are the photos
- *         --scene DIR    brackets.txt, exposures.txt if they are there
- * writes  --out DIR      ID.txt, a record a photo (content hash, size, EXIF); then list.txt; then photos.mk
- *                        where photos are brackets: members/ID.txt, a record a photo; ID.txt, a record a view, and
+ * reads   --photos DIR   JPEG, PNG, TIFF, EXR and raw files, exposures.txt; subfolders are ignored, nothing is written
+ *         --like DIR     records of a scene: the photos are its lighting reference images, on its scale
+ *         --split CxR    each photo contains C x R pictures of a multi-lens camera; these become the photos
+ *         --scene DIR    brackets.txt and exposures.txt, if they exist
+ * writes  --out DIR      ID.txt, one record per photo (content hash, size, EXIF); then list.txt; then photos.mk
+ *                        for brackets: members/ID.txt, one record per photo; ID.txt, one record per view, and
  *                        brackets.txt; then list.txt and photos.mk with the views
  *         --cuts DIR     with --split: ID_cXrY.png, the pictures; then split.txt
  *
- * Each file is rewritten only if its text changes, so that Make sees which photos did. A photo that cannot be used is
- * named with the reason, and so are all others like it, before the stage fails. */
+ * Each file is rewritten only if its text changes, so that Make sees which photos changed. All photos that cannot be
+ * used are reported, with the reason, before the stage fails. */
 #include <stdlib.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -20,64 +20,65 @@
 #include "stages/import_photos/bracket_views.h"
 #include "stages/import_photos/split_photos.h"
 
-/* The user's folder is never written to. */
+/* The stage never writes to the user's folder. */
 static enum status check_out(const char *photos, const char *option, const char *out, struct err *err)
 {
     struct stat a, b;
     if (!out || stat(photos, &a) || stat(out, &b) || a.st_dev != b.st_dev || a.st_ino != b.st_ino) return ST_OK;
-    return err_set(err, ST_USAGE, "%s %s is the folder of photos itself; name another one.", option, out);
+    return err_set(err, ST_USAGE, "%s %s is the folder of photos itself; give another folder.", option, out);
 }
 
-static bool is_there(const char *folder, const char *name)
+static bool exists(const char *folder, const char *name)
 {
     char *path = NULL;
-    bool there = asprintf(&path, "%s/%s", folder, name) >= 0 && !access(path, F_OK);
+    bool found = asprintf(&path, "%s/%s", folder, name) >= 0 && !access(path, F_OK);
     free(path);
-    return there;
+    return found;
 }
 
-/* Photos, and then views that are exposures of them, by the names that are to be left out. */
-struct left_out {
+/* Names of photos or views to leave out; used[i]: names[i] matched one. */
+struct exclusion {
     const struct cli_list *names;
     bool *used;
 };
 
-static void leave_out(struct photo_scan *scan, struct left_out *out)
+static void exclude_photos(struct photo_scan *scan, struct exclusion *out)
 {
     for (int i = 0; i < out->names->count; i++) out->used[i] |= photo_scan_exclude(scan, out->names->items[i]) > 0;
 }
 
-static void report_left_out(const struct photo_scan *scan, const struct left_out *out)
+static void report_unused(const struct photo_scan *scan, const struct exclusion *out)
 {
     for (int i = 0; i < out->names->count; i++)
         if (!out->used[i])
-            log_warn("no photo in %s is called %s; nothing is left out for it.", scan->folder, out->names->items[i]);
+            log_warn("no photo in %s is called %s; nothing is left out for this name.", scan->folder,
+                     out->names->items[i]);
 }
 
 static void report_scan(const struct photo_scan *scan)
 {
     for (int i = 0; i < scan->count; i++) err_report(&scan->photos[i].err);
-    if (scan->ignored) log_note("ignored in %s: %d that are no photos by their names", scan->folder, scan->ignored);
+    if (scan->ignored)
+        log_note("ignored in %s: %d files or folders that do not have names of photos", scan->folder, scan->ignored);
     if (scan->doubled)
-        log_note("ignored in %s: %d raw files beside a JPEG of the same name; keep the raw files in a folder of their "
-                 "own to "
-                 "use them",
+        log_note("ignored in %s: %d raw files beside a JPEG of the same name; to use them, put the raw files into a "
+                 "folder of their own",
                  scan->folder, scan->doubled);
 }
 
-/* The pictures that the photos hold, cut out into `cuts`. */
-static enum status cut(const char *photos, const char *split, const char *cuts, struct left_out *leave,
-                       const struct import_params *params, struct err *err)
+/* Cuts the pictures out of the photos into `cuts`. */
+static enum status cut(const char *photos, const char *split, const char *cuts, struct exclusion *leave,
+                       const struct photo_params *params, struct err *err)
 {
     struct photo_scan scan = {0};
     struct split_grid grid;
     enum status st = split_grid_parse(&grid, split, params, err);
     if (!st) st = photo_scan_folder(&scan, photos, err);
     if (!st) {
-        leave_out(&scan, leave);
-        if (is_there(photos, "exposures.txt"))
-            log_warn("%s/exposures.txt is not read, for its photos are cut; write the pictures' exposures into that of "
-                     "the scene.",
+        exclude_photos(&scan, leave);
+        if (exists(photos, "exposures.txt"))
+            log_warn("%s/exposures.txt is not read because its photos are cut; write the pictures' exposures into the "
+                     "scene's exposures.txt.",
                      photos);
         st = split_photos(&scan, &grid, cuts, err);
         report_scan(&scan);
@@ -86,30 +87,30 @@ static enum status cut(const char *photos, const char *split, const char *cuts, 
     return st;
 }
 
-/* The exposure that makes 1 white in the scene whose records are in `folder`: the views' too, whatever their own
- * would be. */
+/* Gives the views the white exposure of the scene whose records are in `folder`, so that both have one scale. */
 static enum status share_white(struct bracket_views *views, const char *folder, struct err *err)
 {
     struct photo_list scene = {0};
     enum status st = photo_list_read(&scene, folder, err);
-    const double white = st || !scene.count ? 0 : scene.photos[0].white; /* all of them have one */
+    const double white = st || !scene.count ? 0 : scene.photos[0].white; /* all photos have the same */
     if (!st && views->untimed)
-        st = err_set(err, ST_DATA,
-                     "no lighting reference image states its exposure, so that its light cannot be compared with the "
-                     "scene's; write lines \"FILE SECONDS F_NUMBER ISO\" into exposures.txt in their folder.");
+        st = err_set(
+            err, ST_DATA,
+            "the exposures of the lighting reference images are unknown, so their light cannot be compared with the "
+            "scene's; write lines \"FILE SECONDS F_NUMBER ISO\" into exposures.txt in their folder.");
     if (!st && !(white > 0))
-        log_warn(
-            "the scene's photos are no bracketed exposures and have no common scale; the lighting reference images "
-            "get one of their own ([import_photos] brackets = single brings photos of known exposure to one scale).");
+        log_warn("the scene's photos are not bracketed and have no common scale; the lighting reference images get a "
+                 "scale of "
+                 "their own ([import_photos] brackets = single brings photos of known exposure to one scale).");
     if (!st && white > 0) views->white = white;
     photo_list_release(&scene);
     return st;
 }
 
-/* Where photos are brackets their own records are in `members`, even when they cannot be grouped or one is bad: what
- * was known of the views stays untouched until all is well. */
-static enum status import(struct photo_scan *scan, const char *scene, const char *like, struct left_out *leave,
-                          const char *out, const struct import_params *params, struct err *err)
+/* The records of bracketed photos are in `members`, even if they cannot be grouped or one is unusable: the views'
+ * records stay untouched until everything is valid. */
+static enum status import(struct photo_scan *scan, const char *scene, const char *like, struct exclusion *leave,
+                          const char *out, const struct photo_params *params, struct err *err)
 {
     struct bracket_views views = {0};
     char *members = NULL;
@@ -120,8 +121,8 @@ static enum status import(struct photo_scan *scan, const char *scene, const char
         st =
             bracket_views_find(&views, scan, scene, params, leave->names->items, leave->names->count, leave->used, err);
     if (!bad && !st && like) st = share_white(&views, like, err);
-    bool bracketed = st || views.bracketed || (bad && is_there(out, "brackets.txt"));
-    report_left_out(scan, leave);
+    bool bracketed = st || views.bracketed || (bad && exists(out, "brackets.txt"));
+    report_unused(scan, leave);
     if (!bracketed)
         st = photo_scan_write(scan, out, err);
     else if (photo_scan_write_records(scan, members, err) || st)
@@ -135,20 +136,20 @@ static enum status import(struct photo_scan *scan, const char *scene, const char
 
 static enum status run(struct photo_scan *scan, const char *photos, const char *scene, const char *like,
                        const char *split, const char *cuts, const struct cli_list *exclude, const char *out,
-                       const struct import_params *params, struct err *err)
+                       const struct photo_params *params, struct err *err)
 {
-    struct left_out left = {exclude, calloc((size_t)exclude->count + 1, sizeof(bool))};
+    struct exclusion left = {exclude, calloc((size_t)exclude->count + 1, sizeof(bool))};
     enum status st = left.used ? ST_OK : err_nomem(err, "names", (size_t)exclude->count);
     if (!st && !split != !cuts)
         st = err_set(err, ST_USAGE,
-                     "--split and --cuts go together: how many pictures a photo holds, and where they go.");
+                     "--split and --cuts go together: the number of pictures in a photo, and the folder for them.");
     if (!st) st = check_out(photos, "--out", out, err);
     if (!st) st = check_out(photos, "--cuts", cuts, err);
     if (!st && split) st = cut(photos, split, cuts, &left, params, err);
     if (!st) st = photo_scan_folder(scan, split ? cuts : photos, err);
     scan->cut = split;
     scan->references = like;
-    if (!st) leave_out(scan, &left);
+    if (!st) exclude_photos(scan, &left);
     if (!st) st = photo_scan_check(scan, out, err);
     if (!st) st = import(scan, scene, like, &left, out, params, err);
     report_scan(scan);
@@ -160,21 +161,21 @@ int main(int argc, char **argv)
 {
     const char *photos = NULL, *scene = NULL, *like = NULL, *split = NULL, *cuts = NULL, *out = NULL;
     struct cli_list exclude = {0};
-    struct import_params params = IMPORT_PARAMS_DEFAULT;
+    struct photo_params params = PHOTO_PARAMS_DEFAULT;
     const struct cli_opt opts[] = {
-        CLI_ABOUT("check the photographs of a folder, give them ids, record what they are"),
-        CLI_STR("photos", &photos, CLI_REQUIRED,
-                "folder of photos: JPEG, PNG, TIFF, EXR, raw; sub-folders are not looked into"),
-        CLI_STR("scene", &scene, CLI_OPTIONAL, "folder that may hold brackets.txt and exposures.txt"),
+        CLI_ABOUT("Checks the photographs of a folder, gives them ids and records their properties."),
+        CLI_STR("photos", &photos, CLI_REQUIRED, "folder of photos: JPEG, PNG, TIFF, EXR, raw; subfolders are ignored"),
+        CLI_STR("scene", &scene, CLI_OPTIONAL, "folder that may contain brackets.txt and exposures.txt"),
         CLI_STR("like", &like, CLI_OPTIONAL,
-                "folder of a scene's records: the photos are its lighting reference images, brought to its scale"),
+                "folder of a scene's records: the photos become its lighting reference images, on its scale"),
         CLI_LIST("exclude", &exclude, CLI_OPTIONAL,
-                 "photo to leave out: file name, with or without ending, or id; or a view"),
+                 "photo or view to leave out: file name, with or without extension, or id"),
         CLI_STR("split", &split, CLI_OPTIONAL,
-                "CxR: each photo holds C columns and R rows of pictures, of a multi-lens camera; these are the photos"),
-        CLI_STR("cuts", &cuts, CLI_OPTIONAL, "folder to write these pictures into"),
-        CLI_STR("out", &out, CLI_REQUIRED, "folder of records to write"),
-        CLI_PARAMS(import_param_table, &params, import_params_check),
+                "CxR: each photo contains C columns and R rows of pictures of a multi-lens camera, which become the "
+                "photos"),
+        CLI_STR("cuts", &cuts, CLI_OPTIONAL, "folder to write these pictures to"),
+        CLI_STR("out", &out, CLI_REQUIRED, "folder to write the records to"),
+        CLI_PARAMS(photo_param_table, &params, photo_params_check),
         CLI_END,
     };
     struct provenance prov = {0};

@@ -1,4 +1,4 @@
-/* photo_scan.c - see photo_scan.h. */
+/* photo_scan.c - the photographs of a folder: ids, exclusion, checks, records. */
 #include "stages/import_photos/photo_scan.h"
 
 #include <dirent.h>
@@ -10,35 +10,36 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "common/base/array.h"
 #include "common/base/outfile.h"
 #include "common/base/parallel.h"
 #include "common/base/progress.h"
 #include "common/base/textfile.h"
 
-/* The same of raw files alone. */
+/* photo_stem() for raw files only. */
 static size_t raw_stem(const char *file)
 {
-    static const char *const endings[] = {".dng", ".cr2", ".cr3", ".crw", ".nef", ".nrw", ".arw", ".sr2", ".raf",
-                                          ".orf", ".rw2", ".pef", ".srw", ".x3f", ".3fr", ".iiq", ".mrw"};
+    static const char *const extensions[] = {".dng", ".cr2", ".cr3", ".crw", ".nef", ".nrw", ".arw", ".sr2", ".raf",
+                                             ".orf", ".rw2", ".pef", ".srw", ".x3f", ".3fr", ".iiq", ".mrw"};
     const size_t length = strlen(file);
-    for (size_t i = 0; i < sizeof endings / sizeof *endings; i++)
-        if (length > 4 && !strcasecmp(file + length - 4, endings[i])) return length - 4;
+    for (size_t i = 0; i < sizeof extensions / sizeof *extensions; i++)
+        if (length > 4 && !strcasecmp(file + length - 4, extensions[i])) return length - 4;
     return 0;
 }
 
 size_t photo_stem(const char *file)
 {
-    static const char *const endings[] = {".jpg", ".jpeg", ".png", ".tif", ".tiff", ".exr"};
+    static const char *const extensions[] = {".jpg", ".jpeg", ".png", ".tif", ".tiff", ".exr"};
     const size_t length = strlen(file), raw = raw_stem(file);
-    for (size_t i = 0; i < sizeof endings / sizeof *endings; i++) {
-        size_t ending = strlen(endings[i]);
-        if (length > ending && !strcasecmp(file + length - ending, endings[i])) return length - ending;
+    for (size_t i = 0; i < sizeof extensions / sizeof *extensions; i++) {
+        size_t tail = strlen(extensions[i]);
+        if (length > tail && !strcasecmp(file + length - tail, extensions[i])) return length - tail;
     }
     return raw;
 }
 
-/* Cameras that write both give them one name. The JPEG is taken: it is what its owner looked at. */
-static bool stands_beside_jpeg(const struct photo_scan *scan, const char *raw)
+/* Cameras that write both give them the same name. The JPEG is used because its owner has seen it. */
+static bool has_jpeg_twin(const struct photo_scan *scan, const char *raw)
 {
     const size_t stem = raw_stem(raw);
     for (int i = 0; stem && i < scan->count; i++) {
@@ -50,10 +51,10 @@ static bool stands_beside_jpeg(const struct photo_scan *scan, const char *raw)
     return false;
 }
 
-static void leave_raw_beside_jpeg(struct photo_scan *scan)
+static void drop_raw_with_jpeg_twin(struct photo_scan *scan)
 {
     int kept = 0;
-    for (int i = 0; i < scan->count; i++) scan->photos[i].excluded = stands_beside_jpeg(scan, scan->photos[i].file);
+    for (int i = 0; i < scan->count; i++) scan->photos[i].excluded = has_jpeg_twin(scan, scan->photos[i].file);
     for (int i = 0; i < scan->count; i++)
         if (scan->photos[i].excluded) {
             free(scan->photos[i].file);
@@ -69,11 +70,11 @@ static bool id_char(char c)
     return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '_' || c == '-';
 }
 
-void photo_id_from_stem(char id[PHOTO_ID_MOST + 1], const char *stem, size_t length)
+void photo_id_from_stem(char id[MAX_PHOTO_ID + 1], const char *stem, size_t length)
 {
     size_t n = 0;
-    bool begun = false, named = false, run = false; /* run: in a run of other characters */
-    for (size_t i = 0; i < length && n < PHOTO_ID_MOST; i++) {
+    bool begun = false, named = false, run = false; /* run: within a run of replaced characters */
+    for (size_t i = 0; i < length && n < MAX_PHOTO_ID; i++) {
         bool plain = id_char(stem[i]) && (begun || stem[i] != '-');
         if (plain || !run) id[n++] = plain ? stem[i] : '_';
         begun |= plain;
@@ -105,7 +106,7 @@ static bool id_taken(const struct photo_scan *scan, const char *id)
 }
 
 struct base_id {
-    char text[PHOTO_ID_MOST + 1];
+    char text[MAX_PHOTO_ID + 1];
     int photo;
 };
 
@@ -114,7 +115,7 @@ static int by_base(const void *a, const void *b)
     return strcmp(((const struct base_id *)a)->text, ((const struct base_id *)b)->text);
 }
 
-/* Photos are in order of file name. First those whose name is theirs alone, then the others one by one. */
+/* Photos are in order of file name. Unique ids are assigned first, then those that must be made unique. */
 static enum status assign_ids(struct photo_scan *scan, struct err *err)
 {
     size_t count = (size_t)scan->count;
@@ -135,14 +136,14 @@ static enum status assign_ids(struct photo_scan *scan, struct err *err)
     for (int pass = 0; pass < 2; pass++) {
         for (size_t i = 0; !st && i < count; i++) {
             struct scanned_photo *p = &scan->photos[i];
-            char id[PHOTO_ID_MOST + 32];
+            char id[MAX_PHOTO_ID + 32];
             if (shared[i] != (pass == 1)) continue;
             if (shared[i]) {
                 int n = 1, length = snprintf(id, sizeof id, "%s_%s", bases[i].text, strrchr(p->file, '.') + 1);
                 while (id_taken(scan, id)) snprintf(id + length, sizeof id - (size_t)length, "-%d", ++n);
             }
             p->id = strdup(shared[i] ? id : bases[i].text);
-            if (!p->id) st = err_nomem(err, "a photo's id", PHOTO_ID_MOST);
+            if (!p->id) st = err_nomem(err, "a photo's id", MAX_PHOTO_ID);
         }
     }
     free(bases);
@@ -152,10 +153,10 @@ static enum status assign_ids(struct photo_scan *scan, struct err *err)
     return st;
 }
 
-static char *join_path(const char *folder, const char *name, const char *ending)
+static char *join_path(const char *folder, const char *name, const char *suffix)
 {
     char *path = NULL;
-    return asprintf(&path, "%s/%s%s", folder, name, ending) < 0 ? NULL : path;
+    return asprintf(&path, "%s/%s%s", folder, name, suffix) < 0 ? NULL : path;
 }
 
 static enum status scan_entry(struct photo_scan *scan, const char *name, struct err *err)
@@ -164,17 +165,16 @@ static enum status scan_entry(struct photo_scan *scan, const char *name, struct 
     if (name[0] == '.' || !strcmp(name, "exposures.txt") || !strcmp(name, "split.txt")) return ST_OK;
     char *path = join_path(scan->folder, name, "");
     if (!path) return err_nomem(err, "a path", 0);
-    bool other = !photo_stem(name) || (!stat(path, &info) && !S_ISREG(info.st_mode)); /* a dead link is a bad photo */
+    bool other = !photo_stem(name) ||
+                 (!stat(path, &info) && !S_ISREG(info.st_mode)); /* a dead link counts as an unusable photo */
     free(path);
     if (other) {
         scan->ignored++;
         return ST_OK;
     }
-    struct scanned_photo *photos = realloc(scan->photos, ((size_t)scan->count + 1) * sizeof *photos);
-    if (!photos) return err_nomem(err, "a list of photos", ((size_t)scan->count + 1) * sizeof *photos);
-    scan->photos = photos;
-    photos[scan->count] = (struct scanned_photo){.file = strdup(name)};
-    return photos[scan->count++].file ? ST_OK : err_nomem(err, "a file name", strlen(name) + 1);
+    if (array_append(&scan->photos, (size_t)scan->count, sizeof *scan->photos, "photos", err)) return err->status;
+    scan->photos[scan->count] = (struct scanned_photo){.file = strdup(name)};
+    return scan->photos[scan->count++].file ? ST_OK : err_nomem(err, "a file name", strlen(name) + 1);
 }
 
 enum status photo_scan_folder(struct photo_scan *scan, const char *folder, struct err *err)
@@ -183,9 +183,9 @@ enum status photo_scan_folder(struct photo_scan *scan, const char *folder, struc
     if (!scan->folder) return err_nomem(err, "a path", strlen(folder) + 1);
     DIR *dir = opendir(folder);
     if (!dir && errno == ENOENT)
-        return err_set(err, ST_IO, "the folder of photos %s is not there; say where the photos are.", folder);
+        return err_set(err, ST_IO, "the folder of photos %s is missing; give the folder of the photos.", folder);
     if (!dir && errno == ENOTDIR)
-        return err_set(err, ST_DATA, "%s is not a folder; name the folder that holds the photos.", folder);
+        return err_set(err, ST_DATA, "%s is not a folder; give the folder of the photos.", folder);
     if (!dir) return err_errno(err, "open the folder of photos", folder);
 
     enum status st = ST_OK;
@@ -193,7 +193,7 @@ enum status photo_scan_folder(struct photo_scan *scan, const char *folder, struc
     for (struct dirent *entry; !st && (entry = readdir(dir)); errno = 0) st = scan_entry(scan, entry->d_name, err);
     if (!st && errno) st = err_errno(err, "list the folder of photos", folder);
     closedir(dir);
-    leave_raw_beside_jpeg(scan);
+    drop_raw_with_jpeg_twin(scan);
     if (!st && scan->count) {
         qsort(scan->photos, (size_t)scan->count, sizeof *scan->photos, by_file);
         st = assign_ids(scan, err);
@@ -231,7 +231,7 @@ static bool read_old_record(struct photo_record *old, const char *records, const
     return found;
 }
 
-/* The record for the file as it is now. The old one is good for as long as the file's bytes are the same. */
+/* Makes the record of the file's present content. The old record is reused if the hash is the same. */
 static enum status check_photo(struct scanned_photo *p, const char *folder, const char *records)
 {
     struct photo_record old = {0};
@@ -276,12 +276,12 @@ enum status photo_scan_check(struct photo_scan *scan, const char *records, struc
     progress_start(&job.progress, "checking photos", scan->count, "photos");
     parallel_for((size_t)scan->count, 1, check_photos, &job);
     progress_end(&job.progress);
-    for (int i = 0; i < scan->count; i++) /* these are no fault of the photo */
+    for (int i = 0; i < scan->count; i++) /* not an error of the photo */
         if (scan->photos[i].err.status == ST_NOMEM) return err_set(err, ST_NOMEM, "%s", scan->photos[i].err.text);
     return ST_OK;
 }
 
-static bool good(const struct scanned_photo *p) { return !p->excluded && !p->err.status; }
+static bool usable(const struct scanned_photo *p) { return !p->excluded && !p->err.status; }
 
 static bool has_id(const char *const *ids, int count, const char *id, size_t length)
 {
@@ -335,7 +335,7 @@ enum status photo_scan_refuse_bad(const struct photo_scan *scan, struct err *err
         if (!scan->photos[i].excluded && scan->photos[i].err.status)
             snprintf(names + n, sizeof names - n, " %s", scan->photos[i].id);
     }
-    return err_set(err, ST_DATA, "%d of %d photos in %s cannot be used: mend them, or leave them out (EXCLUDE =%s).",
+    return err_set(err, ST_DATA, "%d of %d photos in %s cannot be used; replace them, or leave them out (EXCLUDE =%s).",
                    bad, photo_scan_used(scan), scan->folder, names);
 }
 
@@ -346,10 +346,10 @@ enum status photo_scan_write_records(const struct photo_scan *scan, const char *
     enum status st = ids ? make_folders(records, err) : err_nomem(err, "ids", (size_t)scan->count * sizeof *ids);
 
     for (int i = 0; !st && i < scan->count; i++)
-        if (good(&scan->photos[i])) ids[count++] = scan->photos[i].id;
+        if (usable(&scan->photos[i])) ids[count++] = scan->photos[i].id;
     if (!st) st = photo_scan_remove_others(records, ids, count, err);
     for (int i = 0; !st && i < scan->count; i++)
-        if (good(&scan->photos[i])) st = photo_record_write(&scan->photos[i].record, records, err);
+        if (usable(&scan->photos[i])) st = photo_record_write(&scan->photos[i].record, records, err);
     if (!st) st = photo_scan_refuse_bad(scan, err);
     free(ids);
     return st;
@@ -363,12 +363,12 @@ enum status photo_scan_write(const struct photo_scan *scan, const char *records,
 
     if (!st && used < 2)
         st = err_set(err, ST_DATA,
-                     "%s holds %s photo%s; a parallax video needs at least 2, taken from different places.",
-                     scan->folder, used ? "one" : "no", used < scan->count ? " that is not left out" : "");
+                     "%s contains %s photo%s; a parallax video needs at least 2, taken from different places.",
+                     scan->folder, used ? "one" : "no", used < scan->count ? " besides those left out" : "");
     if (!st && !(list.photos = calloc((size_t)scan->count + 1, sizeof *list.photos)))
         st = err_nomem(err, "a list of photos", (size_t)scan->count * sizeof *list.photos);
     for (int i = 0; !st && i < scan->count; i++)
-        if (good(&scan->photos[i])) list.photos[list.count++] = scan->photos[i].record; /* borrowed */
+        if (usable(&scan->photos[i])) list.photos[list.count++] = scan->photos[i].record; /* borrowed */
     if (!st) st = photo_list_write(&list, records, err);
     free(list.photos);
     return st;

@@ -1,4 +1,7 @@
-/* split_grid.c - see split_grid.h. */
+/* split_grid.c - the layout of the pictures of a multi-lens camera in its photograph.
+ *
+ * The rules are in split_grid.h. Columns and rows are treated alike: a column is dark if few of its samples are
+ * brighter than the threshold; dark runs near the positions of an even division are the borders of pictures. */
 #include "stages/import_photos/split_grid.h"
 
 #include <stdbool.h>
@@ -6,74 +9,72 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { BRIGHT_PART = 50, REACH_PART = 8, UNEQUAL_PART = 16 };
+enum { MAX_BRIGHT = 50, MAX_SHIFT = 8, MAX_UNEQUAL = 16 }; /* 1 in so many: samples of a line, of a picture */
 
-enum status split_grid_parse(struct split_grid *g, const char *text, const struct import_params *params,
-                             struct err *err)
+enum status split_grid_parse(struct split_grid *g, const char *text, const struct photo_params *params, struct err *err)
 {
     const bool digits = strspn(text, "0123456789x") == strlen(text) && text[0] != '0' && !strstr(text, "x0");
     int end = 0;
     *g = (struct split_grid){0, 0, params->split_border, params->split_gap, params->split_dark};
     if (!digits || strlen(text) > 5 || sscanf(text, "%dx%d%n", &g->columns, &g->rows, &end) != 2 || text[end] ||
-        g->columns > SPLIT_MOST || g->rows > SPLIT_MOST)
+        g->columns > MAX_SPLIT || g->rows > MAX_SPLIT)
         return err_set(
             err, ST_USAGE,
-            "--split %.40s: wanted COLUMNSxROWS, such as 3x2: how many pictures a photo holds, 1 to %d a side.", text,
-            SPLIT_MOST);
+            "--split %.40s: wanted COLUMNSxROWS, like 3x2: the number of pictures in a photo, 1 to %d per side.", text,
+            MAX_SPLIT);
     if (g->columns * g->rows == 1)
-        return err_set(err, ST_USAGE,
-                       "--split 1x1 cuts nothing; leave it out, or say how many pictures a photo holds.");
+        return err_set(err, ST_USAGE, "--split 1x1 cuts nothing; omit it, or give the number of pictures in a photo.");
     return ST_OK;
 }
 
-/* One side of the photo: columns, or rows. */
-struct side {
+/* One direction of the photo: its columns or its rows. */
+struct direction {
     const char *what; /* "columns" or "rows" */
-    const char *name; /* the photo's */
+    const char *name; /* of the photo */
     int size, count;  /* pixels, pictures */
-    bool *dark;       /* of each column or row; NULL: not looked for */
+    bool *dark;       /* of each column or row; NULL: not determined */
 };
 
-static enum status too_small(const struct side *s, int size, struct err *err)
+static enum status too_small(const struct direction *s, int size, struct err *err)
 {
     return err_set(err, ST_DATA,
-                   "%s: cutting its %d px into %d %s leaves %d px for a picture, wanted %d at least; mend SPLIT, or "
+                   "%s: cutting its %d px into %d %s leaves %d px for a picture, wanted at least %d; correct SPLIT, or "
                    "[import_photos] split_border, split_gap, split_dark.",
-                   s->name, s->size, s->count, s->what, size < 0 ? 0 : size, SPLIT_SIDE_LEAST);
+                   s->name, s->size, s->count, s->what, size < 0 ? 0 : size, MIN_SPLIT_SIDE);
 }
 
-static enum status divide_evenly(int *size, int *starts, int *over, const struct side *s, int border, int gap,
+static enum status divide_evenly(int *size, int *starts, int *over, const struct direction *s, int border, int gap,
                                  struct err *err)
 {
-    const int inner = s->size - 2 * border + gap; /* a gap behind the last picture as behind the others */
+    const int inner = s->size - 2 * border + gap; /* as if the last picture were followed by a gap, too */
     *size = inner / s->count - gap;
-    if (*size < SPLIT_SIDE_LEAST) return too_small(s, *size, err);
+    if (*size < MIN_SPLIT_SIDE) return too_small(s, *size, err);
     for (int i = 0; i < s->count; i++) starts[i] = border + (int)((int64_t)i * inner / s->count);
     *over = inner % s->count;
     return ST_OK;
 }
 
-/* The run of dark columns around or next behind `at`; false: there is none before `end`. */
-static bool next_line(const struct side *s, int *at, int *past, int end)
+/* Moves *at to the next dark column, *past behind its run. False: there is none before `end`. */
+static bool next_line(const struct direction *s, int *at, int *past, int end)
 {
     while (*at < end && !s->dark[*at]) ++*at;
     for (*past = *at; *past < s->size && s->dark[*past];) ++*past;
     return *at < end;
 }
 
-static enum status divide_by_lines(int *size, int *starts, int *over, const struct side *s, struct err *err)
+static enum status divide_by_lines(int *size, int *starts, int *over, const struct direction *s, struct err *err)
 {
-    int ends[SPLIT_MOST], first = 0, last = s->size, least = s->size, most = 0;
+    int ends[MAX_SPLIT], first = 0, last = s->size, min = s->size, max = 0;
     while (first < s->size && s->dark[first]) first++;
     while (last > first && s->dark[last - 1]) last--;
     starts[0] = first;
     ends[s->count - 1] = last;
     const int pitch = (last - first) / s->count;
-    if (pitch < SPLIT_SIDE_LEAST) return too_small(s, pitch, err);
+    if (pitch < MIN_SPLIT_SIDE) return too_small(s, pitch, err);
     for (int i = 1; i < s->count; i++) {
-        const int middle = first + (int)((int64_t)i * (last - first) / s->count), reach = pitch / REACH_PART;
+        const int middle = first + (int)((int64_t)i * (last - first) / s->count), reach = pitch / MAX_SHIFT;
         int widest = 0, at = middle - reach, past = 0;
-        while (at > 0 && s->dark[at] && s->dark[at - 1]) at--; /* its beginning */
+        while (at > 0 && s->dark[at] && s->dark[at - 1]) at--; /* to the beginning of the run */
         for (; next_line(s, &at, &past, middle + reach); at = past)
             if (past - at > widest) {
                 widest = past - at;
@@ -82,25 +83,25 @@ static enum status divide_by_lines(int *size, int *starts, int *over, const stru
             }
         if (!widest)
             return err_set(err, ST_DATA,
-                           "%s: %s %d to %d hold no dark line, which parts pictures %d and %d; raise [import_photos] "
-                           "split_dark, or set it to 0 and say split_border and split_gap.",
+                           "%s: %s %d to %d contain no dark line between pictures %d and %d; raise [import_photos] "
+                           "split_dark, or set it to 0 and give split_border and split_gap.",
                            s->name, s->what, middle - reach, middle + reach - 1, i, i + 1);
     }
     for (int i = 0; i < s->count; i++) {
-        const int place = ends[i] - starts[i];
-        if (place < least) least = place;
-        if (place > most) most = place;
+        const int width = ends[i] - starts[i];
+        if (width < min) min = width;
+        if (width > max) max = width;
     }
-    if (least < SPLIT_SIDE_LEAST) return too_small(s, least, err);
-    if ((most - least) * UNEQUAL_PART > most)
+    if (min < MIN_SPLIT_SIDE) return too_small(s, min, err);
+    if ((max - min) * MAX_UNEQUAL > max)
         return err_set(
             err, ST_DATA,
-            "%s: between the dark lines pictures are %d to %d %s wide, which are no equal pictures; mend SPLIT "
-            "or [import_photos] split_dark, or set that to 0 and say split_border and split_gap.",
-            s->name, least, most, s->what);
-    *size = least;
+            "%s: the pictures between the dark lines are %d to %d %s wide, wanted equal widths; correct SPLIT or "
+            "[import_photos] split_dark, or set split_dark to 0 and give split_border and split_gap.",
+            s->name, min, max, s->what);
+    *size = min;
     *over = 0;
-    for (int i = 0; i < s->count; i++) starts[i] += (ends[i] - starts[i] - least) / 2;
+    for (int i = 0; i < s->count; i++) starts[i] += (ends[i] - starts[i] - min) / 2;
     return ST_OK;
 }
 
@@ -115,16 +116,16 @@ static void find_dark(bool *columns, bool *rows, int *bright_in_column, const st
             bright_in_row += bright;
             bright_in_column[x] += bright;
         }
-        rows[y] = (int64_t)bright_in_row * BRIGHT_PART <= width;
+        rows[y] = (int64_t)bright_in_row * MAX_BRIGHT <= width;
     }
-    for (int x = 0; x < width; x++) columns[x] = (int64_t)bright_in_column[x] * BRIGHT_PART <= height;
+    for (int x = 0; x < width; x++) columns[x] = (int64_t)bright_in_column[x] * MAX_BRIGHT <= height;
 }
 
 enum status split_layout_find(struct split_layout *l, const struct split_grid *g, const struct photo *p,
                               const char *name, struct err *err)
 {
-    struct side across = {"columns", name, p->info.width, g->columns, NULL};
-    struct side down = {"rows", name, p->info.height, g->rows, NULL};
+    struct direction across = {"columns", name, p->info.width, g->columns, NULL};
+    struct direction down = {"rows", name, p->info.height, g->rows, NULL};
     *l = (struct split_layout){0};
     if (!g->dark) {
         enum status st = divide_evenly(&l->width, l->x, &l->over_width, &across, g->border, g->gap, err);

@@ -1,19 +1,19 @@
-/* split_grid.h - where the pictures of a multi-lens camera lie in its photograph.
+/* split_grid.h - the layout of the pictures of a multi-lens camera in its photograph.
  *
- * COLUMNS x ROWS pictures of equal size, counted as the photograph is stored: columns from the left, rows from the top.
- * Without dark lines the photo inside its border is divided evenly, and each picture ends a gap before the next begins;
- * pixels that are over are spread among the gaps. With dark lines every picture lies between two of them, all as large as the
- * smallest, each in the middle of its place.
+ * COLUMNS x ROWS pictures of equal size; columns count from the left, rows from the top of the photograph as stored.
+ * Without dark lines the photo inside its border is divided evenly, with a gap between pictures; remainder pixels are
+ * spread among the gaps. With dark lines each picture lies between two of them; all have the size of the smallest and
+ * are centred between their lines.
  *
- * A dark line is a run of columns (rows) in which at most one sample in 50 is brighter than `dark`; between two pictures
- * it is the widest of those within an eighth of a picture of where an even division puts it. */
+ * A dark line is a run of columns (rows) in which at most one sample in 50 is brighter than `dark`. The line between
+ * two pictures is the widest one within an eighth of a picture of the position that an even division gives. */
 #ifndef REMODEL_SPLIT_GRID_H
 #define REMODEL_SPLIT_GRID_H
 
 #include "common/image/photo.h"
 #include "stages/import_photos/import_params.h"
 
-enum { SPLIT_MOST = 99, SPLIT_SIDE_LEAST = 16 }; /* pictures along a side; pixels along a picture's side */
+enum { MAX_SPLIT = 99, MIN_SPLIT_SIDE = 16 }; /* pictures per side; pixels per side of a picture */
 
 struct split_grid {
     int columns, rows;
@@ -21,18 +21,17 @@ struct split_grid {
 };
 
 struct split_layout {
-    int width, height;                /* of each picture */
-    int x[SPLIT_MOST], y[SPLIT_MOST]; /* their first columns and rows */
-    int over_width,
-        over_height; /* pixels in no picture, border and gaps or dark lines, and what is beside, not counted */
+    int width, height;              /* of each picture */
+    int x[MAX_SPLIT], y[MAX_SPLIT]; /* their first columns and rows */
+    int over_width, over_height;    /* remainder pixels of an even division */
 };
 
-/* "3x2". ST_USAGE. */
-enum status split_grid_parse(struct split_grid *g, const char *text, const struct import_params *params,
+/* Parses "3x2". ST_USAGE. */
+enum status split_grid_parse(struct split_grid *g, const char *text, const struct photo_params *params,
                              struct err *err);
 
-/* name: of the photo, for errors. ST_DATA: pictures would have less than SPLIT_SIDE_LEAST pixels on a side; there is no
- * dark line where one must be; between the lines pictures differ by more than a sixteenth in size. */
+/* name: of the photo, for errors. ST_DATA: a side of the pictures would be below MIN_SPLIT_SIDE; an expected dark line
+ * is missing; the pictures between the lines differ in size by more than a sixteenth. */
 enum status split_layout_find(struct split_layout *l, const struct split_grid *g, const struct photo *p,
                               const char *name, struct err *err);
 

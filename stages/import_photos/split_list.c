@@ -1,30 +1,31 @@
-/* split_list.c - see split_list.h. */
+/* split_list.c - reading and writing split.txt. */
 #include "stages/import_photos/split_list.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/base/array.h"
 #include "common/base/outfile.h"
 #include "common/base/textfile.h"
 
-enum { QUOTED_SIZE = 1024, SIDE_MOST = 1 << 28 };
+enum { QUOTED_SIZE = 1024, MAX_SIDE = 1 << 28 };
 
-static enum status read_int(struct textfile *t, const char *what, int least, int most, int *value, struct err *err)
+static enum status read_int(struct textfile *t, const char *what, int min, int max, int *value, struct err *err)
 {
     int64_t wide = 0;
-    enum status st = textfile_int(t, what, least, most, &wide, err);
+    enum status st = textfile_int(t, what, min, max, &wide, err);
     if (!st) *value = (int)wide;
     return st;
 }
 
-/* A file of this folder or of PHOTOS, and its hash. */
+/* A file name, without folder, and a hash. */
 static enum status read_file(struct textfile *t, char **file, char hash[HASH_TEXT], struct err *err)
 {
     char *word = NULL;
     enum status st = textfile_word(t, "file name", &word, err);
     if (!st && (!*word || *word == '.' || strchr(word, '/')))
-        st = textfile_error(t, err, word, "the name of a file, without a folder");
+        st = textfile_error(t, err, word, "a file name without a folder");
     if (!st && !(*file = strdup(word))) st = err_nomem(err, "a file name", strlen(word) + 1);
     if (!st) st = textfile_word(t, "hash", &word, err);
     if (!st && (strlen(word) != HASH_TEXT - 1 || strspn(word, "0123456789abcdef") != HASH_TEXT - 1))
@@ -37,24 +38,22 @@ static enum status read_cut(struct split_cut *c, struct textfile *t, struct err 
 {
     enum status st = textfile_expect_line(t, "cut", err);
     if (!st) st = read_file(t, &c->file, c->hash, err);
-    if (!st) st = read_int(t, "first column", 0, SIDE_MOST, &c->x, err);
-    if (!st) st = read_int(t, "first row", 0, SIDE_MOST, &c->y, err);
+    if (!st) st = read_int(t, "first column", 0, MAX_SIDE, &c->x, err);
+    if (!st) st = read_int(t, "first row", 0, MAX_SIDE, &c->y, err);
     return st ? st : textfile_end(t, err);
 }
 
 static enum status read_photo(struct split_list *list, struct textfile *t, struct err *err)
 {
     const size_t cuts = (size_t)(list->grid.columns * list->grid.rows);
-    struct split_photo *photos = realloc(list->photos, ((size_t)list->count + 1) * sizeof *photos);
-    if (!photos) return err_nomem(err, "a list of photos", ((size_t)list->count + 1) * sizeof *photos);
-    list->photos = photos;
-    struct split_photo *p = &photos[list->count++];
+    if (array_append(&list->photos, (size_t)list->count, sizeof *list->photos, "photos", err)) return err->status;
+    struct split_photo *p = &list->photos[list->count++];
     *p = (struct split_photo){.cuts = calloc(cuts, sizeof *p->cuts)};
     enum status st =
         p->cuts ? textfile_expect(t, "photo", err) : err_nomem(err, "a list of pictures", cuts * sizeof *p->cuts);
     if (!st) st = read_file(t, &p->file, p->hash, err);
-    if (!st) st = read_int(t, "width", 1, SIDE_MOST, &p->width, err);
-    if (!st) st = read_int(t, "height", 1, SIDE_MOST, &p->height, err);
+    if (!st) st = read_int(t, "width", 1, MAX_SIDE, &p->width, err);
+    if (!st) st = read_int(t, "height", 1, MAX_SIDE, &p->height, err);
     if (!st) st = textfile_end(t, err);
     while (!st && p->count < (int)cuts) st = read_cut(&p->cuts[p->count++], t, err);
     return st;
@@ -68,10 +67,10 @@ static enum status read_all(struct split_list *list, struct textfile *t, struct 
     if (!st) st = read_int(t, "format version", 1, 1, &version, err);
     if (!st) st = textfile_end(t, err);
     if (!st) st = textfile_expect_line(t, "grid", err);
-    if (!st) st = read_int(t, "columns", 1, SPLIT_MOST, &g->columns, err);
-    if (!st) st = read_int(t, "rows", 1, SPLIT_MOST, &g->rows, err);
-    if (!st) st = read_int(t, "border", 0, SIDE_MOST, &g->border, err);
-    if (!st) st = read_int(t, "gap", 0, SIDE_MOST, &g->gap, err);
+    if (!st) st = read_int(t, "columns", 1, MAX_SPLIT, &g->columns, err);
+    if (!st) st = read_int(t, "rows", 1, MAX_SPLIT, &g->rows, err);
+    if (!st) st = read_int(t, "border", 0, MAX_SIDE, &g->border, err);
+    if (!st) st = read_int(t, "gap", 0, MAX_SIDE, &g->gap, err);
     if (!st) st = read_int(t, "darkness", 0, 255, &g->dark, err);
     if (!st) st = textfile_end(t, err);
     while (!st && textfile_next(t)) st = read_photo(list, t, err);

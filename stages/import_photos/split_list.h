@@ -1,10 +1,10 @@
-/* split_list.h - split.txt: which pictures were cut out of which photographs.
+/* split_list.h - split.txt: the pictures that were cut out of each photograph.
  *
  *   remodel-split 1
  *   grid COLUMNS ROWS BORDER GAP DARK           [import_photos] split_*
- *   photo "IMG 1.jpg" HASH WIDTH HEIGHT         as the folder PHOTOS names it, its bytes' hash; size of its pictures
- *   cut IMG_1_c1r1.png HASH X Y                 COLUMNS x ROWS lines behind each photo, row by row: the file beside this one, its
- *                                               hash, its first column and row in the photo as stored */
+ *   photo "IMG 1.jpg" HASH WIDTH HEIGHT         file in the folder PHOTOS, hash of its bytes; size of its pictures
+ *   cut IMG_1_c1r1.png HASH X Y                 COLUMNS x ROWS lines after each photo, row by row: file beside this
+ *                                               one, its hash, its first column and row in the photo as stored */
 #ifndef REMODEL_SPLIT_LIST_H
 #define REMODEL_SPLIT_LIST_H
 
@@ -21,7 +21,7 @@ struct split_photo {
     char *file; /* owned */
     char hash[HASH_TEXT];
     int width, height;      /* of each cut */
-    struct split_cut *cuts; /* columns x rows of them, owned */
+    struct split_cut *cuts; /* columns x rows; owned */
     int count;
 };
 

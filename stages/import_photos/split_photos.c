@@ -1,4 +1,4 @@
-/* split_photos.c - see split_photos.h. */
+/* split_photos.c - cuts photographs of a multi-lens camera into their pictures. */
 #include "stages/import_photos/split_photos.h"
 
 #include <dirent.h>
@@ -19,7 +19,7 @@ static char *join_path(const char *folder, const char *name)
     return asprintf(&path, "%s/%s", folder, name) < 0 ? NULL : path;
 }
 
-/* The photo's pictures by name, without their hashes and places. */
+/* Names the photo's pictures; hashes and positions are not set yet. */
 static enum status name_cuts(struct split_photo *s, const struct scanned_photo *p, const struct split_grid *g,
                              struct err *err)
 {
@@ -39,8 +39,8 @@ static enum status name_cuts(struct split_photo *s, const struct scanned_photo *
     return ST_OK;
 }
 
-/* Whether what was cut before is what would be cut now. */
-static bool still_good(struct split_photo *s, const struct split_list *old, const struct split_grid *g, const char *out)
+/* Whether the existing pictures are up to date; fills their hashes and positions if so. */
+static bool up_to_date(struct split_photo *s, const struct split_list *old, const struct split_grid *g, const char *out)
 {
     const struct split_photo *before = NULL;
     if (memcmp(&old->grid, g, sizeof *g)) return false;
@@ -100,7 +100,7 @@ static enum status write_cuts(struct split_photo *s, const struct photo *p, cons
     return st;
 }
 
-/* What can be wrong with the photo itself goes to its own error. */
+/* Errors in the photo itself go to its own `err`. */
 static enum status cut_photo(struct split_photo *s, struct scanned_photo *p, const struct split_grid *g,
                              const char *path, const char *out, struct err *err)
 {
@@ -116,13 +116,14 @@ static enum status cut_photo(struct split_photo *s, struct scanned_photo *p, con
             s->cuts[i].y = layout.y[i / g->columns];
         }
         if (layout.over_width || layout.over_height)
-            log_note("%s: %d x %d px are no multiple of %d x %d pictures; %d px across and %d px down are in none",
-                     p->file, photo.info.width, photo.info.height, g->columns, g->rows, layout.over_width,
-                     layout.over_height);
+            log_note(
+                "%s: %d x %d px are no multiple of %d x %d pictures; %d px across and %d px down are in none of them",
+                p->file, photo.info.width, photo.info.height, g->columns, g->rows, layout.over_width,
+                layout.over_height);
         if (photo.info.orientation > 4 && g->columns != g->rows)
-            log_warn(
-                "%s is stored turned on its side; its %d columns and %d rows of pictures are counted as it is stored.",
-                p->file, g->columns, g->rows);
+            log_warn("%s is stored rotated by 90 degrees; its %d columns and %d rows of pictures count in the photo as "
+                     "stored.",
+                     p->file, g->columns, g->rows);
         st = write_cuts(s, &photo, out, err);
     }
     photo_release(&photo);
@@ -137,7 +138,7 @@ static bool is_listed(const struct split_list *list, const char *file)
     return false;
 }
 
-/* Whether a name ends as those of pictures do: _cXrY.png. */
+/* Whether a name ends with _cXrY.png, as those of pictures do. */
 static bool is_cut_name(const char *name)
 {
     const char *at = strrchr(name, '_');
@@ -175,10 +176,10 @@ static enum status split_all(struct split_list *list, int *kept, struct photo_sc
         list->count++;
         if (!st) st = name_cuts(s, p, &list->grid, err);
         if (!st && !hash_file(s->hash, path, &p->err)) {
-            if (still_good(s, old, &list->grid, out))
+            if (up_to_date(s, old, &list->grid, out))
                 ++*kept;
             else if (cut_photo(s, p, &list->grid, path, out, err))
-                st = err->status; /* the next photo's turn if this one alone is bad */
+                st = err->status; /* continue with the next photo if only this one is unusable */
         }
         free(path);
     }
@@ -191,12 +192,12 @@ enum status split_photos(struct photo_scan *scan, const struct split_grid *grid,
     struct err ignored = ERR_INIT;
     int kept = 0;
     if (!photo_scan_used(scan))
-        return err_set(err, ST_DATA, "%s holds no photo%s to cut into pictures.", scan->folder,
-                       scan->count ? " that is not left out" : "");
+        return err_set(err, ST_DATA, "%s contains no photo%s to cut into pictures.", scan->folder,
+                       scan->count ? " besides those left out" : "");
     char *path = join_path(out, "split.txt");
     list.photos = calloc((size_t)scan->count, sizeof *list.photos);
     enum status st = path && list.photos ? make_folders(out, err) : err_nomem(err, "a list of photos", 0);
-    if (!st) split_list_read(&old, path, &ignored); /* where it cannot be read all is cut again */
+    if (!st) split_list_read(&old, path, &ignored); /* if it cannot be read, all photos are cut again */
     if (!st) st = split_all(&list, &kept, scan, &old, out, err);
     if (!st) st = photo_scan_refuse_bad(scan, err);
     if (!st) st = remove_others(&list, out, err);

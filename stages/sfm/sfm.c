@@ -1,13 +1,13 @@
-/* sfm.c - finds the cameras of the photographs with COLMAP, or takes over a model that there is already.
+/* sfm.c - finds the cameras of the photographs with COLMAP, or imports an existing model.
  *
  * reads   PHOTOS/FILE, RECORDS/list.txt, ID.txt    the photos and their records
- *         MASKS/ID.png                             black where nothing is to be found
- *         MODEL                                    COLMAP's text or binary format, or Bundler's
- * writes  OUT/N/{cameras,images,points3D}.txt      the models, images named by the photos' files
- *         OUT/photos.txt                           id and hash of the photos they are of
+ *         MASKS/ID.png                             black where no features may be found
+ *         MODEL                                    a model in COLMAP's text or binary format, or Bundler's
+ * writes  OUT/N/{cameras,images,points3D}.txt      the models; images have the photos' file names
+ *         OUT/photos.txt                           ids and hashes of the photos
  *         OUT/models.txt                           the list of models
  *
- * OUT is made in OUT.work and replaced as a whole. */
+ * OUT is written in OUT.work and replaced as a whole. */
 #include <stdbool.h>
 
 #include "common/base/cli.h"
@@ -37,12 +37,12 @@ int main(int argc, char **argv)
     const char *photos = NULL, *records = NULL, *masks = NULL, *model = NULL, *out = NULL;
     struct sfm_params params = SFM_PARAMS_DEFAULT;
     const struct cli_opt opts[] = {
-        CLI_ABOUT("Finds the cameras of the photographs with COLMAP, or takes over a model that there is already."),
+        CLI_ABOUT("Finds the cameras of the photographs with COLMAP, or imports an existing model."),
         CLI_STR("photos", &photos, CLI_REQUIRED, "folder of photographs"),
         CLI_STR("records", &records, CLI_REQUIRED, "folder of the photos' records"),
-        CLI_STR("masks", &masks, CLI_OPTIONAL, "folder of masks ID.png, black where nothing is to be found"),
-        CLI_STR("model", &model, CLI_OPTIONAL, "folder of a model to use: COLMAP text or binary, or Bundler"),
-        CLI_STR("out", &out, CLI_REQUIRED, "folder to make"),
+        CLI_STR("masks", &masks, CLI_OPTIONAL, "folder of masks ID.png, black where no features may be found"),
+        CLI_STR("model", &model, CLI_OPTIONAL, "folder of an existing model: COLMAP text or binary, or Bundler"),
+        CLI_STR("out", &out, CLI_REQUIRED, "folder to write the models to; replaced as a whole"),
         CLI_PARAMS(sfm_param_table, &params, sfm_params_check),
         CLI_END,
     };

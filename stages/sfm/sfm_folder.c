@@ -1,4 +1,4 @@
-/* sfm_folder.c - see sfm_folder.h. */
+/* sfm_folder.c - the stage's output folder. */
 #include "stages/sfm/sfm_folder.h"
 
 #include <errno.h>
@@ -38,7 +38,7 @@ enum status remove_tree(const char *path, struct err *err)
     return ST_OK;
 }
 
-/* What stands at `out` will be replaced as a whole, so it must be nothing, an empty folder, or made by this stage. */
+/* `out` will be replaced as a whole, so it must be missing, an empty folder, or a product of this stage. */
 static enum status check_replaceable(const char *out, struct err *err)
 {
     char *models = text_format(err, "%s/models.txt", out);
@@ -46,11 +46,11 @@ static enum status check_replaceable(const char *out, struct err *err)
     bool ours = !access(models, F_OK);
     free(models);
     if (ours || !rmdir(out) || errno == ENOENT) return ST_OK;
-    return err_set(err, ST_USAGE,
-                   "%s is there and is no folder of structure-from-motion models (it has no models.txt); it would be "
-                   "replaced as a "
-                   "whole: name another one with --out.",
-                   out);
+    return err_set(
+        err, ST_USAGE,
+        "%s exists and is not a folder of structure-from-motion models (it has no models.txt), and it would be "
+        "replaced as a whole; give another folder with --out.",
+        out);
 }
 
 enum status sfm_folder_open(struct sfm_folder *f, const char *out, struct err *err)
@@ -111,7 +111,7 @@ enum status sfm_folder_commit(struct sfm_folder *f, const struct photo_list *pho
     enum status st = write_lists(f, photos, prov, err);
     char *old = text_format(err, "%s/old", f->work);
     if (!old) st = err->status;
-    /* where there is no old folder, or the file system cannot exchange two, an old one is moved out of the way first */
+    /* if there is no old folder, or the file system cannot exchange two, an old one is moved away first */
     if (!st && renameat2(AT_FDCWD, f->made, AT_FDCWD, f->out, RENAME_EXCHANGE) &&
         ((rename(f->out, old) && errno != ENOENT) || rename(f->made, f->out)))
         st = err_errno(err, "replace", f->out);

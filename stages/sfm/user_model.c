@@ -1,4 +1,4 @@
-/* user_model.c - see user_model.h. */
+/* user_model.c - models that the user already has: COLMAP text or binary, Bundler. */
 #include "stages/sfm/user_model.h"
 
 #include <dirent.h>
@@ -7,25 +7,27 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "common/base/array.h"
 #include "common/base/log.h"
 #include "common/base/outfile.h"
 #include "common/base/process.h"
 #include "common/base/textfile.h"
 #include "common/capture/photo_match.h"
+#include "stages/sfm/triangulate.h"
 
 static bool has_file(const char *folder, const char *file)
 {
     struct err ignored = ERR_INIT;
     char *path = text_format(&ignored, "%s/%s", folder, file);
-    bool there = path && !access(path, F_OK);
+    bool exists = path && !access(path, F_OK);
     free(path);
-    return there;
+    return exists;
 }
 
 static bool is_text(const char *folder) { return has_file(folder, "cameras.txt") && has_file(folder, "images.txt"); }
 static bool is_binary(const char *folder) { return has_file(folder, "cameras.bin") && has_file(folder, "images.bin"); }
 
-/* Hashes of those of the files that are there. */
+/* Adds the hashes of the files that exist. */
 static enum status add_inputs(struct provenance *prov, const char *folder, const char *const files[], int model,
                               struct err *err)
 {
@@ -57,13 +59,13 @@ static enum status copy_file(const char *from_folder, const char *to_folder, con
     return st;
 }
 
-/* A model of cameras alone may lack points3D.txt: reads copies of the two others beside an empty one. */
-static enum status read_cameras_alone(struct sfm_model *m, const struct sfm_folder *f, const char *folder,
-                                      struct err *err)
+/* A model without points may lack points3D.txt: copies the two other files beside an empty one and reads these. */
+static enum status read_without_points(struct sfm_model *m, const struct sfm_folder *f, const char *folder,
+                                       struct err *err)
 {
     struct outfile empty = {0};
-    char *copy = text_format(err, "%s/cameras-alone", f->work);
-    char *points = text_format(err, "%s/cameras-alone/points3D.txt", f->work);
+    char *copy = text_format(err, "%s/without-points", f->work);
+    char *points = text_format(err, "%s/without-points/points3D.txt", f->work);
     enum status st = copy && points ? outfile_open(&empty, points, err) : err->status;
     if (!st) st = outfile_commit(&empty, err);
     if (!st) st = copy_file(folder, copy, "cameras.txt", err);
@@ -80,7 +82,7 @@ static enum status add_text(struct sfm_folder *f, const char *folder, const stru
 {
     struct sfm_model m = {0};
     enum status st = has_file(folder, "points3D.txt") ? sfm_model_read_text(&m, folder, err)
-                                                      : read_cameras_alone(&m, f, folder, err);
+                                                      : read_without_points(&m, f, folder, err);
     if (!st) log_note("model %d: %d images, %d points", f->models, m.image_count, m.point_count);
     if (!st && !m.point_count) st = triangulate(&m, f, in, err);
     if (!st) st = sfm_folder_add(f, &m, prov, err);
@@ -109,10 +111,10 @@ static enum status add_binary(struct sfm_folder *f, const char *folder, const st
 
 /* ------------------------------------------------------------------------------------------------------- Bundler */
 
-/* A file of the folder for which `wanted` holds, the one called `first` if there is one, else the first by name. *path
- * stays NULL if there is none. */
-static enum status find_file(char **path, const char *folder, const char *first, bool (*wanted)(const char *path),
-                             const char *pattern, struct err *err)
+/* Finds a file whose name ends with `suffix` and that `accept` accepts: the one called `first` if it exists, otherwise
+ * the first by name. *path stays NULL if there is none. */
+static enum status find_file(char **path, const char *folder, const char *first, bool (*accept)(const char *path),
+                             const char *suffix, struct err *err)
 {
     struct dirent **names = NULL;
     int count = scandir(folder, &names, NULL, alphasort);
@@ -120,12 +122,12 @@ static enum status find_file(char **path, const char *folder, const char *first,
     for (int pass = 0; pass < 2; pass++)
         for (int i = 0; i < count && !st && !*path; i++) {
             const char *name = names[i]->d_name;
-            size_t n = strlen(name), tail = strlen(pattern);
-            if (n < tail || strcmp(name + n - tail, pattern) || (pass == 0) != !strcmp(name, first)) continue;
+            size_t n = strlen(name), tail = strlen(suffix);
+            if (n < tail || strcmp(name + n - tail, suffix) || (pass == 0) != !strcmp(name, first)) continue;
             char *p = text_format(err, "%s/%s", folder, name);
             if (!p)
                 st = err->status;
-            else if (wanted(p))
+            else if (accept(p))
                 *path = p;
             else
                 free(p);
@@ -139,9 +141,9 @@ static bool is_bundle(const char *path)
 {
     char line[16] = "";
     FILE *fp = fopen(path, "re");
-    bool yes = fp && fgets(line, sizeof line, fp) && !strncmp(line, "# Bundle file", 13);
+    bool is = fp && fgets(line, sizeof line, fp) && !strncmp(line, "# Bundle file", 13);
     if (fp) fclose(fp);
-    return yes;
+    return is;
 }
 
 static bool is_list(const char *path)
@@ -163,40 +165,33 @@ static void image_names_release(struct image_names *n)
     free(n->sizes);
 }
 
-/* A line an image: its name, then perhaps numbers. Sizes are those of the photos; 0 for what is not among them. */
+/* One image per line: its name, possibly followed by numbers. Sizes are the photos'; 0 x 0 for images that are not
+ * photos of the scene. */
 static enum status read_list(struct image_names *n, const char *path, const struct photo_list *photos, struct err *err)
 {
     struct textfile t = {0};
-    int room = 0, strangers = 0;
+    int unknown = 0;
     enum status st = textfile_open(&t, path, err);
     while (!st && textfile_next(&t)) {
         char *name = NULL;
         st = textfile_word(&t, "name of an image", &name, err);
         if (st) break;
-        if (n->count == room) {
-            room = room ? 2 * room : 64;
-            void *names = realloc(n->names, (size_t)room * sizeof *n->names);
-            if (names) n->names = names;
-            void *sizes = realloc(n->sizes, (size_t)room * sizeof *n->sizes);
-            if (sizes) n->sizes = sizes;
-            if (!names || !sizes) {
-                st = err_nomem(err, "a list of images", (size_t)room * sizeof *n->names);
-                break;
-            }
-        }
+        st = array_append(&n->names, (size_t)n->count, sizeof *n->names, "images", err) ||
+             array_append(&n->sizes, (size_t)n->count, sizeof *n->sizes, "images", err);
+        if (st) break;
         int at = photo_list_match(photos, name), *size = n->sizes[n->count];
         size[0] = at < 0 ? 0 : photos->photos[at].info.width;
         size[1] = at < 0 ? 0 : photos->photos[at].info.height;
-        strangers += at < 0;
+        unknown += at < 0;
         n->names[n->count] = strdup(name);
         if (!n->names[n->count++]) st = err_nomem(err, "a name", strlen(name) + 1);
     }
     textfile_release(&t);
-    if (!st && n->count == strangers)
-        st = err_set(err, ST_DATA,
-                     "none of the %d images that %s names is among the photos; give the model of these photos.",
-                     n->count, path);
-    if (!st && strangers) log_note("%d images of the model are none of the photos: left out", strangers);
+    if (!st && n->count == unknown)
+        st =
+            err_set(err, ST_DATA, "none of the %d images in %s is a photo of the scene; use the model of these photos.",
+                    n->count, path);
+    if (!st && unknown) log_note("%d images of the model are not photos of the scene and are left out", unknown);
     return st;
 }
 
@@ -208,14 +203,14 @@ static enum status add_bundler(struct sfm_folder *f, const char *bundle, const c
     enum status st = read_list(&n, list, photos, err);
     if (!st)
         st = sfm_model_read_bundler(&m, bundle, (const char *const *)n.names, (const int(*)[2])n.sizes, n.count, err);
-    if (!st) log_note("Bundler's model: %d images, %d points", m.image_count, m.point_count);
+    if (!st) log_note("Bundler model: %d images, %d points", m.image_count, m.point_count);
     if (!st) st = sfm_folder_add(f, &m, prov, err);
     sfm_model_release(&m);
     image_names_release(&n);
     return st;
 }
 
-/* *found: whether there is a Bundler file. */
+/* *found: whether a Bundler file exists. */
 static enum status try_bundler(struct sfm_folder *f, const char *from, const struct photo_list *photos, bool *found,
                                struct provenance *prov, struct err *err)
 {
@@ -225,7 +220,7 @@ static enum status try_bundler(struct sfm_folder *f, const char *from, const str
     *found = bundle;
     if (!st && bundle) st = find_file(&list, from, "list.txt", is_list, ".txt", err);
     if (!st && bundle && !list)
-        st = err_set(err, ST_DATA, "%s needs the list of its images: put Bundler's list.txt into %s.", bundle, from);
+        st = err_set(err, ST_DATA, "%s has no list of its images; put Bundler's list.txt into %s.", bundle, from);
     if (!st && bundle) st = provenance_add_file(prov, "model/bundle.out", bundle, err);
     if (!st && bundle) st = provenance_add_file(prov, "model/list.txt", list, err);
     if (!st && bundle) st = add_bundler(f, bundle, list, photos, prov, err);
@@ -237,7 +232,7 @@ static enum status try_bundler(struct sfm_folder *f, const char *from, const str
 
 /* -------------------------------------------------------------------------------------------------------------- all */
 
-/* *found: whether the folder holds a COLMAP model. */
+/* *found: whether the folder contains a COLMAP model. */
 static enum status try_colmap(struct sfm_folder *f, const char *folder, const struct sfm_input *in, bool *found,
                               struct provenance *prov, struct err *err)
 {
@@ -255,21 +250,21 @@ static enum status try_colmap(struct sfm_folder *f, const char *folder, const st
 enum status user_model_add(struct sfm_folder *f, const char *from, const struct sfm_input *in, struct provenance *prov,
                            struct err *err)
 {
-    bool found = false, more = true;
+    bool found = false, next = true;
     if (access(from, R_OK | X_OK)) return err_errno(err, "open", from);
     enum status st = try_colmap(f, from, in, &found, prov, err);
-    for (int k = 0; !st && !found && more; k++) {
+    for (int k = 0; !st && !found && next; k++) {
         char *folder = text_format(err, "%s/%d", from, k);
-        st = folder ? try_colmap(f, folder, in, &more, prov, err) : err->status;
+        st = folder ? try_colmap(f, folder, in, &next, prov, err) : err->status;
         free(folder);
     }
     if (!st && !f->models) st = try_bundler(f, from, in->list, &found, prov, err);
     if (!st && !f->models)
-        st = err_set(err, ST_DATA,
-                     "%s holds no structure-from-motion model: wanted COLMAP's cameras, images and points3D (.txt or "
-                     ".bin), there "
-                     "or in its folders 0, 1, ..., or a Bundler file (.out, beginning with \"# Bundle file\") with its "
-                     "list.txt.",
-                     from);
+        st =
+            err_set(err, ST_DATA,
+                    "%s contains no structure-from-motion model; wanted COLMAP's cameras, images and points3D (.txt or "
+                    ".bin), in it or in its subfolders 0, 1, ..., or a Bundler file (.out, beginning with \"# Bundle "
+                    "file\") with its list.txt.",
+                    from);
     return st;
 }

@@ -1,4 +1,4 @@
-/* holdout.c - see holdout.h. */
+/* holdout.c - the choice of held-out views, and the split of the model. */
 #include "stages/sfm_import/holdout.h"
 
 #include <stdlib.h>
@@ -10,7 +10,7 @@ enum status holdout_choose(bool *held, const struct lens_list *lenses, int every
 {
     const char *photo = "";
     int photos = 0, kept = 0, views = 0;
-    for (int i = 0; i < lenses->count; i++) { /* views of a photo stand together: PHOTO, or PHOTO@k */
+    for (int i = 0; i < lenses->count; i++) { /* views of a photo are consecutive: PHOTO, or PHOTO@k */
         photos += i == 0 || strcmp(photo, lenses->lenses[i].photo) != 0;
         photo = lenses->lenses[i].photo;
         held[i] = every > 0 && (photos - 1) % every == 0;
@@ -25,10 +25,11 @@ enum status holdout_choose(bool *held, const struct lens_list *lenses, int every
                 found = held[i] = true;
         }
         if (!found)
-            return err_set(err, ST_USAGE,
-                           "--holdout-views: there is no view or placed photo \"%.*s\"; names are like %s, without the "
-                           "ending of the file.",
-                           (int)(size < 80 ? size : 80), at, lenses->lenses[0].view);
+            return err_set(
+                err, ST_USAGE,
+                "--holdout-views: there is no view or placed photo \"%.*s\"; wanted names like %s, without the "
+                "file extension.",
+                (int)(size < 80 ? size : 80), at, lenses->lenses[0].view);
         at += size;
     }
     photo = "";
@@ -39,13 +40,12 @@ enum status holdout_choose(bool *held, const struct lens_list *lenses, int every
         kept++;
     }
     if (!views)
-        return err_set(err, ST_USAGE, "--holdout-views names no view; leave it out, or give names like %s.",
+        return err_set(err, ST_USAGE, "--holdout-views names no view; omit it, or give names like %s.",
                        lenses->lenses[0].view);
     if (kept < 2)
         return err_set(err, ST_USAGE,
-                       "%d of %d placed photos would be kept and the others held out, but depth needs at least 2; hold "
-                       "out fewer.",
-                       kept, photos);
+                       "%d of %d placed photos would be kept, but depth needs at least 2; hold out fewer.", kept,
+                       photos);
     log_note("%d of %d views are held out", views, lenses->count);
     return ST_OK;
 }
@@ -76,7 +76,7 @@ static enum status copy_views(struct imported *out, const struct imported *in, c
     return ST_OK;
 }
 
-/* How many entries of the track are in the wanted views, and whether they are of two photos. */
+/* Number of entries of the track in the wanted views. *two_photos: whether they are in at least two photos. */
 static int track_length(const struct sfm_point *p, const struct lens_list *lenses, const bool *held, bool want,
                         bool *two_photos)
 {
@@ -103,7 +103,8 @@ static enum status copy_points(struct imported *out, const struct imported *in, 
         const struct sfm_point *from = &in->model.points[i];
         bool two_photos;
         int length = track_length(from, &in->lenses, held, want, &two_photos);
-        if (!length || (!want && !two_photos)) continue; /* want: those held out; one sighting will do there */
+        if (!length || (!want && !two_photos))
+            continue; /* want: the held-out views, for which one observation is enough */
         struct sfm_point *p = &m->points[m->point_count];
         *p = *from;
         p->track_count = 0;

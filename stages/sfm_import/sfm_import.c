@@ -1,11 +1,12 @@
-/* sfm_import.c - picks, checks and converts the structure-from-motion model into rectified pinhole views.
+/* sfm_import.c - chooses a structure-from-motion model, checks it and converts it into rectified pinhole views.
  *
  * reads   SFM/models.txt, photos.txt, N/{cameras,images,points3D}.txt   the models, in COLMAP's text format
  *         RECORDS/list.txt, ID.txt                                      the photos' names and sizes
- * writes  OUT/points3D.txt, cameras.txt, images.txt                     the views, pinhole, and the points they see
- *         OUT/lenses.txt                                                which photo and lens each view comes from
- *         OUT/views.mk                                                  their names, for Make; last
- *         OUT/../holdout/views/                                         the same files of the views that are held out */
+ * writes  OUT/points3D.txt, cameras.txt, images.txt                     the views' pinhole cameras and the points they
+ * see
+ *         OUT/lenses.txt                                                photo and lens of each view
+ *         OUT/views.mk                                                  names of the views, for Make; written last
+ *         OUT/../holdout/views/                                         the same files for held-out views */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,6 +14,7 @@
 #include "common/base/cli.h"
 #include "common/base/file_path.h"
 #include "common/base/outfile.h"
+#include "stages/sfm_import/choose_model.h"
 #include "stages/sfm_import/holdout.h"
 
 static enum status add_inputs(struct provenance *prov, const char *sfm, const char *model, struct err *err)
@@ -27,13 +29,13 @@ static enum status add_inputs(struct provenance *prov, const char *sfm, const ch
     return st;
 }
 
-struct held_out { /* what is kept out of the views; every 0 and names NULL: nothing */
+struct holdout { /* views to hold out; every 0 and names NULL: none */
     int every;
     const char *names;
 };
 
-/* OUT's views.mk is the last of all files. */
-static enum status write_split(const struct imported *all, const struct held_out *which, const char *out,
+/* OUT/views.mk is written last of all files. */
+static enum status write_split(const struct imported *all, const struct holdout *which, const char *out,
                                const struct provenance *prov, struct err *err)
 {
     struct imported kept = {0}, held = {0};
@@ -54,8 +56,8 @@ static enum status write_split(const struct imported *all, const struct held_out
     return st;
 }
 
-static enum status run(const char *sfm, const char *records, const char *out, const struct held_out *held,
-                       const struct import_params *params, struct provenance *prov, struct err *err)
+static enum status run(const char *sfm, const char *records, const char *out, const struct holdout *held,
+                       const struct sfm_import_params *params, struct provenance *prov, struct err *err)
 {
     struct photo_list photos = {0};
     struct sfm_model model = {0};
@@ -80,27 +82,25 @@ static enum status run(const char *sfm, const char *records, const char *out, co
 int main(int argc, char **argv)
 {
     const char *sfm = NULL, *records = NULL, *out = NULL;
-    struct held_out held = {0};
-    struct import_params params = IMPORT_PARAMS_DEFAULT;
+    struct holdout held = {0};
+    struct sfm_import_params params = SFM_IMPORT_PARAMS_DEFAULT;
     const struct cli_opt opts[] = {
-        CLI_ABOUT("Picks, checks and converts the structure-from-motion model into rectified pinhole views."),
+        CLI_ABOUT("Chooses a structure-from-motion model, checks it and converts it into rectified pinhole views."),
         CLI_STR("sfm", &sfm, CLI_REQUIRED, "folder of the models"),
         CLI_STR("records", &records, CLI_REQUIRED, "folder of the photos' records"),
         CLI_STR("out", &out, CLI_REQUIRED, "folder to write the views' cameras, points and lenses to"),
-        CLI_INT(
-            "holdout", &held.every, CLI_OPTIONAL,
-            "hold out the views of every Nth photo in order of name, the first included; they go to OUT/../holdout"),
+        CLI_INT("holdout", &held.every, CLI_OPTIONAL,
+                "hold out every Nth photo in order of name, the first included; its views go to OUT/../holdout"),
         CLI_STR("holdout-views", &held.names, CLI_OPTIONAL,
-                "hold out these views, or all of these photos: \"NAME NAME\""),
-        CLI_PARAMS(import_param_table, &params, NULL),
+                "views to hold out, or photos, which means all their views: \"NAME NAME\""),
+        CLI_PARAMS(sfm_import_param_table, &params, NULL),
         CLI_END,
     };
     struct provenance prov = {0};
     struct err err = ERR_INIT;
     enum cli_verdict verdict = cli_parse(argc, argv, "sfm_import", opts, &prov, &err);
     if (verdict == CLI_RUN && held.every < 0)
-        err_set(&err, ST_USAGE, "--holdout %d: wanted a number from 1: every how many photos one is held out.",
-                held.every);
+        err_set(&err, ST_USAGE, "--holdout %d: wanted N from 1, to hold out every Nth photo.", held.every);
     else if (verdict == CLI_RUN)
         run(sfm, records, out, &held, &params, &prov, &err);
     err_report(&err);

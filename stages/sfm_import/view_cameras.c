@@ -1,20 +1,22 @@
-/* view_cameras.c - see view_cameras.h.
+/* view_cameras.c - from a photo's lens to the pinhole cameras of its views.
  *
- * The rectangle of rule 3: the border of the photo, sampled all around, is taken to the plane z = 1. The rectangle's
- * left side stands at the largest x of the left border's samples, and so on: no sample lies inside it, the axis does,
- * so it is inside the photo whichever way the lens bends. Where a border pixel has no ray (a distortion that folds,
- * the black corners of a circular fisheye's model) the outermost pixel towards the principal point that has one stands
- * in for it. */
+ * The rules are in view_cameras.h. The rectangle of rule 3: the border of the photo, sampled on all sides, is projected
+ * onto the plane z = 1. The rectangle's left side is at the largest x of the left border's samples, and so on. No
+ * sample is inside the rectangle and the axis is, so the rectangle is inside the photo for barrel and pincushion
+ * distortion alike. A border pixel without a ray (beyond the radius where the distortion folds, or in the black corners
+ * of a circular fisheye) is replaced by the outermost pixel on the way to the principal point that has one. */
 #include "stages/sfm_import/view_cameras.h"
 
 #include <float.h>
 
+#include "common/math/numbers.h"
+
 enum { BORDER_SAMPLES = 256, GRID = 64 };
 
-static const double widest = 85; /* degrees from the axis that a single pinhole view may show */
+static const double MAX_ANGLE = 85; /* degrees from the axis that a single pinhole view may show */
 
-/* Ray of the pixel at (u, v) or, if it has none within `limit` of the axis, of the outermost one that has on the
- * way to the principal point. */
+/* Ray of the pixel at (u, v); if it has none within `limit` (radians) of the axis, that of the outermost pixel on the
+ * way to the principal point that has one. */
 static struct vec3 border_ray(const struct camera *lens, double u, double v, double limit)
 {
     double fx, fy, cx, cy, inside = 0, outside = 1;
@@ -38,12 +40,12 @@ static double angle_to_axis(struct vec3 ray) { return atan2(hypot(ray.x, ray.y),
 void lens_field(const struct camera *lens, double *horizontal, double *vertical)
 {
     double w = lens->width, h = lens->height;
-    *horizontal = angle_to_axis(border_ray(lens, 0, h / 2, M_PI)) + angle_to_axis(border_ray(lens, w, h / 2, M_PI));
-    *vertical = angle_to_axis(border_ray(lens, w / 2, 0, M_PI)) + angle_to_axis(border_ray(lens, w / 2, h, M_PI));
+    *horizontal = angle_to_axis(border_ray(lens, 0, h / 2, PI)) + angle_to_axis(border_ray(lens, w, h / 2, PI));
+    *vertical = angle_to_axis(border_ray(lens, w / 2, 0, PI)) + angle_to_axis(border_ray(lens, w / 2, h, PI));
 }
 
-/* Share of the view that lies inside the photo, on a grid. */
-static double share_inside(const struct camera *lens, const struct photo_view *view)
+/* Fraction of the view that is inside the photo, sampled on a grid. */
+static double fraction_inside(const struct camera *lens, const struct photo_view *view)
 {
     struct mat3 photo_from_view = mat3_transpose(mat3_from_quat(view->view_from_photo));
     double fx, fy, cx, cy;
@@ -59,8 +61,8 @@ static double share_inside(const struct camera *lens, const struct photo_view *v
     return inside / (double)(GRID * GRID);
 }
 
-/* Quarter turns: the view's z is the photo's z, -x, x, -y, y. */
-static const struct quat turns[MOST_PARTS] = {
+/* Rotations by 90 degrees: the view's z is the photo's z, -x, x, -y, y. */
+static const struct quat rotations[MOST_PARTS] = {
     {1, 0, 0, 0},
     {0.70710678118654752440, 0, 0.70710678118654752440, 0},
     {0.70710678118654752440, 0, -0.70710678118654752440, 0},
@@ -68,23 +70,23 @@ static const struct quat turns[MOST_PARTS] = {
     {0.70710678118654752440, 0.70710678118654752440, 0, 0},
 };
 
-static int wide_views(struct photo_view views[MOST_PARTS], const struct camera *lens, double most_pixels)
+static int wide_views(struct photo_view views[MOST_PARTS], const struct camera *lens, double max_pixels)
 {
     double fx, fy, cx, cy;
     int count = 0;
     camera_focal(lens, &fx, &fy, &cx, &cy);
-    int side = (int)fmin(fmin(2 * sqrt(fx * fy), sqrt(most_pixels)) + 1e-6, 1 << 15);
+    int side = (int)fmin(fmin(2 * sqrt(fx * fy), sqrt(max_pixels)) + 1e-6, 1 << 15);
     for (int part = 0; part < MOST_PARTS && side >= 1; part++) {
         struct photo_view v = {
-            part, {CAMERA_PINHOLE, side, side, {side / 2.0, side / 2.0, side / 2.0, side / 2.0}}, turns[part]};
-        if (part == 0 || share_inside(lens, &v) >= 0.25) views[count++] = v;
+            part, {CAMERA_PINHOLE, side, side, {side / 2.0, side / 2.0, side / 2.0, side / 2.0}}, rotations[part]};
+        if (part == 0 || fraction_inside(lens, &v) >= 0.25) views[count++] = v;
     }
     return count;
 }
 
-static bool one_view(struct photo_view *view, const struct camera *lens, double most_pixels)
+static bool one_view(struct photo_view *view, const struct camera *lens, double max_pixels)
 {
-    double fx, fy, cx, cy, w = lens->width, h = lens->height, limit = widest * M_PI / 180;
+    double fx, fy, cx, cy, w = lens->width, h = lens->height, limit = MAX_ANGLE * PI / 180;
     double left = -DBL_MAX, right = DBL_MAX, top = -DBL_MAX, bottom = DBL_MAX;
     camera_focal(lens, &fx, &fy, &cx, &cy);
     for (int i = 0; i <= BORDER_SAMPLES; i++) {
@@ -98,10 +100,10 @@ static bool one_view(struct photo_view *view, const struct camera *lens, double 
     }
     double across = (right - left) * fx, down = (bottom - top) * fy;
     if (!(left < right && top < bottom)) return false;
-    double scale = fmin(1, sqrt(most_pixels / (across * down)));
+    double scale = fmin(1, sqrt(max_pixels / (across * down)));
     across *= scale;
     down *= scale;
-    /* the tolerance keeps a side that is whole but for rounding; a pixel's fraction is cut off evenly at both ends */
+    /* the tolerance keeps sides that are whole up to rounding; a fraction of a pixel is cut off evenly at both ends */
     double width = floor(across + 1e-6), height = floor(down + 1e-6);
     if (!(width >= 1 && height >= 1 && width <= 1 << 20 && height <= 1 << 20)) return false;
     *view = (struct photo_view){-1, {CAMERA_PINHOLE, (int)width, (int)height, {0}}, {1, 0, 0, 0}};
@@ -115,21 +117,21 @@ static bool one_view(struct photo_view *view, const struct camera *lens, double 
 enum status photo_views(struct photo_view views[MOST_PARTS], int *count, const struct camera *lens,
                         double max_megapixels, double max_field, struct err *err)
 {
-    double horizontal, vertical, most_pixels = max_megapixels > 0 ? max_megapixels * 1e6 : DBL_MAX;
+    double horizontal, vertical, max_pixels = max_megapixels > 0 ? max_megapixels * 1e6 : DBL_MAX;
     bool pinhole = lens->model == CAMERA_SIMPLE_PINHOLE || lens->model == CAMERA_PINHOLE;
     lens_field(lens, &horizontal, &vertical);
-    if (fmax(horizontal, vertical) > max_field * M_PI / 180) {
-        *count = wide_views(views, lens, most_pixels);
-    } else if (pinhole && (double)lens->width * lens->height <= most_pixels) {
+    if (fmax(horizontal, vertical) > max_field * PI / 180) {
+        *count = wide_views(views, lens, max_pixels);
+    } else if (pinhole && (double)lens->width * lens->height <= max_pixels) {
         views[0] = (struct photo_view){-1, *lens, {1, 0, 0, 0}};
         *count = 1;
     } else {
-        *count = one_view(&views[0], lens, most_pixels);
+        *count = one_view(&views[0], lens, max_pixels);
     }
     if (*count) return ST_OK;
     return err_set(
         err, ST_DATA,
-        "its %s lens of %d x %d px leaves no picture when it is rectified: focal length or distortion cannot "
-        "be right; leave the photo out, or give the lens with [sfm] camera_model and camera_params.",
+        "its %s lens of %d x %d px leaves no picture when rectified: focal length or distortion must be wrong. "
+        "Leave the photo out (EXCLUDE), or set the lens with [sfm] camera_model and camera_params.",
         camera_model_name(lens->model), lens->width, lens->height);
 }

@@ -1,12 +1,12 @@
-/* view_cameras.h - the one rule by which a photo's lens becomes the pinhole cameras of its views.
+/* view_cameras.h - from a photo's lens to the pinhole cameras of its views.
  *
  * 1. The field of view is measured along the two midlines of the photo's border. A field wider than `max_field` in
  *    either direction becomes up to five square pinhole views of 90 degrees with the photo's centre: 0 forward, 1
- *    left, 2 right, 3 up, 4 down; of 1 to 4, one with fewer than a quarter of its pixels inside the photo is left out.
- * 2. A narrower SIMPLE_PINHOLE or PINHOLE photo within `max_megapixels` keeps its camera and its pixels.
- * 3. Any other becomes one PINHOLE view: focal lengths those of the lens at its centre, the principal point where the
- *    lens has it, and borders drawn in or out so that the view is the largest upright rectangle found that lies inside
- *    the photo.
+ *    left, 2 right, 3 up, 4 down. Of 1 to 4, those with less than a quarter of their pixels inside the photo are left
+ *    out.
+ * 2. A narrower SIMPLE_PINHOLE or PINHOLE photo within `max_megapixels` keeps its camera and its pixels. 3. Any other
+ * photo becomes one PINHOLE view with the lens's focal lengths and principal point. Its borders are moved so
+ *    that the view is the largest upright rectangle found inside the photo.
  * 4. A view of more than `max_megapixels` (0: no limit) is scaled down with its aspect kept.
  *
  * Pixels are those of the stored photo; pixel (x, y) has its centre at (x + 0.5, y + 0.5). */
@@ -18,15 +18,15 @@
 enum { MOST_PARTS = 5 };
 
 struct photo_view {
-    int part;                    /* -1: the photo's only view; otherwise the k of PHOTO@k */
+    int part;                    /* -1: the photo's only view; otherwise k of PHOTO@k */
     struct camera camera;        /* SIMPLE_PINHOLE or PINHOLE */
     struct quat view_from_photo; /* 1 0 0 0 for the only view and the forward one */
 };
 
-/* Angles in radians that the horizontal and the vertical midline span; pixels that no ray reaches do not count. */
+/* Angles in radians that the horizontal and the vertical midline span; pixels without a ray do not count. */
 void lens_field(const struct camera *lens, double *horizontal, double *vertical);
 
-/* max_field in degrees. ST_DATA: the lens leaves no picture. */
+/* max_field is in degrees. ST_DATA: the lens leaves no picture. */
 enum status photo_views(struct photo_view views[MOST_PARTS], int *count, const struct camera *lens,
                         double max_megapixels, double max_field, struct err *err);
 

@@ -54,7 +54,7 @@ an_exr_is_a_single_exposure()
     mkdir -p exr
     for i in 1 2 3; do ffmpeg -v error -i set/photos/photo_${i}_e1.jpg -vf scale=160:120 -pix_fmt gbrpf32le exr/photo_$i.exr; done
     records exr || { cat err; fail "import"; }
-    says "3 views of one exposure each, of which no time is known: taken to be alike"
+    says "3 views of one exposure each; no exposure time is known, so all are assumed to be equal"
     grep -qx 'bits 32' exr-records/photo_2.txt && grep -qx 'BRACKETED := yes' exr-records/photos.mk || fail "wrong records"
     merged exr photo_2 || { cat err; fail "merge"; }
     has exr-hdr/photo_2.exr "one exposure"
@@ -120,9 +120,9 @@ missing_exposures_and_times_are_named()
     refused "photo_4_e0.jpg (1/16384 s), photo_4_e1.jpg (1/4096 s)" records few
     mkdir -p bare bare-scene; for k in 0 1 2; do for i in 1 2; do ffmpeg -v error -i set/photos/photo_${i}_e$k.jpg bare/photo_${i}_e$k.png; done; done
     for i in 1 2; do echo "photo_$i photo_${i}_e0.png photo_${i}_e1.png photo_${i}_e2.png"; done >bare-scene/brackets.txt
-    refused "the exposure time of photo_1_e0.png is not known (EXIF does not tell it); write a line" records bare
+    refused "the exposure time of photo_1_e0.png is not known (not in EXIF); write a line" records bare
     echo 'photo_1_e7.png 1' >bare-scene/exposures.txt
-    refused "bare-scene/exposures.txt:1: found photo_1_e7.png, wanted a photo of" records bare
+    refused "bare-scene/exposures.txt:1: found photo_1_e7.png, wanted the name of a photo in" records bare
 }
 
 shifts_are_reported_and_corrected()

@@ -1,10 +1,10 @@
-# import_photos: what --split and its parameters refuse
+# import_photos: --split, its parameters and errors
 . tests/lib.sh
 d=$scratch/photos; mkdir "$d"
 ffmpeg -v error -f lavfi -i testsrc2=size=120x80 -frames:v 1 "$d/a.png"
 bin() { "$B/bin/import_photos" --photos "$d" --out "$scratch/records" "$@" 2>"$scratch/err"; }
-# refused CODE WORDS OPTION...
-refused()
+# rejects CODE WORDS OPTION...
+rejects()
 {
     local code=$1 words=$2 rc=0; shift 2
     bin "$@" || rc=$?
@@ -13,27 +13,27 @@ refused()
     [ -z "$(find "$scratch/records" "$scratch/cuts" -type f 2>/dev/null)" ] || fail "$*: a product was left"
 }
 
-wrong_grids_are_refused()
+invalid_grids_are_rejected()
 {
-    for g in 3 3x x3 0x3 3x0 100x1 3x3x3 -1x2 '3x3 ' axb ''; do refused 2 "wanted COLUMNSxROWS" --split "$g" --cuts "$scratch/cuts"; done
-    refused 2 "cuts nothing" --split 1x1 --cuts "$scratch/cuts"
-    refused 2 "go together" --split 2x2
-    refused 2 "go together" --cuts "$scratch/cuts"
-    refused 2 "the folder of photos itself" --split 2x2 --cuts "$d"
+    for g in 3 3x x3 0x3 3x0 100x1 3x3x3 -1x2 '3x3 ' axb ''; do rejects 2 "wanted COLUMNSxROWS" --split "$g" --cuts "$scratch/cuts"; done
+    rejects 2 "cuts nothing" --split 1x1 --cuts "$scratch/cuts"
+    rejects 2 "go together" --split 2x2
+    rejects 2 "go together" --cuts "$scratch/cuts"
+    rejects 2 "the folder of photos itself" --split 2x2 --cuts "$d"
 }
 
-wrong_parameters_are_refused()
+invalid_parameters_are_rejected()
 {
-    refused 2 "split_gap" --split 2x2 --cuts "$scratch/cuts" --set split_gap=-1
-    refused 2 "split_dark" --split 2x2 --cuts "$scratch/cuts" --set split_dark=255
-    refused 2 "leave these two at 0" --split 2x2 --cuts "$scratch/cuts" --set split_dark=9 --set split_border=1
+    rejects 2 "split_gap" --split 2x2 --cuts "$scratch/cuts" --set split_gap=-1
+    rejects 2 "split_dark" --split 2x2 --cuts "$scratch/cuts" --set split_dark=255
+    rejects 2 "leave these two at 0" --split 2x2 --cuts "$scratch/cuts" --set split_dark=9 --set split_border=1
 }
 
 photos_that_cannot_be_cut_are_named()
 {
-    refused 1 "a.png: cutting its 120 px into 9 columns leaves 13 px" --split 9x1 --cuts "$scratch/cuts"
-    refused 1 "a.png: columns 53 to 66 hold no dark line" --split 2x1 --cuts "$scratch/cuts" --set split_dark=9
-    refused 1 "no photo that is not left out" --split 2x1 --cuts "$scratch/cuts" --exclude a
+    rejects 1 "a.png: cutting its 120 px into 9 columns leaves 13 px" --split 9x1 --cuts "$scratch/cuts"
+    rejects 1 "a.png: columns 53 to 66 contain no dark line" --split 2x1 --cuts "$scratch/cuts" --set split_dark=9
+    rejects 1 "no photo besides those left out" --split 2x1 --cuts "$scratch/cuts" --exclude a
 }
 
 cut_pictures_are_photos()
@@ -43,4 +43,4 @@ cut_pictures_are_photos()
     grep -qx 'size 40 40' "$scratch/records/a_c2r2.txt" || fail "wrong size"
 }
 
-for t in wrong_grids_are_refused wrong_parameters_are_refused photos_that_cannot_be_cut_are_named cut_pictures_are_photos; do run "$t"; done
+for t in invalid_grids_are_rejected invalid_parameters_are_rejected photos_that_cannot_be_cut_are_named cut_pictures_are_photos; do run "$t"; done

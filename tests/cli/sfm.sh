@@ -1,45 +1,45 @@
-# sfm: what COLMAP is told about the lens; a script of its name stands in for it.
+# sfm: the lens options passed to COLMAP, which is replaced by a script that records its arguments.
 . tests/lib.sh
 photos "$scratch/set" --views 3 --size 64x48 >/dev/null
 cd "$scratch" || exit 1
 mkdir fake
-printf '#!/bin/sh\necho "$@" >>told\nexit 1\n' >fake/colmap
+printf '#!/bin/sh\necho "$@" >>args\nexit 1\n' >fake/colmap
 chmod +x fake/colmap
 export PATH=$scratch/fake:$root/$B/bin:$PATH
 import_photos --photos set/photos --out records 2>err || { cat err; fail "import"; }
 
-# told WORDS [SETTING...]: sfm fails, for COLMAP does; it has told it WORDS
-told()
+# passes WORDS [SETTING...]: sfm passes WORDS to COLMAP, and fails because COLMAP does
+passes()
 {
-    local words=$1 rc=0 args=(); shift
-    for s; do args+=(--set "$s"); done
-    rm -f told
-    sfm --photos set/photos --records records --out out "${args[@]}" 2>err || rc=$?
+    local words=$1 rc=0 settings=(); shift
+    for s; do settings+=(--set "$s"); done
+    rm -f args
+    sfm --photos set/photos --records records --out out "${settings[@]}" 2>err || rc=$?
     [ "$rc" = 1 ] || { cat err; fail "exit $rc, wanted 1"; }
-    grep -qF -- "$words" told || { cat told err; fail "COLMAP is not told '$words'"; }
+    grep -qF -- "$words" args || { cat args err; fail "COLMAP did not get '$words'"; }
 }
 
-an_equisolid_lens_is_opencv_fisheye_to_colmap()
+equisolid_is_passed_as_opencv_fisheye()
 {
-    told '--ImageReader.camera_model OPENCV_FISHEYE' camera_model=EQUISOLID camera_params=28.5
-    grep -qF -- '--ImageReader.camera_params 28.5,28.5,32,24,-0.0416666666667,0.000520833333333,-3.10019841' told || { cat told; fail "another start"; }
-    told '--ImageReader.camera_params 28.5,28.5,31,25.5,-0.04' camera_model=EQUISOLID camera_params=28.5,31,25.5
+    passes '--ImageReader.camera_model OPENCV_FISHEYE' camera_model=EQUISOLID camera_params=28.5
+    grep -qF -- '--ImageReader.camera_params 28.5,28.5,32,24,-0.0416666666667,0.000520833333333,-3.10019841' args || { cat args; fail "other parameters"; }
+    passes '--ImageReader.camera_params 28.5,28.5,31,25.5,-0.04' camera_model=EQUISOLID camera_params=28.5,31,25.5
 }
 
-a_focal_length_that_nobody_states_is_asked_for()
+equisolid_without_a_focal_length_is_rejected()
 {
     sed -i 's/^exif [^ ]* [^ ]*/exif 16 0/' records/photo_2.txt
-    rm -f told; rc=0
+    rm -f args; rc=0
     sfm --photos set/photos --records records --out out --set camera_model=EQUISOLID 2>err || rc=$?
-    [ "$rc" = 2 ] && [ ! -e told ] || { cat err; fail "exit $rc, wanted 2 before COLMAP runs"; }
+    [ "$rc" = 2 ] && [ ! -e args ] || { cat err; fail "exit $rc, wanted 2 before COLMAP runs"; }
     grep -qE 'EXIF of photo "photo_[12].jpg" does not state it for 35 mm film. Set camera_params = F in pixels: .* times 64,' err || { cat err; fail "no advice"; }
 }
 
-other_models_are_told_as_they_are()
+other_models_are_passed_unchanged()
 {
-    told '--ImageReader.camera_model OPENCV --' camera_model=OPENCV
-    ! grep -q camera_params told || { cat told; fail "a start that nobody gave"; }
-    told '--ImageReader.camera_params 60,32,24' camera_model=SIMPLE_PINHOLE camera_params=60,32,24
+    passes '--ImageReader.camera_model OPENCV --' camera_model=OPENCV
+    ! grep -q camera_params args || { cat args; fail "initial parameters that were not given"; }
+    passes '--ImageReader.camera_params 60,32,24' camera_model=SIMPLE_PINHOLE camera_params=60,32,24
 }
 
-for t in an_equisolid_lens_is_opencv_fisheye_to_colmap a_focal_length_that_nobody_states_is_asked_for other_models_are_told_as_they_are; do run $t; done
+for t in equisolid_is_passed_as_opencv_fisheye equisolid_without_a_focal_length_is_rejected other_models_are_passed_unchanged; do run $t; done

@@ -1,4 +1,4 @@
-/* fuzz_bracket_list.c - brackets.txt: views with safe names, each once, each with photos; or a sentence says why not. */
+/* fuzz_bracket_list.c - brackets.txt: any bytes give unique views with safe names and photos, or an error. */
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>

@@ -1,5 +1,5 @@
-/* fuzz_bundler.c - Bundler's files: any bytes give a model that is whole, or a sentence. Read as lists of 1, 2 and 3
- * images. */
+/* fuzz_bundler.c - Bundler's files: any bytes give a consistent model or an error. Each input is read with lists of 1,
+ * 2 and 3 images. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
-/* fuzz_camera_path.c - the reader of camera moves: any bytes give a path that can be filmed, or a sentence.
+/* fuzz_camera_path.c - camera paths: any bytes give a path that can be rendered, or an error.
  *
- * The input is path.txt, then, each after a line "%%", path/cameras.txt and path/images.txt; parts that are missing are
- * those of a good path of two frames. */
+ * The input is path.txt, path/cameras.txt and path/images.txt, separated by lines "%%"; missing parts are replaced by
+ * those of a valid path of two frames. */
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -14,7 +14,7 @@
 
 static char folder[FUZZ_PATH];
 static const char *const names[] = {"path.txt", "path/cameras.txt", "path/images.txt", "path/points3D.txt"};
-static const char *const good[] = {
+static const char *const valid[] = {
     "remodel-path 1\neffect e\nfps 30\nframes 2\nframe 0001 0 0 0\nframe 0002 0.5 0 0\n",
     "1 PINHOLE 64 48 60 60 32 24\n2 PINHOLE 64 48 60 60 32 24\n",
     "1 1 0 0 0 0 0 0 1 0001.exr\n\n2 1 0 0 0 1 0 0 2 0002.exr\n\n",
@@ -67,7 +67,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         write_part(part, data + at, length);
         at += length + (end ? 3 : 0);
     }
-    for (; part < 4; part++) write_part(part, good[part], strlen(good[part]));
+    for (; part < 4; part++) write_part(part, valid[part], strlen(valid[part]));
 
     if (camera_path_read(&p, folder, &err)) {
         if (!err.text[0] || p.frames) abort();

@@ -1,6 +1,7 @@
-/* fuzz_colmap.c - COLMAP's text models: any bytes give a model that is whole and survives writing, or a sentence.
+/* fuzz_colmap.c - COLMAP's text models: any bytes give a consistent model that can be written and read back, or an
+ * error.
  *
- * The input is cameras.txt, images.txt and points3D.txt, a line "%%" between them; missing parts are empty. */
+ * The input is cameras.txt, images.txt and points3D.txt, separated by lines "%%"; missing parts are empty. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -34,7 +35,7 @@ static void write_part(int part, const void *bytes, size_t size)
     if (!fp || (size && fwrite(bytes, 1, size, fp) != size) || fclose(fp)) abort();
 }
 
-/* Indices in range, tracks and observations that point at each other, unit rotations. */
+/* Indices are in range, tracks and observations refer to each other, rotations have length 1. */
 static void check(const struct sfm_model *m)
 {
     for (int i = 0; i < m->image_count; i++) {

@@ -1,5 +1,4 @@
-/* fuzz_exposure_list.c - exposures.txt: each photo once with an exposure that is a positive number; or a sentence says
- * why not. */
+/* fuzz_exposure_list.c - exposures.txt: any bytes give unique photos with positive exposures, or an error. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,5 +1,5 @@
-/* fuzz_lenses.c - the list of lenses: what is read is written again and read back the same, or a sentence says why
- * not; and no lens, however bent, makes its projection return anything but a pixel or nothing. */
+/* fuzz_lenses.c - the list of lenses: any bytes give lenses that can be written and read back, or an error; projection
+ * through any of them gives a finite pixel or fails. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
-/* fuzz_photo_list.c - a photo's record, and the list of photos: what is read is written and read back the same, or a
- * sentence says why not. Every input is read as the record of photo a, and as the list beside good records of a and b. */
+/* fuzz_photo_list.c - a photo's record, and the list of photos: any bytes give values that can be written and read
+ * back, or an error. Every input is read as the record of photo a, and as the list beside valid records of a and b. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

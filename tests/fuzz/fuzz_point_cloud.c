@@ -1,4 +1,4 @@
-/* fuzz_point_cloud.c - points.ply: any bytes give points that keep their promises and survive writing, or a sentence. */
+/* fuzz_point_cloud.c - points.ply: any bytes give valid points that can be written and read back, or an error. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

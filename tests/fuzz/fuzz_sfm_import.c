@@ -1,8 +1,8 @@
-/* fuzz_sfm_import.c - the folder of models that structure from motion left: any bytes in it give views that later stages
- * can read, or a sentence.
+/* fuzz_sfm_import.c - the folder of structure-from-motion models: any bytes in it give views that later stages can
+ * read, or an error.
  *
- * The input is models.txt, photos.txt and a model's cameras.txt, images.txt, points3D.txt, a line "%%" between them;
- * parts that are missing are good ones. The photos are a, b and c, of 64 x 48. */
+ * The input is models.txt, photos.txt and a model's cameras.txt, images.txt, points3D.txt, separated by lines "%%";
+ * missing parts are replaced by valid ones. The photos are a, b and c, of 64 x 48. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -14,8 +14,13 @@
 #include "tests/fuzz/fuzz.h"
 #include "tests/fuzz/fuzz_scratch.h"
 
-/* a stage's files, which are in no library */
+/* files of a stage, which are not in the library */
+#include "stages/sfm_import/choose_model.c"
 #include "stages/sfm_import/import_model.c"
+#include "stages/sfm_import/lens_fit.c"
+#include "stages/sfm_import/match_photos.c"
+#include "stages/sfm_import/name_lines.c"
+#include "stages/sfm_import/residuals.c"
 #include "stages/sfm_import/view_cameras.c"
 
 static char folder[FUZZ_PATH];
@@ -23,7 +28,7 @@ enum { PARTS = 5, FILES = 10 };
 static const char *const names[FILES] = {"models.txt",     "photos.txt",      "0/cameras.txt",  "0/images.txt",
                                          "0/points3D.txt", "out/cameras.txt", "out/images.txt", "out/points3D.txt",
                                          "out/lenses.txt", "out/views.mk"};
-static const char *const good[PARTS] = {
+static const char *const valid[PARTS] = {
     "remodel-sfm 1\n0 colmap\n",
     "a 00000000000000000000000000000000\nb 00000000000000000000000000000001\nc 2\n",
     "1 SIMPLE_RADIAL 64 48 60 32 24 -0.1\n",
@@ -65,7 +70,7 @@ static void write_part(int part, const void *bytes, size_t size)
     if (!fp || (size && fwrite(bytes, 1, size, fp) != size) || fclose(fp)) abort();
 }
 
-/* What was imported is what later stages read: cameras and lenses of the same views. */
+/* Later stages must read what was imported: cameras and lenses of the same views. */
 static void check(const struct imported *in)
 {
     char out[FUZZ_PATH + 64], lenses[FUZZ_PATH + 64];
@@ -98,7 +103,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     char text[6][8] = {"a", "a.jpg", "b", "b.jpg", "c", "c.jpg"};
     struct photo_record records[3] = {{0}};
     const struct photo_list photos = {records, 3};
-    const struct import_params params = IMPORT_PARAMS_DEFAULT;
+    const struct sfm_import_params params = SFM_IMPORT_PARAMS_DEFAULT;
     struct sfm_model model;
     struct imported in;
     struct err err = ERR_INIT;
@@ -117,7 +122,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         write_part(part, data + at, length);
         at += length + (end ? 3 : 0);
     }
-    for (; part < PARTS; part++) write_part(part, good[part], strlen(good[part]));
+    for (; part < PARTS; part++) write_part(part, valid[part], strlen(valid[part]));
 
     if (import_check_photos(folder, &photos, &err) && !err.text[0]) abort();
     err = (struct err)ERR_INIT;

@@ -1,5 +1,5 @@
-/* fuzz_sfm_lists.c - text that other programs leave for structure from motion: Bundler's list of images and COLMAP's log.
- * Any bytes give names and counts, or a sentence. Every input is read as both. */
+/* fuzz_sfm_lists.c - text written by other programs: Bundler's list of images and COLMAP's log. Any bytes give names
+ * and counts, or an error. Every input is read as both. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,9 +8,13 @@
 #include "tests/fuzz/fuzz.h"
 #include "tests/fuzz/fuzz_scratch.h"
 
-/* a stage's files, which are in no library */
-#include "stages/sfm/run_colmap.c"
+/* files of a stage, which are not in the library */
+#include "stages/sfm/colmap_job.c"
+#include "stages/sfm/colmap_log.c"
 #include "stages/sfm/sfm_folder.c"
+#include "stages/sfm/sfm_params.c"
+#include "stages/sfm/start_lens.c"
+#include "stages/sfm/triangulate.c"
 #include "stages/sfm/user_model.c"
 
 static void check_list(const char *path)
@@ -38,15 +42,15 @@ static void check_log(const char *path)
 {
     struct feature_counts counts;
     struct err err = ERR_INIT;
-    char words[100];
+    char line[100];
 
     enum status st = feature_counts_read(&counts, path, &err);
     if (st && (st != err.status || !strstr(err.text, path) || counts.list)) abort();
     for (int i = 0; i < counts.count; i++)
         if (!counts.list[i].name) abort();
-    connected_images(path);
-    last_words(words, sizeof words, path);
-    if (strlen(words) >= sizeof words || strchr(words, '\n')) abort();
+    colmap_log_connected(path);
+    colmap_log_last_line(line, sizeof line, path);
+    if (strlen(line) >= sizeof line || strchr(line, '\n')) abort();
     feature_counts_release(&counts);
 }
 

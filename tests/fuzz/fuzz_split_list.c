@@ -1,5 +1,5 @@
-/* fuzz_split_list.c - split.txt: photos with as many pictures as the grid has; written again it reads the same. Or a
- * sentence says why not. */
+/* fuzz_split_list.c - split.txt: any bytes give photos with as many pictures as the grid has, which can be written and
+ * read back, or an error. */
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -38,8 +38,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
             check_file(p->file);
             for (int k = 0; k < p->count; k++) check_file(p->cuts[k].file);
         }
-        if (!split_list_write(&list, path,
-                              &err)) { /* a name may hold what cannot be written: a line break is none of it */
+        if (!split_list_write(&list, path, &err)) { /* it fails for names with characters that cannot be written */
             if (split_list_read(&again, path, &err) || again.count != list.count) abort();
             for (int i = 0; i < list.count; i++) check_same(&list.photos[i], &again.photos[i]);
             split_list_release(&again);

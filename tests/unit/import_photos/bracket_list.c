@@ -1,4 +1,4 @@
-/* bracket_list.c, exposure_list.c - what people write about brackets: it is read, or told what is wrong where. */
+/* bracket_list.c - brackets.txt and exposures.txt: reading and errors. */
 #include "tests/unit/scratch.h"
 
 #include <math.h>
@@ -6,7 +6,7 @@
 #include "stages/import_photos/bracket_list.h"
 #include "stages/import_photos/exposure_list.h"
 
-static void views_and_their_photos(void **state)
+static void views_are_read_with_their_photos(void **state)
 {
     struct bracket_list list;
     struct err err = ERR_INIT;
@@ -27,20 +27,20 @@ static void views_and_their_photos(void **state)
     bracket_list_release(NULL);
 }
 
-static void wrong_views_are_named(void **state)
+static void errors_in_brackets_txt_name_the_line(void **state)
 {
     static const char *const cases[][2] = {
-        {"", "names no view"},
-        {"# nothing\n", "names no view"},
+        {"", "contains no view"},
+        {"# nothing\n", "contains no view"},
         {"hall\n", ":1: found the end of the line, wanted the file name of a photo."},
         {"a x.jpg\nb\n", ":2: found the end"},
-        {"a x.jpg\na y.jpg\n", ":2: found \"a\", wanted each view once (it also stands in line 1)."},
-        {"a x.jpg\n\nb y.jpg x.jpg\n", ":3: found \"x.jpg\", wanted each photo once (it also stands in line 1)."},
+        {"a x.jpg\na y.jpg\n", ":2: found \"a\", wanted each view once (it is also in line 1)."},
+        {"a x.jpg\n\nb y.jpg x.jpg\n", ":3: found \"x.jpg\", wanted each photo once (it is also in line 1)."},
         {"a x.jpg x.jpg\n", ":1: found \"x.jpg\", wanted each photo once"},
         {"-a x.jpg\n", "wanted a view's name of at most 100 letters"},
         {"a/b x.jpg\n", "wanted a view's name"},
         {"\"\" x.jpg\n", "wanted a view's name"},
-        {"list x.jpg\n", "this one is taken"},
+        {"list x.jpg\n", "this one is reserved"},
         {"a \"x.jpg\n", "closing quote"},
     };
     (void)state;
@@ -55,7 +55,7 @@ static void wrong_views_are_named(void **state)
     }
 }
 
-static void exposures_by_their_numbers(void **state)
+static void exposures_are_read_with_optional_numbers(void **state)
 {
     struct exposure_list list;
     struct err err = ERR_INIT;
@@ -81,7 +81,7 @@ static void exposures_by_their_numbers(void **state)
     exposure_list_release(&list);
 }
 
-static void wrong_exposures_are_named(void **state)
+static void errors_in_exposures_txt_name_the_line(void **state)
 {
     static const char *const cases[][2] = {
         {"a.jpg\n", ":1: found the end of the line, wanted an exposure time in seconds"},
@@ -93,7 +93,7 @@ static void wrong_exposures_are_named(void **state)
         {"a.jpg 1 -8 100\n", "wanted an f-number"},
         {"a.jpg 1 8 100 0\n", "wanted a neutral density factor"},
         {"a.jpg 1 8 100 2 3\n", "wanted the end of the line"},
-        {"a.jpg 1\nb.jpg 1\na.jpg 2\n", ":3: found \"a.jpg\", wanted each photo once (it also stands in line 1)."},
+        {"a.jpg 1\nb.jpg 1\na.jpg 2\n", ":3: found \"a.jpg\", wanted each photo once (it is also in line 1)."},
     };
     (void)state;
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -113,10 +113,10 @@ static void wrong_exposures_are_named(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(views_and_their_photos),
-        cmocka_unit_test(wrong_views_are_named),
-        cmocka_unit_test(exposures_by_their_numbers),
-        cmocka_unit_test(wrong_exposures_are_named),
+        cmocka_unit_test(views_are_read_with_their_photos),
+        cmocka_unit_test(errors_in_brackets_txt_name_the_line),
+        cmocka_unit_test(exposures_are_read_with_optional_numbers),
+        cmocka_unit_test(errors_in_exposures_txt_name_the_line),
     };
     return cmocka_run_group_tests_name("bracket_list", tests, scratch_make, scratch_remove);
 }

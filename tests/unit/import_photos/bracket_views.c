@@ -1,5 +1,4 @@
-/* bracket_views.c - folders of photos with exposures: which are views of several, what they are called, and what is said
- * when they cannot be grouped. */
+/* bracket_views.c - grouping of photos by exposure: views, their names, errors. */
 #include "tests/unit/scratch.h"
 
 #include <math.h>
@@ -65,11 +64,11 @@ static void import_release(struct import *im)
     photo_scan_release(&im->scan);
 }
 
-/* name and seconds of each photo, by turns; seconds NULL: not stated. */
+/* name and seconds of each photo; seconds NULL: unknown. */
 static enum status import(struct import *im, const char *const (*shots)[2], int count, const char *brackets,
                           const char *exclude)
 {
-    struct import_params params = IMPORT_PARAMS_DEFAULT;
+    struct photo_params params = PHOTO_PARAMS_DEFAULT;
     bool used[1] = {false};
     *im = (struct import){.err = ERR_INIT};
     strcpy(params.brackets, brackets);
@@ -116,8 +115,8 @@ static void a_cycle_of_exposures_makes_views(void **state)
     import_release(&im);
 }
 
-/* Counters that run on: numbers are counted by value, and a stem that all views share is no name. */
-static void views_are_named_by_their_first_photo_where_stems_are_the_same(void **state)
+/* A running counter: numbers are ordered by value, and the stem that all views share cannot be their name. */
+static void views_with_equal_stems_are_named_after_their_first_photo(void **state)
 {
     static const char *const shots[6][2] = {{"IMG_8.jpg", "1"},  {"IMG_9.jpg", "0.5"},  {"IMG_10.jpg", "2"},
                                             {"IMG_11.jpg", "1"}, {"IMG_12.jpg", "0.5"}, {"IMG_13.jpg", "2"}};
@@ -131,8 +130,8 @@ static void views_are_named_by_their_first_photo_where_stems_are_the_same(void *
     import_release(&im);
 }
 
-/* The photos' names in brackets.txt, and thereby the folder's order, do not matter. */
-static void the_order_of_files_does_not_matter(void **state)
+/* Views and files in another order give the same records. */
+static void the_order_in_brackets_txt_does_not_matter(void **state)
 {
     struct import im;
     char *text[2];
@@ -155,19 +154,19 @@ static void the_order_of_files_does_not_matter(void **state)
     free(text[1]);
 }
 
-static void photos_that_are_no_brackets_stay_single(void **state)
+static void photos_without_a_cycle_stay_single(void **state)
 {
     static const char *const few[4][2] = {{"a.jpg", "1"}, {"b.jpg", "2"}, {"c.jpg", "1"}, {"d.jpg", "2"}};
     static const char *const same[6][2] = {{"a.jpg", "1"}, {"b.jpg", "1"}, {"c.jpg", "1"},
                                            {"d.jpg", "1"}, {"e.jpg", "1"}, {"f.jpg", "1"}};
     static const char *const wild[8][2] = {{"a.jpg", "1"}, {"b.jpg", "2"},   {"c.jpg", "1"}, {"d.jpg", "1"},
                                            {"e.jpg", "2"}, {"f.jpg", "0.5"}, {"g.jpg", "1"}, {"h.jpg", "3"}};
-    static const char *const untold[6][2] = {{"a.jpg", NULL}, {"b.jpg", NULL}, {"c.jpg", NULL},
-                                             {"d.jpg", NULL}, {"e.jpg", NULL}, {"f.jpg", NULL}};
+    static const char *const untimed[6][2] = {{"a.jpg", NULL}, {"b.jpg", NULL}, {"c.jpg", NULL},
+                                              {"d.jpg", NULL}, {"e.jpg", NULL}, {"f.jpg", NULL}};
     const struct {
         const char *const (*shots)[2];
         int count;
-    } cases[] = {{few, 4}, {same, 6}, {wild, 8}, {untold, 6}};
+    } cases[] = {{few, 4}, {same, 6}, {wild, 8}, {untimed, 6}};
     (void)state;
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct import im;
@@ -191,7 +190,7 @@ static void photos_that_are_no_brackets_stay_single(void **state)
     import_release(&im);
 }
 
-static void incomplete_cycles_are_named(void **state)
+static void photos_of_incomplete_cycles_are_named(void **state)
 {
     const char *shots[9][2];
     struct import im;
@@ -203,7 +202,7 @@ static void incomplete_cycles_are_named(void **state)
     assert_contains(im.err.text, "v3_e0.jpg (1/10 s), v3_e1.jpg (0.4 s), v3_e2.jpg (no exposure time).");
     assert_contains(im.err.text, "EXCLUDE = v3_e0 v3_e1 v3_e2");
     import_release(&im);
-    assert_ok(import(&im, (const char *const(*)[2])shots, 9, "auto", NULL), im.err); /* 6 of 9 might be chance */
+    assert_ok(import(&im, (const char *const(*)[2])shots, 9, "auto", NULL), im.err); /* 6 of 9 may be chance */
     assert_false(im.views.bracketed);
     import_release(&im);
 
@@ -213,22 +212,22 @@ static void incomplete_cycles_are_named(void **state)
     import_release(&im);
 }
 
-static void written_exposures_win(void **state)
+static void exposures_txt_overrides_exif(void **state)
 {
     struct import im;
     (void)state;
     put_text(photos, "exposures.txt", "v1_e2.jpg 3.2 0 0 2\nv1_e0.jpg 7\n");
     put_text(scene, "exposures.txt", "v1_e0.jpg 0.1\n");
     assert_ok(import(&im, cycle, 9, "auto", NULL), im.err);
-    assert_int_equal(im.views.count, 3); /* 3.2 s through a filter of 2 is 1.6 s; 7 s is taken back */
+    assert_int_equal(im.views.count, 3); /* 3.2 s through a filter of 2 is 1.6 s; the line of 7 s is overridden */
     import_release(&im);
 
     put_text(scene, "exposures.txt", "v9.jpg 0.1\n");
     assert_int_equal(import(&im, cycle, 9, "auto", NULL), ST_DATA);
-    assert_err(im.err, ST_DATA, "exposures.txt:1: found v9.jpg, wanted a photo of");
+    assert_err(im.err, ST_DATA, "exposures.txt:1: found v9.jpg, wanted the name of a photo in");
     import_release(&im);
 
-    put_text(scene, "exposures.txt", "v1_e0.jpg 0.1 8 100\n"); /* the others do not state f-number and ISO */
+    put_text(scene, "exposures.txt", "v1_e0.jpg 0.1 8 100\n"); /* f-number and ISO of the others are unknown */
     put_text(scene, "brackets.txt",
              "a v1_e0.jpg v1_e1.jpg v1_e2.jpg\nb v2_e0.jpg v2_e1.jpg v2_e2.jpg\n"
              "c v3_e0.jpg v3_e1.jpg v3_e2.jpg\n");
@@ -237,12 +236,12 @@ static void written_exposures_win(void **state)
     import_release(&im);
 }
 
-static void wrong_lists_are_told(void **state)
+static void invalid_lists_are_rejected(void **state)
 {
     static const char *const cases[][2] = {
         {"a v1_e0.jpg v1_e1.jpg v1_e2.jpg\nb v2_e0.jpg v2_e1.jpg v2_e2.jpg\nc v3_e0.jpg v3_e1.jpg\n",
          "has no view with v3_e2.jpg (1 of the photos in"},
-        {"a v1_e0.jpg v1_e9.jpg\n", "brackets.txt:1: found v1_e9.jpg, wanted a photo of"},
+        {"a v1_e0.jpg v1_e9.jpg\n", "brackets.txt:1: found v1_e9.jpg, wanted the name of a photo in"},
         {"a v1_e0.jpg v2_e0.jpg v1_e1.jpg v1_e2.jpg\nb v2_e1.jpg v2_e2.jpg\nc v3_e0.jpg v3_e1.jpg v3_e2.jpg\n",
          "view a: v1_e0.jpg and v2_e0.jpg have the same exposure (1/10 s)"},
     };
@@ -266,21 +265,21 @@ static void wrong_lists_are_told(void **state)
     import_release(&im);
 }
 
-static void sizes_must_be_the_same(void **state)
+static void exposures_of_a_view_must_have_one_size(void **state)
 {
     struct import im;
     (void)state;
     put_text(scene, "brackets.txt", "a v1_e0.jpg v1_e1.jpg\n");
     assert_ok(import(&im, cycle, 2, "auto", NULL), im.err);
     im.scan.photos[1].record.info.width++;
-    struct import_params params = IMPORT_PARAMS_DEFAULT;
+    struct photo_params params = PHOTO_PARAMS_DEFAULT;
     struct bracket_views views;
     assert_int_equal(bracket_views_find(&views, &im.scan, scene, &params, NULL, 0, NULL, &im.err), ST_DATA);
     assert_err(im.err, ST_DATA, "view a: v1_e1.jpg has 17 x ");
     import_release(&im);
 }
 
-static void views_and_exposures_can_be_left_out(void **state)
+static void views_and_single_exposures_can_be_excluded(void **state)
 {
     struct import im;
     (void)state;
@@ -309,14 +308,14 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup(a_cycle_of_exposures_makes_views, fresh),
-        cmocka_unit_test_setup(views_are_named_by_their_first_photo_where_stems_are_the_same, fresh),
-        cmocka_unit_test_setup(the_order_of_files_does_not_matter, fresh),
-        cmocka_unit_test_setup(photos_that_are_no_brackets_stay_single, fresh),
-        cmocka_unit_test_setup(incomplete_cycles_are_named, fresh),
-        cmocka_unit_test_setup(written_exposures_win, fresh),
-        cmocka_unit_test_setup(wrong_lists_are_told, fresh),
-        cmocka_unit_test_setup(sizes_must_be_the_same, fresh),
-        cmocka_unit_test_setup(views_and_exposures_can_be_left_out, fresh),
+        cmocka_unit_test_setup(views_with_equal_stems_are_named_after_their_first_photo, fresh),
+        cmocka_unit_test_setup(the_order_in_brackets_txt_does_not_matter, fresh),
+        cmocka_unit_test_setup(photos_without_a_cycle_stay_single, fresh),
+        cmocka_unit_test_setup(photos_of_incomplete_cycles_are_named, fresh),
+        cmocka_unit_test_setup(exposures_txt_overrides_exif, fresh),
+        cmocka_unit_test_setup(invalid_lists_are_rejected, fresh),
+        cmocka_unit_test_setup(exposures_of_a_view_must_have_one_size, fresh),
+        cmocka_unit_test_setup(views_and_single_exposures_can_be_excluded, fresh),
     };
     return cmocka_run_group_tests_name("bracket_views", tests, scratch_make, scratch_remove);
 }

@@ -1,4 +1,4 @@
-/* Folders of photos: ids for any names, what is left out, which photos are bad, and what is rewritten when. */
+/* photo_scan.c - folders of photos: ids for any names, exclusion, unusable photos, and which records are rewritten. */
 #include "tests/unit/scratch.h"
 
 #include "stages/import_photos/photo_scan.h"
@@ -35,7 +35,7 @@ static void put(const char *name, const char *from)
     assert_int_equal(fclose(out), 0);
 }
 
-static void assert_there(const char *name, bool there)
+static void assert_exists(const char *name, bool there)
 {
     char path[1024];
     snprintf(path, sizeof path, "%s/%s", records, name);
@@ -58,7 +58,7 @@ static enum status import(struct photo_scan *scan, const char *exclude, struct e
     return st;
 }
 
-static void ids(void **state)
+static void ids_are_safe_and_unique(void **state)
 {
     const char *const names[][2] = {
         {"1341847980.722988.jpg", "1341847980_722988"},
@@ -103,7 +103,7 @@ static void ids(void **state)
     photo_scan_release(NULL);
 }
 
-static void long_names(void **state)
+static void long_names_give_short_unique_ids(void **state)
 {
     char name[256];
     struct photo_scan scan = {0};
@@ -119,7 +119,7 @@ static void long_names(void **state)
     photo_scan_release(&scan);
 }
 
-static void leaving_out(void **state)
+static void excluded_photos_rename_no_others(void **state)
 {
     struct photo_scan scan = {0};
     struct err err = ERR_INIT;
@@ -138,18 +138,18 @@ static void leaving_out(void **state)
     assert_int_equal(photo_scan_exclude(&scan, ""), 0);
     photo_scan_release(&scan);
 
-    /* what is left out renames no other photo, is not looked at, and its record goes */
+    /* an excluded photo changes no other id, is not read, and its record is removed */
     put("c.png", CUT);
     assert_ok(import(&scan, "c_png", &err), err);
     photo_scan_release(&scan);
-    assert_there("c_jpg.txt", true);
-    assert_there("c_png.txt", false);
+    assert_exists("c_jpg.txt", true);
+    assert_exists("c_png.txt", false);
     assert_ok(import(&scan, "c", &err), err);
     photo_scan_release(&scan);
-    assert_there("c_jpg.txt", false);
+    assert_exists("c_jpg.txt", false);
 }
 
-static void rewrites_only_what_changed(void **state)
+static void only_changed_files_are_rewritten(void **state)
 {
     const char *const products[] = {"list.txt", "photos.mk", "a.txt", "b.txt", "c.txt"};
     const struct timespec old[2] = {{1000, 0}, {1000, 0}};
@@ -162,7 +162,7 @@ static void rewrites_only_what_changed(void **state)
     put("b.png", OTHER);
     put("c.jpg", GOOD);
     for (int round = 0; round < 4; round++) {
-        /* the first time, nothing, another content, another set */
+        /* first run, no change, changed content, changed set */
         if (round == 2) put("b.png", "tests/fuzz/corpus/photo/rgba8.png");
         assert_ok(import(&scan, round == 3 ? "c" : NULL, &err), err);
         photo_scan_release(&scan);
@@ -181,7 +181,7 @@ static void rewrites_only_what_changed(void **state)
     assert_int_equal(count_entries(photos), 3);
 }
 
-static void bad_photos_are_all_named(void **state)
+static void all_unusable_photos_are_named(void **state)
 {
     struct photo_scan scan = {0};
     struct err err = ERR_INIT;
@@ -192,7 +192,7 @@ static void bad_photos_are_all_named(void **state)
     put("bad 1.jpg", GOOD);
     assert_ok(import(&scan, NULL, &err), err);
     photo_scan_release(&scan);
-    assert_there("bad_1.txt", true);
+    assert_exists("bad_1.txt", true);
 
     put("bad 1.jpg", CUT);
     put("bad 2.jpg", CMYK);
@@ -202,16 +202,16 @@ static void bad_photos_are_all_named(void **state)
     assert_int_equal(import(&scan, NULL, &err), ST_DATA);
     assert_err(err, ST_DATA, "4 of 6 photos in ");
     assert_contains(err.text, "EXCLUDE = bad_1 bad_2 bad_3 bad_4)");
-    const char *const words[] = {"bad 1.jpg", "bad 2.jpg is a CMYK", "line break", "bad 4.jpg"};
-    for (int i = 0; i < 4; i++) assert_contains(scan.photos[i].err.text, words[i]);
+    const char *const messages[] = {"bad 1.jpg", "bad 2.jpg is a CMYK", "line break", "bad 4.jpg"};
+    for (int i = 0; i < 4; i++) assert_contains(scan.photos[i].err.text, messages[i]);
     for (int i = 4; i < 6; i++) assert_int_equal(scan.photos[i].err.status, ST_OK);
     photo_scan_release(&scan);
-    assert_there("bad_1.txt", false);
-    assert_there("bad_2.txt", false);
-    assert_there("good_1.txt", true);
-    assert_there("good_2.txt", true);
+    assert_exists("bad_1.txt", false);
+    assert_exists("bad_2.txt", false);
+    assert_exists("good_1.txt", true);
+    assert_exists("good_2.txt", true);
 
-    put("bad 1.jpg", GOOD); /* mended */
+    put("bad 1.jpg", GOOD); /* replaced */
     err = (struct err)ERR_INIT;
     assert_ok(photo_scan_folder(&scan, photos, &err), err);
     for (const char *name = "234"; *name; name++) {
@@ -221,10 +221,10 @@ static void bad_photos_are_all_named(void **state)
     assert_ok(photo_scan_check(&scan, records, &err), err);
     assert_ok(photo_scan_write(&scan, records, &err), err);
     photo_scan_release(&scan);
-    assert_there("bad_1.txt", true);
+    assert_exists("bad_1.txt", true);
 }
 
-static void damaged_records_are_made_again(void **state)
+static void damaged_records_are_rewritten(void **state)
 {
     struct photo_scan scan = {0};
     struct photo_record in;
@@ -244,14 +244,14 @@ static void damaged_records_are_made_again(void **state)
     photo_record_release(&in);
 }
 
-static void too_few_and_no_folder(void **state)
+static void too_few_photos_and_missing_folders_are_rejected(void **state)
 {
     struct photo_scan scan = {0};
     struct err err = ERR_INIT;
     (void)state;
     put("notes.txt", GOOD);
     assert_int_equal(import(&scan, NULL, &err), ST_DATA);
-    assert_err(err, ST_DATA, "holds no photo; a parallax video needs at least 2");
+    assert_err(err, ST_DATA, "contains no photo; a parallax video needs at least 2");
     photo_scan_release(&scan);
 
     err = (struct err)ERR_INIT;
@@ -259,18 +259,18 @@ static void too_few_and_no_folder(void **state)
     assert_int_equal(import(&scan, NULL, &err), ST_DATA);
     assert_err(err, ST_DATA, "one photo;");
     photo_scan_release(&scan);
-    assert_there("list.txt", false);
-    assert_there("photos.mk", false);
+    assert_exists("list.txt", false);
+    assert_exists("photos.mk", false);
 
     err = (struct err)ERR_INIT;
     put("b.jpg", GOOD);
     assert_int_equal(import(&scan, "a", &err), ST_DATA);
-    assert_err(err, ST_DATA, "one photo that is not left out;");
+    assert_err(err, ST_DATA, "one photo besides those left out;");
     photo_scan_release(&scan);
 
     err = (struct err)ERR_INIT;
     assert_int_equal(photo_scan_folder(&scan, scratch_path("no-such"), &err), ST_IO);
-    assert_err(err, ST_IO, "is not there");
+    assert_err(err, ST_IO, "is missing");
     photo_scan_release(&scan);
     err = (struct err)ERR_INIT;
     assert_int_equal(photo_scan_folder(&scan, GOOD, &err), ST_DATA);
@@ -281,13 +281,13 @@ static void too_few_and_no_folder(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(ids, fresh),
-        cmocka_unit_test_setup(long_names, fresh),
-        cmocka_unit_test_setup(leaving_out, fresh),
-        cmocka_unit_test_setup(rewrites_only_what_changed, fresh),
-        cmocka_unit_test_setup(bad_photos_are_all_named, fresh),
-        cmocka_unit_test_setup(damaged_records_are_made_again, fresh),
-        cmocka_unit_test_setup(too_few_and_no_folder, fresh),
+        cmocka_unit_test_setup(ids_are_safe_and_unique, fresh),
+        cmocka_unit_test_setup(long_names_give_short_unique_ids, fresh),
+        cmocka_unit_test_setup(excluded_photos_rename_no_others, fresh),
+        cmocka_unit_test_setup(only_changed_files_are_rewritten, fresh),
+        cmocka_unit_test_setup(all_unusable_photos_are_named, fresh),
+        cmocka_unit_test_setup(damaged_records_are_rewritten, fresh),
+        cmocka_unit_test_setup(too_few_photos_and_missing_folders_are_rejected, fresh),
     };
     return cmocka_run_group_tests_name("photo_scan", tests, scratch_make, scratch_remove);
 }

@@ -1,4 +1,5 @@
-/* Photographs of multi-lens cameras: where their pictures lie, what is cut out of them, and what is cut again when. */
+/* split_photos.c - photographs of multi-lens cameras: layout of the pictures, their content, when they are cut
+ * again. */
 #include "tests/unit/scratch.h"
 
 #include <math.h>
@@ -6,11 +7,11 @@
 #include "stages/import_photos/split_list.h"
 #include "stages/import_photos/split_photos.h"
 
-static const struct import_params defaults = IMPORT_PARAMS_DEFAULT;
+static const struct photo_params defaults = PHOTO_PARAMS_DEFAULT;
 
 /* -------------------------------------------------------------------------------------------------------- the grid */
 
-static void a_grid_is_columns_x_rows(void **state)
+static void a_grid_is_parsed_as_columns_x_rows(void **state)
 {
     static const char *const bad[] = {"",      "3",    "3x",   "x3",    "0x3",   "3x0",  "03x2", "3x02", "3X3",
                                       "3x3x3", "3x3 ", " 3x3", "100x2", "2x100", "-3x3", "3*3",  "1e1x2"};
@@ -31,15 +32,15 @@ static void a_grid_is_columns_x_rows(void **state)
     assert_err(err, ST_USAGE, "cuts nothing");
 }
 
-static void lines_and_a_gap_exclude_each_other(void **state)
+static void dark_lines_and_a_gap_exclude_each_other(void **state)
 {
-    struct import_params p = IMPORT_PARAMS_DEFAULT;
+    struct photo_params p = PHOTO_PARAMS_DEFAULT;
     struct err err = ERR_INIT;
     (void)state;
     p.split_gap = 4;
-    assert_ok(import_params_check(&p, &err), err);
+    assert_ok(photo_params_check(&p, &err), err);
     p.split_dark = 20;
-    assert_int_equal(import_params_check(&p, &err), ST_USAGE);
+    assert_int_equal(photo_params_check(&p, &err), ST_USAGE);
     assert_err(err, ST_USAGE, "split_gap = 4");
 }
 
@@ -58,7 +59,7 @@ static void fill(struct photo *p, int x0, int y0, int x1, int y1, uint16_t value
         for (int i = 3 * x0; i < 3 * x1; i++) p->samples[y * p->info.width * 3 + i] = value;
 }
 
-static void an_even_division_spreads_what_is_over(void **state)
+static void an_even_division_spreads_remainder_pixels(void **state)
 {
     struct photo p;
     struct split_layout l;
@@ -84,12 +85,12 @@ static void an_even_division_spreads_what_is_over(void **state)
     for (size_t i = 0; i < sizeof narrow / sizeof *narrow; i++) {
         err = (struct err)ERR_INIT;
         assert_int_equal(split_layout_find(&l, &narrow[i], &p, "p.png", &err), ST_DATA);
-        assert_err(err, ST_DATA, "wanted 16 at least");
+        assert_err(err, ST_DATA, "wanted at least 16");
     }
     photo_release(&p);
 }
 
-/* Lines of unequal width, off the even division, with dust on them; of 8 and of 16 bits. */
+/* Lines of unequal width, away from the even division, with dust on them; 8 and 16 bits. */
 static void dark_lines_are_found(void **state)
 {
     const struct split_grid g = {3, 2, 0, 0, 20};
@@ -106,7 +107,7 @@ static void dark_lines_are_found(void **state)
         fill(&p, 316, 0, 320, 200, dark);
         fill(&p, 0, 98, 320, 103, dark); /* pictures 0..98, 103..200: 97 rows each, the upper one from 0 */
         fill(&p, 109, 50, 110, 53, grey);
-        fill(&p, 40, 0, 42, 60, dark); /* a dark thing in a picture is no line */
+        fill(&p, 40, 0, 42, 60, dark); /* a dark object in a picture is not a line */
         assert_ok(split_layout_find(&l, &g, &p, "p", &err), err);
         assert_true(l.width == 100 && l.x[0] == 7 && l.x[1] == 113 && l.x[2] == 216);
         assert_true(l.height == 97 && l.y[0] == 0 && l.y[1] == 103);
@@ -114,7 +115,7 @@ static void dark_lines_are_found(void **state)
     }
 }
 
-static void lines_that_are_not_there_are_told(void **state)
+static void missing_dark_lines_are_reported(void **state)
 {
     const struct split_grid g = {2, 1, 0, 0, 20};
     struct photo p;
@@ -123,8 +124,8 @@ static void lines_that_are_not_there_are_told(void **state)
     (void)state;
     make_photo(&p, 200, 100, 8, 90);
     assert_int_equal(split_layout_find(&l, &g, &p, "plain.png", &err), ST_DATA);
-    assert_err(err, ST_DATA, "plain.png: columns 88 to 111 hold no dark line");
-    fill(&p, 89, 0, 91, 100, 0); /* one that parts unequal pictures */
+    assert_err(err, ST_DATA, "plain.png: columns 88 to 111 contain no dark line");
+    fill(&p, 89, 0, 91, 100, 0); /* a line between unequal pictures */
     err = (struct err)ERR_INIT;
     assert_int_equal(split_layout_find(&l, &g, &p, "uneven.png", &err), ST_DATA);
     assert_err(err, ST_DATA, "89 to 109 columns wide");
@@ -159,7 +160,7 @@ static const char *in(const char *folder, const char *name)
 
 static const struct photo_info exif = {0, 0, 0, 1, 24.5, 35, 1.0 / 60, 5.6, 400, "remodel", "nine lenses"};
 
-/* A photo whose picture (x, y) of 3 x 2, 20 x 30 px each, is of the grey 30 + 60 x + 5 y + more. */
+/* A photo of 3 x 2 pictures of 20 x 30 px; picture (x, y) has the grey value 30 + 60 x + 5 y + more. */
 static void put(const char *name, int more)
 {
     struct photo p;
@@ -224,7 +225,7 @@ static void pictures_are_cut_and_listed(void **state)
     struct photo_info info;
     assert_ok(photo_read_info(&info, in(cuts, "IMG_1_c3r2.png"), &err), err);
     assert_true(info.focal_mm == 24.5 && info.f_number == 5.6 && info.iso == 400);
-    assert_true(info.focal35_mm == round(35 * hypot(60, 60) / hypot(20, 30))); /* the same angle for every pixel */
+    assert_true(info.focal35_mm == round(35 * hypot(60, 60) / hypot(20, 30))); /* same angle per pixel */
     assert_string_equal(info.model, "nine lenses");
     assert_ok(split_list_read(&list, in(cuts, "split.txt"), &err), err);
     assert_int_equal(list.count, 1);
@@ -241,7 +242,7 @@ static void pictures_are_cut_and_listed(void **state)
     assert_int_equal(count_entries(cuts), 7);
 }
 
-static void only_what_changed_is_cut_again(void **state)
+static void only_changed_photos_are_cut_again(void **state)
 {
     struct err err;
     (void)state;
@@ -255,14 +256,14 @@ static void only_what_changed_is_cut_again(void **state)
     assert_ok(split("3x2", NULL, &err), err);
     assert_false(newer("a_c1r1.png", a));
     assert_grey("b_c2r1.png", 92);
-    assert_int_equal(remove(in(cuts, "a_c2r2.png")), 0); /* lost, and spoilt */
+    assert_int_equal(remove(in(cuts, "a_c2r2.png")), 0); /* one removed, one damaged */
     assert_ok(split("3x2", NULL, &err), err);
     assert_grey("a_c2r2.png", 95);
     assert_int_equal(rename(in(cuts, "a_c1r1.png"), in(cuts, "a_c2r2.png")), 0);
     assert_ok(split("3x2", NULL, &err), err);
     assert_grey("a_c2r2.png", 95);
     assert_grey("a_c1r1.png", 30);
-    scratch_write(in(cuts, "split.txt") + strlen(scratch) + 1, "remodel-split 1\ngrid 3"); /* half a list */
+    scratch_write(in(cuts, "split.txt") + strlen(scratch) + 1, "remodel-split 1\ngrid 3"); /* truncated list */
     assert_ok(split("3x2", NULL, &err), err);
     assert_grey("a_c1r1.png", 30);
     assert_ok(split("3x1", NULL, &err), err); /* another grid */
@@ -273,7 +274,7 @@ static void only_what_changed_is_cut_again(void **state)
     assert_int_equal(access(in(cuts, "b_c1r1.png"), F_OK), -1);
 }
 
-static void a_bad_photo_is_told_and_the_old_pictures_stay(void **state)
+static void an_unusable_photo_is_reported_and_old_pictures_stay(void **state)
 {
     struct err err;
     (void)state;
@@ -291,20 +292,20 @@ static void a_bad_photo_is_told_and_the_old_pictures_stay(void **state)
     assert_ok(split("3x2", "b", &err), err);
     remove(in(photos, "a.png"));
     assert_int_equal(split("3x2", "b", &err), ST_DATA);
-    assert_err(err, ST_DATA, "no photo that is not left out");
+    assert_err(err, ST_DATA, "no photo besides those left out");
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_grid_is_columns_x_rows),
-        cmocka_unit_test(lines_and_a_gap_exclude_each_other),
-        cmocka_unit_test(an_even_division_spreads_what_is_over),
+        cmocka_unit_test(a_grid_is_parsed_as_columns_x_rows),
+        cmocka_unit_test(dark_lines_and_a_gap_exclude_each_other),
+        cmocka_unit_test(an_even_division_spreads_remainder_pixels),
         cmocka_unit_test(dark_lines_are_found),
-        cmocka_unit_test(lines_that_are_not_there_are_told),
+        cmocka_unit_test(missing_dark_lines_are_reported),
         cmocka_unit_test_setup(pictures_are_cut_and_listed, fresh),
-        cmocka_unit_test_setup(only_what_changed_is_cut_again, fresh),
-        cmocka_unit_test_setup(a_bad_photo_is_told_and_the_old_pictures_stay, fresh),
+        cmocka_unit_test_setup(only_changed_photos_are_cut_again, fresh),
+        cmocka_unit_test_setup(an_unusable_photo_is_reported_and_old_pictures_stay, fresh),
     };
     return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }

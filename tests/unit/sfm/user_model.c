@@ -1,4 +1,4 @@
-/* user_model.c - models that users bring, and how the folder of models replaces an older one. */
+/* user_model.c - import of existing models, and replacement of an older folder of models. */
 #include "tests/unit/scratch.h"
 
 #include "stages/sfm/user_model.h"
@@ -32,8 +32,8 @@ static void write_text_model(const char *name)
     scratch_write(file, "7 0 0 5 1 2 3 0.5 1 0 2 0\n");
 }
 
-/* Takes over `from` as the product `out`. */
-static enum status take(const char *from, const char *out, struct err *err)
+/* Imports `from` as the product `out`. */
+static enum status import(const char *from, const char *out, struct err *err)
 {
     struct provenance prov = {.stage = "sfm", .version = "0"};
     struct sfm_folder f = {0};
@@ -46,13 +46,13 @@ static enum status take(const char *from, const char *out, struct err *err)
     return st;
 }
 
-static void a_text_model_is_taken_over(void **state)
+static void a_text_model_is_imported(void **state)
 {
     (void)state;
     struct err err = ERR_INIT;
     struct sfm_model m;
     write_text_model("text");
-    assert_ok(take("text", "sfm", &err), err);
+    assert_ok(import("text", "sfm", &err), err);
     char *models = scratch_read(scratch_path("sfm/models.txt")), *list = scratch_read(scratch_path("sfm/photos.txt"));
     assert_contains(models, "remodel-sfm 1\n0 colmap\n");
     assert_contains(models, "# input model/0/images.txt ");
@@ -67,88 +67,88 @@ static void a_text_model_is_taken_over(void **state)
     assert_int_equal(access(scratch_path("sfm.work"), F_OK), -1);
 }
 
-static void all_numbered_models_are_taken(void **state)
+static void all_numbered_models_are_imported(void **state)
 {
     (void)state;
     struct err err = ERR_INIT;
     folder("many");
     write_text_model("many/0");
     write_text_model("many/1");
-    write_text_model("many/3"); /* not the next number: some other folder */
-    assert_ok(take("many", "sfm-many", &err), err);
+    write_text_model("many/3"); /* 2 is missing: not part of the series */
+    assert_ok(import("many", "sfm-many", &err), err);
     assert_int_equal(count_entries(scratch_path("sfm-many")), 4);
     assert_int_equal(access(scratch_path("sfm-many/1/images.txt"), F_OK), 0);
 }
 
-static void bundler_needs_its_list(void **state)
+static void a_bundler_model_needs_its_list_of_images(void **state)
 {
     (void)state;
     struct err err = ERR_INIT;
     struct sfm_model m;
     folder("bundler");
-    scratch_write("bundler/other.out", "nothing of Bundler's\n");
+    scratch_write("bundler/other.out", "not a Bundler file\n");
     folder("bundler/bundle");
     scratch_write("bundler/bundle/bundle.out",
                   "# Bundle file v0.3\n3 0\n"
                   "60 0 0\n1 0 0\n0 1 0\n0 0 1\n0 0 0\n60 0 0\n1 0 0\n0 1 0\n0 0 1\n0 0 0\n"
                   "60 0 0\n1 0 0\n0 1 0\n0 0 1\n0 0 0\n");
-    assert_int_equal(take("bundler", "sfm-bundler", &err), ST_DATA);
-    assert_err(err, ST_DATA, "needs the list of its images");
+    assert_int_equal(import("bundler", "sfm-bundler", &err), ST_DATA);
+    assert_err(err, ST_DATA, "has no list of its images");
     err = (struct err)ERR_INIT;
     scratch_write("bundler/my-list.txt", "./b.jpg 0 660.8\n./stranger.jpg\n./a.jpg\n");
-    assert_ok(take("bundler", "sfm-bundler", &err), err);
+    assert_ok(import("bundler", "sfm-bundler", &err), err);
     assert_ok(sfm_model_read_text(&m, scratch_path("sfm-bundler/0"), &err), err);
-    assert_int_equal(m.image_count, 2); /* the stranger's size is not known */
+    assert_int_equal(m.image_count, 2); /* stranger.jpg is not a photo: its size is unknown */
     assert_string_equal(m.images[0].name, "./a.jpg");
     assert_int_equal(m.cameras[0].camera.width, 64);
     sfm_model_release(&m);
     scratch_write("bundler/my-list.txt", "s.jpg\nt.jpg\nu.jpg\n");
-    assert_int_equal(take("bundler", "sfm-bundler", &err), ST_DATA);
+    assert_int_equal(import("bundler", "sfm-bundler", &err), ST_DATA);
     assert_err(err, ST_DATA, "none of the 3 images");
 }
 
-static void anything_else_is_refused_and_the_old_folder_stays(void **state)
+static void invalid_models_are_rejected_and_the_old_folder_stays(void **state)
 {
     (void)state;
     struct err err = ERR_INIT;
     write_text_model("good");
-    assert_ok(take("good", "kept", &err), err);
+    assert_ok(import("good", "kept", &err), err);
     char *before = scratch_read(scratch_path("kept/0/images.txt"));
 
     folder("empty");
-    assert_int_equal(take("empty", "kept", &err), ST_DATA);
-    assert_err(err, ST_DATA, "holds no structure-from-motion model");
+    assert_int_equal(import("empty", "kept", &err), ST_DATA);
+    assert_err(err, ST_DATA, "contains no structure-from-motion model");
     err = (struct err)ERR_INIT;
-    assert_int_equal(take("absent", "kept", &err), ST_IO);
+    assert_int_equal(import("absent", "kept", &err), ST_IO);
     err = (struct err)ERR_INIT;
     scratch_write("good/images.txt", "1 1 0 0 0 0 0 0 9 a.jpg\n\n");
-    assert_int_equal(take("good", "kept", &err), ST_DATA);
+    assert_int_equal(import("good", "kept", &err), ST_DATA);
     assert_err(err, ST_DATA, "images.txt:1");
     assert_file_text(scratch_path("kept/0/images.txt"), before);
     free(before);
 
-    /* and a good one replaces it, with fewer models than before */
+    /* a valid one replaces it, here with fewer models than before */
     err = (struct err)ERR_INIT;
-    assert_ok(take("many", "kept", &err), err);
+    assert_ok(import("many", "kept", &err), err);
     write_text_model("good");
-    assert_ok(take("good", "kept", &err), err);
+    assert_ok(import("good", "kept", &err), err);
     assert_int_equal(count_entries(scratch_path("kept")), 3);
 }
 
-static void a_folder_of_other_things_is_not_replaced(void **state)
+static void a_folder_with_other_files_is_not_replaced(void **state)
 {
     (void)state;
     struct err err = ERR_INIT;
     write_text_model("good");
     folder("precious");
     scratch_write("precious/photo.jpg", "x");
-    assert_int_equal(take("good", "precious", &err), ST_USAGE);
+    assert_int_equal(import("good", "precious", &err), ST_USAGE);
     assert_err(err, ST_USAGE, "it would be replaced as a whole");
     assert_file_text(scratch_path("precious/photo.jpg"), "x");
 }
 
-/* Links in the work folder lead to photos: removing it must not follow them. */
-static void removing_a_folder_spares_what_links_point_to(void **state)
+/* The work folder contains links to photos. */
+static void removing_a_folder_keeps_the_targets_of_links(void **state)
 {
     (void)state;
     struct err err = ERR_INIT;
@@ -166,12 +166,12 @@ static void removing_a_folder_spares_what_links_point_to(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_text_model_is_taken_over),
-        cmocka_unit_test(all_numbered_models_are_taken),
-        cmocka_unit_test(bundler_needs_its_list),
-        cmocka_unit_test(anything_else_is_refused_and_the_old_folder_stays),
-        cmocka_unit_test(a_folder_of_other_things_is_not_replaced),
-        cmocka_unit_test(removing_a_folder_spares_what_links_point_to),
+        cmocka_unit_test(a_text_model_is_imported),
+        cmocka_unit_test(all_numbered_models_are_imported),
+        cmocka_unit_test(a_bundler_model_needs_its_list_of_images),
+        cmocka_unit_test(invalid_models_are_rejected_and_the_old_folder_stays),
+        cmocka_unit_test(a_folder_with_other_files_is_not_replaced),
+        cmocka_unit_test(removing_a_folder_keeps_the_targets_of_links),
     };
     return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }

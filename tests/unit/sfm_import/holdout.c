@@ -1,4 +1,4 @@
-/* Which views are held out, and what of the model stays with which part. */
+/* holdout.c - the choice of held-out views and the split of the model. */
 #include "stages/sfm_import/holdout.h"
 
 #include "common/capture/camera_set.h"
@@ -9,7 +9,7 @@ enum { VIEWS = 5 };
 static const char *const VIEW[VIEWS] = {"a", "b@0", "b@1", "c", "d"};
 static const char *const PHOTO[VIEWS] = {"a", "b", "b", "c", "d"};
 
-/* Points: 1 seen by a, b@0, c; 2 by c, d; 3 by a, d; 4 by b@0, b@1, c. Observation k of a view is at (k, its view). */
+/* Points: 1 seen by a, b@0, c; 2 by c, d; 3 by a, d; 4 by b@0, b@1, c. Observation k of view v is at (k, v). */
 static void make(struct imported *in)
 {
     static const int seen[4][3] = {{0, 1, 3}, {3, 4, -1}, {0, 4, -1}, {1, 2, 3}};
@@ -50,7 +50,7 @@ static void choose(const struct imported *in, int every, const char *names, cons
     for (int i = 0; i < VIEWS; i++) assert_int_equal(held[i], wanted[i] == '1');
 }
 
-static void photos_are_counted_and_names_found(void **state)
+static void views_are_chosen_by_number_and_by_name(void **state)
 {
     struct imported in;
     (void)state;
@@ -64,11 +64,11 @@ static void photos_are_counted_and_names_found(void **state)
     imported_release(&in);
 }
 
-static void what_cannot_be_held_out_is_told(void **state)
+static void invalid_choices_are_rejected(void **state)
 {
     static const struct {
         int every;
-        const char *names, *words;
+        const char *names, *message;
     } bad[] = {
         {1, NULL, "0 of 4"}, {0, "a b c", "1 of 4"}, {0, "a e", "\"e\""}, {0, "b@2", "\"b@2\""}, {0, " ", "no view"}};
     struct imported in;
@@ -78,12 +78,12 @@ static void what_cannot_be_held_out_is_told(void **state)
         bool held[VIEWS];
         struct err err = ERR_INIT;
         assert_int_equal(holdout_choose(held, &in.lenses, bad[i].every, bad[i].names, &err), ST_USAGE);
-        assert_err(err, ST_USAGE, bad[i].words);
+        assert_err(err, ST_USAGE, bad[i].message);
     }
     imported_release(&in);
 }
 
-/* Tracks and observations point at each other, ids count from 1, names and lenses go along. */
+/* Tracks and observations refer to each other, ids count from 1, names and lenses belong to the views. */
 static void check(const struct imported *part, const char *const *names, int count)
 {
     const struct sfm_model *m = &part->model;
@@ -109,7 +109,7 @@ static void check(const struct imported *part, const char *const *names, int cou
     assert_int_equal(tracks, observations);
 }
 
-static void points_stay_where_they_are_seen(void **state)
+static void points_go_to_the_part_that_sees_them(void **state)
 {
     static const char *const KEPT[] = {"b@0", "b@1", "d"}, *const HELD[] = {"a", "c"};
     static const bool held[VIEWS] = {true, false, false, true, false};
@@ -121,7 +121,7 @@ static void points_stay_where_they_are_seen(void **state)
     assert_ok(holdout_split(&kept, &out, &in, held, &err), err);
     check(&kept, KEPT, 3);
     check(&out, HELD, 2);
-    assert_int_equal(kept.model.point_count, 0); /* 4 is seen by b alone, the others by one kept view */
+    assert_int_equal(kept.model.point_count, 0); /* 4 is seen by b only, the others by one kept view */
     assert_int_equal(out.model.point_count, 4);
     assert_int_equal(out.model.points[3].track_count, 1);
     assert_ok(imported_write(&out, scratch_path("held"), NULL, &err), err);
@@ -133,7 +133,7 @@ static void points_stay_where_they_are_seen(void **state)
 
     assert_ok(holdout_split(&kept, &out, &in, (bool[VIEWS]){true}, &err), err);
     check(&kept, VIEW + 1, 4);
-    assert_int_equal(kept.model.point_count, 3); /* 1, 2 and 4; 3 is left with d alone */
+    assert_int_equal(kept.model.point_count, 3); /* 1, 2 and 4; 3 is seen by d only */
     assert_int_equal(kept.model.points[2].track_count, 3);
     imported_release(&kept);
     imported_release(&out);
@@ -143,9 +143,9 @@ static void points_stay_where_they_are_seen(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(photos_are_counted_and_names_found),
-        cmocka_unit_test(what_cannot_be_held_out_is_told),
-        cmocka_unit_test(points_stay_where_they_are_seen),
+        cmocka_unit_test(views_are_chosen_by_number_and_by_name),
+        cmocka_unit_test(invalid_choices_are_rejected),
+        cmocka_unit_test(points_go_to_the_part_that_sees_them),
     };
     return cmocka_run_group_tests_name("holdout", tests, scratch_make, scratch_remove);
 }

@@ -1,5 +1,5 @@
-/* import_model.c - models of a made-up scene with known cameras: matching by name, errors computed anew, rectified
- * pixels. */
+/* import_model.c - models of a made-up scene with known cameras: matching by name, recomputed errors, rectified pixels,
+ * warnings about the lens. */
 #include "tests/unit/scratch.h"
 
 #include <math.h>
@@ -7,6 +7,7 @@
 #include "common/base/rng.h"
 #include "common/capture/camera_set.h"
 #include "common/capture/photo_match.h"
+#include "stages/sfm_import/choose_model.h"
 #include "stages/sfm_import/import_model.h"
 
 #define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
@@ -78,9 +79,9 @@ static void rename_image(struct sfm_model *m, int image, const char *name)
     m->images[image].name = strdup(name);
 }
 
-static const struct import_params defaults = IMPORT_PARAMS_DEFAULT;
+static const struct sfm_import_params defaults = SFM_IMPORT_PARAMS_DEFAULT;
 
-/* Every observation of the result lies where its view's pinhole camera sees the point. */
+/* Every observation of the result is at the reprojected point in its view's pinhole camera. */
 static void check_pixels(const struct imported *in, double tolerance)
 {
     for (int i = 0; i < in->model.point_count; i++) {
@@ -99,7 +100,7 @@ static void check_pixels(const struct imported *in, double tolerance)
     }
 }
 
-static void a_perfect_model_comes_through(void **state)
+static void an_exact_model_is_imported_without_loss(void **state)
 {
     (void)state;
     struct sfm_model m;
@@ -124,7 +125,7 @@ static void a_perfect_model_comes_through(void **state)
         assert_memory_equal(&out.model.images[i].cam_from_world, &m.images[i].cam_from_world, sizeof(struct pose));
     }
 
-    /* what is written is what a camera set reads, and the same bytes each time */
+    /* a camera set reads what was written; writing again gives the same bytes */
     struct camera_set set;
     struct lens_list lenses;
     char folder[300];
@@ -149,7 +150,7 @@ static void a_perfect_model_comes_through(void **state)
     photo_list_release(&photos);
 }
 
-static void names_mean_photos(void **state)
+static void image_names_are_matched_to_photos(void **state)
 {
     (void)state;
     struct photo_list photos;
@@ -165,7 +166,7 @@ static void names_mean_photos(void **state)
     photo_list_release(&photos);
 }
 
-static void images_that_are_no_photos_are_left_out(void **state)
+static void images_that_are_not_photos_are_left_out(void **state)
 {
     (void)state;
     struct sfm_model m;
@@ -178,7 +179,7 @@ static void images_that_are_no_photos_are_left_out(void **state)
     assert_ok(import_model(&out, &m, &photos, &defaults, &err), err);
     assert_int_equal(out.stats.registered, 3);
     assert_int_equal(out.stats.unregistered, 1);
-    assert_int_equal(out.stats.strangers, 1);
+    assert_int_equal(out.stats.unknown, 1);
     assert_string_equal(out.model.images[0].name, "p1.exr");
     check_pixels(&out, 1e-8);
     imported_release(&out);
@@ -220,7 +221,7 @@ static void a_model_of_smaller_pictures_is_scaled(void **state)
     check_pixels(&out, 1e-8);
     imported_release(&out);
 
-    /* turned or cropped is not scaled */
+    /* rotated or cropped photos are rejected */
     photos.photos[2].info.width = 480;
     photos.photos[2].info.height = 640;
     assert_int_equal(import_model(&out, &m, &photos, &defaults, &err), ST_DATA);
@@ -229,7 +230,7 @@ static void a_model_of_smaller_pictures_is_scaled(void **state)
     photo_list_release(&photos);
 }
 
-static void a_size_that_rounding_explains_is_scaled(void **state)
+static void sizes_may_differ_by_rounding(void **state)
 {
     (void)state;
     /* 1600 x 1202 shrunk to 1000 is 751.25 high, stored as 751 */
@@ -264,7 +265,8 @@ static void outliers_are_dropped(void **state)
     make_model(&m, &radial);
     make_photos(&photos, &radial);
     assert_ok(import_model(&clean, &m, &photos, &defaults, &err), err);
-    /* one observation 5 px off: it goes, its point stays; a point behind the cameras: it goes with all it has */
+    /* an observation 5 px off is dropped and its point kept; a point behind the cameras is dropped with all
+     * observations */
     int full[2], n = 0;
     for (int i = 0; i < POINTS && n < 2; i++)
         if (m.points[i].track_count == PHOTOS) full[n++] = i;
@@ -280,7 +282,7 @@ static void outliers_are_dropped(void **state)
     imported_release(&out);
     imported_release(&clean);
 
-    /* nothing fits: cameras and points do not belong together */
+    /* nothing fits */
     for (int i = 0; i < POINTS; i++) m.points[i].position.z = -6;
     assert_int_equal(import_model(&out, &m, &photos, &defaults, &err), ST_DATA);
     assert_err(err, ST_DATA, "do not belong together");
@@ -288,7 +290,7 @@ static void outliers_are_dropped(void **state)
     photo_list_release(&photos);
 }
 
-static void a_fisheye_scene_becomes_cubes(void **state)
+static void a_fisheye_photo_becomes_five_views(void **state)
 {
     (void)state;
     struct sfm_model m;
@@ -317,7 +319,7 @@ static void a_fisheye_scene_becomes_cubes(void **state)
     photo_list_release(&photos);
 }
 
-static void cameras_without_points_come_through(void **state)
+static void cameras_without_points_are_imported(void **state)
 {
     (void)state;
     struct sfm_model m;
@@ -338,7 +340,7 @@ static void cameras_without_points_come_through(void **state)
     photo_list_release(&photos);
 }
 
-static void the_largest_model_is_chosen(void **state)
+static void the_model_with_most_photos_is_chosen(void **state)
 {
     (void)state;
     struct sfm_model m, chosen;
@@ -348,7 +350,7 @@ static void the_largest_model_is_chosen(void **state)
     make_model(&m, &radial);
     make_photos(&photos, &radial);
     assert_ok(sfm_model_write_text(&m, scratch_path("sfm/1"), NULL, &err), err);
-    rename_image(&m, 0, "stranger.jpg"); /* as many images, but fewer are photos */
+    rename_image(&m, 0, "stranger.jpg"); /* same number of images, fewer photos */
     assert_ok(sfm_model_write_text(&m, scratch_path("sfm/0"), NULL, &err), err);
     scratch_write("sfm/models.txt", "remodel-sfm 1\n0 colmap\n1 colmap\n");
     assert_ok(import_choose(&chosen, &name, scratch_path("sfm"), &photos, &err), err);
@@ -377,35 +379,100 @@ static int check_photos(void *photos)
     return import_check_photos(scratch, photos, &err);
 }
 
-static void changed_photos_are_named(void **state)
+static void changed_and_new_photos_are_named(void **state)
 {
     (void)state;
     struct photo_list photos;
-    char *said;
+    char *output;
     make_photos(&photos, &radial);
     scratch_write("photos.txt", "# c\np0 00000000000000000000000000000000\np1 00000000000000000000000000000009\n"
                                 "gone 1\np3 00000000000000000000000000000003\n");
-    assert_int_equal(child_run(check_photos, &photos, &said), 0);
-    assert_contains(said, "make resfm");
-    assert_contains(said, "changed since structure from motion ran: p1.jpg");
-    assert_contains(said, "new since structure from motion ran: p2.jpg");
-    free(said);
+    assert_int_equal(child_run(check_photos, &photos, &output), 0);
+    assert_contains(output, "make resfm");
+    assert_contains(output, "changed since structure from motion ran: p1.jpg");
+    assert_contains(output, "new since structure from motion ran: p2.jpg");
+    free(output);
     photo_list_release(&photos);
+}
+
+/* Warnings of an import of a model that was made with the exact lens `made` and states the lens `stated`; EXIF of the
+ * photos has the focal length focal35 for 35 mm film. */
+struct lens_case {
+    const struct camera *made, *stated;
+    double focal35;
+    int point_count; /* at most POINTS */
+};
+
+static int import_lens(void *ctx)
+{
+    const struct lens_case *c = ctx;
+    struct sfm_model m;
+    struct photo_list photos;
+    struct imported out;
+    struct err err = ERR_INIT;
+    make_model(&m, c->made);
+    make_photos(&photos, c->made);
+    m.cameras[0].camera = *c->stated;
+    for (int i = c->point_count; i < m.point_count; i++) free(m.points[i].track);
+    m.point_count = c->point_count;
+    for (int i = 0; i < PHOTOS; i++) photos.photos[i].info.focal35_mm = c->focal35;
+    const enum status st = import_model(&out, &m, &photos, &defaults, &err);
+    imported_release(&out);
+    sfm_model_release(&m);
+    photo_list_release(&photos);
+    return (int)st;
+}
+
+static void a_lens_model_that_does_not_fit_is_warned_about(void **state)
+{
+    (void)state;
+    /* at the rim the model without distortion is 2 px off, in the middle nothing */
+    static const struct camera bent = {CAMERA_SIMPLE_RADIAL, 640, 480, {520, 320, 240, -0.02}};
+    static const struct camera straight = {CAMERA_PINHOLE, 640, 480, {520, 520, 320, 240}};
+    static const struct {
+        struct lens_case lens;
+        const char *warning; /* NULL: none */
+    } cases[] = {
+        {{&bent, &straight, 0, POINTS},
+         "the lens model PINHOLE does not fit: the residuals grow from 0.0 px in the middle to 2.0 px at the rim"},
+        {{&bent, &straight, 0, POINTS},
+         "Set [sfm] camera_model = EQUISOLID or OPENCV_FISHEYE for a fisheye lens, OPENCV or RADIAL for other lenses; "
+         "make resfm applies it"},
+        {{&bent, &straight, 0, 20}, NULL}, /* too few observations */
+        {{&bent, &bent, 0, POINTS}, NULL},
+        {{&radial, &radial, 35, POINTS}, NULL},
+        {{&fisheye, &fisheye, 8, POINTS}, NULL},
+        {{&bent, &bent, 8, POINTS}, NULL}, /* measured to fit up to the rim */
+        {{&bent, &bent, 8, 20},
+         "the lens model SIMPLE_RADIAL may not fit: EXIF of photo \"p0.jpg\" states a focal length of 8 mm"},
+        {{&bent, &bent, 14, 20}, NULL},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct lens_case lens = cases[i].lens;
+        char *output;
+        assert_int_equal(child_run(import_lens, &lens, &output), 0);
+        if (cases[i].warning)
+            assert_contains(output, cases[i].warning);
+        else
+            assert_lacks(output, "lens model");
+        free(output);
+    }
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_perfect_model_comes_through),
-        cmocka_unit_test(names_mean_photos),
-        cmocka_unit_test(images_that_are_no_photos_are_left_out),
+        cmocka_unit_test(an_exact_model_is_imported_without_loss),
+        cmocka_unit_test(image_names_are_matched_to_photos),
+        cmocka_unit_test(images_that_are_not_photos_are_left_out),
         cmocka_unit_test(a_model_of_smaller_pictures_is_scaled),
-        cmocka_unit_test(a_size_that_rounding_explains_is_scaled),
+        cmocka_unit_test(sizes_may_differ_by_rounding),
         cmocka_unit_test(outliers_are_dropped),
-        cmocka_unit_test(a_fisheye_scene_becomes_cubes),
-        cmocka_unit_test(cameras_without_points_come_through),
-        cmocka_unit_test(the_largest_model_is_chosen),
-        cmocka_unit_test(changed_photos_are_named),
+        cmocka_unit_test(a_fisheye_photo_becomes_five_views),
+        cmocka_unit_test(cameras_without_points_are_imported),
+        cmocka_unit_test(the_model_with_most_photos_is_chosen),
+        cmocka_unit_test(a_lens_model_that_does_not_fit_is_warned_about),
+        cmocka_unit_test(changed_and_new_photos_are_named),
     };
     return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }

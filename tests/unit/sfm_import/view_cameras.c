@@ -1,5 +1,4 @@
-/* view_cameras.c - the rule from lens to views: what is kept, that nothing of a view lies outside its photo, wide
- * lenses. */
+/* view_cameras.c - from lens to views: photos that stay as they are, views inside their photo, wide lenses. */
 #include "tests/unit/scratch.h"
 
 #include <math.h>
@@ -10,7 +9,7 @@
 
 enum { BORDER = 400 };
 
-/* Where a view's pixel lies in the photo. */
+/* The photo's pixel of a view's pixel. */
 static bool photo_pixel(const struct camera *lens, const struct photo_view *v, double u, double w, double *pu,
                         double *pv)
 {
@@ -20,7 +19,7 @@ static bool photo_pixel(const struct camera *lens, const struct photo_view *v, d
     return camera_project(lens, mat3_apply(mat3_transpose(mat3_from_quat(v->view_from_photo)), ray), pu, pv);
 }
 
-/* The view's border lies inside the photo; `slack` gets how near it comes to each side of the photo, at least. */
+/* The view's border is inside the photo. slack: its smallest distance from each side of the photo. */
 static void check_inside(const struct camera *lens, const struct photo_view *v, double slack[4])
 {
     for (int i = 0; i < 4; i++) slack[i] = 1e9;
@@ -36,7 +35,7 @@ static void check_inside(const struct camera *lens, const struct photo_view *v, 
         }
 }
 
-static void a_pinhole_photo_is_kept_as_it_is(void **state)
+static void a_small_pinhole_photo_keeps_its_camera(void **state)
 {
     (void)state;
     static const struct camera lenses[] = {
@@ -57,7 +56,7 @@ static void a_pinhole_photo_is_kept_as_it_is(void **state)
     }
 }
 
-static void larger_photos_are_scaled_with_their_aspect(void **state)
+static void large_photos_are_scaled_down_with_their_aspect_ratio(void **state)
 {
     (void)state;
     struct camera lens = {CAMERA_PINHOLE, 6000, 4000, {5000, 5000, 3000, 2000}};
@@ -74,14 +73,14 @@ static void larger_photos_are_scaled_with_their_aspect(void **state)
     for (int i = 0; i < 4; i++) assert_true(slack[i] < 3.5); /* less than a view's pixel is cut off */
     assert_ok(photo_views(views, &count, &lens, 0, 110, &err), err);
     assert_int_equal(views[0].camera.width, 6000); /* no limit */
-    lens.model = CAMERA_OPENCV;                    /* without distortion: the same picture */
+    lens.model = CAMERA_OPENCV;                    /* without distortion the picture is the same */
     assert_ok(photo_views(views, &count, &lens, 0, 110, &err), err);
     assert_int_equal(views[0].camera.width, 6000);
     assert_int_equal(views[0].camera.height, 4000);
     assert_near(views[0].camera.params[2], 3000, 1e-6);
 }
 
-static void a_view_has_no_blank_border(void **state)
+static void a_view_is_the_largest_rectangle_without_blank_borders(void **state)
 {
     (void)state;
     static const struct camera lenses[] = {
@@ -91,7 +90,7 @@ static void a_view_has_no_blank_border(void **state)
         {CAMERA_OPENCV, 800, 600, {700, 710, 390, 320, -0.22, 0.04, -0.004, 0.006}},
         {CAMERA_FULL_OPENCV, 1920, 1080, {1100, 1090, 950, 545, 0.4, 0.1, 0.001, 0.0005, 0.02, 0.7, 0.15, 0.01}},
         {CAMERA_OPENCV_FISHEYE, 1000, 750, {600, 600, 500, 375, -0.03, 0.002, 0, 0}},
-        {CAMERA_SIMPLE_RADIAL, 640, 480, {300, 320, 240, -0.2}}, /* the corners lie beyond the fold */
+        {CAMERA_SIMPLE_RADIAL, 640, 480, {300, 320, 240, -0.2}}, /* the corners are beyond the fold */
     };
     for (size_t i = 0; i < sizeof lenses / sizeof *lenses; i++)
         for (int limit = 0; limit < 2; limit++) {
@@ -108,14 +107,14 @@ static void a_view_has_no_blank_border(void **state)
             if (limit) assert_true(c->width * c->height <= 1e5);
             if (limit || i == 6) continue;
             assert_near(c->params[0], fx, 1e-9);
-            for (int k = 0; k < 4; k++) assert_true(slack[k] < 1); /* and it is not smaller than it must be */
-            double u, v; /* the principal point shows the lens' principal point */
+            for (int k = 0; k < 4; k++) assert_true(slack[k] < 1); /* and not smaller than necessary */
+            double u, v;                                           /* the principal points correspond */
             assert_true(photo_pixel(&lenses[i], &views[0], c->params[2], c->params[3], &u, &v));
             assert_near(hypot(u - cx, v - cy), 0, 1e-9);
         }
 }
 
-static void the_field_is_measured_along_the_midlines(void **state)
+static void the_field_of_view_is_measured_along_the_midlines(void **state)
 {
     (void)state;
     struct camera pinhole = {CAMERA_PINHOLE, 200, 100, {100, 100, 100, 50}};
@@ -132,7 +131,7 @@ static void the_field_is_measured_along_the_midlines(void **state)
     assert_near(h, 2 * M_PI, 1e-6);
 }
 
-static void a_fisheye_becomes_a_cube_of_views(void **state)
+static void a_fisheye_becomes_five_views(void **state)
 {
     (void)state;
     struct camera lens = {CAMERA_OPENCV_FISHEYE,
@@ -154,7 +153,8 @@ static void a_fisheye_becomes_a_cube_of_views(void **state)
         struct vec3 z = mat3_apply(mat3_transpose(mat3_from_quat(views[k].view_from_photo)), vec3_make(0, 0, 1));
         assert_near(vec3_length(vec3_sub(z, vec3_make(forward[k][0], forward[k][1], forward[k][2]))), 0, 1e-12);
     }
-    /* "up" is up in the picture: its middle lies above the photo's, and its lower border is the forward one's upper */
+    /* view 3 is up in the picture: its centre is above the photo's centre, and its lower border is view 0's upper
+     * border */
     double u, v, u2, v2;
     assert_true(photo_pixel(&lens, &views[3], 640, 640, &u, &v));
     assert_true(v < 1000 - 640 && fabs(u - 1000) < 1e-6);
@@ -163,7 +163,7 @@ static void a_fisheye_becomes_a_cube_of_views(void **state)
     assert_true(photo_pixel(&lens, &views[1], 1280, 300, &u, &v) && photo_pixel(&lens, &views[0], 0, 300, &u2, &v2));
     assert_near(hypot(u - u2, v - v2), 0, 1e-6);
 
-    /* 2 megapixels are kept by each view; a strip has nothing above and below */
+    /* the limit holds for each view; a strip has no views up and down */
     assert_ok(photo_views(views, &count, &lens, 0.5, 110, &err), err);
     assert_int_equal(views[0].camera.width, 707);
     struct camera wide = {CAMERA_OPENCV_FISHEYE, 1600, 200, {700, 700, 800, 100}};
@@ -171,7 +171,7 @@ static void a_fisheye_becomes_a_cube_of_views(void **state)
     for (int k = 0; k < count; k++) assert_true(views[k].part < 3);
 }
 
-static void a_lens_that_shows_nothing_is_refused(void **state)
+static void a_lens_that_leaves_no_picture_is_rejected(void **state)
 {
     (void)state;
     struct camera lens = {CAMERA_SIMPLE_PINHOLE, 100, 100, {50, 400, 50}}; /* its axis is far outside the photo */
@@ -190,12 +190,12 @@ static void a_lens_that_shows_nothing_is_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_pinhole_photo_is_kept_as_it_is),
-        cmocka_unit_test(larger_photos_are_scaled_with_their_aspect),
-        cmocka_unit_test(a_view_has_no_blank_border),
-        cmocka_unit_test(the_field_is_measured_along_the_midlines),
-        cmocka_unit_test(a_fisheye_becomes_a_cube_of_views),
-        cmocka_unit_test(a_lens_that_shows_nothing_is_refused),
+        cmocka_unit_test(a_small_pinhole_photo_keeps_its_camera),
+        cmocka_unit_test(large_photos_are_scaled_down_with_their_aspect_ratio),
+        cmocka_unit_test(a_view_is_the_largest_rectangle_without_blank_borders),
+        cmocka_unit_test(the_field_of_view_is_measured_along_the_midlines),
+        cmocka_unit_test(a_fisheye_becomes_five_views),
+        cmocka_unit_test(a_lens_that_leaves_no_picture_is_rejected),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

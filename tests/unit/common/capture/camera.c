@@ -1,4 +1,4 @@
-/* camera.c - camera models: closed forms, round trips to the corners, and where a distortion stops being one-to-one. */
+/* camera.c - camera models: closed forms, round trips up to the corners, and the end of the one-to-one range. */
 #include "tests/unit/scratch.h"
 #include <setjmp.h>
 
@@ -23,7 +23,7 @@ static const struct camera lenses[] = {
 };
 enum { LENSES = sizeof lenses / sizeof *lenses };
 
-static void names_are_colmaps(void **state)
+static void model_names_are_those_of_colmap(void **state)
 {
     (void)state;
     enum camera_model m = CAMERA_PINHOLE;
@@ -36,7 +36,7 @@ static void names_are_colmaps(void **state)
     assert_false(camera_model_from_name("FOV", &m));
 }
 
-static void bad_cameras_are_refused_with_a_reason(void **state)
+static void invalid_cameras_are_rejected_with_a_reason(void **state)
 {
     (void)state;
     struct camera c = lenses[0];
@@ -70,7 +70,7 @@ static void projection_follows_the_formulas(void **state)
     assert_near(u, p[0] * (x * g + 2 * p[6] * x * y + p[7] * (s + 2 * x * x)) + p[2], 1e-10);
     assert_near(v, p[1] * (y * g + p[6] * (s + 2 * y * y) + 2 * p[7] * x * y) + p[3], 1e-10);
 
-    /* a fisheye without coefficients is equidistant: 100 degrees from the axis is still in the picture */
+    /* a fisheye without coefficients is equidistant: 100 degrees from the axis are still in the picture */
     struct camera f = {CAMERA_OPENCV_FISHEYE, 1000, 1000, {300, 300, 500, 500}};
     double t = 100 * M_PI / 180;
     assert_true(camera_project(&f, vec3_make(0, sin(t), cos(t)), &u, &v));
@@ -96,7 +96,7 @@ static void every_pixel_of_every_model_round_trips(void **state)
                 double u = (double)lenses[i].width * a / STEPS, v = (double)lenses[i].height * b / STEPS, u2, v2;
                 struct vec3 ray;
                 if (!camera_unproject(&lenses[i], u, v, &ray)) {
-                    /* the corners of the equisolid one lie beyond its 180 degrees */
+                    /* the corners of the equisolid lens are beyond 180 degrees */
                     assert_int_equal(lenses[i].model, CAMERA_OPENCV_FISHEYE);
                     continue;
                 }
@@ -108,7 +108,7 @@ static void every_pixel_of_every_model_round_trips(void **state)
     assert_true(worst < 1e-10);
 }
 
-static void equisolid_fisheye_reaches_straight_back(void **state)
+static void an_equisolid_fisheye_reaches_the_negative_axis(void **state)
 {
     (void)state;
     const struct camera *c = &lenses[9];
@@ -117,26 +117,27 @@ static void equisolid_fisheye_reaches_straight_back(void **state)
             double t = degrees * M_PI / 180, a = side * M_PI / 4, u, v;
             struct vec3 ray = vec3_make(cos(a) * sin(t), sin(a) * sin(t), cos(t)), back;
             assert_true(camera_project(c, ray, &u, &v));
-            /* the series ends behind t^9: its next term, and no more, may be missing */
+            /* the series ends after t^9: the error is at most the next term */
             double r = hypot((u - 505) / 350, (v - 396) / 352), rest = pow(t, 11) / 4e10;
             assert_near(r, 2 * sin(t / 2), rest + 1e-12);
             assert_true(camera_unproject(c, u, v, &back));
-            /* towards 180 degrees the radius hardly changes with the angle, so that less of the angle survives */
+            /* near 180 degrees the radius hardly changes with the angle, so the angle is less exact */
             assert_near(vec3_length(vec3_sub(back, ray)), 0, 1e-13 / cos(t / 2));
         }
 }
 
-static void what_folds_back_is_refused(void **state)
+static void rays_beyond_the_fold_have_no_pixel(void **state)
 {
     (void)state;
-    /* r (1 - 0.2 r^2) climbs up to r = sqrt(1 / 0.6), where it is 0.8606629658 */
+    /* r (1 - 0.2 r^2) increases up to r = sqrt(1 / 0.6), where it is 0.8606629658 */
     struct camera c = {CAMERA_SIMPLE_RADIAL, 640, 480, {300, 320, 240, -0.2}};
     double fold = sqrt(1 / 0.6), u, v;
     struct vec3 ray;
     assert_true(camera_project(&c, vec3_make(fold - 1e-9, 0, 1), &u, &v));
     assert_near(u, 320 + 300 * 0.8606629658, 1e-6);
     assert_false(camera_project(&c, vec3_make(fold + 1e-9, 0, 1), &u, &v));
-    assert_false(camera_project(&c, vec3_make(2.2, 0.1, 1), &u, &v)); /* would land inside the picture */
+    assert_false(
+        camera_project(&c, vec3_make(2.2, 0.1, 1), &u, &v)); /* the polynomial would give a pixel inside the picture */
     assert_true(camera_unproject(&c, 320 + 300 * 0.86066, 240, &ray));
     assert_true(ray.x / ray.z < fold);
     assert_false(camera_unproject(&c, 320 + 300 * 0.86067, 240, &ray));
@@ -156,7 +157,7 @@ static void what_folds_back_is_refused(void **state)
     assert_true(camera_unproject(&tangential, 320, 240 - 300 * 0.83, &ray));
 }
 
-/* Any coefficients: the first fold found by dense sampling is the one that projection knows. */
+/* For random coefficients, projection ends at the first fold found by dense sampling. */
 static void folds_of_random_lenses_match_sampling(void **state)
 {
     (void)state;
@@ -184,7 +185,7 @@ static void folds_of_random_lenses_match_sampling(void **state)
     assert_true(folds > 50);
 }
 
-static void no_pixel_far_away_gives_nonsense(void **state)
+static void pixels_far_outside_give_a_ray_or_fail(void **state)
 {
     (void)state;
     for (int i = 0; i < LENSES; i++)
@@ -198,11 +199,11 @@ static void no_pixel_far_away_gives_nonsense(void **state)
         }
 }
 
-static void pose_and_its_centre_agree(void **state)
+static void a_pose_maps_its_centre_to_the_origin(void **state)
 {
     (void)state;
     double h = sqrt(0.5);
-    struct pose p = {{h, 0, h, 0}, {1, 2, 3}}; /* a quarter turn about y: world z is camera x */
+    struct pose p = {{h, 0, h, 0}, {1, 2, 3}}; /* rotated by 90 degrees about y: world z is camera x */
     struct vec3 c = pose_apply(&p, vec3_make(0, 0, 5)), o = pose_apply(&p, pose_center(&p));
     assert_near(c.x, 6, 1e-12);
     assert_near(c.y, 2, 1e-12);
@@ -213,15 +214,15 @@ static void pose_and_its_centre_agree(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(names_are_colmaps),
-        cmocka_unit_test(bad_cameras_are_refused_with_a_reason),
+        cmocka_unit_test(model_names_are_those_of_colmap),
+        cmocka_unit_test(invalid_cameras_are_rejected_with_a_reason),
         cmocka_unit_test(projection_follows_the_formulas),
         cmocka_unit_test(every_pixel_of_every_model_round_trips),
-        cmocka_unit_test(equisolid_fisheye_reaches_straight_back),
-        cmocka_unit_test(what_folds_back_is_refused),
+        cmocka_unit_test(an_equisolid_fisheye_reaches_the_negative_axis),
+        cmocka_unit_test(rays_beyond_the_fold_have_no_pixel),
         cmocka_unit_test(folds_of_random_lenses_match_sampling),
-        cmocka_unit_test(no_pixel_far_away_gives_nonsense),
-        cmocka_unit_test(pose_and_its_centre_agree),
+        cmocka_unit_test(pixels_far_outside_give_a_ray_or_fail),
+        cmocka_unit_test(a_pose_maps_its_centre_to_the_origin),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

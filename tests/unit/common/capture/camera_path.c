@@ -1,9 +1,9 @@
-/* camera_path.c - a path comes back as it was written, and what cannot be a path is refused with file and line. */
+/* camera_path.c - a path can be written and read back; invalid paths are rejected with file and line. */
 #include "common/capture/camera_path.h"
 
 #include "tests/unit/scratch.h"
 
-/* `frames` cameras that step to the right, turning. */
+/* `frames` cameras that move to the right and rotate. */
 static void make_path(struct camera_path *p, int frames)
 {
     struct err err = ERR_INIT;
@@ -22,7 +22,7 @@ static void make_path(struct camera_path *p, int frames)
     assert_ok(camera_path_add_score(p, "holes_at 0.25", 0, "", &err), err);
 }
 
-static void comes_back(void **state)
+static void a_path_is_read_as_it_was_written(void **state)
 {
     struct camera_path p = {0}, q = {0};
     struct err err = ERR_INIT;
@@ -62,7 +62,7 @@ static void many_frames_stay_in_order(void **state)
     camera_path_release(&p);
 }
 
-static void refuses_to_make_nonsense(void **state)
+static void invalid_paths_cannot_be_made(void **state)
 {
     struct camera_path p = {0};
     struct err err = ERR_INIT;
@@ -71,16 +71,16 @@ static void refuses_to_make_nonsense(void **state)
     assert_err(err, ST_DATA, "0 frames");
     err = (struct err)ERR_INIT;
     assert_int_equal(camera_path_init(&p, "e", 0, 3, &err), ST_DATA);
-    assert_err(err, ST_DATA, "0 frames a second");
+    assert_err(err, ST_DATA, "0 frames per second");
     err = (struct err)ERR_INIT;
     assert_ok(camera_path_init(&p, "e", 30, 2, &err), err);
     assert_int_equal(camera_path_add_score(&p, "s", NAN, "px", &err), ST_INTERNAL);
     camera_path_release(&p);
 }
 
-/* Writes a good path of two frames, then `text` as its path.txt (NULL: as it is); reading it must fail with these
- * words. */
-static void refused(const char *text, const char *words)
+/* Writes a valid path of two frames, then `text` as its path.txt (NULL: unchanged); reading it must fail with
+ * `message`. */
+static void assert_rejected(const char *text, const char *message)
 {
     struct camera_path p = {0};
     struct err err = ERR_INIT;
@@ -89,7 +89,7 @@ static void refused(const char *text, const char *words)
     camera_path_release(&p);
     if (text) scratch_write("bad/path.txt", text);
     assert_int_equal(camera_path_read(&p, scratch_path("bad"), &err), ST_DATA);
-    assert_err(err, ST_DATA, words);
+    assert_err(err, ST_DATA, message);
     assert_contains(err.text, "path.txt:");
     assert_null(p.frames);
     assert_null(p.scores);
@@ -97,28 +97,28 @@ static void refused(const char *text, const char *words)
 
 #define HEAD "remodel-path 1\neffect e\nfps 30\n"
 
-static void refuses_broken_lists(void **state)
+static void broken_lists_are_rejected(void **state)
 {
     (void)state;
-    refused("", "remodel-path");
-    refused("remodel-lenses 1\n", "remodel-path");
-    refused("remodel-path 2\n", "version");
-    refused("remodel-path 1\neffect e\nfps 0\n", "above 0");
-    refused("remodel-path 1\neffect e\nfps -3\n", "0 or more");
-    refused("remodel-path 1\neffect e\nfps nan\n", "nan");
-    refused(HEAD "frames 3\n", "wanted 2 frames");
-    refused(HEAD "score a x px\nframes 2\n", "score");
-    refused(HEAD "scores 2\n", "scores");
-    refused(HEAD "frames 2\nframe 0001 0 0 0\n", "frame ...");
-    refused(HEAD "frames 2\nframe 0002 0 0 0\n", "frame 0001");
-    refused(HEAD "frames 2\nframe 0001 0 -1 0\n", "-1");
-    refused(HEAD "frames 2\nframe 0001 0 0 inf\n", "inf");
-    refused(HEAD "frames 2\nframe 0001 0 0 0 7\n", "7");
-    refused(HEAD "frames 2\nframe 0001 0 0 0\nframe 0002 1 0 0\nframe 0003 2 0 0\n", "end of the file");
+    assert_rejected("", "remodel-path");
+    assert_rejected("remodel-lenses 1\n", "remodel-path");
+    assert_rejected("remodel-path 2\n", "version");
+    assert_rejected("remodel-path 1\neffect e\nfps 0\n", "above 0");
+    assert_rejected("remodel-path 1\neffect e\nfps -3\n", "0 or more");
+    assert_rejected("remodel-path 1\neffect e\nfps nan\n", "nan");
+    assert_rejected(HEAD "frames 3\n", "wanted 2 frames");
+    assert_rejected(HEAD "score a x px\nframes 2\n", "score");
+    assert_rejected(HEAD "scores 2\n", "scores");
+    assert_rejected(HEAD "frames 2\nframe 0001 0 0 0\n", "frame ...");
+    assert_rejected(HEAD "frames 2\nframe 0002 0 0 0\n", "frame 0001");
+    assert_rejected(HEAD "frames 2\nframe 0001 0 -1 0\n", "-1");
+    assert_rejected(HEAD "frames 2\nframe 0001 0 0 inf\n", "inf");
+    assert_rejected(HEAD "frames 2\nframe 0001 0 0 0 7\n", "7");
+    assert_rejected(HEAD "frames 2\nframe 0001 0 0 0\nframe 0002 1 0 0\nframe 0003 2 0 0\n", "end of the file");
 }
 
-/* Reading a path whose second camera is this one must fail with these words. */
-static void refused_camera(const char *camera, const char *words)
+/* Reading a path with this second camera must fail with `message`. */
+static void assert_camera_rejected(const char *camera, const char *message)
 {
     struct camera_path p = {0};
     struct err err = ERR_INIT;
@@ -129,22 +129,22 @@ static void refused_camera(const char *camera, const char *words)
     snprintf(text, sizeof text, "1 PINHOLE 320 200 300 300 160 100\n2 %s\n", camera);
     scratch_write("bad/path/cameras.txt", text);
     assert_int_equal(camera_path_read(&p, scratch_path("bad"), &err), ST_DATA);
-    assert_err(err, ST_DATA, words);
+    assert_err(err, ST_DATA, message);
     assert_null(p.frames);
 }
 
-static void refuses_cameras_that_make_no_film(void **state)
+static void cameras_that_cannot_be_filmed_are_rejected(void **state)
 {
     (void)state;
-    refused_camera("PINHOLE 321 200 300 300 160 100", "even");
-    refused_camera("PINHOLE 322 200 300 300 160 100", "320 x 200");
-    refused_camera("PINHOLE 320 200 0 300 160 100", "focal");
-    refused_camera("PINHOLE 320 200 -300 300 160 100", "-300");
-    refused_camera("PINHOLE 320 200 nan 300 160 100", "nan");
-    refused_camera("RADIAL 320 200 300 160 100 0 0", "PINHOLE");
+    assert_camera_rejected("PINHOLE 321 200 300 300 160 100", "even");
+    assert_camera_rejected("PINHOLE 322 200 300 300 160 100", "320 x 200");
+    assert_camera_rejected("PINHOLE 320 200 0 300 160 100", "focal");
+    assert_camera_rejected("PINHOLE 320 200 -300 300 160 100", "-300");
+    assert_camera_rejected("PINHOLE 320 200 nan 300 160 100", "nan");
+    assert_camera_rejected("RADIAL 320 200 300 160 100 0 0", "PINHOLE");
 }
 
-static void names_the_missing_file(void **state)
+static void a_missing_file_is_named(void **state)
 {
     struct camera_path p = {0};
     struct err err = ERR_INIT;
@@ -156,12 +156,12 @@ static void names_the_missing_file(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(comes_back),
+        cmocka_unit_test(a_path_is_read_as_it_was_written),
         cmocka_unit_test(many_frames_stay_in_order),
-        cmocka_unit_test(refuses_to_make_nonsense),
-        cmocka_unit_test(refuses_broken_lists),
-        cmocka_unit_test(refuses_cameras_that_make_no_film),
-        cmocka_unit_test(names_the_missing_file),
+        cmocka_unit_test(invalid_paths_cannot_be_made),
+        cmocka_unit_test(broken_lists_are_rejected),
+        cmocka_unit_test(cameras_that_cannot_be_filmed_are_rejected),
+        cmocka_unit_test(a_missing_file_is_named),
     };
     return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }

@@ -37,7 +37,7 @@ static void views_are_in_order_of_name(void **state)
     assert_int_equal(camera_set_find(&set, "b"), -1);
     assert_int_equal(camera_set_find(&set, "a.exr"), -1);
     assert_true(set.views[0].fx == 50 && set.views[0].fy == 50 && set.views[1].fy == 510);
-    /* the model follows */
+    /* the model has the same order */
     assert_string_equal(set.model.images[0].name, "a.exr");
     assert_int_equal(set.model.points[0].track[0].image_idx, 1);
     assert_int_equal(set.model.points[0].track[1].image_idx, 0);
@@ -54,7 +54,7 @@ static void depth_is_along_the_axis(void **state)
     double u = -1, v = -1;
     write_set("SIMPLE_PINHOLE 100 100 50 50 50", "a.exr");
     assert_ok(camera_set_read(&set, scratch, &err), err);
-    /* a quarter turn about y takes world (x, y, z) to (z, y, -x), then + (1, 2, 3) */
+    /* rotation by 90 degrees about y maps world (x, y, z) to (z, y, -x), then + (1, 2, 3) */
     assert_near(view_project(&set.views[0], vec3_make(-2, 0, 4), &u, &v), 5, 1e-12);
     assert_near(u, 50 + 50 * 5 / 5.0, 1e-12);
     assert_near(v, 50 + 50 * 2 / 5.0, 1e-12);
@@ -68,7 +68,7 @@ static void depth_is_along_the_axis(void **state)
     camera_set_release(&set);
 }
 
-static void what_is_no_view_is_refused(void **state)
+static void images_that_are_not_views_are_rejected(void **state)
 {
     (void)state;
     struct camera_set set;
@@ -79,7 +79,7 @@ static void what_is_no_view_is_refused(void **state)
     err = (struct err)ERR_INIT;
     write_set("SIMPLE_PINHOLE 100 100 50 50 50", "a.jpg");
     assert_int_equal(camera_set_read(&set, scratch, &err), ST_DATA);
-    assert_err(err, ST_DATA, "found image \"a.jpg\", wanted names like VIEW.exr");
+    assert_err(err, ST_DATA, "found image \"a.jpg\", wanted a name like VIEW.exr");
     assert_null(set.views);
     assert_null(set.model.images);
 }
@@ -89,7 +89,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(views_are_in_order_of_name),
         cmocka_unit_test(depth_is_along_the_axis),
-        cmocka_unit_test(what_is_no_view_is_refused),
+        cmocka_unit_test(images_that_are_not_views_are_rejected),
     };
     return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }

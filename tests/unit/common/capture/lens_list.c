@@ -1,4 +1,4 @@
-/* lens_list.c - the list of views, photos and lenses: round trip, and what is refused. */
+/* lens_list.c - lenses.txt: round trip and errors. */
 #include "tests/unit/scratch.h"
 
 #include "common/capture/lens_list.h"
@@ -36,13 +36,13 @@ static void a_list_round_trips(void **state)
     lens_list_release(NULL);
 }
 
-static void damage_is_named(void **state)
+static void errors_name_the_line(void **state)
 {
     (void)state;
 #define HEAD "remodel-lenses 1\n"
 #define GOOD "a a SIMPLE_PINHOLE 4 3 5 2 1.5 turn 1 0 0 0\n"
     static const struct {
-        const char *text, *words;
+        const char *text, *message;
     } bad[] = {
         {"", "\"remodel-lenses 1\""},
         {"remodel-views 1\n", "found \"remodel-views\""},
@@ -60,7 +60,7 @@ static void damage_is_named(void **state)
         struct lens_list list;
         struct err err = ERR_INIT;
         assert_int_not_equal(lens_list_read(&list, scratch_write("lenses.txt", bad[i].text), &err), ST_OK);
-        assert_err(err, ST_DATA, bad[i].words);
+        assert_err(err, ST_DATA, bad[i].message);
         assert_null(list.lenses);
     }
 }
@@ -69,7 +69,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_list_round_trips),
-        cmocka_unit_test(damage_is_named),
+        cmocka_unit_test(errors_name_the_line),
     };
     return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }

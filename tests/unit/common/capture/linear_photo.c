@@ -1,4 +1,4 @@
-/* linear_photo.c - photos of one exposure and of several become the same kind of picture. */
+/* linear_photo.c - photos of one exposure and merged photos as linear colour. */
 #include "common/capture/linear_photo.h"
 
 #include "tests/unit/scratch.h"
@@ -35,15 +35,15 @@ static void release(struct reading *r)
     image_release(&r->im);
 }
 
-static void assert_refused(const struct photo_record *record, enum status status, const char *words)
+static void assert_rejected(const struct photo_record *record, enum status status, const char *message)
 {
     struct reading r;
     read_photo(&r, scratch, record);
-    assert_err(r.err, status, words);
+    assert_err(r.err, status, message);
     release(&r);
 }
 
-static void one_exposure_is_decoded(void **state)
+static void one_exposure_is_linearised(void **state)
 {
     char id[] = "a", file[] = "rgb8.png";
     const struct photo_record record = {.id = id, .file = file};
@@ -51,17 +51,17 @@ static void one_exposure_is_decoded(void **state)
     (void)state;
     read_photo(&r, "tests/fuzz/corpus/photo", &record);
     assert_read(&r, "approximate", 7, 5, "photos/rgb8.png");
-    /* red is 16 x of 255: by the sRGB curve 48 is 0.0296 */
+    /* red is 16 x of 255; the sRGB curve maps 48 to 0.0296 */
     assert_true(r.im.data[0] == 0 && fabsf(r.im.data[3 * 3] - 0.02956f) < 1e-4f);
     release(&r);
 }
 
-static void several_are_what_was_merged(void **state)
+static void several_exposures_are_read_from_the_merged_file(void **state)
 {
     char id[] = "b", file[] = "b1.jpg";
     const struct photo_record record = {.id = id, .file = file, .bracket_count = 2};
     const float rgba[] = {2, 4, 8, 1, -1, 0.5f, 0.25f, 1};
-    const float expected[] = {2, 4, 8, 0, 0.5f, 0.25f}; /* nothing is darker than black */
+    const float expected[] = {2, 4, 8, 0, 0.5f, 0.25f}; /* negative values become 0 */
     struct exr_image exr;
     struct reading r;
     struct err err = ERR_INIT;
@@ -76,7 +76,7 @@ static void several_are_what_was_merged(void **state)
     release(&r);
 }
 
-static void what_cannot_be_read_is_told(void **state)
+static void unreadable_files_are_reported(void **state)
 {
     char gone_id[] = "c", gone_file[] = "c.jpg", whole_id[] = "d";
     const struct photo_record gone = {.id = gone_id, .file = gone_file}, whole = {.id = whole_id, .bracket_count = 2};
@@ -84,20 +84,20 @@ static void what_cannot_be_read_is_told(void **state)
     struct exr_image exr;
     struct err err = ERR_INIT;
     (void)state;
-    assert_refused(&gone, ST_IO, "c.jpg");
+    assert_rejected(&gone, ST_IO, "c.jpg");
     assert_ok(exr_image_init(&exr, 2, 1, &err), err);
     for (int c = 0; c < 3; c++) assert_ok(exr_add_plane(&exr, names[c], EXR_UINT, NULL, &err), err);
     assert_ok(exr_write(&exr, scratch_path("d.exr"), NULL, &err), err);
     exr_image_release(&exr);
-    assert_refused(&whole, ST_DATA, "integers");
+    assert_rejected(&whole, ST_DATA, "integers");
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(one_exposure_is_decoded),
-        cmocka_unit_test(several_are_what_was_merged),
-        cmocka_unit_test(what_cannot_be_read_is_told),
+        cmocka_unit_test(one_exposure_is_linearised),
+        cmocka_unit_test(several_exposures_are_read_from_the_merged_file),
+        cmocka_unit_test(unreadable_files_are_reported),
     };
     return cmocka_run_group_tests_name("linear_photo", tests, scratch_make, scratch_remove);
 }

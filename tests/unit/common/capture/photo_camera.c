@@ -1,10 +1,10 @@
-/* photo_camera.c - a photo's pixels as rays, whichever of its views it is placed by. */
+/* photo_camera.c - a photo's pixels as rays, from any of its views. */
 #include "common/capture/photo_camera.h"
 
 #include "tests/unit/scratch.h"
 
 static char photo[] = "b", left[] = "b@0", right[] = "b@1";
-/* One fisheye photo, two views turned by 30 degrees to either side. */
+/* One fisheye photo with two views, rotated by 30 degrees to either side. */
 static struct lens lenses[] = {
     {left,
      photo,
@@ -17,7 +17,7 @@ static struct lens lenses[] = {
 };
 static const struct lens_list list = {lenses, 2};
 
-/* The views of a photo whose own pose is a turn about z and a shift. */
+/* The views of a photo whose pose is a rotation about z and a translation. */
 static void make_views(struct view views[2], struct pose *own)
 {
     *own = (struct pose){{sqrt(0.5), 0, 0, sqrt(0.5)}, {1, -2, 0.5}};
@@ -36,7 +36,7 @@ static void make_views(struct view views[2], struct pose *own)
     }
 }
 
-static void any_view_gives_the_photos_rays(void **state)
+static void every_view_gives_the_same_rays(void **state)
 {
     (void)state;
     struct view views[2];
@@ -66,7 +66,7 @@ static void any_view_gives_the_photos_rays(void **state)
     }
 }
 
-static void an_unknown_name_is_answered_with_the_nearest(void **state)
+static void an_unknown_name_is_rejected_with_a_similar_one(void **state)
 {
     (void)state;
     struct view views[2];
@@ -83,8 +83,8 @@ static void an_unknown_name_is_answered_with_the_nearest(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(any_view_gives_the_photos_rays),
-        cmocka_unit_test(an_unknown_name_is_answered_with_the_nearest),
+        cmocka_unit_test(every_view_gives_the_same_rays),
+        cmocka_unit_test(an_unknown_name_is_rejected_with_a_similar_one),
     };
     return cmocka_run_group_tests_name("photo_camera", tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-/* The records of a scene's photographs: written, read back, kept when nothing changed, refused with file and line. */
+/* photo_list.c - records of photographs: round trip, files kept if nothing changed, errors with file and line. */
 #include "tests/unit/scratch.h"
 
 #include "common/capture/photo_list.h"
@@ -25,7 +25,7 @@ static bool is_old(const char *path)
     return info.st_mtime == 1000;
 }
 
-static void record_round_trip(void **state)
+static void a_record_round_trips(void **state)
 {
     char id[] = "IMG_1", file[] = " a \"b\" \\ #$'c.jpg ";
     struct photo_record r = sample(id, file), in;
@@ -48,7 +48,7 @@ static void record_round_trip(void **state)
     assert_ok(photo_record_write(&r, scratch, &err), err);
     assert_false(is_old(scratch_path("IMG_1.txt")));
     make_old(scratch_path("IMG_1.txt"));
-    r.file[strlen(r.file) - 1] = 0; /* the new text is the beginning of the old one, or the other way round */
+    r.file[strlen(r.file) - 1] = 0; /* the new text is the beginning of the old one, or vice versa */
     assert_ok(photo_record_write(&r, scratch, &err), err);
     assert_false(is_old(scratch_path("IMG_1.txt")));
 
@@ -57,7 +57,7 @@ static void record_round_trip(void **state)
     assert_err(err, ST_DATA, "line break");
 }
 
-static void list_round_trip(void **state)
+static void a_list_round_trips(void **state)
 {
     char a[] = "a", b[] = "b-2", c[] = "c_", file_a[] = "z z.jpg", file_b[] = "y.png", file_c[] = "x.JPG";
     struct photo_record records[] = {sample(a, file_a), sample(b, file_b), sample(c, file_c)};
@@ -88,7 +88,7 @@ static void list_round_trip(void **state)
     assert_false(is_old(scratch_path("list.txt")) || is_old(scratch_path("photos.mk")));
 }
 
-static void views_of_several_exposures(void **state)
+static void records_of_bracketed_views_round_trip(void **state)
 {
     char id[] = "hall", file[] = "hall.jpg", dark[] = "a b.jpg", bright[] = "c.jpg";
     struct bracket brackets[] = {{dark, "0123456789abcdef0123456789abcdef", 0.003125},
@@ -118,14 +118,14 @@ static void views_of_several_exposures(void **state)
     photo_list_release(&in);
 }
 
-static void bad_lists(void **state)
+static void invalid_lists_are_rejected(void **state)
 {
     const char *const cases[][2] = {
-        {"", "lists no photo"},
+        {"", "contains no photo"},
         {"a \"z z.jpg\"\na \"z z.jpg\"\n", "list.txt:2: found \"a\", wanted ids in order"},
         {"b-2 y.png\na y.png\n", ":2:"},
         {"a\n", "wanted file name"},
-        {"a y.png\n", "wanted the file that the record a.txt names"},
+        {"a y.png\n", "wanted the file named in the record a.txt"},
         {"../a y.png\n", "letters"},
         {"-a y.png\n", "letters"},
         {"gone y.png\n", "gone.txt"},
@@ -142,7 +142,7 @@ static void bad_lists(void **state)
     }
 }
 
-static void bad_records(void **state)
+static void invalid_records_are_rejected(void **state)
 {
     const char *const cases[][2] = {
         {"version", ":1: found \"2\", wanted format version"},
@@ -158,7 +158,7 @@ static void bad_records(void **state)
         {"open-quote", ":8:"},
         {"extra-line", ":9:"},
         {"brackets-cut", ": found the end of the file, wanted a line \"bracket ...\""},
-        {"brackets-order", ":11: found \"b.jpg\", wanted longer and longer exposures"},
+        {"brackets-order", ":11: found \"b.jpg\", wanted exposures in ascending order"},
         {"brackets-middle", ":9: found \"1\", wanted index of the middle exposure, an integer from 0 to 0"},
         {"brackets-zero", ":9: found \"0\", wanted exposure of white above 0"},
         {"brackets-many", ":9: found \"1001\", wanted number of exposures"},
@@ -169,12 +169,12 @@ static void bad_records(void **state)
         {"binary", "binary.txt"},
         {"no-such", "no-such.txt"},
     };
-    const char *const good[] = {"good", "comments", "crlf"};
+    const char *const valid[] = {"good", "comments", "crlf"};
     struct photo_record in;
     struct err err = ERR_INIT;
     (void)state;
     for (int i = 0; i < 3; i++) {
-        assert_ok(photo_record_read(&in, CORPUS, good[i], &err), err);
+        assert_ok(photo_record_read(&in, CORPUS, valid[i], &err), err);
         assert_string_equal(in.file, "IMG 1.jpg");
         assert_string_equal(in.info.model, "a \"quoted\" model");
         photo_record_release(&in);
@@ -190,11 +190,11 @@ static void bad_records(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(record_round_trip),
-        cmocka_unit_test(list_round_trip),
-        cmocka_unit_test(views_of_several_exposures),
-        cmocka_unit_test(bad_lists),
-        cmocka_unit_test(bad_records),
+        cmocka_unit_test(a_record_round_trips),
+        cmocka_unit_test(a_list_round_trips),
+        cmocka_unit_test(records_of_bracketed_views_round_trip),
+        cmocka_unit_test(invalid_lists_are_rejected),
+        cmocka_unit_test(invalid_records_are_rejected),
     };
     return cmocka_run_group_tests_name("photo_list", tests, scratch_make, scratch_remove);
 }

@@ -1,11 +1,11 @@
-/* photo_mask.c - masks of photos and of exposures: what they hide, and what is no mask of the photo. */
+/* photo_mask.c - masks of photos and of exposures: masked pixels and errors. */
 #include "tests/unit/scratch.h"
 
 #include "common/capture/photo_mask.h"
 
 enum { W = 8, H = 6 };
 
-/* masks/NAME.png: `value` in the columns from `begin` on, white elsewhere. */
+/* masks/NAME.png: `value` in all columns from `begin`, white elsewhere. */
 static void paint(const char *name, int width, int begin, unsigned char value)
 {
     unsigned char grey[2 * W * H];
@@ -38,7 +38,7 @@ static struct photo_mask read_mask(const struct photo_record *r, struct provenan
     return m;
 }
 
-static void no_mask_hides_nothing(void **state)
+static void without_a_mask_nothing_is_masked(void **state)
 {
     (void)state;
     const struct photo_record r = photo();
@@ -51,7 +51,7 @@ static void no_mask_hides_nothing(void **state)
     assert_null(m.masked);
 }
 
-static void what_is_darker_than_half_is_black(void **state)
+static void samples_below_half_are_masked(void **state)
 {
     (void)state;
     const struct photo_record r = photo();
@@ -69,7 +69,7 @@ static void what_is_darker_than_half_is_black(void **state)
     }
 }
 
-static void another_size_is_refused(void **state)
+static void masks_of_another_size_are_rejected(void **state)
 {
     (void)state;
     const struct photo_record r = photo();
@@ -81,13 +81,13 @@ static void another_size_is_refused(void **state)
     assert_null(m.masked);
 }
 
-static void a_mask_of_everything_is_refused(void **state)
+static void masks_of_the_whole_photo_are_rejected(void **state)
 {
     (void)state;
     const struct photo_record r = photo();
     struct photo_mask m;
     struct err err = ERR_INIT;
-    paint("a", W, 0, 1); /* 0 and 1 in place of 0 and 255 */
+    paint("a", W, 0, 1); /* 0 and 1 instead of 0 and 255 */
     assert_int_equal(photo_mask_read(&m, scratch_path("masks"), scratch, &r, NULL, &err), ST_DATA);
     assert_err(err, ST_DATA, "the mask of photo a");
     assert_contains(err.text, "EXCLUDE");
@@ -98,8 +98,8 @@ static void a_mask_of_everything_is_refused(void **state)
     assert_err(err, ST_DATA, "masks/a.png is neither JPEG, PNG");
 }
 
-/* What any exposure's mask or the view's own hides is hidden; masks of other photos are not looked at. */
-static void exposures_add_up(void **state)
+/* A pixel is masked by the view's mask or that of any exposure; masks of other photos are ignored. */
+static void masks_of_exposures_are_combined(void **state)
 {
     (void)state;
     struct err err = ERR_INIT;
@@ -136,11 +136,11 @@ static void exposures_add_up(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(no_mask_hides_nothing, no_masks),
-        cmocka_unit_test_setup(what_is_darker_than_half_is_black, no_masks),
-        cmocka_unit_test_setup(another_size_is_refused, no_masks),
-        cmocka_unit_test_setup(a_mask_of_everything_is_refused, no_masks),
-        cmocka_unit_test_setup(exposures_add_up, no_masks),
+        cmocka_unit_test_setup(without_a_mask_nothing_is_masked, no_masks),
+        cmocka_unit_test_setup(samples_below_half_are_masked, no_masks),
+        cmocka_unit_test_setup(masks_of_another_size_are_rejected, no_masks),
+        cmocka_unit_test_setup(masks_of_the_whole_photo_are_rejected, no_masks),
+        cmocka_unit_test_setup(masks_of_exposures_are_combined, no_masks),
     };
     return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }

@@ -1,4 +1,4 @@
-/* photo_match.c - which photograph a model's image is: the file, the file in some folder, the id. */
+/* photo_match.c - matching of images of a model to photographs: by file, by file in a folder, by id. */
 #include "tests/unit/scratch.h"
 
 #include "common/capture/photo_match.h"
@@ -12,7 +12,7 @@ static struct photo_record records[] = {
 };
 static const struct photo_list photos = {records, 5};
 
-static void names_mean_their_photos(void **state)
+static void names_are_matched_to_photos(void **state)
 {
     static const struct {
         const char *name;
@@ -30,8 +30,8 @@ static void names_mean_their_photos(void **state)
         {"undistorted/b-2.tiff", 3},
         {"b", 2},
         {"v1.png", 4},
-        {"b.tar.gz", 3}, /* the file comes before the id b */
-        {"IMG_", -1},    /* no beginnings, no continuations */
+        {"b.tar.gz", 3}, /* the file name has priority over the id b */
+        {"IMG_", -1},    /* beginnings and extensions of names do not match */
         {"IMG_100.jpg", -1},
         {"IMG_1.JPG.png", -1},
         {"img_1.jpg", -1},
@@ -48,7 +48,7 @@ static void names_mean_their_photos(void **state)
             fail_msg("\"%s\" is photo %d", cases[i].name, photo_list_match(&photos, cases[i].name));
 }
 
-static void the_whole_name_comes_before_its_end(void **state)
+static void the_whole_name_has_priority_over_its_last_part(void **state)
 {
     char names[][16] = {"a", "x/p.jpg", "b", "p.jpg", "p", "q.jpg"};
     struct photo_record both[] = {
@@ -61,7 +61,7 @@ static void the_whole_name_comes_before_its_end(void **state)
     assert_int_equal(photo_list_match(&list, "p.png"), 2);
 }
 
-static void an_empty_list_knows_no_photo(void **state)
+static void an_empty_list_matches_nothing(void **state)
 {
     const struct photo_list none = {0};
     (void)state;
@@ -69,8 +69,7 @@ static void an_empty_list_knows_no_photo(void **state)
     assert_int_equal(photo_list_match(&none, ""), -1);
 }
 
-/* A view of several exposures is also called by its middle one. */
-static void a_view_is_its_middle_exposure(void **state)
+static void a_bracketed_view_matches_its_middle_exposure(void **state)
 {
     char files[][16] = {"v_e0.jpg", "v_e1.jpg", "v", "v.jpg"};
     struct bracket brackets[] = {{.file = files[0]}, {.file = files[1]}};
@@ -86,10 +85,10 @@ static void a_view_is_its_middle_exposure(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_view_is_its_middle_exposure),
-        cmocka_unit_test(names_mean_their_photos),
-        cmocka_unit_test(the_whole_name_comes_before_its_end),
-        cmocka_unit_test(an_empty_list_knows_no_photo),
+        cmocka_unit_test(a_bracketed_view_matches_its_middle_exposure),
+        cmocka_unit_test(names_are_matched_to_photos),
+        cmocka_unit_test(the_whole_name_has_priority_over_its_last_part),
+        cmocka_unit_test(an_empty_list_matches_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-/* points.ply: its bytes, and what reading refuses. */
+/* point_cloud.c - points.ply: its bytes, round trip, errors. */
 #include "tests/unit/scratch.h"
 
 #include <math.h>
@@ -53,7 +53,7 @@ static size_t bytes_of(const char *path, char *bytes, size_t room)
     return n;
 }
 
-static void the_bytes_are_these(void **state)
+static void the_file_has_the_documented_bytes(void **state)
 {
     char bytes[4096];
     (void)state;
@@ -63,7 +63,7 @@ static void the_bytes_are_these(void **state)
     assert_memory_equal(bytes + sizeof head - 1, first_point, sizeof first_point);
 }
 
-static void what_is_written_is_read(void **state)
+static void points_round_trip(void **state)
 {
     struct point_cloud cloud;
     struct err err = ERR_INIT;
@@ -82,7 +82,7 @@ static void what_is_written_is_read(void **state)
     point_cloud_release(&cloud);
 }
 
-static void many_points_and_none(void **state)
+static void empty_and_large_clouds_round_trip(void **state)
 {
     enum { MANY = 10000 };
     struct point_cloud cloud = {calloc(MANY, sizeof *cloud.points), MANY, 0}, read;
@@ -107,18 +107,18 @@ static void many_points_and_none(void **state)
     point_cloud_release(&cloud);
 }
 
-static void refused(const char *bytes, size_t size, const char *words)
+static void assert_rejected(const char *bytes, size_t size, const char *message)
 {
     struct point_cloud cloud = {(struct cloud_point *)two, 7, 1};
     struct err err = ERR_INIT;
     assert_int_equal(point_cloud_read(&cloud, scratch_write_bytes("broken.ply", bytes, size), &err), ST_DATA);
-    assert_err(err, ST_DATA, words);
+    assert_err(err, ST_DATA, message);
     assert_contains(err.text, "broken.ply");
     assert_true(!cloud.points && !cloud.count);
 }
 
-/* The good file with one piece of its head replaced by another. */
-static void refused_with(const char *old, const char *new, const char *words)
+/* The valid file with one part of its header replaced. */
+static void assert_header_rejected(const char *old, const char *new, const char *message)
 {
     char bytes[4096], broken[4096];
     const size_t n = bytes_of(write_two("two.ply"), bytes, sizeof bytes);
@@ -128,55 +128,55 @@ static void refused_with(const char *old, const char *new, const char *words)
     memcpy(broken, bytes, before);
     memcpy(broken + before, new, strlen(new));
     memcpy(broken + before + strlen(new), at + strlen(old), after);
-    refused(broken, before + strlen(new) + after, words);
+    assert_rejected(broken, before + strlen(new) + after, message);
 }
 
-static void refused_point(size_t at, const void *value, size_t size)
+static void assert_point_rejected(size_t at, const void *value, size_t size)
 {
     char bytes[4096];
     const size_t n = bytes_of(write_two("two.ply"), bytes, sizeof bytes);
     memcpy(bytes + sizeof head - 1 + 45 + at, value, size);
-    refused(bytes, n, "point 1 ");
+    assert_rejected(bytes, n, "point 1 ");
 }
 
-static void broken_files_are_refused_with_a_reason(void **state)
+static void broken_files_are_rejected_with_a_reason(void **state)
 {
     char bytes[4096];
     const size_t n = bytes_of(write_two("two.ply"), bytes, sizeof bytes);
     (void)state;
-    refused("", 0, ":1: found the end of the file, wanted \"ply\"");
-    refused("ply", 3, ":1:");
-    refused("ply\0\n", 5, ":1:");
-    refused_with("binary_little_endian", "ascii", ":2: found");
-    refused_with("binary_little_endian", "binary_big_endian", ":2: found");
-    refused_with("remodel-points 1", "remodel-points 2", ":3: found");
-    refused_with("comment cell 0.25\n", "", "the edge of a cell");
-    refused_with("comment cell 0.25", "comment cell -1", "the edge of a cell");
-    refused_with("comment cell 0.25", "comment cell nan", "the edge of a cell");
-    refused_with("comment cell 0.25\ncomment remodel fuse_points 9.9\ncomment views = 3\ncomment cell = 7\n", "",
-                 "comment cell SIZE");
-    refused_with("element vertex 2", "element face 2", "element vertex COUNT");
-    refused_with("element vertex 2", "element vertex -2", "element vertex COUNT");
-    refused_with("element vertex 2", "element vertex 2x", "element vertex COUNT");
-    refused_with("element vertex 2", "element vertex 3", "wanted 45 for each of 3 points");
-    refused_with("element vertex 2", "element vertex 9000000000000000000", "9000000000000000000 points");
-    refused_with("element vertex 2", "element vertex 1", "90 bytes");
-    refused_with("double y", "float y", "property double y");
-    refused_with("property ushort views\n", "", "property ushort views");
-    refused_with("end_header\n", "element face 0\nend_header\n", "end_header");
-    for (size_t cut = 1; cut < n; cut++) refused(bytes, n - cut, "wanted");
+    assert_rejected("", 0, ":1: found the end of the file, wanted \"ply\"");
+    assert_rejected("ply", 3, ":1:");
+    assert_rejected("ply\0\n", 5, ":1:");
+    assert_header_rejected("binary_little_endian", "ascii", ":2: found");
+    assert_header_rejected("binary_little_endian", "binary_big_endian", ":2: found");
+    assert_header_rejected("remodel-points 1", "remodel-points 2", ":3: found");
+    assert_header_rejected("comment cell 0.25\n", "", "a cell size");
+    assert_header_rejected("comment cell 0.25", "comment cell -1", "a cell size");
+    assert_header_rejected("comment cell 0.25", "comment cell nan", "a cell size");
+    assert_header_rejected("comment cell 0.25\ncomment remodel fuse_points 9.9\ncomment views = 3\ncomment cell = 7\n",
+                           "", "comment cell SIZE");
+    assert_header_rejected("element vertex 2", "element face 2", "element vertex COUNT");
+    assert_header_rejected("element vertex 2", "element vertex -2", "element vertex COUNT");
+    assert_header_rejected("element vertex 2", "element vertex 2x", "element vertex COUNT");
+    assert_header_rejected("element vertex 2", "element vertex 3", "wanted 45 for each of 3 points");
+    assert_header_rejected("element vertex 2", "element vertex 9000000000000000000", "9000000000000000000 points");
+    assert_header_rejected("element vertex 2", "element vertex 1", "90 bytes");
+    assert_header_rejected("double y", "float y", "property double y");
+    assert_header_rejected("property ushort views\n", "", "property ushort views");
+    assert_header_rejected("end_header\n", "element face 0\nend_header\n", "end_header");
+    for (size_t cut = 1; cut < n; cut++) assert_rejected(bytes, n - cut, "wanted");
     memcpy(bytes + n, "x", 1);
-    refused(bytes, n + 1, "91 bytes");
+    assert_rejected(bytes, n + 1, "91 bytes");
 
     const double no_number = NAN;
     const float far = INFINITY, long_normal = 0.9f, negative = -0.1f, too_sure = 1.5f;
     const uint16_t no_view = 0;
-    refused_point(8, &no_number, 8);
-    refused_point(24, &far, 4);
-    refused_point(24, &long_normal, 4);
-    refused_point(39, &no_view, 2);
-    refused_point(41, &negative, 4);
-    refused_point(41, &too_sure, 4);
+    assert_point_rejected(8, &no_number, 8);
+    assert_point_rejected(24, &far, 4);
+    assert_point_rejected(24, &long_normal, 4);
+    assert_point_rejected(39, &no_view, 2);
+    assert_point_rejected(41, &negative, 4);
+    assert_point_rejected(41, &too_sure, 4);
 }
 
 static void a_missing_file_is_named(void **state)
@@ -193,8 +193,8 @@ static void a_missing_file_is_named(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_bytes_are_these),     cmocka_unit_test(what_is_written_is_read),
-        cmocka_unit_test(many_points_and_none),    cmocka_unit_test(broken_files_are_refused_with_a_reason),
+        cmocka_unit_test(the_file_has_the_documented_bytes), cmocka_unit_test(points_round_trip),
+        cmocka_unit_test(empty_and_large_clouds_round_trip), cmocka_unit_test(broken_files_are_rejected_with_a_reason),
         cmocka_unit_test(a_missing_file_is_named),
     };
     return cmocka_run_group_tests(tests, scratch_make, scratch_remove);

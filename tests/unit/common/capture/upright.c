@@ -1,4 +1,4 @@
-/* upright.c - the upper side of stored pictures, by EXIF orientation. */
+/* upright.c - the upright direction of stored pictures, from EXIF orientation. */
 #include "common/capture/upright.h"
 
 #include <setjmp.h>
@@ -8,8 +8,8 @@
 
 #include <cmocka.h>
 
-/* What EXIF's orientations mean: where the stored picture's first row and first column are shown. */
-static void the_upper_side_is_where_exif_says(void **state)
+/* EXIF orientation: the displayed positions of the stored picture's first row and first column. */
+static void the_upright_direction_follows_exif_orientation(void **state)
 {
     (void)state;
     static const double expected[10][2] = {{0, -1}, {0, -1}, {0, -1}, {0, 1}, {0, 1},
@@ -22,6 +22,6 @@ static void the_upper_side_is_where_exif_says(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(the_upper_side_is_where_exif_says)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(the_upright_direction_follows_exif_orientation)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,5 @@
-/* view_image.c - a view's picture on disk: what comes back, what is refused, what a failed write leaves. (Its camera
- * attribute is tested with the format, in exr.c.) */
+/* view_image.c - a view's picture on disk: round trip, errors, failed writes. (The camera attribute is tested in
+ * exr.c.) */
 #include "tests/unit/scratch.h"
 
 #include <math.h>
@@ -28,13 +28,12 @@ static struct image make_image(int width, int height)
     return im;
 }
 
-/* The file's name is the folder, the view and .exr; the view is IMG_1. */
-static void assert_refused(const struct view *view, enum status status, const char *words)
+static void assert_rejected(const struct view *view, enum status status, const char *message)
 {
     struct image im;
     struct err err = ERR_INIT;
     assert_int_equal(view_image_read(&im, scratch, view, &err), status);
-    assert_err(err, status, words);
+    assert_err(err, status, message);
     assert_contains(err.text, scratch_path("IMG_1.exr"));
     assert_true(!im.data && !im.width && !im.channels);
 }
@@ -57,7 +56,7 @@ static void a_picture_round_trips(void **state)
     }
 }
 
-static void colours_are_kept_to_half_precision(void **state)
+static void colours_have_half_precision(void **state)
 {
     static const float values[] = {1e-5F, 0.2F, 0.7F, 1 / 3.0F, 1.1F, 100.3F, 65504, 1e6F};
     struct view view = make_view(2, 1);
@@ -105,23 +104,23 @@ static void radiometry_and_provenance_are_in_the_file(void **state)
     provenance_release(&prov);
 }
 
-static void a_picture_that_is_not_the_views_is_refused(void **state)
+static void pictures_of_another_size_are_rejected(void **state)
 {
     struct view view = make_view(17, 33), wide = make_view(33, 17), narrow = make_view(16, 33);
     struct image im = make_image(17, 33), grey = {0};
     struct err err = ERR_INIT;
     (void)state;
     unlink(scratch_path("IMG_1.exr"));
-    assert_refused(&view, ST_IO, "cannot open");
+    assert_rejected(&view, ST_IO, "cannot open");
     assert_ok(view_image_write(&im, scratch_path("IMG_1.exr"), &view, NULL, "approximate", &err), err);
-    assert_refused(&wide, ST_DATA, "is 17 x 33 pixels, but its camera says 33 x 17; make the views again.");
-    assert_refused(&narrow, ST_DATA, "its camera says 16 x 33");
+    assert_rejected(&wide, ST_DATA, "has 17 x 33 pixels, but its camera 33 x 17; make the views again.");
+    assert_rejected(&narrow, ST_DATA, "its camera 16 x 33");
     assert_int_equal(truncate(scratch_path("IMG_1.exr"), 700), 0);
-    assert_refused(&view, ST_DATA, "make it again");
+    assert_rejected(&view, ST_DATA, "make it again");
     scratch_write("IMG_1.exr", "no picture");
-    assert_refused(&view, ST_DATA, "make it again");
+    assert_rejected(&view, ST_DATA, "make it again");
 
-    /* and one that is not the view's is not written */
+    /* nor is one of another size written */
     assert_int_equal(view_image_write(&im, scratch_path("new/IMG_1.exr"), &wide, NULL, "approximate", &err),
                      ST_INTERNAL);
     assert_err(err, ST_INTERNAL, "a picture of 17 x 33 with 4 channels is not view IMG_1.");
@@ -138,7 +137,7 @@ static void a_picture_that_is_not_the_views_is_refused(void **state)
     image_release(&im);
 }
 
-static void channels_that_are_missing_or_integers(void **state)
+static void missing_and_integer_channels_are_rejected(void **state)
 {
     static const char *const names[] = {"R", "G", "B", "A"};
     struct view view = make_view(3, 2);
@@ -147,15 +146,15 @@ static void channels_that_are_missing_or_integers(void **state)
         for (int integers = 0; integers < 2; integers++) {
             struct exr_image exr = {0};
             struct err err = ERR_INIT;
-            char words[100];
+            char message[100];
             assert_ok(exr_image_init(&exr, 3, 2, &err), err);
             for (int c = 0; c < 4; c++)
                 if (c != bad || integers)
                     assert_ok(exr_add_plane(&exr, names[c], c == bad ? EXR_UINT : EXR_FLOAT, NULL, &err), err);
             assert_ok(exr_write(&exr, scratch_path("IMG_1.exr"), NULL, &err), err);
-            snprintf(words, sizeof words,
-                     integers ? "channel %s holds integers, wanted half or float" : "no channel %s;", names[bad]);
-            assert_refused(&view, ST_DATA, words);
+            snprintf(message, sizeof message,
+                     integers ? "channel %s contains integers, wanted half or float" : "no channel %s;", names[bad]);
+            assert_rejected(&view, ST_DATA, message);
             exr_image_release(&exr);
         }
 }
@@ -181,10 +180,10 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_picture_round_trips),
-        cmocka_unit_test(colours_are_kept_to_half_precision),
+        cmocka_unit_test(colours_have_half_precision),
         cmocka_unit_test(radiometry_and_provenance_are_in_the_file),
-        cmocka_unit_test(a_picture_that_is_not_the_views_is_refused),
-        cmocka_unit_test(channels_that_are_missing_or_integers),
+        cmocka_unit_test(pictures_of_another_size_are_rejected),
+        cmocka_unit_test(missing_and_integer_channels_are_rejected),
         cmocka_unit_test(a_failed_write_keeps_the_old_picture),
     };
     return cmocka_run_group_tests(tests, scratch_make, scratch_remove);

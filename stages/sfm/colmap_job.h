@@ -1,0 +1,63 @@
+/* colmap_job.h - COLMAP's commands on a work folder.
+ *
+ * COLMAP sees symbolic links with safe names (ID.EXT) in the work folder, not the photos' folder. The packaged COLMAP
+ * has no CUDA, so features and matches run on the CPU. Its exit status alone is not trusted: callers count what it
+ * made. */
+#ifndef REMODEL_COLMAP_JOB_H
+#define REMODEL_COLMAP_JOB_H
+
+#include "stages/sfm/sfm_folder.h"
+#include "stages/sfm/start_lens.h"
+
+struct sfm_input {
+    const char *photos, *masks, *records; /* folders; masks: of ID.png (common/capture/photo_mask.h), or NULL */
+    const struct photo_list *list;
+    const struct sfm_params *params;
+};
+
+enum { COLMAP_STEPS = 4, MIN_FEATURES = 200 }; /* photos with fewer features are reported */
+
+struct colmap_job {
+    const struct sfm_folder *folder;
+    double started; /* clock_seconds() */
+    const struct photo_list *photos;
+    const struct sfm_params *params;
+    char *images, *masks, *database, *sparse; /* in the work folder; masks is NULL if no photo has one; owned */
+    char *logs[COLMAP_STEPS];                 /* owned */
+    char threads[16], max_features[16], max_image_size[16], lens[SFM_LENS_TEXT];
+    bool single; /* one lens for all photos */
+};
+
+/* Fills the work folder: links, masks, names of logs. params may differ from in->params. The job borrows its
+ * arguments. */
+enum status colmap_prepare(struct colmap_job *job, const struct sfm_folder *f, const struct sfm_input *in,
+                           const struct sfm_params *params, struct err *err);
+
+/* Runs one command; its output goes to the log of `step` (1 .. COLMAP_STEPS). args ends with NULL. */
+enum status colmap_exit_status(int *status, const struct colmap_job *job, int step, const char *const args[],
+                               struct err *err);
+/* The same; an exit status above max_status is ST_IO with the last line of the log. */
+enum status colmap_run(const struct colmap_job *job, int step, const char *const args[], int max_status,
+                       struct err *err);
+enum status colmap_failed(const struct colmap_job *job, int step, const char *command, int status, struct err *err);
+
+/* Steps 1 and 2. *features: number of features in all photos; matching is skipped if it is 0. */
+enum status colmap_extract_and_match(long long *features, const struct colmap_job *job, struct err *err);
+
+/* Step 3: poses and points. relaxed: the initial pair may have a smaller angle and fewer inliers than by default. */
+enum status colmap_map(const struct colmap_job *job, bool relaxed, struct err *err);
+
+/* Moves the logs into the product's folder. */
+enum status colmap_keep_logs(const struct colmap_job *job, struct err *err);
+
+/* Gives the model's images, named ID.EXT, the names of the photos' files; a name that a text model cannot hold stays
+ * ID.EXT. */
+enum status colmap_name_images(struct sfm_model *m, const struct photo_list *photos, struct err *err);
+
+/* The extension of a file's name, with its dot, if it is safe in a link's name, otherwise ".img"; COLMAP reads the
+ * content. */
+const char *colmap_extension(const char *file);
+
+void colmap_job_release(struct colmap_job *job);
+
+#endif

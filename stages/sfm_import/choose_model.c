@@ -1,0 +1,117 @@
+/* choose_model.c - which of several models is used, and whether it still belongs to the photos. */
+#include "stages/sfm_import/choose_model.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/base/file_path.h"
+#include "common/base/log.h"
+#include "common/base/textfile.h"
+#include "common/capture/photo_match.h"
+#include "stages/sfm_import/name_lines.h"
+
+static int images_of_photos(const struct sfm_model *m, const struct photo_list *photos)
+{
+    int n = 0;
+    for (int i = 0; i < m->image_count; i++) n += photo_list_match(photos, m->images[i].name) >= 0;
+    return n;
+}
+
+/* The first line of models.txt. */
+static enum status read_version(struct textfile *t, struct err *err)
+{
+    char *word = NULL;
+    int64_t version = 0;
+    if (!textfile_next(t)) return textfile_error(t, err, NULL, "\"remodel-sfm 1\"");
+    if (textfile_word(t, "\"remodel-sfm\"", &word, err)) return err->status;
+    if (strcmp(word, "remodel-sfm")) return textfile_error(t, err, word, "\"remodel-sfm\"");
+    return textfile_int(t, "version", 1, 1, &version, err) || textfile_end(t, err) ? err->status : ST_OK;
+}
+
+/* A line "FOLDER FORMAT" of models.txt, and the model. *folder points into the text file. */
+static enum status read_model(struct sfm_model *m, char **folder, struct textfile *t, const char *sfm, struct err *err)
+{
+    char path[FILE_PATH], *format = NULL;
+    if (textfile_word(t, "folder of a model", folder, err) || textfile_word(t, "its format", &format, err) ||
+        textfile_end(t, err))
+        return err->status;
+    if (strcmp(format, "colmap")) return textfile_error(t, err, format, "\"colmap\"");
+    return file_path(path, sfm, *folder, "", err) || sfm_model_read_text(m, path, err) ? err->status : ST_OK;
+}
+
+enum status import_choose(struct sfm_model *model, char **name, const char *sfm, const struct photo_list *photos,
+                          struct err *err)
+{
+    struct textfile t = {0};
+    char path[FILE_PATH];
+    int count = 0, best = -1;
+    *model = (struct sfm_model){0};
+    *name = NULL;
+    enum status st = file_path(path, sfm, "models.txt", "", err);
+    if (!st) st = textfile_open(&t, path, err);
+    if (!st) st = read_version(&t, err);
+    while (!st && textfile_next(&t)) {
+        struct sfm_model m = {0};
+        char *folder = NULL;
+        st = read_model(&m, &folder, &t, sfm, err);
+        if (st) break;
+        int n = images_of_photos(&m, photos);
+        log_note("model %s: %d images, %d of them photos of this scene, %d points", folder, m.image_count, n,
+                 m.point_count);
+        count++;
+        if (n > best || (n == best && m.point_count > model->point_count)) {
+            sfm_model_release(model);
+            free(*name);
+            *model = m;
+            best = n;
+            if (!(*name = strdup(folder))) st = err_nomem(err, "a name", strlen(folder) + 1);
+        } else {
+            sfm_model_release(&m);
+        }
+    }
+    if (!st && !count) st = textfile_error(&t, err, NULL, "a line for each model");
+    if (!st && count > 1) log_note("model %s is the largest of %d; only this one is used", *name, count);
+    textfile_release(&t);
+    if (st) {
+        sfm_model_release(model);
+        free(*name);
+        *name = NULL;
+    }
+    return st;
+}
+
+enum status import_check_photos(const char *sfm, const struct photo_list *photos, struct err *err)
+{
+    struct textfile t = {0};
+    struct name_lines changed = {.heading = "changed since structure from motion ran"};
+    struct name_lines added = {.heading = "new since structure from motion ran"};
+    bool any = false;
+    char path[FILE_PATH], *seen = calloc((size_t)photos->count + 1, 1);
+    enum status st =
+        seen ? file_path(path, sfm, "photos.txt", "", err) : err_nomem(err, "marks", (size_t)photos->count);
+    if (!st) st = textfile_open(&t, path, err);
+    while (!st && textfile_next(&t)) {
+        char *id = NULL, *hash = NULL;
+        st = textfile_word(&t, "id of a photo", &id, err);
+        if (!st) st = textfile_word(&t, "hash of a photo", &hash, err);
+        if (!st) st = textfile_end(&t, err);
+        int at = st ? -1 : photo_list_find_id(photos, id);
+        if (at < 0) continue;
+        seen[at] = 1;
+        if (!strcmp(hash, photos->photos[at].hash)) continue;
+        name_lines_add(&changed, photos->photos[at].file);
+        any = true;
+    }
+    for (int i = 0; !st && i < photos->count; i++)
+        if (!seen[i]) {
+            name_lines_add(&added, photos->photos[i].file);
+            any = true;
+        }
+    if (!st && any)
+        log_warn("the photos have changed since their cameras were found; make resfm finds the cameras again");
+    if (!st) name_lines_end(&changed);
+    if (!st) name_lines_end(&added);
+    textfile_release(&t);
+    free(seen);
+    return st;
+}

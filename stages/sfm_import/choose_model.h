@@ -1,0 +1,16 @@
+/* choose_model.h - which of several models is used, and whether it still belongs to the photos. */
+#ifndef REMODEL_CHOOSE_MODEL_H
+#define REMODEL_CHOOSE_MODEL_H
+
+#include "common/capture/photo_list.h"
+#include "common/capture/sfm_model.h"
+
+/* Reads SFM/models.txt and the model with the most images that are photos of the scene, at equality the one with the
+ * most points. Logs all models. *name is its folder inside SFM; the caller frees it. */
+enum status import_choose(struct sfm_model *model, char **name, const char *sfm, const struct photo_list *photos,
+                          struct err *err);
+
+/* Warns about photos that have changed, or are new, since SFM/photos.txt was written. */
+enum status import_check_photos(const char *sfm, const struct photo_list *photos, struct err *err);
+
+#endif
