@@ -46,7 +46,7 @@ static bool planes_meet(const struct depth_segment *a, const struct depth_segmen
 {
     const double za = a->plane[0] * u + a->plane[1] * v + a->plane[2];
     const double zb = b->plane[0] * u + b->plane[1] * v + b->plane[2];
-    const double sa = fmax(a->sigma, SOFT_Z_SIGMA_LEAST), sb = fmax(b->sigma, SOFT_Z_SIGMA_LEAST);
+    const double sa = fmax(a->sigma, SOFT_Z_MIN_SIGMA), sb = fmax(b->sigma, SOFT_Z_MIN_SIGMA);
     return fabs(za - zb) <= JOIN_SIGMAS * hypot(sa, sb) * fmin(za, zb);
 }
 

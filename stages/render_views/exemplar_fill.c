@@ -127,7 +127,7 @@ float exemplar_far_border(float *z, size_t count, float sigma)
         }
     }
     for (size_t i = 0; i < count; i++) between += z[i] > exp(border - gap / 6) && z[i] < exp(border + gap / 6);
-    const bool two = gap > GAP_SIGMAS * M_SQRT2 * fmax(sigma, SOFT_Z_SIGMA_LEAST) && between * VALLEY_SHARE <= count &&
+    const bool two = gap > GAP_SIGMAS * M_SQRT2 * fmax(sigma, SOFT_Z_MIN_SIGMA) && between * VALLEY_SHARE <= count &&
                      near_count * LEAST_SHARE >= count && (count - near_count) * LEAST_SHARE >= count;
     return two ? (float)exp(border) : 0;
 }

@@ -128,7 +128,7 @@ static void eight_presences_are_the_scalar_ones(void **state)
         }
         _mm256_storeu_ps(p, soft_z_presence8(_mm256_loadu_ps(blend), _mm256_loadu_ps(alpha)));
         for (int k = 0; k < 8; k++)
-            assert_near(p[k], fminf(1, blend[k] / SOFT_Z_BLEND_WHOLE) * fminf(1, alpha[k] / SOFT_Z_ALPHA_WHOLE), 1e-5);
+            assert_near(p[k], fminf(1, blend[k] / SOFT_Z_FULL_BLEND) * fminf(1, alpha[k] / SOFT_Z_FULL_ALPHA), 1e-5);
     }
 }
 
@@ -143,7 +143,7 @@ static void eight_cosines_are_the_scalar_ones(void **state)
     }
 }
 
-static float known(float sigma) { return fmaxf(sigma, SOFT_Z_SIGMA_LEAST); }
+static float known(float sigma) { return fmaxf(sigma, SOFT_Z_MIN_SIGMA); }
 
 static void eight_weights_behind_are_the_scalar_ones(void **state)
 {
@@ -275,10 +275,10 @@ static void tiny_alphas_make_a_whole_finite_pixel(void **state)
     (void)state;
     static const float alphas[] = {1e-3f, 1e-6f, 1e-12f, 1e-20f};
     for (int i = 0; i < 4; i++) {
-        struct soft_z_fragment f[SOFT_Z_MERGE_MOST];
+        struct soft_z_fragment f[SOFT_Z_MAX_FRAGMENTS];
         float rgba[4], z;
-        for (int k = 0; k < SOFT_Z_MERGE_MOST; k++) f[k] = fragment(0.5f, 0.25f, 0, alphas[i], 3 + (float)(k % 3));
-        soft_z_merge(&narrow, f, SOFT_Z_MERGE_MOST, rgba, &z);
+        for (int k = 0; k < SOFT_Z_MAX_FRAGMENTS; k++) f[k] = fragment(0.5f, 0.25f, 0, alphas[i], 3 + (float)(k % 3));
+        soft_z_merge(&narrow, f, SOFT_Z_MAX_FRAGMENTS, rgba, &z);
         assert_near(rgba[0], 0.5, 1e-4);
         assert_near(rgba[1], 0.25, 1e-4);
         assert_near(rgba[3], 1, 0);
