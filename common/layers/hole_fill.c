@@ -35,7 +35,8 @@ struct far_side { /* the reversed soft z-buffer */
     float sigma; /* relative uncertainty of all depths */
 };
 
-/* Mean of the items by weights[i] times the reversed soft z weight. Weight 0 leaves an item out. False: no known item. */
+/* Mean of the items by weights[i] times the reversed soft z weight. Weight 0 leaves an item out. False: no known
+ * item. */
 static bool far_mean(const struct far_side *far, const struct color_z *items, const float *weights, int count,
                      struct color_z *mean)
 {
@@ -308,8 +309,7 @@ static enum status fill_wide(struct rendered_frame *f, const uint32_t *list, siz
         }
     }
     *filled = 0;
-    if (!pull(&p, p.count - 1, 0, 0, &value))
-        goto done; /* no pixel of the frame is known */
+    if (!pull(&p, p.count - 1, 0, 0, &value)) goto done; /* no pixel of the frame is known */
     for (size_t i = 0; i < count; i++) push(&p, 0, (int)(list[i] % w), (int)(list[i] / w), &value);
     for (size_t i = 0; i < count; i++) /* written last, so that all are computed from the unfilled frame */
         if (p.levels[0].state[list[i]] == PUSHED) {

@@ -14,7 +14,8 @@
 
 #define H_REFERENCE_SIDE 1200
 
-/* hole: width * height, 1 at hole pixels; scratch: width * height. *h is INFINITY if every pixel is a hole. ST_NOMEM. */
+/* hole: width * height, 1 at hole pixels; scratch: width * height. *h is INFINITY if every pixel is a hole.
+ * ST_NOMEM. */
 enum status hole_measure(double *h, const uint8_t *hole, int width, int height, float *scratch, struct err *err);
 
 #endif

@@ -62,7 +62,7 @@ struct patch { /* a square of the lattice: its views and their blending weights 
     float weight[SLOTS][4]; /* upper left, upper right, lower left, lower right */
 };
 
-struct slot {                         /* samples of one view per pixel; which view varies by patch */
+struct slot {                          /* samples of one view per pixel; which view varies by patch */
     struct view_samples front, behind; /* behind: offline only */
     float blend[TILE_PIXELS];          /* blending weight; 0: no sample */
 };
@@ -342,8 +342,8 @@ static void draw_view(const struct frame_job *job, struct tile_scratch *s, const
         for (int y = 0; y < at->height; y++)
             for (int x = 0; x < LATTICE; x += 8) {
                 const size_t i = (size_t)y * TILE_STRIDE + (size_t)(k * LATTICE + x);
-                visibility_sample8(&slot->front, job->offline ? &slot->behind : NULL, &s->visibility, drawn, lv, i, at->x,
-                                   at->y);
+                visibility_sample8(&slot->front, job->offline ? &slot->behind : NULL, &s->visibility, drawn, lv, i,
+                                   at->x, at->y);
                 mark_covered(s->covered + i, slot->front.alpha + i, job->offline ? slot->behind.alpha + i : NULL);
                 __m256 alpha = _mm256_loadu_ps(slot->front.alpha + i);
                 if (job->offline) alpha = _mm256_add_ps(alpha, _mm256_loadu_ps(slot->behind.alpha + i));
@@ -386,7 +386,7 @@ static enum sight sight_of(const struct frame_job *job, int view, struct vec3 po
  * decide, they do not see through it. It must have been hidden from them, behind what they show; otherwise it is a
  * segment at a wrong depth, which would float in the hole. */
 static bool is_consistent(const struct frame_job *job, const struct patch *patch, const struct tile *at, int x, int y,
-                        float z, float sigma)
+                          float z, float sigma)
 {
     const struct vec3 point = view_unproject(&job->novel, at->x + x + 0.5, at->y + y + 0.5, z);
     float sum[3] = {0};
@@ -453,7 +453,8 @@ static void open_fallback(struct tile_scratch *s, int patch)
 }
 
 /* Accepts the samples of another view at eight uncovered pixels where they cover the pixel and are consistent. */
-static void accept_fallback(const struct frame_job *job, struct tile_scratch *s, const struct tile *at, size_t i, bool color)
+static void accept_fallback(const struct frame_job *job, struct tile_scratch *s, const struct tile *at, size_t i,
+                            bool color)
 {
     struct slot *slot = &s->slots[FALLBACK];
     const struct view_samples *from = &s->spare;

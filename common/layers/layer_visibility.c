@@ -1,18 +1,18 @@
 /* layer_visibility.c - visibility of one view's segments in a novel camera.
  *
- * Drawing a segment writes no colour. For each pixel of a tile it keeps the two nearest surfaces that have texels there,
- * each by its nearest segment, and the front's position in the view. Colour is looked up afterwards, once per pixel,
- * however many segments were drawn. Segments need no sorting, and eight pixels are drawn at once. [Colburn 2014, 3.6.1]
- * draws colour, segments sorted by the depth of the centremost camera.
+ * Drawing a segment writes no colour. For each pixel of a tile it keeps the two nearest surfaces that have texels
+ * there, each by its nearest segment, and the front's position in the view. Colour is looked up afterwards, once per
+ * pixel, however many segments were drawn. Segments need no sorting, and eight pixels are drawn at once. [Colburn 2014,
+ * 3.6.1] draws colour, segments sorted by the depth of the centremost camera.
  *
- * Two segments are one surface if their 1/z differ by at most surface_gap. The two surfaces do not depend on the order in
- * which segments are drawn, except where three or more at one pixel form a chain, each within the tolerance of the next
- * but not the first of the last: where the chain is cut depends on the order. That order is the tile's list, which is
- * always the same.
+ * Two segments are one surface if their 1/z differ by at most surface_gap. The two surfaces do not depend on the order
+ * in which segments are drawn, except where three or more at one pixel form a chain, each within the tolerance of the
+ * next but not the first of the last: where the chain is cut depends on the order. That order is the tile's list, which
+ * is always the same.
  *
- * Sampling: where all texels of a cell are one surface, the photo itself is looked up, so that neither seams
- * between segments nor the soft alpha of their boundaries show. In a split cell the texels of the segment's surface
- * alone are summed, which gives its coverage and premultiplied colour. */
+ * Sampling: where all texels of a cell are one surface, the photo itself is looked up, so that neither seams between
+ * segments nor the soft alpha of their boundaries show. In a split cell the texels of the segment's surface alone are
+ * summed, which gives its coverage and premultiplied colour. */
 #include "common/layers/layer_visibility.h"
 
 #include <immintrin.h>
@@ -72,7 +72,8 @@ enum status drawn_view_prepare(struct drawn_view *dv, const struct layered_depth
 
     if (!st) st = reserve(&dv->sigmas, &dv->sigma_capacity, (size_t)depth->segment_count + 1, sizeof *dv->sigmas, err);
     if (!st)
-        st = reserve(&dv->tile_begin, &dv->tile_capacity, (size_t)tiles_x * (size_t)tiles_y + 2, sizeof *dv->tile_begin, err);
+        st = reserve(&dv->tile_begin, &dv->tile_capacity, (size_t)tiles_x * (size_t)tiles_y + 2, sizeof *dv->tile_begin,
+                     err);
     if (st) return st;
     dv->tiles_x = tiles_x;
     dv->tile_count = tiles_x * tiles_y;
@@ -105,7 +106,8 @@ enum status drawn_view_prepare(struct drawn_view *dv, const struct layered_depth
         const struct drawn_segment *s = &dv->segments[i];
         for (int ty = s->y0 / TILE_HEIGHT; ty <= s->y1 / TILE_HEIGHT; ty++)
             for (int tx = s->x0 / TILE_WIDTH; tx <= s->x1 / TILE_WIDTH; tx++)
-                dv->tile_segments[begins[ty * tiles_x + tx]++] = (uint32_t)i; /* begins[t] ends at tile t + 1's first entry */
+                dv->tile_segments[begins[ty * tiles_x + tx]++] =
+                    (uint32_t)i; /* begins[t] ends at tile t + 1's first entry */
     }
     return ST_OK;
 }

@@ -39,8 +39,8 @@ void drawn_view_release(struct drawn_view *dv);
 #define VISIBLE_NONE UINT32_MAX
 #define VISIBLE_FULL 0x80000000u /* flag: the segment covers the pixel completely, with the photo's colour */
 
-/* The two nearest surfaces in each pixel of a tile, TILE_STRIDE pixels a row. Before drawing, 1/z is 0 in pixels to draw
- * and INFINITY in pixels to skip. */
+/* The two nearest surfaces in each pixel of a tile, TILE_STRIDE pixels a row. Before drawing, 1/z is 0 in pixels to
+ * draw and INFINITY in pixels to skip. */
 struct tile_visibility {
     float inverse_front[TILE_PIXELS], inverse_behind[TILE_PIXELS]; /* 1/z; 0: no surface */
     uint32_t front[TILE_PIXELS], behind[TILE_PIXELS]; /* index into segments, with or without VISIBLE_FULL */

@@ -7,9 +7,9 @@
  *           1/2 (1 + cos(pi (dz - gamma) / (rho - 2 gamma)))  gamma < dz <= rho - gamma
  *           0                                               beyond;     gamma = rho / 10
  *
- * In the thesis rho is the scene's depth range. Here, with a width of k > 0 uncertainties, two depths z_a, z_b of relative
- * uncertainties s_a, s_b have u = sqrt((s_a z_a)^2 + (s_b z_b)^2) and rho = 2 k u: the weight is 1/2 at dz = k u and 0
- * from 1.8 k u on.
+ * In the thesis rho is the scene's depth range. Here, with a width of k > 0 uncertainties, two depths z_a, z_b of
+ * relative uncertainties s_a, s_b have u = sqrt((s_a z_a)^2 + (s_b z_b)^2) and rho = 2 k u: the weight is 1/2 at dz = k
+ * u and 0 from 1.8 k u on.
  *
  * soft_z_blend8 (fast renderer, one sample per view). Colour is weighted by blend x w x alpha and normalised; depth is
  * sum(w p z) / sum(w p), without blending weights. A view that enters or leaves must not make a jump, so a sample of
@@ -21,12 +21,12 @@
  * views vote. The support of a fragment is (for / (for + against))^2. For: the votes of all fragments at its depth, its
  * own included. Against: fragments behind it, by the alpha that they have in excess of what it leaves free (their views
  * look through it); and, by AGAINST_IN_FRONT, fragments in front of it, by the alpha that they have in excess of what
- * its own view has presence. A fragment hides others and counts by its support. Of several fragments in front, only the one
- * that hides most counts, so that at a silhouette the share that the front leaves free stays with what is behind.
+ * its own view has there. A fragment hides others and counts by its support. Of several fragments in front, only the
+ * one that hides most counts, so that at a silhouette the share that the front leaves free stays with what is behind.
  *
  * The fragments of one view are averaged linearly: they share the pixel's area. Colours of different views are averaged
- * as square roots: where views disagree, this mean is close to the perceived one, and a mean of radiances is too bright.
- * The depth is that of the surface of largest weight, never a mean across a depth jump. */
+ * as square roots: where views disagree, this mean is close to the perceived one, and a mean of radiances is too
+ * bright. The depth is that of the surface of largest weight, never a mean across a depth jump. */
 #include "common/layers/soft_z.h"
 
 #include <math.h>
@@ -153,7 +153,7 @@ static void merge_prepare(struct fragment_merge *m, const struct soft_z *s, cons
     find_support(m, s);
     for (int i = 0; i < count; i++)
         m->presence[i] = clamp_one(f[i].blend * m->support[i] / SOFT_Z_FULL_BLEND) *
-                      clamp_one(m->support[i] / FULL_SUPPORT) * (f[i].front_alpha + f[i].rgba[3]);
+                         clamp_one(m->support[i] / FULL_SUPPORT) * (f[i].front_alpha + f[i].rgba[3]);
 }
 
 /* Mean depth of the surface of largest weight, never across a depth jump. */

@@ -86,8 +86,8 @@ struct soft_z_samples8 {
 
 #define SOFT_Z_MAX_VIEWS 19 /* views */
 
-/* Blends the views' samples of eight pixels. rgba gets alpha 1, or is 0 with z 0 where presence is no sample. Inlined: with
- * a constant count all values stay in registers. */
+/* Blends the views' samples of eight pixels. rgba gets alpha 1, or is 0 with z 0 where presence is no sample. Inlined:
+ * with a constant count all values stay in registers. */
 static inline __attribute__((always_inline)) void
 soft_z_blend8(const struct soft_z *s, const struct soft_z_samples8 *views, int count, float (*rgba)[4], float *z)
 {
@@ -106,7 +106,8 @@ soft_z_blend8(const struct soft_z *s, const struct soft_z_samples8 *views, int c
     for (int k = 0; k < count; k++)
         for (int c = 0; c < count; c++)
             if (c != k)
-                visible[k] = soft_z_behind8(s, visible[k], depth[k], uncertainty[k], depth[c], uncertainty[c], presence[c]);
+                visible[k] =
+                    soft_z_behind8(s, visible[k], depth[k], uncertainty[k], depth[c], uncertainty[c], presence[c]);
     for (int k = 0; k < count; k++) {
         const __m256 part = _mm256_mul_ps(visible[k], presence[k]);
         z_sum = _mm256_add_ps(z_sum, _mm256_mul_ps(part, depth[k]));
@@ -134,8 +135,8 @@ struct soft_z_fragment {
 
 #define SOFT_Z_MAX_FRAGMENTS 40 /* fragments */
 
-/* Merges the fragments of all views in a pixel, 1 <= count <= SOFT_Z_MAX_FRAGMENTS. The fragments of a view are adjacent,
- * front to back. rgba gets alpha 1; *z is the depth of the dominant surface. See soft_z.c. */
+/* Merges the fragments of all views in a pixel, 1 <= count <= SOFT_Z_MAX_FRAGMENTS. The fragments of a view are
+ * adjacent, front to back. rgba gets alpha 1; *z is the depth of the dominant surface. See soft_z.c. */
 void soft_z_merge(const struct soft_z *s, const struct soft_z_fragment *fragments, int count, float rgba[4], float *z);
 
 #endif
