@@ -19,9 +19,9 @@
  * Depth goes along with each patch: the mean of the usable pixels around by the weights of the soft z reversed, the
  * farthest counting 1, over the squared distance in pixels.
  *
- * So that even ground is not paved with the one patch that is smoothest, a pixel that was copied n times makes the patch
- * around it dearer by n times half of what noise alone makes two patches differ, the noise being the mean step between
- * neighbours among what may be copied.
+ * So that even ground is not paved with the one patch that is smoothest, a pixel that was copied n times makes the
+ * patch around it dearer by n times half of what noise alone makes two patches differ, the noise being the mean step
+ * between neighbours among what may be copied.
  *
  * Where the window has no whole patch of usable pixels (deep in a wide hole) it is laid around the place that a pixel
  * of the target was itself copied from; failing that it is doubled until the frame is searched; where there is no patch

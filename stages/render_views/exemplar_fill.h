@@ -41,8 +41,9 @@ struct exemplar_stats {
 };
 
 /* Fills rgba and z where alpha is 0 and sets unfilled_fraction; nothing stays empty unless all is (or the diameter is
- * 0: then nothing is filled). Holes that are narrower than `diameter` throughout are filled by common/layers/hole_fill.h. An
- * even fill_patch counts as the next odd one. stats may be NULL. Same bits for any number of threads. */
+ * 0: then nothing is filled). Holes that are narrower than `diameter` throughout are filled by
+ * common/layers/hole_fill.h. An even fill_patch counts as the next odd one. stats may be NULL. Same bits for any number
+ * of threads. */
 enum status exemplar_fill(struct rendered_frame *frame, const struct exemplar_depth *depth, int diameter,
                           const struct exemplar_params *params, struct exemplar_stats *stats, struct err *err);
 

@@ -66,8 +66,8 @@ enum status fill_path_frame(struct fill_path *fill, int frame, const struct view
 void fill_path_release(struct fill_path *fill);
 
 /* How much filled pixels change from a frame to the next: every filled pixel of a is taken by its depth into b, where
- * the four pixels around must be filled too; difference is the sum over those pixels of the mean over R G B of |sqrt a -
- * sqrt b|, b interpolated linearly. Adds to both; flicker is difference / pixels. */
+ * the four pixels around must be filled too; difference is the sum over those pixels of the mean over R G B of |sqrt a
+ * - sqrt b|, b interpolated linearly. Adds to both; flicker is difference / pixels. */
 void fill_flicker_add(double *difference, double *pixels, const struct rendered_frame *a, const struct view *camera_a,
                       const struct rendered_frame *b, const struct view *camera_b);
 
