@@ -86,7 +86,7 @@ struct soft_z_samples8 {
 
 #define SOFT_Z_MAX_VIEWS 19 /* views */
 
-/* Blends the views' samples of eight pixels. rgba gets alpha 1, or is 0 with z 0 where presence is no sample. Inlined:
+/* Blends the views' samples of eight pixels. rgba gets alpha 1, or is 0 with z 0 where there is no sample. Inlined:
  * with a constant count all values stay in registers. */
 static inline __attribute__((always_inline)) void
 soft_z_blend8(const struct soft_z *s, const struct soft_z_samples8 *views, int count, float (*rgba)[4], float *z)
