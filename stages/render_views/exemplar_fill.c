@@ -35,6 +35,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/base/array.h"
 #include "common/base/parallel.h"
 #include "common/base/sort.h"
 #include "common/layers/hole_fill.h"
@@ -568,18 +569,13 @@ static int compare_holes(const void *a, const void *b) /* largest first, for loa
 static enum status find_holes(struct fill_job *j, struct err *err)
 {
     const size_t pixels = (size_t)j->w * (size_t)j->h;
-    size_t listed = 0, room = 0;
+    size_t listed = 0;
 
     j->hole_count = 0;
     for (size_t p = 0; p < pixels; p++) j->label[p] = j->frame->rgba[4 * p + 3] > 0 ? KNOWN : UINT32_MAX;
     for (size_t p = 0; p < pixels; p++) {
         if (j->label[p] != UINT32_MAX) continue;
-        if (j->hole_count == room) {
-            room = room ? 2 * room : 64;
-            struct frame_hole *holes = realloc(j->holes, room * sizeof *holes);
-            if (!holes) return err_nomem(err, "the holes of a frame", room * sizeof *holes);
-            j->holes = holes;
-        }
+        if (array_append(&j->holes, j->hole_count, sizeof *j->holes, "holes of a frame", err)) return err->status;
         struct frame_hole *hole = &j->holes[j->hole_count++];
         *hole = (struct frame_hole){listed, 0, j->w, j->h, 0, 0};
         j->label[p] = 1;

@@ -266,35 +266,3 @@ enum status fill_path_frame(struct fill_path *fill, int frame, const struct view
     if (!st) st = exemplar_fill(f, &o->depth, o->fill_diameter, &o->exemplar, &fill->stats, err);
     return st;
 }
-
-/* ---------------------------------------------------------------------------------------------------- flicker */
-
-void fill_flicker_add(double *difference, double *pixels, const struct rendered_frame *a, const struct view *camera_a,
-                      const struct rendered_frame *b, const struct view *camera_b)
-{
-    const size_t wa = (size_t)a->width, wb = (size_t)b->width;
-
-    for (size_t p = 0; p < wa * (size_t)a->height; p++) {
-        double u, v;
-        if (!a->hole[p] || !(a->rgba[4 * p + 3] > 0) || !(a->z[p] > 0)) continue;
-        const struct vec3 at =
-            view_unproject(camera_a, (double)(p % wa) + 0.5, (double)(p / wa) + 0.5, (double)a->z[p]);
-        if (!(view_project(camera_b, at, &u, &v) > 0)) continue;
-        if (!(u >= 0.5 && v >= 0.5 && u < b->width - 0.5 && v < b->height - 0.5)) continue;
-        const size_t q = (size_t)(v - 0.5) * wb + (size_t)(u - 0.5);
-        const size_t around[4] = {q, q + 1, q + wb, q + wb + 1};
-        const double fx = u - 0.5 - floor(u - 0.5), fy = v - 0.5 - floor(v - 0.5);
-        const double weights[4] = {(1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy};
-        double sum = 0;
-        bool filled = true; /* skips pixels that a near object covers in b */
-        for (int k = 0; k < 4; k++) filled &= b->hole[around[k]] && b->rgba[4 * around[k] + 3] > 0;
-        if (!filled) continue;
-        for (size_t c = 0; c < 3; c++) {
-            double other = 0;
-            for (int k = 0; k < 4; k++) other += weights[k] * sqrt(fmax(0, (double)b->rgba[4 * around[k] + c]));
-            sum += fabs(sqrt(fmax(0, (double)a->rgba[4 * p + c])) - other) / 3;
-        }
-        *difference += sum;
-        *pixels += 1;
-    }
-}

@@ -58,10 +58,4 @@ enum status fill_path_frame(struct fill_path *fill, int frame, const struct view
                             struct err *err);
 void fill_path_release(struct fill_path *fill);
 
-/* Measures the flicker of filled pixels between frames a and b: it is *difference / *pixels. Reprojects each filled
- * pixel of a into b, where the four pixels around must be filled, too; adds the mean over R, G, B of |sqrt a - sqrt b|
- * to *difference, with b interpolated bilinearly, and 1 to *pixels. */
-void fill_flicker_add(double *difference, double *pixels, const struct rendered_frame *a, const struct view *camera_a,
-                      const struct rendered_frame *b, const struct view *camera_b);
-
 #endif

@@ -72,9 +72,9 @@ static inline double made_right(const struct flow *f, const struct made_pair *pa
 }
 
 /* Two cameras side by side: what is nearer is farther to the left in the second picture. */
-static inline struct geometry made_side_by_side(void)
+static inline struct pair_geometry made_side_by_side(void)
 {
-    struct geometry g = {.kind = GEOMETRY_FUNDAMENTAL, .focal = 200, .width = MADE_WIDTH, .height = MADE_HEIGHT};
+    struct pair_geometry g = {.kind = EPIPOLAR_FUNDAMENTAL, .focal = 200, .width = MADE_WIDTH, .height = MADE_HEIGHT};
     g.fundamental[5] = -1;
     g.fundamental[7] = 1;
     for (int i = 0; i < 3; i++) g.rotation[4 * i] = 1;

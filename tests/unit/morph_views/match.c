@@ -17,7 +17,7 @@ static void release(struct flows *f)
     }
 }
 
-static void match(struct flows *f, const struct geometry *g, const struct morph_params *params)
+static void match(struct flows *f, const struct pair_geometry *g, const struct morph_params *params)
 {
     struct err err = ERR_INIT;
     for (int i = 0; i < 2; i++) assert_ok(match_image(&f->looks[i], &f->linear[i], &err), err);
@@ -37,7 +37,7 @@ static void make(struct flows *f, const struct made_pair *pair)
 }
 
 /* The flows of a pair as it was made, by the parameters' defaults. */
-static void make_and_match(struct flows *f, const struct made_pair *pair, const struct geometry *g)
+static void make_and_match(struct flows *f, const struct made_pair *pair, const struct pair_geometry *g)
 {
     const struct morph_params params = MORPH_PARAMS_DEFAULT;
     make(f, pair);
@@ -66,7 +66,7 @@ static void assert_right(const struct flows *f, const struct made_pair *pair, do
 static void a_still_scene_is_matched_to_parts_of_a_pixel(void **state)
 {
     const struct made_pair pair = {{-4.4, 0}, {-11.7, 0}, true, 1};
-    const struct geometry g = made_side_by_side();
+    const struct pair_geometry g = made_side_by_side();
     struct flows f;
     (void)state;
     make_and_match(&f, &pair, &g);
@@ -78,7 +78,7 @@ static void what_moved_off_its_line_is_followed_by_the_soft_term_and_not_by_a_ha
 {
     const struct made_pair pair = {{-5, 0}, {-11, 9}, true, 1};
     struct morph_params params = MORPH_PARAMS_DEFAULT;
-    const struct geometry g = made_side_by_side();
+    const struct pair_geometry g = made_side_by_side();
     struct flows f;
     (void)state;
     make_and_match(&f, &pair, &g);
@@ -95,7 +95,7 @@ static void what_moved_off_its_line_is_followed_by_the_soft_term_and_not_by_a_ha
 static void what_is_hidden_goes_with_the_far_side(void **state)
 {
     const struct made_pair pair = {{-4, 0}, {-14, 0}, true, 1};
-    const struct geometry g = made_side_by_side();
+    const struct pair_geometry g = made_side_by_side();
     struct flows f;
     int far = 0, count = 0;
     (void)state;
@@ -109,7 +109,7 @@ static void what_is_hidden_goes_with_the_far_side(void **state)
 static void identical_photos_do_not_flow(void **state)
 {
     const struct made_pair pair = {{0, 0}, {0, 0}, false, 1};
-    const struct geometry g = {.kind = GEOMETRY_NONE};
+    const struct pair_geometry g = {.kind = EPIPOLAR_NONE};
     struct flows f;
     (void)state;
     make_and_match(&f, &pair, &g);
@@ -121,7 +121,7 @@ static void a_textureless_pair_does_not_flow(void **state)
 {
     const struct made_pair pair = {{0, 0}, {0, 0}, false, 1};
     const struct morph_params params = MORPH_PARAMS_DEFAULT;
-    const struct geometry g = {.kind = GEOMETRY_NONE};
+    const struct pair_geometry g = {.kind = EPIPOLAR_NONE};
     struct flows f;
     (void)state;
     make(&f, &pair);
@@ -135,7 +135,7 @@ static void a_textureless_pair_does_not_flow(void **state)
 static void black_pictures_are_no_trouble(void **state)
 {
     const struct made_pair pair = {{0, 0}, {0, 0}, false, 0}; /* the second one is black */
-    const struct geometry g = {.kind = GEOMETRY_NONE};
+    const struct pair_geometry g = {.kind = EPIPOLAR_NONE};
     struct flows f;
     (void)state;
     make_and_match(&f, &pair, &g);
@@ -145,7 +145,7 @@ static void black_pictures_are_no_trouble(void **state)
 static void another_exposure_matches_as_well_and_is_measured(void **state)
 {
     const struct made_pair pair = {{-6, 0}, {-13, 0}, true, 0.4};
-    const struct geometry g = made_side_by_side();
+    const struct pair_geometry g = made_side_by_side();
     struct flows f;
     (void)state;
     make_and_match(&f, &pair, &g);
@@ -169,7 +169,7 @@ static void a_camera_that_only_turned_is_matched_without_lines(void **state)
     const struct camera lens = {
         CAMERA_PINHOLE, MADE_WIDTH, MADE_HEIGHT, {focal, focal, MADE_WIDTH / 2., MADE_HEIGHT / 2.}};
     const struct mat3 turn = {{{cos(angle), 0, -sin(angle)}, {0, 1, 0}, {sin(angle), 0, cos(angle)}}};
-    const struct geometry g = {.kind = GEOMETRY_POSED,
+    const struct pair_geometry g = {.kind = EPIPOLAR_POSED,
                                .width = MADE_WIDTH,
                                .height = MADE_HEIGHT,
                                .photos = {{lens, unturned, {0, 0, 0}, 1, 10}, {lens, turn, {0, 0, 0}, 1, 10}},
@@ -178,7 +178,7 @@ static void a_camera_that_only_turned_is_matched_without_lines(void **state)
     struct flows f;
     int right = 0, count = 0;
     (void)state;
-    assert_false(geometry_line(&g, 0, 80, 60, NULL, &line));
+    assert_false(epipolar_line_at(&g, 0, 80, 60, NULL, &line));
     make(&f, &pair);
     for (int y = 0; y < MADE_HEIGHT; y++)
         for (int x = 0; x < MADE_WIDTH; x++) {
@@ -205,16 +205,16 @@ static void lines_of_cameras_and_of_their_fundamental_matrix_agree(void **state)
     const double focal = 200;
     const struct camera lens = {
         CAMERA_PINHOLE, MADE_WIDTH, MADE_HEIGHT, {focal, focal, MADE_WIDTH / 2., MADE_HEIGHT / 2.}};
-    const struct geometry g = {.kind = GEOMETRY_POSED,
+    const struct pair_geometry g = {.kind = EPIPOLAR_POSED,
                                .photos = {{lens, unturned, {0, 0, 0}, 2, 50}, {lens, unturned, {-0.2, 0, 0}, 2, 50}},
                                .films = {&same_pixels, &same_pixels}};
-    const struct geometry f = made_side_by_side();
+    const struct pair_geometry f = made_side_by_side();
     (void)state;
     for (int from = 0; from < 2; from++)
         for (int k = 0; k < 5; k++) {
             struct epipolar_line a, b;
-            assert_true(geometry_line(&g, from, 20 + 25 * k, 11 + 20 * k, NULL, &a));
-            assert_true(geometry_line(&f, from, 20 + 25 * k, 11 + 20 * k, NULL, &b));
+            assert_true(epipolar_line_at(&g, from, 20 + 25 * k, 11 + 20 * k, NULL, &a));
+            assert_true(epipolar_line_at(&f, from, 20 + 25 * k, 11 + 20 * k, NULL, &b));
             assert_true(fabsf(a.dx - b.dx) < 1e-4f && fabsf(a.dy - b.dy) < 1e-4f && fabsf(a.c - b.c) < 1e-3f);
             assert_true(a.dx == (from ? 1 : -1)); /* nearer is left in the second picture, right in the first */
         }
@@ -224,7 +224,7 @@ static void through_a_lens_that_distorts_a_line_is_the_curves_tangent(void **sta
 {
     const struct camera lens = {
         CAMERA_SIMPLE_RADIAL, MADE_WIDTH, MADE_HEIGHT, {150, MADE_WIDTH / 2., MADE_HEIGHT / 2., -0.3}};
-    const struct geometry g = {.kind = GEOMETRY_POSED,
+    const struct pair_geometry g = {.kind = EPIPOLAR_POSED,
                                .photos = {{lens, unturned, {0, 0, 0}, 1, 100}, {lens, unturned, {-0.5, 0, 0}, 1, 100}},
                                .films = {&same_pixels, &same_pixels}};
     struct vec3 ray;
@@ -235,9 +235,9 @@ static void through_a_lens_that_distorts_a_line_is_the_curves_tangent(void **sta
         struct vec3 p = vec3_scale(ray, z / ray.z);
         struct epipolar_line line;
         assert_true(camera_project(&lens, vec3_add(p, vec3_make(-0.5, 0, 0)), &at[0], &at[1]));
-        assert_true(geometry_line(&g, 0, 130, 100, at, &line));
+        assert_true(epipolar_line_at(&g, 0, 130, 100, at, &line));
         worst = fmax(worst, fabs(line.dx * at[1] - line.dy * at[0] + line.c));
-        assert_true(geometry_line(&g, 0, 130, 100, NULL, &line));
+        assert_true(epipolar_line_at(&g, 0, 130, 100, NULL, &line));
         chord = fmax(chord, fabs(line.dx * at[1] - line.dy * at[0] + line.c));
     }
     assert_true(worst < 0.05);
