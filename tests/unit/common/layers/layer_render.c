@@ -739,7 +739,7 @@ static void a_silhouette_between_two_views_is_a_clean_edge(void **state)
     rendered_frame_release(&f);
 }
 
-/* --------------------------------------------------------------------------------------------------- invalid colours */
+/* -------------------------------------------------------------------------------------------------- invalid colours */
 
 static void infinite_colours_do_not_reach_a_frame(void **state)
 {

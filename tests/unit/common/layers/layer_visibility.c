@@ -177,10 +177,10 @@ static void check_two_nearest(double slope)
             draw(&s, &novel);
             for (int y = 0; y < H; y++) {
                 const size_t row = (size_t)y * TILE_STRIDE;
-                assert_memory_equal(s.visibility.inverse_front + row, first.seen.inverse_front + row,
+                assert_memory_equal(s.visibility.inverse_front + row, first.visibility.inverse_front + row,
                                     W * sizeof(float));
-                assert_memory_equal(s.front.rgba + row, first.shown.rgba + row, W * sizeof s.front.rgba[0]);
-                assert_memory_equal(s.front.z + row, first.shown.z + row, W * sizeof(float));
+                assert_memory_equal(s.front.rgba + row, first.front.rgba + row, W * sizeof s.front.rgba[0]);
+                assert_memory_equal(s.front.z + row, first.front.z + row, W * sizeof(float));
                 assert_memory_equal(s.behind.alpha + row, first.behind.alpha + row, W * sizeof(float));
             }
             strips_release(&s);

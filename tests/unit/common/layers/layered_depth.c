@@ -331,7 +331,7 @@ static void a_missing_file_of_the_pair_is_an_error(void **state)
     assert_int_equal(unlink(scratch_path("half.txt")), 0);
     assert_refused(scratch_path("half.exr"), ST_IO, "half.txt");
     assert_refused(scratch_path("half.txt"), ST_USAGE, "half.txt: the name of a depth map must end in .exr");
-    assert_refused(".exr", ST_USAGE, ".exr: a depth map is a file");
+    assert_refused(".exr", ST_USAGE, ".exr: the name of a depth map must end");
     assert_int_equal(layered_depth_write(&d, &view, scratch_path("half.png"), NULL, &err), ST_USAGE);
     assert_err(err, ST_USAGE, "half.png: the name of a depth map must end in .exr");
     layered_depth_release(&d);
@@ -344,7 +344,7 @@ static void lists_of_another_size_are_rejected(void **state)
     (void)state;
     assert_ok(layered_depth_write(&d, &view, scratch_path("size.exr"), NULL, &err), err);
     scratch_write("size.txt", "remodel-segments 1\nsize 37 21\nsegments 0\n");
-    assert_refused(scratch_path("size.exr"), ST_DATA, "size.exr has 21 x 37 pixels but ");
+    assert_refused(scratch_path("size.exr"), ST_DATA, "size.exr has 21 x 37 pixels, but ");
     assert_refused(scratch_path("size.exr"), ST_DATA, "size.txt says 37 x 21; make the depth map again.");
     /* and with fewer segments than the picture's ids */
     scratch_write("size.txt", "remodel-segments 1\nsize 21 37\nsegments 1\n1 2 0.5 0 0.25 0.01 1\n");
@@ -516,7 +516,7 @@ static void missing_or_non_integer_ids_are_rejected(void **state)
     }
 }
 
-/* ------------------------------------------------------------------------------------------------------ failed writes */
+/* ----------------------------------------------------------------------------------------------------- failed writes */
 
 static void a_failed_write_keeps_the_old_files(void **state)
 {
