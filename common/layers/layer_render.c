@@ -224,15 +224,15 @@ static int patch_slot(const struct patch *p, int view)
 
 static float corner_sum(const float weight[4]) { return weight[0] + weight[1] + weight[2] + weight[3]; }
 
-/* Drops the view of least weight. */
+/* Drops the view of lowest weight. */
 static void patch_drop(struct patch *p)
 {
-    int least = 0;
+    int weakest = 0;
     for (int k = 1; k < p->count; k++)
-        if (corner_sum(p->weight[k]) < corner_sum(p->weight[least])) least = k;
+        if (corner_sum(p->weight[k]) < corner_sum(p->weight[weakest])) weakest = k;
     p->count--;
-    memmove(&p->view[least], &p->view[least + 1], (size_t)(p->count - least) * sizeof p->view[0]);
-    memmove(&p->weight[least], &p->weight[least + 1], (size_t)(p->count - least) * sizeof p->weight[0]);
+    memmove(&p->view[weakest], &p->view[weakest + 1], (size_t)(p->count - weakest) * sizeof p->view[0]);
+    memmove(&p->weight[weakest], &p->weight[weakest + 1], (size_t)(p->count - weakest) * sizeof p->weight[0]);
 }
 
 static void patch_init(struct patch *p, const struct frame_job *job, int x, int y)

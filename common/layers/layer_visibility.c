@@ -5,10 +5,10 @@
  * pixel, however many segments were drawn. Segments need no sorting, and eight pixels are drawn at once. [Colburn 2014,
  * 3.6.1] draws colour, segments sorted by the depth of the centremost camera.
  *
- * Two segments are one surface if their 1/z differ by at most surface_gap. The two surfaces do not depend on the order
- * in which segments are drawn, except where three or more at one pixel form a chain, each within the tolerance of the
- * next but not the first of the last: where the chain is cut depends on the order. That order is the tile's list, which
- * is always the same.
+ * Two segments are one surface if their 1/z differ by at most surface_gap, relatively. The two surfaces do not depend
+ * on the order in which segments are drawn, except where three or more at one pixel form a chain, each within the
+ * tolerance of the next but not the first of the last: where the chain is cut depends on the order. That order is the
+ * tile's list, which is always the same.
  *
  * Sampling: where all texels of a cell are one surface, the photo itself is looked up, so that neither seams between
  * segments nor the soft alpha of their boundaries show. In a split cell the texels of the segment's surface alone are

@@ -8,8 +8,8 @@
  *           0                                               beyond;     gamma = rho / 10
  *
  * In the thesis rho is the scene's depth range. Here, with a width of k > 0 uncertainties, two depths z_a, z_b of
- * relative uncertainties s_a, s_b have u = sqrt((s_a z_a)^2 + (s_b z_b)^2) and rho = 2 k u: the weight is 1/2 at dz = k
- * u and 0 from 1.8 k u on.
+ * relative uncertainties s_a, s_b have u = sqrt((s_a z_a)^2 + (s_b z_b)^2) and rho = 2 k u: the weight is 1/2 at
+ * dz = k u and 0 from 1.8 k u on.
  *
  * soft_z_blend8 (fast renderer, one sample per view). Colour is weighted by blend x w x alpha and normalised; depth is
  * sum(w p z) / sum(w p), without blending weights. A view that enters or leaves must not make a jump, so a sample of

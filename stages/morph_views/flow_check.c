@@ -6,8 +6,8 @@
  * second farthest gives the flow [Hirschmueller 2008], or, where nearness is unknown, the one of most similar colour.
  * Where no consistent pixel is met the flow stays. A weighted median makes the choices of neighbouring pixels agree.
  *
- * Wide areas without a match have no far side. There the flow is relaxed towards a smooth one, the more the farther the
- * next consistent pixel is, so that the morph dissolves and does not break into pieces; this is not in the source. */
+ * Wide areas without a match have no far side. There the flow is smoothed, more strongly the farther the next
+ * consistent pixel is, so that the morph dissolves and does not break into pieces; this is not in the source. */
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>

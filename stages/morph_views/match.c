@@ -436,7 +436,7 @@ static void pass_all(struct flow_search *s)
         }
 }
 
-/* The KEPT labels of least sum of each pixel, best first. */
+/* The KEPT labels of lowest sum of each pixel, best first. */
 static void keep_rows(void *ctx, size_t begin, size_t end, int thread)
 {
     const struct flow_search *s = ctx;
@@ -466,7 +466,7 @@ static enum status sort_features(struct flow_search *s, const struct feature_mat
     size_t cells = (size_t)s->cells_wide * (size_t)((s->height + CELL - 1) / CELL);
     s->features = calloc(cells * CELL_FEATURES, sizeof *s->features);
     s->feature_counts = calloc(cells, 1);
-    if (!s->features || !s->feature_counts) return err_nomem(err, "features by place", cells * 16);
+    if (!s->features || !s->feature_counts) return err_nomem(err, "the grid of features", cells * 16);
     for (int i = 0; i < count; i++) {
         const struct feature_match *m = &matches[i];
         double x = (s->from_idx ? m->x2 : m->x1) / s->scale, y = (s->from_idx ? m->y2 : m->y1) / s->scale;

@@ -4,16 +4,16 @@
  * offset of the centre in the camera's x and y, with the principal point moved by fx a / focus, the point is at
  *   u' = fx (X - a) / Z + cx + fx a / focus = u + fx a (1 / focus - 1 / Z) = u + fx a (Z - focus) / (Z focus)
  * and likewise v with fy and b. At Z = focus this is exactly u, so frames are averaged without warping them; elsewhere
- * the lens's disk, |(a, b)| <= aperture / 2, becomes the circle of confusion, of diameter aperture fx |Z - focus| / (Z
- * focus) px. The surface in focus is a plane parallel to the picture.
+ * the lens's disk, |(a, b)| <= aperture / 2, becomes the circle of confusion, of diameter
+ * aperture fx |Z - focus| / (Z focus) px. The surface in focus is a plane parallel to the picture.
  *
  * Lens samples: the first two dimensions of the Sobol sequence [Sobol 1967] with Owen scrambling [Owen 1995], mapped to
  * the disk with equal areas [Shirley 1997]. All frames use the same samples, so that the result does not flicker. On
  * smooth functions of the lens the error of their mean, at 32 and more samples, is half that of the R2 sequence, and
  * the difference between halves predicts it better.
  *
- * The thesis jitters views around the lens's centre, a fixed number of them. Here the number adapts: samples are added
- * in batches, from 8 on, each of which doubles their number. With A and B the means of the n_A samples before the last
+ * The thesis jitters views around the lens's centre, and leaves their number open. Here it adapts: samples are added in
+ * batches, from 8 on, each of which doubles their number. With A and B the means of the n_A samples before the last
  * batch and of the n_B samples in it, the error of the whole mean is about |A - B| sqrt(n_A n_B) / (n_A + n_B). Its
  * root mean square is taken over each 32x32 tile, on square roots of colours clipped at white; the frame's error is the
  * 98th percentile of the tiles, so that a small blurred part counts in a picture that is mostly sharp. */

@@ -1,5 +1,5 @@
-/* exemplar_fill.c - exemplar-based inpainting [Criminisi 2004], restricted to the far side of a hole [Colburn 2014,
- * 3.6.2].
+/* exemplar_fill.c - exemplar-based inpainting [Criminisi 2004], restricted to the far side of a hole
+ * [Colburn 2014, 3.6.2].
  *
  * The algorithm fills a hole patch by patch. The fill front is the set of hole pixels that touch usable pixels. The
  * next patch is centred at the front pixel of greatest priority
