@@ -3,8 +3,8 @@
  * Minimises, by linearised least squares in a small change of the flow,
  *   data term        difference of grey and of its gradients (nearly independent of exposure) between the warped other
  *                    picture and this one, robustly reweighted and summed over 3 x 3 pixels
- *   smoothness term  difference of neighbours' flows, with less weight at edges of the picture, and hardly any where the
- *                    whole-pixel flow jumps
+ *   smoothness term  difference of neighbours' flows, with less weight at edges of the picture, and hardly any where
+ *                    the whole-pixel flow jumps
  *   epipolar term    distance from the epipolar line, where the flow is near it
  * by red-black Gauss-Seidel sweeps. Unlike the sources, the refined flow stays within FARTHEST px of the whole-pixel
  * flow in each coordinate, so one resolution suffices. */

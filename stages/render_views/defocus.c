@@ -13,8 +13,8 @@
  *   so sharp or near surfaces do not bleed into a blurred background. Near pixels have no weight: behind them the back
  *   is interpolated from their surroundings.
  *
- * The look-up is trilinear, bottom up. Upsampling is bilinear (3/4, 1/4 on each axis) and downsampling its transpose
- * (1 3 3 1) / 8, so that the blur of a moving point moves evenly. The kernel of level l has the variance (4^l - 1) / 2, a
+ * The look-up is trilinear, bottom up. Upsampling is bilinear (3/4, 1/4 on each axis) and downsampling its transpose (1
+ * 3 3 1) / 8, so that the blur of a moving point moves evenly. The kernel of level l has the variance (4^l - 1) / 2, a
  * disk c^2 / 16, hence l = log4(1 + c^2 / 8). Between two levels lies the finer one smoothed by (1 2 1) / 4, of twice
  * the variance; a mixture of neighbours among these has the required variance.
  *

@@ -1,5 +1,5 @@
-/* fuzz_layered_depth.c - reading of layered depth maps: any list and picture give an error message, or a depth map whose
- * ids index its segments and which can be written and read back.
+/* fuzz_layered_depth.c - reading of layered depth maps: any list and picture give an error message, or a depth map
+ * whose ids index its segments and which can be written and read back.
  *
  * The input is the list, a line "%%", and the picture. Without this line, an input that begins like an OpenEXR file is
  * the picture, and the list gets three segments and its size; otherwise it is the list of a valid picture of 4 x 3. */

@@ -516,7 +516,7 @@ static void missing_or_non_integer_ids_are_rejected(void **state)
     }
 }
 
-/* ----------------------------------------------------------------------------------------------------- failed writes */
+/* ---------------------------------------------------------------------------------------------------- failed writes */
 
 static void a_failed_write_keeps_the_old_files(void **state)
 {
