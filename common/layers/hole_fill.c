@@ -1,4 +1,20 @@
-/* hole_fill.c - see hole_fill.h. */
+/* hole_fill.c - hole filling from the far side.
+ *
+ * A hole opens where parallax separates a near surface from a farther one, so the farther one belongs there
+ * [Colburn 2014, 3.6.1]. Every mean below is therefore weighted by a reversed soft z-buffer: of the known items in a
+ * neighbourhood, the farthest has weight 1 and the others soft_z_weight(z_far - z).
+ *
+ * Narrow holes are those in which no diameter x diameter square of hole pixels contains the pixel: what a morphological
+ * opening of the hole mask removes. Such a pixel gets the weighted mean of the known pixels in its 7x7 neighbourhood.
+ * Passes are repeated on their own results until the far side has crossed the hole.
+ *
+ * Wide holes are filled by a pull-push pyramid [Gortler 1996]. Pull: a texel is the weighted mean of its known children
+ * (2x2). Push: an unknown texel is interpolated from the four nearest texels of the next coarser level, bilinearly and
+ * with the same preference for the far side. Texels are computed on demand, so the cost depends on the holes, not on
+ * the frame.
+ *
+ * The thesis fills holes narrower than 6 px in one pass and leaves wider ones to the offline renderer; the repeated
+ * passes, the opening and the pyramid are additions. Picture borders need no special case. */
 #include "common/layers/hole_fill.h"
 
 #include <stdlib.h>
@@ -14,12 +30,13 @@ struct color_z {
     float rgb[3], z; /* z 0: unknown */
 };
 
-struct far_side {
+struct far_side { /* the reversed soft z-buffer */
     const struct soft_z *soft;
-    float sigma;
+    float sigma; /* relative uncertainty of all depths */
 };
 
-/* Weighted mean that prefers the far ones; weights as given, 0 leaves one out. False if there is nothing. */
+/* Mean of the items by weights[i] times the reversed soft z weight. Weight 0 leaves an item out. False: no known
+ * item. */
 static bool far_mean(const struct far_side *far, const struct color_z *items, const float *weights, int count,
                      struct color_z *mean)
 {
@@ -58,16 +75,16 @@ static void pixel_set(struct rendered_frame *f, size_t p, const struct color_z *
 
 /* ---------------------------------------------------------------------------------------------- narrow holes */
 
-struct mask { /* bytes, a flag a pixel */
+struct hole_mask {
     const struct rendered_frame *frame;
-    uint8_t *flags, *spare; /* w * h */
-    uint32_t *counts;       /* a row: flags of empty pixels */
+    uint8_t *flags, *spare; /* w * h; 1: hole */
+    uint32_t *counts;       /* hole pixels of each row */
     int diameter;
 };
 
 static void mask_rows(void *ctx, size_t begin, size_t end, int thread)
 {
-    const struct mask *m = ctx;
+    const struct hole_mask *m = ctx;
     const size_t w = (size_t)m->frame->width;
     (void)thread;
     for (size_t y = begin; y < end; y++) {
@@ -79,17 +96,17 @@ static void mask_rows(void *ctx, size_t begin, size_t end, int thread)
     }
 }
 
-/* to[x] of `count` bytes: whether all of from[x .. x + length) are set. */
-static void runs_of(uint8_t *to, const uint8_t *from, size_t count, size_t length)
+/* to[x], x < count: 1 if all of from[x .. x + length) are set. */
+static void find_runs(uint8_t *to, const uint8_t *from, size_t count, size_t length)
 {
     memcpy(to, from, count);
     for (size_t k = 1; k < length; k++)
         for (size_t x = 0; x < count; x++) to[x] &= from[x + k];
 }
 
-/* Leaves those flags alone that a diameter x diameter square of flags holds: an opening, by rows and columns. A row
- * without flags is passed over. */
-static void keep_wide(struct mask *m)
+/* Morphological opening by a diameter x diameter square, separable: clears the flags that no such square of flags
+ * contains. Rows without flags are skipped. */
+static void keep_wide(struct hole_mask *m)
 {
     const size_t w = (size_t)m->frame->width, h = (size_t)m->frame->height, d = (size_t)m->diameter;
 
@@ -98,16 +115,16 @@ static void keep_wide(struct mask *m)
         memset(m->flags, 0, w * h);
         return;
     }
-    for (size_t y = 0; y < h; y++) /* spare: where a run of d begins */
-        if (m->counts[y] >= d) runs_of(m->spare + y * w, m->flags + y * w, w - d + 1, d);
-    for (size_t y = 0; y + d <= h; y++) /* and d rows have one: where a square begins */
+    for (size_t y = 0; y < h; y++) /* spare: a run of d begins here */
+        if (m->counts[y] >= d) find_runs(m->spare + y * w, m->flags + y * w, w - d + 1, d);
+    for (size_t y = 0; y + d <= h; y++) /* erosion: d such runs below each other, a square begins here */
         for (size_t k = 1; m->counts[y] && k < d; k++)
             for (size_t x = 0; x < w; x++) m->spare[y * w + x] &= m->spare[(y + k) * w + x];
     for (size_t y = h - d + 1; y < h; y++) memset(m->spare + y * w, 0, w);
-    for (size_t y = 0; y < h; y++) { /* the squares' first rows, in full width */
+    for (size_t y = 0; y < h; y++) { /* dilation along x: the first rows of the squares */
         if (!m->counts[y]) continue;
         uint8_t *row = m->spare + y * w;
-        for (size_t x = w; x-- > 0;) { /* from the right: what begins at x - k covers x */
+        for (size_t x = w; x-- > 0;) { /* from the right, in place: a square that begins at x - k covers x */
             uint8_t any = 0;
             for (size_t k = 0; k < d && k <= x; k++) any |= row[x - k];
             row[x] = any;
@@ -124,7 +141,7 @@ enum status hole_narrow_pixels(uint32_t **list, size_t *count, size_t *empty, co
                                int diameter, struct err *err)
 {
     const size_t w = (size_t)f->width, h = (size_t)f->height;
-    struct mask m = {f, malloc(w * h), malloc(w * h), malloc((h + 1) * sizeof *m.counts), diameter};
+    struct hole_mask m = {f, malloc(w * h), malloc(w * h), malloc((h + 1) * sizeof *m.counts), diameter};
     size_t n = 0;
     enum status st = ST_OK;
 
@@ -159,7 +176,7 @@ struct narrow_pass {
     const struct rendered_frame *frame;
     const struct far_side *far;
     const uint32_t *list;
-    struct color_z *filled; /* parallel to the list */
+    struct color_z *filled; /* of each pixel of the list; z 0: nothing known near it */
 };
 
 static void narrow_chunk(void *ctx, size_t begin, size_t end, int thread)
@@ -192,7 +209,7 @@ enum status hole_fill_pixels(struct rendered_frame *f, const uint32_t *list, siz
     struct color_z *filled = malloc((count + 1) * sizeof *filled);
 
     if (!filled) return err_nomem(err, "the narrow holes of a frame", count * sizeof *filled);
-    /* each pass reads the one before only, so the far side crosses RADIUS pixels a pass, whatever the order */
+    /* a pass reads only the results of earlier passes, so the far side advances RADIUS pixels, in any order */
     for (int reached = 0; count && reached < diameter; reached += RADIUS) {
         struct narrow_pass pass = {f, &far, list, filled};
         parallel_for(count, LIST_CHUNK, narrow_chunk, &pass);
@@ -205,54 +222,55 @@ enum status hole_fill_pixels(struct rendered_frame *f, const uint32_t *list, siz
 
 /* ------------------------------------------------------------------------------------------------ wide holes */
 
-/* What is asked of a level's texel is computed when it is asked for first: what is far from holes never is. */
-enum known { NOT_ASKED, PULLED, EMPTY, PUSHED };
+/* Texels are computed on demand. */
+enum texel_state { NOT_COMPUTED, PULLED, EMPTY, PUSHED };
 
-struct level {
+struct fill_level {
     int w, h;
     struct color_z *texels;
-    uint8_t *known;
+    uint8_t *state;
 };
 
-struct pyramid {
+struct fill_pyramid {
     const struct rendered_frame *frame;
-    struct level levels[MAX_LEVELS]; /* 0 is the frame: of it only what is PUSHED stands here */
+    struct fill_level levels[MAX_LEVELS]; /* level 0 holds only PUSHED pixels; the others are in the frame */
     int count;
     const struct far_side *far;
 };
 
-/* The far side of a texel's 2x2; false if none of them is known. */
-static bool pull(struct pyramid *p, int level, int x, int y, struct color_z *value)
+/* Value of a texel from its four children; false: none of them is known. */
+static bool pull(struct fill_pyramid *p, int level, int x, int y, struct color_z *value)
 {
-    struct level *l = &p->levels[level];
+    struct fill_level *l = &p->levels[level];
     const size_t at = (size_t)y * (size_t)l->w + (size_t)x;
 
     if (level == 0) {
         *value = pixel_get(p->frame, at);
         return p->frame->rgba[4 * at + 3] > 0 && value->z > 0;
     }
-    if (l->known[at] == NOT_ASKED) {
+    if (l->state[at] == NOT_COMPUTED) {
         struct color_z items[4];
         float weights[4] = {0};
         for (int k = 0; k < 4; k++) {
             const int u = 2 * x + (k & 1), v = 2 * y + (k >> 1);
             if (u < l[-1].w && v < l[-1].h && pull(p, level - 1, u, v, &items[k])) weights[k] = items[k].z > 0;
         }
-        l->known[at] = far_mean(p->far, items, weights, 4, &l->texels[at]) ? PULLED : EMPTY;
+        l->state[at] = far_mean(p->far, items, weights, 4, &l->texels[at]) ? PULLED : EMPTY;
     }
-    if (l->known[at] != PULLED) return false;
+    if (l->state[at] != PULLED) return false;
     *value = l->texels[at];
     return true;
 }
 
-/* The same, and where none is known from the level above: bilinear, the parent has 3/4 of each axis. */
-static bool push(struct pyramid *p, int level, int x, int y, struct color_z *value)
+/* As pull(), but an unknown texel is interpolated from the coarser level: bilinear, weight 3/4 of the parent on each
+ * axis. */
+static bool push(struct fill_pyramid *p, int level, int x, int y, struct color_z *value)
 {
-    struct level *l = &p->levels[level];
+    struct fill_level *l = &p->levels[level];
     const size_t at = (size_t)y * (size_t)l->w + (size_t)x;
 
     if (pull(p, level, x, y, value)) return true;
-    if (l->known[at] != PUSHED && level + 1 < p->count) {
+    if (l->state[at] != PUSHED && level + 1 < p->count) {
         struct color_z items[4];
         float weights[4] = {0};
         for (int k = 0; k < 4; k++) {
@@ -260,49 +278,48 @@ static bool push(struct pyramid *p, int level, int x, int y, struct color_z *val
             if (u < 0 || v < 0 || u >= l[1].w || v >= l[1].h || !push(p, level + 1, u, v, &items[k])) continue;
             weights[k] = ((k & 1) ? 0.25f : 0.75f) * ((k >> 1) ? 0.25f : 0.75f);
         }
-        if (far_mean(p->far, items, weights, 4, &l->texels[at])) l->known[at] = PUSHED;
+        if (far_mean(p->far, items, weights, 4, &l->texels[at])) l->state[at] = PUSHED;
     }
-    if (l->known[at] != PUSHED) return false;
+    if (l->state[at] != PUSHED) return false;
     *value = l->texels[at];
     return true;
 }
 
-/* The pixels of the list; how many of them got a colour. */
+/* Fills the listed pixels. *filled: how many of them got a colour. */
 static enum status fill_wide(struct rendered_frame *f, const uint32_t *list, size_t count, const struct far_side *far,
                              size_t *filled, struct err *err)
 {
     const uint32_t w = (uint32_t)f->width;
-    struct pyramid p = {.frame = f, .levels = {{.w = f->width, .h = f->height}}, .count = 1, .far = far};
+    struct fill_pyramid p = {.frame = f, .levels = {{.w = f->width, .h = f->height}}, .count = 1, .far = far};
     struct color_z value;
     enum status st = ST_OK;
 
     for (; p.levels[p.count - 1].w > 1 || p.levels[p.count - 1].h > 1; p.count++) {
-        const struct level *l = &p.levels[p.count - 1];
-        p.levels[p.count] = (struct level){.w = (l->w + 1) / 2, .h = (l->h + 1) / 2};
+        const struct fill_level *l = &p.levels[p.count - 1];
+        p.levels[p.count] = (struct fill_level){.w = (l->w + 1) / 2, .h = (l->h + 1) / 2};
     }
     for (int i = 0; i < p.count; i++) {
-        struct level *l = &p.levels[i];
+        struct fill_level *l = &p.levels[i];
         const size_t size = (size_t)l->w * (size_t)l->h;
         l->texels = malloc(size * sizeof *l->texels);
-        l->known = calloc(size, 1);
-        if (!l->texels || !l->known) {
+        l->state = calloc(size, 1);
+        if (!l->texels || !l->state) {
             st = err_nomem(err, "a pyramid of a frame", size * sizeof *l->texels);
             goto done;
         }
     }
     *filled = 0;
-    if (!pull(&p, p.count - 1, 0, 0, &value))
-        goto done; /* nothing is known: whatever is asked for would be asked in vain */
+    if (!pull(&p, p.count - 1, 0, 0, &value)) goto done; /* no pixel of the frame is known */
     for (size_t i = 0; i < count; i++) push(&p, 0, (int)(list[i] % w), (int)(list[i] / w), &value);
-    for (size_t i = 0; i < count; i++) /* all are computed from the frame as it was */
-        if (p.levels[0].known[list[i]] == PUSHED) {
+    for (size_t i = 0; i < count; i++) /* written last, so that all are computed from the unfilled frame */
+        if (p.levels[0].state[list[i]] == PUSHED) {
             pixel_set(f, list[i], &p.levels[0].texels[list[i]]);
             ++*filled;
         }
 done:
     for (int i = 0; i < p.count; i++) {
         free(p.levels[i].texels);
-        free(p.levels[i].known);
+        free(p.levels[i].state);
     }
     return st;
 }
@@ -320,7 +337,7 @@ enum status hole_fill(struct rendered_frame *frame, const struct soft_z *soft, f
         for (size_t i = 0; !st && i < narrow; i++) filled += frame->rgba[4 * (size_t)list[i] + 3] > 0;
     }
     if (!st && diameter > 0 && filled < empty) {
-        size_t wide = 0, left = narrow; /* narrow ones that found nothing near are left to the pyramid, too */
+        size_t wide = 0, left = narrow; /* narrow pixels with nothing known near them go to the pyramid, too */
         for (size_t i = narrow; i-- > 0;)
             if (!(frame->rgba[4 * (size_t)list[i] + 3] > 0)) list[--left] = list[i];
         st = fill_wide(frame, list + left, empty - left, &far, &wide, err);

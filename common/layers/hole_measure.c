@@ -1,4 +1,4 @@
-/* hole_measure.c - see hole_measure.h. */
+/* hole_measure.c - the hole measure H; see hole_measure.h for the formula. */
 #include "common/layers/hole_measure.h"
 
 #include <math.h>

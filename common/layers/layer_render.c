@@ -1,9 +1,25 @@
-/* layer_render.c - see layer_render.h: a frame, tile by tile.
+/* layer_render.c - rendering of layered depth maps from a novel camera [Colburn 2014, 3.6].
  *
- * Blending weights are the view mesh's at the corners of a lattice of LATTICE px, and bilinear between. A tile draws
- * one view after another, where the lattice names it; then, where no view covers a pixel, the other views. What a view
- * shows of a pixel becomes one sample; the soft z blends a pixel's samples, eight pixels at a time. Tiles share
- * nothing, so threads and the split of a path into jobs do not change a bit. */
+ * Each segment is a plane (1/z linear in its view's pixels), so it projects into the novel camera by a homography. A
+ * target pixel is mapped back into the segment's view (segment_project.h), where the segment ids decide whether the
+ * pixel belongs to the segment (layer_visibility.h). Two renderers share this:
+ *
+ *   fast     per view the two nearest surfaces, composited front to back with saturating alpha; across the views that
+ *            the view mesh selects for the pixel a soft z-buffer (soft_z.h), weighted by blending weight x w x alpha
+ *   offline  the surfaces of these views and of the views nearest to the camera in one soft z-buffer, in which views
+ *            vote against surfaces that they see through (soft_z_merge); bicubic texture look-up
+ *
+ * What differs from the thesis:
+ * - the offline renderer blends extra views, and views vote;
+ * - blending weights are taken from the view mesh at the corners of a lattice of LATTICE px and are bilinear between;
+ * - a view's weight fades towards the border of its picture, so that the border leaves no visible line;
+ * - where the views of the mesh leave a pixel below alpha 0.5, the nearest other view (by centre) that covers the pixel
+ *   is a fallback, unless most of the mesh's views, by weight, see through its surface at something farther. Only
+ *   pixels without a fallback are holes; hole_fill.h fills them as far as the options say.
+ *
+ * A frame is rendered in independent tiles: each tile draws the mesh's views one after another, then the fallbacks of
+ * uncovered pixels, then blends the samples of each pixel, eight pixels at a time. Results therefore do not depend on
+ * threads or on how a path is split into jobs. */
 #include "common/layers/layer_render.h"
 
 #include <immintrin.h>
@@ -18,46 +34,46 @@
 
 #define LATTICE      16 /* px */
 #define PATCHES      (TILE_WIDTH / LATTICE)
-#define COVERED      0.5f /* alpha from which a view covers a pixel */
-#define MESH_SLOTS   6    /* views that a patch of the lattice blends by the mesh, at most */
+#define COVERED      0.5f /* min alpha of a covered pixel */
+#define MESH_SLOTS   6    /* max views of the mesh per patch of the lattice */
 #define SLOTS        (MESH_SLOTS + LAYER_MORE_VIEWS)
-#define OTHER        SLOTS /* the slot of a view that steps in */
-#define AGAINST_MOST 0.5f  /* part, by weight, of the views that can tell that may see through what fills a hole */
-#define LEAST_INSIDE 1e-3f /* a view alone at its border still shows */
-#define LEAST_WEIGHT 1e-6f /* and so does one alone where its weight is 0 */
-#define MORE_WEIGHT  0.5f  /* of the nearest view, beyond the mesh's weights */
-#define LEAST_VOTE   0.05f /* of a view at its border */
-#define VOTE_INSIDE  0.25f /* a view this far inside its picture has its whole vote */
+#define FALLBACK     SLOTS /* slot of the fallback views */
+#define MAX_THROUGH  0.5f  /* max weight of views that see through a fallback's surface, of those that can decide */
+#define MIN_INSIDE   1e-3f /* keeps a view visible at its border if it is the only one */
+#define MIN_WEIGHT   1e-6f /* keeps a view visible where its blending weight is 0 if it is the only one */
+#define EXTRA_WEIGHT 0.5f  /* added to the mesh's weight of the nearest view */
+#define MIN_VOTE     0.05f /* of a view at its border */
+#define VOTE_INSIDE  0.25f /* a view has its full vote this far inside its picture */
 
-_Static_assert(2 * (SLOTS + 1) <= SOFT_Z_MERGE_MOST, "all fragments of a pixel are merged");
-_Static_assert(SLOTS + 1 <= SOFT_Z_BLEND_MOST, "all views of a pixel are blended");
+_Static_assert(2 * (SLOTS + 1) <= SOFT_Z_MAX_FRAGMENTS, "room for all fragments of a pixel");
+_Static_assert(SLOTS + 1 <= SOFT_Z_MAX_VIEWS, "room for all views of a pixel");
 _Static_assert(TILE_HEIGHT == LATTICE && TILE_WIDTH % LATTICE == 0, "a tile is a row of patches");
 
 /* ------------------------------------------------------------------------------------------------- one frame */
 
-struct other_view {
+struct view_distance {
     int view;
-    double distance; /* of its centre to the novel one's */
+    double distance; /* between its centre and the novel camera's */
 };
 
-struct patch { /* of the lattice: the views that it blends, and their weights at its corners */
+struct patch { /* a square of the lattice: its views and their blending weights at its corners */
     int count;
     int view[SLOTS];
     float weight[SLOTS][4]; /* upper left, upper right, lower left, lower right */
 };
 
-struct slot {                          /* what one view shows of each pixel; views change from patch to patch */
-    struct view_samples shown, behind; /* behind: by the offline renderer alone */
-    float blend[TILE_PIXELS];          /* blending weight; 0 where nothing is shown */
+struct slot {                          /* samples of one view per pixel; which view varies by patch */
+    struct view_samples front, behind; /* behind: offline only */
+    float blend[TILE_PIXELS];          /* blending weight; 0: no sample */
 };
 
-struct scratch { /* of one thread, for a tile */
-    struct tile_visibility seen;
+struct tile_scratch { /* one per thread */
+    struct tile_visibility visibility;
     struct slot slots[SLOTS + 1];
     struct view_samples spare;
     struct patch patches[PATCHES];
     uint8_t covered[TILE_PIXELS];
-    bool other[PATCHES]; /* whether the slot OTHER has something */
+    bool has_fallback[PATCHES]; /* the slot FALLBACK has samples */
 };
 
 struct frame_job {
@@ -66,19 +82,19 @@ struct frame_job {
     struct soft_z soft;
     struct view_weights *lattice; /* lattice_width a row */
     int lattice_width;
-    struct drawn_view *drawn; /* a view */
-    struct other_view *by_distance;
-    float *more_weight, *standing; /* a view: what it adds to the mesh's weights, and counts among views that vote */
+    struct drawn_view *drawn; /* one per view */
+    struct view_distance *by_distance;
+    float *extra_weight, *vote_weight; /* per view: addition to the mesh's weight, and weight of its vote */
     bool offline, nearest_alone;
-    struct scratch *scratch; /* a thread */
+    struct tile_scratch *scratch; /* one per thread */
     struct rendered_frame *out;
-    enum status *prepared; /* a view */
+    enum status *prepared; /* of each view's drawn_view_prepare */
     int tiles_x, tiles;
 };
 
 static int compare_distance(const void *a, const void *b)
 {
-    const struct other_view *x = a, *y = b;
+    const struct view_distance *x = a, *y = b;
     if (x->distance != y->distance) return x->distance < y->distance ? -1 : 1;
     return x->view - y->view;
 }
@@ -98,13 +114,13 @@ static void job_release(struct frame_job *job)
     free(job->drawn);
     free(job->by_distance);
     free(job->scratch);
-    free(job->more_weight);
-    free(job->standing);
+    free(job->extra_weight);
+    free(job->vote_weight);
     free(job->prepared);
     free(job->lattice);
 }
 
-/* The weights at the lattice's points: a camera whose pixels they are. */
+/* Samples the view mesh at the lattice's points, as the pixels of a reduced camera. */
 static enum status lattice_init(struct frame_job *job, struct err *err)
 {
     const struct view *novel = &job->novel;
@@ -125,19 +141,19 @@ static enum status lattice_init(struct frame_job *job, struct err *err)
     return ST_OK;
 }
 
-/* The views nearest to the camera add to the mesh's weights, by nearness, and vote on what is there; both fade before a
- * view drops out of their number. */
-static void weigh_more_views(struct frame_job *job, int more)
+/* Extra weights and votes of the `more` views nearest to the camera. Both fade with distance, to 0 at the first view
+ * left out. */
+static void weigh_extra_views(struct frame_job *job, int more)
 {
     const int views = job->scene->set->view_count;
-    const struct other_view *nearest = job->by_distance;
+    const struct view_distance *nearest = job->by_distance;
 
     for (int n = 0; n < more && n < views; n++) {
         const double edge = more < views ? nearest[more].distance : INFINITY;
         const double fade = nearest[n].distance < edge ? fmin(1, 2 * (1 - nearest[n].distance / edge)) : 0;
         const double near = nearest[n].distance > 0 ? nearest[0].distance / nearest[n].distance : 1;
-        job->more_weight[nearest[n].view] = (float)(MORE_WEIGHT * near * fade);
-        job->standing[nearest[n].view] = (float)fade;
+        job->extra_weight[nearest[n].view] = (float)(EXTRA_WEIGHT * near * fade);
+        job->vote_weight[nearest[n].view] = (float)fade;
     }
 }
 
@@ -157,9 +173,9 @@ static enum status job_init(struct frame_job *job, struct rendered_frame *out, c
     job->by_distance = calloc(count, sizeof *job->by_distance);
     job->prepared = calloc(count, sizeof *job->prepared);
     job->scratch = malloc(threads * sizeof *job->scratch);
-    job->more_weight = calloc(count, sizeof *job->more_weight);
-    job->standing = calloc(count, sizeof *job->standing);
-    if (!job->drawn || !job->by_distance || !job->prepared || !job->scratch || !job->more_weight || !job->standing)
+    job->extra_weight = calloc(count, sizeof *job->extra_weight);
+    job->vote_weight = calloc(count, sizeof *job->vote_weight);
+    if (!job->drawn || !job->by_distance || !job->prepared || !job->scratch || !job->extra_weight || !job->vote_weight)
         return err_nomem(err, "a frame's views", count * sizeof *job->drawn + threads * sizeof *job->scratch);
 
     enum status st = rendered_frame_resize(out, novel->width, novel->height, color, err);
@@ -172,7 +188,7 @@ static enum status job_init(struct frame_job *job, struct rendered_frame *out, c
         job->by_distance[i].distance = vec3_length(vec3_sub(scene->set->views[i].center, novel->center));
     }
     qsort(job->by_distance, (size_t)views, sizeof *job->by_distance, compare_distance);
-    if (job->offline && !job->nearest_alone) weigh_more_views(job, options->more_views);
+    if (job->offline && !job->nearest_alone) weigh_extra_views(job, options->more_views);
     return ST_OK;
 }
 
@@ -184,15 +200,15 @@ static double hole_fraction(const struct rendered_frame *f)
     return (double)holes / (double)pixels;
 }
 
-/* -------------------------------------------------------------------------------------------------- a tile's views */
+/* --------------------------------------------------------------------------------------------- views of a tile */
 
-struct place { /* of a tile in the frame */
-    int tile, x, y, width, height, patches;
+struct tile { /* in pixels of the frame */
+    int index, x, y, width, height, patches;
 };
 
-static struct place place_of(const struct frame_job *job, int tile)
+static struct tile tile_of(const struct frame_job *job, int tile)
 {
-    struct place at = {.tile = tile, .x = tile % job->tiles_x * TILE_WIDTH, .y = tile / job->tiles_x * TILE_HEIGHT};
+    struct tile at = {.index = tile, .x = tile % job->tiles_x * TILE_WIDTH, .y = tile / job->tiles_x * TILE_HEIGHT};
     at.width = job->novel.width - at.x < TILE_WIDTH ? job->novel.width - at.x : TILE_WIDTH;
     at.height = job->novel.height - at.y < TILE_HEIGHT ? job->novel.height - at.y : TILE_HEIGHT;
     at.patches = (at.width + LATTICE - 1) / LATTICE;
@@ -208,15 +224,15 @@ static int patch_slot(const struct patch *p, int view)
 
 static float corner_sum(const float weight[4]) { return weight[0] + weight[1] + weight[2] + weight[3]; }
 
-/* Drops the least of a patch's views. */
+/* Drops the view of lowest weight. */
 static void patch_drop(struct patch *p)
 {
-    int least = 0;
+    int weakest = 0;
     for (int k = 1; k < p->count; k++)
-        if (corner_sum(p->weight[k]) < corner_sum(p->weight[least])) least = k;
+        if (corner_sum(p->weight[k]) < corner_sum(p->weight[weakest])) weakest = k;
     p->count--;
-    memmove(&p->view[least], &p->view[least + 1], (size_t)(p->count - least) * sizeof p->view[0]);
-    memmove(&p->weight[least], &p->weight[least + 1], (size_t)(p->count - least) * sizeof p->weight[0]);
+    memmove(&p->view[weakest], &p->view[weakest + 1], (size_t)(p->count - weakest) * sizeof p->view[0]);
+    memmove(&p->weight[weakest], &p->weight[weakest + 1], (size_t)(p->count - weakest) * sizeof p->weight[0]);
 }
 
 static void patch_init(struct patch *p, const struct frame_job *job, int x, int y)
@@ -242,18 +258,18 @@ static void patch_init(struct patch *p, const struct frame_job *job, int x, int 
         }
     }
     for (int v = 0; job->offline && v < job->scene->set->view_count; v++) {
-        if (!(job->more_weight[v] > 0)) continue;
+        if (!(job->extra_weight[v] > 0)) continue;
         int k = patch_slot(p, v);
         if (k < 0) {
             k = p->count++;
             p->view[k] = v;
             memset(p->weight[k], 0, sizeof p->weight[k]);
         }
-        for (int corner = 0; corner < 4; corner++) p->weight[k][corner] += job->more_weight[v];
+        for (int corner = 0; corner < 4; corner++) p->weight[k][corner] += job->extra_weight[v];
     }
 }
 
-/* A view's blending weights at eight pixels of a patch from (x, y) on, counted from its upper left corner. */
+/* A view's blending weights at the eight pixels of a patch from (x, y) on, relative to its upper left corner. */
 static inline __m256 patch_weights(const float weight[4], int x, int y)
 {
     const float v = ((float)y + 0.5f) / LATTICE;
@@ -262,34 +278,34 @@ static inline __m256 patch_weights(const float weight[4], int x, int y)
     const __m256 u =
         _mm256_mul_ps(_mm256_add_ps(lanes, _mm256_set1_ps((float)x + 0.5f)), _mm256_set1_ps(1.0f / LATTICE));
     const __m256 w = _mm256_add_ps(_mm256_set1_ps(left), _mm256_mul_ps(u, _mm256_set1_ps(right - left)));
-    return _mm256_max_ps(w, _mm256_set1_ps(LEAST_WEIGHT));
+    return _mm256_max_ps(w, _mm256_set1_ps(MIN_WEIGHT));
 }
 
-/* Marks the pixels of eight that the samples cover. */
+/* Marks those of eight pixels that the samples cover. */
 static inline void mark_covered(uint8_t *covered, const float *alpha, const float *behind)
 {
     for (int k = 0; k < 8; k++) covered[k] |= alpha[k] + (behind ? behind[k] : 0) >= COVERED;
 }
 
-static bool any_visible(const struct tile_visibility *seen, size_t i)
+static bool any_visible(const struct tile_visibility *v, size_t i)
 {
-    const __m256i places = _mm256_loadu_si256((const __m256i *)(const void *)(seen->front + i));
-    return _mm256_movemask_epi8(_mm256_cmpeq_epi32(places, _mm256_set1_epi32(-1))) != -1;
+    const __m256i indices = _mm256_loadu_si256((const __m256i *)(const void *)(v->front + i));
+    return _mm256_movemask_epi8(_mm256_cmpeq_epi32(indices, _mm256_set1_epi32(-1))) != -1;
 }
 
-static void clear_tile(struct tile_visibility *seen, size_t begin, size_t end, float inverse)
+static void clear_tile(struct tile_visibility *v, size_t begin, size_t end, float inverse)
 {
-    for (size_t i = begin; i < end; i++) seen->inverse_front[i] = seen->inverse_behind[i] = inverse;
-    for (size_t i = begin; i < end; i++) seen->front[i] = seen->behind[i] = VISIBLE_NONE;
+    for (size_t i = begin; i < end; i++) v->inverse_front[i] = v->inverse_behind[i] = inverse;
+    for (size_t i = begin; i < end; i++) v->front[i] = v->behind[i] = VISIBLE_NONE;
 }
 
-static int patch_end(const struct place *at, int k) /* in the tile's columns */
+static int patch_end(const struct tile *at, int k) /* in the tile's columns */
 {
     return (k + 1) * LATTICE < at->width ? (k + 1) * LATTICE : at->width;
 }
 
-/* The patches that name the view are cleared, those between them shut; false if none names it. */
-static bool clear_named(struct scratch *s, const struct place *at, int view, int *first, int *last)
+/* Clears the patches that blend the view and disables those between them; false: no patch blends it. */
+static bool clear_patches_of(struct tile_scratch *s, const struct tile *at, int view, int *first, int *last)
 {
     *first = PATCHES;
     *last = -1;
@@ -301,24 +317,24 @@ static bool clear_named(struct scratch *s, const struct place *at, int view, int
     for (int y = 0; y < at->height; y++)
         for (int k = *first; k <= *last; k++) {
             const size_t begin = (size_t)y * TILE_STRIDE + (size_t)k * LATTICE;
-            clear_tile(&s->seen, begin, begin + LATTICE, patch_slot(&s->patches[k], view) < 0 ? INFINITY : 0);
+            clear_tile(&s->visibility, begin, begin + LATTICE, patch_slot(&s->patches[k], view) < 0 ? INFINITY : 0);
         }
     for (int y = 0; y < TILE_HEIGHT; y++) {
-        s->seen.first[y] = *first * LATTICE;
-        s->seen.last[y] = y < at->height && *last >= 0 ? patch_end(at, *last) - 1 : -1;
+        s->visibility.first[y] = *first * LATTICE;
+        s->visibility.last[y] = y < at->height && *last >= 0 ? patch_end(at, *last) - 1 : -1;
     }
     return *last >= 0;
 }
 
-static void draw_view(const struct frame_job *job, struct scratch *s, const struct place *at, int view)
+static void draw_view(const struct frame_job *job, struct tile_scratch *s, const struct tile *at, int view)
 {
     const struct drawn_view *drawn = &job->drawn[view];
     const struct layer_view *lv = &job->scene->views[view];
-    const __m256 least = _mm256_set1_ps(LEAST_INSIDE);
+    const __m256 min_inside = _mm256_set1_ps(MIN_INSIDE);
     int first, last;
 
-    if (!clear_named(s, at, view, &first, &last)) return;
-    visibility_draw(&s->seen, drawn, lv, at->tile);
+    if (!clear_patches_of(s, at, view, &first, &last)) return;
+    visibility_draw(&s->visibility, drawn, lv, at->index);
     for (int k = first; k <= last; k++) {
         const int n = patch_slot(&s->patches[k], view);
         if (n < 0) continue;
@@ -326,81 +342,81 @@ static void draw_view(const struct frame_job *job, struct scratch *s, const stru
         for (int y = 0; y < at->height; y++)
             for (int x = 0; x < LATTICE; x += 8) {
                 const size_t i = (size_t)y * TILE_STRIDE + (size_t)(k * LATTICE + x);
-                visibility_sample8(&slot->shown, job->offline ? &slot->behind : NULL, &s->seen, drawn, lv, i, at->x,
-                                   at->y);
-                mark_covered(s->covered + i, slot->shown.alpha + i, job->offline ? slot->behind.alpha + i : NULL);
-                __m256 alpha = _mm256_loadu_ps(slot->shown.alpha + i);
+                visibility_sample8(&slot->front, job->offline ? &slot->behind : NULL, &s->visibility, drawn, lv, i,
+                                   at->x, at->y);
+                mark_covered(s->covered + i, slot->front.alpha + i, job->offline ? slot->behind.alpha + i : NULL);
+                __m256 alpha = _mm256_loadu_ps(slot->front.alpha + i);
                 if (job->offline) alpha = _mm256_add_ps(alpha, _mm256_loadu_ps(slot->behind.alpha + i));
-                const __m256 shown = _mm256_cmp_ps(alpha, _mm256_setzero_ps(), _CMP_GT_OQ);
+                const __m256 present = _mm256_cmp_ps(alpha, _mm256_setzero_ps(), _CMP_GT_OQ);
                 const __m256 weight = _mm256_mul_ps(patch_weights(s->patches[k].weight[n], x, y),
-                                                    _mm256_max_ps(least, _mm256_loadu_ps(slot->shown.inside + i)));
-                _mm256_storeu_ps(slot->blend + i, _mm256_and_ps(shown, weight));
+                                                    _mm256_max_ps(min_inside, _mm256_loadu_ps(slot->front.inside + i)));
+                _mm256_storeu_ps(slot->blend + i, _mm256_and_ps(present, weight));
             }
     }
 }
 
-static void draw_named_views(const struct frame_job *job, struct scratch *s, const struct place *at)
+static void draw_mesh_views(const struct frame_job *job, struct tile_scratch *s, const struct tile *at)
 {
     for (int k = 0; k < at->patches; k++) patch_init(&s->patches[k], job, at->x / LATTICE + k, at->y / LATTICE);
     for (int v = 0; v < job->scene->set->view_count; v++) draw_view(job, s, at, v);
 }
 
-enum sight { SIGHT_NONE, SIGHT_THROUGH, SIGHT_STOPPED };
+enum sight { SIGHT_UNKNOWN, SIGHT_THROUGH, SIGHT_BLOCKED };
 
-/* Whether a view looks through this world point, at a surface clearly farther: then nothing can be there. It cannot
- * tell if the point is outside its picture or it has no depth there. */
+/* SIGHT_THROUGH: the view sees a clearly farther surface along the ray to this world point, so there is no surface at
+ * the point. SIGHT_UNKNOWN: the point is outside of its picture, or the view has no depth there. */
 static enum sight sight_of(const struct frame_job *job, int view, struct vec3 point, float sigma)
 {
     const struct layer_view *lv = &job->scene->views[view];
     double u, v;
     const double z = view_project(&job->scene->set->views[view], point, &u, &v);
-    if (!(z > 0) || !(u >= 0 && v >= 0 && u < lv->width && v < lv->height)) return SIGHT_NONE;
+    if (!(z > 0) || !(u >= 0 && v >= 0 && u < lv->width && v < lv->height)) return SIGHT_UNKNOWN;
 
     const struct texel *t = &lv->texels[((size_t)v + 1) * (size_t)lv->stride + (size_t)u + 1];
     const uint32_t id = t->id[0] & ~TEXEL_JOINED;
-    if (!id) return SIGHT_NONE;
+    if (!id) return SIGHT_UNKNOWN;
     const struct depth_segment *seg = &job->scene->depths[view].segments[id - 1];
     const double inverse = seg->plane[0] * u + seg->plane[1] * v + seg->plane[2];
     if (!(inverse > 0)) return SIGHT_THROUGH;
     const float rho = soft_z_rho(&job->soft, (float)z, sigma, (float)(1 / inverse), (float)seg->sigma);
-    return soft_z_weight((float)(1 / inverse - z), 0.1f * rho, rho) == 0 ? SIGHT_THROUGH : SIGHT_STOPPED;
+    return soft_z_weight((float)(1 / inverse - z), 0.1f * rho, rho) == 0 ? SIGHT_THROUGH : SIGHT_BLOCKED;
 }
 
-/* Of the patch's views that can tell, by most of their weight, none looks through what another view shows here. What is
- * there was hidden from them, so it must lie behind what they show; else a segment at a wrong depth would hang in the
- * hole. */
-static bool may_step_in(const struct frame_job *job, const struct patch *patch, const struct place *at, int x, int y,
-                        float z, float sigma)
+/* Whether the patch's views do not contradict a fallback's surface at (x, y): by most of the weight of those that can
+ * decide, they do not see through it. It must have been hidden from them, behind what they show; otherwise it is a
+ * segment at a wrong depth, which would float in the hole. */
+static bool is_consistent(const struct frame_job *job, const struct patch *patch, const struct tile *at, int x, int y,
+                          float z, float sigma)
 {
     const struct vec3 point = view_unproject(&job->novel, at->x + x + 0.5, at->y + y + 0.5, z);
-    float told[3] = {0};
+    float sum[3] = {0};
     for (int k = 0; k < patch->count; k++)
-        told[sight_of(job, patch->view[k], point, sigma)] +=
+        sum[sight_of(job, patch->view[k], point, sigma)] +=
             _mm256_cvtss_f32(patch_weights(patch->weight[k], x % LATTICE, y));
-    return !(told[SIGHT_THROUGH] > AGAINST_MOST * (told[SIGHT_THROUGH] + told[SIGHT_STOPPED]));
+    return !(sum[SIGHT_THROUGH] > MAX_THROUGH * (sum[SIGHT_THROUGH] + sum[SIGHT_BLOCKED]));
 }
 
-static bool any_hole(const struct scratch *s, const struct place *at)
+static bool any_hole(const struct tile_scratch *s, const struct tile *at)
 {
     for (int y = 0; y < at->height; y++)
         if (memchr(s->covered + (size_t)y * TILE_STRIDE, 0, (size_t)at->width)) return true;
     return false;
 }
 
-/* Opens the pixels that nothing covers yet, of the patches that name the view or of those that do not; the columns
- * from the first to the last. False if there are none. */
-static bool clear_uncovered(struct scratch *s, const struct place *at, int view, bool named)
+/* Enables the uncovered pixels of the patches that blend the view (mesh_view) or of those that do not, and sets the
+ * range of columns. False: there are none. */
+static bool clear_uncovered(struct tile_scratch *s, const struct tile *at, int view, bool mesh_view)
 {
     const __m256 shut = _mm256_set1_ps(INFINITY);
     const __m256i none = _mm256_set1_epi32(-1), lanes = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
     bool open[PATCHES], any = false;
 
     for (int y = 0; y < TILE_HEIGHT; y++) {
-        s->seen.first[y] = at->width;
-        s->seen.last[y] = -1;
+        s->visibility.first[y] = at->width;
+        s->visibility.last[y] = -1;
     }
     if (!any_hole(s, at)) return false;
-    for (int k = 0; k < at->patches; k++) open[k] = (patch_slot(&s->patches[k], view) >= 0) == named;
+    for (int k = 0; k < at->patches; k++) open[k] = (patch_slot(&s->patches[k], view) >= 0) == mesh_view;
     for (int y = 0; y < at->height; y++)
         for (int x = 0; x < at->width; x += 8) {
             const size_t i = (size_t)y * TILE_STRIDE + (size_t)x;
@@ -410,104 +426,105 @@ static bool clear_uncovered(struct scratch *s, const struct place *at, int view,
             const __m256i is_open = _mm256_andnot_si256(_mm256_cmpgt_epi32(covered, _mm256_setzero_si256()), within);
             const __m256 inverse = _mm256_andnot_ps(_mm256_castsi256_ps(is_open), shut);
             const unsigned bits = (unsigned)_mm256_movemask_ps(_mm256_castsi256_ps(is_open));
-            _mm256_storeu_ps(s->seen.inverse_front + i, inverse);
-            _mm256_storeu_ps(s->seen.inverse_behind + i, inverse);
-            _mm256_storeu_si256((__m256i *)(void *)(s->seen.front + i), none);
-            _mm256_storeu_si256((__m256i *)(void *)(s->seen.behind + i), none);
+            _mm256_storeu_ps(s->visibility.inverse_front + i, inverse);
+            _mm256_storeu_ps(s->visibility.inverse_behind + i, inverse);
+            _mm256_storeu_si256((__m256i *)(void *)(s->visibility.front + i), none);
+            _mm256_storeu_si256((__m256i *)(void *)(s->visibility.behind + i), none);
             if (!bits) continue;
             any = true;
-            if (s->seen.last[y] < 0) s->seen.first[y] = x;
-            s->seen.last[y] = x + 7 < at->width ? x + 7 : at->width - 1;
+            if (s->visibility.last[y] < 0) s->visibility.first[y] = x;
+            s->visibility.last[y] = x + 7 < at->width ? x + 7 : at->width - 1;
         }
     return any;
 }
 
-/* What the slot OTHER has of a patch is cleared once, when it gets its first. */
-static void open_other(struct scratch *s, int patch)
+/* Clears the patch in the slot FALLBACK before its first sample. */
+static void open_fallback(struct tile_scratch *s, int patch)
 {
-    struct slot *slot = &s->slots[OTHER];
-    if (s->other[patch]) return;
-    s->other[patch] = true;
+    struct slot *slot = &s->slots[FALLBACK];
+    if (s->has_fallback[patch]) return;
+    s->has_fallback[patch] = true;
     for (int y = 0; y < TILE_HEIGHT; y++)
         for (int x = patch * LATTICE; x < (patch + 1) * LATTICE; x++) {
             const size_t i = (size_t)y * TILE_STRIDE + (size_t)x;
-            memset(slot->shown.rgba[i], 0, sizeof slot->shown.rgba[i]);
-            slot->shown.alpha[i] = slot->shown.z[i] = slot->shown.sigma[i] = slot->blend[i] = 0;
+            memset(slot->front.rgba[i], 0, sizeof slot->front.rgba[i]);
+            slot->front.alpha[i] = slot->front.z[i] = slot->front.sigma[i] = slot->blend[i] = 0;
         }
 }
 
-/* Of eight pixels what another view shows, where it covers a hole and may. */
-static void step_in(const struct frame_job *job, struct scratch *s, const struct place *at, size_t i, bool color)
+/* Accepts the samples of another view at eight uncovered pixels where they cover the pixel and are consistent. */
+static void accept_fallback(const struct frame_job *job, struct tile_scratch *s, const struct tile *at, size_t i,
+                            bool color)
 {
-    struct slot *slot = &s->slots[OTHER];
+    struct slot *slot = &s->slots[FALLBACK];
     const struct view_samples *from = &s->spare;
     const int y = (int)(i / TILE_STRIDE);
 
     for (size_t p = i; p < i + 8; p++) {
         const int x = (int)(p % TILE_STRIDE);
         if (!(from->alpha[p] >= COVERED) || x >= at->width) continue;
-        if (!may_step_in(job, &s->patches[x / LATTICE], at, x, y, from->z[p], from->sigma[p])) continue;
+        if (!is_consistent(job, &s->patches[x / LATTICE], at, x, y, from->z[p], from->sigma[p])) continue;
         s->covered[p] = 1;
         if (!color) continue;
-        open_other(s, x / LATTICE);
-        memcpy(slot->shown.rgba[p], from->rgba[p], sizeof from->rgba[p]);
-        slot->shown.alpha[p] = from->alpha[p];
-        slot->shown.z[p] = from->z[p];
-        slot->shown.sigma[p] = from->sigma[p];
-        slot->blend[p] = from->inside[p] > LEAST_INSIDE ? from->inside[p] : LEAST_INSIDE;
+        open_fallback(s, x / LATTICE);
+        memcpy(slot->front.rgba[p], from->rgba[p], sizeof from->rgba[p]);
+        slot->front.alpha[p] = from->alpha[p];
+        slot->front.z[p] = from->z[p];
+        slot->front.sigma[p] = from->sigma[p];
+        slot->blend[p] = from->inside[p] > MIN_INSIDE ? from->inside[p] : MIN_INSIDE;
     }
 }
 
-/* In pixels that the named views leave a hole: the nearest of the other views that shows something there. */
-static void draw_other_views(const struct frame_job *job, struct scratch *s, const struct place *at, bool color)
+/* Fallbacks of the pixels that the mesh's views leave uncovered: other views, the nearest first. */
+static void draw_fallback_views(const struct frame_job *job, struct tile_scratch *s, const struct tile *at, bool color)
 {
     for (int n = 0; n < job->scene->set->view_count; n++) {
         const int view = job->by_distance[n].view;
         const struct drawn_view *drawn = &job->drawn[view];
         const struct layer_view *lv = &job->scene->views[view];
-        if (drawn->tile_begin[at->tile] == drawn->tile_begin[at->tile + 1]) continue;
+        if (drawn->tile_begin[at->index] == drawn->tile_begin[at->index + 1]) continue;
         if (!clear_uncovered(s, at, view, false)) continue;
-        visibility_draw(&s->seen, drawn, lv, at->tile);
+        visibility_draw(&s->visibility, drawn, lv, at->index);
         for (int y = 0; y < at->height; y++)
-            for (int x = s->seen.first[y]; x <= s->seen.last[y]; x += 8) {
+            for (int x = s->visibility.first[y]; x <= s->visibility.last[y]; x += 8) {
                 const size_t i = (size_t)y * TILE_STRIDE + (size_t)x;
-                if (!any_visible(&s->seen, i)) continue;
-                visibility_sample8(&s->spare, NULL, &s->seen, drawn, lv, i, at->x, at->y);
-                step_in(job, s, at, i, color);
+                if (!any_visible(&s->visibility, i)) continue;
+                visibility_sample8(&s->spare, NULL, &s->visibility, drawn, lv, i, at->x, at->y);
+                accept_fallback(job, s, at, i, color);
             }
     }
 }
 
 /* ------------------------------------------------------------------------------------------------------- blending */
 
-/* Eight pixels from i on: the samples of `slots`; a constant for each usual count. */
-static inline __attribute__((always_inline)) void blend_eight(const struct frame_job *job, const struct scratch *s,
+/* Fast: blends the samples of `slots` in the eight pixels from i on. Called with constants for the usual counts. */
+static inline __attribute__((always_inline)) void blend_eight(const struct frame_job *job, const struct tile_scratch *s,
                                                               const int *slots, int count, size_t i, float (*rgba)[4],
                                                               float *z)
 {
-    struct soft_z_samples8 views[SOFT_Z_BLEND_MOST];
+    struct soft_z_samples8 views[SOFT_Z_MAX_VIEWS];
     for (int k = 0; k < count; k++) {
         const struct slot *slot = &s->slots[slots[k]];
-        const struct view_samples *shown = &slot->shown;
-        views[k] = (struct soft_z_samples8){shown->rgba + i, shown->alpha + i, shown->z + i, shown->sigma + i,
+        const struct view_samples *front = &slot->front;
+        views[k] = (struct soft_z_samples8){front->rgba + i, front->alpha + i, front->z + i, front->sigma + i,
                                             slot->blend + i};
     }
     soft_z_blend8(&job->soft, views, count, rgba, z);
 }
 
-/* Of a view's fragment in pixel i. */
-static void take_fragment(struct soft_z_fragment *f, const struct view_samples *from, size_t i, float blend, float vote)
+/* A view's fragment of pixel i. */
+static void fragment_init(struct soft_z_fragment *f, const struct view_samples *from, size_t i, float blend, float vote)
 {
     memcpy(f->rgba, from->rgba[i], sizeof f->rgba);
     f->z = from->z[i];
     f->uncertainty = from->z[i] * from->sigma[i];
     f->blend = blend;
     f->vote = vote;
-    f->before = 0;
+    f->front_alpha = 0;
 }
 
-/* A pixel, of all fragments of the views in `slots`. */
-static void merge_pixel(const struct frame_job *job, const struct scratch *s, const struct patch *patch,
+/* Offline: merges all fragments of the views in `slots` in pixel i. */
+static void merge_pixel(const struct frame_job *job, const struct tile_scratch *s, const struct patch *patch,
                         const int *slots, int count, size_t i, float rgba[4], float *z)
 {
     struct soft_z_fragment fragments[2 * (SLOTS + 1)];
@@ -516,26 +533,26 @@ static void merge_pixel(const struct frame_job *job, const struct scratch *s, co
     for (int k = 0; k < count; k++) {
         const struct slot *slot = &s->slots[slots[k]];
         const float blend = slot->blend[i];
-        const bool behind = slots[k] != OTHER && slot->behind.alpha[i] > 0; /* be it with nothing in front */
-        if (!(slot->shown.alpha[i] > 0) && !behind) continue;
-        const float standing = slots[k] == OTHER ? 1 : job->standing[patch->view[slots[k]]];
-        const float inside = fminf(1, fmaxf(LEAST_VOTE, slot->shown.inside[i] / VOTE_INSIDE));
-        const float vote = inside * fmaxf(standing, fminf(1, blend / SOFT_Z_BLEND_WHOLE));
-        if (slot->shown.alpha[i] > 0) take_fragment(&fragments[n++], &slot->shown, i, blend, vote);
+        const bool behind = slots[k] != FALLBACK && slot->behind.alpha[i] > 0; /* possibly with nothing in front */
+        if (!(slot->front.alpha[i] > 0) && !behind) continue;
+        const float weight = slots[k] == FALLBACK ? 1 : job->vote_weight[patch->view[slots[k]]];
+        const float inside = fminf(1, fmaxf(MIN_VOTE, slot->front.inside[i] / VOTE_INSIDE));
+        const float vote = inside * fmaxf(weight, fminf(1, blend / SOFT_Z_FULL_BLEND));
+        if (slot->front.alpha[i] > 0) fragment_init(&fragments[n++], &slot->front, i, blend, vote);
         if (!behind) continue;
-        take_fragment(&fragments[n], &slot->behind, i, blend, vote);
-        fragments[n++].before = slot->shown.alpha[i];
+        fragment_init(&fragments[n], &slot->behind, i, blend, vote);
+        fragments[n++].front_alpha = slot->front.alpha[i];
     }
     if (n) soft_z_merge(&job->soft, fragments, n, rgba, z);
 }
 
-static void blend_patch(const struct frame_job *job, const struct scratch *s, const struct place *at, int k)
+static void blend_patch(const struct frame_job *job, const struct tile_scratch *s, const struct tile *at, int k)
 {
     const int begin = k * LATTICE, end = patch_end(at, k);
     int slots[SLOTS + 1], count = 0;
 
     for (int n = 0; n < s->patches[k].count; n++) slots[count++] = n;
-    if (s->other[k]) slots[count++] = OTHER;
+    if (s->has_fallback[k]) slots[count++] = FALLBACK;
     for (int y = 0; y < at->height; y++)
         for (int x0 = begin; x0 < end; x0 += 8) {
             const size_t i = (size_t)y * TILE_STRIDE + (size_t)x0;
@@ -563,7 +580,7 @@ static void blend_patch(const struct frame_job *job, const struct scratch *s, co
         }
 }
 
-static void write_holes(const struct frame_job *job, const struct scratch *s, const struct place *at)
+static void write_holes(const struct frame_job *job, const struct tile_scratch *s, const struct tile *at)
 {
     for (int y = 0; y < at->height; y++) {
         uint8_t *hole = job->out->hole + (size_t)(at->y + y) * (size_t)job->novel.width + (size_t)at->x;
@@ -574,14 +591,14 @@ static void write_holes(const struct frame_job *job, const struct scratch *s, co
 static void render_tiles(void *ctx, size_t begin, size_t end, int thread)
 {
     struct frame_job *job = ctx;
-    struct scratch *s = &job->scratch[thread];
+    struct tile_scratch *s = &job->scratch[thread];
 
     for (size_t t = begin; t < end; t++) {
-        const struct place at = place_of(job, (int)t);
+        const struct tile at = tile_of(job, (int)t);
         memset(s->covered, 0, sizeof s->covered);
-        memset(s->other, 0, sizeof s->other);
-        draw_named_views(job, s, &at);
-        if (!job->nearest_alone && any_hole(s, &at)) draw_other_views(job, s, &at, true);
+        memset(s->has_fallback, 0, sizeof s->has_fallback);
+        draw_mesh_views(job, s, &at);
+        if (!job->nearest_alone && any_hole(s, &at)) draw_fallback_views(job, s, &at, true);
         for (int k = 0; k < at.patches; k++) blend_patch(job, s, &at, k);
         write_holes(job, s, &at);
     }
@@ -605,29 +622,29 @@ enum status layer_render(struct rendered_frame *out, const struct layer_scene *s
 
 /* ------------------------------------------------------------------------------------------------------- coverage */
 
-static void cover_view(const struct frame_job *job, struct scratch *s, const struct place *at, int view)
+static void cover_view(const struct frame_job *job, struct tile_scratch *s, const struct tile *at, int view)
 {
     const struct drawn_view *drawn = &job->drawn[view];
     const struct layer_view *lv = &job->scene->views[view];
 
     if (!clear_uncovered(s, at, view, true)) return;
-    visibility_draw(&s->seen, drawn, lv, at->tile);
+    visibility_draw(&s->visibility, drawn, lv, at->index);
     for (int y = 0; y < at->height; y++)
-        for (int x = s->seen.first[y]; x <= s->seen.last[y]; x += 8) {
+        for (int x = s->visibility.first[y]; x <= s->visibility.last[y]; x += 8) {
             const size_t i = (size_t)y * TILE_STRIDE + (size_t)x;
-            const __m256i places = _mm256_loadu_si256((const __m256i *)(const void *)(s->seen.front + i));
-            const __m256i none = _mm256_cmpeq_epi32(places, _mm256_set1_epi32(-1));
-            const int shown = ~_mm256_movemask_ps(_mm256_castsi256_ps(none)) & 0xFF;
-            const int full = _mm256_movemask_ps(_mm256_castsi256_ps(places)) & shown;
+            const __m256i indices = _mm256_loadu_si256((const __m256i *)(const void *)(s->visibility.front + i));
+            const __m256i none = _mm256_cmpeq_epi32(indices, _mm256_set1_epi32(-1));
+            const int present = ~_mm256_movemask_ps(_mm256_castsi256_ps(none)) & 0xFF;
+            const int full = _mm256_movemask_ps(_mm256_castsi256_ps(indices)) & present;
             for (int k = 0; k < 8; k++) s->covered[i + (size_t)k] |= full >> k & 1;
-            if (full == shown) continue;
-            visibility_sample8(&s->spare, NULL, &s->seen, drawn, lv, i, at->x, at->y);
+            if (full == present) continue;
+            visibility_sample8(&s->spare, NULL, &s->visibility, drawn, lv, i, at->x, at->y);
             mark_covered(s->covered + i, s->spare.alpha + i, NULL);
         }
 }
 
-/* The views of a tile's patches, those that count for most first: the first covers nearly all. */
-static void cover_named_views(const struct frame_job *job, struct scratch *s, const struct place *at)
+/* The views of the tile's patches in order of weight: the first covers nearly all pixels. */
+static void cover_mesh_views(const struct frame_job *job, struct tile_scratch *s, const struct tile *at)
 {
     int views[PATCHES * SLOTS], count = 0;
     float sums[PATCHES * SLOTS];
@@ -645,25 +662,25 @@ static void cover_named_views(const struct frame_job *job, struct scratch *s, co
         }
     }
     for (; count > 0; count--) {
-        int most = 0;
+        int best = 0;
         for (int i = 1; i < count; i++)
-            if (sums[i] > sums[most]) most = i;
-        cover_view(job, s, at, views[most]);
-        views[most] = views[count - 1];
-        sums[most] = sums[count - 1];
+            if (sums[i] > sums[best]) best = i;
+        cover_view(job, s, at, views[best]);
+        views[best] = views[count - 1];
+        sums[best] = sums[count - 1];
     }
 }
 
 static void cover_tiles(void *ctx, size_t begin, size_t end, int thread)
 {
     const struct frame_job *job = ctx;
-    struct scratch *s = &job->scratch[thread];
+    struct tile_scratch *s = &job->scratch[thread];
 
     for (size_t t = begin; t < end; t++) {
-        const struct place at = place_of(job, (int)t);
+        const struct tile at = tile_of(job, (int)t);
         memset(s->covered, 0, sizeof s->covered);
-        cover_named_views(job, s, &at);
-        if (any_hole(s, &at)) draw_other_views(job, s, &at, false);
+        cover_mesh_views(job, s, &at);
+        if (any_hole(s, &at)) draw_fallback_views(job, s, &at, false);
         write_holes(job, s, &at);
     }
 }

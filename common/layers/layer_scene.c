@@ -1,4 +1,4 @@
-/* layer_scene.c - see layer_scene.h. */
+/* layer_scene.c - reading and packing of a scene of layered depth maps; see layer_scene.h. */
 #include "common/layers/layer_scene.h"
 
 #include <math.h>
@@ -13,13 +13,13 @@
 
 static enum status measure_depths(struct layer_scene *s, struct err *err)
 {
-    size_t most = 1, count = 0;
-    for (int i = 0; i < s->set->view_count; i++) most += (size_t)s->depths[i].segment_count;
-    struct weighted *depths = malloc(most * sizeof *depths), *sigmas = malloc(most * sizeof *sigmas);
+    size_t max_count = 1, count = 0;
+    for (int i = 0; i < s->set->view_count; i++) max_count += (size_t)s->depths[i].segment_count;
+    struct weighted *depths = malloc(max_count * sizeof *depths), *sigmas = malloc(max_count * sizeof *sigmas);
     if (!depths || !sigmas) {
         free(depths);
         free(sigmas);
-        return err_nomem(err, "the segments' depths", 2 * most * sizeof *depths);
+        return err_nomem(err, "the segments' depths", 2 * max_count * sizeof *depths);
     }
     for (int i = 0; i < s->set->view_count; i++)
         for (int k = 0; k < s->depths[i].segment_count; k++) {

@@ -1,4 +1,7 @@
-/* layer_view.c - see layer_view.h. */
+/* layer_view.c - packing of a view's two layers: texels, the composited photo, and the cells between texels.
+ *
+ * Cells replace the per-segment alpha tests of [Colburn 2014, 3.6.1], which compare the ids of single texels: they make
+ * bilinear look-up possible without seams between segments of one surface. */
 #include "common/layers/layer_view.h"
 
 #include <immintrin.h>
@@ -9,19 +12,19 @@
 
 #include "common/layers/soft_z.h"
 
-#define HALF_MOST 65504.0f
+#define HALF_MAX 65504.0f
 
-/* Both layers, and their sum: the photo. What is no number becomes 0. */
+/* Both layers and their sum, the photo, as half floats. NaN becomes 0. */
 __attribute__((target("f16c"))) static void pack_rgba(uint16_t half[2][4], uint16_t photo[4], const float *interior,
                                                       const float *boundary)
 {
-    const __m256 most = _mm256_set1_ps(HALF_MOST), least = _mm256_set1_ps(-HALF_MOST);
+    const __m256 max = _mm256_set1_ps(HALF_MAX), min = _mm256_set1_ps(-HALF_MAX);
     __m256 v = _mm256_set_m128(_mm_loadu_ps(boundary), _mm_loadu_ps(interior));
     v = _mm256_and_ps(v, _mm256_cmp_ps(v, v, _CMP_ORD_Q));
-    v = _mm256_max_ps(_mm256_min_ps(v, most), least);
+    v = _mm256_max_ps(_mm256_min_ps(v, max), min);
     _mm_storeu_si128((__m128i *)half, _mm256_cvtps_ph(v, _MM_FROUND_TO_NEAREST_INT));
     __m128 sum = _mm_add_ps(_mm256_castps256_ps128(v), _mm256_extractf128_ps(v, 1));
-    sum = _mm_max_ps(_mm_min_ps(sum, _mm256_castps256_ps128(most)), _mm256_castps256_ps128(least));
+    sum = _mm_max_ps(_mm_min_ps(sum, _mm256_castps256_ps128(max)), _mm256_castps256_ps128(min));
     _mm_storel_epi64((__m128i *)(void *)photo, _mm_cvtps_ph(sum, _MM_FROUND_TO_NEAREST_INT));
 }
 
@@ -41,16 +44,16 @@ static void shape_add(struct segment_shape *s, int x, int y, bool interior)
     }
 }
 
-/* Whether the planes of two segments agree at pixel (u, v). */
+/* Whether the planes of two segments agree in depth at pixel (u, v). */
 static bool planes_meet(const struct depth_segment *a, const struct depth_segment *b, double u, double v)
 {
     const double za = a->plane[0] * u + a->plane[1] * v + a->plane[2];
     const double zb = b->plane[0] * u + b->plane[1] * v + b->plane[2];
-    const double sa = fmax(a->sigma, SOFT_Z_SIGMA_LEAST), sb = fmax(b->sigma, SOFT_Z_SIGMA_LEAST);
+    const double sa = fmax(a->sigma, SOFT_Z_MIN_SIGMA), sb = fmax(b->sigma, SOFT_Z_MIN_SIGMA);
     return fabs(za - zb) <= JOIN_SIGMAS * hypot(sa, sb) * fmin(za, zb);
 }
 
-/* The ids of a cell's texels, each once; how many. empty: some texel has none. */
+/* The distinct ids of a cell's texels; returns their number. *empty: some texel has no depth. */
 static int cell_ids(const struct texel *t, int stride, uint32_t ids[CELL_IDS], bool *empty)
 {
     const struct texel *cell[4] = {t, t + 1, t + stride, t + stride + 1};
@@ -68,11 +71,11 @@ static int cell_ids(const struct texel *t, int stride, uint32_t ids[CELL_IDS], b
     return count;
 }
 
-/* Whether two ids do not tell a cell's surfaces. */
+/* Whether the cell does not fit into two words. */
 static bool is_many(int count, bool empty) { return count > 2 || (count == 2 && empty); }
 
-/* Numbers the surfaces in the middle of a cell, at (u, v): each segment's plane meets another's until all of its surface
- * are linked. (On a slope, those at opposite corners need not meet.) How many there are. */
+/* Numbers the surfaces of a cell whose middle is (u, v); returns their number. Segments whose planes agree there are
+ * linked, and a surface is a connected component: on a slope, segments at opposite corners need not agree. */
 static int cell_surfaces(const uint32_t ids[CELL_IDS], int count, const struct layered_depth *d, double u, double v,
                          uint8_t surface[CELL_IDS])
 {
@@ -97,7 +100,7 @@ static int cell_surfaces(const uint32_t ids[CELL_IDS], int count, const struct l
     return surfaces;
 }
 
-/* The cells, and the list of those of many segments. */
+/* Makes the cells and the list of cells of many segments. */
 static enum status index_cells(struct layer_view *lv, const struct layered_depth *d, struct err *err)
 {
     const size_t row = (size_t)lv->stride, rows = (size_t)lv->height + 2;
@@ -162,7 +165,7 @@ enum status layer_view_pack(struct layer_view *lv, struct layered_depth *depth, 
     *lv = (struct layer_view){.width = w, .height = h, .stride = stride};
     lv->texels = aligned_alloc(64, (size + 63) / 64 * 64);
     lv->photo = calloc((size_t)stride * (size_t)(h + 3), sizeof *lv->photo);
-    for (int k = 0; k < 2; k++) /* sixteen are read at a time */
+    for (int k = 0; k < 2; k++) /* padding: sixteen words are read at a time */
         lv->cells[k] = calloc((size_t)stride * (size_t)(h + 3) + 16, sizeof *lv->cells[k]);
     lv->shapes = calloc((size_t)depth->segment_count + 1, sizeof *lv->shapes);
     if (!lv->texels || !lv->photo || !lv->cells[0] || !lv->cells[1] || !lv->shapes) {
@@ -184,8 +187,8 @@ enum status layer_view_pack(struct layer_view *lv, struct layered_depth *depth, 
                     const uint32_t id = t->id[l];
                     layer_view_release(lv);
                     return err_set(err, ST_DATA,
-                                   "depth map of view %s: pixel (%d, %d) belongs to segment %u, but it "
-                                   "has %d segments. Make it again.",
+                                   "depth map of view %s: pixel (%d, %d) belongs to segment %u, but there are only %d "
+                                   "segments. Make the depth map again.",
                                    name, x, y, id, depth->segment_count);
                 }
                 if (t->id[l])

@@ -1,52 +1,52 @@
-/* layer_view.h - a view's two layers packed for rendering, in the order in which they are read: 40 bytes a pixel, and
- * 64 for each cell of more than two segments.
+/* layer_view.h - a view's two layers, packed for rendering: 40 bytes a pixel, and 64 for each cell of many segments.
  *
- * A cell is what lies between the centres of a texel, its right, lower and diagonal neighbour. Where all of it belongs
- * to one surface, its colour is that of the photo, whichever of its segments asks; elsewhere a segment's coverage and
- * colour are the sums over its own texels. */
+ * A cell is the square between the centres of a texel and of its right, lower and diagonal neighbours. In a cell of one
+ * surface every segment has the photo's colour; in a split cell a segment's coverage and colour are sums over its own
+ * texels. */
 #ifndef REMODEL_LAYER_VIEW_H
 #define REMODEL_LAYER_VIEW_H
 
 #include "common/layers/layered_depth.h"
 
-/* Neighbours are joined if their depths differ by at most this many times sqrt(sigma_a^2 + sigma_b^2), relative. */
+/* Adjacent segments are one surface if their depths differ, relatively, by at most this times
+ * sqrt(sigma_a^2 + sigma_b^2). */
 #define JOIN_SIGMAS 2.0
 
-#define TEXEL_JOINED 0x80000000u /* in id[0]: the cell of this texel and its right, lower and diagonal neighbour */
+#define TEXEL_JOINED 0x80000000u /* flag in id[0]: the cell that begins at this texel is one surface */
 
-struct texel { /* of both layers, 0 interior and 1 boundary */
+struct texel { /* layer 0: interior, 1: boundary */
     uint32_t id[2];
     uint16_t rgba[2][4]; /* half */
 };
 
-/* What segments a cell has, in two words: the first one's id and the flags; the second one's id, 0 for none. Or with
- * CELL_MANY the first holds the place in the list of ids, and the second is 0. */
-#define CELL_SPLIT 0x80000000u /* its segments are not of one surface, or it is at a border of what is known */
+/* A cell's segments in two words: id of the first segment and flags; id of the second segment, 0 if there is none. With
+ * CELL_MANY the first word is an index into the list of cells of many segments, and the second is 0. */
+#define CELL_SPLIT 0x80000000u /* its segments are several surfaces, or some texel has no depth */
 #define CELL_MANY  0x40000000u
-#define CELL_IDS   8 /* of a cell with many, 0 where there are fewer */
+#define CELL_IDS   8 /* ids of a cell of many segments, padded with 0 */
 
-struct many_cell { /* of more than two segments, or of two at a border; surface[i] tells which are of one surface */
+struct many_cell { /* a cell of more than two segments, or of two beside a texel without depth */
     uint32_t id[CELL_IDS];
-    uint8_t surface[CELL_IDS];
+    uint8_t surface[CELL_IDS]; /* number of each segment's surface in this cell */
     uint8_t padding[24];
 };
 
 struct segment_shape {
-    int x0, y0, x1, y1; /* its texels, inclusive; x1 < x0: it has none */
-    double u, v;        /* the centre of its interior (or of all it has) */
+    int x0, y0, x1, y1; /* bounding box of its texels, inclusive; x1 < x0: it has none */
+    double u, v;        /* centroid of its interior; without interior, centre of the bounding box */
     double pixels;      /* of its interior */
 };
 
 struct layer_view {
-    int width, height, stride; /* stride of the texels: one of padding on the left and above, two right and below */
+    int width, height, stride; /* stride of the texels; padding: one texel left and above, two right and below */
     struct texel *texels;
-    uint16_t (*photo)[4]; /* both layers composited: half, premultiplied; stride and padding of the texels */
-    uint32_t *cells[2];   /* first and second word of the cell that begins at a texel */
+    uint16_t (*photo)[4]; /* both layers composited: half, premultiplied; same stride and padding */
+    uint32_t *cells[2];   /* first and second word of the cell that begins at each texel */
     struct many_cell *many;
-    struct segment_shape *shapes; /* parallel to the depth map's segments */
+    struct segment_shape *shapes; /* of the depth map's segments, in their order */
 };
 
-/* The layers' planes of `depth` are freed. ST_DATA: an id without segment. */
+/* Packs `depth` and frees its layers' planes; its segments stay. ST_DATA: a pixel's id has no segment. ST_NOMEM. */
 enum status layer_view_pack(struct layer_view *lv, struct layered_depth *depth, const char *name, struct err *err);
 void layer_view_release(struct layer_view *lv);
 

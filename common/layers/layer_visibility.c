@@ -1,4 +1,18 @@
-/* layer_visibility.c - see layer_visibility.h. */
+/* layer_visibility.c - visibility of one view's segments in a novel camera.
+ *
+ * Drawing a segment writes no colour. For each pixel of a tile it keeps the two nearest surfaces that have texels
+ * there, each by its nearest segment, and the front's position in the view. Colour is looked up afterwards, once per
+ * pixel, however many segments were drawn. Segments need no sorting, and eight pixels are drawn at once. [Colburn 2014,
+ * 3.6.1] draws colour, segments sorted by the depth of the centremost camera.
+ *
+ * Two segments are one surface if their 1/z differ by at most surface_gap, relatively. The two surfaces do not depend
+ * on the order in which segments are drawn, except where three or more at one pixel form a chain, each within the
+ * tolerance of the next but not the first of the last: where the chain is cut depends on the order. That order is the
+ * tile's list, which is always the same.
+ *
+ * Sampling: where all texels of a cell are one surface, the photo itself is looked up, so that neither seams between
+ * segments nor the soft alpha of their boundaries show. In a split cell the texels of the segment's surface alone are
+ * summed, which gives its coverage and premultiplied colour. */
 #include "common/layers/layer_visibility.h"
 
 #include <immintrin.h>
@@ -7,20 +21,22 @@
 
 #include "common/layers/soft_z.h"
 
-#define BORDER 0.05f /* of the picture's long side: where a view fades out towards its border */
+#define BORDER 0.05f /* width of the band in which a view fades out towards its border, of the picture's long side */
 
 /* --------------------------------------------------------------------------------------------- segments in tiles */
 
-static enum status room(void *buffer, size_t *have, size_t count, size_t size, struct err *err)
+/* Room for `count` items; the old contents are lost. */
+static enum status reserve(void *buffer, size_t *capacity, size_t count, size_t size, struct err *err)
 {
     void **at = buffer;
-    if (count <= *have) return ST_OK;
+    if (count <= *capacity) return ST_OK;
     free(*at);
     *at = malloc((count + count / 4) * size);
-    *have = *at ? count + count / 4 : 0;
+    *capacity = *at ? count + count / 4 : 0;
     return *at ? ST_OK : err_nomem(err, "a view's segments in a frame", count * size);
 }
 
+/* Linear form row . (x, y, 1), relative to (x, y). */
 static void form_at(float form[3], const double row[3], double x, double y)
 {
     form[0] = (float)(row[0] * x + row[1] * y + row[2]);
@@ -28,12 +44,12 @@ static void form_at(float form[3], const double row[3], double x, double y)
     form[2] = (float)row[1];
 }
 
-static struct drawn_segment drawn(const struct projected_segment *p, const struct depth_segment *segment)
+static struct drawn_segment drawn_segment_make(const struct projected_segment *p, const struct depth_segment *segment)
 {
     struct drawn_segment s = {.u0 = (float)p->u0, .v0 = (float)p->v0, .u1 = (float)p->u1, .v1 = (float)p->v1};
     const double x = p->x0 + 0.5, y = p->y0 + 0.5;
     s.id = segment->id;
-    s.apart = (float)(JOIN_SIGMAS * M_SQRT2 * fmax(segment->sigma, SOFT_Z_SIGMA_LEAST));
+    s.surface_gap = (float)(JOIN_SIGMAS * M_SQRT2 * fmax(segment->sigma, SOFT_Z_MIN_SIGMA));
     s.x0 = p->x0;
     s.y0 = p->y0;
     s.x1 = p->x1;
@@ -52,34 +68,35 @@ enum status drawn_view_prepare(struct drawn_view *dv, const struct layered_depth
     const int tiles_y = (novel->height + TILE_HEIGHT - 1) / TILE_HEIGHT;
     struct view_relation relation;
     enum status st =
-        room(&dv->segments, &dv->segment_room, (size_t)depth->segment_count + 1, sizeof *dv->segments, err);
+        reserve(&dv->segments, &dv->segment_capacity, (size_t)depth->segment_count + 1, sizeof *dv->segments, err);
 
-    if (!st) st = room(&dv->sigmas, &dv->sigma_room, (size_t)depth->segment_count + 1, sizeof *dv->sigmas, err);
+    if (!st) st = reserve(&dv->sigmas, &dv->sigma_capacity, (size_t)depth->segment_count + 1, sizeof *dv->sigmas, err);
     if (!st)
-        st = room(&dv->tile_begin, &dv->tile_room, (size_t)tiles_x * (size_t)tiles_y + 2, sizeof *dv->tile_begin, err);
+        st = reserve(&dv->tile_begin, &dv->tile_capacity, (size_t)tiles_x * (size_t)tiles_y + 2, sizeof *dv->tile_begin,
+                     err);
     if (st) return st;
     dv->tiles_x = tiles_x;
     dv->tile_count = tiles_x * tiles_y;
     dv->count = 0;
     for (int t = 0; t <= dv->tile_count + 1; t++) dv->tile_begin[t] = 0;
     view_relation_make(&relation, view, novel);
-    uint32_t *begins = dv->tile_begin + 1; /* while they are counted and filled: of tile t at t + 1 */
-    size_t places = 0;
+    uint32_t *begins = dv->tile_begin + 1; /* counting sort: tile t at t + 1 until the lists are filled */
+    size_t entries = 0;
     for (int i = 0; i < depth->segment_count; i++) {
         struct projected_segment p;
         if (!segment_project(&p, &relation, &depth->segments[i], &lv->shapes[i])) continue;
         const float sigma = (float)depth->segments[i].sigma;
-        dv->sigmas[dv->count] = sigma > SOFT_Z_SIGMA_LEAST ? sigma : SOFT_Z_SIGMA_LEAST;
-        dv->segments[dv->count++] = drawn(&p, &depth->segments[i]);
+        dv->sigmas[dv->count] = sigma > SOFT_Z_MIN_SIGMA ? sigma : SOFT_Z_MIN_SIGMA;
+        dv->segments[dv->count++] = drawn_segment_make(&p, &depth->segments[i]);
         for (int ty = p.y0 / TILE_HEIGHT; ty <= p.y1 / TILE_HEIGHT; ty++)
             for (int tx = p.x0 / TILE_WIDTH; tx <= p.x1 / TILE_WIDTH; tx++) {
                 begins[ty * tiles_x + tx]++;
-                places++;
+                entries++;
             }
     }
-    st = room(&dv->tile_segments, &dv->list_room, places + 1, sizeof *dv->tile_segments, err);
+    st = reserve(&dv->tile_segments, &dv->list_capacity, entries + 1, sizeof *dv->tile_segments, err);
     if (st) return st;
-    uint32_t sum = 0; /* begins[t]: from counts to where tile t begins */
+    uint32_t sum = 0; /* begins[t]: from the count of tile t to its first entry */
     for (int t = 0; t < dv->tile_count; t++) {
         const uint32_t count = begins[t];
         begins[t] = sum;
@@ -89,7 +106,8 @@ enum status drawn_view_prepare(struct drawn_view *dv, const struct layered_depth
         const struct drawn_segment *s = &dv->segments[i];
         for (int ty = s->y0 / TILE_HEIGHT; ty <= s->y1 / TILE_HEIGHT; ty++)
             for (int tx = s->x0 / TILE_WIDTH; tx <= s->x1 / TILE_WIDTH; tx++)
-                dv->tile_segments[begins[ty * tiles_x + tx]++] = (uint32_t)i; /* ends where the next one begins */
+                dv->tile_segments[begins[ty * tiles_x + tx]++] =
+                    (uint32_t)i; /* begins[t] ends at tile t + 1's first entry */
     }
     return ST_OK;
 }
@@ -106,7 +124,7 @@ void drawn_view_release(struct drawn_view *dv)
 
 /* ------------------------------------------------------------------------------------------------------ drawing */
 
-/* Of lanes in cells of many segments, those whose cell has a texel of the segment. */
+/* Of the given lanes, all in cells of many segments, those whose cell has a texel of segment `id`. */
 static inline int many_hits(int lanes, __m256i first, const struct layer_view *lv, __m256i id)
 {
     uint32_t word[8];
@@ -123,13 +141,14 @@ static inline int many_hits(int lanes, __m256i first, const struct layer_view *l
     return hits;
 }
 
+/* Eight lanes from eight bits. */
 static inline __m256i mask_of(int lanes)
 {
     const __m256i bits = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
     return _mm256_cmpeq_epi32(_mm256_and_si256(_mm256_set1_epi32(lanes), bits), bits);
 }
 
-/* Words at eight places; near: those are at base + near, 0 .. 15 each. */
+/* words[base + near], near from 0 to 15. */
 static inline __m256i words_near(const uint32_t *words, int base, __m256i near)
 {
     const __m256i low = _mm256_loadu_si256((const __m256i *)(const void *)(words + base));
@@ -138,7 +157,7 @@ static inline __m256i words_near(const uint32_t *words, int base, __m256i near)
                               _mm256_cmpgt_epi32(near, _mm256_set1_epi32(7)));
 }
 
-/* The words of the cells at eight places, of which lane `first` is the leftmost that matters. */
+/* Both words of the cells at the eight indices `at`; lane `first` is the leftmost that matters. */
 static inline void cell_words(uint32_t *const cells[2], __m256i at, int first, __m256i *word, __m256i *second)
 {
     const __m256i base = _mm256_permutevar8x32_epi32(at, _mm256_set1_epi32(first));
@@ -146,7 +165,7 @@ static inline void cell_words(uint32_t *const cells[2], __m256i at, int first, _
     const __m256i is_near =
         _mm256_cmpeq_epi32(_mm256_andnot_si256(_mm256_set1_epi32(15), near), _mm256_setzero_si256());
 
-    if (_mm256_movemask_epi8(is_near) == -1) { /* a gather takes three times as long */
+    if (_mm256_movemask_epi8(is_near) == -1) { /* three times as fast as a gather */
         const int begin = _mm_cvtsi128_si32(_mm256_castsi256_si128(base));
         *word = words_near(cells[0], begin, near);
         *second = words_near(cells[1], begin, near);
@@ -156,8 +175,9 @@ static inline void cell_words(uint32_t *const cells[2], __m256i at, int first, _
     }
 }
 
+/* Draws columns first .. last of one row; index: of the segment. */
 static void draw_row(struct tile_visibility *tv, size_t row, int first, int last, const struct drawn_segment *s,
-                     uint32_t place, const struct layer_view *lv, float y, int tile_x)
+                     uint32_t index, const struct layer_view *lv, float y, int tile_x)
 {
     const __m256 lanes = _mm256_setr_ps(0, 1, 2, 3, 4, 5, 6, 7), zero = _mm256_setzero_ps();
     const __m256 one = _mm256_set1_ps(1);
@@ -168,8 +188,8 @@ static void draw_row(struct tile_visibility *tv, size_t row, int first, int last
     const __m256 z_row = _mm256_set1_ps(s->inverse_z[0] + y * s->inverse_z[2]);
     const __m256 u0 = _mm256_set1_ps(s->u0), u1 = _mm256_set1_ps(s->u1), v0 = _mm256_set1_ps(s->v0),
                  v1 = _mm256_set1_ps(s->v1);
-    const __m256i id = _mm256_set1_epi32((int)s->id), me = _mm256_set1_epi32((int)place);
-    const __m256 apart = _mm256_set1_ps(s->apart);
+    const __m256i id = _mm256_set1_epi32((int)s->id), me = _mm256_set1_epi32((int)index);
+    const __m256 gap = _mm256_set1_ps(s->surface_gap);
     const __m256i full_bit = _mm256_set1_epi32((int)VISIBLE_FULL);
 
     for (int x = first; x <= last; x += 8) {
@@ -178,11 +198,11 @@ static void draw_row(struct tile_visibility *tv, size_t row, int first, int last
         const __m256 inverse = _mm256_add_ps(z_row, _mm256_mul_ps(dx, z_step));
         const __m256 front = _mm256_loadu_ps(tv->inverse_front + at);
         const __m256 behind = _mm256_loadu_ps(tv->inverse_behind + at);
-        const __m256i front_place = _mm256_loadu_si256((const __m256i *)(const void *)(tv->front + at));
-        /* nearer than the front; or behind a front that is not full, as another surface, and the nearest of those */
+        const __m256i front_index = _mm256_loadu_si256((const __m256i *)(const void *)(tv->front + at));
+        /* nearest: in front of the front; second: behind a front that is not full, another surface, the nearest such */
         const __m256 nearest = _mm256_cmp_ps(inverse, front, _CMP_GT_OQ);
-        const __m256 beyond = _mm256_cmp_ps(_mm256_sub_ps(front, inverse), _mm256_mul_ps(front, apart), _CMP_GT_OQ);
-        const __m256 second = _mm256_andnot_ps(_mm256_castsi256_ps(front_place),
+        const __m256 beyond = _mm256_cmp_ps(_mm256_sub_ps(front, inverse), _mm256_mul_ps(front, gap), _CMP_GT_OQ);
+        const __m256 second = _mm256_andnot_ps(_mm256_castsi256_ps(front_index),
                                                _mm256_and_ps(beyond, _mm256_cmp_ps(inverse, behind, _CMP_GT_OQ)));
         int wanted = _mm256_movemask_ps(_mm256_or_ps(nearest, second));
         if (last - x < 7) wanted &= (2 << (last - x)) - 1;
@@ -192,19 +212,19 @@ static void draw_row(struct tile_visibility *tv, size_t row, int first, int last
         const __m256 scale = _mm256_div_ps(one, w);
         const __m256 u = _mm256_mul_ps(_mm256_add_ps(u_row, _mm256_mul_ps(dx, u_step)), scale);
         const __m256 v = _mm256_mul_ps(_mm256_add_ps(v_row, _mm256_mul_ps(dx, v_step)), scale);
-        const __m256 there =
+        const __m256 inside =
             _mm256_and_ps(_mm256_and_ps(_mm256_cmp_ps(u, u0, _CMP_GE_OQ), _mm256_cmp_ps(u, u1, _CMP_LT_OQ)),
                           _mm256_and_ps(_mm256_cmp_ps(v, v0, _CMP_GE_OQ), _mm256_cmp_ps(v, v1, _CMP_LT_OQ)));
-        wanted &= _mm256_movemask_ps(_mm256_and_ps(there, _mm256_cmp_ps(w, zero, _CMP_GT_OQ)));
+        wanted &= _mm256_movemask_ps(_mm256_and_ps(inside, _mm256_cmp_ps(w, zero, _CMP_GT_OQ)));
         if (!wanted) continue;
 
-        /* lanes that are not there look where the first one does that is */
+        /* lanes outside of the segment read the cell of the leftmost lane inside */
         const int leftmost = __builtin_ctz((unsigned)wanted);
         const __m256i column = _mm256_cvttps_epi32(u), line = _mm256_cvttps_epi32(v);
-        const __m256i place_of = _mm256_add_epi32(column, _mm256_mullo_epi32(line, _mm256_set1_epi32(lv->stride)));
-        const __m256i own_place = _mm256_permutevar8x32_epi32(place_of, _mm256_set1_epi32(leftmost));
-        const __m256i cell = _mm256_blendv_epi8(own_place, place_of, _mm256_castps_si256(there));
-        __m256i split, other; /* the sign of the first word is CELL_SPLIT */
+        const __m256i cell_of = _mm256_add_epi32(column, _mm256_mullo_epi32(line, _mm256_set1_epi32(lv->stride)));
+        const __m256i first_cell = _mm256_permutevar8x32_epi32(cell_of, _mm256_set1_epi32(leftmost));
+        const __m256i cell = _mm256_blendv_epi8(first_cell, cell_of, _mm256_castps_si256(inside));
+        __m256i split, other; /* the cells' words; CELL_SPLIT is the sign of the first */
         cell_words(lv->cells, cell, leftmost, &split, &other);
         const __m256i owner = _mm256_andnot_si256(_mm256_set1_epi32((int)CELL_SPLIT), split);
         const __m256i own = _mm256_or_si256(_mm256_cmpeq_epi32(owner, id), _mm256_cmpeq_epi32(other, id));
@@ -217,22 +237,22 @@ static void draw_row(struct tile_visibility *tv, size_t row, int first, int last
         const __m256 as_front = _mm256_and_ps(_mm256_castsi256_ps(hit), nearest);
         const __m256 as_second = _mm256_andnot_ps(nearest, _mm256_and_ps(_mm256_castsi256_ps(hit), second));
         const __m256i full = _mm256_andnot_si256(_mm256_srai_epi32(split, 31), full_bit);
-        const __m256i behind_place = _mm256_loadu_si256((const __m256i *)(const void *)(tv->behind + at));
-        /* the old front moves back, if it is another surface */
-        const __m256 before = _mm256_cmp_ps(_mm256_sub_ps(inverse, front), _mm256_mul_ps(inverse, apart), _CMP_GT_OQ);
+        const __m256i behind_index = _mm256_loadu_si256((const __m256i *)(const void *)(tv->behind + at));
+        /* the old front becomes the surface behind if it is another surface than the new one */
+        const __m256 before = _mm256_cmp_ps(_mm256_sub_ps(inverse, front), _mm256_mul_ps(inverse, gap), _CMP_GT_OQ);
         const __m256 back = _mm256_and_ps(as_front, before);
         __m256 new_behind = _mm256_blendv_ps(behind, front, back);
-        __m256 new_behind_place =
-            _mm256_blendv_ps(_mm256_castsi256_ps(behind_place), _mm256_castsi256_ps(front_place), back);
+        __m256 new_behind_index =
+            _mm256_blendv_ps(_mm256_castsi256_ps(behind_index), _mm256_castsi256_ps(front_index), back);
         new_behind = _mm256_blendv_ps(new_behind, inverse, as_second);
-        new_behind_place =
-            _mm256_blendv_ps(new_behind_place, _mm256_castsi256_ps(_mm256_or_si256(me, full)), as_second);
+        new_behind_index =
+            _mm256_blendv_ps(new_behind_index, _mm256_castsi256_ps(_mm256_or_si256(me, full)), as_second);
         _mm256_storeu_ps(tv->inverse_behind + at, new_behind);
-        _mm256_storeu_ps((float *)(void *)(tv->behind + at), new_behind_place);
+        _mm256_storeu_ps((float *)(void *)(tv->behind + at), new_behind_index);
         if (!_mm256_movemask_ps(as_front)) continue;
         _mm256_storeu_ps(tv->inverse_front + at, _mm256_blendv_ps(front, inverse, as_front));
         _mm256_storeu_ps((float *)(void *)(tv->front + at),
-                         _mm256_blendv_ps(_mm256_castsi256_ps(front_place),
+                         _mm256_blendv_ps(_mm256_castsi256_ps(front_index),
                                           _mm256_castsi256_ps(_mm256_or_si256(me, full)), as_front));
         _mm256_storeu_ps(tv->u + at, _mm256_blendv_ps(_mm256_loadu_ps(tv->u + at), u, as_front));
         _mm256_storeu_ps(tv->v + at, _mm256_blendv_ps(_mm256_loadu_ps(tv->v + at), v, as_front));
@@ -244,22 +264,22 @@ void visibility_draw(struct tile_visibility *tv, const struct drawn_view *dv, co
     const int tile_x = tile % dv->tiles_x * TILE_WIDTH, tile_y = tile / dv->tiles_x * TILE_HEIGHT;
 
     for (uint32_t i = dv->tile_begin[tile]; i < dv->tile_begin[tile + 1]; i++) {
-        const uint32_t place = dv->tile_segments[i];
-        const struct drawn_segment *s = &dv->segments[place];
+        const uint32_t index = dv->tile_segments[i];
+        const struct drawn_segment *s = &dv->segments[index];
         const int top = s->y0 > tile_y ? s->y0 - tile_y : 0;
         const int bottom = s->y1 < tile_y + TILE_HEIGHT - 1 ? s->y1 - tile_y : TILE_HEIGHT - 1;
         for (int y = top; y <= bottom; y++) {
             const int first = s->x0 > tile_x + tv->first[y] ? s->x0 : tile_x + tv->first[y];
             const int last = s->x1 < tile_x + tv->last[y] ? s->x1 : tile_x + tv->last[y];
             if (first > last) continue;
-            draw_row(tv, (size_t)y * TILE_STRIDE, first, last, s, place, lv, (float)(tile_y + y - s->y0), tile_x);
+            draw_row(tv, (size_t)y * TILE_STRIDE, first, last, s, index, lv, (float)(tile_y + y - s->y0), tile_x);
         }
     }
 }
 
 /* ------------------------------------------------------------------------------------------------------ sampling */
 
-/* The photo in the cell that begins at texel `at`. */
+/* Bilinear look-up of the photo in the cell that begins at texel `at`. */
 static inline __m128 photo_texel(const struct layer_view *lv, int at, float fu, float fv)
 {
     const uint16_t(*t)[4] = (const uint16_t(*)[4])lv->photo + at;
@@ -279,7 +299,7 @@ static void cubic_weights(float w[4], float t)
     w[3] = 0.5f * t3 - 0.5f * t2;
 }
 
-/* As photo_texel, by the four texels each way around; bilinear where any of the cells between them is split. */
+/* Catmull-Rom look-up [Catmull 1974] in 4 x 4 texels; falls back to photo_texel where one of their cells is split. */
 static __m128 photo_cubic(const struct layer_view *lv, int at, float fu, float fv)
 {
     float wu[4], wv[4];
@@ -311,18 +331,18 @@ static __m128 photo_at(const struct layer_view *lv, float u, float v)
     return photo_texel(lv, j * lv->stride + i, u - (float)i, v - (float)j);
 }
 
-/* Where the ids of a texel's layers are one of `ids`, as a mask of eight lanes: 0..3 interior, 4..7 boundary. */
+/* Mask of the layers of a texel whose id is one of `ids`; eight lanes: 0..3 interior, 4..7 boundary. */
 static inline __m256 layers_of(const struct texel *t, const uint32_t *ids, int count)
 {
     const __m256i spread = _mm256_set_epi32(1, 1, 1, 1, 0, 0, 0, 0);
     const __m128i id_bits = _mm_set1_epi32((int)~TEXEL_JOINED);
     const __m128i own = _mm_and_si128(_mm_loadl_epi64((const __m128i *)(const void *)t->id), id_bits);
-    __m128i is = _mm_setzero_si128();
-    for (int i = 0; i < count; i++) is = _mm_or_si128(is, _mm_cmpeq_epi32(own, _mm_set1_epi32((int)ids[i])));
-    return _mm256_castsi256_ps(_mm256_permutevar8x32_epi32(_mm256_castsi128_si256(is), spread));
+    __m128i found = _mm_setzero_si128();
+    for (int i = 0; i < count; i++) found = _mm_or_si128(found, _mm_cmpeq_epi32(own, _mm_set1_epi32((int)ids[i])));
+    return _mm256_castsi256_ps(_mm256_permutevar8x32_epi32(_mm256_castsi128_si256(found), spread));
 }
 
-/* Those of the cell's segments that are of one surface with segment `id`; how many. */
+/* Segments of the cell that are one surface with segment `id`, itself included. Returns their number. */
 static int same_surface(const struct layer_view *lv, size_t at, uint32_t id, uint32_t ids[CELL_IDS])
 {
     const uint32_t word = lv->cells[0][at];
@@ -337,7 +357,7 @@ static int same_surface(const struct layer_view *lv, size_t at, uint32_t id, uin
     return count;
 }
 
-/* Coverage and premultiplied colour of the surface of segment `id` in a split cell. */
+/* Coverage and premultiplied colour of segment `id`'s surface in a split cell. */
 static __m128 surface_at(const struct layer_view *lv, uint32_t id, float u, float v)
 {
     const int i = (int)u, j = (int)v;
@@ -360,7 +380,7 @@ static __m128 surface_at(const struct layer_view *lv, uint32_t id, float u, floa
 
 static inline float alpha_of(__m128 rgba) { return _mm_cvtss_f32(_mm_shuffle_ps(rgba, rgba, 0xFF)); }
 
-/* How far texel positions are inside the picture: 0 at its border, 1 from BORDER of its long side on. */
+/* Fade towards the picture's border at texel positions (u, v): 0 at the border, 1 from BORDER on. */
 static inline __m256 inside8(const struct layer_view *lv, __m256 u, __m256 v)
 {
     const float across = (float)(lv->width > lv->height ? lv->width : lv->height) * BORDER;
@@ -372,7 +392,7 @@ static inline __m256 inside8(const struct layer_view *lv, __m256 u, __m256 v)
     return _mm256_min_ps(_mm256_set1_ps(1), part);
 }
 
-/* What is behind a front that leaves something free: saturating, front to back. */
+/* Coverage and premultiplied colour of segment b at target pixel (x, y). */
 static __m128 behind_at(const struct drawn_segment *b, bool full, const struct layer_view *lv, int x, int y)
 {
     const float dx = (float)(x - b->x0), dy = (float)(y - b->y0);
@@ -382,17 +402,17 @@ static __m128 behind_at(const struct drawn_segment *b, bool full, const struct l
     return full ? photo_at(lv, u, v) : surface_at(lv, b->id, u, v);
 }
 
-/* A pixel whose front does not fill it. */
+/* Samples a pixel that its front covers only partly: saturating compositing, front to back. */
 static void sample_split(struct view_samples *s, struct view_samples *behind, const struct tile_visibility *tv,
                          const struct drawn_view *dv, const struct layer_view *lv, size_t i, int x, int y)
 {
-    const uint32_t place = tv->behind[i];
+    const uint32_t index = tv->behind[i];
     __m128 sum = surface_at(lv, dv->segments[tv->front[i]].id, tv->u[i], tv->v[i]);
     const float alpha = alpha_of(sum);
 
-    if (place != VISIBLE_NONE && alpha < 1) {
-        const uint32_t at = place & ~VISIBLE_FULL;
-        const __m128 back = behind_at(&dv->segments[at], place & VISIBLE_FULL, lv, x, y);
+    if (index != VISIBLE_NONE && alpha < 1) {
+        const uint32_t at = index & ~VISIBLE_FULL;
+        const __m128 back = behind_at(&dv->segments[at], index & VISIBLE_FULL, lv, x, y);
         const float back_alpha = alpha_of(back), weight = back_alpha < 1 - alpha ? back_alpha : 1 - alpha;
         const __m128 rest = weight > 0 ? _mm_mul_ps(back, _mm_set1_ps(weight / back_alpha)) : _mm_setzero_ps();
         struct view_samples *to = behind ? behind : s;
@@ -401,7 +421,7 @@ static void sample_split(struct view_samples *s, struct view_samples *behind, co
             behind->alpha[i] = weight > 0 ? weight : 0;
         } else
             sum = _mm_add_ps(sum, rest);
-        if (behind || weight > alpha) { /* a pixel's depth is that of one surface, never a mean across a jump */
+        if (behind || weight > alpha) { /* depth of the dominant surface, never a mean across a depth jump */
             to->z[i] = 1 / tv->inverse_behind[i];
             to->sigma[i] = dv->sigmas[at];
         }
@@ -419,14 +439,14 @@ static void sample_nothing(struct view_samples *s, size_t i)
 void visibility_sample8(struct view_samples *s, struct view_samples *behind, const struct tile_visibility *tv,
                         const struct drawn_view *dv, const struct layer_view *lv, size_t i, int tile_x, int tile_y)
 {
-    const __m256i place = _mm256_loadu_si256((const __m256i *)(const void *)(tv->front + i));
-    const __m256i none = _mm256_cmpeq_epi32(place, _mm256_set1_epi32(-1));
+    const __m256i index = _mm256_loadu_si256((const __m256i *)(const void *)(tv->front + i));
+    const __m256i none = _mm256_cmpeq_epi32(index, _mm256_set1_epi32(-1));
     const int empty = _mm256_movemask_ps(_mm256_castsi256_ps(none));
-    const int full = _mm256_movemask_ps(_mm256_castsi256_ps(place)) & ~empty;
-    const __m256 there = _mm256_castsi256_ps(_mm256_xor_si256(none, _mm256_set1_epi32(-1)));
-    const __m256 u = _mm256_and_ps(there, _mm256_loadu_ps(tv->u + i)),
-                 v = _mm256_and_ps(there, _mm256_loadu_ps(tv->v + i));
-    const __m256i segment = _mm256_andnot_si256(none, _mm256_and_si256(place, _mm256_set1_epi32((int)~VISIBLE_FULL)));
+    const int full = _mm256_movemask_ps(_mm256_castsi256_ps(index)) & ~empty;
+    const __m256 present = _mm256_castsi256_ps(_mm256_xor_si256(none, _mm256_set1_epi32(-1)));
+    const __m256 u = _mm256_and_ps(present, _mm256_loadu_ps(tv->u + i)),
+                 v = _mm256_and_ps(present, _mm256_loadu_ps(tv->v + i));
+    const __m256i segment = _mm256_andnot_si256(none, _mm256_and_si256(index, _mm256_set1_epi32((int)~VISIBLE_FULL)));
 
     if (behind) _mm256_storeu_ps(behind->alpha + i, _mm256_setzero_ps());
     if (empty == 0xFF) {

@@ -1,11 +1,11 @@
 /* layered_depth.c - reading and writing layered depth maps; formats in docs/formats.md.
  *
- * VIEW.txt, in front of the picture because a picture without its segments cannot be used:
+ * VIEW.txt, written before the picture because a picture without its segments is useless:
  *   remodel-segments 1
  *   size WIDTH HEIGHT
  *   segments COUNT
- *   ID PIXELS A B C SIGMA CONFIDENCE      a line a segment, ids 1 .. COUNT in order
- * What is read is checked against itself, so that whoever uses it may index segments by id without looking. */
+ *   ID PIXELS A B C SIGMA CONFIDENCE      one line per segment, ids 1 .. COUNT in order
+ * Readers check both files against each other, so that callers may index segments by id without checks. */
 #include "common/layers/layered_depth.h"
 
 #include <limits.h>
@@ -78,19 +78,19 @@ struct depth_shares layered_depth_shares(const struct layered_depth *d)
     return (struct depth_shares){(double)unknown / (double)pixels, (double)inherited / (double)pixels};
 }
 
-/* PATH.exr -> PATH.txt; the caller frees it. */
+/* PATH.exr -> PATH.txt; the caller frees *text. */
 static enum status text_path(char **text, const char *path, struct err *err)
 {
     size_t n = strlen(path);
     if (n < 5 || strcmp(path + n - 4, ".exr"))
-        return err_set(err, ST_USAGE, "%s: a depth map is a file whose name ends in .exr.", path);
+        return err_set(err, ST_USAGE, "%s: the name of a depth map must end in .exr.", path);
     *text = strdup(path);
     if (!*text) return err_nomem(err, "a file name", n + 1);
     memcpy(*text + n - 4, ".txt", 4);
     return ST_OK;
 }
 
-/* What could not be read back is not written. */
+/* Refuses segments that could not be read back. */
 static enum status check_segments(const struct layered_depth *d, const char *path, struct err *err)
 {
     for (int i = 0; i < d->segment_count; i++) {
@@ -180,14 +180,14 @@ static enum status expect_word(struct textfile *t, const char *wanted, struct er
     return strcmp(word, wanted) ? textfile_error(t, err, word, "'%s'", wanted) : ST_OK;
 }
 
-static enum status read_segment(struct depth_segment *s, struct textfile *t, int id, int64_t pixels_most,
+static enum status read_segment(struct depth_segment *s, struct textfile *t, int id, int64_t max_pixels,
                                 struct err *err)
 {
     int64_t id_read, pixels;
     char found[32];
     if (!textfile_next(t)) return textfile_error(t, err, NULL, "a line of segment %d", id);
     if (textfile_int(t, "segment id", id, id, &id_read, err) ||
-        textfile_int(t, "pixels", 0, pixels_most, &pixels, err) || textfile_double(t, "plane a", &s->plane[0], err) ||
+        textfile_int(t, "pixels", 0, max_pixels, &pixels, err) || textfile_double(t, "plane a", &s->plane[0], err) ||
         textfile_double(t, "plane b", &s->plane[1], err) || textfile_double(t, "plane c", &s->plane[2], err) ||
         textfile_double(t, "sigma", &s->sigma, err) || textfile_double(t, "confidence", &s->confidence, err) ||
         textfile_end(t, err))
@@ -215,7 +215,7 @@ enum status layered_depth_read_segments(struct layered_depth *d, const char *pat
     if (!st) st = textfile_int(&t, "height", 1, INT_MAX / width, &height, err);
     if (!st) st = textfile_end(&t, err);
     if (!st) st = expect_word(&t, "segments", err);
-    /* at least 14 bytes a line: a count that the file cannot hold is not believed */
+    /* a line has at least 14 bytes: rejects counts that the file cannot hold, before memory is allocated */
     if (!st) st = textfile_int(&t, "number of segments", 0, (int64_t)(t.size / 14 + 1), &count, err);
     if (!st) st = textfile_end(&t, err);
     if (!st) {
@@ -259,7 +259,7 @@ static enum status take_layer(struct layer *l, const struct exr_image *im, const
     return ST_OK;
 }
 
-/* layers: 1, the interior alone, or 2. */
+/* layers: 1 (interior only) or 2. */
 static enum status read_layers(struct layered_depth *d, const char *path, int layers, struct err *err)
 {
     struct exr_image im = {0};
@@ -268,7 +268,7 @@ static enum status read_layers(struct layered_depth *d, const char *path, int la
     if (!st) st = layered_depth_read_segments(d, text, err);
     if (!st) st = exr_read(&im, path, plane_names, layers * PLANES_A_LAYER, err);
     if (!st && (im.width != d->width || im.height != d->height))
-        st = err_set(err, ST_DATA, "%s has %d x %d pixels but %s speaks of %d x %d; make the depth map again.", path,
+        st = err_set(err, ST_DATA, "%s has %d x %d pixels, but %s says %d x %d; make the depth map again.", path,
                      im.width, im.height, text, d->width, d->height);
     for (int i = 0; !st && i < layers; i++) {
         struct layer *l = i ? &d->boundary : &d->interior;
@@ -303,8 +303,10 @@ enum status layered_depth_read_ids(struct layered_depth *d, const char *path, st
     if (!st) st = exr_read(&im, path, name, 1, err);
     struct exr_plane *ids = st ? NULL : exr_find(&im, name[0]);
     if (!st && (im.width != d->width || im.height != d->height || !ids->u))
-        st = err_set(err, ST_DATA, "%s does not hold the %d x %d ids that %s speaks of; make the depth map again.",
-                     path, d->width, d->height, text);
+        st =
+            err_set(err, ST_DATA,
+                    "%s: interior.id is not the plane of %d x %d integers that %s announces; make the depth map again.",
+                    path, d->width, d->height, text);
     for (size_t i = 0; !st && i < (size_t)im.width * (size_t)im.height; i++)
         if (ids->u[i] > (uint32_t)d->segment_count)
             st = err_set(err, ST_DATA,

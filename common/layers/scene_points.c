@@ -3,15 +3,15 @@
 
 #include <stdlib.h>
 
-#define CENTRAL_PART 0.5
+#define CENTRAL_PART 0.5 /* of the picture's width and height */
 
 enum status scene_points_collect(struct scene_points *points, const struct layer_scene *scene, struct err *err)
 {
     const struct camera_set *set = scene->set;
-    size_t most = 1;
-    for (int i = 0; i < set->view_count; i++) most += (size_t)scene->depths[i].segment_count;
-    *points = (struct scene_points){.points = malloc(most * sizeof *points->points)};
-    if (!points->points) return err_nomem(err, "the segments' places", most * sizeof *points->points);
+    size_t max_count = 1;
+    for (int i = 0; i < set->view_count; i++) max_count += (size_t)scene->depths[i].segment_count;
+    *points = (struct scene_points){.points = malloc(max_count * sizeof *points->points)};
+    if (!points->points) return err_nomem(err, "the points of a scene", max_count * sizeof *points->points);
     for (int i = 0; i < set->view_count; i++)
         for (int k = 0; k < scene->depths[i].segment_count; k++) {
             const struct view *v = &set->views[i];

@@ -1,5 +1,4 @@
-/* scene_points.h - the middle of every segment of a scene, in the world: what is where, a few thousand points in
- * all. */
+/* scene_points.h - the centroids of all segments of a scene as world points: a coarse point cloud of a few thousand. */
 #ifndef REMODEL_SCENE_POINTS_H
 #define REMODEL_SCENE_POINTS_H
 
@@ -9,9 +8,9 @@
 
 struct scene_point {
     struct vec3 position;
-    double weight; /* the segment's pixels */
+    double weight; /* pixels of the segment */
     int view;
-    bool central; /* in the middle of its view's picture, half of its width and height */
+    bool central; /* in the middle half of its view's picture, in width and in height */
 };
 
 struct scene_points {
@@ -19,7 +18,7 @@ struct scene_points {
     size_t count;
 };
 
-/* ST_DATA: no segment has a depth. */
+/* ST_DATA: no segment has a depth. ST_NOMEM. */
 enum status scene_points_collect(struct scene_points *points, const struct layer_scene *scene, struct err *err);
 void scene_points_release(struct scene_points *points);
 

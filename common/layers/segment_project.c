@@ -1,12 +1,18 @@
-/* segment_project.c - see segment_project.h. */
+/* segment_project.c - projection of planar segments into a novel camera.
+ *
+ * A segment's plane p = (a, b, c), 1/z = p . (u, v, 1), and the relative pose X_view = R X_novel + t give, in pixels,
+ *   M = K_view R K_novel^-1,   k = K_view t,   m = M^T p / (1 - p . k)
+ *   1/z_novel = m . (x, y, 1),   (u, v, 1) ~ (M + k m^T) (x, y, 1)
+ * the homography that the plane induces [Hartley 2004, 13.1]. The segment is not visible if 1 - p . k <= 0: the novel
+ * camera is behind the plane. */
 #include "common/layers/segment_project.h"
 
 #include <math.h>
 #include <string.h>
 
-#define SLACK        1e-3 /* px */
-#define LEAST_FACING 1e-6 /* 1 - p . k: below, the plane is seen edge-on or from behind */
-#define LEAST_RATIO  1e-6 /* of a depth in the novel camera to the depth in the view */
+#define SLACK      1e-3 /* px */
+#define MIN_FACING 1e-6 /* min 1 - p . k: below, the plane is seen edge-on or from behind */
+#define MIN_RATIO  1e-6 /* min ratio of the depths in the novel camera and in the view */
 
 static struct mat3 intrinsics(const struct view *v)
 {
@@ -18,6 +24,7 @@ static struct mat3 intrinsics_inverse(const struct view *v)
     return (struct mat3){{{1 / v->fx, 0, -v->cx / v->fx}, {0, 1 / v->fy, -v->cy / v->fy}, {0, 0, 1}}};
 }
 
+/* M and k of the pair of cameras. */
 static void relate(double m[3][3], double k[3], const struct view *to, const struct view *from)
 {
     const struct mat3 r = mat3_multiply(to->cam_from_world, mat3_transpose(from->cam_from_world));
@@ -40,14 +47,14 @@ void view_relation_make(struct view_relation *r, const struct view *view, const 
 
 static double row_at(const double row[3], double x, double y) { return row[0] * x + row[1] * y + row[2]; }
 
-/* Keeps the part of a convex polygon where row . (u, v, 1) >= least. */
-static int clip_polygon(double (*points)[2], int count, const double row[3], double least)
+/* Clips a convex polygon to the half plane row . (u, v, 1) >= min. Returns the number of its points. */
+static int clip_polygon(double (*points)[2], int count, const double row[3], double min)
 {
     double kept[16][2];
     int n = 0;
     for (int i = 0; i < count; i++) {
         const double *a = points[i], *b = points[(i + 1) % count];
-        const double fa = row_at(row, a[0], a[1]) - least, fb = row_at(row, b[0], b[1]) - least;
+        const double fa = row_at(row, a[0], a[1]) - min, fb = row_at(row, b[0], b[1]) - min;
         if (fa >= 0) {
             kept[n][0] = a[0];
             kept[n++][1] = a[1];
@@ -62,7 +69,7 @@ static int clip_polygon(double (*points)[2], int count, const double row[3], dou
     return n;
 }
 
-/* The target pixels that the rectangle [u0, u1] x [v0, v1] of the plane can touch; false if there are none. */
+/* Bounding box of the target pixels that the rectangle [u0, u1] x [v0, v1] of the plane touches; false: none. */
 static bool target_rectangle(struct projected_segment *s, const struct view_relation *r, const double plane[3],
                              double to_target[3][3], double u0, double v0, double u1, double v1, double inverse_z)
 {
@@ -72,11 +79,11 @@ static bool target_rectangle(struct projected_segment *s, const struct view_rela
     bool inside = true;
 
     for (int i = 0; i < 4; i++)
-        inside &= row_at(plane, points[i][0], points[i][1]) >= LEAST_RATIO * inverse_z &&
-                  row_at(to_target[2], points[i][0], points[i][1]) >= LEAST_RATIO;
+        inside &= row_at(plane, points[i][0], points[i][1]) >= MIN_RATIO * inverse_z &&
+                  row_at(to_target[2], points[i][0], points[i][1]) >= MIN_RATIO;
     if (!inside) {
-        count = clip_polygon(points, count, plane, LEAST_RATIO * inverse_z);
-        count = clip_polygon(points, count, to_target[2], LEAST_RATIO);
+        count = clip_polygon(points, count, plane, MIN_RATIO * inverse_z);
+        count = clip_polygon(points, count, to_target[2], MIN_RATIO);
     }
     for (int i = 0; i < count; i++) {
         const double w = 1 / row_at(to_target[2], points[i][0], points[i][1]);
@@ -88,7 +95,7 @@ static bool target_rectangle(struct projected_segment *s, const struct view_rela
         y1 = y > y1 ? y : y1;
     }
     if (!(x1 > 0 && y1 > 0 && x0 < r->width && y0 < r->height)) return false;
-    s->x0 = x0 > 0.5 + SLACK ? (int)ceil(x0 - 0.5 - SLACK) : 0; /* pixels whose centres are within */
+    s->x0 = x0 > 0.5 + SLACK ? (int)ceil(x0 - 0.5 - SLACK) : 0; /* pixels whose centres are inside */
     s->y0 = y0 > 0.5 + SLACK ? (int)ceil(y0 - 0.5 - SLACK) : 0;
     s->x1 = x1 - 0.5 + SLACK < r->width - 1 ? (int)floor(x1 - 0.5 + SLACK) : r->width - 1;
     s->y1 = y1 - 0.5 + SLACK < r->height - 1 ? (int)floor(y1 - 0.5 + SLACK) : r->height - 1;
@@ -103,7 +110,7 @@ bool segment_project(struct projected_segment *s, const struct view_relation *r,
     const double inverse_z = row_at(p, shape->u, shape->v);
     double to_target[3][3];
 
-    if (shape->x1 < shape->x0 || !(facing > LEAST_FACING) || !(inverse_z > 0)) return false;
+    if (shape->x1 < shape->x0 || !(facing > MIN_FACING) || !(inverse_z > 0)) return false;
     for (int i = 0; i < 3; i++)
         for (int c = 0; c < 3; c++) to_target[i][c] = r->inverse_m[i][c] + r->inverse_k[i] * p[c];
     if (!target_rectangle(s, r, p, to_target, shape->x0 - 0.5, shape->y0 - 0.5, shape->x1 + 1.5, shape->y1 + 1.5,
@@ -112,7 +119,7 @@ bool segment_project(struct projected_segment *s, const struct view_relation *r,
     for (int i = 0; i < 3; i++) s->inverse_z[i] = (r->m[0][i] * p[0] + r->m[1][i] * p[1] + r->m[2][i] * p[2]) / facing;
     for (int i = 0; i < 3; i++)
         for (int c = 0; c < 3; c++) s->from_target[i][c] = r->m[i][c] + r->k[i] * s->inverse_z[c];
-    /* pixel (u, v) has its centre at + 0.5 and the texels have one of padding: index = u - 0.5 + 1 */
+    /* pixel centres are at + 0.5 and the padding is one texel: index = u - 0.5 + 1 */
     for (int i = 0; i < 2; i++)
         for (int c = 0; c < 3; c++) s->from_target[i][c] += 0.5 * s->from_target[2][c];
     s->u0 = shape->x0;

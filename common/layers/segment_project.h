@@ -1,10 +1,6 @@
-/* segment_project.h - a view's segments, planes in its pixels, as a novel camera sees them.
+/* segment_project.h - projection of a view's segments, planes in its pixels, into a novel camera.
  *
- * A segment's plane p = (a, b, c), 1/z = p . (u, v, 1), and the relative pose X_view = R X_novel + t give, in
- * pixels,
- *   M = K_view R K_novel^-1,   k = K_view t,   m = M^T p / (1 - p . k)
- *   1/z_novel = m . (x, y, 1),   (u, v, 1) ~ (M + k m^T) (x, y, 1)
- * and 1 - p . k <= 0 where the novel camera is behind the plane: such a segment is not seen. */
+ * See segment_project.c. Pixel centres at + 0.5. */
 #ifndef REMODEL_SEGMENT_PROJECT_H
 #define REMODEL_SEGMENT_PROJECT_H
 
@@ -12,7 +8,7 @@
 
 #include "common/layers/layer_view.h"
 
-struct view_relation {                    /* "to pixels from pixels", both ways */
+struct view_relation {                    /* pixels from pixels: M and k of segment_project.c, both ways */
     double m[3][3], k[3];                 /* view from novel */
     double inverse_m[3][3], inverse_k[3]; /* novel from view */
     int width, height;                    /* of the novel camera */
@@ -21,14 +17,13 @@ struct view_relation {                    /* "to pixels from pixels", both ways 
 void view_relation_make(struct view_relation *r, const struct view *view, const struct view *novel);
 
 struct projected_segment {
-    /* target position (x, y; pixel centres at + 0.5) -> index into the padded texels, homogeneous */
-    double from_target[3][3];
-    double inverse_z[3];   /* 1/z_novel = inverse_z . (x, y, 1) */
-    double u0, v0, u1, v1; /* where in the padded texels it may have coverage */
-    int x0, y0, x1, y1;    /* target pixels, inclusive, that it may touch */
+    double from_target[3][3]; /* homography: target position (x, y, 1) -> index into the padded texels */
+    double inverse_z[3];      /* 1/z_novel = inverse_z . (x, y, 1) */
+    double u0, v0, u1, v1;    /* bounding box in the padded texels */
+    int x0, y0, x1, y1;       /* bounding box in target pixels, inclusive */
 };
 
-/* False if the novel camera cannot see it. */
+/* False: the novel camera cannot see the segment. */
 bool segment_project(struct projected_segment *s, const struct view_relation *r, const struct depth_segment *segment,
                      const struct segment_shape *shape);
 

@@ -1,4 +1,32 @@
-/* soft_z.c - see soft_z.h. */
+/* soft_z.c - the soft z-buffer [Pulli 1997], [Colburn 2014, 3.6.1, eq. 3.1].
+ *
+ * Views reconstruct the same surface at slightly different depths. A hard z-buffer picks one of them arbitrarily and
+ * flickers; the soft z-buffer gives a sample at distance dz behind the closest one the weight
+ *
+ *   w(dz) = 1                                               dz <= gamma
+ *           1/2 (1 + cos(pi (dz - gamma) / (rho - 2 gamma)))  gamma < dz <= rho - gamma
+ *           0                                               beyond;     gamma = rho / 10
+ *
+ * In the thesis rho is the scene's depth range. Here, with a width of k > 0 uncertainties, two depths z_a, z_b of
+ * relative uncertainties s_a, s_b have u = sqrt((s_a z_a)^2 + (s_b z_b)^2) and rho = 2 k u: the weight is 1/2 at
+ * dz = k u and 0 from 1.8 k u on.
+ *
+ * soft_z_blend8 (fast renderer, one sample per view). Colour is weighted by blend x w x alpha and normalised; depth is
+ * sum(w p z) / sum(w p), without blending weights. A view that enters or leaves must not make a jump, so a sample of
+ * small blending weight or alpha hides others, and counts in the depth, only by its presence p:
+ *   p = min(1, blend / 0.05) min(1, alpha / 0.5);  w_i = min over c closer than i of 1 - p_c (1 - w(z_i - z_c))
+ * This is the formula above wherever every p is 1.
+ *
+ * soft_z_merge (offline renderer, all fragments of all views in one buffer [Colburn 2014, 3.6.2]). Beyond the thesis,
+ * views vote. The support of a fragment is (for / (for + against))^2. For: the votes of all fragments at its depth, its
+ * own included. Against: fragments behind it, by the alpha that they have in excess of what it leaves free (their views
+ * look through it); and, by AGAINST_IN_FRONT, fragments in front of it, by the alpha that they have in excess of what
+ * its own view has there. A fragment hides others and counts by its support. Of several fragments in front, only the
+ * one that hides most counts, so that at a silhouette the share that the front leaves free stays with what is behind.
+ *
+ * The fragments of one view are averaged linearly: they share the pixel's area. Colours of different views are averaged
+ * as square roots: where views disagree, this mean is close to the perceived one, and a mean of radiances is too
+ * bright. The depth is that of the surface of largest weight, never a mean across a depth jump. */
 #include "common/layers/soft_z.h"
 
 #include <math.h>
@@ -11,7 +39,7 @@ float soft_z_weight(float dz, float gamma, float rho)
     return 0.5f * (1 + cosf((float)M_PI * (dz - gamma) / (rho - 2 * gamma)));
 }
 
-static float known_sigma(float sigma) { return sigma > SOFT_Z_SIGMA_LEAST ? sigma : SOFT_Z_SIGMA_LEAST; }
+static float known_sigma(float sigma) { return sigma > SOFT_Z_MIN_SIGMA ? sigma : SOFT_Z_MIN_SIGMA; }
 
 float soft_z_rho(const struct soft_z *s, float z_a, float sigma_a, float z_b, float sigma_b)
 {
@@ -20,20 +48,20 @@ float soft_z_rho(const struct soft_z *s, float z_a, float sigma_a, float z_b, fl
     return 2 * s->widths * sqrtf(a * a + b * b);
 }
 
-#define AGAINST_BEFORE 0.3f  /* what a fragment in front of another speaks against it */
-#define STANDING_WHOLE 0.25f /* a fragment of this standing hides wholly */
-#define BLOCKS         (SOFT_Z_MERGE_MOST / 8)
+#define AGAINST_IN_FRONT 0.3f  /* weight of the votes of fragments in front */
+#define FULL_SUPPORT     0.25f /* a fragment of this support hides completely */
+#define BLOCKS           (SOFT_Z_MAX_FRAGMENTS / 8)
 
-/* A pixel's fragments, eight a vector; what is beyond the last one votes for nothing and hides nothing. */
-struct merge {
-    float z[SOFT_Z_MERGE_MOST], square[SOFT_Z_MERGE_MOST]; /* square: of the uncertainty */
-    float vote[SOFT_Z_MERGE_MOST], alpha[SOFT_Z_MERGE_MOST], before[SOFT_Z_MERGE_MOST];
-    float standing[SOFT_Z_MERGE_MOST], there[SOFT_Z_MERGE_MOST], weight[SOFT_Z_MERGE_MOST];
-    __m256 apart[SOFT_Z_MERGE_MOST][BLOCKS]; /* 1 - w of each pair */
+/* A pixel's fragments, in vectors of eight; the padding has vote, alpha and presence 0. */
+struct fragment_merge {
+    float z[SOFT_Z_MAX_FRAGMENTS], square[SOFT_Z_MAX_FRAGMENTS]; /* square: of the uncertainty */
+    float vote[SOFT_Z_MAX_FRAGMENTS], alpha[SOFT_Z_MAX_FRAGMENTS], front_alpha[SOFT_Z_MAX_FRAGMENTS];
+    float support[SOFT_Z_MAX_FRAGMENTS], presence[SOFT_Z_MAX_FRAGMENTS], weight[SOFT_Z_MAX_FRAGMENTS];
+    __m256 separation[SOFT_Z_MAX_FRAGMENTS][BLOCKS]; /* 1 - w of each pair */
     int count, blocks;
 };
 
-static float at_most_one(float x) { return x < 1 ? x : 1; }
+static float clamp_one(float x) { return x < 1 ? x : 1; }
 
 static float sum8(__m256 v)
 {
@@ -42,28 +70,28 @@ static float sum8(__m256 v)
     return _mm_cvtss_f32(_mm_add_ss(two, _mm_shuffle_ps(two, two, 1)));
 }
 
-static float most8(__m256 v)
+static float max8(__m256 v)
 {
     const __m128 four = _mm_max_ps(_mm256_castps256_ps128(v), _mm256_extractf128_ps(v, 1));
     const __m128 two = _mm_max_ps(four, _mm_movehl_ps(four, four));
     return _mm_cvtss_f32(_mm_max_ss(two, _mm_shuffle_ps(two, two, 1)));
 }
 
-/* Whether all fragments are so near each other that none hides or speaks against another. */
+/* Whether all fragments are within gamma of each other, so that none hides or votes against another. */
 static bool one_surface(const struct soft_z *s, const struct soft_z_fragment *f, int count)
 {
-    float least = f[0].z, most = f[0].z, sure = f[0].uncertainty;
+    float min = f[0].z, max = f[0].z, uncertainty = f[0].uncertainty;
     for (int i = 1; i < count; i++) {
-        least = f[i].z < least ? f[i].z : least;
-        most = f[i].z > most ? f[i].z : most;
-        sure = f[i].uncertainty < sure ? f[i].uncertainty : sure;
+        min = f[i].z < min ? f[i].z : min;
+        max = f[i].z > max ? f[i].z : max;
+        uncertainty = f[i].uncertainty < uncertainty ? f[i].uncertainty : uncertainty;
     }
-    const float rho = s->widths > 0 ? 2 * s->widths * (float)M_SQRT2 * sure : s->range;
-    return most - least <= 0.1f * rho;
+    const float rho = s->widths > 0 ? 2 * s->widths * (float)M_SQRT2 * uncertainty : s->range;
+    return max - min <= 0.1f * rho;
 }
 
 /* 1 - w of fragment i and eight others. */
-static __m256 apart8(const struct merge *m, const struct soft_z *s, int i, int block, __m256 dz)
+static __m256 separation8(const struct fragment_merge *m, const struct soft_z *s, int i, int block, __m256 dz)
 {
     const __m256 one = _mm256_set1_ps(1), zero = _mm256_setzero_ps(), sign = _mm256_set1_ps(-0.0f);
     const __m256 rho =
@@ -72,43 +100,44 @@ static __m256 apart8(const struct merge *m, const struct soft_z *s, int i, int b
     return _mm256_sub_ps(one, _mm256_max_ps(zero, _mm256_min_ps(one, w)));
 }
 
-/* How far apart all pairs are, and every fragment's standing. */
-static void standings(struct merge *m, const struct soft_z *s)
+/* The separation of all pairs, and the support of each fragment. */
+static void find_support(struct fragment_merge *m, const struct soft_z *s)
 {
     const __m256 one = _mm256_set1_ps(1), zero = _mm256_setzero_ps();
 
     for (int i = 0; i < m->count; i++) {
-        const __m256 leaves = _mm256_set1_ps(1 - m->before[i] - m->alpha[i]), before = _mm256_set1_ps(m->before[i]);
+        const __m256 leaves = _mm256_set1_ps(1 - m->front_alpha[i] - m->alpha[i]);
+        const __m256 front = _mm256_set1_ps(m->front_alpha[i]);
         __m256 pro = zero, contra = zero;
         for (int b = 0; b < m->blocks; b++) {
             const __m256 dz = _mm256_sub_ps(_mm256_loadu_ps(m->z + 8 * b), _mm256_set1_ps(m->z[i]));
             const __m256 farther = _mm256_cmp_ps(dz, zero, _CMP_GT_OQ);
             const __m256 alpha = _mm256_loadu_ps(m->alpha + 8 * b), vote = _mm256_loadu_ps(m->vote + 8 * b);
-            const __m256 more = _mm256_max_ps(zero, _mm256_sub_ps(alpha, _mm256_blendv_ps(before, leaves, farther)));
-            const __m256 part = _mm256_blendv_ps(_mm256_set1_ps(AGAINST_BEFORE), one, farther);
-            const __m256 apart = apart8(m, s, i, b, dz);
-            m->apart[i][b] = apart;
-            pro = _mm256_add_ps(pro, _mm256_mul_ps(_mm256_mul_ps(vote, alpha), _mm256_sub_ps(one, apart)));
-            contra = _mm256_add_ps(contra, _mm256_mul_ps(_mm256_mul_ps(part, vote), _mm256_mul_ps(more, apart)));
+            const __m256 more = _mm256_max_ps(zero, _mm256_sub_ps(alpha, _mm256_blendv_ps(front, leaves, farther)));
+            const __m256 part = _mm256_blendv_ps(_mm256_set1_ps(AGAINST_IN_FRONT), one, farther);
+            const __m256 separation = separation8(m, s, i, b, dz);
+            m->separation[i][b] = separation;
+            pro = _mm256_add_ps(pro, _mm256_mul_ps(_mm256_mul_ps(vote, alpha), _mm256_sub_ps(one, separation)));
+            contra = _mm256_add_ps(contra, _mm256_mul_ps(_mm256_mul_ps(part, vote), _mm256_mul_ps(more, separation)));
         }
         const float sum = sum8(pro), part = sum / (sum + sum8(contra) + 1e-30f);
-        m->standing[i] = part * part;
+        m->support[i] = part * part;
     }
 }
 
-/* What of fragment i the fragments before it hide. */
-static float hidden_part(const struct merge *m, int i)
+/* The part of fragment i that fragments in front of it hide. */
+static float hidden_part(const struct fragment_merge *m, int i)
 {
-    __m256 most = _mm256_setzero_ps();
+    __m256 max = _mm256_setzero_ps();
     for (int b = 0; b < m->blocks; b++) {
-        const __m256 before = _mm256_cmp_ps(_mm256_loadu_ps(m->z + 8 * b), _mm256_set1_ps(m->z[i]), _CMP_LT_OQ);
-        const __m256 hides = _mm256_mul_ps(_mm256_loadu_ps(m->there + 8 * b), m->apart[i][b]);
-        most = _mm256_max_ps(most, _mm256_and_ps(before, hides));
+        const __m256 in_front = _mm256_cmp_ps(_mm256_loadu_ps(m->z + 8 * b), _mm256_set1_ps(m->z[i]), _CMP_LT_OQ);
+        const __m256 hides = _mm256_mul_ps(_mm256_loadu_ps(m->presence + 8 * b), m->separation[i][b]);
+        max = _mm256_max_ps(max, _mm256_and_ps(in_front, hides));
     }
-    return most8(most);
+    return max8(max);
 }
 
-static void merge_prepare(struct merge *m, const struct soft_z *s, const struct soft_z_fragment *f, int count)
+static void merge_prepare(struct fragment_merge *m, const struct soft_z *s, const struct soft_z_fragment *f, int count)
 {
     m->count = count;
     m->blocks = (count + 7) / 8;
@@ -118,30 +147,30 @@ static void merge_prepare(struct merge *m, const struct soft_z *s, const struct 
         m->square[i] = is ? f[i].uncertainty * f[i].uncertainty : 0;
         m->vote[i] = is ? f[i].vote : 0;
         m->alpha[i] = is ? f[i].rgba[3] : 0;
-        m->before[i] = is ? f[i].before : 0;
-        m->there[i] = m->weight[i] = 0;
+        m->front_alpha[i] = is ? f[i].front_alpha : 0;
+        m->presence[i] = m->weight[i] = 0;
     }
-    standings(m, s);
+    find_support(m, s);
     for (int i = 0; i < count; i++)
-        m->there[i] = at_most_one(f[i].blend * m->standing[i] / SOFT_Z_BLEND_WHOLE) *
-                      at_most_one(m->standing[i] / STANDING_WHOLE) * (f[i].before + f[i].rgba[3]);
+        m->presence[i] = clamp_one(f[i].blend * m->support[i] / SOFT_Z_FULL_BLEND) *
+                         clamp_one(m->support[i] / FULL_SUPPORT) * (f[i].front_alpha + f[i].rgba[3]);
 }
 
-/* The mean of the depths of the surface that has most of the weight, never one across a jump. */
-static float merged_depth(const struct merge *m)
+/* Mean depth of the surface of largest weight, never across a depth jump. */
+static float merged_depth(const struct fragment_merge *m)
 {
-    float most = 0, z = 0;
+    float max = 0, z = 0;
     for (int i = 0; i < m->count; i++) {
         __m256 sum = _mm256_setzero_ps(), z_sum = sum;
         for (int b = 0; b < m->blocks; b++) {
-            const __m256 w = _mm256_sub_ps(_mm256_set1_ps(1), m->apart[i][b]);
+            const __m256 w = _mm256_sub_ps(_mm256_set1_ps(1), m->separation[i][b]);
             const __m256 part = _mm256_mul_ps(_mm256_loadu_ps(m->weight + 8 * b), w);
             sum = _mm256_add_ps(sum, part);
             z_sum = _mm256_add_ps(z_sum, _mm256_mul_ps(part, _mm256_loadu_ps(m->z + 8 * b)));
         }
         const float weight = sum8(sum);
-        if (!(weight > most)) continue;
-        most = weight;
+        if (!(weight > max)) continue;
+        max = weight;
         z = sum8(z_sum) / weight;
     }
     return z;
@@ -151,19 +180,19 @@ void soft_z_merge(const struct soft_z *s, const struct soft_z_fragment *f, int c
 {
     const bool agree = one_surface(s, f, count);
     float sum = 0, own_sum = 0, z_sum = 0, z_weight = 0;
-    __m128 color = _mm_setzero_ps(), own = color; /* own: of the view that the fragment is of */
-    struct merge m;
+    __m128 color = _mm_setzero_ps(), own = color; /* own: of the fragment's view */
+    struct fragment_merge m;
 
     if (!agree) merge_prepare(&m, s, f, count);
     for (int i = 0; i < count; i++) {
         const float alpha = f[i].rgba[3], left = agree ? 1 : 1 - hidden_part(&m, i);
         const float seen = left <= 0 ? 0 : alpha < left ? alpha : left;
-        const float there = seen * (agree ? 1 : m.standing[i]), weight = f[i].blend * there;
-        const float present = there * at_most_one(f[i].blend / SOFT_Z_BLEND_WHOLE);
+        const float visible = seen * (agree ? 1 : m.support[i]), weight = f[i].blend * visible;
+        const float present = visible * clamp_one(f[i].blend / SOFT_Z_FULL_BLEND);
         const __m128 straight = _mm_div_ps(_mm_max_ps(_mm_setzero_ps(), _mm_loadu_ps(f[i].rgba)), _mm_set1_ps(alpha));
         own = _mm_add_ps(own, _mm_mul_ps(_mm_set1_ps(weight), straight));
         own_sum += weight;
-        if (i + 1 == count || !(f[i + 1].before > 0)) {
+        if (i + 1 == count || !(f[i + 1].front_alpha > 0)) {
             const __m128 mean = _mm_mul_ps(own, _mm_set1_ps(own_sum > 0 ? 1 / own_sum : 0));
             color = _mm_add_ps(color, _mm_mul_ps(_mm_set1_ps(own_sum), _mm_sqrt_ps(mean)));
             sum += own_sum;

@@ -1,27 +1,34 @@
-/* view_mesh.c - the view mesh (thesis 3.6; Buehler et al. 2001 for the blending it generalises).
+/* view_mesh.c - the view mesh [Colburn 2014, 3.6], a form of unstructured lumigraph blending [Buehler 2001].
  *
- * Lines. Let A, B, C be a triangle's corners relative to the novel camera's centre and d a ray. Then
+ * A triangle mesh with its vertices at the views' centres: a plane is fitted to them, and their projections are
+ * triangulated (Delaunay). Boundary vertices are duplicated at 4.0 times their offset from the centroid, and the mesh
+ * is triangulated again. A pixel's ray, forward or (novel camera in front of the mesh) backward, hits one triangle:
+ * three views with barycentric blending weights. A ray that misses the mesh takes the weights of the boundary point in
+ * its direction. Near the mesh, where its projection is singular, the weights of the nearest mesh point hold for the
+ * whole picture; they fade in over a band. Views with the same centre (a tripod, a photo split into several views)
+ * share a vertex, whose weight goes to the views whose pictures contain the ray best.
+ *
+ * Triangles. Let A, B, C be a triangle's corners relative to the novel camera's centre and d a ray. Then
  *   d det(A, B, C) = e_a A + e_b B + e_c C   with e_a = d . (B x C), e_b = d . (C x A), e_c = d . (A x B),
- * so the line along d meets the triangle where the e are of one sign, with barycentric weights e / (e_a + e_b + e_c),
- * at t = det / (e_a + e_b + e_c). All triangles are counter-clockwise in the plane, so e >= 0 means that the line
- * crosses the mesh towards the scene, and the sign of det tells whether forward (the camera is behind) or backward
- * (in front). The e are linear along a row of pixels: a triangle's part of a row is an interval, found by three
- * divisions.
+ * so the line along d meets the triangle where the e have one sign, with barycentric weights e / (e_a + e_b + e_c), at
+ * t = det / (e_a + e_b + e_c). All triangles are counter-clockwise in the plane, so e >= 0 means that the line crosses
+ * the mesh towards the scene, and the sign of det says whether forward (the camera is behind the mesh) or backward (in
+ * front). The e are linear along a row of pixels: a triangle covers an interval of a row, found by three divisions.
  *
- * Beyond the boundary. Lines that miss the triangles meet the plane beyond the rim; seen from the centroid that place
- * lies between two rim vertices a, b, whose edge gives the weights. In the plane's coordinates about the centroid the
- * place is p = o - (o_z / d_z) d, so that q = d_z p = d_z o - o_z d is linear in the pixel as well, and q = alpha a +
- * beta b by two cross products. The weights depend on the direction of q only and are continuous when d turns
- * parallel to the plane; rays that look away (d_z < 0) keep q = -o_z d.
+ * Beyond the boundary. Lines that miss the triangles meet the plane beyond the rim, at a point p. Seen from the
+ * centroid, p lies between two rim vertices a, b, whose edge gives the weights. In the plane's coordinates about the
+ * centroid p = o - (o_z / d_z) d, so that q = d_z p = d_z o - o_z d is linear in the pixel as well, and q = alpha a +
+ * beta b by two cross products. The weights depend on the direction of q only and are continuous when d turns parallel
+ * to the plane; rays that look away from the scene (d_z < 0) keep q = -o_z d.
  *
  * What differs from the thesis:
- * - the plane must face the scene: on an orbit the best plane through the centres contains the scene too, and its
- *   rays would run along it; the plane through the main axis that faces the mean viewing direction is taken instead;
- * - duplicates lie in the fitted plane, so that uneven centres are not exaggerated four times, and what lies beyond
- *   is flat;
- * - sets of centres much wider than high get duplicates stretched across, up to the collinear case, where weights
- *   depend on the position along the line alone;
- * - "near the mesh" is measured along the normal, which is continuous also over a bent mesh. */
+ * - the plane must face the scene: on an orbit, the best plane through the centres contains the scene, and rays would
+ *   run along it; then the plane through the main axis that faces the mean viewing direction is used;
+ * - duplicates lie in the fitted plane, so that uneven centres are not exaggerated four times and the extension is
+ *   flat;
+ * - if the centres spread much more in width than in height, duplicates are stretched across; in the limit of collinear
+ *   centres, weights depend only on the position along the line;
+ * - the distance to the mesh is measured along the normal, which is continuous even over a bent mesh. */
 #include "common/layers/view_mesh.h"
 
 #include <stdlib.h>
@@ -31,13 +38,13 @@
 #include "common/math/delaunay.h"
 
 #define DUPLICATE_REACH 4.0  /* times the offset from the centroid */
-#define FACING          0.7  /* cosine between normal and viewing direction that a fitted plane must reach */
-#define SAME_CENTER     1e-6 /* of the spread */
-#define SAME_PLACE_RAIL 1e-3 /* of the length of a collinear set */
-#define COINCIDENT      1e-4 /* of the distance to the scene: no parallax to speak of */
-#define COLLINEAR       0.05 /* spread across / spread along */
-#define FADE_FULL       0.1  /* of the spacing: nearer than this the nearest point's weights hold */
-#define FADE_NONE       0.5
+#define MIN_FACING      0.7  /* min cosine between the fitted plane's normal and the mean viewing direction */
+#define SAME_CENTER     1e-6 /* max distance of equal centres, of the spread */
+#define SAME_ALONG_LINE 1e-3 /* the same along the line of collinear centres, of its length */
+#define COINCIDENT      1e-4 /* max spread of coincident centres, of the distance to the scene */
+#define COLLINEAR       0.05 /* max spread across / spread along of collinear centres */
+#define FADE_FULL       0.1  /* height, of the spacing, below which only the nearest point's weights count ... */
+#define FADE_NONE       0.5  /* ... and above which they do not count */
 #define ROW_CHUNK       2048
 
 /* ------------------------------------------------------------------------------------------------------- building */
@@ -54,7 +61,7 @@ static struct vec3 perpendicular_part(struct vec3 v, struct vec3 unit)
     return vec3_sub(v, vec3_scale(unit, vec3_dot(v, unit)));
 }
 
-/* Mean direction of a camera axis (row of cam_from_world); that of the first view if they cancel out. */
+/* Mean direction of a camera axis (row of cam_from_world); the first view's if they cancel out. */
 static struct vec3 mean_axis(const struct camera_set *set, int row)
 {
     struct vec3 sum = {0};
@@ -63,8 +70,8 @@ static struct vec3 mean_axis(const struct camera_set *set, int row)
     return vec3_normalize(sum);
 }
 
-/* Unit vector perpendicular to `unit`, near a mean axis of the cameras; near another one where the first is parallel
- * to it. */
+/* Unit vector perpendicular to `unit`, close to the cameras' mean axis `row`, or to `other_row` if that is parallel to
+ * `unit`. */
 static struct vec3 perpendicular_axis(const struct camera_set *set, int row, int other_row, struct vec3 unit)
 {
     struct vec3 axis = mean_axis(set, row);
@@ -87,7 +94,8 @@ static enum status scene_distance(const struct view_mesh *mesh, double *distance
     return ST_OK;
 }
 
-/* The plane and the rank. *spread: standard deviation of the centres along their main axis. */
+/* Fits the plane and finds the rank. *spread: standard deviation of the centres along their main axis; *aspect: spread
+ * across / spread along, within the plane. */
 static enum status fit_plane(struct view_mesh *mesh, double *spread, double *aspect, struct err *err)
 {
     const struct camera_set *set = mesh->set;
@@ -115,18 +123,18 @@ static enum status fit_plane(struct view_mesh *mesh, double *spread, double *asp
     struct vec3 across = perpendicular_part(ahead, main_axis);
     if (coincident)
         mesh->normal = ahead;
-    else if (fabs(vec3_dot(fitted, ahead)) >= FACING && values[1] > 1e-12 * values[2])
+    else if (fabs(vec3_dot(fitted, ahead)) >= MIN_FACING && values[1] > 1e-12 * values[2])
         mesh->normal = vec3_dot(fitted, ahead) < 0 ? vec3_scale(fitted, -1) : fitted;
     else if (vec3_length(across) >= 0.2)
         mesh->normal = vec3_normalize(across);
     else if (values[1] >= COLLINEAR * COLLINEAR * values[2])
         mesh->normal = ahead;
-    else /* a walk straight into the scene: any plane along the line, here the one that lies flat */
+    else /* a straight move into the scene: any plane along the line would do, the level one is used */
         mesh->normal = perpendicular_axis(set, 1, 0, main_axis);
 
     if (coincident) {
         mesh->axis_x = perpendicular_axis(set, 0, 1, mesh->normal);
-    } else { /* the main axis of what is left of the spread within the plane */
+    } else { /* main axis of the spread within the plane */
         struct mat3 project;
         double nn[3] = {mesh->normal.x, mesh->normal.y, mesh->normal.z};
         for (int j = 0; j < 3; j++)
@@ -147,7 +155,7 @@ static enum status fit_plane(struct view_mesh *mesh, double *spread, double *asp
     return ST_OK;
 }
 
-/* Links views with the same centre, and makes a vertex for the first of each. */
+/* Links views with the same centre and makes one vertex for each group. */
 static void make_vertices(struct view_mesh *mesh, double spread)
 {
     const struct view *views = mesh->set->views;
@@ -164,7 +172,7 @@ static void make_vertices(struct view_mesh *mesh, double spread)
         for (int v = 0; v < mesh->vertex_count && same < 0; v++) {
             struct vec3 apart = vec3_sub(views[i].center, mesh->vertices[v]);
             if (mesh->rank == 0 || vec3_length(apart) <= SAME_CENTER * spread ||
-                (mesh->rank == 1 && fabs(vec3_dot(mesh->axis_x, apart)) <= SAME_PLACE_RAIL * (high - low)))
+                (mesh->rank == 1 && fabs(vec3_dot(mesh->axis_x, apart)) <= SAME_ALONG_LINE * (high - low)))
                 same = mesh->vertex_view[v];
         }
         if (same < 0) {
@@ -195,7 +203,7 @@ static enum status median_spacing(struct view_mesh *mesh, struct err *err)
     return ST_OK;
 }
 
-/* A vertex at (x, y) of the plane that stands for a view. */
+/* A vertex of a view at (x, y) of the plane. */
 static int add_duplicate(struct view_mesh *mesh, double x, double y, int view)
 {
     struct vec3 in_plane = vec3_add(vec3_scale(mesh->axis_x, x), vec3_scale(mesh->axis_y, y));
@@ -214,42 +222,43 @@ static void add_rim(struct view_mesh *mesh, int a, int b)
     memcpy(mesh->rim[mesh->rim_count++], (int[2]){a, b}, sizeof mesh->rim[0]);
 }
 
-struct place { /* a vertex on the line */
-    double x;
+struct line_vertex {
+    double x; /* along the line */
     int vertex;
 };
 
-static int compare_places(const void *a, const void *b)
+static int compare_line_vertices(const void *a, const void *b)
 {
-    const struct place *p = a, *q = b;
+    const struct line_vertex *p = a, *q = b;
     return p->x < q->x ? -1 : p->x > q->x ? 1 : p->vertex - q->vertex;
 }
 
-/* A strip of columns: each centre with a duplicate above and one below, and both ends duplicated outwards. */
+/* Mesh of collinear centres: a strip of columns. Each centre has a duplicate above and below, and both ends of the line
+ * are duplicated outwards. */
 static enum status mesh_of_line(struct view_mesh *mesh, struct err *err)
 {
     int n = mesh->vertex_count;
     if (n < 2) return ST_OK;
-    struct place *places = malloc((size_t)n * sizeof *places);
+    struct line_vertex *line = malloc((size_t)n * sizeof *line);
     mesh->triangles = malloc(((size_t)n * 4 + 8) * sizeof *mesh->triangles);
     mesh->rim = malloc(((size_t)n * 2 + 8) * sizeof *mesh->rim);
-    if (!places || !mesh->triangles || !mesh->rim) {
-        free(places);
+    if (!line || !mesh->triangles || !mesh->rim) {
+        free(line);
         return err_nomem(err, "the view mesh", (size_t)n * sizeof *mesh->triangles * 4);
     }
     double reach = 0;
     for (int i = 0; i < n; i++) {
-        places[i].vertex = i;
-        places[i].x = to_plane(mesh, mesh->vertices[i]).x;
-        reach = fmax(reach, DUPLICATE_REACH * fabs(places[i].x));
+        line[i].vertex = i;
+        line[i].x = to_plane(mesh, mesh->vertices[i]).x;
+        reach = fmax(reach, DUPLICATE_REACH * fabs(line[i].x));
     }
-    qsort(places, (size_t)n, sizeof *places, compare_places);
+    qsort(line, (size_t)n, sizeof *line, compare_line_vertices);
 
-    /* columns -1 and n are the ends; 0 .. n-1 the centres */
+    /* columns -1 and n are the outward duplicates, 0 .. n - 1 the centres */
     int below = -1, middle = -1, above = -1;
     for (int i = -1; i <= n; i++) {
-        int at = i < 0 ? 0 : i == n ? n - 1 : i, vertex = places[at].vertex, view = mesh->vertex_view[vertex];
-        double x = places[at].x * (at == i ? 1 : DUPLICATE_REACH);
+        int at = i < 0 ? 0 : i == n ? n - 1 : i, vertex = line[at].vertex, view = mesh->vertex_view[vertex];
+        double x = line[at].x * (at == i ? 1 : DUPLICATE_REACH);
         int b = add_duplicate(mesh, x, -reach, view), a = add_duplicate(mesh, x, reach, view);
         int m = at == i ? vertex : add_duplicate(mesh, x, 0, view);
         if (i >= 0) {
@@ -266,11 +275,11 @@ static enum status mesh_of_line(struct view_mesh *mesh, struct err *err)
         }
         below = b, middle = m, above = a;
     }
-    free(places);
+    free(line);
     return ST_OK;
 }
 
-/* edges: those that have a triangle on one side only. Returns their number, at most 3 * count. */
+/* edges: those with a triangle on one side only. Returns their number, at most 3 * count. */
 static int boundary_edges(const int (*triangles)[3], int count, int (*edges)[2])
 {
     int n = 0;
@@ -327,12 +336,12 @@ enum status view_mesh_build(struct view_mesh *mesh, const struct camera_set *set
     int n = set->view_count;
     *mesh = (struct view_mesh){.set = set, .view_count = n};
     if (n < 1) return err_set(err, ST_DATA, "a view mesh needs at least one view; the scene has none.");
-    size_t most = 3 * (size_t)n + 6; /* of a strip, the largest case */
-    mesh->vertices = malloc(most * sizeof *mesh->vertices);
-    mesh->vertex_view = malloc(most * sizeof *mesh->vertex_view);
+    size_t max_vertices = 3 * (size_t)n + 6; /* of a strip, the largest case */
+    mesh->vertices = malloc(max_vertices * sizeof *mesh->vertices);
+    mesh->vertex_view = malloc(max_vertices * sizeof *mesh->vertex_view);
     mesh->next_same = malloc((size_t)n * sizeof *mesh->next_same);
     if (!mesh->vertices || !mesh->vertex_view || !mesh->next_same) {
-        err_nomem(err, "the view mesh", most * sizeof *mesh->vertices);
+        err_nomem(err, "the view mesh", max_vertices * sizeof *mesh->vertices);
         goto fail;
     }
     if (fit_plane(mesh, &spread, &aspect, err)) goto fail;
@@ -359,34 +368,36 @@ void view_mesh_release(struct view_mesh *mesh)
 
 /* ------------------------------------------------------------------------------------------------- weights of rays */
 
-/* Rays of a row: from + u step, in world coordinates; and the same in the plane's. */
+/* Rays of a row of pixels: from + u step, in world coordinates and in the plane's. */
 struct ray_row {
     struct vec3 from, step, plane_from, plane_step;
 };
 
-/* What blends in one triangle (three corners) or beyond one rim edge (two): corner k's weight at u is a[k] + b[k] u,
- * up to a common factor; the piece covers the u where all of them and the gate are >= 0. */
+/* The part of a row that one triangle (three corners) or the region beyond one rim edge (two) covers. The weight of
+ * corner k at u is a[k] + b[k] u, up to a common factor. The span covers the u where all weights and the gate, a
+ * further linear function, are >= 0. */
 struct span {
     int corners;
-    double a[4], b[4]; /* the corners, then the gate */
-    double volume;     /* of a triangle: det(A, B, C), so that t is this / the sum of the corners' */
+    double a[4], b[4]; /* of the corners, then of the gate */
+    double volume;     /* of a triangle: det(A, B, C); t = volume / sum of the corners' weights */
     int view[3];
 };
 
-/* Where the weights of the nearest point come in, too. */
-struct blend {
-    struct view_weights base;
-    int slot[3];
-    float keep; /* share of the span's own weights */
+/* A span's weights blended with those of the nearest mesh point. */
+struct weight_blend {
+    struct view_weights base; /* the nearest point's, times the fade */
+    int slot[3];              /* of the span's corners in base */
+    float keep;               /* 1 - fade: factor of the span's own weights */
 };
 
+/* v . (from + u step) = a + b u */
 static void line_of(double *a, double *b, struct vec3 v, struct vec3 from, struct vec3 step)
 {
     *a = vec3_dot(v, from);
     *b = vec3_dot(v, step);
 }
 
-/* False if seen from the wrong side. side: 1 if the camera is behind the mesh, -1 in front, 0 either. */
+/* False: the camera is on the other side of the triangle. side: 1 behind the mesh, -1 in front, 0 either. */
 static bool triangle_span(struct span *s, const struct view_mesh *mesh, int triangle, struct vec3 eye,
                           const struct ray_row *rays, int side)
 {
@@ -407,7 +418,7 @@ static bool triangle_span(struct span *s, const struct view_mesh *mesh, int tria
     return true;
 }
 
-/* away: for the rays that do not point towards the scene. */
+/* away: the span of rays that point away from the scene. */
 static void rim_span(struct span *s, const struct view_mesh *mesh, int edge, struct vec3 eye_plane,
                      const struct ray_row *rays, bool away)
 {
@@ -429,7 +440,7 @@ static void rim_span(struct span *s, const struct view_mesh *mesh, int edge, str
     s->b[2] = sign * d[1]->z;
 }
 
-/* A slot of the view in w, made in ascending order if it is not there. */
+/* The view's slot in w; inserted in ascending order if missing. */
 static int insert_view(struct view_weights *w, int view)
 {
     int at = 0;
@@ -444,7 +455,7 @@ static int insert_view(struct view_weights *w, int view)
     return at;
 }
 
-static void make_blend(struct blend *b, const struct span *s, const struct view_weights *nearest, double fade)
+static void make_blend(struct weight_blend *b, const struct span *s, const struct view_weights *nearest, double fade)
 {
     b->base = (struct view_weights){0};
     b->keep = (float)(1 - fade);
@@ -456,7 +467,7 @@ static void make_blend(struct blend *b, const struct span *s, const struct view_
     for (int k = 0; k < s->corners; k++) b->slot[k] = insert_view(&b->base, s->view[k]);
 }
 
-/* Pixels of [begin, end) that the span covers, a little generously: neighbours agree on their common edge. */
+/* Pixels of [begin, end) that the span covers, with slack so that no gap opens between neighbours; false: none. */
 static bool span_pixels(const struct span *s, int begin, int end, int *first, int *last)
 {
     const double slack = 1e-6;
@@ -476,7 +487,7 @@ static bool span_pixels(const struct span *s, int begin, int end, int *first, in
     return true;
 }
 
-/* The corners' weights at u, summing to one; false if they vanish. *sum: before they were divided by it. */
+/* The corners' weights at u, which sum to 1; false if all vanish. *sum: the sum before normalisation. */
 static inline bool span_weights(const struct span *s, double u, float weight[3], double *sum)
 {
     double e[3] = {0};
@@ -491,7 +502,7 @@ static inline bool span_weights(const struct span *s, double u, float weight[3],
     return true;
 }
 
-static inline void store(struct view_weights *w, const struct blend *b, int corners, const float weight[3])
+static inline void store(struct view_weights *w, const struct weight_blend *b, int corners, const float weight[3])
 {
     *w = b->base;
     for (int k = 0; k < corners; k++) w->weight[b->slot[k]] += b->keep * weight[k];
@@ -499,7 +510,8 @@ static inline void store(struct view_weights *w, const struct blend *b, int corn
 
 /* --------------------------------------------------------------------------------------- views that share a centre */
 
-/* How well a view's picture contains a ray: 0.05 at its border, 1 in the middle; ever less outside, and never 0. */
+/* Score of a view by how far inside its picture a ray is: 1 in the middle, 0.05 at the border, decreasing outside, but
+ * always above 0. */
 static double containment(const struct view *view, struct vec3 ray)
 {
     struct vec3 c = mat3_apply(view->cam_from_world, ray);
@@ -510,27 +522,27 @@ static double containment(const struct view *view, struct vec3 ray)
     return faint + (margin > 0 ? 0.05 + 0.95 * margin : 0.05 / (1 - margin));
 }
 
-struct candidate {
+struct scored_view {
     int view;
     double score;
 };
 
-/* Inserts into a list in descending order that keeps `most`. */
-static void keep_best(struct candidate *list, int *count, int most, int view, double score)
+/* Inserts into a list of at most max_count views in descending order. */
+static void keep_best(struct scored_view *list, int *count, int max_count, int view, double score)
 {
     int at = *count;
     while (at > 0 && list[at - 1].score < score) at--;
-    if (at == most) return;
-    if (*count < most) ++*count;
+    if (at == max_count) return;
+    if (*count < max_count) ++*count;
     for (int k = *count - 1; k > at; k--) list[k] = list[k - 1];
-    list[at] = (struct candidate){view, score};
+    list[at] = (struct scored_view){view, score};
 }
 
-/* Hands each vertex' weight to the views that share its centre: the best three, by how far they beat the fourth, so
- * that weights stay continuous where the choice changes. */
+/* Splits each vertex's weight among the views that share its centre: the best three, in proportion to their lead over
+ * the fourth, so that weights stay continuous where the choice changes. */
 static void share_weights(const struct view_mesh *mesh, struct vec3 ray, struct view_weights *w)
 {
-    struct candidate all[VIEW_WEIGHTS_MAX + 1];
+    struct scored_view all[VIEW_WEIGHTS_MAX + 1];
     int n = 0;
     for (int k = 0; k < w->count; k++) {
         int first = w->view[k];
@@ -538,9 +550,9 @@ static void share_weights(const struct view_mesh *mesh, struct vec3 ray, struct 
             keep_best(all, &n, VIEW_WEIGHTS_MAX + 1, first, w->weight[k]);
             continue;
         }
-        struct candidate best[4];
+        struct scored_view best[4];
         int found = 0, view = first;
-        do { /* the slight preference parts views that see exactly the same */
+        do { /* the slight preference breaks ties between identical pictures */
             double prefer = 1 - 1e-3 * view / mesh->view_count;
             keep_best(best, &found, 4, view, prefer * containment(&mesh->set->views[view], ray));
             view = mesh->next_same[view];
@@ -553,13 +565,13 @@ static void share_weights(const struct view_mesh *mesh, struct vec3 ray, struct 
             keep_best(all, &n, VIEW_WEIGHTS_MAX + 1, best[i].view, w->weight[k] * part);
         }
     }
-    double least = n > VIEW_WEIGHTS_MAX ? all[VIEW_WEIGHTS_MAX].score : 0, sum = 0;
+    double floor_score = n > VIEW_WEIGHTS_MAX ? all[VIEW_WEIGHTS_MAX].score : 0, sum = 0;
     if (n > VIEW_WEIGHTS_MAX) n = VIEW_WEIGHTS_MAX;
-    for (int i = 0; i < n; i++) sum += all[i].score - least;
+    for (int i = 0; i < n; i++) sum += all[i].score - floor_score;
     w->count = 0;
     for (int i = 0; i < n; i++) insert_view(w, all[i].view);
     for (int i = 0; i < n; i++)
-        w->weight[insert_view(w, all[i].view)] = (float)(sum > 0 ? (all[i].score - least) / sum : 1.0 / n);
+        w->weight[insert_view(w, all[i].view)] = (float)(sum > 0 ? (all[i].score - floor_score) / sum : 1.0 / n);
 }
 
 /* -------------------------------------------------------------------------------------------------- a novel camera */
@@ -569,12 +581,12 @@ static struct vec3 to_plane_direction(const struct view_mesh *mesh, struct vec3 
     return vec3_make(vec3_dot(mesh->axis_x, d), vec3_dot(mesh->axis_y, d), vec3_dot(mesh->normal, d));
 }
 
-/* The mesh point along the normal from `eye`: its weights, and the height of the eye above it. */
+/* Weights of the mesh point below `eye` along the normal, and the height of the eye above it. */
 static void nearest_point(const struct view_mesh *mesh, struct vec3 eye, struct view_weights *w, double *height)
 {
     struct ray_row rays = {.from = mesh->normal, .plane_from = {0, 0, 1}};
     struct span s;
-    struct blend b;
+    struct weight_blend b;
     float weight[3];
     double sum;
     int first, last;
@@ -609,7 +621,7 @@ void view_mesh_prepare(struct view_mesh_camera *mc, const struct view_mesh *mesh
     mc->fade = x <= 0 ? 0 : x >= 1 ? 1 : x * x * (3 - 2 * x);
 }
 
-static void draw_triangle(const struct span *s, const struct blend *b, int begin, int end, float *nearness,
+static void draw_triangle(const struct span *s, const struct weight_blend *b, int begin, int end, float *nearness,
                           struct view_weights *out)
 {
     int first, last;
@@ -620,13 +632,14 @@ static void draw_triangle(const struct span *s, const struct blend *b, int begin
         double sum;
         if (!span_weights(s, x + 0.5, weight, &sum)) continue;
         float near = (float)(sum * scale);         /* 1 / t */
-        if (near <= nearness[x - begin]) continue; /* a bent mesh may be met several times: the first counts */
+        if (near <= nearness[x - begin]) continue; /* a bent mesh may be hit several times: the nearest hit counts */
         nearness[x - begin] = near;
         store(&out[x], b, 3, weight);
     }
 }
 
-static void draw_beyond(const struct span *s, const struct blend *b, int begin, int end, struct view_weights *out)
+static void draw_beyond(const struct span *s, const struct weight_blend *b, int begin, int end,
+                        struct view_weights *out)
 {
     int first, last;
     if (!span_pixels(s, begin, end, &first, &last)) return;
@@ -643,7 +656,7 @@ static void draw_mesh(const struct view_mesh_camera *mc, const struct ray_row *r
 {
     const struct view_mesh *mesh = mc->mesh;
     struct span s;
-    struct blend b;
+    struct weight_blend b;
     float nearness[ROW_CHUNK] = {0};
     for (int x = begin; x < end; x++) out[x].count = 0;
     for (int i = 0; i < mesh->triangle_count; i++)
@@ -654,7 +667,7 @@ static void draw_mesh(const struct view_mesh_camera *mc, const struct ray_row *r
     struct vec3 eye_plane = to_plane(mesh, mc->camera.center);
     for (int x = begin; x < end; x++) {
         if (out[x].count) continue;
-        for (int i = 0; i < 2 * mesh->rim_count; i++) { /* for the whole row, once a pixel needs it */
+        for (int i = 0; i < 2 * mesh->rim_count; i++) { /* for the rest of the row, if any pixel needs it */
             rim_span(&s, mesh, i / 2, eye_plane, rays, i % 2);
             make_blend(&b, &s, &mc->nearest, mc->fade);
             draw_beyond(&s, &b, x, end, out);

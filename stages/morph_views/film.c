@@ -1,4 +1,4 @@
-/* film.c - see film.h. */
+/* film.c - turning, scaling and cropping of photos; see film.h. */
 #include "stages/morph_views/film.h"
 
 #include <math.h>
@@ -6,8 +6,9 @@
 #include <string.h>
 
 #include "common/base/parallel.h"
+#include "common/math/numbers.h"
 
-enum { LEAST_SIDE = 32, CHUNK = 16 };
+enum { MIN_SIDE = 32, CHUNK = 16 };
 
 void film_upright_size(int *width, int *height, int stored_width, int stored_height, int orientation)
 {
@@ -21,31 +22,31 @@ enum status film_size(int *width, int *height, int photo_width, int photo_height
     double scale = longest > max_side ? (double)max_side / longest : 1;
     *width = 2 * (int)floor(photo_width * scale / 2 + (scale < 1 ? 0.5 : 0));
     *height = 2 * (int)floor(photo_height * scale / 2 + (scale < 1 ? 0.5 : 0));
-    if (*width > max_side) *width -= 2; /* max_side is odd */
+    if (*width > max_side) *width -= 2; /* if max_side is odd */
     if (*height > max_side) *height -= 2;
-    if (*width < LEAST_SIDE || *height < LEAST_SIDE)
+    if (*width < MIN_SIDE || *height < MIN_SIDE)
         return err_set(err, ST_DATA,
-                       "its %d x %d pixels make a film of %d x %d; wanted at least %d on either side. Give a larger "
+                       "its %d x %d pixels give a film of %d x %d; wanted at least %d on each side. Use a larger "
                        "photo, or raise max_side.",
-                       photo_width, photo_height, *width, *height, LEAST_SIDE);
+                       photo_width, photo_height, *width, *height, MIN_SIDE);
     return ST_OK;
 }
 
-/* stored pixel = m (x, y, 1) for an upright pixel (x, y): EXIF's eight ways. */
+/* stored pixel = m (x, y, 1) for an upright pixel (x, y), for the eight orientations of EXIF. */
 static void stored_from_upright(double m[2][3], int w, int h, int orientation)
 {
-    static const signed char ways[8][4] = {/* u along x, u along y, v along x, v along y */
+    static const signed char axes[8][4] = {/* du/dx, du/dy, dv/dx, dv/dy */
                                            {1, 0, 0, 1}, {-1, 0, 0, 1}, {-1, 0, 0, -1}, {1, 0, 0, -1},
                                            {0, 1, 1, 0}, {0, 1, -1, 0}, {0, -1, -1, 0}, {0, -1, 1, 0}};
-    const signed char *way = ways[orientation >= 1 && orientation <= 8 ? orientation - 1 : 0];
+    const signed char *axis = axes[orientation >= 1 && orientation <= 8 ? orientation - 1 : 0];
     for (int i = 0; i < 2; i++) {
-        m[i][0] = way[2 * i];
-        m[i][1] = way[2 * i + 1];
+        m[i][0] = axis[2 * i];
+        m[i][1] = axis[2 * i + 1];
         m[i][2] = m[i][0] + m[i][1] < 0 ? (i ? h : w) : 0;
     }
 }
 
-struct taps {
+struct tent_taps { /* of an output pixel, along one axis */
     int first, count;
     float *weights;
 };
@@ -54,24 +55,25 @@ struct resampling {
     const struct image *stored;
     struct image *out;
     int step_x[2], step_y[2], origin[2]; /* stored index = origin + x step_x + y step_y of an upright index */
-    struct taps *columns, *rows;
+    struct tent_taps *columns, *rows;
     float *weights;
 };
 
-/* Taps of a tent of half width max(scale, 1) around each pixel of an axis of `count`. */
-static void make_taps(struct taps *taps, float *weights, int room, int count, double scale, double offset, int size)
+/* Taps of a tent filter of half width max(scale, 1) for `count` output pixels; size: of the input axis. */
+static void make_taps(struct tent_taps *taps, float *weights, int room, int count, double scale, double offset,
+                      int size)
 {
     double radius = fmax(scale, 1);
     for (int i = 0; i < count; i++) {
         double at = offset + (i + 0.5) * scale - 0.5, sum = 0;
         int first = (int)floor(at - radius) + 1, last = (int)ceil(at + radius) - 1;
-        first = first < 0 ? 0 : first > size - 1 ? size - 1 : first;
-        last = last < first ? first : last > size - 1 ? size - 1 : last;
-        struct taps *t = &taps[i];
-        *t = (struct taps){first, last - first + 1, weights + (size_t)i * (size_t)room};
+        first = clamp_int(first, 0, size - 1);
+        last = clamp_int(last, first, size - 1);
+        struct tent_taps *t = &taps[i];
+        *t = (struct tent_taps){first, last - first + 1, weights + (size_t)i * (size_t)room};
         for (int k = 0; k < t->count; k++) sum += t->weights[k] = (float)fmax(1 - fabs(first + k - at) / radius, 1e-6);
         for (int k = 0; k < t->count; k++) t->weights[k] = (float)(t->weights[k] / sum);
-        if (scale == 1) *t = (struct taps){(int)floor(offset + i + 0.5), 1, t->weights};
+        if (scale == 1) *t = (struct tent_taps){(int)floor(offset + i + 0.5), 1, t->weights};
         if (scale == 1) t->weights[0] = 1;
     }
 }
@@ -82,7 +84,7 @@ static void resample_rows(void *ctx, size_t begin, size_t end, int thread)
     (void)thread;
     for (size_t y = begin; y < end; y++)
         for (int x = 0; x < r->out->width; x++) {
-            const struct taps *tx = &r->columns[x], *ty = &r->rows[y];
+            const struct tent_taps *tx = &r->columns[x], *ty = &r->rows[y];
             float *out = image_at(r->out, x, (int)y);
             for (int j = 0; j < ty->count; j++)
                 for (int i = 0; i < tx->count; i++) {
@@ -115,8 +117,8 @@ enum status film_picture_make(struct film_picture *out, const struct image *stor
     double scale = fmin((double)w / width, (double)h / height);
     if (scale * scale * width * height < 0.5 * w * h)
         return err_set(err, ST_DATA,
-                       "its %d x %d pixels, turned upright, have another shape than the first photo's film of %d x %d: "
-                       "more than half of it would be cut off. Crop the photos alike.",
+                       "its %d x %d pixels, turned upright, do not fit the shape of the first photo's film of %d x %d: "
+                       "more than half of the photo would be cut off. Crop both photos to the same shape.",
                        w, h, width, height);
     offset[0] = (w - width * scale) / 2;
     offset[1] = (h - height * scale) / 2;

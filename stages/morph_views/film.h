@@ -1,4 +1,4 @@
-/* film.h - a photograph as the film shows it: upright, of the film's size.
+/* film.h - photographs brought to the film's format: upright, and of the film's size.
  *
  * Scene-linear R G B; pixel centres at +0.5, in the film as in the stored photo. */
 #ifndef REMODEL_MORPH_FILM_H
@@ -8,21 +8,21 @@
 
 struct film_picture {
     struct image rgb;
-    int stored_width, stored_height; /* of the photo; its lens is of these pixels */
-    double photo_from_film[2][3];    /* affine, to pixels of the stored photo */
+    int stored_width, stored_height; /* of the stored photo, whose pixels its lens refers to */
+    double photo_from_film[2][3];    /* affine: stored photo's pixels from film pixels */
     double film_from_photo[2][3];
 };
 
-/* The film's size for a first photo of this size, upright: even, at most max_side, with the photo's own pixels where no
- * reduction is needed (an odd row or column is cut off). ST_DATA: the photo is too small to make a film. */
+/* Size of the film for a first photo of this size, upright: even, and at most max_side. A photo within max_side keeps
+ * its pixels; an odd row or column is cut off. ST_DATA: the photo is too small. */
 enum status film_size(int *width, int *height, int photo_width, int photo_height, int max_side, struct err *err);
 
-/* Width and height of a stored photo once it is turned upright (EXIF, 1..8). */
+/* Size of a stored photo after turning it upright; orientation: EXIF, 1..8. */
 void film_upright_size(int *width, int *height, int stored_width, int stored_height, int orientation);
 
-/* stored: R G B. The photo is turned upright, scaled until it covers the film, and cut evenly where it sticks out;
- * scale 1 takes the pixels as they are. Larger photos are reduced by a tent filter. ST_DATA: more than half of the
- * photo would be cut. Same bits for any number of threads. */
+/* stored: R G B. Turns the photo upright, scales it until it covers the film (larger photos by a tent filter; scale 1
+ * copies pixels), and crops it centrally. ST_DATA: more than half of the photo would be cut off. Same bits for any
+ * number of threads. */
 enum status film_picture_make(struct film_picture *out, const struct image *stored, int orientation, int width,
                               int height, struct err *err);
 void film_picture_release(struct film_picture *p);

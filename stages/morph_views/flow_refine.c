@@ -1,42 +1,46 @@
-/* flow_refine.c - parts of pixels: a variational step (Horn and Schunck 1981, Brox 2004) around the whole-pixel flow.
+/* flow_refine.c - subpixel flow: variational refinement [Horn 1981], [Brox 2004] of the whole-pixel flow.
  *
- * Least squares in a small change of the flow: the other picture, shifted, is to look like this one in grey and in its
- * gradients (so that exposure matters little), robustly reweighted and summed over 3 x 3 pixels; neighbours are to flow
- * alike, less where the picture has an edge, and hardly where the whole-pixel flow jumps; the flow is to keep to its
- * epipolar line where it is near it. The flow never goes farther than a pixel from where the search put it. */
+ * Minimises, by linearised least squares in a small change of the flow,
+ *   data term        difference of grey and of its gradients (nearly independent of exposure) between the warped other
+ *                    picture and this one, robustly reweighted and summed over 3 x 3 pixels
+ *   smoothness term  difference of neighbours' flows, with less weight at edges of the picture, and hardly any where
+ *                    the whole-pixel flow jumps
+ *   epipolar term    distance from the epipolar line, where the flow is near it
+ * by red-black Gauss-Seidel sweeps. Unlike the sources, the refined flow stays within FARTHEST px of the whole-pixel
+ * flow in each coordinate, so one resolution suffices. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "common/base/parallel.h"
+#include "common/math/numbers.h"
 #include "stages/morph_views/match.h"
 
 enum { CHANNELS = 3, WARPS = 3, SWEEPS = 24, CHUNK = 8, SUMS = 5 };
-#define SMOOTH        0.02f /* weight of neighbours' likeness against that of looks */
+#define SMOOTH        0.02f /* weight of the smoothness term */
 #define EDGE_SCALE    0.04f /* of white */
-#define JUMP          1.5f  /* px: neighbours' flows that differ by more are of two things */
-#define JUMP_WEIGHT   0.01f
-#define ROBUST        0.02f /* a difference of looks that still counts as noise */
-#define FARTHEST      0.6f  /* px */
-#define LINE_WEIGHT   0.01f
+#define JUMP          1.5f  /* px: a larger difference of neighbours' flows separates two surfaces */
+#define JUMP_WEIGHT   0.01f /* factor of the smoothness term across a jump */
+#define ROBUST        0.02f /* differences of this order are noise */
+#define FARTHEST      0.6f  /* px, max change of the flow in x and in y */
+#define LINE_WEIGHT   0.01f /* weight of the epipolar term */
 #define GRADIENT_GAIN 2.0f
 
-static int clamp_int(int x, int most) { return x < 0 ? 0 : x > most ? most : x; }
-
-struct refining {
+struct refinement {
     const struct image *from, *to; /* grey, its x and y gradients */
     struct flow *flow;
-    const float *whole; /* the flow to begin with */
-    float *sums;        /* SUMS a pixel: Jxx Jxy Jyy Jxt Jyt */
-    float *weights;     /* to the right and to the lower neighbour */
-    float *change;      /* 2 a pixel */
-    float *single;      /* as sums, before they are summed over 3 x 3 */
+    const float *whole; /* the initial flow */
+    float *sums;        /* SUMS per pixel: Jxx Jxy Jyy Jxt Jyt of the structure tensor */
+    float *weights;     /* of the smoothness term, to the right and to the lower neighbour */
+    float *change;      /* 2 per pixel */
+    float *single;      /* as sums, before summation over 3 x 3 pixels */
     struct epipolar_line *lines;
-    const struct geometry *geometry;
+    const struct pair_geometry *geometry;
     float epipolar_width;
-    int from_idx, colour; /* red or black half of the board */
+    int from_idx, colour; /* colour: 0 or 1, of the red-black order */
 };
 
+/* out: grey of `in`, and its gradients. */
 static enum status gradients(struct image *out, const struct image *in, struct err *err)
 {
     if (image_init(out, in->width, in->height, CHANNELS, err)) return err->status;
@@ -49,11 +53,11 @@ static enum status gradients(struct image *out, const struct image *in, struct e
         for (int x = 0; x < in->width; x++) {
             float *o = image_at(out, x, y);
             o[1] = GRADIENT_GAIN * 0.5f *
-                   (image_at(out, clamp_int(x + 1, in->width - 1), y)[0] -
-                    image_at(out, clamp_int(x - 1, in->width - 1), y)[0]);
+                   (image_at(out, clamp_int(x + 1, 0, in->width - 1), y)[0] -
+                    image_at(out, clamp_int(x - 1, 0, in->width - 1), y)[0]);
             o[2] = GRADIENT_GAIN * 0.5f *
-                   (image_at(out, x, clamp_int(y + 1, in->height - 1))[0] -
-                    image_at(out, x, clamp_int(y - 1, in->height - 1))[0]);
+                   (image_at(out, x, clamp_int(y + 1, 0, in->height - 1))[0] -
+                    image_at(out, x, clamp_int(y - 1, 0, in->height - 1))[0]);
         }
     return ST_OK;
 }
@@ -62,16 +66,16 @@ static void sample(const struct image *im, float x, float y, float out[CHANNELS]
 {
     x = fminf(fmaxf(x, 0), (float)(im->width - 1));
     y = fminf(fmaxf(y, 0), (float)(im->height - 1));
-    int ix = clamp_int((int)x, im->width - 2), iy = clamp_int((int)y, im->height - 2);
+    int ix = clamp_int((int)x, 0, im->width - 2), iy = clamp_int((int)y, 0, im->height - 2);
     float fx = x - (float)ix, fy = y - (float)iy;
     const float *a = image_at(im, ix, iy), *b = image_at(im, ix, iy + 1);
     for (int c = 0; c < CHANNELS; c++)
         out[c] = (1 - fy) * ((1 - fx) * a[c] + fx * a[c + CHANNELS]) + fy * ((1 - fx) * b[c] + fx * b[c + CHANNELS]);
 }
 
-/* Calls at() for pixel p = (x, y) of the rows: every pixel, or with step 2 those of one colour. */
-static inline void each_pixel(const struct refining *r, size_t begin, size_t end, int step,
-                              void (*at)(const struct refining *r, int x, int y, size_t p))
+/* Calls at() for the pixels p = (x, y) of the rows: all of them, or with step 2 those of one colour. */
+static inline void each_pixel(const struct refinement *r, size_t begin, size_t end, int step,
+                              void (*at)(const struct refinement *r, int x, int y, size_t p))
 {
     const int w = r->flow->width;
     for (int y = (int)begin; y < (int)end; y++)
@@ -79,7 +83,8 @@ static inline void each_pixel(const struct refining *r, size_t begin, size_t end
             at(r, x, y, (size_t)y * (size_t)w + (size_t)x);
 }
 
-static void linearise(const struct refining *r, int x, int y, size_t p)
+/* Data term of one pixel. */
+static void linearise(const struct refinement *r, int x, int y, size_t p)
 {
     const int w = r->flow->width, h = r->flow->height;
     float *j = r->single + SUMS * p, here[CHANNELS], left[CHANNELS], right[CHANNELS], up[CHANNELS], down[CHANNELS];
@@ -92,8 +97,10 @@ static void linearise(const struct refining *r, int x, int y, size_t p)
     sample(r->to, u, v - 1, up);
     sample(r->to, u, v + 1, down);
     const float *own = image_at(r->from, x, y);
-    const float *l = image_at(r->from, clamp_int(x - 1, w - 1), y), *rt = image_at(r->from, clamp_int(x + 1, w - 1), y);
-    const float *t = image_at(r->from, x, clamp_int(y - 1, h - 1)), *d = image_at(r->from, x, clamp_int(y + 1, h - 1));
+    const float *l = image_at(r->from, clamp_int(x - 1, 0, w - 1), y);
+    const float *rt = image_at(r->from, clamp_int(x + 1, 0, w - 1), y);
+    const float *t = image_at(r->from, x, clamp_int(y - 1, 0, h - 1));
+    const float *d = image_at(r->from, x, clamp_int(y + 1, 0, h - 1));
     for (int c = 0; c < CHANNELS; c++) {
         float it = here[c] - own[c];
         float ix = 0.25f * (right[c] - left[c] + rt[c] - l[c]), iy = 0.25f * (down[c] - up[c] + d[c] - t[c]);
@@ -112,7 +119,8 @@ static void linearise_rows(void *ctx, size_t begin, size_t end, int thread)
     each_pixel(ctx, begin, end, 1, linearise);
 }
 
-static void sum_around(const struct refining *r, int x, int y, size_t p)
+/* Sums the data term over 3 x 3 pixels of the same surface, and adds the epipolar term. */
+static void sum_around(const struct refinement *r, int x, int y, size_t p)
 {
     const int w = r->flow->width, h = r->flow->height;
     float *sums = r->sums + SUMS * p;
@@ -120,7 +128,7 @@ static void sum_around(const struct refining *r, int x, int y, size_t p)
     memset(sums, 0, SUMS * sizeof *sums);
     for (int j = -1; j <= 1; j++)
         for (int i = -1; i <= 1; i++) {
-            size_t q = (size_t)clamp_int(y + j, h - 1) * (size_t)w + (size_t)clamp_int(x + i, w - 1);
+            size_t q = (size_t)clamp_int(y + j, 0, h - 1) * (size_t)w + (size_t)clamp_int(x + i, 0, w - 1);
             const float *other = r->whole + 2 * q;
             if (fabsf(own[0] - other[0]) + fabsf(own[1] - other[1]) > JUMP) continue;
             for (int k = 0; k < SUMS; k++) sums[k] += r->single[SUMS * q + (size_t)k];
@@ -144,7 +152,7 @@ static void sum_rows(void *ctx, size_t begin, size_t end, int thread)
     each_pixel(ctx, begin, end, 1, sum_around);
 }
 
-static float weight_between(const struct refining *r, size_t p, size_t q)
+static float weight_between(const struct refinement *r, size_t p, size_t q)
 {
     const float *a = r->whole + 2 * p, *b = r->whole + 2 * q;
     if (fabsf(a[0] - b[0]) + fabsf(a[1] - b[1]) > JUMP) return SMOOTH * JUMP_WEIGHT;
@@ -152,13 +160,14 @@ static float weight_between(const struct refining *r, size_t p, size_t q)
     return SMOOTH * (0.1f + 0.9f * expf(-step / EDGE_SCALE));
 }
 
-static void weigh(const struct refining *r, int x, int y, size_t p)
+/* Smoothness weights and epipolar line of one pixel. */
+static void weigh(const struct refinement *r, int x, int y, size_t p)
 {
     const int w = r->flow->width, h = r->flow->height;
     r->weights[2 * p] = x + 1 < w ? weight_between(r, p, p + 1) : 0;
     r->weights[2 * p + 1] = y + 1 < h ? weight_between(r, p, p + (size_t)w) : 0;
     const double at[2] = {(double)x + 0.5 + r->whole[2 * p], (double)y + 0.5 + r->whole[2 * p + 1]};
-    if (!geometry_line(r->geometry, r->from_idx, (double)x + 0.5, (double)y + 0.5, at, &r->lines[p]))
+    if (!epipolar_line_at(r->geometry, r->from_idx, (double)x + 0.5, (double)y + 0.5, at, &r->lines[p]))
         r->lines[p] = (struct epipolar_line){0};
 }
 
@@ -168,14 +177,16 @@ static void weigh_rows(void *ctx, size_t begin, size_t end, int thread)
     each_pixel(ctx, begin, end, 1, weigh);
 }
 
-static void pull(float weight, const struct refining *r, size_t p, size_t q, float *sum, float b[2])
+/* Adds the smoothness term between p and q. */
+static void pull(float weight, const struct refinement *r, size_t p, size_t q, float *sum, float b[2])
 {
     *sum += weight;
     for (size_t c = 0; c < 2; c++)
         b[c] += weight * (r->flow->uv[2 * q + c] + r->change[2 * q + c] - r->flow->uv[2 * p + c]);
 }
 
-static void relax(const struct refining *r, int x, int y, size_t p)
+/* Solves for the change of one pixel, its neighbours fixed. */
+static void relax(const struct refinement *r, int x, int y, size_t p)
 {
     const int w = r->flow->width, h = r->flow->height;
     const size_t row = (size_t)w;
@@ -188,8 +199,8 @@ static void relax(const struct refining *r, int x, int y, size_t p)
     float xx = j[0] + sum, yy = j[2] + sum, xy = j[1], det = xx * yy - xy * xy;
     float change[2] = {(yy * b[0] - xy * b[1]) / det, (xx * b[1] - xy * b[0]) / det};
     for (size_t c = 0; c < 2; c++) {
-        float least = r->whole[2 * p + c] - FARTHEST - r->flow->uv[2 * p + c];
-        r->change[2 * p + c] = fminf(fmaxf(change[c], least), least + 2 * FARTHEST);
+        float min = r->whole[2 * p + c] - FARTHEST - r->flow->uv[2 * p + c];
+        r->change[2 * p + c] = fminf(fmaxf(change[c], min), min + 2 * FARTHEST);
     }
 }
 
@@ -199,12 +210,12 @@ static void relax_rows(void *ctx, size_t begin, size_t end, int thread)
     each_pixel(ctx, begin, end, 2, relax);
 }
 
-enum status flow_refine(struct flow *flow, const struct image pictures[2], int from, const struct geometry *geometry,
-                        const struct morph_params *params, struct err *err)
+enum status flow_refine(struct flow *flow, const struct image pictures[2], int from,
+                        const struct pair_geometry *geometry, const struct morph_params *params, struct err *err)
 {
     const size_t n = (size_t)flow->width * (size_t)flow->height, h = (size_t)flow->height;
-    struct image looks[2] = {0};
-    struct refining r = {
+    struct image channels[2] = {0};
+    struct refinement r = {
         .flow = flow, .geometry = geometry, .from_idx = from, .epipolar_width = (float)params->epipolar_width};
     float *whole = malloc(2 * n * sizeof *whole);
     enum status st = ST_OK;
@@ -215,12 +226,12 @@ enum status flow_refine(struct flow *flow, const struct image pictures[2], int f
     r.lines = malloc(n * sizeof *r.lines);
     if (!whole || !r.sums || !r.single || !r.weights || !r.change || !r.lines)
         st = err_nomem(err, "a flow's refinement", n * 80);
-    for (int i = 0; !st && i < 2; i++) st = gradients(&looks[i], &pictures[i], err);
+    for (int i = 0; !st && i < 2; i++) st = gradients(&channels[i], &pictures[i], err);
     if (!st) {
         memcpy(whole, flow->uv, 2 * n * sizeof *whole);
         r.whole = whole;
-        r.from = &looks[from];
-        r.to = &looks[!from];
+        r.from = &channels[from];
+        r.to = &channels[!from];
         parallel_for(h, CHUNK, weigh_rows, &r);
         for (int warp = 0; warp < WARPS; warp++) {
             parallel_for(h, CHUNK, linearise_rows, &r);
@@ -233,7 +244,7 @@ enum status flow_refine(struct flow *flow, const struct image pictures[2], int f
             for (size_t i = 0; i < 2 * n; i++) flow->uv[i] += r.change[i];
         }
     }
-    for (int i = 0; i < 2; i++) image_release(&looks[i]);
+    for (int i = 0; i < 2; i++) image_release(&channels[i]);
     free(whole);
     free(r.sums);
     free(r.single);

@@ -1,8 +1,8 @@
-/* morph.h - two pictures, the flows between them, and every picture in between (thesis 3.4.5).
+/* morph.h - view morphing: two pictures, the flows between them, and the pictures in between [Colburn 2014, 3.4.5].
  *
- * FOLDER/first.exr, second.exr: R G B half, scene-linear, the picture as the film shows it; flow.x, flow.y float, px to
- * the same thing in the other picture; sure half, 0 (hidden there, or not found) to 1; near float, greater where
- * nearer. */
+ * FOLDER/first.exr, second.exr: R G B half, scene-linear, the picture in the film's format; flow.x, flow.y float, px to
+ * the matching point in the other picture; sure half, confidence of the match from 0 (occluded there, or not found) to
+ * 1; near float, greater where nearer. */
 #ifndef REMODEL_MORPH_H
 #define REMODEL_MORPH_H
 
@@ -16,24 +16,23 @@
 struct morph {
     struct image pictures[2]; /* R G B */
     struct flow flows[2];
-    double gain[3]; /* the first picture's colours times these are the second one's: exposure, white balance */
+    double gain[3]; /* colours of the second picture = gain x those of the first: exposure, white balance */
     char radiometry[RADIOMETRY_SIZE];
 };
 
-/* The medians of what sure matches say; 1 where they say nothing. */
+/* Sets the gain of each channel: the median ratio over confident matches, or 1 if there are too few. */
 void morph_find_gain(struct morph *m);
 
-/* cameras: the photos', NULL if not known. */
+/* cameras: of the two photos, for the EXRs' attributes; NULL: unknown. */
 enum status morph_write(const struct morph *m, const struct view *cameras, const char *folder,
                         const struct provenance *prov, struct err *err);
-/* ST_DATA: the two do not fit each other, or are no flows. Flows that are not finite are refused, those that are longer
- * than the picture is large, too. */
+/* ST_DATA: missing channels, different sizes, an invalid gain, or a flow longer than the picture. */
 enum status morph_read(struct morph *m, const char *folder, struct err *err);
 void morph_release(struct morph *m);
 
-/* The picture at t in [0, 1]: things on straight ways from their place in one picture to that in the other, at even
- * speed, colours blended on the way. 0 and 1 give the pictures themselves. rgba: alpha 1; z: rank of depth alone, no
- * length; hole: what neither picture shows, filled from what is farther. */
+/* The picture at t in [0, 1]: every point moves on a straight line to its match, and colours are blended; 0 and 1 give
+ * the two pictures. rgba has alpha 1; z orders pixels by depth, without a unit; hole: pixels that neither picture
+ * shows, filled from the far side. */
 enum status morph_frame(struct rendered_frame *out, const struct morph *m, double t, struct err *err);
 
 #endif

@@ -1,4 +1,4 @@
-/* morph_frames.c - see morph_frames.h. */
+/* morph_frames.c - rendering and writing of a morph's frames; see morph_frames.h. */
 #include "stages/morph_views/morph_frames.h"
 
 #include <stdlib.h>
@@ -14,20 +14,20 @@
 #include "stages/morph_views/morph.h"
 #include "stages/morph_views/prepare.h"
 
-struct job {
+struct morph_frames_job {
     const struct morph *morph;
     const struct camera_path *path;
     const struct morph_params *params;
     const struct provenance *prov;
     const char *out;
-    const int *frames; /* the wanted ones */
-    bool posed;
-    struct err *errors; /* one a frame: the first that failed is told */
+    const int *frames;  /* to render */
+    bool posed;         /* the photos' cameras are known */
+    struct err *errors; /* one per frame; the first error is reported */
     struct progress progress;
 };
 
-static enum status write_frame(const struct job *job, const struct rendered_frame *f, const struct view *camera,
-                               double t, struct err *err)
+static enum status write_frame(const struct morph_frames_job *job, const struct rendered_frame *f,
+                               const struct view *camera, double t, struct err *err)
 {
     struct exr_image im = {0};
     char path[FILE_PATH];
@@ -45,7 +45,7 @@ static enum status write_frame(const struct job *job, const struct rendered_fram
 
 static void make_frames(void *ctx, size_t begin, size_t end, int thread)
 {
-    struct job *job = ctx;
+    struct morph_frames_job *job = ctx;
     struct rendered_frame frame = {0};
     (void)thread;
     for (size_t i = begin; i < end; i++) {
@@ -76,7 +76,7 @@ enum status morph_frames(const char *folder, const char *list, const char *out, 
 {
     struct morph morph = {0};
     struct camera_path path = {0};
-    struct job job = {.morph = &morph, .path = &path, .params = params, .prov = prov, .out = out};
+    struct morph_frames_job job = {.morph = &morph, .path = &path, .params = params, .prov = prov, .out = out};
     bool *wanted = NULL;
     int *frames = NULL, count = 0;
     enum status st = camera_path_read(&path, folder, err);
@@ -92,7 +92,7 @@ enum status morph_frames(const char *folder, const char *list, const char *out, 
     if (!st && (morph.pictures[0].width != path.frames[0].camera.width ||
                 morph.pictures[0].height != path.frames[0].camera.height))
         st = err_set(err, ST_DATA,
-                     "%s/first.exr has %d x %d pixels, but the frames of path.txt %d x %d; make the morph again.",
+                     "%s/first.exr has %d x %d pixels, but the frames of path.txt have %d x %d; make the morph again.",
                      folder, morph.pictures[0].width, morph.pictures[0].height, path.frames[0].camera.width,
                      path.frames[0].camera.height);
     if (!st) st = add_inputs(folder, &job.posed, prov, err);

@@ -1,12 +1,12 @@
-/* morph_views.c - a film that goes from one photograph to another: everything moves straight to its place there.
+/* morph_views.c - morphs one photograph into another: a film in which every point moves straight to its match.
  *
- * reads   RECORDS/ID.txt, PHOTOS/FILE                 two photos; of several exposures PHOTOS/ID.exr, merged
+ * reads   RECORDS/ID.txt, PHOTOS/FILE                 two photos; merged exposures from PHOTOS/ID.exr
  *         VIEWS/cameras.txt, images.txt, points3D.txt, lenses.txt    with --views: their cameras
- * writes  OUT/first.exr, second.exr                   the photos as the film shows them, and the flow between them
- *         OUT/path/NAME.txt, path.txt, frames.mk      frames and their times
+ * writes  OUT/first.exr, second.exr                   the photos in the film's format, and the flow between them
+ *         OUT/path/NAME.txt, path.txt, frames.mk      the frames and their cameras
  * or, with --morph and --frames
  * reads   MORPH/first.exr, second.exr, path.txt, path/
- * writes  OUT/NNNN.exr                                R G B A, a file a frame */
+ * writes  OUT/NNNN.exr                                one file per frame: R G B A */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,15 +21,14 @@ int main(int argc, char **argv)
     const char *morph = NULL, *frames = NULL, *out = NULL;
     struct morph_params params = MORPH_PARAMS_DEFAULT;
     const struct cli_opt opts[] = {
-        CLI_ABOUT(
-            "Makes the frames of a film that goes from one photograph to another, or first what they are made from."),
+        CLI_ABOUT("Morphs one photograph into another: matches two photos, or renders frames from a finished match."),
         CLI_STR("photos", &job.photos, CLI_OPTIONAL, "folder of photographs, or of merged exposures"),
         CLI_STR("records", &job.records, CLI_OPTIONAL, "folder of the photos' records"),
-        CLI_STR("first", &job.first, CLI_OPTIONAL, "id of the photo to begin with"),
-        CLI_STR("second", &job.second, CLI_OPTIONAL, "id of the photo to end with"),
-        CLI_STR("views", &job.views, CLI_OPTIONAL, "folder of cameras and lenses, if there are any"),
-        CLI_STR("morph", &morph, CLI_OPTIONAL, "in place of photos: folder of what was made from them"),
-        CLI_STR("frames", &frames, CLI_OPTIONAL, "frames to make of it: 1:30 or 1:30,45"),
+        CLI_STR("first", &job.first, CLI_OPTIONAL, "id of the first photo"),
+        CLI_STR("second", &job.second, CLI_OPTIONAL, "id of the second photo"),
+        CLI_STR("views", &job.views, CLI_OPTIONAL, "folder of the photos' cameras and lenses, if known"),
+        CLI_STR("morph", &morph, CLI_OPTIONAL, "instead of photos: folder of the match made from them"),
+        CLI_STR("frames", &frames, CLI_OPTIONAL, "with --morph: frames to render, such as 1:30 or 1:30,45"),
         CLI_STR("out", &out, CLI_REQUIRED, "folder to write into"),
         CLI_PARAMS(morph_param_table, &params, morph_params_check),
         CLI_END,

@@ -1,4 +1,4 @@
-/* opencv_features.cc - see opencv_features.h. */
+/* opencv_features.cc - SIFT features, matching and two-view geometry by OpenCV; see opencv_features.h. */
 #include <cstdlib>
 #include <cstring>
 #include <exception>
@@ -17,9 +17,9 @@ namespace
 {
 
 const int MAX_FEATURES = 8000;
-const float RATIO = 0.8f;      /* of the best match's distance to the next one's (Lowe 2004) */
-const double CONTRAST = 0.015; /* of a feature, less than usual: dim surfaces count, too */
-const int LEAST_MATCHES = 16;
+const float RATIO = 0.8f;      /* max ratio of the distances of the best and the second best match [Lowe 2004] */
+const double CONTRAST = 0.015; /* threshold, lower than SIFT's default so that dim surfaces get features, too */
+const int MIN_MATCHES = 16;
 
 struct features {
     std::vector<cv::KeyPoint> points;
@@ -35,7 +35,7 @@ features find_features(const unsigned char *grey, int width, int height)
     return f;
 }
 
-/* For each feature of a the one of b, or -1. */
+/* For each feature of a its match in b, or -1. */
 std::vector<int> best_matches(const features &a, const features &b)
 {
     std::vector<int> best(a.points.size(), -1);
@@ -75,7 +75,7 @@ void find_geometry(two_view *out, const std::vector<cv::Point2d> &a, const std::
     for (int i = 0; i < 9; i++) out->fundamental[i] = f.at<double>(i / 3, i % 3);
     const cv::Matx33d k(focal, 0, width / 2.0, 0, focal, height / 2.0, 0, 0, 1);
     const cv::Mat essential = cv::Mat(k.t() * cv::Matx33d(f) * k);
-    if (cv::recoverPose(essential, a, b, cv::Mat(k), rotation, translation, mask) < LEAST_MATCHES) return;
+    if (cv::recoverPose(essential, a, b, cv::Mat(k), rotation, translation, mask) < MIN_MATCHES) return;
     for (int i = 0; i < 9; i++) out->rotation[i] = rotation.at<double>(i / 3, i % 3);
     for (int i = 0; i < 3; i++) out->translation[i] = translation.at<double>(i);
 }
@@ -83,7 +83,7 @@ void find_geometry(two_view *out, const std::vector<cv::Point2d> &a, const std::
 void find(two_view *out, const unsigned char *first, const unsigned char *second, int width, int height, double focal,
           double tolerance)
 {
-    cv::setNumThreads(1); /* so that features come in one order */
+    cv::setNumThreads(1); /* makes the order of features deterministic */
     const features a = find_features(first, width, height), b = find_features(second, width, height);
     const std::vector<int> to_b = best_matches(a, b), to_a = best_matches(b, a);
     std::vector<cv::Point2d> pa, pb;
@@ -97,8 +97,8 @@ void find(two_view *out, const unsigned char *first, const unsigned char *second
     if (!out->matches) throw std::bad_alloc();
     out->count = int(pa.size());
     for (size_t i = 0; i < pa.size(); i++) out->matches[i] = {pa[i].x, pa[i].y, pb[i].x, pb[i].y, false};
-    if (out->count >= LEAST_MATCHES) find_geometry(out, pa, pb, width, height, focal, tolerance);
-    if (out->inliers < LEAST_MATCHES) out->inliers = 0;
+    if (out->count >= MIN_MATCHES) find_geometry(out, pa, pb, width, height, focal, tolerance);
+    if (out->inliers < MIN_MATCHES) out->inliers = 0;
 }
 
 } // namespace

@@ -1,4 +1,4 @@
-/* prepare.c - see prepare.h. */
+/* prepare.c - preparation of a morph: photos, cameras, geometry, matching, and the path; see prepare.h. */
 #include "stages/morph_views/prepare.h"
 
 #include <math.h>
@@ -15,22 +15,22 @@
 #include "common/capture/linear_photo.h"
 #include "stages/morph_views/morph.h"
 
-#define USUAL_FOCAL    1.2 /* of the longest side, where EXIF says nothing */
-#define TOLERANCE      1.0 /* px from the epipolar line, of a feature */
-#define PLANE_PART     0.9 /* of the matches on one homography: the photos tell no epipolar geometry */
-#define DEPTH_TRIM     0.02
-#define DEPTH_ROOM     1.5 /* beyond the sparse points' depths, either way */
-#define NEAR_BASELINES 3
+#define DEFAULT_FOCAL  1.2 /* of the longer side, without EXIF */
+#define TOLERANCE      1.0 /* px, max distance of a feature from its epipolar line */
+#define PLANE_PART     0.9 /* homography inliers / epipolar inliers from which on the epipolar geometry is degenerate */
+#define DEPTH_TRIM     0.02 /* fraction of the sparse points left out at either end of the depth range */
+#define DEPTH_MARGIN   1.5  /* factor that extends the depth range at either end */
+#define NEAR_BASELINES 3    /* min depth without sparse points, in baselines */
 
 /* --------------------------------------------------------------------------------------------------------- photos */
 
-struct pair {
+struct photo_pair {
     struct photo_record records[2];
     struct film_picture films[2];
-    double focal; /* px of the film, of the first photo */
+    double focal; /* of the first photo, px of the film; may be a guess */
 };
 
-static enum status read_pair(struct pair *pair, struct morph *m, const struct morph_job *job,
+static enum status read_pair(struct photo_pair *pair, struct morph *m, const struct morph_job *job,
                              const struct morph_params *params, struct provenance *prov, struct err *err)
 {
     int width = 0, height = 0;
@@ -55,14 +55,14 @@ static enum status read_pair(struct pair *pair, struct morph *m, const struct mo
     }
     if (st) return st;
     const struct photo_info *info = &pair->records[0].info;
-    pair->focal = USUAL_FOCAL * (width > height ? width : height);
-    if (info->focal35_mm > 0) pair->focal *= info->focal35_mm / 36 / USUAL_FOCAL;
+    pair->focal = DEFAULT_FOCAL * (width > height ? width : height);
+    if (info->focal35_mm > 0) pair->focal *= info->focal35_mm / 36 / DEFAULT_FOCAL;
     return ST_OK;
 }
 
 /* -------------------------------------------------------------------------------------------------------- cameras */
 
-/* Depths between which a photo's points lie, with room; without points from a few baselines to infinity. */
+/* Depth range of the sparse points in a photo, with margin; without points, from NEAR_BASELINES to infinity. */
 static enum status depth_range(struct posed_photo *p, const struct sfm_model *model, double baseline, struct err *err)
 {
     double *z = malloc(((size_t)model->point_count + 1) * sizeof *z);
@@ -73,13 +73,13 @@ static enum status depth_range(struct posed_photo *p, const struct sfm_model *mo
         if (depth > 0) z[count++] = depth;
     }
     sort_doubles(z, count);
-    p->near = count ? z[(size_t)(DEPTH_TRIM * (double)(count - 1))] / DEPTH_ROOM : NEAR_BASELINES * baseline;
-    p->far = count ? z[(size_t)((1 - DEPTH_TRIM) * (double)(count - 1))] * DEPTH_ROOM : INFINITY;
+    p->near = count ? z[(size_t)(DEPTH_TRIM * (double)(count - 1))] / DEPTH_MARGIN : NEAR_BASELINES * baseline;
+    p->far = count ? z[(size_t)((1 - DEPTH_TRIM) * (double)(count - 1))] * DEPTH_MARGIN : INFINITY;
     free(z);
     return ST_OK;
 }
 
-/* The photo's only view; NULL: it has none, or several. */
+/* The photo's only view; NULL: none, *lens unchanged, or several. */
 static const struct view *find_view(const struct lens **lens, const struct camera_set *set,
                                     const struct lens_list *lenses, const char *photo)
 {
@@ -95,9 +95,9 @@ static const struct view *find_view(const struct lens **lens, const struct camer
     return count == 1 ? found : NULL;
 }
 
-/* *known: both photos have a camera. */
-static enum status read_cameras(struct geometry *g, bool *known, const struct morph_job *job, const struct pair *pair,
-                                struct provenance *prov, struct err *err)
+/* Sets g to the photos' cameras if both have one (*known). */
+static enum status read_cameras(struct pair_geometry *g, bool *known, const struct morph_job *job,
+                                const struct photo_pair *pair, struct provenance *prov, struct err *err)
 {
     static const char *const files[] = {"cameras.txt", "images.txt", "points3D.txt", "lenses.txt"};
     struct camera_set set = {0};
@@ -113,15 +113,15 @@ static enum status read_cameras(struct geometry *g, bool *known, const struct mo
         const struct lens *lens = NULL;
         const struct view *view = find_view(&lens, &set, &lenses, pair->records[i].id);
         if (!view) {
-            log_warn("photo %s has %s in %s: epipolar lines are found from features", pair->records[i].id,
+            log_warn("photo %s has %s in %s: epipolar lines are estimated from features", pair->records[i].id,
                      lens ? "several views" : "no camera", job->views);
             all = false;
             break;
         }
         if (lens->camera.width != pair->films[i].stored_width || lens->camera.height != pair->films[i].stored_height)
             st = err_set(err, ST_DATA,
-                         "photo %s has %d x %d pixels but its camera %d x %d: it was exchanged after structure from "
-                         "motion; redo that (make resfm) or put the old photo back.",
+                         "photo %s has %d x %d pixels, but its camera has %d x %d: the photo was replaced after "
+                         "structure from motion. Redo that (make resfm), or restore the old photo.",
                          pair->records[i].id, pair->films[i].stored_width, pair->films[i].stored_height,
                          lens->camera.width, lens->camera.height);
         struct mat3 turn = mat3_transpose(mat3_from_quat(lens->view_from_photo));
@@ -138,7 +138,7 @@ static enum status read_cameras(struct geometry *g, bool *known, const struct mo
                 vec3_scale(mat3_apply(mat3_transpose(g->photos[i].photo_from_world), g->photos[i].translation), -1);
         double baseline = vec3_length(vec3_sub(centers[1], centers[0]));
         for (int i = 0; !st && i < 2; i++) st = depth_range(&g->photos[i], &set.model, baseline, err);
-        g->kind = GEOMETRY_POSED;
+        g->kind = EPIPOLAR_POSED;
         *known = true;
     }
     lens_list_release(&lenses);
@@ -146,40 +146,38 @@ static enum status read_cameras(struct geometry *g, bool *known, const struct mo
     return st;
 }
 
-static void geometry_from_features(struct geometry *g, const struct two_view *found, const struct pair *pair)
+static void geometry_from_features(struct pair_geometry *g, const struct two_view *found, const struct photo_pair *pair)
 {
     if (!found->inliers) {
-        log_warn(
-            "photos %s and %s share only %d features: there are no epipolar lines, and they are matched by looks and "
-            "smoothness alone",
-            pair->records[0].id, pair->records[1].id, found->count);
+        log_warn("photos %s and %s share only %d features: they are matched without epipolar lines, by colour and "
+                 "smoothness",
+                 pair->records[0].id, pair->records[1].id, found->count);
         return;
     }
     if (found->plane_inliers >= PLANE_PART * found->inliers) {
-        log_note(
-            "%d of %d features lie on one plane, or the camera only turned: there is no epipolar geometry to keep to",
-            found->plane_inliers, found->count);
+        log_note("%d of %d features lie on one plane, or the camera only turned: matching without epipolar lines",
+                 found->plane_inliers, found->count);
         return;
     }
-    g->kind = GEOMETRY_FUNDAMENTAL;
+    g->kind = EPIPOLAR_FUNDAMENTAL;
     memcpy(g->fundamental, found->fundamental, sizeof g->fundamental);
     memcpy(g->rotation, found->rotation, sizeof g->rotation);
     memcpy(g->translation, found->translation, sizeof g->translation);
     log_note("%d of %d matched features agree on the epipolar geometry", found->inliers, found->count);
 }
 
-static enum status find_features(struct two_view *found, const struct image looks[2], double focal, struct err *err)
+static enum status find_features(struct two_view *found, const struct image images[2], double focal, struct err *err)
 {
-    const size_t n = (size_t)looks[0].width * (size_t)looks[0].height;
+    const size_t n = (size_t)images[0].width * (size_t)images[0].height;
     unsigned char *grey = malloc(2 * n);
     if (!grey) return err_nomem(err, "grey pictures", 2 * n);
     for (size_t i = 0; i < 2; i++)
         for (size_t p = 0; p < n; p++) {
-            const float *rgb = looks[i].data + 3 * p;
+            const float *rgb = images[i].data + 3 * p;
             float v = 255 * (0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2]);
             grey[i * n + p] = (unsigned char)lrintf(fminf(fmaxf(v, 0), 255));
         }
-    enum status st = two_view_find(found, grey, grey + n, looks[0].width, looks[0].height, focal, TOLERANCE, err);
+    enum status st = two_view_find(found, grey, grey + n, images[0].width, images[0].height, focal, TOLERANCE, err);
     free(grey);
     return st;
 }
@@ -192,7 +190,7 @@ double morph_time(int frame, int count, const struct morph_params *params)
     return strcmp(params->ease, "smooth") ? t : t * t * (3 - 2 * t);
 }
 
-/* The film's camera at one photo; a photo that is stored mirrored has none, for a rotation cannot turn it. */
+/* The film's camera at one photo. False: the photo is stored mirrored, which a rotation cannot undo. */
 static bool film_camera(struct view *v, const struct posed_photo *p, const struct film_picture *film)
 {
     const double(*m)[3] = film->film_from_photo;
@@ -264,50 +262,50 @@ static enum status write_path(const struct morph *m, const struct view ends[2], 
 
 /* ---------------------------------------------------------------------------------------------------------- whole */
 
-static double matched_part(const struct morph *m)
+static double matched_fraction(const struct morph *m)
 {
     const size_t n = (size_t)m->flows[0].width * (size_t)m->flows[0].height;
-    size_t sure = 0;
+    size_t matched = 0;
     for (int i = 0; i < 2; i++)
-        for (size_t p = 0; p < n; p++) sure += m->flows[i].sure[p] >= 0.5f;
-    return (double)sure / (double)(2 * n);
+        for (size_t p = 0; p < n; p++) matched += m->flows[i].confidence[p] >= 0.5f;
+    return (double)matched / (double)(2 * n);
 }
 
 enum status morph_prepare(const struct morph_job *job, const char *out, const struct morph_params *params,
                           struct provenance *prov, struct err *err)
 {
-    struct pair pair = {0};
+    struct photo_pair pair = {0};
     struct morph m = {0};
-    struct geometry geometry = {0};
+    struct pair_geometry geometry = {0};
     struct two_view found = {0};
-    struct image looks[2] = {0};
+    struct image images[2] = {0};
     struct view ends[2] = {0};
     bool posed = false;
     double matched = 0;
     enum status st = read_pair(&pair, &m, job, params, prov, err);
-    for (int i = 0; !st && i < 2; i++) st = match_image(&looks[i], &m.pictures[i], err);
-    if (!st) st = find_features(&found, looks, pair.focal, err);
+    for (int i = 0; !st && i < 2; i++) st = match_image(&images[i], &m.pictures[i], err);
+    if (!st) st = find_features(&found, images, pair.focal, err);
     if (!st) {
-        geometry.width = looks[0].width;
-        geometry.height = looks[0].height;
+        geometry.width = images[0].width;
+        geometry.height = images[0].height;
         geometry.focal = pair.focal;
         st = read_cameras(&geometry, &posed, job, &pair, prov, err);
     }
     if (!st && !posed) geometry_from_features(&geometry, &found, &pair);
-    if (!st) st = match_pictures(m.flows, looks, &geometry, found.matches, found.count, params, err);
+    if (!st) st = match_pictures(m.flows, images, &geometry, found.matches, found.count, params, err);
     if (!st) {
-        matched = matched_part(&m);
+        matched = matched_fraction(&m);
         if (matched < params->min_matched)
             st = err_set(err, ST_DATA,
-                         "only %.0f %% of the pixels of photos %s and %s match each other (wanted %.0f %%): they show "
-                         "different things, or the same from too far apart. Choose two others, or lower min_matched.",
+                         "only %.0f %% of the pixels of photos %s and %s match (wanted %.0f %%): they show different "
+                         "things, or their viewpoints are too far apart. Choose other photos, or lower min_matched.",
                          100 * matched, pair.records[0].id, pair.records[1].id, 100 * params->min_matched);
     }
     if (!st) {
         morph_find_gain(&m);
         posed = posed && film_camera(&ends[0], &geometry.photos[0], &pair.films[0]) &&
                 film_camera(&ends[1], &geometry.photos[1], &pair.films[1]);
-        for (int i = 0; !posed && i < 2; i++) /* a camera that stands still, for a path must have some */
+        for (int i = 0; !posed && i < 2; i++) /* a static camera, because a path needs cameras */
             ends[i] = (struct view){.fx = pair.focal,
                                     .fy = pair.focal,
                                     .cx = geometry.width / 2.0,
@@ -316,12 +314,12 @@ enum status morph_prepare(const struct morph_job *job, const char *out, const st
         st = morph_write(&m, posed ? ends : NULL, out, prov, err);
     }
     if (!st) st = write_path(&m, ends, matched, out, params, prov, err);
-    if (!st) log_note("%.0f %% of the pixels are matched both ways", 100 * matched);
-    m.pictures[0] = m.pictures[1] = (struct image){0}; /* the films' */
+    if (!st) log_note("%.0f %% of the pixels have consistent matches", 100 * matched);
+    m.pictures[0] = m.pictures[1] = (struct image){0}; /* owned by pair.films */
     for (int i = 0; i < 2; i++) {
         film_picture_release(&pair.films[i]);
         photo_record_release(&pair.records[i]);
-        image_release(&looks[i]);
+        image_release(&images[i]);
     }
     two_view_release(&found);
     morph_release(&m);

@@ -1,14 +1,34 @@
-/* defocus.c - see defocus.h.
+/* defocus.c - depth of field by blurring a pinhole frame through a MIP map [Colburn 2014, 3.6.1].
  *
- * m = 4^l = 1 + c^2 / 8 stands for a blur everywhere. Of what wants m, a part stays on a level, as it is or
- * smoothed, and the rest goes on to coarser ones: beyond(), smoothed(). A texel's m is the mean of what came down to
- * it.
+ * A pixel at depth z has the circle of confusion c = aperture fx (z - focus) / (z focus) px, negative in front of the
+ * focus. Surfaces in or behind the focus (the back) and surfaces in front of it (the near layer) have one MIP map each,
+ * because light spreads differently:
  *
- * Channels of a level: of the back colour x weight, weight, m x weight; of the near layer colour, coverage, m x
- * coverage; and OPEN, how much of a texel is not near, or much less blurred than the level: what a pixel that looks up
- * this level lets be seen. On the way up beside them comes what is looked up there; of the near layer what was left on
- * coarser levels, which is nearer, then what is left on this one as far as there is room. All loops run over lines of
- * one channel, eight texels at a time; lines are padded, and what stands in the padding is never looked at. */
+ * - In front of the focus, a surface's light spreads over everything behind it. Each pixel's colour and coverage
+ *   descend to the level of the pixel's own blur and stay there. The levels, upsampled and added, are the near layer,
+ *   whose coverage fades across a silhouette. Nearer surfaces are blurred more, so a coarser level covers a finer one
+ *   where they add up to more than 1. The near layer is composited over the back.
+ * - In or behind the focus, a pixel sees through its own circle everything that nearer surfaces do not hide. It looks
+ *   up the level of its own blur. On the way down a pixel counts only as long as its own blur is of the level's size,
+ *   so sharp or near surfaces do not bleed into a blurred background. Near pixels have no weight: behind them the back
+ *   is interpolated from their surroundings.
+ *
+ * The look-up is trilinear, bottom up. Upsampling is bilinear (3/4, 1/4 on each axis) and downsampling its transpose (1
+ * 3 3 1) / 8, so that the blur of a moving point moves evenly. The kernel of level l has the variance (4^l - 1) / 2, a
+ * disk c^2 / 16, hence l = log4(1 + c^2 / 8). Between two levels lies the finer one smoothed by (1 2 1) / 4, of twice
+ * the variance; a mixture of neighbours among these has the required variance.
+ *
+ * The thesis blends pixels behind the focus with a blurred picture, by the mean depth and the fraction of foreground
+ * pixels around them; its kernels are Gaussians on one level.
+ *
+ * In the code a blur is given by m = 4^l = 1 + c^2 / 8. Of texels that want the blur m, a part stays on a level, as it
+ * is or smoothed, and the rest goes on to coarser levels: coarser_part(), smoothed_part(). A texel's m is the mean of
+ * its contributions. Channels of a level: of the back, colour x weight, weight, m x weight; of the near layer, colour,
+ * coverage, m x coverage; and OPEN, the part of a texel that is not near, or much less blurred than the level: what a
+ * near pixel that looks up this level lets through. On the way up each level also gets the result of its look-up; the
+ * near layer's is what stayed on coarser levels, which is nearer, and then what stays on this level as far as coverage
+ * permits. All loops run over lines of one channel, eight texels at a time; lines are padded, and values in the padding
+ * are never used. */
 #include "stages/render_views/defocus.h"
 
 #include <immintrin.h>
@@ -20,49 +40,50 @@
 #include "common/base/parallel.h"
 
 enum { BACK, BACK_WEIGHT = 3, NEAR, NEAR_COVER = 7, OPEN, BACK_M, NEAR_M, CHANNELS };
-#define UP_CHANNELS BACK_M /* results are of BACK .. OPEN, and stand behind the channels */
+#define UP_CHANNELS BACK_M /* results of BACK .. OPEN, stored behind the channels */
 
-#define ROWS     32          /* a chunk */
-#define MARGIN   8           /* floats beside a line, for what lies beyond its ends */
-#define LEAST    (1.0f / 64) /* weight of what is too sharp for a level, or hidden: used where there is nothing else */
-#define TINY     1e-36f      /* keeps 0 / 0 out */
-#define FARTHEST 1e30f       /* stands for unknown depths */
-#define BLURRED  1.5f        /* m of a near surface whose silhouette is widened */
-#define HARDLY   2           /* m from where on a near surface ceases to stand behind others, */
-#define FULLY    8           /* up to here, where its weight there is */
-#define LAST     1e-9f       /* this, which counts where there is nothing else */
-#define SPREAD   4           /* how much more than its own m a pixel of the back may serve */
+#define ROWS       32          /* per chunk */
+#define MARGIN     8           /* floats beside a line, for its continuation beyond both ends */
+#define MIN_WEIGHT (1.0f / 64) /* of texels too sharp for a level, or hidden: counts where there is nothing else */
+#define TINY       1e-36f      /* avoids 0 / 0 */
+#define FARTHEST   1e30f       /* depth in place of unknown ones */
+#define BLURRED    1.5f        /* min m of a near surface whose silhouette is widened */
+#define FADE_BEGIN 2           /* m from which on a near surface fades out of the back ... */
+#define FADE_END   8           /* ... down to weight FADED */
+#define FADED      1e-9f       /* counts where there is nothing else */
+#define SPREAD     4           /* max ratio of the m that a pixel of the back contributes to and its own */
 
 typedef float v8 __attribute__((vector_size(32)));
 
 static inline v8 get(const float *p) { return _mm256_loadu_ps(p); }
 static inline void put(float *p, v8 a) { _mm256_storeu_ps(p, a); }
 static inline v8 all(float a) { return _mm256_set1_ps(a); }
-static inline v8 least(v8 a, v8 b) { return _mm256_min_ps(a, b); }
-static inline v8 most(v8 a, v8 b) { return _mm256_max_ps(a, b); }
-/* b where a is below 0 (its sign bit is set), else c */
+static inline v8 min8(v8 a, v8 b) { return _mm256_min_ps(a, b); }
+static inline v8 max8(v8 a, v8 b) { return _mm256_max_ps(a, b); }
+/* a < 0 (sign bit set) ? b : c */
 static inline v8 if_below(v8 a, v8 b, v8 c) { return _mm256_blendv_ps(c, b, a); }
 
-static inline v8 ramp(v8 m, float from, float to)
+/* 0 at `from`, 1 at `to`, linear between. */
+static inline v8 ramp(v8 m, float from, float to) { return min8(max8((m - from) * (1 / (to - from)), all(0)), all(1)); }
+
+/* The part of a blur m that goes on to levels coarser than the one of blur `here` = 4^level. The rest stays, as it is
+ * or, except on level 0, smoothed by (1 2 1) / 4, which has the blur 2 `here`: so the mixed kernels differ by half
+ * an octave only, and no sharp core shows inside a wide blur. */
+static inline v8 coarser_part(v8 m, float here) { return here > 1 ? ramp(m, 2 * here, 4 * here) : ramp(m, 1, 4); }
+static inline v8 smoothed_part(v8 m, float here) { return ramp(m, here, 2 * here) - coarser_part(m, here); }
+
+/* As coarser_part, for the weight of a texel in other pixels' look-ups: blurred texels contribute up to one level more,
+ * so that edges between blurs have no step; sharp texels do not. */
+static inline v8 source_part(v8 m, float here)
 {
-    return least(most((m - from) * (1 / (to - from)), all(0)), all(1));
+    return max8(coarser_part(m * min8(m, all(SPREAD)), here), all(MIN_WEIGHT));
 }
 
-/* The part of what wants the blur m that goes beyond a level, whose own is `here` = 4^level. What stays is taken as
- * it is, or, on levels of the pyramid, smoothed by (1 2 1) / 4, which stands for the blur 2 `here`: so the kernels
- * that are mixed differ by half an octave, and no sharp core shows through a wide one. */
-static inline v8 beyond(v8 m, float here) { return here > 1 ? ramp(m, 2 * here, 4 * here) : ramp(m, 1, 4); }
-static inline v8 smoothed(v8 m, float here) { return ramp(m, here, 2 * here) - beyond(m, here); }
-
-/* The same for the weight of what serves others' look-ups: something blurred serves up to one level more, so that
- * edges between blurs have no step; something sharp does not. */
-static inline v8 serves(v8 m, float here) { return most(beyond(m * least(m, all(SPREAD)), here), all(LEAST)); }
-
-struct pass {
+struct defocus_pass { /* between two adjacent levels */
     struct defocus *d;
     struct rendered_frame *frame;
-    float blur, focus, m_most; /* c = blur (1 - focus / z) */
-    int level;                 /* of the finer one */
+    float blur, focus, max_m; /* c = blur (1 - focus / z) */
+    int level;                /* the finer one */
     bool any_near;
 };
 
@@ -73,12 +94,15 @@ static float *line_of(const struct defocus_level *l, int y, int channel)
 
 static size_t line_size(int width) { return (size_t)(width + 2 * MARGIN + 7) / 8 * 8; }
 
-static bool used(const struct pass *p, int channel) { return p->any_near || channel < NEAR || channel == BACK_M; }
+static bool used(const struct defocus_pass *p, int channel)
+{
+    return p->any_near || channel < NEAR || channel == BACK_M;
+}
 
-/* ------------------------------------------------------------------------------------------------------- down */
+/* ----------------------------------------------------------------------------------------------- downsampling */
 
-/* A row of the frame in lines of its own, and back: four lines of red, green, blue, alpha. */
-static void row_apart(float *const *lines, const float *rgba, int width)
+/* A row of the frame to four lines, red, green, blue, alpha; and back. */
+static void row_split(float *const *lines, const float *rgba, int width)
 {
     int x = 0;
     for (; x + 8 <= width; x += 8, rgba += 32) {
@@ -96,7 +120,7 @@ static void row_apart(float *const *lines, const float *rgba, int width)
         for (int k = 0; k < 4; k++) lines[k][x] = rgba[k];
 }
 
-static void row_together(float *rgba, float *const *lines, int width)
+static void row_join(float *rgba, float *const *lines, int width)
 {
     int x = 0;
     for (; x + 8 <= width; x += 8, rgba += 32) {
@@ -113,19 +137,18 @@ static void row_together(float *rgba, float *const *lines, int width)
         for (int k = 0; k < 4; k++) rgba[k] = lines[k][x];
 }
 
-/* The blur m of a depth, less than 0 where it is nearer than the focus. */
-static inline v8 blur_of(const struct pass *p, v8 z)
+/* The blur m of a depth, negative in front of the focus. */
+static inline v8 blur_of(const struct defocus_pass *p, v8 z)
 {
-    const v8 c = p->blur * (1 - p->focus / z), size = least(1 + c * c * 0.125f, all(p->m_most));
+    const v8 c = p->blur * (1 - p->focus / z), size = min8(1 + c * c * 0.125f, all(p->max_m));
     return if_below(c, -size, size);
 }
 
 static inline v8 known(v8 z) { return if_below(0 - z, z, all(FARTHEST)); }
 
-/* The blur of each pixel of a row. A pixel at the side of a blurred near one is taken for near too: silhouettes are
- * mixed pixels, and what they have of the near surface would stand sharp under its blur. `nearest` is a scratch
- * line. */
-static void row_blur(float *m, const struct pass *p, int y, float *nearest)
+/* The blur of each pixel of a row. Pixels beside a blurred near pixel count as near, too: silhouette pixels are mixed,
+ * and their share of the near surface would show sharp under its blur. `nearest` is a scratch line. */
+static void row_blur(float *m, const struct defocus_pass *p, int y, float *nearest)
 {
     const int w = p->frame->width, h = p->frame->height;
     const float *row = p->frame->z + (size_t)y * (size_t)w;
@@ -138,7 +161,7 @@ static void row_blur(float *m, const struct pass *p, int y, float *nearest)
         return;
     }
     for (; x + 8 <= w; x += 8)
-        put(nearest + x, least(known(get(row + x)), least(known(get(above + x)), known(get(below + x)))));
+        put(nearest + x, min8(known(get(row + x)), min8(known(get(above + x)), known(get(below + x)))));
     for (; x < w; x++) {
         nearest[x] = FARTHEST;
         for (int i = 0; i < 3; i++) {
@@ -149,30 +172,30 @@ static void row_blur(float *m, const struct pass *p, int y, float *nearest)
     nearest[-1] = nearest[w] = FARTHEST;
     for (x = 0; x < w; x += 8) {
         const v8 own = blur_of(p, known(get(m + x)));
-        const v8 beside = blur_of(p, least(get(nearest + x - 1), least(get(nearest + x), get(nearest + x + 1))));
+        const v8 beside = blur_of(p, min8(get(nearest + x - 1), min8(get(nearest + x), get(nearest + x + 1))));
         put(m + x, if_below(beside + BLURRED, beside, own));
     }
 }
 
-/* What of a row of the frame goes down to level 1; lines[channel][x]. rgba are scratch lines. */
-static void frame_goes_down(const struct pass *p, int y, float *const *lines, float *const *rgba)
+/* Contribution of a row of the frame to level 1: lines[channel][x]. rgba are scratch lines. */
+static void downsample_frame(const struct defocus_pass *p, int y, float *const *lines, float *const *rgba)
 {
     const int w = p->frame->width;
     float *m = rgba[4];
 
-    row_apart(rgba, p->frame->rgba + (size_t)y * (size_t)w * 4, w);
+    row_split(rgba, p->frame->rgba + (size_t)y * (size_t)w * 4, w);
     row_blur(m, p, y, rgba[5]);
     for (int x = 0; x < w; x += 8) {
-        /* what is near but hardly blurred may stand behind what is more so */
+        /* near but slightly blurred surfaces may show behind more blurred ones */
         const v8 m_signed = get(m + x), size = if_below(m_signed, -m_signed, m_signed);
-        const v8 part = serves(size, 1) * most(1 - ramp(-m_signed, HARDLY, FULLY), all(LAST)),
+        const v8 part = source_part(size, 1) * max8(1 - ramp(-m_signed, FADE_BEGIN, FADE_END), all(FADED)),
                  weight = get(rgba[3] + x) * part;
         for (int k = 0; k < 3; k++) put(lines[BACK + k] + x, get(rgba[k] + x) * part);
         put(lines[BACK_WEIGHT] + x, weight);
         put(lines[BACK_M] + x, weight * size);
     }
     for (int x = 0; p->any_near && x < w; x += 8) {
-        const v8 size = -get(m + x), part = beyond(size, 1), cover = get(rgba[3] + x) * part;
+        const v8 size = -get(m + x), part = coarser_part(size, 1), cover = get(rgba[3] + x) * part;
         for (int k = 0; k < 3; k++) put(lines[NEAR + k] + x, get(rgba[k] + x) * part);
         put(lines[NEAR_COVER] + x, cover);
         put(lines[NEAR_M] + x, cover * size);
@@ -180,7 +203,8 @@ static void frame_goes_down(const struct pass *p, int y, float *const *lines, fl
     }
 }
 
-static void level_goes_down(const struct pass *p, int y, float *const *lines)
+/* Contribution of a row of level p->level to the next coarser one. */
+static void downsample_level(const struct defocus_pass *p, int y, float *const *lines)
 {
     const struct defocus_level *l = &p->d->levels[p->level];
     const float here = ldexpf(1, 2 * p->level), *row = line_of(l, y, 0);
@@ -189,7 +213,7 @@ static void level_goes_down(const struct pass *p, int y, float *const *lines)
     for (int x = 0; x < l->width; x += 8) {
         const float *at = row + x;
         const v8 weight = get(at + BACK_WEIGHT * stride), m = get(at + BACK_M * stride);
-        const v8 part = serves(m / (weight + TINY), here);
+        const v8 part = source_part(m / (weight + TINY), here);
         for (size_t k = BACK; k < BACK_WEIGHT; k++) put(lines[k] + x, get(at + k * stride) * part);
         put(lines[BACK_WEIGHT] + x, weight * part);
         put(lines[BACK_M] + x, m * part);
@@ -197,7 +221,7 @@ static void level_goes_down(const struct pass *p, int y, float *const *lines)
     for (int x = 0; p->any_near && x < l->width; x += 8) {
         const float *at = row + x;
         const v8 cover = get(at + NEAR_COVER * stride), m = get(at + NEAR_M * stride);
-        const v8 wanted = m / (cover + TINY), part = beyond(wanted, here), open = get(at + OPEN * stride);
+        const v8 wanted = m / (cover + TINY), part = coarser_part(wanted, here), open = get(at + OPEN * stride);
         for (size_t k = NEAR; k < NEAR_COVER; k++) put(lines[k] + x, get(at + k * stride) * part);
         put(lines[NEAR_COVER] + x, cover * part);
         put(lines[NEAR_M] + x, m * part);
@@ -205,7 +229,7 @@ static void level_goes_down(const struct pass *p, int y, float *const *lines)
     }
 }
 
-/* to[i] = (1 3 3 1) / 8 around 2 i and 2 i + 1; the line's ends go on as they are. */
+/* to[i] = (1 3 3 1) / 8 around 2 i and 2 i + 1; the end values continue beyond the line. */
 static void halve_line(float *restrict to, float *restrict line, int width)
 {
     const int half = (width + 1) / 2;
@@ -218,7 +242,7 @@ static void halve_line(float *restrict to, float *restrict line, int width)
 /* Rows of level + 1 from rows of level. */
 static void rows_down(void *ctx, size_t begin, size_t end, int thread)
 {
-    const struct pass *p = ctx;
+    const struct defocus_pass *p = ctx;
     const bool base = p->level == 0;
     const struct defocus_level *to = &p->d->levels[p->level + 1], *from = &p->d->levels[p->level];
     const size_t size = line_size(from->width), half = line_size(to->width);
@@ -232,13 +256,13 @@ static void rows_down(void *ctx, size_t begin, size_t end, int thread)
     for (int row = 2 * (int)begin - 1; row <= 2 * (int)end; row++) {
         const int y = row < 0 ? 0 : row >= from->height ? from->height - 1 : row;
         if (base)
-            frame_goes_down(p, y, lines, spare);
+            downsample_frame(p, y, lines, spare);
         else
-            level_goes_down(p, y, lines);
+            downsample_level(p, y, lines);
         for (int k = 0; k < CHANNELS; k++)
             if (used(p, k)) halve_line(halved[row & 3][k], lines[k], from->width);
         if (row & 1 || row < 2 * (int)begin + 2) continue;
-        const int out = row / 2 - 1; /* rows 2 out - 1 .. 2 out + 2 are there */
+        const int out = row / 2 - 1; /* rows 2 out - 1 .. 2 out + 2 are in `halved` */
         for (int k = 0; k < CHANNELS; k++) {
             const float *restrict a = halved[(row - 3) & 3][k], *restrict b = halved[(row - 2) & 3][k];
             const float *restrict c = halved[(row - 1) & 3][k], *restrict d = halved[row & 3][k];
@@ -249,9 +273,9 @@ static void rows_down(void *ctx, size_t begin, size_t end, int thread)
     }
 }
 
-/* --------------------------------------------------------------------------------------------------------- up */
+/* ------------------------------------------------------------------------------------------------- upsampling */
 
-/* A line of the coarser level as row y of the finer one has it; of an odd width one more value is written. */
+/* Upsamples channel k of the coarser level's result to row y of the finer one. Writes an even number of values. */
 static void double_line(float *restrict to, float *restrict blend, const struct defocus_level *coarse, int y, int k)
 {
     const int near = y / 2, other = y & 1 ? near + 1 : near - 1, w = coarse->width;
@@ -271,9 +295,9 @@ static void double_line(float *restrict to, float *restrict blend, const struct 
     }
 }
 
-/* lines[k]: rows y - 1 .. y + 1 of the channels that hold light, by (1 2 1) / 4; of the near ones what is to be
- * smoothed. */
-static void smooth_rows(const struct pass *p, int y, float *const *lines)
+/* lines[k]: rows y - 1 .. y + 1 of the colour and weight channels, filtered by (1 2 1) / 4; of the near layer only the
+ * smoothed part. */
+static void smooth_rows(const struct defocus_pass *p, int y, float *const *lines)
 {
     const struct defocus_level *l = &p->d->levels[p->level];
     const float here = ldexpf(1, 2 * p->level);
@@ -292,7 +316,7 @@ static void smooth_rows(const struct pass *p, int y, float *const *lines)
         for (int i = 0; i < 3; i++) {
             const float *at = rows[i] + x;
             const v8 m = get(at + NEAR_M * l->stride) / (get(at + NEAR_COVER * l->stride) + TINY);
-            const v8 part = (i == 1 ? 0.5f : 0.25f) * smoothed(m, here);
+            const v8 part = (i == 1 ? 0.5f : 0.25f) * smoothed_part(m, here);
             for (size_t k = NEAR; k <= NEAR_COVER; k++) sum[k] += part * get(at + k * l->stride);
         }
         for (size_t k = NEAR; k <= NEAR_COVER; k++) put(lines[k] + x, sum[k]);
@@ -305,13 +329,14 @@ static void smooth_rows(const struct pass *p, int y, float *const *lines)
 
 static inline v8 smooth(const float *at) { return 0.25f * (get(at - 1) + get(at + 1)) + 0.5f * get(at); }
 
-/* The part of a coverage for which there is room beside what is nearer. */
-static inline v8 room_for(v8 cover, v8 nearer) { return least(most(1 - nearer, all(0)) / (cover + TINY), all(1)); }
+/* The part of a coverage that fits beside nearer coverage. */
+static inline v8 room_for(v8 cover, v8 nearer) { return min8(max8(1 - nearer, all(0)) / (cover + TINY), all(1)); }
 
-static void level_looks_up(const struct pass *p, int y, float *const *up, float *const *lines)
+/* Result of row y of a level: its own part composited with the coarser levels' result `up`. */
+static void composite_level(const struct defocus_pass *p, int y, float *const *up, float *const *lines)
 {
     const struct defocus_level *l = &p->d->levels[p->level];
-    const float here = ldexpf(1, 2 * p->level); /* on the last level no m is above it */
+    const float here = ldexpf(1, 2 * p->level); /* max_m on the last level */
     const size_t stride = l->stride, result = CHANNELS * l->stride;
     float *row = line_of(l, y, 0);
 
@@ -319,8 +344,8 @@ static void level_looks_up(const struct pass *p, int y, float *const *up, float 
     for (int x = 0; x < l->width; x += 8) {
         float *at = row + x;
         const v8 weight = get(at + BACK_WEIGHT * stride), above = get(up[BACK_WEIGHT] + x);
-        const v8 m = get(at + BACK_M * stride) / (weight + TINY), blurred = smoothed(m, here);
-        const v8 sum = weight + LEAST * above, sharp = 1 - beyond(m, here) - blurred;
+        const v8 m = get(at + BACK_M * stride) / (weight + TINY), blurred = smoothed_part(m, here);
+        const v8 sum = weight + MIN_WEIGHT * above, sharp = 1 - coarser_part(m, here) - blurred;
         const v8 around = blurred * weight / (smooth(lines[BACK_WEIGHT] + x) + TINY);
         const v8 coarser = (sum - (sharp + blurred) * weight) / (above + TINY);
         for (size_t k = BACK; k < BACK_WEIGHT; k++)
@@ -331,8 +356,8 @@ static void level_looks_up(const struct pass *p, int y, float *const *up, float 
     for (int x = 0; p->any_near && x < l->width; x += 8) {
         float *at = row + x;
         const v8 cover = get(at + NEAR_COVER * stride), nearer = get(up[NEAR_COVER] + x);
-        const v8 m = get(at + NEAR_M * stride) / (cover + TINY), on = beyond(m, here),
-                 sharp = 1 - on - smoothed(m, here);
+        const v8 m = get(at + NEAR_M * stride) / (cover + TINY), on = coarser_part(m, here),
+                 sharp = 1 - on - smoothed_part(m, here);
         const v8 left = cover * sharp + smooth(lines[NEAR_COVER] + x), room = room_for(left, nearer);
         for (size_t k = NEAR; k < NEAR_COVER; k++)
             put(at + k * stride + result,
@@ -342,27 +367,28 @@ static void level_looks_up(const struct pass *p, int y, float *const *up, float 
     }
 }
 
-static void frame_looks_up(const struct pass *p, int y, float *const *up, float *const *rgba)
+/* The final row y of the frame. */
+static void composite_frame(const struct defocus_pass *p, int y, float *const *up, float *const *rgba)
 {
     const int w = p->frame->width;
     float *row = p->frame->rgba + (size_t)y * (size_t)w * 4, *m = rgba[4];
 
-    row_apart(rgba, row, w);
+    row_split(rgba, row, w);
     row_blur(m, p, y, rgba[5]);
     for (int x = 0; !p->any_near && x < w; x += 8) {
-        const v8 on = beyond(get(m + x), 1), own = 1 - on;
+        const v8 on = coarser_part(get(m + x), 1), own = 1 - on;
         const v8 coarser = on * get(rgba[3] + x) / (get(up[BACK_WEIGHT] + x) + TINY);
         for (int k = 0; k < 3; k++) put(rgba[k] + x, get(rgba[k] + x) * own + get(up[BACK + k] + x) * coarser);
     }
     for (int x = 0; p->any_near && x < w; x += 8) {
-        /* A pixel of the back lies under the near layer; a near pixel is a part of it, and where the layer does not
-         * cover it the back shows as far as there is any within its own blur. */
+        /* A pixel of the back is under the near layer. A near pixel is part of the layer; where the layer does not
+         * cover it, the back shows through as far as there is any within the pixel's own blur. */
         const v8 m_signed = get(m + x), alpha = get(rgba[3] + x);
-        const v8 on = beyond(if_below(m_signed, -m_signed, m_signed), 1), own = 1 - on;
+        const v8 on = coarser_part(if_below(m_signed, -m_signed, m_signed), 1), own = 1 - on;
         const v8 nearer = get(up[NEAR_COVER] + x), room = room_for(alpha * own, nearer);
         const v8 cover = nearer + if_below(m_signed, alpha * own * room, all(0));
-        const v8 left = most(1 - cover, all(0)), seen = on * get(up[OPEN] + x);
-        const v8 layer = 1 / if_below(m_signed, cover + seen + TINY, most(cover, all(1)));
+        const v8 left = max8(1 - cover, all(0)), seen = on * get(up[OPEN] + x);
+        const v8 layer = 1 / if_below(m_signed, cover + seen + TINY, max8(cover, all(1)));
         const v8 mine = own * if_below(m_signed, layer * room, left);
         const v8 coarser = if_below(m_signed, layer * seen, left * on * alpha) / (get(up[BACK_WEIGHT] + x) + TINY);
         for (int k = 0; k < 3; k++)
@@ -370,12 +396,12 @@ static void frame_looks_up(const struct pass *p, int y, float *const *up, float 
                 get(rgba[k] + x) * mine + (get(up[NEAR + k] + x) * layer + get(up[BACK + k] + x) * coarser));
         put(rgba[3] + x, if_below(m_signed, all(1), cover * layer + left * alpha));
     }
-    row_together(row, rgba, w);
+    row_join(row, rgba, w);
 }
 
 static void rows_up(void *ctx, size_t begin, size_t end, int thread)
 {
-    const struct pass *p = ctx;
+    const struct defocus_pass *p = ctx;
     const struct defocus_level *l = &p->d->levels[p->level];
     const size_t size = line_size(l->width + 1);
     float *at = p->d->scratch + (size_t)thread * p->d->scratch_size, *up[UP_CHANNELS], *spare[8], *blend;
@@ -392,9 +418,9 @@ static void rows_up(void *ctx, size_t begin, size_t end, int thread)
                 double_line(up[k], blend, l + 1, y, k);
         }
         if (p->level)
-            level_looks_up(p, y, up, spare);
+            composite_level(p, y, up, spare);
         else
-            frame_looks_up(p, y, up, spare);
+            composite_frame(p, y, up, spare);
     }
 }
 
@@ -422,7 +448,7 @@ static enum status resize(struct defocus *d, int width, int height, struct err *
     d->memory = aligned_alloc(64, (bytes + 63) / 64 * 64 + 64);
     if (!d->memory) {
         defocus_release(d);
-        return err_nomem(err, "the pyramids of a blurred frame", bytes);
+        return err_nomem(err, "the MIP maps of a frame", bytes);
     }
     float *at = d->memory;
     for (int k = 1; k <= d->level_count; k++) {
@@ -444,6 +470,7 @@ void defocus_release(struct defocus *d)
     *d = (struct defocus){0};
 }
 
+/* Whether any known depth is in front of the focus. */
 static bool has_nearer(const float *restrict z, size_t count, float focus)
 {
     for (size_t begin = 0; begin < count; begin += 4096) {
@@ -459,18 +486,19 @@ enum status defocus_apply(struct defocus *d, struct rendered_frame *frame, const
                           double focus, struct err *err)
 {
     if (!(aperture >= 0) || !isfinite(aperture))
-        return err_set(err, ST_DATA, "frame %s has the aperture %g: wanted a diameter of 0 or more.",
+        return err_set(err, ST_DATA, "the aperture of frame %s is %g: wanted a diameter of 0 or more.",
                        camera->name ? camera->name : "", aperture);
     if (aperture == 0) return ST_OK;
     if (!(focus > 0 && isfinite(focus)))
-        return err_set(err, ST_DATA, "frame %s is focused at depth %g: with an aperture, wanted more than 0.",
+        return err_set(err, ST_DATA,
+                       "the focus of frame %s is %g: wanted a depth above 0, because its aperture is open.",
                        camera->name ? camera->name : "", focus);
     if (resize(d, frame->width, frame->height, err)) return err->status;
     if (!d->level_count) return ST_OK;
 
-    struct pass pass = {.d = d, .frame = frame, .focus = (float)focus};
+    struct defocus_pass pass = {.d = d, .frame = frame, .focus = (float)focus};
     pass.blur = (float)(aperture * camera->fx / focus);
-    pass.m_most = ldexpf(1, 2 * d->level_count);
+    pass.max_m = ldexpf(1, 2 * d->level_count);
     pass.any_near = has_nearer(frame->z, (size_t)frame->width * (size_t)frame->height, pass.focus);
     for (pass.level = 0; pass.level < d->level_count; pass.level++)
         parallel_for((size_t)d->levels[pass.level + 1].height, ROWS / 2, rows_down, &pass);

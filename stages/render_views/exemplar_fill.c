@@ -1,31 +1,32 @@
-/* exemplar_fill.c - see exemplar_fill.h.
+/* exemplar_fill.c - exemplar-based inpainting [Criminisi 2004], restricted to the far side of a hole
+ * [Colburn 2014, 3.6.2].
  *
- * Criminisi's algorithm fills a hole patch by patch. The front is the hole's pixels that touch what may spread. Of the
- * front's pixels the one goes first whose priority
+ * The algorithm fills a hole patch by patch. The fill front is the set of hole pixels that touch usable pixels. The
+ * next patch is centred at the front pixel of greatest priority
  *   P(p) = C(p) (D(p) + D0)      C(p) = sum of the confidences of the patch's usable pixels / pixels of the patch
  *                                D(p) = |isophote . normal of the front|, in units of the mean brightness
- * is greatest: patches that are mostly known, and where a line meets the front. The patch in the window whose pixels
- * differ least (sum of squares, over the target's usable pixels) from it is copied into the patch's empty pixels, whose
- * confidence becomes C(p). Known pixels have confidence 1. The isophote is the strongest gradient in the patch, turned
- * by a right angle. D0, which the paper lacks, keeps even regions from having no order at all.
+ * that is, patches come first that are mostly known, and where a line meets the front. The source patch in the window
+ * that differs least from it (sum of squared differences over the target's usable pixels) is copied into the patch's
+ * empty pixels, whose confidence becomes C(p). Known pixels have confidence 1. The isophote is the strongest gradient
+ * in the patch, turned by a right angle. Colours are compared by the square root of each channel, which is nearly
+ * uniform perceptually and makes the choice of a patch independent of exposure. Ties are broken by picture order.
  *
- * What the thesis adds: the rim's depths are split in two clusters, and pixels nearer than the border between them are
- * taken for absent: they do not spread, bear no front, and are neither source nor compared. Two clusters there are if
- * the gap between their means in ln z is above 4 sqrt(2) sigma, twice as far as two depths of one surface may well
- * differ by error; if not more than an eighth of the rim lies in the gap's middle third (a wall seen aslant has a sixth
- * there, a Gaussian a fifth); and if each holds a twentieth of the rim at least. A fortieth of the rim at either end is
- * left out before, so that a few stray depths neither make a cluster nor hide one.
+ * From the thesis: the depths of the hole's rim, the known pixels beside it, are split into two clusters, and pixels
+ * nearer than the border between the clusters are not usable: they do not extend the front, and are neither sources nor
+ * compared. Depth is filled along with each patch: the mean of the usable pixels around, weighted by the reversed soft
+ * z-buffer (the farthest has weight 1) over the squared distance in pixels.
  *
- * Depth goes along with each patch: the mean of the usable pixels around by the weights of the soft z reversed, the
- * farthest counting 1, over the squared distance in pixels.
- *
- * So that even ground is not paved with the one patch that is smoothest, a pixel that was copied n times makes the patch
- * around it dearer by n times half of what noise alone makes two patches differ, the noise being the mean step between
- * neighbours among what may be copied.
- *
- * Where the window has no whole patch of usable pixels (deep in a wide hole) it is laid around the place that a pixel
- * of the target was itself copied from; failing that it is doubled until the frame is searched; where there is no patch
- * at all, colour is blended as depth is. Equal differences: the first in picture order; equal priorities likewise. */
+ * What differs from the sources:
+ * - D0 gives uniform regions an order;
+ * - there are two clusters only if the gap between their means in ln z is above 4 sqrt(2) sigma, twice what the depths
+ *   of one surface may differ by error; if at most 1/8 of the rim lies in the middle third of the gap (a slanted wall
+ *   has 1/6 there, a Gaussian 1/5); and if each cluster has at least 1/20 of the rim. Before, 1/40 of the rim is left
+ *   out at either end, so that outliers neither make a cluster nor hide one;
+ * - a pixel that was copied n times adds a penalty to the patch around it, n times half of the difference that noise
+ *   makes between two patches, so that uniform areas are not tiled with the one smoothest patch. Noise is estimated by
+ *   the mean step between adjacent source pixels;
+ * - where the window has no source patch (deep in a wide hole), it is moved to where a pixel of the target was itself
+ *   copied from, then doubled until it covers the frame; without any source patch, colour is blended like depth. */
 #include "stages/render_views/exemplar_fill.h"
 
 #include <immintrin.h>
@@ -34,6 +35,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/base/array.h"
 #include "common/base/parallel.h"
 #include "common/base/sort.h"
 #include "common/layers/hole_fill.h"
@@ -41,18 +43,18 @@
 #define MAX_RADIUS    7
 #define MAX_PATCH     ((2 * MAX_RADIUS + 1) * (2 * MAX_RADIUS + 1))
 #define GAP_SIGMAS    4.0  /* of sqrt(2) sigma */
-#define VALLEY_SHARE  8    /* at most one in so many lies between the clusters */
-#define LEAST_SHARE   20   /* a cluster holds at least one in so many */
-#define STRAY_SHARE   40   /* one in so many at either end does not count */
+#define VALLEY_SHARE  8    /* max 1 / VALLEY_SHARE of the rim is between the clusters */
+#define CLUSTER_SHARE 20   /* min 1 / CLUSTER_SHARE of the rim is in each cluster */
+#define STRAY_SHARE   40   /* 1 / STRAY_SHARE of the rim is left out at either end */
 #define EVEN_PRIORITY 0.1f /* D0 */
-#define PER_COPY      0.5f /* of what noise makes two patches differ */
+#define COPY_PENALTY  0.5f /* per earlier copy, of the difference that noise makes between two patches */
 #define LANES         8
 #define NOWHERE       UINT32_MAX
-#define KNOWN         0 /* label of a pixel that is in no hole; hole i has label i + 1 */
+#define KNOWN         0 /* label of pixels outside of holes; hole i has label i + 1 */
 
-struct hole {
-    size_t first, count; /* in the list of pixels */
-    int x0, y0, x1, y1;  /* bounding box, x1 and y1 outside */
+struct frame_hole {
+    size_t first, count; /* its range in the list of pixels */
+    int x0, y0, x1, y1;  /* bounding box; x1 and y1 exclusive */
 };
 
 struct front_pixel {
@@ -60,8 +62,8 @@ struct front_pixel {
     uint32_t pixel;
 };
 
-struct scratch {             /* of one thread */
-    uint8_t *valid, *copies; /* one block: where patches may be copied from, how often a pixel was (255: or more) */
+struct fill_scratch {        /* one per thread */
+    uint8_t *valid, *copies; /* one block: centres of source patches, and how often each pixel was copied (max 255) */
     size_t valid_size;
     int *run;
     struct front_pixel *heap;
@@ -72,30 +74,30 @@ struct scratch {             /* of one thread */
     enum status status;
 };
 
-struct job {
+struct fill_job {
     struct rendered_frame *frame;
     const struct exemplar_depth *depth;
     int w, h, radius, window;
     size_t stride;     /* of the planes */
-    float *planes[3];  /* square roots of what was known before; rows have LANES more */
-    float *luma;       /* of what is known, in units of its mean */
-    float *confidence; /* 0: empty still */
-    float *priority;   /* of a pixel on a front: entries of the heap that say otherwise are stale */
-    uint32_t *origin;  /* of a filled pixel: where it was copied from; NOWHERE if it was blended */
+    float *planes[3];  /* square roots of the colours known before; rows have LANES of padding */
+    float *luma;       /* of known and filled pixels, relative to the mean of the known ones; the last is that mean */
+    float *confidence; /* 0: still empty */
+    float *priority;   /* of front pixels; entries of the heap with another priority are stale */
+    uint32_t *origin;  /* pixel that a filled pixel was copied from; NOWHERE: it was blended */
     uint32_t *label;
-    uint32_t *list; /* pixels of hole after hole */
-    struct hole *holes;
+    uint32_t *list; /* pixels of all holes, hole by hole */
+    struct frame_hole *holes;
     size_t hole_count;
-    struct scratch *scratch;
+    struct fill_scratch *scratch;
 };
 
-struct fill { /* of one hole */
-    const struct job *job;
-    struct scratch *s;
+struct hole_job { /* filling of one hole */
+    const struct fill_job *job;
+    struct fill_scratch *s;
     uint32_t label;
-    float border;                       /* what is not farther than this is near; -1: all is far */
-    float noise;                        /* square of the mean step between neighbours */
-    int bx, by, bw, bh, margin, stride; /* where `valid` tells whether a pixel is the centre of a whole usable patch */
+    float border;                       /* known pixels not farther than this are not usable; -1: all are */
+    float noise;                        /* square of the mean step between adjacent source pixels */
+    int bx, by, bw, bh, margin, stride; /* the box that `valid` and `copies` describe */
 };
 
 /* --------------------------------------------------------------------------------------------------- clusters */
@@ -118,7 +120,7 @@ float exemplar_far_border(float *z, size_t count, float sigma)
         near_sum += log(z[i]) - base;
         if (!(z[i] < z[i + 1])) continue;
         const double n = (double)(i + 1), m = (double)(count - i - 1), far_sum = sum - near_sum;
-        const double apart = near_sum * near_sum / n + far_sum * far_sum / m; /* greatest: least squares within */
+        const double apart = near_sum * near_sum / n + far_sum * far_sum / m; /* variance between the clusters */
         if (apart > best) {
             best = apart;
             border = base + 0.5 * (near_sum / n + far_sum / m);
@@ -127,33 +129,35 @@ float exemplar_far_border(float *z, size_t count, float sigma)
         }
     }
     for (size_t i = 0; i < count; i++) between += z[i] > exp(border - gap / 6) && z[i] < exp(border + gap / 6);
-    const bool two = gap > GAP_SIGMAS * M_SQRT2 * fmax(sigma, SOFT_Z_SIGMA_LEAST) && between * VALLEY_SHARE <= count &&
-                     near_count * LEAST_SHARE >= count && (count - near_count) * LEAST_SHARE >= count;
+    const bool two = gap > GAP_SIGMAS * M_SQRT2 * fmax(sigma, SOFT_Z_MIN_SIGMA) && between * VALLEY_SHARE <= count &&
+                     near_count * CLUSTER_SHARE >= count && (count - near_count) * CLUSTER_SHARE >= count;
     return two ? (float)exp(border) : 0;
 }
 
-/* ------------------------------------------------------------------------------------------------ what is usable */
+/* ------------------------------------------------------------------------------------------------ usable pixels */
 
-static bool is_usable(const struct fill *f, size_t p)
+/* Known and far, or filled in this hole. */
+static bool is_usable(const struct hole_job *f, size_t p)
 {
     const uint32_t label = f->job->label[p];
     if (label == KNOWN) return f->job->frame->z[p] > f->border;
     return label == f->label && f->job->confidence[p] > 0;
 }
 
-static bool is_open(const struct fill *f, size_t p)
+/* Still empty. */
+static bool is_open(const struct hole_job *f, size_t p)
 {
     return f->job->label[p] == f->label && !(f->job->confidence[p] > 0);
 }
 
-static bool usable_at(const struct fill *f, int x, int y)
+static bool usable_at(const struct hole_job *f, int x, int y)
 {
-    const struct job *j = f->job;
+    const struct fill_job *j = f->job;
     return x >= 0 && y >= 0 && x < j->w && y < j->h && is_usable(f, (size_t)y * (size_t)j->w + (size_t)x);
 }
 
-/* On the front: open, and beside something that spreads. */
-static bool on_front(const struct fill *f, int x, int y)
+/* Open, and adjacent to a usable pixel. */
+static bool on_front(const struct hole_job *f, int x, int y)
 {
     if (!is_open(f, (size_t)y * (size_t)f->job->w + (size_t)x)) return false;
     for (int v = y - 1; v <= y + 1; v++)
@@ -169,9 +173,10 @@ static float luma_of(const float *rgba, float mean)
 
 /* ------------------------------------------------------------------------------------------------- priorities */
 
-static float confidence_at(const struct fill *f, int x, int y)
+/* C(p) */
+static float confidence_at(const struct hole_job *f, int x, int y)
 {
-    const struct job *j = f->job;
+    const struct fill_job *j = f->job;
     const int r = j->radius;
     float sum = 0;
 
@@ -181,9 +186,10 @@ static float confidence_at(const struct fill *f, int x, int y)
     return sum / (float)((2 * r + 1) * (2 * r + 1));
 }
 
-static float data_at(const struct fill *f, int x, int y)
+/* D(p) */
+static float data_at(const struct hole_job *f, int x, int y)
 {
-    const struct job *j = f->job;
+    const struct fill_job *j = f->job;
     const int r = j->radius, side = 2 * r + 3;
     bool usable[(2 * MAX_RADIUS + 3) * (2 * MAX_RADIUS + 3)];
     float strongest = 0, gx = 0, gy = 0;
@@ -218,7 +224,7 @@ static bool goes_before(struct front_pixel a, struct front_pixel b)
     return a.priority > b.priority || (a.priority == b.priority && a.pixel < b.pixel);
 }
 
-static bool heap_push(struct scratch *s, struct front_pixel item)
+static bool heap_push(struct fill_scratch *s, struct front_pixel item)
 {
     if (s->heap_count == s->heap_size) {
         const size_t size = s->heap_size ? 2 * s->heap_size : 1024;
@@ -236,7 +242,7 @@ static bool heap_push(struct scratch *s, struct front_pixel item)
     return true;
 }
 
-static struct front_pixel heap_pop(struct scratch *s)
+static struct front_pixel heap_pop(struct fill_scratch *s)
 {
     const struct front_pixel top = s->heap[0], last = s->heap[--s->heap_count];
     size_t i = 0;
@@ -252,7 +258,8 @@ static struct front_pixel heap_pop(struct scratch *s)
     return top;
 }
 
-static bool front_update(const struct fill *f, int x, int y)
+/* Pushes (x, y) if it is on the front and its priority changed. False: out of memory. */
+static bool front_update(const struct hole_job *f, int x, int y)
 {
     if (!on_front(f, x, y)) return true;
     const size_t p = (size_t)y * (size_t)f->job->w + (size_t)x;
@@ -262,23 +269,24 @@ static bool front_update(const struct fill *f, int x, int y)
     return heap_push(f->s, (struct front_pixel){priority, (uint32_t)p});
 }
 
-/* ---------------------------------------------------------------------------------------------------- the source */
+/* ------------------------------------------------------------------------------------------------ source patches */
 
-static int least(int a, int b) { return a < b ? a : b; }
-static int most(int a, int b) { return a > b ? a : b; }
+static int min_int(int a, int b) { return a < b ? a : b; }
+static int max_int(int a, int b) { return a > b ? a : b; }
 
-/* Which pixels, `margin` around the hole, are centres of a whole patch that was known before and is not near. */
-static bool find_sources(struct fill *f, const struct hole *hole, int margin)
+/* Marks the centres of source patches, all of whose pixels are known and usable, up to `margin` px around the hole.
+ * False: out of memory. */
+static bool find_sources(struct hole_job *f, const struct frame_hole *hole, int margin)
 {
-    const struct job *j = f->job;
-    struct scratch *s = f->s;
+    const struct fill_job *j = f->job;
+    struct fill_scratch *s = f->s;
     const int r = j->radius, side = 2 * r + 1;
 
     f->margin = margin;
-    f->bx = most(0, hole->x0 - margin);
-    f->by = most(0, hole->y0 - margin);
-    f->bw = least(j->w, hole->x1 + margin) - f->bx;
-    f->bh = least(j->h, hole->y1 + margin) - f->by;
+    f->bx = max_int(0, hole->x0 - margin);
+    f->by = max_int(0, hole->y0 - margin);
+    f->bw = min_int(j->w, hole->x1 + margin) - f->bx;
+    f->bh = min_int(j->h, hole->y1 + margin) - f->by;
     f->stride = f->bw + LANES;
     const size_t size = (size_t)f->stride * (size_t)f->bh;
     if (size > s->valid_size) {
@@ -293,7 +301,7 @@ static bool find_sources(struct fill *f, const struct hole *hole, int margin)
     memset(s->run, 0, (size_t)f->bw * sizeof *s->run);
     double steps = 0, pairs = 0;
     for (int y = 0; y < f->bh; y++) {
-        int across = 0; /* good pixels up to here; run: rows of `side` good pixels up to here, by their last */
+        int across = 0; /* length of the run of source pixels that ends here; run[x]: rows of `side` such pixels */
         for (int x = 0; x < f->bw; x++) {
             const size_t p = (size_t)(f->by + y) * (size_t)j->w + (size_t)(f->bx + x);
             across = j->label[p] == KNOWN && j->frame->z[p] > f->border ? across + 1 : 0;
@@ -311,16 +319,16 @@ static bool find_sources(struct fill *f, const struct hole *hole, int margin)
     return true;
 }
 
-struct target {
+struct target_patch { /* the usable pixels of the patch to fill */
     int count;
-    uint32_t origin;             /* where one of its pixels was copied from, or NOWHERE */
+    uint32_t origin;             /* origin of one of its filled pixels, or NOWHERE */
     ptrdiff_t offset[MAX_PATCH]; /* from the centre, in the planes */
-    float v[MAX_PATCH][3];
+    float v[MAX_PATCH][3];       /* square roots of the colour */
 };
 
-static void target_make(struct target *t, const struct fill *f, int x, int y)
+static void target_make(struct target_patch *t, const struct hole_job *f, int x, int y)
 {
-    const struct job *j = f->job;
+    const struct fill_job *j = f->job;
     const int r = j->radius;
 
     t->count = 0;
@@ -335,16 +343,16 @@ static void target_make(struct target *t, const struct fill *f, int x, int y)
         }
 }
 
-/* The centre of the patch most like the target within `half` of (x, y), in pixels of the frame; false: no whole patch
- * there. */
-static bool search(const struct fill *f, const struct target *t, int x, int y, int half, size_t *found)
+/* *found: centre of the source patch most similar to the target, less than `half` px from (x, y). False: there is no
+ * source patch. */
+static bool search(const struct hole_job *f, const struct target_patch *t, int x, int y, int half, size_t *found)
 {
-    const struct job *j = f->job;
-    const int r = j->radius; /* no patch reaches out of the frame, so that lanes that do not count read it too */
-    const int x0 = most(most(f->bx, r), x - half), x1 = least(least(f->bx + f->bw, j->w - r), x + half);
-    const int y0 = most(most(f->by, r), y - half), y1 = least(least(f->by + f->bh, j->h - r), y + half);
+    const struct fill_job *j = f->job;
+    const int r = j->radius; /* keeps patches inside the frame, also those of lanes that are not sources */
+    const int x0 = max_int(max_int(f->bx, r), x - half), x1 = min_int(min_int(f->bx + f->bw, j->w - r), x + half);
+    const int y0 = max_int(max_int(f->by, r), y - half), y1 = min_int(min_int(f->by + f->bh, j->h - r), y + half);
     const float *const red = j->planes[0], *const green = j->planes[1], *const blue = j->planes[2];
-    const __m256 dearer = _mm256_set1_ps(PER_COPY * 3 * (float)t->count * f->noise);
+    const __m256 penalty = _mm256_set1_ps(COPY_PENALTY * 3 * (float)t->count * f->noise);
     float best = INFINITY;
     bool any = false;
 
@@ -360,10 +368,10 @@ static bool search(const struct fill *f, const struct target *t, int x, int y, i
             const __m256 limit = _mm256_set1_ps(best);
             const size_t at = (size_t)v * j->stride + (size_t)u;
             const __m128i copied = _mm_loadl_epi64((const __m128i *)(copies + (u - f->bx)));
-            __m256 sum = _mm256_mul_ps(dearer, _mm256_cvtepi32_ps(_mm256_cvtepu8_epi32(copied)));
+            __m256 sum = _mm256_mul_ps(penalty, _mm256_cvtepi32_ps(_mm256_cvtepu8_epi32(copied)));
             int left = 0;
             for (int i = 0; i < t->count;) {
-                for (const int end = least(t->count, i + 5); i < end; i++) {
+                for (const int end = min_int(t->count, i + 5); i < end; i++) {
                     const size_t q = at + (size_t)t->offset[i];
                     const __m256 dr = _mm256_sub_ps(_mm256_loadu_ps(red + q), _mm256_set1_ps(t->v[i][0]));
                     const __m256 dg = _mm256_sub_ps(_mm256_loadu_ps(green + q), _mm256_set1_ps(t->v[i][1]));
@@ -391,11 +399,11 @@ static bool search(const struct fill *f, const struct target *t, int x, int y, i
 
 /* ------------------------------------------------------------------------------------------------------ filling */
 
-/* From the usable pixels around, the far side first. */
-static void blend(const struct fill *f, int x, int y, float rgb[3], float *z)
+/* Mean colour and depth of the usable pixels around (x, y), far side preferred. */
+static void blend(const struct hole_job *f, int x, int y, float rgb[3], float *z)
 {
-    const struct job *j = f->job;
-    const int r = j->radius + 1; /* a front's patch reaches no farther from what the front touches */
+    const struct fill_job *j = f->job;
+    const int r = j->radius + 1; /* all pixels of a patch on the front have a usable pixel within this distance */
     float z_far = 0, sum = 0, z_sum = 0, colors = 0;
 
     for (int v = y - r; v <= y + r; v++)
@@ -419,19 +427,21 @@ static void blend(const struct fill *f, int x, int y, float rgb[3], float *z)
     if (sum > 0) *z = z_sum / sum;
 }
 
-static void count_copy(struct fill *f, size_t from)
+/* Counts a copy of pixel `from`. */
+static void count_copy(struct hole_job *f, size_t from)
 {
     const size_t x = from % (size_t)f->job->w - (size_t)f->bx, y = from / (size_t)f->job->w - (size_t)f->by;
     uint8_t *copies = f->s->copies + y * (size_t)f->stride + x;
     if (*copies < UINT8_MAX) ++*copies;
 }
 
-static bool fill_patch(struct fill *f, const struct hole *hole, size_t p)
+/* Fills the patch around pixel p, and updates the front. False: out of memory. */
+static bool fill_patch(struct hole_job *f, const struct frame_hole *hole, size_t p)
 {
-    const struct job *j = f->job;
+    const struct fill_job *j = f->job;
     const int r = j->radius, x = (int)(p % (size_t)j->w), y = (int)(p / (size_t)j->w);
     const float confidence = confidence_at(f, x, y);
-    struct target target;
+    struct target_patch target;
     struct {
         size_t p;
         float rgb[3], z;
@@ -451,18 +461,18 @@ static bool fill_patch(struct fill *f, const struct hole *hole, size_t p)
     for (int half = j->window; !found; half *= 2) {
         if (f->margin < half && !find_sources(f, hole, half)) return false;
         found = search(f, &target, x, y, half, &source);
-        if (half >= most(j->w, j->h)) break;
+        if (half >= max_int(j->w, j->h)) break;
     }
     f->s->stats.patches += found;
     f->s->stats.no_patch += !found;
 
-    for (int v = most(0, y - r); v <= least(j->h - 1, y + r); v++)
-        for (int u = most(0, x - r); u <= least(j->w - 1, x + r); u++) {
+    for (int v = max_int(0, y - r); v <= min_int(j->h - 1, y + r); v++)
+        for (int u = max_int(0, x - r); u <= min_int(j->w - 1, x + r); u++) {
             const size_t q = (size_t)v * (size_t)j->w + (size_t)u;
             if (!is_open(f, q)) continue;
             filled[count].p = q;
             blend(f, u, v, filled[count].rgb, &filled[count].z);
-            const size_t from = source + q - p; /* same rows apart in both: no wrap, the source patch is whole */
+            const size_t from = source + q - p; /* no wrap-around: the source patch is inside the frame */
             filled[count].origin = found ? (uint32_t)from : NOWHERE;
             if (found) {
                 memcpy(filled[count].rgb, j->frame->rgba + 4 * from, 3 * sizeof(float));
@@ -479,18 +489,18 @@ static bool fill_patch(struct fill *f, const struct hole *hole, size_t p)
         j->origin[q] = filled[i].origin;
         j->luma[q] = luma_of(filled[i].rgb, j->luma[(size_t)j->w * (size_t)j->h]);
     }
-    /* gradients of the patch reach one pixel beyond it */
-    for (int v = most(0, y - 2 * r - 1); v <= least(j->h - 1, y + 2 * r + 1); v++)
-        for (int u = most(0, x - 2 * r - 1); u <= least(j->w - 1, x + 2 * r + 1); u++)
+    /* priorities depend on pixels up to r + 1 away, because of gradients */
+    for (int v = max_int(0, y - 2 * r - 1); v <= min_int(j->h - 1, y + 2 * r + 1); v++)
+        for (int u = max_int(0, x - 2 * r - 1); u <= min_int(j->w - 1, x + 2 * r + 1); u++)
             if (!front_update(f, u, v)) return false;
     return true;
 }
 
-/* The depths along a hole's rim: one a side that a pixel of the hole shares with a known one. */
-static bool rim_depths(const struct fill *f, const struct hole *hole, size_t *count)
+/* Depths along a hole's rim: one for each side shared by a hole pixel and a known pixel. False: out of memory. */
+static bool rim_depths(const struct hole_job *f, const struct frame_hole *hole, size_t *count)
 {
-    const struct job *j = f->job;
-    struct scratch *s = f->s;
+    const struct fill_job *j = f->job;
+    struct fill_scratch *s = f->s;
 
     if (4 * hole->count > s->rim_size) {
         free(s->rim);
@@ -511,10 +521,11 @@ static bool rim_depths(const struct fill *f, const struct hole *hole, size_t *co
     return true;
 }
 
-static bool fill_hole(const struct job *j, struct scratch *s, size_t index)
+/* False: out of memory. */
+static bool fill_hole(const struct fill_job *j, struct fill_scratch *s, size_t index)
 {
-    const struct hole *hole = &j->holes[index];
-    struct fill f = {.job = j, .s = s, .label = (uint32_t)index + 1, .border = -1};
+    const struct frame_hole *hole = &j->holes[index];
+    struct hole_job f = {.job = j, .s = s, .label = (uint32_t)index + 1, .border = -1};
     size_t count;
 
     if (!rim_depths(&f, hole, &count)) return false;
@@ -539,49 +550,44 @@ static bool fill_hole(const struct job *j, struct scratch *s, size_t index)
 
 static void fill_holes(void *ctx, size_t begin, size_t end, int thread)
 {
-    const struct job *j = ctx;
-    struct scratch *s = &j->scratch[thread];
+    const struct fill_job *j = ctx;
+    struct fill_scratch *s = &j->scratch[thread];
     for (size_t i = begin; i < end; i++)
         if (!s->status && !fill_hole(j, s, i)) s->status = ST_NOMEM;
 }
 
 /* ------------------------------------------------------------------------------------------------------- holes */
 
-static int compare_holes(const void *a, const void *b) /* the largest first, for the threads' sake */
+static int compare_holes(const void *a, const void *b) /* largest first, for load balance */
 {
-    const struct hole *x = a, *y = b;
+    const struct frame_hole *x = a, *y = b;
     if (x->count != y->count) return x->count > y->count ? -1 : 1;
     return x->first < y->first ? -1 : x->first > y->first;
 }
 
-/* Labels and lists what is empty. */
-static enum status find_holes(struct job *j, struct err *err)
+/* Labels and lists the holes, largest first. */
+static enum status find_holes(struct fill_job *j, struct err *err)
 {
     const size_t pixels = (size_t)j->w * (size_t)j->h;
-    size_t listed = 0, room = 0;
+    size_t listed = 0;
 
     j->hole_count = 0;
     for (size_t p = 0; p < pixels; p++) j->label[p] = j->frame->rgba[4 * p + 3] > 0 ? KNOWN : UINT32_MAX;
     for (size_t p = 0; p < pixels; p++) {
         if (j->label[p] != UINT32_MAX) continue;
-        if (j->hole_count == room) {
-            room = room ? 2 * room : 64;
-            struct hole *holes = realloc(j->holes, room * sizeof *holes);
-            if (!holes) return err_nomem(err, "the holes of a frame", room * sizeof *holes);
-            j->holes = holes;
-        }
-        struct hole *hole = &j->holes[j->hole_count++];
-        *hole = (struct hole){listed, 0, j->w, j->h, 0, 0};
+        if (array_append(&j->holes, j->hole_count, sizeof *j->holes, "holes of a frame", err)) return err->status;
+        struct frame_hole *hole = &j->holes[j->hole_count++];
+        *hole = (struct frame_hole){listed, 0, j->w, j->h, 0, 0};
         j->label[p] = 1;
         j->list[listed++] = (uint32_t)p;
         for (size_t i = hole->first; i < listed; i++) {
             const int x = (int)(j->list[i] % (uint32_t)j->w), y = (int)(j->list[i] / (uint32_t)j->w);
-            hole->x0 = least(hole->x0, x);
-            hole->y0 = least(hole->y0, y);
-            hole->x1 = most(hole->x1, x + 1);
-            hole->y1 = most(hole->y1, y + 1);
-            for (int v = most(0, y - 1); v <= least(j->h - 1, y + 1); v++)
-                for (int u = most(0, x - 1); u <= least(j->w - 1, x + 1); u++) {
+            hole->x0 = min_int(hole->x0, x);
+            hole->y0 = min_int(hole->y0, y);
+            hole->x1 = max_int(hole->x1, x + 1);
+            hole->y1 = max_int(hole->y1, y + 1);
+            for (int v = max_int(0, y - 1); v <= min_int(j->h - 1, y + 1); v++)
+                for (int u = max_int(0, x - 1); u <= min_int(j->w - 1, x + 1); u++) {
                     const size_t q = (size_t)v * (size_t)j->w + (size_t)u;
                     if (j->label[q] != UINT32_MAX) continue;
                     j->label[q] = 1;
@@ -596,8 +602,8 @@ static enum status find_holes(struct job *j, struct err *err)
     return ST_OK;
 }
 
-/* Fills the holes that are narrow throughout. */
-static enum status fill_narrow_holes(struct job *j, int diameter, struct err *err)
+/* Fills the holes whose pixels are all narrow. */
+static enum status fill_narrow_holes(struct fill_job *j, int diameter, struct err *err)
 {
     const struct exemplar_depth *d = j->depth;
     uint32_t *narrow = NULL;
@@ -621,7 +627,7 @@ static enum status fill_narrow_holes(struct job *j, int diameter, struct err *er
 
 /* ------------------------------------------------------------------------------------------------------- a frame */
 
-static void job_release(struct job *j)
+static void job_release(struct fill_job *j)
 {
     for (int i = 0; j->scratch && i < parallel_threads(); i++) {
         free(j->scratch[i].valid);
@@ -640,7 +646,7 @@ static void job_release(struct job *j)
     free(j->holes);
 }
 
-static enum status prepare_patches(struct job *j, struct err *err)
+static enum status prepare_patches(struct fill_job *j, struct err *err)
 {
     const struct rendered_frame *f = j->frame;
     const size_t w = (size_t)j->w, h = (size_t)j->h, pixels = w * h, threads = (size_t)parallel_threads();
@@ -650,7 +656,7 @@ static enum status prepare_patches(struct job *j, struct err *err)
     j->stride = w + LANES;
     const size_t plane = j->stride * h + 2 * LANES;
     j->planes[0] = calloc(3 * plane, sizeof(float));
-    j->luma = calloc(pixels + 1, sizeof *j->luma); /* the last: the mean */
+    j->luma = calloc(pixels + 1, sizeof *j->luma);
     j->confidence = calloc(pixels, sizeof *j->confidence);
     j->priority = malloc(pixels * sizeof *j->priority);
     j->origin = malloc(pixels * sizeof *j->origin);
@@ -681,12 +687,12 @@ enum status exemplar_fill(struct rendered_frame *frame, const struct exemplar_de
                           const struct exemplar_params *params, struct exemplar_stats *stats, struct err *err)
 {
     const size_t pixels = (size_t)frame->width * (size_t)frame->height;
-    struct job j = {.frame = frame, .depth = depth, .w = frame->width, .h = frame->height};
+    struct fill_job j = {.frame = frame, .depth = depth, .w = frame->width, .h = frame->height};
     struct exemplar_stats total = {0};
     size_t empty = 0, left = 0;
     enum status st = ST_OK;
 
-    j.radius = least(MAX_RADIUS, params->fill_patch / 2);
+    j.radius = min_int(MAX_RADIUS, params->fill_patch / 2);
     j.window = params->fill_window;
     for (size_t p = 0; p < pixels; p++) empty += !(frame->rgba[4 * p + 3] > 0);
     total.empty = left = empty;
@@ -696,7 +702,7 @@ enum status exemplar_fill(struct rendered_frame *frame, const struct exemplar_de
     j.list = malloc(empty * sizeof *j.list);
     st = j.label && j.list ? fill_narrow_holes(&j, diameter, err)
                            : err_nomem(err, "the holes of a frame", (pixels + empty) * sizeof *j.label);
-    if (!st) st = find_holes(&j, err); /* what is left */
+    if (!st) st = find_holes(&j, err); /* the remaining ones */
     if (!st && j.hole_count) st = prepare_patches(&j, err);
     if (st) goto done;
     parallel_for(j.hole_count, 1, fill_holes, &j);

@@ -1,10 +1,18 @@
-/* fill_path.c - see fill_path.h.
+/* fill_path.c - hole filling that is consistent along a camera path.
  *
- * A point falls between four pixels and goes to those of them that are empty, by bilinear weight. Of the points of one
- * anchor in a pixel those count that the soft z holds with the nearest; the sum of their weights, 1 at most, says how
- * well the anchor covers the pixel. A pixel that is covered by less than LEAST_COVER in both anchors stays empty. The
- * others get the mean of the two anchors, weighted by cover and by nearness along the path: 1 - t and t, t the part of
- * the way from the one to the other. What the frame knows is never changed. */
+ * Frames inpainted independently flicker, because different patches happen to match best. So some frames at fixed
+ * positions of the path, the anchors (the first, every Nth and the last), are inpainted once, and their filled pixels
+ * are kept as world points. The holes of a frame between two anchors get the splatted points of both, blended by the
+ * position along the path; only the pixels that no point covers are inpainted. Anchors agree with each other because
+ * they are filled the same way: the last from the first, the middle one from both, and so on in halves.
+ *
+ * Splatting: a point contributes to those of the four pixels around it that are empty, by bilinear weight. Of one
+ * anchor's points in a pixel, the soft z-buffer selects those near the closest; the sum of their weights, at most 1, is
+ * the anchor's cover. A pixel with a cover below MIN_COVER in both anchors stays empty. The others get the mean of both
+ * anchors, weighted by cover and by 1 - t and t, where t is the position between the anchors. Known pixels never
+ * change.
+ *
+ * This is not in the thesis, which inpaints each frame by itself. */
 #include "stages/render_views/fill_path.h"
 
 #include <math.h>
@@ -12,15 +20,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define LEAST_COVER 0.25f
-#define IN_FRONT    0.25f /* of a pixel a point must hold to hide others there */
-#define NO_SLOT     UINT32_MAX
+#define MIN_COVER  0.25f
+#define MIN_HIDING 0.25f /* min weight of a point in a pixel to hide others there */
+#define NO_SLOT    UINT32_MAX
 
 void fill_path_init(struct fill_path *fill, const struct camera_path *path, fill_path_render *render, void *ctx,
                     const struct fill_path_options *options)
 {
     *fill = (struct fill_path){.path = path, .render = render, .ctx = ctx, .options = *options};
-    for (int i = 0; i < FILL_ANCHORS_MOST; i++) fill->anchors[i].index = -1;
+    for (int i = 0; i < FILL_MAX_ANCHORS; i++) fill->anchors[i].index = -1;
 }
 
 static void anchor_drop(struct fill_anchor *a)
@@ -32,34 +40,34 @@ static void anchor_drop(struct fill_anchor *a)
 void fill_path_release(struct fill_path *fill)
 {
     if (!fill) return;
-    for (int i = 0; i < FILL_ANCHORS_MOST; i++) anchor_drop(&fill->anchors[i]);
+    for (int i = 0; i < FILL_MAX_ANCHORS; i++) anchor_drop(&fill->anchors[i]);
 }
 
-/* ------------------------------------------------------------------------------------- points seen by a camera */
+/* -------------------------------------------------------------------------------------------------- splatting */
 
-struct hole_pixel { /* what the points of one anchor, then of both, make of an empty pixel */
-    float z_near;   /* of one anchor */
-    float one[5];   /* of one anchor: r g b z weight */
-    float both[5];
-    float cover; /* the better one's */
+struct hole_pixel { /* sums in an empty pixel */
+    float z_near;   /* closest point of the current anchor */
+    float one[5];   /* of the current anchor: r g b z weight */
+    float both[5];  /* of both anchors */
+    float cover;    /* max of the anchors' */
 };
 
-struct cover {
+struct splatting {
     const struct view *camera;
     const struct exemplar_depth *depth;
     int w, h;
-    const uint32_t *slots; /* a pixel: index into pixels, or NO_SLOT */
+    const uint32_t *slots; /* of each pixel: index into pixels, or NO_SLOT */
     struct hole_pixel *pixels;
 };
 
-/* The empty pixels that a point falls on, with their weights. */
-static int point_pixels(const struct cover *c, const struct fill_point *p, struct hole_pixel *at[4], float weights[4],
-                        float *z)
+/* The empty pixels that a point contributes to, their weights and the point's depth. Returns their number. */
+static int point_pixels(const struct splatting *c, const struct fill_point *p, struct hole_pixel *at[4],
+                        float weights[4], float *z)
 {
     double u, v;
     int count = 0;
 
-    *z = (float)view_project(c->camera, p->at, &u, &v);
+    *z = (float)view_project(c->camera, p->position, &u, &v);
     if (!(*z > 0) || !(u > -1 && v > -1 && u < c->w + 1 && v < c->h + 1)) return 0;
     const double x = floor(u - 0.5), y = floor(v - 0.5);
     const float fx = (float)(u - 0.5 - x), fy = (float)(v - 0.5 - y);
@@ -74,7 +82,8 @@ static int point_pixels(const struct cover *c, const struct fill_point *p, struc
     return count;
 }
 
-static void add_anchor(const struct cover *c, size_t pixels, const struct fill_anchor *anchor, float share)
+/* Adds an anchor's points with weight `share`. */
+static void splat_anchor(const struct splatting *c, size_t pixels, const struct fill_anchor *anchor, float share)
 {
     const struct exemplar_depth *d = c->depth;
     struct hole_pixel *at[4];
@@ -86,7 +95,7 @@ static void add_anchor(const struct cover *c, size_t pixels, const struct fill_a
     }
     for (size_t i = 0; i < anchor->count; i++)
         for (int k = point_pixels(c, &anchor->points[i], at, weights, &z); k-- > 0;)
-            if (weights[k] >= IN_FRONT) at[k]->z_near = fminf(at[k]->z_near, z);
+            if (weights[k] >= MIN_HIDING) at[k]->z_near = fminf(at[k]->z_near, z);
     for (size_t i = 0; i < anchor->count; i++)
         for (int k = point_pixels(c, &anchor->points[i], at, weights, &z); k-- > 0;) {
             float w = weights[k], *one = at[k]->one;
@@ -107,9 +116,9 @@ static void add_anchor(const struct cover *c, size_t pixels, const struct fill_a
     }
 }
 
-/* Fills what the anchors' points cover. b may be NULL; t is its share. */
-static enum status take_over(const struct fill_path *fill, const struct fill_anchor *a, const struct fill_anchor *b,
-                             float t, const struct view *camera, struct rendered_frame *f, struct err *err)
+/* Fills the holes that the points of anchors a and b cover. b may be NULL; t: weight of b, 1 - t that of a. */
+static enum status splat_anchors(const struct fill_path *fill, const struct fill_anchor *a, const struct fill_anchor *b,
+                                 float t, const struct view *camera, struct rendered_frame *f, struct err *err)
 {
     const size_t pixels = (size_t)f->width * (size_t)f->height;
     uint32_t *slots = malloc(pixels * sizeof *slots), count = 0;
@@ -124,13 +133,13 @@ static enum status take_over(const struct fill_path *fill, const struct fill_anc
         st = err_nomem(err, "the holes of a frame", count * sizeof *holes);
         goto done;
     }
-    const struct cover c = {camera, &fill->options.depth, f->width, f->height, slots, holes};
-    if (t < 1) add_anchor(&c, count, a, 1 - t);
-    if (b && t > 0) add_anchor(&c, count, b, t);
+    const struct splatting c = {camera, &fill->options.depth, f->width, f->height, slots, holes};
+    if (t < 1) splat_anchor(&c, count, a, 1 - t);
+    if (b && t > 0) splat_anchor(&c, count, b, t);
     for (size_t p = 0; p < pixels; p++) {
         if (slots[p] == NO_SLOT) continue;
         const struct hole_pixel *from = &holes[slots[p]];
-        if (from->cover < LEAST_COVER || !(from->both[4] > 0)) continue;
+        if (from->cover < MIN_COVER || !(from->both[4] > 0)) continue;
         for (size_t k = 0; k < 3; k++) f->rgba[4 * p + k] = from->both[k] / from->both[4];
         f->rgba[4 * p + 3] = 1;
         f->z[p] = from->both[3] / from->both[4];
@@ -145,24 +154,25 @@ done:
 
 static int last_anchor(const struct fill_path *fill)
 {
-    const int n = fill->options.fill_anchors, last = fill->path->frame_count - 1;
+    const int n = fill->options.fill_anchor_spacing, last = fill->path->frame_count - 1;
     return last / n + (last % n != 0);
 }
 
 static int anchor_frame(const struct fill_path *fill, int index)
 {
-    const long long at = (long long)index * fill->options.fill_anchors;
+    const long long at = (long long)index * fill->options.fill_anchor_spacing;
     return at < fill->path->frame_count ? (int)at : fill->path->frame_count - 1;
 }
 
-/* Of b in frame `frame`, between the two. */
-static float share_of(const struct fill_path *fill, const struct fill_anchor *a, const struct fill_anchor *b, int frame)
+/* Position of frame `frame` between anchors a and b: 0 at a, 1 at b. */
+static float position_between(const struct fill_path *fill, const struct fill_anchor *a, const struct fill_anchor *b,
+                              int frame)
 {
     const int from = anchor_frame(fill, a->index), to = anchor_frame(fill, b->index);
     return (float)(frame - from) / (float)(to - from);
 }
 
-/* Renders and fills anchor `index`, from a and b (NULL: there is none yet), and keeps what was filled. */
+/* Renders anchor `index`, fills it using anchors a and b (may be NULL), and keeps its filled pixels as points. */
 static enum status anchor_make(struct fill_path *fill, struct fill_anchor *to, int index, const struct fill_anchor *a,
                                const struct fill_anchor *b, struct err *err)
 {
@@ -181,21 +191,21 @@ static enum status anchor_make(struct fill_path *fill, struct fill_anchor *to, i
         for (size_t p = 0; p < pixels; p++) count += !(f.rgba[4 * p + 3] > 0);
         empty = malloc((count + 1) * sizeof *empty);
         to->points = malloc((count + 1) * sizeof *to->points);
-        if (!empty || !to->points) st = err_nomem(err, "what was filled in a frame", count * sizeof *to->points);
+        if (!empty || !to->points) st = err_nomem(err, "the filled pixels of a frame", count * sizeof *to->points);
     }
     if (!st) {
         count = 0;
         for (size_t p = 0; p < pixels; p++)
             if (!(f.rgba[4 * p + 3] > 0)) empty[count++] = (uint32_t)p;
-        if (a) st = take_over(fill, a, b, b ? share_of(fill, a, b, frame) : 0, camera, &f, err);
+        if (a) st = splat_anchors(fill, a, b, b ? position_between(fill, a, b, frame) : 0, camera, &f, err);
     }
     if (!st) st = exemplar_fill(&f, &o->depth, o->fill_diameter, &o->exemplar, NULL, err);
     for (size_t i = 0; !st && i < count; i++) {
         const size_t p = empty[i];
         struct fill_point *point = &to->points[to->count];
         if (!(f.z[p] > 0)) continue;
-        point->at = view_unproject(camera, (double)(p % (size_t)f.width) + 0.5, (double)(p / (size_t)f.width) + 0.5,
-                                   (double)f.z[p]);
+        point->position = view_unproject(camera, (double)(p % (size_t)f.width) + 0.5,
+                                         (double)(p / (size_t)f.width) + 0.5, (double)f.z[p]);
         memcpy(point->rgb, f.rgba + 4 * p, sizeof point->rgb);
         to->count++;
     }
@@ -208,7 +218,7 @@ static enum status anchor_make(struct fill_path *fill, struct fill_anchor *to, i
     return st;
 }
 
-/* The anchors around a frame; *b is NULL if the frame is anchor a itself. */
+/* The anchors before and after a frame, made if needed; *b is NULL if the frame is anchor a itself. */
 static enum status anchors_around(struct fill_path *fill, int frame, const struct fill_anchor **a,
                                   const struct fill_anchor **b, struct err *err)
 {
@@ -227,7 +237,7 @@ static enum status anchors_around(struct fill_path *fill, int frame, const struc
         if (frame == anchor_frame(fill, hi->index)) *a = hi;
         if (frame == anchor_frame(fill, (*a)->index)) *b = NULL;
         if (!*b || hi->index - lo->index <= 1) break;
-        /* the middle of these two, whatever was asked for before: its place among the kept says which it halves */
+        /* always the middle of these two, so that the result does not depend on earlier frames */
         const int index = lo->index + (hi->index - lo->index) / 2;
         struct fill_anchor *middle = &kept[level];
         if (middle->index != index) st = anchor_make(fill, middle, index, lo, hi, err);
@@ -249,42 +259,10 @@ enum status fill_path_frame(struct fill_path *fill, int frame, const struct view
     enum status st = ST_OK;
 
     for (size_t p = 0; p < pixels && !empty; p++) empty = !(f->rgba[4 * p + 3] > 0);
-    if (empty && o->fill_diameter > 0 && o->fill_anchors > 0) {
+    if (empty && o->fill_diameter > 0 && o->fill_anchor_spacing > 0) {
         st = anchors_around(fill, frame, &a, &b, err);
-        if (!st) st = take_over(fill, a, b, b ? share_of(fill, a, b, frame) : 0, camera, f, err);
+        if (!st) st = splat_anchors(fill, a, b, b ? position_between(fill, a, b, frame) : 0, camera, f, err);
     }
     if (!st) st = exemplar_fill(f, &o->depth, o->fill_diameter, &o->exemplar, &fill->stats, err);
     return st;
-}
-
-/* ---------------------------------------------------------------------------------------------------- flicker */
-
-void fill_flicker_add(double *difference, double *pixels, const struct rendered_frame *a, const struct view *camera_a,
-                      const struct rendered_frame *b, const struct view *camera_b)
-{
-    const size_t wa = (size_t)a->width, wb = (size_t)b->width;
-
-    for (size_t p = 0; p < wa * (size_t)a->height; p++) {
-        double u, v;
-        if (!a->hole[p] || !(a->rgba[4 * p + 3] > 0) || !(a->z[p] > 0)) continue;
-        const struct vec3 at =
-            view_unproject(camera_a, (double)(p % wa) + 0.5, (double)(p / wa) + 0.5, (double)a->z[p]);
-        if (!(view_project(camera_b, at, &u, &v) > 0)) continue;
-        if (!(u >= 0.5 && v >= 0.5 && u < b->width - 0.5 && v < b->height - 0.5)) continue;
-        const size_t q = (size_t)(v - 0.5) * wb + (size_t)(u - 0.5);
-        const size_t around[4] = {q, q + 1, q + wb, q + wb + 1};
-        const double fx = u - 0.5 - floor(u - 0.5), fy = v - 0.5 - floor(v - 0.5);
-        const double weights[4] = {(1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy};
-        double sum = 0;
-        bool filled = true; /* a near object beside the hole is another matter */
-        for (int k = 0; k < 4; k++) filled &= b->hole[around[k]] && b->rgba[4 * around[k] + 3] > 0;
-        if (!filled) continue;
-        for (size_t c = 0; c < 3; c++) {
-            double other = 0;
-            for (int k = 0; k < 4; k++) other += weights[k] * sqrt(fmax(0, (double)b->rgba[4 * around[k] + c]));
-            sum += fabs(sqrt(fmax(0, (double)a->rgba[4 * p + c])) - other) / 3;
-        }
-        *difference += sum;
-        *pixels += 1;
-    }
 }

@@ -1,4 +1,4 @@
-/* frames.c - see frames.h. */
+/* frames.c - rendering and writing of frames; see frames.h. */
 #include "stages/render_views/frames.h"
 
 #include <math.h>
@@ -31,8 +31,9 @@ enum status frame_part_camera(struct view *camera, const struct frame_part *part
 {
     if (part->width) {
         if (part->x > camera->width - part->width || part->y > camera->height - part->height)
-            return err_set(err, ST_USAGE, "--crop %d,%d,%d,%d: the picture of %s has %d x %d pixels.", part->x, part->y,
-                           part->width, part->height, camera->name, camera->width, camera->height);
+            return err_set(err, ST_USAGE,
+                           "--crop %d,%d,%d,%d is not inside the picture of %s, which has %d x %d pixels.", part->x,
+                           part->y, part->width, part->height, camera->name, camera->width, camera->height);
         camera->cx -= part->x;
         camera->cy -= part->y;
         camera->width = part->width;
@@ -41,8 +42,10 @@ enum status frame_part_camera(struct view *camera, const struct frame_part *part
     if (part->scale == 1) return ST_OK;
     const int width = (int)lround(camera->width * part->scale), height = (int)lround(camera->height * part->scale);
     if (width < 1 || height < 1 || width > 65536 || height > 65536)
-        return err_set(err, ST_USAGE, "--scale %g makes a picture of %d x %d pixels of the %d x %d of %s.", part->scale,
-                       width, height, camera->width, camera->height, camera->name);
+        return err_set(
+            err, ST_USAGE,
+            "--scale %g gives a picture of %d x %d pixels for %s, from %d x %d: wanted 1 to 65536 on a side.",
+            part->scale, width, height, camera->name, camera->width, camera->height);
     view_resize(camera, width, height);
     return ST_OK;
 }
@@ -98,7 +101,7 @@ enum status frames_render(const struct camera_path *path, const bool *wanted, st
         if (!st && frame.hole_fraction >= 1)
             st = err_set(err, ST_DATA,
                          "frame %d of the path sees nothing of the scene: no view covers any of its pixels. "
-                         "Look at its pose in the path, or plan the path again.",
+                         "Check its pose in the path, or plan the path again.",
                          i + 1);
         if (!st) st = frame_write(&frame, camera, false, file, prov, err);
         progress_add(&progress, 1);
@@ -116,7 +119,7 @@ enum status cameras_select(bool *wanted, const struct camera_set *cameras, const
         int at = camera_set_find(cameras, names[i]);
         if (at < 0)
             return err_set(err, ST_USAGE,
-                           "--camera %s: the folder of --cameras has no camera of this name; its first is %s.",
+                           "--camera %s: the folder of --cameras has no camera of this name; its first camera is %s.",
                            names[i], cameras->views[0].name);
         wanted[at] = true;
     }

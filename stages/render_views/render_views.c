@@ -1,12 +1,12 @@
-/* render_views.c - the frames of a camera move, or of given cameras, from layered depth maps.
+/* render_views.c - renders the frames of a camera move, or of given cameras, from layered depth maps.
  *
  * reads   VIEWS/cameras.txt, images.txt, points3D.txt   the views
  *         DEPTH/VIEW.exr, VIEW.txt                      layers and segments of every view
  *         PATH/path.txt, path/NAME.txt                  the move; or
- *         CAMERAS/cameras.txt, images.txt, points3D.txt cameras of any sizes, such as those of views that are held out
- *         EFFECTS.txt                                   layers of colour changes, of a move
- * writes  OUT/NNNN.exr                                  a file a frame: R G B A, Z; or
- *         OUT/CAMERA.exr                                the same and hole, a file a camera */
+ *         CAMERAS/cameras.txt, images.txt, points3D.txt cameras of any size, e.g. of held-out views
+ *         EFFECTS.txt                                   effect layers of a move
+ * writes  OUT/NNNN.exr                                  one file per frame: R G B A, Z; or
+ *         OUT/CAMERA.exr                                one file per camera: R G B A, Z, hole */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -27,7 +27,7 @@ static enum status add_inputs(struct provenance *prov, const char *views, const 
     return st;
 }
 
-struct job { /* what the command line says */
+struct render_job { /* the command line */
     const char *views, *depth, *path, *frames, *cameras, *crop, *scale, *out;
     struct cli_list names;
     struct cli_list effects; /* files */
@@ -35,7 +35,7 @@ struct job { /* what the command line says */
     struct render_params params;
 };
 
-static enum status render_path(const struct job *job, struct provenance *prov, struct err *err)
+static enum status render_path(const struct render_job *job, struct provenance *prov, struct err *err)
 {
     struct camera_set set = {0};
     struct camera_path path = {0};
@@ -73,7 +73,7 @@ static enum status render_path(const struct job *job, struct provenance *prov, s
     return st;
 }
 
-static enum status render_cameras(const struct job *job, struct provenance *prov, struct err *err)
+static enum status render_cameras(const struct render_job *job, struct provenance *prov, struct err *err)
 {
     static const char *const files[] = {"cameras.txt", "images.txt"};
     static const struct effects none = {0};
@@ -105,38 +105,38 @@ static enum status render_cameras(const struct job *job, struct provenance *prov
     return st;
 }
 
-static enum status render(struct job *job, struct provenance *prov, struct err *err)
+static enum status render(struct render_job *job, struct provenance *prov, struct err *err)
 {
     const bool cameras = job->cameras;
     enum status st = ST_OK;
 
     if (cameras ? job->path || job->frames : !job->path || !job->frames || job->names.count)
-        return err_set(err, ST_USAGE,
-                       "wanted either --path with --frames, or --cameras; --camera goes with --cameras.");
+        return err_set(err, ST_USAGE, "wanted either --path and --frames, or --cameras; --camera goes with --cameras.");
     if (cameras && job->effects.count)
-        return err_set(err, ST_USAGE, "--effects goes with --path: single cameras have no times for their keys.");
+        return err_set(err, ST_USAGE,
+                       "--effects goes with --path: single cameras have no time, which the effects' keys need.");
     if ((st = frame_part_read(&job->part, job->crop, job->scale, err))) return st;
     return cameras ? render_cameras(job, prov, err) : render_path(job, prov, err);
 }
 
 int main(int argc, char **argv)
 {
-    struct job job = {.params = RENDER_PARAMS_DEFAULT};
+    struct render_job job = {.params = RENDER_PARAMS_DEFAULT};
     const char *renderer = NULL;
     const struct cli_opt opts[] = {
         CLI_ABOUT("Renders the frames of a camera move, or of given cameras, from layered depth maps."),
-        CLI_STR("views", &job.views, CLI_REQUIRED, "folder of cameras"),
+        CLI_STR("views", &job.views, CLI_REQUIRED, "folder of the views' cameras"),
         CLI_STR("depth", &job.depth, CLI_REQUIRED, "folder of layered depth maps"),
         CLI_STR("path", &job.path, CLI_OPTIONAL, "folder of the move: path.txt and path/"),
         CLI_STR("frames", &job.frames, CLI_OPTIONAL, "frames of the move to render: 1:30 or 1:30,45"),
-        CLI_LIST("effects", &job.effects, CLI_OPTIONAL,
-                 "file of effect layers, laid over the frames of the move; may be given several times"),
-        CLI_STR("cameras", &job.cameras, CLI_OPTIONAL, "in place of a move: folder of cameras, a frame each"),
-        CLI_LIST("camera", &job.names, CLI_OPTIONAL, "of these cameras only this one; may be given several times"),
-        CLI_STR("crop", &job.crop, CLI_OPTIONAL, "X,Y,WIDTH,HEIGHT: only this part of the frames, px"),
-        CLI_STR("scale", &job.scale, CLI_OPTIONAL, "makes the frames, or the part of them, larger or smaller"),
+        CLI_LIST("effects", &job.effects, CLI_OPTIONAL, "file of effect layers applied to the frames of the move"),
+        CLI_STR("cameras", &job.cameras, CLI_OPTIONAL,
+                "instead of a move: folder of cameras, of which one frame each is rendered"),
+        CLI_LIST("camera", &job.names, CLI_OPTIONAL, "with --cameras: render only the camera of this name"),
+        CLI_STR("crop", &job.crop, CLI_OPTIONAL, "part of the frames to render: X,Y,WIDTH,HEIGHT, px"),
+        CLI_STR("scale", &job.scale, CLI_OPTIONAL, "scale factor of the frames, applied after --crop"),
         CLI_STR("out", &job.out, CLI_REQUIRED, "folder of the EXR files to write, NNNN.exr or CAMERA.exr"),
-        CLI_PARAM("renderer", &renderer, "offline (best) or fast"),
+        CLI_PARAM("renderer", &renderer, "rendering method: offline (best quality) or fast"),
         CLI_PARAMS(render_param_table, &job.params, NULL),
         CLI_END,
     };

@@ -1,10 +1,11 @@
-/* renderer.c - see renderer.h. */
+/* renderer.c - the passes of a frame, in the order of renderer.h's table. */
 #include "stages/render_views/renderer.h"
 
 #include <string.h>
 
 #define PARAM_STRUCT struct render_params
-const struct param render_param_table[] = {RENDER_PARAMS(PARAM_ROW) PARAM_END};
+const struct param render_param_table[] = {RENDER_PARAMS(PARAM_ROW) PARAM_RENAMED(fill_anchors, fill_anchor_spacing)
+                                               PARAM_END};
 #undef PARAM_STRUCT
 
 static enum status render_anchor(void *ctx, int frame, struct rendered_frame *out, struct err *err)
@@ -26,11 +27,11 @@ void renderer_init(struct renderer *r, const struct layer_scene *scene, const st
     r->depth = (struct exemplar_depth){layer_scene_soft_z(scene, SOFT_Z_FILL_WIDTHS), (float)scene->sigma};
     r->aperture = (struct aperture_options){params->aperture_samples, params->aperture_error};
     if (!path || !r->options.offline) return;
-    const struct fill_path_options fill = {r->depth, r->exemplar, params->fill_diameter, params->fill_anchors};
+    const struct fill_path_options fill = {r->depth, r->exemplar, params->fill_diameter, params->fill_anchor_spacing};
     fill_path_init(&r->fill, path, render_anchor, r, &fill);
 }
 
-/* Of the frame that is being rendered, from its camera or one within its aperture. */
+/* A pinhole picture of the current frame, from its camera or one within its aperture. */
 static enum status render_pinhole(void *ctx, const struct view *camera, struct rendered_frame *out, struct err *err)
 {
     struct renderer *r = ctx;

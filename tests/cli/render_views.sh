@@ -1,4 +1,4 @@
-# render_views: what is said of wrong words, of paths that make no film, and of cameras that see nothing
+# render_views: errors of the command line, of effects, of paths, and of cameras that see nothing; ranges of frames
 . tests/lib.sh
 project render
 photos set --views 3 --size 160x120 >/dev/null
@@ -7,19 +7,19 @@ sed -i 's/^planes = .*/planes = 32\nrounds = 0/; s/^seconds = .*/seconds = 0.25/
 make -s DEPS=manual PHOTOS=set/photos SFM=set/model SCENE=t path >log 2>&1 || { cat log; fail "make"; }
 move=out/t/parallax/establishing_dolly
 
-# render CODE WORD ARGUMENT...: of the made scene; exit status and a word on standard error; nothing but whole frames is left
+# render CODE TEXT ARGUMENT...: renders the scene; checks the exit status and a text on standard error, and that usage errors leave no frame
 render()
 {
     local code=$1 word=$2 rc=0; shift 2
     rm -rf made
     "$B/bin/render_views" --views out/t/views --depth out/t/depth --path "${path:-$move}" --frames "${frames:-1}" --out made "$@" >out.txt 2>err.txt </dev/null || rc=$?
     [ "$rc" = "$code" ] || { cat err.txt; fail "$*: exit $rc, wanted $code"; }
-    grep -qF -- "$word" err.txt || { cat err.txt; fail "$*: nothing says '$word'"; }
-    [ "$code" = 0 ] || grep -q 'render_views: error: .*[.]$' err.txt || { cat err.txt; fail "$*: no sentence"; }
+    grep -qF -- "$word" err.txt || { cat err.txt; fail "$*: no '$word' on standard error"; }
+    [ "$code" = 0 ] || grep -q 'render_views: error: .*[.]$' err.txt || { cat err.txt; fail "$*: the error is not a sentence"; }
     [ "$code" != 2 ] || [ -z "$(find made -type f 2>/dev/null)" ] || fail "$*: a frame was left"
 }
 
-wrong_words_are_2_with_a_sentence()
+invalid_arguments_exit_with_2_and_a_message()
 {
     for c in 1,2,3 a,b,c,d 0,0,0,4 -1,0,4,4 '0,0,4,4x' ''; do render 2 'wanted X,Y,WIDTH,HEIGHT' "--crop=$c"; done
     render 2 '96 x 72 pixels' --crop=90,0,20,20
@@ -36,7 +36,7 @@ wrong_words_are_2_with_a_sentence()
     [ "$rc" = 2 ] && grep -q -- '--effects goes with --path' err.txt || { cat err.txt; fail "--effects with --cameras: exit $rc"; }
 }
 
-effects_that_are_none_are_named_with_their_line()
+errors_of_effects_name_file_and_line()
 {
     render 1 nowhere.txt --effects=nowhere.txt
     printf 'remodel-effects 1\nlayer a sparkle\nregion all\nkey 0 1\n' >bad.txt
@@ -45,7 +45,7 @@ effects_that_are_none_are_named_with_their_line()
     render 1 'bad.txt:4: ' --effects=bad.txt
 }
 
-# broken_path SED WORD: the path with its cameras changed is refused with file, line and word
+# broken_path SED FILE TEXT: the path with FILE changed by SED is rejected with file, line and text
 broken_path()
 {
     rm -rf bad; cp -r $move bad
@@ -54,7 +54,7 @@ broken_path()
     grep -qE "bad/path(/|\.txt).*:[0-9]+: " err.txt || { cat err.txt; fail "no file and line"; }
 }
 
-paths_that_make_no_film_are_named_with_their_line()
+errors_of_paths_name_file_and_line()
 {
     broken_path '/^2 PINHOLE/s/PINHOLE \([0-9]* [0-9]*\) [^ ]*/PINHOLE \1 0/' cameras.txt 'focal'
     broken_path '/^2 PINHOLE/s/PINHOLE \([0-9]* [0-9]*\) [^ ]*/PINHOLE \1 -50/' cameras.txt '-50'
@@ -62,17 +62,17 @@ paths_that_make_no_film_are_named_with_their_line()
     broken_path '/ 0002.exr$/s/^2 [^ ]*/2 nan/' images.txt 'nan'
 }
 
-a_camera_that_sees_nothing_is_named_with_its_frame()
+a_camera_that_sees_nothing_is_an_error_with_its_frame()
 {
-    rm -rf bad; cp -r $move bad # the second camera far behind the scene, looking on
+    rm -rf bad; cp -r $move bad # the second camera is far behind the scene, looking away from it
     sed -i '/ 0002.exr$/s/^2 \([^ ]* [^ ]* [^ ]* [^ ]*\) [^ ]* [^ ]* [^ ]*/2 \1 0 0 -1000000/' bad/path/images.txt
     path=bad frames=1:2 render 1 'frame 2 of the path sees nothing of the scene'
     [ "$(ls made)" = 0001.exr ] || fail "what was left: $(ls made)"
     path=bad frames=1:2 render 1 'frame 2 of the path sees nothing of the scene' --renderer=fast
 }
 
-# the parts of a film: the same bytes by ranges, of either renderer
-ranges_give_the_same_bytes()
+# both renderers
+ranges_of_frames_give_the_same_bytes()
 {
     n=$(ls $move/path.txt >/dev/null && awk '$1 == "frames" { print $2 }' $move/path.txt)
     [ "$n" -ge 3 ] || fail "$n frames"
@@ -85,5 +85,5 @@ ranges_give_the_same_bytes()
     done
 }
 
-for t in wrong_words_are_2_with_a_sentence effects_that_are_none_are_named_with_their_line paths_that_make_no_film_are_named_with_their_line \
-    a_camera_that_sees_nothing_is_named_with_its_frame ranges_give_the_same_bytes; do run "$t"; done
+for t in invalid_arguments_exit_with_2_and_a_message errors_of_effects_name_file_and_line errors_of_paths_name_file_and_line \
+    a_camera_that_sees_nothing_is_an_error_with_its_frame ranges_of_frames_give_the_same_bytes; do run "$t"; done

@@ -1,8 +1,8 @@
-/* fuzz_layered_depth.c - layered depth maps: any pair of list and picture gives a depth map whose segments may be indexed
- * by its ids and that survives writing, or a sentence.
+/* fuzz_layered_depth.c - reading of layered depth maps: any list and picture give an error message, or a depth map
+ * whose ids index its segments and which can be written and read back.
  *
- * The input is the list, a line "%%", and the picture. Without that line it is, if it begins like an OpenEXR file, the
- * picture, whose list is then one of three segments and its size; else the list, with a good picture of 4 x 3. */
+ * The input is the list, a line "%%", and the picture. Without this line, an input that begins like an OpenEXR file is
+ * the picture, and the list gets three segments and its size; otherwise it is the list of a valid picture of 4 x 3. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,13 +15,13 @@
 #include "tests/fuzz/fuzz_scratch.h"
 
 static char folder[FUZZ_PATH];
-static char list[FUZZ_PATH + 64], picture[FUZZ_PATH + 64], good[FUZZ_PATH + 64];
+static char list[FUZZ_PATH + 64], picture[FUZZ_PATH + 64], valid_picture[FUZZ_PATH + 64];
 
 static void remove_folder(void)
 {
     unlink(list);
     unlink(picture);
-    unlink(good);
+    unlink(valid_picture);
     snprintf(list, sizeof list, "%s/good.txt", folder);
     unlink(list);
     rmdir(folder);
@@ -36,8 +36,8 @@ static void make_folder(void)
     if (atexit(remove_folder)) abort();
     snprintf(list, sizeof list, "%s/d.txt", folder);
     snprintf(picture, sizeof picture, "%s/d.exr", folder);
-    snprintf(good, sizeof good, "%s/good.exr", folder);
-    if (layered_depth_init(&d, 4, 3, &err) || layered_depth_write(&d, NULL, good, NULL, &err)) abort();
+    snprintf(valid_picture, sizeof valid_picture, "%s/good.exr", folder);
+    if (layered_depth_init(&d, 4, 3, &err) || layered_depth_write(&d, NULL, valid_picture, NULL, &err)) abort();
     layered_depth_release(&d);
 }
 
@@ -110,17 +110,17 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     struct err err = ERR_INIT;
 
     if (!list[0]) make_folder();
-    unlink(picture); /* it may be a link to the good one */
-    const uint8_t *parted = memmem(data, size, "%%\n", 3);
+    unlink(picture); /* may be a link to the valid picture */
+    const uint8_t *separator = memmem(data, size, "%%\n", 3);
     if (size >= sizeof magic && !memcmp(data, magic, sizeof magic)) {
         write_bytes(picture, data, size);
         write_list_of_size();
     } else {
-        const size_t length = parted ? (size_t)(parted - data) : size;
+        const size_t length = separator ? (size_t)(separator - data) : size;
         write_bytes(list, data, length);
-        if (parted)
-            write_bytes(picture, parted + 3, size - length - 3);
-        else if (link(good, picture))
+        if (separator)
+            write_bytes(picture, separator + 3, size - length - 3);
+        else if (link(valid_picture, picture))
             abort();
     }
 

@@ -1,4 +1,4 @@
-/* made_pair.h - pairs of pictures whose flow is known: a textured wall, and a textured square in front of it. */
+/* made_pair.h - pairs of pictures of known flow: a textured wall, and a textured square in front of it. */
 #ifndef REMODEL_TESTS_MADE_PAIR_H
 #define REMODEL_TESTS_MADE_PAIR_H
 
@@ -12,7 +12,7 @@
 enum { MADE_WIDTH = 160, MADE_HEIGHT = 120 };
 
 struct made_pair {
-    double wall[2], square[2]; /* their ways from the first picture to the second, px */
+    double wall[2], square[2]; /* their flow from the first picture to the second, px */
     bool has_square;
     double gain; /* of the second picture */
 };
@@ -55,26 +55,26 @@ static inline void made_picture(struct image *im, const struct made_pair *pair, 
         }
 }
 
-/* Part of the square's (or else the wall's) pixels, well inside, whose flow is right to `within` px. */
+/* Fraction of the pixels well inside the square (or else the wall) whose flow is correct to `within` px. */
 static inline double made_right(const struct flow *f, const struct made_pair *pair, bool square, double within)
 {
     int right = 0, count = 0;
-    const double *way = square ? pair->square : pair->wall;
+    const double *flow = square ? pair->square : pair->wall;
     for (int y = 24; y < MADE_HEIGHT - 24; y++)
         for (int x = 24; x < MADE_WIDTH - 24; x++) {
             bool inside = x >= 66 && x < 99 && y >= 46 && y < 79, outside = x < 45 || x > 120 || y < 30 || y > 97;
             if (pair->has_square && !(square ? inside : outside)) continue;
             const float *uv = f->uv + 2 * (y * MADE_WIDTH + x);
             count++;
-            right += hypot(uv[0] - way[0], uv[1] - way[1]) <= within;
+            right += hypot(uv[0] - flow[0], uv[1] - flow[1]) <= within;
         }
     return (double)right / count;
 }
 
-/* Two cameras side by side: what is nearer is farther to the left in the second picture. */
-static inline struct geometry made_side_by_side(void)
+/* Two cameras side by side: nearer points are farther to the left in the second picture. */
+static inline struct pair_geometry made_side_by_side(void)
 {
-    struct geometry g = {.kind = GEOMETRY_FUNDAMENTAL, .focal = 200, .width = MADE_WIDTH, .height = MADE_HEIGHT};
+    struct pair_geometry g = {.kind = EPIPOLAR_FUNDAMENTAL, .focal = 200, .width = MADE_WIDTH, .height = MADE_HEIGHT};
     g.fundamental[5] = -1;
     g.fundamental[7] = 1;
     for (int i = 0; i < 3; i++) g.rotation[4 * i] = 1;

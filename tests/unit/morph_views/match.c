@@ -1,10 +1,10 @@
-/* Flows of made pairs: the soft epipolar term, and the hard cases. */
+/* match.c - flow of synthetic pairs: soft epipolar term, occlusion, and degenerate cases. */
 #include "../scratch.h"
 #include "made_pair.h"
 #include "stages/morph_views/morph.h"
 
 struct flows {
-    struct image linear[2], looks[2];
+    struct image linear[2], matched_images[2];
     struct flow flow[2];
 };
 
@@ -12,16 +12,16 @@ static void release(struct flows *f)
 {
     for (int i = 0; i < 2; i++) {
         image_release(&f->linear[i]);
-        image_release(&f->looks[i]);
+        image_release(&f->matched_images[i]);
         flow_release(&f->flow[i]);
     }
 }
 
-static void match(struct flows *f, const struct geometry *g, const struct morph_params *params)
+static void match(struct flows *f, const struct pair_geometry *g, const struct morph_params *params)
 {
     struct err err = ERR_INIT;
-    for (int i = 0; i < 2; i++) assert_ok(match_image(&f->looks[i], &f->linear[i], &err), err);
-    assert_ok(match_pictures(f->flow, f->looks, g, NULL, 0, params, &err), err);
+    for (int i = 0; i < 2; i++) assert_ok(match_image(&f->matched_images[i], &f->linear[i], &err), err);
+    assert_ok(match_pictures(f->flow, f->matched_images, g, NULL, 0, params, &err), err);
     for (int i = 0; i < 2; i++)
         for (int p = 0; p < 2 * MADE_WIDTH * MADE_HEIGHT; p++) assert_true(isfinite(f->flow[i].uv[p]));
 }
@@ -36,25 +36,25 @@ static void make(struct flows *f, const struct made_pair *pair)
     }
 }
 
-/* The flows of a pair as it was made, by the parameters' defaults. */
-static void make_and_match(struct flows *f, const struct made_pair *pair, const struct geometry *g)
+/* Makes a pair and matches it with default parameters. */
+static void make_and_match(struct flows *f, const struct made_pair *pair, const struct pair_geometry *g)
 {
     const struct morph_params params = MORPH_PARAMS_DEFAULT;
     make(f, pair);
     match(f, g, &params);
 }
 
-static double sure_part(const struct flow *f)
+static double confident_fraction(const struct flow *f)
 {
-    double sure = 0;
-    for (int p = 0; p < MADE_WIDTH * MADE_HEIGHT; p++) sure += f->sure[p] >= 0.5f;
-    return sure / (MADE_WIDTH * MADE_HEIGHT);
+    double confident = 0;
+    for (int p = 0; p < MADE_WIDTH * MADE_HEIGHT; p++) confident += f->confidence[p] >= 0.5f;
+    return confident / (MADE_WIDTH * MADE_HEIGHT);
 }
 
 static void assert_still(const struct flow *f)
 {
     for (int p = 0; p < 2 * MADE_WIDTH * MADE_HEIGHT; p++) assert_true(fabsf(f->uv[p]) < 1e-3f);
-    assert_true(sure_part(f) == 1);
+    assert_true(confident_fraction(f) == 1);
 }
 
 static void assert_right(const struct flows *f, const struct made_pair *pair, double within)
@@ -63,10 +63,10 @@ static void assert_right(const struct flows *f, const struct made_pair *pair, do
     assert_true(made_right(&f->flow[0], pair, true, within) > 0.95);
 }
 
-static void a_still_scene_is_matched_to_parts_of_a_pixel(void **state)
+static void a_static_scene_is_matched_with_subpixel_precision(void **state)
 {
     const struct made_pair pair = {{-4.4, 0}, {-11.7, 0}, true, 1};
-    const struct geometry g = made_side_by_side();
+    const struct pair_geometry g = made_side_by_side();
     struct flows f;
     (void)state;
     make_and_match(&f, &pair, &g);
@@ -74,42 +74,42 @@ static void a_still_scene_is_matched_to_parts_of_a_pixel(void **state)
     release(&f);
 }
 
-static void what_moved_off_its_line_is_followed_by_the_soft_term_and_not_by_a_hard_one(void **state)
+static void motion_off_the_epipolar_line_is_matched_by_a_soft_term_only(void **state)
 {
     const struct made_pair pair = {{-5, 0}, {-11, 9}, true, 1};
     struct morph_params params = MORPH_PARAMS_DEFAULT;
-    const struct geometry g = made_side_by_side();
+    const struct pair_geometry g = made_side_by_side();
     struct flows f;
     (void)state;
     make_and_match(&f, &pair, &g);
     assert_right(&f, &pair, 0.5);
     for (int i = 0; i < 2; i++) flow_release(&f.flow[i]);
-    for (int i = 0; i < 2; i++) image_release(&f.looks[i]);
-    params.epipolar = 10; /* more than any look can cost */
+    for (int i = 0; i < 2; i++) image_release(&f.matched_images[i]);
+    params.epipolar = 10; /* more than any data cost */
     params.epipolar_width = 1;
     match(&f, &g, &params);
     assert_true(made_right(&f.flow[0], &pair, true, 0.5) < 0.05);
     release(&f);
 }
 
-static void what_is_hidden_goes_with_the_far_side(void **state)
+static void occluded_pixels_move_with_the_far_side(void **state)
 {
     const struct made_pair pair = {{-4, 0}, {-14, 0}, true, 1};
-    const struct geometry g = made_side_by_side();
+    const struct pair_geometry g = made_side_by_side();
     struct flows f;
     int far = 0, count = 0;
     (void)state;
     make_and_match(&f, &pair, &g);
-    for (int y = 48; y < 78; y++) /* the square covers the ten columns at its left in the second picture */
+    for (int y = 48; y < 78; y++) /* in the second picture the square covers ten columns to its left */
         for (int x = 52; x < 58; x++, count++) far += fabsf(f.flow[0].uv[2 * (y * MADE_WIDTH + x)] + 4) < 1.5f;
     assert_true(far > 0.8 * count);
     release(&f);
 }
 
-static void identical_photos_do_not_flow(void **state)
+static void identical_photos_have_zero_flow(void **state)
 {
     const struct made_pair pair = {{0, 0}, {0, 0}, false, 1};
-    const struct geometry g = {.kind = GEOMETRY_NONE};
+    const struct pair_geometry g = {.kind = EPIPOLAR_NONE};
     struct flows f;
     (void)state;
     make_and_match(&f, &pair, &g);
@@ -117,11 +117,11 @@ static void identical_photos_do_not_flow(void **state)
     release(&f);
 }
 
-static void a_textureless_pair_does_not_flow(void **state)
+static void a_textureless_pair_has_zero_flow(void **state)
 {
     const struct made_pair pair = {{0, 0}, {0, 0}, false, 1};
     const struct morph_params params = MORPH_PARAMS_DEFAULT;
-    const struct geometry g = {.kind = GEOMETRY_NONE};
+    const struct pair_geometry g = {.kind = EPIPOLAR_NONE};
     struct flows f;
     (void)state;
     make(&f, &pair);
@@ -132,20 +132,20 @@ static void a_textureless_pair_does_not_flow(void **state)
     release(&f);
 }
 
-static void black_pictures_are_no_trouble(void **state)
+static void a_black_picture_is_accepted(void **state)
 {
-    const struct made_pair pair = {{0, 0}, {0, 0}, false, 0}; /* the second one is black */
-    const struct geometry g = {.kind = GEOMETRY_NONE};
+    const struct made_pair pair = {{0, 0}, {0, 0}, false, 0}; /* the second picture is black */
+    const struct pair_geometry g = {.kind = EPIPOLAR_NONE};
     struct flows f;
     (void)state;
     make_and_match(&f, &pair, &g);
     release(&f);
 }
 
-static void another_exposure_matches_as_well_and_is_measured(void **state)
+static void a_different_exposure_is_matched_and_measured(void **state)
 {
     const struct made_pair pair = {{-6, 0}, {-13, 0}, true, 0.4};
-    const struct geometry g = made_side_by_side();
+    const struct pair_geometry g = made_side_by_side();
     struct flows f;
     (void)state;
     make_and_match(&f, &pair, &g);
@@ -156,12 +156,12 @@ static void another_exposure_matches_as_well_and_is_measured(void **state)
     release(&f);
 }
 
-/* A film that is its photo, pixel for pixel, of a camera that is not turned. */
+/* Film pixels equal photo pixels; the camera is not rotated. */
 static const struct film_picture same_pixels = {.photo_from_film = {{1, 0, 0}, {0, 1, 0}},
                                                 .film_from_photo = {{1, 0, 0}, {0, 1, 0}}};
 static const struct mat3 unturned = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
 
-static void a_camera_that_only_turned_is_matched_without_lines(void **state)
+static void a_pure_rotation_is_matched_without_epipolar_lines(void **state)
 {
     const double focal = 200, angle = 0.05; /* about the vertical, 10 px */
     const struct made_pair pair = {{0, 0}, {0, 0}, false, 1};
@@ -169,16 +169,16 @@ static void a_camera_that_only_turned_is_matched_without_lines(void **state)
     const struct camera lens = {
         CAMERA_PINHOLE, MADE_WIDTH, MADE_HEIGHT, {focal, focal, MADE_WIDTH / 2., MADE_HEIGHT / 2.}};
     const struct mat3 turn = {{{cos(angle), 0, -sin(angle)}, {0, 1, 0}, {sin(angle), 0, cos(angle)}}};
-    const struct geometry g = {.kind = GEOMETRY_POSED,
-                               .width = MADE_WIDTH,
-                               .height = MADE_HEIGHT,
-                               .photos = {{lens, unturned, {0, 0, 0}, 1, 10}, {lens, turn, {0, 0, 0}, 1, 10}},
-                               .films = {&same_pixels, &same_pixels}};
+    const struct pair_geometry g = {.kind = EPIPOLAR_POSED,
+                                    .width = MADE_WIDTH,
+                                    .height = MADE_HEIGHT,
+                                    .photos = {{lens, unturned, {0, 0, 0}, 1, 10}, {lens, turn, {0, 0, 0}, 1, 10}},
+                                    .films = {&same_pixels, &same_pixels}};
     struct epipolar_line line;
     struct flows f;
     int right = 0, count = 0;
     (void)state;
-    assert_false(geometry_line(&g, 0, 80, 60, NULL, &line));
+    assert_false(epipolar_line_at(&g, 0, 80, 60, NULL, &line));
     make(&f, &pair);
     for (int y = 0; y < MADE_HEIGHT; y++)
         for (int x = 0; x < MADE_WIDTH; x++) {
@@ -200,33 +200,36 @@ static void a_camera_that_only_turned_is_matched_without_lines(void **state)
     release(&f);
 }
 
-static void lines_of_cameras_and_of_their_fundamental_matrix_agree(void **state)
+static void lines_from_cameras_and_from_the_fundamental_matrix_agree(void **state)
 {
     const double focal = 200;
     const struct camera lens = {
         CAMERA_PINHOLE, MADE_WIDTH, MADE_HEIGHT, {focal, focal, MADE_WIDTH / 2., MADE_HEIGHT / 2.}};
-    const struct geometry g = {.kind = GEOMETRY_POSED,
-                               .photos = {{lens, unturned, {0, 0, 0}, 2, 50}, {lens, unturned, {-0.2, 0, 0}, 2, 50}},
-                               .films = {&same_pixels, &same_pixels}};
-    const struct geometry f = made_side_by_side();
+    const struct pair_geometry g = {
+        .kind = EPIPOLAR_POSED,
+        .photos = {{lens, unturned, {0, 0, 0}, 2, 50}, {lens, unturned, {-0.2, 0, 0}, 2, 50}},
+        .films = {&same_pixels, &same_pixels}};
+    const struct pair_geometry f = made_side_by_side();
     (void)state;
     for (int from = 0; from < 2; from++)
         for (int k = 0; k < 5; k++) {
             struct epipolar_line a, b;
-            assert_true(geometry_line(&g, from, 20 + 25 * k, 11 + 20 * k, NULL, &a));
-            assert_true(geometry_line(&f, from, 20 + 25 * k, 11 + 20 * k, NULL, &b));
+            assert_true(epipolar_line_at(&g, from, 20 + 25 * k, 11 + 20 * k, NULL, &a));
+            assert_true(epipolar_line_at(&f, from, 20 + 25 * k, 11 + 20 * k, NULL, &b));
             assert_true(fabsf(a.dx - b.dx) < 1e-4f && fabsf(a.dy - b.dy) < 1e-4f && fabsf(a.c - b.c) < 1e-3f);
-            assert_true(a.dx == (from ? 1 : -1)); /* nearer is left in the second picture, right in the first */
+            assert_true(a.dx ==
+                        (from ? 1 : -1)); /* nearer is to the left in the second picture, to the right in the first */
         }
 }
 
-static void through_a_lens_that_distorts_a_line_is_the_curves_tangent(void **state)
+static void with_lens_distortion_a_line_is_the_tangent_of_the_curve(void **state)
 {
     const struct camera lens = {
         CAMERA_SIMPLE_RADIAL, MADE_WIDTH, MADE_HEIGHT, {150, MADE_WIDTH / 2., MADE_HEIGHT / 2., -0.3}};
-    const struct geometry g = {.kind = GEOMETRY_POSED,
-                               .photos = {{lens, unturned, {0, 0, 0}, 1, 100}, {lens, unturned, {-0.5, 0, 0}, 1, 100}},
-                               .films = {&same_pixels, &same_pixels}};
+    const struct pair_geometry g = {
+        .kind = EPIPOLAR_POSED,
+        .photos = {{lens, unturned, {0, 0, 0}, 1, 100}, {lens, unturned, {-0.5, 0, 0}, 1, 100}},
+        .films = {&same_pixels, &same_pixels}};
     struct vec3 ray;
     double at[2], worst = 0, chord = 0;
     (void)state;
@@ -235,28 +238,28 @@ static void through_a_lens_that_distorts_a_line_is_the_curves_tangent(void **sta
         struct vec3 p = vec3_scale(ray, z / ray.z);
         struct epipolar_line line;
         assert_true(camera_project(&lens, vec3_add(p, vec3_make(-0.5, 0, 0)), &at[0], &at[1]));
-        assert_true(geometry_line(&g, 0, 130, 100, at, &line));
+        assert_true(epipolar_line_at(&g, 0, 130, 100, at, &line));
         worst = fmax(worst, fabs(line.dx * at[1] - line.dy * at[0] + line.c));
-        assert_true(geometry_line(&g, 0, 130, 100, NULL, &line));
+        assert_true(epipolar_line_at(&g, 0, 130, 100, NULL, &line));
         chord = fmax(chord, fabs(line.dx * at[1] - line.dy * at[0] + line.c));
     }
     assert_true(worst < 0.05);
-    assert_true(chord > 0.5); /* so that it tells the two apart */
+    assert_true(chord > 0.5); /* the chord would be wrong */
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_still_scene_is_matched_to_parts_of_a_pixel),
-        cmocka_unit_test(what_moved_off_its_line_is_followed_by_the_soft_term_and_not_by_a_hard_one),
-        cmocka_unit_test(what_is_hidden_goes_with_the_far_side),
-        cmocka_unit_test(identical_photos_do_not_flow),
-        cmocka_unit_test(a_textureless_pair_does_not_flow),
-        cmocka_unit_test(black_pictures_are_no_trouble),
-        cmocka_unit_test(another_exposure_matches_as_well_and_is_measured),
-        cmocka_unit_test(a_camera_that_only_turned_is_matched_without_lines),
-        cmocka_unit_test(through_a_lens_that_distorts_a_line_is_the_curves_tangent),
-        cmocka_unit_test(lines_of_cameras_and_of_their_fundamental_matrix_agree),
+        cmocka_unit_test(a_static_scene_is_matched_with_subpixel_precision),
+        cmocka_unit_test(motion_off_the_epipolar_line_is_matched_by_a_soft_term_only),
+        cmocka_unit_test(occluded_pixels_move_with_the_far_side),
+        cmocka_unit_test(identical_photos_have_zero_flow),
+        cmocka_unit_test(a_textureless_pair_has_zero_flow),
+        cmocka_unit_test(a_black_picture_is_accepted),
+        cmocka_unit_test(a_different_exposure_is_matched_and_measured),
+        cmocka_unit_test(a_pure_rotation_is_matched_without_epipolar_lines),
+        cmocka_unit_test(with_lens_distortion_a_line_is_the_tangent_of_the_curve),
+        cmocka_unit_test(lines_from_cameras_and_from_the_fundamental_matrix_agree),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

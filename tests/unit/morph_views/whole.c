@@ -1,5 +1,4 @@
-/* From photo files to frames: ends that are the photos, pictures between, farmed frames, and pairs that cannot be
- * morphed. */
+/* whole.c - from photo files to frames: the ends, the pictures between, chunks of frames, and invalid pairs. */
 #include "../scratch.h"
 #include "common/base/parallel.h"
 #include "common/capture/photo_list.h"
@@ -8,7 +7,7 @@
 #include "stages/morph_views/morph_frames.h"
 #include "stages/morph_views/prepare.h"
 
-/* A photo and its record: the made picture, cut to width x height. */
+/* Writes a photo and its record: the synthetic picture, cropped to width x height. */
 static void write_photo(const char *id, const struct made_pair *pair, int second, int width, int height)
 {
     struct err err = ERR_INIT;
@@ -56,7 +55,7 @@ static enum status frames(const char *morph, const char *list, const char *out, 
 
 static const struct made_pair moved = {{-4, 0}, {-12, 3}, true, 1};
 
-static void the_ends_are_the_photos_and_the_middle_lies_between(void **state)
+static void the_ends_are_the_photos_and_the_middle_is_between(void **state)
 {
     struct err err = ERR_INIT;
     struct image linear = {0}, middle = {0};
@@ -106,7 +105,7 @@ static void the_ends_are_the_photos_and_the_middle_lies_between(void **state)
     image_release(&middle);
 }
 
-static void a_frame_is_the_same_in_any_chunk_and_for_any_number_of_threads(void **state)
+static void any_chunk_and_thread_count_gives_the_same_frame(void **state)
 {
     struct err err = ERR_INIT;
     (void)state;
@@ -127,7 +126,7 @@ static void a_frame_is_the_same_in_any_chunk_and_for_any_number_of_threads(void 
     }
 }
 
-static void photos_of_different_sizes_meet_in_the_first_ones_film(void **state)
+static void photos_of_different_sizes_are_fitted_to_the_first_ones_film(void **state)
 {
     struct err err = ERR_INIT;
     struct exr_image im = {0};
@@ -140,7 +139,7 @@ static void photos_of_different_sizes_meet_in_the_first_ones_film(void **state)
     exr_image_release(&im);
     write_photo("narrow", &moved, 0, 40, MADE_HEIGHT);
     assert_int_equal(prepare("b", "narrow", "sizes", &err), ST_DATA);
-    assert_err(err, ST_DATA, "more than half of it would be cut off");
+    assert_err(err, ST_DATA, "more than half of the photo would be cut off");
     assert_contains(err.text, "narrow");
     err = (struct err)ERR_INIT;
     write_photo("dot", &moved, 0, 3, 3);
@@ -148,7 +147,7 @@ static void photos_of_different_sizes_meet_in_the_first_ones_film(void **state)
     assert_err(err, ST_DATA, "photo dot: its 3 x 3 pixels");
 }
 
-static void photos_that_share_nothing_are_refused_with_a_sentence(void **state)
+static void photos_without_common_content_are_rejected(void **state)
 {
     struct err err = ERR_INIT;
     const struct made_pair other = {{5000, 3000}, {0, 0}, false, 1};
@@ -159,7 +158,7 @@ static void photos_that_share_nothing_are_refused_with_a_sentence(void **state)
     assert_int_equal(access(scratch_path("nothing/first.exr"), F_OK), -1);
 }
 
-static void identical_and_textureless_photos_make_a_film(void **state)
+static void identical_and_textureless_photos_are_morphed(void **state)
 {
     struct err err = ERR_INIT;
     const struct made_pair black = {{0, 0}, {0, 0}, false, 0};
@@ -171,7 +170,7 @@ static void identical_and_textureless_photos_make_a_film(void **state)
     assert_ok(frames("dark", "3", "dark", &err), err);
 }
 
-static void frames_that_are_none_and_broken_flows_are_refused(void **state)
+static void invalid_frame_numbers_and_flows_are_rejected(void **state)
 {
     struct err err = ERR_INIT;
     (void)state;
@@ -193,12 +192,12 @@ static void frames_that_are_none_and_broken_flows_are_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_ends_are_the_photos_and_the_middle_lies_between),
-        cmocka_unit_test(a_frame_is_the_same_in_any_chunk_and_for_any_number_of_threads),
-        cmocka_unit_test(photos_of_different_sizes_meet_in_the_first_ones_film),
-        cmocka_unit_test(photos_that_share_nothing_are_refused_with_a_sentence),
-        cmocka_unit_test(identical_and_textureless_photos_make_a_film),
-        cmocka_unit_test(frames_that_are_none_and_broken_flows_are_refused),
+        cmocka_unit_test(the_ends_are_the_photos_and_the_middle_is_between),
+        cmocka_unit_test(any_chunk_and_thread_count_gives_the_same_frame),
+        cmocka_unit_test(photos_of_different_sizes_are_fitted_to_the_first_ones_film),
+        cmocka_unit_test(photos_without_common_content_are_rejected),
+        cmocka_unit_test(identical_and_textureless_photos_are_morphed),
+        cmocka_unit_test(invalid_frame_numbers_and_flows_are_rejected),
     };
     return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }

@@ -1,4 +1,4 @@
-/* aperture.c - depth of field by moving over the lens, against what optics say. */
+/* aperture.c - depth of field by lens samples, compared with optics. */
 #include "tests/unit/scratch.h"
 
 #include <math.h>
@@ -9,10 +9,10 @@
 #define W 96
 #define H 80
 
-/* A dot of light of one square pixel, drawn with its exact coverage, at a world point; or a wall with a pattern. */
+/* A dot of light of one square pixel at a world point, drawn with exact coverage; or a wall with a pattern. */
 struct world {
     struct vec3 dot;
-    double wall; /* depth; 0: there is the dot alone */
+    double wall; /* depth; 0: only the dot */
     int frames;
 };
 
@@ -45,7 +45,7 @@ static enum status draw(void *ctx, const struct view *camera, struct rendered_fr
 
 static struct view a_camera(void)
 {
-    /* turned by the 3-4-5 triangle about y, so that the lens's axes are not the world's */
+    /* turned about y by a 3-4-5 triangle, so that the lens's axes differ from the world's */
     struct view v = {.name = "0001", .width = W, .height = H, .fx = 200, .fy = 190, .cx = 40.25, .cy = 42};
     v.cam_from_world = (struct mat3){{{0.8, 0, -0.6}, {0, 1, 0}, {0.6, 0, 0.8}}};
     v.translation = vec3_make(0.3, -0.2, 0.5);
@@ -53,7 +53,7 @@ static struct view a_camera(void)
     return v;
 }
 
-static void lens_points_are_a_disk(void **state)
+static void lens_points_fill_a_disk_evenly(void **state)
 {
     (void)state;
     double sum[5] = {0};
@@ -81,7 +81,7 @@ static void points_in_focus_keep_their_pixel(void **state)
         assert_true(fabs(view_project(&moved, at, &mu, &mv) - z) < 1e-12);
         assert_true(fabs(mu - u - v.fx * a * (z - 2.5) / (2.5 * z)) < 1e-9);
         assert_true(fabs(mv - t - v.fy * b * (z - 2.5) / (2.5 * z)) < 1e-9);
-        /* its centre is where its pose says */
+        /* the centre agrees with the pose */
         assert_true(vec3_length(vec3_add(mat3_apply(moved.cam_from_world, moved.center), moved.translation)) < 1e-12);
     }
 }
@@ -115,7 +115,7 @@ static void a_dot_becomes_the_circle_of_confusion(void **state)
                 if (light > 0 && x < left) left = x;
                 if (light > 0 && x > right) right = x;
             }
-        /* all of the light, centred, in a disk: variance diameter^2 / 16, and the little a pixel adds */
+        /* all light, centred, in a disk: variance diameter^2 / 16, plus that of a pixel */
         assert_true(fabs(sum - 1) < 1e-4);
         assert_true(fabs(x_sum / sum) < 0.05 + 0.01 * diameter);
         assert_true(fabs(xx - diameter * diameter / 16) < 0.25 + 0.01 * diameter * diameter);
@@ -126,7 +126,7 @@ static void a_dot_becomes_the_circle_of_confusion(void **state)
     }
 }
 
-static void a_plane_in_focus_is_the_same_and_ends_early(void **state)
+static void a_plane_in_focus_is_unchanged_and_needs_few_samples(void **state)
 {
     (void)state;
     const struct view v = a_camera();
@@ -145,7 +145,7 @@ static void a_plane_in_focus_is_the_same_and_ends_early(void **state)
     }
     assert_true(f.hole_fraction == sharp.hole_fraction);
 
-    /* out of focus it takes more, and a wider tolerance fewer */
+    /* out of focus it needs more samples, and fewer with a larger tolerance */
     w.wall = 1.9;
     const struct aperture_options coarse = {256, 0.01};
     struct aperture_stats few;
@@ -157,8 +157,8 @@ static void a_plane_in_focus_is_the_same_and_ends_early(void **state)
     rendered_frame_release(&f);
 }
 
-/* The estimate is of the size of the true error, which 4096 points tell. */
-static void the_error_estimate_is_honest(void **state)
+/* The true error is measured with 4096 samples. */
+static void the_error_estimate_is_close_to_the_true_error(void **state)
 {
     (void)state;
     const struct view v = a_camera();
@@ -177,14 +177,15 @@ static void the_error_estimate_is_honest(void **state)
             const double d = sqrt(f.rgba[i]) - sqrt(truth.rgba[i]);
             sum += i % 4 < 3 ? d * d / (3 * W * H) : 0;
         }
-        if (getenv("APERTURE_SHOW")) print_message("%d points: estimated %g, true %g\n", n, stats.error, sqrt(sum));
+        if (getenv("APERTURE_SHOW"))
+            print_message("%d samples: estimated error %g, true error %g\n", n, stats.error, sqrt(sum));
         assert_true(sqrt(sum) < stats.error);
     }
     rendered_frame_release(&truth);
     rendered_frame_release(&f);
 }
 
-static void no_aperture_is_the_pinhole_frame(void **state)
+static void aperture_0_gives_the_pinhole_frame(void **state)
 {
     (void)state;
     const struct view v = a_camera();
@@ -203,7 +204,7 @@ static void no_aperture_is_the_pinhole_frame(void **state)
     rendered_frame_release(&f);
 }
 
-static void threads_give_the_same_bits(void **state)
+static void any_thread_count_gives_the_same_bits(void **state)
 {
     (void)state;
     const struct view v = a_camera();
@@ -226,10 +227,10 @@ static void threads_give_the_same_bits(void **state)
 static enum status fail_third(void *ctx, const struct view *camera, struct rendered_frame *out, struct err *err)
 {
     struct world *w = ctx;
-    return w->frames == 2 ? err_set(err, ST_DATA, "the third frame is no good.") : draw(ctx, camera, out, err);
+    return w->frames == 2 ? err_set(err, ST_DATA, "the third frame failed.") : draw(ctx, camera, out, err);
 }
 
-static void what_cannot_be_is_told(void **state)
+static void invalid_apertures_and_failed_frames_are_errors(void **state)
 {
     (void)state;
     const struct view v = a_camera();
@@ -246,21 +247,21 @@ static void what_cannot_be_is_told(void **state)
     struct err err = ERR_INIT;
     w.frames = 0;
     assert_int_equal(aperture_render(&f, &v, 0.1, 2, &options, fail_third, &w, NULL, &err), ST_DATA);
-    assert_err(err, ST_DATA, "third frame");
+    assert_err(err, ST_DATA, "third frame failed");
     rendered_frame_release(&f);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(lens_points_are_a_disk),
+        cmocka_unit_test(lens_points_fill_a_disk_evenly),
         cmocka_unit_test(points_in_focus_keep_their_pixel),
         cmocka_unit_test(a_dot_becomes_the_circle_of_confusion),
-        cmocka_unit_test(a_plane_in_focus_is_the_same_and_ends_early),
-        cmocka_unit_test(the_error_estimate_is_honest),
-        cmocka_unit_test(no_aperture_is_the_pinhole_frame),
-        cmocka_unit_test(threads_give_the_same_bits),
-        cmocka_unit_test(what_cannot_be_is_told),
+        cmocka_unit_test(a_plane_in_focus_is_unchanged_and_needs_few_samples),
+        cmocka_unit_test(the_error_estimate_is_close_to_the_true_error),
+        cmocka_unit_test(aperture_0_gives_the_pinhole_frame),
+        cmocka_unit_test(any_thread_count_gives_the_same_bits),
+        cmocka_unit_test(invalid_apertures_and_failed_frames_are_errors),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-/* defocus.c - depth of field through a pyramid, beside that of a lens's many views. */
+/* defocus.c - depth of field by a MIP map, compared with an average over the lens. */
 #include "tests/unit/scratch.h"
 
 #include <math.h>
@@ -11,8 +11,7 @@
 #define W 180
 #define H 120
 
-/* A wall with a pattern, and before it a board, a half-plane with a slanted edge or a square, of one colour or a
- * pattern. */
+/* A wall, and in front of it a board, a half plane with a slanted edge or a square; uniform or with a pattern. */
 struct world {
     double wall, board;
     bool square;
@@ -90,13 +89,13 @@ static void show(const char *name, const struct rendered_frame *f)
     exr_image_release(&im);
 }
 
-static void it_is_near_what_a_lens_gives(void **state)
+static void the_blur_is_close_to_a_lens_average(void **state)
 {
     (void)state;
     static const struct {
         const char *name;
         struct world world;
-        double aperture, focus, least, gain; /* dB: of the blurred frame, and above the sharp one */
+        double aperture, focus, min_psnr, min_gain; /* dB: of the blurred frame, and more than the sharp frame's */
     } cases[] = {
         {"near-blurred", {4, 1.5, true, 0, 0}, 0.12, 4, 42, 9},
         {"far-blurred", {4, 1.5, true, 0, 0}, 0.3, 1.5, 32, 9},
@@ -104,7 +103,7 @@ static void it_is_near_what_a_lens_gives(void **state)
         {"edge-far", {4, 1.5, false, 0, 0.9f}, 0.3, 1.5, 32, 9},
         {"both-behind", {8, 2, true, 0, 0.9f}, 0.2, 1, 30, 9},
         {"both-before", {2, 1.5, true, 0, 0.9f}, 0.2, 8, 35, 9},
-        {"hardly-near", {4, 1.5, true, 0, 0.9f}, 0.2, 4.2, 36, 9}, /* the wall too is before the focus, by 0.4 px */
+        {"hardly-near", {4, 1.5, true, 0, 0.9f}, 0.2, 4.2, 36, 9}, /* the wall is in front of the focus, too */
         {"between", {6, 1.2, true, 0, 0}, 0.15, 2.2, 35, 8},
     };
     const struct view v = a_camera();
@@ -126,7 +125,7 @@ static void it_is_near_what_a_lens_gives(void **state)
         snprintf(name, sizeof name, "%s-fast", cases[i].name), show(name, &fast);
         snprintf(name, sizeof name, "%s-slow", cases[i].name), show(name, &slow);
         if (getenv("DEFOCUS_SHOW")) continue;
-        assert_true(with > cases[i].least && with > without + cases[i].gain);
+        assert_true(with > cases[i].min_psnr && with > without + cases[i].min_gain);
     }
     rendered_frame_release(&sharp);
     rendered_frame_release(&fast);
@@ -134,9 +133,9 @@ static void it_is_near_what_a_lens_gives(void **state)
     defocus_release(&d);
 }
 
-/* A board and a wall of the same grey at any depths: nothing to be seen, and no fringe. A bright board on a dark wall:
- * nowhere darker or brighter than either. */
-static void no_fringes(void **state)
+/* A board and a wall of the same grey, at any depths, stay uniform. A bright board on a dark wall: no pixel is darker
+ * or brighter than both. */
+static void silhouettes_have_no_fringes(void **state)
 {
     (void)state;
     const struct view v = a_camera();
@@ -159,8 +158,8 @@ static void no_fringes(void **state)
     defocus_release(&d);
 }
 
-/* Any depths whatever: an even picture stays so, unknown depths, wild ones and noise included. */
-static void an_even_picture_stays(void **state)
+/* Including unknown, extreme and random depths. */
+static void a_uniform_picture_stays_uniform_at_any_depth(void **state)
 {
     (void)state;
     static const int sizes[][2] = {{1, 1}, {2, 1}, {1, 7}, {13, 11}, {33, 64}, {200, 3}};
@@ -186,8 +185,8 @@ static void an_even_picture_stays(void **state)
     defocus_release(&d);
 }
 
-/* The blur of a dot of light at the back has a disk's variance, is centred, and keeps the light. */
-static void a_dot_spreads_as_it_should(void **state)
+/* The blur of a dot of light has the variance of a disk, is centred, and keeps the energy. */
+static void a_dot_has_the_variance_of_its_circle_of_confusion(void **state)
 {
     (void)state;
     const struct view v = a_camera();
@@ -196,7 +195,8 @@ static void a_dot_spreads_as_it_should(void **state)
     struct err err = ERR_INIT;
 
     for (int i = 0; i < 12; i++) {
-        const double diameter = 1 + 2 * i, focus = i & 1 ? 1 : 4, z = i & 1 ? 4 : 1; /* behind, before */
+        const double diameter = 1 + 2 * i, focus = i & 1 ? 1 : 4,
+                     z = i & 1 ? 4 : 1; /* behind the focus, in front of it */
         const int at[2] = {W / 2 + i, H / 2 - i};
         double sum = 0, mean[2] = {0}, square[2] = {0};
         assert_ok(rendered_frame_resize(&f, W, H, true, &err), err);
@@ -223,8 +223,8 @@ static void a_dot_spreads_as_it_should(void **state)
     defocus_release(&d);
 }
 
-/* A white board in focus lends nothing to a black wall that is not, and keeps its own pixels. */
-static void what_is_sharp_stays_and_does_not_bleed(void **state)
+/* A white board in focus does not bleed into a black wall out of focus, and keeps its own pixels. */
+static void surfaces_in_focus_stay_sharp_and_do_not_bleed(void **state)
 {
     (void)state;
     const struct view v = a_camera();
@@ -239,7 +239,7 @@ static void what_is_sharp_stays_and_does_not_bleed(void **state)
         f.z[p] = board ? 1 : 10;
         f.hole[p] = 0;
     }
-    assert_ok(defocus_apply(&d, &f, &v, 0.1, 1, &err), err); /* the wall's circle is 13.5 px */
+    assert_ok(defocus_apply(&d, &f, &v, 0.1, 1, &err), err); /* the wall's circle of confusion is 13.5 px */
     for (int p = 0; p < W * H; p++) {
         const bool board = p % W > 50 && p % W < 110 && p / W > 20 && p / W < 80;
         if (board)
@@ -251,7 +251,7 @@ static void what_is_sharp_stays_and_does_not_bleed(void **state)
     defocus_release(&d);
 }
 
-static void no_aperture_touches_nothing(void **state)
+static void aperture_0_changes_nothing(void **state)
 {
     (void)state;
     const struct view v = a_camera();
@@ -275,7 +275,7 @@ static void no_aperture_touches_nothing(void **state)
     rendered_frame_release(&sharp);
 }
 
-static void threads_give_the_same_bits(void **state)
+static void any_thread_count_gives_the_same_bits(void **state)
 {
     (void)state;
     const struct view v = a_camera();
@@ -299,13 +299,13 @@ static void threads_give_the_same_bits(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(it_is_near_what_a_lens_gives),
-        cmocka_unit_test(no_fringes),
-        cmocka_unit_test(an_even_picture_stays),
-        cmocka_unit_test(a_dot_spreads_as_it_should),
-        cmocka_unit_test(what_is_sharp_stays_and_does_not_bleed),
-        cmocka_unit_test(no_aperture_touches_nothing),
-        cmocka_unit_test(threads_give_the_same_bits),
+        cmocka_unit_test(the_blur_is_close_to_a_lens_average),
+        cmocka_unit_test(silhouettes_have_no_fringes),
+        cmocka_unit_test(a_uniform_picture_stays_uniform_at_any_depth),
+        cmocka_unit_test(a_dot_has_the_variance_of_its_circle_of_confusion),
+        cmocka_unit_test(surfaces_in_focus_stay_sharp_and_do_not_bleed),
+        cmocka_unit_test(aperture_0_changes_nothing),
+        cmocka_unit_test(any_thread_count_gives_the_same_bits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

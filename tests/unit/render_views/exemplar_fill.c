@@ -1,4 +1,4 @@
-/* exemplar_fill.c - holes in pictures whose continuation is known. */
+/* exemplar_fill.c - holes in pictures of known content. */
 #include "tests/unit/scratch.h"
 
 #include <math.h>
@@ -65,13 +65,13 @@ static void assert_whole(const struct rendered_frame *f)
     assert_true(f->unfilled_fraction == 0);
 }
 
-/* Stripes 4 px wide, upright, level or slanting. */
+/* Stripes 4 px wide, vertical, horizontal or diagonal. */
 static const float *stripe(int kind, int x, int y)
 {
     return ((kind == 0 ? x : kind == 1 ? y : x + y) / 4) % 2 ? white : black;
 }
 
-static void stripes_go_on_across_a_hole(void **state)
+static void stripes_continue_across_a_hole(void **state)
 {
     (void)state;
     for (int kind = 0; kind < 3; kind++) {
@@ -95,7 +95,7 @@ static void stripes_go_on_across_a_hole(void **state)
     }
 }
 
-static void texture_goes_on_to_the_frames_border(void **state)
+static void texture_continues_to_the_border_of_the_frame(void **state)
 {
     (void)state;
     struct rendered_frame f;
@@ -109,7 +109,7 @@ static void texture_goes_on_to_the_frames_border(void **state)
     rendered_frame_release(&f);
 }
 
-/* A red disc at depth 4 before a checked wall at depth 10; what it hid to its right is a hole. */
+/* A red disc at depth 4 in front of a checkered wall at depth 10; the disocclusion to its right is a hole. */
 static void a_near_object_is_not_smeared_over_the_wall(void **state)
 {
     (void)state;
@@ -137,12 +137,12 @@ static void a_near_object_is_not_smeared_over_the_wall(void **state)
             filled++;
         }
     assert_int_equal(filled, s.empty);
-    assert_true(right > filled * 4 / 5); /* the checks go on, but for what bends around the disc */
+    assert_true(right > filled * 4 / 5); /* the checks continue, except near the disc's curved edge */
     assert_whole(&f);
     rendered_frame_release(&f);
 }
 
-static void one_surface_has_no_clusters(void **state)
+static void one_surface_has_no_depth_clusters(void **state)
 {
     (void)state;
     struct rendered_frame f;
@@ -160,7 +160,7 @@ static void one_surface_has_no_clusters(void **state)
     rendered_frame_release(&f);
 }
 
-static void border_between_two_clusters(void **state)
+static void the_border_lies_between_two_depth_clusters(void **state)
 {
     (void)state;
     const struct rng rng = rng_make(3, "test", "rim");
@@ -170,21 +170,21 @@ static void border_between_two_clusters(void **state)
         for (int i = 0; i < (count); i++) z[i] = (float)(value); \
         exemplar_far_border(z, (count), 0.01f);                  \
     }))
-    /* two depths: the middle in ln z; zeros do not count */
+    /* two depths: the midpoint in ln z; zeros are ignored */
     assert_float_equal(BORDER(100, i < 30 ? 2 : 8), 4, 1e-5);
     assert_float_equal(BORDER(100, i % 3 ? i % 3 == 1 ? 2 : 8 : 0), 4, 1e-5);
     assert_float_equal(BORDER(100, i < 30 ? 2e6 : 8e6), 4e6, 10);
-    /* a wall aslant, one depth with errors, one depth, nothing */
+    /* a slanted wall, one depth with errors, one depth, none */
     assert_true(BORDER(400, exp(i / 400.0)) == 0);
     assert_true(BORDER(400, 5 + 5 * (rng_uniform(&rng, (uint64_t)i, 0) + rng_uniform(&rng, (uint64_t)i, 1) - 1)) == 0);
     assert_true(BORDER(50, 3) == 0);
     assert_true(BORDER(50, 0) == 0);
     assert_true(BORDER(1, 7) == 0);
     assert_true(exemplar_far_border(z, 0, 0.01f) == 0);
-    /* apart by less than their errors */
+    /* two depths closer than their errors */
     assert_true(BORDER(100, i % 2 ? 5 : 5.1) == 0);
     assert_true(BORDER(100, i % 2 ? 5 : 6) > 5);
-    /* a few stray depths are no cluster; a near object before a floor is one */
+    /* a few outliers are not a cluster; a near object in front of a floor is one */
     assert_true(BORDER(200, i < 3 ? 500 : 5 + 0.02 * (i % 9)) == 0);
     const float border = BORDER(200, i % 2 ? 2 : 5 + 0.01 * i);
     assert_true(border > 2.5 && border < 5);
@@ -209,7 +209,7 @@ static void noise_fill(struct rendered_frame *f, int w, int h)
     cut(f, w - 40, h - 20, w, h);
 }
 
-static void threads_do_not_change_a_byte_nor_filling_what_is_known(void **state)
+static void any_thread_count_gives_the_same_bits_and_keeps_known_pixels(void **state)
 {
     (void)state;
     struct rendered_frame f, g, open;
@@ -236,15 +236,14 @@ static void threads_do_not_change_a_byte_nor_filling_what_is_known(void **state)
     rendered_frame_release(&open);
 }
 
-/* Exposure does not change what is copied. */
-static void a_brighter_picture_is_filled_alike(void **state)
+static void exposure_does_not_change_the_choice_of_patches(void **state)
 {
     (void)state;
     struct rendered_frame f, g;
     noise_fill(&f, 200, 150);
     noise_fill(&g, 200, 150);
     for (size_t i = 0; i < 200 * 150 * 4; i++)
-        if (i % 4 != 3) g.rgba[i] *= 1048576; /* a power of four: exact in the square root too */
+        if (i % 4 != 3) g.rgba[i] *= 1048576; /* a power of four, so that the square root is exact */
     fill(&f);
     fill(&g);
     for (size_t p = 0; p < 200 * 150; p++)
@@ -253,7 +252,7 @@ static void a_brighter_picture_is_filled_alike(void **state)
     rendered_frame_release(&g);
 }
 
-static void hard_frames_are_filled_whole(void **state)
+static void difficult_frames_are_filled_completely(void **state)
 {
     (void)state;
     static const struct {
@@ -261,7 +260,7 @@ static void hard_frames_are_filled_whole(void **state)
     } cases[] = {{1, 2, 0, 1}, {2, 1, 0, 0}, {40, 3, 39, 0}, {3, 40, 1, 20}, {60, 50, 59, 49}, {64, 64, 30, 30}};
     struct rendered_frame f;
 
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) { /* all but a pixel is hole */
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) { /* all pixels but one are holes */
         frame_make(&f, cases[i].w, cases[i].h);
         put(&f, cases[i].x, cases[i].y, white, 3);
         fill(&f);
@@ -272,7 +271,7 @@ static void hard_frames_are_filled_whole(void **state)
         }
         rendered_frame_release(&f);
     }
-    frame_make(&f, 1, 1); /* whole already, and wholly empty */
+    frame_make(&f, 1, 1); /* without a hole, and empty */
     put(&f, 0, 0, white, 3);
     fill(&f);
     assert_whole(&f);
@@ -281,7 +280,7 @@ static void hard_frames_are_filled_whole(void **state)
     assert_true(f.unfilled_fraction == 1 && f.rgba[3] == 0);
     rendered_frame_release(&f);
 
-    frame_make(&f, 20000, 16); /* a strip with a hole wider than any window */
+    frame_make(&f, 20000, 16); /* a strip with a hole wider than the window */
     for (int y = 0; y < 16; y++)
         for (int x = 0; x < 20000; x++) put(&f, x, y, stripe(0, x, y), 5);
     cut(&f, 9000, 0, 9600, 16);
@@ -289,7 +288,8 @@ static void hard_frames_are_filled_whole(void **state)
     assert_whole(&f);
     rendered_frame_release(&f);
 
-    frame_make(&f, 80, 60); /* no whole patch anywhere: a grid of lines; colours of any size; no depth on the right */
+    frame_make(&f, 80,
+               60); /* a grid of holes without any source patch; colours of any magnitude; no depth on the right */
     for (int y = 0; y < 60; y++)
         for (int x = 0; x < 80; x++) {
             const float rgb[3] = {x % 9 ? 1e8f : 0, 0, 1e-8f};
@@ -305,7 +305,7 @@ static void hard_frames_are_filled_whole(void **state)
     rendered_frame_release(&f);
 }
 
-static void sizes_of_patch_and_window(void **state)
+static void any_patch_and_window_size_works(void **state)
 {
     (void)state;
     static const int sizes[][2] = {{3, 8}, {4, 9}, {15, 8}, {15, 4096}, {9, 101}};
@@ -320,7 +320,7 @@ static void sizes_of_patch_and_window(void **state)
     }
 }
 
-static void nothing_is_filled_when_told(void **state)
+static void diameter_0_fills_nothing(void **state)
 {
     (void)state;
     struct rendered_frame f;
@@ -338,16 +338,16 @@ static void nothing_is_filled_when_told(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(stripes_go_on_across_a_hole),
-        cmocka_unit_test(texture_goes_on_to_the_frames_border),
+        cmocka_unit_test(stripes_continue_across_a_hole),
+        cmocka_unit_test(texture_continues_to_the_border_of_the_frame),
         cmocka_unit_test(a_near_object_is_not_smeared_over_the_wall),
-        cmocka_unit_test(one_surface_has_no_clusters),
-        cmocka_unit_test(border_between_two_clusters),
-        cmocka_unit_test(threads_do_not_change_a_byte_nor_filling_what_is_known),
-        cmocka_unit_test(a_brighter_picture_is_filled_alike),
-        cmocka_unit_test(hard_frames_are_filled_whole),
-        cmocka_unit_test(sizes_of_patch_and_window),
-        cmocka_unit_test(nothing_is_filled_when_told),
+        cmocka_unit_test(one_surface_has_no_depth_clusters),
+        cmocka_unit_test(the_border_lies_between_two_depth_clusters),
+        cmocka_unit_test(any_thread_count_gives_the_same_bits_and_keeps_known_pixels),
+        cmocka_unit_test(exposure_does_not_change_the_choice_of_patches),
+        cmocka_unit_test(difficult_frames_are_filled_completely),
+        cmocka_unit_test(any_patch_and_window_size_works),
+        cmocka_unit_test(diameter_0_fills_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-/* frames.c - parts of frames, and what a rendered frame's file holds. */
+/* frames.c - crop and scale of frames, and the files of rendered frames. */
 #include "tests/unit/scratch.h"
 
 #include <math.h>
@@ -62,7 +62,7 @@ static void scene_drop(struct scene *s)
     camera_path_release(&s->path);
 }
 
-static void frames_are_written_whole(void **state)
+static void frames_are_written_with_all_channels(void **state)
 {
     const char *kind = *state;
     const struct provenance prov = {.stage = "render_views", .version = "0"};
@@ -76,7 +76,7 @@ static void frames_are_written_whole(void **state)
     assert_int_equal(count_entries(scratch_path("some")), 2);
     assert_ok(exr_read(&im, scratch_path("some/0001.exr"), NULL, 0, &err), err);
     assert_int_equal(im.width, W);
-    for (int i = 0; i < W * H; i++) { /* at the view itself: its picture */
+    for (int i = 0; i < W * H; i++) { /* at the view itself, its photo */
         assert_true(exr_find(&im, "Z")->f[i] == 4);
         assert_true(exr_find(&im, "A")->f[i] == 1);
         assert_true(exr_find(&im, "G")->f[i] == (float)((i % W * 2) % 64) / 64);
@@ -86,14 +86,14 @@ static void frames_are_written_whole(void **state)
     exr_image_release(&im);
 
     assert_ok(exr_read(&im, scratch_path("some/0004.exr"), NULL, 0, &err), err);
-    /* 0.09 to the right is 0.9 px: the last column is of no view, and filled */
+    /* 0.09 to the right is 0.9 px: the last column is a hole, and filled */
     assert_true(fabs(atof(exr_attribute(&im, "remodel:holes")) - 1.0 / W) < 1e-6);
     assert_string_equal(exr_attribute(&im, "remodel:unfilled"), "0");
     exr_image_release(&im);
     scene_drop(&s);
 }
 
-static void splits_and_threads_give_the_same_bytes(void **state)
+static void any_split_and_thread_count_gives_the_same_bytes(void **state)
 {
     const char *kind = *state;
     const struct provenance prov = {.stage = "render_views", .version = "0"};
@@ -140,7 +140,7 @@ static void an_empty_frame_is_an_error(void **state)
     scene_drop(&s);
 }
 
-static void cameras_have_frames_of_their_own_size(void **state)
+static void each_camera_has_a_frame_of_its_own_size(void **state)
 {
     const char *kind = *state;
     const struct provenance prov = {.stage = "render_views", .version = "0"};
@@ -155,7 +155,7 @@ static void cameras_have_frames_of_their_own_size(void **state)
     scene_make(&s, 1, kind);
     cameras[0] = cameras[1] = s.view;
     cameras[0].name = "behind";
-    cameras[0].translation.z = -8; /* it sees nothing: an empty frame */
+    cameras[0].translation.z = -8; /* sees nothing: an empty frame */
     cameras[0].center.z = 8;
     cameras[1].name = "odd";
     cameras[1].width = W + 11; /* 11 columns that no view covers, on the right */
@@ -181,9 +181,9 @@ static void cameras_have_frames_of_their_own_size(void **state)
     scene_drop(&s);
 }
 
-/* ------------------------------------------------------------------------------------------------ parts of frames */
+/* ------------------------------------------------------------------------------------------------ crop and scale */
 
-static void parts_are_read(void **state)
+static void crops_and_scales_are_parsed(void **state)
 {
     (void)state;
     static const char *const bad_crops[] = {"",         "1,2,3",     "1,2,3,4,5",         "1,2,3,4 ",
@@ -211,7 +211,7 @@ static void parts_are_read(void **state)
     }
 }
 
-static void a_part_is_within_its_picture(void **state)
+static void a_crop_must_be_inside_its_picture(void **state)
 {
     (void)state;
     static const struct frame_part bad[] = {
@@ -227,14 +227,14 @@ static void a_part_is_within_its_picture(void **state)
     struct err err = ERR_INIT;
     struct view c = v;
     assert_int_equal(frame_part_camera(&c, &nothing, &err), ST_USAGE);
-    assert_err(err, ST_USAGE, "--scale 0.05 makes a picture of 0 x 0 pixels");
+    assert_err(err, ST_USAGE, "--scale 0.05 gives a picture of 0 x 0 pixels");
     err = (struct err)ERR_INIT;
     c = v;
     c.width = 20000;
     assert_int_equal(frame_part_camera(&c, &huge, &err), ST_USAGE);
     assert_err(err, ST_USAGE, "320000 x 512");
 
-    /* the same rays: a point is seen at the same place, cropped and scaled */
+    /* the same rays: a point is projected to the same position, cropped and scaled */
     const struct frame_part part = {10, 5, 30, 20, 1.5};
     err = (struct err)ERR_INIT;
     c = v;
@@ -244,7 +244,7 @@ static void a_part_is_within_its_picture(void **state)
     assert_true(fabs((-0.2 * c.fy + c.cy) - 1.5 * (-0.2 * v.fy + v.cy - 5)) < 1e-9);
 }
 
-static void a_crop_is_that_part_of_the_whole(void **state)
+static void a_crop_equals_that_part_of_the_frame(void **state)
 {
     const char *kind = *state;
     const struct frame_part part = {9, 7, 27, 18, 1};
@@ -268,7 +268,7 @@ static void a_crop_is_that_part_of_the_whole(void **state)
                 for (int k = 0; k < 4; k++) assert_true(fabsf(cut.rgba[4 * p + k] - whole.rgba[4 * q + k]) < 1e-4f);
             }
     }
-    /* at twice the size: pixel pairs around the same place, depth the same */
+    /* at twice the size: pairs of pixels around the same position, of the same depth */
     struct view camera = s.view;
     const struct frame_part twice = {0, 0, 0, 0, 2};
     assert_ok(frame_part_camera(&camera, &twice, &err), err);
@@ -287,13 +287,13 @@ static char fast[] = "fast", offline[] = "offline";
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(parts_are_read),
-        cmocka_unit_test(a_part_is_within_its_picture),
-        BOTH(a_crop_is_that_part_of_the_whole),
-        BOTH(frames_are_written_whole),
-        BOTH(splits_and_threads_give_the_same_bytes),
+        cmocka_unit_test(crops_and_scales_are_parsed),
+        cmocka_unit_test(a_crop_must_be_inside_its_picture),
+        BOTH(a_crop_equals_that_part_of_the_frame),
+        BOTH(frames_are_written_with_all_channels),
+        BOTH(any_split_and_thread_count_gives_the_same_bytes),
         BOTH(an_empty_frame_is_an_error),
-        BOTH(cameras_have_frames_of_their_own_size),
+        BOTH(each_camera_has_a_frame_of_its_own_size),
     };
     return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }

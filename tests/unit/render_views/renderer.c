@@ -1,5 +1,4 @@
-/* renderer.c - finished frames of a path: with holes that are filled, depth of field and effect layers, whatever frames
- * are asked for. */
+/* renderer.c - finished frames of a path, with filled holes, depth of field and effect layers, in any order. */
 #include "tests/unit/common/layers/formula_scene.h"
 #include "tests/unit/scratch.h"
 
@@ -17,7 +16,8 @@ struct film {
 
 static const struct shape square = {square_depth, true, 0.01};
 
-/* Three views of the square, and a path across them that leaves holes beside it. A lens that opens, layers of effects. */
+/* Three views of the square, and a path across them with holes beside the square; an opening lens, and effect
+ * layers. */
 static void film_make(struct film *film, const char *renderer, bool lens, bool layers)
 {
     static const double centers[][3] = {{0, -0.1, 0}, {0.1, 0.1, 0}, {-0.05, 0.1, 0}};
@@ -28,7 +28,7 @@ static void film_make(struct film *film, const char *renderer, bool lens, bool l
     scene_make(&film->scene, &square, centers, 3);
     film->params = usual;
     snprintf(film->params.renderer, sizeof film->params.renderer, "%s", renderer);
-    film->params.fill_anchors = 3;
+    film->params.fill_anchor_spacing = 3;
     film->params.aperture_samples = 12;
     assert_ok(camera_path_init(&film->path, "test", 30, FRAMES, &err), err);
     for (int i = 0; i < FRAMES; i++) {
@@ -36,7 +36,7 @@ static void film_make(struct film *film, const char *renderer, bool lens, bool l
         const char *name = f->camera.name;
         f->camera = view_at(0.1 * i - 0.3, 0.02 * i, 0.05 * i);
         f->camera.name = name;
-        f->aperture = lens ? 0.05 * i : 0; /* the first frame has none */
+        f->aperture = lens ? 0.05 * i : 0; /* 0 in the first frame */
         f->focus = lens && i ? 3 : 0;
     }
     if (!layers) return;
@@ -70,7 +70,7 @@ static void assert_same(const struct rendered_frame *a, const struct rendered_fr
     assert_true(a->hole_fraction == b->hole_fraction && a->unfilled_fraction == b->unfilled_fraction);
 }
 
-/* All frames in order; then backwards, one by one with a renderer each, and by other threads. */
+/* Renders all frames in order, then backwards, one by one with a new renderer each, and with another thread count. */
 static void check_splits(const struct film *film)
 {
     static const int ranges[][2] = {{5, 7}, {2, 5}, {0, 2}};
@@ -124,7 +124,7 @@ static void ranges_with_lens_and_effects_give_the_same_bytes(void **state)
     film_drop(&film);
 }
 
-static void effects_and_lens_change_what_they_are_for(void **state)
+static void effects_and_lens_change_only_their_regions(void **state)
 {
     struct film film, plain;
     struct renderer r;
@@ -135,7 +135,7 @@ static void effects_and_lens_change_what_they_are_for(void **state)
     film_make(&film, *state, false, true);
     film_make(&plain, *state, false, false);
     start(&r, &film);
-    assert_ok(renderer_frame(&r, FRAMES - 1, &with, &err), err); /* at 0.2 s: grey but for the square */
+    assert_ok(renderer_frame(&r, FRAMES - 1, &with, &err), err); /* at 0.2 s: grey except for the square */
     renderer_release(&r);
     start(&r, &plain);
     assert_ok(renderer_frame(&r, FRAMES - 1, &without, &err), err);
@@ -150,10 +150,10 @@ static void effects_and_lens_change_what_they_are_for(void **state)
         else
             outside += change / (W * H);
     }
-    assert_true(inside < 2e-3 && outside > 0.05); /* the rim is up to half a pixel outside of the box */
+    assert_true(inside < 2e-3 && outside > 0.05); /* the square's edge is up to half a pixel outside of the box */
     film_drop(&plain);
 
-    /* a lens on the square blurs the wall, and leaves the square */
+    /* focused at the square, the lens blurs the wall but not the square */
     film_make(&plain, *state, true, false);
     start(&r, &plain);
     assert_ok(renderer_frame(&r, FRAMES - 1, &with, &err), err);
@@ -178,7 +178,7 @@ static void effects_and_lens_change_what_they_are_for(void **state)
     film_drop(&film);
 }
 
-static void a_frame_of_nothing_stays_empty(void **state)
+static void a_frame_that_sees_nothing_stays_empty(void **state)
 {
     struct film film;
     struct renderer r;
@@ -186,7 +186,7 @@ static void a_frame_of_nothing_stays_empty(void **state)
     struct err err = ERR_INIT;
 
     film_make(&film, *state, true, true);
-    for (int i = 1; i < FRAMES; i++) { /* the first frame sees the scene; the others stand beyond the wall */
+    for (int i = 1; i < FRAMES; i++) { /* the first frame sees the scene; the others are behind the wall */
         const char *name = film.path.frames[i].camera.name;
         film.path.frames[i].camera = view_at(0, 0, 9);
         film.path.frames[i].camera.name = name;
@@ -214,8 +214,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         BOTH(ranges_of_frames_give_the_same_bytes),
         BOTH(ranges_with_lens_and_effects_give_the_same_bytes),
-        BOTH(effects_and_lens_change_what_they_are_for),
-        BOTH(a_frame_of_nothing_stays_empty),
+        BOTH(effects_and_lens_change_only_their_regions),
+        BOTH(a_frame_that_sees_nothing_stays_empty),
     };
     return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }

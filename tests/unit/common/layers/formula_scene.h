@@ -1,4 +1,4 @@
-/* formula_scene.h - scenes whose depth and colour are formulas, cut into segments, as tests of the renderers see them. */
+/* formula_scene.h - scenes whose depth and colour are formulas, cut into segments, for tests of the renderers. */
 #ifndef REMODEL_TESTS_FORMULA_SCENE_H
 #define REMODEL_TESTS_FORMULA_SCENE_H
 
@@ -21,13 +21,13 @@
 #define H         120
 #define FOCAL     150.0
 #define MAX_VIEWS 16
-#define CELL      12 /* segments are cut along a grid of this pitch */
+#define CELL      12 /* px, pitch of the grid of segments */
 
-/* ---------------------------------------------------------------------------------- scenes that are formulas */
+/* ---------------------------------------------------------------------------------- scenes */
 
 struct shape {
-    double (*depth)(const struct view *v, double u, double w, int *surface); /* z in the view; surface 0, 1.. */
-    bool constant_z; /* segments are cut in constant z, else follow the tangent plane */
+    double (*depth)(const struct view *v, double u, double w, int *surface); /* z in the view; *surface: 0, 1, .. */
+    bool constant_z; /* segments of constant z, else tangent planes */
     double sigma;
 };
 
@@ -46,7 +46,7 @@ static struct view view_at(double x, double y, double z)
     return v;
 }
 
-/* A pixel's depth on a surface z = f(x, y) of the world, in a view that looks along z: by iteration. */
+/* Depth of a pixel on the surface z = f(x, y) of the world, in a view that looks along z; by iteration. */
 static double meet(const struct view *v, double u, double w, double (*f)(double x, double y))
 {
     double z = 4;
@@ -65,7 +65,7 @@ static inline double wave_depth(const struct view *v, double u, double w, int *s
     return meet(v, u, w, wave);
 }
 
-/* A plane: in closed form, for views that are turned, too. 0 where it is not seen. */
+/* A plane, in closed form, also for turned views. 0 where it is not visible. */
 static inline double tilted_depth(const struct view *v, double u, double w, int *surface)
 {
     const struct vec3 c = v->center, d = vec3_sub(view_unproject(v, u, w, 1), c);
@@ -90,7 +90,7 @@ static void texture(struct vec3 p, int surface, float rgb[3])
     rgb[2] = surface ? 0 : 0.8f;
 }
 
-/* 1/z through three points of the tangent, or constant. */
+/* Plane through three points of the tangent plane, or of constant z. */
 static void segment_plane(double plane[3], const struct view *v, const struct shape *shape, double u, double w)
 {
     int s;
@@ -138,7 +138,7 @@ static void depth_make(struct layered_depth *d, const struct view *v, const stru
     }
 }
 
-/* View i is brighter by brightness[i % 3] than the texture. */
+/* brightness[i % 3] is added to the texture in view i. */
 static inline void scene_make_uneven(struct scene *s, const struct shape *shape, const double (*centers)[3], int count,
                                      const float brightness[3])
 {
@@ -185,8 +185,8 @@ static inline void frame_is_finite(const struct rendered_frame *f)
     }
 }
 
-/* dB of the frame against the scene's own texture seen from there, over pixels `margin` inside the frame that are no
- * holes; peak 1. */
+/* PSNR in dB, peak 1, of the frame against the scene's texture, over pixels `margin` inside the frame that are not
+ * holes. */
 static inline double psnr(const struct rendered_frame *f, const struct view *v, const struct shape *shape, int margin)
 {
     double sum = 0;

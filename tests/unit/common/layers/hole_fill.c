@@ -1,4 +1,4 @@
-/* hole_fill.c - holes of frames with a near and a far side. */
+/* hole_fill.c - holes between a near and a far side. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -15,7 +15,7 @@
 #define W 64
 #define H 48
 
-/* Red and near left of column `edge`, blue and far right of it. */
+/* Red and near to the left of column `edge`, blue and far to the right. */
 static void frame_paint(struct rendered_frame *f, int edge)
 {
     for (int i = 0; i < W * H; i++) {
@@ -74,13 +74,13 @@ static void holes_are_filled_from_the_far_side(void **state)
 {
     (void)state;
     struct rendered_frame f = frame_make(20);
-    for (int width = 1; width <= 20; width++) { /* narrow and wide, beside the near surface, over the whole height */
+    for (int width = 1; width <= 20; width++) { /* narrow and wide, beside the near surface, over the full height */
         frame_paint(&f, 20);
         frame_cut(&f, 20, 0, 20 + width, H);
         fill(&f, 6);
         assert_near(f.unfilled_fraction, 0, 0);
         assert_blue(&f, 20, 0, 20 + width, H);
-        assert_near(f.rgba[4 * 19], 1, 0); /* what was known is left alone */
+        assert_near(f.rgba[4 * 19], 1, 0); /* known pixels do not change */
     }
     rendered_frame_release(&f);
 }
@@ -97,7 +97,7 @@ static void borders_and_corners_are_filled(void **state)
     rendered_frame_release(&f);
 }
 
-static void nothing_is_filled_when_told_or_when_there_is_nothing(void **state)
+static void nothing_is_filled_with_diameter_0_or_without_known_pixels(void **state)
 {
     (void)state;
     struct rendered_frame f = frame_make(20);
@@ -118,7 +118,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(holes_are_filled_from_the_far_side),
         cmocka_unit_test(borders_and_corners_are_filled),
-        cmocka_unit_test(nothing_is_filled_when_told_or_when_there_is_nothing),
+        cmocka_unit_test(nothing_is_filled_with_diameter_0_or_without_known_pixels),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

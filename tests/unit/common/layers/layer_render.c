@@ -1,5 +1,4 @@
-/* layer_render.c - layered depth maps of scenes with known shape, seen from where no photo was taken, by both
- * renderers. */
+/* layer_render.c - novel views of scenes with known geometry, by both renderers. */
 #include "tests/unit/common/layers/formula_scene.h"
 
 #include "common/base/parallel.h"
@@ -14,7 +13,7 @@ static const struct shape square = {square_depth, true, 0.01};
 
 /* ------------------------------------------------------------------------------------------------------- tests */
 
-static void an_input_camera_gives_back_its_photo(void **state)
+static void rendering_an_input_camera_reproduces_its_photo(void **state)
 {
     const bool offline = *(const bool *)*state;
     static const struct shape *const shapes[] = {&tilted_planes, &wave_steps, &square};
@@ -24,10 +23,10 @@ static void an_input_camera_gives_back_its_photo(void **state)
         scene_make(&s, shapes[k], one, 1);
         render(&f, &s, &s.views[0], offline, 6);
         assert_near(f.hole_fraction, 0, 0);
-        assert_true(psnr(&f, &s.views[0], shapes[k], 0) > 65); /* half's rounding is the limit */
+        assert_true(psnr(&f, &s.views[0], shapes[k], 0) > 65); /* the limit is rounding to half */
         layer_scene_release(&s.layers);
 
-        scene_make(&s, shapes[k], four, 4); /* on the mesh: that view's weight is one */
+        scene_make(&s, shapes[k], four, 4); /* on the mesh: this view has weight 1 */
         render(&f, &s, &s.views[2], offline, 6);
         assert_true(psnr(&f, &s.views[2], shapes[k], 0) > 45);
         layer_scene_release(&s.layers);
@@ -35,7 +34,7 @@ static void an_input_camera_gives_back_its_photo(void **state)
     }
 }
 
-static void depth_follows_the_planes(void **state)
+static void rendered_depth_follows_the_planes(void **state)
 {
     const bool offline = *(const bool *)*state;
     struct scene s;
@@ -50,16 +49,16 @@ static void depth_follows_the_planes(void **state)
     rendered_frame_release(&f);
 }
 
-static void a_surface_in_pieces_shows_no_cracks(void **state)
+static void a_surface_of_many_segments_shows_no_cracks(void **state)
 {
     const bool offline = *(const bool *)*state;
-    /* one view, so nothing else could close a crack; tangent planes, then steps of constant z */
+    /* one view, so that no other view closes a crack; tangent planes, then constant z */
     static const struct shape *const shapes[] = {&wave_planes, &wave_steps};
     for (int k = 0; k < 2; k++) {
         struct scene s;
         struct rendered_frame f = {0};
         scene_make(&s, shapes[k], one, 1);
-        for (int i = 0; i < 12; i++) { /* up to 17 px of parallax, 0.7 between neighbours */
+        for (int i = 0; i < 12; i++) { /* up to 17 px of parallax, 0.7 px between neighbours */
             const struct view novel = view_at(0.45 * cos(i), 0.45 * sin(i), 0.2 * sin(2 * i));
             render(&f, &s, &novel, offline, 0);
             assert_int_equal(holes_inside(&f, 30), 0);
@@ -74,7 +73,7 @@ static void a_surface_in_pieces_shows_no_cracks(void **state)
     }
 }
 
-static void a_small_move_changes_the_picture_a_little(void **state)
+static void a_small_camera_move_changes_the_picture_little(void **state)
 {
     const bool offline = *(const bool *)*state;
     static const struct shape *const shapes[] = {&wave_steps, &square};
@@ -90,7 +89,7 @@ static void a_small_move_changes_the_picture_a_little(void **state)
             double change = 0;
             render(&b, &s, &there, offline, 6);
             for (int p = 0; p < W * H * 4; p++) change += fabs((double)a.rgba[p] - (double)b.rgba[p]);
-            /* a parallax of FOCAL / z = 40 px a unit, texture of 0.05 a px */
+            /* parallax of FOCAL / z = 40 px per unit, texture gradient of 0.05 per px */
             assert_true(change / (W * H * 4) < 3 * steps[i]);
         }
         layer_scene_release(&s.layers);
@@ -99,7 +98,7 @@ static void a_small_move_changes_the_picture_a_little(void **state)
     }
 }
 
-static void threads_do_not_change_a_bit(void **state)
+static void any_thread_count_gives_the_same_bits(void **state)
 {
     const bool offline = *(const bool *)*state;
     struct scene s;
@@ -116,7 +115,7 @@ static void threads_do_not_change_a_bit(void **state)
         assert_memory_equal(a.z, b.z, sizeof *a.z * W * H);
         assert_memory_equal(a.hole, b.hole, W * H);
     }
-    /* a frame that was used before, and of another size, gives what a fresh one gives */
+    /* a reused frame, first of another size, gives the same result as a fresh one */
     struct view small = view_at(0, 0.1, -0.3);
     small.width = 64;
     render(&a, &s, &small, offline, 6);
@@ -130,7 +129,7 @@ static void threads_do_not_change_a_bit(void **state)
     rendered_frame_release(&b);
 }
 
-static void what_no_view_saw_is_a_hole_filled_from_behind(void **state)
+static void disoccluded_pixels_are_holes_filled_from_the_far_side(void **state)
 {
     const bool offline = *(const bool *)*state;
     struct scene s;
@@ -166,17 +165,17 @@ static void what_no_view_saw_is_a_hole_filled_from_behind(void **state)
     assert_int_equal(f.hole[middle * W + left + 2], 1);
     for (int x = left + 1; x < left + disparity; x++) {
         assert_near(f.z[middle * W + x], 6, 0.01);
-        assert_near(f.rgba[4 * (middle * W + x) + 2], 0.8, 0.02); /* the wall's blue, none of the square's */
+        assert_near(f.rgba[4 * (middle * W + x) + 2], 0.8, 0.02); /* the wall's blue, not the square's */
     }
     layer_scene_release(&s.layers);
     rendered_frame_release(&f);
     rendered_frame_release(&cover);
 }
 
-static void no_hole_along_a_rail(void **state)
+static void there_is_no_hole_along_a_rail(void **state)
 {
     const bool offline = *(const bool *)*state;
-    /* along the rail and in front of it; coverage and rendering agree on every pixel */
+    /* on the rail and in front of it; coverage and rendering agree in every pixel */
     static const double rail[][3] = {{-0.6, 0, 0}, {-0.3, 0, 0}, {0.3, 0, 0}, {0.6, 0, 0}};
     struct scene s;
     struct rendered_frame f = {0};
@@ -196,10 +195,10 @@ static void no_hole_along_a_rail(void **state)
     rendered_frame_release(&f);
 }
 
-static void a_picture_border_leaves_no_line(void **state)
+static void picture_borders_leave_no_visible_line(void **state)
 {
     const bool offline = *(const bool *)*state;
-    /* the right views are a fifth darker: where their pictures end the frame must not step */
+    /* the right views are a fifth darker: there must be no step where their pictures end */
     static const double rail[][3] = {{-0.8, 0, 0}, {0.8, 0, 0}};
     const struct view novel = view_at(-0.2, 0, 0);
     struct scene s;
@@ -218,7 +217,7 @@ static void a_picture_border_leaves_no_line(void **state)
     s.set.view_count = 2;
     assert_int_equal(layer_scene_init(&s.layers, &s.set, depths, &err), ST_OK);
     render(&f, &s, &novel, offline, 6);
-    for (int y = 4; y < H - 4; y++) /* not the corners, where both fade at once */
+    for (int y = 4; y < H - 4; y++) /* not the corners, where both borders fade */
         for (int x = 1; x < W; x++)
             assert_near(f.rgba[4 * (y * W + x)], f.rgba[4 * (y * W + x - 1)], 0.06); /* 0.2 over 8 px of fading */
     layer_scene_release(&s.layers);
@@ -235,13 +234,13 @@ static void erase(struct layered_depth *d, int x0, int y0, int x1, int y1)
         }
 }
 
-static void a_hole_takes_the_nearest_view_that_does_not_hang_in_the_air(void **state)
+static void a_hole_takes_the_nearest_consistent_fallback_view(void **state)
 {
     const bool offline = *(const bool *)*state;
-    /* the two views that the mesh names lack the same patch of wall above the square: novel [70, 90) x [18, 30) */
+    /* the two views of the mesh lack the same patch of wall above the square: novel [70, 90) x [18, 30) */
     static const double rail[][3] = {{-0.6, 0, 0}, {-0.3, 0, 0}, {0.3, 0, 0}, {0.6, 0, 0}};
     const struct view novel = view_at(0.05, 0, 0.001);
-    const struct layer_render_options options = {.offline = offline, .soft_z = SOFT_Z_WIDTHS}; /* no more views */
+    const struct layer_render_options options = {.offline = offline, .soft_z = SOFT_Z_WIDTHS}; /* no extra views */
     for (int phantom = 0; phantom < 2; phantom++) {
         struct scene s;
         struct layered_depth depths[4];
@@ -253,9 +252,10 @@ static void a_hole_takes_the_nearest_view_that_does_not_hang_in_the_air(void **s
             s.views[i] = view_at(rail[i][0], rail[i][1], rail[i][2]);
             depth_make(&depths[i], &s.views[i], &square);
         }
-        erase(&depths[1], 78, 18, 100, 30); /* FOCAL 0.3 / 6 = 7.5 px to either side */
+        erase(&depths[1], 78, 18, 100, 30); /* FOCAL 0.3 / 6 = 7.5 px on both sides */
         erase(&depths[2], 62, 18, 84, 30);
-        for (int i = 0; phantom && i < depths[3].segment_count; i++) /* the next one's wall is in front of all */
+        for (int i = 0; phantom && i < depths[3].segment_count;
+             i++) /* the wall of the nearest other view is in front of everything */
             if (fabs(depths[3].segments[i].plane[2] - 1.0 / 6) < 1e-6) depths[3].segments[i].plane[2] = 1 / 1.5;
         s.set.views = s.views;
         s.set.view_count = 4;
@@ -270,7 +270,7 @@ static void a_hole_takes_the_nearest_view_that_does_not_hang_in_the_air(void **s
     }
 }
 
-/* What a view at the origin sees of the square, with its own camera. The depth map is used up. */
+/* Renders a view at the origin in its own camera. Takes ownership of the depth map. */
 static void render_own(struct rendered_frame *f, struct layered_depth *d, bool offline)
 {
     struct scene s = {.views = {view_at(0, 0, 0)}, .set = {.view_count = 1}};
@@ -282,10 +282,10 @@ static void render_own(struct rendered_frame *f, struct layered_depth *d, bool o
     layer_scene_release(&s.layers);
 }
 
-static void boundaries_composite_to_the_photo(void **state)
+static void boundary_layers_composite_to_the_photo(void **state)
 {
     const bool offline = *(const bool *)*state;
-    /* the square's rim, two pixels wide, is matted: half in each layer */
+    /* the square's boundary, two pixels wide, is matted: half in each layer */
     const struct view v = view_at(0, 0, 0);
     struct layered_depth d;
     struct rendered_frame f = {0};
@@ -315,26 +315,26 @@ static void boundaries_composite_to_the_photo(void **state)
     rendered_frame_release(&f);
 }
 
-static void odd_places_to_stand(void **state)
+static void unusual_cameras_are_rendered(void **state)
 {
     const bool offline = *(const bool *)*state;
     struct scene s;
     struct rendered_frame f = {0};
     scene_make(&s, &square, four, 4);
 
-    struct view away = view_at(0, 0, 0); /* turned round: nothing to see */
+    struct view away = view_at(0, 0, 0); /* looking away from the scene */
     away.cam_from_world = (struct mat3){{{-1, 0, 0}, {0, 1, 0}, {0, 0, -1}}};
     away.translation = vec3_make(0, 0, 0);
     render(&f, &s, &away, offline, 6);
     assert_near(f.hole_fraction, 1, 0);
     assert_near(f.unfilled_fraction, 1, 0);
 
-    struct view behind = view_at(0, 0, 9); /* behind the wall, looking on */
+    struct view behind = view_at(0, 0, 9); /* behind the wall, looking away from it */
     render(&f, &s, &behind, offline, 6);
     assert_near(f.hole_fraction, 1, 0);
 
     const struct view places[] = {view_at(0, 0, 3), view_at(0.1, 0, 2.999999), view_at(0, 0, 6), view_at(0, 0, -50),
-                                  view_at(1e4, 0, 0)}; /* on the square, the wall, far off */
+                                  view_at(1e4, 0, 0)}; /* in the square, in the wall, far away */
     for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
         render(&f, &s, &places[i], offline, 6);
         for (int p = 0; p < W * H; p++) {
@@ -351,7 +351,7 @@ static void odd_places_to_stand(void **state)
     rendered_frame_release(&f);
 }
 
-static void broken_depth_maps_are_refused(void **state)
+static void inconsistent_depth_maps_are_rejected(void **state)
 {
     (void)state;
     struct view v = view_at(0, 0, 0);
@@ -374,15 +374,15 @@ static void broken_depth_maps_are_refused(void **state)
     layer_scene_release(&layers);
 }
 
-/* --------------------------------------------------------------------------------------- continuity, more views */
+/* --------------------------------------------------------------------------------------- continuity, extra views */
 
 static const double nine[][3] = {{-0.3, -0.3, 0}, {0, -0.3, 0},   {0.3, -0.3, 0}, {-0.3, 0, 0}, {0, 0, 0},
                                  {0.3, 0, 0},     {-0.3, 0.3, 0}, {0, 0.3, 0},    {0.3, 0.3, 0}};
 
-/* As scene_make, view i brighter by i % 3 tenths: what each one weighs is seen. */
+/* As scene_make, with view i brighter by (i % 3) / 10, so that each view's weight shows. */
 static const float uneven[3] = {1, 1.1f, 1.2f};
 
-/* Mean absolute difference of the pictures from two places. */
+/* Mean absolute difference of the pictures from two positions. */
 static double change(const struct scene *s, struct vec3 a, struct vec3 b, const struct layer_render_options *options)
 {
     struct rendered_frame f = {0}, g = {0};
@@ -397,8 +397,9 @@ static double change(const struct scene *s, struct vec3 a, struct vec3 b, const 
     return sum / (W * H * 4);
 }
 
-/* A chain of smaller and smaller moves across a place and from it. A parallax of 40 px a unit on a texture of 0.05 a px
- * makes 2 in one channel at most; weights that pass from view to view within 0.3 units, of views a fifth apart, make 0.7. */
+/* Ever smaller moves across and away from a position must change the picture ever less. A parallax of 40 px per unit on
+ * a texture of 0.05 per px changes a channel by at most 2 per unit; weights that pass between views a fifth apart
+ * within 0.3 units, by 0.7. */
 static void check_moves(const struct scene *s, struct vec3 at, struct vec3 way,
                         const struct layer_render_options *options)
 {
@@ -414,14 +415,14 @@ static void check_moves(const struct scene *s, struct vec3 at, struct vec3 way,
 
 static const struct vec3 right = {1, 0, 0}, ahead = {0, 0, 1}, aslant = {0.6, 0.48, 0.64};
 
-static void passing_an_edge_of_the_view_mesh_is_smooth(void **state)
+static void crossing_an_edge_of_the_view_mesh_is_smooth(void **state)
 {
     const bool offline = *(const bool *)*state;
     struct scene s;
     scene_make_uneven(&s, &square, nine, 9, uneven);
-    check_moves(&s, vec3_make(0, 0.1, 0), right, &renderers[offline]);   /* on the mesh, from triangle to triangle */
-    check_moves(&s, vec3_make(0, 0.1, 0.3), right, &renderers[offline]); /* in front of it */
-    check_moves(&s, vec3_make(0.3, 0.1, 0), right, &renderers[offline]); /* out over its rim */
+    check_moves(&s, vec3_make(0, 0.1, 0), right, &renderers[offline]);         /* in the mesh, across an edge */
+    check_moves(&s, vec3_make(0, 0.1, 0.3), right, &renderers[offline]);       /* in front of it */
+    check_moves(&s, vec3_make(0.3, 0.1, 0), right, &renderers[offline]);       /* across its boundary */
     check_moves(&s, vec3_make(0.1071, 0.0532, 0), ahead, &renderers[offline]); /* through it */
     check_moves(&s, vec3_make(0.1, 0.1, -0.2), aslant, &renderers[offline]);   /* behind it */
     layer_scene_release(&s.layers);
@@ -438,7 +439,7 @@ static void passing_an_input_view_is_smooth(void **state)
     layer_scene_release(&s.layers);
 }
 
-static void a_view_enters_the_nearest_ones_smoothly(void **state)
+static void a_view_joins_the_nearest_views_smoothly(void **state)
 {
     static const int more[] = {1, 3, 5};
     struct scene s;
@@ -447,7 +448,7 @@ static void a_view_enters_the_nearest_ones_smoothly(void **state)
     for (int i = 0; i < 3; i++) {
         struct layer_render_options options = renderers[true];
         options.more_views = more[i];
-        /* x = 0.15 is as far from the middle column as from the right one: (0, 0) and (0.3, 0) are nearest, then (0, 0.3)
+        /* x = 0.15 is halfway between the middle and the right column: (0, 0) and (0.3, 0) are nearest, then (0, 0.3)
          * and (0.3, 0.3), then (0, -0.3) and (0.3, -0.3) */
         check_moves(&s, vec3_make(0.15, 0.1, 0), right, &options);
         check_moves(&s, vec3_make(0.15, 0.1, 0.25), right, &options);
@@ -455,11 +456,12 @@ static void a_view_enters_the_nearest_ones_smoothly(void **state)
     layer_scene_release(&s.layers);
 }
 
-static void weights_that_blend_sum_to_one(void **state)
+static void blending_weights_sum_to_one(void **state)
 {
     const bool offline = *(const bool *)*state;
     static const double three[][3] = {{-0.2, -0.15, 0}, {0.2, -0.15, 0}, {0, 0.2, 0}};
-    const struct layer_render_options options = {.offline = offline, .soft_z = SOFT_Z_WIDTHS}; /* the mesh's alone */
+    const struct layer_render_options options = {.offline = offline,
+                                                 .soft_z = SOFT_Z_WIDTHS}; /* only the mesh's views */
     struct layered_depth depths[3] = {0};
     struct scene s;
     struct rendered_frame f = {0};
@@ -490,10 +492,11 @@ static void weights_that_blend_sum_to_one(void **state)
                 for (int k = 0; k < row[x].count; k++) weight[row[x].view[k]] += (double)row[x].weight[k];
                 for (int k = 0; k < 3; k++) sum += offline ? sqrt((double)c[k]) : (double)c[k];
                 assert_near(sum, 1, 1e-5);
-                if (x < 30 || y < 30 || x >= W - 30 || y >= H - 30) continue; /* where no view fades at its border */
+                if (x < 30 || y < 30 || x >= W - 30 || y >= H - 30)
+                    continue; /* only where no view fades towards its border */
                 for (int k = 0; k < 3; k++)
                     assert_near(offline ? sqrt((double)c[k]) : (double)c[k], weight[k],
-                                0.04); /* bilinear within 16 px, kinks too */
+                                0.04); /* bilinear within 16 px, also across kinks */
             }
         }
     }
@@ -501,7 +504,7 @@ static void weights_that_blend_sum_to_one(void **state)
     rendered_frame_release(&f);
 }
 
-static void what_all_other_views_look_through_does_not_show(void **state)
+static void a_surface_that_all_other_views_see_through_is_not_visible(void **state)
 {
     struct layered_depth depths[9] = {0};
     struct layer_render_options options = renderers[true];
@@ -516,7 +519,7 @@ static void what_all_other_views_look_through_does_not_show(void **state)
         s.views[i] = view_at(nine[i][0], nine[i][1], nine[i][2]);
         depth_make(&depths[i], &s.views[i], &tilted_planes);
     }
-    int moved = 0; /* of the view in the middle every fifth segment hangs in the air, and is white */
+    int moved = 0; /* in the middle view every fifth segment floats in front of the scene, and is white */
     for (int k = 0; k < depths[4].segment_count; k++)
         if (depths[4].segments[k].pixels && k / 2 % 5 == 0) {
             memcpy(depths[4].segments[k].plane, (const double[3]){0, 0, 1 / 2.0}, sizeof depths[4].segments[k].plane);
@@ -537,16 +540,16 @@ static void what_all_other_views_look_through_does_not_show(void **state)
             for (int x = 15; x < W - 15; x++) {
                 const float *c = f.rgba + 4 * (y * W + x);
                 assert_near(f.z[y * W + x], meet(&novel, x + 0.5, y + 0.5, tilted), 0.02);
-                assert_true(c[0] < 0.85f && c[1] < 0.8f && c[2] < 0.9f); /* a tenth above the texture at most */
+                assert_true(c[0] < 0.85f && c[1] < 0.8f && c[2] < 0.9f); /* at most 0.1 above the texture */
             }
     }
     layer_scene_release(&s.layers);
     rendered_frame_release(&f);
 }
 
-/* ------------------------------------------------------------------------------------------------- frames' sizes */
+/* ------------------------------------------------------------------------------------------------- frame sizes */
 
-static void frames_of_any_size_are_the_same_for_any_threads(void **state)
+static void frames_of_any_size_have_the_same_bits_for_any_thread_count(void **state)
 {
     const bool offline = *(const bool *)*state;
     static const int sizes[][2] = {{1, 1},    {7, 5},    {8, 16},   {9, 17},   {15, 1},     {16, 16}, {250, 33},
@@ -596,7 +599,7 @@ static void frames_of_any_size_are_the_same_for_any_threads(void **state)
     rendered_frame_release(&cover);
 }
 
-static void coverage_has_the_holes_of_the_picture(void **state)
+static void coverage_has_the_same_holes_as_rendering(void **state)
 {
     const bool offline = *(const bool *)*state;
     struct scene s;
@@ -605,7 +608,7 @@ static void coverage_has_the_holes_of_the_picture(void **state)
     int holes = 0;
 
     scene_make(&s, &square, nine, 9);
-    for (int i = 0; i < 24; i++) { /* all around the views, far out, too */
+    for (int i = 0; i < 24; i++) { /* around the views, near and far */
         const double far = 0.3 + 0.1 * (i % 6);
         const struct view novel = view_at(far * cos(i), far * sin(i), 0.4 * sin(3 * i));
         render(&f, &s, &novel, offline, 0);
@@ -622,7 +625,7 @@ static void coverage_has_the_holes_of_the_picture(void **state)
 
 /* ---------------------------------------------------------------------------------------------------- silhouettes */
 
-#define EDGE 80.3 /* of a red half plane at depth 3, in px of a view at x 0; right of it blue at depth 6 */
+#define EDGE 80.3 /* px, in a view at x = 0, of a red half plane at depth 3; to the right of it blue at depth 6 */
 
 static void silhouette_make(struct scene *s, const double *xs, int count)
 {
@@ -641,7 +644,7 @@ static void silhouette_make(struct scene *s, const double *xs, int count)
             d->segments[k] =
                 (struct depth_segment){.id = (uint32_t)k + 1, .plane = {0, 0, k ? 1 / 6.0 : 1 / 3.0}, .sigma = 0.01};
         for (int p = 0; p < W * H; p++) {
-            const float red = (float)fmax(0, fmin(1, edge - p % W)); /* the near one's part of the pixel */
+            const float red = (float)fmax(0, fmin(1, edge - p % W)); /* coverage of the near half plane */
             const bool near = red >= 0.5f;
             d->interior.id[p] = near ? 1 : 2;
             d->interior.rgba[4 * p + (near ? 0 : 2)] = d->interior.rgba[4 * p + 3] = near ? red : 1 - red;
@@ -655,7 +658,7 @@ static void silhouette_make(struct scene *s, const double *xs, int count)
     if (layer_scene_init(&s->layers, &s->set, depths, &err)) fail_msg("%s", err.text);
 }
 
-static void a_matted_rim_comes_back_in_its_own_camera(void **state)
+static void a_matted_silhouette_is_reproduced_in_its_own_camera(void **state)
 {
     const bool offline = *(const bool *)*state;
     static const double origin[] = {0};
@@ -676,7 +679,7 @@ static void a_matted_rim_comes_back_in_its_own_camera(void **state)
     rendered_frame_release(&f);
 }
 
-static void a_silhouette_has_its_coverage_in_a_shifted_view(void **state)
+static void a_silhouette_keeps_its_coverage_in_a_shifted_view(void **state)
 {
     const bool offline = *(const bool *)*state;
     static const double origin[] = {0};
@@ -684,7 +687,7 @@ static void a_silhouette_has_its_coverage_in_a_shifted_view(void **state)
     struct rendered_frame f = {0};
 
     silhouette_make(&s, origin, 1);
-    for (int i = 0; i <= 24; i++) { /* to the left: the near half moves over what is behind it, up to 9 px */
+    for (int i = 0; i <= 24; i++) { /* to the left: the near half plane moves over the background, up to 9 px */
         const double shift = 0.0075 * i, edge = EDGE + FOCAL * shift / 3;
         const struct view novel = view_at(-shift, 0, 0);
         render(&f, &s, &novel, offline, 0);
@@ -694,19 +697,19 @@ static void a_silhouette_has_its_coverage_in_a_shifted_view(void **state)
                 const float *c = f.rgba + 4 * (y * W + x);
                 const double covered = fmax(0, fmin(1, edge - x));
                 sum += (double)c[0];
-                assert_near(c[0], covered, 0.255); /* bilinear between coverages: f (1 - f) off at most */
+                assert_near(c[0], covered, 0.255); /* bilinear between coverages: error at most f (1 - f) */
                 assert_near(c[0] + c[2], 1, 1e-3);
                 assert_near(c[1], 0, 0);
                 assert_near(c[3], 1, 0);
             }
-            assert_near(60 + sum, edge, 2e-3); /* where the edge is */
+            assert_near(60 + sum, edge, 2e-3); /* position of the edge */
         }
     }
     layer_scene_release(&s.layers);
     rendered_frame_release(&f);
 }
 
-static void a_silhouette_between_two_views_stays_a_clean_edge(void **state)
+static void a_silhouette_between_two_views_is_a_clean_edge(void **state)
 {
     const bool offline = *(const bool *)*state;
     static const double pair[] = {-0.1, 0.1};
@@ -714,8 +717,8 @@ static void a_silhouette_between_two_views_stays_a_clean_edge(void **state)
     struct rendered_frame f = {0};
 
     silhouette_make(&s, pair, 2);
-    /* the left view has nothing behind the edge. Fast, its rim hides what others have there: wholly from half coverage
-     * on (half a pixel of error), in proportion below (a quarter) */
+    /* The left view has nothing behind the edge. With the fast renderer its boundary hides what others have there:
+     * completely from half coverage on (half a pixel of error), in proportion below (a quarter). */
     for (int i = 0; i <= 20; i++) {
         const double x0 = -0.09 + 0.009 * i, edge = EDGE - FOCAL * x0 / 3;
         const struct view novel = view_at(x0, 0, 0);
@@ -725,7 +728,7 @@ static void a_silhouette_between_two_views_stays_a_clean_edge(void **state)
             for (int x = 60; x < 110; x++) {
                 const float *c = f.rgba + 4 * (y * W + x);
                 sum += (double)c[0];
-                assert_near(c[0] + c[2], 1, 0.5); /* square roots of views that disagree */
+                assert_near(c[0] + c[2], 1, 0.5); /* mean of square roots where views disagree */
                 assert_true(x == 60 || c[0] <= c[-4] + 1e-3f);
                 if (fabs(x + 0.5 - edge) > 2) assert_near(c[0], x < edge, 1e-3);
             }
@@ -736,9 +739,9 @@ static void a_silhouette_between_two_views_stays_a_clean_edge(void **state)
     rendered_frame_release(&f);
 }
 
-/* --------------------------------------------------------------------------------------------------- no nonsense */
+/* -------------------------------------------------------------------------------------------------- invalid colours */
 
-static void nothing_infinite_reaches_a_frame(void **state)
+static void infinite_colours_do_not_reach_a_frame(void **state)
 {
     const bool offline = *(const bool *)*state;
     static const double bad[] = {NAN, INFINITY, -INFINITY, 1e300, -1, 0};
@@ -774,7 +777,7 @@ static void nothing_infinite_reaches_a_frame(void **state)
     }
 }
 
-static void an_unknown_colour_is_black(void **state)
+static void a_nan_colour_is_black(void **state)
 {
     const bool offline = *(const bool *)*state;
     const struct view v = view_at(0, 0, 0);
@@ -795,30 +798,30 @@ static bool fast = false, offline = true;
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        BOTH(an_input_camera_gives_back_its_photo),
-        BOTH(depth_follows_the_planes),
-        BOTH(a_surface_in_pieces_shows_no_cracks),
-        BOTH(a_small_move_changes_the_picture_a_little),
-        BOTH(threads_do_not_change_a_bit),
-        BOTH(what_no_view_saw_is_a_hole_filled_from_behind),
-        BOTH(no_hole_along_a_rail),
-        BOTH(a_picture_border_leaves_no_line),
-        BOTH(a_hole_takes_the_nearest_view_that_does_not_hang_in_the_air),
-        BOTH(boundaries_composite_to_the_photo),
-        BOTH(odd_places_to_stand),
-        BOTH(passing_an_edge_of_the_view_mesh_is_smooth),
+        BOTH(rendering_an_input_camera_reproduces_its_photo),
+        BOTH(rendered_depth_follows_the_planes),
+        BOTH(a_surface_of_many_segments_shows_no_cracks),
+        BOTH(a_small_camera_move_changes_the_picture_little),
+        BOTH(any_thread_count_gives_the_same_bits),
+        BOTH(disoccluded_pixels_are_holes_filled_from_the_far_side),
+        BOTH(there_is_no_hole_along_a_rail),
+        BOTH(picture_borders_leave_no_visible_line),
+        BOTH(a_hole_takes_the_nearest_consistent_fallback_view),
+        BOTH(boundary_layers_composite_to_the_photo),
+        BOTH(unusual_cameras_are_rendered),
+        BOTH(crossing_an_edge_of_the_view_mesh_is_smooth),
         BOTH(passing_an_input_view_is_smooth),
-        BOTH(weights_that_blend_sum_to_one),
-        BOTH(frames_of_any_size_are_the_same_for_any_threads),
-        BOTH(coverage_has_the_holes_of_the_picture),
-        BOTH(a_matted_rim_comes_back_in_its_own_camera),
-        BOTH(a_silhouette_has_its_coverage_in_a_shifted_view),
-        BOTH(a_silhouette_between_two_views_stays_a_clean_edge),
-        BOTH(nothing_infinite_reaches_a_frame),
-        BOTH(an_unknown_colour_is_black),
-        cmocka_unit_test(a_view_enters_the_nearest_ones_smoothly),
-        cmocka_unit_test(what_all_other_views_look_through_does_not_show),
-        cmocka_unit_test(broken_depth_maps_are_refused),
+        BOTH(blending_weights_sum_to_one),
+        BOTH(frames_of_any_size_have_the_same_bits_for_any_thread_count),
+        BOTH(coverage_has_the_same_holes_as_rendering),
+        BOTH(a_matted_silhouette_is_reproduced_in_its_own_camera),
+        BOTH(a_silhouette_keeps_its_coverage_in_a_shifted_view),
+        BOTH(a_silhouette_between_two_views_is_a_clean_edge),
+        BOTH(infinite_colours_do_not_reach_a_frame),
+        BOTH(a_nan_colour_is_black),
+        cmocka_unit_test(a_view_joins_the_nearest_views_smoothly),
+        cmocka_unit_test(a_surface_that_all_other_views_see_through_is_not_visible),
+        cmocka_unit_test(inconsistent_depth_maps_are_rejected),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,10 +1,9 @@
-/* layer_render_hard_cases.c - where views and the novel camera may stand: the view mesh's hard cases, through both
- * renderers. */
+/* layer_render_hard_cases.c - degenerate positions of views and novel camera, for both renderers. */
 #include "tests/unit/common/layers/formula_scene.h"
 
 static const struct shape plane = {tilted_depth, false, 0.01};
 
-/* Turned about the vertical by `angle`, to the right. */
+/* A view turned to the right by `angle`. */
 static struct view turned_view(double x, double y, double z, double angle)
 {
     struct view v = view_at(x, y, z);
@@ -28,7 +27,7 @@ static void views_make(struct scene *s, const struct view *views, int count)
     if (layer_scene_init(&s->layers, &s->set, depths, &err)) fail_msg("%s", err.text);
 }
 
-/* Whether some view shows the point, a pixel or more inside its picture. */
+/* Whether some view shows the point, at least a pixel inside its picture. */
 static bool is_seen(const struct scene *s, struct vec3 point)
 {
     for (int i = 0; i < s->set.view_count; i++) {
@@ -38,8 +37,8 @@ static bool is_seen(const struct scene *s, struct vec3 point)
     return false;
 }
 
-/* The picture from there: finite, whole where a view sees, with the plane's depth and about its colour; and the same
- * where filled. How much of it there is. */
+/* Checks the picture: finite; complete where a view sees the scene, with the plane's depth and roughly its colour; the
+ * same where filled. Returns the covered fraction. */
 static double check_from(const struct scene *s, const struct view *novel, bool offline)
 {
     struct rendered_frame f = {0};
@@ -67,10 +66,11 @@ static double check_from(const struct scene *s, const struct view *novel, bool o
     return (double)shown / (W * H);
 }
 
-/* The places that are hard for any set of views around (x, y, z). */
+/* Novel cameras that are hard for any set of views around (x, y, z). */
 static void check_around(const struct view *views, int count, double x, double y, double z, bool offline)
 {
-    static const double turns[] = {1.0, 1.3, -1.2, -0.9}; /* the picture spans 56 degrees: rays parallel to the mesh */
+    static const double turns[] = {1.0, 1.3, -1.2,
+                                   -0.9}; /* the picture spans 56 degrees, so rays are parallel to the mesh */
     struct scene s;
     struct view novel;
 
@@ -78,11 +78,11 @@ static void check_around(const struct view *views, int count, double x, double y
     for (int i = 0; i < count; i++) { /* at an input view */
         assert_true(check_from(&s, &views[i], offline) > 0.99);
     }
-    for (int i = 0; i < 6; i++) { /* on the mesh and beside it in its plane */
+    for (int i = 0; i < 6; i++) { /* in the mesh, and beside it in its plane */
         novel = view_at(x + 0.1 * i - 0.2, y + 0.05 * i, z);
         assert_true(check_from(&s, &novel, offline) > 0.5);
     }
-    for (int i = 0; i < 8; i++) { /* near it, on either side */
+    for (int i = 0; i < 8; i++) { /* near the mesh, on both sides */
         novel = view_at(x + 0.05, y - 0.02, z + pow(10, -1 - i / 2) * (i % 2 ? 1 : -1));
         assert_true(check_from(&s, &novel, offline) > 0.6);
     }
@@ -96,52 +96,52 @@ static void check_around(const struct view *views, int count, double x, double y
         novel = turned_view(x + 0.03, y, z - 0.4, turns[i]);
         check_from(&s, &novel, offline);
     }
-    novel = turned_view(x, y, z, M_PI / 2); /* its axis lies in the mesh */
+    novel = turned_view(x, y, z, M_PI / 2); /* the viewing direction lies in the mesh */
     check_from(&s, &novel, offline);
-    novel = turned_view(x, y, z, M_PI); /* and away: nothing is there */
+    novel = turned_view(x, y, z, M_PI); /* looking away from the scene */
     assert_true(check_from(&s, &novel, offline) == 0);
     layer_scene_release(&s.layers);
 }
 
-static void one_view(void **state)
+static void a_single_view_is_rendered(void **state)
 {
     const struct view views[] = {view_at(0, 0, 0)};
     check_around(views, 1, 0, 0, 0, *(const bool *)*state);
 }
 
-static void two_views(void **state)
+static void two_views_are_rendered(void **state)
 {
     const struct view views[] = {view_at(-0.3, 0, 0), view_at(0.3, 0.1, 0)};
     check_around(views, 2, 0, 0.05, 0, *(const bool *)*state);
 }
 
-static void collinear_centers(void **state)
+static void collinear_centers_are_rendered(void **state)
 {
     const struct view views[] = {view_at(-0.6, -0.06, 0), view_at(-0.3, -0.03, 0), view_at(0, 0, 0),
                                  view_at(0.1, 0.01, 0), view_at(0.6, 0.06, 0)};
     check_around(views, 5, 0, 0, 0, *(const bool *)*state);
 }
 
-static void walk_straight_ahead(void **state)
+static void a_straight_move_into_the_scene_is_rendered(void **state)
 {
     const struct view views[] = {view_at(0, 0, -0.6), view_at(0, 0, -0.3), view_at(0, 0, 0), view_at(0, 0, 0.4)};
     check_around(views, 4, 0, 0, 0, *(const bool *)*state);
 }
 
-static void coincident_centers(void **state)
+static void coincident_centers_are_rendered(void **state)
 {
     const struct view views[] = {turned_view(0, 0, 0, -0.5), turned_view(0, 0, 0, -0.2), view_at(0, 0, 0),
                                  turned_view(0, 0, 0, 0.3)};
     check_around(views, 4, 0, 0, 0, *(const bool *)*state);
 }
 
-static void identical_views(void **state)
+static void identical_views_are_rendered(void **state)
 {
     const struct view views[] = {view_at(0, 0, 0), view_at(0, 0, 0), view_at(0, 0, 0)};
     check_around(views, 3, 0, 0, 0, *(const bool *)*state);
 }
 
-static void plane_of_views(void **state)
+static void a_plane_of_views_is_rendered(void **state)
 {
     const struct view views[] = {view_at(-0.3, -0.3, 0), view_at(0, -0.3, 0), view_at(0.3, -0.3, 0),
                                  view_at(-0.3, 0, 0),    view_at(0, 0, 0),    view_at(0.3, 0, 0),
@@ -149,7 +149,7 @@ static void plane_of_views(void **state)
     check_around(views, 9, 0, 0, 0, *(const bool *)*state);
 }
 
-static void bent_mesh(void **state)
+static void a_bent_mesh_is_rendered(void **state)
 {
     const struct view views[] = {view_at(-0.3, -0.3, 0.1), view_at(0.3, -0.3, -0.1), view_at(0, 0, 0.15),
                                  view_at(-0.3, 0.3, -0.1), view_at(0.3, 0.3, 0.05)};
@@ -163,8 +163,10 @@ static bool fast = false, offline = true;
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        BOTH(one_view),           BOTH(two_views),       BOTH(collinear_centers), BOTH(walk_straight_ahead),
-        BOTH(coincident_centers), BOTH(identical_views), BOTH(plane_of_views),    BOTH(bent_mesh),
+        BOTH(a_single_view_is_rendered),       BOTH(two_views_are_rendered),
+        BOTH(collinear_centers_are_rendered),  BOTH(a_straight_move_into_the_scene_is_rendered),
+        BOTH(coincident_centers_are_rendered), BOTH(identical_views_are_rendered),
+        BOTH(a_plane_of_views_is_rendered),    BOTH(a_bent_mesh_is_rendered),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-/* layer_visibility.c - of a view's surfaces in a pixel the two nearest are kept, whatever the order of its segments. */
+/* layer_visibility.c - the two nearest surfaces of a view in each pixel, in any drawing order. */
 #include "common/layers/layer_visibility.h"
 
 #include <setjmp.h>
@@ -13,7 +13,7 @@
 
 enum { W = 96, H = 16, SURFACES = 5 };
 
-static const double depths[SURFACES] = {6, 4.5, 3, 2.2, 8}; /* of strips of the view, from left to right, matted */
+static const double depths[SURFACES] = {6, 4.5, 3, 2.2, 8}; /* of matted strips of the view, from left to right */
 static const double edges[SURFACES - 1] = {30.5, 44.25, 60.5, 78.75};
 
 static struct view view_at(double x)
@@ -29,11 +29,11 @@ struct strips {
     struct layered_depth depth;
     struct layer_view packed;
     struct drawn_view drawn;
-    struct tile_visibility seen;
-    struct view_samples shown, behind;
+    struct tile_visibility visibility;
+    struct view_samples front, behind;
 };
 
-/* Strip k is the segment order[k] + 1, of colour (k, 1, 0). slope: of its 1/z along x. */
+/* Strip k is segment order[k] + 1, of colour (k, 1, 0). slope: of 1/z along x. */
 static void strips_make(struct strips *s, const int *order, double slope)
 {
     struct err err = ERR_INIT;
@@ -78,19 +78,20 @@ static void draw(struct strips *s, const struct view *novel)
     assert_int_equal(drawn_view_prepare(&s->drawn, &s->depth, &s->packed, &view, novel, &err), ST_OK);
     assert_int_equal(s->drawn.tile_count, 1);
     for (int i = 0; i < TILE_PIXELS; i++) {
-        s->seen.inverse_front[i] = s->seen.inverse_behind[i] = 0;
-        s->seen.front[i] = s->seen.behind[i] = VISIBLE_NONE;
+        s->visibility.inverse_front[i] = s->visibility.inverse_behind[i] = 0;
+        s->visibility.front[i] = s->visibility.behind[i] = VISIBLE_NONE;
     }
     for (int y = 0; y < TILE_HEIGHT; y++) {
-        s->seen.first[y] = 0;
-        s->seen.last[y] = W - 1;
+        s->visibility.first[y] = 0;
+        s->visibility.last[y] = W - 1;
     }
-    visibility_draw(&s->seen, &s->drawn, &s->packed, 0);
+    visibility_draw(&s->visibility, &s->drawn, &s->packed, 0);
     for (size_t i = 0; i < TILE_PIXELS; i += 8)
-        if (i % TILE_STRIDE < W) visibility_sample8(&s->shown, &s->behind, &s->seen, &s->drawn, &s->packed, i, 0, 0);
+        if (i % TILE_STRIDE < W)
+            visibility_sample8(&s->front, &s->behind, &s->visibility, &s->drawn, &s->packed, i, 0, 0);
 }
 
-/* Of strip k at pixel centre x of the novel camera: 1/z if it has coverage there, else 0; *part its alpha. */
+/* 1/z of strip k at pixel centre x of the novel camera, 0 where it has no coverage; *part: its alpha. */
 static double strip_at(const struct strips *s, int segment, int k, const struct view *novel, double x, double *part)
 {
     const double *p = s->depth.segments[segment].plane, b = novel->center.x;
@@ -122,11 +123,11 @@ static void check_two_nearest(double slope)
             draw(&s, &novel);
             for (int x = 2; x < W - 2; x++) {
                 const size_t i = 7 * TILE_STRIDE + (size_t)x;
-                double near = 0, next = 0, near_part = 0, next_part = 0, least = 1;
+                double near = 0, next = 0, near_part = 0, next_part = 0, min_part = 1;
                 for (int k = 0; k < SURFACES; k++) {
                     double part;
                     const double inverse = strip_at(&s, orders[o][k], k, &novel, x + 0.5, &part);
-                    if (part > 0) least = fmin(least, part);
+                    if (part > 0) min_part = fmin(min_part, part);
                     if (!(part > 0)) continue;
                     if (inverse > near) {
                         next = near;
@@ -138,15 +139,14 @@ static void check_two_nearest(double slope)
                         next_part = part;
                     }
                 }
-                if (least < 1e-3) continue; /* single precision may see it or not */
-                if (!(fabs((double)s.seen.inverse_front[i] - near) <= 1e-5 * near))
-                    fail_msg("1/z %g at %d from %g, wanted %g", (double)s.seen.inverse_front[i], x, novel.center.x,
-                             near);
+                if (min_part < 1e-3) continue; /* too close for single precision */
+                if (!(fabs((double)s.visibility.inverse_front[i] - near) <= 1e-5 * near))
+                    fail_msg("1/z %g at %d from %g, wanted %g", (double)s.visibility.inverse_front[i], x,
+                             novel.center.x, near);
                 if (!(near > 0)) continue;
-                const float *c = s.shown.rgba[i], *b = s.behind.rgba[i];
-                assert_true(fabs(1 / (double)s.shown.z[i] - near) <= 1e-5 * near);
-                assert_true(fabs((double)c[3] - near_part) <
-                            2e-3); /* saturating: alpha of the front, then what is left */
+                const float *c = s.front.rgba[i], *b = s.behind.rgba[i];
+                assert_true(fabs(1 / (double)s.front.z[i] - near) <= 1e-5 * near);
+                assert_true(fabs((double)c[3] - near_part) < 2e-3); /* saturating: the front's alpha, then the rest */
                 covered++;
                 if (near_part > 0.999) {
                     assert_true(s.behind.alpha[i] < 2e-3f);
@@ -157,8 +157,8 @@ static void check_two_nearest(double slope)
                     continue;
                 }
                 rims++;
-                assert_true(fabs((double)s.seen.inverse_behind[i] - next) <= 1e-5 * next);
-                assert_true(fabs(1 / (double)s.behind.z[i] - next) <= 1e-5 * next); /* no mean of the two */
+                assert_true(fabs((double)s.visibility.inverse_behind[i] - next) <= 1e-5 * next);
+                assert_true(fabs(1 / (double)s.behind.z[i] - next) <= 1e-5 * next); /* not a mean of the two */
                 assert_true(fabs((double)s.behind.alpha[i] - fmin(next_part, 1 - near_part)) < 2e-3);
                 assert_true(fabs((double)b[1] - (double)b[3]) < 1e-3 && b[3] <= 1 - c[3] + 1e-5f);
             }
@@ -167,7 +167,7 @@ static void check_two_nearest(double slope)
     }
     if (!(rims > 200 && covered > 5000)) fail_msg("%d rims, %d covered", rims, covered);
 
-    /* and bit for bit the same pictures */
+    /* all orders give the same bits */
     for (int step = -8; step <= 8; step++) {
         const struct view novel = view_at(0.0837 * step + 0.031);
         strips_make(&first, orders[0], slope);
@@ -177,9 +177,10 @@ static void check_two_nearest(double slope)
             draw(&s, &novel);
             for (int y = 0; y < H; y++) {
                 const size_t row = (size_t)y * TILE_STRIDE;
-                assert_memory_equal(s.seen.inverse_front + row, first.seen.inverse_front + row, W * sizeof(float));
-                assert_memory_equal(s.shown.rgba + row, first.shown.rgba + row, W * sizeof s.shown.rgba[0]);
-                assert_memory_equal(s.shown.z + row, first.shown.z + row, W * sizeof(float));
+                assert_memory_equal(s.visibility.inverse_front + row, first.visibility.inverse_front + row,
+                                    W * sizeof(float));
+                assert_memory_equal(s.front.rgba + row, first.front.rgba + row, W * sizeof s.front.rgba[0]);
+                assert_memory_equal(s.front.z + row, first.front.z + row, W * sizeof(float));
                 assert_memory_equal(s.behind.alpha + row, first.behind.alpha + row, W * sizeof(float));
             }
             strips_release(&s);
@@ -188,21 +189,21 @@ static void check_two_nearest(double slope)
     }
 }
 
-static void two_surfaces_are_kept_whatever_the_order(void **state)
+static void the_two_nearest_surfaces_are_kept_in_any_drawing_order(void **state)
 {
     (void)state;
     check_two_nearest(0);
 }
 
-static void slanted_segments_are_sorted_pixel_by_pixel(void **state)
+static void slanted_segments_are_sorted_per_pixel(void **state)
 {
     (void)state;
-    check_two_nearest(0.004); /* a strip's depth changes by a tenth across it */
+    check_two_nearest(0.004); /* depth changes by a tenth across a strip */
     check_two_nearest(-0.004);
 }
 
-/* Composited, what is left of a pixel goes to what is behind, and its depth is that of what has more of it. */
-static void fragments_saturate_front_to_back(void **state)
+/* The surface behind gets the alpha that the front leaves; the depth is that of the surface with more alpha. */
+static void surfaces_are_composited_front_to_back_with_saturating_alpha(void **state)
 {
     (void)state;
     struct strips s;
@@ -214,17 +215,17 @@ static void fragments_saturate_front_to_back(void **state)
         static struct view_samples both;
         for (size_t x = 0; x < W; x++) {
             const size_t i = 7 * TILE_STRIDE + x;
-            if (x % 8 == 0) visibility_sample8(&both, NULL, &s.seen, &s.drawn, &s.packed, i, 0, 0);
+            if (x % 8 == 0) visibility_sample8(&both, NULL, &s.visibility, &s.drawn, &s.packed, i, 0, 0);
         }
         for (size_t x = 0; x < W; x++) {
             const size_t i = 7 * TILE_STRIDE + x;
-            const float front = s.shown.alpha[i], rest = s.behind.alpha[i];
+            const float front = s.front.alpha[i], rest = s.behind.alpha[i];
             if (!(rest > 0) || front > 0.999f) continue;
             rims++;
             assert_true(fabsf(both.alpha[i] - front - rest) < 1e-5f && both.alpha[i] <= 1 + 1e-5f);
             for (int k = 0; k < 4; k++)
-                assert_true(fabsf(both.rgba[i][k] - s.shown.rgba[i][k] - s.behind.rgba[i][k]) < 1e-4f);
-            assert_true(both.z[i] == (rest > front ? s.behind.z[i] : s.shown.z[i]));
+                assert_true(fabsf(both.rgba[i][k] - s.front.rgba[i][k] - s.behind.rgba[i][k]) < 1e-4f);
+            assert_true(both.z[i] == (rest > front ? s.behind.z[i] : s.front.z[i]));
         }
     }
     assert_true(rims > 30);
@@ -234,9 +235,9 @@ static void fragments_saturate_front_to_back(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(two_surfaces_are_kept_whatever_the_order),
-        cmocka_unit_test(slanted_segments_are_sorted_pixel_by_pixel),
-        cmocka_unit_test(fragments_saturate_front_to_back),
+        cmocka_unit_test(the_two_nearest_surfaces_are_kept_in_any_drawing_order),
+        cmocka_unit_test(slanted_segments_are_sorted_per_pixel),
+        cmocka_unit_test(surfaces_are_composited_front_to_back_with_saturating_alpha),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,4 @@
-/* layered_depth.c - layered depth maps: round trip of the pair TXT and EXR, every way in which it may be broken, and that a
- * failed write spoils nothing. */
+/* layered_depth.c - layered depth maps: round trip of TXT and EXR, invalid files, and failed writes. */
 #include "tests/unit/scratch.h"
 
 #include <math.h>
@@ -104,7 +103,7 @@ static void a_depth_map_round_trips(void **state)
     }
 }
 
-static void a_view_without_segments_is_a_depth_map_too(void **state)
+static void a_view_without_segments_is_a_valid_depth_map(void **state)
 {
     struct layered_depth d, back;
     struct err err = ERR_INIT;
@@ -119,8 +118,8 @@ static void a_view_without_segments_is_a_depth_map_too(void **state)
     layered_depth_release(&d);
 }
 
-/* Of four pixels two have a segment, of which one is sure. */
-static void what_is_not_known_is_in_the_attributes(void **state)
+/* Two of four pixels have a segment; one of them has confidence. */
+static void shares_of_unknown_pixels_are_attributes(void **state)
 {
     struct layered_depth d;
     struct exr_image im = {0};
@@ -146,7 +145,7 @@ static void what_is_not_known_is_in_the_attributes(void **state)
     layered_depth_release(&d);
 }
 
-static void release_may_be_called_again(void **state)
+static void release_may_be_called_twice(void **state)
 {
     struct layered_depth d = sample(2, 2);
     struct err err = ERR_INIT;
@@ -214,19 +213,19 @@ static void provenance_and_camera_are_in_both_files(void **state)
     assert_non_null(memmem(bytes, size, "segment_depth", 13));
     assert_non_null(memmem(bytes, size, "views/IMG_1.exr", 15));
 
-    assert_ok(layered_depth_read(&back, scratch_path("p.exr"), &err), err); /* comments are none of its business */
+    assert_ok(layered_depth_read(&back, scratch_path("p.exr"), &err), err); /* the reader skips comments */
     layered_depth_release(&back);
     layered_depth_release(&d);
     provenance_release(&prov);
 }
 
-/* --------------------------------------------------------------------------------------------------- broken lists */
+/* --------------------------------------------------------------------------------------------------- invalid lists */
 
 #define HEAD "remodel-segments 1\nsize 2 1\n"
 #define ONE  "1 2 0.5 0 0.25 0.01 1\n"
 #define TWO  "2 0 0.5 0 0.25 0.01 0\n"
 
-static void a_broken_list_is_named_with_its_line(void **state)
+static void errors_of_a_list_name_the_line(void **state)
 {
     static const struct {
         const char *text, *words;
@@ -287,14 +286,14 @@ static void a_broken_list_is_named_with_its_line(void **state)
     err = (struct err)ERR_INIT;
     assert_int_equal(layered_depth_read_segments(&d, path, &err), ST_DATA);
     assert_err(err, ST_DATA, "d.txt:4: found");
-    /* the last line may lack its end, however short its numbers */
+    /* the last line may lack its line end, even if its numbers are short */
     err = (struct err)ERR_INIT;
     assert_ok(layered_depth_read_segments(&d, scratch_write("d.txt", HEAD "segments 1\n1 0 0 0 0 0 0"), &err), err);
     assert_int_equal(d.segment_count, 1);
     layered_depth_release(&d);
 }
 
-/* ------------------------------------------------------------------------------------------------- broken pictures */
+/* ------------------------------------------------------------------------------------------------- invalid pictures */
 
 static char *file_bytes(const char *path, size_t *size)
 {
@@ -319,7 +318,7 @@ static void assert_refused(const char *path, enum status status, const char *wor
     assert_true(is_empty(&d));
 }
 
-static void half_a_pair_is_refused(void **state)
+static void a_missing_file_of_the_pair_is_an_error(void **state)
 {
     struct layered_depth d = sample(WIDTH, HEIGHT);
     struct err err = ERR_INIT;
@@ -331,29 +330,29 @@ static void half_a_pair_is_refused(void **state)
     assert_ok(layered_depth_write(&d, &view, scratch_path("half.exr"), NULL, &err), err);
     assert_int_equal(unlink(scratch_path("half.txt")), 0);
     assert_refused(scratch_path("half.exr"), ST_IO, "half.txt");
-    assert_refused(scratch_path("half.txt"), ST_USAGE, "half.txt: a depth map is a file whose name ends in .exr");
-    assert_refused(".exr", ST_USAGE, ".exr: a depth map is a file");
+    assert_refused(scratch_path("half.txt"), ST_USAGE, "half.txt: the name of a depth map must end in .exr");
+    assert_refused(".exr", ST_USAGE, ".exr: the name of a depth map must end");
     assert_int_equal(layered_depth_write(&d, &view, scratch_path("half.png"), NULL, &err), ST_USAGE);
-    assert_err(err, ST_USAGE, "half.png: a depth map is a file whose name ends in .exr");
+    assert_err(err, ST_USAGE, "half.png: the name of a depth map must end in .exr");
     layered_depth_release(&d);
 }
 
-static void lists_of_another_size_are_refused(void **state)
+static void lists_of_another_size_are_rejected(void **state)
 {
     struct layered_depth d = sample(WIDTH, HEIGHT);
     struct err err = ERR_INIT;
     (void)state;
     assert_ok(layered_depth_write(&d, &view, scratch_path("size.exr"), NULL, &err), err);
     scratch_write("size.txt", "remodel-segments 1\nsize 37 21\nsegments 0\n");
-    assert_refused(scratch_path("size.exr"), ST_DATA, "size.exr has 21 x 37 pixels but ");
-    assert_refused(scratch_path("size.exr"), ST_DATA, "size.txt speaks of 37 x 21; make the depth map again.");
-    /* and of fewer segments than the picture's */
+    assert_refused(scratch_path("size.exr"), ST_DATA, "size.exr has 21 x 37 pixels, but ");
+    assert_refused(scratch_path("size.exr"), ST_DATA, "size.txt says 37 x 21; make the depth map again.");
+    /* and with fewer segments than the picture's ids */
     scratch_write("size.txt", "remodel-segments 1\nsize 21 37\nsegments 1\n1 2 0.5 0 0.25 0.01 1\n");
     assert_refused(scratch_path("size.exr"), ST_DATA, "pixel (2, 0) of interior has segment 2,");
     layered_depth_release(&d);
 }
 
-static void samples_out_of_range_are_named_with_their_pixel(void **state)
+static void errors_of_samples_name_the_pixel(void **state)
 {
     (void)state;
     for (int boundary = 0; boundary < 2; boundary++)
@@ -377,7 +376,7 @@ static void samples_out_of_range_are_named_with_their_pixel(void **state)
         }
 }
 
-static void channels_that_are_missing_or_of_another_type(void **state)
+static void missing_channels_and_channels_of_another_type_are_rejected(void **state)
 {
     static const struct {
         const char *name;
@@ -410,7 +409,7 @@ static void channels_that_are_missing_or_of_another_type(void **state)
     }
 }
 
-static void a_picture_cut_anywhere_is_refused(void **state)
+static void a_truncated_picture_is_rejected(void **state)
 {
     struct layered_depth d = sample(WIDTH, HEIGHT);
     struct err err = ERR_INIT;
@@ -426,9 +425,9 @@ static void a_picture_cut_anywhere_is_refused(void **state)
     layered_depth_release(&d);
 }
 
-/* ------------------------------------------------------------------------------------------------------- ids alone */
+/* ------------------------------------------------------------------------------------------------------- ids only */
 
-static void ids_alone_are_read(void **state)
+static void ids_can_be_read_without_the_other_channels(void **state)
 {
     static const int sizes[][2] = {{WIDTH, HEIGHT}, {1, 1}, {300, 1}};
     (void)state;
@@ -459,24 +458,24 @@ static void assert_ids_refused(const char *path, enum status status, const char 
     assert_true(is_empty(&d));
 }
 
-static void broken_ids_are_refused(void **state)
+static void invalid_ids_are_rejected(void **state)
 {
     struct layered_depth d = sample(WIDTH, HEIGHT);
     struct err err = ERR_INIT;
     size_t size;
     (void)state;
     assert_ids_refused(scratch_path("no-ids.exr"), ST_IO, "no-ids.txt");
-    assert_ids_refused(scratch_path("no-ids.txt"), ST_USAGE,
-                       "no-ids.txt: a depth map is a file whose name ends in .exr");
+    assert_ids_refused(scratch_path("no-ids.txt"), ST_USAGE, "no-ids.txt: the name of a depth map must end in .exr");
 
     assert_ok(layered_depth_write(&d, &view, scratch_path("ids.exr"), NULL, &err), err);
     assert_int_equal(unlink(scratch_path("ids.exr")), 0);
     assert_ids_refused(scratch_path("ids.exr"), ST_IO, "ids.exr");
 
-    /* a list of another size, or of fewer segments than the picture's */
+    /* a list of another size, or with fewer segments than the picture's ids */
     assert_ok(layered_depth_write(&d, &view, scratch_path("ids.exr"), NULL, &err), err);
     scratch_write("ids.txt", "remodel-segments 1\nsize 37 21\nsegments 0\n");
-    assert_ids_refused(scratch_path("ids.exr"), ST_DATA, "ids.exr does not hold the 37 x 21 ids that ");
+    assert_ids_refused(scratch_path("ids.exr"), ST_DATA,
+                       "ids.exr: interior.id is not the plane of 37 x 21 integers that ");
     scratch_write("ids.txt", "remodel-segments 1\nsize 21 37\nsegments 1\n1 2 0.5 0 0.25 0.01 1\n");
     assert_ids_refused(scratch_path("ids.exr"), ST_DATA, "ids.exr: pixel (2, 0) has segment 2, wanted one up to 1;");
     scratch_write("ids.txt", "remodel-segments 1\nsize 21 37\nsegments oops\n");
@@ -486,7 +485,7 @@ static void broken_ids_are_refused(void **state)
     assert_ok(layered_depth_write(&d, &view, scratch_path("ids.exr"), NULL, &err), err);
     assert_ids_refused(scratch_path("ids.exr"), ST_DATA, "pixel (11, 30) has segment 4294967295, wanted one up to 5;");
     d.interior.id[30 * WIDTH + 11] = 1;
-    d.boundary.id[0] = 77; /* nobody asked for these */
+    d.boundary.id[0] = 77; /* not read */
     assert_ok(layered_depth_write(&d, &view, scratch_path("ids.exr"), NULL, &err), err);
     struct layered_depth back = {0};
     assert_ok(layered_depth_read_ids(&back, scratch_path("ids.exr"), &err), err);
@@ -501,7 +500,7 @@ static void broken_ids_are_refused(void **state)
     layered_depth_release(&d);
 }
 
-static void ids_that_are_missing_or_no_integers(void **state)
+static void missing_or_non_integer_ids_are_rejected(void **state)
 {
     (void)state;
     for (int k = 0; k < 2; k++) {
@@ -512,14 +511,14 @@ static void ids_that_are_missing_or_no_integers(void **state)
         assert_ok(exr_write(&im, scratch_path("half-ids.exr"), NULL, &err), err);
         scratch_write("half-ids.txt", HEAD "segments 0\n");
         assert_ids_refused(scratch_path("half-ids.exr"), ST_DATA,
-                           k ? "no channel interior.id" : "does not hold the 2 x 1 ids");
+                           k ? "no channel interior.id" : "not the plane of 2 x 1 integers");
         exr_image_release(&im);
     }
 }
 
-/* ------------------------------------------------------------------------------------------------------ failed writes */
+/* ---------------------------------------------------------------------------------------------------- failed writes */
 
-static void a_refused_depth_leaves_no_picture_and_keeps_the_old_one(void **state)
+static void a_failed_write_keeps_the_old_files(void **state)
 {
     struct layered_depth d = sample(WIDTH, HEIGHT);
     struct err err = ERR_INIT;
@@ -544,7 +543,7 @@ static void a_refused_depth_leaves_no_picture_and_keeps_the_old_one(void **state
     layered_depth_release(&d);
 }
 
-static void segments_that_could_not_be_read_are_not_written(void **state)
+static void invalid_segments_are_not_written(void **state)
 {
     (void)state;
     for (int what = 0; what < 4; what++) {
@@ -561,21 +560,21 @@ static void segments_that_could_not_be_read_are_not_written(void **state)
     }
 }
 
-/* In a child: files may grow to `limit` bytes. */
+/* Writes in a child process whose files are limited to `limit` bytes. */
 static int write_with_little_room(void *ctx)
 {
     const rlim_t limit = *(const rlim_t *)ctx;
     struct layered_depth d = sample(WIDTH, HEIGHT);
     struct err err = ERR_INIT;
     signal(SIGXFSZ, SIG_IGN);
-    parallel_set_threads(1); /* the parent's threads are not in the child */
+    parallel_set_threads(1); /* the child has none of the parent's threads */
     if (setrlimit(RLIMIT_FSIZE, &(struct rlimit){limit, limit})) return 98;
     enum status st = layered_depth_write(&d, &view, scratch_path("full/a.exr"), NULL, &err);
     layered_depth_release(&d);
     return st == err.status ? (int)st : 97;
 }
 
-static void a_full_disk_leaves_nothing_half_written(void **state)
+static void a_full_disk_leaves_no_partial_file(void **state)
 {
     struct layered_depth d = sample(WIDTH, HEIGHT);
     struct err err = ERR_INIT;
@@ -588,7 +587,7 @@ static void a_full_disk_leaves_nothing_half_written(void **state)
     rlim_t limits[] = {10, text_size - 1, text_size, size - 1};
     for (int i = 0; i < 4; i++) {
         assert_int_equal(child_wait(child_start(write_with_little_room, &limits[i])), ST_IO);
-        /* the list whole or not at all, never the picture, nor what was begun */
+        /* the list is complete or missing; no picture, no temporary file */
         assert_int_equal(count_entries(scratch_path("full")), i < 2 ? 0 : 1);
         if (i >= 2) assert_int_equal(access(scratch_path("full/a.txt"), F_OK), 0);
     }
@@ -599,23 +598,23 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_depth_map_round_trips),
-        cmocka_unit_test(a_view_without_segments_is_a_depth_map_too),
-        cmocka_unit_test(what_is_not_known_is_in_the_attributes),
-        cmocka_unit_test(release_may_be_called_again),
+        cmocka_unit_test(a_view_without_segments_is_a_valid_depth_map),
+        cmocka_unit_test(shares_of_unknown_pixels_are_attributes),
+        cmocka_unit_test(release_may_be_called_twice),
         cmocka_unit_test(the_same_depth_gives_the_same_bytes),
         cmocka_unit_test(provenance_and_camera_are_in_both_files),
-        cmocka_unit_test(a_broken_list_is_named_with_its_line),
-        cmocka_unit_test(half_a_pair_is_refused),
-        cmocka_unit_test(lists_of_another_size_are_refused),
-        cmocka_unit_test(samples_out_of_range_are_named_with_their_pixel),
-        cmocka_unit_test(channels_that_are_missing_or_of_another_type),
-        cmocka_unit_test(a_picture_cut_anywhere_is_refused),
-        cmocka_unit_test(ids_alone_are_read),
-        cmocka_unit_test(broken_ids_are_refused),
-        cmocka_unit_test(ids_that_are_missing_or_no_integers),
-        cmocka_unit_test(a_refused_depth_leaves_no_picture_and_keeps_the_old_one),
-        cmocka_unit_test(segments_that_could_not_be_read_are_not_written),
-        cmocka_unit_test(a_full_disk_leaves_nothing_half_written),
+        cmocka_unit_test(errors_of_a_list_name_the_line),
+        cmocka_unit_test(a_missing_file_of_the_pair_is_an_error),
+        cmocka_unit_test(lists_of_another_size_are_rejected),
+        cmocka_unit_test(errors_of_samples_name_the_pixel),
+        cmocka_unit_test(missing_channels_and_channels_of_another_type_are_rejected),
+        cmocka_unit_test(a_truncated_picture_is_rejected),
+        cmocka_unit_test(ids_can_be_read_without_the_other_channels),
+        cmocka_unit_test(invalid_ids_are_rejected),
+        cmocka_unit_test(missing_or_non_integer_ids_are_rejected),
+        cmocka_unit_test(a_failed_write_keeps_the_old_files),
+        cmocka_unit_test(invalid_segments_are_not_written),
+        cmocka_unit_test(a_full_disk_leaves_no_partial_file),
     };
     return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }

@@ -1,10 +1,10 @@
-/* scene_points.c - the middles of segments: where they are, how much they count, which are central. */
+/* scene_points.c - centroids of segments: position, weight, and which are central. */
 #include "common/layers/scene_points.h"
 
 #include "tests/unit/scratch.h"
 #include "tests/unit/wall_scene.h"
 
-static void points_lie_on_what_is_seen(void **state)
+static void points_are_on_the_surfaces(void **state)
 {
     (void)state;
     struct wall_scene f = {0};
@@ -31,8 +31,8 @@ static void points_lie_on_what_is_seen(void **state)
         box += at_box && q->view == 0 ? q->weight : 0;
         central += q->central;
     }
-    for (int i = 0; i < 3; i++) assert_float_equal(weight[i], W * H, 1e-9); /* each pixel counts once */
-    /* the box is 2.4 by 3 at depth 6 */
+    for (int i = 0; i < 3; i++) assert_float_equal(weight[i], W * H, 1e-9); /* every pixel counts once */
+    /* the box is 2.4 x 3 at depth 6 */
     assert_float_equal(box / ((2.4 / 6 * W) * (3.0 / 6 * W)), 1, 0.03);
     assert_true(central > p.count / 6 && central < p.count / 2);
     scene_points_release(&p);
@@ -42,7 +42,7 @@ static void points_lie_on_what_is_seen(void **state)
     layer_scene_release(&f.scene);
 }
 
-static void a_scene_without_depth_is_told(void **state)
+static void a_scene_without_depth_is_an_error(void **state)
 {
     (void)state;
     struct wall_scene f = {0};
@@ -59,8 +59,8 @@ static void a_scene_without_depth_is_told(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(points_lie_on_what_is_seen),
-        cmocka_unit_test(a_scene_without_depth_is_told),
+        cmocka_unit_test(points_are_on_the_surfaces),
+        cmocka_unit_test(a_scene_without_depth_is_an_error),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

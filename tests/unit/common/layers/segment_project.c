@@ -1,4 +1,4 @@
-/* segment_project.c - planes in a novel camera against rays that meet them, in double precision. */
+/* segment_project.c - projected planes compared with ray intersections, in double precision. */
 #include "common/layers/segment_project.h"
 
 #include <setjmp.h>
@@ -24,9 +24,9 @@ static struct view view_make(double focal, struct vec3 center, struct quat turn)
 
 static const struct quat straight = {1, 0, 0, 0};
 
-/* Where the ray through a pixel of the novel camera meets the plane: depth in the novel camera, place in the view and
- * depth there. The plane is n . P = 1 in the view's camera coordinates. False: nowhere before both cameras, or from its
- * other side. */
+/* Intersection of the ray through a pixel of the novel camera with the plane n . P = 1 in the view's camera
+ * coordinates: depth in the novel camera, and pixel and depth in the view. False: not in front of both cameras, or from
+ * behind. */
 static bool meet(const struct view *view, const struct view *novel, const double p[3], double x, double y,
                  double *depth, double *u, double *v, double *z)
 {
@@ -39,12 +39,13 @@ static bool meet(const struct view *view, const struct view *novel, const double
     *z = at.z;
     *u = view->fx * at.x / at.z + view->cx;
     *v = view->fy * at.y / at.z + view->cy;
-    return isfinite(*depth) && *depth > 0 && at.z > 0 && vec3_dot(n, origin) < 1 - 1e-5; /* not from behind */
+    return isfinite(*depth) && *depth > 0 && at.z > 0 && vec3_dot(n, origin) < 1 - 1e-5; /* front side */
 }
 
 static double row_at(const double row[3], double x, double y) { return row[0] * x + row[1] * y + row[2]; }
 
-/* All pixels of the novel camera: what the projection says of them, and that it leaves none out. How many see it. */
+/* Checks the projection in all pixels of the novel camera, and that it covers all. Returns the number of visible
+ * pixels. */
 static int check(const struct view *view, const struct view *novel, const struct depth_segment *segment,
                  const struct segment_shape *shape)
 {
@@ -60,7 +61,7 @@ static int check(const struct view *view, const struct view *novel, const struct
             double depth, u, v, z;
             if (!meet(view, novel, segment->plane, x + 0.5, y + 0.5, &depth, &u, &v, &z)) continue;
             if (!(u > shape->x0 - 0.5 && u < shape->x1 + 1.5 && v > shape->y0 - 0.5 && v < shape->y1 + 1.5)) continue;
-            if (z * center > 5e5 || depth < 2e-6 * z) continue; /* beyond what is drawn of a plane */
+            if (z * center > 5e5 || depth < 2e-6 * z) continue; /* outside of the clipped range */
             assert_true(seen);
             assert_true(x >= s.x0 && x <= s.x1 && y >= s.y0 && y <= s.y1);
             const double w = row_at(s.from_target[2], x + 0.5, y + 0.5);
@@ -113,7 +114,7 @@ static bool projects(const struct view *view, const struct view *novel, struct d
     return segment_project(&p, &relation, &s, &part);
 }
 
-static void segments_behind_the_camera_are_not_seen(void **state)
+static void segments_behind_the_camera_are_not_visible(void **state)
 {
     (void)state;
     const struct view view = view_make(35, vec3_make(0, 0, 0), straight);
@@ -126,7 +127,7 @@ static void segments_behind_the_camera_are_not_seen(void **state)
     assert_false(projects(&view, &turned, segment_make(4, 0.01, -0.01)));
 }
 
-static void planes_through_the_camera_and_edge_on_are_not_seen(void **state)
+static void planes_through_the_camera_are_not_visible(void **state)
 {
     (void)state;
     const struct view view = view_make(35, vec3_make(0, 0, 0), straight);
@@ -136,12 +137,12 @@ static void planes_through_the_camera_and_edge_on_are_not_seen(void **state)
     const struct depth_segment slanted = segment_make(4, 0.01, 0.004);
     const struct view on = view_make(35, view_unproject(&view, 18, 14.5, 4), straight);
     assert_false(projects(&view, &on, slanted));
-    /* on either side of it, close by: seen from the view's side alone, and as rays say */
+    /* close to it on both sides: visible only from the view's side, in agreement with rays */
     struct view before = view_make(35, view_unproject(&view, 18, 14.5, 4 - 1e-3), straight);
     struct view behind = view_make(35, view_unproject(&view, 18, 14.5, 4 + 1e-3), straight);
     assert_true(check(&view, &before, &slanted, &part) > 0);
     assert_false(projects(&view, &behind, slanted));
-    /* a plane that all of the view's rays but grazing ones miss: no depth in the view */
+    /* a plane that the view's rays miss, except grazing ones: no depth in the view */
     assert_false(projects(&view, &view, (struct depth_segment){.id = 1, .plane = {0, 0, 0}}));
     assert_false(projects(&view, &view, (struct depth_segment){.id = 1, .plane = {0, 0, -0.25}}));
     assert_false(projects(&view, &view, (struct depth_segment){.id = 1, .plane = {NAN, 0, 0.25}}));
@@ -165,7 +166,7 @@ static void far_and_near_depths_are_exact(void **state)
     }
 }
 
-static void a_segment_without_texels_is_not_seen(void **state)
+static void a_segment_without_texels_is_not_visible(void **state)
 {
     (void)state;
     const struct view view = view_make(35, vec3_make(0, 0, 0), straight);
@@ -181,10 +182,10 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(random_planes_agree_with_rays),
-        cmocka_unit_test(segments_behind_the_camera_are_not_seen),
-        cmocka_unit_test(planes_through_the_camera_and_edge_on_are_not_seen),
+        cmocka_unit_test(segments_behind_the_camera_are_not_visible),
+        cmocka_unit_test(planes_through_the_camera_are_not_visible),
         cmocka_unit_test(far_and_near_depths_are_exact),
-        cmocka_unit_test(a_segment_without_texels_is_not_seen),
+        cmocka_unit_test(a_segment_without_texels_is_not_visible),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,5 @@
-/* soft_z.c - the soft z-buffer against numbers worked out by hand, its vectors against the formulas, and the merging of
- * all views' fragments. */
+/* soft_z.c - the soft z-buffer compared with hand-computed numbers, vector with scalar code, and merging of
+ * fragments. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -15,10 +15,10 @@
 
 #define assert_near(a, b, tolerance) assert_true(fabs((double)(a) - (double)(b)) <= (tolerance))
 
-static void soft_z_weights_are_equation_3_1(void **state)
+static void weights_follow_equation_3_1(void **state)
 {
     (void)state;
-    /* rho 10, gamma 1: one up to 1, a half in the middle (5), nothing from 9 on */
+    /* rho 10, gamma 1: 1 up to dz 1, 1/2 in the middle (5), 0 from 9 on */
     assert_near(soft_z_weight(0, 1, 10), 1, 0);
     assert_near(soft_z_weight(1, 1, 10), 1, 0);
     assert_near(soft_z_weight(3, 1, 10), 0.5 * (1 + sqrt(0.5)), 1e-6); /* cos(pi / 4) */
@@ -26,24 +26,24 @@ static void soft_z_weights_are_equation_3_1(void **state)
     assert_near(soft_z_weight(7, 1, 10), 0.5 * (1 - sqrt(0.5)), 1e-6);
     assert_near(soft_z_weight(9, 1, 10), 0, 1e-6);
     assert_near(soft_z_weight(9.01f, 1, 10), 0, 0);
-    assert_near(soft_z_weight(0, 0, 0), 1, 0); /* no width: the nearest alone */
+    assert_near(soft_z_weight(0, 0, 0), 1, 0); /* width 0: only the nearest */
     assert_near(soft_z_weight(1e-6f, 0, 0), 0, 0);
 }
 
-static void soft_z_width_is_of_two_uncertainties(void **state)
+static void the_width_combines_two_uncertainties(void **state)
 {
     (void)state;
     const struct soft_z own = {3, 100}, thesis = {0, 100};
-    /* 0.03 * 10 = 0.3 and 0.02 * 20 = 0.4 make 0.5; half weight 3 of them away */
+    /* 0.03 * 10 = 0.3 and 0.02 * 20 = 0.4 give 0.5; the weight is 1/2 at 3 times that */
     assert_near(soft_z_rho(&own, 10, 0.03f, 20, 0.02f), 3.0, 1e-5);
     assert_near(soft_z_rho(&thesis, 10, 0.03f, 20, 0.02f), 100, 0);
 }
 
-struct sample { /* what one view shows in a pixel */
+struct sample { /* of one view in a pixel */
     float rgba[4], z, sigma, blend;
 };
 
-/* Eight pixels that are all the same, and come out the same. */
+/* Blends eight equal pixels and checks that the results are equal. */
 static void blend(const struct soft_z *s, const struct sample *samples, int count, float rgba[4], float *z)
 {
     struct soft_z_samples8 views[3];
@@ -67,7 +67,7 @@ static void blend(const struct soft_z *s, const struct sample *samples, int coun
     *z = out_z[0];
 }
 
-static void soft_z_blends_by_weight_alpha_and_depth(void **state)
+static void samples_are_blended_by_weight_alpha_and_depth(void **state)
 {
     (void)state;
     const struct soft_z soft = {0, 10};
@@ -82,21 +82,21 @@ static void soft_z_blends_by_weight_alpha_and_depth(void **state)
     assert_near(rgba[3], 1, 0);
     assert_near(z, 17.5 / 1.5, 1e-5);
 
-    /* alpha weighs, premultiplied: blends 1/2 and 1/2, alphas 1 and 0.6, one depth */
+    /* weighted by alpha, premultiplied: blends 1/2 and 1/2, alphas 1 and 0.6, one depth */
     const struct sample thin[] = {{{1, 0, 0, 1}, 10, 0.01f, 0.5f}, {{0, 0.6f, 0, 0.6f}, 10, 0.01f, 0.5f}};
     blend(&soft, thin, 2, rgba, &z);
     assert_near(rgba[0], 1 / 1.6, 1e-6);
     assert_near(rgba[1], 0.6 / 1.6, 1e-6);
     assert_near(z, 10, 1e-6);
 
-    /* hidden: far behind counts nothing, in colour and depth */
+    /* hidden: a sample far behind counts neither in colour nor in depth */
     const struct sample far[] = {{{1, 0, 0, 1}, 10, 0.01f, 0.1f}, {{0, 1, 0, 1}, 30, 0.01f, 0.9f}};
     blend(&soft, far, 2, rgba, &z);
     assert_near(rgba[0], 1, 1e-6);
     assert_near(z, 10, 1e-6);
 }
 
-static void a_view_that_enters_does_so_without_a_jump(void **state)
+static void a_view_enters_without_a_jump(void **state)
 {
     (void)state;
     const struct soft_z soft = {3, 10};
@@ -106,7 +106,7 @@ static void a_view_that_enters_does_so_without_a_jump(void **state)
         const float part = 0.001f * (float)i;
         const struct sample s[] = {{{1, 0, 0, 1}, 5, 0.01f, part}, {{0, 1, 0, 1}, 8, 0.01f, 1 - part}};
         blend(&soft, s, 2, rgba, &z);
-        if (i) assert_true(fabsf(rgba[0] - before) < 0.35f); /* no more than the last steps of hiding the far one */
+        if (i) assert_true(fabsf(rgba[0] - before) < 0.35f); /* the largest step is the last of hiding the far sample */
         if (i == 0) assert_near(rgba[0], 0, 0);
         if (i == 1) assert_true(rgba[0] < 0.01f && z > 7.9f);
         if (i >= 50) assert_near(rgba[0], 1, 1e-5);
@@ -114,9 +114,9 @@ static void a_view_that_enters_does_so_without_a_jump(void **state)
     }
 }
 
-/* ---------------------------------------------------------------------------------------------- eight at a time */
+/* ---------------------------------------------------------------------------------------------- vector code */
 
-static void eight_presences_are_the_scalar_ones(void **state)
+static void vector_presences_equal_scalar_ones(void **state)
 {
     (void)state;
     const struct rng rng = rng_make(1, "test", "presence");
@@ -128,11 +128,11 @@ static void eight_presences_are_the_scalar_ones(void **state)
         }
         _mm256_storeu_ps(p, soft_z_presence8(_mm256_loadu_ps(blend), _mm256_loadu_ps(alpha)));
         for (int k = 0; k < 8; k++)
-            assert_near(p[k], fminf(1, blend[k] / SOFT_Z_BLEND_WHOLE) * fminf(1, alpha[k] / SOFT_Z_ALPHA_WHOLE), 1e-5);
+            assert_near(p[k], fminf(1, blend[k] / SOFT_Z_FULL_BLEND) * fminf(1, alpha[k] / SOFT_Z_FULL_ALPHA), 1e-5);
     }
 }
 
-static void eight_cosines_are_the_scalar_ones(void **state)
+static void vector_cosines_equal_scalar_ones(void **state)
 {
     (void)state;
     for (int i = 0; i <= 10000; i++) {
@@ -143,16 +143,16 @@ static void eight_cosines_are_the_scalar_ones(void **state)
     }
 }
 
-static float known(float sigma) { return fmaxf(sigma, SOFT_Z_SIGMA_LEAST); }
+static float known(float sigma) { return fmaxf(sigma, SOFT_Z_MIN_SIGMA); }
 
-static void eight_weights_behind_are_the_scalar_ones(void **state)
+static void vector_weights_equal_scalar_ones(void **state)
 {
     (void)state;
     static const struct soft_z softs[] = {{8, 5}, {0, 5}, {0.01f, 1}, {0, 0}, {100, 1e6f}};
     const struct rng rng = rng_make(2, "test", "behind");
     for (uint64_t i = 0; i < 4000; i++) {
         const struct soft_z *soft = &softs[i % 5];
-        float z[8], sigma[8], unsure[8], z_c[8], sigma_c[8], unsure_c[8], p_c[8], w[8], told[8];
+        float z[8], sigma[8], unsure[8], z_c[8], sigma_c[8], unsure_c[8], p_c[8], w[8], weight[8];
         for (uint64_t k = 0; k < 8; k++) {
             const double scale = pow(10, 12 * rng_uniform(&rng, i, 8 * k) - 6);
             z[k] = (float)(scale * (1 + rng_uniform(&rng, i, 8 * k + 1)));
@@ -164,13 +164,13 @@ static void eight_weights_behind_are_the_scalar_ones(void **state)
             p_c[k] = (float)rng_uniform(&rng, i, 8 * k + 5);
             w[k] = (float)rng_uniform(&rng, i, 8 * k + 6);
         }
-        _mm256_storeu_ps(told, soft_z_behind8(soft, _mm256_loadu_ps(w), _mm256_loadu_ps(z), _mm256_loadu_ps(unsure),
-                                              _mm256_loadu_ps(z_c), _mm256_loadu_ps(unsure_c), _mm256_loadu_ps(p_c)));
+        _mm256_storeu_ps(weight, soft_z_behind8(soft, _mm256_loadu_ps(w), _mm256_loadu_ps(z), _mm256_loadu_ps(unsure),
+                                                _mm256_loadu_ps(z_c), _mm256_loadu_ps(unsure_c), _mm256_loadu_ps(p_c)));
         for (int k = 0; k < 8; k++) {
             const float rho = soft_z_rho(soft, z[k], sigma[k], z_c[k], sigma_c[k]);
             const float hidden = p_c[k] * (1 - soft_z_weight(z[k] - z_c[k], 0.1f * rho, rho));
-            assert_near(told[k], fminf(w[k], 1 - hidden), 1e-5);
-            assert_true(told[k] >= 0);
+            assert_near(weight[k], fminf(w[k], 1 - hidden), 1e-5);
+            assert_true(weight[k] >= 0);
         }
     }
 }
@@ -188,7 +188,7 @@ static struct soft_z_fragment fragment(float red, float green, float blue, float
 
 static const struct soft_z narrow = {3, 10};
 
-static void one_fragment_is_itself(void **state)
+static void a_single_fragment_is_unchanged(void **state)
 {
     (void)state;
     static const float alphas[] = {1, 0.5f, 0.03f, 1e-6f, 1e-20f};
@@ -221,7 +221,7 @@ static void agreeing_views_are_averaged_as_square_roots(void **state)
     assert_near(z, 6.01, 1e-5); /* without blending weights */
 }
 
-static void one_wrong_near_view_does_not_show_against_many(void **state)
+static void a_single_wrong_near_view_is_outvoted(void **state)
 {
     (void)state;
     for (int wrong = 0; wrong < 8; wrong++) {
@@ -232,27 +232,27 @@ static void one_wrong_near_view_does_not_show_against_many(void **state)
             f[i].blend = 0.125f;
         }
         soft_z_merge(&narrow, f, 8, rgba, &z);
-        /* standings (1 / 8)^2 and (7 / 7.3)^2: of the square roots 1 in 400 parts is red */
+        /* supports (1 / 8)^2 and (7 / 7.3)^2: 1/400 of the square roots is red */
         assert_true(rgba[0] < 1e-5f && rgba[2] > 0.99f);
         assert_near(z, 6, 0.01);
-        f[wrong].z = 9; /* behind, it is hidden wholly */
+        f[wrong].z = 9; /* behind, it is hidden completely */
         soft_z_merge(&narrow, f, 8, rgba, &z);
         assert_true(rgba[0] < 1e-5f && rgba[2] > 0.99f);
         assert_near(z, 6, 1e-5);
     }
 }
 
-/* A straight silhouette through the pixel: `part` of it red and near, the rest blue and far, for `views` views. */
+/* A silhouette through the pixel, in `views` views: `part` of it red and near, the rest blue and far. */
 static void rim(struct soft_z_fragment *f, int views, float part)
 {
     for (int i = 0; i < views; i++) {
         f[2 * i] = fragment(1, 0, 0, part, 3);
         f[2 * i + 1] = fragment(0, 0, 1, 1 - part, 6);
-        f[2 * i + 1].before = part;
+        f[2 * i + 1].front_alpha = part;
     }
 }
 
-static void a_rim_that_views_agree_on_keeps_its_coverage(void **state)
+static void a_silhouette_that_views_agree_on_keeps_its_coverage(void **state)
 {
     (void)state;
     static const float parts[] = {0.5f, 0.1f, 0.25f, 0.75f, 0.99f};
@@ -270,15 +270,15 @@ static void a_rim_that_views_agree_on_keeps_its_coverage(void **state)
         }
 }
 
-static void tiny_alphas_make_a_whole_finite_pixel(void **state)
+static void tiny_alphas_give_a_finite_opaque_pixel(void **state)
 {
     (void)state;
     static const float alphas[] = {1e-3f, 1e-6f, 1e-12f, 1e-20f};
     for (int i = 0; i < 4; i++) {
-        struct soft_z_fragment f[SOFT_Z_MERGE_MOST];
+        struct soft_z_fragment f[SOFT_Z_MAX_FRAGMENTS];
         float rgba[4], z;
-        for (int k = 0; k < SOFT_Z_MERGE_MOST; k++) f[k] = fragment(0.5f, 0.25f, 0, alphas[i], 3 + (float)(k % 3));
-        soft_z_merge(&narrow, f, SOFT_Z_MERGE_MOST, rgba, &z);
+        for (int k = 0; k < SOFT_Z_MAX_FRAGMENTS; k++) f[k] = fragment(0.5f, 0.25f, 0, alphas[i], 3 + (float)(k % 3));
+        soft_z_merge(&narrow, f, SOFT_Z_MAX_FRAGMENTS, rgba, &z);
         assert_near(rgba[0], 0.5, 1e-4);
         assert_near(rgba[1], 0.25, 1e-4);
         assert_near(rgba[3], 1, 0);
@@ -294,8 +294,8 @@ static void the_order_of_views_does_not_matter(void **state)
                                    fragment(0, 1, 1, 0.7f, 2.5f), fragment(1, 0, 1, 0.3f, 6.1f)};
     float rgba[4], z, other[4], other_z;
 
-    f[1].before = 0.5f;
-    f[5].before = 0.7f;
+    f[1].front_alpha = 0.5f;
+    f[5].front_alpha = 0.7f;
     soft_z_merge(&narrow, f, 6, rgba, &z);
     const struct soft_z_fragment turned[6] = {f[4], f[5], f[3], f[2], f[0], f[1]};
     soft_z_merge(&narrow, turned, 6, other, &other_z);
@@ -303,7 +303,7 @@ static void the_order_of_views_does_not_matter(void **state)
     assert_near(z, other_z, 1e-5);
 }
 
-static void the_thesis_range_merges_all_of_the_scene(void **state)
+static void with_width_0_the_whole_depth_range_is_one_surface(void **state)
 {
     (void)state;
     const struct soft_z thesis = {0, 100};
@@ -319,20 +319,20 @@ static void the_thesis_range_merges_all_of_the_scene(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(soft_z_weights_are_equation_3_1),
-        cmocka_unit_test(soft_z_width_is_of_two_uncertainties),
-        cmocka_unit_test(soft_z_blends_by_weight_alpha_and_depth),
-        cmocka_unit_test(a_view_that_enters_does_so_without_a_jump),
-        cmocka_unit_test(eight_presences_are_the_scalar_ones),
-        cmocka_unit_test(eight_cosines_are_the_scalar_ones),
-        cmocka_unit_test(eight_weights_behind_are_the_scalar_ones),
-        cmocka_unit_test(one_fragment_is_itself),
+        cmocka_unit_test(weights_follow_equation_3_1),
+        cmocka_unit_test(the_width_combines_two_uncertainties),
+        cmocka_unit_test(samples_are_blended_by_weight_alpha_and_depth),
+        cmocka_unit_test(a_view_enters_without_a_jump),
+        cmocka_unit_test(vector_presences_equal_scalar_ones),
+        cmocka_unit_test(vector_cosines_equal_scalar_ones),
+        cmocka_unit_test(vector_weights_equal_scalar_ones),
+        cmocka_unit_test(a_single_fragment_is_unchanged),
         cmocka_unit_test(agreeing_views_are_averaged_as_square_roots),
-        cmocka_unit_test(one_wrong_near_view_does_not_show_against_many),
-        cmocka_unit_test(a_rim_that_views_agree_on_keeps_its_coverage),
-        cmocka_unit_test(tiny_alphas_make_a_whole_finite_pixel),
+        cmocka_unit_test(a_single_wrong_near_view_is_outvoted),
+        cmocka_unit_test(a_silhouette_that_views_agree_on_keeps_its_coverage),
+        cmocka_unit_test(tiny_alphas_give_a_finite_opaque_pixel),
         cmocka_unit_test(the_order_of_views_does_not_matter),
-        cmocka_unit_test(the_thesis_range_merges_all_of_the_scene),
+        cmocka_unit_test(with_width_0_the_whole_depth_range_is_one_surface),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,5 @@
-/* view_mesh.c - weights of rays: what a camera at a view, between views, before and behind them must get, and the
- * hard cases. */
+/* view_mesh.c - blending weights of cameras at a view, between views, in front of and behind them, and degenerate
+ * sets. */
 #include "common/layers/view_mesh.h"
 
 #include <setjmp.h>
@@ -46,7 +46,8 @@ static void build(struct fixture *f)
     assert_int_equal(view_mesh_build(&f->mesh, &f->set, &err), ST_OK);
 }
 
-/* Every row's weights are finite, >= 0, sum to one, ascend in view; returns their mean, a number a view. */
+/* Checks that every pixel's weights are finite, >= 0, sum to 1, and are sorted by view. mean: mean weight of each
+ * view. */
 static void mean_weights(const struct fixture *f, const struct view *novel, double mean[MOST])
 {
     struct view_mesh_camera mc;
@@ -90,7 +91,7 @@ static double pixel_weight(const struct fixture *f, const struct view *novel, in
     return weight_of(&row[x], view);
 }
 
-/* Moving the camera by a millionth of the spacing may not move the mean weights by more than `slope` times that. */
+/* Moving the camera by a millionth of the spacing must not change the mean weights by more than `slope` times that. */
 static void check_continuous(const struct fixture *f, struct vec3 center, struct vec3 target, double slope)
 {
     double a[MOST], b[MOST], eps = 1e-5;
@@ -109,7 +110,7 @@ static void check_continuous(const struct fixture *f, struct vec3 center, struct
     }
 }
 
-/* Cameras on, near, behind, in front of and beside the mesh, looking at the scene, along the mesh and away. */
+/* Cameras in, near, behind, in front of and beside the mesh, looking at the scene, along the mesh and away. */
 static void check_everywhere(const struct fixture *f, double slope)
 {
     struct rng rng = rng_make(7, "test", "view_mesh");
@@ -153,7 +154,7 @@ static void grid(struct fixture *f, int columns, int rows, double bump)
     }
 }
 
-static void one_view(void **state)
+static void a_single_view_has_weight_one(void **state)
 {
     (void)state;
     struct fixture f = {0};
@@ -166,7 +167,7 @@ static void one_view(void **state)
     view_mesh_release(&f.mesh);
 }
 
-static void two_views(void **state)
+static void weights_of_two_views_are_linear_between_them(void **state)
 {
     (void)state;
     struct fixture f = {0};
@@ -184,7 +185,7 @@ static void two_views(void **state)
     view_mesh_release(&f.mesh);
 }
 
-static void collinear_centers(void **state)
+static void collinear_centers_work(void **state)
 {
     (void)state;
     struct fixture f = {0};
@@ -212,7 +213,7 @@ static void rail_weights_follow_the_position_along_it(void **state)
     view_mesh_release(&f.mesh);
 }
 
-static void walk_straight_ahead(void **state)
+static void a_straight_move_into_the_scene_works(void **state)
 {
     (void)state;
     struct fixture f = {0};
@@ -229,7 +230,7 @@ static void walk_straight_ahead(void **state)
     view_mesh_release(&f.mesh);
 }
 
-static void coincident_centers(void **state)
+static void coincident_centers_work(void **state)
 {
     (void)state;
     struct fixture f = {0};
@@ -241,7 +242,7 @@ static void coincident_centers(void **state)
     build(&f);
     assert_int_equal(f.mesh.rank, 0);
     assert_true(f.mesh.spacing == 0);
-    for (int i = 0; i < 9; i++) { /* the middle of each view's picture is that view's above all */
+    for (int i = 0; i < 9; i++) { /* in the middle of its picture each view has the greatest weight */
         double best = pixel_weight(&f, &f.views[i], W / 2, H / 2, i);
         for (int j = 0; j < 9; j++)
             if (j != i) assert_true(best > 1.5 * pixel_weight(&f, &f.views[i], W / 2, H / 2, j));
@@ -253,7 +254,7 @@ static void coincident_centers(void **state)
     view_mesh_release(&f.mesh);
 }
 
-static void identical_views(void **state)
+static void identical_views_work(void **state)
 {
     (void)state;
     struct fixture f = {0};
@@ -263,11 +264,11 @@ static void identical_views(void **state)
     view_mesh_release(&f.mesh);
 }
 
-static void photos_that_became_several_views(void **state)
+static void photos_split_into_several_views_work(void **state)
 {
     (void)state;
     struct fixture f = {0};
-    for (int i = 0; i < 12; i++) { /* four wide photos in a row of two, three views each */
+    for (int i = 0; i < 12; i++) { /* four wide photos in rows of two, three views each */
         int photo = i / 3;
         double angle = 0.8 * (i % 3 - 1);
         struct vec3 c = vec3_make(photo % 2, photo / 2, 0);
@@ -279,7 +280,7 @@ static void photos_that_became_several_views(void **state)
     assert_true(f.mesh.shared);
     double mean[MOST];
     for (int i = 0; i < 12; i++) {
-        mean_weights(&f, &f.views[i], mean); /* that photo alone, and above all the view that looks there */
+        mean_weights(&f, &f.views[i], mean); /* only that photo's views, mostly the one that looks there */
         int first = i / 3 * 3;
         assert_float_equal(mean[first] + mean[first + 1] + mean[first + 2], 1, 1e-4);
         assert_true(mean[i] > 0.6);
@@ -288,7 +289,7 @@ static void photos_that_became_several_views(void **state)
     view_mesh_release(&f.mesh);
 }
 
-static void plane_of_views(void **state)
+static void a_plane_of_views_works(void **state)
 {
     (void)state;
     struct fixture f = {0};
@@ -304,7 +305,7 @@ static void plane_of_views(void **state)
     view_mesh_release(&f.mesh);
 }
 
-static void bent_mesh(void **state)
+static void a_bent_mesh_works(void **state)
 {
     (void)state;
     struct fixture f = {0};
@@ -315,7 +316,7 @@ static void bent_mesh(void **state)
     view_mesh_release(&f.mesh);
 }
 
-static void orbit_faces_the_scene(void **state)
+static void the_mesh_of_an_orbit_faces_the_scene(void **state)
 {
     (void)state;
     struct fixture f = {0};
@@ -331,7 +332,7 @@ static void orbit_faces_the_scene(void **state)
     view_mesh_release(&f.mesh);
 }
 
-static void wide_and_low_set_of_views(void **state)
+static void a_wide_and_low_set_of_views_works(void **state)
 {
     (void)state;
     struct fixture f = {0};
@@ -343,7 +344,7 @@ static void wide_and_low_set_of_views(void **state)
     view_mesh_release(&f.mesh);
 }
 
-static void in_front_and_behind_by_hand(void **state)
+static void weights_in_front_and_behind_are_as_computed_by_hand(void **state)
 {
     (void)state;
     struct fixture f = {0};
@@ -352,13 +353,13 @@ static void in_front_and_behind_by_hand(void **state)
     add(&f, 0, 3, 0);
     build(&f);
     struct vec3 centroid = f.mesh.centroid;
-    /* all three views where the ray meets the centroid, from either side */
+    /* all three views where the ray meets the centroid, from both sides */
     for (int side = -1; side <= 1; side += 2) {
         struct view novel = look(vec3_make(centroid.x, centroid.y, 2.5 * side), vec3_make(centroid.x, centroid.y, 20));
         novel.cx += 0.5; /* the pixel's centre on the axis */
         novel.cy += 0.5;
         for (int v = 0; v < 3; v++) assert_float_equal(pixel_weight(&f, &novel, W / 2, H / 2, v), 1 / 3.0, 1e-5);
-        /* behind, a ray to the right passes the mesh on the right; in front it comes from the left */
+        /* behind the mesh, a ray to the right crosses it on the right; in front, it comes from the left */
         double right = pixel_weight(&f, &novel, W / 2 + 10, H / 2, 1);
         assert_true(side < 0 ? right > 0.4 : right < 0.3);
     }
@@ -381,7 +382,7 @@ static void crossing_the_mesh_is_smooth(void **state)
     view_mesh_release(&f.mesh);
 }
 
-static void neighbouring_pixels_are_close(void **state)
+static void neighbouring_pixels_have_similar_weights(void **state)
 {
     (void)state;
     struct fixture f = {0};
@@ -402,7 +403,7 @@ static void neighbouring_pixels_are_close(void **state)
     view_mesh_release(&f.mesh);
 }
 
-static void rows_wider_than_a_chunk(void **state)
+static void rows_may_be_wider_than_a_chunk(void **state)
 {
     (void)state;
     struct fixture f = {0};
@@ -435,22 +436,22 @@ static void no_views_is_an_error(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(one_view),
-        cmocka_unit_test(two_views),
-        cmocka_unit_test(collinear_centers),
+        cmocka_unit_test(a_single_view_has_weight_one),
+        cmocka_unit_test(weights_of_two_views_are_linear_between_them),
+        cmocka_unit_test(collinear_centers_work),
         cmocka_unit_test(rail_weights_follow_the_position_along_it),
-        cmocka_unit_test(walk_straight_ahead),
-        cmocka_unit_test(coincident_centers),
-        cmocka_unit_test(identical_views),
-        cmocka_unit_test(photos_that_became_several_views),
-        cmocka_unit_test(plane_of_views),
-        cmocka_unit_test(bent_mesh),
-        cmocka_unit_test(orbit_faces_the_scene),
-        cmocka_unit_test(wide_and_low_set_of_views),
-        cmocka_unit_test(in_front_and_behind_by_hand),
+        cmocka_unit_test(a_straight_move_into_the_scene_works),
+        cmocka_unit_test(coincident_centers_work),
+        cmocka_unit_test(identical_views_work),
+        cmocka_unit_test(photos_split_into_several_views_work),
+        cmocka_unit_test(a_plane_of_views_works),
+        cmocka_unit_test(a_bent_mesh_works),
+        cmocka_unit_test(the_mesh_of_an_orbit_faces_the_scene),
+        cmocka_unit_test(a_wide_and_low_set_of_views_works),
+        cmocka_unit_test(weights_in_front_and_behind_are_as_computed_by_hand),
         cmocka_unit_test(crossing_the_mesh_is_smooth),
-        cmocka_unit_test(neighbouring_pixels_are_close),
-        cmocka_unit_test(rows_wider_than_a_chunk),
+        cmocka_unit_test(neighbouring_pixels_have_similar_weights),
+        cmocka_unit_test(rows_may_be_wider_than_a_chunk),
         cmocka_unit_test(no_views_is_an_error),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
