@@ -49,7 +49,7 @@ static enum status write_choice(const struct film_effect *list, int count, const
 static enum status choose(const char *subjects, const char *which, const char *out, const struct choice_params *params,
                           struct provenance *prov, struct err *err)
 {
-    struct film_effect list[FILM_EFFECTS_MOST];
+    struct film_effect list[MAX_FILM_EFFECTS];
     struct subject_list found = {0};
     int count = 0;
 
@@ -71,7 +71,7 @@ static enum status choose(const char *subjects, const char *which, const char *o
 }
 
 /* Before anything is known of a scene: whether some scene could have the effect. */
-static enum status look_at_name(const char *name, struct err *err)
+static enum status check_name(const char *name, struct err *err)
 {
     const struct scene_subjects any = {2, 2 * DOF_DEPTH_RATIO};
     struct film_effect e;
@@ -98,7 +98,7 @@ int main(int argc, char **argv)
     struct err err = ERR_INIT;
     if (cli_parse(argc, argv, "choose_effects", opts, &prov, &err) == CLI_RUN) {
         if (!subjects && !out)
-            look_at_name(which, &err);
+            check_name(which, &err);
         else if (!subjects || !out || (strcmp(which, "auto") && strcmp(which, "all")))
             err_set(&err, ST_USAGE,
                     "--effect %s: wanted auto or all, with --subjects and --out; or a name, without them.", which);

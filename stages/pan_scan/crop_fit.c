@@ -20,7 +20,7 @@
 #define CONVERGED  1e-7 /* frame px */
 #define BISECTIONS 200
 
-struct similarity {
+struct scale_shift {
     double scale, t[2];
 };
 
@@ -35,7 +35,7 @@ static void point_of(const struct crop_task *task, const struct crop_pair *pair,
     q[0] = pair->u, q[1] = pair->v;
 }
 
-static double miss(const struct crop_task *task, const struct crop_pair *pair, const struct similarity *s)
+static double miss(const struct crop_task *task, const struct crop_pair *pair, const struct scale_shift *s)
 {
     double p[2], q[2];
     point_of(task, pair, p, q);
@@ -43,7 +43,7 @@ static double miss(const struct crop_task *task, const struct crop_pair *pair, c
 }
 
 /* s NULL: all weigh the same. */
-static struct moments measure(const struct crop_task *task, const struct similarity *s)
+static struct moments measure(const struct crop_task *task, const struct scale_shift *s)
 {
     struct moments m = {0};
     for (int pass = 0; pass < 2; pass++) {
@@ -83,9 +83,9 @@ static double shift_and_slope(const struct moments *m, const struct bounds *b, d
 
 static double least_scale(const struct bounds *b) { return fmax(b->frame[0] / b->photo[0], b->frame[1] / b->photo[1]); }
 
-static struct similarity solve_within(const struct moments *m, const struct bounds *b)
+static struct scale_shift solve_within(const struct moments *m, const struct bounds *b)
 {
-    struct similarity s = {.scale = least_scale(b)};
+    struct scale_shift s = {.scale = least_scale(b)};
     double low = s.scale, high = 2 * s.scale;
     if (shift_and_slope(m, b, low, s.t) < 0) {
         while (shift_and_slope(m, b, high, s.t) < 0 && high < 1e9 * s.scale) low = high, high *= 2;
@@ -103,22 +103,22 @@ static struct similarity solve_within(const struct moments *m, const struct boun
     return s;
 }
 
-static struct similarity solve_free(const struct moments *m, const struct bounds *b)
+static struct scale_shift solve_free(const struct moments *m, const struct bounds *b)
 {
-    struct similarity s = {.scale = m->product / m->spread_p};
+    struct scale_shift s = {.scale = m->product / m->spread_p};
     if (!(s.scale > 0)) s.scale = least_scale(b); /* points that swap places: nothing a crop can do */
     for (int k = 0; k < 2; k++) s.t[k] = m->q[k] - s.scale * m->p[k];
     return s;
 }
 
-typedef struct similarity solve_fn(const struct moments *m, const struct bounds *b);
+typedef struct scale_shift solve_fn(const struct moments *m, const struct bounds *b);
 
-static struct similarity fit(const struct crop_task *task, const struct bounds *b, solve_fn *solve)
+static struct scale_shift fit(const struct crop_task *task, const struct bounds *b, solve_fn *solve)
 {
     struct moments m = measure(task, NULL);
-    struct similarity s = solve(&m, b);
+    struct scale_shift s = solve(&m, b);
     for (int i = 0; i < ROUNDS; i++) {
-        const struct similarity last = s;
+        const struct scale_shift last = s;
         m = measure(task, &s);
         s = solve(&m, b);
         double moved = fabs(s.scale - last.scale) * fmax(b->photo[0], b->photo[1]);
@@ -128,7 +128,7 @@ static struct similarity fit(const struct crop_task *task, const struct bounds *
     return s;
 }
 
-static double beyond_photo(const struct similarity *s, const struct bounds *b)
+static double beyond_photo(const struct scale_shift *s, const struct bounds *b)
 {
     double most = 0;
     for (int k = 0; k < 2; k++) most = fmax(most, fmax(s->t[k], b->frame[k] - s->t[k] - s->scale * b->photo[k]));
@@ -142,16 +142,16 @@ enum status crop_fit(struct crop_result *result, const struct crop_task *task, s
     const struct bounds b = {{task->photo_width / task->step_x, task->photo_height / task->step_y},
                              {task->frame_width, task->frame_height}};
     *result = (struct crop_result){0};
-    if (task->count < CROP_LEAST)
+    if (task->count < MIN_CROP_POINTS)
         return err_set(err, ST_DATA, "%zu points tell where a crop should be; wanted at least %d.", task->count,
-                       CROP_LEAST);
+                       MIN_CROP_POINTS);
     const struct moments m = measure(task, NULL);
     if (!(m.spread_p > 1e-12 * m.weight * b.photo[0] * b.photo[0]))
         return err_set(err, ST_DATA, "the %zu points that tell where a crop should be are all at one place.",
                        task->count);
-    const struct similarity best = fit(task, &b, solve_free);
+    const struct scale_shift best = fit(task, &b, solve_free);
     result->beyond = beyond_photo(&best, &b);
-    const struct similarity s = result->beyond > 0 ? fit(task, &b, solve_within) : best;
+    const struct scale_shift s = result->beyond > 0 ? fit(task, &b, solve_within) : best;
     struct crop *c = &result->crop;
     c->width = fmin(task->frame_width / s.scale * task->step_x, task->photo_width);
     c->height = fmin(task->frame_height / s.scale * task->step_y, task->photo_height);

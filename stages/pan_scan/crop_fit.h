@@ -32,9 +32,9 @@ struct crop_result {
     double beyond; /* frame px by which the best crop of all would leave the photograph; 0: it is the one */
 };
 
-/* The crop within the photograph that misses the points least. ST_DATA: fewer than CROP_LEAST points, or all at one
+/* The crop within the photograph that misses the points least. ST_DATA: fewer than MIN_CROP_POINTS points, or all at one
  * place. */
-enum { CROP_LEAST = 4 };
+enum { MIN_CROP_POINTS = 4 };
 enum status crop_fit(struct crop_result *result, const struct crop_task *task, struct err *err);
 
 /* Where the frame that shows this crop has a point of the photograph. */

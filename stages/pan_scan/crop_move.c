@@ -95,7 +95,7 @@ static void add_point(struct crop_move *m, double x, double y, struct vec3 world
         const double swap = width;
         width = height, height = swap;
     }
-    m->points[m->point_count++] = (struct seen_point){x, y, world};
+    m->points[m->point_count++] = (struct photo_point){x, y, world};
 }
 
 static enum status points_of_depth(struct crop_move *m, const struct view *view, const struct layered_depth *depth,
@@ -149,7 +149,7 @@ static enum status make_task(struct crop_task *task, const struct crop_move *m, 
                                .tolerance = m->tolerance,
                                .pairs = pairs};
     if (!pairs) return err_nomem(err, "points", m->point_count * sizeof *pairs);
-    for (int inside = 1; inside >= 0 && task->count < CROP_LEAST; inside--) {
+    for (int inside = 1; inside >= 0 && task->count < MIN_CROP_POINTS; inside--) {
         task->count = 0;
         for (size_t i = 0; i < m->point_count; i++) {
             double u = -1, v = -1;
@@ -188,7 +188,7 @@ enum status crop_move_misfit(double *misfit, const struct crop_move *m, int fram
 
 /* The angle between two cameras, and how much their focal lengths differ: what moves in a picture without moving the
  * camera. */
-static double turn_between(const struct view *a, const struct view *b)
+static double rotation_and_zoom(const struct view *a, const struct view *b)
 {
     const struct mat3 r = mat3_multiply(a->cam_from_world, mat3_transpose(b->cam_from_world));
     const struct vec3 twice_sine = {r.m[2][1] - r.m[1][2], r.m[0][2] - r.m[2][0], r.m[1][0] - r.m[0][1]};
@@ -209,7 +209,7 @@ static enum status find_parts(struct crop_move *m, struct err *err)
         for (size_t i = 1; i < n; i++) {
             const struct view *a = &p->frames[i - 1].camera, *b = &p->frames[i].camera;
             m->parts[i] = m->parts[i - 1] + (by == 0   ? vec3_length(vec3_sub(b->center, a->center)) / scale
-                                             : by == 1 ? turn_between(a, b)
+                                             : by == 1 ? rotation_and_zoom(a, b)
                                                        : 1);
         }
         if (m->parts[n - 1] > STILL * (double)n) break;

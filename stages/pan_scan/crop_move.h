@@ -10,7 +10,7 @@
 #include "common/layers/layered_depth.h"
 #include "stages/pan_scan/crop_fit.h"
 
-struct seen_point { /* as the view shows it */
+struct photo_point { /* as the view shows it */
     double x, y;    /* in its picture */
     struct vec3 world;
 };
@@ -19,7 +19,7 @@ struct crop_move {
     const struct camera_path *path;
     struct view view;          /* turned; its name is the set's */
     int quarters;              /* by which it was turned, clockwise */
-    struct seen_point *points; /* owned; places in the turned picture */
+    struct photo_point *points; /* owned; places in the turned picture */
     size_t point_count;
     double tolerance; /* frame px */
     double *parts;    /* owned; a frame: how far along the move it is, 0 .. 1 */

@@ -9,18 +9,18 @@
 
 enum { CHUNK = 8 };
 
-struct taps {             /* of the pixels along an axis */
+struct filter_taps {             /* of the pixels along an axis */
     int room;             /* taps a pixel, at most */
     int *first, *count;   /* a pixel */
     int *near_end, *near; /* the samples within one unit: [near, near_end) of the taps */
     float *weights;       /* room a pixel */
 };
 
-static void taps_release(struct taps *t)
+static void taps_release(struct filter_taps *t)
 {
     free(t->first);
     free(t->weights);
-    *t = (struct taps){0};
+    *t = (struct filter_taps){0};
 }
 
 static double kernel(double x)
@@ -30,11 +30,11 @@ static double kernel(double x)
 }
 
 /* Pixels [0, pixels) of a part of an axis that begins at `from` and is `length` samples long. */
-static enum status taps_make(struct taps *t, int pixels, double from, double length, struct err *err)
+static enum status taps_make(struct filter_taps *t, int pixels, double from, double length, struct err *err)
 {
     const double step = length / pixels, stretch = fmax(1, step);
     const size_t n = (size_t)pixels;
-    *t = (struct taps){.room = (int)ceil(4 * stretch) + 1};
+    *t = (struct filter_taps){.room = (int)ceil(4 * stretch) + 1};
     t->first = malloc(4 * n * sizeof *t->first);
     t->weights = malloc(n * (size_t)t->room * sizeof *t->weights);
     if (!t->first || !t->weights) {
@@ -61,7 +61,7 @@ static enum status taps_make(struct taps *t, int pixels, double from, double len
 static int within(int x, int count) { return x < 0 ? 0 : x >= count ? count - 1 : x; }
 
 /* One pixel: samples `stride` floats apart, number i of the axis at base + i stride, `samples` of them. */
-static void filter(float *out, const struct taps *t, int pixel, const float *base, size_t stride, int samples,
+static void filter(float *out, const struct filter_taps *t, int pixel, const float *base, size_t stride, int samples,
                    int channels)
 {
     const float *weight = t->weights + (size_t)pixel * (size_t)t->room;
@@ -83,7 +83,7 @@ struct passes {
     struct image strip; /* rows [top, top + strip.height) of the picture, as wide as the frame */
     int top;
     struct image *out;
-    struct taps across, down;
+    struct filter_taps across, down;
 };
 
 static void along_rows(void *ctx, size_t begin, size_t end, int thread)

@@ -70,7 +70,7 @@ static enum status read_depth(struct layered_depth *depth, const struct job *job
 }
 
 /* Each end is told of by the process that makes its frame. */
-static void tell(const struct crop_move *m, const bool *wanted)
+static void log_summary(const struct crop_move *m, const bool *wanted)
 {
     static const char *const names[] = {"first", "last"};
     const int frames[] = {0, m->path->frame_count - 1};
@@ -161,7 +161,7 @@ static enum status pan_scan(const struct job *job, struct provenance *prov, stru
     if (!st) st = crop_move_init(&move, &set, view_idx, job->depth ? &depth : NULL, &path, job->params.tolerance, err);
     if (!st) st = view_image_read(&picture, job->views, &set.views[view_idx], err);
     if (!st) st = crop_move_turn(&picture, &move, err);
-    if (!st) tell(&move, wanted);
+    if (!st) log_summary(&move, wanted);
     if (!st) st = make_frames(&move, wanted, &picture, job->out, prov, err);
     free(wanted);
     image_release(&picture);

@@ -76,7 +76,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
                             {.name = "b", .width = 48, .height = 64, .fx = 70, .fy = 60, .cx = 24, .cy = 32}};
     const struct camera_set set = {.views = views, .view_count = 2};
     const struct vec3 ups[] = {{0, -1, 0}, {1, 0, 0}};
-    struct film film = {.name = "f", .set = &set, .ups = ups, .lens = views[0], .up = {0, -1, 0}, .moves = folder};
+    struct film_settings film = {.name = "f", .set = &set, .ups = ups, .lens = views[0], .up = {0, -1, 0}, .moves = folder};
     struct camera_path path = {0};
     struct effects layers = {0};
     struct err err = ERR_INIT;

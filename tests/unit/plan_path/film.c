@@ -12,7 +12,7 @@ static struct view views[] = {
 static const struct vec3 ups[] = {{0, -1, 0}, {0, -1, 0}, {-1, 0, 0}};
 static struct camera_set set = {.views = views, .view_count = 3};
 
-static struct film a_film(void)
+static struct film_settings a_film(void)
 {
     for (int i = 0; i < 3; i++) {
         views[i].cam_from_world = (struct mat3){{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
@@ -20,7 +20,7 @@ static struct film a_film(void)
         views[i].center = vec3_make(i, 0, 0);
         views[i].translation = vec3_scale(mat3_apply(views[i].cam_from_world, views[i].center), -1);
     }
-    return (struct film){.name = "f",
+    return (struct film_settings){.name = "f",
                          .set = &set,
                          .ups = ups,
                          .fps = 10,
@@ -33,7 +33,7 @@ static struct film a_film(void)
 static void make(struct camera_path *path, struct effects *layers, const char *text)
 {
     struct err err = ERR_INIT;
-    const struct film film = a_film();
+    const struct film_settings film = a_film();
     *path = (struct camera_path){0};
     *layers = (struct effects){0};
     if (keyframed_path(path, layers, scratch_write("f.txt", text), &film, NULL, &err)) fail_msg("%s", err.text);
@@ -128,7 +128,7 @@ static void write_move(const char *effect, int width)
 {
     struct camera_path p;
     struct err err = ERR_INIT;
-    const struct film film = a_film();
+    const struct film_settings film = a_film();
     assert_ok(camera_path_init(&p, effect, 10, 11, &err), err);
     for (int i = 0; i < 11; i++) {
         const char *name = p.frames[i].camera.name;
@@ -268,7 +268,7 @@ static void what_is_wrong_is_told(void **state)
         struct camera_path p = {0};
         struct effects e = {0};
         struct err err = ERR_INIT;
-        const struct film film = a_film();
+        const struct film_settings film = a_film();
         const char *path = scratch_write("bad.txt", bad[i].text);
         const enum status st = keyframed_path(&p, &e, path, &film, NULL, &err);
         if (!st) fail_msg("taken for good: %s", bad[i].text);
@@ -277,7 +277,7 @@ static void what_is_wrong_is_told(void **state)
         assert_contains(err.text, path);
         assert_true(!p.frames && !e.layers);
     }
-    struct film film = a_film();
+    struct film_settings film = a_film();
     struct camera_path p = {0};
     struct effects e = {0};
     struct err err = ERR_INIT;

@@ -28,7 +28,7 @@ static void picture(struct depth_picture *d, double at, double half, int rows)
         z[p] = fabs(x) <= half ? (float)NEAR : (float)FAR;
         if (p / W >= rows) z[p] = 0;
     }
-    assert_int_equal(depth_picture_take(d, z, &err), ST_OK);
+    assert_int_equal(depth_picture_init(d, z, &err), ST_OK);
 }
 
 static double parallax_of(double baseline, double half, int rows, double tolerance)

@@ -41,7 +41,7 @@ static struct plan_params quick(void)
 
 /* ------------------------------------------------------------------------------------ a film and what is true of it */
 
-struct film {
+struct planned_film {
     struct validity v;
     struct camera_path path;
     struct effects layers;
@@ -64,16 +64,16 @@ static bool has_score(const struct camera_path *p, const char *name)
     return false;
 }
 
-static void sample(struct film *film, const struct wall_scene *f, struct film_effect effect,
+static void sample(struct planned_film *film, const struct wall_scene *f, struct film_effect effect,
                    const struct validity_params *params)
 {
     struct err err = ERR_INIT;
-    *film = (struct film){.v = {.zoom = 0}};
+    *film = (struct planned_film){.v = {.zoom = 0}};
     if (validity_sample(&film->v, &film->sampling, &f->scene, NULL, &subjects, &effect, params, &err))
         fail_msg("%s", err.text);
 }
 
-static void plan(struct film *film, const struct wall_scene *f, const struct plan_params *params)
+static void plan(struct planned_film *film, const struct wall_scene *f, const struct plan_params *params)
 {
     static const char *const always[] = {"length",  "length_of_thesis", "angle",         "parallax",
                                          "worst_h", "worst_h_at",       "worst_outside", "parallax_of_thesis",
@@ -105,7 +105,7 @@ static void plan(struct film *film, const struct wall_scene *f, const struct pla
     assert_true(has_score(p, "aperture") == (film->v.effect.focus != FOCUS_ALL));
 }
 
-static void release(struct film *film)
+static void release(struct planned_film *film)
 {
     camera_path_release(&film->path);
     effects_release(&film->layers);
@@ -113,11 +113,11 @@ static void release(struct film *film)
 }
 
 /* Every frame, measured again. Where an end of the move has no valid viewpoint at all, the film says so. */
-static void assert_all_frames_valid(const struct film *film, const struct wall_scene *f)
+static void assert_all_frames_valid(const struct planned_film *film, const struct wall_scene *f)
 {
     struct scene_points points;
     struct err err = ERR_INIT;
-    const bool none = film->sampling.none[0] || film->sampling.none[1];
+    const bool none = film->sampling.no_valid[0] || film->sampling.no_valid[1];
     assert_ok(scene_points_collect(&points, &f->scene, &err), err);
     struct viewpoint_test test = {
         .scene = &f->scene, .points = &points, .shot = &film->v.shot, .limits = film->v.limits};
@@ -134,12 +134,12 @@ static void assert_all_frames_valid(const struct film *film, const struct wall_s
     scene_points_release(&points);
 }
 
-static const struct view *camera(const struct film *film, int i)
+static const struct view *camera(const struct planned_film *film, int i)
 {
     return &film->path.frames[i < 0 ? film->path.frame_count + i : i].camera;
 }
 
-static struct film_effect only(enum move move) { return (struct film_effect){move, FOCUS_ALL, TONE_NONE}; }
+static struct film_effect only(enum camera_move move) { return (struct film_effect){move, FOCUS_ALL, TONE_NONE}; }
 
 /* Nine views in a square of 2 by 2, a little uneven, that look at one place as people's photos do. */
 static void nine_views(struct wall_scene *f)
@@ -152,20 +152,20 @@ static void nine_views(struct wall_scene *f)
 }
 
 /* Whatever the move, it is a film of the scene, and none of its frames has more holes than the limit. */
-static void make(struct film *film, struct wall_scene *f, enum move move)
+static void make(struct planned_film *film, struct wall_scene *f, enum camera_move move)
 {
     const struct validity_params sampling = quick_sampling();
     const struct plan_params params = quick();
     nine_views(f);
     sample(film, f, only(move), &sampling);
     plan(film, f, &params);
-    assert_false(film->notes.stands_still);
+    assert_false(film->notes.is_static);
     assert_true(score(&film->path, "parallax") > 0);
     assert_true(film->layers.layer_count == 0);
     assert_all_frames_valid(film, f);
 }
 
-static void unmake(struct film *film, struct wall_scene *f)
+static void unmake(struct planned_film *film, struct wall_scene *f)
 {
     release(film);
     layer_scene_release(&f->scene);
@@ -174,7 +174,7 @@ static void unmake(struct film *film, struct wall_scene *f)
 static void establishing_dolly_goes_right_and_shows_the_scene(void **state)
 {
     (void)state;
-    struct film film;
+    struct planned_film film;
     struct wall_scene f;
     make(&film, &f, MOVE_ESTABLISHING_DOLLY);
     const struct vec3 centroid = film.v.shot.centroid;
@@ -192,11 +192,11 @@ static void establishing_dolly_goes_right_and_shows_the_scene(void **state)
 static void establishing_dolly_out_draws_back_on_the_axis(void **state)
 {
     (void)state;
-    struct film film;
+    struct planned_film film;
     struct wall_scene f;
     make(&film, &f, MOVE_ESTABLISHING_DOLLY_OUT);
     for (int i = 0; i < 30; i++) {
-        const struct vec3 c = shot_coordinates(&film.v.shot, camera(&film, i)->center);
+        const struct vec3 c = shot_from_world(&film.v.shot, camera(&film, i)->center);
         assert_true(fabs(c.x) < 1e-9 && fabs(c.y) < 1e-9);
         assert_true(off_axis(camera(&film, i), film.v.shot.centroid) < 1e-6);
     }
@@ -210,7 +210,7 @@ static void dollies_end_close_at_the_subject_or_begin_there(void **state)
 {
     (void)state;
     for (int out = 0; out < 2; out++) {
-        struct film film;
+        struct planned_film film;
         struct wall_scene f;
         make(&film, &f, out ? MOVE_DOLLY_OUT : MOVE_DOLLY_IN);
         const struct view *wide = camera(&film, out ? -1 : 0), *close = camera(&film, out ? 0 : -1);
@@ -222,7 +222,7 @@ static void dollies_end_close_at_the_subject_or_begin_there(void **state)
             fail_msg("%d: close at %g %g %g, wide at %g %g %g; cells %d %d; chosen %d still %d", out, close->center.x,
                      close->center.y, close->center.z, wide->center.x, wide->center.y, wide->center.z,
                      validity_region_count(&film.v.region[0]), validity_region_count(&film.v.region[1]),
-                     film.notes.chosen.chosen, film.notes.stands_still);
+                     film.notes.chosen.chosen, film.notes.is_static);
         assert_true(film.notes.place_error < 1e-6);
         unmake(&film, &f);
     }
@@ -232,13 +232,13 @@ static void dolly_zooms_keep_the_subjects_size(void **state)
 {
     (void)state;
     for (int in = 0; in < 2; in++) {
-        struct film film;
+        struct planned_film film;
         struct wall_scene f;
         make(&film, &f, in ? MOVE_DOLLY_ZOOM_IN : MOVE_DOLLY_ZOOM);
         const double promised = film.v.move.end[0].size, way = in ? 1 : -1;
         for (int i = 0; i < 30; i++) {
             assert_float_equal(subject_size_in(&two_subjects[0], camera(&film, i)), promised, 1e-6);
-            const struct vec3 c = shot_coordinates(&film.v.shot, camera(&film, i)->center);
+            const struct vec3 c = shot_from_world(&film.v.shot, camera(&film, i)->center);
             assert_true(fabs(c.x) < 1e-9 && fabs(c.y) < 1e-9);
             if (i) assert_true(way * (camera(&film, i)->center.z - camera(&film, i - 1)->center.z) > 0);
             if (i) assert_true(way * (camera(&film, i - 1)->fx - camera(&film, i)->fx) > 0);
@@ -251,7 +251,7 @@ static void dolly_zooms_keep_the_subjects_size(void **state)
 static void dolly_goes_from_the_first_subject_to_the_second(void **state)
 {
     (void)state;
-    struct film film;
+    struct planned_film film;
     struct wall_scene f;
     make(&film, &f, MOVE_DOLLY);
     assert_true(off_axis(camera(&film, 0), subject_center(&two_subjects[0])) < 1e-6);
@@ -268,7 +268,7 @@ static void easing(void **state)
 {
     (void)state;
     struct wall_scene f;
-    struct film film;
+    struct planned_film film;
     struct plan_params params = quick();
     const struct validity_params sampling = quick_sampling();
     nine_views(&f);
@@ -319,7 +319,7 @@ static double angle_of(const struct validity *v, const struct vec3 at[2])
 static void all_pairs_find_what_brute_force_finds(void **state)
 {
     (void)state;
-    static const enum move moves[] = {MOVE_ESTABLISHING_DOLLY, MOVE_DOLLY_IN, MOVE_DOLLY};
+    static const enum camera_move moves[] = {MOVE_ESTABLISHING_DOLLY, MOVE_DOLLY_IN, MOVE_DOLLY};
     enum { CELLS = 16 };
     struct wall_scene f;
     struct validity_params sampling = quick_sampling();
@@ -331,7 +331,7 @@ static void all_pairs_find_what_brute_force_finds(void **state)
     strcpy(params.refine, "no");
     nine_views(&f);
     for (size_t m = 0; m < sizeof moves / sizeof *moves; m++) {
-        struct film film;
+        struct planned_film film;
         struct depth_picture pictures[2][CELLS] = {{{.z = NULL}}};
         sample(&film, &f, only(moves[m]), &sampling);
         for (int i = 0; i < 2 * CELLS; i++)
@@ -348,7 +348,7 @@ static void all_pairs_find_what_brute_force_finds(void **state)
                     const struct vec3 at[2] = {ends_candidate(&film.v, 0, a), ends_candidate(&film.v, 1, b)};
                     if (angle_of(&film.v, at) > params.max_angle) continue;
                     const double forth =
-                        shot_coordinates(&film.v.shot, at[1]).z - shot_coordinates(&film.v.shot, at[0]).z;
+                        shot_from_world(&film.v.shot, at[1]).z - shot_from_world(&film.v.shot, at[0]).z;
                     if (moves[m] == MOVE_DOLLY_IN && forth < 0.5 * vec3_length(vec3_sub(at[1], at[0]))) continue;
                     best = fmax(best, parallax_between(&pictures[0][a], &pictures[1][b], parallax_tolerance(&f.scene)));
                     counted++;
@@ -387,8 +387,8 @@ static void refinement_never_gives_less(void **state)
     params.parallax_side = 48;
     sampling.grid = 4;
     for (int move = 0; move < MOVE_COUNT; move++) {
-        struct film film;
-        sample(&film, &f, only((enum move)move), &sampling);
+        struct planned_film film;
+        sample(&film, &f, only((enum camera_move)move), &sampling);
         params.max_angle = move % 2 ? 12 : 25;
         strcpy(params.refine, "no");
         plan(&film, &f, &params);
@@ -420,7 +420,7 @@ static void any_threads_same_film(void **state)
     const struct plan_params params = quick();
     nine_views(&f);
     for (size_t k = 0; k < sizeof effects / sizeof *effects; k++) {
-        struct film a, b;
+        struct planned_film a, b;
         parallel_set_threads(1);
         sample(&a, &f, effects[k], &sampling);
         plan(&a, &f, &params);
@@ -452,7 +452,7 @@ static void the_aperture_opens_where_the_subject_is_in_focus(void **state)
     const struct plan_params params = quick();
     nine_views(&f);
     for (int k = 0; k < 2; k++) {
-        struct film film;
+        struct planned_film film;
         const int narrow = focuses[k] == FOCUS_NARROW;
         sample(&film, &f, (struct film_effect){MOVE_DOLLY_ZOOM, focuses[k], TONE_NONE}, &sampling);
         plan(&film, &f, &params);
@@ -479,7 +479,7 @@ static void focus_is_pulled_from_subject_to_subject(void **state)
 {
     (void)state;
     struct wall_scene f;
-    struct film film;
+    struct planned_film film;
     const struct validity_params sampling = quick_sampling();
     const struct plan_params params = quick();
     double u, w;
@@ -512,7 +512,7 @@ static void tones_are_layers_around_the_subject(void **state)
     const struct plan_params params = quick();
     nine_views(&f);
     for (int k = 0; k < 4; k++) {
-        struct film film;
+        struct planned_film film;
         double v[3];
         sample(&film, &f, (struct film_effect){MOVE_DOLLY_ZOOM, FOCUS_ALL, tones[k].tone}, &sampling);
         plan(&film, &f, &params);
@@ -547,8 +547,8 @@ static void all_moves(struct wall_scene *f, const struct rectangle *r, int count
     length[0] = HUGE_VAL;
     length[1] = 0;
     for (int move = 0; move < MOVE_COUNT; move++) {
-        struct film film;
-        sample(&film, f, only((enum move)move), &sampling);
+        struct planned_film film;
+        sample(&film, f, only((enum camera_move)move), &sampling);
         plan(&film, f, &params);
         assert_all_frames_valid(&film, f);
         length[0] = fmin(length[0], film.notes.ends.length);
@@ -613,8 +613,8 @@ static void no_valid_cell(void **state)
     strcpy(params.refine, "no");
     nine_views(&f);
     for (int move = 0; move < MOVE_COUNT; move++) {
-        struct film film;
-        sample(&film, &f, only((enum move)move), &sampling);
+        struct planned_film film;
+        sample(&film, &f, only((enum camera_move)move), &sampling);
         for (int k = 0; k < 2; k++)
             for (int i = 0; i < film.v.region[k].columns * film.v.region[k].rows; i++)
                 film.v.region[k].cells[i] = (struct validity_cell){.valid = false};
@@ -625,7 +625,7 @@ static void no_valid_cell(void **state)
         assert_true(!film.path.frames && !film.layers.layers);
         film.v.region[0].cells[0] = film.v.region[1].cells[0] = (struct validity_cell){.valid = true};
         plan(&film, &f, &params);
-        assert_true(film.notes.stands_still && score(&film.path, "length") < 1e-12);
+        assert_true(film.notes.is_static && score(&film.path, "length") < 1e-12);
         for (int i = 0; i < 30; i++)
             assert_true(vec3_length(vec3_sub(camera(&film, i)->center, film.v.shot.origin)) < 1e-12);
         release(&film);
@@ -641,7 +641,7 @@ static void a_way_that_is_not_valid_is_drawn_together(void **state)
     struct wall_scene f;
     const struct validity_params sampling = quick_sampling();
     const struct plan_params params = quick();
-    struct film film;
+    struct planned_film film;
     nine_views(&f);
     sample(&film, &f, only(MOVE_ESTABLISHING_DOLLY), &sampling);
     for (int k = 0; k < 2; k++) { /* claim that places far outside were valid */
@@ -667,7 +667,7 @@ static void an_aperture_that_cannot_open(void **state)
     struct subject far = upright_subject(0, 0, 1000, 20, 20);
     add_straight(&f, 0, 0, 0);
     finish(&f, far_wall_and_post, 2);
-    struct film film = {.v = {.effect = {MOVE_DOLLY_ZOOM, FOCUS_NARROW, TONE_NONE},
+    struct planned_film film = {.v = {.effect = {MOVE_DOLLY_ZOOM, FOCUS_NARROW, TONE_NONE},
                               .shot = {.lens = f.views[0],
                                        .up = {0, -1, 0},
                                        .axis_x = {1, 0, 0},
@@ -708,7 +708,7 @@ static void refuses_what_makes_no_film(void **state)
 {
     (void)state;
     struct wall_scene f;
-    struct film film;
+    struct planned_film film;
     struct plan_params params = quick();
     const struct validity_params sampling = quick_sampling();
     struct err err = ERR_INIT;
@@ -738,7 +738,7 @@ static void a_scene_without_depth_has_no_film(void **state)
 {
     (void)state;
     struct wall_scene f = {0}, seen;
-    struct film film;
+    struct planned_film film;
     const struct plan_params params = quick();
     const struct validity_params sampling = quick_sampling();
     struct err err = ERR_INIT;

@@ -26,9 +26,9 @@ static void make(struct motion *m, int count)
 
 static void set(struct motion *m, int i, double time, struct vec3 place, struct quat turn)
 {
-    m->along.time[i] = time;
-    m->place[i] = place;
-    m->turn[i] = turn;
+    m->distance.time[i] = time;
+    m->position[i] = place;
+    m->rotation[i] = turn;
 }
 
 static struct vec3 place_at(const struct motion *m, double t)
@@ -71,8 +71,8 @@ static void keys_are_passed_exactly(void **state)
     for (int i = 0; i < 6; i++) {
         const struct vec3 p = place_at(&m, times[i]);
         const struct quat q = turn_at(&m, times[i]);
-        assert_memory_equal(&p, &m.place[i], sizeof p);
-        assert_memory_equal(&q, &m.turn[i], sizeof q);
+        assert_memory_equal(&p, &m.position[i], sizeof p);
+        assert_memory_equal(&q, &m.rotation[i], sizeof q);
         /* and come up to from both sides */
         for (int side = -1; side <= 1; side += 2) {
             assert_true(vec3_length(vec3_sub(place_at(&m, times[i] + side * 1e-9), p)) < 1e-7);
@@ -92,11 +92,11 @@ static void velocity_has_no_jump(void **state)
         double worst = 0, worst_turn = 0;
         make_wild(&m, rest);
         for (int i = 1; i < 5; i++) {
-            const struct vec3 p = m.place[i], a = place_at(&m, times[i] - e), b = place_at(&m, times[i] + e);
+            const struct vec3 p = m.position[i], a = place_at(&m, times[i] - e), b = place_at(&m, times[i] + e);
             worst = fmax(worst, vec3_length(vec3_sub(vec3_sub(b, p), vec3_sub(p, a))) / e);
             const struct quat l = turn_at(&m, times[i] - e), r = turn_at(&m, times[i] + e);
             /* the same turn on both sides: l to r is twice l to the key */
-            worst_turn = fmax(worst_turn, fabs(angle_between(l, r) - 2 * angle_between(l, m.turn[i])) / e);
+            worst_turn = fmax(worst_turn, fabs(angle_between(l, r) - 2 * angle_between(l, m.rotation[i])) / e);
         }
         assert_true(worst < 0.01 &&
                     worst_turn < 0.01); /* of second differences: what is left is acceleration times e */
@@ -161,7 +161,7 @@ static void equal_keys_hold_still(void **state)
     motion_fit(&m, false);
     for (int i = 0; i <= 100; i++) {
         assert_true(vec3_length(vec3_sub(place_at(&m, 1 + i / 100.0), p[1])) == 0);
-        assert_true(angle_between(turn_at(&m, 1 + i / 100.0), m.turn[1]) == 0);
+        assert_true(angle_between(turn_at(&m, 1 + i / 100.0), m.rotation[1]) == 0);
     }
     for (int i = 0; i < 4; i++) set(&m, i, i, p[1], about(1, 0, 0, 0.3)); /* and all of them */
     motion_fit(&m, false);
@@ -187,7 +187,7 @@ static void turns_go_the_shorter_way(void **state)
         set(&m, 1, 1, vec3_make(0, 0, 0), to);
         motion_fit(&m, false);
         for (int i = 0; i <= 20; i++)
-            assert_true(fabs(angle_between(turn_at(&m, i / 20.0), m.turn[0]) - 3.0 * i / 20) < 1e-9);
+            assert_true(fabs(angle_between(turn_at(&m, i / 20.0), m.rotation[0]) - 3.0 * i / 20) < 1e-9);
         motion_release(&m);
     }
 }
@@ -203,7 +203,7 @@ static void two_keys_at_rest_ease(void **state)
     for (int i = 0; i <= 20; i++) {
         const double t = i / 20.0, s = t * t * (3 - 2 * t);
         assert_true(fabs(place_at(&m, 2 * t).x - 8 * s) < 1e-12);
-        assert_true(fabs(angle_between(turn_at(&m, 2 * t), m.turn[0]) - s) < 1e-9);
+        assert_true(fabs(angle_between(turn_at(&m, 2 * t), m.rotation[0]) - s) < 1e-9);
     }
     motion_release(&m);
 }

@@ -18,7 +18,7 @@ static struct validity_params quick(void)
     return p;
 }
 
-static void sample(struct validity *v, struct sampling_notes *notes, const struct wall_scene *f, enum move move,
+static void sample(struct validity *v, struct sampling_notes *notes, const struct wall_scene *f, enum camera_move move,
                    const struct vec3 *ups, const struct validity_params *params)
 {
     const struct film_effect effect = {move, FOCUS_ALL, TONE_NONE};
@@ -46,7 +46,7 @@ static bool valid_at(const struct wall_scene *f, const struct validity *v, int e
     bool valid = false;
     assert_ok(scene_points_collect(&points, &f->scene, &err), err);
     struct viewpoint_test test = {.scene = &f->scene, .points = &points, .shot = &v->shot, .limits = v->limits};
-    const struct view camera = shot_end_camera(&v->shot, &v->move.end[end], shot_place(&v->shot, x, y, z));
+    const struct view camera = shot_end_camera(&v->shot, &v->move.end[end], world_from_shot(&v->shot, x, y, z));
     assert_ok(viewpoint_is_valid(&valid, &test, &camera, &err), err);
     viewpoint_test_release(&test);
     scene_points_release(&points);
@@ -140,7 +140,7 @@ static void any_threads_same_regions(void **state)
     parallel_set_threads(3);
     sample(&b, &notes, &f, MOVE_ESTABLISHING_DOLLY, NULL, &params);
     assert_true(notes.renders == renders && a.zoom == b.zoom);
-    assert_memory_equal(&a.shot.up, &b.shot.up, sizeof a.shot - offsetof(struct shot, up));
+    assert_memory_equal(&a.shot.up, &b.shot.up, sizeof a.shot - offsetof(struct shot_setup, up));
     for (int i = 0; i < 16; i++) {
         const struct validity_cell *c = &a.region[0].cells[i], *d = &b.region[0].cells[i];
         assert_true(c->valid == d->valid && c->low == d->low && c->high == d->high);
@@ -271,7 +271,7 @@ static void too_many_holes_everywhere_raise_the_limit(void **state)
     finish(&f, &post, 1);
     sample(&v, &notes, &f, MOVE_ESTABLISHING_DOLLY, NULL, &params);
     assert_float_equal(v.zoom, params.max_zoom, 1e-9);
-    assert_true(v.limits.max_h > params.max_h && notes.asked_h == params.max_h && isfinite(v.limits.max_h));
+    assert_true(v.limits.max_h > params.max_h && notes.requested_h == params.max_h && isfinite(v.limits.max_h));
     assert_true(valid_at(&f, &v, 0, 0, 0, 0)); /* the origin keeps them */
     validity_release(&v);
     layer_scene_release(&f.scene);
@@ -309,7 +309,7 @@ static void no_valid_cell_leaves_the_origin(void **state)
     struct err err = ERR_INIT;
     nine_views(&f);
     assert_ok(validity_sample(&v, &notes, &f.scene, NULL, &list, &dolly, &params, &err), err);
-    assert_true(!notes.none[0] && notes.none[1]);
+    assert_true(!notes.no_valid[0] && notes.no_valid[1]);
     assert_int_equal(validity_region_count(&v.region[1]), 1);
     for (int i = 0; i < 16; i++) {
         const struct validity_cell *c = &v.region[1].cells[i];

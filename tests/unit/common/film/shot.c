@@ -5,9 +5,9 @@
 #include "tests/unit/wall_scene.h"
 
 /* The origin lies off the world's, the axes are its own. */
-static struct shot a_shot(void)
+static struct shot_setup a_shot(void)
 {
-    return (struct shot){
+    return (struct shot_setup){
         .lens = {.name = "film", .width = 300, .height = 200, .fx = 240, .fy = 240, .cx = 150, .cy = 100},
         .up = {0, -1, 0},
         .origin = {1, 2, 3},
@@ -23,7 +23,7 @@ static struct shot a_shot(void)
 
 static struct subject_list subjects_of(struct subject *s, int count) { return (struct subject_list){s, count}; }
 
-static struct shot_move make(const struct shot *shot, enum move move, const struct subject_list *subjects)
+static struct shot_move make(const struct shot_setup *shot, enum camera_move move, const struct subject_list *subjects)
 {
     struct shot_move m;
     struct err err = ERR_INIT;
@@ -35,11 +35,11 @@ static struct shot_move make(const struct shot *shot, enum move move, const stru
 static void places_and_coordinates_are_inverse(void **state)
 {
     (void)state;
-    struct shot s = a_shot();
+    struct shot_setup s = a_shot();
     s.axis_x = vec3_make(0, 0, -1);
     s.axis_y = vec3_make(0.6, 0.8, 0);
     s.axis_z = vec3_cross(s.axis_x, s.axis_y);
-    const struct vec3 at = shot_place(&s, 2, 10, 5), back = shot_coordinates(&s, at);
+    const struct vec3 at = world_from_shot(&s, 2, 10, 5), back = shot_from_world(&s, at);
     assert_true(vec3_length(vec3_sub(back, vec3_make(2, 10, 5))) < 1e-12);
     assert_true(vec3_length(vec3_sub(at, vec3_make(1 + 6 + 4, 2 + 8 - 3, 3 - 2))) < 1e-12);
 }
@@ -47,7 +47,7 @@ static void places_and_coordinates_are_inverse(void **state)
 static void aims_are_upright_at_the_target(void **state)
 {
     (void)state;
-    const struct shot s = a_shot();
+    const struct shot_setup s = a_shot();
     for (int i = 0; i < 200; i++) {
         const struct vec3 at = vec3_make(sin(i), cos(2 * i), sin(3 * i)),
                           target = vec3_make(9 * sin(5 * i), 4 * cos(7 * i), 9 * cos(11 * i));
@@ -65,7 +65,7 @@ static void aims_are_upright_at_the_target(void **state)
 static void degenerate_directions_still_give_a_camera(void **state)
 {
     (void)state;
-    const struct shot s = a_shot();
+    const struct shot_setup s = a_shot();
     const struct vec3 at = vec3_make(4, 5, 6);
     struct view v = shot_aim(&s, at, at, 50); /* no direction: along the frame's z */
     assert_camera(&v);
@@ -84,7 +84,7 @@ static void degenerate_directions_still_give_a_camera(void **state)
 static void an_end_keeps_its_focal_length_or_a_size(void **state)
 {
     (void)state;
-    const struct shot s = a_shot();
+    const struct shot_setup s = a_shot();
     struct shot_end end = {.target = {1, 2, 13}, .focal = 321};
     struct view v = shot_end_camera(&s, &end, vec3_make(5, 2, 3));
     assert_true(v.fx == 321 && off_axis(&v, end.target) < 1e-9);
@@ -110,7 +110,7 @@ static void an_end_keeps_its_focal_length_or_a_size(void **state)
 static void establishing_moves_show_the_centroid(void **state)
 {
     (void)state;
-    const struct shot s = a_shot();
+    const struct shot_setup s = a_shot();
     const struct vec3 at[2] = {{0, 2, 3}, {2, 2, 3}};
     struct shot_move m = make(&s, MOVE_ESTABLISHING_DOLLY, NULL);
     assert_false(m.on_axis);
@@ -132,7 +132,7 @@ static void establishing_moves_show_the_centroid(void **state)
 static void dollies_in_and_out_are_each_other_backwards(void **state)
 {
     (void)state;
-    const struct shot s = a_shot();
+    const struct shot_setup s = a_shot();
     struct subject face = upright_subject(2, 1, 9, 0.25, 0.5);
     const struct subject_list list = subjects_of(&face, 1);
     const struct vec3 lower = {2, 1.25, 9}; /* the middle of the lower half */
@@ -155,14 +155,14 @@ static void dollies_in_and_out_are_each_other_backwards(void **state)
 static void dolly_zoom_keeps_the_size_all_along(void **state)
 {
     (void)state;
-    const struct shot s = a_shot();
+    const struct shot_setup s = a_shot();
     struct subject face = upright_subject(2, 1, 9, 0.5, 1);
     const struct subject_list list = subjects_of(&face, 1);
     const struct view at_origin = shot_aim(&s, s.origin, s.centroid, 240);
     const double promised = subject_size_in(&face, &at_origin);
     const struct vec3 at[2] = {{1, 2, 5}, {1, 2, -4}};
     for (int move = MOVE_DOLLY_ZOOM; move <= MOVE_DOLLY_ZOOM_IN; move++) {
-        const struct shot_move m = make(&s, (enum move)move, &list);
+        const struct shot_move m = make(&s, (enum camera_move)move, &list);
         double before = 0;
         assert_true(m.on_axis);
         for (int i = 0; i <= 50; i++) {
@@ -178,7 +178,7 @@ static void dolly_zoom_keeps_the_size_all_along(void **state)
 static void dolly_ends_on_the_second_at_the_firsts_size(void **state)
 {
     (void)state;
-    const struct shot s = a_shot();
+    const struct shot_setup s = a_shot();
     struct subject two[2] = {upright_subject(-1, 2, 8, 0.4, 0.5), upright_subject(4, 3, 15, 1, 1.5)};
     const struct subject_list list = subjects_of(two, 2);
     const struct shot_move m = make(&s, MOVE_DOLLY, &list);
@@ -202,23 +202,23 @@ static void dolly_ends_on_the_second_at_the_firsts_size(void **state)
 static void what_cannot_be_filmed_is_refused(void **state)
 {
     (void)state;
-    const struct shot s = a_shot();
+    const struct shot_setup s = a_shot();
     struct subject one[2] = {upright_subject(1, 2, -9, 0.5, 1), upright_subject(1, 2, 9, 0.5, 1)};
     struct shot_move m;
     for (int move = 0; move < MOVE_COUNT; move++)
-        for (int count = 0; count < move_subjects((enum move)move); count++) {
+        for (int count = 0; count < move_subjects((enum camera_move)move); count++) {
             const struct subject_list few = subjects_of(one + 1, count);
             struct err err = ERR_INIT;
             char words[32];
-            snprintf(words, sizeof words, "needs %d subjects", move_subjects((enum move)move));
-            assert_int_equal(shot_move_make(&m, &s, (enum move)move, count ? &few : NULL, &err), ST_DATA);
+            snprintf(words, sizeof words, "needs %d subjects", move_subjects((enum camera_move)move));
+            assert_int_equal(shot_move_make(&m, &s, (enum camera_move)move, count ? &few : NULL, &err), ST_DATA);
             assert_err(err, ST_DATA, words);
         }
     /* the camera that keeps the size points at the centroid, and so it must be before it */
     const struct subject_list behind = subjects_of(one, 2);
     for (int move = MOVE_DOLLY_ZOOM; move <= MOVE_DOLLY_ZOOM_IN; move++) {
         struct err err = ERR_INIT;
-        assert_int_equal(shot_move_make(&m, &s, (enum move)move, &behind, &err), ST_DATA);
+        assert_int_equal(shot_move_make(&m, &s, (enum camera_move)move, &behind, &err), ST_DATA);
         assert_err(err, ST_DATA, "the subject in view view is not in front");
     }
 }

@@ -14,7 +14,7 @@ static const struct scene_subjects none = {0, 1}, one = {1, 1}, near_two = {2, 1
 
 static bool listed(const struct scene_subjects *scene, const char *name)
 {
-    struct film_effect list[FILM_EFFECTS_MOST];
+    struct film_effect list[MAX_FILM_EFFECTS];
     const int count = film_effects_list(list, scene);
     char found[EFFECT_NAME_SIZE];
     for (int i = 0; i < count; i++) {
@@ -27,7 +27,7 @@ static bool listed(const struct scene_subjects *scene, const char *name)
 static void every_row_has_its_moves(void **state)
 {
     (void)state;
-    struct film_effect list[FILM_EFFECTS_MOST];
+    struct film_effect list[MAX_FILM_EFFECTS];
     assert_int_equal(film_effects_list(list, &none), 2);
     assert_int_equal(film_effects_list(list, &one), 2 + 4 * 7); /* alone, two of focus, four tones */
     assert_int_equal(film_effects_list(list, &near_two), 2 + 4 * 7 + 1);
@@ -46,7 +46,7 @@ static void names_are_read_back(void **state)
     for (int m = 0; m < MOVE_COUNT; m++)
         for (int f = 0; f < FOCUS_COUNT; f++)
             for (int t = 0; t < TONE_COUNT; t++) {
-                const struct film_effect e = {(enum move)m, (enum focus_effect)f, (enum tone_effect)t};
+                const struct film_effect e = {(enum camera_move)m, (enum focus_effect)f, (enum tone_effect)t};
                 struct film_effect back;
                 char name[EFFECT_NAME_SIZE];
                 film_effect_name(&e, name);

@@ -49,7 +49,7 @@ static void assert_same(const struct validity *a, const struct validity *b)
     const struct view *l = &a->shot.lens, *m = &b->shot.lens;
     assert_true(l->width == m->width && l->height == m->height && l->fx == m->fx && l->fy == m->fy && l->cx == m->cx &&
                 l->cy == m->cy);
-    assert_memory_equal(&a->shot.up, &b->shot.up, sizeof a->shot - offsetof(struct shot, up)); /* doubles all the way */
+    assert_memory_equal(&a->shot.up, &b->shot.up, sizeof a->shot - offsetof(struct shot_setup, up)); /* doubles all the way */
     assert_true(a->move.move == b->move.move && a->move.on_axis == b->move.on_axis);
     assert_memory_equal(a->move.end, b->move.end, sizeof a->move.end);
     assert_true(a->zoom == b->zoom && a->step == b->step && a->limits.max_h == b->limits.max_h &&

@@ -113,7 +113,7 @@ static void a_larger_hole_is_worse_than_two_small_ones(void **state)
 struct fixture {
     struct wall_scene f;
     struct scene_points points;
-    struct shot shot;
+    struct shot_setup shot;
     struct viewpoint_test test;
 };
 
