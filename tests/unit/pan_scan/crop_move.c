@@ -177,7 +177,7 @@ static void it_is_eased_as_the_path_is(void **state)
     assert_ok(crop_move_init(&m, &f.set, 1, NULL, &f.path, 0.01, &err), err);
     for (int i = 0; i < FRAMES; i++) {
         const double t = i / (FRAMES - 1.0), eased = t * t * (3 - 2 * t);
-        assert_true(fabs(m.parts[i] - eased) < 1e-12);
+        assert_true(fabs(m.fractions[i] - eased) < 1e-12);
         const struct crop c = crop_move_crop(&m, i);
         assert_true(fabs(c.x - ((1 - eased) * m.ends[0].crop.x + eased * m.ends[1].crop.x)) < 1e-9);
     }
@@ -192,18 +192,18 @@ static void it_is_eased_as_the_path_is(void **state)
         v->fx = v->fy = 170 * exp(i * i / 100.0);
     }
     assert_ok(crop_move_init(&m, &f.set, 1, NULL, &f.path, 0.01, &err), err);
-    for (int i = 0; i < FRAMES; i++) assert_true(fabs(m.parts[i] - i * i / 100.0) < 1e-12);
+    for (int i = 0; i < FRAMES; i++) assert_true(fabs(m.fractions[i] - i * i / 100.0) < 1e-12);
     crop_move_release(&m);
 
     for (int i = 0; i < FRAMES; i++)
         f.path.frames[i].camera.fx = f.path.frames[i].camera.fy = 170; /* and stands still */
     assert_ok(crop_move_init(&m, &f.set, 1, NULL, &f.path, 0.01, &err), err);
-    for (int i = 0; i < FRAMES; i++) assert_true(fabs(m.parts[i] - i / 10.0) < 1e-12);
+    for (int i = 0; i < FRAMES; i++) assert_true(fabs(m.fractions[i] - i / 10.0) < 1e-12);
     crop_move_release(&m);
 
     f.path.frame_count = 1; /* a single frame */
     assert_ok(crop_move_init(&m, &f.set, 1, NULL, &f.path, 0.01, &err), err);
-    assert_true(m.parts[0] == 0 && crop_move_crop(&m, 0).width == m.ends[1].crop.width);
+    assert_true(m.fractions[0] == 0 && crop_move_crop(&m, 0).width == m.ends[1].crop.width);
     crop_move_release(&m);
     f.path.frame_count = FRAMES;
     drop(&f);
