@@ -90,7 +90,7 @@ static enum status read_shot(struct textfile *t, struct validity *v, struct err 
         if (!(s->low[i] < s->high[i])) return textfile_error(t, err, "an empty box", "LOW_X LOW_Y HIGH_X HIGH_Y");
     }
     if (read_numbers(t, "limits", limits, 3, err)) return err->status;
-    if (!(limits[2] >= 1 && limits[2] <= 65536)) return textfile_error(t, err, "another side", "1 to 65536 px");
+    if (!(limits[2] >= 1 && limits[2] <= 65536)) return textfile_error(t, err, "an invalid side", "1 to 65536 px");
     v->limits = (struct viewpoint_limits){limits[0], limits[1], (int)limits[2]};
     if (read_numbers(t, "step", &v->step, 1, err)) return err->status;
     return v->step > 0 ? ST_OK : textfile_error(t, err, "a step of 0 or less", "one above 0");

@@ -63,7 +63,8 @@ static enum status choose(const char *subjects, const char *which, const char *o
         char name[EFFECT_NAME_SIZE];
         list[count++] = film_effect_draw(&scene, (uint64_t)params->seed);
         film_effect_name(&list[0], name);
-        log_note("%d subject%s: %s, by chance (seed %d)", scene.count, scene.count == 1 ? "" : "s", name, params->seed);
+        log_note("%d subject%s: %s, chosen at random (seed %d)", scene.count, scene.count == 1 ? "" : "s", name,
+                 params->seed);
     }
     if (!st) st = write_choice(list, count, out, prov, err);
     subject_list_release(&found);

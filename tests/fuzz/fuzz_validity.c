@@ -1,5 +1,5 @@
-/* fuzz_validity.c - valid viewpoints: what is read can be planned with and is written and read back the same, or a
- * sentence says why not. */
+/* fuzz_validity.c - regions of valid viewpoints: any bytes give regions that can be used, written and read back the same,
+ * or an error message. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -30,7 +30,7 @@ static void use(const struct validity *v)
     }
 }
 
-/* All numbers are written exactly, so that the same file comes of what was read of it. */
+/* Numbers are written exactly, so a file reads back to the same bits. */
 static bool same(const struct validity *a, const struct validity *b)
 {
     if (memcmp(&a->shot.up, &b->shot.up, sizeof a->shot - offsetof(struct shot_setup, up)) || a->zoom != b->zoom ||

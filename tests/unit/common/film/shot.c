@@ -1,10 +1,10 @@
-/* shot.c - how the cameras of a move point and zoom, against what geometry says. */
+/* shot.c - tests of how the cameras of a move point and zoom. */
 #include "common/film/shot.h"
 
 #include "tests/unit/scratch.h"
 #include "tests/unit/wall_scene.h"
 
-/* The origin lies off the world's, the axes are its own. */
+/* The origin is not the world's. */
 static struct shot_setup a_shot(void)
 {
     return (struct shot_setup){
@@ -32,7 +32,7 @@ static struct shot_move make(const struct shot_setup *shot, enum camera_move mov
     return m;
 }
 
-static void places_and_coordinates_are_inverse(void **state)
+static void shot_and_world_coordinates_are_inverse(void **state)
 {
     (void)state;
     struct shot_setup s = a_shot();
@@ -44,7 +44,7 @@ static void places_and_coordinates_are_inverse(void **state)
     assert_true(vec3_length(vec3_sub(at, vec3_make(1 + 6 + 4, 2 + 8 - 3, 3 - 2))) < 1e-12);
 }
 
-static void aims_are_upright_at_the_target(void **state)
+static void aimed_cameras_are_upright_and_point_at_the_target(void **state)
 {
     (void)state;
     const struct shot_setup s = a_shot();
@@ -67,17 +67,17 @@ static void degenerate_directions_still_give_a_camera(void **state)
     (void)state;
     const struct shot_setup s = a_shot();
     const struct vec3 at = vec3_make(4, 5, 6);
-    struct view v = shot_aim(&s, at, at, 50); /* no direction: along the frame's z */
+    struct view v = shot_aim(&s, at, at, 50); /* no direction: along the reference frame's z */
     assert_camera(&v);
     assert_true(vec3_length(vec3_sub(row_of(v.cam_from_world, 2), s.axis_z)) < 1e-12);
-    for (int way = -1; way <= 1; way += 2) { /* straight up and down: the frame's x stays to the right */
-        v = shot_aim(&s, at, vec3_make(4, 5 + way * 7, 6), 50);
+    for (int sign = -1; sign <= 1; sign += 2) { /* straight up and down: the reference frame's x points right */
+        v = shot_aim(&s, at, vec3_make(4, 5 + sign * 7, 6), 50);
         assert_camera(&v);
         assert_true(vec3_length(vec3_sub(row_of(v.cam_from_world, 0), s.axis_x)) < 1e-12);
-        assert_float_equal(row_of(v.cam_from_world, 2).y, way, 1e-12);
-        v = shot_aim(&s, at, vec3_make(4.001, 5 + way * 7, 6), 50); /* nearly so */
+        assert_float_equal(row_of(v.cam_from_world, 2).y, sign, 1e-12);
+        v = shot_aim(&s, at, vec3_make(4.001, 5 + sign * 7, 6), 50); /* nearly */
         assert_camera(&v);
-        assert_true(off_axis(&v, vec3_make(4.001, 5 + way * 7, 6)) < 1e-9);
+        assert_true(off_axis(&v, vec3_make(4.001, 5 + sign * 7, 6)) < 1e-9);
     }
 }
 
@@ -89,7 +89,7 @@ static void an_end_keeps_its_focal_length_or_a_size(void **state)
     struct view v = shot_end_camera(&s, &end, vec3_make(5, 2, 3));
     assert_true(v.fx == 321 && off_axis(&v, end.target) < 1e-9);
 
-    /* 2 high, straight ahead: f h / z */
+    /* 2 units high, straight ahead: f h / z */
     struct subject square = upright_subject(1, 2, 13, 1, 1);
     end = (struct shot_end){.target = {1, 2, 13}, .size = 60};
     memcpy(end.corner, square.corner, sizeof end.corner);
@@ -102,12 +102,12 @@ static void an_end_keeps_its_focal_length_or_a_size(void **state)
         assert_camera(&v);
         assert_float_equal(subject_size_in(&square, &v), 60, 1e-9);
     }
-    /* behind the camera no focal length gives it a size */
+    /* behind the camera it has no size at any focal length */
     end.target = vec3_make(1, 2, -20);
     assert_true(shot_end_camera(&s, &end, s.origin).fx == 0);
 }
 
-static void establishing_moves_show_the_centroid(void **state)
+static void establishing_moves_point_at_the_centroid(void **state)
 {
     (void)state;
     const struct shot_setup s = a_shot();
@@ -129,7 +129,7 @@ static void establishing_moves_show_the_centroid(void **state)
     }
 }
 
-static void dollies_in_and_out_are_each_other_backwards(void **state)
+static void dolly_out_is_dolly_in_reversed(void **state)
 {
     (void)state;
     const struct shot_setup s = a_shot();
@@ -149,10 +149,10 @@ static void dollies_in_and_out_are_each_other_backwards(void **state)
     assert_true(off_axis(&first, s.centroid) < 1e-9 && off_axis(&last, lower) < 1e-9);
     double u, w;
     view_project(&last, subject_center(&face), &u, &w);
-    assert_true(w < last.cy && fabs(u - last.cx) < 1e-9); /* the face is above the middle */
+    assert_true(w < last.cy && fabs(u - last.cx) < 1e-9); /* the face is above the frame's centre */
 }
 
-static void dolly_zoom_keeps_the_size_all_along(void **state)
+static void dolly_zoom_keeps_the_subjects_size(void **state)
 {
     (void)state;
     const struct shot_setup s = a_shot();
@@ -169,13 +169,13 @@ static void dolly_zoom_keeps_the_size_all_along(void **state)
             const struct view v = shot_camera(&s, &m, at, i / 50.0);
             assert_float_equal(subject_size_in(&face, &v), promised, 1e-9);
             assert_true(off_axis(&v, s.centroid) < 1e-9);
-            assert_true(v.fx > before); /* the farther, the longer */
+            assert_true(v.fx > before); /* longer farther away */
             before = v.fx;
         }
     }
 }
 
-static void dolly_ends_on_the_second_at_the_firsts_size(void **state)
+static void dolly_ends_at_the_second_subject_in_the_size_of_the_first(void **state)
 {
     (void)state;
     const struct shot_setup s = a_shot();
@@ -194,12 +194,12 @@ static void dolly_ends_on_the_second_at_the_firsts_size(void **state)
     assert_float_equal(middle.fx, 0.5 * (first.fx + last.fx), 1e-9);
     assert_true(vec3_length(vec3_sub(middle.center, vec3_make(1.5, 2, 3))) < 1e-12);
 
-    /* 3 high, straight ahead, 10 away */
+    /* 3 units high, straight ahead at depth 10 */
     const struct view facing = shot_end_camera(&s, &m.end[1], vec3_make(4, 3, 5));
     assert_float_equal(facing.fx, promised * 10 / 3, 1e-9);
 }
 
-static void what_cannot_be_filmed_is_refused(void **state)
+static void missing_subjects_and_subjects_behind_the_camera_are_errors(void **state)
 {
     (void)state;
     const struct shot_setup s = a_shot();
@@ -214,7 +214,7 @@ static void what_cannot_be_filmed_is_refused(void **state)
             assert_int_equal(shot_move_make(&m, &s, (enum camera_move)move, count ? &few : NULL, &err), ST_DATA);
             assert_err(err, ST_DATA, words);
         }
-    /* the camera that keeps the size points at the centroid, and so it must be before it */
+    /* the camera points at the centroid, so the subject is behind it */
     const struct subject_list behind = subjects_of(one, 2);
     for (int move = MOVE_DOLLY_ZOOM; move <= MOVE_DOLLY_ZOOM_IN; move++) {
         struct err err = ERR_INIT;
@@ -226,15 +226,15 @@ static void what_cannot_be_filmed_is_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(places_and_coordinates_are_inverse),
-        cmocka_unit_test(aims_are_upright_at_the_target),
+        cmocka_unit_test(shot_and_world_coordinates_are_inverse),
+        cmocka_unit_test(aimed_cameras_are_upright_and_point_at_the_target),
         cmocka_unit_test(degenerate_directions_still_give_a_camera),
         cmocka_unit_test(an_end_keeps_its_focal_length_or_a_size),
-        cmocka_unit_test(establishing_moves_show_the_centroid),
-        cmocka_unit_test(dollies_in_and_out_are_each_other_backwards),
-        cmocka_unit_test(dolly_zoom_keeps_the_size_all_along),
-        cmocka_unit_test(dolly_ends_on_the_second_at_the_firsts_size),
-        cmocka_unit_test(what_cannot_be_filmed_is_refused),
+        cmocka_unit_test(establishing_moves_point_at_the_centroid),
+        cmocka_unit_test(dolly_out_is_dolly_in_reversed),
+        cmocka_unit_test(dolly_zoom_keeps_the_subjects_size),
+        cmocka_unit_test(dolly_ends_at_the_second_subject_in_the_size_of_the_first),
+        cmocka_unit_test(missing_subjects_and_subjects_behind_the_camera_are_errors),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
