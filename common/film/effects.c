@@ -3,8 +3,8 @@
  * Effects of [Colburn 2014, 3.6.1]: the weight of a box is the Gaussian of the distance to its surface. Unlike the
  * thesis, saturation is limited per pixel so that no channel becomes negative, and layers work on scene-linear colour.
  *
- * Applying is vectorised over strips of a row. A pixel's position relative to the box is depth * ray, linear in x and y,
- * so each axis costs one multiplication and one addition. */
+ * Applying is vectorised over strips of a row. A pixel's position relative to the box is depth * ray, linear in x and
+ * y, so each axis costs one multiplication and one addition. */
 #include "common/film/effects.h"
 
 #include <assert.h>

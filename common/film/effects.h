@@ -1,12 +1,13 @@
-/* effects.h - effect layers: keyframed colour changes of the whole picture or of a region of space [Colburn 2014, 3.6.1].
+/* effects.h - effect layers: keyframed colour changes of the whole picture or of a region of space [Colburn 2014,
+ * 3.6.1].
  *
  * Layers are applied to a finished frame in file order, each to the result of the layers before it. The frame's z gives
  * a pixel's position in the world; docs/formats.md describes the file. In scene-linear, premultiplied colour:
  *   saturation s   c + w (s - 1) (c - Y); keeps the Rec.709 luminance Y; limited so that no channel falls below 0
  *   brightness b   c (1 + w (b - 1))
  *   color r g b    as brightness, with a factor for each channel
- * Weight w: 1 for the whole picture; for a box, 1 inside and exp(-d^2 / (2 falloff^2)) at distance d from it; outside
- * a box, 1 minus that. */
+ * Weight w: 1 for the whole picture; for a box, 1 inside and exp(-d^2 / (2 falloff^2)) at distance d from it; outside a
+ * box, 1 minus that. */
 #ifndef REMODEL_EFFECTS_H
 #define REMODEL_EFFECTS_H
 
@@ -58,7 +59,8 @@ void effects_release(struct effects *e);
 void effect_layer_value(const struct effect_layer *layer, double time, double value[3]);
 
 /* Applies the layers to the rgba of a frame rendered by `camera`. A pixel with z 0 is outside every box. Layers that
- * are the identity at `time` cost nothing and change no bit. Colours stay 0 or above. Same bits for any thread count. */
+ * are the identity at `time` cost nothing and change no bit. Colours stay 0 or above. Same bits for any thread
+ * count. */
 void effects_apply(const struct effects *e, double time, const struct view *camera, struct rendered_frame *frame);
 
 #endif

@@ -12,8 +12,8 @@ struct film_size {     /* requested size, px */
 /* Fills lens: the size, rounded to even numbers; the views' mean focal length relative to their longer side, scaled so
  * that the frame lies within a photo of the middle view's shape; the principal point in the centre; the name "film"; no
  * pose. Fills up: unit mean of the views' upright directions, in the world; the middle view's where they cancel out.
- * middle: index of the middle view in the set (common/capture/central_views.h). ups: each view's upright direction in its
- * own camera, (0, -1, 0) for a picture stored upright; NULL: all are. */
+ * middle: index of the middle view in the set (common/capture/central_views.h). ups: each view's upright direction in
+ * its own camera, (0, -1, 0) for a picture stored upright; NULL: all are. */
 void film_lens(struct view *lens, struct vec3 *up, const struct camera_set *set, int middle, const struct vec3 *ups,
                const struct film_size *size);
 

@@ -1,12 +1,12 @@
 /* shot.c - the cameras of a move.
  *
- * Rules of [Colburn 2014, 3.4.2]: establishing moves and the wide end of a dolly in or out point at the scene's centroid
- * at the views' mean focal length f; a close end points at the subject's lower half at 1.5 f; a dolly zoom keeps its
- * subject's size.
+ * Rules of [Colburn 2014, 3.4.2]: establishing moves and the wide end of a dolly in or out point at the scene's
+ * centroid at the views' mean focal length f; a close end points at the subject's lower half at 1.5 f; a dolly zoom
+ * keeps its subject's size.
  *
- * What differs. For two subjects the thesis sets the second end's focal length by the ratio of the subjects' sizes. Here
- * both ends keep the size that the first subject has at the origin at 1.5 f (less if the subject is large): the second
- * subject ends at exactly the size at which the first began, and the validity of one end does not depend on the
+ * What differs. For two subjects the thesis sets the second end's focal length by the ratio of the subjects' sizes.
+ * Here both ends keep the size that the first subject has at the origin at 1.5 f (less if the subject is large): the
+ * second subject ends at exactly the size at which the first began, and the validity of one end does not depend on the
  * position of the other. A dolly zoom likewise keeps the size that its subject has at the origin at f. The close end of
  * a dolly limits the subject to half of the frame's height by zooming and to MAX_SUBJECT_GAIN by moving. */
 #include "common/film/shot.h"

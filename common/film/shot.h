@@ -2,8 +2,8 @@
  * [Colburn 2014, 3.4.2].
  *
  * A move has two ends. Each end has a target to point at, and either a focal length or a quadrilateral that keeps its
- * size in the picture. Target and focal length are interpolated linearly between the ends. If both ends keep the size of
- * the same quadrilateral, every camera between them does too (the dolly zoom). */
+ * size in the picture. Target and focal length are interpolated linearly between the ends. If both ends keep the size
+ * of the same quadrilateral, every camera between them does too (the dolly zoom). */
 #ifndef REMODEL_SHOT_H
 #define REMODEL_SHOT_H
 

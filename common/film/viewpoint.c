@@ -1,7 +1,7 @@
 /* viewpoint.c - validity of a viewpoint.
  *
- * A viewpoint is valid if H < max_h, the hole measure of [Colburn 2014, 3.4.2] (common/layers/hole_measure.h). Two limits
- * are added to the thesis's, because pictures without holes can still be bad:
+ * A viewpoint is valid if H < max_h, the hole measure of [Colburn 2014, 3.4.2] (common/layers/hole_measure.h). Two
+ * limits are added to the thesis's, because pictures without holes can still be bad:
  * - the part of the frame beyond the borders of the views that the view mesh blends there, where other views fill in
  *   with a visible seam. It is measured in a small picture at the depth of the centroid; each pixel counts by the
  *   weight of the blended views that do not contain it;

@@ -4,8 +4,8 @@
  * between S p + t and q = (u, v), by iteratively reweighted least squares [Huber 1964]. For a photograph of size P, in
  * units of p, the constraint is linear in S and t,
  *   t <= 0,  t + S P >= (frame_width, frame_height),
- * so the problem is convex. For given weights and S, the best t is the unconstrained q' - S p' (primes: weighted means),
- * clamped per axis. This leaves a convex function of S, whose slope
+ * so the problem is convex. For given weights and S, the best t is the unconstrained q' - S p' (primes: weighted
+ * means), clamped per axis. This leaves a convex function of S, whose slope
  *   S |p - p'|^2 - (p - p') (q - q') + r(S) r'(S),  r = t - (q' - S p') of each clamped axis,
  * increases with S; bisection finds its zero, or the smallest S at which the frame fits into the photograph. */
 #include "stages/pan_scan/crop_fit.h"

@@ -1,7 +1,7 @@
 /* crop_fit.h - the crop of a photograph that best matches the picture of another camera.
  *
- * A crop is a rectangle in pixels of the photograph; a frame shows it scaled to its own size. Pixel (x, y) has its centre
- * at (x + 0.5, y + 0.5). */
+ * A crop is a rectangle in pixels of the photograph; a frame shows it scaled to its own size. Pixel (x, y) has its
+ * centre at (x + 0.5, y + 0.5). */
 #ifndef REMODEL_CROP_FIT_H
 #define REMODEL_CROP_FIT_H
 
@@ -33,8 +33,8 @@ struct crop_result {
     double beyond; /* frame px by which the best unconstrained crop would leave the photograph; 0: not at all */
 };
 
-/* Finds the crop within the photograph with the smallest loss. ST_DATA: fewer than MIN_CROP_POINTS points, or all at the
- * same position. */
+/* Finds the crop within the photograph with the smallest loss. ST_DATA: fewer than MIN_CROP_POINTS points, or all at
+ * the same position. */
 enum { MIN_CROP_POINTS = 4 };
 enum status crop_fit(struct crop_result *result, const struct crop_task *task, struct err *err);
 

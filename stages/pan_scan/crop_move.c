@@ -141,8 +141,8 @@ static enum status sparse_points(struct crop_move *m, const struct camera_set *s
     return ST_OK;
 }
 
-/* Pairs the points with their pixels in a frame: the points within it or, if they are too few, all in front of its camera.
- * The caller frees task->pairs. */
+/* Pairs the points with their pixels in a frame: the points within it or, if they are too few, all in front of its
+ * camera. The caller frees task->pairs. */
 static enum status make_task(struct crop_task *task, const struct crop_move *m, int frame, struct err *err)
 {
     const struct view *f = &m->path->frames[frame].camera;

@@ -1,4 +1,5 @@
-/* crop_move.h - a camera move as pan and zoom over one photograph, for comparison with 3D pan & scan [Colburn 2014, 3.8].
+/* crop_move.h - a camera move as pan and zoom over one photograph, for comparison with 3D pan & scan [Colburn 2014,
+ * 3.8].
  *
  * The photograph may be stored on its side; it is rotated by quarter turns to the film's orientation. Crops and points
  * are in px of the rotated picture unless noted. Scene units. */
@@ -27,8 +28,8 @@ struct crop_move {
     double misfits[2]; /* crop_misfit at the ends, frame px */
 };
 
-/* Index of the view nearest to the middle camera of the path among those that face about the same way; of several at the
- * same position, the one that faces most nearly that way. */
+/* Index of the view nearest to the middle camera of the path among those that face about the same way; of several at
+ * the same position, the one that faces most nearly that way. */
 int crop_move_choose_view(const struct camera_set *set, const struct camera_path *path);
 
 /* Fits the first and the last crop to what the path's first and last camera see of the view's points; the crops between

@@ -1,8 +1,8 @@
 /* crop_picture.c - separable resampling with the Catmull-Rom cubic [Keys 1981], widened by the factor of reduction.
  *
  * The first pass filters the rows that are needed into a strip, the second the strip's columns. Unlike the plain cubic,
- * each pass clamps its result to the range of the samples within one kernel unit, so there are no halos around lights and
- * no negative values. */
+ * each pass clamps its result to the range of the samples within one kernel unit, so there are no halos around lights
+ * and no negative values. */
 #include "stages/pan_scan/crop_picture.h"
 
 #include <math.h>

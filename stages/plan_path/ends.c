@@ -1,18 +1,18 @@
 /* ends.c - choice of the two ends of a move.
  *
- * Candidates. Each valid cell of the start's region gives one candidate for the start, at the cell's nearest or farthest
- * valid z as the move requires; likewise for the end. A pair of candidates may subtend at most max_angle at the scene's
- * centroid, and the path of a dolly in or out must advance by at least half of its length.
+ * Candidates. Each valid cell of the start's region gives one candidate for the start, at the cell's nearest or
+ * farthest valid z as the move requires; likewise for the end. A pair of candidates may subtend at most max_angle at
+ * the scene's centroid, and the path of a dolly in or out must advance by at least half of its length.
  *
- * Discrete choice. [Colburn 2014, 3.4.2] measures the parallax of the longest pairs and takes the best, since it renders
- * the scene twice for each pair. Here each cell is rendered once, after which comparing two pictures takes less than a
- * millisecond, so all pairs are compared. The thesis tests the validity of the ends alone; here every frame's position
- * on the path is tested, and the best pair whose whole path is valid wins. If there is none, the thesis's pair is drawn
- * in towards the origin until its path is valid.
+ * Discrete choice. [Colburn 2014, 3.4.2] measures the parallax of the longest pairs and takes the best, since it
+ * renders the scene twice for each pair. Here each cell is rendered once, after which comparing two pictures takes less
+ * than a millisecond, so all pairs are compared. The thesis tests the validity of the ends alone; here every frame's
+ * position on the path is tested, and the best pair whose whole path is valid wins. If there is none, the thesis's pair
+ * is drawn in towards the origin until its path is valid.
  *
- * Continuous refinement, not in the thesis: Levenberg-Marquardt on a smooth surrogate (refine.c), from which only as much
- * is kept as the real validity and parallax confirm; then hill climbing by small steps of one end along one axis, each of
- * which must increase the parallax. The best result with a valid path replaces the discrete one. */
+ * Continuous refinement, not in the thesis: Levenberg-Marquardt on a smooth surrogate (refine.c), from which only as
+ * much is kept as the real validity and parallax confirm; then hill climbing by small steps of one end along one axis,
+ * each of which must increase the parallax. The best result with a valid path replaces the discrete one. */
 #include "stages/plan_path/ends.h"
 
 #include <stdlib.h>
@@ -99,7 +99,8 @@ static void search_release(struct ends_search *s)
     viewpoint_test_release(&s->test);
 }
 
-/* ---------------------------------------------------------------------------------------------------- depth pictures */
+/* ---------------------------------------------------------------------------------------------------- depth
+ * pictures */
 
 static enum status render_end(struct depth_picture *d, const struct ends_search *s, int end, struct vec3 at,
                               struct err *err)
@@ -174,7 +175,8 @@ static enum status measure_parallax(struct ends_search *s, struct move_ends *e, 
     return st;
 }
 
-/* ------------------------------------------------------------------------------------------------------------- paths */
+/* -------------------------------------------------------------------------------------------------------------
+ * paths */
 
 static double angle_at_centroid(const struct shot_setup *shot, const struct vec3 at[2])
 {
@@ -256,7 +258,8 @@ static bool is_allowed(const struct ends_search *s, const struct vec3 at[2])
     return (move == MOVE_DOLLY_IN ? advance : -advance) >= MIN_ADVANCE * vec3_length(vec3_sub(at[1], at[0]));
 }
 
-/* ------------------------------------------------------------------------------------------------- pairs on the grid */
+/* ------------------------------------------------------------------------------------------------- pairs on the
+ * grid */
 
 static int cell_count(const struct validity_region *r) { return r->columns * r->rows; }
 
@@ -394,7 +397,8 @@ static enum status draw_in(struct ends_search *s, struct move_ends *e, struct er
     return measure_path(s, e, err);
 }
 
-/* The pair of the most parallax whose path is valid; notes->chosen stays -1 if none of the first MAX_PAIRS_TESTED is. */
+/* The pair of the most parallax whose path is valid; notes->chosen stays -1 if none of the first MAX_PAIRS_TESTED
+ * is. */
 static enum status choose_valid_pair(struct ends_search *s, const struct end_pair *pairs, int count,
                                      struct move_ends *best, struct err *err)
 {
@@ -431,7 +435,8 @@ static enum status choose_on_grid(struct ends_search *s, struct move_ends *best,
     return st;
 }
 
-/* ------------------------------------------------------------------------------------------------------ off the grid */
+/* ------------------------------------------------------------------------------------------------------ off the
+ * grid */
 
 /* Ends of ever more parallax, from those on the grid upwards. The path of the first is fully measured; those of the
  * others have passed the coarse test alone. */
@@ -507,8 +512,8 @@ static int most_parallax(const struct move_ends step[STEPS])
     return best;
 }
 
-/* Takes the best step whose path is valid while it gives more parallax; halves the steps when none does. This covers what
- * the surrogate leaves out: what hides what after the step, and the true borders of the regions. */
+/* Takes the best step whose path is valid while it gives more parallax; halves the steps when none does. This covers
+ * what the surrogate leaves out: what hides what after the step, and the true borders of the regions. */
 static enum status climb(struct ascent *a, struct ends_search *s, struct err *err)
 {
     double length = FIRST_STEP;

@@ -1,4 +1,5 @@
-/* ends.h - the two ends of a camera move, chosen among the valid viewpoints for the most parallax [Colburn 2014, 3.4.2].
+/* ends.h - the two ends of a camera move, chosen among the valid viewpoints for the most parallax [Colburn 2014,
+ * 3.4.2].
  *
  * "Path" is the way of the camera between the two ends. */
 #ifndef REMODEL_ENDS_H

@@ -1,7 +1,7 @@
 /* film.c - a film of keyframed shots and planned moves.
  *
- * Each shot becomes curves over its own time (spline.c) that are sampled at the frames. A planned move is read as one key
- * per frame, so it can be slowed down, reversed and joined like any other shot.
+ * Each shot becomes curves over its own time (spline.c) that are sampled at the frames. A planned move is read as one
+ * key per frame, so it can be slowed down, reversed and joined like any other shot.
  *
  * Frames: a shot of keys over S seconds has round(S fps) + 1 of them, both ends included; a planned move has its own
  * number; a join of S seconds adds round(S fps) - 1 between the two shots. */
@@ -257,8 +257,8 @@ static void append_key(struct effect_layer *layer, const struct effect_key *key)
         layer->keys[layer->key_count++] = *key;
 }
 
-/* Fills the keys of a move's layer over the film's time: its value at the shot's frames, and no change at the neighbouring
- * frame of the shot before and of the shot after, so that it fades in and out over joins. */
+/* Fills the keys of a move's layer over the film's time: its value at the shot's frames, and no change at the
+ * neighbouring frame of the shot before and of the shot after, so that it fades in and out over joins. */
 static void retime_layer(struct effect_layer *made, const struct effect_layer *layer,
                          const struct film_sources *sources, int index, double fps)
 {

@@ -1,8 +1,8 @@
 /* film.h - a film of keyframed shots and planned moves in sequence [Colburn 2014, 3.4.4].
  *
- * A shot's first and last frame show its first and last key. Two shots are separated by a cut, or connected by a join: a
- * transition that continues the velocities of both shots, cubic in position and orientation and monotone in everything
- * else. Focal lengths are interpolated as logarithms. */
+ * A shot's first and last frame show its first and last key. Two shots are separated by a cut, or connected by a join:
+ * a transition that continues the velocities of both shots, cubic in position and orientation and monotone in
+ * everything else. Focal lengths are interpolated as logarithms. */
 #ifndef REMODEL_FILM_H
 #define REMODEL_FILM_H
 
@@ -25,8 +25,8 @@ struct film_settings {
 
 /* Computes the film described by `file` (docs/formats.md) and its effect layers: first those of its moves, from
  * moves/EFFECT/effects.txt, over each move's own time, then the file's own. path and layers are empty on entry and, on
- * failure, on return. Adds each file that it reads to prov, which may be NULL. Score "shot_N": the second at which shot N
- * begins. */
+ * failure, on return. Adds each file that it reads to prov, which may be NULL. Score "shot_N": the second at which shot
+ * N begins. */
 enum status keyframed_path(struct camera_path *path, struct effects *layers, const char *file,
                            const struct film_settings *film, struct provenance *prov, struct err *err);
 

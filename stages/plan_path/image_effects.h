@@ -9,8 +9,8 @@
 
 /* Sets each frame's aperture and focus. The aperture runs linearly, eased as the move, between a pinhole and the widest
  * valid aperture at the end that has it. Focus is on the subject; it is pulled from the first to the second. fractions:
- * each frame's position on the path, 0 to 1. *widest gets the widest aperture (diameter, scene units); 0: it cannot open,
- * and all frames are pinhole. */
+ * each frame's position on the path, 0 to 1. *widest gets the widest aperture (diameter, scene units); 0: it cannot
+ * open, and all frames are pinhole. */
 enum status focus_frames(struct camera_path *path, double *widest, const double *fractions, struct viewpoint_test *test,
                          const struct validity *v, const struct subject_list *subjects,
                          const struct plan_params *params, struct err *err);

@@ -1,8 +1,8 @@
 /* keyframes.c - reader of keyframed films.
  *
- * A key's pose comes in one of three forms: `view`, the upright camera of a view; `camera`, a pose as COLMAP writes it; or
- * `at ... look ...`, a position and a point to look at. Some options depend on others later on the line (up, focus at a
- * point), so they are collected in struct key_line and resolved at its end. */
+ * A key's pose comes in one of three forms: `view`, the upright camera of a view; `camera`, a pose as COLMAP writes it;
+ * or `at ... look ...`, a position and a point to look at. Some options depend on others later on the line (up, focus
+ * at a point), so they are collected in struct key_line and resolved at its end. */
 #include "stages/plan_path/keyframes.h"
 
 #include <ctype.h>
@@ -81,8 +81,8 @@ static void set_pose(struct film_key *key, struct vec3 position, struct vec3 x, 
     key->rotation = quat_from_mat3((struct mat3){{{x.x, y.x, z.x}, {x.y, y.y, z.y}, {x.z, y.z, z.z}}});
 }
 
-/* A view's camera, rotated by quarter turns until it is upright, with the focal length at which the frame just lies within
- * its picture. */
+/* A view's camera, rotated by quarter turns until it is upright, with the focal length at which the frame just lies
+ * within its picture. */
 static enum status read_view_pose(struct keyframe_reader *r, struct film_key *key, struct err *err)
 {
     char *name;

@@ -39,8 +39,8 @@ struct film_script {
 
 /* set: the views that keys may name. ups: each view's upright direction in its own camera; NULL: (0, -1, 0). lens: the
  * film's size and principal point, and the focal length until one is keyed. up: the upright direction in the world for
- * keys without their own. script is empty on entry and, on failure, on return. ST_DATA with file, line, what was found and
- * what was expected. */
+ * keys without their own. script is empty on entry and, on failure, on return. ST_DATA with file, line, what was found
+ * and what was expected. */
 enum status film_script_read(struct film_script *script, const char *file, const struct camera_set *set,
                              const struct vec3 *ups, const struct view *lens, struct vec3 up, struct err *err);
 void film_script_release(struct film_script *script);

@@ -67,8 +67,8 @@ double parallax_tolerance(const struct layer_scene *scene)
     return fmax(MIN_PARALLAX_TOLERANCE, SIGMAS * scene->sigma);
 }
 
-/* Fraction of b's picture that is hidden from a. A pixel's point in a's camera is its rotated ray times its depth plus a
- * translation, so its homogeneous pixel (u, v, w) in a is linear in x along a row. Eight pixels at a time. */
+/* Fraction of b's picture that is hidden from a. A pixel's point in a's camera is its rotated ray times its depth plus
+ * a translation, so its homogeneous pixel (u, v, w) in a is linear in x along a row. Eight pixels at a time. */
 static double hidden_fraction(const struct depth_picture *a, const struct depth_picture *b, double tolerance)
 {
     const struct view *from = &b->camera, *to = &a->camera;

@@ -4,8 +4,8 @@
  * frame lines as transforms.json.
  *
  * Blender's camera has its sensor fitted to the picture's width: the width spans the angle that sensor_width spans at
- * the distance `lens`; shifts are fractions of the width. Non-square pixels (fx and fy differ) become the render's pixel
- * aspect, which Blender has once for all frames: that of the first frame. */
+ * the distance `lens`; shifts are fractions of the width. Non-square pixels (fx and fy differ) become the render's
+ * pixel aspect, which Blender has once for all frames: that of the first frame. */
 #include "stages/plan_path/path_export.h"
 
 #include <jansson.h>

@@ -8,8 +8,8 @@
 
 #include "common/capture/camera_path.h"
 
-/* Writes folder/blender.py, then folder/transforms.json, each whole or not at all. prov may be NULL. ST_DATA: the path has
- * no frames, a value that is not finite, or a name that is not UTF-8. */
+/* Writes folder/blender.py, then folder/transforms.json, each whole or not at all. prov may be NULL. ST_DATA: the path
+ * has no frames, a value that is not finite, or a name that is not UTF-8. */
 enum status path_export_write(const struct camera_path *p, const char *folder, const struct provenance *prov,
                               struct err *err);
 

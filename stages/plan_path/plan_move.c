@@ -1,9 +1,9 @@
 /* plan_move.c - planning of a move: ends, frames, aperture and focus, colour layers, scores.
  *
  * The ends (ends.c) fix the camera of every frame: position, target and focal length run linearly between the two ends,
- * eased in time [Colburn 2014, 3.4.2]. Then come the image effects of 3.4.3 (image_effects.c). Ends on the border of the
- * valid region leave an aperture no room, since its corners would be invalid; the thesis does not treat this case. Here
- * the ends are drawn in step by step until the aperture opens far enough.
+ * eased in time [Colburn 2014, 3.4.2]. Then come the image effects of 3.4.3 (image_effects.c). Ends on the border of
+ * the valid region leave an aperture no room, since its corners would be invalid; the thesis does not treat this case.
+ * Here the ends are drawn in step by step until the aperture opens far enough.
  *
  * The scores compare the result with the thesis's discrete choice and state by how much the finished frames miss the
  * sizes and targets that the move promises. */
@@ -28,8 +28,8 @@ enum status plan_params_check(const void *values, struct err *err)
                    p->seconds, p->fps);
 }
 
-/* Makes an establishing dolly run to the right, or upwards if it is nearly vertical, which viewers expect. Its ends follow
- * the same rule, so they may be swapped. */
+/* Makes an establishing dolly run to the right, or upwards if it is nearly vertical, which viewers expect. Its ends
+ * follow the same rule, so they may be swapped. */
 static void orient_establishing_dolly(struct move_ends *e, const struct validity *v)
 {
     const struct view camera = shot_aim(&v->shot, v->shot.origin, v->shot.centroid, v->shot.lens.fx);
@@ -65,8 +65,8 @@ static double widest_blur(const struct camera_path *path)
     return widest;
 }
 
-/* Sets apertures and focus. Draws the ends in towards the origin step by step until the aperture gives half of max_blur;
- * if it never does, takes the ends for which it opens widest. */
+/* Sets apertures and focus. Draws the ends in towards the origin step by step until the aperture gives half of
+ * max_blur; if it never does, takes the ends for which it opens widest. */
 static enum status open_aperture(struct camera_path *path, double *fractions, struct move_notes *n,
                                  struct viewpoint_test *test, const struct validity *v,
                                  const struct subject_list *subjects, const struct plan_params *params, struct err *err)

@@ -13,7 +13,8 @@
  *         OUT/effects.txt                               the film's effect layers, even if there are none
  *         OUT/path.txt                                  scores and times
  *         OUT/blender.py, transforms.json               the same path for other programs
- *         OUT/frames.mk                                 FRAMES := 0001 0002 ..., written last: if it is new, so is the rest */
+ *         OUT/frames.mk                                 FRAMES := 0001 0002 ..., written last: if it is new, so is the
+ * rest */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

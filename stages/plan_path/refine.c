@@ -4,9 +4,9 @@
  * the distance by which the two cameras separate its near and far side, across the edge, summed.
  *
  * Unknowns: x, y and z of both ends in the shot's reference frame, in units of half the bounding box of the views'
- * centres (z: of its larger half). Residuals, minimised by Levenberg-Marquardt (Ceres): S_0 / S, where S_0 is S on entry;
- * and for each limit (z range and valid area of the region, interpolated between cells; angle) a penalty that is 0.01
- * at the limit and grows exponentially beyond it. */
+ * centres (z: of its larger half). Residuals, minimised by Levenberg-Marquardt (Ceres): S_0 / S, where S_0 is S on
+ * entry; and for each limit (z range and valid area of the region, interpolated between cells; angle) a penalty that is
+ * 0.01 at the limit and grows exponentially beyond it. */
 #include "stages/plan_path/refine.h"
 
 #include <stdlib.h>

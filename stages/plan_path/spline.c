@@ -1,14 +1,14 @@
 /* spline.c - curves through keys.
  *
- * Shape and timing of a path are separate. The shape is a cubic Hermite spline over chord length. Its tangent at a key is
- * the mean of the directions of the adjoining chords, which is the direction of a centripetal Catmull-Rom spline: no
+ * Shape and timing of a path are separate. The shape is a cubic Hermite spline over chord length. Its tangent at a key
+ * is the mean of the directions of the adjoining chords, which is the direction of a centripetal Catmull-Rom spline: no
  * loops, no cusps, and a line stays a line [Yuksel 2011]. The timing is a monotone cubic (common/math/monotone.h) from
- * time to chord length: a key's time changes the camera's speed but not its path, and the camera never overshoots a key,
- * whereas a C2 spline over time could leave the region that the photos cover. Keys at constant velocity give constant
- * velocity.
+ * time to chord length: a key's time changes the camera's speed but not its path, and the camera never overshoots a
+ * key, whereas a C2 spline over time could leave the region that the photos cover. Keys at constant velocity give
+ * constant velocity.
  *
- * Orientations are handled alike, over the sum of the angles between keys. Their shape is the cubic in cumulative form of
- * [Kim 1995], q0 exp(w1 b1) exp(w2 b2) exp(w3 b3), whose angular velocities at the ends are 3 w1 and 3 w3. */
+ * Orientations are handled alike, over the sum of the angles between keys. Their shape is the cubic in cumulative form
+ * of [Kim 1995], q0 exp(w1 b1) exp(w2 b2) exp(w3 b3), whose angular velocities at the ends are 3 w1 and 3 w3. */
 #include "stages/plan_path/spline.h"
 
 #include <stdlib.h>

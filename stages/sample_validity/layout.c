@@ -1,9 +1,9 @@
 /* layout.c - the setup of a scene's moves.
  *
  * As in [Colburn 2014, 3.4.2], the reference frame has its origin at the centremost view's centre and the normal of the
- * plane fitted to the views' centres as z axis, and the centroid is the median position of the segments in the middle of
- * the central views' pictures. What differs: only central views that face about the same way as the centremost one vote
- * for the centroid, since indoors others show what is behind it; and if the plane does not face the scene, as for
+ * plane fitted to the views' centres as z axis, and the centroid is the median position of the segments in the middle
+ * of the central views' pictures. What differs: only central views that face about the same way as the centremost one
+ * vote for the centroid, since indoors others show what is behind it; and if the plane does not face the scene, as for
  * views in a line towards it, the axes are the centremost view's. Up is the mean of the views' upright directions, f
  * their mean focal length (common/film/film_lens.h). */
 #include "stages/sample_validity/layout.h"

@@ -1,14 +1,14 @@
 /* sample.c - sampling of the valid viewpoints of each end of a move.
  *
  * [Colburn 2014, 3.4.2]: a grid in x and y over twice the bounding box of the views' centres at z = 0; from each valid
- * cell a search along z, both ways, for the range of valid z. The step doubles while viewpoints are valid and halves from
- * the first invalid one on, down to the tolerance. Moves on the axis have a single cell, the origin. Viewpoints are
- * tested in small pictures; for some cells the search is repeated in full ones to report the error.
+ * cell a search along z, both ways, for the range of valid z. The step doubles while viewpoints are valid and halves
+ * from the first invalid one on, down to the tolerance. Moves on the axis have a single cell, the origin. Viewpoints
+ * are tested in small pictures; for some cells the search is repeated in full ones to report the error.
  *
- * What differs. If fewer than a quarter of the cells are valid, the grid is shrunk around the origin by halves. f may be
- * longer than the views' mean focal length, because hand-held photos do not fill a frame seen from between them: the zoom
- * maximises the fraction of valid cells times zoom^-ZOOM_COST. If the origin is invalid at every zoom, the limits are
- * raised so that it is valid, since moves are drawn in towards it. */
+ * What differs. If fewer than a quarter of the cells are valid, the grid is shrunk around the origin by halves. f may
+ * be longer than the views' mean focal length, because hand-held photos do not fill a frame seen from between them: the
+ * zoom maximises the fraction of valid cells times zoom^-ZOOM_COST. If the origin is invalid at every zoom, the limits
+ * are raised so that it is valid, since moves are drawn in towards it. */
 #include "stages/sample_validity/sample.h"
 
 #include <stdlib.h>
@@ -71,8 +71,8 @@ static enum status sample_cell(struct cell_sampler *s, const struct shot_end *en
     return st;
 }
 
-/* extent: size of the grid in units of the bounding box of the centres. shrink: factor by which it is then scaled about the
- * origin. */
+/* extent: size of the grid in units of the bounding box of the centres. shrink: factor by which it is then scaled about
+ * the origin. */
 static void place_cells(struct validity_region *r, const struct shot_setup *shot, bool on_axis, double extent,
                         double shrink)
 {
@@ -122,8 +122,8 @@ static enum status raise_limits(struct cell_sampler *s, const char *center_view,
     return ST_OK;
 }
 
-/* Sets the zoom, and with it f: the best one at which the origin is valid; if there is none, the largest, and raises the
- * limits. */
+/* Sets the zoom, and with it f: the best one at which the origin is valid; if there is none, the largest, and raises
+ * the limits. */
 static enum status find_zoom(struct cell_sampler *s, double max_zoom, const char *center_view, struct err *err)
 {
     struct validity *v = s->v;

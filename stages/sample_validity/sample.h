@@ -21,8 +21,8 @@ struct sampling_notes {
         requested_outside; /* limits in the parameters; v->limits are wider if even the origin fails them */
 };
 
-/* v is empty on entry and, on failure, on return. ups: as in layout_find. ST_DATA: the scene has no depth; the origin shows
- * nothing; a subject is not in front of it. Same bits for any number of threads. */
+/* v is empty on entry and, on failure, on return. ups: as in layout_find. ST_DATA: the scene has no depth; the origin
+ * shows nothing; a subject is not in front of it. Same bits for any number of threads. */
 enum status validity_sample(struct validity *v, struct sampling_notes *notes, const struct layer_scene *scene,
                             const struct vec3 *ups, const struct subject_list *subjects,
                             const struct film_effect *effect, const struct validity_params *params, struct err *err);

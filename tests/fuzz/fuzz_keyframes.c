@@ -1,5 +1,6 @@
-/* fuzz_keyframes.c - keyframed films: any bytes give a path of finite numbers and layers that can be written, or an error
- * message. A planned move "m" of three frames is available. (fuzz.sh compiles the sources that the headers name.) */
+/* fuzz_keyframes.c - keyframed films: any bytes give a path of finite numbers and layers that can be written, or an
+ * error message. A planned move "m" of three frames is available. (fuzz.sh compiles the sources that the headers
+ * name.) */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
-/* fuzz_validity.c - regions of valid viewpoints: any bytes give regions that can be used, written and read back the same,
- * or an error message. */
+/* fuzz_validity.c - regions of valid viewpoints: any bytes give regions that can be used, written and read back the
+ * same, or an error message. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

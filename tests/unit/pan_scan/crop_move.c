@@ -42,8 +42,8 @@ static void store_turned(struct view *v)
     v->translation = vec3_make(o.translation.y, -o.translation.x, o.translation.z);
 }
 
-/* A wall at z = 10, with every third point nearer by `relief` and the next by twice that; three views of it, stored rotated
- * by quarter turns; an eased move to the right and forward. */
+/* A wall at z = 10, with every third point nearer by `relief` and the next by twice that; three views of it, stored
+ * rotated by quarter turns; an eased move to the right and forward. */
 static void make(struct fixture *f, int quarters, double relief)
 {
     static const char *const names[] = {"left", "middle", "right"};

@@ -14,8 +14,8 @@ enum { W = 203, H = 61 }; /* no multiple of the vector width */
 #define FAR  8.0
 #define FX   160.0
 
-/* Seen from (at, 0, 0) along z: a wall at FAR, in front of it a strip at NEAR from -half to half. Depths are known in the
- * first `rows` rows. */
+/* Seen from (at, 0, 0) along z: a wall at FAR, in front of it a strip at NEAR from -half to half. Depths are known in
+ * the first `rows` rows. */
 static void picture(struct depth_picture *d, double at, double half, int rows)
 {
     static float z[W * H];

@@ -112,7 +112,8 @@ static void release(struct planned_film *film)
     validity_release(&film->v);
 }
 
-/* Measures every frame again. Frames may be invalid only if an end has no valid viewpoint, which the notes then state. */
+/* Measures every frame again. Frames may be invalid only if an end has no valid viewpoint, which the notes then
+ * state. */
 static void assert_all_frames_valid(const struct planned_film *film, const struct wall_scene *f)
 {
     struct scene_points points;

@@ -174,8 +174,8 @@ static void holes_outside_and_near_each_invalidate_a_viewpoint(void **state)
     (void)state;
     struct fixture x;
     set_up(&x);
-    /* 1.5 up: 24 of 120 rows show a part of the wall at 10 that no view saw. The wall behind the box at 6, 64 columns less
-     * 10.7 on each side that the other two views see, appears in 1.5 * 160 (1/6 - 1/10) = 16 rows. */
+    /* 1.5 up: 24 of 120 rows show a part of the wall at 10 that no view saw. The wall behind the box at 6, 64 columns
+     * less 10.7 on each side that the other two views see, appears in 1.5 * 160 (1/6 - 1/10) = 16 rows. */
     struct viewpoint v = measure(&x, moved(&x, 0, -1.5, 0));
     assert_false(v.valid);
     assert_float_equal(v.outside, 0.2, 0.02); /* measured in 64 x 48 px */
