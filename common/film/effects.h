@@ -1,5 +1,4 @@
-/* effects.h - effect layers: keyframed colour changes of the whole picture or of a region of space [Colburn 2014,
- * 3.6.1].
+/* effects.h - effect layers: keyframed colour changes of the picture or of a region of space [Colburn 2014, 3.6.1].
  *
  * Layers are applied to a finished frame in file order, each to the result of the layers before it. The frame's z gives
  * a pixel's position in the world; docs/formats.md describes the file. In scene-linear, premultiplied colour:

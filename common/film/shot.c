@@ -77,13 +77,13 @@ static struct vec3 between(struct vec3 a, struct vec3 b, double t)
 struct view shot_camera(const struct shot_setup *shot, const struct shot_move *m, const struct vec3 at[2], double t)
 {
     const struct shot_end *a = &m->end[0], *b = &m->end[1];
-    const struct vec3 place = between(at[0], at[1], t), target = between(a->target, b->target, t);
+    const struct vec3 position = between(at[0], at[1], t), target = between(a->target, b->target, t);
     double focal;
     if (!(a->focal > 0) && !(b->focal > 0) && a->size == b->size && !memcmp(a->corner, b->corner, sizeof a->corner))
-        focal = focal_at(shot, a, place, target);
+        focal = focal_at(shot, a, position, target);
     else
         focal = (1 - t) * focal_at(shot, a, at[0], a->target) + t * focal_at(shot, b, at[1], b->target);
-    return shot_aim(shot, place, target, focal);
+    return shot_aim(shot, position, target, focal);
 }
 
 static struct shot_end keep_size(const struct subject *s, struct vec3 target, double size)

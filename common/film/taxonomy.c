@@ -1,5 +1,4 @@
-/* taxonomy.c - effects: names, legality, choice. To add a move, add it to `enum camera_move` and to `moves` below;
- * shot.c has its rules for the cameras. */
+/* taxonomy.c - effects: names, legality, choice. shot.c has the rules of each move's cameras. */
 #include "common/film/taxonomy.h"
 
 #include <stdio.h>

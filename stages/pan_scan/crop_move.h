@@ -1,5 +1,4 @@
-/* crop_move.h - a camera move as pan and zoom over one photograph, for comparison with 3D pan & scan [Colburn 2014,
- * 3.8].
+/* crop_move.h - a camera move as pan and zoom over one photograph [Colburn 2014, 3.8].
  *
  * The photograph may be stored on its side; it is rotated by quarter turns to the film's orientation. Crops and points
  * are in px of the rotated picture unless noted. Scene units. */

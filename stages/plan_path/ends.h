@@ -1,5 +1,4 @@
-/* ends.h - the two ends of a camera move, chosen among the valid viewpoints for the most parallax [Colburn 2014,
- * 3.4.2].
+/* ends.h - choice of a move's two ends among the valid viewpoints, for the most parallax [Colburn 2014, 3.4.2].
  *
  * "Path" is the way of the camera between the two ends. */
 #ifndef REMODEL_ENDS_H
@@ -19,17 +18,16 @@ struct move_ends {
 };
 
 struct ends_notes {
-    struct move_ends
-        discrete; /* the thesis's result: of the longest pairs, the one with the most parallax, valid or not */
-    int longest;  /* number of those pairs */
-    int pairs;    /* number of pairs whose parallax was measured */
+    struct move_ends discrete; /* the thesis's result: the longest pairs' best by parallax, valid or not */
+    int longest;               /* number of those pairs */
+    int pairs;                 /* number of pairs whose parallax was measured */
     int chosen;   /* rank by parallax of the first pair with a valid path; 0: the best; -1: none, ends were drawn in */
     bool refined; /* the ends are off the grid */
     long renders; /* number of depth pictures rendered */
 };
 
-#define WAY_PLACES \
-    25 /* samples of a path in the first test of its validity; the frames' positions follow if it passes */
+/* Samples of a path in the first test of its validity; the frames' positions follow if it passes. */
+#define WAY_PLACES 25
 
 /* Fraction of the path that is done at frame i of `count`, 0 to 1. ease: "none" or "smooth". */
 double path_fraction(int i, int count, const char *ease);

@@ -1,6 +1,6 @@
 /* refine.c - continuous refinement of a move's ends. Not in the thesis.
  *
- * Hidden area is not differentiable, so a surrogate S stands in: for every depth edge in the picture from the origin,
+ * Hidden area is not differentiable, so a surrogate S replaces it: for every depth edge in the picture from the origin,
  * the distance by which the two cameras separate its near and far side, across the edge, summed.
  *
  * Unknowns: x, y and z of both ends in the shot's reference frame, in units of half the bounding box of the views'

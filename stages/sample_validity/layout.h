@@ -1,5 +1,4 @@
-/* layout.h - the setup of a scene's moves: centremost view, centroid, reference frame and lens [Colburn 2014,
- * 3.4.2]. */
+/* layout.h - setup of a scene's moves: centremost view, centroid, reference frame, lens [Colburn 2014, 3.4.2]. */
 #ifndef REMODEL_SAMPLE_VALIDITY_LAYOUT_H
 #define REMODEL_SAMPLE_VALIDITY_LAYOUT_H
 

@@ -116,17 +116,17 @@ static void a_line_stays_a_line_without_overshoot(void **state)
 {
     (void)state;
     struct motion m;
-    const struct vec3 way = vec3_normalize(vec3_make(3, -2, 1));
+    const struct vec3 direction = vec3_normalize(vec3_make(3, -2, 1));
     double before = 0;
     make(&m, 4); /* fast, then very slow */
     for (int i = 0; i < 4; i++)
-        set(&m, i, i, vec3_scale(way, (double[]){0, 5, 5.01, 6}[i]),
+        set(&m, i, i, vec3_scale(direction, (double[]){0, 5, 5.01, 6}[i]),
             rotation_about(0, 1, 0.5, (double[]){0, 2, 2.01, 4}[i]));
     motion_fit(&m, true);
     for (int i = 0; i <= 300; i++) {
         const struct vec3 p = position_at(&m, i / 100.0);
-        const double s = vec3_dot(p, way);
-        assert_true(vec3_length(vec3_sub(p, vec3_scale(way, s))) < 1e-12);
+        const double s = vec3_dot(p, direction);
+        assert_true(vec3_length(vec3_sub(p, vec3_scale(direction, s))) < 1e-12);
         assert_true(s >= before - 1e-12 && s <= 6 + 1e-12);
         before = s;
         const struct quat q = rotation_at(&m, i / 100.0); /* about one axis */

@@ -208,13 +208,13 @@ static void bad_lines_are_refused_with_file_and_line(void **state)
     assert_true(v.region[0].cells[1].low == -0.5 && v.region[0].cells[1].high == 0.25 && !v.region[0].cells[0].valid);
     validity_release(&v);
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
-        char place[32];
-        snprintf(place, sizeof place,
+        char location[32];
+        snprintf(location, sizeof location,
                  "broken.txt:%d: ", bad[i].line == 18 && bad[i].words[0] == ':' ? 21 : bad[i].line);
         err = (struct err)ERR_INIT;
         if (!read_changed(&v, bad[i].line, bad[i].text, LINES, &err)) fail_msg("accepted: %s", bad[i].text);
         assert_err(err, ST_DATA, bad[i].words);
-        assert_contains(err.text, place);
+        assert_contains(err.text, location);
         assert_true(!v.region[0].cells && !v.region[1].cells);
     }
 }
@@ -225,12 +225,12 @@ static void truncated_and_overlong_files_are_refused(void **state)
     struct validity v;
     for (int lines = 0; lines <= LINES + 1; lines++) {
         struct err err = ERR_INIT;
-        char place[32];
+        char location[32];
         if (lines == LINES) continue;
-        snprintf(place, sizeof place, lines ? "broken.txt:%d: " : "broken.txt: found an empty file", lines);
+        snprintf(location, sizeof location, lines ? "broken.txt:%d: " : "broken.txt: found an empty file", lines);
         assert_int_equal(read_changed(&v, 0, NULL, lines, &err), ST_DATA);
         assert_err(err, ST_DATA, "wanted");
-        assert_contains(err.text, place);
+        assert_contains(err.text, location);
         assert_true(!v.region[0].cells && !v.region[1].cells);
     }
     struct err err = ERR_INIT;
