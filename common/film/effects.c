@@ -68,7 +68,7 @@ void effects_release(struct effects *e)
     *e = (struct effects){0};
 }
 
-/* ----------------------------------------------------------------------------------------------------- reading */
+/* ---------------------------------------------------------------------------------------------------------- reading */
 
 static enum status read_word(struct textfile *t, const char *what, const char *const names[3], int *which,
                              struct err *err)
@@ -231,7 +231,7 @@ enum status effects_read(struct effects *e, const char *path, struct err *err)
     return st;
 }
 
-/* ----------------------------------------------------------------------------------------------------- writing */
+/* ---------------------------------------------------------------------------------------------------------- writing */
 
 static bool within(double value, double min, double max) { return value >= min && value <= max; }
 
@@ -298,7 +298,7 @@ enum status effects_write(const struct effects *e, const char *path, const struc
     return st;
 }
 
-/* ---------------------------------------------------------------------------------------------------- applying */
+/* --------------------------------------------------------------------------------------------------------- applying */
 
 /* Slope of value k at key i of a cubic layer; 0 at the first and the last key, where the value becomes constant. */
 static double key_slope(const struct effect_layer *l, int i, int k)

@@ -39,7 +39,7 @@ enum status subject_list_add(struct subject_list *list, struct subject *s, struc
     return ST_OK;
 }
 
-/* -------------------------------------------------------------------------------------------------------- geometry */
+/* --------------------------------------------------------------------------------------------------------- geometry */
 
 void subject_place(struct subject *s, const struct view *view, const struct vec3 *up)
 {
@@ -77,7 +77,7 @@ double subject_size_in(const struct subject *s, const struct view *camera)
     return isfinite(size) ? size : 0;
 }
 
-/* --------------------------------------------------------------------------------------------------------- writing */
+/* ---------------------------------------------------------------------------------------------------------- writing */
 
 enum status subject_list_write(const struct subject_list *list, const char *path, const struct provenance *prov,
                                struct err *err)
@@ -101,7 +101,7 @@ enum status subject_list_write(const struct subject_list *list, const char *path
     return st;
 }
 
-/* --------------------------------------------------------------------------------------------------------- reading */
+/* ---------------------------------------------------------------------------------------------------------- reading */
 
 static enum status read_subject(struct textfile *t, struct subject *s, struct err *err)
 {

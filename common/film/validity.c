@@ -30,7 +30,7 @@ void validity_release(struct validity *v)
     *v = (struct validity){0};
 }
 
-/* -------------------------------------------------------------------------------------------------------- reading */
+/* ---------------------------------------------------------------------------------------------------------- reading */
 
 static enum status read_vector(struct textfile *t, const char *what, struct vec3 *v, struct err *err)
 {
@@ -173,7 +173,7 @@ enum status validity_read(struct validity *v, const char *path, struct err *err)
     return st;
 }
 
-/* -------------------------------------------------------------------------------------------------------- writing */
+/* ---------------------------------------------------------------------------------------------------------- writing */
 
 static void print_vector(FILE *fp, struct vec3 v) { fprintf(fp, " %.17g %.17g %.17g", v.x, v.y, v.z); }
 

@@ -122,7 +122,7 @@ static void set_frame(struct path_frame *f, const struct camera_state *s, const 
     f->focus = f->aperture > 0 ? s->lens[LENS_FOCUS] : 0;
 }
 
-/* --------------------------------------------------------------------------------------------------- planned moves */
+/* ---------------------------------------------------------------------------------------------------- planned moves */
 
 struct planned_move {
     struct camera_path path;
@@ -177,7 +177,7 @@ static enum status move_keys(struct film_key **keys, const struct planned_move *
     return ST_OK;
 }
 
-/* ----------------------------------------------------------------------------------------------------------- shots */
+/* ------------------------------------------------------------------------------------------------------------ shots */
 
 struct film_sources { /* what a film is computed from */
     struct film_script script;
@@ -244,7 +244,7 @@ static void fill_frames(struct camera_path *path, const struct film_sources *sou
     }
 }
 
-/* --------------------------------------------------------------------------------------------------------- layers */
+/* ----------------------------------------------------------------------------------------------------------- layers */
 
 /* Appends a key, and drops the previous one if it is between two equal ones. */
 static void append_key(struct effect_layer *layer, const struct effect_key *key)
@@ -336,7 +336,7 @@ static enum status collect_layers(struct effects *layers, struct film_sources *s
     return effects_append(layers, own, err);
 }
 
-/* -------------------------------------------------------------------------------------------------------- the path */
+/* --------------------------------------------------------------------------------------------------------- the path */
 
 static enum status place_shots(struct film_sources *sources, const char *file, const struct film_settings *film,
                                struct provenance *prov, struct err *err)

@@ -72,7 +72,7 @@ static const char *const up_names[] = {"x of up", "y of up", "z of up"};
 static const char *const focus_names[] = {"x of the point in focus", "y of the point in focus",
                                           "z of the point in focus"};
 
-/* ---------------------------------------------------------------------------------------------------------- poses */
+/* ------------------------------------------------------------------------------------------------------------ poses */
 
 /* x, y, z: the camera's axes in the world. */
 static void set_pose(struct film_key *key, struct vec3 position, struct vec3 x, struct vec3 y, struct vec3 z)
@@ -169,7 +169,7 @@ static enum status set_focus(struct keyframe_reader *r, struct film_key *key, do
                           MAX_COORDINATE);
 }
 
-/* -------------------------------------------------------------------------------------------------------- options */
+/* ---------------------------------------------------------------------------------------------------------- options */
 
 static enum status read_focal(struct keyframe_reader *r, struct film_key *key, struct err *err)
 {
@@ -234,7 +234,7 @@ static enum status resolve_key(struct keyframe_reader *r, struct key_line *l, st
     return set_focus(r, &l->key, mat3_apply(cam_from_world, vec3_sub(l->focus_point, l->key.position)).z, err);
 }
 
-/* ---------------------------------------------------------------------------------------------------------- lines */
+/* ------------------------------------------------------------------------------------------------------------ lines */
 
 /* Appends a shot to the script, with the join that precedes it. */
 static enum status add_shot(struct keyframe_reader *r, struct film_shot **shot, struct err *err)

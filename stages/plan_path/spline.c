@@ -18,7 +18,7 @@
 #define MIN_DISTANCE 1e-12 /* relative to the distance from the origin: a shorter chord's direction is rounding noise */
 #define MIN_ANGLE    1e-9  /* radians, likewise */
 
-/* -------------------------------------------------------------------------------------------------------- numbers */
+/* ---------------------------------------------------------------------------------------------------------- numbers */
 
 enum status curve_init(struct curve *c, int count, struct err *err)
 {
@@ -77,7 +77,7 @@ double curve_at(const struct curve *c, double time)
     return monotone_value(c->value[i], c->value[i + 1], h, c->slope[i], c->slope[i + 1], (time - c->time[i]) / h);
 }
 
-/* ---------------------------------------------------------------------------------------------------- quaternions */
+/* ------------------------------------------------------------------------------------------------------ quaternions */
 
 static struct quat multiply(struct quat a, struct quat b)
 {
@@ -122,7 +122,7 @@ struct vec3 position_between(struct vec3 a, struct vec3 b, struct vec3 da, struc
     return vec3_add(vec3_add(a, vec3_scale(vec3_sub(b, a), t * t * (3 - 2 * t))), vec3_scale(bend, t * u));
 }
 
-/* --------------------------------------------------------------------------------------------------------- motion */
+/* ----------------------------------------------------------------------------------------------------------- motion */
 
 enum status motion_init(struct motion *m, int count, struct err *err)
 {
