@@ -2,8 +2,8 @@
  *
  * First Levenberg-Marquardt on a smooth surrogate (refine.c), from which only as much is kept as the real validity and
  * parallax confirm; then hill climbing by small steps of one end along one axis, each of which must increase the
- * parallax. Intermediate results pass a coarse test of their path; at the end, the one with the most parallax whose whole
- * path is valid is taken. */
+ * parallax. Intermediate results pass a coarse test of their path; at the end, the one with the most parallax whose
+ * whole path is valid is taken. */
 #include "stages/plan_path/ends_climb.h"
 
 #include "stages/plan_path/refine.h"

@@ -1,5 +1,5 @@
-/* ends_search.h - shared by the search on the grid (ends.c) and off it (ends_climb.c): depth pictures of viewpoints, and
- * measures of the path between two ends. */
+/* ends_search.h - shared by the search on the grid (ends.c) and off it (ends_climb.c): depth pictures of viewpoints,
+ * and measures of the path between two ends. */
 #ifndef REMODEL_ENDS_SEARCH_H
 #define REMODEL_ENDS_SEARCH_H
 
