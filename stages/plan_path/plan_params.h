@@ -9,13 +9,14 @@
     X(seconds, double, 4, 0, 3600, "s", "duration of a planned move")                                                  \
     X(fps, double, 30, 1, 240, "1/s", "frames per second")                                                             \
     X(ease, choice, "smooth", 0, 0, "none|smooth",                                                                     \
-      "easing at the start and the end of a move: smooth, or none for constant speed")                                 \
+      "start and end of moves and keyframed shots: smooth, at rest; none, at speed")                                   \
     X(width, int, 0, 0, 16384, "px",                                                                                   \
       "width of a keyframed film, rounded to even (a move's is set in sample_validity); 0: from height or a photo")    \
     X(height, int, 0, 0, 16384, "px", "height of a keyframed film, rounded to even; 0: from width or a photo")         \
     X(max_side, int, 1280, 16, 16384, "px", "longer side of a keyframed film, at most, if width and height are 0")     \
     X(max_angle, double, 25, 0.1, 180, "degrees", "largest angle between the ends of a move, at the scene's centroid") \
-    X(pairs, int, 12, 1, 20736, "", "number of longest pairs of ends whose parallax is measured if refine is no")      \
+    X(pairs, int, 12, 1, 20736, "",                                                                                    \
+      "longest pairs of ends that compete if refine is no; else used for the thesis's scores and as fallback")         \
     X(refine, choice, "yes", 0, 0, "yes|no", "measure all pairs of ends and then refine the best pair off the grid")   \
     X(parallax_side, int, 192, 16, 4096, "px", "longer side of the pictures in which parallax is measured")            \
     X(max_blur, double, 0.02, 0, 1, "",                                                                                \
