@@ -1,4 +1,10 @@
-/* effects.c - see effects.h. */
+/* effects.c - effect layers: reading, writing, applying.
+ *
+ * Effects of [Colburn 2014, 3.6.1]: the weight of a box is the Gaussian of the distance to its surface. Unlike the
+ * thesis, saturation is limited per pixel so that no channel becomes negative, and layers work on scene-linear colour.
+ *
+ * Applying is vectorised over strips of a row. A pixel's position relative to the box is depth * ray, linear in x and
+ * y, so each axis costs one multiplication and one addition. */
 #include "common/film/effects.h"
 
 #include <assert.h>
@@ -9,42 +15,42 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/base/array.h"
 #include "common/base/outfile.h"
 #include "common/base/parallel.h"
 #include "common/base/scan.h"
 #include "common/base/textfile.h"
 #include "common/math/monotone.h"
 
-#define KEYS_MOST  100000
-#define NAME_MOST  64
-#define VALUE_MOST 100.0
-#define PLACE_MOST 1e9
-#define TIME_MOST  1e6
+#define MAX_KEYS       100000
+#define MAX_NAME       64
+#define MAX_VALUE      100.0
+#define MAX_COORDINATE 1e9
+#define MAX_TIME       1e6
 
-static const char *const kind_words[] = {"saturation", "brightness", "color"};
-static const char *const region_words[] = {"all", "inside", "outside"};
-static const char *const curve_words[] = {"linear", "cubic"};
+static const char *const kind_names[] = {"saturation", "brightness", "color"};
+static const char *const region_names[] = {"all", "inside", "outside"};
+static const char *const curve_names[] = {"linear", "cubic"};
 
-static bool name_is_good(const char *name)
+static bool name_is_valid(const char *name)
 {
     for (const char *c = name; *c; c++)
         if (iscntrl((unsigned char)*c)) return false;
-    return *name && strlen(name) <= NAME_MOST;
+    return *name && strlen(name) <= MAX_NAME;
 }
 
-static int values_of(enum effect_kind kind) { return kind == EFFECT_COLOR ? 3 : 1; }
+static int value_count(enum effect_kind kind) { return kind == EFFECT_COLOR ? 3 : 1; }
 
 enum status effects_append(struct effects *e, struct effects *from, struct err *err)
 {
     const int count = e->layer_count + from->layer_count;
     if (!from->layer_count) return ST_OK;
-    if (count > EFFECT_LAYERS_MOST)
-        return err_set(err, ST_DATA, "%d effect layers are laid over one film; at most %d can be.", count,
-                       EFFECT_LAYERS_MOST);
-    struct effect_layer *layers = realloc(e->layers, (size_t)count * sizeof *layers);
-    if (!layers) return err_nomem(err, "effect layers", (size_t)count * sizeof *layers);
-    memcpy(layers + e->layer_count, from->layers, (size_t)from->layer_count * sizeof *layers);
-    e->layers = layers;
+    if (count > MAX_EFFECT_LAYERS)
+        return err_set(err, ST_DATA, "found %d effect layers for one film, at most %d are allowed; remove some.", count,
+                       MAX_EFFECT_LAYERS);
+    for (int i = e->layer_count; i < count; i++) /* makes room */
+        if (array_append(&e->layers, (size_t)i, sizeof *e->layers, "effect layers", err)) return err->status;
+    memcpy(e->layers + e->layer_count, from->layers, (size_t)from->layer_count * sizeof *e->layers);
     e->layer_count = count;
     free(from->layers);
     *from = (struct effects){0};
@@ -62,32 +68,32 @@ void effects_release(struct effects *e)
     *e = (struct effects){0};
 }
 
-/* ----------------------------------------------------------------------------------------------------- reading */
+/* ---------------------------------------------------------------------------------------------------------- reading */
 
-static enum status read_word(struct textfile *t, const char *what, const char *const words[3], int *which,
+static enum status read_word(struct textfile *t, const char *what, const char *const names[3], int *which,
                              struct err *err)
 {
     char *word;
     enum status st = textfile_word(t, what, &word, err);
     if (st) return st;
     for (*which = 0; *which < 3; ++*which)
-        if (!strcmp(word, words[*which])) return ST_OK;
-    return textfile_error(t, err, word, "%s: %s, %s or %s", what, words[0], words[1], words[2]);
+        if (!strcmp(word, names[*which])) return ST_OK;
+    return textfile_error(t, err, word, "%s: %s, %s or %s", what, names[0], names[1], names[2]);
 }
 
-static enum status read_number(struct textfile *t, const char *what, double least, double most, double *value,
+static enum status read_number(struct textfile *t, const char *what, double min, double max, double *value,
                                struct err *err)
 {
     char *word;
     enum status st = textfile_word(t, what, &word, err);
     if (st) return st;
-    if (!scan_double(word, value) || !(*value >= least && *value <= most))
-        return textfile_error(t, err, word, "%s, a number from %.9g to %.9g", what, least, most);
+    if (!scan_double(word, value) || !(*value >= min && *value <= max))
+        return textfile_error(t, err, word, "%s, a number from %.9g to %.9g", what, min, max);
     return ST_OK;
 }
 
-/* What a layer needs before the next one, or the end of the file, may come. */
-static const char *still_wanted(const struct effects *e, bool has_region)
+/* The line that the last layer still needs; NULL if it is complete. */
+static const char *missing_line(const struct effects *e, bool has_region)
 {
     if (!e->layer_count) return NULL;
     if (!has_region) return "region";
@@ -96,28 +102,24 @@ static const char *still_wanted(const struct effects *e, bool has_region)
 
 static enum status read_layer(struct textfile *t, struct effects *e, bool has_region, struct err *err)
 {
-    const char *wanted = still_wanted(e, has_region);
+    const char *missing = missing_line(e, has_region);
     char *name;
     int kind = 0;
 
-    if (wanted)
-        return textfile_error(t, err, "layer", "a %s of the layer %s", wanted, e->layers[e->layer_count - 1].name);
+    if (missing)
+        return textfile_error(t, err, "layer", "a %s of the layer %s", missing, e->layers[e->layer_count - 1].name);
     enum status st = textfile_word(t, "the layer's name", &name, err);
     if (st) return st;
-    if (!name_is_good(name)) return textfile_error(t, err, name, "a name of 1 to %d printed letters", NAME_MOST);
+    if (!name_is_valid(name)) return textfile_error(t, err, name, "a name of 1 to %d printable characters", MAX_NAME);
     for (int i = 0; i < e->layer_count; i++)
-        if (!strcmp(e->layers[i].name, name)) return textfile_error(t, err, name, "a name that no layer has yet");
-    if (e->layer_count == EFFECT_LAYERS_MOST)
-        return textfile_error(t, err, name, "the end of the file, after %d layers", EFFECT_LAYERS_MOST);
-    if ((st = read_word(t, "what the layer changes", kind_words, &kind, err)) || (st = textfile_end(t, err))) return st;
+        if (!strcmp(e->layers[i].name, name)) return textfile_error(t, err, name, "a name that no other layer has");
+    if (e->layer_count == MAX_EFFECT_LAYERS)
+        return textfile_error(t, err, name, "the end of the file, after %d layers", MAX_EFFECT_LAYERS);
+    if ((st = read_word(t, "what the layer changes", kind_names, &kind, err)) || (st = textfile_end(t, err))) return st;
 
-    struct effect_layer *more = realloc(e->layers, ((size_t)e->layer_count + 1) * sizeof *more);
+    if (array_append(&e->layers, (size_t)e->layer_count, sizeof *e->layers, "effect layers", err)) return err->status;
     char *copy = strdup(name);
-    if (more) e->layers = more;
-    if (!more || !copy) {
-        free(copy);
-        return err_nomem(err, "effect layers", ((size_t)e->layer_count + 1) * sizeof *more);
-    }
+    if (!copy) return err_nomem(err, "a layer's name", strlen(name) + 1);
     e->layers[e->layer_count++] = (struct effect_layer){.name = copy, .kind = (enum effect_kind)kind};
     return ST_OK;
 }
@@ -127,13 +129,13 @@ static enum status read_region(struct textfile *t, struct effect_layer *l, struc
     static const char *const corners[] = {"x0", "y0", "z0", "x1", "y1", "z1"};
     double *const to[] = {&l->low.x, &l->low.y, &l->low.z, &l->high.x, &l->high.y, &l->high.z};
     int region = 0;
-    enum status st = read_word(t, "a region", region_words, &region, err);
+    enum status st = read_word(t, "a region", region_names, &region, err);
 
     l->region = (enum effect_region)region;
     if (st || l->region == EFFECT_ALL) return st;
     for (int i = 0; !st && i < 6; i++)
-        st = read_number(t, corners[i], i < 3 ? -PLACE_MOST : *to[i - 3], PLACE_MOST, to[i], err);
-    if (!st) st = read_number(t, "the fall-off", 0, PLACE_MOST, &l->falloff, err);
+        st = read_number(t, corners[i], i < 3 ? -MAX_COORDINATE : *to[i - 3], MAX_COORDINATE, to[i], err);
+    if (!st) st = read_number(t, "the fall-off", 0, MAX_COORDINATE, &l->falloff, err);
     return st;
 }
 
@@ -142,34 +144,30 @@ static enum status read_curve(struct textfile *t, struct effect_layer *l, struct
     char *word;
     enum status st = textfile_word(t, "linear or cubic", &word, err);
     if (st) return st;
-    if (!strcmp(word, curve_words[EFFECT_LINEAR])) return ST_OK;
+    if (!strcmp(word, curve_names[EFFECT_LINEAR])) return ST_OK;
     l->curve = EFFECT_CUBIC;
-    return strcmp(word, curve_words[EFFECT_CUBIC]) ? textfile_error(t, err, word, "linear or cubic") : ST_OK;
+    return strcmp(word, curve_names[EFFECT_CUBIC]) ? textfile_error(t, err, word, "linear or cubic") : ST_OK;
 }
 
 static enum status read_key(struct textfile *t, struct effect_layer *l, struct err *err)
 {
     static const char *const colors[] = {"red", "green", "blue"};
-    const int values = values_of(l->kind);
+    const int values = value_count(l->kind);
     struct effect_key key = {0};
     char *word;
     enum status st = textfile_word(t, "a time in seconds", &word, err);
 
     if (st) return st;
-    const bool good = scan_double(word, &key.time) && key.time >= 0 && key.time <= TIME_MOST;
-    if (!good) return textfile_error(t, err, word, "a time, a number from 0 to %.9g", TIME_MOST);
+    const bool valid = scan_double(word, &key.time) && key.time >= 0 && key.time <= MAX_TIME;
+    if (!valid) return textfile_error(t, err, word, "a time, a number from 0 to %.9g", MAX_TIME);
     if (l->key_count && !(key.time > l->keys[l->key_count - 1].time))
-        return textfile_error(t, err, word, "a time after %.9g, the key's before", l->keys[l->key_count - 1].time);
+        return textfile_error(t, err, word, "a time after %.9g, that of the previous key",
+                              l->keys[l->key_count - 1].time);
     for (int i = 0; !st && i < values; i++)
-        st = read_number(t, values == 1 ? kind_words[l->kind] : colors[i], 0, VALUE_MOST, &key.value[i], err);
+        st = read_number(t, values == 1 ? kind_names[l->kind] : colors[i], 0, MAX_VALUE, &key.value[i], err);
     if (st) return st;
-    if (l->key_count == KEYS_MOST) return textfile_error(t, err, word, "at most %d keys of a layer", KEYS_MOST);
-    if (!(l->key_count & (l->key_count - 1))) { /* a power of two: room for as many again */
-        const size_t room = l->key_count ? 2 * (size_t)l->key_count : 1;
-        struct effect_key *more = realloc(l->keys, room * sizeof *more);
-        if (!more) return err_nomem(err, "keys of a layer", room * sizeof *more);
-        l->keys = more;
-    }
+    if (l->key_count == MAX_KEYS) return textfile_error(t, err, word, "at most %d keys in a layer", MAX_KEYS);
+    if (array_append(&l->keys, (size_t)l->key_count, sizeof *l->keys, "keys of a layer", err)) return err->status;
     l->keys[l->key_count++] = key;
     return ST_OK;
 }
@@ -212,10 +210,10 @@ enum status effects_read_layers(struct effects *e, struct textfile *t, struct er
         }
         if (!st) st = textfile_end(t, err);
     }
-    const char *wanted = still_wanted(e, has_region);
-    if (!st && wanted)
+    const char *missing = missing_line(e, has_region);
+    if (!st && missing)
         st = err_set(err, ST_DATA, "%s:%d: found the end of the file, wanted a %s of the layer %s.", t->path, t->line,
-                     wanted, e->layers[e->layer_count - 1].name);
+                     missing, e->layers[e->layer_count - 1].name);
     if (st) effects_release(e);
     return st;
 }
@@ -233,40 +231,40 @@ enum status effects_read(struct effects *e, const char *path, struct err *err)
     return st;
 }
 
-/* ----------------------------------------------------------------------------------------------------- writing */
+/* ---------------------------------------------------------------------------------------------------------- writing */
 
-static bool within(double value, double least, double most) { return value >= least && value <= most; }
+static bool within(double value, double min, double max) { return value >= min && value <= max; }
 
-/* A file may have this layer. */
-static bool layer_is_good(const struct effects *e, int index)
+/* Whether effects_read would accept this layer. */
+static bool layer_is_valid(const struct effects *e, int index)
 {
     const struct effect_layer *l = &e->layers[index];
-    bool good = l->name && name_is_good(l->name) && within(l->key_count, 1, KEYS_MOST);
+    bool valid = l->name && name_is_valid(l->name) && within(l->key_count, 1, MAX_KEYS);
 
-    for (int i = 0; good && i < index; i++) good = strcmp(e->layers[i].name, l->name) != 0;
+    for (int i = 0; valid && i < index; i++) valid = strcmp(e->layers[i].name, l->name) != 0;
     if (l->region != EFFECT_ALL)
-        good = good && within(l->low.x, -PLACE_MOST, PLACE_MOST) && within(l->high.x, l->low.x, PLACE_MOST) &&
-               within(l->low.y, -PLACE_MOST, PLACE_MOST) && within(l->high.y, l->low.y, PLACE_MOST) &&
-               within(l->low.z, -PLACE_MOST, PLACE_MOST) && within(l->high.z, l->low.z, PLACE_MOST) &&
-               within(l->falloff, 0, PLACE_MOST);
-    for (int i = 0; good && i < l->key_count; i++) {
-        good = within(l->keys[i].time, 0, TIME_MOST) && (!i || l->keys[i].time > l->keys[i - 1].time);
-        for (int k = 0; k < values_of(l->kind); k++) good = good && within(l->keys[i].value[k], 0, VALUE_MOST);
+        valid = valid && within(l->low.x, -MAX_COORDINATE, MAX_COORDINATE) &&
+                within(l->high.x, l->low.x, MAX_COORDINATE) && within(l->low.y, -MAX_COORDINATE, MAX_COORDINATE) &&
+                within(l->high.y, l->low.y, MAX_COORDINATE) && within(l->low.z, -MAX_COORDINATE, MAX_COORDINATE) &&
+                within(l->high.z, l->low.z, MAX_COORDINATE) && within(l->falloff, 0, MAX_COORDINATE);
+    for (int i = 0; valid && i < l->key_count; i++) {
+        valid = within(l->keys[i].time, 0, MAX_TIME) && (!i || l->keys[i].time > l->keys[i - 1].time);
+        for (int k = 0; k < value_count(l->kind); k++) valid = valid && within(l->keys[i].value[k], 0, MAX_VALUE);
     }
-    return good;
+    return valid;
 }
 
 static void write_layer(const struct effect_layer *l, const char *name, FILE *to)
 {
-    fprintf(to, "layer %s %s\nregion %s", name, kind_words[l->kind], region_words[l->region]);
+    fprintf(to, "layer %s %s\nregion %s", name, kind_names[l->kind], region_names[l->region]);
     if (l->region != EFFECT_ALL)
         fprintf(to, " %.17g %.17g %.17g %.17g %.17g %.17g %.17g", l->low.x, l->low.y, l->low.z, l->high.x, l->high.y,
                 l->high.z, l->falloff);
     fprintf(to, "\n");
-    if (l->curve != EFFECT_LINEAR) fprintf(to, "curve %s\n", curve_words[l->curve]);
+    if (l->curve != EFFECT_LINEAR) fprintf(to, "curve %s\n", curve_names[l->curve]);
     for (int i = 0; i < l->key_count; i++) {
         fprintf(to, "key %.17g", l->keys[i].time);
-        for (int k = 0; k < values_of(l->kind); k++) fprintf(to, " %.17g", l->keys[i].value[k]);
+        for (int k = 0; k < value_count(l->kind); k++) fprintf(to, " %.17g", l->keys[i].value[k]);
         fprintf(to, "\n");
     }
 }
@@ -275,22 +273,22 @@ enum status effects_write(const struct effects *e, const char *path, const struc
 {
     struct outfile f = {0};
 
-    if (e->layer_count > EFFECT_LAYERS_MOST)
-        return err_set(err, ST_DATA, "%s: %d effect layers cannot be written, wanted at most %d.", path, e->layer_count,
-                       EFFECT_LAYERS_MOST);
+    if (e->layer_count > MAX_EFFECT_LAYERS)
+        return err_set(err, ST_DATA, "%s: cannot write %d effect layers, at most %d are allowed.", path, e->layer_count,
+                       MAX_EFFECT_LAYERS);
     for (int i = 0; i < e->layer_count; i++)
-        if (!layer_is_good(e, i))
-            return err_set(err, ST_DATA,
-                           "%s: layer %d of %d cannot be written: its name is bad or another's, or a number is out of "
-                           "range.",
-                           path, i + 1, e->layer_count);
+        if (!layer_is_valid(e, i))
+            return err_set(
+                err, ST_DATA,
+                "%s: cannot write layer %d of %d: its name is invalid or taken, or a number is out of range.", path,
+                i + 1, e->layer_count);
     enum status st = outfile_open(&f, path, err);
     if (st) return st;
     const locale_t before = uselocale(scan_c_locale());
     if (prov) provenance_print(prov, f.fp);
     fprintf(f.fp, "remodel-effects 1\n");
     for (int i = 0; !st && i < e->layer_count; i++) {
-        char name[2 * NAME_MOST + 3];
+        char name[2 * MAX_NAME + 3];
         st = textfile_quote(e->layers[i].name, name, sizeof name, err);
         if (!st) write_layer(&e->layers[i], name, f.fp);
     }
@@ -300,9 +298,9 @@ enum status effects_write(const struct effects *e, const char *path, const struc
     return st;
 }
 
-/* ---------------------------------------------------------------------------------------------------- applying */
+/* --------------------------------------------------------------------------------------------------------- applying */
 
-/* Of a value at a key of a cubic layer; level at the first and the last, as what is held there is. */
+/* Slope of value k at key i of a cubic layer; 0 at the first and the last key, where the value becomes constant. */
 static double key_slope(const struct effect_layer *l, int i, int k)
 {
     if (i == 0 || i == l->key_count - 1) return 0;
@@ -330,30 +328,31 @@ typedef float v4 __attribute__((vector_size(16)));
 typedef float v8 __attribute__((vector_size(32)));
 typedef int32_t v8i __attribute__((vector_size(32)));
 
-#define STRIP    64   /* pixels of a row that are worked on together */
-#define FARTHEST 1e9f /* depths beyond this are farther than any box */
-#define CUT      16   /* exponents below minus this give 0, which no eye and no half float tells from 1e-7 */
+#define STRIP        64   /* pixels of a row processed together */
+#define MAX_DEPTH    1e9f /* depths beyond this are outside every box */
+#define MAX_EXPONENT 16   /* exp(-x) beyond this counts as 0: about 1e-7, below the precision of half floats */
 
-struct active { /* a layer at a time, ready for its pixels */
+struct active_layer { /* a layer at one time, prepared for one camera */
     const struct effect_layer *layer;
-    float change[3]; /* value - 1 */
-    /* of the box's centre: the camera's, and steps for a pixel's x, y at depth 1; half the box */
-    double center[3], ray[3][3], half[3];
-    float per; /* -1 / (2 falloff^2 ln 2), or 0 */
+    float change[3];  /* value - 1 */
+    double center[3]; /* the camera's centre relative to the box's */
+    double ray[3][3]; /* steps of a pixel's ray in x and in y, and the ray of pixel (0, 0), at depth 1 */
+    double half[3];   /* half the box's size */
+    float per_square; /* -1 / (2 falloff^2 ln 2): exponent of 2 per squared distance; 0 for a hard edge */
 };
 
 struct effects_pass {
-    const struct active *layers;
+    const struct active_layer *layers;
     int count;
     struct rendered_frame *frame;
 };
 
-static struct active activate(const struct effect_layer *l, const double value[3], const struct view *v)
+static struct active_layer prepare_layer(const struct effect_layer *l, const double value[3], const struct view *v)
 {
-    const double *r = &v->cam_from_world.m[0][0]; /* its columns lead to world axes */
+    const double *r = &v->cam_from_world.m[0][0]; /* rows: the camera's axes in the world */
     const double low[] = {l->low.x, l->low.y, l->low.z}, high[] = {l->high.x, l->high.y, l->high.z};
     const double at[] = {v->center.x, v->center.y, v->center.z};
-    struct active a = {.layer = l};
+    struct active_layer a = {.layer = l};
 
     for (int k = 0; k < 3; k++) {
         a.change[k] = (float)(value[l->kind == EFFECT_COLOR ? k : 0] - 1);
@@ -363,21 +362,21 @@ static struct active activate(const struct effect_layer *l, const double value[3
         a.ray[1][k] = r[3 + k] / v->fy;
         a.ray[2][k] = r[6 + k] + (0.5 - v->cx) * a.ray[0][k] + (0.5 - v->cy) * a.ray[1][k];
     }
-    a.per = l->falloff > 0 ? (float)(-1 / (2 * l->falloff * l->falloff * M_LN2)) : 0;
+    a.per_square = l->falloff > 0 ? (float)(-1 / (2 * l->falloff * l->falloff * M_LN2)) : 0;
     return a;
 }
 
-/* 2^x for -30 < x <= 0, to 2e-7. */
+/* 2^x for -30 < x <= 0, with an error below 2e-7. */
 static inline v8 exp2_of(v8 x)
 {
-    const v8i whole = __builtin_convertvector(x - 0.5f, v8i); /* towards 0: to the nearest */
+    const v8i whole = __builtin_convertvector(x - 0.5f, v8i); /* truncation towards 0, so this rounds to the nearest */
     const v8 f = (x - __builtin_convertvector(whole, v8)) * (float)M_LN2;
     const v8 series = 1 + f * (1 + f * (1 / 2.0f + f * (1 / 6.0f + f * (1 / 24.0f + f * (1 / 120.0f + f / 720.0f)))));
     return series * (v8)((whole + 127) << 23);
 }
 
-/* Weights of a strip of a row, from its depths. */
-static void strip_weights(float *weights, const struct active *a, const float *z, int x, int y, int count)
+/* Weights of a strip of a row from its depths. */
+static void strip_weights(float *weights, const struct active_layer *a, const float *z, int x, int y, int count)
 {
     const bool outside = a->layer->region == EFFECT_OUTSIDE;
     const v8 step = {0, 1, 2, 3, 4, 5, 6, 7};
@@ -387,18 +386,18 @@ static void strip_weights(float *weights, const struct active *a, const float *z
     for (int i = 0; i < count; i += 8) {
         v8 depth, square = {0};
         memcpy(&depth, z + i, sizeof depth);
-        const v8i known = (depth > 0) & (depth < FARTHEST);
+        const v8i known = (depth > 0) & (depth < MAX_DEPTH);
         for (int k = 0; k < 3; k++) {
             const v8 at = (float)a->center[k] + depth * (start[k] + ((float)i + step) * (float)a->ray[0][k]);
             const v8 beyond = (v8)((v8i)at & 0x7fffffff) - (float)a->half[k];
             const v8 d = (v8)((v8i)beyond & (beyond > 0));
             square += d * d;
         }
-        v8 exponent = square * a->per;
-        /* a hard edge has per 0: what is beyond the box is cut by its distance alone */
-        const v8i there = known & (a->per < 0 ? exponent > -(float)CUT / (float)M_LN2 : square == 0);
-        exponent = (v8)((v8i)exponent & there);
-        const v8 inside = (v8)((v8i)exp2_of(exponent) & there), weight = outside ? 1 - inside : inside;
+        v8 exponent = square * a->per_square;
+        /* a hard edge has exponent 0 everywhere: the distance alone decides */
+        const v8i affected = known & (a->per_square < 0 ? exponent > -(float)MAX_EXPONENT / (float)M_LN2 : square == 0);
+        exponent = (v8)((v8i)exponent & affected);
+        const v8 inside = (v8)((v8i)exp2_of(exponent) & affected), weight = outside ? 1 - inside : inside;
         memcpy(weights + i, &weight, sizeof weight);
     }
 }
@@ -422,7 +421,7 @@ static void strip_saturate(float *rgba, const float *weights, float change, int 
         const float dark = c[0] < c[1] ? (c[0] < c[2] ? c[0] : c[2]) : (c[1] < c[2] ? c[1] : c[2]);
         float by = weights[i] * change;
         if (by == 0) continue;
-        /* dark + by (dark - y) is not to be below 0 */
+        /* keeps dark + by (dark - y) at 0 or above */
         if (by * (y - dark) > dark) by = dark / (y - dark);
         for (int k = 0; k < 3; k++) {
             const float v = c[k] + by * (c[k] - y);
@@ -444,7 +443,7 @@ static void effect_rows(void *ctx, size_t begin, size_t end, int thread)
             float weights[STRIP], z[STRIP] = {0};
             memcpy(z, p->frame->z + at, (size_t)count * sizeof *z);
             for (int i = 0; i < p->count; i++) {
-                const struct active *a = &p->layers[i];
+                const struct active_layer *a = &p->layers[i];
                 if (a->layer->region == EFFECT_ALL)
                     for (int k = 0; k < STRIP; k++) weights[k] = 1;
                 else
@@ -459,15 +458,15 @@ static void effect_rows(void *ctx, size_t begin, size_t end, int thread)
 
 void effects_apply(const struct effects *e, double time, const struct view *camera, struct rendered_frame *frame)
 {
-    struct active active[EFFECT_LAYERS_MOST];
+    struct active_layer active[MAX_EFFECT_LAYERS];
     struct effects_pass pass = {active, 0, frame};
 
-    assert(e->layer_count <= EFFECT_LAYERS_MOST);
+    assert(e->layer_count <= MAX_EFFECT_LAYERS);
     for (int i = 0; i < e->layer_count; i++) {
         double value[3];
         effect_layer_value(&e->layers[i], time, value);
         if (value[0] == 1 && (e->layers[i].kind != EFFECT_COLOR || (value[1] == 1 && value[2] == 1))) continue;
-        active[pass.count++] = activate(&e->layers[i], value, camera);
+        active[pass.count++] = prepare_layer(&e->layers[i], value, camera);
     }
     if (pass.count) parallel_for((size_t)frame->height, 16, effect_rows, &pass);
 }

@@ -1,22 +1,32 @@
-/* shot.c - see shot.h. */
+/* shot.c - the cameras of a move.
+ *
+ * Rules of [Colburn 2014, 3.4.2]: establishing moves and the wide end of a dolly in or out point at the scene's
+ * centroid at the views' mean focal length f; a close end points at the subject's lower half at 1.5 f; a dolly zoom
+ * keeps its subject's size.
+ *
+ * What differs. For two subjects the thesis sets the second end's focal length by the ratio of the subjects' sizes.
+ * Here both ends keep the size that the first subject has at the origin at 1.5 f (less if the subject is large): the
+ * second subject ends at exactly the size at which the first began, and the validity of one end does not depend on the
+ * position of the other. A dolly zoom likewise keeps the size that its subject has at the origin at f. The close end of
+ * a dolly limits the subject to half of the frame's height by zooming and to MAX_SUBJECT_GAIN by moving. */
 #include "common/film/shot.h"
 
 #include <string.h>
 
-struct vec3 shot_place(const struct shot *shot, double x, double y, double z)
+struct vec3 world_from_shot(const struct shot_setup *shot, double x, double y, double z)
 {
     struct vec3 p = vec3_add(shot->origin, vec3_scale(shot->axis_x, x));
     p = vec3_add(p, vec3_scale(shot->axis_y, y));
     return vec3_add(p, vec3_scale(shot->axis_z, z));
 }
 
-struct vec3 shot_coordinates(const struct shot *shot, struct vec3 world)
+struct vec3 shot_from_world(const struct shot_setup *shot, struct vec3 world)
 {
     const struct vec3 d = vec3_sub(world, shot->origin);
     return vec3_make(vec3_dot(d, shot->axis_x), vec3_dot(d, shot->axis_y), vec3_dot(d, shot->axis_z));
 }
 
-struct view shot_aim(const struct shot *shot, struct vec3 at, struct vec3 target, double focal)
+struct view shot_aim(const struct shot_setup *shot, struct vec3 at, struct vec3 target, double focal)
 {
     struct view v = shot->lens;
     struct vec3 z = vec3_sub(target, at);
@@ -33,8 +43,8 @@ struct view shot_aim(const struct shot *shot, struct vec3 at, struct vec3 target
     return v;
 }
 
-/* The height of the quadrilateral's picture at a focal length of 1 px; 0 if it is not in front of the camera. */
-static double unit_size(const struct shot *shot, const struct shot_end *end, struct vec3 at, struct vec3 target)
+/* Height of the quadrilateral in the picture at a focal length of 1 px; 0 if it is not in front of the camera. */
+static double unit_size(const struct shot_setup *shot, const struct shot_end *end, struct vec3 at, struct vec3 target)
 {
     const struct view camera = shot_aim(shot, at, target, 1);
     struct subject s = {0};
@@ -42,14 +52,14 @@ static double unit_size(const struct shot *shot, const struct shot_end *end, str
     return subject_size_in(&s, &camera);
 }
 
-static double focal_at(const struct shot *shot, const struct shot_end *end, struct vec3 at, struct vec3 target)
+static double focal_at(const struct shot_setup *shot, const struct shot_end *end, struct vec3 at, struct vec3 target)
 {
     if (end->focal > 0) return end->focal;
     const double size = unit_size(shot, end, at, target);
     return size > 0 ? end->size / size : 0;
 }
 
-struct view shot_end_camera(const struct shot *shot, const struct shot_end *end, struct vec3 at)
+struct view shot_end_camera(const struct shot_setup *shot, const struct shot_end *end, struct vec3 at)
 {
     double focal = focal_at(shot, end, at, end->target);
     if (end->focal > 0 && end->size > 0) {
@@ -64,16 +74,16 @@ static struct vec3 between(struct vec3 a, struct vec3 b, double t)
     return vec3_add(vec3_scale(a, 1 - t), vec3_scale(b, t));
 }
 
-struct view shot_camera(const struct shot *shot, const struct shot_move *m, const struct vec3 at[2], double t)
+struct view shot_camera(const struct shot_setup *shot, const struct shot_move *m, const struct vec3 at[2], double t)
 {
     const struct shot_end *a = &m->end[0], *b = &m->end[1];
-    const struct vec3 place = between(at[0], at[1], t), target = between(a->target, b->target, t);
+    const struct vec3 position = between(at[0], at[1], t), target = between(a->target, b->target, t);
     double focal;
     if (!(a->focal > 0) && !(b->focal > 0) && a->size == b->size && !memcmp(a->corner, b->corner, sizeof a->corner))
-        focal = focal_at(shot, a, place, target);
+        focal = focal_at(shot, a, position, target);
     else
         focal = (1 - t) * focal_at(shot, a, at[0], a->target) + t * focal_at(shot, b, at[1], b->target);
-    return shot_aim(shot, place, target, focal);
+    return shot_aim(shot, position, target, focal);
 }
 
 static struct shot_end keep_size(const struct subject *s, struct vec3 target, double size)
@@ -83,15 +93,16 @@ static struct shot_end keep_size(const struct subject *s, struct vec3 target, do
     return end;
 }
 
-/* The focal length of a close end: less than 1.5 f if the subject would fill the frame, but no less than f. */
-static double close_focal(const struct shot *shot, double size)
+/* Focal length of a close end: 1.5 f, reduced to as little as f if the subject would fill more than half of the frame.
+ * size: the subject's at f, px. */
+static double close_focal(const struct shot_setup *shot, double size)
 {
     const double f = shot->lens.fx;
-    return fmax(f, fmin(CLOSE_FOCAL * f, f * SUBJECT_PART * shot->lens.height / size));
+    return fmax(f, fmin(CLOSE_FOCAL * f, f * MAX_SUBJECT_PART * shot->lens.height / size));
 }
 
-/* A subject's size in the camera at the origin that points at the target. */
-static enum status origin_size(double *size, const struct shot *shot, const struct subject *s, struct vec3 target,
+/* Size of a subject seen from the origin by a camera that points at the target. */
+static enum status origin_size(double *size, const struct shot_setup *shot, const struct subject *s, struct vec3 target,
                                double focal, struct err *err)
 {
     const struct view camera = shot_aim(shot, shot->origin, target, focal);
@@ -99,11 +110,12 @@ static enum status origin_size(double *size, const struct shot *shot, const stru
     if (*size > 0) return ST_OK;
     return err_set(
         err, ST_DATA,
-        "the subject in view %s is not in front of the centremost view's place: no move can be planned to it.",
+        "the subject in view %s is not in front of the centremost view's camera, so no move can be planned to it; "
+        "choose another subject.",
         s->view);
 }
 
-enum status shot_move_make(struct shot_move *m, const struct shot *shot, enum move move,
+enum status shot_move_make(struct shot_move *m, const struct shot_setup *shot, enum camera_move move,
                            const struct subject_list *subjects, struct err *err)
 {
     const double f = shot->lens.fx;
@@ -115,8 +127,9 @@ enum status shot_move_make(struct shot_move *m, const struct shot *shot, enum mo
 
     *m = (struct shot_move){.move = move};
     if (move_subjects(move) > (first != NULL) + (second != NULL))
-        return err_set(err, ST_DATA, "the move needs %d subjects; find_subjects found, or was given, fewer.",
-                       move_subjects(move));
+        return err_set(err, ST_DATA,
+                       "the move needs %d subjects, the list has %d; add regions of interest or choose another move.",
+                       move_subjects(move), (first != NULL) + (second != NULL));
     switch (move) {
     case MOVE_ESTABLISHING_DOLLY:
         m->end[0] = m->end[1] = whole;
@@ -128,12 +141,12 @@ enum status shot_move_make(struct shot_move *m, const struct shot *shot, enum mo
         return ST_OK;
     case MOVE_DOLLY_IN:
     case MOVE_DOLLY_OUT: {
-        const int there = move == MOVE_DOLLY_IN;
+        const int near = move == MOVE_DOLLY_IN;
         if (origin_size(&size, shot, first, subject_lower_center(first), f, err)) return err->status;
-        m->end[!there] = whole;
-        m->end[there] = keep_size(first, subject_lower_center(first), 0);
-        m->end[there].focal = close_focal(shot, size);
-        m->end[there].size = SUBJECT_MOST * size * m->end[there].focal / f;
+        m->end[!near] = whole;
+        m->end[near] = keep_size(first, subject_lower_center(first), 0);
+        m->end[near].focal = close_focal(shot, size);
+        m->end[near].size = MAX_SUBJECT_GAIN * size * m->end[near].focal / f;
         return ST_OK;
     }
     case MOVE_DOLLY_ZOOM:

@@ -1,14 +1,9 @@
-/* shot.h - the cameras of a film: one frame of reference and lens for all, and by what rules they point and zoom
- * (thesis 3.4.2, "Constraints on the path").
+/* shot.h - cameras of a move: the reference frame and lens that they share, and the rules by which they point and zoom
+ * [Colburn 2014, 3.4.2].
  *
- * A move runs between two ends. Each end has a target that the camera points at and either a focal length or a
- * quadrilateral whose picture keeps its size; between the ends target and focal length go linearly. Where both ends
- * keep the size of the same quadrilateral, so does every camera between them (the dolly zoom).
- *
- * Of two subjects the thesis gives the second end's focal length by the ratio of the subjects' sizes. Here both ends
- * keep the size that the first subject has at the frame's origin at 1.5 f (or less, if it is large): the second subject
- * then ends at exactly the size at which the first began, and what is valid at one end does not depend on where the
- * other one is. The dolly zoom keeps its subject's size at the origin at f, likewise. */
+ * A move has two ends. Each end has a target to point at, and either a focal length or a quadrilateral that keeps its
+ * size in the picture. Target and focal length are interpolated linearly between the ends. If both ends keep the size
+ * of the same quadrilateral, every camera between them does too (the dolly zoom). */
 #ifndef REMODEL_SHOT_H
 #define REMODEL_SHOT_H
 
@@ -16,46 +11,50 @@
 #include "common/film/subject_list.h"
 #include "common/film/taxonomy.h"
 
-#define CLOSE_FOCAL  1.5 /* of f: where a move starts or ends close */
-#define SUBJECT_PART 0.5 /* of the frame's height: zooming in makes a subject no larger */
-#define SUBJECT_MOST 1.3 /* of its size from the origin: nor does going closer make it more than this */
+#define CLOSE_FOCAL      1.5 /* focal length of a close end, in units of f */
+#define MAX_SUBJECT_PART 0.5 /* largest subject that zooming in may make, in frame heights */
+#define MAX_SUBJECT_GAIN 1.3 /* largest gain in a subject's size by moving closer than the origin */
 
-struct shot {
-    struct view lens; /* size, principal point and focal length f; its pose is not used */
-    struct vec3 up;
-    struct vec3 origin;                 /* the centremost view's centre */
-    struct vec3 axis_x, axis_y, axis_z; /* right-handed; z the normal of the plane of the centres, towards the scene */
-    double low[2], high[2];             /* the box of the centres in x and y; never empty */
-    struct vec3 centroid;               /* of the scene */
-    double near_limit;                  /* nothing of the scene may come nearer */
-    double median_depth;                /* of what is seen from the origin */
+struct shot_setup {
+    struct view lens;   /* frame size, principal point and focal length f; the pose is unused */
+    struct vec3 up;     /* unit, in the world */
+    struct vec3 origin; /* centre of the centremost view */
+    struct vec3 axis_x, axis_y,
+        axis_z;             /* right-handed; z: normal of the plane of the views' centres, towards the scene */
+    double low[2], high[2]; /* bounding box of the views' centres in x and y; never empty */
+    struct vec3 centroid;   /* of the scene */
+    double near_limit;      /* smallest depth that the scene may have in a frame */
+    double median_depth;    /* of the scene as seen from the origin */
 };
 
-struct shot_end {
+struct shot_end { /* how the camera points and zooms at one end */
     struct vec3 target;
-    double focal;          /* px; 0: the quadrilateral's picture is `size` px high */
-    double size;           /* with a focal length: the picture of the quadrilateral is no higher; 0: there is none */
-    struct vec3 corner[4]; /* of the quadrilateral: upper left, upper right, lower right, lower left */
+    double focal;          /* px; 0: chosen so that the quadrilateral is `size` px high */
+    double size;           /* if focal > 0: the largest height of the quadrilateral, px; 0: no limit */
+    struct vec3 corner[4]; /* quadrilateral: upper left, upper right, lower right, lower left */
 };
 
 struct shot_move {
-    enum move move;
-    bool on_axis; /* the ends lie on the frame's z axis */
+    enum camera_move move;
+    bool on_axis; /* both ends lie on the z axis of the reference frame */
     struct shot_end end[2];
 };
 
-/* The rules of a move; subjects may be NULL if it needs none. ST_DATA: a subject cannot be seen from the origin. */
-enum status shot_move_make(struct shot_move *m, const struct shot *shot, enum move move,
+/* Sets the rules of a move. subjects may be NULL if the move needs none. ST_DATA: too few subjects, or a subject is
+ * behind the camera at the origin. */
+enum status shot_move_make(struct shot_move *m, const struct shot_setup *shot, enum camera_move move,
                            const struct subject_list *subjects, struct err *err);
 
-struct vec3 shot_place(const struct shot *shot, double x, double y, double z); /* world, of the frame's coordinates */
-struct vec3 shot_coordinates(const struct shot *shot, struct vec3 world);
-/* Upright, at a place, pointing at a target. Never fails: where there is no such direction, it looks along z. */
-struct view shot_aim(const struct shot *shot, struct vec3 at, struct vec3 target, double focal);
-/* An end's camera. Its fx is 0 where the rule cannot be kept: the quadrilateral is not in front, or it would be too
- * large. */
-struct view shot_end_camera(const struct shot *shot, const struct shot_end *end, struct vec3 at);
-/* A camera on the way from one end to the other, 0 <= t <= 1. */
-struct view shot_camera(const struct shot *shot, const struct shot_move *m, const struct vec3 at[2], double t);
+/* Coordinates in the reference frame to the world, and back. */
+struct vec3 world_from_shot(const struct shot_setup *shot, double x, double y, double z);
+struct vec3 shot_from_world(const struct shot_setup *shot, struct vec3 world);
+/* An upright camera at `at` that points at a target. Always defined: looks along z if the target is at `at`, and uses
+ * the frame's x axis as right if it looks straight up or down. */
+struct view shot_aim(const struct shot_setup *shot, struct vec3 at, struct vec3 target, double focal);
+/* The camera of an end placed at `at`. Its fx is 0 if the rule cannot be met: the quadrilateral is not in front of the
+ * camera or would be too large. */
+struct view shot_end_camera(const struct shot_setup *shot, const struct shot_end *end, struct vec3 at);
+/* The camera at t between the two ends at[0] and at[1], 0 <= t <= 1. */
+struct view shot_camera(const struct shot_setup *shot, const struct shot_move *m, const struct vec3 at[2], double t);
 
 #endif

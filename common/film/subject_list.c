@@ -1,14 +1,15 @@
-/* subject_list.c - see subject_list.h. */
+/* subject_list.c - subjects on disk, in space and in a camera. */
 #include "common/film/subject_list.h"
 
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/base/array.h"
 #include "common/base/outfile.h"
 #include "common/base/textfile.h"
 
-enum { MOST_SUBJECTS = 100000, NAME_SIZE = 1024 };
+enum { MAX_SUBJECTS = 100000, NAME_SIZE = 1024 };
 
 static const char *const source_names[] = {[SUBJECT_FACE] = "face", [SUBJECT_USER] = "user"};
 
@@ -29,25 +30,22 @@ void subject_list_release(struct subject_list *list)
 
 enum status subject_list_add(struct subject_list *list, struct subject *s, struct err *err)
 {
-    const size_t bytes = ((size_t)list->count + 1) * sizeof *list->subjects;
-    struct subject *more = realloc(list->subjects, bytes);
-    if (!more) {
+    if (array_append(&list->subjects, (size_t)list->count, sizeof *list->subjects, "subjects", err)) {
         subject_release(s);
-        return err_nomem(err, "subjects", bytes);
+        return err->status;
     }
-    list->subjects = more;
     list->subjects[list->count++] = *s;
     *s = (struct subject){0};
     return ST_OK;
 }
 
-/* -------------------------------------------------------------------------------------------------------- geometry */
+/* --------------------------------------------------------------------------------------------------------- geometry */
 
 void subject_place(struct subject *s, const struct view *view, const struct vec3 *up)
 {
     const struct vec3 u = up ? *up : vec3_make(0, -1, 0);
     const double x[4] = {s->x0, s->x1, s->x1, s->x0}, y[4] = {s->y0, s->y0, s->y1, s->y1};
-    int first = 0; /* of the picture's corners, clockwise, the one that is upper left when it is upright */
+    int first = 0; /* corner, clockwise from (x0, y0), that is upper left in the upright picture */
     if (fabs(u.x) > fabs(u.y))
         first = u.x < 0 ? 3 : 1;
     else if (u.y > 0)
@@ -55,31 +53,31 @@ void subject_place(struct subject *s, const struct view *view, const struct vec3
     for (int i = 0; i < 4; i++) s->corner[i] = view_unproject(view, x[(first + i) % 4], y[(first + i) % 4], s->depth);
 }
 
-static struct vec3 between(struct vec3 a, struct vec3 b, double part)
+static struct vec3 between(struct vec3 a, struct vec3 b, double t)
 {
-    return vec3_add(vec3_scale(a, 1 - part), vec3_scale(b, part));
+    return vec3_add(vec3_scale(a, 1 - t), vec3_scale(b, t));
 }
 
-/* Of the vertical middle line, from its upper end, 0, to its lower one, 1. */
-static struct vec3 on_middle_line(const struct subject *s, double part)
+/* A point on the vertical centre line, from its upper end (0) to its lower end (1). */
+static struct vec3 on_center_line(const struct subject *s, double t)
 {
-    return between(between(s->corner[0], s->corner[1], 0.5), between(s->corner[3], s->corner[2], 0.5), part);
+    return between(between(s->corner[0], s->corner[1], 0.5), between(s->corner[3], s->corner[2], 0.5), t);
 }
 
-struct vec3 subject_center(const struct subject *s) { return on_middle_line(s, 0.5); }
+struct vec3 subject_center(const struct subject *s) { return on_center_line(s, 0.5); }
 
-struct vec3 subject_lower_center(const struct subject *s) { return on_middle_line(s, 0.75); }
+struct vec3 subject_lower_center(const struct subject *s) { return on_center_line(s, 0.75); }
 
 double subject_size_in(const struct subject *s, const struct view *camera)
 {
     double u[2], v[2];
     for (int i = 0; i < 2; i++)
-        if (!(view_project(camera, on_middle_line(s, i), &u[i], &v[i]) > 0)) return 0;
+        if (!(view_project(camera, on_center_line(s, i), &u[i], &v[i]) > 0)) return 0;
     const double size = hypot(u[1] - u[0], v[1] - v[0]);
     return isfinite(size) ? size : 0;
 }
 
-/* --------------------------------------------------------------------------------------------------------- writing */
+/* ---------------------------------------------------------------------------------------------------------- writing */
 
 enum status subject_list_write(const struct subject_list *list, const char *path, const struct provenance *prov,
                                struct err *err)
@@ -103,7 +101,7 @@ enum status subject_list_write(const struct subject_list *list, const char *path
     return st;
 }
 
-/* --------------------------------------------------------------------------------------------------------- reading */
+/* ---------------------------------------------------------------------------------------------------------- reading */
 
 static enum status read_subject(struct textfile *t, struct subject *s, struct err *err)
 {
@@ -121,8 +119,8 @@ static enum status read_subject(struct textfile *t, struct subject *s, struct er
     if (textfile_double(t, "x0", &s->x0, err) || textfile_double(t, "y0", &s->y0, err) ||
         textfile_double(t, "x1", &s->x1, err) || textfile_double(t, "y1", &s->y1, err) ||
         textfile_double(t, "depth", &s->depth, err) || textfile_double(t, "score", &s->score, err) ||
-        textfile_int(t, "views that confirm it", 0, INT_MAX, &confirmed, err) ||
-        textfile_int(t, "views that were asked", confirmed, INT_MAX, &asked, err) || textfile_end(t, err))
+        textfile_int(t, "number of confirming views", 0, INT_MAX, &confirmed, err) ||
+        textfile_int(t, "number of views searched", confirmed, INT_MAX, &asked, err) || textfile_end(t, err))
         return err->status;
     s->confirmed = (int)confirmed;
     s->asked = (int)asked;
@@ -150,7 +148,7 @@ enum status subject_list_read(struct subject_list *list, const char *path, struc
     enum status st = textfile_open(&t, path, err) || textfile_expect_line(&t, "remodel-subjects", err) ||
                              textfile_int(&t, "version", 1, 1, &version, err) || textfile_end(&t, err) ||
                              textfile_expect_line(&t, "subjects", err) ||
-                             textfile_int(&t, "number of subjects", 0, MOST_SUBJECTS, &count, err) ||
+                             textfile_int(&t, "number of subjects", 0, MAX_SUBJECTS, &count, err) ||
                              textfile_end(&t, err)
                          ? err->status
                          : ST_OK;

@@ -1,4 +1,4 @@
-/* taxonomy.c - see taxonomy.h. */
+/* taxonomy.c - effects: names, legality, choice. shot.c has the rules of each move's cameras. */
 #include "common/film/taxonomy.h"
 
 #include <stdio.h>
@@ -26,7 +26,7 @@ struct scene_subjects scene_subjects_of(const struct subject_list *list)
 {
     struct scene_subjects s = {list->count, 1};
     if (list->count < 2) return s;
-    /* both as the first one's view sees them: the second may have been drawn in another photo */
+    /* both depths in the first subject's view, since the second subject may come from another photo */
     const struct subject *first = &list->subjects[0];
     const struct vec3 right = vec3_sub(first->corner[1], first->corner[0]);
     const struct vec3 down = vec3_sub(first->corner[3], first->corner[0]);
@@ -37,7 +37,7 @@ struct scene_subjects scene_subjects_of(const struct subject_list *list)
     return s;
 }
 
-int move_subjects(enum move move) { return moves[move].subjects; }
+int move_subjects(enum camera_move move) { return moves[move].subjects; }
 
 void film_effect_name(const struct film_effect *e, char name[EFFECT_NAME_SIZE])
 {
@@ -60,15 +60,15 @@ static const char *next_image_effect(const void *ctx, int i)
 static enum status unknown(const char *what, const char *word, const char *whole,
                            const char *(*next)(const void *, int), struct err *err)
 {
-    char shown[SCAN_QUOTED], list[512] = "";
+    char quoted[SCAN_QUOTED], list[512] = "";
     const char *nearest = scan_nearest(word, next, NULL), *known;
     for (int i = 0; (known = next(NULL, i)); i++)
         snprintf(list + strlen(list), sizeof list - strlen(list), "%s%s", i ? ", " : "", known);
     if (nearest)
-        return err_set(err, ST_USAGE, "%s is no %s; did you mean %s? Known are: %s.", scan_quote(shown, word), what,
-                       nearest, list);
-    return err_set(err, ST_USAGE, "%s is no %s (in \"%.80s\"). Known are: %s.", scan_quote(shown, word), what, whole,
-                   list);
+        return err_set(err, ST_USAGE, "%s is not a known %s; did you mean %s? Known: %s.", scan_quote(quoted, word),
+                       what, nearest, list);
+    return err_set(err, ST_USAGE, "%s is not a known %s (in \"%.80s\"). Known: %s.", scan_quote(quoted, word), what,
+                   whole, list);
 }
 
 enum status film_effect_parse(struct film_effect *e, const char *name, struct err *err)
@@ -85,7 +85,7 @@ enum status film_effect_parse(struct film_effect *e, const char *name, struct er
         at += length;
         known = false;
         for (int i = 0; !part && i < MOVE_COUNT && !known; i++)
-            if ((known = !strcmp(word, moves[i].name))) e->move = (enum move)i;
+            if ((known = !strcmp(word, moves[i].name))) e->move = (enum camera_move)i;
         if (!part && !known) return unknown("move", word, name, next_move, err);
         for (int i = 1; part && i < FOCUS_COUNT && !known && !e->focus && !e->tone; i++)
             if ((known = !strcmp(word, focuses[i]))) e->focus = (enum focus_effect)i;
@@ -94,10 +94,11 @@ enum status film_effect_parse(struct film_effect *e, const char *name, struct er
         if (!known) {
             for (int i = 0; next_image_effect(NULL, i); i++)
                 if (!strcmp(word, next_image_effect(NULL, i)))
-                    return err_set(err, ST_USAGE,
-                                   "\"%.80s\": wanted MOVE, MOVE+FOCUS, MOVE+TONE or MOVE+FOCUS+TONE, each once and in "
-                                   "this order.",
-                                   name);
+                    return err_set(
+                        err, ST_USAGE,
+                        "\"%.80s\": wanted MOVE, MOVE+FOCUS, MOVE+TONE or MOVE+FOCUS+TONE, each part once and "
+                        "in this order.",
+                        name);
             return unknown("image effect", word, name, next_image_effect, err);
         }
     }
@@ -111,29 +112,30 @@ enum status film_effect_check(const struct film_effect *e, const struct scene_su
     film_effect_name(e, name);
     if (scene->count < subjects)
         return err_set(err, ST_USAGE,
-                       "%s needs %d subject%s, and the scene has %d. Draw %s in the scene's subjects.txt, or choose "
-                       "a move for %d.",
+                       "%s needs %d subject%s, and the scene has %d. Add %s to the scene's subjects.txt, or choose a "
+                       "move for %d.",
                        name, subjects, subjects > 1 ? "s" : "", scene->count, subjects > 1 ? "them" : "it",
                        scene->count);
     if (subjects == 0 && (e->focus || e->tone))
         return err_set(err, ST_USAGE, "%s: a move without a subject takes no image effect.", name);
     if (subjects == 1 && e->focus == FOCUS_PULL)
-        return err_set(err, ST_USAGE, "%s: focus is pulled from one subject to another; only dolly has two.", name);
+        return err_set(err, ST_USAGE, "%s: pulling focus needs two subjects; only dolly has two.", name);
     if (subjects == 2 && e->tone)
-        return err_set(err, ST_USAGE, "%s: saturation and brightness change around one subject, not with two.", name);
+        return err_set(err, ST_USAGE,
+                       "%s: saturation and brightness effects suit moves with one subject, not with two.", name);
     if (subjects == 2 && e->focus && scene->depth_ratio < DOF_DEPTH_RATIO)
         return err_set(err, ST_USAGE,
-                       "%s: the subjects' depths differ by a factor of %.3g, and focus tells them apart from %g on.",
-                       name, scene->depth_ratio, DOF_DEPTH_RATIO);
+                       "%s: the subjects' depths differ by a factor of %.3g; focus effects need at least %g.", name,
+                       scene->depth_ratio, DOF_DEPTH_RATIO);
     return ST_OK;
 }
 
-int film_effects_list(struct film_effect list[FILM_EFFECTS_MOST], const struct scene_subjects *scene)
+int film_effects_list(struct film_effect list[MAX_FILM_EFFECTS], const struct scene_subjects *scene)
 {
     int count = 0;
     for (int m = 0; m < MOVE_COUNT; m++)
         for (int i = 0; i < FOCUS_COUNT + TONE_COUNT - 1; i++) {
-            const struct film_effect e = {(enum move)m, i < FOCUS_COUNT ? (enum focus_effect)i : FOCUS_ALL,
+            const struct film_effect e = {(enum camera_move)m, i < FOCUS_COUNT ? (enum focus_effect)i : FOCUS_ALL,
                                           i < FOCUS_COUNT ? TONE_NONE : (enum tone_effect)(i - FOCUS_COUNT + 1)};
             struct err none = ERR_INIT;
             if (!film_effect_check(&e, scene, &none)) list[count++] = e;
@@ -143,7 +145,7 @@ int film_effects_list(struct film_effect list[FILM_EFFECTS_MOST], const struct s
 
 struct film_effect film_effect_draw(const struct scene_subjects *scene, uint64_t seed)
 {
-    struct film_effect list[FILM_EFFECTS_MOST], row[FILM_EFFECTS_MOST];
+    struct film_effect list[MAX_FILM_EFFECTS], row[MAX_FILM_EFFECTS];
     const struct rng rng = rng_make(seed, "choose_effects", "");
     const int all = film_effects_list(list, scene), wanted = scene->count < 2 ? scene->count : 2;
     int count = 0;

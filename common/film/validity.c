@@ -1,4 +1,4 @@
-/* validity.c - see validity.h. */
+/* validity.c - reading and writing of validity.txt. */
 #include "common/film/validity.h"
 
 #include <stdlib.h>
@@ -7,7 +7,7 @@
 #include "common/base/outfile.h"
 #include "common/base/textfile.h"
 
-enum { MOST_CELLS = 4096 };
+enum { MAX_CELLS = 4096 };
 
 enum status validity_region_init(struct validity_region *r, int columns, int rows, struct err *err)
 {
@@ -30,7 +30,7 @@ void validity_release(struct validity *v)
     *v = (struct validity){0};
 }
 
-/* -------------------------------------------------------------------------------------------------------- reading */
+/* ---------------------------------------------------------------------------------------------------------- reading */
 
 static enum status read_vector(struct textfile *t, const char *what, struct vec3 *v, struct err *err)
 {
@@ -40,7 +40,7 @@ static enum status read_vector(struct textfile *t, const char *what, struct vec3
                : ST_OK;
 }
 
-/* The next line's first word must be this one. */
+/* Goes to the next line, which must begin with `key`. */
 static enum status read_key(struct textfile *t, const char *key, struct err *err)
 {
     if (!textfile_next(t)) return textfile_error(t, err, NULL, "\"%s\"", key);
@@ -56,7 +56,7 @@ static enum status read_numbers(struct textfile *t, const char *key, double *val
 
 static enum status read_shot(struct textfile *t, struct validity *v, struct err *err)
 {
-    struct shot *s = &v->shot;
+    struct shot_setup *s = &v->shot;
     struct view *l = &s->lens;
     struct vec3 *const vectors[] = {&s->up, &s->origin, &s->axis_x, &s->axis_y, &s->axis_z, &s->centroid};
     static const char *const keys[] = {"up", "origin", "axis_x", "axis_y", "axis_z", "centroid"};
@@ -65,7 +65,7 @@ static enum status read_shot(struct textfile *t, struct validity *v, struct err 
     if (read_numbers(t, "film", film, 5, err)) return err->status;
     for (int i = 0; i < 2; i++)
         if (!(film[i] >= 2 && film[i] <= 65536 && fmod(film[i], 2) == 0))
-            return textfile_error(t, err, "a film of another size", "even numbers from 2 to 65536");
+            return textfile_error(t, err, "an invalid size of the film", "even numbers from 2 to 65536");
     if (!(film[2] > 0)) return textfile_error(t, err, "a focal length of 0 or less", "one above 0");
     *l = (struct view){.name = "film",
                        .width = (int)film[0],
@@ -90,7 +90,7 @@ static enum status read_shot(struct textfile *t, struct validity *v, struct err 
         if (!(s->low[i] < s->high[i])) return textfile_error(t, err, "an empty box", "LOW_X LOW_Y HIGH_X HIGH_Y");
     }
     if (read_numbers(t, "limits", limits, 3, err)) return err->status;
-    if (!(limits[2] >= 1 && limits[2] <= 65536)) return textfile_error(t, err, "another side", "1 to 65536 px");
+    if (!(limits[2] >= 1 && limits[2] <= 65536)) return textfile_error(t, err, "an invalid side", "1 to 65536 px");
     v->limits = (struct viewpoint_limits){limits[0], limits[1], (int)limits[2]};
     if (read_numbers(t, "step", &v->step, 1, err)) return err->status;
     return v->step > 0 ? ST_OK : textfile_error(t, err, "a step of 0 or less", "one above 0");
@@ -119,8 +119,8 @@ static enum status read_end(struct textfile *t, struct shot_end *e, struct err *
 static enum status read_region(struct textfile *t, struct validity_region *r, struct err *err)
 {
     int64_t columns, rows;
-    if (read_key(t, "region", err) || textfile_int(t, "columns", 1, MOST_CELLS, &columns, err) ||
-        textfile_int(t, "rows", 1, MOST_CELLS / columns, &rows, err) || textfile_end(t, err) ||
+    if (read_key(t, "region", err) || textfile_int(t, "columns", 1, MAX_CELLS, &columns, err) ||
+        textfile_int(t, "rows", 1, MAX_CELLS / columns, &rows, err) || textfile_end(t, err) ||
         validity_region_init(r, (int)columns, (int)rows, err))
         return err->status;
     for (int i = 0; i < r->columns * r->rows; i++) {
@@ -173,7 +173,7 @@ enum status validity_read(struct validity *v, const char *path, struct err *err)
     return st;
 }
 
-/* -------------------------------------------------------------------------------------------------------- writing */
+/* ---------------------------------------------------------------------------------------------------------- writing */
 
 static void print_vector(FILE *fp, struct vec3 v) { fprintf(fp, " %.17g %.17g %.17g", v.x, v.y, v.z); }
 
@@ -211,7 +211,7 @@ static void print_region(FILE *fp, const struct validity_region *r)
 
 enum status validity_write(const struct validity *v, const char *path, const struct provenance *prov, struct err *err)
 {
-    const struct shot *s = &v->shot;
+    const struct shot_setup *s = &v->shot;
     struct outfile f = {0};
     char effect[EFFECT_NAME_SIZE];
     enum status st = outfile_open(&f, path, err);

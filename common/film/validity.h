@@ -1,5 +1,5 @@
-/* validity.h - from where a scene can be shown: a region of valid viewpoints for each end of a move;
- * out/SCENE/parallax/EFFECT/validity.txt, written by sample_validity and read by plan_path.
+/* validity.h - regions of valid viewpoints, one for each end of a move; out/SCENE/parallax/EFFECT/validity.txt, written
+ * by sample_validity and read by plan_path.
  *
  *   remodel-validity 1
  *   effect EFFECT
@@ -7,14 +7,14 @@
  *   zoom Z                           f is the views' mean focal length times Z
  *   near_limit D median_depth D
  *   up X Y Z  and  origin, axis_x, axis_y, axis_z, centroid
- *   box LOW_X LOW_Y HIGH_X HIGH_Y    of the views' centres, in the frame of origin and axes
- *   limits H OUTSIDE SIDE            of a valid viewpoint (common/film/viewpoint.h)
- *   step S                           how exactly the z of a cell is known
- *   on_axis 0|1                      1: ends lie on the z axis, and each region is one cell
- *   end target X Y Z focal F         one of these three, for the start and then for the end
- *   end target X Y Z focal F most S X Y Z X Y Z X Y Z X Y Z    a quadrilateral that is shown no higher than S px
+ *   box LOW_X LOW_Y HIGH_X HIGH_Y    bounding box of the views' centres in the frame of origin and axes
+ *   limits H OUTSIDE SIDE            of a valid viewpoint (struct viewpoint_limits)
+ *   step S                           resolution of the cells' z
+ *   on_axis 0|1                      1: the ends lie on the z axis, and each region is one cell
+ *   end target X Y Z focal F         one of these three forms, for the start and then for the end
+ *   end target X Y Z focal F most S X Y Z X Y Z X Y Z X Y Z    a quadrilateral that is shown at most S px high
  *   end target X Y Z size S X Y Z X Y Z X Y Z X Y Z     a quadrilateral that keeps its size
- *   region C R                       after each end, then C x R cells, row after row
+ *   region C R                       after each end, followed by C x R cells in row-major order
  *   cell X Y none
  *   cell X Y from LOW_Z to HIGH_Z    z points towards the scene */
 #ifndef REMODEL_VALIDITY_H
@@ -26,8 +26,8 @@
 
 struct validity_cell {
     double x, y;
-    bool valid; /* some z is */
-    double low, high;
+    bool valid;       /* z = 0 is valid */
+    double low, high; /* range of valid z, scene units; low <= 0 <= high where sampled */
 };
 
 struct validity_region {
@@ -37,17 +37,18 @@ struct validity_region {
 
 struct validity {
     struct film_effect effect;
-    struct shot shot;
+    struct shot_setup shot;
     struct shot_move move;
-    double zoom, step;
+    double zoom; /* f in units of the views' mean focal length */
+    double step; /* resolution of the cells' z, scene units */
     struct viewpoint_limits limits;
     struct validity_region region[2]; /* start, end */
 };
 
 enum status validity_region_init(struct validity_region *r, int columns, int rows, struct err *err);
-int validity_region_count(const struct validity_region *r); /* valid cells */
+int validity_region_count(const struct validity_region *r); /* number of valid cells */
 
-/* ST_DATA with file and line, and what was found and wanted. */
+/* ST_DATA with file, line, what was found and what was expected; on failure v is left empty. */
 enum status validity_read(struct validity *v, const char *path, struct err *err);
 enum status validity_write(const struct validity *v, const char *path, const struct provenance *prov, struct err *err);
 void validity_release(struct validity *v);

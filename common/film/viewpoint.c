@@ -1,4 +1,11 @@
-/* viewpoint.c - see viewpoint.h. */
+/* viewpoint.c - validity of a viewpoint.
+ *
+ * A viewpoint is valid if H < max_h, the hole measure of [Colburn 2014, 3.4.2] (common/layers/hole_measure.h). Two
+ * limits are added to the thesis's, because pictures without holes can still be bad:
+ * - the part of the frame beyond the borders of the views that the view mesh blends there, where other views fill in
+ *   with a visible seam. It is measured in a small picture at the depth of the centroid; each pixel counts by the
+ *   weight of the blended views that do not contain it;
+ * - the part of the scene nearer than shot->near_limit, measured on the scene's points. */
 #include "common/film/viewpoint.h"
 
 #include <stdlib.h>
@@ -6,8 +13,8 @@
 #include "common/base/parallel.h"
 #include "common/layers/hole_measure.h"
 
-#define OUTSIDE_SIDE   64    /* of the picture in which what is outside is counted */
-#define NEAR_TOLERANCE 0.005 /* of the picture */
+#define OUTSIDE_SIDE   64    /* longer side of the picture in which `outside` is measured, px */
+#define NEAR_TOLERANCE 0.005 /* largest fraction of points that may be too near */
 
 static enum status measure_holes(struct viewpoint *v, struct viewpoint_test *test, const struct view *camera,
                                  struct err *err)
@@ -31,8 +38,7 @@ static enum status measure_holes(struct viewpoint *v, struct viewpoint_test *tes
     return c->hole_fraction > 0 ? hole_measure(&v->h, c->hole, c->width, c->height, test->distance, err) : ST_OK;
 }
 
-/* At the centroid's depth; each pixel counts by the weight of the views that do not contain it. */
-static double outside(const struct viewpoint_test *test, const struct view *camera)
+static double outside_fraction(const struct viewpoint_test *test, const struct view *camera)
 {
     const struct camera_set *set = test->scene->set;
     struct view_weights row[OUTSIDE_SIDE];
@@ -50,9 +56,9 @@ static double outside(const struct viewpoint_test *test, const struct view *came
         for (int i = 0; i < small.width; i++) {
             const struct vec3 point = view_unproject(&small, i + 0.5, j + 0.5, depth);
             for (int k = 0; k < row[i].count; k++) {
-                const struct view *of = &set->views[row[i].view[k]];
+                const struct view *view = &set->views[row[i].view[k]];
                 double u = -1, t = -1;
-                if (!(view_project(of, point, &u, &t) > 0) || u < 0 || u > of->width || t < 0 || t > of->height)
+                if (!(view_project(view, point, &u, &t) > 0) || u < 0 || u > view->width || t < 0 || t > view->height)
                     sum += (double)row[i].weight[k];
             }
         }
@@ -60,7 +66,7 @@ static double outside(const struct viewpoint_test *test, const struct view *came
     return sum / (small.width * small.height);
 }
 
-static double near_part(const struct viewpoint_test *test, const struct view *camera)
+static double near_fraction(const struct viewpoint_test *test, const struct view *camera)
 {
     double near = 0, total = 0;
     for (size_t i = 0; i < test->points->count; i++) {
@@ -79,8 +85,8 @@ enum status viewpoint_measure(struct viewpoint *v, struct viewpoint_test *test, 
 {
     *v = (struct viewpoint){.h = INFINITY, .holes = 1, .outside = 1, .near = 1};
     if (!(camera->fx > 0)) return ST_OK;
-    v->near = near_part(test, camera);
-    v->outside = outside(test, camera);
+    v->near = near_fraction(test, camera);
+    v->outside = outside_fraction(test, camera);
     if (measure_holes(v, test, camera, err)) return err->status;
     v->valid = v->near <= NEAR_TOLERANCE && v->outside <= test->limits.max_outside && v->h < test->limits.max_h;
     return ST_OK;
@@ -90,18 +96,18 @@ enum status viewpoint_is_valid(bool *valid, struct viewpoint_test *test, const s
 {
     struct viewpoint v;
     *valid = false;
-    if (!(camera->fx > 0) || near_part(test, camera) > NEAR_TOLERANCE ||
-        outside(test, camera) > test->limits.max_outside)
+    if (!(camera->fx > 0) || near_fraction(test, camera) > NEAR_TOLERANCE ||
+        outside_fraction(test, camera) > test->limits.max_outside)
         return ST_OK;
     if (measure_holes(&v, test, camera, err)) return err->status;
     *valid = v.h < test->limits.max_h;
     return ST_OK;
 }
 
-void viewpoint_test_like(struct viewpoint_test *test, const struct viewpoint_test *like)
+void viewpoint_test_copy(struct viewpoint_test *test, const struct viewpoint_test *from)
 {
     *test = (struct viewpoint_test){
-        .scene = like->scene, .points = like->points, .shot = like->shot, .limits = like->limits};
+        .scene = from->scene, .points = from->points, .shot = from->shot, .limits = from->limits};
 }
 
 void viewpoint_test_release(struct viewpoint_test *test)
@@ -112,34 +118,34 @@ void viewpoint_test_release(struct viewpoint_test *test)
     test->distance_room = 0;
 }
 
-struct measuring {
+struct viewpoint_batch {
     struct viewpoint *out;
     const struct view *cameras;
-    struct viewpoint_test *tests; /* a thread */
-    struct err *errors;           /* a camera */
+    struct viewpoint_test *tests; /* one per thread */
+    struct err *errors;           /* one per camera */
 };
 
 static void measure_some(void *ctx, size_t begin, size_t end, int thread)
 {
-    const struct measuring *m = ctx;
+    const struct viewpoint_batch *m = ctx;
     for (size_t i = begin; i < end; i++)
         viewpoint_measure(&m->out[i], &m->tests[thread], &m->cameras[i], &m->errors[i]);
 }
 
 enum status viewpoints_measure(struct viewpoint *out, const struct view *cameras, int count,
-                               struct viewpoint_test *like, struct err *err)
+                               struct viewpoint_test *test, struct err *err)
 {
     const int threads = parallel_threads();
-    struct measuring m = {out, cameras, calloc((size_t)threads, sizeof *m.tests),
-                          calloc((size_t)count + 1, sizeof *m.errors)};
+    struct viewpoint_batch m = {out, cameras, calloc((size_t)threads, sizeof *m.tests),
+                                calloc((size_t)count + 1, sizeof *m.errors)};
     enum status st = m.tests && m.errors ? ST_OK : err_nomem(err, "viewpoints", (size_t)count * sizeof *m.errors);
 
-    for (int t = 0; !st && t < threads; t++) viewpoint_test_like(&m.tests[t], like);
+    for (int t = 0; !st && t < threads; t++) viewpoint_test_copy(&m.tests[t], test);
     if (!st) parallel_for((size_t)count, 1, measure_some, &m);
     for (int i = 0; !st && i < count; i++)
         if (m.errors[i].status) st = err_set(err, m.errors[i].status, "%s", m.errors[i].text);
     for (int t = 0; m.tests && t < threads; t++) {
-        like->renders += m.tests[t].renders;
+        test->renders += m.tests[t].renders;
         viewpoint_test_release(&m.tests[t]);
     }
     free(m.tests);

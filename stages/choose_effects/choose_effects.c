@@ -1,7 +1,7 @@
-/* choose_effects.c - which films to make of a scene: one by chance, or all that suit it; or if a name is an effect's.
+/* choose_effects.c - chooses the effects that suit a scene: one at random, or all; or checks the name of an effect.
  *
- * reads   SUBJECTS       what there is to show (find_subjects)
- * writes  OUT            EFFECTS := dolly_in dolly_in+dim ..., for make; nothing where a name is looked at */
+ * reads   SUBJECTS       the scene's subjects (find_subjects)
+ * writes  OUT            EFFECTS := dolly_in dolly_in+dim ..., for make; nothing if a name is checked */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,8 +12,8 @@
 #include "common/film/subject_list.h"
 #include "common/film/taxonomy.h"
 
-/* name, type, default, least, most, unit, help */
-#define CHOICE_PARAMS(X) X(seed, int, 1, 0, 1000000, "", "of the chance that draws one effect for EFFECT=auto")
+/* name, type, default, min, max, unit, help */
+#define CHOICE_PARAMS(X) X(seed, int, 1, 0, 1000000, "", "seed of the random choice of an effect for EFFECT=auto")
 
 struct choice_params {
     CHOICE_PARAMS(PARAM_FIELD)
@@ -49,7 +49,7 @@ static enum status write_choice(const struct film_effect *list, int count, const
 static enum status choose(const char *subjects, const char *which, const char *out, const struct choice_params *params,
                           struct provenance *prov, struct err *err)
 {
-    struct film_effect list[FILM_EFFECTS_MOST];
+    struct film_effect list[MAX_FILM_EFFECTS];
     struct subject_list found = {0};
     int count = 0;
 
@@ -63,21 +63,22 @@ static enum status choose(const char *subjects, const char *which, const char *o
         char name[EFFECT_NAME_SIZE];
         list[count++] = film_effect_draw(&scene, (uint64_t)params->seed);
         film_effect_name(&list[0], name);
-        log_note("%d subject%s: %s, by chance (seed %d)", scene.count, scene.count == 1 ? "" : "s", name, params->seed);
+        log_note("%d subject%s: %s, chosen at random (seed %d)", scene.count, scene.count == 1 ? "" : "s", name,
+                 params->seed);
     }
     if (!st) st = write_choice(list, count, out, prov, err);
     subject_list_release(&found);
     return st;
 }
 
-/* Before anything is known of a scene: whether some scene could have the effect. */
-static enum status look_at_name(const char *name, struct err *err)
+/* Checks that the effect suits some scene; nothing is known yet about this one. */
+static enum status check_name(const char *name, struct err *err)
 {
     const struct scene_subjects any = {2, 2 * DOF_DEPTH_RATIO};
     struct film_effect e;
     if (!strcmp(name, "auto") || !strcmp(name, "all"))
-        return err_set(err, ST_USAGE, "%s stands for what suits the scene: it can't be named beside other effects.",
-                       name);
+        return err_set(err, ST_USAGE,
+                       "%s means the effects that suit the scene; it cannot be combined with other effects.", name);
     return film_effect_parse(&e, name, err) || film_effect_check(&e, &any, err) ? err->status : ST_OK;
 }
 
@@ -86,11 +87,10 @@ int main(int argc, char **argv)
     const char *subjects = NULL, *which = NULL, *out = NULL;
     struct choice_params params = CHOICE_PARAMS_DEFAULT;
     const struct cli_opt opts[] = {
-        CLI_ABOUT("Says which films to make of a scene: one by chance, or all that suit it; or whether a name is an "
-                  "effect's."),
-        CLI_STR("subjects", &subjects, CLI_OPTIONAL, "for auto and all: file of the scene's subjects"),
-        CLI_STR("effect", &which, CLI_REQUIRED, "auto or all; or a name to look at, an error if it is no effect's"),
-        CLI_STR("out", &out, CLI_OPTIONAL, "for auto and all: file to write"),
+        CLI_ABOUT("Chooses the effects that suit a scene: one at random, or all; or checks the name of an effect."),
+        CLI_STR("subjects", &subjects, CLI_OPTIONAL, "file of the scene's subjects, for auto and all"),
+        CLI_STR("effect", &which, CLI_REQUIRED, "auto (one at random), all, or the name of an effect to check"),
+        CLI_STR("out", &out, CLI_OPTIONAL, "file to write, for auto and all"),
         CLI_PARAMS(choice_param_table, &params, NULL),
         CLI_END,
     };
@@ -98,10 +98,10 @@ int main(int argc, char **argv)
     struct err err = ERR_INIT;
     if (cli_parse(argc, argv, "choose_effects", opts, &prov, &err) == CLI_RUN) {
         if (!subjects && !out)
-            look_at_name(which, &err);
+            check_name(which, &err);
         else if (!subjects || !out || (strcmp(which, "auto") && strcmp(which, "all")))
             err_set(&err, ST_USAGE,
-                    "--effect %s: wanted auto or all, with --subjects and --out; or a name, without them.", which);
+                    "--effect %s: wanted auto or all with --subjects and --out, or a name without them.", which);
         else
             choose(subjects, which, out, &params, &prov, &err);
     }

@@ -1,11 +1,16 @@
-/* crop_move.c - see crop_move.h. */
+/* crop_move.c - a camera move as pan and zoom over one photograph.
+ *
+ * The 2D counterpart of a move, to compare 3D pan & scan with [Colburn 2014, 3.8]. At both ends a crop is fitted
+ * (crop_fit.c) so that the view's points appear where the path's camera sees them. Between the ends the crop is
+ * interpolated linearly in the fraction of the camera's path that is done; if the camera does not move, in the fraction
+ * of its rotation and zoom; if it does not do that either, in time. */
 #include "stages/pan_scan/crop_move.h"
 
 #include <stdlib.h>
 
-#define SAME_WAY 0.5 /* cosine of the angle between the axes of a view and the path's camera, at least */
-#define GRID     64  /* points along the longer side of a depth map */
-#define STILL    1e-9
+#define MIN_AXIS_COSINE 0.5  /* between cameras that face about the same way */
+#define GRID            64   /* points along the longer side of a depth map */
+#define MIN_MOTION      1e-9 /* per frame; less counts as none */
 
 static double axis_dot(const struct view *a, const struct view *b)
 {
@@ -23,7 +28,7 @@ int crop_move_choose_view(const struct camera_set *set, const struct camera_path
     for (int i = 0; i < set->view_count; i++) {
         const double far = vec3_length(vec3_sub(set->views[i].center, middle->center));
         const double straight = axis_dot(&set->views[i], middle);
-        const bool same = straight >= SAME_WAY;
+        const bool same = straight >= MIN_AXIS_COSINE;
         if (same < same_way) continue;
         if (same > same_way || far < nearest * (1 - 1e-9) || (far <= nearest * (1 + 1e-9) && straight > straightest))
             best = i, nearest = far, straightest = straight, same_way = same;
@@ -33,7 +38,7 @@ int crop_move_choose_view(const struct camera_set *set, const struct camera_path
 
 /* ---------------------------------------------------------------------------------------------------- quarter turns */
 
-/* By a quarter clockwise: what was at (x, y) of a picture of a height is at (height - y, x). */
+/* Clockwise by a quarter turn: (x, y) goes to (height - y, x). */
 static void turn_view(struct view *v)
 {
     const struct view old = *v;
@@ -47,7 +52,7 @@ static void turn_view(struct view *v)
     v->translation = vec3_make(-old.translation.y, old.translation.x, old.translation.z);
 }
 
-/* How the view must be turned to stand as the camera does. */
+/* Clockwise quarter turns that bring the view to the camera's orientation. */
 static int quarters_between(const struct view *view, const struct view *camera)
 {
     double across = 0, down = 0; /* the view's x axis in the camera */
@@ -95,20 +100,21 @@ static void add_point(struct crop_move *m, double x, double y, struct vec3 world
         const double swap = width;
         width = height, height = swap;
     }
-    m->points[m->point_count++] = (struct seen_point){x, y, world};
+    m->points[m->point_count++] = (struct photo_point){x, y, world};
 }
 
-static enum status points_of_depth(struct crop_move *m, const struct view *view, const struct layered_depth *depth,
-                                   struct err *err)
+static enum status depth_points(struct crop_move *m, const struct view *view, const struct layered_depth *depth,
+                                struct err *err)
 {
     const int side = depth->width > depth->height ? depth->width : depth->height;
     const int step = side > GRID ? side / GRID : 1;
-    const size_t most = (size_t)(depth->width / step + 1) * (size_t)(depth->height / step + 1);
+    const size_t max_count = (size_t)(depth->width / step + 1) * (size_t)(depth->height / step + 1);
     if (depth->width != view->width || depth->height != view->height)
         return err_set(err, ST_DATA,
-                       "the depth map of view %s is %d x %d pixels, but its camera says %d x %d; make it again.",
+                       "the depth map of view %s is %d x %d pixels, its camera %d x %d; make the depth map again.",
                        view->name, depth->width, depth->height, view->width, view->height);
-    if (!(m->points = malloc(most * sizeof *m->points))) return err_nomem(err, "points", most * sizeof *m->points);
+    if (!(m->points = malloc(max_count * sizeof *m->points)))
+        return err_nomem(err, "points", max_count * sizeof *m->points);
     for (int y = step / 2; y < depth->height; y += step)
         for (int x = step / 2; x < depth->width; x += step) {
             const double z = (double)depth->interior.z[(size_t)y * (size_t)depth->width + (size_t)x];
@@ -122,10 +128,11 @@ static enum status sparse_points(struct crop_move *m, const struct camera_set *s
 {
     const struct sfm_image *im = &set->model.images[view_idx];
     const struct view *v = &set->views[view_idx];
-    const size_t most = (size_t)im->observation_count + 1;
-    if (!(m->points = malloc(most * sizeof *m->points))) return err_nomem(err, "points", most * sizeof *m->points);
+    const size_t max_count = (size_t)im->observation_count + 1;
+    if (!(m->points = malloc(max_count * sizeof *m->points)))
+        return err_nomem(err, "points", max_count * sizeof *m->points);
     for (int i = 0; i < set->model.point_count; i++)
-        for (int k = 0; k < set->model.points[i].track_count && m->point_count < most; k++) {
+        for (int k = 0; k < set->model.points[i].track_count && m->point_count < max_count; k++) {
             const struct sfm_track *t = &set->model.points[i].track[k];
             if (t->image_idx != view_idx) continue;
             const struct sfm_observation *o = &im->observations[t->observation_idx];
@@ -134,8 +141,8 @@ static enum status sparse_points(struct crop_move *m, const struct camera_set *s
     return ST_OK;
 }
 
-/* Where the points should be seen in a frame: those within it, or, if these are too few, those in front of its
- * camera. */
+/* Pairs the points with their pixels in a frame: the points within it or, if they are too few, all in front of its
+ * camera. The caller frees task->pairs. */
 static enum status make_task(struct crop_task *task, const struct crop_move *m, int frame, struct err *err)
 {
     const struct view *f = &m->path->frames[frame].camera;
@@ -149,7 +156,7 @@ static enum status make_task(struct crop_task *task, const struct crop_move *m, 
                                .tolerance = m->tolerance,
                                .pairs = pairs};
     if (!pairs) return err_nomem(err, "points", m->point_count * sizeof *pairs);
-    for (int inside = 1; inside >= 0 && task->count < CROP_LEAST; inside--) {
+    for (int inside = 1; inside >= 0 && task->count < MIN_CROP_POINTS; inside--) {
         task->count = 0;
         for (size_t i = 0; i < m->point_count; i++) {
             double u = -1, v = -1;
@@ -186,43 +193,40 @@ enum status crop_move_misfit(double *misfit, const struct crop_move *m, int fram
 
 /* ------------------------------------------------------------------------------------------------------------- time */
 
-/* The angle between two cameras, and how much their focal lengths differ: what moves in a picture without moving the
- * camera. */
-static double turn_between(const struct view *a, const struct view *b)
+/* Angle between two cameras plus the logarithm of the ratio of their focal lengths. */
+static double rotation_and_zoom(const struct view *a, const struct view *b)
 {
     const struct mat3 r = mat3_multiply(a->cam_from_world, mat3_transpose(b->cam_from_world));
     const struct vec3 twice_sine = {r.m[2][1] - r.m[1][2], r.m[0][2] - r.m[2][0], r.m[1][0] - r.m[0][1]};
     return atan2(vec3_length(twice_sine), r.m[0][0] + r.m[1][1] + r.m[2][2] - 1) + fabs(log(b->fx / a->fx));
 }
 
-/* How far each frame is on the camera's way; where the camera stays at its place, on its way of turning and zooming;
- * where it does not do that either, by time. */
-static enum status find_parts(struct crop_move *m, struct err *err)
+static enum status find_fractions(struct crop_move *m, struct err *err)
 {
     const struct camera_path *p = m->path;
     const size_t n = (size_t)p->frame_count;
-    double scale = STILL;
-    if (!(m->parts = calloc(n, sizeof *m->parts))) return err_nomem(err, "a move", n * sizeof *m->parts);
+    double scale = MIN_MOTION;
+    if (!(m->fractions = calloc(n, sizeof *m->fractions))) return err_nomem(err, "a move", n * sizeof *m->fractions);
     for (size_t i = 0; i < m->point_count; i++)
         scale = fmax(scale, vec3_length(vec3_sub(m->points[i].world, m->view.center)));
     for (int by = 0; by < 3; by++) {
         for (size_t i = 1; i < n; i++) {
             const struct view *a = &p->frames[i - 1].camera, *b = &p->frames[i].camera;
-            m->parts[i] = m->parts[i - 1] + (by == 0   ? vec3_length(vec3_sub(b->center, a->center)) / scale
-                                             : by == 1 ? turn_between(a, b)
-                                                       : 1);
+            m->fractions[i] = m->fractions[i - 1] + (by == 0   ? vec3_length(vec3_sub(b->center, a->center)) / scale
+                                                     : by == 1 ? rotation_and_zoom(a, b)
+                                                               : 1);
         }
-        if (m->parts[n - 1] > STILL * (double)n) break;
+        if (m->fractions[n - 1] > MIN_MOTION * (double)n) break;
     }
-    const double whole = m->parts[n - 1];
-    for (size_t i = 0; i < n && whole > 0; i++) m->parts[i] /= whole;
+    const double total = m->fractions[n - 1];
+    for (size_t i = 0; i < n && total > 0; i++) m->fractions[i] /= total;
     return ST_OK;
 }
 
 struct crop crop_move_crop(const struct crop_move *m, int frame)
 {
     const struct crop *a = &m->ends[0].crop, *b = &m->ends[1].crop;
-    const double t = m->parts[frame];
+    const double t = m->fractions[frame];
     return (struct crop){a->x + t * (b->x - a->x), a->y + t * (b->y - a->y), a->width + t * (b->width - a->width),
                          a->height + t * (b->height - a->height)};
 }
@@ -238,8 +242,8 @@ enum status crop_move_init(struct crop_move *m, const struct camera_set *set, in
     m->tolerance = tolerance * (first->width > first->height ? first->width : first->height);
     m->quarters = quarters_between(view, &path->frames[path->frame_count / 2].camera);
     for (int q = 0; q < m->quarters; q++) turn_view(&m->view);
-    enum status st = depth ? points_of_depth(m, view, depth, err) : sparse_points(m, set, view_idx, err);
-    if (!st) st = find_parts(m, err);
+    enum status st = depth ? depth_points(m, view, depth, err) : sparse_points(m, set, view_idx, err);
+    if (!st) st = find_fractions(m, err);
     for (int end = 0; !st && end < 2; end++) st = fit_end(m, end, err);
     if (st) crop_move_release(m);
     return st;
@@ -249,6 +253,6 @@ void crop_move_release(struct crop_move *m)
 {
     if (!m) return;
     free(m->points);
-    free(m->parts);
+    free(m->fractions);
     *m = (struct crop_move){0};
 }

@@ -1,7 +1,7 @@
-/* crop_move.h - a camera move as a pan and zoom over one photograph (thesis 3.8: what 3D pan & scan is compared with).
+/* crop_move.h - a camera move as pan and zoom over one photograph [Colburn 2014, 3.8].
  *
- * The photograph may be stored on its side: it is turned by quarters until it stands as the film does, and crops are of
- * the turned picture. Scene units; px of the turned picture, or of the frames, where a name says so. */
+ * The photograph may be stored on its side; it is rotated by quarter turns to the film's orientation. Crops and points
+ * are in px of the rotated picture unless noted. Scene units. */
 #ifndef REMODEL_CROP_MOVE_H
 #define REMODEL_CROP_MOVE_H
 
@@ -10,43 +10,44 @@
 #include "common/layers/layered_depth.h"
 #include "stages/pan_scan/crop_fit.h"
 
-struct seen_point { /* as the view shows it */
-    double x, y;    /* in its picture */
+struct photo_point { /* a point of the scene seen by the view */
+    double x, y;
     struct vec3 world;
 };
 
 struct crop_move {
     const struct camera_path *path;
-    struct view view;          /* turned; its name is the set's */
-    int quarters;              /* by which it was turned, clockwise */
-    struct seen_point *points; /* owned; places in the turned picture */
+    struct view view;           /* rotated; its name is owned by the set */
+    int quarters;               /* clockwise quarter turns from the stored picture to the rotated one */
+    struct photo_point *points; /* owned */
     size_t point_count;
-    double tolerance; /* frame px */
-    double *parts;    /* owned; a frame: how far along the move it is, 0 .. 1 */
+    double tolerance;  /* frame px */
+    double *fractions; /* owned; one per frame: the part of the move that is done, 0 to 1 */
     struct crop_result ends[2];
-    double misfits[2]; /* at the ends */
+    double misfits[2]; /* crop_misfit at the ends, frame px */
 };
 
-/* The view nearest to the middle camera of the path that looks about its way; of several at one place the one that does
- * most. */
+/* Index of the view nearest to the middle camera of the path among those that face about the same way; of several at
+ * the same position, the one that faces most nearly that way. */
 int crop_move_choose_view(const struct camera_set *set, const struct camera_path *path);
 
-/* The move: ends fitted to what the path's first and last cameras see of the view's points, the frames between as far
- * along as the path's are. The points are those of the depth map, or, if it is NULL, the sparse points that the view
- * sees. tolerance: as a part of the frame's longer side. ST_DATA: too few points. */
+/* Fits the first and the last crop to what the path's first and last camera see of the view's points; the crops between
+ * are interpolated as the path advances. The points come from the depth map; if it is NULL, they are the sparse points
+ * that the view observes. tolerance: fraction of the frame's longer side. m refers to path. ST_DATA: too few points, or
+ * a depth map of another size. */
 enum status crop_move_init(struct crop_move *m, const struct camera_set *set, int view_idx,
                            const struct layered_depth *depth, const struct camera_path *path, double tolerance,
                            struct err *err);
 void crop_move_release(struct crop_move *m);
 
-/* What frame i shows, and by how many frame px it misses the points (their median). */
+/* The crop of a frame, and its crop_misfit. */
 struct crop crop_move_crop(const struct crop_move *m, int frame);
 enum status crop_move_misfit(double *misfit, const struct crop_move *m, int frame, struct err *err);
 
-/* The crop in the pixels of the view as it is stored. */
+/* A crop in pixels of the picture as it is stored. */
 struct crop crop_move_stored(const struct crop_move *m, struct crop crop);
 
-/* Turns the view's picture as the move's view is turned. */
+/* Rotates the view's stored picture to the orientation of m->view. */
 enum status crop_move_turn(struct image *picture, const struct crop_move *m, struct err *err);
 
 #endif

@@ -1,26 +1,30 @@
-/* crop_picture.c - see crop_picture.h. Rows first, into a strip of the rows that are needed, then columns; each pass
- * keeps to the range of its own samples within one kernel unit. */
+/* crop_picture.c - separable resampling with the Catmull-Rom cubic [Keys 1981], widened by the factor of reduction.
+ *
+ * The first pass filters the rows that are needed into a strip, the second the strip's columns. Unlike the plain cubic,
+ * each pass clamps its result to the range of the samples within one kernel unit, so there are no halos around lights
+ * and no negative values. */
 #include "stages/pan_scan/crop_picture.h"
 
 #include <math.h>
 #include <stdlib.h>
 
 #include "common/base/parallel.h"
+#include "common/math/numbers.h"
 
 enum { CHUNK = 8 };
 
-struct taps {             /* of the pixels along an axis */
-    int room;             /* taps a pixel, at most */
-    int *first, *count;   /* a pixel */
-    int *near_end, *near; /* the samples within one unit: [near, near_end) of the taps */
-    float *weights;       /* room a pixel */
+struct filter_taps {      /* for the output pixels along one axis; arrays have one entry per pixel */
+    int max_count;        /* weights allocated per pixel */
+    int *first, *count;   /* first sample, number of samples */
+    int *near_end, *near; /* taps [near, near_end) are within one kernel unit */
+    float *weights;       /* max_count per pixel */
 };
 
-static void taps_release(struct taps *t)
+static void taps_release(struct filter_taps *t)
 {
     free(t->first);
     free(t->weights);
-    *t = (struct taps){0};
+    *t = (struct filter_taps){0};
 }
 
 static double kernel(double x)
@@ -29,26 +33,26 @@ static double kernel(double x)
     return x < 1 ? 1 + x * x * (1.5 * x - 2.5) : x < 2 ? 2 + x * (-4 + x * (2.5 - 0.5 * x)) : 0;
 }
 
-/* Pixels [0, pixels) of a part of an axis that begins at `from` and is `length` samples long. */
-static enum status taps_make(struct taps *t, int pixels, double from, double length, struct err *err)
+/* Taps of `pixels` pixels over the interval of `length` samples that begins at `from`. */
+static enum status taps_make(struct filter_taps *t, int pixels, double from, double length, struct err *err)
 {
     const double step = length / pixels, stretch = fmax(1, step);
     const size_t n = (size_t)pixels;
-    *t = (struct taps){.room = (int)ceil(4 * stretch) + 1};
+    *t = (struct filter_taps){.max_count = (int)ceil(4 * stretch) + 1};
     t->first = malloc(4 * n * sizeof *t->first);
-    t->weights = malloc(n * (size_t)t->room * sizeof *t->weights);
+    t->weights = malloc(n * (size_t)t->max_count * sizeof *t->weights);
     if (!t->first || !t->weights) {
         taps_release(t);
-        return err_nomem(err, "a filter", n * (size_t)t->room * sizeof *t->weights);
+        return err_nomem(err, "a filter", n * (size_t)t->max_count * sizeof *t->weights);
     }
     t->count = t->first + n, t->near = t->count + n, t->near_end = t->near + n;
     for (int i = 0; i < pixels; i++) {
-        const double at = from + (i + 0.5) * step - 0.5; /* in samples, whose centres are whole numbers here */
-        float *weight = t->weights + (size_t)i * (size_t)t->room;
+        const double at = from + (i + 0.5) * step - 0.5; /* in samples; their centres are integers here */
+        float *weight = t->weights + (size_t)i * (size_t)t->max_count;
         double sum = 0;
         t->first[i] = (int)ceil(at - 2 * stretch);
         t->count[i] = (int)floor(at + 2 * stretch) - t->first[i] + 1;
-        if (t->count[i] > t->room) t->count[i] = t->room;
+        if (t->count[i] > t->max_count) t->count[i] = t->max_count;
         t->near[i] = (int)ceil(at - stretch);
         t->near_end[i] = (int)floor(at + stretch) + 1;
         t->near[i] -= t->first[i], t->near_end[i] -= t->first[i];
@@ -58,37 +62,35 @@ static enum status taps_make(struct taps *t, int pixels, double from, double len
     return ST_OK;
 }
 
-static int within(int x, int count) { return x < 0 ? 0 : x >= count ? count - 1 : x; }
-
-/* One pixel: samples `stride` floats apart, number i of the axis at base + i stride, `samples` of them. */
-static void filter(float *out, const struct taps *t, int pixel, const float *base, size_t stride, int samples,
+/* Filters one pixel. Sample i of the axis, of `samples`, is at base + i stride. */
+static void filter(float *out, const struct filter_taps *t, int pixel, const float *base, size_t stride, int samples,
                    int channels)
 {
-    const float *weight = t->weights + (size_t)pixel * (size_t)t->room;
+    const float *weight = t->weights + (size_t)pixel * (size_t)t->max_count;
     for (int c = 0; c < channels; c++) {
-        float sum = 0, least = INFINITY, most = -INFINITY;
+        float sum = 0, min = INFINITY, max = -INFINITY;
         for (int k = 0; k < t->count[pixel]; k++) {
-            const float s = base[(size_t)within(t->first[pixel] + k, samples) * stride + (size_t)c];
+            const float s = base[(size_t)clamp_int(t->first[pixel] + k, 0, samples - 1) * stride + (size_t)c];
             sum += weight[k] * s;
             if (k < t->near[pixel] || k >= t->near_end[pixel]) continue;
-            least = s < least ? s : least;
-            most = s > most ? s : most;
+            min = s < min ? s : min;
+            max = s > max ? s : max;
         }
-        out[c] = sum < least ? least : sum > most ? most : sum;
+        out[c] = sum < min ? min : sum > max ? max : sum;
     }
 }
 
-struct passes {
+struct crop_passes {
     const struct image *picture;
-    struct image strip; /* rows [top, top + strip.height) of the picture, as wide as the frame */
+    struct image strip; /* rows [top, top + strip.height) of the picture, filtered to the frame's width */
     int top;
     struct image *out;
-    struct taps across, down;
+    struct filter_taps across, down;
 };
 
 static void along_rows(void *ctx, size_t begin, size_t end, int thread)
 {
-    struct passes *p = ctx;
+    struct crop_passes *p = ctx;
     (void)thread;
     for (size_t y = begin; y < end; y++)
         for (int x = 0; x < p->strip.width; x++)
@@ -98,7 +100,7 @@ static void along_rows(void *ctx, size_t begin, size_t end, int thread)
 
 static void along_columns(void *ctx, size_t begin, size_t end, int thread)
 {
-    struct passes *p = ctx;
+    struct crop_passes *p = ctx;
     const size_t stride = (size_t)p->strip.width * (size_t)p->strip.channels;
     (void)thread;
     for (size_t y = begin; y < end; y++)
@@ -109,14 +111,14 @@ static void along_columns(void *ctx, size_t begin, size_t end, int thread)
 
 enum status crop_picture(struct image *out, const struct image *picture, const struct crop *crop, struct err *err)
 {
-    struct passes p = {.picture = picture, .out = out};
+    struct crop_passes p = {.picture = picture, .out = out};
     enum status st = taps_make(&p.across, out->width, crop->x, crop->width, err);
     if (!st) st = taps_make(&p.down, out->height, crop->y, crop->height, err);
     if (!st) {
         const int last = out->height - 1;
-        p.top = within(p.down.first[0], picture->height);
-        const int bottom = within(p.down.first[last] + p.down.count[last] - 1, picture->height);
-        for (int i = 0; i <= last; i++) p.down.first[i] -= p.top; /* samples of the strip */
+        p.top = clamp_int(p.down.first[0], 0, picture->height - 1);
+        const int bottom = clamp_int(p.down.first[last] + p.down.count[last] - 1, 0, picture->height - 1);
+        for (int i = 0; i <= last; i++) p.down.first[i] -= p.top; /* indices into the strip */
         st = image_init(&p.strip, out->width, bottom - p.top + 1, picture->channels, err);
     }
     if (!st) {

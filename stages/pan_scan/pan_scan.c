@@ -1,13 +1,10 @@
-/* pan_scan.c - a camera move in 2D: crops of one photograph that follow it as closely as a crop can.
+/* pan_scan.c - a camera move in 2D: crops of one photograph that follow the move as closely as crops can.
  *
- * reads   VIEWS/cameras.txt, images.txt, points3D.txt   the views, and the points they see
- *         VIEWS/VIEW.exr                                the one view that is shown
- *         DEPTH/VIEW.exr, VIEW.txt                      with --depth: where its pixels are
+ * reads   VIEWS/cameras.txt, images.txt, points3D.txt   the views and their sparse points
+ *         VIEWS/VIEW.exr                                the view that is shown
+ *         DEPTH/VIEW.exr, VIEW.txt                      with --depth: the view's depth
  *         PATH/path.txt, path/NAME.txt                  the move
- * writes  OUT/NNNN.exr                                  a file a frame: R G B A
- *
- * At either end of the move the crop is fitted, within the photograph, to where the path's camera sees the scene's
- * points; between them it goes as the camera goes. */
+ * writes  OUT/NNNN.exr                                  one file per frame: R G B A */
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -22,13 +19,13 @@
 #include "stages/pan_scan/crop_picture.h"
 #include "stages/pan_scan/pan_params.h"
 
-#define HELD_FROM 0.5 /* frame px: a crop that is moved less to stay within the photograph is not worth a word */
+#define MIN_BEYOND 0.5 /* frame px beyond the photograph from which a warning is given */
 
 #define PARAM_STRUCT struct pan_params
 const struct param pan_param_table[] = {PAN_PARAMS(PARAM_ROW) PARAM_END};
 #undef PARAM_STRUCT
 
-struct job { /* what the command line says */
+struct job { /* the command line */
     const char *views, *depth, *path, *frames, *out;
     struct pan_params params;
 };
@@ -69,22 +66,23 @@ static enum status read_depth(struct layered_depth *depth, const struct job *job
     return ST_OK;
 }
 
-/* Each end is told of by the process that makes its frame. */
-static void tell(const struct crop_move *m, const bool *wanted)
+/* Reports an end only if this process makes its frame. */
+static void log_summary(const struct crop_move *m, const bool *wanted)
 {
     static const char *const names[] = {"first", "last"};
     const int frames[] = {0, m->path->frame_count - 1};
     for (int end = 0; end < 2; end++) {
         const struct crop c = crop_move_stored(m, m->ends[end].crop);
         if (!wanted[frames[end]]) continue;
-        log_note("the %s frame shows %.0f x %.0f pixels of view %s from (%.0f, %.0f) on, and misses the scene's points "
-                 "by %.1f px "
-                 "(median)",
-                 names[end], c.width, c.height, m->view.name, c.x, c.y, m->misfits[end]);
-        if (m->ends[end].beyond > HELD_FROM)
-            log_warn("the %s frame's crop is held at the border of view %s: to follow the move it would leave the "
-                     "photograph by %.0f px",
-                     names[end], m->view.name, m->ends[end].beyond);
+        log_note(
+            "the %s frame shows %.0f x %.0f pixels of view %s from (%.0f, %.0f) on; the median error of the scene's "
+            "points is %.1f px",
+            names[end], c.width, c.height, m->view.name, c.x, c.y, m->misfits[end]);
+        if (m->ends[end].beyond > MIN_BEYOND)
+            log_warn(
+                "the %s frame's crop is held at the border of view %s: following the move would take it %.0f px beyond "
+                "the photograph",
+                names[end], m->view.name, m->ends[end].beyond);
     }
 }
 
@@ -161,7 +159,7 @@ static enum status pan_scan(const struct job *job, struct provenance *prov, stru
     if (!st) st = crop_move_init(&move, &set, view_idx, job->depth ? &depth : NULL, &path, job->params.tolerance, err);
     if (!st) st = view_image_read(&picture, job->views, &set.views[view_idx], err);
     if (!st) st = crop_move_turn(&picture, &move, err);
-    if (!st) tell(&move, wanted);
+    if (!st) log_summary(&move, wanted);
     if (!st) st = make_frames(&move, wanted, &picture, job->out, prov, err);
     free(wanted);
     image_release(&picture);
@@ -177,14 +175,14 @@ int main(int argc, char **argv)
     struct job job = {.params = PAN_PARAMS_DEFAULT};
     const char *view = NULL;
     const struct cli_opt opts[] = {
-        CLI_ABOUT("A camera move in 2D: crops of one photograph that follow it as closely as a crop can."),
+        CLI_ABOUT("Makes a camera move in 2D: crops of one photograph that follow the move as closely as crops can."),
         CLI_STR("views", &job.views, CLI_REQUIRED, "folder of cameras and rectified views"),
         CLI_STR("depth", &job.depth, CLI_OPTIONAL,
-                "folder of layered depth maps; without it the sparse points are followed"),
+                "folder of layered depth maps to fit crops to; without it, the sparse points"),
         CLI_STR("path", &job.path, CLI_REQUIRED, "folder of the move: path.txt and path/"),
-        CLI_STR("frames", &job.frames, CLI_REQUIRED, "frames of the move to make: 1:30 or 1:30,45"),
+        CLI_STR("frames", &job.frames, CLI_REQUIRED, "frames of the move to make, such as 1:30 or 1:30,45"),
         CLI_STR("out", &job.out, CLI_REQUIRED, "folder of the EXR files to write, NNNN.exr"),
-        CLI_PARAM("view", &view, "the view whose photograph is shown"),
+        CLI_PARAM("view", &view, "view whose photograph is shown"),
         CLI_PARAMS(pan_param_table, &job.params, NULL),
         CLI_END,
     };

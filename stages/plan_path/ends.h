@@ -1,19 +1,6 @@
-/* ends.h - where a move starts and ends (thesis 3.4.2, "Maximizing parallax"), among the valid viewpoints.
+/* ends.h - choice of a move's two ends among the valid viewpoints, for the most parallax [Colburn 2014, 3.4.2].
  *
- * A cell of the start's region gives a candidate for the start, its nearest or farthest valid z as the move goes, and
- * one of the end's region one for the end. A pair subtends no more than max_angle at the scene's centroid, and that of
- * a dolly in or out goes at least half of its length in or out. Of the longest pairs the one with most parallax is the
- * thesis' answer, which had to draw the scene anew for every pair. Here a cell is drawn once, and then comparing two
- * pictures costs less than a millisecond: so all pairs are compared.
- *
- * Every frame's place on the way is looked at too, not the ends alone: of the pairs with most parallax the first whose
- * way is valid all along is taken; if there is none, the thesis' answer is drawn together towards the origin until it
- * is.
- *
- * From there the ends leave the grid: by Levenberg-Marquardt (Ceres) on a smooth surrogate - for the parallax how far
- * the two sides of every depth edge of the origin's picture part between the two cameras, for the limits penalties that
- * rise beyond them, the regions interpolated between cells -, of which so much is taken as the real viewpoints and the
- * real parallax bear out; then by small moves of one end along one axis, each of which has to give more parallax. */
+ * "Path" is the way of the camera between the two ends. */
 #ifndef REMODEL_ENDS_H
 #define REMODEL_ENDS_H
 
@@ -21,37 +8,40 @@
 #include "stages/plan_path/plan_params.h"
 
 struct move_ends {
-    struct vec3 at[2];
+    struct vec3 at[2];        /* start, end; world */
     double length;            /* scene units */
     double angle;             /* degrees, at the scene's centroid */
     double parallax;          /* stages/plan_path/parallax.h */
-    double worst_h, worst_at; /* along the way; at: 0 start .. 1 end */
-    double worst_outside;
-    bool valid; /* all along */
+    double worst_h, worst_at; /* largest H on the path, and where: 0 start .. 1 end */
+    double worst_outside;     /* largest on the path (struct viewpoint) */
+    bool valid;               /* everywhere on the path */
 };
 
 struct ends_notes {
-    struct move_ends discrete; /* the thesis' answer: of the longest pairs the one with most parallax, valid or not */
-    int longest;               /* of them */
-    int pairs;                 /* measured in all */
-    int chosen;   /* which of them, by parallax, is valid all along: 0 is the best; -1: none, drawn together */
-    bool refined; /* the ends have left the grid */
-    long renders;
+    struct move_ends discrete; /* the thesis's result: the longest pairs' best by parallax, valid or not */
+    int longest;               /* number of those pairs */
+    int pairs;                 /* number of pairs whose parallax was measured */
+    int chosen;   /* rank by parallax of the first pair with a valid path; 0: the best; -1: none, ends were drawn in */
+    bool refined; /* the ends are off the grid */
+    long renders; /* number of depth pictures rendered */
 };
 
-#define WAY_PLACES 25 /* where viewpoints are looked at along the way; if all are valid, at every frame's place too */
+/* Samples of a path in the first test of its validity; the frames' positions follow if it passes. */
+#define WAY_PLACES 25
 
-/* How much of the way is done at the i-th of `count` frames, 0 to 1. */
-double ends_part(int i, int count, const char *ease);
+/* Fraction of the path that is done at frame i of `count`, 0 to 1. ease: "none" or "smooth". */
+double path_fraction(int i, int count, const char *ease);
 
+/* Chooses the ends. notes->renders counts from 0. ST_DATA: no cell of a region is valid. Same bits for any number of
+ * threads. */
 enum status ends_choose(struct move_ends *best, struct ends_notes *notes, const struct layer_scene *scene,
                         const struct validity *v, const struct plan_params *params, struct err *err);
 
-/* Tells of the ends in e->at all that ends_choose tells. */
+/* Fills the rest of e for the ends e->at. */
 enum status ends_measure(struct move_ends *e, const struct layer_scene *scene, const struct validity *v,
                          const struct plan_params *params, struct err *err);
 
-/* The candidate of a cell for one end of the move. */
+/* The candidate viewpoint of a cell for one end of the move. */
 struct vec3 ends_candidate(const struct validity *v, int end, int cell);
 
 #endif

@@ -1,13 +1,17 @@
-/* image_effects.c - see image_effects.h. */
+/* image_effects.c - depth of field, focus and colour of a move [Colburn 2014, 3.4.3].
+ *
+ * Aperture: as in the thesis, it grows until a corner of the square around its disk is an invalid viewpoint; here
+ * bisection then refines it. It is also limited by the circle of confusion of an infinitely far point, aperture fx /
+ * focus px. */
 #include "stages/plan_path/image_effects.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-#define FIRST_APERTURE 0.002 /* of the focus */
-#define HALVINGS       4
-#define BOX_DEPTH      0.75 /* of the subject's size, before and behind its plane */
-#define BOX_FALLOFF    0.35 /* of the subject's size */
+#define FIRST_APERTURE 0.002 /* in units of the focus distance */
+#define BISECTIONS     4
+#define BOX_DEPTH      0.75 /* of the box in front of and behind the subject, in units of its height */
+#define BOX_FALLOFF    0.35 /* in units of the subject's height */
 
 static enum status corners_valid(bool *valid, struct viewpoint_test *test, const struct view *camera, double aperture,
                                  double focus, struct err *err)
@@ -21,31 +25,32 @@ static enum status corners_valid(bool *valid, struct viewpoint_test *test, const
     return ST_OK;
 }
 
-enum status aperture_search(double *aperture, struct viewpoint_test *test, const struct view *camera, double focus,
-                            double max_blur, struct err *err)
+/* Finds the widest valid aperture of a camera focused at `focus`. max_blur: px. 0: not even a small one is valid. */
+static enum status widest_aperture(double *aperture, struct viewpoint_test *test, const struct view *camera,
+                                   double focus, double max_blur, struct err *err)
 {
-    const double most = max_blur * focus / camera->fx; /* of the infinitely far: aperture fx / focus px */
-    double good = 0, bad = 0, next = fmin(FIRST_APERTURE * focus, most);
+    const double limit = max_blur * focus / camera->fx;
+    double inner = 0, outer = 0, next = fmin(FIRST_APERTURE * focus, limit); /* largest valid, smallest invalid */
     bool valid;
 
     *aperture = 0;
-    if (!(most > 0)) return ST_OK;
-    while (!(bad > 0) && good < most) {
+    if (!(limit > 0)) return ST_OK;
+    while (!(outer > 0) && inner < limit) {
         if (corners_valid(&valid, test, camera, next, focus, err)) return err->status;
         if (valid)
-            good = next, next = fmin(2 * next, most);
+            inner = next, next = fmin(2 * next, limit);
         else
-            bad = next;
+            outer = next;
     }
-    for (int i = 0; bad > 0 && i < HALVINGS; i++) {
-        next = 0.5 * (good + bad);
+    for (int i = 0; outer > 0 && i < BISECTIONS; i++) {
+        next = 0.5 * (inner + outer);
         if (corners_valid(&valid, test, camera, next, focus, err)) return err->status;
         if (valid)
-            good = next;
+            inner = next;
         else
-            bad = next;
+            outer = next;
     }
-    *aperture = good;
+    *aperture = inner;
     return ST_OK;
 }
 
@@ -55,20 +60,20 @@ static double depth_of(const struct view *camera, const struct subject *s)
     return view_project(camera, subject_center(s), &u, &v);
 }
 
-/* The focus of a frame, a part of the way along; 0: a subject is behind the camera. */
+/* The focus of a frame at `fraction` of the path; 0: a subject is behind the camera. */
 static double focus_at(const struct view *camera, const struct validity *v, const struct subject_list *subjects,
-                       double part)
+                       double fraction)
 {
     const bool two = v->effect.move == MOVE_DOLLY;
     const double first = depth_of(camera, &subjects->subjects[0]);
     const double second = two ? depth_of(camera, &subjects->subjects[1]) : first;
     if (!(first > 0 && second > 0)) return 0;
     if (!two) return first;
-    if (v->effect.focus == FOCUS_WIDEN) return first; /* it is in focus while there is a depth of field to speak of */
-    return v->effect.focus == FOCUS_NARROW ? second : (1 - part) * first + part * second;
+    if (v->effect.focus == FOCUS_WIDEN) return first; /* blur is visible near the start alone */
+    return v->effect.focus == FOCUS_NARROW ? second : (1 - fraction) * first + fraction * second;
 }
 
-enum status focus_frames(struct camera_path *path, double *widest, const double *parts, struct viewpoint_test *test,
+enum status focus_frames(struct camera_path *path, double *widest, const double *fractions, struct viewpoint_test *test,
                          const struct validity *v, const struct subject_list *subjects,
                          const struct plan_params *params, struct err *err)
 {
@@ -77,19 +82,19 @@ enum status focus_frames(struct camera_path *path, double *widest, const double 
     const double longer = fmax(v->shot.lens.width, v->shot.lens.height);
 
     *widest = INFINITY;
-    for (int end = 0; end < 2; end++) { /* where the aperture is widest */
+    for (int end = 0; end < 2; end++) { /* the ends at which the aperture is open */
         const struct view *camera = &path->frames[end ? last : 0].camera;
         double aperture = 0;
         if (effect == (end ? FOCUS_WIDEN : FOCUS_NARROW)) continue;
         const double focus = focus_at(camera, v, subjects, end);
-        if (focus > 0 && aperture_search(&aperture, test, camera, focus, params->max_blur * longer, err))
+        if (focus > 0 && widest_aperture(&aperture, test, camera, focus, params->max_blur * longer, err))
             return err->status;
         *widest = fmin(*widest, aperture);
     }
     for (int i = 0; i <= last; i++) {
         struct path_frame *f = &path->frames[i];
         f->aperture = f->focus = 0;
-        const double t = parts[i], focus = focus_at(&f->camera, v, subjects, t);
+        const double t = fractions[i], focus = focus_at(&f->camera, v, subjects, t);
         const double open = effect == FOCUS_NARROW ? t : effect == FOCUS_WIDEN ? 1 - t : 1;
         if (!(focus > 0) || !(open * *widest > 0)) continue;
         f->aperture = *widest * open;
@@ -98,7 +103,8 @@ enum status focus_frames(struct camera_path *path, double *widest, const double 
     return ST_OK;
 }
 
-/* The subject's quadrilateral, as deep before and behind as it is high, in a box along the world's axes. */
+/* The bounding box, along the world's axes, of the subject's quadrilateral extended by BOX_DEPTH to both sides. *size
+ * gets its height. */
 static void subject_box(const struct subject *s, struct vec3 *low, struct vec3 *high, double *size)
 {
     const struct vec3 down = vec3_sub(s->corner[3], s->corner[0]), right = vec3_sub(s->corner[1], s->corner[0]);
@@ -116,10 +122,10 @@ static void subject_box(const struct subject *s, struct vec3 *low, struct vec3 *
 enum status tone_layers(struct effects *layers, const struct validity *v, const struct subject_list *subjects,
                         const struct camera_path *path, const struct plan_params *params, struct err *err)
 {
-    const double to[TONE_COUNT] = {[TONE_SATURATE] = params->saturate,
-                                   [TONE_DESATURATE] = params->desaturate,
-                                   [TONE_BRIGHTEN] = params->brighten,
-                                   [TONE_DIM] = params->dim};
+    const double final[TONE_COUNT] = {[TONE_SATURATE] = params->saturate,
+                                      [TONE_DESATURATE] = params->desaturate,
+                                      [TONE_BRIGHTEN] = params->brighten,
+                                      [TONE_DIM] = params->dim};
     const enum tone_effect tone = v->effect.tone;
     double size;
 
@@ -139,6 +145,6 @@ enum status tone_layers(struct effects *layers, const struct validity *v, const 
     if (!l->name || !l->keys) return err_nomem(err, "an effect layer", 2 * sizeof *l->keys);
     l->key_count = 2;
     l->keys[0] = (struct effect_key){path->frames[0].time, {1}};
-    l->keys[1] = (struct effect_key){path->frames[path->frame_count - 1].time, {to[tone]}};
+    l->keys[1] = (struct effect_key){path->frames[path->frame_count - 1].time, {final[tone]}};
     return ST_OK;
 }

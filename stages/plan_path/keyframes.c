@@ -1,23 +1,28 @@
-/* keyframes.c - see keyframes.h. */
+/* keyframes.c - reader of keyframed films.
+ *
+ * A key's pose comes in one of three forms: `view`, the upright camera of a view; `camera`, a pose as COLMAP writes it;
+ * or `at ... look ...`, a position and a point to look at. Some options depend on others later on the line (up, focus
+ * at a point), so they are collected in struct key_line and resolved at its end. */
 #include "stages/plan_path/keyframes.h"
 
 #include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/base/array.h"
 #include "common/base/scan.h"
 #include "common/base/textfile.h"
 
-#define KEYS_MOST    100000
-#define SHOTS_MOST   1000
-#define SECONDS_MOST 1e5
-#define TIME_STEP    0.001 /* seconds between keys, at least */
-#define PLACE_MOST   1e9
-#define FOCAL_LEAST  1e-3 /* px */
-#define FOCAL_MOST   1e7
-#define ZOOM_LEAST   1e-3
-#define ZOOM_MOST    1e3
-#define PARALLEL     1e-3 /* sine of the angle between the axis and up, at least */
+#define MAX_KEYS       100000
+#define MAX_SHOTS      1000
+#define MAX_SECONDS    1e5
+#define MIN_TIME_STEP  0.001 /* between keys, s */
+#define MAX_COORDINATE 1e9
+#define MIN_FOCAL      1e-3 /* px */
+#define MAX_FOCAL      1e7
+#define MIN_ZOOM       1e-3
+#define MAX_ZOOM       1e3
+#define MIN_UP_SINE    1e-3 /* of the angle between the camera's axis and up */
 
 void film_script_release(struct film_script *s)
 {
@@ -31,7 +36,7 @@ void film_script_release(struct film_script *s)
     *s = (struct film_script){0};
 }
 
-struct reader {
+struct keyframe_reader {
     struct textfile t;
     struct film_script *script;
     const struct camera_set *set;
@@ -39,50 +44,53 @@ struct reader {
     const struct view *lens;
     struct vec3 up;
     int key_count;
-    bool parted; /* the line before was a join or a cut */
-    double join;
+    bool after_break; /* the previous line was a join or a cut */
+    double join;      /* duration of that join, s; 0: a cut */
 };
 
-static enum status number(struct textfile *t, const char *what, double least, double most, double *value,
-                          struct err *err)
+static enum status read_number(struct textfile *t, const char *what, double min, double max, double *value,
+                               struct err *err)
 {
     char *word;
     if (textfile_word(t, what, &word, err)) return err->status;
-    if (scan_double(word, value) && *value >= least && *value <= most) return ST_OK;
-    return textfile_error(t, err, word, "%s, a number from %.9g to %.9g", what, least, most);
+    if (scan_double(word, value) && *value >= min && *value <= max) return ST_OK;
+    return textfile_error(t, err, word, "%s, a number from %.9g to %.9g", what, min, max);
 }
 
-static enum status point(struct textfile *t, const char *const what[3], struct vec3 *p, struct err *err)
+static enum status read_point(struct textfile *t, const char *const what[3], struct vec3 *p, struct err *err)
 {
-    return number(t, what[0], -PLACE_MOST, PLACE_MOST, &p->x, err) ||
-                   number(t, what[1], -PLACE_MOST, PLACE_MOST, &p->y, err) ||
-                   number(t, what[2], -PLACE_MOST, PLACE_MOST, &p->z, err)
+    return read_number(t, what[0], -MAX_COORDINATE, MAX_COORDINATE, &p->x, err) ||
+                   read_number(t, what[1], -MAX_COORDINATE, MAX_COORDINATE, &p->y, err) ||
+                   read_number(t, what[2], -MAX_COORDINATE, MAX_COORDINATE, &p->z, err)
                ? err->status
                : ST_OK;
 }
 
-static const char *const at_words[] = {"x of the place", "y of the place", "z of the place"};
-static const char *const look_words[] = {"x of what is looked at", "y of what is looked at", "z of what is looked at"};
-static const char *const up_words[] = {"x of up", "y of up", "z of up"};
-static const char *const focus_words[] = {"x of what is in focus", "y of what is in focus", "z of what is in focus"};
+static const char *const position_names[] = {"x of the position", "y of the position", "z of the position"};
+static const char *const target_names[] = {"x of the target", "y of the target", "z of the target"};
+static const char *const up_names[] = {"x of up", "y of up", "z of up"};
+static const char *const focus_names[] = {"x of the point in focus", "y of the point in focus",
+                                          "z of the point in focus"};
 
-/* ---------------------------------------------------------------------------------------------------------- poses */
+/* ------------------------------------------------------------------------------------------------------------ poses */
 
-static void set_pose(struct film_key *key, struct vec3 place, struct vec3 x, struct vec3 y, struct vec3 z)
+/* x, y, z: the camera's axes in the world. */
+static void set_pose(struct film_key *key, struct vec3 position, struct vec3 x, struct vec3 y, struct vec3 z)
 {
-    key->place = place;
-    key->turn = quat_from_mat3((struct mat3){{{x.x, y.x, z.x}, {x.y, y.y, z.y}, {x.z, y.z, z.z}}});
+    key->position = position;
+    key->rotation = quat_from_mat3((struct mat3){{{x.x, y.x, z.x}, {x.y, y.y, z.y}, {x.z, y.z, z.z}}});
 }
 
-/* A view's camera, turned by quarters until it is upright; its picture contains the film's. */
-static enum status pose_view(struct reader *r, struct film_key *key, struct err *err)
+/* A view's camera, rotated by quarter turns until it is upright, with the focal length at which the frame just lies
+ * within its picture. */
+static enum status read_view_pose(struct keyframe_reader *r, struct film_key *key, struct err *err)
 {
     char *name;
     if (textfile_word(&r->t, "a view's name", &name, err)) return err->status;
-    const int at = camera_set_find(r->set, name);
-    if (at < 0) return textfile_error(&r->t, err, name, "a view that views/images.txt has, as VIEW.exr");
-    const struct view *v = &r->set->views[at];
-    const struct vec3 up = r->ups ? r->ups[at] : vec3_make(0, -1, 0);
+    const int view_idx = camera_set_find(r->set, name);
+    if (view_idx < 0) return textfile_error(&r->t, err, name, "a view listed in views/images.txt, there as VIEW.exr");
+    const struct view *v = &r->set->views[view_idx];
+    const struct vec3 up = r->ups ? r->ups[view_idx] : vec3_make(0, -1, 0);
     const bool turned = fabs(up.x) > fabs(up.y);
     const double side = (turned ? up.x : up.y) > 0 ? -1 : 1;
     const struct vec3 down = turned ? vec3_make(side, 0, 0) : vec3_make(0, side, 0);
@@ -91,221 +99,231 @@ static enum status pose_view(struct reader *r, struct film_key *key, struct err 
              mat3_apply(world_from_cam, down), mat3_apply(world_from_cam, vec3_make(0, 0, 1)));
     const double width = turned ? v->height : v->width, height = turned ? v->width : v->height;
     const double focal = sqrt(v->fx * v->fy) * fmax(r->lens->width / width, r->lens->height / height);
-    key->number[FILM_FX] = focal;
-    key->number[FILM_FY] = focal * (r->lens->fy / r->lens->fx);
-    key->has[FILM_FX] = key->has[FILM_FY] = true;
+    key->lens[LENS_FX] = focal;
+    key->lens[LENS_FY] = focal * (r->lens->fy / r->lens->fx);
+    key->keyed[LENS_FX] = key->keyed[LENS_FY] = true;
     return ST_OK;
 }
 
 /* cam_from_world as COLMAP writes it. */
-static enum status pose_camera(struct reader *r, struct film_key *key, struct err *err)
+static enum status read_camera_pose(struct keyframe_reader *r, struct film_key *key, struct err *err)
 {
     static const char *const names[] = {"qw", "qx", "qy", "qz", "tx", "ty", "tz"};
     double n[7];
     for (int i = 0; i < 7; i++)
-        if (number(&r->t, names[i], -PLACE_MOST, PLACE_MOST, &n[i], err)) return err->status;
+        if (read_number(&r->t, names[i], -MAX_COORDINATE, MAX_COORDINATE, &n[i], err)) return err->status;
     const double length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2] + n[3] * n[3]);
     if (!(length > 1e-6)) return textfile_error(&r->t, err, "a quaternion of length 0", "one of length 1: qw qx qy qz");
     const struct pose pose = {{n[0] / length, n[1] / length, n[2] / length, n[3] / length},
                               vec3_make(n[4], n[5], n[6])};
-    key->place = pose_center(&pose);
-    key->turn = (struct quat){pose.rotation.w, -pose.rotation.x, -pose.rotation.y, -pose.rotation.z};
+    key->position = pose_center(&pose);
+    key->rotation = (struct quat){pose.rotation.w, -pose.rotation.x, -pose.rotation.y, -pose.rotation.z};
     return ST_OK;
 }
 
-/* A key's line: the key, and what waits for the rest of the line. */
+/* A key's line: the key, and what can be resolved at the end of the line alone. */
 struct key_line {
     struct film_key key;
-    bool looks, has_up, has_focus;
-    struct vec3 look, up; /* after "at" */
-    struct vec3 focus;    /* a place */
+    bool has_target;        /* the pose was given as at ... look ... */
+    struct vec3 target, up; /* if has_target */
+    bool has_up;            /* up was given on the line */
+    bool has_focus_point;
+    struct vec3 focus_point;
 };
 
-static enum status pose_at(struct reader *r, struct key_line *l, struct err *err)
+static enum status read_look_pose(struct keyframe_reader *r, struct key_line *l, struct err *err)
 {
     char *word;
-    l->looks = true;
+    l->has_target = true;
     l->up = r->up;
-    if (point(&r->t, at_words, &l->key.place, err) || textfile_word(&r->t, "\"look\"", &word, err)) return err->status;
+    if (read_point(&r->t, position_names, &l->key.position, err) || textfile_word(&r->t, "\"look\"", &word, err))
+        return err->status;
     if (strcmp(word, "look")) return textfile_error(&r->t, err, word, "\"look\" and three coordinates");
-    return point(&r->t, look_words, &l->look, err);
+    return read_point(&r->t, target_names, &l->target, err);
 }
 
-/* Without roll: x across the axis and up. */
-static enum status look(struct reader *r, struct key_line *l, struct err *err)
+/* Points the camera at the target, without roll: x is perpendicular to the axis and to up. */
+static enum status resolve_look(struct keyframe_reader *r, struct key_line *l, struct err *err)
 {
-    const struct vec3 axis = vec3_sub(l->look, l->key.place), z = vec3_normalize(axis);
-    if (!(vec3_length(axis) > 1e-12 * (1 + vec3_length(l->key.place))))
-        return textfile_error(&r->t, err, "a camera that looks at its own place", "another place to look at");
+    const struct vec3 axis = vec3_sub(l->target, l->key.position), z = vec3_normalize(axis);
+    if (!(vec3_length(axis) > 1e-12 * (1 + vec3_length(l->key.position))))
+        return textfile_error(&r->t, err, "a camera that looks at its own position", "another point to look at");
     const struct vec3 right = vec3_cross(z, vec3_normalize(l->up));
-    if (!(vec3_length(right) > PARALLEL))
-        return textfile_error(&r->t, err, l->has_up ? "an up along the axis" : "an axis along the film's up",
-                              "\"up X Y Z\", a direction across the camera's axis");
+    if (!(vec3_length(right) > MIN_UP_SINE))
+        return textfile_error(
+            &r->t, err, l->has_up ? "an up parallel to the camera's axis" : "a camera axis parallel to the film's up",
+            "\"up X Y Z\", a direction not parallel to the camera's axis");
     const struct vec3 x = vec3_normalize(right), y = vec3_cross(z, x);
-    set_pose(&l->key, l->key.place, x, y, z);
+    set_pose(&l->key, l->key.position, x, y, z);
     return ST_OK;
 }
 
-static enum status set_focus(struct reader *r, struct film_key *key, double depth, struct err *err)
+static enum status set_focus(struct keyframe_reader *r, struct film_key *key, double depth, struct err *err)
 {
     char found[64];
-    key->number[FILM_FOCUS] = depth;
-    key->has[FILM_FOCUS] = true;
-    if (depth > 0 && depth <= PLACE_MOST) return ST_OK;
+    key->lens[LENS_FOCUS] = depth;
+    key->keyed[LENS_FOCUS] = true;
+    if (depth > 0 && depth <= MAX_COORDINATE) return ST_OK;
     snprintf(found, sizeof found, "a focus at depth %.9g", depth);
-    return textfile_error(&r->t, err, found, "one before the camera, at a depth above 0 up to %.9g", PLACE_MOST);
+    return textfile_error(&r->t, err, found, "a focus in front of the camera, at a depth above 0 up to %.9g",
+                          MAX_COORDINATE);
 }
 
-/* -------------------------------------------------------------------------------------------------------- options */
+/* ---------------------------------------------------------------------------------------------------------- options */
 
-static enum status read_focal(struct reader *r, struct film_key *key, struct err *err)
+static enum status read_focal(struct keyframe_reader *r, struct film_key *key, struct err *err)
 {
     char *word;
     double value = 0;
     if (textfile_word(&r->t, "a focal length", &word, err)) return err->status;
-    const bool times = word[0] == 'x', good = scan_double(word + times, &value);
-    const double least = times ? ZOOM_LEAST : FOCAL_LEAST, most = times ? ZOOM_MOST : FOCAL_MOST;
-    if (!good || !(value >= least && value <= most))
+    const bool is_factor = word[0] == 'x', is_number = scan_double(word + is_factor, &value);
+    const double min = is_factor ? MIN_ZOOM : MIN_FOCAL, max = is_factor ? MAX_ZOOM : MAX_FOCAL;
+    if (!is_number || !(value >= min && value <= max))
         return textfile_error(&r->t, err, word,
-                              "a focal length: pixels of the film from %.9g to %.9g, or x and a factor from %.9g to "
-                              "%.9g",
-                              FOCAL_LEAST, FOCAL_MOST, ZOOM_LEAST, ZOOM_MOST);
-    key->number[FILM_FX] = times ? value * r->lens->fx : value;
-    key->number[FILM_FY] = key->number[FILM_FX] * (r->lens->fy / r->lens->fx);
-    key->has[FILM_FX] = key->has[FILM_FY] = true;
+                              "a focal length in pixels of the film, from %.9g to %.9g, or x and a factor from %.9g "
+                              "to %.9g",
+                              MIN_FOCAL, MAX_FOCAL, MIN_ZOOM, MAX_ZOOM);
+    key->lens[LENS_FX] = is_factor ? value * r->lens->fx : value;
+    key->lens[LENS_FY] = key->lens[LENS_FX] * (r->lens->fy / r->lens->fx);
+    key->keyed[LENS_FX] = key->keyed[LENS_FY] = true;
     return ST_OK;
 }
 
-static enum status read_focus(struct reader *r, struct key_line *l, struct err *err)
+static enum status read_focus(struct keyframe_reader *r, struct key_line *l, struct err *err)
 {
     char *word;
     double depth;
-    if (textfile_word(&r->t, "a depth, or \"at\" and a place", &word, err)) return err->status;
-    l->has_focus = !strcmp(word, "at");
-    if (l->has_focus) return point(&r->t, focus_words, &l->focus, err);
+    if (textfile_word(&r->t, "a depth, or \"at\" and a point", &word, err)) return err->status;
+    l->has_focus_point = !strcmp(word, "at");
+    if (l->has_focus_point) return read_point(&r->t, focus_names, &l->focus_point, err);
     if (scan_double(word, &depth)) return set_focus(r, &l->key, depth, err);
     return textfile_error(&r->t, err, word, "a depth in scene units, or \"at\" and three coordinates");
 }
 
-static enum status read_options(struct reader *r, struct key_line *l, struct err *err)
+static enum status read_options(struct keyframe_reader *r, struct key_line *l, struct err *err)
 {
     enum { FOCAL, APERTURE, FOCUS, UP, OPTIONS };
     static const char *const names[] = {"focal", "aperture", "focus", "up"};
-    const char *const known = l->looks ? "up, focal, aperture or focus" : "focal, aperture or focus";
+    const char *const known = l->has_target ? "up, focal, aperture or focus" : "focal, aperture or focus";
     bool seen[OPTIONS] = {false};
     while (textfile_more(&r->t)) {
         char *word;
         int which = 0;
         if (textfile_word(&r->t, known, &word, err)) return err->status;
         while (which < OPTIONS && strcmp(word, names[which])) which++;
-        if (which == OPTIONS || (which == UP && !l->looks)) return textfile_error(&r->t, err, word, "%s", known);
-        if (seen[which]) return textfile_error(&r->t, err, word, "each word once");
+        if (which == OPTIONS || (which == UP && !l->has_target)) return textfile_error(&r->t, err, word, "%s", known);
+        if (seen[which]) return textfile_error(&r->t, err, word, "each option once");
         seen[which] = true;
         if ((which == FOCAL && read_focal(r, &l->key, err)) || (which == FOCUS && read_focus(r, l, err)) ||
-            (which == UP && point(&r->t, up_words, &l->up, err)) ||
+            (which == UP && read_point(&r->t, up_names, &l->up, err)) ||
             (which == APERTURE &&
-             number(&r->t, "the diameter of the aperture", 0, PLACE_MOST, &l->key.number[FILM_APERTURE], err)))
+             read_number(&r->t, "the diameter of the aperture", 0, MAX_COORDINATE, &l->key.lens[LENS_APERTURE], err)))
             return err->status;
     }
     l->has_up = seen[UP];
-    if (seen[APERTURE]) l->key.has[FILM_APERTURE] = true;
+    if (seen[APERTURE]) l->key.keyed[LENS_APERTURE] = true;
     return ST_OK;
 }
 
-/* What waited for the whole line: a camera that looks somewhere, a focus at a place. */
-static enum status finish_key(struct reader *r, struct key_line *l, struct err *err)
+/* Resolves what depends on the whole line: the pose from a target, the focus from a point. */
+static enum status resolve_key(struct keyframe_reader *r, struct key_line *l, struct err *err)
 {
-    if (l->looks && look(r, l, err)) return err->status;
-    if (!l->has_focus) return ST_OK;
-    const struct mat3 cam_from_world = mat3_transpose(mat3_from_quat(l->key.turn));
-    return set_focus(r, &l->key, mat3_apply(cam_from_world, vec3_sub(l->focus, l->key.place)).z, err);
+    if (l->has_target && resolve_look(r, l, err)) return err->status;
+    if (!l->has_focus_point) return ST_OK;
+    const struct mat3 cam_from_world = mat3_transpose(mat3_from_quat(l->key.rotation));
+    return set_focus(r, &l->key, mat3_apply(cam_from_world, vec3_sub(l->focus_point, l->key.position)).z, err);
 }
 
-/* ---------------------------------------------------------------------------------------------------------- lines */
+/* ------------------------------------------------------------------------------------------------------------ lines */
 
-/* A new shot at the end of the script, with the join that was written before it. */
-static enum status add_shot(struct reader *r, struct film_shot **shot, struct err *err)
+/* Appends a shot to the script, with the join that precedes it. */
+static enum status add_shot(struct keyframe_reader *r, struct film_shot **shot, struct err *err)
 {
     struct film_script *s = r->script;
-    if (s->shot_count == SHOTS_MOST)
-        return textfile_error(&r->t, err, "one more shot", "at most %d of them", SHOTS_MOST);
-    struct film_shot *more = realloc(s->shots, ((size_t)s->shot_count + 1) * sizeof *more);
-    if (!more) return err_nomem(err, "shots", ((size_t)s->shot_count + 1) * sizeof *more);
-    s->shots = more;
-    *shot = &more[s->shot_count++];
-    **shot = (struct film_shot){.line = r->t.line, .join = r->parted ? r->join : 0};
-    r->parted = false;
+    if (s->shot_count == MAX_SHOTS) return textfile_error(&r->t, err, "one more shot", "at most %d shots", MAX_SHOTS);
+    if (array_append(&s->shots, (size_t)s->shot_count, sizeof *s->shots, "shots", err)) return err->status;
+    *shot = &s->shots[s->shot_count++];
+    **shot = (struct film_shot){.line = r->t.line, .join = r->after_break ? r->join : 0};
+    r->after_break = false;
     return ST_OK;
 }
 
-static enum status add_key(struct reader *r, struct film_shot *shot, const struct film_key *key, struct err *err)
+static enum status add_key(struct keyframe_reader *r, struct film_shot *shot, const struct film_key *key,
+                           struct err *err)
 {
-    if (r->key_count++ == KEYS_MOST) return textfile_error(&r->t, err, "one more key", "at most %d of them", KEYS_MOST);
-    if (!(shot->key_count & (shot->key_count - 1))) { /* a power of two: room for as many again */
-        const size_t room = shot->key_count ? 2 * (size_t)shot->key_count : 1;
-        struct film_key *more = realloc(shot->keys, room * sizeof *more);
-        if (!more) return err_nomem(err, "keys", room * sizeof *more);
-        shot->keys = more;
-    }
+    if (r->key_count++ == MAX_KEYS) return textfile_error(&r->t, err, "one more key", "at most %d keys", MAX_KEYS);
+    if (array_append(&shot->keys, (size_t)shot->key_count, sizeof *shot->keys, "keys", err)) return err->status;
     shot->keys[shot->key_count++] = *key;
     return ST_OK;
 }
 
-static enum status read_key(struct reader *r, struct err *err)
+/* The shot that the next key continues; NULL: the key begins a new shot. */
+static struct film_shot *open_shot(const struct keyframe_reader *r)
 {
-    struct textfile *t = &r->t;
-    struct film_script *s = r->script;
-    struct film_shot *shot = s->shot_count ? &s->shots[s->shot_count - 1] : NULL;
-    struct key_line l = {0};
+    const struct film_script *s = r->script;
+    if (!s->shot_count || r->after_break || s->shots[s->shot_count - 1].effect) return NULL;
+    return &s->shots[s->shot_count - 1];
+}
+
+static enum status read_time(struct textfile *t, const struct film_shot *shot, double *time, struct err *err)
+{
     char *word;
-    if (!shot || shot->effect || r->parted) shot = NULL;
     if (textfile_word(t, "a time in seconds", &word, err)) return err->status;
-    if (!scan_double(word, &l.key.time) || !(l.key.time >= 0 && l.key.time <= SECONDS_MOST))
-        return textfile_error(t, err, word, "a time, seconds from 0 to %.9g", SECONDS_MOST);
-    if (!shot && l.key.time != 0) return textfile_error(t, err, word, "0: a shot's times begin with its first key");
-    if (shot && !(l.key.time >= shot->keys[shot->key_count - 1].time + TIME_STEP))
-        return textfile_error(t, err, word,
-                              "a time %.9g s or more after %.9g, the key's before; a line \"cut\" or \"join SECONDS\" "
-                              "begins a shot of its own",
-                              TIME_STEP, shot->keys[shot->key_count - 1].time);
-    if (textfile_word(t, "view, camera or at", &word, err)) return err->status;
-    if (!strcmp(word, "view"))
-        pose_view(r, &l.key, err);
-    else if (!strcmp(word, "camera"))
-        pose_camera(r, &l.key, err);
-    else if (!strcmp(word, "at"))
-        pose_at(r, &l, err);
-    else
-        textfile_error(t, err, word, "view, camera or at");
-    if (err->status || read_options(r, &l, err) || finish_key(r, &l, err) || (!shot && add_shot(r, &shot, err)))
+    if (!scan_double(word, time) || !(*time >= 0 && *time <= MAX_SECONDS))
+        return textfile_error(t, err, word, "a time in seconds, from 0 to %.9g", MAX_SECONDS);
+    if (!shot && *time != 0) return textfile_error(t, err, word, "0, the time of a shot's first key");
+    if (!shot || *time >= shot->keys[shot->key_count - 1].time + MIN_TIME_STEP) return ST_OK;
+    return textfile_error(
+        t, err, word,
+        "a time %.9g s or more after %.9g, that of the previous key; a line \"cut\" or \"join SECONDS\" "
+        "begins a new shot",
+        MIN_TIME_STEP, shot->keys[shot->key_count - 1].time);
+}
+
+static enum status read_pose(struct keyframe_reader *r, struct key_line *l, struct err *err)
+{
+    char *word;
+    if (textfile_word(&r->t, "view, camera or at", &word, err)) return err->status;
+    if (!strcmp(word, "view")) return read_view_pose(r, &l->key, err);
+    if (!strcmp(word, "camera")) return read_camera_pose(r, &l->key, err);
+    if (!strcmp(word, "at")) return read_look_pose(r, l, err);
+    return textfile_error(&r->t, err, word, "view, camera or at");
+}
+
+static enum status read_key(struct keyframe_reader *r, struct err *err)
+{
+    struct film_shot *shot = open_shot(r);
+    struct key_line l = {0};
+    if (read_time(&r->t, shot, &l.key.time, err) || read_pose(r, &l, err) || read_options(r, &l, err) ||
+        resolve_key(r, &l, err) || (!shot && add_shot(r, &shot, err)))
         return err->status;
     return add_key(r, shot, &l.key, err);
 }
 
-/* Of a folder in parallax/. */
-static bool effect_is_good(const char *name)
+/* Whether the name can be that of a folder in parallax/. */
+static bool effect_is_valid(const char *name)
 {
     for (const char *c = name; *c; c++)
         if (!isalnum((unsigned char)*c) && !strchr("_-+", *c)) return false;
     return *name && strlen(name) < 64;
 }
 
-static enum status read_move(struct reader *r, struct err *err)
+static enum status read_planned_move(struct keyframe_reader *r, struct err *err)
 {
     struct film_shot *shot;
     char *name, *word;
     bool reversed = false;
     double seconds = 0;
     if (textfile_word(&r->t, "a planned move's name", &name, err)) return err->status;
-    if (!effect_is_good(name))
-        return textfile_error(&r->t, err, name, "a planned move's name: letters, digits, _, - and +");
+    if (!effect_is_valid(name))
+        return textfile_error(&r->t, err, name, "a planned move's name: up to 63 letters, digits, _, - and +");
     while (textfile_more(&r->t)) {
         if (textfile_word(&r->t, "reversed or seconds", &word, err)) return err->status;
         if (!strcmp(word, "reversed") && !reversed)
             reversed = true;
         else if (strcmp(word, "seconds") || seconds > 0)
             return textfile_error(&r->t, err, word, "reversed or seconds, each once, or the end of the line");
-        else if (number(&r->t, "the move's length in seconds", TIME_STEP, SECONDS_MOST, &seconds, err))
+        else if (read_number(&r->t, "the move's duration in seconds", MIN_TIME_STEP, MAX_SECONDS, &seconds, err))
             return err->status;
     }
     if (add_shot(r, &shot, err)) return err->status;
@@ -315,72 +333,78 @@ static enum status read_move(struct reader *r, struct err *err)
     return shot->effect ? ST_OK : err_nomem(err, "a name", strlen(name) + 1);
 }
 
-static enum status read_part(struct reader *r, bool join, struct err *err)
+/* A join or a cut. */
+static enum status read_break(struct keyframe_reader *r, bool join, struct err *err)
 {
-    if (!r->script->shot_count || r->parted)
-        return textfile_error(&r->t, err, join ? "join" : "cut", "key or move: it stands between two shots");
+    if (!r->script->shot_count || r->after_break)
+        return textfile_error(&r->t, err, join ? "join" : "cut", "key or move: join and cut go between two shots");
     r->join = 0;
-    if (join && number(&r->t, "a transition's length in seconds", TIME_STEP, SECONDS_MOST, &r->join, err))
+    if (join && read_number(&r->t, "a transition's duration in seconds", MIN_TIME_STEP, MAX_SECONDS, &r->join, err))
         return err->status;
-    r->parted = true;
+    r->after_break = true;
     return textfile_end(&r->t, err);
 }
 
-/* version, then the end of the line */
+/* The rest of a line that names a format: its version. */
 static enum status read_version(struct textfile *t, struct err *err)
 {
     int64_t version;
     return textfile_int(t, "the version", 1, 1, &version, err) || textfile_end(t, err) ? err->status : ST_OK;
 }
 
-/* A shot whose lens opens must say where it is in focus. */
-static enum status check_focus(const struct reader *r, struct err *err)
+/* A shot with an open aperture must have a focus. */
+static enum status check_focus(const struct keyframe_reader *r, struct err *err)
 {
     for (int i = 0; i < r->script->shot_count; i++) {
         const struct film_shot *shot = &r->script->shots[i];
         double widest = 0;
         bool focus = false;
         for (int k = 0; k < shot->key_count; k++) {
-            widest = fmax(widest, shot->keys[k].number[FILM_APERTURE]);
-            focus = focus || shot->keys[k].has[FILM_FOCUS];
+            widest = fmax(widest, shot->keys[k].lens[LENS_APERTURE]);
+            focus = focus || shot->keys[k].keyed[LENS_FOCUS];
         }
         if (widest > 0 && !focus)
             return err_set(
                 err, ST_DATA,
                 "%s:%d: found a shot with an aperture of %.9g and no focus, wanted \"focus DEPTH\" or \"focus "
-                "at X Y Z\" with one of its keys.",
+                "at X Y Z\" in one of its keys.",
                 r->t.path, shot->line, widest);
     }
     return ST_OK;
 }
 
-static enum status read_lines(struct reader *r, struct err *err)
+static enum status read_header(struct textfile *t, struct err *err)
 {
     char *word;
+    if (!textfile_next(t)) return textfile_error(t, err, NULL, "remodel-keyframes 1");
+    if (textfile_word(t, "remodel-keyframes", &word, err)) return err->status;
+    if (strcmp(word, "remodel-keyframes")) return textfile_error(t, err, word, "remodel-keyframes 1, the first line");
+    return read_version(t, err);
+}
+
+/* *layers: the line begins the film's effect layers. */
+static enum status read_line(struct keyframe_reader *r, bool *layers, struct err *err)
+{
+    static const char expected[] = "key, move, join, cut or remodel-effects";
+    char *word;
+    if (textfile_word(&r->t, expected, &word, err)) return err->status;
+    if (!strcmp(word, "key")) return read_key(r, err);
+    if (!strcmp(word, "move")) return read_planned_move(r, err);
+    if (!strcmp(word, "join") || !strcmp(word, "cut")) return read_break(r, *word == 'j', err);
+    if (strcmp(word, "remodel-effects")) return textfile_error(&r->t, err, word, "%s", expected);
+    *layers = true;
+    return read_version(&r->t, err);
+}
+
+static enum status read_lines(struct keyframe_reader *r, struct err *err)
+{
     bool layers = false;
-    if (!textfile_next(&r->t)) return textfile_error(&r->t, err, NULL, "remodel-keyframes 1");
-    if (textfile_word(&r->t, "remodel-keyframes", &word, err)) return err->status;
-    if (strcmp(word, "remodel-keyframes"))
-        return textfile_error(&r->t, err, word, "remodel-keyframes 1, the first line");
-    if (read_version(&r->t, err)) return err->status;
-    while (!layers && textfile_next(&r->t)) {
-        enum status st = textfile_word(&r->t, "key, move, join, cut or remodel-effects", &word, err);
-        if (st) return st;
-        if (!strcmp(word, "key"))
-            st = read_key(r, err);
-        else if (!strcmp(word, "move"))
-            st = read_move(r, err);
-        else if (!strcmp(word, "join") || !strcmp(word, "cut"))
-            st = read_part(r, *word == 'j', err);
-        else if (!strcmp(word, "remodel-effects"))
-            st = read_version(&r->t, err), layers = true;
-        else
-            st = textfile_error(&r->t, err, word, "key, move, join, cut or remodel-effects");
-        if (st) return st;
-    }
+    if (read_header(&r->t, err)) return err->status;
+    while (!layers && textfile_next(&r->t))
+        if (read_line(r, &layers, err)) return err->status;
     const char *found = layers ? "remodel-effects" : "the end of the file";
     if (!r->script->shot_count) return textfile_error(&r->t, err, found, "a key or a move");
-    if (r->parted) return textfile_error(&r->t, err, found, "a key or a move after the join or cut");
+    if (r->after_break) return textfile_error(&r->t, err, found, "a key or a move after the join or cut");
     if (check_focus(r, err)) return err->status;
     return layers ? effects_read_layers(&r->script->layers, &r->t, err) : ST_OK;
 }
@@ -388,7 +412,7 @@ static enum status read_lines(struct reader *r, struct err *err)
 enum status film_script_read(struct film_script *script, const char *file, const struct camera_set *set,
                              const struct vec3 *ups, const struct view *lens, struct vec3 up, struct err *err)
 {
-    struct reader r = {.script = script, .set = set, .ups = ups, .lens = lens, .up = up};
+    struct keyframe_reader r = {.script = script, .set = set, .ups = ups, .lens = lens, .up = up};
     *script = (struct film_script){0};
     if (textfile_open(&r.t, file, err)) return err->status;
     const enum status st = read_lines(&r, err);

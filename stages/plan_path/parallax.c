@@ -1,14 +1,19 @@
-/* parallax.c - see parallax.h. */
+/* parallax.c - amount of parallax between two cameras.
+ *
+ * [Colburn 2014, 3.4.2] measures the parallax of two viewpoints as the hole area when each is projected into the other.
+ * Here: a pixel of one picture is hidden from the other camera if its point lies inside the other frame and is farther
+ * than all four depths around its projection. Points outside the other frame do not count, since they result from
+ * rotation and zoom, not from parallax. A pixel of unknown depth neither hides nor is hidden. */
 #include "stages/plan_path/parallax.h"
 
 #include <immintrin.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define SIGMAS 4 /* two depths this far apart are not the same one */
+#define SIGMAS 4 /* depths this far apart belong to different surfaces */
 
-/* farthest[p]: the largest of the four depths around pixel p's lower right corner; INFINITY, which hides nothing, where
- * one of them is not known. */
+/* farthest[p]: the largest of the four depths around the lower right corner of pixel p; INFINITY, which hides nothing,
+ * if one of them is unknown. */
 static void find_farthest(struct depth_picture *d)
 {
     const size_t width = (size_t)d->camera.width, height = (size_t)d->camera.height;
@@ -18,12 +23,12 @@ static void find_farthest(struct depth_picture *d)
             float *far = d->farthest + y * width + x;
             *far = INFINITY;
             if (x + 1 == width || y + 1 == height) continue;
-            const float least = fminf(fminf(at[0], at[1]), fminf(at[width], at[width + 1]));
-            if (least > 0) *far = fmaxf(fmaxf(at[0], at[1]), fmaxf(at[width], at[width + 1]));
+            const float nearest = fminf(fminf(at[0], at[1]), fminf(at[width], at[width + 1]));
+            if (nearest > 0) *far = fmaxf(fmaxf(at[0], at[1]), fmaxf(at[width], at[width + 1]));
         }
 }
 
-enum status depth_picture_take(struct depth_picture *d, const float *z, struct err *err)
+enum status depth_picture_init(struct depth_picture *d, const float *z, struct err *err)
 {
     const size_t pixels = (size_t)d->camera.width * (size_t)d->camera.height;
     d->z = malloc(2 * pixels * sizeof *d->z);
@@ -46,7 +51,7 @@ enum status depth_picture_make(struct depth_picture *d, const struct layer_scene
         view_resize(&d->camera, (int)fmax(1, round((double)camera->width * side / longer)),
                     (int)fmax(1, round((double)camera->height * side / longer)));
     enum status st = layer_render(&frame, scene, &d->camera, &options, err);
-    if (!st) st = depth_picture_take(d, frame.z, err);
+    if (!st) st = depth_picture_init(d, frame.z, err);
     rendered_frame_release(&frame);
     return st;
 }
@@ -59,13 +64,12 @@ void depth_picture_release(struct depth_picture *d)
 
 double parallax_tolerance(const struct layer_scene *scene)
 {
-    return fmax(PARALLAX_LEAST_TOLERANCE, SIGMAS * scene->sigma);
+    return fmax(MIN_PARALLAX_TOLERANCE, SIGMAS * scene->sigma);
 }
 
-/* The part of b's picture that a does not see. Both lie in one frame of reference, so a pixel's point goes from one
- * camera to the other by a rotation of its direction, times depth, and a shift: u, v and w below are its homogeneous
- * pixel in a, linear in x along a row. Eight pixels at a time: a load of b, a gather of a. */
-static double hidden_part(const struct depth_picture *a, const struct depth_picture *b, double tolerance)
+/* Fraction of b's picture that is hidden from a. A pixel's point in a's camera is its rotated ray times its depth plus
+ * a translation, so its homogeneous pixel (u, v, w) in a is linear in x along a row. Eight pixels at a time. */
+static double hidden_fraction(const struct depth_picture *a, const struct depth_picture *b, double tolerance)
 {
     const struct view *from = &b->camera, *to = &a->camera;
     const struct mat3 turn = mat3_multiply(to->cam_from_world, mat3_transpose(from->cam_from_world));
@@ -118,5 +122,5 @@ static double hidden_part(const struct depth_picture *a, const struct depth_pict
 
 double parallax_between(const struct depth_picture *a, const struct depth_picture *b, double tolerance)
 {
-    return hidden_part(a, b, tolerance) + hidden_part(b, a, tolerance);
+    return hidden_fraction(a, b, tolerance) + hidden_fraction(b, a, tolerance);
 }

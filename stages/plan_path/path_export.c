@@ -1,11 +1,11 @@
-/* path_export.c - see path_export.h.
+/* path_export.c - export of a camera move as transforms.json and blender.py.
  *
- * A frame is written once, as a JSON object of numbers and plain strings, which is also a Python dictionary: the script
- * for Blender begins with the same lines that transforms.json holds.
+ * A frame's JSON object of numbers and plain strings is also a valid Python dictionary, so blender.py contains the same
+ * frame lines as transforms.json.
  *
- * Blender's camera, its sensor fitted to the picture's width: the width spans the angle that sensor_width spans at the
- * distance `lens`, the shifts are parts of the picture's width, and pixels that are not square (fx and fy differ) are
- * the render's pixel aspect, which is one for all frames: the first's. */
+ * Blender's camera has its sensor fitted to the picture's width: the width spans the angle that sensor_width spans at
+ * the distance `lens`; shifts are fractions of the width. Non-square pixels (fx and fy differ) become the render's
+ * pixel aspect, which Blender has once for all frames: that of the first frame. */
 #include "stages/plan_path/path_export.h"
 
 #include <jansson.h>
@@ -30,7 +30,7 @@ static json_t *frame_json(const struct path_frame *f)
                      f->aperture, "focus", f->focus);
 }
 
-/* What is true of the whole move; the lens only where it stays the same, for readers take what stands here for all
+/* The fields before the frames. The lens is among them only if it is constant, since readers apply these fields to all
  * frames. */
 static json_t *head_json(const struct camera_path *p, const struct provenance *prov)
 {
@@ -45,46 +45,45 @@ static json_t *head_json(const struct camera_path *p, const struct provenance *p
     json_t *lens = same ? json_pack("{s:f, s:f, s:f, s:f, s:f}", "fl_x", first->fx, "fl_y", first->fy, "cx", first->cx,
                                     "cy", first->cy, "camera_angle_x", 2 * atan(first->width / (2 * first->fx)))
                         : json_object();
-    bool good = head && lens && !json_object_update(head, lens);
-    if (good && prov) {
+    bool ok = head && lens && !json_object_update(head, lens);
+    if (ok && prov) {
         char *inputs = provenance_inputs_text(prov);
         json_t *from = json_pack("{s:s?, s:s?, s:s?, s:s?}", "stage", prov->stage, "version", prov->version,
                                  "parameters", prov->params, "inputs", inputs);
-        good = inputs && from && !json_object_set(head, "made_by", from);
+        ok = inputs && from && !json_object_set(head, "made_by", from);
         json_decref(from);
         free(inputs);
     }
     json_decref(lens);
-    if (good) return head;
+    if (ok) return head;
     json_decref(head);
     return NULL;
 }
 
-/* The frames, a line each, between "[" and "]". */
+/* Writes the frames, one per line, between "[" and "]". */
 static bool put_frames(FILE *to, const struct camera_path *p)
 {
-    bool good = fputs("[\n", to) >= 0;
-    for (int i = 0; good && i < p->frame_count; i++) {
+    bool ok = fputs("[\n", to) >= 0;
+    for (int i = 0; ok && i < p->frame_count; i++) {
         json_t *frame = frame_json(&p->frames[i]);
-        good = frame && !json_dumpf(frame, to, NUMBER) && fputs(i + 1 < p->frame_count ? ",\n" : "\n", to) >= 0;
+        ok = frame && !json_dumpf(frame, to, NUMBER) && fputs(i + 1 < p->frame_count ? ",\n" : "\n", to) >= 0;
         json_decref(frame);
     }
-    return good && fputs("]", to) >= 0;
+    return ok && fputs("]", to) >= 0;
 }
 
 static bool put_transforms(FILE *to, const struct camera_path *p, const struct provenance *prov)
 {
     json_t *head = head_json(p, prov), *value;
     const char *key;
-    bool good = head && fputs("{\n", to) >= 0;
-    json_object_foreach(head, key, value) good =
-        good && fprintf(to, "\"%s\": ", key) > 0 && !json_dumpf(value, to, NUMBER) && fputs(",\n", to) >= 0;
+    bool ok = head && fputs("{\n", to) >= 0;
+    json_object_foreach(head, key, value) ok =
+        ok && fprintf(to, "\"%s\": ", key) > 0 && !json_dumpf(value, to, NUMBER) && fputs(",\n", to) >= 0;
     json_decref(head);
-    return good && fputs("\"frames\": ", to) >= 0 && put_frames(to, p) && fputs("\n}\n", to) >= 0;
+    return ok && fputs("\"frames\": ", to) >= 0 && put_frames(to, p) && fputs("\n}\n", to) >= 0;
 }
 
-/* What follows the constants NAME, FPS and FRAMES. Where an action keeps its curves has changed between Blender's
- * versions. */
+/* The code after the constants NAME, FPS and FRAMES. Blender 5 moved the curves of an action. */
 static const char script[] =
     "\n"
     "\n"
@@ -155,15 +154,15 @@ static bool put_script(FILE *to, const struct camera_path *p, const struct prove
           "# Open it in Blender's text editor and run it, or: blender --python blender.py\n",
           to);
     if (prov) provenance_print(prov, to);
-    bool good = name && fps && fputs("import bpy\nfrom mathutils import Matrix\n\nNAME = ", to) >= 0 &&
-                !json_dumpf(name, to, NUMBER) && fputs("\nFPS = ", to) >= 0 && !json_dumpf(fps, to, NUMBER) &&
-                fputs("\n# camera to world, axes x right, y up, z back; fl_x fl_y cx cy w h in px; time in seconds; "
-                      "diameter of the aperture\n# and depth in focus in scene units\nFRAMES = ",
-                      to) >= 0 &&
-                put_frames(to, p) && fputs(script, to) >= 0;
+    bool ok = name && fps && fputs("import bpy\nfrom mathutils import Matrix\n\nNAME = ", to) >= 0 &&
+              !json_dumpf(name, to, NUMBER) && fputs("\nFPS = ", to) >= 0 && !json_dumpf(fps, to, NUMBER) &&
+              fputs("\n# camera to world, axes x right, y up, z back; fl_x fl_y cx cy w h in px; time in seconds; "
+                    "diameter of the aperture\n# and depth in focus in scene units\nFRAMES = ",
+                    to) >= 0 &&
+              put_frames(to, p) && fputs(script, to) >= 0;
     json_decref(name);
     json_decref(fps);
-    return good;
+    return ok;
 }
 
 typedef bool put_fn(FILE *to, const struct camera_path *p, const struct provenance *prov);
@@ -182,10 +181,10 @@ static enum status write_file(const struct camera_path *p, const char *folder, c
     return st;
 }
 
-/* What JSON cannot hold. */
+/* Rejects what JSON cannot express. */
 static enum status check_path(const struct camera_path *p, struct err *err)
 {
-    if (p->frame_count < 1) return err_set(err, ST_DATA, "a path without frames cannot be exported.");
+    if (p->frame_count < 1) return err_set(err, ST_DATA, "cannot export a path without frames.");
     for (int i = 0; i < p->frame_count; i++) {
         const struct path_frame *f = &p->frames[i];
         const struct view *v = &f->camera;

@@ -1,4 +1,12 @@
-/* plan_move.c - see plan_move.h. */
+/* plan_move.c - planning of a move: ends, frames, aperture and focus, colour layers, scores.
+ *
+ * The ends (ends.c) fix the camera of every frame: position, target and focal length run linearly between the two ends,
+ * eased in time [Colburn 2014, 3.4.2]. Then come the image effects of 3.4.3 (image_effects.c). Ends on the border of
+ * the valid region leave an aperture no room, since its corners would be invalid; the thesis does not treat this case.
+ * Here the ends are drawn in step by step until the aperture opens far enough.
+ *
+ * The scores compare the result with the thesis's discrete choice and state by how much the finished frames miss the
+ * sizes and targets that the move promises. */
 #include "stages/plan_path/plan_move.h"
 
 #include <stdlib.h>
@@ -7,26 +15,26 @@
 const struct param plan_param_table[] = {PLAN_PARAMS(PARAM_ROW) PARAM_END};
 #undef PARAM_STRUCT
 
-#define ROOM_STEPS 7 /* by which ends are drawn together to let the aperture open */
-#define ROOM_STEP  0.1
-#define STILL      1e-6 /* median depths: a move shorter than this is none */
+#define ROOM_STEPS 7    /* attempts to draw in the ends until the aperture opens */
+#define ROOM_STEP  0.1  /* part of the way to the origin, per attempt */
+#define MIN_LENGTH 1e-6 /* median depths: a shorter move is static */
 
 enum status plan_params_check(const void *values, struct err *err)
 {
     const struct plan_params *p = values;
     if (p->seconds * p->fps >= 1.5) return ST_OK;
     return err_set(err, ST_USAGE,
-                   "seconds = %g at fps = %g make fewer than two frames: a film needs at least two; raise seconds.",
+                   "seconds = %g at fps = %g give fewer than two frames, a film needs at least two; raise seconds.",
                    p->seconds, p->fps);
 }
 
-/* An establishing dolly goes to the right, or upwards where it hardly goes sideways: of two directions that are alike
- * viewers take this one for granted. Its ends have one rule, so they may change places. */
-static void turn_round(struct move_ends *e, const struct validity *v)
+/* Makes an establishing dolly run to the right, or upwards if it is nearly vertical, which viewers expect. Its ends
+ * follow the same rule, so they may be swapped. */
+static void orient_establishing_dolly(struct move_ends *e, const struct validity *v)
 {
     const struct view camera = shot_aim(&v->shot, v->shot.origin, v->shot.centroid, v->shot.lens.fx);
-    const struct vec3 way = vec3_sub(e->at[1], e->at[0]), in_camera = mat3_apply(camera.cam_from_world, way);
-    const double sideways = fabs(in_camera.x) > 0.1 * vec3_length(way) ? in_camera.x : -in_camera.y;
+    const struct vec3 step = vec3_sub(e->at[1], e->at[0]), in_camera = mat3_apply(camera.cam_from_world, step);
+    const double sideways = fabs(in_camera.x) > 0.1 * vec3_length(step) ? in_camera.x : -in_camera.y;
     if (v->effect.move != MOVE_ESTABLISHING_DOLLY || sideways >= 0) return;
     const struct vec3 first = e->at[0];
     e->at[0] = e->at[1];
@@ -34,65 +42,64 @@ static void turn_round(struct move_ends *e, const struct validity *v)
     e->worst_at = 1 - e->worst_at;
 }
 
-static void fill_frames(struct camera_path *path, double *parts, const struct validity *v, const struct move_ends *e,
-                        const char *ease)
+static void fill_frames(struct camera_path *path, double *fractions, const struct validity *v,
+                        const struct move_ends *e, const char *ease)
 {
     for (int i = 0; i < path->frame_count; i++) {
         const char *name = path->frames[i].camera.name;
-        const double t = ends_part(i, path->frame_count, ease);
-        parts[i] = t;
+        const double t = path_fraction(i, path->frame_count, ease);
+        fractions[i] = t;
         path->frames[i].camera = shot_camera(&v->shot, &v->move, e->at, t);
         path->frames[i].camera.name = name;
     }
 }
 
-/* The widest circle of confusion of what is infinitely far, px. */
+/* The widest circle of confusion of an infinitely far point, px. */
 static double widest_blur(const struct camera_path *path)
 {
-    double most = 0;
+    double widest = 0;
     for (int i = 0; i < path->frame_count; i++) {
         const struct path_frame *f = &path->frames[i];
-        if (f->aperture > 0) most = fmax(most, f->aperture * f->camera.fx / f->focus);
+        if (f->aperture > 0) widest = fmax(widest, f->aperture * f->camera.fx / f->focus);
     }
-    return most;
+    return widest;
 }
 
-/* Sets apertures and focus. Ends that were chosen at the very border of what is valid leave an aperture no room: they
- * are drawn together towards the origin, step by step, until it opens to half of max_blur; where it never does, they
- * stay where it opens most. */
-static enum status open_aperture(struct camera_path *path, double *parts, struct move_notes *n,
+/* Sets apertures and focus. Draws the ends in towards the origin step by step until the aperture gives half of
+ * max_blur; if it never does, takes the ends for which it opens widest. */
+static enum status open_aperture(struct camera_path *path, double *fractions, struct move_notes *n,
                                  struct viewpoint_test *test, const struct validity *v,
                                  const struct subject_list *subjects, const struct plan_params *params, struct err *err)
 {
     const double enough = 0.5 * params->max_blur * fmax(v->shot.lens.width, v->shot.lens.height);
     const struct move_ends chosen = n->ends;
     struct move_ends best = chosen;
-    double most = -1;
+    double widest = -1;
 
-    for (int i = 0; i < ROOM_STEPS && most < enough; i++) {
+    for (int i = 0; i < ROOM_STEPS && widest < enough; i++) {
         struct move_ends e = chosen;
         for (int k = 0; k < 2; k++) {
-            const struct vec3 way = vec3_sub(chosen.at[k], v->shot.origin);
-            e.at[k] = vec3_add(v->shot.origin, vec3_scale(way, 1 - ROOM_STEP * i));
+            const struct vec3 offset = vec3_sub(chosen.at[k], v->shot.origin);
+            e.at[k] = vec3_add(v->shot.origin, vec3_scale(offset, 1 - ROOM_STEP * i));
         }
         if (i && ends_measure(&e, test->scene, v, params, err)) return err->status;
         if (i && !e.valid) continue;
-        fill_frames(path, parts, v, &e, params->ease);
-        if (focus_frames(path, &n->aperture, parts, test, v, subjects, params, err)) return err->status;
-        if (widest_blur(path) > most) most = widest_blur(path), best = e;
+        fill_frames(path, fractions, v, &e, params->ease);
+        if (focus_frames(path, &n->aperture, fractions, test, v, subjects, params, err)) return err->status;
+        if (widest_blur(path) > widest) widest = widest_blur(path), best = e;
     }
     n->ends = best;
-    fill_frames(path, parts, v, &best, params->ease);
-    if (focus_frames(path, &n->aperture, parts, test, v, subjects, params, err)) return err->status;
+    fill_frames(path, fractions, v, &best, params->ease);
+    if (focus_frames(path, &n->aperture, fractions, test, v, subjects, params, err)) return err->status;
     n->blur = widest_blur(path);
     return ST_OK;
 }
 
-/* Of the film's frames, not of the rules they were made by: how far subjects are off the promised size and place. */
+/* Measures in the finished frames by how much subjects miss the size and position that the move promises. */
 static void check_subjects(struct move_notes *n, const struct camera_path *path, const struct validity *v,
                            const struct subject_list *subjects)
 {
-    const enum move move = v->effect.move;
+    const enum camera_move move = v->effect.move;
     const int last = path->frame_count - 1, count = move_subjects(move);
     const struct view *ends[2] = {&path->frames[0].camera, &path->frames[last].camera};
 
@@ -107,7 +114,7 @@ static void check_subjects(struct move_notes *n, const struct camera_path *path,
     }
     for (int i = 0; i < 2; i++) {
         const int close = move == MOVE_DOLLY_IN, two = count == 2;
-        if (!two && i != close) continue; /* the wide end shows the scene */
+        if (!two && i != close) continue; /* the wide end points at the centroid */
         const struct subject *s = &subjects->subjects[two ? i : 0];
         const struct vec3 target = two ? subject_center(s) : subject_lower_center(s);
         double u = HUGE_VAL, w = HUGE_VAL;
@@ -158,34 +165,35 @@ enum status plan_move(struct camera_path *path, struct effects *layers, struct m
     struct scene_points points = {0};
     struct viewpoint_test test = {.scene = scene, .points = &points, .shot = &v->shot, .limits = v->limits};
     char name[EFFECT_NAME_SIZE];
-    double *parts = NULL;
+    double *fractions = NULL;
 
     *notes = (struct move_notes){.aperture = 0};
     film_effect_name(&v->effect, name);
     enum status st = plan_params_check(params, err);
-    const struct scene_subjects has = scene_subjects_of(subjects);
-    if (!st) st = film_effect_check(&v->effect, &has, err);
+    const struct scene_subjects available = scene_subjects_of(subjects);
+    if (!st) st = film_effect_check(&v->effect, &available, err);
     if (!st) st = ends_choose(&notes->ends, &notes->chosen, scene, v, params, err);
     if (!st && !isfinite(notes->ends.worst_h))
-        st = err_set(err, ST_DATA, "%s: a part of the way sees nothing of the scene, even close to the origin.", name);
+        st = err_set(err, ST_DATA,
+                     "%s: some frames show nothing of the scene, even close to the origin; see the depth maps.", name);
     if (!st) {
-        turn_round(&notes->ends, v);
-        notes->stands_still = !(notes->ends.length > STILL * v->shot.median_depth);
+        orient_establishing_dolly(&notes->ends, v);
+        notes->is_static = !(notes->ends.length > MIN_LENGTH * v->shot.median_depth);
         st = camera_path_init(path, name, params->fps, (int)round(params->seconds * params->fps), err);
     }
-    if (!st && !(parts = malloc((size_t)path->frame_count * sizeof *parts)))
-        st = err_nomem(err, "frames", (size_t)path->frame_count * sizeof *parts);
-    if (!st) fill_frames(path, parts, v, &notes->ends, params->ease);
+    if (!st && !(fractions = malloc((size_t)path->frame_count * sizeof *fractions)))
+        st = err_nomem(err, "frames", (size_t)path->frame_count * sizeof *fractions);
+    if (!st) fill_frames(path, fractions, v, &notes->ends, params->ease);
     if (!st && v->effect.focus) {
         st = scene_points_collect(&points, scene, err);
-        if (!st) st = open_aperture(path, parts, notes, &test, v, subjects, params, err);
+        if (!st) st = open_aperture(path, fractions, notes, &test, v, subjects, params, err);
     }
     if (!st) st = tone_layers(layers, v, subjects, path, params, err);
     if (!st) {
         check_subjects(notes, path, v, subjects);
         st = add_scores(path, notes, v, err);
     }
-    free(parts);
+    free(fractions);
     scene_points_release(&points);
     viewpoint_test_release(&test);
     if (st) {

@@ -1,16 +1,20 @@
-/* plan_path.c - plans a camera move that shows a scene's depth without showing its holes, or a film of keys.
+/* plan_path.c - plans a camera move that shows a scene's depth but not its holes, or computes a keyframed film.
  *
  * reads   VIEWS/cameras.txt, images.txt, points3D.txt   the cameras
- *         DEPTH/VIEW.exr, VIEW.txt                      every view's layers,
- *         VALIDITY, SUBJECTS                            the move's valid viewpoints, and what it shows; or
- *         FILE, MOVES/EFFECT/path.txt, path/NAME.txt,   with --keyframes: the film, the moves that it chains
- *         effects.txt                                   and their effect layers,
- *         VIEWS/lenses.txt, RECORDS/ID.txt              and with --records which way up the photos are
+ *         for a move:
+ *         DEPTH/VIEW.exr, VIEW.txt                      every view's layers
+ *         VALIDITY, SUBJECTS                            the move's valid viewpoints; the scene's subjects
+ *         for a keyframed film:
+ *         FILE                                          with --keyframes: the film
+ *         MOVES/EFFECT/path.txt, path/NAME.txt,         with --moves: the moves that it uses and their effect layers
+ *         effects.txt
+ *         VIEWS/lenses.txt, RECORDS/ID.txt              with --records: the orientation of the photos
  * writes  OUT/path/{cameras,images,points3D}.txt        the frames' cameras
- *         OUT/effects.txt                               the film's own effect layers, with none too
+ *         OUT/effects.txt                               the film's effect layers, even if there are none
  *         OUT/path.txt                                  scores and times
- *         OUT/blender.py, transforms.json               the same move for other programs
- *         OUT/frames.mk                                 FRAMES := 0001 0002 ..., last: if it is new, so is the rest */
+ *         OUT/blender.py, transforms.json               the same path for other programs
+ *         OUT/frames.mk                                 FRAMES := 0001 0002 ..., written last: if it is new, so is the
+ * rest */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -41,7 +45,7 @@ static enum status write_frames(const struct camera_path *path, const char *out,
     return st;
 }
 
-/* The path for render_views and for other programs; layers stand beside it, none too. */
+/* Writes the path and the effect layers, which may be none, for render_views and for other programs. */
 static enum status write_film(const struct camera_path *path, const struct effects *layers, const char *out,
                               const struct provenance *prov, struct err *err)
 {
@@ -54,28 +58,29 @@ static enum status write_film(const struct camera_path *path, const struct effec
     return st;
 }
 
-static void tell(const struct camera_path *path, const struct move_notes *n, const struct validity *v)
+static void log_summary(const struct camera_path *path, const struct move_notes *n, const struct validity *v)
 {
     const struct move_ends *e = &n->ends, *d = &n->chosen.discrete;
     log_note("%d frames of %d x %d: %.1f degrees at the scene's centroid, %.3g median depths long", path->frame_count,
              path->frames[0].camera.width, path->frames[0].camera.height, e->angle, e->length / v->shot.median_depth);
-    log_note("parallax %.2f %% of the frames (the best of the %d longest pairs: %.2f %%), worst H %.2g at %.0f %% of "
-             "the way (%.2g)",
-             100 * e->parallax, n->chosen.longest, 100 * d->parallax, e->worst_h, 100 * e->worst_at, d->worst_h);
-    if (n->stands_still)
-        log_warn("no move keeps all of its way valid: the camera stands still");
+    log_note(
+        "parallax %.2f %% of the frame area (best of the %d longest pairs: %.2f %%), worst H %.2g at %.0f %% of the "
+        "path (%.2g)",
+        100 * e->parallax, n->chosen.longest, 100 * d->parallax, e->worst_h, 100 * e->worst_at, d->worst_h);
+    if (n->is_static)
+        log_warn("no move is valid on its whole path: the camera does not move");
     else if (n->chosen.chosen < 0)
-        log_note("no pair was valid all along: the best one was drawn together towards the origin");
+        log_note("no pair of ends has a valid path: the best pair was drawn in towards the origin");
     if (!e->valid)
-        log_warn("a part of the way is not valid: H is up to %.3g, the limit is %.3g", e->worst_h, v->limits.max_h);
+        log_warn("a part of the path is not valid: H is up to %.3g, the limit is %.3g", e->worst_h, v->limits.max_h);
     if (v->effect.focus && !(n->aperture > 0))
         log_warn("the aperture cannot open without showing holes: all frames are pinhole");
     else if (v->effect.focus)
-        log_note("the aperture opens to %.3g scene units: what is far is blurred by %.1f px%s", n->aperture, n->blur,
-                 n->blur < 1 ? ", which can hardly be seen" : "");
+        log_note("the aperture opens to %.3g scene units: distant points are blurred by %.1f px%s", n->aperture,
+                 n->blur, n->blur < 1 ? ", which is hardly visible" : "");
 }
 
-/* The views and, with records, their upright directions; the caller frees *ups. */
+/* Reads the views and, given records, their upright directions. The caller frees *ups. */
 static enum status read_views(struct camera_set *set, struct vec3 **ups, const char *views, const char *records,
                               struct provenance *prov, struct err *err)
 {
@@ -84,25 +89,24 @@ static enum status read_views(struct camera_set *set, struct vec3 **ups, const c
     if (st || !records) return st;
     *ups = calloc((size_t)set->view_count + 1, sizeof **ups);
     return *ups ? upright_read(*ups, set, views, records, prov, err)
-                : err_nomem(err, "a direction a view", (size_t)set->view_count * sizeof **ups);
+                : err_nomem(err, "upright directions", (size_t)set->view_count * sizeof **ups);
 }
 
-struct job { /* what the command line says */
+struct job { /* the command line */
     const char *views, *records, *depth, *validity, *subjects, *keyframes, *moves, *effect, *out;
     struct plan_params params;
 };
 
-/* The film of a file of keys; its layers, none too, stand beside its path. */
-static enum status plan_film(const struct job *job, struct provenance *prov, struct err *err)
+static enum status make_film(const struct job *job, struct provenance *prov, struct err *err)
 {
     struct camera_set set = {0};
     struct camera_path path = {0};
     struct effects layers = {0};
     struct vec3 *ups = NULL;
     int *order = NULL;
-    struct film film = {.name = job->effect, .fps = job->params.fps, .moves = job->moves};
+    struct film_settings film = {.name = job->effect, .fps = job->params.fps, .moves = job->moves};
     enum status st = read_views(&set, &ups, job->views, job->records, prov, err);
-    if (!st && !set.view_count) st = err_set(err, ST_DATA, "%s has no view: there is no scene to film.", job->views);
+    if (!st && !set.view_count) st = err_set(err, ST_DATA, "%s has no views: there is no scene to film.", job->views);
     if (!st && !(order = malloc((size_t)set.view_count * sizeof *order)))
         st = err_nomem(err, "views", (size_t)set.view_count * sizeof *order);
     if (!st) st = central_views(order, &set, err);
@@ -126,7 +130,7 @@ static enum status plan_film(const struct job *job, struct provenance *prov, str
     return st;
 }
 
-static enum status plan(const struct job *job, struct provenance *prov, struct err *err)
+static enum status make_move(const struct job *job, struct provenance *prov, struct err *err)
 {
     struct camera_set set = {0};
     struct layer_scene scene = {0};
@@ -140,7 +144,7 @@ static enum status plan(const struct job *job, struct provenance *prov, struct e
     if (!st) st = read_views(&set, NULL, job->views, NULL, prov, err);
     if (!st) st = validity_read(&v, job->validity, err);
     if (!st && v.effect.move != effect.move)
-        st = err_set(err, ST_USAGE, "--effect %s: %s is of another move. Sample the valid viewpoints of this one.",
+        st = err_set(err, ST_USAGE, "--effect %s: %s is of another move; run sample_validity for this one.",
                      job->effect, job->validity);
     v.effect = effect;
     if (!st) st = provenance_add_file(prov, "validity.txt", job->validity, err);
@@ -151,7 +155,7 @@ static enum status plan(const struct job *job, struct provenance *prov, struct e
     if (!st) st = layer_scene_read(&scene, &set, job->depth, prov, err);
     if (!st) st = plan_move(&path, &layers, &notes, &scene, &v, &subjects, &job->params, err);
     if (!st) st = write_film(&path, &layers, job->out, prov, err);
-    if (!st) tell(&path, &notes, &v);
+    if (!st) log_summary(&path, &notes, &v);
     camera_path_release(&path);
     effects_release(&layers);
     subject_list_release(&subjects);
@@ -168,25 +172,26 @@ static enum status run(const struct job *job, struct provenance *prov, struct er
     if (!move && !keys)
         return err_set(
             err, ST_USAGE,
-            "wanted --depth with --validity, for a move, or --keyframes, for a film of keys; --subjects goes "
-            "with the one, --moves and --records with the other.");
-    return job->keyframes ? plan_film(job, prov, err) : plan(job, prov, err);
+            "wanted --depth with --validity (and --subjects) for a move, or --keyframes (and --moves, --records) for a "
+            "keyframed film.");
+    return job->keyframes ? make_film(job, prov, err) : make_move(job, prov, err);
 }
 
 int main(int argc, char **argv)
 {
     struct job job = {.params = PLAN_PARAMS_DEFAULT};
     const struct cli_opt opts[] = {
-        CLI_ABOUT("Plans a camera move that shows a scene's depth without showing its holes, or a film of keys."),
+        CLI_ABOUT("Plans a camera move that shows a scene's depth but not its holes, or computes a keyframed film."),
         CLI_STR("views", &job.views, CLI_REQUIRED, "folder of cameras"),
-        CLI_STR("effect", &job.effect, CLI_REQUIRED, "of the taxonomy, like dolly_in+dim; of a film of keys, its name"),
-        CLI_STR("depth", &job.depth, CLI_OPTIONAL, "of a move: folder of the views' layers"),
-        CLI_STR("validity", &job.validity, CLI_OPTIONAL, "of a move: file of its valid viewpoints"),
-        CLI_STR("subjects", &job.subjects, CLI_OPTIONAL, "of a move: file of the scene's subjects, if it needs any"),
-        CLI_STR("keyframes", &job.keyframes, CLI_OPTIONAL, "of a film of keys: file of its keys and moves"),
-        CLI_STR("moves", &job.moves, CLI_OPTIONAL, "of a film of keys: folder of the planned moves that it may chain"),
+        CLI_STR("effect", &job.effect, CLI_REQUIRED,
+                "effect of the taxonomy, such as dolly_in+dim, or name of the keyframed film"),
+        CLI_STR("depth", &job.depth, CLI_OPTIONAL, "folder of the views' layers, for a move"),
+        CLI_STR("validity", &job.validity, CLI_OPTIONAL, "file of the move's valid viewpoints"),
+        CLI_STR("subjects", &job.subjects, CLI_OPTIONAL, "file of the scene's subjects, for a move that needs any"),
+        CLI_STR("keyframes", &job.keyframes, CLI_OPTIONAL, "file of a keyframed film"),
+        CLI_STR("moves", &job.moves, CLI_OPTIONAL, "folder of the planned moves that a keyframed film may use"),
         CLI_STR("records", &job.records, CLI_OPTIONAL,
-                "of a film of keys: folder of the photos' records, makes it upright"),
+                "folder of the photos' records, which make a keyframed film upright"),
         CLI_STR("out", &job.out, CLI_REQUIRED, "folder to write the path into"),
         CLI_PARAMS(plan_param_table, &job.params, plan_params_check),
         CLI_END,

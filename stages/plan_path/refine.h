@@ -1,11 +1,11 @@
-/* refine.h - moves the ends of a camera move off the grid, to more parallax (stages/plan_path/ends.h). */
+/* refine.h - continuous refinement of a move's ends for more parallax. */
 #ifndef REMODEL_REFINE_H
 #define REMODEL_REFINE_H
 
 #include "common/film/validity.h"
 
-/* at: the ends on entry, a local optimum of the surrogate on return. Whether the viewpoints are valid, and whether
- * there is more parallax, is the caller's to see. */
+/* Moves the ends `at` to a local optimum of a smooth surrogate of the parallax. The caller checks that the result is
+ * valid and has more parallax. max_angle: between the ends at the scene's centroid, degrees. */
 enum status refine_ends(struct vec3 at[2], const struct layer_scene *scene, const struct validity *v, double max_angle,
                         struct err *err);
 

@@ -1,8 +1,8 @@
-/* picture.h - regions of valid viewpoints to look at, as thesis figure 3.1.
+/* picture.h - picture of the regions of valid viewpoints, after [Colburn 2014, figure 3.1].
  *
- * Four maps: start above end, and how far back (left) and how far towards the scene (right) a place is valid. A map has
- * the frame's x to the right and y down; a cell's colour goes from dark blue (z = 0) over green to yellow (the farthest
- * z of that map); what is not valid is grey. The view mesh is drawn over it in white, the origin as a red dot. */
+ * Four maps: the start's above the end's; left how far back each cell is valid, right how far towards the scene. x of
+ * the reference frame points right, y down. Colours run from dark blue (z = 0) through green to yellow (the farthest z
+ * of the map); invalid cells are grey. The view mesh is drawn in white, the origin as a red dot. */
 #ifndef REMODEL_SAMPLE_VALIDITY_PICTURE_H
 #define REMODEL_SAMPLE_VALIDITY_PICTURE_H
 

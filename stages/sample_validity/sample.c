@@ -1,4 +1,14 @@
-/* sample.c - see sample.h. */
+/* sample.c - sampling of the valid viewpoints of each end of a move.
+ *
+ * [Colburn 2014, 3.4.2]: a grid in x and y over twice the bounding box of the views' centres at z = 0; from each valid
+ * cell a search along z, both ways, for the range of valid z. The step doubles while viewpoints are valid and halves
+ * from the first invalid one on, down to the tolerance. Moves on the axis have a single cell, the origin. Viewpoints
+ * are tested in small pictures; for some cells the search is repeated in full ones to report the error.
+ *
+ * What differs. If fewer than a quarter of the cells are valid, the grid is shrunk around the origin by halves. f may
+ * be longer than the views' mean focal length, because hand-held photos do not fill a frame seen from between them: the
+ * zoom maximises the fraction of valid cells times zoom^-ZOOM_COST. If the origin is invalid at every zoom, the limits
+ * are raised so that it is valid, since moves are drawn in towards it. */
 #include "stages/sample_validity/sample.h"
 
 #include <stdlib.h>
@@ -12,78 +22,81 @@
 const struct param validity_param_table[] = {VALIDITY_PARAMS(PARAM_ROW) PARAM_END};
 #undef PARAM_STRUCT
 
-#define FIRST_STEP    16  /* tolerances */
-#define MOST_BACK     1.0 /* median depths: farther off, zoomed in, it is but a flatter picture */
-#define GRID_HALVINGS 4   /* sizes of the grid that are tried */
-#define ZOOM_STEP     0.05
-#define ZOOM_COST     4   /* places count by zoom^-4 */
-#define ZOOM_PLACES   5   /* a side */
-#define SLACK         1.2 /* over what the centremost place leaves, where no place is valid */
+#define FIRST_STEP  16  /* of the search along z, in tolerances */
+#define MAX_SHIFT   1.0 /* of the search along z, in median depths: farther off, the picture only gets flatter */
+#define GRID_SIZES  4   /* number of grid sizes tried, each half of the one before */
+#define ZOOM_STEP   0.05
+#define ZOOM_COST   4   /* exponent of the zoom's cost */
+#define ZOOM_CELLS  5   /* columns and rows of the grid that tests a zoom */
+#define LIMIT_SLACK 1.2 /* raised limits, relative to the values at the origin */
 
-struct sampler { /* of one thread */
+struct cell_sampler { /* one per thread */
     struct validity *v;
     struct viewpoint_test test;
 };
 
-static enum status is_valid(struct sampler *s, const struct shot_end *end, double x, double y, double z, bool *valid,
-                            struct err *err)
+static enum status is_valid(struct cell_sampler *s, const struct shot_end *end, double x, double y, double z,
+                            bool *valid, struct err *err)
 {
-    const struct view camera = shot_end_camera(&s->v->shot, end, shot_place(&s->v->shot, x, y, z));
+    const struct view camera = shot_end_camera(&s->v->shot, end, world_from_shot(&s->v->shot, x, y, z));
     return viewpoint_is_valid(valid, &s->test, &camera, err);
 }
 
-/* How far along z, forwards (1) or backwards (-1), places are valid. z = 0 is. */
-static enum status search(struct sampler *s, const struct shot_end *end, double x, double y, int way, double *z,
-                          struct err *err)
+/* Searches for the last valid z forwards (1) or backwards (-1) from z = 0, which is valid. */
+static enum status search_z(struct cell_sampler *s, const struct shot_end *end, double x, double y, int direction,
+                            double *z, struct err *err)
 {
-    const double most = MOST_BACK * s->v->shot.median_depth;
+    const double max_z = MAX_SHIFT * s->v->shot.median_depth;
     double step = FIRST_STEP * s->v->step;
     bool failed = false;
     *z = 0;
     while (step > 0.75 * s->v->step) {
         bool valid = false;
-        if (fabs(*z) + step <= most && is_valid(s, end, x, y, *z + way * step, &valid, err)) return err->status;
+        if (fabs(*z) + step <= max_z && is_valid(s, end, x, y, *z + direction * step, &valid, err)) return err->status;
         failed |= !valid;
-        if (valid) *z += way * step;
+        if (valid) *z += direction * step;
         step *= failed ? 0.5 : 2;
     }
     return ST_OK;
 }
 
-static enum status sample_cell(struct sampler *s, const struct shot_end *end, bool glance, struct validity_cell *c,
-                               struct err *err)
+/* z0_only: test z = 0 and do not search. */
+static enum status sample_cell(struct cell_sampler *s, const struct shot_end *end, bool z0_only,
+                               struct validity_cell *c, struct err *err)
 {
     enum status st = is_valid(s, end, c->x, c->y, 0, &c->valid, err);
-    if (glance) return st;
-    if (!st && c->valid) st = search(s, end, c->x, c->y, -1, &c->low, err);
-    if (!st && c->valid) st = search(s, end, c->x, c->y, 1, &c->high, err);
+    if (z0_only) return st;
+    if (!st && c->valid) st = search_z(s, end, c->x, c->y, -1, &c->low, err);
+    if (!st && c->valid) st = search_z(s, end, c->x, c->y, 1, &c->high, err);
     return st;
 }
 
-/* extent: of the grid, in sizes of the box of the centres; part: by which it is drawn together around the origin. */
-static void place_cells(struct validity_region *r, const struct shot *shot, bool on_axis, double extent, double part)
+/* extent: size of the grid in units of the bounding box of the centres. shrink: factor by which it is then scaled about
+ * the origin. */
+static void place_cells(struct validity_region *r, const struct shot_setup *shot, bool on_axis, double extent,
+                        double shrink)
 {
     for (int i = 0; !on_axis && i < r->columns * r->rows; i++) {
-        const int at[2] = {i % r->columns, i / r->columns}, of[2] = {r->columns, r->rows};
-        double place[2];
+        const int at[2] = {i % r->columns, i / r->columns}, count[2] = {r->columns, r->rows};
+        double position[2];
         for (int k = 0; k < 2; k++) {
             const double middle = 0.5 * (shot->low[k] + shot->high[k]), size = extent * (shot->high[k] - shot->low[k]);
-            place[k] = part * (middle + size * ((at[k] + 0.5) / of[k] - 0.5));
+            position[k] = shrink * (middle + size * ((at[k] + 0.5) / count[k] - 0.5));
         }
-        r->cells[i].x = place[0];
-        r->cells[i].y = place[1];
+        r->cells[i].x = position[0];
+        r->cells[i].y = position[1];
     }
 }
 
-/* The places at z = 0, of ZOOM_PLACES a side over the box of the centres, that are valid. */
-static enum status count_valid(struct sampler *s, double focal, int *count, struct err *err)
+/* Counts the valid cells at z = 0 of a coarse grid over the bounding box of the centres. */
+static enum status count_valid(struct cell_sampler *s, double focal, int *count, struct err *err)
 {
     const struct shot_end end = {.target = s->v->shot.centroid, .focal = focal};
-    struct validity_cell cells[ZOOM_PLACES * ZOOM_PLACES] = {0};
-    struct validity_region r = {ZOOM_PLACES, ZOOM_PLACES, cells};
+    struct validity_cell cells[ZOOM_CELLS * ZOOM_CELLS] = {0};
+    struct validity_region r = {ZOOM_CELLS, ZOOM_CELLS, cells};
     *count = 0;
     place_cells(&r, &s->v->shot, false, 1, 1);
-    for (int i = 0; i < ZOOM_PLACES * ZOOM_PLACES; i++) {
+    for (int i = 0; i < ZOOM_CELLS * ZOOM_CELLS; i++) {
         bool valid;
         if (is_valid(s, &end, cells[i].x, cells[i].y, 0, &valid, err)) return err->status;
         *count += valid;
@@ -91,51 +104,55 @@ static enum status count_valid(struct sampler *s, double focal, int *count, stru
     return ST_OK;
 }
 
-/* Sets the zoom, and with it f: the origin must be valid, for moves are drawn together towards it where they must. Where it
- * is at no zoom, the largest, and limits that it keeps. */
-static enum status find_zoom(struct sampler *s, double max_zoom, const char *center_view, struct err *err)
+/* Raises the limits so that the origin is valid. */
+static enum status raise_limits(struct cell_sampler *s, const char *center_view, struct err *err)
+{
+    struct validity *v = s->v;
+    struct viewpoint at;
+    const struct view camera = shot_aim(&v->shot, v->shot.origin, v->shot.centroid, v->shot.lens.fx);
+    if (viewpoint_measure(&at, &s->test, &camera, err)) return err->status;
+    if (!isfinite(at.h))
+        return err_set(err, ST_DATA,
+                       "the scene cannot be seen from the position of the centremost view %s: no viewpoint is valid. "
+                       "Check that view's depth map.",
+                       center_view);
+    v->limits.max_h = fmax(v->limits.max_h, LIMIT_SLACK * at.h);
+    v->limits.max_outside = fmax(v->limits.max_outside, LIMIT_SLACK * at.outside);
+    s->test.limits = v->limits;
+    return ST_OK;
+}
+
+/* Sets the zoom, and with it f: the best one at which the origin is valid; if there is none, the largest, and raises
+ * the limits. */
+static enum status find_zoom(struct cell_sampler *s, double max_zoom, const char *center_view, struct err *err)
 {
     struct validity *v = s->v;
     const double focal = v->shot.lens.fx;
     double best = 0;
 
     for (int i = 0;; i++) {
-        const double zoom = 1 + ZOOM_STEP * i, worth = pow(zoom, -ZOOM_COST);
+        const double zoom = 1 + ZOOM_STEP * i, discount = pow(zoom, -ZOOM_COST);
         const struct view camera = shot_aim(&v->shot, v->shot.origin, v->shot.centroid, focal * zoom);
         bool valid;
         int count;
-        if (zoom > max_zoom + 1e-9 || worth <= best) break;
+        if (zoom > max_zoom + 1e-9 || discount <= best) break;
         if (viewpoint_is_valid(&valid, &s->test, &camera, err)) return err->status;
         if (!valid) continue;
         if (count_valid(s, focal * zoom, &count, err)) return err->status;
-        const double merit = worth * count / (ZOOM_PLACES * ZOOM_PLACES);
+        const double merit = discount * count / (ZOOM_CELLS * ZOOM_CELLS);
         if (merit > best) best = merit, v->zoom = zoom;
     }
     if (!(best > 0)) v->zoom = max_zoom;
     v->shot.lens.fx = v->shot.lens.fy = focal * v->zoom;
-    if (best > 0) return ST_OK;
-
-    struct viewpoint at;
-    const struct view camera = shot_aim(&v->shot, v->shot.origin, v->shot.centroid, v->shot.lens.fx);
-    if (viewpoint_measure(&at, &s->test, &camera, err)) return err->status;
-    if (!isfinite(at.h))
-        return err_set(
-            err, ST_DATA,
-            "the place of the centremost view %s shows nothing of the scene's middle: no viewpoint is valid. "
-            "Look at its depth map.",
-            center_view);
-    v->limits.max_h = fmax(v->limits.max_h, SLACK * at.h);
-    v->limits.max_outside = fmax(v->limits.max_outside, SLACK * at.outside);
-    s->test.limits = v->limits;
-    return ST_OK;
+    return best > 0 ? ST_OK : raise_limits(s, center_view, err);
 }
 
 struct cell_job {
-    struct sampler *samplers; /* a thread */
+    struct cell_sampler *samplers; /* one per thread */
     const struct shot_end *end;
     struct validity_cell *cells;
-    struct err *errors; /* a cell */
-    bool glance;        /* whether they are valid at z = 0, no more */
+    struct err *errors; /* one per cell */
+    bool z0_only;
     struct progress progress;
 };
 
@@ -143,27 +160,27 @@ static void sample_some(void *ctx, size_t begin, size_t end, int thread)
 {
     struct cell_job *job = ctx;
     for (size_t i = begin; i < end; i++) {
-        sample_cell(&job->samplers[thread], job->end, job->glance, &job->cells[i], &job->errors[i]);
+        sample_cell(&job->samplers[thread], job->end, job->z0_only, &job->cells[i], &job->errors[i]);
         progress_add(&job->progress, 1);
     }
 }
 
-/* Cells are independent, so each thread has its own and draws its pictures alone. */
-static enum status sample_cells(struct sampler *s, const struct shot_end *end, struct validity_cell *cells, int count,
-                                bool glance, const char *what, struct err *err)
+/* Samples cells on all threads; `what` names them for the progress line. */
+static enum status sample_cells(struct cell_sampler *s, const struct shot_end *end, struct validity_cell *cells,
+                                int count, bool z0_only, const char *what, struct err *err)
 {
     const int threads = parallel_threads();
-    struct cell_job job = {.end = end, .cells = cells, .glance = glance};
+    struct cell_job job = {.end = end, .cells = cells, .z0_only = z0_only};
     job.samplers = calloc((size_t)threads, sizeof *job.samplers);
     job.errors = calloc((size_t)count + 1, sizeof *job.errors);
-    enum status st = job.samplers && job.errors ? ST_OK : err_nomem(err, "places", (size_t)count * sizeof *job.errors);
+    enum status st = job.samplers && job.errors ? ST_OK : err_nomem(err, "cells", (size_t)count * sizeof *job.errors);
 
     for (int t = 0; !st && t < threads; t++) {
         job.samplers[t].v = s->v;
-        viewpoint_test_like(&job.samplers[t].test, &s->test);
+        viewpoint_test_copy(&job.samplers[t].test, &s->test);
     }
     if (!st) {
-        progress_start(&job.progress, what, count, "places");
+        progress_start(&job.progress, what, count, "cells");
         parallel_for((size_t)count, 1, sample_some, &job);
         progress_end(&job.progress);
     }
@@ -178,28 +195,28 @@ static enum status sample_cells(struct sampler *s, const struct shot_end *end, s
     return st;
 }
 
-/* Finds the limits of some places, evenly among the valid ones, again in larger pictures. */
-static enum status compare(struct sampler *s, const struct shot_end *end, const struct validity_region *r, int wanted,
-                           struct sampling_error *e, struct err *err)
+/* Samples some of the valid cells, evenly spread, again in full pictures and compares their limits. */
+static enum status measure_error(struct cell_sampler *s, const struct shot_end *end, const struct validity_region *r,
+                                 int wanted, struct sampling_error *e, struct err *err)
 {
     const int valid = validity_region_count(r), few = wanted < valid ? wanted : valid, side = s->test.limits.side;
     struct validity_cell *again = calloc((size_t)few + 1, sizeof *again);
-    const struct validity_cell **of = calloc((size_t)few + 1, sizeof *of);
+    const struct validity_cell **original = calloc((size_t)few + 1, sizeof *original);
     int seen = 0, taken = 0;
 
-    enum status st = again && of ? ST_OK : err_nomem(err, "places", (size_t)few * sizeof *again);
+    enum status st = again && original ? ST_OK : err_nomem(err, "cells", (size_t)few * sizeof *again);
     for (int i = 0; !st && i < r->columns * r->rows && taken < few; i++) {
         const struct validity_cell *c = &r->cells[i];
         if (!c->valid || seen++ < (2 * taken + 1) * valid / (2 * few)) continue;
         again[taken] = (struct validity_cell){.x = c->x, .y = c->y};
-        of[taken++] = c;
+        original[taken++] = c;
     }
     s->test.limits.side = H_REFERENCE_SIDE;
-    if (!st && taken) st = sample_cells(s, end, again, taken, false, "places in full pictures", err);
+    if (!st && taken) st = sample_cells(s, end, again, taken, false, "cells in full pictures", err);
     s->test.limits.side = side;
     for (int i = 0; !st && i < taken; i++) {
-        const double apart[2] = {fabs(again[i].low - of[i]->low) / s->v->step,
-                                 fabs(again[i].high - of[i]->high) / s->v->step};
+        const double apart[2] = {fabs(again[i].low - original[i]->low) / s->v->step,
+                                 fabs(again[i].high - original[i]->high) / s->v->step};
         for (int k = 0; k < 2; k++) {
             e->limits++;
             e->within += apart[k] < 1.5;
@@ -207,7 +224,7 @@ static enum status compare(struct sampler *s, const struct shot_end *end, const 
         }
     }
     free(again);
-    free(of);
+    free(original);
     return st;
 }
 
@@ -217,28 +234,29 @@ static bool same_rule(const struct shot_end *a, const struct shot_end *b)
            !memcmp(a->corner, b->corner, sizeof a->corner);
 }
 
-/* Places the cells. Where few of them are valid, the same number of them closer around the origin tells more: the grid
- * is halved until a quarter of the cells is valid, and is as large as has most of them if none is. */
-static enum status draw_grid_together(struct sampler *s, const struct shot_end *end, struct validity_region *r,
-                                      double extent, struct err *err)
+/* Places the cells: halves the grid until a quarter of them are valid; if that never happens, takes the size with the
+ * most valid cells. */
+static enum status fit_grid(struct cell_sampler *s, const struct shot_end *end, struct validity_region *r,
+                            double extent, struct err *err)
 {
     const int cells = r->columns * r->rows;
     double best = 1;
-    int most = -1;
+    int max_valid = -1;
     enum status st = ST_OK;
 
-    for (int i = 0; !st && i < GRID_HALVINGS && cells > 1 && 4 * most < cells; i++) {
+    for (int i = 0; !st && i < GRID_SIZES && cells > 1 && 4 * max_valid < cells; i++) {
         place_cells(r, &s->v->shot, false, extent, pow(0.5, i));
-        st = sample_cells(s, end, r->cells, cells, true, "places to look at", err);
+        st = sample_cells(s, end, r->cells, cells, true, "cells of the grid", err);
         const int valid = validity_region_count(r);
-        if (valid > most) most = valid, best = pow(0.5, i);
+        if (valid > max_valid) max_valid = valid, best = pow(0.5, i);
     }
     place_cells(r, &s->v->shot, cells == 1, extent, best);
     for (int i = 0; i < cells; i++) r->cells[i].valid = false;
     return st;
 }
 
-static enum status sample_end(struct sampler *s, int at, const struct validity_params *params,
+/* at: 0 start, 1 end. If both ends have the same rule, the end's region is a copy of the start's. */
+static enum status sample_end(struct cell_sampler *s, int at, const struct validity_params *params,
                               struct sampling_notes *notes, struct err *err)
 {
     struct validity *v = s->v;
@@ -251,14 +269,13 @@ static enum status sample_end(struct sampler *s, int at, const struct validity_p
         memcpy(r->cells, v->region[0].cells, (size_t)(side * side) * sizeof *r->cells);
         return ST_OK;
     }
-    enum status st = draw_grid_together(s, end, r, params->extent, err);
+    enum status st = fit_grid(s, end, r, params->extent, err);
     if (!st)
-        st =
-            sample_cells(s, end, r->cells, side * side, false, at ? "places for the end" : "places for the start", err);
-    return st ? st : compare(s, end, r, params->check_cells, &notes->error, err);
+        st = sample_cells(s, end, r->cells, side * side, false, at ? "cells of the end" : "cells of the start", err);
+    return st ? st : measure_error(s, end, r, params->check_cells, &notes->error, err);
 }
 
-/* An end without any valid place gets the origin, so that the camera stands still there. */
+/* Makes the cell nearest to the origin valid at the origin alone. */
 static void allow_origin(struct validity_region *r)
 {
     int nearest = 0;
@@ -275,10 +292,10 @@ enum status validity_sample(struct validity *v, struct sampling_notes *notes, co
                             const struct film_effect *effect, const struct validity_params *params, struct err *err)
 {
     struct scene_points points = {0};
-    struct sampler s = {.v = v};
+    struct cell_sampler s = {.v = v};
     int center = 0;
 
-    *notes = (struct sampling_notes){.asked_h = params->max_h, .asked_outside = params->max_outside};
+    *notes = (struct sampling_notes){.requested_h = params->max_h, .requested_outside = params->max_outside};
     *v = (struct validity){.effect = *effect, .zoom = 1};
     v->limits = (struct viewpoint_limits){params->max_h, params->max_outside, params->check_side};
     s.test = (struct viewpoint_test){.scene = scene, .points = &points, .shot = &v->shot, .limits = v->limits};
@@ -293,7 +310,7 @@ enum status validity_sample(struct validity *v, struct sampling_notes *notes, co
     for (int i = 0; !st && i < 2; i++) st = sample_end(&s, i, params, notes, err);
     for (int i = 0; !st && i < 2; i++)
         if (!validity_region_count(&v->region[i])) {
-            notes->none[i] = true;
+            notes->no_valid[i] = true;
             allow_origin(&v->region[i]);
         }
     notes->renders = s.test.renders;

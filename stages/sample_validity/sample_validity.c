@@ -1,11 +1,11 @@
-/* sample_validity.c - samples from where a scene can be shown: a region of valid viewpoints for each end of a move.
+/* sample_validity.c - samples the viewpoints that show a scene without visible holes, for each end of a move.
  *
  * reads   VIEWS/cameras.txt, images.txt, points3D.txt   the cameras
- *         VIEWS/lenses.txt, RECORDS/ID.txt              with --records: which way up the photos are
+ *         VIEWS/lenses.txt, RECORDS/ID.txt              with --records: the orientation of the photos
  *         DEPTH/VIEW.exr, VIEW.txt                      every view's layers
- *         SUBJECTS                                      with --subjects: what the move shows
- * writes  OUT/validity.png                              the regions, to look at
- *         OUT/validity.txt                              last: if it is new, so is the picture */
+ *         SUBJECTS                                      with --subjects: the scene's subjects
+ * writes  OUT/validity.png                              picture of the regions
+ *         OUT/validity.txt                              the regions, written last: if it is new, so is the picture */
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -21,37 +21,38 @@ struct job {
     struct validity_params params;
 };
 
-static void tell(const struct validity *v, const struct sampling_notes *n)
+static void log_summary(const struct validity *v, const struct sampling_notes *n)
 {
     static const char *const ends[] = {"start", "end"};
     for (int i = 0; i < 2; i++) {
         const struct validity_region *r = &v->region[i];
-        double back = 0, forth = 0;
+        double back = 0, forward = 0;
         for (int k = 0; k < r->columns * r->rows; k++) {
             back = fmin(back, r->cells[k].low);
-            forth = fmax(forth, r->cells[k].high);
+            forward = fmax(forward, r->cells[k].high);
         }
-        if (n->none[i])
-            log_warn("the %s of the move has no valid viewpoint: the camera stands at view %s there", ends[i],
-                     n->center_view);
+        if (n->no_valid[i])
+            log_warn("the %s of the move has no valid viewpoint: it is placed at view %s", ends[i], n->center_view);
         else
-            log_note("%s: %d of %d places are valid, z from %.3g to %.3g median depths", ends[i],
+            log_note("%s: %d of %d cells are valid, z from %.3g to %.3g median depths", ends[i],
                      validity_region_count(r), r->columns * r->rows, back / v->shot.median_depth,
-                     forth / v->shot.median_depth);
+                     forward / v->shot.median_depth);
     }
     if (v->zoom > 1)
-        log_note("f is %.0f %% longer than the views' mean, to keep the photos' borders out of the frames",
+        log_note("f is %.0f %% longer than the views' mean focal length, to keep the photos' borders out of the frames",
                  100 * (v->zoom - 1));
-    if (v->limits.max_h > n->asked_h)
-        log_warn("no viewpoint has H below %g, not even that of view %s; allowing %.3g", n->asked_h, n->center_view,
+    if (v->limits.max_h > n->requested_h)
+        log_warn("H is not below %g even at view %s; raising the limit to %.3g", n->requested_h, n->center_view,
                  v->limits.max_h);
-    if (v->limits.max_outside > n->asked_outside)
-        log_warn("even at view %s more than %.3g %% of the frame lies beyond the views' borders; allowing %.3g %%",
-                 n->center_view, 100 * n->asked_outside, 100 * v->limits.max_outside);
+    if (v->limits.max_outside > n->requested_outside)
+        log_warn(
+            "even at view %s more than %.3g %% of the frame is beyond the views' borders; raising the limit to %.3g %%",
+            n->center_view, 100 * n->requested_outside, 100 * v->limits.max_outside);
     if (n->error.limits)
-        log_note("in full pictures %d of %d limits lie within one step of %.2g %% of the median depth; the worst is "
-                 "%.0f steps off",
-                 n->error.within, n->error.limits, 100 * v->step / v->shot.median_depth, n->error.worst);
+        log_note(
+            "in full pictures %d of %d limits are within one step (%.2g %% of the median depth); the largest error is "
+            "%.0f steps",
+            n->error.within, n->error.limits, 100 * v->step / v->shot.median_depth, n->error.worst);
 }
 
 static enum status sample(const struct job *job, struct provenance *prov, struct err *err)
@@ -73,19 +74,19 @@ static enum status sample(const struct job *job, struct provenance *prov, struct
     if (!st && job->records) {
         ups = calloc((size_t)set.view_count + 1, sizeof *ups);
         st = ups ? upright_read(ups, &set, job->views, job->records, prov, err)
-                 : err_nomem(err, "a direction a view", (size_t)set.view_count * sizeof *ups);
+                 : err_nomem(err, "upright directions", (size_t)set.view_count * sizeof *ups);
     }
     if (!st && job->subjects) {
         st = subject_list_read(&subjects, job->subjects, err);
         if (!st) st = provenance_add_file(prov, "parallax/subjects.txt", job->subjects, err);
     }
-    const struct scene_subjects shown = scene_subjects_of(&subjects);
-    if (!st) st = film_effect_check(&effect, &shown, err);
+    const struct scene_subjects available = scene_subjects_of(&subjects);
+    if (!st) st = film_effect_check(&effect, &available, err);
     if (!st) st = layer_scene_read(&scene, &set, job->depth, prov, err);
     if (!st) st = validity_sample(&v, &notes, &scene, ups, &subjects, &effect, &job->params, err);
     if (!st) st = validity_picture_write(&v, &scene.mesh, picture, err);
     if (!st) st = validity_write(&v, text, prov, err);
-    if (!st) tell(&v, &notes);
+    if (!st) log_summary(&v, &notes);
     validity_release(&v);
     layer_scene_release(&scene);
     subject_list_release(&subjects);
@@ -98,12 +99,13 @@ int main(int argc, char **argv)
 {
     struct job job = {.params = VALIDITY_PARAMS_DEFAULT};
     const struct cli_opt opts[] = {
-        CLI_ABOUT("Samples from where a scene can be shown: a region of valid viewpoints for each end of a move."),
+        CLI_ABOUT("Samples the viewpoints that show a scene without visible holes, for each end of a move."),
         CLI_STR("views", &job.views, CLI_REQUIRED, "folder of cameras"),
         CLI_STR("depth", &job.depth, CLI_REQUIRED, "folder of the views' layers"),
-        CLI_STR("records", &job.records, CLI_OPTIONAL, "folder of the photos' records: makes the film upright"),
-        CLI_STR("subjects", &job.subjects, CLI_OPTIONAL, "file of the scene's subjects, for moves that have any"),
-        CLI_STR("effect", &job.effect, CLI_REQUIRED, "of the taxonomy, like dolly_in+narrow_dof (docs/formats.md)"),
+        CLI_STR("records", &job.records, CLI_OPTIONAL, "folder of the photos' records, which make the film upright"),
+        CLI_STR("subjects", &job.subjects, CLI_OPTIONAL, "file of the scene's subjects, for a move that needs any"),
+        CLI_STR("effect", &job.effect, CLI_REQUIRED,
+                "effect of the taxonomy, such as dolly_in+narrow_dof (docs/formats.md)"),
         CLI_STR("out", &job.out, CLI_REQUIRED, "folder to write validity.txt and validity.png into"),
         CLI_PARAMS(validity_param_table, &job.params, NULL),
         CLI_END,

@@ -1,9 +1,9 @@
-# choose_effects: what a scene's subjects allow, and what is said of wrong words
+# choose_effects: the effects that suit a scene's subjects; bad arguments
 . tests/lib.sh
 B=$root/$B
 cd "$scratch" || exit 1
 
-# subjects N RATIO: a list of N subjects, the second RATIO times as far
+# subjects N RATIO: a list of N subjects, the second RATIO times as far away
 subjects()
 {
     printf 'remodel-subjects 1\nsubjects %d\n' "$1"
@@ -24,7 +24,7 @@ choose()
 }
 made() { sed -n 's/^EFFECTS := //p' made.mk; }
 
-all_are_what_the_subjects_allow()
+all_lists_the_effects_that_suit_the_subjects()
 {
     subjects 0 1 >s.txt; choose 0 '0 subjects: 2 effects' --subjects s.txt --effect all
     [ "$(made)" = "establishing_dolly establishing_dolly_out" ] || { cat made.mk; fail "no subject"; }
@@ -33,23 +33,23 @@ all_are_what_the_subjects_allow()
     subjects 2 2 >s.txt; choose 0 '2 subjects: ' --subjects s.txt --effect all
     made | matches ' dolly+pull_focus' || { cat made.mk; fail "two subjects"; }
     subjects 2 1.1 >s.txt; choose 0 '2 subjects: ' --subjects s.txt --effect all
-    made | matches -E ' dolly$' || { cat made.mk; fail "two subjects as far as each other"; }
+    made | matches -E ' dolly$' || { cat made.mk; fail "two subjects at about the same depth"; }
 }
 
-chance_is_seeded()
+the_random_choice_depends_on_the_seed()
 {
     subjects 1 1 >s.txt
     for seed in 1 2 3 4 5 6 7 8; do
-        choose 0 "by chance (seed $seed)" --subjects s.txt --effect auto --set seed=$seed; one=$(made)
-        choose 0 'by chance' --subjects s.txt --effect auto --set seed=$seed
-        [ "$(made)" = "$one" ] || fail "another one of the same seed"
-        [[ $one == dolly_* && $one != *" "* ]] || fail "$one is not one of the row of one subject"
+        choose 0 "chosen at random (seed $seed)" --subjects s.txt --effect auto --set seed=$seed; one=$(made)
+        choose 0 'chosen at random' --subjects s.txt --effect auto --set seed=$seed
+        [ "$(made)" = "$one" ] || fail "the same seed chose another effect"
+        [[ $one == dolly_* && $one != *" "* ]] || fail "$one is not an effect for one subject"
         echo "$one" >>drawn.txt
     done
-    [ "$(sort -u drawn.txt | wc -l)" -gt 1 ] || fail "chance always draws $one"
+    [ "$(sort -u drawn.txt | wc -l)" -gt 1 ] || fail "every seed chooses $one"
 }
 
-wrong_words_are_told()
+bad_arguments_are_refused_with_a_sentence()
 {
     subjects 1 1 >s.txt
     choose 2 'wanted auto or all' --subjects s.txt --effect dolly_in
@@ -59,4 +59,4 @@ wrong_words_are_told()
     choose 1 's.txt:3: found "nobody"' --subjects s.txt --effect all
 }
 
-for t in all_are_what_the_subjects_allow chance_is_seeded wrong_words_are_told; do run "$t"; done
+for t in all_lists_the_effects_that_suit_the_subjects the_random_choice_depends_on_the_seed bad_arguments_are_refused_with_a_sentence; do run "$t"; done

@@ -1,4 +1,4 @@
-# films of keys through make and plan_path: what they depend on, and what is said of wrong ones
+# keyframed films through make and plan_path: dependencies and error messages
 . tests/lib.sh
 project keyframes
 photos set --views 3 --size 160x120 >/dev/null
@@ -27,7 +27,7 @@ TEXT
 frames() { sed -n 's/^frames //p' "$1/path.txt"; }
 views() { sed -n 's/^.* \([^ ]*\)\.exr$/\1/p' out/t/views/images.txt; }
 
-a_film_is_made_of_keys_and_the_moves_that_it_chains()
+a_film_joins_keys_and_planned_moves()
 {
     effect=establishing_dolly a_film views || { cat log; fail "views"; }
     set -- $(views)
@@ -41,7 +41,7 @@ a_film_is_made_of_keys_and_the_moves_that_it_chains()
     [ ! -e $made/establishing_dolly/frames ] || fail "the chained move was rendered too"
 }
 
-only_what_changed_is_made_again()
+only_stale_products_are_made_again()
 {
     snapshot out/t >before.txt
     a_film frames || { cat log; fail "make"; }
@@ -57,7 +57,7 @@ only_what_changed_is_made_again()
     ! grep -q layer $made/film/effects.txt || fail "layers were left"
 }
 
-wrong_films_are_named_with_their_line()
+bad_films_are_refused_with_file_and_line()
 {
     cp $film good.txt
     echo 'key 0 nowhere' >>$film
@@ -81,4 +81,4 @@ wrong_films_are_named_with_their_line()
     [ -z "$(find made -type f 2>/dev/null)" ] || fail "something was left"
 }
 
-for t in a_film_is_made_of_keys_and_the_moves_that_it_chains only_what_changed_is_made_again wrong_films_are_named_with_their_line; do run "$t"; done
+for t in a_film_joins_keys_and_planned_moves only_stale_products_are_made_again bad_films_are_refused_with_file_and_line; do run "$t"; done

@@ -1,4 +1,4 @@
-# pan_scan: what is said of wrong words and of views that cannot be shown; any split gives the same bytes; make pan_scan
+# pan_scan: bad arguments and unusable views; any split of the frames gives the same bytes; make pan_scan
 . tests/lib.sh
 project pan
 photos set --views 3 --size 160x120 >/dev/null
@@ -7,7 +7,7 @@ sed -i 's/^planes = .*/planes = 32\nrounds = 0/; s/^seconds = .*/seconds = 0.5/;
 make -s DEPS=manual PHOTOS=set/photos SFM=set/model SCENE=t path >log 2>&1 || { cat log; fail "make"; }
 move=out/t/parallax/establishing_dolly
 
-# pan CODE WORD ARGUMENT...: of the made scene; exit status and a word on standard error; nothing is left of what fails
+# pan CODE WORD ARGUMENT...: runs pan_scan; checks exit status, a word on standard error, and that a failure leaves no file
 pan()
 {
     local code=$1 word=$2 rc=0; shift 2
@@ -19,7 +19,7 @@ pan()
     [ "$code" = 0 ] || [ -z "$(find made -type f 2>/dev/null)" ] || fail "$*: a frame was left"
 }
 
-wrong_words_are_2_with_a_sentence()
+bad_arguments_are_refused_with_a_sentence()
 {
     frames=0 pan 2 'wanted frame numbers'
     frames=1:999 pan 2 'wanted frame numbers'
@@ -27,7 +27,7 @@ wrong_words_are_2_with_a_sentence()
     pan 2 tolerance --set tolerance=0
 }
 
-what_cannot_be_read_is_named()
+unreadable_files_are_named()
 {
     pan 1 nowhere --depth nowhere
     rm -rf bad; cp -r out/t/views bad
@@ -41,16 +41,16 @@ what_cannot_be_read_is_named()
     grep -qE 'bad/path(/|\.txt).*:[0-9]+: ' err.txt || { cat err.txt; fail "no file and line"; }
 }
 
-without_points_depth_is_asked_for()
+depth_maps_replace_missing_points()
 {
     rm -rf bad; cp -r out/t/views bad
     : >bad/points3D.txt
     sed -i -E '/^[0-9]+ .*\.exr$/!{/^#/!s/.*//}' bad/images.txt
-    views=bad pan 1 'points tell where a crop should be'
+    views=bad pan 1 'points to fit a crop to'
     views=bad pan 0 'the first frame shows' --depth out/t/depth
 }
 
-# the parts of a film, for any threads
+# for any number of threads
 ranges_give_the_same_bytes()
 {
     n=$(awk '$1 == "frames" { print $2 }' $move/path.txt)
@@ -60,19 +60,19 @@ ranges_give_the_same_bytes()
     rm -rf parts; mkdir parts
     frames=2:$n pan 0 '' --depth out/t/depth --threads=1; mv made/*.exr parts/
     frames=1 pan 0 '' --depth out/t/depth; mv made/*.exr parts/
-    (cd parts && sha256sum -- *.exr) | cmp - whole.txt || fail "other bytes"
+    (cd parts && sha256sum -- *.exr) | cmp - whole.txt || fail "the bytes differ"
 }
 
-a_crop_that_would_leave_the_photograph_is_told()
+a_crop_at_the_border_of_the_photograph_causes_a_warning()
 {
-    rm -rf bad; cp -r $move bad # the first camera far to the side
+    rm -rf bad; cp -r $move bad # first camera far to the side
     sed -i -E 's/^(1 [^ ]* [^ ]* [^ ]* [^ ]*) ([^ ]*) (.* 0001\.exr)$/\1 -2.5 \3/' bad/path/images.txt
     path=bad pan 0 'held at the border of view' --depth out/t/depth
     "$B/bin/verify" --file made/0001.exr || fail "no frame"
 }
 
-# make pan_scan makes what it needs, the page has it from then on, and a second run does nothing
-make_knows_it()
+# make pan_scan builds its inputs too, the page shows the result from then on, and a second run does nothing
+make_builds_it_and_the_page_shows_it()
 {
     make -s DEPS=manual SCENE=t pan_scan >log 2>&1 || { cat log; fail "make pan_scan"; }
     grep -q 'video  out/t/parallax/establishing_dolly/pan_scan/video.mp4' log || { cat log; fail "the run does not end with the video's path"; }
@@ -86,14 +86,14 @@ make_knows_it()
     make -s DEPS=manual SCENE=t >log 2>&1 || { cat log; fail "make again"; }
     snapshot out/t >b
     cmp a b || { changed a b; fail "a second make did something"; }
-    # another view: the frames in 2D, their video, the page
+    # another view changes the 2D frames, their video and the page
     printf '[pan_scan]\nview = photo_1\n' >>scenes/t/scene.cfg
     make -s DEPS=manual SCENE=t >log 2>&1 || { cat log; fail "make with another view"; }
     snapshot out/t >c
     changed b c | grep -vE '^(index.html|parallax/establishing_dolly/pan_scan/(video.mp4|frames/[0-9]*.exr))$' && fail "more was made again"
-    [ "$(changed b c | wc -l)" = $((n + 2)) ] || { changed b c; fail "not all was made again"; }
+    [ "$(changed b c | wc -l)" = $((n + 2)) ] || { changed b c; fail "not everything was made again"; }
     grep -q '<code>photo_1</code>' out/t/index.html || fail "the page shows another view"
 }
 
-for t in wrong_words_are_2_with_a_sentence what_cannot_be_read_is_named without_points_depth_is_asked_for ranges_give_the_same_bytes \
-    a_crop_that_would_leave_the_photograph_is_told make_knows_it; do run "$t"; done
+for t in bad_arguments_are_refused_with_a_sentence unreadable_files_are_named depth_maps_replace_missing_points ranges_give_the_same_bytes \
+    a_crop_at_the_border_of_the_photograph_causes_a_warning make_builds_it_and_the_page_shows_it; do run "$t"; done

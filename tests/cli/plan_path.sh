@@ -1,4 +1,4 @@
-# plan_path: a move of a small scene, and what is said of wrong words, of regions of another move, of a film that stands still
+# plan_path: a move of a small scene; bad arguments, regions of another move, a camera that cannot move
 . tests/lib.sh
 project planner
 photos set --views 3 --size 160x120 >/dev/null
@@ -28,7 +28,7 @@ a_move_is_planned_with_its_scores()
     cmp one.txt made/path.txt
 }
 
-wrong_words_are_told()
+bad_arguments_are_refused_with_a_sentence()
 {
     plan 2 'did you mean establishing_dolly?' --validity validity.txt --effect establishing_doly
     plan 2 'is of another move' --validity validity.txt --effect establishing_dolly_out
@@ -44,12 +44,12 @@ wrong_words_are_told()
     plan 1 "broken.txt:$(grep -n '^step' broken.txt | cut -d: -f1): found \"zero\"" --validity broken.txt --effect establishing_dolly
 }
 
-a_film_that_stands_still_is_warned_of()
+a_camera_that_cannot_move_causes_a_warning()
 {
     awk '/^region/ { first = 1 } /^cell/ { if (first) print "cell 0 0 from 0 to 0"; else print $1, $2, $3, "none"; first = 0; next } 1' validity.txt >still.txt
-    plan 0 'the camera stands still' --validity still.txt --effect establishing_dolly --set refine=no
+    plan 0 'the camera does not move' --validity still.txt --effect establishing_dolly --set refine=no
     sed -i 's/ from .*/ none/' still.txt
     plan 1 'nowhere to go' --validity still.txt --effect establishing_dolly
 }
 
-for t in a_move_is_planned_with_its_scores wrong_words_are_told a_film_that_stands_still_is_warned_of; do run "$t"; done
+for t in a_move_is_planned_with_its_scores bad_arguments_are_refused_with_a_sentence a_camera_that_cannot_move_causes_a_warning; do run "$t"; done

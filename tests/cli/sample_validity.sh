@@ -1,4 +1,4 @@
-# sample_validity: the region of a small scene, and what is said of wrong words
+# sample_validity: the regions of a small scene; bad arguments
 . tests/lib.sh
 project validity
 photos set --views 3 --size 160x120 >/dev/null
@@ -17,21 +17,21 @@ sample()
     [ "$code" = 0 ] || { grep -q 'sample_validity: error: .*[.?]$' err.txt && [ -z "$(find made -type f 2>/dev/null)" ]; } || { cat err.txt; fail "$*: no sentence, or a file was left"; }
 }
 
-a_region_and_its_picture_are_made()
+regions_and_their_picture_are_made()
 {
-    sample 0 'places are valid' --effect establishing_dolly --threads 1
+    sample 0 'cells are valid' --effect establishing_dolly --threads 1
     [ "$(grep -c '^cell ' made/validity.txt)" = 18 ] || { cat made/validity.txt; fail "not nine cells an end"; }
     [ -s made/validity.png ] || fail "no picture"
     ! grep -qF "$PWD" made/validity.txt || fail "the file names a folder of this machine"
     cp made/validity.txt one.txt
-    sample 0 'places are valid' --effect establishing_dolly --threads 2
+    sample 0 'cells are valid' --effect establishing_dolly --threads 2
     cmp one.txt made/validity.txt
 }
 
-wrong_words_are_told()
+bad_arguments_are_refused_with_a_sentence()
 {
     sample 2 'did you mean establishing_dolly?' --effect establishing_doly
-    sample 2 'no image effect' --effect dolly_in+blur
+    sample 2 'not a known image effect' --effect dolly_in+blur
     sample 2 'takes no image effect' --effect establishing_dolly+dim
     sample 2 'only dolly has two' --effect dolly_in+pull_focus --subjects "$(two)"
     sample 2 'effect is missing'
@@ -48,4 +48,4 @@ two()
     echo two.txt
 }
 
-for t in a_region_and_its_picture_are_made wrong_words_are_told; do run "$t"; done
+for t in regions_and_their_picture_are_made bad_arguments_are_refused_with_a_sentence; do run "$t"; done

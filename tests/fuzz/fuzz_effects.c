@@ -1,5 +1,5 @@
-/* fuzz_effects.c - effect layers: any bytes give layers that can be applied and written, or a sentence; what is
- * written reads back the same. */
+/* fuzz_effects.c - effect layers: any bytes give layers that can be applied, written and read back the same, or an
+ * error message. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

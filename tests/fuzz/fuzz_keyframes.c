@@ -1,6 +1,6 @@
-/* fuzz_keyframes.c - films that people write: any bytes give a path whose every number is one, and layers that can be
- * written, or a sentence. A planned move "m" of three frames is there to be chained. (The headers name what fuzz.sh
- * compiles.) */
+/* fuzz_keyframes.c - keyframed films: any bytes give a path of finite numbers and layers that can be written, or an
+ * error message. A planned move "m" of three frames is available. (fuzz.sh compiles the sources that the headers
+ * name.) */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -76,7 +76,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
                             {.name = "b", .width = 48, .height = 64, .fx = 70, .fy = 60, .cx = 24, .cy = 32}};
     const struct camera_set set = {.views = views, .view_count = 2};
     const struct vec3 ups[] = {{0, -1, 0}, {1, 0, 0}};
-    struct film film = {.name = "f", .set = &set, .ups = ups, .lens = views[0], .up = {0, -1, 0}, .moves = folder};
+    struct film_settings film = {
+        .name = "f", .set = &set, .ups = ups, .lens = views[0], .up = {0, -1, 0}, .moves = folder};
     struct camera_path path = {0};
     struct effects layers = {0};
     struct err err = ERR_INIT;
@@ -87,7 +88,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         views[i].center = vec3_make(i, 0, 0);
         views[i].translation = vec3_make(-i, 0, 0);
     }
-    film.fps = 0.5 + (size % 7); /* the last key between frames or at one */
+    film.fps = 0.5 + (size % 7); /* the last key falls between frames or on one */
     film.rest = size % 2;
     write_file("film.txt", data, size);
     if (keyframed_path(&path, &layers, path_of("film.txt"), &film, NULL, &err)) {

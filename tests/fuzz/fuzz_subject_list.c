@@ -1,5 +1,5 @@
-/* fuzz_subject_list.c - lists of subjects: what is read can be used and is written and read back the same, or a
- * sentence says why not. */
+/* fuzz_subject_list.c - lists of subjects: any bytes give a list that can be used, written and read back the same, or
+ * an error message. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

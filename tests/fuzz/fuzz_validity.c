@@ -1,5 +1,5 @@
-/* fuzz_validity.c - valid viewpoints: what is read can be planned with and is written and read back the same, or a
- * sentence says why not. */
+/* fuzz_validity.c - regions of valid viewpoints: any bytes give regions that can be used, written and read back the
+ * same, or an error message. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,7 +13,7 @@ static bool finite_vector(struct vec3 v) { return isfinite(v.x) && isfinite(v.y)
 
 static void use(const struct validity *v)
 {
-    const struct shot *s = &v->shot;
+    const struct shot_setup *s = &v->shot;
     if (s->lens.width < 2 || s->lens.height < 2 || s->lens.width % 2 || s->lens.height % 2 || !(s->lens.fx > 0))
         abort();
     if (!(s->median_depth > 0) || !(s->low[0] < s->high[0]) || !(s->low[1] < s->high[1]) || !(v->step > 0)) abort();
@@ -30,10 +30,10 @@ static void use(const struct validity *v)
     }
 }
 
-/* All numbers are written exactly, so that the same file comes of what was read of it. */
+/* Numbers are written exactly, so a file reads back to the same bits. */
 static bool same(const struct validity *a, const struct validity *b)
 {
-    if (memcmp(&a->shot.up, &b->shot.up, sizeof a->shot - offsetof(struct shot, up)) || a->zoom != b->zoom ||
+    if (memcmp(&a->shot.up, &b->shot.up, sizeof a->shot - offsetof(struct shot_setup, up)) || a->zoom != b->zoom ||
         a->step != b->step || memcmp(a->move.end, b->move.end, sizeof a->move.end))
         return false;
     for (int k = 0; k < 2; k++) {

@@ -1,4 +1,4 @@
-/* crop_fit.c - a crop that shows points exactly is found; where that leaves the photograph, the best within it. */
+/* crop_fit.c - tests that an exact crop is recovered, and the best one within the photograph otherwise. */
 #include "stages/pan_scan/crop_fit.h"
 
 #include "tests/unit/scratch.h"
@@ -9,7 +9,7 @@
 
 enum { POINTS = 60, W = 320, H = 200, PHOTO_W = 800, PHOTO_H = 600 };
 
-static double random_part(uint64_t index)
+static double random_fraction(uint64_t index)
 {
     const struct rng rng = rng_make(1, "test", "points");
     return rng_uniform(&rng, 0, index);
@@ -21,13 +21,13 @@ struct fixture {
     struct crop_result r;
 };
 
-/* Points all over the photograph, where a frame that shows `crop` has them. */
+/* Points all over the photograph, paired with their pixels in a frame that shows `crop`. */
 static void make_task(struct fixture *f, const struct crop *crop)
 {
     f->task = (struct crop_task){PHOTO_W, PHOTO_H, W, H, crop->width / W, crop->height / H, 3, f->pairs, POINTS};
     for (int i = 0; i < POINTS; i++) {
         struct crop_pair *p = &f->pairs[i];
-        p->x = PHOTO_W * random_part(2 * (uint64_t)i), p->y = PHOTO_H * random_part(2 * (uint64_t)i + 1);
+        p->x = PHOTO_W * random_fraction(2 * (uint64_t)i), p->y = PHOTO_H * random_fraction(2 * (uint64_t)i + 1);
         crop_apply(&f->task, crop, p->x, p->y, &p->u, &p->v);
     }
 }
@@ -58,7 +58,7 @@ static void assert_crop(const struct crop *a, const struct crop *b, double off)
     double worst =
         fmax(fmax(fabs(a->x - b->x), fabs(a->y - b->y)), fmax(fabs(a->width - b->width), fabs(a->height - b->height)));
     if (!(worst <= off))
-        fail_msg("%g %g %g %g in place of %g %g %g %g", a->x, a->y, a->width, a->height, b->x, b->y, b->width,
+        fail_msg("found %g %g %g %g, wanted %g %g %g %g", a->x, a->y, a->width, a->height, b->x, b->y, b->width,
                  b->height);
 }
 
@@ -70,7 +70,7 @@ static void an_exact_crop_is_found(void **state)
     for (size_t i = 0; i < sizeof crops / sizeof *crops; i++) {
         struct fixture f;
         make_task(&f, &crops[i]);
-        f.task.step_x *= 1.7, f.task.step_y *= 1.7; /* only their ratio is given */
+        f.task.step_x *= 1.7, f.task.step_y *= 1.7; /* only their ratio matters */
         fit(&f);
         assert_crop(&f.r.crop, &crops[i], 1e-9);
         assert_true(f.r.beyond < 1e-9);
@@ -78,19 +78,19 @@ static void an_exact_crop_is_found(void **state)
     }
 }
 
-static void a_third_that_goes_elsewhere_moves_it_little(void **state)
+static void a_third_of_outliers_moves_the_crop_little(void **state)
 {
     const struct crop crop = {100, 50, 480, 300};
     struct fixture f;
     (void)state;
     make_task(&f, &crop);
     for (int i = 0; i < POINTS; i += 3)
-        f.pairs[i].u += 80; /* a foreground: least squares alone would follow it by 27 */
+        f.pairs[i].u += 80; /* a foreground: plain least squares would follow it by 27 */
     fit(&f);
     assert_true(misfit(&f) < 2.5);
 }
 
-/* The loss that the header names, of a crop. */
+/* Huber's loss of a crop. */
 static double loss(const struct crop_task *task, const struct crop *c)
 {
     double sum = 0;
@@ -103,7 +103,7 @@ static double loss(const struct crop_task *task, const struct crop *c)
     return sum;
 }
 
-static void at_the_border_it_is_the_best_of_those_within(void **state)
+static void a_crop_at_the_border_is_the_best_within_the_photograph(void **state)
 {
     static const struct crop wanted[] = {{-60, 100, 480, 300},
                                          {500, 450, 480, 300},
@@ -114,28 +114,28 @@ static void at_the_border_it_is_the_best_of_those_within(void **state)
     for (size_t i = 0; i < sizeof wanted / sizeof *wanted; i++) {
         struct fixture f;
         make_task(&f, &wanted[i]);
-        for (int k = 0; k < POINTS; k++) f.pairs[k].u += 8 * random_part(1000 + (uint64_t)k);
+        for (int k = 0; k < POINTS; k++) f.pairs[k].u += 8 * random_fraction(1000 + (uint64_t)k);
         fit(&f);
         const struct crop *c = &f.r.crop;
         assert_true(c->x >= 0 && c->y >= 0 && c->x + c->width <= PHOTO_W + 1e-9 && c->y + c->height <= PHOTO_H + 1e-9);
         assert_true(fabs(c->width / c->height - 1.6) < 1e-12);
         assert_true(f.r.beyond > 1);
-        /* none on a fine grid of sizes and places within the photograph is better */
-        const double least = loss(&f.task, c);
+        /* no crop on a fine grid of sizes and positions within the photograph is better */
+        const double best = loss(&f.task, c);
         for (int size = 1; size <= 160; size++)
             for (int x = 0; x <= 40; x++)
                 for (int y = 0; y <= 40; y++) {
                     struct crop other = {0, 0, 5.0 * size, 3.125 * size};
                     other.x = (PHOTO_W - other.width) * x / 40;
                     other.y = (PHOTO_H - other.height) * y / 40;
-                    if (loss(&f.task, &other) < least * (1 - 1e-9))
+                    if (loss(&f.task, &other) < best * (1 - 1e-9))
                         fail_msg("%zu: %g %g %g x %g is better: %g < %g", i, other.x, other.y, other.width,
-                                 other.height, loss(&f.task, &other), least);
+                                 other.height, loss(&f.task, &other), best);
                 }
     }
 }
 
-static void points_that_swap_places_still_give_a_crop(void **state)
+static void mirrored_points_still_give_a_crop(void **state)
 {
     const struct crop crop = {100, 50, 480, 300};
     struct fixture f;
@@ -147,7 +147,7 @@ static void points_that_swap_places_still_give_a_crop(void **state)
                 f.r.crop.y >= 0);
 }
 
-static void too_few_points_are_told(void **state)
+static void too_few_points_are_an_error(void **state)
 {
     const struct crop crop = {100, 50, 480, 300};
     struct fixture f;
@@ -157,17 +157,17 @@ static void too_few_points_are_told(void **state)
     assert_refused(&f, "3 points");
     f.task.count = POINTS;
     for (int i = 0; i < POINTS; i++) f.pairs[i] = f.pairs[0];
-    assert_refused(&f, "all at one place");
+    assert_refused(&f, "all at the same position");
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(an_exact_crop_is_found),
-        cmocka_unit_test(a_third_that_goes_elsewhere_moves_it_little),
-        cmocka_unit_test(at_the_border_it_is_the_best_of_those_within),
-        cmocka_unit_test(points_that_swap_places_still_give_a_crop),
-        cmocka_unit_test(too_few_points_are_told),
+        cmocka_unit_test(a_third_of_outliers_moves_the_crop_little),
+        cmocka_unit_test(a_crop_at_the_border_is_the_best_within_the_photograph),
+        cmocka_unit_test(mirrored_points_still_give_a_crop),
+        cmocka_unit_test(too_few_points_are_an_error),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,5 @@
-/* crop_move.c - over a flat wall a crop follows a straight move exactly, however the photograph is stored; over depth
- * it cannot. */
+/* crop_move.c - tests that crops follow a straight move over a flat wall exactly, for every orientation of the stored
+ * photograph, and show a misfit over depth. */
 #include "stages/pan_scan/crop_move.h"
 
 #include "tests/unit/scratch.h"
@@ -18,7 +18,7 @@ struct fixture {
     struct camera_path path;
 };
 
-/* An upright camera that looks along z. */
+/* An upright camera that faces along z. */
 static struct view camera_at(double x, double y, double z, int width, int height, double focal)
 {
     struct view v = {.width = width, .height = height, .fx = focal, .fy = focal, .cx = width / 2.0, .cy = height / 2.0};
@@ -28,8 +28,7 @@ static struct view camera_at(double x, double y, double z, int width, int height
     return v;
 }
 
-/* The same view, its picture stored on its side: what was at (x, y) is stored at (y, width - x), the inverse of a
- * quarter clockwise. */
+/* Stores the view's picture on its side: (x, y) goes to (y, width - x), the inverse of a clockwise quarter turn. */
 static void store_turned(struct view *v)
 {
     const struct view o = *v;
@@ -43,8 +42,8 @@ static void store_turned(struct view *v)
     v->translation = vec3_make(o.translation.y, -o.translation.x, o.translation.z);
 }
 
-/* A wall at z = 10, of every three points one nearer by `relief` and one by twice that; three views of it, stored after
- * some quarter turns; a move to the right and forward, eased. */
+/* A wall at z = 10, with every third point nearer by `relief` and the next by twice that; three views of it, stored
+ * rotated by quarter turns; an eased move to the right and forward. */
 static void make(struct fixture *f, int quarters, double relief)
 {
     static const char *const names[] = {"left", "middle", "right"};
@@ -77,7 +76,7 @@ static void make(struct fixture *f, int quarters, double relief)
     }
 }
 
-static void drop(struct fixture *f) { camera_path_release(&f->path); }
+static void release(struct fixture *f) { camera_path_release(&f->path); }
 
 static void a_flat_wall_is_followed_exactly(void **state)
 {
@@ -98,19 +97,19 @@ static void a_flat_wall_is_followed_exactly(void **state)
             if (!quarters) upright[end] = c;
             assert_true(fabs(c.x - upright[end].x) < 1e-9 && fabs(c.y - upright[end].y) < 1e-9 &&
                         fabs(c.width - upright[end].width) < 1e-9);
-            /* the wall is 10 away from the view and 10, then 9.5 from the film */
+            /* the wall is at depth 10 from the view, and at 10 and 9.5 from the film's ends */
             const double width = FILM_W * (380 / 10.0) / (170 / (end ? 9.5 : 10.0));
             assert_true(fabs(c.width - width) < 1e-9 && fabs(c.height - width * FILM_H / FILM_W) < 1e-9);
             assert_true(fabs(c.x + c.width / 2 - (W / 2.0 + 38 * (end ? 0.6 : -0.4))) < 1e-9);
 
-            /* the stored rectangle holds what the film shows: its centre's ray is the same */
+            /* the rectangle in the stored picture has the same ray through its centre */
             const struct crop s = crop_move_stored(&m, c);
             const struct vec3 a = view_unproject(&f.views[1], s.x + s.width / 2, s.y + s.height / 2, 10);
             const struct vec3 b = view_unproject(&m.view, c.x + c.width / 2, c.y + c.height / 2, 10);
             assert_true(vec3_length(vec3_sub(a, b)) < 1e-9);
             assert_true(fabs(quarters % 2 ? s.height - c.width : s.width - c.width) < 1e-12);
         }
-        /* turned as the view is: a stored pixel is where the turned view has its ray */
+        /* a stored pixel goes to where the rotated view has its ray */
         struct image im = {0};
         assert_ok(image_init(&im, f.views[1].width, f.views[1].height, 1, &err), err);
         image_at(&im, 70, 45)[0] = 1;
@@ -121,11 +120,11 @@ static void a_flat_wall_is_followed_exactly(void **state)
         image_release(&im);
         crop_move_release(&m);
         crop_move_release(&m);
-        drop(&f);
+        release(&f);
     }
 }
 
-static void depth_is_what_a_crop_misses(void **state)
+static void depth_causes_misfit(void **state)
 {
     struct fixture f;
     struct crop_move m;
@@ -138,10 +137,10 @@ static void depth_is_what_a_crop_misses(void **state)
     assert_ok(crop_move_misfit(&misfit, &m, FRAMES - 1, &err), err);
     assert_true(misfit == m.misfits[1]);
     crop_move_release(&m);
-    drop(&f);
+    release(&f);
 }
 
-static void a_depth_map_does_for_points(void **state)
+static void a_depth_map_replaces_sparse_points(void **state)
 {
     struct fixture f;
     struct crop_move m, sparse;
@@ -159,15 +158,15 @@ static void a_depth_map_does_for_points(void **state)
     }
     crop_move_release(&m);
     crop_move_release(&sparse);
-    d.width--; /* another picture's */
+    d.width--; /* of another size */
     assert_int_equal(crop_move_init(&m, &f.set, 1, &d, &f.path, 0.01, &err), ST_DATA);
     assert_err(err, ST_DATA, "depth map of view middle");
     d.width++;
     layered_depth_release(&d);
-    drop(&f);
+    release(&f);
 }
 
-static void it_is_eased_as_the_path_is(void **state)
+static void crops_are_eased_as_the_path_is(void **state)
 {
     struct fixture f;
     struct crop_move m;
@@ -177,13 +176,13 @@ static void it_is_eased_as_the_path_is(void **state)
     assert_ok(crop_move_init(&m, &f.set, 1, NULL, &f.path, 0.01, &err), err);
     for (int i = 0; i < FRAMES; i++) {
         const double t = i / (FRAMES - 1.0), eased = t * t * (3 - 2 * t);
-        assert_true(fabs(m.parts[i] - eased) < 1e-12);
+        assert_true(fabs(m.fractions[i] - eased) < 1e-12);
         const struct crop c = crop_move_crop(&m, i);
         assert_true(fabs(c.x - ((1 - eased) * m.ends[0].crop.x + eased * m.ends[1].crop.x)) < 1e-9);
     }
     crop_move_release(&m);
 
-    for (int i = 0; i < FRAMES; i++) { /* the camera stands and zooms: f = f0 exp(t^2) */
+    for (int i = 0; i < FRAMES; i++) { /* the camera zooms in place: f = f0 exp(t^2) */
         struct view *v = &f.path.frames[i].camera;
         const struct view still = camera_at(0, 0, 0, FILM_W, FILM_H, 170);
         const char *name = v->name;
@@ -192,24 +191,24 @@ static void it_is_eased_as_the_path_is(void **state)
         v->fx = v->fy = 170 * exp(i * i / 100.0);
     }
     assert_ok(crop_move_init(&m, &f.set, 1, NULL, &f.path, 0.01, &err), err);
-    for (int i = 0; i < FRAMES; i++) assert_true(fabs(m.parts[i] - i * i / 100.0) < 1e-12);
+    for (int i = 0; i < FRAMES; i++) assert_true(fabs(m.fractions[i] - i * i / 100.0) < 1e-12);
     crop_move_release(&m);
 
     for (int i = 0; i < FRAMES; i++)
-        f.path.frames[i].camera.fx = f.path.frames[i].camera.fy = 170; /* and stands still */
+        f.path.frames[i].camera.fx = f.path.frames[i].camera.fy = 170; /* a static camera */
     assert_ok(crop_move_init(&m, &f.set, 1, NULL, &f.path, 0.01, &err), err);
-    for (int i = 0; i < FRAMES; i++) assert_true(fabs(m.parts[i] - i / 10.0) < 1e-12);
+    for (int i = 0; i < FRAMES; i++) assert_true(fabs(m.fractions[i] - i / 10.0) < 1e-12);
     crop_move_release(&m);
 
     f.path.frame_count = 1; /* a single frame */
     assert_ok(crop_move_init(&m, &f.set, 1, NULL, &f.path, 0.01, &err), err);
-    assert_true(m.parts[0] == 0 && crop_move_crop(&m, 0).width == m.ends[1].crop.width);
+    assert_true(m.fractions[0] == 0 && crop_move_crop(&m, 0).width == m.ends[1].crop.width);
     crop_move_release(&m);
     f.path.frame_count = FRAMES;
-    drop(&f);
+    release(&f);
 }
 
-static void a_move_beyond_the_photograph_is_held(void **state)
+static void a_move_beyond_the_photograph_is_held_at_its_border(void **state)
 {
     struct fixture f;
     struct crop_move m;
@@ -227,28 +226,29 @@ static void a_move_beyond_the_photograph_is_held(void **state)
         assert_true(c.x >= 0 && c.y >= 0 && c.x + c.width <= W + 1e-9 && c.y + c.height <= H + 1e-9);
     }
     crop_move_release(&m);
-    drop(&f);
+    release(&f);
 }
 
-static void the_nearest_view_that_looks_the_same_way_is_taken(void **state)
+static void the_nearest_view_that_faces_the_same_way_is_chosen(void **state)
 {
     struct fixture f;
     (void)state;
     make(&f, 0, 0);
     assert_int_equal(crop_move_choose_view(&f.set, &f.path), 1);
-    f.views[1].cam_from_world = (struct mat3){{{-1, 0, 0}, {0, 1, 0}, {0, 0, -1}}}; /* it looks back */
+    f.views[1].cam_from_world = (struct mat3){{{-1, 0, 0}, {0, 1, 0}, {0, 0, -1}}}; /* it faces backwards */
     assert_int_equal(crop_move_choose_view(&f.set, &f.path), 2);
     f.views[0].center =
-        f.views[2].center; /* two at one place, as the views of one wide photo: which looks more that way */
+        f.views[2].center; /* two at one position, as the views of a wide photo: the better aligned one */
     const double c = cos(0.3), s = sin(0.3);
     f.views[2].cam_from_world = (struct mat3){{{c, 0, -s}, {0, 1, 0}, {s, 0, c}}};
     assert_int_equal(crop_move_choose_view(&f.set, &f.path), 0);
-    for (int k = 0; k < 3; k++) f.views[k].cam_from_world = f.views[1].cam_from_world; /* all look back: the nearest */
+    for (int k = 0; k < 3; k++)
+        f.views[k].cam_from_world = f.views[1].cam_from_world; /* all face backwards: the nearest */
     assert_int_equal(crop_move_choose_view(&f.set, &f.path), 1);
-    drop(&f);
+    release(&f);
 }
 
-static void a_view_without_points_is_told(void **state)
+static void a_view_without_points_is_an_error(void **state)
 {
     struct fixture f;
     struct crop_move m;
@@ -257,21 +257,21 @@ static void a_view_without_points_is_told(void **state)
     make(&f, 0, 0);
     f.set.model.point_count = 2;
     assert_int_equal(crop_move_init(&m, &f.set, 1, NULL, &f.path, 0.01, &err), ST_DATA);
-    assert_err(err, ST_DATA, "frame 0001 of the path, seen from view middle: 2 points");
+    assert_err(err, ST_DATA, "frame 0001 of the path, seen from view middle: found 2 points");
     assert_null(m.points);
-    drop(&f);
+    release(&f);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_flat_wall_is_followed_exactly),
-        cmocka_unit_test(depth_is_what_a_crop_misses),
-        cmocka_unit_test(a_depth_map_does_for_points),
-        cmocka_unit_test(it_is_eased_as_the_path_is),
-        cmocka_unit_test(a_move_beyond_the_photograph_is_held),
-        cmocka_unit_test(the_nearest_view_that_looks_the_same_way_is_taken),
-        cmocka_unit_test(a_view_without_points_is_told),
+        cmocka_unit_test(depth_causes_misfit),
+        cmocka_unit_test(a_depth_map_replaces_sparse_points),
+        cmocka_unit_test(crops_are_eased_as_the_path_is),
+        cmocka_unit_test(a_move_beyond_the_photograph_is_held_at_its_border),
+        cmocka_unit_test(the_nearest_view_that_faces_the_same_way_is_chosen),
+        cmocka_unit_test(a_view_without_points_is_an_error),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

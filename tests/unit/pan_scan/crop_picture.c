@@ -1,5 +1,4 @@
-/* crop_picture.c - what a resampled part of a picture must be: itself, even, straight, without halos, the same for any
- * threads. */
+/* crop_picture.c - tests of resampling: identity, constants, ramps, no halos, the same bits for any thread count. */
 #include "stages/pan_scan/crop_picture.h"
 
 #include "tests/unit/scratch.h"
@@ -22,7 +21,7 @@ static struct image make(int width, int height, float (*value)(int x, int y))
 }
 
 static float noise(int x, int y) { return (float)((x * 7919 + y * 104729) % 997); }
-static float even(int x, int y) { return (void)x, (void)y, 0.3f; }
+static float constant(int x, int y) { return (void)x, (void)y, 0.3f; }
 static float ramp(int x, int y) { return (float)(x + 0.5) + 2 * (float)(y + 0.5); }
 static float spot(int x, int y) { return x == 30 && y == 20 ? 1e4f : 0; }
 
@@ -34,7 +33,7 @@ static struct image crop_of(const struct image *from, int width, int height, str
     return out;
 }
 
-static void whole_pixels_stay_as_they_are(void **state)
+static void an_aligned_crop_copies_pixels(void **state)
 {
     struct image im = make(W, H, noise);
     struct image out = crop_of(&im, 20, 10, (struct crop){13, 5, 20, 10});
@@ -52,9 +51,9 @@ static void whole_pixels_stay_as_they_are(void **state)
 static const struct crop crops[] = {{0, 0, W, H}, {10.3, 7.7, 8.25, 6.5}, {3.1, 2.2, 55, 41}, {0, 0, 20, 15}};
 static const int sizes[][2] = {{160, 120}, {16, 12}, {1, 1}, {61, 47}};
 
-static void an_even_picture_stays_even_and_a_ramp_straight(void **state)
+static void a_constant_stays_constant_and_a_ramp_linear(void **state)
 {
-    struct image flat = make(W, H, even), slope = make(W, H, ramp);
+    struct image flat = make(W, H, constant), slope = make(W, H, ramp);
     (void)state;
     for (size_t i = 0; i < 4; i++)
         for (size_t k = 0; k < 4; k++) {
@@ -68,7 +67,7 @@ static void an_even_picture_stays_even_and_a_ramp_straight(void **state)
                     assert_true(fabsf(image_at(&a, x, y)[0] - 0.3f) < 1e-6f);
                     if (u < reach_x || v < reach_y || u > W - reach_x || v > H - reach_y) continue;
                     if (!(fabs((double)image_at(&b, x, y)[0] - (u + 2 * v)) < 0.02 * (sx > 1 || sy > 1) + 1e-3))
-                        fail_msg("crop %zu size %zu (%d, %d): %g in place of %g", i, k, x, y,
+                        fail_msg("crop %zu size %zu (%d, %d): found %g, wanted %g", i, k, x, y,
                                  (double)image_at(&b, x, y)[0], u + 2 * v);
                 }
             image_release(&a);
@@ -108,9 +107,9 @@ static void any_number_of_threads_gives_the_same_bits(void **state)
     image_release(&im);
 }
 
-static void a_pixel_is_a_picture(void **state)
+static void a_picture_of_one_pixel_is_resampled(void **state)
 {
-    struct image im = make(1, 1, even);
+    struct image im = make(1, 1, constant);
     struct image out = crop_of(&im, 6, 4, (struct crop){0.2, 0.1, 0.6, 0.4});
     (void)state;
     for (int p = 0; p < 24; p++) assert_true(fabsf(out.data[4 * p] - 0.3f) < 1e-7f);
@@ -121,11 +120,11 @@ static void a_pixel_is_a_picture(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(whole_pixels_stay_as_they_are),
-        cmocka_unit_test(an_even_picture_stays_even_and_a_ramp_straight),
+        cmocka_unit_test(an_aligned_crop_copies_pixels),
+        cmocka_unit_test(a_constant_stays_constant_and_a_ramp_linear),
         cmocka_unit_test(a_light_has_no_halo),
         cmocka_unit_test(any_number_of_threads_gives_the_same_bits),
-        cmocka_unit_test(a_pixel_is_a_picture),
+        cmocka_unit_test(a_picture_of_one_pixel_is_resampled),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

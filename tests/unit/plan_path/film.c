@@ -1,9 +1,9 @@
-/* film.c - films of keys and planned moves: what files mean, what is wrong with others, how shots are joined. */
+/* film.c - tests of keyframed films: poses and lenses of keys, planned moves, joins, layers, error messages. */
 #include "stages/plan_path/film.h"
 
 #include "tests/unit/scratch.h"
 
-/* Two views side by side looking along z, as large as the film, and one that is stored lying on its side. */
+/* Two views side by side along z with the film's size, and one that is stored on its side. */
 static struct view views[] = {
     {.name = "a", .width = 320, .height = 240, .fx = 300, .fy = 300, .cx = 160, .cy = 120},
     {.name = "b", .width = 320, .height = 240, .fx = 330, .fy = 330, .cx = 160, .cy = 120},
@@ -12,7 +12,7 @@ static struct view views[] = {
 static const struct vec3 ups[] = {{0, -1, 0}, {0, -1, 0}, {-1, 0, 0}};
 static struct camera_set set = {.views = views, .view_count = 3};
 
-static struct film a_film(void)
+static struct film_settings settings(void)
 {
     for (int i = 0; i < 3; i++) {
         views[i].cam_from_world = (struct mat3){{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
@@ -20,20 +20,20 @@ static struct film a_film(void)
         views[i].center = vec3_make(i, 0, 0);
         views[i].translation = vec3_scale(mat3_apply(views[i].cam_from_world, views[i].center), -1);
     }
-    return (struct film){.name = "f",
-                         .set = &set,
-                         .ups = ups,
-                         .fps = 10,
-                         .rest = true,
-                         .moves = scratch,
-                         .up = {0, -1, 0},
-                         .lens = {.width = 320, .height = 240, .fx = 300, .fy = 300, .cx = 160, .cy = 120}};
+    return (struct film_settings){.name = "f",
+                                  .set = &set,
+                                  .ups = ups,
+                                  .fps = 10,
+                                  .rest = true,
+                                  .moves = scratch,
+                                  .up = {0, -1, 0},
+                                  .lens = {.width = 320, .height = 240, .fx = 300, .fy = 300, .cx = 160, .cy = 120}};
 }
 
 static void make(struct camera_path *path, struct effects *layers, const char *text)
 {
     struct err err = ERR_INIT;
-    const struct film film = a_film();
+    const struct film_settings film = settings();
     *path = (struct camera_path){0};
     *layers = (struct effects){0};
     if (keyframed_path(path, layers, scratch_write("f.txt", text), &film, NULL, &err)) fail_msg("%s", err.text);
@@ -52,11 +52,11 @@ static void release(struct camera_path *path, struct effects *layers)
     effects_release(layers);
 }
 
-static void near_to(double a, double b) { assert_true(fabs(a - b) < 1e-12 * (1 + fabs(b))); }
+static void assert_near(double a, double b) { assert_true(fabs(a - b) < 1e-12 * (1 + fabs(b))); }
 
 #define HEAD "remodel-keyframes 1\n"
 
-static void keys_say_what_frames_show(void **state)
+static void frames_show_what_the_keys_describe(void **state)
 {
     (void)state;
     struct camera_path p;
@@ -69,17 +69,17 @@ static void keys_say_what_frames_show(void **state)
     assert_int_equal(p.frame_count, 26);
     const struct path_frame *f = p.frames;
     assert_true(f[0].camera.center.x == 1 && f[0].camera.center.y == 0);
-    near_to(f[0].camera.fx, 330);
-    near_to(f[0].aperture, 0.5);
-    near_to(f[0].focus, 4);
-    near_to(f[10].camera.center.x, 3);
-    near_to(f[10].camera.center.y, 1);
-    near_to(f[10].camera.fx, 600);
-    near_to(f[25].camera.center.x, 5);
-    near_to(f[25].camera.fx, 900);
-    near_to(f[25].camera.cam_from_world.m[2][2], -1);
-    near_to(f[25].camera.cam_from_world.m[1][1], -1); /* up is +y */
-    near_to(f[25].camera.cam_from_world.m[0][0], 1);
+    assert_near(f[0].camera.fx, 330);
+    assert_near(f[0].aperture, 0.5);
+    assert_near(f[0].focus, 4);
+    assert_near(f[10].camera.center.x, 3);
+    assert_near(f[10].camera.center.y, 1);
+    assert_near(f[10].camera.fx, 600);
+    assert_near(f[25].camera.center.x, 5);
+    assert_near(f[25].camera.fx, 900);
+    assert_near(f[25].camera.cam_from_world.m[2][2], -1);
+    assert_near(f[25].camera.cam_from_world.m[1][1], -1); /* up is +y */
+    assert_near(f[25].camera.cam_from_world.m[0][0], 1);
     assert_true(f[25].aperture == 0 && f[25].focus == 0);
     for (int i = 1; i < 26; i++) {
         assert_true(f[i].camera.fx >= f[i - 1].camera.fx && f[i].aperture <= f[i - 1].aperture);
@@ -88,21 +88,21 @@ static void keys_say_what_frames_show(void **state)
     assert_int_equal(e.layer_count, 1);
     assert_int_equal(e.layers[0].key_count, 2);
     release(&p, &e);
-    /* a photo that is stored on its side is shown upright, as much of it as the film's shape lets */
+    /* a photo stored on its side is shown upright, filling the frame */
     make(&p, &e, HEAD "key 0 view side\nkey 1 view side\n");
     assert_int_equal(p.frame_count, 11);
     for (int i = 0; i < 11; i++) {
-        near_to(p.frames[i].camera.cam_from_world.m[0][0], 1);
-        near_to(p.frames[i].camera.cam_from_world.m[1][1], 1);
-        near_to(p.frames[i].camera.fx, 310);
+        assert_near(p.frames[i].camera.cam_from_world.m[0][0], 1);
+        assert_near(p.frames[i].camera.cam_from_world.m[1][1], 1);
+        assert_near(p.frames[i].camera.fx, 310);
         assert_true(p.frames[i].camera.center.x == 2);
     }
     release(&p, &e);
-    /* without an own up the film's */
+    /* without its own up, a key uses the film's */
     make(&p, &e, HEAD "key 0 at 0 0 0 look 0 0 1\nkey 0.5 at 0 0 0 look 1 0 0\n");
-    near_to(p.frames[5].camera.cam_from_world.m[0][2], -1);
-    near_to(p.frames[5].camera.cam_from_world.m[1][1], 1);
-    near_to(p.frames[5].camera.fx, 300);
+    assert_near(p.frames[5].camera.cam_from_world.m[0][2], -1);
+    assert_near(p.frames[5].camera.cam_from_world.m[1][1], 1);
+    assert_near(p.frames[5].camera.fx, 300);
     release(&p, &e);
 }
 
@@ -118,17 +118,17 @@ static void the_last_frame_shows_the_last_key(void **state)
         snprintf(text, sizeof text, HEAD "key 0 view a\nkey %g view b\n%s", seconds[i], i ? "" : "cut\nkey 0 view b\n");
         make(&p, &e, text);
         assert_int_equal(p.frame_count, frames[i]);
-        near_to(p.frames[p.frame_count - 1].camera.center.x, 1);
+        assert_near(p.frames[p.frame_count - 1].camera.center.x, 1);
         release(&p, &e);
     }
 }
 
-/* A straight move of 11 frames from x = 0 to 1 at constant velocity, 10 frames a second. */
+/* A straight move of 11 frames from x = 0 to 1 at constant velocity, 10 frames per second. */
 static void write_move(const char *effect, int width)
 {
     struct camera_path p;
     struct err err = ERR_INIT;
-    const struct film film = a_film();
+    const struct film_settings film = settings();
     assert_ok(camera_path_init(&p, effect, 10, 11, &err), err);
     for (int i = 0; i < 11; i++) {
         const char *name = p.frames[i].camera.name;
@@ -146,7 +146,7 @@ static void write_move(const char *effect, int width)
     camera_path_release(&p);
 }
 
-static void moves_are_chained(void **state)
+static void moves_and_keys_are_joined(void **state)
 {
     (void)state;
     struct camera_path p;
@@ -156,26 +156,26 @@ static void moves_are_chained(void **state)
     assert_int_equal(p.frame_count, 11 + 21 + 5);
     const struct path_frame *f = p.frames;
     for (int i = 0; i < 11; i++) {
-        near_to(f[i].camera.center.x, i / 10.0);
-        near_to(f[i].aperture, i / 20.0);
+        assert_near(f[i].camera.center.x, i / 10.0);
+        assert_near(f[i].aperture, i / 20.0);
         assert_true(f[i].focus == (i ? 5 : 0));
     }
-    for (int i = 0; i < 21; i++) { /* half as fast, back */
-        near_to(f[11 + i].camera.center.x, 1 - i / 20.0);
-        near_to(f[11 + i].aperture, 0.5 - i / 40.0);
+    for (int i = 0; i < 21; i++) { /* backwards at half the speed */
+        assert_near(f[11 + i].camera.center.x, 1 - i / 20.0);
+        assert_near(f[11 + i].aperture, 0.5 - i / 40.0);
     }
-    /* the transition goes on as the move did, and comes to rest: a cubic with slope -0.5 at its start */
+    /* the transition continues the move's velocity and comes to rest: a cubic with slope -0.5 at its start */
     for (int i = 0; i < 5; i++) {
         const double t = (i + 1) / 5.0, u = 1 - t;
-        near_to(f[32 + i].camera.center.x, -0.5 * 0.5 * t * u * u);
+        assert_near(f[32 + i].camera.center.x, -0.5 * 0.5 * t * u * u);
         assert_true(f[32 + i].aperture == 0);
     }
     assert_int_equal(p.score_count, 3);
-    near_to(p.scores[2].value, 3.6);
+    assert_near(p.scores[2].value, 3.6);
     release(&p, &e);
 }
 
-static void a_moves_layers_come_with_it(void **state)
+static void effect_layers_of_moves_are_carried_over(void **state)
 {
     (void)state;
     struct camera_path p;
@@ -194,7 +194,7 @@ static void a_moves_layers_come_with_it(void **state)
     assert_string_equal(e.layers[2].name, "own");
     assert_true(e.layers[0].region == EFFECT_INSIDE && e.layers[0].falloff == 4 && e.layers[0].high.z == 3);
     for (int i = 0; i < p.frame_count; i++) {
-        /* before the cut none; with the move; over the join back to none */
+        /* no change before the cut; the move's own value; back to no change over the join */
         const double first = i <= 10 ? 1 : i <= 21 ? 1 - (i - 11) / 10.0 : fmin(1, (i - 21) / 10.0);
         effect_layer_value(&e.layers[0], i / 10.0, v);
         assert_true(fabs(v[0] - first) < 1e-9);
@@ -205,12 +205,12 @@ static void a_moves_layers_come_with_it(void **state)
     release(&p, &e);
 }
 
-static void what_is_wrong_is_told(void **state)
+static void bad_files_are_refused_with_file_and_line(void **state)
 {
     (void)state;
 #define KEY HEAD "key 0 view a\n"
     static const struct {
-        const char *text, *place, *words;
+        const char *text, *line, *words;
     } bad[] = {
         {"", "an empty file", "wanted remodel-keyframes 1"},
         {"remodel-path 1\n", ":1:", "wanted remodel-keyframes 1"},
@@ -225,29 +225,29 @@ static void what_is_wrong_is_told(void **state)
         {HEAD "key 0 view z\n", ":2:", "found \"z\", wanted a view"},
         {HEAD "key 0 sight a\n", ":2:", "wanted view, camera or at"},
         {KEY "key 2 view a\nkey 1 view b\n", ":4:", "found \"1\", wanted a time 0.001 s or more after 2"},
-        {KEY "key 0 view b\n", ":3:", "begins a shot of its own"},
+        {KEY "key 0 view b\n", ":3:", "begins a new shot"},
         {HEAD "key 0 camera 0 0 0 0 1 2 3\n", ":2:", "a quaternion of length 0"},
         {HEAD "key 0 camera 1 0 0 0 1 2\n", ":2:", "wanted tz"},
         {HEAD "key 0 camera 1 0 0 0 1 2 1e99\n", ":2:", "found \"1e99\", wanted tz, a number from"},
         {HEAD "key 0 at 1 2 3 view a\n", ":2:", "\"look\""},
-        {HEAD "key 0 at 1 2 3 look 1 2 3\n", ":2:", "looks at its own place"},
-        {HEAD "key 0 at 0 0 0 look 0 9 0\n", ":2:", "an axis along the film's up"},
-        {HEAD "key 0 at 0 0 0 look 0 0 1 up 0 0 4\n", ":2:", "an up along the axis"},
-        {HEAD "key 0 at 0 0 0 look 0 0 1 up 0 0 0\n", ":2:", "an up along the axis"},
+        {HEAD "key 0 at 1 2 3 look 1 2 3\n", ":2:", "looks at its own position"},
+        {HEAD "key 0 at 0 0 0 look 0 9 0\n", ":2:", "a camera axis parallel to the film's up"},
+        {HEAD "key 0 at 0 0 0 look 0 0 1 up 0 0 4\n", ":2:", "an up parallel to the camera's axis"},
+        {HEAD "key 0 at 0 0 0 look 0 0 1 up 0 0 0\n", ":2:", "an up parallel to the camera's axis"},
         {HEAD "key 0 view a up 0 1 0\n", ":2:", "found \"up\", wanted focal, aperture or focus"},
         {HEAD "key 0 view a zoom 2\n", ":2:", "wanted focal, aperture or focus"},
         {HEAD "key 0 view a focal 0\n", ":2:", "found \"0\", wanted a focal length"},
         {HEAD "key 0 view a focal x\n", ":2:", "found \"x\", wanted a focal length"},
-        {HEAD "key 0 view a focal 1 focal 2\n", ":2:", "each word once"},
+        {HEAD "key 0 view a focal 1 focal 2\n", ":2:", "each option once"},
         {HEAD "key 0 view a aperture -1\n", ":2:", "found \"-1\", wanted the diameter"},
         {HEAD "key 0 view a aperture 1\n", ":2:", "no focus"},
         {HEAD "key 0 view a focus 0\n", ":2:", "a focus at depth 0"},
         {HEAD "key 0 view a focus at 0 0 -2\n", ":2:", "a focus at depth -2"},
         {HEAD "key 0 view a focus near\n", ":2:", "found \"near\", wanted a depth"},
-        {KEY, ":2:", "one key alone"},
-        {HEAD "cut\n" KEY, ":2:", "it stands between two shots"},
-        {KEY "join 1\ncut\n", ":4:", "it stands between two shots"},
-        {KEY "join 0\n", ":3:", "found \"0\", wanted a transition's length"},
+        {KEY, ":2:", "a single key"},
+        {HEAD "cut\n" KEY, ":2:", "join and cut go between two shots"},
+        {KEY "join 1\ncut\n", ":4:", "join and cut go between two shots"},
+        {KEY "join 0\n", ":3:", "found \"0\", wanted a transition's duration"},
         {KEY "join 1\n", ":3:", "wanted a key or a move after the join or cut"},
         {KEY "join 1\nremodel-effects 1\n", ":4:", "wanted a key or a move after"},
         {KEY "join 99999\nkey 0 view b\njoin 99999\nmove move\n", ":6:", "more than 1000000 frames"},
@@ -268,16 +268,16 @@ static void what_is_wrong_is_told(void **state)
         struct camera_path p = {0};
         struct effects e = {0};
         struct err err = ERR_INIT;
-        const struct film film = a_film();
+        const struct film_settings film = settings();
         const char *path = scratch_write("bad.txt", bad[i].text);
         const enum status st = keyframed_path(&p, &e, path, &film, NULL, &err);
-        if (!st) fail_msg("taken for good: %s", bad[i].text);
+        if (!st) fail_msg("accepted: %s", bad[i].text);
         assert_err(err, st, bad[i].words);
-        assert_contains(err.text, bad[i].place);
+        assert_contains(err.text, bad[i].line);
         assert_contains(err.text, path);
         assert_true(!p.frames && !e.layers);
     }
-    struct film film = a_film();
+    struct film_settings film = settings();
     struct camera_path p = {0};
     struct effects e = {0};
     struct err err = ERR_INIT;
@@ -289,9 +289,11 @@ static void what_is_wrong_is_told(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(keys_say_what_frames_show), cmocka_unit_test(the_last_frame_shows_the_last_key),
-        cmocka_unit_test(moves_are_chained),         cmocka_unit_test(a_moves_layers_come_with_it),
-        cmocka_unit_test(what_is_wrong_is_told),
+        cmocka_unit_test(frames_show_what_the_keys_describe),
+        cmocka_unit_test(the_last_frame_shows_the_last_key),
+        cmocka_unit_test(moves_and_keys_are_joined),
+        cmocka_unit_test(effect_layers_of_moves_are_carried_over),
+        cmocka_unit_test(bad_files_are_refused_with_file_and_line),
     };
     return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }

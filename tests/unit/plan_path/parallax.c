@@ -1,4 +1,4 @@
-/* parallax.c - what two cameras hide from each other, of a plane before a plane. */
+/* parallax.c - tests of the parallax between two cameras that see a strip in front of a wall. */
 #include "stages/plan_path/parallax.h"
 
 #include <setjmp.h>
@@ -8,13 +8,14 @@
 
 #include <cmocka.h>
 
-enum { W = 203, H = 61 }; /* no multiple of what is done at a time */
+enum { W = 203, H = 61 }; /* no multiple of the vector width */
 
 #define NEAR 2.0
 #define FAR  8.0
 #define FX   160.0
 
-/* At x, upright, looking along z: a wall at FAR, before it a strip at NEAR from -half to half; `rows` are known. */
+/* Seen from (at, 0, 0) along z: a wall at FAR, in front of it a strip at NEAR from -half to half. Depths are known in
+ * the first `rows` rows. */
 static void picture(struct depth_picture *d, double at, double half, int rows)
 {
     static float z[W * H];
@@ -28,7 +29,7 @@ static void picture(struct depth_picture *d, double at, double half, int rows)
         z[p] = fabs(x) <= half ? (float)NEAR : (float)FAR;
         if (p / W >= rows) z[p] = 0;
     }
-    assert_int_equal(depth_picture_take(d, z, &err), ST_OK);
+    assert_int_equal(depth_picture_init(d, z, &err), ST_OK);
 }
 
 static double parallax_of(double baseline, double half, int rows, double tolerance)
@@ -43,26 +44,26 @@ static double parallax_of(double baseline, double half, int rows, double toleran
     return parallax;
 }
 
-/* Beside the strip either camera sees as much of the wall as the strip moves against it. */
-static void a_strip_hides_its_disparity_from_each(void **state)
+/* Beside the strip, each camera sees a part of the wall, as wide as the disparity, that the other does not. */
+static void a_strip_hides_its_disparity_in_both_pictures(void **state)
 {
     (void)state;
     for (double baseline = 0; baseline < 0.3; baseline += 0.025) {
         const double disparity = FX * baseline * (1 / NEAR - 1 / FAR);
-        assert_true(fabs(parallax_of(baseline, 0.4, H, 0.01) - 2 * disparity / W) <= 2.0 / W); /* a pixel a rim */
+        assert_true(fabs(parallax_of(baseline, 0.4, H, 0.01) - 2 * disparity / W) <= 2.0 / W); /* one pixel per edge */
     }
 }
 
-static void one_depth_or_one_place_has_none(void **state)
+static void a_single_depth_or_position_has_no_parallax(void **state)
 {
     (void)state;
-    assert_true(parallax_of(0.3, 0, H, 0.01) == 0);   /* a wall alone */
-    assert_true(parallax_of(0.3, 100, H, 0.01) == 0); /* a strip that is all */
+    assert_true(parallax_of(0.3, 0, H, 0.01) == 0);   /* no strip */
+    assert_true(parallax_of(0.3, 100, H, 0.01) == 0); /* no wall */
     assert_true(parallax_of(0.2, 0.4, H, 3.5) == 0);  /* FAR is four times NEAR: within the tolerance */
 }
 
-/* What is not known hides nothing, and is hidden by nothing: a half of one picture is lost, and of the other what it told. */
-static void what_is_not_known_does_not_count(void **state)
+/* With half of one picture unknown, half of the parallax is lost in both. */
+static void unknown_depths_neither_hide_nor_are_hidden(void **state)
 {
     (void)state;
     const double all = parallax_of(0.2, 0.4, H, 0.01), part = parallax_of(0.2, 0.4, 30, 0.01);
@@ -73,9 +74,9 @@ static void what_is_not_known_does_not_count(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_strip_hides_its_disparity_from_each),
-        cmocka_unit_test(one_depth_or_one_place_has_none),
-        cmocka_unit_test(what_is_not_known_does_not_count),
+        cmocka_unit_test(a_strip_hides_its_disparity_in_both_pictures),
+        cmocka_unit_test(a_single_depth_or_position_has_no_parallax),
+        cmocka_unit_test(unknown_depths_neither_hide_nor_are_hidden),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

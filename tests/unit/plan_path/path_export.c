@@ -1,4 +1,4 @@
-/* path_export.c - what other programs read of a path is the path: points are seen where view_project() sees them. */
+/* path_export.c - tests that exported paths project points to the same pixels as view_project(). */
 #include "stages/plan_path/path_export.h"
 
 #include "tests/unit/scratch.h"
@@ -8,7 +8,7 @@
 
 #define NAME "dolly \"in\" \\ # \xc3\xa9 \xf0\x9f\x8e\xa5\n"
 
-/* Cameras that step to the right, turning about all axes; the lens changes if `zoom`. */
+/* Cameras that move to the right and rotate about all axes; the lens changes if `zoom`. */
 static void make_path(struct camera_path *p, const char *effect, int frames, bool zoom)
 {
     struct err err = ERR_INIT;
@@ -38,12 +38,11 @@ static json_t *load(const char *path)
 static double number(const json_t *object, const char *key)
 {
     const json_t *value = json_object_get(object, key);
-    if (!json_is_number(value)) fail_msg("%s is no number", key);
+    if (!json_is_number(value)) fail_msg("%s is not a number", key);
     return json_number_value(value);
 }
 
-/* A point through an exported frame, by its own words alone: camera to world is rigid, the camera looks along -z, y is
- * up. */
+/* Projects a point using the exported frame alone: world_from_cam, camera looking along -z, y up. */
 static void project(const json_t *frame, struct vec3 world, double *u, double *v)
 {
     const json_t *rows = json_object_get(frame, "transform_matrix");
@@ -59,7 +58,7 @@ static void project(const json_t *frame, struct vec3 world, double *u, double *v
     *v = number(frame, "cy") - number(frame, "fl_y") * c[1] / -c[2];
 }
 
-static void transforms_show_points_where_the_path_does(void **state)
+static void transforms_project_points_as_the_path_does(void **state)
 {
     (void)state;
     for (int zoom = 0; zoom < 2; zoom++) {
@@ -73,7 +72,7 @@ static void transforms_show_points_where_the_path_does(void **state)
         assert_true(number(root, "remodel_transforms") == 1 && number(root, "fps") == p.fps);
         assert_true(number(root, "w") == 320 && number(root, "h") == 200);
         assert_int_equal(json_array_size(frames), 7);
-        /* what stands at the top is taken for all frames: no lens there if it changes */
+        /* fields before the frames apply to all of them: no lens there if it changes */
         if (zoom)
             assert_true(!json_object_get(root, "fl_x") && !json_object_get(root, "camera_angle_x"));
         else
@@ -90,7 +89,7 @@ static void transforms_show_points_where_the_path_does(void **state)
             assert_true(number(f, "fl_x") == camera->fx && number(f, "fl_y") == camera->fy);
             assert_true(number(f, "w") == 320 && number(f, "h") == 200);
             for (int k = 0; k < 27; k++) {
-                const double z = 0.5 + 3 * (k / 9); /* from near the camera to far away */
+                const double z = 0.5 + 3 * (k / 9); /* near to far */
                 const struct vec3 at = view_unproject(camera, 160.0 * (k % 3), 100.0 * (k / 3 % 3), z);
                 double u, v, x, y;
                 assert_true(view_project(camera, at, &u, &v) > 0);
@@ -104,7 +103,7 @@ static void transforms_show_points_where_the_path_does(void **state)
     }
 }
 
-/* The text between two marks; the caller frees it. */
+/* The text between two strings; the caller frees it. */
 static char *between(const char *text, const char *before, const char *after)
 {
     const char *from = strstr(text, before);
@@ -115,7 +114,7 @@ static char *between(const char *text, const char *before, const char *after)
     return strndup(from, (size_t)(to - from));
 }
 
-/* The script's constants are JSON. */
+/* The value of one of the script's constants, which are JSON. */
 static json_t *constant(const char *script, const char *before, const char *after)
 {
     json_error_t why;
@@ -153,7 +152,7 @@ static void the_script_has_the_same_frames(void **state)
     camera_path_release(&p);
 }
 
-static void one_frame_is_a_move(void **state)
+static void a_path_of_one_frame_is_exported(void **state)
 {
     struct camera_path p = {0};
     struct err err = ERR_INIT;
@@ -183,7 +182,7 @@ static void the_same_path_gives_the_same_bytes(void **state)
     camera_path_release(&p);
 }
 
-static void what_json_cannot_hold_is_refused(void **state)
+static void values_that_json_cannot_express_are_refused(void **state)
 {
     struct camera_path p = {0}, none = {0};
     struct err err = ERR_INIT;
@@ -207,11 +206,11 @@ static void what_json_cannot_hold_is_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(transforms_show_points_where_the_path_does),
+        cmocka_unit_test(transforms_project_points_as_the_path_does),
         cmocka_unit_test(the_script_has_the_same_frames),
-        cmocka_unit_test(one_frame_is_a_move),
+        cmocka_unit_test(a_path_of_one_frame_is_exported),
         cmocka_unit_test(the_same_path_gives_the_same_bytes),
-        cmocka_unit_test(what_json_cannot_hold_is_refused),
+        cmocka_unit_test(values_that_json_cannot_express_are_refused),
     };
     return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }

@@ -1,5 +1,5 @@
-/* plan_move.c - every move of the taxonomy over a wall with a box before it, with viewpoints sampled from it, and the
- * hard cases: few views, views in a line or at one place, nothing valid, an aperture that cannot open. */
+/* plan_move.c - tests of all moves of the taxonomy over a wall with a box in front of it, and of hard cases: few views,
+ * collinear or coincident centres, no valid viewpoint, an aperture that cannot open. */
 #include "stages/plan_path/plan_move.h"
 
 #include "common/base/parallel.h"
@@ -8,7 +8,7 @@
 #include "tests/unit/scratch.h"
 #include "tests/unit/wall_scene.h"
 
-/* On the box, and on the wall beside it. */
+/* The first is on the box, the second on the wall beside it. */
 static struct subject two_subjects[2];
 static struct subject_list subjects = {two_subjects, 2};
 static const struct subject_list nobody;
@@ -39,9 +39,9 @@ static struct plan_params quick(void)
     return p;
 }
 
-/* ------------------------------------------------------------------------------------ a film and what is true of it */
+/* --------------------------------------------------------------------------------- planning, and checks of any path */
 
-struct film {
+struct planned_film {
     struct validity v;
     struct camera_path path;
     struct effects layers;
@@ -64,16 +64,16 @@ static bool has_score(const struct camera_path *p, const char *name)
     return false;
 }
 
-static void sample(struct film *film, const struct wall_scene *f, struct film_effect effect,
+static void sample(struct planned_film *film, const struct wall_scene *f, struct film_effect effect,
                    const struct validity_params *params)
 {
     struct err err = ERR_INIT;
-    *film = (struct film){.v = {.zoom = 0}};
+    *film = (struct planned_film){.v = {.zoom = 0}};
     if (validity_sample(&film->v, &film->sampling, &f->scene, NULL, &subjects, &effect, params, &err))
         fail_msg("%s", err.text);
 }
 
-static void plan(struct film *film, const struct wall_scene *f, const struct plan_params *params)
+static void plan(struct planned_film *film, const struct wall_scene *f, const struct plan_params *params)
 {
     static const char *const always[] = {"length",  "length_of_thesis", "angle",         "parallax",
                                          "worst_h", "worst_h_at",       "worst_outside", "parallax_of_thesis",
@@ -105,19 +105,20 @@ static void plan(struct film *film, const struct wall_scene *f, const struct pla
     assert_true(has_score(p, "aperture") == (film->v.effect.focus != FOCUS_ALL));
 }
 
-static void release(struct film *film)
+static void release(struct planned_film *film)
 {
     camera_path_release(&film->path);
     effects_release(&film->layers);
     validity_release(&film->v);
 }
 
-/* Every frame, measured again. Where an end of the move has no valid viewpoint at all, the film says so. */
-static void assert_all_frames_valid(const struct film *film, const struct wall_scene *f)
+/* Measures every frame again. Frames may be invalid only if an end has no valid viewpoint, which the notes then
+ * state. */
+static void assert_all_frames_valid(const struct planned_film *film, const struct wall_scene *f)
 {
     struct scene_points points;
     struct err err = ERR_INIT;
-    const bool none = film->sampling.none[0] || film->sampling.none[1];
+    const bool none = film->sampling.no_valid[0] || film->sampling.no_valid[1];
     assert_ok(scene_points_collect(&points, &f->scene, &err), err);
     struct viewpoint_test test = {
         .scene = &f->scene, .points = &points, .shot = &film->v.shot, .limits = film->v.limits};
@@ -134,14 +135,14 @@ static void assert_all_frames_valid(const struct film *film, const struct wall_s
     scene_points_release(&points);
 }
 
-static const struct view *camera(const struct film *film, int i)
+static const struct view *camera(const struct planned_film *film, int i)
 {
     return &film->path.frames[i < 0 ? film->path.frame_count + i : i].camera;
 }
 
-static struct film_effect only(enum move move) { return (struct film_effect){move, FOCUS_ALL, TONE_NONE}; }
+static struct film_effect move_alone(enum camera_move move) { return (struct film_effect){move, FOCUS_ALL, TONE_NONE}; }
 
-/* Nine views in a square of 2 by 2, a little uneven, that look at one place as people's photos do. */
+/* Nine views in a slightly irregular square of 2 by 2 that point at one spot, as hand-held photos do. */
 static void nine_views(struct wall_scene *f)
 {
     *f = (struct wall_scene){.scene = {.sigma = 0}};
@@ -151,30 +152,30 @@ static void nine_views(struct wall_scene *f)
     finish(f, wall_and_box, 2);
 }
 
-/* Whatever the move, it is a film of the scene, and none of its frames has more holes than the limit. */
-static void make(struct film *film, struct wall_scene *f, enum move move)
+/* Plans a move with default settings and checks what holds for every move. */
+static void make(struct planned_film *film, struct wall_scene *f, enum camera_move move)
 {
     const struct validity_params sampling = quick_sampling();
     const struct plan_params params = quick();
     nine_views(f);
-    sample(film, f, only(move), &sampling);
+    sample(film, f, move_alone(move), &sampling);
     plan(film, f, &params);
-    assert_false(film->notes.stands_still);
+    assert_false(film->notes.is_static);
     assert_true(score(&film->path, "parallax") > 0);
     assert_true(film->layers.layer_count == 0);
     assert_all_frames_valid(film, f);
 }
 
-static void unmake(struct film *film, struct wall_scene *f)
+static void release_all(struct planned_film *film, struct wall_scene *f)
 {
     release(film);
     layer_scene_release(&f->scene);
 }
 
-static void establishing_dolly_goes_right_and_shows_the_scene(void **state)
+static void establishing_dolly_moves_right_and_points_at_the_centroid(void **state)
 {
     (void)state;
-    struct film film;
+    struct planned_film film;
     struct wall_scene f;
     make(&film, &f, MOVE_ESTABLISHING_DOLLY);
     const struct vec3 centroid = film.v.shot.centroid;
@@ -186,31 +187,31 @@ static void establishing_dolly_goes_right_and_shows_the_scene(void **state)
     assert_int_equal(camera(&film, 0)->width, W);
     assert_int_equal(camera(&film, 0)->height, H);
     assert_true(camera(&film, 0)->center.x < -0.5 && camera(&film, -1)->center.x > 0.5);
-    unmake(&film, &f);
+    release_all(&film, &f);
 }
 
-static void establishing_dolly_out_draws_back_on_the_axis(void **state)
+static void establishing_dolly_out_moves_back_on_the_axis(void **state)
 {
     (void)state;
-    struct film film;
+    struct planned_film film;
     struct wall_scene f;
     make(&film, &f, MOVE_ESTABLISHING_DOLLY_OUT);
     for (int i = 0; i < 30; i++) {
-        const struct vec3 c = shot_coordinates(&film.v.shot, camera(&film, i)->center);
+        const struct vec3 c = shot_from_world(&film.v.shot, camera(&film, i)->center);
         assert_true(fabs(c.x) < 1e-9 && fabs(c.y) < 1e-9);
         assert_true(off_axis(camera(&film, i), film.v.shot.centroid) < 1e-6);
     }
     assert_true(camera(&film, 0)->center.z > camera(&film, -1)->center.z + 0.5);
     assert_float_equal(camera(&film, 0)->fx, 1.5 * film.v.shot.lens.fx, 1e-9);
     assert_float_equal(camera(&film, -1)->fx, film.v.shot.lens.fx, 1e-9);
-    unmake(&film, &f);
+    release_all(&film, &f);
 }
 
-static void dollies_end_close_at_the_subject_or_begin_there(void **state)
+static void dollies_in_and_out_have_a_close_end_at_the_subject(void **state)
 {
     (void)state;
     for (int out = 0; out < 2; out++) {
-        struct film film;
+        struct planned_film film;
         struct wall_scene f;
         make(&film, &f, out ? MOVE_DOLLY_OUT : MOVE_DOLLY_IN);
         const struct view *wide = camera(&film, out ? -1 : 0), *close = camera(&film, out ? 0 : -1);
@@ -222,9 +223,9 @@ static void dollies_end_close_at_the_subject_or_begin_there(void **state)
             fail_msg("%d: close at %g %g %g, wide at %g %g %g; cells %d %d; chosen %d still %d", out, close->center.x,
                      close->center.y, close->center.z, wide->center.x, wide->center.y, wide->center.z,
                      validity_region_count(&film.v.region[0]), validity_region_count(&film.v.region[1]),
-                     film.notes.chosen.chosen, film.notes.stands_still);
+                     film.notes.chosen.chosen, film.notes.is_static);
         assert_true(film.notes.place_error < 1e-6);
-        unmake(&film, &f);
+        release_all(&film, &f);
     }
 }
 
@@ -232,26 +233,26 @@ static void dolly_zooms_keep_the_subjects_size(void **state)
 {
     (void)state;
     for (int in = 0; in < 2; in++) {
-        struct film film;
+        struct planned_film film;
         struct wall_scene f;
         make(&film, &f, in ? MOVE_DOLLY_ZOOM_IN : MOVE_DOLLY_ZOOM);
-        const double promised = film.v.move.end[0].size, way = in ? 1 : -1;
+        const double promised = film.v.move.end[0].size, direction = in ? 1 : -1;
         for (int i = 0; i < 30; i++) {
             assert_float_equal(subject_size_in(&two_subjects[0], camera(&film, i)), promised, 1e-6);
-            const struct vec3 c = shot_coordinates(&film.v.shot, camera(&film, i)->center);
+            const struct vec3 c = shot_from_world(&film.v.shot, camera(&film, i)->center);
             assert_true(fabs(c.x) < 1e-9 && fabs(c.y) < 1e-9);
-            if (i) assert_true(way * (camera(&film, i)->center.z - camera(&film, i - 1)->center.z) > 0);
-            if (i) assert_true(way * (camera(&film, i - 1)->fx - camera(&film, i)->fx) > 0);
+            if (i) assert_true(direction * (camera(&film, i)->center.z - camera(&film, i - 1)->center.z) > 0);
+            if (i) assert_true(direction * (camera(&film, i - 1)->fx - camera(&film, i)->fx) > 0);
         }
         assert_true(film.notes.size_error < 0.01);
-        unmake(&film, &f);
+        release_all(&film, &f);
     }
 }
 
-static void dolly_goes_from_the_first_subject_to_the_second(void **state)
+static void dolly_runs_from_the_first_subject_to_the_second(void **state)
 {
     (void)state;
-    struct film film;
+    struct planned_film film;
     struct wall_scene f;
     make(&film, &f, MOVE_DOLLY);
     assert_true(off_axis(camera(&film, 0), subject_center(&two_subjects[0])) < 1e-6);
@@ -259,37 +260,37 @@ static void dolly_goes_from_the_first_subject_to_the_second(void **state)
     const double first = subject_size_in(&two_subjects[0], camera(&film, 0));
     assert_float_equal(subject_size_in(&two_subjects[1], camera(&film, -1)), first, 1e-6);
     assert_true(film.notes.size_error < 0.01 && film.notes.place_error < 1e-6);
-    unmake(&film, &f);
+    release_all(&film, &f);
 }
 
 /* ------------------------------------------------------------------------------------------ the ends and the frames */
 
-static void easing(void **state)
+static void easing_slows_down_both_ends(void **state)
 {
     (void)state;
     struct wall_scene f;
-    struct film film;
+    struct planned_film film;
     struct plan_params params = quick();
     const struct validity_params sampling = quick_sampling();
     nine_views(&f);
-    sample(&film, &f, only(MOVE_ESTABLISHING_DOLLY), &sampling);
+    sample(&film, &f, move_alone(MOVE_ESTABLISHING_DOLLY), &sampling);
     for (int smooth = 0; smooth < 2; smooth++) {
         strcpy(params.ease, smooth ? "smooth" : "none");
         plan(&film, &f, &params);
-        double step[29], least = HUGE_VAL, most = 0;
+        double step[29], min = HUGE_VAL, max = 0;
         for (int i = 0; i < 29; i++) {
             step[i] = camera(&film, i + 1)->center.x - camera(&film, i)->center.x;
-            least = fmin(least, step[i]);
-            most = fmax(most, step[i]);
+            min = fmin(min, step[i]);
+            max = fmax(max, step[i]);
         }
-        assert_true(least > 0);
+        assert_true(min > 0);
         if (smooth)
-            assert_true(step[0] < 0.2 * most && step[28] < 0.2 * most && step[14] == most);
+            assert_true(step[0] < 0.2 * max && step[28] < 0.2 * max && step[14] == max);
         else
-            assert_true(most - least < 1e-9);
+            assert_true(max - min < 1e-9);
         camera_path_release(&film.path);
     }
-    unmake(&film, &f);
+    release_all(&film, &f);
 }
 
 static void end_picture(struct depth_picture *d, const struct wall_scene *f, const struct validity *v, int end,
@@ -315,11 +316,11 @@ static double angle_of(const struct validity *v, const struct vec3 at[2])
     return acos(vec3_dot(a, b) / vec3_length(a) / vec3_length(b)) * 180 / M_PI;
 }
 
-/* Of all pairs of cells, at a limit of the angle that binds and at one that does not. */
-static void all_pairs_find_what_brute_force_finds(void **state)
+/* With an angle limit that excludes pairs and with one that does not. */
+static void all_pairs_agree_with_brute_force(void **state)
 {
     (void)state;
-    static const enum move moves[] = {MOVE_ESTABLISHING_DOLLY, MOVE_DOLLY_IN, MOVE_DOLLY};
+    static const enum camera_move moves[] = {MOVE_ESTABLISHING_DOLLY, MOVE_DOLLY_IN, MOVE_DOLLY};
     enum { CELLS = 16 };
     struct wall_scene f;
     struct validity_params sampling = quick_sampling();
@@ -331,9 +332,9 @@ static void all_pairs_find_what_brute_force_finds(void **state)
     strcpy(params.refine, "no");
     nine_views(&f);
     for (size_t m = 0; m < sizeof moves / sizeof *moves; m++) {
-        struct film film;
+        struct planned_film film;
         struct depth_picture pictures[2][CELLS] = {{{.z = NULL}}};
-        sample(&film, &f, only(moves[m]), &sampling);
+        sample(&film, &f, move_alone(moves[m]), &sampling);
         for (int i = 0; i < 2 * CELLS; i++)
             if (film.v.region[i / CELLS].cells[i % CELLS].valid)
                 end_picture(&pictures[i / CELLS][i % CELLS], &f, &film.v, i / CELLS,
@@ -347,9 +348,9 @@ static void all_pairs_find_what_brute_force_finds(void **state)
                     if (!film.v.region[0].cells[a].valid || !film.v.region[1].cells[b].valid) continue;
                     const struct vec3 at[2] = {ends_candidate(&film.v, 0, a), ends_candidate(&film.v, 1, b)};
                     if (angle_of(&film.v, at) > params.max_angle) continue;
-                    const double forth =
-                        shot_coordinates(&film.v.shot, at[1]).z - shot_coordinates(&film.v.shot, at[0]).z;
-                    if (moves[m] == MOVE_DOLLY_IN && forth < 0.5 * vec3_length(vec3_sub(at[1], at[0]))) continue;
+                    const double advance =
+                        shot_from_world(&film.v.shot, at[1]).z - shot_from_world(&film.v.shot, at[0]).z;
+                    if (moves[m] == MOVE_DOLLY_IN && advance < 0.5 * vec3_length(vec3_sub(at[1], at[0]))) continue;
                     best = fmax(best, parallax_between(&pictures[0][a], &pictures[1][b], parallax_tolerance(&f.scene)));
                     counted++;
                 }
@@ -375,20 +376,20 @@ static void all_pairs_find_what_brute_force_finds(void **state)
     layer_scene_release(&f.scene);
 }
 
-static void refinement_never_gives_less(void **state)
+static void refinement_never_loses_parallax(void **state)
 {
     (void)state;
     struct wall_scene f;
     struct validity_params sampling = quick_sampling();
     struct plan_params params = quick();
-    bool ever = false;
+    bool any_refined = false;
     nine_views(&f);
     params.fps = 10;
     params.parallax_side = 48;
     sampling.grid = 4;
     for (int move = 0; move < MOVE_COUNT; move++) {
-        struct film film;
-        sample(&film, &f, only((enum move)move), &sampling);
+        struct planned_film film;
+        sample(&film, &f, move_alone((enum camera_move)move), &sampling);
         params.max_angle = move % 2 ? 12 : 25;
         strcpy(params.refine, "no");
         plan(&film, &f, &params);
@@ -402,14 +403,14 @@ static void refinement_never_gives_less(void **state)
         if (!film.notes.chosen.refined) assert_memory_equal(e->at, grid.at, sizeof e->at);
         if (film.notes.chosen.refined) assert_true(e->parallax > grid.parallax);
         assert_false(film.v.move.on_axis && film.notes.chosen.refined);
-        ever |= film.notes.chosen.refined;
+        any_refined |= film.notes.chosen.refined;
         release(&film);
     }
-    assert_true(ever);
+    assert_true(any_refined);
     layer_scene_release(&f.scene);
 }
 
-static void any_threads_same_film(void **state)
+static void any_thread_count_gives_the_same_path(void **state)
 {
     (void)state;
     static const struct film_effect effects[] = {{MOVE_ESTABLISHING_DOLLY, FOCUS_ALL, TONE_NONE},
@@ -420,7 +421,7 @@ static void any_threads_same_film(void **state)
     const struct plan_params params = quick();
     nine_views(&f);
     for (size_t k = 0; k < sizeof effects / sizeof *effects; k++) {
-        struct film a, b;
+        struct planned_film a, b;
         parallel_set_threads(1);
         sample(&a, &f, effects[k], &sampling);
         plan(&a, &f, &params);
@@ -443,7 +444,7 @@ static void any_threads_same_film(void **state)
 
 /* ---------------------------------------------------------------------------------------------------- image effects */
 
-static void the_aperture_opens_where_the_subject_is_in_focus(void **state)
+static void the_aperture_opens_with_the_subject_in_focus(void **state)
 {
     (void)state;
     static const enum focus_effect focuses[] = {FOCUS_NARROW, FOCUS_WIDEN};
@@ -452,7 +453,7 @@ static void the_aperture_opens_where_the_subject_is_in_focus(void **state)
     const struct plan_params params = quick();
     nine_views(&f);
     for (int k = 0; k < 2; k++) {
-        struct film film;
+        struct planned_film film;
         const int narrow = focuses[k] == FOCUS_NARROW;
         sample(&film, &f, (struct film_effect){MOVE_DOLLY_ZOOM, focuses[k], TONE_NONE}, &sampling);
         plan(&film, &f, &params);
@@ -467,7 +468,7 @@ static void the_aperture_opens_where_the_subject_is_in_focus(void **state)
                 assert_float_equal(at->focus, view_project(&at->camera, subject_center(&two_subjects[0]), &u, &w),
                                    1e-9);
         }
-        /* no more blur of what is far than was allowed: aperture fx / focus px */
+        /* the blur at infinity, aperture fx / focus px, keeps its limit */
         const struct path_frame *open = &film.path.frames[narrow ? 29 : 0];
         assert_true(open->aperture * open->camera.fx / open->focus <= params.max_blur * W * (1 + 1e-9));
         release(&film);
@@ -475,11 +476,11 @@ static void the_aperture_opens_where_the_subject_is_in_focus(void **state)
     layer_scene_release(&f.scene);
 }
 
-static void focus_is_pulled_from_subject_to_subject(void **state)
+static void focus_is_pulled_from_the_first_to_the_second_subject(void **state)
 {
     (void)state;
     struct wall_scene f;
-    struct film film;
+    struct planned_film film;
     const struct validity_params sampling = quick_sampling();
     const struct plan_params params = quick();
     double u, w;
@@ -492,10 +493,10 @@ static void focus_is_pulled_from_subject_to_subject(void **state)
                        view_project(camera(&film, 0), subject_center(&two_subjects[0]), &u, &w), 1e-9);
     assert_float_equal(film.path.frames[29].focus,
                        view_project(camera(&film, -1), subject_center(&two_subjects[1]), &u, &w), 1e-9);
-    unmake(&film, &f);
+    release_all(&film, &f);
 }
 
-static void tones_are_layers_around_the_subject(void **state)
+static void tone_effects_are_layers_around_the_subject(void **state)
 {
     (void)state;
     static const struct {
@@ -512,7 +513,7 @@ static void tones_are_layers_around_the_subject(void **state)
     const struct plan_params params = quick();
     nine_views(&f);
     for (int k = 0; k < 4; k++) {
-        struct film film;
+        struct planned_film film;
         double v[3];
         sample(&film, &f, (struct film_effect){MOVE_DOLLY_ZOOM, FOCUS_ALL, tones[k].tone}, &sampling);
         plan(&film, &f, &params);
@@ -535,7 +536,7 @@ static void tones_are_layers_around_the_subject(void **state)
 
 /* ------------------------------------------------------------------------------------------------------- hard cases */
 
-/* All moves of a scene; the least and the greatest length of them. */
+/* Plans all moves of a scene; length gets the shortest and the longest. */
 static void all_moves(struct wall_scene *f, const struct rectangle *r, int count, double length[2])
 {
     struct validity_params sampling = quick_sampling();
@@ -547,8 +548,8 @@ static void all_moves(struct wall_scene *f, const struct rectangle *r, int count
     length[0] = HUGE_VAL;
     length[1] = 0;
     for (int move = 0; move < MOVE_COUNT; move++) {
-        struct film film;
-        sample(&film, f, only((enum move)move), &sampling);
+        struct planned_film film;
+        sample(&film, f, move_alone((enum camera_move)move), &sampling);
         plan(&film, f, &params);
         assert_all_frames_valid(&film, f);
         length[0] = fmin(length[0], film.notes.ends.length);
@@ -558,7 +559,7 @@ static void all_moves(struct wall_scene *f, const struct rectangle *r, int count
     layer_scene_release(&f->scene);
 }
 
-static void one_view_only(void **state)
+static void one_view_is_enough_for_a_move(void **state)
 {
     (void)state;
     struct wall_scene f = {0};
@@ -568,7 +569,7 @@ static void one_view_only(void **state)
     assert_true(length[1] > 0.1);
 }
 
-static void two_views(void **state)
+static void two_views_are_enough_for_a_move(void **state)
 {
     (void)state;
     struct wall_scene f = {0};
@@ -576,14 +577,14 @@ static void two_views(void **state)
     add_straight(&f, 0, 0, 0);
     add_straight(&f, 1, 0, 0);
     all_moves(&f, wall_and_box, 2, length);
-    assert_true(length[1] > 0.1); /* but no place keeps the second subject of the dolly within the views */
+    assert_true(length[1] > 0.1); /* not length[0]: no viewpoint shows the dolly's second subject */
 }
 
-static void centres_in_a_line(void **state)
+static void centres_in_a_line_allow_all_moves(void **state)
 {
     (void)state;
     static const struct vec3 along[] = {
-        {1, 0, 0}, {0, 1, 0}, {0, 0, 0.4}, {0.5, 0.7, 0.2}}; /* the third towards the scene */
+        {1, 0, 0}, {0, 1, 0}, {0, 0, 0.4}, {0.5, 0.7, 0.2}}; /* the third is towards the scene */
     for (int k = 0; k < 4; k++) {
         struct wall_scene f = {0};
         double length[2];
@@ -593,7 +594,7 @@ static void centres_in_a_line(void **state)
     }
 }
 
-static void centres_at_one_place(void **state)
+static void coincident_centres_allow_a_move(void **state)
 {
     (void)state;
     struct wall_scene f = {0};
@@ -603,8 +604,8 @@ static void centres_at_one_place(void **state)
     assert_true(length[1] > 0.1);
 }
 
-/* Every place has more holes than the limit: an end gets the origin, and the camera stands there. */
-static void no_valid_cell(void **state)
+/* Also: if only the origin is valid, the camera does not move. */
+static void regions_without_a_valid_cell_are_an_error(void **state)
 {
     (void)state;
     struct wall_scene f;
@@ -613,19 +614,19 @@ static void no_valid_cell(void **state)
     strcpy(params.refine, "no");
     nine_views(&f);
     for (int move = 0; move < MOVE_COUNT; move++) {
-        struct film film;
-        sample(&film, &f, only((enum move)move), &sampling);
+        struct planned_film film;
+        sample(&film, &f, move_alone((enum camera_move)move), &sampling);
         for (int k = 0; k < 2; k++)
             for (int i = 0; i < film.v.region[k].columns * film.v.region[k].rows; i++)
                 film.v.region[k].cells[i] = (struct validity_cell){.valid = false};
         struct err err = ERR_INIT;
         assert_int_equal(plan_move(&film.path, &film.layers, &film.notes, &f.scene, &film.v, &subjects, &params, &err),
                          ST_DATA);
-        assert_err(err, ST_DATA, "no place of the move's regions is valid");
+        assert_err(err, ST_DATA, "no cell of the move's regions is valid");
         assert_true(!film.path.frames && !film.layers.layers);
         film.v.region[0].cells[0] = film.v.region[1].cells[0] = (struct validity_cell){.valid = true};
         plan(&film, &f, &params);
-        assert_true(film.notes.stands_still && score(&film.path, "length") < 1e-12);
+        assert_true(film.notes.is_static && score(&film.path, "length") < 1e-12);
         for (int i = 0; i < 30; i++)
             assert_true(vec3_length(vec3_sub(camera(&film, i)->center, film.v.shot.origin)) < 1e-12);
         release(&film);
@@ -633,18 +634,17 @@ static void no_valid_cell(void **state)
     layer_scene_release(&f.scene);
 }
 
-/* The ends are valid and the way is not: it is drawn together until it is, or stands still; it is never left
- * invalid. */
-static void a_way_that_is_not_valid_is_drawn_together(void **state)
+/* The ends are drawn in until the path is valid; it never stays invalid. */
+static void ends_with_an_invalid_path_are_drawn_in(void **state)
 {
     (void)state;
     struct wall_scene f;
     const struct validity_params sampling = quick_sampling();
     const struct plan_params params = quick();
-    struct film film;
+    struct planned_film film;
     nine_views(&f);
-    sample(&film, &f, only(MOVE_ESTABLISHING_DOLLY), &sampling);
-    for (int k = 0; k < 2; k++) { /* claim that places far outside were valid */
+    sample(&film, &f, move_alone(MOVE_ESTABLISHING_DOLLY), &sampling);
+    for (int k = 0; k < 2; k++) { /* claim that viewpoints far outside are valid */
         struct validity_region *r = &film.v.region[k];
         for (int i = 0; i < r->columns * r->rows; i++) {
             r->cells[i].x *= 3;
@@ -654,11 +654,11 @@ static void a_way_that_is_not_valid_is_drawn_together(void **state)
     plan(&film, &f, &params);
     assert_all_frames_valid(&film, &f);
     assert_true(film.notes.ends.length > 0.1);
-    unmake(&film, &f);
+    release_all(&film, &f);
 }
 
-/* The aperture's corners see past a post that stands close, however little it opens, since what is in focus is far. */
-static void an_aperture_that_cannot_open(void **state)
+/* With focus on a far wall, any opening shows a hole behind a near post. */
+static void an_aperture_stays_shut_where_opening_shows_holes(void **state)
 {
     (void)state;
     static const struct rectangle far_wall_and_post[] = {{0, 0, 1000, 4000, 4000}, {-1.5, 0, 6, 0.5, 40}};
@@ -667,20 +667,20 @@ static void an_aperture_that_cannot_open(void **state)
     struct subject far = upright_subject(0, 0, 1000, 20, 20);
     add_straight(&f, 0, 0, 0);
     finish(&f, far_wall_and_post, 2);
-    struct film film = {.v = {.effect = {MOVE_DOLLY_ZOOM, FOCUS_NARROW, TONE_NONE},
-                              .shot = {.lens = f.views[0],
-                                       .up = {0, -1, 0},
-                                       .axis_x = {1, 0, 0},
-                                       .axis_y = {0, 1, 0},
-                                       .axis_z = {0, 0, 1},
-                                       .low = {-1, -1},
-                                       .high = {1, 1},
-                                       .centroid = {0, 0, 1000},
-                                       .near_limit = 1,
-                                       .median_depth = 1000},
-                              .zoom = 1,
-                              .step = 1,
-                              .limits = {0.01, 1, W}}};
+    struct planned_film film = {.v = {.effect = {MOVE_DOLLY_ZOOM, FOCUS_NARROW, TONE_NONE},
+                                      .shot = {.lens = f.views[0],
+                                               .up = {0, -1, 0},
+                                               .axis_x = {1, 0, 0},
+                                               .axis_y = {0, 1, 0},
+                                               .axis_z = {0, 0, 1},
+                                               .low = {-1, -1},
+                                               .high = {1, 1},
+                                               .centroid = {0, 0, 1000},
+                                               .near_limit = 1,
+                                               .median_depth = 1000},
+                                      .zoom = 1,
+                                      .step = 1,
+                                      .limits = {0.01, 1, W}}};
     struct err err = ERR_INIT;
     const struct subject kept = two_subjects[0];
     two_subjects[0] = far;
@@ -693,27 +693,27 @@ static void an_aperture_that_cannot_open(void **state)
     assert_true(film.notes.ends.valid && film.notes.aperture == 0 && score(&film.path, "aperture") == 0);
     for (int i = 0; i < 30; i++) assert_true(film.path.frames[i].aperture == 0 && film.path.frames[i].focus == 0);
     camera_path_release(&film.path);
-    film.v.limits.max_h = 1e6; /* it is the holes that keep it shut */
+    film.v.limits.max_h = 1e6; /* the holes alone kept it shut */
     plan(&film, &f, &params);
     assert_true(film.notes.aperture > 0);
     camera_path_release(&film.path);
-    params.max_blur = 0; /* and no blur is none, too */
+    params.max_blur = 0; /* so does a blur limit of 0 */
     plan(&film, &f, &params);
     assert_true(film.notes.aperture == 0);
     two_subjects[0] = kept;
-    unmake(&film, &f);
+    release_all(&film, &f);
 }
 
-static void refuses_what_makes_no_film(void **state)
+static void too_few_subjects_or_frames_are_an_error(void **state)
 {
     (void)state;
     struct wall_scene f;
-    struct film film;
+    struct planned_film film;
     struct plan_params params = quick();
     const struct validity_params sampling = quick_sampling();
     struct err err = ERR_INIT;
     nine_views(&f);
-    sample(&film, &f, only(MOVE_DOLLY), &sampling);
+    sample(&film, &f, move_alone(MOVE_DOLLY), &sampling);
     const struct subject_list one = {two_subjects, 1};
     assert_int_equal(plan_move(&film.path, &film.layers, &film.notes, &f.scene, &film.v, &one, &params, &err),
                      ST_USAGE);
@@ -734,16 +734,16 @@ static void refuses_what_makes_no_film(void **state)
     layer_scene_release(&f.scene);
 }
 
-static void a_scene_without_depth_has_no_film(void **state)
+static void a_scene_without_depth_is_an_error(void **state)
 {
     (void)state;
     struct wall_scene f = {0}, seen;
-    struct film film;
+    struct planned_film film;
     const struct plan_params params = quick();
     const struct validity_params sampling = quick_sampling();
     struct err err = ERR_INIT;
     nine_views(&seen);
-    sample(&film, &seen, only(MOVE_ESTABLISHING_DOLLY), &sampling);
+    sample(&film, &seen, move_alone(MOVE_ESTABLISHING_DOLLY), &sampling);
     for (int i = 0; i < 3; i++) add_straight(&f, i, 0, 0);
     finish(&f, NULL, 0);
     assert_int_equal(plan_move(&film.path, &film.layers, &film.notes, &f.scene, &film.v, &nobody, &params, &err),
@@ -751,33 +751,33 @@ static void a_scene_without_depth_has_no_film(void **state)
     assert_non_null(strstr(err.text, "no scene to move in"));
     assert_null(film.path.frames);
     layer_scene_release(&f.scene);
-    unmake(&film, &seen);
+    release_all(&film, &seen);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(establishing_dolly_goes_right_and_shows_the_scene),
-        cmocka_unit_test(establishing_dolly_out_draws_back_on_the_axis),
-        cmocka_unit_test(dollies_end_close_at_the_subject_or_begin_there),
+        cmocka_unit_test(establishing_dolly_moves_right_and_points_at_the_centroid),
+        cmocka_unit_test(establishing_dolly_out_moves_back_on_the_axis),
+        cmocka_unit_test(dollies_in_and_out_have_a_close_end_at_the_subject),
         cmocka_unit_test(dolly_zooms_keep_the_subjects_size),
-        cmocka_unit_test(dolly_goes_from_the_first_subject_to_the_second),
-        cmocka_unit_test(easing),
-        cmocka_unit_test(all_pairs_find_what_brute_force_finds),
-        cmocka_unit_test(refinement_never_gives_less),
-        cmocka_unit_test(any_threads_same_film),
-        cmocka_unit_test(the_aperture_opens_where_the_subject_is_in_focus),
-        cmocka_unit_test(focus_is_pulled_from_subject_to_subject),
-        cmocka_unit_test(tones_are_layers_around_the_subject),
-        cmocka_unit_test(one_view_only),
-        cmocka_unit_test(two_views),
-        cmocka_unit_test(centres_in_a_line),
-        cmocka_unit_test(centres_at_one_place),
-        cmocka_unit_test(no_valid_cell),
-        cmocka_unit_test(a_way_that_is_not_valid_is_drawn_together),
-        cmocka_unit_test(an_aperture_that_cannot_open),
-        cmocka_unit_test(refuses_what_makes_no_film),
-        cmocka_unit_test(a_scene_without_depth_has_no_film),
+        cmocka_unit_test(dolly_runs_from_the_first_subject_to_the_second),
+        cmocka_unit_test(easing_slows_down_both_ends),
+        cmocka_unit_test(all_pairs_agree_with_brute_force),
+        cmocka_unit_test(refinement_never_loses_parallax),
+        cmocka_unit_test(any_thread_count_gives_the_same_path),
+        cmocka_unit_test(the_aperture_opens_with_the_subject_in_focus),
+        cmocka_unit_test(focus_is_pulled_from_the_first_to_the_second_subject),
+        cmocka_unit_test(tone_effects_are_layers_around_the_subject),
+        cmocka_unit_test(one_view_is_enough_for_a_move),
+        cmocka_unit_test(two_views_are_enough_for_a_move),
+        cmocka_unit_test(centres_in_a_line_allow_all_moves),
+        cmocka_unit_test(coincident_centres_allow_a_move),
+        cmocka_unit_test(regions_without_a_valid_cell_are_an_error),
+        cmocka_unit_test(ends_with_an_invalid_path_are_drawn_in),
+        cmocka_unit_test(an_aperture_stays_shut_where_opening_shows_holes),
+        cmocka_unit_test(too_few_subjects_or_frames_are_an_error),
+        cmocka_unit_test(a_scene_without_depth_is_an_error),
     };
     return cmocka_run_group_tests(tests, set_up, NULL);
 }

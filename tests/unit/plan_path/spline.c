@@ -1,4 +1,4 @@
-/* spline.c - curves through keys: what they pass, how smooth they are, what they leave straight and still. */
+/* spline.c - tests of curves through keys: interpolation, smoothness, straight lines and rest. */
 #include "stages/plan_path/spline.h"
 
 #include "tests/unit/scratch.h"
@@ -12,7 +12,7 @@ static double angle_between(struct quat a, struct quat b)
     return d > 0.5 ? 4 * asin(fmin(1, sqrt(fmin(sum[0], sum[1])) / 2)) : 2 * acos(d);
 }
 
-static struct quat about(double x, double y, double z, double angle)
+static struct quat rotation_about(double x, double y, double z, double angle)
 {
     const double s = sin(angle / 2) / sqrt(x * x + y * y + z * z);
     return (struct quat){cos(angle / 2), s * x, s * y, s * z};
@@ -24,14 +24,14 @@ static void make(struct motion *m, int count)
     assert_ok(motion_init(m, count, &err), err);
 }
 
-static void set(struct motion *m, int i, double time, struct vec3 place, struct quat turn)
+static void set(struct motion *m, int i, double time, struct vec3 position, struct quat rotation)
 {
-    m->along.time[i] = time;
-    m->place[i] = place;
-    m->turn[i] = turn;
+    m->distance.time[i] = time;
+    m->position[i] = position;
+    m->rotation[i] = rotation;
 }
 
-static struct vec3 place_at(const struct motion *m, double t)
+static struct vec3 position_at(const struct motion *m, double t)
 {
     struct vec3 p;
     struct quat q;
@@ -39,7 +39,7 @@ static struct vec3 place_at(const struct motion *m, double t)
     return p;
 }
 
-static struct quat turn_at(const struct motion *m, double t)
+static struct quat rotation_at(const struct motion *m, double t)
 {
     struct vec3 p;
     struct quat q;
@@ -49,14 +49,14 @@ static struct quat turn_at(const struct motion *m, double t)
 
 static const double times[] = {0, 0.7, 1, 2.5, 2.75, 4};
 
-/* Six keys all over the place; signs of quaternions by chance. */
-static void make_wild(struct motion *m, bool rest)
+/* Six irregular keys with quaternions of either sign. */
+static void make_irregular(struct motion *m, bool rest)
 {
     make(m, 6);
     for (uint32_t i = 0; i < 6; i++) {
         double r[6];
         for (uint32_t k = 0; k < 6; k++) r[k] = 2 * sin(17.3 * (i + 1) + 5.1 * k) - 0.5;
-        struct quat q = about(r[3], r[4], r[5] + 3, 1.1 * i);
+        struct quat q = rotation_about(r[3], r[4], r[5] + 3, 1.1 * i);
         if (i % 2) q = (struct quat){-q.w, -q.x, -q.y, -q.z};
         set(m, (int)i, times[i], vec3_make(r[0], 3 * r[1], r[2]), q);
     }
@@ -67,69 +67,69 @@ static void keys_are_passed_exactly(void **state)
 {
     (void)state;
     struct motion m;
-    make_wild(&m, true);
+    make_irregular(&m, true);
     for (int i = 0; i < 6; i++) {
-        const struct vec3 p = place_at(&m, times[i]);
-        const struct quat q = turn_at(&m, times[i]);
-        assert_memory_equal(&p, &m.place[i], sizeof p);
-        assert_memory_equal(&q, &m.turn[i], sizeof q);
-        /* and come up to from both sides */
+        const struct vec3 p = position_at(&m, times[i]);
+        const struct quat q = rotation_at(&m, times[i]);
+        assert_memory_equal(&p, &m.position[i], sizeof p);
+        assert_memory_equal(&q, &m.rotation[i], sizeof q);
+        /* and approached from both sides */
         for (int side = -1; side <= 1; side += 2) {
-            assert_true(vec3_length(vec3_sub(place_at(&m, times[i] + side * 1e-9), p)) < 1e-7);
-            assert_true(angle_between(turn_at(&m, times[i] + side * 1e-9), q) < 1e-7);
+            assert_true(vec3_length(vec3_sub(position_at(&m, times[i] + side * 1e-9), p)) < 1e-7);
+            assert_true(angle_between(rotation_at(&m, times[i] + side * 1e-9), q) < 1e-7);
         }
     }
     motion_release(&m);
 }
 
-/* Velocities left and right of each key, from differences; at rest at both ends. */
-static void velocity_has_no_jump(void **state)
+/* Compares velocities on both sides of each key by differences, and the rates at both ends. */
+static void velocity_is_continuous(void **state)
 {
     (void)state;
     const double e = 1e-5;
     for (int rest = 0; rest < 2; rest++) {
         struct motion m;
-        double worst = 0, worst_turn = 0;
-        make_wild(&m, rest);
+        double worst = 0, worst_rotation = 0;
+        make_irregular(&m, rest);
         for (int i = 1; i < 5; i++) {
-            const struct vec3 p = m.place[i], a = place_at(&m, times[i] - e), b = place_at(&m, times[i] + e);
+            const struct vec3 p = m.position[i], a = position_at(&m, times[i] - e), b = position_at(&m, times[i] + e);
             worst = fmax(worst, vec3_length(vec3_sub(vec3_sub(b, p), vec3_sub(p, a))) / e);
-            const struct quat l = turn_at(&m, times[i] - e), r = turn_at(&m, times[i] + e);
-            /* the same turn on both sides: l to r is twice l to the key */
-            worst_turn = fmax(worst_turn, fabs(angle_between(l, r) - 2 * angle_between(l, m.turn[i])) / e);
+            const struct quat l = rotation_at(&m, times[i] - e), r = rotation_at(&m, times[i] + e);
+            /* the same rotation on both sides: from l to r is twice from l to the key */
+            worst_rotation = fmax(worst_rotation, fabs(angle_between(l, r) - 2 * angle_between(l, m.rotation[i])) / e);
         }
-        assert_true(worst < 0.01 &&
-                    worst_turn < 0.01); /* of second differences: what is left is acceleration times e */
+        assert_true(worst < 0.01 && worst_rotation < 0.01); /* second differences: acceleration times e remains */
         struct vec3 v, w;
         for (int last = 0; last < 2; last++) {
             motion_rates(&m, last, &v, &w);
             const double t = last ? times[5] : 0, d = last ? -e : e;
-            const struct vec3 measured = vec3_scale(vec3_sub(place_at(&m, t + d), place_at(&m, t)), 1 / d);
+            const struct vec3 measured = vec3_scale(vec3_sub(position_at(&m, t + d), position_at(&m, t)), 1 / d);
             assert_true(vec3_length(vec3_sub(v, measured)) < 0.01);
-            assert_true(fabs(vec3_length(w) - angle_between(turn_at(&m, t + d), turn_at(&m, t)) / e) < 0.01);
+            assert_true(fabs(vec3_length(w) - angle_between(rotation_at(&m, t + d), rotation_at(&m, t)) / e) < 0.01);
             assert_true(!rest || (vec3_length(v) == 0 && vec3_length(w) == 0));
         }
         motion_release(&m);
     }
 }
 
-static void a_line_stays_a_line_and_does_not_turn_back(void **state)
+static void a_line_stays_a_line_without_overshoot(void **state)
 {
     (void)state;
     struct motion m;
-    const struct vec3 way = vec3_normalize(vec3_make(3, -2, 1));
+    const struct vec3 direction = vec3_normalize(vec3_make(3, -2, 1));
     double before = 0;
-    make(&m, 4); /* fast, then hardly at all */
+    make(&m, 4); /* fast, then very slow */
     for (int i = 0; i < 4; i++)
-        set(&m, i, i, vec3_scale(way, (double[]){0, 5, 5.01, 6}[i]), about(0, 1, 0.5, (double[]){0, 2, 2.01, 4}[i]));
+        set(&m, i, i, vec3_scale(direction, (double[]){0, 5, 5.01, 6}[i]),
+            rotation_about(0, 1, 0.5, (double[]){0, 2, 2.01, 4}[i]));
     motion_fit(&m, true);
     for (int i = 0; i <= 300; i++) {
-        const struct vec3 p = place_at(&m, i / 100.0);
-        const double s = vec3_dot(p, way);
-        assert_true(vec3_length(vec3_sub(p, vec3_scale(way, s))) < 1e-12);
+        const struct vec3 p = position_at(&m, i / 100.0);
+        const double s = vec3_dot(p, direction);
+        assert_true(vec3_length(vec3_sub(p, vec3_scale(direction, s))) < 1e-12);
         assert_true(s >= before - 1e-12 && s <= 6 + 1e-12);
         before = s;
-        const struct quat q = turn_at(&m, i / 100.0); /* about one axis */
+        const struct quat q = rotation_at(&m, i / 100.0); /* about one axis */
         assert_true(fabs(q.x) < 1e-12 && fabs(q.y - 2 * q.z) < 1e-12);
     }
     motion_release(&m);
@@ -141,53 +141,53 @@ static void constant_velocity_stays_constant(void **state)
     struct motion m;
     make(&m, 6);
     for (int i = 0; i < 6; i++)
-        set(&m, i, times[i], vec3_make(1 + 2 * times[i], 0.5 * times[i], 3), about(1, 2, 3, 0.4 * times[i]));
+        set(&m, i, times[i], vec3_make(1 + 2 * times[i], 0.5 * times[i], 3), rotation_about(1, 2, 3, 0.4 * times[i]));
     motion_fit(&m, false);
     for (int i = 0; i <= 400; i++) {
         const double t = i / 100.0;
-        assert_true(vec3_length(vec3_sub(place_at(&m, t), vec3_make(1 + 2 * t, 0.5 * t, 3))) < 1e-12);
-        assert_true(angle_between(turn_at(&m, t), about(1, 2, 3, 0.4 * t)) < 1e-12);
+        assert_true(vec3_length(vec3_sub(position_at(&m, t), vec3_make(1 + 2 * t, 0.5 * t, 3))) < 1e-12);
+        assert_true(angle_between(rotation_at(&m, t), rotation_about(1, 2, 3, 0.4 * t)) < 1e-12);
     }
     motion_release(&m);
 }
 
-static void equal_keys_hold_still(void **state)
+static void nothing_moves_between_equal_keys(void **state)
 {
     (void)state;
     struct motion m;
     const struct vec3 p[] = {{0, 0, 0}, {1, 1, 0}, {1, 1, 0}, {3, 0, 1}};
     make(&m, 4);
-    for (int i = 0; i < 4; i++) set(&m, i, i, p[i], about(0, 1, 0, (i + 1) / 2)); /* 0 1 1 2 */
+    for (int i = 0; i < 4; i++) set(&m, i, i, p[i], rotation_about(0, 1, 0, (i + 1) / 2)); /* 0 1 1 2 */
     motion_fit(&m, false);
     for (int i = 0; i <= 100; i++) {
-        assert_true(vec3_length(vec3_sub(place_at(&m, 1 + i / 100.0), p[1])) == 0);
-        assert_true(angle_between(turn_at(&m, 1 + i / 100.0), m.turn[1]) == 0);
+        assert_true(vec3_length(vec3_sub(position_at(&m, 1 + i / 100.0), p[1])) == 0);
+        assert_true(angle_between(rotation_at(&m, 1 + i / 100.0), m.rotation[1]) == 0);
     }
-    for (int i = 0; i < 4; i++) set(&m, i, i, p[1], about(1, 0, 0, 0.3)); /* and all of them */
+    for (int i = 0; i < 4; i++) set(&m, i, i, p[1], rotation_about(1, 0, 0, 0.3)); /* all keys equal */
     motion_fit(&m, false);
-    for (int i = -10; i <= 40; i++) assert_true(vec3_length(vec3_sub(place_at(&m, i / 10.0), p[1])) == 0);
+    for (int i = -10; i <= 40; i++) assert_true(vec3_length(vec3_sub(position_at(&m, i / 10.0), p[1])) == 0);
     motion_release(&m);
     make(&m, 1);
-    set(&m, 0, 0, p[1], about(1, 0, 0, 0.3));
+    set(&m, 0, 0, p[1], rotation_about(1, 0, 0, 0.3));
     motion_fit(&m, false);
-    assert_true(vec3_length(vec3_sub(place_at(&m, 5), p[1])) == 0);
+    assert_true(vec3_length(vec3_sub(position_at(&m, 5), p[1])) == 0);
     motion_release(&m);
 }
 
-/* Whatever the signs of the quaternions, no turn is longer than the angle between the keys. */
-static void turns_go_the_shorter_way(void **state)
+/* For either sign of the quaternions, the rotation is no longer than the angle between the keys. */
+static void rotations_take_the_shorter_way(void **state)
 {
     (void)state;
     for (int sign = -1; sign <= 1; sign += 2) {
         struct motion m;
         make(&m, 2);
-        struct quat to = about(0.2, 1, -0.4, 3.0);
+        struct quat to = rotation_about(0.2, 1, -0.4, 3.0);
         to = (struct quat){sign * to.w, sign * to.x, sign * to.y, sign * to.z};
         set(&m, 0, 0, vec3_make(0, 0, 0), (struct quat){1, 0, 0, 0});
         set(&m, 1, 1, vec3_make(0, 0, 0), to);
         motion_fit(&m, false);
         for (int i = 0; i <= 20; i++)
-            assert_true(fabs(angle_between(turn_at(&m, i / 20.0), m.turn[0]) - 3.0 * i / 20) < 1e-9);
+            assert_true(fabs(angle_between(rotation_at(&m, i / 20.0), m.rotation[0]) - 3.0 * i / 20) < 1e-9);
         motion_release(&m);
     }
 }
@@ -197,13 +197,13 @@ static void two_keys_at_rest_ease(void **state)
     (void)state;
     struct motion m;
     make(&m, 2);
-    set(&m, 0, 0, vec3_make(0, 0, 0), about(0, 0, 1, 0));
-    set(&m, 1, 2, vec3_make(8, 0, 0), about(0, 0, 1, 1));
+    set(&m, 0, 0, vec3_make(0, 0, 0), rotation_about(0, 0, 1, 0));
+    set(&m, 1, 2, vec3_make(8, 0, 0), rotation_about(0, 0, 1, 1));
     motion_fit(&m, true);
     for (int i = 0; i <= 20; i++) {
         const double t = i / 20.0, s = t * t * (3 - 2 * t);
-        assert_true(fabs(place_at(&m, 2 * t).x - 8 * s) < 1e-12);
-        assert_true(fabs(angle_between(turn_at(&m, 2 * t), m.turn[0]) - s) < 1e-9);
+        assert_true(fabs(position_at(&m, 2 * t).x - 8 * s) < 1e-12);
+        assert_true(fabs(angle_between(rotation_at(&m, 2 * t), m.rotation[0]) - s) < 1e-9);
     }
     motion_release(&m);
 }
@@ -233,7 +233,7 @@ static void numbers_stay_between_their_keys(void **state)
     }
 }
 
-static void huge_and_tiny_keys_give_numbers(void **state)
+static void huge_and_tiny_keys_give_finite_values(void **state)
 {
     (void)state;
     static const double size[] = {1e9, 1e-9, 1e-300, 0};
@@ -242,11 +242,11 @@ static void huge_and_tiny_keys_give_numbers(void **state)
         make(&m, 4);
         for (int i = 0; i < 4; i++)
             set(&m, i, i * 1e5, vec3_make(i % 2 ? size[k] : -size[k], size[k] * i, 1e9),
-                about(1, i, 0, i % 2 ? M_PI : size[k] * 1e-9));
+                rotation_about(1, i, 0, i % 2 ? M_PI : size[k] * 1e-9));
         motion_fit(&m, k % 2);
         for (int i = 0; i <= 90; i++) {
-            const struct vec3 p = place_at(&m, i * 1e5 / 30);
-            const struct quat q = turn_at(&m, i * 1e5 / 30);
+            const struct vec3 p = position_at(&m, i * 1e5 / 30);
+            const struct quat q = rotation_at(&m, i * 1e5 / 30);
             assert_true(isfinite(vec3_length(p)));
             assert_true(fabs(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z - 1) < 1e-12);
         }
@@ -258,14 +258,14 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(keys_are_passed_exactly),
-        cmocka_unit_test(velocity_has_no_jump),
-        cmocka_unit_test(a_line_stays_a_line_and_does_not_turn_back),
+        cmocka_unit_test(velocity_is_continuous),
+        cmocka_unit_test(a_line_stays_a_line_without_overshoot),
         cmocka_unit_test(constant_velocity_stays_constant),
-        cmocka_unit_test(equal_keys_hold_still),
-        cmocka_unit_test(turns_go_the_shorter_way),
+        cmocka_unit_test(nothing_moves_between_equal_keys),
+        cmocka_unit_test(rotations_take_the_shorter_way),
         cmocka_unit_test(two_keys_at_rest_ease),
         cmocka_unit_test(numbers_stay_between_their_keys),
-        cmocka_unit_test(huge_and_tiny_keys_give_numbers),
+        cmocka_unit_test(huge_and_tiny_keys_give_finite_values),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

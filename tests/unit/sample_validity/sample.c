@@ -1,5 +1,4 @@
-/* sample.c - valid viewpoints sampled over walls and boxes: grid, limits along z, zoom, layout, and what cannot be
- * sampled. */
+/* sample.c - tests of viewpoint sampling over walls and boxes: grid, z limits, zoom, layout, errors. */
 #include "stages/sample_validity/sample.h"
 
 #include "common/base/parallel.h"
@@ -18,7 +17,7 @@ static struct validity_params quick(void)
     return p;
 }
 
-static void sample(struct validity *v, struct sampling_notes *notes, const struct wall_scene *f, enum move move,
+static void sample(struct validity *v, struct sampling_notes *notes, const struct wall_scene *f, enum camera_move move,
                    const struct vec3 *ups, const struct validity_params *params)
 {
     const struct film_effect effect = {move, FOCUS_ALL, TONE_NONE};
@@ -46,14 +45,14 @@ static bool valid_at(const struct wall_scene *f, const struct validity *v, int e
     bool valid = false;
     assert_ok(scene_points_collect(&points, &f->scene, &err), err);
     struct viewpoint_test test = {.scene = &f->scene, .points = &points, .shot = &v->shot, .limits = v->limits};
-    const struct view camera = shot_end_camera(&v->shot, &v->move.end[end], shot_place(&v->shot, x, y, z));
+    const struct view camera = shot_end_camera(&v->shot, &v->move.end[end], world_from_shot(&v->shot, x, y, z));
     assert_ok(viewpoint_is_valid(&valid, &test, &camera, &err), err);
     viewpoint_test_release(&test);
     scene_points_release(&points);
     return valid;
 }
 
-static void the_grid_spans_twice_the_views(void **state)
+static void the_grid_covers_twice_the_box_of_the_centres(void **state)
 {
     (void)state;
     struct wall_scene f;
@@ -65,7 +64,7 @@ static void the_grid_spans_twice_the_views(void **state)
     assert_float_equal(v.shot.low[0], -1, 1e-9);
     assert_float_equal(v.shot.high[1], 1, 1e-9);
     assert_true(vec3_length(v.shot.origin) < 1e-12 && v.shot.axis_z.z > 0.999);
-    for (int i = 0; i < 16; i++) { /* the middles of 4 x 4 fields of a square of 4 by 4 */
+    for (int i = 0; i < 16; i++) { /* centres of 4 x 4 cells over a square of 4 by 4 */
         const struct validity_cell *c = &v.region[0].cells[i];
         assert_float_equal(c->x, (i % 4) - 1.5, 1e-9);
         assert_float_equal(c->y, (i / 4) - 1.5, 1e-9);
@@ -83,8 +82,7 @@ static void the_grid_spans_twice_the_views(void **state)
     layer_scene_release(&f.scene);
 }
 
-/* The limits along z are valid, and a tolerance beyond them is not. */
-static void limits_along_z_are_where_validity_ends(void **state)
+static void z_limits_are_valid_and_one_step_beyond_is_not(void **state)
 {
     (void)state;
     struct wall_scene f;
@@ -101,7 +99,7 @@ static void limits_along_z_are_where_validity_ends(void **state)
         if (!c->valid) continue;
         assert_true(c->low <= 0 && c->high >= 0);
         assert_true(valid_at(&f, &v, 0, c->x, c->y, c->low) && valid_at(&f, &v, 0, c->x, c->y, c->high));
-        assert_true(c->high < 6); /* before the box */
+        assert_true(c->high < 6); /* in front of the box */
         assert_false(valid_at(&f, &v, 0, c->x, c->y, c->high + v.step));
         if (c->low > -3.9 * v.shot.median_depth) assert_false(valid_at(&f, &v, 0, c->x, c->y, c->low - v.step));
         checked++;
@@ -111,14 +109,14 @@ static void limits_along_z_are_where_validity_ends(void **state)
     layer_scene_release(&f.scene);
 }
 
-static void full_pictures_agree_with_themselves(void **state)
+static void full_pictures_report_no_error(void **state)
 {
     (void)state;
     struct wall_scene f;
     struct validity v;
     struct sampling_notes notes;
     struct validity_params params = quick();
-    params.check_cells = 3; /* the film is no larger than the pictures that are looked at */
+    params.check_cells = 3; /* the film is as small as the sampled pictures */
     nine_views(&f);
     sample(&v, &notes, &f, MOVE_ESTABLISHING_DOLLY, NULL, &params);
     assert_true(notes.error.limits > 0 && notes.error.within == notes.error.limits && notes.error.worst == 0);
@@ -126,7 +124,7 @@ static void full_pictures_agree_with_themselves(void **state)
     layer_scene_release(&f.scene);
 }
 
-static void any_threads_same_regions(void **state)
+static void any_thread_count_gives_the_same_regions(void **state)
 {
     (void)state;
     struct wall_scene f;
@@ -140,7 +138,7 @@ static void any_threads_same_regions(void **state)
     parallel_set_threads(3);
     sample(&b, &notes, &f, MOVE_ESTABLISHING_DOLLY, NULL, &params);
     assert_true(notes.renders == renders && a.zoom == b.zoom);
-    assert_memory_equal(&a.shot.up, &b.shot.up, sizeof a.shot - offsetof(struct shot, up));
+    assert_memory_equal(&a.shot.up, &b.shot.up, sizeof a.shot - offsetof(struct shot_setup, up));
     for (int i = 0; i < 16; i++) {
         const struct validity_cell *c = &a.region[0].cells[i], *d = &b.region[0].cells[i];
         assert_true(c->valid == d->valid && c->low == d->low && c->high == d->high);
@@ -150,10 +148,10 @@ static void any_threads_same_regions(void **state)
     layer_scene_release(&f.scene);
 }
 
-static void photos_stored_on_their_side(void **state)
+static void photos_stored_on_their_side_give_an_upright_film(void **state)
 {
     (void)state;
-    for (int side = -1; side <= 1; side += 2) { /* the pictures' x axes point down or up */
+    for (int side = -1; side <= 1; side += 2) { /* the pictures' x axis points down or up */
         struct wall_scene f = {0};
         struct validity v;
         struct sampling_notes notes;
@@ -173,7 +171,7 @@ static void photos_stored_on_their_side(void **state)
     }
 }
 
-static void an_orbit_is_filmed_from_its_middle(void **state)
+static void the_origin_of_an_orbit_is_its_middle(void **state)
 {
     (void)state;
     struct wall_scene f = {0};
@@ -193,9 +191,8 @@ static void an_orbit_is_filmed_from_its_middle(void **state)
     layer_scene_release(&f.scene);
 }
 
-/* Three photos in a room, each a view ahead and two of what is behind it: the move looks where most look, and what is
- * behind the camera has no part in where the scene is. */
-static void views_that_look_all_ways(void **state)
+/* Three positions in a room, each with three views ahead and two backwards: the move faces where most views face. */
+static void views_that_face_backwards_do_not_move_the_centroid(void **state)
 {
     (void)state;
     static const struct rectangle front_and_back[] = {{0, 0, 10, 40, 40}, {0, 0, -6, 40, 40}};
@@ -218,11 +215,11 @@ static void views_that_look_all_ways(void **state)
     layer_scene_release(&f.scene);
 }
 
-static void borders_in_the_frames_make_it_zoom_in(void **state)
+static void borders_of_photos_in_the_frames_cause_a_zoom(void **state)
 {
     (void)state;
     const struct rectangle small_wall[] = {{0, 0, 10, 5.2, 3.9},
-                                           {0.5, 0.3, 6, 1.2, 1.5}}; /* the middle view just sees it */
+                                           {0.5, 0.3, 6, 1.2, 1.5}}; /* it just fills the middle view */
     struct wall_scene f = {0};
     struct validity v;
     struct sampling_notes notes;
@@ -240,9 +237,8 @@ static void borders_in_the_frames_make_it_zoom_in(void **state)
     layer_scene_release(&f.scene);
 }
 
-/* Five photos of a wall, the middle one turned aside: there the film shows more of its border than anywhere, and moves
- * are drawn together towards it. */
-static void a_middle_view_that_looks_aside(void **state)
+/* Five photos of a wall, the middle one pointing aside: the frame at the origin then shows most of its border. */
+static void the_origin_stays_valid_if_the_middle_view_points_aside(void **state)
 {
     (void)state;
     const struct rectangle wall = {0, 0, 10, 40, 40};
@@ -253,13 +249,13 @@ static void a_middle_view_that_looks_aside(void **state)
     for (int i = -2; i <= 2; i++) add_view(&f, vec3_make(i, 0, 0), vec3_make(i ? 0 : 1.5, 0, 10), vec3_make(0, 1, 0));
     finish(&f, &wall, 1);
     sample(&v, &notes, &f, MOVE_ESTABLISHING_DOLLY, NULL, &params);
-    assert_true(v.limits.max_outside == params.max_outside); /* it is not given up */
+    assert_true(v.limits.max_outside == params.max_outside); /* the limit was not raised */
     assert_true(valid_at(&f, &v, 0, 0, 0, 0) && valid_at(&f, &v, 1, 0, 0, 0));
     validity_release(&v);
     layer_scene_release(&f.scene);
 }
 
-static void too_many_holes_everywhere_raise_the_limit(void **state)
+static void holes_everywhere_raise_the_limit(void **state)
 {
     (void)state;
     const struct rectangle post = {0, 0, 10, 1, 20};
@@ -271,17 +267,17 @@ static void too_many_holes_everywhere_raise_the_limit(void **state)
     finish(&f, &post, 1);
     sample(&v, &notes, &f, MOVE_ESTABLISHING_DOLLY, NULL, &params);
     assert_float_equal(v.zoom, params.max_zoom, 1e-9);
-    assert_true(v.limits.max_h > params.max_h && notes.asked_h == params.max_h && isfinite(v.limits.max_h));
-    assert_true(valid_at(&f, &v, 0, 0, 0, 0)); /* the origin keeps them */
+    assert_true(v.limits.max_h > params.max_h && notes.requested_h == params.max_h && isfinite(v.limits.max_h));
+    assert_true(valid_at(&f, &v, 0, 0, 0, 0)); /* the origin meets the raised limits */
     validity_release(&v);
     layer_scene_release(&f.scene);
 }
 
-static void nothing_comes_too_near(void **state)
+static void viewpoints_too_near_to_the_scene_are_invalid(void **state)
 {
     (void)state;
     const struct rectangle wall_and_near[] = {{0, 0, 10, 40, 40},
-                                              {4.9, 0, 2, 2.2, 30}}; /* before the outer views alone */
+                                              {4.9, 0, 2, 2.2, 30}}; /* in front of the outer views alone */
     struct wall_scene f = {0};
     struct validity v;
     struct sampling_notes notes;
@@ -295,8 +291,8 @@ static void nothing_comes_too_near(void **state)
     layer_scene_release(&f.scene);
 }
 
-/* An end that asks for what no place shows gets the origin, and the notes say so. */
-static void no_valid_cell_leaves_the_origin(void **state)
+/* The second subject is outside all views; the notes report it. */
+static void an_end_without_a_valid_cell_gets_the_origin(void **state)
 {
     (void)state;
     struct wall_scene f;
@@ -309,7 +305,7 @@ static void no_valid_cell_leaves_the_origin(void **state)
     struct err err = ERR_INIT;
     nine_views(&f);
     assert_ok(validity_sample(&v, &notes, &f.scene, NULL, &list, &dolly, &params, &err), err);
-    assert_true(!notes.none[0] && notes.none[1]);
+    assert_true(!notes.no_valid[0] && notes.no_valid[1]);
     assert_int_equal(validity_region_count(&v.region[1]), 1);
     for (int i = 0; i < 16; i++) {
         const struct validity_cell *c = &v.region[1].cells[i];
@@ -319,7 +315,7 @@ static void no_valid_cell_leaves_the_origin(void **state)
     layer_scene_release(&f.scene);
 }
 
-static void refuses_what_cannot_be_sampled(void **state)
+static void scenes_without_depth_and_bad_subjects_are_errors(void **state)
 {
     (void)state;
     struct wall_scene f = {0};
@@ -351,19 +347,19 @@ static void refuses_what_cannot_be_sampled(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_grid_spans_twice_the_views),
-        cmocka_unit_test(limits_along_z_are_where_validity_ends),
-        cmocka_unit_test(full_pictures_agree_with_themselves),
-        cmocka_unit_test(any_threads_same_regions),
-        cmocka_unit_test(photos_stored_on_their_side),
-        cmocka_unit_test(an_orbit_is_filmed_from_its_middle),
-        cmocka_unit_test(views_that_look_all_ways),
-        cmocka_unit_test(borders_in_the_frames_make_it_zoom_in),
-        cmocka_unit_test(a_middle_view_that_looks_aside),
-        cmocka_unit_test(too_many_holes_everywhere_raise_the_limit),
-        cmocka_unit_test(nothing_comes_too_near),
-        cmocka_unit_test(no_valid_cell_leaves_the_origin),
-        cmocka_unit_test(refuses_what_cannot_be_sampled),
+        cmocka_unit_test(the_grid_covers_twice_the_box_of_the_centres),
+        cmocka_unit_test(z_limits_are_valid_and_one_step_beyond_is_not),
+        cmocka_unit_test(full_pictures_report_no_error),
+        cmocka_unit_test(any_thread_count_gives_the_same_regions),
+        cmocka_unit_test(photos_stored_on_their_side_give_an_upright_film),
+        cmocka_unit_test(the_origin_of_an_orbit_is_its_middle),
+        cmocka_unit_test(views_that_face_backwards_do_not_move_the_centroid),
+        cmocka_unit_test(borders_of_photos_in_the_frames_cause_a_zoom),
+        cmocka_unit_test(the_origin_stays_valid_if_the_middle_view_points_aside),
+        cmocka_unit_test(holes_everywhere_raise_the_limit),
+        cmocka_unit_test(viewpoints_too_near_to_the_scene_are_invalid),
+        cmocka_unit_test(an_end_without_a_valid_cell_gets_the_origin),
+        cmocka_unit_test(scenes_without_depth_and_bad_subjects_are_errors),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-/* effects.c - effect layers: the file, and what they do to pixels whose place in the world is known. */
+/* effects.c - tests of effect layers: the file, interpolation, and their effect on pixels of known position. */
 #include "tests/unit/scratch.h"
 
 #include <math.h>
@@ -38,7 +38,7 @@ static void read_text(struct effects *e, const char *text)
 
 static double luminance(const float *c) { return 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2]; }
 
-/* What the header says, in doubles. */
+/* The weight by its definition, in doubles. */
 static double weight_at(const struct view *v, const struct effect_layer *l, int x, int y, float z)
 {
     double inside = 0;
@@ -73,20 +73,20 @@ static void a_file_is_read(void **state)
     effects_release(&e);
 }
 
-static void what_is_wrong_is_told(void **state)
+static void bad_files_are_refused_with_file_and_line(void **state)
 {
     (void)state;
 #define HEAD  "remodel-effects 1\n"
 #define LAYER HEAD "layer a brightness\n"
     static const struct {
-        const char *text, *place, *words;
+        const char *text, *line, *words;
     } bad[] = {
         {"", "an empty file", "wanted remodel-effects 1"},
         {"remodel-path 1\n", ":1:", "found \"remodel-path\", wanted remodel-effects 1"},
         {"remodel-effects 2\n", ":1:", "found \"2\""},
         {HEAD "region all\n", ":2:", "wanted layer"},
         {HEAD "layer\n", ":2:", "the layer's name"},
-        {HEAD "layer a\rb color\n", ":2:", "a name of 1 to 64 printed letters"},
+        {HEAD "layer a\rb color\n", ":2:", "a name of 1 to 64 printable characters"},
         {HEAD "layer a hue\n", ":2:", "found \"hue\", wanted what the layer changes: saturation, brightness or color"},
         {HEAD "layer a color 1\n", ":2:", "wanted the end of the line"},
         {LAYER, ":2:", "found the end of the file, wanted a region of the layer a"},
@@ -104,7 +104,7 @@ static void what_is_wrong_is_told(void **state)
         {LAYER "region all\nkey 0 nan\n", ":4:", "found \"nan\""},
         {LAYER "region all\nkey -1 1\n", ":4:", "a time, a number from 0"},
         {LAYER "region all\nkey 1 1\nkey 1 2\n", ":5:", "wanted a time after 1"},
-        {LAYER "region all\nkey 0 1\nlayer a color\n", ":5:", "a name that no layer has yet"},
+        {LAYER "region all\nkey 0 1\nlayer a color\n", ":5:", "a name that no other layer has"},
         {HEAD "layer a color\nregion all\nkey 0 1 1\n", ":4:", "wanted blue"},
         {LAYER "curve cubic\n", ":3:", "wanted region"},
         {LAYER "region all\ncurve round\n", ":4:", "found \"round\", wanted linear or cubic"},
@@ -117,13 +117,13 @@ static void what_is_wrong_is_told(void **state)
         const char *path = scratch_write("bad.txt", bad[i].text);
         assert_int_equal(effects_read(&e, path, &err), ST_DATA);
         assert_err(err, ST_DATA, bad[i].words);
-        assert_contains(err.text, bad[i].place);
+        assert_contains(err.text, bad[i].line);
         assert_contains(err.text, path);
         assert_true(!e.layers && !e.layer_count);
     }
 }
 
-static void what_is_written_reads_back(void **state)
+static void a_written_file_reads_back_the_same(void **state)
 {
     (void)state;
     struct effects e, again;
@@ -146,7 +146,7 @@ static void what_is_written_reads_back(void **state)
     e.layers[1].keys[0].value[0] = NAN;
     assert_int_equal(effects_write(&e, path, &prov, &err), ST_DATA);
     assert_err(err, ST_DATA, "layer 2 of 2");
-    struct err more = ERR_INIT; /* what was there is there still */
+    struct err more = ERR_INIT; /* the old file is still there */
     assert_ok(effects_read(&again, path, &more), more);
     effects_release(&again);
     effects_release(&e);
@@ -198,7 +198,7 @@ static void values_are_linear_between_keys(void **state)
     effects_release(&e);
 }
 
-static void layers_do_what_they_say(void **state)
+static void layers_match_their_formulas(void **state)
 {
     (void)state;
     static const char *const texts[] = {
@@ -225,9 +225,9 @@ static void layers_do_what_they_say(void **state)
             const struct effect_layer *l = &e.layers[0];
             const float *c = before.rgba + 4 * p, *d = f.rgba + 4 * p;
             const double w = weight_at(&v, l, p % W, p / W, f.z[p]), y = luminance(c);
-            const double least = fmin(c[0], fmin(c[1], c[2]));
+            const double darkest = fmin(c[0], fmin(c[1], c[2]));
             double s = w * (l->keys[0].value[0] - 1);
-            if (s * (y - least) > least) s = least / (y - least);
+            if (s * (y - darkest) > darkest) s = darkest / (y - darkest);
             whole += w == 1;
             none += w < 1e-9;
             for (int k = 0; k < 3; k++) {
@@ -246,7 +246,7 @@ static void layers_do_what_they_say(void **state)
     rendered_frame_release(&f);
 }
 
-/* The frame, under layers that are written so. */
+/* Applies the layers of a file's text to a frame. */
 static void apply_text(const char *text, double time, struct rendered_frame *f)
 {
     const struct view v = a_camera();
@@ -256,7 +256,7 @@ static void apply_text(const char *text, double time, struct rendered_frame *f)
     effects_release(&e);
 }
 
-static void layers_follow_each_other_in_order(void **state)
+static void layers_are_applied_in_order(void **state)
 {
     (void)state;
     struct rendered_frame f = {0}, g = {0};
@@ -266,7 +266,7 @@ static void layers_follow_each_other_in_order(void **state)
     apply_text("remodel-effects 1\nlayer tint color\nregion all\nkey 0 2 1 0.5\n"
                "layer grey saturation\nregion all\nkey 0 0\n",
                0, &f);
-    for (int p = 0; p < W * H; p++) { /* first tinted, then grey: all colours are equal */
+    for (int p = 0; p < W * H; p++) { /* tinted first, then grey: equal channels */
         const float c[3] = {2 * g.rgba[4 * p], g.rgba[4 * p + 1], 0.5f * g.rgba[4 * p + 2]};
         for (int k = 0; k < 3; k++) assert_true(fabs(f.rgba[4 * p + k] - luminance(c)) < 1e-6);
     }
@@ -274,7 +274,7 @@ static void layers_follow_each_other_in_order(void **state)
     rendered_frame_release(&g);
 }
 
-static void identity_touches_nothing(void **state)
+static void identity_layers_change_no_bit(void **state)
 {
     (void)state;
     static const char layers[] = "remodel-effects 1\nlayer a saturation\nregion all\nkey 1 1\nkey 2 0\n"
@@ -297,7 +297,7 @@ static void identity_touches_nothing(void **state)
     rendered_frame_release(&g);
 }
 
-static void wild_depths_and_colors_are_harmless(void **state)
+static void extreme_depths_and_colours_stay_finite(void **state)
 {
     (void)state;
     static const float depths[] = {0, -1, 1e-40f, 1e-10f, 1e8f, 1e30f, INFINITY, NAN};
@@ -320,7 +320,7 @@ static void wild_depths_and_colors_are_harmless(void **state)
     rendered_frame_release(&f);
 }
 
-static void threads_give_the_same_bits(void **state)
+static void any_thread_count_gives_the_same_bits(void **state)
 {
     (void)state;
     const struct view v = a_camera();
@@ -344,15 +344,15 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_file_is_read),
-        cmocka_unit_test(what_is_wrong_is_told),
-        cmocka_unit_test(what_is_written_reads_back),
+        cmocka_unit_test(bad_files_are_refused_with_file_and_line),
+        cmocka_unit_test(a_written_file_reads_back_the_same),
         cmocka_unit_test(values_are_linear_between_keys),
         cmocka_unit_test(a_cubic_is_smooth_and_stays_between_its_keys),
-        cmocka_unit_test(layers_do_what_they_say),
-        cmocka_unit_test(layers_follow_each_other_in_order),
-        cmocka_unit_test(identity_touches_nothing),
-        cmocka_unit_test(wild_depths_and_colors_are_harmless),
-        cmocka_unit_test(threads_give_the_same_bits),
+        cmocka_unit_test(layers_match_their_formulas),
+        cmocka_unit_test(layers_are_applied_in_order),
+        cmocka_unit_test(identity_layers_change_no_bit),
+        cmocka_unit_test(extreme_depths_and_colours_stay_finite),
+        cmocka_unit_test(any_thread_count_gives_the_same_bits),
     };
     return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }

@@ -1,9 +1,9 @@
-/* film_lens.c - a film's size, focal length and upright direction, of views that are known. */
+/* film_lens.c - tests of a film's size, focal length and upright direction. */
 #include "common/film/film_lens.h"
 
 #include "tests/unit/scratch.h"
 
-/* Two views side by side looking along z, and one that is stored lying on its side. */
+/* Two views along z, and one that is stored on its side. */
 static struct view views[] = {
     {.name = "a", .width = 320, .height = 240, .fx = 300, .fy = 300, .cx = 160, .cy = 120},
     {.name = "b", .width = 320, .height = 240, .fx = 330, .fy = 330, .cx = 160, .cy = 120},
@@ -23,33 +23,33 @@ static int set_up(void **state)
     return 0;
 }
 
-static void near_to(double a, double b) { assert_true(fabs(a - b) < 1e-12 * (1 + fabs(b))); }
+static void assert_near(double a, double b) { assert_true(fabs(a - b) < 1e-12 * (1 + fabs(b))); }
 
-static void the_lens_is_the_views_mean(void **state)
+static void the_focal_length_is_the_views_mean(void **state)
 {
     (void)state;
     struct film_size size = {.max_side = 1280};
     struct view lens;
     struct vec3 up;
     film_lens(&lens, &up, &set, 0, ups, &size);
-    near_to(up.y, -1);
+    assert_near(up.y, -1);
     assert_true(lens.width == 320 && lens.height == 240 && lens.cx == 160 && lens.cy == 120);
     assert_string_equal(lens.name, "film");
-    near_to(lens.fx, (300 + 330 + 310) / 3.0);
-    near_to(lens.fy, lens.fx);
+    assert_near(lens.fx, (300 + 330 + 310) / 3.0);
+    assert_near(lens.fy, lens.fx);
     size.width = 640;
-    size.height = 101; /* wider than the photos: their width fills it */
+    size.height = 101; /* wider than the photos: filled by their width */
     film_lens(&lens, &up, &set, 0, ups, &size);
     assert_true(lens.width == 640 && lens.height == 102);
-    near_to(lens.fx, 2 * (300 + 330 + 310) / 3.0);
+    assert_near(lens.fx, 2 * (300 + 330 + 310) / 3.0);
 }
 
-static void sizes_are_even_and_the_picture_fills_them(void **state)
+static void sizes_are_even_and_the_frame_is_filled(void **state)
 {
     (void)state;
     static const struct {
         int width, height, max_side, want_width, want_height;
-        double focal; /* of 320 x 240 at focal length 320 */
+        double focal; /* for views of 320 x 240 with focal length 320 */
     } cases[] = {
         {0, 0, 1280, 320, 240, 320},
         {0, 0, 160, 160, 120, 160},
@@ -69,13 +69,13 @@ static void sizes_are_even_and_the_picture_fills_them(void **state)
         film_lens(&lens, &up, &set, 0, NULL, &size);
         assert_int_equal(lens.width, cases[i].want_width);
         assert_int_equal(lens.height, cases[i].want_height);
-        near_to(lens.fx, cases[i].focal);
+        assert_near(lens.fx, cases[i].focal);
         assert_true(lens.cx == 0.5 * lens.width && lens.cy == 0.5 * lens.height);
     }
     views[0].fx = views[0].fy = 300;
 }
 
-static void a_middle_view_on_its_side_makes_a_film_on_end(void **state)
+static void the_orientation_of_the_middle_view_sets_that_of_the_film(void **state)
 {
     (void)state;
     const struct film_size size = {.max_side = 1280};
@@ -83,13 +83,13 @@ static void a_middle_view_on_its_side_makes_a_film_on_end(void **state)
     struct vec3 up;
     film_lens(&lens, &up, &set, 2, ups, &size); /* stored 240 x 320, shown 320 x 240 */
     assert_true(lens.width == 320 && lens.height == 240);
-    near_to(up.y, -1);
+    assert_near(up.y, -1);
     film_lens(&lens, &up, &set, 2, NULL, &size); /* as it is stored */
     assert_true(lens.width == 240 && lens.height == 320);
-    near_to(lens.fx, (300 + 330 + 310) / 3.0);
+    assert_near(lens.fx, (300 + 330 + 310) / 3.0);
 }
 
-static void views_that_do_not_agree_leave_up_to_the_middle_one(void **state)
+static void contradictory_ups_leave_the_middle_views(void **state)
 {
     (void)state;
     const struct film_size size = {.max_side = 1280};
@@ -98,19 +98,19 @@ static void views_that_do_not_agree_leave_up_to_the_middle_one(void **state)
     views[1].cam_from_world = upside_down;
     set.view_count = 2;
     film_lens(&lens, &up, &set, 0, NULL, &size);
-    near_to(up.y, -1);
+    assert_near(up.y, -1);
     film_lens(&lens, &up, &set, 1, NULL, &size);
-    near_to(up.y, 1);
-    near_to(vec3_length(up), 1);
+    assert_near(up.y, 1);
+    assert_near(vec3_length(up), 1);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(the_lens_is_the_views_mean, set_up),
-        cmocka_unit_test_setup(sizes_are_even_and_the_picture_fills_them, set_up),
-        cmocka_unit_test_setup(a_middle_view_on_its_side_makes_a_film_on_end, set_up),
-        cmocka_unit_test_setup(views_that_do_not_agree_leave_up_to_the_middle_one, set_up),
+        cmocka_unit_test_setup(the_focal_length_is_the_views_mean, set_up),
+        cmocka_unit_test_setup(sizes_are_even_and_the_frame_is_filled, set_up),
+        cmocka_unit_test_setup(the_orientation_of_the_middle_view_sets_that_of_the_film, set_up),
+        cmocka_unit_test_setup(contradictory_ups_leave_the_middle_views, set_up),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-/* subject_list.c - subjects on disk and in space. */
+/* subject_list.c - tests of subjects on disk and in space. */
 #include "common/film/subject_list.h"
 
 #include "tests/unit/scratch.h"
@@ -24,7 +24,7 @@ static void assert_point(struct vec3 p, double x, double y, double z)
     assert_true(fabs(p.x - x) < 1e-12 && fabs(p.y - y) < 1e-12 && fabs(p.z - z) < 1e-12);
 }
 
-static void the_rectangle_stands_at_its_depth(void **state)
+static void corners_are_at_the_depth_of_the_rectangle(void **state)
 {
     (void)state;
     struct subject s = example();
@@ -38,9 +38,8 @@ static void the_rectangle_stands_at_its_depth(void **state)
     assert_float_equal(subject_size_in(&s, &straight), 60, 1e-12);
 }
 
-/* Of a picture that is stored turned, the corners begin where its upper left is when it is upright; the height is that
- * of the upright one. */
-static void corners_are_named_as_the_upright_picture_shows_them(void **state)
+/* For a picture stored rotated, the first corner is the upper left one of the upright picture, and so is the height. */
+static void corners_follow_the_upright_picture(void **state)
 {
     (void)state;
     static const struct vec3 ups[] = {{0, -1, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}};
@@ -58,7 +57,7 @@ static void corners_are_named_as_the_upright_picture_shows_them(void **state)
     }
 }
 
-static void a_subject_that_is_not_before_a_camera_has_no_size_there(void **state)
+static void a_subject_behind_the_camera_has_no_size(void **state)
 {
     (void)state;
     struct subject s = example();
@@ -72,7 +71,7 @@ static void a_subject_that_is_not_before_a_camera_has_no_size_there(void **state
     assert_float_equal(subject_size_in(&s, &beyond), 120, 1e-9);
 }
 
-static void what_is_written_reads_back_the_same(void **state)
+static void a_written_list_reads_back_the_same(void **state)
 {
     (void)state;
     struct subject_list list = {0}, again;
@@ -98,7 +97,7 @@ static void what_is_written_reads_back_the_same(void **state)
     subject_list_release(&again);
     subject_list_release(&list);
     if (subject_list_write(&list, path, NULL, &err) || subject_list_read(&again, path, &err)) fail_msg("%s", err.text);
-    assert_true(again.count == 0); /* a scene without subjects has a list too */
+    assert_true(again.count == 0); /* an empty list is valid */
     subject_list_release(&again);
     subject_list_release(&again);
     subject_list_release(NULL);
@@ -107,11 +106,11 @@ static void what_is_written_reads_back_the_same(void **state)
 #define SUBJECT "subject v face 1 2 3 4 5 6 1 2\n"
 #define CORNERS "corner 0 0 1\ncorner 1 0 1\ncorner 1 1 1\ncorner 0 1 1\n"
 
-static void a_broken_list_is_refused_with_its_line(void **state)
+static void bad_lists_are_refused_with_file_and_line(void **state)
 {
     (void)state;
     static const struct {
-        const char *text, *place, *word;
+        const char *text, *line, *word;
     } cases[] = {
         {"", "an empty file", "remodel-subjects"},
         {"remodel-path 1\n", ":1:", "remodel-subjects"},
@@ -124,7 +123,7 @@ static void a_broken_list_is_refused_with_its_line(void **state)
         {"remodel-subjects 1\nsubjects 1\nsubject v face 1 2 3 4 0 6 1 2\n" CORNERS, ":3:", "depth above 0"},
         {"remodel-subjects 1\nsubjects 1\nsubject v face 1 2 3 4 nan 6 1 2\n" CORNERS, ":3:", "nan"},
         {"remodel-subjects 1\nsubjects 1\nsubject v face 1 2 3 4 5 -1 1 2\n" CORNERS, ":3:", "score"},
-        {"remodel-subjects 1\nsubjects 1\nsubject v face 1 2 3 4 5 6 3 2\n" CORNERS, ":3:", "asked"},
+        {"remodel-subjects 1\nsubjects 1\nsubject v face 1 2 3 4 5 6 3 2\n" CORNERS, ":3:", "searched"},
         {"remodel-subjects 1\nsubjects 1\n" SUBJECT "corner 0 0 1\n", ":4:", "corner"},
         {"remodel-subjects 1\nsubjects 1\n" SUBJECT "corner 0 0 1\ncorner 0 0 1\ncorner 0 0 1\ncorner 0 0 1\n",
          ":7:", "span an area"},
@@ -135,7 +134,7 @@ static void a_broken_list_is_refused_with_its_line(void **state)
         struct err err = ERR_INIT;
         const char *path = scratch_write("list.txt", cases[i].text);
         assert_int_equal(subject_list_read(&list, path, &err), ST_DATA);
-        if (!strstr(err.text, path) || !strstr(err.text, cases[i].word) || !strstr(err.text, cases[i].place))
+        if (!strstr(err.text, path) || !strstr(err.text, cases[i].word) || !strstr(err.text, cases[i].line))
             fail_msg("case %zu: %s", i, err.text);
         assert_true(!list.count && !list.subjects);
     }
@@ -144,11 +143,11 @@ static void a_broken_list_is_refused_with_its_line(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_rectangle_stands_at_its_depth),
-        cmocka_unit_test(corners_are_named_as_the_upright_picture_shows_them),
-        cmocka_unit_test(a_subject_that_is_not_before_a_camera_has_no_size_there),
-        cmocka_unit_test(what_is_written_reads_back_the_same),
-        cmocka_unit_test(a_broken_list_is_refused_with_its_line),
+        cmocka_unit_test(corners_are_at_the_depth_of_the_rectangle),
+        cmocka_unit_test(corners_follow_the_upright_picture),
+        cmocka_unit_test(a_subject_behind_the_camera_has_no_size),
+        cmocka_unit_test(a_written_list_reads_back_the_same),
+        cmocka_unit_test(bad_lists_are_refused_with_file_and_line),
     };
     return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }

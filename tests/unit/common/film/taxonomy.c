@@ -1,4 +1,4 @@
-/* taxonomy.c - effects by name, and which of them suit how many subjects. */
+/* taxonomy.c - tests of effect names and of the effects that suit a number of subjects. */
 #include "common/film/taxonomy.h"
 
 #include <setjmp.h>
@@ -14,7 +14,7 @@ static const struct scene_subjects none = {0, 1}, one = {1, 1}, near_two = {2, 1
 
 static bool listed(const struct scene_subjects *scene, const char *name)
 {
-    struct film_effect list[FILM_EFFECTS_MOST];
+    struct film_effect list[MAX_FILM_EFFECTS];
     const int count = film_effects_list(list, scene);
     char found[EFFECT_NAME_SIZE];
     for (int i = 0; i < count; i++) {
@@ -24,12 +24,12 @@ static bool listed(const struct scene_subjects *scene, const char *name)
     return false;
 }
 
-static void every_row_has_its_moves(void **state)
+static void each_number_of_subjects_has_its_effects(void **state)
 {
     (void)state;
-    struct film_effect list[FILM_EFFECTS_MOST];
+    struct film_effect list[MAX_FILM_EFFECTS];
     assert_int_equal(film_effects_list(list, &none), 2);
-    assert_int_equal(film_effects_list(list, &one), 2 + 4 * 7); /* alone, two of focus, four tones */
+    assert_int_equal(film_effects_list(list, &one), 2 + 4 * 7); /* the move alone, two focus effects, four tones */
     assert_int_equal(film_effects_list(list, &near_two), 2 + 4 * 7 + 1);
     assert_int_equal(film_effects_list(list, &two), 2 + 4 * 7 + 4);
     assert_int_equal(film_effects_list(list, &five), 2 + 4 * 7 + 4);
@@ -46,7 +46,7 @@ static void names_are_read_back(void **state)
     for (int m = 0; m < MOVE_COUNT; m++)
         for (int f = 0; f < FOCUS_COUNT; f++)
             for (int t = 0; t < TONE_COUNT; t++) {
-                const struct film_effect e = {(enum move)m, (enum focus_effect)f, (enum tone_effect)t};
+                const struct film_effect e = {(enum camera_move)m, (enum focus_effect)f, (enum tone_effect)t};
                 struct film_effect back;
                 char name[EFFECT_NAME_SIZE];
                 film_effect_name(&e, name);
@@ -56,19 +56,19 @@ static void names_are_read_back(void **state)
             }
 }
 
-static void a_wrong_name_gets_a_sentence(void **state)
+static void unknown_names_are_refused(void **state)
 {
     (void)state;
     static const char *const bad[][2] = {
-        {"", "no move"},
+        {"", "not a known move"},
         {"doly_in", "did you mean dolly_in?"},
-        {"dolly_in+", "no image effect"},
+        {"dolly_in+", "not a known image effect"},
         {"dolly_in+narow_dof", "did you mean narrow_dof?"},
         {"dolly_in+dim+narrow_dof", "in this order"},
         {"dolly_in+dim+dim", "in this order"},
         {"dolly_in+narrow_dof+dim+dim", "in this order"},
-        {"+dim", "no move"},
-        {"dolly_in_and_a_name_that_is_much_longer_than_any_name_of_an_effect_may_be", "no move"},
+        {"+dim", "not a known move"},
+        {"dolly_in_and_a_name_that_is_much_longer_than_any_name_of_an_effect_may_be", "not a known move"},
     };
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         struct err err = ERR_INIT;
@@ -78,7 +78,7 @@ static void a_wrong_name_gets_a_sentence(void **state)
     }
 }
 
-static void what_a_scene_lacks_is_said(void **state)
+static void effects_that_do_not_suit_the_scene_are_refused(void **state)
 {
     (void)state;
     static const struct {
@@ -99,7 +99,7 @@ static void what_a_scene_lacks_is_said(void **state)
     }
 }
 
-static void chance_draws_all_of_the_row_but_tones(void **state)
+static void random_choice_covers_the_row_without_tones(void **state)
 {
     (void)state;
     static const struct {
@@ -124,11 +124,11 @@ static void chance_draws_all_of_the_row_but_tones(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_row_has_its_moves),
+        cmocka_unit_test(each_number_of_subjects_has_its_effects),
         cmocka_unit_test(names_are_read_back),
-        cmocka_unit_test(a_wrong_name_gets_a_sentence),
-        cmocka_unit_test(what_a_scene_lacks_is_said),
-        cmocka_unit_test(chance_draws_all_of_the_row_but_tones),
+        cmocka_unit_test(unknown_names_are_refused),
+        cmocka_unit_test(effects_that_do_not_suit_the_scene_are_refused),
+        cmocka_unit_test(random_choice_covers_the_row_without_tones),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

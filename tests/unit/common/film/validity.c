@@ -1,4 +1,4 @@
-/* validity.c - valid viewpoints written and read back with the same bits, and what is said of broken files. */
+/* validity.c - tests of writing and reading validity.txt, and of its error messages. */
 #include "common/film/validity.h"
 
 #include "tests/unit/scratch.h"
@@ -49,7 +49,8 @@ static void assert_same(const struct validity *a, const struct validity *b)
     const struct view *l = &a->shot.lens, *m = &b->shot.lens;
     assert_true(l->width == m->width && l->height == m->height && l->fx == m->fx && l->fy == m->fy && l->cx == m->cx &&
                 l->cy == m->cy);
-    assert_memory_equal(&a->shot.up, &b->shot.up, sizeof a->shot - offsetof(struct shot, up)); /* doubles all the way */
+    assert_memory_equal(&a->shot.up, &b->shot.up,
+                        sizeof a->shot - offsetof(struct shot_setup, up)); /* only doubles from here on */
     assert_true(a->move.move == b->move.move && a->move.on_axis == b->move.on_axis);
     assert_memory_equal(a->move.end, b->move.end, sizeof a->move.end);
     assert_true(a->zoom == b->zoom && a->step == b->step && a->limits.max_h == b->limits.max_h &&
@@ -64,7 +65,7 @@ static void assert_same(const struct validity *a, const struct validity *b)
     }
 }
 
-static void what_is_written_is_read_back_with_the_same_bits(void **state)
+static void a_written_file_reads_back_to_the_same_bits(void **state)
 {
     (void)state;
     const char *path = scratch_path("validity.txt");
@@ -88,7 +89,7 @@ static void what_is_written_is_read_back_with_the_same_bits(void **state)
     validity_release(NULL);
 }
 
-static void moves_on_the_axis_are_told(void **state)
+static void moves_on_the_axis_read_back_the_same(void **state)
 {
     (void)state;
     const char *path = scratch_path("axis.txt");
@@ -106,7 +107,7 @@ static void moves_on_the_axis_are_told(void **state)
 
 /* ----------------------------------------------------------------------------------------------------- broken files */
 
-static const char *const good[] = {
+static const char *const valid_lines[] = {
     "remodel-validity 1",
     "effect dolly_in+dim",
     "film 32 24 30 16 12",
@@ -131,20 +132,20 @@ static const char *const good[] = {
     "region 1 1",
     "cell 0 0 from 0 to 0",
 };
-enum { LINES = sizeof good / sizeof *good };
+enum { LINES = sizeof valid_lines / sizeof *valid_lines };
 
-/* The good file with one line changed (from 1; 0: none), cut after some lines. */
+/* Reads the first `lines` valid lines, with number `line` (from 1; 0: none) replaced by `text`. */
 static enum status read_changed(struct validity *v, int line, const char *text, int lines, struct err *err)
 {
     char whole[4096] = "";
     for (int i = 0; i < lines; i++) {
-        strcat(whole, i + 1 == line ? text : i < LINES ? good[i] : "cell 9 9 none");
+        strcat(whole, i + 1 == line ? text : i < LINES ? valid_lines[i] : "cell 9 9 none");
         strcat(whole, "\n");
     }
     return validity_read(v, scratch_write("broken.txt", whole), err);
 }
 
-static void each_line_that_is_wrong_is_named(void **state)
+static void bad_lines_are_refused_with_file_and_line(void **state)
 {
     (void)state;
     static const struct {
@@ -177,8 +178,8 @@ static void each_line_that_is_wrong_is_named(void **state)
         {12, "centroid a 0 5", "found \"a\""},
         {13, "box -1 -1 -1 1", "an empty box"},
         {13, "box -1 1 1 -1", "an empty box"},
-        {14, "limits 2 0.03 0", "another side"},
-        {14, "limits 2 0.03 1e9", "another side"},
+        {14, "limits 2 0.03 0", "an invalid side"},
+        {14, "limits 2 0.03 1e9", "an invalid side"},
         {15, "step 0", "a step of 0 or less"},
         {16, "on_axis 2", "found \"2\""},
         {17, "end 0 0 5 focal 30", "wanted \"target\""},
@@ -191,7 +192,7 @@ static void each_line_that_is_wrong_is_named(void **state)
         {18, "region 0 1", "found \"0\""},
         {18, "region 100 100", "found \"100\""},
         {18, "region 2 1.5", "found \"1.5\""},
-        {18, "region 3 1", ":21:"}, /* the third cell is not there */
+        {18, "region 3 1", ":21:"}, /* the third cell is missing */
         {19, "cell -1 0", "\"from\" or \"none\""},
         {19, "cell -1 0 maybe", "found \"maybe\""},
         {19, "cell -1 0 none 3", "found \"3\""},
@@ -207,29 +208,29 @@ static void each_line_that_is_wrong_is_named(void **state)
     assert_true(v.region[0].cells[1].low == -0.5 && v.region[0].cells[1].high == 0.25 && !v.region[0].cells[0].valid);
     validity_release(&v);
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
-        char place[32];
-        snprintf(place, sizeof place,
+        char location[32];
+        snprintf(location, sizeof location,
                  "broken.txt:%d: ", bad[i].line == 18 && bad[i].words[0] == ':' ? 21 : bad[i].line);
         err = (struct err)ERR_INIT;
-        if (!read_changed(&v, bad[i].line, bad[i].text, LINES, &err)) fail_msg("taken for good: %s", bad[i].text);
+        if (!read_changed(&v, bad[i].line, bad[i].text, LINES, &err)) fail_msg("accepted: %s", bad[i].text);
         assert_err(err, ST_DATA, bad[i].words);
-        assert_contains(err.text, place);
+        assert_contains(err.text, location);
         assert_true(!v.region[0].cells && !v.region[1].cells);
     }
 }
 
-static void a_file_that_ends_too_soon_or_goes_on_is_named(void **state)
+static void truncated_and_overlong_files_are_refused(void **state)
 {
     (void)state;
     struct validity v;
     for (int lines = 0; lines <= LINES + 1; lines++) {
         struct err err = ERR_INIT;
-        char place[32];
+        char location[32];
         if (lines == LINES) continue;
-        snprintf(place, sizeof place, lines ? "broken.txt:%d: " : "broken.txt: found an empty file", lines);
+        snprintf(location, sizeof location, lines ? "broken.txt:%d: " : "broken.txt: found an empty file", lines);
         assert_int_equal(read_changed(&v, 0, NULL, lines, &err), ST_DATA);
         assert_err(err, ST_DATA, "wanted");
-        assert_contains(err.text, place);
+        assert_contains(err.text, location);
         assert_true(!v.region[0].cells && !v.region[1].cells);
     }
     struct err err = ERR_INIT;
@@ -240,10 +241,10 @@ static void a_file_that_ends_too_soon_or_goes_on_is_named(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_is_written_is_read_back_with_the_same_bits),
-        cmocka_unit_test(moves_on_the_axis_are_told),
-        cmocka_unit_test(each_line_that_is_wrong_is_named),
-        cmocka_unit_test(a_file_that_ends_too_soon_or_goes_on_is_named),
+        cmocka_unit_test(a_written_file_reads_back_to_the_same_bits),
+        cmocka_unit_test(moves_on_the_axis_read_back_the_same),
+        cmocka_unit_test(bad_lines_are_refused_with_file_and_line),
+        cmocka_unit_test(truncated_and_overlong_files_are_refused),
     };
     return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }

@@ -1,11 +1,11 @@
-/* viewpoint.c - H of drawn holes by sums done by hand, and what makes a viewpoint valid. */
+/* viewpoint.c - tests of the hole measure H against sums by hand, and of the validity of viewpoints. */
 #include "common/film/viewpoint.h"
 
 #include "common/base/parallel.h"
 #include "tests/unit/scratch.h"
 #include "tests/unit/wall_scene.h"
 
-/* --------------------------------------------------------------------------------------------------------------- H */
+/* ---------------------------------------------------------------------------------------------------------------- H */
 
 static double h_of(const uint8_t *hole, int width, int height)
 {
@@ -51,8 +51,8 @@ static double disk_hole(int width, int height, double radius)
     return h;
 }
 
-/* In a square hole the nearest pixel that is none lies straight across the nearest side: rings of d = 1, 2, 3. */
-static void squares_are_sums_of_rings(void **state)
+/* In a square hole the nearest valid pixel is straight across the nearest side: rings of d = 1, 2, 3. */
+static void h_of_a_square_is_a_sum_over_rings(void **state)
 {
     (void)state;
     const double pixels = 1200.0 * 800;
@@ -66,23 +66,23 @@ static void squares_are_sums_of_rings(void **state)
     assert_float_equal(square_hole(120, 80, 5), 107 * 1000 / (120.0 * 80), 1e-12);
 }
 
-static void a_strip_at_the_border_has_one_side(void **state)
+static void h_of_a_strip_at_the_border_counts_from_one_side(void **state)
 {
     (void)state;
     enum { WIDE = 600, HIGH = 400, STRIP = 20 };
-    /* each row: 1 + 8 + ... + 20^3 = (20 * 21 / 2)^2, twice as far in px of 1200 */
+    /* each row: 1 + 8 + ... + 20^3 = (20 * 21 / 2)^2; d counts twice at 1200 px */
     assert_float_equal(rectangle_hole(WIDE, HIGH, 0, 0, STRIP, HIGH), 8.0 * 210 * 210 / WIDE, 1e-9);
 }
 
 /* The integral of (R - r)^3 2 pi r is pi R^5 / 10. */
-static void a_disk_is_its_integral(void **state)
+static void h_of_a_disk_is_its_integral(void **state)
 {
     (void)state;
     const double h = disk_hole(1200, 800, 300), wanted = M_PI * pow(300, 5) / 10 / (1200.0 * 800);
     assert_float_equal(h / wanted, 1, 0.01);
 }
 
-static void sizes_of_the_picture_do_not_matter(void **state)
+static void h_does_not_depend_on_the_resolution(void **state)
 {
     (void)state;
     const double whole = disk_hole(1200, 800, 240);
@@ -91,18 +91,18 @@ static void sizes_of_the_picture_do_not_matter(void **state)
     assert_float_equal(disk_hole(2400, 1600, 480) / whole, 1, 0.03);
 }
 
-static void no_hole_is_0_and_nothing_else_is_infinite(void **state)
+static void h_is_0_without_holes_and_infinite_without_pixels(void **state)
 {
     (void)state;
     uint8_t hole[30 * 20] = {0};
     assert_true(h_of(hole, 30, 20) == 0);
     memset(hole, 1, sizeof hole);
     assert_true(h_of(hole, 30, 20) == INFINITY);
-    hole[0] = 0; /* one pixel is seen: large, but a number */
+    hole[0] = 0; /* one valid pixel: large but finite */
     assert_true(isfinite(h_of(hole, 30, 20)) && h_of(hole, 30, 20) > 1e4);
 }
 
-static void a_larger_hole_is_worse_than_two_small_ones(void **state)
+static void one_large_hole_is_worse_than_two_small_ones(void **state)
 {
     (void)state;
     assert_true(square_hole(300, 200, 14) > 2 * square_hole(300, 200, 10)); /* about the same area */
@@ -113,11 +113,11 @@ static void a_larger_hole_is_worse_than_two_small_ones(void **state)
 struct fixture {
     struct wall_scene f;
     struct scene_points points;
-    struct shot shot;
+    struct shot_setup shot;
     struct viewpoint_test test;
 };
 
-/* Three views in a row before a wall with a box, and the film's lens that of the views. */
+/* Three views in a row in front of a wall with a box; the film has the views' lens. */
 static void set_up(struct fixture *x)
 {
     struct err err = ERR_INIT;
@@ -158,7 +158,7 @@ static struct viewpoint measure(struct fixture *x, struct view camera)
     return v;
 }
 
-static void a_views_own_place_is_valid(void **state)
+static void a_view_is_a_valid_viewpoint(void **state)
 {
     (void)state;
     struct fixture x;
@@ -169,16 +169,16 @@ static void a_views_own_place_is_valid(void **state)
     tear_down(&x);
 }
 
-static void holes_outside_and_near_each_make_it_invalid(void **state)
+static void holes_outside_and_near_each_invalidate_a_viewpoint(void **state)
 {
     (void)state;
     struct fixture x;
     set_up(&x);
-    /* 1.5 up: 24 of 120 rows see a part of the wall at 10 that no view saw. And what the box at 6 hides, 64 columns
-     * less 10.7 at either side that the other two views see, appears by 1.5 * 160 (1/6 - 1/10) = 16 rows. */
+    /* 1.5 up: 24 of 120 rows show a part of the wall at 10 that no view saw. The wall behind the box at 6, 64 columns
+     * less 10.7 on each side that the other two views see, appears in 1.5 * 160 (1/6 - 1/10) = 16 rows. */
     struct viewpoint v = measure(&x, moved(&x, 0, -1.5, 0));
     assert_false(v.valid);
-    assert_float_equal(v.outside, 0.2, 0.02); /* counted in 64 x 48 */
+    assert_float_equal(v.outside, 0.2, 0.02); /* measured in 64 x 48 px */
     assert_float_equal(v.holes, 0.2 + (64 - 21.3) * 16 / (W * H), 0.005);
     x.test.limits.max_outside = 1;
     assert_false(measure(&x, moved(&x, 0, -1.5, 0)).valid);
@@ -187,14 +187,14 @@ static void holes_outside_and_near_each_make_it_invalid(void **state)
     x.test.limits.max_outside = 0.1;
     assert_false(measure(&x, moved(&x, 0, -1.5, 0)).valid);
     x.test.limits = (struct viewpoint_limits){2, 0.03, 1000};
-    /* the box, at 6, comes nearer than 3 */
+    /* the box at 6 is nearer than 3 */
     assert_true(measure(&x, moved(&x, 0, 0, 2.9)).near == 0);
     v = measure(&x, moved(&x, 0, 0, 3.1));
     assert_true(v.near > 0.1 && !v.valid && v.h < 2 && v.outside < 0.03);
     tear_down(&x);
 }
 
-static void the_limit_of_h_is_not_met_by_h_itself(void **state)
+static void h_must_be_below_its_limit(void **state)
 {
     (void)state;
     struct fixture x;
@@ -210,7 +210,7 @@ static void the_limit_of_h_is_not_met_by_h_itself(void **state)
     tear_down(&x);
 }
 
-static void what_sees_nothing_is_infinitely_bad(void **state)
+static void a_camera_that_sees_nothing_has_infinite_h(void **state)
 {
     (void)state;
     struct fixture x;
@@ -221,13 +221,13 @@ static void what_sees_nothing_is_infinitely_bad(void **state)
     struct viewpoint v = measure(&x, away);
     assert_true(!v.valid && isinf(v.h) && v.holes == 1 && v.outside == 1 && v.near == 1);
     away = x.f.views[1];
-    away.fx = away.fy = 0; /* an end's camera without a focal length */
+    away.fx = away.fy = 0; /* the camera of an end whose rule cannot be met */
     v = measure(&x, away);
     assert_true(!v.valid && isinf(v.h) && v.holes == 1 && v.outside == 1 && v.near == 1);
     tear_down(&x);
 }
 
-static void smaller_pictures_tell_nearly_the_same(void **state)
+static void smaller_pictures_give_nearly_the_same_h(void **state)
 {
     (void)state;
     struct fixture x;
@@ -239,7 +239,7 @@ static void smaller_pictures_tell_nearly_the_same(void **state)
     tear_down(&x);
 }
 
-static void many_at_once_are_the_same_for_any_threads(void **state)
+static void any_thread_count_gives_the_same_measures(void **state)
 {
     (void)state;
     enum { COUNT = 12 };
@@ -267,18 +267,18 @@ static void many_at_once_are_the_same_for_any_threads(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(squares_are_sums_of_rings),
-        cmocka_unit_test(a_strip_at_the_border_has_one_side),
-        cmocka_unit_test(a_disk_is_its_integral),
-        cmocka_unit_test(sizes_of_the_picture_do_not_matter),
-        cmocka_unit_test(no_hole_is_0_and_nothing_else_is_infinite),
-        cmocka_unit_test(a_larger_hole_is_worse_than_two_small_ones),
-        cmocka_unit_test(a_views_own_place_is_valid),
-        cmocka_unit_test(holes_outside_and_near_each_make_it_invalid),
-        cmocka_unit_test(the_limit_of_h_is_not_met_by_h_itself),
-        cmocka_unit_test(what_sees_nothing_is_infinitely_bad),
-        cmocka_unit_test(smaller_pictures_tell_nearly_the_same),
-        cmocka_unit_test(many_at_once_are_the_same_for_any_threads),
+        cmocka_unit_test(h_of_a_square_is_a_sum_over_rings),
+        cmocka_unit_test(h_of_a_strip_at_the_border_counts_from_one_side),
+        cmocka_unit_test(h_of_a_disk_is_its_integral),
+        cmocka_unit_test(h_does_not_depend_on_the_resolution),
+        cmocka_unit_test(h_is_0_without_holes_and_infinite_without_pixels),
+        cmocka_unit_test(one_large_hole_is_worse_than_two_small_ones),
+        cmocka_unit_test(a_view_is_a_valid_viewpoint),
+        cmocka_unit_test(holes_outside_and_near_each_invalidate_a_viewpoint),
+        cmocka_unit_test(h_must_be_below_its_limit),
+        cmocka_unit_test(a_camera_that_sees_nothing_has_infinite_h),
+        cmocka_unit_test(smaller_pictures_give_nearly_the_same_h),
+        cmocka_unit_test(any_thread_count_gives_the_same_measures),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,11 @@
+/* ends_climb.h - improvement of a move's ends off the grid. */
+#ifndef REMODEL_ENDS_CLIMB_H
+#define REMODEL_ENDS_CLIMB_H
+
+#include "stages/plan_path/ends_search.h"
+
+/* Replaces *best, whose path is measured, by ends of more parallax whose whole path is valid, if it finds any; then
+ * sets s->notes->refined. */
+enum status ends_improve(struct ends_search *s, struct move_ends *best, struct err *err);
+
+#endif
