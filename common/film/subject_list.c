@@ -41,7 +41,7 @@ enum status subject_list_add(struct subject_list *list, struct subject *s, struc
 
 /* --------------------------------------------------------------------------------------------------------- geometry */
 
-void subject_place(struct subject *s, const struct view *view, const struct vec3 *up)
+void subject_set_corners(struct subject *s, const struct view *view, const struct vec3 *up)
 {
     const struct vec3 u = up ? *up : vec3_make(0, -1, 0);
     const double x[4] = {s->x0, s->x1, s->x1, s->x0}, y[4] = {s->y0, s->y0, s->y1, s->y1};

@@ -43,7 +43,7 @@ void subject_release(struct subject *s);
 void subject_list_release(struct subject_list *list);
 
 /* Sets the corners from the rectangle and the depth. up: the upright direction in the view's camera; NULL: -y. */
-void subject_place(struct subject *s, const struct view *view, const struct vec3 *up);
+void subject_set_corners(struct subject *s, const struct view *view, const struct vec3 *up);
 
 struct vec3 subject_center(const struct subject *s);
 struct vec3 subject_lower_center(const struct subject *s); /* centre of the lower half */

@@ -150,7 +150,7 @@ static enum status place_region(struct subject_list *list, struct inputs *in, co
                     "of the lens), so it has no place in space; draw it over something else, or in another photo.",
                     in->subjects, region->line, region->x0, region->y0, region->x1, region->y1, region->view);
     if (!st) {
-        subject_place(&s, &in->set.views[view_idx], in->ups ? &in->ups[view_idx] : NULL);
+        subject_set_corners(&s, &in->set.views[view_idx], in->ups ? &in->ups[view_idx] : NULL);
         log_note("subject %d: view %s, %.0f x %.0f px at %.0f %.0f, depth %.4g", list->count + 1, s.view, s.x1 - s.x0,
                  s.y1 - s.y0, s.x0, s.y0, s.depth);
         if (part < WHOLE)

@@ -27,7 +27,7 @@ struct ends_notes {
 };
 
 /* Samples of a path in the first test of its validity; the frames' positions follow if it passes. */
-#define WAY_PLACES 25
+#define PATH_SAMPLES 25
 
 /* Fraction of the path that is done at frame i of `count`, 0 to 1. ease: "none" or "smooth". */
 double path_fraction(int i, int count, const char *ease);

@@ -129,7 +129,7 @@ enum status ends_measure_path(struct ends_search *s, struct move_ends *e, struct
     e->valid = true;
     e->worst_h = -1;
     e->worst_outside = 0;
-    enum status st = measure_path_samples(s, e, WAY_PLACES, "none", err);
+    enum status st = measure_path_samples(s, e, PATH_SAMPLES, "none", err);
     if (!st && e->valid) st = measure_path_samples(s, e, frames, s->params->ease, err);
     return st;
 }

@@ -28,13 +28,13 @@ static int compare_views(const void *a, const void *b)
 
 static enum status make_views(struct importer *imp, struct err *err)
 {
-    const size_t max_views = (size_t)imp->in->image_count * MOST_PARTS;
+    const size_t max_views = (size_t)imp->in->image_count * MAX_PHOTO_VIEWS;
     int wide = 0;
     imp->views = calloc(max_views + 1, sizeof *imp->views);
     if (!imp->views) return err_nomem(err, "views", max_views * sizeof *imp->views);
     for (int i = 0; i < imp->in->image_count; i++) {
         const struct input_image *im = &imp->images[i];
-        struct photo_view parts[MOST_PARTS];
+        struct photo_view parts[MAX_PHOTO_VIEWS];
         int count = 0;
         if (im->photo < 0) continue;
         const struct photo_record *photo = &imp->photos->photos[im->photo];
@@ -180,7 +180,7 @@ static enum status make_points(const struct importer *imp, struct imported *out,
     for (int i = 0; i < in->point_count; i++)
         if (in->points[i].track_count > longest) longest = in->points[i].track_count;
     if (!longest) return ST_OK;
-    sightings = malloc((size_t)longest * MOST_PARTS * sizeof *sightings);
+    sightings = malloc((size_t)longest * MAX_PHOTO_VIEWS * sizeof *sightings);
     out->model.points = malloc((size_t)in->point_count * sizeof *out->model.points);
     enum status st = ST_OK;
     if (!sightings || !out->model.points)

@@ -11,7 +11,7 @@ struct input_image {
     double scale_u, scale_v; /* from the model's pixels to the photo's */
     struct mat3 cam_from_world;
     struct vec3 translation;
-    int views[MOST_PARTS], view_count; /* into importer.views */
+    int views[MAX_PHOTO_VIEWS], view_count; /* into importer.views */
 };
 
 struct output_view {

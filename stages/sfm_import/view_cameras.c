@@ -62,7 +62,7 @@ static double fraction_inside(const struct camera *lens, const struct photo_view
 }
 
 /* Rotations by 90 degrees: the view's z is the photo's z, -x, x, -y, y. */
-static const struct quat rotations[MOST_PARTS] = {
+static const struct quat rotations[MAX_PHOTO_VIEWS] = {
     {1, 0, 0, 0},
     {0.70710678118654752440, 0, 0.70710678118654752440, 0},
     {0.70710678118654752440, 0, -0.70710678118654752440, 0},
@@ -70,13 +70,13 @@ static const struct quat rotations[MOST_PARTS] = {
     {0.70710678118654752440, 0.70710678118654752440, 0, 0},
 };
 
-static int wide_views(struct photo_view views[MOST_PARTS], const struct camera *lens, double max_pixels)
+static int wide_views(struct photo_view views[MAX_PHOTO_VIEWS], const struct camera *lens, double max_pixels)
 {
     double fx, fy, cx, cy;
     int count = 0;
     camera_focal(lens, &fx, &fy, &cx, &cy);
     int side = (int)fmin(fmin(2 * sqrt(fx * fy), sqrt(max_pixels)) + 1e-6, 1 << 15);
-    for (int part = 0; part < MOST_PARTS && side >= 1; part++) {
+    for (int part = 0; part < MAX_PHOTO_VIEWS && side >= 1; part++) {
         struct photo_view v = {
             part, {CAMERA_PINHOLE, side, side, {side / 2.0, side / 2.0, side / 2.0, side / 2.0}}, rotations[part]};
         if (part == 0 || fraction_inside(lens, &v) >= 0.25) views[count++] = v;
@@ -114,7 +114,7 @@ static bool one_view(struct photo_view *view, const struct camera *lens, double 
     return true;
 }
 
-enum status photo_views(struct photo_view views[MOST_PARTS], int *count, const struct camera *lens,
+enum status photo_views(struct photo_view views[MAX_PHOTO_VIEWS], int *count, const struct camera *lens,
                         double max_megapixels, double max_field, struct err *err)
 {
     double horizontal, vertical, max_pixels = max_megapixels > 0 ? max_megapixels * 1e6 : DBL_MAX;

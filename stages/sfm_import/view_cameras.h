@@ -15,7 +15,7 @@
 
 #include "common/capture/camera.h"
 
-enum { MOST_PARTS = 5 };
+enum { MAX_PHOTO_VIEWS = 5 };
 
 struct photo_view {
     int part;                    /* -1: the photo's only view; otherwise k of PHOTO@k */
@@ -27,7 +27,7 @@ struct photo_view {
 void lens_field(const struct camera *lens, double *horizontal, double *vertical);
 
 /* max_field is in degrees. ST_DATA: the lens leaves no picture. */
-enum status photo_views(struct photo_view views[MOST_PARTS], int *count, const struct camera *lens,
+enum status photo_views(struct photo_view views[MAX_PHOTO_VIEWS], int *count, const struct camera *lens,
                         double max_megapixels, double max_field, struct err *err);
 
 #endif

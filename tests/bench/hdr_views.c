@@ -37,7 +37,7 @@ struct request {
 struct work { /* one photo */
     char id[16];
     struct bracketed_view merged;
-    struct image linear, views[MOST_PARTS];
+    struct image linear, views[MAX_PHOTO_VIEWS];
     struct provenance prov;
     struct err err;
 };
@@ -45,7 +45,7 @@ struct work { /* one photo */
 struct bench {
     const struct request *request;
     struct camera lens;
-    struct photo_view views[MOST_PARTS];
+    struct photo_view views[MAX_PHOTO_VIEWS];
     int view_count;
     struct work work[MAX_PHOTOS];
 };
@@ -62,7 +62,7 @@ static void release_work(struct work *w)
 {
     bracketed_view_release(&w->merged);
     image_release(&w->linear);
-    for (int k = 0; k < MOST_PARTS; k++) image_release(&w->views[k]);
+    for (int k = 0; k < MAX_PHOTO_VIEWS; k++) image_release(&w->views[k]);
     provenance_release(&w->prov);
 }
 

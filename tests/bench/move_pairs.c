@@ -115,15 +115,15 @@ static int more_parallax_first(const void *a, const void *b)
 static enum status measure_path(const struct brute *b, struct viewpoint_test *test, struct move_ends *e,
                                 struct err *err)
 {
-    struct view cameras[WAY_PLACES];
-    struct viewpoint seen[WAY_PLACES];
+    struct view cameras[PATH_SAMPLES];
+    struct viewpoint seen[PATH_SAMPLES];
 
-    for (int i = 0; i < WAY_PLACES; i++)
-        cameras[i] = shot_camera(&b->v->shot, &b->v->move, e->at, i / (WAY_PLACES - 1.0));
-    if (viewpoints_measure(seen, cameras, WAY_PLACES, test, err)) return err->status;
+    for (int i = 0; i < PATH_SAMPLES; i++)
+        cameras[i] = shot_camera(&b->v->shot, &b->v->move, e->at, i / (PATH_SAMPLES - 1.0));
+    if (viewpoints_measure(seen, cameras, PATH_SAMPLES, test, err)) return err->status;
     e->angle = angle_of(b, e->at);
     e->valid = true;
-    for (int i = 0; i < WAY_PLACES; i++) {
+    for (int i = 0; i < PATH_SAMPLES; i++) {
         e->valid &= seen[i].valid;
         e->worst_h = fmax(e->worst_h, seen[i].h);
     }

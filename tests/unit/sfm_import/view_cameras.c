@@ -43,7 +43,7 @@ static void a_small_pinhole_photo_keeps_its_camera(void **state)
         {CAMERA_SIMPLE_PINHOLE, 1, 1, {1.5, 0.5, 0.5}},
     };
     for (int i = 0; i < 2; i++) {
-        struct photo_view views[MOST_PARTS];
+        struct photo_view views[MAX_PHOTO_VIEWS];
         struct err err = ERR_INIT;
         int count = 0;
         assert_ok(photo_views(views, &count, &lenses[i], 2, 110, &err), err);
@@ -60,7 +60,7 @@ static void large_photos_are_scaled_down_with_their_aspect_ratio(void **state)
 {
     (void)state;
     struct camera lens = {CAMERA_PINHOLE, 6000, 4000, {5000, 5000, 3000, 2000}};
-    struct photo_view views[MOST_PARTS];
+    struct photo_view views[MAX_PHOTO_VIEWS];
     struct err err = ERR_INIT;
     double slack[4];
     int count = 0;
@@ -94,7 +94,7 @@ static void a_view_is_the_largest_rectangle_without_blank_borders(void **state)
     };
     for (size_t i = 0; i < sizeof lenses / sizeof *lenses; i++)
         for (int limit = 0; limit < 2; limit++) {
-            struct photo_view views[MOST_PARTS];
+            struct photo_view views[MAX_PHOTO_VIEWS];
             struct err err = ERR_INIT;
             double slack[4], fx, fy, cx, cy;
             int count = 0;
@@ -138,7 +138,7 @@ static void a_fisheye_becomes_five_views(void **state)
                           2000,
                           2000,
                           {640, 640, 1000, 1000, -1.0 / 24, 1.0 / 1920, -1.0 / 322560, 1.0 / 92897280}};
-    struct photo_view views[MOST_PARTS];
+    struct photo_view views[MAX_PHOTO_VIEWS];
     struct err err = ERR_INIT;
     int count = 0;
     assert_ok(photo_views(views, &count, &lens, 0, 110, &err), err);
@@ -176,7 +176,7 @@ static void a_lens_that_leaves_no_picture_is_rejected(void **state)
     (void)state;
     struct camera lens = {CAMERA_SIMPLE_PINHOLE, 100, 100, {50, 400, 50}}; /* its axis is far outside the photo */
     struct camera tiny = {CAMERA_SIMPLE_RADIAL, 2, 2, {1e-3, 1, 1, 0.1}};
-    struct photo_view views[MOST_PARTS];
+    struct photo_view views[MAX_PHOTO_VIEWS];
     struct err err = ERR_INIT;
     int count = 0;
     lens.model = CAMERA_SIMPLE_RADIAL;

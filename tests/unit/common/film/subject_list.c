@@ -28,7 +28,7 @@ static void corners_are_at_the_depth_of_the_rectangle(void **state)
 {
     (void)state;
     struct subject s = example();
-    subject_place(&s, &straight, NULL);
+    subject_set_corners(&s, &straight, NULL);
     assert_point(s.corner[0], 0, -1, 5);
     assert_point(s.corner[1], 2, -1, 5);
     assert_point(s.corner[2], 2, 2, 5);
@@ -46,7 +46,7 @@ static void corners_follow_the_upright_picture(void **state)
     static const double first[4][2] = {{0, -1}, {2, -1}, {2, 2}, {0, 2}};
     for (int i = 0; i < 4; i++) {
         struct subject s = example();
-        subject_place(&s, &straight, &ups[i]);
+        subject_set_corners(&s, &straight, &ups[i]);
         assert_point(s.corner[0], first[i][0], first[i][1], 5);
         const struct vec3 up = vec3_normalize(vec3_sub(s.corner[0], s.corner[3]));
         const struct vec3 right = vec3_normalize(vec3_sub(s.corner[1], s.corner[0]));
@@ -62,7 +62,7 @@ static void a_subject_behind_the_camera_has_no_size(void **state)
     (void)state;
     struct subject s = example();
     struct view beyond = straight;
-    subject_place(&s, &straight, NULL);
+    subject_set_corners(&s, &straight, NULL);
     beyond.translation = vec3_make(0, 0, -6);
     assert_true(subject_size_in(&s, &beyond) == 0);
     beyond.translation = vec3_make(0, 0, -5); /* in its plane */
@@ -82,7 +82,7 @@ static void a_written_list_reads_back_the_same(void **state)
         s.view = strdup(i ? "IMG 1@2" : "a");
         s.source = i == 2 ? SUBJECT_USER : SUBJECT_FACE;
         s.x0 += i / 7.0;
-        subject_place(&s, &straight, NULL);
+        subject_set_corners(&s, &straight, NULL);
         assert_int_equal(subject_list_add(&list, &s, &err), ST_OK);
         assert_null(s.view);
     }
