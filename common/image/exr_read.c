@@ -129,8 +129,9 @@ static void decode_chunks(void *ctx, size_t begin, size_t end, int thread)
     struct exr_reader *r = ctx;
     exr_decode_pipeline_t *pipe = &r->pipes[thread];
     for (size_t i = begin; i < end; i++) {
-        struct unpack_job job = {r, &r->zips[thread], &r->faults[i], (int)(i % (size_t)r->chunks_across) * r->chunk_width,
-                               (int)(i / (size_t)r->chunks_across) * r->chunk_height};
+        struct unpack_job job = {r, &r->zips[thread], &r->faults[i],
+                                 (int)(i % (size_t)r->chunks_across) * r->chunk_width,
+                                 (int)(i / (size_t)r->chunks_across) * r->chunk_height};
         exr_chunk_info_t info;
         exr_result_t rv = chunk_info(r, i, &info);
         if (!rv && pipe->context) {
