@@ -22,7 +22,7 @@
  * PatchMatch Stereo (Bleyer 2011). */
 #define SURROUNDINGS 1 /* px: half width of the window that gradients are measured against */
 #define DEVIATION    20.0f
-#define LEAST_NOISE  1.5f /* grey levels: gradients of the pictures' noise are half believed, of this much at least */
+#define MIN_NOISE  1.5f /* grey levels: gradients of the pictures' noise are half believed, of this much at least */
 #define SMOOTHED     0.3f /* of the noise is left in coarse gradients */
 #define NOISY        3.0f /* grey levels of noise at which coarse gradients count half of what they may */
 enum { COLOUR_LIMIT = 16, FINE_LIMIT = 14, COARSE_LIMIT = 14 };
@@ -46,7 +46,7 @@ static uint8_t byte_from(float x) { return (uint8_t)(x <= 0 ? 0 : x >= 255 ? 255
 #define RANK_WEIGHT 0.6
 
 #define USEFUL_CONTRAST 0.25 /* of the best neighbour's: below it one shows something else, or nothing */
-#define LEAST_CONTRAST  0.05 /* between good and chance matches: pictures that show nothing at all */
+#define MIN_CONTRAST  0.05 /* between good and chance matches: pictures that show nothing at all */
 
 struct pack_job {
     const struct gamma_image *g;
@@ -178,10 +178,10 @@ static uint8_t *pack(const struct gamma_image *g, const double gain[3], double t
     for (int c = 0; c < 3; c++) job.gain[c] = (float)gain[c];
     for (int i = 0; i < 2; i++)
         for (int j = 0; j < 2; j++) job.turn[i][j] = (float)turn[i][j];
-    const float believed = fmaxf(noise, LEAST_NOISE), noisy = noise * noise / (noise * noise + NOISY * NOISY);
+    const float believed = fmaxf(noise, MIN_NOISE), noisy = noise * noise / (noise * noise + NOISY * NOISY);
     gradient_scale(fine, job.turn, luma, line, g->width, g->height, 1, DEVIATION, believed);
     gradient_scale(coarse, job.turn, smooth, line, g->width, g->height, 2, DEVIATION * noisy,
-                   fmaxf(SMOOTHED * noise, LEAST_NOISE));
+                   fmaxf(SMOOTHED * noise, MIN_NOISE));
     parallel_for((size_t)g->height, 16, pack_rows, &job);
     free(luma);
     return packed;
@@ -295,7 +295,7 @@ static bool carry(const struct match_neighbour *n, double u, double v, double in
 /* Median ratio of the view's colours to the neighbour's, at the points that both observed; where those are too few, the
  * photos are taken to have been exposed alike. */
 static enum status estimate_gain(double gain[3], const struct camera_set *set, const struct view *other,
-                                 int neighbour_idx, const struct seen_points *seen, const struct gamma_image *reference,
+                                 int neighbour_idx, const struct observed_points *seen, const struct gamma_image *reference,
                                  const struct gamma_image *picture, struct err *err)
 {
     double *ratios = malloc(((size_t)seen->count + 1) * 3 * sizeof *ratios);
@@ -346,7 +346,7 @@ static enum status make_texture(struct match_neighbour *n, const uint8_t *packed
 }
 
 enum status matcher_add(struct matcher *m, const struct camera_set *set, int view_idx, int neighbour_idx,
-                        const struct seen_points *seen, double typical, const struct gamma_image *reference,
+                        const struct observed_points *seen, double typical, const struct gamma_image *reference,
                         struct gamma_image *picture, struct err *err)
 {
     const struct view *view = &set->views[view_idx];
@@ -390,8 +390,8 @@ void matcher_release(struct matcher *m)
 {
     if (!m) return;
     for (int i = 0; i < m->neighbour_count; i++) free(m->neighbours[i].texture);
-    free(m->unseen);
-    free(m->hidden);
+    free(m->unseen_cost);
+    free(m->occluded_cost);
     free(m->first);
     free(m->x);
     free(m->y);
@@ -437,7 +437,7 @@ static float neighbour_cost(const struct matcher *m, const struct match_neighbou
     const __m256 half = _mm256_set1_ps(0.5f), zero = _mm256_setzero_ps(), small = _mm256_set1_ps(1e-9f);
     const __m256 right = _mm256_set1_ps((float)(n->width - 1)), bottom = _mm256_set1_ps((float)(n->height - 1));
     const __m256 low = _mm256_set1_ps(-0.5f);
-    const __m256 most_u = _mm256_add_ps(right, half), most_v = _mm256_add_ps(bottom, half);
+    const __m256 max_u = _mm256_add_ps(right, half), max_v = _mm256_add_ps(bottom, half);
     const __m256i stride = _mm256_set1_epi32(n->width + 1);
     __m256i sum = _mm256_setzero_si256(), count = _mm256_setzero_si256(), believed = count;
     for (int i = begin; i < end; i += 8) {
@@ -449,8 +449,8 @@ static float neighbour_cost(const struct matcher *m, const struct match_neighbou
         __m256 v = _mm256_sub_ps(_mm256_mul_ps(p[1], inverse), half);
         __m256 in_sight = _mm256_and_ps(
             _mm256_cmp_ps(p[2], small, _CMP_GT_OQ),
-            _mm256_and_ps(_mm256_and_ps(_mm256_cmp_ps(u, low, _CMP_GE_OQ), _mm256_cmp_ps(u, most_u, _CMP_LE_OQ)),
-                          _mm256_and_ps(_mm256_cmp_ps(v, low, _CMP_GE_OQ), _mm256_cmp_ps(v, most_v, _CMP_LE_OQ))));
+            _mm256_and_ps(_mm256_and_ps(_mm256_cmp_ps(u, low, _CMP_GE_OQ), _mm256_cmp_ps(u, max_u, _CMP_LE_OQ)),
+                          _mm256_and_ps(_mm256_cmp_ps(v, low, _CMP_GE_OQ), _mm256_cmp_ps(v, max_v, _CMP_LE_OQ))));
         if (_mm256_testz_ps(in_sight, in_sight)) continue;
         u = _mm256_min_ps(_mm256_max_ps(u, zero), right); /* NaN becomes 0: max returns its second operand */
         v = _mm256_min_ps(_mm256_max_ps(v, zero), bottom);
@@ -507,16 +507,16 @@ static float ranked_cost(const struct matcher *m, int segment, int pixels, struc
     float costs[MAX_NEIGHBOURS];
     const int begin = m->first[segment],
               end = pixels < m->segments->segments[segment].pixels ? begin + pixels : m->first[segment + 1];
-    const float unseen = m->unseen ? m->unseen[segment] : UNSEEN_COST;
+    const float unseen = m->unseen_cost ? m->unseen_cost[segment] : UNSEEN_COST;
     int count = 0;
     int useful = 0;
     for (int k = 0; k < m->neighbour_count; k++) {
         int seen = pixels, at;
-        if (m->useless >> k & 1) continue;
+        if (m->excluded >> k & 1) continue;
         useful++;
-        float cost = m->hidden ? m->hidden[segment] : HIDDEN_COST;
+        float cost = m->occluded_cost ? m->occluded_cost[segment] : HIDDEN_COST;
         if (!(hidden >> k & 1))
-            cost = (neighbour_cost(m, &m->neighbours[k], begin, end, plane, &seen) - m->good) / (m->random - m->good);
+            cost = (neighbour_cost(m, &m->neighbours[k], begin, end, plane, &seen) - m->good_cost) / (m->chance_cost - m->good_cost);
         if (2 * seen < pixels) continue;
         cost = fminf(fmaxf(cost, MATCH_BEST), MATCH_WORST);
         for (at = count++; at > 0 && costs[at - 1] > cost; at--) costs[at] = costs[at - 1];
@@ -605,32 +605,32 @@ enum status matcher_calibrate(struct matcher *m, double least, double most, stru
     const int count = m->segments->count;
     const size_t costs = (size_t)count * MAX_NEIGHBOURS + 1;
     struct calibration job = {m, least, most, malloc(costs * sizeof(float)), malloc(costs * sizeof(float))};
-    double good, random, contrast[MAX_NEIGHBOURS] = {0}, most_contrast = 0;
-    m->unseen = malloc(((size_t)count + 1) * sizeof *m->unseen);
-    m->hidden = malloc(((size_t)count + 1) * sizeof *m->hidden);
-    enum status st = job.best && job.mean && m->unseen && m->hidden
+    double good, random, contrast[MAX_NEIGHBOURS] = {0}, max_contrast = 0;
+    m->unseen_cost = malloc(((size_t)count + 1) * sizeof *m->unseen_cost);
+    m->occluded_cost = malloc(((size_t)count + 1) * sizeof *m->occluded_cost);
+    enum status st = job.best && job.mean && m->unseen_cost && m->occluded_cost
                          ? ST_OK
                          : err_nomem(err, "costs of segments", costs * 2 * sizeof(float));
     if (!st) parallel_for((size_t)count, 32, calibrate_segments, &job);
     for (int k = 0; !st && k < m->neighbour_count; k++) {
         if (mean_costs(&job, 0, count, 1u << k, &good, &random)) contrast[k] = random - good;
-        most_contrast = fmax(most_contrast, contrast[k]);
+        max_contrast = fmax(max_contrast, contrast[k]);
     }
-    m->useless = 0;
+    m->excluded = 0;
     for (int k = 0; k < m->neighbour_count; k++)
-        if (contrast[k] < USEFUL_CONTRAST * most_contrast) m->useless |= 1u << k;
-    if (!st && mean_costs(&job, 0, count, ~m->useless, &good, &random)) {
-        m->good = (float)good;
-        m->random = (float)fmax(random, good + LEAST_CONTRAST);
+        if (contrast[k] < USEFUL_CONTRAST * max_contrast) m->excluded |= 1u << k;
+    if (!st && mean_costs(&job, 0, count, ~m->excluded, &good, &random)) {
+        m->good_cost = (float)good;
+        m->chance_cost = (float)fmax(random, good + MIN_CONTRAST);
     }
     for (int i = 0; !st && i < count; i++) {
-        m->unseen[i] = UNSEEN_COST;
-        m->hidden[i] = HIDDEN_COST;
-        if (!mean_costs(&job, i, i + 1, ~m->useless, &good, &random)) continue;
-        const float best = ((float)good - m->good) / (m->random - m->good);
-        const float spread = (float)(random - good) / (m->random - m->good);
-        m->unseen[i] = fminf(UNSEEN_COST, best + UNSEEN_COST * spread);
-        m->hidden[i] = fminf(HIDDEN_COST, best + HIDDEN_COST * spread);
+        m->unseen_cost[i] = UNSEEN_COST;
+        m->occluded_cost[i] = HIDDEN_COST;
+        if (!mean_costs(&job, i, i + 1, ~m->excluded, &good, &random)) continue;
+        const float best = ((float)good - m->good_cost) / (m->chance_cost - m->good_cost);
+        const float spread = (float)(random - good) / (m->chance_cost - m->good_cost);
+        m->unseen_cost[i] = fminf(UNSEEN_COST, best + UNSEEN_COST * spread);
+        m->occluded_cost[i] = fminf(HIDDEN_COST, best + HIDDEN_COST * spread);
     }
     free(job.best);
     free(job.mean);
@@ -677,7 +677,7 @@ void match_prefetch(const struct matcher *m, int segment, struct plane plane)
     for (int k = 0; k < m->neighbour_count; k++) {
         const struct match_neighbour *n = &m->neighbours[k];
         double p[3];
-        if (m->useless >> k & 1) continue;
+        if (m->excluded >> k & 1) continue;
         for (int i = 0; i < 3; i++)
             p[i] = n->base[i][0] * g->cx + n->base[i][1] * g->cy + n->base[i][2] + n->shift[i] * d;
         if (!(p[2] > 1e-9)) continue;

@@ -20,17 +20,17 @@ static inline double plane_at(struct plane p, double u, double v) { return p.a *
 
 /* A segment's plane stays within [least, most] of the inverse depths swept at the segment's middle, and over the segment and a
  * margin around it, where its edge may be painted, within [PLANE_LEAST x least, PLANE_MOST x most]. */
-#define PLANE_LEAST 0.7
-#define PLANE_MOST  1.3
+#define PLANE_MIN_FACTOR 0.7
+#define PLANE_MAX_FACTOR  1.3
 
-static inline bool plane_keeps_to(struct plane p, const struct segment *g, double least, double most)
+static inline bool plane_within(struct plane p, const struct segment *g, double least, double most)
 {
     const double margin = 3, u[2] = {g->x0 - margin, g->x1 + 1 + margin}, v[2] = {g->y0 - margin, g->y1 + 1 + margin};
     const double middle = plane_at(p, g->cx, g->cy), slack = 0.02 * (most - least);
     if (!(middle >= least - slack && middle <= most + slack)) return false;
     for (int k = 0; k < 4; k++) {
         const double d = plane_at(p, u[k & 1], v[k >> 1]);
-        if (!(d >= PLANE_LEAST * least && d <= PLANE_MOST * most)) return false;
+        if (!(d >= PLANE_MIN_FACTOR * least && d <= PLANE_MAX_FACTOR * most)) return false;
     }
     return true;
 }
@@ -50,7 +50,7 @@ struct matcher {
     struct match_neighbour neighbours[MAX_NEIGHBOURS];
     int neighbour_count;
     float noise;            /* of the view, grey levels */
-    unsigned useless;       /* bit k: neighbour k tells good matches from chance ones hardly, and is not looked at */
+    unsigned excluded;       /* bit k: neighbour k tells good matches from chance ones hardly, and is not looked at */
     float good, random;     /* raw costs of a good match and of a chance one */
     float *unseen, *hidden; /* of each segment: what a neighbour costs that cannot see it, or that it is hidden from */
 };
@@ -68,7 +68,7 @@ enum status matcher_init(struct matcher *m, const struct segmentation *segments,
 /* Adds a neighbour. The picture is halved while it is more than 1.6 times as fine as the view at inverse depth `typical`;
  * its colours are multiplied by the median ratio at the points both see, its gradients turned to the view's axes. */
 enum status matcher_add(struct matcher *m, const struct camera_set *set, int view_idx, int neighbour_idx,
-                        const struct seen_points *seen, double typical, const struct gamma_image *reference,
+                        const struct observed_points *seen, double typical, const struct gamma_image *reference,
                         struct gamma_image *picture, struct err *err);
 /* Measures what good and chance matches cost at inverse depths from least to most. A segment that cannot be seen costs a part
  * of the way from its best match to its mean one, so that a blank one, which matches everywhere, is not drawn to where it

@@ -108,7 +108,7 @@ static enum status write_deps(const char *deps, const char *out, const char *con
     return st;
 }
 
-static void tell_unknown(const char *view, const struct layered_depth *d)
+static void log_coverage(const char *view, const struct layered_depth *d)
 {
     const struct depth_shares shares = layered_depth_shares(d);
     log_note("%s: %.2f %% of the pixels have no depth%s, %.2f %% inherit theirs: nothing in other views tells it", view,
@@ -117,7 +117,7 @@ static void tell_unknown(const char *view, const struct layered_depth *d)
 }
 
 /* Whether depths were looked for where nothing says that there are any. */
-static enum status tell_range(const struct camera_set *set, const int *read, int count,
+static enum status warn_guessed_range(const struct camera_set *set, const int *read, int count,
                               const struct segment_params *params, struct err *err)
 {
     double least = 0, most = 0;
@@ -143,7 +143,7 @@ static enum status segment_depth(const char *folder, const char *before, const c
     if (!st && (read[0] = camera_set_find(&set, name)) < 0)
         st = err_set(err, ST_USAGE, "there is no view %s in %s/images.txt; its views are listed in %s/views.mk.", name,
                      folder, folder);
-    if (!st) st = note_work(&set, read[0], !before, params, err);
+    if (!st) st = estimate_log(&set, read[0], !before, params, err);
     if (!st) {
         struct views_folder views = {folder, before, given, &set, prov};
         const struct view_source source = {read_view, before ? read_depth : NULL, &views, given ? read_given : NULL};
@@ -151,8 +151,8 @@ static enum status segment_depth(const char *folder, const char *before, const c
     }
     if (!st && deps) st = write_deps(deps, out, (const char *const[2]){folder, before}, &set, read, 1 + count, err);
     if (!st) st = layered_depth_write(&depth, &set.views[read[0]], out, prov, err);
-    if (!st && count && !given) st = tell_range(&set, read, count, params, err);
-    if (!st) tell_unknown(name, &depth);
+    if (!st && count && !given) st = warn_guessed_range(&set, read, count, params, err);
+    if (!st) log_coverage(name, &depth);
     layered_depth_release(&depth);
     camera_set_release(&set);
     return st;
@@ -165,7 +165,7 @@ static enum status estimate(const char *folder, const char *list, int jobs, cons
     enum status st = jobs < 0
                          ? err_set(err, ST_USAGE, "--jobs %d: wanted how many views are made at a time, or 0.", jobs)
                          : camera_set_read(&set, folder, err);
-    if (!st) st = tell_work(stdout, list, &set, jobs, params, err);
+    if (!st) st = estimate_print(stdout, list, &set, jobs, params, err);
     camera_set_release(&set);
     return st;
 }

@@ -42,7 +42,7 @@ static double distinctness(const float *cost, int planes, double at)
     return fmin(fmax((double)(rival - near) / 0.4, 0), 1);
 }
 
-static enum status list_depths(struct layered_depth *out, const struct plane_problem *p, const struct plane *planes,
+static enum status fill_segments(struct layered_depth *out, const struct plane_problem *p, const struct plane *planes,
                                const double *distinct, struct err *err)
 {
     const struct segmentation *s = p->m->segments;
@@ -52,19 +52,19 @@ static enum status list_depths(struct layered_depth *out, const struct plane_pro
     for (int i = 0; i < s->count; i++) {
         const struct segment *g = &s->segments[i];
         const double inverse = plane_at(planes[i], g->cx, g->cy);
-        if (given_depth_knows(p->given, i)) {
+        if (given_depth_has(p->given, i)) {
             out->segments[i] = (struct depth_segment){
                 .id = (uint32_t)i + 1,
                 .plane = {planes[i].a, planes[i].b, planes[i].c},
-                .sigma = (0.5 * p->step + (double)p->given->off[i]) / inverse,
-                .confidence = (double)p->given->good[i],
+                .sigma = (0.5 * p->step + (double)p->given->residual[i]) / inverse,
+                .confidence = (double)p->given->quality[i],
             };
             continue;
         }
         unsigned hidden = 0;
         if (p->cross) cross_view_cost(p->cross, i, planes[i], &hidden);
         const double good = fmin(fmax((double)MATCH_WORST - (double)match_cost(p->m, i, planes[i], hidden), 0), 1);
-        const double agreeing = p->cross ? cross_view_agreeing(p->cross, i, planes[i]) : 0;
+        const double agreeing = p->cross ? cross_view_support(p->cross, i, planes[i]) : 0;
         /* unsure by itself, but two other views say the same: sure */
         const double sure = good * fmax(distinct[i], fmin(agreeing / 2, 1));
         /* a sure segment is right to half a step; an inherited one to a few */
@@ -79,7 +79,7 @@ static enum status list_depths(struct layered_depth *out, const struct plane_pro
 }
 
 /* Where down is in the view's axes, if photographers hold cameras upright on average. */
-static struct vec3 find_down(const struct camera_set *set, const struct view *view)
+static struct vec3 down_direction(const struct camera_set *set, const struct view *view)
 {
     struct vec3 sum = {0, 0, 0};
     for (int i = 0; i < set->view_count; i++) {
@@ -96,7 +96,7 @@ struct solve {
     int neighbour_count;
     const struct matcher *m;
     const struct image *picture;
-    const struct seen_points *seen;
+    const struct observed_points *seen;
     double least, most;
     float *given; /* z of each pixel, or NULL */
     const struct view_source *source;
@@ -158,14 +158,14 @@ static enum status solve(struct layered_depth *out, const struct solve *v, struc
     struct given_depth given = {0};
     struct plane *planes = malloc(((size_t)s->count + 1) * sizeof *planes);
     double *distinct = calloc((size_t)s->count + 1, sizeof *distinct);
-    float *weights = touch_weights(s, params->segment_pixels);
+    float *weights = border_weights(s, params->segment_pixels);
     float *matches = malloc(((size_t)s->count + 1) * sizeof *matches);
     const bool first = !v->source->read_depth;
     plane_sweep_steps(&sweep, v->m, v->least, v->most, params);
     if (v->given) sweep.given = &given;
     const struct view *view = &v->set->views[v->view_idx];
     struct plane_problem problem = {.view = view,
-                                    .down = find_down(v->set, view),
+                                    .down = down_direction(v->set, view),
                                     .m = v->m,
                                     .points = &points,
                                     .cross = first ? NULL : &cross,
@@ -183,14 +183,14 @@ static enum status solve(struct layered_depth *out, const struct solve *v, struc
         st = plane_sweep_run(&sweep, planes, v->m, &points, weights, view, problem.down, params, err);
         problem.cost = sweep.cost;
     } else if (!st) {
-        const struct depth_source source = {v->source->read_depth, v->source->ctx};
+        const struct previous_depth_source source = {v->source->read_depth, v->source->ctx};
         st = cross_view_make(&cross, s, v->set, v->view_idx, v->neighbours, v->neighbour_count, sweep.step, &source,
                              err);
         if (!st) st = planes_before(planes, distinct, v, err);
         for (int i = 0; !st && i < s->count; i++) matches[i] = match_cost_rough(v->m, i, planes[i], 0);
-        problem.least_match = matches;
+        problem.min_match = matches;
         for (int i = 0; !st && i < s->count; i++)
-            if (given_depth_knows(sweep.given, i)) planes[i] = given.planes[i];
+            if (given_depth_has(sweep.given, i)) planes[i] = given.planes[i];
     }
     if (!st) st = expand_planes(planes, &problem, err);
     if (!st) st = refine_planes(planes, &problem, err);
@@ -198,7 +198,7 @@ static enum status solve(struct layered_depth *out, const struct solve *v, struc
         distinct[i] =
             distinctness(sweep.cost + (size_t)i * (size_t)sweep.planes, sweep.planes,
                          (plane_at(planes[i], s->segments[i].cx, s->segments[i].cy) - sweep.least) / sweep.step);
-    if (!st) st = list_depths(out, &problem, planes, distinct, err);
+    if (!st) st = fill_segments(out, &problem, planes, distinct, err);
     if (!st) st = layers_make(out, s, planes, v->picture, sweep.step, !strcmp(params->matte, "two_colour"), err);
     free(planes);
     free(distinct);
@@ -212,7 +212,7 @@ static enum status solve(struct layered_depth *out, const struct solve *v, struc
 }
 
 static enum status add_neighbour(struct matcher *m, const struct camera_set *set, int view_idx, int neighbour_idx,
-                                 const struct view_source *source, const struct seen_points *seen, double typical,
+                                 const struct view_source *source, const struct observed_points *seen, double typical,
                                  const struct gamma_image *reference, struct err *err)
 {
     struct image picture = {0};
@@ -232,7 +232,7 @@ static enum status add_neighbour(struct matcher *m, const struct camera_set *set
 
 /* A view whose depth is given may stand alone. */
 static enum status find_neighbours(int neighbours[MAX_NEIGHBOURS], int *count, const struct camera_set *set,
-                                   int view_idx, const struct seen_points *seen, const struct segment_params *params,
+                                   int view_idx, const struct observed_points *seen, const struct segment_params *params,
                                    const float *given, struct err *err)
 {
     struct err alone = ERR_INIT;
@@ -261,7 +261,7 @@ enum status view_depth(struct layered_depth *out, int neighbours[MAX_NEIGHBOURS]
                        const struct camera_set *set, int view_idx, const struct view_source *source,
                        const struct segment_params *params, struct err *err)
 {
-    struct seen_points seen = {0};
+    struct observed_points seen = {0};
     struct image picture = {0};
     struct gamma_image gamma = {0};
     struct segmentation segments = {0};
@@ -276,7 +276,7 @@ enum status view_depth(struct layered_depth *out, int neighbours[MAX_NEIGHBOURS]
                       .params = params};
     *out = (struct layered_depth){0};
     *neighbour_count = 0;
-    enum status st = seen_points_find(&seen, set, view_idx, err);
+    enum status st = observed_points_find(&seen, set, view_idx, err);
     if (!st && source->read_given) st = source->read_given(source->ctx, view_idx, &v.given, err);
     if (!st) st = find_neighbours(neighbours, neighbour_count, set, view_idx, &seen, params, v.given, err);
     if (!st) st = source->read(source->ctx, view_idx, &picture, err);
@@ -296,7 +296,7 @@ enum status view_depth(struct layered_depth *out, int neighbours[MAX_NEIGHBOURS]
     segmentation_release(&segments);
     gamma_image_release(&gamma);
     image_release(&picture);
-    seen_points_release(&seen);
+    observed_points_release(&seen);
     free(v.given);
     return st;
 }

@@ -90,7 +90,7 @@ static enum status read_depth(void *ctx, int view_idx, struct layered_depth *d, 
 static enum status make(struct err *err)
 {
     int neighbours[MAX_NEIGHBOURS];
-    const struct depth_source source = {read_depth, NULL};
+    const struct previous_depth_source source = {read_depth, NULL};
     const int count = b.scene.set.view_count - 1;
     for (int k = 0; k < count; k++) neighbours[k] = k + 1;
     return cross_view_make(&b.x, &b.s, &b.scene.set, 0, neighbours, count, step, &source, err);
@@ -144,11 +144,11 @@ static void views_that_agree_cost_nothing(void **state)
     must_make();
     const struct plane p = plane_in(&wall, &b.scene.views[0]);
     for (int i = 0; i < SEGMENTS; i++) {
-        unsigned hidden = 99;
+        unsigned occluded = 99;
         if (!framed(i, p)) continue;
-        assert_near(cross_view_cost(&b.x, i, p, &hidden), 0, 1e-4); /* places are float */
-        assert_int_equal(hidden, 0);
-        assert_near(cross_view_agreeing(&b.x, i, p), 2 * 0.75, 1e-6);
+        assert_near(cross_view_cost(&b.x, i, p, &occluded), 0, 1e-4); /* places are float */
+        assert_int_equal(occluded, 0);
+        assert_near(cross_view_support(&b.x, i, p), 2 * 0.75, 1e-6);
         count++;
     }
     assert_true(count > SEGMENTS / 2);
@@ -167,16 +167,16 @@ static void planes_within_two_steps_agree(void **state)
         float before = -1;
         if (!framed(i, (struct plane){0, 0, 0.25})) continue;
         for (double off = 0; off < 2; off += 0.1) {
-            unsigned hidden;
-            const float near = cross_view_cost(&b.x, i, (struct plane){0, 0, 0.25 + off * step}, &hidden);
-            const float far = cross_view_cost(&b.x, i, (struct plane){0, 0, 0.25 - off * step}, &hidden);
+            unsigned occluded;
+            const float near = cross_view_cost(&b.x, i, (struct plane){0, 0, 0.25 + off * step}, &occluded);
+            const float far = cross_view_cost(&b.x, i, (struct plane){0, 0, 0.25 - off * step}, &occluded);
             assert_near(near, far, 0.01);
             assert_true(near > before && near < 0.2f);
             before = near;
-            if (off < 1.85) assert_near(cross_view_agreeing(&b.x, i, (struct plane){0, 0, 0.25 + off * step}), 3, 1e-6);
+            if (off < 1.85) assert_near(cross_view_support(&b.x, i, (struct plane){0, 0, 0.25 + off * step}), 3, 1e-6);
         }
-        assert_near(cross_view_agreeing(&b.x, i, (struct plane){0, 0, 0.25 + 2.15 * step}), 0, 0);
-        assert_near(cross_view_agreeing(&b.x, i, (struct plane){0, 0, 0.25 - 2.15 * step}), 0, 0);
+        assert_near(cross_view_support(&b.x, i, (struct plane){0, 0, 0.25 + 2.15 * step}), 0, 0);
+        assert_near(cross_view_support(&b.x, i, (struct plane){0, 0, 0.25 - 2.15 * step}), 0, 0);
     }
     finish();
 }
@@ -196,14 +196,14 @@ static void seeing_through_a_plane_costs_as_much_as_the_neighbour_is_sure(void *
         const struct plane p = {0, 0, 0.25 + 12 * step};
         float least = 9, most = 0;
         for (int i = 0; i < SEGMENTS; i++) {
-            unsigned hidden = 99;
+            unsigned occluded = 99;
             if (!framed(i, p)) continue;
-            const float cost = cross_view_cost(&b.x, i, p, &hidden);
-            assert_int_equal(hidden, 0);
+            const float cost = cross_view_cost(&b.x, i, p, &occluded);
+            assert_int_equal(occluded, 0);
             least = fminf(least, cost);
             most = fmaxf(most, cost);
             /* farther in front is no better */
-            assert_true(cross_view_cost(&b.x, i, (struct plane){0, 0, 0.25 + 20 * step}, &hidden) >= cost - 1e-6f);
+            assert_true(cross_view_cost(&b.x, i, (struct plane){0, 0, 0.25 + 20 * step}, &occluded) >= cost - 1e-6f);
             count++;
         }
         assert_true(count > SEGMENTS / 3);
@@ -230,12 +230,12 @@ static void a_plane_behind_something_sure_is_hidden(void **state)
         const struct plane p = {0, 0, k == 1 ? 0.25 : 0.25 - 15 * step};
         must_make();
         for (int i = 0; i < SEGMENTS; i++) {
-            unsigned hidden = 99;
+            unsigned occluded = 99;
             if (!framed(i, p)) continue;
-            const float cost = cross_view_cost(&b.x, i, p, &hidden);
-            assert_int_equal(hidden, k == 0 ? 3 : k == 1 ? 1 : 0);
+            const float cost = cross_view_cost(&b.x, i, p, &occluded);
+            assert_int_equal(occluded, k == 0 ? 3 : k == 1 ? 1 : 0);
             assert_true(cost > 0 && cost < 0.4f);
-            assert_near(cross_view_agreeing(&b.x, i, p), k == 1 ? 1 : 0, 1e-6);
+            assert_near(cross_view_support(&b.x, i, p), k == 1 ? 1 : 0, 1e-6);
             count++;
         }
         assert_true(count > SEGMENTS / 2);
@@ -256,12 +256,12 @@ static void who_knows_nothing_has_no_opinion(void **state)
         if (k == 3) b.unknown = W;
         must_make();
         for (int i = 0; i < SEGMENTS; i++) {
-            unsigned hidden = 99;
-            const float cost = cross_view_cost(&b.x, i, p, &hidden);
+            unsigned occluded = 99;
+            const float cost = cross_view_cost(&b.x, i, p, &occluded);
             if (unknown < 0) unknown = cost;
             assert_near(cost, unknown, 1e-6);
-            assert_int_equal(hidden, 0);
-            assert_near(cross_view_agreeing(&b.x, i, p), 0, 0);
+            assert_int_equal(occluded, 0);
+            assert_near(cross_view_support(&b.x, i, p), 0, 0);
         }
         finish();
     }
@@ -271,12 +271,12 @@ static void who_knows_nothing_has_no_opinion(void **state)
 static void without_neighbours_nothing_is_said(void **state)
 {
     (void)state;
-    unsigned hidden = 99;
+    unsigned occluded = 99;
     start();
     scene_view(&b.scene, W, H, FOCAL, 0, 0, 0, 0);
     must_make();
-    assert_near(cross_view_cost(&b.x, 3, (struct plane){0, 0, 1}, &hidden), 0, 0);
-    assert_int_equal(hidden, 0);
+    assert_near(cross_view_cost(&b.x, 3, (struct plane){0, 0, 1}, &occluded), 0, 0);
+    assert_int_equal(occluded, 0);
     assert_int_equal(b.x.first_proposal[SEGMENTS], 0);
     finish();
 }
@@ -292,11 +292,11 @@ static void any_plane_has_a_finite_cost(void **state)
     must_make();
     for (int i = 0; i < SEGMENTS; i += 5)
         for (int k = 0; k < 64; k++) {
-            unsigned hidden = 0;
+            unsigned occluded = 0;
             const struct plane p = {sizes[k % 8] * (k % 2 ? 1 : -1), -0.5 * sizes[k % 8], sizes[k / 8]};
-            const float cost = cross_view_cost(&b.x, i, p, &hidden);
-            assert_true(cost >= 0 && cost < 1.3f && hidden < 4);
-            assert_true(cross_view_agreeing(&b.x, i, p) <= 2);
+            const float cost = cross_view_cost(&b.x, i, p, &occluded);
+            assert_true(cost >= 0 && cost < 1.3f && occluded < 4);
+            assert_true(cross_view_support(&b.x, i, p) <= 2);
         }
     finish();
 }

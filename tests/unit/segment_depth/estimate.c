@@ -25,7 +25,7 @@ static char *told(const char *list, int jobs, enum status wanted, struct err *er
     size_t size;
     FILE *to = open_memstream(&text, &size);
     assert_non_null(to);
-    assert_int_equal(tell_work(to, scratch_write("list", list), &scene.set, jobs, &params, err), wanted);
+    assert_int_equal(estimate_print(to, scratch_write("list", list), &scene.set, jobs, &params, err), wanted);
     fclose(to);
     return text;
 }

@@ -39,7 +39,7 @@ static float *sweep(int planes)
 static void the_energy_never_rises(void **state)
 {
     (void)state;
-    static struct plane planes[MOST_SEGMENTS];
+    static struct plane planes[MAX_SEGMENTS];
     for (int k = 0; k < 4; k++) {
         bench_empty();
         scene_wall(&b.scene, 0, 0, 5, 8, 8, 0.4)->contrast = k == 3 ? 0 : 0.8;
@@ -69,7 +69,7 @@ static void the_energy_never_rises(void **state)
 static void no_pass_changes_nothing(void **state)
 {
     (void)state;
-    static struct plane planes[MOST_SEGMENTS], before[MOST_SEGMENTS];
+    static struct plane planes[MAX_SEGMENTS], before[MAX_SEGMENTS];
     bench_empty();
     scene_wall(&b.scene, 0, 0, 4, 6, 6, 0.4);
     bench_views();
@@ -85,7 +85,7 @@ static void no_pass_changes_nothing(void **state)
 static void threads_do_not_change_a_bit(void **state)
 {
     (void)state;
-    static struct plane planes[3][MOST_SEGMENTS];
+    static struct plane planes[3][MAX_SEGMENTS];
     bench_empty();
     scene_wall(&b.scene, 0, 0, 5, 8, 8, 0.4);
     scene_wall(&b.scene, 0.2, 0, 3.5, 0.5, 0.6, 0)->colour[0] = 0.12f;
@@ -117,7 +117,7 @@ static bool on_card(double u, double v)
 static void a_blank_middle_takes_the_plane_of_its_rim(void **state)
 {
     (void)state;
-    static struct plane planes[MOST_SEGMENTS];
+    static struct plane planes[MAX_SEGMENTS];
     for (int slope = 0; slope < 2; slope++) {
         bench_empty();
         const double lean = slope ? 0.7 : -0.4;
@@ -167,7 +167,7 @@ static void a_blank_middle_takes_the_plane_of_its_rim(void **state)
 static void planes_keep_to_the_depths(void **state)
 {
     (void)state;
-    static struct plane planes[MOST_SEGMENTS];
+    static struct plane planes[MAX_SEGMENTS];
     bench_empty();
     scene_wall(&b.scene, 0, 0, 4, 6, 6, 0.4)->contrast = 0;
     bench_views();
@@ -177,7 +177,7 @@ static void planes_keep_to_the_depths(void **state)
         planes[i] = (struct plane){0, 0, i % 2 ? b.problem.least : b.problem.most};
     expand(planes);
     for (int i = 0; i < b.segments.count; i++)
-        assert_true(plane_keeps_to(planes[i], &b.segments.segments[i], b.problem.least, b.problem.most));
+        assert_true(plane_within(planes[i], &b.segments.segments[i], b.problem.least, b.problem.most));
     bench_release();
 }
 

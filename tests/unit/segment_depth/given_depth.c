@@ -264,13 +264,13 @@ static void the_larger_part_gives_the_plane(void **state)
     assert_int_equal(r.g.pixels, 3 * SIDE * SIDE + SIDE * SIDE / 8 - 1);
     assert_near(r.g.planes[0].a, 0, 0);
     assert_near(r.g.planes[0].c, 0.5, 1e-6);
-    assert_near(r.g.good[0], 5.0 / 8, 1e-3);
+    assert_near(r.g.quality[0], 5.0 / 8, 1e-3);
     assert_near(r.g.planes[1].a, 0.004, 1e-6);
     assert_near(r.g.planes[1].b, 0.002, 1e-6);
     assert_near(r.g.planes[1].c, 0.5, 1e-5);
-    assert_near(r.g.off[1], 0, 1e-6);
+    assert_near(r.g.residual[1], 0, 1e-6);
     assert_true(r.g.planes[2].a == 0 && r.g.planes[2].b == 0);
-    assert_near(r.g.good[2], 1, 0.01);
+    assert_near(r.g.quality[2], 1, 0.01);
     given_depth_release(&r.g);
     given_depth_release(&r.g);
 }
@@ -321,14 +321,14 @@ static void units_show_in_the_sparse_points(void **state)
     (void)state;
     enum { N = 30 };
     static float z[W * H];
-    struct seen_point points[N + 1];
-    struct seen_points seen = {points, N};
+    struct observed_point points[N + 1];
+    struct observed_points seen = {points, N};
     for (int i = 0; i < W * H; i++) z[i] = i % 7 ? 1000.0f * (float)(2 + i % W) : 0;
     for (int i = 0; i < N; i++)
-        points[i] = (struct seen_point){i, 3 * i + 0.5, 2 * i + 0.5, (i % 3 ? 1 : 5) / (2.0 + 3 * i)};
+        points[i] = (struct observed_point){i, 3 * i + 0.5, 2 * i + 0.5, (i % 3 ? 1 : 5) / (2.0 + 3 * i)};
     assert_near(given_depth_ratio(z, W, H, &seen), 1000, 1e-3);
-    points[N] = (struct seen_point){0, W, -1, 1};
-    seen = (struct seen_points){points + N - 4, 5};
+    points[N] = (struct observed_point){0, W, -1, 1};
+    seen = (struct observed_points){points + N - 4, 5};
     assert_near(given_depth_ratio(z, W, H, &seen), 0, 0); /* too few */
 }
 

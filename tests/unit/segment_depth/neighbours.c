@@ -31,17 +31,17 @@ static void patch(int count, unsigned mask)
 
 static int choose(int neighbours[MAX_NEIGHBOURS], int most, struct err *err)
 {
-    struct seen_points seen;
+    struct observed_points seen;
     int count = -1;
     *err = (struct err)ERR_INIT;
-    assert_int_equal(seen_points_find(&seen, &scene.set, 0, err), ST_OK);
+    assert_int_equal(observed_points_find(&seen, &scene.set, 0, err), ST_OK);
     const enum status st = neighbours_choose(neighbours, &count, &scene.set, 0, &seen, most, err);
     assert_int_equal(st, count ? ST_OK : ST_DATA);
     for (int i = 0; i < count; i++) {
         assert_in_range(neighbours[i], 1, scene.set.view_count - 1);
         for (int k = 0; k < i; k++) assert_int_not_equal(neighbours[i], neighbours[k]);
     }
-    seen_points_release(&seen);
+    observed_points_release(&seen);
     return count;
 }
 
@@ -171,7 +171,7 @@ static void no_view_to_match_with_is_an_error(void **state)
 static void points_are_those_in_front_and_where_they_were_observed(void **state)
 {
     (void)state;
-    struct seen_points seen;
+    struct observed_points seen;
     struct err err = ERR_INIT;
     start();
     at(1, 0, 0);
@@ -181,34 +181,34 @@ static void points_are_those_in_front_and_where_they_were_observed(void **state)
     scene.observations[0][3].point_id = 5;  /* not in the list */
     scene.points[4].position.z = -7;        /* behind */
     scene.observations[0][5].v += 1.5;      /* a little off is believed */
-    assert_int_equal(seen_points_find(&seen, &scene.set, 0, &err), ST_OK);
+    assert_int_equal(observed_points_find(&seen, &scene.set, 0, &err), ST_OK);
     assert_int_equal(seen.count, 2);
     for (int i = 0; i < 2; i++) {
-        const struct seen_point *p = &seen.points[i];
+        const struct observed_point *p = &seen.points[i];
         const struct vec3 x = scene.points[p->point_idx].position;
         assert_int_equal(p->point_idx, i ? 5 : 0);
         assert_near(p->inverse_z, 1 / x.z, 1e-15);
         assert_near(p->u, 80 + 160 * x.x / x.z, 1e-9);
         assert_near(p->v, 60 + 160 * x.y / x.z, 1e-9);
     }
-    seen_points_release(&seen);
-    seen_points_release(&seen);
-    seen_points_release(NULL);
+    observed_points_release(&seen);
+    observed_points_release(&seen);
+    observed_points_release(NULL);
     scene.set.model.image_count = 0; /* cameras alone */
-    assert_int_equal(seen_points_find(&seen, &scene.set, 0, &err), ST_OK);
+    assert_int_equal(observed_points_find(&seen, &scene.set, 0, &err), ST_OK);
     assert_int_equal(seen.count, 0);
-    seen_points_release(&seen);
+    observed_points_release(&seen);
 }
 
 static bool range_of(double *least, double *most)
 {
     bool guessed = false;
-    struct seen_points seen;
+    struct observed_points seen;
     struct err err = ERR_INIT;
     const int neighbour = 1;
-    assert_int_equal(seen_points_find(&seen, &scene.set, 0, &err), ST_OK);
+    assert_int_equal(observed_points_find(&seen, &scene.set, 0, &err), ST_OK);
     assert_int_equal(depth_range(least, most, &guessed, &scene.set, 0, &neighbour, 1, &err), ST_OK);
-    seen_points_release(&seen);
+    observed_points_release(&seen);
     assert_true(*least > 0 && *least < *most && isfinite(*most));
     return guessed;
 }

@@ -141,15 +141,15 @@ static void must_be_sound(const struct segmentation *s, const struct gamma_image
         assert_int_equal(walk(s, k, met, queue), f->pixels); /* connected */
 
         int sides = 0;
-        for (int t = s->first_touch[k]; t < s->first_touch[k + 1]; t++) {
-            const struct touch *a = &s->touches[t], *b = NULL;
+        for (int t = s->first_border[k]; t < s->first_border[k + 1]; t++) {
+            const struct border *a = &s->borders[t], *b = NULL;
             assert_true(a->other != k && a->other >= 0 && a->other < s->count);
-            assert_true(t == s->first_touch[k] || a[-1].other < a->other);
+            assert_true(t == s->first_border[k] || a[-1].other < a->other);
             assert_int_equal(a->length, border(s, k, a->other));
             assert_true(a->edge >= 0 && a->edge < s->edge_count && a->contrast >= 0 && isfinite(a->contrast));
             assert_true(a->u >= (float)x0 && a->u <= (float)x1 + 1 && a->v >= (float)y0 && a->v <= (float)y1 + 1);
-            for (int r = s->first_touch[a->other]; r < s->first_touch[a->other + 1]; r++)
-                if (s->touches[r].other == k) b = &s->touches[r];
+            for (int r = s->first_border[a->other]; r < s->first_border[a->other + 1]; r++)
+                if (s->borders[r].other == k) b = &s->borders[r];
             assert_non_null(b);
             assert_true(b->edge == a->edge && b->length == a->length);
             assert_memory_equal(&b->u, &a->u, sizeof a->u);
@@ -160,7 +160,7 @@ static void must_be_sound(const struct segmentation *s, const struct gamma_image
         assert_int_equal(sides, border(s, k, -1)); /* none left out */
     }
     assert_int_equal(listed, valid);
-    assert_int_equal(s->first_touch[s->count], 2 * s->edge_count);
+    assert_int_equal(s->first_border[s->count], 2 * s->edge_count);
     free(met);
     free(queue);
 }
@@ -212,8 +212,8 @@ static void a_uniform_picture_gives_a_grid(void **state)
     }
     assert_int_equal(s.edge_count, 7 * 6 + 8 * 5);
     for (int t = 0; t < 2 * s.edge_count; t++) {
-        assert_int_equal(s.touches[t].length, 8);
-        assert_near(s.touches[t].contrast, 0, 1e-5);
+        assert_int_equal(s.borders[t].length, 8);
+        assert_near(s.borders[t].contrast, 0, 1e-5);
     }
     release(&s, &g);
 }
@@ -277,14 +277,14 @@ static void a_border_knows_its_contrast(void **state)
     int across_count = 0, within_count = 0;
     cut(&s, &g, 120, 90, disc, 64, 8);
     for (int k = 0; k < s.count; k++)
-        for (int t = s.first_touch[k]; t < s.first_touch[k + 1]; t++) {
+        for (int t = s.first_border[k]; t < s.first_border[k + 1]; t++) {
             const double a = hypot(s.segments[k].cx - 60, s.segments[k].cy - 45);
-            const double b = hypot(s.segments[s.touches[t].other].cx - 60, s.segments[s.touches[t].other].cy - 45);
+            const double b = hypot(s.segments[s.borders[t].other].cx - 60, s.segments[s.borders[t].other].cy - 45);
             if ((a < 30) != (b < 30)) {
-                across += (double)s.touches[t].contrast;
+                across += (double)s.borders[t].contrast;
                 across_count++;
             } else {
-                within += (double)s.touches[t].contrast;
+                within += (double)s.borders[t].contrast;
                 within_count++;
             }
         }
@@ -307,7 +307,7 @@ static void threads_do_not_change_a_segment(void **state)
     assert_int_equal(s[0].edge_count, s[1].edge_count);
     assert_memory_equal(s[0].label, s[1].label, 97 * 61 * sizeof *s[0].label);
     assert_memory_equal(s[0].segments, s[1].segments, (size_t)s[0].count * sizeof *s[0].segments);
-    assert_memory_equal(s[0].touches, s[1].touches, (size_t)s[0].edge_count * 2 * sizeof *s[0].touches);
+    assert_memory_equal(s[0].borders, s[1].borders, (size_t)s[0].edge_count * 2 * sizeof *s[0].borders);
     for (int k = 0; k < 2; k++) release(&s[k], &g[k]);
 }
 

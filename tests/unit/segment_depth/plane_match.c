@@ -11,7 +11,7 @@ struct bench {
     struct scene scene;
     struct gamma_image reference;
     struct segmentation segments;
-    struct seen_points seen;
+    struct observed_points seen;
     struct matcher matcher;
     struct plane truth; /* of the wall in view 0 */
     double step;        /* of 1/z: a pixel in view 1 */
@@ -43,7 +43,7 @@ static void match_all(void)
     assert_int_equal(gamma_image_make(&b.reference, &photo, tone, &err), ST_OK);
     image_release(&photo);
     assert_int_equal(oversegment(&b.segments, &b.reference, 64, 8, &err), ST_OK);
-    assert_int_equal(seen_points_find(&b.seen, &b.scene.set, 0, &err), ST_OK);
+    assert_int_equal(observed_points_find(&b.seen, &b.scene.set, 0, &err), ST_OK);
     assert_int_equal(matcher_init(&b.matcher, &b.segments, &b.reference, &err), ST_OK);
     for (int k = 1; k < b.scene.set.view_count; k++) {
         struct gamma_image other = {0};
@@ -63,7 +63,7 @@ static void match_all(void)
 static void finish(void)
 {
     matcher_release(&b.matcher);
-    seen_points_release(&b.seen);
+    observed_points_release(&b.seen);
     segmentation_release(&b.segments);
     gamma_image_release(&b.reference);
 }
@@ -201,7 +201,7 @@ static void a_small_change_of_exposure_needs_no_points(void **state)
     match_all();
     struct gamma_image other = {0};
     struct image photo = {0};
-    const struct seen_points none = {0};
+    const struct observed_points none = {0};
     struct matcher m = {0};
     assert_int_equal(matcher_init(&m, &b.segments, &b.reference, &err), ST_OK);
     assert_int_equal(scene_photo(&b.scene, 1, &photo, &err), ST_OK);
@@ -332,11 +332,11 @@ static void calibration_puts_good_matches_at_0_and_chance_at_1(void **state)
         for (int i = 0; i < b.segments.count; i++)
             for (int k = 0; k < 2; k++) raw[k][i] = match_cost(&b.matcher, i, off_by(5 * k), 0);
         assert_int_equal(matcher_calibrate(&b.matcher, 0.15, 0.4, &err), ST_OK);
-        assert_true(b.matcher.good >= 0 && b.matcher.random > b.matcher.good && b.matcher.random <= 1);
+        assert_true(b.matcher.good_cost >= 0 && b.matcher.chance_cost > b.matcher.good_cost && b.matcher.chance_cost <= 1);
         for (int i = 0; i < b.segments.count; i++) {
             if (!well_inside(i)) continue;
             const float at = match_cost(&b.matcher, i, b.truth, 0), off = match_cost(&b.matcher, i, off_by(5), 0);
-            const float wanted = (raw[1][i] - b.matcher.good) / (b.matcher.random - b.matcher.good);
+            const float wanted = (raw[1][i] - b.matcher.good_cost) / (b.matcher.chance_cost - b.matcher.good_cost);
             worst_fit = fmax(worst_fit, fabs((double)(off - fminf(wanted, MATCH_WORST))));
             good += (double)at;
             chance += (double)off;
@@ -362,7 +362,7 @@ static void calibration_of_pictures_that_tell_nothing_stays_finite(void **state)
         if (which == 2) b.scene.gain[1] = 0;                                 /* black */
         match_all();
         assert_int_equal(matcher_calibrate(&b.matcher, 0.15, 0.4, &err), ST_OK);
-        assert_true(b.matcher.random - b.matcher.good > 0.01f);
+        assert_true(b.matcher.chance_cost - b.matcher.good_cost > 0.01f);
         for (int i = 0; i < b.segments.count; i += 3)
             for (int k = -6; k <= 6; k += 3) {
                 const float cost = match_cost(&b.matcher, i, off_by(k), 0);

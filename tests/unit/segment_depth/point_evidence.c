@@ -26,10 +26,10 @@ static void cut(struct segmentation *s, bool halves)
     image_release(&im);
 }
 
-static void make(struct point_evidence *e, const struct segmentation *s, struct seen_point *points, int count)
+static void make(struct point_evidence *e, const struct segmentation *s, struct observed_point *points, int count)
 {
     const struct segment_params params = {.points = weight, .nearest_points = near_weight, .far_bias = far_weight};
-    const struct seen_points seen = {points, count};
+    const struct observed_points seen = {points, count};
     struct err err = ERR_INIT;
     if (point_evidence_make(e, s, &seen, least, most, step, &params, &err)) fail_msg("%s", err.text);
 }
@@ -53,7 +53,7 @@ static void points_inside_hold_a_segment(void **state)
     (void)state;
     struct segmentation s;
     struct point_evidence e;
-    struct seen_point one = {0, 20.5, 12.5, 0.3}, many[9];
+    struct observed_point one = {0, 20.5, 12.5, 0.3}, many[9];
     cut(&s, false);
     const int segment = s.label[12 * W + 20];
     make(&e, &s, &one, 1);
@@ -61,7 +61,7 @@ static void points_inside_hold_a_segment(void **state)
     const double held = cost_of(&e, &s, segment, 0.3 + 5 * step) - cost_of(&e, &s, segment, 0.3);
     assert_near(held, 0.5 * weight + near_weight + far_weight * 5 * step / (most - least), 1e-6);
     point_evidence_release(&e);
-    for (int i = 0; i < 9; i++) many[i] = (struct seen_point){i, 17 + 0.7 * i, 10 + 0.5 * i, 0.3};
+    for (int i = 0; i < 9; i++) many[i] = (struct observed_point){i, 17 + 0.7 * i, 10 + 0.5 * i, 0.3};
     many[4].inverse_z = 0.45; /* one is false */
     make(&e, &s, many, 9);
     assert_near(cheapest(&e, &s, segment), 0.3, 0.002);
@@ -82,10 +82,10 @@ static void a_segment_without_points_leans_on_those_near_in_place_and_colour(voi
     (void)state;
     struct segmentation s;
     struct point_evidence e;
-    struct seen_point points[32];
+    struct observed_point points[32];
     cut(&s, true);
     for (int i = 0; i < 32; i++) /* the bright half is near, with points at its left; the dark one far, at its right */
-        points[i] = (struct seen_point){i, i % 8 + (i < 16 ? 20.5 : 56.5), (i / 8 * 11) + 2, i < 16 ? 0.4 : 0.15};
+        points[i] = (struct observed_point){i, i % 8 + (i < 16 ? 20.5 : 56.5), (i / 8 * 11) + 2, i < 16 ? 0.4 : 0.15};
     make(&e, &s, points, 32);
     assert_near(cheapest(&e, &s, s.label[4 * W + 4]), 0.4, 0.02);
     assert_near(cheapest(&e, &s, s.label[20 * W + 60]), 0.4, 0.02); /* dark points are nearer in place */
@@ -99,9 +99,9 @@ static void of_several_near_depths_the_farthest_is_cheapest(void **state)
     (void)state;
     struct segmentation s;
     struct point_evidence e;
-    struct seen_point points[8];
+    struct observed_point points[8];
     cut(&s, false);
-    for (int i = 0; i < 8; i++) points[i] = (struct seen_point){i, 8.0 * i + 4, 4, i % 2 ? 0.45 : 0.2};
+    for (int i = 0; i < 8; i++) points[i] = (struct observed_point){i, 8.0 * i + 4, 4, i % 2 ? 0.45 : 0.2};
     make(&e, &s, points, 8);
     assert_near(cheapest(&e, &s, s.label[30 * W + 30]), 0.2, 0.002);
     point_evidence_release(&e);
@@ -113,7 +113,7 @@ static void without_points_far_is_a_little_cheaper(void **state)
     (void)state;
     struct segmentation s;
     struct point_evidence e;
-    struct seen_point outside[] = {{0, -1, 5, 0.3}, {1, 5, 48, 0.3}, {2, 64, 5, 0.3}, {3, 1e9, -1e9, 0.3}};
+    struct observed_point outside[] = {{0, -1, 5, 0.3}, {1, 5, 48, 0.3}, {2, 64, 5, 0.3}, {3, 1e9, -1e9, 0.3}};
     cut(&s, false);
     for (int count = 0; count <= 4; count += 4) { /* points outside the picture are none */
         make(&e, &s, outside, count);

@@ -6,7 +6,7 @@
 #include "stages/segment_depth/smooth.h"
 #include "tests/unit/segment_depth/scene.h"
 
-enum { W = 140, H = 100, FOCAL = 140, MOST_SEGMENTS = 600 };
+enum { W = 140, H = 100, FOCAL = 140, MAX_SEGMENTS = 600 };
 
 struct bench {
     struct scene scene;
@@ -38,7 +38,7 @@ static inline void bench_make(double least, double most)
 {
     struct image photo = {0};
     struct err err = ERR_INIT;
-    const struct seen_points none = {0};
+    const struct observed_points none = {0};
     const double step = 1 / (FOCAL * 0.5);
     struct tone tone = {1, 0.5};
     for (int k = 0; k < b.scene.set.view_count; k++) {
@@ -56,9 +56,9 @@ static inline void bench_make(double least, double most)
     }
     assert_int_equal(matcher_calibrate(&b.matcher, least, most, &err), ST_OK);
     assert_int_equal(point_evidence_make(&b.points, &b.segments, &none, least, most, step, &b.params, &err), ST_OK);
-    b.weights = touch_weights(&b.segments, 64);
+    b.weights = border_weights(&b.segments, 64);
     assert_non_null(b.weights);
-    assert_true(b.segments.count < MOST_SEGMENTS);
+    assert_true(b.segments.count < MAX_SEGMENTS);
     b.problem = (struct plane_problem){.view = &b.scene.views[0],
                                        .down = {0, 1, 0},
                                        .m = &b.matcher,
@@ -93,10 +93,10 @@ static inline double bench_energy(const struct plane *planes, bool rough)
     double sum = 0;
     p.rough = rough;
     for (int i = 0; i < b.segments.count; i++) {
-        sum += (double)problem_unary(&p, i, planes[i], INFINITY);
-        for (int t = b.segments.first_touch[i]; t < b.segments.first_touch[i + 1]; t++) {
-            const int j = b.segments.touches[t].other;
-            if (j > i) sum += problem_pair(&p, i, t, planes[i], planes[j]);
+        sum += (double)unary_cost(&p, i, planes[i], INFINITY);
+        for (int t = b.segments.first_border[i]; t < b.segments.first_border[i + 1]; t++) {
+            const int j = b.segments.borders[t].other;
+            if (j > i) sum += pairwise_cost(&p, i, t, planes[i], planes[j]);
         }
     }
     return sum;

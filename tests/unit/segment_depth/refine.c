@@ -49,7 +49,7 @@ static double mean_error(const struct plane *planes)
 static void a_leaning_wall_is_found_to_a_fraction_of_a_step(void **state)
 {
     (void)state;
-    static struct plane planes[MOST_SEGMENTS];
+    static struct plane planes[MAX_SEGMENTS];
     for (int free_slant = 0; free_slant < 2; free_slant++) {
         double mean_a = 0, mean_b = 0;
         start(0.4, 0.8);
@@ -73,7 +73,7 @@ static void a_leaning_wall_is_found_to_a_fraction_of_a_step(void **state)
 static void a_facing_wall_stays_constant(void **state)
 {
     (void)state;
-    static struct plane planes[MOST_SEGMENTS];
+    static struct plane planes[MAX_SEGMENTS];
     int constant = 0;
     start(0, 0.8);
     start_planes(planes);
@@ -88,7 +88,7 @@ static void a_facing_wall_stays_constant(void **state)
 static void no_pass_changes_nothing(void **state)
 {
     (void)state;
-    static struct plane planes[MOST_SEGMENTS], before[MOST_SEGMENTS];
+    static struct plane planes[MAX_SEGMENTS], before[MAX_SEGMENTS];
     start(0.4, 0.8);
     b.params.passes = 0;
     start_planes(planes);
@@ -101,7 +101,7 @@ static void no_pass_changes_nothing(void **state)
 static void planes_keep_to_the_depths_even_on_a_blank_wall(void **state)
 {
     (void)state;
-    static struct plane planes[MOST_SEGMENTS];
+    static struct plane planes[MAX_SEGMENTS];
     start(0.4, 0);
     b.params.passes = 12;
     b.params.slant = 0;
@@ -112,7 +112,7 @@ static void planes_keep_to_the_depths_even_on_a_blank_wall(void **state)
         const struct segment *g = &b.segments.segments[i];
         for (int k = 0; k < 4; k++) {
             const double d = plane_at(planes[i], k & 1 ? g->x1 + 1 : g->x0, k & 2 ? g->y1 + 1 : g->y0);
-            assert_true(d >= PLANE_LEAST * b.problem.least - 1e-12 && d <= PLANE_MOST * b.problem.most + 1e-12);
+            assert_true(d >= PLANE_MIN_FACTOR * b.problem.least - 1e-12 && d <= PLANE_MAX_FACTOR * b.problem.most + 1e-12);
         }
     }
     bench_release();
@@ -121,7 +121,7 @@ static void planes_keep_to_the_depths_even_on_a_blank_wall(void **state)
 static void threads_do_not_change_a_plane(void **state)
 {
     (void)state;
-    static struct plane planes[2][MOST_SEGMENTS];
+    static struct plane planes[2][MAX_SEGMENTS];
     start(0.4, 0.8);
     for (int k = 0; k < 2; k++) {
         parallel_set_threads(1 + 2 * k);

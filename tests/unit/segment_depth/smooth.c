@@ -7,8 +7,8 @@ enum { MOST_NODES = 40, MOST_EDGES = 90, MOST_LABELS = 24 };
 
 struct graph {
     struct segmentation s;
-    int first_touch[MOST_NODES + 1], ends[MOST_EDGES][2];
-    struct touch touches[2 * MOST_EDGES];
+    int first_border[MOST_NODES + 1], ends[MOST_EDGES][2];
+    struct border borders[2 * MOST_EDGES];
     struct segment segments[MOST_NODES];
     float weights[2 * MOST_EDGES], cost[MOST_NODES * MOST_LABELS];
     int labels;
@@ -28,20 +28,20 @@ static void finish(struct graph *g, int nodes, int labels, int seed, bool ties)
     int n = 0;
     g->s.count = nodes;
     g->labels = labels;
-    g->s.first_touch = g->first_touch;
-    g->s.touches = g->touches;
+    g->s.first_border = g->first_border;
+    g->s.borders = g->borders;
     g->s.segments = g->segments;
     for (int i = 0; i < nodes; i++) {
-        g->first_touch[i] = n;
+        g->first_border[i] = n;
         for (int other = 0; other < nodes; other++)
             for (int e = 0; e < g->s.edge_count; e++) {
                 if (g->ends[e][0] != (i < other ? i : other) || g->ends[e][1] != (i < other ? other : i)) continue;
                 const double w = scene_hash(e, seed, 1);
                 g->weights[n] = (float)(ties ? rint(3 * w) : 2 * w);
-                g->touches[n++] = (struct touch){.other = other, .edge = e, .length = 1};
+                g->borders[n++] = (struct border){.other = other, .edge = e, .length = 1};
             }
     }
-    g->first_touch[nodes] = n;
+    g->first_border[nodes] = n;
     for (int k = 0; k < nodes * labels; k++)
         g->cost[k] = (float)(ties ? rint(4 * scene_hash(k, seed, 2)) / 4 : scene_hash(k, seed, 2));
 }
@@ -51,10 +51,10 @@ static double energy(const struct graph *g, const int *label)
     double sum = 0;
     for (int i = 0; i < g->s.count; i++) {
         sum += (double)g->cost[i * g->labels + label[i]];
-        for (int t = g->first_touch[i]; t < g->first_touch[i + 1]; t++)
-            if (g->touches[t].other > i)
+        for (int t = g->first_border[i]; t < g->first_border[i + 1]; t++)
+            if (g->borders[t].other > i)
                 sum += (double)g->weights[t] *
-                       fmin((double)g->slope * abs(label[i] - label[g->touches[t].other]), (double)g->most);
+                       fmin((double)g->slope * abs(label[i] - label[g->borders[t].other]), (double)g->most);
     }
     return sum;
 }
@@ -217,17 +217,17 @@ static void unlike_sides_are_tied_loosely(void **state)
     finish(&g, 3, 1, 1, false);
     g.segments[2].colour[0] = 60; /* 0 and 1 are alike, 2 is another colour; the border 0-2 is twice as long */
     for (int i = 0; i < 3; i++)
-        for (int t = g.first_touch[i]; t < g.first_touch[i + 1]; t++) {
-            g.touches[t].length = i + g.touches[t].other == 2 ? 16 : 8;
-            g.touches[t].contrast = i == 2 || g.touches[t].other == 2 ? 60 : 0;
+        for (int t = g.first_border[i]; t < g.first_border[i + 1]; t++) {
+            g.borders[t].length = i + g.borders[t].other == 2 ? 16 : 8;
+            g.borders[t].contrast = i == 2 || g.borders[t].other == 2 ? 60 : 0;
         }
-    float *w = touch_weights(&g.s, 64);
+    float *w = border_weights(&g.s, 64);
     assert_non_null(w);
     for (int i = 0; i < 3; i++)
-        for (int t = g.first_touch[i]; t < g.first_touch[i + 1]; t++) {
-            const int pair = i + g.touches[t].other;
+        for (int t = g.first_border[i]; t < g.first_border[i + 1]; t++) {
+            const int pair = i + g.borders[t].other;
             if (pair == 1) assert_near(w[t], 1, 1e-6); /* alike, as long as a segment is wide */
-            if (pair == 2) assert_near(w[t], 2 * (double)w[g.first_touch[2] + 1], 1e-6);
+            if (pair == 2) assert_near(w[t], 2 * (double)w[g.first_border[2] + 1], 1e-6);
             if (pair > 1) assert_true(w[t] > 0 && w[t] < 0.2f);
         }
     free(w);
