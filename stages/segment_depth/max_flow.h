@@ -24,8 +24,8 @@ struct max_flow {
 
 /* Starts a graph of `nodes` nodes, with room for `edges` edges of two arcs each. */
 enum status max_flow_begin(struct max_flow *f, int nodes, int edges, struct err *err);
-/* Adds a terminal arc: cost >= 0 is paid if the node is on the sink's side, -cost (cost < 0) if it is on the source's.
- * */
+/* Adds a terminal arc: cost >= 0 is paid if the node is on the sink's side, -cost (cost < 0) if it is on the
+ * source's. */
 void max_flow_terminal(struct max_flow *f, int node, int64_t cost);
 /* Adds an edge: `forward` is paid if `from` is on the source's side and `to` on the sink's, `backward` if it is the
  * reverse; both >= 0. */

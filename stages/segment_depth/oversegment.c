@@ -120,8 +120,8 @@ struct component {
     double lab[3];
 };
 
-/* Fills component_of (w * h, -1 where there is no label) and the components; returns how many. queue: w * h, scratch.
- * */
+/* Fills component_of (w * h, -1 where there is no label) and the components; returns how many. queue: w * h,
+ * scratch. */
 static int find_components(const struct slic *s, int *component_of, int *queue, struct component *components)
 {
     int pixels = s->width * s->height, count = 0;

@@ -6,8 +6,8 @@
  *
  * A segment whose depth is given has one plane, of cost 0; any other costs PLANE_FORBIDDEN. size_i is in mean segments.
  * The gap is the mean difference of the two planes' inverse depths at the middle of the border and at both centroids:
- * zero for equal planes, so that a surface slants at no cost, and never more than the sum over a third plane (metric).
- * */
+ * zero for equal planes, so that a surface slants at no cost, and never more than the sum over a third plane
+ * (metric). */
 #ifndef REMODEL_PLANE_PROBLEM_H
 #define REMODEL_PLANE_PROBLEM_H
 

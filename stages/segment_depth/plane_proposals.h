@@ -17,8 +17,8 @@ static inline int random_member(struct cell_random *r, const int *members, int c
     return members[(int)(random_number(r) * count)];
 }
 
-/* planes: the current ones, one per segment. The functions that return a bool return false if there is no such plane.
- * */
+/* planes: the current ones, one per segment. The functions that return a bool return false if there is no such
+ * plane. */
 
 /* The plane through the centroids of three random members at their current depths. */
 bool propose_through_three(struct plane *out, const struct plane_problem *p, const struct plane *planes,

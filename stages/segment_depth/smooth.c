@@ -36,8 +36,8 @@ float *border_weights(const struct segmentation *s, int segment_pixels)
                 float e = s->segments[i].colour[c] - s->segments[border->other].colour[c];
                 d += e * e;
             }
-            /* the segments' means alone would cut gradients, the border's contrast alone would leak through soft edges
-             * */
+            /* the segments' means alone would cut gradients, the border's contrast alone would leak through soft
+             * edges */
             d = (0.5f * sqrtf(d) + border->contrast) / SIMILAR;
             weights[t] =
                 (float)(border->length / sqrt(segment_pixels)) * (MIN_WEIGHT + (1 - MIN_WEIGHT) / (1 + d * d * d * d));
