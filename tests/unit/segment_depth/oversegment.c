@@ -1,4 +1,4 @@
-/* oversegment.c - pictures that are formulas, cut into segments whose lists are then counted again pixel by pixel. */
+/* oversegment.c - segments of synthetic pictures, whose lists are checked pixel by pixel. */
 #include "stages/segment_depth/oversegment.h"
 
 #include "tests/unit/segment_depth/scene.h"
@@ -22,13 +22,13 @@ static void noise(int x, int y, float rgba[4])
 static void blobs(int x, int y, float rgba[4])
 {
     for (int c = 0; c < 3; c++) rgba[c] = (float)scene_noise(x / 9.0, y / 9.0, 5 * c);
-    rgba[3] = hypot(x - 40, y - 25) > 12 && (x + 2 * y) % 61 > 3; /* no pixels in a disc and along stripes */
+    rgba[3] = hypot(x - 40, y - 25) > 12 && (x + 2 * y) % 61 > 3; /* invalid in a disc and along stripes */
 }
 
 static void islands(int x, int y, float rgba[4])
 {
     noise(x, y, rgba);
-    rgba[3] = x % 3 == 0 && y % 3 == 0; /* pixels without any neighbour */
+    rgba[3] = x % 3 == 0 && y % 3 == 0; /* isolated pixels */
 }
 
 static void nothing(int x, int y, float rgba[4])
@@ -71,7 +71,7 @@ static void release(struct segmentation *s, struct gamma_image *g)
     gamma_image_release(g);
 }
 
-/* Walks from a segment's first pixel over its own pixels; how many it meets. */
+/* Number of the segment's pixels that are connected to its first one. */
 static int walk(const struct segmentation *s, int segment, uint8_t *met, int *queue)
 {
     int head = 0, tail = 0;
@@ -89,7 +89,7 @@ static int walk(const struct segmentation *s, int segment, uint8_t *met, int *qu
     return tail;
 }
 
-/* Pixel sides between segment a and segment b (b < 0: any other). */
+/* Pixel sides shared by segment a and segment b (b < 0: all others). */
 static int border(const struct segmentation *s, int a, int b)
 {
     int sides = 0;
@@ -157,7 +157,7 @@ static void must_be_sound(const struct segmentation *s, const struct gamma_image
             assert_memory_equal(&b->contrast, &a->contrast, sizeof a->contrast);
             sides += a->length;
         }
-        assert_int_equal(sides, border(s, k, -1)); /* none left out */
+        assert_int_equal(sides, border(s, k, -1)); /* borders are complete */
     }
     assert_int_equal(listed, valid);
     assert_int_equal(s->first_border[s->count], 2 * s->edge_count);
@@ -181,7 +181,7 @@ static void every_valid_pixel_is_in_one_connected_segment(void **state)
         }
 }
 
-static void segments_are_about_as_large_as_asked(void **state)
+static void segments_have_about_the_requested_size(void **state)
 {
     (void)state;
     static paint_fn *const paints[] = {grey, noise, disc};
@@ -218,7 +218,7 @@ static void a_uniform_picture_gives_a_grid(void **state)
     release(&s, &g);
 }
 
-static void odd_sizes_are_cut_too(void **state)
+static void odd_picture_sizes_work(void **state)
 {
     (void)state;
     static const int sizes[][2] = {{1, 1}, {1, 500}, {500, 1}, {2, 2}, {3, 40}, {20000, 16}, {16, 3000}};
@@ -234,13 +234,13 @@ static void odd_sizes_are_cut_too(void **state)
         }
     struct segmentation s;
     struct gamma_image g;
-    cut(&s, &g, 30, 20, noise, 100000, 8); /* one segment larger than the picture */
+    cut(&s, &g, 30, 20, noise, 100000, 8); /* a segment larger than the picture */
     assert_int_equal(s.count, 1);
     assert_int_equal(s.segments[0].pixels, 600);
     release(&s, &g);
 }
 
-/* Pixels that belong to a segment mostly on the other side of the disc's edge. */
+/* The fraction of pixels in a segment that lies mostly on the other side of the disc's edge. */
 static double wrong_side(const struct segmentation *s)
 {
     int wrong = 0;
@@ -263,12 +263,12 @@ static void segments_respect_a_colour_edge(void **state)
     cut(&s, &g, 120, 90, disc, 64, 8);
     assert_true(wrong_side(&s) < 0.005); /* the rim itself is 1.7 % of the pixels */
     release(&s, &g);
-    cut(&s, &g, 120, 90, disc, 64, 100); /* squares do not */
+    cut(&s, &g, 120, 90, disc, 64, 100); /* square segments do not respect it */
     assert_true(wrong_side(&s) > 0.01);
     release(&s, &g);
 }
 
-static void a_border_knows_its_contrast(void **state)
+static void borders_store_their_contrast(void **state)
 {
     (void)state;
     struct segmentation s;
@@ -293,7 +293,7 @@ static void a_border_knows_its_contrast(void **state)
     release(&s, &g);
 }
 
-static void threads_do_not_change_a_segment(void **state)
+static void thread_counts_give_the_same_segments(void **state)
 {
     (void)state;
     struct segmentation s[2];
@@ -324,12 +324,12 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_valid_pixel_is_in_one_connected_segment),
-        cmocka_unit_test(segments_are_about_as_large_as_asked),
+        cmocka_unit_test(segments_have_about_the_requested_size),
         cmocka_unit_test(a_uniform_picture_gives_a_grid),
-        cmocka_unit_test(odd_sizes_are_cut_too),
+        cmocka_unit_test(odd_picture_sizes_work),
         cmocka_unit_test(segments_respect_a_colour_edge),
-        cmocka_unit_test(a_border_knows_its_contrast),
-        cmocka_unit_test(threads_do_not_change_a_segment),
+        cmocka_unit_test(borders_store_their_contrast),
+        cmocka_unit_test(thread_counts_give_the_same_segments),
         cmocka_unit_test(release_may_be_repeated),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,4 +1,4 @@
-/* problem.h - the energy of planes on photographs of a scene: what refine and expand are tried on. */
+/* problem.h - an energy on photographs of a scene, for the tests of refine and expand. */
 #ifndef REMODEL_TESTS_SEGMENT_PROBLEM_H
 #define REMODEL_TESTS_SEGMENT_PROBLEM_H
 
@@ -34,7 +34,7 @@ static inline void bench_views(void)
 }
 
 /* The problem of the first view, without points; the scene has its surfaces and views. */
-static inline void bench_make(double least, double most)
+static inline void bench_make(double min_inverse_z, double max_inverse_z)
 {
     struct image photo = {0};
     struct err err = ERR_INIT;
@@ -54,8 +54,9 @@ static inline void bench_make(double least, double most)
         assert_int_equal(oversegment(&b.segments, &b.reference, 64, 8, &err), ST_OK);
         assert_int_equal(matcher_init(&b.matcher, &b.segments, &b.reference, &err), ST_OK);
     }
-    assert_int_equal(matcher_calibrate(&b.matcher, least, most, &err), ST_OK);
-    assert_int_equal(point_evidence_make(&b.points, &b.segments, &none, least, most, step, &b.params, &err), ST_OK);
+    assert_int_equal(matcher_calibrate(&b.matcher, min_inverse_z, max_inverse_z, &err), ST_OK);
+    assert_int_equal(
+        point_evidence_make(&b.points, &b.segments, &none, min_inverse_z, max_inverse_z, step, &b.params, &err), ST_OK);
     b.weights = border_weights(&b.segments, 64);
     assert_non_null(b.weights);
     assert_true(b.segments.count < MAX_SEGMENTS);
@@ -65,8 +66,8 @@ static inline void bench_make(double least, double most)
                                        .points = &b.points,
                                        .weights = b.weights,
                                        .params = &b.params,
-                                       .least = least,
-                                       .most = most,
+                                       .min_inverse_z = min_inverse_z,
+                                       .max_inverse_z = max_inverse_z,
                                        .step = step};
 }
 
@@ -86,7 +87,7 @@ static inline double bench_truth(double u, double v)
     return 1 / scene_depth(&b.scene, &b.scene.views[0], u, v, &surface);
 }
 
-/* Of all segments and borders; `rough`: every fourth pixel. */
+/* The energy of all segments and borders; `rough`: from every fourth pixel. */
 static inline double bench_energy(const struct plane *planes, bool rough)
 {
     struct plane_problem p = b.problem;
