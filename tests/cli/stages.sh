@@ -43,7 +43,7 @@ parameters_out_of_range_are_refused()
     expect 2 "max_h" "$B/bin/sample_validity" --set max_h=nan
     expect 2 "seed" "$B/bin/choose_effects" --set seed=-1
     expect 2 "tolerance" "$B/bin/pan_scan" --set tolerance=nan
-    expect 2 "least_face" "$B/bin/find_subjects" --set least_face=0
+    expect 2 "min_face" "$B/bin/find_subjects" --set min_face=0
     expect 2 "brackets" "$B/bin/import_photos" --set brackets=maybe
     expect 2 "fewer than two frames" "$B/bin/morph_views" --set seconds=0.01
     expect 2 "saturated" "$B/bin/hdr_merge" --set saturated=2
