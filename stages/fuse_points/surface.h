@@ -10,7 +10,7 @@ struct surface_plane {
     struct vec3 normal;  /* world, length 1, towards the camera; {0, 0, 0}: no valid plane */
     double offset;       /* normal . X on the plane */
     double inverse_z[3]; /* 1/z = a u + b v + c */
-    float sigma;         /* relative uncertainty of z, at least LEAST_SIGMA */
+    float sigma;         /* relative uncertainty of z, at least MIN_SIGMA */
     float confidence;
 };
 

@@ -106,7 +106,7 @@ static enum status make_orphan(struct max_flow *f, int i, struct err *err)
 
 /* Residual capacity of a tree arc in the direction of flow: from parent to child in the source's tree, from child to
  * parent in the sink's. */
-static inline int64_t residual_to_child(const struct max_flow *f, int arc_to_parent, bool sink)
+static inline int64_t tree_residual(const struct max_flow *f, int arc_to_parent, bool sink)
 {
     return f->arcs[sink ? arc_to_parent : arc_to_parent ^ 1].residual;
 }
@@ -119,7 +119,7 @@ static enum status augment(struct max_flow *f, int bridge, struct err *err)
     for (int side = 0; side < 2; side++) {
         int i = ends[side];
         for (int a; (a = f->nodes[i].parent) != TERMINAL; i = f->arcs[a].to) {
-            const int64_t r = residual_to_child(f, a, side);
+            const int64_t r = tree_residual(f, a, side);
             if (r < bottleneck) bottleneck = r;
         }
         const int64_t r = side ? -f->nodes[i].excess : f->nodes[i].excess;
@@ -178,7 +178,7 @@ static enum status adopt(struct max_flow *f, int i, struct err *err)
     int best = NONE, nearest = 0;
     for (int a = n->first; a != NONE; a = f->arcs[a].next) {
         const int j = f->arcs[a].to;
-        if (!(residual_to_child(f, a, sink) > 0) || f->nodes[j].sink != sink || f->nodes[j].parent == NONE) continue;
+        if (!(tree_residual(f, a, sink) > 0) || f->nodes[j].sink != sink || f->nodes[j].parent == NONE) continue;
         const int d = distance_to_root(f, j);
         if (d >= 0 && (best == NONE || d < nearest)) {
             best = a;
@@ -197,7 +197,7 @@ static enum status adopt(struct max_flow *f, int i, struct err *err)
         const int j = f->arcs[a].to;
         struct flow_node *m = &f->nodes[j];
         if (m->sink != sink || m->parent == NONE) continue;
-        if (residual_to_child(f, a, sink) > 0) activate(f, j);
+        if (tree_residual(f, a, sink) > 0) activate(f, j);
         if (m->parent >= 0 && f->arcs[m->parent].to == i && !st) st = make_orphan(f, j, err);
     }
     return st;

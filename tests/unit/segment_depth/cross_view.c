@@ -125,7 +125,7 @@ static bool framed(int segment, struct plane p)
 }
 
 /* Three cameras: one shifted sideways, one rotated, moved forward and of another size. */
-static void stand(void)
+static void place_cameras(void)
 {
     scene_view(&b.scene, W, H, FOCAL, 0, 0, 0, 0);
     scene_view(&b.scene, W, H, FOCAL, 0.4, 0, 0, 0);
@@ -137,7 +137,7 @@ static void agreeing_views_cost_nothing(void **state)
     (void)state;
     int count = 0;
     start();
-    stand();
+    place_cameras();
     const struct world_plane wall = {vec3_normalize(vec3_make(0.3, -0.2, 1)), 4};
     for (int k = 0; k < 3; k++) b.surface[k] = wall;
     b.confidence = 0.75;
@@ -160,7 +160,7 @@ static void planes_within_two_steps_agree(void **state)
 {
     (void)state;
     start();
-    stand();
+    place_cameras();
     scene_view(&b.scene, W, H, FOCAL, 0, 0.1, -3, 0); /* farther back */
     must_make();
     for (int i = 0; i < SEGMENTS; i++) {
@@ -190,7 +190,7 @@ static void seeing_through_a_plane_costs_in_proportion_to_confidence(void **stat
     for (int k = 0; k < 4; k++) {
         int count = 0;
         start();
-        stand();
+        place_cameras();
         b.confidence = confidences[k];
         must_make();
         const struct plane p = {0, 0, 0.25 + 12 * step};
@@ -224,7 +224,7 @@ static void a_plane_behind_a_confident_surface_is_occluded(void **state)
         const double confidence = k == 2 ? 0.2 : 1;
         int count = 0;
         start();
-        stand();
+        place_cameras();
         b.confidence = confidence;
         if (k == 1) b.surface[1] = facing(3); /* in one neighbour only */
         const struct plane p = {0, 0, k == 1 ? 0.25 : 0.25 - 15 * step};
@@ -287,7 +287,7 @@ static void any_plane_has_a_finite_cost(void **state)
     (void)state;
     static const double sizes[] = {0, 1e-9, 1e-3, 0.3, 20, 1e6, 1e15, 1e100};
     start();
-    stand();
+    place_cameras();
     b.unknown = 20;
     must_make();
     for (int i = 0; i < SEGMENTS; i += 5)
@@ -310,7 +310,7 @@ static void proposals_are_the_neighbours_planes_in_this_views_pixels(void **stat
     for (int n = 0; n < 4; n++) {
         int wanted[SEGMENTS] = {0}, total = 0;
         start();
-        stand();
+        place_cameras();
         const struct world_plane w = {vec3_normalize(vec3_make(normals[n][0], normals[n][1], normals[n][2])), 3};
         const struct plane truth = plane_in(&w, &b.scene.views[0]);
         for (int k = 0; k < 3; k++) b.surface[k] = w;
@@ -357,7 +357,7 @@ static void an_unreadable_depth_map_is_an_error(void **state)
     for (int k = 1; k < 3; k++) {
         struct err err = ERR_INIT;
         start();
-        stand();
+        place_cameras();
         b.broken = k;
         assert_int_equal(make(&err), ST_IO);
         assert_string_equal(err.text, k == 1 ? "cannot read depth 1." : "cannot read depth 2.");

@@ -9,7 +9,7 @@ static struct scene scene;
 static const struct segment_params params = SEGMENT_PARAMS_DEFAULT;
 
 /* Three views of a wall; the last one is wider. */
-static void stand(void)
+static void place_cameras(void)
 {
     memset(&scene, 0, sizeof scene);
     scene_wall(&scene, 0, 0, 5, 9, 9, 0);
@@ -50,7 +50,7 @@ static void the_work_of_a_list_is_summed_and_divided_among_cores(void **state)
 {
     (void)state;
     struct err err = ERR_INIT;
-    stand();
+    place_cameras();
     parallel_set_threads(1);
     char *text = printed_estimate("# of two rounds\na 0\nb 0\na 1\n", 2, ST_OK, &err);
     assert_non_null(strstr(text, "depth: 2 views of 1000 x 500, 2 neighbours, 2 rounds: about "));
@@ -72,7 +72,7 @@ static void an_empty_list_prints_nothing(void **state)
 {
     (void)state;
     struct err err = ERR_INIT;
-    stand();
+    place_cameras();
     char *text = printed_estimate("", 2, ST_OK, &err);
     assert_string_equal(text, "");
     free(text);
@@ -85,7 +85,7 @@ static void a_faulty_list_is_an_error(void **state)
                                            {"a 12\n", "round"},
                                            {"a 0 0\n", "list:1"}};
     (void)state;
-    stand();
+    place_cameras();
     for (size_t i = 0; i < sizeof lists / sizeof *lists; i++) {
         struct err err = ERR_INIT;
         free(printed_estimate(lists[i][0], 1, ST_DATA, &err));
@@ -98,7 +98,7 @@ static void too_little_memory_is_a_warning(void **state)
 {
     (void)state;
     struct err err = ERR_INIT;
-    stand();
+    place_cameras();
     scene.views[0].width = scene.views[0].height = 1 << 20;
     char *text = printed_estimate("a 0\n", 1, ST_OK, &err);
     assert_non_null(strstr(text, "\ndepth: warning: this machine has "));

@@ -45,7 +45,7 @@ static void must_work_given(struct result *r, giver g)
     struct err err = ERR_INIT;
     gives = g;
     assert_ok(view_depth(&r->depth, r->neighbours, &r->neighbour_count, &scene.set, 0, &source, &params, &err), err);
-    must_be_sound(&r->depth);
+    check_invariants(&r->depth);
 }
 
 /* A slanted wall, and a card in front of it. */
@@ -54,7 +54,7 @@ static void wall_and_card(int views)
     start();
     scene_wall(&scene, 0, 0, 7, 15, 15, 0.4)->cell = 0.35;
     scene_wall(&scene, 0.1, 0.1, 4, 0.8, 0.7, 0)->colour[0] = 0.1f;
-    stand(views);
+    place_cameras(views);
 }
 
 /* -------------------------------------------------------------------------------------------------- a single view */
@@ -66,8 +66,8 @@ static void a_single_photo_with_depth_has_layers(void **state)
     wall_and_card(1);
     must_work_given(&r, all);
     assert_int_equal(r.neighbour_count, 0);
-    assert_true(right(&r.depth, 0, 1e-4) > 0.98);
-    assert_true(right(&r.depth, 1, 1e-4) > 0.98);
+    assert_true(fraction_correct(&r.depth, 0, 1e-4) > 0.98);
+    assert_true(fraction_correct(&r.depth, 1, 1e-4) > 0.98);
     assert_true(mean_confidence(&r.depth) > 0.9);
     int boundary = 0;
     for (int i = 0; i < W * H; i++) boundary += r.depth.boundary.id[i] > 0;
@@ -81,7 +81,7 @@ static void samples_in_a_third_of_the_pixels_are_enough(void **state)
     struct result r = {0};
     wall_and_card(1);
     must_work_given(&r, one_in_3);
-    assert_true(right(&r.depth, 0, 1e-3) > 0.97 && right(&r.depth, 1, 1e-3) > 0.97);
+    assert_true(fraction_correct(&r.depth, 0, 1e-3) > 0.97 && fraction_correct(&r.depth, 1, 1e-3) > 0.97);
     layered_depth_release(&r.depth);
 }
 
@@ -91,7 +91,7 @@ static void noise_and_outliers_do_not_bend_planes(void **state)
     struct result r = {0};
     wall_and_card(3);
     must_work_given(&r, noisy);
-    assert_true(right(&r.depth, 0, 0.005) > 0.97 && right(&r.depth, 1, 0.005) > 0.97);
+    assert_true(fraction_correct(&r.depth, 0, 0.005) > 0.97 && fraction_correct(&r.depth, 1, 0.005) > 0.97);
     assert_true(mean_confidence(&r.depth) > 0.5 && mean_confidence(&r.depth) < 0.95);
     layered_depth_release(&r.depth);
 }
@@ -103,9 +103,9 @@ static void a_hole_inherits_the_depth_around_it(void **state)
     struct result r = {0};
     start();
     scene_wall(&scene, 0, 0, 7, 15, 15, 0.4);
-    stand(1);
+    place_cameras(1);
     must_work_given(&r, with_a_hole);
-    assert_true(right(&r.depth, 0, 0.02) > 0.97);
+    assert_true(fraction_correct(&r.depth, 0, 0.02) > 0.97);
     double worst = 0;
     for (int i = 0; i < r.depth.segment_count; i++) worst = fmax(worst, 1 - r.depth.segments[i].confidence);
     assert_true(worst > 0.9); /* with low confidence */
@@ -138,7 +138,7 @@ static void given_and_matched_halves_agree(void **state)
     scene_points(&scene, 200);
     must_work_given(&r, left_half);
     assert_int_equal(r.neighbour_count, 4);
-    assert_true(right(&r.depth, 0, 0.02) > 0.95 && right(&r.depth, 1, 0.02) > 0.95);
+    assert_true(fraction_correct(&r.depth, 0, 0.02) > 0.95 && fraction_correct(&r.depth, 1, 0.02) > 0.95);
     int good = 0, count = 0;
     for (int y = 0; y < H; y++)
         for (int x = 0; x < W / 2 - 8; x++) {
@@ -161,7 +161,7 @@ static void given_depth_is_kept(void **state)
     memset(&before, 0, sizeof before);
     start();
     scene_wall(&scene, 0, 0, 5, 12, 12, 0.2);
-    stand(3);
+    place_cameras(3);
     scene_points(&scene, 200);
     before.scene = &scene;
     gives = twice_as_far;
@@ -182,7 +182,7 @@ static void given_depth_is_kept(void **state)
             const double z = scene_depth(&scene, &scene.views[0], i % W + 0.5, i / W + 0.5, &at);
             assert_near((double)now[0].interior.z[i] / (2 * z), 1, 2e-4);
         }
-        assert_true(right(&now[1], -1, 0.02) > (round ? 0 : 0.97)); /* without given depth */
+        assert_true(fraction_correct(&now[1], -1, 0.02) > (round ? 0 : 0.97)); /* without given depth */
     }
     for (int k = 0; k < 3; k++) layered_depth_release(&before.depth[k]);
 }

@@ -39,12 +39,12 @@ static void a_textureless_wall_closes_the_room(void **state)
             wall->across = vec3_make(0, 0, 3);
             wall->down = vec3_make(0, 1.5, 0);
         }
-        stand(5);
+        place_cameras(5);
         scene_points(&scene, points * 300);
         must_work_in_rounds(d, 1, &params);
         for (int round = 0; round < 2; round++) {
-            assert_true(right(&d[round], 0, half_a_step(6)) > 0.95);
-            assert_true(right(&d[round], -1, half_a_step(6)) > 0.95);
+            assert_true(fraction_correct(&d[round], 0, half_a_step(6)) > 0.95);
+            assert_true(fraction_correct(&d[round], -1, half_a_step(6)) > 0.95);
             layered_depth_release(&d[round]);
         }
     }
@@ -58,11 +58,11 @@ static void wallpaper_gets_the_depth_of_its_frame(void **state)
     start();
     scene_wall(&scene, 0, 0, 5, 9, 9, 0);
     scene_wall(&scene, 0, 0, 5 - 1e-4, 1.2, 0.5, 0)->period = 0.31; /* 10 px */
-    stand(5);
+    place_cameras(5);
     must_work_in_rounds(d, 1, &params);
     for (int round = 0; round < 2; round++) {
-        assert_true(right(&d[round], 0, 0.02) > 0.95);
-        assert_true(right(&d[round], 1, 0.02) > 0.9);
+        assert_true(fraction_correct(&d[round], 0, 0.02) > 0.95);
+        assert_true(fraction_correct(&d[round], 1, 0.02) > 0.9);
         layered_depth_release(&d[round]);
     }
 }
@@ -79,7 +79,7 @@ static void a_highlight_on_a_glossy_floor_changes_only_its_own_pixels(void **sta
         floor->gloss = burnt ? 5 : 0.3;
         floor->light = vec3_make(0, -0.5, 9);
         scene_wall(&scene, 0, 0, 12, 20, 20, 0)->cell = 0.6;
-        stand(5);
+        place_cameras(5);
         scene_points(&scene, 300);
         must_work_in_rounds(d, 1, &params);
         for (int round = 0; round < 2; round++) {
@@ -144,7 +144,7 @@ static void a_floor_is_found_unless_it_is_a_mirror(void **state)
         struct painted_surface *wall = scene_wall(&scene, 0, 0, 9, 20, 20, 0);
         wall->cell = 0.6;
         wall->colour[0] = 0.15f;
-        stand(5);
+        place_cameras(5);
         scene_points(&scene, k & 2 ? 300 : 0);
         must_work_in_rounds_of(d, 1, &params, mirroring_photo);
         for (int round = 0; round < 2; round++) {
@@ -166,7 +166,7 @@ static void a_floor_is_found_unless_it_is_a_mirror(void **state)
                     "  mirrors %.2f, %d points: of %d px of floor %d are the floor's, %d the mirror image's\n", mirror,
                     k & 2 ? 300 : 0, floor, own, mirrored);
             assert_true(own + (k & 1 ? mirrored : 0) > 0.95 * floor);
-            assert_true(right(&d[round], 1, half_a_step(9) / 9) > 0.95);
+            assert_true(fraction_correct(&d[round], 1, half_a_step(9) / 9) > 0.95);
             layered_depth_release(&d[round]);
         }
     }
@@ -183,7 +183,7 @@ static void a_view_without_neighbours_is_an_error(void **state)
         struct err err = ERR_INIT;
         start();
         scene_wall(&scene, 0, 0, 5, 9, 9, 0);
-        stand(1);
+        place_cameras(1);
         if (views == 2) scene_view(&scene, W, H, FOCAL, 0.4, 0, 0, M_PI); /* faces the other way */
         assert_int_equal(depth_of(&r, &params, &err), ST_DATA);
         assert_err(err, ST_DATA, "view a has no neighbour to match with: none of the ");
@@ -254,7 +254,7 @@ static void a_nan_in_a_view_is_an_error_with_its_pixel(void **state)
     const struct view_source source = {photo_on_disk, NULL, NULL, NULL};
     start();
     scene_wall(&scene, 0, 0, 5, 9, 9, 0.2);
-    stand(3);
+    place_cameras(3);
     for (int broken = -1; broken < 6; broken++) {
         struct result r = {0};
         struct err err = ERR_INIT;
@@ -271,7 +271,7 @@ static void a_nan_in_a_view_is_an_error_with_its_pixel(void **state)
             view_depth(&r.depth, r.neighbours, &r.neighbour_count, &scene.set, 0, &source, &params, &err);
         if (broken < 0) { /* neither file is broken */
             assert_ok(st, err);
-            assert_true(right(&r.depth, -1, 0.02) > 0.95);
+            assert_true(fraction_correct(&r.depth, -1, 0.02) > 0.95);
             layered_depth_release(&r.depth);
             continue;
         }
@@ -305,7 +305,7 @@ static void a_previous_round_of_another_picture_is_an_error(void **state)
     struct err err = ERR_INIT;
     start();
     scene_wall(&scene, 0, 0, 5, 9, 9, 0.2);
-    stand(2);
+    place_cameras(2);
     before.scene = &scene;
     const struct view_source first = {scene_photo, NULL, &scene, NULL},
                              less = {rounds_photo, depth_of_less, &before, NULL},
@@ -333,7 +333,7 @@ static void unmatched_parts_inherit_depth_and_are_counted(void **state)
         struct layered_depth d[2];
         start();
         scene_wall(&scene, 0, 0, 5, 9, 9, 0);
-        stand(1);
+        place_cameras(1);
         scene_view(&scene, W / 2, H, FOCAL, 0.4, 0, 0, 0);
         scene_points(&scene, points * 300);
         must_work_in_rounds(d, 1, &params);
@@ -354,7 +354,7 @@ static void unmatched_parts_inherit_depth_and_are_counted(void **state)
             assert_true(confident > 0.98 * seen);
             assert_true(shares.unknown == 0);
             assert_near(shares.inherited, 0.5, 0.04);
-            assert_true(right(&d[round], 0, 0.02) > 0.97);
+            assert_true(fraction_correct(&d[round], 0, 0.02) > 0.97);
             layered_depth_release(&d[round]);
         }
     }
@@ -368,7 +368,7 @@ static void masked_pixels_have_no_depth_and_are_counted(void **state)
     int masked = 0;
     start();
     scene_wall(&scene, 0, 0, 5, 9, 9, 0);
-    stand(3);
+    place_cameras(3);
     scene.holes = true;
     must_work(&r);
     for (int i = 0; i < W * H; i++) masked += hypot(i % W + 0.5 - W / 2.0, i / W + 0.5 - H / 2.0) < H / 6.0;
@@ -442,11 +442,11 @@ static void a_dynamic_range_of_a_million_to_one_is_matched(void **state)
         lamp = k & 1;
         start();
         scene_wall(&scene, 0, 0, 5, 9, 9, 0);
-        stand(5);
+        place_cameras(5);
         scene_points(&scene, k & 2 ? 200 : 0);
         must_work_in_rounds_of(d, 1, &params, bright_photo);
         for (int round = 0; round < 2; round++) {
-            assert_true(right(&d[round], 0, 0.02) > 0.95);
+            assert_true(fraction_correct(&d[round], 0, 0.02) > 0.95);
             layered_depth_release(&d[round]);
         }
     }
@@ -466,7 +466,7 @@ static void an_overexposed_window_has_low_confidence_and_its_wall_is_found(void 
         }
         struct painted_surface *outside = scene_wall(&scene, 0, 0, 60, 90, 90, 0);
         for (int c = 0; c < 3; c++) outside->colour[c] = 30;
-        stand(5);
+        place_cameras(5);
         scene_points(&scene, points * 200);
         must_work_in_rounds(d, 1, &params);
         for (int round = 0; round < 2; round++) {
@@ -486,7 +486,7 @@ static void an_overexposed_window_has_low_confidence_and_its_wall_is_found(void 
                 print_message("  of %d px %d at the wall or behind, of %d inner ones %d confident as inherited\n",
                               window, behind, inner, confident);
             assert_true(inner > 1000 && behind > 0.95 * window && confident > 0.9 * inner);
-            for (int k = 0; k < 4; k++) assert_true(right(&d[round], k, 0.02) > 0.97);
+            for (int k = 0; k < 4; k++) assert_true(fraction_correct(&d[round], k, 0.02) > 0.97);
             layered_depth_release(&d[round]);
         }
     }
@@ -583,7 +583,7 @@ static void more_rounds_never_make_two_planes_worse(void **state)
         struct painted_surface *card = scene_wall(&scene, 0.1, 0.1, 4, 0.8, 0.7, k & 4 ? -0.3 : 0);
         card->colour[0] = 0.12f;
         card->cell = 0.2;
-        stand(k & 2 ? 2 : 3);
+        place_cameras(k & 2 ? 2 : 3);
         scene_points(&scene, k & 1 ? 200 : 0);
         must_work_in_rounds(d, 2, &params);
         for (int round = 1; round < 3; round++) {
@@ -601,7 +601,7 @@ static void thread_counts_give_the_same_bits_in_a_second_round(void **state)
     start();
     scene_wall(&scene, 0, 0, 7, 12, 12, 0.2);
     scene_surface(&scene, vec3_make(0.1, 0, 5))->radius = 1;
-    stand(3);
+    place_cameras(3);
     for (int k = 0; k < 2; k++) {
         parallel_set_threads(k + 1);
         must_work_in_rounds(d[k], 1, &params);

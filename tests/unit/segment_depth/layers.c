@@ -67,7 +67,7 @@ static void finish(struct bench *b)
 }
 
 /* The invariants of docs/formats.md. */
-static void must_be_sound(const struct bench *b)
+static void check_invariants(const struct bench *b)
 {
     int *pixels = calloc((size_t)b->s.count, sizeof *pixels);
     assert_non_null(pixels);
@@ -114,7 +114,7 @@ static void alpha_at_a_depth_edge_is_recovered(void **state)
     int mixed = 0;
     start(&b, near_colour, far_colour, 2, false, far_depth);
     make(&b, true);
-    must_be_sound(&b);
+    check_invariants(&b);
     for (int y = 0; y < H; y++)
         for (int x = 0; x < W; x++) {
             const double alpha = share(x, y, 2);
@@ -150,7 +150,7 @@ static void a_segment_border_off_by_a_pixel_is_corrected(void **state)
         for (int x = 1; x < W; x++)
             if (y % 3 == 0 && share(x, y, 0.01) < 0.5 && share(x - 1, y, 0.01) > 0.5) b.s.label[y * W + x] -= 1;
     make(&b, true);
-    must_be_sound(&b);
+    check_invariants(&b);
     for (int y = 0; y < H; y++)
         for (int x = 0; x < W; x++) assert_near(near_share(&b, x, y), share(x, y, 0.01), 0.02);
     finish(&b);
@@ -165,7 +165,7 @@ static void without_depth_edge_contrast_or_matte_there_is_one_layer(void **state
         start(&b, near_colour, k == 1 ? near_colour : far_colour, 2, false,
               k == 0 ? 1 / (1 / near_depth - 0.008) : far_depth);
         make(&b, k != 2);
-        must_be_sound(&b);
+        check_invariants(&b);
         for (int i = 0; i < W * H; i++) {
             assert_int_equal(b.out.boundary.id[i], 0);
             assert_int_equal(b.out.interior.id[i], b.s.label[i] + 1);
@@ -180,7 +180,7 @@ static void invalid_pixels_stay_empty(void **state)
     struct bench b;
     start(&b, near_colour, far_colour, 2, true, far_depth);
     make(&b, true);
-    must_be_sound(&b);
+    check_invariants(&b);
     assert_int_equal(b.out.interior.id[20 * W + 27], 0);
     finish(&b);
 }

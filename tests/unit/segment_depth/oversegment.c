@@ -105,7 +105,7 @@ static int border(const struct segmentation *s, int a, int b)
     return sides;
 }
 
-static void must_be_sound(const struct segmentation *s, const struct gamma_image *g)
+static void check_invariants(const struct segmentation *s, const struct gamma_image *g)
 {
     const int pixels = s->width * s->height;
     uint8_t *met = calloc((size_t)pixels, 1);
@@ -176,7 +176,7 @@ static void every_valid_pixel_is_in_one_connected_segment(void **state)
             struct segmentation s;
             struct gamma_image g;
             cut(&s, &g, 97, 61, paints[k], sizes[i], compactness[(i + k) % 3]);
-            must_be_sound(&s, &g);
+            check_invariants(&s, &g);
             release(&s, &g);
         }
 }
@@ -228,7 +228,7 @@ static void odd_picture_sizes_work(void **state)
             struct segmentation s;
             struct gamma_image g;
             cut(&s, &g, sizes[i][0], sizes[i][1], paints[k], 64, 8);
-            must_be_sound(&s, &g);
+            check_invariants(&s, &g);
             assert_true(k == 2 ? s.count == 0 : s.count > 0);
             release(&s, &g);
         }

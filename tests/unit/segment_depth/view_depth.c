@@ -10,11 +10,11 @@ static void a_facing_wall_is_found(void **state)
         struct result r = {0};
         start();
         scene_wall(&scene, 0, 0, 5, 9, 9, 0);
-        stand(3);
+        place_cameras(3);
         scene_points(&scene, points * 150);
         must_work(&r);
         assert_int_equal(r.neighbour_count, 2);
-        assert_true(right(&r.depth, -1, 0.01) > 0.97);
+        assert_true(fraction_correct(&r.depth, -1, 0.01) > 0.97);
         assert_true(mean_confidence(&r.depth) > 0.7);
         layered_depth_release(&r.depth);
     }
@@ -26,10 +26,10 @@ static void a_slanted_wall_is_found(void **state)
     struct result r = {0};
     start();
     scene_wall(&scene, 0, 0, 5, 9, 9, 0.5);
-    stand(3);
+    place_cameras(3);
     scene_points(&scene, 150);
     must_work(&r);
-    assert_true(right(&r.depth, -1, 0.02) > 0.97);
+    assert_true(fraction_correct(&r.depth, -1, 0.02) > 0.97);
     layered_depth_release(&r.depth);
 }
 
@@ -42,11 +42,11 @@ static void a_floor_is_found(void **state)
     floor->across = vec3_make(15, 0, 0);
     floor->down = vec3_make(0, 0, 7);
     scene_wall(&scene, 0, 0, 12, 20, 20, 0)->cell = 0.6;
-    stand(5);
+    place_cameras(5);
     scene_points(&scene, 300);
     must_work(&r);
-    assert_true(right(&r.depth, 0, 0.02) > 0.95);
-    assert_true(right(&r.depth, 1, 0.02) > 0.9);
+    assert_true(fraction_correct(&r.depth, 0, 0.02) > 0.95);
+    assert_true(fraction_correct(&r.depth, 1, 0.02) > 0.9);
     layered_depth_release(&r.depth);
 }
 
@@ -59,11 +59,11 @@ static void a_ball_is_found(void **state)
     scene_surface(&scene, vec3_make(0.1, 0, 5))->radius = 1;
     scene.surfaces[1].colour[0] = 0.15f;
     scene.surfaces[1].cell = 0.2;
-    stand(5);
+    place_cameras(5);
     scene_points(&scene, 300);
     must_work(&r);
-    assert_true(right(&r.depth, 0, 0.01) > 0.95);
-    assert_true(right(&r.depth, 1, 0.02) > 0.9);
+    assert_true(fraction_correct(&r.depth, 0, 0.01) > 0.95);
+    assert_true(fraction_correct(&r.depth, 1, 0.02) > 0.9);
     layered_depth_release(&r.depth);
 }
 
@@ -78,10 +78,10 @@ static void a_depth_edge_is_found_within_two_pixels(void **state)
     struct painted_surface *card = scene_wall(&scene, 0.1, 0.1, 4, 0.8, 0.7, 0);
     card->colour[0] = 0.12f;
     card->cell = 0.2;
-    stand(5);
+    place_cameras(5);
     scene_points(&scene, 300);
     must_work(&r);
-    assert_true(right(&r.depth, 0, 0.02) > 0.97 && right(&r.depth, 1, 0.01) > 0.97);
+    assert_true(fraction_correct(&r.depth, 0, 0.02) > 0.97 && fraction_correct(&r.depth, 1, 0.01) > 0.97);
     for (int y = 0; y < H; y++) {
         int surface, edges[2] = {-1, -1}, found[2] = {-1, -1};
         for (int x = 1; x < W; x++) {
@@ -111,11 +111,11 @@ static void a_blank_wall_gets_the_depth_of_its_frame(void **state)
         start();
         scene_wall(&scene, 0, 0, 5, 9, 9, 0.2);
         scene_wall(&scene, 0, 0, 5 - 1e-4, 0.9, 0.7, 0.2)->contrast = 0;
-        stand(5);
+        place_cameras(5);
         scene_points(&scene, points * 200);
         must_work(&r);
-        assert_true(right(&r.depth, 0, 0.02) > 0.95);
-        assert_true(right(&r.depth, 1, 0.03) > 0.9);
+        assert_true(fraction_correct(&r.depth, 0, 0.02) > 0.95);
+        assert_true(fraction_correct(&r.depth, 1, 0.03) > 0.9);
         layered_depth_release(&r.depth);
     }
 }
@@ -126,7 +126,7 @@ static void an_entirely_blank_wall_has_a_depth_without_confidence(void **state)
     struct result r = {0};
     start();
     scene_wall(&scene, 0, 0, 5, 30, 30, 0)->contrast = 0;
-    stand(3);
+    place_cameras(3);
     must_work(&r);
     assert_true(mean_confidence(&r.depth) < 0.3);
     layered_depth_release(&r.depth);
@@ -141,13 +141,13 @@ static void a_repeated_pattern_is_resolved_by_points(void **state)
     start();
     scene_wall(&scene, 0, 0, 5, 9, 9, 0);
     scene.surfaces[0].period = 0.31;
-    stand(3);
+    place_cameras(3);
     for (int i = 0; i < 60; i++) /* points on the wall */
         scene_point(&scene, vec3_make(5 * scene_hash(i, 0, 0) - 2.5, 3.5 * scene_hash(i, 0, 1) - 1.75, 5), 7);
     for (int i = 0; i < 12; i++) /* and some far and near ones, to widen the depth range */
         scene_point(&scene, vec3_make(scene_hash(i, 0, 0), -1.4, i % 2 ? 3 : 9), 7);
     must_work(&r);
-    assert_true(right(&r.depth, -1, 0.02) > 0.9);
+    assert_true(fraction_correct(&r.depth, -1, 0.02) > 0.9);
     layered_depth_release(&r.depth);
 }
 
@@ -158,7 +158,7 @@ static void a_repeated_pattern_without_points_has_low_confidence(void **state)
     start();
     scene_wall(&scene, 0, 0, 5, 9, 9, 0);
     scene.surfaces[0].period = 0.31;
-    stand(2);
+    place_cameras(2);
     must_work(&r);
     assert_true(mean_confidence(&r.depth) < 0.5);
     layered_depth_release(&r.depth);
@@ -171,11 +171,11 @@ static void a_photo_twice_as_bright_matches(void **state)
         struct result r = {0};
         start();
         scene_wall(&scene, 0, 0, 5, 9, 9, 0.2);
-        stand(3);
+        place_cameras(3);
         scene.gain[1] = k % 2 ? 2 : 0.5;
         scene_points(&scene, k / 2 * 150);
         must_work(&r);
-        assert_true(right(&r.depth, -1, 0.01) > 0.93);
+        assert_true(fraction_correct(&r.depth, -1, 0.01) > 0.93);
         layered_depth_release(&r.depth);
     }
 }
@@ -226,12 +226,12 @@ static void a_neighbour_with_a_wrong_picture_does_no_harm(void **state)
     struct result r = {0};
     start();
     scene_wall(&scene, 0, 0, 5, 9, 9, 0.2);
-    stand(4);
+    place_cameras(4);
     scene.gain[2] = 0; /* black */
     scene_points(&scene, 150);
     must_work(&r);
     assert_int_equal(r.neighbour_count, 3);
-    assert_true(right(&r.depth, -1, 0.01) > 0.93);
+    assert_true(fraction_correct(&r.depth, -1, 0.01) > 0.93);
     layered_depth_release(&r.depth);
 }
 
@@ -244,11 +244,11 @@ static void two_views_are_enough(void **state)
         scene_wall(&scene, 0, 0, 6, 12, 12, 0.3);
         struct painted_surface *card = scene_wall(&scene, 0.1, 0.1, 4, 0.8, 0.7, 0);
         card->colour[0] = 0.12f;
-        stand(2);
+        place_cameras(2);
         scene_points(&scene, points * 150);
         must_work(&r);
-        assert_true(right(&r.depth, 0, 0.02) > 0.85); /* a strip on the left is in one photo only */
-        assert_true(right(&r.depth, 1, 0.02) > 0.95);
+        assert_true(fraction_correct(&r.depth, 0, 0.02) > 0.85); /* a strip on the left is in one photo only */
+        assert_true(fraction_correct(&r.depth, 1, 0.02) > 0.95);
         layered_depth_release(&r.depth);
     }
 }
@@ -261,7 +261,7 @@ static void one_view_is_an_error(void **state)
     struct err err = ERR_INIT;
     start();
     scene_wall(&scene, 0, 0, 5, 9, 9, 0);
-    stand(1);
+    place_cameras(1);
     assert_int_equal(depth_of(&r, &params, &err), ST_DATA);
     assert_non_null(strstr(err.text, "at least two views"));
 }
@@ -293,10 +293,10 @@ static void a_thin_pole_is_found(void **state)
     scene_wall(&scene, 0, 0, 7, 12, 12, 0)->cell = 0.35;
     struct painted_surface *pole = scene_wall(&scene, 0.05, 0, 4, 0.05, 3, 0);
     pole->colour[0] = pole->colour[1] = pole->colour[2] = 0.06f;
-    stand(5);
+    place_cameras(5);
     scene_points(&scene, 300);
     must_work(&r);
-    assert_true(right(&r.depth, 0, 0.02) > 0.95);
+    assert_true(fraction_correct(&r.depth, 0, 0.02) > 0.95);
     for (int y = 0; y < H; y++) {
         const float *z = r.depth.interior.z + y * W;
         for (int x = 78; x < 86; x++)
@@ -317,7 +317,7 @@ static void white_and_black_photos_work(void **state)
         struct result r = {0};
         start();
         scene_wall(&scene, 0, 0, 5, 9, 9, 0);
-        stand(3);
+        place_cameras(3);
         for (int i = 0; i < 3; i++)
             scene.gain[i] = k == 3 ? (i == 1) * 1000 : k % 2 ? 1000 : 0; /* all, or one of them */
         scene_points(&scene, k / 2 * 100);
@@ -337,10 +337,10 @@ static void an_overexposed_patch_gets_the_depth_of_its_rim(void **state)
     struct painted_surface *lamp = scene_wall(&scene, 0.2, 0.1, 5 - 1e-4, 0.5, 0.5, 0);
     for (int c = 0; c < 3; c++) lamp->colour[c] = 30;
     lamp->contrast = 0;
-    stand(5);
+    place_cameras(5);
     scene_points(&scene, 200);
     must_work(&r);
-    assert_true(right(&r.depth, 1, 0.02) > 0.9 && right(&r.depth, 0, 0.02) > 0.95);
+    assert_true(fraction_correct(&r.depth, 1, 0.02) > 0.9 && fraction_correct(&r.depth, 0, 0.02) > 0.95);
     layered_depth_release(&r.depth);
 }
 
@@ -350,7 +350,7 @@ static void invalid_pixels_have_no_depth(void **state)
     struct result r = {0};
     start();
     scene_wall(&scene, 0, 0, 5, 9, 9, 0.2);
-    stand(3);
+    place_cameras(3);
     scene.holes = true;
     scene_points(&scene, 150);
     must_work(&r);
@@ -377,14 +377,14 @@ static void a_steep_floor_without_points_has_no_depth_behind_the_camera(void **s
     struct painted_surface *floor = scene_surface(&scene, vec3_make(0, 0.3, 60));
     floor->across = vec3_make(150, 0, 0);
     floor->down = vec3_make(0, 0, 60);
-    stand(5);
+    place_cameras(5);
     struct segment_params params = SEGMENT_PARAMS_DEFAULT;
     struct err err = ERR_INIT;
     for (int k = 0; k < 6; k++) {
         params.passes = k % 2 ? 0 : 4;
         params.segment_pixels = k < 2 ? 64 : k < 4 ? 300 : 2000;
         if (depth_of(&r, &params, &err)) fail_msg("%s", err.text);
-        must_be_sound(&r.depth);
+        check_invariants(&r.depth);
         layered_depth_release(&r.depth);
     }
 }
@@ -406,7 +406,7 @@ static void unrelated_photos_give_valid_depths(void **state)
     static const int sizes[] = {64, 300, 2000};
     start();
     scene_wall(&scene, 0, 0, 5, 30, 30, 0)->cell = 0.2;
-    stand(3);
+    place_cameras(3);
     for (int k = 0; k < 6; k++) {
         struct result r = {0};
         struct segment_params params = SEGMENT_PARAMS_DEFAULT;
@@ -416,7 +416,7 @@ static void unrelated_photos_give_valid_depths(void **state)
         params.segment_pixels = sizes[k / 2];
         if (view_depth(&r.depth, r.neighbours, &r.neighbour_count, &scene.set, 0, &source, &params, &err))
             fail_msg("%s", err.text);
-        must_be_sound(&r.depth);
+        check_invariants(&r.depth);
         layered_depth_release(&r.depth);
     }
 }
@@ -434,7 +434,7 @@ static void extreme_parameters_work(void **state)
     start();
     scene_wall(&scene, 0, 0, 7, 12, 12, 0.2);
     scene_wall(&scene, 0.1, 0.1, 4, 0.8, 0.7, 0)->colour[0] = 0.12f;
-    stand(3);
+    place_cameras(3);
     scene_points(&scene, 150);
     for (size_t i = 0; i < sizeof sets / sizeof *sets; i++) {
         struct result r = {0};
@@ -443,7 +443,7 @@ static void extreme_parameters_work(void **state)
         for (int k = 0; sets[i][k]; k++)
             assert_int_equal(params_set(segment_param_table, &params, sets[i][k], &err), ST_OK);
         if (depth_of(&r, &params, &err)) fail_msg("%s", err.text);
-        must_be_sound(&r.depth);
+        check_invariants(&r.depth);
         layered_depth_release(&r.depth);
     }
 }
@@ -463,7 +463,7 @@ static void an_unreadable_photo_is_an_error(void **state)
     struct err err = ERR_INIT;
     start();
     scene_wall(&scene, 0, 0, 5, 9, 9, 0);
-    stand(3);
+    place_cameras(3);
     assert_int_equal(view_depth(&r.depth, r.neighbours, &r.neighbour_count, &scene.set, 0, &source, &params, &err),
                      ST_IO);
     assert_string_equal(err.text, "cannot read photo 2.");
@@ -477,7 +477,7 @@ static void thread_counts_give_the_same_bits(void **state)
     start();
     scene_wall(&scene, 0, 0, 7, 12, 12, 0.2);
     scene_surface(&scene, vec3_make(0.1, 0, 5))->radius = 1;
-    stand(5);
+    place_cameras(5);
     scene_points(&scene, 200);
     for (int k = 0; k < 3; k++) {
         parallel_set_threads(k + 1);

@@ -19,7 +19,7 @@ static struct scene scene; /* large; zeroed by start() */
 static inline void start(void) { memset(&scene, 0, sizeof scene); }
 
 /* `count` views around the first, at a distance of 0.4. */
-static inline void stand(int count)
+static inline void place_cameras(int count)
 {
     static const double offsets[][2] = {{0, 0}, {0.4, 0}, {-0.4, 0}, {0, 0.4}, {0, -0.4}};
     for (int i = 0; i < count; i++) scene_view(&scene, W, H, FOCAL, offsets[i][0], offsets[i][1], 0, 0);
@@ -56,7 +56,7 @@ static inline void must_be_sound_of(const struct layered_depth *d, photo_fn *pho
     }
     image_release(&photo);
 }
-static inline void must_be_sound(const struct layered_depth *d) { must_be_sound_of(d, scene_photo); }
+static inline void check_invariants(const struct layered_depth *d) { must_be_sound_of(d, scene_photo); }
 
 static inline enum status depth_of(struct result *r, const struct segment_params *params, struct err *err)
 {
@@ -69,7 +69,7 @@ static inline void must_work(struct result *r)
     const struct segment_params params = SEGMENT_PARAMS_DEFAULT;
     struct err err = ERR_INIT;
     if (depth_of(r, &params, &err)) fail_msg("%s", err.text);
-    must_be_sound(&r->depth);
+    check_invariants(&r->depth);
 }
 
 /* Whether another surface, or a depth that differs by more than a tenth, lies within 3 px. */
@@ -87,7 +87,7 @@ static inline bool at_jump(int x, int y)
 
 /* The fraction of a surface's pixels (-1: all), away from depth edges, whose relative depth error is within
  * `tolerance`. */
-static inline double right(const struct layered_depth *d, int surface, double tolerance)
+static inline double fraction_correct(const struct layered_depth *d, int surface, double tolerance)
 {
     int good = 0, count = 0;
     for (int y = 0; y < d->height; y++)
