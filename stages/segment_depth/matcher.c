@@ -142,7 +142,7 @@ static enum status estimate_gains(double gain[3], const struct camera_set *set, 
     for (int c = 0; c < 3; c++) {
         double *r = ratios + (size_t)c * (size_t)seen->count;
         sort_doubles(r, (size_t)count);
-        gain[c] = count >= 12 ? fmin(fmax(r[count / 2], 0.25 * same_light), 4 * same_light) : same_light;
+        gain[c] = count >= 12 ? clamp(r[count / 2], 0.25 * same_light, 4 * same_light) : same_light;
     }
     free(ratios);
     return ST_OK;
@@ -198,7 +198,7 @@ enum status matcher_add(struct matcher *m, const struct camera_set *set, int vie
     n->width = picture->width;
     n->height = picture->height;
     for (int i = 0; i < 2; i++)
-        for (int j = 0; j < 2; j++) jacobian[i][j] = fmin(fmax(jacobian[i][j], -2), 2);
+        for (int j = 0; j < 2; j++) jacobian[i][j] = clamp(jacobian[i][j], -2, 2);
     uint8_t *packed = match_features(picture, gain, jacobian, m->noise);
     if (!packed) return err_nomem(err, "a picture to match with", (size_t)n->width * (size_t)n->height * 20);
     enum status st = make_texture(n, packed, err);

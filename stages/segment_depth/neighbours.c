@@ -89,7 +89,7 @@ struct tile_points {
 
 static int tile_of(const struct view *view, double u, double v)
 {
-    const double x = fmin(fmax(u / view->width, 0), 0.999), y = fmin(fmax(v / view->height, 0), 0.999);
+    const double x = clamp(u / view->width, 0, 0.999), y = clamp(v / view->height, 0, 0.999);
     return (int)(y * GRID) * GRID + (int)(x * GRID);
 }
 

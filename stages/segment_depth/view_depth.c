@@ -19,6 +19,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/math/numbers.h"
 #include "stages/segment_depth/expand.h"
 #include "stages/segment_depth/layers.h"
 #include "stages/segment_depth/plane_sweep.h"
@@ -40,7 +41,7 @@ static double distinctness(const float *cost, int planes, double at)
         float *best = fabs(p - at) > apart ? &rival : &near;
         *best = fminf(*best, cost[p]);
     }
-    return fmin(fmax((double)(rival - near) / 0.4, 0), 1);
+    return clamp((double)(rival - near) / 0.4, 0, 1);
 }
 
 static enum status fill_segments(struct layered_depth *out, const struct plane_problem *p, const struct plane *planes,
@@ -64,7 +65,7 @@ static enum status fill_segments(struct layered_depth *out, const struct plane_p
         }
         unsigned occluded = 0;
         if (p->cross) cross_view_cost(p->cross, i, planes[i], &occluded);
-        const double good = fmin(fmax((double)MATCH_WORST - (double)match_cost(p->m, i, planes[i], occluded), 0), 1);
+        const double good = clamp((double)MATCH_WORST - (double)match_cost(p->m, i, planes[i], occluded), 0, 1);
         const double agreeing = p->cross ? cross_view_support(p->cross, i, planes[i]) : 0;
         /* the agreement of two other views replaces distinctness */
         const double confidence = good * fmax(distinct[i], fmin(agreeing / 2, 1));

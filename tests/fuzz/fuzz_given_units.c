@@ -1,4 +1,4 @@
-/* fuzz_given_units.c - depth.txt of given depth: any bytes give a positive scale or none, or an error that names the file. */
+/* fuzz_given_units.c - depth.txt: any bytes give a positive scale or none, or an error that names the file. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
