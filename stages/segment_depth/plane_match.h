@@ -14,8 +14,8 @@ struct plane {
 
 static inline double plane_at(struct plane p, double u, double v) { return p.a * u + p.b * v + p.c; }
 
-/* Whether a segment's plane stays in a range of inverse depths: nearly so at the centroid; over the segment and a margin
- * that its layer may extend into, from PLANE_MIN_FACTOR times the minimum to PLANE_MAX_FACTOR times the maximum. */
+/* Whether a segment's plane stays in a range of inverse depths: nearly so at the centroid; over the segment and a
+ * margin that its layer may extend into, from PLANE_MIN_FACTOR times min to PLANE_MAX_FACTOR times max. */
 #define PLANE_MIN_FACTOR 0.7
 #define PLANE_MAX_FACTOR 1.3
 
