@@ -1,8 +1,8 @@
-/* faces.h - the faces that a scene's photographs show: seen in a central view, and at the same place in space in
+/* faces.h - the faces in a scene's photographs: detected in a central view, and checked at the same place in space in
  * others.
  *
- * Pixels are a view's, depth is along its axis. Where pictures come from and who sees faces in them is the caller's:
- * the stage gives files and OpenCV's cascades, tests give what they know. */
+ * Pixels are a view's, depth is along its axis. Pictures and detection are the caller's: the stage provides files and
+ * OpenCV's cascades, tests provide synthetic ones. */
 #ifndef REMODEL_FACES_H
 #define REMODEL_FACES_H
 
@@ -15,36 +15,37 @@ struct face_source {
     void *ctx;
     /* 8-bit grey picture of a view as it is stored, width * height; malloc'ed, the caller frees it. */
     enum status (*picture)(void *ctx, int view_idx, unsigned char **grey, struct err *err);
-    /* The caller releases it. */
+    /* d: the view's depth; the caller releases it. */
     enum status (*depth)(void *ctx, int view_idx, struct layered_depth *d, struct err *err);
     /* As face_detect(). */
-    enum status (*detect)(void *ctx, const unsigned char *grey, int width, int height, double least, double most,
-                          struct face **faces, int *count, struct err *err);
+    enum status (*detect)(void *ctx, const unsigned char *grey, int width, int height, double min_width,
+                          double max_width, struct face_box **faces, int *count, struct err *err);
 };
 
 enum face_verdict {
     FACE_KEPT,
-    FACE_BEYOND,      /* kept would be more than two: smaller */
-    FACE_NO_DEPTH,    /* no pixel of it has a depth: not a subject */
-    FACE_UNCONFIRMED, /* too few of the other views see a face there */
-    FACE_UNSURE,      /* the mean of the views' scores is too low */
+    FACE_SURPLUS,     /* confirmed, but MAX_FACES larger ones are kept */
+    FACE_NO_DEPTH,    /* no pixel has a depth */
+    FACE_UNCONFIRMED, /* too few of the other views detect it */
+    FACE_LOW_SCORE,   /* the mean score of the views is too low */
 };
 
-struct face_sighting { /* what became of one that was worth a second look */
+struct face_sighting { /* a face that was checked */
     struct subject subject;
     enum face_verdict verdict;
-    bool alone; /* fewer than two views could be asked: its score alone decides */
+    bool unchecked; /* fewer than two other views could check it: only its score decides */
 };
 
 struct face_report {
-    struct face_sighting *sightings; /* view by view, in a view from the largest to the smallest */
-    int count, views;                /* views that were looked at */
+    struct face_sighting *sightings; /* by view, the largest first in each */
+    int count, views;                /* views: number of views searched */
 };
 
-#define MOST_FACES 2
+#define MAX_FACES 2
 
-/* Adds at most MOST_FACES subjects, the largest first. ups: each view's upright direction (common/capture/upright.h); NULL: -y.
- * Same subjects for any number of threads. */
+/* Adds at most MAX_FACES subjects to the list, the largest first. ups: each view's upright direction
+ * (common/capture/upright.h); NULL: -y. report: the caller releases it; empty after a failure. Same subjects for any
+ * number of threads. */
 enum status find_faces(struct subject_list *list, struct face_report *report, const struct camera_set *set,
                        const struct vec3 *ups, const struct face_source *source, const struct find_params *params,
                        struct err *err);

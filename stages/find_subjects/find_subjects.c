@@ -1,11 +1,13 @@
-/* find_subjects.c - what a camera move shows: faces that several photographs see, or rectangles that a user drew.
+/* find_subjects.c - the subjects of camera moves: faces found in several photographs, or rectangles drawn by the user.
  *
  * reads   VIEWS/cameras.txt, images.txt, points3D.txt   the cameras
  *         VIEWS/lenses.txt                              with --subjects or --records: the views' photos
- *         RECORDS/ID.txt                                with --records: which way up the photos are
- *         VIEWS/VIEW.exr                                without --subjects: the centremost views and those that confirm
- *         DEPTH/VIEW.exr, VIEW.txt                      of the views in which subjects are
- * writes  OUT                                           the subjects, the two largest faces or the user's in order */
+ *         RECORDS/ID.txt                                with --records: the photos' orientations
+ *         VIEWS/VIEW.exr                                without --subjects: the most central views and those that check
+ * faces
+ *         DEPTH/VIEW.exr, VIEW.txt                      of the views with subjects
+ * writes  OUT                                           the subjects: the two largest faces, or the user's in their
+ * order */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -20,15 +22,15 @@
 #include "stages/find_subjects/region_depth.h"
 #include "stages/find_subjects/regions.h"
 
-enum { SMALLEST = 8 }; /* SMALLEST: px of a subject whose size says something */
-#define WHOLE 0.999    /* part of a drawn rectangle from which on nothing was clipped */
+enum { MIN_SIZE = 8 };   /* px: smaller subjects have an uncertain size */
+#define WHOLE_PART 0.999 /* of a drawn rectangle; with more of it inside a view it is not clipped */
 
 #define CASCADES "/usr/share/opencv4/haarcascades"
 
 struct inputs {
     const char *views, *depth, *records, *subjects, *cascades;
     struct camera_set set;
-    struct vec3 *ups; /* NULL: all photos are stored upright, as far as is known */
+    struct vec3 *ups; /* NULL: the photos are assumed to be stored upright */
     struct face_detector *detector;
     struct provenance *prov;
 };
@@ -42,7 +44,7 @@ static enum status read_depth(void *ctx, int view_idx, struct layered_depth *d, 
         provenance_add_in(in->prov, "depth", in->depth, v->name, ".exr", path, err) || layered_depth_read(d, path, err))
         return err->status;
     if (d->width == v->width && d->height == v->height) return ST_OK;
-    err_set(err, ST_DATA, "%s is %d x %d pixels, but its camera says %d x %d; make the depth maps again.", path,
+    err_set(err, ST_DATA, "%s has %d x %d pixels, but its camera has %d x %d; make the depth maps again.", path,
             d->width, d->height, v->width, v->height);
     layered_depth_release(d);
     return err->status;
@@ -68,16 +70,16 @@ static enum status read_picture(void *ctx, int view_idx, unsigned char **grey, s
     return *grey ? ST_OK : err_nomem(err, "a grey picture", pixels);
 }
 
-static enum status detect(void *ctx, const unsigned char *grey, int width, int height, double least, double most,
-                          struct face **faces, int *count, struct err *err)
+static enum status detect(void *ctx, const unsigned char *grey, int width, int height, double min_width,
+                          double max_width, struct face_box **faces, int *count, struct err *err)
 {
     struct inputs *in = ctx;
-    return face_detect(in->detector, grey, width, height, least, most, faces, count, err);
+    return face_detect(in->detector, grey, width, height, min_width, max_width, faces, count, err);
 }
 
 /* --------------------------------------------------------------------------------------------------------- outcomes */
 
-static void tell_face(const struct face_sighting *f)
+static void log_face(const struct face_sighting *f)
 {
     const struct subject *s = &f->subject;
     char what[256];
@@ -85,29 +87,28 @@ static void tell_face(const struct face_sighting *f)
              s->y1 - s->y0, s->x0, s->y0, s->score);
     switch (f->verdict) {
     case FACE_KEPT:
-    case FACE_BEYOND:
-        if (f->alone)
-            log_warn("%s: %d other views show its place, too few to confirm it; taken for one by its score", what,
-                     s->asked);
+    case FACE_SURPLUS:
+        if (f->unchecked)
+            log_warn("%s: %d other views can check it, which is too few; kept because of its score", what, s->asked);
         else
             log_note("%s: %d of %d views confirm it%s", what, s->confirmed, s->asked,
-                     f->verdict == FACE_KEPT ? "" : "; left out, two larger ones are there");
+                     f->verdict == FACE_KEPT ? "" : "; left out because two larger faces are kept");
         break;
     case FACE_NO_DEPTH:
-        log_warn("%s: nothing in it has a depth; left out", what);
+        log_warn("%s: no pixel of it has a depth; left out", what);
         break;
     case FACE_UNCONFIRMED:
         log_note("%s: only %d of %d views confirm it; left out", what, s->confirmed, s->asked);
         break;
-    case FACE_UNSURE:
-        log_note("%s: too low a score%s; left out", what,
-                 f->alone ? ", with too few other views that show its place" : "");
+    case FACE_LOW_SCORE:
+        log_note("%s: its score is too low%s; left out", what,
+                 f->unchecked ? " for a face that too few other views can check" : "");
         break;
     }
 }
 
-static enum status seek_faces(struct subject_list *list, struct inputs *in, const struct find_params *params,
-                              struct err *err)
+static enum status subjects_from_faces(struct subject_list *list, struct inputs *in, const struct find_params *params,
+                                       struct err *err)
 {
     const struct face_source source = {in, read_picture, read_depth, detect};
     struct face_report report = {0};
@@ -116,25 +117,26 @@ static enum status seek_faces(struct subject_list *list, struct inputs *in, cons
     for (int i = 0; !st && face_cascades[i]; i++)
         st = provenance_add_in(in->prov, "opencv", in->cascades, face_cascades[i], "", path, err);
     if (!st) st = find_faces(list, &report, &in->set, in->ups, &source, params, err);
-    int far_off = 0; /* what chance makes of windows and leaves needs no line each */
+    int far_off = 0; /* chance detections, in windows and leaves, share one line of the log */
     for (int i = 0; !st && i < report.count; i++) {
         const struct face_sighting *f = &report.sightings[i];
-        if ((f->verdict == FACE_UNSURE || f->verdict == FACE_UNCONFIRMED) && f->subject.score < params->least_score / 2)
+        if ((f->verdict == FACE_LOW_SCORE || f->verdict == FACE_UNCONFIRMED) &&
+            f->subject.score < params->min_score / 2)
             far_off++;
         else
-            tell_face(f);
+            log_face(f);
     }
     if (far_off)
-        log_note("%d %s in a single view, but hardly in others; left out", far_off,
-                 far_off == 1 ? "place looks like a face" : "places look like faces");
+        log_note("%d detection%s in a single view, hardly confirmed by others; left out", far_off,
+                 far_off == 1 ? "" : "s");
     if (!st && !list->count) log_note("no face in the %d most central views", report.views);
     face_report_release(&report);
     face_detector_release(in->detector);
     return st;
 }
 
-static enum status place_region(struct subject_list *list, struct inputs *in, const struct region *region,
-                                const struct lens_list *lenses, struct err *err)
+static enum status subject_from_region(struct subject_list *list, struct inputs *in, const struct region *region,
+                                       const struct lens_list *lenses, struct err *err)
 {
     struct subject s = {0};
     struct layered_depth depth = {0};
@@ -147,18 +149,18 @@ static enum status place_region(struct subject_list *list, struct inputs *in, co
         st =
             err_set(err, ST_DATA,
                     "%s:%d: nothing in the rectangle from %.9g %.9g to %.9g %.9g of %s has a depth (masked, or outside "
-                    "of the lens), so it has no place in space; draw it over something else, or in another photo.",
+                    "the lens), so it has no place in space; draw it elsewhere or in another photo.",
                     in->subjects, region->line, region->x0, region->y0, region->x1, region->y1, region->view);
     if (!st) {
         subject_set_corners(&s, &in->set.views[view_idx], in->ups ? &in->ups[view_idx] : NULL);
         log_note("subject %d: view %s, %.0f x %.0f px at %.0f %.0f, depth %.4g", list->count + 1, s.view, s.x1 - s.x0,
                  s.y1 - s.y0, s.x0, s.y0, s.depth);
-        if (part < WHOLE)
-            log_warn("%s:%d: only %.0f %% of the rectangle lie within view %s; the subject is that part of it",
-                     in->subjects, region->line, 100 * part, s.view);
-        if (fmin(s.x1 - s.x0, s.y1 - s.y0) < SMALLEST)
-            log_warn("%s:%d: so small a subject has an uncertain size; draw it %d px or more wide and high",
-                     in->subjects, region->line, SMALLEST);
+        if (part < WHOLE_PART)
+            log_warn("%s:%d: only %.0f %% of the rectangle is inside view %s; it is clipped to that part", in->subjects,
+                     region->line, 100 * part, s.view);
+        if (fmin(s.x1 - s.x0, s.y1 - s.y0) < MIN_SIZE)
+            log_warn("%s:%d: so small a subject has an uncertain size; draw it at least %d px wide and high",
+                     in->subjects, region->line, MIN_SIZE);
         st = subject_list_add(list, &s, err);
     }
     layered_depth_release(&depth);
@@ -166,7 +168,7 @@ static enum status place_region(struct subject_list *list, struct inputs *in, co
     return st;
 }
 
-static enum status place_regions(struct subject_list *list, struct inputs *in, struct err *err)
+static enum status subjects_from_regions(struct subject_list *list, struct inputs *in, struct err *err)
 {
     struct region_list regions = {0};
     struct lens_list lenses = {0};
@@ -175,8 +177,9 @@ static enum status place_regions(struct subject_list *list, struct inputs *in, s
     if (!st) st = provenance_add_file(in->prov, "subjects.txt", in->subjects, err);
     if (!st) st = provenance_add_in(in->prov, "views", in->views, "lenses.txt", "", path, err);
     if (!st) st = lens_list_read(&lenses, path, err);
-    if (!st && !regions.count) log_note("%s names no subject: there is none", in->subjects);
-    for (int i = 0; !st && i < regions.count; i++) st = place_region(list, in, &regions.regions[i], &lenses, err);
+    if (!st && !regions.count) log_note("%s names no subject", in->subjects);
+    for (int i = 0; !st && i < regions.count; i++)
+        st = subject_from_region(list, in, &regions.regions[i], &lenses, err);
     lens_list_release(&lenses);
     region_list_release(&regions);
     return st;
@@ -190,9 +193,9 @@ static enum status find(struct inputs *in, const char *out, const struct find_pa
     if (!st && in->records) {
         in->ups = calloc((size_t)in->set.view_count + 1, sizeof *in->ups);
         st = in->ups ? upright_read(in->ups, &in->set, in->views, in->records, in->prov, err)
-                     : err_nomem(err, "a direction a view", (size_t)in->set.view_count * sizeof *in->ups);
+                     : err_nomem(err, "the views' directions", (size_t)in->set.view_count * sizeof *in->ups);
     }
-    if (!st) st = in->subjects ? place_regions(&list, in, err) : seek_faces(&list, in, params, err);
+    if (!st) st = in->subjects ? subjects_from_regions(&list, in, err) : subjects_from_faces(&list, in, params, err);
     if (!st) st = subject_list_write(&list, out, in->prov, err);
     subject_list_release(&list);
     camera_set_release(&in->set);
@@ -207,11 +210,11 @@ int main(int argc, char **argv)
     const char *out = NULL;
     struct find_params params = FIND_PARAMS_DEFAULT;
     const struct cli_opt opts[] = {
-        CLI_ABOUT("Finds what a camera move is to show: faces, or rectangles that a user drew."),
+        CLI_ABOUT("Finds the subjects of camera moves: faces, or rectangles drawn by the user."),
         CLI_STR("views", &in.views, CLI_REQUIRED, "folder of cameras and rectified views"),
-        CLI_STR("depth", &in.depth, CLI_REQUIRED, "folder of the views' layers"),
-        CLI_STR("records", &in.records, CLI_OPTIONAL, "folder of the photos' records: which way up they are"),
-        CLI_STR("subjects", &in.subjects, CLI_OPTIONAL, "file of rectangles on photos; faces are then not looked for"),
+        CLI_STR("depth", &in.depth, CLI_REQUIRED, "folder of the views' depth"),
+        CLI_STR("records", &in.records, CLI_OPTIONAL, "folder of the photos' records, for their orientation"),
+        CLI_STR("subjects", &in.subjects, CLI_OPTIONAL, "file of rectangles on photos, used in place of faces"),
         CLI_STR("cascades", &in.cascades, CLI_OPTIONAL, "folder of OpenCV's face cascades (" CASCADES ")"),
         CLI_STR("out", &out, CLI_REQUIRED, "list of subjects to write"),
         CLI_PARAMS(find_param_table, &params, NULL),

@@ -1,4 +1,4 @@
-/* region_depth.c - see region_depth.h. */
+/* region_depth.c - weighted median of the depths in a rectangle. */
 #include "stages/find_subjects/region_depth.h"
 
 #include <stdlib.h>
@@ -14,7 +14,7 @@ bool clip_to_picture(struct subject *s, int width, int height)
     return s->x1 > s->x0 && s->y1 > s->y0;
 }
 
-/* Pixels [*first, *end) whose centres lie in [low, high]; the one that holds the middle where there is none. */
+/* Pixels [*first, *end) whose centres lie in [low, high]; if there are none, the pixel at the middle. */
 static void pixel_range(double low, double high, int size, int *first, int *end)
 {
     *first = (int)ceil(low - 0.5);
@@ -41,9 +41,9 @@ enum status region_depth(double *depth, const struct layered_depth *d, const str
     pixel_range(s->x0, s->x1, d->width, &left, &right);
     pixel_range(s->y0, s->y1, d->height, &top, &bottom);
     if (right <= left || bottom <= top) return ST_OK;
-    const size_t most = 2 * (size_t)(right - left) * (size_t)(bottom - top);
-    struct weighted *samples = malloc(most * sizeof *samples);
-    if (!samples) return err_nomem(err, "the depths in a rectangle", most * sizeof *samples);
+    const size_t max_samples = 2 * (size_t)(right - left) * (size_t)(bottom - top);
+    struct weighted *samples = malloc(max_samples * sizeof *samples);
+    if (!samples) return err_nomem(err, "the depths in a rectangle", max_samples * sizeof *samples);
     size_t count = 0;
     for (int y = top; y < bottom; y++)
         for (int x = left; x < right; x++) {

@@ -1,14 +1,18 @@
-/* regions.c - see regions.h. */
+/* regions.c - rectangles drawn on photographs, mapped to views.
+ *
+ * A grid of GRID x GRID points of the rectangle is projected through the photo's lens into each of its views; the view
+ * that shows most of them is chosen, and the points' bounding box is the rectangle there. */
 #include "stages/find_subjects/regions.h"
 
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/base/array.h"
 #include "common/base/scan.h"
 #include "common/base/textfile.h"
 #include "stages/find_subjects/region_depth.h"
 
-enum { GRID = 33, MOST_REGIONS = 10000 }; /* GRID: places of a region, each way, that go through the lens */
+enum { GRID = 33, MAX_REGIONS = 10000 };
 
 void region_list_release(struct region_list *list)
 {
@@ -18,13 +22,13 @@ void region_list_release(struct region_list *list)
     *list = (struct region_list){0};
 }
 
-static enum status wrong_number(const struct textfile *t, double found, const char *wanted, double than,
-                                struct err *err)
+static enum status coordinate_error(const struct textfile *t, double found, const char *wanted, double limit,
+                                    struct err *err)
 {
     char text[32];
     snprintf(text, sizeof text, "%.9g", found);
     return textfile_error(t, err, text, "%s (%.9g): X0 Y0 is the upper left corner, X1 Y1 the lower right one", wanted,
-                          than);
+                          limit);
 }
 
 static enum status read_region(struct textfile *t, struct region *r, struct err *err)
@@ -37,8 +41,8 @@ static enum status read_region(struct textfile *t, struct region *r, struct err 
         textfile_double(t, "y0", &r->y0, err) || textfile_double(t, "x1", &r->x1, err) ||
         textfile_double(t, "y1", &r->y1, err) || textfile_end(t, err))
         return err->status;
-    if (!(r->x1 > r->x0)) return wrong_number(t, r->x1, "an X1 above X0", r->x0, err);
-    if (!(r->y1 > r->y0)) return wrong_number(t, r->y1, "a Y1 above Y0", r->y0, err);
+    if (!(r->x1 > r->x0)) return coordinate_error(t, r->x1, "an X1 above X0", r->x0, err);
+    if (!(r->y1 > r->y0)) return coordinate_error(t, r->y1, "a Y1 above Y0", r->y0, err);
     r->line = t->line;
     r->view = strdup(view);
     return r->view ? ST_OK : err_nomem(err, "a view's name", strlen(view));
@@ -50,17 +54,12 @@ enum status region_list_read(struct region_list *list, const char *path, struct 
     *list = (struct region_list){0};
     enum status st = textfile_open(&t, path, err);
     while (!st && textfile_next(&t)) {
-        const size_t bytes = ((size_t)list->count + 1) * sizeof *list->regions;
-        if (list->count == MOST_REGIONS) {
-            st = err_set(err, ST_DATA, "%s:%d: found more than %d subjects.", path, t.line, MOST_REGIONS);
+        if (list->count == MAX_REGIONS) {
+            st = err_set(err, ST_DATA, "%s:%d: found more than %d subjects.", path, t.line, MAX_REGIONS);
             break;
         }
-        struct region *more = realloc(list->regions, bytes);
-        if (!more) {
-            st = err_nomem(err, "subjects", bytes);
-            break;
-        }
-        list->regions = more;
+        st = array_append(&list->regions, (size_t)list->count, sizeof *list->regions, "subjects", err);
+        if (st) break;
         struct region *r = &list->regions[list->count++];
         *r = (struct region){0};
         st = read_region(&t, r, err);
@@ -72,8 +71,8 @@ enum status region_list_read(struct region_list *list, const char *path, struct 
 
 /* ------------------------------------------------------------------------------------------------ through the lens */
 
-/* The box, in the view's pixels, of the part of the region that the photo has and that lies before the view; returns
- * how many places of it the view's picture shows. */
+/* The bounding box, in the view's pixels, of the region's part that lies inside the photo and in front of the view.
+ * Returns the number of grid points inside the view's picture. */
 static int project_region(struct subject *s, const struct region *r, const struct lens *lens, const struct view *view)
 {
     const struct mat3 view_from_photo = mat3_from_quat(lens->view_from_photo);
@@ -100,7 +99,7 @@ static int project_region(struct subject *s, const struct region *r, const struc
     return clip_to_picture(s, view->width, view->height) ? shown : 0;
 }
 
-/* Photos and views, for a guess at what was meant. */
+/* Names of photos and views, for suggestions. */
 static const char *known_name(const void *ctx, int i)
 {
     const struct lens_list *lenses = ctx;
@@ -113,7 +112,7 @@ enum status region_in_view(struct subject *s, int *view_idx, double *part, const
                            struct err *err)
 {
     const struct lens *known = NULL;
-    int most = 0;
+    int max_shown = 0;
     for (int i = 0; i < lenses->count; i++) {
         const struct lens *lens = &lenses->lenses[i];
         const int at = camera_set_find(set, lens->view);
@@ -121,12 +120,12 @@ enum status region_in_view(struct subject *s, int *view_idx, double *part, const
         known = lens;
         struct subject found = {.source = SUBJECT_USER};
         const int shown = project_region(&found, region, lens, &set->views[at]);
-        if (shown <= most) continue;
+        if (shown <= max_shown) continue;
         const double width = fmin(region->x1, lens->camera.width) - fmax(region->x0, 0);
         const double height = fmin(region->y1, lens->camera.height) - fmax(region->y0, 0);
         *part =
             shown / (double)(GRID * GRID) * (width / (region->x1 - region->x0)) * (height / (region->y1 - region->y0));
-        most = shown;
+        max_shown = shown;
         *s = found;
         *view_idx = at;
     }
@@ -140,11 +139,11 @@ enum status region_in_view(struct subject *s, int *view_idx, double *part, const
                            near);
         return err_set(err, ST_DATA, "%s:%d: found %s, %s.", path, region->line, shown, wanted);
     }
-    if (!most)
+    if (!max_shown)
         return err_set(
             err, ST_DATA,
-            "%s:%d: the rectangle from %.9g %.9g to %.9g %.9g lies outside of what %s shows: the photo has %d x %d "
-            "pixels; draw it in pixels of the photo as it is stored.",
+            "%s:%d: the rectangle from %.9g %.9g to %.9g %.9g lies outside the views of %s, a photo of %d x %d pixels; "
+            "draw it in pixels of the stored photo.",
             path, region->line, region->x0, region->y0, region->x1, region->y1, region->view, known->camera.width,
             known->camera.height);
     s->view = strdup(set->views[*view_idx].name);

@@ -1,21 +1,22 @@
-/* fuse.c - see fuse.h.
+/* fuse.c - fusion of depth maps into points, by votes of the views.
  *
- * Each view in turn is the reference. A pixel of it that is not mixed (alpha 1) and whose segment is confident stands for a
- * point P = C + z D, D being its ray with z = 1. Every other view o in whose picture P falls has a word on it, through the
- * confident segment that it has there, with its plane's depth z_o beside P's depth z_P:
- *   |z_P / z_o - 1| <= tolerance sqrt(sigma^2 + sigma_o^2)   it agrees, if its plane faces the reference too
- *   z_P beyond that                                          P is hidden from it: no word
- *   z_P before that                                          it looks through P: its confidence counts against P
- * A point stays where enough views agree and few look through it. Its place on the ray is the mean of where the agreeing planes
- * cut it, each weighing confidence / sigma^2: that brings what several views say of one surface to one place, which
- * merging alone would not, since cells are much smaller than sigma. Normals are means of the same planes'
- * normals, corrected by the depths around (normal_fit.h).
- * The surfaces' words come view by view in the set's order, so that nothing depends on threads, and one depth map at a time
- * is enough; more are held only not to read them again. What is held: the reference's interior and 60 bytes a pixel of
- * it, 4 bytes a pixel and a record a segment of other views, and the merged points.
+ * Each view in turn is the reference. Every pixel that is not mixed (alpha 1) and whose segment is confident proposes
+ * the point P = C + z D, where D is its ray with z = 1. Each other view o into which P projects votes by its confident
+ * segment there, with its plane's depth z_o against P's depth z_P:
+ *   |z_P / z_o - 1| <= tolerance sqrt(sigma^2 + sigma_o^2)   it agrees, if its plane faces the reference
+ *   z_P larger than that                                     P is occluded: no vote
+ *   z_P smaller than that                                    it sees through P: its confidence counts against P
+ * A point is kept if enough views agree and few see through it. Its depth is the mean of the intersections of its ray
+ * with the agreeing planes, weighted by confidence / sigma^2: so the points of several views on one surface coincide,
+ * which merging alone would not achieve, since cells are much smaller than sigma. Its normal is the mean of the same
+ * planes' normals, corrected by the depths around it (normal_fit.h).
  *
- * Merrell et al., "Real-time visibility-based fusion of depth maps", 2007, has the three kinds of words; here they come from
- * planes with uncertainties, and the mean is taken along the reference's ray. */
+ * Votes are added view by view in the set's order, so that the result does not depend on threads, and one depth map in
+ * memory is enough; a cache of others saves reading them again. Memory: the reference's interior layer and 60 bytes per
+ * pixel, 4 bytes per pixel and a record per segment of the cached views, and the merged points.
+ *
+ * The three kinds of votes are those of [Merrell 2007]. What differs from the source: votes come from planes with
+ * uncertainties, and the mean is taken along the reference's ray. */
 #include "stages/fuse_points/fuse.h"
 
 #include <math.h>
@@ -28,31 +29,31 @@
 #include "stages/fuse_points/point_grid.h"
 
 #define PARAM_STRUCT struct fuse_params
-const struct param fuse_param_table[] = {FUSE_PARAMS(PARAM_ROW) PARAM_END};
+const struct param fuse_param_table[] = {FUSE_PARAMS(PARAM_ROW) FUSE_RENAMED(PARAM_RENAMED) PARAM_END};
 #undef PARAM_STRUCT
 
-#define OVERLAP_STEP 8    /* px between the points that tell whether two views see the same */
+#define OVERLAP_STEP 8    /* px between the points that decide whether two views overlap */
 #define MEDIAN_STEP  4    /* px between the pixels of a view's median depth */
-#define ROWS         16   /* a chunk */
-#define NOISE        0.25 /* of a point's depth, once views agree on it, in its segment's sigma */
+#define ROWS         16   /* rows per chunk */
+#define NOISE        0.25 /* standard deviation of a fused point's depth, in its segment's sigma */
 
 struct vote {
     float weight, offset; /* sums of confidence / sigma^2, and times (z_ray / z - 1) */
     float normal[3];
-    float support, against; /* sums of confidence */
-    int views;              /* that agree; 0: no point starts here */
+    float support, against; /* sums of confidence of the views that agree, and that see through the point */
+    int views;              /* number of views that agree; 0: no point here */
 };
 
 struct reference {
     const struct surface *surface;
     const struct layer *interior;
     struct vote *votes; /* w * h */
-    float *inverse_z;   /* w * h: where the points that stay are, 0 for others */
+    float *inverse_z;   /* w * h: inverse depth of the points that are kept, 0 for others */
     const struct surface *other;
     const struct fuse_params *params;
 };
 
-/* The direction whose z along the view's axis is 1. */
+/* The direction of a pixel's ray, of z = 1 along the view's axis. */
 static struct vec3 ray_of(const struct view *v, double u, double y)
 {
     return mat3_apply(mat3_transpose(v->cam_from_world), vec3_make((u - v->cx) / v->fx, (y - v->cy) / v->fy, 1));
@@ -72,7 +73,7 @@ static void add_vote(struct vote *vote, const struct surface_plane *p, double of
     vote->views++;
 }
 
-static void start_rows(void *ctx, size_t begin, size_t end, int thread)
+static void init_votes(void *ctx, size_t begin, size_t end, int thread)
 {
     const struct reference *r = ctx;
     const struct surface *s = r->surface;
@@ -83,16 +84,16 @@ static void start_rows(void *ctx, size_t begin, size_t end, int thread)
             r->votes[i] = (struct vote){0};
             if (!s->id[i] || r->interior->rgba[4 * i + 3] < 1) continue;
             const struct surface_plane *p = &s->planes[s->id[i] - 1];
-            if (p->confidence < r->params->confident || !(p->confidence > 0)) continue;
+            if (p->confidence < r->params->min_confidence || !(p->confidence > 0)) continue;
             const struct vec3 ray = ray_of(s->view, (double)x + 0.5, (double)y + 0.5);
             if (surface_plane_z(p, (double)x + 0.5, (double)y + 0.5) > 0 && vec3_dot(p->normal, ray) < 0)
                 add_vote(&r->votes[i], p, 0);
         }
 }
 
-/* What the other view says of the point at depth z on the ray. */
-static void compare(const struct reference *r, struct vote *vote, const struct surface_plane *own, double z,
-                    struct vec3 ray)
+/* Adds the other view's vote on the point at depth z on the ray. */
+static void compare_depth(const struct reference *r, struct vote *vote, const struct surface_plane *own, double z,
+                          struct vec3 ray)
 {
     const struct view *at = r->surface->view, *view = r->other->view;
     double u, v;
@@ -102,7 +103,7 @@ static void compare(const struct reference *r, struct vote *vote, const struct s
     if (!id) return;
     const struct surface_plane *p = &r->other->planes[id - 1];
     const double z_other = surface_plane_z(p, u, v);
-    if (!(z_other > 0) || p->confidence < r->params->confident || !(p->confidence > 0)) return;
+    if (!(z_other > 0) || p->confidence < r->params->min_confidence || !(p->confidence > 0)) return;
     const double gap = seen_z / z_other - 1;
     const double most = r->params->tolerance * sqrt((double)own->sigma * own->sigma + (double)p->sigma * p->sigma);
     if (gap < -most) {
@@ -110,7 +111,7 @@ static void compare(const struct reference *r, struct vote *vote, const struct s
     } else if (gap <= most) {
         const double facing = vec3_dot(p->normal, ray);
         if (!(facing < 0)) return;
-        /* a plane that the ray only grazes cuts it anywhere: then the difference in the other view stands for it */
+        /* the intersection with a plane at a grazing angle is unstable; the difference in the other view replaces it */
         double offset = (p->offset - vec3_dot(p->normal, at->center)) / facing / z - 1;
         if (!(fabs(offset) <= 2 * most)) offset = -gap;
         add_vote(vote, p, offset);
@@ -128,7 +129,7 @@ static void compare_rows(void *ctx, size_t begin, size_t end, int thread)
             if (!r->votes[i].views) continue;
             const struct surface_plane *p = &s->planes[s->id[i] - 1];
             const double u = (double)x + 0.5, v = (double)y + 0.5;
-            compare(r, &r->votes[i], p, surface_plane_z(p, u, v), ray_of(s->view, u, v));
+            compare_depth(r, &r->votes[i], p, surface_plane_z(p, u, v), ray_of(s->view, u, v));
         }
 }
 
@@ -150,8 +151,8 @@ static bool overlaps(const struct reference *r, const struct view *other)
     return false;
 }
 
-/* Which points stay, and where: inverse_z, 0 for the others. */
-static void settle(struct reference *r, struct fuse_stats *stats)
+/* Sets inverse_z: the fused inverse depth of the points that are kept, 0 for the others. */
+static void select_points(struct reference *r, struct fuse_stats *stats)
 {
     const struct surface *s = r->surface;
     for (int y = 0; y < s->view->height; y++)
@@ -162,8 +163,8 @@ static void settle(struct reference *r, struct fuse_stats *stats)
             if (!vote->views) continue;
             stats->samples++;
             if (vote->views < stats->views) {
-                stats->alone++;
-            } else if ((double)vote->against > r->params->seen_through * (double)vote->support) {
+                stats->unsupported++;
+            } else if ((double)vote->against > r->params->max_seen_through * (double)vote->support) {
                 stats->seen_through++;
             } else {
                 const double z = surface_plane_z(&s->planes[s->id[i] - 1], x + 0.5, y + 0.5);
@@ -172,7 +173,7 @@ static void settle(struct reference *r, struct fuse_stats *stats)
         }
 }
 
-/* The votes' sums of normals become the points' normals. */
+/* Turns the votes' sums of normals into the points' normals. */
 static void normal_rows(void *ctx, size_t begin, size_t end, int thread)
 {
     const struct reference *r = ctx;
@@ -193,7 +194,7 @@ static void normal_rows(void *ctx, size_t begin, size_t end, int thread)
         }
 }
 
-/* In the order of the pixels. */
+/* Adds the kept points to the grid, in the order of the pixels. */
 static enum status add_points(struct point_grid *grid, const struct reference *r, struct err *err)
 {
     const struct view *view = r->surface->view;
@@ -232,14 +233,14 @@ static enum status fuse_view(struct point_grid *grid, int view_idx, struct surfa
         r.inverse_z = malloc(pixels * sizeof *r.inverse_z);
         if (!r.votes || !r.inverse_z) st = err_nomem(err, "the views' votes", pixels * sizeof *r.votes);
     }
-    if (!st) parallel_for((size_t)view->height, ROWS, start_rows, &r);
+    if (!st) parallel_for((size_t)view->height, ROWS, init_votes, &r);
     for (int i = 0; !st && i < set->view_count; i++) {
         if (i != view_idx && overlaps(&r, &set->views[i]) && !(st = surface_cache_get(cache, i, &r.other, err)))
             parallel_for((size_t)view->height, ROWS, compare_rows, &r);
         progress_add(progress, 1);
     }
     if (!st) {
-        settle(&r, stats);
+        select_points(&r, stats);
         parallel_for((size_t)view->height, ROWS, normal_rows, &r);
         st = add_points(grid, &r, err);
     }
@@ -250,7 +251,7 @@ static enum status fuse_view(struct point_grid *grid, int view_idx, struct surfa
     return st;
 }
 
-/* Of confident pixels; 0: there are none. */
+/* Median depth of the confident pixels; 0 if there are none. */
 static enum status view_median(double *median, const struct surface *s, const struct fuse_params *params,
                                struct err *err)
 {
@@ -261,7 +262,7 @@ static enum status view_median(double *median, const struct surface *s, const st
     for (int y = 0; y < s->view->height; y += MEDIAN_STEP)
         for (int x = 0; x < s->view->width; x += MEDIAN_STEP) {
             const uint32_t id = s->id[(size_t)y * (size_t)s->view->width + (size_t)x];
-            if (!id || s->planes[id - 1].confidence < params->confident) continue;
+            if (!id || s->planes[id - 1].confidence < params->min_confidence) continue;
             const double z = surface_plane_z(&s->planes[id - 1], x + 0.5, y + 0.5);
             if (z > 0) depths[count++] = z;
         }
@@ -271,7 +272,7 @@ static enum status view_median(double *median, const struct surface *s, const st
     return ST_OK;
 }
 
-/* The median of the views' medians. Every depth map is read here, so that a bad one is known at once. */
+/* The median of the views' medians. Reads every depth map, so that a bad one is reported at once. */
 static enum status scene_depth(double *depth, struct surface_cache *cache, const struct fuse_params *params,
                                struct err *err)
 {
@@ -279,7 +280,7 @@ static enum status scene_depth(double *depth, struct surface_cache *cache, const
     struct progress progress = {0};
     int count = 0;
     if (!medians) return err_nomem(err, "the views' depths", (size_t)cache->set->view_count * sizeof *medians);
-    progress_start(&progress, "looking at depth maps", cache->set->view_count, "views");
+    progress_start(&progress, "reading depth maps", cache->set->view_count, "views");
     for (int i = 0; !err->status && i < cache->set->view_count; i++) {
         const struct surface *s;
         if (!surface_cache_get(cache, i, &s, err) && !view_median(&medians[count], s, params, err))
@@ -292,22 +293,21 @@ static enum status scene_depth(double *depth, struct surface_cache *cache, const
     free(medians);
     if (!err->status && !count)
         err_set(err, ST_DATA,
-                "no view has a segment of confidence %g or more: there is nothing to fuse. Look at the depth maps, or "
-                "lower "
-                "[fuse_points] confident.",
-                params->confident);
+                "no view has a segment of confidence %g or more, so there is nothing to fuse; check the depth maps, or "
+                "lower [fuse_points] min_confidence.",
+                params->min_confidence);
     return err->status;
 }
 
 enum status fuse_points(struct point_cloud *cloud, struct fuse_stats *stats, const struct camera_set *set,
-                        const struct depth_source *source, const struct fuse_params *params, size_t room,
+                        const struct depth_reader *source, const struct fuse_params *params, size_t max_bytes,
                         struct err *err)
 {
     struct surface_cache cache = {0};
     struct point_grid grid = {0};
     struct progress progress = {0};
-    *stats = (struct fuse_stats){.views = params->views < set->view_count ? params->views : set->view_count};
-    enum status st = surface_cache_init(&cache, set, source, room, err);
+    *stats = (struct fuse_stats){.views = params->min_views < set->view_count ? params->min_views : set->view_count};
+    enum status st = surface_cache_init(&cache, set, source, max_bytes, err);
     if (!st) st = scene_depth(&stats->depth, &cache, params, err);
     if (!st) st = point_grid_init(&grid, params->grid_size > 0 ? params->grid_size : params->grid * stats->depth, err);
     if (!st) progress_start(&progress, "fusing", (int64_t)set->view_count * set->view_count, "pairs of views");
@@ -315,12 +315,12 @@ enum status fuse_points(struct point_cloud *cloud, struct fuse_stats *stats, con
     progress_end(&progress);
     stats->reads = cache.reads;
     if (!st && !grid.count)
-        st = err_set(
-            err, ST_DATA,
-            "of %lld confident pixels none lies where %d views agree: there are no points. Look at the depth maps and "
-            "the cameras, or lower [fuse_points] views.",
-            (long long)stats->samples, stats->views);
-    surface_cache_release(&cache); /* before the points take their room */
+        st = err_set(err, ST_DATA,
+                     "none of %lld confident pixels has a depth on which %d views agree; check the depth maps and the "
+                     "cameras, or "
+                     "lower [fuse_points] min_views.",
+                     (long long)stats->samples, stats->views);
+    surface_cache_release(&cache); /* frees its memory before the points are allocated */
     if (!st) st = point_grid_points(cloud, &grid, err);
     point_grid_release(&grid);
     return st;

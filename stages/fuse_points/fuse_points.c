@@ -1,10 +1,10 @@
 /* fuse_points.c - oriented points on which the depth maps of several views agree.
  *
  * reads   VIEWS/cameras.txt, images.txt, points3D.txt   the cameras
- *         DEPTH/VIEW.exr, VIEW.txt                      every view's interior layer and segments
+ *         DEPTH/VIEW.exr, VIEW.txt                      all views' interior layers and segments
  * writes  OUT                                           binary PLY: position, normal, colour, views, confidence
  *
- * Holds one view's layer, of the others as many segment maps as --memory has room for, and the points. */
+ * Holds one view's layer, as many of the other views' segment maps as fit into --memory, and the points. */
 #include <inttypes.h>
 #include <stdio.h>
 
@@ -21,7 +21,7 @@ struct depth_folder {
     struct provenance *prov;
 };
 
-/* path: of the EXR; it and its list become inputs when they are first read. */
+/* path: of the EXR. Records it and its list of segments as inputs. */
 static enum status find_depth(const struct depth_folder *f, int view_idx, char path[FILE_PATH], struct err *err)
 {
     const char *name = f->set->views[view_idx].name;
@@ -43,13 +43,13 @@ static enum status read_interior(void *ctx, int view_idx, struct layered_depth *
     return find_depth(ctx, view_idx, path, err) ? err->status : layered_depth_read_interior(d, path, err);
 }
 
-static void tell(const struct point_cloud *cloud, const struct fuse_stats *stats)
+static void log_stats(const struct point_cloud *cloud, const struct fuse_stats *stats)
 {
     const double percent = stats->samples ? 100.0 / (double)stats->samples : 0;
     log_note("%zu points on a grid of %.4g (the scene's median depth is %.4g), from %" PRId64 " confident pixels",
              cloud->count, cloud->cell, stats->depth, stats->samples);
-    log_note("left out: %.1f %% on which fewer than %d views agree, %.1f %% that views look through",
-             percent * (double)stats->alone, stats->views, percent * (double)stats->seen_through);
+    log_note("left out: %.1f %% on which fewer than %d views agree, %.1f %% that other views see through",
+             percent * (double)stats->unsupported, stats->views, percent * (double)stats->seen_through);
 }
 
 static enum status fuse(const char *views, const char *depth, const char *out, int mib,
@@ -58,16 +58,16 @@ static enum status fuse(const char *views, const char *depth, const char *out, i
     struct camera_set set = {0};
     struct point_cloud cloud = {0};
     struct fuse_stats stats;
-    if (mib < 0) return err_set(err, ST_USAGE, "--memory %d: wanted MiB, 0 or more.", mib);
+    if (mib < 0) return err_set(err, ST_USAGE, "--memory %d: wanted a number of MiB, 0 or more.", mib);
     enum status st = camera_set_read(&set, views, err);
     if (!st) st = camera_set_add_inputs(prov, views, err);
     if (!st) {
         struct depth_folder folder = {depth, &set, prov};
-        const struct depth_source source = {read_ids, read_interior, &folder};
+        const struct depth_reader source = {read_ids, read_interior, &folder};
         st = fuse_points(&cloud, &stats, &set, &source, params, (size_t)mib << 20, err);
     }
     if (!st) st = point_cloud_write(&cloud, out, prov, err);
-    if (!st) tell(&cloud, &stats);
+    if (!st) log_stats(&cloud, &stats);
     point_cloud_release(&cloud);
     camera_set_release(&set);
     return st;
@@ -81,10 +81,10 @@ int main(int argc, char **argv)
     const struct cli_opt opts[] = {
         CLI_ABOUT("Oriented points on which the depth maps of several views agree."),
         CLI_STR("views", &views, CLI_REQUIRED, "folder of cameras"),
-        CLI_STR("depth", &depth, CLI_REQUIRED, "folder of the views' layers"),
+        CLI_STR("depth", &depth, CLI_REQUIRED, "folder of the views' depth"),
         CLI_STR("out", &out, CLI_REQUIRED, "PLY to write"),
         CLI_INT("memory", &mib, CLI_OPTIONAL,
-                "MiB for segment maps that are held at once (1024); changes time, not points"),
+                "MiB for the cache of segment maps (1024); changes the time, not the points"),
         CLI_PARAMS(fuse_param_table, &params, NULL),
         CLI_END,
     };

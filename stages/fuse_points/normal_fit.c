@@ -1,21 +1,23 @@
-/* normal_fit.c - see normal_fit.h.
+/* normal_fit.c - normals of points by a robust fit to the depths around them.
  *
- * A plane is linear in inverse depth: z0 / z = 1 + a + b du + c dv, (du, dv) px from the pixel, z0 its depth. a, b, c
- * minimise
+ * A plane is linear in inverse depth: z0 / z = 1 + a + b du + c dv, where (du, dv) is the offset in px from the pixel
+ * and z0 its depth. a, b and c minimize
  *   sum_i w_i (z0 / z_i - 1 - a - b du_i - c dv_i)^2 / noise^2 + ((b - b0)^2 f_x^2 + (c - c0)^2 f_y^2) / PRIOR^2
- * over a lattice of SIDE^2 pixels of the window; b0, c0 are the slopes of the normal on entry, from which the first
- * residuals r are taken too; w = 1 / (1 + (r / (CUT noise))^2)^2 (Geman and McClure) keeps other surfaces out. A segment is narrow, and
- * what it knows of its slant is little: many have a constant depth because nothing told otherwise. */
+ * over a lattice of SIDE x SIDE pixels of the window, by iteratively reweighted least squares. b0 and c0 are the slopes
+ * of the given normal. The weights w = 1 / (1 + (r / (CUT noise))^2)^2 [Geman 1987] exclude other surfaces; the first
+ * residuals r are those of the given normal.
+ * The prior keeps the given slope where depths do not determine it. It is weak, since a narrow segment hardly
+ * determines its own slant, and many have a constant depth for lack of evidence. */
 #include "stages/fuse_points/normal_fit.h"
 
 #include <stdbool.h>
 
 #define SIDE   7 /* odd */
 #define ROUNDS 3
-#define PRIOR  0.3 /* standard deviation of a segment's slope, tan of the angle at the pixel */
+#define PRIOR  0.3 /* standard deviation of a segment's slope: tangent of the angle at the pixel */
 #define CUT    2.0
 
-/* Solves the symmetric m x = y, positive definite; false where rounding says it is not. */
+/* Solves m x = y, m symmetric and positive definite; false if it is not, by rounding. */
 static bool solve(double x[3], double m[3][3], const double y[3])
 {
     const double c0 = m[1][1] * m[2][2] - m[1][2] * m[1][2], c1 = m[0][2] * m[1][2] - m[0][1] * m[2][2],
@@ -73,7 +75,7 @@ struct vec3 normal_fit(struct vec3 normal, const float *inverse_z, const struct 
         }
         if (!solve(fit, m, right)) return normal;
     }
-    /* the plane of these slopes, scaled so that n . ray = 1 at the pixel; towards the camera is the other way */
+    /* the plane of these slopes, scaled so that n . ray = 1 at the pixel; its negative faces the camera */
     n.x = fit[1] * view->fx;
     n.y = fit[2] * view->fy;
     n.z = 1 - n.x * dx - n.y * dy;

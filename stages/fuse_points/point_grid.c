@@ -1,4 +1,7 @@
-/* point_grid.c - see point_grid.h. A hash table with open addressing; a cell with two points has two entries. */
+/* point_grid.c - merging of points in a sparse grid.
+ *
+ * The cells are entries of a hash table with open addressing and linear probing; a cell with points of two normals has
+ * two entries. Positions are summed relative to the cell's corner, which keeps their precision far from the origin. */
 #include "stages/fuse_points/point_grid.h"
 
 #include <math.h>
@@ -7,9 +10,9 @@
 
 #include "common/image/image.h"
 
-#define LEAST_COSINE 0.5 /* between a sample's normal and its point's */
-#define LEAST_WEIGHT 1e-6
-#define FARTHEST     4503599627370496.0
+#define MIN_COSINE 0.5 /* between a sample's normal and its point's */
+#define MIN_WEIGHT 1e-6
+#define MAX_CELL   4503599627370496.0
 
 struct grid_cell {
     int64_t at[3];
@@ -17,7 +20,7 @@ struct grid_cell {
     double position[3]; /* weighted sums; positions from the cell's corner */
     double normal[3];
     float color[3], confidence;
-    int views; /* the most */
+    int views; /* maximum over the samples */
 };
 
 enum { FIRST_SLOTS = 1 << 12 };
@@ -41,12 +44,12 @@ static size_t first_slot(const struct point_grid *g, const int64_t at[3])
 
 static enum status grow(struct point_grid *g, struct err *err)
 {
-    if (g->count == g->room) {
-        const size_t room = g->room ? g->room + g->room / 2 : FIRST_SLOTS / 2;
-        struct grid_cell *cells = room < UINT32_MAX ? realloc(g->cells, room * sizeof *cells) : NULL;
-        if (!cells) return err_nomem(err, "merged points", room * sizeof *cells);
+    if (g->count == g->capacity) {
+        const size_t capacity = g->capacity ? g->capacity + g->capacity / 2 : FIRST_SLOTS / 2;
+        struct grid_cell *cells = capacity < UINT32_MAX ? realloc(g->cells, capacity * sizeof *cells) : NULL;
+        if (!cells) return err_nomem(err, "merged points", capacity * sizeof *cells);
         g->cells = cells;
-        g->room = room;
+        g->capacity = capacity;
     }
     if (2 * g->count < g->slot_count) return ST_OK;
     uint32_t *slots = calloc(2 * g->slot_count, sizeof *slots);
@@ -54,7 +57,7 @@ static enum status grow(struct point_grid *g, struct err *err)
     free(g->slots);
     g->slots = slots;
     g->slot_count *= 2;
-    /* in the cells' order, so that of two in one place the older one is still met first */
+    /* in the cells' order, so that of two entries of one cell the older one is still found first */
     for (size_t i = 0; i < g->count; i++) {
         size_t s = first_slot(g, g->cells[i].at);
         while (slots[s]) s = (s + 1) & (g->slot_count - 1);
@@ -67,7 +70,7 @@ static bool takes(const struct grid_cell *c, const int64_t at[3], struct vec3 no
 {
     if (memcmp(c->at, at, sizeof c->at)) return false;
     const struct vec3 n = {c->normal[0], c->normal[1], c->normal[2]};
-    return vec3_dot(n, normal) > LEAST_COSINE * vec3_length(n);
+    return vec3_dot(n, normal) > MIN_COSINE * vec3_length(n);
 }
 
 enum status point_grid_add(struct point_grid *g, const struct fused_sample *s, struct err *err)
@@ -76,7 +79,7 @@ enum status point_grid_add(struct point_grid *g, const struct fused_sample *s, s
     const double normal[3] = {s->normal.x, s->normal.y, s->normal.z};
     int64_t at[3];
     for (int k = 0; k < 3; k++) {
-        if (!(fabs(p[k]) < FARTHEST)) return ST_OK;
+        if (!(fabs(p[k]) < MAX_CELL)) return ST_OK;
         at[k] = (int64_t)floor(p[k]);
     }
     if (grow(g, err)) return err->status;
@@ -88,7 +91,7 @@ enum status point_grid_add(struct point_grid *g, const struct fused_sample *s, s
         g->slots[slot] = (uint32_t)++g->count;
     }
     struct grid_cell *c = &g->cells[g->slots[slot] - 1];
-    const double w = fmax((double)s->confidence, LEAST_WEIGHT);
+    const double w = fmax((double)s->confidence, MIN_WEIGHT);
     c->weight += w;
     for (int k = 0; k < 3; k++) {
         c->position[k] += w * (p[k] - (double)at[k]);
@@ -115,7 +118,7 @@ enum status point_grid_points(struct point_cloud *cloud, const struct point_grid
             p->color[k] = (uint8_t)lrintf(255 * srgb_from_linear(c->color[k] / (float)c->weight));
         }
         p->position = vec3_make(at[0], at[1], at[2]);
-        /* a sum of vectors each within 60 degrees of the sum before it is never 0 */
+        /* never 0: each summand is within 60 degrees of the sum before it */
         const struct vec3 n = vec3_normalize(vec3_make(c->normal[0], c->normal[1], c->normal[2]));
         p->normal[0] = (float)n.x;
         p->normal[1] = (float)n.y;

@@ -1,18 +1,28 @@
-/* cross_view.c - see cross_view.h. */
+/* cross_view.c - cross-view consistency, after [Zitnick 2007].
+ *
+ * Samples of a segment are carried from its plane into each neighbour by the homography of the plane. With g the number
+ * of steps of inverse depth by which the neighbour's surface lies nearer than the sample there, a sample costs
+ *   |g| <= AGREE_STEPS   OCCLUDED_COST |g| / AGREE_STEPS: the two agree
+ *   g > AGREE_STEPS      OCCLUDED_COST: the sample is occluded in the neighbour, whose picture says nothing of it
+ *   g < -AGREE_STEPS     more, up to OCCLUDED_COST + the neighbour's confidence: it sees through the sample, so that
+ *                        one of the two depths is wrong
+ *   no depth there       UNKNOWN_COST
+ * What differs from the source: neighbours' depths are those of the previous round, weighted by their segments'
+ * confidence; and the neighbours' planes, expressed in this view, become proposals of the expansion moves. */
 #include "stages/segment_depth/cross_view.h"
 
 #include <immintrin.h>
 #include <math.h>
 #include <stdlib.h>
 
-#define AGREE            2.0f /* steps: planes nearer than this agree, the less the farther */
-#define HIDDEN           0.15f /* cost of being hidden from a neighbour: dearer than agreeing, cheaper than standing in its way */
-#define UNKNOWN          0.15f
-#define LEAST_OCCLUDER   0.3f  /* confidence of what is believed to hide something */
-#define LEAST_CONFIDENCE 0.15f /* what a neighbour's unsure segment still counts */
+#define AGREE_STEPS    2.0f  /* steps between planes that agree */
+#define OCCLUDED_COST  0.15f /* more than agreement costs, less than a violation of the neighbour's line of sight */
+#define UNKNOWN_COST   0.15f
+#define MIN_OCCLUDER   0.3f  /* confidence from which on a surface may occlude */
+#define MIN_CONFIDENCE 0.15f /* minimum weight of a neighbour's segment */
 
-/* The plane of `other` that is `p` here: as n . X = 1 in the camera's axes, carried by the pose. False: it passes through
- * the camera's centre. */
+/* Expresses plane `p` of view `other` in `view`: as n . X = 1 in the camera's axes, transformed by the relative pose.
+ * False if the plane passes through the camera's centre. */
 static bool plane_from_neighbour(struct plane *out, const double p[3], const struct view *view,
                                  const struct view *other)
 {
@@ -26,34 +36,35 @@ static bool plane_from_neighbour(struct plane *out, const double p[3], const str
     return isfinite(out->a) && isfinite(out->b) && isfinite(out->c);
 }
 
-/* Places spread over each segment, in pixel coordinates. */
-static enum status make_places(struct cross_view *x, const struct segmentation *s, struct err *err)
+/* Picks pixels spread over each segment. */
+static enum status sample_segments(struct cross_view *x, const struct segmentation *s, struct err *err)
 {
-    x->places = malloc(((size_t)s->count + 1) * sizeof *x->places);
-    if (!x->places) return err_nomem(err, "places of segments", (size_t)s->count * sizeof *x->places);
+    x->samples = malloc(((size_t)s->count + 1) * sizeof *x->samples);
+    if (!x->samples) return err_nomem(err, "samples of segments", (size_t)s->count * sizeof *x->samples);
     for (int i = 0; i < s->count; i++)
-        for (int k = 0; k < CROSS_PLACES; k++) {
+        for (int k = 0; k < CROSS_SAMPLES; k++) {
             const struct segment *g = &s->segments[i];
-            const int pixel = s->pixel[g->first + g->pixels * (2 * k + 1) / (2 * CROSS_PLACES)];
-            x->places[i][0][k] = (float)(pixel % s->width) + 0.5f;
-            x->places[i][1][k] = (float)(pixel / s->width) + 0.5f;
+            const int pixel = s->pixel[g->first + g->pixels * (2 * k + 1) / (2 * CROSS_SAMPLES)];
+            x->samples[i][0][k] = (float)(pixel % s->width) + 0.5f;
+            x->samples[i][1][k] = (float)(pixel / s->width) + 0.5f;
         }
     return ST_OK;
 }
 
-/* What cross_view_cost() reads, close together. */
-static enum status look_from(struct cross_neighbour *n, const struct cross_view *x, int segments, struct err *err)
+/* Precomputes what cross_view_cost() reads, close together in memory. */
+static enum status prepare_neighbour(struct cross_neighbour *n, const struct cross_view *x, int segments,
+                                     struct err *err)
 {
-    const size_t planes = (size_t)n->depth.segment_count + 1, size = ((size_t)segments + 1) * sizeof *n->places;
-    n->places = aligned_alloc(32, size);
+    const size_t planes = (size_t)n->depth.segment_count + 1, size = ((size_t)segments + 1) * sizeof *n->warps;
+    n->warps = aligned_alloc(32, size);
     n->planes = calloc(planes, sizeof *n->planes);
-    if (!n->places || !n->planes) return err_nomem(err, "places of segments", size);
+    if (!n->warps || !n->planes) return err_nomem(err, "samples of segments", size);
     for (int i = 0; i < segments; i++)
-        for (int k = 0; k < CROSS_PLACES; k++) {
-            const double u = (double)x->places[i][0][k], v = (double)x->places[i][1][k];
+        for (int k = 0; k < CROSS_SAMPLES; k++) {
+            const double u = (double)x->samples[i][0][k], v = (double)x->samples[i][1][k];
             for (int j = 0; j < 3; j++)
-                n->places[i].turned[j][k] = (float)(n->base[j][0] * u + n->base[j][1] * v + n->base[j][2]);
-            n->places[i].steps[k] = 1 / (fmaxf(n->places[i].turned[2][k], 0.1f) * (float)x->step);
+                n->warps[i].rotated[j][k] = (float)(n->base[j][0] * u + n->base[j][1] * v + n->base[j][2]);
+            n->warps[i].steps[k] = 1 / (fmaxf(n->warps[i].rotated[2][k], 0.1f) * (float)x->step);
         }
     for (size_t k = 1; k < planes; k++) {
         const struct depth_segment *g = &n->depth.segments[k - 1];
@@ -63,18 +74,18 @@ static enum status look_from(struct cross_neighbour *n, const struct cross_view 
     return ST_OK;
 }
 
-struct center {
+struct centroid {
     double u, v;
     int pixels;
 };
 
-static enum status segment_centers(struct center **centers, const struct layered_depth *d, struct err *err)
+static enum status segment_centroids(struct centroid **centers, const struct layered_depth *d, struct err *err)
 {
-    struct center *c = calloc((size_t)d->segment_count + 1, sizeof *c);
+    struct centroid *c = calloc((size_t)d->segment_count + 1, sizeof *c);
     if (!c) return err_nomem(err, "centres of segments", (size_t)d->segment_count * sizeof *c);
     for (int y = 0; y < d->height; y++)
         for (int x = 0; x < d->width; x++) {
-            struct center *at = &c[d->interior.id[(size_t)y * (size_t)d->width + (size_t)x]];
+            struct centroid *at = &c[d->interior.id[(size_t)y * (size_t)d->width + (size_t)x]];
             at->u += x + 0.5;
             at->v += y + 0.5;
             at->pixels++;
@@ -83,10 +94,10 @@ static enum status segment_centers(struct center **centers, const struct layered
     return ST_OK;
 }
 
-/* round 0 counts, round 1 fills. */
-static void place_proposals(struct cross_view *x, const struct segmentation *s, const struct view *view,
-                            const struct view *other, const struct layered_depth *d, const struct center *centers,
-                            int round)
+/* Round 0 counts the proposals of each segment, round 1 stores them. */
+static void collect_proposals(struct cross_view *x, const struct segmentation *s, const struct view *view,
+                              const struct view *other, const struct layered_depth *d, const struct centroid *centers,
+                              int round)
 {
     for (int k = 1; k <= d->segment_count; k++) {
         const struct depth_segment *g = &d->segments[k - 1];
@@ -109,12 +120,12 @@ static void place_proposals(struct cross_view *x, const struct segmentation *s, 
 
 enum status cross_view_make(struct cross_view *x, const struct segmentation *s, const struct camera_set *set,
                             int view_idx, const int *neighbours, int count, double step,
-                            const struct depth_source *source, struct err *err)
+                            const struct previous_depth_source *source, struct err *err)
 {
     const struct view *view = &set->views[view_idx];
-    struct center *centers[MAX_NEIGHBOURS] = {NULL};
+    struct centroid *centers[MAX_NEIGHBOURS] = {NULL};
     x->step = step;
-    enum status st = make_places(x, s, err);
+    enum status st = sample_segments(x, s, err);
     if (!st && !(x->first_proposal = calloc((size_t)s->count + 3, sizeof *x->first_proposal)))
         st = err_nomem(err, "proposals", (size_t)s->count * sizeof(int));
     for (int k = 0; !st && k < count; k++) {
@@ -122,12 +133,12 @@ enum status cross_view_make(struct cross_view *x, const struct segmentation *s, 
         match_homography(n->base, n->shift, view, &set->views[neighbours[k]]);
         x->count = k + 1;
         st = source->read(source->ctx, neighbours[k], &n->depth, err);
-        if (!st) st = segment_centers(&centers[k], &n->depth, err);
-        if (!st) st = look_from(n, x, s->count, err);
+        if (!st) st = segment_centroids(&centers[k], &n->depth, err);
+        if (!st) st = prepare_neighbour(n, x, s->count, err);
     }
     for (int round = 0; !st && round < 2; round++) {
         for (int k = 0; k < count; k++)
-            place_proposals(x, s, view, &set->views[neighbours[k]], &x->neighbours[k].depth, centers[k], round);
+            collect_proposals(x, s, view, &set->views[neighbours[k]], &x->neighbours[k].depth, centers[k], round);
         if (round) break;
         for (int i = 1; i <= s->count + 1; i++) x->first_proposal[i] += x->first_proposal[i - 1];
         const size_t all = (size_t)x->first_proposal[s->count + 1];
@@ -143,24 +154,25 @@ void cross_view_release(struct cross_view *x)
     if (!x) return;
     for (int k = 0; k < x->count; k++) {
         layered_depth_release(&x->neighbours[k].depth);
-        free(x->neighbours[k].places);
+        free(x->neighbours[k].warps);
         free(x->neighbours[k].planes);
     }
-    free(x->places);
+    free(x->samples);
     free(x->first_proposal);
     free(x->proposals);
     *x = (struct cross_view){0};
 }
 
-/* Of each place of a segment at an inverse depth: how many steps nearer the neighbour's surface is, and the neighbour's
- * confidence. Returns the lanes where the neighbour knows something. */
-static inline __m256 nearer_by(const struct cross_neighbour *n, int segment, __m256 inverse, __m256 *steps,
-                               __m256 *confidence)
+/* For each sample of a segment at inverse depth `inverse`: the steps by which the neighbour's surface is nearer, and
+ * that surface's confidence. Returns the mask of lanes where the neighbour has a depth. */
+static inline __m256 surface_gap(const struct cross_neighbour *n, int segment, __m256 inverse, __m256 *steps,
+                                 __m256 *confidence)
 {
-    const struct cross_places *at = &n->places[segment];
+    const struct cross_warp *at = &n->warps[segment];
     __m256 p[3];
     for (int j = 0; j < 3; j++)
-        p[j] = _mm256_add_ps(_mm256_load_ps(at->turned[j]), _mm256_mul_ps(_mm256_set1_ps((float)n->shift[j]), inverse));
+        p[j] =
+            _mm256_add_ps(_mm256_load_ps(at->rotated[j]), _mm256_mul_ps(_mm256_set1_ps((float)n->shift[j]), inverse));
     const __m256 zero = _mm256_setzero_ps(), r = _mm256_div_ps(_mm256_set1_ps(1), p[2]);
     const __m256 u = _mm256_mul_ps(p[0], r), v = _mm256_mul_ps(p[1], r);
     __m256 known = _mm256_cmp_ps(p[2], _mm256_set1_ps(1e-9f), _CMP_GT_OQ);
@@ -171,7 +183,7 @@ static inline __m256 nearer_by(const struct cross_neighbour *n, int segment, __m
     if (_mm256_testz_ps(known, known)) return known;
     const __m256i pixel = _mm256_add_epi32(
         _mm256_mullo_epi32(_mm256_cvttps_epi32(v), _mm256_set1_epi32(n->depth.width)), _mm256_cvttps_epi32(u));
-    const __m256i none = _mm256_setzero_si256(); /* the planes of no segment are 0 */
+    const __m256i none = _mm256_setzero_si256(); /* plane 0, of no segment, is all zeros */
     const __m256i id = _mm256_slli_epi32(
         _mm256_mask_i32gather_epi32(none, (const int *)n->depth.interior.id, pixel, _mm256_castps_si256(known), 4), 2);
     const float *planes = &n->planes->a;
@@ -184,57 +196,58 @@ static inline __m256 nearer_by(const struct cross_neighbour *n, int segment, __m
     return _mm256_and_ps(known, _mm256_cmp_ps(there, zero, _CMP_GT_OQ));
 }
 
-/* Of a segment's places on a plane. */
+/* Inverse depths of a segment's samples on a plane. */
 static __m256 inverse_depths(const struct cross_view *x, int segment, struct plane plane)
 {
-    const float(*at)[CROSS_PLACES] = x->places[segment];
+    const float(*at)[CROSS_SAMPLES] = x->samples[segment];
     const __m256 a = _mm256_set1_ps((float)plane.a), b = _mm256_set1_ps((float)plane.b);
     return _mm256_add_ps(
         _mm256_add_ps(_mm256_mul_ps(a, _mm256_loadu_ps(at[0])), _mm256_mul_ps(b, _mm256_loadu_ps(at[1]))),
         _mm256_set1_ps((float)plane.c));
 }
 
-float cross_view_cost(const struct cross_view *x, int segment, struct plane plane, unsigned *hidden)
+float cross_view_cost(const struct cross_view *x, int segment, struct plane plane, unsigned *occluded)
 {
-    const __m256 agree = _mm256_set1_ps(AGREE), zero = _mm256_setzero_ps();
+    const __m256 agree = _mm256_set1_ps(AGREE_STEPS), zero = _mm256_setzero_ps();
     const __m256 inverse = inverse_depths(x, segment, plane);
     __m256 sum = zero;
-    *hidden = 0;
+    *occluded = 0;
     if (!x->count) return 0;
     for (int k = 0; k < x->count; k++) {
         __m256 steps, confidence;
-        const __m256 known = nearer_by(&x->neighbours[k], segment, inverse, &steps, &confidence);
+        const __m256 known = surface_gap(&x->neighbours[k], segment, inverse, &steps, &confidence);
         const __m256 off = _mm256_max_ps(steps, _mm256_sub_ps(zero, steps));
-        const __m256 near = _mm256_mul_ps(_mm256_min_ps(off, agree), _mm256_set1_ps(HIDDEN / AGREE));
-        const __m256 through =
-            _mm256_mul_ps(_mm256_sub_ps(_mm256_sub_ps(zero, steps), agree), _mm256_set1_ps(1 / AGREE));
-        const __m256 sure = _mm256_max_ps(confidence, _mm256_set1_ps(LEAST_CONFIDENCE));
-        const __m256 in_the_way = _mm256_mul_ps(sure, _mm256_min_ps(_mm256_max_ps(through, zero), _mm256_set1_ps(1)));
-        sum = _mm256_add_ps(sum, _mm256_blendv_ps(_mm256_set1_ps(UNKNOWN), _mm256_add_ps(near, in_the_way), known));
+        const __m256 near = _mm256_mul_ps(_mm256_min_ps(off, agree), _mm256_set1_ps(OCCLUDED_COST / AGREE_STEPS));
+        const __m256 seen_through =
+            _mm256_mul_ps(_mm256_sub_ps(_mm256_sub_ps(zero, steps), agree), _mm256_set1_ps(1 / AGREE_STEPS));
+        const __m256 sure = _mm256_max_ps(confidence, _mm256_set1_ps(MIN_CONFIDENCE));
+        const __m256 violation =
+            _mm256_mul_ps(sure, _mm256_min_ps(_mm256_max_ps(seen_through, zero), _mm256_set1_ps(1)));
+        sum = _mm256_add_ps(sum, _mm256_blendv_ps(_mm256_set1_ps(UNKNOWN_COST), _mm256_add_ps(near, violation), known));
         const __m256 behind = _mm256_and_ps(_mm256_cmp_ps(steps, agree, _CMP_GT_OQ),
-                                            _mm256_cmp_ps(confidence, _mm256_set1_ps(LEAST_OCCLUDER), _CMP_GT_OQ));
-        if (__builtin_popcount((unsigned)_mm256_movemask_ps(_mm256_and_ps(known, behind))) > CROSS_PLACES / 2)
-            *hidden |= 1u << k;
+                                            _mm256_cmp_ps(confidence, _mm256_set1_ps(MIN_OCCLUDER), _CMP_GT_OQ));
+        if (__builtin_popcount((unsigned)_mm256_movemask_ps(_mm256_and_ps(known, behind))) > CROSS_SAMPLES / 2)
+            *occluded |= 1u << k;
     }
-    _Alignas(32) float lanes[CROSS_PLACES];
+    _Alignas(32) float lanes[CROSS_SAMPLES];
     _mm256_store_ps(lanes, sum);
     float all = 0;
-    for (int i = 0; i < CROSS_PLACES; i++) all += lanes[i];
-    return all / (float)(x->count * CROSS_PLACES);
+    for (int i = 0; i < CROSS_SAMPLES; i++) all += lanes[i];
+    return all / (float)(x->count * CROSS_SAMPLES);
 }
 
-double cross_view_agreeing(const struct cross_view *x, int segment, struct plane plane)
+double cross_view_support(const struct cross_view *x, int segment, struct plane plane)
 {
     const __m256 inverse = inverse_depths(x, segment, plane);
     double sum = 0;
     for (int k = 0; k < x->count; k++) {
-        _Alignas(32) float steps[CROSS_PLACES], confidence[CROSS_PLACES];
+        _Alignas(32) float steps[CROSS_SAMPLES], confidence[CROSS_SAMPLES];
         __m256 s, c;
-        const unsigned known = (unsigned)_mm256_movemask_ps(nearer_by(&x->neighbours[k], segment, inverse, &s, &c));
+        const unsigned known = (unsigned)_mm256_movemask_ps(surface_gap(&x->neighbours[k], segment, inverse, &s, &c));
         _mm256_store_ps(steps, s);
         _mm256_store_ps(confidence, c);
-        if (known >> CROSS_PLACES / 2 & 1 && fabsf(steps[CROSS_PLACES / 2]) <= AGREE)
-            sum += (double)confidence[CROSS_PLACES / 2];
+        if (known >> CROSS_SAMPLES / 2 & 1 && fabsf(steps[CROSS_SAMPLES / 2]) <= AGREE_STEPS)
+            sum += (double)confidence[CROSS_SAMPLES / 2];
     }
     return sum;
 }

@@ -4,7 +4,7 @@
 
 #include "stages/segment_depth/plane_problem.h"
 
-/* Improves plane[], one a segment. The same for any number of threads. */
+/* Lowers the energy of plane[], one plane per segment. Same result for any number of threads. */
 enum status expand_planes(struct plane *plane, const struct plane_problem *p, struct err *err);
 
 #endif

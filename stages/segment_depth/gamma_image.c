@@ -1,4 +1,8 @@
-/* gamma_image.c - see gamma_image.h. */
+/* gamma_image.c - the tone curve of a view for matching: value = min(1, (exposure x linear)^power).
+ *
+ * The exposure brings the 98th percentile of the brightest channel to 0.95. The power is 1/2, close to a display's
+ * curve; or lower, down to MIN_POWER, if the median would otherwise be darker than MIN_MEDIAN: a few bright windows
+ * must not leave the room dark. As a pure power it keeps a change of exposure between two photos a constant factor. */
 #include "stages/segment_depth/gamma_image.h"
 
 #include <math.h>
@@ -7,9 +11,9 @@
 #include "common/base/parallel.h"
 #include "common/base/sort.h"
 
-#define POWER        0.5
-#define LEAST_POWER  0.2
-#define LEAST_MIDDLE 0.35 /* where the median is to be after the curve */
+#define POWER      0.5
+#define MIN_POWER  0.2
+#define MIN_MEDIAN 0.35 /* of the value at the exposure's percentile */
 
 struct tone tone_of(const struct image *im)
 {
@@ -28,7 +32,7 @@ struct tone tone_of(const struct image *im)
         const double bright = (double)brightest[count - 1 - count / 50], middle = (double)brightest[count / 2];
         if (bright > 1e-12) {
             if (middle > 1e-12 * bright && middle < bright)
-                tone.power = fmax(fmin(log(LEAST_MIDDLE) / log(middle / bright), POWER), LEAST_POWER);
+                tone.power = fmax(fmin(log(MIN_MEDIAN) / log(middle / bright), POWER), MIN_POWER);
             tone.exposure = pow(0.95, 1 / tone.power) / bright;
         }
     }

@@ -1,7 +1,4 @@
-/* gamma_image.h - a view as matching and segmentation see it: exposed, gamma-encoded, in planes.
- *
- * value = min(1, (exposure x linear)^power). The power stands for the display curve, and is lower where a few bright
- * windows would leave all else dark; being a pure power, it keeps a change of exposure between two photos a factor. */
+/* gamma_image.h - a view as matching and segmentation see it: exposed, gamma-encoded, one plane per channel. */
 #ifndef REMODEL_GAMMA_IMAGE_H
 #define REMODEL_GAMMA_IMAGE_H
 
@@ -18,19 +15,19 @@ struct gamma_image {
     int width, height;
     struct tone tone;
     float *rgb[3];  /* w * h each, 0 .. 1; owned */
-    uint8_t *valid; /* w * h: the photo has a pixel here */
+    uint8_t *valid; /* w * h: 1 where the photo has a pixel; owned */
 };
 
-/* Brings the 98th percentile of the brightest channel to 0.95, and the median to a third or above: by power 1/2, or a lower
- * one, 1/5 at least. Exposure 1 where there is no light. */
+/* The exposure and power that suit a picture (gamma_image.c); exposure 1 if it is black. */
 struct tone tone_of(const struct image *linear_rgba);
+/* g is empty after a failure (ST_NOMEM). */
 enum status gamma_image_make(struct gamma_image *g, const struct image *linear_rgba, struct tone tone, struct err *err);
 void gamma_image_release(struct gamma_image *g);
 
-/* Halves the size by averaging 2x2 pixels (an odd last row or column is dropped, but one pixel is kept). */
+/* Halves the size by averaging 2x2 pixels. An odd last row or column is dropped, unless it is the only one. */
 enum status gamma_image_halve(struct gamma_image *g, struct err *err);
 
-/* Bilinear colour at pixel coordinates (centres at +0.5); false outside the picture or where it is not valid. */
+/* Bilinear colour at pixel coordinates (centres at +0.5); false outside the picture or beside an invalid pixel. */
 bool gamma_image_at(const struct gamma_image *g, double u, double v, float rgb[3]);
 
 #endif

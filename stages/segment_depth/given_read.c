@@ -1,4 +1,7 @@
-/* given_read.c - see given_read.h. */
+/* given_read.c - reads a depth map that the user provides, and resamples it to a view.
+ *
+ * A map of the view has the view's field of view, at any scale; each pixel takes the nearest sample. A map of the photo
+ * is looked up through the photo's lens, and its depth, along the photo's axis, is converted to the view's. */
 #include "stages/segment_depth/given_read.h"
 
 #include <math.h>
@@ -13,10 +16,10 @@
 #include "common/image/exr.h"
 #include "common/image/photo.h"
 
-#define LEAST_Z 1e-30 /* what is nearer or farther cannot be told from 0 or infinity */
-#define MOST_Z  1e30
+#define MIN_Z 1e-30 /* depths outside this range are unknown */
+#define MAX_Z 1e30
 
-struct map { /* as the file has it */
+struct given_map { /* a file's samples as depths */
     const char *path;
     int width, height;
     float *z; /* w * h, 0 unknown; owned */
@@ -32,7 +35,7 @@ enum status given_units_read(struct given_units *u, const char *path, struct err
         st = textfile_word(&t, "scale or pixels", &word, err);
         if (st) break;
         if (!strcmp(word, "scale") && !(u->scale > 0)) {
-            st = textfile_double(&t, "what a sample is to be multiplied with", &u->scale, err);
+            st = textfile_double(&t, "a scale: the depth of a sample of 1", &u->scale, err);
             if (!st && !(u->scale >= 1e-12 && u->scale <= 1e12)) {
                 snprintf(found, sizeof found, "%.9g", u->scale);
                 st = textfile_error(&t, err, found, "a scale from 1e-12 to 1e12");
@@ -55,20 +58,20 @@ enum status given_units_read(struct given_units *u, const char *path, struct err
     return st;
 }
 
-static enum status keep_sample(struct map *m, size_t i, double sample, double scale, struct err *err)
+static enum status store_sample(struct given_map *m, size_t i, double sample, double scale, struct err *err)
 {
     const double z = sample * scale;
     if (sample < 0 && isfinite(sample))
         return err_set(
             err, ST_DATA,
-            "%s: found the depth %.9g at pixel (%d, %d); wanted z along the camera's axis, more than 0 in front "
-            "of it, and 0 where it is not known.",
-            m->path, sample, (int)(i % (size_t)m->width), (int)(i / (size_t)m->width));
-    m->z[i] = z >= LEAST_Z && z <= MOST_Z ? (float)z : 0;
+            "%s: pixel (%d, %d) has the depth %.9g; wanted z along the camera's axis: positive, or 0 where it is "
+            "unknown.",
+            m->path, (int)(i % (size_t)m->width), (int)(i / (size_t)m->width), sample);
+    m->z[i] = z >= MIN_Z && z <= MAX_Z ? (float)z : 0;
     return ST_OK;
 }
 
-static enum status init_map(struct map *m, int width, int height, struct err *err)
+static enum status init_map(struct given_map *m, int width, int height, struct err *err)
 {
     const size_t pixels = (size_t)width * (size_t)height;
     m->width = width;
@@ -77,37 +80,37 @@ static enum status init_map(struct map *m, int width, int height, struct err *er
     return m->z ? ST_OK : err_nomem(err, "given depth", pixels * sizeof *m->z);
 }
 
-static enum status read_exr(struct map *m, const struct given_units *units, struct err *err)
+static enum status read_exr(struct given_map *m, const struct given_units *units, struct err *err)
 {
     struct exr_image exr = {0};
     enum status st = exr_read_any(&exr, m->path, err);
     const struct exr_plane *plane = st ? NULL : exr_find(&exr, "Z");
     if (!st && !plane && exr.count == 1) plane = exr.planes;
     if (!st && !plane) {
-        char there[1024] = "";
+        char channels[1024] = "";
         for (int c = 0; c < exr.count; c++) {
-            const size_t length = strlen(there);
-            snprintf(there + length, sizeof there - length, " %s", exr.planes[c].name);
+            const size_t length = strlen(channels);
+            snprintf(channels + length, sizeof channels - length, " %s", exr.planes[c].name);
         }
-        st = err_set(err, ST_DATA, "%s has the channels%s; wanted one that is called Z, or a single one.", m->path,
-                     there);
+        st =
+            err_set(err, ST_DATA, "%s has the channels%s; wanted a channel Z, or a single channel.", m->path, channels);
     }
     if (!st) st = init_map(m, exr.width, exr.height, err);
     const double scale = units->scale > 0 ? units->scale : 1;
     const size_t pixels = (size_t)m->width * (size_t)m->height;
     for (size_t i = 0; !st && i < pixels; i++)
-        st = keep_sample(m, i, plane->f ? (double)plane->f[i] : (double)plane->u[i], scale, err);
+        st = store_sample(m, i, plane->f ? (double)plane->f[i] : (double)plane->u[i], scale, err);
     exr_image_release(&exr);
     return st;
 }
 
-static enum status read_png(struct map *m, const struct given_units *units, const char *folder, struct err *err)
+static enum status read_png(struct given_map *m, const struct given_units *units, const char *folder, struct err *err)
 {
     struct photo photo = {0};
     if (!(units->scale > 0))
         return err_set(err, ST_DATA,
-                       "%s holds whole numbers, and nothing tells what they mean; write the line \"scale NUMBER\" into "
-                       "%s/depth.txt, NUMBER being what makes them depth in scene units.",
+                       "%s holds whole numbers of unknown scale; write the line \"scale NUMBER\" into %s/depth.txt, "
+                       "where NUMBER times a sample is its depth in scene units.",
                        m->path, folder);
     enum status st = photo_read(&photo, m->path, err);
     if (!st) st = init_map(m, photo.info.width, photo.info.height, err);
@@ -115,30 +118,31 @@ static enum status read_png(struct map *m, const struct given_units *units, cons
     for (size_t i = 0; !st && i < pixels; i++) {
         const uint16_t *s = photo.samples + 3 * i;
         if (s[0] != s[1] || s[0] != s[2])
-            st = err_set(err, ST_DATA, "%s is in colour; depth as PNG is grey, of 8 or 16 bit.", m->path);
+            st = err_set(err, ST_DATA, "%s is a colour picture; wanted a grey PNG of 8 or 16 bits per pixel.", m->path);
         else
-            st = keep_sample(m, i, s[0], units->scale, err);
+            st = store_sample(m, i, s[0], units->scale, err);
     }
     photo_release(&photo);
     return st;
 }
 
-/* Is one size the other, scaled and rounded? */
+/* Whether one size is the other, scaled and rounded. */
 static bool same_aspect(int w, int h, int width, int height)
 {
     const double a = w, b = h, c = width, d = height;
     return fabs(a * d / c - b) < 1 || fabs(b * c / d - a) < 1 || fabs(c * b / a - d) < 1 || fabs(d * a / b - c) < 1;
 }
 
-struct mapping {
-    const struct map *map;
+struct map_projection {
+    const struct given_map *map;
     const struct view *view;
     const struct lens *lens; /* NULL: the map is of the view */
     struct mat3 photo_from_view;
 };
 
-/* Where in the map a view's pixel lies, in the map's pixels, and what makes its z the view's; false: outside. */
-static bool map_from_pixel(const struct mapping *g, int x, int y, double *u, double *v, double *factor)
+/* Projects a pixel of the view into the map: coordinates in the map's pixels, and the factor from the map's z to the
+ * view's. False if it lies outside. */
+static bool map_from_pixel(const struct map_projection *g, int x, int y, double *u, double *v, double *factor)
 {
     const struct view *view = g->view;
     *u = (x + 0.5) * g->map->width / view->width;
@@ -146,20 +150,20 @@ static bool map_from_pixel(const struct mapping *g, int x, int y, double *u, dou
     *factor = 1;
     if (g->lens) {
         const struct vec3 ray = {(x + 0.5 - view->cx) / view->fx, (y + 0.5 - view->cy) / view->fy, 1};
-        const struct vec3 turned = mat3_apply(g->photo_from_view, ray);
-        if (!(turned.z > 1e-6) || !camera_project(&g->lens->camera, turned, u, v)) return false;
+        const struct vec3 rotated = mat3_apply(g->photo_from_view, ray);
+        if (!(rotated.z > 1e-6) || !camera_project(&g->lens->camera, rotated, u, v)) return false;
         *u *= (double)g->map->width / g->lens->camera.width;
         *v *= (double)g->map->height / g->lens->camera.height;
-        *factor = 1 / turned.z;
+        *factor = 1 / rotated.z;
     }
     return *u >= 0 && *v >= 0 && *u < g->map->width && *v < g->map->height;
 }
 
-/* Whether it matters if the map is of the photo or of the view: by a pixel somewhere. */
-static bool lens_matters(const struct mapping *of_photo)
+/* Whether the two interpretations of the map, of the photo and of the view, differ by more than a pixel anywhere. */
+static bool lens_matters(const struct map_projection *of_photo)
 {
     enum { GRID = 8 };
-    struct mapping of_view = *of_photo;
+    struct map_projection of_view = *of_photo;
     of_view.lens = NULL;
     for (int k = 0; k <= GRID; k++)
         for (int i = 0; i <= GRID; i++) {
@@ -171,11 +175,11 @@ static bool lens_matters(const struct mapping *of_photo)
     return false;
 }
 
-static enum status choose_mapping(struct mapping *g, const struct map *m, const char *folder,
-                                  const struct given_units *units, const struct view *view, const struct lens *lens,
-                                  struct err *err)
+static enum status choose_projection(struct map_projection *g, const struct given_map *m, const char *folder,
+                                     const struct given_units *units, const struct view *view, const struct lens *lens,
+                                     struct err *err)
 {
-    /* where a photo became several views there is no view of its name */
+    /* a photo that was divided into several views has no view of its name */
     const struct camera *photo = lens && !strcmp(lens->photo, view->name) ? &lens->camera : NULL;
     const bool as_view = same_aspect(m->width, m->height, view->width, view->height);
     const bool as_photo = photo && same_aspect(m->width, m->height, photo->width, photo->height);
@@ -183,12 +187,12 @@ static enum status choose_mapping(struct mapping *g, const struct map *m, const 
     const bool is_photo = photo && m->width == photo->width && m->height == photo->height;
     bool of_photo = !is_view && (is_photo || !as_view);
     if (units->pixels != PIXELS_BY_SIZE) of_photo = units->pixels == PIXELS_OF_PHOTO;
-    *g = (struct mapping){m, view, NULL, {{{0}}}};
+    *g = (struct map_projection){m, view, NULL, {{{0}}}};
     if (!(of_photo ? as_photo : as_view)) {
         char sizes[128] = "";
         if (photo) snprintf(sizes, sizeof sizes, ", its photo %d x %d", photo->width, photo->height);
         return err_set(err, ST_DATA,
-                       "%s has %d x %d pixels, but view %s has %d x %d%s; wanted %s, or the same at another scale.",
+                       "%s has %d x %d pixels, but view %s has %d x %d%s; wanted %s, or another of the same shape.",
                        m->path, m->width, m->height, view->name, view->width, view->height, sizes,
                        units->pixels == PIXELS_BY_SIZE   ? (photo ? "one of these sizes" : "this size")
                        : units->pixels == PIXELS_OF_VIEW ? "the view's size, as depth.txt says"
@@ -199,15 +203,15 @@ static enum status choose_mapping(struct mapping *g, const struct map *m, const 
     g->lens = lens;
     g->photo_from_view = mat3_transpose(mat3_from_quat(lens->view_from_photo));
     if (units->pixels == PIXELS_BY_SIZE && as_view && as_photo && lens_matters(g))
-        log_warn(
-            "%s could be of the rectified view or of the photo with its lens; it is taken for the %s's. Say so with a "
-            "line \"pixels view\" or \"pixels photo\" in %s/depth.txt.",
-            m->path, of_photo ? "photo" : "view", folder);
+        log_warn("%s may show the rectified view or the photo with its lens distortion; it is taken as the %s. Write "
+                 "the line "
+                 "\"pixels view\" or \"pixels photo\" into %s/depth.txt to choose.",
+                 m->path, of_photo ? "photo" : "view", folder);
     if (!of_photo) g->lens = NULL;
     return ST_OK;
 }
 
-static enum status map_to_view(float **z, const struct mapping *g, struct err *err)
+static enum status map_to_view(float **z, const struct map_projection *g, struct err *err)
 {
     const struct view *view = g->view;
     const size_t pixels = (size_t)view->width * (size_t)view->height;
@@ -222,7 +226,7 @@ static enum status map_to_view(float **z, const struct mapping *g, struct err *e
     return ST_OK;
 }
 
-/* FOLDER/NAME, its name as an input; *path is NULL if the file is not there. */
+/* *path: FOLDER/NAME, malloc'ed, recorded as an input; NULL if there is no such file. */
 static enum status find_file(char **path, const char *folder, const char *name, const char *ending,
                              struct provenance *prov, struct err *err)
 {
@@ -245,9 +249,9 @@ enum status given_read(float **z, const char *folder, const struct view *view, c
                        struct provenance *prov, struct err *err)
 {
     struct given_units units = {0};
-    struct map map = {0};
-    struct mapping mapping;
-    char *path = NULL, *told = NULL;
+    struct given_map map = {0};
+    struct map_projection projection;
+    char *path = NULL, *units_path = NULL;
     bool png = false;
     *z = NULL;
     enum status st = find_file(&path, folder, view->name, ".exr", prov, err);
@@ -255,16 +259,16 @@ enum status given_read(float **z, const char *folder, const struct view *view, c
         png = true;
         st = find_file(&path, folder, view->name, ".png", prov, err);
     }
-    if (!st && path) st = find_file(&told, folder, "depth", ".txt", prov, err);
-    if (!st && told) st = given_units_read(&units, told, err);
+    if (!st && path) st = find_file(&units_path, folder, "depth", ".txt", prov, err);
+    if (!st && units_path) st = given_units_read(&units, units_path, err);
     if (!st && path) {
         map.path = path;
         st = png ? read_png(&map, &units, folder, err) : read_exr(&map, &units, err);
-        if (!st) st = choose_mapping(&mapping, &map, folder, &units, view, lens, err);
-        if (!st) st = map_to_view(z, &mapping, err);
+        if (!st) st = choose_projection(&projection, &map, folder, &units, view, lens, err);
+        if (!st) st = map_to_view(z, &projection, err);
     }
     free(map.z);
-    free(told);
+    free(units_path);
     free(path);
     return st;
 }

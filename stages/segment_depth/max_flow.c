@@ -1,21 +1,29 @@
-/* max_flow.c - see max_flow.h.
+/* max_flow.c - minimum cut by augmenting paths between two search trees [Boykov 2004].
  *
- * Each node belongs to the source's tree, to the sink's or to none; its parent is the arc towards the tree's root. A
- * node's distance to the root is known to be right if it was marked at the present time. */
+ * A tree of residual arcs grows from each terminal. Three steps repeat until neither tree can grow:
+ *   grow      active nodes take free neighbours into their tree, until an arc joins the two trees
+ *   augment   the path through that arc carries its bottleneck; nodes whose parent arc is saturated become orphans
+ *   adopt     an orphan looks for another parent in its tree; without one it becomes free, and its children orphans
+ * A node's parent is the arc towards the root of its tree. Its distance to the root is valid if its timestamp is the
+ * current time; adopting the nearest parent, and taking shorter ways while growing, keeps paths short (the source's
+ * heuristics).
+ *
+ * What differs from the source: terminal arcs are one signed excess per node, since only their difference matters; and
+ * capacities are integers, so that there is no rounding. */
 #include "stages/segment_depth/max_flow.h"
 
 #include <stdlib.h>
 
-enum { NONE = -1, TERMINAL = -2, ORPHAN = -3 }; /* in place of a parent */
+enum { NONE = -1, TERMINAL = -2, ORPHAN = -3 }; /* instead of a parent arc */
 
 struct flow_node {
     int64_t excess; /* > 0: residual capacity from the source; < 0: to the sink */
-    int64_t marked;
-    int first, parent, next_active, distance; /* next_active: NONE if it is not in the list, itself if it is the last */
+    int64_t timestamp;
+    int first, parent, next_active, distance; /* next_active: NONE outside the list, itself at the end */
     bool sink;
 };
 
-struct flow_arc { /* its sister is the arc number ^ 1 */
+struct flow_arc { /* arc a's reverse is a ^ 1 */
     int to, next;
     int64_t residual;
 };
@@ -68,7 +76,7 @@ static void activate(struct max_flow *f, int i)
     f->nodes[i].next_active = i;
 }
 
-/* The first active node that still belongs to a tree; NONE at the end. */
+/* Takes the first active node that still belongs to a tree from the list; NONE if there is none. */
 static int next_active(struct max_flow *f)
 {
     while (f->first_active != NONE) {
@@ -96,67 +104,68 @@ static enum status make_orphan(struct max_flow *f, int i, struct err *err)
     return ST_OK;
 }
 
-/* Residual capacity of the arc by which a parent's tree reaches a child: away from the source, towards the sink. */
-static inline int64_t towards_child(const struct max_flow *f, int arc_to_parent, bool sink)
+/* Residual capacity of a tree arc in the direction of flow: from parent to child in the source's tree, from child to
+ * parent in the sink's. */
+static inline int64_t tree_residual(const struct max_flow *f, int arc_to_parent, bool sink)
 {
     return f->arcs[sink ? arc_to_parent : arc_to_parent ^ 1].residual;
 }
 
-static enum status augment(struct max_flow *f, int middle, struct err *err)
+static enum status augment(struct max_flow *f, int bridge, struct err *err)
 {
-    /* middle runs from the source's tree to the sink's */
-    const int ends[2] = {f->arcs[middle ^ 1].to, f->arcs[middle].to};
-    int64_t least = f->arcs[middle].residual;
+    /* the bridge runs from the source's tree to the sink's */
+    const int ends[2] = {f->arcs[bridge ^ 1].to, f->arcs[bridge].to};
+    int64_t bottleneck = f->arcs[bridge].residual;
     for (int side = 0; side < 2; side++) {
         int i = ends[side];
         for (int a; (a = f->nodes[i].parent) != TERMINAL; i = f->arcs[a].to) {
-            const int64_t r = towards_child(f, a, side);
-            if (r < least) least = r;
+            const int64_t r = tree_residual(f, a, side);
+            if (r < bottleneck) bottleneck = r;
         }
         const int64_t r = side ? -f->nodes[i].excess : f->nodes[i].excess;
-        if (r < least) least = r;
+        if (r < bottleneck) bottleneck = r;
     }
-    f->arcs[middle].residual -= least;
-    f->arcs[middle ^ 1].residual += least;
+    f->arcs[bridge].residual -= bottleneck;
+    f->arcs[bridge ^ 1].residual += bottleneck;
     enum status st = ST_OK;
     for (int side = 0; side < 2; side++) {
         int i = ends[side];
         for (int a; (a = f->nodes[i].parent) != TERMINAL;) {
             const int down = side ? a : a ^ 1;
-            f->arcs[down].residual -= least;
-            f->arcs[down ^ 1].residual += least;
+            f->arcs[down].residual -= bottleneck;
+            f->arcs[down ^ 1].residual += bottleneck;
             const int up = f->arcs[a].to;
             if (f->arcs[down].residual == 0 && !st) st = make_orphan(f, i, err);
             i = up;
         }
-        f->nodes[i].excess += side ? least : -least;
+        f->nodes[i].excess += side ? bottleneck : -bottleneck;
         if (f->nodes[i].excess == 0 && !st) st = make_orphan(f, i, err);
     }
     return st;
 }
 
-/* Steps from a node to its tree's root; -1 if its way ends at an orphan. Nodes on the way are marked. */
+/* Arcs from a node to its tree's root; -1 if the path ends at an orphan. Updates the nodes on the path. */
 static int distance_to_root(struct max_flow *f, int start)
 {
     int steps = 0, i = start;
     for (;;) {
         struct flow_node *n = &f->nodes[i];
-        if (n->marked == f->time) {
+        if (n->timestamp == f->time) {
             steps += n->distance;
             break;
         }
         if (n->parent == ORPHAN) return -1;
         steps++;
         if (n->parent == TERMINAL) {
-            n->marked = f->time;
+            n->timestamp = f->time;
             n->distance = 1;
             break;
         }
         i = f->arcs[n->parent].to;
     }
     int left = steps;
-    for (i = start; f->nodes[i].marked != f->time; i = f->arcs[f->nodes[i].parent].to) {
-        f->nodes[i].marked = f->time;
+    for (i = start; f->nodes[i].timestamp != f->time; i = f->arcs[f->nodes[i].parent].to) {
+        f->nodes[i].timestamp = f->time;
         f->nodes[i].distance = left--;
     }
     return steps;
@@ -169,7 +178,7 @@ static enum status adopt(struct max_flow *f, int i, struct err *err)
     int best = NONE, nearest = 0;
     for (int a = n->first; a != NONE; a = f->arcs[a].next) {
         const int j = f->arcs[a].to;
-        if (!(towards_child(f, a, sink) > 0) || f->nodes[j].sink != sink || f->nodes[j].parent == NONE) continue;
+        if (!(tree_residual(f, a, sink) > 0) || f->nodes[j].sink != sink || f->nodes[j].parent == NONE) continue;
         const int d = distance_to_root(f, j);
         if (d >= 0 && (best == NONE || d < nearest)) {
             best = a;
@@ -178,7 +187,7 @@ static enum status adopt(struct max_flow *f, int i, struct err *err)
     }
     if (best != NONE) {
         n->parent = best;
-        n->marked = f->time;
+        n->timestamp = f->time;
         n->distance = nearest + 1;
         return ST_OK;
     }
@@ -188,13 +197,13 @@ static enum status adopt(struct max_flow *f, int i, struct err *err)
         const int j = f->arcs[a].to;
         struct flow_node *m = &f->nodes[j];
         if (m->sink != sink || m->parent == NONE) continue;
-        if (towards_child(f, a, sink) > 0) activate(f, j);
+        if (tree_residual(f, a, sink) > 0) activate(f, j);
         if (m->parent >= 0 && f->arcs[m->parent].to == i && !st) st = make_orphan(f, j, err);
     }
     return st;
 }
 
-/* Grows an active node's tree by its neighbours; an arc from the source's tree to the sink's, or NONE. */
+/* Adds an active node's free neighbours to its tree. Returns an arc from the source's tree to the sink's, or NONE. */
 static int grow(struct max_flow *f, int i)
 {
     struct flow_node *n = &f->nodes[i];
@@ -205,14 +214,14 @@ static int grow(struct max_flow *f, int i)
         if (m->parent == NONE) {
             m->sink = n->sink;
             m->parent = a ^ 1;
-            m->marked = n->marked;
+            m->timestamp = n->timestamp;
             m->distance = n->distance + 1;
             activate(f, j);
         } else if (m->sink != n->sink) {
             return n->sink ? a ^ 1 : a;
-        } else if (m->marked <= n->marked && m->distance > n->distance) {
-            m->parent = a ^ 1; /* a shorter way to the root */
-            m->marked = n->marked;
+        } else if (m->timestamp <= n->timestamp && m->distance > n->distance) {
+            m->parent = a ^ 1; /* a shorter path to the root */
+            m->timestamp = n->timestamp;
             m->distance = n->distance + 1;
         }
     }
@@ -236,14 +245,14 @@ enum status max_flow_solve(struct max_flow *f, struct err *err)
     for (;;) {
         if (current == NONE || f->nodes[current].parent == NONE) current = next_active(f);
         if (current == NONE) return ST_OK;
-        const int middle = grow(f, current);
+        const int bridge = grow(f, current);
         f->time++;
-        if (middle == NONE) {
+        if (bridge == NONE) {
             current = NONE;
             continue;
         }
         /* the same node may find more paths */
-        enum status st = augment(f, middle, err);
+        enum status st = augment(f, bridge, err);
         while (!st && f->orphan_count > 0) st = adopt(f, f->orphans[--f->orphan_count], err);
         if (st) return st;
     }

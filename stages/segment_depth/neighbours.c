@@ -1,4 +1,15 @@
-/* neighbours.c - see neighbours.h. */
+/* neighbours.c - choice of the views that a view is matched with, and of the depth range.
+ *
+ * Neighbours are chosen greedily [Goesele 2007]. A candidate's score is a sum over the points that both views observed
+ * of the product of
+ *   angle_weight   of the triangulation angle: 1 from 5 to 20 degrees, little near 0 and above 45
+ *   scale          the ratio of the two pixels' footprints at the point, at most 1
+ *   min(1, 0.2 + angle / 5 degrees) for the angle to each neighbour chosen already: it should add a direction
+ *
+ * What differs from the source: the view is divided into GRID x GRID tiles of equal weight, however many points they
+ * have, so that a bare wall counts as much as a full shelf; a tile's weight falls with the number of chosen neighbours
+ * that see it. In a tile without observed points, points of other views that project there count by UNSEEN_WEIGHT,
+ * since they may be occluded. If too few points are shared, distance and viewing direction decide. */
 #include "stages/segment_depth/neighbours.h"
 
 #include <math.h>
@@ -6,10 +17,10 @@
 #include <stdlib.h>
 
 #include "common/base/sort.h"
+#include "common/math/numbers.h"
 
-#define LEAST_SHARED  8   /* points that two views must share before the points choose */
-#define LARGEST_ERROR 2.0 /* px, of a point that is believed */
-#define DEGREE        (M_PI / 180)
+#define MIN_SHARED             8   /* points that two views must share to be neighbours by points */
+#define MAX_REPROJECTION_ERROR 2.0 /* px, of an observation that is used */
 
 static int compare_points(const void *a, const void *b)
 {
@@ -17,11 +28,12 @@ static int compare_points(const void *a, const void *b)
     return (p->id > q->id) - (p->id < q->id);
 }
 
-enum status seen_points_find(struct seen_points *seen, const struct camera_set *set, int view_idx, struct err *err)
+enum status observed_points_find(struct observed_points *seen, const struct camera_set *set, int view_idx,
+                                 struct err *err)
 {
     const struct view *view = &set->views[view_idx];
     const struct sfm_model *m = &set->model;
-    *seen = (struct seen_points){0};
+    *seen = (struct observed_points){0};
     if (view_idx >= m->image_count) return ST_OK;
     const struct sfm_image *image = &m->images[view_idx];
     seen->points = malloc(((size_t)image->observation_count + 1) * sizeof *seen->points);
@@ -32,17 +44,17 @@ enum status seen_points_find(struct seen_points *seen, const struct camera_set *
         const struct sfm_point *p = bsearch(&key, m->points, (size_t)m->point_count, sizeof *m->points, compare_points);
         double u, v, z;
         if (!p || !((z = view_project(view, p->position, &u, &v)) > 0)) continue;
-        if (!(hypot(u - o->u, v - o->v) <= LARGEST_ERROR)) continue;
-        seen->points[seen->count++] = (struct seen_point){(int)(p - m->points), u, v, 1 / z};
+        if (!(hypot(u - o->u, v - o->v) <= MAX_REPROJECTION_ERROR)) continue;
+        seen->points[seen->count++] = (struct observed_point){(int)(p - m->points), u, v, 1 / z};
     }
     return ST_OK;
 }
 
-void seen_points_release(struct seen_points *seen)
+void observed_points_release(struct observed_points *seen)
 {
     if (!seen) return;
     free(seen->points);
-    *seen = (struct seen_points){0};
+    *seen = (struct observed_points){0};
 }
 
 static double angle_at(struct vec3 point, struct vec3 a, struct vec3 b)
@@ -57,26 +69,27 @@ static double angle_weight(double degrees)
     return degrees <= 20 ? 1 : exp(-pow((degrees - 20) / 12, 2));
 }
 
-#define GRID    12  /* tiles that a view is cut into, each way */
-#define COVERED 4.0 /* what a point seen by a view that is chosen already takes from its tile */
-#define FRAMED  0.5 /* weight of a tile whose points only other views saw: they may be hidden here */
+#define GRID 12 /* tiles of a view in each direction */
+#define COVERED_WEIGHT \
+    4.0                   /* each view of a point that is chosen already counts as so many further points of the tile */
+#define UNSEEN_WEIGHT 0.5 /* of a tile whose points only other views observed */
 
-/* A point that tells which views see a tile: the view's own, and where it has none in a tile, all that project there. */
-struct witness {
+/* A point that represents a tile: one that the view observed; in tiles without, any that projects there. */
+struct tile_point {
     const struct sfm_point *point;
     double inverse_z;
     int tile;
     bool seen;
 };
 
-struct witnesses {
-    struct witness *list;
+struct tile_points {
+    struct tile_point *list;
     int count, of_tile[GRID * GRID];
 };
 
 static int tile_of(const struct view *view, double u, double v)
 {
-    const double x = fmin(fmax(u / view->width, 0), 0.999), y = fmin(fmax(v / view->height, 0), 0.999);
+    const double x = clamp(u / view->width, 0, 0.999), y = clamp(v / view->height, 0, 0.999);
     return (int)(y * GRID) * GRID + (int)(x * GRID);
 }
 
@@ -87,46 +100,46 @@ static bool track_has(const struct sfm_point *p, int image_idx)
     return false;
 }
 
-static enum status find_witnesses(struct witnesses *w, const struct camera_set *set, int view_idx,
-                                  const struct seen_points *seen, struct err *err)
+static enum status find_tile_points(struct tile_points *w, const struct camera_set *set, int view_idx,
+                                    const struct observed_points *seen, struct err *err)
 {
     const struct view *view = &set->views[view_idx];
     const struct sfm_model *m = &set->model;
     int own[GRID * GRID] = {0};
-    *w = (struct witnesses){0};
+    *w = (struct tile_points){0};
     w->list = malloc(((size_t)seen->count + (size_t)m->point_count + 1) * sizeof *w->list);
     if (!w->list) return err_nomem(err, "points in the frame", (size_t)m->point_count * sizeof *w->list);
     for (int i = 0; i < seen->count; i++) {
-        const struct seen_point *p = &seen->points[i];
+        const struct observed_point *p = &seen->points[i];
         const int tile = tile_of(view, p->u, p->v);
         own[tile]++;
-        w->list[w->count++] = (struct witness){&m->points[p->point_idx], p->inverse_z, tile, true};
+        w->list[w->count++] = (struct tile_point){&m->points[p->point_idx], p->inverse_z, tile, true};
     }
     for (int i = 0; i < m->point_count; i++) {
         double u, v, z = view_project(view, m->points[i].position, &u, &v);
         if (!(z > 0) || !(u >= 0 && v >= 0 && u < view->width && v < view->height)) continue;
         const int tile = tile_of(view, u, v);
-        if (!own[tile]) w->list[w->count++] = (struct witness){&m->points[i], 1 / z, tile, false};
+        if (!own[tile]) w->list[w->count++] = (struct tile_point){&m->points[i], 1 / z, tile, false};
     }
     for (int i = 0; i < w->count; i++) w->of_tile[w->list[i].tile]++;
     return ST_OK;
 }
 
-/* Score of every view given those chosen already; shared[] counts the points in common. The points of a tile together count as
- * one, so that a wall with few is worth as much as a shelf with many; and the less, the more of the views chosen already see the tile. */
+/* Scores every view, given the neighbours chosen so far; shared[]: number of points in common. */
 static void score_views(double *score, int *shared, const struct camera_set *set, int view_idx,
-                        const struct witnesses *witnesses, const int *chosen, int chosen_count)
+                        const struct tile_points *points, const int *chosen, int chosen_count)
 {
     const struct view *view = &set->views[view_idx];
     int covered[GRID * GRID] = {0};
     for (int j = 0; j < set->view_count; j++) score[j] = shared[j] = 0;
-    for (int i = 0; i < witnesses->count; i++)
+    for (int i = 0; i < points->count; i++)
         for (int c = 0; c < chosen_count; c++)
-            covered[witnesses->list[i].tile] += track_has(witnesses->list[i].point, chosen[c]);
-    for (int i = 0; i < witnesses->count; i++) {
-        const struct witness *at = &witnesses->list[i];
+            covered[points->list[i].tile] += track_has(points->list[i].point, chosen[c]);
+    for (int i = 0; i < points->count; i++) {
+        const struct tile_point *at = &points->list[i];
         const struct sfm_point *p = at->point;
-        const double share = (at->seen ? 1 : FRAMED) / (witnesses->of_tile[at->tile] + COVERED * covered[at->tile]);
+        const double share =
+            (at->seen ? 1 : UNSEEN_WEIGHT) / (points->of_tile[at->tile] + COVERED_WEIGHT * covered[at->tile]);
         for (int k = 0; k < p->track_count; k++) {
             int j = p->track[k].image_idx;
             if (j == view_idx || j >= set->view_count) continue;
@@ -144,7 +157,7 @@ static void score_views(double *score, int *shared, const struct camera_set *set
     }
 }
 
-/* Without points: near ones looking the same way, at some distance. */
+/* Scores without points: nearby views in the same direction, but not at the same position. */
 static void score_poses(double *score, const struct camera_set *set, int view_idx)
 {
     const struct view *view = &set->views[view_idx];
@@ -165,7 +178,7 @@ static int best_view(const double *score, const int *shared, int count, int view
 {
     int best = -1;
     for (int j = 0; j < count; j++) {
-        bool taken = j == view_idx || (shared && shared[j] < LEAST_SHARED);
+        bool taken = j == view_idx || (shared && shared[j] < MIN_SHARED);
         for (int c = 0; c < chosen_count; c++) taken = taken || chosen[c] == j;
         if (!taken && score[j] > 1e-9 && (best < 0 || score[j] > score[best])) best = j;
     }
@@ -173,10 +186,10 @@ static int best_view(const double *score, const int *shared, int count, int view
 }
 
 enum status neighbours_choose(int neighbours[MAX_NEIGHBOURS], int *count, const struct camera_set *set, int view_idx,
-                              const struct seen_points *seen, int most, struct err *err)
+                              const struct observed_points *seen, int max_count, struct err *err)
 {
     double *score = malloc((size_t)set->view_count * sizeof *score);
-    struct witnesses witnesses = {0};
+    struct tile_points points = {0};
     int *shared = malloc((size_t)set->view_count * sizeof *shared), best = 0;
     enum status st = ST_OK;
     *count = 0;
@@ -185,12 +198,12 @@ enum status neighbours_choose(int neighbours[MAX_NEIGHBOURS], int *count, const 
         goto done;
     }
     double first_score = 0;
-    if ((st = find_witnesses(&witnesses, set, view_idx, seen, err))) goto done;
-    while (*count < most && *count < MAX_NEIGHBOURS && best >= 0) {
-        score_views(score, shared, set, view_idx, &witnesses, neighbours, *count);
+    if ((st = find_tile_points(&points, set, view_idx, seen, err))) goto done;
+    while (*count < max_count && *count < MAX_NEIGHBOURS && best >= 0) {
+        score_views(score, shared, set, view_idx, &points, neighbours, *count);
         best = best_view(score, shared, set->view_count, view_idx, neighbours, *count);
         if (*count == 0 && best >= 0) first_score = score[best];
-        /* a view that adds next to nothing costs as much time as a good one */
+        /* a view that adds almost nothing takes as much time as a good one */
         if (best >= 0 && score[best] >= 0.02 * first_score)
             neighbours[(*count)++] = best;
         else
@@ -198,25 +211,25 @@ enum status neighbours_choose(int neighbours[MAX_NEIGHBOURS], int *count, const 
     }
     if (*count == 0) {
         score_poses(score, set, view_idx);
-        while (*count < most && *count < MAX_NEIGHBOURS &&
+        while (*count < max_count && *count < MAX_NEIGHBOURS &&
                (best = best_view(score, NULL, set->view_count, view_idx, neighbours, *count)) >= 0)
             neighbours[(*count)++] = best;
     }
     if (*count == 0)
         st = err_set(err, ST_DATA,
-                     "view %s has no neighbour to match with: among the %d other view(s) none looks at the same scene "
-                     "from another place. Depth needs at least two views taken from different points; add photos "
-                     "beside this one or leave it out (EXCLUDE).",
+                     "view %s has no neighbour to match with: none of the %d other view(s) shows the same scene from "
+                     "another position. Depth needs at least two views taken from different positions; add photos "
+                     "taken beside this one, or leave it out (EXCLUDE).",
                      set->views[view_idx].name, set->view_count - 1);
 done:
     free(score);
     free(shared);
-    free(witnesses.list);
+    free(points.list);
     return st;
 }
 
-/* Inverse depths of all points of the scene that lie in the view's frame, seen by it or not: what it sees without having
- * matched it is mostly no nearer and no farther than what other views matched there. *inverse is malloc'ed. */
+/* Sorted inverse depths of all points that project into the view, observed by it or not: surfaces that only other views
+ * matched lie at similar depths. *inverse is malloc'ed. */
 static enum status framed_points(double **inverse, int *count, const struct camera_set *set, const struct view *view,
                                  struct err *err)
 {
@@ -232,27 +245,28 @@ static enum status framed_points(double **inverse, int *count, const struct came
     return ST_OK;
 }
 
-enum status depth_range(double *least, double *most, bool *guessed, const struct camera_set *set, int view_idx,
-                        const int *neighbours, int count, struct err *err)
+enum status depth_range(double *min_inverse_z, double *max_inverse_z, bool *guessed, const struct camera_set *set,
+                        int view_idx, const int *neighbours, int count, struct err *err)
 {
     const struct view *view = &set->views[view_idx];
     double *inverse = NULL;
     int points = 0;
     if (framed_points(&inverse, &points, set, view, err)) return err->status;
-    if (points >= LEAST_SHARED) {
-        const int stray = (points + 80) / 100; /* at either end; one in 20 points may be false */
+    if (points >= MIN_SHARED) {
+        const int stray = (points + 80) / 100; /* outliers at either end */
         double low = inverse[stray], high = inverse[points - 1 - stray];
         const double margin = 0.15 * (high - low) + 0.03 * high;
-        *least = fmax(low - margin, 0.3 * low);
-        *most = high + 2 * margin; /* near ground has few points: it is blurred, or hidden from most views */
+        *min_inverse_z = fmax(low - margin, 0.3 * low);
+        *max_inverse_z =
+            high + 2 * margin; /* the near ground has few points: it is blurred, or occluded in most views */
     }
     free(inverse);
-    *guessed = points < LEAST_SHARED;
+    *guessed = points < MIN_SHARED;
     if (!*guessed) return ST_OK;
     double baseline = 0;
     for (int k = 0; k < count; k++)
         baseline = fmax(baseline, vec3_length(vec3_sub(set->views[neighbours[k]].center, view->center)));
-    *most = fmax(0.25 * view->width, 2) / (view->fx * baseline);
-    *least = *most / 500;
+    *max_inverse_z = fmax(0.25 * view->width, 2) / (view->fx * baseline);
+    *min_inverse_z = *max_inverse_z / 500;
     return ST_OK;
 }

@@ -1,10 +1,12 @@
-/* oversegment.c - SLIC: k-means in colour and position, from a regular grid of seeds.
+/* oversegment.c - superpixels by SLIC [Achanta 2012]: k-means in colour and position, from a regular grid of seeds.
  *
- * Distance of a pixel to a centre: |d lab|^2 + (compactness / S)^2 |d xy|^2, S the seeds' spacing. A pixel looks at the
- * nine centres seeded around it (Ren and Reid's formulation), which makes rows independent of each other; centres are
- * summed in raster order. Differs from the paper in that the picture is smoothed by (1 2 1)/4 first, so that noise
- * does not fray the borders. Afterwards a centre keeps its largest connected part; other parts, and those under a sixth of
- * the mean size, go to the touching segment of the nearest colour. */
+ * The squared distance of a pixel to a cluster centre is |d lab|^2 + (compactness / S)^2 |d xy|^2, with S the spacing
+ * of the seeds. Each iteration assigns pixels to their nearest centres and moves the centres to the means of their
+ * pixels. A pixel considers the nine centres seeded around it [Ren 2011], so that rows are independent; means are
+ * summed in raster order. Then each centre keeps its largest connected component; other components, and those below a
+ * sixth of the mean size, are merged into the adjacent segment of the nearest colour.
+ *
+ * What differs from the source: the picture is smoothed by (1 2 1)/4 first, so that noise does not fray the borders. */
 #include "stages/segment_depth/oversegment.h"
 
 #include <math.h>
@@ -12,6 +14,7 @@
 #include <string.h>
 
 #include "common/base/parallel.h"
+#include "stages/segment_depth/segment_graph.h"
 
 #define ITERATIONS 8
 
@@ -28,7 +31,7 @@ struct slic {
     int *label;
 };
 
-/* Opponent colours from gamma-encoded RGB, scaled like L*a*b*: a difference of 1 is just visible. */
+/* Opponent colours of gamma-encoded RGB, scaled like L*a*b*: a difference of 1 is just visible. */
 static void lab_from_rgb(const struct gamma_image *g, float *lab[3])
 {
     size_t pixels = (size_t)g->width * (size_t)g->height;
@@ -40,7 +43,7 @@ static void lab_from_rgb(const struct gamma_image *g, float *lab[3])
     }
 }
 
-/* (1 2 1)/4 both ways, in place; line holds max(width, height) floats. The ends repeat. */
+/* Smooths a row or column by (1 2 1)/4 in place; the ends are repeated. line: scratch of `count` floats. */
 static void smooth_line(float *at, size_t count, size_t step, float *line)
 {
     for (size_t i = 0; i < count; i++) line[i] = at[i * step];
@@ -48,7 +51,7 @@ static void smooth_line(float *at, size_t count, size_t step, float *line)
         at[i * step] = 0.25f * line[i > 0 ? i - 1 : 0] + 0.5f * line[i] + 0.25f * line[i + 1 < count ? i + 1 : i];
 }
 
-static int bound(int cell, int cells, int size) { return (int)((int64_t)cell * size / cells); }
+static int cell_start(int cell, int cells, int size) { return (int)((int64_t)cell * size / cells); }
 
 static void assign_rows(void *ctx, size_t begin, size_t end, int thread)
 {
@@ -58,7 +61,7 @@ static void assign_rows(void *ctx, size_t begin, size_t end, int thread)
         int gy = (int)((((int64_t)row + 1) * s->rows - 1) / s->height);
         float y = (float)row + 0.5f;
         for (int gx = 0; gx < s->columns; gx++) {
-            int x0 = bound(gx, s->columns, s->width), x1 = bound(gx + 1, s->columns, s->width);
+            int x0 = cell_start(gx, s->columns, s->width), x1 = cell_start(gx + 1, s->columns, s->width);
             struct centre near[9];
             int near_label[9], count = 0;
             for (int j = gy - 1; j <= gy + 1; j++)
@@ -111,53 +114,55 @@ static enum status move_centres(struct slic *s, struct err *err)
     return ST_OK;
 }
 
-/* Connected parts of equal label: part of each pixel (-1: none), and their sizes and mean colours. */
-struct part {
-    int label, first, pixels, into; /* into: the part that takes it, itself if it stays */
+/* A connected component of pixels of one label. parent: the component that it was merged into, itself if none. */
+struct component {
+    int label, first, pixels, parent;
     double lab[3];
 };
 
-static int find_parts(const struct slic *s, int *part_of, int *queue, struct part *parts)
+/* Fills component_of (w * h, -1 where there is no label) and the components; returns how many. queue: w * h,
+ * scratch. */
+static int find_components(const struct slic *s, int *component_of, int *queue, struct component *components)
 {
     int pixels = s->width * s->height, count = 0;
-    for (int i = 0; i < pixels; i++) part_of[i] = -1;
+    for (int i = 0; i < pixels; i++) component_of[i] = -1;
     for (int i = 0; i < pixels; i++) {
-        if (part_of[i] >= 0 || s->label[i] < 0) continue;
-        struct part *part = &parts[count];
-        *part = (struct part){.label = s->label[i], .first = i, .into = count};
+        if (component_of[i] >= 0 || s->label[i] < 0) continue;
+        struct component *component = &components[count];
+        *component = (struct component){.label = s->label[i], .first = i, .parent = count};
         int head = 0, tail = 0;
         queue[tail++] = i;
-        part_of[i] = count;
+        component_of[i] = count;
         while (head < tail) {
             int p = queue[head++], x = p % s->width;
             const int next[4] = {x > 0 ? p - 1 : -1, x + 1 < s->width ? p + 1 : -1, p - s->width,
                                  p + s->width < pixels ? p + s->width : -1};
-            for (int c = 0; c < 3; c++) part->lab[c] += (double)s->lab[c][p];
+            for (int c = 0; c < 3; c++) component->lab[c] += (double)s->lab[c][p];
             for (int k = 0; k < 4; k++)
-                if (next[k] >= 0 && part_of[next[k]] < 0 && s->label[next[k]] == part->label) {
-                    part_of[next[k]] = count;
+                if (next[k] >= 0 && component_of[next[k]] < 0 && s->label[next[k]] == component->label) {
+                    component_of[next[k]] = count;
                     queue[tail++] = next[k];
                 }
         }
-        part->pixels = tail;
-        for (int c = 0; c < 3; c++) part->lab[c] /= tail;
+        component->pixels = tail;
+        for (int c = 0; c < 3; c++) component->lab[c] /= tail;
         count++;
     }
     return count;
 }
 
-static int root_of(const struct part *parts, int i)
+static int find_root(const struct component *components, int i)
 {
-    while (parts[i].into != i) i = parts[i].into;
+    while (components[i].parent != i) i = components[i].parent;
     return i;
 }
 
-/* Offers part b to a part a that must go: keeps the one of the nearest colour. */
-static void offer(const struct part *parts, int a, int b, int *best, float *best_distance)
+/* Updates the best neighbour of component a, the one of the nearest colour, by component b. */
+static void consider_neighbour(const struct component *components, int a, int b, int *best, float *best_distance)
 {
     float d = 0;
     for (int c = 0; c < 3; c++) {
-        float e = (float)(parts[a].lab[c] - parts[b].lab[c]);
+        float e = (float)(components[a].lab[c] - components[b].lab[c]);
         d += e * e;
     }
     if (d < *best_distance || (d <= *best_distance && b < *best)) {
@@ -166,212 +171,66 @@ static void offer(const struct part *parts, int a, int b, int *best, float *best
     }
 }
 
-/* Parts that may not stay, in order, are given with all that was given to them to the touching part (as merged so far)
- * of the nearest colour. walked: w * h, scratch. */
-static void merge_parts(const struct slic *s, int *part_of, int *walked, int *queue, struct part *parts, int count,
-                        const int *largest, int least_pixels)
+/* Merges components that are too small or not the largest of their label, in order, with all that was merged into them,
+ * into the adjacent component (as merged so far) of the nearest colour. visited: w * h, scratch. */
+static void merge_components(const struct slic *s, int *component_of, int *visited, int *queue,
+                             struct component *components, int count, const int *largest, int min_pixels)
 {
     int pixels = s->width * s->height;
-    for (int p = 0; p < pixels; p++) walked[p] = -1;
+    for (int p = 0; p < pixels; p++) visited[p] = -1;
     for (int i = 0; i < count; i++) {
-        if (largest[parts[i].label] == i && parts[i].pixels >= least_pixels) continue;
+        if (largest[components[i].label] == i && components[i].pixels >= min_pixels) continue;
         int best = -1, head = 0, tail = 0;
         float best_distance = INFINITY;
-        queue[tail++] = parts[i].first;
-        walked[parts[i].first] = i;
+        queue[tail++] = components[i].first;
+        visited[components[i].first] = i;
         while (head < tail) {
             int p = queue[head++], x = p % s->width;
             const int next[4] = {x > 0 ? p - 1 : -1, x + 1 < s->width ? p + 1 : -1, p - s->width,
                                  p + s->width < pixels ? p + s->width : -1};
             for (int k = 0; k < 4; k++) {
-                if (next[k] < 0 || s->label[next[k]] < 0 || walked[next[k]] == i) continue;
-                int root = root_of(parts, part_of[next[k]]);
+                if (next[k] < 0 || s->label[next[k]] < 0 || visited[next[k]] == i) continue;
+                int root = find_root(components, component_of[next[k]]);
                 if (root == i) {
-                    walked[next[k]] = i;
+                    visited[next[k]] = i;
                     queue[tail++] = next[k];
                 } else {
-                    offer(parts, i, root, &best, &best_distance);
+                    consider_neighbour(components, i, root, &best, &best_distance);
                 }
             }
         }
-        if (best < 0) continue; /* an island */
-        parts[i].into = best;
-        parts[best].pixels += parts[i].pixels;
+        if (best < 0) continue; /* has no neighbour */
+        components[i].parent = best;
+        components[best].pixels += components[i].pixels;
     }
     for (int p = 0; p < pixels; p++)
-        if (s->label[p] >= 0) part_of[p] = root_of(parts, part_of[p]);
+        if (s->label[p] >= 0) component_of[p] = find_root(components, component_of[p]);
 }
 
 static enum status connect_segments(struct slic *s, int segment_pixels, struct err *err)
 {
     size_t pixels = (size_t)s->width * (size_t)s->height, centres = (size_t)s->columns * (size_t)s->rows;
-    int *part_of = malloc(pixels * sizeof *part_of), *queue = malloc(pixels * sizeof *queue);
-    int *largest = malloc(centres * sizeof *largest), *walked = malloc(pixels * sizeof *walked);
-    struct part *parts = malloc(pixels * sizeof *parts);
+    int *component_of = malloc(pixels * sizeof *component_of), *queue = malloc(pixels * sizeof *queue);
+    int *largest = malloc(centres * sizeof *largest), *visited = malloc(pixels * sizeof *visited);
+    struct component *components = malloc(pixels * sizeof *components);
     enum status st = ST_OK;
-    if (part_of && queue && largest && walked && parts) {
-        int count = find_parts(s, part_of, queue, parts);
+    if (component_of && queue && largest && visited && components) {
+        int count = find_components(s, component_of, queue, components);
         for (size_t k = 0; k < centres; k++) largest[k] = -1;
         for (int i = 0; i < count; i++) {
-            int *l = &largest[parts[i].label];
-            if (*l < 0 || parts[i].pixels > parts[*l].pixels) *l = i;
+            int *l = &largest[components[i].label];
+            if (*l < 0 || components[i].pixels > components[*l].pixels) *l = i;
         }
-        merge_parts(s, part_of, walked, queue, parts, count, largest, segment_pixels / 6);
-        memcpy(s->label, part_of, pixels * sizeof *part_of);
+        merge_components(s, component_of, visited, queue, components, count, largest, segment_pixels / 6);
+        memcpy(s->label, component_of, pixels * sizeof *component_of);
     } else {
-        st = err_nomem(err, "connected segments", pixels * (sizeof *parts + 12));
+        st = err_nomem(err, "connected segments", pixels * (sizeof *components + 12));
     }
-    free(part_of);
+    free(component_of);
     free(queue);
     free(largest);
-    free(walked);
-    free(parts);
-    return st;
-}
-
-/* Numbers the labels from 0 in raster order of their first pixel; fills segments and pixel lists. */
-static enum status list_segments(struct segmentation *s, float *const lab[3], struct err *err)
-{
-    int pixels = s->width * s->height;
-    int *number = malloc((size_t)pixels * sizeof *number);
-    s->pixel = malloc((size_t)pixels * sizeof *s->pixel);
-    if (!number || !s->pixel) {
-        free(number);
-        return err_nomem(err, "lists of pixels", (size_t)pixels * 8);
-    }
-    for (int i = 0; i < pixels; i++) number[i] = -1;
-    s->count = 0;
-    for (int i = 0; i < pixels; i++)
-        if (s->label[i] >= 0) {
-            int *n = &number[s->label[i]];
-            if (*n < 0) *n = s->count++;
-            s->label[i] = *n;
-        }
-    free(number);
-    s->segments = calloc((size_t)s->count + 1, sizeof *s->segments);
-    if (!s->segments) return err_nomem(err, "segments", (size_t)s->count * sizeof *s->segments);
-    for (int i = 0; i < pixels; i++)
-        if (s->label[i] >= 0) s->segments[s->label[i]].pixels++;
-    for (int k = 0, first = 0; k < s->count; k++) {
-        s->segments[k].first = first;
-        first += s->segments[k].pixels;
-        s->segments[k].pixels = 0;
-        s->segments[k].x0 = s->width;
-        s->segments[k].y0 = s->height;
-    }
-    for (int i = 0; i < pixels; i++) {
-        if (s->label[i] < 0) continue;
-        struct segment *g = &s->segments[s->label[i]];
-        int x = i % s->width, y = i / s->width;
-        s->pixel[g->first + g->pixels++] = i;
-        g->cx += x + 0.5;
-        g->cy += y + 0.5;
-        for (int c = 0; c < 3; c++) g->colour[c] += lab[c][i];
-        g->x0 = x < g->x0 ? x : g->x0;
-        g->x1 = x > g->x1 ? x : g->x1;
-        g->y0 = y < g->y0 ? y : g->y0;
-        g->y1 = y > g->y1 ? y : g->y1;
-    }
-    for (int k = 0; k < s->count; k++) {
-        struct segment *g = &s->segments[k];
-        g->cx /= g->pixels;
-        g->cy /= g->pixels;
-        for (int c = 0; c < 3; c++) g->colour[c] /= (float)g->pixels;
-    }
-    return ST_OK;
-}
-
-/* A pair of pixels on either side of a border, a < b. */
-struct side {
-    int a, b;
-    float u, v, contrast;
-};
-
-static int compare_sides(const void *p, const void *q)
-{
-    const struct side *a = p, *b = q;
-    if (a->a != b->a) return a->a < b->a ? -1 : 1;
-    if (a->b != b->b) return a->b < b->b ? -1 : 1;
-    if (a->v < b->v || a->v > b->v) return a->v < b->v ? -1 : 1; /* a total order: qsort is not stable */
-    return (a->u > b->u) - (a->u < b->u);
-}
-
-static int compare_touches(const void *p, const void *q)
-{
-    const struct touch *a = p, *b = q;
-    return (a->other > b->other) - (a->other < b->other);
-}
-
-static int list_sides(const struct segmentation *s, float *const lab[3], struct side *sides)
-{
-    int count = 0;
-    for (int y = 0; y < s->height; y++)
-        for (int x = 0; x < s->width; x++)
-            for (int k = 0; k < 2; k++) { /* to the right, down */
-                int nx = x + (k == 0), ny = y + (k == 1), p = y * s->width + x, q = ny * s->width + nx;
-                if (nx >= s->width || ny >= s->height || s->label[p] == s->label[q]) continue;
-                if (s->label[p] < 0 || s->label[q] < 0) continue;
-                if (sides) {
-                    int a = s->label[p], b = s->label[q];
-                    float d = 0;
-                    for (int c = 0; c < 3; c++) d += (lab[c][p] - lab[c][q]) * (lab[c][p] - lab[c][q]);
-                    sides[count] = (struct side){a < b ? a : b, a < b ? b : a, 0.5f * (float)(x + nx + 1),
-                                                 0.5f * (float)(y + ny + 1), sqrtf(d)};
-                }
-                count++;
-            }
-    return count;
-}
-
-static enum status list_touches(struct segmentation *s, float *const lab[3], struct err *err)
-{
-    int sides_count = list_sides(s, lab, NULL), i = 0;
-    struct side *sides = malloc(((size_t)sides_count + 1) * sizeof *sides);
-    struct touch *edges = malloc(((size_t)sides_count + 1) * sizeof *edges);
-    int(*ends)[2] = malloc(((size_t)sides_count + 1) * sizeof *ends);
-    s->first_touch = calloc((size_t)s->count + 2, sizeof *s->first_touch);
-    enum status st = ST_OK;
-    if (sides && edges && ends && s->first_touch) {
-        list_sides(s, lab, sides);
-        qsort(sides, (size_t)sides_count, sizeof *sides, compare_sides);
-        s->edge_count = 0;
-        while (i < sides_count) {
-            struct touch t = {.edge = s->edge_count};
-            int a = sides[i].a, b = sides[i].b;
-            double u = 0, v = 0, contrast = 0;
-            for (; i < sides_count && sides[i].a == a && sides[i].b == b; i++, t.length++) {
-                u += (double)sides[i].u;
-                v += (double)sides[i].v;
-                contrast += (double)sides[i].contrast;
-            }
-            t.u = (float)(u / t.length);
-            t.v = (float)(v / t.length);
-            t.contrast = (float)(contrast / t.length);
-            ends[s->edge_count][0] = a;
-            ends[s->edge_count][1] = b;
-            edges[s->edge_count++] = t;
-        }
-        s->touches = malloc(((size_t)s->edge_count * 2 + 1) * sizeof *s->touches);
-    }
-    if (s->touches) {
-        for (int e = 0; e < s->edge_count; e++)
-            for (int k = 0; k < 2; k++) s->first_touch[ends[e][k] + 2]++;
-        for (int k = 1; k <= s->count + 1; k++) s->first_touch[k] += s->first_touch[k - 1];
-        for (int e = 0; e < s->edge_count; e++)
-            for (int k = 0; k < 2; k++) {
-                struct touch *t = &s->touches[s->first_touch[ends[e][k] + 1]++];
-                *t = edges[e];
-                t->other = ends[e][1 - k];
-            }
-        for (int k = 0; k < s->count; k++)
-            qsort(s->touches + s->first_touch[k], (size_t)(s->first_touch[k + 1] - s->first_touch[k]),
-                  sizeof *s->touches, compare_touches);
-    } else {
-        st = err_nomem(err, "borders between segments", (size_t)sides_count * sizeof *sides);
-    }
-    free(sides);
-    free(edges);
-    free(ends);
+    free(visited);
+    free(components);
     return st;
 }
 
@@ -380,8 +239,8 @@ static void seed(struct slic *s)
     for (int j = 0; j < s->rows; j++)
         for (int i = 0; i < s->columns; i++) {
             struct centre *c = &s->centres[j * s->columns + i];
-            int x = bound(i, s->columns, s->width) + bound(i + 1, s->columns, s->width);
-            int y = bound(j, s->rows, s->height) + bound(j + 1, s->rows, s->height);
+            int x = cell_start(i, s->columns, s->width) + cell_start(i + 1, s->columns, s->width);
+            int y = cell_start(j, s->rows, s->height) + cell_start(j + 1, s->rows, s->height);
             size_t p = (size_t)(y / 2) * (size_t)s->width + (size_t)(x / 2);
             *c = (struct centre){{s->lab[0][p], s->lab[1][p], s->lab[2][p]}, 0.5f * (float)x, 0.5f * (float)y};
         }
@@ -423,8 +282,7 @@ enum status oversegment(struct segmentation *s, const struct gamma_image *g, int
         if (i + 1 < ITERATIONS) st = move_centres(&slic, err);
     }
     if (!st) st = connect_segments(&slic, segment_pixels, err);
-    if (!st) st = list_segments(s, slic.lab, err);
-    if (!st) st = list_touches(s, slic.lab, err);
+    if (!st) st = segment_graph_make(s, slic.lab, err);
     for (int c = 0; c < 3; c++) free(slic.lab[c]);
     free(slic.centres);
     free(line);
@@ -438,7 +296,7 @@ void segmentation_release(struct segmentation *s)
     free(s->label);
     free(s->pixel);
     free(s->segments);
-    free(s->first_touch);
-    free(s->touches);
+    free(s->first_border);
+    free(s->borders);
     *s = (struct segmentation){0};
 }

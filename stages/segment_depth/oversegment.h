@@ -1,4 +1,4 @@
-/* oversegment.h - a view cut into small connected segments of like colour, and which of them touch. */
+/* oversegment.h - a view divided into small connected segments of similar colour, and the borders between them. */
 #ifndef REMODEL_OVERSEGMENT_H
 #define REMODEL_OVERSEGMENT_H
 
@@ -11,11 +11,11 @@ struct segment {
     float colour[3];    /* mean; L a b of oversegment.c, 0..100 */
 };
 
-struct touch { /* one direction of a border between two segments */
+struct border { /* one direction of the border between two adjacent segments */
     int other;
-    int length;     /* pixel sides that they share */
-    int edge;       /* the border's number, the same in both directions */
-    float u, v;     /* the border's middle */
+    int length;     /* pixel sides */
+    int edge;       /* number of the border, the same in both directions */
+    float u, v;     /* middle of the border */
     float contrast; /* mean colour difference across the border, L a b */
 };
 
@@ -24,11 +24,12 @@ struct segmentation {
     int *label; /* w * h: segment of a pixel, -1 where the view has none */
     int *pixel; /* pixel indices, segment by segment, ascending within one */
     struct segment *segments;
-    int *first_touch;      /* count + 1: touches of segment i are [first_touch[i], first_touch[i + 1]) */
-    struct touch *touches; /* in order of `other` */
+    int *first_border;      /* count + 1: borders of segment i are [first_border[i], first_border[i + 1]) */
+    struct border *borders; /* in order of `other` */
 };
 
-/* SLIC (Achanta et al. 2012) with connected segments; the same for any number of threads. s is {0} on entry. */
+/* SLIC superpixels of about segment_pixels pixels each; a higher compactness makes them rounder. s is {0} on entry.
+ * Same result for any number of threads. ST_NOMEM. */
 enum status oversegment(struct segmentation *s, const struct gamma_image *g, int segment_pixels, double compactness,
                         struct err *err);
 void segmentation_release(struct segmentation *s);

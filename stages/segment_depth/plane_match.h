@@ -1,11 +1,7 @@
-/* plane_match.h - how well a segment on a plane agrees with the neighbouring views.
+/* plane_match.h - how well a segment on a plane matches the neighbouring views.
  *
- * A plane is 1/z = a u + b v + c in the view's pixel coordinates, so that a segment's picture in a neighbour is a
- * homography. Per pixel the cost compares colours and gradients of luminance at two scales, each truncated; a
- * neighbour's cost is the mean over the segment's pixels that it sees, at most a fixed one, or another fixed one if it does
- * not see the segment. In order of cost each neighbour counts a little less than the one before: the worse ones may
- * not see the segment for something in front of it. Costs are measured against the pictures' own noise: 0 is what a good match
- * costs in this view, 1 what a chance one does (matcher_calibrate()). */
+ * A plane is 1/z = a u + b v + c in the view's pixel coordinates. Costs are normalized by the view's own pictures: 0 is
+ * a good match, 1 a chance one. matcher.c prepares the pictures, plane_match.c computes the costs. */
 #ifndef REMODEL_PLANE_MATCH_H
 #define REMODEL_PLANE_MATCH_H
 
@@ -18,19 +14,19 @@ struct plane {
 
 static inline double plane_at(struct plane p, double u, double v) { return p.a * u + p.b * v + p.c; }
 
-/* A segment's plane stays within [least, most] of the inverse depths swept at the segment's middle, and over the segment and a
- * margin around it, where its edge may be painted, within [PLANE_LEAST x least, PLANE_MOST x most]. */
-#define PLANE_LEAST 0.7
-#define PLANE_MOST  1.3
+/* Whether a segment's plane stays in a range of inverse depths: nearly so at the centroid; over the segment and a
+ * margin that its layer may extend into, from PLANE_MIN_FACTOR times min to PLANE_MAX_FACTOR times max. */
+#define PLANE_MIN_FACTOR 0.7
+#define PLANE_MAX_FACTOR 1.3
 
-static inline bool plane_keeps_to(struct plane p, const struct segment *g, double least, double most)
+static inline bool plane_within(struct plane p, const struct segment *g, double min_inverse_z, double max_inverse_z)
 {
     const double margin = 3, u[2] = {g->x0 - margin, g->x1 + 1 + margin}, v[2] = {g->y0 - margin, g->y1 + 1 + margin};
-    const double middle = plane_at(p, g->cx, g->cy), slack = 0.02 * (most - least);
-    if (!(middle >= least - slack && middle <= most + slack)) return false;
+    const double middle = plane_at(p, g->cx, g->cy), slack = 0.02 * (max_inverse_z - min_inverse_z);
+    if (!(middle >= min_inverse_z - slack && middle <= max_inverse_z + slack)) return false;
     for (int k = 0; k < 4; k++) {
         const double d = plane_at(p, u[k & 1], v[k >> 1]);
-        if (!(d >= PLANE_LEAST * least && d <= PLANE_MOST * most)) return false;
+        if (!(d >= PLANE_MIN_FACTOR * min_inverse_z && d <= PLANE_MAX_FACTOR * max_inverse_z)) return false;
     }
     return true;
 }
@@ -43,48 +39,63 @@ struct match_neighbour {
 
 struct matcher {
     const struct segmentation *segments;
-    int *first;        /* of each segment's pixels in x, y and features; groups of eight; count + 1 */
-    float *x, *y;      /* pixel centres */
-    int16_t *features; /* eight a pixel */
-    int *weight;       /* one a pixel, in the order in which they are summed */
+    int *first;   /* count + 1: where each segment's pixels begin in x, y, weight and features; multiples of eight */
+    float *x, *y; /* pixel centres */
+    int16_t *features; /* FEATURE_CHANNELS per pixel */
+    int *weight;       /* of each pixel, in the order of neighbour_cost()'s sums */
     struct match_neighbour neighbours[MAX_NEIGHBOURS];
     int neighbour_count;
-    float noise;            /* of the view, grey levels */
-    unsigned useless;       /* bit k: neighbour k tells good matches from chance ones hardly, and is not looked at */
-    float good, random;     /* raw costs of a good match and of a chance one */
-    float *unseen, *hidden; /* of each segment: what a neighbour costs that cannot see it, or that it is hidden from */
+    float noise;                  /* of the view, grey levels */
+    unsigned excluded;            /* bit k: neighbour k hardly tells good matches from chance ones; ignored */
+    float good_cost, chance_cost; /* raw costs of a good match and of a chance one */
+    float *out_of_view_cost, *occluded_cost; /* of each segment, for a neighbour that cannot see it */
 };
 
-#define MATCH_BEST  (-1.0f) /* no match costs less */
-#define MATCH_WORST 1.33f   /* nor more */
+#define MATCH_BEST  (-1.0f) /* minimum matching cost */
+#define MATCH_WORST 1.33f   /* maximum matching cost */
 
-/* [u' v' 1] of `other` ~ base [u v 1] + shift / z. */
+/* The projection of the view's pixels into `other`: [u' v' 1] ~ base [u v 1] + shift / z. */
 void match_homography(double base[3][3], double shift[3], const struct view *view, const struct view *other);
+
+/* Projects a pixel at an inverse depth into a neighbour; false if it is not in front of it. */
+static inline bool match_project(const struct match_neighbour *n, double u, double v, double inverse_z, double *nu,
+                                 double *nv)
+{
+    double p[3];
+    for (int i = 0; i < 3; i++) p[i] = n->base[i][0] * u + n->base[i][1] * v + n->base[i][2] + n->shift[i] * inverse_z;
+    if (!(p[2] > 1e-9)) return false;
+    *nu = p[0] / p[2];
+    *nv = p[1] / p[2];
+    return true;
+}
 
 /* m is {0} on entry; release it also after a failure. */
 enum status matcher_init(struct matcher *m, const struct segmentation *segments, const struct gamma_image *reference,
                          struct err *err);
 
-/* Adds a neighbour. The picture is halved while it is more than 1.6 times as fine as the view at inverse depth `typical`;
- * its colours are multiplied by the median ratio at the points both see, its gradients turned to the view's axes. */
+/* Adds a neighbour. Its picture is halved while it is more than 1.6 times as fine as the view at inverse depth
+ * `typical`; its colours are multiplied by the median ratio at the points that both views observed, and its gradients
+ * are rotated to the view's axes. */
 enum status matcher_add(struct matcher *m, const struct camera_set *set, int view_idx, int neighbour_idx,
-                        const struct seen_points *seen, double typical, const struct gamma_image *reference,
+                        const struct observed_points *seen, double typical, const struct gamma_image *reference,
                         struct gamma_image *picture, struct err *err);
-/* Measures what good and chance matches cost at inverse depths from least to most. A segment that cannot be seen costs a part
- * of the way from its best match to its mean one, so that a blank one, which matches everywhere, is not drawn to where it
- * would be seen. A neighbour that tells good from chance far less than the best one is left out. To be called once, after the last neighbour and before the first cost. */
-enum status matcher_calibrate(struct matcher *m, double least, double most, struct err *err);
+
+/* Measures the costs of good and chance matches over the range of inverse depths. Being out of view or occluded costs a
+ * segment a part of the way from its best match to its mean one: a blank segment, which matches everywhere, is not
+ * drawn to where it is visible. Neighbours of much less contrast than the best one are excluded. Call it once, after
+ * the last matcher_add() and before the first cost. */
+enum status matcher_calibrate(struct matcher *m, double min_inverse_z, double max_inverse_z, struct err *err);
 void matcher_release(struct matcher *m);
 
-/* hidden: bit k is set if neighbour k cannot see the segment there, which then costs a fixed amount. */
-float match_cost(const struct matcher *m, int segment, struct plane plane, unsigned hidden);
-/* The same of every fourth pixel, in a fourth of the time. */
-float match_cost_rough(const struct matcher *m, int segment, struct plane plane, unsigned hidden);
-/* Has the pictures of the segment on the plane fetched from memory, for a match_cost() that follows soon. */
+/* The matching cost of a segment on a plane. occluded: bit k is set if the segment is occluded in neighbour k. */
+float match_cost(const struct matcher *m, int segment, struct plane plane, unsigned occluded);
+/* The same from every fourth pixel, in a fourth of the time. */
+float match_cost_rough(const struct matcher *m, int segment, struct plane plane, unsigned occluded);
+/* Prefetches the neighbours' pixels for a match_cost() that follows soon. */
 void match_prefetch(const struct matcher *m, int segment, struct plane plane);
 
-/* Pixels by which a neighbour's picture of the view shifts when 1/z goes from least to most: the largest over the
- * neighbours, each at the upper quartile of a grid of the view's pixels. */
-double matcher_shift(const struct matcher *m, double least, double most);
+/* The largest disparity, in pixels, over the range of inverse depths: the maximum over the neighbours of the upper
+ * quartile over a grid of the view's pixels. */
+double matcher_shift(const struct matcher *m, double min_inverse_z, double max_inverse_z);
 
 #endif

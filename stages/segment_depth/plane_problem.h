@@ -1,11 +1,13 @@
-/* plane_problem.h - the energy that a plane for every segment is to make small.
+/* plane_problem.h - the energy of an assignment of planes to segments.
  *
- *   sum over segments i of  size_i (match_cost + points + cross_view) + slant [P_i is not constant]
- * + sum over touching i, j of smoothness w_ij min(gap(P_i, P_j) / step, jump) / jump
+ *   E(P) = sum over segments i       size_i (match_cost + points + cross_view) + slant [P_i is not constant]   (unary)
+ *        + sum over adjacent i, j    smoothness w_ij min(gap(P_i, P_j) / step, jump) / jump                   
+ * (pairwise)
  *
- * A segment whose depth is given has one plane, which costs nothing; any other costs PLANE_NEVER.
- * size_i is in segments of mean size; gap is the mean difference of the two planes at the middle of the border and at both
- * centroids: zero where the planes are the same, so that a surface may slant for nothing, and never more than the way by a third plane. */
+ * A segment whose depth is given has one plane, of cost 0; any other costs PLANE_FORBIDDEN. size_i is in mean segments.
+ * The gap is the mean difference of the two planes' inverse depths at the middle of the border and at both centroids:
+ * zero for equal planes, so that a surface slants at no cost, and never more than the sum over a third plane
+ * (metric). */
 #ifndef REMODEL_PLANE_PROBLEM_H
 #define REMODEL_PLANE_PROBLEM_H
 
@@ -21,27 +23,29 @@ struct plane_problem { /* borrows all that it points to */
     const struct matcher *m;
     const struct point_evidence *points;
     const struct cross_view *cross;  /* NULL in the first round */
-    const struct given_depth *given; /* NULL: nothing is */
-    const float *weights;            /* a touch each, as touch_weights() */
+    const struct given_depth *given; /* NULL if no depth is given */
+    const float *weights;            /* of each border, as border_weights() */
     const struct segment_params *params;
-    double least, most, step; /* inverse depths of the sweep */
-    const float *cost;        /* planes a segment: matching alone, at constant depths; NULL after the first round */
+    double min_inverse_z, max_inverse_z, step; /* range and step of the sweep */
+    const float *cost; /* `planes` matching costs per segment, at the sweep's depths; NULL after the first round */
     int planes;
-    const float
-        *least_match; /* after the first round: of each segment, what it may hardly match better than; or NULL */
-    bool rough;       /* every fourth pixel will do */
+    const float *min_match; /* after the first round: lower bound of each match cost, approximate; or NULL */
+    bool rough;             /* match every fourth pixel only */
 };
 
-/* Later rounds begin where the one before ended. */
+/* Later rounds start from the planes of the previous one and need fewer passes. */
 static inline int problem_passes(const struct plane_problem *p)
 {
     return p->cross ? (p->params->passes + 1) / 2 : p->params->passes;
 }
 
-#define PLANE_NEVER 1e4f /* the cost of a plane that leaves the depths */
+#define PLANE_FORBIDDEN 1e4f /* unary cost of a plane outside the depth range */
 
-/* PLANE_NEVER also if it would be more than `most`, as far as can be said without looking at the pictures. */
-float problem_unary(const struct plane_problem *p, int segment, struct plane plane, float most);
-double problem_pair(const struct plane_problem *p, int segment, int touch, struct plane own, struct plane other);
+/* Unary term. Also PLANE_FORBIDDEN if it exceeds max_cost, as far as the terms without matching and its lower bound
+ * show. */
+float unary_cost(const struct plane_problem *p, int segment, struct plane plane, float max_cost);
+
+/* Pairwise term of the segment with plane `own` and its neighbour across `border` with plane `other`. */
+double pairwise_cost(const struct plane_problem *p, int segment, int border, struct plane own, struct plane other);
 
 #endif

@@ -1,4 +1,11 @@
-/* plane_sweep.c - see plane_sweep.h. */
+/* plane_sweep.c - the first round's start: a plane sweep, smoothed over the segment graph.
+ *
+ * The depth range is divided into planes evenly spaced in 1/z, about one pixel of disparity apart. At each depth d the
+ * cost volume holds
+ *   C_i(d) = min(match_cost(z = 1/d), match_cost(horizontal plane through the segment at 1/d) + slant)
+ * since floors and ceilings, seen at grazing angles, match on no plane of constant depth. With the cost of the sparse
+ * points added, and weighted by the segment's size, it is the data cost of smooth_labels(); the label found decides the
+ * segment's depth, and its matching costs decide between the constant and the horizontal plane. */
 #include "stages/segment_depth/plane_sweep.h"
 
 #include <math.h>
@@ -8,11 +15,11 @@
 #include "common/base/progress.h"
 #include "stages/segment_depth/smooth.h"
 
-#define HORIZON 0.03 /* |cosine| between a ray and the horizontal below which horizontal planes are not tried */
+#define HORIZON 0.03 /* |cosine| between a ray and the vertical below which horizontal planes are not tried */
 
-/* Segments of given depth stay at the label nearest to it, whatever those that they touch want. */
+/* The data cost per step of a segment whose depth is given: high enough that no neighbour moves it. */
 #define GIVEN_WEIGHT 10
-#define MOST_OFF     1e3
+#define MAX_OFFSET   1e3
 
 struct sweep_job {
     const struct plane_sweep *w;
@@ -21,15 +28,15 @@ struct sweep_job {
     const struct matcher *m;
     const struct point_evidence *points;
     const struct segment_params *params;
-    float *energy; /* planes a segment: with points, weighted by size */
+    float *energy; /* data costs of smooth_labels(), `planes` per segment: cost with points, times size */
     struct progress progress;
 };
 
-/* A segment's plane at a label: facing the camera, or else horizontal. The second returns false if the two are the same to
- * the pictures, or the horizontal one is seen at too grazing an angle, or leaves the depths. */
+/* The two planes of a segment at a label. horizontal_plane() returns false if its plane is indistinguishable from the
+ * facing one, is seen at too grazing an angle, or leaves the depth range. */
 static struct plane facing_plane(const struct plane_sweep *w, int label)
 {
-    return (struct plane){0, 0, w->least + label * w->step};
+    return (struct plane){0, 0, w->min_inverse_z + label * w->step};
 }
 
 static bool horizontal_plane(const struct sweep_job *job, const struct segment *g, int label, struct plane *plane)
@@ -37,13 +44,13 @@ static bool horizontal_plane(const struct sweep_job *job, const struct segment *
     const struct plane_sweep *w = job->w;
     const struct view *v = job->view;
     const struct vec3 down = job->down;
-    const double d = w->least + label * w->step, size = sqrt(g->pixels);
+    const double d = w->min_inverse_z + label * w->step, size = sqrt(g->pixels);
     const double cosine = down.x * (g->cx - v->cx) / v->fx + down.y * (g->cy - v->cy) / v->fy + down.z;
     if (!(fabs(cosine) > HORIZON)) return false;
     const double a = d * down.x / (v->fx * cosine), b = d * down.y / (v->fy * cosine), rise = hypot(a, b) / w->step;
     *plane = (struct plane){a, b, d - a * g->cx - b * g->cy};
-    const double most = w->least + (w->planes - 1) * w->step;
-    return rise * size > 0.5 && rise < 1 && plane_keeps_to(*plane, g, w->least, most);
+    const double max_inverse_z = w->min_inverse_z + (w->planes - 1) * w->step;
+    return rise * size > 0.5 && rise < 1 && plane_within(*plane, g, w->min_inverse_z, max_inverse_z);
 }
 
 static void sweep_segments(void *ctx, size_t begin, size_t end, int thread)
@@ -55,20 +62,20 @@ static void sweep_segments(void *ctx, size_t begin, size_t end, int thread)
         float *cost = w->cost + i * (size_t)w->planes, *energy = job->energy + i * (size_t)w->planes;
         const struct segment *g = &job->m->segments->segments[i];
         const float size = (float)g->pixels / (float)job->params->segment_pixels;
-        if (given_depth_knows(w->given, (int)i)) {
+        if (given_depth_has(w->given, (int)i)) {
             const double given = plane_at(w->given->planes[i], g->cx, g->cy);
             for (int p = 0; p < w->planes; p++) {
-                cost[p] = (float)fmin(fabs(w->least + p * w->step - given) / w->step, MOST_OFF);
+                cost[p] = (float)fmin(fabs(w->min_inverse_z + p * w->step - given) / w->step, MAX_OFFSET);
                 energy[p] = GIVEN_WEIGHT * cost[p];
             }
             continue;
         }
         for (int p = 0; p < w->planes; p++) {
             const struct plane plane = facing_plane(w, p);
-            struct plane tilted;
+            struct plane horizontal;
             cost[p] = match_cost_rough(job->m, (int)i, plane, 0);
-            if (horizontal_plane(job, g, p, &tilted)) {
-                const float other = match_cost_rough(job->m, (int)i, tilted, 0) + (float)job->params->slant;
+            if (horizontal_plane(job, g, p, &horizontal)) {
+                const float other = match_cost_rough(job->m, (int)i, horizontal, 0) + (float)job->params->slant;
                 cost[p] = other < cost[p] ? other : cost[p];
             }
             energy[p] = size * (cost[p] + (float)point_evidence_cost(job->points, (int)i, plane, g->cx, g->cy));
@@ -77,22 +84,23 @@ static void sweep_segments(void *ctx, size_t begin, size_t end, int thread)
     progress_add(&job->progress, (int64_t)(end - begin));
 }
 
-static struct plane better_plane(const struct sweep_job *job, int segment, int label)
+static struct plane best_plane(const struct sweep_job *job, int segment, int label)
 {
     const struct plane facing = facing_plane(job->w, label);
-    struct plane tilted;
-    if (!horizontal_plane(job, &job->m->segments->segments[segment], label, &tilted)) return facing;
+    struct plane horizontal;
+    if (!horizontal_plane(job, &job->m->segments->segments[segment], label, &horizontal)) return facing;
     const float slant = (float)job->params->slant;
-    return match_cost(job->m, segment, tilted, 0) + slant < match_cost(job->m, segment, facing, 0) ? tilted : facing;
+    return match_cost(job->m, segment, horizontal, 0) + slant < match_cost(job->m, segment, facing, 0) ? horizontal
+                                                                                                       : facing;
 }
 
-void plane_sweep_steps(struct plane_sweep *w, const struct matcher *m, double least, double most,
+void plane_sweep_steps(struct plane_sweep *w, const struct matcher *m, double min_inverse_z, double max_inverse_z,
                        const struct segment_params *params)
 {
-    w->planes = (int)fmin(fmax(ceil(matcher_shift(m, least, most)) + 1, 4), params->planes);
+    w->planes = (int)fmin(fmax(ceil(matcher_shift(m, min_inverse_z, max_inverse_z)) + 1, 4), params->planes);
     if (!m->neighbour_count) w->planes = params->planes;
-    w->step = (most - least) / (w->planes - 1);
-    w->least = least;
+    w->step = (max_inverse_z - min_inverse_z) / (w->planes - 1);
+    w->min_inverse_z = min_inverse_z;
 }
 
 enum status plane_sweep_run(struct plane_sweep *w, struct plane *plane, const struct matcher *m,
@@ -115,7 +123,7 @@ enum status plane_sweep_run(struct plane_sweep *w, struct plane *plane, const st
                            (float)params->smoothness, err);
     }
     for (int i = 0; !st && i < s->count; i++)
-        plane[i] = given_depth_knows(w->given, i) ? w->given->planes[i] : better_plane(&job, i, labels[i]);
+        plane[i] = given_depth_has(w->given, i) ? w->given->planes[i] : best_plane(&job, i, labels[i]);
     free(labels);
     free(job.energy);
     return st;

@@ -1,7 +1,4 @@
-/* plane_sweep.h - a first plane for every segment: the depths of a sweep, smoothed.
- *
- * Planes z = const, evenly spaced in 1/z, a step about one pixel; at every depth also the horizontal plane, which is how
- * floors and ceilings lie. */
+/* plane_sweep.h - initial planes of the segments: a sweep of the depth range, smoothed. */
 #ifndef REMODEL_PLANE_SWEEP_H
 #define REMODEL_PLANE_SWEEP_H
 
@@ -11,18 +8,19 @@
 #include "stages/segment_depth/segment_params.h"
 
 struct plane_sweep {
-    double least, step; /* of 1/z; the depths are least + k step */
+    double min_inverse_z, step; /* inverse depth of label k: min_inverse_z + k step */
     int planes;
-    float *cost;                     /* planes a segment: matching alone */
-    const struct given_depth *given; /* NULL: nothing is; set by the caller */
+    float *cost;                     /* the cost volume: `planes` matching costs per segment */
+    const struct given_depth *given; /* NULL if no depth is given; set by the caller */
 };
 
-/* How many depths a sweep from least to most takes, and their distance. */
-void plane_sweep_steps(struct plane_sweep *w, const struct matcher *m, double least, double most,
+/* Sets the number of planes of a sweep of the range, and their distance: about one pixel, or more where that needs more
+ * than params->planes. */
+void plane_sweep_steps(struct plane_sweep *w, const struct matcher *m, double min_inverse_z, double max_inverse_z,
                        const struct segment_params *params);
 
-/* plane[]: one a segment. weights as touch_weights(); down in the view's axes. w: plane_sweep_steps() has filled it;
- * release it also after a failure. The same for any number of threads. */
+/* Fills plane[], one plane per segment. weights: of border_weights(); down: in the view's axes. w comes from
+ * plane_sweep_steps(); release it also after a failure. Same result for any number of threads. */
 enum status plane_sweep_run(struct plane_sweep *w, struct plane *plane, const struct matcher *m,
                             const struct point_evidence *points, const float *weights, const struct view *view,
                             struct vec3 down, const struct segment_params *params, struct err *err);

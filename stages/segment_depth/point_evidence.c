@@ -1,4 +1,11 @@
-/* point_evidence.c - see point_evidence.h. */
+/* point_evidence.c - cost of a plane given the sparse points of structure from motion.
+ *
+ *   cost = inside_weight  sum over the n points inside the segment of min(1, |plane - 1/z| / (2 step)) / (n + 1)
+ *        + nearest_weight min over the nearest points of min(1, |plane - 1/z| / tolerance)
+ *        + far_weight     (1/z - min_inverse_z) / (max_inverse_z - min_inverse_z)
+ * Points inside a segment measure its depth. A textureless segment without points most likely has the depth of a point
+ * nearby in place and colour: the minimum lets any of them explain it. The last term prefers the farthest, since the
+ * edges of a flat region belong to the surface in front of it. All are soft: they decide where the pictures do not. */
 #include "stages/segment_depth/point_evidence.h"
 
 #include <math.h>
@@ -6,22 +13,22 @@
 
 #include "common/base/parallel.h"
 
-#define NEAR_COLOUR 6.0f /* Lab distance that counts like a distance of NEAR_PLACE of the picture's diagonal */
-#define NEAR_PLACE  0.08f
-/* How far from a nearby point's depth costs in full: a part of the depth range, but not so few steps that the pictures
- * could not tell better. */
-#define LOOSE       0.04
-#define LOOSE_STEPS 4
+#define COLOUR_SCALE 6.0f /* Lab distance that is as far as PLACE_SCALE of the picture's diagonal */
+#define PLACE_SCALE  0.08f
+/* Distance from the nearest points' depths at which the cost is full: a part of the depth range, but at least so many
+ * steps, within which the pictures decide better. */
+#define TOLERANCE       0.04
+#define TOLERANCE_STEPS 4
 
 static enum status sort_into_segments(struct point_evidence *e, const struct segmentation *s,
-                                      const struct seen_points *seen, struct err *err)
+                                      const struct observed_points *seen, struct err *err)
 {
     e->first = calloc((size_t)s->count + 2, sizeof *e->first);
     e->points = malloc(((size_t)seen->count + 1) * sizeof *e->points);
     if (!e->first || !e->points) return err_nomem(err, "lists of points", (size_t)s->count * sizeof *e->first);
     for (int round = 0; round < 2; round++) {
         for (int i = 0; i < seen->count; i++) {
-            const struct seen_point *p = &seen->points[i];
+            const struct observed_point *p = &seen->points[i];
             if (!(p->u >= 0 && p->v >= 0 && p->u < s->width && p->v < s->height)) continue;
             int label = s->label[(int)p->v * s->width + (int)p->u];
             if (label < 0) continue;
@@ -38,7 +45,7 @@ static enum status sort_into_segments(struct point_evidence *e, const struct seg
 struct nearest_job {
     struct point_evidence *e;
     const struct segmentation *s;
-    float place;     /* 1 / px */
+    float place;     /* scale of places, 1 / px */
     float (*key)[5]; /* of each point: place and colour, scaled */
 };
 
@@ -46,7 +53,7 @@ static void fill_key(float key[5], const struct segment *g, double u, double v, 
 {
     key[0] = place * (float)u;
     key[1] = place * (float)v;
-    for (int c = 0; c < 3; c++) key[2 + c] = g->colour[c] / NEAR_COLOUR;
+    for (int c = 0; c < 3; c++) key[2 + c] = g->colour[c] / COLOUR_SCALE;
 }
 
 static void find_nearest(void *ctx, size_t begin, size_t end, int thread)
@@ -74,12 +81,12 @@ static void find_nearest(void *ctx, size_t begin, size_t end, int thread)
     }
 }
 
-enum status point_evidence_make(struct point_evidence *e, const struct segmentation *s, const struct seen_points *seen,
-                                double least, double most, double step, const struct segment_params *params,
-                                struct err *err)
+enum status point_evidence_make(struct point_evidence *e, const struct segmentation *s,
+                                const struct observed_points *seen, double min_inverse_z, double max_inverse_z,
+                                double step, const struct segment_params *params, struct err *err)
 {
-    *e = (struct point_evidence){.least = least,
-                                 .most = most,
+    *e = (struct point_evidence){.min_inverse_z = min_inverse_z,
+                                 .max_inverse_z = max_inverse_z,
                                  .step = step,
                                  .inside_weight = params->points,
                                  .nearest_weight = params->nearest_points,
@@ -87,7 +94,7 @@ enum status point_evidence_make(struct point_evidence *e, const struct segmentat
     enum status st = sort_into_segments(e, s, seen, err);
     if (!st) {
         int points = e->first[s->count];
-        float place = (float)(1 / (NEAR_PLACE * hypot(s->width, s->height)));
+        float place = (float)(1 / (PLACE_SCALE * hypot(s->width, s->height)));
         struct nearest_job job = {.e = e, .s = s, .place = place};
         e->nearest_count = points < NEAREST_POINTS ? points : NEAREST_POINTS;
         e->nearest = malloc(((size_t)s->count * NEAREST_POINTS + 1) * sizeof *e->nearest);
@@ -120,13 +127,13 @@ double point_evidence_cost(const struct point_evidence *e, int segment, struct p
     int begin = e->first[segment], end = e->first[segment + 1];
     double inside = 0, nearest = 1, here = plane_at(plane, u, v);
     for (int i = begin; i < end; i++) {
-        const struct seen_point *p = &e->points[i];
+        const struct observed_point *p = &e->points[i];
         inside += fmin(1, fabs(plane_at(plane, p->u, p->v) - p->inverse_z) / (2 * e->step));
     }
-    if (begin < end) inside /= end - begin + 1.0; /* one point counts half of what many count */
+    if (begin < end) inside /= end - begin + 1.0; /* a single point counts half as much as many */
     const float *depth = e->nearest + (size_t)segment * NEAREST_POINTS;
-    double loose = fmax(LOOSE * (e->most - e->least), LOOSE_STEPS * e->step);
-    for (int k = 0; k < e->nearest_count; k++) nearest = fmin(nearest, fabs(here - (double)depth[k]) / loose);
-    double far = fmin(fmax((here - e->least) / (e->most - e->least), 0), 1);
+    double tolerance = fmax(TOLERANCE * (e->max_inverse_z - e->min_inverse_z), TOLERANCE_STEPS * e->step);
+    for (int k = 0; k < e->nearest_count; k++) nearest = fmin(nearest, fabs(here - (double)depth[k]) / tolerance);
+    double far = fmin(fmax((here - e->min_inverse_z) / (e->max_inverse_z - e->min_inverse_z), 0), 1);
     return e->inside_weight * inside + (e->nearest_count ? e->nearest_weight * nearest : 0) + e->far_weight * far;
 }

@@ -1,8 +1,13 @@
-/* refine.c - PatchMatch-like search for a plane a segment (Bleyer 2011), on the graph of segments.
+/* refine.c - local search for a plane per segment, in the manner of PatchMatch [Bleyer 2011].
  *
- * Segments are coloured so that none touches another of its colour; a colour's segments look at the same moment at
- * neighbours that do not change meanwhile, so the outcome does not depend on threads. Planes are fitted to what stood at the beginning
- * of a pass. */
+ * In each pass every segment tries the planes of its neighbours (propagation), perturbations that halve from pass to
+ * pass (random search, here on a fixed pattern), a constant depth, and a least-squares plane through the centroids
+ * around it; it keeps the plane of minimum energy given its neighbours' planes. The energy is the one of expand.c, with
+ * all pixels matched.
+ *
+ * What differs from the source: nodes are segments. They are coloured greedily so that no two adjacent segments have
+ * one colour; the segments of a colour are refined in parallel while their neighbours stay fixed, so that the result
+ * does not depend on threads. Planes are fitted to the planes at the start of the pass. */
 #include "stages/segment_depth/refine.h"
 
 #include <assert.h>
@@ -17,27 +22,28 @@
 struct refine {
     const struct plane_problem *p;
     const struct segmentation *s;
-    double step, change; /* change: of 1/z that this pass tries */
+    double step, perturbation; /* of 1/z; perturbation: in this pass */
     struct plane *plane, *before;
-    float *unary; /* of the current plane */
+    float *unary; /* unary terms of the current planes */
     const int *members;
 };
 
-static double prior_cost(const struct refine *r, int i, struct plane p)
+static double pairwise_sum(const struct refine *r, int i, struct plane p)
 {
     double sum = 0;
-    for (int t = r->s->first_touch[i]; t < r->s->first_touch[i + 1]; t++)
-        sum += problem_pair(r->p, i, t, p, r->plane[r->s->touches[t].other]);
+    for (int t = r->s->first_border[i]; t < r->s->first_border[i + 1]; t++)
+        sum += pairwise_cost(r->p, i, t, p, r->plane[r->s->borders[t].other]);
     return sum;
 }
 
 static void try_plane(struct refine *r, int i, struct plane p, double *best)
 {
-    const double prior = prior_cost(r, i, p), size = (double)r->s->segments[i].pixels / r->p->params->segment_pixels;
-    if (prior + size * (double)MATCH_BEST >= *best) return;
-    const float unary = problem_unary(r->p, i, p, (float)(*best - prior));
-    if (prior + (double)unary < *best) {
-        *best = prior + (double)unary;
+    const double pairwise = pairwise_sum(r, i, p),
+                 size = (double)r->s->segments[i].pixels / r->p->params->segment_pixels;
+    if (pairwise + size * (double)MATCH_BEST >= *best) return;
+    const float unary = unary_cost(r->p, i, p, (float)(*best - pairwise));
+    if (pairwise + (double)unary < *best) {
+        *best = pairwise + (double)unary;
         r->plane[i] = p;
         r->unary[i] = unary;
     }
@@ -48,19 +54,19 @@ static struct plane plane_through(double u, double v, double inverse_z, double a
     return (struct plane){a, b, inverse_z - a * u - b * v};
 }
 
-/* Least squares over the segment, those it touches and those they touch, weighted by likeness, size and agreement in depth.
- * False if they do not span a plane. */
+/* Weighted least squares over the centroids of the segment, its neighbours and their neighbours; the weight is a
+ * segment's size, reduced by its difference in colour and in depth. False if the centroids do not span a plane. */
 static bool fit_plane(const struct refine *r, int i, struct plane *fit)
 {
     const struct segmentation *s = r->s;
     const struct segment *g = &s->segments[i];
     double m[3][3] = {{0}}, rhs[3] = {0}, center = plane_at(r->before[i], g->cx, g->cy);
     double tolerance = 3 * r->step;
-    for (int t = s->first_touch[i] - 1; t < s->first_touch[i + 1]; t++) {
-        /* t == first - 1 stands for the segment itself */
-        int near = t < s->first_touch[i] ? i : s->touches[t].other;
-        for (int k = s->first_touch[near] - 1; k < s->first_touch[near + 1]; k++) {
-            int j = k < s->first_touch[near] ? near : s->touches[k].other;
+    for (int t = s->first_border[i] - 1; t < s->first_border[i + 1]; t++) {
+        /* t == first - 1: the segment itself */
+        int near = t < s->first_border[i] ? i : s->borders[t].other;
+        for (int k = s->first_border[near] - 1; k < s->first_border[near + 1]; k++) {
+            int j = k < s->first_border[near] ? near : s->borders[k].other;
             const struct segment *h = &s->segments[j];
             double d = plane_at(r->before[j], h->cx, h->cy), off = (d - center) / tolerance, colour = 0;
             for (int c = 0; c < 3; c++) colour += pow((double)(h->colour[c] - g->colour[c]) / 12, 2);
@@ -73,7 +79,7 @@ static bool fit_plane(const struct refine *r, int i, struct plane *fit)
         }
     }
     double spread = 1e-3 * (m[0][0] + m[1][1]) + 1e-9;
-    m[0][0] += spread; /* leans towards constant where the centroids lie on a line */
+    m[0][0] += spread; /* regularizes towards a constant depth if the centroids are collinear */
     m[1][1] += spread;
     struct vec3 x = {m[0][0], m[1][0], m[2][0]}, y = {m[0][1], m[1][1], m[2][1]}, z = {m[0][2], m[1][2], m[2][2]};
     struct vec3 e = {rhs[0], rhs[1], rhs[2]};
@@ -89,7 +95,7 @@ static void refine_segment(struct refine *r, int i)
 {
     const struct segmentation *s = r->s;
     const struct segment *g = &s->segments[i];
-    double best = (double)r->unary[i] + prior_cost(r, i, r->plane[i]);
+    double best = (double)r->unary[i] + pairwise_sum(r, i, r->plane[i]);
     struct plane fit;
     bool fitted = fit_plane(r, i, &fit);
     if (fitted) {
@@ -97,8 +103,8 @@ static void refine_segment(struct refine *r, int i)
         try_plane(r, i, fit, &best);
         try_plane(r, i, plane_through(g->cx, g->cy, here, fit.a, fit.b), &best);
     }
-    for (int t = s->first_touch[i]; t < s->first_touch[i + 1]; t++) {
-        struct plane p = r->plane[s->touches[t].other];
+    for (int t = s->first_border[i]; t < s->first_border[i + 1]; t++) {
+        struct plane p = r->plane[s->borders[t].other];
         struct plane own = r->plane[i];
         if (p.a != own.a || p.b != own.b || p.c != own.c) try_plane(r, i, p, &best);
     }
@@ -106,41 +112,42 @@ static void refine_segment(struct refine *r, int i)
     if (r->plane[i].a != 0 || r->plane[i].b != 0) try_plane(r, i, (struct plane){0, 0, here}, &best);
     for (int sign = -1; sign <= 1; sign += 2) {
         struct plane p = r->plane[i];
-        p.c += sign * r->change;
+        p.c += sign * r->perturbation;
         try_plane(r, i, p, &best);
     }
-    for (int k = 0; k < 4; k++) { /* a turn about the centroid that shifts the segment's rim by `change` */
-        double a = k < 2 ? (k ? 1 : -1) * 2 * r->change / (g->x1 - g->x0 + 1) : 0;
-        double b = k < 2 ? 0 : (k & 1 ? 1 : -1) * 2 * r->change / (g->y1 - g->y0 + 1);
+    for (int k = 0; k < 4; k++) { /* rotations about the centroid that change the rim's 1/z by `perturbation` */
+        double a = k < 2 ? (k ? 1 : -1) * 2 * r->perturbation / (g->x1 - g->x0 + 1) : 0;
+        double b = k < 2 ? 0 : (k & 1 ? 1 : -1) * 2 * r->perturbation / (g->y1 - g->y0 + 1);
         struct plane p = r->plane[i];
         try_plane(r, i, plane_through(g->cx, g->cy, plane_at(p, g->cx, g->cy), p.a + a, p.b + b), &best);
     }
 }
 
-static void refine_members(void *ctx, size_t begin, size_t end, int thread)
+static void refine_colour(void *ctx, size_t begin, size_t end, int thread)
 {
     struct refine *r = ctx;
     (void)thread;
     for (size_t k = begin; k < end; k++) refine_segment(r, r->members[k]);
 }
 
-static void first_costs(void *ctx, size_t begin, size_t end, int thread)
+static void initial_costs(void *ctx, size_t begin, size_t end, int thread)
 {
     struct refine *r = ctx;
     (void)thread;
-    for (size_t i = begin; i < end; i++) r->unary[i] = problem_unary(r->p, (int)i, r->plane[i], INFINITY);
+    for (size_t i = begin; i < end; i++) r->unary[i] = unary_cost(r->p, (int)i, r->plane[i], INFINITY);
 }
 
-/* Greedy colours; members sorted by colour; first[c] where colour c begins. At most 64 colours. */
-#define MOST_COLOURS 64
-static int colour_segments(const struct segmentation *s, int *colour, int *members, int first[MOST_COLOURS + 1])
+/* Colours the segments greedily. members: the segments sorted by colour; those of colour c begin at first[c]. Returns
+ * the number of colours, at most MAX_COLOURS. */
+#define MAX_COLOURS 64
+static int colour_segments(const struct segmentation *s, int *colour, int *members, int first[MAX_COLOURS + 1])
 {
     int colours = 0;
     for (int i = 0; i < s->count; i++) {
         uint64_t taken = 0;
-        for (int t = s->first_touch[i]; t < s->first_touch[i + 1]; t++)
-            if (s->touches[t].other < i) taken |= (uint64_t)1 << colour[s->touches[t].other];
-        for (colour[i] = 0; taken >> colour[i] & 1; colour[i]++) assert(colour[i] < MOST_COLOURS - 1);
+        for (int t = s->first_border[i]; t < s->first_border[i + 1]; t++)
+            if (s->borders[t].other < i) taken |= (uint64_t)1 << colour[s->borders[t].other];
+        for (colour[i] = 0; taken >> colour[i] & 1; colour[i]++) assert(colour[i] < MAX_COLOURS - 1);
         colours = colour[i] + 1 > colours ? colour[i] + 1 : colours;
     }
     for (int c = 0, n = 0; c <= colours; c++) {
@@ -155,7 +162,7 @@ enum status refine_planes(struct plane *plane, const struct plane_problem *p, st
 {
     const struct segmentation *s = p->m->segments;
     struct refine r = {.p = p, .s = s, .step = p->step, .plane = plane};
-    int *colour = malloc(((size_t)s->count + 1) * sizeof *colour), first[MOST_COLOURS + 1];
+    int *colour = malloc(((size_t)s->count + 1) * sizeof *colour), first[MAX_COLOURS + 1];
     int *members = malloc(((size_t)s->count + 1) * sizeof *members);
     struct progress progress;
     enum status st = ST_OK;
@@ -169,13 +176,13 @@ enum status refine_planes(struct plane *plane, const struct plane_problem *p, st
     int colours = colour_segments(s, colour, members, first);
     const int passes = problem_passes(p);
     progress_start(&progress, "refinement", (int64_t)passes * s->count, "segments");
-    parallel_for((size_t)s->count, 64, first_costs, &r);
+    parallel_for((size_t)s->count, 64, initial_costs, &r);
     for (int pass = 0; pass < passes; pass++) {
         memcpy(r.before, plane, (size_t)s->count * sizeof *plane);
-        r.change = r.step * pow(0.5, pass);
+        r.perturbation = r.step * pow(0.5, pass);
         for (int c = 0; c < colours; c++) {
             r.members = members + first[c];
-            parallel_for((size_t)(first[c + 1] - first[c]), 16, refine_members, &r);
+            parallel_for((size_t)(first[c + 1] - first[c]), 16, refine_colour, &r);
             progress_add(&progress, first[c + 1] - first[c]);
         }
     }

@@ -2,12 +2,13 @@
  *
  * reads   VIEWS/cameras.txt, images.txt, points3D.txt   the cameras and sparse points
  *         VIEWS/VIEW.exr                                the view and the neighbours it selects, linear RGBA
- *         GIVEN/VIEW.exr or .png, depth.txt             depth that is known already; need not be there
- *         VIEWS/lenses.txt                              for given depth that is as large as the photo
- * writes  DEPS                                          make dependencies: the pictures really read
+ *         BEFORE/VIEW.exr, VIEW.txt                     with --before: depth of the view and its neighbours
+ *         GIVEN/VIEW.exr or .png, depth.txt             with --given: known depth, where there is any
+ *         VIEWS/lenses.txt                              for given depth in the photo's pixels
+ * writes  DEPS                                          make dependencies: the pictures that were read
  *         OUT with .txt for .exr, then OUT              segments; layers interior.* and boundary.* (RGBA, Z, id)
  *
- * --estimate instead prints what depth will take, and reads nothing but cameras and points.
+ * --estimate prints the time and memory that depth will take instead; it reads cameras and points only.
  *
  * Each file appears whole or not at all, OUT last: if it is new, so are the others. */
 #include <stdio.h>
@@ -50,7 +51,7 @@ static enum status read_depth(void *ctx, int view_idx, struct layered_depth *d, 
     return st;
 }
 
-/* Nothing is given where all is unknown. */
+/* *z: the view's given depth; NULL if there is none or all of it is unknown. */
 static enum status read_given(void *ctx, int view_idx, float **z, struct err *err)
 {
     const struct views_folder *f = ctx;
@@ -61,11 +62,13 @@ static enum status read_given(void *ctx, int view_idx, float **z, struct err *er
     enum status st = access(path, F_OK) ? ST_OK : lens_list_read(&lenses, path, err);
     const int lens = st ? -1 : lens_list_find(&lenses, view->name);
     if (!st) st = given_read(z, f->given, view, lens < 0 ? NULL : &lenses.lenses[lens], f->prov, err);
-    double least = 0, most = 0;
-    if (!st && *z && !given_depth_range(&least, &most, *z, (size_t)view->width * (size_t)view->height)) {
-        if (!f->before) /* once is enough */
-            log_warn("the depth that %s gives view %s is unknown everywhere (0, NaN, infinite); it is matched as ever.",
-                     f->given, view->name);
+    double min_inverse_z = 0, max_inverse_z = 0;
+    if (!st && *z &&
+        !given_depth_range(&min_inverse_z, &max_inverse_z, *z, (size_t)view->width * (size_t)view->height)) {
+        if (!f->before) /* warns in the first round only */
+            log_warn("the given depth of view %s in %s is unknown everywhere (0, NaN or infinite); the view is matched "
+                     "as if there were none.",
+                     view->name, f->given);
         free(*z);
         *z = NULL;
     }
@@ -83,8 +86,8 @@ static void print_escaped(FILE *to, const char *path)
     }
 }
 
-/* "OUT: VIEWS/A.exr VIEWS/B.exr ... BEFORE/B.exr ...", and an empty rule for each, so that a view that is gone does not
- * stop make. */
+/* Writes "OUT: VIEWS/A.exr VIEWS/B.exr ... BEFORE/B.exr ...", and an empty rule for each, so that make does not stop at
+ * a view that has been removed. */
 static enum status write_deps(const char *deps, const char *out, const char *const folders[2],
                               const struct camera_set *set, const int *read, int count, struct err *err)
 {
@@ -108,27 +111,28 @@ static enum status write_deps(const char *deps, const char *out, const char *con
     return st;
 }
 
-static void tell_unknown(const char *view, const struct layered_depth *d)
+static void log_coverage(const char *view, const struct layered_depth *d)
 {
     const struct depth_shares shares = layered_depth_shares(d);
-    log_note("%s: %.2f %% of the pixels have no depth%s, %.2f %% inherit theirs: nothing in other views tells it", view,
-             100 * shares.unknown, shares.unknown > 0 ? " (masked, or outside of the lens)" : "",
+    log_note("%s: %.2f %% of the pixels have no depth%s, %.2f %% inherit it from neighbouring segments because no "
+             "other view determines it",
+             view, 100 * shares.unknown, shares.unknown > 0 ? " (masked, or outside the lens)" : "",
              100 * shares.inherited);
 }
 
-/* Whether depths were looked for where nothing says that there are any. */
-static enum status tell_range(const struct camera_set *set, const int *read, int count,
-                              const struct segment_params *params, struct err *err)
+/* Warns if the depth range was guessed. */
+static enum status warn_guessed_range(const struct camera_set *set, const int *read, int count,
+                                      const struct segment_params *params, struct err *err)
 {
-    double least = 0, most = 0;
+    double min_inverse_z = 0, max_inverse_z = 0;
     bool guessed = false;
     if (params->near > 0 && params->far > 0) return ST_OK;
-    enum status st = depth_range(&least, &most, &guessed, set, read[0], read + 1, count, err);
+    enum status st = depth_range(&min_inverse_z, &max_inverse_z, &guessed, set, read[0], read + 1, count, err);
     if (!st && guessed)
-        log_warn("too few sparse points tell how far away things are: depths from %.4g on were looked at, where a "
-                 "neighbour shows things shifted by at most a quarter of the picture; if there is anything nearer, or "
-                 "nothing so near, set [segment_depth] near and far",
-                 1 / most);
+        log_warn("too few sparse points to find the depth range: searched from a depth of %.4g on, at which the "
+                 "disparity is a quarter of the picture's width; if the nearest surface is nearer or much farther, set "
+                 "[segment_depth] near and far",
+                 1 / max_inverse_z);
     return st;
 }
 
@@ -141,9 +145,9 @@ static enum status segment_depth(const char *folder, const char *before, const c
     int read[1 + MAX_NEIGHBOURS], count = 0;
     enum status st = camera_set_read(&set, folder, err);
     if (!st && (read[0] = camera_set_find(&set, name)) < 0)
-        st = err_set(err, ST_USAGE, "there is no view %s in %s/images.txt; its views are listed in %s/views.mk.", name,
+        st = err_set(err, ST_USAGE, "there is no view %s in %s/images.txt; the views are listed in %s/views.mk.", name,
                      folder, folder);
-    if (!st) st = note_work(&set, read[0], !before, params, err);
+    if (!st) st = estimate_log(&set, read[0], !before, params, err);
     if (!st) {
         struct views_folder views = {folder, before, given, &set, prov};
         const struct view_source source = {read_view, before ? read_depth : NULL, &views, given ? read_given : NULL};
@@ -151,8 +155,8 @@ static enum status segment_depth(const char *folder, const char *before, const c
     }
     if (!st && deps) st = write_deps(deps, out, (const char *const[2]){folder, before}, &set, read, 1 + count, err);
     if (!st) st = layered_depth_write(&depth, &set.views[read[0]], out, prov, err);
-    if (!st && count && !given) st = tell_range(&set, read, count, params, err);
-    if (!st) tell_unknown(name, &depth);
+    if (!st && count && !given) st = warn_guessed_range(&set, read, count, params, err);
+    if (!st) log_coverage(name, &depth);
     layered_depth_release(&depth);
     camera_set_release(&set);
     return st;
@@ -162,10 +166,11 @@ static enum status estimate(const char *folder, const char *list, int jobs, cons
                             struct err *err)
 {
     struct camera_set set = {0};
-    enum status st = jobs < 0
-                         ? err_set(err, ST_USAGE, "--jobs %d: wanted how many views are made at a time, or 0.", jobs)
-                         : camera_set_read(&set, folder, err);
-    if (!st) st = tell_work(stdout, list, &set, jobs, params, err);
+    enum status st =
+        jobs < 0
+            ? err_set(err, ST_USAGE, "--jobs %d: wanted the number of views made at a time, or 0 on a cluster.", jobs)
+            : camera_set_read(&set, folder, err);
+    if (!st) st = estimate_print(stdout, list, &set, jobs, params, err);
     camera_set_release(&set);
     return st;
 }
@@ -180,15 +185,15 @@ int main(int argc, char **argv)
         CLI_STR("views", &views, CLI_REQUIRED, "folder of cameras and rectified views"),
         CLI_STR("view", &view, CLI_OPTIONAL, "view to work on (required, with --out)"),
         CLI_STR("before", &before, CLI_OPTIONAL,
-                "folder of all views' depth in the round before; without it this is the first"),
+                "folder of all views' depth in the previous round; none in the first round"),
         CLI_STR("given", &given, CLI_OPTIONAL,
-                "folder of depth that is known already: VIEW.exr, or VIEW.png and depth.txt; of any view, or none"),
+                "folder of known depth, of any of the views: VIEW.exr, or VIEW.png with depth.txt"),
         CLI_STR("out", &out, CLI_OPTIONAL, "EXR to write"),
-        CLI_STR("deps", &deps, CLI_OPTIONAL, "make dependencies to write: the pictures really read"),
+        CLI_STR("deps", &deps, CLI_OPTIONAL, "make dependencies to write: the pictures that were read"),
         CLI_STR("estimate", &list, CLI_OPTIONAL,
-                "makes no depth: a file of lines VIEW ROUND, still to be made, of which time and memory are printed"),
+                "file of lines VIEW ROUND: makes no depth, but prints the time and memory that these will take"),
         CLI_INT("jobs", &jobs, CLI_OPTIONAL,
-                "with --estimate: views made at a time, each with all --threads; 0: on a cluster"),
+                "with --estimate: views made at a time, each with all --threads (1); 0: on a cluster"),
         CLI_PARAMS(segment_param_table, &params, NULL),
         CLI_END,
     };

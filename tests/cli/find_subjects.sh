@@ -1,4 +1,4 @@
-# find_subjects: faces in real photographs, and what is said of rectangles that cannot be subjects
+# find_subjects: faces in real photographs, drawn rectangles, and errors
 . tests/lib.sh
 data=$root/../shared/data
 project subjects
@@ -9,54 +9,54 @@ make -s DEPS=manual PHOTOS=set/photos SFM=set/model SCENE=t subjects >log 2>&1 |
 views=$(sed 's/VIEWS := //' out/t/views/views.mk)
 first=${views%% *}
 
-# find CODE WORD ARGUMENT...: on the made scene; exit status and a word on standard error
-find_them()
+# find_subjects CODE TEXT ARGUMENT...: runs find_subjects on the synthetic scene; checks its exit status and that standard error contains TEXT
+find_subjects()
 {
-    local code=$1 word=$2 rc=0; shift 2
+    local code=$1 text=$2 rc=0; shift 2
     rm -f made.txt
     "$B/bin/find_subjects" --views out/t/views --depth "${depth:-out/t/depth}" --records out/t/photos --out made.txt "$@" >out.txt 2>err.txt </dev/null || rc=$?
     [ "$rc" = "$code" ] || { cat err.txt; fail "$*: exit $rc, wanted $code"; }
-    grep -qF -- "$word" err.txt || { cat err.txt; fail "$*: nothing says '$word'"; }
-    [ "$code" = 0 ] || grep -q 'find_subjects: error: .*[.?]$' err.txt || { cat err.txt; fail "$*: no sentence"; }
-    [ "$code" = 0 ] || [ ! -e made.txt ] || fail "$*: a list was left"
+    grep -qF -- "$text" err.txt || { cat err.txt; fail "$*: '$text' is not in the message"; }
+    [ "$code" = 0 ] || grep -q 'find_subjects: error: .*[.?]$' err.txt || { cat err.txt; fail "$*: the error is not a sentence"; }
+    [ "$code" = 0 ] || [ ! -e made.txt ] || fail "$*: a list was written despite the error"
 }
 
 a_scene_without_faces_has_an_empty_list()
 {
-    grep -qx 'subjects 0' out/t/parallax/subjects.txt || { cat out/t/parallax/subjects.txt; fail "subjects in a scene of textures"; }
-    find_them 0 'no face in the'
+    grep -qx 'subjects 0' out/t/parallax/subjects.txt || { cat out/t/parallax/subjects.txt; fail "the textured scene has subjects"; }
+    find_subjects 0 'no face in the'
     cmp made.txt out/t/parallax/subjects.txt
-    find_them 0 'no face in the' --threads 1
+    find_subjects 0 'no face in the' --threads 1
     cmp made.txt out/t/parallax/subjects.txt
 }
 
-drawn_rectangles_become_subjects_in_their_order()
+drawn_rectangles_become_subjects_in_order()
 {
     printf 'subject %s 80 40 120 100\nsubject %s -10 20 30 500\n' "$first" "$first" >drawn.txt
-    find_them 0 'subject 2: ' --subjects drawn.txt
-    [ "$(grep -c "^subject $first user " made.txt)" = 2 ] && [ "$(grep -c '^corner ' made.txt)" = 8 ] || { cat made.txt; fail "the list"; }
-    awk '$1 == "subject" && ++n == 2 { exit !($4 == 0 && $7 == 120 && $8 > 0) }' made.txt || { cat made.txt; fail "not clipped to the picture"; }
-    grep -qE 'drawn.txt:2: only [0-9]+ % of the rectangle' err.txt || { cat err.txt; fail "nothing tells of the clipping"; }
+    find_subjects 0 'subject 2: ' --subjects drawn.txt
+    [ "$(grep -c "^subject $first user " made.txt)" = 2 ] && [ "$(grep -c '^corner ' made.txt)" = 8 ] || { cat made.txt; fail "the list is wrong"; }
+    awk '$1 == "subject" && ++n == 2 { exit !($4 == 0 && $7 == 120 && $8 > 0) }' made.txt || { cat made.txt; fail "the rectangle is not clipped to the picture"; }
+    grep -qE 'drawn.txt:2: only [0-9]+ % of the rectangle' err.txt || { cat err.txt; fail "no warning about the clipping"; }
     printf 'subject %s 80 40 82 44\n' "$first" >drawn.txt
-    find_them 0 'so small a subject' --subjects drawn.txt
-    ! grep -qF "$PWD" made.txt || fail "the list names a folder of this machine"
+    find_subjects 0 'so small a subject' --subjects drawn.txt
+    ! grep -qF "$PWD" made.txt || fail "the list contains a path of this machine"
     : >drawn.txt
-    find_them 0 'names no subject' --subjects drawn.txt
-    grep -qx 'subjects 0' made.txt || fail "a file without lines"
+    find_subjects 0 'names no subject' --subjects drawn.txt
+    grep -qx 'subjects 0' made.txt || fail "an empty file gives subjects"
 }
 
-rectangles_that_cannot_be_are_named_with_their_line()
+invalid_rectangles_are_errors_with_their_line()
 {
-    find_them 1 nowhere.txt --subjects nowhere.txt
+    find_subjects 1 nowhere.txt --subjects nowhere.txt
     for c in "face $first 1 2 3 4|\"subject\"" "subject $first 1 2 3|y1" "subject $first 9 2 3 4|above X0" "subject $first 1 nan 3 4|nan" \
         "subject nobody 1 2 3 4|lenses.txt" "subject ${first}x 1 2 3 4|did you mean $first" "subject $first 500 2 600 4|outside"; do
         printf '# drawn\n%s\n' "${c%|*}" >drawn.txt
-        find_them 1 "${c##*|}" --subjects drawn.txt
-        grep -qF 'drawn.txt:2: ' err.txt || { cat err.txt; fail "no line"; }
+        find_subjects 1 "${c##*|}" --subjects drawn.txt
+        grep -qF 'drawn.txt:2: ' err.txt || { cat err.txt; fail "the message names no line"; }
     done
 }
 
-a_subject_without_depth_is_refused()
+a_rectangle_without_depth_is_an_error()
 {
     mkdir -p scenes/masked/masks
     cp scenes/t/scene.cfg scenes/masked/
@@ -67,18 +67,18 @@ a_subject_without_depth_is_refused()
     rc=0
     "$B/bin/find_subjects" --views out/masked/views --depth out/masked/depth --subjects drawn.txt --out made.txt 2>err.txt || rc=$?
     [ "$rc" = 1 ] && grep -qF "drawn.txt:1: nothing in the rectangle from 50 40 to 90 70 of $first has a depth" err.txt || { cat err.txt; fail "exit $rc"; }
-    [ ! -e made.txt ] || fail "a list was left"
+    [ ! -e made.txt ] || fail "a list was written despite the error"
 }
 
-a_folder_without_cascades_is_named()
+missing_cascades_are_an_error()
 {
-    find_them 1 'haarcascade_frontalface_alt2.xml' --cascades .
-    grep -q 'opencv-data' err.txt || { cat err.txt; fail "nothing says where they are from"; }
+    find_subjects 1 'haarcascade_frontalface_alt2.xml' --cascades .
+    grep -q 'opencv-data' err.txt || { cat err.txt; fail "the message does not name the package"; }
     echo '<xml' >haarcascade_frontalface_alt2.xml
-    find_them 1 'haarcascade_frontalface_alt2.xml' --cascades .
+    find_subjects 1 'haarcascade_frontalface_alt2.xml' --cascades .
 }
 
-drawn_rectangles_that_come_and_go_redo_the_list()
+the_list_is_remade_when_drawn_rectangles_are_added_or_removed()
 {
     cp out/t/parallax/subjects.txt before.txt
     printf 'subject %s 80 40 120 100\n' "$first" >scenes/t/subjects.txt
@@ -87,14 +87,14 @@ drawn_rectangles_that_come_and_go_redo_the_list()
     grep -q "^subject $first user" out/t/parallax/subjects.txt || fail "the rectangle is not in the list"
     stat -c %y out/t/parallax/subjects.txt >a
     make -s DEPS=manual SCENE=t subjects >log 2>&1
-    stat -c %y out/t/parallax/subjects.txt | diff a - || fail "a second make made it again"
+    stat -c %y out/t/parallax/subjects.txt | diff a - || fail "a second make remade the list"
     rm scenes/t/subjects.txt
     make -s DEPS=manual SCENE=t subjects >log 2>&1 || { cat log; fail "make"; }
-    cmp before.txt out/t/parallax/subjects.txt || fail "the faces are not looked for again"
+    cmp before.txt out/t/parallax/subjects.txt || fail "the faces are not searched again"
 }
 
-# wall PHOTO NAME: a scene of five views of a wall on which a real photo hangs, 10 away: a camera that moves along it sees the photo shifted, so
-# that its views are parts of the photo and everything is known
+# wall PHOTO NAME: a scene of five views of a wall with a real photo on it, at a distance of 10. The camera moves parallel to the wall, so
+# that the views are shifted crops of the photo and their depth is known.
 wall()
 {
     local photo=$1 name=$2 i
@@ -123,30 +123,30 @@ wall()
     make -s DEPS=manual PHOTOS="$name/photos" SFM="$name/model" DEPTH="$name/depth" SCENE="$name" subjects >log 2>&1 || { cat log; fail "make"; }
 }
 
-the_statues_face_is_found_at_its_place_in_space()
+the_face_of_a_statue_is_found_at_its_place_in_space()
 {
     local photo=$data/marble-head/photos/DSC05084.jpg
     [ -e "$photo" ] || skip "there is no ../shared/data/marble-head"
     wall "$photo" statue
     cat log
-    # its face is at 0.18 .. 0.53 and 0.15 .. 0.50 of the photo; the middle view begins at pixel 40 40 of 640
+    # the face is at 0.18 .. 0.53 and 0.15 .. 0.50 of the photo; the middle view starts at pixel 40 40 of 640
     awk '$1 == "subjects" { n = $2 }
         $1 == "subject" { view = $2; confirmed = $10; asked = $11; depth = $8 }
         $1 == "corner" { x += $2 / 4; y += $3 / 4; if (++k == 1) left = $2; if (k == 2) width = $2 - left }
         function near(a, b, by) { return a > b - by && a < b + by }
         END { exit !(n == 1 && view == "v2" && asked == 4 && confirmed == 4 && near(depth, 10, 0.2) &&
                      near(x, (0.355 * 640 - 320) / 56, 0.4) && near(y, (0.325 * 640 - 320) / 56, 0.4) && near(width, 0.35 * 640 / 56, 0.6)) }' out/statue/parallax/subjects.txt ||
-        { grep -v '^# input' out/statue/parallax/subjects.txt; fail "it is not there"; }
+        { grep -v '^# input' out/statue/parallax/subjects.txt; fail "the face is not at its place"; }
 }
 
-a_puppet_is_no_face()
+a_puppet_is_not_taken_for_a_face()
 {
     local photo=$data/kermit/photos/kermit003.jpg
     [ -e "$photo" ] || skip "there is no ../shared/data/kermit"
     wall "$photo" puppet
-    grep -qx 'subjects 0' out/puppet/parallax/subjects.txt || { cat log; fail "a face"; }
+    grep -qx 'subjects 0' out/puppet/parallax/subjects.txt || { cat log; fail "a face was found"; }
 }
 
-for t in a_scene_without_faces_has_an_empty_list drawn_rectangles_become_subjects_in_their_order rectangles_that_cannot_be_are_named_with_their_line \
-    a_subject_without_depth_is_refused a_folder_without_cascades_is_named drawn_rectangles_that_come_and_go_redo_the_list \
-    the_statues_face_is_found_at_its_place_in_space a_puppet_is_no_face; do run "$t"; done
+for t in a_scene_without_faces_has_an_empty_list drawn_rectangles_become_subjects_in_order invalid_rectangles_are_errors_with_their_line \
+    a_rectangle_without_depth_is_an_error missing_cascades_are_an_error the_list_is_remade_when_drawn_rectangles_are_added_or_removed \
+    the_face_of_a_statue_is_found_at_its_place_in_space a_puppet_is_not_taken_for_a_face; do run "$t"; done

@@ -1,5 +1,4 @@
-/* fuzz_given_units.c - depth.txt, what a user's depth is in: a scale that is a positive number, or none; or a sentence says why
- * not. */
+/* fuzz_given_units.c - depth.txt: any bytes give a positive scale or none, or an error that names the file. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,4 +1,4 @@
-/* fuzz_regions.c - rectangles that a user drew: any bytes give rectangles that lie in their view, or a sentence. */
+/* fuzz_regions.c - drawn rectangles: any bytes give rectangles inside their view, or an error that names the file. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,7 +15,7 @@ static struct lens lenses[] = {
 static struct view views[] = {{.name = "a", .width = 40, .height = 30, .fx = 30, .fy = 30, .cx = 20, .cy = 15},
                               {.name = "b", .width = 30, .height = 20, .fx = 12, .fy = 12, .cx = 15, .cy = 10}};
 
-static void place(const struct region *r, const char *path)
+static void map_to_view(const struct region *r, const char *path)
 {
     const struct lens_list list = {lenses, 2};
     const struct camera_set set = {.views = views, .view_count = 2};
@@ -43,7 +43,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     if (region_list_read(&list, path, &err)) {
         if (!strstr(err.text, path) || list.regions || list.count) abort();
     } else {
-        for (int i = 0; i < list.count; i++) place(&list.regions[i], path);
+        for (int i = 0; i < list.count; i++) map_to_view(&list.regions[i], path);
         region_list_release(&list);
     }
     unlink(path);

@@ -1,8 +1,8 @@
-/* faces.c - which faces become subjects, where those that look for them see bright squares.
+/* faces.c - selection of faces, with a detector of bright squares in place of cascades.
  *
- * Squares on a wall at z = 10, white above and light grey below, so that one can be told from one upside down or lying;
- * views look along z, some of their pictures turned. The detector sees whole upright squares of the widths that it is
- * asked for. */
+ * The squares are on a wall at z = 10, white above and light grey below, which makes them distinct from rotated ones;
+ * the views look along z, some with rotated pictures. The detector finds whole upright squares of the requested
+ * widths. */
 #include "stages/find_subjects/faces.h"
 
 #include <setjmp.h>
@@ -14,7 +14,7 @@
 
 #include <cmocka.h>
 
-enum { W = 200, H = 160, MOST_VIEWS = 8, MOST_SQUARES = 4 };
+enum { W = 200, H = 160, MAX_VIEWS = 8, MAX_SQUARES = 4 };
 
 struct square {
     double x, y, half; /* on the wall */
@@ -22,21 +22,21 @@ struct square {
 };
 
 struct world {
-    struct view views[MOST_VIEWS];
-    struct vec3 ups[MOST_VIEWS];
+    struct view views[MAX_VIEWS];
+    struct vec3 ups[MAX_VIEWS];
     struct camera_set set;
-    struct square squares[MOST_SQUARES];
+    struct square squares[MAX_SQUARES];
     int square_count;
-    double score;  /* that the detector gives */
-    double grow;   /* of what it sees to what it says: a face at the border sticks out */
-    bool doubtful; /* it says everything twice, and a small face within */
+    double score;  /* of the detections */
+    double grow;   /* size of a detection relative to the square: near the border it extends outside */
+    bool repeated; /* whether every square is detected twice, with a small face inside */
     bool without_depth;
     int pictures_read;
 };
 
-static const char *const names[MOST_VIEWS] = {"v0", "v1", "v2", "v3", "v4", "v5", "v6", "v7"};
+static const char *const names[MAX_VIEWS] = {"v0", "v1", "v2", "v3", "v4", "v5", "v6", "v7"};
 
-/* turn: the picture's upper side looks to 0: up, 1: right, 2: down, 3: left of the stored one. */
+/* turn: direction of the picture's upper side in the stored picture; 0: up, 1: right, 2: down, 3: left. */
 static void add_view(struct world *w, double x, double y, int turn)
 {
     static const double c[4] = {1, 0, -1, 0}, s[4] = {0, 1, 0, -1};
@@ -97,9 +97,9 @@ static enum status wall(void *ctx, int view_idx, struct layered_depth *d, struct
     return ST_OK;
 }
 
-/* Squares do not touch: one begins at a bright pixel with dark ones to its left and above. */
-static enum status see(void *ctx, const unsigned char *grey, int width, int height, double least, double most,
-                       struct face **faces, int *count, struct err *err)
+/* Squares do not touch: each begins at a bright pixel with dark pixels to the left and above. */
+static enum status see(void *ctx, const unsigned char *grey, int width, int height, double min_width, double max_width,
+                       struct face_box **faces, int *count, struct err *err)
 {
     const struct world *w = ctx;
     (void)err;
@@ -113,20 +113,20 @@ static enum status see(void *ctx, const unsigned char *grey, int width, int heig
             int x1 = x, y1 = y;
             while (x1 < width && grey[y * width + x1] >= 110) x1++;
             while (y1 < height && grey[y1 * width + x] >= 110) y1++;
-            bool known = false; /* corners of a resampled square are round: it begins in several places */
+            bool known = false; /* the corners of a resampled square are round, so that it has several first pixels */
             for (int i = 0; i < *count; i++)
                 known =
                     known || (x1 > (*faces)[i].x0 && x < (*faces)[i].x1 && y1 > (*faces)[i].y0 && y < (*faces)[i].y1);
             const int middle = (x + x1) / 2, quarter = (y1 - y) / 4;
             const bool upright =
                 grey[(y + quarter) * width + middle] > 220 && grey[(y1 - 1 - quarter) * width + middle] < 220;
-            if (known || !upright || x1 - x < least || x1 - x > most || *count > 60) continue;
+            if (known || !upright || x1 - x < min_width || x1 - x > max_width || *count > 60) continue;
             const double more = (w->grow - 1) * (x1 - x) / 2;
-            const struct face f = {x - more, y - more, x1 + more, y1 + more, w->score};
+            const struct face_box f = {x - more, y - more, x1 + more, y1 + more, w->score};
             (*faces)[(*count)++] = f;
-            if (!w->doubtful) continue;
-            (*faces)[(*count)++] = (struct face){f.x0 + 4, f.y0 - 4, f.x1 + 4, f.y1 - 4, w->score};
-            (*faces)[(*count)++] = (struct face){f.x0 + 5, f.y0 + 5, f.x0 + 15, f.y0 + 15, w->score / 2};
+            if (!w->repeated) continue;
+            (*faces)[(*count)++] = (struct face_box){f.x0 + 4, f.y0 - 4, f.x1 + 4, f.y1 - 4, w->score};
+            (*faces)[(*count)++] = (struct face_box){f.x0 + 5, f.y0 + 5, f.x0 + 15, f.y0 + 15, w->score / 2};
         }
     return ST_OK;
 }
@@ -143,7 +143,7 @@ static void search(struct world *w, struct subject_list *list, struct face_repor
     const struct find_params params = params_of_tests();
     struct err err = ERR_INIT;
     *list = (struct subject_list){0};
-    w->set.views = w->views; /* a world may have been copied */
+    w->set.views = w->views; /* the world may be a copy */
     w->pictures_read = 0;
     if (find_faces(list, report, &w->set, w->ups, &source, &params, &err)) fail_msg("%s", err.text);
 }
@@ -155,14 +155,14 @@ static void release(struct subject_list *list, struct face_report *report)
     face_report_release(report);
 }
 
-/* To a pixel and a half of the picture. */
+/* To one and a half pixels of the picture. */
 static void assert_near(struct vec3 p, double x, double y)
 {
     if (hypot(p.x - x, p.y - y) > 1.5 * 10.0 / W || fabs(p.z - 10) > 1e-9)
         fail_msg("found %g %g %g, wanted %g %g 10", p.x, p.y, p.z, x, y);
 }
 
-static void a_face_that_other_views_see_is_kept_at_its_place(void **state)
+static void a_face_confirmed_by_other_views_is_kept_at_its_place(void **state)
 {
     (void)state;
     struct world w = row_of_views(5);
@@ -182,13 +182,13 @@ static void a_face_that_other_views_see_is_kept_at_its_place(void **state)
     release(&list, &report);
 }
 
-static void a_face_that_few_other_views_see_is_left_out(void **state)
+static void a_face_confirmed_by_few_views_is_left_out(void **state)
 {
     (void)state;
     struct world w = row_of_views(5);
     struct subject_list list;
     struct face_report report;
-    add_square(&w, 0.4, -0.6, 0.8, 1 | 2); /* of the four that are asked one confirms */
+    add_square(&w, 0.4, -0.6, 0.8, 1 | 2); /* one of four views confirms */
     search(&w, &list, &report);
     assert_int_equal(list.count, 0);
     assert_int_equal(report.views, 5);
@@ -197,7 +197,7 @@ static void a_face_that_few_other_views_see_is_left_out(void **state)
     release(&list, &report);
 }
 
-/* A thing that cascades take for a face from everywhere, but hardly. */
+/* An object that is detected as a face from everywhere, with a low score. */
 static void a_face_of_low_scores_is_left_out(void **state)
 {
     (void)state;
@@ -207,16 +207,16 @@ static void a_face_of_low_scores_is_left_out(void **state)
     w.score = 20;
     add_square(&w, 0.4, -0.6, 0.8, ~0U);
     search(&w, &list, &report);
-    assert_true(!list.count && report.sightings[0].verdict == FACE_UNSURE && !report.sightings[0].alone);
+    assert_true(!list.count && report.sightings[0].verdict == FACE_LOW_SCORE && !report.sightings[0].unchecked);
     release(&list, &report);
-    w.score = 5; /* not worth to ask others */
+    w.score = 5; /* too low for a check in other views */
     search(&w, &list, &report);
     assert_true(!list.count && !report.count);
     assert_int_equal(w.pictures_read, 5);
     release(&list, &report);
 }
 
-static void one_view_only_is_believed_by_its_score(void **state)
+static void a_face_that_no_other_view_can_check_needs_a_higher_score(void **state)
 {
     (void)state;
     struct world w = row_of_views(1);
@@ -224,15 +224,15 @@ static void one_view_only_is_believed_by_its_score(void **state)
     struct face_report report;
     add_square(&w, 0.4, -0.6, 0.8, ~0U);
     search(&w, &list, &report);
-    assert_true(list.count == 1 && report.sightings[0].alone && list.subjects[0].asked == 0);
+    assert_true(list.count == 1 && report.sightings[0].unchecked && list.subjects[0].asked == 0);
     release(&list, &report);
-    w.score = 45; /* would do where others confirm it */
+    w.score = 45; /* enough with confirmation */
     search(&w, &list, &report);
-    assert_true(!list.count && report.sightings[0].verdict == FACE_UNSURE && report.sightings[0].alone);
+    assert_true(!list.count && report.sightings[0].verdict == FACE_LOW_SCORE && report.sightings[0].unchecked);
     release(&list, &report);
 }
 
-static void views_from_the_same_place_are_not_asked(void **state)
+static void views_from_the_same_position_do_not_check_faces(void **state)
 {
     (void)state;
     struct world w = {.score = 45, .grow = 1};
@@ -241,7 +241,7 @@ static void views_from_the_same_place_are_not_asked(void **state)
     for (int i = 0; i < 5; i++) add_view(&w, 1e-4 * i, 0, 0);
     add_square(&w, 0.4, -0.6, 0.8, ~0U);
     search(&w, &list, &report);
-    assert_true(!list.count && report.sightings[0].alone && !report.sightings[0].subject.asked);
+    assert_true(!list.count && report.sightings[0].unchecked && !report.sightings[0].subject.asked);
     release(&list, &report);
 }
 
@@ -251,7 +251,7 @@ static void a_face_at_the_border_is_clipped_to_it(void **state)
     struct world w = row_of_views(5);
     struct subject_list list;
     struct face_report report;
-    add_square(&w, -4.1, -3.1, 0.8, ~0U); /* 2 px from the left, 2 px from the top of the centremost view */
+    add_square(&w, -4.1, -3.1, 0.8, ~0U); /* 2 px from the left, 2 px from the top of the most central view */
     w.grow = 1.4;
     w.score = 80;
     search(&w, &list, &report);
@@ -262,7 +262,7 @@ static void a_face_at_the_border_is_clipped_to_it(void **state)
     release(&list, &report);
 }
 
-static void a_subject_without_depth_is_left_out(void **state)
+static void a_face_without_depth_is_left_out(void **state)
 {
     (void)state;
     struct world w = row_of_views(5);
@@ -277,14 +277,14 @@ static void a_subject_without_depth_is_left_out(void **state)
     release(&list, &report);
 }
 
-static void pictures_that_are_stored_turned_are_looked_at_upright(void **state)
+static void rotated_pictures_are_searched_upright(void **state)
 {
     (void)state;
     for (int turn = 1; turn < 4; turn++) {
         struct world w = {.score = 60, .grow = 1};
         struct subject_list list;
         struct face_report report;
-        for (int i = 0; i < 5; i++) add_view(&w, 0.5 * (i - 2), 0.1, (turn + i) % 4); /* not all alike */
+        for (int i = 0; i < 5; i++) add_view(&w, 0.5 * (i - 2), 0.1, (turn + i) % 4); /* with different rotations */
         add_square(&w, 0.4, -0.6, 0.8, ~0U);
         search(&w, &list, &report);
         assert_int_equal(list.count, 1);
@@ -296,7 +296,7 @@ static void pictures_that_are_stored_turned_are_looked_at_upright(void **state)
     }
 }
 
-static void the_next_view_is_tried_where_the_centremost_has_no_face(void **state)
+static void the_next_view_is_searched_if_the_most_central_has_no_face(void **state)
 {
     (void)state;
     struct world w = row_of_views(5);
@@ -309,7 +309,7 @@ static void the_next_view_is_tried_where_the_centremost_has_no_face(void **state
     release(&list, &report);
 }
 
-static void of_several_the_two_largest_are_kept(void **state)
+static void the_two_largest_faces_are_kept(void **state)
 {
     (void)state;
     struct world w = row_of_views(5);
@@ -322,18 +322,18 @@ static void of_several_the_two_largest_are_kept(void **state)
     assert_int_equal(list.count, 2);
     assert_near(subject_center(&list.subjects[0]), -2, -1);
     assert_near(subject_center(&list.subjects[1]), 0, 1.5);
-    assert_true(report.count == 3 && report.sightings[2].verdict == FACE_BEYOND);
+    assert_true(report.count == 3 && report.sightings[2].verdict == FACE_SURPLUS);
     release(&list, &report);
 }
 
-static void what_is_seen_several_times_is_one_face(void **state)
+static void overlapping_detections_are_one_face(void **state)
 {
     (void)state;
     struct world w = row_of_views(5);
     struct subject_list list;
     struct face_report report;
     add_square(&w, 0.4, -0.6, 1.6, ~0U);
-    w.doubtful = true;
+    w.repeated = true;
     search(&w, &list, &report);
     assert_int_equal(list.count, 1);
     assert_int_equal(report.count, 1);
@@ -355,17 +355,17 @@ static void a_scene_without_views_has_no_face(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_face_that_other_views_see_is_kept_at_its_place),
-        cmocka_unit_test(a_face_that_few_other_views_see_is_left_out),
+        cmocka_unit_test(a_face_confirmed_by_other_views_is_kept_at_its_place),
+        cmocka_unit_test(a_face_confirmed_by_few_views_is_left_out),
         cmocka_unit_test(a_face_of_low_scores_is_left_out),
-        cmocka_unit_test(one_view_only_is_believed_by_its_score),
-        cmocka_unit_test(views_from_the_same_place_are_not_asked),
+        cmocka_unit_test(a_face_that_no_other_view_can_check_needs_a_higher_score),
+        cmocka_unit_test(views_from_the_same_position_do_not_check_faces),
         cmocka_unit_test(a_face_at_the_border_is_clipped_to_it),
-        cmocka_unit_test(a_subject_without_depth_is_left_out),
-        cmocka_unit_test(pictures_that_are_stored_turned_are_looked_at_upright),
-        cmocka_unit_test(the_next_view_is_tried_where_the_centremost_has_no_face),
-        cmocka_unit_test(of_several_the_two_largest_are_kept),
-        cmocka_unit_test(what_is_seen_several_times_is_one_face),
+        cmocka_unit_test(a_face_without_depth_is_left_out),
+        cmocka_unit_test(rotated_pictures_are_searched_upright),
+        cmocka_unit_test(the_next_view_is_searched_if_the_most_central_has_no_face),
+        cmocka_unit_test(the_two_largest_faces_are_kept),
+        cmocka_unit_test(overlapping_detections_are_one_face),
         cmocka_unit_test(a_scene_without_views_has_no_face),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

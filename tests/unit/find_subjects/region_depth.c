@@ -1,4 +1,4 @@
-/* region_depth.c - median depths in rectangles of made layers. */
+/* region_depth.c - median depths in rectangles of synthetic layers. */
 #include "stages/find_subjects/region_depth.h"
 
 #include <setjmp.h>
@@ -11,7 +11,7 @@
 
 enum { W = 40, H = 30 };
 
-/* Segment 1 at depth 2 left of column 20, segment 2 at depth 8 right of it. */
+/* Segment 1 at depth 2 to the left of column 20, segment 2 at depth 8 to the right. */
 static void make_layers(struct layered_depth *d, double left_confidence)
 {
     struct err err = ERR_INIT;
@@ -38,34 +38,34 @@ static double depth_in(const struct layered_depth *d, double x0, double y0, doub
     return depth;
 }
 
-static void the_larger_part_decides(void **state)
+static void the_larger_part_decides_the_depth(void **state)
 {
     (void)state;
     struct layered_depth d;
     make_layers(&d, 1);
     assert_true(depth_in(&d, 5, 5, 30, 20) == 2);
     assert_true(depth_in(&d, 12, 5, 30, 20) == 8);
-    assert_true(depth_in(&d, 5.2, 5.2, 5.3, 5.3) == 2); /* smaller than a pixel */
+    assert_true(depth_in(&d, 5.2, 5.2, 5.3, 5.3) == 2); /* smaller than one pixel */
     assert_true(depth_in(&d, 39.9, 29.9, 40, 30) == 8);
     layered_depth_release(&d);
 }
 
-static void unsure_segments_count_less(void **state)
+static void segments_of_low_confidence_have_a_lower_weight(void **state)
 {
     (void)state;
     struct layered_depth d;
     make_layers(&d, 0);
     assert_true(depth_in(&d, 5, 5, 30, 20) == 8);
-    assert_true(depth_in(&d, 5, 5, 15, 20) == 2); /* better than nothing */
+    assert_true(depth_in(&d, 5, 5, 15, 20) == 2); /* still used if there are no others */
     layered_depth_release(&d);
 }
 
-static void a_segment_before_another_counts_by_what_it_covers(void **state)
+static void layers_are_weighted_by_alpha(void **state)
 {
     (void)state;
     struct layered_depth d;
     make_layers(&d, 1);
-    for (int p = 0; p < W * H; p++) { /* of each pixel three quarters are segment 1 */
+    for (int p = 0; p < W * H; p++) { /* alpha 3/4 of segment 1 in every pixel */
         d.interior.rgba[4 * p + 3] = 0.25F;
         d.boundary.id[p] = 1;
         d.boundary.z[p] = 3;
@@ -75,7 +75,7 @@ static void a_segment_before_another_counts_by_what_it_covers(void **state)
     layered_depth_release(&d);
 }
 
-static void a_subject_without_depth_has_0(void **state)
+static void a_rectangle_without_depth_has_depth_0(void **state)
 {
     (void)state;
     struct layered_depth d;
@@ -102,10 +102,10 @@ static void a_rectangle_at_the_border_is_clipped(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_larger_part_decides),
-        cmocka_unit_test(unsure_segments_count_less),
-        cmocka_unit_test(a_segment_before_another_counts_by_what_it_covers),
-        cmocka_unit_test(a_subject_without_depth_has_0),
+        cmocka_unit_test(the_larger_part_decides_the_depth),
+        cmocka_unit_test(segments_of_low_confidence_have_a_lower_weight),
+        cmocka_unit_test(layers_are_weighted_by_alpha),
+        cmocka_unit_test(a_rectangle_without_depth_has_depth_0),
         cmocka_unit_test(a_rectangle_at_the_border_is_clipped),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,4 +1,4 @@
-/* regions.c - rectangles that a user drew, through lenses. */
+/* regions.c - drawn rectangles, mapped through lenses. */
 #include "stages/find_subjects/regions.h"
 
 #include "tests/unit/scratch.h"
@@ -6,7 +6,7 @@
 static char photo_a[] = "a", view_a[] = "a", photo_b[] = "b", view_left[] = "b@1", view_right[] = "b@2",
             photo_gone[] = "gone";
 
-/* Photo a keeps its camera; b has a strong lens and two views, turned by 30 degrees to either side; gone has no
+/* Photo a keeps its camera; b has a strong lens and two views, rotated by 30 degrees to either side; gone has no
  * view. */
 static struct lens lenses[] = {
     {view_a, photo_a, {CAMERA_PINHOLE, 200, 100, {100, 100, 100, 50}}, {1, 0, 0, 0}},
@@ -26,7 +26,7 @@ static struct view views[] = {{.name = "a", .width = 200, .height = 100, .fx = 1
                               {.name = "b@2", .width = 200, .height = 200, .fx = 100, .fy = 100, .cx = 100, .cy = 100}};
 static const struct camera_set set = {.views = views, .view_count = 3};
 
-static double part; /* of the region, in the view that the last one fell into */
+static double part; /* of the last region, inside its view */
 
 static enum status place(struct subject *s, int *at, const char *view, double x0, double y0, double x1, double y1,
                          struct err *err)
@@ -48,14 +48,14 @@ static void a_pinhole_photo_keeps_its_rectangle(void **state)
     assert_true(part == 1);
     assert_true(fabs(s.x0 - 20) < 1e-9 && fabs(s.y0 - 30) < 1e-9 && fabs(s.x1 - 60.5) < 1e-9 && fabs(s.y1 - 80) < 1e-9);
     subject_release(&s);
-    assert_int_equal(place(&s, &at, "a", -20, 30, 60, 180, &err), ST_OK); /* at the border it is clipped */
+    assert_int_equal(place(&s, &at, "a", -20, 30, 60, 180, &err), ST_OK); /* clipped at the border */
     assert_true(fabs(part - 60.0 / 80 * 70 / 150) < 1e-9);
     assert_true(fabs(s.x0) < 1e-9 && fabs(s.y0 - 30) < 1e-9 && fabs(s.x1 - 60) < 1e-9 && fabs(s.y1 - 100) < 1e-9);
     subject_release(&s);
 }
 
-/* The rectangle around the image of a point, found by camera_project(), holds the point's place in the view. */
-static void a_lens_bends_the_rectangle(void **state)
+/* The rectangle around a point's image by camera_project() contains the point's projection in the view. */
+static void a_rectangle_is_mapped_through_the_lens(void **state)
 {
     (void)state;
     for (int right = 0; right < 2; right++) {
@@ -77,7 +77,7 @@ static void a_lens_bends_the_rectangle(void **state)
     }
 }
 
-static void what_is_in_no_view_is_refused_with_its_line(void **state)
+static void a_rectangle_in_no_view_is_an_error_with_its_line(void **state)
 {
     (void)state;
     struct subject s;
@@ -87,7 +87,8 @@ static void what_is_in_no_view_is_refused_with_its_line(void **state)
     assert_true(strstr(err.text, "subjects.txt:7: ") && strstr(err.text, "outside") && strstr(err.text, "200 x 100"));
     assert_int_equal(place(&s, &at, "b@3", 10, 10, 40, 20, &err), ST_DATA);
     assert_true(strstr(err.text, "subjects.txt:7: found \"b@3\"") && strstr(err.text, "did you mean b@1?"));
-    assert_int_equal(place(&s, &at, "gone", 10, 10, 40, 20, &err), ST_DATA); /* a lens without a camera: held out */
+    assert_int_equal(place(&s, &at, "gone", 10, 10, 40, 20, &err),
+                     ST_DATA); /* a lens without a camera: held out of the set */
     assert_true(strstr(err.text, "subjects.txt:7: found \"gone\""));
     assert_null(s.view);
 }
@@ -114,7 +115,7 @@ static void lines_are_read_in_order(void **state)
     region_list_release(NULL);
 }
 
-static void broken_lines_are_refused_with_their_place(void **state)
+static void malformed_lines_are_errors_with_their_position(void **state)
 {
     (void)state;
     static const struct {
@@ -140,9 +141,11 @@ static void broken_lines_are_refused_with_their_place(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_pinhole_photo_keeps_its_rectangle),         cmocka_unit_test(a_lens_bends_the_rectangle),
-        cmocka_unit_test(what_is_in_no_view_is_refused_with_its_line), cmocka_unit_test(lines_are_read_in_order),
-        cmocka_unit_test(broken_lines_are_refused_with_their_place),
+        cmocka_unit_test(a_pinhole_photo_keeps_its_rectangle),
+        cmocka_unit_test(a_rectangle_is_mapped_through_the_lens),
+        cmocka_unit_test(a_rectangle_in_no_view_is_an_error_with_its_line),
+        cmocka_unit_test(lines_are_read_in_order),
+        cmocka_unit_test(malformed_lines_are_errors_with_their_position),
     };
     return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }

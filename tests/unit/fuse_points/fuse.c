@@ -1,4 +1,4 @@
-/* Two planes seen by four cameras: what is known exactly comes out exactly, what is wrong is outvoted. */
+/* fuse.c - fusion of the exact depth maps of two planes from four cameras, and of wrong ones. */
 #include "planes.h"
 
 #include "common/base/parallel.h"
@@ -9,7 +9,7 @@ static const struct fuse_params defaults = FUSE_PARAMS_DEFAULT;
 static void fuse(struct point_cloud *cloud, struct fuse_stats *stats, struct world *w, const struct fuse_params *params)
 {
     struct err err = ERR_INIT;
-    const struct depth_source source = source_of(w);
+    const struct depth_reader source = source_of(w);
     *cloud = (struct point_cloud){0};
     assert_ok(fuse_points(cloud, stats, &w->set, &source, params, 1 << 20, &err), err);
 }
@@ -48,13 +48,13 @@ static void exact_maps_give_exact_points(void **state)
         hidden += !near && p->views == 3;
     }
     assert_true(boards > 500 && all > 1000 && hidden > 20);
-    /* only pixels on the board's rim, where the next pixel of another view may be the wall's */
+    /* only pixels on the board's rim, where another view's nearest pixel may belong to the wall */
     assert_true(stats.seen_through < 400);
     point_cloud_release(&cloud);
     world_release(&w);
 }
 
-/* One view has the board at half its distance, and is as sure of it as the others. */
+/* One view has the board at half its distance, with the same confidence as the others. */
 static void a_wrong_map_is_outvoted(void **state)
 {
     struct world w;
@@ -64,7 +64,8 @@ static void a_wrong_map_is_outvoted(void **state)
     (void)state;
     world_make(&w);
     for (int k = 0; k < 3; k++) w.depths[2].segments[0].plane[k] *= 2;
-    for (params.views = 3; params.views > 0; params.views -= 2) { /* with 1, seeing through alone must do it */
+    for (params.min_views = 3; params.min_views > 0;
+         params.min_views -= 2) { /* with 1, only seeing through rejects it */
         fuse(&cloud, &stats, &w, &params);
         size_t boards = 0;
         for (size_t i = 0; i < cloud.count; i++) {
@@ -78,35 +79,35 @@ static void a_wrong_map_is_outvoted(void **state)
     world_release(&w);
 }
 
-/* Maps that each are a little off give one thin sheet, not four. */
-static void what_views_say_of_a_surface_comes_together(void **state)
+/* Depth maps with small offsets give one thin surface, not four. */
+static void inaccurate_maps_are_fused_into_one_surface(void **state)
 {
     static const double off[VIEWS] = {1.002, 0.9985, 0.9995, 1.001};
     struct world w;
     struct point_cloud cloud;
     struct fuse_stats stats;
     struct fuse_params params = defaults;
-    double least = INFINITY, most = -INFINITY;
+    double min_distance = INFINITY, max_distance = -INFINITY;
     (void)state;
     world_make(&w);
-    params.views = VIEWS;
+    params.min_views = VIEWS;
     for (int i = 0; i < VIEWS; i++)
         for (int k = 0; k < 3; k++) w.depths[i].segments[1].plane[k] *= off[i];
     fuse(&cloud, &stats, &w, &params);
     for (size_t i = 0; i < cloud.count; i++) {
         if (cloud.points[i].color[0]) continue;
         const double d = distance_to(wall(), cloud.points[i].position);
-        least = fmin(least, d);
-        most = fmax(most, d);
+        min_distance = fmin(min_distance, d);
+        max_distance = fmax(max_distance, d);
     }
-    /* the maps lie up to 0.008 apart before and behind the wall */
-    assert_true(most < 0.003 && least > -0.003 && most - least < 0.0015);
+    /* the maps lie up to 0.008 in front of and behind the wall */
+    assert_true(max_distance < 0.003 && min_distance > -0.003 && max_distance - min_distance < 0.0015);
     point_cloud_release(&cloud);
     world_release(&w);
 }
 
-/* A slanted wall of narrow segments of constant depth: the segments' normals know nothing of its slant. */
-static void depths_around_correct_the_normals(void **state)
+/* A slanted wall of narrow segments of constant depth, whose normals do not show its slant. */
+static void surrounding_depths_correct_the_normals(void **state)
 {
     enum { STRIPE = 8, STRIPES = WIDTH / STRIPE };
     struct world w;
@@ -137,11 +138,11 @@ static void depths_around_correct_the_normals(void **state)
         point_cloud_release(&cloud);
     }
     assert_true(error[0] > 12);
-    assert_true(error[1] < 8); /* the slant up and down stays unknown: 5.5 degrees */
+    assert_true(error[1] < 8); /* the vertical slant of 5.5 degrees remains unknown */
     world_release(&w);
 }
 
-static void threads_and_memory_change_nothing(void **state)
+static void thread_counts_and_cache_sizes_give_the_same_bits(void **state)
 {
     struct world w;
     struct point_cloud clouds[3] = {{0}};
@@ -149,7 +150,7 @@ static void threads_and_memory_change_nothing(void **state)
     struct err err = ERR_INIT;
     (void)state;
     world_make(&w);
-    const struct depth_source source = source_of(&w);
+    const struct depth_reader source = source_of(&w);
     for (int k = 0; k < 3; k++) {
         parallel_set_threads(k == 1 ? 3 : 1);
         assert_ok(fuse_points(&clouds[k], &stats[k], &w.set, &source, &defaults, k == 2 ? 0 : 1 << 30, &err), err);
@@ -169,7 +170,7 @@ static void threads_and_memory_change_nothing(void **state)
     world_release(&w);
 }
 
-static void few_views_agree_among_themselves(void **state)
+static void with_few_views_all_must_agree(void **state)
 {
     struct world w;
     struct point_cloud cloud;
@@ -186,8 +187,8 @@ static void few_views_agree_among_themselves(void **state)
     world_release(&w);
 }
 
-/* Mixed pixels, pixels that nothing is known of, planes behind the camera. */
-static void what_is_no_surface_gives_no_points(void **state)
+/* Mixed pixels, unknown pixels, planes behind the camera. */
+static void pixels_without_a_surface_give_no_points(void **state)
 {
     struct world w;
     struct point_cloud cloud;
@@ -210,7 +211,7 @@ static void what_is_no_surface_gives_no_points(void **state)
     world_release(&w);
 }
 
-static void nothing_to_fuse_is_an_error(void **state)
+static void depth_maps_without_confidence_are_an_error(void **state)
 {
     struct world w;
     struct point_cloud cloud = {0};
@@ -218,7 +219,7 @@ static void nothing_to_fuse_is_an_error(void **state)
     struct err err = ERR_INIT;
     (void)state;
     world_make(&w);
-    const struct depth_source source = source_of(&w);
+    const struct depth_reader source = source_of(&w);
     for (int i = 0; i < VIEWS; i++)
         for (int k = 0; k < 3; k++)
             w.depths[i].segments[0].plane[k] *= 1 + 0.1 * i, w.depths[i].segments[1].plane[k] *= 1 - 0.1 * i;
@@ -241,12 +242,12 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(exact_maps_give_exact_points),
         cmocka_unit_test(a_wrong_map_is_outvoted),
-        cmocka_unit_test(what_views_say_of_a_surface_comes_together),
-        cmocka_unit_test(depths_around_correct_the_normals),
-        cmocka_unit_test(threads_and_memory_change_nothing),
-        cmocka_unit_test(few_views_agree_among_themselves),
-        cmocka_unit_test(what_is_no_surface_gives_no_points),
-        cmocka_unit_test(nothing_to_fuse_is_an_error),
+        cmocka_unit_test(inaccurate_maps_are_fused_into_one_surface),
+        cmocka_unit_test(surrounding_depths_correct_the_normals),
+        cmocka_unit_test(thread_counts_and_cache_sizes_give_the_same_bits),
+        cmocka_unit_test(with_few_views_all_must_agree),
+        cmocka_unit_test(pixels_without_a_surface_give_no_points),
+        cmocka_unit_test(depth_maps_without_confidence_are_an_error),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,6 +1,6 @@
-/* planes.h - a scene of two planes, a slanted wall and a tilted board before it, and its exact depth maps.
+/* planes.h - a scene of two planes, a slanted wall and a tilted board in front of it, and its exact depth maps.
  *
- * World: x right, y down, z forward; cameras stand near the origin. */
+ * World: x right, y down, z forward; the cameras are near the origin. */
 #ifndef REMODEL_TESTS_PLANES_H
 #define REMODEL_TESTS_PLANES_H
 
@@ -45,7 +45,7 @@ static inline struct flat board(void)
 static inline bool on_board(struct vec3 p) { return fabs(p.x - 0.1) < 0.5 && fabs(p.y) < 0.4; }
 static inline double distance_to(struct flat f, struct vec3 p) { return vec3_dot(f.normal, p) - f.offset; }
 
-/* As a segment of a view: n . (R^T (X - t)) = d. */
+/* The plane as a segment of a view: n . (R^T (X - t)) = d. */
 static inline struct depth_segment segment_of(struct flat f, const struct view *v, uint32_t id)
 {
     const struct vec3 n = mat3_apply(v->cam_from_world, f.normal);
@@ -121,6 +121,6 @@ static inline enum status read_map(void *ctx, int i, struct layered_depth *d, st
     return ST_OK;
 }
 
-static inline struct depth_source source_of(struct world *w) { return (struct depth_source){read_map, read_map, w}; }
+static inline struct depth_reader source_of(struct world *w) { return (struct depth_reader){read_map, read_map, w}; }
 
 #endif

@@ -1,4 +1,4 @@
-/* Merging on a grid: weighted means, sides that stay apart, order, size. */
+/* point_grid.c - merging in a grid: weighted means, separate sides, order, size. */
 #include "tests/unit/scratch.h"
 
 #include <math.h>
@@ -30,7 +30,7 @@ static void open_grid(struct point_grid *g, double edge)
     assert_ok(point_grid_init(g, edge, &err), err);
 }
 
-static void a_point_is_the_mean_by_confidence(void **state)
+static void a_point_is_the_mean_weighted_by_confidence(void **state)
 {
     struct point_grid g;
     struct point_cloud cloud;
@@ -56,7 +56,7 @@ static void a_point_is_the_mean_by_confidence(void **state)
     point_cloud_release(&cloud);
 }
 
-static void two_sides_of_a_thing_stay_apart(void **state)
+static void two_sides_of_a_thin_object_stay_separate(void **state)
 {
     struct point_grid g;
     struct point_cloud cloud;
@@ -94,7 +94,7 @@ static void points_keep_the_order_of_their_first_samples(void **state)
     point_cloud_release(&cloud);
 }
 
-static void what_no_cell_can_hold_is_left_out(void **state)
+static void samples_beyond_the_grid_are_ignored(void **state)
 {
     struct point_grid g;
     struct point_cloud cloud;
@@ -103,8 +103,8 @@ static void what_no_cell_can_hold_is_left_out(void **state)
     add(&g, at(1e300, 0, 0, 1));
     add(&g, at(INFINITY, 0, 0, 1));
     add(&g, at(0, NAN, 0, 1));
-    add(&g, at(1e9, -1e9, 0, 1)); /* far, but it has a cell */
-    add(&g, at(0, 0, 0, 0));      /* no confidence is still a point */
+    add(&g, at(1e9, -1e9, 0, 1)); /* far, but in a valid cell */
+    add(&g, at(0, 0, 0, 0));      /* a sample without confidence is still a point */
     points(&cloud, &g);
     assert_int_equal(cloud.count, 2);
     assert_true(fabs(cloud.points[0].position.x - 1e9) < 1e-5);
@@ -115,10 +115,10 @@ static void what_no_cell_can_hold_is_left_out(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_point_is_the_mean_by_confidence),
-        cmocka_unit_test(two_sides_of_a_thing_stay_apart),
+        cmocka_unit_test(a_point_is_the_mean_weighted_by_confidence),
+        cmocka_unit_test(two_sides_of_a_thin_object_stay_separate),
         cmocka_unit_test(points_keep_the_order_of_their_first_samples),
-        cmocka_unit_test(what_no_cell_can_hold_is_left_out),
+        cmocka_unit_test(samples_beyond_the_grid_are_ignored),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

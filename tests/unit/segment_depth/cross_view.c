@@ -1,22 +1,22 @@
-/* cross_view.c - depth maps of neighbours written down from planes of the world, and what they say about planes that are known too. */
+/* cross_view.c - consistency of known planes with neighbours' depth maps that are made of world planes. */
 #include "stages/segment_depth/cross_view.h"
 
 #include "tests/unit/segment_depth/scene.h"
 
 enum { W = 64, H = 48, CELL = 8, ACROSS = W / CELL, SEGMENTS = ACROSS * (H / CELL), FOCAL = 64 };
 
-static const double step = 0.002; /* small, so that a step is the same all along the way */
+static const double step = 0.002; /* small, so that steps are equal over the whole depth range */
 
 struct world_plane { /* normal . X = distance */
     struct vec3 normal;
     double distance;
 };
 
-/* One surface in every view; a card in front of it (distance > 0) fills the left half of a neighbour's picture. */
+/* One surface in all views; a card in front of it (distance > 0) covers the left half of a neighbour's picture. */
 struct bench {
     struct scene scene;
     struct segmentation s;
-    struct world_plane surface[MOST_VIEWS];
+    struct world_plane surface[MAX_VIEWS];
     double confidence;
     int unknown; /* pixels left of this column have no depth in the neighbours */
     int broken;  /* a view that cannot be read */
@@ -36,7 +36,7 @@ static struct plane plane_in(const struct world_plane *w, const struct view *v)
 
 static struct world_plane facing(double z) { return (struct world_plane){vec3_make(0, 0, 1), z}; }
 
-/* Squares of CELL x CELL. */
+/* Segments of CELL x CELL pixels. */
 static void start(void)
 {
     memset(&b, 0, sizeof b);
@@ -63,7 +63,7 @@ static void start(void)
             b.s.label[pixel] = i;
         }
     }
-    for (int k = 0; k < MOST_VIEWS; k++) b.surface[k] = facing(4);
+    for (int k = 0; k < MAX_VIEWS; k++) b.surface[k] = facing(4);
 }
 
 static enum status read_depth(void *ctx, int view_idx, struct layered_depth *d, struct err *err)
@@ -90,7 +90,7 @@ static enum status read_depth(void *ctx, int view_idx, struct layered_depth *d, 
 static enum status make(struct err *err)
 {
     int neighbours[MAX_NEIGHBOURS];
-    const struct depth_source source = {read_depth, NULL};
+    const struct previous_depth_source source = {read_depth, NULL};
     const int count = b.scene.set.view_count - 1;
     for (int k = 0; k < count; k++) neighbours[k] = k + 1;
     return cross_view_make(&b.x, &b.s, &b.scene.set, 0, neighbours, count, step, &source, err);
@@ -108,7 +108,7 @@ static void finish(void)
     segmentation_release(&b.s);
 }
 
-/* Do all neighbours have all of the segment in their frames, if it lies on the plane? */
+/* Whether the segment, if it lies on the plane, is inside the frames of all neighbours. */
 static bool framed(int segment, struct plane p)
 {
     const struct segment *g = &b.s.segments[segment];
@@ -124,65 +124,65 @@ static bool framed(int segment, struct plane p)
     return true;
 }
 
-/* Three cameras: beside, and turned, advanced and of another size. */
-static void stand(void)
+/* Three cameras: one shifted sideways, one rotated, moved forward and of another size. */
+static void place_cameras(void)
 {
     scene_view(&b.scene, W, H, FOCAL, 0, 0, 0, 0);
     scene_view(&b.scene, W, H, FOCAL, 0.4, 0, 0, 0);
     scene_view(&b.scene, 110, 84, 80, -0.5, 0.1, 0.6, 0.15);
 }
 
-static void views_that_agree_cost_nothing(void **state)
+static void agreeing_views_cost_nothing(void **state)
 {
     (void)state;
     int count = 0;
     start();
-    stand();
+    place_cameras();
     const struct world_plane wall = {vec3_normalize(vec3_make(0.3, -0.2, 1)), 4};
     for (int k = 0; k < 3; k++) b.surface[k] = wall;
     b.confidence = 0.75;
     must_make();
     const struct plane p = plane_in(&wall, &b.scene.views[0]);
     for (int i = 0; i < SEGMENTS; i++) {
-        unsigned hidden = 99;
+        unsigned occluded = 99;
         if (!framed(i, p)) continue;
-        assert_near(cross_view_cost(&b.x, i, p, &hidden), 0, 1e-4); /* places are float */
-        assert_int_equal(hidden, 0);
-        assert_near(cross_view_agreeing(&b.x, i, p), 2 * 0.75, 1e-6);
+        assert_near(cross_view_cost(&b.x, i, p, &occluded), 0, 1e-4); /* samples are float */
+        assert_int_equal(occluded, 0);
+        assert_near(cross_view_support(&b.x, i, p), 2 * 0.75, 1e-6);
         count++;
     }
     assert_true(count > SEGMENTS / 2);
     finish();
 }
 
-/* Two steps are the limit, whichever way the neighbour moved, and the nearer the cheaper. */
+/* The cost grows with the gap up to two steps, for any motion of the neighbour. */
 static void planes_within_two_steps_agree(void **state)
 {
     (void)state;
     start();
-    stand();
-    scene_view(&b.scene, W, H, FOCAL, 0, 0.1, -3, 0); /* from farther away */
+    place_cameras();
+    scene_view(&b.scene, W, H, FOCAL, 0, 0.1, -3, 0); /* farther back */
     must_make();
     for (int i = 0; i < SEGMENTS; i++) {
         float before = -1;
         if (!framed(i, (struct plane){0, 0, 0.25})) continue;
         for (double off = 0; off < 2; off += 0.1) {
-            unsigned hidden;
-            const float near = cross_view_cost(&b.x, i, (struct plane){0, 0, 0.25 + off * step}, &hidden);
-            const float far = cross_view_cost(&b.x, i, (struct plane){0, 0, 0.25 - off * step}, &hidden);
+            unsigned occluded;
+            const float near = cross_view_cost(&b.x, i, (struct plane){0, 0, 0.25 + off * step}, &occluded);
+            const float far = cross_view_cost(&b.x, i, (struct plane){0, 0, 0.25 - off * step}, &occluded);
             assert_near(near, far, 0.01);
             assert_true(near > before && near < 0.2f);
             before = near;
-            if (off < 1.85) assert_near(cross_view_agreeing(&b.x, i, (struct plane){0, 0, 0.25 + off * step}), 3, 1e-6);
+            if (off < 1.85) assert_near(cross_view_support(&b.x, i, (struct plane){0, 0, 0.25 + off * step}), 3, 1e-6);
         }
-        assert_near(cross_view_agreeing(&b.x, i, (struct plane){0, 0, 0.25 + 2.15 * step}), 0, 0);
-        assert_near(cross_view_agreeing(&b.x, i, (struct plane){0, 0, 0.25 - 2.15 * step}), 0, 0);
+        assert_near(cross_view_support(&b.x, i, (struct plane){0, 0, 0.25 + 2.15 * step}), 0, 0);
+        assert_near(cross_view_support(&b.x, i, (struct plane){0, 0, 0.25 - 2.15 * step}), 0, 0);
     }
     finish();
 }
 
-/* The plane is in front of what a neighbour sees: it stands in its way. */
-static void seeing_through_a_plane_costs_as_much_as_the_neighbour_is_sure(void **state)
+/* The plane lies in front of the neighbours' surface and would occlude it. */
+static void seeing_through_a_plane_costs_in_proportion_to_confidence(void **state)
 {
     (void)state;
     static const double confidences[] = {1, 0.5, 0.2, 0};
@@ -190,52 +190,52 @@ static void seeing_through_a_plane_costs_as_much_as_the_neighbour_is_sure(void *
     for (int k = 0; k < 4; k++) {
         int count = 0;
         start();
-        stand();
+        place_cameras();
         b.confidence = confidences[k];
         must_make();
         const struct plane p = {0, 0, 0.25 + 12 * step};
-        float least = 9, most = 0;
+        float min_cost = 9, max_cost = 0;
         for (int i = 0; i < SEGMENTS; i++) {
-            unsigned hidden = 99;
+            unsigned occluded = 99;
             if (!framed(i, p)) continue;
-            const float cost = cross_view_cost(&b.x, i, p, &hidden);
-            assert_int_equal(hidden, 0);
-            least = fminf(least, cost);
-            most = fmaxf(most, cost);
-            /* farther in front is no better */
-            assert_true(cross_view_cost(&b.x, i, (struct plane){0, 0, 0.25 + 20 * step}, &hidden) >= cost - 1e-6f);
+            const float cost = cross_view_cost(&b.x, i, p, &occluded);
+            assert_int_equal(occluded, 0);
+            min_cost = fminf(min_cost, cost);
+            max_cost = fmaxf(max_cost, cost);
+            /* even farther in front costs no less */
+            assert_true(cross_view_cost(&b.x, i, (struct plane){0, 0, 0.25 + 20 * step}, &occluded) >= cost - 1e-6f);
             count++;
         }
         assert_true(count > SEGMENTS / 3);
-        assert_near(least, most, 1e-5);
-        if (k == 0) assert_true(most > 0.9f && most < 1.2f);
-        assert_true(most < before);
-        before = most;
+        assert_near(min_cost, max_cost, 1e-5);
+        if (k == 0) assert_true(max_cost > 0.9f && max_cost < 1.2f);
+        assert_true(max_cost < before);
+        before = max_cost;
         finish();
     }
-    assert_true(before > 0.2f); /* even the least sure one says something */
+    assert_true(before > 0.2f); /* even a neighbour of no confidence counts */
 }
 
-/* Something in front of the plane hides it from the neighbour, if that is sure of it; either way it costs little. */
-static void a_plane_behind_something_sure_is_hidden(void **state)
+/* A confident surface in front of the plane occludes it in the neighbour; confident or not, it costs little. */
+static void a_plane_behind_a_confident_surface_is_occluded(void **state)
 {
     (void)state;
     for (int k = 0; k < 3; k++) {
         const double confidence = k == 2 ? 0.2 : 1;
         int count = 0;
         start();
-        stand();
+        place_cameras();
         b.confidence = confidence;
-        if (k == 1) b.surface[1] = facing(3); /* only in one of them */
+        if (k == 1) b.surface[1] = facing(3); /* in one neighbour only */
         const struct plane p = {0, 0, k == 1 ? 0.25 : 0.25 - 15 * step};
         must_make();
         for (int i = 0; i < SEGMENTS; i++) {
-            unsigned hidden = 99;
+            unsigned occluded = 99;
             if (!framed(i, p)) continue;
-            const float cost = cross_view_cost(&b.x, i, p, &hidden);
-            assert_int_equal(hidden, k == 0 ? 3 : k == 1 ? 1 : 0);
+            const float cost = cross_view_cost(&b.x, i, p, &occluded);
+            assert_int_equal(occluded, k == 0 ? 3 : k == 1 ? 1 : 0);
             assert_true(cost > 0 && cost < 0.4f);
-            assert_near(cross_view_agreeing(&b.x, i, p), k == 1 ? 1 : 0, 1e-6);
+            assert_near(cross_view_support(&b.x, i, p), k == 1 ? 1 : 0, 1e-6);
             count++;
         }
         assert_true(count > SEGMENTS / 2);
@@ -243,8 +243,8 @@ static void a_plane_behind_something_sure_is_hidden(void **state)
     }
 }
 
-/* Outside the frame, behind the camera, where the neighbour has no depth: between agreeing and standing in the way. */
-static void who_knows_nothing_has_no_opinion(void **state)
+/* Outside the frame, behind the camera, without depth: the cost lies between agreement and violation. */
+static void a_neighbour_without_depth_costs_the_same_for_any_plane(void **state)
 {
     (void)state;
     const struct plane p = {0, 0, 0.25};
@@ -256,53 +256,53 @@ static void who_knows_nothing_has_no_opinion(void **state)
         if (k == 3) b.unknown = W;
         must_make();
         for (int i = 0; i < SEGMENTS; i++) {
-            unsigned hidden = 99;
-            const float cost = cross_view_cost(&b.x, i, p, &hidden);
+            unsigned occluded = 99;
+            const float cost = cross_view_cost(&b.x, i, p, &occluded);
             if (unknown < 0) unknown = cost;
             assert_near(cost, unknown, 1e-6);
-            assert_int_equal(hidden, 0);
-            assert_near(cross_view_agreeing(&b.x, i, p), 0, 0);
+            assert_int_equal(occluded, 0);
+            assert_near(cross_view_support(&b.x, i, p), 0, 0);
         }
         finish();
     }
     assert_true(unknown > 0.01f && unknown < 0.5f);
 }
 
-static void without_neighbours_nothing_is_said(void **state)
+static void without_neighbours_there_is_no_cost(void **state)
 {
     (void)state;
-    unsigned hidden = 99;
+    unsigned occluded = 99;
     start();
     scene_view(&b.scene, W, H, FOCAL, 0, 0, 0, 0);
     must_make();
-    assert_near(cross_view_cost(&b.x, 3, (struct plane){0, 0, 1}, &hidden), 0, 0);
-    assert_int_equal(hidden, 0);
+    assert_near(cross_view_cost(&b.x, 3, (struct plane){0, 0, 1}, &occluded), 0, 0);
+    assert_int_equal(occluded, 0);
     assert_int_equal(b.x.first_proposal[SEGMENTS], 0);
     finish();
 }
 
-/* Any plane at all, also one through a camera or behind it. */
+/* Random planes, some through a camera or behind it. */
 static void any_plane_has_a_finite_cost(void **state)
 {
     (void)state;
     static const double sizes[] = {0, 1e-9, 1e-3, 0.3, 20, 1e6, 1e15, 1e100};
     start();
-    stand();
+    place_cameras();
     b.unknown = 20;
     must_make();
     for (int i = 0; i < SEGMENTS; i += 5)
         for (int k = 0; k < 64; k++) {
-            unsigned hidden = 0;
+            unsigned occluded = 0;
             const struct plane p = {sizes[k % 8] * (k % 2 ? 1 : -1), -0.5 * sizes[k % 8], sizes[k / 8]};
-            const float cost = cross_view_cost(&b.x, i, p, &hidden);
-            assert_true(cost >= 0 && cost < 1.3f && hidden < 4);
-            assert_true(cross_view_agreeing(&b.x, i, p) <= 2);
+            const float cost = cross_view_cost(&b.x, i, p, &occluded);
+            assert_true(cost >= 0 && cost < 1.3f && occluded < 4);
+            assert_true(cross_view_support(&b.x, i, p) <= 2);
         }
     finish();
 }
 
-/* A plane of the world, as the neighbours hold it in their own pixels, comes out as it is in the view's; each of a neighbour's segments
- * proposes it where its middle lies. */
+/* Proposals express the neighbours' planes in the view's pixels; each segment of a neighbour proposes its plane to the
+ * segment that its centroid projects into. */
 static void proposals_are_the_neighbours_planes_in_this_views_pixels(void **state)
 {
     (void)state;
@@ -310,7 +310,7 @@ static void proposals_are_the_neighbours_planes_in_this_views_pixels(void **stat
     for (int n = 0; n < 4; n++) {
         int wanted[SEGMENTS] = {0}, total = 0;
         start();
-        stand();
+        place_cameras();
         const struct world_plane w = {vec3_normalize(vec3_make(normals[n][0], normals[n][1], normals[n][2])), 3};
         const struct plane truth = plane_in(&w, &b.scene.views[0]);
         for (int k = 0; k < 3; k++) b.surface[k] = w;
@@ -318,7 +318,7 @@ static void proposals_are_the_neighbours_planes_in_this_views_pixels(void **stat
         for (int k = 1; k < 3; k++) {
             const struct view *v = &b.scene.views[k];
             const struct plane p = plane_in(&w, v);
-            for (int i = 0; i < SEGMENTS; i++) { /* the middles of a neighbour's segments, as read_depth() lays them */
+            for (int i = 0; i < SEGMENTS; i++) { /* centroids of a neighbour's segments, as in read_depth() */
                 double su = 0, sv = 0, u, x;
                 int pixels = 0;
                 for (int y = 0; y < v->height; y++)
@@ -351,13 +351,13 @@ static void proposals_are_the_neighbours_planes_in_this_views_pixels(void **stat
     }
 }
 
-static void a_depth_that_cannot_be_read_is_told(void **state)
+static void an_unreadable_depth_map_is_an_error(void **state)
 {
     (void)state;
     for (int k = 1; k < 3; k++) {
         struct err err = ERR_INIT;
         start();
-        stand();
+        place_cameras();
         b.broken = k;
         assert_int_equal(make(&err), ST_IO);
         assert_string_equal(err.text, k == 1 ? "cannot read depth 1." : "cannot read depth 2.");
@@ -370,15 +370,15 @@ static void a_depth_that_cannot_be_read_is_told(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(views_that_agree_cost_nothing),
+        cmocka_unit_test(agreeing_views_cost_nothing),
         cmocka_unit_test(planes_within_two_steps_agree),
-        cmocka_unit_test(seeing_through_a_plane_costs_as_much_as_the_neighbour_is_sure),
-        cmocka_unit_test(a_plane_behind_something_sure_is_hidden),
-        cmocka_unit_test(who_knows_nothing_has_no_opinion),
-        cmocka_unit_test(without_neighbours_nothing_is_said),
+        cmocka_unit_test(seeing_through_a_plane_costs_in_proportion_to_confidence),
+        cmocka_unit_test(a_plane_behind_a_confident_surface_is_occluded),
+        cmocka_unit_test(a_neighbour_without_depth_costs_the_same_for_any_plane),
+        cmocka_unit_test(without_neighbours_there_is_no_cost),
         cmocka_unit_test(any_plane_has_a_finite_cost),
         cmocka_unit_test(proposals_are_the_neighbours_planes_in_this_views_pixels),
-        cmocka_unit_test(a_depth_that_cannot_be_read_is_told),
+        cmocka_unit_test(an_unreadable_depth_map_is_an_error),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

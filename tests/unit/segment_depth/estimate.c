@@ -1,4 +1,4 @@
-/* estimate.c - what is told before depth begins: of the list's views and rounds, on so many cores, and more for more work. */
+/* estimate.c - the estimate of time and memory: sums over views and rounds, cores, and monotonicity. */
 #include "stages/segment_depth/estimate.h"
 #include "tests/unit/scratch.h"
 #include "tests/unit/segment_depth/scene.h"
@@ -9,7 +9,7 @@ static struct scene scene;
 static const struct segment_params params = SEGMENT_PARAMS_DEFAULT;
 
 /* Three views of a wall; the last one is wider. */
-static void stand(void)
+static void place_cameras(void)
 {
     memset(&scene, 0, sizeof scene);
     scene_wall(&scene, 0, 0, 5, 9, 9, 0);
@@ -18,19 +18,19 @@ static void stand(void)
     scene_view(&scene, 2000, 500, 1000, -0.4, 0, 0, 0);
 }
 
-/* What is told of a list; the caller frees it. */
-static char *told(const char *list, int jobs, enum status wanted, struct err *err)
+/* The text printed for a list; the caller frees it. */
+static char *printed_estimate(const char *list, int jobs, enum status wanted, struct err *err)
 {
     char *text = NULL;
     size_t size;
     FILE *to = open_memstream(&text, &size);
     assert_non_null(to);
-    assert_int_equal(tell_work(to, scratch_write("list", list), &scene.set, jobs, &params, err), wanted);
+    assert_int_equal(estimate_print(to, scratch_write("list", list), &scene.set, jobs, &params, err), wanted);
     fclose(to);
     return text;
 }
 
-static void more_work_takes_more(void **state)
+static void more_pixels_neighbours_and_passes_take_more(void **state)
 {
     (void)state;
     const struct depth_work one = depth_work(1e6, 4, true, &params);
@@ -46,61 +46,61 @@ static void more_work_takes_more(void **state)
     assert_true(depth_work(1e6, 4, true, &other).core_seconds < 0.8 * one.core_seconds);
 }
 
-static void the_list_is_summed_and_shared_by_cores(void **state)
+static void the_work_of_a_list_is_summed_and_divided_among_cores(void **state)
 {
     (void)state;
     struct err err = ERR_INIT;
-    stand();
+    place_cameras();
     parallel_set_threads(1);
-    char *text = told("# of two rounds\na 0\nb 0\na 1\n", 2, ST_OK, &err);
+    char *text = printed_estimate("# of two rounds\na 0\nb 0\na 1\n", 2, ST_OK, &err);
     assert_non_null(strstr(text, "depth: 2 views of 1000 x 500, 2 neighbours, 2 rounds: about "));
     assert_non_null(strstr(text, " s on 2 cores, "));
     assert_non_null(strstr(text, " MiB at a time\n"));
     free(text);
-    text = told("a 0\nc 0\n", 1, ST_OK, &err);
+    text = printed_estimate("a 0\nc 0\n", 1, ST_OK, &err);
     assert_non_null(strstr(text, "depth: 2 views of up to 2000 x 500, 2 neighbours, 1 round: about "));
     assert_non_null(strstr(text, " on 1 core, "));
     free(text);
-    text = told("c 3\n", 0, ST_OK, &err);
+    text = printed_estimate("c 3\n", 0, ST_OK, &err);
     assert_non_null(strstr(text, "depth: 1 view of 2000 x 500, 2 neighbours, 1 round: about "));
     assert_non_null(strstr(text, "of one core in all, up to "));
     assert_non_null(strstr(text, "SLURM_ARGS=\"--mem="));
     free(text);
 }
 
-static void nothing_to_do_says_nothing(void **state)
+static void an_empty_list_prints_nothing(void **state)
 {
     (void)state;
     struct err err = ERR_INIT;
-    stand();
-    char *text = told("", 2, ST_OK, &err);
+    place_cameras();
+    char *text = printed_estimate("", 2, ST_OK, &err);
     assert_string_equal(text, "");
     free(text);
 }
 
-static void a_faulty_list_is_told(void **state)
+static void a_faulty_list_is_an_error(void **state)
 {
     static const char *const lists[][2] = {{"a\n", "list:1"},
                                            {"a 0\nz 0\n", "list:2: found \"z\", wanted a view of the scene"},
                                            {"a 12\n", "round"},
                                            {"a 0 0\n", "list:1"}};
     (void)state;
-    stand();
+    place_cameras();
     for (size_t i = 0; i < sizeof lists / sizeof *lists; i++) {
         struct err err = ERR_INIT;
-        free(told(lists[i][0], 1, ST_DATA, &err));
+        free(printed_estimate(lists[i][0], 1, ST_DATA, &err));
         assert_contains(err.text, lists[i][1]);
     }
 }
 
-/* No machine has the memory for it: the run is not refused, but what to change is said. */
-static void more_memory_than_there_is_is_told_with_what_to_change(void **state)
+/* More memory than any machine has is a warning that says what to change, not an error. */
+static void too_little_memory_is_a_warning(void **state)
 {
     (void)state;
     struct err err = ERR_INIT;
-    stand();
+    place_cameras();
     scene.views[0].width = scene.views[0].height = 1 << 20;
-    char *text = told("a 0\n", 1, ST_OK, &err);
+    char *text = printed_estimate("a 0\n", 1, ST_OK, &err);
     assert_non_null(strstr(text, "\ndepth: warning: this machine has "));
     assert_non_null(strstr(text, "[sfm_import] max_megapixels"));
     free(text);
@@ -109,11 +109,11 @@ static void more_memory_than_there_is_is_told_with_what_to_change(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(more_work_takes_more),
-        cmocka_unit_test(the_list_is_summed_and_shared_by_cores),
-        cmocka_unit_test(nothing_to_do_says_nothing),
-        cmocka_unit_test(a_faulty_list_is_told),
-        cmocka_unit_test(more_memory_than_there_is_is_told_with_what_to_change),
+        cmocka_unit_test(more_pixels_neighbours_and_passes_take_more),
+        cmocka_unit_test(the_work_of_a_list_is_summed_and_divided_among_cores),
+        cmocka_unit_test(an_empty_list_prints_nothing),
+        cmocka_unit_test(a_faulty_list_is_an_error),
+        cmocka_unit_test(too_little_memory_is_a_warning),
     };
     return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }

@@ -1,17 +1,18 @@
-/* expand.c - expansion moves on photographs of walls: the energy sinks, a surface finds one plane, threads change nothing. */
+/* expand.c - expansion moves on photographs of walls: the energy never rises, a surface gets one plane, threads change
+ * nothing. */
 #include "stages/segment_depth/expand.h"
 
 #include "tests/unit/segment_depth/problem.h"
 
 #include "common/base/parallel.h"
 
-/* As a sweep leaves them where it is not sure: constant, and up to `most` steps off. */
-static void start_planes(struct plane *planes, double most)
+/* Planes as after an uncertain sweep: of constant depth, and up to `max_error` steps off. */
+static void start_planes(struct plane *planes, double max_error)
 {
     for (int i = 0; i < b.segments.count; i++) {
         const struct segment *g = &b.segments.segments[i];
-        const double d = bench_truth(g->cx, g->cy) + most * b.problem.step * (2 * scene_hash(i, 0, 0) - 1);
-        planes[i] = (struct plane){0, 0, fmin(fmax(d, b.problem.least), b.problem.most)};
+        const double d = bench_truth(g->cx, g->cy) + max_error * b.problem.step * (2 * scene_hash(i, 0, 0) - 1);
+        planes[i] = (struct plane){0, 0, fmin(fmax(d, b.problem.min_inverse_z), b.problem.max_inverse_z)};
     }
 }
 
@@ -21,7 +22,7 @@ static void expand(struct plane *planes)
     if (expand_planes(planes, &b.problem, &err)) fail_msg("%s", err.text);
 }
 
-/* Matching costs at constant depths, as a sweep tells them. */
+/* The cost volume of a sweep. */
 static float *sweep(int planes)
 {
     float *cost = malloc((size_t)b.segments.count * (size_t)planes * sizeof *cost);
@@ -29,31 +30,31 @@ static float *sweep(int planes)
     for (int i = 0; i < b.segments.count; i++)
         for (int p = 0; p < planes; p++)
             cost[i * planes + p] =
-                match_cost_rough(&b.matcher, i, (struct plane){0, 0, b.problem.least + p * b.problem.step}, 0);
+                match_cost_rough(&b.matcher, i, (struct plane){0, 0, b.problem.min_inverse_z + p * b.problem.step}, 0);
     b.problem.cost = cost;
     b.problem.planes = planes;
     return cost;
 }
 
-/* Pass after pass, from planes that are wrong in many ways. What rounding to the cut's integers may cost is far below. */
+/* Over all passes, from planes with various errors; the tolerance is far above the rounding of energies to integers. */
 static void the_energy_never_rises(void **state)
 {
     (void)state;
-    static struct plane planes[MOST_SEGMENTS];
+    static struct plane planes[MAX_SEGMENTS];
     for (int k = 0; k < 4; k++) {
         bench_empty();
         scene_wall(&b.scene, 0, 0, 5, 8, 8, 0.4)->contrast = k == 3 ? 0 : 0.8;
         scene_wall(&b.scene, 0.2, 0, 3.5, 0.5, 0.6, 0)->colour[0] = 0.12f;
         bench_views();
         bench_make(0.12, 0.45);
-        b.problem.rough = true; /* what expansion looks at */
+        b.problem.rough = true; /* as in expand_planes() */
         float *cost = k == 1 ? sweep(24) : NULL;
-        const int most = 6; /* passes; draws of a pass do not hang on how many there are */
+        const int max_passes = 6; /* a pass's random numbers do not depend on the number of passes */
         double before = HUGE_VAL;
-        for (int passes = 0; passes <= most; passes++) {
+        for (int passes = 0; passes <= max_passes; passes++) {
             start_planes(planes, k == 0 ? 2 : 20);
             for (int i = 0; i < b.segments.count && k == 2; i += 3)
-                planes[i].c = i % 2 ? -0.3 : 9; /* out of the depths */
+                planes[i].c = i % 2 ? -0.3 : 9; /* outside the depth range */
             b.params.passes = passes;
             expand(planes);
             const double energy = bench_energy(planes, true);
@@ -66,10 +67,10 @@ static void the_energy_never_rises(void **state)
     }
 }
 
-static void no_pass_changes_nothing(void **state)
+static void zero_passes_change_nothing(void **state)
 {
     (void)state;
-    static struct plane planes[MOST_SEGMENTS], before[MOST_SEGMENTS];
+    static struct plane planes[MAX_SEGMENTS], before[MAX_SEGMENTS];
     bench_empty();
     scene_wall(&b.scene, 0, 0, 4, 6, 6, 0.4);
     bench_views();
@@ -82,17 +83,17 @@ static void no_pass_changes_nothing(void **state)
     bench_release();
 }
 
-static void threads_do_not_change_a_bit(void **state)
+static void thread_counts_give_the_same_bits(void **state)
 {
     (void)state;
-    static struct plane planes[3][MOST_SEGMENTS];
+    static struct plane planes[3][MAX_SEGMENTS];
     bench_empty();
     scene_wall(&b.scene, 0, 0, 5, 8, 8, 0.4);
     scene_wall(&b.scene, 0.2, 0, 3.5, 0.5, 0.6, 0)->colour[0] = 0.12f;
     bench_views();
     bench_make(0.12, 0.45);
     float *cost = sweep(24);
-    b.params.segment_pixels = 16; /* smaller cells: more of them move side by side */
+    b.params.segment_pixels = 16; /* smaller cells: more of them are moved in parallel */
     for (int k = 0; k < 3; k++) {
         parallel_set_threads(1 + k);
         start_planes(planes[k], 6);
@@ -112,12 +113,12 @@ static bool on_card(double u, double v)
     return surface > 0;
 }
 
-/* A leaning board with a painted rim and a blank middle, in front of a wall; at the beginning the middle may be anywhere. At the
- * end one plane holds it all, the true one. */
-static void a_blank_middle_takes_the_plane_of_its_rim(void **state)
+/* A slanted board with a textured rim and a blank middle, in front of a wall; the middle starts at random depths. In
+ * the end the whole board has its true plane. */
+static void a_blank_middle_gets_the_plane_of_its_rim(void **state)
 {
     (void)state;
-    static struct plane planes[MOST_SEGMENTS];
+    static struct plane planes[MAX_SEGMENTS];
     for (int slope = 0; slope < 2; slope++) {
         bench_empty();
         const double lean = slope ? 0.7 : -0.4;
@@ -163,31 +164,31 @@ static void a_blank_middle_takes_the_plane_of_its_rim(void **state)
     }
 }
 
-/* Planes never leave the depths, even where nothing speaks for any. */
-static void planes_keep_to_the_depths(void **state)
+/* Even where no term prefers any depth. */
+static void planes_stay_in_the_depth_range(void **state)
 {
     (void)state;
-    static struct plane planes[MOST_SEGMENTS];
+    static struct plane planes[MAX_SEGMENTS];
     bench_empty();
     scene_wall(&b.scene, 0, 0, 4, 6, 6, 0.4)->contrast = 0;
     bench_views();
     bench_make(0.15, 0.45);
     b.params.slant = 0;
     for (int i = 0; i < b.segments.count; i++)
-        planes[i] = (struct plane){0, 0, i % 2 ? b.problem.least : b.problem.most};
+        planes[i] = (struct plane){0, 0, i % 2 ? b.problem.min_inverse_z : b.problem.max_inverse_z};
     expand(planes);
     for (int i = 0; i < b.segments.count; i++)
-        assert_true(plane_keeps_to(planes[i], &b.segments.segments[i], b.problem.least, b.problem.most));
+        assert_true(plane_within(planes[i], &b.segments.segments[i], b.problem.min_inverse_z, b.problem.max_inverse_z));
     bench_release();
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_energy_never_rises),      cmocka_unit_test(no_pass_changes_nothing),
-        cmocka_unit_test(threads_do_not_change_a_bit), cmocka_unit_test(a_blank_middle_takes_the_plane_of_its_rim),
-        cmocka_unit_test(planes_keep_to_the_depths),
+        cmocka_unit_test(the_energy_never_rises),           cmocka_unit_test(zero_passes_change_nothing),
+        cmocka_unit_test(thread_counts_give_the_same_bits), cmocka_unit_test(a_blank_middle_gets_the_plane_of_its_rim),
+        cmocka_unit_test(planes_stay_in_the_depth_range),
     };
-    parallel_set_threads(1); /* tests run side by side */
+    parallel_set_threads(1); /* tests run in parallel */
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

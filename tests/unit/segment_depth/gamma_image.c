@@ -1,4 +1,4 @@
-/* gamma_image.c - exposure, halving and sampling against sums done by hand. */
+/* gamma_image.c - exposure, halving and sampling against values computed by hand. */
 #include "stages/segment_depth/gamma_image.h"
 
 #include "tests/unit/segment_depth/scene.h"
@@ -17,7 +17,7 @@ static void make(struct gamma_image *g, int width, int height, struct tone tone,
     image_release(&im);
 }
 
-/* a plane in gamma-encoded values, so that bilinear samples are exact */
+/* linear in gamma-encoded values, so that bilinear samples are exact */
 static float ramp(int x, int y, int c)
 {
     const float f = 0.1f + 0.03f * ((float)x + 0.5f) + 0.02f * ((float)y + 0.5f) + 0.05f * (float)c;
@@ -27,7 +27,7 @@ static float holed(int x, int y, int c) { return c == 3 ? x != 2 || y != 1 : ram
 static float black(int x, int y, int c) { return c == 3 && x + y >= 0; }
 static float wild(int x, int y, int c) { return c == 3 ? 1 : x == 0 ? NAN : x == 1 ? -3 : y ? 1e30f : INFINITY; }
 
-static void a_sample_of_a_plane_is_exact(void **state)
+static void samples_of_a_linear_ramp_are_exact(void **state)
 {
     (void)state;
     struct gamma_image g;
@@ -38,7 +38,7 @@ static void a_sample_of_a_plane_is_exact(void **state)
         assert_true(gamma_image_at(&g, u, v, rgb));
         for (int c = 0; c < 3; c++) assert_near(rgb[c], 0.1 + 0.03 * u + 0.02 * v + 0.05 * c, 1e-6);
     }
-    assert_true(gamma_image_at(&g, 0, 0, rgb) && gamma_image_at(&g, 9, 7, rgb)); /* the rim repeats */
+    assert_true(gamma_image_at(&g, 0, 0, rgb) && gamma_image_at(&g, 9, 7, rgb)); /* the border is repeated */
     assert_near(rgb[0], 0.1 + 0.03 * 8.5 + 0.02 * 6.5, 1e-6);
     assert_false(gamma_image_at(&g, -0.001, 3, rgb) || gamma_image_at(&g, 3, 7.001, rgb) ||
                  gamma_image_at(&g, NAN, 3, rgb));
@@ -47,7 +47,7 @@ static void a_sample_of_a_plane_is_exact(void **state)
     gamma_image_release(NULL);
 }
 
-static void a_sample_needs_all_its_pixels(void **state)
+static void a_sample_needs_four_valid_pixels(void **state)
 {
     (void)state;
     struct gamma_image g;
@@ -77,7 +77,7 @@ static void halving_averages_and_keeps_one_pixel(void **state)
     gamma_image_release(&g);
 }
 
-/* One row in a hundred is a lamp; half of the rest is bright, the other half, with the median, is `dark`. */
+/* One row of a hundred is a lamp; half of the others are bright, and the other half, with the median, `dark`. */
 static struct tone tone_with(double bright, double dark)
 {
     struct image im;
@@ -100,24 +100,24 @@ static void the_tone_follows_the_bright_pixels_but_not_the_brightest(void **stat
             const double middle = pow(t.exposure * brights[k] * ratio, t.power);
             assert_near(pow(t.exposure * brights[k], t.power), 0.95, 1e-4);
             assert_true(t.power <= 0.5 && t.power >= 0.2);
-            if (t.power > 0.2) assert_true(middle > 0.33); /* bent no less than it takes, */
+            if (t.power > 0.2) assert_true(middle > 0.33); /* the curve is strong enough, */
             if (t.power < 0.5) assert_true(middle < 0.34); /* and no more */
         }
 }
 
-static void a_photo_of_nothing_has_exposure_1(void **state)
+static void a_black_photo_has_exposure_1(void **state)
 {
     (void)state;
     struct image im;
     struct err err = ERR_INIT;
-    assert_int_equal(image_init(&im, 16, 100, 4, &err), ST_OK); /* no pixel at all */
+    assert_int_equal(image_init(&im, 16, 100, 4, &err), ST_OK); /* no valid pixel */
     for (int k = 0; k < 2; k++) {
         assert_near(tone_of(&im).exposure, 1, 0);
         assert_near(tone_of(&im).power, 0.5, 0);
         for (int i = 3; i < 6400; i += 4) im.data[i] = 1; /* black */
     }
     image_release(&im);
-    const struct tone lamp = tone_with(1, 0); /* half of it black */
+    const struct tone lamp = tone_with(1, 0); /* half of the picture is black */
     assert_near(pow(lamp.exposure, lamp.power), 0.95, 1e-6);
 }
 
@@ -149,11 +149,11 @@ static void values_are_between_0_and_1(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_sample_of_a_plane_is_exact),
-        cmocka_unit_test(a_sample_needs_all_its_pixels),
+        cmocka_unit_test(samples_of_a_linear_ramp_are_exact),
+        cmocka_unit_test(a_sample_needs_four_valid_pixels),
         cmocka_unit_test(halving_averages_and_keeps_one_pixel),
         cmocka_unit_test(the_tone_follows_the_bright_pixels_but_not_the_brightest),
-        cmocka_unit_test(a_photo_of_nothing_has_exposure_1),
+        cmocka_unit_test(a_black_photo_has_exposure_1),
         cmocka_unit_test(a_change_of_exposure_is_a_factor_at_any_power),
         cmocka_unit_test(values_are_between_0_and_1),
     };

@@ -1,11 +1,11 @@
-/* given_depth.c - depth that is given as a formula, with noise, holes and outliers: what planes it must give, alone and beside
- * segments that are matched. */
+/* given_depth.c - planes of given depth, from a formula with noise, holes and outliers, alone and together with matched
+ * segments. */
 #include "tests/unit/scratch.h"
 #include "tests/unit/segment_depth/whole.h"
 
 #include "stages/segment_depth/given_depth.h"
 
-/* What is given of a pixel; z is the truth. */
+/* The given depth of a pixel; z is the truth. */
 typedef double (*giver)(int x, int y, double z);
 static giver gives;
 
@@ -45,19 +45,19 @@ static void must_work_given(struct result *r, giver g)
     struct err err = ERR_INIT;
     gives = g;
     assert_ok(view_depth(&r->depth, r->neighbours, &r->neighbour_count, &scene.set, 0, &source, &params, &err), err);
-    must_be_sound(&r->depth);
+    check_invariants(&r->depth);
 }
 
-/* A leaning wall, and a card before it. */
+/* A slanted wall, and a card in front of it. */
 static void wall_and_card(int views)
 {
     start();
     scene_wall(&scene, 0, 0, 7, 15, 15, 0.4)->cell = 0.35;
     scene_wall(&scene, 0.1, 0.1, 4, 0.8, 0.7, 0)->colour[0] = 0.1f;
-    stand(views);
+    place_cameras(views);
 }
 
-/* -------------------------------------------------------------------------------------------------- a view by itself */
+/* -------------------------------------------------------------------------------------------------- a single view */
 
 static void a_single_photo_with_depth_has_layers(void **state)
 {
@@ -66,12 +66,12 @@ static void a_single_photo_with_depth_has_layers(void **state)
     wall_and_card(1);
     must_work_given(&r, all);
     assert_int_equal(r.neighbour_count, 0);
-    assert_true(right(&r.depth, 0, 1e-4) > 0.98);
-    assert_true(right(&r.depth, 1, 1e-4) > 0.98);
+    assert_true(fraction_correct(&r.depth, 0, 1e-4) > 0.98);
+    assert_true(fraction_correct(&r.depth, 1, 1e-4) > 0.98);
     assert_true(mean_confidence(&r.depth) > 0.9);
     int boundary = 0;
     for (int i = 0; i < W * H; i++) boundary += r.depth.boundary.id[i] > 0;
-    assert_true(boundary > 20); /* the card's rim is split */
+    assert_true(boundary > 20); /* the card's edge is split into layers */
     layered_depth_release(&r.depth);
 }
 
@@ -81,34 +81,34 @@ static void samples_in_a_third_of_the_pixels_are_enough(void **state)
     struct result r = {0};
     wall_and_card(1);
     must_work_given(&r, one_in_3);
-    assert_true(right(&r.depth, 0, 1e-3) > 0.97 && right(&r.depth, 1, 1e-3) > 0.97);
+    assert_true(fraction_correct(&r.depth, 0, 1e-3) > 0.97 && fraction_correct(&r.depth, 1, 1e-3) > 0.97);
     layered_depth_release(&r.depth);
 }
 
-static void noise_and_outliers_bend_nothing(void **state)
+static void noise_and_outliers_do_not_bend_planes(void **state)
 {
     (void)state;
     struct result r = {0};
     wall_and_card(3);
     must_work_given(&r, noisy);
-    assert_true(right(&r.depth, 0, 0.005) > 0.97 && right(&r.depth, 1, 0.005) > 0.97);
+    assert_true(fraction_correct(&r.depth, 0, 0.005) > 0.97 && fraction_correct(&r.depth, 1, 0.005) > 0.97);
     assert_true(mean_confidence(&r.depth) > 0.5 && mean_confidence(&r.depth) < 0.95);
     layered_depth_release(&r.depth);
 }
 
-/* Nothing can be matched: what is not given inherits. */
-static void a_hole_takes_what_surrounds_it(void **state)
+/* Nothing can be matched: segments without given depth inherit it. */
+static void a_hole_inherits_the_depth_around_it(void **state)
 {
     (void)state;
     struct result r = {0};
     start();
     scene_wall(&scene, 0, 0, 7, 15, 15, 0.4);
-    stand(1);
+    place_cameras(1);
     must_work_given(&r, with_a_hole);
-    assert_true(right(&r.depth, 0, 0.02) > 0.97);
+    assert_true(fraction_correct(&r.depth, 0, 0.02) > 0.97);
     double worst = 0;
     for (int i = 0; i < r.depth.segment_count; i++) worst = fmax(worst, 1 - r.depth.segments[i].confidence);
-    assert_true(worst > 0.9); /* and says that it is not sure */
+    assert_true(worst > 0.9); /* with low confidence */
     layered_depth_release(&r.depth);
 }
 
@@ -128,9 +128,9 @@ static void too_sparse_depth_alone_is_refused(void **state)
     assert_null(r.depth.segments);
 }
 
-/* ---------------------------------------------------------------------------------------- beside what is matched */
+/* ---------------------------------------------------------------------------------------- with matched segments */
 
-static void one_half_is_given_the_other_is_matched(void **state)
+static void given_and_matched_halves_agree(void **state)
 {
     (void)state;
     struct result r = {0};
@@ -138,7 +138,7 @@ static void one_half_is_given_the_other_is_matched(void **state)
     scene_points(&scene, 200);
     must_work_given(&r, left_half);
     assert_int_equal(r.neighbour_count, 4);
-    assert_true(right(&r.depth, 0, 0.02) > 0.95 && right(&r.depth, 1, 0.02) > 0.95);
+    assert_true(fraction_correct(&r.depth, 0, 0.02) > 0.95 && fraction_correct(&r.depth, 1, 0.02) > 0.95);
     int good = 0, count = 0;
     for (int y = 0; y < H; y++)
         for (int x = 0; x < W / 2 - 8; x++) {
@@ -152,8 +152,8 @@ static void one_half_is_given_the_other_is_matched(void **state)
     layered_depth_release(&r.depth);
 }
 
-/* However well the pictures tell another depth, also in later rounds and where the neighbours see through it. */
-static void what_is_given_stays(void **state)
+/* Even if the pictures match better elsewhere, in later rounds, and where neighbours see through it. */
+static void given_depth_is_kept(void **state)
 {
     (void)state;
     static struct rounds before;
@@ -161,7 +161,7 @@ static void what_is_given_stays(void **state)
     memset(&before, 0, sizeof before);
     start();
     scene_wall(&scene, 0, 0, 5, 12, 12, 0.2);
-    stand(3);
+    place_cameras(3);
     scene_points(&scene, 200);
     before.scene = &scene;
     gives = twice_as_far;
@@ -182,12 +182,12 @@ static void what_is_given_stays(void **state)
             const double z = scene_depth(&scene, &scene.views[0], i % W + 0.5, i / W + 0.5, &at);
             assert_near((double)now[0].interior.z[i] / (2 * z), 1, 2e-4);
         }
-        assert_true(right(&now[1], -1, 0.02) > (round ? 0 : 0.97)); /* of which nothing is given */
+        assert_true(fraction_correct(&now[1], -1, 0.02) > (round ? 0 : 0.97)); /* without given depth */
     }
     for (int k = 0; k < 3; k++) layered_depth_release(&before.depth[k]);
 }
 
-static void any_number_of_threads_gives_the_same_bits(void **state)
+static void thread_counts_give_the_same_bits(void **state)
 {
     (void)state;
     struct result r[2] = {{{0}, {0}, 0}};
@@ -246,17 +246,17 @@ static void give(struct row *r, int segment, int k, double inverse)
     r->z[r->pixel[segment * SIDE * SIDE + k]] = (float)(1 / inverse);
 }
 
-static void the_larger_part_gives_the_plane(void **state)
+static void the_larger_surface_of_a_segment_gives_its_plane(void **state)
 {
     (void)state;
     static struct row r;
     make_row(&r);
     for (int k = 0; k < SIDE * SIDE; k++) {
         const double u = k % SIDE + 0.5, v = k / SIDE + 0.5;
-        give(&r, 0, k, k % SIDE < 5 ? 0.5 : 1);                                  /* two level parts */
-        give(&r, 1, k, k % SIDE < 3 ? 1 : 0.5 + 0.004 * (SIDE + u) + 0.002 * v); /* the larger one slants */
-        give(&r, 2, k, 0.5 + (k % 2 ? 1e-5 : -1e-5));                            /* level but for a trifle */
-        if (k < SIDE * SIDE / 8 - 1) give(&r, 3, k, 0.5);                        /* too little of it */
+        give(&r, 0, k, k % SIDE < 5 ? 0.5 : 1);                                  /* two parts of constant depth */
+        give(&r, 1, k, k % SIDE < 3 ? 1 : 0.5 + 0.004 * (SIDE + u) + 0.002 * v); /* the larger part is slanted */
+        give(&r, 2, k, 0.5 + (k % 2 ? 1e-5 : -1e-5));                            /* nearly constant */
+        if (k < SIDE * SIDE / 8 - 1) give(&r, 3, k, 0.5);                        /* too few samples */
     }
     fit_row(&r);
     assert_true(r.g.known[0] && r.g.known[1] && r.g.known[2] && !r.g.known[3]);
@@ -264,19 +264,19 @@ static void the_larger_part_gives_the_plane(void **state)
     assert_int_equal(r.g.pixels, 3 * SIDE * SIDE + SIDE * SIDE / 8 - 1);
     assert_near(r.g.planes[0].a, 0, 0);
     assert_near(r.g.planes[0].c, 0.5, 1e-6);
-    assert_near(r.g.good[0], 5.0 / 8, 1e-3);
+    assert_near(r.g.quality[0], 5.0 / 8, 1e-3);
     assert_near(r.g.planes[1].a, 0.004, 1e-6);
     assert_near(r.g.planes[1].b, 0.002, 1e-6);
     assert_near(r.g.planes[1].c, 0.5, 1e-5);
-    assert_near(r.g.off[1], 0, 1e-6);
+    assert_near(r.g.residual[1], 0, 1e-6);
     assert_true(r.g.planes[2].a == 0 && r.g.planes[2].b == 0);
-    assert_near(r.g.good[2], 1, 0.01);
+    assert_near(r.g.quality[2], 1, 0.01);
     given_depth_release(&r.g);
     given_depth_release(&r.g);
 }
 
-/* Samples along a line, or a slope that would leave the front of the camera: a constant is all that they tell. */
-static void a_plane_that_samples_do_not_span_is_level(void **state)
+/* Collinear samples, or a slope that would pass behind the camera, give a constant depth. */
+static void samples_that_span_no_plane_give_a_constant_depth(void **state)
 {
     (void)state;
     static struct row r;
@@ -295,40 +295,41 @@ static void a_plane_that_samples_do_not_span_is_level(void **state)
     given_depth_release(&r.g);
 }
 
-static void the_range_leaves_strays_out(void **state)
+static void the_depth_range_excludes_outliers(void **state)
 {
     (void)state;
     enum { N = 10000 };
     static float z[N];
-    double least = 0, most = 0;
+    double min_inverse_z = 0, max_inverse_z = 0;
     memset(z, 0, sizeof z);
-    assert_false(given_depth_range(&least, &most, z, N));
+    assert_false(given_depth_range(&min_inverse_z, &max_inverse_z, z, N));
     for (int i = 0; i < N; i++) z[i] = i % 2 ? 0 : i % 100 == 0 ? 1e-6f : (float)(2 + 2.0 * i / N);
-    assert_true(given_depth_range(&least, &most, z, N));
-    assert_true(least > 0.2 && least < 0.26 && most > 0.49 && most < 0.6);
-    least = 0.1;
-    most = 3;
-    assert_true(given_depth_range(&least, &most, z, N)); /* widens only */
-    assert_true(least == 0.1 && most == 3);
+    assert_true(given_depth_range(&min_inverse_z, &max_inverse_z, z, N));
+    assert_true(min_inverse_z > 0.2 && min_inverse_z < 0.26 && max_inverse_z > 0.49 && max_inverse_z < 0.6);
+    min_inverse_z = 0.1;
+    max_inverse_z = 3;
+    assert_true(given_depth_range(&min_inverse_z, &max_inverse_z, z, N)); /* widens only */
+    assert_true(min_inverse_z == 0.1 && max_inverse_z == 3);
     for (int i = 0; i < N; i++) z[i] = 4;
-    least = most = 0;
-    assert_true(given_depth_range(&least, &most, z, N) && least < 0.25 && most > 0.25);
+    min_inverse_z = max_inverse_z = 0;
+    assert_true(given_depth_range(&min_inverse_z, &max_inverse_z, z, N) && min_inverse_z < 0.25 &&
+                max_inverse_z > 0.25);
 }
 
-/* By what given depth is off the scene's units; a third of the points is false. */
-static void units_show_in_the_sparse_points(void **state)
+/* The ratio of units, with a third of the points outliers. */
+static void wrong_units_are_detected_by_the_sparse_points(void **state)
 {
     (void)state;
     enum { N = 30 };
     static float z[W * H];
-    struct seen_point points[N + 1];
-    struct seen_points seen = {points, N};
+    struct observed_point points[N + 1];
+    struct observed_points seen = {points, N};
     for (int i = 0; i < W * H; i++) z[i] = i % 7 ? 1000.0f * (float)(2 + i % W) : 0;
     for (int i = 0; i < N; i++)
-        points[i] = (struct seen_point){i, 3 * i + 0.5, 2 * i + 0.5, (i % 3 ? 1 : 5) / (2.0 + 3 * i)};
+        points[i] = (struct observed_point){i, 3 * i + 0.5, 2 * i + 0.5, (i % 3 ? 1 : 5) / (2.0 + 3 * i)};
     assert_near(given_depth_ratio(z, W, H, &seen), 1000, 1e-3);
-    points[N] = (struct seen_point){0, W, -1, 1};
-    seen = (struct seen_points){points + N - 4, 5};
+    points[N] = (struct observed_point){0, W, -1, 1};
+    seen = (struct observed_points){points + N - 4, 5};
     assert_near(given_depth_ratio(z, W, H, &seen), 0, 0); /* too few */
 }
 
@@ -337,16 +338,16 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_single_photo_with_depth_has_layers),
         cmocka_unit_test(samples_in_a_third_of_the_pixels_are_enough),
-        cmocka_unit_test(noise_and_outliers_bend_nothing),
-        cmocka_unit_test(a_hole_takes_what_surrounds_it),
+        cmocka_unit_test(noise_and_outliers_do_not_bend_planes),
+        cmocka_unit_test(a_hole_inherits_the_depth_around_it),
         cmocka_unit_test(too_sparse_depth_alone_is_refused),
-        cmocka_unit_test(one_half_is_given_the_other_is_matched),
-        cmocka_unit_test(what_is_given_stays),
-        cmocka_unit_test(any_number_of_threads_gives_the_same_bits),
-        cmocka_unit_test(the_larger_part_gives_the_plane),
-        cmocka_unit_test(a_plane_that_samples_do_not_span_is_level),
-        cmocka_unit_test(the_range_leaves_strays_out),
-        cmocka_unit_test(units_show_in_the_sparse_points),
+        cmocka_unit_test(given_and_matched_halves_agree),
+        cmocka_unit_test(given_depth_is_kept),
+        cmocka_unit_test(thread_counts_give_the_same_bits),
+        cmocka_unit_test(the_larger_surface_of_a_segment_gives_its_plane),
+        cmocka_unit_test(samples_that_span_no_plane_give_a_constant_depth),
+        cmocka_unit_test(the_depth_range_excludes_outliers),
+        cmocka_unit_test(wrong_units_are_detected_by_the_sparse_points),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

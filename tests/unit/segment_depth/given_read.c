@@ -1,4 +1,4 @@
-/* given_read.c - files of depth that a user brings: what is read, how it lies in the view, and what is refused. */
+/* given_read.c - depth files that the user provides: values, resampling to the view, and errors. */
 #include "tests/unit/scratch.h"
 
 #include <math.h>
@@ -27,7 +27,7 @@ static int empty_folder(void **state)
     return 0;
 }
 
-/* v.exr with channels of float; sample is channel k's at (x, y). */
+/* Writes v.exr with float channels; sample(k, x, y) is channel k's value. */
 static void write_exr(int width, int height, const char *const *names, int count, enum exr_type type,
                       double (*sample)(int k, int x, int y))
 {
@@ -49,7 +49,7 @@ static void write_exr(int width, int height, const char *const *names, int count
     exr_image_release(&im);
 }
 
-/* Puts other bytes in the place of every sample of v.exr that is `from`. */
+/* Replaces the bytes of every sample of v.exr that equals `from`. */
 static void patch_bytes(const void *from, const void *bits, size_t count)
 {
     FILE *fp = fopen(scratch_path("v.exr"), "rb");
@@ -87,28 +87,28 @@ static float *read_for(const struct view *view, const struct lens *lens)
     return z;
 }
 
-static void refused(const struct view *view, const struct lens *lens, const char *words, const char *more)
+static void refused(const struct view *view, const struct lens *lens, const char *message, const char *more)
 {
     struct provenance prov = {0};
     struct err err = ERR_INIT;
     float *z;
     given_read(&z, scratch, view, lens, &prov, &err);
     assert_null(z);
-    assert_err(err, ST_DATA, words);
+    assert_err(err, ST_DATA, message);
     assert_contains(err.text, more);
     provenance_release(&prov);
 }
 
 /* ----------------------------------------------------------------------------------------------------------- EXR */
 
-static void no_file_gives_nothing(void **state)
+static void without_a_file_no_depth_is_given(void **state)
 {
     (void)state;
     const struct view view = view_of(W, H, 40);
     assert_null(read_for(&view, NULL));
 }
 
-static void the_channel_is_z_or_the_only_one(void **state)
+static void the_depth_channel_is_z_or_the_only_one(void **state)
 {
     (void)state;
     const struct view view = view_of(W, H, 40);
@@ -120,10 +120,10 @@ static void the_channel_is_z_or_the_only_one(void **state)
         free(z);
     }
     write_exr(W, H, none, 2, EXR_HALF, ramp);
-    refused(&view, NULL, "has the channels G R", "wanted one that is called Z");
+    refused(&view, NULL, "has the channels G R", "wanted a channel Z");
 }
 
-static void what_is_not_known_is_zero(void **state)
+static void unknown_depth_is_zero(void **state)
 {
     (void)state;
     const struct view view = view_of(W, H, 40);
@@ -150,16 +150,16 @@ static void what_is_not_known_is_zero(void **state)
     free(z);
 }
 
-static void depth_behind_the_camera_is_refused(void **state)
+static void negative_depth_is_an_error(void **state)
 {
     (void)state;
     const struct view view = view_of(W, H, 40);
     const char *const names[] = {"Z"};
     write_exr(W, H, names, 1, EXR_FLOAT, below);
-    refused(&view, NULL, "found the depth -1.5 at pixel (3, 2)", "0 where it is not known");
+    refused(&view, NULL, "pixel (3, 2) has the depth -1.5", "0 where it is unknown");
 }
 
-static void whole_numbers_and_half_floats(void **state)
+static void integer_and_half_float_samples_are_read(void **state)
 {
     (void)state;
     const struct view view = view_of(W, H, 40);
@@ -175,7 +175,7 @@ static void whole_numbers_and_half_floats(void **state)
     free(z);
 }
 
-static void a_damaged_file_is_refused(void **state)
+static void a_damaged_file_is_an_error(void **state)
 {
     (void)state;
     const struct view view = view_of(W, H, 40);
@@ -196,7 +196,7 @@ static void write_png16(int width, int height, bool colour)
     assert_true(png_image_write_to_file(&im, scratch_path("v.png"), 0, samples, 0, NULL));
 }
 
-static void sixteen_bits_times_the_scale(void **state)
+static void a_16_bit_png_is_multiplied_by_the_scale(void **state)
 {
     (void)state;
     const struct view view = view_of(W, H, 40);
@@ -209,10 +209,10 @@ static void sixteen_bits_times_the_scale(void **state)
     for (int i = 0; i < W * H; i++) assert_true(z[i] == 0.25f * (float)(uint16_t)(37 * i));
     free(z);
     write_png16(W, H, true);
-    refused(&view, NULL, "is in colour", "grey");
+    refused(&view, NULL, "is a colour picture", "grey");
 }
 
-static void eight_bits_times_the_scale(void **state)
+static void an_8_bit_png_is_multiplied_by_the_scale(void **state)
 {
     (void)state;
     const struct view view = view_of(W, H, 40);
@@ -226,7 +226,7 @@ static void eight_bits_times_the_scale(void **state)
     free(z);
 }
 
-static void an_exr_goes_before_a_png(void **state)
+static void an_exr_takes_precedence_over_a_png(void **state)
 {
     (void)state;
     const struct view view = view_of(W, H, 40);
@@ -255,16 +255,16 @@ static void another_size_gives_the_nearest_sample(void **state)
         for (int y = 0; y < views[k]->height; y++)
             for (int x = 0; x < views[k]->width; x++) {
                 const int fx = (int)((x + 0.5) * W / views[k]->width), fy = (int)((y + 0.5) * H / views[k]->height);
-                assert_true(z[y * views[k]->width + x] == (float)step(0, fx, fy)); /* nothing in between */
+                assert_true(z[y * views[k]->width + x] == (float)step(0, fx, fy)); /* no interpolation */
             }
         free(z);
     }
     const struct view wide = view_of(2 * W, H, 40);
-    refused(&wide, NULL, "v.exr has 40 x 30 pixels, but view v has 80 x 30", "at another scale");
+    refused(&wide, NULL, "v.exr has 40 x 30 pixels, but view v has 80 x 30", "of the same shape");
 }
 
-/* A lens that bends: what lies under a view's pixel is where the lens puts it. */
-static void a_photos_depth_goes_through_its_lens(void **state)
+/* A map of the photo is looked up through the lens's distortion. */
+static void depth_of_a_photo_is_mapped_through_its_lens(void **state)
 {
     (void)state;
     const struct view view = view_of(36, 26, 40);
@@ -274,8 +274,8 @@ static void a_photos_depth_goes_through_its_lens(void **state)
                         .view_from_photo = {1, 0, 0, 0}};
     const char *const names[] = {"Z"};
     write_exr(W, H, names, 1, EXR_FLOAT, ramp);
-    for (int told = 0; told < 2; told++) {
-        if (told) scratch_write("depth.txt", "pixels photo\n");
+    for (int declared = 0; declared < 2; declared++) {
+        if (declared) scratch_write("depth.txt", "pixels photo\n");
         float *z = read_for(&view, &lens);
         for (int y = 0; y < 26; y++)
             for (int x = 0; x < 36; x++) {
@@ -285,17 +285,17 @@ static void a_photos_depth_goes_through_its_lens(void **state)
             }
         free(z);
     }
-    /* the same, said to be of the view: of another shape than 36 x 26 */
+    /* the same map declared as of the view, whose aspect ratio is another */
     scratch_write("depth.txt", "pixels view\n");
     refused(&view, &lens, "wanted the view's size, as depth.txt says", "40 x 30");
-    /* a photo that became several views has no single one of its name */
+    /* a photo with several views has no view of its name */
     lens.photo = (char *)"p";
     scratch_write("depth.txt", "pixels photo\n");
     refused(&view, &lens, "wanted a photo that is one view", "");
 }
 
-/* A camera that is turned in its photo: z is along the photo's axis, and becomes the view's. */
-static void a_turned_view_has_its_own_z(void **state)
+/* A view rotated against its photo: z along the photo's axis is converted to the view's. */
+static void depth_is_converted_to_a_rotated_views_axis(void **state)
 {
     (void)state;
     const struct view view = view_of(W + 2, H, 40);
@@ -329,11 +329,11 @@ static void a_turned_view_has_its_own_z(void **state)
 
 /* ------------------------------------------------------------------------------------------------------- depth.txt */
 
-static void depth_txt_says_where_it_is_wrong(void **state)
+static void errors_in_depth_txt_name_their_line(void **state)
 {
     (void)state;
     static const struct {
-        const char *text, *words;
+        const char *text, *message;
     } bad[] = {
         {"scale 0\n", "depth.txt:1: found \"0\""},
         {"scale -1\n", "depth.txt:1: found \"-1\""},
@@ -351,7 +351,7 @@ static void depth_txt_says_where_it_is_wrong(void **state)
         struct err err = ERR_INIT;
         const char *path = scratch_write("depth.txt", bad[k].text);
         assert_int_equal(given_units_read(&units, path, &err), ST_DATA);
-        assert_err(err, ST_DATA, bad[k].words);
+        assert_err(err, ST_DATA, bad[k].message);
         assert_true(units.scale == 0 && units.pixels == PIXELS_BY_SIZE);
     }
     struct given_units units;
@@ -363,19 +363,19 @@ static void depth_txt_says_where_it_is_wrong(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(no_file_gives_nothing, empty_folder),
-        cmocka_unit_test_setup(the_channel_is_z_or_the_only_one, empty_folder),
-        cmocka_unit_test_setup(what_is_not_known_is_zero, empty_folder),
-        cmocka_unit_test_setup(depth_behind_the_camera_is_refused, empty_folder),
-        cmocka_unit_test_setup(whole_numbers_and_half_floats, empty_folder),
-        cmocka_unit_test_setup(a_damaged_file_is_refused, empty_folder),
-        cmocka_unit_test_setup(sixteen_bits_times_the_scale, empty_folder),
-        cmocka_unit_test_setup(eight_bits_times_the_scale, empty_folder),
-        cmocka_unit_test_setup(an_exr_goes_before_a_png, empty_folder),
+        cmocka_unit_test_setup(without_a_file_no_depth_is_given, empty_folder),
+        cmocka_unit_test_setup(the_depth_channel_is_z_or_the_only_one, empty_folder),
+        cmocka_unit_test_setup(unknown_depth_is_zero, empty_folder),
+        cmocka_unit_test_setup(negative_depth_is_an_error, empty_folder),
+        cmocka_unit_test_setup(integer_and_half_float_samples_are_read, empty_folder),
+        cmocka_unit_test_setup(a_damaged_file_is_an_error, empty_folder),
+        cmocka_unit_test_setup(a_16_bit_png_is_multiplied_by_the_scale, empty_folder),
+        cmocka_unit_test_setup(an_8_bit_png_is_multiplied_by_the_scale, empty_folder),
+        cmocka_unit_test_setup(an_exr_takes_precedence_over_a_png, empty_folder),
         cmocka_unit_test_setup(another_size_gives_the_nearest_sample, empty_folder),
-        cmocka_unit_test_setup(a_photos_depth_goes_through_its_lens, empty_folder),
-        cmocka_unit_test_setup(a_turned_view_has_its_own_z, empty_folder),
-        cmocka_unit_test_setup(depth_txt_says_where_it_is_wrong, empty_folder),
+        cmocka_unit_test_setup(depth_of_a_photo_is_mapped_through_its_lens, empty_folder),
+        cmocka_unit_test_setup(depth_is_converted_to_a_rotated_views_axis, empty_folder),
+        cmocka_unit_test_setup(errors_in_depth_txt_name_their_line, empty_folder),
     };
     return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }

@@ -1,5 +1,5 @@
-/* hard_cases.c - the whole stage where matching cannot know: blank walls, wallpaper, gloss, no neighbour, broken and odd pictures; and
- * that a second round, in which views look at each other's depths, does not spoil what the first one found. */
+/* hard_cases.c - the whole stage where matching is ambiguous: blank walls, wallpaper, gloss, no neighbour, broken and
+ * odd pictures; and that a second round does not make the first one's depth worse. */
 #include "tests/unit/scratch.h"
 #include "tests/unit/segment_depth/whole.h"
 
@@ -10,21 +10,22 @@
 
 static const struct segment_params params = SEGMENT_PARAMS_DEFAULT;
 
-static struct surface *floor_at(double y, double far)
+static struct painted_surface *floor_at(double y, double far)
 {
-    struct surface *floor = scene_surface(&scene, vec3_make(0, y, far / 2));
+    struct painted_surface *floor = scene_surface(&scene, vec3_make(0, y, far / 2));
     floor->across = vec3_make(15, 0, 0);
     floor->down = vec3_make(0, 0, far / 2);
     return floor;
 }
 
-/* ------------------------------------------------------------------------------------------------- what can't be matched */
+/* ------------------------------------------------------------------------------------------------- ambiguous
+ * surfaces */
 
-/* Half a pixel between the nearest views, as a part of a depth: what matching can promise. */
+/* The relative depth error of half a pixel of disparity between the nearest views: the accuracy of matching. */
 static double half_a_step(double z) { return 0.5 * z / (FOCAL * 0.4); }
 
-/* The back wall of a room has no texture at all; the floor, the ceiling and the walls beside it, which it meets, have. */
-static void a_textureless_wall_stands_where_the_room_ends(void **state)
+/* A room whose back wall has no texture; the floor, the ceiling and the side walls have. */
+static void a_textureless_wall_closes_the_room(void **state)
 {
     (void)state;
     for (int points = 0; points < 2; points++) {
@@ -34,55 +35,55 @@ static void a_textureless_wall_stands_where_the_room_ends(void **state)
         floor_at(1.5, 6)->colour[0] = 0.15f;
         floor_at(-1.5, 6)->colour[1] = 0.15f;
         for (int side = -1; side <= 1; side += 2) {
-            struct surface *wall = scene_surface(&scene, vec3_make(2 * side, 0, 3));
+            struct painted_surface *wall = scene_surface(&scene, vec3_make(2 * side, 0, 3));
             wall->across = vec3_make(0, 0, 3);
             wall->down = vec3_make(0, 1.5, 0);
         }
-        stand(5);
+        place_cameras(5);
         scene_points(&scene, points * 300);
         must_work_in_rounds(d, 1, &params);
         for (int round = 0; round < 2; round++) {
-            assert_true(right(&d[round], 0, half_a_step(6)) > 0.95);
-            assert_true(right(&d[round], -1, half_a_step(6)) > 0.95);
+            assert_true(fraction_correct(&d[round], 0, half_a_step(6)) > 0.95);
+            assert_true(fraction_correct(&d[round], -1, half_a_step(6)) > 0.95);
             layered_depth_release(&d[round]);
         }
     }
 }
 
-/* Wallpaper whose stripes match at many depths; the plain plaster above and below it holds it. Without points. */
-static void wallpaper_takes_the_depth_of_what_frames_it(void **state)
+/* Wallpaper whose stripes match at many depths, between textured plaster above and below. Without points. */
+static void wallpaper_gets_the_depth_of_its_frame(void **state)
 {
     (void)state;
     struct layered_depth d[2];
     start();
     scene_wall(&scene, 0, 0, 5, 9, 9, 0);
     scene_wall(&scene, 0, 0, 5 - 1e-4, 1.2, 0.5, 0)->period = 0.31; /* 10 px */
-    stand(5);
+    place_cameras(5);
     must_work_in_rounds(d, 1, &params);
     for (int round = 0; round < 2; round++) {
-        assert_true(right(&d[round], 0, 0.02) > 0.95);
-        assert_true(right(&d[round], 1, 0.02) > 0.9);
+        assert_true(fraction_correct(&d[round], 0, 0.02) > 0.95);
+        assert_true(fraction_correct(&d[round], 1, 0.02) > 0.9);
         layered_depth_release(&d[round]);
     }
 }
 
-/* A lamp is mirrored in the floor: the spot moves on it from view to view, just as a lamp below the floor would. A sheen leaves the
- * floor where it is. Where the spot outshines the floor, pictures show the lamp and nothing else; but it stays within its bounds. */
-static void a_highlight_that_moves_on_a_glossy_floor_stays_within_its_bounds(void **state)
+/* A lamp is reflected in the floor: the spot moves from view to view like a lamp below the floor. A weak one does not
+ * change the floor's depth. A bright one hides the floor, but changes the depth only where it is. */
+static void a_highlight_on_a_glossy_floor_changes_only_its_own_pixels(void **state)
 {
     (void)state;
     for (int burnt = 0; burnt < 2; burnt++) {
         struct layered_depth d[2];
         start();
-        struct surface *floor = floor_at(1, 14);
+        struct painted_surface *floor = floor_at(1, 14);
         floor->gloss = burnt ? 5 : 0.3;
         floor->light = vec3_make(0, -0.5, 9);
         scene_wall(&scene, 0, 0, 12, 20, 20, 0)->cell = 0.6;
-        stand(5);
+        place_cameras(5);
         scene_points(&scene, 300);
         must_work_in_rounds(d, 1, &params);
         for (int round = 0; round < 2; round++) {
-            int pixels[2] = {0}, good[2] = {0}; /* dull, lit */
+            int pixels[2] = {0}, good[2] = {0}; /* outside, inside the highlight */
             for (int y = 0; y < H; y++)
                 for (int x = 0; x < W; x++) {
                     int at;
@@ -103,7 +104,7 @@ static void a_highlight_that_moves_on_a_glossy_floor_stays_within_its_bounds(voi
     }
 }
 
-/* A floor at y = 1 that mirrors, by `mirror` of what it shows, a wall of other colours at z = 9. */
+/* A floor at y = 1 that reflects, with weight `mirror`, a wall of other colours at z = 9. */
 static double mirror;
 static enum status mirroring_photo(void *ctx, int view_idx, struct image *im, struct err *err)
 {
@@ -130,9 +131,9 @@ static enum status mirroring_photo(void *ctx, int view_idx, struct image *im, st
     return ST_OK;
 }
 
-/* A polished floor is found where it is. What is nearly a mirror shows in all views alike a wall below it, at the true wall's depth, and
- * little else: it gets one of the two depths, and the wall must not suffer. */
-static void a_mirror_like_floor_is_found_while_it_shows_itself(void **state)
+/* A polished floor gets its own depth. A near-perfect mirror shows the wall's reflection in all views: it gets one of
+ * the two depths, and the wall keeps its own. */
+static void a_floor_is_found_unless_it_is_a_mirror(void **state)
 {
     (void)state;
     for (int k = 0; k < 4; k++) {
@@ -140,10 +141,10 @@ static void a_mirror_like_floor_is_found_while_it_shows_itself(void **state)
         start();
         mirror = k & 1 ? 0.85 : 0.3;
         floor_at(1, 9);
-        struct surface *wall = scene_wall(&scene, 0, 0, 9, 20, 20, 0);
+        struct painted_surface *wall = scene_wall(&scene, 0, 0, 9, 20, 20, 0);
         wall->cell = 0.6;
         wall->colour[0] = 0.15f;
-        stand(5);
+        place_cameras(5);
         scene_points(&scene, k & 2 ? 300 : 0);
         must_work_in_rounds_of(d, 1, &params, mirroring_photo);
         for (int round = 0; round < 2; round++) {
@@ -165,15 +166,16 @@ static void a_mirror_like_floor_is_found_while_it_shows_itself(void **state)
                     "  mirrors %.2f, %d points: of %d px of floor %d are the floor's, %d the mirror image's\n", mirror,
                     k & 2 ? 300 : 0, floor, own, mirrored);
             assert_true(own + (k & 1 ? mirrored : 0) > 0.95 * floor);
-            assert_true(right(&d[round], 1, half_a_step(9) / 9) > 0.95);
+            assert_true(fraction_correct(&d[round], 1, half_a_step(9) / 9) > 0.95);
             layered_depth_release(&d[round]);
         }
     }
 }
 
-/* --------------------------------------------------------------------------------------------------- who can't be matched */
+/* --------------------------------------------------------------------------------------------------- missing
+ * neighbours */
 
-static void no_neighbour_is_told_in_a_sentence(void **state)
+static void a_view_without_neighbours_is_an_error(void **state)
 {
     (void)state;
     for (int views = 1; views <= 2; views++) {
@@ -181,12 +183,12 @@ static void no_neighbour_is_told_in_a_sentence(void **state)
         struct err err = ERR_INIT;
         start();
         scene_wall(&scene, 0, 0, 5, 9, 9, 0);
-        stand(1);
-        if (views == 2) scene_view(&scene, W, H, FOCAL, 0.4, 0, 0, M_PI); /* looks the other way */
+        place_cameras(1);
+        if (views == 2) scene_view(&scene, W, H, FOCAL, 0.4, 0, 0, M_PI); /* faces the other way */
         assert_int_equal(depth_of(&r, &params, &err), ST_DATA);
-        assert_err(err, ST_DATA, "view a has no neighbour to match with: among the ");
+        assert_err(err, ST_DATA, "view a has no neighbour to match with: none of the ");
         assert_contains(err.text, views == 1 ? "the 0 other view(s)" : "the 1 other view(s)");
-        assert_contains(err.text, "at least two views taken from different points");
+        assert_contains(err.text, "at least two views taken from different positions");
         assert_int_equal(r.neighbour_count, 0);
         assert_true(!r.depth.interior.id && !r.depth.segments);
     }
@@ -200,7 +202,7 @@ static void put_text(FILE *fp, const char *name, const char *type, const void *v
     fwrite(value, 1, size, fp);
 }
 
-/* An EXR with any floats, which the project's own writer would refuse: no compression, a line a chunk. */
+/* Writes an EXR with arbitrary floats, which the project's own writer rejects: uncompressed, one line per chunk. */
 static void write_any_exr(const char *path, const struct image *im)
 {
     static const char magic[8] = {0x76, 0x2f, 0x31, 0x01, 2};
@@ -245,14 +247,14 @@ static enum status photo_on_disk(void *ctx, int view_idx, struct image *im, stru
     return view_image_read(im, scratch, &scene.views[view_idx], err);
 }
 
-/* In the view itself or in a neighbour: the reader refuses it, with file, channel and pixel. */
-static void a_nan_in_a_view_is_told_with_its_pixel(void **state)
+/* In the view itself or in a neighbour: an error with file, channel and pixel. */
+static void a_nan_in_a_view_is_an_error_with_its_pixel(void **state)
 {
     (void)state;
     const struct view_source source = {photo_on_disk, NULL, NULL, NULL};
     start();
     scene_wall(&scene, 0, 0, 5, 9, 9, 0.2);
-    stand(3);
+    place_cameras(3);
     for (int broken = -1; broken < 6; broken++) {
         struct result r = {0};
         struct err err = ERR_INIT;
@@ -267,9 +269,9 @@ static void a_nan_in_a_view_is_told_with_its_pixel(void **state)
         }
         const enum status st =
             view_depth(&r.depth, r.neighbours, &r.neighbour_count, &scene.set, 0, &source, &params, &err);
-        if (broken < 0) { /* none is: the files are good */
+        if (broken < 0) { /* neither file is broken */
             assert_ok(st, err);
-            assert_true(right(&r.depth, -1, 0.02) > 0.95);
+            assert_true(fraction_correct(&r.depth, -1, 0.02) > 0.95);
             layered_depth_release(&r.depth);
             continue;
         }
@@ -282,7 +284,7 @@ static void a_nan_in_a_view_is_told_with_its_pixel(void **state)
     }
 }
 
-/* A round before of another picture, or none at all. */
+/* A previous round of another picture, or none. */
 static enum status depth_of_less(void *ctx, int view_idx, struct layered_depth *d, struct err *err)
 {
     const enum status st = rounds_depth(ctx, view_idx, d, err);
@@ -295,7 +297,7 @@ static enum status no_depth(void *ctx, int view_idx, struct layered_depth *d, st
     return err_set(err, ST_IO, "there is no depth of view %d.", view_idx);
 }
 
-static void a_round_before_that_does_not_fit_is_told(void **state)
+static void a_previous_round_of_another_picture_is_an_error(void **state)
 {
     (void)state;
     static struct rounds before;
@@ -303,7 +305,7 @@ static void a_round_before_that_does_not_fit_is_told(void **state)
     struct err err = ERR_INIT;
     start();
     scene_wall(&scene, 0, 0, 5, 9, 9, 0.2);
-    stand(2);
+    place_cameras(2);
     before.scene = &scene;
     const struct view_source first = {scene_photo, NULL, &scene, NULL},
                              less = {rounds_photo, depth_of_less, &before, NULL},
@@ -313,7 +315,7 @@ static void a_round_before_that_does_not_fit_is_told(void **state)
                   err);
     assert_int_equal(view_depth(&r.depth, r.neighbours, &r.neighbour_count, &scene.set, 0, &less, &params, &err),
                      ST_DATA);
-    assert_err(err, ST_DATA, "segments of view a, this one");
+    assert_err(err, ST_DATA, "the previous round of view a has ");
     assert_true(!r.depth.interior.id && !r.depth.segments);
     err = (struct err)ERR_INIT;
     assert_int_equal(view_depth(&r.depth, r.neighbours, &r.neighbour_count, &scene.set, 0, &none, &params, &err),
@@ -323,50 +325,50 @@ static void a_round_before_that_does_not_fit_is_told(void **state)
     for (int k = 0; k < 2; k++) layered_depth_release(&before.depth[k]);
 }
 
-/* The only neighbour is half as wide as the view: what lies beside it has no other view, and takes its depth from what has. */
-static void what_no_neighbour_sees_inherits_and_is_told(void **state)
+/* The only neighbour is half as wide as the view: the parts outside its frame inherit their depth. */
+static void unmatched_parts_inherit_depth_and_are_counted(void **state)
 {
     (void)state;
     for (int points = 0; points < 2; points++) {
         struct layered_depth d[2];
         start();
         scene_wall(&scene, 0, 0, 5, 9, 9, 0);
-        stand(1);
+        place_cameras(1);
         scene_view(&scene, W / 2, H, FOCAL, 0.4, 0, 0, 0);
         scene_points(&scene, points * 300);
         must_work_in_rounds(d, 1, &params);
         const double left = W / 2.0 - W / 4.0 + FOCAL * 0.4 / 5, right_end = left + W / 2.0, margin = 6;
         for (int round = 0; round < 2; round++) {
-            int unseen = 0, seen = 0, inherited = 0, told = 0;
+            int unseen = 0, seen = 0, inherited = 0, confident = 0;
             for (int i = 0; i < W * H; i++) {
                 const bool sure = d[round].segments[d[round].interior.id[i] - 1].confidence >= DEPTH_INHERITED;
                 const double u = i % W + 0.5;
-                if (u > left + margin && u < right_end - margin) seen++, told += sure;
+                if (u > left + margin && u < right_end - margin) seen++, confident += sure;
                 if (u < left - margin || u > right_end + margin) unseen++, inherited += !sure;
             }
             const struct depth_shares shares = layered_depth_shares(&d[round]);
             if (getenv("VERDICT"))
-                print_message("  %.4f of unseen inherited, %.4f of seen told, %.4f of all inherited\n",
-                              inherited / (double)unseen, told / (double)seen, shares.inherited);
+                print_message("  %.4f of unseen inherited, %.4f of seen confident, %.4f of all inherited\n",
+                              inherited / (double)unseen, confident / (double)seen, shares.inherited);
             assert_true(inherited > 0.99 * unseen);
-            assert_true(told > 0.98 * seen);
+            assert_true(confident > 0.98 * seen);
             assert_true(shares.unknown == 0);
             assert_near(shares.inherited, 0.5, 0.04);
-            assert_true(right(&d[round], 0, 0.02) > 0.97);
+            assert_true(fraction_correct(&d[round], 0, 0.02) > 0.97);
             layered_depth_release(&d[round]);
         }
     }
 }
 
-/* Every view lacks a disc, as behind a mask: it has no depth, and is counted. */
-static void what_is_masked_has_no_depth_and_is_told(void **state)
+/* All views have a masked disc. */
+static void masked_pixels_have_no_depth_and_are_counted(void **state)
 {
     (void)state;
     struct result r;
     int masked = 0;
     start();
     scene_wall(&scene, 0, 0, 5, 9, 9, 0);
-    stand(3);
+    place_cameras(3);
     scene.holes = true;
     must_work(&r);
     for (int i = 0; i < W * H; i++) masked += hypot(i % W + 0.5 - W / 2.0, i / W + 0.5 - H / 2.0) < H / 6.0;
@@ -374,7 +376,8 @@ static void what_is_masked_has_no_depth_and_is_told(void **state)
     layered_depth_release(&r.depth);
 }
 
-/* ------------------------------------------------------------------------------------------------------- odd pictures */
+/* ------------------------------------------------------------------------------------------------------- odd
+ * pictures */
 
 static void photos_of_one_pixel_work_in_rounds(void **state)
 {
@@ -395,7 +398,7 @@ static void photos_of_one_pixel_work_in_rounds(void **state)
     }
 }
 
-/* A strip of a wall at depth 5, one ray a pixel. */
+/* A strip of a wall at depth 5, one ray per pixel. */
 static enum status strip_photo(void *ctx, int view_idx, struct image *im, struct err *err)
 {
     const struct scene *s = ctx;
@@ -411,8 +414,8 @@ static enum status strip_photo(void *ctx, int view_idx, struct image *im, struct
     return ST_OK;
 }
 
-/* As radiance from brackets: neither quantized nor clipped. On a wall at depth 5 it falls from 1 to 1e-6 from left to right, or there is
- * a lamp on it a million times as bright as the rest. */
+/* Radiance as from brackets, neither quantized nor clipped. On a wall at depth 5 it falls from 1 to 1e-6 from left to
+ * right, or a lamp is a million times as bright as the rest. */
 static bool lamp;
 static enum status bright_photo(void *ctx, int view_idx, struct image *im, struct err *err)
 {
@@ -431,7 +434,7 @@ static enum status bright_photo(void *ctx, int view_idx, struct image *im, struc
     return ST_OK;
 }
 
-static void radiance_of_a_million_to_one_is_matched(void **state)
+static void a_dynamic_range_of_a_million_to_one_is_matched(void **state)
 {
     (void)state;
     for (int k = 0; k < 4; k++) {
@@ -439,19 +442,19 @@ static void radiance_of_a_million_to_one_is_matched(void **state)
         lamp = k & 1;
         start();
         scene_wall(&scene, 0, 0, 5, 9, 9, 0);
-        stand(5);
+        place_cameras(5);
         scene_points(&scene, k & 2 ? 200 : 0);
         must_work_in_rounds_of(d, 1, &params, bright_photo);
         for (int round = 0; round < 2; round++) {
-            assert_true(right(&d[round], 0, 0.02) > 0.95);
+            assert_true(fraction_correct(&d[round], 0, 0.02) > 0.95);
             layered_depth_release(&d[round]);
         }
     }
 }
 
-/* A window in a wall, behind it a landscape 12 times as far; the photos are exposed for the room, and the window is white. What is
- * behind it cannot be known: it must be told so, its depth must be of somewhere from the wall on, and the wall must not suffer. */
-static void a_burnt_out_window_is_told_and_leaves_its_wall_alone(void **state)
+/* A white, overexposed window in a wall, with a landscape 12 times as far behind it. The landscape's depth cannot be
+ * known: it must have low confidence and lie at the wall or behind it, and the wall must keep its own. */
+static void an_overexposed_window_has_low_confidence_and_its_wall_is_found(void **state)
 {
     (void)state;
     for (int points = 0; points < 2; points++) {
@@ -461,36 +464,37 @@ static void a_burnt_out_window_is_told_and_leaves_its_wall_alone(void **state)
             scene_wall(&scene, side * 6.2, 0, 5, 5, 12, 0);
             scene_wall(&scene, 0, side * 5.9, 5, 1.2, 5, 0);
         }
-        struct surface *outside = scene_wall(&scene, 0, 0, 60, 90, 90, 0);
+        struct painted_surface *outside = scene_wall(&scene, 0, 0, 60, 90, 90, 0);
         for (int c = 0; c < 3; c++) outside->colour[c] = 30;
-        stand(5);
+        place_cameras(5);
         scene_points(&scene, points * 200);
         must_work_in_rounds(d, 1, &params);
         for (int round = 0; round < 2; round++) {
-            int window = 0, behind = 0, inner = 0, told = 0;
+            int window = 0, behind = 0, inner = 0, confident = 0;
             for (int i = 0; i < W * H; i++) {
                 int at;
                 const double z = scene_depth(&scene, &scene.views[0], i % W + 0.5, i / W + 0.5, &at);
                 if (z < 10 || at_jump(i % W, i / W)) continue;
                 window++;
                 behind += d[round].interior.z[i] > 4.85f;
-                /* a segment from its rim, which is the wall's and matches */
+                /* one segment inside the rim, which belongs to the wall and matches */
                 if (fabs(i % W + 0.5 - W / 2.0) > 38 - 10 || fabs(i / W + 0.5 - H / 2.0) > 28 - 10) continue;
                 inner++;
-                told += d[round].segments[d[round].interior.id[i] - 1].confidence < DEPTH_INHERITED;
+                confident += d[round].segments[d[round].interior.id[i] - 1].confidence < DEPTH_INHERITED;
             }
             if (getenv("VERDICT"))
-                print_message("  of %d px %d at the wall or behind, of %d inner ones %d told as inherited\n", window,
-                              behind, inner, told);
-            assert_true(inner > 1000 && behind > 0.95 * window && told > 0.9 * inner);
-            for (int k = 0; k < 4; k++) assert_true(right(&d[round], k, 0.02) > 0.97);
+                print_message("  of %d px %d at the wall or behind, of %d inner ones %d confident as inherited\n",
+                              window, behind, inner, confident);
+            assert_true(inner > 1000 && behind > 0.95 * window && confident > 0.9 * inner);
+            for (int k = 0; k < 4; k++) assert_true(fraction_correct(&d[round], k, 0.02) > 0.97);
             layered_depth_release(&d[round]);
         }
     }
 }
 
-/* 20000 x 16 px and 16 x 20000 px, a third of a megapixel: no more time and memory than any picture of as many. */
-static void a_photo_as_long_as_a_street_works(void **state)
+/* 20000 x 16 px and 16 x 20000 px, a third of a megapixel: no more time and memory than for other pictures of that
+ * size. */
+static void an_extremely_long_photo_works(void **state)
 {
     (void)state;
     const struct view_source source = {strip_photo, NULL, &scene, NULL};
@@ -533,7 +537,8 @@ static void a_photo_as_long_as_a_street_works(void **state)
     }
 }
 
-/* ------------------------------------------------------------------------------------------------------------- rounds */
+/* -------------------------------------------------------------------------------------------------------------
+ * rounds */
 
 static bool seen_elsewhere(double u, double v)
 {
@@ -548,8 +553,8 @@ static bool seen_elsewhere(double u, double v)
     return false;
 }
 
-/* Part of the pixels whose depth is off by more than so many steps, those at jumps included; of all, or of those that another view
- * sees too. */
+/* The fraction of pixels, depth edges included, whose depth is off by more than so many steps; of all pixels or of
+ * those that another view sees. */
 static double wrong(const struct layered_depth *d, double steps, bool all)
 {
     int bad = 0, count = 0;
@@ -564,10 +569,10 @@ static double wrong(const struct layered_depth *d, double steps, bool all)
     return bad / (double)count;
 }
 
-/* What a few pixels at the card's rim may change, of all. */
+/* Tolerance for a few pixels at the card's rim, as a fraction of all. */
 static const double rim = 0.001;
 
-/* A card in front of a wall; many views or two, with points and without, facing or leaning. */
+/* A card in front of a wall; several views or two, with and without points, facing or slanted. */
 static void more_rounds_never_make_two_planes_worse(void **state)
 {
     (void)state;
@@ -575,10 +580,10 @@ static void more_rounds_never_make_two_planes_worse(void **state)
         struct layered_depth d[3];
         start();
         scene_wall(&scene, 0, 0, 7, 12, 12, k & 4 ? 0.3 : 0)->cell = 0.35;
-        struct surface *card = scene_wall(&scene, 0.1, 0.1, 4, 0.8, 0.7, k & 4 ? -0.3 : 0);
+        struct painted_surface *card = scene_wall(&scene, 0.1, 0.1, 4, 0.8, 0.7, k & 4 ? -0.3 : 0);
         card->colour[0] = 0.12f;
         card->cell = 0.2;
-        stand(k & 2 ? 2 : 3);
+        place_cameras(k & 2 ? 2 : 3);
         scene_points(&scene, k & 1 ? 200 : 0);
         must_work_in_rounds(d, 2, &params);
         for (int round = 1; round < 3; round++) {
@@ -589,14 +594,14 @@ static void more_rounds_never_make_two_planes_worse(void **state)
     }
 }
 
-static void threads_do_not_change_a_bit_of_a_second_round(void **state)
+static void thread_counts_give_the_same_bits_in_a_second_round(void **state)
 {
     (void)state;
     struct layered_depth d[2][2];
     start();
     scene_wall(&scene, 0, 0, 7, 12, 12, 0.2);
     scene_surface(&scene, vec3_make(0.1, 0, 5))->radius = 1;
-    stand(3);
+    place_cameras(3);
     for (int k = 0; k < 2; k++) {
         parallel_set_threads(k + 1);
         must_work_in_rounds(d[k], 1, &params);
@@ -613,22 +618,22 @@ static void threads_do_not_change_a_bit_of_a_second_round(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_textureless_wall_stands_where_the_room_ends),
-        cmocka_unit_test(wallpaper_takes_the_depth_of_what_frames_it),
-        cmocka_unit_test(a_highlight_that_moves_on_a_glossy_floor_stays_within_its_bounds),
-        cmocka_unit_test(a_mirror_like_floor_is_found_while_it_shows_itself),
-        cmocka_unit_test(no_neighbour_is_told_in_a_sentence),
-        cmocka_unit_test(a_nan_in_a_view_is_told_with_its_pixel),
-        cmocka_unit_test(a_round_before_that_does_not_fit_is_told),
-        cmocka_unit_test(what_no_neighbour_sees_inherits_and_is_told),
-        cmocka_unit_test(what_is_masked_has_no_depth_and_is_told),
+        cmocka_unit_test(a_textureless_wall_closes_the_room),
+        cmocka_unit_test(wallpaper_gets_the_depth_of_its_frame),
+        cmocka_unit_test(a_highlight_on_a_glossy_floor_changes_only_its_own_pixels),
+        cmocka_unit_test(a_floor_is_found_unless_it_is_a_mirror),
+        cmocka_unit_test(a_view_without_neighbours_is_an_error),
+        cmocka_unit_test(a_nan_in_a_view_is_an_error_with_its_pixel),
+        cmocka_unit_test(a_previous_round_of_another_picture_is_an_error),
+        cmocka_unit_test(unmatched_parts_inherit_depth_and_are_counted),
+        cmocka_unit_test(masked_pixels_have_no_depth_and_are_counted),
         cmocka_unit_test(photos_of_one_pixel_work_in_rounds),
-        cmocka_unit_test(radiance_of_a_million_to_one_is_matched),
-        cmocka_unit_test(a_burnt_out_window_is_told_and_leaves_its_wall_alone),
-        cmocka_unit_test(a_photo_as_long_as_a_street_works),
+        cmocka_unit_test(a_dynamic_range_of_a_million_to_one_is_matched),
+        cmocka_unit_test(an_overexposed_window_has_low_confidence_and_its_wall_is_found),
+        cmocka_unit_test(an_extremely_long_photo_works),
         cmocka_unit_test(more_rounds_never_make_two_planes_worse),
-        cmocka_unit_test(threads_do_not_change_a_bit_of_a_second_round),
+        cmocka_unit_test(thread_counts_give_the_same_bits_in_a_second_round),
     };
-    parallel_set_threads(1); /* tests run side by side */
+    parallel_set_threads(1); /* tests run in parallel */
     return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }

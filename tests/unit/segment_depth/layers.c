@@ -1,4 +1,4 @@
-/* layers.c - mixtures of two colours whose shares are known, pulled apart again. */
+/* layers.c - mattes of mixed pixels whose alpha is known. */
 #include "stages/segment_depth/layers.h"
 
 #include "tests/unit/segment_depth/scene.h"
@@ -10,7 +10,7 @@ enum { W = 60, H = 44 };
 static const double step = 0.01, near_depth = 2, far_depth = 5;
 static const float near_colour[3] = {0.6f, 0.2f, 0.1f}, far_colour[3] = {0.05f, 0.2f, 0.7f};
 
-/* The near side's share of a pixel: its edge is the line x + y / 4 = 30, blurred over `blur` pixels. */
+/* Alpha of the near side: its edge is the line x + y / 4 = 30, blurred over `blur` pixels. */
 static double share(int x, int y, double blur)
 {
     return fmin(fmax((30 - (x + 0.5 + (y + 0.5) / 4)) / blur + 0.5, 0), 1);
@@ -23,7 +23,8 @@ struct bench {
     struct layered_depth out;
 };
 
-/* Squares of 6 x 6 cut by the edge, even numbers near, odd ones far; a disc without pixels if `holed`. */
+/* Segments of 6 x 6 pixels divided by the edge, even numbers near, odd ones far; with a disc of invalid pixels if
+ * `holed`. */
 static void start(struct bench *b, const float near[3], const float far[3], double blur, bool holed, double far_z)
 {
     struct err err = ERR_INIT;
@@ -43,7 +44,7 @@ static void start(struct bench *b, const float near[3], const float far[3], doub
                                                (1 + 0.02f * (float)scene_hash(x, y, c));
             image_at(&b->photo, x, y)[3] = valid;
         }
-    for (int i = 0; i < b->s.count; i++) /* both sides lean a little */
+    for (int i = 0; i < b->s.count; i++) /* both sides are slightly slanted */
         b->planes[i] = (struct plane){i % 2 ? 1e-4 : 5e-4, -2e-4, 1 / (i % 2 ? far_z : near_depth)};
     assert_int_equal(layered_depth_init(&b->out, W, H, &err), ST_OK);
     b->out.segment_count = b->s.count;
@@ -65,8 +66,8 @@ static void finish(struct bench *b)
     layered_depth_release(&b->out);
 }
 
-/* What docs/formats.md promises of every depth map. */
-static void must_be_sound(const struct bench *b)
+/* The invariants of docs/formats.md. */
+static void check_invariants(const struct bench *b)
 {
     int *pixels = calloc((size_t)b->s.count, sizeof *pixels);
     assert_non_null(pixels);
@@ -106,14 +107,14 @@ static double near_share(const struct bench *b, int x, int y)
     return sum;
 }
 
-static void shares_at_a_depth_edge_are_recovered(void **state)
+static void alpha_at_a_depth_edge_is_recovered(void **state)
 {
     (void)state;
     struct bench b;
     int mixed = 0;
     start(&b, near_colour, far_colour, 2, false, far_depth);
     make(&b, true);
-    must_be_sound(&b);
+    check_invariants(&b);
     for (int y = 0; y < H; y++)
         for (int x = 0; x < W; x++) {
             const double alpha = share(x, y, 2);
@@ -126,7 +127,7 @@ static void shares_at_a_depth_edge_are_recovered(void **state)
     finish(&b);
 }
 
-static void colours_of_the_parts_are_those_of_the_sides(void **state)
+static void the_two_layers_have_the_colours_of_the_two_sides(void **state)
 {
     (void)state;
     struct bench b;
@@ -140,31 +141,31 @@ static void colours_of_the_parts_are_those_of_the_sides(void **state)
     finish(&b);
 }
 
-static void an_edge_drawn_off_by_a_pixel_is_put_right(void **state)
+static void a_segment_border_off_by_a_pixel_is_corrected(void **state)
 {
     (void)state;
     struct bench b;
     start(&b, near_colour, far_colour, 0.01, false, far_depth);
-    for (int y = 0; y < H; y++) /* every third row's first far pixel was given to the near side */
+    for (int y = 0; y < H; y++) /* every third row's first far pixel belongs to a near segment */
         for (int x = 1; x < W; x++)
             if (y % 3 == 0 && share(x, y, 0.01) < 0.5 && share(x - 1, y, 0.01) > 0.5) b.s.label[y * W + x] -= 1;
     make(&b, true);
-    must_be_sound(&b);
+    check_invariants(&b);
     for (int y = 0; y < H; y++)
         for (int x = 0; x < W; x++) assert_near(near_share(&b, x, y), share(x, y, 0.01), 0.02);
     finish(&b);
 }
 
-static void no_jump_no_contrast_or_no_matte_leaves_one_layer(void **state)
+static void without_depth_edge_contrast_or_matte_there_is_one_layer(void **state)
 {
     (void)state;
     for (int k = 0; k < 3; k++) {
         struct bench b;
-        /* 1.5 steps apart; the same colour; not wanted */
+        /* 1.5 steps apart; equal colours; no matte */
         start(&b, near_colour, k == 1 ? near_colour : far_colour, 2, false,
               k == 0 ? 1 / (1 / near_depth - 0.008) : far_depth);
         make(&b, k != 2);
-        must_be_sound(&b);
+        check_invariants(&b);
         for (int i = 0; i < W * H; i++) {
             assert_int_equal(b.out.boundary.id[i], 0);
             assert_int_equal(b.out.interior.id[i], b.s.label[i] + 1);
@@ -173,25 +174,25 @@ static void no_jump_no_contrast_or_no_matte_leaves_one_layer(void **state)
     }
 }
 
-static void pixels_that_the_photo_lacks_stay_empty(void **state)
+static void invalid_pixels_stay_empty(void **state)
 {
     (void)state;
     struct bench b;
     start(&b, near_colour, far_colour, 2, true, far_depth);
     make(&b, true);
-    must_be_sound(&b);
+    check_invariants(&b);
     assert_int_equal(b.out.interior.id[20 * W + 27], 0);
     finish(&b);
 }
 
-static void bright_black_and_thin_things_keep_their_sum(void **state)
+static void layers_of_bright_black_and_thin_objects_sum_to_the_photo(void **state)
 {
     (void)state;
     static const float colours[][3] = {{1e4f, 1e4f, 1e4f}, {0, 0, 0}, {1, 1, 1}, {1e-6f, 0, 0}, {0, 1, 0}};
     for (int k = 0; k < 25; k++) {
         struct bench b;
         start(&b, colours[k / 5], colours[k % 5], 3, k % 2, far_depth);
-        for (int i = 0; i < W * H; i += 7) /* single pixels of the other side everywhere */
+        for (int i = 0; i < W * H; i += 7) /* scattered single pixels of the other side */
             if (b.s.label[i] >= 0) b.s.label[i] ^= 1;
         make(&b, true);
         for (int i = 0; i < W * H; i++)
@@ -204,7 +205,7 @@ static void bright_black_and_thin_things_keep_their_sum(void **state)
     }
 }
 
-static void threads_do_not_change_a_layer(void **state)
+static void thread_counts_give_the_same_layers(void **state)
 {
     (void)state;
     struct bench b[2];
@@ -223,13 +224,13 @@ static void threads_do_not_change_a_layer(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(shares_at_a_depth_edge_are_recovered),
-        cmocka_unit_test(colours_of_the_parts_are_those_of_the_sides),
-        cmocka_unit_test(an_edge_drawn_off_by_a_pixel_is_put_right),
-        cmocka_unit_test(no_jump_no_contrast_or_no_matte_leaves_one_layer),
-        cmocka_unit_test(pixels_that_the_photo_lacks_stay_empty),
-        cmocka_unit_test(bright_black_and_thin_things_keep_their_sum),
-        cmocka_unit_test(threads_do_not_change_a_layer),
+        cmocka_unit_test(alpha_at_a_depth_edge_is_recovered),
+        cmocka_unit_test(the_two_layers_have_the_colours_of_the_two_sides),
+        cmocka_unit_test(a_segment_border_off_by_a_pixel_is_corrected),
+        cmocka_unit_test(without_depth_edge_contrast_or_matte_there_is_one_layer),
+        cmocka_unit_test(invalid_pixels_stay_empty),
+        cmocka_unit_test(layers_of_bright_black_and_thin_objects_sum_to_the_photo),
+        cmocka_unit_test(thread_counts_give_the_same_layers),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

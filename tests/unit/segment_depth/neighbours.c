@@ -1,11 +1,11 @@
-/* neighbours.c - cameras about a patch of points: which are matched, and over what depths. */
+/* neighbours.c - choice of neighbours and depth range for cameras around a patch of points. */
 #include "stages/segment_depth/neighbours.h"
 
 #include "tests/unit/segment_depth/scene.h"
 
 enum { ALL = 63 };
 
-static struct scene scene; /* zeroed by start(): it is large */
+static struct scene scene; /* zeroed by start(); large */
 
 /* The view itself, 160 x 120, at the origin. */
 static void start(void)
@@ -29,23 +29,23 @@ static void patch(int count, unsigned mask)
                     mask);
 }
 
-static int choose(int neighbours[MAX_NEIGHBOURS], int most, struct err *err)
+static int choose(int neighbours[MAX_NEIGHBOURS], int max_count, struct err *err)
 {
-    struct seen_points seen;
+    struct observed_points seen;
     int count = -1;
     *err = (struct err)ERR_INIT;
-    assert_int_equal(seen_points_find(&seen, &scene.set, 0, err), ST_OK);
-    const enum status st = neighbours_choose(neighbours, &count, &scene.set, 0, &seen, most, err);
+    assert_int_equal(observed_points_find(&seen, &scene.set, 0, err), ST_OK);
+    const enum status st = neighbours_choose(neighbours, &count, &scene.set, 0, &seen, max_count, err);
     assert_int_equal(st, count ? ST_OK : ST_DATA);
     for (int i = 0; i < count; i++) {
         assert_in_range(neighbours[i], 1, scene.set.view_count - 1);
         for (int k = 0; k < i; k++) assert_int_not_equal(neighbours[i], neighbours[k]);
     }
-    seen_points_release(&seen);
+    observed_points_release(&seen);
     return count;
 }
 
-static void too_near_and_too_wide_lose(void **state)
+static void small_and_large_angles_are_avoided(void **state)
 {
     (void)state;
     int n[MAX_NEIGHBOURS];
@@ -55,12 +55,12 @@ static void too_near_and_too_wide_lose(void **state)
     at(12, 0, 0);   /* 50 degrees */
     const int left = at(-1.4, 0, 0), right = at(1.5, 0, 0);
     patch(60, ALL);
-    assert_int_equal(choose(n, 16, &err), 2); /* the others are not worth their time */
+    assert_int_equal(choose(n, 16, &err), 2); /* the others add almost nothing */
     assert_int_equal(n[0] + n[1], left + right);
     assert_int_equal(choose(n, 1, &err), 1);
 }
 
-static void as_many_as_asked(void **state)
+static void at_most_the_requested_number_is_chosen(void **state)
 {
     (void)state;
     int n[MAX_NEIGHBOURS];
@@ -68,10 +68,10 @@ static void as_many_as_asked(void **state)
     start();
     for (int i = 0; i < 5; i++) at(1.5 * cos(i), 1.5 * sin(i), 0);
     patch(60, ALL);
-    for (int most = 1; most <= 7; most++) assert_int_equal(choose(n, most, &err), most < 5 ? most : 5);
+    for (int k = 1; k <= 7; k++) assert_int_equal(choose(n, k, &err), k < 5 ? k : 5);
 }
 
-static void the_second_adds_a_direction(void **state)
+static void the_second_neighbour_adds_a_direction(void **state)
 {
     (void)state;
     int n[MAX_NEIGHBOURS];
@@ -85,8 +85,8 @@ static void the_second_adds_a_direction(void **state)
     assert_true(n[0] == above || n[1] == above);
 }
 
-/* A corner of the view with few points is worth a neighbour, though every other one shares more of the many elsewhere; also
- * if the view itself saw none of them. */
+/* A corner of the view with few points gets a neighbour, though others share many more points elsewhere; also if the
+ * view observed none of the corner's points. */
 static void neighbours_cover_the_whole_view(void **state)
 {
     (void)state;
@@ -106,14 +106,14 @@ static void neighbours_cover_the_whole_view(void **state)
     }
 }
 
-static void like_scales_win(void **state)
+static void similar_scales_are_preferred(void **state)
 {
     (void)state;
     int n[MAX_NEIGHBOURS];
     struct err err;
     start();
-    at(7, 0, -20);                     /* 13 degrees, from three times as far */
-    const int beside = at(0.85, 0, 0); /* not quite 5 */
+    at(7, 0, -20);                     /* 13 degrees, from three times the distance */
+    const int beside = at(0.85, 0, 0); /* almost 5 */
     patch(60, ALL);
     choose(n, 1, &err);
     assert_int_equal(n[0], beside);
@@ -132,7 +132,7 @@ static void a_view_that_shares_no_points_is_not_chosen(void **state)
     assert_int_equal(n[0], seen_by);
 }
 
-static void without_points_poses_choose(void **state)
+static void without_points_poses_decide(void **state)
 {
     (void)state;
     for (int points = 0; points < 8; points += 7) { /* none, or too few */
@@ -141,150 +141,150 @@ static void without_points_poses_choose(void **state)
         start();
         at(3, 0, 0);
         const int near = at(0.5, 0, 0);
-        scene_view(&scene, 160, 120, 160, 0.1, 0, 0, 1.2); /* nearer, but turned away */
+        scene_view(&scene, 160, 120, 160, 0.1, 0, 0, 1.2); /* nearer, but facing away */
         patch(points, ALL);
         assert_int_equal(choose(n, 4, &err), 2);
         assert_int_equal(n[0], near);
     }
 }
 
-static void no_view_to_match_with_is_an_error(void **state)
+static void a_view_without_neighbours_is_an_error(void **state)
 {
     (void)state;
     int n[MAX_NEIGHBOURS];
     struct err err;
     for (int which = 0; which < 4; which++) {
         start();
-        if (which == 1) scene_view(&scene, 160, 120, 160, 0, 0, 0, 0.1); /* a tripod: turned, not moved */
+        if (which == 1) scene_view(&scene, 160, 120, 160, 0, 0, 0, 0.1); /* a tripod: rotation only */
         if (which == 1) at(0, 0, 0);
-        if (which >= 2) scene_view(&scene, 160, 120, 160, 1, 0, 0, 2.5); /* looks elsewhere */
+        if (which >= 2) scene_view(&scene, 160, 120, 160, 1, 0, 0, 2.5); /* faces elsewhere */
         if (which != 2) patch(60, which == 3 ? 1 : ALL);
         assert_int_equal(choose(n, 4, &err), 0);
         assert_int_equal(err.status, ST_DATA);
         assert_non_null(strstr(err.text, "view a has no neighbour"));
-        assert_non_null(strstr(err.text, which == 1 ? "among the 2 other"
-                                         : which    ? "among the 1 other"
-                                                    : "among the 0 other"));
+        assert_non_null(strstr(err.text, which == 1 ? "none of the 2 other"
+                                         : which    ? "none of the 1 other"
+                                                    : "none of the 0 other"));
     }
 }
 
-static void points_are_those_in_front_and_where_they_were_observed(void **state)
+static void observed_points_are_in_front_with_small_reprojection_error(void **state)
 {
     (void)state;
-    struct seen_points seen;
+    struct observed_points seen;
     struct err err = ERR_INIT;
     start();
     at(1, 0, 0);
     patch(6, ALL);
     scene.observations[0][1].u += 3;        /* observed elsewhere */
-    scene.observations[0][2].point_id = -1; /* no point */
+    scene.observations[0][2].point_id = -1; /* observation without a point */
     scene.observations[0][3].point_id = 5;  /* not in the list */
     scene.points[4].position.z = -7;        /* behind */
-    scene.observations[0][5].v += 1.5;      /* a little off is believed */
-    assert_int_equal(seen_points_find(&seen, &scene.set, 0, &err), ST_OK);
+    scene.observations[0][5].v += 1.5;      /* a small error is accepted */
+    assert_int_equal(observed_points_find(&seen, &scene.set, 0, &err), ST_OK);
     assert_int_equal(seen.count, 2);
     for (int i = 0; i < 2; i++) {
-        const struct seen_point *p = &seen.points[i];
+        const struct observed_point *p = &seen.points[i];
         const struct vec3 x = scene.points[p->point_idx].position;
         assert_int_equal(p->point_idx, i ? 5 : 0);
         assert_near(p->inverse_z, 1 / x.z, 1e-15);
         assert_near(p->u, 80 + 160 * x.x / x.z, 1e-9);
         assert_near(p->v, 60 + 160 * x.y / x.z, 1e-9);
     }
-    seen_points_release(&seen);
-    seen_points_release(&seen);
-    seen_points_release(NULL);
-    scene.set.model.image_count = 0; /* cameras alone */
-    assert_int_equal(seen_points_find(&seen, &scene.set, 0, &err), ST_OK);
+    observed_points_release(&seen);
+    observed_points_release(&seen);
+    observed_points_release(NULL);
+    scene.set.model.image_count = 0; /* no points */
+    assert_int_equal(observed_points_find(&seen, &scene.set, 0, &err), ST_OK);
     assert_int_equal(seen.count, 0);
-    seen_points_release(&seen);
+    observed_points_release(&seen);
 }
 
-static bool range_of(double *least, double *most)
+static bool range_of(double *min_inverse_z, double *max_inverse_z)
 {
     bool guessed = false;
-    struct seen_points seen;
+    struct observed_points seen;
     struct err err = ERR_INIT;
     const int neighbour = 1;
-    assert_int_equal(seen_points_find(&seen, &scene.set, 0, &err), ST_OK);
-    assert_int_equal(depth_range(least, most, &guessed, &scene.set, 0, &neighbour, 1, &err), ST_OK);
-    seen_points_release(&seen);
-    assert_true(*least > 0 && *least < *most && isfinite(*most));
+    assert_int_equal(observed_points_find(&seen, &scene.set, 0, &err), ST_OK);
+    assert_int_equal(depth_range(min_inverse_z, max_inverse_z, &guessed, &scene.set, 0, &neighbour, 1, &err), ST_OK);
+    observed_points_release(&seen);
+    assert_true(*min_inverse_z > 0 && *min_inverse_z < *max_inverse_z && isfinite(*max_inverse_z));
     return guessed;
 }
 
-static void depths_bracket_the_points(void **state)
+static void the_depth_range_contains_the_points(void **state)
 {
     (void)state;
     for (int count = 8; count <= 200; count += 24) {
-        double least, most;
+        double min_inverse_z, max_inverse_z;
         start();
         at(1, 0, 0);
         patch(count, ALL);
-        assert_false(range_of(&least, &most));
+        assert_false(range_of(&min_inverse_z, &max_inverse_z));
         int outside = 0;
         for (int i = 0; i < count; i++) {
             const double d = 1 / scene.points[i].position.z;
-            outside += d < least || d > most;
+            outside += d < min_inverse_z || d > max_inverse_z;
         }
         assert_int_equal(outside, 0);
-        assert_true(1 / least < 12 && 1 / most > 8);
+        assert_true(1 / min_inverse_z < 12 && 1 / max_inverse_z > 8);
     }
 }
 
-static void a_stray_point_does_not_stretch_the_depths(void **state)
+static void outliers_do_not_widen_the_depth_range(void **state)
 {
     (void)state;
     for (int count = 40; count <= 340; count += 100) {
-        double least, most;
+        double min_inverse_z, max_inverse_z;
         start();
         at(1, 0, 0);
         patch(count, ALL);
         scene_point(&scene, vec3_make(0, 0, 0.01), 1);
         scene_point(&scene, vec3_make(0, 0, 1e6), 1);
-        range_of(&least, &most);
-        assert_true(1 / least < 12 && 1 / most > 8);
+        range_of(&min_inverse_z, &max_inverse_z);
+        assert_true(1 / min_inverse_z < 12 && 1 / max_inverse_z > 8);
     }
 }
 
-static void points_at_one_depth_leave_some_depths(void **state)
+static void points_at_one_depth_give_a_range_with_margins(void **state)
 {
     (void)state;
-    double least, most;
+    double min_inverse_z, max_inverse_z;
     start();
     at(1, 0, 0);
     for (int i = 0; i < 30; i++) scene_point(&scene, vec3_make(0.1 * i - 1.5, 0.1, 10), ALL);
-    range_of(&least, &most);
-    assert_true(least < 0.0975 && most > 0.1025);
+    range_of(&min_inverse_z, &max_inverse_z);
+    assert_true(min_inverse_z < 0.0975 && max_inverse_z > 0.1025);
 }
 
-static void without_points_baselines_tell_the_depths(void **state)
+static void without_points_the_depth_range_comes_from_the_baseline(void **state)
 {
     (void)state;
-    double least, most;
+    double min_inverse_z, max_inverse_z;
     start();
     at(0.5, 0, 0);
-    assert_true(range_of(&least, &most));
-    assert_near(160 * 0.5 * most, 40, 1e-9); /* a quarter of the picture */
-    assert_true(160 * 0.5 * least < 0.1);
+    assert_true(range_of(&min_inverse_z, &max_inverse_z));
+    assert_near(160 * 0.5 * max_inverse_z, 40, 1e-9); /* a quarter of the picture */
+    assert_true(160 * 0.5 * min_inverse_z < 0.1);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(too_near_and_too_wide_lose),
-        cmocka_unit_test(as_many_as_asked),
-        cmocka_unit_test(the_second_adds_a_direction),
+        cmocka_unit_test(small_and_large_angles_are_avoided),
+        cmocka_unit_test(at_most_the_requested_number_is_chosen),
+        cmocka_unit_test(the_second_neighbour_adds_a_direction),
         cmocka_unit_test(neighbours_cover_the_whole_view),
-        cmocka_unit_test(like_scales_win),
+        cmocka_unit_test(similar_scales_are_preferred),
         cmocka_unit_test(a_view_that_shares_no_points_is_not_chosen),
-        cmocka_unit_test(without_points_poses_choose),
-        cmocka_unit_test(no_view_to_match_with_is_an_error),
-        cmocka_unit_test(points_are_those_in_front_and_where_they_were_observed),
-        cmocka_unit_test(depths_bracket_the_points),
-        cmocka_unit_test(a_stray_point_does_not_stretch_the_depths),
-        cmocka_unit_test(points_at_one_depth_leave_some_depths),
-        cmocka_unit_test(without_points_baselines_tell_the_depths),
+        cmocka_unit_test(without_points_poses_decide),
+        cmocka_unit_test(a_view_without_neighbours_is_an_error),
+        cmocka_unit_test(observed_points_are_in_front_with_small_reprojection_error),
+        cmocka_unit_test(the_depth_range_contains_the_points),
+        cmocka_unit_test(outliers_do_not_widen_the_depth_range),
+        cmocka_unit_test(points_at_one_depth_give_a_range_with_margins),
+        cmocka_unit_test(without_points_the_depth_range_comes_from_the_baseline),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-/* oversegment.c - pictures that are formulas, cut into segments whose lists are then counted again pixel by pixel. */
+/* oversegment.c - segments of synthetic pictures, whose lists are checked pixel by pixel. */
 #include "stages/segment_depth/oversegment.h"
 
 #include "tests/unit/segment_depth/scene.h"
@@ -22,13 +22,13 @@ static void noise(int x, int y, float rgba[4])
 static void blobs(int x, int y, float rgba[4])
 {
     for (int c = 0; c < 3; c++) rgba[c] = (float)scene_noise(x / 9.0, y / 9.0, 5 * c);
-    rgba[3] = hypot(x - 40, y - 25) > 12 && (x + 2 * y) % 61 > 3; /* no pixels in a disc and along stripes */
+    rgba[3] = hypot(x - 40, y - 25) > 12 && (x + 2 * y) % 61 > 3; /* invalid in a disc and along stripes */
 }
 
 static void islands(int x, int y, float rgba[4])
 {
     noise(x, y, rgba);
-    rgba[3] = x % 3 == 0 && y % 3 == 0; /* pixels without any neighbour */
+    rgba[3] = x % 3 == 0 && y % 3 == 0; /* isolated pixels */
 }
 
 static void nothing(int x, int y, float rgba[4])
@@ -71,7 +71,7 @@ static void release(struct segmentation *s, struct gamma_image *g)
     gamma_image_release(g);
 }
 
-/* Walks from a segment's first pixel over its own pixels; how many it meets. */
+/* Number of the segment's pixels that are connected to its first one. */
 static int walk(const struct segmentation *s, int segment, uint8_t *met, int *queue)
 {
     int head = 0, tail = 0;
@@ -89,7 +89,7 @@ static int walk(const struct segmentation *s, int segment, uint8_t *met, int *qu
     return tail;
 }
 
-/* Pixel sides between segment a and segment b (b < 0: any other). */
+/* Pixel sides shared by segment a and segment b (b < 0: all others). */
 static int border(const struct segmentation *s, int a, int b)
 {
     int sides = 0;
@@ -105,7 +105,7 @@ static int border(const struct segmentation *s, int a, int b)
     return sides;
 }
 
-static void must_be_sound(const struct segmentation *s, const struct gamma_image *g)
+static void check_invariants(const struct segmentation *s, const struct gamma_image *g)
 {
     const int pixels = s->width * s->height;
     uint8_t *met = calloc((size_t)pixels, 1);
@@ -141,15 +141,15 @@ static void must_be_sound(const struct segmentation *s, const struct gamma_image
         assert_int_equal(walk(s, k, met, queue), f->pixels); /* connected */
 
         int sides = 0;
-        for (int t = s->first_touch[k]; t < s->first_touch[k + 1]; t++) {
-            const struct touch *a = &s->touches[t], *b = NULL;
+        for (int t = s->first_border[k]; t < s->first_border[k + 1]; t++) {
+            const struct border *a = &s->borders[t], *b = NULL;
             assert_true(a->other != k && a->other >= 0 && a->other < s->count);
-            assert_true(t == s->first_touch[k] || a[-1].other < a->other);
+            assert_true(t == s->first_border[k] || a[-1].other < a->other);
             assert_int_equal(a->length, border(s, k, a->other));
             assert_true(a->edge >= 0 && a->edge < s->edge_count && a->contrast >= 0 && isfinite(a->contrast));
             assert_true(a->u >= (float)x0 && a->u <= (float)x1 + 1 && a->v >= (float)y0 && a->v <= (float)y1 + 1);
-            for (int r = s->first_touch[a->other]; r < s->first_touch[a->other + 1]; r++)
-                if (s->touches[r].other == k) b = &s->touches[r];
+            for (int r = s->first_border[a->other]; r < s->first_border[a->other + 1]; r++)
+                if (s->borders[r].other == k) b = &s->borders[r];
             assert_non_null(b);
             assert_true(b->edge == a->edge && b->length == a->length);
             assert_memory_equal(&b->u, &a->u, sizeof a->u);
@@ -157,10 +157,10 @@ static void must_be_sound(const struct segmentation *s, const struct gamma_image
             assert_memory_equal(&b->contrast, &a->contrast, sizeof a->contrast);
             sides += a->length;
         }
-        assert_int_equal(sides, border(s, k, -1)); /* none left out */
+        assert_int_equal(sides, border(s, k, -1)); /* borders are complete */
     }
     assert_int_equal(listed, valid);
-    assert_int_equal(s->first_touch[s->count], 2 * s->edge_count);
+    assert_int_equal(s->first_border[s->count], 2 * s->edge_count);
     free(met);
     free(queue);
 }
@@ -176,12 +176,12 @@ static void every_valid_pixel_is_in_one_connected_segment(void **state)
             struct segmentation s;
             struct gamma_image g;
             cut(&s, &g, 97, 61, paints[k], sizes[i], compactness[(i + k) % 3]);
-            must_be_sound(&s, &g);
+            check_invariants(&s, &g);
             release(&s, &g);
         }
 }
 
-static void segments_are_about_as_large_as_asked(void **state)
+static void segments_have_about_the_requested_size(void **state)
 {
     (void)state;
     static paint_fn *const paints[] = {grey, noise, disc};
@@ -212,13 +212,13 @@ static void a_uniform_picture_gives_a_grid(void **state)
     }
     assert_int_equal(s.edge_count, 7 * 6 + 8 * 5);
     for (int t = 0; t < 2 * s.edge_count; t++) {
-        assert_int_equal(s.touches[t].length, 8);
-        assert_near(s.touches[t].contrast, 0, 1e-5);
+        assert_int_equal(s.borders[t].length, 8);
+        assert_near(s.borders[t].contrast, 0, 1e-5);
     }
     release(&s, &g);
 }
 
-static void odd_sizes_are_cut_too(void **state)
+static void odd_picture_sizes_work(void **state)
 {
     (void)state;
     static const int sizes[][2] = {{1, 1}, {1, 500}, {500, 1}, {2, 2}, {3, 40}, {20000, 16}, {16, 3000}};
@@ -228,19 +228,19 @@ static void odd_sizes_are_cut_too(void **state)
             struct segmentation s;
             struct gamma_image g;
             cut(&s, &g, sizes[i][0], sizes[i][1], paints[k], 64, 8);
-            must_be_sound(&s, &g);
+            check_invariants(&s, &g);
             assert_true(k == 2 ? s.count == 0 : s.count > 0);
             release(&s, &g);
         }
     struct segmentation s;
     struct gamma_image g;
-    cut(&s, &g, 30, 20, noise, 100000, 8); /* one segment larger than the picture */
+    cut(&s, &g, 30, 20, noise, 100000, 8); /* a segment larger than the picture */
     assert_int_equal(s.count, 1);
     assert_int_equal(s.segments[0].pixels, 600);
     release(&s, &g);
 }
 
-/* Pixels that belong to a segment mostly on the other side of the disc's edge. */
+/* The fraction of pixels in a segment that lies mostly on the other side of the disc's edge. */
 static double wrong_side(const struct segmentation *s)
 {
     int wrong = 0;
@@ -263,12 +263,12 @@ static void segments_respect_a_colour_edge(void **state)
     cut(&s, &g, 120, 90, disc, 64, 8);
     assert_true(wrong_side(&s) < 0.005); /* the rim itself is 1.7 % of the pixels */
     release(&s, &g);
-    cut(&s, &g, 120, 90, disc, 64, 100); /* squares do not */
+    cut(&s, &g, 120, 90, disc, 64, 100); /* square segments do not respect it */
     assert_true(wrong_side(&s) > 0.01);
     release(&s, &g);
 }
 
-static void a_border_knows_its_contrast(void **state)
+static void borders_store_their_contrast(void **state)
 {
     (void)state;
     struct segmentation s;
@@ -277,14 +277,14 @@ static void a_border_knows_its_contrast(void **state)
     int across_count = 0, within_count = 0;
     cut(&s, &g, 120, 90, disc, 64, 8);
     for (int k = 0; k < s.count; k++)
-        for (int t = s.first_touch[k]; t < s.first_touch[k + 1]; t++) {
+        for (int t = s.first_border[k]; t < s.first_border[k + 1]; t++) {
             const double a = hypot(s.segments[k].cx - 60, s.segments[k].cy - 45);
-            const double b = hypot(s.segments[s.touches[t].other].cx - 60, s.segments[s.touches[t].other].cy - 45);
+            const double b = hypot(s.segments[s.borders[t].other].cx - 60, s.segments[s.borders[t].other].cy - 45);
             if ((a < 30) != (b < 30)) {
-                across += (double)s.touches[t].contrast;
+                across += (double)s.borders[t].contrast;
                 across_count++;
             } else {
-                within += (double)s.touches[t].contrast;
+                within += (double)s.borders[t].contrast;
                 within_count++;
             }
         }
@@ -293,7 +293,7 @@ static void a_border_knows_its_contrast(void **state)
     release(&s, &g);
 }
 
-static void threads_do_not_change_a_segment(void **state)
+static void thread_counts_give_the_same_segments(void **state)
 {
     (void)state;
     struct segmentation s[2];
@@ -307,7 +307,7 @@ static void threads_do_not_change_a_segment(void **state)
     assert_int_equal(s[0].edge_count, s[1].edge_count);
     assert_memory_equal(s[0].label, s[1].label, 97 * 61 * sizeof *s[0].label);
     assert_memory_equal(s[0].segments, s[1].segments, (size_t)s[0].count * sizeof *s[0].segments);
-    assert_memory_equal(s[0].touches, s[1].touches, (size_t)s[0].edge_count * 2 * sizeof *s[0].touches);
+    assert_memory_equal(s[0].borders, s[1].borders, (size_t)s[0].edge_count * 2 * sizeof *s[0].borders);
     for (int k = 0; k < 2; k++) release(&s[k], &g[k]);
 }
 
@@ -324,12 +324,12 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_valid_pixel_is_in_one_connected_segment),
-        cmocka_unit_test(segments_are_about_as_large_as_asked),
+        cmocka_unit_test(segments_have_about_the_requested_size),
         cmocka_unit_test(a_uniform_picture_gives_a_grid),
-        cmocka_unit_test(odd_sizes_are_cut_too),
+        cmocka_unit_test(odd_picture_sizes_work),
         cmocka_unit_test(segments_respect_a_colour_edge),
-        cmocka_unit_test(a_border_knows_its_contrast),
-        cmocka_unit_test(threads_do_not_change_a_segment),
+        cmocka_unit_test(borders_store_their_contrast),
+        cmocka_unit_test(thread_counts_give_the_same_segments),
         cmocka_unit_test(release_may_be_repeated),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

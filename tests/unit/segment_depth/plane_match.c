@@ -1,4 +1,4 @@
-/* plane_match.c - the matching cost on photographs of planes that are known, at those planes and off them. */
+/* plane_match.c - the matching cost on photographs of known planes, at those planes and at others. */
 #include "stages/segment_depth/plane_match.h"
 
 #include "tests/unit/segment_depth/scene.h"
@@ -11,7 +11,7 @@ struct bench {
     struct scene scene;
     struct gamma_image reference;
     struct segmentation segments;
-    struct seen_points seen;
+    struct observed_points seen;
     struct matcher matcher;
     struct plane truth; /* of the wall in view 0 */
     double step;        /* of 1/z: a pixel in view 1 */
@@ -19,7 +19,7 @@ struct bench {
 
 static struct bench b; /* large; zeroed by start() */
 
-/* View 0 sees nothing but a textured wall that leans. */
+/* View 0 shows a slanted textured wall only. */
 static void start(void)
 {
     memset(&b, 0, sizeof b);
@@ -43,7 +43,7 @@ static void match_all(void)
     assert_int_equal(gamma_image_make(&b.reference, &photo, tone, &err), ST_OK);
     image_release(&photo);
     assert_int_equal(oversegment(&b.segments, &b.reference, 64, 8, &err), ST_OK);
-    assert_int_equal(seen_points_find(&b.seen, &b.scene.set, 0, &err), ST_OK);
+    assert_int_equal(observed_points_find(&b.seen, &b.scene.set, 0, &err), ST_OK);
     assert_int_equal(matcher_init(&b.matcher, &b.segments, &b.reference, &err), ST_OK);
     for (int k = 1; k < b.scene.set.view_count; k++) {
         struct gamma_image other = {0};
@@ -63,7 +63,7 @@ static void match_all(void)
 static void finish(void)
 {
     matcher_release(&b.matcher);
-    seen_points_release(&b.seen);
+    observed_points_release(&b.seen);
     segmentation_release(&b.segments);
     gamma_image_release(&b.reference);
 }
@@ -75,7 +75,7 @@ static struct plane off_by(double steps)
     return p;
 }
 
-/* Does the first neighbour see the whole segment, also if it is a few steps off? */
+/* Whether the first neighbour sees the whole segment, even if it is a few steps off. */
 static bool well_inside(int segment)
 {
     const struct segment *g = &b.segments.segments[segment];
@@ -91,8 +91,8 @@ static bool well_inside(int segment)
     return true;
 }
 
-/* Means over the segments that view 1 sees wholly: the cost of the truth, how much more the truth and a step costs, and
- * the part of segments whose least cost is at the truth. */
+/* Means over the segments that view 1 sees wholly: the cost of the true plane, the additional cost one step off, and
+ * the fraction of segments whose minimum cost is at the truth. */
 struct verdict {
     double truth, rise, found;
     int count;
@@ -123,7 +123,7 @@ static struct verdict judge(void)
     return v;
 }
 
-static void the_true_plane_costs_least(void **state)
+static void the_true_plane_has_minimum_cost(void **state)
 {
     (void)state;
     start();
@@ -134,7 +134,7 @@ static void the_true_plane_costs_least(void **state)
     finish();
 }
 
-static void slant_shows_in_the_cost(void **state)
+static void a_wrong_slant_raises_the_cost(void **state)
 {
     (void)state;
     int slanted = 0, count = 0;
@@ -152,7 +152,7 @@ static void slant_shows_in_the_cost(void **state)
     finish();
 }
 
-static void every_fourth_pixel_says_about_the_same(void **state)
+static void the_rough_cost_approximates_the_full_one(void **state)
 {
     (void)state;
     double sum = 0;
@@ -162,7 +162,7 @@ static void every_fourth_pixel_says_about_the_same(void **state)
     match_all();
     for (int i = 0; i < b.segments.count; i++)
         for (int k = 0; k < b.segments.segments[i].pixels / 4 - 2;
-             k++) { /* those of even columns and rows come first */
+             k++) { /* pixels of even columns and rows come first */
             const int at = b.matcher.first[i] + k;
             assert_true(((int)b.matcher.x[at] % 2 == 0 && (int)b.matcher.y[at] % 2 == 0) ||
                         k > b.segments.segments[i].pixels / 6);
@@ -175,7 +175,7 @@ static void every_fourth_pixel_says_about_the_same(void **state)
     finish();
 }
 
-static void exposure_and_colour_of_light_do_not_matter(void **state)
+static void exposure_and_light_colour_do_not_change_the_cost(void **state)
 {
     (void)state;
     static const double gains[] = {0.5, 2, 0.3};
@@ -190,8 +190,8 @@ static void exposure_and_colour_of_light_do_not_matter(void **state)
     }
 }
 
-/* With too few points to compare colours, gradients relative to their surroundings carry the match. */
-static void a_small_change_of_exposure_needs_no_points(void **state)
+/* With too few points to compare colours, normalized gradients decide the match. */
+static void a_small_exposure_change_matches_without_points(void **state)
 {
     (void)state;
     struct err err = ERR_INIT;
@@ -201,7 +201,7 @@ static void a_small_change_of_exposure_needs_no_points(void **state)
     match_all();
     struct gamma_image other = {0};
     struct image photo = {0};
-    const struct seen_points none = {0};
+    const struct observed_points none = {0};
     struct matcher m = {0};
     assert_int_equal(matcher_init(&m, &b.segments, &b.reference, &err), ST_OK);
     assert_int_equal(scene_photo(&b.scene, 1, &photo, &err), ST_OK);
@@ -227,7 +227,7 @@ static void a_finer_neighbour_is_halved(void **state)
     finish();
 }
 
-static void a_coarser_neighbour_still_tells(void **state)
+static void a_coarser_neighbour_matches(void **state)
 {
     (void)state;
     start();
@@ -238,7 +238,7 @@ static void a_coarser_neighbour_still_tells(void **state)
     finish();
 }
 
-static void a_neighbour_held_on_its_side_matches(void **state)
+static void a_neighbour_rotated_by_90_degrees_matches(void **state)
 {
     (void)state;
     start();
@@ -251,7 +251,7 @@ static void a_neighbour_held_on_its_side_matches(void **state)
     finish();
 }
 
-static void a_turned_and_advanced_neighbour_matches(void **state)
+static void a_rotated_and_advanced_neighbour_matches(void **state)
 {
     (void)state;
     start();
@@ -262,15 +262,15 @@ static void a_turned_and_advanced_neighbour_matches(void **state)
     finish();
 }
 
-static void who_does_not_see_the_segment_has_no_opinion(void **state)
+static void neighbours_that_do_not_see_the_segment_cost_the_same_for_any_plane(void **state)
 {
     (void)state;
     start();
-    scene_view(&b.scene, W, H, FOCAL, 0.5, 0, 0, M_PI);       /* looks back */
-    scene_view(&b.scene, W, H, FOCAL, 0.5, 0, 0, M_PI / 2.5); /* and aside */
+    scene_view(&b.scene, W, H, FOCAL, 0.5, 0, 0, M_PI);       /* faces backwards */
+    scene_view(&b.scene, W, H, FOCAL, 0.5, 0, 0, M_PI / 2.5); /* faces sideways */
     match_all();
     const float unseen = match_cost(&b.matcher, 0, b.truth, 0);
-    assert_true(unseen > 0.1f && unseen < 0.9f); /* dearer than a good match, cheaper than a chance one */
+    assert_true(unseen > 0.1f && unseen < 0.9f); /* between a good match and a chance one */
     for (int i = 0; i < b.segments.count; i++)
         for (int k = -1; k <= 1; k++) {
             assert_near(match_cost(&b.matcher, i, off_by(k), 0), unseen, 1e-7);
@@ -282,13 +282,13 @@ static void who_does_not_see_the_segment_has_no_opinion(void **state)
     finish();
 }
 
-static void a_worse_neighbour_counts_less_but_counts(void **state)
+static void a_worse_neighbour_has_a_lower_weight(void **state)
 {
     (void)state;
     start();
     scene_view(&b.scene, W, H, FOCAL, 0.5, 0, 0, 0);
     scene_view(&b.scene, W, H, FOCAL, -0.5, 0, 0, 0);
-    b.scene.gain[2] = 0; /* black: all of it is a mismatch */
+    b.scene.gain[2] = 0; /* black: all pixels mismatch */
     match_all();
     const struct verdict v = judge();
     assert_true(v.truth > 0.15 && v.truth < 0.35 && v.found > 0.95);
@@ -313,9 +313,9 @@ static void any_plane_has_a_cost_between_0_and_1(void **state)
     finish();
 }
 
-/* After calibration a good match costs about 0 and a chance one about 1, whatever the pictures' noise: two depths far off count as
- * chance. Calibrated costs are the raw ones, shifted and scaled. */
-static void calibration_puts_good_matches_at_0_and_chance_at_1(void **state)
+/* After calibration a good match costs about 0 and a chance one about 1, for any noise; two depths far off are chance
+ * matches. Calibrated costs are a linear function of the raw ones. */
+static void calibration_maps_good_matches_to_0_and_chance_to_1(void **state)
 {
     (void)state;
     static const double contrasts[] = {0.8, 0.2, 0.05};
@@ -332,11 +332,12 @@ static void calibration_puts_good_matches_at_0_and_chance_at_1(void **state)
         for (int i = 0; i < b.segments.count; i++)
             for (int k = 0; k < 2; k++) raw[k][i] = match_cost(&b.matcher, i, off_by(5 * k), 0);
         assert_int_equal(matcher_calibrate(&b.matcher, 0.15, 0.4, &err), ST_OK);
-        assert_true(b.matcher.good >= 0 && b.matcher.random > b.matcher.good && b.matcher.random <= 1);
+        assert_true(b.matcher.good_cost >= 0 && b.matcher.chance_cost > b.matcher.good_cost &&
+                    b.matcher.chance_cost <= 1);
         for (int i = 0; i < b.segments.count; i++) {
             if (!well_inside(i)) continue;
             const float at = match_cost(&b.matcher, i, b.truth, 0), off = match_cost(&b.matcher, i, off_by(5), 0);
-            const float wanted = (raw[1][i] - b.matcher.good) / (b.matcher.random - b.matcher.good);
+            const float wanted = (raw[1][i] - b.matcher.good_cost) / (b.matcher.chance_cost - b.matcher.good_cost);
             worst_fit = fmax(worst_fit, fabs((double)(off - fminf(wanted, MATCH_WORST))));
             good += (double)at;
             chance += (double)off;
@@ -350,19 +351,19 @@ static void calibration_puts_good_matches_at_0_and_chance_at_1(void **state)
     }
 }
 
-/* Nothing to measure, or nothing to tell apart: costs stay finite and bounded above. */
-static void calibration_of_pictures_that_tell_nothing_stays_finite(void **state)
+/* No visible segment, or no texture: costs stay finite and bounded. */
+static void calibration_without_texture_stays_finite(void **state)
 {
     struct err err = ERR_INIT;
     (void)state;
     for (int which = 0; which < 3; which++) {
         start();
         if (which == 0) b.scene.surfaces[0].contrast = 0;
-        scene_view(&b.scene, W, H, FOCAL, 0.5, 0, 0, which == 1 ? M_PI : 0); /* looks back */
+        scene_view(&b.scene, W, H, FOCAL, 0.5, 0, 0, which == 1 ? M_PI : 0); /* faces backwards */
         if (which == 2) b.scene.gain[1] = 0;                                 /* black */
         match_all();
         assert_int_equal(matcher_calibrate(&b.matcher, 0.15, 0.4, &err), ST_OK);
-        assert_true(b.matcher.random - b.matcher.good > 0.01f);
+        assert_true(b.matcher.chance_cost - b.matcher.good_cost > 0.01f);
         for (int i = 0; i < b.segments.count; i += 3)
             for (int k = -6; k <= 6; k += 3) {
                 const float cost = match_cost(&b.matcher, i, off_by(k), 0);
@@ -372,9 +373,10 @@ static void calibration_of_pictures_that_tell_nothing_stays_finite(void **state)
     }
 }
 
-/* Of raw costs (not calibrated), so that black is the same everywhere. Neighbour 1 is black: it costs less when it is said to be hidden; the good one, said to be hidden, costs more than what it shows.
- * All hidden is one fixed cost, between a good match and a chance one, whatever the plane. */
-static void a_neighbour_that_is_hidden_costs_a_fixed_amount(void **state)
+/* With raw costs (not calibrated), so that black is equal everywhere. Neighbour 1 is black: it costs less if it is
+ * declared occluded; the other one costs more if it is declared occluded. All occluded: a fixed cost between a good
+ * match and a chance one, for any plane. */
+static void an_occluded_neighbour_costs_a_fixed_amount(void **state)
 {
     (void)state;
     start();
@@ -387,17 +389,17 @@ static void a_neighbour_that_is_hidden_costs_a_fixed_amount(void **state)
     for (int i = 0; i < b.segments.count; i++) {
         for (int k = -9; k <= 9; k += 3) assert_near(match_cost(&b.matcher, i, off_by(k), 3), hidden, 1e-6);
         assert_near(match_cost(&b.matcher, i, (struct plane){1, 2, 3}, 3), hidden,
-                    1e-6); /* whom it could not see either */
+                    1e-6); /* a plane outside the neighbours' frames */
         assert_near(match_cost_rough(&b.matcher, i, b.truth, 3), hidden, 1e-6);
         if (!well_inside(i)) continue;
         assert_true(match_cost(&b.matcher, i, b.truth, 1) > match_cost(&b.matcher, i, b.truth, 0));
         assert_near(match_cost(&b.matcher, i, b.truth, 4), match_cost(&b.matcher, i, b.truth, 0),
-                    0); /* there is no such */
+                    0); /* a bit of no neighbour */
     }
     finish();
 }
 
-static void the_shift_of_a_sideways_step_is_focal_times_baseline(void **state)
+static void the_disparity_of_a_sideways_step_is_focal_length_times_baseline(void **state)
 {
     (void)state;
     start();
@@ -409,7 +411,7 @@ static void the_shift_of_a_sideways_step_is_focal_times_baseline(void **state)
     finish();
 }
 
-static void pictures_of_a_pixel_and_of_none_are_matched(void **state)
+static void pictures_of_one_pixel_and_of_none_are_matched(void **state)
 {
     (void)state;
     for (int k = 0; k < 2; k++) {
@@ -437,24 +439,24 @@ static void pictures_of_a_pixel_and_of_none_are_matched(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_true_plane_costs_least),
-        cmocka_unit_test(slant_shows_in_the_cost),
-        cmocka_unit_test(every_fourth_pixel_says_about_the_same),
-        cmocka_unit_test(exposure_and_colour_of_light_do_not_matter),
-        cmocka_unit_test(a_small_change_of_exposure_needs_no_points),
+        cmocka_unit_test(the_true_plane_has_minimum_cost),
+        cmocka_unit_test(a_wrong_slant_raises_the_cost),
+        cmocka_unit_test(the_rough_cost_approximates_the_full_one),
+        cmocka_unit_test(exposure_and_light_colour_do_not_change_the_cost),
+        cmocka_unit_test(a_small_exposure_change_matches_without_points),
         cmocka_unit_test(a_finer_neighbour_is_halved),
-        cmocka_unit_test(a_coarser_neighbour_still_tells),
-        cmocka_unit_test(a_neighbour_held_on_its_side_matches),
-        cmocka_unit_test(a_turned_and_advanced_neighbour_matches),
-        cmocka_unit_test(who_does_not_see_the_segment_has_no_opinion),
-        cmocka_unit_test(a_worse_neighbour_counts_less_but_counts),
+        cmocka_unit_test(a_coarser_neighbour_matches),
+        cmocka_unit_test(a_neighbour_rotated_by_90_degrees_matches),
+        cmocka_unit_test(a_rotated_and_advanced_neighbour_matches),
+        cmocka_unit_test(neighbours_that_do_not_see_the_segment_cost_the_same_for_any_plane),
+        cmocka_unit_test(a_worse_neighbour_has_a_lower_weight),
         cmocka_unit_test(any_plane_has_a_cost_between_0_and_1),
-        cmocka_unit_test(calibration_puts_good_matches_at_0_and_chance_at_1),
-        cmocka_unit_test(calibration_of_pictures_that_tell_nothing_stays_finite),
-        cmocka_unit_test(a_neighbour_that_is_hidden_costs_a_fixed_amount),
-        cmocka_unit_test(the_shift_of_a_sideways_step_is_focal_times_baseline),
-        cmocka_unit_test(pictures_of_a_pixel_and_of_none_are_matched),
+        cmocka_unit_test(calibration_maps_good_matches_to_0_and_chance_to_1),
+        cmocka_unit_test(calibration_without_texture_stays_finite),
+        cmocka_unit_test(an_occluded_neighbour_costs_a_fixed_amount),
+        cmocka_unit_test(the_disparity_of_a_sideways_step_is_focal_length_times_baseline),
+        cmocka_unit_test(pictures_of_one_pixel_and_of_none_are_matched),
     };
-    parallel_set_threads(1); /* tests run side by side */
+    parallel_set_threads(1); /* tests run in parallel */
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-/* plane_problem.c - the energy's pairs are a metric in the planes, and its terms are what the header says. */
+/* plane_problem.c - the energy's terms are those of the header, and its pairwise terms are a metric. */
 #include "stages/segment_depth/plane_problem.h"
 
 #include "tests/unit/segment_depth/problem.h"
@@ -13,7 +13,7 @@ static void start(void)
     bench_make(0.15, 0.45);
 }
 
-/* Some alike, some far apart, some slanted, some equal. */
+/* Random planes: similar, distant, slanted, equal. */
 static struct plane draw(int i, int k)
 {
     const double size = b.problem.step * pow(10, 3 * scene_hash(i, k, 1) - 1);
@@ -23,80 +23,79 @@ static struct plane draw(int i, int k)
     return k > 0 && i % 7 == 0 ? draw(i, k - 1) : p;
 }
 
-static int twin(int segment, int touch)
+static int twin(int segment, int border)
 {
-    const int j = b.segments.touches[touch].other;
-    for (int t = b.segments.first_touch[j]; t < b.segments.first_touch[j + 1]; t++)
-        if (b.segments.touches[t].other == segment) return t;
+    const int j = b.segments.borders[border].other;
+    for (int t = b.segments.first_border[j]; t < b.segments.first_border[j + 1]; t++)
+        if (b.segments.borders[t].other == segment) return t;
     fail_msg("segment %d touches %d but not the other way round", segment, j);
     return -1;
 }
 
-static void a_pair_is_a_metric(void **state)
+static void the_pairwise_term_is_a_metric(void **state)
 {
     (void)state;
-    int cut_off = 0, count = 0;
+    int truncated = 0, count = 0;
     start();
     for (int i = 0; i < b.segments.count; i++)
-        for (int t = b.segments.first_touch[i]; t < b.segments.first_touch[i + 1]; t++, count++) {
-            const int j = b.segments.touches[t].other, back = twin(i, t);
+        for (int t = b.segments.first_border[i]; t < b.segments.first_border[i + 1]; t++, count++) {
+            const int j = b.segments.borders[t].other, back = twin(i, t);
             const struct plane p = draw(count, 0), q = draw(count, 1), r = draw(count, 2);
-            const double pq = problem_pair(&b.problem, i, t, p, q), qr = problem_pair(&b.problem, i, t, q, r);
-            const double most = b.params.smoothness * (double)b.weights[t];
-            assert_near(problem_pair(&b.problem, i, t, p, p), 0, 0);
-            assert_true(pq >= 0 && pq <= most);
-            assert_near(problem_pair(&b.problem, i, t, q, p), pq, 1e-15);
-            assert_near(problem_pair(&b.problem, j, back, q, p), pq,
-                        1e-12); /* seen from the other side of the border */
-            assert_true(problem_pair(&b.problem, i, t, p, r) <= pq + qr + 1e-12);
-            cut_off += pq >= most - 1e-12;
+            const double pq = pairwise_cost(&b.problem, i, t, p, q), qr = pairwise_cost(&b.problem, i, t, q, r);
+            const double max_cost = b.params.smoothness * (double)b.weights[t];
+            assert_near(pairwise_cost(&b.problem, i, t, p, p), 0, 0);
+            assert_true(pq >= 0 && pq <= max_cost);
+            assert_near(pairwise_cost(&b.problem, i, t, q, p), pq, 1e-15);
+            assert_near(pairwise_cost(&b.problem, j, back, q, p), pq, 1e-12); /* from the other side of the border */
+            assert_true(pairwise_cost(&b.problem, i, t, p, r) <= pq + qr + 1e-12);
+            truncated += pq >= max_cost - 1e-12;
         }
-    assert_true(count > 500 && cut_off > 20 && cut_off < count / 2);
+    assert_true(count > 500 && truncated > 20 && truncated < count / 2);
     bench_release();
 }
 
-/* Constant planes n steps apart cost n / jump of the whole, up to the whole. */
-static void a_gap_costs_by_its_steps_up_to_the_jump(void **state)
+/* Constant planes n steps apart cost min(n / jump, 1) of the weight. */
+static void the_pairwise_term_is_linear_up_to_the_jump(void **state)
 {
     (void)state;
     start();
     b.params.jump = 8;
-    for (int t = 0; t < b.segments.first_touch[1]; t++)
+    for (int t = 0; t < b.segments.first_border[1]; t++)
         for (int n = -20; n <= 20; n++) {
             const struct plane p = {0, 0, 0.3}, q = {0, 0, 0.3 + n * b.problem.step};
-            assert_near(problem_pair(&b.problem, 0, t, p, q),
+            assert_near(pairwise_cost(&b.problem, 0, t, p, q),
                         b.params.smoothness * (double)b.weights[t] * fmin(abs(n) / 8.0, 1), 1e-9);
         }
     bench_release();
 }
 
-/* Two segments on one slanted plane cost nothing; facing planes at those depths, or a fold at the border, do. */
-static void a_surface_slants_for_nothing_but_a_fold_costs(void **state)
+/* Two segments on one slanted plane cost nothing; constant planes at those depths, or a fold at the border, do. */
+static void a_slanted_surface_is_free_but_a_fold_costs(void **state)
 {
     (void)state;
     start();
     for (int i = 0; i < b.segments.count; i += 5)
-        for (int t = b.segments.first_touch[i]; t < b.segments.first_touch[i + 1]; t++) {
-            const struct segment *g = &b.segments.segments[i], *h = &b.segments.segments[b.segments.touches[t].other];
-            const double u = (double)b.segments.touches[t].u, v = (double)b.segments.touches[t].v;
+        for (int t = b.segments.first_border[i]; t < b.segments.first_border[i + 1]; t++) {
+            const struct segment *g = &b.segments.segments[i], *h = &b.segments.segments[b.segments.borders[t].other];
+            const double u = (double)b.segments.borders[t].u, v = (double)b.segments.borders[t].v;
             const double a = b.problem.step / 4 * (g->cx > h->cx ? 1 : -1), across = fabs(g->cx - h->cx);
             const struct plane slanted = {a, 0, 0.3 - a * u},
                                folded = {-a, 0, 0.3 + a * u}; /* they meet at the border */
-            assert_near(problem_pair(&b.problem, i, t, slanted, slanted), 0, 0);
+            assert_near(pairwise_cost(&b.problem, i, t, slanted, slanted), 0, 0);
             if (across < 3) continue;
-            assert_true(problem_pair(&b.problem, i, t, slanted, folded) > 0);
-            assert_true(problem_pair(&b.problem, i, t, (struct plane){0, 0, plane_at(slanted, g->cx, g->cy)},
-                                     (struct plane){0, 0, plane_at(slanted, h->cx, h->cy)}) > 0);
+            assert_true(pairwise_cost(&b.problem, i, t, slanted, folded) > 0);
+            assert_true(pairwise_cost(&b.problem, i, t, (struct plane){0, 0, plane_at(slanted, g->cx, g->cy)},
+                                      (struct plane){0, 0, plane_at(slanted, h->cx, h->cy)}) > 0);
             assert_near(plane_at(slanted, u, v), plane_at(folded, u, v), 1e-12);
         }
     bench_release();
 }
 
-/* At the middle, and more widely over the bounding box and a margin, which four corners bound. */
-static void a_plane_that_leaves_the_depths_is_out_of_the_question(void **state)
+/* At the centroid, and with wider limits at the corners of the bounding box with its margin. */
+static void a_plane_outside_the_depth_range_is_forbidden(void **state)
 {
     (void)state;
-    const double low = PLANE_LEAST * 0.15, high = PLANE_MOST * 0.45;
+    const double low = PLANE_MIN_FACTOR * 0.15, high = PLANE_MAX_FACTOR * 0.45;
     int never = 0, count = 0;
     start();
     for (int i = 0; i < b.segments.count; i++)
@@ -109,18 +108,18 @@ static void a_plane_that_leaves_the_depths_is_out_of_the_question(void **state)
             for (int y = g->y0 - 3; y <= g->y1 + 4; y++)
                 for (int x = g->x0 - 3; x <= g->x1 + 4; x++)
                     leaves = leaves || !(plane_at(p, x, y) >= low && plane_at(p, x, y) <= high);
-            const float cost = problem_unary(&b.problem, i, p, INFINITY);
-            assert_true(leaves ? cost >= PLANE_NEVER : cost < PLANE_NEVER / 100);
+            const float cost = unary_cost(&b.problem, i, p, INFINITY);
+            assert_true(leaves ? cost >= PLANE_FORBIDDEN : cost < PLANE_FORBIDDEN / 100);
             never += leaves;
         }
     assert_true(never > count / 5 && never < 4 * count / 5);
     const struct plane no[] = {{NAN, 0, 0.3}, {0, INFINITY, 0.3}, {0, 0, NAN}, {0, 0, -INFINITY}, {1e300, -1e300, 0.3}};
-    for (int k = 0; k < 5; k++) assert_true(problem_unary(&b.problem, 7, no[k], INFINITY) >= PLANE_NEVER);
+    for (int k = 0; k < 5; k++) assert_true(unary_cost(&b.problem, 7, no[k], INFINITY) >= PLANE_FORBIDDEN);
     bench_release();
 }
 
 /* size (match + points) + slant. */
-static void the_unary_is_the_sum_of_its_terms(void **state)
+static void the_unary_term_is_the_sum_of_its_parts(void **state)
 {
     (void)state;
     start();
@@ -135,15 +134,15 @@ static void the_unary_is_the_sum_of_its_terms(void **state)
                 const float match = rough ? match_cost_rough(&b.matcher, i, p, 0) : match_cost(&b.matcher, i, p, 0);
                 const double points = point_evidence_cost(&b.points, i, p, g->cx, g->cy);
                 b.problem.rough = rough;
-                assert_near(problem_unary(&b.problem, i, p, INFINITY),
+                assert_near(unary_cost(&b.problem, i, p, INFINITY),
                             g->pixels / 64.0 * ((double)match + points) + 0.125 * k, 1e-5);
             }
     }
     bench_release();
 }
 
-/* Screening never changes what costs no more than `most`, and gives up what surely costs more. */
-static void a_plane_that_cannot_be_good_enough_is_not_matched(void **state)
+/* The limit never changes costs up to it, and forbids planes that certainly cost more. */
+static void planes_above_the_limit_are_not_matched(void **state)
 {
     (void)state;
     enum { PLANES = 60 };
@@ -165,13 +164,13 @@ static void a_plane_that_cannot_be_good_enough_is_not_matched(void **state)
                 const struct segment *g = &b.segments.segments[i];
                 const double slope = 2e-3 * (2 * scene_hash(i, k, 1) - 1);
                 const struct plane plane = {slope, 0, 0.16 + 0.28 * scene_hash(i, k, 0) - slope * g->cx};
-                const float full = problem_unary(&p, i, plane, INFINITY);
-                const float most = (float)(2 * scene_hash(i, k, 2) - 0.5);
-                const float screened = problem_unary(&p, i, plane, most);
-                assert_true(screened >= PLANE_NEVER || screened == full);
-                if (!swept) assert_true(screened == full || full > most); /* a bound that always holds */
+                const float full = unary_cost(&p, i, plane, INFINITY);
+                const float max_cost = (float)(2 * scene_hash(i, k, 2) - 0.5);
+                const float screened = unary_cost(&p, i, plane, max_cost);
+                assert_true(screened >= PLANE_FORBIDDEN || screened == full);
+                if (!swept) assert_true(screened == full || full > max_cost); /* an exact bound */
                 given_up += swept && screened > full;
-                wrong += swept && screened > full && full <= most;
+                wrong += swept && screened > full && full <= max_cost;
             }
     }
     assert_true(given_up > count / 20);
@@ -183,13 +182,13 @@ static void a_plane_that_cannot_be_good_enough_is_not_matched(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_pair_is_a_metric),
-        cmocka_unit_test(a_gap_costs_by_its_steps_up_to_the_jump),
-        cmocka_unit_test(a_surface_slants_for_nothing_but_a_fold_costs),
-        cmocka_unit_test(a_plane_that_leaves_the_depths_is_out_of_the_question),
-        cmocka_unit_test(the_unary_is_the_sum_of_its_terms),
-        cmocka_unit_test(a_plane_that_cannot_be_good_enough_is_not_matched),
+        cmocka_unit_test(the_pairwise_term_is_a_metric),
+        cmocka_unit_test(the_pairwise_term_is_linear_up_to_the_jump),
+        cmocka_unit_test(a_slanted_surface_is_free_but_a_fold_costs),
+        cmocka_unit_test(a_plane_outside_the_depth_range_is_forbidden),
+        cmocka_unit_test(the_unary_term_is_the_sum_of_its_parts),
+        cmocka_unit_test(planes_above_the_limit_are_not_matched),
     };
-    parallel_set_threads(1); /* tests run side by side */
+    parallel_set_threads(1); /* tests run in parallel */
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

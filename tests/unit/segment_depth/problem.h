@@ -1,4 +1,4 @@
-/* problem.h - the energy of planes on photographs of a scene: what refine and expand are tried on. */
+/* problem.h - an energy on photographs of a scene, for the tests of refine and expand. */
 #ifndef REMODEL_TESTS_SEGMENT_PROBLEM_H
 #define REMODEL_TESTS_SEGMENT_PROBLEM_H
 
@@ -6,7 +6,7 @@
 #include "stages/segment_depth/smooth.h"
 #include "tests/unit/segment_depth/scene.h"
 
-enum { W = 140, H = 100, FOCAL = 140, MOST_SEGMENTS = 600 };
+enum { W = 140, H = 100, FOCAL = 140, MAX_SEGMENTS = 600 };
 
 struct bench {
     struct scene scene;
@@ -34,11 +34,11 @@ static inline void bench_views(void)
 }
 
 /* The problem of the first view, without points; the scene has its surfaces and views. */
-static inline void bench_make(double least, double most)
+static inline void bench_make(double min_inverse_z, double max_inverse_z)
 {
     struct image photo = {0};
     struct err err = ERR_INIT;
-    const struct seen_points none = {0};
+    const struct observed_points none = {0};
     const double step = 1 / (FOCAL * 0.5);
     struct tone tone = {1, 0.5};
     for (int k = 0; k < b.scene.set.view_count; k++) {
@@ -54,19 +54,20 @@ static inline void bench_make(double least, double most)
         assert_int_equal(oversegment(&b.segments, &b.reference, 64, 8, &err), ST_OK);
         assert_int_equal(matcher_init(&b.matcher, &b.segments, &b.reference, &err), ST_OK);
     }
-    assert_int_equal(matcher_calibrate(&b.matcher, least, most, &err), ST_OK);
-    assert_int_equal(point_evidence_make(&b.points, &b.segments, &none, least, most, step, &b.params, &err), ST_OK);
-    b.weights = touch_weights(&b.segments, 64);
+    assert_int_equal(matcher_calibrate(&b.matcher, min_inverse_z, max_inverse_z, &err), ST_OK);
+    assert_int_equal(
+        point_evidence_make(&b.points, &b.segments, &none, min_inverse_z, max_inverse_z, step, &b.params, &err), ST_OK);
+    b.weights = border_weights(&b.segments, 64);
     assert_non_null(b.weights);
-    assert_true(b.segments.count < MOST_SEGMENTS);
+    assert_true(b.segments.count < MAX_SEGMENTS);
     b.problem = (struct plane_problem){.view = &b.scene.views[0],
                                        .down = {0, 1, 0},
                                        .m = &b.matcher,
                                        .points = &b.points,
                                        .weights = b.weights,
                                        .params = &b.params,
-                                       .least = least,
-                                       .most = most,
+                                       .min_inverse_z = min_inverse_z,
+                                       .max_inverse_z = max_inverse_z,
                                        .step = step};
 }
 
@@ -86,17 +87,17 @@ static inline double bench_truth(double u, double v)
     return 1 / scene_depth(&b.scene, &b.scene.views[0], u, v, &surface);
 }
 
-/* Of all segments and borders; `rough`: every fourth pixel. */
+/* The energy of all segments and borders; `rough`: from every fourth pixel. */
 static inline double bench_energy(const struct plane *planes, bool rough)
 {
     struct plane_problem p = b.problem;
     double sum = 0;
     p.rough = rough;
     for (int i = 0; i < b.segments.count; i++) {
-        sum += (double)problem_unary(&p, i, planes[i], INFINITY);
-        for (int t = b.segments.first_touch[i]; t < b.segments.first_touch[i + 1]; t++) {
-            const int j = b.segments.touches[t].other;
-            if (j > i) sum += problem_pair(&p, i, t, planes[i], planes[j]);
+        sum += (double)unary_cost(&p, i, planes[i], INFINITY);
+        for (int t = b.segments.first_border[i]; t < b.segments.first_border[i + 1]; t++) {
+            const int j = b.segments.borders[t].other;
+            if (j > i) sum += pairwise_cost(&p, i, t, planes[i], planes[j]);
         }
     }
     return sum;

@@ -1,11 +1,11 @@
-/* refine.c - planes that start a step off, or facing the camera, on photographs of slanted walls. */
+/* refine.c - refinement of planes that start a step off, or of constant depth, on photographs of slanted walls. */
 #include "stages/segment_depth/refine.h"
 
 #include "tests/unit/segment_depth/problem.h"
 
 #include "common/base/parallel.h"
 
-/* A wall that leans, blank if `contrast` is 0. */
+/* A slanted wall, blank if `contrast` is 0. */
 static void start(double lean, double contrast)
 {
     bench_empty();
@@ -14,7 +14,7 @@ static void start(double lean, double contrast)
     bench_make(0.15, 0.45);
 }
 
-/* As a sweep leaves them: constant, and up to a step off. */
+/* Planes as after a sweep: of constant depth, and up to a step off. */
 static void start_planes(struct plane *planes)
 {
     for (int i = 0; i < b.segments.count; i++) {
@@ -28,10 +28,10 @@ static void refine(struct plane *planes)
     struct err err = ERR_INIT;
     const double before = bench_energy(planes, false);
     if (refine_planes(planes, &b.problem, &err)) fail_msg("%s", err.text);
-    assert_true(bench_energy(planes, false) <= before + 1e-6 * fabs(before)); /* it is what is made small */
+    assert_true(bench_energy(planes, false) <= before + 1e-6 * fabs(before)); /* refinement never raises the energy */
 }
 
-/* Mean error in steps at the segments' centroids, of those away from the frame. */
+/* Mean error in steps at the centroids of the segments away from the picture's border. */
 static double mean_error(const struct plane *planes)
 {
     double sum = 0;
@@ -46,10 +46,10 @@ static double mean_error(const struct plane *planes)
     return sum / count;
 }
 
-static void a_leaning_wall_is_found_to_a_fraction_of_a_step(void **state)
+static void a_slanted_wall_is_found_to_a_fraction_of_a_step(void **state)
 {
     (void)state;
-    static struct plane planes[MOST_SEGMENTS];
+    static struct plane planes[MAX_SEGMENTS];
     for (int free_slant = 0; free_slant < 2; free_slant++) {
         double mean_a = 0, mean_b = 0;
         start(0.4, 0.8);
@@ -64,7 +64,7 @@ static void a_leaning_wall_is_found_to_a_fraction_of_a_step(void **state)
             mean_b += planes[i].b / b.segments.count;
         }
         assert_true(mean_a / a > (free_slant ? 0.85 : 0.4) &&
-                    mean_a / a < 1.1); /* leaning is not worth its price to all */
+                    mean_a / a < 1.1); /* the slant is not worth its cost to all segments */
         assert_near(mean_b / a, 0, 0.1);
         bench_release();
     }
@@ -73,7 +73,7 @@ static void a_leaning_wall_is_found_to_a_fraction_of_a_step(void **state)
 static void a_facing_wall_stays_constant(void **state)
 {
     (void)state;
-    static struct plane planes[MOST_SEGMENTS];
+    static struct plane planes[MAX_SEGMENTS];
     int constant = 0;
     start(0, 0.8);
     start_planes(planes);
@@ -85,10 +85,10 @@ static void a_facing_wall_stays_constant(void **state)
     bench_release();
 }
 
-static void no_pass_changes_nothing(void **state)
+static void zero_passes_change_nothing(void **state)
 {
     (void)state;
-    static struct plane planes[MOST_SEGMENTS], before[MOST_SEGMENTS];
+    static struct plane planes[MAX_SEGMENTS], before[MAX_SEGMENTS];
     start(0.4, 0.8);
     b.params.passes = 0;
     start_planes(planes);
@@ -98,30 +98,31 @@ static void no_pass_changes_nothing(void **state)
     bench_release();
 }
 
-static void planes_keep_to_the_depths_even_on_a_blank_wall(void **state)
+static void planes_on_a_blank_wall_stay_in_the_depth_range(void **state)
 {
     (void)state;
-    static struct plane planes[MOST_SEGMENTS];
+    static struct plane planes[MAX_SEGMENTS];
     start(0.4, 0);
     b.params.passes = 12;
     b.params.slant = 0;
     for (int i = 0; i < b.segments.count; i++)
-        planes[i] = (struct plane){0, 0, i % 2 ? b.problem.least : b.problem.most};
+        planes[i] = (struct plane){0, 0, i % 2 ? b.problem.min_inverse_z : b.problem.max_inverse_z};
     refine(planes);
     for (int i = 0; i < b.segments.count; i++) {
         const struct segment *g = &b.segments.segments[i];
         for (int k = 0; k < 4; k++) {
             const double d = plane_at(planes[i], k & 1 ? g->x1 + 1 : g->x0, k & 2 ? g->y1 + 1 : g->y0);
-            assert_true(d >= PLANE_LEAST * b.problem.least - 1e-12 && d <= PLANE_MOST * b.problem.most + 1e-12);
+            assert_true(d >= PLANE_MIN_FACTOR * b.problem.min_inverse_z - 1e-12 &&
+                        d <= PLANE_MAX_FACTOR * b.problem.max_inverse_z + 1e-12);
         }
     }
     bench_release();
 }
 
-static void threads_do_not_change_a_plane(void **state)
+static void thread_counts_give_the_same_planes(void **state)
 {
     (void)state;
-    static struct plane planes[2][MOST_SEGMENTS];
+    static struct plane planes[2][MAX_SEGMENTS];
     start(0.4, 0.8);
     for (int k = 0; k < 2; k++) {
         parallel_set_threads(1 + 2 * k);
@@ -136,12 +137,12 @@ static void threads_do_not_change_a_plane(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_leaning_wall_is_found_to_a_fraction_of_a_step),
+        cmocka_unit_test(a_slanted_wall_is_found_to_a_fraction_of_a_step),
         cmocka_unit_test(a_facing_wall_stays_constant),
-        cmocka_unit_test(no_pass_changes_nothing),
-        cmocka_unit_test(planes_keep_to_the_depths_even_on_a_blank_wall),
-        cmocka_unit_test(threads_do_not_change_a_plane),
+        cmocka_unit_test(zero_passes_change_nothing),
+        cmocka_unit_test(planes_on_a_blank_wall_stay_in_the_depth_range),
+        cmocka_unit_test(thread_counts_give_the_same_planes),
     };
-    parallel_set_threads(1); /* tests run side by side */
+    parallel_set_threads(1); /* tests run in parallel */
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

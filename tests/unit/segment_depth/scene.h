@@ -1,6 +1,6 @@
-/* scene.h - scenes that are formulas: planes and spheres with painted surfaces, photographed by ray casting.
+/* scene.h - synthetic scenes of planes and spheres with painted surfaces, photographed by ray casting.
  *
- * Depths, colours, sparse points and what hides what are known exactly. World: x right, y down, z forward. */
+ * Depths, colours, sparse points and occlusion are known exactly. World: x right, y down, z forward. */
 #ifndef REMODEL_TESTS_SEGMENT_SCENE_H
 #define REMODEL_TESTS_SEGMENT_SCENE_H
 
@@ -21,29 +21,29 @@
 
 #define assert_near(a, b, tolerance) assert_true(fabs((double)(a) - (double)(b)) <= (tolerance))
 
-enum { MOST_VIEWS = 6, MOST_SURFACES = 6, MOST_POINTS = 400 };
+enum { MAX_VIEWS = 6, MAX_SURFACES = 6, MAX_POINTS = 400 };
 
-struct surface {
+struct painted_surface {
     struct vec3 center, across, down; /* rectangle: center + s across + t down, |s| and |t| <= 1; across, down square */
     double radius;                    /* > 0: a sphere */
     float colour[3];                  /* linear */
-    double cell, contrast;            /* noise: size of its grains in the world, 0 .. 1; contrast 0: blank */
-    double period;                    /* > 0: in place of noise, stripes across x */
-    double gloss;                     /* > 0: the mirrored light adds this much where it is seen from */
+    double cell, contrast;            /* value noise: grain size in the world, contrast 0 .. 1; 0: blank */
+    double period;                    /* > 0: stripes across x in place of noise */
+    double gloss;                     /* > 0: radiance added by the reflection of a light */
     struct vec3 light;
 };
 
 struct scene {
-    struct surface surfaces[MOST_SURFACES];
+    struct painted_surface surfaces[MAX_SURFACES];
     int surface_count;
-    struct view views[MOST_VIEWS];
-    double gain[MOST_VIEWS]; /* exposure of each photo; 0: it is black */
+    struct view views[MAX_VIEWS];
+    double gain[MAX_VIEWS]; /* exposure of each photo; 0: black */
     struct camera_set set;
-    struct sfm_image images[MOST_VIEWS];
-    struct sfm_point points[MOST_POINTS];
-    struct sfm_track tracks[MOST_POINTS][MOST_VIEWS];
-    struct sfm_observation observations[MOST_VIEWS][MOST_POINTS];
-    bool holes; /* photos have no pixels in a disc in their middle */
+    struct sfm_image images[MAX_VIEWS];
+    struct sfm_point points[MAX_POINTS];
+    struct sfm_track tracks[MAX_POINTS][MAX_VIEWS];
+    struct sfm_observation observations[MAX_VIEWS][MAX_POINTS];
+    bool holes; /* photos have an invalid disc in the middle */
 };
 
 static inline double scene_hash(int x, int y, int z)
@@ -71,7 +71,7 @@ static inline double scene_noise(double x, double y, double z)
     return sum;
 }
 
-static inline void scene_paint(const struct surface *s, struct vec3 p, float rgb[3])
+static inline void scene_paint(const struct painted_surface *s, struct vec3 p, float rgb[3])
 {
     for (int c = 0; c < 3; c++) {
         double g = 0;
@@ -84,8 +84,8 @@ static inline void scene_paint(const struct surface *s, struct vec3 p, float rgb
     }
 }
 
-/* Of a flat glossy surface, seen from `eye`: a soft spot about the place where the light is mirrored; it moves with the eye. */
-static inline double scene_highlight(const struct surface *s, struct vec3 p, struct vec3 eye)
+/* The highlight of a flat glossy surface, seen from `eye`: a soft spot around the light's reflection. */
+static inline double scene_highlight(const struct painted_surface *s, struct vec3 p, struct vec3 eye)
 {
     const struct vec3 n = vec3_normalize(vec3_cross(s->across, s->down));
     const struct vec3 in = vec3_sub(p, eye), to_light = vec3_normalize(vec3_sub(s->light, p));
@@ -96,11 +96,11 @@ static inline double scene_highlight(const struct surface *s, struct vec3 p, str
 /* Depth along the view's axis and surface at a pixel; HUGE_VAL and -1 where there is none. */
 static inline double scene_depth(const struct scene *scene, const struct view *v, double u, double w, int *surface)
 {
-    const struct vec3 d = vec3_sub(view_unproject(v, u, w, 1), v->center); /* has depth 1 */
+    const struct vec3 d = vec3_sub(view_unproject(v, u, w, 1), v->center); /* of depth 1 */
     double nearest = HUGE_VAL;
     *surface = -1;
     for (int i = 0; i < scene->surface_count; i++) {
-        const struct surface *s = &scene->surfaces[i];
+        const struct painted_surface *s = &scene->surfaces[i];
         const struct vec3 to = vec3_sub(s->center, v->center);
         double t;
         if (s->radius > 0) {
@@ -123,28 +123,28 @@ static inline double scene_depth(const struct scene *scene, const struct view *v
     return nearest;
 }
 
-static inline struct surface *scene_surface(struct scene *s, struct vec3 center)
+static inline struct painted_surface *scene_surface(struct scene *s, struct vec3 center)
 {
-    struct surface *f = &s->surfaces[s->surface_count++];
-    *f = (struct surface){.center = center, .colour = {0.35f, 0.3f, 0.25f}, .cell = 0.25, .contrast = 0.8};
+    struct painted_surface *f = &s->surfaces[s->surface_count++];
+    *f = (struct painted_surface){.center = center, .colour = {0.35f, 0.3f, 0.25f}, .cell = 0.25, .contrast = 0.8};
     return f;
 }
 
-/* A rectangle that faces the z axis, or leans: its depth grows by `lean` along x. */
-static inline struct surface *scene_wall(struct scene *s, double x, double y, double z, double half_x, double half_y,
-                                         double lean)
+/* A rectangle perpendicular to the z axis, or slanted: its depth grows by `lean` along x. */
+static inline struct painted_surface *scene_wall(struct scene *s, double x, double y, double z, double half_x,
+                                                 double half_y, double lean)
 {
-    struct surface *f = scene_surface(s, vec3_make(x, y, z));
+    struct painted_surface *f = scene_surface(s, vec3_make(x, y, z));
     f->across = vec3_make(half_x, 0, half_x * lean);
     f->down = vec3_make(0, half_y, 0);
     return f;
 }
 
-/* A view at a place, turned by `yaw` radians about the y axis (to the right), else along z. */
+/* A view at a position, rotated from the z axis by `yaw` radians about the y axis (to the right). */
 static inline struct view *scene_view(struct scene *s, int width, int height, double focal, double x, double y,
                                       double z, double yaw)
 {
-    static const char *const names[MOST_VIEWS] = {"a", "b", "c", "d", "e", "f"};
+    static const char *const names[MAX_VIEWS] = {"a", "b", "c", "d", "e", "f"};
     const int i = s->set.view_count++;
     struct view *v = &s->views[i];
     *v = (struct view){.name = names[i], .width = width, .height = height, .fx = focal, .fy = focal};
@@ -167,7 +167,7 @@ static inline void scene_point(struct scene *s, struct vec3 position, unsigned m
     struct sfm_model *m = &s->set.model;
     struct sfm_point *p = &s->points[m->point_count];
     *p = (struct sfm_point){.id = 10 + 3 * m->point_count, .position = position, .track = s->tracks[m->point_count]};
-    assert_true(m->point_count++ < MOST_POINTS);
+    assert_true(m->point_count++ < MAX_POINTS);
     m->points = s->points;
     for (int i = 0; i < s->set.view_count; i++) {
         double u = 0, w = 0;
@@ -178,8 +178,8 @@ static inline void scene_point(struct scene *s, struct vec3 position, unsigned m
     }
 }
 
-/* What structure from motion would find: about `count` points of the surfaces that have texture, spread over the first
- * view, observed where they are seen. */
+/* The points that structure from motion would find: about `count` on textured surfaces, spread over the first view,
+ * observed by the views that see them. */
 static inline void scene_points(struct scene *s, int count)
 {
     const struct view *v = &s->views[0];
@@ -200,7 +200,7 @@ static inline void scene_points(struct scene *s, int count)
     }
 }
 
-/* The photo: 3 x 3 rays a pixel, linear R G B A, of 8 bits in sRGB, at most 1. */
+/* The photo: 3 x 3 rays per pixel, quantized to 8 bits in sRGB, as linear R G B A of at most 1. */
 static inline enum status scene_photo(void *ctx, int view_idx, struct image *im, struct err *err)
 {
     const struct scene *s = ctx;

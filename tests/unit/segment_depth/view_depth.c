@@ -1,35 +1,35 @@
-/* view_depth.c - the whole stage on photographs of scenes whose depth is a formula, easy ones and hard ones. */
+/* view_depth.c - the whole stage on photographs of synthetic scenes, easy and hard. */
 #include "tests/unit/segment_depth/whole.h"
 
-/* -------------------------------------------------------------------------------------- scenes that should be easy */
+/* -------------------------------------------------------------------------------------- easy scenes */
 
-static void a_wall_is_found(void **state)
+static void a_facing_wall_is_found(void **state)
 {
     (void)state;
     for (int points = 0; points < 2; points++) {
         struct result r = {0};
         start();
         scene_wall(&scene, 0, 0, 5, 9, 9, 0);
-        stand(3);
+        place_cameras(3);
         scene_points(&scene, points * 150);
         must_work(&r);
         assert_int_equal(r.neighbour_count, 2);
-        assert_true(right(&r.depth, -1, 0.01) > 0.97);
+        assert_true(fraction_correct(&r.depth, -1, 0.01) > 0.97);
         assert_true(mean_confidence(&r.depth) > 0.7);
         layered_depth_release(&r.depth);
     }
 }
 
-static void a_leaning_wall_is_found(void **state)
+static void a_slanted_wall_is_found(void **state)
 {
     (void)state;
     struct result r = {0};
     start();
     scene_wall(&scene, 0, 0, 5, 9, 9, 0.5);
-    stand(3);
+    place_cameras(3);
     scene_points(&scene, 150);
     must_work(&r);
-    assert_true(right(&r.depth, -1, 0.02) > 0.97);
+    assert_true(fraction_correct(&r.depth, -1, 0.02) > 0.97);
     layered_depth_release(&r.depth);
 }
 
@@ -38,15 +38,15 @@ static void a_floor_is_found(void **state)
     (void)state;
     struct result r = {0};
     start();
-    struct surface *floor = scene_surface(&scene, vec3_make(0, 1, 7));
+    struct painted_surface *floor = scene_surface(&scene, vec3_make(0, 1, 7));
     floor->across = vec3_make(15, 0, 0);
     floor->down = vec3_make(0, 0, 7);
     scene_wall(&scene, 0, 0, 12, 20, 20, 0)->cell = 0.6;
-    stand(5);
+    place_cameras(5);
     scene_points(&scene, 300);
     must_work(&r);
-    assert_true(right(&r.depth, 0, 0.02) > 0.95);
-    assert_true(right(&r.depth, 1, 0.02) > 0.9);
+    assert_true(fraction_correct(&r.depth, 0, 0.02) > 0.95);
+    assert_true(fraction_correct(&r.depth, 1, 0.02) > 0.9);
     layered_depth_release(&r.depth);
 }
 
@@ -59,29 +59,29 @@ static void a_ball_is_found(void **state)
     scene_surface(&scene, vec3_make(0.1, 0, 5))->radius = 1;
     scene.surfaces[1].colour[0] = 0.15f;
     scene.surfaces[1].cell = 0.2;
-    stand(5);
+    place_cameras(5);
     scene_points(&scene, 300);
     must_work(&r);
-    assert_true(right(&r.depth, 0, 0.01) > 0.95);
-    assert_true(right(&r.depth, 1, 0.02) > 0.9);
+    assert_true(fraction_correct(&r.depth, 0, 0.01) > 0.95);
+    assert_true(fraction_correct(&r.depth, 1, 0.02) > 0.9);
     layered_depth_release(&r.depth);
 }
 
-/* A card in front of a wall; in each row the step from the wall's depth to the card's is where the card's edge is. */
-static void a_depth_jump_is_within_two_pixels(void **state)
+/* A card in front of a wall: in each row the depth changes at the card's edge. */
+static void a_depth_edge_is_found_within_two_pixels(void **state)
 {
     (void)state;
     struct result r = {0};
     int rows = 0, near = 0;
     start();
     scene_wall(&scene, 0, 0, 7, 12, 12, 0)->cell = 0.35;
-    struct surface *card = scene_wall(&scene, 0.1, 0.1, 4, 0.8, 0.7, 0);
+    struct painted_surface *card = scene_wall(&scene, 0.1, 0.1, 4, 0.8, 0.7, 0);
     card->colour[0] = 0.12f;
     card->cell = 0.2;
-    stand(5);
+    place_cameras(5);
     scene_points(&scene, 300);
     must_work(&r);
-    assert_true(right(&r.depth, 0, 0.02) > 0.97 && right(&r.depth, 1, 0.01) > 0.97);
+    assert_true(fraction_correct(&r.depth, 0, 0.02) > 0.97 && fraction_correct(&r.depth, 1, 0.01) > 0.97);
     for (int y = 0; y < H; y++) {
         int surface, edges[2] = {-1, -1}, found[2] = {-1, -1};
         for (int x = 1; x < W; x++) {
@@ -102,8 +102,8 @@ static void a_depth_jump_is_within_two_pixels(void **state)
 
 /* --------------------------------------------------------------------------------------------------- hard cases */
 
-/* A blank panel hangs in a textured wall, or is a part of it: its depth is that of what surrounds it. */
-static void a_blank_wall_takes_the_depth_of_its_frame(void **state)
+/* A blank panel in front of a textured wall, or a blank part of it, gets the depth of its surroundings. */
+static void a_blank_wall_gets_the_depth_of_its_frame(void **state)
 {
     (void)state;
     for (int points = 0; points < 2; points++) {
@@ -111,29 +111,29 @@ static void a_blank_wall_takes_the_depth_of_its_frame(void **state)
         start();
         scene_wall(&scene, 0, 0, 5, 9, 9, 0.2);
         scene_wall(&scene, 0, 0, 5 - 1e-4, 0.9, 0.7, 0.2)->contrast = 0;
-        stand(5);
+        place_cameras(5);
         scene_points(&scene, points * 200);
         must_work(&r);
-        assert_true(right(&r.depth, 0, 0.02) > 0.95);
-        assert_true(right(&r.depth, 1, 0.03) > 0.9);
+        assert_true(fraction_correct(&r.depth, 0, 0.02) > 0.95);
+        assert_true(fraction_correct(&r.depth, 1, 0.03) > 0.9);
         layered_depth_release(&r.depth);
     }
 }
 
-static void a_wall_all_blank_gives_some_depth_and_no_confidence(void **state)
+static void an_entirely_blank_wall_has_a_depth_without_confidence(void **state)
 {
     (void)state;
     struct result r = {0};
     start();
     scene_wall(&scene, 0, 0, 5, 30, 30, 0)->contrast = 0;
-    stand(3);
+    place_cameras(3);
     must_work(&r);
     assert_true(mean_confidence(&r.depth) < 0.3);
     layered_depth_release(&r.depth);
 }
 
-/* Vertical stripes repeat every 0.31 in the world, 10 px: less than the shift between the views. Points tell which
- * stripe is which. */
+/* Vertical stripes repeat every 0.31 in the world, 10 px: less than the disparity between the views. Points decide
+ * which stripes correspond. */
 static void a_repeated_pattern_is_resolved_by_points(void **state)
 {
     (void)state;
@@ -141,24 +141,24 @@ static void a_repeated_pattern_is_resolved_by_points(void **state)
     start();
     scene_wall(&scene, 0, 0, 5, 9, 9, 0);
     scene.surfaces[0].period = 0.31;
-    stand(3);
-    for (int i = 0; i < 60; i++) /* corners of something small: they lie on the wall */
+    place_cameras(3);
+    for (int i = 0; i < 60; i++) /* points on the wall */
         scene_point(&scene, vec3_make(5 * scene_hash(i, 0, 0) - 2.5, 3.5 * scene_hash(i, 0, 1) - 1.75, 5), 7);
-    for (int i = 0; i < 12; i++) /* and some far and near ones, so that the sweep is wide */
+    for (int i = 0; i < 12; i++) /* and some far and near ones, to widen the depth range */
         scene_point(&scene, vec3_make(scene_hash(i, 0, 0), -1.4, i % 2 ? 3 : 9), 7);
     must_work(&r);
-    assert_true(right(&r.depth, -1, 0.02) > 0.9);
+    assert_true(fraction_correct(&r.depth, -1, 0.02) > 0.9);
     layered_depth_release(&r.depth);
 }
 
-static void a_repeated_pattern_alone_is_not_sure(void **state)
+static void a_repeated_pattern_without_points_has_low_confidence(void **state)
 {
     (void)state;
     struct result r = {0};
     start();
     scene_wall(&scene, 0, 0, 5, 9, 9, 0);
     scene.surfaces[0].period = 0.31;
-    stand(2);
+    place_cameras(2);
     must_work(&r);
     assert_true(mean_confidence(&r.depth) < 0.5);
     layered_depth_release(&r.depth);
@@ -167,20 +167,20 @@ static void a_repeated_pattern_alone_is_not_sure(void **state)
 static void a_photo_twice_as_bright_matches(void **state)
 {
     (void)state;
-    for (int k = 0; k < 4; k++) { /* twice, half; with points and without */
+    for (int k = 0; k < 4; k++) { /* twice, half; with and without points */
         struct result r = {0};
         start();
         scene_wall(&scene, 0, 0, 5, 9, 9, 0.2);
-        stand(3);
+        place_cameras(3);
         scene.gain[1] = k % 2 ? 2 : 0.5;
         scene_points(&scene, k / 2 * 150);
         must_work(&r);
-        assert_true(right(&r.depth, -1, 0.01) > 0.93);
+        assert_true(fraction_correct(&r.depth, -1, 0.01) > 0.93);
         layered_depth_release(&r.depth);
     }
 }
 
-static void a_tripod_has_no_depth_and_says_so(void **state)
+static void a_tripod_gives_no_depth_but_an_error(void **state)
 {
     (void)state;
     const struct segment_params params = SEGMENT_PARAMS_DEFAULT;
@@ -191,10 +191,10 @@ static void a_tripod_has_no_depth_and_says_so(void **state)
     for (int i = 0; i < 3; i++) scene_view(&scene, W, H, FOCAL, 0, 0, 0, 0.1 * i);
     scene_points(&scene, 100);
     assert_int_equal(depth_of(&r, &params, &err), ST_DATA);
-    assert_non_null(strstr(err.text, "taken from different points"));
+    assert_non_null(strstr(err.text, "taken from different positions"));
     assert_null(r.depth.interior.z);
 
-    start(); /* a hand's breadth away from it, points as structure from motion would then place them */
+    start(); /* a tiny baseline, with points as structure from motion would then find them */
     scene_wall(&scene, 0, 0, 5, 9, 9, 0);
     for (int i = 0; i < 3; i++) scene_view(&scene, W, H, FOCAL, 1e-4 * i, 0, 0, 0.1 * i);
     scene_points(&scene, 100);
@@ -203,7 +203,7 @@ static void a_tripod_has_no_depth_and_says_so(void **state)
     layered_depth_release(&r.depth);
 }
 
-static void a_neighbour_that_looks_elsewhere_is_left_out(void **state)
+static void a_neighbour_that_faces_elsewhere_is_left_out(void **state)
 {
     (void)state;
     struct result r = {0};
@@ -219,19 +219,19 @@ static void a_neighbour_that_looks_elsewhere_is_left_out(void **state)
     layered_depth_release(&r.depth);
 }
 
-/* The poses claim that the neighbour sees the wall, but its photo shows something else. */
-static void a_neighbour_with_another_picture_does_no_harm(void **state)
+/* By its pose the neighbour sees the wall, but its photo shows another scene. */
+static void a_neighbour_with_a_wrong_picture_does_no_harm(void **state)
 {
     (void)state;
     struct result r = {0};
     start();
     scene_wall(&scene, 0, 0, 5, 9, 9, 0.2);
-    stand(4);
+    place_cameras(4);
     scene.gain[2] = 0; /* black */
     scene_points(&scene, 150);
     must_work(&r);
     assert_int_equal(r.neighbour_count, 3);
-    assert_true(right(&r.depth, -1, 0.01) > 0.93);
+    assert_true(fraction_correct(&r.depth, -1, 0.01) > 0.93);
     layered_depth_release(&r.depth);
 }
 
@@ -242,18 +242,18 @@ static void two_views_are_enough(void **state)
         struct result r = {0};
         start();
         scene_wall(&scene, 0, 0, 6, 12, 12, 0.3);
-        struct surface *card = scene_wall(&scene, 0.1, 0.1, 4, 0.8, 0.7, 0);
+        struct painted_surface *card = scene_wall(&scene, 0.1, 0.1, 4, 0.8, 0.7, 0);
         card->colour[0] = 0.12f;
-        stand(2);
+        place_cameras(2);
         scene_points(&scene, points * 150);
         must_work(&r);
-        assert_true(right(&r.depth, 0, 0.02) > 0.85); /* a strip at the left is in one photo only */
-        assert_true(right(&r.depth, 1, 0.02) > 0.95);
+        assert_true(fraction_correct(&r.depth, 0, 0.02) > 0.85); /* a strip on the left is in one photo only */
+        assert_true(fraction_correct(&r.depth, 1, 0.02) > 0.95);
         layered_depth_release(&r.depth);
     }
 }
 
-static void one_view_is_not(void **state)
+static void one_view_is_an_error(void **state)
 {
     (void)state;
     const struct segment_params params = SEGMENT_PARAMS_DEFAULT;
@@ -261,7 +261,7 @@ static void one_view_is_not(void **state)
     struct err err = ERR_INIT;
     start();
     scene_wall(&scene, 0, 0, 5, 9, 9, 0);
-    stand(1);
+    place_cameras(1);
     assert_int_equal(depth_of(&r, &params, &err), ST_DATA);
     assert_non_null(strstr(err.text, "at least two views"));
 }
@@ -291,12 +291,12 @@ static void a_thin_pole_is_found(void **state)
     int found = 0;
     start();
     scene_wall(&scene, 0, 0, 7, 12, 12, 0)->cell = 0.35;
-    struct surface *pole = scene_wall(&scene, 0.05, 0, 4, 0.05, 3, 0);
+    struct painted_surface *pole = scene_wall(&scene, 0.05, 0, 4, 0.05, 3, 0);
     pole->colour[0] = pole->colour[1] = pole->colour[2] = 0.06f;
-    stand(5);
+    place_cameras(5);
     scene_points(&scene, 300);
     must_work(&r);
-    assert_true(right(&r.depth, 0, 0.02) > 0.95);
+    assert_true(fraction_correct(&r.depth, 0, 0.02) > 0.95);
     for (int y = 0; y < H; y++) {
         const float *z = r.depth.interior.z + y * W;
         for (int x = 78; x < 86; x++)
@@ -317,9 +317,9 @@ static void white_and_black_photos_work(void **state)
         struct result r = {0};
         start();
         scene_wall(&scene, 0, 0, 5, 9, 9, 0);
-        stand(3);
+        place_cameras(3);
         for (int i = 0; i < 3; i++)
-            scene.gain[i] = k == 3 ? (i == 1) * 1000 : k % 2 ? 1000 : 0; /* all; or one of them */
+            scene.gain[i] = k == 3 ? (i == 1) * 1000 : k % 2 ? 1000 : 0; /* all, or one of them */
         scene_points(&scene, k / 2 * 100);
         must_work(&r);
         assert_true(mean_confidence(&r.depth) < 0.3);
@@ -327,30 +327,30 @@ static void white_and_black_photos_work(void **state)
     }
 }
 
-/* The middle of a lamp is white, its rim is not. */
-static void a_burnt_out_patch_takes_the_depth_of_its_rim(void **state)
+/* A lamp with a clipped middle and a textured rim. */
+static void an_overexposed_patch_gets_the_depth_of_its_rim(void **state)
 {
     (void)state;
     struct result r = {0};
     start();
     scene_wall(&scene, 0, 0, 5, 9, 9, 0);
-    struct surface *lamp = scene_wall(&scene, 0.2, 0.1, 5 - 1e-4, 0.5, 0.5, 0);
+    struct painted_surface *lamp = scene_wall(&scene, 0.2, 0.1, 5 - 1e-4, 0.5, 0.5, 0);
     for (int c = 0; c < 3; c++) lamp->colour[c] = 30;
     lamp->contrast = 0;
-    stand(5);
+    place_cameras(5);
     scene_points(&scene, 200);
     must_work(&r);
-    assert_true(right(&r.depth, 1, 0.02) > 0.9 && right(&r.depth, 0, 0.02) > 0.95);
+    assert_true(fraction_correct(&r.depth, 1, 0.02) > 0.9 && fraction_correct(&r.depth, 0, 0.02) > 0.95);
     layered_depth_release(&r.depth);
 }
 
-static void pixels_that_a_photo_lacks_have_no_depth(void **state)
+static void invalid_pixels_have_no_depth(void **state)
 {
     (void)state;
     struct result r = {0};
     start();
     scene_wall(&scene, 0, 0, 5, 9, 9, 0.2);
-    stand(3);
+    place_cameras(3);
     scene.holes = true;
     scene_points(&scene, 150);
     must_work(&r);
@@ -368,28 +368,28 @@ static void pixels_that_a_photo_lacks_have_no_depth(void **state)
     layered_depth_release(&r.depth);
 }
 
-/* Without points the sweep begins nearly at infinity, where a plane as steep as a floor soon passes through it. */
+/* Without points the sweep starts almost at infinity, which a plane as steep as a floor crosses within a segment. */
 static void a_steep_floor_without_points_has_no_depth_behind_the_camera(void **state)
 {
     (void)state;
     struct result r = {0};
     start();
-    struct surface *floor = scene_surface(&scene, vec3_make(0, 0.3, 60));
+    struct painted_surface *floor = scene_surface(&scene, vec3_make(0, 0.3, 60));
     floor->across = vec3_make(150, 0, 0);
     floor->down = vec3_make(0, 0, 60);
-    stand(5);
+    place_cameras(5);
     struct segment_params params = SEGMENT_PARAMS_DEFAULT;
     struct err err = ERR_INIT;
     for (int k = 0; k < 6; k++) {
         params.passes = k % 2 ? 0 : 4;
         params.segment_pixels = k < 2 ? 64 : k < 4 ? 300 : 2000;
         if (depth_of(&r, &params, &err)) fail_msg("%s", err.text);
-        must_be_sound(&r.depth);
+        check_invariants(&r.depth);
         layered_depth_release(&r.depth);
     }
 }
 
-/* Another wall in each photo: planes are chosen by chance, horizontal ones across the horizon too. */
+/* A different wall in each photo: planes are arbitrary, including horizontal ones across the horizon. */
 static enum status unrelated_photo(void *ctx, int view_idx, struct image *im, struct err *err)
 {
     struct scene *s = ctx;
@@ -399,14 +399,14 @@ static enum status unrelated_photo(void *ctx, int view_idx, struct image *im, st
     return st;
 }
 
-static void unrelated_photos_give_sound_depths(void **state)
+static void unrelated_photos_give_valid_depths(void **state)
 {
     (void)state;
     const struct view_source source = {unrelated_photo, NULL, &scene, NULL};
     static const int sizes[] = {64, 300, 2000};
     start();
     scene_wall(&scene, 0, 0, 5, 30, 30, 0)->cell = 0.2;
-    stand(3);
+    place_cameras(3);
     for (int k = 0; k < 6; k++) {
         struct result r = {0};
         struct segment_params params = SEGMENT_PARAMS_DEFAULT;
@@ -416,7 +416,7 @@ static void unrelated_photos_give_sound_depths(void **state)
         params.segment_pixels = sizes[k / 2];
         if (view_depth(&r.depth, r.neighbours, &r.neighbour_count, &scene.set, 0, &source, &params, &err))
             fail_msg("%s", err.text);
-        must_be_sound(&r.depth);
+        check_invariants(&r.depth);
         layered_depth_release(&r.depth);
     }
 }
@@ -434,7 +434,7 @@ static void extreme_parameters_work(void **state)
     start();
     scene_wall(&scene, 0, 0, 7, 12, 12, 0.2);
     scene_wall(&scene, 0.1, 0.1, 4, 0.8, 0.7, 0)->colour[0] = 0.12f;
-    stand(3);
+    place_cameras(3);
     scene_points(&scene, 150);
     for (size_t i = 0; i < sizeof sets / sizeof *sets; i++) {
         struct result r = {0};
@@ -443,7 +443,7 @@ static void extreme_parameters_work(void **state)
         for (int k = 0; sets[i][k]; k++)
             assert_int_equal(params_set(segment_param_table, &params, sets[i][k], &err), ST_OK);
         if (depth_of(&r, &params, &err)) fail_msg("%s", err.text);
-        must_be_sound(&r.depth);
+        check_invariants(&r.depth);
         layered_depth_release(&r.depth);
     }
 }
@@ -454,7 +454,7 @@ static enum status broken_photo(void *ctx, int view_idx, struct image *im, struc
     return scene_photo(ctx, view_idx, im, err);
 }
 
-static void a_photo_that_cannot_be_read_is_told(void **state)
+static void an_unreadable_photo_is_an_error(void **state)
 {
     (void)state;
     const struct view_source source = {broken_photo, NULL, &scene, NULL};
@@ -463,21 +463,21 @@ static void a_photo_that_cannot_be_read_is_told(void **state)
     struct err err = ERR_INIT;
     start();
     scene_wall(&scene, 0, 0, 5, 9, 9, 0);
-    stand(3);
+    place_cameras(3);
     assert_int_equal(view_depth(&r.depth, r.neighbours, &r.neighbour_count, &scene.set, 0, &source, &params, &err),
                      ST_IO);
     assert_string_equal(err.text, "cannot read photo 2.");
     assert_null(r.depth.segments);
 }
 
-static void threads_do_not_change_a_bit(void **state)
+static void thread_counts_give_the_same_bits(void **state)
 {
     (void)state;
     static struct result r[3];
     start();
     scene_wall(&scene, 0, 0, 7, 12, 12, 0.2);
     scene_surface(&scene, vec3_make(0.1, 0, 5))->radius = 1;
-    stand(5);
+    place_cameras(5);
     scene_points(&scene, 200);
     for (int k = 0; k < 3; k++) {
         parallel_set_threads(k + 1);
@@ -500,32 +500,32 @@ static void threads_do_not_change_a_bit(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_wall_is_found),
-        cmocka_unit_test(a_leaning_wall_is_found),
+        cmocka_unit_test(a_facing_wall_is_found),
+        cmocka_unit_test(a_slanted_wall_is_found),
         cmocka_unit_test(a_floor_is_found),
         cmocka_unit_test(a_ball_is_found),
-        cmocka_unit_test(a_depth_jump_is_within_two_pixels),
-        cmocka_unit_test(a_blank_wall_takes_the_depth_of_its_frame),
-        cmocka_unit_test(a_wall_all_blank_gives_some_depth_and_no_confidence),
+        cmocka_unit_test(a_depth_edge_is_found_within_two_pixels),
+        cmocka_unit_test(a_blank_wall_gets_the_depth_of_its_frame),
+        cmocka_unit_test(an_entirely_blank_wall_has_a_depth_without_confidence),
         cmocka_unit_test(a_repeated_pattern_is_resolved_by_points),
-        cmocka_unit_test(a_repeated_pattern_alone_is_not_sure),
+        cmocka_unit_test(a_repeated_pattern_without_points_has_low_confidence),
         cmocka_unit_test(a_photo_twice_as_bright_matches),
-        cmocka_unit_test(a_tripod_has_no_depth_and_says_so),
-        cmocka_unit_test(a_neighbour_that_looks_elsewhere_is_left_out),
-        cmocka_unit_test(a_neighbour_with_another_picture_does_no_harm),
+        cmocka_unit_test(a_tripod_gives_no_depth_but_an_error),
+        cmocka_unit_test(a_neighbour_that_faces_elsewhere_is_left_out),
+        cmocka_unit_test(a_neighbour_with_a_wrong_picture_does_no_harm),
         cmocka_unit_test(two_views_are_enough),
-        cmocka_unit_test(one_view_is_not),
+        cmocka_unit_test(one_view_is_an_error),
         cmocka_unit_test(tiny_and_narrow_photos_work),
         cmocka_unit_test(a_thin_pole_is_found),
         cmocka_unit_test(white_and_black_photos_work),
-        cmocka_unit_test(a_burnt_out_patch_takes_the_depth_of_its_rim),
-        cmocka_unit_test(pixels_that_a_photo_lacks_have_no_depth),
+        cmocka_unit_test(an_overexposed_patch_gets_the_depth_of_its_rim),
+        cmocka_unit_test(invalid_pixels_have_no_depth),
         cmocka_unit_test(a_steep_floor_without_points_has_no_depth_behind_the_camera),
-        cmocka_unit_test(unrelated_photos_give_sound_depths),
+        cmocka_unit_test(unrelated_photos_give_valid_depths),
         cmocka_unit_test(extreme_parameters_work),
-        cmocka_unit_test(a_photo_that_cannot_be_read_is_told),
-        cmocka_unit_test(threads_do_not_change_a_bit),
+        cmocka_unit_test(an_unreadable_photo_is_an_error),
+        cmocka_unit_test(thread_counts_give_the_same_bits),
     };
-    parallel_set_threads(1); /* tests run side by side */
+    parallel_set_threads(1); /* tests run in parallel */
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

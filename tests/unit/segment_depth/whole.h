@@ -1,4 +1,4 @@
-/* whole.h - the whole stage on photographs of scenes whose depth is a formula: running it, and what must be true of what comes out. */
+/* whole.h - runs the whole stage on photographs of synthetic scenes, and checks the invariants of its depth maps. */
 #ifndef REMODEL_TESTS_SEGMENT_WHOLE_H
 #define REMODEL_TESTS_SEGMENT_WHOLE_H
 
@@ -18,8 +18,8 @@ static struct scene scene; /* large; zeroed by start() */
 
 static inline void start(void) { memset(&scene, 0, sizeof scene); }
 
-/* `count` views around the first, 0.4 away. */
-static inline void stand(int count)
+/* `count` views around the first, at a distance of 0.4. */
+static inline void place_cameras(int count)
 {
     static const double offsets[][2] = {{0, 0}, {0.4, 0}, {-0.4, 0}, {0, 0.4}, {0, -0.4}};
     for (int i = 0; i < count; i++) scene_view(&scene, W, H, FOCAL, offsets[i][0], offsets[i][1], 0, 0);
@@ -27,7 +27,7 @@ static inline void stand(int count)
 
 typedef enum status photo_fn(void *ctx, int view_idx, struct image *im, struct err *err);
 
-/* What every depth map promises, whatever the photos show. */
+/* Checks the invariants of every depth map. */
 static inline void must_be_sound_of(const struct layered_depth *d, photo_fn *photo_of)
 {
     struct image photo;
@@ -56,7 +56,7 @@ static inline void must_be_sound_of(const struct layered_depth *d, photo_fn *pho
     }
     image_release(&photo);
 }
-static inline void must_be_sound(const struct layered_depth *d) { must_be_sound_of(d, scene_photo); }
+static inline void check_invariants(const struct layered_depth *d) { must_be_sound_of(d, scene_photo); }
 
 static inline enum status depth_of(struct result *r, const struct segment_params *params, struct err *err)
 {
@@ -69,10 +69,10 @@ static inline void must_work(struct result *r)
     const struct segment_params params = SEGMENT_PARAMS_DEFAULT;
     struct err err = ERR_INIT;
     if (depth_of(r, &params, &err)) fail_msg("%s", err.text);
-    must_be_sound(&r->depth);
+    check_invariants(&r->depth);
 }
 
-/* Is another surface, or another depth than a tenth off, within 3 px? */
+/* Whether another surface, or a depth that differs by more than a tenth, lies within 3 px. */
 static inline bool at_jump(int x, int y)
 {
     int own, other;
@@ -85,8 +85,9 @@ static inline bool at_jump(int x, int y)
     return false;
 }
 
-/* Part of the pixels of a surface (-1: all), away from jumps, whose depth is within `tolerance` of the truth. */
-static inline double right(const struct layered_depth *d, int surface, double tolerance)
+/* The fraction of a surface's pixels (-1: all), away from depth edges, whose relative depth error is within
+ * `tolerance`. */
+static inline double fraction_correct(const struct layered_depth *d, int surface, double tolerance)
 {
     int good = 0, count = 0;
     for (int y = 0; y < d->height; y++)
@@ -114,12 +115,13 @@ static inline double mean_confidence(const struct layered_depth *d)
     return sum / pixels;
 }
 
-/* ------------------------------------------------------------------------------------------------------------ rounds */
+/* ------------------------------------------------------------------------------------------------------------
+ * rounds */
 
-struct rounds { /* what views had in the round before */
+struct rounds { /* the views' depth in the previous round */
     const struct scene *scene;
     photo_fn *photo; /* NULL: scene_photo */
-    struct layered_depth depth[MOST_VIEWS];
+    struct layered_depth depth[MAX_VIEWS];
 };
 
 static inline enum status rounds_photo(void *ctx, int view_idx, struct image *im, struct err *err)
@@ -128,7 +130,7 @@ static inline enum status rounds_photo(void *ctx, int view_idx, struct image *im
     return (r->photo ? r->photo : scene_photo)((void *)r->scene, view_idx, im, err);
 }
 
-/* As it is on disk: segments and the interior's ids. */
+/* As stored on disk: segments and the interior's ids. */
 static inline enum status rounds_depth(void *ctx, int view_idx, struct layered_depth *d, struct err *err)
 {
     const struct layered_depth *from = &((const struct rounds *)ctx)->depth[view_idx];
@@ -143,7 +145,7 @@ static inline enum status rounds_depth(void *ctx, int view_idx, struct layered_d
     return ST_OK;
 }
 
-/* The first view after the first round, and after each of `more` rounds in which all views take part. */
+/* The first view's depth after the first round, and after each of `more` rounds of all views. */
 static inline void must_work_in_rounds_of(struct layered_depth *first_view, int more,
                                           const struct segment_params *params, photo_fn *photo)
 {
@@ -161,7 +163,7 @@ static inline void must_work_in_rounds_of(struct layered_depth *first_view, int 
                 fail_msg("round %d, view %d: %s", round, k, err.text);
         }
         must_be_sound_of(&next.depth[0], photo);
-        for (int k = 0; k < scene.set.view_count; k++) { /* the first view's is handed out below */
+        for (int k = 0; k < scene.set.view_count; k++) { /* the first view's is returned below */
             if (k || round == 0) layered_depth_release(&now.depth[k]);
             now.depth[k] = next.depth[k];
             next.depth[k] = (struct layered_depth){0};
