@@ -162,7 +162,8 @@ struct tiff_layout {
     bool plain; /* rows of RGB or grey, 8 or 16 bits */
 };
 
-static enum status read_layout(struct tiff_layout *l, struct photo_info *info, TIFF *t, const char *path, struct err *err)
+static enum status read_layout(struct tiff_layout *l, struct photo_info *info, TIFF *t, const char *path,
+                               struct err *err)
 {
     uint32_t width = 0, height = 0;
     *l = (struct tiff_layout){.photometric = PHOTOMETRIC_MINISBLACK};

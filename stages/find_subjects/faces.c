@@ -175,7 +175,7 @@ static enum status faces_of_view(struct face_search *s, int view_idx, struct fac
     const unsigned char *grey;
     struct subject whole = {.x1 = v->width, .y1 = v->height, .depth = 1};
     if (view_picture(s, view_idx, &grey, err)) return err->status;
-    subject_place(&whole, v, s->ups ? &s->ups[view_idx] : NULL);
+    subject_set_corners(&whole, v, s->ups ? &s->ups[view_idx] : NULL);
     const bool turned = s->ups && fabs(s->ups[view_idx].x) > fabs(s->ups[view_idx].y);
     const int side = v->width > v->height ? v->width : v->height;
     const double scale = fmin(1, (double)s->params->side / side);
@@ -294,7 +294,7 @@ static enum status judge_face(struct face_search *s, int view_idx, const struct 
     if (region_depth(&face->depth, depth, face, err)) return err->status;
     sighting->verdict = FACE_NO_DEPTH;
     if (!(face->depth > 0)) return ST_OK;
-    subject_place(face, &s->set->views[view_idx], s->ups ? &s->ups[view_idx] : NULL);
+    subject_set_corners(face, &s->set->views[view_idx], s->ups ? &s->ups[view_idx] : NULL);
     if (check_views(s, view_idx, face, err)) return err->status;
     sighting->unchecked = face->asked < 2;
     if (!sighting->unchecked && face->confirmed < s->params->min_confirmed * face->asked)

@@ -11,7 +11,7 @@ NEEDS.morph = hdr $(if $(and $(PAIR),$(value REMODEL_SFM)),sfm)
 
 ifndef GRAPH
 ifneq ($(MORPH),)
-  ifeq ($(shell [[ '$(subst ','\'',$(MORPH))' =~ ^[A-Za-z0-9_][A-Za-z0-9_-]*\ +[A-Za-z0-9_][A-Za-z0-9_-]*$$ ]] && echo good),)
+  ifeq ($(shell [[ '$(subst ','\'',$(MORPH))' =~ ^[A-Za-z0-9_][A-Za-z0-9_-]*\ +[A-Za-z0-9_][A-Za-z0-9_-]*\ *$$ ]] && echo good),)
     $(error MORPH=$(MORPH): wanted the ids of two photos, as in MORPH="a b")
   endif
   ifeq ($(firstword $(MORPH)),$(lastword $(MORPH)))
