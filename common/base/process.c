@@ -17,8 +17,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-extern char **environ;
-
 static const struct {
     const char *program, *package;
 } packages[] = {{"colmap", "colmap"}, {"ffmpeg", "ffmpeg"}, {"ffprobe", "ffmpeg"}};

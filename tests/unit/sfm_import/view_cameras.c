@@ -155,7 +155,7 @@ static void a_fisheye_becomes_five_views(void **state)
     }
     /* view 3 is up in the picture: its centre is above the photo's centre, and its lower border is view 0's upper
      * border */
-    double u, v, u2, v2;
+    double u, v, u2 = 0, v2 = 0;
     assert_true(photo_pixel(&lens, &views[3], 640, 640, &u, &v));
     assert_true(v < 1000 - 640 && fabs(u - 1000) < 1e-6);
     assert_true(photo_pixel(&lens, &views[3], 300, 1280, &u, &v) && photo_pixel(&lens, &views[0], 300, 0, &u2, &v2));
