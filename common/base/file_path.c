@@ -2,10 +2,23 @@
 #include "common/base/file_path.h"
 
 #include <stdio.h>
+#include <sys/stat.h>
 
 enum status file_path(char path[FILE_PATH], const char *folder, const char *file, const char *suffix, struct err *err)
 {
     if (snprintf(path, FILE_PATH, "%s/%s%s", folder, file, suffix) < FILE_PATH) return ST_OK;
     return err_set(err, ST_IO, "the path %s/%s%s is longer than %d bytes; use a shorter folder or file name.", folder,
                    file, suffix, FILE_PATH - 1);
+}
+
+bool path_is_file(const char *path)
+{
+    struct stat info;
+    return !stat(path, &info) && S_ISREG(info.st_mode);
+}
+
+bool path_is_folder(const char *path)
+{
+    struct stat info;
+    return !stat(path, &info) && S_ISDIR(info.st_mode);
 }

@@ -32,3 +32,10 @@ enum status hash_file(char hex[HASH_TEXT], const char *path, struct err *err)
     if (fp) fclose(fp);
     return st;
 }
+
+uint64_t hash_text(const char *text)
+{
+    uint64_t h = 1469598103934665603u;
+    for (; *text; text++) h = (h ^ (unsigned char)*text) * 1099511628211u;
+    return h ^ (h >> 32);
+}

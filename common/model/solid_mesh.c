@@ -1,5 +1,6 @@
 /* solid_mesh.c - makes meshes from polygons; names and ids, volume and area. */
 #include "common/model/solid_mesh.h"
+#include "common/base/hash.h"
 
 #include <limits.h>
 #include <stdbool.h>
@@ -22,13 +23,6 @@ void solid_mesh_release(struct solid_mesh *mesh)
 }
 
 /* ---------------------------------------------------------------------------------------------------------- tables */
-
-static uint64_t hash_text(const char *text)
-{
-    uint64_t h = 1469598103934665603u;
-    for (; *text; text++) h = (h ^ (unsigned char)*text) * 1099511628211u;
-    return h ^ (h >> 32);
-}
 
 static uint64_t hash_edge(int from, int to)
 {

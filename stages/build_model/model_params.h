@@ -5,11 +5,12 @@
 #include "common/base/param.h"
 
 /* name, type, default, min, max, unit, help */
-#define MODEL_PARAMS(X)                                                                                             \
-    X(max_angle, double, 25, 1, 44, "degrees", "max angle between a point's normal and the axis that it votes for") \
-    X(min_points, int, 30, 1, 1000000, "", "min number of points with the wall's normal in a rectangle on a wall")  \
-    X(window, double, 0.01, 1e-6, 1, "",                                                                            \
-      "width of the window of a wall's points, as a fraction of the ceiling's height")                              \
+#define MODEL_PARAMS(X)                                                                                                \
+    X(max_angle, double, 25, 1, 44, "degrees",                                                                         \
+      "maximum angle between a point's normal and the axis that it votes for")                                         \
+    X(min_points, int, 30, 1, 1000000, "", "minimum number of points with the wall's normal in a rectangle on a wall") \
+    X(window, double, 0.01, 1e-6, 1, "",                                                                               \
+      "width of the window of a wall's points, as a fraction of the ceiling's height")                                 \
     X(overlay_side, int, 1200, 64, 20000, "px", "length of the longer side of the photographs with the model's edges")
 
 struct model_params {

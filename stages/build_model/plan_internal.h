@@ -17,6 +17,8 @@ struct plan_context { /* of the statement that is being applied */
     struct err *err;
 };
 
+/* plan_context.c */
+
 /* Sets ST_DATA with the statement's file and line before the text. */
 enum status statement_error(struct plan_context *c, const char *fmt, ...) PRINTF_LIKE(2, 3);
 

@@ -2,20 +2,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/base/hash.h"
 #include "common/base/scan.h"
 #include "stages/build_model/plan_internal.h"
-
-static size_t hash_name(const char *name)
-{
-    size_t h = 1469598103934665603u;
-    for (; *name; name++) h = (h ^ (unsigned char)*name) * 1099511628211u;
-    return h;
-}
 
 static struct plan_name *find_slot(const struct plan *plan, const char *name)
 {
     const size_t mask = (size_t)plan->name_capacity - 1;
-    size_t i = hash_name(name) & mask;
+    size_t i = hash_text(name) & mask;
     while (plan->names[i].name && strcmp(plan->names[i].name, name)) i = (i + 1) & mask;
     return &plan->names[i];
 }

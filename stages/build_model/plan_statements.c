@@ -4,7 +4,6 @@
  * room's walls close) is checked once the script is read, and in an edit after each statement, so that the statement
  * which breaks the building is named. */
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -44,16 +43,6 @@ void plan_begin(struct plan *plan, const struct model_axes *axes)
     }
     if (axes && axes->ceiling > 0) plan->ceiling = axes->ceiling;
     if (axes && axes->thickness > 0) plan->thickness = axes->thickness;
-}
-
-enum status statement_error(struct plan_context *c, const char *fmt, ...)
-{
-    char text[1500];
-    va_list args;
-    va_start(args, fmt);
-    vsnprintf(text, sizeof text, fmt, args);
-    va_end(args);
-    return err_set(c->err, ST_DATA, "%s:%d: %s", c->path, c->s->line, text);
 }
 
 static enum status check_length(struct plan_context *c, const char *what, double value)

@@ -8,13 +8,7 @@
 #include <string.h>
 
 #include "common/base/array.h"
-
-static size_t hash_text(const char *text)
-{
-    uint64_t h = 1469598103934665603u;
-    for (; *text; text++) h = (h ^ (unsigned char)*text) * 1099511628211u;
-    return (size_t)(h ^ (h >> 32));
-}
+#include "common/base/hash.h"
 
 static char **slot_of(char **texts, int capacity, const char *text)
 {

@@ -19,6 +19,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/base/hash.h"
 #include "stages/build_model/borders.h"
 
 struct half {
@@ -826,13 +827,6 @@ static enum status unite_body(struct polygon_soup *r, const struct solid_list *l
 }
 
 /* ----------------------------------------------------------------------------------------------------- whole lists */
-
-static uint64_t hash_text(const char *text)
-{
-    uint64_t h = 1469598103934665603u;
-    for (; *text; text++) h = (h ^ (unsigned char)*text) * 1099511628211u;
-    return h ^ (h >> 32);
-}
 
 /* Rank of a text: the index of its first occurrence. */
 static int rank_of(const char *text, const char **texts, int *count, int *slots, int size)

@@ -1,25 +1,9 @@
 /* evaluation.c - see evaluation.h; evaluate_*.c compute the metrics. */
 #include "stages/evaluate/evaluation_parts.h"
 
-#include <sys/stat.h>
-
 #define PARAM_STRUCT struct evaluate_params
 const struct param evaluate_param_table[] = {EVALUATE_PARAMS(PARAM_ROW) PARAM_END};
 #undef PARAM_STRUCT
-
-bool path_is_file(const char *path)
-{
-    struct stat info;
-    return !stat(path, &info) && S_ISREG(info.st_mode);
-}
-
-enum status evaluation_input(struct evaluation *e, char path[FILE_PATH], const char *where, const char *file,
-                             const char *suffix, struct err *err)
-{
-    char name[FILE_PATH];
-    if (file_path(name, where, file, suffix, err) || file_path(path, e->folder, name, "", err)) return err->status;
-    return provenance_add_file(e->prov, name, path, err);
-}
 
 static enum status read_views(struct evaluation *e, struct view_set *set, const char *where, struct err *err)
 {
@@ -40,16 +24,6 @@ static enum status read_views(struct evaluation *e, struct view_set *set, const 
                          set->lenses.lenses[lens].photo);
     }
     return st;
-}
-
-const struct lens *lens_of_view(const struct view_set *set, int view)
-{
-    return &set->lenses.lenses[lens_list_find(&set->lenses, set->cameras.views[view].name)];
-}
-
-int photo_of_view(const struct evaluation *e, const struct view_set *set, int view)
-{
-    return photo_list_find_id(&e->photos, lens_of_view(set, view)->photo);
 }
 
 static enum status note_missing(struct evaluation *e, struct err *err)

@@ -46,6 +46,4 @@ enum status evaluation_input(struct evaluation *e, char path[FILE_PATH], const c
 const struct lens *lens_of_view(const struct view_set *set, int view);
 int photo_of_view(const struct evaluation *e, const struct view_set *set, int view);
 
-bool path_is_file(const char *path);
-
 #endif

@@ -10,7 +10,7 @@
 /* name, type, default, min, max, unit, help: for the table of the stage's parameters */
 #define APERTURE_PARAMS(X)                                                                               \
     X(aperture_samples, int, 128, 1, 4096, "",                                                           \
-      "offline: max number of lens samples, one pinhole frame each, per frame with depth of field")      \
+      "offline: maximum number of lens samples, one pinhole frame each, per frame with depth of field")  \
     X(aperture_error, double, 0.012, 0, 1, "",                                                           \
       "offline: lens samples are added until the estimated error, in gamma-encoded pixel values from 0 " \
       "to 1, is below this")

@@ -10,9 +10,6 @@ enum { PATH_SIZE = FILE_PATH + 512 }; /* bytes of a folder's path and of a file 
 /* Adds a sentence to `notes`, cut at NOTE_SIZE. */
 enum status contents_note(struct contents *c, struct err *err, const char *fmt, ...) PRINTF_LIKE(3, 4);
 
-bool path_is_folder(const char *path);
-bool path_is_file(const char *path);
-
 /* The number from 0 to 1 that an attribute of a picture holds; -1: NULL, or another text. */
 double share_from_text(const char *text);
 

@@ -3,18 +3,12 @@
 #include "stages/sfm/run_colmap.h"
 
 #include <stdlib.h>
-#include <sys/stat.h>
 
 #include "common/base/clock.h"
+#include "common/base/file_path.h"
 #include "common/base/log.h"
 #include "common/base/outfile.h"
 #include "stages/sfm/colmap_log.h"
-
-static bool is_folder(const char *path)
-{
-    struct stat info;
-    return !stat(path, &info) && S_ISDIR(info.st_mode);
-}
 
 static enum status explain_failure(const struct colmap_job *job, struct err *err)
 {
@@ -62,7 +56,7 @@ static int count_models(const struct colmap_job *job, struct err *err)
 {
     for (int k = 0;; k++) {
         char *path = text_format(err, "%s/%d", job->sparse, k);
-        bool exists = path && is_folder(path);
+        bool exists = path && path_is_folder(path);
         free(path);
         if (!exists) return k;
     }

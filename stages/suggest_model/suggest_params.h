@@ -6,15 +6,15 @@
 
 /* name, type, default, min, max, unit, help */
 #define SUGGEST_PARAMS(X)                                                                               \
-    X(max_angle, double, 20, 1, 44, "degrees", "max angle between a point's normal and the wall's")     \
+    X(max_angle, double, 20, 1, 44, "degrees", "maximum angle between a point's normal and the wall's") \
     X(window, double, 0.01, 0.001, 0.1, "",                                                             \
       "width of the window in which the points of a wall lie, as a fraction of the ceiling's height")   \
     X(cell, double, 0.04, 0.005, 0.2, "",                                                               \
       "edge of a wall's cells, which are solid or seen through, as a fraction of the ceiling's height") \
     X(min_wall, double, 0.2, 0.01, 1, "",                                                               \
-      "min fraction of a wall's cells that are solid, minus those that are seen through")               \
+      "minimum fraction of a wall's cells that are solid, minus those that are seen through")           \
     X(max_thickness, double, 0.25, 0.01, 1, "",                                                         \
-      "max thickness of a wall between rooms, as a fraction of the ceiling's height")                   \
+      "maximum thickness of a wall between rooms, as a fraction of the ceiling's height")               \
     X(min_opening, double, 0.2, 0.02, 1, "",                                                            \
       "min width and height of an opening, and min width of a room, as a fraction of the ceiling's height")
 
