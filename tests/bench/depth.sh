@@ -60,7 +60,7 @@ prepare_scene() # NAME
 {
     local to=$work/$1 mk=scenes/$1/scene.mk photos truth
     photos=$(sed -n 's/^PHOTOS *:*= *//p' "$mk" 2>/dev/null) truth=$(sed -n 's/^TRUTH *:*= *//p' "$mk" 2>/dev/null)
-    if [ -z "$photos" ] || [ -z "$truth" ]; then missing "$mk names no PHOTOS or no TRUTH; BENCH_SCENES=\"NAMES\" are scenes with both."; fi
+    if [ -z "$photos" ] || [ -z "$truth" ]; then missing "$mk names no PHOTOS or no TRUTH; BENCH_SCENES=\"NAMES\" lists scenes with both."; fi
     echo "depth: photos and cameras of $1 (make SCENE=$1 sfm)" >&2
     "${MAKE:-make}" --no-print-directory SCENE="$1" QUALITY=default sfm >"$work/messages" 2>&1 || { tail -n 5 "$work/messages" >&2; missing "make SCENE=$1 sfm failed."; }
     mkdir -p "$to"
@@ -77,7 +77,7 @@ prepare_folder() # DIR
 {
     local to made id photos=$1/photos
     to=$work/${1##*/} made=$work/${1##*/}/made
-    if [ ! -d "$1/photos" ] || [ ! -d "$1/truth" ]; then missing "$1 holds no photos/ or no truth/; BENCH_SCENES=\"NAMES\" are scenes or such folders."; fi
+    if [ ! -d "$1/photos" ] || [ ! -d "$1/truth" ]; then missing "$1 holds no photos/ or no truth/; BENCH_SCENES=\"NAMES\" lists scenes, or folders with both."; fi
     echo "depth: photos and cameras of $1" >&2
     mkdir -p "$made"
     quietly "$B/bin/import_photos" --photos "$photos" --out "$made/photos"

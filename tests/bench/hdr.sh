@@ -33,15 +33,15 @@ prepare()
 
 settings()
 {
-    local threads=${BENCH_THREADS:-1 $([ "$(nproc)" = 1 ] || nproc)} n t most
+    local threads=${BENCH_THREADS:-1 $([ "$(nproc)" = 1 ] || nproc)} n t max
     printf 'series\texposures\tthreads\tmax_megapixels\tasked\n'
     for t in $threads; do
         for n in ${BENCH_EXPOSURES:-1 3 5}; do printf 'hdr_merge\t%s\t%s\t-\t-\n' "$n" "$t"; done
     done
-    for most in 2 0; do
+    for max in 2 0; do
         for t in $threads; do
             for n in ${BENCH_EXPOSURES:-3}; do
-                printf 'merge and rectify%s\t%s\t%s\t%s\t%s\n' "$([ $most != 0 ] || echo ', views of any size')" "$n" "$t" "$most" "$([ "$t" = 2 ] && echo 20 || echo -)"
+                printf 'merge and rectify%s\t%s\t%s\t%s\t%s\n' "$([ $max != 0 ] || echo ', views of any size')" "$n" "$t" "$max" "$([ "$t" = 2 ] && echo 20 || echo -)"
             done
         done
     done
