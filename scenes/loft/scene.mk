@@ -1,6 +1,6 @@
-# Photographed by the project itself: scene.txt and cameras.txt, see docs/scenes.md
+# Rendered by the project itself from scene.txt and cameras.txt (docs/scenes.md).
 PHOTOS := out/loft/simulated/photos
-# outdoors, where photographs of the rooms do not tell where the camera stood
+# Taken outdoors; SfM cannot place these images from photographs of the rooms, so LRI_SFM gives their cameras.
 LRI := out/loft/simulated/lri
 LRI_SFM := out/loft/simulated/truth/lri
 TRUTH := out/loft/simulated/truth

@@ -1,6 +1,7 @@
-# Photographed by the project itself: scene.txt and cameras.txt, see docs/scenes.md
+# Rendered by the project itself from scene.txt and cameras.txt (docs/scenes.md).
 PHOTOS := out/still-life/simulated/photos
 TRUTH := out/still-life/simulated/truth
-# COLMAP's model of these photos, points of at least six views, so that figures move only with the code; `SFM=` runs COLMAP
+# COLMAP's model of these photos, with points seen by at least six views. It is fixed so that only a change of code
+# changes the metrics; `SFM=` runs COLMAP.
 SFM := scenes/still-life/sfm
 PRODUCTS := parallax

@@ -1,8 +1,8 @@
-# compare.awk SETTINGS RAW - two revisions of a bench: ratios new / old of the samples of a repeat, and what else changed.
+# compare.awk SETTINGS RAW - compares two revisions: ratios new / old of the samples of each repeat, and changed values.
 BEGIN { FS = OFS = "\t"; repeats = 0; also = split(timed_too, too, " "); for (i = 1; i <= also; i++) is_timed[too[i]] = 1 }
 function median(list, n,    i, j, t)
 {
-    for (i = 2; i <= n; i++) { # few
+    for (i = 2; i <= n; i++) { # insertion sort: there are few
         t = list[i]
         for (j = i - 1; j >= 1 && list[j] > t; j--) list[j + 1] = list[j]
         list[j + 1] = t
@@ -18,7 +18,7 @@ FNR == NR { settings[FNR - 1] = $0; rows = FNR - 1; next }
     if (!($4 in seen)) { seen[$4] = 1; names[++n] = $4 }
 }
 END {
-    print "# bench " name ": new over " old ", medians of " repeats " alternating pairs; below 1 the new one is faster"
+    print "# bench " name ": new over " old ", medians of " repeats " alternating pairs; below 1: the new one is faster"
     print settings[0] "\tseconds_old\tseconds_new\tratio\tratio_least\tratio_most\tpeak_mib_old\tpeak_mib_new\tchanged"
     for (i = 1; i <= rows; i++) {
         least = 1e300; most = 0

@@ -1,23 +1,30 @@
-# depth.sh - segment_depth: error against time, by each of its knobs, on rectified pairs and on scenes with known depth.
+# depth.sh - segment_depth: error against time for each of its parameters, on rectified pairs and scenes of known depth.
 #
-# Pairs: teddy, cones, venus, Art, Books, motorcycle of the Middlebury stereo sets, in BENCH_PAIRS (../shared/data/middlebury;
-# without that folder only scenes are measured). Both views get their depth, so that rounds can compare them; the left one is
-# judged. Error: bad-2, the part of pixels seen by both whose disparity is off by more than 2 px of the full picture
-# (stereo_score.c), mean over the pairs; each pair has a column of its own. Scenes: BENCH_SCENES (still-life, loft, and the folder
-# ../shared/data/apartment where there is one). A name is one of scenes/ whose scene.mk has a TRUTH; `make sfm` is run for it first. A folder has
-# photos/ and truth/, whose cameras are taken. Views are BENCH_SCENE_SIZE (0.5) of the photos' size, and
-# error is depth.bad2_visible of docs/evaluation.md, with the relative errors, the part within 2 % and the part known beside it.
-# BENCH_SWEEPS="quality rounds": these panels alone.
+# Pairs: teddy, cones, venus, Art, Books, motorcycle of the Middlebury stereo sets, in BENCH_PAIRS
+# (../shared/data/middlebury; without that folder only scenes are measured). Both views get their depth, so that rounds
+# can compare them; the left one is evaluated. Error: bad-2, the fraction of pixels seen by both views whose disparity
+# is off by more than 2 px of the full picture (stereo_score.c), mean over the pairs; each pair has a column of its own.
 #
-# The default setting is in every panel; a panel turns one knob. `quality` has the [segment_depth] of configs/draft.cfg and final.cfg beside the
-# default; `threads` and `jobs` are one and two threads for a view, one and two views at a time. Constant z is the thesis' form: slants cost more than they can gain. Baseline:
-# OpenCV's StereoSGBM (stereo_sgbm.c) on the same views: its best settings, left-right checked and filled; block is its window; `plain` is what it gives if the
-# pictures get no margin for the columns on the left. It makes the depth of one view, ours of two.
-# seconds: wall time of the programs over all items of the set, in BENCH_THREADS (1) threads; core_s_per_mp: processor time over the
-# megapixels of all views that got a depth, all rounds included; size: of the views, as a part of the photos'; the rows of the sweeps `threads` and `jobs` are about seconds alone.
-# shellcheck disable=SC2030,SC2031 # jobs side by side measure in work folders of their own
+# Scenes: BENCH_SCENES (still-life, loft, and the folder ../shared/data/apartment if it exists). A name is one of
+# scenes/ whose scene.mk has a TRUTH; `make sfm` is run for it first. A folder has photos/ and truth/, whose cameras are
+# used. Views are BENCH_SCENE_SIZE (0.5) of the photos' size. The error is depth.bad2_visible of docs/evaluation.md; the
+# table also has the relative errors, the fraction within 2 % and the known fraction.
+#
+# BENCH_SWEEPS="quality rounds": only these panels. The default setting is in every panel; a panel varies one parameter.
+# `quality` has the [segment_depth] of configs/draft.cfg and final.cfg beside the default; `threads` and `jobs` are one
+# and two threads per view, and one and two views at a time. Constant z is the form of [Colburn 2014]: slants cost more
+# than they can gain.
+#
+# Baseline: OpenCV's StereoSGBM (stereo_sgbm.c) on the same views: its best settings, left-right checked and filled;
+# block is its window; `plain` is without the margin for the left columns. It computes the depth of one view, ours of
+# two.
+#
+# seconds: wall time of the programs over all items of the set, in BENCH_THREADS (1) threads. core_s_per_mp: CPU time
+# per megapixel of all views that got a depth, including all rounds. size: of the views, as a fraction of the photos'
+# size. The rows of the sweeps `threads` and `jobs` only compare seconds.
+# shellcheck disable=SC2030,SC2031 # parallel jobs measure in work folders of their own
 title="Depth maps: error against time"
-note="Lower left is better. A panel turns one knob; the other knobs are at their defaults."
+note="Lower left is better. Each panel varies one parameter; the others have their defaults."
 baseline=SGBM
 match="set sweep size"
 timed=core_s_per_mp
@@ -31,30 +38,31 @@ scenes=${BENCH_SCENES-still-life loft $apartment}
 scene_size=${BENCH_SCENE_SIZE:-0.5}
 threads=${BENCH_THREADS:-1}
 
-# said FILE NAME: the last value of NAME in lines "NAME VALUE"
-said() { awk -v k="$2" '$1 == k { v = $2 } END { print v }' "$1"; }
-quietly() { "$@" >"$work/words" 2>&1 || { tail -n 5 "$work/words" >&2; missing "${1##*/} failed on the bench's input."; }; }
+# value_of FILE NAME: the last value of NAME in lines "NAME VALUE"
+value_of() { awk -v k="$2" '$1 == k { v = $2 } END { print v }' "$1"; }
+quietly() { "$@" >"$work/messages" 2>&1 || { tail -n 5 "$work/messages" >&2; missing "${1##*/} failed on the bench's input."; }; }
 
-# ITEM is a pair or a scene: photos, records, sfm, truth in $work/ITEM, and the knobs that it needs in $work/ITEM/knobs
+# ITEM is a pair or a scene: photos, records, sfm, truth in $work/ITEM, and the parameters that it needs in
+# $work/ITEM/knobs
 prepare_pair() # NAME
 {
     local to=$work/$1 v
-    "$B/tests/bench/stereo_pair" --pair "$pairs/$1" --out "$to" >"$work/pair" 2>"$work/words" || { cat "$work/words" >&2; missing "$pairs/$1 cannot be used."; }
+    "$B/tests/bench/stereo_pair" --pair "$pairs/$1" --out "$to" >"$work/pair" 2>"$work/messages" || { cat "$work/messages" >&2; missing "$pairs/$1 cannot be used."; }
     quietly "$B/bin/import_photos" --photos "$to/photos" --out "$to/records"
-    mkdir "$to/sfm" # as the stage sfm leaves it: nothing has to be found
+    mkdir "$to/sfm" # as the stage sfm would write it
     mv "$to/model" "$to/sfm/0"
     printf 'remodel-sfm 1\n0 colmap\n' >"$to/sfm/models.txt"
-    for v in left right; do echo "$v $(said "$to/records/$v.txt" hash)"; done >"$to/sfm/photos.txt"
-    said "$work/pair" near >"$to/near"
+    for v in left right; do echo "$v $(value_of "$to/records/$v.txt" hash)"; done >"$to/sfm/photos.txt"
+    value_of "$work/pair" near >"$to/near"
     printf '%s\n' --set "near=$(cat "$to/near")" --set far=1000 >"$to/knobs"
 }
 prepare_scene() # NAME
 {
     local to=$work/$1 mk=scenes/$1/scene.mk photos truth
     photos=$(sed -n 's/^PHOTOS *:*= *//p' "$mk" 2>/dev/null) truth=$(sed -n 's/^TRUTH *:*= *//p' "$mk" 2>/dev/null)
-    if [ -z "$photos" ] || [ -z "$truth" ]; then missing "$mk names no PHOTOS or no TRUTH; BENCH_SCENES=\"NAMES\" are scenes with both."; fi
+    if [ -z "$photos" ] || [ -z "$truth" ]; then missing "$mk names no PHOTOS or no TRUTH; BENCH_SCENES=\"NAMES\" lists scenes with both."; fi
     echo "depth: photos and cameras of $1 (make SCENE=$1 sfm)" >&2
-    "${MAKE:-make}" --no-print-directory SCENE="$1" QUALITY=default sfm >"$work/words" 2>&1 || { tail -n 5 "$work/words" >&2; missing "make SCENE=$1 sfm failed."; }
+    "${MAKE:-make}" --no-print-directory SCENE="$1" QUALITY=default sfm >"$work/messages" 2>&1 || { tail -n 5 "$work/messages" >&2; missing "make SCENE=$1 sfm failed."; }
     mkdir -p "$to"
     if grep -q '^BRACKETED := yes' "out/$1/photos/photos.mk"; then photos=out/$1/hdr; fi
     ln -s "$(realpath "$photos")" "$to/photos"
@@ -64,12 +72,12 @@ prepare_scene() # NAME
     : >"$to/knobs"
 }
 
-# a folder of photos and truth, whose cameras are the model
+# a folder of photos and truth, whose cameras become the model
 prepare_folder() # DIR
 {
     local to made id photos=$1/photos
     to=$work/${1##*/} made=$work/${1##*/}/made
-    if [ ! -d "$1/photos" ] || [ ! -d "$1/truth" ]; then missing "$1 holds no photos/ or no truth/; BENCH_SCENES=\"NAMES\" are scenes or such folders."; fi
+    if [ ! -d "$1/photos" ] || [ ! -d "$1/truth" ]; then missing "$1 holds no photos/ or no truth/; BENCH_SCENES=\"NAMES\" lists scenes, or folders with both."; fi
     echo "depth: photos and cameras of $1" >&2
     mkdir -p "$made"
     quietly "$B/bin/import_photos" --photos "$photos" --out "$made/photos"
@@ -96,13 +104,13 @@ prepare()
     for p in teddy cones venus Art Books motorcycle; do
         if [ -d "$pairs/$p" ]; then prepare_pair "$p"; found_pairs+=" $p"; fi
     done
-    [ -n "$found_pairs" ] || echo "depth: there are no Middlebury pairs in '$pairs' (BENCH_PAIRS=DIR says where they are), so there are only scenes, and no baseline." >&2
+    [ -n "$found_pairs" ] || echo "depth: there are no Middlebury pairs in '$pairs' (set BENCH_PAIRS=DIR); only scenes are measured, without a baseline." >&2
     found_scenes=
     for s in $scenes; do
         case $s in */*) prepare_folder "${s%/}" ;; *) prepare_scene "$s" ;; esac
         s=${s%/}; found_scenes+=" ${s##*/}"
     done
-    for s in draft final; do # what a quality changes, as options
+    for s in draft final; do # the parameters that a quality changes, as options
         "$B/bin/segment_depth" --config "configs/$s.cfg" --print-config | comm -13 <(sort "$work/defaults") <(sort -) | sed 's/ = /=/' >"$work/$s"
     done
     [ -n "$found_pairs$found_scenes" ] || missing "there are neither pairs nor scenes."
@@ -122,7 +130,7 @@ settings()
         [ "$3" != resolution ] || size=$4
         printf '%s\t%s\t%s\t%s\t%s\n' "$@" "$size"
     }
-    sweep() # SET KNOB SERIES VALUES...: with the default among them, in order
+    sweep() # SET KNOB SERIES VALUES...: rows for these values and the default, in order
     {
         local set=$1 knob=$2 series=$3 v; shift 3
         for v in $(printf '%s\n' "$@" "$(default_of "$knob")" | sort -gu); do row "$series" "$set" "$knob" "$v"; done
@@ -147,7 +155,7 @@ settings()
     done
 }
 
-# views ITEM SIZE: the folder of its rectified views at this part of the photos' size; made once
+# views ITEM SIZE: makes its rectified views at this fraction of the photos' size, once; prints their folder
 views()
 {
     local from=$work/$1 to=$work/$1/views@$2 limit=0 p
@@ -155,7 +163,7 @@ views()
         [ "$2" = 1 ] || limit=$(cat "$from"/records/*.txt | awk -v s="$2" '$1 == "size" { print $2 * $3 * s * s * 1e-6; exit }')
         quietly "$B/bin/sfm_import" --sfm "$from/sfm/" --records "$from/records" --set "max_megapixels=$limit" --out "$to"
         for p in $(sed -n 's/^VIEWS := //p' "$to/views.mk" | tr ' ' '\n' | sed 's/@.*//' | sort -u); do
-            # ours, also where an older revision is measured: its options were others
+            # ours, also if an older revision is measured, because its options differ
             quietly "${builds[0]}/bin/rectify" --photo "$p" --photos "$from/photos/" --records "$from/records" --views "$to" --out "$to"
         done
     fi
@@ -163,15 +171,15 @@ views()
 }
 megapixels() { awk '/^[^#]/ && NF >= 8 { n += $3 * $4 } END { print n * 1e-6 }' "$1/cameras.txt"; }
 
-# a sample's sums: use_of_* gathers "seconds cpu peak megapixels" a process; judged_*: "ITEM NAME VALUE" a figure
-use() # FILE MEGAPIXELS COMMAND...
+# use FILE MEGAPIXELS COMMAND...: measures a process and appends "seconds cpu peak megapixels" to FILE
+use()
 {
     local to=$1 mp=$2; shift 2
     measured "$@" >"$work/use1" || return
-    echo "$(said "$work/use1" seconds) $(said "$work/use1" cpu_seconds) $(said "$work/use1" peak_mib) $mp" >>"$to"
+    echo "$(value_of "$work/use1" seconds) $(value_of "$work/use1" cpu_seconds) $(value_of "$work/use1" peak_mib) $mp" >>"$to"
 }
-# the lines of a sample; error is the mean over the items
-sums() # USES JUDGED
+# sums USES JUDGED: prints a sample's lines from the files of use() and judge(); error is the mean over the items
+sums()
 {
     awk '{ s += $1; c += $2; mp += $4; if ($3 > peak) peak = $3 } END { printf "seconds %.6f\npeak_mib %.1f\ncore_s_per_mp %.4g\n", s, peak, c / mp }' "$1"
     awk '{ if (!(($2) in n)) order[++k] = $2; n[$2]++; sum[$2] += $3; items[$1] = 1; if ($2 == "error") { own[++m] = $1; bad[m] = $3 } }
@@ -182,7 +190,8 @@ sums() # USES JUDGED
         }' "$2"
 }
 
-judge() # ITEM SIZE DEPTH: of a pair DEPTH is the left view's file, of a scene a folder; prints "ITEM NAME VALUE" lines
+# judge ITEM SIZE DEPTH: prints "ITEM NAME VALUE" lines; DEPTH is the left view's file of a pair or a scene's folder
+judge()
 {
     local of=$work/$1 folder=$fast/judged
     if [ -d "$3" ]; then
@@ -197,9 +206,11 @@ judge() # ITEM SIZE DEPTH: of a pair DEPTH is the left view's file, of a scene a
     fi
 }
 
-# Rounds build on each other, and the default stands in every panel: what a setting gave is kept for the rest of the repeat, and
-# the depth of the last round that was made until another setting is asked for.
-solved() # KEY SIZE ITEMS ROUND THREADS JOBS ARGS...: makes $fast/KEY.ROUND, a sample's lines
+# solved KEY SIZE ITEMS ROUND THREADS JOBS ARGS...: makes $fast/KEY.ROUND, a sample's lines
+#
+# The default is in every panel, so the result of a setting is kept for the rest of the repeat. Rounds build on each
+# other, so the depth of the last round is kept until another setting runs.
+solved()
 {
     local key=$1 size=$2 items=$3 round=$4 threads=$5 jobs=$6 now=$fast/rounds k item v in before args command running began; shift 6
     [ ! -e "$fast/$key.$round" ] || return 0
@@ -216,7 +227,7 @@ solved() # KEY SIZE ITEMS ROUND THREADS JOBS ARGS...: makes $fast/KEY.ROUND, a s
                 command=("$B/bin/segment_depth" --threads "$threads" "${args[@]}" "$@" --views "$in" --view "$v" "${before[@]}" --out "$now/$item.$k/$v.exr")
                 if [ "$jobs" = 1 ]; then
                     use "$now/uses" 0 "${command[@]}" || return
-                else # side by side, each with files of its own for what is measured
+                else # in parallel, each with its own files for the measurements
                     if [ "${#running[@]}" = "$jobs" ]; then wait "${running[0]}" || return; running=("${running[@]:1}"); fi
                     (work=$now/job.$v; mkdir -p "$work"; use "$now/uses" 0 "${command[@]}") &
                     running+=($!)
@@ -230,7 +241,7 @@ solved() # KEY SIZE ITEMS ROUND THREADS JOBS ARGS...: makes $fast/KEY.ROUND, a s
             judge "$item" "$size" "$now/$item.$k$v" >>"$now/judged" || return
         done
         sums "$now/uses" "$now/judged" >"$fast/$key.$k"
-        if [ "$jobs" != 1 ]; then # from the first one's beginning to the last one's end
+        if [ "$jobs" != 1 ]; then # from the start of the first to the end of the last
             awk '{ s += $2 - $1 } END { printf "seconds %.6f\n", s }' "$now/walls" >"$fast/wall"
             grep -v '^seconds ' "$fast/$key.$k" >>"$fast/wall"; mv "$fast/wall" "$fast/$key.$k"
         fi

@@ -1,11 +1,15 @@
-# exr.sh - throughput of common/image/exr.c: codecs and threads, against the OpenEXR library itself.
+# exr.sh - throughput of common/image/exr.c by codec and threads, against the OpenEXR library itself.
 #
 # Pictures: a synthetic one, 1920 x 1280, RGBA half, with a camera's noise; and a rectified view if a scene has been run
-# (VIEW=FILE names another, VIEW= none). BENCH_CODECS and BENCH_THREADS choose fewer settings. The baseline is the OpenEXR library's C++ interface, since that is what ImageMagick, OpenCV
-# and other writers of EXR files call: same codec, same level of compression, same number of threads. It gets what
-# exr.c gets (planes of float in memory, converted within the time that is measured) but checks no sample for NaN, and
-# writes in place; exr.c writes beside and renames. Files are in memory where the machine has /dev/shm.
-# seconds: one write or read; mb: the samples' bytes before compression; peak_mib: the process with the picture in it.
+# (VIEW=FILE names another, VIEW= none). BENCH_CODECS and BENCH_THREADS choose fewer settings.
+#
+# The baseline is the OpenEXR library's C++ interface, which ImageMagick, OpenCV and other writers of EXR files call:
+# same codec, compression level and number of threads. It gets the same input as exr.c (planes of float in memory, with
+# the conversion timed) but does not check samples for NaN, and writes in place; exr.c writes a temporary file and
+# renames it. Files are in memory if the machine has /dev/shm.
+#
+# seconds: one write or read; mb: the samples' bytes before compression; peak_mib: of the process, including the
+# picture.
 title="EXR files: time against size"
 note="Lower left is better. Points: codecs."
 baseline=OpenEXR
@@ -18,7 +22,7 @@ prepare()
 {
     "$B/tests/bench/exr" --paint --picture "$fast/synthetic.exr" 2>/dev/null
     view=${VIEW-$(find out -path out/build -prune -o -path '*/views/*.exr' -print 2>/dev/null | sort | sed -n 1p)}
-    [ -n "$view" ] || echo "exr: no scene has rectified views under out/, so there is only the synthetic picture." >&2
+    [ -n "$view" ] || echo "exr: no scene has rectified views under out/; only the synthetic picture is measured." >&2
 }
 
 settings()
@@ -36,5 +40,5 @@ sample()
     local file=$fast/synthetic.exr
     [ "$2" = synthetic ] || file=$view
     measured "$B/tests/bench/exr" --by "$1" --picture "$file" --direction "$3" --codec "$4" --threads "$5" --folder "$fast" || return
-    awk '$1 == "bytes" { printf "size_mb %.6g\n", $2 * 1e-6 }' "$work/said"
+    awk '$1 == "bytes" { printf "size_mb %.6g\n", $2 * 1e-6 }' "$work/output"
 }

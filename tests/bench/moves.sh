@@ -1,24 +1,28 @@
-# moves.sh - plan_path and sample_validity: how much parallax the chosen ends of a move have, and how exact the limits of valid viewpoints are.
+# moves.sh - plan_path and sample_validity: parallax of the chosen ends of a move, accuracy of the limits of validity.
 #
-# Scenes: BENCH_SCENES, names of scenes/ (`make SCENE=NAME depth` is run first), or folders that hold views/, depth/ and photos/ already.
-# The move is the establishing dolly. BENCH_SWEEPS="ends limits": these panels alone. BENCH_THREADS (all cores).
+# Scenes: BENCH_SCENES, names of scenes/ (`make SCENE=NAME depth` is run first), or folders that already hold views/,
+# depth/ and photos/. The move is the establishing dolly. BENCH_SWEEPS="ends limits": only these panels. BENCH_THREADS
+# (all cores).
 #
-# `ends`: move_pairs.c. The baseline is the best of all pairs of the regions' cells that is valid all along its way: every cell drawn once in pictures
-# of parallax_side, 192 px, every pair compared. `all pairs, film size` does so in pictures of 1280 px, `drawn anew` draws both ends of every pair in that size
-# for this pair alone (BENCH_FULL, still-life: the scenes where these are done, for the last takes minutes). Others: the thesis' answer, of the 12 longest pairs (refine=no), and the default. parallax is in % of the frames, measured in
-# pictures of 640 px, in which none of them was chosen; `chosen` is in those in which it was; `best` that of the best pair whatever its way.
+# `ends`: move_pairs.c. The baseline is the best of all pairs of the regions' cells whose whole path is valid: every
+# cell is rendered once in pictures of parallax_side, 192 px, and every pair is compared. `all pairs, film size` does so
+# in pictures of 1280 px; `drawn anew` renders both ends of every pair at that size for this pair alone (BENCH_FULL,
+# still-life: the scenes for which both run; the latter takes minutes). The others are the choice of [Colburn 2014] of
+# the 12 longest pairs (refine=no), and the default. parallax is in % of the frames, measured in pictures of 640 px,
+# which were not used for any choice; `chosen` in those that were; `best` is that of the best pair, valid or not.
 # `reached` is parallax over the baseline's, %.
 #
-# `limits`: check_side of sample_validity; `reached` is the part of the z limits, of at most BENCH_CELLS (12) places, that are within one step of those
-# found in pictures of the film's size, %; `error` is the rest. seconds are those of the whole stage without that comparison.
-title="Camera moves: parallax of the chosen ends, exactness of the limits"
-note="Upper left is better. Reached: parallax over that of the best of all pairs; z limits that are within one step."
+# `limits`: check_side of sample_validity; `reached` is the fraction of z limits, at up to BENCH_CELLS (12) positions,
+# within one step of those found in pictures of the film's size, %; `error` is the rest. seconds are those of the whole
+# stage without that comparison.
+title="Camera moves: parallax of the chosen ends, accuracy of the limits"
+note="Upper left is better. Reached: parallax over that of the best of all pairs; z limits within one step."
 repeats=1
 baseline="all pairs, small"
 match="scene sweep"
 timed="core_s"
 line=series label=value panel="scene sweep" across=2
-x=core_s x_label="Processor time (s)" y=reached y_label="Reached (%)" zero=no
+x=core_s x_label="CPU time (s)" y=reached y_label="Reached (%)" zero=no
 
 scenes=${BENCH_SCENES-still-life kermit sceaux marble-head}
 full=${BENCH_FULL-still-life}
@@ -26,7 +30,7 @@ threads=${BENCH_THREADS:-$(nproc)}
 sweeps=${BENCH_SWEEPS:-ends limits}
 
 wanted() { case " $sweeps " in *" $1 "*) ;; *) return 1 ;; esac; }
-quietly() { "$@" >"$work/words" 2>&1 || { tail -n 5 "$work/words" >&2; missing "'$*' failed."; }; }
+quietly() { "$@" >"$work/messages" 2>&1 || { tail -n 5 "$work/messages" >&2; missing "'$*' failed."; }; }
 
 prepare()
 {
@@ -36,17 +40,17 @@ prepare()
     for s in $scenes; do
         name=${s##*/} of=$s
         if [[ $s != */* ]]; then
-            if [ ! -e "scenes/$s/scene.mk" ]; then echo "moves: $s is skipped, for there is no scenes/$s/scene.mk." >&2; continue; fi
+            if [ ! -e "scenes/$s/scene.mk" ]; then echo "moves: $s is skipped, because there is no scenes/$s/scene.mk." >&2; continue; fi
             echo "moves: make SCENE=$s depth" >&2
             quietly "${MAKE:-make}" --no-print-directory QUALITY=default SCENE="$s" HOLDOUT= HOLDOUT_VIEWS= depth
             of=out/$s
-        elif [ ! -d "$s/views" ] || [ ! -d "$s/depth" ]; then echo "moves: $s is skipped, for it holds no views/ and depth/." >&2; continue; fi
+        elif [ ! -d "$s/views" ] || [ ! -d "$s/depth" ]; then echo "moves: $s is skipped, because it does not hold views/ and depth/." >&2; continue; fi
         mkdir -p "$work/$name/validity"
         for d in views depth photos; do [ ! -d "$of/$d" ] || ln -s "$(realpath "$of/$d")" "$work/$name/$d"; done
         quietly validity "$name" "$work/$name/validity" --set check_cells=0
         found_scenes+=" $name"
     done
-    [ -n "$found_scenes" ] || missing "there is no scene; BENCH_SCENES=\"NAMES\" are those of scenes/, or folders that hold views/ and depth/."
+    [ -n "$found_scenes" ] || missing "there is no scene; BENCH_SCENES=\"NAMES\" lists names of scenes/, or folders that hold views/ and depth/."
 }
 
 validity() # NAME OUT ARGS...
@@ -81,12 +85,12 @@ sample() # SERIES SCENE SWEEP VALUE
     if [ "$3" = limits ]; then
         mkdir -p "$fast/v"
         export -f validity; export work B threads
-        # without the comparison for the time, with it for the error
+        # once without the comparison for the time, once with it for the error
         measured bash -c 'validity "$@"' - "$2" "$fast/v" --set "check_side=$4" --set check_cells=0 >"$fast/used" || return
         sed -n 'p; s/^cpu_seconds /core_s /p' "$fast/used"
         if [ ! -e "$of/limits-$4" ]; then
-            validity "$2" "$fast/v" --set "check_side=$4" --set "check_cells=${BENCH_CELLS:-12}" 2>"$work/words" || return
-            sed -n 's/.*in full pictures \([0-9]*\) of \([0-9]*\) limits .* worst is \([0-9]*\) .*/\1 \2 \3/p' "$work/words" |
+            validity "$2" "$fast/v" --set "check_side=$4" --set "check_cells=${BENCH_CELLS:-12}" 2>"$work/messages" || return
+            sed -nE 's/.*in full pictures ([0-9]+) of ([0-9]+) limits .* (worst|largest error) is ([0-9]+) .*/\1 \2 \4/p' "$work/messages" |
                 awk '{ n = 1; printf "limits %d\nerror %.4g\nunit %%\nreached %.4g\nworst_steps %d\n", $2, 100 * (1 - $1 / $2), 100 * $1 / $2, $3 }
                     END { if (!n) print "limits 0" }' >"$of/limits-$4"
         fi

@@ -1,22 +1,26 @@
-# render.sh - render_views: held-out photos against time, by each of its knobs; how many frames a second; memory.
+# render.sh - render_views: PSNR of held-out photos against time for each of its parameters; frames per second; memory.
 #
-# Scenes: BENCH_SCENES, names of scenes/ or of folders of BENCH_DATA (../shared/data) that hold photos/; one that is neither is
-# skipped. Every eighth photo is held out, or the views that stand behind a colon (still-life:s4). Their depth maps come from
-# `make SCENE=NAME HOLDOUT=8 depth`. psnr (dB), ssim and holes (%) are those of docs/evaluation.md; gain is psnr over that
-# of plain hard z. seconds and core_s_per_mp (processor time a megapixel) are a frame's, in memory: reading the scene and
-# writing files are not in them (render_rate.c), and the megapixels are the photo's at any scale. peak_mib is the process's, with all views read.
-# BENCH_SWEEPS="scale views": these panels alone.
+# Scenes: BENCH_SCENES, names of scenes/ or of folders of BENCH_DATA (../shared/data) that hold photos/; others are
+# skipped. Every eighth photo is held out, or the views named after a colon (still-life:s4). Depth maps come from `make
+# SCENE=NAME HOLDOUT=8 depth`. psnr (dB), ssim and holes (%) are those of docs/evaluation.md; gain is psnr over that of
+# plain hard z. seconds and core_s_per_mp (CPU time per megapixel) are those of one frame, in memory, without reading
+# the scene and writing files (render_rate.c); the megapixels are the photo's at any scale. peak_mib is of the process,
+# including all views. BENCH_SWEEPS="scale views": only these panels.
 #
-# The default setting is in every panel; a panel turns one knob. `scale`: of the frames, which are enlarged to the photo's size before
-# they are compared. `soft_z`: its width in depth uncertainties; 0 is the thesis', the scene's depth range. `views`: that may show in a
-# pixel: 1 (views=nearest), 3 (more_views=0), or 3 and so many more. `filling`: of holes, offline's by patches and fast's from around; off is
-# fill_diameter=0.
-# Baselines: the photo of the nearest view as it is, in the table alone, for copying it is no rendering; hard z, the nearest view's depth map alone, by the fast renderer; constant z, the
-# offline renderer with every segment flattened at its middle (flatten_depth.c).
-# Two more panels have no photos: `rate`, frames of the move of BENCH_RATE (still-life, all views) at 1200 x 800 by threads, and `memory`, frames
-# of 15 made views of 1 megapixel (made_layers.c). BENCH_THREADS (all cores) is for all rows but those of `rate`.
+# The default setting is in every panel; a panel varies one parameter. `scale`: size of the frames, which are enlarged
+# to the photo's size before they are compared. `soft_z`: its width in depth uncertainties; 0 is that of [Colburn 2014],
+# the scene's depth range. `views`: the number that may contribute to a pixel: 1 (views=nearest), 3 (more_views=0), or 3
+# and that many more. `filling`: of holes, by patches (offline) or from the surroundings (fast); off is fill_diameter=0.
+#
+# Baselines: the photo of the nearest view as it is, only in the table, because copying is not rendering; hard z, the
+# nearest view's depth map alone, by the fast renderer; constant z, the offline renderer with every segment flattened at
+# its middle (flatten_depth.c).
+#
+# Two more panels have no photos: `rate`, frames of the move of BENCH_RATE (still-life, all views) at 1200 x 800 by
+# threads, and `memory`, frames of 15 synthetic views of 1 megapixel (made_layers.c). BENCH_THREADS (all cores) applies
+# to all rows but those of `rate`.
 title="New views: PSNR of held-out photos against time"
-note="Upper left is better. A panel turns one knob; the other knobs are at their defaults."
+note="Upper left is better. Each panel varies one parameter; the others have their defaults."
 repeats=1 # pictures repeat exactly; REPEATS=5 BENCH_SCENES= BENCH_SWEEPS=rate for times
 baseline="hard z"
 match="scene sweep"
@@ -31,15 +35,15 @@ threads=${BENCH_THREADS:-$(nproc)}
 sweeps=${BENCH_SWEEPS:-scale soft_z views filling rate memory}
 
 wanted() { case " $sweeps " in *" $1 "*) ;; *) return 1 ;; esac; }
-quietly() { "$@" >"$work/words" 2>&1 || { tail -n 5 "$work/words" >&2; missing "'$*' failed."; }; }
+quietly() { "$@" >"$work/messages" 2>&1 || { tail -n 5 "$work/messages" >&2; missing "'$*' failed."; }; }
 made() { echo "render: make $*" >&2; quietly "${MAKE:-make}" --no-print-directory QUALITY=default "$@"; }
 
-# products of NAME, with HELD (views, or nothing) held out: $work/NAME is what `evaluate` wants
+# makes the products of NAME, without the views HELD or every eighth one; $work/NAME has the layout that evaluate reads
 prepare_scene() # NAME HELD
 {
     local to=$work/$1 from=out/$1+holdout8 photos=()
     if [ ! -e "scenes/$1/scene.mk" ]; then
-        if [ ! -d "$data/$1/photos" ]; then echo "render: $1 is skipped, for there is neither scenes/$1/scene.mk nor $data/$1/photos." >&2; return; fi
+        if [ ! -d "$data/$1/photos" ]; then echo "render: $1 is skipped, because there is neither scenes/$1/scene.mk nor $data/$1/photos." >&2; return; fi
         photos=(PHOTOS="$data/$1/photos")
     fi
     if [ -n "$2" ]; then
@@ -51,7 +55,7 @@ prepare_scene() # NAME HELD
     mkdir -p "$to/holdout/frames" "$to/flat"
     ln -s "$(realpath "$from/views")" "$to/views"
     ln -s "$(realpath "$from/holdout/views")" "$to/holdout/views"
-    ln -s "$(realpath "$from/depth")" "$to/layers" # not depth: `evaluate` would look at it each time
+    ln -s "$(realpath "$from/depth")" "$to/layers" # not named depth: `evaluate` would evaluate it each time
     ln -s "$(realpath "out/$1")" "$to/shared"
     quietly "$B/tests/bench/flatten_depth" --views "$to/views" --depth "$to/layers" --out "$to/flat"
     found_scenes+=" $1"
@@ -69,10 +73,10 @@ prepare()
     if [ -n "$rate_scene" ] && wanted rate; then made SCENE="$rate_scene" HOLDOUT= HOLDOUT_VIEWS= path; fi
     if wanted memory; then quietly "$B/tests/bench/made_layers" --out "$work/made"; fi
     if [ -z "$found_scenes" ]; then # no photos, no PSNR to draw
-        note="Upper left is better." x=core_ms x_label="Core-milliseconds a frame" y=frames_per_s y_label="Frames a second" zero=yes
-        title="New views: frames a second"
+        note="Upper left is better." x=core_ms x_label="Core-milliseconds per frame" y=frames_per_s y_label="Frames per second" zero=yes
+        title="New views: frames per second"
     fi
-    [ -n "$found_scenes" ] || { [ -n "$rate_scene" ] && wanted rate; } || wanted memory || missing "there is no scene; BENCH_SCENES=\"NAMES\" are those of scenes/, or of folders with photos/ in '$data' (BENCH_DATA)."
+    [ -n "$found_scenes" ] || { [ -n "$rate_scene" ] && wanted rate; } || wanted memory || missing "there is no scene; BENCH_SCENES=\"NAMES\" lists names of scenes/, or of folders with photos/ in '$data' (BENCH_DATA)."
 }
 
 default_of() { sed -n "s/^$1 = //p" "$work/defaults"; }
@@ -103,11 +107,12 @@ settings()
     if wanted memory; then for r in fast offline; do row "$r" made memory '15 views'; done; fi
 }
 
-# rate ARGS...: of frames without photos
+# rate ARGS...: measures rendering of frames without photos
 rate() { measured "$B/tests/bench/render_rate" "$@"; }
 
-# The default stands in every panel: what a setting gave is kept for the rest of the repeat.
-solved() # SCENE KEY ARGS...: makes $fast/KEY, a sample's lines without gain
+# solved SCENE KEY ARGS...: makes $fast/KEY, a sample's lines without gain. The default is in every panel, so the result
+# of a setting is kept for the rest of the repeat.
+solved()
 {
     local of=$work/$1 key=$2; shift 2
     [ ! -e "$fast/$key" ] || return 0

@@ -1,16 +1,17 @@
-# summary.awk SETTINGS RAW - the table of a bench: settings, seconds with their range, ratio, peak, error, unit, counts.
-# RAW: build, repeat, row, name, value. On a fault, a line that begins with "!", and exit 1.
+# summary.awk SETTINGS RAW - prints the table of a bench: settings, seconds with their range, ratio, peak memory, error,
+# unit, counts. Fields of RAW: build, repeat, row, name, value. On an error, prints a line that begins with "!" and
+# exits with 1.
 BEGIN { FS = OFS = "\t"; repeats = 0; also = split(timed_too, too, " "); for (i = 1; i <= also; i++) is_timed[too[i]] = 1 }
 function median(list, n,    i, j, t)
 {
-    for (i = 2; i <= n; i++) { # few
+    for (i = 2; i <= n; i++) { # insertion sort: there are few
         t = list[i]
         for (j = i - 1; j >= 1 && list[j] > t; j--) list[j + 1] = list[j]
         list[j + 1] = t
     }
     return n % 2 ? list[(n + 1) / 2] : (list[n / 2] + list[n / 2 + 1]) / 2
 }
-function fault(words) { print "!" name ": " words; failed = 1; exit 1 }
+function fault(message) { print "!" name ": " message; failed = 1; exit 1 }
 FNR == NR {
     settings[FNR - 1] = $0; rows = FNR - 1
     for (i = 1; i <= NF; i++) { if (FNR == 1) { column[$i] = i; width = NF } else cell[FNR - 1, i] = $i }
@@ -19,16 +20,16 @@ FNR == NR {
 }
 {
     if ($2 > repeats) repeats = $2
-    if ($4 == "cpu_seconds") next # too coarse to tell
+    if ($4 == "cpu_seconds") next # too coarse
     if ($4 == "seconds" || $4 == "peak_mib" || $4 in is_timed) { timed[$4, $3, $2] = $5 + 0; next }
     if (!($4 in counts)) { counts[$4] = 1; if ($4 != "error" && $4 != "unit") order[++orders] = $4 }
     if (($3, $4) in value && value[$3, $4] != $5)
-        fault("setting '" settings[$3] "': " $4 " was " value[$3, $4] " and is " $5 " in repeat " $2 "; what is no time must repeat")
+        fault("setting '" settings[$3] "': " $4 " was " value[$3, $4] " and is " $5 " in repeat " $2 "; values other than times must repeat")
     value[$3, $4] = $5
 }
 END {
     if (failed) exit 1
-    if (rate != "" && !(rate in counts)) fault("the rate is of " rate ", which no sample prints")
+    if (rate != "" && !(rate in counts)) fault("no sample prints " rate ", the count of the rate")
     head = settings[0] "\tseconds\tseconds_least\tseconds_most\tratio\tpeak_mib"
     for (k = 1; k <= also; k++) head = head OFS too[k]
     head = head "\terror\tunit"

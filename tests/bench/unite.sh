@@ -1,9 +1,11 @@
-# unite.sh - the union of walls into one mesh, by the number of walls: a house of equal rooms with a window in each wall.
+# unite.sh - time of the union of walls into one mesh, by their number: a house of equal rooms with a window in each
+# wall.
 #
-# `axes`: walls along the axes; `turned`: the house turned by 30.3 degrees, so that all planes but floors are oblique. The
-# core alone is timed, one thread. Error: that of the volume, relative. BENCH_WALLS ("100 300 1000 3000") chooses others.
+# `axes`: walls along the axes; `turned`: the house rotated by 30.3 degrees, so that all planes but floors are oblique.
+# Only the union is timed, in one thread. Error: relative error of the volume. BENCH_WALLS ("100 300 1000 3000") sets
+# others.
 title="build_model: union of walls"
-note="Four boxes a wall, around its window."
+note="Four boxes per wall, around its window."
 line=series label=walls
 x=walls x_label="Walls" y=seconds y_label="Time of the union (s)"
 timed="check_s triangulate_s"
