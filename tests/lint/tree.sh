@@ -101,6 +101,18 @@ documents_are_at_most_120_columns_wide()
     [ -z "$bad" ] || { echo "$bad"; fail "lines of documents over 120 columns (rows of tables may be longer)"; }
 }
 
+# what "Where to change what" of the architecture document names must exist: files, and functions in the code
+the_architecture_names_what_exists()
+{
+    local missing
+    sed -n '/^## Where to change what/,$p' docs/architecture.md >"$scratch/ways"
+    missing=$(grep -oE '`(common|stages|tests|docs)/[A-Za-z_0-9./]+`' "$scratch/ways" | tr -d '`' | sort -u |
+        while read -r f; do [ -e "$f" ] || echo "$f"; done
+        grep -oE '`[a-z_0-9]+\(\)`' "$scratch/ways" | tr -d '`()' | sort -u |
+            while read -r f; do grep -rqw "$f" common stages || echo "$f()"; done)
+    [ -s "$scratch/ways" ] && [ -z "$missing" ] || fail "docs/architecture.md names what does not exist: ${missing//$'\n'/, }"
+}
+
 cited_sources_are_in_the_list()
 {
     local missing
@@ -117,4 +129,5 @@ run generated_files_are_current
 run no_pipe_ends_before_its_input_does
 run scripts_pass_shellcheck
 run documents_are_at_most_120_columns_wide
+run the_architecture_names_what_exists
 run cited_sources_are_in_the_list
