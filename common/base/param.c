@@ -63,8 +63,7 @@ static enum status assign(const struct param *p, void *values, const char *value
 
     switch (p->kind) {
     case PARAM_renamed:
-        return err_set(err, ST_USAGE, "%s%s is now called %s; write %s = %s.", where, p->name, p->help, p->help,
-                       scan_quote(shown, value));
+        return err_set(err, ST_USAGE, "%s%s is now called %s; use that name.", where, p->name, p->help);
     case PARAM_int:
         if (!scan_int(value, &i) || (double)i < p->min || (double)i > p->max || i < INT_MIN || i > INT_MAX)
             return err_set(err, ST_USAGE, "%s%s = %s, wanted an integer from %.0f to %.0f%s%s.", where, p->name,

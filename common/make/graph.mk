@@ -21,8 +21,8 @@ farm = $(if $(filter plan,$(LAUNCH)),printf '%s\t%s %s\n' '$(3)' '$(farm_line)' 
 chunks = $(if $(2),$(eval $(call $(1),$(wordlist 1,$(FRAMES_PER_JOB),$(2)),$(3)))$(call chunks,$(1),$(wordlist \
   $(words x $(wordlist 1,$(FRAMES_PER_JOB),$(2))),$(words $(2)),$(2)),$(3)))
 
-# What is looked at afresh in every run, also under -n: configs here, photos and more by the stages. Files are rewritten only if
-# their text changed.
+# Checked anew in every run, also under -n: configs here, photos and more by the stages. Files are rewritten only if their text
+# changed.
 CONFIGS := configs/default.cfg $(if $(filter-out default,$(QUALITY)),configs/$(QUALITY).cfg) $(wildcard scenes/$(SCENE)/scene.cfg)
 SHARED_CONFIGS := $(filter-out configs/draft.cfg configs/final.cfg,$(CONFIGS))
 .PHONY: look-slices

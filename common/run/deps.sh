@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# deps.sh auto|manual GROUP... - looks for what configs/packages.txt lists for the groups, says what is missing, and
-# installs it with apt (as root, or through sudo). manual: only prints the line to run, and fails.
+# deps.sh auto|manual GROUP... - checks what configs/packages.txt lists for the groups, names what is missing, and installs it
+# with apt (as root, or through sudo). manual: only prints the command to run, and fails.
 set -euo pipefail
 mode=$1; shift
 missing=() reasons=()
@@ -28,10 +28,10 @@ if [ "$mode" = manual ]; then
 fi
 if [ "$mode" != auto ]; then echo "DEPS=$mode is not one of: auto manual" >&2; exit 2; fi
 if ! command -v apt-get >/dev/null; then
-    echo "There is no apt-get here. Install by other means what Debian calls: ${missing[*]}" >&2; exit 1
+    echo "This machine has no apt-get. Install these Debian packages by other means: ${missing[*]}" >&2; exit 1
 fi
 if [ -n "$root" ] && ! command -v sudo >/dev/null; then
-    echo "Installing needs root, and there is no sudo. Run as root:" >&2
+    echo "Installing needs root, and sudo is not installed. Run as root:" >&2
     echo "  $line" >&2; exit 1
 fi
 echo "Installing with apt: ${missing[*]} (DEPS=manual only prints the line)" >&2
@@ -39,7 +39,7 @@ export DEBIAN_FRONTEND=noninteractive
 log=$(mktemp)
 if ! { $root apt-get update -qq && $root env DEBIAN_FRONTEND=noninteractive $line -qq; } >"$log" 2>&1; then
     tail -n 15 "$log" >&2
-    echo "apt could not install them; its last words stand above. Mend that and try again, or install them by hand:" >&2
+    echo "apt could not install them; see its output above. Fix that and try again, or install them by hand:" >&2
     echo "  ${root:+$root }$line" >&2
     rm -f "$log"; exit 1
 fi

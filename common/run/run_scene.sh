@@ -8,8 +8,8 @@
 # Which steps a goal needs, in which order, comes from the stages (common/make/stages.mk). A stage may say more in
 # stages/STAGE/run.sh, which is sourced here and defines some of these functions:
 #   check_STAGE    refuses what is wrong before anything is made
-#   prepare_STAGE  makes what must be there before the photos can be looked at
-#   look_STAGE     after the photos have been looked at
+#   prepare_STAGE  makes what must exist before the photos can be read
+#   look_STAGE     runs after the photos have been read
 #   run_STEP       makes a step, in place of what RUN.STEP says
 # They use the variables and functions of this script: scene, folder, S, O, goal, dry, jobs, cores, max_jobs, bin, work, the
 # films of this run in `effects`, auto or all in `choose`; usage, graph, one, farm, farm_frames.

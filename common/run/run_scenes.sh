@@ -12,4 +12,4 @@ for s in "${scenes[@]}"; do
 done
 [ ${#scenes[@]} = 0 ] || echo
 common/run/explain.sh no-scene
-[ ${#failed[@]} = 0 ] || { echo "Failed: ${failed[*]}; why is told above." >&2; exit 2; }
+[ ${#failed[@]} = 0 ] || { echo "Failed: ${failed[*]}; the reasons are above." >&2; exit 2; }

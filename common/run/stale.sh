@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# stale.sh frames|views PRODUCT.exr... -- PREREQUISITE... - those that are missing or not newer, as their stage wants to be told:
+# stale.sh frames|views PRODUCT.exr... -- PREREQUISITE... - the products that are missing or not newer, as options of their stage:
 # frames by number, "3,4,12"; views by name, "--view a --view b".
 set -euo pipefail
 kind=$1; shift

@@ -29,7 +29,7 @@ check_choose_effects()
 }
 
 read_choice() { read -r -a effects <<<"$(sed -n 's/^EFFECTS := *//p' "$O/parallax/$choose-effects.mk")"; }
-# after the photos have been looked at: an earlier run's choice holds until this run makes it anew
+# an earlier run's choice holds until this run makes it anew
 look_choose_effects() { [ -z "$choose" ] || [ ! -e "$O/parallax/$choose-effects.mk" ] || read_choice; }
 
 run_choice()

@@ -1,6 +1,6 @@
 # run.sh - merges exposures before anything sees the photos. Sourced by common/run/run_scene.sh.
 
-# look_hdr_merge: after the photos have been looked at
+# after the photos have been read
 look_hdr_merge()
 {
     [ "$goal" = lri ] || return 0

@@ -14,7 +14,7 @@ ifneq ($(and $(SCENE),$(SPLIT)),)
     $(error SPLIT=$(SPLIT): wanted COLUMNSxROWS, such as 3x2: how many pictures a photo holds)
   endif
   ifeq ($(SPLIT),1x1)
-    $(error SPLIT=1x1: one picture a photo is no split; leave SPLIT out)
+    $(error SPLIT=1x1 leaves each photo as it is; leave SPLIT out)
   endif
 endif
 else
@@ -22,6 +22,8 @@ else
 $(eval $(file <$(S)/photos/photos.mk)) # PHOTO_IDS, and BRACKETED where photos are exposures of the same views
 ORIGINALS := $(if $(SPLIT),$(S)/split,"$$REMODEL_PHOTOS")
 
-look:: look-slices
+.PHONY: look-photos
+look:: look-photos
+look-photos: look-slices
 	+@stages/import_photos/look.sh $(BIN) $(S) scenes/$(SCENE)
 endif

@@ -36,4 +36,7 @@ $(foreach k,$(if $(LAST_ROUND),$(shell seq 0 $(LAST_ROUND))),$(eval $(call round
 $(O)/views/%.exr: ; # a neighbour that is a view no more
 MEASURED += $(DEPTH_EXR) $(DEPTH_TXT)
 SHOWN += $(DEPTH_EXR) $(DEPTH_TXT)
+
+look:: look-photos
+	+@stages/segment_depth/look.sh $(S)
 endif

@@ -16,4 +16,7 @@ MASKS := $(if $(wildcard scenes/$(SCENE)/masks),--masks scenes/$(SCENE)/masks)
 $(S)/sfm/models.txt: $(S)/photos/list.txt $(S)/slice/sfm.cfg $(S)/stamp/sfm_source.txt | $(HDR)
 	$(call stage,sfm,all,$(S),--photos $(PICTURES) --records $(S)/photos --out $(S)/sfm \
 	  $(MASKS) $${REMODEL_SFM:+--model "$$REMODEL_SFM"})
+
+look:: look-photos
+	+@stages/sfm/look.sh $(S)
 endif

@@ -229,7 +229,7 @@ static void a_renamed_parameter_is_refused_with_its_new_name(void **state)
 
     (void)state;
     assert_int_equal(read_text(&p, "[sweep]\nsweeps = 3\n", &in_file), ST_USAGE);
-    assert_contains(in_file.text, "a.cfg:2: sweeps is now called planes; write planes = \"3\".");
+    assert_contains(in_file.text, "a.cfg:2: sweeps is now called planes; use that name.");
     assert_int_equal(params_set(table, &p, "sweeps=3", &in_set), ST_USAGE);
     assert_contains(in_set.text, "--set sweeps is now called planes");
     char *text = printed(&p);

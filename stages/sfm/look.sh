@@ -1,0 +1,13 @@
+#!/usr/bin/env bash
+# look.sh S - what SfM starts from, in S/stamp/sfm_source.txt: COLMAP, or the files of the model in SFM.
+set -euo pipefail
+folder=$1
+. common/run/keep.sh
+{
+    if [ -n "${REMODEL_SFM-}" ]; then
+        (cd "$REMODEL_SFM" && find . -type f \( -name '*.txt' -o -name '*.bin' -o -name '*.out' \) -print0 | LC_ALL=C sort -z | xargs -0r cksum)
+    else
+        echo "COLMAP"
+    fi
+    [ -z "${REMODEL_SPLIT-}" ] || grep '^grid ' "$folder/split/split.txt"
+} | keep "$folder/stamp/sfm_source.txt"
