@@ -94,6 +94,18 @@ renderer = fast
 preset = ultrafast
 CFG
 }
+# kill_at FILE COMMAND...: runs COMMAND in a process group of its own and kills the group as soon as FILE (a pattern) exists;
+# returns once no process of a scene's run is left
+kill_at()
+{
+    local file=$1 p lock; shift
+    setsid "$@" >kill.log 2>&1 &
+    p=$!
+    while kill -0 "$p" 2>/dev/null && ! compgen -G "$file" >/dev/null; do sleep 0.02; done
+    kill -9 -- "-$p" 2>/dev/null || true
+    wait "$p" 2>/dev/null || true
+    for lock in out/*/.lock; do flock "$lock" true; done # held by each process of the run
+}
 # products SCENE: hash and name of every product from sfm_import on
 products()
 {
