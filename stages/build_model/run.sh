@@ -7,8 +7,10 @@ check_build_model()
     all | report) [[ " $REMODEL_PRODUCTS " == *" model "* ]] || return 0 ;;
     *) return 0 ;;
     esac
-    [ -e "$folder/model.txt" ] ||
-        usage "make $goal wants $folder/model.txt, the script of the model (docs/model-script.md). make suggest SCENE=$scene writes a first one, for you to correct."
+    [ ! -e "$folder/model.txt" ] || return 0
+    # a new scene is kept, so that make suggest SCENE=NAME finds it
+    [ "$dry" = n ] || [ -e "$folder/scene.mk" ] || [ ! -d "${REMODEL_PHOTOS-}" ] || common/run/new_scene.sh "$folder"
+    usage "make $goal wants $folder/model.txt, the script of the model (docs/model-script.md). make suggest SCENE=$scene writes a first one, for you to correct."
 }
 
 run_model()

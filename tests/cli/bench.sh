@@ -1,14 +1,14 @@
-# the harness of benches: medians, ratios, counts that must repeat, plots, slopes, two revisions
+# the bench harness: medians, ratios, counts that must repeat, plots, slopes, comparison of two revisions
 . tests/lib.sh
 
 export BENCHES=$scratch/benches BENCH_OUT=$scratch/tables REPEATS=3
 mkdir -p "$BENCHES"
-bench() { local code=$1 rc=0; shift; tests/bench/run "$@" >"$scratch/said" 2>"$scratch/err" || rc=$?; [ "$rc" = "$code" ] || { cat "$scratch/said" "$scratch/err"; fail "$*: exit $rc, wanted $code"; }; }
-says() { grep -qF -- "$1" "$scratch/said" "$scratch/err" || { cat "$scratch/said" "$scratch/err"; fail "nothing says '$1'"; }; }
+bench() { local code=$1 rc=0; shift; tests/bench/run "$@" >"$scratch/out" 2>"$scratch/err" || rc=$?; [ "$rc" = "$code" ] || { cat "$scratch/out" "$scratch/err"; fail "$*: exit $rc, wanted $code"; }; }
+says() { grep -qF -- "$1" "$scratch/out" "$scratch/err" || { cat "$scratch/out" "$scratch/err"; fail "the output does not have '$1'"; }; }
 # cell TABLE SERIES KNOB COLUMN
 cell() { awk -F'\t' -v s="$2" -v k="$3" -v c="$4" '/^#/ { next } !n { n = NF; for (i = 1; i <= n; i++) if ($i == c) at = i; next } $1 == s && $2 == k { print $at }' "$1"; }
 
-# seconds of ours: 1/knob times 1, 3 and 2 in the three repeats; of the baseline twice that; error falls as 1/sqrt(seconds)
+# ours takes knob times 1, 3 and 2 seconds in the three repeats, the baseline twice that; the error falls as 1/sqrt(seconds)
 trivial()
 {
     cat >"$BENCHES/trivial.sh" <<'SH'
@@ -28,16 +28,16 @@ a_trivial_bench_writes_the_right_table()
 {
     trivial; bench 0 trivial "$B"
     t=$BENCH_OUT/trivial.tsv
-    [ "$(sed -n '/^#/!{p;q}' "$t" | tr '\t' ' ')" = "series knob seconds seconds_least seconds_most ratio peak_mib error unit things things_per_s" ] || { cat "$t"; fail "other columns"; }
-    [ "$(grep -vc '^#' "$t")" = 7 ] || fail "not a row a setting"
+    [ "$(sed -n '/^#/!{p;q}' "$t" | tr '\t' ' ')" = "series knob seconds seconds_least seconds_most ratio peak_mib error unit things things_per_s" ] || { cat "$t"; fail "wrong columns"; }
+    [ "$(grep -vc '^#' "$t")" = 7 ] || fail "wanted one row for each setting"
     [ "$(cell "$t" ours 10 seconds)" = 20 ] && [ "$(cell "$t" ours 10 seconds_least)" = 10 ] && [ "$(cell "$t" ours 10 seconds_most)" = 30 ] || { cat "$t"; fail "the median is wrong"; }
     [ "$(cell "$t" ours 10 ratio)" = 0.500 ] && [ "$(cell "$t" theirs 100 ratio)" = 1.000 ] || { cat "$t"; fail "the ratio is wrong"; }
     [ "$(cell "$t" ours 100 things)" = 1000 ] && [ "$(cell "$t" ours 100 things_per_s)" = 5 ] && [ "$(cell "$t" ours 100 unit)" = px ] || { cat "$t"; fail "counts are wrong"; }
-    awk -v p="$(cell "$t" ours 1 peak_mib)" 'BEGIN { exit !(p > 0.1 && p < 100) }' || fail "the peak of memory is not that of a small program"
+    awk -v p="$(cell "$t" ours 1 peak_mib)" 'BEGIN { exit !(p > 0.1 && p < 100) }' || fail "wrong peak memory for a small program"
     says "slope of log error over log seconds, ours: -0.500"
 }
 
-the_plot_is_an_svg_with_every_line()
+the_plot_is_an_svg_with_every_series()
 {
     command -v gnuplot >/dev/null || skip "gnuplot is not installed"
     trivial; bench 0 trivial "$B"
@@ -47,25 +47,25 @@ the_plot_is_an_svg_with_every_line()
     [ "$(grep -c 'stroke-dasharray' "$s")" -gt 0 ] || fail "the baseline is not dashed"
     cp "$s" "$scratch/first.svg"
     tests/bench/plot "$BENCH_OUT/trivial.tsv" "$s" seconds 'Time (s)' error Error series knob "" theirs
-    ! grep -q 'A trivial bench' "$s" || fail "the plot was not drawn again"
+    ! grep -q 'A trivial bench' "$s" || fail "the plot was not redrawn"
     rm "$s"
     ! tests/bench/plot "$BENCH_OUT/trivial.tsv" "$s" seconds T depth D series "" "" "" 2>"$scratch/err" || fail "a missing column was drawn"
-    grep -q 'no column' "$scratch/err" && [ ! -e "$s" ] || fail "a missing column is not named"
+    grep -q 'no column' "$scratch/err" && [ ! -e "$s" ] || fail "the message does not name the missing column"
 }
 
-what_is_no_time_must_repeat()
+values_other_than_times_must_repeat()
 {
     trivial
     sed -i 's|things %d\\n", t|things %d\\n", t + 0 * n|; s|10 \* k }|10 * k + n }|' "$BENCHES/trivial.sh"
     bench 1 trivial "$B"; says "things was 10 and is 11 in repeat 2"
 }
 
-times_of_a_bench_s_own_need_not_repeat()
+columns_listed_as_timed_need_not_repeat()
 {
     trivial
     sed -i 's|rate=things|rate=things timed=laps|; s|things %d\\n", t|things %d\\nlaps %d\\n", t|; s|10 \* k }|10 * k, 7 + n }|' "$BENCHES/trivial.sh"
     bench 0 trivial "$B"
-    [ "$(cell "$BENCH_OUT/trivial.tsv" ours 10 laps)" = 8 ] || { cat "$BENCH_OUT/trivial.tsv"; fail "the column has not the median"; }
+    [ "$(cell "$BENCH_OUT/trivial.tsv" ours 10 laps)" = 8 ] || { cat "$BENCH_OUT/trivial.tsv"; fail "the column does not have the median"; }
 }
 
 a_failing_sample_is_named()
@@ -77,7 +77,7 @@ a_failing_sample_is_named()
     [ ! -e "$BENCH_OUT/trivial.tsv" ] || fail "a table was left"
 }
 
-a_bench_says_what_it_misses()
+missing_programs_and_benches_are_named()
 {
     bench 2 nothing "$B"; says "no bench 'nothing'"
     REPEATS=few bench 2 trivial "$B"; says "REPEATS=few"
@@ -98,15 +98,15 @@ two_builds_are_compared_pair_by_pair()
     says "geometric mean of the ratios, ours: 0.500"; says "geometric mean of the ratios, theirs: 0.500"
 }
 
-make_says_what_a_comparison_needs()
+a_comparison_names_its_missing_arguments()
 {
     export MAKEFLAGS=
-    ! tests/bench/compare "" "" "$B" true 2>"$scratch/err" || fail "no name"
-    grep -q 'NAME=exr OLD=' "$scratch/err" || fail "it does not say what to give"
-    ! tests/bench/compare nothing HEAD "$B" true 2>"$scratch/err" || fail "an unknown bench"
-    ! tests/bench/compare exr no-such-revision "$B" true 2>"$scratch/err" || fail "an unknown revision"
-    grep -q 'no-such-revision' "$scratch/err" || fail "the revision is not named"
+    ! tests/bench/compare "" "" "$B" true 2>"$scratch/err" || fail "a comparison without a name ran"
+    grep -q 'NAME=exr OLD=' "$scratch/err" || fail "the message does not name the arguments"
+    ! tests/bench/compare nothing HEAD "$B" true 2>"$scratch/err" || fail "an unknown bench was accepted"
+    ! tests/bench/compare exr no-such-revision "$B" true 2>"$scratch/err" || fail "an unknown revision was accepted"
+    grep -q 'no-such-revision' "$scratch/err" || fail "the message does not name the revision"
 }
 
-for t in a_trivial_bench_writes_the_right_table the_plot_is_an_svg_with_every_line what_is_no_time_must_repeat times_of_a_bench_s_own_need_not_repeat a_failing_sample_is_named \
-    a_bench_says_what_it_misses two_builds_are_compared_pair_by_pair make_says_what_a_comparison_needs; do run "$t"; done
+for t in a_trivial_bench_writes_the_right_table the_plot_is_an_svg_with_every_series values_other_than_times_must_repeat columns_listed_as_timed_need_not_repeat a_failing_sample_is_named \
+    missing_programs_and_benches_are_named two_builds_are_compared_pair_by_pair a_comparison_names_its_missing_arguments; do run "$t"; done

@@ -1,15 +1,15 @@
-# what the bench of depth maps stands on: pairs as scenes, and the score of a depth map of a pair
+# the programs of the depth bench: stereo pairs become scenes, and depth maps of a pair get a score
 . tests/lib.sh
 
 pair=$scratch/pair made=$scratch/made
 
-# grey FILE.png PROGRAM: 32 x 8 pixels, each a byte that awk's PROGRAM sets as v of x and y (1..127)
+# grey FILE.png PROGRAM: a picture of 32 x 8 pixels; awk's PROGRAM sets v, 1 to 127, from x and y
 grey()
 {
     awk "BEGIN { for (y = 0; y < 8; y++) for (x = 0; x < 32; x++) { $2; printf \"%c\", v } }" >"$scratch/raw"
     ffmpeg -loglevel error -y -f rawvideo -pixel_format gray -video_size 32x8 -i "$scratch/raw" "$1" || fail "ffmpeg wrote no $1"
 }
-# a wall at a disparity of 4, and before it a board at 8: in the left picture columns 14..19 of rows 2..5, in the right one 6..11
+# a wall at a disparity of 4, and a board in front at 8: rows 2..5, columns 14..19 of the left picture, 6..11 of the right one
 boards()
 {
     rm -rf "$pair" "$made"; mkdir -p "$pair"
@@ -19,7 +19,7 @@ boards()
 }
 make_scene()
 {
-    "$B/tests/bench/stereo_pair" --pair "$pair" --out "$made" >"$scratch/said" 2>"$scratch/err" || { cat "$scratch/err"; return 1; }
+    "$B/tests/bench/stereo_pair" --pair "$pair" --out "$made" >"$scratch/out" 2>"$scratch/err" || { cat "$scratch/err"; return 1; }
     "$B/bin/import_photos" --photos "$made/photos" --out "$made/records" 2>"$scratch/err" || fail "the photos were not imported"
     mkdir "$made/sfm"; mv "$made/model" "$made/sfm/0"
     printf 'remodel-sfm 1\n0 colmap\n' >"$made/sfm/models.txt"
@@ -32,31 +32,31 @@ wants() { [[ $1 == *$2* ]] || fail "found '$1', wanted '$2' in it"; }
 a_pair_becomes_a_scene()
 {
     boards; make_scene
-    wants "$(tr '\n' ' ' <"$scratch/said")" "disparities 16 near 62.5 "
+    wants "$(tr '\n' ' ' <"$scratch/out")" "disparities 16 near 62.5 "
     cmp "$pair/im2.png" "$made/photos/left.png" || fail "the left photo is not the picture"
     wants "$(cat "$made/truth/images.txt")" "2 1 0 0 0 -1 0 0 1 right.png"
     [ "$(ls "$made/truth/depth")" = "left.exr
-right.exr" ] || fail "not a truth a side"
+right.exr" ] || fail "wanted a truth for each side"
 }
 
-what_both_see_is_judged()
+pixels_seen_by_both_are_scored()
 {
     boards; make_scene
     # 28 columns of 8 rows are in both pictures; the board hides 4 columns of 4 rows from the right one
     wants "$(score "$made/truth/depth/left.exr")" "error 0.0000 unit % bad1 0.0000 bad05 0.0000 bad2_all 0.0000 known 100.0000 pixels 208 "
-    # the right truth is wrong on the board (24) and where the board is in the right picture, if that is judged (16)
+    # the truth of the right view is wrong on the board (24 pixels) and, where scored, at its place in the right picture (16)
     wants "$(score "$made/truth/depth/right.exr")" "error 19.2308 unit % bad1 19.2308 "
 }
 
-one_truth_tells_what_is_hidden()
+one_truth_suffices_to_find_hidden_pixels()
 {
     boards; make_scene; cp "$made/truth/depth/right.exr" "$scratch/right.exr"; rm "$made/truth/depth/right.exr"
     wants "$(score "$made/truth/depth/left.exr")" "error 0.0000 unit % bad1 0.0000 bad05 0.0000 bad2_all 0.0000 known 100.0000 pixels 208 "
     wants "$(score "$scratch/right.exr")" "error 19.2308"
 }
 
-# a wall at 4, of which one pixel is unknown (infinite)
-write_npz() # TYPE
+# write_npz TYPE: a wall at 4, with one unknown (infinite) pixel
+write_npz()
 {
     local header="{'descr': '$1', 'fortran_order': False, 'shape': (8, 32), }" i
     {
@@ -79,26 +79,26 @@ float_disparities_of_one_side_are_read()
     [ "$(ls "$made/truth/depth")" = left.exr ] || fail "there is a truth of the right side"
     wants "$(score "$made/truth/depth/left.exr")" "known 100.0000 pixels 223 "
     write_npz '<f8'; rm -rf "$made"
-    ! make_scene >"$scratch/out" || fail "an array of doubles was taken"
+    ! make_scene >"$scratch/out" || fail "an array of doubles was accepted"
     wants "$(cat "$scratch/err")" "wanted an archive whose first array is deflated and has 32 x 8 floats"
 }
 
-what_is_no_pair_is_named()
+an_incomplete_pair_is_refused()
 {
     boards; rm "$pair/disp2.png"
-    ! make_scene >"$scratch/out" || fail "half a pair was taken"
+    ! make_scene >"$scratch/out" || fail "half a pair was accepted"
     wants "$(cat "$scratch/err")" "holds no rectified pair"
     boards; make_scene; rm -r "$made/views"
-    ! "$B/tests/bench/stereo_score" --truth "$made/truth" --views "$made/views" --depth "$made/truth/depth/left.exr" 2>"$scratch/err" || fail "a score without views"
+    ! "$B/tests/bench/stereo_score" --truth "$made/truth" --views "$made/views" --depth "$made/truth/depth/left.exr" 2>"$scratch/err" || fail "a score was given without views"
     wants "$(cat "$scratch/err")" "cameras.txt"
 }
 
-the_bench_says_what_it_misses()
+missing_inputs_of_the_bench_are_named()
 {
     rc=0; BENCH_PAIRS="$scratch/none" BENCH_SCENES='' tests/bench/run depth "$B" 2>"$scratch/err" || rc=$?
     [ "$rc" = 3 ] || fail "exit $rc, wanted 3"
     wants "$(cat "$scratch/err")" "BENCH_PAIRS=DIR"; wants "$(cat "$scratch/err")" "neither pairs nor scenes"
 }
 
-for t in a_pair_becomes_a_scene what_both_see_is_judged one_truth_tells_what_is_hidden float_disparities_of_one_side_are_read \
-    what_is_no_pair_is_named the_bench_says_what_it_misses; do run "$t"; done
+for t in a_pair_becomes_a_scene pixels_seen_by_both_are_scored one_truth_suffices_to_find_hidden_pixels float_disparities_of_one_side_are_read \
+    an_incomplete_pair_is_refused missing_inputs_of_the_bench_are_named; do run "$t"; done

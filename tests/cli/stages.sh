@@ -1,15 +1,15 @@
-# what every stage's command line promises, and what the Makefile says to wrong words
+# the command line of every stage, and make's errors for wrong arguments
 . tests/lib.sh
 
 stages=$(cd stages && echo */ | tr -d /)
 
-# expect CODE WORD COMMAND...: exit status and a word on standard error
+# expect CODE WORD COMMAND...: the command exits with CODE, and its standard error has WORD
 expect()
 {
     local code=$1 word=$2 rc=0; shift 2
     "$@" >"$scratch/out" 2>"$scratch/err" </dev/null || rc=$?
     [ "$rc" = "$code" ] || { cat "$scratch/err"; fail "$*: exit $rc, wanted $code"; }
-    grep -qF -- "$word" "$scratch/err" || [ -z "$word" ] || { cat "$scratch/err"; fail "$*: nothing says '$word'"; }
+    grep -qF -- "$word" "$scratch/err" || [ -z "$word" ] || { cat "$scratch/err"; fail "$*: the message does not have '$word'"; }
 }
 
 help_version_and_config_of_every_stage()
@@ -17,13 +17,13 @@ help_version_and_config_of_every_stage()
     for s in $stages; do
         for o in --help --version --print-config; do
             "$B/bin/$s" "$o" >"$scratch/out" 2>"$scratch/err" || fail "$s $o"
-            [ -s "$scratch/out" ] && [ ! -s "$scratch/err" ] || fail "$s $o: words belong on standard output"
+            [ -s "$scratch/out" ] && [ ! -s "$scratch/err" ] || fail "$s $o: wanted all text on standard output"
         done
         grep -qx "\[$s\]" "$scratch/out" || fail "$s --print-config does not begin with its section"
     done
 }
 
-wrong_usage_is_2_with_a_sentence()
+wrong_usage_exits_2_with_a_message()
 {
     for s in $stages; do
         expect 2 "no-such-option" "$B/bin/$s" --no-such-option
@@ -65,12 +65,12 @@ options_that_exclude_each_other_are_refused()
     expect 2 "either --photos" "$B/bin/morph_views" --out "$d" --morph "$d"
     expect 2 "either --photos" "$B/bin/morph_views" --out "$d" --morph "$d" --frames 1 --first a
     expect 2 "either --photos" "$B/bin/morph_views" --out "$d" --photos "$d" --records "$d" --first a --second b --frames 1
-    expect 2 "--validity, for a move" "$B/bin/plan_path" --views "$d" --effect dolly_in --out "$d"
-    expect 2 "--validity, for a move" "$B/bin/plan_path" --views "$d" --effect dolly_in --out "$d" --depth "$d" --validity "$d" --keyframes "$d"
+    expect 2 "wanted --depth with --validity" "$B/bin/plan_path" --views "$d" --effect dolly_in --out "$d"
+    expect 2 "wanted --depth with --validity" "$B/bin/plan_path" --views "$d" --effect dolly_in --out "$d" --depth "$d" --validity "$d" --keyframes "$d"
     expect 2 "wanted auto or all" "$B/bin/choose_effects" --subjects "$d" --effect dolly_in --out "$d"
     expect 2 "wanted auto or all" "$B/bin/choose_effects" --effect all --out "$d"
     expect 2 "did you mean dolly_in?" "$B/bin/choose_effects" --effect dolly_inn
-    expect 2 "each once and in this order" "$B/bin/choose_effects" --effect dolly_in+dim+narrow_dof
+    expect 2 "each part once and in this order" "$B/bin/choose_effects" --effect dolly_in+dim+narrow_dof
     expect 2 "takes no image effect" "$B/bin/choose_effects" --effect establishing_dolly+dim
     expect 0 "" "$B/bin/choose_effects" --effect dolly+pull_focus
     expect 2 "--memory -1" "$B/bin/fuse_points" --views "$d" --depth "$d" --out "$d" --memory -1
@@ -108,10 +108,10 @@ missing_inputs_fail_with_their_name()
 make_without_a_scene_builds_and_explains()
 {
     make -s DEPS=manual SCENES= >"$scratch/out" 2>&1 || { cat "$scratch/out"; fail "make"; }
-    grep -q 'make PHOTOS=DIR SCENE=NAME' "$scratch/out" || fail "it does not say what to give"
+    grep -q 'make PHOTOS=DIR SCENE=NAME' "$scratch/out" || fail "the message does not name the missing variables"
 }
 
-make_says_what_is_wrong_with_its_words()
+make_names_its_wrong_arguments()
 {
     project words
     expect 2 "SCENE=NAME" make -s DEPS=manual depth
@@ -122,11 +122,11 @@ make_says_what_is_wrong_with_its_words()
     expect 2 "SPLIT=9" make -s DEPS=manual SCENE=x SPLIT=9
     expect 2 "SPLIT=0x3" make -s DEPS=manual SCENE=x SPLIT=0x3
     expect 2 "COLUMNSxROWS" make -s DEPS=manual SCENE=x SPLIT="3x3'; touch bad; '"
-    [ ! -e bad ] || fail "a command in SPLIT was run"
+    [ ! -e bad ] || fail "make ran a command in SPLIT"
     expect 2 "effects are named with letters" make -s DEPS=manual SCENE=x EFFECT='a;b'
     expect 2 "did you mean dolly_in?" make -s DEPS=manual SCENE=x PHOTOS=scenes EFFECT='dolly dolly_inn'
     expect 2 "film of keys scenes/x/keyframes/dolly_inn.txt" make -s DEPS=manual SCENE=x PHOTOS=scenes EFFECT=dolly_inn
-    expect 2 "can't be named beside" make -s DEPS=manual SCENE=x PHOTOS=scenes EFFECT='dolly auto'
+    expect 2 "cannot be combined with other effects" make -s DEPS=manual SCENE=x PHOTOS=scenes EFFECT='dolly auto'
     expect 2 "both given" make -s DEPS=manual SCENE=x HOLDOUT=8 HOLDOUT_VIEWS=a
     expect 2 "ids of two photos" make -s DEPS=manual SCENE=x MORPH=a
     expect 2 "ids of two photos" make -s DEPS=manual SCENE=x MORPH='a b c'
@@ -138,16 +138,16 @@ make_says_what_is_wrong_with_its_words()
     [ -z "$(ls scenes)" ] || fail "a scene was left behind"
 }
 
-missing_packages_are_named_with_the_line_to_run()
+missing_packages_are_named_with_the_command_to_install_them()
 {
     project packages
     rm configs; cp -r "$root/configs" configs
     echo "run no-such-package command:no-such-command" >>configs/packages.txt
     expect 2 "no-such-command" make -s DEPS=manual
-    grep -q 'apt-get install .*no-such-package' "$scratch/out" || fail "the line to run is not printed"
+    grep -q 'apt-get install .*no-such-package' "$scratch/out" || fail "the command to run is not printed"
 }
 
-for t in help_version_and_config_of_every_stage wrong_usage_is_2_with_a_sentence parameters_out_of_range_are_refused \
+for t in help_version_and_config_of_every_stage wrong_usage_exits_2_with_a_message parameters_out_of_range_are_refused \
     options_that_exclude_each_other_are_refused \
-    missing_inputs_fail_with_their_name make_without_a_scene_builds_and_explains make_says_what_is_wrong_with_its_words \
-    missing_packages_are_named_with_the_line_to_run; do run "$t"; done
+    missing_inputs_fail_with_their_name make_without_a_scene_builds_and_explains make_names_its_wrong_arguments \
+    missing_packages_are_named_with_the_command_to_install_them; do run "$t"; done

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # fuzz.sh NAME SECONDS - looks for new inputs that break a parser, with libFuzzer and the sanitizers, starting from its corpus.
 #
-# What breaks it is left in out/fuzz/NAME/; put it, made small, into tests/fuzz/corpus/NAME with the mend.
+# Inputs that break it are left in out/fuzz/NAME/. Minimize each and add it to tests/fuzz/corpus/NAME together with the fix.
 set -euo pipefail
 name=$1 seconds=$2
 names=$(cd tests/fuzz && ls fuzz_*.c | sed 's/^fuzz_//; s/\.c$//' | tr '\n' ' ')

@@ -1,15 +1,15 @@
-# docs/adding-a-stage.md, done: a stage that did not exist is added to a copy of the tree, in its own folder alone, and run with make
+# docs/adding-a-stage.md: a new stage is added to a copy of the tree, as one folder, and run by make
 . tests/lib.sh
 mkdir "$scratch/copy"
 cp -a Makefile .clang-format stages common configs docs "$scratch/copy/"
 mkdir -p "$scratch/copy/tests" "$scratch/copy/scenes" "$scratch/copy/out/build/$FLAVOR"
 cp -a "$B"/{bin,code,flags,lib,libremodel.a,obj} "$scratch/copy/out/build/$FLAVOR/"
 cd "$scratch/copy" || exit 1
-photos set --views 4 --size 160x120 >/dev/null
+photos set --views 4 >/dev/null
 small t
 m() { make -s DEPS=manual PHOTOS=set/photos SFM=set/model SCENE=t "$@" >log 2>&1 || { cat log; fail "make $*"; }; }
 
-# the whole stage: two files
+# the stage: two files
 add_the_stage()
 {
     mkdir stages/mean_colour
@@ -102,38 +102,38 @@ a_new_stage_is_built_and_run()
     [ "$(grep -cE '^photo_[1-4] [0-9.]+ [0-9.]+ [0-9.]+$' out/t/mean_colour.txt)" = 4 ] || { cat out/t/mean_colour.txt; fail "wrong product"; }
     grep -q '^# *stage mean_colour\|mean_colour' out/t/mean_colour.txt || fail "no provenance"
     m mean_colour
-    ! grep -q run_stage log || fail "a second make made something again"
+    ! grep -q run_stage log || fail "a second make remade something"
 }
 
-a_parameter_of_it_redoes_it_alone()
+its_parameter_redoes_only_it()
 {
     cp out/t/mean_colour.txt before.txt
     stat -c %y out/t/views/photo_1.exr >a
     printf '[mean_colour]\ngain = 2\n' >>scenes/t/scene.cfg
     m mean_colour
     ! cmp -s before.txt out/t/mean_colour.txt || fail "the parameter changed nothing"
-    stat -c %y out/t/views/photo_1.exr | diff a - || fail "the views were made again"
+    stat -c %y out/t/views/photo_1.exr | diff a - || fail "the views were remade"
 }
 
-everything_that_lists_stages_lists_it()
+every_list_of_stages_has_it()
 {
     make -s help >log
-    grep -qE '^  mean_colour +\+ the mean colour of each view$' log || fail "make help leaves it out"
+    grep -qE '^  mean_colour +\+ the mean colour of each view$' log || fail "make help does not list it"
     make -s DEPS=manual generated >log 2>&1 || { cat log; fail "make generated"; }
-    grep -qF '| `mean_colour` | views | mean_colour.txt |' docs/architecture.md || fail "the table of stages leaves it out"
-    grep -qx '\[mean_colour\]' configs/default.cfg && grep -qx 'gain = 1' configs/default.cfg || fail "default.cfg leaves it out"
+    grep -qF '| `mean_colour` | views | mean_colour.txt |' docs/architecture.md || fail "the table of stages does not list it"
+    grep -qx '\[mean_colour\]' configs/default.cfg && grep -qx 'gain = 1' configs/default.cfg || fail "default.cfg does not list it"
     [ -s docs/man/mean_colour.1 ] || fail "it has no manual page"
     m depth
     m report
-    grep -q mean_colour out/t/index.html || fail "the page leaves it out"
+    grep -q mean_colour out/t/index.html || fail "the page does not list it"
 }
 
-nothing_else_was_touched_by_hand()
+no_other_file_is_changed_by_hand()
 {
     diff -rq ../before . | grep -vE '[:/] ?(out|log|set|scenes|before.txt|a)( |$)|^Only in \./?out|^(Files|Only in) (\.\./before/|\./)?(out|scenes|set)' |
         sed -E 's|^Only in \./?([^:]*): (.*)|\1/\2|; s|^Files \.\./before/(.*) and .*|\1|' | LC_ALL=C sort >touched
     printf '%s\n' configs/default.cfg docs/architecture.md docs/man/mean_colour.1 stages/mean_colour | diff - <(grep -v '^/\|touched\|log' touched) ||
-        fail "a new stage touches more than its folder and generated files"
+        fail "a new stage changes more than its folder and generated files"
 }
 
-for t in a_new_stage_is_built_and_run a_parameter_of_it_redoes_it_alone everything_that_lists_stages_lists_it nothing_else_was_touched_by_hand; do run "$t"; done
+for t in a_new_stage_is_built_and_run its_parameter_redoes_only_it every_list_of_stages_has_it no_other_file_is_changed_by_hand; do run "$t"; done

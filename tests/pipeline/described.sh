@@ -1,4 +1,4 @@
-# a described scene through make: photographed first, again only where its description changed; its edited scene on demand
+# a described scene is photographed by make, again only if its description changed; its edited scene on demand
 . tests/lib.sh
 
 # describe SCENE: a small room, three photos in two exposures, one reference image, an edited scene "dark"
@@ -35,100 +35,100 @@ m() { make -s DEPS=manual SCENE=room "$@" >log 2>&1 || { cat log; fail "make $*"
 times() { find out/room/simulated -type f -printf '%P %T@\n' | LC_ALL=C sort; }
 bytes() { (cd "$1" && find . -type f | LC_ALL=C sort | xargs sha256sum); }
 
-photographed_once_and_again_where_the_description_changed()
+photos_are_made_once_and_again_if_the_description_changes()
 {
     project described; describe room
-    m hdr
-    [ "$(find out/room/simulated/photos -name '*.jpg' | wc -l)" = 6 ] || fail "there are not two exposures of three photos"
+    m hdr CORES=2
+    bytes out/room/simulated >"$scratch/two.bytes"
+    [ "$(find out/room/simulated/photos -name '*.jpg' | wc -l)" = 6 ] || fail "wanted two exposures of three photos"
     [ -e out/room/hdr/a.exr ] || fail "they were not merged"
     times >a; m hdr; times >b
-    diff a b || fail "a second make photographed again"
+    diff a b || fail "a second make remade photos"
     sed -i 's/^photo b p 1.2/photo b p 1.25/' scenes/room/cameras.txt
     m hdr; times >b
-    grep -q photos/b_e0.jpg <(comm -13 a b) || fail "a moved camera did not photograph again"
+    grep -q photos/b_e0.jpg <(comm -13 a b) || fail "the photos of a moved camera were not remade"
 }
 
-the_edited_scene_on_demand()
+the_edited_scene_is_made_on_demand()
 {
     project edited; describe room
     m edited EDIT=dark
     for f in scene.txt faces.txt hdr/a.exr hdr/b.exr hdr/c.exr; do
         [ -e "out/room/simulated/truth/edited-dark/$f" ] || fail "there is no $f"
     done
-    [ ! -e out/room/simulated/photos ] || fail "the scene that is not edited was photographed, too"
+    [ ! -e out/room/simulated/photos ] || fail "the original scene was photographed, too"
     times >a; m edited EDIT=dark; times >b
-    diff a b || fail "a second make did it again"
-    ! make -s DEPS=manual SCENE=room edited >log 2>&1 || fail "make edited without EDIT was content"
-    grep -q 'EDIT=E' log || fail "it does not say what it wants"
+    diff a b || fail "a second make remade it"
+    ! make -s DEPS=manual SCENE=room edited >log 2>&1 || fail "make edited without EDIT succeeded"
+    grep -q 'EDIT=E' log || fail "the message does not name the missing variable"
 }
 
-# r was taken with two exposures, and no other: they are one view, on the scale of the photos, with the camera that is told
-lighting_reference_images_are_merged_and_stay_as_they_are()
+# two exposures of r become one view, on the scale of the photos, with its described camera
+lighting_reference_images_are_merged_but_not_rectified()
 {
     project lri; describe room
     sed -i 's/^reference r p/lens f equisolid 60 40 27 30 20\nreference r f/' scenes/room/cameras.txt
     printf 'LRI := out/room/simulated/lri\nLRI_SFM := out/room/simulated/truth/lri\n' >>scenes/room/scene.mk
     m lri
-    [ "$(cd out/room/lri && echo *)" = "photos r.exr r.jpg" ] || { ls -R out/room/lri; fail "there is not one picture"; }
-    [ ! -e out/room/hdr/a.exr ] || fail "photos were merged that nobody asked for"
-    grep -aq 'OPENCV_FISHEYE 60 40 27 27 30 20 -0.04' out/room/lri/r.exr && grep -aq worldToCamera out/room/lri/r.exr || fail "the camera is not told"
+    [ "$(cd out/room/lri && echo *)" = "photos r.exr r.jpg" ] || { ls -R out/room/lri; fail "wanted one picture"; }
+    [ ! -e out/room/hdr/a.exr ] || fail "the photos were merged, too"
+    grep -aq 'OPENCV_FISHEYE 60 40 27 27 30 20 -0.04' out/room/lri/r.exr && grep -aq worldToCamera out/room/lri/r.exr || fail "the picture does not contain its camera"
     [ "$(awk '$1 == "brackets" { print $2, $4 }' out/room/lri/photos/r.txt)" = "2 $(awk '$1 == "brackets" { print $4 }' out/room/photos/a.txt)" ] ||
         { cat out/room/lri/photos/r.txt; fail "not two exposures on the scene's scale"; }
     "$root/$B/tests/bench/picture_error" out/room/lri/r.exr out/room/lri/r.exr >err || { cat err; fail "it cannot be read"; }
     find out/room/lri -type f -printf '%P %T@\n' | sort >a; m lri; find out/room/lri -type f -printf '%P %T@\n' | sort >b
-    diff a b || fail "a second make did it again"
-    echo '[import_photos]' >>scenes/room/scene.cfg; echo 'brackets = no' >>scenes/room/scene.cfg # of the photos
+    diff a b || fail "a second make remade it"
+    echo '[import_photos]' >>scenes/room/scene.cfg; echo 'brackets = no' >>scenes/room/scene.cfg # for the photos
     m lri
-    grep -q 'have no common scale' log && grep -q '^brackets 2' out/room/lri/photos/r.txt || { cat log; fail "another scale is not told"; }
-    ! make -s DEPS=manual SCENE=room lri LRI= >log 2>&1 || fail "make lri without LRI was content"
-    grep -q 'LRI=DIR' log || { cat log; fail "it does not say what it wants"; }
-    ! make -s DEPS=manual SCENE=room lri LRI=nowhere >log 2>&1 || fail "make lri of no folder was content"
-    grep -q 'nowhere is not a folder' log || { cat log; fail "the folder is not named"; }
+    grep -q 'have no common scale' log && grep -q '^brackets 2' out/room/lri/photos/r.txt || { cat log; fail "no warning about the other scale"; }
+    ! make -s DEPS=manual SCENE=room lri LRI= >log 2>&1 || fail "make lri without LRI succeeded"
+    grep -q 'LRI=DIR' log || { cat log; fail "the message does not name the missing variable"; }
+    ! make -s DEPS=manual SCENE=room lri LRI=nowhere >log 2>&1 || fail "make lri of a missing folder succeeded"
+    grep -q 'nowhere is not a folder' log || { cat log; fail "the message does not name the folder"; }
 }
 
-# through a fisheye each photo has several views: one process a photo, and of a deleted view only that view
-views_of_one_photo_are_made_in_one_call()
+# a fisheye photo has several views, made by one process; a deleted or stale view is remade alone
+views_of_one_photo_are_made_by_one_process()
 {
     project wide; describe room
     sed -i 's/^photo a p/lens f equisolid 60 40 27 30 20\nphoto a f/; s/^photo \([bc]\) p/photo \1 f/' scenes/room/cameras.txt
     echo 'SFM := out/room/simulated/truth' >>scenes/room/scene.mk
     m views
     for v in a@0 a@1 a@2 b@0 b@1 b@2 c@0 c@1 c@2; do [ -s "out/room/views/$v.exr" ] || { ls out/room/views; fail "there is no $v"; }; done
-    [ "$(cd out/room/log && echo rectify.*.log)" = "rectify.a.log rectify.b.log rectify.c.log" ] || { ls out/room/log; fail "not one call a photo"; }
+    [ "$(cd out/room/log && echo rectify.*.log)" = "rectify.a.log rectify.b.log rectify.c.log" ] || { ls out/room/log; fail "wanted one process for each photo"; }
     (cd out/room/views && sha256sum -- *.exr) >before
     find out/room/views -name '*.exr' -printf '%P %T@\n' | sort >a
     rm out/room/views/b@1.exr
     m views
     find out/room/views -name '*.exr' -printf '%P %T@\n' | sort >b
-    [ "$(comm -13 a b | cut -d' ' -f1)" = b@1.exr ] || { comm -13 a b; fail "it was not the deleted view alone that was made again"; }
+    [ "$(comm -13 a b | cut -d' ' -f1)" = b@1.exr ] || { comm -13 a b; fail "not only the deleted view was remade"; }
     (cd out/room/views && sha256sum -c --quiet ../../../before) || fail "other bytes"
     touch -d '2 hours ago' out/room/views/c@0.exr
     m views
     find out/room/views -name '*.exr' -printf '%P %T@\n' | sort >a
-    [ "$(comm -13 b a | cut -d' ' -f1)" = c@0.exr ] || { comm -13 b a; fail "it was not the stale view alone that was made again"; }
+    [ "$(comm -13 b a | cut -d' ' -f1)" = c@0.exr ] || { comm -13 b a; fail "not only the stale view was remade"; }
     m views
-    find out/room/views -name '*.exr' -printf '%P %T@\n' | sort | diff a - || fail "a third make did it again"
+    find out/room/views -name '*.exr' -printf '%P %T@\n' | sort | diff a - || fail "a third make remade a view"
 }
 
-same_bytes_for_one_and_two_cores()
+one_core_gives_the_bytes_of_two()
 {
     project one; describe room; m hdr CORES=1; bytes out/room/simulated >"$scratch/one.bytes"
-    project two; describe room; m hdr CORES=2; bytes out/room/simulated >"$scratch/two.bytes"
     diff "$scratch/one.bytes" "$scratch/two.bytes" || fail "they differ"
 }
 
-a_fault_in_the_description_is_told_and_leaves_nothing()
+an_error_in_the_description_is_named_and_leaves_no_product()
 {
     project fault; describe room
     sed -i '5s/.*/wall south 0 0 4 zero  0 2.5 0.2 m/' scenes/room/scene.txt
-    ! make -s DEPS=manual SCENE=room hdr >log 2>&1 || fail "make was content"
-    grep -q 'scenes/room/scene.txt:5: found' log || { cat log; fail "file and line are not named"; }
+    ! make -s DEPS=manual SCENE=room hdr >log 2>&1 || fail "make succeeded"
+    grep -q 'scenes/room/scene.txt:5: found' log || { cat log; fail "the message does not name file and line"; }
     describe room; sed -i '/^lamp/d' scenes/room/scene.txt
-    ! make -s DEPS=manual SCENE=room hdr >log 2>&1 || fail "make was content without a light"
-    grep -qi 'light' log || { cat log; fail "the missing light is not named"; }
+    ! make -s DEPS=manual SCENE=room hdr >log 2>&1 || fail "make succeeded without a light"
+    grep -qi 'light' log || { cat log; fail "the message does not name the missing light"; }
     [ -z "$(find out/room/simulated -type f 2>/dev/null)" ] || { find out/room/simulated; fail "a product was left"; }
 }
 
-for t in photographed_once_and_again_where_the_description_changed the_edited_scene_on_demand lighting_reference_images_are_merged_and_stay_as_they_are \
-    views_of_one_photo_are_made_in_one_call same_bytes_for_one_and_two_cores \
-    a_fault_in_the_description_is_told_and_leaves_nothing; do run "$t"; done
+for t in photos_are_made_once_and_again_if_the_description_changes the_edited_scene_is_made_on_demand lighting_reference_images_are_merged_but_not_rectified \
+    views_of_one_photo_are_made_by_one_process one_core_gives_the_bytes_of_two \
+    an_error_in_the_description_is_named_and_leaves_no_product; do run "$t"; done
