@@ -1,7 +1,7 @@
-# lib.sh - for the tests that are scripts: a scratch project, and verdicts.
+# lib.sh - what test scripts share: a scratch project, small scenes, and verdicts.
 #
 # B is the build folder (out/build/FLAVOR). A test is a shell function; `run NAME` runs it in a subshell with -e and prints
-# its verdict; `skip WHY` inside ends it as skipped.
+# its verdict. Inside it, `fail WHY` ends it as failed and `skip WHY` as skipped.
 set -uo pipefail
 root=$PWD
 B=${B:-out/build/release}
@@ -10,8 +10,8 @@ unset MAKEFLAGS MFLAGS MAKELEVEL SCENE PHOTOS SPLIT LRI LRI_SFM SFM DEPTH EXCLUD
 scratch=$(mktemp -d "${TMPDIR:-/tmp}/remodel-test.XXXXXX")
 trap 'rm -rf --one-file-system "$scratch"' EXIT
 
-# matches [OPTION...] PATTERN: whether standard input has it; in place of grep -q, which leaves at the first match, so that under
-# pipefail the command that writes into the pipe dies of SIGPIPE and the test fails by chance
+# matches [OPTION...] PATTERN: whether standard input matches; use it instead of `| grep -q`, which exits at the first match, so
+# that the writer of the pipe may die of SIGPIPE and pipefail makes the test fail by chance
 matches() { grep "$@" | cat >/dev/null; }
 fail() { echo "# $*"; exit 1; }
 skip() { echo "# $*" >"$scratch/.skip"; exit 0; }
@@ -28,7 +28,7 @@ run()
     fi
 }
 
-# project NAME: a project folder of its own under scratch (same Makefile, programs and configs; own scenes and out); goes there
+# project NAME: makes a project folder under scratch (same Makefile, programs and configs; own scenes and out) and changes to it
 project()
 {
     mkdir -p "$scratch/$1/out" "$scratch/$1/scenes"
@@ -37,7 +37,7 @@ project()
     cd "$scratch/$1" || exit 1
 }
 
-# photos DIR [OPTION...]: a synthetic scene, DIR/photos and DIR/model; 6 photos of 160x120 by default
+# photos DIR [OPTION...]: makes a synthetic scene, DIR/photos and DIR/model; by default 6 photos of 160x120
 photos()
 {
     case "$*" in *--views*) ;; *) set -- "$@" --views 6 ;; esac
@@ -45,7 +45,7 @@ photos()
     "$root/$B/tests/pipeline/make_photos" --out "$@" 2>&1
 }
 
-# small SCENE: a scene.cfg for tests that are about the graph: few planes, few frames
+# small SCENE: writes a scene.cfg for tests of the graph: few planes, six frames
 small()
 {
     mkdir -p "scenes/$1"
@@ -68,7 +68,7 @@ parallax_side = 48
 CFG
 }
 
-# tiny SCENE: films of three frames, as small as may be
+# tiny SCENE: writes a scene.cfg for films that are as small as possible, of three frames
 tiny()
 {
     mkdir -p "scenes/$1"
@@ -106,20 +106,20 @@ kill_at()
     wait "$p" 2>/dev/null || true
     for lock in out/*/.lock; do flock "$lock" true; done # held by each process of the run
 }
-# products SCENE: hash and name of every product from sfm_import on
+# products SCENE: hash and name of every product of sfm_import and later stages
 products()
 {
     (cd "out/$1" && find views depth parallax -type f ! -name '.*' ! -name '*.d' | LC_ALL=C sort | xargs -d '\n' sha256sum)
 }
-# snapshot FOLDER: names and times of all products, to see what was made again
+# snapshot FOLDER: names and times of all products, to see which are remade
 snapshot() { find "$1"/ -type f \( -path '*/views/*' -o -path '*/depth/*' -o -path '*/parallax/*' -o -path '*/sfm/*' -o -name index.html \) -printf '%P %T@\n' | LC_ALL=C sort; }
-# changed BEFORE AFTER: the names whose time changed, or that are new
+# changed BEFORE AFTER: of two snapshots, the names that are new or have another time
 changed() { comm -13 "$1" "$2" | cut -d' ' -f1; }
-# painted FILE X Y: a mask of a photo of 160 x 120, black in 30 x 25 pixels from (X, Y) on
+# painted FILE X Y: writes a mask for a photo of 160 x 120; black are 30 x 25 pixels, the first at (X, Y)
 painted() { ffmpeg -v error -f lavfi -i color=white:s=160x120 -vf "drawbox=x=$2:y=$3:w=30:h=25:color=black:t=fill" -frames:v 1 -y "$1"; }
 # alpha EXR X Y [LAYER]: the four bytes of a pixel's alpha
 alpha() { ffmpeg -v error ${4:+-layer "$4"} -i "$1" -vf "extractplanes=a,crop=1:1:$2:$3" -f rawvideo - | od -An -tx1 | tr -d ' \n'; }
-# reads DEPS PHOTO: whether a depth map with these make dependencies comes from that photo's view, be it by way of a round before
+# reads DEPS PHOTO: whether a depth map with these make dependencies depends on that photo's view, directly or through an earlier round
 reads()
 {
     local before

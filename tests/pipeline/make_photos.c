@@ -1,13 +1,14 @@
 /* make_photos.c - photographs of a small analytic room, with their true cameras, points and depths.
  *
- * A slanted back wall, a floor and a turned box, all covered with value noise of several octaves and hard-edged marks,
- * so that feature detectors and matchers find something everywhere. Pinhole cameras stand on a gentle arc and look at
- * the room's middle; their focal length is 1.2 times the long side, which is what COLMAP begins with when a photo has
- * no EXIF. Scene units; x right, y down, z into the room. The same options give the same bytes.
+ * The room has a slanted back wall, a floor and a rotated box. Value noise of several octaves and hard-edged marks
+ * cover all surfaces, so that feature detectors and matchers find something everywhere. Pinhole cameras on a gentle arc
+ * face the room's centre. Their focal length is 1.2 times the long side, COLMAP's initial value for a photo without
+ * EXIF.
+ * Scene units; x right, y down, z into the room. The same options give the same bytes.
  *
  * writes  DIR/photos/photo_N.jpg                          16 samples a pixel, quality 95
- *         DIR/photos/photo_N_eK.jpg                       in place of it with --brackets: exposures two stops apart around
- *                                                         the middle one, their times, f-number and ISO in EXIF
+ *         DIR/photos/photo_N_eK.jpg                       instead of it with --brackets: exposures two stops apart;
+ *                                                         time, f-number and ISO are in EXIF
  *         DIR/model/{cameras,images,points3D}.txt         COLMAP text: true poses, surface points and their tracks
  *         DIR/truth/photo_N.exr                           Z at the pixels' centres, id: 1 wall, 2 floor, 3 box */
 #include <stdio.h>
@@ -29,7 +30,7 @@ static const double FLOOR_Y = 1.5;
 static const struct vec3 WALL_NORMAL = {0.242535625036333, 0, -0.970142500145332}; /* unit: (1, 0, -4) / sqrt(17) */
 static const double WALL_OFFSET = -8.0;                                            /* normal . p at the wall */
 static const struct vec3 BOX_CENTER = {0.25, 0.7, 5.8}, BOX_HALF = {0.8, 0.8, 0.6};
-static const double BOX_COS = 0.8, BOX_SIN = 0.6; /* its turn about y */
+static const double BOX_COS = 0.8, BOX_SIN = 0.6; /* its rotation about y */
 
 struct room_view {
     char name[24];
@@ -68,7 +69,7 @@ static double value_noise(uint32_t seed, double x, double y)
     return top * (1 - v) + bottom * v;
 }
 
-/* A disc or a turned rectangle in most cells of a grid, wholly inside its cell. False where there is none. */
+/* The colour of a disc or a rotated rectangle, wholly inside its cell of a grid; most cells have one. False outside. */
 static bool mark(uint32_t seed, double s, double r, double cell, double rgb[3])
 {
     int ix = (int)floor(s / cell), iy = (int)floor(r / cell);
@@ -90,7 +91,7 @@ static void shade(const struct hit *h, bool sticker, double rgb[3])
     static const double COLOURS[3][2][3] = {{{0.30, 0.22, 0.14}, {0.55, 0.60, 0.58}},
                                             {{0.16, 0.20, 0.12}, {0.55, 0.42, 0.30}},
                                             {{0.10, 0.16, 0.34}, {0.75, 0.55, 0.25}}};
-    static const double LIGHT[3] = {0.7, 1.15, 0.95}; /* of the box's faces, so that its edges show */
+    static const double LIGHT[3] = {0.7, 1.15, 0.95}; /* on the box's faces, so that its edges are visible */
     uint32_t seed = 1000 * (uint32_t)h->surface + 100 * (uint32_t)h->face;
     if (sticker && h->surface == WALL && fabs(h->s + 1.2) < 0.5 && fabs(h->r + 0.6) < 0.35) {
         for (int k = 0; k < 3; k++) rgb[k] = 0.9 - 0.2 * k * value_noise(7, h->s * 9, h->r * 9);
@@ -115,7 +116,7 @@ static struct vec3 into_box(struct vec3 v)
     return vec3_make(BOX_COS * v.x - BOX_SIN * v.z, v.y, BOX_SIN * v.x + BOX_COS * v.z);
 }
 
-/* Every ray that a camera of the arc sends hits the wall at least. */
+/* Every ray of a camera on the arc hits the wall, if nothing nearer. */
 static struct hit trace(struct vec3 origin, struct vec3 ray)
 {
     struct hit h = {(WALL_OFFSET - vec3_dot(WALL_NORMAL, origin)) / vec3_dot(WALL_NORMAL, ray), WALL, 0, 0, 0};
@@ -144,7 +145,7 @@ static struct hit trace(struct vec3 origin, struct vec3 ray)
     return h;
 }
 
-/* The ray of a pixel, 1 long along the camera's axis, so that t is depth. */
+/* The ray of a pixel; its component along the camera's axis is 1, so that t is depth. */
 static struct vec3 pixel_ray(const struct view *v, double x, double y)
 {
     return mat3_apply(mat3_transpose(v->cam_from_world), vec3_make((x - v->cx) / v->fx, (y - v->cy) / v->fy, 1));
@@ -197,12 +198,12 @@ static size_t make_exif(unsigned char exif[128], uint32_t denominator)
 {
     static const unsigned char head[] = {
         0xff, 0xe1, 0,    92,   'E', 'x', 'i', 'f', 0,   0, 'I', 'I', 42, 0, 8, 0,
-        0,    0, /* TIFF: little-endian, first folder at 8 */
+        0,    0, /* TIFF: little-endian, first directory at 8 */
         1,    0,    0x69, 0x87, 4,   0,   1,   0,   0,   0, 26,  0,   0,  0, 0, 0,
-        0,    0,                                                                   /* one entry: EXIF's folder, at 26 */
-        3,    0,    0x9a, 0x82, 5,   0,   1,   0,   0,   0, 68,  0,   0,  0,       /* exposure time: rational at 68 */
-        0x9d, 0x82, 5,    0,    1,   0,   0,   0,   76,  0, 0,   0,                /* f-number: rational at 76 */
-        0x27, 0x88, 3,    0,    1,   0,   0,   0,   100, 0, 0,   0,   0,  0, 0, 0, /* ISO 100; no more folders */
+        0,    0,                                                             /* one entry: the EXIF directory, at 26 */
+        3,    0,    0x9a, 0x82, 5,   0,   1,   0,   0,   0, 68,  0,   0,  0, /* exposure time: rational at 68 */
+        0x9d, 0x82, 5,    0,    1,   0,   0,   0,   76,  0, 0,   0,          /* f-number: rational at 76 */
+        0x27, 0x88, 3,    0,    1,   0,   0,   0,   100, 0, 0,   0,   0,  0, 0, 0, /* ISO 100; no more directories */
     };
     const uint32_t values[4] = {1, denominator, 8, 1};
     size_t size = sizeof head;
@@ -214,7 +215,7 @@ static size_t make_exif(unsigned char exif[128], uint32_t denominator)
     return size;
 }
 
-/* Exposure `number` of `count`: the middle one as the room is; a JPEG with its EXIF behind the first marker. */
+/* Writes exposure `number` of `count` as a JPEG with EXIF behind the first marker; the middle one has the gain 1. */
 static enum status write_bracket(const struct room_view *rv, const struct image *picture, int number, int count,
                                  const char *folder, struct err *err)
 {
@@ -275,7 +276,7 @@ done:
     return st;
 }
 
-/* True if the point is in the picture, two pixels from its rim, and nothing stands in front of it. */
+/* True if the point is in the picture, at least two pixels from its border, and not occluded. */
 static bool sees(const struct view *v, struct vec3 p, double *x, double *y)
 {
     double z = view_project(v, p, x, y);
@@ -283,7 +284,7 @@ static bool sees(const struct view *v, struct vec3 p, double *x, double *y)
     return fabs(trace(v->center, pixel_ray(v, *x, *y)).t - z) < 1e-6 * z;
 }
 
-/* Points at pixels of every view in turn (a low-discrepancy sequence), kept if two views see them. */
+/* Samples points at pixels of each view in turn (a low-discrepancy sequence) and keeps those that two views see. */
 static enum status write_model(const struct room_view *views, int count, const char *folder, struct err *err)
 {
     static const char *const FILES[3] = {"cameras", "images", "points3D"};
@@ -348,12 +349,14 @@ int main(int argc, char **argv)
     const char *out = NULL, *size = "320x240";
     int views = 5, change = 0, brackets = 0, width = 0, height = 0, end = 0;
     const struct cli_opt opts[] = {
-        CLI_ABOUT("renders photographs of a small analytic room, with true cameras, points and depths"),
+        CLI_ABOUT("Renders photographs of a small analytic room, with true cameras, points and depths."),
         CLI_STR("out", &out, CLI_REQUIRED, "folder to write photos, model and truth into"),
         CLI_INT("views", &views, CLI_OPTIONAL, "number of photos, 1 to 99 (5)"),
         CLI_STR("size", &size, CLI_OPTIONAL, "pixels of a photo, WIDTHxHEIGHT (320x240)"),
-        CLI_INT("change", &change, CLI_OPTIONAL, "photo that gets a bright sticker on the wall, from 1 (none)"),
-        CLI_INT("brackets", &brackets, CLI_OPTIONAL, "exposures of each view, 1 to 9 (one photo without EXIF)"),
+        CLI_INT("change", &change, CLI_OPTIONAL,
+                "number of the photo with a bright sticker on the wall, from 1 (none)"),
+        CLI_INT("brackets", &brackets, CLI_OPTIONAL,
+                "number of exposures of each view, 1 to 9 (one photo without EXIF)"),
         CLI_END,
     };
     static struct room_view room[MAX_VIEWS];
@@ -363,7 +366,7 @@ int main(int argc, char **argv)
 
     if (verdict == CLI_RUN) {
         if (views < 1 || views > MAX_VIEWS || change < 0 || change > views)
-            err_set(&err, ST_USAGE, "--views %d --change %d: wanted 1 to %d views and a photo among them.", views,
+            err_set(&err, ST_USAGE, "--views %d --change %d: wanted 1 to %d views, and one of them to change.", views,
                     change, MAX_VIEWS);
         else if (brackets < 0 || brackets > 9)
             err_set(&err, ST_USAGE, "--brackets %d: wanted 1 to 9.", brackets);
