@@ -35,7 +35,7 @@ deps-bench:
 check: deps-check ## build and run the tests
 	+@$(BUILD) tests-build
 	+@tests/run '$(B)' $(CHECKS)
-check-long: deps-check ## the tests that take longer: whole runs, the build with clang, clang-tidy over everything
+check-long: deps-check ## the tests that take longer: whole runs, the build with clang, its static analyser
 	+@$(BUILD) tests-build
 	+@tests/run '$(B)' $(or $(CHECKS),long)
 bench: deps-bench ## measure everything in tests/bench: tables and plots under out/bench

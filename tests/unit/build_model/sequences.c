@@ -78,7 +78,7 @@ static void add_house(char *text, double x0, double y0, int columns, int rows, c
     char outer[4][32], across[4][32], between[4][32], name[32], walls[LINE]; /* across[0]: the west wall */
     for (int i = 0; i < columns; i++) x[i + 1] = x[i] + uniform(1.5, 4);
     for (int k = 0; k < rows; k++) y[k + 1] = y[k] + uniform(1.5, 4);
-    for (int i = 0; i < 4; i++) snprintf(outer[i], sizeof outer[i], "%.2s%c", "sowenoea" + 2 * i, tag);
+    for (int i = 0; i < 4; i++) snprintf(outer[i], sizeof outer[i], "%.2s%c", &"sowenoea"[2 * i], tag);
     add_wall(text, outer[0], x[columns], y0, x0, y0);
     add_wall(text, outer[1], x0, y0, x0, y[rows]);
     add_wall(text, outer[2], x0, y[rows], x[columns], y[rows]);

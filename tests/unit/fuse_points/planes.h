@@ -88,7 +88,7 @@ static inline void world_make(struct world *w)
     for (int i = 0; i < VIEWS; i++) {
         struct view *v = &w->views[i];
         const double turn = 0.05 * (i - 1.5);
-        *v = (struct view){"abcd" + i, WIDTH, HEIGHT, 80, 82, WIDTH / 2.0, HEIGHT / 2.0, .center = centers[i]};
+        *v = (struct view){&"abcd"[i], WIDTH, HEIGHT, 80, 82, WIDTH / 2.0, HEIGHT / 2.0, .center = centers[i]};
         v->cam_from_world = mat3_from_quat((struct quat){cos(turn / 2), 0, sin(turn / 2), 0});
         v->translation = vec3_scale(mat3_apply(v->cam_from_world, centers[i]), -1);
         make_depth(w, i);
