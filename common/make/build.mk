@@ -84,10 +84,12 @@ $(FUZZ_TESTS): $(B)/obj/tests/fuzz/run_corpus.o
 $(BENCHES): $(B)/lib/bench.a
 $(BENCHES): private MORE_LIBS += -lopencv_calib3d -lopencv_imgproc -lopencv_core $(shell pkg-config --libs OpenEXR 2>/dev/null)
 # a test of stage NAME, tests/unit/NAME/*.c, has the stage's library; so has every program that includes a header of the stage
+ifneq ($(filter tests-build bench-build $(B)/tests/%,$(MAKECMDGOALS)),)
 USES := $(sort $(shell grep -roE --include='*.[ch]' '^\#include "stages/[a-z_0-9]+/' tests | sed -E 's|(.*):.*/(.*)/|\1:\2|'))
 uses = $(patsubst $(1).c:%,$(B)/lib/%.a,$(filter $(1).c:%,$(USES)))
 $(foreach t,$(TESTS),$(eval $(t): $(call uses,$(t:$(B)/%=%))))
 $(foreach s,$(STAGES),$(eval $(filter $(B)/tests/unit/$(s)/%,$(UNIT_TESTS)): $(B)/lib/$(s).a \
   $(sort $(patsubst %,$(B)/lib/%.a,$(foreach u,$(filter tests/unit/$(s)/%,$(USES)),$(lastword $(subst :, ,$(u))))))))
+endif
 .SECONDARY: $(call objs,tests/*/*.c tests/*/*/*.c tests/*/*/*/*.c stages/*/*.c) $(STAGES:%=$(B)/lib/%.a)
 -include $(shell find $(B)/obj -name '*.d' 2>/dev/null)
