@@ -114,7 +114,7 @@ points_are_made_on_demand()
     head -n 3 out/t/points/points.ply | matches -ax 'comment remodel-points 1' || fail "the file has no points"
     ! grep -aqF "$PWD" out/t/points/points.ply || fail "the points name a folder of this machine"
     n=$(grep -am 1 '^element vertex' out/t/points/points.ply | cut -d' ' -f3)
-    [ "$n" -gt 1200 ] || fail "only $n points"
+    [ "$n" -gt 5000 ] || fail "only $n points"
     sha256sum out/t/points/points.ply >before
     stat -c %y out/t/points/points.ply >a
     run_scene points >log
