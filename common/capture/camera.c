@@ -299,6 +299,85 @@ bool camera_project(const struct camera *c, struct vec3 p, double *u, double *v)
     return true;
 }
 
+/* Derivatives of the distorted point (xd, yd) by the distortion's parameters: those after the principal point. x, y: the
+ * point on the plane z = 1; for a fisheye the direction from the axis times the angle t, so that s = t^2. */
+static void distortion_derivatives(const struct camera *c, const struct distortion *q, double x, double y,
+                                   double (*dx)[CAMERA_MAX_PARAMS], const double focal[2])
+{
+    const double s = x * x + y * y, d = poly(q->d, D_TERMS, s), n = poly(q->n, N_TERMS, s);
+    const bool single = single_focal(c->model);
+    const int first = single ? 3 : 4, count = models[c->model].params - first;
+    const bool tangential = c->model == CAMERA_OPENCV || c->model == CAMERA_FULL_OPENCV;
+    double power = 1; /* of s: one more for each radial coefficient, of the numerator and then of the denominator */
+    for (int i = 0; i < count; i++) {
+        double ex, ey;
+        if (tangential && (i == 2 || i == 3)) {
+            ex = i == 2 ? 2 * x * y : s + 2 * x * x;
+            ey = i == 2 ? s + 2 * y * y : 2 * x * y;
+        } else {
+            if (tangential && i == 5) power = 1; /* k4, the denominator's first */
+            power *= s;
+            const double slope = tangential && i >= 5 ? -n / (d * d) * power : power / d;
+            ex = x * slope;
+            ey = y * slope;
+        }
+        dx[0][first + i] = focal[0] * ex;
+        dx[1][first + i] = focal[1] * ey;
+    }
+}
+
+bool camera_project_derivatives(const struct camera *c, struct vec3 p, double pixel[2], double d_point[2][3],
+                                double d_params[2][CAMERA_MAX_PARAMS])
+{
+    const struct distortion q = distortion_of(c);
+    const bool single = single_focal(c->model);
+    double focal[2], center[2], x, y, jacobian[3], xd, yd;
+    camera_focal(c, &focal[0], &focal[1], &center[0], &center[1]);
+    if (!camera_project(c, p, &pixel[0], &pixel[1])) return false;
+    xd = (pixel[0] - center[0]) / focal[0];
+    yd = (pixel[1] - center[1]) / focal[1];
+    if (c->model == CAMERA_OPENCV_FISHEYE) {
+        /* (xd, yd) = (X, Y) h(rho, Z), h = t N(t^2) / rho, rho = |(X, Y)|, t = atan2(rho, Z) */
+        const double rho = hypot(p.x, p.y), square = rho * rho + p.z * p.z, t = atan2(rho, p.z);
+        double g, dg, by_rho = 0, by_z = -1 / (p.z * p.z), h = 1 / p.z; /* by_rho: dh / drho / rho */
+        radial(&q, t * t, &g, &dg);
+        if (rho > 1e-9 * sqrt(square)) {
+            const double slope = g + 2 * t * t * dg; /* of t N(t^2) */
+            h = t * g / rho;
+            by_rho = (slope * p.z / square * rho - t * g) / (rho * rho * rho);
+            by_z = -slope / square;
+        }
+        d_point[0][0] = focal[0] * (h + p.x * p.x * by_rho);
+        d_point[0][1] = focal[0] * p.x * p.y * by_rho;
+        d_point[1][0] = focal[1] * p.x * p.y * by_rho;
+        d_point[1][1] = focal[1] * (h + p.y * p.y * by_rho);
+        d_point[0][2] = focal[0] * p.x * by_z;
+        d_point[1][2] = focal[1] * p.y * by_z;
+        x = rho > 0 ? p.x / rho * t : 0;
+        y = rho > 0 ? p.y / rho * t : 0;
+    } else {
+        x = p.x / p.z;
+        y = p.y / p.z;
+        if (!distort(&q, x, y, &xd, &yd, jacobian)) return false;
+        d_point[0][0] = focal[0] * jacobian[0] / p.z;
+        d_point[0][1] = focal[0] * jacobian[1] / p.z;
+        d_point[1][0] = focal[1] * jacobian[1] / p.z;
+        d_point[1][1] = focal[1] * jacobian[2] / p.z;
+        for (int i = 0; i < 2; i++) d_point[i][2] = -(d_point[i][0] * x + d_point[i][1] * y);
+    }
+    d_params[0][0] = xd;
+    d_params[1][0] = single ? yd : 0;
+    if (!single) {
+        d_params[0][1] = 0;
+        d_params[1][1] = yd;
+    }
+    const int at = single ? 1 : 2;
+    d_params[0][at] = d_params[1][at + 1] = 1;
+    d_params[0][at + 1] = d_params[1][at] = 0;
+    distortion_derivatives(c, &q, x, y, d_params, focal);
+    return true;
+}
+
 /* Largest distance from the axis on the plane z = 1, practically perpendicular to it. */
 static const double MAX_PLANE_RADIUS = 1e8;
 

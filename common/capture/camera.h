@@ -51,6 +51,11 @@ void camera_focal(const struct camera *c, double *fx, double *fy, double *cx, do
  * negative axis), or beyond the radius up to which the distortion is one-to-one. */
 bool camera_project(const struct camera *c, struct vec3 p, double *u, double *v);
 
+/* The projection and its derivatives: d_point by the point's coordinates, d_params by the model's parameters (in their
+ * order; the columns beyond them are not set). False as camera_project(). */
+bool camera_project_derivatives(const struct camera *c, struct vec3 p, double pixel[2], double d_point[2][3],
+                                double d_params[2][CAMERA_MAX_PARAMS]);
+
 /* Pixel -> ray of length 1 in camera coordinates, accurate to 1e-10 focal lengths. False: no ray maps to this pixel. */
 bool camera_unproject(const struct camera *c, double u, double v, struct vec3 *ray);
 

@@ -3,6 +3,7 @@
 #include "stages/sfm/run_colmap.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 #include "common/base/clock.h"
 #include "common/base/file_path.h"
@@ -71,6 +72,7 @@ enum status run_colmap(struct sfm_folder *f, const struct sfm_input *in, const s
         return err_set(err, ST_DATA,
                        "there %s; structure from motion needs at least 2, better 8 or more, taken a step apart.",
                        in->list->count ? "is only 1 photo" : "are no photos");
+    f->given = strcmp(in->params->refine_camera, "no") ? "nothing" : "lens";
     enum status st = colmap_prepare(&job, f, in, in->params, err);
     if (!st) st = colmap_extract_and_match(&features, &job, err);
     if (!st && !features)

@@ -94,8 +94,8 @@ static enum status write_lists(const struct sfm_folder *f, const struct photo_li
     if (!st) st = outfile_open(&models, models_path, err);
     if (!st) {
         provenance_print(prov, models.fp);
-        fputs("remodel-sfm 1\n", models.fp);
-        for (int i = 0; i < f->models; i++) fprintf(models.fp, "%d colmap\n", i);
+        fputs("remodel-sfm 2\n", models.fp);
+        for (int i = 0; i < f->models; i++) fprintf(models.fp, "%d colmap %s\n", i, f->given);
         st = outfile_commit(&models, err);
     }
     outfile_discard(&list);

@@ -15,6 +15,7 @@ struct sfm_folder {
     char *out;  /* the product */
     char *work; /* out.work: COLMAP's own files */
     char *made; /* out.work/sfm: the product being written */
+    const char *given; /* what the user gave of all models: "nothing", "lens" or "model"; a literal */
     int models;
 };
 

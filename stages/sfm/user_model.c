@@ -252,6 +252,7 @@ enum status user_model_add(struct sfm_folder *f, const char *from, const struct 
 {
     bool found = false, next = true;
     if (access(from, R_OK | X_OK)) return err_errno(err, "open", from);
+    f->given = "model";
     enum status st = try_colmap(f, from, in, &found, prov, err);
     for (int k = 0; !st && !found && next; k++) {
         char *folder = text_format(err, "%s/%d", from, k);

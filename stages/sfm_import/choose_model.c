@@ -18,42 +18,60 @@ static int images_of_photos(const struct sfm_model *m, const struct photo_list *
 }
 
 /* The first line of models.txt. */
-static enum status read_version(struct textfile *t, struct err *err)
+static enum status read_version(struct textfile *t, int64_t *version, struct err *err)
 {
     char *word = NULL;
-    int64_t version = 0;
     if (!textfile_next(t)) return textfile_error(t, err, NULL, "\"remodel-sfm 1\"");
     if (textfile_word(t, "\"remodel-sfm\"", &word, err)) return err->status;
     if (strcmp(word, "remodel-sfm")) return textfile_error(t, err, word, "\"remodel-sfm\"");
-    return textfile_int(t, "version", 1, 1, &version, err) || textfile_end(t, err) ? err->status : ST_OK;
+    return textfile_int(t, "version", 1, 2, version, err) || textfile_end(t, err) ? err->status : ST_OK;
 }
 
-/* A line "FOLDER FORMAT" of models.txt, and the model. *folder points into the text file. */
-static enum status read_model(struct sfm_model *m, char **folder, struct textfile *t, const char *sfm, struct err *err)
+/* Version 1 does not say what was given; then nothing is taken for found. */
+static enum status read_given(enum given_cameras *given, struct textfile *t, int64_t version, struct err *err)
+{
+    static const char *const words[] = {[GIVEN_NOTHING] = "nothing", [GIVEN_LENS] = "lens", [GIVEN_MODEL] = "model"};
+    char *word = NULL;
+    *given = GIVEN_MODEL;
+    if (version < 2) return ST_OK;
+    if (textfile_word(t, "what was given", &word, err)) return err->status;
+    for (size_t i = 0; i < sizeof words / sizeof *words; i++)
+        if (!strcmp(word, words[i])) {
+            *given = (enum given_cameras)i;
+            return ST_OK;
+        }
+    return textfile_error(t, err, word, "\"nothing\", \"lens\" or \"model\"");
+}
+
+/* A line "FOLDER FORMAT [GIVEN]" of models.txt, and the model. *folder points into the text file. */
+static enum status read_model(struct sfm_model *m, char **folder, enum given_cameras *given, struct textfile *t,
+                              int64_t version, const char *sfm, struct err *err)
 {
     char path[FILE_PATH], *format = NULL;
     if (textfile_word(t, "folder of a model", folder, err) || textfile_word(t, "its format", &format, err) ||
-        textfile_end(t, err))
+        read_given(given, t, version, err) || textfile_end(t, err))
         return err->status;
     if (strcmp(format, "colmap")) return textfile_error(t, err, format, "\"colmap\"");
     return file_path(path, sfm, *folder, "", err) || sfm_model_read_text(m, path, err) ? err->status : ST_OK;
 }
 
-enum status import_choose(struct sfm_model *model, char **name, const char *sfm, const struct photo_list *photos,
-                          struct err *err)
+enum status import_choose(struct sfm_model *model, char **name, enum given_cameras *given, const char *sfm,
+                          const struct photo_list *photos, struct err *err)
 {
     struct textfile t = {0};
+    int64_t version = 0;
     char path[FILE_PATH];
     int count = 0, best = -1;
     *model = (struct sfm_model){0};
     *name = NULL;
     enum status st = file_path(path, sfm, "models.txt", "", err);
     if (!st) st = textfile_open(&t, path, err);
-    if (!st) st = read_version(&t, err);
+    if (!st) st = read_version(&t, &version, err);
     while (!st && textfile_next(&t)) {
         struct sfm_model m = {0};
         char *folder = NULL;
-        st = read_model(&m, &folder, &t, sfm, err);
+        enum given_cameras what = GIVEN_MODEL;
+        st = read_model(&m, &folder, &what, &t, version, sfm, err);
         if (st) break;
         int n = images_of_photos(&m, photos);
         log_note("model %s: %d images, %d of them photos of this scene, %d points", folder, m.image_count, n,
@@ -63,6 +81,7 @@ enum status import_choose(struct sfm_model *model, char **name, const char *sfm,
             sfm_model_release(model);
             free(*name);
             *model = m;
+            *given = what;
             best = n;
             if (!(*name = strdup(folder))) st = err_nomem(err, "a name", strlen(folder) + 1);
         } else {

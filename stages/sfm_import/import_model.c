@@ -233,7 +233,7 @@ enum status import_model(struct imported *out, const struct sfm_model *model, co
     if (!imp.images) st = err_nomem(err, "images", (size_t)model->image_count * sizeof *imp.images);
     if (!st) st = importer_match_photos(&imp, stats, err);
     if (!st) st = importer_fit_lenses(&imp, err);
-    if (!st) st = importer_measure_errors(&imp, stats, err);
+    if (!st) st = importer_measure_errors(&imp, stats, &out->residuals, err);
     if (!st) st = importer_judge_errors(&imp, stats, err);
     if (!st) st = make_views(&imp, err);
     if (!st) st = make_cameras(&imp, out, err);
@@ -286,5 +286,6 @@ void imported_release(struct imported *in)
     if (!in) return;
     sfm_model_release(&in->model);
     lens_list_release(&in->lenses);
+    residual_table_release(&in->residuals);
     *in = (struct imported){0};
 }

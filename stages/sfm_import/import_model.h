@@ -10,11 +10,18 @@
 #include "common/capture/photo_list.h"
 #include "common/capture/sfm_model.h"
 #include "stages/sfm_import/lens_fit.h"
+#include "stages/sfm_import/residual_table.h"
 
-#define SFM_IMPORT_PARAMS(X)                                                                                       \
-    X(max_megapixels, double, 2, 0, 1000, "Mpx", "size to which larger views are scaled down; 0: no limit")        \
-    X(max_field, double, 110, 30, 160, "degrees", "field of view above which a photo is split into several views") \
-    X(max_error, double, 4, 0.01, 1000, "px", "reprojection error above which observations are dropped")
+#define SFM_IMPORT_PARAMS(X)                                                                                        \
+    X(max_megapixels, double, 2, 0, 1000, "Mpx", "size to which larger views are scaled down; 0: no limit")         \
+    X(max_field, double, 110, 30, 160, "degrees", "field of view above which a photo is split into several views")  \
+    X(max_error, double, 4, 0.01, 1000, "px", "reprojection error above which observations are dropped")            \
+    X(refine, choice, "auto", 0, 0, "auto|yes|no",                                                                  \
+      "bundle adjustment of the cameras, with the form of lens that the photos need; auto: not of a lens or model"  \
+      " that was given")                                                                                            \
+    X(principal_shift, double, 0.005, 0, 0.1, "",                                                                   \
+      "expected shift of the principal point from photo to photo, as by a stabiliser, in parts of the longer side;" \
+      " 0: none")
 
 struct sfm_import_params {
     SFM_IMPORT_PARAMS(PARAM_FIELD)
@@ -40,6 +47,7 @@ struct imported {
     struct sfm_model model;  /* the views: images "VIEW.exr" in order of VIEW, one camera each, ids from 1 */
     struct lens_list lenses; /* in the same order */
     struct import_stats stats;
+    struct residual_table residuals; /* of all views together; empty in parts of a split */
 };
 
 /* Notes and warnings go to the log. ST_DATA: two images of one photo, fewer than two registered photos, photos whose

@@ -38,8 +38,9 @@ enum status importer_match_photos(struct importer *imp, struct import_stats *sta
 /* Scales the cameras to the photos' sizes. ST_DATA: the aspect ratio differs. */
 enum status importer_fit_lenses(struct importer *imp, struct err *err);
 
-/* Computes all reprojection errors and their statistics. */
-enum status importer_measure_errors(struct importer *imp, struct import_stats *stats, struct err *err);
+/* Computes all reprojection errors and their statistics, in all and by photo and radius. */
+enum status importer_measure_errors(struct importer *imp, struct import_stats *stats, struct residual_table *table,
+                                    struct err *err);
 
 /* Logs the errors and warns about models that do not fit. ST_DATA: no observation fits. */
 enum status importer_judge_errors(const struct importer *imp, const struct import_stats *stats, struct err *err);

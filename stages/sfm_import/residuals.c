@@ -42,7 +42,8 @@ static enum status summarize(struct import_stats *stats, const struct lens_resid
     return ST_OK;
 }
 
-enum status importer_measure_errors(struct importer *imp, struct import_stats *stats, struct err *err)
+enum status importer_measure_errors(struct importer *imp, struct import_stats *stats, struct residual_table *table,
+                                    struct err *err)
 {
     const struct sfm_model *m = imp->in;
     size_t total = 0, finite = 0, at = 0;
@@ -50,8 +51,10 @@ enum status importer_measure_errors(struct importer *imp, struct import_stats *s
     for (int i = 0; i < m->point_count; i++) total += (size_t)m->points[i].track_count;
     imp->errors = malloc((total + 1) * sizeof *imp->errors);
     struct lens_residual *residuals = malloc((total + 1) * sizeof *residuals);
-    if (!imp->errors || !residuals) {
+    int *photo = malloc((total + 1) * sizeof *photo);
+    if (!imp->errors || !residuals || !photo) {
         free(residuals);
+        free(photo);
         return err_nomem(err, "reprojection errors", total * sizeof *residuals);
     }
     for (int i = 0; i < m->point_count; i++) {
@@ -67,6 +70,7 @@ enum status importer_measure_errors(struct importer *imp, struct import_stats *s
             stats->observations++;
             if (r.error > imp->params->max_error) stats->dropped++;
             if (r.error < INFINITY) {
+                photo[finite] = im->photo;
                 residuals[finite++] = r;
                 sum += r.error;
                 model_sum += r.error / sqrt(im->scale_u * im->scale_v);
@@ -81,7 +85,9 @@ enum status importer_measure_errors(struct importer *imp, struct import_stats *s
     if (model_sum > 0 && stated_weight > 0) stats->stated_error *= sum / model_sum; /* to pixels of the photos */
     enum status st = summarize(stats, residuals, finite, sum, err);
     if (!st) st = lens_fit_measure(&stats->lens, residuals, finite, err);
+    if (!st) st = residual_table_make(table, residuals, photo, finite, imp->photos->count, err);
     free(residuals);
+    free(photo);
     return st;
 }
 

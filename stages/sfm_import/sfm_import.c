@@ -1,10 +1,11 @@
-/* sfm_import.c - chooses a structure-from-motion model, checks it and converts it into rectified pinhole views.
+/* sfm_import.c - chooses a structure-from-motion model, refines it and converts it into rectified pinhole views.
  *
  * reads   SFM/models.txt, photos.txt, N/{cameras,images,points3D}.txt   the models, in COLMAP's text format
  *         RECORDS/list.txt, ID.txt                                      the photos' names and sizes
  * writes  OUT/points3D.txt, cameras.txt, images.txt                     the views' pinhole cameras and the points they
  * see
  *         OUT/lenses.txt                                                photo and lens of each view
+ *         OUT/residuals.txt, lens_forms.txt                             reprojection errors; the forms of lens compared
  *         OUT/views.mk                                                  names of the views, for Make; written last
  *         OUT/../holdout/views/                                         the same files for held-out views */
 #include <stdio.h>
@@ -16,6 +17,7 @@
 #include "common/base/outfile.h"
 #include "stages/sfm_import/choose_model.h"
 #include "stages/sfm_import/holdout.h"
+#include "stages/sfm_import/refine_cameras.h"
 
 static enum status add_inputs(struct provenance *prov, const char *sfm, const char *model, struct err *err)
 {
@@ -56,18 +58,35 @@ static enum status write_split(const struct imported *all, const struct holdout 
     return st;
 }
 
+static enum status write_reports(const struct imported *in, const struct refinement *refinement,
+                                 const struct photo_list *photos, const char *out, const struct provenance *prov,
+                                 struct err *err)
+{
+    char residuals[FILE_PATH], forms[FILE_PATH];
+    enum status st = make_folders(out, err);
+    if (!st) st = file_path(residuals, out, "residuals.txt", "", err);
+    if (!st) st = file_path(forms, out, "lens_forms.txt", "", err);
+    if (!st) st = residual_table_write(&in->residuals, photos, residuals, prov, err);
+    if (!st) st = refinement_write(refinement, forms, prov, err);
+    return st;
+}
+
 static enum status run(const char *sfm, const char *records, const char *out, const struct holdout *held,
                        const struct sfm_import_params *params, struct provenance *prov, struct err *err)
 {
     struct photo_list photos = {0};
     struct sfm_model model = {0};
     struct imported imported = {0};
+    struct refinement refinement;
+    enum given_cameras given = GIVEN_MODEL;
     char *name = NULL;
     enum status st = photo_list_read(&photos, records, err);
-    if (!st) st = import_choose(&model, &name, sfm, &photos, err);
+    if (!st) st = import_choose(&model, &name, &given, sfm, &photos, err);
     if (!st) st = import_check_photos(sfm, &photos, err);
     if (!st) st = add_inputs(prov, sfm, name, err);
+    if (!st) st = refine_cameras(&refinement, &model, given, params, err);
     if (!st && import_model(&imported, &model, &photos, params, err)) st = err_context(err, "%s/%s", sfm, name);
+    if (!st) st = write_reports(&imported, &refinement, &photos, out, prov, err);
     if (!st && (held->every || (held->names && *held->names)))
         st = write_split(&imported, held, out, prov, err);
     else if (!st)

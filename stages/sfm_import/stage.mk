@@ -1,7 +1,7 @@
 # sfm_import: the SfM model as rectified pinhole views.
 FOLLOWS.sfm_import := sfm
 READS.sfm_import := sfm/, photos/
-WRITES.sfm_import := views/cameras.txt, images.txt, points3D.txt, lenses.txt, views.mk
+WRITES.sfm_import := views/cameras.txt, images.txt, points3D.txt, lenses.txt, residuals.txt, lens_forms.txt, views.mk
 STEPS.sfm_import := sfm
 HELP.sfm := + camera poses: COLMAP, or the model in SFM
 NEEDS.sfm := hdr
@@ -37,7 +37,7 @@ photo_of = $(firstword $(subst @, ,$(1)))
 VIEWED := $(sort $(foreach v,$(VIEWS),$(call photo_of,$(v))))
 .PHONY: sfm
 sfm: $(O)/views/views.mk
-$(CAMERAS) $(O)/views/lenses.txt $(O)/views/views.mk $(HELD_CAMERAS) &: $(S)/sfm/models.txt $(S)/photos/list.txt \
+$(CAMERAS) $(addprefix $(O)/views/,lenses.txt residuals.txt lens_forms.txt views.mk) $(HELD_CAMERAS) &: $(S)/sfm/models.txt $(S)/photos/list.txt \
   $(S)/stamp/photo_sizes.txt $(if $(HELDOUT),$(O)/stamp/holdout.txt) $(call needs,sfm_import)
 	$(call stage,sfm_import,all,$(O),--sfm $(S)/sfm --records $(S)/photos --out $(O)/views \
 	  $(if $(HOLDOUT),--holdout $(HOLDOUT)) $(if $(HOLDOUT_VIEWS),--holdout-views '$(HOLDOUT_VIEWS)'))

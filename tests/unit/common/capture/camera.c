@@ -211,6 +211,37 @@ static void a_pose_maps_its_centre_to_the_origin(void **state)
     assert_near(vec3_length(o), 0, 1e-12);
 }
 
+/* d_point and d_params against central differences of camera_project(). */
+static void derivatives_are_the_limits_of_differences(void **state)
+{
+    (void)state;
+    static const struct vec3 points[] = {{0.3, -0.2, 2}, {-0.7, 0.5, 1.8}, {0, 0, 3}, {1e-7, 0, 3}, {0.05, 0.6, 1}};
+    for (size_t i = 0; i < LENSES; i++)
+        for (size_t k = 0; k < sizeof points / sizeof *points; k++) {
+            const struct camera *c = &lenses[i];
+            double at[2], d_point[2][3], d_params[2][CAMERA_MAX_PARAMS], low[2] = {0}, high[2] = {0};
+            assert_true(camera_project_derivatives(c, points[k], at, d_point, d_params));
+            assert_true(camera_project(c, points[k], &low[0], &low[1]));
+            assert_true(at[0] == low[0] && at[1] == low[1]);
+            for (int n = 0; n < 3 + camera_model_params(c->model); n++) {
+                struct camera less = *c, more = *c;
+                struct vec3 before = points[k], after = points[k];
+                double *from[3] = {&before.x, &before.y, &before.z}, *to[3] = {&after.x, &after.y, &after.z};
+                const double step = 1e-5 * (n < 3 ? 1 : fmax(1, fabs(c->params[n - 3])));
+                *(n < 3 ? from[n] : &less.params[n - 3]) -= step;
+                *(n < 3 ? to[n] : &more.params[n - 3]) += step;
+                assert_true(camera_project(&less, before, &low[0], &low[1]));
+                assert_true(camera_project(&more, after, &high[0], &high[1]));
+                for (int j = 0; j < 2; j++) {
+                    const double difference = (high[j] - low[j]) / (2 * step);
+                    assert_near(n < 3 ? d_point[j][n] : d_params[j][n - 3], difference, 1e-5 * (1 + fabs(difference)));
+                }
+            }
+        }
+    double at[2], d_point[2][3], d_params[2][CAMERA_MAX_PARAMS];
+    assert_false(camera_project_derivatives(&lenses[0], vec3_make(0, 0, -1), at, d_point, d_params));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -223,6 +254,7 @@ int main(void)
         cmocka_unit_test(folds_of_random_lenses_match_sampling),
         cmocka_unit_test(pixels_far_outside_give_a_ray_or_fail),
         cmocka_unit_test(a_pose_maps_its_centre_to_the_origin),
+        cmocka_unit_test(derivatives_are_the_limits_of_differences),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,54 @@
+/* bundle.h - bundle adjustment of a structure-from-motion model with a given form of its lenses. */
+#ifndef REMODEL_BUNDLE_H
+#define REMODEL_BUNDLE_H
+
+#include "common/capture/sfm_model.h"
+#include "stages/sfm_import/ceres_bundle.h"
+
+enum principal_point {
+    CENTER_KEPT,      /* as the model has it */
+    CENTER_SHARED,    /* adjusted, one for all photos of a lens */
+    CENTER_PER_PHOTO, /* the same, and each photo's is shifted */
+};
+
+struct lens_form {
+    bool lens_kept;          /* nothing of the lens is adjusted; the other members are not used */
+    bool model_kept;         /* of all lenses; `model` is not used */
+    enum camera_model model; /* of perspective lenses; other lenses keep theirs */
+    enum principal_point center;
+};
+
+/* Robust statistics of a fit. */
+struct bundle_fit {
+    double median;  /* of the residuals' lengths, px */
+    double noise;   /* sigma of a pixel coordinate, px: the scale of the residuals' Student t distribution */
+    int parameters; /* of lenses and shifts */
+    double bic;     /* Bayesian information criterion [Schwarz 1978]; lower is better */
+};
+
+/* A bundle of the model's observations whose points are in front of their camera. At most max_observations are taken
+ * (0: all), by the points with the longest tracks, about equally many from each image. The caller frees it with
+ * bundle_release(). points[k] of the bundle is m->points[point_of[k]]. ST_NOMEM. */
+enum status bundle_make(struct bundle *b, int **point_of, const struct sfm_model *m, size_t max_observations,
+                        struct err *err);
+enum status bundle_copy(struct bundle *to, const struct bundle *from, struct err *err);
+void bundle_release(struct bundle *b);
+
+/* Whether some lens of the bundle can take the form: those with two radial coefficients at most. */
+bool lens_form_fits(const struct lens_form *form, const struct bundle *b);
+
+/* Adjusts the bundle with its lenses in this form, at the scale b->noise of the residuals. shift_sigma: prior of a
+ * photo's shift, px. ST_DATA: the solver failed, or a lens folds inside the picture. */
+enum status bundle_adjust(struct bundle_fit *fit, struct bundle *b, const struct lens_form *form, double shift_sigma,
+                          struct err *err);
+
+/* Drops the observations whose point is behind their camera or outside its lens. */
+void bundle_prune(struct bundle *b);
+
+/* The statistics of the bundle as it is; fit->parameters is read. */
+enum status bundle_measure(struct bundle_fit *fit, const struct bundle *b, struct err *err);
+
+/* Writes lenses, poses and points back. With shifts each image gets a camera of its own. ST_NOMEM. */
+enum status bundle_store(struct sfm_model *m, const struct bundle *b, const int *point_of, struct err *err);
+
+#endif

@@ -1,0 +1,273 @@
+/* ceres_bundle.cc - C interface to Ceres for bundle adjustment. Derivatives are camera_project_derivatives(). */
+#include "stages/sfm_import/ceres_bundle.h"
+
+#include <ceres/ceres.h>
+#include <glog/logging.h>
+
+#include <memory>
+#include <vector>
+
+namespace
+{
+
+enum { ROTATION, TRANSLATION, POINT, SHIFT, LENS, BLOCKS };
+
+/* d(R(q) p)/dq of a unit quaternion w x y z. */
+void rotate(const double *q, const double *p, double out[3], double d_rotation[3][4], double matrix[3][3])
+{
+    const double w = q[0], x = q[1], y = q[2], z = q[3];
+    const double m[3][3] = {{w * w + x * x - y * y - z * z, 2 * (x * y - w * z), 2 * (x * z + w * y)},
+                            {2 * (x * y + w * z), w * w - x * x + y * y - z * z, 2 * (y * z - w * x)},
+                            {2 * (x * z - w * y), 2 * (y * z + w * x), w * w - x * x - y * y + z * z}};
+    const double d[3][4] = {{w * p[0] - z * p[1] + y * p[2], x * p[0] + y * p[1] + z * p[2],
+                             -y * p[0] + x * p[1] + w * p[2], -z * p[0] - w * p[1] + x * p[2]},
+                            {z * p[0] + w * p[1] - x * p[2], y * p[0] - x * p[1] - w * p[2],
+                             x * p[0] + y * p[1] + z * p[2], w * p[0] - z * p[1] + y * p[2]},
+                            {-y * p[0] + x * p[1] + w * p[2], z * p[0] + w * p[1] - x * p[2],
+                             -w * p[0] + z * p[1] - y * p[2], x * p[0] + y * p[1] + z * p[2]}};
+    for (int i = 0; i < 3; i++) {
+        out[i] = m[i][0] * p[0] + m[i][1] * p[1] + m[i][2] * p[2];
+        for (int j = 0; j < 4; j++) d_rotation[i][j] = 2 * d[i][j];
+        for (int j = 0; j < 3; j++) matrix[i][j] = m[i][j];
+    }
+}
+
+/* The residual of an observation in units of its noise. */
+class reprojection : public ceres::CostFunction
+{
+  public:
+    reprojection(enum camera_model model, double u, double v, double noise) : model_(model), u_(u), v_(v), noise_(noise)
+    {
+        set_num_residuals(2);
+        for (int size : {4, 3, 3, 2, camera_model_params(model)}) mutable_parameter_block_sizes()->push_back(size);
+    }
+    bool Evaluate(double const *const *x, double *residuals, double **jacobians) const override
+    {
+        const int params = camera_model_params(model_);
+        struct camera c = {};
+        double rotated[3], d_rotation[3][4], matrix[3][3], pixel[2], d_point[2][3], d_params[2][CAMERA_MAX_PARAMS];
+        c.model = model_;
+        for (int i = 0; i < params; i++) c.params[i] = x[LENS][i];
+        rotate(x[ROTATION], x[POINT], rotated, d_rotation, matrix);
+        const struct vec3 p = {rotated[0] + x[TRANSLATION][0], rotated[1] + x[TRANSLATION][1],
+                               rotated[2] + x[TRANSLATION][2]};
+        if (!camera_project_derivatives(&c, p, pixel, d_point, d_params)) return false;
+        residuals[0] = (pixel[0] + x[SHIFT][0] - u_) / noise_;
+        residuals[1] = (pixel[1] + x[SHIFT][1] - v_) / noise_;
+        if (!jacobians) return true;
+        for (int r = 0; r < 2; r++) {
+            for (int j = 0; j < 4 && jacobians[ROTATION]; j++) {
+                double sum = 0;
+                for (int k = 0; k < 3; k++) sum += d_point[r][k] * d_rotation[k][j];
+                jacobians[ROTATION][4 * r + j] = sum / noise_;
+            }
+            for (int j = 0; j < 3 && jacobians[TRANSLATION]; j++)
+                jacobians[TRANSLATION][3 * r + j] = d_point[r][j] / noise_;
+            for (int j = 0; j < 3 && jacobians[POINT]; j++) {
+                double sum = 0;
+                for (int k = 0; k < 3; k++) sum += d_point[r][k] * matrix[k][j];
+                jacobians[POINT][3 * r + j] = sum / noise_;
+            }
+            for (int j = 0; j < 2 && jacobians[SHIFT]; j++) jacobians[SHIFT][2 * r + j] = (r == j) / noise_;
+            for (int j = 0; j < params && jacobians[LENS]; j++)
+                jacobians[LENS][params * r + j] = d_params[r][j] / noise_;
+        }
+        return true;
+    }
+
+  private:
+    enum camera_model model_;
+    double u_, v_, noise_;
+};
+
+/* The prior of one number of a block: (x[at] - expected) / sigma. */
+class prior : public ceres::CostFunction
+{
+  public:
+    prior(int size, int at, double expected, double sigma) : size_(size), at_(at), expected_(expected), sigma_(sigma)
+    {
+        set_num_residuals(1);
+        mutable_parameter_block_sizes()->push_back(size);
+    }
+    bool Evaluate(double const *const *x, double *residuals, double **jacobians) const override
+    {
+        residuals[0] = (x[0][at_] - expected_) / sigma_;
+        for (int i = 0; i < size_ && jacobians && jacobians[0]; i++) jacobians[0][i] = i == at_ ? 1 / sigma_ : 0;
+        return true;
+    }
+
+  private:
+    int size_, at_;
+    double expected_, sigma_;
+};
+
+/* The prior of a lens's ratio of focal lengths, its first two numbers. */
+class aspect_prior : public ceres::CostFunction
+{
+  public:
+    aspect_prior(int size, double expected, double sigma) : size_(size), expected_(expected), sigma_(sigma)
+    {
+        set_num_residuals(1);
+        mutable_parameter_block_sizes()->push_back(size);
+    }
+    bool Evaluate(double const *const *x, double *residuals, double **jacobians) const override
+    {
+        const double ratio = x[0][1] / x[0][0];
+        residuals[0] = (ratio - expected_) / sigma_;
+        if (!jacobians || !jacobians[0]) return true;
+        for (int i = 0; i < size_; i++) jacobians[0][i] = 0;
+        jacobians[0][0] = -ratio / x[0][0] / sigma_;
+        jacobians[0][1] = 1 / x[0][0] / sigma_;
+        return true;
+    }
+
+  private:
+    int size_;
+    double expected_, sigma_;
+};
+
+void add_lens(ceres::Problem *problem, struct bundle_lens *lens)
+{
+    const int params = camera_model_params(lens->camera.model);
+    std::vector<int> fixed;
+    problem->AddParameterBlock(lens->camera.params, params);
+    for (int i = 0; i < params; i++) {
+        if (!lens->free[i])
+            fixed.push_back(i);
+        else if (lens->sigma[i] > 0)
+            problem->AddResidualBlock(new prior(params, i, lens->expected[i], lens->sigma[i]), nullptr,
+                                      lens->camera.params);
+    }
+    if (lens->aspect_sigma > 0)
+        problem->AddResidualBlock(new aspect_prior(params, lens->aspect, lens->aspect_sigma), nullptr,
+                                  lens->camera.params);
+    if ((int)fixed.size() == params)
+        problem->SetParameterBlockConstant(lens->camera.params);
+    else if (!fixed.empty())
+        problem->SetManifold(lens->camera.params, new ceres::SubsetManifold(params, fixed));
+}
+
+/* The scene may be moved, turned and scaled as a whole. Fixes that: the pose of the first image, and of the image farthest
+ * from it the coordinate of its translation that the scale changes most. */
+void fix_frame(ceres::Problem *problem, struct bundle *b)
+{
+    struct bundle_image *first = nullptr, *second = nullptr;
+    double farthest = 0, moved[3] = {0, 0, 0};
+    struct vec3 origin = {0, 0, 0};
+    for (int i = 0; i < b->image_count; i++) {
+        struct bundle_image *im = &b->images[i];
+        if (!problem->HasParameterBlock(im->rotation)) continue;
+        const struct pose pose = {{im->rotation[0], im->rotation[1], im->rotation[2], im->rotation[3]},
+                                  {im->translation[0], im->translation[1], im->translation[2]}};
+        if (!first) {
+            first = im;
+            origin = pose_center(&pose);
+            continue;
+        }
+        const struct vec3 there = pose_apply(&pose, origin); /* the first centre in this camera's axes */
+        const double distance = vec3_length(there);
+        if (distance <= farthest) continue;
+        farthest = distance;
+        second = im;
+        moved[0] = there.x;
+        moved[1] = there.y;
+        moved[2] = there.z;
+    }
+    if (!second) return;
+    int at = 0;
+    for (int k = 1; k < 3; k++)
+        if (fabs(moved[k]) > fabs(moved[at])) at = k;
+    problem->SetParameterBlockConstant(first->rotation);
+    problem->SetParameterBlockConstant(first->translation);
+    if (!second->fixed) problem->SetManifold(second->translation, new ceres::SubsetManifold(3, {at}));
+}
+
+std::unique_ptr<ceres::Problem> make_problem(struct bundle *b)
+{
+    std::unique_ptr<ceres::Problem> problem(new ceres::Problem);
+    std::vector<bool> seen(b->image_count), used(b->lens_count);
+    for (size_t i = 0; i < b->observation_count; i++) seen[b->observations[i].image] = true;
+    for (int i = 0; i < b->image_count; i++)
+        if (seen[i]) used[b->images[i].lens] = true;
+    for (int i = 0; i < b->lens_count; i++)
+        if (used[i]) add_lens(problem.get(), &b->lenses[i]);
+    for (int i = 0; i < b->image_count; i++) {
+        struct bundle_image *im = &b->images[i];
+        if (!seen[i]) continue;
+        problem->AddParameterBlock(im->rotation, 4, new ceres::QuaternionManifold);
+        problem->AddParameterBlock(im->translation, 3);
+        problem->AddParameterBlock(im->shift, 2);
+        if (im->fixed) {
+            problem->SetParameterBlockConstant(im->rotation);
+            problem->SetParameterBlockConstant(im->translation);
+        }
+        if (!(b->shift_sigma > 0)) problem->SetParameterBlockConstant(im->shift);
+        for (int k = 0; k < 2 && b->shift_sigma > 0; k++)
+            problem->AddResidualBlock(new prior(2, k, 0, b->shift_sigma), nullptr, im->shift);
+    }
+    /* (n + 2) log(1 + s / n) = (n + 2) / n times Cauchy's n log(1 + s / n); one object serves all observations */
+    auto *loss = new ceres::ScaledLoss(new ceres::CauchyLoss(sqrt(b->freedom)), (b->freedom + 2) / b->freedom,
+                                       ceres::TAKE_OWNERSHIP);
+    for (size_t i = 0; i < b->observation_count; i++) {
+        const struct bundle_observation *o = &b->observations[i];
+        struct bundle_image *im = &b->images[o->image];
+        struct bundle_lens *lens = &b->lenses[im->lens];
+        problem->AddResidualBlock(new reprojection(lens->camera.model, o->u, o->v, b->noise), loss, im->rotation,
+                                  im->translation, b->points[o->point], im->shift, lens->camera.params);
+    }
+    fix_frame(problem.get(), b);
+    return problem;
+}
+
+enum { DENSE_IMAGES = 150 }; /* up to which the reduced camera system is solved as a dense one */
+
+} // namespace
+
+enum status ceres_bundle_adjust(struct bundle *b, struct err *err)
+{
+    std::unique_ptr<ceres::Problem> problem = make_problem(b);
+    ceres::Solver::Options options;
+    auto *order = new ceres::ParameterBlockOrdering;
+    for (int i = 0; i < b->point_count; i++)
+        if (problem->HasParameterBlock(b->points[i])) order->AddElementToGroup(b->points[i], 0);
+    std::vector<double *> blocks;
+    problem->GetParameterBlocks(&blocks);
+    for (double *block : blocks)
+        if (!order->IsMember(block)) order->AddElementToGroup(block, 1);
+    options.linear_solver_ordering.reset(order);
+    options.linear_solver_type = b->image_count <= DENSE_IMAGES ? ceres::DENSE_SCHUR : ceres::SPARSE_SCHUR;
+    options.dense_linear_algebra_library_type = ceres::EIGEN;
+    options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE; /* one thread, unlike CHOLMOD with BLAS */
+    options.max_num_iterations = b->iterations;
+    options.function_tolerance = b->tolerance;
+    options.num_threads = 1;
+    options.logging_type = ceres::SILENT;
+    ceres::Solver::Summary summary;
+    FLAGS_minloglevel = google::ERROR; /* a step that fails is tried again with more damping */
+    ceres::Solve(options, problem.get(), &summary);
+    if (summary.IsSolutionUsable()) return ST_OK;
+    return err_set(err, ST_DATA, "bundle adjustment failed: %s", summary.message.c_str());
+}
+
+enum status ceres_bundle_shift_sigma(double *sigma, struct bundle *b, struct err *err)
+{
+    std::unique_ptr<ceres::Problem> problem = make_problem(b);
+    ceres::Covariance::Options options;
+    std::vector<const double *> wanted;
+    fix_frame(problem.get(), b);
+    for (int i = 0; i < b->image_count; i++)
+        if (problem->HasParameterBlock(b->images[i].shift)) wanted.push_back(b->images[i].shift);
+    options.num_threads = 1;
+    options.algorithm_type = ceres::SPARSE_QR;
+    ceres::Covariance covariance(options);
+    if (!covariance.Compute(wanted, problem.get()))
+        return err_set(err, ST_DATA, "the covariance of the principal points cannot be computed");
+    for (int i = 0; i < b->image_count; i++) {
+        double block[4] = {0, 0, 0, 0};
+        if (problem->HasParameterBlock(b->images[i].shift))
+            covariance.GetCovarianceBlock(b->images[i].shift, b->images[i].shift, block);
+        sigma[2 * i] = sqrt(block[0]);
+        sigma[2 * i + 1] = sqrt(block[3]);
+    }
+    return ST_OK;
+}

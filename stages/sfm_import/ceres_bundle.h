@@ -1,0 +1,63 @@
+/* ceres_bundle.h - bundle adjustment by Ceres. What is adjusted, and why, is decided in bundle.c. */
+#ifndef REMODEL_CERES_BUNDLE_H
+#define REMODEL_CERES_BUNDLE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#include "common/base/err.h"
+#include "common/capture/camera.h"
+
+struct bundle_lens {
+    struct camera camera;
+    bool free[CAMERA_MAX_PARAMS];                                 /* the parameters that are adjusted */
+    double expected[CAMERA_MAX_PARAMS], sigma[CAMERA_MAX_PARAMS]; /* their Gaussian priors; sigma 0: none */
+    double aspect, aspect_sigma; /* the same for the ratio of the second focal length to the first */
+};
+
+struct bundle_image {
+    int lens;                           /* index */
+    double rotation[4], translation[3]; /* cam_from_world; the quaternion is w x y z */
+    double shift[2];                    /* added to the lens's principal point, px */
+    bool fixed;                         /* its pose is not adjusted */
+};
+
+struct bundle_observation {
+    int image, point; /* indices */
+    double u, v;      /* px */
+};
+
+struct bundle {
+    struct bundle_lens *lenses;
+    struct bundle_image *images;
+    double (*points)[3];
+    struct bundle_observation *observations;
+    int lens_count, image_count, point_count;
+    size_t observation_count;
+    double noise;       /* sigma of a pixel coordinate, px: the scale of the robust loss */
+    double freedom;     /* degrees of freedom of the residuals' Student t distribution */
+    double shift_sigma; /* of the prior of each image's shift, px; 0: shifts are not adjusted */
+    int iterations;     /* maximum */
+    double tolerance;   /* relative change of the sum at which it ends */
+};
+
+/* Minimises the robust reprojection error and the priors over what is free, in place: half the sum of
+ *   (freedom + 2) log(1 + r^2 / (freedom noise^2))   over observations, r the residual's length in px
+ *   ((x - expected) / sigma)^2                       over priors
+ * Every point must be in front of the cameras that observe it. Runs in one thread: the same input gives the same bits.
+ * ST_DATA: Ceres found no usable solution. */
+enum status ceres_bundle_adjust(struct bundle *b, struct err *err);
+
+/* Standard deviations of the images' shifts at the solution, px: sigma[2 i], sigma[2 i + 1]; 0 of an image without
+ * observations. ST_DATA: the covariance cannot be computed. */
+enum status ceres_bundle_shift_sigma(double *sigma, struct bundle *b, struct err *err);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

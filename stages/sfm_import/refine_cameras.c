@@ -1,0 +1,285 @@
+/* refine_cameras.c - which form of lens a model needs, and the adjustment with it.
+ *
+ * The forms are the lens models of COLMAP's perspective family, from none to two radial and two tangential coefficients,
+ * each with three kinds of principal point (bundle.h). All are fitted to the same observations, from the same start, and
+ * the one with the smallest BIC is chosen: a parameter must explain more than its price, log N / 2. So photos of one
+ * lens keep one lens, and photos of a stabilised phone get a principal point each. Lenses of other models (fisheyes,
+ * rational distortion) keep their model; only their principal point is chosen.
+ *
+ * The forms are compared on at most CHOICE_OBSERVATIONS, evenly from all photos; then everything is adjusted with the
+ * chosen form, twice, since the scale of the residuals falls with the first adjustment. A form that fails or leaves its
+ * priors (bundle.c) is refused, and the next best one is taken. */
+#include "stages/sfm_import/refine_cameras.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/base/log.h"
+#include "common/base/outfile.h"
+#include "common/base/parallel.h"
+#include "common/base/sort.h"
+
+enum { CHOICE_OBSERVATIONS = 12000, MIN_OBSERVATIONS = 30 };
+
+const char *lens_form_model(const struct lens_form *form)
+{
+    return form->lens_kept || form->model_kept ? "kept" : camera_model_name(form->model);
+}
+
+const char *lens_form_center(const struct lens_form *form)
+{
+    if (form->lens_kept || form->center == CENTER_KEPT) return "kept";
+    return form->center == CENTER_SHARED ? "shared" : "per_photo";
+}
+
+static const enum camera_model models[] = {CAMERA_SIMPLE_PINHOLE, CAMERA_SIMPLE_RADIAL, CAMERA_RADIAL, CAMERA_OPENCV};
+enum { MODELS = sizeof models / sizeof *models };
+
+/* Whether the lenses are as one of `models` would have them. */
+static bool is_listed(const struct bundle *b)
+{
+    bool known = false;
+    for (int i = 0; i < MODELS; i++) known = known || b->lenses[0].camera.model == models[i];
+    for (int i = 1; i < b->lens_count; i++) known = known && b->lenses[i].camera.model == b->lenses[0].camera.model;
+    return known;
+}
+
+static void list_forms(struct refinement *r, const struct bundle *b, bool lens_kept, bool shifts)
+{
+    r->form_count = 0;
+    if (lens_kept) {
+        r->forms[r->form_count++].form = (struct lens_form){.lens_kept = true};
+        return;
+    }
+    for (int center = CENTER_KEPT; center <= (shifts ? CENTER_PER_PHOTO : CENTER_SHARED); center++) {
+        for (int i = 0; i < MODELS; i++) {
+            const struct lens_form form = {.model = models[i], .center = (enum principal_point)center};
+            if (lens_form_fits(&form, b)) r->forms[r->form_count++].form = form;
+        }
+        if (!is_listed(b))
+            r->forms[r->form_count++].form =
+                (struct lens_form){.model_kept = true, .center = (enum principal_point)center};
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------------- the choice */
+
+struct choice {
+    struct refinement *r;
+    const struct bundle *start;      /* a part of the observations */
+    struct bundle fitted[MAX_FORMS]; /* the start, adjusted with each form */
+    struct err errs[MAX_FORMS];
+    double shift_sigma; /* px */
+};
+
+static void fit_forms(void *ctx, size_t begin, size_t end, int thread)
+{
+    struct choice *c = ctx;
+    (void)thread;
+    for (size_t i = begin; i < end; i++) {
+        struct form_result *f = &c->r->forms[i];
+        f->usable = !bundle_copy(&c->fitted[i], c->start, &c->errs[i]) &&
+                    !bundle_adjust(&f->fit, &c->fitted[i], &f->form, c->shift_sigma, &c->errs[i]);
+    }
+}
+
+static int best_form(const struct refinement *r)
+{
+    int best = -1;
+    for (int i = 0; i < r->form_count; i++)
+        if (r->forms[i].usable && (best < 0 || r->forms[i].fit.bic < r->forms[best].fit.bic)) best = i;
+    return best;
+}
+
+/* Takes lenses, poses, shifts and points of `part`; other points stay where they were. place: point_count numbers of
+ * scratch. */
+static void take_solution(struct bundle *all, const int *point_of, const struct bundle *part, const int *of_part,
+                          int *place, int point_count)
+{
+    for (int i = 0; i < all->lens_count; i++) all->lenses[i] = part->lenses[i];
+    for (int i = 0; i < all->image_count; i++) {
+        const bool fixed = all->images[i].fixed;
+        all->images[i] = part->images[i];
+        all->images[i].fixed = fixed;
+    }
+    for (int i = 0; i < point_count; i++) place[i] = -1;
+    for (int i = 0; i < part->point_count; i++) place[of_part[i]] = i;
+    for (int i = 0; i < all->point_count; i++)
+        for (int k = 0; k < 3 && place[point_of[i]] >= 0; k++) all->points[i][k] = part->points[place[point_of[i]]][k];
+    bundle_prune(all);
+}
+
+/* Adjusts everything with a form. ST_DATA: the form is refused. */
+static enum status adjust_all(struct refinement *r, struct bundle *all, int form, double noise, double shift_sigma,
+                              struct err *err)
+{
+    enum status st = ST_OK;
+    all->noise = noise;
+    for (int round = 0; !st && round < 2; round++) {
+        st = bundle_adjust(&r->after, all, &r->forms[form].form, shift_sigma, err);
+        all->noise = r->after.noise;
+    }
+    if (!st && !(r->after.noise < r->before.noise))
+        st = err_set(err, ST_DATA, "it does not lower the reprojection error");
+    return st;
+}
+
+/* Root mean square of the shifts, and the median of their standard deviations. */
+static enum status measure_shifts(struct refinement *r, struct bundle *b, struct err *err)
+{
+    const size_t n = 2 * (size_t)b->image_count;
+    double *sigma = calloc(n + 1, sizeof *sigma), sum = 0;
+    size_t known = 0;
+    struct err none = ERR_INIT;
+    if (!sigma) return err_nomem(err, "deviations", n * sizeof *sigma);
+    for (int i = 0; i < b->image_count; i++)
+        for (int k = 0; k < 2; k++) sum += b->images[i].shift[k] * b->images[i].shift[k];
+    r->shift_rms = sqrt(2 * sum / (double)n);
+    if (!ceres_bundle_shift_sigma(sigma, b, &none)) {
+        for (size_t i = 0; i < n; i++)
+            if (sigma[i] > 0) sigma[known++] = sigma[i];
+        sort_doubles(sigma, known);
+        r->shift_sigma = known ? sigma[known / 2] : 0;
+    }
+    free(sigma);
+    return ST_OK;
+}
+
+/* ------------------------------------------------------------------------------------------------------- refinement */
+
+struct refine_job {
+    struct refinement *r;
+    struct sfm_model *m;
+    struct bundle all, part;
+    int *point_of, *of_part; /* points of the model */
+    int *place;
+    double shift_sigma; /* px */
+};
+
+static enum status try_forms(struct refine_job *job, struct choice *c, struct err *err)
+{
+    struct refinement *r = job->r;
+    enum status st = ST_OK;
+    for (int i = 0; !st && i < r->form_count; i++)
+        if (c->errs[i].status == ST_NOMEM) st = err_set(err, ST_NOMEM, "%s", c->errs[i].text);
+    for (int at; !st && r->chosen < 0 && (at = best_form(r)) >= 0;) {
+        struct bundle b = {0};
+        struct err why = ERR_INIT;
+        st = bundle_copy(&b, &job->all, err);
+        if (st) break;
+        take_solution(&b, job->point_of, &c->fitted[at], job->of_part, job->place, job->m->point_count);
+        const enum status adjusted = adjust_all(r, &b, at, r->forms[at].fit.noise, job->shift_sigma, &why);
+        if (adjusted == ST_NOMEM) st = err_set(err, ST_NOMEM, "%s", why.text);
+        r->forms[at].usable = !adjusted;
+        if (!adjusted) {
+            r->chosen = at;
+            st = bundle_store(job->m, &b, job->point_of, err);
+            if (!st && b.shift_sigma > 0) st = measure_shifts(r, &b, err);
+        }
+        bundle_release(&b);
+    }
+    return st;
+}
+
+static enum status run_job(struct refine_job *job, bool lens_kept, struct err *err)
+{
+    struct refinement *r = job->r;
+    struct choice *c = calloc(1, sizeof *c);
+    job->place = malloc(((size_t)job->m->point_count + 1) * sizeof *job->place);
+    enum status st = c && job->place ? ST_OK : err_nomem(err, "forms of lenses", sizeof *c);
+    if (!st) st = bundle_measure(&r->before, &job->all, err);
+    if (!st) st = bundle_make(&job->part, &job->of_part, job->m, CHOICE_OBSERVATIONS, err);
+    if (!st) {
+        job->part.noise = r->before.noise;
+        list_forms(r, &job->all, lens_kept, job->shift_sigma > 0);
+        c->r = r;
+        c->start = &job->part;
+        c->shift_sigma = job->shift_sigma;
+        parallel_for((size_t)r->form_count, 1, fit_forms, c);
+        st = try_forms(job, c, err);
+    }
+    for (int i = 0; c && i < MAX_FORMS; i++) bundle_release(&c->fitted[i]);
+    free(c);
+    return st;
+}
+
+/* One line about what was chosen, and one about the next best form. */
+static void log_choice(const struct refinement *r)
+{
+    if (r->chosen < 0) {
+        log_note("the cameras are kept: no form of lens fits the observations better");
+        return;
+    }
+    const struct form_result *f = &r->forms[r->chosen], *next = NULL;
+    char center[160] = "principal point kept", rival[160] = "";
+    if (f->form.center == CENTER_SHARED)
+        snprintf(center, sizeof center, "principal point adjusted, one for all photos");
+    if (f->form.center == CENTER_PER_PHOTO)
+        snprintf(center, sizeof center, "a principal point for each photo (shifts of %.1f px, known to %.1f px)",
+                 r->shift_rms, r->shift_sigma);
+    if (f->form.lens_kept) snprintf(center, sizeof center, "as it was given");
+    for (int i = 0; i < r->form_count; i++)
+        if (i != r->chosen && r->forms[i].usable && (!next || r->forms[i].fit.bic < next->fit.bic)) next = &r->forms[i];
+    if (next)
+        snprintf(rival, sizeof rival, "; the next form, %s %s, has a BIC higher by %.0f", lens_form_model(&next->form),
+                 lens_form_center(&next->form), next->fit.bic - f->fit.bic);
+    log_note("cameras refined: lens %s, %s; median reprojection error %.3f -> %.3f px%s", lens_form_model(&f->form),
+             center, r->before.median, r->after.median, rival);
+}
+
+enum status refine_cameras(struct refinement *out, struct sfm_model *m, enum given_cameras given,
+                           const struct sfm_import_params *params, struct err *err)
+{
+    struct refine_job job = {.r = out, .m = m};
+    const bool asked = !strcmp(params->refine, "yes");
+    double side = 0;
+    *out = (struct refinement){.chosen = -1};
+    if (!strcmp(params->refine, "no")) return ST_OK;
+    if (given == GIVEN_MODEL && !asked) {
+        log_note("the cameras are kept as they were given; [sfm_import] refine = yes refines them");
+        return ST_OK;
+    }
+    for (int i = 0; i < m->camera_count; i++)
+        side = fmax(side, fmax(m->cameras[i].camera.width, m->cameras[i].camera.height));
+    job.shift_sigma = params->principal_shift * side;
+    enum status st = bundle_make(&job.all, &job.point_of, m, 0, err);
+    if (!st && job.all.observation_count >= MIN_OBSERVATIONS) {
+        st = run_job(&job, given == GIVEN_LENS && !asked, err);
+        if (!st) log_choice(out);
+    } else if (!st) {
+        log_note("the cameras are kept: they have only %zu observations of points", job.all.observation_count);
+    }
+    bundle_release(&job.all);
+    bundle_release(&job.part);
+    free(job.point_of);
+    free(job.of_part);
+    free(job.place);
+    return st;
+}
+
+enum status refinement_write(const struct refinement *r, const char *path, const struct provenance *prov,
+                             struct err *err)
+{
+    struct outfile f = {0};
+    enum status st = outfile_open(&f, path, err);
+    if (!st) {
+        double best = INFINITY;
+        for (int i = 0; i < r->form_count; i++)
+            if (r->forms[i].usable) best = fmin(best, r->forms[i].fit.bic);
+        provenance_print(prov, f.fp);
+        fputs("remodel-lens-forms 1\n# lens principal_point parameters median_px noise_px bic verdict\n", f.fp);
+        for (int i = 0; i < r->form_count; i++) {
+            const struct form_result *form = &r->forms[i];
+            fprintf(f.fp, "%s %s ", lens_form_model(&form->form), lens_form_center(&form->form));
+            if (form->usable)
+                fprintf(f.fp, "%d %.9g %.9g %.9g %s\n", form->fit.parameters, form->fit.median, form->fit.noise,
+                        form->fit.bic - best, i == r->chosen ? "chosen" : "-");
+            else
+                fputs("- - - - refused\n", f.fp);
+        }
+        st = outfile_commit(&f, err);
+    }
+    outfile_discard(&f);
+    return st;
+}

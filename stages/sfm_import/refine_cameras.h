@@ -1,0 +1,37 @@
+/* refine_cameras.h - refines the cameras of a structure-from-motion model, with the form of lens that it needs. */
+#ifndef REMODEL_REFINE_CAMERAS_H
+#define REMODEL_REFINE_CAMERAS_H
+
+#include "stages/sfm_import/bundle.h"
+#include "stages/sfm_import/choose_model.h"
+#include "stages/sfm_import/import_model.h"
+
+enum { MAX_FORMS = 16 };
+
+struct form_result {
+    struct lens_form form;
+    struct bundle_fit fit; /* over a part of the observations */
+    bool usable;           /* if not, `fit` is not set, or the form was refused */
+};
+
+struct refinement {
+    struct form_result forms[MAX_FORMS]; /* the forms that were compared */
+    int form_count, chosen;              /* chosen: -1 if the cameras are kept */
+    struct bundle_fit before, after;     /* over all observations */
+    double shift_rms, shift_sigma; /* px: of the shifts of principal points, and the median of their deviations; or 0 */
+};
+
+/* The name of a form's lens, "SIMPLE_RADIAL" or "the lens as it was"; and that of its principal point. */
+const char *lens_form_model(const struct lens_form *form);
+const char *lens_form_center(const struct lens_form *form);
+
+/* Refines lenses, poses and points of the model as params->refine says, and logs the form chosen. What cannot be
+ * improved is kept, with a note. The same model gives the same bits. ST_NOMEM. */
+enum status refine_cameras(struct refinement *out, struct sfm_model *m, enum given_cameras given,
+                           const struct sfm_import_params *params, struct err *err);
+
+/* Writes the forms compared, "remodel-lens-forms 1" (docs/formats.md). */
+enum status refinement_write(const struct refinement *r, const char *path, const struct provenance *prov,
+                             struct err *err);
+
+#endif
