@@ -28,11 +28,12 @@
 #define TOLERANCE  1e-6
 /* Priors of a lens: the focal length relative to its start; the ratio of two focal lengths, which is practically fixed
  * (pixels are square, and a free ratio fits other errors: fountain's would be off by 0.5 %); the principal point, in
- * parts of the longer side; radial and tangential coefficients. */
+ * parts of the longer side; the part of the radius by
+ * which a radial coefficient moves the picture's corner; a tangential coefficient. */
 #define FOCAL_SIGMA      0.05
 #define ASPECT_SIGMA     1e-5
 #define CENTER_SIGMA     0.02
-#define RADIAL_SIGMA     0.3
+#define RADIAL_SIGMA     0.1
 #define TANGENTIAL_SIGMA 0.001
 #define MAX_SIGMAS       4.0   /* a parameter farther off shows that something else is wrong */
 enum { MIN_OBSERVATIONS = 6 }; /* of an image; with fewer its pose is kept */
@@ -108,10 +109,25 @@ static enum status add_points(struct bundle *b, int *point_of, const struct sfm_
     return st;
 }
 
+/* The lenses, images and points are one allocation, see struct bundle. */
+static enum status allocate(struct bundle *b, int lenses, int images, int points, size_t observations, struct err *err)
+{
+    const size_t of_lenses = (size_t)lenses * sizeof *b->lenses, of_images = (size_t)images * sizeof *b->images;
+    char *memory = calloc(1, of_lenses + of_images + ((size_t)points + 1) * sizeof *b->points);
+    b->lenses = (struct bundle_lens *)memory;
+    b->observations = calloc(observations + 1, sizeof *b->observations);
+    if (!memory || !b->observations) {
+        bundle_release(b);
+        return err_nomem(err, "a bundle", observations * sizeof *b->observations);
+    }
+    b->images = (struct bundle_image *)(memory + of_lenses);
+    b->points = (double(*)[3])(memory + of_lenses + of_images);
+    return ST_OK;
+}
+
 enum status bundle_make(struct bundle *b, int **point_of, const struct sfm_model *m, size_t max_observations,
                         struct err *err)
 {
-    const size_t images = (size_t)m->image_count, points = (size_t)m->point_count, lenses = (size_t)m->camera_count;
     size_t total = 0;
     for (int i = 0; i < m->point_count; i++) total += (size_t)m->points[i].track_count;
     *b = (struct bundle){.lens_count = m->camera_count,
@@ -120,16 +136,11 @@ enum status bundle_make(struct bundle *b, int **point_of, const struct sfm_model
                          .noise = 1,
                          .iterations = ITERATIONS,
                          .tolerance = TOLERANCE};
-    b->lenses = calloc(lenses + 1, sizeof *b->lenses);
-    b->images = calloc(images + 1, sizeof *b->images);
-    b->points = calloc(points + 1, sizeof *b->points);
-    b->observations = calloc(total + 1, sizeof *b->observations);
-    *point_of = calloc(points + 1, sizeof **point_of);
-    enum status st = b->lenses && b->images && b->points && b->observations && *point_of
-                         ? ST_OK
-                         : err_nomem(err, "a bundle", total * sizeof *b->observations);
-    for (size_t i = 0; !st && i < lenses; i++) b->lenses[i].camera = m->cameras[i].camera;
-    for (size_t i = 0; !st && i < images; i++) {
+    *point_of = calloc((size_t)m->point_count + 1, sizeof **point_of);
+    enum status st = *point_of ? ST_OK : err_nomem(err, "points", (size_t)m->point_count * sizeof **point_of);
+    if (!st) st = allocate(b, m->camera_count, m->image_count, m->point_count, total, err);
+    for (int i = 0; !st && i < m->camera_count; i++) b->lenses[i].camera = m->cameras[i].camera;
+    for (int i = 0; !st && i < m->image_count; i++) {
         const struct pose *pose = &m->images[i].cam_from_world;
         b->images[i] = (struct bundle_image){
             .lens = m->images[i].camera_idx,
@@ -149,14 +160,8 @@ enum status bundle_make(struct bundle *b, int **point_of, const struct sfm_model
 enum status bundle_copy(struct bundle *to, const struct bundle *from, struct err *err)
 {
     *to = *from;
-    to->lenses = calloc((size_t)from->lens_count + 1, sizeof *to->lenses);
-    to->images = calloc((size_t)from->image_count + 1, sizeof *to->images);
-    to->points = calloc((size_t)from->point_count + 1, sizeof *to->points);
-    to->observations = calloc(from->observation_count + 1, sizeof *to->observations);
-    if (!to->lenses || !to->images || !to->points || !to->observations) {
-        bundle_release(to);
-        return err_nomem(err, "a bundle", from->observation_count * sizeof *to->observations);
-    }
+    if (allocate(to, from->lens_count, from->image_count, from->point_count, from->observation_count, err))
+        return err->status;
     memcpy(to->lenses, from->lenses, (size_t)from->lens_count * sizeof *to->lenses);
     memcpy(to->images, from->images, (size_t)from->image_count * sizeof *to->images);
     memcpy(to->points, from->points, (size_t)from->point_count * sizeof *to->points);
@@ -167,9 +172,7 @@ enum status bundle_copy(struct bundle *to, const struct bundle *from, struct err
 void bundle_release(struct bundle *b)
 {
     if (!b) return;
-    free(b->lenses);
-    free(b->images);
-    free(b->points);
+    free(b->lenses); /* and the images and points after them */
     free(b->observations);
     *b = (struct bundle){0};
 }
@@ -253,21 +256,36 @@ bool lens_form_fits(const struct lens_form *form, const struct bundle *b)
     return form->model_kept || form->lens_kept || any;
 }
 
+/* The power of the radius that a parameter of the distortion scales, relative to the undistorted one; 0: tangential. */
+static int radial_power(enum camera_model model, int param)
+{
+    const int first = is_single(model) ? 3 : 4, k = param - first;
+    if (model == CAMERA_OPENCV || model == CAMERA_FULL_OPENCV) {
+        if (k == 2 || k == 3) return 0;
+        if (k > 3) return k == 4 ? 6 : 2 * (k - 4); /* k3 of the numerator, k4 to k6 of the denominator */
+    }
+    return 2 * (k + 1);
+}
+
 /* The priors of a lens around its present parameters. */
 static void set_priors(struct bundle_lens *l)
 {
-    const enum camera_model model = l->camera.model;
-    const int center = is_single(model) ? 1 : 2;
-    for (int k = 0; k < camera_model_params(model); k++) {
-        const bool tangential = (model == CAMERA_OPENCV || model == CAMERA_FULL_OPENCV) && (k == 6 || k == 7);
-        l->expected[k] = l->camera.params[k];
-        l->sigma[k] = k < center       ? FOCAL_SIGMA * l->camera.params[k]
-                      : k < center + 2 ? CENTER_SIGMA * fmax(l->camera.width, l->camera.height)
-                      : tangential     ? TANGENTIAL_SIGMA
-                                       : RADIAL_SIGMA;
+    const struct camera *c = &l->camera;
+    const int center = is_single(c->model) ? 1 : 2;
+    const double corner = hypot(c->width, c->height) / 2 / c->params[0]; /* radius, in focal lengths */
+    for (int k = 0; k < camera_model_params(c->model); k++) {
+        l->expected[k] = c->params[k];
+        if (k < center)
+            l->sigma[k] = FOCAL_SIGMA * c->params[k];
+        else if (k < center + 2)
+            l->sigma[k] = CENTER_SIGMA * fmax(c->width, c->height);
+        else if (radial_power(c->model, k))
+            l->sigma[k] = RADIAL_SIGMA / pow(corner, radial_power(c->model, k));
+        else
+            l->sigma[k] = TANGENTIAL_SIGMA;
     }
-    l->aspect = l->camera.params[1] / l->camera.params[0];
-    l->aspect_sigma = !is_single(model) && l->free[0] ? ASPECT_SIGMA : 0;
+    l->aspect = c->params[1] / c->params[0];
+    l->aspect_sigma = !is_single(c->model) && l->free[0] ? ASPECT_SIGMA : 0;
 }
 
 static void take_form(struct bundle *b, const struct lens_form *form)
@@ -279,7 +297,8 @@ static void take_form(struct bundle *b, const struct lens_form *form)
         const int center = is_single(l->camera.model) ? 1 : 2;
         for (int k = 0; k < camera_model_params(l->camera.model); k++) {
             const bool of_center = k == center || k == center + 1;
-            l->free[k] = !form->lens_kept && (!of_center || form->center != CENTER_KEPT);
+            l->free[k] = !form->lens_kept && (!of_center || form->center != CENTER_KEPT) &&
+                         (k < center + 2 || !form->focal_only);
         }
         set_priors(l);
     }

@@ -14,6 +14,7 @@ enum principal_point {
 struct lens_form {
     bool lens_kept;          /* nothing of the lens is adjusted; the other members are not used */
     bool model_kept;         /* of all lenses; `model` is not used */
+    bool focal_only;         /* the distortion is not adjusted */
     enum camera_model model; /* of perspective lenses; other lenses keep theirs */
     enum principal_point center;
 };

@@ -254,7 +254,6 @@ enum status ceres_bundle_shift_sigma(double *sigma, struct bundle *b, struct err
     std::unique_ptr<ceres::Problem> problem = make_problem(b);
     ceres::Covariance::Options options;
     std::vector<const double *> wanted;
-    fix_frame(problem.get(), b);
     for (int i = 0; i < b->image_count; i++)
         if (problem->HasParameterBlock(b->images[i].shift)) wanted.push_back(b->images[i].shift);
     options.num_threads = 1;

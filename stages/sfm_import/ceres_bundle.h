@@ -32,6 +32,7 @@ struct bundle_observation {
 };
 
 struct bundle {
+    /* parts of one allocation in this order: Ceres sorts unknowns by address, and the bits of sums depend on it */
     struct bundle_lens *lenses;
     struct bundle_image *images;
     double (*points)[3];

@@ -4,7 +4,7 @@
  * each with three kinds of principal point (bundle.h). All are fitted to the same observations, from the same start, and
  * the one with the smallest BIC is chosen: a parameter must explain more than its price, log N / 2. So photos of one
  * lens keep one lens, and photos of a stabilised phone get a principal point each. Lenses of other models (fisheyes,
- * rational distortion) keep their model; only their principal point is chosen.
+ * rational distortion) keep their model; whether its distortion is adjusted, and their principal point, are chosen.
  *
  * The forms are compared on at most CHOICE_OBSERVATIONS, evenly from all photos; then everything is adjusted with the
  * chosen form, twice, since the scale of the residuals falls with the first adjustment. A form that fails or leaves its
@@ -18,13 +18,15 @@
 #include "common/base/log.h"
 #include "common/base/outfile.h"
 #include "common/base/parallel.h"
-#include "common/base/sort.h"
+#include "common/capture/photo_match.h"
 
 enum { CHOICE_OBSERVATIONS = 12000, MIN_OBSERVATIONS = 30 };
 
 const char *lens_form_model(const struct lens_form *form)
 {
-    return form->lens_kept || form->model_kept ? "kept" : camera_model_name(form->model);
+    if (form->lens_kept) return "kept";
+    if (form->model_kept) return form->focal_only ? "same_model_focal_only" : "same_model";
+    return camera_model_name(form->model);
 }
 
 const char *lens_form_center(const struct lens_form *form)
@@ -57,9 +59,9 @@ static void list_forms(struct refinement *r, const struct bundle *b, bool lens_k
             const struct lens_form form = {.model = models[i], .center = (enum principal_point)center};
             if (lens_form_fits(&form, b)) r->forms[r->form_count++].form = form;
         }
-        if (!is_listed(b))
+        for (int k = 0; k < 2 && !is_listed(b); k++)
             r->forms[r->form_count++].form =
-                (struct lens_form){.model_kept = true, .center = (enum principal_point)center};
+                (struct lens_form){.model_kept = true, .focal_only = k == 0, .center = (enum principal_point)center};
     }
 }
 
@@ -125,22 +127,20 @@ static enum status adjust_all(struct refinement *r, struct bundle *all, int form
     return st;
 }
 
-/* Root mean square of the shifts, and the median of their standard deviations. */
-static enum status measure_shifts(struct refinement *r, struct bundle *b, struct err *err)
+static enum status note_shifts(struct refinement *r, struct bundle *b, struct err *err)
 {
-    const size_t n = 2 * (size_t)b->image_count;
-    double *sigma = calloc(n + 1, sizeof *sigma), sum = 0;
-    size_t known = 0;
+    double *sigma = calloc(2 * (size_t)b->image_count + 1, sizeof *sigma);
     struct err none = ERR_INIT;
-    if (!sigma) return err_nomem(err, "deviations", n * sizeof *sigma);
-    for (int i = 0; i < b->image_count; i++)
-        for (int k = 0; k < 2; k++) sum += b->images[i].shift[k] * b->images[i].shift[k];
-    r->shift_rms = sqrt(2 * sum / (double)n);
-    if (!ceres_bundle_shift_sigma(sigma, b, &none)) {
-        for (size_t i = 0; i < n; i++)
-            if (sigma[i] > 0) sigma[known++] = sigma[i];
-        sort_doubles(sigma, known);
-        r->shift_sigma = known ? sigma[known / 2] : 0;
+    r->shifts = calloc((size_t)b->image_count + 1, sizeof *r->shifts);
+    if (!sigma || !r->shifts) {
+        free(sigma);
+        return err_nomem(err, "principal points", (size_t)b->image_count * sizeof *r->shifts);
+    }
+    const bool known = !ceres_bundle_shift_sigma(sigma, b, &none);
+    r->shift_count = b->image_count;
+    for (int i = 0; i < b->image_count; i++) {
+        const double *shift = b->images[i].shift, *s = sigma + 2 * i;
+        r->shifts[i] = (struct principal_shift){shift[0], shift[1], known ? s[0] : INFINITY, known ? s[1] : INFINITY};
     }
     free(sigma);
     return ST_OK;
@@ -175,7 +175,7 @@ static enum status try_forms(struct refine_job *job, struct choice *c, struct er
         if (!adjusted) {
             r->chosen = at;
             st = bundle_store(job->m, &b, job->point_of, err);
-            if (!st && b.shift_sigma > 0) st = measure_shifts(r, &b, err);
+            if (!st && b.shift_sigma > 0) st = note_shifts(r, &b, err);
         }
         bundle_release(&b);
     }
@@ -215,9 +215,16 @@ static void log_choice(const struct refinement *r)
     char center[160] = "principal point kept", rival[160] = "";
     if (f->form.center == CENTER_SHARED)
         snprintf(center, sizeof center, "principal point adjusted, one for all photos");
-    if (f->form.center == CENTER_PER_PHOTO)
-        snprintf(center, sizeof center, "a principal point for each photo (shifts of %.1f px, known to %.1f px)",
-                 r->shift_rms, r->shift_sigma);
+    if (r->shifts) {
+        double sum = 0, sigma = 0;
+        for (int i = 0; i < r->shift_count; i++) {
+            sum += r->shifts[i].u * r->shifts[i].u + r->shifts[i].v * r->shifts[i].v;
+            sigma = fmax(sigma, fmax(r->shifts[i].sigma_u, r->shifts[i].sigma_v));
+        }
+        const int n = snprintf(center, sizeof center, "a principal point for each photo, shifted by %.1f px (RMS)",
+                               sqrt(sum / r->shift_count));
+        if (isfinite(sigma)) snprintf(center + n, sizeof center - (size_t)n, " +- %.1f px or less", sigma);
+    }
     if (f->form.lens_kept) snprintf(center, sizeof center, "as it was given");
     for (int i = 0; i < r->form_count; i++)
         if (i != r->chosen && r->forms[i].usable && (!next || r->forms[i].fit.bic < next->fit.bic)) next = &r->forms[i];
@@ -258,26 +265,56 @@ enum status refine_cameras(struct refinement *out, struct sfm_model *m, enum giv
     return st;
 }
 
-enum status refinement_write(const struct refinement *r, const char *path, const struct provenance *prov,
-                             struct err *err)
+void refinement_release(struct refinement *r)
+{
+    if (!r) return;
+    free(r->shifts);
+    *r = (struct refinement){.chosen = -1};
+}
+
+static void print_forms(FILE *to, const struct refinement *r)
+{
+    double best = INFINITY;
+    for (int i = 0; i < r->form_count; i++)
+        if (r->forms[i].usable) best = fmin(best, r->forms[i].fit.bic);
+    fputs("# form LENS PRINCIPAL_POINT parameters median_px noise_px BIC-lowest verdict\n", to);
+    for (int i = 0; i < r->form_count; i++) {
+        const struct form_result *form = &r->forms[i];
+        fprintf(to, "form %s %s ", lens_form_model(&form->form), lens_form_center(&form->form));
+        if (form->usable)
+            fprintf(to, "%d %.9g %.9g %.9g %s\n", form->fit.parameters, form->fit.median, form->fit.noise,
+                    form->fit.bic - best, i == r->chosen ? "chosen" : "-");
+        else
+            fputs("- - - - refused\n", to);
+    }
+}
+
+static void print_shifts(FILE *to, const struct refinement *r, const struct sfm_model *m,
+                         const struct photo_list *photos)
+{
+    fputs("# shift PHOTO u v sigma_u sigma_v px\n", to);
+    for (int i = 0; i < r->shift_count; i++) {
+        const int photo = photo_list_match(photos, m->images[i].name);
+        const struct principal_shift *s = &r->shifts[i];
+        if (photo < 0) continue;
+        fprintf(to, "shift %s %.9g %.9g ", photos->photos[photo].id, s->u, s->v);
+        if (isfinite(s->sigma_u) && isfinite(s->sigma_v))
+            fprintf(to, "%.9g %.9g\n", s->sigma_u, s->sigma_v);
+        else
+            fputs("- -\n", to);
+    }
+}
+
+enum status refinement_write(const struct refinement *r, const struct sfm_model *m, const struct photo_list *photos,
+                             const char *path, const struct provenance *prov, struct err *err)
 {
     struct outfile f = {0};
     enum status st = outfile_open(&f, path, err);
     if (!st) {
-        double best = INFINITY;
-        for (int i = 0; i < r->form_count; i++)
-            if (r->forms[i].usable) best = fmin(best, r->forms[i].fit.bic);
         provenance_print(prov, f.fp);
-        fputs("remodel-lens-forms 1\n# lens principal_point parameters median_px noise_px bic verdict\n", f.fp);
-        for (int i = 0; i < r->form_count; i++) {
-            const struct form_result *form = &r->forms[i];
-            fprintf(f.fp, "%s %s ", lens_form_model(&form->form), lens_form_center(&form->form));
-            if (form->usable)
-                fprintf(f.fp, "%d %.9g %.9g %.9g %s\n", form->fit.parameters, form->fit.median, form->fit.noise,
-                        form->fit.bic - best, i == r->chosen ? "chosen" : "-");
-            else
-                fputs("- - - - refused\n", f.fp);
-        }
+        fputs("remodel-lens-forms 1\n", f.fp);
+        print_forms(f.fp, r);
+        if (r->shifts) print_shifts(f.fp, r, m, photos);
         st = outfile_commit(&f, err);
     }
     outfile_discard(&f);

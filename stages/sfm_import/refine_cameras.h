@@ -6,7 +6,7 @@
 #include "stages/sfm_import/choose_model.h"
 #include "stages/sfm_import/import_model.h"
 
-enum { MAX_FORMS = 16 };
+enum { MAX_FORMS = 18 };
 
 struct form_result {
     struct lens_form form;
@@ -14,14 +14,21 @@ struct form_result {
     bool usable;           /* if not, `fit` is not set, or the form was refused */
 };
 
+/* The shift of an image's principal point from that of its lens, with its standard deviations, px; they are INFINITY if
+ * unknown. */
+struct principal_shift {
+    double u, v, sigma_u, sigma_v;
+};
+
 struct refinement {
     struct form_result forms[MAX_FORMS]; /* the forms that were compared */
     int form_count, chosen;              /* chosen: -1 if the cameras are kept */
     struct bundle_fit before, after;     /* over all observations */
-    double shift_rms, shift_sigma; /* px: of the shifts of principal points, and the median of their deviations; or 0 */
+    struct principal_shift *shifts;      /* owned; of each image of the model; NULL: principal points do not differ */
+    int shift_count;
 };
 
-/* The name of a form's lens, "SIMPLE_RADIAL" or "the lens as it was"; and that of its principal point. */
+/* The name of a form's lens, as SIMPLE_RADIAL or same_model; and of its principal point: kept, shared, per_photo. */
 const char *lens_form_model(const struct lens_form *form);
 const char *lens_form_center(const struct lens_form *form);
 
@@ -30,8 +37,11 @@ const char *lens_form_center(const struct lens_form *form);
 enum status refine_cameras(struct refinement *out, struct sfm_model *m, enum given_cameras given,
                            const struct sfm_import_params *params, struct err *err);
 
-/* Writes the forms compared, "remodel-lens-forms 1" (docs/formats.md). */
-enum status refinement_write(const struct refinement *r, const char *path, const struct provenance *prov,
-                             struct err *err);
+void refinement_release(struct refinement *r);
+
+/* Writes the forms compared, and the shifts of photos, "remodel-lens-forms 1" (docs/formats.md). m: the model that was
+ * refined. */
+enum status refinement_write(const struct refinement *r, const struct sfm_model *m, const struct photo_list *photos,
+                             const char *path, const struct provenance *prov, struct err *err);
 
 #endif

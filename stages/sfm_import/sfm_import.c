@@ -59,15 +59,15 @@ static enum status write_split(const struct imported *all, const struct holdout 
 }
 
 static enum status write_reports(const struct imported *in, const struct refinement *refinement,
-                                 const struct photo_list *photos, const char *out, const struct provenance *prov,
-                                 struct err *err)
+                                 const struct sfm_model *model, const struct photo_list *photos, const char *out,
+                                 const struct provenance *prov, struct err *err)
 {
     char residuals[FILE_PATH], forms[FILE_PATH];
     enum status st = make_folders(out, err);
     if (!st) st = file_path(residuals, out, "residuals.txt", "", err);
     if (!st) st = file_path(forms, out, "lens_forms.txt", "", err);
     if (!st) st = residual_table_write(&in->residuals, photos, residuals, prov, err);
-    if (!st) st = refinement_write(refinement, forms, prov, err);
+    if (!st) st = refinement_write(refinement, model, photos, forms, prov, err);
     return st;
 }
 
@@ -77,7 +77,7 @@ static enum status run(const char *sfm, const char *records, const char *out, co
     struct photo_list photos = {0};
     struct sfm_model model = {0};
     struct imported imported = {0};
-    struct refinement refinement;
+    struct refinement refinement = {.chosen = -1};
     enum given_cameras given = GIVEN_MODEL;
     char *name = NULL;
     enum status st = photo_list_read(&photos, records, err);
@@ -86,12 +86,13 @@ static enum status run(const char *sfm, const char *records, const char *out, co
     if (!st) st = add_inputs(prov, sfm, name, err);
     if (!st) st = refine_cameras(&refinement, &model, given, params, err);
     if (!st && import_model(&imported, &model, &photos, params, err)) st = err_context(err, "%s/%s", sfm, name);
-    if (!st) st = write_reports(&imported, &refinement, &photos, out, prov, err);
+    if (!st) st = write_reports(&imported, &refinement, &model, &photos, out, prov, err);
     if (!st && (held->every || (held->names && *held->names)))
         st = write_split(&imported, held, out, prov, err);
     else if (!st)
         st = imported_write(&imported, out, prov, err);
     imported_release(&imported);
+    refinement_release(&refinement);
     sfm_model_release(&model);
     photo_list_release(&photos);
     free(name);

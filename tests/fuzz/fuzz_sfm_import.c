@@ -20,6 +20,7 @@
 #include "stages/sfm_import/lens_fit.c"
 #include "stages/sfm_import/match_photos.c"
 #include "stages/sfm_import/name_lines.c"
+#include "stages/sfm_import/residual_table.c"
 #include "stages/sfm_import/residuals.c"
 #include "stages/sfm_import/view_cameras.c"
 
@@ -29,7 +30,7 @@ static const char *const names[FILES] = {"models.txt",     "photos.txt",      "0
                                          "0/points3D.txt", "out/cameras.txt", "out/images.txt", "out/points3D.txt",
                                          "out/lenses.txt", "out/views.mk"};
 static const char *const valid[PARTS] = {
-    "remodel-sfm 1\n0 colmap\n",
+    "remodel-sfm 2\n0 colmap nothing\n",
     "a 00000000000000000000000000000000\nb 00000000000000000000000000000001\nc 2\n",
     "1 SIMPLE_RADIAL 64 48 60 32 24 -0.1\n",
     "1 1 0 0 0 0 0 0 1 a.jpg\n32 24 1\n2 1 0 0 0 -0.5 0 0 1 b.jpg\n17 24 1\n",
@@ -107,6 +108,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     struct sfm_model model;
     struct imported in;
     struct err err = ERR_INIT;
+    enum given_cameras given;
     char *name = NULL;
 
     for (int i = 0; i < 3; i++) {
@@ -126,7 +128,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 
     if (import_check_photos(folder, &photos, &err) && !err.text[0]) abort();
     err = (struct err)ERR_INIT;
-    if (import_choose(&model, &name, folder, &photos, &err)) {
+    if (import_choose(&model, &name, &given, folder, &photos, &err)) {
         if (!err.text[0] || model.images || name) abort();
         return 0;
     }

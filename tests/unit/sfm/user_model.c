@@ -54,7 +54,7 @@ static void a_text_model_is_imported(void **state)
     write_text_model("text");
     assert_ok(import("text", "sfm", &err), err);
     char *models = scratch_read(scratch_path("sfm/models.txt")), *list = scratch_read(scratch_path("sfm/photos.txt"));
-    assert_contains(models, "remodel-sfm 1\n0 colmap\n");
+    assert_contains(models, "remodel-sfm 2\n0 colmap model\n");
     assert_contains(models, "# input model/0/images.txt ");
     assert_contains(list, "\na 00\nb 11\n");
     free(models);

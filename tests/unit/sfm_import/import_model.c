@@ -352,21 +352,31 @@ static void the_model_with_most_photos_is_chosen(void **state)
     assert_ok(sfm_model_write_text(&m, scratch_path("sfm/1"), NULL, &err), err);
     rename_image(&m, 0, "stranger.jpg"); /* same number of images, fewer photos */
     assert_ok(sfm_model_write_text(&m, scratch_path("sfm/0"), NULL, &err), err);
-    scratch_write("sfm/models.txt", "remodel-sfm 1\n0 colmap\n1 colmap\n");
-    assert_ok(import_choose(&chosen, &name, scratch_path("sfm"), &photos, &err), err);
+    enum given_cameras given = GIVEN_MODEL;
+    scratch_write("sfm/models.txt", "remodel-sfm 2\n0 colmap model\n1 colmap lens\n");
+    assert_ok(import_choose(&chosen, &name, &given, scratch_path("sfm"), &photos, &err), err);
+    assert_int_equal(given, GIVEN_LENS);
     assert_string_equal(name, "1");
     assert_string_equal(chosen.images[0].name, "p0.jpg");
     sfm_model_release(&chosen);
     free(name);
+    scratch_write("sfm/models.txt", "remodel-sfm 1\n0 colmap\n1 colmap\n"); /* does not say what was given */
+    assert_ok(import_choose(&chosen, &name, &given, scratch_path("sfm"), &photos, &err), err);
+    assert_string_equal(name, "1");
+    assert_int_equal(given, GIVEN_MODEL);
+    sfm_model_release(&chosen);
+    free(name);
 
-    static const char *const bad[][2] = {{"remodel-sfm 2\n", "found \"2\""},
+    static const char *const bad[][2] = {{"remodel-sfm 3\n", "found \"3\""},
+                                         {"remodel-sfm 2\n0 colmap poses\n", "found \"poses\""},
+                                         {"remodel-sfm 2\n0 colmap\n", "wanted what was given"},
                                          {"remodel-sfm 1\n", "a line for each model"},
                                          {"remodel-sfm 1\n0 bundler\n", "found \"bundler\""},
                                          {"", "\"remodel-sfm 1\""}};
-    for (int i = 0; i < 4; i++) {
+    for (int i = 0; i < 6; i++) {
         err = (struct err)ERR_INIT;
         scratch_write("sfm/models.txt", bad[i][0]);
-        assert_int_not_equal(import_choose(&chosen, &name, scratch_path("sfm"), &photos, &err), ST_OK);
+        assert_int_not_equal(import_choose(&chosen, &name, &given, scratch_path("sfm"), &photos, &err), ST_OK);
         assert_err(err, ST_DATA, bad[i][1]);
     }
     sfm_model_release(&m);
