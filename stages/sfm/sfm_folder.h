@@ -12,9 +12,9 @@ char *text_format(struct err *err, const char *fmt, ...) PRINTF_LIKE(2, 3);
 enum status remove_tree(const char *path, struct err *err);
 
 struct sfm_folder {
-    char *out;  /* the product */
-    char *work; /* out.work: COLMAP's own files */
-    char *made; /* out.work/sfm: the product being written */
+    char *out;         /* the product */
+    char *work;        /* out.work: COLMAP's own files */
+    char *made;        /* out.work/sfm: the product being written */
     const char *given; /* what the user gave of all models: "nothing", "lens" or "model"; a literal */
     int models;
 };

@@ -243,7 +243,7 @@ enum status ceres_bundle_adjust(struct bundle *b, struct err *err)
     options.num_threads = 1;
     options.logging_type = ceres::SILENT;
     ceres::Solver::Summary summary;
-    FLAGS_minloglevel = google::ERROR; /* a step that fails is tried again with more damping */
+    FLAGS_minloglevel = google::FATAL; /* a step that fails is tried again with more damping */
     ceres::Solve(options, problem.get(), &summary);
     if (summary.IsSolutionUsable()) return ST_OK;
     return err_set(err, ST_DATA, "bundle adjustment failed: %s", summary.message.c_str());
