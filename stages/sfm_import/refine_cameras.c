@@ -18,8 +18,10 @@
 #include "common/base/log.h"
 #include "common/base/outfile.h"
 #include "common/base/parallel.h"
+#include "common/base/progress.h"
 #include "common/capture/photo_match.h"
 
+#define CHOICE_TOLERANCE 1e-5 /* of the fits that are compared */
 enum { CHOICE_OBSERVATIONS = 12000, MIN_OBSERVATIONS = 30 };
 
 const char *lens_form_model(const struct lens_form *form)
@@ -73,6 +75,7 @@ struct choice {
     struct bundle fitted[MAX_FORMS]; /* the start, adjusted with each form */
     struct err errs[MAX_FORMS];
     double shift_sigma; /* px */
+    struct progress progress;
 };
 
 static void fit_forms(void *ctx, size_t begin, size_t end, int thread)
@@ -84,6 +87,7 @@ static void fit_forms(void *ctx, size_t begin, size_t end, int thread)
         f->usable = !bundle_copy(&c->fitted[i], c->start, &c->errs[i]) &&
                     !bundle_adjust(&f->fit, &c->fitted[i], &f->form, c->shift_sigma, &c->errs[i]);
     }
+    progress_add(&c->progress, (int64_t)(end - begin));
 }
 
 static int best_form(const struct refinement *r)
@@ -192,11 +196,14 @@ static enum status run_job(struct refine_job *job, bool lens_kept, struct err *e
     if (!st) st = bundle_make(&job->part, &job->of_part, job->m, CHOICE_OBSERVATIONS, err);
     if (!st) {
         job->part.noise = r->before.noise;
+        job->part.tolerance = CHOICE_TOLERANCE;
         list_forms(r, &job->all, lens_kept, job->shift_sigma > 0);
         c->r = r;
         c->start = &job->part;
         c->shift_sigma = job->shift_sigma;
+        progress_start(&c->progress, "lens forms", r->form_count, "forms");
         parallel_for((size_t)r->form_count, 1, fit_forms, c);
+        progress_end(&c->progress);
         st = try_forms(job, c, err);
     }
     for (int i = 0; c && i < MAX_FORMS; i++) bundle_release(&c->fitted[i]);
