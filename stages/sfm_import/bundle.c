@@ -219,6 +219,16 @@ void bundle_prune(struct bundle *b)
     b->observation_count = kept;
 }
 
+void bundle_thin(struct bundle *b, size_t max_observations)
+{
+    const size_t every = (b->observation_count + max_observations - 1) / max_observations;
+    size_t kept = 0;
+    if (every < 2) return;
+    for (size_t i = 0; i < b->observation_count; i++)
+        if ((size_t)b->observations[i].point % every == 0) b->observations[kept++] = b->observations[i];
+    b->observation_count = kept;
+}
+
 /* ------------------------------------------------------------------------------------------------- forms of lenses */
 
 static bool is_single(enum camera_model model)

@@ -46,6 +46,9 @@ enum status bundle_adjust(struct bundle_fit *fit, struct bundle *b, const struct
 /* Drops the observations whose point is behind their camera or outside its lens. */
 void bundle_prune(struct bundle *b);
 
+/* Drops the observations of evenly spaced points, so that at most about max_observations stay. */
+void bundle_thin(struct bundle *b, size_t max_observations);
+
 /* The statistics of the bundle as it is; fit->parameters is read. */
 enum status bundle_measure(struct bundle_fit *fit, const struct bundle *b, struct err *err);
 

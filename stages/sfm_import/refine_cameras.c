@@ -6,9 +6,9 @@
  * lens keep one lens, and photos of a stabilised phone get a principal point each. Lenses of other models (fisheyes,
  * rational distortion) keep their model; whether its distortion is adjusted, and their principal point, are chosen.
  *
- * The forms are compared on at most CHOICE_OBSERVATIONS, evenly from all photos; then everything is adjusted with the
- * chosen form, twice, since the scale of the residuals falls with the first adjustment. A form that fails or leaves its
- * priors (bundle.c) is refused, and the next best one is taken. */
+ * The forms are compared on CHOICE_OBSERVATIONS, or CHOICE_OF_IMAGE per photo if that is more, evenly from all photos;
+ * then everything is adjusted with the chosen form, twice, since the scale of the residuals falls with the first
+ * adjustment. A form that fails or leaves its priors (bundle.c) is refused, and the next best one is taken. */
 #include "stages/sfm_import/refine_cameras.h"
 
 #include <math.h>
@@ -22,7 +22,7 @@
 #include "common/capture/photo_match.h"
 
 #define CHOICE_TOLERANCE 1e-5 /* of the fits that are compared */
-enum { CHOICE_OBSERVATIONS = 12000, MIN_OBSERVATIONS = 30 };
+enum { CHOICE_OBSERVATIONS = 12000, CHOICE_OF_IMAGE = 300, COVARIANCE_OBSERVATIONS = 40000, MIN_OBSERVATIONS = 30 };
 
 const char *lens_form_model(const struct lens_form *form)
 {
@@ -131,6 +131,8 @@ static enum status adjust_all(struct refinement *r, struct bundle *all, int form
     return st;
 }
 
+/* Notes the shifts and their deviations. Thins the bundle: with fewer observations the deviations are larger, so they
+ * are on the safe side. */
 static enum status note_shifts(struct refinement *r, struct bundle *b, struct err *err)
 {
     double *sigma = calloc(2 * (size_t)b->image_count + 1, sizeof *sigma);
@@ -140,6 +142,7 @@ static enum status note_shifts(struct refinement *r, struct bundle *b, struct er
         free(sigma);
         return err_nomem(err, "principal points", (size_t)b->image_count * sizeof *r->shifts);
     }
+    bundle_thin(b, COVARIANCE_OBSERVATIONS); /* memory and time of a covariance grow fast */
     const bool known = !ceres_bundle_shift_sigma(sigma, b, &none);
     r->shift_count = b->image_count;
     for (int i = 0; i < b->image_count; i++) {
@@ -193,7 +196,10 @@ static enum status run_job(struct refine_job *job, bool lens_kept, struct err *e
     job->place = malloc(((size_t)job->m->point_count + 1) * sizeof *job->place);
     enum status st = c && job->place ? ST_OK : err_nomem(err, "forms of lenses", sizeof *c);
     if (!st) st = bundle_measure(&r->before, &job->all, err);
-    if (!st) st = bundle_make(&job->part, &job->of_part, job->m, CHOICE_OBSERVATIONS, err);
+    const int wanted = CHOICE_OF_IMAGE * job->m->image_count;
+    if (!st)
+        st = bundle_make(&job->part, &job->of_part, job->m,
+                         (size_t)(wanted > CHOICE_OBSERVATIONS ? wanted : CHOICE_OBSERVATIONS), err);
     if (!st) {
         job->part.noise = r->before.noise;
         job->part.tolerance = CHOICE_TOLERANCE;
