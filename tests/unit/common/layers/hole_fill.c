@@ -161,9 +161,11 @@ static void paint_leaf(struct rendered_frame *f, int edge)
         }
 }
 
-static float red_at_edge(const struct rendered_frame *f, int edge)
+/* Red beside the edge, `inside` px from the leaf's border. */
+static float red_at_edge(const struct rendered_frame *f, int edge, int inside)
 {
-    const int x = edge == 0 ? 1 : edge == 2 ? W - 2 : W / 2, y = edge == 1 ? 1 : edge == 3 ? H - 2 : H / 2;
+    const int x = edge == 0 ? 1 : edge == 2 ? W - 2 : W / 2 - 15 + inside;
+    const int y = edge == 1 ? 1 : edge == 3 ? H - 2 : H / 2 - 15 + inside;
     return f->rgba[4 * (y * W + x)];
 }
 
@@ -178,12 +180,12 @@ static void a_leaf_cut_by_any_edge_of_the_frame_continues(void **state)
             cut_edge(&f, edge, width);
             fill_from(&f, &photo, 1);
             assert_near(f.unfilled_fraction, 0, 0);
-            assert_true(red_at_edge(&f, edge) > 0.9f);
+            assert_true(red_at_edge(&f, edge, 15) > 0.75f && red_at_edge(&f, edge, 2) > 0.5f); /* the pyramid blurs */
             /* a photo that shows these pixels does not show the leaf there: it ends, and the wall goes on */
             paint_leaf(&f, edge);
             cut_edge(&f, edge, width);
             fill_from(&f, &whole, 1);
-            assert_true(red_at_edge(&f, edge) < 0.3f);
+            assert_true(red_at_edge(&f, edge, 2) < 0.1f);
             rendered_frame_release(&f);
         }
 }
