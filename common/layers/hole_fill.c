@@ -1,8 +1,16 @@
-/* hole_fill.c - hole filling from the far side.
+/* hole_fill.c - hole filling from the far side, and beyond the photos from all sides.
  *
  * A hole opens where parallax separates a near surface from a farther one, so the farther one belongs there
  * [Colburn 2014, 3.6.1]. Every mean below is therefore weighted by a reversed soft z-buffer: of the known items in a
  * neighbourhood, the farthest has weight 1 and the others soft_z_weight(z_far - z).
+ *
+ * A hole also opens where the frame overhangs the photos. Nothing is hidden there, so a near surface that the rim cuts
+ * goes on as a far one does. A pixel is beyond every photo if the point on its ray at the depth of the nearest known
+ * pixel is inside the picture of no view: had that surface ended at the rim, some photo would have to show it, and none
+ * does. If it is inside a picture, the view shows something else there, so the surface ends and a farther one begins.
+ * An 8-connected hole is an overhang if most of its pixels are beyond every photo; its means prefer no side. To touch
+ * the frame's edge is not enough: disocclusions run to the edge, too. The nearest known pixel is found breadth first
+ * from the rim, in picture order.
  *
  * Narrow holes are those in which no diameter x diameter square of hole pixels contains the pixel: what a morphological
  * opening of the hole mask removes. Such a pixel gets the weighted mean of the known pixels in its 7x7 neighbourhood.
@@ -14,7 +22,7 @@
  * the frame.
  *
  * The thesis fills holes narrower than 6 px in one pass and leaves wider ones to the offline renderer; the repeated
- * passes, the opening and the pyramid are additions. Picture borders need no special case. */
+ * passes, the opening, the pyramid and overhangs are additions. Picture borders need no special case. */
 #include "common/layers/hole_fill.h"
 
 #include <stdlib.h>
@@ -33,6 +41,7 @@ struct color_z {
 struct far_side { /* the reversed soft z-buffer */
     const struct soft_z *soft;
     float sigma; /* relative uncertainty of all depths */
+    bool all;    /* of an overhang: no side is preferred */
 };
 
 /* Mean of the items by weights[i] times the reversed soft z weight. Weight 0 leaves an item out. False: no known
@@ -49,7 +58,7 @@ static bool far_mean(const struct far_side *far, const struct color_z *items, co
     struct color_z m = {0};
     for (int i = 0; i < count; i++) {
         if (!(weights[i] > 0) || !(items[i].z > 0)) continue;
-        const float w = weights[i] * soft_z_weight(z_far - items[i].z, 0.1f * rho, rho);
+        const float w = far->all ? weights[i] : weights[i] * soft_z_weight(z_far - items[i].z, 0.1f * rho, rho);
         for (int k = 0; k < 3; k++) m.rgb[k] += w * items[i].rgb[k];
         m.z += w * items[i].z;
         sum += w;
@@ -71,6 +80,121 @@ static void pixel_set(struct rendered_frame *f, size_t p, const struct color_z *
     memcpy(c, v->rgb, sizeof v->rgb);
     c[3] = 1;
     f->z[p] = v->z;
+}
+
+/* ------------------------------------------------------------------------------------------------- overhangs */
+
+struct overhang_job {
+    const struct rendered_frame *frame;
+    const struct hole_photos *photos;
+    const uint32_t *list;    /* hole pixels */
+    const uint32_t *nearest; /* known pixel nearest to each pixel of a hole */
+    uint8_t *beyond;         /* w * h */
+};
+
+static void find_beyond(void *ctx, size_t begin, size_t end, int thread)
+{
+    const struct overhang_job *j = ctx;
+    const struct view *camera = j->photos->camera;
+    const uint32_t w = (uint32_t)j->frame->width;
+    (void)thread;
+    for (size_t i = begin; i < end; i++) {
+        const uint32_t p = j->list[i];
+        const float z = j->frame->z[j->nearest[p]];
+        const struct vec3 point = view_unproject(camera, p % w + 0.5, p / w + 0.5, z);
+        bool seen = !(z > 0);
+        for (int k = 0; k < j->photos->count && !seen; k++) {
+            const struct view *v = &j->photos->views[k];
+            double x, y;
+            seen = view_project(v, point, &x, &y) > 0 && x >= 0 && y >= 0 && x < v->width && y < v->height;
+        }
+        j->beyond[p] = !seen;
+    }
+}
+
+#define NO_PIXEL UINT32_MAX
+
+/* The pixels around p, sides first. Returns their number. */
+static int neighbors(const struct rendered_frame *f, uint32_t p, uint32_t around[8])
+{
+    static const int dx[8] = {0, -1, 1, 0, -1, 1, -1, 1}, dy[8] = {-1, 0, 0, 1, -1, -1, 1, 1};
+    const int x = (int)(p % (uint32_t)f->width), y = (int)(p / (uint32_t)f->width);
+    int count = 0;
+    for (int k = 0; k < 8; k++) {
+        const int u = x + dx[k], v = y + dy[k];
+        if (u < 0 || v < 0 || u >= f->width || v >= f->height) continue;
+        around[count++] = (uint32_t)v * (uint32_t)f->width + (uint32_t)u;
+    }
+    return count;
+}
+
+/* Lists the hole pixels by their distance from the rim, and finds the known pixel nearest to each. Returns their
+ * number: 0 if the whole frame is a hole. */
+static size_t find_nearest(uint32_t *nearest, uint32_t *list, const struct rendered_frame *f)
+{
+    const uint32_t pixels = (uint32_t)f->width * (uint32_t)f->height;
+    uint32_t around[8];
+    size_t count = 0;
+
+    for (uint32_t p = 0; p < pixels; p++) nearest[p] = f->rgba[4 * (size_t)p + 3] > 0 ? p : NO_PIXEL;
+    for (uint32_t p = 0; p < pixels; p++) {
+        if (nearest[p] != NO_PIXEL) continue;
+        for (int k = 0, n = neighbors(f, p, around); k < n; k++) {
+            if (nearest[around[k]] != around[k]) continue;
+            nearest[p] = around[k];
+            list[count++] = p;
+            break;
+        }
+    }
+    for (size_t i = 0; i < count; i++)
+        for (int k = 0, n = neighbors(f, list[i], around); k < n; k++) {
+            if (nearest[around[k]] != NO_PIXEL) continue;
+            nearest[around[k]] = nearest[list[i]];
+            list[count++] = around[k];
+        }
+    return count;
+}
+
+enum status hole_find_overhang(uint8_t *overhang, const struct rendered_frame *f, const struct hole_photos *photos,
+                               struct err *err)
+{
+    const size_t pixels = (size_t)f->width * (size_t)f->height;
+    uint32_t *nearest, *list, around[8];
+    size_t empty = 0;
+
+    memset(overhang, 0, pixels);
+    for (size_t p = 0; p < pixels; p++) empty += !(f->rgba[4 * p + 3] > 0);
+    if (!photos || photos->count == 0 || !empty) return ST_OK;
+    nearest = malloc(pixels * sizeof *nearest);
+    list = malloc(2 * empty * sizeof *list);
+    if (!nearest || !list) {
+        free(nearest);
+        free(list);
+        return err_nomem(err, "the holes of a frame", (pixels + 2 * empty) * sizeof *list);
+    }
+    const size_t count = find_nearest(nearest, list, f);
+    struct overhang_job job = {f, photos, list, nearest, overhang};
+    parallel_for(count, LIST_CHUNK, find_beyond, &job);
+    uint32_t *hole = list + empty; /* pixels of one hole; nearest becomes NO_PIXEL in those of earlier holes */
+    for (size_t i = 0; i < count; i++) {
+        size_t size = 0, beyond = 0;
+        if (nearest[list[i]] == NO_PIXEL) continue;
+        nearest[list[i]] = NO_PIXEL;
+        hole[size++] = list[i];
+        for (size_t n = 0; n < size; n++) {
+            beyond += overhang[hole[n]];
+            for (int k = 0, m = neighbors(f, hole[n], around); k < m; k++) {
+                const uint32_t q = around[k];
+                if (nearest[q] == NO_PIXEL || f->rgba[4 * (size_t)q + 3] > 0) continue;
+                nearest[q] = NO_PIXEL;
+                hole[size++] = q;
+            }
+        }
+        for (size_t n = 0; n < size; n++) overhang[hole[n]] = 2 * beyond > size;
+    }
+    free(nearest);
+    free(list);
+    return ST_OK;
 }
 
 /* ---------------------------------------------------------------------------------------------- narrow holes */
@@ -176,6 +300,7 @@ struct narrow_pass {
     const struct rendered_frame *frame;
     const struct far_side *far;
     const uint32_t *list;
+    const uint8_t *overhang;
     struct color_z *filled; /* of each pixel of the list; z 0: nothing known near it */
 };
 
@@ -197,21 +322,22 @@ static void narrow_chunk(void *ctx, size_t begin, size_t end, int thread)
                 weights[count] = f->rgba[4 * p + 3];
                 items[count++] = pixel_get(f, p);
             }
+        const struct far_side far = {n->far->soft, n->far->sigma, n->overhang[n->list[i]]};
         n->filled[i] = (struct color_z){0};
-        far_mean(n->far, items, weights, count, &n->filled[i]);
+        far_mean(&far, items, weights, count, &n->filled[i]);
     }
 }
 
-enum status hole_fill_pixels(struct rendered_frame *f, const uint32_t *list, size_t count, const struct soft_z *soft,
-                             float sigma, int diameter, struct err *err)
+enum status hole_fill_pixels(struct rendered_frame *f, const uint32_t *list, size_t count, const uint8_t *overhang,
+                             const struct soft_z *soft, float sigma, int diameter, struct err *err)
 {
-    const struct far_side far = {soft, sigma};
+    const struct far_side far = {soft, sigma, false};
     struct color_z *filled = malloc((count + 1) * sizeof *filled);
 
     if (!filled) return err_nomem(err, "the narrow holes of a frame", count * sizeof *filled);
     /* a pass reads only the results of earlier passes, so the far side advances RADIUS pixels, in any order */
     for (int reached = 0; count && reached < diameter; reached += RADIUS) {
-        struct narrow_pass pass = {f, &far, list, filled};
+        struct narrow_pass pass = {f, &far, list, overhang, filled};
         parallel_for(count, LIST_CHUNK, narrow_chunk, &pass);
         for (size_t i = 0; i < count; i++)
             if (filled[i].z > 0) pixel_set(f, list[i], &filled[i]);
@@ -285,9 +411,9 @@ static bool push(struct fill_pyramid *p, int level, int x, int y, struct color_z
     return true;
 }
 
-/* Fills the listed pixels. *filled: how many of them got a colour. */
-static enum status fill_wide(struct rendered_frame *f, const uint32_t *list, size_t count, const struct far_side *far,
-                             size_t *filled, struct err *err)
+/* values[i]: colour and depth of list[i]; z 0: none. The frame stays as it is. */
+static enum status fill_wide(struct color_z *values, const struct rendered_frame *f, const uint32_t *list, size_t count,
+                             const struct far_side *far, struct err *err)
 {
     const uint32_t w = (uint32_t)f->width;
     struct fill_pyramid p = {.frame = f, .levels = {{.w = f->width, .h = f->height}}, .count = 1, .far = far};
@@ -308,14 +434,9 @@ static enum status fill_wide(struct rendered_frame *f, const uint32_t *list, siz
             goto done;
         }
     }
-    *filled = 0;
     if (!pull(&p, p.count - 1, 0, 0, &value)) goto done; /* no pixel of the frame is known */
-    for (size_t i = 0; i < count; i++) push(&p, 0, (int)(list[i] % w), (int)(list[i] / w), &value);
-    for (size_t i = 0; i < count; i++) /* written last, so that all are computed from the unfilled frame */
-        if (p.levels[0].state[list[i]] == PUSHED) {
-            pixel_set(f, list[i], &p.levels[0].texels[list[i]]);
-            ++*filled;
-        }
+    for (size_t i = 0; i < count; i++)
+        if (push(&p, 0, (int)(list[i] % w), (int)(list[i] / w), &value)) values[i] = value;
 done:
     for (int i = 0; i < p.count; i++) {
         free(p.levels[i].texels);
@@ -324,26 +445,63 @@ done:
     return st;
 }
 
-enum status hole_fill(struct rendered_frame *frame, const struct soft_z *soft, float sigma, int diameter,
-                      struct err *err)
+/* Fills the listed pixels, overhangs by a pyramid of their own, both from the unfilled frame. *filled: how many got a
+ * colour. */
+static enum status fill_wide_parts(struct rendered_frame *f, const uint32_t *list, size_t count,
+                                   const uint8_t *overhang, const struct soft_z *soft, float sigma, size_t *filled,
+                                   struct err *err)
 {
-    const struct far_side far = {soft, sigma};
+    uint32_t *sorted = malloc((count + 1) * sizeof *sorted); /* disocclusions, then overhangs */
+    struct color_z *values = calloc(count + 1, sizeof *values);
+    size_t sizes[2] = {0}, n = 0;
+    enum status st = sorted && values ? ST_OK : err_nomem(err, "the wide holes of a frame", count * sizeof *values);
+
+    for (int k = 0; !st && k < 2; k++)
+        for (size_t i = 0; i < count; i++) {
+            if (overhang[list[i]] != k) continue;
+            sorted[n++] = list[i];
+            sizes[k]++;
+        }
+    for (size_t k = 0, from = 0; !st && k < 2; from += sizes[k++]) {
+        const struct far_side far = {soft, sigma, k == 1};
+        if (sizes[k]) st = fill_wide(values + from, f, sorted + from, sizes[k], &far, err);
+    }
+    *filled = 0;
+    for (size_t i = 0; !st && i < count; i++)
+        if (values[i].z > 0) {
+            pixel_set(f, sorted[i], &values[i]);
+            ++*filled;
+        }
+    free(sorted);
+    free(values);
+    return st;
+}
+
+enum status hole_fill(struct rendered_frame *frame, const struct hole_photos *photos, const struct soft_z *soft,
+                      float sigma, int diameter, struct err *err)
+{
+    const size_t pixels = (size_t)frame->width * (size_t)frame->height;
+    uint8_t *overhang = NULL;
     uint32_t *list = NULL;
     size_t narrow = 0, empty = 0, filled = 0;
     enum status st = hole_narrow_pixels(&list, &narrow, &empty, frame, diameter > 0 ? diameter : 1, err);
 
-    if (!st && diameter > 0) {
-        st = hole_fill_pixels(frame, list, narrow, soft, sigma, diameter, err);
+    if (!st && diameter > 0 && empty) {
+        overhang = malloc(pixels);
+        st = overhang ? hole_find_overhang(overhang, frame, photos, err)
+                      : err_nomem(err, "the holes of a frame", pixels);
+        if (!st) st = hole_fill_pixels(frame, list, narrow, overhang, soft, sigma, diameter, err);
         for (size_t i = 0; !st && i < narrow; i++) filled += frame->rgba[4 * (size_t)list[i] + 3] > 0;
     }
     if (!st && diameter > 0 && filled < empty) {
         size_t wide = 0, left = narrow; /* narrow pixels with nothing known near them go to the pyramid, too */
         for (size_t i = narrow; i-- > 0;)
             if (!(frame->rgba[4 * (size_t)list[i] + 3] > 0)) list[--left] = list[i];
-        st = fill_wide(frame, list + left, empty - left, &far, &wide, err);
+        st = fill_wide_parts(frame, list + left, empty - left, overhang, soft, sigma, &wide, err);
         filled += wide;
     }
-    frame->unfilled_fraction = (double)(empty - filled) / ((double)frame->width * (double)frame->height);
+    frame->unfilled_fraction = (double)(empty - filled) / (double)pixels;
+    free(overhang);
     free(list);
     return st;
 }

@@ -28,7 +28,6 @@
 #include <string.h>
 
 #include "common/base/parallel.h"
-#include "common/layers/hole_fill.h"
 #include "common/layers/layer_visibility.h"
 #include "common/layers/soft_z.h"
 
@@ -604,6 +603,20 @@ static void render_tiles(void *ctx, size_t begin, size_t end, int thread)
     }
 }
 
+struct hole_photos layer_photos(const struct layer_scene *scene, const struct view *novel,
+                                const struct layer_render_options *options)
+{
+    const struct view *views = scene->set->views;
+    int nearest = 0;
+
+    if (!options->nearest_alone) return (struct hole_photos){views, scene->set->view_count, novel};
+    for (int i = 1; i < scene->set->view_count; i++)
+        if (vec3_length(vec3_sub(views[i].center, novel->center)) <
+            vec3_length(vec3_sub(views[nearest].center, novel->center)))
+            nearest = i;
+    return (struct hole_photos){views + nearest, 1, novel};
+}
+
 enum status layer_render(struct rendered_frame *out, const struct layer_scene *scene, const struct view *novel,
                          const struct layer_render_options *options, struct err *err)
 {
@@ -614,7 +627,8 @@ enum status layer_render(struct rendered_frame *out, const struct layer_scene *s
         parallel_for((size_t)job.tiles, 1, render_tiles, &job);
         out->hole_fraction = hole_fraction(out);
         const struct soft_z soft = layer_scene_soft_z(scene, SOFT_Z_FILL_WIDTHS);
-        st = hole_fill(out, &soft, (float)scene->sigma, options->fill_diameter, err);
+        const struct hole_photos photos = layer_photos(scene, novel, options);
+        st = hole_fill(out, &photos, &soft, (float)scene->sigma, options->fill_diameter, err);
     }
     job_release(&job);
     return st;

@@ -4,6 +4,7 @@
 #ifndef REMODEL_LAYER_RENDER_H
 #define REMODEL_LAYER_RENDER_H
 
+#include "common/layers/hole_fill.h"
 #include "common/layers/layer_scene.h"
 #include "common/layers/rendered_frame.h"
 
@@ -25,6 +26,10 @@ struct layer_render_options {
 /* Buffers of `out` are reused if the size is the same. Same bits for any number of threads. ST_NOMEM. */
 enum status layer_render(struct rendered_frame *out, const struct layer_scene *scene, const struct view *novel,
                          const struct layer_render_options *options, struct err *err);
+
+/* The photos that layer_render uses for this camera; they belong to the scene. */
+struct hole_photos layer_photos(const struct layer_scene *scene, const struct view *novel,
+                                const struct layer_render_options *options);
 
 /* Coverage only: sets out->hole and hole_fraction; rgba and z stay NULL. The picture is reduced by `scale`, 0 < scale
  * <= 1. The holes are those of layer_render with SOFT_Z_WIDTHS, without extra views. */

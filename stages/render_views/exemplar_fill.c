@@ -22,6 +22,8 @@
  *   of one surface may differ by error; if at most 1/8 of the rim lies in the middle third of the gap (a slanted wall
  *   has 1/6 there, a Gaussian 1/5); and if each cluster has at least 1/20 of the rim. Before, 1/40 of the rim is left
  *   out at either end, so that outliers neither make a cluster nor hide one;
+ * - a hole that overhangs the photos (common/layers/hole_fill.c) is not a disocclusion: all pixels of its rim are
+ *   usable, and depth is blended without preference for the far side;
  * - a pixel that was copied n times adds a penalty to the patch around it, n times half of the difference that noise
  *   makes between two patches, so that uniform areas are not tiled with the one smoothest patch. Noise is estimated by
  *   the mean step between adjacent source pixels;
@@ -38,7 +40,6 @@
 #include "common/base/array.h"
 #include "common/base/parallel.h"
 #include "common/base/sort.h"
-#include "common/layers/hole_fill.h"
 
 #define MAX_RADIUS    7
 #define MAX_PATCH     ((2 * MAX_RADIUS + 1) * (2 * MAX_RADIUS + 1))
@@ -85,7 +86,8 @@ struct fill_job {
     float *priority;   /* of front pixels; entries of the heap with another priority are stale */
     uint32_t *origin;  /* pixel that a filled pixel was copied from; NOWHERE: it was blended */
     uint32_t *label;
-    uint32_t *list; /* pixels of all holes, hole by hole */
+    uint8_t *overhang; /* 1 in holes beyond the photos */
+    uint32_t *list;    /* pixels of all holes, hole by hole */
     struct frame_hole *holes;
     size_t hole_count;
     struct fill_scratch *scratch;
@@ -95,6 +97,7 @@ struct hole_job { /* filling of one hole */
     const struct fill_job *job;
     struct fill_scratch *s;
     uint32_t label;
+    bool overhangs;                     /* beyond the photos: no side is preferred */
     float border;                       /* known pixels not farther than this are not usable; -1: all are */
     float noise;                        /* square of the mean step between adjacent source pixels */
     int bx, by, bw, bh, margin, stride; /* the box that `valid` and `copies` describe */
@@ -399,7 +402,7 @@ static bool search(const struct hole_job *f, const struct target_patch *t, int x
 
 /* ------------------------------------------------------------------------------------------------------ filling */
 
-/* Mean colour and depth of the usable pixels around (x, y), far side preferred. */
+/* Mean colour and depth of the usable pixels around (x, y), far side preferred unless the hole is an overhang. */
 static void blend(const struct hole_job *f, int x, int y, float rgb[3], float *z)
 {
     const struct fill_job *j = f->job;
@@ -416,7 +419,7 @@ static void blend(const struct hole_job *f, int x, int y, float rgb[3], float *z
             if (!usable_at(f, u, v)) continue;
             const size_t p = (size_t)v * (size_t)j->w + (size_t)u;
             const float nearness = 1 / (float)((u - x) * (u - x) + (v - y) * (v - y));
-            const float w = nearness * soft_z_weight(z_far - j->frame->z[p], 0.1f * rho, rho);
+            const float w = f->overhangs ? nearness : nearness * soft_z_weight(z_far - j->frame->z[p], 0.1f * rho, rho);
             for (int k = 0; k < 3; k++) rgb[k] += w * j->frame->rgba[4 * p + (size_t)k];
             colors += w;
             if (!(j->frame->z[p] > 0)) continue;
@@ -528,11 +531,15 @@ static bool fill_hole(const struct fill_job *j, struct fill_scratch *s, size_t i
     struct hole_job f = {.job = j, .s = s, .label = (uint32_t)index + 1, .border = -1};
     size_t count;
 
-    if (!rim_depths(&f, hole, &count)) return false;
-    const float border = exemplar_far_border(s->rim, count, j->depth->sigma);
-    if (border > 0) f.border = border;
+    f.overhangs = j->overhang[j->list[hole->first]];
+    if (!f.overhangs) {
+        if (!rim_depths(&f, hole, &count)) return false;
+        const float border = exemplar_far_border(s->rim, count, j->depth->sigma);
+        if (border > 0) f.border = border;
+        s->stats.classified += border > 0;
+    }
     s->stats.holes++;
-    s->stats.classified += border > 0;
+    s->stats.overhangs += f.overhangs;
     if (!find_sources(&f, hole, j->window / 2)) return false;
 
     s->heap_count = 0;
@@ -619,7 +626,7 @@ static enum status fill_narrow_holes(struct fill_job *j, int diameter, struct er
         const uint32_t hole = j->label[narrow[i]] - 1;
         if (narrow_count[hole] == j->holes[hole].count) narrow[kept++] = narrow[i];
     }
-    if (!st) st = hole_fill_pixels(j->frame, narrow, kept, &d->soft, d->sigma, diameter, err);
+    if (!st) st = hole_fill_pixels(j->frame, narrow, kept, j->overhang, &d->soft, d->sigma, diameter, err);
     free(narrow_count);
     free(narrow);
     return st;
@@ -642,6 +649,7 @@ static void job_release(struct fill_job *j)
     free(j->priority);
     free(j->origin);
     free(j->label);
+    free(j->overhang);
     free(j->list);
     free(j->holes);
 }
@@ -683,8 +691,9 @@ static enum status prepare_patches(struct fill_job *j, struct err *err)
     return ST_OK;
 }
 
-enum status exemplar_fill(struct rendered_frame *frame, const struct exemplar_depth *depth, int diameter,
-                          const struct exemplar_params *params, struct exemplar_stats *stats, struct err *err)
+enum status exemplar_fill(struct rendered_frame *frame, const struct hole_photos *photos,
+                          const struct exemplar_depth *depth, int diameter, const struct exemplar_params *params,
+                          struct exemplar_stats *stats, struct err *err)
 {
     const size_t pixels = (size_t)frame->width * (size_t)frame->height;
     struct fill_job j = {.frame = frame, .depth = depth, .w = frame->width, .h = frame->height};
@@ -700,8 +709,10 @@ enum status exemplar_fill(struct rendered_frame *frame, const struct exemplar_de
 
     j.label = malloc(pixels * sizeof *j.label);
     j.list = malloc(empty * sizeof *j.list);
-    st = j.label && j.list ? fill_narrow_holes(&j, diameter, err)
-                           : err_nomem(err, "the holes of a frame", (pixels + empty) * sizeof *j.label);
+    j.overhang = malloc(pixels);
+    st = j.label && j.list && j.overhang ? hole_find_overhang(j.overhang, frame, photos, err)
+                                         : err_nomem(err, "the holes of a frame", (pixels + empty) * sizeof *j.label);
+    if (!st) st = fill_narrow_holes(&j, diameter, err);
     if (!st) st = find_holes(&j, err); /* the remaining ones */
     if (!st && j.hole_count) st = prepare_patches(&j, err);
     if (st) goto done;
@@ -711,6 +722,7 @@ enum status exemplar_fill(struct rendered_frame *frame, const struct exemplar_de
         if (j.scratch[i].status) st = err_nomem(err, "the filling of a hole", pixels);
         total.holes += s->holes;
         total.classified += s->classified;
+        total.overhangs += s->overhangs;
         total.patches += s->patches;
         total.no_patch += s->no_patch;
         total.moved += s->moved;

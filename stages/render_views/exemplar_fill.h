@@ -7,8 +7,7 @@
 #define REMODEL_RENDER_VIEWS_EXEMPLAR_FILL_H
 
 #include "common/base/param.h"
-#include "common/layers/rendered_frame.h"
-#include "common/layers/soft_z.h"
+#include "common/layers/hole_fill.h"
 
 /* fill_diameter is among render_views' own parameters */
 #define EXEMPLAR_PARAMS(X)                                                                                \
@@ -31,15 +30,18 @@ struct exemplar_depth { /* depth statistics of a scene */
 struct exemplar_stats {
     size_t empty, narrow;     /* pixels without colour; those of them in narrow holes */
     int holes, classified;    /* wide holes; those of them with a near and a far side */
+    int overhangs;            /* wide holes beyond the photos, which are filled from all sides */
     size_t patches, no_patch; /* patches copied; patches filled by blending, because there was no source */
     size_t moved;             /* searches without a source patch in the first window */
 };
 
 /* Fills rgba and z where alpha is 0 and sets unfilled_fraction. Nothing stays empty, unless the whole frame is empty or
  * the diameter is 0, which disables filling. Holes narrower than `diameter` everywhere are filled by hole_fill.h. An
- * even fill_patch counts as the next odd number. stats may be NULL. ST_NOMEM. Same bits for any number of threads. */
-enum status exemplar_fill(struct rendered_frame *frame, const struct exemplar_depth *depth, int diameter,
-                          const struct exemplar_params *params, struct exemplar_stats *stats, struct err *err);
+ * even fill_patch counts as the next odd number. photos and stats may be NULL. ST_NOMEM. Same bits for any number of
+ * threads. */
+enum status exemplar_fill(struct rendered_frame *frame, const struct hole_photos *photos,
+                          const struct exemplar_depth *depth, int diameter, const struct exemplar_params *params,
+                          struct exemplar_stats *stats, struct err *err);
 
 /* Border between a near and a far cluster of depths: the midpoint, in ln z, of the means of the two clusters that exact
  * 1-D 2-means finds. 0: there are not two clusters, by the criteria in exemplar_fill.c. Ignores depths of 0; sorts

@@ -43,6 +43,15 @@ void fill_path_release(struct fill_path *fill)
     for (int i = 0; i < FILL_MAX_ANCHORS; i++) anchor_drop(&fill->anchors[i]);
 }
 
+/* Inpaints what is left empty in a frame of this camera. */
+static enum status inpaint(const struct fill_path *fill, struct rendered_frame *f, const struct view *camera,
+                           struct exemplar_stats *stats, struct err *err)
+{
+    const struct fill_path_options *o = &fill->options;
+    const struct hole_photos photos = o->photos ? o->photos(fill->ctx, camera) : (struct hole_photos){0};
+    return exemplar_fill(f, &photos, &o->depth, o->fill_diameter, &o->exemplar, stats, err);
+}
+
 /* -------------------------------------------------------------------------------------------------- splatting */
 
 struct hole_pixel { /* sums in an empty pixel */
@@ -176,7 +185,6 @@ static float position_between(const struct fill_path *fill, const struct fill_an
 static enum status anchor_make(struct fill_path *fill, struct fill_anchor *to, int index, const struct fill_anchor *a,
                                const struct fill_anchor *b, struct err *err)
 {
-    const struct fill_path_options *o = &fill->options;
     const int frame = anchor_frame(fill, index);
     const struct view *camera = &fill->path->frames[frame].camera;
     struct rendered_frame f = {0};
@@ -199,7 +207,7 @@ static enum status anchor_make(struct fill_path *fill, struct fill_anchor *to, i
             if (!(f.rgba[4 * p + 3] > 0)) empty[count++] = (uint32_t)p;
         if (a) st = splat_anchors(fill, a, b, b ? position_between(fill, a, b, frame) : 0, camera, &f, err);
     }
-    if (!st) st = exemplar_fill(&f, &o->depth, o->fill_diameter, &o->exemplar, NULL, err);
+    if (!st) st = inpaint(fill, &f, camera, NULL, err);
     for (size_t i = 0; !st && i < count; i++) {
         const size_t p = empty[i];
         struct fill_point *point = &to->points[to->count];
@@ -263,6 +271,6 @@ enum status fill_path_frame(struct fill_path *fill, int frame, const struct view
         st = anchors_around(fill, frame, &a, &b, err);
         if (!st) st = splat_anchors(fill, a, b, b ? position_between(fill, a, b, frame) : 0, camera, f, err);
     }
-    if (!st) st = exemplar_fill(f, &o->depth, o->fill_diameter, &o->exemplar, &fill->stats, err);
+    if (!st) st = inpaint(fill, f, camera, &fill->stats, err);
     return st;
 }

@@ -20,11 +20,15 @@
 /* Renders frame `frame` (from 0) of the path without hole filling: holes have alpha 0 and depth 0. */
 typedef enum status fill_path_render(void *ctx, int frame, struct rendered_frame *out, struct err *err);
 
+/* The photos that a frame of this camera is rendered from. */
+typedef struct hole_photos fill_path_photos(void *ctx, const struct view *camera);
+
 struct fill_path_options {
     struct exemplar_depth depth;
     struct exemplar_params exemplar;
-    int fill_diameter;       /* as in exemplar_fill; 0: nothing is filled */
-    int fill_anchor_spacing; /* frames; 0: no anchors */
+    int fill_diameter;        /* as in exemplar_fill; 0: nothing is filled */
+    int fill_anchor_spacing;  /* frames; 0: no anchors */
+    fill_path_photos *photos; /* called with the ctx of fill_path_init; NULL: unknown */
 };
 
 struct fill_point {       /* a filled pixel */

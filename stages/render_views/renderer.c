@@ -14,6 +14,12 @@ static enum status render_anchor(void *ctx, int frame, struct rendered_frame *ou
     return layer_render(out, r->scene, &r->path->frames[frame].camera, &r->options, err);
 }
 
+static struct hole_photos photos_of(void *ctx, const struct view *camera)
+{
+    const struct renderer *r = ctx;
+    return layer_photos(r->scene, camera, &r->options);
+}
+
 void renderer_init(struct renderer *r, const struct layer_scene *scene, const struct camera_path *path,
                    const struct effects *effects, const struct render_params *params)
 {
@@ -27,7 +33,8 @@ void renderer_init(struct renderer *r, const struct layer_scene *scene, const st
     r->depth = (struct exemplar_depth){layer_scene_soft_z(scene, SOFT_Z_FILL_WIDTHS), (float)scene->sigma};
     r->aperture = (struct aperture_options){params->aperture_samples, params->aperture_error};
     if (!path || !r->options.offline) return;
-    const struct fill_path_options fill = {r->depth, r->exemplar, params->fill_diameter, params->fill_anchor_spacing};
+    const struct fill_path_options fill = {r->depth, r->exemplar, params->fill_diameter, params->fill_anchor_spacing,
+                                           photos_of};
     fill_path_init(&r->fill, path, render_anchor, r, &fill);
 }
 
@@ -55,8 +62,11 @@ enum status renderer_frame(struct renderer *r, int frame, struct rendered_frame 
 
 enum status renderer_camera(struct renderer *r, const struct view *camera, struct rendered_frame *out, struct err *err)
 {
+    const struct hole_photos photos = photos_of(r, camera);
     const enum status st = layer_render(out, r->scene, camera, &r->options, err);
-    return st || !r->options.offline ? st : exemplar_fill(out, &r->depth, r->fill_diameter, &r->exemplar, NULL, err);
+    return st || !r->options.offline
+               ? st
+               : exemplar_fill(out, &photos, &r->depth, r->fill_diameter, &r->exemplar, NULL, err);
 }
 
 void renderer_release(struct renderer *r)

@@ -46,7 +46,7 @@ static struct exemplar_stats fill(struct rendered_frame *f)
 {
     struct exemplar_stats stats;
     struct err err = ERR_INIT;
-    assert_ok(exemplar_fill(f, &depth_of_scene, 6, &usual, &stats, &err), err);
+    assert_ok(exemplar_fill(f, NULL, &depth_of_scene, 6, &usual, &stats, &err), err);
     return stats;
 }
 
@@ -314,7 +314,7 @@ static void any_patch_and_window_size_works(void **state)
         struct rendered_frame f;
         struct err err = ERR_INIT;
         noise_fill(&f, 200, 150);
-        assert_ok(exemplar_fill(&f, &depth_of_scene, 1, &params, NULL, &err), err);
+        assert_ok(exemplar_fill(&f, NULL, &depth_of_scene, 1, &params, NULL, &err), err);
         assert_whole(&f);
         rendered_frame_release(&f);
     }
@@ -329,10 +329,96 @@ static void diameter_0_fills_nothing(void **state)
     for (int y = 0; y < 20; y++)
         for (int x = 0; x < 20; x++) put(&f, x, y, white, 3);
     cut(&f, 5, 5, 15, 15);
-    assert_ok(exemplar_fill(&f, &depth_of_scene, 0, &usual, NULL, &err), err);
+    assert_ok(exemplar_fill(&f, NULL, &depth_of_scene, 0, &usual, NULL, &err), err);
     assert_float_equal(f.unfilled_fraction, 0.25, 1e-12);
     assert_true(f.rgba[4 * (10 * 20 + 10) + 3] == 0);
     rendered_frame_release(&f);
+}
+
+/* The picture of a camera at the origin from its pixel (x, y) on. */
+static struct view photo_at(int x, int y, int w, int h)
+{
+    return (struct view){.width = w,
+                         .height = h,
+                         .fx = 80,
+                         .fy = 80,
+                         .cx = 48 - x,
+                         .cy = 48 - y,
+                         .cam_from_world = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}};
+}
+
+/* A red bar at depth 4, 40 px wide, before a checkered wall at depth 10, across the edge 0 to 3: left, top, right,
+ * bottom. The 14 px beside the edge are a hole. */
+static void bar_fill(struct rendered_frame *f, int edge, const struct view *photo)
+{
+    const struct view camera = photo_at(0, 0, 96, 96);
+    const struct hole_photos photos = {photo, 1, &camera};
+    struct exemplar_stats stats;
+    struct err err = ERR_INIT;
+
+    frame_make(f, 96, 96);
+    for (int y = 0; y < 96; y++)
+        for (int x = 0; x < 96; x++) {
+            const int across = edge % 2 ? x : y;
+            if (across >= 28 && across < 68)
+                put(f, x, y, red, 4);
+            else
+                put(f, x, y, (x / 4 + y / 4) % 2 ? white : black, 10);
+        }
+    cut(f, edge == 2 ? 82 : 0, edge == 3 ? 82 : 0, edge == 0 ? 14 : 96, edge == 1 ? 14 : 96);
+    assert_ok(exemplar_fill(f, &photos, &depth_of_scene, 6, &usual, &stats, &err), err);
+    assert_int_equal(stats.holes, 1);
+    assert_int_equal(stats.overhangs + stats.classified, 1);
+    assert_whole(f);
+}
+
+static int red_pixels(const struct rendered_frame *f)
+{
+    int count = 0;
+    for (int y = 0; y < 96; y++)
+        for (int x = 0; x < 96; x++) count += f->hole[y * 96 + x] && is_color(f, x, y, red);
+    return count;
+}
+
+static void a_leaf_cut_by_any_edge_of_the_frame_continues(void **state)
+{
+    (void)state;
+    const struct view photos[4] = {photo_at(14, 0, 82, 96), photo_at(0, 14, 96, 82), photo_at(0, 0, 82, 96),
+                                   photo_at(0, 0, 96, 82)};
+    for (int edge = 0; edge < 4; edge++) {
+        struct rendered_frame f;
+        bar_fill(&f, edge, &photos[edge]);
+        assert_in_range(red_pixels(&f), 14 * 36, 14 * 44);
+        rendered_frame_release(&f);
+    }
+}
+
+static void a_disocclusion_that_runs_to_the_edge_is_filled_from_the_far_side(void **state)
+{
+    (void)state;
+    const struct view whole = photo_at(0, 0, 96, 96);
+    for (int edge = 0; edge < 4; edge++) {
+        struct rendered_frame f;
+        bar_fill(&f, edge, &whole);
+        assert_int_equal(red_pixels(&f), 0);
+        rendered_frame_release(&f);
+    }
+}
+
+static void overhangs_have_the_same_bits_with_any_number_of_threads(void **state)
+{
+    (void)state;
+    const struct view photo = photo_at(0, 0, 82, 96);
+    struct rendered_frame f[2];
+    for (int i = 0; i < 2; i++) {
+        parallel_set_threads(i + 1);
+        bar_fill(&f[i], 2, &photo);
+    }
+    parallel_set_threads(0);
+    assert_memory_equal(f[0].rgba, f[1].rgba, 96 * 96 * 16);
+    assert_memory_equal(f[0].z, f[1].z, 96 * 96 * 4);
+    rendered_frame_release(&f[0]);
+    rendered_frame_release(&f[1]);
 }
 
 int main(void)
@@ -348,6 +434,9 @@ int main(void)
         cmocka_unit_test(difficult_frames_are_filled_completely),
         cmocka_unit_test(any_patch_and_window_size_works),
         cmocka_unit_test(diameter_0_fills_nothing),
+        cmocka_unit_test(a_leaf_cut_by_any_edge_of_the_frame_continues),
+        cmocka_unit_test(a_disocclusion_that_runs_to_the_edge_is_filled_from_the_far_side),
+        cmocka_unit_test(overhangs_have_the_same_bits_with_any_number_of_threads),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

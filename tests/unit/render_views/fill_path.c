@@ -83,7 +83,7 @@ static void world_make(struct world *world, int frames)
 static struct fill_path_options options(int anchors)
 {
     const struct exemplar_params exemplar = EXEMPLAR_PARAMS_DEFAULT;
-    return (struct fill_path_options){{{3, 6}, 0.01f}, exemplar, 6, anchors};
+    return (struct fill_path_options){{{3, 6}, 0.01f}, exemplar, 6, anchors, NULL};
 }
 
 /* Renders and fills a frame. */
