@@ -137,3 +137,14 @@ double point_evidence_cost(const struct point_evidence *e, int segment, struct p
     double far = fmin(fmax((here - e->min_inverse_z) / (e->max_inverse_z - e->min_inverse_z), 0), 1);
     return e->inside_weight * inside + (e->nearest_count ? e->nearest_weight * nearest : 0) + e->far_weight * far;
 }
+
+double point_evidence_support(const struct point_evidence *e, int segment, struct plane plane)
+{
+    const int begin = e->first[segment], end = e->first[segment + 1];
+    int near = 0;
+    for (int i = begin; i < end; i++) {
+        const struct observed_point *p = &e->points[i];
+        near += fabs(plane_at(plane, p->u, p->v) - p->inverse_z) <= 2 * e->step;
+    }
+    return near / (end - begin + 1.0);
+}

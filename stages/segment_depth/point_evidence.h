@@ -23,6 +23,9 @@ enum status point_evidence_make(struct point_evidence *e, const struct segmentat
                                 double step, const struct segment_params *params, struct err *err);
 void point_evidence_release(struct point_evidence *e);
 
+/* The share of a segment's points that lie within two steps of the plane, 0 .. 1; a single point counts half. */
+double point_evidence_support(const struct point_evidence *e, int segment, struct plane plane);
+
 /* Cost of the plane, in units of the matching cost. u, v: the segment's centroid. */
 double point_evidence_cost(const struct point_evidence *e, int segment, struct plane plane, double u, double v);
 

@@ -9,7 +9,8 @@
     X(segment_pixels, int, 64, 16, 100000, "px", "mean size of a segment")                                          \
     X(compactness, double, 8, 0.1, 100, "",                                                                         \
       "weight of distance against colour in over-segmentation; higher: rounder segments")                           \
-    X(neighbours, int, 4, 1, 16, "", "maximum number of views to match with")                                       \
+    X(neighbours, int, 8, 1, 16, "", "maximum number of views to match with")                                       \
+    X(best_neighbours, int, 4, 1, 16, "", "how many of them each segment is matched with: those that match it best") \
     X(near, double, 0, 0, 1e30, "scene units", "minimum depth; 0: found from the sparse points")                    \
     X(far, double, 0, 0, 1e30, "scene units", "maximum depth; 0: found from the sparse points")                     \
     X(planes, int, 256, 4, 1024, "", "maximum number of planes in the sweep; fewer if one-pixel steps need fewer")  \

@@ -65,10 +65,13 @@ static enum status fill_segments(struct layered_depth *out, const struct plane_p
         }
         unsigned occluded = 0;
         if (p->cross) cross_view_cost(p->cross, i, planes[i], &occluded);
-        const double good = clamp((double)MATCH_WORST - (double)match_cost(p->m, i, planes[i], occluded), 0, 1);
+        float match = MATCH_WORST;
+        const bool seen = match_evidence(p->m, i, planes[i], occluded, &match) > 0;
+        const double good = clamp((double)(MATCH_WORST - match), 0, 1);
         const double agreeing = p->cross ? cross_view_support(p->cross, i, planes[i]) : 0;
-        /* the agreement of two other views replaces distinctness */
-        const double confidence = good * fmax(distinct[i], fmin(agreeing / 2, 1));
+        /* the agreement of two other views replaces distinctness; where no view sees the segment, only points count */
+        const double confidence = seen ? good * fmax(distinct[i], fmin(agreeing / 2, 1))
+                                       : point_evidence_support(p->points, i, planes[i]);
         /* standard deviation: half a step if confident, a few steps if inherited */
         out->segments[i] = (struct depth_segment){
             .id = (uint32_t)i + 1,
@@ -96,7 +99,7 @@ struct solver {
     int view_idx;
     const int *neighbours;
     int neighbour_count;
-    const struct matcher *m;
+    struct matcher *m;
     const struct image *picture;
     const struct observed_points *seen;
     double min_inverse_z, max_inverse_z;
@@ -168,7 +171,7 @@ static enum status start_first_round(struct solution *x, const struct solver *v,
     enum status st = plane_sweep_run(&x->sweep, x->planes, v->m, &x->points, x->weights, x->problem.view,
                                      x->problem.down, v->params, err);
     x->problem.cost = x->sweep.cost;
-    return st;
+    return st ? st : matcher_select(v->m, x->planes, NULL, err);
 }
 
 /* Initial planes of the previous round, with the neighbours' depths of that round as further evidence. */
@@ -180,6 +183,11 @@ static enum status start_later_round(struct solution *x, const struct solver *v,
     enum status st = cross_view_make(&x->cross, s, v->set, v->view_idx, v->neighbours, v->neighbour_count,
                                      x->sweep.step, &source, err);
     if (!st) st = read_previous_planes(x->planes, x->distinct, v, err);
+    unsigned *occluded = calloc((size_t)s->count + 1, sizeof *occluded);
+    if (!st && !occluded) st = err_nomem(err, "occlusions", (size_t)s->count * sizeof *occluded);
+    for (int i = 0; !st && i < s->count; i++) cross_view_cost(&x->cross, i, x->planes[i], &occluded[i]);
+    if (!st) st = matcher_select(v->m, x->planes, occluded, err);
+    free(occluded);
     for (int i = 0; !st && i < s->count; i++) x->min_match[i] = match_cost_rough(v->m, i, x->planes[i], 0);
     x->problem.min_match = x->min_match;
     for (int i = 0; !st && i < s->count; i++)
@@ -207,6 +215,7 @@ static enum status start_solution(struct solution *x, const struct solver *v, st
                                         .given = x->sweep.given,
                                         .weights = x->weights,
                                         .params = v->params,
+                                        .slant = problem_slant(v->params),
                                         .min_inverse_z = v->min_inverse_z,
                                         .max_inverse_z = v->max_inverse_z,
                                         .step = x->sweep.step,
@@ -327,6 +336,7 @@ enum status view_depth(struct layered_depth *out, int neighbours[MAX_NEIGHBOURS]
     for (int k = 0; !st && k < *neighbour_count; k++)
         st = add_neighbour(&matcher, set, view_idx, neighbours[k], source, &seen,
                            0.5 * (v.min_inverse_z + v.max_inverse_z), &gamma, err);
+    matcher.ranks = params->best_neighbours;
     if (!st) st = matcher_calibrate(&matcher, v.min_inverse_z, v.max_inverse_z, err);
     v.neighbour_count = *neighbour_count;
     if (!st) st = solve(out, &v, err);
