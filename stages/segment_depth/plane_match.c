@@ -261,8 +261,7 @@ static void select_neighbours(void *ctx, size_t begin, size_t end, int thread)
         for (int k = 0; k < m->neighbour_count; k++) {
             int seen, at;
             if (m->excluded >> k & 1) continue;
-            float cost =
-                neighbour_cost(m, &m->neighbours[k], m->first[i], m->first[i] + pixels, job->planes[i], &seen);
+            float cost = neighbour_cost(m, &m->neighbours[k], m->first[i], m->first[i] + pixels, job->planes[i], &seen);
             if (2 * seen < pixels) cost = 2;
             if (job->occluded && job->occluded[i] >> k & 1) cost = 3;
             for (at = count++; at > 0 && costs[at - 1] > cost; at--) {
@@ -293,8 +292,9 @@ struct calibration {
     double min_inverse_z, max_inverse_z;
     float *best, *mean; /* raw costs over depths, of each segment in each neighbour, or NOT_VISIBLE */
 };
-#define NOT_VISIBLE    2.0f
-#define ALL_NEIGHBOURS 8 /* every so many segments are measured in all neighbours, the others in the first that see them */
+#define NOT_VISIBLE 2.0f
+#define ALL_NEIGHBOURS \
+    8 /* every so many segments are measured in all neighbours, the others in the first that see them */
 
 static void calibrate_segments(void *ctx, size_t begin, size_t end, int thread)
 {

@@ -8,10 +8,14 @@
 
 #define NEAREST_POINTS 8
 
+struct near_point {
+    float u, v, inverse_z;
+};
+
 struct point_evidence {
     int *first; /* count + 1: the points inside segment i are [first[i], first[i + 1]) */
     struct observed_point *points;
-    float *nearest;                            /* NEAREST_POINTS inverse depths per segment, nearest first */
+    struct near_point *nearest;                /* NEAREST_POINTS per segment, nearest first */
     int nearest_count;                         /* 0 if the view has no points */
     double min_inverse_z, max_inverse_z, step; /* range and step of the sweep */
     double inside_weight, nearest_weight, far_weight;

@@ -70,8 +70,8 @@ static enum status fill_segments(struct layered_depth *out, const struct plane_p
         const double good = clamp((double)(MATCH_WORST - match), 0, 1);
         const double agreeing = p->cross ? cross_view_support(p->cross, i, planes[i]) : 0;
         /* the agreement of two other views replaces distinctness; where no view sees the segment, only points count */
-        const double confidence = seen ? good * fmax(distinct[i], fmin(agreeing / 2, 1))
-                                       : point_evidence_support(p->points, i, planes[i]);
+        const double confidence =
+            seen ? good * fmax(distinct[i], fmin(agreeing / 2, 1)) : point_evidence_support(p->points, i, planes[i]);
         /* standard deviation: half a step if confident, a few steps if inherited */
         out->segments[i] = (struct depth_segment){
             .id = (uint32_t)i + 1,

@@ -154,8 +154,7 @@ static void the_unary_term_is_the_sum_of_its_parts(void **state)
                 const float match = rough ? match_cost_rough(&b.matcher, i, p, 0) : match_cost(&b.matcher, i, p, 0);
                 const double points = point_evidence_cost(&b.points, i, p, g->cx, g->cy);
                 b.problem.rough = rough;
-                assert_near(unary_cost(&b.problem, i, p, INFINITY),
-                            g->pixels / 64.0 * ((double)match + points), 1e-5);
+                assert_near(unary_cost(&b.problem, i, p, INFINITY), g->pixels / 64.0 * ((double)match + points), 1e-5);
             }
     }
     bench_release();

@@ -51,13 +51,13 @@ static struct unseen measure(const char *what, const struct layered_depth *d)
             int at;
             bool alone = true;
             for (int k = 0; k < 9 && alone; k++)
-                alone = !is_seen(clamp(x + 8 * (k % 3 - 1), 0, W - 1) + 0.5, clamp(y + 8 * (k / 3 - 1), 0, H - 1) + 0.5);
+                alone =
+                    !is_seen(clamp(x + 8 * (k % 3 - 1), 0, W - 1) + 0.5, clamp(y + 8 * (k / 3 - 1), 0, H - 1) + 0.5);
             if (!alone) continue;
             const double ratio =
                 (double)d->interior.z[y * W + x] / scene_depth(&scene, &scene.views[0], x + 0.5, y + 0.5, &at);
             sum.pixels++;
             sum.good += fabs(ratio - 1) <= 0.02;
-            if (getenv("RATIO") && sum.pixels % 100 == 1) printf("%d %d %.3f true %.3f a %.5f\n", x,y,ratio,scene_depth(&scene, &scene.views[0], x + 0.5, y + 0.5, &at), d->segments[d->interior.id[y * W + x] - 1].plane[0]/d->segments[d->interior.id[y * W + x] - 1].plane[2]);
             sum.near += ratio < 0.95;
             sum.confident += d->segments[d->interior.id[y * W + x] - 1].confidence >= DEPTH_INHERITED;
         }
