@@ -9,6 +9,7 @@
  *   plane_sweep   first round: cost volume over the depth range, smoothed; later rounds start from the previous planes
  *   expand        expansion moves: minimum cuts over planes, slanted where that explains the pictures better
  *   refine        local search with the same energy
+ *   inherit       border areas that nothing holds in the foreground take over what lies behind them
  *   layers        opaque interiors, and mattes at depth edges
  *
  * What differs from the sources: planes may be slanted; sparse points are soft evidence; a round reads the neighbours'
@@ -21,6 +22,7 @@
 
 #include "common/math/numbers.h"
 #include "stages/segment_depth/expand.h"
+#include "stages/segment_depth/inherit.h"
 #include "stages/segment_depth/layers.h"
 #include "stages/segment_depth/plane_sweep.h"
 #include "stages/segment_depth/refine.h"
@@ -43,6 +45,10 @@ static double distinctness(const float *cost, int planes, double at)
     }
     return clamp((double)(rival - near) / 0.4, 0, 1);
 }
+
+/* Standard deviation of a confident and of an inherited depth. */
+#define SURE_STEPS   0.5
+#define UNSURE_STEPS 3.0
 
 static enum status fill_segments(struct layered_depth *out, const struct plane_problem *p, const struct plane *planes,
                                  const double *distinct, struct err *err)
@@ -72,11 +78,10 @@ static enum status fill_segments(struct layered_depth *out, const struct plane_p
         /* the agreement of two other views replaces distinctness; where no view sees the segment, only points count */
         const double confidence =
             seen ? good * fmax(distinct[i], fmin(agreeing / 2, 1)) : point_evidence_support(p->points, i, planes[i]);
-        /* standard deviation: half a step if confident, a few steps if inherited */
         out->segments[i] = (struct depth_segment){
             .id = (uint32_t)i + 1,
             .plane = {planes[i].a, planes[i].b, planes[i].c},
-            .sigma = (0.5 + 2.5 * (1 - confidence)) * p->step / inverse,
+            .sigma = (SURE_STEPS + (UNSURE_STEPS - SURE_STEPS) * (1 - confidence)) * p->step / inverse,
             .confidence = confidence,
         };
     }
@@ -240,6 +245,27 @@ static void solution_release(struct solution *x)
     point_evidence_release(&x->points);
 }
 
+/* Gives floating border areas what lies behind them, without confidence. */
+static enum status inherit(struct layered_depth *out, struct plane *planes, const struct plane_problem *p,
+                           struct err *err)
+{
+    const size_t count = (size_t)out->segment_count + 1;
+    double *confidence = malloc(count * sizeof *confidence);
+    bool *inherited = calloc(count, sizeof *inherited);
+    enum status st = confidence && inherited ? ST_OK : err_nomem(err, "confidences", count * sizeof *confidence);
+    for (int i = 0; !st && i < out->segment_count; i++) confidence[i] = out->segments[i].confidence;
+    if (!st) st = inherit_planes(planes, inherited, confidence, p, err);
+    for (int i = 0; !st && i < out->segment_count; i++)
+        if (inherited[i]) {
+            struct depth_segment *g = &out->segments[i];
+            *g = (struct depth_segment){g->id, g->pixels, {planes[i].a, planes[i].b, planes[i].c}, 0, 0};
+            g->sigma = UNSURE_STEPS * p->step / planes[i].c;
+        }
+    free(confidence);
+    free(inherited);
+    return st;
+}
+
 static enum status solve(struct layered_depth *out, const struct solver *v, struct err *err)
 {
     const struct segmentation *s = v->m->segments;
@@ -253,6 +279,7 @@ static enum status solve(struct layered_depth *out, const struct solver *v, stru
             sweep->cost + (size_t)i * (size_t)sweep->planes, sweep->planes,
             (plane_at(x.planes[i], s->segments[i].cx, s->segments[i].cy) - sweep->min_inverse_z) / sweep->step);
     if (!st) st = fill_segments(out, &x.problem, x.planes, x.distinct, err);
+    if (!st) st = inherit(out, x.planes, &x.problem, err);
     if (!st) st = layers_make(out, s, x.planes, v->picture, sweep->step, !strcmp(v->params->matte, "two_colour"), err);
     solution_release(&x);
     return st;
