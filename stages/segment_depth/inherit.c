@@ -4,15 +4,17 @@
  * changed area there matches badly at every depth that can be seen; so it moves to the front, as a block. Raising the
  * cost of being out of view would cure it, but pushes true foreground away. So blocks are found by what surrounds them.
  *
- * A segment is held if half of the area of it and its neighbours has confidence. Other segments form a block with those
- * of them that lie within `jump` steps across their border. A block floats if it touches the picture's border and more
+ * Two adjacent segments are connected if their planes lie within `jump` steps at their border. A segment is held if half
+ * of the area of it and of those connected to it has confidence. Connected segments that are not held form a block. A
+ * block floats if it touches the picture's border and more
  * than FLOATING of its outline, without that border, lies more than `jump` steps in front of what adjoins. A surface
  * that continues one that was matched does not float, nor does a blank one with a matched rim.
  *
- * A floating block takes over what lies behind: inverse depths d that are harmonic on the segment graph,
- *   d_i = sum_j w_ij d_j / sum_j w_ij   over the adjacent segments, with the weights of the smoothness cost,
- * with those of the adjoining segments given; only of the farther ones, if they differ by more than `jump`. Blocks may
- * float on blocks, so this is repeated ROUNDS times. */
+ * A floating block takes over what lies behind: planes P that are harmonic on the segment graph,
+ *   P_i = sum_j w_ij P_j / sum_j w_ij   over the adjacent segments, with the weights of the smoothness cost,
+ * with those of the adjoining segments given; only of the farther ones, if they differ by more than `jump`. So it
+ * continues a slanted surface, and blends different ones. Blocks may float on blocks, so this is repeated ROUNDS
+ * times. */
 #include "stages/segment_depth/inherit.h"
 
 #include <math.h>
@@ -30,27 +32,12 @@ struct inherit {
     const struct plane_problem *p;
     const struct segmentation *s;
     struct plane *planes;
-    const bool *held;
-    int *block;    /* of each segment: its first segment + 1; 0: none yet, or held */
-    int *members;  /* of the block */
-    double *depth; /* inverse, of each segment of the block */
-    double *rim;   /* inverse depths of the adjoining segments */
+    bool *held;
+    int *block;           /* of each segment: its first segment + 1; 0: none yet, or held */
+    int *members;         /* of the block */
+    struct plane *behind; /* of each segment of the block: what it takes over */
+    double *rim;          /* inverse depths of the adjoining segments */
 };
-
-static bool *find_held(const struct segmentation *s, const double *confidence, const struct given_depth *given)
-{
-    bool *held = calloc((size_t)s->count + 1, sizeof *held);
-    for (int i = 0; held && i < s->count; i++) {
-        int area = 0, sure = 0;
-        for (int t = s->first_border[i] - 1; t < s->first_border[i + 1]; t++) {
-            const int j = t < s->first_border[i] ? i : s->borders[t].other;
-            area += s->segments[j].pixels;
-            if (confidence[j] >= DEPTH_INHERITED) sure += s->segments[j].pixels;
-        }
-        held[i] = given_depth_has(given, i) || 2 * sure >= area;
-    }
-    return held;
-}
 
 /* Steps by which segment i lies in front of the other side of its border t. */
 static double steps_in_front(const struct inherit *x, int i, int t)
@@ -58,6 +45,26 @@ static double steps_in_front(const struct inherit *x, int i, int t)
     const struct border *b = &x->s->borders[t];
     const double u = (double)b->u, v = (double)b->v;
     return (plane_at(x->planes[i], u, v) - plane_at(x->planes[b->other], u, v)) / x->p->step;
+}
+
+static bool connected(const struct inherit *x, int i, int t)
+{
+    return fabs(steps_in_front(x, i, t)) <= x->p->params->jump;
+}
+
+static void find_held(struct inherit *x, const double *confidence)
+{
+    const struct segmentation *s = x->s;
+    for (int i = 0; i < s->count; i++) {
+        int area = s->segments[i].pixels, sure = confidence[i] >= DEPTH_INHERITED ? area : 0;
+        for (int t = s->first_border[i]; t < s->first_border[i + 1]; t++) {
+            const int j = s->borders[t].other;
+            if (!connected(x, i, t)) continue;
+            area += s->segments[j].pixels;
+            if (confidence[j] >= DEPTH_INHERITED) sure += s->segments[j].pixels;
+        }
+        x->held[i] = given_depth_has(x->p->given, i) || 2 * sure >= area;
+    }
 }
 
 /* Lists the block of segment `from` in members; returns how many. */
@@ -69,7 +76,7 @@ static int gather_block(struct inherit *x, int from)
     for (int k = 0; k < count; k++)
         for (int i = x->members[k], t = x->s->first_border[i]; t < x->s->first_border[i + 1]; t++) {
             const int j = x->s->borders[t].other;
-            if (x->block[j] || x->held[j] || !(fabs(steps_in_front(x, i, t)) <= x->p->params->jump)) continue;
+            if (x->block[j] || x->held[j] || !connected(x, i, t)) continue;
             x->block[j] = from + 1;
             x->members[count++] = j;
         }
@@ -108,7 +115,7 @@ static double farther_side(struct inherit *x, int count)
     if (!rim) return 0;
     sort_doubles(x->rim, rim);
     const double low = x->rim[rim / 10], high = x->rim[rim - 1 - rim / 10];
-    return high - low > x->p->params->jump * x->p->step ? 0.5 * (low + high) : INFINITY;
+    return fmax(0.5 * (low + high), low + x->p->params->jump * x->p->step);
 }
 
 static void take_over(struct inherit *x, int count, bool *inherited)
@@ -116,26 +123,32 @@ static void take_over(struct inherit *x, int count, bool *inherited)
     const struct segmentation *s = x->s;
     const int own = x->block[x->members[0]];
     const double limit = farther_side(x, count);
-    for (int k = 0; k < count; k++) x->depth[x->members[k]] = 0; /* unknown yet */
+    for (int k = 0; k < count; k++) x->behind[x->members[k]] = (struct plane){0, 0, 0}; /* unknown yet */
     for (int round = 0; round < ITERATIONS; round++)
         for (int n = 0; n < count; n++) {
             const int i = x->members[round & 1 ? count - 1 - n : n];
-            double sum = 0, weight = 0;
+            struct plane sum = {0, 0, 0};
+            double total = 0;
             for (int t = s->first_border[i]; t < s->first_border[i + 1]; t++) {
                 const struct border *b = &s->borders[t];
                 const bool inside = x->block[b->other] == own;
-                const double d =
-                    inside ? x->depth[b->other] : plane_at(x->planes[b->other], (double)b->u, (double)b->v);
-                if (!(d > 0) || (!inside && d > limit)) continue;
-                sum += (double)x->p->weights[t] * d;
-                weight += (double)x->p->weights[t];
+                const struct plane other = (inside ? x->behind : x->planes)[b->other];
+                const double d = plane_at(other, (double)b->u, (double)b->v), w = (double)x->p->weights[t];
+                if (inside ? !(other.c != 0) : !(d > 0) || d > limit) continue;
+                sum = (struct plane){sum.a + w * other.a, sum.b + w * other.b, sum.c + w * other.c};
+                total += w;
             }
-            if (weight > 0) x->depth[i] = sum / weight;
+            if (total > 0) x->behind[i] = (struct plane){sum.a / total, sum.b / total, sum.c / total};
         }
     for (int k = 0; k < count; k++) {
         const int i = x->members[k];
-        if (!(x->depth[i] > 0)) continue;
-        x->planes[i] = (struct plane){0, 0, clamp(x->depth[i], x->p->min_inverse_z, x->p->max_inverse_z)};
+        const struct segment *g = &s->segments[i];
+        struct plane plane = x->behind[i];
+        if (!(plane.c != 0)) continue;
+        if (!plane_within(plane, g, x->p->min_inverse_z, x->p->max_inverse_z))
+            plane =
+                (struct plane){0, 0, clamp(plane_at(plane, g->cx, g->cy), x->p->min_inverse_z, x->p->max_inverse_z)};
+        x->planes[i] = plane;
         inherited[i] = true;
     }
 }
@@ -145,20 +158,21 @@ enum status inherit_planes(struct plane *planes, bool *inherited, const double *
 {
     const struct segmentation *s = p->m->segments;
     const size_t count = (size_t)s->count + 1, borders = (size_t)s->first_border[s->count] + 1;
-    bool *held = find_held(s, confidence, p->given);
-    struct inherit x = {.p = p, .s = s, .planes = planes, .held = held};
+    struct inherit x = {.p = p, .s = s, .planes = planes};
+    x.held = malloc(count * sizeof *x.held);
     x.block = malloc(count * sizeof *x.block);
     x.members = malloc(count * sizeof *x.members);
-    x.depth = malloc(count * sizeof *x.depth);
+    x.behind = malloc(count * sizeof *x.behind);
     x.rim = malloc(borders * sizeof *x.rim);
-    const enum status st = held && x.block && x.members && x.depth && x.rim
+    const enum status st = x.held && x.block && x.members && x.behind && x.rim
                                ? ST_OK
-                               : err_nomem(err, "blocks of segments", count * 24 + borders * sizeof *x.rim);
+                               : err_nomem(err, "blocks of segments", count * 33 + borders * sizeof *x.rim);
     for (int round = 0; !st && round < ROUNDS; round++) {
         bool changed = false;
+        find_held(&x, confidence);
         for (int i = 0; i < s->count; i++) x.block[i] = 0;
         for (int i = 0; i < s->count; i++) {
-            if (x.block[i] || held[i]) continue;
+            if (x.block[i] || x.held[i]) continue;
             const int members = gather_block(&x, i);
             if (!floats(&x, members)) continue;
             take_over(&x, members, inherited);
@@ -166,10 +180,10 @@ enum status inherit_planes(struct plane *planes, bool *inherited, const double *
         }
         if (!changed) break;
     }
-    free(held);
+    free(x.held);
     free(x.block);
     free(x.members);
-    free(x.depth);
+    free(x.behind);
     free(x.rim);
     return st;
 }

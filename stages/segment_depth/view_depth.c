@@ -259,7 +259,8 @@ static enum status inherit(struct layered_depth *out, struct plane *planes, cons
         if (inherited[i]) {
             struct depth_segment *g = &out->segments[i];
             *g = (struct depth_segment){g->id, g->pixels, {planes[i].a, planes[i].b, planes[i].c}, 0, 0};
-            g->sigma = UNSURE_STEPS * p->step / planes[i].c;
+            g->sigma = UNSURE_STEPS * p->step /
+                       plane_at(planes[i], p->m->segments->segments[i].cx, p->m->segments->segments[i].cy);
         }
     free(confidence);
     free(inherited);
