@@ -6,9 +6,10 @@
  *
  * Two adjacent segments are connected if their planes lie within `jump` steps at their border. A segment is held if half
  * of the area of it and of those connected to it has confidence. Connected segments that are not held form a block. A
- * block floats if it touches the picture's border and more
- * than FLOATING of its outline, without that border, lies more than `jump` steps in front of what adjoins. A surface
- * that continues one that was matched does not float, nor does a blank one with a matched rim.
+ * block floats if it touches the picture's border, and more than FLOATING of its outline (without that border) lies more
+ * than `jump` steps in front of what adjoins. The outline is weighted as the smoothness cost is: contact with an object
+ * of another colour hardly counts. A surface that continues one that was matched does not float, nor does a blank one
+ * with a matched rim.
  *
  * A floating block takes over what lies behind: planes P that are harmonic on the segment graph,
  *   P_i = sum_j w_ij P_j / sum_j w_ij   over the adjacent segments, with the weights of the smoothness cost,
@@ -94,8 +95,8 @@ static bool floats(const struct inherit *x, int count)
         at_border = at_border || !g->x0 || !g->y0 || g->x1 == x->s->width - 1 || g->y1 == x->s->height - 1;
         for (int t = x->s->first_border[i]; t < x->s->first_border[i + 1]; t++) {
             if (x->block[x->s->borders[t].other] == own) continue;
-            outline += x->s->borders[t].length;
-            if (steps_in_front(x, i, t) > x->p->params->jump) front += x->s->borders[t].length;
+            outline += (double)x->p->weights[t];
+            if (steps_in_front(x, i, t) > x->p->params->jump) front += (double)x->p->weights[t];
         }
     }
     return at_border && outline > 0 && front > FLOATING * outline;
