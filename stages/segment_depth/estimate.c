@@ -10,22 +10,23 @@
 #include "common/base/textfile.h"
 #include "stages/segment_depth/neighbours.h"
 
-/* User seconds and peak memory per view, measured with --threads 1 on one core of a 2-core machine. Interior of 0.73
- * megapixels with 1, 2, 4 and 8 neighbours: 5, 9, 12 and 15 core-seconds per megapixel in the first round, 7 in the
- * second (4 neighbours); 250 MiB per megapixel. Pair of 0.37 megapixels: 5 and 3.6. Facade of 1.9 megapixels: 16. */
+/* User seconds and peak memory per view, measured with --threads 1 on one core of a 2-core machine. Views of 0.39
+ * megapixels: 11 core-seconds per megapixel in the first round and 8 in the second with 4 neighbours, 14 and 10 with 8
+ * of which each segment is matched with 4; 250 MiB per megapixel with 4. */
 static const struct {
     double seconds, seconds_neighbour; /* per megapixel: over-segmentation, features, sweep, layers */
     double pass, pass_neighbour; /* per megapixel and pass with segments of 64 pixels; x 8 / sqrt(segment_pixels) */
     double later;                /* cost of a later round's passes relative to the first round's */
     double mib, mib_megapixel, mib_neighbour; /* the program itself; per megapixel; per megapixel and neighbour */
-} cost = {1, 0.45, 0.6, 0.62, 0.42, 20, 110, 28};
+} cost = {1, 0.45, 0.6, 0.62, 0.5, 20, 110, 28};
 
 struct depth_work depth_work(double pixels, int neighbours, bool first, const struct segment_params *params)
 {
+    const int matched = neighbours < params->best_neighbours ? neighbours : params->best_neighbours;
     const double mp = pixels * 1e-6, passes = params->passes * sqrt(64.0 / params->segment_pixels);
     return (struct depth_work){
         .core_seconds = mp * (cost.seconds + cost.seconds_neighbour * neighbours +
-                              passes * (first ? 1 : cost.later) * (cost.pass + cost.pass_neighbour * neighbours)),
+                              passes * (first ? 1 : cost.later) * (cost.pass + cost.pass_neighbour * matched)),
         .mib = cost.mib + mp * (cost.mib_megapixel + cost.mib_neighbour * neighbours),
     };
 }

@@ -56,7 +56,8 @@ enum status matcher_init(struct matcher *m, const struct segmentation *s, const 
     const double gain[3] = {1, 1, 1};
     double jacobian[2][2] = {{1, 0}, {0, 1}};
     size_t room = 0;
-    *m = (struct matcher){.segments = s, .good_cost = 0, .chance_cost = 1, .noise = image_noise(reference)};
+    *m = (struct matcher){
+        .segments = s, .good_cost = 0, .chance_cost = 1, .ranks = MAX_NEIGHBOURS, .noise = image_noise(reference)};
     m->first = malloc(((size_t)s->count + 1) * sizeof *m->first);
     if (!m->first) return err_nomem(err, "a matcher", (size_t)s->count * sizeof *m->first);
     for (int k = 0; k < s->count; k++) {
@@ -218,5 +219,6 @@ void matcher_release(struct matcher *m)
     free(m->y);
     free(m->features);
     free(m->weight);
+    free(m->use);
     *m = (struct matcher){0};
 }

@@ -6,7 +6,8 @@
  * of colours and gradients, as in [Bleyer 2011]; the segment's is the weighted mean over the pixels that the neighbour
  * sees. Costs are normalized so that 0 is a good match of this view and 1 a chance one (matcher_calibrate()), and
  * clamped to [MATCH_BEST, MATCH_WORST]. The neighbours' costs are sorted and averaged with weights that fall by
- * RANK_WEIGHT: the segment may be occluded in the worse ones.
+ * RANK_WEIGHT: the segment may be occluded in the worse ones. Only the best `ranks` count, and after matcher_select() a
+ * segment is compared with no others.
  *
  * A texture element has 2 x FEATURE_CHANNELS bytes, those of a pixel and of the pixel below. 32 bytes from one address
  * hold the four corners of a bilinear sample: _mm256_maddubs_epi16 weighs them in vertical pairs, and the two columns
@@ -152,9 +153,11 @@ static float neighbour_cost(const struct matcher *m, const struct match_neighbou
 }
 
 /* The segment's cost over all neighbours; one that sees less than half of the pixels does not see the segment. */
-static float ranked_cost(const struct matcher *m, int segment, int pixels, struct plane plane, unsigned occluded)
+static inline float ranked_cost(const struct matcher *m, int segment, int pixels, struct plane plane, unsigned use,
+                                unsigned occluded, unsigned *best)
 {
     float costs[MAX_NEIGHBOURS];
+    unsigned order[MAX_NEIGHBOURS];
     const int begin = m->first[segment],
               end = pixels < m->segments->segments[segment].pixels ? begin + pixels : m->first[segment + 1];
     const float out_of_view = m->out_of_view_cost ? m->out_of_view_cost[segment] : OUT_OF_VIEW_COST;
@@ -162,7 +165,7 @@ static float ranked_cost(const struct matcher *m, int segment, int pixels, struc
     int useful = 0;
     for (int k = 0; k < m->neighbour_count; k++) {
         int seen = pixels, at;
-        if (m->excluded >> k & 1) continue;
+        if (!(use >> k & 1)) continue;
         useful++;
         float cost = m->occluded_cost ? m->occluded_cost[segment] : OCCLUDED_COST;
         if (!(occluded >> k & 1))
@@ -170,10 +173,16 @@ static float ranked_cost(const struct matcher *m, int segment, int pixels, struc
                    (m->chance_cost - m->good_cost);
         if (2 * seen < pixels) continue;
         cost = fminf(fmaxf(cost, MATCH_BEST), MATCH_WORST);
-        for (at = count++; at > 0 && costs[at - 1] > cost; at--) costs[at] = costs[at - 1];
+        for (at = count++; at > 0 && costs[at - 1] > cost; at--) {
+            costs[at] = costs[at - 1];
+            order[at] = order[at - 1];
+        }
         costs[at] = cost;
+        order[at] = 1u << k;
     }
+    for (int k = 0; best && k < count && k < m->ranks; k++) *best |= order[k];
     double sum = 0, total = 0, weight = 1;
+    if (useful > m->ranks) useful = m->ranks;
     for (int k = 0; k < useful; k++, weight *= RANK_WEIGHT) {
         sum += weight * (double)(k < count ? costs[k] : out_of_view);
         total += weight;
@@ -181,9 +190,15 @@ static float ranked_cost(const struct matcher *m, int segment, int pixels, struc
     return useful ? (float)(sum / total) : out_of_view;
 }
 
+static unsigned neighbours_of(const struct matcher *m, int segment)
+{
+    return (m->use ? m->use[segment] : ~0u) & ~m->excluded;
+}
+
 float match_cost(const struct matcher *m, int segment, struct plane plane, unsigned occluded)
 {
-    return ranked_cost(m, segment, m->segments->segments[segment].pixels, plane, occluded);
+    return ranked_cost(m, segment, m->segments->segments[segment].pixels, plane, neighbours_of(m, segment), occluded,
+                       NULL);
 }
 
 /* A fourth of a segment's pixels, rounded up to groups of eight. */
@@ -195,7 +210,82 @@ static int rough_pixels(int pixels)
 
 float match_cost_rough(const struct matcher *m, int segment, struct plane plane, unsigned occluded)
 {
-    return ranked_cost(m, segment, rough_pixels(m->segments->segments[segment].pixels), plane, occluded);
+    return ranked_cost(m, segment, rough_pixels(m->segments->segments[segment].pixels), plane,
+                       neighbours_of(m, segment), occluded, NULL);
+}
+
+float match_cost_sweep(const struct matcher *m, int segment, struct plane plane, unsigned use, unsigned *best)
+{
+    if (best) *best = 0;
+    return ranked_cost(m, segment, rough_pixels(m->segments->segments[segment].pixels), plane, use & ~m->excluded, 0,
+                       best);
+}
+
+int match_evidence(const struct matcher *m, int segment, struct plane plane, unsigned occluded, float *cost)
+{
+    float costs[MAX_NEIGHBOURS];
+    const int begin = m->first[segment], end = m->first[segment + 1], pixels = m->segments->segments[segment].pixels;
+    int count = 0;
+    for (int k = 0; k < m->neighbour_count; k++) {
+        int seen, at;
+        if ((m->excluded | occluded) >> k & 1) continue;
+        const float raw = neighbour_cost(m, &m->neighbours[k], begin, end, plane, &seen);
+        if (2 * seen < pixels) continue;
+        const float own = fminf(fmaxf((raw - m->good_cost) / (m->chance_cost - m->good_cost), MATCH_BEST), MATCH_WORST);
+        for (at = count++; at > 0 && costs[at - 1] > own; at--) costs[at] = costs[at - 1];
+        costs[at] = own;
+    }
+    double sum = 0, total = 0, weight = 1;
+    for (int k = 0; k < count && k < m->ranks; k++, weight *= RANK_WEIGHT) {
+        sum += weight * (double)costs[k];
+        total += weight;
+    }
+    *cost = count ? (float)(sum / total) : MATCH_WORST;
+    return count;
+}
+
+struct selection {
+    struct matcher *m;
+    const struct plane *planes;
+    const unsigned *occluded;
+};
+
+static void select_neighbours(void *ctx, size_t begin, size_t end, int thread)
+{
+    const struct selection *job = ctx;
+    struct matcher *m = job->m;
+    (void)thread;
+    for (size_t i = begin; i < end; i++) {
+        const int pixels = rough_pixels(m->segments->segments[i].pixels);
+        float costs[MAX_NEIGHBOURS];
+        int order[MAX_NEIGHBOURS], count = 0;
+        for (int k = 0; k < m->neighbour_count; k++) {
+            int seen, at;
+            if (m->excluded >> k & 1) continue;
+            float cost = neighbour_cost(m, &m->neighbours[k], m->first[i], m->first[i] + pixels, job->planes[i], &seen);
+            if (2 * seen < pixels) cost = 2;
+            if (job->occluded && job->occluded[i] >> k & 1) cost = 3;
+            for (at = count++; at > 0 && costs[at - 1] > cost; at--) {
+                costs[at] = costs[at - 1];
+                order[at] = order[at - 1];
+            }
+            costs[at] = cost;
+            order[at] = k;
+        }
+        m->use[i] = 0;
+        for (int n = 0; n < count && n < m->ranks; n++) m->use[i] |= 1u << order[n];
+    }
+}
+
+enum status matcher_select(struct matcher *m, const struct plane *planes, const unsigned *occluded, struct err *err)
+{
+    if (m->neighbour_count <= m->ranks) return ST_OK;
+    unsigned *use = malloc(((size_t)m->segments->count + 1) * sizeof *use);
+    if (!use) return err_nomem(err, "neighbours of segments", (size_t)m->segments->count * sizeof *use);
+    m->use = use;
+    struct selection job = {m, planes, occluded};
+    parallel_for((size_t)m->segments->count, 64, select_neighbours, &job);
+    return ST_OK;
 }
 
 struct calibration {
@@ -204,6 +294,8 @@ struct calibration {
     float *best, *mean; /* raw costs over depths, of each segment in each neighbour, or NOT_VISIBLE */
 };
 #define NOT_VISIBLE 2.0f
+#define ALL_NEIGHBOURS \
+    8 /* every so many segments are measured in all neighbours, the others in the first that see them */
 
 static void calibrate_segments(void *ctx, size_t begin, size_t end, int thread)
 {
@@ -211,12 +303,15 @@ static void calibrate_segments(void *ctx, size_t begin, size_t end, int thread)
     const struct calibration *job = ctx;
     const struct matcher *m = job->m;
     (void)thread;
-    for (size_t i = begin; i < end; i++)
+    for (size_t i = begin; i < end; i++) {
+        int visible = 0;
         for (int k = 0; k < m->neighbour_count; k++) {
             const int pixels = rough_pixels(m->segments->segments[i].pixels);
             const size_t at = i * MAX_NEIGHBOURS + (size_t)k;
             double best = 1, sum = 0;
             int count = 0;
+            job->best[at] = job->mean[at] = NOT_VISIBLE;
+            if (visible >= m->ranks && i % ALL_NEIGHBOURS) continue;
             for (int d = 0; d < DEPTHS; d++) {
                 const struct plane plane = {
                     0, 0, job->min_inverse_z + (job->max_inverse_z - job->min_inverse_z) * d / (DEPTHS - 1)};
@@ -228,9 +323,12 @@ static void calibrate_segments(void *ctx, size_t begin, size_t end, int thread)
                 sum += cost;
                 count++;
             }
-            job->best[at] = 2 * count >= DEPTHS ? (float)best : NOT_VISIBLE;
-            job->mean[at] = 2 * count >= DEPTHS ? (float)(sum / count) : NOT_VISIBLE;
+            if (2 * count < DEPTHS) continue;
+            visible++;
+            job->best[at] = (float)best;
+            job->mean[at] = (float)(sum / count);
         }
+    }
 }
 
 /* Means over segments [begin, end) and the neighbours in the bit set `use`. False if none of the segments is visible in
@@ -328,11 +426,12 @@ void match_prefetch(const struct matcher *m, int segment, struct plane plane)
 {
     const struct segment *g = &m->segments->segments[segment];
     const double d = plane_at(plane, g->cx, g->cy);
+    const unsigned use = neighbours_of(m, segment);
     if (g->x1 - g->x0 > MAX_PREFETCH || g->y1 - g->y0 > MAX_PREFETCH) return;
     for (int k = 0; k < m->neighbour_count; k++) {
         const struct match_neighbour *n = &m->neighbours[k];
         double p[3];
-        if (m->excluded >> k & 1) continue;
+        if (!(use >> k & 1)) continue;
         for (int i = 0; i < 3; i++)
             p[i] = n->base[i][0] * g->cx + n->base[i][1] * g->cy + n->base[i][2] + n->shift[i] * d;
         if (!(p[2] > 1e-9)) continue;

@@ -45,6 +45,8 @@ struct matcher {
     int *weight;       /* of each pixel, in the order of neighbour_cost()'s sums */
     struct match_neighbour neighbours[MAX_NEIGHBOURS];
     int neighbour_count;
+    int ranks;                    /* how many of the neighbours' costs count: the lowest */
+    unsigned *use;                /* of each segment, bit k: matched with neighbour k; NULL: with all */
     float noise;                  /* of the view, grey levels */
     unsigned excluded;            /* bit k: neighbour k hardly tells good matches from chance ones; ignored */
     float good_cost, chance_cost; /* raw costs of a good match and of a chance one */
@@ -85,12 +87,20 @@ enum status matcher_add(struct matcher *m, const struct camera_set *set, int vie
  * drawn to where it is visible. Neighbours of much less contrast than the best one are excluded. Call it once, after
  * the last matcher_add() and before the first cost. */
 enum status matcher_calibrate(struct matcher *m, double min_inverse_z, double max_inverse_z, struct err *err);
+/* Restricts each segment to the `ranks` neighbours that match its plane best. occluded: of each segment, as
+ * match_cost(), or NULL; a neighbour that does not see it comes last. */
+enum status matcher_select(struct matcher *m, const struct plane *planes, const unsigned *occluded, struct err *err);
 void matcher_release(struct matcher *m);
 
 /* The matching cost of a segment on a plane. occluded: bit k is set if the segment is occluded in neighbour k. */
 float match_cost(const struct matcher *m, int segment, struct plane plane, unsigned occluded);
 /* The same from every fourth pixel, in a fourth of the time. */
 float match_cost_rough(const struct matcher *m, int segment, struct plane plane, unsigned occluded);
+/* The same of the neighbours in the bit set `use`; *best (may be NULL): those that count. */
+float match_cost_sweep(const struct matcher *m, int segment, struct plane plane, unsigned use, unsigned *best);
+/* The mean cost by rank of the neighbours that see the segment on the plane; MATCH_WORST if none does. Returns how many
+ * do. */
+int match_evidence(const struct matcher *m, int segment, struct plane plane, unsigned occluded, float *cost);
 /* Prefetches the neighbours' pixels for a match_cost() that follows soon. */
 void match_prefetch(const struct matcher *m, int segment, struct plane plane);
 

@@ -32,21 +32,24 @@ float unary_cost(const struct plane_problem *p, int segment, struct plane plane,
     if (!plane_within(plane, g, p->min_inverse_z, p->max_inverse_z)) return PLANE_FORBIDDEN;
     unsigned occluded = 0;
     const float size = (float)g->pixels / (float)p->params->segment_pixels;
-    const float slant = plane.a != 0 || plane.b != 0 ? (float)p->params->slant : 0;
     float data = p->cross ? (float)p->params->cross_view * cross_view_cost(p->cross, segment, plane, &occluded) : 0;
     data += (float)point_evidence_cost(p->points, segment, plane, g->cx, g->cy);
-    if (size * (data + match_lower_bound(p, segment, plane)) + slant > max_cost) return PLANE_FORBIDDEN;
+    if (size * (data + match_lower_bound(p, segment, plane)) > max_cost) return PLANE_FORBIDDEN;
     data += (p->rough ? match_cost_rough : match_cost)(p->m, segment, plane, occluded);
-    return size * data + slant;
+    return size * data;
 }
+
+static int slants(struct plane p) { return p.a != 0 || p.b != 0; }
 
 double pairwise_cost(const struct plane_problem *p, int segment, int border, struct plane own, struct plane other)
 {
     const struct border *t = &p->m->segments->borders[border];
     const struct segment *g = &p->m->segments->segments[segment], *h = &p->m->segments->segments[t->other];
     const double a = own.a - other.a, b = own.b - other.b, c = own.c - other.c;
+    if (a == 0 && b == 0 && c == 0) return 0;
     const double gap = fabs(a * (double)t->u + b * (double)t->v + c) + 0.5 * fabs(a * g->cx + b * g->cy + c) +
                        0.5 * fabs(a * h->cx + b * h->cy + c);
     const double steps = 0.5 * gap / p->step, jump = p->params->jump;
-    return p->params->smoothness * (double)p->weights[border] * (steps < jump ? steps / jump : 1);
+    const double slant = p->slant * t->length * (slants(own) + slants(other));
+    return p->params->smoothness * (double)p->weights[border] * (steps < jump ? steps / jump : 1) + slant;
 }

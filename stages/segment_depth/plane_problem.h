@@ -1,15 +1,23 @@
 /* plane_problem.h - the energy of an assignment of planes to segments.
  *
- *   E(P) = sum over segments i       size_i (match_cost + points + cross_view) + slant [P_i is not constant]   (unary)
- *        + sum over adjacent i, j    smoothness w_ij min(gap(P_i, P_j) / step, jump) / jump                   
- * (pairwise)
+ *   E(P) = sum over segments i       size_i (match_cost + points + cross_view)                                (unary)
+ *        + sum over adjacent i, j    smoothness w_ij min(gap(P_i, P_j) / step, jump) / jump              (pairwise)
+ *                                    + slant length_ij [P_i != P_j] (slanted(P_i) + slanted(P_j))
  *
  * A segment whose depth is given has one plane, of cost 0; any other costs PLANE_FORBIDDEN. size_i is in mean segments.
  * The gap is the mean difference of the two planes' inverse depths at the middle of the border and at both centroids:
  * zero for equal planes, so that a surface slants at no cost, and never more than the sum over a third plane
- * (metric). */
+ * (metric).
+ *
+ * length_ij is the border's, in outlines of half a mean segment: 2 sqrt(segment_pixels). A slanted plane pays along its
+ * outline, not in each segment: the segments that share it pay nothing between them, so that a wall seen at an angle
+ * continues on its plane where no picture decides. This stands in for a cost paid once per plane [Delong 2012], which
+ * needs all segments of a plane at once; here a move sees a region only, and regions move in parallel. It is a metric
+ * too: for P != Q, s(P) + s(Q) <= s(P) + 2 s(R) + s(Q). */
 #ifndef REMODEL_PLANE_PROBLEM_H
 #define REMODEL_PLANE_PROBLEM_H
+
+#include <math.h>
 
 #include "stages/segment_depth/cross_view.h"
 #include "stages/segment_depth/given_depth.h"
@@ -26,12 +34,18 @@ struct plane_problem { /* borrows all that it points to */
     const struct given_depth *given; /* NULL if no depth is given */
     const float *weights;            /* of each border, as border_weights() */
     const struct segment_params *params;
+    double slant;                              /* problem_slant(), per pixel of a border */
     double min_inverse_z, max_inverse_z, step; /* range and step of the sweep */
     const float *cost; /* `planes` matching costs per segment, at the sweep's depths; NULL after the first round */
     int planes;
     const float *min_match; /* after the first round: lower bound of each match cost, approximate; or NULL */
     bool rough;             /* match every fourth pixel only */
 };
+
+static inline double problem_slant(const struct segment_params *params)
+{
+    return params->slant / (2 * sqrt(params->segment_pixels));
+}
 
 /* Later rounds start from the planes of the previous one and need fewer passes. */
 static inline int problem_passes(const struct plane_problem *p)

@@ -70,12 +70,16 @@ static void sweep_segments(void *ctx, size_t begin, size_t end, int thread)
             }
             continue;
         }
+        unsigned best = 0;
         for (int p = 0; p < w->planes; p++) {
             const struct plane plane = facing_plane(w, p);
             struct plane horizontal;
-            cost[p] = match_cost_rough(job->m, (int)i, plane, 0);
+            /* planes are about a pixel apart: the neighbours that match one best match the next one best */
+            const bool known = p & 1 && __builtin_popcount(best) == job->m->ranks;
+            cost[p] = match_cost_sweep(job->m, (int)i, plane, known ? best : ~0u, &best);
             if (horizontal_plane(job, g, p, &horizontal)) {
-                const float other = match_cost_rough(job->m, (int)i, horizontal, 0) + (float)job->params->slant;
+                const float other =
+                    match_cost_sweep(job->m, (int)i, horizontal, best, NULL) + (float)job->params->slant;
                 cost[p] = other < cost[p] ? other : cost[p];
             }
             energy[p] = size * (cost[p] + (float)point_evidence_cost(job->points, (int)i, plane, g->cx, g->cy));

@@ -3,8 +3,8 @@
  *   cost = inside_weight  sum over the n points inside the segment of min(1, |plane - 1/z| / (2 step)) / (n + 1)
  *        + nearest_weight min over the nearest points of min(1, |plane - 1/z| / tolerance)
  *        + far_weight     (1/z - min_inverse_z) / (max_inverse_z - min_inverse_z)
- * Points inside a segment measure its depth. A textureless segment without points most likely has the depth of a point
- * nearby in place and colour: the minimum lets any of them explain it. The last term prefers the farthest, since the
+ * with the plane taken at the point. Points inside a segment measure its depth. A textureless segment without points
+ * most likely lies on a plane with a point nearby in place and colour: the minimum lets any of them explain it. The last term prefers the farthest, since the
  * edges of a flat region belong to the surface in front of it. All are soft: they decide where the pictures do not. */
 #include "stages/segment_depth/point_evidence.h"
 
@@ -63,8 +63,8 @@ static void find_nearest(void *ctx, size_t begin, size_t end, int thread)
     (void)thread;
     for (size_t i = begin; i < end; i++) {
         const struct segment *g = &job->s->segments[i];
-        float key[5], distance[NEAREST_POINTS], *depth = job->e->nearest + i * NEAREST_POINTS;
-        int count = 0;
+        float key[5], distance[NEAREST_POINTS];
+        int nearest[NEAREST_POINTS], count = 0;
         fill_key(key, g, g->cx, g->cy, job->place);
         for (int p = 0; p < points; p++) {
             float d = 0;
@@ -73,10 +73,15 @@ static void find_nearest(void *ctx, size_t begin, size_t end, int thread)
             int at = count < keep ? count++ : count - 1;
             for (; at > 0 && distance[at - 1] > d; at--) {
                 distance[at] = distance[at - 1];
-                depth[at] = depth[at - 1];
+                nearest[at] = nearest[at - 1];
             }
             distance[at] = d;
-            depth[at] = (float)job->e->points[p].inverse_z;
+            nearest[at] = p;
+        }
+        for (int k = 0; k < count; k++) {
+            const struct observed_point *p = &job->e->points[nearest[k]];
+            job->e->nearest[i * NEAREST_POINTS + (size_t)k] =
+                (struct near_point){(float)p->u, (float)p->v, (float)p->inverse_z};
         }
     }
 }
@@ -131,9 +136,23 @@ double point_evidence_cost(const struct point_evidence *e, int segment, struct p
         inside += fmin(1, fabs(plane_at(plane, p->u, p->v) - p->inverse_z) / (2 * e->step));
     }
     if (begin < end) inside /= end - begin + 1.0; /* a single point counts half as much as many */
-    const float *depth = e->nearest + (size_t)segment * NEAREST_POINTS;
+    const struct near_point *near = e->nearest + (size_t)segment * NEAREST_POINTS;
     double tolerance = fmax(TOLERANCE * (e->max_inverse_z - e->min_inverse_z), TOLERANCE_STEPS * e->step);
-    for (int k = 0; k < e->nearest_count; k++) nearest = fmin(nearest, fabs(here - (double)depth[k]) / tolerance);
+    for (int k = 0; k < e->nearest_count; k++)
+        nearest =
+            fmin(nearest,
+                 fabs(plane_at(plane, (double)near[k].u, (double)near[k].v) - (double)near[k].inverse_z) / tolerance);
     double far = fmin(fmax((here - e->min_inverse_z) / (e->max_inverse_z - e->min_inverse_z), 0), 1);
     return e->inside_weight * inside + (e->nearest_count ? e->nearest_weight * nearest : 0) + e->far_weight * far;
+}
+
+double point_evidence_support(const struct point_evidence *e, int segment, struct plane plane)
+{
+    const int begin = e->first[segment], end = e->first[segment + 1];
+    int near = 0;
+    for (int i = begin; i < end; i++) {
+        const struct observed_point *p = &e->points[i];
+        near += fabs(plane_at(plane, p->u, p->v) - p->inverse_z) <= 2 * e->step;
+    }
+    return near / (end - begin + 1.0);
 }

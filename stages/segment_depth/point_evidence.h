@@ -8,10 +8,14 @@
 
 #define NEAREST_POINTS 8
 
+struct near_point {
+    float u, v, inverse_z;
+};
+
 struct point_evidence {
     int *first; /* count + 1: the points inside segment i are [first[i], first[i + 1]) */
     struct observed_point *points;
-    float *nearest;                            /* NEAREST_POINTS inverse depths per segment, nearest first */
+    struct near_point *nearest;                /* NEAREST_POINTS per segment, nearest first */
     int nearest_count;                         /* 0 if the view has no points */
     double min_inverse_z, max_inverse_z, step; /* range and step of the sweep */
     double inside_weight, nearest_weight, far_weight;
@@ -22,6 +26,9 @@ enum status point_evidence_make(struct point_evidence *e, const struct segmentat
                                 const struct observed_points *seen, double min_inverse_z, double max_inverse_z,
                                 double step, const struct segment_params *params, struct err *err);
 void point_evidence_release(struct point_evidence *e);
+
+/* The share of a segment's points that lie within two steps of the plane, 0 .. 1; a single point counts half. */
+double point_evidence_support(const struct point_evidence *e, int segment, struct plane plane);
 
 /* Cost of the plane, in units of the matching cost. u, v: the segment's centroid. */
 double point_evidence_cost(const struct point_evidence *e, int segment, struct plane plane, double u, double v);

@@ -5,25 +5,27 @@
 #include "common/base/param.h"
 
 /* name, type, default, min, max, unit, help */
-#define SEGMENT_PARAMS(X)                                                                                           \
-    X(segment_pixels, int, 64, 16, 100000, "px", "mean size of a segment")                                          \
-    X(compactness, double, 8, 0.1, 100, "",                                                                         \
-      "weight of distance against colour in over-segmentation; higher: rounder segments")                           \
-    X(neighbours, int, 4, 1, 16, "", "maximum number of views to match with")                                       \
-    X(near, double, 0, 0, 1e30, "scene units", "minimum depth; 0: found from the sparse points")                    \
-    X(far, double, 0, 0, 1e30, "scene units", "maximum depth; 0: found from the sparse points")                     \
-    X(planes, int, 256, 4, 1024, "", "maximum number of planes in the sweep; fewer if one-pixel steps need fewer")  \
-    X(smoothness, double, 1.0, 0, 100, "", "weight of the smoothness cost between adjacent segments")               \
-    X(jump, double, 12, 1, 1000, "steps", "depth difference at which the smoothness cost is truncated")             \
-    X(rounds, int, 1, 0, 9, "", "rounds after the first, each using the neighbours' depth of the previous round")   \
-    X(passes, int, 3, 0, 20, "",                                                                                    \
-      "optimization passes over all segments in the first round; half as many in later rounds")                     \
-    X(slant, double, 0.02, 0, 10, "", "cost of a slanted plane against one of constant depth")                      \
-    X(points, double, 1, 0, 10, "", "weight of the sparse points inside a segment")                                 \
-    X(nearest_points, double, 0.01, 0, 10, "", "weight of the sparse points near a segment")                        \
-    X(cross_view, double, 1.7, 0, 10, "", "weight of consistency with the neighbours' depth of the previous round") \
-    X(far_bias, double, 0.01, 0, 10, "",                                                                            \
-      "cost of the nearest depth relative to the farthest where nothing else decides")                              \
+#define SEGMENT_PARAMS(X)                                                                                            \
+    X(segment_pixels, int, 64, 16, 100000, "px", "mean size of a segment")                                           \
+    X(compactness, double, 8, 0.1, 100, "",                                                                          \
+      "weight of distance against colour in over-segmentation; higher: rounder segments")                            \
+    X(neighbours, int, 8, 1, 16, "", "maximum number of views to match with")                                        \
+    X(best_neighbours, int, 4, 1, 16, "", "how many of them each segment is matched with: those that match it best") \
+    X(near, double, 0, 0, 1e30, "scene units", "minimum depth; 0: found from the sparse points")                     \
+    X(far, double, 0, 0, 1e30, "scene units", "maximum depth; 0: found from the sparse points")                      \
+    X(planes, int, 256, 4, 1024, "", "maximum number of planes in the sweep; fewer if one-pixel steps need fewer")   \
+    X(smoothness, double, 1.0, 0, 100, "", "weight of the smoothness cost between adjacent segments")                \
+    X(jump, double, 12, 1, 1000, "steps", "depth difference at which the smoothness cost is truncated")              \
+    X(rounds, int, 1, 0, 9, "", "rounds after the first, each using the neighbours' depth of the previous round")    \
+    X(passes, int, 3, 0, 20, "",                                                                                     \
+      "optimization passes over all segments in the first round; half as many in later rounds")                      \
+    X(slant, double, 0.02, 0, 10, "",                                                                                \
+      "cost of a slanted plane along half the outline of a mean segment, where its neighbours have other planes")    \
+    X(points, double, 1, 0, 10, "", "weight of the sparse points inside a segment")                                  \
+    X(nearest_points, double, 0.01, 0, 10, "", "weight of the sparse points near a segment")                         \
+    X(cross_view, double, 1.7, 0, 10, "", "weight of consistency with the neighbours' depth of the previous round")  \
+    X(far_bias, double, 0.01, 0, 10, "",                                                                             \
+      "cost of the nearest depth relative to the farthest where nothing else decides")                               \
     X(matte, choice, "two_colour", 0, 0, "two_colour|none", "how pixels at depth edges are split")
 
 struct segment_params {

@@ -9,6 +9,7 @@
  *   plane_sweep   first round: cost volume over the depth range, smoothed; later rounds start from the previous planes
  *   expand        expansion moves: minimum cuts over planes, slanted where that explains the pictures better
  *   refine        local search with the same energy
+ *   inherit       border areas that nothing holds in the foreground take over what lies behind them
  *   layers        opaque interiors, and mattes at depth edges
  *
  * What differs from the sources: planes may be slanted; sparse points are soft evidence; a round reads the neighbours'
@@ -21,6 +22,7 @@
 
 #include "common/math/numbers.h"
 #include "stages/segment_depth/expand.h"
+#include "stages/segment_depth/inherit.h"
 #include "stages/segment_depth/layers.h"
 #include "stages/segment_depth/plane_sweep.h"
 #include "stages/segment_depth/refine.h"
@@ -44,6 +46,10 @@ static double distinctness(const float *cost, int planes, double at)
     return clamp((double)(rival - near) / 0.4, 0, 1);
 }
 
+/* Standard deviation of a confident and of an inherited depth. */
+#define SURE_STEPS   0.5
+#define UNSURE_STEPS 3.0
+
 static enum status fill_segments(struct layered_depth *out, const struct plane_problem *p, const struct plane *planes,
                                  const double *distinct, struct err *err)
 {
@@ -65,15 +71,17 @@ static enum status fill_segments(struct layered_depth *out, const struct plane_p
         }
         unsigned occluded = 0;
         if (p->cross) cross_view_cost(p->cross, i, planes[i], &occluded);
-        const double good = clamp((double)MATCH_WORST - (double)match_cost(p->m, i, planes[i], occluded), 0, 1);
+        float match = MATCH_WORST;
+        const bool seen = match_evidence(p->m, i, planes[i], occluded, &match) > 0;
+        const double good = clamp((double)(MATCH_WORST - match), 0, 1);
         const double agreeing = p->cross ? cross_view_support(p->cross, i, planes[i]) : 0;
-        /* the agreement of two other views replaces distinctness */
-        const double confidence = good * fmax(distinct[i], fmin(agreeing / 2, 1));
-        /* standard deviation: half a step if confident, a few steps if inherited */
+        /* the agreement of two other views replaces distinctness; where no view sees the segment, only points count */
+        const double confidence =
+            seen ? good * fmax(distinct[i], fmin(agreeing / 2, 1)) : point_evidence_support(p->points, i, planes[i]);
         out->segments[i] = (struct depth_segment){
             .id = (uint32_t)i + 1,
             .plane = {planes[i].a, planes[i].b, planes[i].c},
-            .sigma = (0.5 + 2.5 * (1 - confidence)) * p->step / inverse,
+            .sigma = (SURE_STEPS + (UNSURE_STEPS - SURE_STEPS) * (1 - confidence)) * p->step / inverse,
             .confidence = confidence,
         };
     }
@@ -96,7 +104,7 @@ struct solver {
     int view_idx;
     const int *neighbours;
     int neighbour_count;
-    const struct matcher *m;
+    struct matcher *m;
     const struct image *picture;
     const struct observed_points *seen;
     double min_inverse_z, max_inverse_z;
@@ -168,7 +176,7 @@ static enum status start_first_round(struct solution *x, const struct solver *v,
     enum status st = plane_sweep_run(&x->sweep, x->planes, v->m, &x->points, x->weights, x->problem.view,
                                      x->problem.down, v->params, err);
     x->problem.cost = x->sweep.cost;
-    return st;
+    return st ? st : matcher_select(v->m, x->planes, NULL, err);
 }
 
 /* Initial planes of the previous round, with the neighbours' depths of that round as further evidence. */
@@ -180,6 +188,11 @@ static enum status start_later_round(struct solution *x, const struct solver *v,
     enum status st = cross_view_make(&x->cross, s, v->set, v->view_idx, v->neighbours, v->neighbour_count,
                                      x->sweep.step, &source, err);
     if (!st) st = read_previous_planes(x->planes, x->distinct, v, err);
+    unsigned *occluded = calloc((size_t)s->count + 1, sizeof *occluded);
+    if (!st && !occluded) st = err_nomem(err, "occlusions", (size_t)s->count * sizeof *occluded);
+    for (int i = 0; !st && i < s->count; i++) cross_view_cost(&x->cross, i, x->planes[i], &occluded[i]);
+    if (!st) st = matcher_select(v->m, x->planes, occluded, err);
+    free(occluded);
     for (int i = 0; !st && i < s->count; i++) x->min_match[i] = match_cost_rough(v->m, i, x->planes[i], 0);
     x->problem.min_match = x->min_match;
     for (int i = 0; !st && i < s->count; i++)
@@ -207,6 +220,7 @@ static enum status start_solution(struct solution *x, const struct solver *v, st
                                         .given = x->sweep.given,
                                         .weights = x->weights,
                                         .params = v->params,
+                                        .slant = problem_slant(v->params),
                                         .min_inverse_z = v->min_inverse_z,
                                         .max_inverse_z = v->max_inverse_z,
                                         .step = x->sweep.step,
@@ -231,6 +245,28 @@ static void solution_release(struct solution *x)
     point_evidence_release(&x->points);
 }
 
+/* Gives floating border areas what lies behind them, without confidence. */
+static enum status inherit(struct layered_depth *out, struct plane *planes, const struct plane_problem *p,
+                           struct err *err)
+{
+    const size_t count = (size_t)out->segment_count + 1;
+    double *confidence = malloc(count * sizeof *confidence);
+    bool *inherited = calloc(count, sizeof *inherited);
+    enum status st = confidence && inherited ? ST_OK : err_nomem(err, "confidences", count * sizeof *confidence);
+    for (int i = 0; !st && i < out->segment_count; i++) confidence[i] = out->segments[i].confidence;
+    if (!st) st = inherit_planes(planes, inherited, confidence, p, err);
+    for (int i = 0; !st && i < out->segment_count; i++)
+        if (inherited[i]) {
+            struct depth_segment *g = &out->segments[i];
+            *g = (struct depth_segment){g->id, g->pixels, {planes[i].a, planes[i].b, planes[i].c}, 0, 0};
+            g->sigma = UNSURE_STEPS * p->step /
+                       plane_at(planes[i], p->m->segments->segments[i].cx, p->m->segments->segments[i].cy);
+        }
+    free(confidence);
+    free(inherited);
+    return st;
+}
+
 static enum status solve(struct layered_depth *out, const struct solver *v, struct err *err)
 {
     const struct segmentation *s = v->m->segments;
@@ -244,6 +280,7 @@ static enum status solve(struct layered_depth *out, const struct solver *v, stru
             sweep->cost + (size_t)i * (size_t)sweep->planes, sweep->planes,
             (plane_at(x.planes[i], s->segments[i].cx, s->segments[i].cy) - sweep->min_inverse_z) / sweep->step);
     if (!st) st = fill_segments(out, &x.problem, x.planes, x.distinct, err);
+    if (!st) st = inherit(out, x.planes, &x.problem, err);
     if (!st) st = layers_make(out, s, x.planes, v->picture, sweep->step, !strcmp(v->params->matte, "two_colour"), err);
     solution_release(&x);
     return st;
@@ -327,6 +364,7 @@ enum status view_depth(struct layered_depth *out, int neighbours[MAX_NEIGHBOURS]
     for (int k = 0; !st && k < *neighbour_count; k++)
         st = add_neighbour(&matcher, set, view_idx, neighbours[k], source, &seen,
                            0.5 * (v.min_inverse_z + v.max_inverse_z), &gamma, err);
+    matcher.ranks = params->best_neighbours;
     if (!st) st = matcher_calibrate(&matcher, v.min_inverse_z, v.max_inverse_z, err);
     v.neighbour_count = *neighbour_count;
     if (!st) st = solve(out, &v, err);

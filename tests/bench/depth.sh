@@ -148,7 +148,7 @@ settings()
         [ "$(nproc)" = 1 ] || for s in threads jobs; do for v in 1 2; do row slanted Middlebury "$s" "$v"; done; done
     fi
     for v in $found_scenes; do
-        sweep "$v" neighbours slanted 1 2 8
+        sweep "$v" neighbours slanted 1 2 4
         row 'constant z' "$v" neighbours "$(default_of neighbours)"
         sweep "$v" rounds slanted 0
         for s in draft default final; do row slanted "$v" quality "$s"; done

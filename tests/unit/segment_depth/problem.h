@@ -66,6 +66,7 @@ static inline void bench_make(double min_inverse_z, double max_inverse_z)
                                        .points = &b.points,
                                        .weights = b.weights,
                                        .params = &b.params,
+                                       .slant = problem_slant(&b.params),
                                        .min_inverse_z = min_inverse_z,
                                        .max_inverse_z = max_inverse_z,
                                        .step = step};

@@ -1,0 +1,11 @@
+/* inherit.h - depth of border areas that no evidence holds in front of their surroundings. */
+#ifndef REMODEL_INHERIT_H
+#define REMODEL_INHERIT_H
+
+#include "stages/segment_depth/plane_problem.h"
+
+/* Replaces planes, and sets inherited[i] for the segments concerned. confidence: of each segment's plane. ST_NOMEM. */
+enum status inherit_planes(struct plane *planes, bool *inherited, const double *confidence,
+                           const struct plane_problem *p, struct err *err);
+
+#endif

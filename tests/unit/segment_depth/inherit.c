@@ -1,0 +1,148 @@
+/* inherit.c - border areas that nothing holds in the foreground take over what lies behind them; other areas keep their
+ * depth. */
+#include "stages/segment_depth/inherit.h"
+
+#include "tests/unit/segment_depth/problem.h"
+
+#include "common/base/parallel.h"
+
+static struct plane planes[MAX_SEGMENTS], before[MAX_SEGMENTS];
+static double confidence[MAX_SEGMENTS];
+static bool inherited[MAX_SEGMENTS];
+
+/* A wall on its true planes, all of it matched. */
+static void start(void)
+{
+    bench_empty();
+    scene_wall(&b.scene, 0, 0, 5, 8, 8, 0.2);
+    bench_views();
+    bench_make(0.12, 0.45);
+    b.params.jump = 4;
+    const double slope = (bench_truth(90, 50) - bench_truth(50, 50)) / 40;
+    for (int i = 0; i < b.segments.count; i++) {
+        planes[i] = (struct plane){slope, 0, bench_truth(50, 50) - slope * 50};
+        confidence[i] = 1;
+        inherited[i] = false;
+    }
+}
+
+/* Puts the segments of a rectangle in front of the wall. Returns how many. */
+static int put_in_front(double x0, double y0, double x1, double y1, double sure)
+{
+    int count = 0;
+    for (int i = 0; i < b.segments.count; i++) {
+        const struct segment *g = &b.segments.segments[i];
+        if (!(g->cx >= x0 && g->cx < x1 && g->cy >= y0 && g->cy < y1)) continue;
+        planes[i] = (struct plane){0, 0, 0.42};
+        confidence[i] = sure;
+        count++;
+    }
+    return count;
+}
+
+static void inherit(void)
+{
+    struct err err = ERR_INIT;
+    memcpy(before, planes, sizeof before);
+    if (inherit_planes(planes, inherited, confidence, &b.problem, &err)) fail_msg("%s", err.text);
+}
+
+/* The rectangle at each side of the picture, and a few segments in it that match something by chance. */
+static void a_block_at_any_side_takes_over_the_wall(void **state)
+{
+    (void)state;
+    static const double sides[][4] = {{0, 30, 40, 70}, {100, 30, W, 70}, {50, 0, 90, 40}, {50, 60, 90, H}};
+    for (int k = 0; k < 4; k++) {
+        const double *r = sides[k];
+        start();
+        assert_true(put_in_front(r[0], r[1], r[2], r[3], 0) > 15);
+        for (int i = 0; i < b.segments.count; i += 5) {
+            bool alone = planes[i].c > 0.4;
+            for (int t = b.segments.first_border[i]; t < b.segments.first_border[i + 1]; t++) {
+                const int j = b.segments.borders[t].other;
+                alone = alone && planes[j].c > 0.4 && !(confidence[j] > 0);
+            }
+            if (alone) confidence[i] = 0.9;
+        }
+        inherit();
+        for (int i = 0; i < b.segments.count; i++) {
+            const struct segment *g = &b.segments.segments[i];
+            const bool inside = before[i].c > 0.4;
+            assert_int_equal(inherited[i], inside);
+            if (inside) assert_near(plane_at(planes[i], g->cx, g->cy) / bench_truth(g->cx, g->cy), 1, 0.01);
+            if (!inside) assert_memory_equal(&planes[i], &before[i], sizeof planes[i]);
+        }
+        bench_release();
+    }
+}
+
+/* A matched object stands at the edge of the block, nearer than the wall: the block takes over the wall's depth. */
+static void a_block_beside_foreground_takes_over_the_wall(void **state)
+{
+    (void)state;
+    start();
+    put_in_front(0, 30, 40, 70, 0);
+    for (int i = 0; i < b.segments.count; i++) {
+        const struct segment *g = &b.segments.segments[i];
+        if (g->cx >= 40 && g->cx < 70 && g->cy >= 40 && g->cy < 60) planes[i] = (struct plane){0, 0, 0.34};
+    }
+    inherit();
+    for (int i = 0; i < b.segments.count; i++) {
+        const struct segment *g = &b.segments.segments[i];
+        assert_int_equal(inherited[i], before[i].c > 0.4);
+        if (inherited[i]) assert_near(plane_at(planes[i], g->cx, g->cy) / bench_truth(g->cx, g->cy), 1, 0.01);
+    }
+    bench_release();
+}
+
+static void must_stay(void)
+{
+    inherit();
+    for (int i = 0; i < b.segments.count; i++) assert_false(inherited[i]);
+    assert_memory_equal(planes, before, sizeof planes);
+    bench_release();
+}
+
+/* Inside the picture; matched; with a matched rim; and the unmatched end of a matched object. */
+static void other_areas_keep_their_depth(void **state)
+{
+    (void)state;
+    start();
+    put_in_front(50, 30, 90, 70, 0);
+    must_stay();
+
+    start();
+    put_in_front(0, 30, 40, 70, 0.5);
+    must_stay();
+
+    start();
+    put_in_front(0, 20, 60, 80, 0.5);
+    put_in_front(0, 40, 40, 60, 0);
+    must_stay();
+
+    start();
+    put_in_front(0, 30, 90, 70, 0.5);
+    put_in_front(0, 30, 20, 70, 0);
+    must_stay();
+}
+
+/* Nothing adjoins the block: it keeps its depth. */
+static void a_block_that_fills_the_picture_keeps_its_depth(void **state)
+{
+    (void)state;
+    start();
+    put_in_front(0, 0, W, H, 0);
+    must_stay();
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_block_at_any_side_takes_over_the_wall),
+        cmocka_unit_test(a_block_beside_foreground_takes_over_the_wall),
+        cmocka_unit_test(other_areas_keep_their_depth),
+        cmocka_unit_test(a_block_that_fills_the_picture_keeps_its_depth),
+    };
+    parallel_set_threads(1); /* tests run in parallel */
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
