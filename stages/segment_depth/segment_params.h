@@ -19,7 +19,7 @@
     X(rounds, int, 1, 0, 9, "", "rounds after the first, each using the neighbours' depth of the previous round")    \
     X(passes, int, 3, 0, 20, "",                                                                                     \
       "optimization passes over all segments in the first round; half as many in later rounds")                      \
-    X(slant, double, 0.02, 0, 10, "",                                                                                \
+    X(slant, double, 0.01, 0, 10, "",                                                                                \
       "cost of a slanted plane along half the outline of a mean segment, where its neighbours have other planes")    \
     X(points, double, 1, 0, 10, "", "weight of the sparse points inside a segment")                                  \
     X(nearest_points, double, 0.01, 0, 10, "", "weight of the sparse points near a segment")                         \
