@@ -4,8 +4,9 @@
  *        + nearest_weight min over the nearest points of min(1, |plane - 1/z| / tolerance)
  *        + far_weight     (1/z - min_inverse_z) / (max_inverse_z - min_inverse_z)
  * with the plane taken at the point. Points inside a segment measure its depth. A textureless segment without points
- * most likely lies on a plane with a point nearby in place and colour: the minimum lets any of them explain it. The last term prefers the farthest, since the
- * edges of a flat region belong to the surface in front of it. All are soft: they decide where the pictures do not. */
+ * most likely lies on a plane with a point nearby in place and colour: the minimum lets any of them explain it. The
+ * last term prefers the farthest depth, since the edges of a flat region belong to the surface in front of it. All are
+ * soft: they decide where the pictures do not. */
 #include "stages/segment_depth/point_evidence.h"
 
 #include <math.h>

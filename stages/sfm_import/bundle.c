@@ -259,11 +259,11 @@ static struct camera convert(const struct camera *c, enum camera_model model)
     return to;
 }
 
-bool lens_form_fits(const struct lens_form *form, const struct bundle *b)
+bool bundle_can_convert(const struct bundle *b)
 {
     bool any = false;
     for (int i = 0; i < b->lens_count; i++) any = any || is_convertible(b->lenses[i].camera.model);
-    return form->model_kept || form->lens_kept || any;
+    return any;
 }
 
 /* The power of the radius that a parameter of the distortion scales, relative to the undistorted one; 0: tangential. */

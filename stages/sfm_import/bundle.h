@@ -35,11 +35,11 @@ enum status bundle_make(struct bundle *b, int **point_of, const struct sfm_model
 enum status bundle_copy(struct bundle *to, const struct bundle *from, struct err *err);
 void bundle_release(struct bundle *b);
 
-/* Whether some lens of the bundle can take the form: those with two radial coefficients at most. */
-bool lens_form_fits(const struct lens_form *form, const struct bundle *b);
+/* Whether some lens of the bundle can take another model: those with two radial coefficients at most. */
+bool bundle_can_convert(const struct bundle *b);
 
 /* Adjusts the bundle with its lenses in this form, at the scale b->noise of the residuals. shift_sigma: prior of a
- * photo's shift, px. ST_DATA: the solver failed, or a lens folds inside the picture. */
+ * photo's shift, px. ST_DATA: the solver failed, a lens folds inside the picture, or something left its prior. */
 enum status bundle_adjust(struct bundle_fit *fit, struct bundle *b, const struct lens_form *form, double shift_sigma,
                           struct err *err);
 

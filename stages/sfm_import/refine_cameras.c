@@ -57,10 +57,9 @@ static void list_forms(struct refinement *r, const struct bundle *b, bool lens_k
         return;
     }
     for (int center = CENTER_KEPT; center <= (shifts ? CENTER_PER_PHOTO : CENTER_SHARED); center++) {
-        for (int i = 0; i < MODELS; i++) {
-            const struct lens_form form = {.model = models[i], .center = (enum principal_point)center};
-            if (lens_form_fits(&form, b)) r->forms[r->form_count++].form = form;
-        }
+        for (int i = 0; i < MODELS && bundle_can_convert(b); i++)
+            r->forms[r->form_count++].form =
+                (struct lens_form){.model = models[i], .center = (enum principal_point)center};
         for (int k = 0; k < 2 && !is_listed(b); k++)
             r->forms[r->form_count++].form =
                 (struct lens_form){.model_kept = true, .focal_only = k == 0, .center = (enum principal_point)center};

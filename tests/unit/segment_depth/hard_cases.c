@@ -540,19 +540,6 @@ static void an_extremely_long_photo_works(void **state)
 /* -------------------------------------------------------------------------------------------------------------
  * rounds */
 
-static bool seen_elsewhere(double u, double v)
-{
-    int at;
-    const struct vec3 p = view_unproject(&scene.views[0], u, v, scene_depth(&scene, &scene.views[0], u, v, &at));
-    for (int k = 1; k < scene.set.view_count; k++) {
-        double pu = -1, pv = -1;
-        const double z = view_project(&scene.views[k], p, &pu, &pv);
-        if (!(z > 0 && pu >= 0 && pv >= 0 && pu < W && pv < H)) continue;
-        if (fabs(scene_depth(&scene, &scene.views[k], pu, pv, &at) / z - 1) < 1e-6) return true;
-    }
-    return false;
-}
-
 /* The fraction of pixels, depth edges included, whose depth is off by more than so many steps; of all pixels or of
  * those that another view sees. */
 static double wrong(const struct layered_depth *d, double steps, bool all)
@@ -561,7 +548,7 @@ static double wrong(const struct layered_depth *d, double steps, bool all)
     for (int i = 0; i < W * H; i++) {
         int at;
         const double u = i % W + 0.5, v = i / W + 0.5, z = scene_depth(&scene, &scene.views[0], u, v, &at);
-        if (!all && !seen_elsewhere(u, v)) continue;
+        if (!all && !scene_seen_elsewhere(&scene, u, v)) continue;
         bad += !(fabs(1 / (double)d->interior.z[i] - 1 / z) <= steps / (FOCAL * 0.4));
         count++;
     }

@@ -123,6 +123,22 @@ static inline double scene_depth(const struct scene *scene, const struct view *v
     return nearest;
 }
 
+/* Whether a view other than the first sees what the first shows at (u, v). */
+static inline bool scene_seen_elsewhere(const struct scene *scene, double u, double v)
+{
+    const struct view *first = &scene->views[0];
+    int at;
+    const struct vec3 p = view_unproject(first, u, v, scene_depth(scene, first, u, v, &at));
+    for (int k = 1; k < scene->set.view_count; k++) {
+        const struct view *other = &scene->views[k];
+        double pu = -1, pv = -1;
+        const double z = view_project(other, p, &pu, &pv);
+        if (!(z > 0 && pu >= 0 && pv >= 0 && pu < other->width && pv < other->height)) continue;
+        if (fabs(scene_depth(scene, other, pu, pv, &at) / z - 1) < 1e-6) return true;
+    }
+    return false;
+}
+
 static inline struct painted_surface *scene_surface(struct scene *s, struct vec3 center)
 {
     struct painted_surface *f = &s->surfaces[s->surface_count++];

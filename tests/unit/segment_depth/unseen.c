@@ -15,26 +15,13 @@ struct side {
 static const struct side sides[] = {{"left", 1, 0}, {"right", -1, 0}, {"top", 0, 1}, {"bottom", 0, -1}};
 enum { SIDES = 4 };
 
-/* The neighbours stand towards the middle of the picture, so that the strip is out of their frames. */
+/* The neighbours are placed towards the middle of the picture, so that the strip is out of their frames. */
 static void place_cameras_towards(const struct side *side)
 {
     static const double distance[] = {0, 1.0, 1.2, 1.4};
     for (int k = 0; k < 4; k++)
         scene_view(&scene, W, H, FOCAL, side->x * distance[k] + side->y * 0.1 * k,
                    side->y * distance[k] + side->x * 0.1 * k, 0, 0);
-}
-
-static bool is_seen(double u, double v)
-{
-    int at;
-    const struct vec3 p = view_unproject(&scene.views[0], u, v, scene_depth(&scene, &scene.views[0], u, v, &at));
-    for (int k = 1; k < scene.set.view_count; k++) {
-        double pu = -1, pv = -1;
-        const double z = view_project(&scene.views[k], p, &pu, &pv);
-        if (!(z > 0 && pu >= 0 && pv >= 0 && pu < W && pv < H)) continue;
-        if (fabs(scene_depth(&scene, &scene.views[k], pu, pv, &at) / z - 1) < 1e-6) return true;
-    }
-    return false;
 }
 
 /* Of the pixels that no neighbour sees, but for those beside seen ones. */
@@ -51,8 +38,8 @@ static struct unseen measure(const char *what, const struct layered_depth *d)
             int at;
             bool alone = true;
             for (int k = 0; k < 9 && alone; k++)
-                alone =
-                    !is_seen(clamp(x + 8 * (k % 3 - 1), 0, W - 1) + 0.5, clamp(y + 8 * (k / 3 - 1), 0, H - 1) + 0.5);
+                alone = !scene_seen_elsewhere(&scene, clamp(x + 8 * (k % 3 - 1), 0, W - 1) + 0.5,
+                                              clamp(y + 8 * (k / 3 - 1), 0, H - 1) + 0.5);
             if (!alone) continue;
             const double ratio =
                 (double)d->interior.z[y * W + x] / scene_depth(&scene, &scene.views[0], x + 0.5, y + 0.5, &at);
