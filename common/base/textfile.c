@@ -139,6 +139,16 @@ enum status textfile_expect(struct textfile *t, const char *word, struct err *er
     return expect(t, word, wanted, err);
 }
 
+enum status textfile_word_into(struct textfile *t, const char *what, char *to, size_t size, struct err *err)
+{
+    char *word = NULL;
+
+    if (textfile_word(t, what, &word, err)) return err->status;
+    if (strlen(word) >= size) return textfile_error(t, err, word, "%s of at most %zu bytes", what, size - 1);
+    memcpy(to, word, strlen(word) + 1);
+    return ST_OK;
+}
+
 enum status textfile_expect_line(struct textfile *t, const char *word, struct err *err)
 {
     char wanted[64];

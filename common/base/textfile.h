@@ -35,6 +35,8 @@ bool textfile_next_raw(struct textfile *t);
 
 /* The next word of the line. It may be quoted: "two words", with \" and \\ inside (see textfile_quote). */
 enum status textfile_word(struct textfile *t, const char *what, char **word, struct err *err);
+/* Copies the next word into `to` of `size` bytes. ST_DATA: it is too long. */
+enum status textfile_word_into(struct textfile *t, const char *what, char *to, size_t size, struct err *err);
 /* ST_DATA unless the next word is `word`; unless there is a next line that begins with `word`. */
 enum status textfile_expect(struct textfile *t, const char *word, struct err *err);
 enum status textfile_expect_line(struct textfile *t, const char *word, struct err *err);

@@ -136,16 +136,6 @@ static enum status next_line(struct textfile *t, const char *word, struct err *e
     return textfile_expect(t, word, err);
 }
 
-/* A word of at most size - 1 bytes. */
-static enum status short_word(struct textfile *t, const char *what, char *out, size_t size, struct err *err)
-{
-    char *word;
-    if (textfile_word(t, what, &word, err)) return err->status;
-    if (strlen(word) >= size) return textfile_error(t, err, word, "%s of at most %zu bytes", what, size - 1);
-    strcpy(out, word);
-    return ST_OK;
-}
-
 /* A number of 0 or more. */
 static enum status read_amount(struct textfile *t, const char *what, double *value, struct err *err)
 {
@@ -159,9 +149,9 @@ static enum status read_amount(struct textfile *t, const char *what, double *val
 static enum status read_score(struct textfile *t, struct camera_path *p, struct err *err)
 {
     struct path_score s = {0};
-    if (short_word(t, "a score's name", s.name, sizeof s.name, err) ||
+    if (textfile_word_into(t, "a score's name", s.name, sizeof s.name, err) ||
         textfile_double(t, "a score's value", &s.value, err) ||
-        short_word(t, "a score's unit", s.unit, sizeof s.unit, err) || textfile_end(t, err))
+        textfile_word_into(t, "a score's unit", s.unit, sizeof s.unit, err) || textfile_end(t, err))
         return err->status;
     return camera_path_add_score(p, s.name, s.value, s.unit, err);
 }
@@ -171,7 +161,7 @@ static enum status read_head(struct textfile *t, struct camera_path *p, int64_t 
 {
     int64_t version;
     if (next_line(t, "remodel-path", err) || textfile_int(t, "version", 1, 1, &version, err) || textfile_end(t, err) ||
-        next_line(t, "effect", err) || short_word(t, "the effect's name", p->effect, sizeof p->effect, err) ||
+        next_line(t, "effect", err) || textfile_word_into(t, "the effect's name", p->effect, sizeof p->effect, err) ||
         textfile_end(t, err) || next_line(t, "fps", err) || read_amount(t, "frames per second", &p->fps, err) ||
         textfile_end(t, err))
         return err->status;

@@ -33,15 +33,6 @@ static enum status read_exif(struct textfile *t, const char *what, double *value
     return st;
 }
 
-static enum status read_text(struct textfile *t, const char *what, char *text, size_t size, struct err *err)
-{
-    char *word = NULL;
-    enum status st = textfile_word(t, what, &word, err);
-    if (!st && strlen(word) >= size) st = textfile_error(t, err, word, "%s of at most %zu bytes", what, size - 1);
-    if (!st) strcpy(text, word);
-    return st;
-}
-
 static enum status read_hash(struct textfile *t, char hash[HASH_TEXT], struct err *err)
 {
     char *word = NULL;
@@ -113,8 +104,9 @@ static enum status read_fields(struct photo_record *r, struct textfile *t, struc
                 read_exif(t, "35 mm focal length", &info->focal35_mm, err) ||
                 read_exif(t, "exposure time", &info->seconds, err) || read_exif(t, "f-number", &info->f_number, err) ||
                 read_exif(t, "ISO", &info->iso, err) || textfile_end(t, err) ||
-                textfile_expect_line(t, "camera", err) || read_text(t, "make", info->make, sizeof info->make, err) ||
-                read_text(t, "model", info->model, sizeof info->model, err) || textfile_end(t, err)
+                textfile_expect_line(t, "camera", err) ||
+                textfile_word_into(t, "make", info->make, sizeof info->make, err) ||
+                textfile_word_into(t, "model", info->model, sizeof info->model, err) || textfile_end(t, err)
             ? ST_DATA
             : ST_OK;
     if (!st && textfile_next(t)) st = read_brackets(r, t, err);

@@ -22,6 +22,7 @@ struct photo_card {
     const struct photo_record *record;
     int views; /* number of views made from it; 0: SfM could not place it, or it is held out */
     bool held_out;
+    double residual; /* median reprojection error of its camera, px; 0: unknown */
     struct picture picture;
     char problem[NOTE_SIZE]; /* why there is no picture, or "" */
 };
@@ -64,6 +65,12 @@ struct effect_card {
     struct pan_card pan;
 };
 
+struct lens_form_row { /* a form of lens that was compared; -1: unknown */
+    char lens[32], center[16], verdict[16];
+    int parameters;
+    double median, noise, bic; /* px, px, above the lowest */
+};
+
 struct axes_card { /* a view with the room's axes drawn on it */
     char view[256];
     struct picture picture;
@@ -90,6 +97,8 @@ struct contents {
     struct held_card *held_cards; /* held.view_count */
     struct effect_card *effects;
     int effect_count;
+    struct lens_form_row *lens_forms;
+    int lens_form_count;
     struct axes_card *axes;
     int axes_count;
     struct model_card *models;

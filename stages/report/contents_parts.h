@@ -18,6 +18,7 @@ double share_from_text(const char *text);
 enum status read_photos(struct contents *c, const char *shared, const char *folder, struct err *err);
 enum status read_metrics(struct contents *c, const char *folder, struct err *err);
 enum status read_views(struct contents *c, const char *folder, struct err *err);
+enum status read_lens(struct contents *c, const char *folder, struct err *err);
 enum status read_held(struct contents *c, const char *folder, struct err *err);
 enum status check_age(struct contents *c, const char *folder, struct err *err);
 enum status read_effects(struct contents *c, const char *folder, struct err *err);

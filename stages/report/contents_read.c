@@ -49,8 +49,8 @@ enum status contents_read(struct contents *c, const struct contents_sources *fro
         return err_set(err, ST_IO, "%s is not a folder, so there is no scene to report on; make the scene first.",
                        folder);
     if (read_photos(c, from->shared, from->photos, err) || read_metrics(c, folder, err) || read_views(c, folder, err) ||
-        read_held(c, folder, err) || check_age(c, folder, err) || read_effects(c, folder, err) ||
-        read_axes(c, folder, err) || read_models(c, folder, err))
+        read_lens(c, folder, err) || read_held(c, folder, err) || check_age(c, folder, err) ||
+        read_effects(c, folder, err) || read_axes(c, folder, err) || read_models(c, folder, err))
         return err->status;
     return read_runs(c, from, err);
 }
@@ -72,6 +72,7 @@ void contents_release(struct contents *c)
     for (int i = 0; i < c->effect_count; i++) effect_card_release(&c->effects[i]);
     for (int i = 0; i < c->axes_count; i++) picture_release(&c->axes[i].picture);
     free(c->axes);
+    free(c->lens_forms);
     for (int i = 0; i < c->model_count; i++) model_card_release(&c->models[i]);
     free(c->models);
     free(c->photo_cards);

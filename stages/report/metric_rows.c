@@ -7,23 +7,14 @@
 #include "common/base/array.h"
 #include "common/base/textfile.h"
 
-static enum status read_word(struct textfile *t, const char *what, char *to, size_t size, struct err *err)
-{
-    char *word = NULL;
-    if (textfile_word(t, what, &word, err)) return err->status;
-    if (strlen(word) >= size) return textfile_error(t, err, word, "%s of at most %zu letters", what, size - 1);
-    memcpy(to, word, strlen(word) + 1);
-    return ST_OK;
-}
-
 static enum status read_row(struct metric_rows *r, struct textfile *t, bool of_views, struct err *err)
 {
     struct metric_row m = {0};
     char *view = NULL;
     if (array_append(&r->rows, (size_t)r->count, sizeof *r->rows, "metrics", err) ||
-        (of_views && textfile_word(t, "view", &view, err)) || read_word(t, "metric", m.name, sizeof m.name, err) ||
-        textfile_double(t, "value", &m.value, err) || read_word(t, "unit", m.unit, sizeof m.unit, err) ||
-        read_word(t, "direction", m.direction, sizeof m.direction, err) || textfile_end(t, err))
+        (of_views && textfile_word(t, "view", &view, err)) || textfile_word_into(t, "metric", m.name, sizeof m.name, err) ||
+        textfile_double(t, "value", &m.value, err) || textfile_word_into(t, "unit", m.unit, sizeof m.unit, err) ||
+        textfile_word_into(t, "direction", m.direction, sizeof m.direction, err) || textfile_end(t, err))
         return err->status;
     if (!(m.view = strdup(view ? view : ""))) return err_nomem(err, "metrics", sizeof m);
     r->rows[r->count++] = m;

@@ -36,8 +36,10 @@ static void put_head(FILE *to, const char *scene, const struct contents *c)
           "<a href=\"#depth\">Depth</a>",
           to);
     if (c->axes_count) fputs("<a href=\"#axes\">Axes</a>", to);
+    fputs("<a href=\"#numbers\">Numbers</a>", to);
+    if (c->lens_form_count) fputs("<a href=\"#lens\">Lens</a>", to);
     fputs(
-        "<a href=\"#numbers\">Numbers</a><a href=\"#time\">Time and memory</a><a "
+        "<a href=\"#time\">Time and memory</a><a "
         "href=\"#parameters\">"
         "Parameters</a><a href=\"#warnings\">Warnings</a><a href=\"#skipped\">Left out</a></nav>\n</header>\n<main>\n",
         to);
@@ -50,6 +52,7 @@ enum status page_write(FILE *to, const char *scene, const struct contents *c, st
         page_depths(to, c, err) || page_axes(to, c, err))
         return err->status;
     page_numbers(to, c);
+    page_lens(to, c);
     page_usage(to, c);
     page_settings(to, c);
     page_warnings(to, c);

@@ -13,6 +13,7 @@ enum status page_evaluation(FILE *to, const struct contents *c, struct err *err)
 enum status page_photos(FILE *to, const struct contents *c, struct err *err);
 enum status page_depths(FILE *to, const struct contents *c, struct err *err);
 enum status page_axes(FILE *to, const struct contents *c, struct err *err);
+void page_lens(FILE *to, const struct contents *c);
 void page_numbers(FILE *to, const struct contents *c);
 void page_usage(FILE *to, const struct contents *c);
 void page_settings(FILE *to, const struct contents *c);

@@ -21,6 +21,7 @@ enum status page_photos(FILE *to, const struct contents *c, struct err *err)
         html_text(to, card->record->file);
         fprintf(to, "</b> <span class=\"size\">%d × %d</span>", card->record->info.width, card->record->info.height);
         if (card->views > 1) fprintf(to, ", %d views", card->views);
+        if (card->residual > 0) fprintf(to, ", residual %.2f px", card->residual);
         if (card->held_out) put_tag(to, "held out");
         if (off) put_tag(to, "not placed by SfM");
         put_tag(to, card->problem);

@@ -71,6 +71,26 @@ static void photographs_are_shown_and_unlisted_ones_named(void **state)
     free(page);
 }
 
+static void forms_of_lens_show_the_chosen_one_and_those_refused(void **state)
+{
+    struct err err = ERR_INIT;
+    (void)state;
+    assert_int_equal(make_folders(scratch_path("views"), &err), ST_OK);
+    scratch_write("views/lens_forms.txt", "remodel-lens-forms 1\nform SIMPLE_RADIAL shared 4 0.455 0.407 0 chosen\n"
+                                          "form OPENCV per_photo - - - - refused\nshift a 1 2 - -\n");
+    char *page = page_of("scene", NULL);
+    assert_non_null(strstr(page, "<tr class=\"changed\"><th scope=\"row\">SIMPLE_RADIAL</th><td>shared</td>"
+                                 "<td class=\"n\">4</td><td class=\"n\">0.455</td>"));
+    assert_non_null(strstr(page, "<td>per photo</td><td class=\"n\">–</td>"));
+    assert_non_null(strstr(page, "<td>refused</td>"));
+    free(page);
+
+    scratch_write("views/lens_forms.txt", "remodel-lens-forms 1\nform OPENCV kept 3 nan 1 2 -\n");
+    page = page_of("scene", NULL);
+    assert_non_null(strstr(page, "lens_forms.txt is not shown."));
+    free(page);
+}
+
 static void changed_parameters_are_marked(void **state)
 {
     struct err err = ERR_INIT;
@@ -141,6 +161,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(missing_products_are_listed, scratch_make, scratch_remove),
         cmocka_unit_test_setup_teardown(a_missing_scene_is_an_error, scratch_make, scratch_remove),
         cmocka_unit_test_setup_teardown(photographs_are_shown_and_unlisted_ones_named, scratch_make, scratch_remove),
+        cmocka_unit_test_setup_teardown(forms_of_lens_show_the_chosen_one_and_those_refused, scratch_make,
+                                        scratch_remove),
         cmocka_unit_test_setup_teardown(changed_parameters_are_marked, scratch_make, scratch_remove),
         cmocka_unit_test_setup_teardown(stages_are_listed_in_the_given_order, scratch_make, scratch_remove),
         cmocka_unit_test(a_wrong_list_of_stages_is_refused),
