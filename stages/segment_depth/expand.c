@@ -218,7 +218,7 @@ static void initial_costs(void *ctx, size_t begin, size_t end, int thread)
     for (size_t i = begin; i < end; i++) {
         x->max_pairwise[i] = 0;
         for (int t = x->s->first_border[i]; t < x->s->first_border[i + 1]; t++)
-            x->max_pairwise[i] += (float)x->p->params->smoothness * x->p->weights[t];
+            x->max_pairwise[i] += (float)pairwise_bound(x->p, t);
         x->min_unary[i] = x->unary[i] = unary_cost(x->p, (int)i, x->plane[i], INFINITY);
     }
 }

@@ -39,6 +39,11 @@ float unary_cost(const struct plane_problem *p, int segment, struct plane plane,
     return size * data;
 }
 
+double pairwise_bound(const struct plane_problem *p, int border)
+{
+    return p->params->smoothness * (double)p->weights[border] + 2 * p->slant * p->m->segments->borders[border].length;
+}
+
 static int slants(struct plane p) { return p.a != 0 || p.b != 0; }
 
 double pairwise_cost(const struct plane_problem *p, int segment, int border, struct plane own, struct plane other)

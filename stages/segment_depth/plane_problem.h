@@ -62,4 +62,7 @@ float unary_cost(const struct plane_problem *p, int segment, struct plane plane,
 /* Pairwise term of the segment with plane `own` and its neighbour across `border` with plane `other`. */
 double pairwise_cost(const struct plane_problem *p, int segment, int border, struct plane own, struct plane other);
 
+/* The largest pairwise_cost() across `border`, whatever the planes. */
+double pairwise_bound(const struct plane_problem *p, int border);
+
 #endif

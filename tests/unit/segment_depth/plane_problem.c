@@ -45,6 +45,7 @@ static void the_pairwise_term_is_a_metric(void **state)
             const double slant = 2 * b.params.slant * b.segments.borders[t].length / (2 * sqrt(64));
             const double max_cost = b.params.smoothness * (double)b.weights[t] + slant;
             assert_near(pairwise_cost(&b.problem, i, t, p, p), 0, 0);
+            assert_true(pq <= pairwise_bound(&b.problem, t));
             assert_true(pq >= 0 && pq <= max_cost);
             assert_near(pairwise_cost(&b.problem, i, t, q, p), pq, 1e-15);
             assert_near(pairwise_cost(&b.problem, j, back, q, p), pq, 1e-12); /* from the other side of the border */
