@@ -52,7 +52,7 @@ report_rounds()
         folder=$O/depth/round$round
         [ "$round" != "$1" ] || folder=$O/depth
         # shellcheck disable=SC2086,SC2016 # a list of views
-        counts+=", $(printf "$folder/%s.round\n" $views | xargs -d '\n' grep -lx 'estimated yes' | wc -l)"
+        counts+=", $(printf "$folder/%s.round\n" $views | xargs -d '\n' cat | grep -cx 'estimated yes' || true)"
     done
     echo "depth: views estimated in each round: ${counts#, }, of $(wc -w <<<"$views")."
 }
