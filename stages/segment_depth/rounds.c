@@ -5,10 +5,11 @@
  * each round records the change of each view: with z the depth on the plane of the pixel's segment,
  *   changed = |{pixels: |z_now - z_before| > CHANGED_PART z_before}| / |{pixels with depth}|
  * which is 1 in the first round, and 0 in a round that the view did not take part in. A view takes part in the next
- * round if its own change or that of one of its neighbours is at least min_change; otherwise its files are copied.
- * The rule reads records of the previous round only, so that it does not depend on the order of views.
+ * round if its own change, or the mean of its neighbours' changes, is at least min_change; otherwise its files are
+ * copied. The mean, because the neighbours' evidence in the energy is a mean over them (cross_view.c). The rule reads
+ * records of the previous round only, so that it does not depend on the order of views.
  *
- * A view that was carried over is estimated again as soon as a neighbour changes enough. Changes below min_change do
+ * A view that was carried over is estimated again as soon as its neighbours change enough. Changes below min_change do
  * not add up over rounds: they are compared with the round before. What differs from the source: all its views take
  * part in all rounds. */
 #include "stages/segment_depth/rounds.h"
@@ -92,18 +93,28 @@ double round_change(const struct layered_depth *now, const struct layered_depth 
     return known ? (double)changed / (double)known : 0;
 }
 
+static enum status read_change(double *changed, const char *folder, const char *view, struct provenance *prov,
+                               struct err *err)
+{
+    struct round_record r = {0};
+    char path[FILE_PATH];
+    enum status st = provenance_add_in(prov, "depth", folder, view, ".round", path, err);
+    if (!st) st = round_record_read(&r, path, err);
+    *changed = r.changed;
+    return st;
+}
+
 enum status round_is_settled(bool *settled, const char *folder, const struct camera_set *set, const int *views,
                              int count, double min_change, struct provenance *prov, struct err *err)
 {
-    enum status st = ST_OK;
-    *settled = true;
-    for (int i = 0; !st && i < count; i++) {
-        struct round_record r = {0};
-        char path[FILE_PATH];
-        st = provenance_add_in(prov, "depth", folder, set->views[views[i]].name, ".round", path, err);
-        if (!st) st = round_record_read(&r, path, err);
-        if (!(r.changed < min_change)) *settled = false;
+    double own = 0, sum = 0;
+    enum status st = read_change(&own, folder, set->views[views[0]].name, prov, err);
+    for (int i = 1; !st && i < count; i++) {
+        double changed;
+        st = read_change(&changed, folder, set->views[views[i]].name, prov, err);
+        sum += changed;
     }
+    *settled = !st && own < min_change && (count < 2 || sum / (count - 1) < min_change);
     return st;
 }
 

@@ -21,8 +21,8 @@ enum status round_record_read(struct round_record *r, const char *path, struct e
 #define CHANGED_PART 0.01
 double round_change(const struct layered_depth *now, const struct layered_depth *before);
 
-/* *settled: each of the `count` views, whose records are in `folder`, changed less than min_change in that round. The
- * records that were read are added to prov. */
+/* *settled: in the round whose records are in `folder`, views[0] changed by less than min_change, and so did, on average,
+ * the other count - 1 views, its neighbours. The records that were read are added to prov. */
 enum status round_is_settled(bool *settled, const char *folder, const struct camera_set *set, const int *views,
                              int count, double min_change, struct provenance *prov, struct err *err);
 

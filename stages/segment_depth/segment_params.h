@@ -19,8 +19,8 @@
     X(rounds, int, 1, 0, 9, "",                                                                                      \
       "maximum number of rounds after the first, each using the neighbours' depth of the previous round")            \
     X(min_change, double, 0.05, 0, 1, "",                                                                            \
-      "share of a view's pixels whose depth must change by over 1 % in a round for the view, and those matched "     \
-      "with it, to be estimated in the next; 0: every round estimates all views")                                    \
+      "share of pixels whose depth must change by over 1 % in a round, in a view or on average in those it is "      \
+      "matched with, for the view to be estimated in the next; 0: every round estimates all views")                  \
     X(passes, int, 3, 0, 20, "",                                                                                     \
       "optimization passes over all segments in the first round; half as many in later rounds")                      \
     X(slant, double, 0.01, 0, 10, "",                                                                                \

@@ -150,14 +150,17 @@ static bool is_settled(const double changed[3], const int *views, int count, dou
     return settled;
 }
 
-static void a_view_is_settled_when_it_and_its_neighbours_changed_less_than_the_minimum(void **state)
+static void a_view_is_settled_when_it_and_its_neighbours_mean_changed_less_than_the_minimum(void **state)
 {
     static const int all[] = {1, 0, 2}, two[] = {1, 2};
     (void)state;
     assert_true(is_settled((double[3]){0.01, 0.02, 0.04}, all, 3, 0.05));
     assert_false(is_settled((double[3]){0.01, 0.06, 0.04}, all, 3, 0.05)); /* itself */
-    assert_false(is_settled((double[3]){0.01, 0.02, 0.05}, all, 3, 0.05)); /* a neighbour, by just as much */
-    assert_true(is_settled((double[3]){0.9, 0.02, 0.04}, two, 2, 0.05));   /* a view that is no neighbour */
+    assert_true(is_settled((double[3]){0.01, 0.02, 0.08}, all, 3, 0.05));  /* the neighbours' mean is 0.045 */
+    assert_false(is_settled((double[3]){0.01, 0.02, 0.1}, all, 3, 0.05));
+    assert_false(is_settled((double[3]){0.125, 0.02, 0.125}, all, 3, 0.125)); /* by just as much */
+    assert_true(is_settled((double[3]){0.9, 0.02, 0.04}, two, 2, 0.05));      /* a view that is no neighbour */
+    assert_true(is_settled((double[3]){0.9, 0.02, 0.9}, two, 1, 0.05));       /* no neighbour */
     assert_false(is_settled((double[3]){0, 0, 0}, all, 3, 0));
     assert_false(is_settled((double[3]){1, 1, 1}, all, 3, 1)); /* the first round */
 }
@@ -229,7 +232,7 @@ int main(void)
         cmocka_unit_test(pixels_without_depth_do_not_count),
         cmocka_unit_test(a_record_round_trips),
         cmocka_unit_test(errors_of_a_record_name_the_line),
-        cmocka_unit_test(a_view_is_settled_when_it_and_its_neighbours_changed_less_than_the_minimum),
+        cmocka_unit_test(a_view_is_settled_when_it_and_its_neighbours_mean_changed_less_than_the_minimum),
         cmocka_unit_test(a_lost_record_is_an_error),
         cmocka_unit_test(depth_that_is_carried_over_keeps_every_byte),
     };
