@@ -13,7 +13,7 @@ ifdef GRAPH
 DEPTH_EXR := $(VIEWS:%=$(O)/depth/%.exr)
 DEPTH_TXT := $(DEPTH_EXR:.exr=.txt)
 .PHONY: depth
-depth: $(DEPTH_EXR) $(DEPTH_TXT)
+depth: $(DEPTH_EXR) $(DEPTH_TXT) $(DEPTH_EXR:.exr=.round)
 # Each round reads what the one before left in its folder; the last is O/depth itself. A view that little changes in and
 # around is carried over from the round before: that is decided by segment_depth, from the records VIEW.round.
 LAST_ROUND := $(shell sed -n 's/^rounds = //p' $(O)/slice/segment_depth.cfg 2>/dev/null)
@@ -29,7 +29,7 @@ endef
 # $(1): a round
 define round_rules
 .PHONY: depth-round$(1)
-depth-round$(1): $(VIEWS:%=$(call round,$(1))/%.exr)
+depth-round$(1): $(foreach e,exr txt round,$(VIEWS:%=$(call round,$(1))/%.$(e)))
 -include $(wildcard $(VIEWS:%=$(call round,$(1))/%.d)) # the neighbours each view really read
 endef
 $(foreach k,$(if $(LAST_ROUND),$(shell seq 0 $(LAST_ROUND))),$(eval $(call round_rules,$(k)))\

@@ -23,7 +23,7 @@ each_round_estimates_the_views_around_which_depth_changed()
         for k in 2 3 4; do
             # the larger of its own change and the mean of its neighbours'; its own record is the first of $v.d
             most=$(for n in $(sed -nE "s|^.*/depth/round$((k - 1))/(.*)\.exr:\$|\1|p" "$(folder_of $k)/$v.d"); do item $((k - 1)) "$n" changed; done |
-                awk 'NR == 1 { own = $1; next } { sum += $1 } END { mean = NR > 1 ? sum / (NR - 1) : 0; printf "%.9f", own > mean ? own : mean }')
+                awk 'NR == 1 { own = $1; next } { sum += $1 } END { mean = NR > 1 ? sum / (NR - 1) : 0; printf "%.9f", (own > mean ? own : mean) }')
             if awk "BEGIN { exit !($most < 0.02) }"; then
                 carried=$((carried + 1))
                 [ "$(item $k $v changed) $(item $k $v estimated)" = "0 no" ] || fail "round $k estimated $v, but nothing had changed by more than $most"
