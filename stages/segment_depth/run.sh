@@ -41,6 +41,7 @@ estimate_depth()
     [ "$jobs" != slurm ] || wide=0
     "$bin/segment_depth" --config "$O/slice/segment_depth.cfg" --threads $((wide ? cores / wide : 1)) --views "$O/views" \
         --estimate "$list" --jobs "$wide" >&2 2>"$work/words" || cat "$work/words" >&2
+    [ "$1" -lt 2 ] || echo "depth: it takes less if some views need no estimate in the third round or later." >&2
 }
 
 # report_rounds LAST: how many views each round estimated; the others were carried over

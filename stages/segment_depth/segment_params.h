@@ -18,7 +18,7 @@
     X(jump, double, 12, 1, 1000, "steps", "depth difference at which the smoothness cost is truncated")              \
     X(rounds, int, 1, 0, 9, "",                                                                                      \
       "maximum number of rounds after the first, each using the neighbours' depth of the previous round")            \
-    X(min_change, double, 0.05, 0, 1, "",                                                                            \
+    X(min_change, double, 0.1, 0, 1, "",                                                                             \
       "share of pixels whose depth must change by over 1 % in a round, in a view or on average in those it is "      \
       "matched with, for the view to be estimated in the next; 0: every round estimates all views")                  \
     X(passes, int, 3, 0, 20, "",                                                                                     \
