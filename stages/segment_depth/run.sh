@@ -41,6 +41,21 @@ estimate_depth()
     [ "$jobs" != slurm ] || wide=0
     "$bin/segment_depth" --config "$O/slice/segment_depth.cfg" --threads $((wide ? cores / wide : 1)) --views "$O/views" \
         --estimate "$list" --jobs "$wide" >&2 2>"$work/words" || cat "$work/words" >&2
+    [ "$1" -lt 2 ] || echo "depth: it takes less if some views need no estimate in the third round or later." >&2
+}
+
+# report_rounds LAST: how many views each round estimated; the others were carried over
+report_rounds()
+{
+    local round folder views counts=''
+    views=$(sed 's/^VIEWS :=//' "$O/views/views.mk")
+    for round in $(seq 0 "$1"); do
+        folder=$O/depth/round$round
+        [ "$round" != "$1" ] || folder=$O/depth
+        # shellcheck disable=SC2086,SC2016 # a list of views
+        counts+=", $(printf "$folder/%s.round\n" $views | xargs -d '\n' cat | grep -cx 'estimated yes' || true)"
+    done
+    echo "depth: views estimated in each round: ${counts#, }, of $(wc -w <<<"$views")."
 }
 
 run_depth()
@@ -49,6 +64,8 @@ run_depth()
     report_given_depth
     last=$(sed -n 's/^rounds = //p' "$O/slice/segment_depth.cfg")
     estimate_depth "$last"
+    # rounds in which no view needs an estimate only copy
     for round in $(seq 0 "$last"); do farm segment_depth "depth-round$round"; done
     one depth
+    [ ! -s "$work/depth.list" ] || report_rounds "$last"
 }

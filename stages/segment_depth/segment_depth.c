@@ -2,10 +2,11 @@
  *
  * reads   VIEWS/cameras.txt, images.txt, points3D.txt   the cameras and sparse points
  *         VIEWS/VIEW.exr                                the view and the neighbours it selects, linear RGBA
- *         BEFORE/VIEW.exr, VIEW.txt                     with --before: depth of the view and its neighbours
+ *         BEFORE/VIEW.exr, VIEW.txt, VIEW.round         with --before: depth of the view and its neighbours
  *         GIVEN/VIEW.exr or .png, depth.txt             with --given: known depth, where there is any
  *         VIEWS/lenses.txt                              for given depth in the photo's pixels
  * writes  DEPS                                          make dependencies: the pictures that were read
+ *         OUT with .round for .exr                      how much the depth changed in this round
  *         OUT with .txt for .exr, then OUT              segments; layers interior.* and boundary.* (RGBA, Z, id)
  *
  * --estimate prints the time and memory that depth will take instead; it reads cameras and points only.
@@ -24,6 +25,7 @@
 #include "stages/segment_depth/estimate.h"
 #include "stages/segment_depth/given_depth.h"
 #include "stages/segment_depth/given_read.h"
+#include "stages/segment_depth/rounds.h"
 #include "stages/segment_depth/view_depth.h"
 
 struct views_folder {
@@ -136,28 +138,99 @@ static enum status warn_guessed_range(const struct camera_set *set, const int *r
     return st;
 }
 
-static enum status segment_depth(const char *folder, const char *before, const char *given, const char *name,
-                                 const char *out, const char *deps, const struct segment_params *params,
-                                 struct provenance *prov, struct err *err)
+/* What main was asked for. */
+struct request {
+    const char *views, *before, *given, *view, *out, *deps;
+    const struct segment_params *params;
+};
+
+/* The share of pixels whose depth differs from the round before. */
+static enum status find_change(double *changed, const struct layered_depth *depth, const struct request *r,
+                               struct err *err)
+{
+    struct layered_depth before = {0};
+    char path[FILE_PATH];
+    *changed = 1;
+    if (!r->before) return ST_OK;
+    enum status st = file_path(path, r->before, r->view, ".txt", err);
+    if (!st) st = layered_depth_read_segments(&before, path, err);
+    if (!st) *changed = round_change(depth, &before);
+    layered_depth_release(&before);
+    return st;
+}
+
+static enum status write_record(double changed, bool estimated, const struct request *r, const struct provenance *prov,
+                                struct err *err)
+{
+    const struct round_record record = {changed, estimated};
+    char path[FILE_PATH];
+    enum status st = round_file(path, r->out, ".round", err);
+    return st ? st : round_record_write(&record, path, prov, err);
+}
+
+/* read[0]: the view; the rest: the neighbours that were read. */
+static enum status make_depth(const struct request *r, const struct camera_set *set, int read[1 + MAX_NEIGHBOURS],
+                              struct provenance *prov, struct err *err)
+{
+    struct views_folder views = {r->views, r->before, r->given, set, prov};
+    const struct view_source source = {read_view, r->before ? read_depth : NULL, &views, r->given ? read_given : NULL};
+    struct layered_depth depth = {0};
+    double changed = 1;
+    int count = 0;
+    enum status st = estimate_log(set, read[0], !r->before, r->params, err);
+    if (!st) st = view_depth(&depth, read + 1, &count, set, read[0], &source, r->params, err);
+    if (!st) st = find_change(&changed, &depth, r, err);
+    if (!st && r->deps)
+        st = write_deps(r->deps, r->out, (const char *const[2]){r->views, r->before}, set, read, 1 + count, err);
+    if (!st) st = write_record(changed, true, r, prov, err);
+    if (!st) st = layered_depth_write(&depth, &set->views[read[0]], r->out, prov, err);
+    if (!st && count && !r->given) st = warn_guessed_range(set, read, count, r->params, err);
+    if (!st) log_coverage(r->view, &depth);
+    if (!st && r->before)
+        log_note("%s: the depth of %.2f %% of the pixels changed by more than %g %%", r->view, 100 * changed,
+                 100 * CHANGED_PART);
+    layered_depth_release(&depth);
+    return st;
+}
+
+/* Copies the depth of the round before if neither the view nor a neighbour changed in it; *carried: they did not. */
+static enum status carry_over(bool *carried, const struct request *r, const struct camera_set *set,
+                              int read[1 + MAX_NEIGHBOURS], struct provenance *prov, struct err *err)
+{
+    struct observed_points seen = {0};
+    struct provenance records = {.stage = prov->stage, .version = prov->version, .params = prov->params};
+    struct err alone = ERR_INIT;
+    int count = 0;
+    *carried = false;
+    enum status st = observed_points_find(&seen, set, read[0], err);
+    /* without neighbours a view has given depth, or view_depth() says what is wrong */
+    if (!st && neighbours_choose(read + 1, &count, set, read[0], &seen, r->params->neighbours, &alone) == ST_NOMEM)
+        st = err_set(err, ST_NOMEM, "%s", alone.text);
+    if (!st) st = round_is_settled(carried, r->before, set, read, 1 + count, r->params->min_change, &records, err);
+    if (!st && *carried && r->deps)
+        st = write_deps(r->deps, r->out, (const char *const[2]){r->views, r->before}, set, read, 1 + count, err);
+    if (!st && *carried) st = write_record(0, false, r, &records, err);
+    if (!st && *carried) st = round_carry_over(r->before, r->view, r->out, err);
+    if (!st && *carried)
+        log_note("%s: little changed here and in the neighbours in the round before, so its depth is carried over",
+                 r->view);
+    records.params = NULL; /* is prov's */
+    provenance_release(&records);
+    observed_points_release(&seen);
+    return st;
+}
+
+static enum status segment_depth(const struct request *r, struct provenance *prov, struct err *err)
 {
     struct camera_set set = {0};
-    struct layered_depth depth = {0};
-    int read[1 + MAX_NEIGHBOURS], count = 0;
-    enum status st = camera_set_read(&set, folder, err);
-    if (!st && (read[0] = camera_set_find(&set, name)) < 0)
-        st = err_set(err, ST_USAGE, "there is no view %s in %s/images.txt; the views are listed in %s/views.mk.", name,
-                     folder, folder);
-    if (!st) st = estimate_log(&set, read[0], !before, params, err);
-    if (!st) {
-        struct views_folder views = {folder, before, given, &set, prov};
-        const struct view_source source = {read_view, before ? read_depth : NULL, &views, given ? read_given : NULL};
-        st = view_depth(&depth, read + 1, &count, &set, read[0], &source, params, err);
-    }
-    if (!st && deps) st = write_deps(deps, out, (const char *const[2]){folder, before}, &set, read, 1 + count, err);
-    if (!st) st = layered_depth_write(&depth, &set.views[read[0]], out, prov, err);
-    if (!st && count && !given) st = warn_guessed_range(&set, read, count, params, err);
-    if (!st) log_coverage(name, &depth);
-    layered_depth_release(&depth);
+    int read[1 + MAX_NEIGHBOURS];
+    bool carried = false;
+    enum status st = camera_set_read(&set, r->views, err);
+    if (!st && (read[0] = camera_set_find(&set, r->view)) < 0)
+        st = err_set(err, ST_USAGE, "there is no view %s in %s/images.txt; the views are listed in %s/views.mk.",
+                     r->view, r->views, r->views);
+    if (!st && r->before) st = carry_over(&carried, r, &set, read, prov, err);
+    if (!st && !carried) st = make_depth(r, &set, read, prov, err);
     camera_set_release(&set);
     return st;
 }
@@ -177,19 +250,20 @@ static enum status estimate(const char *folder, const char *list, int jobs, cons
 
 int main(int argc, char **argv)
 {
-    const char *views = NULL, *before = NULL, *given = NULL, *view = NULL, *out = NULL, *deps = NULL, *list = NULL;
-    int jobs = 1;
     struct segment_params params = SEGMENT_PARAMS_DEFAULT;
+    struct request r = {.params = &params};
+    const char *list = NULL;
+    int jobs = 1;
     const struct cli_opt opts[] = {
         CLI_ABOUT("Layered depth of one view by multi-view segment matching."),
-        CLI_STR("views", &views, CLI_REQUIRED, "folder of cameras and rectified views"),
-        CLI_STR("view", &view, CLI_OPTIONAL, "view to work on (required, with --out)"),
-        CLI_STR("before", &before, CLI_OPTIONAL,
+        CLI_STR("views", &r.views, CLI_REQUIRED, "folder of cameras and rectified views"),
+        CLI_STR("view", &r.view, CLI_OPTIONAL, "view to work on (required, with --out)"),
+        CLI_STR("before", &r.before, CLI_OPTIONAL,
                 "folder of all views' depth in the previous round; none in the first round"),
-        CLI_STR("given", &given, CLI_OPTIONAL,
+        CLI_STR("given", &r.given, CLI_OPTIONAL,
                 "folder of known depth, of any of the views: VIEW.exr, or VIEW.png with depth.txt"),
-        CLI_STR("out", &out, CLI_OPTIONAL, "EXR to write"),
-        CLI_STR("deps", &deps, CLI_OPTIONAL, "make dependencies to write: the pictures that were read"),
+        CLI_STR("out", &r.out, CLI_OPTIONAL, "EXR to write"),
+        CLI_STR("deps", &r.deps, CLI_OPTIONAL, "make dependencies to write: the pictures that were read"),
         CLI_STR("estimate", &list, CLI_OPTIONAL,
                 "file of lines VIEW ROUND: makes no depth, but prints the time and memory that these will take"),
         CLI_INT("jobs", &jobs, CLI_OPTIONAL,
@@ -200,12 +274,12 @@ int main(int argc, char **argv)
     struct provenance prov = {0};
     struct err err = ERR_INIT;
     const enum cli_verdict verdict = cli_parse(argc, argv, "segment_depth", opts, &prov, &err);
-    if (verdict == CLI_RUN && !list == !(view && out))
+    if (verdict == CLI_RUN && !list == !(r.view && r.out))
         err_set(&err, ST_USAGE, "give --view and --out, or else --estimate.");
     else if (verdict == CLI_RUN && list)
-        estimate(views, list, jobs, &params, &err);
+        estimate(r.views, list, jobs, &params, &err);
     else if (verdict == CLI_RUN)
-        segment_depth(views, before, given, view, out, deps, &params, &prov, &err);
+        segment_depth(&r, &prov, &err);
     err_report(&err);
     provenance_release(&prov);
     return err_exit_code(&err);

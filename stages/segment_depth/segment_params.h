@@ -16,7 +16,11 @@
     X(planes, int, 256, 4, 1024, "", "maximum number of planes in the sweep; fewer if one-pixel steps need fewer")   \
     X(smoothness, double, 1.0, 0, 100, "", "weight of the smoothness cost between adjacent segments")                \
     X(jump, double, 12, 1, 1000, "steps", "depth difference at which the smoothness cost is truncated")              \
-    X(rounds, int, 1, 0, 9, "", "rounds after the first, each using the neighbours' depth of the previous round")    \
+    X(rounds, int, 1, 0, 9, "",                                                                                      \
+      "maximum number of rounds after the first, each using the neighbours' depth of the previous round")            \
+    X(min_change, double, 0.1, 0, 1, "",                                                                             \
+      "share of pixels whose depth must change by over 1 % in a round, in a view or on average in those it is "      \
+      "matched with, for the view to be estimated in the next; 0: every round estimates all views")                  \
     X(passes, int, 3, 0, 20, "",                                                                                     \
       "optimization passes over all segments in the first round; half as many in later rounds")                      \
     X(slant, double, 0.01, 0, 10, "",                                                                                \

@@ -1,7 +1,7 @@
 # segment_depth: layered depth of each view, in rounds.
 FOLLOWS.segment_depth := rectify
-READS.segment_depth := one view and the neighbours it selects; its depth in DEPTH, if there is any; after the first round, what they had in the round before
-WRITES.segment_depth := depth/round0/VIEW.exr, VIEW.txt, ...; of the last round depth/VIEW.exr, VIEW.txt
+READS.segment_depth := one view and the neighbours it selects; its depth in DEPTH, if there is any; after the first round, what they had in the round before and how much it had changed
+WRITES.segment_depth := depth/round0/VIEW.exr, VIEW.txt, VIEW.round, ...; of the last round depth/VIEW.exr, VIEW.txt, VIEW.round
 VARIABLES.segment_depth := DEPTH
 STEPS.segment_depth := depth
 HELP.depth := + layered depth maps
@@ -13,22 +13,23 @@ ifdef GRAPH
 DEPTH_EXR := $(VIEWS:%=$(O)/depth/%.exr)
 DEPTH_TXT := $(DEPTH_EXR:.exr=.txt)
 .PHONY: depth
-depth: $(DEPTH_EXR) $(DEPTH_TXT)
-# each round reads what the one before left in its folder; the last is O/depth itself
+depth: $(DEPTH_EXR) $(DEPTH_TXT) $(DEPTH_EXR:.exr=.round)
+# Each round reads what the one before left in its folder; the last is O/depth itself. A view that little changes in and
+# around is carried over from the round before: that is decided by segment_depth, from the records VIEW.round.
 LAST_ROUND := $(shell sed -n 's/^rounds = //p' $(O)/slice/segment_depth.cfg 2>/dev/null)
 round = $(O)/depth$(if $(filter-out $(LAST_ROUND),$(1)),/round$(1))
 GIVEN := $(if $(value REMODEL_DEPTH),--given "$$$$REMODEL_DEPTH")
 # $(1): a view; $(2): the folder of a round; $(3): that of the round before, empty for the first
 define depth_rule
-$(2)/$(1).exr $(2)/$(1).txt &: $(O)/views/$(1).exr $(if $(3),$(3)/$(1).exr) $(wildcard $(S)/stamp/given/$(1).txt) \
+$(2)/$(1).exr $(2)/$(1).txt $(2)/$(1).round &: $(O)/views/$(1).exr $(if $(3),$(3)/$(1).exr) $(wildcard $(S)/stamp/given/$(1).txt) \
   $(CAMERAS) $(call needs,segment_depth) | $(VIEW_EXR) $(if $(3),$(VIEWS:%=$(3)/%.exr))
-	$$(hide)$$(call farm,segment_depth,$(1),$(2)/$(1).txt $(2)/$(1).exr,\
+	$$(hide)$$(call farm,segment_depth,$(1),$(2)/$(1).round $(2)/$(1).txt $(2)/$(1).exr,\
 	  --view $(1) --views $(O)/views $(if $(3),--before $(3)) $(GIVEN) --out $(2)/$(1).exr --deps $(2)/$(1).d)
 endef
 # $(1): a round
 define round_rules
 .PHONY: depth-round$(1)
-depth-round$(1): $(VIEWS:%=$(call round,$(1))/%.exr)
+depth-round$(1): $(foreach e,exr txt round,$(VIEWS:%=$(call round,$(1))/%.$(e)))
 -include $(wildcard $(VIEWS:%=$(call round,$(1))/%.d)) # the neighbours each view really read
 endef
 $(foreach k,$(if $(LAST_ROUND),$(shell seq 0 $(LAST_ROUND))),$(eval $(call round_rules,$(k)))\

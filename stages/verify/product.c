@@ -185,7 +185,7 @@ enum status product_verify(const char *path, struct err *err)
         {".ply", verify_points}, {".mp4", verify_mp4},  {".svg", verify_svg},  {".html", verify_html},
         {".json", verify_json},  {".txt", verify_text}, {".tsv", verify_text}, {".csv", verify_text},
         {".mk", verify_text},    {".cfg", verify_text}, {".obj", verify_text}, {".mtl", verify_text},
-        {".py", verify_text},    {".log", verify_text}, {".md", verify_text},
+        {".py", verify_text},    {".log", verify_text}, {".md", verify_text},  {".round", verify_text},
     };
     const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
     for (size_t i = 0; dot && i < sizeof kinds / sizeof *kinds; i++)

@@ -6,7 +6,7 @@
  *   .mp4                    boxes that fill the file: ftyp first, and a moov and an mdat
  *   .svg .html              text that ends with the closing tag of its root element
  *   .json                   text that begins with { or [ and ends with the same bracket
- *   .txt .tsv .csv .mk .cfg .obj .mtl .py .log .md
+ *   .txt .tsv .csv .mk .cfg .obj .mtl .py .log .md .round
  *                           text: not empty, no NUL byte, a line break at the end
  *   any other, or none      not empty: a job must not fail because its product's kind is not listed here
  */

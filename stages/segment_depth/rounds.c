@@ -1,0 +1,157 @@
+/* rounds.c - rounds by need: only what still changes is estimated again.
+ *
+ * A round starts from a view's planes of the round before and from its neighbours' depth then [Zitnick 2007]. Where
+ * none of these has changed since the view was estimated last, another estimate would begin where that one ended. So
+ * each round records the change of each view: with z the depth on the plane of the pixel's segment,
+ *   changed = |{pixels: |z_now - z_before| > CHANGED_PART z_before}| / |{pixels with depth}|
+ * which is 1 in the first round, and 0 in a round that the view did not take part in. A view takes part in the next
+ * round if its own change, or the mean of its neighbours' changes, is at least min_change; otherwise its files are
+ * copied. The mean, because the neighbours' evidence in the energy is a mean over them (cross_view.c). The rule reads
+ * records of the previous round only, so that it does not depend on the order of views.
+ *
+ * A view that was carried over is estimated again as soon as its neighbours change enough. Changes below min_change do
+ * not add up over rounds: they are compared with the round before. What differs from the source: all its views take
+ * part in all rounds. */
+#include "stages/segment_depth/rounds.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "common/base/outfile.h"
+#include "common/base/textfile.h"
+
+enum status round_record_write(const struct round_record *r, const char *path, const struct provenance *prov,
+                               struct err *err)
+{
+    struct outfile file = {0};
+    enum status st = outfile_open(&file, path, err);
+    if (!st) {
+        if (prov) provenance_print(prov, file.fp);
+        fprintf(file.fp, "remodel-round 1\nchanged %.6g\nestimated %s\n", r->changed, r->estimated ? "yes" : "no");
+        st = outfile_commit(&file, err);
+    }
+    outfile_discard(&file);
+    return st;
+}
+
+static enum status read_changed(double *changed, struct textfile *t, struct err *err)
+{
+    if (textfile_expect_line(t, "changed", err) || textfile_double(t, "share of pixels", changed, err))
+        return err->status;
+    if (!(*changed >= 0 && *changed <= 1)) return textfile_wrong_number(t, *changed, "a share from 0 to 1", err);
+    return textfile_end(t, err);
+}
+
+static enum status read_estimated(bool *estimated, struct textfile *t, struct err *err)
+{
+    char *word;
+    if (textfile_expect_line(t, "estimated", err) || textfile_word(t, "yes or no", &word, err)) return err->status;
+    *estimated = !strcmp(word, "yes");
+    if (!*estimated && strcmp(word, "no")) return textfile_error(t, err, word, "yes or no");
+    return textfile_end(t, err);
+}
+
+enum status round_record_read(struct round_record *r, const char *path, struct err *err)
+{
+    struct textfile t = {0};
+    int64_t version;
+    *r = (struct round_record){0};
+    enum status st = textfile_open(&t, path, err);
+    if (!st) st = textfile_expect_line(&t, "remodel-round", err);
+    if (!st) st = textfile_int(&t, "version", 1, 1, &version, err);
+    if (!st) st = textfile_end(&t, err);
+    if (!st) st = read_changed(&r->changed, &t, err);
+    if (!st) st = read_estimated(&r->estimated, &t, err);
+    if (!st) st = textfile_end_of_file(&t, err);
+    textfile_release(&t);
+    if (st) *r = (struct round_record){0};
+    return st;
+}
+
+static double inverse_at(const struct depth_segment *g, int x, int y)
+{
+    return g->plane[0] * (x + 0.5) + g->plane[1] * (y + 0.5) + g->plane[2];
+}
+
+double round_change(const struct layered_depth *now, const struct layered_depth *before)
+{
+    size_t changed = 0, known = 0;
+    for (int y = 0; y < now->height; y++)
+        for (int x = 0; x < now->width; x++) {
+            const uint32_t id = now->interior.id[(size_t)y * (size_t)now->width + (size_t)x];
+            if (!id) continue;
+            known++;
+            if (id > (uint32_t)before->segment_count) {
+                changed++;
+                continue;
+            }
+            /* |z_now - z_before| > part z_before, in inverse depths, which are positive where there is depth */
+            const double a = inverse_at(&now->segments[id - 1], x, y), b = inverse_at(&before->segments[id - 1], x, y);
+            changed += !(fabs(b - a) <= CHANGED_PART * a);
+        }
+    return known ? (double)changed / (double)known : 0;
+}
+
+static enum status read_change(double *changed, const char *folder, const char *view, struct provenance *prov,
+                               struct err *err)
+{
+    struct round_record r = {0};
+    char path[FILE_PATH];
+    enum status st = provenance_add_in(prov, "depth", folder, view, ".round", path, err);
+    if (!st) st = round_record_read(&r, path, err);
+    *changed = r.changed;
+    return st;
+}
+
+enum status round_is_settled(bool *settled, const char *folder, const struct camera_set *set, const int *views,
+                             int count, double min_change, struct provenance *prov, struct err *err)
+{
+    double own = 0, sum = 0;
+    enum status st = read_change(&own, folder, set->views[views[0]].name, prov, err);
+    for (int i = 1; !st && i < count; i++) {
+        double changed;
+        st = read_change(&changed, folder, set->views[views[i]].name, prov, err);
+        sum += changed;
+    }
+    *settled = !st && own < min_change && (count < 2 || sum / (count - 1) < min_change);
+    return st;
+}
+
+static enum status copy_file(const char *from, const char *to, struct err *err)
+{
+    struct outfile file = {0};
+    char buffer[1 << 16];
+    size_t got = 0;
+    FILE *source = fopen(from, "rbe");
+    if (!source) return err_errno(err, "open", from);
+    enum status st = outfile_open(&file, to, err);
+    /* the commit reports a failed write */
+    while (!st && (got = fread(buffer, 1, sizeof buffer, source)) > 0) fwrite(buffer, 1, got, file.fp);
+    if (!st && ferror(source)) st = err_errno(err, "read", from);
+    if (!st) st = outfile_commit(&file, err);
+    outfile_discard(&file);
+    fclose(source);
+    return st;
+}
+
+enum status round_file(char path[FILE_PATH], const char *exr, const char *suffix, struct err *err)
+{
+    const size_t n = strlen(exr), suffix_size = strlen(suffix) + 1;
+    if (n < 5 || strcmp(exr + n - 4, ".exr"))
+        return err_set(err, ST_USAGE, "%s: the name of a depth map must end in .exr.", exr);
+    if (n - 4 + suffix_size > FILE_PATH) return err_set(err, ST_IO, "%s: the path is too long.", exr);
+    memcpy(path, exr, n - 4);
+    memcpy(path + n - 4, suffix, suffix_size);
+    return ST_OK;
+}
+
+enum status round_carry_over(const char *folder, const char *view, const char *out, struct err *err)
+{
+    char from[FILE_PATH], to[FILE_PATH];
+    enum status st = file_path(from, folder, view, ".txt", err);
+    if (!st) st = round_file(to, out, ".txt", err);
+    if (!st) st = copy_file(from, to, err);
+    if (!st) st = file_path(from, folder, view, ".exr", err);
+    return st ? st : copy_file(from, out, err);
+}
