@@ -9,7 +9,8 @@
  *   plane_sweep   first round: cost volume over the depth range, smoothed; later rounds start from the previous planes
  *   expand        expansion moves: minimum cuts over planes, slanted where that explains the pictures better
  *   refine        local search with the same energy
- *   inherit       border areas that nothing holds in the foreground take over what lies behind them
+ *   inherit       border areas that nothing holds in the foreground take over what lies behind them; not in the first
+ *                 of several rounds
  *   layers        opaque interiors, and mattes at depth edges
  *
  * What differs from the sources: planes may be slanted; sparse points are soft evidence; a round reads the neighbours'
@@ -267,6 +268,9 @@ static enum status inherit(struct layered_depth *out, struct plane *planes, cons
     return st;
 }
 
+/* Whether a round follows for certain. Then border areas wait for it: it knows better which of them are foreground. */
+static bool another_round(const struct solver *v) { return !v->source->read_depth && v->params->rounds > 0; }
+
 static enum status solve(struct layered_depth *out, const struct solver *v, struct err *err)
 {
     const struct segmentation *s = v->m->segments;
@@ -280,7 +284,7 @@ static enum status solve(struct layered_depth *out, const struct solver *v, stru
             sweep->cost + (size_t)i * (size_t)sweep->planes, sweep->planes,
             (plane_at(x.planes[i], s->segments[i].cx, s->segments[i].cy) - sweep->min_inverse_z) / sweep->step);
     if (!st) st = fill_segments(out, &x.problem, x.planes, x.distinct, err);
-    if (!st) st = inherit(out, x.planes, &x.problem, err);
+    if (!st && !another_round(v)) st = inherit(out, x.planes, &x.problem, err);
     if (!st) st = layers_make(out, s, x.planes, v->picture, sweep->step, !strcmp(v->params->matte, "two_colour"), err);
     solution_release(&x);
     return st;
