@@ -32,20 +32,24 @@
 #include "common/math/numbers.h"
 #include "stages/segment_depth/max_flow.h"
 
-#define HELD       0.3   /* mean confidence */
-#define MIN_HELD   8     /* mean segments of confidence 1 */
-#define KEEP       0.7   /* a block beside foreground is more frequent than unsure foreground at the border */
-#define FAR_BIAS   0.005 /* 0.0075 sends unsure foreground behind its surroundings */
-#define MAX_LEVELS 64
-#define ROUNDS     3
-#define ITERATIONS 200
-#define CAPACITY   1e6 /* of weight 1 */
+#define HELD     0.3 /* mean confidence */
+#define MIN_HELD 8   /* mean segments of confidence 1 */
+/* In the last round a block beside foreground is more frequent than unsure foreground at the border. */
+#define KEEP              0.7
+#define FAR_BIAS          0.005 /* 0.0075 sends unsure foreground behind its surroundings */
+#define KEEP_CAUTIOUS     3.0
+#define FAR_BIAS_CAUTIOUS 0.0
+#define MAX_LEVELS        64
+#define ROUNDS            3
+#define ITERATIONS        200
+#define CAPACITY          1e6 /* of weight 1 */
 
 struct inherit {
     const struct plane_problem *p;
     const struct segmentation *s;
     struct plane *planes;
     const double *confidence;
+    double keep, far_bias;
     double spacing, level; /* of levels, and the one that is cut; inverse depths */
     bool *held, *listed;
     int *members;         /* segments of an area */
@@ -147,13 +151,13 @@ static void add_terms(struct inherit *x, int k)
 {
     const struct segmentation *s = x->s;
     const int i = x->members[k];
-    double behind = -FAR_BIAS * s->segments[i].pixels / x->p->params->segment_pixels;
+    double behind = -x->far_bias * s->segments[i].pixels / x->p->params->segment_pixels;
     for (int t = s->first_border[i]; t < s->first_border[i + 1]; t++) {
         const int j = s->borders[t].other;
         const double w = (double)x->p->weights[t];
         const int64_t capacity = (int64_t)(w * CAPACITY);
         if (x->held[j])
-            behind += at_border(x, j, t) >= x->level ? KEEP * w : -w;
+            behind += at_border(x, j, t) >= x->level ? x->keep * w : -w;
         else if (!is_unsure_above(x, j))
             behind -= w;
         else if (j > i)
@@ -250,12 +254,14 @@ static bool take_over(struct inherit *x, bool *inherited)
 }
 
 enum status inherit_planes(struct plane *planes, bool *inherited, const double *confidence,
-                           const struct plane_problem *p, struct err *err)
+                           const struct plane_problem *p, bool cautious, struct err *err)
 {
     const struct segmentation *s = p->m->segments;
     const size_t count = (size_t)s->count + 1;
     const double range = PLANE_MAX_FACTOR * p->max_inverse_z - p->min_inverse_z;
     struct inherit x = {.p = p, .s = s, .planes = planes, .confidence = confidence};
+    x.keep = cautious ? KEEP_CAUTIOUS : KEEP;
+    x.far_bias = cautious ? FAR_BIAS_CAUTIOUS : FAR_BIAS;
     x.spacing = fmax(p->params->jump * p->step, range / MAX_LEVELS);
     x.held = malloc(count * sizeof *x.held);
     x.listed = malloc(count * sizeof *x.listed);

@@ -9,8 +9,7 @@
  *   plane_sweep   first round: cost volume over the depth range, smoothed; later rounds start from the previous planes
  *   expand        expansion moves: minimum cuts over planes, slanted where that explains the pictures better
  *   refine        local search with the same energy
- *   inherit       border areas that nothing holds in the foreground take over what lies behind them; not in the first
- *                 of several rounds
+ *   inherit       border areas that nothing holds in the foreground take over what lies behind them
  *   layers        opaque interiors, and mattes at depth edges
  *
  * What differs from the sources: planes may be slanted; sparse points are soft evidence; a round reads the neighbours'
@@ -248,14 +247,14 @@ static void solution_release(struct solution *x)
 
 /* Gives floating border areas what lies behind them, without confidence. */
 static enum status inherit(struct layered_depth *out, struct plane *planes, const struct plane_problem *p,
-                           struct err *err)
+                           bool cautious, struct err *err)
 {
     const size_t count = (size_t)out->segment_count + 1;
     double *confidence = malloc(count * sizeof *confidence);
     bool *inherited = calloc(count, sizeof *inherited);
     enum status st = confidence && inherited ? ST_OK : err_nomem(err, "confidences", count * sizeof *confidence);
     for (int i = 0; !st && i < out->segment_count; i++) confidence[i] = out->segments[i].confidence;
-    if (!st) st = inherit_planes(planes, inherited, confidence, p, err);
+    if (!st) st = inherit_planes(planes, inherited, confidence, p, cautious, err);
     for (int i = 0; !st && i < out->segment_count; i++)
         if (inherited[i]) {
             struct depth_segment *g = &out->segments[i];
@@ -268,7 +267,7 @@ static enum status inherit(struct layered_depth *out, struct plane *planes, cons
     return st;
 }
 
-/* Whether a round follows for certain. Then border areas wait for it: it knows better which of them are foreground. */
+/* Whether a round follows for certain, which knows better which border areas are foreground. */
 static bool another_round(const struct solver *v) { return !v->source->read_depth && v->params->rounds > 0; }
 
 static enum status solve(struct layered_depth *out, const struct solver *v, struct err *err)
@@ -284,7 +283,7 @@ static enum status solve(struct layered_depth *out, const struct solver *v, stru
             sweep->cost + (size_t)i * (size_t)sweep->planes, sweep->planes,
             (plane_at(x.planes[i], s->segments[i].cx, s->segments[i].cy) - sweep->min_inverse_z) / sweep->step);
     if (!st) st = fill_segments(out, &x.problem, x.planes, x.distinct, err);
-    if (!st && !another_round(v)) st = inherit(out, x.planes, &x.problem, err);
+    if (!st) st = inherit(out, x.planes, &x.problem, another_round(v), err);
     if (!st) st = layers_make(out, s, x.planes, v->picture, sweep->step, !strcmp(v->params->matte, "two_colour"), err);
     solution_release(&x);
     return st;

@@ -55,7 +55,7 @@ static void inherit(void)
 {
     struct err err = ERR_INIT;
     memcpy(before, planes, sizeof before);
-    if (inherit_planes(planes, inherited, confidence, &b.problem, &err)) fail_msg("%s", err.text);
+    if (inherit_planes(planes, inherited, confidence, &b.problem, false, &err)) fail_msg("%s", err.text);
 }
 
 /* The rectangle at each side of the picture, and a few segments in it that match something by chance. */
