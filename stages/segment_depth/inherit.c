@@ -5,13 +5,14 @@
  * cost of being out of view would cure it, but pushes true foreground away. So blocks are found by what surrounds them.
  *
  * Two adjacent segments are connected if their planes lie within `jump` steps at their border. A segment is held if it
- * and those connected to it have a mean confidence of at least HELD, and if it is one of connected ones whose
- * confidences sum to at least MIN_HELD, each times its size in mean segments. The others take the inverse depths d that minimize
- *   sum over adjacent i, j  w_ij |d_i - d_j|  +  FAR_BIAS sum_i size_i d_i,    d_i at most what it was,
- * given those of held segments. w_ij is the weight of the smoothness cost, so that contact with
- * an object of another colour hardly counts; contact with a held segment in front counts KEEP of it. Nothing is moved
- * forwards, and an area stays in front only as long as its contact with held foreground outweighs its contact with
- * what lies behind, and the bias. A ramp costs as much as a jump, so that it does not hold a block.
+ * and those connected to it have a mean confidence of at least `held`, and if its surface, of connected segments with
+ * that mean, is large enough: confidence times size, in mean segments, sums to MIN_HELD. The others take the inverse
+ * depths d that minimize
+ *   sum over adjacent i, j  w_ij |d_i - d_j|  +  far_bias sum_i size_i d_i,    d_i at most what it was,
+ * given those of held segments. w_ij is the weight of the smoothness cost, so that contact with an object of another
+ * colour hardly counts; contact with held foreground counts `keep` times that. Nothing is moved forwards. An area stays
+ * in front as long as its contact with held foreground outweighs its contact with what lies behind, and the bias. A
+ * ramp costs as much as a jump, so that it does not hold a block.
  *
  * The minimum is found level by level [Hochbaum 2001]: the segments above a level and those below it are separated by a
  * minimum cut, independently of other levels. Levels are `jump` steps apart. Only areas that touch the picture's border
@@ -32,24 +33,26 @@
 #include "common/math/numbers.h"
 #include "stages/segment_depth/max_flow.h"
 
-#define HELD     0.3 /* mean confidence */
-#define MIN_HELD 8   /* mean segments of confidence 1 */
-/* In the last round a block beside foreground is more frequent than unsure foreground at the border. */
-#define KEEP              0.7
-#define FAR_BIAS          0.005 /* 0.0075 sends unsure foreground behind its surroundings */
-#define KEEP_CAUTIOUS     3.0
-#define FAR_BIAS_CAUTIOUS 0.0
-#define MAX_LEVELS        64
-#define ROUNDS            3
-#define ITERATIONS        200
-#define CAPACITY          1e6 /* of weight 1 */
+#define MIN_HELD   8 /* mean segments of confidence 1 */
+#define MAX_LEVELS 64
+#define ROUNDS     3
+#define ITERATIONS 200
+#define CAPACITY   1e6 /* of weight 1 */
+
+struct caution {
+    double held;           /* mean confidence */
+    double keep, far_bias; /* as above */
+};
+/* If another round follows: few depths are confirmed yet. In the last one, a bias of 0.0075 of `keep` sends unsure
+ * foreground behind its surroundings. */
+static const struct caution early = {0.1, 3, 0}, last = {0.3, 1.0, 0.005};
 
 struct inherit {
     const struct plane_problem *p;
     const struct segmentation *s;
     struct plane *planes;
     const double *confidence;
-    double keep, far_bias;
+    struct caution caution;
     double spacing, level; /* of levels, and the one that is cut; inverse depths */
     bool *held, *listed;
     int *members;         /* segments of an area */
@@ -124,7 +127,7 @@ static void find_held(struct inherit *x)
 {
     const struct segmentation *s = x->s;
     for (int i = 0; i < s->count; i++) {
-        x->held[i] = given_depth_has(x->p->given, i) || confidence_around(x, i) >= HELD;
+        x->held[i] = given_depth_has(x->p->given, i) || confidence_around(x, i) >= x->caution.held;
         x->listed[i] = false;
     }
     for (int i = 0; i < s->count; i++) {
@@ -151,13 +154,13 @@ static void add_terms(struct inherit *x, int k)
 {
     const struct segmentation *s = x->s;
     const int i = x->members[k];
-    double behind = -x->far_bias * s->segments[i].pixels / x->p->params->segment_pixels;
+    double behind = -x->caution.far_bias * s->segments[i].pixels / x->p->params->segment_pixels;
     for (int t = s->first_border[i]; t < s->first_border[i + 1]; t++) {
         const int j = s->borders[t].other;
         const double w = (double)x->p->weights[t];
         const int64_t capacity = (int64_t)(w * CAPACITY);
         if (x->held[j])
-            behind += at_border(x, j, t) >= x->level ? x->keep * w : -w;
+            behind += at_border(x, j, t) >= x->level ? x->caution.keep * w : -w;
         else if (!is_unsure_above(x, j))
             behind -= w;
         else if (j > i)
@@ -260,8 +263,7 @@ enum status inherit_planes(struct plane *planes, bool *inherited, const double *
     const size_t count = (size_t)s->count + 1;
     const double range = PLANE_MAX_FACTOR * p->max_inverse_z - p->min_inverse_z;
     struct inherit x = {.p = p, .s = s, .planes = planes, .confidence = confidence};
-    x.keep = cautious ? KEEP_CAUTIOUS : KEEP;
-    x.far_bias = cautious ? FAR_BIAS_CAUTIOUS : FAR_BIAS;
+    x.caution = cautious ? early : last;
     x.spacing = fmax(p->params->jump * p->step, range / MAX_LEVELS);
     x.held = malloc(count * sizeof *x.held);
     x.listed = malloc(count * sizeof *x.listed);
