@@ -9,6 +9,7 @@
 static struct plane planes[MAX_SEGMENTS], before[MAX_SEGMENTS];
 static double confidence[MAX_SEGMENTS];
 static bool inherited[MAX_SEGMENTS];
+static bool cautious;
 
 static const double card_depth = 1 / 0.42;
 
@@ -55,7 +56,7 @@ static void inherit(void)
 {
     struct err err = ERR_INIT;
     memcpy(before, planes, sizeof before);
-    if (inherit_planes(planes, inherited, confidence, &b.problem, false, &err)) fail_msg("%s", err.text);
+    if (inherit_planes(planes, inherited, confidence, &b.problem, cautious, &err)) fail_msg("%s", err.text);
 }
 
 /* The rectangle at each side of the picture, and a few segments in it that match something by chance. */
@@ -190,6 +191,24 @@ static void other_areas_keep_their_depth(void **state)
     must_stay();
 }
 
+/* The unsure end of a matched object of the wall's colour. */
+static void only_the_last_round_cuts_foreground_of_the_same_colour(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 2; k++) {
+        int moved = 0;
+        start();
+        put_in_front(0, 30, 100, 70, 0.5);
+        const int unsure = put_in_front(0, 30, 40, 70, 0);
+        cautious = !k;
+        inherit();
+        cautious = false;
+        for (int i = 0; i < b.segments.count; i++) moved += inherited[i];
+        assert_true(unsure > 15 && (k ? moved > 0.7 * unsure : moved < 0.2 * unsure)); /* early: corners only */
+        bench_release();
+    }
+}
+
 /* Nothing adjoins the block: it keeps its depth. */
 static void a_block_that_fills_the_picture_keeps_its_depth(void **state)
 {
@@ -207,6 +226,7 @@ int main(void)
         cmocka_unit_test(a_block_is_cut_off_from_the_foreground_that_it_touches),
         cmocka_unit_test(a_ramp_does_not_hold_a_block),
         cmocka_unit_test(other_areas_keep_their_depth),
+        cmocka_unit_test(only_the_last_round_cuts_foreground_of_the_same_colour),
         cmocka_unit_test(a_block_that_fills_the_picture_keeps_its_depth),
     };
     parallel_set_threads(1); /* tests run in parallel */
