@@ -43,8 +43,8 @@ struct caution {
     double held;           /* mean confidence */
     double keep, far_bias; /* as above */
 };
-/* If another round follows: few depths are confirmed yet. In the last one, a bias of 0.0075 of `keep` sends unsure
- * foreground behind its surroundings. */
+/* If another round follows: few depths are confirmed yet. In the last one, a bias of 0.02 sends unsure foreground
+ * behind its surroundings. */
 static const struct caution early = {0.1, 3, 0}, last = {0.3, 1.0, 0.005};
 
 struct inherit {
