@@ -247,14 +247,14 @@ static void solution_release(struct solution *x)
 
 /* Gives floating border areas what lies behind them, without confidence. */
 static enum status inherit(struct layered_depth *out, struct plane *planes, const struct plane_problem *p,
-                           struct err *err)
+                           bool cautious, struct err *err)
 {
     const size_t count = (size_t)out->segment_count + 1;
     double *confidence = malloc(count * sizeof *confidence);
     bool *inherited = calloc(count, sizeof *inherited);
     enum status st = confidence && inherited ? ST_OK : err_nomem(err, "confidences", count * sizeof *confidence);
     for (int i = 0; !st && i < out->segment_count; i++) confidence[i] = out->segments[i].confidence;
-    if (!st) st = inherit_planes(planes, inherited, confidence, p, err);
+    if (!st) st = inherit_planes(planes, inherited, confidence, p, cautious, err);
     for (int i = 0; !st && i < out->segment_count; i++)
         if (inherited[i]) {
             struct depth_segment *g = &out->segments[i];
@@ -266,6 +266,9 @@ static enum status inherit(struct layered_depth *out, struct plane *planes, cons
     free(inherited);
     return st;
 }
+
+/* Whether a round follows for certain, which knows better which border areas are foreground. */
+static bool another_round(const struct solver *v) { return !v->source->read_depth && v->params->rounds > 0; }
 
 static enum status solve(struct layered_depth *out, const struct solver *v, struct err *err)
 {
@@ -280,7 +283,7 @@ static enum status solve(struct layered_depth *out, const struct solver *v, stru
             sweep->cost + (size_t)i * (size_t)sweep->planes, sweep->planes,
             (plane_at(x.planes[i], s->segments[i].cx, s->segments[i].cy) - sweep->min_inverse_z) / sweep->step);
     if (!st) st = fill_segments(out, &x.problem, x.planes, x.distinct, err);
-    if (!st) st = inherit(out, x.planes, &x.problem, err);
+    if (!st) st = inherit(out, x.planes, &x.problem, another_round(v), err);
     if (!st) st = layers_make(out, s, x.planes, v->picture, sweep->step, !strcmp(v->params->matte, "two_colour"), err);
     solution_release(&x);
     return st;
