@@ -7,7 +7,8 @@
  *
  * Rooms. The outermost prominent face on each side that is not only seen through another wall's windows bounds the
  * plan: a box. A box is cut in two by the pair of faces back to back (or the single face) with the largest solid
- * fraction across it, and its parts likewise; boxes that cannot be cut are rooms.
+ * fraction across it, and its parts likewise; boxes that cannot be cut are rooms. The wall's other face is the nearest
+ * one that is solid in enough of the same cells: furniture in front of it may hide the rest.
  *
  * Openings. In finer cells, columns of a wall that are more seen through than solid form runs; the largest run of such
  * rows in them is an opening, which then grows over unseen cells to where the wall is solid. */
@@ -29,6 +30,7 @@ static const double MIN_FACE = 0.12;            /* area of a face, ceiling heigh
 /* As other fractions: */
 static const double MIN_OUTER = 0.25;   /* net area of an outer face, of the best face's */
 static const double SEEN_THROUGH = 0.9; /* of a face's lines of sight: it lies beyond another face */
+static const double MIN_BACK = 0.15;    /* of a face's solid cells that are solid on the wall's other face too */
 static const double MIN_FLOOR = 0.3;    /* of a room's floor cells with points */
 
 struct wall_side {  /* a face of a wall */
@@ -289,6 +291,32 @@ static enum status is_free(bool *found, const struct finder *f, const struct box
     return ST_OK;
 }
 
+/* The other face of a wall with the face a; NULL: none. Furniture may hide most of it, and points that fitted
+ * badly may lie behind it, so that it is no wall by its own solid fraction. It must be solid in enough cells where the
+ * first face is solid too. The thinnest wall is chosen, because what stands in front of a wall is nearer to the room. */
+static const struct wall_side *find_back(const struct finder *f, const struct wall_side *a, const struct box *box)
+{
+    const struct wall_side *found = NULL;
+    const double c = f->params->cell * f->height;
+    const int other = 1 - a->axis, first = clamp_int((int)((box->low[other] - f->low[other]) / c), 0, f->across[other]),
+              last = clamp_int((int)((box->high[other] - f->low[other]) / c), 0, f->across[other]);
+    for (int i = 0; i < f->face_count; i++) {
+        const struct wall_side *b = &f->faces[i];
+        const double thickness = a->sign * (a->at - b->at);
+        int both = 0, front = 0;
+        if (b->axis != a->axis || b->sign == a->sign || thickness < 2 * f->params->window * f->height ||
+            thickness > f->params->max_thickness * f->height)
+            continue;
+        for (int k = first * f->up; k < last * f->up; k++) {
+            front += a->cells[k] > 0;
+            both += a->cells[k] > 0 && b->cells[k] > 0;
+        }
+        if (both * f->params->cell * f->params->cell < MIN_FACE || both < MIN_BACK * front) continue;
+        if (!found || thickness < a->sign * (a->at - found->at)) found = b;
+    }
+    return found;
+}
+
 /* The wall with the largest solid fraction that cuts a box: two faces back to back, or else a single face (best[1] is
  * then NULL); best[0] is NULL if there is none. */
 static void find_partition(const struct wall_side *best[2], const struct finder *f, const struct box *box)
@@ -322,6 +350,12 @@ static void find_partition(const struct wall_side *best[2], const struct finder 
         best_fraction = fraction;
         best[0] = a;
     }
+    const struct wall_side *front = best[0], *back = front ? find_back(f, front, box) : NULL;
+    if (!back) return;
+    best[0] = front->sign < 0 ? front : back;
+    best[1] = front->sign < 0 ? back : front;
+    const struct wall_side *nearer = find_back(f, best[1], box); /* the first may have been furniture too */
+    if (nearer) best[0] = nearer;
 }
 
 /* Cuts a box in two at its best wall, and its parts likewise; boxes without such a wall become rooms. */
