@@ -15,8 +15,8 @@
  *
  * Sides. Each side moves by a few cells to the largest step of brightness along it, because pictures have sharper edges
  * than depth. It moves farther outwards than inwards: the front of a reveal is near the plane, and its depth may be on
- * it; farther inside, the glass meets the reveal, which is another edge. A part that furniture hides in all views is not
- * guessed: the window ends there. */
+ * it. Where the largest step is that from the glass to the reveal, the next one outwards, from the reveal to the wall,
+ * is taken, if there is one. A part that furniture hides in all views is not guessed: the window ends there. */
 #include "stages/suggest_model/windows.h"
 
 #include <math.h>
@@ -26,14 +26,16 @@
 #include "common/base/array.h"
 #include "common/base/sort.h"
 
-enum { MIN_SAMPLES = 2, GAP = 3, OUTWARDS = 8, INWARDS = 2, RING = 8 }; /* views of a known cell; cells */
-static const double MIN_OPEN = 0.6;                                     /* of the votes inside a window */
+enum { MIN_SAMPLES = 2 };                                           /* views that know a cell */
+enum { GAP = 3, OUTWARDS = 8, INWARDS = 2, DEEPEST = 4, RING = 8 }; /* cells */
+static const double MIN_OPEN = 0.6;                                 /* of the votes inside a window */
 static const double MAX_SOLID_OPEN = 0.5; /* fewer votes: an opening from points is contradicted */
 static const double MAX_MIRRORED = 0.5;   /* of the votes behind the plane */
 static const double MIN_KNOWN = 0.25;     /* of the cells of an opening that views may contradict */
 static const double MIN_BORDER = 0.25;    /* of the cells around a window that are solid */
 static const double MIN_BRIGHTER = 2;     /* times the wall around it */
 static const double MIN_SPREADS = 1.5;    /* times the standard deviation of log luminance around it */
+static const double SECOND_STEP = 0.3;    /* of the largest step of brightness, where a reveal meets the wall */
 static const double MAX_FOOT = 0.15;      /* of a doorway's lower side, of the ceiling's height */
 static const double SAME = 0.5;           /* overlap of equal openings, of the smaller area */
 
@@ -106,6 +108,7 @@ static struct rect best_rect(const struct wall_raster *r, const struct rect *bou
 
 struct evidence {
     double known, open, mirrored, border; /* fractions */
+    double wall;                          /* log luminance of the wall around */
     double contrast, spread;              /* of log luminance to the wall around; its standard deviation there */
 };
 
@@ -146,6 +149,7 @@ static struct evidence weigh(const struct wall_raster *r, const struct rect *rec
     if (!inside || !around) return e;
     const double wall = median_of(values, around);
     for (size_t i = 0; i < around; i++) values[i] = fabs(values[i] - wall);
+    e.wall = wall;
     e.contrast = bright - wall;
     e.spread = 1.4826 * median_of(values, around); /* the standard deviation of a normal distribution */
     return e;
@@ -170,29 +174,42 @@ static bool line_brightness(double *mean, const struct wall_raster *r, const str
     return 4 * count >= last - first;
 }
 
-/* Moves a side (inside lies at or above *side if `step` is 1, below it if -1) to the largest step of brightness. */
-static void refine_side(int *side, int step, const struct wall_raster *r, const struct rect *rect, bool row)
+/* How much brighter the line inside a position is than the one outside; 0 if too little is known. A line that is darker
+ * than the wall counts as wall: a dark picture's edge is no step. */
+static double step_at(const struct wall_raster *r, const struct rect *rect, double wall, bool row, int step, int at)
 {
-    double best = 0;
-    const int from = *side;
-    for (int shift = -INWARDS; shift <= OUTWARDS; shift++) {
-        double inside, outside;
-        const int at = from - step * shift;
-        const int in = step > 0 ? at : at - 1, out = step > 0 ? at - 1 : at;
-        if (!line_brightness(&inside, r, rect, row, in) || !line_brightness(&outside, r, rect, row, out)) continue;
-        if (inside - outside <= best) continue;
-        best = inside - outside;
-        *side = at;
-    }
+    double inside, outside;
+    const int in = step > 0 ? at : at - 1, out = step > 0 ? at - 1 : at;
+    if (!line_brightness(&inside, r, rect, row, in) || !line_brightness(&outside, r, rect, row, out)) return 0;
+    return inside - fmax(outside, wall);
 }
 
-static void refine(struct rect *rect, const struct wall_raster *r)
+/* Moves a side (inside lies at or above *side if `step` is 1, below it if -1) to the largest step of brightness, and on
+ * to the outermost one near it that is not much smaller. */
+static void refine_side(int *side, int step, const struct wall_raster *r, const struct rect *rect, double wall,
+                        bool row)
+{
+    const int from = *side;
+    double largest = 0;
+    for (int shift = -INWARDS; shift <= OUTWARDS; shift++) {
+        const double here = step_at(r, rect, wall, row, step, from - step * shift);
+        if (here <= largest) continue;
+        largest = here;
+        *side = from - step * shift;
+    }
+    const int glass = *side;
+    for (int shift = 1; largest > 0 && shift <= DEEPEST; shift++)
+        if (step_at(r, rect, wall, row, step, glass - step * shift) >= SECOND_STEP * largest)
+            *side = glass - step * shift;
+}
+
+static void refine(struct rect *rect, const struct wall_raster *r, double wall)
 {
     struct rect fine = *rect;
-    refine_side(&fine.begin, 1, r, rect, false);
-    refine_side(&fine.end, -1, r, rect, false);
-    refine_side(&fine.foot, 1, r, rect, true);
-    refine_side(&fine.top, -1, r, rect, true);
+    refine_side(&fine.begin, 1, r, rect, wall, false);
+    refine_side(&fine.end, -1, r, rect, wall, false);
+    refine_side(&fine.foot, 1, r, rect, wall, true);
+    refine_side(&fine.top, -1, r, rect, wall, true);
     *rect = fine;
 }
 
@@ -271,7 +288,7 @@ static enum status try_region(struct suggestion *s, int wall, const struct wall_
     const struct evidence e = weigh(r, &rect, values);
     if (e.open < MIN_OPEN || e.mirrored > MAX_MIRRORED || e.border < MIN_BORDER) return ST_OK;
     if (e.contrast < fmax(log(MIN_BRIGHTER), MIN_SPREADS * e.spread)) return ST_OK;
-    refine(&rect, r);
+    refine(&rect, r, e.wall);
     const struct suggested_opening o = opening_from_rect(r, &rect, wall);
     return replace(s, &o, err);
 }

@@ -14,7 +14,9 @@ static const double WALL_LIGHT = 0.2, SKY = 4, GROUND = 1.2;
 enum thing { WALL, WINDOW, POSTER, SUN, MIRROR, DARK_WINDOW };
 struct room {
     enum thing thing;
-    double sofa[4]; /* a rectangle that hides what lies behind it; empty: no sofa */
+    bool bar;          /* in the middle of the window, 6 cm wide, at the wall's depth */
+    double picture[4]; /* a dark rectangle on the wall; empty: none */
+    double sofa[4];    /* a rectangle that hides what lies behind it; empty: no sofa */
 };
 struct sample {
     double z, light; /* depth from a camera that looks along -y */
@@ -43,6 +45,8 @@ static struct sample look(const struct room *room, struct vec3 c, struct vec3 d)
     const double before = c.y - SOFA, at = c.y;
     if (is_in(room->sofa, c.x + before * d.x, c.z + before * d.z)) return (struct sample){before, 0.1, true};
     const double x = c.x + at * d.x, z = c.z + at * d.z;
+    if (is_in(room->picture, x, z)) return (struct sample){at, 0.2 * WALL_LIGHT, true};
+    if (room->bar && fabs(x - (RECT[0] + RECT[2]) / 2) < 0.03) return (struct sample){at, WALL_LIGHT, true};
     if (room->thing == WALL || !is_in(RECT, x, z)) return (struct sample){at, WALL_LIGHT, true};
     switch (room->thing) {
     case POSTER:
@@ -166,6 +170,24 @@ static void a_window_is_found(void **state)
     }
 }
 
+static void a_window_with_a_bar_is_one_window(void **state)
+{
+    (void)state;
+    struct suggestion s;
+    suggest_made(&s, &(struct room){.thing = WINDOW, .bar = true}, NULL, 13);
+    assert_window(&s, RECT[0], RECT[1], RECT[2], RECT[3]);
+    suggestion_release(&s);
+}
+
+static void a_dark_picture_beside_a_window_does_not_widen_it(void **state)
+{
+    (void)state;
+    struct suggestion s;
+    suggest_made(&s, &(struct room){.thing = WINDOW, .picture = {3.3, 0.7, 4, 2.4}}, NULL, 14);
+    assert_window(&s, RECT[0], RECT[1], RECT[2], RECT[3]);
+    suggestion_release(&s);
+}
+
 /* An opening found from points is replaced, not doubled. */
 static void a_window_found_from_points_is_corrected(void **state)
 {
@@ -266,6 +288,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_window_is_found),
+        cmocka_unit_test(a_window_with_a_bar_is_one_window),
+        cmocka_unit_test(a_dark_picture_beside_a_window_does_not_widen_it),
         cmocka_unit_test(a_window_found_from_points_is_corrected),
         cmocka_unit_test(a_bare_wall_has_no_window),
         cmocka_unit_test(a_bright_poster_is_no_window),
