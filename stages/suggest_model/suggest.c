@@ -7,10 +7,8 @@
  *
  * Rooms. The outermost prominent face on each side that is not only seen through another wall's windows bounds the
  * plan: a box. A box is cut in two by the pair of faces back to back (or the single face) with the largest solid
- * fraction across it, and its parts likewise; boxes that cannot be cut are rooms.
- *
- * Openings. In finer cells, columns of a wall that are more seen through than solid form runs; the largest run of such
- * rows in them is an opening, which then grows over unseen cells to where the wall is solid. */
+ * fraction across it, and its parts likewise; boxes that cannot be cut are rooms. The wall's other face is the nearest
+ * one that is solid in enough of the same cells: furniture in front of it may hide the rest. Openings are found in openings.c. */
 #include "stages/suggest_model/suggest.h"
 
 #include <stdlib.h>
@@ -19,34 +17,19 @@
 #include "common/base/array.h"
 #include "common/base/sort.h"
 #include "common/math/numbers.h"
+#include "stages/suggest_model/openings.h"
 
 /* As fractions of the ceiling's height: */
 static const double MIN_Z = 0.04, MAX_Z = 0.92; /* range of heights in which walls are examined */
-static const double BEYOND = 0.06;              /* by which a line of sight must pass a face to cross it */
 static const double MAX_FLOOR_Z = 0.03;         /* of points of the floor */
 static const double MAX_HEIGHTS = 50;           /* extent of a plan */
 static const double MIN_FACE = 0.12;            /* area of a face, ceiling heights squared */
 /* As other fractions: */
 static const double MIN_OUTER = 0.25;   /* net area of an outer face, of the best face's */
 static const double SEEN_THROUGH = 0.9; /* of a face's lines of sight: it lies beyond another face */
+static const double MIN_BACK = 0.15;    /* of a face's solid cells that are solid on the wall's other face too */
 static const double MIN_FLOOR = 0.3;    /* of a room's floor cells with points */
 
-struct wall_side {  /* a face of a wall */
-    int axis, sign; /* of its normal */
-    double at;
-    signed char *cells; /* +1 solid, -1 seen through, 0 unknown; across x up */
-    int net;            /* sum of cells */
-};
-struct finder {
-    const struct point_cloud *cloud;
-    const struct view *views;
-    int view_count;
-    const struct suggest_params *params;
-    struct ray_list rays;
-    double height, low[2], high[2]; /* the ceiling's height; bounds of the points in x and y */
-    struct wall_side *faces;        /* owned */
-    int face_count, across[2], up;  /* numbers of cells along x, y and z */
-};
 struct box {
     double low[2], high[2];
     int walls[4];
@@ -59,13 +42,6 @@ void suggestion_release(struct suggestion *s)
     free(s->openings);
     free(s->rooms);
     *s = (struct suggestion){0};
-}
-
-static double along(struct vec3 p, int axis) { return axis ? p.y : p.x; }
-
-static bool faces_along(const struct finder *f, const struct cloud_point *p, int axis, int sign)
-{
-    return sign * (double)p->normal[axis] >= cos(f->params->max_angle * PI / 180);
 }
 
 /* Finds the bounds of the plan and the ceiling's height as quantiles of the points' coordinates. */
@@ -164,18 +140,6 @@ static enum status find_faces(struct finder *f, int axis, int sign, struct err *
     free(area);
     free(seen);
     return st;
-}
-
-/* Whether a line of sight crosses a face's plane from its front, and ends well behind it; *s, *z: the crossing. */
-static bool crosses(const struct finder *f, const struct ray *r, int axis, int sign, double at, double *s, double *z)
-{
-    const struct vec3 a = f->views[r->view].center, b = f->cloud->points[r->point].position;
-    const double from = sign * (along(a, axis) - at), to = sign * (along(b, axis) - at);
-    if (from <= 0 || to > -BEYOND * f->height) return false;
-    const double t = from / (from - to);
-    *s = along(a, 1 - axis) + t * (along(b, 1 - axis) - along(a, 1 - axis));
-    *z = a.z + t * (b.z - a.z);
-    return true;
 }
 
 /* Decides which cells of a face are solid and which are seen through, by majority of the lines of sight. */
@@ -289,6 +253,32 @@ static enum status is_free(bool *found, const struct finder *f, const struct box
     return ST_OK;
 }
 
+/* The other face of a wall with the face a; NULL: none. Furniture may hide most of it, and points that fitted
+ * badly may lie behind it, so that it is no wall by its own solid fraction. It must be solid in enough cells where the
+ * first face is solid too. The thinnest wall is chosen, because what stands in front of a wall is nearer to the room. */
+static const struct wall_side *find_back(const struct finder *f, const struct wall_side *a, const struct box *box)
+{
+    const struct wall_side *found = NULL;
+    const double c = f->params->cell * f->height;
+    const int other = 1 - a->axis, first = clamp_int((int)((box->low[other] - f->low[other]) / c), 0, f->across[other]),
+              last = clamp_int((int)((box->high[other] - f->low[other]) / c), 0, f->across[other]);
+    for (int i = 0; i < f->face_count; i++) {
+        const struct wall_side *b = &f->faces[i];
+        const double thickness = a->sign * (a->at - b->at);
+        int both = 0, front = 0;
+        if (b->axis != a->axis || b->sign == a->sign || thickness < 2 * f->params->window * f->height ||
+            thickness > f->params->max_thickness * f->height)
+            continue;
+        for (int k = first * f->up; k < last * f->up; k++) {
+            front += a->cells[k] > 0;
+            both += a->cells[k] > 0 && b->cells[k] > 0;
+        }
+        if (both * f->params->cell * f->params->cell < MIN_FACE || both < MIN_BACK * front) continue;
+        if (!found || thickness < a->sign * (a->at - found->at)) found = b;
+    }
+    return found;
+}
+
 /* The wall with the largest solid fraction that cuts a box: two faces back to back, or else a single face (best[1] is
  * then NULL); best[0] is NULL if there is none. */
 static void find_partition(const struct wall_side *best[2], const struct finder *f, const struct box *box)
@@ -322,6 +312,12 @@ static void find_partition(const struct wall_side *best[2], const struct finder 
         best_fraction = fraction;
         best[0] = a;
     }
+    const struct wall_side *front = best[0], *back = front ? find_back(f, front, box) : NULL;
+    if (!back) return;
+    best[0] = front->sign < 0 ? front : back;
+    best[1] = front->sign < 0 ? back : front;
+    const struct wall_side *nearer = find_back(f, best[1], box); /* the first may have been furniture too */
+    if (nearer) best[0] = nearer;
 }
 
 /* Cuts a box in two at its best wall, and its parts likewise; boxes without such a wall become rooms. */
@@ -357,142 +353,6 @@ static enum status cut_box(struct suggestion *s, const struct finder *f, const s
     high.low[axis] = second;
     high.walls[low_side] = wall;
     return cut_box(s, f, &low, err) ? err->status : cut_box(s, f, &high, err);
-}
-
-/* --------------------------------------------------------------------------------------------------------- openings */
-
-struct wall_grid { /* a wall in cells of the window's width */
-    int across, up;
-    int *solid, *open; /* numbers of points on it, of lines of sight through it */
-};
-
-static void wall_grid_release(struct wall_grid *t)
-{
-    free(t->solid);
-    free(t->open);
-}
-
-static enum status wall_grid_make(struct wall_grid *t, const struct finder *f, const struct suggested_wall *w,
-                                  struct err *err)
-{
-    const double c = f->params->window * f->height;
-    t->across = (int)((w->end - w->begin) / c) + 1;
-    t->up = (int)(1 / f->params->window) + 1;
-    const size_t cells = (size_t)t->across * (size_t)t->up;
-    t->solid = calloc(cells, sizeof *t->solid);
-    t->open = calloc(cells, sizeof *t->open);
-    if (!t->solid || !t->open) return err_nomem(err, "a wall's cells", 2 * cells * sizeof *t->open);
-    for (int side = 0; side < (w->thickness > 0 ? 2 : 1); side++) {
-        const int sign = side ? -w->inward : w->inward;
-        const double at = w->face - (side ? w->inward * w->thickness : 0);
-        for (size_t i = 0; i < f->rays.count; i++) {
-            const struct ray *r = &f->rays.rays[i];
-            const struct cloud_point *p = &f->cloud->points[r->point];
-            double s, z, unused[2];
-            int *count = t->solid;
-            const double behind = sign * (at - along(p->position, w->axis));
-            const double within = w->thickness > 0 ? w->thickness : WALL_THICKNESS * f->height;
-            const bool on = fabs(behind) < 2 * c && faces_along(f, p, w->axis, sign);
-            if (on ||
-                (behind > c && behind < within - c && !faces_along(f, p, w->axis, sign))) { /* the second: a reveal */
-                s = along(p->position, 1 - w->axis);
-                z = p->position.z;
-            } else if (crosses(f, r, w->axis, sign, at, &s, &z) &&
-                       crosses(f, r, w->axis, sign, at - sign * w->thickness, &unused[0], &unused[1]))
-                count = t->open;
-            else
-                continue;
-            const double x = (s - w->begin) / c, y = z / c;
-            if (x >= 0 && x < t->across && y >= 0 && y < t->up) count[(size_t)x * (size_t)t->up + (size_t)y]++;
-        }
-    }
-    return ST_OK;
-}
-
-/* +1: more open than solid cells; -1: the opposite; 0: too few cells are known. */
-static int column_state(const struct wall_grid *t, int first, int last, int low, int high)
-{
-    int open = 0, solid = 0;
-    for (int x = first; x < last; x++)
-        for (int y = low; y < high; y++) {
-            const int i = x * t->up + y;
-            open += t->open[i] > t->solid[i];
-            solid += t->solid[i] > 0 && t->solid[i] >= t->open[i];
-        }
-    if (10 * (open + solid) < (last - first) * (high - low)) return 0;
-    return open > solid ? 1 : -1;
-}
-
-/* The next run of open columns (or, if `up`, of open rows of the columns first .. last) from *begin on. Short gaps of
- * unknown ones belong to the run. */
-static bool next_run(const struct wall_grid *t, bool up, int first, int last, int *begin, int *end)
-{
-    const int n = up ? t->up : t->across;
-    bool in = false;
-    for (int i = *begin; i < n; i++) {
-        const int state = up ? column_state(t, first, last, i, i + 1)
-                             : column_state(t, i, i + 1, (int)(0.1 * t->up), (int)(0.7 * t->up));
-        if (state > 0) {
-            if (!in) *begin = i;
-            in = true;
-            *end = i + 1;
-        } else if (in && (state < 0 || i - *end > 3)) {
-            /* a single solid column inside the run is a leg or a lamp */
-            const int after = i + 1 < n ? (up ? column_state(t, first, last, i + 1, i + 2)
-                                              : column_state(t, i + 1, i + 2, (int)(0.1 * t->up), (int)(0.7 * t->up)))
-                                        : -1;
-            if (after <= 0) return true;
-        }
-    }
-    return in;
-}
-
-/* Lines of sight locate an opening, points of the wall its border: each side moves outwards over unseen cells (sky,
- * dark corners) to where most cells are solid, and stays where it is if there is no such line. rect: begin, foot, end,
- * top. */
-static void grow_opening(const struct wall_grid *t, int rect[4])
-{
-    for (int side = 0; side < 4; side++) { /* begin, foot, end, top */
-        const int step = side < 2 ? -1 : 1, limit = side < 2 ? 0 : (side == 2 ? t->across : t->up * 92 / 100);
-        const int other = side % 2 ? 0 : 1;
-        for (int at = rect[side]; at != limit; at += step) {
-            int solid = 0;
-            const int line = step < 0 ? at - 1 : at;
-            for (int k = rect[other]; k < rect[other + 2]; k++)
-                solid += t->solid[side % 2 ? k * t->up + line : line * t->up + k] > 0;
-            if (2 * solid < rect[other + 2] - rect[other]) continue;
-            rect[side] = at;
-            break;
-        }
-    }
-}
-
-static enum status openings_of(struct suggestion *s, const struct finder *f, int wall, struct err *err)
-{
-    const struct suggested_wall *w = &s->walls[wall];
-    const double c = f->params->window * f->height, narrow = f->params->min_opening * f->height;
-    struct wall_grid t = {0};
-    int begin = 0, end = 0;
-    enum status st = wall_grid_make(&t, f, w, err);
-    while (!st && next_run(&t, false, 0, 0, &begin, &end)) {
-        int low = 0, high = 0, best[2] = {0, 0};
-        if ((end - begin) * c >= narrow)
-            for (; next_run(&t, true, begin, end, &low, &high); low = high + 1)
-                if (high - low > best[1] - best[0]) best[0] = low, best[1] = high;
-        if ((best[1] - best[0]) * c >= narrow) {
-            int rect[4] = {begin, best[0], end, best[1]};
-            grow_opening(&t, rect);
-            const bool window = rect[1] * c > 0.15 * f->height;
-            st = array_append(&s->openings, (size_t)s->opening_count, sizeof *s->openings, "openings", err);
-            if (st) break;
-            s->openings[s->opening_count++] = (struct suggested_opening){
-                wall, w->begin + rect[0] * c, w->begin + rect[2] * c, window ? rect[1] * c : 0, rect[3] * c, window};
-            if (rect[2] > end) end = rect[2];
-        }
-        begin = end + 1;
-    }
-    wall_grid_release(&t);
-    return st;
 }
 
 /* The error where side k of the plan (south, west, north, east) has no wall. */
@@ -552,7 +412,7 @@ enum status suggest_plan(struct suggestion *s, const struct point_cloud *cloud, 
         s->ceiling = f.height;
         if (!st) st = cut_box(s, &f, &box, err);
     }
-    for (int w = 0; !st && w < s->wall_count; w++) st = openings_of(s, &f, w, err);
+    for (int w = 0; !st && w < s->wall_count; w++) st = find_openings(s, &f, w, err);
     for (int i = 0; i < f.face_count; i++) free(f.faces[i].cells);
     free(f.faces);
     ray_list_release(&f.rays);

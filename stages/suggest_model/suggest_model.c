@@ -1,24 +1,29 @@
-/* suggest_model.c - suggests a model script of a scene's rooms from oriented points, for a person to correct.
+/* suggest_model.c - suggests a model script of a scene's rooms from points and views, for a person to correct.
  *
  * reads   VIEWS/cameras.txt, images.txt, points3D.txt   the cameras
  *         POINTS                                        oriented points
  *         AXES                                          the model's frame, ceiling, thickness of walls
+ *         VIEWS/VIEW.exr, DEPTH/VIEW.exr, VIEW.txt      pictures and depth, for windows
  * writes  OUT                                           a script (docs/model-script.md); no other stage reads it */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "common/base/cli.h"
+#include "common/base/file_path.h"
 #include "common/base/log.h"
 #include "common/base/outfile.h"
+#include "common/base/parallel.h"
+#include "common/capture/view_image.h"
 #include "common/model/model_axes.h"
-#include "stages/suggest_model/suggest.h"
+#include "stages/suggest_model/windows.h"
 
 #define PARAM_STRUCT struct suggest_params
 const struct param suggest_param_table[] = {SUGGEST_PARAMS(PARAM_ROW) PARAM_RENAMED(least_wall, min_wall) PARAM_RENAMED(
     thickest, max_thickness) PARAM_RENAMED(narrowest, min_opening) PARAM_END};
 #undef PARAM_STRUCT
 
+static const double SCENE_CELL = 0.05;       /* edge of the cubes in which mirror images are looked up, likewise */
 static const double GLASS_THICKNESS = 0.008; /* as a fraction of the ceiling's height */
 
 static void name_of(char name[32], int wall)
@@ -103,8 +108,80 @@ static enum status write_suggestion(const struct suggestion *s, const struct mod
 }
 
 struct files {
-    const char *views, *points, *axes, *out;
+    const char *views, *depth, *points, *axes, *out;
 };
+
+/* Whether a wall has the outdoors, or nothing known, behind it. */
+static bool may_have_windows(const struct suggested_wall *w) { return !(w->thickness > 0) || w->guessed; }
+
+struct walls { /* what the views show of them */
+    struct wall_raster *rasters;
+    int count;
+    const struct view *view;
+    const struct image *picture;
+    const struct layered_depth *depth;
+    const struct occupancy *scene;
+    double scale;
+};
+
+static void add_to_walls(void *ctx, size_t begin, size_t end, int thread)
+{
+    const struct walls *w = ctx;
+    (void)thread;
+    for (size_t i = begin; i < end; i++)
+        if (w->rasters[i].cells) wall_raster_add(&w->rasters[i], w->view, w->picture, w->depth, w->scale, w->scene);
+}
+
+/* Adds a view, in the model's frame, to the walls' rasters. */
+static enum status add_view(struct walls *walls, const struct files *f, const struct view *view,
+                            struct provenance *prov, struct err *err)
+{
+    struct image picture = {0};
+    struct layered_depth depth = {0};
+    char path[FILE_PATH];
+    enum status st = provenance_add_in(prov, "views", f->views, view->name, ".exr", path, err);
+    if (!st) st = provenance_add_in(prov, "depth", f->depth, view->name, ".txt", path, err);
+    if (!st) st = provenance_add_in(prov, "depth", f->depth, view->name, ".exr", path, err);
+    if (!st) st = view_image_read(&picture, f->views, view, err);
+    if (!st) st = layered_depth_read_interior(&depth, path, err);
+    if (!st && (depth.width != view->width || depth.height != view->height))
+        st = err_set(err, ST_DATA, "%s has %d x %d pixels, but its camera %d x %d; make the depth again.", path,
+                     depth.width, depth.height, view->width, view->height);
+    walls->view = view;
+    walls->picture = &picture;
+    walls->depth = &depth;
+    if (!st) parallel_for((size_t)walls->count, 1, add_to_walls, walls);
+    image_release(&picture);
+    layered_depth_release(&depth);
+    return st;
+}
+
+/* Adds the windows that pictures and depth of all views show. */
+static enum status add_windows(struct suggestion *s, const struct files *f, const struct model_axes *axes,
+                               const struct camera_set *set, const struct point_cloud *cloud,
+                               const struct suggest_params *params, struct provenance *prov, struct err *err)
+{
+    struct wall_raster *rasters = calloc((size_t)s->wall_count, sizeof *rasters);
+    struct occupancy scene = {0};
+    const double low[3] = {s->walls[1].face, s->walls[0].face, 0}, h = s->ceiling;
+    const double high[3] = {s->walls[3].face, s->walls[2].face, h};
+    enum status st = rasters ? occupancy_make(&scene, cloud, low, high, SCENE_CELL * h, err)
+                             : err_nomem(err, "walls", (size_t)s->wall_count * sizeof *rasters);
+    for (int i = 0; !st && i < s->wall_count; i++) {
+        const struct suggested_wall *w = &s->walls[i];
+        if (may_have_windows(w))
+            st = wall_raster_init(&rasters[i], w->axis, w->inward, w->face, w->begin, w->end, h, params->window * h,
+                                  err);
+    }
+    struct walls walls = {.rasters = rasters, .count = s->wall_count, .scene = &scene, .scale = axes->scale};
+    for (int v = 0; !st && v < set->view_count; v++) st = add_view(&walls, f, &set->views[v], prov, err);
+    for (int i = 0; !st && i < s->wall_count; i++)
+        if (rasters[i].cells) st = suggest_windows(s, i, &rasters[i], params, err);
+    for (int i = 0; rasters && i < s->wall_count; i++) wall_raster_release(&rasters[i]);
+    free(rasters);
+    occupancy_release(&scene);
+    return st;
+}
 
 static enum status suggest(const struct files *f, const struct suggest_params *params, struct provenance *prov,
                            struct err *err)
@@ -128,6 +205,7 @@ static enum status suggest(const struct files *f, const struct suggest_params *p
     }
     if (!st && suggest_plan(&s, &cloud, set.views, set.view_count, axes.ceiling, params, err))
         st = err->status == ST_DATA ? err_context(err, "%s", f->points) : err->status;
+    if (!st) st = add_windows(&s, f, &axes, &set, &cloud, params, prov, err);
     if (!st) st = write_suggestion(&s, &axes, f->out, prov, err);
     if (!st) {
         int rooms = 0;
@@ -151,6 +229,7 @@ int main(int argc, char **argv)
     const struct cli_opt opts[] = {
         CLI_ABOUT("Suggests a model script of a scene's rooms, for you to correct by hand."),
         CLI_STR("views", &f.views, CLI_REQUIRED, "folder of cameras"),
+        CLI_STR("depth", &f.depth, CLI_REQUIRED, "folder of the views' depth"),
         CLI_STR("points", &f.points, CLI_REQUIRED, "oriented points, points.ply"),
         CLI_STR("axes", &f.axes, CLI_REQUIRED, "the model's frame, axes.txt"),
         CLI_STR("out", &f.out, CLI_REQUIRED, "script to write"),

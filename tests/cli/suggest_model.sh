@@ -11,7 +11,7 @@ suggest()
 {
     local code=$1 word=$2 rc=0; shift 2
     rm -rf made
-    "$B/bin/suggest_model" --views "${views:-out/t/views}" --points "${points:-out/t/points/points.ply}" --axes "${axes:-out/t/model/axes.txt}" --out made/suggested.txt "$@" >out.txt 2>err.txt </dev/null || rc=$?
+    "$B/bin/suggest_model" --views "${views:-out/t/views}" --depth out/t/depth --points "${points:-out/t/points/points.ply}" --axes "${axes:-out/t/model/axes.txt}" --out made/suggested.txt "$@" >out.txt 2>err.txt </dev/null || rc=$?
     [ "$rc" = "$code" ] || { cat err.txt; fail "$*: exit $rc, wanted $code"; }
     grep -qF -- "$word" err.txt || { cat err.txt; fail "$*: nothing says '$word'"; }
     [ "$code" = 0 ] || grep -q 'suggest_model: error: .*[.?]$' err.txt || { cat err.txt; fail "$*: no sentence"; }

@@ -143,6 +143,36 @@ static void two_rooms_and_their_openings_are_found(void **state)
     }
 }
 
+/* Bookcases in the second room hide the wall up to a height. */
+static void put_bookcases_before_the_partition(struct point_cloud *cloud, double top, double depth)
+{
+    for (size_t i = 0; i < cloud->count; i++) {
+        struct cloud_point *p = &cloud->points[i];
+        if (p->normal[0] > 0.7f && fabs(p->position.x - X[2]) < 0.1 && p->position.z < top) p->position.x += depth;
+    }
+}
+
+static void a_wall_behind_furniture_has_its_thickness(void **state)
+{
+    (void)state;
+    const struct suggest_params params = SUGGEST_PARAMS_DEFAULT;
+    for (int k = 0; k < 3; k++) {
+        static const double TOPS[3] = {1.2, 1.6, 1.9};
+        struct synthetic m;
+        struct suggestion s;
+        struct err err = ERR_INIT;
+        make(&m, false, 7 + (uint64_t)k);
+        put_bookcases_before_the_partition(&m.cloud, TOPS[k], 0.3);
+        assert_ok(suggest_plan(&s, &m.cloud, m.views, VIEWS, HIGH, &params, &err), err);
+        assert_int_equal(s.wall_count, 5);
+        assert_float_equal(s.walls[4].face, X[1], 0.02);
+        assert_float_equal(s.walls[4].thickness, X[2] - X[1], 0.02);
+        assert_false(s.walls[4].guessed);
+        point_cloud_release(&m.cloud);
+        suggestion_release(&s);
+    }
+}
+
 static void a_closed_wall_has_no_doorway(void **state)
 {
     (void)state;
@@ -232,6 +262,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(two_rooms_and_their_openings_are_found),
+        cmocka_unit_test(a_wall_behind_furniture_has_its_thickness),
         cmocka_unit_test(a_closed_wall_has_no_doorway),
         cmocka_unit_test(the_ceiling_may_be_unknown),
         cmocka_unit_test(the_number_of_rooms_is_not_limited),
