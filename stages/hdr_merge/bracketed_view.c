@@ -122,7 +122,9 @@ static enum status find_noise(struct bracketed_view *v, const struct merge_param
     if (!strcmp(params->noise, "measured") && noise_measure(&measured, &v->noise_measured, &v->brackets, err))
         return err->status;
     for (int k = 0; k < v->record.bracket_count; k++)
-        v->noise[k] = v->noise_measured ? measured : noise_given(params, &v->response, v->photos[k].info.bits);
+        v->noise[k] = v->noise_measured
+                          ? measured
+                          : noise_given(params->electrons, params->read_noise, &v->response, v->photos[k].info.bits);
     return ST_OK;
 }
 

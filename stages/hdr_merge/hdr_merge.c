@@ -48,8 +48,8 @@ static void report(const struct bracketed_view *v, const struct merge_params *pa
 {
     size_t pixels = (size_t)v->merged.radiance.width * (size_t)v->merged.radiance.height, bright = 0, dark = 0;
     for (size_t i = 0; i < pixels; i++) {
-        bright += (v->merged.marks[i] & MERGE_BRIGHT) != 0;
-        dark += (v->merged.marks[i] & MERGE_DARK) != 0;
+        bright += (v->merged.marks[i] & PHOTO_BRIGHT) != 0;
+        dark += (v->merged.marks[i] & PHOTO_DARK) != 0;
     }
     log_note("%s: %d exposure%s; %.2f %% of the pixels saturate in all of them, %.2f %% are dark in all of them",
              v->record.id, v->record.bracket_count, v->record.bracket_count == 1 ? "" : "s",
