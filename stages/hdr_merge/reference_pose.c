@@ -103,6 +103,7 @@ static enum status align_photos(struct similarity *model_from_scene, struct fram
                                 const struct merge_params *params, struct err *err)
 {
     struct common_photos c = {0};
+    struct err apart = ERR_INIT; /* in words about found and true cameras */
     enum status st = find_common(&c, model, frame, err);
     if (!st && c.count < MIN_PHOTOS)
         st =
@@ -112,7 +113,7 @@ static enum status align_photos(struct similarity *model_from_scene, struct fram
                     "scene and reference images together, or set LRI_FRAME = scene or model if the poses are in one of "
                     "these frames.",
                     folder, c.count, frame->views, (int)MIN_PHOTOS);
-    if (!st && align_cameras(model_from_scene, c.scene, c.model, c.count, err))
+    if (!st && align_cameras(model_from_scene, c.scene, c.model, c.count, &apart))
         st =
             err_set(err, ST_DATA,
                     "the %d photographs that %s and %s have in common are all in one place in one of them, or no scale "
