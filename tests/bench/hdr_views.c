@@ -204,9 +204,9 @@ static enum status sample(const struct request *r, struct err *err)
     if (!st)
         printf("seconds %.6f\ncpu_s %.6f\nmerge_s %.6f\nrectify_s %.6f\nwrite_s %.6f\nmpixels %.6g\nviews "
                "%d\nview_mpixels %.6g\n",
-               middle_of(total, runs), middle_of(cpu, runs), middle_of(merge, runs), middle_of(rectify, runs), middle_of(wrote, runs),
-               1e-6 * r->width * r->height * r->exposures * r->photos, b->view_count * r->photos,
-               1e-6 * view_pixels * r->photos);
+               middle_of(total, runs), middle_of(cpu, runs), middle_of(merge, runs), middle_of(rectify, runs),
+               middle_of(wrote, runs), 1e-6 * r->width * r->height * r->exposures * r->photos,
+               b->view_count * r->photos, 1e-6 * view_pixels * r->photos);
     for (int i = 0; b && i < MAX_PHOTOS; i++) release_work(&b->work[i]);
     free(b);
     return st;

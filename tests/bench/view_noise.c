@@ -1,8 +1,8 @@
 /* view_noise.c - how often the noise that views state covers their errors, for developers.
  *
- *   view_noise HDR.exr TRUTH.exr [VIEWS PHOTO]
+ *   view_noise PICTURE TRUTH.exr [VIEWS PHOTO]
  *
- * HDR is a file of S/hdr, TRUTH the radiance of the same photo without noise, in any unit; VIEWS is a folder O/views.
+ * PICTURE is a file of S/hdr, or a JPEG or PNG photo, whose noise is that of rectify's defaults. TRUTH is the radiance of the same photo without noise, in any unit; VIEWS is a folder O/views.
  * Prints, for the photo and for its views, resampled from both files: "withinK S", the share in percent of the pixels
  * whose luminance is at most K stated standard deviations from the truth (68.3, 95.4 and 99.7 for normal errors);
  * "spread F", the factor by which the stated deviations would have to be multiplied so that 68.3 % lie within one; and
@@ -17,6 +17,7 @@
 #include "common/base/sort.h"
 #include "common/capture/lens_list.h"
 #include "common/capture/photo_quality.h"
+#include "stages/rectify/rectify_params.h"
 #include "stages/rectify/resample.h"
 
 struct pictures { /* a photo, or a view of it */
@@ -30,6 +31,18 @@ static void pictures_release(struct pictures *p)
     image_release(&p->measured);
     image_release(&p->truth);
     photo_quality_release(&p->quality);
+}
+
+static enum status read_photo(struct pictures *p, const char *path, struct err *err)
+{
+    const struct rectify_params params = RECTIFY_PARAMS_DEFAULT;
+    const struct single_exposure assumed = {params.electrons, params.read_noise, params.saturated, params.dark};
+    struct photo photo = {0};
+    enum status st = photo_read(&photo, path, err);
+    if (!st) st = photo_to_linear(&p->measured, &photo, err);
+    if (!st) st = photo_quality_of_exposure(&p->quality, &photo, &p->measured, &assumed, err);
+    photo_release(&photo);
+    return st;
 }
 
 static enum status read_colour(struct image *to, struct photo_quality *quality, const char *path, struct err *err)
@@ -108,6 +121,12 @@ static enum status report_views(const struct pictures *photo, const char *folder
     return st;
 }
 
+static bool is_exr(const char *path)
+{
+    const char *dot = strrchr(path, '.');
+    return dot && !strcmp(dot, ".exr");
+}
+
 int main(int argc, char **argv)
 {
     struct err err = ERR_INIT;
@@ -115,8 +134,9 @@ int main(int argc, char **argv)
     double unit = 0;
     log_set_name("view_noise");
     if (argc != 3 && argc != 5) {
-        err_set(&err, ST_USAGE, "found %d arguments, wanted HDR TRUTH or HDR TRUTH VIEWS PHOTO.", argc - 1);
-    } else if (!read_colour(&photo.measured, &photo.quality, argv[1], &err) &&
+        err_set(&err, ST_USAGE, "found %d arguments, wanted PICTURE TRUTH or PICTURE TRUTH VIEWS PHOTO.", argc - 1);
+    } else if (!(is_exr(argv[1]) ? read_colour(&photo.measured, &photo.quality, argv[1], &err)
+                                 : read_photo(&photo, argv[1], &err)) &&
                !read_colour(&photo.truth, NULL, argv[2], &err)) {
         if (photo.measured.width != photo.truth.width || photo.measured.height != photo.truth.height)
             err_set(&err, ST_DATA, "%s and %s have different sizes; give pictures of one photo.", argv[1], argv[2]);
