@@ -2,7 +2,8 @@
  *
  * Of one exposure, noise is not measured but assumed: each colour v has the variance photon v + read^2
  * (common/image/noise_model.h), and the luminance, a sum of independent colours, the sum of the squares of its weights
- * times theirs. Merged exposures state the variance of the luminance divided by its square. */
+ * times theirs. Errors of a JPEG's luma are the same in all colours, so their variance is that of a grey of the same
+ * luminance. Merged exposures state the variance of the luminance divided by its square. */
 #include "common/capture/photo_quality.h"
 
 #include <math.h>
@@ -38,18 +39,21 @@ struct exposure_job {
     struct photo_quality *q;
     const float *rgb;
     float photon, read2, saturated, dark;
+    float shared_photon, shared_read2; /* of noise that is the same in all colours */
 };
 
 static void judge_pixels(void *ctx, size_t begin, size_t end, int thread)
 {
     const struct exposure_job *job = ctx;
     const float photon = job->photon, read2 = job->read2, saturated = job->saturated, dark = job->dark;
+    const float shared_photon = job->shared_photon, shared_read2 = job->shared_read2;
     const float r2 = 0.2126f * 0.2126f, g2 = 0.7152f * 0.7152f, b2 = 0.0722f * 0.0722f;
     (void)thread;
     for (size_t i = begin; i < end; i++) {
         const float *v = job->rgb + 3 * i;
         const float light = photo_luminance(v), limit = light * light;
-        const float noise = photon * (r2 * v[0] + g2 * v[1] + b2 * v[2]) + read2 * (r2 + g2 + b2);
+        const float noise = photon * (r2 * v[0] + g2 * v[1] + b2 * v[2]) + read2 * (r2 + g2 + b2) +
+                            shared_photon * light + shared_read2;
         const bool bright = (v[0] >= saturated) | (v[1] >= saturated) | (v[2] >= saturated);
         const bool black = (v[0] <= dark) | (v[1] <= dark) | (v[2] <= dark);
         job->q->variance[i] = bright || noise > limit ? limit : noise;
@@ -62,6 +66,7 @@ enum status photo_quality_of_exposure(struct photo_quality *q, const struct phot
 {
     const struct response srgb = {0};
     const struct noise n = noise_given(assumed->electrons, assumed->read_noise, &srgb, photo->info.bits);
+    const struct noise jpeg = noise_of_samples(photo->jpeg_variance, &srgb, 8);
     const size_t pixels = (size_t)linear->width * (size_t)linear->height;
     const enum status st = photo_quality_init(q, linear->width, linear->height, err);
     if (st) return st;
@@ -69,6 +74,8 @@ enum status photo_quality_of_exposure(struct photo_quality *q, const struct phot
                                .rgb = linear->data,
                                .photon = (float)n.photon,
                                .read2 = (float)n.read2,
+                               .shared_photon = (float)jpeg.photon,
+                               .shared_read2 = (float)jpeg.read2,
                                .saturated = (float)assumed->saturated,
                                .dark = (float)assumed->dark};
     parallel_for(pixels, CHUNK, judge_pixels, &job);

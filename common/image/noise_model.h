@@ -15,5 +15,7 @@ struct noise {
 /* electrons: those of a pixel at white; read_noise: standard deviation of the read noise, in electrons. Includes the
  * quantization of a photo of `bits` bits; luminance is 1. */
 struct noise noise_given(double electrons, double read_noise, const struct response *r, int bits);
+/* Of errors of samples of 8 or 16 bits with the given variance, in steps^2; luminance is 1. */
+struct noise noise_of_samples(double variance, const struct response *r, int bits);
 
 #endif

@@ -2,8 +2,9 @@
  *
  *   view_noise PICTURE TRUTH.exr [VIEWS PHOTO]
  *
- * PICTURE is a file of S/hdr, or a JPEG or PNG photo, whose noise is that of rectify's defaults. TRUTH is the radiance of the same photo without noise, in any unit; VIEWS is a folder O/views.
- * Prints, for the photo and for its views, resampled from both files: "withinK S", the share in percent of the pixels
+ * PICTURE is a file of S/hdr, or a JPEG or PNG photo, whose noise is that of rectify's defaults. TRUTH is the radiance
+ * of the same photo without noise, in any unit; VIEWS is a folder O/views. Prints, for the photo and for its views,
+ * resampled from both files: "withinK S", the share in percent of the pixels
  * whose luminance is at most K stated standard deviations from the truth (68.3, 95.4 and 99.7 for normal errors);
  * "spread F", the factor by which the stated deviations would have to be multiplied so that 68.3 % lie within one; and
  * "pixels N", the number of pixels, without marked ones. The unit of the truth is the median of the ratios. */

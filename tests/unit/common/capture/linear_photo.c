@@ -100,6 +100,26 @@ static void noise_and_marks_of_one_exposure_are_assumed(void **state)
     image_release(&linear);
 }
 
+/* Errors of two sample values: the sRGB curve has the slope 2.275 v^0.583, and all colours share the error. */
+static void errors_of_jpeg_are_shared_by_the_colours(void **state)
+{
+    const struct single_exposure assumed = {1e9, 0, 0.9, 0};
+    const struct photo photo = {.info = {.bits = 32}, .jpeg_variance = 4};
+    struct image linear;
+    struct photo_quality q = {0};
+    struct err err = ERR_INIT;
+    (void)state;
+    assert_ok(image_init(&linear, 3, 1, 3, &err), err);
+    for (int i = 0; i < 9; i++) linear.data[i] = 0.25f * (float)(1 + i / 3);
+    assert_ok(photo_quality_of_exposure(&q, &photo, &linear, &assumed, &err), err);
+    for (int i = 0; i < 3; i++) {
+        const double wanted = 2 * 2.275 * pow(0.25 * (1 + i), 0.583) / 255;
+        assert_float_equal(sqrt((double)q.variance[i]) / wanted, 1, 0.06);
+    }
+    photo_quality_release(&q);
+    image_release(&linear);
+}
+
 static void noise_and_marks_of_merged_exposures_are_read(void **state)
 {
     char id[] = "e";
@@ -159,6 +179,7 @@ int main(void)
         cmocka_unit_test(one_exposure_is_linearised),
         cmocka_unit_test(several_exposures_are_read_from_the_merged_file),
         cmocka_unit_test(noise_and_marks_of_one_exposure_are_assumed),
+        cmocka_unit_test(errors_of_jpeg_are_shared_by_the_colours),
         cmocka_unit_test(noise_and_marks_of_merged_exposures_are_read),
         cmocka_unit_test(unreadable_files_are_reported),
     };
