@@ -61,7 +61,7 @@ static void write_scene(void)
         const struct pose photo = photo_pose(i);
         const struct mat3 view = mat3_multiply(mat3_from_quat(turn), mat3_from_quat(photo.rotation));
         const struct pose p = {quat_from_mat3(view), mat3_apply(mat3_from_quat(turn), photo.translation)};
-        char name[16], id[8], file[16];
+        char name[32], id[16], file[32];
         struct photo_record record = {
             .id = id, .file = file, .info = {.width = 60, .height = 40, .bits = 8, .orientation = 1}};
         struct err err = ERR_INIT;
@@ -81,7 +81,7 @@ static void write_scene(void)
 struct model { /* of `count` photos of the scene and one reference image, the last */
     struct sfm_camera camera;
     struct sfm_image images[PHOTOS + 1];
-    char names[PHOTOS + 1][16];
+    char names[PHOTOS + 1][32];
     struct sfm_model m;
 };
 
