@@ -123,7 +123,8 @@ static size_t gather_luminance(struct pair_sample *to, const struct brackets *b,
     const struct shift none = {0, 0}, sa = b->shifts ? b->shifts[k - 1] : none, sl = b->shifts ? b->shifts[k] : none;
     const int width = a->info.width, height = a->info.height;
     const double ratio = b->exposures[k - 1] / b->exposures[k];
-    const size_t pixels = (size_t)width * (size_t)height, step = pixels / (SAMPLES / 3) + 1;
+    const size_t pixels = (size_t)width * (size_t)height,
+                 step = (pixels / (SAMPLES / 3) + 1) | 1; /* odd: all places of JPEG's blocks */
     size_t count = 0;
     for (size_t i = 0; i < pixels; i += step) {
         const int x = (int)(i % (size_t)width), y = (int)(i / (size_t)width);
