@@ -8,21 +8,23 @@
 #include "common/image/exr.h"
 #include "common/image/photo.h"
 
-static enum status read_single(struct image *linear, const char *path, struct err *err)
+static enum status read_single(struct image *linear, struct photo_quality *quality, const char *path,
+                               const struct single_exposure *assumed, struct err *err)
 {
     struct photo photo = {0};
     enum status st = photo_read(&photo, path, err);
     if (!st) st = photo_to_linear(linear, &photo, err);
+    if (!st && quality) st = photo_quality_of_exposure(quality, &photo, linear, assumed, err);
     photo_release(&photo);
     return st;
 }
 
-static enum status read_merged(struct image *linear, const char *path, char radiometry[RADIOMETRY_SIZE],
-                               struct err *err)
+static enum status read_merged(struct image *linear, struct photo_quality *quality, const char *path,
+                               char radiometry[RADIOMETRY_SIZE], struct err *err)
 {
-    static const char *const names[] = {"R", "G", "B"};
+    static const char *const names[] = {"R", "G", "B", "clipped", "variance"};
     struct exr_image exr = {0};
-    enum status st = exr_read(&exr, path, names, 3, err);
+    enum status st = exr_read(&exr, path, names, quality ? 5 : 3, err);
     for (int c = 0; !st && c < 3; c++)
         if (!exr_find(&exr, names[c])->f)
             st = err_set(err, ST_DATA, "%s: channel %s contains integers, wanted half or float; merge the view again.",
@@ -39,20 +41,24 @@ static enum status read_merged(struct image *linear, const char *path, char radi
             to[2] = b[i] > 0 ? b[i] : 0;
         }
     }
+    if (!st && quality) st = photo_quality_of_merged(quality, &exr, path, linear, err);
     const char *stored = exr_attribute(&exr, "remodel:radiometry");
     if (!st && stored) snprintf(radiometry, RADIOMETRY_SIZE, "%s", stored);
     exr_image_release(&exr);
     return st;
 }
 
-enum status linear_photo_read(struct image *linear, char radiometry[RADIOMETRY_SIZE], const char *photos,
-                              const struct photo_record *record, struct provenance *prov, struct err *err)
+enum status linear_photo_read(struct image *linear, struct photo_quality *quality, char radiometry[RADIOMETRY_SIZE],
+                              const char *photos, const struct photo_record *record,
+                              const struct single_exposure *assumed, struct provenance *prov, struct err *err)
 {
     const bool merged = record->bracket_count > 0;
     const char *file = merged ? record->id : record->file, *suffix = merged ? ".exr" : "";
     char path[FILE_PATH];
     strcpy(radiometry, "approximate");
     enum status st = provenance_add_in(prov, merged ? "hdr" : "photos", photos, file, suffix, path, err);
-    if (!st) st = merged ? read_merged(linear, path, radiometry, err) : read_single(linear, path, err);
+    if (!st)
+        st = merged ? read_merged(linear, quality, path, radiometry, err)
+                    : read_single(linear, quality, path, assumed, err);
     return st;
 }

@@ -1,6 +1,8 @@
 /* view_image.c - the picture of a rectified view on disk. */
 #include "common/capture/view_image.h"
 
+#include <string.h>
+
 #include "common/base/file_path.h"
 #include "common/image/exr.h"
 
@@ -31,8 +33,36 @@ enum status view_image_read(struct image *im, const char *folder, const struct v
     return st;
 }
 
-enum status view_image_write(const struct image *im, const char *path, const struct view *view,
-                             const struct provenance *prov, const char *radiometry, struct err *err)
+/* Rounds to six binary digits: noise is not known more precisely, and the rest would not compress. */
+static float rounded(float v)
+{
+    uint32_t bits;
+    memcpy(&bits, &v, sizeof bits);
+    bits = (bits + 0x20000u) & ~0x3ffffu;
+    memcpy(&v, &bits, sizeof v);
+    return v;
+}
+
+static enum status add_quality(struct exr_image *exr, const struct image *im, const struct photo_quality *quality,
+                               struct err *err)
+{
+    struct exr_plane *sigma = NULL, *clipped = NULL;
+    enum status st = exr_add_plane(exr, "sigma", EXR_HALF, &sigma, err);
+    if (!st) st = exr_add_plane(exr, "clipped", EXR_HALF, &clipped, err);
+    if (st) return st;
+    sigma = exr_find(exr, "sigma");
+    for (size_t i = 0; i < (size_t)im->width * (size_t)im->height; i++) {
+        const float *p = im->data + 4 * i;
+        if (!(p[3] > 0)) continue;
+        sigma->f[i] = rounded(photo_relative_sigma(quality->variance[i], photo_luminance(p)));
+        clipped->f[i] = quality->marks[i];
+    }
+    return ST_OK;
+}
+
+enum status view_image_write(const struct image *im, const struct photo_quality *quality, const char *path,
+                             const struct view *view, const struct provenance *prov, const char *radiometry,
+                             struct err *err)
 {
     struct exr_image exr = {0};
     enum status st = ST_OK;
@@ -41,6 +71,7 @@ enum status view_image_write(const struct image *im, const char *path, const str
         st = err_set(err, ST_INTERNAL, "cannot write %s: a picture of %d x %d with %d channels is not view %s.", path,
                      im->width, im->height, im->channels, view->name);
     if (!st) st = exr_init_rgba(&exr, im->data, im->width, im->height, err);
+    if (!st && quality) st = add_quality(&exr, im, quality, err);
     if (!st) st = exr_set_attribute(&exr, "remodel:radiometry", radiometry, err);
     if (!st) {
         exr_set_camera(&exr, view);

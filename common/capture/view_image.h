@@ -1,16 +1,20 @@
 /* view_image.h - the picture of a rectified view: out/SCENE/views/VIEW.exr, scene-linear R G B (half), A (half, 1
- * inside the photo). */
+ * inside the photo); sigma (half), the standard deviation of the luminance divided by it, up to 1; clipped (half), the
+ * sum of PHOTO_BRIGHT and PHOTO_DARK. */
 #ifndef REMODEL_VIEW_IMAGE_H
 #define REMODEL_VIEW_IMAGE_H
 
 #include "common/base/provenance.h"
 #include "common/capture/camera_set.h"
+#include "common/capture/photo_quality.h"
 #include "common/image/image.h"
 
 /* 4 channels R G B A. ST_DATA: the size differs from the camera's. */
 enum status view_image_read(struct image *im, const char *folder, const struct view *view, struct err *err);
-enum status view_image_write(const struct image *im, const char *path, const struct view *view,
-                             const struct provenance *prov, const char *radiometry, struct err *err);
+/* quality: noise and marks of the pixels, for the channels sigma and clipped; NULL: without them. */
+enum status view_image_write(const struct image *im, const struct photo_quality *quality, const char *path,
+                             const struct view *view, const struct provenance *prov, const char *radiometry,
+                             struct err *err);
 
 /* Sets the EXR's worldToCamera from the view. */
 struct exr_image;

@@ -31,7 +31,7 @@ enum status exr_add_plane(struct exr_image *im, const char *name, enum exr_type 
     const enum status st = array_append(&im->planes, (size_t)im->count, sizeof *im->planes, "channels", err);
     if (st) return st;
     size_t samples = (size_t)im->width * (size_t)im->height;
-    void *data = samples_alloc(samples * 4);
+    void *data = samples_alloc((samples + EXR_PADDING) * 4);
     if (!data) return err_nomem(err, "a channel", samples * 4);
 
     struct exr_plane *p = &im->planes[im->count++];

@@ -19,6 +19,8 @@ enum exr_codec { EXR_ZIP, EXR_ZIPS, EXR_RLE, EXR_NONE };
 
 #define EXR_NAME_SIZE 64
 
+enum { EXR_PADDING = 8 }; /* readable samples after the last of a channel, so that whole vectors may be loaded */
+
 struct exr_plane {
     char name[EXR_NAME_SIZE]; /* "R", "interior.Z" */
     enum exr_type type;

@@ -17,9 +17,10 @@ struct photo_info { /* unknown values are 0 or "" */
 
 struct photo {
     struct photo_info info;
-    uint16_t *samples; /* RGB interleaved, w * h * 3, owned; 8-bit files hold 0..255, 16-bit files 0..65535 */
-    float *values;     /* instead of samples if bits is 32: linear, finite, not negative; owned */
-    float saturation;  /* the value at which `values` are clipped; 0: not clipped */
+    uint16_t *samples;    /* RGB interleaved, w * h * 3, owned; 8-bit files hold 0..255, 16-bit files 0..65535 */
+    float *values;        /* instead of samples if bits is 32: linear, finite, not negative; owned */
+    float saturation;     /* the value at which `values` are clipped; 0: not clipped */
+    double jpeg_variance; /* of the errors of a JPEG's luma by quantization, in sample values^2; 0: no JPEG */
 };
 
 void photo_release(struct photo *p);

@@ -1,4 +1,8 @@
-/* photo_jpeg.c - JPEG files, by libjpeg-turbo. */
+/* photo_jpeg.c - JPEG files, by libjpeg-turbo.
+ *
+ * JPEG rounds the coefficients of an orthonormal transform of blocks of 8 x 8 pixels to multiples of the steps q_k in the
+ * file. If the errors are spread evenly, their variance is q_k^2 / 12 each, so that of a pixel is the mean over k. Where
+ * coefficients are smaller than half a step, it is less. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -51,12 +55,35 @@ static enum status read_jpeg_pixels(struct photo *p, const struct photo_bytes *f
     return st;
 }
 
+/* The mean of q^2 / 12 over the first quantization table, that of luma; 0: none is found before the pixels. */
+static double jpeg_variance(const struct photo_bytes *file)
+{
+    const unsigned char *b = file->bytes;
+    for (size_t at = 2; at + 4 <= file->size && b[at] == 0xff && b[at + 1] != 0xda;) {
+        const size_t length = (size_t)b[at + 2] << 8 | b[at + 3], end = at + 2 + length;
+        const bool wide = b[at + 1] == 0xdb && length > 2 && at + 4 < file->size && b[at + 4] >> 4;
+        if (length < 2 || end > file->size) return 0;
+        if (b[at + 1] == 0xdb && length >= (wide ? 131 : 67) && (b[at + 4] & 15) == 0) {
+            double sum = 0;
+            for (size_t k = 0; k < 64; k++) {
+                const unsigned char *q = b + at + 5 + (wide ? 2 * k : k);
+                const double step = wide ? q[0] << 8 | q[1] : q[0];
+                sum += step * step / 12;
+            }
+            return sum / 64;
+        }
+        at = end;
+    }
+    return 0;
+}
+
 enum status photo_read_jpeg(struct photo *p, const struct photo_bytes *file, bool pixels, struct err *err)
 {
     tjhandle handle = tjInitDecompress();
     if (!handle) return err_nomem(err, "a JPEG decoder", 0);
     enum status st = read_jpeg_header(&p->info, file, handle, err);
     if (!st && pixels) st = read_jpeg_pixels(p, file, handle, err);
+    p->jpeg_variance = jpeg_variance(file);
     if (!st) st = photo_exif_read(&p->info, file, false, err);
     tjDestroy(handle);
     return st;

@@ -73,6 +73,12 @@ void depth_errors_add(struct depth_errors *e, const float *z, const float *truth
     }
 }
 
+static void merge_quantiles(struct quantiles *to, const struct quantiles *from)
+{
+    to->count += from->count;
+    for (int i = 0; i < BINS; i++) to->bins[i] += from->bins[i];
+}
+
 static void merge(struct depth_tally *to, const struct depth_tally *from)
 {
     to->pixels += from->pixels;
@@ -80,8 +86,7 @@ static void merge(struct depth_tally *to, const struct depth_tally *from)
     to->bad1 += from->bad1;
     to->bad2 += from->bad2;
     to->within2 += from->within2;
-    to->errors.count += from->errors.count;
-    for (int i = 0; i < BINS; i++) to->errors.bins[i] += from->errors.bins[i];
+    merge_quantiles(&to->errors, &from->errors);
 }
 
 void depth_errors_merge(struct depth_errors *to, const struct depth_errors *from)
@@ -95,4 +100,36 @@ void depth_errors_release(struct depth_errors *e)
     quantiles_release(&e->all.errors);
     quantiles_release(&e->visible.errors);
     *e = (struct depth_errors){0};
+}
+
+enum status sigma_errors_init(struct sigma_errors *e, struct err *err)
+{
+    enum status st = ST_OK;
+    *e = (struct sigma_errors){0};
+    for (int k = 0; !st && k < DEPTH_CLASSES; k++) st = quantiles_init(&e->classes[k].errors, err);
+    return st;
+}
+
+void sigma_errors_add(struct sigma_errors *e, const float *z, const float *truth, const float *sigma,
+                      const uint8_t *classes, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        if (!(truth[i] > 0) || !(z[i] > 0) || classes[i] >= DEPTH_CLASSES) continue;
+        struct sigma_tally *t = &e->classes[classes[i]];
+        const double relative = fabs(1 - (double)z[i] / (double)truth[i]);
+        const double error = relative > 0 ? fmin(relative / (double)sigma[i], 1e30) : 0; /* sigma may be 0 */
+        for (int k = 0; k < 3; k++) t->within[k] += error <= k + 1;
+        quantiles_add(&t->errors, (float)error);
+    }
+}
+
+void sigma_tally_merge(struct sigma_tally *to, const struct sigma_tally *from)
+{
+    for (int k = 0; k < 3; k++) to->within[k] += from->within[k];
+    merge_quantiles(&to->errors, &from->errors);
+}
+
+void sigma_errors_release(struct sigma_errors *e)
+{
+    for (int k = 0; k < DEPTH_CLASSES; k++) quantiles_release(&e->classes[k].errors);
 }

@@ -75,15 +75,40 @@ static enum status occlusion_of(const struct evaluation *e, int photo, const boo
     return st;
 }
 
-/* The depth of the layer with more alpha, 0 outside the view; adds the view's pixels to *pixels, those with a depth to
- * *known. */
-static void visible_depth(float *z, const struct layered_depth *d, uint64_t *pixels, uint64_t *known)
+/* What a depth map states of each pixel, by the layer with more alpha. */
+struct stated_depth {
+    float *z;         /* 0: none; in scene units, then in those of the truth */
+    float *sigma;     /* depth_sigma() */
+    uint8_t *classes; /* enum depth_class */
+};
+
+static enum status stated_depth_init(struct stated_depth *s, size_t pixels, struct err *err)
+{
+    s->z = malloc(pixels * sizeof *s->z);
+    s->sigma = malloc(pixels * sizeof *s->sigma);
+    s->classes = malloc(pixels);
+    return s->z && s->sigma && s->classes ? ST_OK : err_nomem(err, "a depth map", pixels * 9);
+}
+
+static void stated_depth_release(struct stated_depth *s)
+{
+    free(s->z);
+    free(s->sigma);
+    free(s->classes);
+}
+
+/* Adds the view's pixels to *pixels, those with a depth to *known. */
+static void visible_depth(struct stated_depth *s, const struct layered_depth *d, uint64_t *pixels, uint64_t *known)
 {
     for (size_t i = 0; i < (size_t)d->width * (size_t)d->height; i++) {
-        float a = d->interior.rgba[4 * i + 3], b = d->boundary.rgba[4 * i + 3];
-        z[i] = a + b > 0 ? (a >= b ? d->interior.z[i] : d->boundary.z[i]) : 0;
+        const float a = d->interior.rgba[4 * i + 3], b = d->boundary.rgba[4 * i + 3];
+        const struct layer *layer = a >= b ? &d->interior : &d->boundary;
+        const uint32_t id = layer->id[i];
+        s->z[i] = a + b > 0 ? layer->z[i] : 0;
+        s->sigma[i] = id ? (float)depth_sigma(&d->segments[id - 1]) : 0;
+        s->classes[i] = id ? (uint8_t)depth_class(d->segments[id - 1].confidence) : DEPTH_CLASSES;
         *pixels += a + b > 0;
-        *known += z[i] > 0;
+        *known += s->z[i] > 0;
     }
 }
 
@@ -174,9 +199,15 @@ static enum status photo_truth_make(struct photo_truth *v, const struct evaluati
     return occlusion_of(e, photo, kept, v->points, v->occluded, err);
 }
 
-/* Adds the errors of a view's depth map to the table and to `scene`. z: in scene units; overwritten. */
-static enum status compare_depth(struct evaluation *e, int i, struct photo_truth *tv, float *z,
-                                 struct depth_errors *scene, struct err *err)
+struct scene_errors { /* of all views */
+    struct depth_errors depths;
+    struct sigma_errors sigmas;
+    uint64_t pixels, known;
+};
+
+/* Adds the errors of a view's depth map to the table and to `scene`. s->z is overwritten. */
+static enum status compare_depth(struct evaluation *e, int i, struct photo_truth *tv, struct stated_depth *s,
+                                 struct scene_errors *scene, struct err *err)
 {
     const struct view *view = &e->views.cameras.views[i];
     size_t pixels = (size_t)view->width * (size_t)view->height;
@@ -189,9 +220,10 @@ static enum status compare_depth(struct evaluation *e, int i, struct photo_truth
         double ratio = e->params->disparity_side ? (double)e->params->disparity_side / side : 1;
         true_depth_in_view(truth, occluded, view, lens_of_view(&e->views, i), &e->truth.photos[tv->photo], tv->points,
                            tv->occluded);
-        for (size_t k = 0; k < pixels; k++) z[k] = (float)(z[k] * e->truth_from_scene.scale);
-        depth_errors_add(&errors, z, truth, occluded, pixels, view->fx * ratio * e->baseline);
-        depth_errors_merge(scene, &errors);
+        for (size_t k = 0; k < pixels; k++) s->z[k] = (float)(s->z[k] * e->truth_from_scene.scale);
+        sigma_errors_add(&scene->sigmas, s->z, truth, s->sigma, s->classes, pixels);
+        depth_errors_add(&errors, s->z, truth, occluded, pixels, view->fx * ratio * e->baseline);
+        depth_errors_merge(&scene->depths, &errors);
         st = add_depth_errors(e, view->name, &errors, err);
         if (!st && errors.all.pixels) st = write_truth(e, view, truth, occluded, err);
     }
@@ -202,46 +234,79 @@ static enum status compare_depth(struct evaluation *e, int i, struct photo_truth
 }
 
 static enum status evaluate_view(struct evaluation *e, int i, const bool *kept, struct photo_truth *tv,
-                                 struct depth_errors *scene, uint64_t *pixels, uint64_t *known, struct err *err)
+                                 struct scene_errors *scene, struct err *err)
 {
     const struct view *view = &e->views.cameras.views[i];
     int photo = photo_of_view(e, &e->views, i);
     struct layered_depth d = {0};
     uint64_t here = 0, known_here = 0;
     char path[FILE_PATH];
-    float *z = malloc((size_t)view->width * (size_t)view->height * sizeof *z);
-    enum status st = z ? ST_OK : err_nomem(err, "a depth map", (size_t)view->width * (size_t)view->height);
+    struct stated_depth stated = {0};
+    enum status st = stated_depth_init(&stated, (size_t)view->width * (size_t)view->height, err);
     if (!st) st = evaluation_input(e, path, "depth", view->name, ".exr", err);
     if (!st) st = layered_depth_read(&d, path, err);
     if (!st && (d.width != view->width || d.height != view->height))
         st = err_set(err, ST_DATA, "%s is %d x %d px, but its view is %d x %d px; make the depth map again.", path,
                      d.width, d.height, view->width, view->height);
     if (!st) {
-        visible_depth(z, &d, &here, &known_here);
-        *pixels += here;
-        *known += known_here;
+        visible_depth(&stated, &d, &here, &known_here);
+        scene->pixels += here;
+        scene->known += known_here;
     }
     layered_depth_release(&d);
     if (!st && here)
         st = metric_add(&e->table, view->name, "depth.known", percent(known_here, here), "%", "higher", err);
     if (!st && e->aligned && e->truth.photos[photo].depth) {
         st = photo_truth_make(tv, e, photo, kept, err);
-        if (!st) st = compare_depth(e, i, tv, z, scene, err);
+        if (!st) st = compare_depth(e, i, tv, &stated, scene, err);
     }
-    free(z);
+    stated_depth_release(&stated);
     return st;
+}
+
+/* The shares within 1, 2 and 3 stated standard deviations, and the factor by which these would have to be multiplied so
+ * that 68.27 % of the pixels are within one. */
+static enum status add_sigma_tally(struct metric_table *t, const struct sigma_tally *s, const char *suffix,
+                                   struct err *err)
+{
+    char name[64];
+    const uint64_t pixels = s->errors.count;
+    if (!pixels) return ST_OK;
+    for (int k = 0; k < 3; k++) {
+        snprintf(name, sizeof name, "depth.sigma%d%s", k + 1, suffix);
+        if (metric_add(t, NULL, name, percent(s->within[k], pixels), "%", "none", err)) return err->status;
+    }
+    snprintf(name, sizeof name, "depth.sigma_factor%s", suffix);
+    return metric_add(t, NULL, name, quantiles_get(&s->errors, 0.6827), "1", "none", err);
+}
+
+/* Overwrites the tally of the first class by that of all. */
+static enum status add_sigma_errors(struct metric_table *t, struct sigma_errors *s, struct err *err)
+{
+    uint64_t pixels = 0;
+    for (int c = 0; c < DEPTH_CLASSES; c++) pixels += s->classes[c].errors.count;
+    for (int c = 0; c < DEPTH_CLASSES && pixels; c++) {
+        char suffix[32], name[64];
+        snprintf(suffix, sizeof suffix, "_%s", depth_class_name((enum depth_class)c));
+        snprintf(name, sizeof name, "depth.share%s", suffix);
+        if (metric_add(t, NULL, name, percent(s->classes[c].errors.count, pixels), "%", "none", err) ||
+            add_sigma_tally(t, &s->classes[c], suffix, err))
+            return err->status;
+    }
+    for (int c = 1; c < DEPTH_CLASSES; c++) sigma_tally_merge(&s->classes[0], &s->classes[c]);
+    return add_sigma_tally(t, &s->classes[0], "", err);
 }
 
 enum status evaluate_depths(struct evaluation *e, struct err *err)
 {
     const struct camera_set *views = &e->views.cameras;
-    struct depth_errors scene = {0};
+    struct scene_errors scene = {0};
     struct photo_truth tv = {.photo = -1};
     struct progress progress;
-    uint64_t pixels = 0, known = 0;
     int missing = 0;
     bool *kept = calloc((size_t)e->photos.count + 1, sizeof *kept);
-    enum status st = kept ? depth_errors_init(&scene, err) : err_nomem(err, "marks", (size_t)e->photos.count);
+    enum status st = kept ? depth_errors_init(&scene.depths, err) : err_nomem(err, "marks", (size_t)e->photos.count);
+    if (!st) st = sigma_errors_init(&scene.sigmas, err);
     if (!st && e->truth_folder) {
         mark_kept(e, kept);
         st = find_baseline(e, kept, err);
@@ -251,7 +316,7 @@ enum status evaluate_depths(struct evaluation *e, struct err *err)
         char path[FILE_PATH];
         snprintf(path, sizeof path, "%s/depth/%s.exr", e->folder, views->views[i].name);
         if (path_is_file(path))
-            st = evaluate_view(e, i, kept, &tv, &scene, &pixels, &known, err);
+            st = evaluate_view(e, i, kept, &tv, &scene, err);
         else
             missing++;
         progress_add(&progress, 1);
@@ -259,9 +324,11 @@ enum status evaluate_depths(struct evaluation *e, struct err *err)
     progress_end(&progress);
     if (!st && missing)
         st = metric_note(&e->table, err, "skipped %d of %d views: they have no depth map", missing, views->view_count);
-    if (!st && pixels) st = metric_add(&e->table, NULL, "depth.known", percent(known, pixels), "%", "higher", err);
-    if (!st && scene.all.pixels) {
-        st = add_depth_errors(e, NULL, &scene, err);
+    if (!st && scene.pixels)
+        st = metric_add(&e->table, NULL, "depth.known", percent(scene.known, scene.pixels), "%", "higher", err);
+    if (!st && scene.depths.all.pixels) {
+        st = add_depth_errors(e, NULL, &scene.depths, err);
+        if (!st) st = add_sigma_errors(&e->table, &scene.sigmas, err);
         if (!st && e->baseline > 0)
             st = metric_add(&e->table, NULL, "depth.baseline", e->baseline, "m", "none", err);
         else if (!st)
@@ -273,7 +340,8 @@ enum status evaluate_depths(struct evaluation *e, struct err *err)
                          e->truth.depths ? "no view with a depth map is of a photo with a true depth"
                                          : "the truth has no depth of these photos");
     }
-    depth_errors_release(&scene);
+    depth_errors_release(&scene.depths);
+    sigma_errors_release(&scene.sigmas);
     photo_truth_release(&tv);
     free(kept);
     return st;

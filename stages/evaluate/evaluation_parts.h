@@ -5,7 +5,7 @@
 #include <stdbool.h>
 
 #include "common/base/file_path.h"
-#include "stages/evaluate/alignment.h"
+#include "common/capture/camera_alignment.h"
 #include "stages/evaluate/evaluation.h"
 #include "stages/evaluate/metric_table.h"
 #include "stages/evaluate/truth.h"

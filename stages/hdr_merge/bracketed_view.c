@@ -89,8 +89,9 @@ enum status bracketed_view_read(struct bracketed_view *v, const char *id, const 
     return st;
 }
 
-enum status bracketed_view_place(struct bracketed_view *v, bool *known, const char *model, struct provenance *prov,
-                                 struct err *err)
+enum status bracketed_view_place(struct bracketed_view *v, bool *known, const char *model,
+                                 const struct reference_frame *frame, const struct merge_params *params,
+                                 struct provenance *prov, struct err *err)
 {
     static const char *const files[] = {"cameras", "images"};
     const struct photo_list self = {&v->record, 1};
@@ -110,6 +111,7 @@ enum status bracketed_view_place(struct bracketed_view *v, bool *known, const ch
             err, ST_DATA,
             "view %s has %d x %d pixels, but its camera in %s/cameras.txt %d x %d; give the cameras of these photos.",
             v->record.id, info->width, info->height, model, v->lens.width, v->lens.height);
+    if (!st && v->placed) st = reference_pose_find(&v->cam_from_world, &v->frame, &m, model, frame, params, prov, err);
     *known = v->placed;
     sfm_model_release(&m);
     return st;
@@ -122,7 +124,9 @@ static enum status find_noise(struct bracketed_view *v, const struct merge_param
     if (!strcmp(params->noise, "measured") && noise_measure(&measured, &v->noise_measured, &v->brackets, err))
         return err->status;
     for (int k = 0; k < v->record.bracket_count; k++)
-        v->noise[k] = v->noise_measured ? measured : noise_given(params, &v->response, v->photos[k].info.bits);
+        v->noise[k] = v->noise_measured
+                          ? measured
+                          : noise_given(params->electrons, params->read_noise, &v->response, v->photos[k].info.bits);
     return ST_OK;
 }
 
@@ -255,7 +259,12 @@ static enum status set_camera(struct exr_image *im, const struct bracketed_view 
     for (int i = 0; i < camera_model_params(c->model); i++)
         used += snprintf(text + used, sizeof text - (size_t)used, " %.9g", c->params[i]);
     exr_set_camera(im, &view);
-    return exr_set_attribute(im, "remodel:lens", text, err);
+    enum status st = exr_set_attribute(im, "remodel:lens", text, err);
+    if (st || !v->frame.photos) return st;
+    const struct camera_errors *e = &v->frame.errors;
+    snprintf(text, sizeof text, "%d %.4g %.4g %.4g %.4g", v->frame.photos, e->center_median, e->center_max,
+             e->rotation_median, e->rotation_max);
+    return exr_set_attribute(im, "remodel:frame", text, err);
 }
 
 /* Rounds to eight binary digits: noise is not known more precisely, and the rest would not compress. */

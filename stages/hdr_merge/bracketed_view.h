@@ -7,6 +7,7 @@
 #include "common/capture/photo_list.h"
 #include "stages/hdr_merge/align.h"
 #include "stages/hdr_merge/merge.h"
+#include "stages/hdr_merge/reference_pose.h"
 
 struct bracketed_view {
     struct photo_record record;
@@ -23,16 +24,18 @@ struct bracketed_view {
     bool placed; /* its lens and pose are known */
     struct camera lens;
     struct pose cam_from_world;
+    struct frame_agreement frame; /* how its frame was found */
 };
 
 /* Reads RECORDS/ID.txt, the photos in PHOTOS that it names, and the response curve (NULL: sRGB). v is {0} on entry;
  * release it also after a failure. ST_DATA: the record of a single photo, or more than MERGE_MAX_EXPOSURES exposures. */
 enum status bracketed_view_read(struct bracketed_view *v, const char *id, const char *photos, const char *records,
                                 const char *response, struct provenance *prov, struct err *err);
-/* Reads the view's lens and pose from a COLMAP text model, by its photos' names, to be written with the radiance.
- * *known: the model has the view. ST_DATA: the camera has another size. */
-enum status bracketed_view_place(struct bracketed_view *v, bool *known, const char *model, struct provenance *prov,
-                                 struct err *err);
+/* Reads the view's lens and pose from a COLMAP text model, by its photos' names, to be written with the radiance, in the
+ * scene's frame. *known: the model has the view. ST_DATA: the camera has another size; the frame cannot be found. */
+enum status bracketed_view_place(struct bracketed_view *v, bool *known, const char *model,
+                                 const struct reference_frame *frame, const struct merge_params *params,
+                                 struct provenance *prov, struct err *err);
 /* Finds shifts, checks the exposures, measures noise, merges. ST_DATA: exposures that disagree with the photos. */
 enum status bracketed_view_merge(struct bracketed_view *v, const struct merge_params *params, struct err *err);
 /* Writes OUT/ID.jpg: the tone-mapped radiance or the middle exposure; a JPEG is copied, other formats are encoded. */

@@ -3,6 +3,7 @@
  * reads   RECORDS/ID.txt    the photos of the view, with their exposures
  *         PHOTOS/FILE       the photos: JPEG, PNG, TIFF, EXR, raw files
  *         MODEL/cameras.txt, images.txt   the view's lens and pose, if the model has them
+ *         VIEWS/cameras.txt, images.txt, lenses.txt, RECORDS-OF-THE-SCENE/ID.txt, or AXES   the frame of that pose
  *         RESPONSE          the response curve; without it the sRGB curve
  * writes  OUT/ID.jpg        the picture for structure from motion: by default the tone-mapped radiance
  *         OUT/ID.exr        R G B (half): 1 is white at the exposure remodel:white, the same for all views of a scene;
@@ -44,12 +45,22 @@ static void report_shifts(const struct bracketed_view *v, const struct merge_par
     }
 }
 
+static void report_frame(const struct bracketed_view *v)
+{
+    const struct frame_agreement *f = &v->frame;
+    if (f->photos)
+        log_note("%s: placed in the scene by %d photographs; their places agree to %.2g %% of their extent (median; at "
+                 "most %.2g %%), their axes to %.2g degrees (at most %.2g)",
+                 v->record.id, f->photos, 100 * f->errors.center_median, 100 * f->errors.center_max,
+                 f->errors.rotation_median, f->errors.rotation_max);
+}
+
 static void report(const struct bracketed_view *v, const struct merge_params *params)
 {
     size_t pixels = (size_t)v->merged.radiance.width * (size_t)v->merged.radiance.height, bright = 0, dark = 0;
     for (size_t i = 0; i < pixels; i++) {
-        bright += (v->merged.marks[i] & MERGE_BRIGHT) != 0;
-        dark += (v->merged.marks[i] & MERGE_DARK) != 0;
+        bright += (v->merged.marks[i] & PHOTO_BRIGHT) != 0;
+        dark += (v->merged.marks[i] & PHOTO_DARK) != 0;
     }
     log_note("%s: %d exposure%s; %.2f %% of the pixels saturate in all of them, %.2f %% are dark in all of them",
              v->record.id, v->record.bracket_count, v->record.bracket_count == 1 ? "" : "s",
@@ -58,26 +69,41 @@ static void report(const struct bracketed_view *v, const struct merge_params *pa
         log_note("%s: noise is %.2f %% of white at white, %.3f %% in the dark", v->record.id,
                  100 * sqrt(v->noise[0].photon + v->noise[0].read2), 100 * sqrt(v->noise[0].read2));
     report_shifts(v, params);
+    report_frame(v);
     warn_of_disagreement(v);
 }
 
-static enum status hdr_merge(const char *id, const char *photos, const char *records, const char *response,
-                             const char *model, const char *out, const struct merge_params *params,
-                             struct provenance *prov, struct err *err)
+struct request { /* the options of these names */
+    const char *id, *photos, *records, *response, *model, *out;
+    struct reference_frame frame;
+};
+
+static enum status check_request(const struct request *r, struct err *err)
+{
+    const struct reference_frame *f = &r->frame;
+    if (!f->views == !f->records && !(f->views && f->axes) && (r->model || (!f->views && !f->axes))) return ST_OK;
+    return err_set(err, ST_USAGE,
+                   "--views wants --scene-records, and either these two or --axes state the frame of --model; give "
+                   "one of them.");
+}
+
+static enum status hdr_merge(const struct request *r, const struct merge_params *params, struct provenance *prov,
+                             struct err *err)
 {
     struct bracketed_view v = {0};
     size_t clamped = 0;
     bool placed = false;
-    enum status st = bracketed_view_read(&v, id, photos, records, response, prov, err);
-    if (!st && model) st = bracketed_view_place(&v, &placed, model, prov, err);
-    if (!st && model && !placed)
-        log_warn("view %s: %s/images.txt has no image of it; its radiance is written without lens and pose.", id,
-                 model);
+    enum status st = check_request(r, err);
+    if (!st) st = bracketed_view_read(&v, r->id, r->photos, r->records, r->response, prov, err);
+    if (!st && r->model) st = bracketed_view_place(&v, &placed, r->model, &r->frame, params, prov, err);
+    if (!st && r->model && !placed)
+        log_warn("view %s: %s/images.txt has no image of it; its radiance is written without lens and pose.", r->id,
+                 r->model);
     if (!st) st = bracketed_view_merge(&v, params, err);
-    if (!st) st = bracketed_view_write_picture(&v, photos, out, params, err);
-    if (!st) st = bracketed_view_write_radiance(&v, out, prov, &clamped, err);
+    if (!st) st = bracketed_view_write_picture(&v, r->photos, r->out, params, err);
+    if (!st) st = bracketed_view_write_radiance(&v, r->out, prov, &clamped, err);
     if (!st && clamped)
-        log_warn("view %s: %zu samples exceed 65504 times white, the largest half value, and are clamped to it.", id,
+        log_warn("view %s: %zu samples exceed 65504 times white, the largest half value, and are clamped to it.", r->id,
                  clamped);
     if (!st) report(&v, params);
     bracketed_view_release(&v);
@@ -86,23 +112,27 @@ static enum status hdr_merge(const char *id, const char *photos, const char *rec
 
 int main(int argc, char **argv)
 {
-    const char *id = NULL, *photos = NULL, *records = NULL, *response = NULL, *model = NULL, *out = NULL;
+    struct request r = {0};
     struct merge_params params = MERGE_PARAMS_DEFAULT;
     const struct cli_opt opts[] = {
         CLI_ABOUT("Merges the bracketed exposures of one view into linear radiance."),
-        CLI_STR("id", &id, CLI_REQUIRED, "id of the view to merge"),
-        CLI_STR("photos", &photos, CLI_REQUIRED, "folder of photographs"),
-        CLI_STR("records", &records, CLI_REQUIRED, "folder of the photos' records"),
-        CLI_STR("response", &response, CLI_OPTIONAL, "response.txt, the response curve; default: the sRGB curve"),
-        CLI_STR("model", &model, CLI_OPTIONAL, "COLMAP text model with the view's camera, to be written to ID.exr"),
-        CLI_STR("out", &out, CLI_REQUIRED, "folder to write ID.jpg and ID.exr into"),
+        CLI_STR("id", &r.id, CLI_REQUIRED, "id of the view to merge"),
+        CLI_STR("photos", &r.photos, CLI_REQUIRED, "folder of photographs"),
+        CLI_STR("records", &r.records, CLI_REQUIRED, "folder of the photos' records"),
+        CLI_STR("response", &r.response, CLI_OPTIONAL, "response.txt, the response curve; default: the sRGB curve"),
+        CLI_STR("model", &r.model, CLI_OPTIONAL, "COLMAP text model with the view's camera, to be written to ID.exr"),
+        CLI_STR("views", &r.frame.views, CLI_OPTIONAL,
+                "folder of the scene's cameras.txt, images.txt and lenses.txt: the pose in the model is moved to the "
+                "scene's frame by the photographs that both have; default: it is in that frame"),
+        CLI_STR("scene-records", &r.frame.records, CLI_OPTIONAL, "folder of the records of the scene's photographs"),
+        CLI_STR("axes", &r.frame.axes, CLI_OPTIONAL, "axes.txt: the pose is in the frame of the room's model"),
+        CLI_STR("out", &r.out, CLI_REQUIRED, "folder to write ID.jpg and ID.exr into"),
         CLI_PARAMS(merge_param_table, &params, NULL),
         CLI_END,
     };
     struct provenance prov = {0};
     struct err err = ERR_INIT;
-    if (cli_parse(argc, argv, "hdr_merge", opts, &prov, &err) != CLI_RUN ||
-        hdr_merge(id, photos, records, response, model, out, &params, &prov, &err))
+    if (cli_parse(argc, argv, "hdr_merge", opts, &prov, &err) != CLI_RUN || hdr_merge(&r, &params, &prov, &err))
         err_report(&err);
     provenance_release(&prov);
     return err_exit_code(&err);

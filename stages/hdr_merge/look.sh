@@ -7,4 +7,4 @@ bin=$1 folder=$2
 common/run/run_stage.sh silent import_photos lri "$folder" "$bin/import_photos" --config "$folder/slice/import_photos.cfg" \
     --photos "$REMODEL_LRI" --scene "$REMODEL_LRI" --like "$folder/photos" --out "$folder/lri/photos"
 grep -h warning: "$folder/log/import_photos.lri.log" >&2 || true
-{ [ -z "${REMODEL_LRI_SFM-}" ] || (cd "$REMODEL_LRI_SFM" && cksum cameras.txt images.txt); } | keep "$folder/stamp/lri.txt"
+{ [ -z "${REMODEL_LRI_SFM-}" ] || (cd "$REMODEL_LRI_SFM" && cksum cameras.txt images.txt && echo "frame ${REMODEL_LRI_FRAME:-photos}"); } | keep "$folder/stamp/lri.txt"

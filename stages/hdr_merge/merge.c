@@ -14,7 +14,8 @@
  * exposure: the shortest if all saturate (a lower bound), otherwise the longest that does not saturate, but no less
  * than the bound of the saturated ones. Both cases are marked.
  *
- * With weights w, the mean sum(w v) / sum(w t) has the variance sum(w^2 var(v)) / sum(w t)^2.
+ * With weights w, the mean sum(w v) / sum(w t) has the variance sum(w^2 var(v)) / sum(w t)^2. That of the luminance is
+ * the sum over independent colours, times a measured factor for colours that share their noise (noise.c).
  *
  * Differs from the source, which has hat weights on the samples' own values and a logarithmic mean: weights follow
  * noise and prediction, and the mean is of radiance, which has no bias towards dark samples.
@@ -56,6 +57,7 @@ struct merge_job {
     struct merged *out;
     struct exposure_job exposures[MERGE_MAX_EXPOSURES]; /* ascending in t */
     int count;
+    float luminance; /* variance of the luminance's noise, divided by what independent colours would give */
 };
 
 static inline float clamp01(float v)
@@ -90,9 +92,9 @@ static float bound(const struct merge_job *m, const float *v, int c, uint8_t *ma
     const int from = known < 0 ? shortest : known;
     float x = v[3 * from + c] / m->exposures[from].t;
     if (known < 0)
-        *mark |= MERGE_BRIGHT;
+        *mark |= PHOTO_BRIGHT;
     else if (v[3 * known + c] <= m->exposures[known].dark)
-        *mark |= MERGE_DARK;
+        *mark |= PHOTO_DARK;
     for (int k = known + 1; known >= 0 && k < m->count; k++) x = larger(x, v[3 * k + c] / m->exposures[k].t);
     return x;
 }
@@ -214,14 +216,15 @@ static void second_round(const struct merge_job *m, plane (*const v)[3], plane f
 }
 
 /* Relative variance of the luminance. */
-static float relative_variance(const float rgb[3], const float variance[3], uint8_t mark)
+static float relative_variance(const struct merge_job *m, const float rgb[3], const float variance[3], uint8_t mark)
 {
     float y = 0, sum = 0;
     for (int c = 0; c < 3; c++) {
         y += luma[c] * rgb[c];
         sum += luma[c] * luma[c] * variance[c];
     }
-    if ((mark & MERGE_BRIGHT) || !(y > 0) || !(sum < y * y)) return 1;
+    sum *= m->luminance;
+    if ((mark & PHOTO_BRIGHT) || !(y > 0) || !(sum < y * y)) return 1;
     const float v = sum / (y * y);
     return v > 1e-12f ? v : 1e-12f;
 }
@@ -258,7 +261,7 @@ static void merge_block(const struct merge_job *m, int x, int y, int n)
                 }
         }
         for (int c = 0; c < 3; c++) m->out->radiance.data[3 * (at + (size_t)i) + (size_t)c] = rgb[c];
-        m->out->variance[at + (size_t)i] = relative_variance(rgb, variance, mark);
+        m->out->variance[at + (size_t)i] = relative_variance(m, rgb, variance, mark);
         m->out->marks[at + (size_t)i] = mark;
     }
 }
@@ -348,6 +351,7 @@ enum status merge_brackets(struct merged *out, const struct brackets *b, const s
                                    .read2 = (float)noise[k].read2};
         for (int c = 0; !p->values && c < 3; c++) e->tables[c] = tables[wide] + (size_t)c * (wide ? 65536 : 256);
         set_limits(e, p, b->response, params);
+        m.luminance = larger(m.luminance, (float)noise[k].luminance);
     }
     const int width = st ? 1 : b->photos[0].info.width, height = st ? 1 : b->photos[0].info.height;
     const size_t pixels = (size_t)width * (size_t)height;

@@ -7,18 +7,13 @@
 
 #include <stdint.h>
 
+#include "common/capture/photo_quality.h"
 #include "common/image/image.h"
 #include "common/image/response.h"
 #include "stages/hdr_merge/merge_params.h"
 #include "stages/hdr_merge/noise.h"
 
 enum { MERGE_MAX_EXPOSURES = 64 }; /* exposures of a view */
-
-/* Marks of pixels whose radiance the exposures do not measure. */
-enum {
-    MERGE_BRIGHT = 1, /* a colour saturates even in the shortest exposure: its radiance is a lower bound */
-    MERGE_DARK = 2,   /* a colour is dark even in the longest exposure that does not saturate: mostly noise */
-};
 
 /* Pixel (x + dx, y + dy) of the exposure shows the same point as (x, y) of the merged image. */
 struct shift {
@@ -36,7 +31,7 @@ struct brackets {
 
 struct merged {
     struct image radiance; /* R G B; finite, not negative */
-    uint8_t *marks;        /* per pixel: MERGE_BRIGHT, MERGE_DARK; owned */
+    uint8_t *marks;        /* per pixel: PHOTO_BRIGHT, PHOTO_DARK; owned */
     float *variance;       /* per pixel: variance of the luminance over its square, (0, 1]; owned */
 };
 

@@ -5,7 +5,13 @@
  * where v = b s / t is the better estimate of a. The standard deviation of d is estimated in bins of log v as 1.4826
  * times its median absolute deviation from the bin's median, which is robust against edges, moving objects and slightly
  * wrong exposures. photon and read^2 are the least-squares fit to the bins of all pairs, with relative weights; neither
- * may be negative. */
+ * may be negative.
+ *
+ * The noise of the luminance is not the sum of that of independent colours: JPEG stores chroma coarsely, so that the
+ * colours of a pixel share most of what noise is left. The difference of the luminances of two exposures, divided by the
+ * standard deviation that independent colours would have, is therefore measured as well, in the same bins: after
+ * subtraction of the bin's median, 68.27 % of its absolute values are below a value q, and luminance is the mean of
+ * q^2. */
 #include "stages/hdr_merge/noise.h"
 
 #include <math.h>
@@ -14,28 +20,9 @@
 #include "common/base/sort.h"
 #include "stages/hdr_merge/merge.h"
 
-enum { BINS = 24, SAMPLES = 1 << 17, MIN_BIN = 200 }; /* samples of a pair; of a bin that counts */
+enum { BINS = 24, SAMPLES = 1 << 17, MIN_BIN = 200, MIN_BINS = 3 }; /* samples of a pair; of a bin that counts */
 
 static const double min_light = 0.002, max_light = 0.7, max_longer = 0.75; /* of v; of v; of b */
-
-struct noise noise_given(const struct merge_params *params, const struct response *r, int bits)
-{
-    struct noise n = {1 / params->electrons, pow(params->read_noise / params->electrons, 2)};
-    if (bits == 32) return n;
-    const double levels = bits == 16 ? 65535 : 255;
-    /* the mean step near black, and the mean of step^2 / light over the brighter half of the samples */
-    double near_black = 0, per_light = 0;
-    for (int i = 0; i < RESPONSE_LEVELS - 1; i++) {
-        const float from = (float)i / (RESPONSE_LEVELS - 1), to = (float)(i + 1) / (RESPONSE_LEVELS - 1);
-        const double light = (double)response_light(r, 1, to),
-                     step = (light - (double)response_light(r, 1, from)) * (RESPONSE_LEVELS - 1) / levels;
-        if (i < 8) near_black += step / 8;
-        if (i >= RESPONSE_LEVELS / 2 && light > 0) per_light += step * step / light / (RESPONSE_LEVELS / 2 - 1);
-    }
-    n.photon += per_light / 12;
-    n.read2 += near_black * near_black / 12;
-    return n;
-}
 
 struct pair_sample {
     float light, difference;
@@ -76,17 +63,22 @@ static void add_bin(struct noise_fit *fit, struct pair_sample *s, size_t count, 
     fit->bins++;
 }
 
+/* The end of a bin that begins at `begin`; samples are in order of light. */
+static size_t end_of_bin(const struct pair_sample *s, size_t count, size_t begin, int bin)
+{
+    const double step = log(max_light / min_light) / BINS;
+    const float end_light = (float)(min_light * exp(step * (bin + 1)));
+    size_t end = begin;
+    while (end < count && s[end].light < end_light) end++;
+    return end;
+}
+
 static void add_pair(struct noise_fit *fit, struct pair_sample *s, size_t count, double ratio, float *values)
 {
     qsort(s, count, sizeof *s, by_light);
-    const double step = log(max_light / min_light) / BINS;
-    size_t begin = 0;
-    for (int bin = 0; bin < BINS; bin++) {
-        const float end_light = (float)(min_light * exp(step * (bin + 1)));
-        size_t end = begin;
-        while (end < count && s[end].light < end_light) end++;
+    for (size_t begin = 0, end, bin = 0; bin < BINS; bin++, begin = end) {
+        end = end_of_bin(s, count, begin, (int)bin);
         if (end - begin >= MIN_BIN) add_bin(fit, s + begin, end - begin, ratio, values);
-        begin = end;
     }
 }
 
@@ -122,9 +114,71 @@ static size_t gather(struct pair_sample *to, const struct brackets *b, int k, co
     return count;
 }
 
+/* Collects the differences of the luminances of a pair, divided by their deviation; returns their number. */
+static size_t gather_luminance(struct pair_sample *to, const struct brackets *b, int k, const float *const tables[2],
+                               const struct noise *n)
+{
+    static const double luma[3] = {0.2126, 0.7152, 0.0722};
+    const struct photo *a = &b->photos[k - 1], *l = &b->photos[k];
+    const struct shift none = {0, 0}, sa = b->shifts ? b->shifts[k - 1] : none, sl = b->shifts ? b->shifts[k] : none;
+    const int width = a->info.width, height = a->info.height;
+    const double ratio = b->exposures[k - 1] / b->exposures[k];
+    const size_t pixels = (size_t)width * (size_t)height,
+                 step = (pixels / (SAMPLES / 3) + 1) | 1; /* odd: all places of JPEG's blocks */
+    size_t count = 0;
+    for (size_t i = 0; i < pixels; i += step) {
+        const int x = (int)(i % (size_t)width), y = (int)(i / (size_t)width);
+        const int xa = x + sa.dx, ya = y + sa.dy, xl = x + sl.dx, yl = y + sl.dy;
+        if (xa < 0 || ya < 0 || xl < 0 || yl < 0 || xa >= width || xl >= width || ya >= height || yl >= height)
+            continue;
+        double difference = 0, variance = 0, light = 0;
+        bool exposed = true;
+        for (int c = 0; c < 3; c++) {
+            const double va = (double)sample_at(a, tables[0], (size_t)ya * (size_t)width + (size_t)xa, c),
+                         vl = (double)sample_at(l, tables[1], (size_t)yl * (size_t)width + (size_t)xl, c),
+                         v = vl * ratio;
+            const double noise = n->photon * v * (1 + ratio) + n->read2 * (1 + ratio * ratio);
+            /* clipping at black would distort the differences of darker samples */
+            exposed = exposed && v >= min_light && v <= max_light && vl <= max_longer && v * v >= 9 * noise;
+            difference += luma[c] * (va - v);
+            variance += luma[c] * luma[c] * noise;
+            light += luma[c] * v;
+        }
+        if (exposed) to[count++] = (struct pair_sample){(float)light, (float)(difference / sqrt(variance))};
+    }
+    return count;
+}
+
+struct spread { /* mean of q^2, weighted by samples */
+    double sum, count;
+};
+
+static void add_spread(struct spread *to, const struct pair_sample *s, size_t count, float *values)
+{
+    for (size_t i = 0; i < count; i++) values[i] = s[i].difference;
+    sort_floats(values, count);
+    const float middle = values[count / 2];
+    for (size_t i = 0; i < count; i++) values[i] = fabsf(values[i] - middle);
+    sort_floats(values, count);
+    const double q = (double)values[(size_t)(0.6827 * (double)count)];
+    to->sum += q * q * (double)count;
+    to->count += (double)count;
+}
+
+/* false: too few bins; *noise is then unchanged. */
+static bool solve(struct noise *noise, const struct noise_fit *fit)
+{
+    const double det = fit->pp * fit->rr - fit->pr * fit->pr;
+    if (fit->bins < MIN_BINS || !(det > 0)) return false;
+    double photon = (fit->p * fit->rr - fit->r * fit->pr) / det, read2 = (fit->pp * fit->r - fit->pr * fit->p) / det;
+    if (photon < 0) photon = 0, read2 = fit->r / fit->rr;
+    if (read2 < 0) read2 = 0, photon = fit->p / fit->pp;
+    *noise = (struct noise){fmax(photon, 1e-9), fmax(read2, 1e-10), 1};
+    return true;
+}
+
 enum status noise_measure(struct noise *noise, bool *measured, const struct brackets *b, struct err *err)
 {
-    enum { MIN_BINS = 3 };
     struct noise_fit fit = {0};
     const size_t room = SAMPLES + 3;
     struct pair_sample *samples = malloc(room * sizeof *samples);
@@ -141,14 +195,18 @@ enum status noise_measure(struct noise *noise, bool *measured, const struct brac
         const size_t count = gather(samples, b, k, pair);
         add_pair(&fit, samples, count, b->exposures[k - 1] / b->exposures[k], values);
     }
-    const double det = fit.pp * fit.rr - fit.pr * fit.pr;
-    if (!st && fit.bins >= MIN_BINS && det > 0) {
-        double photon = (fit.p * fit.rr - fit.r * fit.pr) / det, read2 = (fit.pp * fit.r - fit.pr * fit.p) / det;
-        if (photon < 0) photon = 0, read2 = fit.r / fit.rr;
-        if (read2 < 0) read2 = 0, photon = fit.p / fit.pp;
-        *noise = (struct noise){fmax(photon, 1e-9), fmax(read2, 1e-10)};
-        *measured = true;
+    *measured = !st && solve(noise, &fit);
+    struct spread spread = {0};
+    for (int k = 1; *measured && k < b->count; k++) {
+        const float *const pair[2] = {tables[b->photos[k - 1].info.bits == 16], tables[b->photos[k].info.bits == 16]};
+        const size_t count = gather_luminance(samples, b, k, pair, noise);
+        qsort(samples, count, sizeof *samples, by_light);
+        for (size_t begin = 0, end, bin = 0; bin < BINS; bin++, begin = end) {
+            end = end_of_bin(samples, count, begin, (int)bin);
+            if (end - begin >= MIN_BIN) add_spread(&spread, samples + begin, end - begin, values);
+        }
     }
+    if (*measured) noise->luminance = spread.sum > 0 ? spread.sum / spread.count : 1;
     free(tables[0]);
     free(tables[1]);
     free(values);

@@ -8,6 +8,10 @@ look_hdr_merge()
         usage "make lri wants LRI=DIR, the folder of the lighting reference images${REMODEL_LRI:+; $REMODEL_LRI is not a folder}."
     [ -z "${REMODEL_LRI_SFM-}" ] || [ -d "$REMODEL_LRI_SFM" ] ||
         usage "LRI_SFM=$REMODEL_LRI_SFM is not a folder. Give the folder that holds cameras.txt and images.txt of the lighting reference images."
+    case ${REMODEL_LRI_FRAME:-photos} in
+        photos | scene | model) ;;
+        *) usage "LRI_FRAME=$REMODEL_LRI_FRAME: wanted photos, scene or model, the frame of the poses in LRI_SFM." ;;
+    esac
     graph look-lri
 }
 

@@ -3,15 +3,18 @@ FOLLOWS.hdr_merge := fit_response
 READS.hdr_merge := the exposures of one view, response.txt; only where photos are brackets, TIFF, EXR or raw files; on request of a lighting reference image
 WRITES.hdr_merge := hdr/ID.exr, ID.jpg; lri/ID.exr, ID.jpg
 SHARED.hdr_merge := yes
-VARIABLES.hdr_merge := LRI LRI_SFM
+VARIABLES.hdr_merge := LRI LRI_SFM LRI_FRAME
 STEPS.hdr_merge := hdr lri
 HELP.hdr := bracketed photos merged; nothing where photos are no brackets
 HELP.lri := lighting reference images of LRI merged: linear, on the scene's scale, still fisheye (no later step reads them)
 RUN.hdr := farm
 RUN.lri := farm
+# the scene's cameras, or its axes, where the poses of the images must be moved to its frame
+NEEDS.lri = $(if $(value REMODEL_LRI_SFM),$(if $(filter scene,$(LRI_FRAME)),,$(if $(filter model,$(LRI_FRAME)),axes,sfm)))
 
 ## LRI=DIR: folder of lighting reference images, for `make lri`: fisheye photos of the light outside, bracketed
-## LRI_SFM=DIR: a COLMAP text model that has their cameras
+## LRI_SFM=DIR: a COLMAP text model that has their cameras, and some of the scene's photos
+## LRI_FRAME=photos|scene|model: frame of LRI_SFM: found by these photos (default), the scene's, or that of model/axes.txt
 
 ifdef GRAPH
 HDR := $(if $(BRACKETED),$(foreach p,$(PHOTO_IDS),$(S)/hdr/$(p).exr $(S)/hdr/$(p).jpg))
@@ -35,11 +38,16 @@ lri: $(LRI_IDS:%=$(S)/lri/%.exr) $(LRI_IDS:%=$(S)/lri/%.jpg)
 LRI_RESPONSE := $(if $(BRACKETED),$(RESPONSE),$(wildcard scenes/$(SCENE)/response.txt))
 LRI_FOLDER := "$$REMODEL_LRI"
 LRI_MODEL := $(if $(value REMODEL_LRI_SFM),--model "$$$$REMODEL_LRI_SFM")
+LRI_PLACE := $(if $(LRI_MODEL),$(if $(filter scene,$(LRI_FRAME)),scene,$(if $(filter model,$(LRI_FRAME)),model,photos)))
+LRI_PLACE.photos := --views $(O)/views --scene-records $(S)/photos
+LRI_PLACE.model := --axes $(O)/model/axes.txt
+LRI_NEEDS.photos := $(addprefix $(O)/views/,cameras.txt images.txt points3D.txt lenses.txt)
+LRI_NEEDS.model := $(O)/model/axes.txt
 define lri_rule
-$(S)/lri/$(1).exr $(S)/lri/$(1).jpg &: $(S)/lri/photos/$(1).txt $(LRI_RESPONSE) $(S)/stamp/lri.txt \
+$(S)/lri/$(1).exr $(S)/lri/$(1).jpg &: $(S)/lri/photos/$(1).txt $(LRI_RESPONSE) $(S)/stamp/lri.txt $(LRI_NEEDS.$(LRI_PLACE)) \
   $(call shared_needs,hdr_merge) | $(if $(BRACKETED),$(RESPONSE_STAMP))
 	$$(hide)$$(call farm,hdr_merge,lri.$(1),$(S)/lri/$(1).jpg $(S)/lri/$(1).exr,\
-	  --id $(1) --photos $$(LRI_FOLDER) --records $(S)/lri/photos $(LRI_RESPONSE:%=--response %) $(LRI_MODEL) --out $(S)/lri,,$(S))
+	  --id $(1) --photos $$(LRI_FOLDER) --records $(S)/lri/photos $(LRI_RESPONSE:%=--response %) $(LRI_MODEL) $(LRI_PLACE.$(LRI_PLACE)) --out $(S)/lri,,$(S))
 endef
 $(foreach p,$(LRI_IDS),$(eval $(call lri_rule,$(p))))
 

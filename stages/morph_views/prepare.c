@@ -41,7 +41,7 @@ static enum status read_pair(struct photo_pair *pair, struct morph *m, const str
         struct image linear = {0};
         st = photo_record_read(record, job->records, id, err);
         if (!st) st = provenance_add_in(prov, "photos", job->records, id, ".txt", NULL, err);
-        if (!st) st = linear_photo_read(&linear, m->radiometry, job->photos, record, prov, err);
+        if (!st) st = linear_photo_read(&linear, NULL, m->radiometry, job->photos, record, NULL, prov, err);
         const int turned = record->info.orientation;
         if (!st && !i) {
             int w, h;

@@ -3,7 +3,8 @@
  * reads   VIEWS/cameras.txt, images.txt, lenses.txt   the cameras of the views, the lens of the photo
  *         RECORDS/ID.txt, PHOTOS/FILE                 the photo, or PHOTOS/ID.exr, merged from several exposures
  *         MASKS/ID.png                                optional mask; black pixels get alpha 0
- * writes  OUT/VIEW.exr                                R G B (linear) and A, for each view of the photo or each --view
+ * writes  OUT/VIEW.exr                                R G B (linear), A, sigma and clipped, for each view of the photo
+ *                                                     or each --view
  *
  * A photo is read once for all of its views (a fisheye photo has several), since reading can take longer than
  * resampling. */
@@ -15,15 +16,22 @@
 #include "common/capture/linear_photo.h"
 #include "common/capture/photo_mask.h"
 #include "common/capture/view_image.h"
+#include "stages/rectify/rectify_params.h"
 #include "stages/rectify/resample.h"
+
+#define PARAM_STRUCT struct rectify_params
+static const struct param rectify_param_table[] = {RECTIFY_PARAMS(PARAM_ROW) PARAM_END};
+#undef PARAM_STRUCT
 
 struct rectify_request {
     const char *photo, *photos, *masks, *records, *views, *out; /* the options of these names */
     struct cli_list names;                                      /* the views to write; empty: all views of the photo */
+    struct rectify_params params;
 };
 
 struct photo_source { /* the photograph, read once for all views */
     struct image linear;
+    struct photo_quality quality;
     struct photo_mask mask;
     char radiometry[RADIOMETRY_SIZE];
 };
@@ -32,8 +40,10 @@ static enum status read_source(struct photo_source *s, const struct rectify_requ
                                struct err *err)
 {
     struct photo_record record = {0};
+    const struct single_exposure assumed = {r->params.electrons, r->params.read_noise, r->params.saturated,
+                                            r->params.dark};
     enum status st = photo_record_read(&record, r->records, r->photo, err);
-    if (!st) st = linear_photo_read(&s->linear, s->radiometry, r->photos, &record, prov, err);
+    if (!st) st = linear_photo_read(&s->linear, &s->quality, s->radiometry, r->photos, &record, &assumed, prov, err);
     if (!st) st = photo_mask_read(&s->mask, r->masks, r->records, &record, prov, err);
     photo_record_release(&record);
     return st;
@@ -43,15 +53,18 @@ static enum status make_view(const struct photo_source *s, const struct rectify_
                              const struct view *view, const struct provenance *prov, struct err *err)
 {
     struct image rectified = {0};
+    struct photo_quality quality = {0};
+    const struct resample_source source = {&s->linear, s->mask.masked, &s->quality};
     char path[FILE_PATH];
     const struct mat3 photo_from_view = mat3_transpose(mat3_from_quat(lens->view_from_photo));
     enum status st = file_path(path, r->out, view->name, ".exr", err);
     if (!st) {
-        st = resample_photo(&rectified, &s->linear, s->mask.masked, &lens->camera, &photo_from_view, view, err);
+        st = resample_photo(&rectified, &quality, &source, &lens->camera, &photo_from_view, view, err);
         if (st) err_context(err, "photo %s", r->photo);
     }
-    if (!st) st = view_image_write(&rectified, path, view, prov, s->radiometry, err);
+    if (!st) st = view_image_write(&rectified, &quality, path, view, prov, s->radiometry, err);
     image_release(&rectified);
+    photo_quality_release(&quality);
     return st;
 }
 
@@ -100,6 +113,7 @@ static enum status rectify(const struct rectify_request *r, struct provenance *p
             st = make_view(&source, r, lens, &set.views[v], prov, err);
     }
     image_release(&source.linear);
+    photo_quality_release(&source.quality);
     photo_mask_release(&source.mask);
     lens_list_release(&lenses);
     camera_set_release(&set);
@@ -108,7 +122,7 @@ static enum status rectify(const struct rectify_request *r, struct provenance *p
 
 int main(int argc, char **argv)
 {
-    struct rectify_request r = {0};
+    struct rectify_request r = {.params = RECTIFY_PARAMS_DEFAULT};
     const struct cli_opt opts[] = {
         CLI_ABOUT("Resamples a photograph to the pinhole cameras of its views, in linear colour."),
         CLI_STR("photo", &r.photo, CLI_REQUIRED, "id of the photograph"),
@@ -118,6 +132,7 @@ int main(int argc, char **argv)
         CLI_STR("records", &r.records, CLI_REQUIRED, "folder of the photos' records"),
         CLI_STR("views", &r.views, CLI_REQUIRED, "folder of cameras.txt, images.txt and lenses.txt"),
         CLI_STR("out", &r.out, CLI_REQUIRED, "folder to write VIEW.exr into"),
+        CLI_PARAMS(rectify_param_table, &r.params, NULL),
         CLI_END,
     };
     struct provenance prov = {0};

@@ -5,10 +5,12 @@
  * the kernel and so prevents aliasing. Negative lobes would draw dark lines beside bright windows in linear light, so
  * results are clamped to the range of the samples within one lobe.
  *
- * Lens projection and kernel weights would take most of the time. Along a row of the view the map is smooth: it is
- * computed at knots, every 16th or else every 8th pixel, and interpolated by the cubic through four knots where fourth
- * differences show that this is exact enough (the error is 3/128 of them); elsewhere it is computed at every pixel.
- * Without reduction the weights depend only on the position between pixels and come from a table. */
+ * Kernel weights would take much of the time. Without reduction they depend only on the position between pixels and
+ * come from a table; photo_map.c finds the positions.
+ *
+ * Noise: the variance of a sum of independent samples is the sum of their variances by the squared weights
+ * (pixel_quality.c). Marks of all samples under the kernel are united: the nearest ones alone would not do, since beside
+ * a bright window the outer lobes carry its light, too. */
 #include "stages/rectify/resample.h"
 
 #include <immintrin.h>
@@ -18,29 +20,23 @@
 
 #include "common/base/parallel.h"
 #include "common/math/numbers.h"
+#include "stages/rectify/photo_map.h"
+#include "stages/rectify/pixel_quality.h"
 
-#define LOBES 3
+#define LOBES KERNEL_LOBES
 #define STEPS 256 /* table entries per pixel; interpolated linearly, with an error below 1e-5 */
 
-#define MAX_REDUCTION 64    /* larger reductions alias a little; limits the memory of the taps */
-#define SMOOTH        0.004 /* px: largest fourth difference of knots to interpolate; 1e-4 px of error */
-enum { LANES = 8, MAX_TAPS = 2 * LOBES * MAX_REDUCTION + 1, CHUNK = 16, SHARP = 2 * LOBES, KNOTS = 8, MARGIN = 4 };
-
-struct photo_point { /* the projection of a view's pixel in the photo, px */
-    double u, v;     /* NAN: outside the lens */
-};
+enum { CHUNK = 16, SHARP = 2 * LOBES };
 
 struct resample {
     struct image *out;
+    struct photo_quality *out_quality; /* NULL: not wanted */
     const struct image *photo;
     const unsigned char *masked; /* per pixel of the photo; NULL: none */
-    const struct camera *lens;
-    struct mat3 photo_from_view;
-    const struct view *view;
+    struct pixel_quality quality;
+    struct photo_map map;
     double *points; /* per thread: two rows, u then v, and the knots of a row */
-    size_t row, knots, points_per_thread;
-    /* weights of four knots, and of every other one, at each pixel from the second to the third */
-    double cubic[2][4][2 * KNOTS];
+    size_t points_per_thread;
     float kernel[LOBES * STEPS + 2];
     float sharp[STEPS + 1][LANES]; /* weights without reduction, by the offset from the third sample's centre */
 };
@@ -64,35 +60,6 @@ static void make_sharp(float sharp[][LANES], const float *kernel)
         for (int i = 0; i < SHARP; i++) sharp[j][i] /= sum;
     }
 }
-
-/* Weights of four knots, `step` apart, for each pixel between the second and the third. */
-static void make_cubic(double cubic[4][2 * KNOTS], int step)
-{
-    for (int i = 0; i < step; i++) {
-        const double t = (double)i / step;
-        cubic[0][i] = -t * (t - 1) * (t - 2) / 6;
-        cubic[1][i] = (t + 1) * (t - 1) * (t - 2) / 2;
-        cubic[2][i] = -(t + 1) * t * (t - 2) / 2;
-        cubic[3][i] = (t + 1) * t * (t - 1) / 6;
-    }
-}
-
-static struct photo_point photo_from_pixel(const struct resample *r, int x, int y)
-{
-    const struct view *view = r->view;
-    struct vec3 ray = {(x + 0.5 - view->cx) / view->fx, (y + 0.5 - view->cy) / view->fy, 1};
-    struct photo_point p;
-    return camera_project(r->lens, mat3_apply(r->photo_from_view, ray), &p.u, &p.v) ? p
-                                                                                    : (struct photo_point){NAN, NAN};
-}
-
-/* Taps of the kernel along one axis; those within one lobe are near. Weights from `count` to the next multiple of LANES
- * are 0. */
-struct kernel_taps {
-    int first, count;
-    int near_begin, near_end; /* relative to first */
-    float weight[MAX_TAPS + LANES];
-};
 
 /* The kernel at eight positions, in units of table entries. */
 static __m256 kernel_at(const float *kernel, __m256 steps)
@@ -224,61 +191,6 @@ static bool is_masked(const struct resample *r, double u, double v, double wide,
     return false;
 }
 
-/* Are the knots around the interval from knot[0] to knot[n] close to cubics? */
-static bool is_smooth(const double *knot, int n)
-{
-    for (const double *k = knot; k <= knot + n; k += n)
-        if (!(fabs(k[-2 * n] - 4 * k[-n] + 6 * k[0] - 4 * k[n] + k[2 * n]) <= SMOOTH)) return false;
-    return true;
-}
-
-/* Interpolates the interval from knot[0] to knot[n]. n: 1 for neighbouring knots, 2 for every other one. */
-static void interpolate(const struct resample *r, double *to, const double *knot, int n)
-{
-    const double(*w)[2 * KNOTS] = r->cubic[n - 1];
-    for (int i = 0; i < n * KNOTS; i++)
-        to[i] = w[0][i] * knot[-n] + w[1][i] * knot[0] + w[2][i] * knot[n] + w[3][i] * knot[2 * n];
-}
-
-/* The projections of a row's pixels and of the one after the last. */
-struct row {
-    double *u, *v;
-};
-
-static void project_at(const struct resample *r, const struct row *to, int i, int x, int y)
-{
-    const struct photo_point p = photo_from_pixel(r, x, y);
-    to->u[i] = p.u;
-    to->v[i] = p.v;
-}
-
-/* Projects a row of pixels. Uses every other knot where the map is smooth enough, as it is in large views. */
-static void project_row(const struct resample *r, int y, const struct row *row, const struct row *knots)
-{
-    const int width = r->view->width, intervals = width / KNOTS + 1;
-    for (int k = -MARGIN; k <= intervals + MARGIN; k += 2) project_at(r, knots, k + MARGIN, k * KNOTS, y);
-    for (int k = 0, odd = 1 - MARGIN; k < intervals; k += 2) {
-        const struct row at = {knots->u + k + MARGIN, knots->v + k + MARGIN};
-        const struct row to = {row->u + k * KNOTS, row->v + k * KNOTS};
-        if (is_smooth(at.u, 2) && is_smooth(at.v, 2)) {
-            interpolate(r, to.u, at.u, 2);
-            interpolate(r, to.v, at.v, 2);
-            continue;
-        }
-        if (odd < k - 1) odd = k - 1;
-        for (; odd <= k + 3; odd += 2) project_at(r, knots, odd + MARGIN, odd * KNOTS, y);
-        for (int n = 0; n < 2; n++) {
-            if (is_smooth(at.u + n, 1) && is_smooth(at.v + n, 1)) {
-                interpolate(r, to.u + n * KNOTS, at.u + n, 1);
-                interpolate(r, to.v + n * KNOTS, at.v + n, 1);
-                continue;
-            }
-            for (int i = n * KNOTS; i < (n + 1) * KNOTS && k * KNOTS + i <= width; i++)
-                project_at(r, &to, i, k * KNOTS + i, y);
-        }
-    }
-}
-
 static __m256 sharp_weights(const struct resample *r, double offset)
 {
     const float at = (float)(offset * STEPS);
@@ -289,15 +201,12 @@ static __m256 sharp_weights(const struct resample *r, double offset)
 
 /* Filters six by six samples from (x, y) on. The 18 values of a row are loaded as pixels 0 and 1, 2 and 3, and 4 and 5
  * after two values of weight 0. */
-static void filter_sharp(const struct resample *r, float rgba[4], int x, int y, double offset_x, double offset_y)
+static void filter_sharp(const struct resample *r, float rgba[4], int x, int y, __m256 across, const float *down)
 {
     const size_t stride = 3 * (size_t)r->photo->width;
     const float *row = image_at(r->photo, x, y);
     const __m256i second = _mm256_setr_epi32(3, 4, 5, 5, 5, 5, 5, 5);
-    const __m256 across = sharp_weights(r, offset_x);
     __m256 first = _mm256_setzero_ps(), middle = first, last = first, near[2];
-    float down[LANES];
-    _mm256_storeu_ps(down, sharp_weights(r, offset_y));
     for (int j = 0; j < SHARP; j++, row += stride) {
         const __m256 weight = _mm256_set1_ps(down[j]), inner = _mm256_loadu_ps(row + 6);
         first = _mm256_add_ps(first, _mm256_mul_ps(weight, _mm256_loadu_ps(row)));
@@ -325,9 +234,10 @@ static void filter_sharp(const struct resample *r, float rgba[4], int x, int y, 
 }
 
 /* Not inlined, so that the usual case has a small stack frame. */
-static __attribute__((noinline)) void filter_wide(const struct resample *r, float rgba[4], const struct photo_point *at,
+static __attribute__((noinline)) void filter_wide(const struct resample *r, size_t to, const struct photo_point *at,
                                                   double su, double sv)
 {
+    float *rgba = r->out->data + 4 * to;
     struct kernel_taps tx, ty;
     make_taps(&tx, r->kernel, at->u, su);
     make_taps(&ty, r->kernel, at->v, sv);
@@ -336,19 +246,24 @@ static __attribute__((noinline)) void filter_wide(const struct resample *r, floa
     else
         filter_border(rgba, r->photo, &tx, &ty);
     rgba[3] = 1;
+    if (!r->out_quality) return;
+    r->out_quality->variance[to] = pixel_quality_variance(&r->quality, &tx, &ty);
+    r->out_quality->marks[to] =
+        pixel_quality_marks(&r->quality, tx.first, ty.first, tx.first + tx.count, ty.first + ty.count);
 }
 
 /* One-sided differences are exact enough for the width of a filter. At the end of the lens they are taken to the other
  * side. */
-static void resample_pixel(const struct resample *r, int x, int y, const struct row *here, const struct row *below)
+static void resample_pixel(const struct resample *r, int x, int y, const struct map_row *here,
+                           const struct map_row *below)
 {
     const struct image *photo = r->photo;
     const struct photo_point at = {here->u[x], here->v[x]};
     struct photo_point right = {here->u[x + 1], here->v[x + 1]}, down = {below->u[x], below->v[x]};
     if (!(at.u >= 0 && at.v >= 0 && at.u <= photo->width && at.v <= photo->height)) return;
-    if (isnan(right.u)) right = photo_from_pixel(r, x - 1, y);
+    if (isnan(right.u)) right = photo_map_point(&r->map, x - 1, y);
     if (isnan(right.u)) right = at;
-    if (isnan(down.u)) down = photo_from_pixel(r, x, y - 1);
+    if (isnan(down.u)) down = photo_map_point(&r->map, x, y - 1);
     if (isnan(down.u)) down = at;
     const double ru = right.u - at.u, du = down.u - at.u, rv = right.v - at.v, dv = down.v - at.v;
     const double across = ru * ru + du * du, along = rv * rv + dv * dv;
@@ -356,79 +271,101 @@ static void resample_pixel(const struct resample *r, int x, int y, const struct 
     const double sv = along > 1 ? fmin(sqrt(along), MAX_REDUCTION) : 1;
     const double left = floor(at.u - 0.5), top = floor(at.v - 0.5);
     const int u = (int)left - LOBES + 1, v = (int)top - LOBES + 1;
-    float *out = image_at(r->out, x, y);
+    const size_t to = (size_t)y * (size_t)r->out->width + (size_t)x;
     if (r->masked && is_masked(r, at.u, at.v, su, sv)) return;
     if (su == 1 && sv == 1 && u >= 0 && v >= 0 && u + SHARP <= photo->width && v + SHARP <= photo->height) {
-        filter_sharp(r, out, u, v, at.u - 0.5 - left, at.v - 0.5 - top);
+        const __m256 weights_x = sharp_weights(r, at.u - 0.5 - left);
+        float weights_y[LANES];
+        _mm256_storeu_ps(weights_y, sharp_weights(r, at.v - 0.5 - top));
+        filter_sharp(r, r->out->data + 4 * to, u, v, weights_x, weights_y);
+        if (!r->out_quality) return;
+        r->out_quality->variance[to] = pixel_quality_sharp_variance(&r->quality, u, v, weights_x, weights_y, SHARP);
+        r->out_quality->marks[to] = pixel_quality_marks(&r->quality, u, v, u + SHARP, v + SHARP);
         return;
     }
-    filter_wide(r, out, &at, su, sv);
+    filter_wide(r, to, &at, su, sv);
 }
 
 static void resample_rows(void *ctx, size_t begin, size_t end, int thread)
 {
     const struct resample *r = ctx;
     double *points = r->points + r->points_per_thread * (size_t)thread;
-    struct row here = {points, points + r->row}, below = {points + 2 * r->row, points + 3 * r->row};
-    const struct row knots = {points + 4 * r->row, points + 4 * r->row + r->knots};
-    project_row(r, (int)begin, &here, &knots);
+    const size_t row = r->map.row;
+    struct map_row here = {points, points + row}, below = {points + 2 * row, points + 3 * row};
+    const struct map_row knots = {points + 4 * row, points + 4 * row + r->map.knots};
+    photo_map_row(&r->map, (int)begin, &here, &knots);
     for (int y = (int)begin; y < (int)end; y++) {
-        project_row(r, y + 1, &below, &knots);
-        for (int x = 0; x < r->view->width; x++) resample_pixel(r, x, y, &here, &below);
-        const struct row done = here;
+        photo_map_row(&r->map, y + 1, &below, &knots);
+        for (int x = 0; x < r->map.view->width; x++) resample_pixel(r, x, y, &here, &below);
+        const struct map_row done = here;
         here = below;
         below = done;
     }
 }
 
-static bool same_camera(const struct resample *r)
+static bool same_camera(const struct photo_map *m)
 {
     double fx, fy, cx, cy;
-    if (r->lens->model != CAMERA_PINHOLE && r->lens->model != CAMERA_SIMPLE_PINHOLE) return false;
-    camera_focal(r->lens, &fx, &fy, &cx, &cy);
+    if (m->lens->model != CAMERA_PINHOLE && m->lens->model != CAMERA_SIMPLE_PINHOLE) return false;
+    camera_focal(m->lens, &fx, &fy, &cx, &cy);
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
-            if (r->photo_from_view.m[i][j] != (i == j)) return false;
-    return fx == r->view->fx && fy == r->view->fy && cx == r->view->cx && cy == r->view->cy &&
-           r->lens->width == r->view->width && r->lens->height == r->view->height;
+            if (m->photo_from_view.m[i][j] != (i == j)) return false;
+    return fx == m->view->fx && fy == m->view->fy && cx == m->view->cx && cy == m->view->cy &&
+           m->lens->width == m->view->width && m->lens->height == m->view->height;
 }
 
-enum status resample_photo(struct image *out, const struct image *photo, const unsigned char *masked,
+static void copy_photo(const struct resample *r)
+{
+    for (size_t i = 0; i < (size_t)r->out->width * (size_t)r->out->height; i++) {
+        if (r->masked && r->masked[i]) continue;
+        memcpy(r->out->data + 4 * i, r->photo->data + 3 * i, 3 * sizeof(float));
+        r->out->data[4 * i + 3] = 1;
+        if (!r->out_quality) continue;
+        r->out_quality->variance[i] = r->quality.of->variance[i];
+        r->out_quality->marks[i] = r->quality.of->marks[i];
+    }
+}
+
+static enum status filter_photo(struct resample *r, struct err *err)
+{
+    const size_t bytes = r->points_per_thread * (size_t)parallel_threads() * sizeof *r->points;
+    if (r->out_quality && pixel_quality_prepare(&r->quality, err)) return err->status;
+    r->points = malloc(bytes);
+    if (!r->points) return err_nomem(err, "rows of a view", bytes);
+    make_kernel(r->kernel);
+    make_sharp(r->sharp, r->kernel);
+    parallel_for((size_t)r->out->height, CHUNK, resample_rows, r);
+    free(r->points);
+    return ST_OK;
+}
+
+enum status resample_photo(struct image *out, struct photo_quality *out_quality, const struct resample_source *source,
                            const struct camera *lens, const struct mat3 *photo_from_view, const struct view *view,
                            struct err *err)
 {
+    const struct image *photo = source->linear;
     struct resample r = {
-        .out = out, .photo = photo, .masked = masked, .lens = lens, .photo_from_view = *photo_from_view, .view = view};
+        .out = out, .out_quality = source->quality ? out_quality : NULL, .photo = photo, .masked = source->masked};
     if (photo->width != lens->width || photo->height != lens->height)
         return err_set(
             err, ST_DATA,
             "the photo has %d x %d pixels but its camera %d x %d: the photo was replaced after structure from "
             "motion; run that again (make resfm) or restore the old photo.",
             photo->width, photo->height, lens->width, lens->height);
-    if (image_init(out, view->width, view->height, 4, err)) return err->status;
-    if (same_camera(&r)) {
-        size_t pixels = (size_t)view->width * (size_t)view->height;
-        for (size_t i = 0; i < pixels; i++) {
-            if (masked && masked[i]) continue;
-            memcpy(out->data + 4 * i, photo->data + 3 * i, 3 * sizeof(float));
-            out->data[4 * i + 3] = 1;
-        }
-        return ST_OK;
-    }
-    const size_t pairs = (size_t)view->width / (2 * KNOTS) + 1; /* of intervals between knots */
-    r.row = pairs * 2 * KNOTS;
-    r.knots = 2 * pairs + 2 * MARGIN + 1;
-    r.points_per_thread = 4 * r.row + 2 * r.knots;
-    size_t bytes = r.points_per_thread * (size_t)parallel_threads() * sizeof *r.points;
-    r.points = malloc(bytes);
-    if (!r.points) {
+    photo_map_init(&r.map, lens, photo_from_view, view);
+    r.points_per_thread = 4 * r.map.row + 2 * r.map.knots;
+    r.quality = (struct pixel_quality){.of = source->quality, .width = photo->width, .height = photo->height};
+    enum status st = image_init(out, view->width, view->height, 4, err);
+    if (!st && r.out_quality) st = photo_quality_init(r.out_quality, view->width, view->height, err);
+    if (!st && same_camera(&r.map))
+        copy_photo(&r);
+    else if (!st)
+        st = filter_photo(&r, err);
+    if (st) {
         image_release(out);
-        return err_nomem(err, "rows of a view", bytes);
+        photo_quality_release(r.out_quality);
     }
-    for (int i = 0; i < 2; i++) make_cubic(r.cubic[i], (i + 1) * KNOTS);
-    make_kernel(r.kernel);
-    make_sharp(r.sharp, r.kernel);
-    parallel_for((size_t)view->height, CHUNK, resample_rows, &r);
-    free(r.points);
-    return ST_OK;
+    pixel_quality_release(&r.quality);
+    return st;
 }

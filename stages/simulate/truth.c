@@ -26,7 +26,8 @@ static void model_release(struct sfm_model *m)
     free(m->cameras);
 }
 
-static enum status write_cameras(const struct shoot *s, bool reference, const char *folder,
+/* references: reference images, too; they and the photos make a model that shares them. */
+static enum status write_cameras(const struct shoot *s, bool references, const char *folder,
                                  const struct provenance *prov, struct err *err)
 {
     struct sfm_model m = {0};
@@ -39,7 +40,7 @@ static enum status write_cameras(const struct shoot *s, bool reference, const ch
     for (int i = 0; !st && i < s->photo_count; i++) {
         const struct shoot_photo *photo = &s->photos[i];
         char *name = NULL;
-        if (photo->reference != reference) continue;
+        if (photo->reference && !references) continue;
         if (asprintf(&name, "%s.jpg", photo->name) < 0)
             st = err_nomem(err, "a name", strlen(photo->name));
         else

@@ -148,7 +148,8 @@ static enum status merge_once(struct view *v, struct times *times, struct err *e
     const double aligned = clock_seconds();
     if (!st) st = merge_agreement(&agreement, &b, err);
     if (!st) st = noise_measure(&measured, &known, &b, err);
-    for (int k = 0; k < count; k++) noise[k] = known ? measured : noise_given(&params, &srgb, 8);
+    for (int k = 0; k < count; k++)
+        noise[k] = known ? measured : noise_given(params.electrons, params.read_noise, &srgb, 8);
     if (!st) st = merge_brackets(&v->merged, &b, noise, &params, err);
     *times = (struct times){read - begun, aligned - read, clock_seconds() - aligned};
     return st;

@@ -5,7 +5,7 @@
  * views. A sample prints one value per line:
  *   seconds, cpu_s          wall and CPU time of merging and rectifying
  *   merge_s                 hdr_merge: reading the JPEGs, hashes, shifts, noise, radiance
- *   rectify_s               rectify: reading the radiance, resampling all views of each photo
+ *   rectify_s               rectify: reading the radiance, resampling all views (with noise and marks) of each photo
  *   write_s                 the EXRs of the radiance and of the views; not part of seconds
  *   mpixels                 of all exposures
  *   views, view_mpixels     of all photos
@@ -38,6 +38,7 @@ struct work { /* one photo */
     char id[16];
     struct bracketed_view merged;
     struct image linear, views[MAX_PHOTO_VIEWS];
+    struct photo_quality quality, view_quality[MAX_PHOTO_VIEWS];
     struct provenance prov;
     struct err err;
 };
@@ -52,7 +53,7 @@ struct bench {
 
 enum phase { MERGE, WRITE_RADIANCE, RECTIFY, WRITE_VIEWS, PHASES };
 
-static double median(double *values, int count)
+static double middle_of(double *values, int count)
 {
     sort_doubles(values, (size_t)count);
     return values[count / 2];
@@ -62,7 +63,11 @@ static void release_work(struct work *w)
 {
     bracketed_view_release(&w->merged);
     image_release(&w->linear);
-    for (int k = 0; k < MAX_PHOTO_VIEWS; k++) image_release(&w->views[k]);
+    photo_quality_release(&w->quality);
+    for (int k = 0; k < MAX_PHOTO_VIEWS; k++) {
+        image_release(&w->views[k]);
+        photo_quality_release(&w->view_quality[k]);
+    }
     provenance_release(&w->prov);
 }
 
@@ -107,12 +112,13 @@ static enum status run_phase(const struct bench *b, struct work *w, enum phase p
         return bracketed_view_write_radiance(&w->merged, folder, &w->prov, &beyond, err);
     case RECTIFY:
         st = photo_record_read(&record, folder, w->id, err);
-        if (!st) st = linear_photo_read(&w->linear, radiometry, folder, &record, &w->prov, err);
+        if (!st) st = linear_photo_read(&w->linear, &w->quality, radiometry, folder, &record, NULL, &w->prov, err);
         photo_record_release(&record);
         for (int k = 0; !st && k < b->view_count; k++) {
             const struct mat3 photo_from_view = mat3_transpose(mat3_from_quat(b->views[k].view_from_photo));
             const struct view view = camera_of(&b->views[k], "view");
-            st = resample_photo(&w->views[k], &w->linear, NULL, &b->lens, &photo_from_view, &view, err);
+            const struct resample_source source = {.linear = &w->linear, .quality = &w->quality};
+            st = resample_photo(&w->views[k], &w->view_quality[k], &source, &b->lens, &photo_from_view, &view, err);
         }
         return st;
     case WRITE_VIEWS:
@@ -120,7 +126,7 @@ static enum status run_phase(const struct bench *b, struct work *w, enum phase p
             const struct view view = camera_of(&b->views[k], "view");
             snprintf(name, sizeof name, "%s-%d", w->id, k);
             st = file_path(path, folder, name, ".exr", err);
-            if (!st) st = view_image_write(&w->views[k], path, &view, &w->prov, "exact", err);
+            if (!st) st = view_image_write(&w->views[k], &w->view_quality[k], path, &view, &w->prov, "exact", err);
         }
         return st;
     default:
@@ -198,9 +204,9 @@ static enum status sample(const struct request *r, struct err *err)
     if (!st)
         printf("seconds %.6f\ncpu_s %.6f\nmerge_s %.6f\nrectify_s %.6f\nwrite_s %.6f\nmpixels %.6g\nviews "
                "%d\nview_mpixels %.6g\n",
-               median(total, runs), median(cpu, runs), median(merge, runs), median(rectify, runs), median(wrote, runs),
-               1e-6 * r->width * r->height * r->exposures * r->photos, b->view_count * r->photos,
-               1e-6 * view_pixels * r->photos);
+               middle_of(total, runs), middle_of(cpu, runs), middle_of(merge, runs), middle_of(rectify, runs),
+               middle_of(wrote, runs), 1e-6 * r->width * r->height * r->exposures * r->photos,
+               b->view_count * r->photos, 1e-6 * view_pixels * r->photos);
     for (int i = 0; b && i < MAX_PHOTOS; i++) release_work(&b->work[i]);
     free(b);
     return st;

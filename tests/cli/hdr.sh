@@ -165,6 +165,9 @@ cameras_are_copied_and_references_scaled()
     ! grep -aq worldToCamera set/photos-hdr/photo_2.exr || fail "a pose without an image in the model"
     sed -i 's/320 240/321 240/' model/cameras.txt
     refused "view photo_3 has 320 x 240 pixels, but its camera in model/cameras.txt 321 x 240" merged set/photos photo_3 --model model
+    rc=0; merged set/photos photo_2 --model model --views model || rc=$?
+    [ "$rc" = 2 ] || fail "--views without --scene-records: exit $rc, wanted 2"
+    says "give one of them"
     cp set/photos/photo_[12]_e?.jpg lri
     records lri --like set/photos-records || { cat err; fail "import of references"; }
     says "2 views of 3 exposures each"

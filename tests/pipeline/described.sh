@@ -68,7 +68,7 @@ lighting_reference_images_are_merged_but_not_rectified()
 {
     project lri; describe room
     sed -i 's/^reference r p/lens f equisolid 60 40 27 30 20\nreference r f/' scenes/room/cameras.txt
-    printf 'LRI := out/room/simulated/lri\nLRI_SFM := out/room/simulated/truth/lri\n' >>scenes/room/scene.mk
+    printf 'LRI := out/room/simulated/lri\nLRI_SFM := out/room/simulated/truth/lri\nLRI_FRAME := scene\n' >>scenes/room/scene.mk
     m lri
     [ "$(cd out/room/lri && echo *)" = "photos r.exr r.jpg" ] || { ls -R out/room/lri; fail "wanted one picture"; }
     [ ! -e out/room/hdr/a.exr ] || fail "the photos were merged, too"
@@ -81,10 +81,24 @@ lighting_reference_images_are_merged_but_not_rectified()
     echo '[import_photos]' >>scenes/room/scene.cfg; echo 'brackets = no' >>scenes/room/scene.cfg # for the photos
     m lri
     grep -q 'have no common scale' log && grep -q '^brackets 2' out/room/lri/photos/r.txt || { cat log; fail "no warning about the other scale"; }
+    ! make -s DEPS=manual SCENE=room lri LRI_FRAME=world >log 2>&1 || fail "make lri in an unknown frame succeeded"
+    grep -q 'LRI_FRAME=world: wanted photos, scene or model' log || { cat log; fail "the message does not name the frames"; }
     ! make -s DEPS=manual SCENE=room lri LRI= >log 2>&1 || fail "make lri without LRI succeeded"
     grep -q 'LRI=DIR' log || { cat log; fail "the message does not name the missing variable"; }
     ! make -s DEPS=manual SCENE=room lri LRI=nowhere >log 2>&1 || fail "make lri of a missing folder succeeded"
     grep -q 'nowhere is not a folder' log || { cat log; fail "the message does not name the folder"; }
+}
+
+# the photos, whose poses are those of the truth, bring the reference image into the scene's frame
+lighting_reference_images_are_placed_by_the_photos()
+{
+    project placed; describe room
+    printf 'LRI := out/room/simulated/lri\nLRI_SFM := out/room/simulated/truth/lri\nSFM := out/room/simulated/truth\n' >>scenes/room/scene.mk
+    m lri
+    grep -aq 'remodel:frame' out/room/lri/r.exr || { cat log; fail "the picture does not state how its frame was found"; }
+    grep -q 'placed in the scene by 3 photographs' out/room/log/hdr_merge.lri.r.log || { cat out/room/log/hdr_merge.lri.r.log; fail "not placed by the photos"; }
+    find out/room/lri -type f -printf '%P %T@\n' | sort >a; m lri; find out/room/lri -type f -printf '%P %T@\n' | sort >b
+    diff a b || fail "a second make remade it"
 }
 
 # a fisheye photo has several views, made by one process; a deleted or stale view is remade alone
@@ -129,6 +143,6 @@ an_error_in_the_description_is_named_and_leaves_no_product()
     [ -z "$(find out/room/simulated -type f 2>/dev/null)" ] || { find out/room/simulated; fail "a product was left"; }
 }
 
-for t in photos_are_made_once_and_again_if_the_description_changes the_edited_scene_is_made_on_demand lighting_reference_images_are_merged_but_not_rectified \
+for t in photos_are_made_once_and_again_if_the_description_changes the_edited_scene_is_made_on_demand lighting_reference_images_are_merged_but_not_rectified lighting_reference_images_are_placed_by_the_photos \
     views_of_one_photo_are_made_by_one_process one_core_gives_the_bytes_of_two \
     an_error_in_the_description_is_named_and_leaves_no_product; do run "$t"; done

@@ -3,6 +3,7 @@
 
 #include <math.h>
 
+#include "common/base/rng.h"
 #include "tests/unit/scratch.h"
 
 static void assert_close(double a, double b) { assert_true(fabs(a - b) <= fabs(b) / 4096); }
@@ -33,6 +34,58 @@ static void pixels_and_quantiles_are_counted(void **state)
     assert_close(quantiles_get(&e.visible.errors, 0.5), 0.25); /* 0, 0.25, 3 */
     depth_errors_release(&e);
     depth_errors_release(&e);
+}
+
+static void errors_in_stated_deviations_are_counted_by_class(void **state)
+{
+    /* relative errors of 1/z: 0.1, 0.25, 0.5, 0; then no depth, no truth, no segment; then sigma 0 */
+    static const float truth[] = {1, 2, 2, 4, 1, 0, 1, 1}, z[] = {0.9f, 2.5f, 3, 4, 0, 1, 1, 2};
+    static const float sigma[] = {0.11f, 0.1f, 0.1f, 0, 1, 1, 1, 0};
+    static const uint8_t classes[] = {DEPTH_CLASS_SURE, DEPTH_CLASS_SURE,   DEPTH_CLASS_SURE, DEPTH_CLASS_UNSURE,
+                                      DEPTH_CLASS_SURE, DEPTH_CLASS_UNSURE, DEPTH_CLASSES,    DEPTH_CLASS_INHERITED};
+    struct sigma_errors e;
+    struct err err = ERR_INIT;
+    (void)state;
+    assert_ok(sigma_errors_init(&e, &err), err);
+    sigma_errors_add(&e, z, truth, sigma, classes, 8);
+    const struct sigma_tally *sure = &e.classes[DEPTH_CLASS_SURE], *unsure = &e.classes[DEPTH_CLASS_UNSURE],
+                             *inherited = &e.classes[DEPTH_CLASS_INHERITED];
+    assert_true(sure->within[0] == 1 && sure->within[1] == 1 && sure->within[2] == 2 && sure->errors.count == 3);
+    assert_true(unsure->within[0] == 1 && unsure->within[2] == 1 && unsure->errors.count == 1);
+    assert_true(inherited->within[2] == 0 && inherited->errors.count == 1);
+    assert_close(quantiles_get(&sure->errors, 0.5), 2.5);
+    assert_close(quantiles_get(&sure->errors, 1), 5);
+    sigma_tally_merge(&e.classes[DEPTH_CLASS_UNSURE], sure);
+    assert_true(unsure->within[0] == 2 && unsure->within[2] == 3 && unsure->errors.count == 4);
+    sigma_errors_release(&e);
+    sigma_errors_release(&e);
+}
+
+/* Normal errors of a known deviation: the three shares and the factor follow. */
+static void shares_of_normal_errors_are_found(void **state)
+{
+    enum { COUNT = 200000 };
+    static float z[COUNT], truth[COUNT], sigma[COUNT];
+    static uint8_t classes[COUNT];
+    const struct rng rng = rng_make(4, "depth_error", "test");
+    struct sigma_errors e;
+    struct err err = ERR_INIT;
+    (void)state;
+    for (uint64_t i = 0; i < COUNT; i++) {
+        const double a = rng_uniform(&rng, i, 0), b = rng_uniform(&rng, i, 1);
+        const double off = sqrt(-2 * log(1 - a)) * cos(2 * 3.14159265358979323846 * b);
+        truth[i] = 3;
+        sigma[i] = 0.01f;
+        z[i] = (float)(3 * (1 + 0.02 * off)); /* twice what is stated */
+        classes[i] = DEPTH_CLASS_SURE;
+    }
+    assert_ok(sigma_errors_init(&e, &err), err);
+    sigma_errors_add(&e, z, truth, sigma, classes, COUNT);
+    const struct sigma_tally *t = &e.classes[DEPTH_CLASS_SURE];
+    assert_float_equal(quantiles_get(&t->errors, 0.6827), 2, 0.02);
+    assert_float_equal((double)t->within[1] / COUNT, 0.6827, 0.005);
+    assert_float_equal((double)t->within[0] / COUNT, 0.3829, 0.005);
+    sigma_errors_release(&e);
 }
 
 static void merging_adds_the_counts(void **state)
@@ -80,6 +133,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(pixels_and_quantiles_are_counted),
+        cmocka_unit_test(errors_in_stated_deviations_are_counted_by_class),
+        cmocka_unit_test(shares_of_normal_errors_are_found),
         cmocka_unit_test(merging_adds_the_counts),
         cmocka_unit_test(quantiles_are_precise_at_all_magnitudes),
     };

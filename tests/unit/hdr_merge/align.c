@@ -130,7 +130,7 @@ static void merging_applies_the_shifts(void **state)
     struct err err = ERR_INIT;
     size_t differ = 0, differ_wrong = 0;
     (void)state;
-    for (int k = 0; k < 3; k++) noise[k] = noise_given(&params, &srgb, 8);
+    for (int k = 0; k < 3; k++) noise[k] = noise_given(params.electrons, params.read_noise, &srgb, 8);
     shoot(&still, 3, 0.1, 4, none, 0);
     shoot(&shaken, 3, 0.1, 4, moved, 0);
     const struct brackets a = {still.photos, still.exposures, 3, &srgb, NULL},

@@ -84,7 +84,8 @@ static double predict(const struct stack *s, int odd)
     print_message("response curve: %s\n", summary);
     assert_true(response.table);
     assert_ok(noise_measure(&measured, &known, &b, &err), err);
-    for (int k = 0; k < count; k++) noise[k] = known ? measured : noise_given(&params, &response, 8);
+    for (int k = 0; k < count; k++)
+        noise[k] = known ? measured : noise_given(params.electrons, params.read_noise, &response, 8);
     assert_ok(merge_brackets(&merged, &b, noise, &params, &err), err);
 
     const size_t pixels = (size_t)fitted[0].info.width * (size_t)fitted[0].info.height;

@@ -65,7 +65,8 @@ static enum status try_merge(struct merged *m, const struct shot *b, const struc
     struct merge_params params = MERGE_PARAMS_DEFAULT;
     struct noise noise[MERGE_MAX_EXPOSURES];
     struct brackets brackets = {b->photos, b->exposures, b->count, &srgb, shifts};
-    for (int k = 0; k < b->count; k++) noise[k] = noise_given(&params, &srgb, b->photos[k].info.bits);
+    for (int k = 0; k < b->count; k++)
+        noise[k] = noise_given(params.electrons, params.read_noise, &srgb, b->photos[k].info.bits);
     return merge_brackets(m, &brackets, noise, &params, err);
 }
 
@@ -130,11 +131,11 @@ static void saturated_and_dark_pixels_are_bounded_and_marked(void **state)
         for (int c = 0; c < 3; c++) truth[c] = ramp(x, c, 1e-7, 1e3);
         int mark = out.marks[5 * WIDTH + x];
         if (truth[2] > 4) { /* all colours saturate in the shortest exposure, at radiance 1 / 0.25 */
-            assert_int_equal(mark, MERGE_BRIGHT);
+            assert_int_equal(mark, PHOTO_BRIGHT);
             for (int c = 0; c < 3; c++) assert_float_equal(rgb[c], 4, 1e-6);
         }
         if (truth[0] < 2e-5) { /* code 0 of 255 in the longest */
-            assert_int_equal(mark, MERGE_DARK);
+            assert_int_equal(mark, PHOTO_DARK);
             for (int c = 0; c < 3; c++) assert_true(rgb[c] == 0);
         }
         if (truth[0] < 3.7 && truth[2] > 1e-3) {
@@ -157,7 +158,7 @@ static void a_gap_between_exposures_is_bounded_from_below(void **state)
     for (int i = 0; i < PIXELS; i++)
         for (int c = 0; c < 3; c++)
             if (ramp(i, c, 1.2, 2) > 1) {
-                assert_true((out.marks[i] & MERGE_DARK) != 0);
+                assert_true((out.marks[i] & PHOTO_DARK) != 0);
                 assert_float_equal(out.radiance.data[3 * i + c], 1, 1e-6);
             }
     merged_release(&out);
@@ -174,7 +175,7 @@ static void a_saturated_colour_does_not_spoil_the_others(void **state)
         for (int i = 0; i < PIXELS; i++) b.photos[k].samples[3 * i] = 255;
     struct merged out = merge(&b);
     for (int i = 0; i < PIXELS; i++) {
-        assert_int_equal(out.marks[i], MERGE_BRIGHT);
+        assert_int_equal(out.marks[i], PHOTO_BRIGHT);
         assert_float_equal(out.radiance.data[3 * i], 4, 1e-6);
         for (int c = 1; c < 3; c++) assert_true(fabs(out.radiance.data[3 * i + c] / ramp(i, c, 0.05, 0.06) - 1) < 0.02);
     }
@@ -193,8 +194,8 @@ static void a_single_exposure_is_the_linear_photo(void **state)
     assert_ok(photo_to_linear(&linear, &b.photos[0], &err), err);
     for (int i = 0; i < 3 * PIXELS; i++)
         assert_true(fabsf(out.radiance.data[i] - linear.data[i]) <= 2e-7f * linear.data[i]);
-    assert_int_equal(out.marks[0], MERGE_DARK);
-    assert_int_equal(out.marks[WIDTH - 1], MERGE_BRIGHT);
+    assert_int_equal(out.marks[0], PHOTO_DARK);
+    assert_int_equal(out.marks[WIDTH - 1], PHOTO_BRIGHT);
     image_release(&linear);
     merged_release(&out);
     release(&b);
@@ -215,7 +216,7 @@ static void bit_depths_may_differ_and_black_stays_black(void **state)
     for (int k = 0; k < 2; k++) memset(b.photos[k].samples, 0, sizeof(uint16_t) * 3 * PIXELS);
     out = merge(&b);
     for (int i = 0; i < 3 * PIXELS; i++) assert_true(out.radiance.data[i] == 0);
-    assert_int_equal(out.marks[0], MERGE_DARK);
+    assert_int_equal(out.marks[0], PHOTO_DARK);
     merged_release(&out);
     release(&b);
 }

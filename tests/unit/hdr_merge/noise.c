@@ -74,8 +74,30 @@ static void sensor_noise_is_measured(void **state)
                           1 / noise.photon, sqrt(noise.read2) * sensors[n].electrons);
             assert_float_equal(noise.photon * sensors[n].electrons, 1, 0.1);
             if (read > 1e-3) assert_float_equal(sqrt(noise.read2) / read, 1, 0.15);
+            assert_float_equal(noise.luminance, 1, 0.06);
             release(&s);
         }
+}
+
+/* Where all colours have the same noise, the luminance's deviation is the sum of theirs, by their weights; where they are
+ * independent, the root of the sum of squares. */
+static void noise_that_colours_share_is_measured(void **state)
+{
+    const double squares = 0.2126 * 0.2126 + 0.7152 * 0.7152 + 0.0722 * 0.0722;
+    const struct response srgb = {0};
+    struct stack s;
+    struct noise noise;
+    bool measured = false;
+    struct err err = ERR_INIT;
+    (void)state;
+    shoot(&s, 5000, 20, 1e-3, 3, true);
+    for (int k = 0; k < COUNT; k++)
+        for (int i = 0; i < 3 * PIXELS; i++) s.photos[k].values[i] = s.photos[k].values[i - i % 3];
+    const struct brackets b = {s.photos, s.exposures, COUNT, &srgb, NULL};
+    assert_ok(noise_measure(&noise, &measured, &b, &err), err);
+    assert_true(measured);
+    assert_float_equal(noise.luminance * squares, 1, 0.06);
+    release(&s);
 }
 
 /* The mean of squared error over stated variance is 1 at each level. */
@@ -95,7 +117,7 @@ static void merged_variance_matches_the_error(void **state)
     params.read_noise = 20;
     params.dark = 0; /* dark samples count too: a cut would distort the noise */
     shoot(&s, 5000, 20, 5e-3, 2.5, true);
-    for (int k = 0; k < COUNT; k++) noise[k] = noise_given(&params, &srgb, 32);
+    for (int k = 0; k < COUNT; k++) noise[k] = noise_given(params.electrons, params.read_noise, &srgb, 32);
     const struct brackets b = {s.photos, s.exposures, COUNT, &srgb, NULL};
     assert_ok(merge_brackets(&m, &b, noise, &params, &err), err);
     for (int i = 0; i < PIXELS; i++) {
@@ -180,9 +202,8 @@ static void noise_is_measured_over_six_decades(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(sensor_noise_is_measured),
-        cmocka_unit_test(merged_variance_matches_the_error),
-        cmocka_unit_test(too_few_samples_give_no_measurement),
+        cmocka_unit_test(sensor_noise_is_measured),           cmocka_unit_test(noise_that_colours_share_is_measured),
+        cmocka_unit_test(merged_variance_matches_the_error),  cmocka_unit_test(too_few_samples_give_no_measurement),
         cmocka_unit_test(noise_is_measured_over_six_decades),
     };
     return cmocka_run_group_tests_name("noise", tests, NULL, NULL);

@@ -81,7 +81,9 @@ static struct image look(const struct image *photo, const struct camera *lens, s
         min = fminf(min, photo->data[i]);
         max = fmaxf(max, photo->data[i]);
     }
-    assert_ok(resample_photo(&out, photo, NULL, lens, &photo_from_view, view, &err), err);
+    assert_ok(
+        resample_photo(&out, NULL, &(struct resample_source){.linear = photo}, lens, &photo_from_view, view, &err),
+        err);
     assert_true(out.width == view->width && out.height == view->height && out.channels == 4);
     for (size_t i = 0; i < (size_t)out.width * (size_t)out.height; i++) {
         const float *p = out.data + 4 * i;
@@ -691,7 +693,9 @@ static void a_photo_of_another_size_is_refused(void **state)
     struct view view = centred_view(10, 20, 15);
     struct err err = ERR_INIT;
     (void)state;
-    assert_int_equal(resample_photo(&out, &photo, NULL, &lens, &same_axes, &view, &err), ST_DATA);
+    assert_int_equal(
+        resample_photo(&out, NULL, &(struct resample_source){.linear = &photo}, &lens, &same_axes, &view, &err),
+        ST_DATA);
     assert_err(err, ST_DATA, "the photo has 20 x 10 pixels but its camera 10 x 20");
     assert_contains(err.text, "make resfm");
     assert_null(out.data);
@@ -721,7 +725,9 @@ static void masked_pixels_are_empty(void **state)
                 masked[y * SIDE + x] = 1;
                 for (int c = 0; c < 3; c++) image_at(&photo, x, y)[c] = 1000;
             }
-        assert_ok(resample_photo(&out, &photo, masked, &cameras[k], &same_axes, &views[k], &err), err);
+        assert_ok(resample_photo(&out, NULL, &(struct resample_source){.linear = &photo, .masked = masked}, &cameras[k],
+                                 &same_axes, &views[k], &err),
+                  err);
         const double scale = (double)SIDE / views[k].width;
         int hidden = 0;
         for (int y = 0; y < out.height; y++)

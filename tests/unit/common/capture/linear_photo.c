@@ -17,7 +17,7 @@ struct reading {
 static void read_photo(struct reading *r, const char *folder, const struct photo_record *record)
 {
     *r = (struct reading){.err = ERR_INIT};
-    linear_photo_read(&r->im, r->radiometry, folder, record, &r->prov, &r->err);
+    linear_photo_read(&r->im, NULL, r->radiometry, folder, record, NULL, &r->prov, &r->err);
 }
 
 static void assert_read(const struct reading *r, const char *radiometry, int width, int height, const char *input)
@@ -76,6 +76,88 @@ static void several_exposures_are_read_from_the_merged_file(void **state)
     release(&r);
 }
 
+/* A grey pixel of half of white; the given noise of its colours; a saturated and a black pixel. */
+static void noise_and_marks_of_one_exposure_are_assumed(void **state)
+{
+    const struct single_exposure assumed = {1000, 10, 0.9, 0.01};
+    const struct photo photo = {.info = {.bits = 32}};
+    const double squares = 0.2126 * 0.2126 + 0.7152 * 0.7152 + 0.0722 * 0.0722;
+    struct image linear;
+    struct photo_quality q = {0};
+    struct err err = ERR_INIT;
+    (void)state;
+    assert_ok(image_init(&linear, 3, 1, 3, &err), err);
+    for (int c = 0; c < 3; c++) linear.data[c] = 0.5f;
+    linear.data[3] = 0.9f; /* red alone */
+    assert_ok(photo_quality_of_exposure(&q, &photo, &linear, &assumed, &err), err);
+    assert_float_equal(q.variance[0], squares * (0.5 / 1000 + 1e-4), 1e-9);
+    assert_int_equal(q.marks[0], 0);
+    assert_float_equal(q.variance[1], 0.2126 * 0.9 * 0.2126 * 0.9, 1e-6); /* nothing is known but a bound */
+    assert_int_equal(q.marks[1], PHOTO_BRIGHT);
+    assert_true(q.variance[2] == 0 && photo_relative_sigma(q.variance[2], 0) == 1);
+    assert_int_equal(q.marks[2], PHOTO_DARK);
+    photo_quality_release(&q);
+    image_release(&linear);
+}
+
+/* Errors of two sample values: the sRGB curve has the slope 2.275 v^0.583, and all colours share the error. The noise model
+ * has the slope in proportion to v^0.5, which deviates from that by up to a tenth over this range. */
+static void errors_of_jpeg_are_shared_by_the_colours(void **state)
+{
+    const struct single_exposure assumed = {1e9, 0, 0.9, 0};
+    const struct photo photo = {.info = {.bits = 32}, .jpeg_variance = 4};
+    struct image linear;
+    struct photo_quality q = {0};
+    struct err err = ERR_INIT;
+    (void)state;
+    assert_ok(image_init(&linear, 3, 1, 3, &err), err);
+    for (int i = 0; i < 9; i++) linear.data[i] = 0.25f * (float)(1 + i / 3);
+    assert_ok(photo_quality_of_exposure(&q, &photo, &linear, &assumed, &err), err);
+    for (int i = 0; i < 3; i++) {
+        const double wanted = 2 * 2.275 * pow(0.25 * (1 + i), 0.583) / 255;
+        assert_float_equal(sqrt((double)q.variance[i]) / wanted, 1, 0.1);
+    }
+    photo_quality_release(&q);
+    image_release(&linear);
+}
+
+static void noise_and_marks_of_merged_exposures_are_read(void **state)
+{
+    char id[] = "e";
+    const struct photo_record record = {.id = id, .bracket_count = 2};
+    const float rgba[] = {2, 2, 2, 1, 4, 4, 4, 1};
+    struct exr_image exr;
+    struct exr_plane *plane;
+    struct image linear = {0};
+    struct photo_quality q = {0};
+    struct provenance prov = {0};
+    char radiometry[RADIOMETRY_SIZE];
+    struct err err = ERR_INIT;
+    (void)state;
+    assert_ok(exr_init_rgba(&exr, rgba, 2, 1, &err), err);
+    assert_ok(exr_add_plane(&exr, "variance", EXR_FLOAT, &plane, &err), err);
+    plane->f[0] = 0.01f;
+    plane->f[1] = 1;
+    assert_ok(exr_add_plane(&exr, "clipped", EXR_UINT, &plane, &err), err);
+    plane->u[1] = PHOTO_BRIGHT | PHOTO_DARK;
+    assert_ok(exr_write(&exr, scratch_path("e.exr"), NULL, &err), err);
+    exr_image_release(&exr);
+    assert_ok(linear_photo_read(&linear, &q, radiometry, scratch, &record, NULL, &prov, &err), err);
+    assert_float_equal(q.variance[0], 0.04, 1e-6);
+    assert_float_equal(q.variance[1], 16, 1e-5);
+    assert_true(q.marks[0] == 0 && q.marks[1] == (PHOTO_BRIGHT | PHOTO_DARK));
+    image_release(&linear);
+    photo_quality_release(&q);
+
+    /* a file of another program, without these channels */
+    assert_ok(exr_init_rgba(&exr, rgba, 2, 1, &err), err);
+    assert_ok(exr_write(&exr, scratch_path("e.exr"), NULL, &err), err);
+    exr_image_release(&exr);
+    assert_int_equal(linear_photo_read(&linear, &q, radiometry, scratch, &record, NULL, &prov, &err), ST_DATA);
+    assert_err(err, ST_DATA, "clipped");
+    provenance_release(&prov);
+}
+
 static void unreadable_files_are_reported(void **state)
 {
     char gone_id[] = "c", gone_file[] = "c.jpg", whole_id[] = "d";
@@ -97,6 +179,9 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(one_exposure_is_linearised),
         cmocka_unit_test(several_exposures_are_read_from_the_merged_file),
+        cmocka_unit_test(noise_and_marks_of_one_exposure_are_assumed),
+        cmocka_unit_test(errors_of_jpeg_are_shared_by_the_colours),
+        cmocka_unit_test(noise_and_marks_of_merged_exposures_are_read),
         cmocka_unit_test(unreadable_files_are_reported),
     };
     return cmocka_run_group_tests_name("linear_photo", tests, scratch_make, scratch_remove);

@@ -282,6 +282,32 @@ static void a_written_part_keeps_the_samples(void **state)
     }
 }
 
+/* Quality 50 uses the luma table of the standard (ITU-T T.81, table K.1) as it is; twice the step, four times the variance. */
+static void the_variance_of_quantization_is_that_of_the_table(void **state)
+{
+    static const int luma[64] = {16, 11, 10, 16, 24,  40,  51,  61,  12, 12, 14, 19, 26,  58,  60,  55,
+                                 14, 13, 16, 24, 40,  57,  69,  56,  14, 17, 22, 29, 51,  87,  80,  62,
+                                 18, 22, 37, 56, 68,  109, 103, 77,  24, 35, 55, 64, 81,  104, 113, 92,
+                                 49, 64, 78, 87, 103, 121, 120, 101, 72, 92, 95, 98, 112, 100, 103, 99};
+    static const int qualities[] = {50, 25};
+    const struct photo_info info = {.orientation = 1};
+    unsigned char rgb[3 * 16 * 16] = {0};
+    double variance = 0;
+    (void)state;
+    for (int k = 0; k < 64; k++) variance += luma[k] * luma[k] / (64 * 12.0);
+    for (int i = 0; i < 2; i++) {
+        struct photo p;
+        struct err err = ERR_INIT;
+        assert_ok(photo_write_jpeg(scratch_path("q.jpg"), rgb, 16, 16, qualities[i], &info, &err), err);
+        assert_ok(photo_read(&p, scratch_path("q.jpg"), &err), err);
+        assert_float_equal(p.jpeg_variance / (variance * (i ? 4 : 1)), 1, 1e-3);
+        photo_release(&p);
+    }
+    struct photo png = read_good("rgb8.png");
+    assert_true(png.jpeg_variance == 0);
+    photo_release(&png);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -295,6 +321,7 @@ int main(void)
         cmocka_unit_test(photos_are_linearised),
         cmocka_unit_test(written_images_read_back),
         cmocka_unit_test(exif_is_written),
+        cmocka_unit_test(the_variance_of_quantization_is_that_of_the_table),
         cmocka_unit_test(a_written_part_keeps_the_samples),
     };
     return cmocka_run_group_tests_name("photo", tests, scratch_make, scratch_remove);

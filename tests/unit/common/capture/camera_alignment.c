@@ -1,5 +1,5 @@
-/* alignment.c - known similarities are found; errors are those computed by hand. */
-#include "stages/evaluate/alignment.h"
+/* camera_alignment.c - known similarities are found; errors are those computed by hand. */
+#include "common/capture/camera_alignment.h"
 
 #include "tests/unit/scratch.h"
 
@@ -127,5 +127,5 @@ int main(void)
         cmocka_unit_test(coincident_cameras_have_no_scale),
         cmocka_unit_test(a_median_of_an_even_number_is_a_mean),
     };
-    return cmocka_run_group_tests_name("alignment", tests, NULL, NULL);
+    return cmocka_run_group_tests_name("camera_alignment", tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-/* alignment.c - the similarity that aligns found with true cameras [Umeyama 1991].
+/* camera_alignment.c - the similarity that aligns found with true cameras [Umeyama 1991].
  *
  * With x_i the found and y_i the true centres, both from their means, R is the rotation with the largest trace(R^T M),
  * M = sum y_i x_i^T, s = trace(R^T M) / sum |x_i|^2, t = mean y - s R mean x.
@@ -6,7 +6,7 @@
  * Differs from the source: R comes from the eigenvectors of M^T M and not from an SVD of M, and if the centres are on a
  * line (the second singular value of M is 0), R is the rotation nearest to sum Q_i^T P_i instead, the sum of the turns
  * between the rotations P_i of the found and Q_i of the true cameras. */
-#include "stages/evaluate/alignment.h"
+#include "common/capture/camera_alignment.h"
 
 #include <stdlib.h>
 

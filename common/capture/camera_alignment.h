@@ -1,10 +1,10 @@
-/* alignment.h - errors of cameras, after the similarity that best aligns them with the true ones.
+/* camera_alignment.h - errors of cameras, after the similarity that best aligns them with the true ones.
  *
  * The scale s, rotation R and translation t minimise sum |true - (s R found + t)|^2 over the centres [Umeyama 1991]. If
  * the centres are on a line (as two cameras always are), they leave the rotation about it open; then R is the mean of
  * the rotations between found and true cameras, nearest in the Frobenius norm. */
-#ifndef REMODEL_ALIGNMENT_H
-#define REMODEL_ALIGNMENT_H
+#ifndef REMODEL_CAMERA_ALIGNMENT_H
+#define REMODEL_CAMERA_ALIGNMENT_H
 
 #include "common/capture/camera.h"
 

@@ -1,0 +1,125 @@
+/* photo_quality.c - noise and clipping of photographs.
+ *
+ * Of one exposure, noise is not measured but assumed: each colour v has the variance photon v + read^2
+ * (common/image/noise_model.h), and the luminance, a sum of independent colours, the sum of the squares of its weights
+ * times theirs. Errors of a JPEG's luma are the same in all colours, so their variance is that of a grey of the same
+ * luminance. Merged exposures state the variance of the luminance divided by its square. */
+#include "common/capture/photo_quality.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "common/base/parallel.h"
+#include "common/image/noise_model.h"
+#include "common/image/samples.h"
+
+enum { CHUNK = 1 << 16 }; /* pixels */
+
+_Static_assert((int)EXR_PADDING >= (int)QUALITY_PADDING, "a channel of a file becomes a photo's variance");
+
+enum status photo_quality_init(struct photo_quality *q, int width, int height, struct err *err)
+{
+    const size_t pixels = (size_t)width * (size_t)height;
+    q->variance = samples_alloc((pixels + QUALITY_PADDING) * sizeof *q->variance);
+    q->marks = samples_alloc(pixels);
+    if (q->variance && q->marks) return ST_OK;
+    photo_quality_release(q);
+    return err_nomem(err, "a photo's noise and marks", pixels * 5);
+}
+
+void photo_quality_release(struct photo_quality *q)
+{
+    if (!q) return;
+    free(q->variance);
+    free(q->marks);
+    *q = (struct photo_quality){0};
+}
+
+struct exposure_job {
+    struct photo_quality *q;
+    const float *rgb;
+    float photon, read2, saturated, dark;
+    float shared_photon, shared_read2; /* of noise that is the same in all colours */
+};
+
+static void judge_pixels(void *ctx, size_t begin, size_t end, int thread)
+{
+    const struct exposure_job *job = ctx;
+    const float photon = job->photon, read2 = job->read2, saturated = job->saturated, dark = job->dark;
+    const float shared_photon = job->shared_photon, shared_read2 = job->shared_read2;
+    const float r2 = 0.2126f * 0.2126f, g2 = 0.7152f * 0.7152f, b2 = 0.0722f * 0.0722f;
+    (void)thread;
+    for (size_t i = begin; i < end; i++) {
+        const float *v = job->rgb + 3 * i;
+        const float light = photo_luminance(v), limit = light * light;
+        const float noise = photon * (r2 * v[0] + g2 * v[1] + b2 * v[2]) + read2 * (r2 + g2 + b2) +
+                            shared_photon * light + shared_read2;
+        const bool bright = (v[0] >= saturated) | (v[1] >= saturated) | (v[2] >= saturated);
+        const bool black = (v[0] <= dark) | (v[1] <= dark) | (v[2] <= dark);
+        job->q->variance[i] = bright || noise > limit ? limit : noise;
+        job->q->marks[i] = bright ? PHOTO_BRIGHT : black ? PHOTO_DARK : 0;
+    }
+}
+
+enum status photo_quality_of_exposure(struct photo_quality *q, const struct photo *photo, const struct image *linear,
+                                      const struct single_exposure *assumed, struct err *err)
+{
+    const struct response srgb = {0};
+    const struct noise n = noise_given(assumed->electrons, assumed->read_noise, &srgb, photo->info.bits);
+    const struct noise jpeg = noise_of_samples(photo->jpeg_variance, &srgb, 8);
+    const size_t pixels = (size_t)linear->width * (size_t)linear->height;
+    const enum status st = photo_quality_init(q, linear->width, linear->height, err);
+    if (st) return st;
+    struct exposure_job job = {.q = q,
+                               .rgb = linear->data,
+                               .photon = (float)n.photon,
+                               .read2 = (float)n.read2,
+                               .shared_photon = (float)jpeg.photon,
+                               .shared_read2 = (float)jpeg.read2,
+                               .saturated = (float)assumed->saturated,
+                               .dark = (float)assumed->dark};
+    parallel_for(pixels, CHUNK, judge_pixels, &job);
+    return ST_OK;
+}
+
+struct merged_job {
+    struct photo_quality *q; /* variance: relative on entry */
+    const float *rgb;
+    const uint32_t *clipped;
+};
+
+static void scale_pixels(void *ctx, size_t begin, size_t end, int thread)
+{
+    const struct merged_job *job = ctx;
+    float *variance = job->q->variance;
+    uint8_t *marks = job->q->marks;
+    (void)thread;
+    for (size_t i = begin; i < end; i++) {
+        const float light = photo_luminance(job->rgb + 3 * i), relative = variance[i];
+        variance[i] = (relative > 0 && relative < 1 ? relative : 1) * (light * light);
+        marks[i] = (uint8_t)(job->clipped[i] & (PHOTO_BRIGHT | PHOTO_DARK));
+    }
+}
+
+enum status photo_quality_of_merged(struct photo_quality *q, struct exr_image *merged, const char *path,
+                                    const struct image *linear, struct err *err)
+{
+    struct exr_plane *relative = exr_find(merged, "variance");
+    const struct exr_plane *clipped = exr_find(merged, "clipped");
+    const size_t pixels = (size_t)linear->width * (size_t)linear->height;
+    if (!relative || !relative->f || !clipped || !clipped->u)
+        return err_set(err, ST_DATA,
+                       "%s: wanted the channels variance (float) and clipped (uint); merge the view again.", path);
+    q->marks = samples_alloc(pixels);
+    if (!q->marks) return err_nomem(err, "a photo's marks", pixels);
+    q->variance = relative->f;
+    relative->f = NULL;
+    struct merged_job job = {q, linear->data, clipped->u};
+    parallel_for(pixels, CHUNK, scale_pixels, &job);
+    return ST_OK;
+}
+
+float photo_relative_sigma(float variance, float luminance)
+{
+    return luminance > 0 && variance < luminance * luminance ? sqrtf(variance) / luminance : 1;
+}
