@@ -40,6 +40,15 @@ struct plan_wall {
     struct wall_end ends[2];
 };
 
+struct plan_line { /* n p = c, n unit */
+    double n[2], c;
+};
+
+struct plan_top { /* of walls, or the lower face of a ceiling: the lowest of z = a[i][0] + a[i][1] x + a[i][2] y */
+    double a[2][3];
+    int count;
+};
+
 struct plan_opening {
     char *name;
     int line;
@@ -66,6 +75,19 @@ struct room_edge {              /* consecutive walls on one line are one edge */
     bool shared;                /* there is a room on the other side: the border is in the wall's middle */
 };
 
+struct part_corner { /* of a convex polygon in plan, counter-clockwise */
+    double p[2];
+    struct plan_line line; /* of the side that ends here, n outwards */
+    int wall, side;        /* the wall face in that side; wall is one of enum part_side where there is none */
+};
+
+enum part_side { PART_CUT = -1, PART_MIDDLE = -2 }; /* a cut, the middle of a wall between two rooms */
+
+struct room_part {
+    struct part_corner *corners;
+    int count;
+};
+
 struct plan_room {
     char *name;
     int line;
@@ -77,9 +99,12 @@ struct plan_room {
     bool sloped;
     int slope_walls[2];
     double slope_heights[2]; /* of the ceiling at slope_walls */
-    double lower[3];         /* ceiling: z = lower[0] + lower[1] x + lower[2] y */
-    struct room_edge *edges; /* counter-clockwise, as of the last check */
+    /* as of the last check */
+    struct plan_top lower;   /* the ceiling's lower face */
+    struct room_edge *edges; /* counter-clockwise */
     int edge_count;
+    struct room_part *parts; /* the slabs' outline, cut into convex parts */
+    int part_count;
 };
 
 enum name_kind { NAMED_NONE, NAMED_WALL, NAMED_OPENING, NAMED_BOX, NAMED_ROOM };
@@ -114,9 +139,6 @@ enum status plan_apply(struct plan *plan, const struct script *script, bool edit
 void plan_release(struct plan *plan);
 
 /* For the layout and the pictures. */
-struct plan_line { /* n p = c, n unit */
-    double n[2], c;
-};
 struct plan_line wall_face(const struct plan_wall *w, int side); /* n points out of the wall */
 /* The line across a wall at one of its ends, n pointing out of the wall. *face_wall, *face_side: the face of another
  * wall that it lies on; *face_wall is -1 for none. */
@@ -132,5 +154,7 @@ void room_span(const struct plan *plan, const struct plan_room *room, int edge, 
 /* The edge of the room that contains the wall; -1 for none. */
 int room_edge_of(const struct plan_room *room, int wall);
 double plan_wall_top(const struct plan *plan, int wall, double s0, double s1); /* the lowest over s0 .. s1 */
+double top_at(const struct plan_top *top, const double p[2]);
+struct plan_top level_top(double z);
 
 #endif

@@ -11,6 +11,7 @@
 #include <stdlib.h>
 
 #include "stages/build_model/plan_internal.h"
+#include "stages/build_model/room_parts.h"
 #include "stages/build_model/solid.h"
 
 static const char *const END_NAMES[] = {"start", "end"};
@@ -32,6 +33,17 @@ static enum status plan_error(struct plan_checker *c, int own, const char *fmt, 
     vsnprintf(text, sizeof text, fmt, args);
     va_end(args);
     return err_set(c->err, ST_DATA, "%s:%d: %s", c->path, c->line ? c->line : own, text);
+}
+
+/* How high a wall may reach. */
+static double wall_height(const struct plan *p, int wall)
+{
+    const struct plan_wall *w = &p->walls[wall];
+    double top = w->top;
+    for (int i = 0; i < p->room_count && !w->has_top; i++)
+        for (int e = 0; !p->rooms[i].removed && e < p->rooms[i].edge_count; e++)
+            top = fmax(top, top_at(&p->rooms[i].lower, p->rooms[i].edges[e].outer));
+    return top;
 }
 
 /* A wall's end must lie on the wall that it meets, and not over an opening of that wall. */
@@ -63,7 +75,7 @@ static enum status check_meeting(struct plan_checker *c, int wall, int end)
     for (int k = 0; k < p->opening_count; k++) {
         const struct plan_opening *q = &p->openings[k];
         if (q->removed || q->wall != other || q->s[0] >= at[1] - LENGTH_EPS || q->s[1] <= at[0] + LENGTH_EPS ||
-            q->z[0] >= w->top || q->z[1] <= w->foot)
+            q->z[0] >= wall_height(p, wall) || q->z[1] <= w->foot)
             continue;
         return plan_error(c, q->line,
                           "%s %s, from %.9g to %.9g on wall %s, overlaps wall %s, which meets it at %.9g to %.9g.",
@@ -271,8 +283,7 @@ static enum status shape_room(struct plan_checker *c, struct plan_room *r)
 static enum status slope_room(struct plan_checker *c, struct plan_room *r)
 {
     const struct plan *p = c->plan;
-    r->lower[0] = r->ceiling;
-    r->lower[1] = r->lower[2] = 0;
+    r->lower = level_top(r->ceiling);
     if (!r->sloped) return ST_OK;
     double at[2] = {0, 0}; /* of both walls along the normal of the first */
     struct plan_line first = {{0, 0}, 0};
@@ -286,9 +297,9 @@ static enum status slope_room(struct plan_checker *c, struct plan_room *r)
     if (!(fabs(at[1] - at[0]) > MIN_SIZE))
         return plan_error(c, r->line, "the ceiling of room %s has no width to slope over.", r->name);
     const double rise = (r->slope_heights[1] - r->slope_heights[0]) / (at[1] - at[0]);
-    r->lower[0] = r->slope_heights[0] - rise * at[0];
-    r->lower[1] = rise * first.n[0];
-    r->lower[2] = rise * first.n[1];
+    r->lower.a[0][0] = r->slope_heights[0] - rise * at[0];
+    r->lower.a[0][1] = rise * first.n[0];
+    r->lower.a[0][2] = rise * first.n[1];
     return ST_OK;
 }
 
@@ -344,10 +355,11 @@ static enum status check_rooms(struct plan_checker *c)
             x.c = r->edges[e].border;
             y.c = r->edges[(e + 1) % r->edge_count].border;
             line_cross(x, y, r->edges[e].outer);
-            if (!(ceiling_at(r, r->edges[e].outer) - r->floor >= MIN_SIZE))
+            if (!(top_at(&r->lower, r->edges[e].outer) - r->floor >= MIN_SIZE))
                 st = plan_error(c, r->line, "the ceiling of room %s comes down to its floor.", r->name);
         }
         if (!r->removed && !st) st = check_border(c, r);
+        if (!r->removed && !st) st = room_parts_make(r, p, c->err);
     }
     free(sides);
     return st;
@@ -379,7 +391,7 @@ static enum status check_reach(struct plan_checker *c)
         const struct plan_room *r = &p->rooms[i];
         for (int e = 0; !r->removed && e < r->edge_count; e++) {
             const double *corner = r->edges[e].outer;
-            const double at[4] = {corner[0], corner[1], r->floor - r->slab, ceiling_at(r, corner) + r->slab};
+            const double at[4] = {corner[0], corner[1], r->floor - r->slab, top_at(&r->lower, corner) + r->slab};
             if (check_within(c, r->line, "room", r->name, at, 4)) return c->err->status;
         }
     }

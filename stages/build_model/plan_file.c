@@ -31,8 +31,8 @@ static void print_plan(const struct plan *plan, FILE *to)
     for (int i = 0; i < plan->room_count; i++) {
         const struct plan_room *r = &plan->rooms[i];
         if (r->removed) continue;
-        fprintf(to, "room %s floor %.17g ceiling %.17g %.17g %.17g", r->name, r->floor, r->lower[0], r->lower[1],
-                r->lower[2]);
+        fprintf(to, "room %s floor %.17g ceiling %.17g %.17g %.17g", r->name, r->floor, r->lower.a[0][0],
+                r->lower.a[0][1], r->lower.a[0][2]);
         for (int e = 0; e < r->edge_count; e++)
             fprintf(to, " %s %.17g %.17g", plan->walls[r->edges[e].wall].name, r->edges[e].corner[0],
                     r->edges[e].corner[1]);

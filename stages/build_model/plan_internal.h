@@ -48,9 +48,6 @@ struct plan_line face_ahead(const struct plan_wall *w, int end, const struct pla
 /* The min and max S at which a line crosses the wall's two faces. */
 void cut_range(const struct plan_wall *w, struct plan_line across, double range[2]);
 
-/* Height of the ceiling's lower face. */
-double ceiling_at(const struct plan_room *r, const double p[2]);
-
 /* plan_checks.c */
 
 /* Derives the rooms' edges and checks the whole plan. line: of the statement of an edit, to blame for any error; 0:

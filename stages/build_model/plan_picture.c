@@ -126,7 +126,7 @@ static void put_rooms(const struct sheet *s, const struct plan *p, bool metric)
         put_name(s, middle[0], middle[1], "name", 0, r->name);
         fprintf(s->to, "<text class=\"small\" x=\"%.2f\" y=\"%.2f\">%.2f %s, %.3g %s high</text>\n",
                 sheet_x(s, middle[0]), sheet_y(s, middle[1]) + 16, area, metric ? "m²" : "square units",
-                r->lower[0] - r->floor, metric ? "m" : "units");
+                top_at(&r->lower, middle) - r->floor, metric ? "m" : "units");
     }
 }
 
@@ -439,7 +439,9 @@ enum status view_picture_write(const struct solid_mesh *mesh, const struct plan 
     struct raster r = {0};
     double high = 0;
     for (int i = 0; i < plan->wall_count; i++) high = fmax(high, plan->walls[i].removed ? 0 : plan->walls[i].top);
-    for (int i = 0; i < plan->room_count; i++) high = fmax(high, plan->rooms[i].removed ? 0 : plan->rooms[i].lower[0]);
+    for (int i = 0; i < plan->room_count; i++)
+        for (int e = 0; !plan->rooms[i].removed && e < plan->rooms[i].edge_count; e++)
+            high = fmax(high, top_at(&plan->rooms[i].lower, plan->rooms[i].edges[e].corner));
     /* from the south-west, 55 degrees above the horizon */
     const struct vec3 back =
         vec3_make(-0.30 * cos(55 * DEGREE) / hypot(0.30, 1), -cos(55 * DEGREE) / hypot(0.30, 1), sin(55 * DEGREE));

@@ -11,6 +11,7 @@
 #include "common/base/array.h"
 #include "common/base/log.h"
 #include "stages/build_model/plan_internal.h"
+#include "stages/build_model/room_parts.h"
 
 void plan_release(struct plan *plan)
 {
@@ -23,6 +24,7 @@ void plan_release(struct plan *plan)
         free(plan->rooms[i].walls);
         free(plan->rooms[i].edges);
         free(plan->rooms[i].edge_of);
+        room_parts_release(&plan->rooms[i]);
     }
     free(plan->walls);
     free(plan->openings);
@@ -280,7 +282,7 @@ static enum status apply_room(struct plan_context *c)
     if (r.slab == 0)
         return statement_error(c,
                                "the thickness of floors is unknown without a scale; write \"set slab NUMBER\" before.");
-    r.lower[0] = r.ceiling;
+    r.lower = level_top(r.ceiling);
     r.walls = calloc((size_t)s->name_count, sizeof *r.walls);
     if (!r.walls) return err_nomem(c->err, "a room", (size_t)s->name_count * sizeof *r.walls);
     for (int i = 0; i < s->name_count && !c->err->status; i++) {

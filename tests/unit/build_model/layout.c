@@ -248,6 +248,55 @@ static void a_ceiling_slopes_and_walls_reach_it(void **state)
     drop(&plan, &list);
 }
 
+static void a_wall_added_in_a_room_reaches_its_ceiling(void **state)
+{
+    static const char *const walls[] = {
+        "wall new from 1 0.5 to 3 0.5\n", "wall new from 1 0.5 to 3 2 angled\n",
+        "wall new from 2 0 to 2 3\nextend new start to south\nextend new end to north\n",
+        "wall new from 1 0.5 to 3 0.5\nwindow hole on new from 1.5 1 to 2 2 open\n"};
+    (void)state;
+    for (int i = 0; i < 4; i++)
+        for (int sloped = 0; sloped < 2; sloped++) {
+            struct plan plan;
+            struct solid_list list;
+            char text[1024], edit[256];
+            snprintf(text, sizeof text, ROOM "%s", sloped ? "slope hall from west 2 to east 4\n" : "");
+            if (!sloped) strcpy(strstr(text, "hall south west north east") + 26, " ceiling 3.5\n");
+            snprintf(edit, sizeof edit, "remodel-script 1\n%s", walls[i]);
+            build(&plan, &list, text, edit);
+            const struct plan_wall *w = &plan.walls[4];
+            double span[2], p[2];
+            wall_span(&plan, 4, span);
+            for (int k = 0; k < 400; k++) {
+                const double t = (k % 20 + 0.5) / 20, z = 0.1 + 4 * (k / 20) / 20.0;
+                wall_point(w, span[0] + t * (span[1] - span[0]), 0.13, p);
+                const bool hole = i == 3 && p[0] > 1.5 && p[0] < 2 && z > 1 && z < 2;
+                const double ceiling = sloped ? 2 + 0.5 * p[0] : 3.5;
+                if (fabs(z - ceiling) > 1e-3 && z < ceiling + 0.2)
+                    assert_int_equal(inside(&list, "walls", p[0], p[1], z) > 0, !hole);
+                else if (z > ceiling + 0.25)
+                    assert_int_equal(inside(&list, "walls", p[0], p[1], z), 0);
+            }
+            drop(&plan, &list);
+        }
+}
+
+static void a_wall_through_two_rooms_and_the_open_follows_each_ceiling(void **state)
+{
+    struct plan plan;
+    struct solid_list list;
+    (void)state;
+    /* across the middle wall, and out through the east wall */
+    build(&plan, &list, TWO "slope right from middle 3 to east 3.5\n", "remodel-script 1\nwall new from 1 1 to 6 1\n");
+    assert_true(inside(&list, "walls", 1.5, 1.1, 2.45) > 0);
+    assert_int_equal(inside(&list, "walls", 1.5, 1.1, 2.75), 0);
+    assert_true(inside(&list, "walls", 2.5, 1.1, 3.05) > 0);
+    assert_true(inside(&list, "walls", 3.9, 1.1, 3.45) > 0);
+    assert_true(inside(&list, "walls", 5, 1.1, 2.45) > 0); /* the common height outdoors */
+    assert_int_equal(inside(&list, "walls", 5, 1.1, 2.55), 0);
+    drop(&plan, &list);
+}
+
 static void an_angled_wall_is_joined_at_its_planes(void **state)
 {
     struct plan plan;
@@ -399,6 +448,8 @@ int main(void)
         cmocka_unit_test(a_removed_wall_leaves_its_rooms),
         cmocka_unit_test(a_room_with_a_reflex_corner_has_a_whole_floor),
         cmocka_unit_test(a_ceiling_slopes_and_walls_reach_it),
+        cmocka_unit_test(a_wall_added_in_a_room_reaches_its_ceiling),
+        cmocka_unit_test(a_wall_through_two_rooms_and_the_open_follows_each_ceiling),
         cmocka_unit_test(an_angled_wall_is_joined_at_its_planes),
         cmocka_unit_test(boxes_may_be_turned),
         cmocka_unit_test(an_opening_beside_a_corner_leaves_the_corner),

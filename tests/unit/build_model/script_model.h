@@ -424,7 +424,8 @@ static inline bool expected_under_room(const struct expected *t, const struct ex
     return crossed % 2;
 }
 
-static inline double expected_top(const struct expected *t, int wall, double s)
+/* Where no room lists the wall, it goes up to the ceilings of the rooms in which it stands. */
+static inline double expected_top(const struct expected *t, int wall, double s, const double p[3])
 {
     const struct expected_wall *w = &t->walls[wall];
     double top = -HUGE_VAL;
@@ -440,6 +441,9 @@ static inline double expected_top(const struct expected *t, int wall, double s)
             if (s > low && s < high) top = fmax(top, r->ceiling);
         }
     }
+    const bool listed = top > -HUGE_VAL;
+    for (int i = 0; i < t->room_count && !listed; i++)
+        if (!t->rooms[i].gone && expected_under_room(t, &t->rooms[i], p)) top = fmax(top, t->rooms[i].ceiling);
     return top > -HUGE_VAL ? top : w->top;
 }
 
@@ -448,7 +452,8 @@ static inline bool expected_in_wall(const struct expected *t, int wall, const do
     const struct expected_wall *w = &t->walls[wall];
     const double s = p[w->axis], across = p[!w->axis];
     if (w->gone || across < expected_low(w) || across > expected_high(w)) return false;
-    if (s < expected_reach(t, w, 0) || s > expected_reach(t, w, 1) || p[2] < w->foot || p[2] > expected_top(t, wall, s))
+    if (s < expected_reach(t, w, 0) || s > expected_reach(t, w, 1) || p[2] < w->foot ||
+        p[2] > expected_top(t, wall, s, p))
         return false;
     for (int i = 0; i < t->hole_count; i++) {
         const struct expected_hole *h = &t->holes[i];
