@@ -68,7 +68,7 @@ static enum status wall_parts_make(struct wall_parts *w, const struct plan *p, s
     }
     for (int i = 0; i < p->opening_count; i++) {
         const struct plan_opening *o = &p->openings[i];
-        if (o->removed || p->walls[o->wall].removed) continue;
+        if (!opening_is_there(p, o)) continue;
         w->openings[n++] = o;
         w->first[o->wall + 1]++;
     }
@@ -94,19 +94,30 @@ static enum status wall_parts_make(struct wall_parts *w, const struct plan *p, s
     return ST_OK;
 }
 
-bool window_has_glass(const struct plan *plan, const struct plan_opening *o, int *side)
+/* There are rooms on both sides of the wall; *side: the side away from the room if there is one only. */
+static bool between_rooms(const struct plan *plan, int wall, int *side)
 {
     unsigned sides = 0;
-    if (o->kind != VERB_WINDOW || !o->filled || o->interior) return false;
     for (int i = 0; i < plan->room_count; i++) {
         const struct plan_room *r = &plan->rooms[i];
-        for (int k = 0; !r->removed && k < r->wall_count; k++) {
-            if (r->walls[k] != o->wall) continue;
-            sides |= 1u << r->edges[r->edge_of[k]].side;
-        }
+        for (int k = 0; !r->removed && k < r->wall_count; k++)
+            if (r->walls[k] == wall) sides |= 1u << r->edges[r->edge_of[k]].side;
     }
     *side = sides == 1u << SIDE_OUT ? SIDE_IN : SIDE_OUT;
-    return sides != 3;
+    return sides == 3;
+}
+
+bool opening_filling(const struct plan *plan, const struct plan_opening *o, double off[2])
+{
+    const double t = plan->walls[o->wall].thickness;
+    int side;
+    if (o->fill != FILL_LEAF && o->fill != FILL_GLASS) return false;
+    const bool inner = between_rooms(plan, o->wall, &side);
+    const bool flush = o->kind == VERB_WINDOW && o->fill == FILL_GLASS;
+    if (flush && !o->refilled && (o->interior || inner)) return false;
+    off[0] = !flush || inner ? 0.5 * t - 0.5 * o->leaf : side == SIDE_OUT ? t - o->leaf : 0;
+    off[1] = !flush || inner ? 0.5 * t + 0.5 * o->leaf : side == SIDE_OUT ? t : o->leaf;
+    return true;
 }
 
 static int compare_numbers(const void *a, const void *b)
@@ -493,18 +504,19 @@ static enum status add_wall(struct solid_list *list, const struct wall_parts *pa
 
 /* ---------------------------------------------------------------------------------------------- leaves and panes */
 
-/* A slab that fills an opening, from `a` to `b` behind the wall's in face. */
-static enum status add_filling(struct solid_list *list, const struct plan *p, const struct plan_opening *o, double a,
-                               double b, bool glass, struct err *err)
+/* The slab that fills an opening, from off[0] to off[1] behind the wall's in face. */
+static enum status add_filling(struct solid_list *list, const struct plan *p, const struct plan_opening *o,
+                               const double off[2], struct err *err)
 {
     const struct plan_wall *w = &p->walls[o->wall];
     const struct plan_line in = wall_face(w, SIDE_IN);
+    const bool glass = o->fill == FILL_GLASS;
     const char *kind = glass ? "glass" : verb_name(o->kind), *leaf = glass ? "" : "leaf-";
     char body[NAME_SIZE];
     struct shape s = {0};
     snprintf(body, sizeof body, glass ? "glass/%s" : BODY "%.0s", o->name);
-    add_side(&s, in.n[0], in.n[1], 0, in.c - a, "%s/%s/%sin", kind, o->name, leaf);
-    add_side(&s, -in.n[0], -in.n[1], 0, b - in.c, "%s/%s/%sout", kind, o->name, leaf);
+    add_side(&s, in.n[0], in.n[1], 0, in.c - off[0], "%s/%s/%sin", kind, o->name, leaf);
+    add_side(&s, -in.n[0], -in.n[1], 0, off[1] - in.c, "%s/%s/%sout", kind, o->name, leaf);
     for (int k = 0; k < 2; k++) {
         const double along = w->sign * (o->s[k] + w->origin), out = (k == 1) == (w->sign > 0) ? 1 : -1;
         add_side(&s, out * w->d[0], out * w->d[1], 0, out * along, "%s/%s/%s", kind, o->name, reveal_side(w, k));
@@ -512,21 +524,6 @@ static enum status add_filling(struct solid_list *list, const struct plan *p, co
     add_side(&s, 0, 0, -1, -o->z[0], "%s/%s/sill", kind, o->name);
     add_side(&s, 0, 0, 1, o->z[1], "%s/%s/head", kind, o->name);
     return add_shape(list, body, &s, err);
-}
-
-static enum status add_leaf(struct solid_list *list, const struct plan *p, const struct plan_opening *o,
-                            struct err *err)
-{
-    const double middle = 0.5 * p->walls[o->wall].thickness;
-    return add_filling(list, p, o, middle - 0.5 * o->leaf, middle + 0.5 * o->leaf, false, err);
-}
-
-static enum status add_pane(struct solid_list *list, const struct plan *p, const struct plan_opening *o, int side,
-                            struct err *err)
-{
-    const double t = p->walls[o->wall].thickness;
-    return side == SIDE_OUT ? add_filling(list, p, o, t - o->leaf, t, true, err)
-                            : add_filling(list, p, o, 0, o->leaf, true, err);
 }
 
 enum status layout_solids(struct solid_list *list, const struct plan *plan, struct err *err)
@@ -543,13 +540,11 @@ enum status layout_solids(struct solid_list *list, const struct plan *plan, stru
         if (!plan->boxes[i].removed) st = add_box(list, &plan->boxes[i], err);
     for (int i = 0; i < plan->opening_count && !st; i++) {
         const struct plan_opening *o = &plan->openings[i];
-        int side;
-        if (o->removed || !o->filled || plan->walls[o->wall].removed) continue;
-        if (o->kind == VERB_DOOR)
-            st = add_leaf(list, plan, o, err);
-        else if (window_has_glass(plan, o, &side))
-            st = add_pane(list, plan, o, side, err);
+        double off[2];
+        if (opening_is_there(plan, o) && opening_filling(plan, o, off)) st = add_filling(list, plan, o, off, err);
     }
+    for (int i = 0; i < plan->slot_count && !st; i++)
+        if (slot_is_there(plan, &plan->slots[i])) st = add_slot(list, plan, &plan->slots[i], err);
     wall_parts_release(&parts);
     if (st) solid_list_release(list);
     return st;

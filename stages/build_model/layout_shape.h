@@ -28,6 +28,8 @@ enum status add_shape(struct solid_list *list, const char *body, struct shape *s
 /* layout_slabs.c */
 
 enum status add_room(struct solid_list *list, const struct plan *p, const struct plan_room *r, struct err *err);
+/* What fills an opening in a ceiling or floor. */
+enum status add_slot(struct solid_list *list, const struct plan *p, const struct plan_slot *o, struct err *err);
 enum status add_box(struct solid_list *list, const struct plan_box *b, struct err *err);
 
 #endif

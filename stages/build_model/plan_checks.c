@@ -74,8 +74,8 @@ static enum status check_meeting(struct plan_checker *c, int wall, int end)
             END_NAMES[end], w->name, o->name, reach[0], reach[1], at[0] < reach[0] ? at[0] : at[1]);
     for (int k = 0; k < p->opening_count; k++) {
         const struct plan_opening *q = &p->openings[k];
-        if (q->removed || q->wall != other || q->s[0] >= at[1] - LENGTH_EPS || q->s[1] <= at[0] + LENGTH_EPS ||
-            q->z[0] >= wall_height(p, wall) || q->z[1] <= w->foot)
+        if (!opening_is_there(p, q) || q->wall != other || q->s[0] >= at[1] - LENGTH_EPS ||
+            q->s[1] <= at[0] + LENGTH_EPS || q->z[0] >= wall_height(p, wall) || q->z[1] <= w->foot)
             continue;
         return plan_error(c, q->line,
                           "%s %s, from %.9g to %.9g on wall %s, overlaps wall %s, which meets it at %.9g to %.9g.",
@@ -99,6 +99,19 @@ static enum status check_walls(struct plan_checker *c)
             if (check_meeting(c, i, e)) return c->err->status;
     }
     return ST_OK;
+}
+
+static double cross2(const double a[2], const double b[2], const double c[2])
+{
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+}
+
+/* The segments from a to b and from x to y have a point in common. */
+static bool segments_meet(const double a[2], const double b[2], const double x[2], const double y[2])
+{
+    for (int k = 0; k < 2; k++)
+        if (fmax(a[k], b[k]) < fmin(x[k], y[k]) || fmin(a[k], b[k]) > fmax(x[k], y[k])) return false;
+    return cross2(a, b, x) * cross2(a, b, y) <= 0 && cross2(x, y, a) * cross2(x, y, b) <= 0;
 }
 
 static enum status check_openings(struct plan_checker *c)
@@ -130,9 +143,60 @@ static enum status check_openings(struct plan_checker *c)
                 return plan_error(c, o->line, "%s %s and %s %s, on wall %s, overlap.", verb_name(q->kind), q->name,
                                   verb_name(o->kind), o->name, w->name);
         }
-        if (o->filled && o->leaf > w->thickness)
+        if (o->leaf > w->thickness)
             return plan_error(c, o->line, "%s %s is thicker than its wall %s.", verb_name(o->kind), o->name, w->name);
     }
+    return ST_OK;
+}
+
+/* A rectangle lies inside the faces of the room's walls. */
+static bool in_room(const struct plan_room *r, const double low[2], const double high[2])
+{
+    const double c[4][2] = {{low[0], low[1]}, {high[0], low[1]}, {high[0], high[1]}, {low[0], high[1]}};
+    bool inside = false;
+    for (int e = 0; e < r->edge_count; e++) {
+        const double *a = r->edges[(e + r->edge_count - 1) % r->edge_count].corner, *b = r->edges[e].corner;
+        for (int k = 0; k < 4; k++)
+            if (segments_meet(a, b, c[k], c[(k + 1) % 4])) return false;
+        if ((a[1] > low[1]) != (b[1] > low[1]) && low[0] < a[0] + (low[1] - a[1]) / (b[1] - a[1]) * (b[0] - a[0]))
+            inside = !inside;
+        if (a[0] > low[0] && a[0] < high[0] && a[1] > low[1] && a[1] < high[1]) return false;
+    }
+    return inside;
+}
+
+static enum status check_slots(struct plan_checker *c)
+{
+    const struct plan *p = c->plan;
+    for (int i = 0; i < p->slot_count; i++) {
+        const struct plan_slot *o = &p->slots[i];
+        const struct plan_room *r = &p->rooms[o->room];
+        const char *kind = verb_name(o->kind);
+        if (o->removed || r->removed) continue;
+        if (!(o->high[0] - o->low[0] >= MIN_SIZE && o->high[1] - o->low[1] >= MIN_SIZE))
+            return plan_error(c, o->line, "%s %s would be %.3g x %.3g large.", kind, o->name, o->high[0] - o->low[0],
+                              o->high[1] - o->low[1]);
+        if (!in_room(r, o->low, o->high))
+            return plan_error(c, o->line,
+                              "%s %s, from %.9g %.9g to %.9g %.9g, does not lie between the walls of room %s.", kind,
+                              o->name, o->low[0], o->low[1], o->high[0], o->high[1], r->name);
+        for (int k = 0; k < i; k++) {
+            const struct plan_slot *q = &p->slots[k];
+            if (q->room == o->room && q->kind == o->kind && !q->removed && q->low[0] < o->high[0] &&
+                q->high[0] > o->low[0] && q->low[1] < o->high[1] && q->high[1] > o->low[1])
+                return plan_error(c, o->line, "%s %s and %s %s, in room %s, overlap.", kind, q->name, kind, o->name,
+                                  r->name);
+        }
+        if (o->leaf > r->slab)
+            return plan_error(c, o->line, "%s %s is thicker than the %s of room %s.", kind, o->name,
+                              o->kind == VERB_HATCH ? "floor" : "ceiling", r->name);
+    }
+    return ST_OK;
+}
+
+static enum status check_boxes(struct plan_checker *c)
+{
+    const struct plan *p = c->plan;
     for (int i = 0; i < p->box_count; i++) {
         const struct plan_box *b = &p->boxes[i];
         if (!b->removed && !(b->high[0] - b->low[0] >= MIN_SIZE && b->high[1] - b->low[1] >= MIN_SIZE &&
@@ -194,19 +258,6 @@ static enum status group_walls(struct plan_checker *c, struct plan_room *r)
                 a->name, b->name, r->name);
     }
     return ST_OK;
-}
-
-static double cross2(const double a[2], const double b[2], const double c[2])
-{
-    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-}
-
-/* The segments from a to b and from x to y have a point in common. */
-static bool segments_meet(const double a[2], const double b[2], const double x[2], const double y[2])
-{
-    for (int k = 0; k < 2; k++)
-        if (fmax(a[k], b[k]) < fmin(x[k], y[k]) || fmin(a[k], b[k]) > fmax(x[k], y[k])) return false;
-    return cross2(a, b, x) * cross2(a, b, y) <= 0 && cross2(x, y, a) * cross2(x, y, b) <= 0;
 }
 
 /* Corners of the lines through the walls, `off` thicknesses behind their in faces. */
@@ -279,12 +330,21 @@ static enum status shape_room(struct plan_checker *c, struct plan_room *r)
     return ST_OK;
 }
 
-/* The plane of the ceiling's lower face. */
+/* Sets the plane that has the two heights at two positions along the line's normal. */
+static void set_plane(struct plan_top *top, int i, struct plan_line line, const double at[2], const double heights[2])
+{
+    const double rise = (heights[1] - heights[0]) / (at[1] - at[0]);
+    top->a[i][0] = heights[0] - rise * at[0];
+    top->a[i][1] = rise * line.n[0];
+    top->a[i][2] = rise * line.n[1];
+}
+
+/* The planes of the ceiling's lower face. */
 static enum status slope_room(struct plan_checker *c, struct plan_room *r)
 {
     const struct plan *p = c->plan;
     r->lower = level_top(r->ceiling);
-    if (!r->sloped) return ST_OK;
+    if (r->shape == LEVEL_CEILING) return ST_OK;
     double at[2] = {0, 0}; /* of both walls along the normal of the first */
     struct plan_line first = {{0, 0}, 0};
     for (int i = 0; i < 2; i++)
@@ -296,10 +356,22 @@ static enum status slope_room(struct plan_checker *c, struct plan_room *r)
         }
     if (!(fabs(at[1] - at[0]) > MIN_SIZE))
         return plan_error(c, r->line, "the ceiling of room %s has no width to slope over.", r->name);
-    const double rise = (r->slope_heights[1] - r->slope_heights[0]) / (at[1] - at[0]);
-    r->lower.a[0][0] = r->slope_heights[0] - rise * at[0];
-    r->lower.a[0][1] = rise * first.n[0];
-    r->lower.a[0][2] = rise * first.n[1];
+    if (r->shape == SLOPED_CEILING) {
+        set_plane(&r->lower, 0, first, at, r->slope_heights);
+        return ST_OK;
+    }
+    const double width = fabs(at[1] - at[0]), ridge = r->ridge_at > 0 ? r->ridge_at : 0.5 * width;
+    if (!(width - ridge >= MIN_SIZE))
+        return plan_error(c, r->line, "the ridge of room %s, %.9g from wall %s, is not between its walls, %.9g apart.",
+                          r->name, ridge, p->walls[r->slope_walls[0]].name, width);
+    const double middle = at[0] + (at[1] > at[0] ? ridge : -ridge);
+    set_plane(&r->lower, 0, first, (const double[2]){at[0], middle},
+              (const double[2]){r->slope_heights[0], r->slope_heights[2]});
+    set_plane(&r->lower, 1, first, (const double[2]){middle, at[1]},
+              (const double[2]){r->slope_heights[2], r->slope_heights[1]});
+    r->lower.count = 2;
+    r->ridge = (struct plan_line){{first.n[0], first.n[1]}, middle};
+    if (at[0] > middle) r->ridge = line_reversed(r->ridge);
     return ST_OK;
 }
 
@@ -408,6 +480,8 @@ static enum status check_reach(struct plan_checker *c)
 enum status plan_check(struct plan *plan, const char *path, int line, struct err *err)
 {
     struct plan_checker c = {plan, path, line, err};
-    if (check_rooms(&c) || check_walls(&c) || check_openings(&c) || check_reach(&c)) return err->status;
+    if (check_rooms(&c) || check_walls(&c) || check_openings(&c) || check_slots(&c) || check_boxes(&c) ||
+        check_reach(&c))
+        return err->status;
     return ST_OK;
 }

@@ -120,6 +120,16 @@ void room_span(const struct plan *plan, const struct plan_room *room, int edge, 
     span[1] = fmin(span[1], reach[1]);
 }
 
+bool opening_is_there(const struct plan *plan, const struct plan_opening *o)
+{
+    return !o->removed && o->fill != FILL_WALL && !plan->walls[o->wall].removed;
+}
+
+bool slot_is_there(const struct plan *plan, const struct plan_slot *slot)
+{
+    return !slot->removed && slot->fill != FILL_WALL && !plan->rooms[slot->room].removed;
+}
+
 double top_at(const struct plan_top *top, const double p[2])
 {
     double z = HUGE_VAL;

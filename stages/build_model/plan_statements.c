@@ -18,6 +18,7 @@ void plan_release(struct plan *plan)
     if (!plan) return;
     for (int i = 0; i < plan->wall_count; i++) free(plan->walls[i].name);
     for (int i = 0; i < plan->opening_count; i++) free(plan->openings[i].name);
+    for (int i = 0; i < plan->slot_count; i++) free(plan->slots[i].name);
     for (int i = 0; i < plan->box_count; i++) free(plan->boxes[i].name);
     for (int i = 0; i < plan->room_count; i++) {
         free(plan->rooms[i].name);
@@ -28,6 +29,7 @@ void plan_release(struct plan *plan)
     }
     free(plan->walls);
     free(plan->openings);
+    free(plan->slots);
     free(plan->boxes);
     free(plan->rooms);
     free(plan->names);
@@ -47,31 +49,59 @@ void plan_begin(struct plan *plan, const struct model_axes *axes)
     if (axes && axes->thickness > 0) plan->thickness = axes->thickness;
 }
 
-static enum status check_length(struct plan_context *c, const char *what, double value)
+enum status check_length(struct plan_context *c, const char *what, double value)
 {
     if (value >= MIN_SIZE && value <= MAX_SIZE) return ST_OK;
     return statement_error(c, "found %s %.9g, wanted %g to %g.", what, value, MIN_SIZE, MAX_SIZE);
 }
 
+double *default_value(struct plan *plan, enum plan_default which, const char **name)
+{
+    static const char *const names[DEFAULTS] = {"thickness", "slab", "glass", "leaf", "floor", "ceiling"};
+    double *const values[DEFAULTS] = {&plan->thickness, &plan->slab,  &plan->glass,
+                                      &plan->leaf,      &plan->floor, &plan->ceiling};
+    if (name) *name = names[which];
+    return values[which];
+}
+
+/* The default value, which the statement uses. */
+static double use(struct plan_context *c, enum plan_default which)
+{
+    c->used |= 1u << which;
+    return *default_value(c->plan, which, NULL);
+}
+
+/* The option's value, or the default's. */
+static double option_or(struct plan_context *c, enum option option, enum plan_default which)
+{
+    return c->s->has_option[option] ? c->s->options[option] : use(c, which);
+}
+
 static enum status apply_set(struct plan_context *c)
 {
     const struct statement *s = c->s;
-    struct plan *p = c->plan;
-    const struct {
+    for (int i = 0; i < DEFAULTS; i++) {
         const char *name;
-        double *value;
-        bool length;
-    } quantities[] = {{"thickness", &p->thickness, true}, {"slab", &p->slab, true},    {"glass", &p->glass, true},
-                      {"leaf", &p->leaf, true},           {"floor", &p->floor, false}, {"ceiling", &p->ceiling, false}};
-    for (size_t i = 0; i < sizeof quantities / sizeof *quantities; i++) {
-        if (strcmp(quantities[i].name, s->name)) continue;
-        if (quantities[i].length && check_length(c, s->name, s->values[0])) return c->err->status;
+        double *value = default_value(c->plan, (enum plan_default)i, &name);
+        if (strcmp(name, s->name)) continue;
+        if (i < DEFAULT_FLOOR && check_length(c, s->name, s->values[0])) return c->err->status;
         if (fabs(s->values[0]) > MAX_SIZE)
             return statement_error(c, "found %s %.9g, wanted at most %g.", s->name, s->values[0], MAX_SIZE);
-        *quantities[i].value = s->values[0];
+        *value = s->values[0];
     }
     return ST_OK;
 }
+
+enum status fill_thickness(struct plan_context *c, enum filling fill, double *thickness)
+{
+    *thickness = 0;
+    if (fill != FILL_LEAF && fill != FILL_GLASS) return ST_OK;
+    *thickness = use(c, fill == FILL_GLASS ? DEFAULT_GLASS : DEFAULT_LEAF);
+    if (*thickness > 0) return ST_OK;
+    return statement_error(c, "the thickness of %s is unknown without a scale; write \"set %s NUMBER\" before.",
+                           fill == FILL_GLASS ? "glass" : "a door's leaf", fill == FILL_GLASS ? "glass" : "leaf");
+}
+
 /* ------------------------------------------------------------------------------------------------------------ walls */
 
 static enum status set_wall_line(struct plan_context *c, struct plan_wall *w, const double a[2], const double b[2])
@@ -102,9 +132,41 @@ static enum status set_wall_line(struct plan_context *c, struct plan_wall *w, co
     return ST_OK;
 }
 
+/* A wall parallel to another one, in front of it by the statement's distance, facing the same way, which meets the walls
+ * at its two ends. */
+static enum status place_parallel_wall(struct plan_context *c, struct plan_wall *w)
+{
+    const struct script_place *place = &c->s->place;
+    int other, ends[2];
+    double p[2][2];
+    if (find_wall(c, place->wall, &other)) return c->err->status;
+    const struct plan_wall *o = &c->plan->walls[other];
+    memcpy(w->d, o->d, sizeof w->d);
+    w->c = o->c + place->a[0];
+    w->sign = o->sign;
+    w->origin = o->origin;
+    w->angled = o->angled;
+    for (int i = 0; i < 2; i++) {
+        if (find_wall(c, place->between[i], &ends[i])) return c->err->status;
+        const struct plan_wall *e = &c->plan->walls[ends[i]];
+        if (!(fabs(w->d[0] * e->d[1] - w->d[1] * e->d[0]) > PARALLEL_SINE) ||
+            !line_cross(wall_face(w, SIDE_IN), wall_face(e, SIDE_IN), p[i]))
+            return statement_error(c, "wall %s cannot end at wall %s: it is parallel to that, or nearly so.",
+                                   c->s->name, place->between[i]);
+    }
+    if (ends[0] == ends[1])
+        return statement_error(c, "wall %s lies between wall %s and itself; name a wall for each of its ends.",
+                               c->s->name, place->between[0]);
+    const double along = w->d[0] * (p[1][0] - p[0][0]) + w->d[1] * (p[1][1] - p[0][1]);
+    w->ends[END_START] = (struct wall_end){MEET_END, 0, ends[along < 0]};
+    w->ends[END_END] = (struct wall_end){MEET_END, 0, ends[along >= 0]};
+    return ST_OK;
+}
+
 static enum status place_new_wall(struct plan_context *c, struct plan_wall *w)
 {
     const struct statement *s = c->s;
+    if (s->place.kind == PLACE_PARALLEL) return place_parallel_wall(c, w);
     if (s->place.kind == PLACE_COORDINATES) return set_wall_line(c, w, s->place.a, s->place.a + 2);
     struct placed_wall placed;
     if (place_wall(&placed, c->placer, &s->place, NULL, w->angled, c->path, s->line, c->err)) return c->err->status;
@@ -128,9 +190,9 @@ static enum status apply_wall(struct plan_context *c)
     struct plan *p = c->plan;
     struct plan_wall w = {.line = s->line, .angled = s->angled};
     if (copy_new_name(c, s->name, &w.name)) return c->err->status;
-    w.thickness = s->has_option[OPTION_THICKNESS] ? s->options[OPTION_THICKNESS] : p->thickness;
-    w.foot = s->has_option[OPTION_FOOT] ? s->options[OPTION_FOOT] : p->floor;
-    w.top = s->has_option[OPTION_TOP] ? s->options[OPTION_TOP] : p->ceiling;
+    w.thickness = option_or(c, OPTION_THICKNESS, DEFAULT_THICKNESS);
+    w.foot = option_or(c, OPTION_FOOT, DEFAULT_FLOOR);
+    w.top = option_or(c, OPTION_TOP, DEFAULT_CEILING);
     w.has_top = s->has_option[OPTION_TOP];
     enum status st = ST_OK;
     if (!s->has_option[OPTION_THICKNESS] && w.thickness == 0)
@@ -153,10 +215,28 @@ static enum status apply_wall(struct plan_context *c)
     return add_name(p, w.name, NAMED_WALL, p->wall_count - 1, c->err);
 }
 
-/* The statement's rectangle on a wall as S and z, ascending. */
-static enum status place_on_wall(struct plan_context *c, const struct plan_wall *w, double s[2], double z[2])
+/* Measured from an end of the wall, where its neighbour's near face is; left and right as seen from its inside. */
+static enum status place_from_end(struct plan_context *c, int wall, double s[2], double z[2])
+{
+    const struct plan_wall *w = &c->plan->walls[wall];
+    const double *a = c->s->place.a;
+    double span[2];
+    if (!(a[1] >= MIN_SIZE)) return statement_error(c, "found the width %.9g, wanted %g or more.", a[1], MIN_SIZE);
+    wall_span(c->plan, wall, span);
+    /* the start is at the left */
+    const bool from_high = c->s->place.right == (w->sign > 0);
+    s[0] = from_high ? span[1] - a[0] - a[1] : span[0] + a[0];
+    s[1] = from_high ? span[1] - a[0] : span[0] + a[0] + a[1];
+    z[0] = fmin(a[2], a[3]);
+    z[1] = fmax(a[2], a[3]);
+    return ST_OK;
+}
+
+enum status place_on_wall(struct plan_context *c, int wall, double s[2], double z[2])
 {
     const struct script_place *p = &c->s->place;
+    const struct plan_wall *w = &c->plan->walls[wall];
+    if (p->kind == PLACE_FROM_END) return place_from_end(c, wall, s, z);
     if (p->kind == PLACE_COORDINATES) {
         s[0] = fmin(p->a[0], p->a[2]);
         s[1] = fmax(p->a[0], p->a[2]);
@@ -191,8 +271,7 @@ static enum status place_on_wall(struct plan_context *c, const struct plan_wall 
     return ST_OK;
 }
 
-/* Doors and passages drawn in a photograph begin at the floor, whichever pixel was clicked. */
-static void set_foot_on_floor(const struct plan_context *c, const struct plan_wall *w, enum verb kind, double z[2])
+void set_foot_on_floor(const struct plan_context *c, const struct plan_wall *w, enum verb kind, double z[2])
 {
     if (kind != VERB_WINDOW && c->s->place.kind == PLACE_VIEW) z[0] = w->foot;
 }
@@ -203,18 +282,11 @@ static enum status apply_opening(struct plan_context *c)
     struct plan *p = c->plan;
     struct plan_opening o = {.line = s->line, .kind = s->verb, .interior = s->interior};
     if (find_wall(c, s->other, &o.wall)) return c->err->status;
-    const struct plan_wall *w = &p->walls[o.wall];
-    o.filled = s->verb == VERB_WINDOW ? !s->open : s->closed;
-    if (place_on_wall(c, w, o.s, o.z)) return c->err->status;
-    set_foot_on_floor(c, w, s->verb, o.z);
-    if (copy_new_name(c, s->name, &o.name)) return c->err->status;
-    o.leaf = s->verb == VERB_WINDOW ? p->glass : p->leaf;
-    if (o.filled && o.leaf == 0) {
-        free(o.name);
-        return statement_error(c, "the thickness of %s is unknown without a scale; write \"set %s NUMBER\" before.",
-                               s->verb == VERB_WINDOW ? "glass" : "a door's leaf",
-                               s->verb == VERB_WINDOW ? "glass" : "leaf");
-    }
+    if (s->verb == VERB_WINDOW && !s->open) o.fill = FILL_GLASS;
+    if (s->verb == VERB_DOOR && s->closed) o.fill = FILL_LEAF;
+    if (place_on_wall(c, o.wall, o.s, o.z)) return c->err->status;
+    set_foot_on_floor(c, &p->walls[o.wall], s->verb, o.z);
+    if (fill_thickness(c, o.fill, &o.leaf) || copy_new_name(c, s->name, &o.name)) return c->err->status;
     if (array_append(&p->openings, (size_t)p->opening_count, sizeof o, "openings", c->err)) {
         free(o.name);
         return c->err->status;
@@ -223,17 +295,22 @@ static enum status apply_opening(struct plan_context *c)
     return add_name(p, o.name, NAMED_OPENING, p->opening_count - 1, c->err);
 }
 
-/* A box's footprint. at: height of the corners that a photograph shows. */
-static enum status place_footprint(struct plan_context *c, double at, double low[3], double high[3])
+/* A footprint in the plane z = a[0] + a[1] x + a[2] y, where a photograph shows it. */
+static enum status place_in_plane(struct plan_context *c, const double plane[3], double low[2], double high[2])
 {
     const struct script_place *p = &c->s->place;
     double a[4];
+    if (p->kind == PLACE_FROM_END)
+        return statement_error(c, "%s is in no wall; give its place by coordinates or in a view.", c->s->name);
     memcpy(a, p->a, sizeof a);
     if (p->kind == PLACE_VIEW) {
         struct vec3 corners[2];
         struct err above = ERR_INIT; /* seen from above, or from below, as a beam is */
-        if (place_corners(corners, c->placer, p, vec3_make(0, 0, 1), at, c->path, c->s->line, &above) &&
-            place_corners(corners, c->placer, p, vec3_make(0, 0, -1), -at, c->path, c->s->line, c->err))
+        const double length = sqrt(1 + plane[1] * plane[1] + plane[2] * plane[2]);
+        const struct vec3 up = vec3_scale(vec3_make(-plane[1], -plane[2], 1), 1 / length);
+        const double d = plane[0] / length;
+        if (place_corners(corners, c->placer, p, up, d, c->path, c->s->line, &above) &&
+            place_corners(corners, c->placer, p, vec3_scale(up, -1), -d, c->path, c->s->line, c->err))
             return c->err->status;
         for (int i = 0; i < 2; i++) {
             a[2 * i] = corners[i].x;
@@ -247,13 +324,52 @@ static enum status place_footprint(struct plan_context *c, double at, double low
     return ST_OK;
 }
 
+enum status place_footprint(struct plan_context *c, double at, double low[2], double high[2])
+{
+    return place_in_plane(c, (const double[3]){at, 0, 0}, low, high);
+}
+
+enum status place_in_room(struct plan_context *c, const struct plan_room *r, enum verb kind, double low[2],
+                          double high[2])
+{
+    if (kind == VERB_HATCH) return place_footprint(c, r->floor, low, high);
+    /* of a gable's planes, the one in which the footprint's middle is on the ceiling */
+    enum status st = ST_OK;
+    for (int i = 0; i < r->lower.count && !st; i++) {
+        st = place_in_plane(c, r->lower.a[i], low, high);
+        const double middle[2] = {0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1])};
+        const struct plan_top one = {{{r->lower.a[i][0], r->lower.a[i][1], r->lower.a[i][2]}}, 1};
+        if (!st && top_at(&one, middle) <= top_at(&r->lower, middle) + LENGTH_EPS) break;
+    }
+    return st;
+}
+
+static enum status apply_slot(struct plan_context *c)
+{
+    const struct statement *s = c->s;
+    struct plan *p = c->plan;
+    struct plan_slot slot = {.line = s->line, .kind = s->verb};
+    if (find_room(c, s->other, &slot.room)) return c->err->status;
+    if (s->verb == VERB_SKYLIGHT && !s->open) slot.fill = FILL_GLASS;
+    if (s->verb == VERB_HATCH && s->closed) slot.fill = FILL_LEAF;
+    if (place_in_room(c, &p->rooms[slot.room], s->verb, slot.low, slot.high) ||
+        fill_thickness(c, slot.fill, &slot.leaf) || copy_new_name(c, s->name, &slot.name))
+        return c->err->status;
+    if (array_append(&p->slots, (size_t)p->slot_count, sizeof slot, "openings in rooms", c->err)) {
+        free(slot.name);
+        return c->err->status;
+    }
+    p->slots[p->slot_count++] = slot;
+    return add_name(p, slot.name, NAMED_SLOT, p->slot_count - 1, c->err);
+}
+
 static enum status apply_box(struct plan_context *c)
 {
     const struct statement *s = c->s;
     struct plan *p = c->plan;
     struct plan_box b = {.line = s->line, .turn = s->has_option[OPTION_TURN] ? s->options[OPTION_TURN] : 0};
-    b.low[2] = s->has_option[OPTION_FOOT] ? s->options[OPTION_FOOT] : p->floor;
-    b.high[2] = s->has_option[OPTION_TOP] ? s->options[OPTION_TOP] : p->ceiling;
+    b.low[2] = option_or(c, OPTION_FOOT, DEFAULT_FLOOR);
+    b.high[2] = option_or(c, OPTION_TOP, DEFAULT_CEILING);
     if (!s->has_option[OPTION_TOP] && p->ceiling == 0)
         return statement_error(c, "box %s has no top, because no ceiling was found; add \"top NUMBER\" to the line.",
                                s->name);
@@ -272,13 +388,13 @@ static enum status apply_room(struct plan_context *c)
     const struct statement *s = c->s;
     struct plan *p = c->plan;
     struct plan_room r = {.line = s->line, .wall_count = s->name_count};
-    r.floor = s->has_option[OPTION_FLOOR] ? s->options[OPTION_FLOOR] : p->floor;
-    r.ceiling = s->has_option[OPTION_CEILING] ? s->options[OPTION_CEILING] : p->ceiling;
+    r.floor = option_or(c, OPTION_FLOOR, DEFAULT_FLOOR);
+    r.ceiling = option_or(c, OPTION_CEILING, DEFAULT_CEILING);
     if (r.ceiling == 0) return statement_error(c, "no ceiling was found; add \"ceiling NUMBER\" to the line.");
     if (!(r.ceiling - r.floor >= MIN_SIZE))
         return statement_error(c, "room %s goes from %.9g up to %.9g, wanted a ceiling above the floor.", s->name,
                                r.floor, r.ceiling);
-    r.slab = p->slab > 0 ? p->slab : p->thickness;
+    r.slab = use(c, p->slab > 0 ? DEFAULT_SLAB : DEFAULT_THICKNESS);
     if (r.slab == 0)
         return statement_error(c,
                                "the thickness of floors is unknown without a scale; write \"set slab NUMBER\" before.");
@@ -300,12 +416,12 @@ static enum status apply_room(struct plan_context *c)
     return add_name(p, r.name, NAMED_ROOM, p->room_count - 1, c->err);
 }
 
+/* Slopes a ceiling in one plane, or in two that meet in a ridge. */
 static enum status apply_slope(struct plan_context *c)
 {
     const struct statement *s = c->s;
-    enum name_kind kind;
     int at, walls[2];
-    if (find_named(c, s->name, 1u << NAMED_ROOM, "a room", &kind, &at)) return c->err->status;
+    if (find_room(c, s->name, &at)) return c->err->status;
     struct plan_room *r = &c->plan->rooms[at];
     for (int i = 0; i < 2; i++) {
         if (find_wall(c, s->names[i], &walls[i])) return c->err->status;
@@ -320,277 +436,16 @@ static enum status apply_slope(struct plan_context *c)
     if (walls[0] == walls[1] || !(fabs(a->d[0] * b->d[1] - a->d[1] * b->d[0]) < 1e-9))
         return statement_error(c, "a ceiling slopes between two parallel walls, but %s and %s are not parallel.",
                                s->names[0], s->names[1]);
-    r->sloped = true;
+    if (s->verb == VERB_GABLE && !(s->values[2] - fmax(s->values[0], s->values[1]) >= MIN_SIZE))
+        return statement_error(c, "the ridge of %s would be at %.9g, wanted it above the ceiling at both walls.",
+                               s->name, s->values[2]);
+    if (s->has_option[OPTION_AT] && !(s->options[OPTION_AT] >= MIN_SIZE))
+        return statement_error(c, "the ridge of %s would be %.9g from wall %s, wanted %g or more.", s->name,
+                               s->options[OPTION_AT], s->names[0], MIN_SIZE);
+    r->shape = s->verb == VERB_GABLE ? GABLE_CEILING : SLOPED_CEILING;
     memcpy(r->slope_walls, walls, sizeof walls);
     memcpy(r->slope_heights, s->values, sizeof r->slope_heights);
-    return ST_OK;
-}
-
-/* --------------------------------------------------------------------------------------------- joins and extensions */
-
-static double distance_from_end(const struct plan *plan, int wall, int end, const double p[2])
-{
-    double range[2];
-    int face_wall, face_side;
-    const struct plan_wall *w = &plan->walls[wall];
-    cut_range(w, wall_cap(plan, wall, end, &face_wall, &face_side), range);
-    return fabs(wall_s(w, p) - 0.5 * (range[0] + range[1]));
-}
-
-/* The end of a that forms the corner with b: one already joined to b, else the nearer free one. */
-static enum status corner_end(struct plan_context *c, int a, int b, const double p[2], int *end)
-{
-    const struct plan *plan = c->plan;
-    const struct plan_wall *w = &plan->walls[a];
-    for (int e = 0; e < 2; e++)
-        if (w->ends[e].kind != FREE_END && w->ends[e].other == b) {
-            *end = e;
-            return ST_OK;
-        }
-    const bool free0 = w->ends[0].kind == FREE_END, free1 = w->ends[1].kind == FREE_END;
-    if (!free0 && !free1)
-        return statement_error(c, "walls %s and %s cannot be joined: both ends of %s are joined already, to %s and %s.",
-                               w->name, plan->walls[b].name, w->name, plan->walls[w->ends[0].other].name,
-                               plan->walls[w->ends[1].other].name);
-    *end = !free1 ? 0 : !free0 ? 1 : distance_from_end(plan, a, 0, p) <= distance_from_end(plan, a, 1, p) ? 0 : 1;
-    return ST_OK;
-}
-
-static enum status check_crossing(struct plan_context *c, int a, int b, double p[2])
-{
-    const struct plan_wall *x = &c->plan->walls[a], *y = &c->plan->walls[b];
-    if (a == b) return statement_error(c, "wall %s cannot be joined to itself.", x->name);
-    if (fabs(x->d[0] * y->d[1] - x->d[1] * y->d[0]) > PARALLEL_SINE)
-        return line_cross(wall_face(x, SIDE_IN), wall_face(y, SIDE_IN), p), ST_OK;
-    return statement_error(c, "walls %s and %s cannot be joined: they are parallel, or nearly so.", x->name, y->name);
-}
-
-static enum status apply_join(struct plan_context *c)
-{
-    const struct statement *s = c->s;
-    struct plan *plan = c->plan;
-    for (int i = 0; i + 1 < s->name_count; i++) {
-        int walls[2], ends[2];
-        double p[2];
-        if (find_wall(c, s->names[i], &walls[0]) || find_wall(c, s->names[i + 1], &walls[1]) ||
-            check_crossing(c, walls[0], walls[1], p) || corner_end(c, walls[0], walls[1], p, &ends[0]) ||
-            corner_end(c, walls[1], walls[0], p, &ends[1]))
-            return c->err->status;
-        for (int k = 0; k < 2; k++) plan->walls[walls[k]].ends[ends[k]] = (struct wall_end){CORNER_END, 0, walls[!k]};
-    }
-    return ST_OK;
-}
-
-static enum status apply_extend(struct plan_context *c)
-{
-    const struct statement *s = c->s;
-    int wall, other;
-    double p[2];
-    if (find_wall(c, s->name, &wall)) return c->err->status;
-    struct wall_end *e = &c->plan->walls[wall].ends[s->end];
-    if (!s->other) {
-        *e = (struct wall_end){FREE_END, s->values[0], -1};
-        return ST_OK;
-    }
-    if (find_wall(c, s->other, &other) || check_crossing(c, wall, other, p)) return c->err->status;
-    const struct wall_end *opposite = &c->plan->walls[wall].ends[!s->end];
-    if (opposite->kind != FREE_END && opposite->other == other)
-        return statement_error(c, "wall %s cannot be extended to %s: its other end is there already.", s->name,
-                               s->other);
-    *e = (struct wall_end){MEET_END, 0, other};
-    return ST_OK;
-}
-
-/* Lists the new part of a split wall beside the old part in every room that has the wall. */
-static enum status add_to_rooms(struct plan_context *c, int wall, int part)
-{
-    struct plan *plan = c->plan;
-    for (int i = 0; i < plan->room_count; i++) {
-        struct plan_room *r = &plan->rooms[i];
-        int at = 0;
-        while (at < r->wall_count && r->walls[at] != wall) at++;
-        if (at == r->wall_count) continue;
-        int *more = realloc(r->walls, ((size_t)r->wall_count + 1) * sizeof *more);
-        if (!more) return err_nomem(c->err, "a room", ((size_t)r->wall_count + 1) * sizeof *more);
-        r->walls = more;
-        /* the part that the room's next wall joins comes second */
-        const int next = r->walls[(at + 1) % r->wall_count];
-        const struct plan_wall *p = &plan->walls[part], *n = &plan->walls[next];
-        bool after = p->ends[END_END].kind != FREE_END && p->ends[END_END].other == next;
-        for (int e = 0; e < 2; e++) after |= n->ends[e].kind != FREE_END && n->ends[e].other == part;
-        const int where = after ? at + 1 : at;
-        memmove(r->walls + where + 1, r->walls + where, (size_t)(r->wall_count - where) * sizeof *more);
-        r->walls[where] = part;
-        r->wall_count++;
-    }
-    return ST_OK;
-}
-
-static enum status apply_split(struct plan_context *c)
-{
-    const struct statement *s = c->s;
-    struct plan *plan = c->plan;
-    int wall;
-    double span[2];
-    char *name = NULL;
-    const double gap[2] = {fmin(s->values[0], s->values[1]), fmax(s->values[0], s->values[1])};
-    if (find_wall(c, s->name, &wall)) return c->err->status;
-    wall_span(plan, wall, span);
-    if (!(gap[0] > span[0] + LENGTH_EPS && gap[1] < span[1] - LENGTH_EPS && gap[1] > gap[0] + LENGTH_EPS))
-        return statement_error(c, "the gap from %.9g to %.9g does not lie in wall %s, which goes from %.9g to %.9g.",
-                               gap[0], gap[1], s->name, span[0], span[1]);
-    for (int i = 0; i < plan->opening_count; i++) {
-        const struct plan_opening *o = &plan->openings[i];
-        if (o->wall == wall && !o->removed && o->s[0] < gap[1] && o->s[1] > gap[0])
-            return statement_error(c, "the gap from %.9g to %.9g cuts %s %s, from %.9g to %.9g; remove that first.",
-                                   gap[0], gap[1], verb_name(o->kind), o->name, o->s[0], o->s[1]);
-    }
-    if (copy_new_name(c, s->other, &name)) return c->err->status;
-    if (array_append(&plan->walls, (size_t)plan->wall_count, sizeof *plan->walls, "walls", c->err)) {
-        free(name);
-        return c->err->status;
-    }
-    const int new = plan->wall_count++;
-    struct plan_wall *w = &plan->walls[wall], *part = &plan->walls[new];
-    *part = *w;
-    part->name = name;
-    part->line = s->line;
-    part->ends[END_START] = (struct wall_end){FREE_END, gap[w->sign > 0], -1};
-    w->ends[END_END] = (struct wall_end){FREE_END, gap[w->sign < 0], -1};
-    const bool new_above = w->sign > 0; /* the new part has the larger S */
-    const double middle = 0.5 * (gap[0] + gap[1]);
-    for (int i = 0; i < plan->opening_count; i++) {
-        struct plan_opening *o = &plan->openings[i];
-        if (o->wall == wall && (o->s[0] > middle) == new_above) o->wall = new;
-    }
-    for (int i = 0; i < plan->wall_count; i++)
-        for (int e = 0; e < 2; e++) {
-            struct plan_wall *x = &plan->walls[i];
-            double p[2];
-            if (i == wall || i == new || x->ends[e].kind == FREE_END || x->ends[e].other != wall) continue;
-            if (line_cross(wall_face(x, SIDE_IN), wall_face(w, SIDE_IN), p) && (wall_s(w, p) > middle) == new_above)
-                x->ends[e].other = new;
-        }
-    if (add_name(plan, part->name, NAMED_WALL, new, c->err)) return c->err->status;
-    return add_to_rooms(c, wall, new);
-}
-
-/* ------------------------------------------------------------------------------------------------------------ edits */
-
-static enum status apply_adjust(struct plan_context *c)
-{
-    const struct statement *s = c->s;
-    struct plan *plan = c->plan;
-    enum name_kind kind;
-    int at;
-    if (find_solid(c, s->name, &kind, &at)) return c->err->status;
-    if (kind == NAMED_OPENING) {
-        struct plan_opening *o = &plan->openings[at];
-        if (place_on_wall(c, &plan->walls[o->wall], o->s, o->z)) return c->err->status;
-        set_foot_on_floor(c, &plan->walls[o->wall], o->kind, o->z);
-        return ST_OK;
-    }
-    if (kind == NAMED_BOX) {
-        struct plan_box *b = &plan->boxes[at];
-        return place_footprint(c, b->low[2], b->low, b->high);
-    }
-    struct plan_wall *w = &plan->walls[at];
-    const struct plan_line in = wall_face(w, SIDE_IN);
-    if (s->place.kind == PLACE_COORDINATES) {
-        /* a line through two points, parallel to the wall */
-        const double *a = s->place.a;
-        const double c0 = in.n[0] * a[0] + in.n[1] * a[1], c1 = in.n[0] * a[2] + in.n[1] * a[3];
-        if (!(fabs(c0 - c1) <= LENGTH_EPS))
-            return statement_error(c,
-                                   "the line from %.9g %.9g to %.9g %.9g is not parallel to wall %s; adjust keeps the "
-                                   "direction of a wall.",
-                                   a[0], a[1], a[2], a[3], s->name);
-        w->c = c0;
-        return ST_OK;
-    }
-    struct placed_wall placed;
-    if (place_wall(&placed, c->placer, &s->place, in.n, false, c->path, s->line, c->err)) return c->err->status;
-    log_note("wall %s: moved by %.3g; %zu points, median distance from the wall %.3g", s->name, placed.c - w->c,
-             placed.points, placed.spread);
-    w->c = placed.c;
-    return ST_OK;
-}
-
-static enum status apply_move(struct plan_context *c)
-{
-    const struct statement *s = c->s;
-    struct plan *plan = c->plan;
-    enum name_kind kind;
-    int at;
-    if (find_solid(c, s->name, &kind, &at)) return c->err->status;
-    if (kind == NAMED_BOX) {
-        if (s->value_count != 2)
-            return statement_error(c, "a box moves by two distances, in x and y: \"move %s by DX DY\".", s->name);
-        for (int k = 0; k < 2; k++) {
-            plan->boxes[at].low[k] += s->values[k];
-            plan->boxes[at].high[k] += s->values[k];
-        }
-        return ST_OK;
-    }
-    if (s->value_count != 1)
-        return statement_error(c,
-                               kind == NAMED_WALL
-                                   ? "a wall moves along its normal, away from its inside, by one distance: "
-                                     "\"move %s by DISTANCE\"; extend moves its ends."
-                                   : "an opening moves along its wall, by one distance: \"move %s by "
-                                     "DISTANCE\"; adjust changes its size.",
-                               s->name);
-    if (kind == NAMED_WALL) {
-        plan->walls[at].c -= s->values[0];
-        return ST_OK;
-    }
-    for (int k = 0; k < 2; k++) plan->openings[at].s[k] += s->values[0];
-    return ST_OK;
-}
-
-static enum status apply_fill(struct plan_context *c, bool fill)
-{
-    const struct statement *s = c->s;
-    enum name_kind kind;
-    int at;
-    if (find_named(c, s->name, 1u << NAMED_OPENING, "a door or a window", &kind, &at)) return c->err->status;
-    struct plan_opening *o = &c->plan->openings[at];
-    if (o->kind == VERB_PASSAGE)
-        return statement_error(c, "passage %s has no leaf that could be %s; declare a door instead.", s->name,
-                               fill ? "closed" : "opened");
-    if (o->filled == fill)
-        return statement_error(c, "%s %s is %s already.", verb_name(o->kind), s->name, fill ? "closed" : "open");
-    const double leaf = o->kind == VERB_WINDOW ? c->plan->glass : c->plan->leaf;
-    if (fill && leaf == 0)
-        return statement_error(c, "the thickness of %s is unknown without a scale; write \"set %s NUMBER\" before.",
-                               o->kind == VERB_WINDOW ? "glass" : "a door's leaf",
-                               o->kind == VERB_WINDOW ? "glass" : "leaf");
-    o->filled = fill;
-    if (fill) o->leaf = leaf;
-    return ST_OK;
-}
-
-static enum status apply_remove(struct plan_context *c)
-{
-    struct plan *plan = c->plan;
-    enum name_kind kind;
-    int at;
-    if (find_named(c, c->s->name, ~0u, "anything", &kind, &at)) return c->err->status;
-    switch (kind) {
-    case NAMED_WALL:
-        plan->walls[at].removed = true;
-        for (int i = 0; i < plan->opening_count; i++)
-            if (plan->openings[i].wall == at) plan->openings[i].removed = true;
-        break;
-    case NAMED_OPENING:
-        plan->openings[at].removed = true;
-        break;
-    case NAMED_BOX:
-        plan->boxes[at].removed = true;
-        break;
-    default:
-        plan->rooms[at].removed = true;
-    }
+    r->ridge_at = s->has_option[OPTION_AT] ? s->options[OPTION_AT] : 0;
     return ST_OK;
 }
 
@@ -604,11 +459,15 @@ static enum status apply_statement(struct plan_context *c)
     case VERB_ROOM:
         return apply_room(c);
     case VERB_SLOPE:
+    case VERB_GABLE:
         return apply_slope(c);
     case VERB_DOOR:
     case VERB_PASSAGE:
     case VERB_WINDOW:
         return apply_opening(c);
+    case VERB_SKYLIGHT:
+    case VERB_HATCH:
+        return apply_slot(c);
     case VERB_BOX:
         return apply_box(c);
     case VERB_JOIN:
@@ -621,27 +480,97 @@ static enum status apply_statement(struct plan_context *c)
         return apply_adjust(c);
     case VERB_MOVE:
         return apply_move(c);
+    case VERB_CHANGE:
+        return apply_change(c);
+    case VERB_RESIZE:
+        return apply_resize(c);
     case VERB_OPEN:
-        return apply_fill(c, false);
     case VERB_CLOSE:
-        return apply_fill(c, true);
+    case VERB_FILL:
+        return apply_fill(c);
     default:
         return apply_remove(c);
     }
 }
 
+static enum status needs_views(struct plan_context *c)
+{
+    if (c->s->place.kind != PLACE_VIEW || c->placer) return ST_OK;
+    return statement_error(c, "the statement names the view %s, but no views are known; give --views.",
+                           c->s->place.view);
+}
+
+/* An edit's statement that changes nothing is a mistake. A default that is set must be used further down. */
+struct edit_watch {
+    char *before;
+    int set_line[DEFAULTS]; /* of a default that no statement used yet; 0: none */
+};
+
+static enum status unused_default(struct plan_context *c, enum plan_default which, int line)
+{
+    const char *name;
+    default_value(c->plan, which, &name);
+    return err_set(c->err, ST_DATA,
+                   "%s:%d: \"set %s\" changes nothing: no statement further down uses it, and it does not change what "
+                   "there is%s.",
+                   c->path, line, name,
+                   which == DEFAULT_CEILING     ? "; to change a ceiling, write \"change ROOM ceiling Z\""
+                   : which == DEFAULT_THICKNESS ? "; to change a wall, write \"change WALL thickness T\""
+                                                : "");
+}
+
+static enum status watch_set(struct plan_context *c, struct edit_watch *w)
+{
+    for (int i = 0; i < DEFAULTS; i++) {
+        const char *name;
+        const double *value = default_value(c->plan, (enum plan_default)i, &name);
+        if (strcmp(name, c->s->name)) continue;
+        if (w->set_line[i]) return unused_default(c, (enum plan_default)i, w->set_line[i]);
+        if (*value == c->s->values[0])
+            return statement_error(c, "the statement changes nothing: %s is %.9g already.", name, *value);
+        w->set_line[i] = c->s->line;
+    }
+    return ST_OK;
+}
+
+static enum status apply_watched(struct plan_context *c, struct edit_watch *w)
+{
+    char *after = NULL;
+    if (c->s->verb == VERB_SET) return watch_set(c, w) ? c->err->status : apply_set(c);
+    c->used = 0;
+    if (apply_statement(c) || plan_check(c->plan, c->path, c->s->line, c->err) || plan_state(&after, c->plan, c->err))
+        return c->err->status;
+    for (int i = 0; i < DEFAULTS; i++)
+        if (c->used & 1u << i) w->set_line[i] = 0;
+    const bool same = !strcmp(w->before, after);
+    free(w->before);
+    w->before = after;
+    return same ? statement_error(c, "the statement changes nothing: the plan is like that already.") : ST_OK;
+}
+
+static enum status apply_edit(struct plan_context *c, const struct script *script)
+{
+    struct edit_watch w = {0};
+    enum status st = plan_state(&w.before, c->plan, c->err);
+    for (int i = 0; i < script->count && !st; i++) {
+        c->s = &script->statements[i];
+        st = needs_views(c);
+        if (!st) st = apply_watched(c, &w);
+    }
+    for (int i = 0; i < DEFAULTS && !st; i++)
+        if (w.set_line[i]) st = unused_default(c, (enum plan_default)i, w.set_line[i]);
+    free(w.before);
+    return st;
+}
+
 enum status plan_apply(struct plan *plan, const struct script *script, bool edit, const struct placer *placer,
                        struct err *err)
 {
-    struct plan_context c = {plan, script->path, NULL, placer, err};
+    struct plan_context c = {.plan = plan, .path = script->path, .placer = placer, .err = err};
+    if (edit) return apply_edit(&c, script);
     for (int i = 0; i < script->count; i++) {
         c.s = &script->statements[i];
-        const struct statement *s = c.s;
-        if (s->place.kind == PLACE_VIEW && !placer)
-            return statement_error(&c, "the statement names the view %s, but no views are known; give --views.",
-                                   s->place.view);
-        if (apply_statement(&c)) return err->status;
-        if (edit && plan_check(plan, script->path, s->line, err)) return err->status;
+        if (needs_views(&c) || apply_statement(&c)) return err->status;
     }
-    return edit ? ST_OK : plan_check(plan, script->path, 0, err);
+    return plan_check(plan, script->path, 0, err);
 }

@@ -76,7 +76,8 @@ static enum status outside_from(const struct outside *o, const struct part_corne
     enum status st = ST_OK;
     memcpy(rest, in, (size_t)count * sizeof *rest);
     for (int k = 0; k < r->count && count && !st; k++) {
-        struct part_corner by = {.line = line_reversed(r->corners[k].line), .wall = PART_CUT};
+        struct part_corner by = r->corners[k];
+        by.line = line_reversed(by.line);
         const int n = part_clip(beyond, rest, count, &by);
         if (n) st = outside_from(o, beyond, n, part + 1);
         by.line = r->corners[k].line;

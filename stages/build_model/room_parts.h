@@ -20,7 +20,8 @@ struct plan_line line_reversed(struct plan_line l);
 /* Called for each polygon; a status other than ST_OK ends the walk and is returned. */
 typedef enum status part_visit(void *ctx, const struct part_corner *c, int count);
 
-/* Visits convex polygons that make up the polygon where it is in none of the parts. */
+/* Visits convex polygons that make up the polygon where it is in none of the parts. Sides along the parts have the
+ * labels of the parts' sides. */
 enum status parts_outside(const struct part_corner *in, int count, const struct room_part *parts, int part_count,
                           part_visit *visit, void *ctx, struct err *err);
 
