@@ -452,9 +452,9 @@ static int column_limits(const struct wall_parts *parts, int wall, const double 
     for (int i = parts->first[wall]; i < parts->first[wall + 1]; i++)
         for (int k = 0; k < 2; k++) s[n++] = parts->openings[i]->s[k];
     const struct plan_top own = level_top(w->top);
-    bool level = true; /* the same height all along */
-    for (int i = parts->first_top[wall]; i < parts->first_top[wall + 1]; i++)
-        level &= same_top(parts->tops[i].top, &own);
+    bool level = true; /* the same height all along, also where it stands in other rooms */
+    for (int i = 0; i < parts->plan->room_count; i++)
+        level &= parts->plan->rooms[i].removed || same_top(&parts->plan->rooms[i].lower, &own);
     for (int i = parts->first_top[wall]; i < parts->first_top[wall + 1] && !level && !w->has_top; i++)
         for (int k = 0; k < 2; k++) s[n++] = parts->tops[i].s[k];
     for (int i = 0; i < n; i++)

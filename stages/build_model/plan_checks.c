@@ -207,12 +207,6 @@ static enum status check_boxes(struct plan_checker *c)
     return ST_OK;
 }
 
-static bool same_line(const struct plan_wall *a, const struct plan_wall *b)
-{
-    const double turn = a->d[0] * b->d[0] + a->d[1] * b->d[1];
-    return turn > 1 - 1e-12 && fabs(a->c - b->c) < LENGTH_EPS;
-}
-
 static bool touch(const struct plan *p, int a, int b)
 {
     for (int e = 0; e < 2; e++) {
@@ -228,13 +222,13 @@ static enum status group_walls(struct plan_checker *c, struct plan_room *r)
     struct plan *p = c->plan;
     int *group = r->edge_of;
     int start = 0; /* a wall that is not on the line of the wall before it */
-    while (start < r->wall_count &&
-           same_line(&p->walls[r->walls[(start + r->wall_count - 1) % r->wall_count]], &p->walls[r->walls[start]]))
+    while (start < r->wall_count && walls_on_one_line(&p->walls[r->walls[(start + r->wall_count - 1) % r->wall_count]],
+                                                      &p->walls[r->walls[start]]))
         start++;
     r->edge_count = 0;
     for (int k = 0; k < r->wall_count && start < r->wall_count; k++) {
         const int i = (start + k) % r->wall_count, before = (i + r->wall_count - 1) % r->wall_count;
-        if (k == 0 || !same_line(&p->walls[r->walls[before]], &p->walls[r->walls[i]]))
+        if (k == 0 || !walls_on_one_line(&p->walls[r->walls[before]], &p->walls[r->walls[i]]))
             r->edges[r->edge_count++] = (struct room_edge){.wall = r->walls[i]};
         group[i] = r->edge_count - 1;
     }

@@ -117,16 +117,35 @@ static void set_if_given(const struct statement *s, enum option option, double *
     if (s->has_option[option]) *value = s->options[option];
 }
 
-static enum status change_wall(struct plan_context *c, struct plan_wall *w)
+/* Sets the thickness of a wall, and of the walls that continue it on its line round a room: a room's side has one. */
+static void set_thickness(struct plan *plan, int wall, double thickness)
+{
+    plan->walls[wall].thickness = thickness;
+    for (int i = 0; i < plan->room_count; i++) {
+        const struct plan_room *r = &plan->rooms[i];
+        bool listed = false;
+        for (int k = 0; k < r->wall_count; k++) listed |= r->walls[k] == wall;
+        for (int k = 0; k < r->wall_count && listed; k++) {
+            const struct plan_wall *o = &plan->walls[r->walls[k]];
+            if (o->thickness != thickness && walls_on_one_line(o, &plan->walls[wall]))
+                set_thickness(plan, r->walls[k], thickness);
+        }
+    }
+}
+
+static enum status change_wall(struct plan_context *c, int wall)
 {
     const struct statement *s = c->s;
+    struct plan_wall *w = &c->plan->walls[wall];
     if (check_options(c, 1u << OPTION_THICKNESS | 1u << OPTION_FOOT | 1u << OPTION_TOP, "thickness, foot or top"))
         return c->err->status;
-    set_if_given(s, OPTION_THICKNESS, &w->thickness);
+    if (s->has_option[OPTION_THICKNESS]) {
+        if (check_length(c, "thickness", s->options[OPTION_THICKNESS])) return c->err->status;
+        set_thickness(c->plan, wall, s->options[OPTION_THICKNESS]);
+    }
     set_if_given(s, OPTION_FOOT, &w->foot);
     set_if_given(s, OPTION_TOP, &w->top);
     w->has_top |= s->has_option[OPTION_TOP];
-    if (s->has_option[OPTION_THICKNESS] && check_length(c, "thickness", w->thickness)) return c->err->status;
     if (w->top - w->foot >= MIN_SIZE) return ST_OK;
     return statement_error(c, "wall %s would go from %.9g up to %.9g, wanted a top above its foot.", s->name, w->foot,
                            w->top);
@@ -151,7 +170,7 @@ enum status apply_change(struct plan_context *c)
     if (find_named(c, s->name, 1u << NAMED_WALL | 1u << NAMED_BOX | 1u << NAMED_ROOM, "a wall, a box or a room", &kind,
                    &at))
         return c->err->status;
-    if (kind == NAMED_WALL) return change_wall(c, &c->plan->walls[at]);
+    if (kind == NAMED_WALL) return change_wall(c, at);
     if (kind == NAMED_ROOM) return change_room(c, &c->plan->rooms[at]);
     struct plan_box *b = &c->plan->boxes[at];
     if (check_options(c, 1u << OPTION_FOOT | 1u << OPTION_TOP | 1u << OPTION_TURN, "foot, top or turn"))

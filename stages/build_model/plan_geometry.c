@@ -63,6 +63,12 @@ struct plan_line wall_cap(const struct plan *plan, int wall, int end, int *face_
     return l;
 }
 
+bool walls_on_one_line(const struct plan_wall *a, const struct plan_wall *b)
+{
+    const double turn = a->d[0] * b->d[0] + a->d[1] * b->d[1];
+    return turn > 1 - 1e-12 && fabs(a->c - b->c) < LENGTH_EPS;
+}
+
 void cut_range(const struct plan_wall *w, struct plan_line across, double range[2])
 {
     double p[2] = {0, 0};

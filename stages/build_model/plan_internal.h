@@ -94,6 +94,9 @@ enum status plan_state(char **state, const struct plan *plan, struct err *err);
 /* S of the point's projection onto the wall's line. */
 double wall_s(const struct plan_wall *w, const double p[2]);
 
+/* Both in faces lie on one line and face the same way. */
+bool walls_on_one_line(const struct plan_wall *a, const struct plan_wall *b);
+
 /* The near or far face of `other`, seen by wall w whose end `end` runs up to it; n points onwards, away from w. */
 struct plan_line face_ahead(const struct plan_wall *w, int end, const struct plan_wall *other, bool far, int *side);
 

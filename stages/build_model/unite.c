@@ -63,6 +63,7 @@ struct polygon_soup { /* the faces of all bodies as polygons, with offsets inste
 struct name_table {
     const char **texts; /* by rank: in the order of first occurrence in the list */
     int *rank;          /* of each half-space's name */
+    int *room;          /* by rank: of the name's faces; -1: none */
     char *present;      /* by rank: is on the surface */
     int count;
 };
@@ -269,7 +270,7 @@ static int following(const struct body_union *j, int h, const int *leaving, int 
     int64_t back[3], down[3], d[3], best_d[3];
     for (int i = 0; i < count; i++) {
         const struct border *o = &j->borders.borders[j->halves[leaving[i]].border];
-        if (o->plane != b->plane || o->side != b->side) continue;
+        if (o->plane != b->plane || o->side != b->side || o->room != b->room) continue;
         found++;
         if (best < 0) {
             best = leaving[i];
@@ -478,23 +479,19 @@ static const struct border *loop_border(const struct body_union *j, int loop)
     return &j->borders.borders[j->halves[j->loops[loop].half].border];
 }
 
-static int loop_side(const struct body_union *j, int loop)
-{
-    return 2 * loop_border(j, loop)->plane + (loop_border(j, loop)->side > 0);
-}
-
 struct loop_order {
-    int key, loop;
+    int key, room, loop; /* key: 2 plane + side */
 };
 
 static int compare_loops(const void *a, const void *b)
 {
     const struct loop_order *p = a, *q = b;
     if (p->key != q->key) return p->key < q->key ? -1 : 1;
+    if (p->room != q->room) return p->room < q->room ? -1 : 1;
     return (p->loop > q->loop) - (p->loop < q->loop);
 }
 
-/* Makes faces from the loops on one side of one plane. */
+/* Makes faces from the loops of one room on one side of one plane. */
 static enum status faces_of_side(struct body_union *j, const struct loop_order *loops, int count, const struct solid *s,
                                  struct err *err)
 {
@@ -547,10 +544,10 @@ static int side_begin(const struct loop_order *order, int count, int key)
     return low;
 }
 
-/* Names each face after the lowest rank among its facets, and records the names that it merged. loop_of_border: a loop
- * of each border. */
+/* Names each face after the lowest rank among its facets of its room, and records the names that it merged.
+ * loop_of_border: a loop of each border. */
 static enum status name_faces(struct body_union *j, const struct loop_order *order, const int *loop_of_border,
-                              struct merges *merges, char *present, struct err *err)
+                              struct merges *merges, const struct name_table *names, struct err *err)
 {
     const struct border_set *b = &j->borders;
     const int first = merges->count;
@@ -572,33 +569,35 @@ static enum status name_faces(struct body_union *j, const struct loop_order *ord
     }
     for (int i = first; i < merges->count; i++) {
         struct union_face *f = &j->faces[merges->merges[i].into];
-        if (merges->merges[i].name < f->name) f->name = merges->merges[i].name;
+        const int name = merges->merges[i].name;
+        if (names->room[name] == loop_border(j, f->loop)->room && name < f->name) f->name = name;
     }
     int kept = first;
     for (int i = first; i < merges->count; i++) {
         const struct merge m = {merges->merges[i].name, j->faces[merges->merges[i].into].name};
-        present[m.name] = 1;
+        names->present[m.name] = 1;
         if (m.name != m.into) merges->merges[kept++] = m;
     }
     merges->count = kept;
     return ST_OK;
 }
 
-static enum status make_faces(struct body_union *j, const int *loop_of_border, struct merges *merges, char *present,
-                              const struct solid *s, struct err *err)
+static enum status make_faces(struct body_union *j, const int *loop_of_border, struct merges *merges,
+                              const struct name_table *names, const struct solid *s, struct err *err)
 {
     struct loop_order *order = malloc(((size_t)j->loop_count + 1) * sizeof *order);
     enum status st = order ? ST_OK : err_nomem(err, "faces of a union", (size_t)j->loop_count * sizeof *order);
     for (int i = 0; !st && i < j->loop_count; i++) {
         classify_loop(j, i);
-        order[i] = (struct loop_order){loop_side(j, i), i};
+        const struct border *b = loop_border(j, i);
+        order[i] = (struct loop_order){2 * b->plane + (b->side > 0), b->room, i};
     }
     if (!st && j->loop_count) qsort(order, (size_t)j->loop_count, sizeof *order, compare_loops);
     for (int i = 0, k; !st && i < j->loop_count; i = k) {
-        for (k = i + 1; k < j->loop_count && order[k].key == order[i].key;) k++;
+        for (k = i + 1; k < j->loop_count && order[k].key == order[i].key && order[k].room == order[i].room;) k++;
         st = faces_of_side(j, &order[i], k - i, s, err);
     }
-    if (!st) st = name_faces(j, order, loop_of_border, merges, present, err);
+    if (!st) st = name_faces(j, order, loop_of_border, merges, names, err);
     free(order);
     return st;
 }
@@ -809,7 +808,7 @@ static enum status unite_body(struct polygon_soup *r, const struct solid_list *l
         const size_t at = half_space_of[members[i]];
         st = convex_set_add(&j.set, &list->solids[members[i]], &half_spaces[at], &names->rank[at], err);
     }
-    if (!st) st = borders_find(&j.borders, &j.set, err);
+    if (!st) st = borders_find(&j.borders, &j.set, names->room, err);
     if (!st) st = make_halves(&j, first, err);
     if (!st) st = link_halves(&j, first, err);
     int *loop_of_border = malloc(((size_t)j.borders.border_count + 1) * sizeof *loop_of_border);
@@ -817,7 +816,7 @@ static enum status unite_body(struct polygon_soup *r, const struct solid_list *l
     if (!st) {
         for (int i = 0; i < j.half_count; i++) loop_of_border[j.halves[i].border] = j.halves[i].loop;
         make_vertices(&j);
-        st = make_faces(&j, loop_of_border, merges, names->present, first, err);
+        st = make_faces(&j, loop_of_border, merges, names, first, err);
     }
     if (!st) st = split_edges(&j, err);
     if (!st) st = add_result(&j, r, first->body, names->texts, err);
@@ -838,6 +837,49 @@ static int rank_of(const char *text, const char **texts, int *count, int *slots,
     return slots[at] = (*count)++;
 }
 
+/* The text after the floor or ceiling of a room's face name, and its length; 0: a face of no room. */
+static size_t room_of(const char *name, const char **room)
+{
+    static const char *const kinds[] = {"floor/", "ceiling/"};
+    for (int i = 0; i < 2; i++) {
+        const size_t length = strlen(kinds[i]);
+        *room = name + length;
+        if (!strncmp(name, kinds[i], length)) return strcspn(*room, "/");
+    }
+    return 0;
+}
+
+/* Numbers the rooms of names in the order of their first occurrence. */
+static enum status number_rooms(struct name_table *names, struct err *err)
+{
+    const char **first = malloc(((size_t)names->count + 1) * sizeof *first);
+    int rooms = 0, size = 64;
+    while (size < 2 * names->count) size *= 2;
+    int *slots = malloc((size_t)size * sizeof *slots);
+    enum status st = first && slots ? ST_OK : err_nomem(err, "rooms of names", (size_t)size * sizeof *slots);
+    for (int i = 0; i < size && !st; i++) slots[i] = -1;
+    for (int i = 0; i < names->count && !st; i++) {
+        const char *room;
+        const size_t length = room_of(names->texts[i], &room);
+        names->room[i] = -1;
+        if (!length) continue;
+        unsigned at = 0;
+        for (size_t k = 0; k < length; k++) at = at * 31 + (unsigned char)room[k];
+        for (at &= (unsigned)size - 1; slots[at] >= 0; at = (at + 1) & ((unsigned)size - 1)) {
+            const char *other = first[slots[at]];
+            if (!strncmp(other, room, length) && (!other[length] || other[length] == '/')) break;
+        }
+        if (slots[at] < 0) {
+            first[rooms] = room;
+            slots[at] = rooms++;
+        }
+        names->room[i] = slots[at];
+    }
+    free(first);
+    free(slots);
+    return st;
+}
+
 static enum status rank_names(struct name_table *names, int *body, int *body_count, const struct solid_list *list,
                               struct err *err)
 {
@@ -849,8 +891,9 @@ static enum status rank_names(struct name_table *names, int *body, int *body_cou
     const char **bodies = malloc(((size_t)list->count + 1) * sizeof *bodies);
     names->texts = malloc(all * sizeof *names->texts);
     names->rank = malloc(all * sizeof *names->rank);
+    names->room = malloc(all * sizeof *names->room);
     names->present = calloc(all, 1);
-    enum status st = slots && bodies && names->texts && names->rank && names->present
+    enum status st = slots && bodies && names->texts && names->rank && names->room && names->present
                          ? ST_OK
                          : err_nomem(err, "names of solids", 2 * (size_t)size * sizeof *slots);
     for (int i = 0; !st && i < 2 * size; i++) slots[i] = -1;
@@ -861,7 +904,7 @@ static enum status rank_names(struct name_table *names, int *body, int *body_cou
     }
     free(slots);
     free(bodies);
-    return st;
+    return st ? st : number_rooms(names, err);
 }
 
 static int compare_merges(const void *a, const void *b)
@@ -934,6 +977,7 @@ enum status solids_unite(struct solid_mesh *mesh, const struct solid_list *solid
     free(half_spaces);
     free(names.texts);
     free(names.rank);
+    free(names.room);
     free(names.present);
     free(merges.merges);
     free(r.vertices);
