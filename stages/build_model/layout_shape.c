@@ -39,3 +39,8 @@ enum status add_shape(struct solid_list *list, const char *body, struct shape *s
     shape_release(s);
     return st;
 }
+
+const char *reveal_side(const struct plan_wall *w, int upper_bound_of_hole)
+{
+    return (w->sign > 0) == (upper_bound_of_hole == 1) ? "right" : "left";
+}

@@ -25,6 +25,13 @@ void add_side(struct shape *s, double x, double y, double z, double offset, cons
 /* Adds what the shape holds to the list and releases it. */
 enum status add_shape(struct solid_list *list, const char *body, struct shape *s, struct err *err);
 
+/* Left or right as seen from inside: the side nearer to the wall's start is left. */
+const char *reveal_side(const struct plan_wall *w, int upper_bound_of_hole);
+
+/* layout_walls.c */
+
+enum status add_walls(struct solid_list *list, const struct plan *plan, struct err *err);
+
 /* layout_slabs.c */
 
 enum status add_room(struct solid_list *list, const struct plan *p, const struct plan_room *r, struct err *err);

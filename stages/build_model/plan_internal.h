@@ -53,7 +53,21 @@ enum status add_name(struct plan *plan, const char *name, enum name_kind kind, i
 
 /* Where set stores a default; *name: its word. */
 double *default_value(struct plan *plan, enum plan_default which, const char **name);
+/* The default value, which the statement uses. */
+double use_default(struct plan_context *c, enum plan_default which);
+/* The option's value, or the default's. */
+double option_or_default(struct plan_context *c, enum option option, enum plan_default which);
 enum status check_length(struct plan_context *c, const char *what, double value);
+enum status apply_set(struct plan_context *c);
+enum status apply_wall(struct plan_context *c);
+enum status apply_room(struct plan_context *c);
+enum status apply_slope(struct plan_context *c);
+
+/* plan_openings.c */
+
+enum status apply_opening(struct plan_context *c);
+enum status apply_slot(struct plan_context *c);
+enum status apply_box(struct plan_context *c);
 /* The statement's rectangle on a wall as S and z, ascending. */
 enum status place_on_wall(struct plan_context *c, int wall, double s[2], double z[2]);
 /* Doors and passages drawn in a photograph begin at the floor, whichever pixel was clicked. */

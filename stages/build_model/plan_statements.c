@@ -1,8 +1,4 @@
-/* plan_statements.c - what each statement of a model script does to the plan.
- *
- * A statement changes the plan at once. What depends on the whole plan (whether an opening lies in its wall, whether a
- * room's walls close) is checked once the script is read, and in an edit after each statement, so that the statement
- * which breaks the building is named. */
+/* plan_statements.c - statements that make walls and rooms, and the defaults that set gives them. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,42 +8,6 @@
 #include "common/base/log.h"
 #include "stages/build_model/plan_internal.h"
 #include "stages/build_model/room_parts.h"
-
-void plan_release(struct plan *plan)
-{
-    if (!plan) return;
-    for (int i = 0; i < plan->wall_count; i++) free(plan->walls[i].name);
-    for (int i = 0; i < plan->opening_count; i++) free(plan->openings[i].name);
-    for (int i = 0; i < plan->slot_count; i++) free(plan->slots[i].name);
-    for (int i = 0; i < plan->box_count; i++) free(plan->boxes[i].name);
-    for (int i = 0; i < plan->room_count; i++) {
-        free(plan->rooms[i].name);
-        free(plan->rooms[i].walls);
-        free(plan->rooms[i].edges);
-        free(plan->rooms[i].edge_of);
-        room_parts_release(&plan->rooms[i]);
-    }
-    free(plan->walls);
-    free(plan->openings);
-    free(plan->slots);
-    free(plan->boxes);
-    free(plan->rooms);
-    free(plan->names);
-    *plan = (struct plan){0};
-}
-
-void plan_begin(struct plan *plan, const struct model_axes *axes)
-{
-    *plan = (struct plan){0};
-    if (!axes || axes->metric) {
-        plan->thickness = 0.15;
-        plan->glass = 0.02;
-        plan->leaf = 0.04;
-        if (!axes) plan->ceiling = 2.5;
-    }
-    if (axes && axes->ceiling > 0) plan->ceiling = axes->ceiling;
-    if (axes && axes->thickness > 0) plan->thickness = axes->thickness;
-}
 
 enum status check_length(struct plan_context *c, const char *what, double value)
 {
@@ -64,20 +24,18 @@ double *default_value(struct plan *plan, enum plan_default which, const char **n
     return values[which];
 }
 
-/* The default value, which the statement uses. */
-static double use(struct plan_context *c, enum plan_default which)
+double use_default(struct plan_context *c, enum plan_default which)
 {
     c->used |= 1u << which;
     return *default_value(c->plan, which, NULL);
 }
 
-/* The option's value, or the default's. */
-static double option_or(struct plan_context *c, enum option option, enum plan_default which)
+double option_or_default(struct plan_context *c, enum option option, enum plan_default which)
 {
-    return c->s->has_option[option] ? c->s->options[option] : use(c, which);
+    return c->s->has_option[option] ? c->s->options[option] : use_default(c, which);
 }
 
-static enum status apply_set(struct plan_context *c)
+enum status apply_set(struct plan_context *c)
 {
     const struct statement *s = c->s;
     for (int i = 0; i < DEFAULTS; i++) {
@@ -90,16 +48,6 @@ static enum status apply_set(struct plan_context *c)
         *value = s->values[0];
     }
     return ST_OK;
-}
-
-enum status fill_thickness(struct plan_context *c, enum filling fill, double *thickness)
-{
-    *thickness = 0;
-    if (fill != FILL_LEAF && fill != FILL_GLASS) return ST_OK;
-    *thickness = use(c, fill == FILL_GLASS ? DEFAULT_GLASS : DEFAULT_LEAF);
-    if (*thickness > 0) return ST_OK;
-    return statement_error(c, "the thickness of %s is unknown without a scale; write \"set %s NUMBER\" before.",
-                           fill == FILL_GLASS ? "glass" : "a door's leaf", fill == FILL_GLASS ? "glass" : "leaf");
 }
 
 /* ------------------------------------------------------------------------------------------------------------ walls */
@@ -184,15 +132,15 @@ static enum status place_new_wall(struct plan_context *c, struct plan_wall *w)
     return ST_OK;
 }
 
-static enum status apply_wall(struct plan_context *c)
+enum status apply_wall(struct plan_context *c)
 {
     const struct statement *s = c->s;
     struct plan *p = c->plan;
     struct plan_wall w = {.line = s->line, .angled = s->angled};
     if (copy_new_name(c, s->name, &w.name)) return c->err->status;
-    w.thickness = option_or(c, OPTION_THICKNESS, DEFAULT_THICKNESS);
-    w.foot = option_or(c, OPTION_FOOT, DEFAULT_FLOOR);
-    w.top = option_or(c, OPTION_TOP, DEFAULT_CEILING);
+    w.thickness = option_or_default(c, OPTION_THICKNESS, DEFAULT_THICKNESS);
+    w.foot = option_or_default(c, OPTION_FOOT, DEFAULT_FLOOR);
+    w.top = option_or_default(c, OPTION_TOP, DEFAULT_CEILING);
     w.has_top = s->has_option[OPTION_TOP];
     enum status st = ST_OK;
     if (!s->has_option[OPTION_THICKNESS] && w.thickness == 0)
@@ -215,186 +163,18 @@ static enum status apply_wall(struct plan_context *c)
     return add_name(p, w.name, NAMED_WALL, p->wall_count - 1, c->err);
 }
 
-/* Measured from an end of the wall, where its neighbour's near face is; left and right as seen from its inside. */
-static enum status place_from_end(struct plan_context *c, int wall, double s[2], double z[2])
-{
-    const struct plan_wall *w = &c->plan->walls[wall];
-    const double *a = c->s->place.a;
-    double span[2];
-    if (!(a[1] >= MIN_SIZE)) return statement_error(c, "found the width %.9g, wanted %g or more.", a[1], MIN_SIZE);
-    wall_span(c->plan, wall, span);
-    /* the start is at the left */
-    const bool from_high = c->s->place.right == (w->sign > 0);
-    s[0] = from_high ? span[1] - a[0] - a[1] : span[0] + a[0];
-    s[1] = from_high ? span[1] - a[0] : span[0] + a[0] + a[1];
-    z[0] = fmin(a[2], a[3]);
-    z[1] = fmax(a[2], a[3]);
-    return ST_OK;
-}
-
-enum status place_on_wall(struct plan_context *c, int wall, double s[2], double z[2])
-{
-    const struct script_place *p = &c->s->place;
-    const struct plan_wall *w = &c->plan->walls[wall];
-    if (p->kind == PLACE_FROM_END) return place_from_end(c, wall, s, z);
-    if (p->kind == PLACE_COORDINATES) {
-        s[0] = fmin(p->a[0], p->a[2]);
-        s[1] = fmax(p->a[0], p->a[2]);
-        z[0] = fmin(p->a[1], p->a[3]);
-        z[1] = fmax(p->a[1], p->a[3]);
-        return ST_OK;
-    }
-    /* the camera sees one of the faces: from behind, a ray meets the in face from the wrong side */
-    struct vec3 corners[2];
-    const struct plan_line in = wall_face(w, SIDE_IN), out = wall_face(w, SIDE_OUT);
-    struct err first = ERR_INIT;
-    if (place_corners(corners, c->placer, p, vec3_make(in.n[0], in.n[1], 0), in.c, c->path, c->s->line, &first)) {
-        struct err second = ERR_INIT;
-        if (place_corners(corners, c->placer, p, vec3_make(out.n[0], out.n[1], 0), out.c, c->path, c->s->line, &second))
-            return err_set(c->err, first.status, "%s", first.text);
-    }
-    for (int i = 0; i < 2; i++) {
-        const double at[2] = {corners[i].x, corners[i].y};
-        s[i] = wall_s(w, at);
-        z[i] = corners[i].z;
-    }
-    if (s[0] > s[1]) {
-        const double t = s[0];
-        s[0] = s[1];
-        s[1] = t;
-    }
-    if (z[0] > z[1]) {
-        const double t = z[0];
-        z[0] = z[1];
-        z[1] = t;
-    }
-    return ST_OK;
-}
-
-void set_foot_on_floor(const struct plan_context *c, const struct plan_wall *w, enum verb kind, double z[2])
-{
-    if (kind != VERB_WINDOW && c->s->place.kind == PLACE_VIEW) z[0] = w->foot;
-}
-
-static enum status apply_opening(struct plan_context *c)
-{
-    const struct statement *s = c->s;
-    struct plan *p = c->plan;
-    struct plan_opening o = {.line = s->line, .kind = s->verb, .interior = s->interior};
-    if (find_wall(c, s->other, &o.wall)) return c->err->status;
-    if (s->verb == VERB_WINDOW && !s->open) o.fill = FILL_GLASS;
-    if (s->verb == VERB_DOOR && s->closed) o.fill = FILL_LEAF;
-    if (place_on_wall(c, o.wall, o.s, o.z)) return c->err->status;
-    set_foot_on_floor(c, &p->walls[o.wall], s->verb, o.z);
-    if (fill_thickness(c, o.fill, &o.leaf) || copy_new_name(c, s->name, &o.name)) return c->err->status;
-    if (array_append(&p->openings, (size_t)p->opening_count, sizeof o, "openings", c->err)) {
-        free(o.name);
-        return c->err->status;
-    }
-    p->openings[p->opening_count++] = o;
-    return add_name(p, o.name, NAMED_OPENING, p->opening_count - 1, c->err);
-}
-
-/* A footprint in the plane z = a[0] + a[1] x + a[2] y, where a photograph shows it. */
-static enum status place_in_plane(struct plan_context *c, const double plane[3], double low[2], double high[2])
-{
-    const struct script_place *p = &c->s->place;
-    double a[4];
-    if (p->kind == PLACE_FROM_END)
-        return statement_error(c, "%s is in no wall; give its place by coordinates or in a view.", c->s->name);
-    memcpy(a, p->a, sizeof a);
-    if (p->kind == PLACE_VIEW) {
-        struct vec3 corners[2];
-        struct err above = ERR_INIT; /* seen from above, or from below, as a beam is */
-        const double length = sqrt(1 + plane[1] * plane[1] + plane[2] * plane[2]);
-        const struct vec3 up = vec3_scale(vec3_make(-plane[1], -plane[2], 1), 1 / length);
-        const double d = plane[0] / length;
-        if (place_corners(corners, c->placer, p, up, d, c->path, c->s->line, &above) &&
-            place_corners(corners, c->placer, p, vec3_scale(up, -1), -d, c->path, c->s->line, c->err))
-            return c->err->status;
-        for (int i = 0; i < 2; i++) {
-            a[2 * i] = corners[i].x;
-            a[2 * i + 1] = corners[i].y;
-        }
-    }
-    for (int k = 0; k < 2; k++) {
-        low[k] = fmin(a[k], a[2 + k]);
-        high[k] = fmax(a[k], a[2 + k]);
-    }
-    return ST_OK;
-}
-
-enum status place_footprint(struct plan_context *c, double at, double low[2], double high[2])
-{
-    return place_in_plane(c, (const double[3]){at, 0, 0}, low, high);
-}
-
-enum status place_in_room(struct plan_context *c, const struct plan_room *r, enum verb kind, double low[2],
-                          double high[2])
-{
-    if (kind == VERB_HATCH) return place_footprint(c, r->floor, low, high);
-    /* of a gable's planes, the one in which the footprint's middle is on the ceiling */
-    enum status st = ST_OK;
-    for (int i = 0; i < r->lower.count && !st; i++) {
-        st = place_in_plane(c, r->lower.a[i], low, high);
-        const double middle[2] = {0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1])};
-        const struct plan_top one = {{{r->lower.a[i][0], r->lower.a[i][1], r->lower.a[i][2]}}, 1};
-        if (!st && top_at(&one, middle) <= top_at(&r->lower, middle) + LENGTH_EPS) break;
-    }
-    return st;
-}
-
-static enum status apply_slot(struct plan_context *c)
-{
-    const struct statement *s = c->s;
-    struct plan *p = c->plan;
-    struct plan_slot slot = {.line = s->line, .kind = s->verb};
-    if (find_room(c, s->other, &slot.room)) return c->err->status;
-    if (s->verb == VERB_SKYLIGHT && !s->open) slot.fill = FILL_GLASS;
-    if (s->verb == VERB_HATCH && s->closed) slot.fill = FILL_LEAF;
-    if (place_in_room(c, &p->rooms[slot.room], s->verb, slot.low, slot.high) ||
-        fill_thickness(c, slot.fill, &slot.leaf) || copy_new_name(c, s->name, &slot.name))
-        return c->err->status;
-    if (array_append(&p->slots, (size_t)p->slot_count, sizeof slot, "openings in rooms", c->err)) {
-        free(slot.name);
-        return c->err->status;
-    }
-    p->slots[p->slot_count++] = slot;
-    return add_name(p, slot.name, NAMED_SLOT, p->slot_count - 1, c->err);
-}
-
-static enum status apply_box(struct plan_context *c)
-{
-    const struct statement *s = c->s;
-    struct plan *p = c->plan;
-    struct plan_box b = {.line = s->line, .turn = s->has_option[OPTION_TURN] ? s->options[OPTION_TURN] : 0};
-    b.low[2] = option_or(c, OPTION_FOOT, DEFAULT_FLOOR);
-    b.high[2] = option_or(c, OPTION_TOP, DEFAULT_CEILING);
-    if (!s->has_option[OPTION_TOP] && p->ceiling == 0)
-        return statement_error(c, "box %s has no top, because no ceiling was found; add \"top NUMBER\" to the line.",
-                               s->name);
-    const double at = s->has_option[OPTION_AT] ? s->options[OPTION_AT] : b.low[2];
-    if (place_footprint(c, at, b.low, b.high) || copy_new_name(c, s->name, &b.name)) return c->err->status;
-    if (array_append(&p->boxes, (size_t)p->box_count, sizeof b, "boxes", c->err)) {
-        free(b.name);
-        return c->err->status;
-    }
-    p->boxes[p->box_count++] = b;
-    return add_name(p, b.name, NAMED_BOX, p->box_count - 1, c->err);
-}
-
-static enum status apply_room(struct plan_context *c)
+enum status apply_room(struct plan_context *c)
 {
     const struct statement *s = c->s;
     struct plan *p = c->plan;
     struct plan_room r = {.line = s->line, .wall_count = s->name_count};
-    r.floor = option_or(c, OPTION_FLOOR, DEFAULT_FLOOR);
-    r.ceiling = option_or(c, OPTION_CEILING, DEFAULT_CEILING);
+    r.floor = option_or_default(c, OPTION_FLOOR, DEFAULT_FLOOR);
+    r.ceiling = option_or_default(c, OPTION_CEILING, DEFAULT_CEILING);
     if (r.ceiling == 0) return statement_error(c, "no ceiling was found; add \"ceiling NUMBER\" to the line.");
     if (!(r.ceiling - r.floor >= MIN_SIZE))
         return statement_error(c, "room %s goes from %.9g up to %.9g, wanted a ceiling above the floor.", s->name,
                                r.floor, r.ceiling);
-    r.slab = use(c, p->slab > 0 ? DEFAULT_SLAB : DEFAULT_THICKNESS);
+    r.slab = use_default(c, p->slab > 0 ? DEFAULT_SLAB : DEFAULT_THICKNESS);
     if (r.slab == 0)
         return statement_error(c,
                                "the thickness of floors is unknown without a scale; write \"set slab NUMBER\" before.");
@@ -417,7 +197,7 @@ static enum status apply_room(struct plan_context *c)
 }
 
 /* Slopes a ceiling in one plane, or in two that meet in a ridge. */
-static enum status apply_slope(struct plan_context *c)
+enum status apply_slope(struct plan_context *c)
 {
     const struct statement *s = c->s;
     int at, walls[2];
@@ -447,130 +227,4 @@ static enum status apply_slope(struct plan_context *c)
     memcpy(r->slope_heights, s->values, sizeof r->slope_heights);
     r->ridge_at = s->has_option[OPTION_AT] ? s->options[OPTION_AT] : 0;
     return ST_OK;
-}
-
-static enum status apply_statement(struct plan_context *c)
-{
-    switch (c->s->verb) {
-    case VERB_SET:
-        return apply_set(c);
-    case VERB_WALL:
-        return apply_wall(c);
-    case VERB_ROOM:
-        return apply_room(c);
-    case VERB_SLOPE:
-    case VERB_GABLE:
-        return apply_slope(c);
-    case VERB_DOOR:
-    case VERB_PASSAGE:
-    case VERB_WINDOW:
-        return apply_opening(c);
-    case VERB_SKYLIGHT:
-    case VERB_HATCH:
-        return apply_slot(c);
-    case VERB_BOX:
-        return apply_box(c);
-    case VERB_JOIN:
-        return apply_join(c);
-    case VERB_EXTEND:
-        return apply_extend(c);
-    case VERB_SPLIT:
-        return apply_split(c);
-    case VERB_ADJUST:
-        return apply_adjust(c);
-    case VERB_MOVE:
-        return apply_move(c);
-    case VERB_CHANGE:
-        return apply_change(c);
-    case VERB_RESIZE:
-        return apply_resize(c);
-    case VERB_OPEN:
-    case VERB_CLOSE:
-    case VERB_FILL:
-        return apply_fill(c);
-    default:
-        return apply_remove(c);
-    }
-}
-
-static enum status needs_views(struct plan_context *c)
-{
-    if (c->s->place.kind != PLACE_VIEW || c->placer) return ST_OK;
-    return statement_error(c, "the statement names the view %s, but no views are known; give --views.",
-                           c->s->place.view);
-}
-
-/* An edit's statement that changes nothing is a mistake. A default that is set must be used further down. */
-struct edit_watch {
-    char *before;
-    int set_line[DEFAULTS]; /* of a default that no statement used yet; 0: none */
-};
-
-static enum status unused_default(struct plan_context *c, enum plan_default which, int line)
-{
-    const char *name;
-    default_value(c->plan, which, &name);
-    return err_set(c->err, ST_DATA,
-                   "%s:%d: \"set %s\" changes nothing: no statement further down uses it, and it does not change what "
-                   "there is%s.",
-                   c->path, line, name,
-                   which == DEFAULT_CEILING     ? "; to change a ceiling, write \"change ROOM ceiling Z\""
-                   : which == DEFAULT_THICKNESS ? "; to change a wall, write \"change WALL thickness T\""
-                                                : "");
-}
-
-static enum status watch_set(struct plan_context *c, struct edit_watch *w)
-{
-    for (int i = 0; i < DEFAULTS; i++) {
-        const char *name;
-        const double *value = default_value(c->plan, (enum plan_default)i, &name);
-        if (strcmp(name, c->s->name)) continue;
-        if (w->set_line[i]) return unused_default(c, (enum plan_default)i, w->set_line[i]);
-        if (*value == c->s->values[0])
-            return statement_error(c, "the statement changes nothing: %s is %.9g already.", name, *value);
-        w->set_line[i] = c->s->line;
-    }
-    return ST_OK;
-}
-
-static enum status apply_watched(struct plan_context *c, struct edit_watch *w)
-{
-    char *after = NULL;
-    if (c->s->verb == VERB_SET) return watch_set(c, w) ? c->err->status : apply_set(c);
-    c->used = 0;
-    if (apply_statement(c) || plan_check(c->plan, c->path, c->s->line, c->err) || plan_state(&after, c->plan, c->err))
-        return c->err->status;
-    for (int i = 0; i < DEFAULTS; i++)
-        if (c->used & 1u << i) w->set_line[i] = 0;
-    const bool same = !strcmp(w->before, after);
-    free(w->before);
-    w->before = after;
-    return same ? statement_error(c, "the statement changes nothing: the plan is like that already.") : ST_OK;
-}
-
-static enum status apply_edit(struct plan_context *c, const struct script *script)
-{
-    struct edit_watch w = {0};
-    enum status st = plan_state(&w.before, c->plan, c->err);
-    for (int i = 0; i < script->count && !st; i++) {
-        c->s = &script->statements[i];
-        st = needs_views(c);
-        if (!st) st = apply_watched(c, &w);
-    }
-    for (int i = 0; i < DEFAULTS && !st; i++)
-        if (w.set_line[i]) st = unused_default(c, (enum plan_default)i, w.set_line[i]);
-    free(w.before);
-    return st;
-}
-
-enum status plan_apply(struct plan *plan, const struct script *script, bool edit, const struct placer *placer,
-                       struct err *err)
-{
-    struct plan_context c = {.plan = plan, .path = script->path, .placer = placer, .err = err};
-    if (edit) return apply_edit(&c, script);
-    for (int i = 0; i < script->count; i++) {
-        c.s = &script->statements[i];
-        if (needs_views(&c) || apply_statement(&c)) return err->status;
-    }
-    return plan_check(plan, script->path, 0, err);
 }
