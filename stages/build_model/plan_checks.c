@@ -329,8 +329,8 @@ static void set_plane(struct plan_top *top, int i, struct plan_line line, const 
 {
     const double rise = (heights[1] - heights[0]) / (at[1] - at[0]);
     top->a[i][0] = heights[0] - rise * at[0];
-    top->a[i][1] = rise * line.n[0];
-    top->a[i][2] = rise * line.n[1];
+    top->a[i][1] = rise * line.n[0] + 0.0; /* a -0 becomes 0 */
+    top->a[i][2] = rise * line.n[1] + 0.0;
 }
 
 /* The planes of the ceiling's lower face. */
