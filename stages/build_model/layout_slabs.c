@@ -21,8 +21,8 @@ struct slab { /* a floor, or the part of a ceiling in one plane */
     struct solid_list *list;
     const struct plan *plan;
     const struct plan_room *room;
-    enum verb opening;     /* of its openings: VERB_HATCH for a floor */
-    const double *ceiling; /* its plane; NULL: a floor */
+    enum verb opening; /* of its openings: VERB_HATCH for a floor */
+    int plane;         /* of the ceiling's lower face; -1: a floor */
     struct err *err;
 };
 
@@ -38,20 +38,44 @@ static void slab_sides(struct shape *s, const struct slab *b, const struct part_
             add_side(s, l.n[0], l.n[1], 0, l.c, "wall/%s/%s", p->walls[c[i].wall].name,
                      c[i].side == SIDE_IN ? "in" : "out");
         else
-            add_side(s, l.n[0], l.n[1], 0, l.c, "%s/%s/side", b->ceiling ? "ceiling" : "floor", b->room->name);
+            add_side(s, l.n[0], l.n[1], 0, l.c, "%s/%s/side", b->plane >= 0 ? "ceiling" : "floor", b->room->name);
     }
 }
 
+/* Whether the top's plane is its lower one somewhere over a polygon. If its planes coincide there, the first is. */
+static bool is_lower(const struct plan_top *top, int plane, const struct part_corner *c, int n)
+{
+    bool lower[2] = {false, false};
+    for (int i = 0; i < n && top->count > 1; i++) {
+        double z[2];
+        for (int k = 0; k < 2; k++) z[k] = top->a[k][0] + top->a[k][1] * c[i].p[0] + top->a[k][2] * c[i].p[1];
+        for (int k = 0; k < 2; k++) lower[k] |= z[k] < z[!k] - PART_EPS;
+    }
+    return lower[plane] || (plane == 0 && !lower[1]);
+}
+
+/* The half-space above (down: below) `by` above a plane of the top. */
+static void add_plane(struct shape *s, const double plane[3], double by, bool down, const char *name)
+{
+    const double sign = down ? 1 : -1;
+    add_side(s, -sign * plane[1], -sign * plane[2], sign, sign * (plane[0] + by), "%s", name);
+}
+
+/* Adds a slab over a polygon. One of a gable's two planes begins at that plane and ends below the upper faces of both:
+ * together they are all that lies between the lower and the upper faces, and the ridge is where the planes cross. */
 static enum status add_slab(void *ctx, const struct part_corner *c, int n)
 {
     const struct slab *b = ctx;
     const struct plan_room *r = b->room;
-    const double *l = b->ceiling;
     struct shape s = {0};
+    if (b->plane >= 0 && !is_lower(&r->lower, b->plane, c, n)) return ST_OK;
     slab_sides(&s, b, c, n);
-    if (l) {
-        add_side(&s, l[1], l[2], -1, -l[0], "ceiling/%s", r->name);
-        add_side(&s, -l[1], -l[2], 1, l[0] + r->slab, "ceiling/%s/top", r->name);
+    if (b->plane >= 0) {
+        char lower[NAME_SIZE], upper[NAME_SIZE];
+        snprintf(lower, sizeof lower, "ceiling/%s", r->name);
+        snprintf(upper, sizeof upper, "ceiling/%s/top", r->name);
+        add_plane(&s, r->lower.a[b->plane], 0, false, lower);
+        for (int i = 0; i < r->lower.count; i++) add_plane(&s, r->lower.a[i], r->slab, true, upper);
     } else {
         add_side(&s, 0, 0, 1, r->floor, "floor/%s", r->name);
         add_side(&s, 0, 0, -1, r->slab - r->floor, "floor/%s/bottom", r->name);
@@ -94,55 +118,37 @@ static enum status add_around_slots(struct slab *b, const struct part_corner *c,
     return st;
 }
 
-/* Adds the parts of a gable's ceiling on either side of the ridge, or the whole ceiling. */
-static enum status add_ceiling(struct slab *b, const struct room_part *part)
-{
-    const struct plan_room *r = b->room;
-    b->ceiling = r->lower.a[0];
-    if (r->lower.count == 1) return add_around_slots(b, part->corners, part->count);
-    struct part_corner *half = calloc((size_t)part->count + 2, sizeof *half);
-    enum status st = half ? ST_OK : err_nomem(b->err, "a ceiling", (size_t)part->count * sizeof *half);
-    for (int i = 0; i < 2 && !st; i++) {
-        const struct part_corner ridge = {.line = i ? line_reversed(r->ridge) : r->ridge, .wall = PART_CUT};
-        const int n = part_clip(half, part->corners, part->count, &ridge);
-        b->ceiling = r->lower.a[i];
-        if (n) st = add_around_slots(b, half, n);
-    }
-    free(half);
-    return st;
-}
-
 enum status add_room(struct solid_list *list, const struct plan *p, const struct plan_room *r, struct err *err)
 {
     enum status st = ST_OK;
-    for (int i = 0; i < r->part_count && !st; i++) {
-        struct slab floor = {list, p, r, VERB_HATCH, NULL, err}, ceiling = {list, p, r, VERB_SKYLIGHT, NULL, err};
-        st = add_around_slots(&floor, r->parts[i].corners, r->parts[i].count);
-        if (!st) st = add_ceiling(&ceiling, &r->parts[i]);
-    }
+    for (int i = 0; i < r->part_count && !st; i++)
+        for (int plane = -1; plane < r->lower.count && !st; plane++) {
+            struct slab b = {list, p, r, plane < 0 ? VERB_HATCH : VERB_SKYLIGHT, plane, err};
+            st = add_around_slots(&b, r->parts[i].corners, r->parts[i].count);
+        }
     return st;
 }
 
-/* One part of what fills a slot: between two heights above `plane`, within its footprint and before the ridge. */
+/* Adds one solid of what fills a slot, within its footprint: between two heights above the plane of `top`, and below
+ * the same height above its other plane. */
 static enum status add_slot_part(struct solid_list *list, const struct plan *p, const struct plan_slot *o,
-                                 const double plane[3], const double heights[2], const struct plan_line *ridge,
-                                 struct err *err)
+                                 const struct plan_top *top, int plane, const double heights[2], struct err *err)
 {
     const bool glass = o->fill == FILL_GLASS;
     const char *kind = glass ? "glass" : verb_name(o->kind), *leaf = glass ? "" : "leaf-";
     const bool above = o->kind == VERB_SKYLIGHT; /* the room is below a skylight, above a hatch */
-    char body[NAME_SIZE];
+    char body[NAME_SIZE], faces[2][NAME_SIZE];
     struct part_corner c[4];
     struct shape s = {0};
-    snprintf(body, sizeof body, glass ? "glass/%s" : BODY "%.0s", o->name);
-    add_side(&s, plane[1], plane[2], -1, -plane[0] - heights[0], "%s/%s/%s%s", kind, o->name, leaf,
-             above ? "in" : "out");
-    add_side(&s, -plane[1], -plane[2], 1, plane[0] + heights[1], "%s/%s/%s%s", kind, o->name, leaf,
-             above ? "out" : "in");
     slot_outline(p, o, c);
+    if (!is_lower(top, plane, c, 4)) return ST_OK;
+    snprintf(body, sizeof body, glass ? "glass/%s" : BODY "%.0s", o->name);
+    for (int i = 0; i < 2; i++)
+        snprintf(faces[i], sizeof faces[i], "%s/%s/%s%s", kind, o->name, leaf, (i == 0) == above ? "in" : "out");
+    add_plane(&s, top->a[plane], heights[0], false, faces[0]);
+    for (int i = 0; i < top->count; i++) add_plane(&s, top->a[i], heights[1], true, faces[1]);
     for (int i = 0; i < 4; i++)
         add_side(&s, c[i].line.n[0], c[i].line.n[1], 0, c[i].line.c, "%s/%s/%s", kind, o->name, SIDES[c[i].side]);
-    if (ridge) add_side(&s, ridge->n[0], ridge->n[1], 0, ridge->c, "%s/%s/left", kind, o->name); /* inside */
     return add_shape(list, body, &s, err);
 }
 
@@ -150,21 +156,11 @@ static enum status add_slot_part(struct solid_list *list, const struct plan *p, 
 enum status add_slot(struct solid_list *list, const struct plan *p, const struct plan_slot *o, struct err *err)
 {
     const struct plan_room *r = &p->rooms[o->room];
-    if (o->fill != FILL_LEAF && o->fill != FILL_GLASS) return ST_OK;
-    if (o->kind == VERB_HATCH)
-        return add_slot_part(list, p, o, (const double[3]){r->floor, 0, 0}, (const double[2]){-o->leaf, 0}, NULL, err);
+    const struct plan_top floor = level_top(r->floor), *top = o->kind == VERB_HATCH ? &floor : &r->lower;
+    const double upper = o->kind == VERB_HATCH ? 0 : r->slab, heights[2] = {upper - o->leaf, upper};
     enum status st = ST_OK;
-    for (int i = 0; i < r->lower.count && !st; i++) {
-        const struct part_corner ridge = {.line = i ? line_reversed(r->ridge) : r->ridge, .wall = PART_CUT};
-        struct part_corner c[4], half[6];
-        slot_outline(p, o, c);
-        const int n = r->lower.count == 1 ? 4 : part_clip(half, c, 4, &ridge);
-        bool cut = false;
-        for (int k = 0; k < n && r->lower.count > 1; k++) cut |= half[k].wall == PART_CUT;
-        if (n)
-            st = add_slot_part(list, p, o, r->lower.a[i], (const double[2]){r->slab - o->leaf, r->slab},
-                               cut ? &ridge.line : NULL, err);
-    }
+    if (o->fill != FILL_LEAF && o->fill != FILL_GLASS) return ST_OK;
+    for (int i = 0; i < top->count && !st; i++) st = add_slot_part(list, p, o, top, i, heights, err);
     return st;
 }
 

@@ -114,7 +114,6 @@ struct plan_room {
     double ridge_at;         /* distance of the ridge from the first wall; 0: in the middle */
     /* as of the last check */
     struct plan_top lower;   /* the ceiling's lower face */
-    struct plan_line ridge;  /* of a gable: lower.a[0] holds where n p <= c, lower.a[1] elsewhere */
     struct room_edge *edges; /* counter-clockwise */
     int edge_count;
     struct room_part *parts; /* the slabs' outline, cut into convex parts */

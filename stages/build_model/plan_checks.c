@@ -364,8 +364,6 @@ static enum status slope_room(struct plan_checker *c, struct plan_room *r)
     set_plane(&r->lower, 1, first, (const double[2]){middle, at[1]},
               (const double[2]){r->slope_heights[2], r->slope_heights[1]});
     r->lower.count = 2;
-    r->ridge = (struct plan_line){{first.n[0], first.n[1]}, middle};
-    if (at[0] > middle) r->ridge = line_reversed(r->ridge);
     return ST_OK;
 }
 
@@ -455,6 +453,8 @@ static enum status check_reach(struct plan_checker *c)
     }
     for (int i = 0; i < p->room_count; i++) {
         const struct plan_room *r = &p->rooms[i];
+        const double ridge = r->shape == GABLE_CEILING ? r->slope_heights[2] + r->slab : 0;
+        if (!r->removed && check_within(c, r->line, "the ridge of room", r->name, &ridge, 1)) return c->err->status;
         for (int e = 0; !r->removed && e < r->edge_count; e++) {
             const double *corner = r->edges[e].outer;
             const double at[4] = {corner[0], corner[1], r->floor - r->slab, top_at(&r->lower, corner) + r->slab};
