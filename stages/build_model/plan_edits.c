@@ -1,5 +1,4 @@
 /* plan_edits.c - statements that change what is there: its place, size, heights and filling. */
-#include <stdio.h>
 #include <string.h>
 
 #include "common/base/log.h"

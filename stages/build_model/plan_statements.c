@@ -1,13 +1,11 @@
 /* plan_statements.c - statements that make walls and rooms, and the defaults that set gives them. */
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "common/base/array.h"
 #include "common/base/log.h"
 #include "stages/build_model/plan_internal.h"
-#include "stages/build_model/room_parts.h"
 
 enum status check_length(struct plan_context *c, const char *what, double value)
 {

@@ -19,7 +19,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/base/hash.h"
 #include "stages/build_model/borders.h"
 #include "stages/build_model/unite_names.h"
 
