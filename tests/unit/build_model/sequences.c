@@ -16,11 +16,19 @@
 #include "common/base/rng.h"
 
 enum { DEFAULT_SEQUENCES = 300, TEXT = 16384, LINE = 256, FURNISHINGS = 6, EDITS = 8, LINES = 10, MAX_HITS = 1024 };
-enum { MAX_TOUCHED = 512 };
+enum { MAX_TOUCHED = 512, MANY_SEQUENCES = 2000 }; /* in many sequences each statement is accepted in some edit */
 
 static struct rng numbers;
 static uint64_t sequence, drawn;
-static int accepted, rejected, exact_models, points;
+static int accepted, rejected, exact_models, points, by_verb[VERB_COUNT];
+
+/* Counts the accepted statement. */
+static void count_verb(const char *line)
+{
+    const size_t length = strcspn(line, " \n");
+    for (int v = 0; v < VERB_COUNT; v++)
+        by_verb[v] += strlen(verb_name((enum verb)v)) == length && !strncmp(verb_name((enum verb)v), line, length);
+}
 
 static double random_unit(void) { return rng_uniform(&numbers, sequence, drawn++); }
 static int one_of(int count) { return (int)(random_unit() * count); }
@@ -363,7 +371,7 @@ static void random_statement(const struct expected *t, char *line, int step)
             snprintf(line, LINE, "extend %s %s to %.2f\n", wall, one_of(2) ? "start" : "end", s);
         break;
     case 18:
-        snprintf(line, LINE, "join %s %s\n", wall, some_wall(t));
+        snprintf(line, LINE, "join %s %s\n", one_of(2) ? wall : t->walls[t->wall_count - 1].name, some_wall(t));
         break;
     case 19:
         new_wall(t, line, step);
@@ -748,6 +756,28 @@ static void interpret(struct expected *expected, const char *text)
         if (strncmp(line, "remodel", 7)) expected_apply(expected, line);
 }
 
+/* A statement that uses a default: a wall, an opening or a box. */
+static void new_user(const struct expected *t, char *line, int step)
+{
+    switch (one_of(3)) {
+    case 0:
+        new_wall(t, line, step);
+        break;
+    case 1:
+        new_hole(t, line, step);
+        break;
+    default:
+        new_box(line, step);
+    }
+}
+
+static void accept_line(struct expected *expected, const char *line)
+{
+    accepted++;
+    count_verb(line);
+    expected_apply(expected, line);
+}
+
 static void one_sequence(void)
 {
     static char base[TEXT], edit[TEXT], tried[TEXT];
@@ -782,21 +812,24 @@ static void one_sequence(void)
     check_model(&m, &expected, rays, base, NULL);
     strcpy(edit, "remodel-script 1\n");
     for (int i = 0; i < EDITS; i++) {
+        char user[LINE] = ""; /* of a default: a set that no statement uses is rejected */
         random_statement(&expected, line, ++step);
+        if (!strncmp(line, "set ", 4)) new_user(&expected, user, ++step);
         if (with_crumbs()) add_crumbs(line);
         strcpy(tried, edit);
-        append(tried, "%s", line);
-        if (!make_model(&edited, base, tried, lines + 1)) {
+        append(tried, "%s%s", line, user);
+        if (!make_model(&edited, base, tried, *user ? 0 : lines + 1)) {
             rejected++;
             continue;
         }
         strcpy(edit, tried);
-        lines++;
-        accepted++;
+        lines += *user ? 2 : 1;
         before = expected;
-        expected_apply(&expected, line);
+        accept_line(&expected, line);
+        if (*user) accept_line(&expected, user);
         touch_line(&touched, &before, line);
         touch_line(&touched, &expected, line);
+        touch_line(&touched, &expected, user);
         check_model(&edited, &expected, rays, base, edit);
         check_identity(&m, &edited, &touched, rays, base, edit);
         if (i == EDITS - 1) assert_triangles_closed(&edited.mesh);
@@ -823,6 +856,11 @@ static void random_sequences_of_edits_give_the_described_solids(void **state)
     }
     print_message("%d sequences: %d edits accepted, %d rejected; %d volumes, %d points compared\n", count, accepted,
                   rejected, exact_models, points);
+    for (int v = 0; v < VERB_COUNT; v++) {
+        print_message("%s %d%s", verb_name((enum verb)v), by_verb[v],
+                      v + 1 < VERB_COUNT ? ", " : " accepted in edits\n");
+        assert_true(by_verb[v] > 0 || count < MANY_SEQUENCES);
+    }
     assert_true(accepted >= 3 * count / 2 && rejected >= count && exact_models >= 2 * count && points >= 10 * count);
 }
 
