@@ -6,6 +6,10 @@
  * below \ above, with the normal outwards, and above \ below, with the normal inwards. So coplanar facets merge, and
  * opposite and covered facets vanish, without special cases.
  *
+ * A floor and a ceiling belong to a room, and surfaces of two rooms, or of a room and of none, are not merged: there is
+ * a border on either side of the line between them. The room of the surface at a place is the lowest of those of the
+ * facets that cover it there.
+ *
  * The borders of these regions are found in the same way, line by line. Each polygon that touches a line of P adds an
  * interval to the line's left or right side (if it has an edge there) or to both (if the line cuts it). The surface has
  * a border where it is on one side of the line only. Intervals end in points where three planes meet, which are
@@ -30,6 +34,7 @@ struct entry { /* an edge of a polygon in the plane */
 
 struct sweep {
     struct convex_set *set;
+    const int *rooms; /* by rank of a name */
     struct border_set *borders;
     int facets;        /* polygons before this index are facets, the others sections */
     int *first, *near; /* solids whose boxes meet the box of solid s, with s: near[first[s] .. first[s + 1]) */
@@ -48,8 +53,9 @@ struct sweep {
     int *events, event_count, event_capacity;
     int *index, index_capacity; /* of points among the events */
     int (*covers)[2][2];        /* change of the number of intervals at an event: BELOW, ABOVE by LEFT, RIGHT */
-    int (*border_at)[2];        /* the border after an event of either orientation of the surface, or -1 */
-    int covers_capacity, border_at_capacity;
+    int (*room_at)[2][2];       /* after an event: the surface's room, by BELOW, ABOVE and LEFT, RIGHT */
+    int (*border_at)[2][2];     /* the border after an event, likewise, or -1 */
+    int covers_capacity, room_at_capacity, border_at_capacity;
 };
 
 void border_set_release(struct border_set *b)
@@ -179,36 +185,63 @@ static bool on_surface(const int cover[2][2], int which, int side)
     return cover[which][side] > 0 && !cover[!which][side];
 }
 
+/* Finds the room of the surface after each event, on both sides. */
+static void find_rooms(struct sweep *w)
+{
+    for (int i = 0; i < w->event_count; i++)
+        for (int k = 0; k < 4; k++) w->room_at[i][k / 2][k % 2] = -1;
+    for (int i = 0; i < w->interval_count; i++) {
+        const struct interval *v = &w->intervals[i];
+        const struct polygon *p = &w->set->polygons[v->polygon];
+        const int room = p->side ? w->rooms[p->name] : -1, which = p->side > 0 ? BELOW : ABOVE;
+        for (int k = w->index[v->from]; room >= 0 && k < w->index[v->to]; k++)
+            for (int side = LEFT; side <= RIGHT; side++) {
+                int *at = &w->room_at[k][which][side];
+                if (v->on[side] && (*at < 0 || room < *at)) *at = room;
+            }
+    }
+}
+
+/* Continues the border that ends at event `i`, or begins one there. */
+static enum status add_border(struct sweep *w, int i, struct border b, int *run, struct err *err)
+{
+    struct border_set *set = w->borders;
+    if (*run >= 0 && set->borders[*run].forward == b.forward && set->borders[*run].room == b.room) {
+        *(b.forward ? &set->borders[*run].to : &set->borders[*run].from) = w->events[i + 1];
+        return ST_OK;
+    }
+    if (exact_grow(&set->borders, &set->border_capacity, set->border_count + 1, sizeof *set->borders, err))
+        return err->status;
+    b.line = w->line;
+    b.from = w->events[b.forward ? i : i + 1];
+    b.to = w->events[b.forward ? i + 1 : i];
+    *run = set->border_count++;
+    set->borders[*run] = b;
+    return ST_OK;
+}
+
 /* Makes borders from the numbers of intervals that cover each part of the line. */
 static enum status add_borders(struct sweep *w, int plane, bool *any, struct err *err)
 {
-    int cover[2][2] = {{0}}, run[2] = {-1, -1};
+    int cover[2][2] = {{0}}, run[2][2] = {{-1, -1}, {-1, -1}};
     *any = false;
     for (int i = 0; i + 1 < w->event_count; i++) {
         for (int k = 0; k < 4; k++) cover[k / 2][k % 2] += w->covers[i][k / 2][k % 2];
         for (int which = BELOW; which <= ABOVE; which++) {
-            const bool left = on_surface(cover, which, LEFT), right = on_surface(cover, which, RIGHT);
-            const bool forward = which == BELOW ? left : right;
-            int *at = &run[which];
-            if (left == right) {
-                *at = -1;
-            } else if (*at >= 0 && w->borders->borders[*at].forward == forward) {
-                struct border *b = &w->borders->borders[*at];
-                *(forward ? &b->to : &b->from) = w->events[i + 1];
-            } else {
-                struct border_set *set = w->borders;
-                if (exact_grow(&set->borders, &set->border_capacity, set->border_count + 1, sizeof *set->borders, err))
-                    return err->status;
-                *at = set->border_count++;
-                set->borders[*at] = (struct border){.plane = plane,
-                                                    .side = which == BELOW ? 1 : -1,
-                                                    .line = w->line,
-                                                    .from = w->events[forward ? i : i + 1],
-                                                    .to = w->events[forward ? i + 1 : i],
-                                                    .forward = forward};
-                *any = true;
+            const bool on[2] = {on_surface(cover, which, LEFT), on_surface(cover, which, RIGHT)};
+            const int *room = w->room_at[i][which];
+            for (int side = LEFT; side <= RIGHT; side++) {
+                int *at = &run[which][side];
+                const bool ends = on[side] && !(on[!side] && room[LEFT] == room[RIGHT]);
+                if (!ends) *at = -1;
+                const struct border b = {.plane = plane,
+                                         .side = which == BELOW ? 1 : -1,
+                                         .room = room[side],
+                                         .forward = (side == LEFT) == (which == BELOW)};
+                if (ends && add_border(w, i, b, at, err)) return err->status;
+                *any |= ends;
+                w->border_at[i][which][side] = *at;
             }
-            w->border_at[i][which] = *at;
         }
         /* for add_names(): whether the surface is on this side of the line */
         for (int k = 0; k < 4; k++) w->covers[i][k / 2][k % 2] = on_surface(cover, k / 2, k % 2);
@@ -224,19 +257,20 @@ static enum status add_names(struct sweep *w, struct err *err)
         const struct polygon *p = &w->set->polygons[v->polygon];
         if (!p->side) continue;
         const int which = p->side > 0 ? BELOW : ABOVE;
-        int last = -1;
-        for (int k = w->index[v->from]; k < w->index[v->to]; k++) {
-            const bool seen[2] = {v->on[LEFT] && w->covers[k][which][LEFT], v->on[RIGHT] && w->covers[k][which][RIGHT]};
-            if (!seen[LEFT] && !seen[RIGHT]) continue;
-            w->visible[v->polygon] = 1;
-            const int border = w->border_at[k][which];
-            if (border < 0 || border == last) continue;
-            last = border;
-            w->bordered[v->polygon] = 1;
-            struct border_set *set = w->borders;
-            if (exact_grow(&set->names, &set->name_capacity, set->name_count + 1, sizeof *set->names, err))
-                return err->status;
-            set->names[set->name_count++] = (struct border_name){border, p->name};
+        for (int side = LEFT; side <= RIGHT; side++) {
+            int last = -1;
+            for (int k = w->index[v->from]; v->on[side] && k < w->index[v->to]; k++) {
+                if (!w->covers[k][which][side]) continue;
+                w->visible[v->polygon] = 1;
+                const int border = w->border_at[k][which][side];
+                if (border < 0 || border == last) continue;
+                last = border;
+                w->bordered[v->polygon] = 1;
+                struct border_set *set = w->borders;
+                if (exact_grow(&set->names, &set->name_capacity, set->name_count + 1, sizeof *set->names, err))
+                    return err->status;
+                set->names[set->name_count++] = (struct border_name){border, p->name};
+            }
         }
     }
     return ST_OK;
@@ -276,6 +310,7 @@ static enum status sweep_line(struct sweep *w, int plane, const struct entry *en
     w->event_count = kept;
     if (exact_grow(&w->index, &w->index_capacity, space->point_count, sizeof *w->index, err) ||
         exact_grow(&w->covers, &w->covers_capacity, kept + 1, sizeof *w->covers, err) ||
+        exact_grow(&w->room_at, &w->room_at_capacity, kept + 1, sizeof *w->room_at, err) ||
         exact_grow(&w->border_at, &w->border_at_capacity, kept + 1, sizeof *w->border_at, err))
         return err->status;
     memset(w->covers, 0, (size_t)kept * sizeof *w->covers);
@@ -290,6 +325,7 @@ static enum status sweep_line(struct sweep *w, int plane, const struct entry *en
             }
     }
     bool any;
+    find_rooms(w);
     if (add_borders(w, plane, &any, err) || add_names(w, err)) return err->status;
     if (!any) return ST_OK;
     struct border_set *b = w->borders;
@@ -352,9 +388,9 @@ static enum status sweep_plane(struct sweep *w, int plane, struct err *err)
     return st;
 }
 
-enum status borders_find(struct border_set *borders, struct convex_set *set, struct err *err)
+enum status borders_find(struct border_set *borders, struct convex_set *set, const int *rooms, struct err *err)
 {
-    struct sweep w = {.set = set, .borders = borders, .facets = set->polygon_count};
+    struct sweep w = {.set = set, .rooms = rooms, .borders = borders, .facets = set->polygon_count};
     const int planes = set->space.plane_count; /* sections add none */
     enum status st = find_near(&w, err);
     w.plane_first = calloc((size_t)planes + 2, sizeof *w.plane_first);
@@ -391,6 +427,7 @@ enum status borders_find(struct border_set *borders, struct convex_set *set, str
     free(w.events);
     free(w.index);
     free(w.covers);
+    free(w.room_at);
     free(w.border_at);
     return st;
 }

@@ -4,10 +4,11 @@
 
 #include "stages/build_model/convex.h"
 
-/* A maximal segment of a line along which the surface in one plane ends. Seen from outside, the surface is to the left
- * of the direction from `from` to `to`. */
+/* A maximal segment of a line along which the surface in one plane ends, or another room's surface begins. Seen from
+ * outside, the surface is to the left of the direction from `from` to `to`. */
 struct border {
     int plane, side; /* the outward normal is side times the plane's */
+    int room;        /* of the surface; -1: of none */
     int line, from, to;
     bool forward; /* along the line's direction */
 };
@@ -29,8 +30,10 @@ struct border_set {
     int inner_capacity;
 };
 
-/* borders is empty on entry; the caller releases it, also after a failure. Adds sections, lines and points to set. */
-enum status borders_find(struct border_set *borders, struct convex_set *set, struct err *err);
+/* borders is empty on entry; the caller releases it, also after a failure. Adds sections, lines and points to set. rooms:
+ * of each name's rank the room that its faces belong to, or -1. Where faces of several rooms coincide, the surface
+ * belongs to the lowest. */
+enum status borders_find(struct border_set *borders, struct convex_set *set, const int *rooms, struct err *err);
 
 void border_set_release(struct border_set *borders);
 

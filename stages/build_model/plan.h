@@ -40,15 +40,36 @@ struct plan_wall {
     struct wall_end ends[2];
 };
 
+struct plan_line { /* n p = c, n unit */
+    double n[2], c;
+};
+
+struct plan_top { /* of walls, or the lower face of a ceiling: the lowest of z = a[i][0] + a[i][1] x + a[i][2] y */
+    double a[2][3];
+    int count;
+};
+
 struct plan_opening {
     char *name;
     int line;
     enum verb kind; /* VERB_DOOR, VERB_PASSAGE, VERB_WINDOW */
     bool removed, interior;
-    bool filled; /* a door's leaf, a window's glass */
-    double leaf; /* thickness of the leaf or glass; 0: not set yet */
+    enum filling fill;
+    bool refilled; /* by `fill`: a window has glass also between two rooms */
+    double leaf;   /* thickness of the leaf or glass; 0: not set yet */
     int wall;
     double s[2], z[2]; /* ascending */
+};
+
+struct plan_slot { /* an opening in a room's ceiling or floor */
+    char *name;
+    int line;
+    enum verb kind; /* VERB_SKYLIGHT, VERB_HATCH */
+    bool removed;
+    enum filling fill;
+    double leaf; /* as of an opening */
+    int room;
+    double low[2], high[2];
 };
 
 struct plan_box {
@@ -66,6 +87,19 @@ struct room_edge {              /* consecutive walls on one line are one edge */
     bool shared;                /* there is a room on the other side: the border is in the wall's middle */
 };
 
+struct part_corner { /* of a convex polygon in plan, counter-clockwise */
+    double p[2];
+    struct plan_line line; /* of the side that ends here, n outwards */
+    int wall, side;        /* the wall face in that side; wall is one of enum part_side where there is none */
+};
+
+enum part_side { PART_CUT = -1, PART_MIDDLE = -2 }; /* a cut, the middle of a wall between two rooms */
+
+struct room_part {
+    struct part_corner *corners;
+    int count;
+};
+
 struct plan_room {
     char *name;
     int line;
@@ -74,15 +108,19 @@ struct plan_room {
     int *edge_of; /* of each of walls, as of the last check */
     int wall_count;
     double floor, ceiling, slab; /* slab: thickness of both */
-    bool sloped;
+    enum { LEVEL_CEILING, SLOPED_CEILING, GABLE_CEILING } shape;
     int slope_walls[2];
-    double slope_heights[2]; /* of the ceiling at slope_walls */
-    double lower[3];         /* ceiling: z = lower[0] + lower[1] x + lower[2] y */
-    struct room_edge *edges; /* counter-clockwise, as of the last check */
+    double slope_heights[3]; /* of the ceiling at slope_walls, and of a gable's ridge */
+    double ridge_at;         /* distance of the ridge from the first wall; 0: in the middle */
+    /* as of the last check */
+    struct plan_top lower;   /* the ceiling's lower face */
+    struct room_edge *edges; /* counter-clockwise */
     int edge_count;
+    struct room_part *parts; /* the slabs' outline, cut into convex parts */
+    int part_count;
 };
 
-enum name_kind { NAMED_NONE, NAMED_WALL, NAMED_OPENING, NAMED_BOX, NAMED_ROOM };
+enum name_kind { NAMED_NONE, NAMED_WALL, NAMED_OPENING, NAMED_BOX, NAMED_ROOM, NAMED_SLOT };
 
 struct plan_name {
     const char *name; /* NULL: free slot */
@@ -95,9 +133,10 @@ struct plan {
     double thickness, slab, glass, leaf, floor, ceiling;
     struct plan_wall *walls;
     struct plan_opening *openings;
+    struct plan_slot *slots;
     struct plan_box *boxes;
     struct plan_room *rooms;
-    int wall_count, opening_count, box_count, room_count;
+    int wall_count, opening_count, slot_count, box_count, room_count;
     struct plan_name *names; /* a hash table */
     int name_capacity, name_count;
 };
@@ -107,16 +146,13 @@ struct plan {
 void plan_begin(struct plan *plan, const struct model_axes *axes);
 
 /* Applies the statements in order, then checks the whole plan; edit: checks it after every statement, so that the error
- * names the statement that breaks the building. placer may be NULL if no statement names a view. ST_DATA with file and
+ * names the statement that breaks the building, and refuses a statement that changes nothing. placer may be NULL if no statement names a view. ST_DATA with file and
  * line. */
 enum status plan_apply(struct plan *plan, const struct script *script, bool edit, const struct placer *placer,
                        struct err *err);
 void plan_release(struct plan *plan);
 
 /* For the layout and the pictures. */
-struct plan_line { /* n p = c, n unit */
-    double n[2], c;
-};
 struct plan_line wall_face(const struct plan_wall *w, int side); /* n points out of the wall */
 /* The line across a wall at one of its ends, n pointing out of the wall. *face_wall, *face_side: the face of another
  * wall that it lies on; *face_wall is -1 for none. */
@@ -132,5 +168,11 @@ void room_span(const struct plan *plan, const struct plan_room *room, int edge, 
 /* The edge of the room that contains the wall; -1 for none. */
 int room_edge_of(const struct plan_room *room, int wall);
 double plan_wall_top(const struct plan *plan, int wall, double s0, double s1); /* the lowest over s0 .. s1 */
+/* The opening is there: neither it nor its wall is removed, and it is not walled up. */
+bool opening_is_there(const struct plan *plan, const struct plan_opening *o);
+/* The slot is there: neither it nor its room is removed, and it is not walled up. */
+bool slot_is_there(const struct plan *plan, const struct plan_slot *slot);
+double top_at(const struct plan_top *top, const double p[2]);
+struct plan_top level_top(double z);
 
 #endif

@@ -24,19 +24,32 @@ static void print_plan(const struct plan *plan, FILE *to)
     }
     for (int i = 0; i < plan->opening_count; i++) {
         const struct plan_opening *o = &plan->openings[i];
-        if (!o->removed && !plan->walls[o->wall].removed)
+        if (opening_is_there(plan, o))
             fprintf(to, "%s %s on %s from %.17g %.17g to %.17g %.17g %s\n", verb_name(o->kind), o->name,
-                    plan->walls[o->wall].name, o->s[0], o->z[0], o->s[1], o->z[1], o->filled ? "closed" : "open");
+                    plan->walls[o->wall].name, o->s[0], o->z[0], o->s[1], o->z[1], o->fill ? "closed" : "open");
     }
     for (int i = 0; i < plan->room_count; i++) {
         const struct plan_room *r = &plan->rooms[i];
         if (r->removed) continue;
-        fprintf(to, "room %s floor %.17g ceiling %.17g %.17g %.17g", r->name, r->floor, r->lower[0], r->lower[1],
-                r->lower[2]);
+        fprintf(to, "room %s floor %.17g ceiling %.17g %.17g %.17g", r->name, r->floor, r->lower.a[0][0],
+                r->lower.a[0][1], r->lower.a[0][2]);
         for (int e = 0; e < r->edge_count; e++)
             fprintf(to, " %s %.17g %.17g", plan->walls[r->edges[e].wall].name, r->edges[e].corner[0],
                     r->edges[e].corner[1]);
         fputc('\n', to);
+    }
+    for (int i = 0; i < plan->room_count; i++) {
+        const struct plan_room *r = &plan->rooms[i];
+        if (!r->removed && r->lower.count > 1)
+            fprintf(to, "gable %s ceiling %.17g %.17g %.17g\n", r->name, r->lower.a[1][0], r->lower.a[1][1],
+                    r->lower.a[1][2]);
+    }
+    for (int i = 0; i < plan->slot_count; i++) {
+        const struct plan_slot *o = &plan->slots[i];
+        if (slot_is_there(plan, o))
+            fprintf(to, "%s %s on %s from %.17g %.17g to %.17g %.17g %s\n", verb_name(o->kind), o->name,
+                    plan->rooms[o->room].name, o->low[0], o->low[1], o->high[0], o->high[1],
+                    o->fill ? "closed" : "open");
     }
     for (int i = 0; i < plan->box_count; i++) {
         const struct plan_box *b = &plan->boxes[i];
@@ -52,7 +65,7 @@ enum status plan_write(const struct plan *plan, const char *path, const struct p
     if (outfile_open(&f, path, err)) return err->status;
     const locale_t before = uselocale(scan_c_locale());
     if (prov) provenance_print(prov, f.fp);
-    fputs("remodel-plan 1\n", f.fp);
+    fputs("remodel-plan 2\n", f.fp);
     print_plan(plan, f.fp);
     uselocale(before);
     const enum status st = outfile_commit(&f, err);

@@ -6,6 +6,7 @@
 #include <math.h>
 
 #include "stages/build_model/plan_internal.h"
+#include "stages/build_model/room_parts.h"
 
 struct plan_line wall_face(const struct plan_wall *w, int side)
 {
@@ -60,6 +61,12 @@ struct plan_line wall_cap(const struct plan *plan, int wall, int end, int *face_
     const struct plan_line l = face_ahead(w, end, &plan->walls[e->other], e->kind == CORNER_END, face_side);
     if (e->kind == CORNER_END) *face_wall = e->other;
     return l;
+}
+
+bool walls_on_one_line(const struct plan_wall *a, const struct plan_wall *b)
+{
+    const double turn = a->d[0] * b->d[0] + a->d[1] * b->d[1];
+    return turn > 1 - 1e-12 && fabs(a->c - b->c) < LENGTH_EPS;
 }
 
 void cut_range(const struct plan_wall *w, struct plan_line across, double range[2])
@@ -119,16 +126,96 @@ void room_span(const struct plan *plan, const struct plan_room *room, int edge, 
     span[1] = fmin(span[1], reach[1]);
 }
 
-double ceiling_at(const struct plan_room *r, const double p[2])
+bool opening_is_there(const struct plan *plan, const struct plan_opening *o)
 {
-    return r->lower[0] + r->lower[1] * p[0] + r->lower[2] * p[1];
+    return !o->removed && o->fill != FILL_WALL && !plan->walls[o->wall].removed;
 }
 
-int room_edge_of(const struct plan_room *r, int wall)
+bool slot_is_there(const struct plan *plan, const struct plan_slot *slot)
 {
-    for (int i = 0; i < r->wall_count; i++)
-        if (r->walls[i] == wall) return r->edge_of[i];
+    return !slot->removed && slot->fill != FILL_WALL && !plan->rooms[slot->room].removed;
+}
+
+double top_at(const struct plan_top *top, const double p[2])
+{
+    double z = HUGE_VAL;
+    for (int i = 0; i < top->count; i++) z = fmin(z, top->a[i][0] + top->a[i][1] * p[0] + top->a[i][2] * p[1]);
+    return z;
+}
+
+struct plan_top level_top(double z) { return (struct plan_top){{{z, 0, 0}}, 1}; }
+
+int room_edge_of(const struct plan_room *room, int wall)
+{
+    for (int i = 0; i < room->wall_count; i++)
+        if (room->walls[i] == wall) return room->edge_of[i];
     return -1;
+}
+
+static bool in_part(const struct room_part *part, const double p[2])
+{
+    for (int i = 0; i < part->count; i++) {
+        const struct plan_line *l = &part->corners[i].line;
+        if (l->n[0] * p[0] + l->n[1] * p[1] > l->c) return false;
+    }
+    return true;
+}
+
+/* Where the segments from a to b and from c to d cross. */
+static bool segments_cross(const double a[2], const double b[2], const double c[2], const double d[2], double at[2])
+{
+    const double u[2] = {b[0] - a[0], b[1] - a[1]}, v[2] = {d[0] - c[0], d[1] - c[1]},
+                 w[2] = {c[0] - a[0], c[1] - a[1]};
+    const double det = u[0] * v[1] - u[1] * v[0], s = (w[0] * v[1] - w[1] * v[0]) / det,
+                 t = (w[0] * u[1] - w[1] * u[0]) / det;
+    if (!(s >= 0 && s <= 1 && t >= 0 && t <= 1)) return false;
+    for (int k = 0; k < 2; k++) at[k] = a[k] + s * u[k];
+    return true;
+}
+
+/* The lowest height of the ceiling over the part of a convex quadrilateral that lies in the room's part; HUGE_VAL:
+ * none lies there. A linear height is lowest at a corner of the two polygons' intersection. */
+static double lowest_over(const struct plan_top *top, const struct room_part *part, const struct room_part *quad)
+{
+    double low = HUGE_VAL, at[2];
+    for (int i = 0; i < quad->count; i++) {
+        const double *a = quad->corners[(i + quad->count - 1) % quad->count].p, *b = quad->corners[i].p;
+        if (in_part(part, b)) low = fmin(low, top_at(top, b));
+        for (int k = 0; k < part->count; k++) {
+            const double *c = part->corners[(k + part->count - 1) % part->count].p, *d = part->corners[k].p;
+            if (segments_cross(a, b, c, d, at)) low = fmin(low, top_at(top, at));
+        }
+    }
+    for (int k = 0; k < part->count; k++)
+        if (in_part(quad, part->corners[k].p)) low = fmin(low, top_at(top, part->corners[k].p));
+    return low;
+}
+
+/* The lowest ceiling over a stretch of a wall that no room lists, or the wall's own top if no room covers it all. */
+static double top_in_rooms(const struct plan *plan, const struct plan_wall *w, double s0, double s1)
+{
+    const double inset = fmin(2 * PART_EPS, 0.25 * (s1 - s0)); /* a wall that only touches a room is not under it */
+    struct part_corner corners[4];
+    struct room_part quad = {corners, 4};
+    bool covered[4] = {false};
+    double low = HUGE_VAL;
+    for (int k = 0; k < 4; k++) { /* counter-clockwise: along the out face against d, back along the in face */
+        const bool end = (k == 0 || k == 1) == (w->sign > 0);
+        wall_point(w, end ? s1 - inset : s0 + inset, k == 1 || k == 2 ? w->thickness - inset : inset, corners[k].p);
+    }
+    for (int k = 0; k < 4; k++) {
+        const double *a = corners[(k + 3) % 4].p, *b = corners[k].p;
+        const double n[2] = {b[1] - a[1], a[0] - b[0]};
+        corners[k].line = (struct plan_line){{n[0], n[1]}, n[0] * b[0] + n[1] * b[1]};
+    }
+    for (int i = 0; i < plan->room_count; i++) {
+        const struct plan_room *r = &plan->rooms[i];
+        for (int k = 0; !r->removed && k < r->part_count; k++) {
+            low = fmin(low, lowest_over(&r->lower, &r->parts[k], &quad));
+            for (int c = 0; c < 4; c++) covered[c] |= in_part(&r->parts[k], corners[c].p);
+        }
+    }
+    return covered[0] && covered[1] && covered[2] && covered[3] ? low : fmin(low, w->top);
 }
 
 double plan_wall_top(const struct plan *plan, int wall, double s0, double s1)
@@ -146,9 +233,9 @@ double plan_wall_top(const struct plan *plan, int wall, double s0, double s1)
             for (int k = 0; k < 4; k++) {
                 double p[2];
                 wall_point(w, k & 1 ? s1 : s0, k & 2 ? w->thickness : 0, p);
-                top = fmin(top, ceiling_at(r, p));
+                top = fmin(top, top_at(&r->lower, p));
             }
         }
     }
-    return top < HUGE_VAL ? top : w->top;
+    return top < HUGE_VAL ? top : top_in_rooms(plan, w, s0, s1);
 }

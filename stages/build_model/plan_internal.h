@@ -9,12 +9,23 @@
 #define MIN_SIZE      0.001  /* of anything in a plan, model units */
 #define MAX_SIZE      1000.0
 
+enum plan_default {
+    DEFAULT_THICKNESS,
+    DEFAULT_SLAB,
+    DEFAULT_GLASS,
+    DEFAULT_LEAF,
+    DEFAULT_FLOOR,
+    DEFAULT_CEILING,
+    DEFAULTS
+};
+
 struct plan_context { /* of the statement that is being applied */
     struct plan *plan;
     const char *path;
     const struct statement *s;
     const struct placer *placer;
     struct err *err;
+    unsigned used; /* bits of the defaults that the statement used */
 };
 
 /* plan_context.c */
@@ -30,6 +41,7 @@ enum status find_named(struct plan_context *c, const char *name, unsigned kinds,
                        enum name_kind *kind, int *at);
 enum status find_solid(struct plan_context *c, const char *name, enum name_kind *kind, int *at);
 enum status find_wall(struct plan_context *c, const char *name, int *wall);
+enum status find_room(struct plan_context *c, const char *name, int *room);
 
 /* *copy: the name, for the caller to own. ST_DATA: it was used before. */
 enum status copy_new_name(struct plan_context *c, const char *name, char **copy);
@@ -37,19 +49,73 @@ enum status copy_new_name(struct plan_context *c, const char *name, char **copy)
 /* Enters the name, which the plan's item must keep alive, into the plan's hash table. */
 enum status add_name(struct plan *plan, const char *name, enum name_kind kind, int at, struct err *err);
 
+/* plan_statements.c */
+
+/* Where set stores a default; *name: its word. */
+double *default_value(struct plan *plan, enum plan_default which, const char **name);
+/* The default value, which the statement uses. */
+double use_default(struct plan_context *c, enum plan_default which);
+/* The option's value, or the default's. */
+double option_or_default(struct plan_context *c, enum option option, enum plan_default which);
+enum status check_length(struct plan_context *c, const char *what, double value);
+enum status apply_set(struct plan_context *c);
+enum status apply_wall(struct plan_context *c);
+enum status apply_room(struct plan_context *c);
+enum status apply_slope(struct plan_context *c);
+
+/* plan_openings.c */
+
+enum status apply_opening(struct plan_context *c);
+enum status apply_slot(struct plan_context *c);
+enum status apply_box(struct plan_context *c);
+/* The statement's rectangle on a wall as S and z, ascending. */
+enum status place_on_wall(struct plan_context *c, int wall, double s[2], double z[2]);
+/* Doors and passages drawn in a photograph begin at the floor, whichever pixel was clicked. */
+void set_foot_on_floor(const struct plan_context *c, const struct plan_wall *w, enum verb kind, double z[2]);
+/* A box's footprint. at: height of the corners that a photograph shows. */
+enum status place_footprint(struct plan_context *c, double at, double low[2], double high[2]);
+/* The footprint of an opening in a room's ceiling or floor. */
+enum status place_in_room(struct plan_context *c, const struct plan_room *r, enum verb kind, double low[2],
+                          double high[2]);
+/* *thickness: the default one of a leaf or glass; 0 if nothing or a wall fills the opening. ST_DATA: it is unknown. */
+enum status fill_thickness(struct plan_context *c, enum filling fill, double *thickness);
+
+/* plan_joins.c */
+
+enum status apply_join(struct plan_context *c);
+enum status apply_extend(struct plan_context *c);
+enum status apply_split(struct plan_context *c);
+/* Both walls' in faces cross at p. ST_DATA: they are the same, or parallel. */
+enum status check_crossing(struct plan_context *c, int a, int b, double p[2]);
+
+/* plan_edits.c */
+
+enum status apply_adjust(struct plan_context *c);
+enum status apply_move(struct plan_context *c);
+enum status apply_change(struct plan_context *c);
+enum status apply_resize(struct plan_context *c);
+enum status apply_fill(struct plan_context *c);
+enum status apply_remove(struct plan_context *c);
+
+/* plan_state.c */
+
+/* *state: a text that differs whenever anything differs in the plan that a statement can change, except the defaults;
+ * the caller frees it. ST_NOMEM. */
+enum status plan_state(char **state, const struct plan *plan, struct err *err);
+
 /* plan_geometry.c */
 
 /* S of the point's projection onto the wall's line. */
 double wall_s(const struct plan_wall *w, const double p[2]);
+
+/* Both in faces lie on one line and face the same way. */
+bool walls_on_one_line(const struct plan_wall *a, const struct plan_wall *b);
 
 /* The near or far face of `other`, seen by wall w whose end `end` runs up to it; n points onwards, away from w. */
 struct plan_line face_ahead(const struct plan_wall *w, int end, const struct plan_wall *other, bool far, int *side);
 
 /* The min and max S at which a line crosses the wall's two faces. */
 void cut_range(const struct plan_wall *w, struct plan_line across, double range[2]);
-
-/* Height of the ceiling's lower face. */
-double ceiling_at(const struct plan_room *r, const double p[2]);
 
 /* plan_checks.c */
 

@@ -41,7 +41,7 @@ enum status add_name(struct plan *plan, const char *name, enum name_kind kind, i
 
 static const char *kind_name(enum name_kind kind)
 {
-    static const char *const names[] = {"nothing", "a wall", "an opening", "a box", "a room"};
+    static const char *const names[] = {"nothing", "a wall", "an opening", "a box", "a room", "an opening in a room"};
     return names[kind];
 }
 
@@ -50,6 +50,7 @@ static int name_line(const struct plan *plan, enum name_kind kind, int at)
     return kind == NAMED_WALL      ? plan->walls[at].line
            : kind == NAMED_OPENING ? plan->openings[at].line
            : kind == NAMED_BOX     ? plan->boxes[at].line
+           : kind == NAMED_SLOT    ? plan->slots[at].line
                                    : plan->rooms[at].line;
 }
 
@@ -58,6 +59,7 @@ static bool is_removed(const struct plan *plan, enum name_kind kind, int at)
     return kind == NAMED_WALL      ? plan->walls[at].removed
            : kind == NAMED_OPENING ? plan->openings[at].removed
            : kind == NAMED_BOX     ? plan->boxes[at].removed
+           : kind == NAMED_SLOT    ? plan->slots[at].removed
                                    : plan->rooms[at].removed;
 }
 
@@ -86,14 +88,20 @@ enum status find_named(struct plan_context *c, const char *name, unsigned kinds,
 
 enum status find_solid(struct plan_context *c, const char *name, enum name_kind *kind, int *at)
 {
-    return find_named(c, name, 1u << NAMED_WALL | 1u << NAMED_OPENING | 1u << NAMED_BOX, "a wall, an opening or a box",
-                      kind, at);
+    return find_named(c, name, 1u << NAMED_WALL | 1u << NAMED_OPENING | 1u << NAMED_SLOT | 1u << NAMED_BOX,
+                      "a wall, an opening or a box", kind, at);
 }
 
 enum status find_wall(struct plan_context *c, const char *name, int *wall)
 {
     enum name_kind kind;
     return find_named(c, name, 1u << NAMED_WALL, "a wall", &kind, wall);
+}
+
+enum status find_room(struct plan_context *c, const char *name, int *room)
+{
+    enum name_kind kind;
+    return find_named(c, name, 1u << NAMED_ROOM, "a room", &kind, room);
 }
 
 enum status copy_new_name(struct plan_context *c, const char *name, char **copy)

@@ -70,21 +70,24 @@ static void wall_corners(const struct plan *p, int wall, double corners[4][2])
 static void put_opening(const struct sheet *s, const struct plan *p, const struct plan_opening *o)
 {
     const struct plan_wall *w = &p->walls[o->wall];
-    double c[4][2], line[2][2];
-    int side;
+    double c[4][2], line[2][2], off[2];
     for (int k = 0; k < 4; k++) wall_point(w, o->s[k == 1 || k == 2], k >= 2 ? w->thickness : 0, c[k]);
     put_polygon(s, c, 4, o->z[0] > w->foot + 0.01 ? "window" : "hole");
-    if (o->kind == VERB_WINDOW && window_has_glass(p, o, &side)) {
-        for (int k = 0; k < 2; k++) wall_point(w, o->s[k], side == SIDE_OUT ? w->thickness : 0, line[k]);
-        put_polygon(s, line, 2, "glass");
-    }
-    if (o->kind == VERB_DOOR && o->filled) {
-        for (int k = 0; k < 2; k++) wall_point(w, o->s[k], 0.5 * w->thickness, line[k]);
-        put_polygon(s, line, 2, "leaf");
+    if (opening_filling(p, o, off)) {
+        for (int k = 0; k < 2; k++) wall_point(w, o->s[k], 0.5 * (off[0] + off[1]), line[k]);
+        put_polygon(s, line, 2, o->fill == FILL_GLASS ? "glass" : "leaf");
     }
     double at[2];
     wall_point(w, 0.5 * (o->s[0] + o->s[1]), w->thickness + 0.14, at);
     put_name(s, at[0], at[1], "small", readable(w->d), o->name);
+}
+
+static void put_slot(const struct sheet *s, const struct plan_slot *o)
+{
+    double c[4][2] = {
+        {o->low[0], o->low[1]}, {o->high[0], o->low[1]}, {o->high[0], o->high[1]}, {o->low[0], o->high[1]}};
+    put_polygon(s, c, 4, "slot");
+    put_name(s, 0.5 * (o->low[0] + o->high[0]), 0.5 * (o->low[1] + o->high[1]), "small", 0, o->name);
 }
 
 static void put_cameras(const struct sheet *s, const struct placer *placer, double size)
@@ -126,7 +129,7 @@ static void put_rooms(const struct sheet *s, const struct plan *p, bool metric)
         put_name(s, middle[0], middle[1], "name", 0, r->name);
         fprintf(s->to, "<text class=\"small\" x=\"%.2f\" y=\"%.2f\">%.2f %s, %.3g %s high</text>\n",
                 sheet_x(s, middle[0]), sheet_y(s, middle[1]) + 16, area, metric ? "m²" : "square units",
-                r->lower[0] - r->floor, metric ? "m" : "units");
+                top_at(&r->lower, middle) - r->floor, metric ? "m" : "units");
     }
 }
 
@@ -210,8 +213,9 @@ static void put_plan(const struct sheet *s, const struct plan *plan, const struc
         put_polygon(s, c, 4, "wall");
     }
     for (int i = 0; i < plan->opening_count; i++)
-        if (!plan->openings[i].removed && !plan->walls[plan->openings[i].wall].removed)
-            put_opening(s, plan, &plan->openings[i]);
+        if (opening_is_there(plan, &plan->openings[i])) put_opening(s, plan, &plan->openings[i]);
+    for (int i = 0; i < plan->slot_count; i++)
+        if (slot_is_there(plan, &plan->slots[i])) put_slot(s, &plan->slots[i]);
     for (int i = 0; i < plan->wall_count; i++) {
         const struct plan_wall *w = &plan->walls[i];
         double span[2], at[2];
@@ -242,7 +246,8 @@ enum status plan_picture_write(const struct plan *plan, const struct placer *pla
             ".name{font-size:14px;font-weight:600}.small{font-size:11px}.photo{font-size:8px;fill:#a33}"
             ".scale{text-anchor:start;font-size:12px}.wall{fill:#6b7078;stroke:#2c2f33;stroke-width:.8}"
             ".room{fill:#f3efe6}.hole{fill:#f3efe6;stroke:#2c2f33;stroke-width:.8}"
-            ".window{fill:#d7dce2;stroke:#2c2f33;stroke-width:.8}.glass{stroke:#1f78c8;stroke-width:3;fill:none}"
+            ".slot{fill:none;stroke:#1f78c8;stroke-width:.8;stroke-dasharray:4 "
+            "3}.window{fill:#d7dce2;stroke:#2c2f33;stroke-width:.8}.glass{stroke:#1f78c8;stroke-width:3;fill:none}"
             ".leaf{stroke:#8a5a2b;stroke-width:3;fill:none}.box{fill:#cdb48a;stroke:#6b5530;stroke-width:.8}"
             ".camera{fill:#d33;fill-opacity:.12;stroke:#d33;stroke-width:.7}.bar{fill:#222;stroke:#222}"
             ".white{fill:#fff}</style>\n<rect width=\"100%%\" height=\"100%%\" fill=\"#fff\"/>\n",
@@ -439,7 +444,9 @@ enum status view_picture_write(const struct solid_mesh *mesh, const struct plan 
     struct raster r = {0};
     double high = 0;
     for (int i = 0; i < plan->wall_count; i++) high = fmax(high, plan->walls[i].removed ? 0 : plan->walls[i].top);
-    for (int i = 0; i < plan->room_count; i++) high = fmax(high, plan->rooms[i].removed ? 0 : plan->rooms[i].lower[0]);
+    for (int i = 0; i < plan->room_count; i++)
+        for (int e = 0; !plan->rooms[i].removed && e < plan->rooms[i].edge_count; e++)
+            high = fmax(high, top_at(&plan->rooms[i].lower, plan->rooms[i].edges[e].corner));
     /* from the south-west, 55 degrees above the horizon */
     const struct vec3 back =
         vec3_make(-0.30 * cos(55 * DEGREE) / hypot(0.30, 1), -cos(55 * DEGREE) / hypot(0.30, 1), sin(55 * DEGREE));

@@ -26,29 +26,51 @@ struct grammar {
 
 static const struct grammar GRAMMAR[VERB_COUNT] = {
     [VERB_SET] = {"set", "set thickness|slab|glass|leaf|floor|ceiling NUMBER", 0, ""},
-    [VERB_WALL] = {"wall", "wall NAME in VIEW X0 Y0 X1 Y1 | wall NAME from X Y to X Y, then options",
-                   BIT(THICKNESS) | BIT(FOOT) | BIT(TOP), " angled "},
+    [VERB_WALL] =
+        {"wall",
+         "wall NAME in VIEW X0 Y0 X1 Y1 | wall NAME from X Y to X Y | wall NAME parallel to WALL by D between "
+         "WALL WALL, then options",
+         BIT(THICKNESS) | BIT(FOOT) | BIT(TOP), " angled "},
     [VERB_ROOM] = {"room", "room NAME WALL WALL WALL ... [floor Z] [ceiling Z]", BIT(FLOOR) | BIT(CEILING), ""},
     [VERB_SLOPE] = {"slope", "slope ROOM from WALL Z to WALL Z", 0, ""},
+    [VERB_GABLE] = {"gable", "gable ROOM from WALL Z to WALL Z ridge Z [at D]", BIT(AT), ""},
     [VERB_DOOR] = {"door", "door NAME on WALL PLACE [closed]", 0, " closed "},
     [VERB_PASSAGE] = {"passage", "passage NAME on WALL PLACE", 0, ""},
     [VERB_WINDOW] = {"window", "window NAME on WALL PLACE [interior] [open]", 0, " interior open "},
+    [VERB_SKYLIGHT] = {"skylight", "skylight NAME on ROOM PLACE [open]", 0, " open "},
+    [VERB_HATCH] = {"hatch", "hatch NAME on ROOM PLACE [closed]", 0, " closed "},
     [VERB_BOX] = {"box", "box NAME from X Y to X Y | box NAME in VIEW X0 Y0 X1 Y1, then options",
                   BIT(FOOT) | BIT(TOP) | BIT(TURN) | BIT(AT), ""},
     [VERB_JOIN] = {"join", "join WALL WALL ...", 0, ""},
     [VERB_EXTEND] = {"extend", "extend WALL start|end to WALL | extend WALL start|end to NUMBER", 0, ""},
     [VERB_SPLIT] = {"split", "split WALL from S to S into NEW", 0, ""},
-    [VERB_ADJUST] = {"adjust", "adjust NAME in VIEW X0 Y0 X1 Y1 | adjust NAME from A B to C D", 0, ""},
-    [VERB_MOVE] = {"move", "move NAME by DISTANCE | move BOX by DX DY", 0, ""},
+    [VERB_ADJUST] = {"adjust", "adjust NAME PLACE", 0, ""},
+    [VERB_MOVE] = {"move", "move WALL by D | move OPENING by D [UP] | move BOX by DX DY [UP]", 0, ""},
+    [VERB_CHANGE] = {"change",
+                     "change WALL [thickness T] [foot Z] [top Z] | change BOX [foot Z] [top Z] [turn DEGREES] | change "
+                     "ROOM ceiling Z",
+                     BIT(THICKNESS) | BIT(FOOT) | BIT(TOP) | BIT(TURN) | BIT(CEILING), ""},
+    [VERB_RESIZE] = {"resize",
+                     "resize OPENING [left D] [right D] [bottom D] [top D] | resize SKYLIGHT [left D] [right D] [front "
+                     "D] [back D]",
+                     BIT(LEFT) | BIT(RIGHT) | BIT(FRONT) | BIT(BACK) | BIT(BOTTOM) | BIT(TOP), ""},
     [VERB_OPEN] = {"open", "open NAME", 0, ""},
     [VERB_CLOSE] = {"close", "close NAME", 0, ""},
+    [VERB_FILL] = {"fill", "fill NAME with leaf|glass|wall|nothing", 0, ""},
     [VERB_REMOVE] = {"remove", "remove NAME", 0, ""},
 };
 
-static const char *const OPTIONS[OPTION_COUNT] = {"thickness", "foot", "top", "floor", "ceiling", "turn", "at"};
+static const char *const OPTIONS[OPTION_COUNT] = {"thickness", "foot", "top",   "floor", "ceiling", "turn",
+                                                  "at",        "left", "right", "front", "back",    "bottom"};
 static const char *const QUANTITIES[] = {"thickness", "slab", "glass", "leaf", "floor", "ceiling", NULL};
 
+static const char *const FILLINGS[FILL_COUNT] = {"nothing", "leaf", "glass", "wall"};
+
 const char *verb_name(enum verb verb) { return GRAMMAR[verb].verb; }
+
+const char *option_name(enum option option) { return OPTIONS[option]; }
+
+const char *filling_name(enum filling filling) { return FILLINGS[filling]; }
 
 void script_release(struct script *script)
 {
@@ -125,24 +147,57 @@ static enum status expect(struct reader *r, const char *wanted, enum verb verb)
 
 /* ------------------------------------------------------------------------------------------------------------ parts */
 
+static enum status read_rectangle(struct reader *r, struct script_place *p)
+{
+    static const char *const what[] = {"x0", "y0", "x1", "y1"};
+    char *view;
+    if (textfile_word(&r->t, "a photo or view", &view, r->err)) return r->err->status;
+    p->kind = PLACE_VIEW;
+    p->view = keep_word(r, view);
+    for (int i = 0; i < 4; i++)
+        if (read_number(r, what[i], &p->a[i])) return r->err->status;
+    if (p->a[2] > p->a[0] && p->a[3] > p->a[1]) return ST_OK;
+    return err_set(r->err, ST_DATA,
+                   "%s:%d: found the rectangle %.9g %.9g %.9g %.9g, wanted X0 Y0 its upper left corner and X1 Y1 its "
+                   "lower right one, in pixels of the photo as it is stored.",
+                   r->t.path, r->t.line, p->a[0], p->a[1], p->a[2], p->a[3]);
+}
+
+static enum status read_from_end(struct reader *r, struct script_place *p, enum verb verb)
+{
+    char *side;
+    p->kind = PLACE_FROM_END;
+    if (textfile_word(&r->t, "\"left\" or \"right\"", &side, r->err)) return r->err->status;
+    p->right = !strcmp(side, "right");
+    if (!p->right && strcmp(side, "left"))
+        return textfile_error(&r->t, r->err, side, "\"left\" or \"right\": the end of the wall to measure from");
+    if (read_number(r, "the distance from that end", &p->a[0]) || expect(r, "width", verb) ||
+        read_number(r, "the width", &p->a[1]) || expect(r, "from", verb) ||
+        read_number(r, "the height of the sill", &p->a[2]) || expect(r, "to", verb) ||
+        read_number(r, "the height of the head", &p->a[3]))
+        return r->err->status;
+    return ST_OK;
+}
+
+static enum status read_parallel(struct reader *r, struct script_place *p, enum verb verb)
+{
+    p->kind = PLACE_PARALLEL;
+    if (expect(r, "to", verb) || read_name(r, "a wall", &p->wall) || expect(r, "by", verb) ||
+        read_number(r, "the distance from that wall", &p->a[0]) || expect(r, "between", verb) ||
+        read_name(r, "the wall at one end", &p->between[0]) ||
+        read_name(r, "the wall at the other end", &p->between[1]))
+        return r->err->status;
+    return ST_OK;
+}
+
 static enum status read_place(struct reader *r, struct script_place *p, enum verb verb)
 {
-    char *word, *view;
+    char *word;
     if (!textfile_more(&r->t)) return usage_error(r, NULL, verb);
     if (textfile_word(&r->t, "\"in\" or \"from\"", &word, r->err)) return r->err->status;
-    if (!strcmp(word, "in")) {
-        static const char *const what[] = {"x0", "y0", "x1", "y1"};
-        if (textfile_word(&r->t, "a photo or view", &view, r->err)) return r->err->status;
-        p->kind = PLACE_VIEW;
-        p->view = keep_word(r, view);
-        for (int i = 0; i < 4; i++)
-            if (read_number(r, what[i], &p->a[i])) return r->err->status;
-        if (p->a[2] > p->a[0] && p->a[3] > p->a[1]) return ST_OK;
-        return err_set(r->err, ST_DATA,
-                       "%s:%d: found the rectangle %.9g %.9g %.9g %.9g, wanted X0 Y0 its upper left corner and X1 Y1 "
-                       "its lower right one, in pixels of the photo as it is stored.",
-                       r->t.path, r->t.line, p->a[0], p->a[1], p->a[2], p->a[3]);
-    }
+    if (!strcmp(word, "in")) return read_rectangle(r, p);
+    if (!strcmp(word, "at") && verb != VERB_WALL && verb != VERB_BOX) return read_from_end(r, p, verb);
+    if (!strcmp(word, "parallel") && verb == VERB_WALL) return read_parallel(r, p, verb);
     if (strcmp(word, "from"))
         return textfile_error(&r->t, r->err, word, "\"in VIEW\" or \"from\", in a line \"%s\"", GRAMMAR[verb].usage);
     p->kind = PLACE_COORDINATES;
@@ -242,7 +297,9 @@ static enum status read_slope(struct reader *r, struct statement *s)
         read_number(r, "the height there", &s->values[0]) || expect(r, "to", s->verb) ||
         read_name(r, "a wall", &s->names[1]) || read_number(r, "the height there", &s->values[1]))
         return r->err->status;
-    return ST_OK;
+    if (s->verb == VERB_SLOPE) return ST_OK;
+    s->value_count = 3;
+    return expect(r, "ridge", s->verb) || read_number(r, "the ridge's height", &s->values[2]) ? r->err->status : ST_OK;
 }
 
 static enum status read_extend(struct reader *r, struct statement *s)
@@ -282,8 +339,29 @@ static enum status read_move(struct reader *r, struct statement *s)
     if (read_name(r, "a name", &s->name) || expect(r, "by", s->verb) ||
         read_number(r, "a distance", &s->values[s->value_count++]))
         return r->err->status;
-    if (textfile_more(&r->t)) return read_number(r, "a distance", &s->values[s->value_count++]);
+    while (s->value_count < 3 && textfile_more(&r->t))
+        if (read_number(r, "a distance", &s->values[s->value_count++])) return r->err->status;
     return ST_OK;
+}
+
+static enum status read_fill(struct reader *r, struct statement *s)
+{
+    char *word;
+    int f = 0;
+    if (read_name(r, "a name", &s->name) || expect(r, "with", s->verb) ||
+        textfile_word(&r->t, "leaf, glass, wall or nothing", &word, r->err))
+        return r->err->status;
+    while (f < FILL_COUNT && strcmp(FILLINGS[f], word)) f++;
+    if (f == FILL_COUNT) return usage_error(r, word, s->verb);
+    s->filling = (enum filling)f;
+    return ST_OK;
+}
+
+/* A statement that has nothing but options must have one. */
+static enum status read_changes(struct reader *r, struct statement *s)
+{
+    if (read_name(r, "a name", &s->name)) return r->err->status;
+    return textfile_more(&r->t) ? ST_OK : usage_error(r, NULL, s->verb);
 }
 
 static const char *known_verb(const void *ctx, int i)
@@ -302,8 +380,8 @@ static enum status read_statement(struct reader *r, struct statement *s)
         const char *near = scan_nearest(word, known_verb, NULL);
         if (near) return textfile_error(&r->t, r->err, word, "a statement; did you mean %s?", near);
         return textfile_error(&r->t, r->err, word,
-                              "a statement: set, wall, room, slope, door, passage, window, box, join, extend, split, "
-                              "adjust, move, open, close or remove");
+                              "a statement: set, wall, room, slope, gable, door, passage, window, skylight, hatch, "
+                              "box, join, extend, split, adjust, move, change, resize, open, close, fill or remove");
     }
     s->verb = (enum verb)v;
     s->line = r->t.line;
@@ -320,7 +398,10 @@ static enum status read_statement(struct reader *r, struct statement *s)
     case VERB_DOOR:
     case VERB_PASSAGE:
     case VERB_WINDOW:
-        if (read_name(r, "a name", &s->name) || expect(r, "on", s->verb) || read_name(r, "a wall", &s->other) ||
+    case VERB_SKYLIGHT:
+    case VERB_HATCH:
+        if (read_name(r, "a name", &s->name) || expect(r, "on", s->verb) ||
+            read_name(r, s->verb == VERB_SKYLIGHT || s->verb == VERB_HATCH ? "a room" : "a wall", &s->other) ||
             read_place(r, &s->place, s->verb))
             return r->err->status;
         break;
@@ -331,6 +412,7 @@ static enum status read_statement(struct reader *r, struct statement *s)
         if (read_list(r, s, 2, 0)) return r->err->status;
         break;
     case VERB_SLOPE:
+    case VERB_GABLE:
         if (read_slope(r, s)) return r->err->status;
         break;
     case VERB_EXTEND:
@@ -341,6 +423,13 @@ static enum status read_statement(struct reader *r, struct statement *s)
         break;
     case VERB_MOVE:
         if (read_move(r, s)) return r->err->status;
+        break;
+    case VERB_CHANGE:
+    case VERB_RESIZE:
+        if (read_changes(r, s)) return r->err->status;
+        break;
+    case VERB_FILL:
+        if (read_fill(r, s)) return r->err->status;
         break;
     default:
         if (read_name(r, "a name", &s->name)) return r->err->status;

@@ -19,8 +19,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/base/hash.h"
 #include "stages/build_model/borders.h"
+#include "stages/build_model/unite_names.h"
 
 struct half {
     int border, from;     /* point where it begins; -1: in the middle of an edge, at `middle` */
@@ -58,22 +58,6 @@ struct polygon_soup { /* the faces of all bodies as polygons, with offsets inste
     size_t *at; /* of each polygon in corners, in sizes */
     int vertex_count, vertex_capacity, polygon_count, polygon_capacity, corner_count, corner_capacity, size_count;
     int size_capacity, at_capacity;
-};
-
-struct name_table {
-    const char **texts; /* by rank: in the order of first occurrence in the list */
-    int *rank;          /* of each half-space's name */
-    char *present;      /* by rank: is on the surface */
-    int count;
-};
-
-struct merge {
-    int name, into;
-};
-
-struct merges {
-    struct merge *merges;
-    int count, capacity;
 };
 
 static enum status broken(const struct solid *s, const char *what, struct err *err)
@@ -269,7 +253,7 @@ static int following(const struct body_union *j, int h, const int *leaving, int 
     int64_t back[3], down[3], d[3], best_d[3];
     for (int i = 0; i < count; i++) {
         const struct border *o = &j->borders.borders[j->halves[leaving[i]].border];
-        if (o->plane != b->plane || o->side != b->side) continue;
+        if (o->plane != b->plane || o->side != b->side || o->room != b->room) continue;
         found++;
         if (best < 0) {
             best = leaving[i];
@@ -478,23 +462,19 @@ static const struct border *loop_border(const struct body_union *j, int loop)
     return &j->borders.borders[j->halves[j->loops[loop].half].border];
 }
 
-static int loop_side(const struct body_union *j, int loop)
-{
-    return 2 * loop_border(j, loop)->plane + (loop_border(j, loop)->side > 0);
-}
-
 struct loop_order {
-    int key, loop;
+    int key, room, loop; /* key: 2 plane + side */
 };
 
 static int compare_loops(const void *a, const void *b)
 {
     const struct loop_order *p = a, *q = b;
     if (p->key != q->key) return p->key < q->key ? -1 : 1;
+    if (p->room != q->room) return p->room < q->room ? -1 : 1;
     return (p->loop > q->loop) - (p->loop < q->loop);
 }
 
-/* Makes faces from the loops on one side of one plane. */
+/* Makes faces from the loops of one room on one side of one plane. */
 static enum status faces_of_side(struct body_union *j, const struct loop_order *loops, int count, const struct solid *s,
                                  struct err *err)
 {
@@ -547,10 +527,10 @@ static int side_begin(const struct loop_order *order, int count, int key)
     return low;
 }
 
-/* Names each face after the lowest rank among its facets, and records the names that it merged. loop_of_border: a loop
- * of each border. */
+/* Names each face after the lowest rank among its facets of its room, and records the names that it merged.
+ * loop_of_border: a loop of each border. */
 static enum status name_faces(struct body_union *j, const struct loop_order *order, const int *loop_of_border,
-                              struct merges *merges, char *present, struct err *err)
+                              struct merges *merges, const struct name_table *names, struct err *err)
 {
     const struct border_set *b = &j->borders;
     const int first = merges->count;
@@ -572,33 +552,35 @@ static enum status name_faces(struct body_union *j, const struct loop_order *ord
     }
     for (int i = first; i < merges->count; i++) {
         struct union_face *f = &j->faces[merges->merges[i].into];
-        if (merges->merges[i].name < f->name) f->name = merges->merges[i].name;
+        const int name = merges->merges[i].name;
+        if (names->room[name] == loop_border(j, f->loop)->room && name < f->name) f->name = name;
     }
     int kept = first;
     for (int i = first; i < merges->count; i++) {
         const struct merge m = {merges->merges[i].name, j->faces[merges->merges[i].into].name};
-        present[m.name] = 1;
+        names->present[m.name] = 1;
         if (m.name != m.into) merges->merges[kept++] = m;
     }
     merges->count = kept;
     return ST_OK;
 }
 
-static enum status make_faces(struct body_union *j, const int *loop_of_border, struct merges *merges, char *present,
-                              const struct solid *s, struct err *err)
+static enum status make_faces(struct body_union *j, const int *loop_of_border, struct merges *merges,
+                              const struct name_table *names, const struct solid *s, struct err *err)
 {
     struct loop_order *order = malloc(((size_t)j->loop_count + 1) * sizeof *order);
     enum status st = order ? ST_OK : err_nomem(err, "faces of a union", (size_t)j->loop_count * sizeof *order);
     for (int i = 0; !st && i < j->loop_count; i++) {
         classify_loop(j, i);
-        order[i] = (struct loop_order){loop_side(j, i), i};
+        const struct border *b = loop_border(j, i);
+        order[i] = (struct loop_order){2 * b->plane + (b->side > 0), b->room, i};
     }
     if (!st && j->loop_count) qsort(order, (size_t)j->loop_count, sizeof *order, compare_loops);
     for (int i = 0, k; !st && i < j->loop_count; i = k) {
-        for (k = i + 1; k < j->loop_count && order[k].key == order[i].key;) k++;
+        for (k = i + 1; k < j->loop_count && order[k].key == order[i].key && order[k].room == order[i].room;) k++;
         st = faces_of_side(j, &order[i], k - i, s, err);
     }
-    if (!st) st = name_faces(j, order, loop_of_border, merges, present, err);
+    if (!st) st = name_faces(j, order, loop_of_border, merges, names, err);
     free(order);
     return st;
 }
@@ -809,7 +791,7 @@ static enum status unite_body(struct polygon_soup *r, const struct solid_list *l
         const size_t at = half_space_of[members[i]];
         st = convex_set_add(&j.set, &list->solids[members[i]], &half_spaces[at], &names->rank[at], err);
     }
-    if (!st) st = borders_find(&j.borders, &j.set, err);
+    if (!st) st = borders_find(&j.borders, &j.set, names->room, err);
     if (!st) st = make_halves(&j, first, err);
     if (!st) st = link_halves(&j, first, err);
     int *loop_of_border = malloc(((size_t)j.borders.border_count + 1) * sizeof *loop_of_border);
@@ -817,7 +799,7 @@ static enum status unite_body(struct polygon_soup *r, const struct solid_list *l
     if (!st) {
         for (int i = 0; i < j.half_count; i++) loop_of_border[j.halves[i].border] = j.halves[i].loop;
         make_vertices(&j);
-        st = make_faces(&j, loop_of_border, merges, names->present, first, err);
+        st = make_faces(&j, loop_of_border, merges, names, first, err);
     }
     if (!st) st = split_edges(&j, err);
     if (!st) st = add_result(&j, r, first->body, names->texts, err);
@@ -827,66 +809,6 @@ static enum status unite_body(struct polygon_soup *r, const struct solid_list *l
 }
 
 /* ----------------------------------------------------------------------------------------------------- whole lists */
-
-/* Rank of a text: the index of its first occurrence. */
-static int rank_of(const char *text, const char **texts, int *count, int *slots, int size)
-{
-    unsigned at = (unsigned)hash_text(text) & (unsigned)(size - 1);
-    for (; slots[at] >= 0; at = (at + 1) & (unsigned)(size - 1))
-        if (texts[slots[at]] == text || !strcmp(texts[slots[at]], text)) return slots[at];
-    texts[*count] = text;
-    return slots[at] = (*count)++;
-}
-
-static enum status rank_names(struct name_table *names, int *body, int *body_count, const struct solid_list *list,
-                              struct err *err)
-{
-    size_t all = 1, at = 0;
-    int size = 64;
-    for (int i = 0; i < list->count; i++) all += (size_t)list->solids[i].count;
-    while ((size_t)size < 2 * all) size *= 2;
-    int *slots = malloc(2 * (size_t)size * sizeof *slots);
-    const char **bodies = malloc(((size_t)list->count + 1) * sizeof *bodies);
-    names->texts = malloc(all * sizeof *names->texts);
-    names->rank = malloc(all * sizeof *names->rank);
-    names->present = calloc(all, 1);
-    enum status st = slots && bodies && names->texts && names->rank && names->present
-                         ? ST_OK
-                         : err_nomem(err, "names of solids", 2 * (size_t)size * sizeof *slots);
-    for (int i = 0; !st && i < 2 * size; i++) slots[i] = -1;
-    for (int i = 0; !st && i < list->count; i++) {
-        body[i] = rank_of(list->solids[i].body, bodies, body_count, slots + size, size);
-        for (int k = 0; k < list->solids[i].count; k++)
-            names->rank[at++] = rank_of(list->solids[i].half_spaces[k].name, names->texts, &names->count, slots, size);
-    }
-    free(slots);
-    free(bodies);
-    return st;
-}
-
-static int compare_merges(const void *a, const void *b)
-{
-    const struct merge *p = a, *q = b;
-    if (p->name != q->name) return p->name < q->name ? -1 : 1;
-    return (p->into > q->into) - (p->into < q->into);
-}
-
-static enum status write_log(struct unite_log *log, struct merges *merges, const struct name_table *names,
-                             struct err *err)
-{
-    const size_t max_notes = (size_t)merges->count + (size_t)names->count + 1;
-    log->notes = malloc(max_notes * sizeof *log->notes);
-    if (!log->notes) return err_nomem(err, "the log of a union", max_notes * sizeof *log->notes);
-    if (merges->count) qsort(merges->merges, (size_t)merges->count, sizeof *merges->merges, compare_merges);
-    for (int i = 0, k = 0; i < names->count; i++) {
-        if (!names->present[i]) log->notes[log->count++] = (struct unite_note){UNITE_HIDDEN, names->texts[i], NULL};
-        for (; k < merges->count && merges->merges[k].name == i; k++)
-            if (!k || compare_merges(&merges->merges[k - 1], &merges->merges[k]))
-                log->notes[log->count++] =
-                    (struct unite_note){UNITE_MERGED, names->texts[i], names->texts[merges->merges[k].into]};
-    }
-    return ST_OK;
-}
 
 void unite_log_release(struct unite_log *log)
 {
@@ -909,7 +831,7 @@ enum status solids_unite(struct solid_mesh *mesh, const struct solid_list *solid
     enum status st = body && members && first && half_space_of ? ST_OK : err_nomem(err, "solids", n * sizeof *body);
 
     if (!st) st = lattice_half_spaces(&half_spaces, solids, err);
-    if (!st) st = rank_names(&names, body, &bodies, solids, err);
+    if (!st) st = unite_rank_names(&names, body, &bodies, solids, err);
     if (!st) {
         for (int i = 0; i < solids->count; at += (size_t)solids->solids[i++].count) {
             half_space_of[i] = at;
@@ -926,7 +848,7 @@ enum status solids_unite(struct solid_mesh *mesh, const struct solid_list *solid
         r.polygons[i].sizes = r.sizes + r.at[2 * i + 1];
     }
     if (!st) st = solid_mesh_make(mesh, r.vertices, r.vertex_count, r.polygons, r.polygon_count, NULL, err);
-    if (!st && log) st = write_log(log, &merges, &names, err);
+    if (!st && log) st = unite_write_log(log, &merges, &names, err);
     if (st) {
         solid_mesh_release(mesh);
         if (log) unite_log_release(log);
@@ -934,6 +856,7 @@ enum status solids_unite(struct solid_mesh *mesh, const struct solid_list *solid
     free(half_spaces);
     free(names.texts);
     free(names.rank);
+    free(names.room);
     free(names.present);
     free(merges.merges);
     free(r.vertices);

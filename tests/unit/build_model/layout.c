@@ -117,10 +117,6 @@ static void a_wall_that_moves_takes_its_neighbours_ends_along(void **state)
     drop(&plan, &list);
 }
 
-#define TWO                                                                                                      \
-    ROOM "wall middle from 2 1 to 2 2 thickness 0.1\nextend middle start to south\nextend middle end to north\n" \
-         "remove hall\nroom left south west north middle\nroom right middle north east south\n"
-
 static void floors_of_two_rooms_meet_in_the_middle_of_their_wall(void **state)
 {
     struct plan plan;
@@ -158,7 +154,7 @@ static void a_split_leaves_two_walls_on_one_line(void **state)
     drop(&plan, &list);
     /* walls joined to the new part stay joined to it; openings stay in their part */
     build(&plan, &list, ROOM "window w on south from 3 1 to 3.5 2\n",
-          "remodel-script 1\nsplit south from 1 to 2 into other\nmove south by 0\nmove west by 1\n");
+          "remodel-script 1\nsplit south from 1 to 2 into other\nmove west by 1\n");
     assert_string_equal(face_at(&list, -0.5, 0, 1), "wall/other/in");
     assert_string_equal(face_at(&list, 3.2, -0.1, 1), "window/w/sill");
     assert_int_equal(plan.openings[0].wall, 0);
@@ -326,23 +322,6 @@ static void the_top_of_a_wall_steps_between_ceilings_of_two_rooms(void **state)
     drop(&plan, &list);
 }
 
-static void set_affects_later_statements_only(void **state)
-{
-    struct plan plan;
-    struct solid_list list;
-    (void)state;
-    build(&plan, &list, ROOM "window w on south from 1 1 to 2 2\ndoor d on north from 1 0 to 2 2 closed\n",
-          "remodel-script 1\nset thickness 0.4\nset slab 0.4\nset glass 0.1\nset leaf 0.1\n");
-    assert_int_equal(inside(&list, "walls", 2, 1, -0.21), 0);
-    assert_int_equal(inside(&list, "glass/w", 1.5, -0.17, 1.5), 0);
-    assert_int_equal(inside(&list, "walls", 1.5, 3.125, 1), 0);
-    drop(&plan, &list);
-    build(&plan, &list, ROOM "door d on north from 1 0 to 2 2 closed\n",
-          "remodel-script 1\nset leaf 0.1\nopen d\nclose d\n");
-    assert_int_equal(inside(&list, "walls", 1.5, 3.125, 1), 1);
-    drop(&plan, &list);
-}
-
 static void a_round_room_has_many_walls(void **state)
 {
     enum { WALLS = 24 };
@@ -404,7 +383,6 @@ int main(void)
         cmocka_unit_test(an_opening_beside_a_corner_leaves_the_corner),
         cmocka_unit_test(the_top_of_a_wall_steps_between_ceilings_of_two_rooms),
         cmocka_unit_test(a_room_may_surround_three_sides_of_a_yard),
-        cmocka_unit_test(set_affects_later_statements_only),
         cmocka_unit_test(a_round_room_has_many_walls),
     };
     return cmocka_run_group_tests(tests, scratch_make, scratch_remove);

@@ -1,5 +1,5 @@
 /* place.c - walls from rectangles on photographs: synthetic points on known walls. */
-#include "tests/unit/scratch.h"
+#include "tests/unit/build_model/scripted.h"
 
 #include "common/base/rng.h"
 #include "stages/build_model/place.h"
@@ -79,7 +79,7 @@ static int stop(void **state)
 static enum status place(struct placed_wall *w, const char *view, double x0, double y0, double x1, double y1,
                          const double *normal, bool angled, struct err *err)
 {
-    const struct script_place p = {PLACE_VIEW, view, {x0, y0, x1, y1}};
+    const struct script_place p = {.kind = PLACE_VIEW, .view = view, .a = {x0, y0, x1, y1}};
     *err = (struct err)ERR_INIT;
     return place_wall(w, &placer, &p, normal, angled, "model.txt", 9, err);
 }
@@ -176,12 +176,50 @@ static void corners_lie_where_their_rays_meet_the_plane(void **state)
     (void)state;
     pixel(1.7, 4, 2.1, &u0, &v0);
     pixel(2.6, 4, 0.2, &u1, &v1);
-    const struct script_place p = {PLACE_VIEW, "fish", {u0, v0, u1, v1}};
+    const struct script_place p = {.kind = PLACE_VIEW, .view = "fish", .a = {u0, v0, u1, v1}};
     assert_ok(place_corners(c, &placer, &p, vec3_make(0, -1, 0), -4, "m", 1, &err), err);
     assert_true(vec3_length(vec3_sub(c[0], vec3_make(1.7, 4, 2.1))) < 1e-6);
     assert_true(vec3_length(vec3_sub(c[1], vec3_make(2.6, 4, 0.2))) < 1e-6);
     assert_int_not_equal(place_corners(c, &placer, &p, vec3_make(0, 1, 0), 4, "m", 1, &err), ST_OK);
     assert_err(err, ST_DATA, "starts behind it");
+}
+
+/* Opposite corners of openings in a ceiling, which the camera sees from below, and in a floor. */
+static void openings_of_rooms_lie_in_the_ceiling_and_the_floor(void **state)
+{
+    static const char *const ceilings[] = {"", "slope hall from west 2.5 to east 3\n",
+                                           "gable hall from west 2.5 to east 2.5 ridge 3.5\n"};
+    (void)state;
+    for (int i = 0; i < 3; i++) {
+        struct plan plan;
+        struct script script = {0};
+        struct err err = ERR_INIT;
+        char edit[512];
+        double a[4], b[4];
+        const double low[2] = {2.25, 4}, high[2] = {2.75, 4.7};
+        double z[2];
+        for (int k = 0; k < 2; k++) {
+            const double x = k ? high[0] : low[0];
+            z[k] = i == 0 ? 2.5 : i == 1 ? 2.5 + x / 8 : 3.5 - fabs(x - 2) / 2;
+        }
+        pixel(low[0], low[1], z[0], &a[0], &a[1]); /* what is nearer is higher in the picture */
+        pixel(high[0], high[1], z[1], &a[2], &a[3]);
+        pixel(low[0], high[1], 0, &b[0], &b[1]);
+        pixel(high[0], low[1], 0, &b[2], &b[3]);
+        assert_ok(scripted(&plan, ROOM "move north by 2\n", NULL, &err), err);
+        snprintf(
+            edit, sizeof edit,
+            "remodel-script 1\n%sskylight s on hall in fish %.9f %.9f %.9f %.9f\nhatch h on hall in fish %.9f %.9f "
+            "%.9f %.9f\n",
+            ceilings[i], a[0], a[1], a[2], a[3], b[0], b[1], b[2], b[3]);
+        assert_ok(script_read(&script, scratch_write("e.txt", edit), &err), err);
+        assert_ok(plan_apply(&plan, &script, true, &placer, &err), err);
+        for (int s = 0; s < 2; s++)
+            for (int k = 0; k < 2; k++)
+                assert_true(fabs(plan.slots[s].low[k] - low[k]) < 1e-5 && fabs(plan.slots[s].high[k] - high[k]) < 1e-5);
+        script_release(&script);
+        plan_release(&plan);
+    }
 }
 
 int main(void)
@@ -193,6 +231,7 @@ int main(void)
         cmocka_unit_test(an_angled_wall_gets_the_direction_of_its_points),
         cmocka_unit_test(adjust_keeps_the_direction),
         cmocka_unit_test(rectangles_without_a_wall_are_refused),
+        cmocka_unit_test(openings_of_rooms_lie_in_the_ceiling_and_the_floor),
         cmocka_unit_test(corners_lie_where_their_rays_meet_the_plane),
     };
     return cmocka_run_group_tests(tests, start, stop);

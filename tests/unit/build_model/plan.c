@@ -151,12 +151,49 @@ static void an_edit_that_breaks_the_building_is_refused(void **state)
         {"remodel-script 1\nremove d\nopen d\n", "edit.txt:3: d was removed"},
         {"remodel-script 1\nremove d\ndoor d on south from 1 0 to 2 2\n", "for an opening that was removed (line 10)"},
         {"remodel-script 1\nmove south by 1 1\n", "a wall moves along its normal"},
-        {"remodel-script 1\nmove d by 1 1\n", "an opening moves along its wall"},
+        {"remodel-script 1\nmove d by 1 1 1\n", "an opening moves along its wall"},
         {"remodel-script 1\nextend west start to 1\n", "edit.txt:2: "},
         {"remodel-script 1\nroom r2 south west\n", "edit.txt:2: "},
     };
     (void)state;
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) refused(base, cases[i].edit, cases[i].words);
+}
+
+static void a_statement_of_an_edit_that_changes_nothing_is_refused(void **state)
+{
+    static const char base[] = ROOM "door d on south from 3 0 to 3.9 2\nbox b from 1 1 to 2 2 top 1\n"
+                                    "wall x from 1 0 to 1 2\nwindow i on north from 1 1 to 2 2 interior\n";
+    static const struct {
+        const char *edit, *words;
+    } cases[] = {
+        {"set ceiling 3\n", "edit.txt:2: \"set ceiling\" changes nothing"},
+        {"set ceiling 3\nset ceiling 3.2\nwall y from 2 1 to 3 1\n", "edit.txt:2: \"set ceiling\" changes nothing"},
+        {"set glass 0.01\nwall y from 2 1 to 3 1\n", "edit.txt:2: \"set glass\" changes nothing"},
+        {"set ceiling 2.5\nwall y from 2 1 to 3 1\n",
+         "edit.txt:2: the statement changes nothing: ceiling is 2.5 already"},
+        {"move x by 0\n", "edit.txt:2: the statement changes nothing"},
+        {"move d by 0 0\n", "changes nothing"},
+        {"adjust d from 3 0 to 3.9 2\n", "changes nothing"},
+        {"change b top 1\n", "changes nothing"},
+        {"change hall ceiling 2.5\n", "changes nothing"},
+        {"change x thickness 0.2\n", "changes nothing"},
+        {"resize d left 0\n", "changes nothing"},
+        {"join south west\n", "changes nothing"},
+        {"close i\n", "interior and has no glass"},
+    };
+    struct plan plan;
+    struct err err = ERR_INIT;
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char edit[256];
+        snprintf(edit, sizeof edit, "remodel-script 1\n%s", cases[i].edit);
+        refused(base, edit, cases[i].words);
+    }
+    assert_ok(scripted(&plan, base, "remodel-script 1\n# nothing yet\n", &err), err);
+    plan_release(&plan);
+    assert_ok(scripted(&plan, base, "remodel-script 1\nset ceiling 3\nchange x top 2.4\nbox c from 2 2 to 3 3\n", &err),
+              err);
+    plan_release(&plan);
 }
 
 static void without_a_scale_lengths_must_be_set(void **state)
@@ -186,6 +223,7 @@ int main(void)
         cmocka_unit_test(the_whole_language_is_read),
         cmocka_unit_test(invalid_buildings_are_refused),
         cmocka_unit_test(an_edit_that_breaks_the_building_is_refused),
+        cmocka_unit_test(a_statement_of_an_edit_that_changes_nothing_is_refused),
         cmocka_unit_test(without_a_scale_lengths_must_be_set),
     };
     return cmocka_run_group_tests(tests, scratch_make, scratch_remove);

@@ -33,10 +33,19 @@ struct expected_wall {
 
 struct expected_hole {
     char name[NAME_SIZE];
-    bool gone, filled, interior;
+    bool gone, interior, refilled;
+    char fill; /* n, l, g, w: nothing, leaf, glass, wall */
     int wall;
     char kind; /* d, p, w */
     double s[2], z[2], thick;
+};
+
+struct expected_slot { /* an opening in a room's ceiling (s) or floor (h) */
+    char name[NAME_SIZE];
+    bool gone;
+    int room;
+    char kind, fill;
+    double low[2], high[2], thick;
 };
 
 struct expected_box {
@@ -61,9 +70,10 @@ struct expected {
     bool exact;
     struct expected_wall walls[MAX_ITEMS];
     struct expected_hole holes[MAX_ITEMS];
+    struct expected_slot slots[MAX_ITEMS];
     struct expected_box boxes[MAX_ITEMS];
     struct expected_room rooms[MAX_ITEMS];
-    int wall_count, hole_count, box_count, room_count;
+    int wall_count, hole_count, slot_count, box_count, room_count;
 };
 
 static inline void expected_begin(struct expected *t)
@@ -80,6 +90,7 @@ static inline void expected_begin(struct expected *t)
     }
 FIND_BY_NAME(wall, walls)
 FIND_BY_NAME(hole, holes)
+FIND_BY_NAME(slot, slots)
 FIND_BY_NAME(box, boxes)
 FIND_BY_NAME(room, rooms)
 
@@ -117,8 +128,44 @@ static inline void expected_copy_name(char name[NAME_SIZE], const char *word)
     strcpy(name, word);
 }
 
+/* The end of the wall at low or high S, between its neighbours. */
+static inline double expected_span(const struct expected *t, const struct expected_wall *w, int high)
+{
+    const struct expected_end *e = &w->ends[high];
+    if (e->kind == MODEL_FREE) return e->s;
+    return high ? expected_low(&t->walls[e->other]) : expected_high(&t->walls[e->other]);
+}
+
+static inline double expected_thickness(const struct expected *t, char fill)
+{
+    return fill == 'g' ? t->glass : fill == 'l' ? t->leaf : 0;
+}
+
+/* wall NAME parallel to WALL by D between WALL WALL */
+static inline void expected_add_parallel(struct expected *t, char **w, int n)
+{
+    const struct expected_wall *o = &t->walls[expected_wall(t, w[4])];
+    const int a = expected_wall(t, w[8]), b = expected_wall(t, w[9]);
+    const bool a_lower = t->walls[a].in < t->walls[b].in;
+    const double thickness = expected_option(w, n, "thickness", t->thickness);
+    struct expected_wall *x = &t->walls[t->wall_count++];
+    assert_true(t->wall_count < MAX_ITEMS);
+    *x = (struct expected_wall){.axis = o->axis, .start = o->start, .foot = expected_option(w, n, "foot", t->floor)};
+    expected_copy_name(x->name, w[1]);
+    x->has_top = expected_has_word(w, n, "top");
+    x->top = expected_option(w, n, "top", t->ceiling);
+    x->in = o->in + (o->out > o->in ? -atof(w[6]) : atof(w[6])); /* in front of it */
+    x->out = x->in + (o->out > o->in ? thickness : -thickness);
+    x->ends[0] = (struct expected_end){MODEL_MEET, 0, a_lower ? a : b};
+    x->ends[1] = (struct expected_end){MODEL_MEET, 0, a_lower ? b : a};
+}
+
 static inline void expected_add_wall(struct expected *t, char **w, int n)
 {
+    if (!strcmp(w[2], "parallel")) {
+        expected_add_parallel(t, w, n);
+        return;
+    }
     struct expected_wall *x = &t->walls[t->wall_count++];
     const double a[2] = {atof(w[3]), atof(w[4])}, b[2] = {atof(w[6]), atof(w[7])};
     const double thickness = expected_option(w, n, "thickness", t->thickness);
@@ -210,16 +257,50 @@ static inline void expected_rectangle(char **w, double s[2], double z[2])
     z[1] = fmax(atof(w[1]), atof(w[4]));
 }
 
+/* The place of an opening: from S Z to S Z, or at left|right D width W from Z to Z. */
+static inline void expected_place(const struct expected *t, int wall, char **w, double s[2], double z[2])
+{
+    if (!strcmp(w[0], "from")) {
+        expected_rectangle(w + 1, s, z);
+        return;
+    }
+    const struct expected_wall *x = &t->walls[wall];
+    const bool from_high = !strcmp(w[1], "right") == !x->start; /* its start is at the left */
+    const double by = atof(w[2]), width = atof(w[4]), end = expected_span(t, x, from_high);
+    s[0] = from_high ? end - by - width : end + by;
+    s[1] = s[0] + width;
+    z[0] = fmin(atof(w[6]), atof(w[8]));
+    z[1] = fmax(atof(w[6]), atof(w[8]));
+}
+
+static inline void expected_add_slot(struct expected *t, char **w, int n)
+{
+    struct expected_slot *o = &t->slots[t->slot_count++];
+    assert_true(t->slot_count < MAX_ITEMS);
+    *o = (struct expected_slot){.kind = w[0][0], .room = expected_room(t, w[3])};
+    expected_copy_name(o->name, w[1]);
+    for (int k = 0; k < 2; k++) {
+        o->low[k] = fmin(atof(w[5 + k]), atof(w[8 + k]));
+        o->high[k] = fmax(atof(w[5 + k]), atof(w[8 + k]));
+    }
+    o->fill = o->kind == 's'                      ? (expected_has_word(w, n, "open") ? 'n' : 'g')
+              : expected_has_word(w, n, "closed") ? 'l'
+                                                  : 'n';
+    o->thick = expected_thickness(t, o->fill);
+}
+
 static inline void expected_add_hole(struct expected *t, char **w, int n)
 {
     struct expected_hole *h = &t->holes[t->hole_count++];
     assert_true(t->hole_count < MAX_ITEMS);
     *h = (struct expected_hole){.kind = w[0][0], .wall = expected_wall(t, w[3])};
     expected_copy_name(h->name, w[1]);
-    expected_rectangle(w + 5, h->s, h->z);
-    h->filled = h->kind == 'w' ? !expected_has_word(w, n, "open") : expected_has_word(w, n, "closed");
+    expected_place(t, h->wall, w + 4, h->s, h->z);
+    h->fill = h->kind == 'w'                      ? (expected_has_word(w, n, "open") ? 'n' : 'g')
+              : expected_has_word(w, n, "closed") ? 'l'
+                                                  : 'n';
     h->interior = expected_has_word(w, n, "interior");
-    h->thick = h->kind == 'w' ? t->glass : t->leaf;
+    h->thick = expected_thickness(t, h->fill);
 }
 
 static inline void expected_add_box(struct expected *t, char **w, int n)
@@ -239,41 +320,117 @@ static inline void expected_add_box(struct expected *t, char **w, int n)
 
 static inline void expected_adjust(struct expected *t, char **w)
 {
-    const int wall = expected_wall(t, w[1]), hole = expected_hole(t, w[1]), box = expected_box(t, w[1]);
+    const int wall = expected_wall(t, w[1]), hole = expected_hole(t, w[1]), slot = expected_slot(t, w[1]);
     if (wall >= 0) {
         struct expected_wall *x = &t->walls[wall];
         const double by = atof(w[x->axis ? 3 : 4]) - x->in;
         x->in += by;
         x->out += by;
     } else if (hole >= 0) {
-        expected_rectangle(w + 3, t->holes[hole].s, t->holes[hole].z);
+        expected_place(t, t->holes[hole].wall, w + 2, t->holes[hole].s, t->holes[hole].z);
     } else {
-        expected_rectangle(w + 3, (double[2]){0}, (double[2]){0});
+        double *const low = slot >= 0 ? t->slots[slot].low : t->boxes[expected_box(t, w[1])].low;
+        double *const high = slot >= 0 ? t->slots[slot].high : t->boxes[expected_box(t, w[1])].high;
         for (int k = 0; k < 2; k++) {
-            t->boxes[box].low[k] = fmin(atof(w[3 + k]), atof(w[6 + k]));
-            t->boxes[box].high[k] = fmax(atof(w[3 + k]), atof(w[6 + k]));
+            low[k] = fmin(atof(w[3 + k]), atof(w[6 + k]));
+            high[k] = fmax(atof(w[3 + k]), atof(w[6 + k]));
         }
     }
 }
 
-static inline void expected_move(struct expected *t, char **w)
+static inline void expected_move(struct expected *t, char **w, int n)
 {
-    const int wall = expected_wall(t, w[1]), hole = expected_hole(t, w[1]), box = expected_box(t, w[1]);
-    const double by = atof(w[3]);
+    const int wall = expected_wall(t, w[1]), hole = expected_hole(t, w[1]), slot = expected_slot(t, w[1]);
+    const double by[3] = {atof(w[3]), n > 4 ? atof(w[4]) : 0, n > 5 ? atof(w[5]) : 0};
     if (wall >= 0) {
         struct expected_wall *x = &t->walls[wall];
-        const double across = x->out > x->in ? by : -by; /* away from its inside */
+        const double across = x->out > x->in ? by[0] : -by[0]; /* away from its inside */
         x->in += across;
         x->out += across;
-    } else if (hole >= 0) {
-        t->holes[hole].s[0] += by;
-        t->holes[hole].s[1] += by;
-    } else {
-        for (int k = 0; k < 2; k++) {
-            t->boxes[box].low[k] += atof(w[3 + k]);
-            t->boxes[box].high[k] += atof(w[3 + k]);
-        }
+        return;
     }
+    for (int k = 0; k < 2 && hole >= 0; k++) {
+        t->holes[hole].s[k] += by[0];
+        t->holes[hole].z[k] += by[1];
+    }
+    struct expected_box *b = hole < 0 && slot < 0 ? &t->boxes[expected_box(t, w[1])] : NULL;
+    for (int k = 0; k < (slot >= 0 ? 2 : 3) && hole < 0; k++) {
+        *(b ? &b->low[k] : &t->slots[slot].low[k]) += by[k];
+        *(b ? &b->high[k] : &t->slots[slot].high[k]) += by[k];
+    }
+}
+
+static inline bool expected_same_line(const struct expected_wall *a, const struct expected_wall *b)
+{
+    return a->axis == b->axis && a->start == b->start && fabs(a->in - b->in) < 1e-6;
+}
+
+/* Of a wall and those that continue it round a room. */
+static inline void expected_thicken(struct expected *t, int wall, double thickness)
+{
+    struct expected_wall *x = &t->walls[wall];
+    x->out = x->in + (x->out > x->in ? thickness : -thickness);
+    for (int i = 0; i < t->room_count; i++)
+        for (int k = 0; k < t->rooms[i].wall_count; k++) {
+            if (t->rooms[i].walls[k] != wall) continue;
+            for (int o = 0; o < t->rooms[i].wall_count; o++) {
+                const struct expected_wall *y = &t->walls[t->rooms[i].walls[o]];
+                if (fabs(fabs(y->out - y->in) - thickness) > 1e-9 && expected_same_line(x, y))
+                    expected_thicken(t, t->rooms[i].walls[o], thickness);
+            }
+        }
+}
+
+static inline void expected_change(struct expected *t, char **w, int n)
+{
+    const int wall = expected_wall(t, w[1]), box = expected_box(t, w[1]);
+    if (wall >= 0) {
+        struct expected_wall *x = &t->walls[wall];
+        const double thickness = expected_option(w, n, "thickness", fabs(x->out - x->in));
+        if (expected_has_word(w, n, "thickness")) expected_thicken(t, wall, thickness);
+        x->foot = expected_option(w, n, "foot", x->foot);
+        x->top = expected_option(w, n, "top", x->top);
+        x->has_top |= expected_has_word(w, n, "top");
+    } else if (box >= 0) {
+        t->boxes[box].low[2] = expected_option(w, n, "foot", t->boxes[box].low[2]);
+        t->boxes[box].high[2] = expected_option(w, n, "top", t->boxes[box].high[2]);
+        if (expected_option(w, n, "turn", 0) != 0) t->exact = false;
+    } else {
+        t->rooms[expected_room(t, w[1])].ceiling = expected_option(w, n, "ceiling", 0);
+    }
+}
+
+static inline void expected_resize(struct expected *t, char **w, int n)
+{
+    const int hole = expected_hole(t, w[1]), slot = expected_slot(t, w[1]);
+    const double left = expected_option(w, n, "left", 0), right = expected_option(w, n, "right", 0);
+    if (slot >= 0) {
+        t->slots[slot].low[0] -= left;
+        t->slots[slot].high[0] += right;
+        t->slots[slot].low[1] -= expected_option(w, n, "front", 0);
+        t->slots[slot].high[1] += expected_option(w, n, "back", 0);
+        return;
+    }
+    struct expected_hole *h = &t->holes[hole];
+    const bool left_is_low = !t->walls[h->wall].start;
+    h->s[0] -= left_is_low ? left : right;
+    h->s[1] += left_is_low ? right : left;
+    h->z[0] -= expected_option(w, n, "bottom", 0);
+    h->z[1] += expected_option(w, n, "top", 0);
+}
+
+/* open NAME, close NAME, fill NAME with WHAT */
+static inline void expected_fill(struct expected *t, char **w)
+{
+    const int hole = expected_hole(t, w[1]), slot = expected_slot(t, w[1]);
+    struct expected_hole *h = hole >= 0 ? &t->holes[hole] : NULL;
+    const char kind = h ? h->kind : t->slots[slot].kind, own = kind == 'w' || kind == 's' ? 'g' : 'l';
+    const char fill = w[0][0] == 'f' ? w[3][0] : w[0][0] == 'c' ? own : 'n';
+    *(h ? &h->fill : &t->slots[slot].fill) = fill;
+    *(h ? &h->thick : &t->slots[slot].thick) = expected_thickness(t, fill);
+    if (!h || w[0][0] != 'f') return;
+    h->refilled = true;
+    h->interior = false;
 }
 
 static inline void expected_remove(struct expected *t, const char *name)
@@ -286,6 +443,8 @@ static inline void expected_remove(struct expected *t, const char *name)
             if (t->holes[i].wall == wall) t->holes[i].gone = true;
     } else if (hole >= 0) {
         t->holes[hole].gone = true;
+    } else if (expected_slot(t, name) >= 0) {
+        t->slots[expected_slot(t, name)].gone = true;
     } else if (box >= 0) {
         t->boxes[box].gone = true;
     } else {
@@ -318,18 +477,22 @@ static inline void expected_apply(struct expected *t, const char *line)
         expected_split(t, w);
     } else if (!strcmp(w[0], "room")) {
         expected_add_room(t, w, n);
-    } else if (!strcmp(w[0], "slope")) {
+    } else if (!strcmp(w[0], "slope") || !strcmp(w[0], "gable")) {
         t->exact = false;
     } else if (!strcmp(w[0], "box")) {
         expected_add_box(t, w, n);
     } else if (!strcmp(w[0], "adjust")) {
         expected_adjust(t, w);
     } else if (!strcmp(w[0], "move")) {
-        expected_move(t, w);
-    } else if (!strcmp(w[0], "open") || !strcmp(w[0], "close")) {
-        struct expected_hole *h = &t->holes[expected_hole(t, w[1])];
-        h->filled = w[0][0] == 'c';
-        if (h->filled) h->thick = h->kind == 'w' ? t->glass : t->leaf;
+        expected_move(t, w, n);
+    } else if (!strcmp(w[0], "change")) {
+        expected_change(t, w, n);
+    } else if (!strcmp(w[0], "resize")) {
+        expected_resize(t, w, n);
+    } else if (!strcmp(w[0], "open") || !strcmp(w[0], "close") || !strcmp(w[0], "fill")) {
+        expected_fill(t, w);
+    } else if (!strcmp(w[0], "skylight") || !strcmp(w[0], "hatch")) {
+        expected_add_slot(t, w, n);
     } else if (!strcmp(w[0], "remove")) {
         expected_remove(t, w[1]);
     } else {
@@ -338,11 +501,6 @@ static inline void expected_apply(struct expected *t, const char *line)
 }
 
 /* ---------------------------------------------------------------------------------------------------------- matter */
-
-static inline bool expected_same_line(const struct expected_wall *a, const struct expected_wall *b)
-{
-    return a->axis == b->axis && a->start == b->start && fabs(a->in - b->in) < 1e-6;
-}
 
 /* Makes a room's edges from its walls, with the side on which the room is and the face towards it. */
 static inline void expected_edges(const struct expected *t, struct expected_room *r)
@@ -424,7 +582,8 @@ static inline bool expected_under_room(const struct expected *t, const struct ex
     return crossed % 2;
 }
 
-static inline double expected_top(const struct expected *t, int wall, double s)
+/* Where no room lists the wall, it goes up to the ceilings of the rooms in which it stands. */
+static inline double expected_top(const struct expected *t, int wall, double s, const double p[3])
 {
     const struct expected_wall *w = &t->walls[wall];
     double top = -HUGE_VAL;
@@ -440,6 +599,9 @@ static inline double expected_top(const struct expected *t, int wall, double s)
             if (s > low && s < high) top = fmax(top, r->ceiling);
         }
     }
+    const bool listed = top > -HUGE_VAL;
+    for (int i = 0; i < t->room_count && !listed; i++)
+        if (!t->rooms[i].gone && expected_under_room(t, &t->rooms[i], p)) top = fmax(top, t->rooms[i].ceiling);
     return top > -HUGE_VAL ? top : w->top;
 }
 
@@ -448,12 +610,27 @@ static inline bool expected_in_wall(const struct expected *t, int wall, const do
     const struct expected_wall *w = &t->walls[wall];
     const double s = p[w->axis], across = p[!w->axis];
     if (w->gone || across < expected_low(w) || across > expected_high(w)) return false;
-    if (s < expected_reach(t, w, 0) || s > expected_reach(t, w, 1) || p[2] < w->foot || p[2] > expected_top(t, wall, s))
+    if (s < expected_reach(t, w, 0) || s > expected_reach(t, w, 1) || p[2] < w->foot ||
+        p[2] > expected_top(t, wall, s, p))
         return false;
     for (int i = 0; i < t->hole_count; i++) {
         const struct expected_hole *h = &t->holes[i];
         if (h->gone || h->wall != wall || s < h->s[0] || s > h->s[1] || p[2] < h->z[0] || p[2] > h->z[1]) continue;
-        return h->kind == 'd' && h->filled && fabs(across - (w->in + w->out) / 2) < h->thick / 2;
+        if (h->fill == 'w') continue;
+        return h->fill == 'l' && fabs(across - (w->in + w->out) / 2) < h->thick / 2;
+    }
+    return true;
+}
+
+/* A point in a room's floor or ceiling is not in an opening, or in its leaf. */
+static inline bool expected_in_slab(const struct expected *t, int room, char opening, const double p[3])
+{
+    const struct expected_room *r = &t->rooms[room];
+    for (int i = 0; i < t->slot_count; i++) {
+        const struct expected_slot *o = &t->slots[i];
+        bool in = !o->gone && o->room == room && o->kind == opening && o->fill != 'w';
+        for (int k = 0; k < 2; k++) in &= p[k] > o->low[k] && p[k] < o->high[k];
+        if (in) return o->fill == 'l' && p[2] > (opening == 'h' ? r->floor : r->ceiling + r->slab) - o->thick;
     }
     return true;
 }
@@ -470,9 +647,9 @@ static inline bool expected_has_matter(const struct expected *t, const double p[
     }
     for (int i = 0; i < t->room_count; i++) {
         const struct expected_room *r = &t->rooms[i];
-        const bool slab =
-            (p[2] < r->floor && p[2] > r->floor - r->slab) || (p[2] > r->ceiling && p[2] < r->ceiling + r->slab);
-        if (!r->gone && slab && expected_under_room(t, r, p)) return true;
+        const bool floor = p[2] < r->floor && p[2] > r->floor - r->slab;
+        if (r->gone || !(floor || (p[2] > r->ceiling && p[2] < r->ceiling + r->slab))) continue;
+        if (expected_under_room(t, r, p) && expected_in_slab(t, i, floor ? 'h' : 's', p)) return true;
     }
     return false;
 }
@@ -521,8 +698,19 @@ static inline void expected_volumes(struct expected *t, double *solid, double *p
             expected_add_plane(&g, 2, h->z[k]);
             expected_add_plane(&g, !w->axis, (w->in + w->out + (k ? h->thick : -h->thick)) / 2);
         }
-        if (h->kind == 'w' && h->filled && !h->interior && !expected_between_rooms(t, h->wall))
-            *panes += (h->s[1] - h->s[0]) * (h->z[1] - h->z[0]) * h->thick;
+        const bool none = h->kind == 'w' && !h->refilled && (h->interior || expected_between_rooms(t, h->wall));
+        if (h->fill == 'g' && !none) *panes += (h->s[1] - h->s[0]) * (h->z[1] - h->z[0]) * h->thick;
+    }
+    for (int i = 0; i < t->slot_count; i++) {
+        const struct expected_slot *o = &t->slots[i];
+        const struct expected_room *r = &t->rooms[o->room];
+        if (o->gone || r->gone) continue;
+        for (int k = 0; k < 2; k++) {
+            expected_add_plane(&g, k, o->low[k]);
+            expected_add_plane(&g, k, o->high[k]);
+        }
+        expected_add_plane(&g, 2, (o->kind == 'h' ? r->floor : r->ceiling + r->slab) - o->thick);
+        if (o->fill == 'g') *panes += (o->high[0] - o->low[0]) * (o->high[1] - o->low[1]) * o->thick;
     }
     for (int i = 0; i < t->box_count; i++)
         for (int k = 0; k < 3; k++) {

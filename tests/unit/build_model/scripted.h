@@ -11,6 +11,11 @@
     "wall south from 4 0 to 0 0\nwall west from 0 0 to 0 3\nwall north from 0 3 to 4 3\n" \
     "wall east from 4 3 to 4 0\njoin south west north east south\nroom hall south west north east\n"
 
+/* The same with a wall between two rooms. */
+#define TWO                                                                                                      \
+    ROOM "wall middle from 2 1 to 2 2 thickness 0.1\nextend middle start to south\nextend middle end to north\n" \
+         "remove hall\nroom left south west north middle\nroom right middle north east south\n"
+
 static inline enum status scripted(struct plan *plan, const char *text, const char *edit, struct err *err)
 {
     struct script script = {0};

@@ -16,11 +16,19 @@
 #include "common/base/rng.h"
 
 enum { DEFAULT_SEQUENCES = 300, TEXT = 16384, LINE = 256, FURNISHINGS = 6, EDITS = 8, LINES = 10, MAX_HITS = 1024 };
-enum { MAX_TOUCHED = 512 };
+enum { MAX_TOUCHED = 512, MANY_SEQUENCES = 2000 }; /* in many sequences each statement is accepted in some edit */
 
 static struct rng numbers;
 static uint64_t sequence, drawn;
-static int accepted, rejected, exact_models, points;
+static int accepted, rejected, exact_models, points, by_verb[VERB_COUNT];
+
+/* Counts the accepted statement. */
+static void count_verb(const char *line)
+{
+    const size_t length = strcspn(line, " \n");
+    for (int v = 0; v < VERB_COUNT; v++)
+        by_verb[v] += strlen(verb_name((enum verb)v)) == length && !strncmp(verb_name((enum verb)v), line, length);
+}
 
 static double random_unit(void) { return rng_uniform(&numbers, sequence, drawn++); }
 static int one_of(int count) { return (int)(random_unit() * count); }
@@ -160,11 +168,13 @@ static const char *some_wall(const struct expected *t) { return t->walls[one_of(
 
 static const char *some_thing(const struct expected *t)
 {
-    switch (one_of(4)) {
+    switch (one_of(6)) {
     case 0:
         return some_wall(t);
     case 1:
         return t->box_count ? t->boxes[one_of(t->box_count)].name : "nothing";
+    case 2:
+        return t->slot_count ? t->slots[one_of(t->slot_count)].name : "nothing";
     default:
         return t->hole_count ? t->holes[one_of(t->hole_count)].name : "nothing";
     }
@@ -186,6 +196,12 @@ static void new_hole(const struct expected *t, char *line, int step)
     const double z = kind == 2 || one_of(4) == 0 ? uniform(0, 1.5) : t->walls[wall].foot;
     double s[2];
     random_place(t, wall, s);
+    if (one_of(4) == 0) {
+        snprintf(line, LINE, "%s n%d on %s at %s %.2f width %.2f from %.2f to %.2f%s\n", kinds[kind], step,
+                 t->walls[wall].name, one_of(2) ? "left" : "right", uniform(-0.1, 2), uniform(0.1, 1.6), z,
+                 z + uniform(0.2, 2.2), words[kind][one_of(3)]);
+        return;
+    }
     snprintf(line, LINE, "%s n%d on %s from %.2f %.2f to %.2f %.2f%s\n", kinds[kind], step, t->walls[wall].name, s[0],
              z, s[1], z + uniform(0.2, 2.2), words[kind][one_of(3)]);
 }
@@ -237,12 +253,78 @@ static void new_wall(const struct expected *t, char *line, int step)
     (void)t;
 }
 
+static const char *some_room(const struct expected *t)
+{
+    return t->room_count ? t->rooms[one_of(t->room_count)].name : "nothing";
+}
+
+static void new_slot(const struct expected *t, char *line, int step)
+{
+    const double x = uniform(-0.5, 5), y = uniform(-0.5, 5);
+    const bool sky = one_of(2);
+    snprintf(line, LINE, "%s n%d on %s from %.2f %.2f to %.2f %.2f%s\n", sky ? "skylight" : "hatch", step, some_room(t),
+             x, y, x + uniform(0.1, 1.5), y + uniform(0.1, 1.5),
+             one_of(3) ? ""
+             : sky     ? " open"
+                       : " closed");
+}
+
+static void change(const struct expected *t, char *line)
+{
+    switch (one_of(5)) {
+    case 0:
+        snprintf(line, LINE, "change %s top %.2f\n", some_wall(t), uniform(1.5, 3.5));
+        break;
+    case 1:
+        snprintf(line, LINE, "change %s thickness %.2f foot %.2f\n", some_wall(t), uniform(0.05, 0.4),
+                 uniform(-0.3, 0.3));
+        break;
+    case 2:
+        snprintf(line, LINE, "change %s foot %.2f top %.2f\n", t->box_count ? t->boxes[one_of(t->box_count)].name : "x",
+                 uniform(-0.5, 1), uniform(1, 3));
+        break;
+    default:
+        snprintf(line, LINE, "change %s ceiling %.2f\n", some_room(t), uniform(1.8, 3.4));
+    }
+}
+
+static void resize(const struct expected *t, char *line)
+{
+    const char *name = some_thing(t);
+    const bool slot = expected_slot(t, name) >= 0;
+    snprintf(line, LINE, "resize %s left %.2f", name, uniform(-0.3, 0.3));
+    if (one_of(2)) snprintf(line + strlen(line), LINE - strlen(line), " right %.2f", uniform(-0.3, 0.3));
+    snprintf(line + strlen(line), LINE - strlen(line), " %s %.2f", slot ? "front" : "bottom", uniform(-0.3, 0.3));
+    snprintf(line + strlen(line), LINE - strlen(line), " %s %.2f\n", slot ? "back" : "top", uniform(-0.3, 0.3));
+}
+
+static void shape_ceiling(const struct expected *t, char *line)
+{
+    if (!t->room_count) {
+        strcpy(line, "slope\n");
+        return;
+    }
+    const struct expected_room *r = &t->rooms[one_of(t->room_count)];
+    const int at = one_of(r->wall_count);
+    const char *a = t->walls[r->walls[at]].name, *b = t->walls[r->walls[(at + 2) % r->wall_count]].name;
+    const double low = uniform(1.8, 3), high = uniform(1.8, 3);
+    if (one_of(2)) {
+        snprintf(line, LINE, "slope %s from %s %.2f to %s %.2f\n", r->name, a, low, b, high);
+        return;
+    }
+    snprintf(line, LINE, "gable %s from %s %.2f to %s %.2f ridge %.2f", r->name, a, low, b, high,
+             fmax(low, high) + uniform(0.1, 1.5));
+    if (one_of(2)) snprintf(line + strlen(line), LINE - strlen(line), " at %.2f", uniform(0.2, 2.5));
+    strcat(line, "\n");
+}
+
 static void random_statement(const struct expected *t, char *line, int step)
 {
+    static const char *const fillings[] = {"leaf", "glass", "wall", "nothing"};
     static const char *const quantities[] = {"thickness", "slab", "glass", "leaf", "floor", "ceiling"};
     const char *wall = some_wall(t);
     const double s = uniform(-1, 6);
-    switch (one_of(22)) {
+    switch (one_of(31)) {
     case 0:
     case 1:
     case 2:
@@ -251,6 +333,9 @@ static void random_statement(const struct expected *t, char *line, int step)
     case 3:
     case 4:
         if (expected_box(t, wall = some_thing(t)) >= 0)
+            snprintf(line, LINE, "move %s by %.2f %.2f %.2f\n", wall, uniform(-0.6, 0.6), uniform(-0.6, 0.6),
+                     one_of(2) ? 0 : uniform(-0.6, 0.6));
+        else if (one_of(2))
             snprintf(line, LINE, "move %s by %.2f %.2f\n", wall, uniform(-0.6, 0.6), uniform(-0.6, 0.6));
         else
             snprintf(line, LINE, "move %s by %.2f\n", wall, uniform(-0.6, 0.6));
@@ -286,7 +371,7 @@ static void random_statement(const struct expected *t, char *line, int step)
             snprintf(line, LINE, "extend %s %s to %.2f\n", wall, one_of(2) ? "start" : "end", s);
         break;
     case 18:
-        snprintf(line, LINE, "join %s %s\n", wall, some_wall(t));
+        snprintf(line, LINE, "join %s %s\n", one_of(2) ? wall : t->walls[t->wall_count - 1].name, some_wall(t));
         break;
     case 19:
         new_wall(t, line, step);
@@ -294,11 +379,28 @@ static void random_statement(const struct expected *t, char *line, int step)
     case 20:
         if (one_of(3))
             snprintf(line, LINE, "set %s %.2f\n", quantities[one_of(6)], uniform(0.05, 0.4));
-        else if (t->room_count)
-            snprintf(line, LINE, "slope %s from %s %.2f to %s %.2f\n", t->rooms[one_of(t->room_count)].name, wall,
-                     uniform(1.8, 3), some_wall(t), uniform(1.8, 3));
         else
-            strcpy(line, "move\n");
+            shape_ceiling(t, line);
+        break;
+    case 21:
+    case 22:
+    case 23:
+        new_slot(t, line, step);
+        break;
+    case 24:
+    case 25:
+        change(t, line);
+        break;
+    case 26:
+    case 27:
+        resize(t, line);
+        break;
+    case 28:
+        snprintf(line, LINE, "fill %s with %s\n", some_thing(t), fillings[one_of(4)]);
+        break;
+    case 29:
+        snprintf(line, LINE, "wall n%d parallel to %s by %.2f between %s %s\n", step, wall, uniform(-1, 3),
+                 some_wall(t), some_wall(t));
         break;
     default:
         snprintf(line, LINE, "room n%d %s %s %s %s\n", step, wall, some_wall(t), some_wall(t), some_wall(t));
@@ -520,7 +622,9 @@ static void touch_line(struct touched *touched, const struct expected *t, const 
     snprintf(text, sizeof text, "%s", line);
     for (char *word; (word = strtok_r(rest, " \n", &rest));) {
         const int wall = expected_wall(t, word);
-        if (wall < 0 && expected_hole(t, word) < 0 && expected_box(t, word) < 0 && expected_room(t, word) < 0) continue;
+        if (wall < 0 && expected_hole(t, word) < 0 && expected_box(t, word) < 0 && expected_room(t, word) < 0 &&
+            expected_slot(t, word) < 0)
+            continue;
         keep_name(touched->names, &touched->count, word);
         if (wall >= 0) touch_wall(touched, t, wall);
     }
@@ -652,6 +756,28 @@ static void interpret(struct expected *expected, const char *text)
         if (strncmp(line, "remodel", 7)) expected_apply(expected, line);
 }
 
+/* A statement that uses a default: a wall, an opening or a box. */
+static void new_user(const struct expected *t, char *line, int step)
+{
+    switch (one_of(3)) {
+    case 0:
+        new_wall(t, line, step);
+        break;
+    case 1:
+        new_hole(t, line, step);
+        break;
+    default:
+        new_box(line, step);
+    }
+}
+
+static void accept_line(struct expected *expected, const char *line)
+{
+    accepted++;
+    count_verb(line);
+    expected_apply(expected, line);
+}
+
 static void one_sequence(void)
 {
     static char base[TEXT], edit[TEXT], tried[TEXT];
@@ -686,21 +812,24 @@ static void one_sequence(void)
     check_model(&m, &expected, rays, base, NULL);
     strcpy(edit, "remodel-script 1\n");
     for (int i = 0; i < EDITS; i++) {
+        char user[LINE] = ""; /* of a default: a set that no statement uses is rejected */
         random_statement(&expected, line, ++step);
+        if (!strncmp(line, "set ", 4)) new_user(&expected, user, ++step);
         if (with_crumbs()) add_crumbs(line);
         strcpy(tried, edit);
-        append(tried, "%s", line);
-        if (!make_model(&edited, base, tried, lines + 1)) {
+        append(tried, "%s%s", line, user);
+        if (!make_model(&edited, base, tried, *user ? 0 : lines + 1)) {
             rejected++;
             continue;
         }
         strcpy(edit, tried);
-        lines++;
-        accepted++;
+        lines += *user ? 2 : 1;
         before = expected;
-        expected_apply(&expected, line);
+        accept_line(&expected, line);
+        if (*user) accept_line(&expected, user);
         touch_line(&touched, &before, line);
         touch_line(&touched, &expected, line);
+        touch_line(&touched, &expected, user);
         check_model(&edited, &expected, rays, base, edit);
         check_identity(&m, &edited, &touched, rays, base, edit);
         if (i == EDITS - 1) assert_triangles_closed(&edited.mesh);
@@ -727,6 +856,11 @@ static void random_sequences_of_edits_give_the_described_solids(void **state)
     }
     print_message("%d sequences: %d edits accepted, %d rejected; %d volumes, %d points compared\n", count, accepted,
                   rejected, exact_models, points);
+    for (int v = 0; v < VERB_COUNT; v++) {
+        print_message("%s %d%s", verb_name((enum verb)v), by_verb[v],
+                      v + 1 < VERB_COUNT ? ", " : " accepted in edits\n");
+        assert_true(by_verb[v] > 0 || count < MANY_SEQUENCES);
+    }
     assert_true(accepted >= 3 * count / 2 && rejected >= count && exact_models >= 2 * count && points >= 10 * count);
 }
 

@@ -176,14 +176,45 @@ static void a_face_partly_shared_gets_a_hole(void **state)
 {
     (void)state;
     struct solid_list l = {0};
-    add_box(&l, "floor", 0, 0, -1, 4, 4, 0);
+    add_box(&l, "slab", 0, 0, -1, 4, 4, 0);
     add_box(&l, "column", 1, 1, 0, 2, 2, 3);
     check_union(&l, (struct wanted){1, 0, 16, 11, 12, 19});
     for (int i = 0; i < mesh.face_count; i++)
-        assert_int_equal(mesh.faces[i].loops, strcmp(solid_face_name(&mesh, i), "floor/z1") ? 1 : 2);
-    add_box(&l, "floor", 0, 0, -1, 4, 4, 0);
+        assert_int_equal(mesh.faces[i].loops, strcmp(solid_face_name(&mesh, i), "slab/z1") ? 1 : 2);
+    add_box(&l, "slab", 0, 0, -1, 4, 4, 0);
     add_box(&l, "column", 0, 0, 0, 2, 2, 3); /* at its corner: two sides become flush */
     check_union(&l, (struct wanted){1, 0, 14, 9, 9, 28});
+}
+
+/* Surfaces of two rooms in one plane stay two faces with a common edge, also an island; parts of one room are merged. */
+static void floors_of_two_rooms_are_two_faces(void **state)
+{
+    static const char *const a[6] = {"s", "s", "s", "s", "floor/a/bottom", "floor/a"};
+    static const char *const b[6] = {"s", "s", "s", "s", "floor/b/bottom", "floor/b"};
+    struct err err = ERR_INIT;
+    struct solid_list l = {0};
+    (void)state;
+    assert_ok(add_named_box(&l, "walls", vec3_make(0, 0, -1), vec3_make(2, 3, 0), a, &err), err);
+    assert_ok(add_named_box(&l, "walls", vec3_make(2, 0, -1), vec3_make(3, 3, 0), a, &err), err);
+    assert_ok(add_named_box(&l, "walls", vec3_make(3, 0, -1), vec3_make(6, 3, 0), b, &err), err);
+    check_union(&l, (struct wanted){1, 0, 12, 8, 8, 18}); /* the sides are merged */
+    assert_int_equal(faces_called(&mesh, "floor/a"), 1);
+    assert_int_equal(faces_called(&mesh, "floor/b"), 1);
+    for (int i = 0; i < 9; i++) { /* an island of b in a */
+        const double x = i % 3, y = i / 3;
+        assert_ok(add_named_box(&l, "walls", vec3_make(x, y, -1), vec3_make(x + 1, y + 1, 0), i == 4 ? b : a, &err),
+                  err);
+    }
+    check_union(&l, (struct wanted){1, 0, 16, 8, 10, 9});
+    for (int i = 0; i < mesh.face_count; i++) {
+        const char *name = solid_face_name(&mesh, i);
+        assert_int_equal(mesh.faces[i].loops, !strncmp(name, "floor/a", 7) ? 2 : 1);
+    }
+    /* where two rooms' floors overlap, the surface is the first one's, and nothing is named twice */
+    assert_ok(add_named_box(&l, "walls", vec3_make(0, 0, -1), vec3_make(3, 3, 0), a, &err), err);
+    assert_ok(add_named_box(&l, "walls", vec3_make(2, 1, -1), vec3_make(5, 2, 0), b, &err), err);
+    check_union(&l, (struct wanted){1, 0, 16, 12, 12, 11});
+    assert_int_equal(faces_called(&mesh, "floor/a") + faces_called(&mesh, "floor/b"), 2);
 }
 
 static void four_walls_are_a_ring(void **state)
@@ -526,6 +557,7 @@ int main(void)
         cmocka_unit_test_teardown(solids_that_touch_in_an_edge_or_a_point_stay_separate, release_mesh),
         cmocka_unit_test_teardown(one_of_two_edges_between_the_same_vertices_is_split, release_mesh),
         cmocka_unit_test_teardown(a_face_partly_shared_gets_a_hole, release_mesh),
+        cmocka_unit_test_teardown(floors_of_two_rooms_are_two_faces, release_mesh),
         cmocka_unit_test_teardown(four_walls_are_a_ring, release_mesh),
         cmocka_unit_test_teardown(glass_in_a_window_is_a_separate_body, release_mesh),
         cmocka_unit_test_teardown(walls_join_in_t_l_and_cross_junctions, release_mesh),

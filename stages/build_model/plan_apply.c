@@ -1,0 +1,173 @@
+/* plan_apply.c - applies the statements of a script to a plan.
+ *
+ * A statement changes the plan at once. What depends on the whole plan (whether an opening lies in its wall, whether a
+ * room's walls close) is checked once the script is read, and in an edit after each statement, so that the statement
+ * which breaks the building is named. An edit's statement must also change something: the plan as a text is compared
+ * with what it was before. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "stages/build_model/plan_internal.h"
+#include "stages/build_model/room_parts.h"
+
+void plan_release(struct plan *plan)
+{
+    if (!plan) return;
+    for (int i = 0; i < plan->wall_count; i++) free(plan->walls[i].name);
+    for (int i = 0; i < plan->opening_count; i++) free(plan->openings[i].name);
+    for (int i = 0; i < plan->slot_count; i++) free(plan->slots[i].name);
+    for (int i = 0; i < plan->box_count; i++) free(plan->boxes[i].name);
+    for (int i = 0; i < plan->room_count; i++) {
+        free(plan->rooms[i].name);
+        free(plan->rooms[i].walls);
+        free(plan->rooms[i].edges);
+        free(plan->rooms[i].edge_of);
+        room_parts_release(&plan->rooms[i]);
+    }
+    free(plan->walls);
+    free(plan->openings);
+    free(plan->slots);
+    free(plan->boxes);
+    free(plan->rooms);
+    free(plan->names);
+    *plan = (struct plan){0};
+}
+
+void plan_begin(struct plan *plan, const struct model_axes *axes)
+{
+    *plan = (struct plan){0};
+    if (!axes || axes->metric) {
+        plan->thickness = 0.15;
+        plan->glass = 0.02;
+        plan->leaf = 0.04;
+        if (!axes) plan->ceiling = 2.5;
+    }
+    if (axes && axes->ceiling > 0) plan->ceiling = axes->ceiling;
+    if (axes && axes->thickness > 0) plan->thickness = axes->thickness;
+}
+
+static enum status apply_statement(struct plan_context *c)
+{
+    switch (c->s->verb) {
+    case VERB_SET:
+        return apply_set(c);
+    case VERB_WALL:
+        return apply_wall(c);
+    case VERB_ROOM:
+        return apply_room(c);
+    case VERB_SLOPE:
+    case VERB_GABLE:
+        return apply_slope(c);
+    case VERB_DOOR:
+    case VERB_PASSAGE:
+    case VERB_WINDOW:
+        return apply_opening(c);
+    case VERB_SKYLIGHT:
+    case VERB_HATCH:
+        return apply_slot(c);
+    case VERB_BOX:
+        return apply_box(c);
+    case VERB_JOIN:
+        return apply_join(c);
+    case VERB_EXTEND:
+        return apply_extend(c);
+    case VERB_SPLIT:
+        return apply_split(c);
+    case VERB_ADJUST:
+        return apply_adjust(c);
+    case VERB_MOVE:
+        return apply_move(c);
+    case VERB_CHANGE:
+        return apply_change(c);
+    case VERB_RESIZE:
+        return apply_resize(c);
+    case VERB_OPEN:
+    case VERB_CLOSE:
+    case VERB_FILL:
+        return apply_fill(c);
+    default:
+        return apply_remove(c);
+    }
+}
+
+static enum status needs_views(struct plan_context *c)
+{
+    if (c->s->place.kind != PLACE_VIEW || c->placer) return ST_OK;
+    return statement_error(c, "the statement names the view %s, but no views are known; give --views.",
+                           c->s->place.view);
+}
+
+/* An edit's statement that changes nothing is a mistake. A default that is set must be used further down. */
+struct edit_watch {
+    char *before;
+    int set_line[DEFAULTS]; /* of a default that no statement used yet; 0: none */
+};
+
+static enum status unused_default(struct plan_context *c, enum plan_default which, int line)
+{
+    const char *name;
+    default_value(c->plan, which, &name);
+    return err_set(c->err, ST_DATA,
+                   "%s:%d: \"set %s\" changes nothing: no statement further down uses it, and it does not change what "
+                   "there is%s.",
+                   c->path, line, name,
+                   which == DEFAULT_CEILING     ? "; to change a ceiling, write \"change ROOM ceiling Z\""
+                   : which == DEFAULT_THICKNESS ? "; to change a wall, write \"change WALL thickness T\""
+                                                : "");
+}
+
+static enum status watch_set(struct plan_context *c, struct edit_watch *w)
+{
+    for (int i = 0; i < DEFAULTS; i++) {
+        const char *name;
+        const double *value = default_value(c->plan, (enum plan_default)i, &name);
+        if (strcmp(name, c->s->name)) continue;
+        if (w->set_line[i]) return unused_default(c, (enum plan_default)i, w->set_line[i]);
+        if (*value == c->s->values[0])
+            return statement_error(c, "the statement changes nothing: %s is %.9g already.", name, *value);
+        w->set_line[i] = c->s->line;
+    }
+    return ST_OK;
+}
+
+static enum status apply_watched(struct plan_context *c, struct edit_watch *w)
+{
+    char *after = NULL;
+    if (c->s->verb == VERB_SET) return watch_set(c, w) ? c->err->status : apply_set(c);
+    c->used = 0;
+    if (apply_statement(c) || plan_check(c->plan, c->path, c->s->line, c->err) || plan_state(&after, c->plan, c->err))
+        return c->err->status;
+    for (int i = 0; i < DEFAULTS; i++)
+        if (c->used & 1u << i) w->set_line[i] = 0;
+    const bool same = !strcmp(w->before, after);
+    free(w->before);
+    w->before = after;
+    return same ? statement_error(c, "the statement changes nothing: the plan is like that already.") : ST_OK;
+}
+
+static enum status apply_edit(struct plan_context *c, const struct script *script)
+{
+    struct edit_watch w = {0};
+    enum status st = plan_state(&w.before, c->plan, c->err);
+    for (int i = 0; i < script->count && !st; i++) {
+        c->s = &script->statements[i];
+        st = needs_views(c);
+        if (!st) st = apply_watched(c, &w);
+    }
+    for (int i = 0; i < DEFAULTS && !st; i++)
+        if (w.set_line[i]) st = unused_default(c, (enum plan_default)i, w.set_line[i]);
+    free(w.before);
+    return st;
+}
+
+enum status plan_apply(struct plan *plan, const struct script *script, bool edit, const struct placer *placer,
+                       struct err *err)
+{
+    struct plan_context c = {.plan = plan, .path = script->path, .placer = placer, .err = err};
+    if (edit) return apply_edit(&c, script);
+    for (int i = 0; i < script->count; i++) {
+        c.s = &script->statements[i];
+        if (needs_views(&c) || apply_statement(&c)) return err->status;
+    }
+    return plan_check(plan, script->path, 0, err);
+}
