@@ -12,21 +12,24 @@
 
 int main(int argc, char **argv)
 {
-    const char *folder = NULL, *shared = NULL, *truth = NULL, *out = NULL;
+    struct evaluate_inputs from = {0};
+    const char *out = NULL;
     struct evaluate_params params = EVALUATE_PARAMS_DEFAULT;
     const struct cli_opt opts[] = {
         CLI_ABOUT("Measures a scene's products against a truth and against held-out photographs."),
-        CLI_STR("folder", &folder, CLI_REQUIRED, "folder of the scene's products"),
-        CLI_STR("shared", &shared, CLI_REQUIRED, "folder of its photo records, shared by all qualities"),
-        CLI_STR("truth", &truth, CLI_OPTIONAL, "folder of the truth: true cameras and depths"),
+        CLI_STR("folder", &from.folder, CLI_REQUIRED, "folder of the scene's products"),
+        CLI_STR("shared", &from.shared, CLI_REQUIRED, "folder of its photo records, shared by all qualities"),
+        CLI_STR("truth", &from.truth, CLI_OPTIONAL,
+                "folder of the truth: true cameras, depths, pictures, edited scenes"),
+        CLI_STR("pictures", &from.pictures, CLI_OPTIONAL,
+                "folder of rendered pictures: novel/, edited-E/, shell/ (default: FOLDER/pictures)"),
         CLI_STR("out", &out, CLI_REQUIRED, "table of metrics to write (metrics.tsv)"),
         CLI_PARAMS(evaluate_param_table, &params, NULL),
         CLI_END,
     };
     struct provenance prov = {0};
     struct err err = ERR_INIT;
-    if (cli_parse(argc, argv, "evaluate", opts, &prov, &err) != CLI_RUN ||
-        evaluate(folder, shared, truth, out, &params, &prov, &err))
+    if (cli_parse(argc, argv, "evaluate", opts, &prov, &err) != CLI_RUN || evaluate(&from, out, &params, &prov, &err))
         err_report(&err);
     provenance_release(&prov);
     return err_exit_code(&err);

@@ -48,12 +48,16 @@ static void evaluation_release(struct evaluation *e)
     photo_list_release(&e->photos);
 }
 
-enum status evaluate(const char *folder, const char *shared, const char *truth, const char *out,
-                     const struct evaluate_params *params, struct provenance *prov, struct err *err)
+enum status evaluate(const struct evaluate_inputs *from, const char *out, const struct evaluate_params *params,
+                     struct provenance *prov, struct err *err)
 {
-    struct evaluation e = {.folder = folder, .params = params, .prov = prov, .truth_folder = truth};
-    char path[FILE_PATH];
-    enum status st = file_path(path, shared, "photos", "", err);
+    const char *folder = from->folder, *truth = from->truth;
+    struct evaluation e = {
+        .folder = folder, .shared = from->shared, .params = params, .prov = prov, .truth_folder = truth};
+    char path[FILE_PATH], pictures[FILE_PATH];
+    enum status st = file_path(path, from->shared, "photos", "", err);
+    if (!st) st = file_path(pictures, folder, "pictures", "", err);
+    e.pictures = from->pictures ? from->pictures : pictures;
     if (!st) st = photo_list_read(&e.photos, path, err);
     if (!st) st = read_views(&e, &e.views, "views", err);
     if (!st) st = file_path(path, folder, "holdout/views/images.txt", "", err);
@@ -67,6 +71,8 @@ enum status evaluate(const char *folder, const char *shared, const char *truth, 
     if (!st) st = evaluate_walls(&e, err);
     if (!st) st = evaluate_depths(&e, err);
     if (!st && e.has_held) st = evaluate_pictures(&e, err);
+    if (!st && truth) st = evaluate_radiance(&e, err);
+    if (!st && truth) st = evaluate_renders(&e, err);
     if (!st) st = file_path(path, folder, "evaluate/views.tsv", "", err);
     if (!st) st = metric_table_write(&e.table, true, path, prov, err);
     if (!st) st = metric_table_write(&e.table, false, out, prov, err);
