@@ -69,6 +69,7 @@ enum status evaluate(const struct evaluate_inputs *from, const char *out, const 
     if (!st && truth) st = evaluate_cameras(&e, err);
     if (!st) st = evaluate_axes(&e, err);
     if (!st) st = evaluate_walls(&e, err);
+    if (!st && truth) st = evaluate_edited_walls(&e, err);
     if (!st) st = evaluate_depths(&e, err);
     if (!st && e.has_held) st = evaluate_pictures(&e, err);
     if (!st && truth) st = evaluate_radiance(&e, err);

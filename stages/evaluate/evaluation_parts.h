@@ -37,11 +37,12 @@ struct evaluation {
 
 /* Each group adds its metrics to the table, or a note that says why it has none. Cameras come first: they set `aligned`
  * and truth_from_scene. */
-enum status evaluate_cameras(struct evaluation *e, struct err *err);  /* camera.* */
-enum status evaluate_axes(struct evaluation *e, struct err *err);     /* axes.* */
-enum status evaluate_walls(struct evaluation *e, struct err *err);    /* model.* */
-enum status evaluate_depths(struct evaluation *e, struct err *err);   /* depth.* */
-enum status evaluate_pictures(struct evaluation *e, struct err *err); /* holdout.* */
+enum status evaluate_cameras(struct evaluation *e, struct err *err);      /* camera.* */
+enum status evaluate_axes(struct evaluation *e, struct err *err);         /* axes.* */
+enum status evaluate_walls(struct evaluation *e, struct err *err);        /* model.* */
+enum status evaluate_edited_walls(struct evaluation *e, struct err *err); /* edited.E.*, of the models of edits */
+enum status evaluate_depths(struct evaluation *e, struct err *err);       /* depth.* */
+enum status evaluate_pictures(struct evaluation *e, struct err *err);     /* holdout.* */
 
 enum status evaluate_radiance(struct evaluation *e, struct err *err); /* radiance.*; sets radiance_scale */
 enum status evaluate_renders(struct evaluation *e, struct err *err);  /* novel.*, edited.E.* */
