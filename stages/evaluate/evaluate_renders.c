@@ -11,8 +11,8 @@
 #include "stages/evaluate/renders.h"
 
 struct render_sums { /* over the pictures that have the metric */
-    double psnr, ssim, psnr_covered, holes, rms, error50, offset;
-    int pictures, with_ssim, covered, with_rms, with_error;
+    double psnr, ssim, psnr_covered, holes, rms, rms_clipped, error50, offset;
+    int pictures, with_ssim, covered, with_rms, with_clipped, with_error;
 };
 
 /* Psnr and ssim of the two pictures encoded with `white` as white. */
@@ -70,22 +70,47 @@ static enum status add_encoded(struct evaluation *e, const char *of, const char 
     return st ? err->status : ST_OK;
 }
 
+/* Linear errors: `whole` of all light, NULL of a picture that white limits; `clipped` with both clipped at white. */
 static enum status add_linear(struct evaluation *e, const char *of, const char *name,
-                              const struct radiance_error *errors, struct render_sums *s, struct err *err)
+                              const struct radiance_error *whole, const struct radiance_error *clipped,
+                              struct render_sums *s, struct err *err)
 {
     double rms;
     enum status st = ST_OK;
-    if (radiance_error_rms(errors, &rms)) {
+    if (whole && radiance_error_rms(whole, &rms)) {
         s->rms += rms;
         s->with_rms++;
         st = evaluation_metric(e, name, of, "rms", 100 * rms, "%", "lower", err);
     }
-    if (!st && errors->errors.count) {
-        const double middle = quantiles_get(&errors->errors, 0.5);
+    if (!st && radiance_error_rms(clipped, &rms)) {
+        s->rms_clipped += rms;
+        s->with_clipped++;
+        st = evaluation_metric(e, name, of, "rms_clipped", 100 * rms, "%", "lower", err);
+    }
+    const struct radiance_error *all = whole ? whole : clipped;
+    if (!st && all->errors.count) {
+        const double middle = quantiles_get(&all->errors, 0.5);
         s->error50 += middle;
         s->with_error++;
         st = evaluation_metric(e, name, of, "error50", 100 * middle, "%", "lower", err);
     }
+    return st;
+}
+
+/* Both errors of radiance of a picture that was read. */
+static enum status linear_errors(struct evaluation *e, const char *of, const struct render *r,
+                                 const struct image *truth, struct render_sums *s, struct err *err)
+{
+    struct radiance_error whole = {0}, clipped = {0};
+    struct radiance_pixels p = {
+        r->picture.rgb.data, truth->data, NULL, (size_t)truth->width * (size_t)truth->height, r->scale, 0};
+    enum status st = radiance_error_init(&whole, err) ? err->status : radiance_error_init(&clipped, err);
+    if (!st && !r->picture.encoded) radiance_error_add(&whole, &p);
+    p.clip = e->white;
+    if (!st) radiance_error_add(&clipped, &p);
+    if (!st) st = add_linear(e, of, r->name, r->picture.encoded ? NULL : &whole, &clipped, s, err);
+    radiance_error_release(&clipped);
+    radiance_error_release(&whole);
     return st;
 }
 
@@ -94,7 +119,6 @@ static enum status measure(struct evaluation *e, const struct renders *list, str
 {
     struct image truth = {0};
     struct picture_errors errors;
-    struct radiance_error linear = {0};
     const char *of = list->set->prefix;
     bool none = false;
     enum status st = render_read(e, list, r, &truth, err);
@@ -102,19 +126,10 @@ static enum status measure(struct evaluation *e, const struct renders *list, str
     if (!st && none) {
         st = metric_note(&e->table, err, "skipped %s of %s: its camera sees nothing of the true picture", r->name, of);
     } else if (!st) {
-        const struct radiance_pixels p = {r->picture.rgb.data,
-                                          truth.data,
-                                          NULL,
-                                          (size_t)truth.width * (size_t)truth.height,
-                                          r->scale,
-                                          r->picture.encoded ? e->white : 0};
-        st = radiance_error_init(&linear, err);
-        if (!st) radiance_error_add(&linear, &p);
         if (!st) st = add_encoded(e, of, r->name, &errors, s, err);
-        if (!st) st = add_linear(e, of, r->name, &linear, s, err);
+        if (!st) st = linear_errors(e, of, r, &truth, s, err);
         s->offset = fmax(s->offset, r->offset);
     }
-    radiance_error_release(&linear);
     image_release(&truth);
     linear_picture_release(&r->picture);
     return st;
@@ -134,6 +149,8 @@ static enum status add_means(struct evaluation *e, const char *of, const struct 
         (s->covered &&
          evaluation_metric(e, NULL, of, "psnr_covered", s->psnr_covered / s->covered, "dB", "higher", err)) ||
         (s->with_rms && evaluation_metric(e, NULL, of, "rms", 100 * s->rms / s->with_rms, "%", "lower", err)) ||
+        (s->with_clipped &&
+         evaluation_metric(e, NULL, of, "rms_clipped", 100 * s->rms_clipped / s->with_clipped, "%", "lower", err)) ||
         (s->with_error &&
          evaluation_metric(e, NULL, of, "error50", 100 * s->error50 / s->with_error, "%", "lower", err));
     return st ? err->status : ST_OK;
@@ -144,8 +161,7 @@ static enum status measure_set(struct evaluation *e, const struct true_set *set,
     struct renders list = {0};
     struct render_sums s = {0};
     enum status st = renders_find(&list, e, set, err);
-    for (int i = 0; !st && list.count && i < list.count; i++)
-        if (!i) st = renders_scale(e, &list, err);
+    if (!st && list.count) st = renders_scale(e, &list, err);
     for (int i = 0; !st && e->white > 0 && i < list.count; i++) st = measure(e, &list, &list.list[i], &s, err);
     if (!st && s.pictures) st = add_means(e, set->prefix, &s, list.own_cameras, err);
     renders_release(&list);

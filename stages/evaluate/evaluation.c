@@ -32,8 +32,8 @@ static enum status note_missing(struct evaluation *e, struct err *err)
     enum status st = ST_OK;
     if (!e->truth_folder) st = metric_note(t, err, "skipped camera and depth errors: no TRUTH is given");
     if (!st && !e->has_held) st = metric_note(t, err, "skipped PSNR, SSIM and holes: no photo is held out (HOLDOUT)");
-    if (!st) st = metric_note(t, err, "skipped irradiance: there is no relight/irradiance");
-    if (!st) st = metric_note(t, err, "skipped texture errors: there is no vita and no vdta");
+    if (!st && !e->truth_folder) st = metric_note(t, err, "skipped irradiance: no TRUTH is given");
+    if (!st && !e->truth_folder) st = metric_note(t, err, "skipped texture errors: no TRUTH is given");
     return st;
 }
 
@@ -70,10 +70,13 @@ enum status evaluate(const struct evaluate_inputs *from, const char *out, const 
     if (!st) st = evaluate_axes(&e, err);
     if (!st) st = evaluate_walls(&e, err);
     if (!st && truth) st = evaluate_edited_walls(&e, err);
+    if (!st && truth) st = evaluate_faces(&e, err);
     if (!st) st = evaluate_depths(&e, err);
     if (!st && e.has_held) st = evaluate_pictures(&e, err);
     if (!st && truth) st = evaluate_radiance(&e, err);
     if (!st && truth) st = evaluate_renders(&e, err);
+    if (!st && truth) st = evaluate_irradiance(&e, err);
+    if (!st && truth) st = evaluate_shell(&e, err);
     if (!st) st = file_path(path, folder, "evaluate/views.tsv", "", err);
     if (!st) st = metric_table_write(&e.table, true, path, prov, err);
     if (!st) st = metric_table_write(&e.table, false, out, prov, err);

@@ -15,7 +15,9 @@
     X(white, double, 0, 0, 1e9, "",                                                                             \
       "true radiance that is white where pictures are compared in 8 bits; 0: that of the value 1 in the views") \
     X(max_offset, double, 0.1, 0, 1e9, "m",                                                                     \
-      "maximum distance of a rendered picture's camera from the true one; pictures farther away are skipped")
+      "maximum distance of a rendered picture's camera from the true one; pictures farther away are skipped")   \
+    X(surface_distance, double, 0.05, 0, 1e9, "m",                                                              \
+      "maximum distance of an irradiance point from a face of the model that it counts as lying on")
 
 struct evaluate_params {
     EVALUATE_PARAMS(PARAM_FIELD)

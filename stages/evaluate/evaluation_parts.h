@@ -41,11 +41,14 @@ enum status evaluate_cameras(struct evaluation *e, struct err *err);      /* cam
 enum status evaluate_axes(struct evaluation *e, struct err *err);         /* axes.* */
 enum status evaluate_walls(struct evaluation *e, struct err *err);        /* model.* */
 enum status evaluate_edited_walls(struct evaluation *e, struct err *err); /* edited.E.*, of the models of edits */
+enum status evaluate_faces(struct evaluation *e, struct err *err);        /* model.faces, edited.E.faces */
 enum status evaluate_depths(struct evaluation *e, struct err *err);       /* depth.* */
 enum status evaluate_pictures(struct evaluation *e, struct err *err);     /* holdout.* */
 
-enum status evaluate_radiance(struct evaluation *e, struct err *err); /* radiance.*; sets radiance_scale */
-enum status evaluate_renders(struct evaluation *e, struct err *err);  /* novel.*, edited.E.* */
+enum status evaluate_radiance(struct evaluation *e, struct err *err);   /* radiance.*; sets radiance_scale */
+enum status evaluate_renders(struct evaluation *e, struct err *err);    /* novel.*, edited.E.* */
+enum status evaluate_irradiance(struct evaluation *e, struct err *err); /* irradiance.* */
+enum status evaluate_shell(struct evaluation *e, struct err *err);      /* shell.* */
 
 /* metric_add() of "PREFIX.NAME"; ST_INTERNAL: a longer name than a table holds. */
 enum status evaluation_metric(struct evaluation *e, const char *view, const char *prefix, const char *name,

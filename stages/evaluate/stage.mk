@@ -2,7 +2,8 @@
 FOLLOWS.evaluate = $(filter-out evaluate report verify,$(STAGE_FOLDERS))
 READS.evaluate := cameras, depth maps, held-out photos and their frames, a truth
 WRITES.evaluate := metrics.tsv, evaluate/
-VARIABLES.evaluate := TRUTH
+VARIABLES.evaluate := TRUTH PICTURES
+LIBS.evaluate := -lembree3
 STEPS.evaluate := evaluate
 HELP.evaluate := the depth maps, compared with TRUTH or with photos held out, into metrics.tsv
 NEEDS.evaluate := depth

@@ -65,7 +65,9 @@ enum status true_set_read(struct true_set *set, const char *truth, const char *w
     snprintf(set->where, sizeof set->where, "%s", where);
     snprintf(set->prefix, sizeof set->prefix, "%s", where);
     if (!strncmp(where, "edited-", 7)) set->prefix[6] = '.';
-    if (file_path(set->folder, truth, where, "", err)) return err->status;
+    if (*where ? file_path(set->folder, truth, where, "", err)
+               : snprintf(set->folder, sizeof set->folder, "%s", truth) >= FILE_PATH)
+        return *where ? err->status : err_set(err, ST_IO, "the path of the truth is too long: %s.", truth);
     if (!path_is_folder(set->folder)) return ST_OK;
     snprintf(in, sizeof in, "%s%s", where, *where ? "/" : "");
     snprintf(beside, sizeof beside, "%s-", where);
