@@ -54,10 +54,10 @@ enum status evaluate(const struct evaluate_inputs *from, const char *out, const 
     const char *folder = from->folder, *truth = from->truth;
     struct evaluation e = {
         .folder = folder, .shared = from->shared, .params = params, .prov = prov, .truth_folder = truth};
-    char path[FILE_PATH], pictures[FILE_PATH];
+    char path[FILE_PATH], rendered[FILE_PATH];
     enum status st = file_path(path, from->shared, "photos", "", err);
-    if (!st) st = file_path(pictures, folder, "pictures", "", err);
-    e.pictures = from->pictures ? from->pictures : pictures;
+    if (!st) st = file_path(rendered, folder, "rendered", "", err);
+    e.rendered = from->rendered ? from->rendered : rendered;
     if (!st) st = photo_list_read(&e.photos, path, err);
     if (!st) st = read_views(&e, &e.views, "views", err);
     if (!st) st = file_path(path, folder, "holdout/views/images.txt", "", err);

@@ -32,7 +32,7 @@ struct evaluate_inputs {
     const char *folder;   /* out/SCENE of one quality or hold-out */
     const char *shared;   /* the folder of its photo records */
     const char *truth;    /* NULL: there is none */
-    const char *pictures; /* rendered pictures; NULL: folder/pictures */
+    const char *rendered; /* rendered pictures; NULL: folder/rendered */
 };
 
 /* Writes folder/evaluate/truth/VIEW.exr, folder/evaluate/cameras, folder/evaluate/views.tsv and, last, `out`. */

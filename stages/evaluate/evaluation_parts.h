@@ -19,7 +19,7 @@ struct view_set { /* the cameras of the kept or of the held-out views, and the l
 
 struct evaluation {
     const char *folder, *shared;
-    const char *pictures;     /* folder of rendered pictures */
+    const char *rendered;     /* folder of rendered pictures */
     const char *truth_folder; /* NULL: no truth is given */
     const struct evaluate_params *params;
     struct provenance *prov;

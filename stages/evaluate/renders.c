@@ -48,7 +48,7 @@ static enum status find_own(struct renders *list, struct evaluation *e, const ch
     int strange = 0, far = 0;
     double farthest = 0;
     char as[80];
-    snprintf(as, sizeof as, "pictures/%s", list->set->where);
+    snprintf(as, sizeof as, "rendered/%s", list->set->where);
     enum status st = provenance_add_in(e->prov, as, folder, "cameras.txt", "", NULL, err);
     if (!st) st = provenance_add_in(e->prov, as, folder, "images.txt", "", NULL, err);
     if (!st) st = sfm_model_read_cameras(&m, folder, err);
@@ -112,7 +112,7 @@ enum status renders_find(struct renders *list, struct evaluation *e, const struc
     for (int i = 0; i < set->count; i++) with_truth += true_set_file(path, set, "hdr", set->pictures[i].name);
     if (!with_truth)
         return metric_note(t, err, "skipped pictures of %s: the truth has none (hdr/NAME.exr)", set->prefix);
-    if (file_path(folder, e->pictures, set->where, "", err) || file_path(images, folder, "images.txt", "", err))
+    if (file_path(folder, e->rendered, set->where, "", err) || file_path(images, folder, "images.txt", "", err))
         return err->status;
     if (!path_is_folder(folder))
         return metric_note(t, err, "skipped pictures of %s: there is no folder %s of rendered pictures", set->prefix,
@@ -143,7 +143,7 @@ enum status render_read(struct evaluation *e, const struct renders *list, struct
     struct linear_picture whole = {0};
     char name[FILE_PATH];
     const char *file = strrchr(r->path, '/');
-    enum status st = file_path(name, "pictures", list->set->where, file, err);
+    enum status st = file_path(name, "rendered", list->set->where, file, err);
     if (!st) st = provenance_add_file(e->prov, name, r->path, err);
     if (!st) {
         snprintf(name, sizeof name, "truth%s", r->truth + strlen(e->truth_folder));

@@ -1,6 +1,6 @@
-/* renders.h - rendered pictures, PICTURES/WHERE/NAME, that belong to the true pictures TRUTH/WHERE.
+/* renders.h - rendered pictures, RENDERED/WHERE/NAME, that belong to the true pictures TRUTH/WHERE.
  *
- * If PICTURES/WHERE has cameras.txt and images.txt (COLMAP text, in the frame of O/views), a picture has the camera of
+ * If RENDERED/WHERE has cameras.txt and images.txt (COLMAP text, in the frame of O/views), a picture has the camera of
  * its name there, and belongs to the true picture of the same name; the similarity of the cameras brings its camera
  * into the truth's world. Without them, a picture is named like a view of the scene and has its size; it belongs to the
  * true picture of the view's photograph. In both cases a picture is compared in its own pixels. */

@@ -12,8 +12,9 @@ static enum status read_row(struct metric_rows *r, struct textfile *t, bool of_v
     struct metric_row m = {0};
     char *view = NULL;
     if (array_append(&r->rows, (size_t)r->count, sizeof *r->rows, "metrics", err) ||
-        (of_views && textfile_word(t, "view", &view, err)) || textfile_word_into(t, "metric", m.name, sizeof m.name, err) ||
-        textfile_double(t, "value", &m.value, err) || textfile_word_into(t, "unit", m.unit, sizeof m.unit, err) ||
+        (of_views && textfile_word(t, "view", &view, err)) ||
+        textfile_word_into(t, "metric", m.name, sizeof m.name, err) || textfile_double(t, "value", &m.value, err) ||
+        textfile_word_into(t, "unit", m.unit, sizeof m.unit, err) ||
         textfile_word_into(t, "direction", m.direction, sizeof m.direction, err) || textfile_end(t, err))
         return err->status;
     if (!(m.view = strdup(view ? view : ""))) return err_nomem(err, "metrics", sizeof m);

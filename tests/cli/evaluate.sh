@@ -132,9 +132,9 @@ exact_radiance_has_no_error()
 pictures_are_compared_through_their_own_cameras()
 {
     says 'skipped pictures of novel: there is no folder novel'
-    mkdir -p t/pictures/novel
-    cp t/evaluate/cameras/novel/*.txt t/pictures/novel/
-    cp truth/novel/hdr/c.exr t/pictures/novel/
+    mkdir -p t/rendered/novel
+    cp t/evaluate/cameras/novel/*.txt t/rendered/novel/
+    cp truth/novel/hdr/c.exr t/rendered/novel/
     measure
     within novel.pictures 1 1
     within novel.psnr 60 99 c
@@ -142,21 +142,21 @@ pictures_are_compared_through_their_own_cameras()
     within novel.offset 0 1e-9
     within novel.white 0.9995 1.0005
     # the picture of another camera is wrong; one that is too far away is not compared
-    cp truth/hdr/a.exr t/pictures/novel/c.exr
+    cp truth/hdr/a.exr t/rendered/novel/c.exr
     measure
     within novel.psnr 5 25
-    awk '/c.exr/ { $6 += 0.2 } { print }' t/evaluate/cameras/novel/images.txt >t/pictures/novel/images.txt
+    awk '/c.exr/ { $6 += 0.2 } { print }' t/evaluate/cameras/novel/images.txt >t/rendered/novel/images.txt
     measure
     says 'skipped 1 pictures of novel: their cameras are up to 0.4 m from the true ones'
     says 'skipped 1 of 1 true pictures of novel'
-    cp t/evaluate/cameras/novel/images.txt t/pictures/novel/
+    cp t/evaluate/cameras/novel/images.txt t/rendered/novel/
 }
 
 eight_bit_pictures_need_a_white_point()
 {
     # the photo: signal 60 radiance seconds, so that white is the radiance 1
-    rm t/pictures/novel/c.exr
-    cp sim-scene/photos/c.jpg t/pictures/novel/
+    rm t/rendered/novel/c.exr
+    cp sim-scene/photos/c.jpg t/rendered/novel/
     measure
     within novel.psnr 25 60
     within novel.rms_clipped 0 15
@@ -172,13 +172,13 @@ eight_bit_pictures_need_a_white_point()
 
 edited_pictures_are_compared_as_views()
 {
-    mkdir -p t/pictures/edited-wide
-    cp truth/edited-wide/hdr/[ab].exr t/pictures/edited-wide/
+    mkdir -p t/rendered/edited-wide
+    cp truth/edited-wide/hdr/[ab].exr t/rendered/edited-wide/
     measure
     within edited.wide.pictures 2 2
     within edited.wide.psnr 60 99
     says 'skipped 1 of 3 true pictures of edited.wide'
-    cp truth/hdr/[ab].exr t/pictures/edited-wide/
+    cp truth/hdr/[ab].exr t/rendered/edited-wide/
     measure
     within edited.wide.psnr 10 45
 }
@@ -236,15 +236,15 @@ irradiance_is_compared_on_the_model_and_elsewhere()
 hidden_faces_are_scored_apart()
 {
     says 'skipped pictures of shell: there is no folder shell'
-    mkdir -p t/pictures/shell
-    cp truth/shell/hdr/*.exr t/pictures/shell/
+    mkdir -p t/rendered/shell
+    cp truth/shell/hdr/*.exr t/rendered/shell/
     measure
     within shell.pictures 3 3
     within shell.hidden 2 30
     within shell.error50_hidden 0 0.05
     within shell.error50_seen 0 0.05
     # a picture with the crate is wrong where the crate hides the room, and nearly right elsewhere
-    cp sim-scene/truth/hdr/*.exr t/pictures/shell/
+    cp sim-scene/truth/hdr/*.exr t/rendered/shell/
     measure
     within shell.rms_hidden 20 200
     awk -F'\t' '$1 == "shell.error50_hidden" { h = $2 } $1 == "shell.error50_seen" { s = $2 } END { exit !(h > 3 * s) }' metrics.tsv || { cat metrics.tsv; fail "hidden faces are not worse"; }
