@@ -32,6 +32,38 @@ int model_plan_find_wall(const struct model_plan *plan, const char *name)
     return -1;
 }
 
+int model_plan_find_room(const struct model_plan *plan, const char *name)
+{
+    for (int i = 0; i < plan->room_count; i++)
+        if (!strcmp(plan->rooms[i].name, name)) return i;
+    return -1;
+}
+
+double model_room_ceiling(const struct model_room *room, double x, double y)
+{
+    double z = INFINITY;
+    for (int k = 0; k < room->ceilings; k++)
+        z = fmin(z, room->ceiling[k][0] + room->ceiling[k][1] * x + room->ceiling[k][2] * y);
+    return z;
+}
+
+static enum status known_room(const struct model_plan *plan, struct textfile *t, int *room, struct err *err)
+{
+    char *name;
+    if (textfile_word(t, "a room's name", &name, err)) return err->status;
+    *room = model_plan_find_room(plan, name);
+    return *room < 0 ? textfile_error(t, err, name, "the name of a room on a line above") : ST_OK;
+}
+
+/* *closed: the next word is "closed", not "open". */
+static enum status open_or_closed(struct textfile *t, bool *closed, struct err *err)
+{
+    char *state;
+    if (textfile_word(t, "open or closed", &state, err)) return err->status;
+    *closed = !strcmp(state, "closed");
+    return *closed || !strcmp(state, "open") ? ST_OK : textfile_error(t, err, state, "open or closed");
+}
+
 static enum status known_wall(const struct model_plan *plan, struct textfile *t, int *wall, struct err *err)
 {
     char *name;
@@ -78,16 +110,14 @@ static enum status read_opening(struct model_plan *plan, struct textfile *t, enu
 {
     static const char *const from[] = {"its start", "its sill"}, *const to[] = {"its end", "its head"};
     double a[2], b[2];
-    char *state;
     if (array_append(&plan->openings, (size_t)plan->opening_count, sizeof *plan->openings, "openings", err))
         return err->status;
     struct model_opening *o = &plan->openings[plan->opening_count++];
     *o = (struct model_opening){.kind = kind};
     if (owned_word(t, "an opening's name", &o->name, err) || textfile_expect(t, "on", err) ||
         known_wall(plan, t, &o->wall, err) || textfile_expect(t, "from", err) || numbers(t, from, a, 2, err) ||
-        textfile_expect(t, "to", err) || numbers(t, to, b, 2, err) || textfile_word(t, "open or closed", &state, err))
+        textfile_expect(t, "to", err) || numbers(t, to, b, 2, err) || open_or_closed(t, &o->closed, err))
         return err->status;
-    o->closed = strcmp(state, "open") != 0;
     for (int k = 0; k < 2; k++) {
         o->s[k] = k ? b[0] : a[0];
         o->z[k] = k ? b[1] : a[1];
@@ -95,27 +125,53 @@ static enum status read_opening(struct model_plan *plan, struct textfile *t, enu
     return ST_OK;
 }
 
+static const char *const ceiling_fields[] = {"height", "slope along x", "slope along y"};
+
 static enum status read_room(struct model_plan *plan, struct textfile *t, struct err *err)
 {
-    static const char *const ceiling[] = {"height", "slope along x", "slope along y"}, *const at[] = {"x", "y"};
+    static const char *const at[] = {"x", "y"};
     if (array_append(&plan->rooms, (size_t)plan->room_count, sizeof *plan->rooms, "rooms", err)) return err->status;
     struct model_room *r = &plan->rooms[plan->room_count++];
-    *r = (struct model_room){0};
+    *r = (struct model_room){.ceilings = 1};
     if (owned_word(t, "a room's name", &r->name, err) || textfile_expect(t, "floor", err) ||
         textfile_double(t, "the floor's height", &r->floor, err) || textfile_expect(t, "ceiling", err) ||
-        numbers(t, ceiling, r->ceiling, 3, err))
+        numbers(t, ceiling_fields, r->ceiling[0], 3, err))
         return err->status;
     do {
-        struct model_room_corner c = {0};
         double p[2];
-        if (known_wall(plan, t, &c.wall, err) || numbers(t, at, p, 2, err) ||
-            array_append(&r->corners, (size_t)r->corner_count, sizeof c, "corners", err))
-            return err->status;
-        c.x = p[0];
-        c.y = p[1];
-        r->corners[r->corner_count++] = c;
+        if (array_append(&r->corners, (size_t)r->corner_count, sizeof *r->corners, "corners", err)) return err->status;
+        struct model_room_corner *c = &r->corners[r->corner_count++];
+        *c = (struct model_room_corner){.wall = -1};
+        if (owned_word(t, "a wall's name", &c->wall_name, err) || numbers(t, at, p, 2, err)) return err->status;
+        c->wall = model_plan_find_wall(plan, c->wall_name);
+        c->x = p[0];
+        c->y = p[1];
     } while (textfile_more(t));
     return r->corner_count < 3 ? textfile_error(t, err, r->name, "a room of three corners or more") : ST_OK;
+}
+
+static enum status read_gable(struct model_plan *plan, struct textfile *t, struct err *err)
+{
+    int room;
+    if (known_room(plan, t, &room, err) || textfile_expect(t, "ceiling", err)) return err->status;
+    struct model_room *r = &plan->rooms[room];
+    if (r->ceilings == 2) return textfile_error(t, err, r->name, "a room without a gable on a line above");
+    if (numbers(t, ceiling_fields, r->ceiling[1], 3, err)) return err->status;
+    r->ceilings = 2;
+    return ST_OK;
+}
+
+static enum status read_slot(struct model_plan *plan, struct textfile *t, bool skylight, struct err *err)
+{
+    static const char *const at[] = {"x", "y"};
+    if (array_append(&plan->slots, (size_t)plan->slot_count, sizeof *plan->slots, "openings", err)) return err->status;
+    struct model_slot *o = &plan->slots[plan->slot_count++];
+    *o = (struct model_slot){.skylight = skylight};
+    if (owned_word(t, "an opening's name", &o->name, err) || textfile_expect(t, "on", err) ||
+        known_room(plan, t, &o->room, err) || textfile_expect(t, "from", err) || numbers(t, at, o->low, 2, err) ||
+        textfile_expect(t, "to", err) || numbers(t, at, o->high, 2, err))
+        return err->status;
+    return open_or_closed(t, &o->closed, err);
 }
 
 static enum status read_box(struct model_plan *plan, struct textfile *t, struct err *err)
@@ -142,6 +198,9 @@ static enum status read_statement(struct model_plan *plan, struct textfile *t, s
     if (!strcmp(verb, "passage")) return read_opening(plan, t, MODEL_PASSAGE, err);
     if (!strcmp(verb, "window")) return read_opening(plan, t, MODEL_WINDOW, err);
     if (!strcmp(verb, "room")) return read_room(plan, t, err);
+    if (!strcmp(verb, "gable")) return read_gable(plan, t, err);
+    if (!strcmp(verb, "skylight")) return read_slot(plan, t, true, err);
+    if (!strcmp(verb, "hatch")) return read_slot(plan, t, false, err);
     if (!strcmp(verb, "box")) return read_box(plan, t, err);
     return ST_OK;
 }
@@ -169,10 +228,13 @@ void model_plan_release(struct model_plan *plan)
     }
     for (int i = 0; i < plan->opening_count; i++) free(plan->openings[i].name);
     for (int i = 0; i < plan->room_count; i++) {
+        for (int k = 0; k < plan->rooms[i].corner_count; k++) free(plan->rooms[i].corners[k].wall_name);
         free(plan->rooms[i].name);
         free(plan->rooms[i].corners);
     }
+    for (int i = 0; i < plan->slot_count; i++) free(plan->slots[i].name);
     for (int i = 0; i < plan->box_count; i++) free(plan->boxes[i].name);
+    free(plan->slots);
     free(plan->walls);
     free(plan->openings);
     free(plan->rooms);

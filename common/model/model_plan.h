@@ -33,16 +33,26 @@ struct model_opening {
 };
 
 struct model_room_corner {
-    int wall;    /* the one that ends here */
-    double x, y; /* counter-clockwise */
+    char *wall_name; /* of the wall that ends here; owned */
+    int wall;        /* -1: it was removed, and the plan has no line of it */
+    double x, y;     /* counter-clockwise */
 };
 
 struct model_room {
     char *name; /* owned */
     double floor;
-    double ceiling[3]; /* z = ceiling[0] + ceiling[1] x + ceiling[2] y */
+    double ceiling[2][3]; /* z = ceiling[k][0] + ceiling[k][1] x + ceiling[k][2] y */
+    int ceilings;         /* 1; 2 under a gable, where the lower one counts */
     struct model_room_corner *corners;
     int corner_count;
+};
+
+struct model_slot { /* an opening in a ceiling (skylight) or a floor (hatch), by its footprint */
+    char *name;     /* owned */
+    bool skylight;
+    int room;
+    double low[2], high[2];
+    bool closed;
 };
 
 struct model_box {
@@ -55,17 +65,21 @@ struct model_plan {
     struct model_wall *walls;
     struct model_opening *openings;
     struct model_room *rooms;
+    struct model_slot *slots;
     struct model_box *boxes;
-    int wall_count, opening_count, room_count, box_count;
+    int wall_count, opening_count, room_count, slot_count, box_count;
 };
 
 /* Versions only add statements, so statements of later versions are left out. plan is overwritten, and empty after an
- * error. ST_DATA with file and line: another file, a damaged line, a wall without a direction, an opening or a room on
- * a wall that is on no line above. */
+ * error. ST_DATA with file and line: another file, a damaged line, a wall without a direction, an opening on a
+ * wall, or a gable or slot of a room, that is on no line above. */
 enum status model_plan_read(struct model_plan *plan, const char *path, struct err *err);
 void model_plan_release(struct model_plan *plan);
 
 int model_plan_find_wall(const struct model_plan *plan, const char *name); /* -1: not found */
+int model_plan_find_room(const struct model_plan *plan, const char *name); /* -1: not found */
+
+double model_room_ceiling(const struct model_room *room, double x, double y); /* its height there */
 
 /* The lower corner of an opening and the opposite upper one, on the wall's inner face. False: the wall is parallel to
  * no axis, so that S begins at a point that the plan does not hold. */

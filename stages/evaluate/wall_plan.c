@@ -92,7 +92,7 @@ static enum status add_model_heights(struct measured_plan *plan, const struct mo
     if (!(area > 0)) return ST_OK;
     x /= area;
     y /= area;
-    const double ceiling = r->ceiling[0] + r->ceiling[1] * x + r->ceiling[2] * y;
+    const double ceiling = model_room_ceiling(r, x, y);
     return add_part(&plan->rooms, r->name, vec3_make(x, y, r->floor), vec3_make(x, y, ceiling), err);
 }
 
@@ -102,8 +102,7 @@ static enum status add_model_room(struct measured_plan *plan, const struct model
     for (int i = 0; i < r->corner_count; i++) {
         const struct model_room_corner *a = &r->corners[(i + r->corner_count - 1) % r->corner_count],
                                        *b = &r->corners[i];
-        if (add_part(&plan->faces, model->walls[b->wall].name, vec3_make(a->x, a->y, r->floor),
-                     vec3_make(b->x, b->y, r->floor), err))
+        if (add_part(&plan->faces, b->wall_name, vec3_make(a->x, a->y, r->floor), vec3_make(b->x, b->y, r->floor), err))
             return err->status;
     }
     return add_model_heights(plan, r, err);

@@ -30,7 +30,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     }
     for (int i = 0; i < plan.room_count; i++)
         for (int k = 0; k < plan.rooms[i].corner_count; k++)
-            if (plan.rooms[i].corners[k].wall < 0 || plan.rooms[i].corners[k].wall >= plan.wall_count) abort();
+            if (plan.rooms[i].corners[k].wall >= plan.wall_count || !plan.rooms[i].corners[k].wall_name) abort();
+    for (int i = 0; i < plan.slot_count; i++)
+        if (plan.slots[i].room < 0 || plan.slots[i].room >= plan.room_count) abort();
     model_plan_release(&plan);
     unlink(path);
     return 0;
