@@ -90,6 +90,7 @@ static enum status choose_faces(struct faces_job *job, bool shell, const char *s
     a->counted[0] = true;
     for (int i = 0; !st && i < job->truth.count; i++) {
         const char *name = job->truth.faces[i].name;
+        if (!name) continue;
         a->true_normals[i + 1] = job->truth.faces[i].normal;
         a->counted[i + 1] =
             shell || part_of(&plan.faces, name) || part_of(&plan.openings, name) || part_of(&plan.rooms, name);

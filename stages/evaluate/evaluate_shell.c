@@ -86,7 +86,7 @@ static enum status add_faces(struct evaluation *e, struct shell_error *errors, c
     for (int i = 1; !st && i < errors->face_count; i++) {
         if (!shell_face_median(errors, i, part, &medians[count])) continue;
         const double middle = medians[count++];
-        if (i <= faces->count)
+        if (i <= faces->count && faces->faces[i - 1].name)
             snprintf(view, sizeof view, "face/%.250s", faces->faces[i - 1].name);
         else
             snprintf(view, sizeof view, "face/%d", i);

@@ -7,23 +7,26 @@
 #include "common/base/array.h"
 #include "common/base/textfile.h"
 
+enum { MAX_ID = 1 << 20 };
+
 static enum status read_face(struct true_faces *faces, struct textfile *t, struct err *err)
 {
     int64_t id;
     char *name;
     double area, n[3];
-    if (textfile_int(t, "a face's id", 1, INT32_MAX, &id, err) || textfile_word(t, "its name", &name, err) ||
+    if (textfile_int(t, "a face's id", 1, MAX_ID, &id, err) || textfile_word(t, "its name", &name, err) ||
         textfile_double(t, "its area", &area, err) || textfile_double(t, "x of its normal", &n[0], err) ||
         textfile_double(t, "y of its normal", &n[1], err) || textfile_double(t, "z of its normal", &n[2], err) ||
         textfile_end(t, err))
         return err->status;
-    if (id != faces->count + 1)
-        return textfile_wrong_number(t, (double)id, "the id after that of the line above; the first is 1", err);
-    if (array_append(&faces->faces, (size_t)faces->count, sizeof *faces->faces, "faces", err)) return err->status;
-    struct true_face *f = &faces->faces[faces->count];
+    while (faces->count < id) {
+        if (array_append(&faces->faces, (size_t)faces->count, sizeof *faces->faces, "faces", err)) return err->status;
+        faces->faces[faces->count++] = (struct true_face){0};
+    }
+    struct true_face *f = &faces->faces[id - 1];
+    if (f->name) return textfile_wrong_number(t, (double)id, "an id that is on no line above", err);
     *f = (struct true_face){strdup(name), vec3_make(n[0], n[1], n[2])};
     if (!f->name) return err_nomem(err, "a name", strlen(name));
-    faces->count++;
     return ST_OK;
 }
 

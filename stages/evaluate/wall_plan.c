@@ -102,6 +102,7 @@ static enum status add_model_room(struct measured_plan *plan, const struct model
     for (int i = 0; i < r->corner_count; i++) {
         const struct model_room_corner *a = &r->corners[(i + r->corner_count - 1) % r->corner_count],
                                        *b = &r->corners[i];
+        if (b->wall < 0) continue; /* a removed wall has no face */
         if (add_part(&plan->faces, b->wall_name, vec3_make(a->x, a->y, r->floor), vec3_make(b->x, b->y, r->floor), err))
             return err->status;
     }

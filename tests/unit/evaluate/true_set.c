@@ -92,22 +92,24 @@ static void edits_are_listed_by_name(void **state)
     assert_int_not_equal(true_edits_find(&list, scratch_path("nowhere"), &err), ST_OK);
 }
 
-static void faces_are_in_order_of_id(void **state)
+static void faces_have_ids_of_their_own(void **state)
 {
     (void)state;
     static const char *const cases[][2] = {
         {"remodel-faces 2\n", ":1: found \"2\""},
-        {"remodel-faces 1\n2 a 1 0 0 1\n", ":2: found \"2\", wanted the id after that of the line above"},
+        {"remodel-faces 1\n2 a 1 0 0 1\n2 b 1 0 0 1\n", ":3: found \"2\", wanted an id that is on no line above"},
+        {"remodel-faces 1\n0 a 1 0 0 1\n", ":2: found \"0\""},
         {"remodel-faces 1\n1 a 1 0 0\n", ":2: "},
         {"remodel-faces 1\n1 a 1 0 0 1 5\n", ":2: found \"5\""},
     };
     struct true_faces faces;
     struct err err = ERR_INIT;
-    const char *path = scratch_write("faces.txt", "remodel-faces 1\n# c\n1 hall.floor 12 0 0 1\n2 chair 0.5 0 0 0\n");
+    const char *path = scratch_write("faces.txt", "remodel-faces 1\n# c\n4 chair 0.5 0 0 0\n1 hall.floor 12 0 0 1\n");
     assert_ok(true_faces_read(&faces, path, &err), err);
-    assert_int_equal(faces.count, 2);
+    assert_int_equal(faces.count, 4);
     assert_string_equal(faces.faces[0].name, "hall.floor");
-    assert_true(faces.faces[0].normal.z == 1 && faces.faces[1].normal.z == 0);
+    assert_null(faces.faces[1].name);
+    assert_true(faces.faces[0].normal.z == 1 && faces.faces[3].normal.z == 0);
     true_faces_release(&faces);
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct err why = ERR_INIT;
@@ -123,7 +125,7 @@ int main(void)
         cmocka_unit_test(both_layouts_are_read),
         cmocka_unit_test(a_folder_without_cameras_has_those_of_the_photos_and_of_new_views),
         cmocka_unit_test(edits_are_listed_by_name),
-        cmocka_unit_test(faces_are_in_order_of_id),
+        cmocka_unit_test(faces_have_ids_of_their_own),
     };
     return cmocka_run_group_tests_name("true_set", tests, make_truth, scratch_remove);
 }

@@ -74,6 +74,24 @@ static void errors_are_the_known_shifts(void **state)
         }
 }
 
+static void an_edge_of_a_removed_wall_is_no_face(void **state)
+{
+    (void)state;
+    struct measured_plan plan;
+    struct err err = ERR_INIT;
+    assert_ok(measured_plan_read(
+                  &plan,
+                  scratch_write("plan.txt",
+                                "remodel-plan 2\n"
+                                "wall s normal 0 1 at 0 thickness 1 from 0 to 1 foot 0 top 2 start free end free\n"
+                                "room r floor 0 ceiling 2 0 0 s 4 0 gone 4 2 s 0 2\n"),
+                  PLAN_FROM_MODEL, &err),
+              err);
+    assert_int_equal(plan.faces.count, 2);
+    assert_true(plan.faces.parts[1].at[0].x == 4 && plan.faces.parts[1].at[0].y == 2);
+    measured_plan_release(&plan);
+}
+
 static void extra_and_missing_parts_are_counted(void **state)
 {
     (void)state;
@@ -150,6 +168,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(errors_are_the_known_shifts),
+        cmocka_unit_test(an_edge_of_a_removed_wall_is_no_face),
         cmocka_unit_test(extra_and_missing_parts_are_counted),
         cmocka_unit_test(an_edit_changes_its_base),
         cmocka_unit_test(broken_lines_are_refused),
