@@ -1,11 +1,15 @@
 /* evaluate.c - metrics of a scene's products, against a truth and against held-out photographs.
  *
- * reads   FOLDER/views, depth, holdout   cameras, depth maps, held-out photographs and their rendered frames
- *         SHARED/photos                  the photos' records
- *         TRUTH/cameras.txt, images.txt, depth/NAME.exr   true cameras and depths (optional)
- *         TRUTH/scene.txt or scene-truth.txt   true rooms, walls and openings (optional)
+ * reads   FOLDER/views, depth, holdout   cameras, views, depth maps, held-out photographs and their rendered frames
+ *         FOLDER/model, remodel/E        axes, plans and solids of the model and of its edits
+ *         FOLDER/relight/irradiance.txt  irradiance at points
+ *         SHARED/photos, hdr             the photos' records, merged exposures
+ *         RENDERED/novel, edited-E, shell   rendered pictures, and their cameras
+ *         TRUTH                          what is true of the scene; docs/formats.md lists it
  * writes  FOLDER/evaluate/truth/VIEW.exr the true depth resampled to the view
- *         FOLDER/evaluate/views.tsv      metrics of each view
+ *         FOLDER/evaluate/cameras        cameras of the truth in the frame of the views, for programs that render them
+ *         FOLDER/evaluate/irradiance_points.txt   points of the truth in that frame
+ *         FOLDER/evaluate/views.tsv      metrics of each view, picture and face
  *         OUT                            metrics of the scene, written last; docs/evaluation.md defines them */
 #include "common/base/cli.h"
 #include "stages/evaluate/evaluation.h"

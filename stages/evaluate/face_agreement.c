@@ -1,4 +1,10 @@
-/* face_agreement.c - see face_agreement.h. */
+/* face_agreement.c - faces of a model and of a truth, matched by plane and outline.
+ *
+ * A table counts, over all pictures, the pixels n(t, m) that show true face t and model face m, and sums the distances
+ * d of their true points from the plane of m. The faces match if their normals agree, sum d / n(t, m) is small (the
+ * plane), and n(t, m) is a large part of min(sum_m n(t, m), sum_t n(t, m)) (the outline). Then a pixel agrees if its
+ * two faces match. Pixels near an edge are left out, by the exact distance transform of [Felzenszwalb 2012], because
+ * there the picture of a slightly displaced model differs without being wrong. */
 #include "stages/evaluate/face_agreement.h"
 
 #include <math.h>

@@ -1,10 +1,14 @@
-/* irradiance_error.c - see irradiance_error.h. */
+/* irradiance_error.c - errors of irradiance at points.
+ *
+ * A true point's partner is the nearest found point within POINT_DISTANCE that faces the same way: a product may hold
+ * more points, fewer, and in another order. Errors are relative to the true irradiance of the points together (rms), so
+ * that dark points do not dominate, and of each point (error50). */
 #include "stages/evaluate/irradiance_error.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-#include "stages/evaluate/alignment.h"
+#include "stages/evaluate/evaluation_parts.h"
 
 #define MIN_COSINE 0.98480775301220802 /* cos 10 degrees */
 

@@ -51,7 +51,7 @@ static enum status read_exr(struct linear_picture *p, const char *path, struct e
         const float *c = p->rgb.data + 3 * i;
         if (hole && hole->f) p->hole[i] = hole->f[i] > 0.5f;
         if (a && a->f && !(a->f[i] > 0)) p->known[i] = 0;
-        if (clipped && (clipped->u ? clipped->u[i] & 1 : clipped->f[i] > 0.5f)) p->known[i] = 0;
+        if (clipped && (clipped->u ? clipped->u[i] & 1 : (int)clipped->f[i] & 1)) p->known[i] = 0;
         if (saturates && fmaxf(c[0], fmaxf(c[1], c[2])) >= 0.98f) p->known[i] = 0;
     }
     exr_image_release(&im);

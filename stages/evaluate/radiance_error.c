@@ -1,4 +1,4 @@
-/* radiance_error.c - see radiance_error.h. */
+/* radiance_error.c - errors of linear radiance; radiance_error.h defines them. Sums are in the order of the pixels. */
 #include "stages/evaluate/radiance_error.h"
 
 #include <math.h>

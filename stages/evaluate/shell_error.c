@@ -1,4 +1,7 @@
-/* shell_error.c - see shell_error.h. */
+/* shell_error.c - errors of a room without its furniture.
+ *
+ * The two parts have sums and histograms of their own. The errors of each face are kept, so that its median is exact
+ * however few pixels it has. */
 #include "stages/evaluate/shell_error.h"
 
 #include <math.h>
