@@ -252,6 +252,15 @@ hidden_faces_are_scored_apart()
     says 'note: shell.faces_max_hidden is that of'
 }
 
+the_page_shows_the_metrics()
+{
+    measure
+    cp metrics.tsv t/
+    "$B/bin/report" --scene t --folder t --shared shared --photos sim-scene/photos --stages evaluate --out page.html 2>log || { cat log; fail report; }
+    ! grep -q 'metrics.* cannot be read' page.html || fail "the page cannot read the tables"
+    for m in novel.rms_clipped edited.wide.faces shell.faces_hidden radiance.scale model.ceilings; do grep -qF "<code>$m</code>" page.html || fail "the page lacks $m"; done
+}
+
 any_number_of_threads_gives_the_same_bytes()
 {
     measure --threads 1
@@ -263,4 +272,5 @@ any_number_of_threads_gives_the_same_bytes()
 
 for t in the_truth_and_products_are_made exact_radiance_has_no_error pictures_are_compared_through_their_own_cameras \
     eight_bit_pictures_need_a_white_point edited_pictures_are_compared_as_views faces_of_the_model_and_its_edit_agree \
-    irradiance_is_compared_on_the_model_and_elsewhere hidden_faces_are_scored_apart any_number_of_threads_gives_the_same_bytes; do run "$t"; done
+    irradiance_is_compared_on_the_model_and_elsewhere hidden_faces_are_scored_apart the_page_shows_the_metrics \
+    any_number_of_threads_gives_the_same_bytes; do run "$t"; done
