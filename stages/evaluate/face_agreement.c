@@ -82,10 +82,11 @@ enum status face_agreement_add(struct face_agreement *a, const struct face_pixel
     return st;
 }
 
-static bool same_direction(struct vec3 a, struct vec3 b)
+/* Both faces look towards the camera that sees them; the normal of a two-sided one may point the other way. */
+static bool parallel(struct vec3 a, struct vec3 b)
 {
     const double lengths = vec3_length(a) * vec3_length(b);
-    return !(lengths > 0) || vec3_dot(a, b) >= MIN_COSINE * lengths;
+    return !(lengths > 0) || fabs(vec3_dot(a, b)) >= MIN_COSINE * lengths;
 }
 
 bool faces_match(const struct face_agreement *a, int t, int m)
@@ -93,7 +94,7 @@ bool faces_match(const struct face_agreement *a, int t, int m)
     const struct face_pair *p = &a->pairs[pair_index(a, t, m)];
     uint64_t of_true = 0, of_model = 0;
     if (!t || !m) return t == m;
-    if (!p->pixels || !same_direction(a->true_normals[t], a->model_normals[m])) return false;
+    if (!p->pixels || !parallel(a->true_normals[t], a->model_normals[m])) return false;
     if (!(p->distance <= MATCH_DISTANCE * (double)p->pixels)) return false;
     for (int k = 0; k < a->model_faces; k++) of_true += a->pairs[pair_index(a, t, k)].pixels;
     for (int k = 0; k < a->true_faces; k++) of_model += a->pairs[pair_index(a, k, m)].pixels;

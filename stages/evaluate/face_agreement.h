@@ -1,7 +1,7 @@
 /* face_agreement.h - whether a model shows the right faces: its ids against true ids, pixel by pixel.
  *
  * Names and divisions of faces differ between a model and a truth, so faces are matched by plane and outline, over all
- * pictures together: a true face and a face of the model belong together if they face the same way within 10 degrees,
+ * pictures together: a true face and a face of the model belong together if they are parallel within 10 degrees,
  * the true points of the pixels that they share are on average within MATCH_DISTANCE of the model's plane, and those
  * pixels are at least MATCH_SHARE of the pixels of one of the two. A face may belong to several. Pixels within
  * EDGE_DISTANCE px of an edge in either picture are not used. Id 0 is the outdoors; it belongs to id 0 only. */
