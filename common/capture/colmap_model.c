@@ -93,13 +93,10 @@ static int find_point(const struct sfm_model *m, int64_t id)
 
 /* --------------------------------------------------------------------------------------------------------- reading */
 
-static enum status read_cameras(struct sfm_model *m, struct id_list *ids, const char *folder, struct err *err)
+static enum status read_cameras(struct sfm_model *m, struct id_list *ids, const char *path, struct err *err)
 {
     struct textfile t = {0};
-    enum status st = ST_OK;
-    char path[FILE_PATH];
-    if (file_path(path, folder, "cameras.txt", "", err)) return err->status;
-    st = textfile_open(&t, path, err);
+    enum status st = textfile_open(&t, path, err);
     while (!st && textfile_next(&t)) {
         struct sfm_camera c = {0};
         struct err why = ERR_INIT;
@@ -197,11 +194,9 @@ static enum status sort_images(struct sfm_model *m, struct id_list *ids, int *li
 
 /* *lines: the line of each image in the file; the caller frees it. */
 static enum status read_images(struct sfm_model *m, const struct id_list *cameras, struct id_list *ids, int **lines,
-                               const char *folder, struct err *err)
+                               const char *path, struct err *err)
 {
     struct textfile t = {0};
-    char path[FILE_PATH];
-    if (file_path(path, folder, "images.txt", "", err)) return err->status;
     enum status st = textfile_open(&t, path, err);
     while (!st && textfile_next(&t)) {
         struct sfm_image im = {0};
@@ -334,8 +329,11 @@ enum status sfm_model_read_text(struct sfm_model *m, const char *folder, struct 
     struct id_list cameras = {0}, images = {0};
     unsigned char **listed = NULL;
     int *lines = NULL;
+    char of_cameras[FILE_PATH], of_images[FILE_PATH];
     *m = (struct sfm_model){0};
-    enum status st = read_cameras(m, &cameras, folder, err) || read_images(m, &cameras, &images, &lines, folder, err);
+    enum status st =
+        file_path(of_cameras, folder, "cameras.txt", "", err) || file_path(of_images, folder, "images.txt", "", err) ||
+        read_cameras(m, &cameras, of_cameras, err) || read_images(m, &cameras, &images, &lines, of_images, err);
     if (!st) {
         listed = calloc((size_t)m->image_count, sizeof *listed);
         if (!listed) st = err_nomem(err, "marks", (size_t)m->image_count * sizeof *listed);
@@ -356,10 +354,21 @@ enum status sfm_model_read_text(struct sfm_model *m, const char *folder, struct 
 
 enum status sfm_model_read_cameras(struct sfm_model *m, const char *folder, struct err *err)
 {
+    char of_cameras[FILE_PATH], of_images[FILE_PATH];
+    *m = (struct sfm_model){0};
+    if (file_path(of_cameras, folder, "cameras.txt", "", err) || file_path(of_images, folder, "images.txt", "", err))
+        return err->status;
+    return sfm_model_read_camera_files(m, of_cameras, of_images, err);
+}
+
+enum status sfm_model_read_camera_files(struct sfm_model *m, const char *of_cameras, const char *of_images,
+                                        struct err *err)
+{
     struct id_list cameras = {0}, images = {0};
     int *lines = NULL;
     *m = (struct sfm_model){0};
-    enum status st = read_cameras(m, &cameras, folder, err) || read_images(m, &cameras, &images, &lines, folder, err);
+    enum status st =
+        read_cameras(m, &cameras, of_cameras, err) || read_images(m, &cameras, &images, &lines, of_images, err);
     for (int i = 0; !st && i < m->image_count; i++) {
         free(m->images[i].observations);
         m->images[i].observations = NULL;

@@ -56,6 +56,10 @@ enum status sfm_model_read_text(struct sfm_model *m, const char *folder, struct 
 /* Reads cameras.txt and images.txt only: poses and lenses, no points and no observations. */
 enum status sfm_model_read_cameras(struct sfm_model *m, const char *folder, struct err *err);
 
+/* The same from two files of any name. */
+enum status sfm_model_read_camera_files(struct sfm_model *m, const char *of_cameras, const char *of_images,
+                                        struct err *err);
+
 /* Reads a Bundler v0.3 file. names[i], sizes[i]: file name and size in pixels of its camera i; count must be the number
  * of cameras in the file. Cameras that Bundler could not place (focal length 0) and those of size 0 x 0 are left out.
  * The result has this program's axes and RADIAL cameras with the principal point in the centre; point errors are -1

@@ -32,8 +32,8 @@ static enum status note_missing(struct evaluation *e, struct err *err)
     enum status st = ST_OK;
     if (!e->truth_folder) st = metric_note(t, err, "skipped camera and depth errors: no TRUTH is given");
     if (!st && !e->has_held) st = metric_note(t, err, "skipped PSNR, SSIM and holes: no photo is held out (HOLDOUT)");
-    if (!st) st = metric_note(t, err, "skipped irradiance: there is no relight/irradiance");
-    if (!st) st = metric_note(t, err, "skipped texture errors: there is no vita and no vdta");
+    if (!st && !e->truth_folder) st = metric_note(t, err, "skipped irradiance: no TRUTH is given");
+    if (!st && !e->truth_folder) st = metric_note(t, err, "skipped texture errors: no TRUTH is given");
     return st;
 }
 
@@ -48,12 +48,16 @@ static void evaluation_release(struct evaluation *e)
     photo_list_release(&e->photos);
 }
 
-enum status evaluate(const char *folder, const char *shared, const char *truth, const char *out,
-                     const struct evaluate_params *params, struct provenance *prov, struct err *err)
+enum status evaluate(const struct evaluate_inputs *from, const char *out, const struct evaluate_params *params,
+                     struct provenance *prov, struct err *err)
 {
-    struct evaluation e = {.folder = folder, .params = params, .prov = prov, .truth_folder = truth};
-    char path[FILE_PATH];
-    enum status st = file_path(path, shared, "photos", "", err);
+    const char *folder = from->folder, *truth = from->truth;
+    struct evaluation e = {
+        .folder = folder, .shared = from->shared, .params = params, .prov = prov, .truth_folder = truth};
+    char path[FILE_PATH], rendered[FILE_PATH];
+    enum status st = file_path(path, from->shared, "photos", "", err);
+    if (!st) st = file_path(rendered, folder, "rendered", "", err);
+    e.rendered = from->rendered ? from->rendered : rendered;
     if (!st) st = photo_list_read(&e.photos, path, err);
     if (!st) st = read_views(&e, &e.views, "views", err);
     if (!st) st = file_path(path, folder, "holdout/views/images.txt", "", err);
@@ -65,8 +69,14 @@ enum status evaluate(const char *folder, const char *shared, const char *truth, 
     if (!st && truth) st = evaluate_cameras(&e, err);
     if (!st) st = evaluate_axes(&e, err);
     if (!st) st = evaluate_walls(&e, err);
+    if (!st && truth) st = evaluate_edited_walls(&e, err);
+    if (!st && truth) st = evaluate_faces(&e, err);
     if (!st) st = evaluate_depths(&e, err);
     if (!st && e.has_held) st = evaluate_pictures(&e, err);
+    if (!st && truth) st = evaluate_radiance(&e, err);
+    if (!st && truth) st = evaluate_renders(&e, err);
+    if (!st && truth) st = evaluate_irradiance(&e, err);
+    if (!st && truth) st = evaluate_shell(&e, err);
     if (!st) st = file_path(path, folder, "evaluate/views.tsv", "", err);
     if (!st) st = metric_table_write(&e.table, true, path, prov, err);
     if (!st) st = metric_table_write(&e.table, false, out, prov, err);

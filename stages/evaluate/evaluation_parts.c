@@ -1,6 +1,8 @@
 /* evaluation_parts.c - helpers of the groups of metrics. */
 #include "stages/evaluate/evaluation_parts.h"
 
+#include <stdio.h>
+
 enum status evaluation_input(struct evaluation *e, char path[FILE_PATH], const char *where, const char *file,
                              const char *suffix, struct err *err)
 {
@@ -17,4 +19,23 @@ const struct lens *lens_of_view(const struct view_set *set, int view)
 int photo_of_view(const struct evaluation *e, const struct view_set *set, int view)
 {
     return photo_list_find_id(&e->photos, lens_of_view(set, view)->photo);
+}
+
+struct picture_map map_of_view(const struct view_set *set, int view)
+{
+    const struct view *v = &set->cameras.views[view];
+    const struct lens *lens = lens_of_view(set, view);
+    return (struct picture_map){{CAMERA_PINHOLE, v->width, v->height, {v->fx, v->fy, v->cx, v->cy}},
+                                lens->camera,
+                                mat3_transpose(mat3_from_quat(lens->view_from_photo))};
+}
+
+enum status evaluation_metric(struct evaluation *e, const char *view, const char *prefix, const char *name,
+                              double value, const char *unit, const char *direction, struct err *err)
+{
+    char text[64];
+    const int length = snprintf(text, sizeof text, "%s.%s", prefix, name);
+    if (length < 0 || length >= (int)sizeof text)
+        return err_set(err, ST_INTERNAL, "the name of the metric %s.%s is too long.", prefix, name);
+    return metric_add(&e->table, view, text, value, unit, direction, err);
 }

@@ -7,7 +7,9 @@
 #include "common/base/file_path.h"
 #include "common/capture/camera_alignment.h"
 #include "stages/evaluate/evaluation.h"
+#include "stages/evaluate/linear_picture.h"
 #include "stages/evaluate/metric_table.h"
+#include "stages/evaluate/true_set.h"
 #include "stages/evaluate/truth.h"
 
 struct view_set { /* the cameras of the kept or of the held-out views, and the lenses of their photographs */
@@ -16,7 +18,8 @@ struct view_set { /* the cameras of the kept or of the held-out views, and the l
 };
 
 struct evaluation {
-    const char *folder;
+    const char *folder, *shared;
+    const char *rendered;     /* folder of rendered pictures */
     const char *truth_folder; /* NULL: no truth is given */
     const struct evaluate_params *params;
     struct provenance *prov;
@@ -27,16 +30,29 @@ struct evaluation {
     struct truth truth;
     struct similarity truth_from_scene; /* if aligned */
     double baseline;                    /* of disparities; 0: there is none */
+    double radiance_scale;              /* true radiance of 1 in the products; 0: unknown */
+    double white;                       /* true radiance that is white in 8 bits; 0: unknown */
     struct metric_table table;
 };
 
 /* Each group adds its metrics to the table, or a note that says why it has none. Cameras come first: they set `aligned`
  * and truth_from_scene. */
-enum status evaluate_cameras(struct evaluation *e, struct err *err);  /* camera.* */
-enum status evaluate_axes(struct evaluation *e, struct err *err);     /* axes.* */
-enum status evaluate_walls(struct evaluation *e, struct err *err);    /* model.* */
-enum status evaluate_depths(struct evaluation *e, struct err *err);   /* depth.* */
-enum status evaluate_pictures(struct evaluation *e, struct err *err); /* holdout.* */
+enum status evaluate_cameras(struct evaluation *e, struct err *err);      /* camera.* */
+enum status evaluate_axes(struct evaluation *e, struct err *err);         /* axes.* */
+enum status evaluate_walls(struct evaluation *e, struct err *err);        /* model.* */
+enum status evaluate_edited_walls(struct evaluation *e, struct err *err); /* edited.E.*, of the models of edits */
+enum status evaluate_faces(struct evaluation *e, struct err *err);        /* model.faces, edited.E.faces */
+enum status evaluate_depths(struct evaluation *e, struct err *err);       /* depth.* */
+enum status evaluate_pictures(struct evaluation *e, struct err *err);     /* holdout.* */
+
+enum status evaluate_radiance(struct evaluation *e, struct err *err);   /* radiance.*; sets radiance_scale */
+enum status evaluate_renders(struct evaluation *e, struct err *err);    /* novel.*, edited.E.* */
+enum status evaluate_irradiance(struct evaluation *e, struct err *err); /* irradiance.* */
+enum status evaluate_shell(struct evaluation *e, struct err *err);      /* shell.* */
+
+/* metric_add() of "PREFIX.NAME"; ST_INTERNAL: a longer name than a table holds. */
+enum status evaluation_metric(struct evaluation *e, const char *view, const char *prefix, const char *name,
+                              double value, const char *unit, const char *direction, struct err *err);
 
 /* path: FOLDER/WHERE/FILESUFFIX, an input of the evaluation; its hash goes into the provenance as WHERE/FILESUFFIX. */
 enum status evaluation_input(struct evaluation *e, char path[FILE_PATH], const char *where, const char *file,
@@ -45,5 +61,8 @@ enum status evaluation_input(struct evaluation *e, char path[FILE_PATH], const c
 /* The lens and the index in e->photos of a view's photograph. */
 const struct lens *lens_of_view(const struct view_set *set, int view);
 int photo_of_view(const struct evaluation *e, const struct view_set *set, int view);
+
+/* How a view sees the true picture of its photograph: through the lens with which it was rectified. */
+struct picture_map map_of_view(const struct view_set *set, int view);
 
 #endif

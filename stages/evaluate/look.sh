@@ -1,9 +1,7 @@
 #!/usr/bin/env bash
-# look.sh STAMP - names, sizes and times of the truth's files, into STAMP.
+# look.sh TRUTH_STAMP RENDERED_STAMP FOLDER - names, sizes and times of the truth's files, and of the rendered pictures in FOLDER.
 set -euo pipefail
 . common/run/keep.sh
-if [ -n "${REMODEL_TRUTH-}" ]; then
-    find -L "$REMODEL_TRUTH" -type f -printf '%P %s %T@\n' | LC_ALL=C sort
-else
-    echo "no truth"
-fi | keep "$1"
+files() { find -L "$1" -type f -printf '%P %s %T@\n' | LC_ALL=C sort; }
+if [ -n "${REMODEL_TRUTH-}" ]; then files "$REMODEL_TRUTH"; else echo "no truth"; fi | keep "$1"
+if [ -n "${REMODEL_TRUTH-}" ] && [ -d "$3" ]; then files "$3"; else echo "no pictures"; fi | keep "$2"

@@ -1,22 +1,29 @@
 # evaluate: the products, compared with a truth and with photos held out.
 FOLLOWS.evaluate = $(filter-out evaluate report verify,$(STAGE_FOLDERS))
-READS.evaluate := cameras, depth maps, held-out photos and their frames, a truth
+READS.evaluate := cameras, views, depth maps, models, held-out photos and their frames, rendered pictures, a truth
 WRITES.evaluate := metrics.tsv, evaluate/
-VARIABLES.evaluate := TRUTH
+VARIABLES.evaluate := TRUTH RENDERED
+LIBS.evaluate := -lembree3
 STEPS.evaluate := evaluate
-HELP.evaluate := the depth maps, compared with TRUTH or with photos held out, into metrics.tsv
+HELP.evaluate := the products, compared with TRUTH or with photos held out, into metrics.tsv
 NEEDS.evaluate := depth
 
 ## TRUTH=DIR: known cameras and depths, which products are compared with (docs/evaluation.md)
+## RENDERED=DIR: with TRUTH, rendered pictures novel/, edited-E/ and shell/ (default: O/rendered)
 
 ifdef GRAPH
+RENDERED_FOLDER := $${REMODEL_RENDERED:-$(O)/rendered}
+# models of edits, and the irradiance that a relighting program wrote
+EDITED_MODELS := $(if $(value REMODEL_TRUTH),$(call $(if $(and $(MODELLED),$(MODELS)),made,wildcard),$(MODELS:%=%/model.txt)) \
+  $(wildcard $(O)/relight/irradiance.txt))
 .PHONY: evaluate
 evaluate: $(O)/metrics.tsv
 $(O)/metrics.tsv: $(CAMERAS) $(O)/views/lenses.txt $(MEASURED) $(HELD_CAMERAS) $(HELD_EXR) $(HELD_FRAMES) \
-  $(S)/photos/list.txt $(O)/stamp/truth.txt $(call needs,evaluate)
-	$(call stage,evaluate,all,$(O),--folder $(O) --shared $(S) $${REMODEL_TRUTH:+--truth "$$REMODEL_TRUTH"} --out $@)
+  $(S)/photos/list.txt $(EDITED_MODELS) $(O)/stamp/truth.txt $(O)/stamp/rendered.txt $(call needs,evaluate)
+	$(call stage,evaluate,all,$(O),--folder $(O) --shared $(S) $${REMODEL_TRUTH:+--truth "$$REMODEL_TRUTH"} \
+	  --rendered "$(RENDERED_FOLDER)" --out $@)
 SHOWN += $(if $(HELDOUT)$(TRUTH),$(O)/metrics.tsv)
 
 look::
-	+@stages/evaluate/look.sh $(O)/stamp/truth.txt
+	+@stages/evaluate/look.sh $(O)/stamp/truth.txt $(O)/stamp/rendered.txt "$(RENDERED_FOLDER)"
 endif

@@ -1,9 +1,11 @@
 /* true_room.c - see true_room.h. */
 #include "stages/evaluate/true_room.h"
 
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 
+#include "common/base/array.h"
 #include "common/base/scan.h"
 #include "common/base/textfile.h"
 
@@ -34,11 +36,12 @@ static enum status add_room(struct true_room *room, const struct textfile *t, do
     char text[64];
     snprintf(text, sizeof text, "heights from %.9g to %.9g", floor, ceiling);
     if (!(ceiling > floor)) return textfile_error(t, err, text, "a ceiling above the floor");
-    if (room->known && (room->floor != floor || room->ceiling != ceiling))
-        return textfile_error(t, err, text, "those of the first room, from %.9g to %.9g", room->floor, room->ceiling);
     room->known = true;
-    room->floor = floor;
-    room->ceiling = ceiling;
+    for (int i = 0; i < room->count; i++)
+        if (room->heights[i].floor == floor && room->heights[i].ceiling == ceiling) return ST_OK;
+    if (array_append(&room->heights, (size_t)room->count, sizeof *room->heights, "heights of rooms", err))
+        return err->status;
+    room->heights[room->count++] = (struct true_heights){floor, ceiling};
     return ST_OK;
 }
 
@@ -91,8 +94,14 @@ enum status true_room_read_file(struct true_room *room, const char *path, bool f
     textfile_release(&t);
     const double c = cos(yaw * M_PI / 180), s = sin(yaw * M_PI / 180);
     room->room_from_world = (struct mat3){{{c, s, 0}, {-s, c, 0}, {0, 0, 1}}};
-    if (st) *room = (struct true_room){0};
+    if (st) true_room_release(room);
     return st;
+}
+
+void true_room_release(struct true_room *room)
+{
+    free(room->heights);
+    *room = (struct true_room){0};
 }
 
 enum status true_room_read(struct true_room *room, const char *folder, struct provenance *prov, struct err *err)

@@ -7,7 +7,7 @@
  *   yaw_degrees YAW
  *   t X Y Z
  *   NAME X0 Y0 Z0 X1 Y1 Z1              a room: a line of a name and six numbers
- * Other lines are ignored. All rooms must have the same floor and ceiling. */
+ * Other lines are ignored. Rooms may have different floors and ceilings. */
 #ifndef REMODEL_TRUE_ROOM_H
 #define REMODEL_TRUE_ROOM_H
 
@@ -16,19 +16,25 @@
 #include "common/base/provenance.h"
 #include "common/math/vec.h"
 
+struct true_heights {
+    double floor, ceiling;
+};
+
 struct true_room {
     bool known;  /* one of the files exists and has a room */
     bool framed; /* the file is scene-truth.txt */
     struct mat3 room_from_world;
-    struct vec3 origin; /* of the room's frame, in the world */
-    double floor, ceiling;
+    struct vec3 origin;           /* of the room's frame, in the world */
+    struct true_heights *heights; /* of the rooms, each pair once; owned */
+    int count;
 };
 
 /* `known` is false if neither file exists. Adds the file it reads to prov. ST_DATA with file and line: a damaged
- * line, a room without height, or rooms with different heights. */
+ * line, or a room without height. The caller releases the room. */
 enum status true_room_read(struct true_room *room, const char *folder, struct provenance *prov, struct err *err);
 
 /* Reads one file; frame: it is a scene-truth.txt. */
 enum status true_room_read_file(struct true_room *room, const char *path, bool frame, struct err *err);
+void true_room_release(struct true_room *room);
 
 #endif

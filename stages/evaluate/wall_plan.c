@@ -11,10 +11,13 @@
 #include <string.h>
 
 #include "common/base/array.h"
+#include "common/base/file_path.h"
 #include "common/base/scan.h"
 #include "common/base/sort.h"
 #include "common/base/textfile.h"
+#include "common/model/model_plan.h"
 
+enum { MAX_BASES = 4 };
 #define MIN_COSINE 0.98480775301220802 /* cos 10 degrees */
 
 void measured_plan_release(struct measured_plan *plan)
@@ -22,6 +25,7 @@ void measured_plan_release(struct measured_plan *plan)
     if (!plan) return;
     free(plan->faces.parts);
     free(plan->openings.parts);
+    free(plan->rooms.parts);
     *plan = (struct measured_plan){0};
 }
 
@@ -74,63 +78,48 @@ static enum status add_opening(struct reader *r, const char *name, struct vec3 o
 
 /* -------------------------------------------------------------------------------------------------- model/plan.txt */
 
-static enum status model_wall(struct reader *r, struct err *err)
+/* The middle of a room on its floor, and above it on the ceiling. */
+static enum status add_model_heights(struct measured_plan *plan, const struct model_room *r, struct err *err)
 {
-    static const char *const direction[] = {"x of the normal", "y of the normal"};
-    char *name;
-    double n[2], c;
-    if (textfile_word(&r->t, "a wall's name", &name, err) || textfile_expect(&r->t, "normal", err) ||
-        numbers(r, direction, n, 2, err) || textfile_expect(&r->t, "at", err) ||
-        textfile_double(&r->t, "the wall's offset", &c, err))
-        return err->status;
-    /* S is x or y; on an angled wall it begins at a point that the plan does not hold */
-    if (fmin(fabs(n[0]), fabs(n[1])) > 1e-9) return ST_OK;
-    const struct vec3 along = fabs(n[0]) > 0.5 ? vec3_make(0, 1, 0) : vec3_make(1, 0, 0);
-    return add_part(&r->lines, name, vec3_make(n[0] * c, n[1] * c, 0), along, err);
+    double x = 0, y = 0, area = 0;
+    for (int i = 0; i < r->corner_count; i++) {
+        const struct model_room_corner *a = &r->corners[i], *b = &r->corners[(i + 1) % r->corner_count];
+        const double cross = a->x * b->y - b->x * a->y;
+        x += (a->x + b->x) * cross / 3;
+        y += (a->y + b->y) * cross / 3;
+        area += cross;
+    }
+    if (!(area > 0)) return ST_OK;
+    x /= area;
+    y /= area;
+    const double ceiling = model_room_ceiling(r, x, y);
+    return add_part(&plan->rooms, r->name, vec3_make(x, y, r->floor), vec3_make(x, y, ceiling), err);
 }
 
-static enum status model_opening(struct reader *r, struct err *err)
+static enum status add_model_room(struct measured_plan *plan, const struct model_plan *model, int room, struct err *err)
 {
-    char *name, *wall;
-    double a[2], b[2];
-    static const char *const from[] = {"its start", "its sill"}, *const to[] = {"its end", "its head"};
-    if (textfile_word(&r->t, "an opening's name", &name, err) || textfile_expect(&r->t, "on", err) ||
-        textfile_word(&r->t, "a wall's name", &wall, err) || textfile_expect(&r->t, "from", err) ||
-        numbers(r, from, a, 2, err) || textfile_expect(&r->t, "to", err) || numbers(r, to, b, 2, err))
-        return err->status;
-    const struct measured_part *l = line_named(r, wall);
-    if (!l) return ST_OK; /* on an angled wall */
-    return add_opening(r, name, l->at[0], l->at[1], (double[]){a[0], b[0]}, (double[]){a[1], b[1]}, err);
-}
-
-/* The name of each wall, and the corner at its end; the last corner is also the start of the first wall. */
-static enum status model_room(struct reader *r, struct err *err)
-{
-    static const char *const ceiling[] = {"height", "slope along x", "slope along y"}, *const corner[] = {"x", "y"};
-    const int first = r->plan->faces.count;
-    char *name;
-    double floor, c[3], p[2];
-    if (textfile_word(&r->t, "a room's name", &name, err) || textfile_expect(&r->t, "floor", err) ||
-        textfile_double(&r->t, "the floor's height", &floor, err) || textfile_expect(&r->t, "ceiling", err) ||
-        numbers(r, ceiling, c, 3, err))
-        return err->status;
-    do {
-        if (textfile_word(&r->t, "a wall's name", &name, err) || numbers(r, corner, p, 2, err) ||
-            add_part(&r->plan->faces, name, vec3_make(0, 0, floor), vec3_make(p[0], p[1], floor), err))
+    const struct model_room *r = &model->rooms[room];
+    for (int i = 0; i < r->corner_count; i++) {
+        const struct model_room_corner *a = &r->corners[(i + r->corner_count - 1) % r->corner_count],
+                                       *b = &r->corners[i];
+        if (b->wall < 0) continue; /* a removed wall has no face */
+        if (add_part(&plan->faces, b->wall_name, vec3_make(a->x, a->y, r->floor), vec3_make(b->x, b->y, r->floor), err))
             return err->status;
-    } while (textfile_more(&r->t));
-    struct measured_part *f = r->plan->faces.parts;
-    for (int i = first, last = r->plan->faces.count - 1; i <= last; i++)
-        f[i].at[0] = f[i == first ? last : i - 1].at[1];
-    return ST_OK;
+    }
+    return add_model_heights(plan, r, err);
 }
 
-static enum status model_statement(struct reader *r, const char *verb, struct err *err)
+static enum status read_model(struct measured_plan *plan, const char *path, struct err *err)
 {
-    if (!strcmp(verb, "wall")) return model_wall(r, err);
-    if (!strcmp(verb, "room")) return model_room(r, err);
-    if (!strcmp(verb, "door") || !strcmp(verb, "passage") || !strcmp(verb, "window")) return model_opening(r, err);
-    return ST_OK;
+    struct model_plan model = {0};
+    struct vec3 corners[2];
+    enum status st = model_plan_read(&model, path, err);
+    for (int i = 0; !st && i < model.room_count; i++) st = add_model_room(plan, &model, i, err);
+    for (int i = 0; !st && i < model.opening_count; i++)
+        if (model_opening_corners(&model, i, corners))
+            st = add_part(&plan->openings, model.openings[i].name, corners[0], corners[1], err);
+    model_plan_release(&model);
+    return st;
 }
 
 /* ----------------------------------------------------------------------------------- scene.txt and scene-truth.txt */
@@ -160,14 +149,91 @@ static enum status described_opening(struct reader *r, struct err *err)
         return err->status;
     const struct measured_part *l = line_named(r, wall);
     if (!l) return textfile_error(&r->t, err, wall, "the name of a wall on a line above");
-    return add_opening(r, name, l->at[0], l->at[1], v, v + 2, err);
+    if (add_opening(r, name, l->at[0], l->at[1], v, v + 2, err)) return err->status;
+    struct measured_part *o = &r->plan->openings.parts[r->plan->openings.count - 1];
+    memcpy(o->wall, l->name, sizeof o->wall);
+    return ST_OK;
 }
 
-static enum status described_statement(struct reader *r, const char *verb, struct err *err)
+static enum status described_room(struct reader *r, struct err *err)
 {
+    static const char *const fields[] = {"x0", "y0", "x1", "y1", "z0", "z1"};
+    char *name;
+    double v[6];
+    if (textfile_word(&r->t, "a room's name", &name, err) || numbers(r, fields, v, 6, err)) return err->status;
+    return add_part(&r->plan->rooms, name, vec3_make(v[0], v[1], v[4]), vec3_make(v[2], v[3], v[5]), err);
+}
+
+static void drop_named(struct measured_parts *list, const char *name)
+{
+    int kept = 0;
+    for (int i = 0; i < list->count; i++)
+        if (strncmp(list->parts[i].name, name, sizeof list->parts[i].name - 1) &&
+            strncmp(list->parts[i].wall, name, sizeof list->parts[i].wall - 1))
+            list->parts[kept++] = list->parts[i];
+    list->count = kept;
+}
+
+/* An item of the scene that an edit leaves out; a wall goes with its openings. */
+static enum status described_drop(struct reader *r, struct err *err)
+{
+    char *name;
+    do {
+        if (textfile_word(&r->t, "the name of an item", &name, err)) return err->status;
+        drop_named(&r->plan->faces, name);
+        drop_named(&r->plan->openings, name);
+        drop_named(&r->plan->rooms, name);
+        drop_named(&r->lines, name);
+    } while (textfile_more(&r->t));
+    return ST_OK;
+}
+
+static enum status read_described(struct reader *r, const char *path, int depth, struct err *err);
+
+/* The scene that an edited one differs from: beside its file, or in the folder above. */
+static enum status described_base(struct reader *r, int depth, struct err *err)
+{
+    char *name, folder[FILE_PATH], path[FILE_PATH], above[FILE_PATH];
+    if (textfile_word(&r->t, "a file", &name, err)) return err->status;
+    if (strchr(name, '/')) return textfile_error(&r->t, err, name, "the name of a file without its folder");
+    snprintf(folder, sizeof folder, "%s", r->t.path);
+    char *slash = strrchr(folder, '/');
+    if (slash)
+        *slash = 0;
+    else
+        snprintf(folder, sizeof folder, ".");
+    if (depth >= MAX_BASES) return textfile_error(&r->t, err, name, "at most %d bases in a row", MAX_BASES);
+    if (file_path(path, folder, name, "", err) || file_path(above, folder, "..", "", err)) return err->status;
+    const bool same = !strcmp(path, r->t.path);
+    if ((same || !path_is_file(path)) && file_path(path, above, name, "", err)) return err->status;
+    const struct textfile t = r->t;
+    struct err why = ERR_INIT;
+    r->t = (struct textfile){0};
+    const enum status st = read_described(r, path, depth + 1, &why);
+    textfile_release(&r->t);
+    r->t = t;
+    return st ? err_set(err, st == ST_NOMEM ? st : ST_DATA, "%s:%d: its base: %s", t.path, t.line, why.text) : ST_OK;
+}
+
+static enum status described_statement(struct reader *r, const char *verb, int depth, struct err *err)
+{
+    if (!strcmp(verb, "base")) return described_base(r, depth, err);
+    if (!strcmp(verb, "drop")) return described_drop(r, err);
+    if (!strcmp(verb, "room")) return described_room(r, err);
     if (!strcmp(verb, "wall")) return described_wall(r, err);
     if (!strcmp(verb, "opening") || !strcmp(verb, "window")) return described_opening(r, err);
     return ST_OK;
+}
+
+static enum status read_described(struct reader *r, const char *path, int depth, struct err *err)
+{
+    enum status st = textfile_open(&r->t, path, err);
+    while (!st && textfile_next(&r->t)) {
+        char *verb;
+        st = textfile_word(&r->t, "a word", &verb, err);
+        if (!st) st = described_statement(r, verb, depth, err);
+    }
+    return st;
 }
 
 static enum status axis_of(struct reader *r, int *axis, struct err *err)
@@ -232,6 +298,8 @@ static enum status framed_statement(struct reader *r, const char *verb, struct e
         r->low[k] = fmin(r->low[k], v[k]);
         r->high[k] = fmax(r->high[k], v[3 + k]);
     }
+    if (add_part(&r->plan->rooms, verb, vec3_make(v[0], v[1], v[2]), vec3_make(v[3], v[4], v[5]), err))
+        return err->status;
     static const int corners[5][2] = {{0, 1}, {3, 1}, {3, 4}, {0, 4}, {0, 1}};
     for (int i = 0; i < 4; i++)
         if (add_part(&r->plan->faces, verb, vec3_make(v[corners[i][0]], v[corners[i][1]], v[2]),
@@ -240,21 +308,27 @@ static enum status framed_statement(struct reader *r, const char *verb, struct e
     return ST_OK;
 }
 
+static enum status read_framed(struct reader *r, const char *path, struct err *err)
+{
+    enum status st = textfile_open(&r->t, path, err);
+    while (!st && textfile_next(&r->t)) {
+        char *verb;
+        st = textfile_word(&r->t, "a word", &verb, err);
+        if (!st) st = framed_statement(r, verb, err);
+    }
+    return st;
+}
+
 enum status measured_plan_read(struct measured_plan *plan, const char *path, enum measured_plan_kind kind,
                                struct err *err)
 {
-    static enum status (*const statements[])(struct reader *, const char *,
-                                             struct err *) = {[PLAN_FROM_MODEL] = model_statement,
-                                                              [PLAN_FROM_SCENE] = described_statement,
-                                                              [PLAN_FROM_SCENE_TRUTH] = framed_statement};
     struct reader r = {.plan = plan, .partition = -1, .low = {INFINITY, INFINITY}, .high = {-INFINITY, -INFINITY}};
+    enum status st = ST_OK;
     *plan = (struct measured_plan){0};
-    enum status st = textfile_open(&r.t, path, err);
-    while (!st && textfile_next(&r.t)) {
-        char *verb;
-        st = textfile_word(&r.t, "a word", &verb, err);
-        if (!st) st = statements[kind](&r, verb, err);
-    }
+    if (kind == PLAN_FROM_MODEL)
+        st = read_model(plan, path, err);
+    else
+        st = kind == PLAN_FROM_SCENE ? read_described(&r, path, 0, err) : read_framed(&r, path, err);
     textfile_release(&r.t);
     free(r.lines.parts);
     if (st) measured_plan_release(plan);

@@ -3,7 +3,8 @@
  *
  * A face runs along the foot of a wall with its room on the left. Sources:
  *   model/plan.txt      edges of the rooms (docs/formats.md); openings are on the inner face of their wall
- *   TRUTH/scene.txt     both sides of each wall, whose line is its middle (docs/scenes.md); openings are on the middle
+ *   TRUTH/scene.txt     both sides of each wall, whose line is its middle (docs/scenes.md); openings are on the middle;
+ *                       an edit: `base FILE` first, then `drop NAME ...` and what it adds
  *   TRUTH/scene-truth.txt, in the frame of the rooms:
  *     NAME X0 Y0 Z0 X1 Y1 Z1                    a room: its four walls
  *     partition x|y A B                         a wall between rooms; its faces are those of the rooms
@@ -18,6 +19,7 @@
 
 struct measured_part {
     char name[64];     /* cut at 63 bytes */
+    char wall[64];     /* of an opening of a described scene; "" for others */
     struct vec3 at[2]; /* the ends of a face; the lower corner of an opening, and the opposite upper one */
 };
 
@@ -28,6 +30,8 @@ struct measured_parts {
 
 struct measured_plan {
     struct measured_parts faces, openings;
+    /* of a truth: the lower corner of a room and the opposite upper one; of a model: its middle on floor and ceiling */
+    struct measured_parts rooms;
 };
 
 enum measured_plan_kind { PLAN_FROM_MODEL, PLAN_FROM_SCENE, PLAN_FROM_SCENE_TRUTH };

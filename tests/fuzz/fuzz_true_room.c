@@ -18,11 +18,14 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         struct err err = ERR_INIT;
         if (true_room_read_file(&room, path, frame, &err)) {
             if (!strstr(err.text, path) || room.known) abort();
-        } else if (room.known && !(room.ceiling > room.floor)) {
+        } else if (room.known != (room.count > 0)) {
             abort();
         } else if (!isfinite(room.room_from_world.m[0][0])) {
             abort();
         }
+        for (int i = 0; i < room.count; i++)
+            if (!(room.heights[i].ceiling > room.heights[i].floor)) abort();
+        true_room_release(&room);
     }
     unlink(path);
     return 0;

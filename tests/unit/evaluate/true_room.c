@@ -13,8 +13,10 @@ static void a_described_scene_has_the_frame_of_the_world(void **state)
                                                              "box b 1 2 3 4 5 6 wood\nroom c 5 0 8 4  0 2.7  f c\n"),
                                   false, &err),
               err);
-    assert_true(room.known && room.floor == 0 && room.ceiling == 2.7 && room.origin.x == 0);
+    assert_true(room.known && room.count == 1 && room.origin.x == 0);
+    assert_true(room.heights[0].floor == 0 && room.heights[0].ceiling == 2.7);
     assert_true(room.room_from_world.m[0][0] == 1 && room.room_from_world.m[0][1] == 0);
+    true_room_release(&room);
 }
 
 static void rooms_can_have_a_frame_of_their_own(void **state)
@@ -28,24 +30,35 @@ static void rooms_can_have_a_frame_of_their_own(void **state)
                                                 "partition x 5 5.15\nsun direction 0 0 -1 angular 1 radiance 9 8 7\n"),
                                   true, &err),
               err);
-    assert_true(room.known && room.floor == 0 && room.ceiling == 2.6);
+    assert_true(room.known && room.count == 1 && room.heights[0].floor == 0 && room.heights[0].ceiling == 2.6);
     /* the room's x is the world's y */
     const struct vec3 p = mat3_apply(room.room_from_world, vec3_sub(vec3_make(3, 1, 0.5), room.origin));
     assert_true(fabs(p.x - 2) < 1e-12 && fabs(p.y) < 1e-12 && fabs(p.z) < 1e-12);
+    true_room_release(&room);
 }
 
-static void damaged_and_different_rooms_are_refused(void **state)
+static void rooms_may_have_different_heights(void **state)
+{
+    (void)state;
+    struct true_room room;
+    struct err err = ERR_INIT;
+    const char *path = scratch_write("scene.txt", "room a 0 0 1 1 0 2\nroom b 0 0 1 1 0.4 3\nroom c 1 1 2 2 0 2\n");
+    assert_ok(true_room_read_file(&room, path, false, &err), err);
+    assert_int_equal(room.count, 2);
+    assert_true(room.heights[1].floor == 0.4 && room.heights[1].ceiling == 3);
+    true_room_release(&room);
+    assert_false(room.known);
+}
+
+static void damaged_rooms_are_refused(void **state)
 {
     (void)state;
     static const struct {
         const char *text, *error;
         bool frame;
     } cases[] = {
-        {"room a 0 0 1 1 0 2\nroom b 0 0 1 1 0 3\n", ":2: found \"heights from 0 to 3\"", false},
-        {"room a 0 0 1 1 2 2\n", "wanted a ceiling above the floor", false},
-        {"room a 0 0 1 1 0\n", ":1:", false},
-        {"yaw_degrees north\n", ":1: found \"yaw_degrees\"", true},
-        {"t 1 2\n", ":1: found \"t\"", true},
+        {"room a 0 0 1 1 2 2\n", "wanted a ceiling above the floor", false}, {"room a 0 0 1 1 0\n", ":1:", false},
+        {"yaw_degrees north\n", ":1: found \"yaw_degrees\"", true},          {"t 1 2\n", ":1: found \"t\"", true},
         {"a 0 0 1 1 1 0\n", ":1: found \"heights from 1 to 0\"", true},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -75,7 +88,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_described_scene_has_the_frame_of_the_world),
         cmocka_unit_test(rooms_can_have_a_frame_of_their_own),
-        cmocka_unit_test(damaged_and_different_rooms_are_refused),
+        cmocka_unit_test(rooms_may_have_different_heights),
+        cmocka_unit_test(damaged_rooms_are_refused),
         cmocka_unit_test(a_truth_may_lack_rooms),
     };
     return cmocka_run_group_tests_name("true_room", tests, scratch_make, scratch_remove);

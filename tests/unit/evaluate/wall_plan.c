@@ -6,7 +6,7 @@
 /* Two rooms, x 0..5 and 5.15..8.65, y 0..4; `off` moves the south wall outwards, and the door along its wall. */
 static struct measured_plan model(double off, struct err *err)
 {
-    char text[2048];
+    char text[4096];
     struct measured_plan plan = {0};
     snprintf(
         text, sizeof text,
@@ -14,6 +14,9 @@ static struct measured_plan model(double off, struct err *err)
         "wall south normal 0 1 at %.17g thickness 0.25 from 0 to 8.65 foot 0 top 2.6 start corner west end corner e\n"
         "wall partition normal -1 0 at -5 thickness 0.15 from 0 to 4 foot 0 top 2.6 start meets n end meets s\n"
         "wall slant normal 0.6 0.8 at 90 thickness 0.15 from 0 to 4 foot 0 top 2.6 start free end free\n"
+        "wall east normal -1 0 at -8.65 thickness 0.25 from 0 to 4 foot 0 top 2.6 start free end free\n"
+        "wall north normal 0 -1 at -4 thickness 0.25 from 0 to 8.65 foot 0 top 2.6 start free end free\n"
+        "wall west normal 1 0 at 0 thickness 0.25 from 0 to 4 foot 0 top 2.6 start free end free\n"
         "passage door on partition from %.17g 0 to %.17g 2.1 open\n"
         "window sunny on south from 1.5 0.9 to 3.3 2.2 closed\n"
         "window odd on slant from 1 1 to 2 2 closed\n"
@@ -24,6 +27,7 @@ static struct measured_plan model(double off, struct err *err)
     assert_ok(measured_plan_read(&plan, scratch_write("plan.txt", text), PLAN_FROM_MODEL, err), *err);
     assert_int_equal(plan.faces.count, 8);
     assert_int_equal(plan.openings.count, 2); /* the window in the angled wall is left out */
+    assert_int_equal(plan.rooms.count, 2);
     return plan;
 }
 
@@ -70,6 +74,24 @@ static void errors_are_the_known_shifts(void **state)
         }
 }
 
+static void an_edge_of_a_removed_wall_is_no_face(void **state)
+{
+    (void)state;
+    struct measured_plan plan;
+    struct err err = ERR_INIT;
+    assert_ok(measured_plan_read(
+                  &plan,
+                  scratch_write("plan.txt",
+                                "remodel-plan 2\n"
+                                "wall s normal 0 1 at 0 thickness 1 from 0 to 1 foot 0 top 2 start free end free\n"
+                                "room r floor 0 ceiling 2 0 0 s 4 0 gone 4 2 s 0 2\n"),
+                  PLAN_FROM_MODEL, &err),
+              err);
+    assert_int_equal(plan.faces.count, 2);
+    assert_true(plan.faces.parts[1].at[0].x == 4 && plan.faces.parts[1].at[0].y == 2);
+    measured_plan_release(&plan);
+}
+
 static void extra_and_missing_parts_are_counted(void **state)
 {
     (void)state;
@@ -86,6 +108,33 @@ static void extra_and_missing_parts_are_counted(void **state)
     measured_plan_release(&found);
 }
 
+static void an_edit_changes_its_base(void **state)
+{
+    (void)state;
+    struct err err = ERR_INIT;
+    struct measured_plan plan = {0};
+    scratch_write("scene.txt", DESCRIBED);
+    const char *path =
+        scratch_write("scene-e.txt", "remodel-scene 2\nbase scene.txt\ndrop partition chair\ndrop light\n"
+                                     "wall across 6 0 6 4 0 2.6 0.12 white\nopening new across 1 2 0 2\n"
+                                     "room loft 0 0 4 4 0 3 f c\n");
+    assert_ok(measured_plan_read(&plan, path, PLAN_FROM_SCENE, &err), err);
+    assert_int_equal(plan.faces.count, 10); /* both sides of south, east, north, west, across */
+    assert_string_equal(plan.faces.parts[9].name, "across");
+    assert_int_equal(plan.openings.count, 2); /* the partition's door went with it, the window by its name */
+    assert_string_equal(plan.openings.parts[0].name, "sunny");
+    assert_string_equal(plan.openings.parts[1].name, "new");
+    assert_int_equal(plan.rooms.count, 2);
+    measured_plan_release(&plan);
+    /* the base may lie in the folder above, as beside an edited truth */
+    assert_int_equal(mkdir(scratch_path("edited-e"), 0777), 0);
+    path = scratch_write("edited-e/scene.txt", "remodel-scene 2\nbase scene.txt\ndrop south\n");
+    assert_ok(measured_plan_read(&plan, path, PLAN_FROM_SCENE, &err), err);
+    assert_int_equal(plan.faces.count, 8);
+    assert_int_equal(plan.openings.count, 2); /* the door and the east window */
+    measured_plan_release(&plan);
+}
+
 static void broken_lines_are_refused(void **state)
 {
     (void)state;
@@ -93,8 +142,10 @@ static void broken_lines_are_refused(void **state)
         const char *text, *error;
         enum measured_plan_kind kind;
     } cases[] = {
-        {"wall a normal 0 1 in 3\n", ":1: found \"in\", wanted \"at\"", PLAN_FROM_MODEL},
-        {"room r floor 0 ceiling 2 0 0\n", "wanted a wall's name", PLAN_FROM_MODEL},
+        {"remodel-plan 1\nwall a normal 0 1 in 3\n", ":2: found \"in\", wanted \"at\"", PLAN_FROM_MODEL},
+        {"remodel-scene 2\nbase nowhere.txt\n", ":2: its base: ", PLAN_FROM_SCENE},
+        {"remodel-scene 2\nbase ../scene.txt\n", "wanted the name of a file without its folder", PLAN_FROM_SCENE},
+        {"remodel-scene 2\nbase\n", ":2:", PLAN_FROM_SCENE},
         {"wall a 1 1 1 1 0 2 0.3 m\n", "wanted a wall with a length", PLAN_FROM_SCENE},
         {"\nopening d nowhere 0 1 0 2\n", ":2: found \"nowhere\"", PLAN_FROM_SCENE},
         {"door y 1 2 top 2\n", "wanted a partition on a line above", PLAN_FROM_SCENE_TRUTH},
@@ -117,7 +168,9 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(errors_are_the_known_shifts),
+        cmocka_unit_test(an_edge_of_a_removed_wall_is_no_face),
         cmocka_unit_test(extra_and_missing_parts_are_counted),
+        cmocka_unit_test(an_edit_changes_its_base),
         cmocka_unit_test(broken_lines_are_refused),
     };
     return cmocka_run_group_tests_name("wall_plan", tests, scratch_make, scratch_remove);
