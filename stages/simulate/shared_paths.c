@@ -19,8 +19,8 @@
  * The error of the rays of a group is correlated, but its mean over the picture does not grow: the same paths are used
  * more often. render.c scatters the pixels of a group.
  *
- * Random numbers: the light samples of an estimate are the points k of group 1, those of ray i follow in the groups
- * from 2. All points of a pixel group are of one sequence, so that they are stratified together.
+ * Random numbers: group 1 is for light samples, the groups from 2 are for the paths of the rays. All rays use parts of
+ * one sequence, so that the samples of a ray are stratified, and those of all rays together as well.
  *
  * Differs from the source: the sets are single vertices, not whole paths; lights are sampled for the group; shadow rays
  * go in packets, which are coherent because all begin close together and end in one point. */
@@ -260,6 +260,14 @@ static void share(struct group *g, int owner, const struct path_vertex *v)
     for (int k = 0; glossy && k < v->arrivals; k++) share_glossy(g, &c, v, &v->arrival[k]);
 }
 
+/* The index of the random numbers of a ray. Those of one ray are consecutive: as every N-th of the sequence, they would
+ * all be in one stratum. */
+static uint32_t sample_of_ray(const struct group *g, int i)
+{
+    const uint32_t all = g->sampler->mask + 1, own = all / N, sample = g->sampler->sample;
+    return sample / own * all + (uint32_t)g->ray[i] * own + sample % own;
+}
+
 /* Follows the path of point i. */
 static void add_indirect_light(struct group *g, int i)
 {
@@ -268,7 +276,7 @@ static void add_indirect_light(struct group *g, int i)
     struct ray_hit hit;
     struct vec3 d;
     double u[4], pdf;
-    s.sample = s.sample * N + (uint32_t)g->ray[i];
+    s.sample = sample_of_ray(g, i);
     sobol_group(&s, 2, u);
     if (!brdf_sample(&g->brdf[i], g->normal[i], g->view[i], u, &d)) return;
     const struct rgb f = brdf_eval(&g->brdf[i], g->normal[i], g->view[i], d, &pdf);
