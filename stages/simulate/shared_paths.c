@@ -10,8 +10,8 @@
  *   The balance heuristic [Veach 1995] gives x_i the share f_i G_i L(y -> x_i) / sum_k p_k(y), with the geometry factor
  *   G_i = cos_y / |x_i - y|^2. As x_j itself can see y, the sum is positive, and f_i G_i / sum_k p_k <= f_i / pdf_i: a
  *   connection is never worth more than a path of x_i's own.
- * - If y is glossy, the direction in which the path goes on from y was chosen for the view from x_j. Then the strategies
- *   differ in that direction as well, and the sum over k has the density of both choices.
+ * - If y is glossy, the direction in which the path goes on from y was chosen for the view from x_j. The strategies
+ *   then differ in that direction, too, and the sum over k has the density of both choices.
  * - Direct light. LIGHT_SAMPLES points on lamps and windows and directions to the sun are sampled for the group and
  *   connected to all x_i. The density of these samples and that of x_i's own brdf are combined by the balance heuristic
  *   for each x_i; a lamp or the sky that a brdf sample hits counts for its own ray alone.

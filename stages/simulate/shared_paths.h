@@ -11,8 +11,8 @@
 #define SHARED_RAYS 16 /* in a group; a multiple of RAY_PACKET, at most 32 */
 
 /* Adds one estimate to radiance[i] for each ray i whose bit in `active` is set; the others are not read. s->sample
- * counts the estimates of the group; s must be made for at least SHARED_RAYS times the estimates. Adds the number of rays
- * traced to *rays. */
+ * counts the estimates of the group; s must be made for at least SHARED_RAYS times their number. Adds the number of
+ * rays traced to *rays. */
 void shared_paths_radiance(struct rgb radiance[SHARED_RAYS], const struct world *w,
                            const struct path_ray ray[SHARED_RAYS], uint32_t active, const struct sobol *s,
                            uint64_t *rays);

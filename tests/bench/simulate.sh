@@ -59,7 +59,7 @@ sample() # SERIES SAMPLES
         program=$BENCH_BEFORE
     fi
     rm -rf "$work/noisy"
-    render "$program" "$2" 1 "$work/noisy" >"$work/output" || return
+    render "$program" "$2" 1 "$work/noisy" >/dev/null || return
     "$B/tests/bench/picture_error" "$work/noisy/truth/hdr/$photo.exr" "$work/converged/truth/hdr/$photo.exr" >"$work/error" 2>"$work/err" || return
     cat "$work/use" "$work/error"
     awk -v n="$2" '$1 == "pixels" { printf "paths %.9g\n", $2 * n }' "$work/error"
