@@ -5,7 +5,7 @@
 # that a window does not outweigh the room. The baseline is the path tracer before paths were shared between pixels:
 # revision 05cdbe1, whose seconds and errors are in simulate_before.tsv, measured on the machine that it names. Give
 # BENCH_BEFORE=PROGRAM, simulate of that or another revision, to measure it here instead; other settings need it.
-# BENCH_SCENE (scenes/loft), BENCH_PHOTO (the second), BENCH_SAMPLES ("1 4 16 64") and BENCH_SCALE (0.25 of the photo's
+# BENCH_SCENE (scenes/loft), BENCH_PHOTO (the second), BENCH_SAMPLES ("1 4 16 32") and BENCH_SCALE (0.25 of the photo's
 # size) set other values.
 title="simulate: noise against time"
 note="Error relative to a converged run. Points: samples per pixel."
@@ -16,7 +16,7 @@ x_label="Time of one photo (s)" y_label="Relative RMS error"
 slope="samples seconds"
 
 scene=${BENCH_SCENE:-scenes/loft}
-counts=${BENCH_SAMPLES:-1 4 16 64}
+counts=${BENCH_SAMPLES:-1 4 16 32}
 before=$here/simulate_before.tsv
 
 render() # PROGRAM SAMPLES SEED FOLDER
