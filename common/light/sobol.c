@@ -72,8 +72,7 @@ void sobol_group(const struct sobol *s, uint32_t group, double u[4])
     const uint32_t index = scrambled(s->sample & s->mask, noise_mix(seed + 0x9e3779b9u)) & s->mask;
     const noise_u32x4 dimension = {0x51633e2du, 0xa2c67c5au, 0xf429ba87u, 0x458cf8b4u};
     noise_u32x4 x = {0, 0, 0, 0};
-    for (uint32_t bit = 0, left = index; left; bit++, left >>= 1)
-        if (left & 1) x ^= directions[bit];
+    for (uint32_t left = index; left; left &= left - 1) x ^= directions[__builtin_ctz(left)];
     x = scrambled_reversed4(x, noise_mix4(seed + dimension));
     for (int d = 0; d < 4; d++) u[d] = x[d] * 0x1p-32;
 }

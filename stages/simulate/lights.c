@@ -2,7 +2,7 @@
  *
  * Square lamps and windows are sampled uniformly over the solid angle that they subtend [Urena 2013]; below
  * MIN_SOLID_ANGLE, where that loses precision, over their area. Disks are sampled over their area, the sun over its
- * cone.
+ * cone. A place that several points share is uniform over the area, so that its density from each of them is simple.
  *
  * The probability of a light is in proportion to its luminance, times the solid angle of its area seen from the point,
  * times the cosine at the surface, each roughly estimated. Any positive probability gives the same expectation; the
@@ -309,34 +309,49 @@ struct rgb lights_emitted(const struct lights *l, const struct ray_hit *hit, str
     return i < 0 || !hit->front ? rgb_grey(0) : emitted(&l->list[i], -vec3_dot(direction, hit->normal));
 }
 
-bool lights_sample(struct light_sample *s, const struct lights *l, const struct light_selection *c, const double u[3])
+/* The index of the light that u chooses; -1: no light has a chance. */
+static int choose_light(const struct lights *l, const double chance[MAX_LIGHTS], double u)
 {
     int i = 0;
-    double left = u[0];
-    while (i < l->count && left >= c->probability[i]) left -= c->probability[i++];
-    if (i == l->count) { /* rounding: take the last light that can be chosen */
-        while (i > 0 && !(c->probability[i - 1] > 0)) i--;
-        if (i-- == 0) return false;
-    }
+    while (i < l->count && u >= chance[i]) u -= chance[i++];
+    if (i < l->count) return i;
+    while (i > 0 && !(chance[i - 1] > 0)) i--; /* rounding: take the last light that can be chosen */
+    return i - 1;
+}
+
+static struct vec3 sun_direction(const struct scene_light *sun, const double u[2])
+{
+    const double cos_t = 1 - u[0] * (1 - sun->cos_cone);
+    return frame_direction(sun->n, sqrt(fast_max(0, 1 - cos_t * cos_t)), cos_t, u[1]);
+}
+
+/* The vector from a point to a place on a lamp or window, uniform over its area; d: from the point to its corner. */
+static struct vec3 to_area(const struct scene_light *l, struct vec3 d, const double u[2])
+{
+    if (l->kind == LIGHT_DISK) return vec3_add(d, frame_direction(l->n, l->radius * sqrt(u[0]), 0, u[1]));
+    return vec3_add(d, vec3_add(vec3_scale(l->x, u[0] * l->width), vec3_scale(l->y, u[1] * l->height)));
+}
+
+bool lights_sample(struct light_sample *s, const struct lights *l, const struct light_selection *c, const double u[3])
+{
+    const int i = choose_light(l, c->probability, u[0]);
+    if (i < 0) return false;
     const struct scene_light *light = &l->list[i];
     if (light->kind == LIGHT_SUN) {
-        const double cos_t = 1 - u[1] * (1 - light->cos_cone);
-        s->direction = frame_direction(light->n, sqrt(fast_max(0, 1 - cos_t * cos_t)), cos_t, u[2]);
+        s->direction = sun_direction(light, u + 1);
         s->pdf = c->probability[i] / light->area + sky_pdf_except(l, c, s->direction, i);
     } else {
         struct vec3 to;
         double pdf;
         if (light->kind == LIGHT_DISK) {
-            to = vec3_add(vec3_sub(light->corner, c->point),
-                          frame_direction(light->n, light->radius * sqrt(u[1]), 0, u[2]));
+            to = to_area(light, vec3_sub(light->corner, c->point), u + 1);
             pdf = disk_pdf(light, to);
         } else {
             const struct spherical q = spherical_make(light, c->point);
             if (q.solid > MIN_SOLID_ANGLE)
                 to = spherical_sample(&q, light, u[1], u[2]);
             else
-                to = vec3_add(vec3_sub(light->corner, c->point), vec3_add(vec3_scale(light->x, u[1] * light->width),
-                                                                          vec3_scale(light->y, u[2] * light->height)));
+                to = to_area(light, vec3_sub(light->corner, c->point), u + 1);
             pdf = rectangle_pdf(light, &q, to);
         }
         s->distance = vec3_length(to);
@@ -351,4 +366,68 @@ bool lights_sample(struct light_sample *s, const struct lights *l, const struct 
     s->distance = INFINITY;
     s->radiance = sky_radiance(&l->sky, s->direction);
     return s->pdf > 0;
+}
+
+/* --------------------------------------------------------------------------------- sampling for points in common */
+
+bool lights_choose_point(struct light_point *z, const struct lights *l, const double chance[MAX_LIGHTS],
+                         const double u[3])
+{
+    z->light = choose_light(l, chance, u[0]);
+    if (z->light < 0) return false;
+    const struct scene_light *light = &l->list[z->light];
+    z->at = light->kind == LIGHT_SUN ? sun_direction(light, u + 1) : to_area(light, light->corner, u + 1);
+    return true;
+}
+
+/* Density per solid angle of a place that is uniform over the area, at a distance in a unit direction. */
+static double area_pdf(const struct scene_light *l, double distance, struct vec3 direction)
+{
+    return distance * distance / (l->area * fabs(vec3_dot(direction, l->n)));
+}
+
+double lights_point_pdf_sky(const struct lights *l, const double chance[MAX_LIGHTS], struct vec3 point,
+                            struct vec3 direction)
+{
+    double pdf = 0;
+    for (int i = 0; i < l->count; i++) {
+        const struct scene_light *light = &l->list[i];
+        struct vec3 to;
+        if (!(chance[i] > 0)) continue;
+        if (light->kind == LIGHT_SUN && vec3_dot(direction, light->n) > light->cos_cone) pdf += chance[i] / light->area;
+        if (light->kind == LIGHT_WINDOW && crosses_window(light, point, direction, &to))
+            pdf += chance[i] * area_pdf(light, vec3_length(to), direction);
+    }
+    return pdf;
+}
+
+double lights_point_pdf_face(const struct lights *l, const double chance[MAX_LIGHTS], struct vec3 point,
+                             const struct ray_hit *hit, struct vec3 direction)
+{
+    const int i = l->of_face[hit->id];
+    if (i < 0 || !(chance[i] > 0) || !hit->front) return 0;
+    return chance[i] * area_pdf(&l->list[i], vec3_length(vec3_sub(hit->point, point)), direction);
+}
+
+bool lights_from_point(struct light_sample *s, const struct lights *l, const double chance[MAX_LIGHTS],
+                       const struct light_point *z, struct vec3 point)
+{
+    const struct scene_light *light = &l->list[z->light];
+    s->distance = INFINITY;
+    s->direction = z->at;
+    if (light->kind != LIGHT_SUN) {
+        const struct vec3 to = vec3_sub(z->at, point);
+        const double d = vec3_length(to);
+        s->direction = vec3_scale(to, 1 / d);
+        if (light->kind != LIGHT_WINDOW) {
+            s->distance = d;
+            s->radiance = emitted(light, -vec3_dot(s->direction, light->n));
+            s->pdf = chance[z->light] * area_pdf(light, d, s->direction);
+            return rgb_max(s->radiance) > 0 && s->pdf > 0;
+        }
+    }
+    s->pdf = lights_point_pdf_sky(l, chance, point, s->direction);
+    if (!(s->pdf > 0)) return false; /* rounding put the place beyond the window's rim */
+    s->radiance = sky_radiance(&l->sky, s->direction);
+    return rgb_max(s->radiance) > 0;
 }

@@ -62,4 +62,27 @@ double lights_pdf_sky(const struct lights *l, const struct light_selection *c, s
 /* Radiance that a lamp's face emits back along a ray that hits it. */
 struct rgb lights_emitted(const struct lights *l, const struct ray_hit *hit, struct vec3 direction);
 
+/* Sampling for several surface points at once: with `chance`, the probability of each light, one place on a light is
+ * chosen and seen from each point. Places on lamps and windows are uniform over their area. */
+struct light_point {
+    int light;
+    struct vec3 at; /* of the sun: the unit direction */
+};
+
+/* u as for lights_sample(). False: all chances are 0. */
+bool lights_choose_point(struct light_point *z, const struct lights *l, const double chance[MAX_LIGHTS],
+                         const double u[3]);
+
+/* The place as seen from `point`, with the density of all lights together in that direction. False: no light comes
+ * from there. */
+bool lights_from_point(struct light_sample *s, const struct lights *l, const double chance[MAX_LIGHTS],
+                       const struct light_point *z, struct vec3 point);
+
+/* Density (1/sr) with which a chosen place lies in this direction from `point`, for a ray that hit a lamp's face, or
+ * nothing. */
+double lights_point_pdf_face(const struct lights *l, const double chance[MAX_LIGHTS], struct vec3 point,
+                             const struct ray_hit *hit, struct vec3 direction);
+double lights_point_pdf_sky(const struct lights *l, const double chance[MAX_LIGHTS], struct vec3 point,
+                            struct vec3 direction);
+
 #endif

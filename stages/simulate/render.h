@@ -18,9 +18,9 @@ struct camera_view camera_view_make(const struct shoot *s, const struct shoot_ph
 /* The ray through the image point (u, w), in pixels; false outside the image circle of the lens. */
 bool camera_view_ray(const struct camera_view *v, double u, double w, struct path_ray *ray);
 
-/* Radiance, 3 channels: the mean over each pixel's area. Random numbers are keyed by (seed, name, pixel): the result
- * is the same for any number of threads. Adds the number of rays traced to *rays (may be NULL). ST_DATA: no light
- * reaches the camera, the image would be black; ST_NOMEM. The caller releases the image. */
+/* Radiance, 3 channels: the mean over each pixel's area. Random numbers are keyed by (seed, name, pixel or group of
+ * pixels): the result is the same for any number of threads. Adds the number of rays traced to *rays (may be NULL).
+ * ST_DATA: no light reaches the camera, the image would be black; ST_NOMEM. The caller releases the image. */
 enum status render_radiance(struct image *radiance, const struct world *w, const struct camera_view *view,
                             const char *name, const struct simulate_params *params, uint64_t *rays, struct err *err);
 

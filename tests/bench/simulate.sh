@@ -1,50 +1,66 @@
-# simulate.sh - noise of simulate against samples: relative RMS error of one photo against its own converged run.
+# simulate.sh - noise of simulate against time: relative RMS error of one photo against its own converged run.
 #
 # The converged run has 16 times the samples of the last setting and another seed. Error: the root of the mean over
 # pixels and channels of ((v - t) / (t + m / 100))^2, where t is the converged value and m the mean of all: relative, so
-# that a window does not outweigh the room. The baseline is the error of independent random samples: the error at the
-# smallest count, falling as samples^-1/2, in simulate's own time. BENCH_SCENE (scenes/still-life), BENCH_PHOTO (the
-# first), BENCH_SAMPLES ("1 4 16 64") and BENCH_SCALE (0.25 of the photo's size) set other values.
+# that a window does not outweigh the room. The baseline is the path tracer before paths were shared between pixels:
+# revision 05cdbe1, whose seconds and errors are in simulate_before.tsv, measured on the machine that it names. Give
+# BENCH_BEFORE=PROGRAM, simulate of that or another revision, to measure it here instead; other settings need it.
+# BENCH_SCENE (scenes/loft), BENCH_PHOTO (the second), BENCH_SAMPLES ("1 4 16 32") and BENCH_SCALE (0.25 of the photo's
+# size) set other values.
 title="simulate: noise against time"
 note="Error relative to a converged run. Points: samples per pixel."
-baseline="independent samples"
+baseline="unshared paths"
+match=samples
 line=series label=samples
 x_label="Time of one photo (s)" y_label="Relative RMS error"
 slope="samples seconds"
 
-scene=${BENCH_SCENE:-scenes/still-life}
-counts=${BENCH_SAMPLES:-1 4 16 64}
+scene=${BENCH_SCENE:-scenes/loft}
+counts=${BENCH_SAMPLES:-1 4 16 32}
+before=$here/simulate_before.tsv
 
-render() # SAMPLES SEED FOLDER
+render() # PROGRAM SAMPLES SEED FOLDER
 {
-    measured "$B/bin/simulate" --scene "$scene" --photo "$photo" --out "$3" --set "samples=$1" --set "seed=$2" --set "scale=${BENCH_SCALE:-0.25}"
+    measured "$1" --scene "$scene" --photo "$photo" --out "$4" --set "samples=$2" --set "seed=$3" --set "scale=${BENCH_SCALE:-0.25}"
 }
+
+# The table applies to the default scene, photo and size.
+use_table() { [ -z "${BENCH_BEFORE-}${BENCH_SCENE-}${BENCH_PHOTO-}${BENCH_SCALE-}" ]; }
 
 prepare()
 {
     [ -x "$B/bin/simulate" ] || missing "there is no program $B/bin/simulate; this revision cannot render described scenes."
     [ -e "$scene/scene.txt" ] || missing "there is no $scene/scene.txt; set BENCH_SCENE=DIR to the folder of a described scene."
-    photo=${BENCH_PHOTO:-$(awk '$1 == "photo" { print $2; exit }' "$scene/cameras.txt")}
+    [ -z "${BENCH_BEFORE-}" ] || [ -x "$BENCH_BEFORE" ] || missing "BENCH_BEFORE=$BENCH_BEFORE is not a program; give simulate of another revision."
+    photo=${BENCH_PHOTO:-$(awk '$1 == "photo" && ++n <= 2 { p = $2 } END { print p }' "$scene/cameras.txt")}
     [ -n "$photo" ] || missing "$scene/cameras.txt has no photo."
-    render $((16 * ${counts##* })) 2 "$work/converged" >/dev/null || { tail -n 5 "$work/err" >&2; missing "the converged run failed."; }
+    render "$B/bin/simulate" $((16 * ${counts##* })) 2 "$work/converged" >/dev/null || { tail -n 5 "$work/err" >&2; missing "the converged run failed."; }
 }
 
 settings()
 {
     printf 'series\tsamples\n'
-    for n in $counts; do printf 'simulate\t%s\nindependent samples\t%s\n' "$n" "$n"; done
+    for n in $counts; do
+        printf 'simulate\t%s\n' "$n"
+        if [ -n "${BENCH_BEFORE-}" ] || { use_table && awk -v n="$n" '$1 == n { found = 1 } END { exit !found }' "$before"; }; then
+            printf 'unshared paths\t%s\n' "$n"
+        fi
+    done
 }
 
 sample() # SERIES SAMPLES
 {
-    if [ "$1" != simulate ]; then # its row follows that of the sample that it uses
-        awk -v n="$2" -v n0="${counts%% *}" 'FNR == NR { if ($1 == "error") e = $2; next } $1 == "seconds" || $1 == "peak_mib"
-            END { printf "error %.5g\nunit 1\n", e * sqrt(n0 / n) }' "$work/error.${counts%% *}" "$work/output.$2"
-        return
+    local program=$B/bin/simulate
+    if [ "$1" != simulate ]; then
+        if [ -z "${BENCH_BEFORE-}" ]; then
+            awk -v n="$2" '$1 == n { printf "seconds %s\npeak_mib %s\nerror %s\nunit 1\n", $2, $3, $4 }' "$before"
+            return
+        fi
+        program=$BENCH_BEFORE
     fi
     rm -rf "$work/noisy"
-    render "$2" 1 "$work/noisy" >"$work/output.$2" || return
-    "$B/tests/bench/picture_error" "$work/noisy/truth/hdr/$photo.exr" "$work/converged/truth/hdr/$photo.exr" >"$work/error.$2" 2>"$work/err" || return
-    cat "$work/output.$2" "$work/error.$2"
-    awk -v n="$2" '$1 == "pixels" { printf "paths %.9g\n", $2 * n }' "$work/error.$2"
+    render "$program" "$2" 1 "$work/noisy" >/dev/null || return
+    "$B/tests/bench/picture_error" "$work/noisy/truth/hdr/$photo.exr" "$work/converged/truth/hdr/$photo.exr" >"$work/error" 2>"$work/err" || return
+    cat "$work/use" "$work/error"
+    awk -v n="$2" '$1 == "pixels" { printf "paths %.9g\n", $2 * n }' "$work/error"
 }

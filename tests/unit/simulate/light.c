@@ -186,6 +186,125 @@ static void next_event_estimation_agrees_with_brdf_sampling(void **state)
     world_release(&w);
 }
 
+/* Rays from one eye in a narrow fan; ray 0 goes through `at`. */
+static void fan(struct path_ray ray[SHARED_RAYS], struct vec3 eye, struct vec3 at, double step)
+{
+    for (int i = 0; i < SHARED_RAYS; i++) {
+        const struct vec3 to = vec3_add(at, vec3_make(step * (i % 4), step * (i / 4), step * (i % 3)));
+        ray[i] = (struct path_ray){eye, vec3_normalize(vec3_sub(to, eye))};
+    }
+}
+
+static void all_rays_of_a_group_see_the_furnace(void **state)
+{
+    (void)state;
+    static const char *const kinds[] = {"lambert half", "phong half 0.0001 300"};
+    for (int kind = 0; kind < 2; kind++) {
+        char text[300];
+        snprintf(text, sizeof text,
+                 "texture half rgb 0.5 0.5 0.5\nmaterial m %s\nglow m 0.5 0.5 0.5\n"
+                 "box room 0 0 0 4 3 2.5 m\n",
+                 kinds[kind]);
+        struct world w = world_from(text);
+        struct path_ray ray[SHARED_RAYS];
+        struct rgb mean[SHARED_RAYS];
+        fan(ray, vec3_make(1, 1, 1), vec3_make(3.6, 2.6, 0.1), 0.25); /* across the corner of two walls and the floor */
+        mean_radiances(mean, &w, ray, 0xffff, 20000, kind);
+        for (int i = 0; i < SHARED_RAYS; i++) assert_near(mean[i].g, 1, 0.005);
+        w.max_bounces = 2; /* 1/2 + 1/4 + 1/8 */
+        mean_radiances(mean, &w, ray, 0xffff, 20000, 2);
+        for (int i = 0; i < SHARED_RAYS; i++) assert_near(mean[i].g, 0.875, 0.005);
+        w.max_bounces = 1;
+        mean_radiances(mean, &w, ray, 0xffff, 4096, 2);
+        for (int i = 0; i < SHARED_RAYS; i++) assert_near(mean[i].g, 0.75, 0.005);
+        world_release(&w);
+    }
+}
+
+enum { SETS = 16 };
+
+/* Mean and squared standard error of a ray's green, from SETS independent sets of estimates. */
+struct measured {
+    double mean, error2;
+};
+
+static void measure_group(struct measured out[SHARED_RAYS], const struct world *w,
+                          const struct path_ray ray[SHARED_RAYS], uint32_t active, int paths, int seed)
+{
+    double sum[SHARED_RAYS] = {0}, squares[SHARED_RAYS] = {0};
+    for (int set = 0; set < SETS; set++) {
+        struct rgb mean[SHARED_RAYS];
+        mean_radiances(mean, w, ray, active, paths, SETS * seed + set);
+        for (int i = 0; i < SHARED_RAYS; i++) sum[i] += mean[i].g, squares[i] += mean[i].g * mean[i].g;
+    }
+    for (int i = 0; i < SHARED_RAYS; i++)
+        out[i] = (struct measured){sum[i] / SETS, (squares[i] - sum[i] * sum[i] / SETS) / (SETS - 1) / SETS};
+}
+
+/* Groups across edges, shadows and glossy surfaces; one ray is left out. */
+static void compare_groups_with_single_rays(const char *lights, int seed)
+{
+    const struct vec3 eye = {4.5, 3.5, 1.6}, at[] = {{1.6, 2.5, 0.3}, {2.9, 1.4, 0.6}, {3.5, 2.6, 0.8}};
+    char text[1200];
+    snprintf(text, sizeof text,
+             "texture grey rgb 0.5 0.45 0.4\ntexture red rgb 0.7 0.2 0.1\nmaterial m lambert grey\n"
+             "material r lambert red\nmaterial shiny phong grey 0.5 30\nmaterial ward ward grey 0.1 0.3\n" ROOM
+             "box b 1 2 0 2 3 0.5 shiny turn 20\nquad table 2.5 1 0.7 1 0 0 0 1 0 ward\n"
+             "box c 3.4 2.5 0 3.9 3.2 1 r\n%s",
+             lights);
+    struct world w = world_from(text);
+    for (int k = 0; k < 3; k++) {
+        struct path_ray ray[SHARED_RAYS], single[SHARED_RAYS];
+        struct measured group[SHARED_RAYS], alone[SHARED_RAYS];
+        fan(ray, eye, at[k], 0.15);
+        measure_group(group, &w, ray, 0xfffd, 1024, seed + k);
+        assert_true(group[1].mean == 0); /* left out */
+        for (int i = 0; i < SHARED_RAYS; i += 5) {
+            single[0] = ray[i];
+            measure_group(alone, &w, single, 1, 2048, seed + 10 * k + i + 50);
+            const double error = sqrt(group[i].error2 + alone[0].error2), off = group[i].mean - alone[0].mean;
+            assert_true(error < 0.02 * alone[0].mean); /* the comparison means something */
+            assert_true(fabs(off) < 4 * error);
+        }
+    }
+    world_release(&w);
+}
+
+static void sharing_paths_does_not_change_the_radiance(void **state)
+{
+    (void)state;
+    compare_groups_with_single_rays(
+        "lamp l quad 3 2 2.4 0 1 0 1 0 0 4 4 3\nlamp d disk 1 1 2.4 0 0 -1 0.3 20 20 20 40 1\n", 1);
+    compare_groups_with_single_rays("sun -80 35 12 40 36 30\npanorama 3 2 2 2.5 1 0.9 0.8\n", 7);
+}
+
+/* What one estimate costs in noise: the mean square deviation of a pixel's estimate falls if its group is whole. */
+static void sharing_paths_lowers_the_noise(void **state)
+{
+    (void)state;
+    struct world w = world_from("texture grey rgb 0.5 0.45 0.4\nmaterial m lambert grey\n" ROOM
+                                "lamp l quad 3 2 2.4 0 0.3 0 0.3 0 0 40 40 30\nbox b 1 2 0 2 3 0.5 m turn 20\n");
+    const struct rng rng = rng_make(1, "test", "noise");
+    struct path_ray ray[SHARED_RAYS];
+    double variance[2];
+    fan(ray, vec3_make(4.5, 3.5, 1.6), vec3_make(1, 0.5, 0), 0.03);
+    for (int whole = 0; whole < 2; whole++) {
+        double sum = 0, squares = 0;
+        struct sobol s = sobol_make(&rng, (uint64_t)whole, SHARED_RAYS);
+        for (; s.sample < 4000; s.sample++) {
+            struct rgb mean[SHARED_RAYS] = {{0, 0, 0}};
+            uint64_t rays = 0;
+            shared_paths_radiance(mean, &w, ray, whole ? 0xffff : 1, &s, &rays);
+            sum += mean[0].g;
+            squares += mean[0].g * mean[0].g;
+        }
+        variance[whole] = squares / 4000 - sum * sum / 4000 / 4000;
+    }
+    print_message("variance of one estimate: %.4g alone, %.4g in a group\n", variance[0], variance[1]);
+    assert_true(variance[1] < 0.25 * variance[0]);
+    world_release(&w);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -197,6 +316,9 @@ int main(void)
         cmocka_unit_test(the_sun_through_a_window_gives_its_irradiance),
         cmocka_unit_test(a_box_that_absorbs_nothing_keeps_its_light),
         cmocka_unit_test(next_event_estimation_agrees_with_brdf_sampling),
+        cmocka_unit_test(all_rays_of_a_group_see_the_furnace),
+        cmocka_unit_test(sharing_paths_does_not_change_the_radiance),
+        cmocka_unit_test(sharing_paths_lowers_the_noise),
     };
     return cmocka_run_group_tests_name("simulate light", tests, scratch_make, scratch_remove);
 }
