@@ -21,10 +21,20 @@ enum status world_read(struct world *w, const char *folder, const char *file, st
     *w = (struct world){0};
     enum status st = scene_read(&w->scene, folder, file, prov, err);
     if (!st) st = geometry_init(&w->geometry, &w->scene, err);
-    if (!st) st = ray_scene_commit(&w->geometry.rays, err);
+    if (!st && w->scene.base) st = geometry_keep_ids(&w->geometry, folder, w->scene.base, err);
+    if (!st) st = geometry_commit(&w->geometry, err);
     if (!st) st = lights_init(&w->lights, &w->scene, &w->geometry, err);
     if (st) world_release(w);
     return st;
+}
+
+enum status world_move_sun(struct world *w, double azimuth, double elevation, struct err *err)
+{
+    struct sun *sun = &w->scene.sky.sun;
+    sun->azimuth = azimuth;
+    sun->elevation = elevation;
+    lights_release(&w->lights);
+    return lights_init(&w->lights, &w->scene, &w->geometry, err);
 }
 
 void world_release(struct world *w)
@@ -114,7 +124,7 @@ static void follow(struct light_path *p, uint32_t bounce)
         struct ray_hit hit;
         const struct vec3 d = p->ray.direction;
         p->rays++;
-        if (!ray_scene_hit(&w->geometry.rays, p->ray.from, d, &hit)) {
+        if (!ray_scene_hit(geometry_seen(&w->geometry, w->shell && !bounce), p->ray.from, d, &hit)) {
             const struct rgb sky = sky_radiance(&w->lights.sky, d);
             if (rgb_max(sky) > 0)
                 add_emission(p, sky, p->surface_pdf > 0 ? lights_pdf_sky(&w->lights, &p->selection, d) : 0);

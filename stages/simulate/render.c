@@ -126,9 +126,10 @@ static void surface_rows(void *ctx, size_t begin, size_t end, int thread)
             job->ids[at] = 0;
             if (!shoot_lens_ray(lens, x + 0.5, (double)y + 0.5, &in_camera)) continue;
             ray = (struct path_ray){job->view->centre, mat3_apply(job->view->world_from_cam, in_camera)};
-            if (!ray_scene_hit(&job->world->geometry.rays, ray.from, ray.direction, &hit)) continue;
+            if (!ray_scene_hit(geometry_seen(&job->world->geometry, job->world->shell), ray.from, ray.direction, &hit))
+                continue;
             job->depth[at] = (float)(lens->kind == SHOOT_PINHOLE ? hit.t * in_camera.z : hit.t);
-            job->ids[at] = hit.id + 1;
+            job->ids[at] = job->world->geometry.faces[hit.id].id;
         }
 }
 

@@ -61,11 +61,11 @@ static void lenses_exposures_and_poses_are_read(void **state)
     assert_true(s.lenses[0].width == 320 && s.lenses[0].height == 240 && s.lenses[0].fy == 255 &&
                 s.lenses[1].cx == 150);
     assert_near(s.lenses[1].fx, 133.333, 1e-9);
-    const struct shoot_exposure_list *photos = shoot_exposures(&s, &s.photos[0]),
-                                     *references = shoot_exposures(&s, &s.photos[2]);
-    assert_true(photos->count == 2 && photos->list[0].f_number == 8 && photos->list[0].filter == 1);
-    assert_true(photos->list[1].iso == 200 && photos->list[1].filter == 10);
-    assert_true(references->count == 1 && references->list[0].seconds == 0.001);
+    const struct shoot_exposure_list photos = shoot_exposures(&s, &s.photos[0]),
+                                     references = shoot_exposures(&s, &s.photos[2]);
+    assert_true(photos.count == 2 && photos.list[0].f_number == 8 && photos.list[0].filter == 1);
+    assert_true(photos.list[1].iso == 200 && photos.list[1].filter == 10);
+    assert_true(references.count == 1 && references.list[0].seconds == 0.001);
     assert_true(shoot_find(&s, "b") == 1 && shoot_find(&s, "c") == -1);
 
     /* straight up: world y is up in the image, so world x points left */
