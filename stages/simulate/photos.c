@@ -169,6 +169,7 @@ enum status photo_make(const struct picture_job *job, const struct world *w, con
     struct image radiance = {0};
     if (photo->kind == SHOOT_WITNESS) return photo_make_truth(job, w, photo, "truth/novel", err);
     enum status st = render(&radiance, w, &view, photo->name, job->params, err);
+    if (!st) st = render_check_light(&radiance, photo->name, err);
     if (!st && truth) st = write_truth(job, w, photo, "truth", job->params->truth_samples ? NULL : &radiance, err);
     for (int k = 0; !st && k < shoot_exposures(job->shoot, photo).count; k++)
         st = write_exposure(job, &radiance, photo, k, err);

@@ -14,11 +14,12 @@ struct picture_job {
 
 /* Renders a photo and writes OUT/photos/NAME_eK.jpg, or NAME.jpg if there is one exposure; reference images go to
  * OUT/lri. Photos also get OUT/truth/{depth,ids,hdr}/NAME.exr, if params->truth is "yes". A witness gets only
- * OUT/truth/novel/{depth,ids,hdr}/NAME.exr. */
+ * OUT/truth/novel/{depth,ids,hdr}/NAME.exr. ST_DATA: no light reaches the photo. */
 enum status photo_make(const struct picture_job *job, const struct world *w, const struct shoot_photo *photo,
                        struct err *err);
 
-/* Writes OUT/FOLDER/{depth,ids,hdr}/NAME.exr: depth, faces and radiance with params->truth_samples. */
+/* Writes OUT/FOLDER/{depth,ids,hdr}/NAME.exr: depth, faces and radiance with params->truth_samples,
+ * black where no light reaches the camera. */
 enum status photo_make_truth(const struct picture_job *job, const struct world *w, const struct shoot_photo *photo,
                              const char *folder, struct err *err);
 

@@ -74,7 +74,7 @@ static void render_tiles(void *ctx, size_t begin, size_t end, int thread)
     }
 }
 
-static enum status check_light(const struct image *radiance, const char *name, struct err *err)
+enum status render_check_light(const struct image *radiance, const char *name, struct err *err)
 {
     const size_t count = (size_t)radiance->width * (size_t)radiance->height * 3;
     for (size_t i = 0; i < count; i++)
@@ -105,7 +105,6 @@ enum status render_radiance(struct image *radiance, const struct world *w, const
         parallel_for(tiles, 1, render_tiles, &job);
         progress_end(&progress);
         for (size_t i = 0; rays && i < tiles; i++) *rays += job.rays[i];
-        st = check_light(radiance, name, err);
     }
     free(job.rays);
     return st;

@@ -3,7 +3,7 @@
 check_simulate()
 {
     [ "$goal" = edited ] || return 0
-    [ -n "${EDIT-}" ] || usage "make edited wants EDIT=E, where $folder/scene-E.txt describes the edited scene."
+    [ -n "${EDIT-}${EDITS-}" ] || usage "make edited wants EDIT=E, where $folder/scene-E.txt describes the edited scene, EDITS=\"A B\" or EDITS=all."
 }
 
 prepare_simulate()
@@ -15,11 +15,16 @@ prepare_simulate()
     fi
     graph look-simulate
     one "$S/simulated/photos.mk"
-    if [ "$goal" = edited ]; then
-        one "$S/simulated/truth/edited-$EDIT/faces.txt"
+    case $goal in
+    edited)
+        one edited-texts
         farm simulate edited
-        echo "truth  $S/simulated/truth/edited-$EDIT"
-        exit 0
-    fi
+        echo "truth  $S/simulated/truth/edited-*"
+        exit 0 ;;
+    truth)
+        farm simulate truth
+        echo "truth  $S/simulated/truth"
+        exit 0 ;;
+    esac
     farm simulate simulated
 }

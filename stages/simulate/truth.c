@@ -29,6 +29,13 @@ static void model_release(struct sfm_model *m)
     free(m->cameras);
 }
 
+static bool lens_used(const struct shoot *s, unsigned kinds, int lens)
+{
+    for (int i = 0; i < s->photo_count; i++)
+        if (s->photos[i].lens == lens && kinds >> s->photos[i].kind & 1) return true;
+    return false;
+}
+
 /* The cameras of the kinds whose bits are set in `kinds`. */
 static enum status write_cameras(const struct shoot *s, unsigned kinds, const char *folder,
                                  const struct provenance *prov, struct err *err)
@@ -37,9 +44,13 @@ static enum status write_cameras(const struct shoot *s, unsigned kinds, const ch
     enum status st = ST_OK;
     m.cameras = calloc((size_t)s->lens_count + 1, sizeof *m.cameras);
     m.images = calloc((size_t)s->photo_count + 1, sizeof *m.images);
-    if (!m.cameras || !m.images) st = err_nomem(err, "cameras", (size_t)s->photo_count * sizeof *m.images);
-    for (int i = 0; !st && i < s->lens_count; i++)
+    int *index = calloc((size_t)s->lens_count + 1, sizeof *index);
+    if (!m.cameras || !m.images || !index) st = err_nomem(err, "cameras", (size_t)s->photo_count * sizeof *m.images);
+    for (int i = 0; !st && i < s->lens_count; i++) {
+        if (!lens_used(s, kinds, i)) continue;
+        index[i] = m.camera_count;
         m.cameras[m.camera_count++] = (struct sfm_camera){i + 1, shoot_lens_camera(&s->lenses[i])};
+    }
     for (int i = 0; !st && i < s->photo_count; i++) {
         const struct shoot_photo *photo = &s->photos[i];
         char *name = NULL;
@@ -48,11 +59,12 @@ static enum status write_cameras(const struct shoot *s, unsigned kinds, const ch
             st = err_nomem(err, "a name", strlen(photo->name));
         else
             m.images[m.image_count] =
-                (struct sfm_image){m.image_count + 1, photo->cam_from_world, photo->lens, name, NULL, 0},
+                (struct sfm_image){m.image_count + 1, photo->cam_from_world, index[photo->lens], name, NULL, 0},
             m.image_count++;
     }
     if (!st) st = sfm_model_write_text(&m, folder, prov, err);
     model_release(&m);
+    free(index);
     return st;
 }
 
