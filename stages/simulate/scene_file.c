@@ -57,7 +57,7 @@ static enum status read_base(struct reader *r, struct err *err)
     struct reader outer = *r;
     r->file = (struct textfile){0};
     r->in_base = true;
-    st = read_file(r, s->base, err);
+    if ((st = read_file(r, s->base, err))) err_context(err, "%s:%d", outer.file.path, outer.file.line);
     outer.base_items = s->item_count;
     outer.sun_line = r->sun_line, outer.panorama_line = r->panorama_line;
     *r = outer;

@@ -40,11 +40,34 @@ static void errors_name_line_found_and_expected_word(void **state)
     assert_invalid(HEAD REST "photo a q 0 0 0 1 0 0\n", ":5: found \"q\", wanted the name of a lens above");
     assert_invalid(HEAD REST PHOTO PHOTO, ":6: found \"a\", wanted a name that no other photo has");
     assert_invalid(HEAD REST "photo a p 0 0 0 0 0 0\n", "another point to look at");
-    assert_invalid(HEAD REST "photo a p 0 0 0 1 0 0 tilt 3\n", "found \"tilt\", wanted roll");
+    assert_invalid(HEAD REST "photo a p 0 0 0 1 0 0 tilt 3\n", "found \"tilt\", wanted roll, sun, exposure");
+    assert_invalid(HEAD REST "photo a p 0 0 0 1 0 0 exposure 1\n", ":5: found \"1\", wanted the number of an exposure");
+    assert_invalid(HEAD "photo a p 0 0 0 1 0 0 exposure 0\n", "wanted an exposure line above");
+    assert_invalid(HEAD REST "photo a p 0 0 0 1 0 0 sun 20 91\n", "the sun's elevation");
+    assert_invalid(HEAD REST "witness a p 0 0 0 1 0 0 exposure 0\n", "found \"exposure\", wanted roll, sun or the end");
+    assert_invalid(HEAD REST "witness a p 0 0 0 1 0 0\n", "is incomplete; add a line: photo");
+    assert_invalid(HEAD REST PHOTO "witness a p 0 0 0 1 0 0\n", "found \"a\", wanted a name that no other");
     assert_invalid(HEAD REST "photo -a p 0 0 0 1 0 0\n", "letters, digits");
     assert_invalid(HEAD PHOTO "exposure 1\n", "is incomplete; add a line: sensor");
     assert_invalid(HEAD PHOTO "sensor 30000 5 60 1\n", "is incomplete; add a line: exposure");
     assert_invalid(HEAD REST "reference a p 0 0 0 1 0 0\n", "is incomplete; add a line: photo");
+}
+
+static void a_photo_may_have_its_own_sun_and_one_exposure(void **state)
+{
+    struct shoot s;
+    struct err err = ERR_INIT;
+    (void)state;
+    scratch_write("cameras.txt", HEAD "exposure 0.01\nexposure 0.04 4 200 10\nsensor 30000 5 60 7\n"
+                                      "photo a p 1 2 3  1 2 4 sun 30 -5 roll 90 exposure 1\nphoto b p 1 2 3  3 2 3\n"
+                                      "witness w p 1 2 3  3 2 3 sun 1 2\n");
+    assert_ok(shoot_read(&s, scratch, 1, NULL, &err), err);
+    const struct shoot_photo *a = &s.photos[0], *b = &s.photos[1], *w = &s.photos[2];
+    assert_true(a->own_sun && a->sun_azimuth == 30 && a->sun_elevation == -5 && a->roll == 90);
+    assert_true(shoot_exposures(&s, a).count == 1 && shoot_exposures(&s, a).list[0].seconds == 0.04);
+    assert_true(!b->own_sun && shoot_exposures(&s, b).count == 2);
+    assert_true(w->kind == SHOOT_WITNESS && w->own_sun && w->sun_elevation == 2);
+    shoot_release(&s);
 }
 
 static void lenses_exposures_and_poses_are_read(void **state)
@@ -163,6 +186,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(errors_name_line_found_and_expected_word),
         cmocka_unit_test(lenses_exposures_and_poses_are_read),
+        cmocka_unit_test(a_photo_may_have_its_own_sun_and_one_exposure),
         cmocka_unit_test(lens_rays_project_back_to_their_pixels),
         cmocka_unit_test(sensor_noise_has_its_mean_and_variance),
     };
