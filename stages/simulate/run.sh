@@ -6,6 +6,12 @@ check_simulate()
     [ -n "${EDIT-}${EDITS-}" ] || usage "make edited wants EDIT=E, where $folder/scene-E.txt describes the edited scene, EDITS=\"A B\" or EDITS=all."
 }
 
+# tell_time TARGET: before pictures are made, how long each kind of them takes
+tell_time()
+{
+    graph -q "$1" >/dev/null 2>&1 || "$bin/simulate" --threads "$cores" --config "$S/slice/simulate.cfg" --scene "$folder" --out "$S/simulated" --estimate 2>/dev/null
+}
+
 prepare_simulate()
 {
     [ -e "$folder/scene.txt" ] || return 0
@@ -18,13 +24,16 @@ prepare_simulate()
     case $goal in
     edited)
         one edited-texts
+        tell_time edited
         farm simulate edited
         echo "truth  $S/simulated/truth/edited-*"
         exit 0 ;;
     truth)
+        tell_time truth
         farm simulate truth
         echo "truth  $S/simulated/truth"
         exit 0 ;;
     esac
+    tell_time simulated
     farm simulate simulated
 }

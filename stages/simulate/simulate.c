@@ -9,6 +9,7 @@
  *         --common: OUT/truth/{scene,faces,cameras,images,points3D,irradiance}.txt, the cameras of witnesses and
  *         reference images in OUT/truth/{novel,lri}, OUT/lri/exposures.txt, and last OUT/photos.mk; for an edited
  *         scene OUT/truth/edited-EDIT/{scene,faces,cameras,images,points3D}.txt
+ *         --estimate: to the standard output, how long each kind of picture takes
  *         --points FILE: OUT/truth/irradiance-points.txt or OUT/truth/edited-EDIT/irradiance-points.txt
  *
  * One process makes one photo, or all with `--photo all`. Each file appears whole or not at all. */
@@ -17,12 +18,13 @@
 #include <string.h>
 
 #include "common/base/cli.h"
+#include "stages/simulate/estimate.h"
 #include "stages/simulate/irradiance.h"
 #include "stages/simulate/truth.h"
 
 struct request {
     const char *scene, *out, *edit, *photo, *kind, *points;
-    bool common;
+    bool common, estimate;
 };
 
 /* The scenes of a run: `plain` is scene.txt, `shown` the edited scene, or the same. */
@@ -85,8 +87,9 @@ static enum status make_photos(const struct request *r, struct worlds *w, const 
 
 static enum status check_request(const struct request *r, struct err *err)
 {
-    if (!r->common && !r->photo && !r->points)
-        return err_set(err, ST_USAGE, "nothing to do; give --photo NAME, --photo all, --common or --points FILE.");
+    if (!r->common && !r->photo && !r->points && !r->estimate)
+        return err_set(err, ST_USAGE,
+                       "nothing to do; give --photo NAME, --photo all, --common, --points FILE or --estimate.");
     if (r->edit && strchr(r->edit, '/'))
         return err_set(err, ST_USAGE, "--edit %s is not the name of an edit; give the E of a file scene-E.txt in %s.",
                        r->edit, r->scene);
@@ -124,6 +127,7 @@ static enum status simulate(const struct request *r, const struct simulate_param
     enum status st = check_request(r, err);
     if (!st) st = read_worlds(&w, r, params, prov, err);
     if (!st) st = shoot_read(&shoot, r->scene, params->scale, prov, err);
+    if (!st && r->estimate) st = estimate_print(stdout, &job, w.shown, err);
     if (!st && r->points) st = irradiance_points(&job, w.shown, r->points, w.folder, err);
     if (!st && r->common)
         st = r->edit ? truth_write_edited(w.shown, &shoot, r->scene, r->out, r->edit, prov, err)
@@ -150,6 +154,7 @@ int main(int argc, char **argv)
         CLI_STR("edit", &r.edit, CLI_OPTIONAL,
                 "E: use the edited scene scene-E.txt in place of scene.txt, with the same cameras"),
         CLI_STR("points", &r.points, CLI_OPTIONAL, "file of X Y Z NX NY NZ: points at which to compute the irradiance"),
+        CLI_FLAG("estimate", &r.estimate, "print how long each kind of picture takes on this machine"),
         CLI_PARAMS(simulate_param_table, &params, NULL),
         CLI_END,
     };

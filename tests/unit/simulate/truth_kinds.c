@@ -1,8 +1,10 @@
 /* More kinds of truth: witnesses, rooms without furniture, irradiance, another sun, samples of truth. */
 #include "tests/unit/simulate/worlds.h"
 
+#include "common/base/parallel.h"
 #include "common/capture/sfm_model.h"
 #include "common/image/exr.h"
+#include "stages/simulate/estimate.h"
 #include "stages/simulate/irradiance.h"
 #include "stages/simulate/truth.h"
 
@@ -280,6 +282,61 @@ static void truth_has_samples_of_its_own(void **state)
     drop(&g);
 }
 
+static void truth_does_not_depend_on_threads(void **state)
+{
+    struct fixture f;
+    struct err err = ERR_INIT;
+    (void)state;
+    setup(&f, ROOM "furniture on\nbox b 2.0 1.4 0.02 3.0 2.4 0.9 m\n", SHOOT, "threads");
+    const char *points = scratch_write("points.txt", "1 1 0.02 0 0 1\n2 1 0.02 0 0 1\n2 3 0.02 0 0 1\n");
+    for (int threads = 1; threads <= 2; threads++) {
+        const char *to = threads == 1 ? "one" : "two";
+        parallel_set_threads(threads);
+        f.world.shell = true;
+        assert_ok(photo_make_truth(&f.job, &f.world, &f.shoot.photos[1], to, &err), err);
+        f.world.shell = false;
+        assert_ok(irradiance_picture(&f.job, &f.world, NULL, &f.shoot.photos[1], to, &err), err);
+        assert_ok(irradiance_points(&f.job, &f.world, points, to, &err), err);
+    }
+    parallel_set_threads(0);
+    assert_same_bytes(&f, "one/hdr/w.exr", "two/hdr/w.exr");
+    assert_same_bytes(&f, "one/irradiance/w.exr", "two/irradiance/w.exr");
+    assert_same_bytes(&f, "one/irradiance-points.txt", "two/irradiance-points.txt");
+    drop(&f);
+}
+
+/* Four times the samples take four times as long, by the estimate; each kind of picture has a line. */
+static void the_estimate_names_each_kind_of_picture(void **state)
+{
+    struct fixture f;
+    struct err err = ERR_INIT;
+    struct simulate_params more = params;
+    char *text = NULL;
+    size_t size = 0;
+    (void)state;
+    more.truth_samples = 64;
+    setup(&f, ROOM, SHOOT, "estimate");
+    f.job.params = &more;
+    FILE *to = open_memstream(&text, &size);
+    assert_non_null(to);
+    assert_ok(estimate_print(to, &f.job, &f.world, &err), err);
+    fclose(to);
+    const char *const lines[] = {
+        "photos: 1 of them, 16 samples: about ", "radiance of photos: 1 of them, 64 samples: about ",
+        "witnesses: 1 of them, 64 samples: about ", "pictures of the shell: 2 of them, 64 samples",
+        "pictures of an edited scene: 2 of them, 64 samples"};
+    double minutes[2] = {0, 0};
+    for (int i = 0; i < 5; i++) {
+        const char *at = strstr(text, lines[i]);
+        if (!at) fail_msg("no line \"%s\" in\n%s", lines[i], text);
+        if (i < 2) assert_int_equal(sscanf(at + strlen(lines[i]), "%lf", &minutes[i]), 1);
+    }
+    assert_null(strstr(text, "reference images"));
+    assert_true(minutes[0] > 0 && minutes[1] > 3.6 * minutes[0] && minutes[1] < 4.4 * minutes[0]); /* two digits */
+    free(text);
+    drop(&f);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -290,6 +347,8 @@ int main(void)
         cmocka_unit_test(irradiance_at_given_points_is_that_of_a_small_lamp),
         cmocka_unit_test(a_moved_sun_lights_with_the_sine_of_its_elevation),
         cmocka_unit_test(truth_has_samples_of_its_own),
+        cmocka_unit_test(truth_does_not_depend_on_threads),
+        cmocka_unit_test(the_estimate_names_each_kind_of_picture),
     };
     return cmocka_run_group_tests_name("simulate kinds of truth", tests, scratch_make, scratch_remove);
 }
