@@ -42,6 +42,9 @@ static int find_lens(const struct shoot *s, const char *name)
     return -1;
 }
 
+/* Radius of the image circle of an equisolid lens that has one, px. */
+static double circle_radius(const struct shoot_lens *l) { return 2 * l->fx * sin(l->circle * DEGREE / 4); }
+
 static enum status read_lens_numbers(struct reader *r, struct shoot_lens *l, struct err *err)
 {
     int64_t width = 0, height = 0;
@@ -53,6 +56,10 @@ static enum status read_lens_numbers(struct reader *r, struct shoot_lens *l, str
     if (!st && pinhole) st = description_number(&r->file, "a focal length in pixels", 1, 1e6, &l->fy, err);
     if (!st) st = description_number(&r->file, "the principal point's x in pixels", 0, (double)width, &l->cx, err);
     if (!st) st = description_number(&r->file, "the principal point's y in pixels", 0, (double)height, &l->cy, err);
+    if (!st && !pinhole && textfile_more(&r->file)) {
+        st = textfile_expect(&r->file, "circle", err);
+        if (!st) st = description_number(&r->file, "the degrees across the image circle", 1, 239, &l->circle, err);
+    }
     if (st) return st;
     if (!pinhole) l->fy = l->fx;
     l->width = (int)fmax(1, round((double)width * r->scale));
@@ -63,6 +70,7 @@ static enum status read_lens_numbers(struct reader *r, struct shoot_lens *l, str
     if (!pinhole) l->fx = l->fy = (l->fx + l->fy) / 2;
     for (int i = 0; i < 4; i++)
         farthest = fmax(farthest, hypot(l->cx - (i & 1 ? l->width : 0), l->cy - (i & 2 ? l->height : 0)));
+    if (l->circle > 0) farthest = fmin(farthest, circle_radius(l));
     if (!pinhole && farthest >= 2 * l->fx * sin(PI / 3)) {
         char found[80];
         snprintf(found, sizeof found, "a corner %.1f px off the axis", farthest);
@@ -289,6 +297,7 @@ bool shoot_lens_ray(const struct shoot_lens *l, double u, double v, struct vec3 
     /* with r = 2 sin(theta / 2): cos(theta) = 1 - r^2 / 2 and sin(theta) / r = sqrt(1 - r^2 / 4) */
     const double rr = x * x + y * y;
     if (rr > 4) return false;
+    if (l->circle > 0 && rr * l->fx * l->fx > circle_radius(l) * circle_radius(l)) return false;
     const double s = sqrt(1 - rr / 4);
     *ray = vec3_make(x * s, y * s, 1 - rr / 2);
     return true;

@@ -19,6 +19,7 @@ struct shoot_lens {
     enum shoot_lens_kind kind;
     int width, height;
     double fx, fy, cx, cy; /* px; equisolid: r = 2 fx sin(theta / 2), fy = fx */
+    double circle;         /* equisolid: degrees across the image circle, outside of which pictures are black; 0: all */
 };
 
 struct shoot_exposure {

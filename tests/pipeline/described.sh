@@ -124,6 +124,17 @@ lighting_reference_images_are_merged_but_not_rectified()
     grep -q 'nowhere is not a folder' log || { cat log; fail "the message does not name the folder"; }
 }
 
+# a lens of 180 degrees: black corners, the middle in the light of the room
+a_hemisphere_is_merged_with_its_image_circle()
+{
+    project dome; describe room
+    sed -i 's/^reference r p/lens d equisolid 48 48 16.9705627 24 24 circle 180\nreference r d/' scenes/room/cameras.txt
+    printf 'LRI := out/room/simulated/lri\nLRI_SFM := out/room/simulated/truth/lri\n' >>scenes/room/scene.mk
+    m lri
+    [ -s out/room/lri/r.exr ] || { ls -R out/room/lri; fail "wanted one picture"; }
+    grep -aq 'OPENCV_FISHEYE 48 48 16.97' out/room/lri/r.exr || fail "the picture does not contain its camera"
+}
+
 # a fisheye photo has several views, made by one process; a deleted or stale view is remade alone
 views_of_one_photo_are_made_by_one_process()
 {
@@ -168,5 +179,6 @@ an_error_in_the_description_is_named_and_leaves_no_product()
 
 for t in photos_are_made_once_and_again_if_the_description_changes the_edited_scene_is_made_on_demand \
     several_edits_are_made_from_chosen_cameras more_truth_is_made_on_demand lighting_reference_images_are_merged_but_not_rectified \
+    a_hemisphere_is_merged_with_its_image_circle \
     views_of_one_photo_are_made_by_one_process one_core_gives_the_bytes_of_two \
     an_error_in_the_description_is_named_and_leaves_no_product; do run "$t"; done

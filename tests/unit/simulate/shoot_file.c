@@ -53,6 +53,28 @@ static void errors_name_line_found_and_expected_word(void **state)
     assert_invalid(HEAD REST "reference a p 0 0 0 1 0 0\n", "is incomplete; add a line: photo");
 }
 
+static void an_image_circle_ends_at_its_angle(void **state)
+{
+    struct shoot s;
+    struct err err = ERR_INIT;
+    struct vec3 ray;
+    (void)state;
+    /* the circle of 180 degrees touches the edges: 2 f sin(45 degrees) = 240 */
+    scratch_write("cameras.txt", HEAD "lens d equisolid 480 480 169.705627 240 240 circle 180\n" REST PHOTO);
+    assert_ok(shoot_read(&s, scratch, 1, NULL, &err), err);
+    const struct shoot_lens *d = &s.lenses[1];
+    assert_true(shoot_lens_ray(d, 479.9, 240, &ray));
+    assert_true(fabs(ray.z) < 1e-3);
+    assert_near(ray.x, 1, 1e-3);
+    assert_true(shoot_lens_ray(d, 240 + 169.7, 240 - 169.7, &ray));
+    assert_false(shoot_lens_ray(d, 240 + 169.8, 240 - 169.8, &ray));
+    assert_false(shoot_lens_ray(d, 0.5, 0.5, &ray));
+    shoot_release(&s);
+    assert_invalid(HEAD "lens d equisolid 480 480 169.7 240 240\n", "a field of view below 240 degrees");
+    assert_invalid(HEAD "lens d equisolid 480 480 169.7 240 240 circle 240\n", "the degrees across the image circle");
+    assert_invalid(HEAD "lens d equisolid 480 480 169.7 240 240 disk\n", "found \"disk\"");
+}
+
 static void a_photo_may_have_its_own_sun_and_one_exposure(void **state)
 {
     struct shoot s;
@@ -106,8 +128,8 @@ static void lenses_exposures_and_poses_are_read(void **state)
 static void lens_rays_project_back_to_their_pixels(void **state)
 {
     (void)state;
-    const struct shoot_lens pinhole = {NULL, SHOOT_PINHOLE, 640, 480, 500, 510, 320, 240};
-    const struct shoot_lens fish = {NULL, SHOOT_EQUISOLID, 960, 640, 426.667, 426.667, 480, 320};
+    const struct shoot_lens pinhole = {NULL, SHOOT_PINHOLE, 640, 480, 500, 510, 320, 240, 0};
+    const struct shoot_lens fish = {NULL, SHOOT_EQUISOLID, 960, 640, 426.667, 426.667, 480, 320, 0};
     struct vec3 ray;
     double u, v;
     assert_true(shoot_lens_ray(&pinhole, 320 + 250, 240 - 102, &ray));
@@ -186,6 +208,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(errors_name_line_found_and_expected_word),
         cmocka_unit_test(lenses_exposures_and_poses_are_read),
+        cmocka_unit_test(an_image_circle_ends_at_its_angle),
         cmocka_unit_test(a_photo_may_have_its_own_sun_and_one_exposure),
         cmocka_unit_test(lens_rays_project_back_to_their_pixels),
         cmocka_unit_test(sensor_noise_has_its_mean_and_variance),
