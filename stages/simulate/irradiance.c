@@ -11,13 +11,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/base/array.h"
 #include "common/base/outfile.h"
 #include "common/base/parallel.h"
 #include "common/base/progress.h"
 #include "common/base/textfile.h"
 #include "stages/simulate/description.h"
 
+#define MAX_POINTS 10000000
 #define SAME_POINT 1e-5 /* of the distance: points closer together are the same */
 
 static int samples_of(const struct simulate_params *params)
@@ -106,39 +106,42 @@ enum status irradiance_picture(const struct picture_job *job, const struct world
 
 /* ----------------------------------------------------------------------------------------------------------- points */
 
-struct point {
-    struct vec3 at, normal;
-    struct rgb irradiance;
-};
-
 struct point_list {
-    struct point *list;
+    struct probe *list;
     int count, samples;
     const struct world *world;
     struct rng rng;
 };
 
-static enum status read_point(struct textfile *t, struct point_list *l, struct err *err)
+static enum status read_point(struct textfile *t, struct probe *p, struct err *err)
 {
-    struct point p = {0};
-    enum status st = description_point(t, "a point", &p.at, err);
-    if (!st) st = description_point(t, "a normal", &p.normal, err);
-    if (!st && !(vec3_length(p.normal) > 1e-9)) st = textfile_error(t, err, "0 0 0", "a normal");
+    *p = (struct probe){0};
+    enum status st = description_point(t, "a point", &p->at, err);
+    if (!st) st = description_point(t, "a normal", &p->normal, err);
+    if (!st && !(vec3_length(p->normal) > 1e-9)) st = textfile_error(t, err, "0 0 0", "a normal");
     if (!st) st = textfile_end(t, err);
-    if (!st) st = array_append(&l->list, (size_t)l->count, sizeof p, "points", err);
-    if (st) return st;
-    p.normal = vec3_normalize(p.normal);
-    l->list[l->count++] = p;
-    return ST_OK;
+    p->normal = vec3_normalize(p->normal);
+    return st;
 }
 
-static enum status read_points(struct point_list *l, const char *path, struct err *err)
+enum status irradiance_read_points(struct probe **list, int *count, const char *path, struct err *err)
 {
     struct textfile t = {0};
+    *list = NULL;
+    *count = 0;
     enum status st = textfile_open(&t, path, err);
-    while (!st && textfile_next(&t)) st = read_point(&t, l, err);
-    if (!st && !l->count) st = err_set(err, ST_DATA, "%s has no points; write one on each line: X Y Z NX NY NZ.", path);
+    while (!st && textfile_next(&t)) {
+        struct probe p;
+        st = read_point(&t, &p, err);
+        if (!st) st = description_append(&t, list, *count, MAX_POINTS, sizeof p, err);
+        if (!st) (*list)[(*count)++] = p;
+    }
+    if (!st && !*count) st = err_set(err, ST_DATA, "%s has no points; write one on each line: X Y Z NX NY NZ.", path);
     textfile_release(&t);
+    if (!st) return ST_OK;
+    free(*list);
+    *list = NULL;
+    *count = 0;
     return st;
 }
 
@@ -161,7 +164,7 @@ static enum status write_points(const struct point_list *l, const char *path, co
         fputs("# world position, normal, irradiance E rgb = integral L cos (same units as hdr radiance, no 1/pi)\n",
               f.fp);
         for (int i = 0; i < l->count; i++) {
-            const struct point *p = &l->list[i];
+            const struct probe *p = &l->list[i];
             fprintf(f.fp, "%.9g %.9g %.9g %.9g %.9g %.9g %.9g %.9g %.9g\n", p->at.x, p->at.y, p->at.z, p->normal.x,
                     p->normal.y, p->normal.z, p->irradiance.r, p->irradiance.g, p->irradiance.b);
         }
@@ -176,7 +179,7 @@ enum status irradiance_points(const struct picture_job *job, const struct world 
 {
     struct point_list l = {.world = w, .samples = job->params->irradiance_samples};
     char *path = NULL;
-    enum status st = read_points(&l, points, err);
+    enum status st = irradiance_read_points(&l.list, &l.count, points, err);
     if (!st && asprintf(&path, "%s/%s/irradiance-points.txt", job->out, folder) < 0) {
         path = NULL;
         st = err_nomem(err, "a file name", strlen(job->out));
