@@ -7,14 +7,15 @@
 #include "common/base/array.h"
 #include "common/base/scan.h"
 
-enum status description_header(struct textfile *t, const char *kind, struct err *err)
+enum status description_header(struct textfile *t, const char *kind, int max_version, int *version, struct err *err)
 {
     char *word = NULL;
-    int64_t version = 0;
+    int64_t found = 0;
     if (!textfile_next(t)) return err_set(err, ST_DATA, "%s is empty; its first line must be: %s 1.", t->path, kind);
     enum status st = textfile_word(t, kind, &word, err);
     if (!st && strcmp(word, kind)) st = textfile_error(t, err, word, "%s", kind);
-    if (!st) st = textfile_int(t, "the format's version", 1, 1, &version, err);
+    if (!st) st = textfile_int(t, "the format's version", 1, max_version, &found, err);
+    *version = (int)found;
     if (!st) st = textfile_end(t, err);
     return st;
 }

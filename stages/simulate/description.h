@@ -8,8 +8,8 @@
 
 #define MAX_METRES 1e5 /* largest coordinate, either sign */
 
-/* The first line: KIND 1. Rejects an empty file and other versions. */
-enum status description_header(struct textfile *t, const char *kind, struct err *err);
+/* The first line: KIND VERSION, from 1 to max_version. Rejects an empty file. */
+enum status description_header(struct textfile *t, const char *kind, int max_version, int *version, struct err *err);
 
 enum status description_number(struct textfile *t, const char *what, double min, double max, double *value,
                                struct err *err);

@@ -39,8 +39,9 @@ static enum status add_face(struct builder *b, const char *side, int material, s
     enum status st = array_append(&g->faces, (size_t)g->face_count, sizeof *g->faces, "faces", err);
     if (st) return st;
     if (asprintf(&name, side ? "%s.%s" : "%s", item, side) < 0) return err_nomem(err, "a face's name", strlen(item));
-    g->faces[g->face_count++] = (struct scene_face){
+    g->faces[g->face_count] = (struct scene_face){
         .name = name,
+        .id = (uint32_t)g->face_count + 1,
         .item = b->item,
         .material = material,
         .origin = origin,
@@ -49,6 +50,7 @@ static enum status add_face(struct builder *b, const char *side, int material, s
         .normal = vec3_normalize(vec3_cross(u, v)),
         .seed = name_seed(name),
     };
+    g->face_count++;
     return ST_OK;
 }
 
@@ -59,7 +61,10 @@ static enum status add_triangle(struct builder *b, struct vec3 p, struct vec3 q,
     const struct vec3 corner[3] = {p, q, r};
     const int face = g->face_count - 1;
     g->faces[face].area += vec3_length(vec3_cross(vec3_sub(q, p), vec3_sub(r, p))) / 2;
-    return ray_scene_add_triangle(&g->rays, corner, (uint32_t)face, err);
+    enum status st = ray_scene_add_triangle(&g->rays, corner, (uint32_t)face, err);
+    if (!st && g->has_furniture && !b->scene->items[b->item].furniture)
+        st = ray_scene_add_triangle(&g->bare, corner, (uint32_t)face, err);
+    return st;
 }
 
 static enum status add_parallelogram(struct builder *b, struct vec3 p, struct vec3 u, struct vec3 v, struct err *err)
@@ -254,7 +259,9 @@ static enum status add_disk(struct builder *b, struct err *err)
     if (st) return st;
     const int face = g->face_count - 1;
     g->faces[face].area = PI * it->radius * it->radius;
-    return ray_scene_add_disk(&g->rays, it->at, it->u, it->radius, (uint32_t)face, err);
+    st = ray_scene_add_disk(&g->rays, it->at, it->u, it->radius, (uint32_t)face, err);
+    if (!st && g->has_furniture) st = ray_scene_add_disk(&g->bare, it->at, it->u, it->radius, (uint32_t)face, err);
+    return st;
 }
 
 static enum status add_item(struct builder *b, struct err *err)
@@ -284,6 +291,7 @@ enum status geometry_init(struct scene_geometry *g, const struct scene *s, struc
     struct builder b = {g, s, 0};
     enum status st = ST_OK;
     *g = (struct scene_geometry){0};
+    for (int i = 0; i < s->item_count; i++) g->has_furniture = g->has_furniture || s->items[i].furniture;
     if (!(g->lamp_faces = malloc((size_t)(s->item_count + 1) * sizeof *g->lamp_faces)))
         st = err_nomem(err, "lamps", (size_t)s->item_count * sizeof *g->lamp_faces);
     for (; !st && b.item < s->item_count; b.item++) {
@@ -297,10 +305,42 @@ enum status geometry_init(struct scene_geometry *g, const struct scene *s, struc
     return ST_OK;
 }
 
+static int compare_names(const void *a, const void *b)
+{
+    return strcmp(((const struct scene_face *)a)->name, ((const struct scene_face *)b)->name);
+}
+
+enum status geometry_keep_ids(struct scene_geometry *g, const char *folder, const char *base, struct err *err)
+{
+    struct scene s = {0};
+    struct scene_geometry before = {0};
+    enum status st = scene_read(&s, folder, base, NULL, err);
+    if (!st) st = geometry_init(&before, &s, err);
+    uint32_t next = (uint32_t)before.face_count + 1;
+    if (!st) qsort(before.faces, (size_t)before.face_count, sizeof *before.faces, compare_names);
+    for (int i = 0; !st && i < g->face_count; i++) {
+        const struct scene_face *same =
+            before.face_count
+                ? bsearch(&g->faces[i], before.faces, (size_t)before.face_count, sizeof *g->faces, compare_names)
+                : NULL;
+        g->faces[i].id = same ? same->id : next++;
+    }
+    geometry_release(&before);
+    scene_release(&s);
+    return st;
+}
+
+enum status geometry_commit(struct scene_geometry *g, struct err *err)
+{
+    enum status st = ray_scene_commit(&g->rays, err);
+    return st || !g->has_furniture ? st : ray_scene_commit(&g->bare, err);
+}
+
 void geometry_release(struct scene_geometry *g)
 {
     if (!g) return;
     ray_scene_release(&g->rays);
+    ray_scene_release(&g->bare);
     for (int i = 0; i < g->face_count; i++) free(g->faces[i].name);
     free(g->faces);
     free(g->lamp_faces);

@@ -25,10 +25,20 @@ enum status world_read(struct world *w, const char *folder, const char *file, st
     *w = (struct world){0};
     enum status st = scene_read(&w->scene, folder, file, prov, err);
     if (!st) st = geometry_init(&w->geometry, &w->scene, err);
-    if (!st) st = ray_scene_commit(&w->geometry.rays, err);
+    if (!st && w->scene.base) st = geometry_keep_ids(&w->geometry, folder, w->scene.base, err);
+    if (!st) st = geometry_commit(&w->geometry, err);
     if (!st) st = lights_init(&w->lights, &w->scene, &w->geometry, err);
     if (st) world_release(w);
     return st;
+}
+
+enum status world_move_sun(struct world *w, double azimuth, double elevation, struct err *err)
+{
+    struct sun *sun = &w->scene.sky.sun;
+    sun->azimuth = azimuth;
+    sun->elevation = elevation;
+    lights_release(&w->lights);
+    return lights_init(&w->lights, &w->scene, &w->geometry, err);
 }
 
 void world_release(struct world *w)

@@ -16,11 +16,14 @@ struct world {
     struct scene_geometry geometry;
     struct lights lights;
     int max_bounces;         /* reflections to follow; 0: no limit but Russian roulette */
+    bool shell;              /* cameras see through furniture, which still reflects light and casts shadows */
     bool brdf_sampling_only; /* without next-event estimation: slower, with the same expectation (for tests) */
 };
 
 /* Reads FOLDER/FILE and prepares it for tracing. {0} is the empty state; on failure nothing has to be released. */
 enum status world_read(struct world *w, const char *folder, const char *file, struct provenance *prov, struct err *err);
+/* Moves the sun of a scene that has one; degrees. */
+enum status world_move_sun(struct world *w, double azimuth, double elevation, struct err *err);
 void world_release(struct world *w);
 
 struct path_ray {

@@ -130,7 +130,7 @@ static void render_blocks(void *ctx, size_t begin, size_t end, int thread)
     }
 }
 
-static enum status check_light(const struct image *radiance, const char *name, struct err *err)
+enum status render_check_light(const struct image *radiance, const char *name, struct err *err)
 {
     const size_t count = (size_t)radiance->width * (size_t)radiance->height * 3;
     for (size_t i = 0; i < count; i++)
@@ -162,7 +162,6 @@ enum status render_radiance(struct image *radiance, const struct world *w, const
         parallel_for(blocks, 1, render_blocks, &job);
         progress_end(&progress);
         for (size_t i = 0; rays && i < blocks; i++) *rays += job.rays[i];
-        st = check_light(radiance, name, err);
     }
     free(job.rays);
     return st;
@@ -183,9 +182,10 @@ static void surface_rows(void *ctx, size_t begin, size_t end, int thread)
             job->ids[at] = 0;
             if (!shoot_lens_ray(lens, x + 0.5, (double)y + 0.5, &in_camera)) continue;
             ray = (struct path_ray){job->view->centre, mat3_apply(job->view->world_from_cam, in_camera)};
-            if (!ray_scene_hit(&job->world->geometry.rays, ray.from, ray.direction, &hit)) continue;
+            if (!ray_scene_hit(geometry_seen(&job->world->geometry, job->world->shell), ray.from, ray.direction, &hit))
+                continue;
             job->depth[at] = (float)(lens->kind == SHOOT_PINHOLE ? hit.t * in_camera.z : hit.t);
-            job->ids[at] = hit.id + 1;
+            job->ids[at] = job->world->geometry.faces[hit.id].id;
         }
 }
 

@@ -20,9 +20,12 @@ bool camera_view_ray(const struct camera_view *v, double u, double w, struct pat
 
 /* Radiance, 3 channels: the mean over each pixel's area. Random numbers are keyed by (seed, name, pixel or group of
  * pixels): the result is the same for any number of threads. Adds the number of rays traced to *rays (may be NULL).
- * ST_DATA: no light reaches the camera, the image would be black; ST_NOMEM. The caller releases the image. */
+ * ST_NOMEM. The caller releases the image. */
 enum status render_radiance(struct image *radiance, const struct world *w, const struct camera_view *view,
                             const char *name, const struct simulate_params *params, uint64_t *rays, struct err *err);
+
+/* ST_DATA: no light reaches the camera, the image is black. */
+enum status render_check_light(const struct image *radiance, const char *name, struct err *err);
 
 /* Traces one ray through each pixel's centre. Depth is z along the axis for a pinhole, the length of the ray for a
  * fisheye; ids count faces from 1. Both are 0 where nothing is hit. Arrays of width * height. */

@@ -3,7 +3,13 @@
 check_simulate()
 {
     [ "$goal" = edited ] || return 0
-    [ -n "${EDIT-}" ] || usage "make edited wants EDIT=E, where $folder/scene-E.txt describes the edited scene."
+    [ -n "${EDIT-}${EDITS-}" ] || usage "make edited wants EDIT=E, where $folder/scene-E.txt describes the edited scene, EDITS=\"A B\" or EDITS=all."
+}
+
+# tell_time TARGET: before pictures are made, how long each kind of them takes
+tell_time()
+{
+    graph -q "$1" >/dev/null 2>&1 || "$bin/simulate" --threads "$cores" --config "$S/slice/simulate.cfg" --scene "$folder" --out "$S/simulated" --estimate 2>/dev/null
 }
 
 prepare_simulate()
@@ -15,11 +21,19 @@ prepare_simulate()
     fi
     graph look-simulate
     one "$S/simulated/photos.mk"
-    if [ "$goal" = edited ]; then
-        one "$S/simulated/truth/edited-$EDIT/faces.txt"
+    case $goal in
+    edited)
+        one edited-texts
+        tell_time edited
         farm simulate edited
-        echo "truth  $S/simulated/truth/edited-$EDIT"
-        exit 0
-    fi
+        echo "truth  $S/simulated/truth/edited-*"
+        exit 0 ;;
+    truth)
+        tell_time truth
+        farm simulate truth
+        echo "truth  $S/simulated/truth"
+        exit 0 ;;
+    esac
+    tell_time simulated
     farm simulate simulated
 }

@@ -40,12 +40,14 @@ enum item_kind {
     ITEM_LAMP_DISK,
 };
 
-/* An object of the scene; items keep the order of the file. */
+/* An object of the scene; items keep the order of the file, those of a base come first. */
 struct scene_item {
     enum item_kind kind;
     char *name;
     int material, ceiling;                    /* indices; material -1: a lamp; ceiling: a room's second material */
-    int wall;                                 /* opening, window: index of the wall */
+    int wall;                                 /* opening, window: index of the wall; else -1 */
+    int line;                                 /* in its file */
+    bool furniture;                           /* a box, quad or mesh that pictures of the shell leave out */
     double x0, y0, x1, y1, z0, z1, thickness; /* wall, box, room */
     double s0, s1;                       /* opening, window: range along the wall's centre line; heights in z0, z1 */
     double turn, scale;                  /* box, mesh */
@@ -62,6 +64,9 @@ struct scene {
     struct scene_item *items;
     int texture_count, material_count, item_count;
     struct sky_params sky;
+    char *base;   /* an edit: the file that it changes; else NULL */
+    int *dropped; /* lines of the base that the edit drops */
+    int dropped_count;
 };
 
 /* Reads FOLDER/FILE and the meshes beside it that it names. ST_DATA names file, line, the word found and the word
@@ -69,6 +74,10 @@ struct scene {
  * than they receive, openings outside their wall or overlapping. A scene without a light source is rejected. prov (may
  * be NULL) gets the hashes of the files. The caller releases *s; on failure there is nothing to release. */
 enum status scene_read(struct scene *s, const char *folder, const char *file, struct provenance *prov, struct err *err);
+
+/* Writes the scene that was read from FOLDER/FILE as a file of its own: a copy of FILE, or for an edit the lines of its
+ * base without the dropped ones, then those that it adds. */
+enum status scene_write(const struct scene *s, const char *folder, const char *file, const char *path, struct err *err);
 void scene_release(struct scene *s);
 
 #endif

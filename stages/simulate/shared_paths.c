@@ -96,7 +96,8 @@ static void find_surfaces(struct group *g, const struct path_ray ray[N], uint32_
         if (!part) continue;
         for (int i = 0; i < RAY_PACKET; i++)
             if (has(part, i)) from[i] = ray[first + i].from, direction[i] = ray[first + i].direction, g->rays++;
-        const unsigned found = ray_scene_hit_packet(&g->world->geometry.rays, from, direction, part, hit);
+        const unsigned found =
+            ray_scene_hit_packet(geometry_seen(&g->world->geometry, g->world->shell), from, direction, part, hit);
         for (int i = 0; i < RAY_PACKET; i++)
             if (has(part, i)) arrive(g, first + i, has(found, i), &hit[i], direction[i]);
     }

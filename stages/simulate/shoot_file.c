@@ -42,6 +42,9 @@ static int find_lens(const struct shoot *s, const char *name)
     return -1;
 }
 
+/* Radius of the image circle of an equisolid lens that has one, px. */
+static double circle_radius(const struct shoot_lens *l) { return 2 * l->fx * sin(l->circle * DEGREE / 4); }
+
 static enum status read_lens_numbers(struct reader *r, struct shoot_lens *l, struct err *err)
 {
     int64_t width = 0, height = 0;
@@ -53,6 +56,10 @@ static enum status read_lens_numbers(struct reader *r, struct shoot_lens *l, str
     if (!st && pinhole) st = description_number(&r->file, "a focal length in pixels", 1, 1e6, &l->fy, err);
     if (!st) st = description_number(&r->file, "the principal point's x in pixels", 0, (double)width, &l->cx, err);
     if (!st) st = description_number(&r->file, "the principal point's y in pixels", 0, (double)height, &l->cy, err);
+    if (!st && !pinhole && textfile_more(&r->file)) {
+        st = textfile_expect(&r->file, "circle", err);
+        if (!st) st = description_number(&r->file, "the degrees across the image circle", 1, 239, &l->circle, err);
+    }
     if (st) return st;
     if (!pinhole) l->fy = l->fx;
     l->width = (int)fmax(1, round((double)width * r->scale));
@@ -63,6 +70,7 @@ static enum status read_lens_numbers(struct reader *r, struct shoot_lens *l, str
     if (!pinhole) l->fx = l->fy = (l->fx + l->fy) / 2;
     for (int i = 0; i < 4; i++)
         farthest = fmax(farthest, hypot(l->cx - (i & 1 ? l->width : 0), l->cy - (i & 2 ? l->height : 0)));
+    if (l->circle > 0) farthest = fmin(farthest, circle_radius(l));
     if (!pinhole && farthest >= 2 * l->fx * sin(PI / 3)) {
         char found[80];
         snprintf(found, sizeof found, "a corner %.1f px off the axis", farthest);
@@ -153,10 +161,37 @@ static struct pose pose_looking(struct vec3 at, struct vec3 look_at, double roll
     return (struct pose){q, vec3_scale(mat3_apply(mat3_from_quat(q), at), -1)};
 }
 
-static enum status read_photo(struct reader *r, bool reference, struct err *err)
+/* exposure K: of those above, counted from 0. */
+static enum status read_only_exposure(struct reader *r, struct shoot_photo *p, struct err *err)
+{
+    int64_t k = 0;
+    p->exposure = -1;
+    const int count = shoot_exposures(r->shoot, p).count;
+    if (!count) return textfile_error(&r->file, err, "exposure", "an exposure line above the photo");
+    enum status st = textfile_int(&r->file, "the number of an exposure above, counted from 0", 0, count - 1, &k, err);
+    p->exposure = (int)k;
+    return st;
+}
+
+static enum status read_photo_option(struct reader *r, struct shoot_photo *p, struct err *err)
+{
+    const bool witness = p->kind == SHOOT_WITNESS;
+    char *word = NULL;
+    enum status st = textfile_word(&r->file, "an option of a photo", &word, err);
+    if (st) return st;
+    if (!strcmp(word, "roll")) return description_number(&r->file, "an angle in degrees", -360, 360, &p->roll, err);
+    if (!strcmp(word, "exposure") && !witness) return read_only_exposure(r, p, err);
+    if (strcmp(word, "sun"))
+        return textfile_error(&r->file, err, word, "roll, sun%s or the end of the line", witness ? "" : ", exposure");
+    p->own_sun = true;
+    st = description_number(&r->file, "the sun's azimuth in degrees", -360, 360, &p->sun_azimuth, err);
+    return st ? st : description_number(&r->file, "the sun's elevation in degrees", -90, 90, &p->sun_elevation, err);
+}
+
+static enum status read_photo(struct reader *r, enum shoot_kind kind, struct err *err)
 {
     struct shoot *s = r->shoot;
-    struct shoot_photo made = {.reference = reference};
+    struct shoot_photo made = {.kind = kind, .exposure = -1};
     char *word = NULL;
     enum status st = new_name(r, &made.name, err);
     if (!st && shoot_find(s, made.name) >= 0)
@@ -168,12 +203,7 @@ static enum status read_photo(struct reader *r, bool reference, struct err *err)
     if (!st) st = description_point(&r->file, "the point that the camera looks at", &made.look_at, err);
     if (!st && vec3_length(vec3_sub(made.look_at, made.at)) < 1e-9)
         st = textfile_error(&r->file, err, "the camera's own position", "another point to look at");
-    if (!st && textfile_more(&r->file)) {
-        st = textfile_word(&r->file, "roll", &word, err);
-        if (!st && strcmp(word, "roll")) st = textfile_error(&r->file, err, word, "roll or the end of the line");
-        if (!st) st = description_number(&r->file, "an angle in degrees", -360, 360, &made.roll, err);
-    }
-    if (!st) st = textfile_end(&r->file, err);
+    while (!st && textfile_more(&r->file)) st = read_photo_option(r, &made, err);
     if (!st) st = description_append(&r->file, &s->photos, s->photo_count, MAX_LINES, sizeof made, err);
     if (!st) {
         made.cam_from_world = pose_looking(made.at, made.look_at, made.roll);
@@ -194,17 +224,18 @@ static enum status read_line(struct reader *r, struct err *err)
     if (!strcmp(word, "reference-exposure")) return read_exposure(r, &r->shoot->exposures[1], err);
     if (!strcmp(word, "sensor")) return read_sensor(r, err);
     if (!strcmp(word, "quality")) return read_quality(r, err);
-    if (!strcmp(word, "photo")) return read_photo(r, false, err);
-    if (!strcmp(word, "reference")) return read_photo(r, true, err);
+    if (!strcmp(word, "photo")) return read_photo(r, SHOOT_PHOTO, err);
+    if (!strcmp(word, "reference")) return read_photo(r, SHOOT_REFERENCE, err);
+    if (!strcmp(word, "witness")) return read_photo(r, SHOOT_WITNESS, err);
     return textfile_error(&r->file, err, word,
-                          "one of lens, exposure, reference-exposure, sensor, quality, photo, reference");
+                          "one of lens, exposure, reference-exposure, sensor, quality, photo, reference, witness");
 }
 
 static enum status check_complete(const struct reader *r, struct err *err)
 {
     const char *missing = NULL;
     int photos = 0;
-    for (int i = 0; i < r->shoot->photo_count; i++) photos += !r->shoot->photos[i].reference;
+    for (int i = 0; i < r->shoot->photo_count; i++) photos += r->shoot->photos[i].kind == SHOOT_PHOTO;
     if (!photos) missing = "photo NAME LENS X Y Z LOOK_X LOOK_Y LOOK_Z";
     if (!r->has_sensor) missing = "sensor FULL_WELL READ_NOISE GAIN SEED";
     if (!r->shoot->exposures[0].count) missing = "exposure SECONDS";
@@ -216,10 +247,11 @@ enum status shoot_read(struct shoot *s, const char *folder, double scale, struct
 {
     struct reader r = {.shoot = s, .scale = scale};
     char *path = NULL;
+    int version = 0;
     *s = (struct shoot){.quality = 94};
     if (asprintf(&path, "%s/cameras.txt", folder) < 0) return err_nomem(err, "a file name", strlen(folder));
     enum status st = textfile_open(&r.file, path, err);
-    if (!st) st = description_header(&r.file, "remodel-shoot", err);
+    if (!st) st = description_header(&r.file, "remodel-shoot", 1, &version, err);
     while (!st && textfile_next(&r.file)) st = read_line(&r, err);
     if (!st) st = check_complete(&r, err);
     if (!st && prov) st = provenance_add_file(prov, "cameras.txt", path, err);
@@ -240,9 +272,10 @@ void shoot_release(struct shoot *s)
     *s = (struct shoot){0};
 }
 
-const struct shoot_exposure_list *shoot_exposures(const struct shoot *s, const struct shoot_photo *photo)
+struct shoot_exposure_list shoot_exposures(const struct shoot *s, const struct shoot_photo *photo)
 {
-    return &s->exposures[photo->reference && s->exposures[1].count];
+    const struct shoot_exposure_list *all = &s->exposures[photo->kind == SHOOT_REFERENCE && s->exposures[1].count];
+    return photo->exposure < 0 ? *all : (struct shoot_exposure_list){&all->list[photo->exposure], 1};
 }
 
 int shoot_find(const struct shoot *s, const char *name)
@@ -264,6 +297,7 @@ bool shoot_lens_ray(const struct shoot_lens *l, double u, double v, struct vec3 
     /* with r = 2 sin(theta / 2): cos(theta) = 1 - r^2 / 2 and sin(theta) / r = sqrt(1 - r^2 / 4) */
     const double rr = x * x + y * y;
     if (rr > 4) return false;
+    if (l->circle > 0 && rr * l->fx * l->fx > circle_radius(l) * circle_radius(l)) return false;
     const double s = sqrt(1 - rr / 4);
     *ray = vec3_make(x * s, y * s, 1 - rr / 2);
     return true;

@@ -19,6 +19,7 @@ struct shoot_lens {
     enum shoot_lens_kind kind;
     int width, height;
     double fx, fy, cx, cy; /* px; equisolid: r = 2 fx sin(theta / 2), fy = fx */
+    double circle;         /* equisolid: degrees across the image circle, outside of which pictures are black; 0: all */
 };
 
 struct shoot_exposure {
@@ -36,11 +37,16 @@ struct shoot_sensor {
     uint64_t seed;
 };
 
-/* A photo, or a lighting reference image. */
+/* A photo, a lighting reference image, or a camera that nobody photographed with: truth only. */
+enum shoot_kind { SHOOT_PHOTO, SHOOT_REFERENCE, SHOOT_WITNESS };
+
 struct shoot_photo {
     char *name;
     int lens; /* index */
-    bool reference;
+    enum shoot_kind kind;
+    int exposure; /* the only one that is taken; -1: all of its kind */
+    bool own_sun; /* the sun stands here while the photo is taken: */
+    double sun_azimuth, sun_elevation;
     struct vec3 at, look_at;
     double roll; /* degrees, clockwise as seen by the photographer */
     struct pose cam_from_world;
@@ -59,9 +65,9 @@ struct shoot {
  * found and the word expected. The caller releases *s; on failure there is nothing to release. prov may be NULL. */
 enum status shoot_read(struct shoot *s, const char *folder, double scale, struct provenance *prov, struct err *err);
 void shoot_release(struct shoot *s);
-/* Reference images without exposures of their own have those of the photos. */
-const struct shoot_exposure_list *shoot_exposures(const struct shoot *s, const struct shoot_photo *photo);
-int shoot_find(const struct shoot *s, const char *name); /* index of a photo or reference image; -1: none */
+/* Those that a photo has. Reference images without exposures of their own have those of the photos. */
+struct shoot_exposure_list shoot_exposures(const struct shoot *s, const struct shoot_photo *photo);
+int shoot_find(const struct shoot *s, const char *name); /* index of a photo, reference image or witness; -1: none */
 
 /* Pixel to unit ray in camera coordinates, and back. False outside the image circle of an equisolid lens, and behind a
  * pinhole. */

@@ -7,6 +7,7 @@
 /* name, type, default, min, max, unit, help */
 #define SIMULATE_PARAMS(X)                                                                                             \
     X(samples, int, 16, 1, 65536, "", "light paths per pixel of a photo; four times as many halve the noise")          \
+    X(truth_samples, int, 0, 0, 65536, "", "light paths per pixel of true radiance and irradiance; 0: as for photos")  \
     X(max_bounces, int, 0, 0, 1000, "", "reflections to follow; 0: no limit, paths end by Russian roulette")           \
     X(scale, double, 1, 0.02, 16, "", "size of the photos, as a multiple of the sizes in cameras.txt")                 \
     X(seed, int, 1, 0, 2147483647, "", "seed of the light paths; the sensor noise has its own seed in cameras.txt")    \

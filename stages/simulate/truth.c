@@ -17,6 +17,9 @@
 #define OFF_SURFACE 0.02 /* m: distance of an irradiance probe from its surface */
 #define MAX_TRIES   1000
 
+/* Kinds of cameras, as bits. */
+enum { PHOTOS = 1u << SHOOT_PHOTO, REFERENCES = 1u << SHOOT_REFERENCE, WITNESSES = 1u << SHOOT_WITNESS };
+
 /* ---------------------------------------------------------------------------------------------------------- cameras */
 
 static void model_release(struct sfm_model *m)
@@ -26,30 +29,42 @@ static void model_release(struct sfm_model *m)
     free(m->cameras);
 }
 
-/* references: reference images, too; they and the photos make a model that shares them. */
-static enum status write_cameras(const struct shoot *s, bool references, const char *folder,
+static bool lens_used(const struct shoot *s, unsigned kinds, int lens)
+{
+    for (int i = 0; i < s->photo_count; i++)
+        if (s->photos[i].lens == lens && kinds >> s->photos[i].kind & 1) return true;
+    return false;
+}
+
+/* The cameras of the kinds whose bits are set in `kinds`. */
+static enum status write_cameras(const struct shoot *s, unsigned kinds, const char *folder,
                                  const struct provenance *prov, struct err *err)
 {
     struct sfm_model m = {0};
     enum status st = ST_OK;
     m.cameras = calloc((size_t)s->lens_count + 1, sizeof *m.cameras);
     m.images = calloc((size_t)s->photo_count + 1, sizeof *m.images);
-    if (!m.cameras || !m.images) st = err_nomem(err, "cameras", (size_t)s->photo_count * sizeof *m.images);
-    for (int i = 0; !st && i < s->lens_count; i++)
+    int *index = calloc((size_t)s->lens_count + 1, sizeof *index);
+    if (!m.cameras || !m.images || !index) st = err_nomem(err, "cameras", (size_t)s->photo_count * sizeof *m.images);
+    for (int i = 0; !st && i < s->lens_count; i++) {
+        if (!lens_used(s, kinds, i)) continue;
+        index[i] = m.camera_count;
         m.cameras[m.camera_count++] = (struct sfm_camera){i + 1, shoot_lens_camera(&s->lenses[i])};
+    }
     for (int i = 0; !st && i < s->photo_count; i++) {
         const struct shoot_photo *photo = &s->photos[i];
         char *name = NULL;
-        if (photo->reference && !references) continue;
+        if (!(kinds >> photo->kind & 1)) continue;
         if (asprintf(&name, "%s.jpg", photo->name) < 0)
             st = err_nomem(err, "a name", strlen(photo->name));
         else
             m.images[m.image_count] =
-                (struct sfm_image){m.image_count + 1, photo->cam_from_world, photo->lens, name, NULL, 0},
+                (struct sfm_image){m.image_count + 1, photo->cam_from_world, index[photo->lens], name, NULL, 0},
             m.image_count++;
     }
     if (!st) st = sfm_model_write_text(&m, folder, prov, err);
     model_release(&m);
+    free(index);
     return st;
 }
 
@@ -76,7 +91,7 @@ static bool find_point(const struct irradiance_job *job, size_t index, struct ir
         const double v = rng_uniform(&job->rng, index, 3 * k + 2) * view.lens->height;
         struct path_ray ray;
         struct ray_hit hit;
-        if (photo->reference || !camera_view_ray(&view, u, v, &ray)) continue;
+        if (photo->kind != SHOOT_PHOTO || !camera_view_ray(&view, u, v, &ray)) continue;
         if (!ray_scene_hit(&job->world->geometry.rays, ray.from, ray.direction, &hit)) continue;
         if (job->world->geometry.faces[hit.id].material < 0) continue;
         const struct vec3 off = vec3_add(hit.point, vec3_scale(hit.normal, job->world->geometry.rays.epsilon));
@@ -144,7 +159,7 @@ static void print_faces(FILE *to, const struct text_job *job)
     fputs("remodel-faces 1\n# id name area normal\n", to);
     for (int i = 0; i < g->face_count; i++) {
         const struct scene_face *f = &g->faces[i];
-        fprintf(to, "%d %s %.9g %.9g %.9g %.9g\n", i + 1, f->name, f->area, f->normal.x, f->normal.y, f->normal.z);
+        fprintf(to, "%u %s %.9g %.9g %.9g %.9g\n", f->id, f->name, f->area, f->normal.x, f->normal.y, f->normal.z);
     }
 }
 
@@ -166,32 +181,42 @@ static void print_exposures(FILE *to, const struct text_job *job)
     const struct shoot *s = job->shoot;
     fputs("# file seconds f-number iso neutral-density-factor\n", to);
     for (int i = 0; i < s->photo_count; i++)
-        for (int k = 0; s->photos[i].reference && k < shoot_exposures(s, &s->photos[i])->count; k++) {
-            const struct shoot_exposure *e = &shoot_exposures(s, &s->photos[i])->list[k];
+        for (int k = 0; s->photos[i].kind == SHOOT_REFERENCE && k < shoot_exposures(s, &s->photos[i]).count; k++) {
+            const struct shoot_exposure *e = &shoot_exposures(s, &s->photos[i]).list[k];
             char *file = photo_file_name(s, &s->photos[i], k);
             fprintf(to, "%s %.9g %.9g %.9g %.9g\n", file ? file : "", e->seconds, e->f_number, e->iso, e->filter);
             free(file);
         }
 }
 
-/* For Make: the names of photos and reference images, and the files of each, its JPEGs last. */
+static void print_names(FILE *to, const char *variable, const struct shoot *s, unsigned kinds)
+{
+    fprintf(to, "%s :=", variable);
+    for (int i = 0; i < s->photo_count; i++)
+        if (kinds >> s->photos[i].kind & 1) fprintf(to, " %s", s->photos[i].name);
+    fputc('\n', to);
+}
+
+/* For Make: the names of photos and reference images, the files of each, its JPEGs last; and the witnesses. */
 static void print_lists(FILE *to, const struct text_job *job)
 {
-    fputs("SHOTS :=", to);
-    for (int i = 0; i < job->shoot->photo_count; i++) fprintf(to, " %s", job->shoot->photos[i].name);
+    print_names(to, "SHOTS", job->shoot, PHOTOS | REFERENCES);
+    print_names(to, "TRUE_VIEWS", job->shoot, PHOTOS | WITNESSES);
+    print_names(to, "WITNESSES", job->shoot, WITNESSES);
     for (int i = 0; i < job->shoot->photo_count; i++) {
         const struct shoot_photo *photo = &job->shoot->photos[i];
-        const struct shoot_exposure_list *exposures = shoot_exposures(job->shoot, photo);
-        fprintf(to, "\nSHOT_%s :=", photo->name);
-        if (!photo->reference && !strcmp(job->params->truth, "yes"))
+        const int exposures = shoot_exposures(job->shoot, photo).count;
+        if (photo->kind == SHOOT_WITNESS) continue;
+        fprintf(to, "SHOT_%s :=", photo->name);
+        if (photo->kind == SHOOT_PHOTO && !strcmp(job->params->truth, "yes"))
             fprintf(to, " truth/depth/%s.exr truth/ids/%s.exr truth/hdr/%s.exr", photo->name, photo->name, photo->name);
-        for (int k = 0; k < exposures->count; k++) {
+        for (int k = 0; k < exposures; k++) {
             char *name = photo_file_name(job->shoot, photo, k);
-            if (name) fprintf(to, " %s/%s", photo->reference ? "lri" : "photos", name);
+            if (name) fprintf(to, " %s/%s", photo->kind == SHOOT_REFERENCE ? "lri" : "photos", name);
             free(name);
         }
+        fputc('\n', to);
     }
-    fputc('\n', to);
 }
 
 static enum status write_text(const char *out, const char *file, void (*print)(FILE *to, const struct text_job *job),
@@ -211,39 +236,39 @@ static enum status write_text(const char *out, const char *file, void (*print)(F
     return st;
 }
 
-/* Copies FOLDER/FILE to OUT/TO. */
-static enum status copy_text(const char *folder, const char *file, const char *out, const char *to, struct err *err)
+/* The described scene, whole, as OUT/TO. */
+static enum status write_scene(const struct world *w, const char *folder, const char *file, const char *out,
+                               const char *to, struct err *err)
 {
-    struct outfile f = {0};
-    char *from_path = NULL, *to_path = NULL;
-    FILE *from = NULL;
-    enum status st = ST_OK;
-    if (asprintf(&from_path, "%s/%s", folder, file) < 0 || asprintf(&to_path, "%s/%s", out, to) < 0)
-        st = err_nomem(err, "a file name", strlen(out));
-    if (!st && !(from = fopen(from_path, "rbe"))) st = err_errno(err, "open", from_path);
-    if (!st) st = outfile_open(&f, to_path, err);
-    for (int c; !st && (c = getc(from)) != EOF;) putc(c, f.fp);
-    if (!st && ferror(from)) st = err_errno(err, "read", from_path);
-    if (!st) st = outfile_commit(&f, err);
-    outfile_discard(&f);
-    if (from) fclose(from);
-    free(from_path);
-    free(to_path);
+    char *path = NULL;
+    if (asprintf(&path, "%s/%s", out, to) < 0) return err_nomem(err, "a file name", strlen(out));
+    enum status st = scene_write(&w->scene, folder, file, path, err);
+    free(path);
+    return st;
+}
+
+/* The cameras of one or more kinds, if there are any. */
+static enum status write_cameras_of(const struct shoot *s, unsigned kinds, const char *out, const char *sub,
+                                    const struct provenance *prov, struct err *err)
+{
+    char *folder = NULL;
+    bool any = false;
+    for (int i = 0; i < s->photo_count; i++) any = any || kinds >> s->photos[i].kind & 1;
+    if (!any) return ST_OK;
+    if (asprintf(&folder, "%s/%s", out, sub) < 0) return err_nomem(err, "a file name", strlen(out));
+    enum status st = write_cameras(s, kinds, folder, prov, err);
+    free(folder);
     return st;
 }
 
 static enum status write_references(const struct shoot *s, const char *out, const struct provenance *prov,
                                     const struct text_job *job, struct err *err)
 {
-    char *folder = NULL;
     bool any = false;
-    for (int i = 0; i < s->photo_count; i++) any = any || s->photos[i].reference;
+    for (int i = 0; i < s->photo_count; i++) any = any || s->photos[i].kind == SHOOT_REFERENCE;
     if (!any) return ST_OK;
-    enum status st = asprintf(&folder, "%s/truth/lri", out) < 0 ? err_nomem(err, "a file name", strlen(out)) : ST_OK;
-    if (!st) st = write_cameras(s, true, folder, prov, err);
-    if (!st) st = write_text(out, "lri/exposures.txt", print_exposures, job, NULL, err);
-    free(folder);
-    return st;
+    enum status st = write_cameras_of(s, PHOTOS | REFERENCES, out, "truth/lri", prov, err);
+    return st ? st : write_text(out, "lri/exposures.txt", print_exposures, job, NULL, err);
 }
 
 enum status truth_write(const struct world *w, const struct shoot *s, const char *folder, const char *out,
@@ -252,33 +277,33 @@ enum status truth_write(const struct world *w, const struct shoot *s, const char
     const int count = params->irradiance_points;
     struct irradiance_point *points = calloc((size_t)count + 1, sizeof *points);
     struct text_job job = {w, s, params, points};
-    char *truth = NULL;
     enum status st = points ? ST_OK : err_nomem(err, "irradiance points", (size_t)count * sizeof *points);
-    if (!st && asprintf(&truth, "%s/truth", out) < 0) st = err_nomem(err, "a file name", strlen(out));
-    if (!st) st = copy_text(folder, "scene.txt", out, "truth/scene.txt", err);
+    if (!st) st = write_scene(w, folder, "scene.txt", out, "truth/scene.txt", err);
     if (!st) st = write_text(out, "truth/faces.txt", print_faces, &job, prov, err);
-    if (!st) st = write_cameras(s, false, truth, prov, err);
+    if (!st) st = write_cameras_of(s, PHOTOS, out, "truth", prov, err);
+    if (!st) st = write_cameras_of(s, WITNESSES, out, "truth/novel", prov, err);
     if (!st) st = write_references(s, out, prov, &job, err);
     if (!st && count) st = truth_irradiance(points, count, w, s, params, err);
     if (!st && count) st = write_text(out, "truth/irradiance.txt", print_irradiance, &job, prov, err);
     if (!st) st = write_text(out, "photos.mk", print_lists, &job, NULL, err);
-    free(truth);
     free(points);
     return st;
 }
 
-enum status truth_write_edited(const struct world *w, const char *folder, const char *out, const char *edit,
-                               const struct provenance *prov, struct err *err)
+enum status truth_write_edited(const struct world *w, const struct shoot *s, const char *folder, const char *out,
+                               const char *edit, const struct provenance *prov, struct err *err)
 {
     struct text_job job = {.world = w};
-    char *from = NULL, *scene = NULL, *faces = NULL;
+    char *from = NULL, *to = NULL, *scene = NULL, *faces = NULL;
     enum status st = ST_OK;
-    if (asprintf(&from, "scene-%s.txt", edit) < 0 || asprintf(&scene, "truth/edited-%s/scene.txt", edit) < 0 ||
-        asprintf(&faces, "truth/edited-%s/faces.txt", edit) < 0)
+    if (asprintf(&from, "scene-%s.txt", edit) < 0 || asprintf(&to, "truth/edited-%s", edit) < 0 ||
+        asprintf(&scene, "%s/scene.txt", to) < 0 || asprintf(&faces, "%s/faces.txt", to) < 0)
         st = err_nomem(err, "a file name", strlen(edit));
-    if (!st) st = copy_text(folder, from, out, scene, err);
+    if (!st) st = write_scene(w, folder, from, out, scene, err);
     if (!st) st = write_text(out, faces, print_faces, &job, prov, err);
+    if (!st) st = write_cameras_of(s, PHOTOS | WITNESSES, out, to, prov, err);
     free(from);
+    free(to);
     free(scene);
     free(faces);
     return st;

@@ -1,5 +1,6 @@
 /* fuzz_scene.c - scene files: any bytes give faces with finite areas and textures within their bounds, or an error
- * message. Bytes that do not begin with "remodel" are read as a mesh. */
+ * message. An edit may change base.txt; its full description is read again. Bytes that do not begin with "remodel" are
+ * read as a mesh. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -33,6 +34,35 @@ static void check_scene(const struct scene *s)
     geometry_release(&g);
 }
 
+#define BASE                                                                                                \
+    "remodel-scene 2\ntexture t rgb 0.5 0.5 0.5\nmaterial m lambert t\nroom r 0 0 4 3 0 2 m m\n"            \
+    "wall w 0 0 4 0 0 2 0.2 m\nopening o w 1 2 0 1.5\nwall v 4 0 4 3 0 2 0.2 m\nwindow win v 1 2 0.5 1.5\n" \
+    "furniture on\nbox b 1 1 0 2 2 1 m\nsun 0 40 1 9 9 9\npanorama 1 2 2 2 1 1 1\n"
+
+static void write_file(const char *path, const void *data, size_t size)
+{
+    FILE *fp = fopen(path, "wb");
+    if (!fp || fwrite(data, 1, size, fp) != size || fclose(fp)) abort();
+}
+
+/* The full description of an edit has the same items. */
+static void check_whole(const struct scene *s, const char *folder)
+{
+    char path[FUZZ_PATH + 64];
+    struct scene whole;
+    struct err err = ERR_INIT;
+    snprintf(path, sizeof path, "%s/whole.txt", folder);
+    if (scene_write(s, folder, "scene.txt", path, &err) || scene_read(&whole, folder, "whole.txt", NULL, &err)) {
+        fprintf(stderr, "%s\n", err.text);
+        abort();
+    }
+    if (whole.item_count != s->item_count || whole.base) abort();
+    for (int i = 0; i < s->item_count; i++)
+        if (strcmp(whole.items[i].name, s->items[i].name) || whole.items[i].furniture != s->items[i].furniture) abort();
+    scene_release(&whole);
+    unlink(path);
+}
+
 static void check_mesh(const char *path)
 {
     struct vec3(*triangles)[3];
@@ -44,22 +74,25 @@ static void check_mesh(const char *path)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    char folder[FUZZ_PATH], path[FUZZ_PATH + 64];
+    char folder[FUZZ_PATH], path[FUZZ_PATH + 64], base[FUZZ_PATH + 64];
     struct scene s;
     struct err err = ERR_INIT;
     fuzz_folder(folder);
     snprintf(path, sizeof path, "%s/scene.txt", folder);
-    FILE *fp = fopen(path, "wb");
-    if (!fp || fwrite(data, 1, size, fp) != size || fclose(fp)) abort();
+    snprintf(base, sizeof base, "%s/base.txt", folder);
+    write_file(path, data, size);
+    write_file(base, BASE, sizeof BASE - 1);
     if (size < 7 || memcmp(data, "remodel", 7)) {
         check_mesh(path);
     } else if (scene_read(&s, folder, "scene.txt", NULL, &err)) {
         if (!err.text[0] || s.items) abort();
     } else {
         check_scene(&s);
+        if (s.base) check_whole(&s, folder);
         scene_release(&s);
     }
     unlink(path);
+    unlink(base);
     rmdir(folder);
     return 0;
 }

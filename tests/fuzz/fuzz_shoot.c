@@ -15,7 +15,10 @@ static void check_lens(const struct shoot_lens *l)
         const double x = l->width * (i % 5 / 4.0), y = l->height * (i % 4 / 3.0);
         struct vec3 ray;
         double u, v;
-        if (!shoot_lens_ray(l, x, y, &ray)) abort();
+        if (!shoot_lens_ray(l, x, y, &ray)) {
+            if (!(l->circle > 0)) abort(); /* only an image circle leaves pixels out */
+            continue;
+        }
         if (!(fabs(vec3_length(ray) - 1) < 1e-9) || !shoot_lens_project(l, ray, &u, &v)) abort();
         if (!(fabs(u - x) < 1e-4 && fabs(v - y) < 1e-4)) abort();
     }

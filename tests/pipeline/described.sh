@@ -49,11 +49,48 @@ photos_are_made_once_and_again_if_the_description_changes()
     grep -q photos/b_e0.jpg <(comm -13 a b) || fail "the photos of a moved camera were not remade"
 }
 
+# two edits, one of them a difference, from one photo and one witness
+several_edits_are_made_from_chosen_cameras()
+{
+    project edits; describe room
+    printf 'remodel-scene 2\nbase scene.txt\ndrop l\nlamp l quad 1 1 2.4  0 1 0  1 0 0  9 9 9\n' >scenes/room/scene-low.txt
+    echo 'witness w p 1.3 1 1.5  3 2 1.2' >>scenes/room/cameras.txt
+    m edited EDITS=all EDIT_VIEWS='b w' IRRADIANCE_VIEWS=b
+    for e in dark low; do
+        for f in scene.txt images.txt hdr/b.exr depth/b.exr ids/w.exr irradiance/b.exr; do
+            [ -e "out/room/simulated/truth/edited-$e/$f" ] || fail "there is no $f of $e"
+        done
+        [ ! -e "out/room/simulated/truth/edited-$e/hdr/a.exr" ] || fail "a was rendered, too"
+    done
+    grep -q '^lamp l quad 1 1 2.4 ' out/room/simulated/truth/edited-low/scene.txt || fail "the edited scene is not complete"
+    ! grep -q '^lamp l quad 1 1 2.49' out/room/simulated/truth/edited-low/scene.txt || fail "the dropped lamp is still there"
+    times >a; m edited EDITS='low dark' EDIT_VIEWS=b; times >b
+    diff a b || fail "a second make remade something"
+    ! make -s DEPS=manual SCENE=room edited EDITS=low EDIT_VIEWS=z >log 2>&1 || fail "an unknown camera was accepted"
+    grep -q 'no such photo or witness' log || { cat log; fail "the message does not name the camera"; }
+}
+
+more_truth_is_made_on_demand()
+{
+    project truth; describe room
+    printf 'furniture on\nbox b 2 1 0 2.5 1.5 0.5 m\n' >>scenes/room/scene.txt
+    sed -i '1s/1/2/' scenes/room/scene.txt
+    echo 'witness w p 1.3 1 1.5  3 2 1.2' >>scenes/room/cameras.txt
+    m truth IRRADIANCE_VIEWS=a
+    for f in novel/hdr/w novel/depth/w novel/ids/w shell/hdr/a shell/ids/c shell/depth/w irradiance/a; do
+        [ -e "out/room/simulated/truth/$f.exr" ] || fail "there is no $f"
+    done
+    grep -q 'w.jpg' out/room/simulated/truth/novel/images.txt || fail "the witness has no camera"
+    [ ! -e out/room/simulated/photos ] || fail "the photos were made, too"
+    times >a; m truth; times >b
+    diff a b || fail "a second make remade something"
+}
+
 the_edited_scene_is_made_on_demand()
 {
     project edited; describe room
     m edited EDIT=dark
-    for f in scene.txt faces.txt hdr/a.exr hdr/b.exr hdr/c.exr; do
+    for f in scene.txt faces.txt hdr/a.exr depth/b.exr ids/c.exr; do
         [ -e "out/room/simulated/truth/edited-dark/$f" ] || fail "there is no $f"
     done
     [ ! -e out/room/simulated/photos ] || fail "the original scene was photographed, too"
@@ -101,6 +138,17 @@ lighting_reference_images_are_placed_by_the_photos()
     diff a b || fail "a second make remade it"
 }
 
+# a lens of 180 degrees: black corners, the middle in the light of the room
+a_hemisphere_is_merged_with_its_image_circle()
+{
+    project dome; describe room
+    sed -i 's/^reference r p/lens d equisolid 48 48 16.9705627 24 24 circle 180\nreference r d/' scenes/room/cameras.txt
+    printf 'LRI := out/room/simulated/lri\nLRI_SFM := out/room/simulated/truth/lri\n' >>scenes/room/scene.mk
+    m lri
+    [ -s out/room/lri/r.exr ] || { ls -R out/room/lri; fail "wanted one picture"; }
+    grep -aq 'OPENCV_FISHEYE 48 48 16.97' out/room/lri/r.exr || fail "the picture does not contain its camera"
+}
+
 # a fisheye photo has several views, made by one process; a deleted or stale view is remade alone
 views_of_one_photo_are_made_by_one_process()
 {
@@ -143,6 +191,8 @@ an_error_in_the_description_is_named_and_leaves_no_product()
     [ -z "$(find out/room/simulated -type f 2>/dev/null)" ] || { find out/room/simulated; fail "a product was left"; }
 }
 
-for t in photos_are_made_once_and_again_if_the_description_changes the_edited_scene_is_made_on_demand lighting_reference_images_are_merged_but_not_rectified lighting_reference_images_are_placed_by_the_photos \
+for t in photos_are_made_once_and_again_if_the_description_changes the_edited_scene_is_made_on_demand \
+    several_edits_are_made_from_chosen_cameras more_truth_is_made_on_demand lighting_reference_images_are_merged_but_not_rectified \
+    lighting_reference_images_are_placed_by_the_photos a_hemisphere_is_merged_with_its_image_circle \
     views_of_one_photo_are_made_by_one_process one_core_gives_the_bytes_of_two \
     an_error_in_the_description_is_named_and_leaves_no_product; do run "$t"; done

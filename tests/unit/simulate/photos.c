@@ -26,7 +26,8 @@ static void make_all(const char *out, const struct world *w, const struct shoot 
     struct err err = ERR_INIT;
     struct provenance prov = {.stage = "simulate", .version = "0"};
     assert_ok(truth_write(w, s, scratch, out, &params, &prov, &err), err);
-    for (int i = 0; i < s->photo_count; i++) assert_ok(photo_make(w, s, &s->photos[i], out, &params, &prov, &err), err);
+    const struct picture_job job = {s, out, &params, &prov};
+    for (int i = 0; i < s->photo_count; i++) assert_ok(photo_make(&job, w, &s->photos[i], &err), err);
 }
 
 static const char *const files[] = {
@@ -105,7 +106,7 @@ static void check_texts(const char *out)
     sfm_model_release(&m);
     snprintf(path, sizeof path, "%s/photos.mk", out);
     assert_file_text(path,
-                     "SHOTS := a b r\n"
+                     "SHOTS := a b r\nTRUE_VIEWS := a b\nWITNESSES :=\n"
                      "SHOT_a := truth/depth/a.exr truth/ids/a.exr truth/hdr/a.exr photos/a_e0.jpg photos/a_e1.jpg\n"
                      "SHOT_b := truth/depth/b.exr truth/ids/b.exr truth/hdr/b.exr photos/b_e0.jpg photos/b_e1.jpg\n"
                      "SHOT_r := lri/r.jpg\n");
@@ -166,10 +167,11 @@ static void unedited_faces_keep_their_textures(void **state)
     scratch_write("scene-bare.txt", "x");
     assert_ok(shoot_read(&s, scratch, 1, NULL, &err), err);
     snprintf(out, sizeof out, "%s/edited", scratch);
-    assert_ok(photo_make_edited(&w, &s, &s.photos[0], out, "bare", &params, NULL, &err), err);
-    assert_ok(truth_write_edited(&w, scratch, out, "bare", NULL, &err), err);
-    const char *const made[] = {"hdr/a.exr", "scene.txt", "faces.txt"};
-    for (int i = 0; i < 3; i++) {
+    const struct picture_job job = {&s, out, &params, NULL};
+    assert_ok(photo_make_truth(&job, &w, &s.photos[0], "truth/edited-bare", &err), err);
+    assert_ok(truth_write_edited(&w, &s, scratch, out, "bare", NULL, &err), err);
+    const char *const made[] = {"hdr/a.exr", "depth/a.exr", "ids/a.exr", "scene.txt", "faces.txt", "images.txt"};
+    for (int i = 0; i < 6; i++) {
         snprintf(path, sizeof path, "%s/truth/edited-bare/%s", out, made[i]);
         assert_int_equal(access(path, R_OK), 0);
     }
@@ -189,7 +191,8 @@ static void a_photo_without_light_is_an_error(void **state)
     scratch_write("cameras.txt", "remodel-shoot 1\nlens p pinhole 6 4 4 4 3 2\nexposure 1\nsensor 30000 6 60 1\n"
                                  "photo a p 1 1 1 2 2 1\n");
     assert_ok(shoot_read(&s, scratch, 1, NULL, &err), err);
-    assert_true(photo_make(&w, &s, &s.photos[0], scratch, &params, NULL, &err));
+    const struct picture_job job = {&s, scratch, &params, NULL};
+    assert_true(photo_make(&job, &w, &s.photos[0], &err));
     assert_err(err, ST_DATA, "no light reaches photo a");
     assert_int_not_equal(access(scratch_path("photos/a.jpg"), R_OK), 0);
     shoot_release(&s);

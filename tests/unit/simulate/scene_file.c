@@ -23,7 +23,7 @@ static void errors_name_line_found_and_expected_word(void **state)
 {
     (void)state;
     assert_invalid("", "is empty");
-    assert_invalid("remodel-scene 2\n", ":1: found \"2\"");
+    assert_invalid("remodel-scene 3\n", ":1: found \"3\"");
     assert_invalid("scene\n", ":1: found \"scene\", wanted remodel-scene");
     assert_invalid(HEAD "wal a 0 0 1 0 0 1 0.1 m\n", ":4: found \"wal\", wanted a line of a scene: one of texture");
     assert_invalid(HEAD "texture t rgb 1 1 1\n", ":4: found \"t\", wanted a name that no other texture");

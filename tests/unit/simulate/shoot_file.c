@@ -40,11 +40,56 @@ static void errors_name_line_found_and_expected_word(void **state)
     assert_invalid(HEAD REST "photo a q 0 0 0 1 0 0\n", ":5: found \"q\", wanted the name of a lens above");
     assert_invalid(HEAD REST PHOTO PHOTO, ":6: found \"a\", wanted a name that no other photo has");
     assert_invalid(HEAD REST "photo a p 0 0 0 0 0 0\n", "another point to look at");
-    assert_invalid(HEAD REST "photo a p 0 0 0 1 0 0 tilt 3\n", "found \"tilt\", wanted roll");
+    assert_invalid(HEAD REST "photo a p 0 0 0 1 0 0 tilt 3\n", "found \"tilt\", wanted roll, sun, exposure");
+    assert_invalid(HEAD REST "photo a p 0 0 0 1 0 0 exposure 1\n", ":5: found \"1\", wanted the number of an exposure");
+    assert_invalid(HEAD "photo a p 0 0 0 1 0 0 exposure 0\n", "wanted an exposure line above");
+    assert_invalid(HEAD REST "photo a p 0 0 0 1 0 0 sun 20 91\n", "the sun's elevation");
+    assert_invalid(HEAD REST "witness a p 0 0 0 1 0 0 exposure 0\n", "found \"exposure\", wanted roll, sun or the end");
+    assert_invalid(HEAD REST "witness a p 0 0 0 1 0 0\n", "is incomplete; add a line: photo");
+    assert_invalid(HEAD REST PHOTO "witness a p 0 0 0 1 0 0\n", "found \"a\", wanted a name that no other");
     assert_invalid(HEAD REST "photo -a p 0 0 0 1 0 0\n", "letters, digits");
     assert_invalid(HEAD PHOTO "exposure 1\n", "is incomplete; add a line: sensor");
     assert_invalid(HEAD PHOTO "sensor 30000 5 60 1\n", "is incomplete; add a line: exposure");
     assert_invalid(HEAD REST "reference a p 0 0 0 1 0 0\n", "is incomplete; add a line: photo");
+}
+
+static void an_image_circle_ends_at_its_angle(void **state)
+{
+    struct shoot s;
+    struct err err = ERR_INIT;
+    struct vec3 ray;
+    (void)state;
+    /* the circle of 180 degrees touches the edges: 2 f sin(45 degrees) = 240 */
+    scratch_write("cameras.txt", HEAD "lens d equisolid 480 480 169.705627 240 240 circle 180\n" REST PHOTO);
+    assert_ok(shoot_read(&s, scratch, 1, NULL, &err), err);
+    const struct shoot_lens *d = &s.lenses[1];
+    assert_true(shoot_lens_ray(d, 479.9, 240, &ray));
+    assert_true(fabs(ray.z) < 1e-3);
+    assert_near(ray.x, 1, 1e-3);
+    assert_true(shoot_lens_ray(d, 240 + 169.7, 240 - 169.7, &ray));
+    assert_false(shoot_lens_ray(d, 240 + 169.8, 240 - 169.8, &ray));
+    assert_false(shoot_lens_ray(d, 0.5, 0.5, &ray));
+    shoot_release(&s);
+    assert_invalid(HEAD "lens d equisolid 480 480 169.7 240 240\n", "a field of view below 240 degrees");
+    assert_invalid(HEAD "lens d equisolid 480 480 169.7 240 240 circle 240\n", "the degrees across the image circle");
+    assert_invalid(HEAD "lens d equisolid 480 480 169.7 240 240 disk\n", "found \"disk\"");
+}
+
+static void a_photo_may_have_its_own_sun_and_one_exposure(void **state)
+{
+    struct shoot s;
+    struct err err = ERR_INIT;
+    (void)state;
+    scratch_write("cameras.txt", HEAD "exposure 0.01\nexposure 0.04 4 200 10\nsensor 30000 5 60 7\n"
+                                      "photo a p 1 2 3  1 2 4 sun 30 -5 roll 90 exposure 1\nphoto b p 1 2 3  3 2 3\n"
+                                      "witness w p 1 2 3  3 2 3 sun 1 2\n");
+    assert_ok(shoot_read(&s, scratch, 1, NULL, &err), err);
+    const struct shoot_photo *a = &s.photos[0], *b = &s.photos[1], *w = &s.photos[2];
+    assert_true(a->own_sun && a->sun_azimuth == 30 && a->sun_elevation == -5 && a->roll == 90);
+    assert_true(shoot_exposures(&s, a).count == 1 && shoot_exposures(&s, a).list[0].seconds == 0.04);
+    assert_true(!b->own_sun && shoot_exposures(&s, b).count == 2);
+    assert_true(w->kind == SHOOT_WITNESS && w->own_sun && w->sun_elevation == 2);
+    shoot_release(&s);
 }
 
 static void lenses_exposures_and_poses_are_read(void **state)
@@ -61,11 +106,11 @@ static void lenses_exposures_and_poses_are_read(void **state)
     assert_true(s.lenses[0].width == 320 && s.lenses[0].height == 240 && s.lenses[0].fy == 255 &&
                 s.lenses[1].cx == 150);
     assert_near(s.lenses[1].fx, 133.333, 1e-9);
-    const struct shoot_exposure_list *photos = shoot_exposures(&s, &s.photos[0]),
-                                     *references = shoot_exposures(&s, &s.photos[2]);
-    assert_true(photos->count == 2 && photos->list[0].f_number == 8 && photos->list[0].filter == 1);
-    assert_true(photos->list[1].iso == 200 && photos->list[1].filter == 10);
-    assert_true(references->count == 1 && references->list[0].seconds == 0.001);
+    const struct shoot_exposure_list photos = shoot_exposures(&s, &s.photos[0]),
+                                     references = shoot_exposures(&s, &s.photos[2]);
+    assert_true(photos.count == 2 && photos.list[0].f_number == 8 && photos.list[0].filter == 1);
+    assert_true(photos.list[1].iso == 200 && photos.list[1].filter == 10);
+    assert_true(references.count == 1 && references.list[0].seconds == 0.001);
     assert_true(shoot_find(&s, "b") == 1 && shoot_find(&s, "c") == -1);
 
     /* straight up: world y is up in the image, so world x points left */
@@ -83,8 +128,8 @@ static void lenses_exposures_and_poses_are_read(void **state)
 static void lens_rays_project_back_to_their_pixels(void **state)
 {
     (void)state;
-    const struct shoot_lens pinhole = {NULL, SHOOT_PINHOLE, 640, 480, 500, 510, 320, 240};
-    const struct shoot_lens fish = {NULL, SHOOT_EQUISOLID, 960, 640, 426.667, 426.667, 480, 320};
+    const struct shoot_lens pinhole = {NULL, SHOOT_PINHOLE, 640, 480, 500, 510, 320, 240, 0};
+    const struct shoot_lens fish = {NULL, SHOOT_EQUISOLID, 960, 640, 426.667, 426.667, 480, 320, 0};
     struct vec3 ray;
     double u, v;
     assert_true(shoot_lens_ray(&pinhole, 320 + 250, 240 - 102, &ray));
@@ -163,6 +208,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(errors_name_line_found_and_expected_word),
         cmocka_unit_test(lenses_exposures_and_poses_are_read),
+        cmocka_unit_test(an_image_circle_ends_at_its_angle),
+        cmocka_unit_test(a_photo_may_have_its_own_sun_and_one_exposure),
         cmocka_unit_test(lens_rays_project_back_to_their_pixels),
         cmocka_unit_test(sensor_noise_has_its_mean_and_variance),
     };

@@ -13,7 +13,7 @@ static inline struct world world_from(const char *text)
     struct world w = {0};
     struct err err = ERR_INIT;
     char *all = NULL;
-    assert_true(asprintf(&all, "remodel-scene 1\n%s", text) > 0);
+    assert_true(asprintf(&all, "remodel-scene 2\n%s", text) > 0);
     scratch_write("scene.txt", all);
     free(all);
     assert_ok(world_read(&w, scratch, "scene.txt", NULL, &err), err);
