@@ -24,14 +24,26 @@ static struct rgb varied(struct rgb c, double by)
     return rgb_make(clamp(c.r * (1 + by), 0, 1), clamp(c.g * (1 + by), 0, 1), clamp(c.b * (1 + by), 0, 1));
 }
 
-/* A colour for paper, cloth or a book cover, saturated or pale, chosen by a hash. */
+/* A colour for paper, cloth or a book cover, chosen by a hash: one of the dyes below, paler or darker. The dyes are those
+ * of printed things, so that rooms look like rooms; light and dark ones alternate, which gives features contrast. */
 static struct rgb dye(uint32_t hash)
 {
-    const double hue = 6 * noise_unit(hash, 40), dark = noise_unit(hash, 41), pure = 0.25 + 0.7 * noise_unit(hash, 42);
-    const double value = 0.08 + 0.72 * dark * dark;
-    const struct rgb c = {clamp(fabs(hue - 3) - 1, 0, 1), clamp(2 - fabs(hue - 2), 0, 1),
-                          clamp(2 - fabs(hue - 4), 0, 1)};
-    return rgb_scale(rgb_mix(rgb_grey(1), c, pure), value);
+    static const struct rgb dyes[] = {
+        {0.68, 0.60, 0.44}, /* cream */
+        {0.04, 0.07, 0.17}, /* navy */
+        {0.52, 0.32, 0.08}, /* ochre */
+        {0.06, 0.13, 0.06}, /* forest */
+        {0.70, 0.68, 0.62}, /* paper */
+        {0.24, 0.04, 0.05}, /* burgundy */
+        {0.34, 0.46, 0.55}, /* sky */
+        {0.40, 0.14, 0.06}, /* terracotta */
+        {0.33, 0.38, 0.26}, /* sage */
+        {0.04, 0.04, 0.045}, /* charcoal */
+        {0.56, 0.33, 0.28}, /* rose */
+        {0.05, 0.19, 0.21}, /* teal */
+    };
+    const int count = sizeof dyes / sizeof *dyes, at = noise_floor(count * noise_unit(hash, 40));
+    return varied(dyes[at < count ? at : count - 1], 0.5 * (noise_unit(hash, 41) - 0.5));
 }
 
 static struct rgb checker(const struct texture *t, double u, double v)
