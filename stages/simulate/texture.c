@@ -29,18 +29,18 @@ static struct rgb varied(struct rgb c, double by)
 static struct rgb dye(uint32_t hash)
 {
     static const struct rgb dyes[] = {
-        {0.68, 0.60, 0.44}, /* cream */
-        {0.04, 0.07, 0.17}, /* navy */
-        {0.52, 0.32, 0.08}, /* ochre */
-        {0.06, 0.13, 0.06}, /* forest */
-        {0.70, 0.68, 0.62}, /* paper */
-        {0.24, 0.04, 0.05}, /* burgundy */
-        {0.34, 0.46, 0.55}, /* sky */
-        {0.40, 0.14, 0.06}, /* terracotta */
-        {0.33, 0.38, 0.26}, /* sage */
+        {0.68, 0.60, 0.44},  /* cream */
+        {0.04, 0.07, 0.17},  /* navy */
+        {0.52, 0.32, 0.08},  /* ochre */
+        {0.06, 0.13, 0.06},  /* forest */
+        {0.70, 0.68, 0.62},  /* paper */
+        {0.24, 0.04, 0.05},  /* burgundy */
+        {0.34, 0.46, 0.55},  /* sky */
+        {0.40, 0.14, 0.06},  /* terracotta */
+        {0.33, 0.38, 0.26},  /* sage */
         {0.04, 0.04, 0.045}, /* charcoal */
-        {0.56, 0.33, 0.28}, /* rose */
-        {0.05, 0.19, 0.21}, /* teal */
+        {0.56, 0.33, 0.28},  /* rose */
+        {0.05, 0.19, 0.21},  /* teal */
     };
     const int count = sizeof dyes / sizeof *dyes, at = noise_floor(count * noise_unit(hash, 40));
     return varied(dyes[at < count ? at : count - 1], 0.5 * (noise_unit(hash, 41) - 0.5));
