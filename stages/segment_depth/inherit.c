@@ -6,8 +6,9 @@
  *
  * Two adjacent segments are connected if their planes lie within `jump` steps at their border. A segment is held if it
  * and those connected to it have a mean confidence of at least `held`, and if its surface, of connected segments with
- * that mean, is large enough: confidence times size, in mean segments, sums to MIN_HELD. The others take the inverse
- * depths d that minimize
+ * that mean, is large enough: confidence times size, in mean segments, sums to MIN_HELD. Slanted planes that continue a
+ * held one are held, too: at both centres they agree within COPLANAR steps. So a blank ceiling or floor, which comes near
+ * towards the border, stays on its plane. The others take the inverse depths d that minimize
  *   sum over adjacent i, j  w_ij |d_i - d_j|  +  far_bias sum_i size_i d_i,    d_i at most what it was,
  * given those of held segments. w_ij is the weight of the smoothness cost, so that contact with an object of another
  * colour hardly counts; contact with held foreground counts `keep` times that. Nothing is moved forwards. An area stays
@@ -37,6 +38,7 @@
 #define MAX_LEVELS 64
 #define ROUNDS     3
 #define ITERATIONS 200
+#define COPLANAR   2   /* steps by which planes of one surface may differ */
 #define CAPACITY   1e6 /* of weight 1 */
 
 struct caution {
@@ -102,6 +104,18 @@ static bool joins_surface(const struct inherit *x, int i, int t)
     return x->held[x->s->borders[t].other] && connected(x, i, t);
 }
 
+/* Whether both sides of border t are slanted, and continue each other: at both centres their planes agree. */
+static bool joins_plane(const struct inherit *x, int i, int t)
+{
+    const int j = x->s->borders[t].other;
+    const struct segment *g = &x->s->segments[i], *h = &x->s->segments[j];
+    const struct plane a = x->planes[i], b = x->planes[j];
+    const double step = COPLANAR * x->p->step;
+    return (a.a != 0 || a.b != 0) && (b.a != 0 || b.b != 0) &&
+           fabs(plane_at(a, g->cx, g->cy) - plane_at(b, g->cx, g->cy)) <= step &&
+           fabs(plane_at(a, h->cx, h->cy) - plane_at(b, h->cx, h->cy)) <= step;
+}
+
 static bool is_unsure_above(const struct inherit *x, int i) { return !x->held[i] && at_centre(x, i) >= x->level; }
 
 static bool joins_unsure(const struct inherit *x, int i, int t)
@@ -137,6 +151,12 @@ static void find_held(struct inherit *x)
         for (int k = 0; k < count; k++) sure += x->confidence[x->members[k]] * s->segments[x->members[k]].pixels;
         if (sure >= MIN_HELD * x->p->params->segment_pixels) continue;
         for (int k = 0; k < count; k++) x->held[x->members[k]] = given_depth_has(x->p->given, x->members[k]);
+    }
+    memset(x->listed, 0, (size_t)s->count * sizeof *x->listed);
+    for (int i = 0; i < s->count; i++) {
+        if (x->listed[i] || !x->held[i]) continue;
+        const int count = gather(x, i, joins_plane);
+        for (int k = 0; k < count; k++) x->held[x->members[k]] = true;
     }
 }
 

@@ -160,6 +160,30 @@ static void a_ramp_does_not_hold_a_block(void **state)
     bench_release();
 }
 
+/* A ceiling that comes near towards the border is blank there; its pieces have nearly one plane. */
+static void a_blank_surface_stays_on_the_plane_of_its_matched_part(void **state)
+{
+    (void)state;
+    int near = 0;
+    start();
+    for (int i = 0; i < b.segments.count; i++) {
+        const struct segment *g = &b.segments.segments[i];
+        if (g->cy > 50) continue;
+        const double wall = bench_truth(50, 50), lean = (0.42 - wall) / 50, piece = 0.002 * lean * (i % 3 - 1);
+        planes[i] = (struct plane){piece, -lean, wall + 50 * lean - piece * g->cx};
+        confidence[i] = g->cy > 30 ? 1 : 0;
+    }
+    inherit();
+    for (int i = 0; i < b.segments.count; i++) {
+        const struct segment *g = &b.segments.segments[i];
+        if (g->cy > 30) continue;
+        assert_memory_equal(&planes[i], &before[i], sizeof before[i]);
+        near += plane_at(before[i], g->cx, g->cy) > 0.35;
+    }
+    assert_true(near > 15);
+    bench_release();
+}
+
 static void must_stay(void)
 {
     inherit();
@@ -225,6 +249,7 @@ int main(void)
         cmocka_unit_test(a_block_beside_foreground_takes_over_the_wall),
         cmocka_unit_test(a_block_is_cut_off_from_the_foreground_that_it_touches),
         cmocka_unit_test(a_ramp_does_not_hold_a_block),
+        cmocka_unit_test(a_blank_surface_stays_on_the_plane_of_its_matched_part),
         cmocka_unit_test(other_areas_keep_their_depth),
         cmocka_unit_test(only_the_last_round_cuts_foreground_of_the_same_colour),
         cmocka_unit_test(a_block_that_fills_the_picture_keeps_its_depth),
