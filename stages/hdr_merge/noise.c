@@ -89,26 +89,54 @@ static float sample_at(const struct photo *p, const float *tables, size_t i, int
     return tables[(size_t)c * levels + p->samples[3 * i + (size_t)c]];
 }
 
+/* Two exposures of one view, the longer one behind the shorter one. */
+struct pair {
+    const struct photo *photo[2];
+    const float *table[2];
+    struct shift shift[2];
+    double ratio; /* of their exposures */
+    int width, height;
+    size_t pixels;
+};
+
+static struct pair pair_of(const struct brackets *b, int k, const float *const tables[2])
+{
+    const struct photo *first = &b->photos[k - 1];
+    struct pair p = {.photo = {first, &b->photos[k]},
+                     .table = {tables[0], tables[1]},
+                     .ratio = b->exposures[k - 1] / b->exposures[k],
+                     .width = first->info.width,
+                     .height = first->info.height};
+    for (int n = 0; b->shifts && n < 2; n++) p.shift[n] = b->shifts[k - 1 + n];
+    p.pixels = (size_t)p.width * (size_t)p.height;
+    return p;
+}
+
+/* The linear samples of pixel i in both exposures; false outside one of them. */
+static bool pair_samples(const struct pair *p, size_t i, double sample[2][3])
+{
+    for (int n = 0; n < 2; n++) {
+        const int x = (int)(i % (size_t)p->width) + p->shift[n].dx, y = (int)(i / (size_t)p->width) + p->shift[n].dy;
+        if (x < 0 || y < 0 || x >= p->width || y >= p->height) return false;
+        for (int c = 0; c < 3; c++)
+            sample[n][c] = (double)sample_at(p->photo[n], p->table[n], (size_t)y * (size_t)p->width + (size_t)x, c);
+    }
+    return true;
+}
+
 /* Collects the differences of a pair of exposures; returns their number. */
 static size_t gather(struct pair_sample *to, const struct brackets *b, int k, const float *const tables[2])
 {
-    const struct photo *a = &b->photos[k - 1], *l = &b->photos[k];
-    const struct shift none = {0, 0}, sa = b->shifts ? b->shifts[k - 1] : none, sl = b->shifts ? b->shifts[k] : none;
-    const int width = a->info.width, height = a->info.height;
-    const double ratio = b->exposures[k - 1] / b->exposures[k];
-    const size_t pixels = (size_t)width * (size_t)height, step = pixels / (SAMPLES / 3) + 1;
+    const struct pair p = pair_of(b, k, tables);
+    const size_t step = p.pixels / (SAMPLES / 3) + 1;
     size_t count = 0;
-    for (size_t i = 0; i < pixels; i += step) {
-        const int x = (int)(i % (size_t)width), y = (int)(i / (size_t)width);
-        const int xa = x + sa.dx, ya = y + sa.dy, xl = x + sl.dx, yl = y + sl.dy;
-        if (xa < 0 || ya < 0 || xl < 0 || yl < 0 || xa >= width || xl >= width || ya >= height || yl >= height)
-            continue;
+    for (size_t i = 0; i < p.pixels; i += step) {
+        double v[2][3];
+        if (!pair_samples(&p, i, v)) continue;
         for (int c = 0; c < 3; c++) {
-            const double va = (double)sample_at(a, tables[0], (size_t)ya * (size_t)width + (size_t)xa, c),
-                         vl = (double)sample_at(l, tables[1], (size_t)yl * (size_t)width + (size_t)xl, c);
-            const double light = vl * ratio;
-            if (light < min_light || light > max_light || vl > max_longer) continue;
-            to[count++] = (struct pair_sample){(float)light, (float)(va - light)};
+            const double light = v[1][c] * p.ratio;
+            if (light < min_light || light > max_light || v[1][c] > max_longer) continue;
+            to[count++] = (struct pair_sample){(float)light, (float)(v[0][c] - light)};
         }
     }
     return count;
@@ -119,30 +147,21 @@ static size_t gather_luminance(struct pair_sample *to, const struct brackets *b,
                                const struct noise *n)
 {
     static const double luma[3] = {0.2126, 0.7152, 0.0722};
-    const struct photo *a = &b->photos[k - 1], *l = &b->photos[k];
-    const struct shift none = {0, 0}, sa = b->shifts ? b->shifts[k - 1] : none, sl = b->shifts ? b->shifts[k] : none;
-    const int width = a->info.width, height = a->info.height;
-    const double ratio = b->exposures[k - 1] / b->exposures[k];
-    const size_t pixels = (size_t)width * (size_t)height,
-                 step = (pixels / (SAMPLES / 3) + 1) | 1; /* odd: all places of JPEG's blocks */
+    const struct pair p = pair_of(b, k, tables);
+    const size_t step = (p.pixels / (SAMPLES / 3) + 1) | 1; /* odd: all places of JPEG's blocks */
     size_t count = 0;
-    for (size_t i = 0; i < pixels; i += step) {
-        const int x = (int)(i % (size_t)width), y = (int)(i / (size_t)width);
-        const int xa = x + sa.dx, ya = y + sa.dy, xl = x + sl.dx, yl = y + sl.dy;
-        if (xa < 0 || ya < 0 || xl < 0 || yl < 0 || xa >= width || xl >= width || ya >= height || yl >= height)
-            continue;
-        double difference = 0, variance = 0, light = 0;
+    for (size_t i = 0; i < p.pixels; i += step) {
+        double v[2][3], difference = 0, variance = 0, light = 0;
         bool exposed = true;
+        if (!pair_samples(&p, i, v)) continue;
         for (int c = 0; c < 3; c++) {
-            const double va = (double)sample_at(a, tables[0], (size_t)ya * (size_t)width + (size_t)xa, c),
-                         vl = (double)sample_at(l, tables[1], (size_t)yl * (size_t)width + (size_t)xl, c),
-                         v = vl * ratio;
-            const double noise = n->photon * v * (1 + ratio) + n->read2 * (1 + ratio * ratio);
+            const double l = v[1][c] * p.ratio;
+            const double noise = n->photon * l * (1 + p.ratio) + n->read2 * (1 + p.ratio * p.ratio);
             /* clipping at black would distort the differences of darker samples */
-            exposed = exposed && v >= min_light && v <= max_light && vl <= max_longer && v * v >= 9 * noise;
-            difference += luma[c] * (va - v);
+            exposed = exposed && l >= min_light && l <= max_light && v[1][c] <= max_longer && l * l >= 9 * noise;
+            difference += luma[c] * (v[0][c] - l);
             variance += luma[c] * luma[c] * noise;
-            light += luma[c] * v;
+            light += luma[c] * l;
         }
         if (exposed) to[count++] = (struct pair_sample){(float)light, (float)(difference / sqrt(variance))};
     }
