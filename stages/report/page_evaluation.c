@@ -1,55 +1,8 @@
 /* page_evaluation.c - the metrics of the scene, and held-out photographs beside what was rendered in their place. */
 #include <string.h>
 
+#include "stages/report/metric_meaning.h"
 #include "stages/report/page_parts.h"
-
-/* "" for an unknown metric. */
-static const char *metric_meaning(const char *name)
-{
-    static const char *const MEANINGS[][2] = {
-        {"camera.center_max", "camera position error, maximum"},
-        {"camera.center_median", "camera position error, median"},
-        {"camera.placed", "photographs with a pose, of those in the truth"},
-        {"camera.rotation_max", "camera rotation error, maximum"},
-        {"camera.rotation_median", "camera rotation error, median"},
-        {"camera.scale", "length of one scene unit, in units of the truth"},
-        {"axes.angle", "angle between the found and the true axes"},
-        {"axes.ceiling", "error of the ceiling height"},
-        {"axes.floor", "error of the floor height"},
-        {"axes.scale", "difference between scale.txt and the scale of the cameras"},
-        {"axes.up", "angle between the found and the true up direction"},
-        {"depth.bad1", "pixels with a disparity error above 1 px, or without a depth"},
-        {"depth.bad1_visible", "the same over points that another photograph sees"},
-        {"depth.bad2", "pixels with a disparity error above 2 px, or without a depth"},
-        {"depth.bad2_visible", "the same over points that another photograph sees"},
-        {"depth.baseline", "baseline of these disparities"},
-        {"depth.error50", "relative depth error, median"},
-        {"depth.error50_visible", "the same over points that another photograph sees"},
-        {"depth.error90", "relative depth error, 90th percentile"},
-        {"depth.error90_visible", "the same over points that another photograph sees"},
-        {"depth.error95", "relative depth error, 95th percentile"},
-        {"depth.error95_visible", "the same over points that another photograph sees"},
-        {"depth.known", "pixels with a depth"},
-        {"depth.occluded", "pixels whose point no other photograph sees"},
-        {"depth.within2", "pixels with a relative depth error of at most 2 %, of those with a depth"},
-        {"depth.within2_visible", "the same over points that another photograph sees"},
-        {"holdout.holes", "pixels of the held-out photographs that no view covers"},
-        {"holdout.pictures", "number of held-out photographs compared"},
-        {"holdout.psnr", "PSNR of rendered against held-out photographs, mean"},
-        {"holdout.psnr_covered", "the same without holes"},
-        {"holdout.ssim", "structural similarity, mean"},
-        {"holdout.ssim_covered", "the same without holes"},
-        {"model.missing", "openings of the truth that the model lacks"},
-        {"model.openings", "error of an opening, maximum"},
-        {"model.openings_median", "error of an opening, median"},
-        {"model.strange", "walls and openings of the model that the truth lacks"},
-        {"model.walls", "error of a wall, maximum"},
-        {"model.walls_median", "error of a wall, median"},
-    };
-    for (size_t i = 0; i < sizeof MEANINGS / sizeof *MEANINGS; i++)
-        if (!strcmp(MEANINGS[i][0], name)) return MEANINGS[i][1];
-    return "";
-}
 
 static enum status put_held(FILE *to, const struct contents *c, const struct held_card *card, struct err *err)
 {
