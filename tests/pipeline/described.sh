@@ -143,7 +143,7 @@ a_hemisphere_is_merged_with_its_image_circle()
 {
     project dome; describe room
     sed -i 's/^reference r p/lens d equisolid 48 48 16.9705627 24 24 circle 180\nreference r d/' scenes/room/cameras.txt
-    printf 'LRI := out/room/simulated/lri\nLRI_SFM := out/room/simulated/truth/lri\n' >>scenes/room/scene.mk
+    printf 'LRI := out/room/simulated/lri\nLRI_SFM := out/room/simulated/truth/lri\nLRI_FRAME := scene\n' >>scenes/room/scene.mk
     m lri
     [ -s out/room/lri/r.exr ] || { ls -R out/room/lri; fail "wanted one picture"; }
     grep -aq 'OPENCV_FISHEYE 48 48 16.97' out/room/lri/r.exr || fail "the picture does not contain its camera"
