@@ -6,7 +6,8 @@
  * plane. Ends lie in the planes of the walls that they are joined to: a corner includes the intersection of both.
  *
  * A wall that rooms list goes up to their ceilings. Any other wall goes up to the ceilings of the rooms in which it
- * stands: its columns are cut along these rooms' outlines, and have the wall's own top where there is no room. */
+ * stands. It is cut into columns along the outlines of these rooms. A column outside all rooms has the wall's own
+ * top. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -85,8 +85,6 @@ enum status fill_thickness(struct plan_context *c, enum filling fill, double *th
 enum status apply_join(struct plan_context *c);
 enum status apply_extend(struct plan_context *c);
 enum status apply_split(struct plan_context *c);
-/* Both walls' in faces cross at p. ST_DATA: they are the same, or parallel. */
-enum status check_crossing(struct plan_context *c, int a, int b, double p[2]);
 
 /* plan_edits.c */
 

@@ -37,7 +37,8 @@ static enum status corner_end(struct plan_context *c, int a, int b, const double
     return ST_OK;
 }
 
-enum status check_crossing(struct plan_context *c, int a, int b, double p[2])
+/* Where the inner faces of both walls cross. ST_DATA: the walls are the same, or parallel. */
+static enum status check_crossing(struct plan_context *c, int a, int b, double p[2])
 {
     const struct plan_wall *x = &c->plan->walls[a], *y = &c->plan->walls[b];
     if (a == b) return statement_error(c, "wall %s cannot be joined to itself.", x->name);

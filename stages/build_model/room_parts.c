@@ -14,7 +14,10 @@
 
 #include "common/base/array.h"
 
-struct plan_line line_reversed(struct plan_line l) { return (struct plan_line){{0 - l.n[0], 0 - l.n[1]}, 0 - l.c}; }
+static struct plan_line line_reversed(struct plan_line l)
+{
+    return (struct plan_line){{0 - l.n[0], 0 - l.n[1]}, 0 - l.c};
+}
 
 static double ahead_of(const struct plan_line *l, const double p[2])
 {

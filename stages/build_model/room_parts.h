@@ -14,9 +14,6 @@ void room_parts_release(struct plan_room *room);
  * not used. out has room for count + 1 corners. Returns their number; 0: nothing is left. */
 int part_clip(struct part_corner *out, const struct part_corner *in, int count, const struct part_corner *by);
 
-/* The same line from its other side. */
-struct plan_line line_reversed(struct plan_line l);
-
 /* Called for each polygon; a status other than ST_OK ends the walk and is returned. */
 typedef enum status part_visit(void *ctx, const struct part_corner *c, int count);
 
