@@ -42,6 +42,7 @@ void bake_release(struct bake *b)
     free(b->list);
     free(b->lists);
     free(b->counts);
+    free(b->hidden);
     *b = (struct bake){0};
 }
 
@@ -121,5 +122,6 @@ enum status bake_list_texels(struct bake *b, struct err *err)
     }
     b->lists = malloc((b->list_count + 1) * sizeof *b->lists);
     b->counts = calloc(b->list_count + 1, 1);
-    return b->lists && b->counts ? ST_OK : err_nomem(err, "candidates", b->list_count * sizeof *b->lists);
+    b->hidden = calloc(b->list_count + 1, 1);
+    return b->lists && b->counts && b->hidden ? ST_OK : err_nomem(err, "candidates", b->list_count * sizeof *b->lists);
 }

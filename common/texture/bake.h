@@ -38,6 +38,7 @@ struct bake_tile {
 
 struct candidate {
     float rgb[3], penalty;
+    float around[3]; /* the colour of a wider area, which noise and small errors of the cameras move less: for votes */
     uint16_t source;
     uint8_t state; /* SOURCE_UNSURE, SOURCE_CLEAN */
 };
@@ -70,6 +71,7 @@ struct bake {
     int32_t *list;  /* -1: no candidates */
     struct candidate (*lists)[CANDIDATES];
     uint8_t *counts;
+    uint8_t *hidden; /* views in which something stands in front of the texel */
     size_t list_count;
 };
 

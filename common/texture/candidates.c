@@ -9,6 +9,7 @@
  * source lacks, and distance from the middle of the picture, where lenses are at their worst. Without a viewpoint the
  * surface's normal takes the place of its ray, and nearer views are preferred. */
 #include <math.h>
+#include <string.h>
 
 #include "common/base/parallel.h"
 #include "common/texture/bake.h"
@@ -19,6 +20,7 @@ static const double DISTANCE = 0.5; /* at a distance of the model's size; withou
 static const double UNSURE = 1.0;   /* when something may stand in front */
 
 enum { ROWS = 16 };
+static const double AROUND = 4;     /* texels: the width of the area whose colour is compared with other views' */
 
 struct view_job {
     struct bake *b;
@@ -77,13 +79,19 @@ static void try_texel(const struct view_job *job, const struct bake_tile *t, con
     if (!(u >= 0 && r >= 0 && u < v->camera.width && r < v->camera.height)) return;
     const size_t at = (size_t)r * (size_t)v->camera.width + (size_t)u;
     if (v->state[at] == SOURCE_NONE || v->id[at] != (uint32_t)m->surface->id) return;
+    if (v->state[at] == SOURCE_HIDDEN) {
+        if (job->b->hidden[list] < UINT8_MAX) job->b->hidden[list]++;
+        return;
+    }
     const double distance = vec3_length(vec3_sub(v->camera.center, p)), cosine = m->off / distance;
     if (!(cosine > m->min_cos)) return;
     struct candidate c = {.source = (uint16_t)job->source, .state = v->state[at]};
     double footprint;
     c.penalty = (float)(penalty_of(&footprint, job->b, t, m, v, p, distance, cosine, u, r) +
                         (c.state == SOURCE_UNSURE ? UNSURE : 0));
-    if (source_view_sample(c.rgb, v, u, r, footprint)) insert(job->b, list, &c);
+    if (!source_view_sample(c.rgb, v, u, r, footprint)) return;
+    if (!source_view_sample(c.around, v, u, r, fmax(1, footprint) * AROUND)) memcpy(c.around, c.rgb, sizeof c.around);
+    insert(job->b, list, &c);
 }
 
 static bool map_tile(struct tile_map *m, const struct view_job *job, const struct bake_tile *t)

@@ -58,7 +58,7 @@ static void choose_texel(struct bake *b, size_t texel)
     struct vote votes[CANDIDATES + 1];
     float in_favour, against;
     for (int i = 0; i < count; i++)
-        set_vote(&votes[i], in[i].rgb, b->sources[in[i].source].gain, dim, b->sources[in[i].source].group, in[i].state);
+        set_vote(&votes[i], in[i].around, b->sources[in[i].source].gain, dim, b->sources[in[i].source].group, in[i].state);
     if (b->role[texel] == TEXEL_DOUBTED) {
         set_vote(&votes[count], b->rgb + 3 * texel, one, dim, b->own_group, SOURCE_UNSURE);
         count_votes(&in_favour, &against, votes, count + 1, count, limit);

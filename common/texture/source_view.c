@@ -37,7 +37,7 @@ static uint8_t state_of(float alpha, float jump, float clutter, const struct tex
 {
     if (!(alpha > 0.999f) || jump < (float)p->edge) return SOURCE_NONE;
     if (!(p->max_clutter < 1)) return SOURCE_CLEAN;
-    if (clutter >= (float)p->max_clutter) return SOURCE_NONE;
+    if (clutter >= (float)p->max_clutter) return SOURCE_HIDDEN;
     return clutter >= (float)p->min_clutter ? SOURCE_UNSURE : SOURCE_CLEAN;
 }
 
@@ -58,7 +58,7 @@ static void halve(struct source_level *to, const struct source_level *from, cons
                 const int sx = 2 * x + (k & 1), sy = 2 * y + (k >> 1);
                 if (sx >= from->width || sy >= from->height) continue;
                 const size_t at = (size_t)sy * (size_t)from->width + (size_t)sx;
-                if (state && state[at] == SOURCE_NONE) continue;
+                if (state && state[at] <= SOURCE_HIDDEN) continue;
                 for (int c = 0; c < 4; c++) out[c] += 0.25f * from->rgba[4 * at + (size_t)c];
             }
         }
@@ -115,7 +115,7 @@ static enum status list_faces(struct source_view *v, struct err *err)
     v->shows = calloc((size_t)v->ids + 1, 1);
     if (!v->shows) return err_nomem(err, "the faces of a view", v->ids);
     for (size_t i = 0; i < pixels; i++)
-        if (v->state[i] != SOURCE_NONE) v->shows[v->id[i]] = 1;
+        if (v->state[i] > SOURCE_NONE) v->shows[v->id[i]] = 1;
     return ST_OK;
 }
 

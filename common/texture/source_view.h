@@ -13,7 +13,8 @@ enum { SOURCE_LEVELS = 4 }; /* full, half, quarter, eighth size */
 
 /* What a pixel is good for. */
 enum source_state {
-    SOURCE_NONE,   /* outside the photo, near a jump, clipped, too noisy, or something stands in front */
+    SOURCE_NONE,   /* outside the photo, near a jump, clipped, too noisy */
+    SOURCE_HIDDEN, /* something stands in front */
     SOURCE_UNSURE, /* something may stand in front: other views decide */
     SOURCE_CLEAN,
 };

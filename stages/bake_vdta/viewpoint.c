@@ -9,6 +9,7 @@
 #include "common/base/array.h"
 #include "common/base/log.h"
 #include "common/base/progress.h"
+#include "common/capture/photo_quality.h"
 #include "stages/bake_vdta/sources.h"
 #include "stages/bake_vdta/view_tiles.h"
 
