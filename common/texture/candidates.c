@@ -20,7 +20,7 @@ static const double DISTANCE = 0.5; /* at a distance of the model's size; withou
 static const double UNSURE = 1.0;   /* when something may stand in front */
 
 enum { ROWS = 16 };
-static const double AROUND = 4;     /* texels: the width of the area whose colour is compared with other views' */
+static const double AROUND = 4; /* texels: the width of the area whose colour is compared with other views' */
 
 struct view_job {
     struct bake *b;

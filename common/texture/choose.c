@@ -13,6 +13,7 @@
 
 enum { CHUNK = 4096 };
 static const double DIM = 0.02;     /* of white: differences of darker colours count less */
+static float HIDDEN = 0.5f;         /* weight of a view in which something surely stands in front */
 static const float OUTVOTED = 1e6f; /* penalty: chosen only if nothing else is there */
 
 struct vote {
@@ -58,10 +59,15 @@ static void choose_texel(struct bake *b, size_t texel)
     struct vote votes[CANDIDATES + 1];
     float in_favour, against;
     for (int i = 0; i < count; i++)
-        set_vote(&votes[i], in[i].around, b->sources[in[i].source].gain, dim, b->sources[in[i].source].group, in[i].state);
+        set_vote(&votes[i], in[i].around, b->sources[in[i].source].gain, dim, b->sources[in[i].source].group,
+                 in[i].state);
     if (b->role[texel] == TEXEL_DOUBTED) {
-        set_vote(&votes[count], b->rgb + 3 * texel, one, dim, b->own_group, SOURCE_UNSURE);
+        const float *own = b->rgb + 3 * texel;
+        for (int i = 0; i < count; i++)
+            if (b->sources[in[i].source].own) own = in[i].around;
+        set_vote(&votes[count], own, one, dim, b->own_group, SOURCE_UNSURE);
         count_votes(&in_favour, &against, votes, count + 1, count, limit);
+        against += HIDDEN * b->hidden[list];
         b->role[texel] = against > in_favour ? TEXEL_WANTED : TEXEL_ORIGINAL;
     }
     int best = 0;
@@ -70,10 +76,12 @@ static void choose_texel(struct bake *b, size_t texel)
         float penalty = in[i].penalty;
         if (in[i].state == SOURCE_UNSURE) {
             count_votes(&in_favour, &against, votes, count, i, limit);
+            against += HIDDEN * b->hidden[list];
             if (against > in_favour) penalty += OUTVOTED;
         }
         if (penalty < least) least = penalty, best = i;
     }
+    if (least >= OUTVOTED && b->hidden[list]) b->counts[list] = 0;
     if (best == 0) return;
     const struct candidate first = in[best];
     memmove(in + 1, in, (size_t)best * sizeof *in);
@@ -88,4 +96,9 @@ static void choose_range(void *ctx, size_t begin, size_t end, int thread)
         if (b->list[i] >= 0) choose_texel(b, i);
 }
 
-void bake_choose(struct bake *b) { parallel_for(b->texel_count, CHUNK, choose_range, b); }
+#include <stdlib.h>
+void bake_choose(struct bake *b)
+{
+    if (getenv("HID")) HIDDEN = (float)atof(getenv("HID"));
+    parallel_for(b->texel_count, CHUNK, choose_range, b);
+}
