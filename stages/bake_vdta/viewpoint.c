@@ -153,14 +153,34 @@ static enum status read_sources(struct work *w, uint64_t *bytes, struct err *err
     return st;
 }
 
+/* What atlas.txt says beside tiles and pages. */
+static enum status describe(struct atlas *a, const struct work *w, struct err *err)
+{
+    const struct bake_scene *s = w->scene;
+    a->views = calloc(MAX_OWN, sizeof *a->views);
+    a->sources = calloc((size_t)w->view_count, sizeof *a->sources);
+    a->viewpoint = strdup(w->photo);
+    if (!a->views || !a->sources || !a->viewpoint) return err_nomem(err, "names", (size_t)w->view_count);
+    a->centre = w->bake.centre;
+    for (; a->view_count < w->own_count; a->view_count++)
+        if (!(a->views[a->view_count] = strdup(s->set.views[w->own[a->view_count]].name)))
+            return err_nomem(err, "a name", 1);
+    for (; a->source_count < w->view_count; a->source_count++)
+        if (!(a->sources[a->source_count] = strdup(s->set.views[w->views[a->source_count]].name)))
+            return err_nomem(err, "a name", 1);
+    return ST_OK;
+}
+
 static enum status write_all(struct work *w, uint64_t bytes, const struct bake_totals *t, struct err *err)
 {
     char folder[FILE_PATH];
-    char *names[MAX_OWN];
+    struct atlas a = {0};
     size_t texels = 0;
-    for (int k = 0; k < w->own_count; k++) names[k] = (char *)w->scene->set.views[w->own[k]].name;
     enum status st = file_path(folder, w->scene->out, w->photo, "", err);
-    if (!st) st = bake_write_atlas(&w->bake, w->photo, names, w->own_count, folder, w->prov, &texels, err);
+    if (!st) st = describe(&a, w, err);
+    if (!st) st = bake_write_pages(&a, &w->bake, NULL, folder, w->prov, &texels, err);
+    if (!st) st = atlas_write_list(&a, folder, w->prov, err);
+    atlas_release(&a);
     if (!st)
         log_note(
             "%s: %.2f million texels, %.1f %% original, %.1f %% warped, %.1f %% synthesised, %.1f %% of faces that "
