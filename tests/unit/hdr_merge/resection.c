@@ -228,6 +228,42 @@ static void marks_that_cannot_be_used_are_refused(void **state)
     assert_err(err, ST_DATA, "on a line");
 }
 
+/* Whatever is marked, no figure is infinite or undefined. */
+static void random_marks_give_finite_poses_or_an_error(void **state)
+{
+    const struct rng rng = rng_make(11, "test", "random marks");
+    static const double sizes[] = {1e-300, 1e-3, 1, 1e6, 1e200};
+    int found = 0;
+    (void)state;
+    for (uint64_t n = 0; n < 400; n++) {
+        const int count = 3 + (int)(n % 6);
+        struct resection_mark marks[8];
+        struct resection r;
+        struct err err = ERR_INIT;
+        for (int i = 0; i < count; i++) {
+            double v[5];
+            for (int k = 0; k < 5; k++) v[k] = rng_uniform(&rng, n, (uint64_t)(5 * i + k));
+            const double size = sizes[n / 6 % 5];
+            marks[i] =
+                (struct resection_mark){960 * v[0], 960 * v[1], {size * v[2], size * v[3], n % 4 ? size * v[4] : 0}};
+            if (i && n % 7 == 0) marks[i].x = marks[0].x, marks[i].y = marks[0].y;
+        }
+        if (resection_find(&r, &dome, marks, count, 1, "sky", &err)) {
+            assert_err(err, ST_DATA, "image sky");
+            assert_int_equal(r.count, 0);
+            continue;
+        }
+        found++;
+        for (int i = 0; i < r.count; i++) {
+            const struct resection_pose *p = &r.poses[i];
+            const struct vec3 at = pose_center(&p->cam_from_world);
+            assert_true(isfinite(at.x + at.y + at.z + p->rms + p->max + p->degrees));
+            assert_true(isfinite(p->error.x + p->error.y + p->error.z + p->turn_error) && p->worst < count);
+        }
+    }
+    assert_true(found > 100);
+}
+
 static void wrong_corners_do_not_fit(void **state)
 {
     const struct pose truth = looking(vec3_make(2.2, 0.8, 1.3), vec3_make(2.4, -5, 1.5));
@@ -252,6 +288,7 @@ int main(void)
         cmocka_unit_test(a_small_window_seen_from_the_front_is_ambiguous),
         cmocka_unit_test(three_marks_give_all_poses_that_explain_them),
         cmocka_unit_test(marks_that_cannot_be_used_are_refused),
+        cmocka_unit_test(random_marks_give_finite_poses_or_an_error),
         cmocka_unit_test(wrong_corners_do_not_fit),
     };
     return cmocka_run_group_tests_name("resection", tests, NULL, NULL);
