@@ -18,6 +18,8 @@ look_hdr_merge()
             ;;
         *) usage "LRI_FRAME=$REMODEL_LRI_FRAME: wanted photos, scene or model, the frame of the poses in LRI_SFM, or corners, for images whose pose is found from marks in $folder/lri.txt." ;;
     esac
+    [ "${REMODEL_LRI_FRAME-}" = corners ] || [ ! -e "$folder/lri.txt" ] ||
+        echo "warning: $folder/lri.txt is not read; set LRI_FRAME=corners to place the images by its marks." >&2
     graph look-lri
 }
 
