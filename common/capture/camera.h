@@ -42,6 +42,9 @@ const char *camera_model_name(enum camera_model model);
 int camera_model_params(enum camera_model model);
 bool camera_model_from_name(const char *name, enum camera_model *model);
 
+/* The OPENCV_FISHEYE nearest to an equisolid fisheye, r = 2 focal sin(theta / 2). */
+struct camera camera_equisolid(int width, int height, double focal, double cx, double cy);
+
 /* ST_DATA: a parameter is not finite, a focal length not > 0, a side < 1. */
 enum status camera_check(const struct camera *c, struct err *err);
 

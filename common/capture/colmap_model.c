@@ -367,8 +367,8 @@ enum status sfm_model_read_camera_files(struct sfm_model *m, const char *of_came
     struct id_list cameras = {0}, images = {0};
     int *lines = NULL;
     *m = (struct sfm_model){0};
-    enum status st =
-        read_cameras(m, &cameras, of_cameras, err) || read_images(m, &cameras, &images, &lines, of_images, err);
+    enum status st = read_cameras(m, &cameras, of_cameras, err);
+    if (!st && of_images) st = read_images(m, &cameras, &images, &lines, of_images, err);
     for (int i = 0; !st && i < m->image_count; i++) {
         free(m->images[i].observations);
         m->images[i].observations = NULL;

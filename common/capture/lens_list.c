@@ -7,20 +7,13 @@
 
 #include "common/base/array.h"
 #include "common/base/outfile.h"
-#include "common/base/textfile.h"
 
 enum { NAME_SIZE = 1024 };
 
-static enum status read_lens(struct textfile *t, struct lens *l, struct err *err)
+enum status lens_read_camera(struct camera *c, const char *model, struct textfile *t, struct err *err)
 {
-    char *view, *photo, *model, *turn;
     int64_t width = 0, height = 0;
-    struct camera *c = &l->camera;
-    struct quat *q = &l->view_from_photo;
     struct err why = ERR_INIT;
-    if (textfile_word(t, "view", &view, err) || textfile_word(t, "photo", &photo, err) ||
-        textfile_word(t, "camera model", &model, err))
-        return err->status;
     if (!camera_model_from_name(model, &c->model)) return textfile_error(t, err, model, "a camera model of COLMAP");
     if (textfile_int(t, "width", 1, INT_MAX, &width, err) || textfile_int(t, "height", 1, INT_MAX, &height, err))
         return err->status;
@@ -29,6 +22,16 @@ static enum status read_lens(struct textfile *t, struct lens *l, struct err *err
     for (int i = 0; i < camera_model_params(c->model); i++)
         if (textfile_double(t, "camera parameter", &c->params[i], err)) return err->status;
     if (camera_check(c, &why)) return err_set(err, ST_DATA, "%s:%d: %s", t->path, t->line, why.text);
+    return ST_OK;
+}
+
+static enum status read_lens(struct textfile *t, struct lens *l, struct err *err)
+{
+    char *view, *photo, *model, *turn;
+    struct quat *q = &l->view_from_photo;
+    if (textfile_word(t, "view", &view, err) || textfile_word(t, "photo", &photo, err) ||
+        textfile_word(t, "camera model", &model, err) || lens_read_camera(&l->camera, model, t, err))
+        return err->status;
     if (textfile_word(t, "\"turn\"", &turn, err)) return err->status;
     if (strcmp(turn, "turn")) return textfile_error(t, err, turn, "\"turn\"");
     if (textfile_double(t, "W of the turn", &q->w, err) || textfile_double(t, "X of the turn", &q->x, err) ||

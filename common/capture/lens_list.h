@@ -9,6 +9,7 @@
 #define REMODEL_LENS_LIST_H
 
 #include "common/base/provenance.h"
+#include "common/base/textfile.h"
 #include "common/capture/camera.h"
 
 struct lens {
@@ -21,6 +22,9 @@ struct lens_list {
     struct lens *lenses;
     int count;
 };
+
+/* Reads WIDTH HEIGHT PARAMS... of a camera of this model from a line. ST_DATA with file and line. */
+enum status lens_read_camera(struct camera *c, const char *model, struct textfile *t, struct err *err);
 
 enum status lens_list_read(struct lens_list *list, const char *path, struct err *err);
 enum status lens_list_write(const struct lens_list *list, const char *path, const struct provenance *prov,

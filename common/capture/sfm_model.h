@@ -56,7 +56,7 @@ enum status sfm_model_read_text(struct sfm_model *m, const char *folder, struct 
 /* Reads cameras.txt and images.txt only: poses and lenses, no points and no observations. */
 enum status sfm_model_read_cameras(struct sfm_model *m, const char *folder, struct err *err);
 
-/* The same from two files of any name. */
+/* The same from two files of any name. of_images may be NULL: the lenses only. */
 enum status sfm_model_read_camera_files(struct sfm_model *m, const char *of_cameras, const char *of_images,
                                         struct err *err);
 

@@ -89,9 +89,8 @@ enum status bracketed_view_read(struct bracketed_view *v, const char *id, const 
     return st;
 }
 
-enum status bracketed_view_place(struct bracketed_view *v, bool *known, const char *model,
-                                 const struct reference_frame *frame, const struct merge_params *params,
-                                 struct provenance *prov, struct err *err)
+static enum status place_by_model(struct bracketed_view *v, const char *model, const struct reference_frame *frame,
+                                  const struct merge_params *params, struct provenance *prov, struct err *err)
 {
     static const char *const files[] = {"cameras", "images"};
     const struct photo_list self = {&v->record, 1};
@@ -112,8 +111,18 @@ enum status bracketed_view_place(struct bracketed_view *v, bool *known, const ch
             "view %s has %d x %d pixels, but its camera in %s/cameras.txt %d x %d; give the cameras of these photos.",
             v->record.id, info->width, info->height, model, v->lens.width, v->lens.height);
     if (!st && v->placed) st = reference_pose_find(&v->cam_from_world, &v->frame, &m, model, frame, params, prov, err);
-    *known = v->placed;
     sfm_model_release(&m);
+    return st;
+}
+
+enum status bracketed_view_place(struct bracketed_view *v, bool *known, const char *model,
+                                 const struct reference_frame *frame, const struct merge_params *params,
+                                 struct provenance *prov, struct err *err)
+{
+    const enum status st = frame->marks ? marked_pose_find(&v->marked, &v->lens, &v->cam_from_world, &v->placed,
+                                                           &v->record, model, frame, params, prov, err)
+                                        : place_by_model(v, model, frame, params, prov, err);
+    *known = v->placed;
     return st;
 }
 
@@ -247,6 +256,23 @@ static enum status set_attributes(struct exr_image *im, const struct bracketed_v
     return st;
 }
 
+/* How the pose was found (docs/formats.md, S/lri). */
+static enum status set_frame(struct exr_image *im, const struct bracketed_view *v, struct err *err)
+{
+    const struct camera_errors *e = &v->frame.errors;
+    const struct resection_pose *p = &v->marked.found.poses[v->marked.chosen];
+    char text[256];
+    if (v->marked.marks)
+        snprintf(text, sizeof text, "marks %d %.4g %.4g %.4g %.4g %.4g %.4g %d", v->marked.marks, p->rms, p->max,
+                 p->error.x, p->error.y, p->error.z, p->turn_error, v->marked.found.count);
+    else if (v->frame.photos)
+        snprintf(text, sizeof text, "%d %.4g %.4g %.4g %.4g", v->frame.photos, e->center_median, e->center_max,
+                 e->rotation_median, e->rotation_max);
+    else
+        return ST_OK;
+    return exr_set_attribute(im, "remodel:frame", text, err);
+}
+
 /* Writes the lens as in lenses.txt, and the pose as a view's. */
 static enum status set_camera(struct exr_image *im, const struct bracketed_view *v, struct err *err)
 {
@@ -260,11 +286,7 @@ static enum status set_camera(struct exr_image *im, const struct bracketed_view 
         used += snprintf(text + used, sizeof text - (size_t)used, " %.9g", c->params[i]);
     exr_set_camera(im, &view);
     enum status st = exr_set_attribute(im, "remodel:lens", text, err);
-    if (st || !v->frame.photos) return st;
-    const struct camera_errors *e = &v->frame.errors;
-    snprintf(text, sizeof text, "%d %.4g %.4g %.4g %.4g", v->frame.photos, e->center_median, e->center_max,
-             e->rotation_median, e->rotation_max);
-    return exr_set_attribute(im, "remodel:frame", text, err);
+    return st ? st : set_frame(im, v, err);
 }
 
 /* Rounds to eight binary digits: noise is not known more precisely, and the rest would not compress. */

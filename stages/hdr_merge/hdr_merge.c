@@ -4,13 +4,14 @@
  *         PHOTOS/FILE       the photos: JPEG, PNG, TIFF, EXR, raw files
  *         MODEL/cameras.txt, images.txt   the view's lens and pose, if the model has them
  *         VIEWS/cameras.txt, images.txt, lenses.txt, RECORDS-OF-THE-SCENE/ID.txt, or AXES   the frame of that pose
+ *         MARKS, PLAN, AXES   corners of the room's model that are marked in the view, from which its pose is found
  *         RESPONSE          the response curve; without it the sRGB curve
  * writes  OUT/ID.jpg        the picture for structure from motion: by default the tone-mapped radiance
  *         OUT/ID.exr        R G B (half): 1 is white at the exposure remodel:white, the same for all views of a scene;
  *                           clipped (uint): 1 a colour saturates in every exposure, 2 a colour is dark in every
  *                           exposure that does not saturate, 3 both;
  *                           variance (float): of the luminance, divided by its square; 1 if unknown;
- *                           with MODEL: worldToCamera and remodel:lens
+ *                           with MODEL or MARKS: worldToCamera and remodel:lens
  *
  * Each file appears complete or not at all, ID.exr last. */
 #include <math.h>
@@ -55,6 +56,40 @@ static void report_frame(const struct bracketed_view *v)
                  f->errors.rotation_median, f->errors.rotation_max);
 }
 
+static void warn_of_other_pose(const char *id, const struct marked_pose *m)
+{
+    const struct resection_pose *other = &m->found.poses[1];
+    const struct vec3 there = pose_center(&other->cam_from_world);
+    log_warn("view %s: another pose fits its marks nearly as well (%.2g px, this one %.2g px), with the camera at "
+             "%.3f %.3f %.3f; mark a point far off the plane of the others, or add a line \"near %s X Y Z\".",
+             id, other->rms, m->found.poses[0].rms, there.x, there.y, there.z, id);
+}
+
+static void report_marks(const struct bracketed_view *v)
+{
+    const struct marked_pose *m = &v->marked;
+    if (!m->marks) return;
+    const char *id = v->record.id, *unit = m->metric ? "m" : "units";
+    const struct resection_pose *p = &m->found.poses[m->chosen];
+    const struct vec3 at = pose_center(&p->cam_from_world), e = p->error;
+    log_note(
+        "%s: placed by %d marks, which are %.2g px (%.2g degrees) off the model's points (root mean square; at most "
+        "%.2g px, line %d)",
+        id, m->marks, p->rms, p->degrees, p->max, m->worst_line);
+    log_note(
+        "%s: its camera is at %.3f %.3f %.3f %s in the model, 95 %% interval +- %.2g %.2g %.2g %s; its direction is "
+        "known to %.2g degrees",
+        id, at.x, at.y, at.z, unit, e.x, e.y, e.z, unit, p->turn_error);
+    if (*m->wall)
+        log_note("%s: that is %.2f %s %s the inner face of the wall %s; if it is on the wrong side, left and right are "
+                 "exchanged",
+                 id, fabs(m->before_wall), unit, m->before_wall < 0 ? "behind" : "in front of", m->wall);
+    if (m->marks == RESECTION_MIN)
+        log_warn("view %s: three marks always fit, so that nothing checks its pose; mark a fourth point.", id);
+    else if (m->found.count > 1 && !m->by_hand)
+        warn_of_other_pose(id, m);
+}
+
 static void report(const struct bracketed_view *v, const struct merge_params *params)
 {
     size_t pixels = (size_t)v->merged.radiance.width * (size_t)v->merged.radiance.height, bright = 0, dark = 0;
@@ -70,6 +105,7 @@ static void report(const struct bracketed_view *v, const struct merge_params *pa
                  100 * sqrt(v->noise[0].photon + v->noise[0].read2), 100 * sqrt(v->noise[0].read2));
     report_shifts(v, params);
     report_frame(v);
+    report_marks(v);
     warn_of_disagreement(v);
 }
 
@@ -81,10 +117,23 @@ struct request { /* the options of these names */
 static enum status check_request(const struct request *r, struct err *err)
 {
     const struct reference_frame *f = &r->frame;
-    if (!f->views == !f->records && !(f->views && f->axes) && (r->model || (!f->views && !f->axes))) return ST_OK;
+    if (!f->marks != !f->plan || (f->marks && (!f->axes || f->views)))
+        return err_set(err, ST_USAGE, "--marks, --plan and --axes belong together, without --views; give all three.");
+    if (!f->views == !f->records && !(f->views && f->axes) && (r->model || f->marks || (!f->views && !f->axes)))
+        return ST_OK;
     return err_set(err, ST_USAGE,
                    "--views wants --scene-records, and either these two or --axes state the frame of --model; give "
                    "one of them.");
+}
+
+static void warn_without_pose(const struct request *r)
+{
+    if (r->frame.marks)
+        log_warn("view %s: %s has no mark of it; its radiance is written without lens and pose.", r->id,
+                 r->frame.marks);
+    else
+        log_warn("view %s: %s/images.txt has no image of it; its radiance is written without lens and pose.", r->id,
+                 r->model);
 }
 
 static enum status hdr_merge(const struct request *r, const struct merge_params *params, struct provenance *prov,
@@ -93,12 +142,11 @@ static enum status hdr_merge(const struct request *r, const struct merge_params 
     struct bracketed_view v = {0};
     size_t clamped = 0;
     bool placed = false;
+    const bool wanted = r->model || r->frame.marks;
     enum status st = check_request(r, err);
     if (!st) st = bracketed_view_read(&v, r->id, r->photos, r->records, r->response, prov, err);
-    if (!st && r->model) st = bracketed_view_place(&v, &placed, r->model, &r->frame, params, prov, err);
-    if (!st && r->model && !placed)
-        log_warn("view %s: %s/images.txt has no image of it; its radiance is written without lens and pose.", r->id,
-                 r->model);
+    if (!st && wanted) st = bracketed_view_place(&v, &placed, r->model, &r->frame, params, prov, err);
+    if (!st && wanted && !placed) warn_without_pose(r);
     if (!st) st = bracketed_view_merge(&v, params, err);
     if (!st) st = bracketed_view_write_picture(&v, r->photos, r->out, params, err);
     if (!st) st = bracketed_view_write_radiance(&v, r->out, prov, &clamped, err);
@@ -126,6 +174,10 @@ int main(int argc, char **argv)
                 "scene's frame by the photographs that both have; default: it is in that frame"),
         CLI_STR("scene-records", &r.frame.records, CLI_OPTIONAL, "folder of the records of the scene's photographs"),
         CLI_STR("axes", &r.frame.axes, CLI_OPTIONAL, "axes.txt: the pose is in the frame of the room's model"),
+        CLI_STR("marks", &r.frame.marks, CLI_OPTIONAL,
+                "lri.txt: corners of the room's model that are marked in the view; they give its pose, with --plan and "
+                "--axes, and --model is read for lenses only"),
+        CLI_STR("plan", &r.frame.plan, CLI_OPTIONAL, "plan.txt of the room's model"),
         CLI_STR("out", &r.out, CLI_REQUIRED, "folder to write ID.jpg and ID.exr into"),
         CLI_PARAMS(merge_param_table, &params, NULL),
         CLI_END,

@@ -7,4 +7,9 @@ bin=$1 folder=$2
 common/run/run_stage.sh silent import_photos lri "$folder" "$bin/import_photos" --config "$folder/slice/import_photos.cfg" \
     --photos "$REMODEL_LRI" --scene "$REMODEL_LRI" --like "$folder/photos" --out "$folder/lri/photos"
 grep -h warning: "$folder/log/import_photos.lri.log" >&2 || true
-{ [ -z "${REMODEL_LRI_SFM-}" ] || (cd "$REMODEL_LRI_SFM" && cksum cameras.txt images.txt && echo "frame ${REMODEL_LRI_FRAME:-photos}"); } | keep "$folder/stamp/lri.txt"
+{
+    frame=${REMODEL_LRI_FRAME:-photos}
+    # the lens alone is read of images whose pose is marked
+    [ -z "${REMODEL_LRI_SFM-}" ] || (cd "$REMODEL_LRI_SFM" && cksum cameras.txt && { [ "$frame" = corners ] || cksum images.txt; })
+    [ -z "${REMODEL_LRI_SFM-}" ] && [ "$frame" != corners ] || echo "frame $frame"
+} | keep "$folder/stamp/lri.txt"

@@ -7,11 +7,19 @@ look_hdr_merge()
     [ -n "${REMODEL_LRI-}" ] && [ -d "$REMODEL_LRI" ] ||
         usage "make lri wants LRI=DIR, the folder of the lighting reference images${REMODEL_LRI:+; $REMODEL_LRI is not a folder}."
     [ -z "${REMODEL_LRI_SFM-}" ] || [ -d "$REMODEL_LRI_SFM" ] ||
-        usage "LRI_SFM=$REMODEL_LRI_SFM is not a folder. Give the folder that holds cameras.txt and images.txt of the lighting reference images."
+        usage "LRI_SFM=$REMODEL_LRI_SFM is not a folder. Give the folder that holds cameras.txt and images.txt of the lighting reference images (for LRI_FRAME=corners cameras.txt only)."
     case ${REMODEL_LRI_FRAME:-photos} in
         photos | scene | model) ;;
-        *) usage "LRI_FRAME=$REMODEL_LRI_FRAME: wanted photos, scene or model, the frame of the poses in LRI_SFM." ;;
+        corners)
+            [ -e "$folder/lri.txt" ] ||
+                usage "LRI_FRAME=corners wants $folder/lri.txt, with lines \"corner IMAGE OPENING left|right bottom|top X Y\" (docs/formats.md, S/lri)."
+            [ -e "$folder/model.txt" ] ||
+                usage "LRI_FRAME=corners wants $folder/model.txt, the script of the model that has these corners (docs/model-script.md)."
+            ;;
+        *) usage "LRI_FRAME=$REMODEL_LRI_FRAME: wanted photos, scene or model, the frame of the poses in LRI_SFM, or corners, for images whose pose is found from marks in $folder/lri.txt." ;;
     esac
+    [ "${REMODEL_LRI_FRAME-}" = corners ] || [ ! -e "$folder/lri.txt" ] ||
+        echo "warning: $folder/lri.txt is not read; set LRI_FRAME=corners to place the images by its marks." >&2
     graph look-lri
 }
 

@@ -1,10 +1,7 @@
 /* start_lens.c - the lens that COLMAP starts from.
  *
  * An equisolid fisheye maps the angle theta from the axis to the radius r = 2 f sin(theta / 2). COLMAP has no model for
- * it, but OPENCV_FISHEYE, r = f theta (1 + k1 theta^2 + k2 theta^4 + ...), reproduces it with the coefficients of the
- * Taylor series
- *   2 sin(theta / 2) / theta = 1 - theta^2 / 24 + theta^4 / 1920 - theta^6 / 322560 + theta^8 / 92897280 - ...
- * With k1..k4 the error stays below 1e-3 px up to theta = 90 degrees for f = 500 px. */
+ * it, but OPENCV_FISHEYE, r = f theta (1 + k1 theta^2 + k2 theta^4 + ...), reproduces it (camera_equisolid()). */
 #include "stages/sfm/start_lens.h"
 
 #include <math.h>
@@ -67,7 +64,6 @@ void sfm_png_lens(char text[SFM_LENS_TEXT], const struct photo_list *photos, con
 enum status sfm_equisolid_lens(char text[SFM_LENS_TEXT], const struct photo_list *photos,
                                const struct sfm_params *params, struct err *err)
 {
-    static const double series[] = {-1 / 24.0, 1 / 1920.0, -1 / 322560.0, 1 / 92897280.0};
     const double film_diagonal = hypot(36, 24); /* mm; EXIF's 35 mm focal length refers to the diagonal */
     double numbers[CAMERA_MAX_PARAMS] = {0};
     const int given = *params->camera_params ? sfm_parse_numbers(numbers, params->camera_params) : 0;
@@ -93,9 +89,12 @@ enum status sfm_equisolid_lens(char text[SFM_LENS_TEXT], const struct photo_list
     if (!first) return ST_OK;
     const double w = first->info.width, h = first->info.height;
     const double focal = given ? numbers[0] : first->info.focal35_mm / film_diagonal * hypot(w, h);
-    int length = snprintf(text, SFM_LENS_TEXT, "%.9g,%.9g,%.9g,%.9g", focal, focal, given == 3 ? numbers[1] : w / 2,
-                          given == 3 ? numbers[2] : h / 2);
-    for (int i = 0; i < 4; i++) length += snprintf(text + length, SFM_LENS_TEXT - (size_t)length, ",%.12g", series[i]);
+    const struct camera lens = camera_equisolid(first->info.width, first->info.height, focal,
+                                                given == 3 ? numbers[1] : w / 2, given == 3 ? numbers[2] : h / 2);
+    int length = 0;
+    for (int i = 0; i < camera_model_params(lens.model); i++)
+        length += snprintf(text + length, SFM_LENS_TEXT - (size_t)length, i < 4 ? "%s%.9g" : "%s%.12g", i ? "," : "",
+                           lens.params[i]);
     return ST_OK;
 }
 

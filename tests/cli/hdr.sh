@@ -179,5 +179,63 @@ cameras_are_copied_and_references_scaled()
     refused 'write lines "FILE SECONDS F_NUMBER ISO" into exposures.txt' records lri --like set/photos-records
 }
 
+# marks in an image of 320 x 240 pixels, taken from 0.3 0.5 1.2 of a model whose southern wall is at y = -2
+marked_corners_give_the_camera()
+{
+    mkdir -p marked; rm -rf set/photos-hdr
+    cat >marked/plan.txt <<'TXT'
+remodel-plan 2
+wall south normal 0 1 at -2 thickness 0.2 from -3 to 3 foot 0 top 2.5 start free end free
+window w on south from -1 0.8 to 1 2 closed
+TXT
+    cat >marked/axes.txt <<'TXT'
+remodel-axes 1
+rotation 1 0 0 0
+translation 0 0 0
+scale 1 metres
+ceiling none
+thickness none
+error tilt 0
+error heading 0
+error floor 0
+error ceiling none
+error scale 0.01
+TXT
+    cat >marked/lri.txt <<'TXT'
+lens photo_3 PINHOLE 320 240 150 150 160 120
+corner photo_3 w left bottom 118 144
+corner photo_3 w left top 118 72
+corner photo_3_e0.jpg w right bottom 238 144
+corner photo_3 w right top 238 72
+TXT
+    local marks="--marks marked/lri.txt --plan marked/plan.txt --axes marked/axes.txt"
+    # shellcheck disable=SC2086 # options
+    merged set/photos photo_3 $marks || { cat err; fail "merge"; }
+    says "photo_3: placed by 4 marks, which are"
+    says "photo_3: its camera is at 0.300 0.500 1.200 m in the model, 95 % interval"
+    says "photo_3: that is 2.50 m in front of the inner face of the wall south"
+    has set/photos-hdr/photo_3.exr 'PINHOLE 320 240 150 150 160 120'
+    has set/photos-hdr/photo_3.exr worldToCamera
+    has set/photos-hdr/photo_3.exr 'marks 4 '
+    cp set/photos-hdr/photo_3.exr first.exr
+    merged set/photos photo_3 --threads 1 $marks
+    cmp first.exr set/photos-hdr/photo_3.exr || fail "one thread gives different bytes"
+    merged set/photos photo_2 $marks
+    says "view photo_2: marked/lri.txt has no mark of it; its radiance is written without lens and pose."
+    rm -rf set/photos-hdr
+    sed -i 's/right top 238 72/right top 138 172/' marked/lri.txt
+    refused "marked/lri.txt: from the pose that fits best, the marks of image photo_3 are" merged set/photos photo_3 $marks
+    sed -i '$d' marked/lri.txt
+    refused "marked/lri.txt: three marks of image photo_3 leave 4 poses, with the camera at" merged set/photos photo_3 $marks
+    ! ls set/photos-hdr/photo_3.* 2>/dev/null || fail "a product of a refused image is left"
+    echo 'near photo_3 0 0 1.5' >>marked/lri.txt
+    merged set/photos photo_3 $marks || { cat err; fail "merge with a place near the camera"; }
+    says "three marks always fit"
+    says "its camera is at 0.300 0.500 1.200 m"
+    rc=0; merged set/photos photo_3 --marks marked/lri.txt || rc=$?
+    [ "$rc" = 2 ] || fail "--marks without --plan: exit $rc, wanted 2"
+    says "--marks, --plan and --axes belong together"
+}
+
 for t in jpegs_are_fitted_and_merged tiff_and_png_merge_like_jpeg an_exr_is_a_single_exposure a_tiff_is_a_single_exposure single_jpegs_share_one_scale raw_files_are_recognised wrong_exposures_are_refused \
-    missing_exposures_and_times_are_named shifts_are_reported_and_corrected errors_in_a_response_name_the_line cameras_are_copied_and_references_scaled; do run "$t"; done
+    missing_exposures_and_times_are_named shifts_are_reported_and_corrected errors_in_a_response_name_the_line cameras_are_copied_and_references_scaled marked_corners_give_the_camera; do run "$t"; done

@@ -138,6 +138,56 @@ lighting_reference_images_are_placed_by_the_photos()
     diff a b || fail "a second make remade it"
 }
 
+# six photos of brick walls give the axes of a room, a script its walls; a window of these is marked in the reference image
+marked_corners_place_a_reference_image()
+{
+    project corners; describe room
+    sed -i 's/^texture plain.*/texture plain brick 0.23 0.075 0.012 21  0.56 0.30 0.21  0.62 0.58 0.52/' scenes/room/scene.txt
+    sed -i -e '/^photo/d' -e 's/^lens p.*/lens p pinhole 120 80 60 60 60 40/' scenes/room/cameras.txt
+    for p in 'a p 0.8 0.8 1.4  3 2.2 0.9' 'b p 1.1 0.7 1.4  3 2.2 0.9' 'c p 0.8 1.1 1.4  3 2.2 0.9' 'd p 1.1 1.0 1.6  3 2.4 1.5' \
+        'e p 0.8 0.9 1.7  3 2.2 1.9' 'g p 1.1 0.9 1.7  3 2.2 1.9'; do echo "photo $p" >>scenes/room/cameras.txt; done
+    sed -i 's/^samples.*/samples = 8/' scenes/room/scene.cfg
+    printf '[segment_depth]\nplanes = 48\npasses = 1\n' >>scenes/room/scene.cfg
+    printf 'LRI := out/room/simulated/lri\nLRI_FRAME := corners\nSFM := out/room/simulated/truth\n' >>scenes/room/scene.mk
+    ! make -s DEPS=manual SCENE=room lri >log 2>&1 || fail "make lri without marks succeeded"
+    grep -q 'LRI_FRAME=corners wants scenes/room/lri.txt' log || { cat log; fail "the message does not name the marks"; }
+    # a camera at 0.3 0.5 1.2 of the model looks at its southern wall
+    cat >scenes/room/lri.txt <<'TXT'
+lens * PINHOLE 120 80 60 60 60 40
+corner r w left bottom 43.2 49.6
+corner r w left top 43.2 20.8
+corner r w right bottom 91.2 49.6
+corner r w right top 91.2 20.8
+TXT
+    ! make -s DEPS=manual SCENE=room lri >log 2>&1 || fail "make lri without a model succeeded"
+    grep -q 'LRI_FRAME=corners wants scenes/room/model.txt' log || { cat log; fail "the message does not name the model"; }
+    cat >scenes/room/model.txt <<'TXT'
+remodel-script 1
+set thickness 0.2
+set ceiling 2.5
+set glass 0.02
+wall south from 3 -2 to -3 -2
+wall west from -3 -2 to -3 2
+wall north from -3 2 to 3 2
+wall east from 3 2 to 3 -2
+join south west north east south
+room hall south west north east
+window w on south from -1 0.8 to 1 2
+TXT
+    m lri
+    local said=out/room/log/hdr_merge.lri.r.log
+    grep -q 'its camera is at 0.300 0.500 1.200 units in the model' $said || { cat $said; fail "it is at another place"; }
+    grep -q '2.50 units in front of the inner face of the wall south' $said || { cat $said; fail "not in front of the wall"; }
+    grep -aq 'marks 4 ' out/room/lri/r.exr && grep -aq worldToCamera out/room/lri/r.exr || fail "the picture does not state how its frame was found"
+    find out/room/lri out/room/model -type f -printf '%P %T@\n' | sort >a; m lri
+    find out/room/lri out/room/model -type f -printf '%P %T@\n' | sort | diff a - || fail "a second make remade something"
+    echo 'point r 60 40 0.3 -2 1.2' >>scenes/room/lri.txt; m lri
+    grep -q 'placed by 5 marks' $said || { cat $said; fail "a new mark did not remake the picture"; }
+    sed -i 's/ w left/ door left/' scenes/room/lri.txt
+    ! make -s DEPS=manual SCENE=room lri >log 2>&1 || fail "a mark of no window was accepted"
+    grep -q 'scenes/room/lri.txt:2: found the opening "door"' log || { cat log; fail "the message does not name the line"; }
+}
+
 # a lens of 180 degrees: black corners, the middle in the light of the room
 a_hemisphere_is_merged_with_its_image_circle()
 {
@@ -193,6 +243,6 @@ an_error_in_the_description_is_named_and_leaves_no_product()
 
 for t in photos_are_made_once_and_again_if_the_description_changes the_edited_scene_is_made_on_demand \
     several_edits_are_made_from_chosen_cameras more_truth_is_made_on_demand lighting_reference_images_are_merged_but_not_rectified \
-    lighting_reference_images_are_placed_by_the_photos a_hemisphere_is_merged_with_its_image_circle \
+    lighting_reference_images_are_placed_by_the_photos marked_corners_place_a_reference_image a_hemisphere_is_merged_with_its_image_circle \
     views_of_one_photo_are_made_by_one_process one_core_gives_the_bytes_of_two \
     an_error_in_the_description_is_named_and_leaves_no_product; do run "$t"; done

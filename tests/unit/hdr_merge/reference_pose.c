@@ -100,7 +100,8 @@ static enum status find(struct pose *p, struct frame_agreement *a, const struct 
                         const char *axes, struct err *err)
 {
     const struct merge_params params = MERGE_PARAMS_DEFAULT;
-    const struct reference_frame frame = {views, views ? scratch_path("records") : NULL, axes};
+    const struct reference_frame frame = {
+        .views = views, .records = views ? scratch_path("records") : NULL, .axes = axes};
     struct provenance prov = {0};
     *p = m->images[m->m.image_count - 1].cam_from_world;
     const enum status st = reference_pose_find(p, a, &m->m, "model", &frame, &params, &prov, err);

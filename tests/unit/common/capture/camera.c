@@ -36,6 +36,19 @@ static void model_names_are_those_of_colmap(void **state)
     assert_false(camera_model_from_name("FOV", &m));
 }
 
+static void an_equisolid_lens_has_the_radius_of_its_closed_form(void **state)
+{
+    const struct camera c = camera_equisolid(1000, 800, 500, 505, 396);
+    double u, v;
+    (void)state;
+    for (int i = 1; i <= 90; i++) {
+        const double theta = i * M_PI / 180;
+        assert_true(camera_project(&c, vec3_make(0.6 * sin(theta), 0.8 * sin(theta), cos(theta)), &u, &v));
+        assert_near(u - 505, 0.6 * 1000 * sin(theta / 2), 1e-3);
+        assert_near(v - 396, 0.8 * 1000 * sin(theta / 2), 1e-3);
+    }
+}
+
 static void invalid_cameras_are_rejected_with_a_reason(void **state)
 {
     (void)state;
@@ -253,6 +266,7 @@ int main(void)
         cmocka_unit_test(rays_beyond_the_fold_have_no_pixel),
         cmocka_unit_test(folds_of_random_lenses_match_sampling),
         cmocka_unit_test(pixels_far_outside_give_a_ray_or_fail),
+        cmocka_unit_test(an_equisolid_lens_has_the_radius_of_its_closed_form),
         cmocka_unit_test(a_pose_maps_its_centre_to_the_origin),
         cmocka_unit_test(derivatives_are_the_limits_of_differences),
     };

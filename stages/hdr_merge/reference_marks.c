@@ -1,0 +1,213 @@
+/* reference_marks.c - reads marks in lighting reference images and finds their points in the model. */
+#include "stages/hdr_merge/reference_marks.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/base/array.h"
+#include "common/base/scan.h"
+#include "common/base/textfile.h"
+#include "common/capture/lens_list.h"
+
+enum { MAX_LINES = 4096 };
+
+static const char *const kinds[] = {
+    [REFERENCE_CORNER] = "corner", [REFERENCE_POINT] = "point", [REFERENCE_LENS] = "lens", [REFERENCE_NEAR] = "near"};
+static const char wanted_kinds[] = "\"corner\", \"point\", \"lens\" or \"near\"";
+
+void reference_marks_release(struct reference_marks *list)
+{
+    if (!list) return;
+    for (int i = 0; i < list->count; i++) {
+        free(list->marks[i].image);
+        free(list->marks[i].opening);
+    }
+    free(list->marks);
+    free(list->path);
+    *list = (struct reference_marks){0};
+}
+
+/* ---------------------------------------------------------------------------------------------------------- reading */
+
+static enum status read_name(char **name, struct textfile *t, const char *what, struct err *err)
+{
+    char *word;
+    if (textfile_word(t, what, &word, err)) return err->status;
+    *name = strdup(word);
+    return *name ? ST_OK : err_nomem(err, "a name", strlen(word));
+}
+
+/* Reads one of two words; *second: it is the second one. */
+static enum status read_side(bool *second, struct textfile *t, const char *first, const char *other, struct err *err)
+{
+    char wanted[32], *word;
+    snprintf(wanted, sizeof wanted, "\"%s\" or \"%s\"", first, other);
+    if (textfile_word(t, wanted, &word, err)) return err->status;
+    *second = !strcmp(word, other);
+    return *second || !strcmp(word, first) ? ST_OK : textfile_error(t, err, word, "%s", wanted);
+}
+
+static enum status read_pixel(struct reference_mark *m, struct textfile *t, struct err *err)
+{
+    return textfile_double(t, "x", &m->x, err) || textfile_double(t, "y", &m->y, err) ? err->status : ST_OK;
+}
+
+static enum status read_place(struct vec3 *p, struct textfile *t, struct err *err)
+{
+    return textfile_double(t, "x in the model", &p->x, err) || textfile_double(t, "y in the model", &p->y, err) ||
+                   textfile_double(t, "z in the model", &p->z, err)
+               ? err->status
+               : ST_OK;
+}
+
+static enum status read_corner(struct reference_mark *m, struct textfile *t, struct err *err)
+{
+    char *word = NULL;
+    if (read_name(&m->opening, t, "an opening of the model", err) || read_side(&m->right, t, "left", "right", err) ||
+        read_side(&m->top, t, "bottom", "top", err) || read_pixel(m, t, err))
+        return err->status;
+    if (!textfile_more(t)) return ST_OK;
+    if (textfile_word(t, "\"outer\"", &word, err)) return err->status;
+    m->outer = !strcmp(word, "outer");
+    return m->outer ? ST_OK : textfile_error(t, err, word, "\"outer\" or the end of the line");
+}
+
+static enum status read_equisolid(struct camera *c, struct textfile *t, struct err *err)
+{
+    int64_t width, height;
+    double focal, x, y;
+    struct err why = ERR_INIT;
+    if (textfile_int(t, "width", 1, INT32_MAX, &width, err) || textfile_int(t, "height", 1, INT32_MAX, &height, err) ||
+        textfile_double(t, "the focal length in pixels", &focal, err))
+        return err->status;
+    x = (double)width / 2;
+    y = (double)height / 2;
+    if (textfile_more(t) && (textfile_double(t, "x of the lens's centre", &x, err) ||
+                             textfile_double(t, "y of the lens's centre", &y, err)))
+        return err->status;
+    *c = camera_equisolid((int)width, (int)height, focal, x, y);
+    return camera_check(c, &why) ? err_set(err, ST_DATA, "%s:%d: %s", t->path, t->line, why.text) : ST_OK;
+}
+
+static enum status read_lens(struct reference_mark *m, struct textfile *t, struct err *err)
+{
+    char *model;
+    if (textfile_word(t, "a camera model of COLMAP, or EQUISOLID", &model, err)) return err->status;
+    return strcmp(model, "EQUISOLID") ? lens_read_camera(&m->lens, model, t, err) : read_equisolid(&m->lens, t, err);
+}
+
+static enum status read_line(struct reference_mark *m, struct textfile *t, struct err *err)
+{
+    const int kind_count = (int)(sizeof kinds / sizeof *kinds);
+    char *word;
+    int kind = 0;
+    m->line = t->line;
+    if (textfile_word(t, wanted_kinds, &word, err)) return err->status;
+    while (kind < kind_count && strcmp(word, kinds[kind])) kind++;
+    if (kind == kind_count) return textfile_error(t, err, word, "%s", wanted_kinds);
+    m->kind = (enum reference_mark_kind)kind;
+    if (read_name(&m->image, t, "an image", err)) return err->status;
+    if (m->kind != REFERENCE_LENS && !strcmp(m->image, "*"))
+        return textfile_error(t, err, m->image, "an image; * is allowed for lenses only");
+    enum status st = ST_OK;
+    if (m->kind == REFERENCE_CORNER) st = read_corner(m, t, err);
+    if (m->kind == REFERENCE_POINT) st = read_pixel(m, t, err) || read_place(&m->point, t, err) ? err->status : ST_OK;
+    if (m->kind == REFERENCE_LENS) st = read_lens(m, t, err);
+    if (m->kind == REFERENCE_NEAR) st = read_place(&m->point, t, err);
+    return st ? st : textfile_end(t, err);
+}
+
+static bool is_repeated(const struct reference_mark *a, const struct reference_mark *b)
+{
+    if (a->kind != b->kind || strcmp(a->image, b->image)) return false;
+    if (a->kind == REFERENCE_CORNER)
+        return !strcmp(a->opening, b->opening) && a->right == b->right && a->top == b->top && a->outer == b->outer;
+    if (a->kind == REFERENCE_POINT)
+        return a->point.x == b->point.x && a->point.y == b->point.y && a->point.z == b->point.z;
+    return true;
+}
+
+static enum status check_repeated(const struct reference_marks *list, const struct reference_mark *m, struct err *err)
+{
+    for (const struct reference_mark *b = list->marks; b < m; b++)
+        if (is_repeated(b, m))
+            return err_set(err, ST_DATA, "%s:%d: found what line %d says of %s; delete one of the lines.", list->path,
+                           m->line, b->line, m->image);
+    return ST_OK;
+}
+
+enum status reference_marks_read(struct reference_marks *list, const char *path, struct err *err)
+{
+    struct textfile t = {0};
+    *list = (struct reference_marks){.path = strdup(path)};
+    enum status st = list->path ? textfile_open(&t, path, err) : err_nomem(err, "a file name", strlen(path));
+    while (!st && textfile_next(&t)) {
+        if (list->count == MAX_LINES)
+            st = err_set(err, ST_DATA, "%s has more than %d lines; delete some.", path, (int)MAX_LINES);
+        if (!st) st = array_append(&list->marks, (size_t)list->count, sizeof *list->marks, "marks", err);
+        if (st) break;
+        struct reference_mark *m = &list->marks[list->count++];
+        *m = (struct reference_mark){0};
+        st = read_line(m, &t, err);
+        if (!st) st = check_repeated(list, m, err);
+    }
+    textfile_release(&t);
+    if (st) reference_marks_release(list);
+    return st;
+}
+
+/* --------------------------------------------------------------------------------------------------------- locating */
+
+bool reference_mark_is_of(const struct reference_mark *m, const struct photo_record *image)
+{
+    if (!strcmp(m->image, image->id)) return true;
+    for (int i = 0; i < image->bracket_count; i++)
+        if (!strcmp(m->image, image->brackets[i].file)) return true;
+    return false;
+}
+
+static const char *opening_name(const void *ctx, int i)
+{
+    const struct model_plan *plan = ctx;
+    return i < plan->opening_count ? plan->openings[i].name : NULL;
+}
+
+static enum status find_opening(int *opening, const struct reference_mark *m, const struct reference_marks *list,
+                                const struct model_plan *plan, struct err *err)
+{
+    char shown[SCAN_QUOTED];
+    for (*opening = 0; *opening < plan->opening_count; (*opening)++)
+        if (!strcmp(plan->openings[*opening].name, m->opening)) return ST_OK;
+    const char *nearest = scan_nearest(m->opening, opening_name, plan);
+    return err_set(err, ST_DATA,
+                   "%s:%d: found the opening %s, wanted a door, passage or window of the model%s%s; mark other points "
+                   "with \"point\".",
+                   list->path, m->line, scan_quote(shown, m->opening), nearest ? "; did you mean " : "",
+                   nearest ? nearest : "");
+}
+
+enum status reference_mark_locate(struct vec3 *at, const struct model_wall **wall, const struct reference_mark *m,
+                                  const struct reference_marks *list, const struct model_plan *plan, struct err *err)
+{
+    struct vec3 corners[2];
+    int opening = 0;
+    *at = m->point;
+    *wall = NULL;
+    if (m->kind != REFERENCE_CORNER) return ST_OK;
+    if (find_opening(&opening, m, list, plan, err)) return err->status;
+    const struct model_wall *w = *wall = &plan->walls[plan->openings[opening].wall];
+    if (!model_opening_corners(plan, opening, corners))
+        return err_set(
+            err, ST_DATA,
+            "%s:%d: the opening %s is in the wall %s, which is along no axis, so that the plan does not hold "
+            "its corners; mark them with \"point\".",
+            list->path, m->line, m->opening, w->name);
+    /* for a viewer who faces the wall from its inside, the right-hand direction is (-ny, nx) */
+    const bool right_is_upper = fabs(w->normal[0]) > 0.5 ? w->normal[0] > 0 : w->normal[1] < 0;
+    *at = corners[m->right == right_is_upper];
+    at->z = corners[m->top].z;
+    if (!m->outer) return ST_OK;
+    at->x -= w->normal[0] * w->thickness;
+    at->y -= w->normal[1] * w->thickness;
+    return ST_OK;
+}
