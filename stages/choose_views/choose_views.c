@@ -60,8 +60,8 @@ static enum status find_seed(int *seed, const char *name, const struct camera_se
     if (*seed >= 0) return ST_OK;
     const char *near = scan_nearest(name, view_name, set);
     return err_set(err, ST_USAGE,
-                   "[choose_views] around = %s: wanted auto, all or a view's name as in views/images.txt%s%s.",
-                   scan_quote(shown, name), near ? "; did you mean " : "", near ? near : "");
+                   "[choose_views] around = %s: wanted auto, all or a view's name as in views/images.txt%s%s%s",
+                   scan_quote(shown, name), near ? "; did you mean " : "", near ? near : "", near ? "?" : ".");
 }
 
 static void log_cluster(const struct view_cluster *c, const struct camera_set *set)
@@ -100,7 +100,7 @@ static enum status choose(const struct job *job, struct provenance *prov, struct
         const double agreement = views_agreement(&set);
         const bool all_round = agreement < job->params.min_agreement;
         if (any && all_round)
-            log_note("the %d views look all round: the mean of their directions has length %.2g", set.view_count,
+            log_note("the %d views look all round: the mean of their directions has length %.2f", set.view_count,
                      agreement);
         if (!any || all_round) st = choose_cluster(&cluster, job, &set, any, prov, err);
     }
