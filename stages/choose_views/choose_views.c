@@ -66,10 +66,10 @@ static enum status find_seed(int *seed, const char *name, const struct camera_se
 
 static void log_cluster(const struct view_cluster *c, const struct camera_set *set)
 {
-    log_note("films use the %d views that look the same way as %s and see the same: around %s, %.0f %% of the picture "
-             "shows points "
-             "with parallax, depths vary by %.0f %%",
-             c->count, set->views[c->seed].name, set->views[c->central].name, 100 * c->coverage, 100 * c->variety);
+    log_note("films use %d views, which look about the same way as %s and see the same points", c->count,
+             set->views[c->seed].name);
+    log_note("%s is in their middle: %.0f %% of its picture shows points with parallax, whose depths vary by %.0f %%",
+             set->views[c->central].name, 100 * c->coverage, 100 * c->variety);
 }
 
 static enum status choose_cluster(struct view_cluster *c, const struct job *job, const struct camera_set *set, bool any,
