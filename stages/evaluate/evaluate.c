@@ -26,7 +26,7 @@ int main(int argc, char **argv)
         CLI_STR("truth", &from.truth, CLI_OPTIONAL,
                 "folder of the truth: true cameras, depths, pictures, edited scenes"),
         CLI_STR("rendered", &from.rendered, CLI_OPTIONAL,
-                "folder of rendered pictures: novel/, edited-E/, shell/ (default: FOLDER/rendered)"),
+                "folder of rendered pictures: novel/, edited-E/, shell/, irradiance/ (default: FOLDER/rendered)"),
         CLI_STR("out", &out, CLI_REQUIRED, "table of metrics to write (metrics.tsv)"),
         CLI_PARAMS(evaluate_param_table, &params, NULL),
         CLI_END,
