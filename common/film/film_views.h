@@ -21,8 +21,8 @@ struct film_views {
 enum status film_views_read(struct film_views *v, const char *path, struct err *err);
 void film_views_release(struct film_views *v);
 
-/* Writes the views that are marked in keep[set->view_count], or "all" if keep is NULL. A file with the same text is left
- * alone, so that no film is made again. */
+/* Writes the views that are marked in keep[set->view_count], or "all" if keep is NULL. A file with the same text is
+ * left alone, so that no film is made again. */
 enum status film_views_write(const struct camera_set *set, const bool *keep, const char *path,
                              const struct provenance *prov, struct err *err);
 

@@ -2,8 +2,8 @@
  *
  * reads   VIEWS/cameras.txt, images.txt, points3D.txt   the cameras and the sparse points that they see
  *         VIEWS/lenses.txt                              with --subjects: the views' photos
- *         SUBJECTS                                      with --subjects: rectangles drawn by the user, which the cluster
- *                                                       must see
+ *         SUBJECTS                                      with --subjects: rectangles drawn by the user, which the
+ *                                                       cluster must see
  * writes  OUT                                           the views; left alone if its text does not change */
 #include <stdlib.h>
 #include <string.h>

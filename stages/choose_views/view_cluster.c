@@ -1,32 +1,35 @@
 /* view_cluster.c - the cluster of views that sees one thing.
  *
- * A film moves between the views of one subject, near the centre of all cameras. Where photographs look all round, as in
- * a room, that centre faces whatever wall is there. So a film is made from a cluster of views instead.
+ * A film moves between the views of one subject, near the centre of all cameras. Where photographs look all round,
+ * as in a room, that centre faces whatever wall is there. So a film is made from a cluster of views instead.
  *
- * Whether a scene looks all round. The mean of the views' unit viewing directions has the length R, the mean resultant
- * length of directional statistics [Mardia 2000]: 1 for parallel views, sin(a) / a for views spread evenly over a fan of
- * 2a in a plane, 0 all round. Below min_agreement, by default 1/2 (a fan of 217 degrees), no direction is the scene's.
+ * Whether a scene looks all round. The mean of the views' unit viewing directions has the length R, the mean
+ * resultant length of directional statistics [Mardia 2000]: 1 for parallel views, sin(a) / a for views spread evenly
+ * over a fan of 2a in a plane, 0 all round. Below min_agreement, by default 1/2 (a fan of 217 degrees), no direction
+ * is the scene's.
  *
  * Clusters. Each view is the seed of one: the views that look about the same way and see the same sparse points,
  *
- *   angle(axis_v, axis_seed) <= max_angle,   |P_v n P_seed| >= min_shared min(|P_v|, |P_seed|)
+ *   angle(axis_v, axis_seed) <= max_angle,   shared >= min_shared min(points_v, points_seed)
  *
- * where P_v is the set of points seen in v. Co-visibility of sparse points is the usual measure of which views show one
- * thing [Simon 2007]; the angle leaves out views from behind, which share points but not surfaces.
+ * where points_v counts the sparse points seen in v, and shared those seen in both. Co-visibility of sparse points
+ * is the usual measure of which views show one thing [Simon 2007]; the angle leaves out views from behind, which
+ * share points but not surfaces.
  *
- * Scores. A film of a cluster is centred on its most central view c (central_views.h), so the cluster is judged by what
- * c shows. A point that c sees has the weight of [Goesele 2007] for parallax, min((a / full_angle)^2, 1), where a is the
- * largest angle at the point between the ray of c and that of another member that sees it. The picture of c is divided
- * into GRID x GRID cells. A cell weighs as much as its best point and has the median of its points' depths:
+ * Scores. A film of a cluster is centred on its most central view c (central_views.h), so the cluster is judged by
+ * what c shows. A point that c sees has the weight of [Goesele 2007] for parallax, min((a / full_angle)^2, 1), where
+ * a is the largest angle at the point between the ray of c and that of another member that sees it. The picture of c
+ * is divided into GRID x GRID cells. A cell weighs as much as its best point and has the median of its points'
+ * depths:
  *
  *   coverage = sum of w / GRID^2,   variety = sum of w |ln z - median of ln z| / sum of w
  *
- * Blank walls have no sparse points, so coverage measures texture and parallax at once, over the area of the picture:
- * one poster does not make a wall a subject. A wall that is textured has no variety. The best product of both wins, the
- * first in order of the seed's name among equals.
+ * Blank walls have no sparse points, so coverage measures texture and parallax at once, over the area of the
+ * picture: one poster does not make a wall a subject. A wall that is textured has no variety. The best product of
+ * both wins, the first in order of the seed's name among equals.
  *
- * What differs from the sources: [Simon 2007] clusters all views by their points, to summarize a collection; here one
- * cluster is wanted, so clusters may overlap, and their score is that of a film, not of a summary. */
+ * What differs from the sources: [Simon 2007] clusters all views by their points, to summarize a collection; here
+ * one cluster is wanted, so clusters may overlap, and their score is that of a film, not of a summary. */
 #include "stages/choose_views/view_cluster.h"
 
 #include <stdlib.h>
@@ -69,7 +72,7 @@ double views_agreement(const struct camera_set *set)
     return set->view_count ? vec3_length(sum) / set->view_count : 0;
 }
 
-/* ---------------------------------------------------------------------------------------------------------- the search */
+/* ------------------------------------------------------------------------------------------------------- the search */
 
 static void search_release(struct cluster_search *s)
 {
@@ -135,7 +138,7 @@ static enum status search_init(struct cluster_search *s, const struct camera_set
 
 static size_t points_of(const struct cluster_search *s, int view) { return s->first[view + 1] - s->first[view]; }
 
-/* ------------------------------------------------------------------------------------------------------------ members */
+/* ---------------------------------------------------------------------------------------------------------- members */
 
 /* Marks the members of the seed's cluster; c gets their number and the central one. */
 static enum status find_members(struct view_cluster *c, struct cluster_search *s, struct err *err)
@@ -164,7 +167,7 @@ static enum status find_members(struct view_cluster *c, struct cluster_search *s
     return ST_OK;
 }
 
-/* ------------------------------------------------------------------------------------------------------------- scores */
+/* ----------------------------------------------------------------------------------------------------------- scores */
 
 /* The largest angle at the point, in degrees, between the central view's ray and another member's. */
 static double parallax_of(const struct cluster_search *s, const struct sfm_point *p, int central)

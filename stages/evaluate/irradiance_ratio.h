@@ -1,12 +1,12 @@
 /* irradiance_ratio.h - errors of the ratio of irradiance after an edit to that before it.
  *
- * Relighting multiplies the light of a photographed surface by this ratio. Its error is judged by what comes out where
- * everything else is true: with the found ratio q = found after / found before, of each channel,
+ * Relighting multiplies the light of a photographed surface by this ratio. Its error is judged by what comes out
+ * where everything else is true: with the found ratio q = found after / found before, of each channel,
  *
  *   rms = sqrt(sum (q before - after)^2 / sum after^2)       over pixels and channels, of the true before and after
  *
- * and by |q - q_true| / q_true of luminance at each pixel. `change` is the rms of q = 1: of an edit that changes no light.
- * A channel without found light before takes the ratio of luminance. No scale is needed: it cancels. */
+ * and by |q - q_true| / q_true of luminance at each pixel. `change` is the rms of q = 1: of an edit that changes no
+ * light. A channel without found light before takes the ratio of luminance. No scale is needed: it cancels. */
 #ifndef REMODEL_IRRADIANCE_RATIO_H
 #define REMODEL_IRRADIANCE_RATIO_H
 

@@ -101,8 +101,8 @@ static void agreement_is_the_length_of_the_mean_direction(void **state)
     free(w);
 }
 
-/* Ahead a blank wall; to the right a wall of posters, with a chair as far away as `chair` before a quarter of it; behind
- * furniture before half of a wall. */
+/* Ahead a blank wall; to the right a wall of posters, with a chair as far away as `chair` before a quarter of it;
+ * behind, furniture before half of a wall. */
 static struct world *room(double chair)
 {
     struct world *w = world_new();
