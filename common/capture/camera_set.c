@@ -84,6 +84,51 @@ enum status camera_set_read(struct camera_set *set, const char *folder, struct e
     return st;
 }
 
+/* Drops the views that go (-1 in new_idx) from a point's track; returns the number of those that stay. */
+static int keep_tracks(struct sfm_point *p, const int *new_idx)
+{
+    int kept = 0;
+    for (int k = 0; k < p->track_count; k++) {
+        const struct sfm_track t = p->track[k];
+        if (new_idx[t.image_idx] >= 0) p->track[kept++] = (struct sfm_track){new_idx[t.image_idx], t.observation_idx};
+    }
+    return p->track_count = kept;
+}
+
+static void keep_points(struct sfm_model *m, const int *new_idx)
+{
+    int kept = 0;
+    for (int i = 0; i < m->point_count; i++) {
+        if (keep_tracks(&m->points[i], new_idx))
+            m->points[kept++] = m->points[i];
+        else
+            free(m->points[i].track);
+    }
+    m->point_count = kept;
+}
+
+enum status camera_set_keep(struct camera_set *set, const bool *keep, struct err *err)
+{
+    struct sfm_model *m = &set->model;
+    int *new_idx = malloc(((size_t)set->view_count + 1) * sizeof *new_idx), kept = 0;
+    if (!new_idx) return err_nomem(err, "views", (size_t)set->view_count * sizeof *new_idx);
+    for (int i = 0; i < set->view_count; i++) {
+        new_idx[i] = keep[i] ? kept : -1;
+        if (keep[i]) {
+            set->views[kept] = set->views[i];
+            m->images[kept++] = m->images[i];
+        } else {
+            free((char *)set->views[i].name);
+            free(m->images[i].name);
+            free(m->images[i].observations);
+        }
+    }
+    set->view_count = m->image_count = kept;
+    keep_points(m, new_idx);
+    free(new_idx);
+    return ST_OK;
+}
+
 enum status camera_set_add_inputs(struct provenance *prov, const char *folder, struct err *err)
 {
     static const char *const files[] = {"cameras.txt", "images.txt", "points3D.txt"};

@@ -4,6 +4,8 @@
 #ifndef REMODEL_CAMERA_SET_H
 #define REMODEL_CAMERA_SET_H
 
+#include <stdbool.h>
+
 #include "common/capture/sfm_model.h"
 
 struct view {
@@ -25,6 +27,9 @@ struct camera_set {
 enum status camera_set_read(struct camera_set *set, const char *folder, struct err *err);
 /* Adds the three files of the folder to the provenance as views/cameras.txt, images.txt, points3D.txt. */
 enum status camera_set_add_inputs(struct provenance *prov, const char *folder, struct err *err);
+/* Leaves only the views that are marked in keep[set->view_count], and the points that they see. Views keep their order.
+ * The set is unchanged on failure. */
+enum status camera_set_keep(struct camera_set *set, const bool *keep, struct err *err);
 int camera_set_find(const struct camera_set *set, const char *name); /* -1: not found */
 void camera_set_release(struct camera_set *set);
 

@@ -4,7 +4,7 @@ READS.choose_effects := subjects.txt; only for EFFECT=auto and all
 WRITES.choose_effects := parallax/auto-effects.mk, all-effects.mk
 VARIABLES.choose_effects := EFFECT EFFECT_NAMED
 STEPS.choose_effects := choice
-NEEDS.choice := depth
+NEEDS.choice := depth film_views
 
 ## EFFECT="NAMES": films to make, by name, like dolly_in or dolly_in+narrow_dof (docs/formats.md); establishing_dolly by default
 ## EFFECT=auto|all: one drawn at random from those that suit the scene, or all of them; two photos get their morph

@@ -2,9 +2,9 @@
  *
  * reads   FOLDER/views, depth, holdout   cameras, views, depth maps, held-out photographs and their rendered frames
  *         FOLDER/model, remodel/E        axes, plans and solids of the model and of its edits
- *         FOLDER/relight/irradiance.txt  irradiance at points
+ *         FOLDER/relight                 irradiance.txt: irradiance at points; pictures of it like those in RENDERED
  *         SHARED/photos, hdr             the photos' records, merged exposures
- *         RENDERED/novel, edited-E, shell   rendered pictures, and their cameras
+ *         RENDERED/novel, edited-E, shell, irradiance, edited-E/irradiance   rendered pictures, and their cameras
  *         TRUTH                          what is true of the scene; docs/formats.md lists it
  * writes  FOLDER/evaluate/truth/VIEW.exr the true depth resampled to the view
  *         FOLDER/evaluate/cameras        cameras of the truth in the frame of the views, for programs that render them
@@ -26,7 +26,7 @@ int main(int argc, char **argv)
         CLI_STR("truth", &from.truth, CLI_OPTIONAL,
                 "folder of the truth: true cameras, depths, pictures, edited scenes"),
         CLI_STR("rendered", &from.rendered, CLI_OPTIONAL,
-                "folder of rendered pictures: novel/, edited-E/, shell/ (default: FOLDER/rendered)"),
+                "folder of rendered pictures: novel/, edited-E/, shell/, irradiance/ (default: FOLDER/rendered)"),
         CLI_STR("out", &out, CLI_REQUIRED, "table of metrics to write (metrics.tsv)"),
         CLI_PARAMS(evaluate_param_table, &params, NULL),
         CLI_END,

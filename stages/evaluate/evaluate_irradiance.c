@@ -1,12 +1,14 @@
 /* evaluate_irradiance.c - irradiance at points against the truth: irradiance.*
  *
  * FOLDER/relight/irradiance.txt is in the frame of O/views and in the radiance unit of the views, and holds the points
- * of TRUTH/irradiance.txt, which FOLDER/evaluate/irradiance_points.txt has in that frame. */
+ * of TRUTH/irradiance.txt, which FOLDER/evaluate/irradiance_points.txt has in that frame. irradiance_pictures.c measures
+ * pictures of irradiance. */
 #include <stdlib.h>
 
 #include "common/base/outfile.h"
 #include "stages/evaluate/evaluation_parts.h"
 #include "stages/evaluate/irradiance_error.h"
+#include "stages/evaluate/irradiance_pictures.h"
 #include "stages/evaluate/traced_model.h"
 
 #define MIN_COSINE 0.93969262078590838 /* cos 20 degrees: between a point's normal and that of the face it lies on */
@@ -143,7 +145,7 @@ static enum status compare(struct evaluation *e, struct irradiance_job *job, str
                        black);
 }
 
-enum status evaluate_irradiance(struct evaluation *e, struct err *err)
+static enum status evaluate_points(struct evaluation *e, struct err *err)
 {
     struct irradiance_job job = {0};
     char path[FILE_PATH], found[FILE_PATH];
@@ -181,4 +183,9 @@ enum status evaluate_irradiance(struct evaluation *e, struct err *err)
     irradiance_list_release(&job.found);
     irradiance_list_release(&job.truth);
     return st;
+}
+
+enum status evaluate_irradiance(struct evaluation *e, struct err *err)
+{
+    return evaluate_points(e, err) || evaluate_irradiance_pictures(e, err) ? err->status : ST_OK;
 }

@@ -20,6 +20,7 @@
 
 #include "common/base/array.h"
 #include "common/capture/central_views.h"
+#include "common/film/regions.h"
 #include "stages/find_subjects/region_depth.h"
 
 #define PARAM_STRUCT struct find_params

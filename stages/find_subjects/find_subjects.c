@@ -1,6 +1,7 @@
 /* find_subjects.c - the subjects of camera moves: faces found in several photographs, or rectangles drawn by the user.
  *
  * reads   VIEWS/cameras.txt, images.txt, points3D.txt   the cameras
+ *         FILM_VIEWS                                    with --film-views: the views that are used
  *         VIEWS/lenses.txt                              with --subjects or --records: the views' photos
  *         RECORDS/ID.txt                                with --records: the photos' orientations
  *         VIEWS/VIEW.exr                                without --subjects: the most central views and those that check
@@ -18,9 +19,10 @@
 #include "common/capture/lens_list.h"
 #include "common/capture/upright.h"
 #include "common/capture/view_image.h"
+#include "common/film/film_views.h"
+#include "common/film/regions.h"
 #include "stages/find_subjects/faces.h"
 #include "stages/find_subjects/region_depth.h"
-#include "stages/find_subjects/regions.h"
 
 enum { MIN_SIZE = 8 };   /* px: smaller subjects have an uncertain size */
 #define WHOLE_PART 0.999 /* of a drawn rectangle; with more of it inside a view it is not clipped */
@@ -28,7 +30,7 @@ enum { MIN_SIZE = 8 };   /* px: smaller subjects have an uncertain size */
 #define CASCADES "/usr/share/opencv4/haarcascades"
 
 struct inputs {
-    const char *views, *depth, *records, *subjects, *cascades;
+    const char *views, *film_views, *depth, *records, *subjects, *cascades;
     struct camera_set set;
     struct vec3 *ups; /* NULL: the photos are assumed to be stored upright */
     struct face_detector *detector;
@@ -190,6 +192,7 @@ static enum status find(struct inputs *in, const char *out, const struct find_pa
     struct subject_list list = {0};
     enum status st = camera_set_read(&in->set, in->views, err);
     if (!st) st = camera_set_add_inputs(in->prov, in->views, err);
+    if (!st) st = film_views_keep(&in->set, in->film_views, in->prov, err);
     if (!st && in->records) {
         in->ups = calloc((size_t)in->set.view_count + 1, sizeof *in->ups);
         st = in->ups ? upright_read(in->ups, &in->set, in->views, in->records, in->prov, err)
@@ -212,6 +215,8 @@ int main(int argc, char **argv)
     const struct cli_opt opts[] = {
         CLI_ABOUT("Finds the subjects of camera moves: faces, or rectangles drawn by the user."),
         CLI_STR("views", &in.views, CLI_REQUIRED, "folder of cameras and rectified views"),
+        CLI_STR("film-views", &in.film_views, CLI_OPTIONAL,
+                "views that films are made from (choose_views); default: all"),
         CLI_STR("depth", &in.depth, CLI_REQUIRED, "folder of the views' depth"),
         CLI_STR("records", &in.records, CLI_OPTIONAL, "folder of the photos' records, for their orientation"),
         CLI_STR("subjects", &in.subjects, CLI_OPTIONAL, "file of rectangles on photos, used in place of faces"),

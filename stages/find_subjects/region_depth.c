@@ -5,15 +5,6 @@
 
 #include "common/math/weighted.h"
 
-bool clip_to_picture(struct subject *s, int width, int height)
-{
-    s->x0 = fmin(fmax(s->x0, 0), width);
-    s->x1 = fmin(fmax(s->x1, 0), width);
-    s->y0 = fmin(fmax(s->y0, 0), height);
-    s->y1 = fmin(fmax(s->y1, 0), height);
-    return s->x1 > s->x0 && s->y1 > s->y0;
-}
-
 /* Pixels [*first, *end) whose centres lie in [low, high]; if there are none, the pixel at the middle. */
 static void pixel_range(double low, double high, int size, int *first, int *end)
 {

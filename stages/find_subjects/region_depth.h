@@ -5,9 +5,6 @@
 #include "common/film/subject_list.h"
 #include "common/layers/layered_depth.h"
 
-/* Clips the subject's rectangle to the picture; false if nothing is left. */
-bool clip_to_picture(struct subject *s, int width, int height);
-
 /* The median depth of the rectangle's pixels in both layers, weighted by alpha and by their segments' confidence, which
  * counts as DEPTH_INHERITED at least. 0 if no pixel has a depth. */
 enum status region_depth(double *depth, const struct layered_depth *d, const struct subject *s, struct err *err);

@@ -2,7 +2,8 @@
  *
  * reads   VIEWS/cameras.txt, images.txt, points3D.txt   the cameras
  *         for a move:
- *         DEPTH/VIEW.exr, VIEW.txt                      every view's layers
+ *         FILM_VIEWS                                    with --film-views: the views that are used
+ *         DEPTH/VIEW.exr, VIEW.txt                      the layers of these views
  *         VALIDITY, SUBJECTS                            the move's valid viewpoints; the scene's subjects
  *         for a keyframed film:
  *         FILE                                          with --keyframes: the film
@@ -26,6 +27,7 @@
 #include "common/capture/central_views.h"
 #include "common/capture/upright.h"
 #include "common/film/film_lens.h"
+#include "common/film/film_views.h"
 #include "stages/plan_path/film.h"
 #include "stages/plan_path/path_export.h"
 #include "stages/plan_path/plan_move.h"
@@ -93,7 +95,7 @@ static enum status read_views(struct camera_set *set, struct vec3 **ups, const c
 }
 
 struct job { /* the command line */
-    const char *views, *records, *depth, *validity, *subjects, *keyframes, *moves, *effect, *out;
+    const char *views, *film_views, *records, *depth, *validity, *subjects, *keyframes, *moves, *effect, *out;
     struct plan_params params;
 };
 
@@ -142,6 +144,7 @@ static enum status make_move(const struct job *job, struct provenance *prov, str
     struct film_effect effect;
     enum status st = film_effect_parse(&effect, job->effect, err);
     if (!st) st = read_views(&set, NULL, job->views, NULL, prov, err);
+    if (!st) st = film_views_keep(&set, job->film_views, prov, err);
     if (!st) st = validity_read(&v, job->validity, err);
     if (!st && v.effect.move != effect.move)
         st = err_set(err, ST_USAGE, "--effect %s: %s is of another move; run sample_validity for this one.",
@@ -168,12 +171,12 @@ static enum status make_move(const struct job *job, struct provenance *prov, str
 static enum status run(const struct job *job, struct provenance *prov, struct err *err)
 {
     const bool move = job->depth && job->validity && !job->keyframes && !job->moves;
-    const bool keys = job->keyframes && !job->depth && !job->validity && !job->subjects;
+    const bool keys = job->keyframes && !job->depth && !job->validity && !job->subjects && !job->film_views;
     if (!move && !keys)
-        return err_set(
-            err, ST_USAGE,
-            "wanted --depth with --validity (and --subjects) for a move, or --keyframes (and --moves, --records) for a "
-            "keyframed film.");
+        return err_set(err, ST_USAGE,
+                       "wanted --depth with --validity (and --subjects, --film-views) for a move, or --keyframes (and "
+                       "--moves, --records) for a "
+                       "keyframed film.");
     return job->keyframes ? make_film(job, prov, err) : make_move(job, prov, err);
 }
 
@@ -185,6 +188,8 @@ int main(int argc, char **argv)
         CLI_STR("views", &job.views, CLI_REQUIRED, "folder of cameras"),
         CLI_STR("effect", &job.effect, CLI_REQUIRED,
                 "effect of the taxonomy, such as dolly_in+dim, or name of the keyframed film"),
+        CLI_STR("film-views", &job.film_views, CLI_OPTIONAL,
+                "views that moves are made from (choose_views); default: all"),
         CLI_STR("depth", &job.depth, CLI_OPTIONAL, "folder of the views' layers, for a move"),
         CLI_STR("validity", &job.validity, CLI_OPTIONAL, "file of the move's valid viewpoints"),
         CLI_STR("subjects", &job.subjects, CLI_OPTIONAL, "file of the scene's subjects, for a move that needs any"),

@@ -1,11 +1,11 @@
 # plan_path: a camera move, or a film of keys.
 FOLLOWS.plan_path := sample_validity
-READS.plan_path := validity.txt, cameras, all layers, subjects.txt; or keyframes/FILM.txt and the moves that it chains
+READS.plan_path := validity.txt, parallax/views.txt, cameras, all layers, subjects.txt; or keyframes/FILM.txt and the moves that it chains
 WRITES.plan_path := parallax/EFFECT/path.txt, path/, transforms.json, blender.py, effects.txt, frames.mk
 LIBS.plan_path := -ljansson
 STEPS.plan_path := path
 HELP.path := + the camera move
-NEEDS.path = depth $(if $(CHOOSE),choice)
+NEEDS.path = depth film_views $(if $(CHOOSE),choice)
 
 ifdef GRAPH
 # the films of this run (EFFECTS), and FRAMES_film of each
@@ -19,8 +19,9 @@ path_all = $(call path_txt,$(1)) $(addprefix $(P)/$(1)/,effects.txt transforms.j
 path: $(foreach e,$(EFFECTS),$(call path_all,$(e)) $(if $(filter $(e),$(FILMS)),,$(call validity,$(e))))
 # $(1): a planned effect
 define path_rule
-$(call path_all,$(1)) &: $(CAMERAS) $(call validity,$(1)) $(DEPTH_EXR) $(DEPTH_TXT) $(call needs_subjects,$(1)) $(call needs,plan_path)
-	$$(call stage,plan_path,$(1),$(O),--views $(O)/views --depth $(O)/depth --validity $(firstword $(call validity,$(1))) \
+$(call path_all,$(1)) &: $(CAMERAS) $(call validity,$(1)) $(DEPTH_EXR) $(DEPTH_TXT) $(call needs_subjects,$(1)) $(FILM_VIEWS) \
+  $(call needs,plan_path) | $(FILM_VIEWS_STAMP)
+	$$(call stage,plan_path,$(1),$(O),--views $(O)/views --film-views $(FILM_VIEWS) --depth $(O)/depth --validity $(firstword $(call validity,$(1))) \
 	  --effect $(1) $(addprefix --subjects ,$(call needs_subjects,$(1))) --out $(P)/$(1))
 endef
 # a film of keys: its effect is its name; the moves that it chains are planned first

@@ -1,7 +1,8 @@
 /* render_views.c - renders the frames of a camera move, or of given cameras, from layered depth maps.
  *
  * reads   VIEWS/cameras.txt, images.txt, points3D.txt   the views
- *         DEPTH/VIEW.exr, VIEW.txt                      layers and segments of every view
+ *         FILM_VIEWS                                    with --film-views: the views that are used
+ *         DEPTH/VIEW.exr, VIEW.txt                      layers and segments of every view that is used
  *         PATH/path.txt, path/NAME.txt                  the move; or
  *         CAMERAS/cameras.txt, images.txt, points3D.txt cameras of any size, e.g. of held-out views
  *         EFFECTS.txt                                   effect layers of a move
@@ -13,6 +14,7 @@
 
 #include "common/base/cli.h"
 #include "common/base/frame_list.h"
+#include "common/film/film_views.h"
 #include "stages/render_views/frames.h"
 
 static enum status add_inputs(struct provenance *prov, const char *views, const char *path_folder, const char *effect,
@@ -28,7 +30,7 @@ static enum status add_inputs(struct provenance *prov, const char *views, const 
 }
 
 struct render_job { /* the command line */
-    const char *views, *depth, *path, *frames, *cameras, *crop, *scale, *out;
+    const char *views, *film_views, *depth, *path, *frames, *cameras, *crop, *scale, *out;
     struct cli_list names;
     struct cli_list effects; /* files */
     struct frame_part part;
@@ -59,6 +61,7 @@ static enum status render_path(const struct render_job *job, struct provenance *
         effects_release(&more);
         if (!st) st = provenance_add_file(prov, i ? "scene/effects.txt" : "effects.txt", job->effects.items[i], err);
     }
+    if (!st) st = film_views_keep(&set, job->film_views, prov, err);
     if (!st) st = layer_scene_read(&scene, &set, job->depth, prov, err);
     if (!st) {
         renderer_init(&renderer, &scene, &path, &effects, &job->params);
@@ -115,6 +118,8 @@ static enum status render(struct render_job *job, struct provenance *prov, struc
     if (cameras && job->effects.count)
         return err_set(err, ST_USAGE,
                        "--effects goes with --path: single cameras have no time, which the effects' keys need.");
+    if (cameras && job->film_views)
+        return err_set(err, ST_USAGE, "--film-views goes with --path: single cameras are rendered from all views.");
     if ((st = frame_part_read(&job->part, job->crop, job->scale, err))) return st;
     return cameras ? render_cameras(job, prov, err) : render_path(job, prov, err);
 }
@@ -126,6 +131,8 @@ int main(int argc, char **argv)
     const struct cli_opt opts[] = {
         CLI_ABOUT("Renders the frames of a camera move, or of given cameras, from layered depth maps."),
         CLI_STR("views", &job.views, CLI_REQUIRED, "folder of the views' cameras"),
+        CLI_STR("film-views", &job.film_views, CLI_OPTIONAL,
+                "views that the move is rendered from (choose_views); default: all"),
         CLI_STR("depth", &job.depth, CLI_REQUIRED, "folder of layered depth maps"),
         CLI_STR("path", &job.path, CLI_OPTIONAL, "folder of the move: path.txt and path/"),
         CLI_STR("frames", &job.frames, CLI_OPTIONAL, "frames of the move to render: 1:30 or 1:30,45"),

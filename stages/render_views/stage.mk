@@ -1,6 +1,6 @@
 # render_views: a film's frames, and the cameras of held-out photos.
 FOLLOWS.render_views := segment_depth plan_path
-READS.render_views := all layers, the path, effects.txt
+READS.render_views := parallax/views.txt, all layers, the path, effects.txt
 WRITES.render_views := parallax/EFFECT/frames/NNNN.exr
 STEPS.render_views := frames
 HELP.frames := + its frames
@@ -13,11 +13,14 @@ frames: $(foreach e,$(EFFECTS),$(call frame_exr,$(e)))
 # frames come in chunks, a process each; of a chunk only the frames that are missing or stale are rendered. $(1): frames;
 # $(2): their film
 effect_layers = $(P)/$(1)/effects.txt $(if $(filter $(1),$(FILMS)),,$(wildcard scenes/$(SCENE)/effects.txt))
+# a film of keys may go anywhere, so it is rendered from all views
+film_views_of = $(if $(filter $(1),$(FILMS)),,$(FILM_VIEWS))
 define chunk_rule
-$(1:%=$(P)/$(2)/frames/%.exr) &: $(call path_txt,$(2)) $(call effect_layers,$(2)) $(CAMERAS) $(DEPTH_EXR) $(DEPTH_TXT) $(call needs,render_views)
+$(1:%=$(P)/$(2)/frames/%.exr) &: $(call path_txt,$(2)) $(call effect_layers,$(2)) $(CAMERAS) $(DEPTH_EXR) $(DEPTH_TXT) \
+  $(call film_views_of,$(2)) $(call needs,render_views) | $(if $(filter $(2),$(FILMS)),,$(FILM_VIEWS_STAMP))
 	$$(hide)stale=$$$$(common/run/stale.sh frames $(1:%=$(P)/$(2)/frames/%.exr) -- $$^); \
 	  $$(call farm,render_views,$(2)-$(firstword $(1)),$(1:%=$(P)/$(2)/frames/%.exr),--views $(O)/views --depth $(O)/depth \
-	  --path $(P)/$(2) $(addprefix --effects ,$(call effect_layers,$(2))) --out $(P)/$(2)/frames --frames,$$$$stale)
+	  --path $(P)/$(2) $(addprefix --film-views ,$(call film_views_of,$(2))) $(addprefix --effects ,$(call effect_layers,$(2))) --out $(P)/$(2)/frames --frames,$$$$stale)
 endef
 $(foreach e,$(EFFECTS),$(call chunks,chunk_rule,$(FRAMES_$(e)),$(e)))
 

@@ -2,7 +2,8 @@
  *
  * reads   VIEWS/cameras.txt, images.txt, points3D.txt   the cameras
  *         VIEWS/lenses.txt, RECORDS/ID.txt              with --records: the orientation of the photos
- *         DEPTH/VIEW.exr, VIEW.txt                      every view's layers
+ *         FILM_VIEWS                                    with --film-views: the views that are used
+ *         DEPTH/VIEW.exr, VIEW.txt                      the layers of these views
  *         SUBJECTS                                      with --subjects: the scene's subjects
  * writes  OUT/validity.png                              picture of the regions
  *         OUT/validity.txt                              the regions, written last: if it is new, so is the picture */
@@ -13,11 +14,12 @@
 #include "common/base/file_path.h"
 #include "common/base/log.h"
 #include "common/capture/upright.h"
+#include "common/film/film_views.h"
 #include "stages/sample_validity/picture.h"
 #include "stages/sample_validity/sample.h"
 
 struct job {
-    const char *views, *records, *depth, *subjects, *effect, *out;
+    const char *views, *film_views, *records, *depth, *subjects, *effect, *out;
     struct validity_params params;
 };
 
@@ -71,6 +73,7 @@ static enum status sample(const struct job *job, struct provenance *prov, struct
     if (!st) st = file_path(text, job->out, "validity.txt", "", err);
     if (!st) st = camera_set_read(&set, job->views, err);
     if (!st) st = camera_set_add_inputs(prov, job->views, err);
+    if (!st) st = film_views_keep(&set, job->film_views, prov, err);
     if (!st && job->records) {
         ups = calloc((size_t)set.view_count + 1, sizeof *ups);
         st = ups ? upright_read(ups, &set, job->views, job->records, prov, err)
@@ -101,6 +104,8 @@ int main(int argc, char **argv)
     const struct cli_opt opts[] = {
         CLI_ABOUT("Samples the viewpoints that show a scene without visible holes, for each end of a move."),
         CLI_STR("views", &job.views, CLI_REQUIRED, "folder of cameras"),
+        CLI_STR("film-views", &job.film_views, CLI_OPTIONAL,
+                "views that films are made from (choose_views); default: all"),
         CLI_STR("depth", &job.depth, CLI_REQUIRED, "folder of the views' layers"),
         CLI_STR("records", &job.records, CLI_OPTIONAL, "folder of the photos' records, which make the film upright"),
         CLI_STR("subjects", &job.subjects, CLI_OPTIONAL, "file of the scene's subjects, for a move that needs any"),

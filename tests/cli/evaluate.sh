@@ -233,6 +233,56 @@ irradiance_is_compared_on_the_model_and_elsewhere()
     says 'skipped irradiance: no point of relight/irradiance.txt is one of the truth'
 }
 
+pictures_of_irradiance_are_compared_before_and_after()
+{
+    local part
+    says 'skipped pictures of irradiance: '
+    printf 'remodel-scene 2\nbase scene.txt\n' >scene/scene-same.txt
+    printf 'remodel-scene 2\nbase scene.txt\ndrop crate sun\n' >scene/scene-dark.txt
+    for opt in '' '--edit dark' '--edit same'; do
+        # shellcheck disable=SC2086 # options
+        "$B/bin/simulate" --scene scene --out sim-scene --photo all --kind irradiance $opt --set samples=16 2>log || { cat log; fail "simulate irradiance $opt"; }
+    done
+    cp -r sim-scene/truth/irradiance truth/
+    for part in dark same; do mkdir truth/edited-$part; cp -r sim-scene/truth/edited-$part/irradiance truth/edited-$part/; done
+    measure
+    says 'skipped pictures of irradiance: there is no folder irradiance'
+    # exact pictures, beside the points; photo c is no picture of the truth's folder of photos, but of the views
+    mkdir -p t/relight t/rendered/edited-dark t/rendered/edited-same
+    cp -r truth/irradiance t/relight/
+    cp -r truth/edited-dark/irradiance t/rendered/edited-dark/
+    cp -r truth/edited-same/irradiance t/rendered/edited-same/
+    measure
+    within irradiance.pictures 3 3
+    within irradiance.picture_rms 0 0.05
+    within irradiance.picture_rms_model 0 0.05
+    within irradiance.picture_rms_other 0 0.05
+    within irradiance.picture_error50 0 0.05 a
+    within irradiance.picture_missing 0 0
+    within irradiance.ratio_pictures 6 6
+    within irradiance.ratio_rms 0 1e-4
+    within irradiance.ratio_error90 0 1e-4
+    within irradiance.ratio_missing 0 0
+    within irradiance.ratio_change 0 0 edited-same/irradiance
+    within irradiance.ratio_change 20 1000 edited-dark/irradiance
+    within irradiance.ratio_error50 0 1e-4 edited-dark/irradiance/b
+    # a ratio of 1 is wrong by the whole change; one of the unedited room is right
+    cp truth/irradiance/*.exr t/rendered/edited-dark/irradiance/
+    measure
+    change=$(awk -F'\t' '$1 == "edited-dark/irradiance" && $2 == "irradiance.ratio_change" { print $3 }' t/evaluate/views.tsv)
+    within irradiance.ratio_rms "$change" "$change" edited-dark/irradiance
+    within irradiance.ratio_rms 0 1e-4 edited-same/irradiance
+    # pictures without a partner, and integers, are skipped
+    rm t/relight/irradiance/a.exr
+    cp sim-scene/photos/b.jpg t/rendered/edited-same/irradiance/ && rm t/rendered/edited-same/irradiance/b.exr
+    measure
+    within irradiance.ratio_pictures 3 3
+    says 'skipped the ratios of 1 pictures of edited.dark/irradiance: irradiance/ has no picture of the same name'
+    says 'skipped 1 pictures of edited.same/irradiance: irradiance is compared in EXR files alone'
+    cp -r truth/irradiance t/relight/
+    cp truth/edited-same/irradiance/b.exr t/rendered/edited-same/irradiance/
+}
+
 hidden_faces_are_scored_apart()
 {
     says 'skipped pictures of shell: there is no folder shell'
@@ -272,5 +322,6 @@ any_number_of_threads_gives_the_same_bytes()
 
 for t in the_truth_and_products_are_made exact_radiance_has_no_error pictures_are_compared_through_their_own_cameras \
     eight_bit_pictures_need_a_white_point edited_pictures_are_compared_as_views faces_of_the_model_and_its_edit_agree \
-    irradiance_is_compared_on_the_model_and_elsewhere hidden_faces_are_scored_apart the_page_shows_the_metrics \
+    irradiance_is_compared_on_the_model_and_elsewhere pictures_of_irradiance_are_compared_before_and_after \
+    hidden_faces_are_scored_apart the_page_shows_the_metrics \
     any_number_of_threads_gives_the_same_bytes; do run "$t"; done

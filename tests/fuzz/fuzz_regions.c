@@ -4,7 +4,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "stages/find_subjects/regions.h"
+#include "common/film/regions.h"
 #include "tests/fuzz/fuzz.h"
 #include "tests/fuzz/fuzz_scratch.h"
 

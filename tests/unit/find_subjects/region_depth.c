@@ -87,18 +87,6 @@ static void a_rectangle_without_depth_has_depth_0(void **state)
     layered_depth_release(&d);
 }
 
-static void a_rectangle_at_the_border_is_clipped(void **state)
-{
-    (void)state;
-    struct subject s = {.x0 = -5, .y0 = 10, .x1 = 12, .y1 = 300};
-    assert_true(clip_to_picture(&s, W, H));
-    assert_true(s.x0 == 0 && s.y0 == 10 && s.x1 == 12 && s.y1 == H);
-    s = (struct subject){.x0 = -5, .y0 = 10, .x1 = 0, .y1 = 20};
-    assert_false(clip_to_picture(&s, W, H));
-    s = (struct subject){.x0 = 3, .y0 = 31, .x1 = 9, .y1 = 40};
-    assert_false(clip_to_picture(&s, W, H));
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -106,7 +94,6 @@ int main(void)
         cmocka_unit_test(segments_of_low_confidence_have_a_lower_weight),
         cmocka_unit_test(layers_are_weighted_by_alpha),
         cmocka_unit_test(a_rectangle_without_depth_has_depth_0),
-        cmocka_unit_test(a_rectangle_at_the_border_is_clipped),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

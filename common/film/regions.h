@@ -32,4 +32,7 @@ enum status region_in_view(struct subject *s, int *view_idx, double *part, const
                            const char *path, const struct camera_set *set, const struct lens_list *lenses,
                            struct err *err);
 
+/* Clips the subject's rectangle to the picture; false if nothing is left. */
+bool clip_to_picture(struct subject *s, int width, int height);
+
 #endif

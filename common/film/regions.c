@@ -2,7 +2,7 @@
  *
  * A grid of GRID x GRID points of the rectangle is projected through the photo's lens into each of its views; the view
  * that shows most of them is chosen, and the points' bounding box is the rectangle there. */
-#include "stages/find_subjects/regions.h"
+#include "common/film/regions.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -10,7 +10,6 @@
 #include "common/base/array.h"
 #include "common/base/scan.h"
 #include "common/base/textfile.h"
-#include "stages/find_subjects/region_depth.h"
 
 enum { GRID = 33, MAX_REGIONS = 10000 };
 
@@ -70,6 +69,15 @@ enum status region_list_read(struct region_list *list, const char *path, struct 
 }
 
 /* ------------------------------------------------------------------------------------------------ through the lens */
+
+bool clip_to_picture(struct subject *s, int width, int height)
+{
+    s->x0 = fmin(fmax(s->x0, 0), width);
+    s->x1 = fmin(fmax(s->x1, 0), width);
+    s->y0 = fmin(fmax(s->y0, 0), height);
+    s->y1 = fmin(fmax(s->y1, 0), height);
+    return s->x1 > s->x0 && s->y1 > s->y0;
+}
 
 /* The bounding box, in the view's pixels, of the region's part that lies inside the photo and in front of the view.
  * Returns the number of grid points inside the view's picture. */

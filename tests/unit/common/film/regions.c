@@ -1,5 +1,5 @@
 /* regions.c - drawn rectangles, mapped through lenses. */
-#include "stages/find_subjects/regions.h"
+#include "common/film/regions.h"
 
 #include "tests/unit/scratch.h"
 
@@ -138,6 +138,18 @@ static void malformed_lines_are_errors_with_their_position(void **state)
     }
 }
 
+static void a_rectangle_at_the_border_is_clipped(void **state)
+{
+    (void)state;
+    struct subject s = {.x0 = -5, .y0 = 10, .x1 = 12, .y1 = 300};
+    assert_true(clip_to_picture(&s, 40, 30));
+    assert_true(s.x0 == 0 && s.y0 == 10 && s.x1 == 12 && s.y1 == 30);
+    s = (struct subject){.x0 = -5, .y0 = 10, .x1 = 0, .y1 = 20};
+    assert_false(clip_to_picture(&s, 40, 30));
+    s = (struct subject){.x0 = 3, .y0 = 31, .x1 = 9, .y1 = 40};
+    assert_false(clip_to_picture(&s, 40, 30));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -146,6 +158,7 @@ int main(void)
         cmocka_unit_test(a_rectangle_in_no_view_is_an_error_with_its_line),
         cmocka_unit_test(lines_are_read_in_order),
         cmocka_unit_test(malformed_lines_are_errors_with_their_position),
+        cmocka_unit_test(a_rectangle_at_the_border_is_clipped),
     };
     return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }
