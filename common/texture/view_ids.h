@@ -19,7 +19,7 @@ struct view_ids {
     float *jump;    /* px to the nearest pixel across a depth jump or where the view ends, at most VIEW_IDS_FAR; 0 where
                        the view has no pixel, or id is 0 */
     float *clutter; /* 0: the view shows the face here; 1: something that the model does not hold stands in front, or
-                       the view has no pixel; CLUTTER_UNSURE */
+                       the view has no pixel; CLUTTER_UNSURE: nothing is known; between: rather the one or the other */
 };
 
 /* Makes empty planes. ST_DATA: no pixels, or too many. */

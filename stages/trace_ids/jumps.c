@@ -13,6 +13,7 @@
  * that the view does not have count as jumps. */
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "common/math/distance.h"
 #include "stages/trace_ids/view_trace.h"
@@ -79,8 +80,10 @@ enum status find_jumps(struct view_ids *ids, const struct view_trace *t, const s
     const size_t pixels = (size_t)t->width * (size_t)t->height;
     uint8_t *inside = malloc(pixels);
     enum status st = inside ? ST_OK : err_nomem(err, "depth jumps", pixels);
-    for (size_t i = 0; !st && i < pixels; i++) inside[i] = 1;
-    if (!st) mark_jumps(inside, t, depth, params->jump);
+    if (!st) {
+        memset(inside, 1, pixels);
+        mark_jumps(inside, t, depth, params->jump);
+    }
     if (!st) st = distance_squared(ids->jump, inside, t->width, t->height, err);
     for (size_t i = 0; !st && i < pixels; i++) {
         const bool shown = ids->id[i] && depth->interior.id[i];
