@@ -61,17 +61,30 @@ void model_rays_release(struct model_rays *m)
     *m = (struct model_rays){0};
 }
 
-double model_rays_size(const struct model_rays *m)
+static void bounds(const struct model_rays *m, struct vec3 *low, struct vec3 *high)
 {
-    if (!m->mesh.vertex_count) return 0;
-    struct vec3 low = m->mesh.vertices[0].p, high = low;
+    *low = *high = m->mesh.vertex_count ? m->mesh.vertices[0].p : vec3_make(0, 0, 0);
     for (int i = 1; i < m->mesh.vertex_count; i++) {
         const struct vec3 p = m->mesh.vertices[i].p;
-        low = vec3_make(fmin(low.x, p.x), fmin(low.y, p.y), fmin(low.z, p.z));
-        high = vec3_make(fmax(high.x, p.x), fmax(high.y, p.y), fmax(high.z, p.z));
+        *low = vec3_make(fmin(low->x, p.x), fmin(low->y, p.y), fmin(low->z, p.z));
+        *high = vec3_make(fmax(high->x, p.x), fmax(high->y, p.y), fmax(high->z, p.z));
     }
+}
+
+double model_rays_size(const struct model_rays *m)
+{
+    struct vec3 low, high;
+    bounds(m, &low, &high);
     const struct vec3 side = vec3_sub(high, low);
     return fmax(side.x, fmax(side.y, side.z));
+}
+
+bool model_rays_near(const struct model_rays *m, struct vec3 p)
+{
+    struct vec3 low, high;
+    bounds(m, &low, &high);
+    return m->mesh.vertex_count && p.x >= low.x && p.y >= low.y && p.z >= low.z && p.x <= high.x && p.y <= high.y &&
+           p.z <= high.z;
 }
 
 /* The solid angle of a triangle from p, positive if its normal points away from p. */

@@ -25,6 +25,8 @@ void model_rays_release(struct model_rays *m);
 bool model_rays_inside(const struct model_rays *m, struct vec3 p, double margin);
 /* The largest side of the model's bounding box; 0 without vertices. */
 double model_rays_size(const struct model_rays *m);
+/* Whether a point is within that box. */
+bool model_rays_near(const struct model_rays *m, struct vec3 p);
 
 /* Sets *direction to that of the ray through the centre of pixel (x, y), of any length; false: there is no ray. */
 typedef bool model_ray_fn(const void *ctx, int x, int y, struct vec3 *direction);

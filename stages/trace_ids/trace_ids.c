@@ -4,21 +4,35 @@
  *         VIEWS/cameras.txt, images.txt, points3D.txt   the cameras
  *         DEPTH/VIEW.exr, VIEW.txt                      the view's layered depth
  * writes  VIEW.txt beside OUT                           the faces that the view shows
- *         OUT                                           face id, depth, distance from depth jumps, clutter */
+ *         OUT                                           face id, depth, distance from depth jumps, clutter
+ * With --reveal instead:
+ * reads   MODEL, AXES, VIEWS; EDIT, ...                 the edited models
+ * writes  OUT, only if its bytes change                 surfaces that some edit reveals in the view
+ *         VIEW.txt beside OUT                           how many pixels each edit reveals
+ * With --index instead:
+ * reads   MODEL, AXES, VIEWS; IDS/VIEW.txt of all views
+ * writes  OUT                                           the views of each face, best first */
+#include <inttypes.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "common/base/cli.h"
 #include "common/base/file_path.h"
 #include "common/base/log.h"
-#include "stages/trace_ids/view_record.h"
+#include "common/base/outfile.h"
+#include "common/base/textfile.h"
+#include "stages/trace_ids/reveal.h"
+#include "stages/trace_ids/view_ranks.h"
 
 #define PARAM_STRUCT struct trace_params
 const struct param trace_param_table[] = {TRACE_PARAMS(PARAM_ROW) PARAM_END};
 #undef PARAM_STRUCT
 
 struct job {
-    const char *model, *axes, *views, *view, *depth, *out;
+    const char *model, *axes, *views, *view, *depth, *index, *out;
+    bool reveal;
+    struct cli_list edits;
     struct trace_params params;
     struct provenance prov;
     struct model_rays rays;
@@ -96,6 +110,125 @@ static enum status trace_view(struct job *j, struct err *err)
     return st;
 }
 
+/* The name of an edit, from .../E/model.txt. */
+static void edit_name(char name[FILE_PATH], const char *path)
+{
+    const char *end = strrchr(path, '/'), *begin = end;
+    while (begin && begin > path && begin[-1] != '/') begin--;
+    snprintf(name, FILE_PATH, "%.*s", end ? (int)(end - begin) : 0, begin ? begin : "");
+}
+
+/* Adds what one edit reveals, and a line to the record. */
+static enum status add_edit(struct reveal *r, FILE *record, struct job *j, const struct view *view, const char *path,
+                            struct err *err)
+{
+    struct model_rays model = {0};
+    struct view_trace trace = {0};
+    char name[FILE_PATH], input[FILE_PATH + 32], quoted[FILE_PATH];
+    int64_t pixels = 0;
+    edit_name(name, path);
+    snprintf(input, sizeof input, "remodel/%s/model.txt", name);
+    enum status st = provenance_add_file(&j->prov, input, path, err);
+    if (!st) st = model_rays_read(&model, path, MODEL_WITH_GLASS, err);
+    if (!st) st = view_trace(&trace, &model, &j->frame, view, err);
+    if (!st) st = reveal_add(r, &trace, &pixels, err);
+    if (!st) st = textfile_quote(name, quoted, sizeof quoted, err);
+    if (!st) fprintf(record, "edit %s %" PRId64 "\n", quoted, pixels);
+    view_trace_release(&trace);
+    model_rays_release(&model);
+    return st;
+}
+
+static enum status write_reveal(const struct reveal *r, const struct job *j, const struct view *view, struct err *err)
+{
+    /* without inputs and parameters: the bytes change only with what is revealed */
+    const struct provenance prov = {.stage = j->prov.stage, .version = j->prov.version};
+    struct view_reveal result = {0};
+    bool changed = false;
+    enum status st = reveal_result(&result, r, err);
+    if (!st) st = view_reveal_write(&result, view, j->out, &prov, &changed, err);
+    if (!st && !changed) log_note("%s: nothing new is revealed", view->name);
+    view_reveal_release(&result);
+    return st;
+}
+
+static enum status write_reveal_record(const struct job *j, const char *path, const char *lines, struct err *err)
+{
+    struct outfile f = {0};
+    enum status st = outfile_open(&f, path, err);
+    if (!st) {
+        provenance_print(&j->prov, f.fp);
+        fprintf(f.fp, "remodel-reveal 1\n%s", lines);
+        st = outfile_commit(&f, err);
+    }
+    outfile_discard(&f);
+    return st;
+}
+
+static enum status reveal_view(struct job *j, struct err *err)
+{
+    struct view_trace trace = {0};
+    struct reveal reveal = {.base = &trace};
+    const struct view *view = NULL;
+    char text[FILE_PATH], *lines = NULL;
+    size_t size = 0;
+    FILE *record = open_memstream(&lines, &size);
+    enum status st = record ? record_path(text, j->out, err) : err_nomem(err, "a record", 1);
+    if (!st) st = read_inputs(j, err);
+    if (!st) st = find_view(&view, j, err);
+    if (!st) st = view_trace(&trace, &j->rays, &j->frame, view, err);
+    for (int i = 0; !st && i < j->edits.count; i++) st = add_edit(&reveal, record, j, view, j->edits.items[i], err);
+    if (record) fclose(record);
+    if (!st) st = write_reveal(&reveal, j, view, err);
+    if (!st) st = write_reveal_record(j, text, lines, err);
+    free(lines);
+    reveal_release(&reveal);
+    view_trace_release(&trace);
+    return st;
+}
+
+/* Warns if no camera is within the model's bounding box: then the axes or the model are wrong. */
+static void warn_if_outside(const struct job *j)
+{
+    int within = 0;
+    for (int i = 0; i < j->set.view_count; i++)
+        within += model_rays_near(&j->rays, model_from_world_view(&j->frame, &j->set.views[i]).center);
+    if (!within && j->set.view_count)
+        log_warn("all %d cameras are outside the model, so no view shows its rooms from within; check axes.txt, the "
+                 "scale and the script of the model.",
+                 j->set.view_count);
+}
+
+static enum status index_faces(struct job *j, struct err *err)
+{
+    struct view_ranks ranks = {.max_views = j->params.index_views};
+    int empty = 0;
+    enum status st = read_inputs(j, err);
+    if (!st) warn_if_outside(j);
+    for (int i = 0; !st && i < j->set.view_count; i++) {
+        struct view_record record = {0};
+        char path[FILE_PATH];
+        st = file_path(path, j->index, j->set.views[i].name, ".txt", err);
+        if (!st) st = view_record_read(&record, path, err);
+        if (!st) st = view_ranks_add(&ranks, j->set.views[i].name, &record, err);
+        empty += !st && !record.count;
+        view_record_release(&record);
+    }
+    if (!st) st = view_ranks_write(&ranks, j->out, &j->prov, err);
+    if (!st && empty) log_note("%d of %d views show no face of the model", empty, j->set.view_count);
+    view_ranks_release(&ranks);
+    return st;
+}
+
+static enum status check_usage(const struct job *j, struct err *err)
+{
+    if (j->reveal && j->index) return err_set(err, ST_USAGE, "--reveal and --index exclude each other.");
+    if (j->edits.count && !j->reveal) return err_set(err, ST_USAGE, "--edit is only for --reveal.");
+    if (!j->index && !j->view) return err_set(err, ST_USAGE, "--view is missing; see --help.");
+    if (!j->index && !j->reveal && !j->depth) return err_set(err, ST_USAGE, "--depth is missing; see --help.");
+    return ST_OK;
+}
+
 int main(int argc, char **argv)
 {
     struct job j = {.params = TRACE_PARAMS_DEFAULT};
@@ -104,14 +237,22 @@ int main(int argc, char **argv)
         CLI_STR("model", &j.model, CLI_REQUIRED, "model.txt of the unedited model"),
         CLI_STR("axes", &j.axes, CLI_REQUIRED, "the model's frame, axes.txt"),
         CLI_STR("views", &j.views, CLI_REQUIRED, "folder of cameras"),
-        CLI_STR("view", &j.view, CLI_REQUIRED, "view to trace"),
-        CLI_STR("depth", &j.depth, CLI_REQUIRED, "folder of the views' depth"),
-        CLI_STR("out", &j.out, CLI_REQUIRED, "EXR to write; the faces' list is written beside it"),
+        CLI_STR("view", &j.view, CLI_OPTIONAL, "view to trace"),
+        CLI_STR("depth", &j.depth, CLI_OPTIONAL, "folder of the views' depth"),
+        CLI_FLAG("reveal", &j.reveal, "find what edits reveal in the view, in place of its ids"),
+        CLI_LIST("edit", &j.edits, CLI_OPTIONAL, "with --reveal: model.txt of an edited model"),
+        CLI_STR("index", &j.index, CLI_OPTIONAL, "folder of the views' lists of faces: index them, in place of a view"),
+        CLI_STR("out", &j.out, CLI_REQUIRED, "EXR to write, with a list beside it; with --index the index"),
         CLI_PARAMS(trace_param_table, &j.params, NULL),
         CLI_END,
     };
     struct err err = ERR_INIT;
-    if (cli_parse(argc, argv, "trace_ids", opts, &j.prov, &err) != CLI_RUN || trace_view(&j, &err)) err_report(&err);
+    if (cli_parse(argc, argv, "trace_ids", opts, &j.prov, &err) != CLI_RUN || check_usage(&j, &err) ||
+        (j.index    ? index_faces(&j, &err)
+         : j.reveal ? reveal_view(&j, &err)
+                    : trace_view(&j, &err)))
+        err_report(&err);
+    cli_list_release(&j.edits);
     camera_set_release(&j.set);
     model_rays_release(&j.rays);
     provenance_release(&j.prov);
