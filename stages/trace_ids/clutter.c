@@ -12,6 +12,10 @@
  *   0.25  not nearer, by a segment of little confidence
  *   0     not nearer, and the depth is sure enough to tell
  *
+ * From afar a view cannot tell a bookcase from the wall behind it: the tolerance, which grows with the distance, hides it.
+ * So a view shows that a surface is clean only where its depth lies within `furniture` of it; between that and the
+ * tolerance nothing is known.
+ *
  * A segment of little confidence (below min_confidence) has inherited its depth from its neighbours. On plain walls,
  * which give nothing to match, that depth is right most of the time: such pixels are nearly as often clean as those of
  * sure depth (docs/evaluation.md), and without them a white room would have no texture.
@@ -29,6 +33,8 @@
 #define MIN_ALPHA 0.1f  /* of a boundary layer that counts */
 #define RATHER    0.25f /* what a segment of little confidence says counts half: 0.5 +- this */
 
+#define SHARPEST 0.008 /* of the depth: no depth is surer than that */
+
 enum { ROWS = 16 };
 
 struct clutter_job {
@@ -36,6 +42,7 @@ struct clutter_job {
     const struct view_ids *ids;
     const struct layered_depth *depth;
     const struct trace_params *params;
+    double furniture; /* scene units */
 };
 
 static float judge(const struct clutter_job *job, uint32_t id, float z, double z_model)
@@ -46,7 +53,8 @@ static float judge(const struct clutter_job *job, uint32_t id, float z, double z
     const bool sure = s->confidence >= job->params->min_confidence;
     if (nearer > job->params->depth_tolerance + job->params->depth_sigmas * sigma)
         return sure ? 1 : CLUTTER_UNSURE + RATHER;
-    if (sigma > job->params->max_depth_error) return CLUTTER_UNSURE;
+    if (sigma > job->params->max_depth_error || nearer > fmax(SHARPEST, job->furniture / z_model))
+        return CLUTTER_UNSURE;
     return sure ? 0 : CLUTTER_UNSURE - RATHER;
 }
 
@@ -106,10 +114,22 @@ static enum status clean_outlines(const struct clutter_job *job, struct err *err
     return st;
 }
 
-enum status find_clutter(struct view_ids *ids, const struct view_trace *t, const struct layered_depth *depth,
-                         const struct trace_params *params, struct err *err)
+/* The model's height, scene units. */
+static double height_of(const struct view_trace *t, double scale)
 {
-    struct clutter_job job = {ids->clutter, ids, depth, params};
+    const struct solid_mesh *m = &t->model->mesh;
+    double low = INFINITY, high = -INFINITY;
+    for (int i = 0; i < m->vertex_count; i++) {
+        low = fmin(low, m->vertices[i].p.z);
+        high = fmax(high, m->vertices[i].p.z);
+    }
+    return high > low ? (high - low) / scale : 0;
+}
+
+enum status find_clutter(struct view_ids *ids, const struct view_trace *t, const struct layered_depth *depth,
+                         double scale, const struct trace_params *params, struct err *err)
+{
+    struct clutter_job job = {ids->clutter, ids, depth, params, params->furniture * height_of(t, scale)};
     parallel_for((size_t)t->height, ROWS, judge_rows, &job);
     return clean_outlines(&job, err);
 }

@@ -99,7 +99,7 @@ static enum status trace_view(struct job *j, struct err *err)
     if (!st) st = view_ids_init(&ids, view->width, view->height, err);
     if (!st) view_trace_ids(&ids, &trace);
     if (!st) st = find_jumps(&ids, &trace, &depth, &j->params, err);
-    if (!st) st = find_clutter(&ids, &trace, &depth, &j->params, err);
+    if (!st) st = find_clutter(&ids, &trace, &depth, j->frame.scale, &j->params, err);
     if (!st) st = view_record_make(&record, &ids, &trace, &j->params, err);
     if (!st) st = view_record_write(&record, text, &j->prov, err);
     if (!st) st = view_ids_write(&ids, view, j->out, &j->prov, err);

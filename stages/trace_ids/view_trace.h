@@ -36,8 +36,8 @@ void view_trace_ids(struct view_ids *ids, const struct view_trace *t);
 enum status find_jumps(struct view_ids *ids, const struct view_trace *t, const struct layered_depth *depth,
                        const struct trace_params *params, struct err *err);
 
-/* Sets ids->clutter. */
+/* Sets ids->clutter. scale: model units per scene unit. */
 enum status find_clutter(struct view_ids *ids, const struct view_trace *t, const struct layered_depth *depth,
-                         const struct trace_params *params, struct err *err);
+                         double scale, const struct trace_params *params, struct err *err);
 
 #endif
