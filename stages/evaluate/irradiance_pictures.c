@@ -21,7 +21,7 @@ static const char *const suffixes[PARTS] = {"", "_model", "_other"};
 
 struct pictures_job {
     struct evaluation *e;
-    struct traced_model model;
+    struct model_rays model;
     struct model_frame frame;
     bool has_model;
     double scale; /* of found irradiance */
@@ -410,7 +410,7 @@ static enum status read_model(struct pictures_job *job, struct err *err)
         return metric_note(&e->table, err, "skipped pictures of irradiance on surfaces of the model: %s",
                            e->aligned ? "there is no model/model.txt" : "the cameras do not tell where the truth is");
     enum status st = evaluation_input(e, path, "model", "model.txt", "", err);
-    if (!st) st = traced_model_read(&job->model, path, err);
+    if (!st) st = model_rays_read(&job->model, path, MODEL_WITHOUT_GLASS, err);
     if (!st) st = model_frame_read(&job->frame, e, same, vec3_make(0, 0, 0), err);
     job->has_model = !st;
     return st;
@@ -437,7 +437,7 @@ enum status evaluate_irradiance_pictures(struct evaluation *e, struct err *err)
         radiance_error_release(&job.errors[k]);
         ratio_error_release(&job.ratios[k]);
     }
-    traced_model_release(&job.model);
+    model_rays_release(&job.model);
     renders_release(&before);
     true_set_release(&set);
     return st;

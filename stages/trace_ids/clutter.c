@@ -1,88 +1,135 @@
-/* clutter.c - view_faces_find_clutter(): where something that the model does not hold stands in front of it.
+/* clutter.c - where something that the model does not hold stands in front of it.
  *
- * The clutter of a pixel is about the chance that something stands in front, by how much nearer its depth is than the
- * model's: on pixels of a simulated room of which that is known, depth within 3 % of the model's had something in front in
- * 1 to 4 % of the pixels even where it is inherited from neighbouring segments, and depth nearer by 20 % in 80 % of them,
- * in 94 % and more where other views confirm it. In between nothing is certain. A view from afar cannot tell a bookcase
- * from the wall behind it, so what counts as near the model shrinks with the distance. */
+ * Furniture must not be painted onto the wall behind it. The view's layered depth says what the photograph shows; the
+ * model says how far its face is. With z the depth of the view and w = 1 / z_model, d = 1 - z w is the part of the way
+ * to the model that is missing: above 0 the photograph shows something nearer. d has a tolerance for the model and the
+ * cameras (depth_tolerance), and the uncertainty of the segment's depth (common/layers/depth_sigma.h) times
+ * depth_sigmas. What lies behind the model is never clutter: a pane of glass has the street as its texture.
+ *
+ *   1     nearer by more than the tolerance, by either layer of the view's depth
+ *   0.75  the same, by a segment of little confidence
+ *   0.5   no depth to compare
+ *   0.25  not nearer, by a segment of little confidence
+ *   0     not nearer, and the depth is sure enough to tell
+ *
+ * From afar a view cannot tell a bookcase from the wall behind it: the tolerance, which grows with the distance, hides it.
+ * So a view shows that a surface is clean only where its depth lies within `furniture` of it; between that and the
+ * tolerance nothing is known.
+ *
+ * A segment of little confidence (below min_confidence) has inherited its depth from its neighbours. On plain walls,
+ * which give nothing to match, that depth is right most of the time: such pixels are nearly as often clean as those of
+ * sure depth (docs/evaluation.md), and without them a white room would have no texture.
+ *
+ * Clutter narrower than 2 min_clutter + 1 px is noise of the depth and becomes 0.5 (opening); what is left grows by
+ * clutter_margin, because outlines of segments are off by a pixel or two, and blurred. */
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
+#include "common/base/parallel.h"
 #include "common/layers/depth_sigma.h"
 #include "common/math/distance.h"
-#include "stages/trace_ids/view_faces.h"
+#include "stages/trace_ids/view_trace.h"
 
-static const double NEAR_MIN = 0.008,
-                    NEAR_MAX = 0.03;             /* relative difference of inverse depth up to which depth agrees */
-static const double FURNITURE = 0.037;           /* of the model's height: a depth that must be told apart */
-static const double BETWEEN = 1.67;              /* times that from which on nothing is certain */
-static const double FAR_BEGIN = 0.15, FAR = 0.2; /* from where, and where, something surely stands in front */
-static const double OUTLINE = 3;                 /* pixels around clutter that count as clutter */
-static const double SURE_CLUTTER = 0.6, UNKNOWN = 0.5;
+#define MIN_ALPHA 0.1f  /* of a boundary layer that counts */
+#define RATHER    0.25f /* what a segment of little confidence says counts half: 0.5 +- this */
 
-static const struct {
-    double near, between, far;
-} chances[DEPTH_CLASSES] = {
-    [DEPTH_CLASS_INHERITED] = {0.1, 0.4, 0.8},
-    [DEPTH_CLASS_UNSURE] = {0, 0.4, 0.95},
-    [DEPTH_CLASS_SURE] = {0, 0.75, 0.95},
+#define SHARPEST 0.008 /* of the depth: no depth is surer than that */
+
+enum { ROWS = 16 };
+
+struct clutter_job {
+    float *clutter;
+    const struct view_ids *ids;
+    const struct layered_depth *depth;
+    const struct trace_params *params;
+    double furniture; /* scene units */
 };
 
-static bool is_glass(const struct solid_mesh *m, int face)
+static float judge(const struct clutter_job *job, uint32_t id, float z, double z_model)
 {
-    return !strncmp(m->bodies[m->faces[face].body].name, "glass/", 6);
+    const struct depth_segment *s = &job->depth->segments[id - 1];
+    if (!(z > 0)) return CLUTTER_UNSURE;
+    const double nearer = 1 - (double)z / z_model, sigma = depth_sigma(s);
+    const bool sure = s->confidence >= job->params->min_confidence;
+    if (nearer > job->params->depth_tolerance + job->params->depth_sigmas * sigma)
+        return sure ? 1 : CLUTTER_UNSURE + RATHER;
+    if (sigma > job->params->max_depth_error || nearer > fmax(SHARPEST, job->furniture / z_model))
+        return CLUTTER_UNSURE;
+    return sure ? 0 : CLUTTER_UNSURE - RATHER;
 }
 
-static double between(double a, double b, double from, double to, double x)
+static void judge_rows(void *ctx, size_t begin, size_t end, int thread)
 {
-    return a + (b - a) * fmax(0, fmin(1, (x - from) / (to - from)));
+    const struct clutter_job *job = ctx;
+    const struct layer *inner = &job->depth->interior, *outer = &job->depth->boundary;
+    const size_t width = (size_t)job->ids->width;
+    (void)thread;
+    for (size_t i = begin * width; i < end * width; i++) {
+        const double z = (double)job->ids->z[i];
+        job->clutter[i] = CLUTTER_UNSURE;
+        if (!inner->id[i]) {
+            job->clutter[i] = 1;
+            continue;
+        }
+        if (!(z > 0)) continue;
+        job->clutter[i] = judge(job, inner->id[i], inner->z[i], z);
+        if (outer->id[i] && outer->rgba[4 * i + 3] > MIN_ALPHA)
+            job->clutter[i] = fmaxf(job->clutter[i], judge(job, outer->id[i], outer->z[i], z));
+    }
 }
 
-/* z: of the depth, with the segment that it is of; furniture: as a fraction of the model's depth. */
-static double clutter_of(double z, const struct depth_segment *s, double model_z, double furniture, bool glass)
+struct outline_scratch {
+    uint8_t *mask;
+    float *squared, *grown;
+};
+
+/* Clutter of at least `level` is eroded by min_clutter, and what is left dilated by min_clutter and clutter_margin. Raises
+ * `grown` to the level there. */
+static enum status grow(struct outline_scratch *s, const struct clutter_job *job, float level, struct err *err)
 {
-    const double nearer = model_z / z - 1;
-    const double near = fmax(NEAR_MIN, fmin(NEAR_MAX, furniture));
-    const enum depth_class c = depth_class(s->confidence);
-    if (glass && nearer < 0) return 0; /* what is seen through a pane is its texture */
-    if (nearer < FAR_BEGIN) return between(chances[c].near, chances[c].between, near, BETWEEN * near, nearer);
-    return between(chances[c].between, chances[c].far, FAR_BEGIN, FAR, nearer);
+    const int width = job->ids->width, height = job->ids->height;
+    const size_t pixels = (size_t)width * (size_t)height;
+    const float core = (float)job->params->min_clutter, rim = core + (float)job->params->clutter_margin;
+    for (size_t i = 0; i < pixels; i++) s->mask[i] = job->clutter[i] >= level;
+    if (distance_squared(s->squared, s->mask, width, height, err)) return err->status;
+    for (size_t i = 0; i < pixels; i++) s->mask[i] = s->squared[i] <= core * core;
+    if (distance_squared(s->squared, s->mask, width, height, err)) return err->status;
+    for (size_t i = 0; i < pixels; i++)
+        if (s->squared[i] <= rim * rim) s->grown[i] = fmaxf(s->grown[i], level);
+    return ST_OK;
 }
 
-static double height_of(const struct solid_mesh *m)
+static enum status clean_outlines(const struct clutter_job *job, struct err *err)
 {
+    static const float levels[] = {CLUTTER_UNSURE + RATHER, 1};
+    const size_t pixels = (size_t)job->ids->width * (size_t)job->ids->height;
+    struct outline_scratch s = {malloc(pixels), malloc(pixels * sizeof *s.squared), malloc(pixels * sizeof *s.grown)};
+    enum status st = s.mask && s.squared && s.grown ? ST_OK : err_nomem(err, "clutter", pixels * 9);
+    for (size_t i = 0; !st && i < pixels; i++) s.grown[i] = fminf(job->clutter[i], CLUTTER_UNSURE);
+    for (int k = 0; !st && k < 2; k++) st = grow(&s, job, levels[k], err);
+    for (size_t i = 0; !st && i < pixels; i++) job->clutter[i] = job->depth->interior.id[i] ? s.grown[i] : 1;
+    free(s.mask);
+    free(s.squared);
+    free(s.grown);
+    return st;
+}
+
+/* The model's height, scene units. */
+static double height_of(const struct view_trace *t, double scale)
+{
+    const struct solid_mesh *m = &t->model->mesh;
     double low = INFINITY, high = -INFINITY;
     for (int i = 0; i < m->vertex_count; i++) {
         low = fmin(low, m->vertices[i].p.z);
         high = fmax(high, m->vertices[i].p.z);
     }
-    return high > low ? high - low : 0;
+    return high > low ? (high - low) / scale : 0;
 }
 
-enum status view_faces_find_clutter(struct view_faces *f, const struct solid_mesh *mesh, const struct layered_depth *d,
-                                    double scale, struct err *err)
+enum status find_clutter(struct view_ids *ids, const struct view_trace *t, const struct layered_depth *depth,
+                         double scale, const struct trace_params *params, struct err *err)
 {
-    const size_t pixels = (size_t)f->width * (size_t)f->height;
-    const double furniture = FURNITURE * height_of(mesh);
-    if (d->width != f->width || d->height != f->height)
-        return err_set(err, ST_DATA, "the depth has %d x %d pixels, but the view %d x %d; make the depth again.",
-                       d->width, d->height, f->width, f->height);
-    uint8_t *clear = calloc(pixels, 1);
-    float *squared = malloc(pixels * sizeof *squared);
-    enum status st = clear && squared ? ST_OK : err_nomem(err, "clutter", pixels * sizeof *squared);
-    for (size_t i = 0; !st && i < pixels; i++) {
-        const uint32_t id = d->interior.id[i];
-        f->clutter[i] = (float)UNKNOWN;
-        if (id && f->face[i] >= 0 && d->interior.z[i] > 0)
-            f->clutter[i] = (float)clutter_of(scale * d->interior.z[i], &d->segments[id - 1], f->z[i],
-                                              furniture / f->z[i], is_glass(mesh, f->face[i]));
-        clear[i] = f->clutter[i] < (float)SURE_CLUTTER;
-    }
-    if (!st) st = distance_squared(squared, clear, f->width, f->height, err);
-    for (size_t i = 0; !st && i < pixels; i++)
-        if (squared[i] <= (float)(OUTLINE * OUTLINE)) f->clutter[i] = 1;
-    free(clear);
-    free(squared);
-    return st;
+    struct clutter_job job = {ids->clutter, ids, depth, params, params->furniture * height_of(t, scale)};
+    parallel_for((size_t)t->height, ROWS, judge_rows, &job);
+    return clean_outlines(&job, err);
 }
