@@ -66,6 +66,8 @@ void atlas_page_release(struct atlas_page *p);
  * then left), in which it fits. ST_DATA: a tile larger than a page. Tiles keep their order. */
 enum status atlas_pack(struct atlas *a, struct err *err);
 
+/* FOLDER/pageN.exr. */
+enum status atlas_page_path(char path[FILE_PATH], const char *folder, int page, struct err *err);
 /* Writes FOLDER/pageN.exr, which appears whole or not at all. A colour below 0, which a gradient solve may leave, becomes
  * 0. ST_DATA: NaN. */
 enum status atlas_write_page(const struct atlas_page *p, const char *folder, int page, const struct provenance *prov,

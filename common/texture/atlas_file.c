@@ -20,7 +20,7 @@ static const char *const channels[] = {"R", "G", "B", "A", "source"};
 
 /* ---------------------------------------------------------------------------------------------------------- writing */
 
-static enum status page_path(char path[FILE_PATH], const char *folder, int page, struct err *err)
+enum status atlas_page_path(char path[FILE_PATH], const char *folder, int page, struct err *err)
 {
     char name[32];
     snprintf(name, sizeof name, "page%d", page);
@@ -33,7 +33,7 @@ enum status atlas_write_page(const struct atlas_page *p, const char *folder, int
     const size_t texels = (size_t)p->width * (size_t)p->height;
     struct exr_image exr = {0};
     char path[FILE_PATH];
-    enum status st = page_path(path, folder, page, err);
+    enum status st = atlas_page_path(path, folder, page, err);
     if (!st) st = exr_image_init(&exr, p->width, p->height, err);
     for (int k = 0; !st && k < 5; k++) st = exr_add_plane(&exr, channels[k], k < 4 ? EXR_HALF : EXR_UINT, NULL, err);
     for (size_t i = 0; !st && i < texels; i++) {
@@ -121,7 +121,7 @@ enum status atlas_write_list(const struct atlas *a, const char *folder, const st
     enum status st = file_path(path, folder, "atlas", ".txt", err);
     if (!st) st = write_list(a, path, prov, err);
     for (int i = a->page_count; !st; i++) {
-        st = page_path(path, folder, i, err);
+        st = atlas_page_path(path, folder, i, err);
         if (!st && unlink(path)) break;
     }
     return st;
@@ -319,7 +319,7 @@ enum status atlas_page_read(struct atlas_page *p, const struct atlas *a, int pag
     struct exr_image exr = {0};
     char path[FILE_PATH];
     *p = (struct atlas_page){0};
-    enum status st = page_path(path, folder, page, err);
+    enum status st = atlas_page_path(path, folder, page, err);
     if (!st) st = exr_read(&exr, path, channels, 5, err);
     if (!st && (exr.width != a->page_sizes[page][0] || exr.height != a->page_sizes[page][1]))
         st = err_set(err, ST_DATA, "%s has %d x %d texels, but atlas.txt says %d x %d; bake it again.", path, exr.width,
