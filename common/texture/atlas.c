@@ -1,8 +1,11 @@
 /* atlas.c - see atlas.h: tiles on pages, and look-ups.
  *
- * Packing is first-fit decreasing: tiles in order of falling height go to the first page, and there to the uppermost,
- * then leftmost place in which they fit. A page keeps its skyline, the lower outline of what was placed; a tile's top
- * rests on the skyline's lowest point below its width, so a row of steps is searched and not the page's area. */
+ * Packing [Colburn 2014, 4.5.1] is first-fit decreasing: tiles in order of falling height go to the first page, and there
+ * to the uppermost, then leftmost place in which they fit. The thesis asks for an empty block and leaves open how it is
+ * found. Here a page keeps its maximal free rectangles: those that no larger free rectangle contains [Jylanki 2010]. A
+ * place from which a tile can move neither up nor left is the upper left corner of one of them, so the first place is
+ * found exactly without a search of the page's area. A tile replaces each rectangle that it overlaps by the up to four
+ * rectangles beside it; those inside another one are dropped. */
 #include "common/texture/atlas.h"
 
 #include <math.h>
@@ -13,6 +16,7 @@
 
 void atlas_release(struct atlas *a)
 {
+    if (!a) return;
     for (int i = 0; i < a->view_count; i++) free(a->views[i]);
     for (int i = 0; i < a->source_count; i++) free(a->sources[i]);
     free(a->viewpoint);
@@ -34,6 +38,7 @@ enum status atlas_page_init(struct atlas_page *p, int width, int height, struct 
 
 void atlas_page_release(struct atlas_page *p)
 {
+    if (!p) return;
     free(p->rgb);
     free(p->source);
     *p = (struct atlas_page){0};
@@ -41,59 +46,82 @@ void atlas_page_release(struct atlas_page *p)
 
 /* ---------------------------------------------------------------------------------------------------------- packing */
 
-struct step { /* of a skyline: columns from x to the next step's x are free from y down */
-    int x, y;
+struct block { /* free columns x0 <= x < x1 and rows y0 <= y < y1 of a page */
+    int x0, y0, x1, y1;
 };
 
-struct skyline {
-    struct step steps[ATLAS_PAGE + 1]; /* the last one ends the page */
-    int count;                         /* without the last */
+struct blocks { /* the maximal ones of a page */
+    struct block *list;
+    int count;
+    size_t room;
 };
 
-static void skyline_init(struct skyline *s)
+static bool holds(const struct block *a, const struct block *b)
 {
-    s->steps[0] = (struct step){0, 0};
-    s->steps[1] = (struct step){ATLAS_PAGE, 0};
-    s->count = 1;
+    return a->x0 <= b->x0 && a->y0 <= b->y0 && a->x1 >= b->x1 && a->y1 >= b->y1;
 }
 
-/* The first row at which a tile of this width fits below step i; ATLAS_PAGE: it does not. */
-static int top_at(const struct skyline *s, int i, int width)
+static enum status add_block(struct blocks *s, struct block b, struct err *err)
 {
-    const int end = s->steps[i].x + width;
-    int top = 0;
-    if (end > ATLAS_PAGE) return ATLAS_PAGE;
-    for (; i < s->count && s->steps[i].x < end; i++)
-        if (s->steps[i].y > top) top = s->steps[i].y;
-    return top;
+    if (b.x0 >= b.x1 || b.y0 >= b.y1) return ST_OK;
+    if (array_reserve(&s->list, &s->room, (size_t)s->count + 1, sizeof *s->list, "free blocks", err))
+        return err->status;
+    s->list[s->count++] = b;
+    return ST_OK;
 }
 
-/* Puts a tile at step i: columns of its width are free from `bottom` on. */
-static void raise(struct skyline *s, int i, int width, int bottom)
+/* Removes blocks from `first` on that another block holds. */
+static void drop_held(struct blocks *s, int first)
 {
-    const int begin = s->steps[i].x, end = begin + width;
-    int last = i; /* the step in which the tile ends */
-    while (s->steps[last + 1].x < end) last++;
-    const struct step rest = {end, s->steps[last].y};
-    const bool remains = s->steps[last + 1].x > end;
-    const int keep = last + 1, added = 1 + remains;
-    memmove(&s->steps[i + added], &s->steps[keep], (size_t)(s->count + 1 - keep) * sizeof *s->steps);
-    s->steps[i] = (struct step){begin, bottom};
-    if (remains) s->steps[i + 1] = rest;
-    s->count += added - (keep - i);
-}
-
-static bool place(struct skyline *s, struct atlas_tile *t)
-{
-    int best = -1, least = ATLAS_PAGE;
-    for (int i = 0; i < s->count; i++) {
-        const int top = top_at(s, i, t->width);
-        if (top + t->height <= ATLAS_PAGE && top < least) best = i, least = top;
+    for (int i = first; i < s->count;) {
+        bool held = false;
+        for (int k = 0; !held && k < s->count; k++) held = k != i && holds(&s->list[k], &s->list[i]);
+        if (held)
+            s->list[i] = s->list[--s->count];
+        else
+            i++;
     }
-    if (best < 0) return false;
-    t->x = s->steps[best].x;
-    t->y = least;
-    raise(s, best, t->width, least + t->height);
+}
+
+/* Takes a rectangle out of the free blocks. */
+static enum status take(struct blocks *s, struct block t, struct err *err)
+{
+    const int before = s->count;
+    int kept = 0;
+    enum status st = ST_OK;
+    for (int i = 0; i < before; i++) {
+        const struct block b = s->list[i];
+        if (b.x0 < t.x1 && b.x1 > t.x0 && b.y0 < t.y1 && b.y1 > t.y0) continue;
+        s->list[i] = s->list[kept];
+        s->list[kept++] = b;
+    }
+    for (int i = kept; !st && i < before; i++) { /* those that overlap */
+        const struct block b = s->list[i];
+        if (add_block(s, (struct block){b.x0, b.y0, b.x1, t.y0}, err) ||
+            add_block(s, (struct block){b.x0, b.y0, t.x0, b.y1}, err) ||
+            add_block(s, (struct block){t.x1, b.y0, b.x1, b.y1}, err) ||
+            add_block(s, (struct block){b.x0, t.y1, b.x1, b.y1}, err))
+            st = err->status;
+    }
+    if (st) return st;
+    memmove(&s->list[kept], &s->list[before], (size_t)(s->count - before) * sizeof *s->list);
+    s->count -= before - kept;
+    drop_held(s, kept);
+    return ST_OK;
+}
+
+/* Finds the tile's place; false: there is none. */
+static bool find_place(const struct blocks *s, struct atlas_tile *t)
+{
+    const struct block *best = NULL;
+    for (int i = 0; i < s->count; i++) {
+        const struct block *b = &s->list[i];
+        if (b->x1 - b->x0 < t->width || b->y1 - b->y0 < t->height) continue;
+        if (!best || b->y0 < best->y0 || (b->y0 == best->y0 && b->x0 < best->x0)) best = b;
+    }
+    if (!best) return false;
+    t->x = best->x0;
+    t->y = best->y0;
     return true;
 }
 
@@ -109,35 +137,37 @@ static int compare_order(const void *a, const void *b)
     return p->tile - q->tile;
 }
 
-static enum status add_page(struct atlas *a, struct skyline **lines, struct err *err)
+static enum status add_page(struct atlas *a, struct blocks **pages, struct err *err)
 {
-    if (array_append(&a->page_sizes, (size_t)a->page_count, sizeof *a->page_sizes, "pages", err)) return err->status;
-    if (array_append(lines, (size_t)a->page_count, sizeof **lines, "pages", err)) return err->status;
-    skyline_init(&(*lines)[a->page_count]);
-    a->page_sizes[a->page_count][0] = a->page_sizes[a->page_count][1] = 0;
+    const size_t n = (size_t)a->page_count;
+    if (array_append(&a->page_sizes, n, sizeof *a->page_sizes, "pages", err) ||
+        array_append(pages, n, sizeof **pages, "pages", err))
+        return err->status;
+    (*pages)[n] = (struct blocks){NULL, 0, 0};
+    a->page_sizes[n][0] = a->page_sizes[n][1] = 0;
     a->page_count++;
-    return ST_OK;
+    return add_block(&(*pages)[n], (struct block){0, 0, ATLAS_PAGE, ATLAS_PAGE}, err);
 }
 
-static enum status place_tile(struct atlas *a, struct skyline **lines, struct atlas_tile *t, struct err *err)
+static enum status place_tile(struct atlas *a, struct blocks **pages, struct atlas_tile *t, struct err *err)
 {
     int page = 0;
-    while (page < a->page_count && !place(&(*lines)[page], t)) page++;
+    while (page < a->page_count && !find_place(&(*pages)[page], t)) page++;
     if (page == a->page_count) {
-        if (add_page(a, lines, err)) return err->status;
-        place(&(*lines)[page], t);
+        if (add_page(a, pages, err)) return err->status;
+        find_place(&(*pages)[page], t);
     }
     t->page = page;
     int *size = a->page_sizes[page];
     if (t->x + t->width > size[0]) size[0] = t->x + t->width;
     if (t->y + t->height > size[1]) size[1] = t->y + t->height;
-    return ST_OK;
+    return take(&(*pages)[page], (struct block){t->x, t->y, t->x + t->width, t->y + t->height}, err);
 }
 
 enum status atlas_pack(struct atlas *a, struct err *err)
 {
     struct order *order = malloc(((size_t)a->tile_count + 1) * sizeof *order);
-    struct skyline *lines = NULL;
+    struct blocks *pages = NULL;
     enum status st = order ? ST_OK : err_nomem(err, "tiles", (size_t)a->tile_count * sizeof *order);
     free(a->page_sizes);
     a->page_sizes = NULL;
@@ -150,9 +180,10 @@ enum status atlas_pack(struct atlas *a, struct err *err)
         order[i] = (struct order){t->height, t->width, i};
     }
     if (!st && a->tile_count) qsort(order, (size_t)a->tile_count, sizeof *order, compare_order);
-    for (int i = 0; !st && i < a->tile_count; i++) st = place_tile(a, &lines, &a->tiles[order[i].tile], err);
+    for (int i = 0; !st && i < a->tile_count; i++) st = place_tile(a, &pages, &a->tiles[order[i].tile], err);
     free(order);
-    free(lines);
+    for (int i = 0; pages && i < a->page_count; i++) free(pages[i].list);
+    free(pages);
     return st;
 }
 
@@ -167,6 +198,35 @@ bool atlas_tile_project(const struct atlas_tile *t, struct vec3 p, double *x, do
     *x = h[0] / h[2];
     *y = h[1] / h[2];
     return *x >= t->x && *y >= t->y && *x <= t->x + t->width && *y <= t->y + t->height;
+}
+
+/* The first tile whose face is not below `face`. */
+static int first_tile(const struct atlas *a, int face)
+{
+    int low = 0, high = a->tile_count;
+    while (low < high) {
+        const int middle = low + (high - low) / 2;
+        if (a->tiles[middle].face < face)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+const struct atlas_tile *atlas_find(const struct atlas *a, int face, struct vec3 p, double *x, double *y)
+{
+    const struct atlas_tile *found = NULL;
+    double deepest = -1;
+    for (int i = first_tile(a, face); i < a->tile_count && a->tiles[i].face == face; i++) {
+        const struct atlas_tile *t = &a->tiles[i];
+        double px, py;
+        if (!atlas_tile_project(t, p, &px, &py)) continue;
+        const double depth = fmin(fmin(px - t->x, t->x + t->width - px), fmin(py - t->y, t->y + t->height - py));
+        if (!(depth > deepest)) continue;
+        found = t, deepest = depth, *x = px, *y = py;
+    }
+    return found;
 }
 
 bool atlas_sample(float rgb[3], uint32_t *nearest, const struct atlas_page *p, const struct atlas_tile *t, double x,

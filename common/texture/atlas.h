@@ -57,7 +57,7 @@ struct atlas_page {
     uint32_t *source; /* ATLAS_NONE: no texel */
 };
 
-void atlas_release(struct atlas *a);
+void atlas_release(struct atlas *a); /* idempotent; NULL is allowed */
 enum status atlas_page_init(struct atlas_page *p, int width, int height, struct err *err);
 void atlas_page_release(struct atlas_page *p);
 
@@ -66,20 +66,30 @@ void atlas_page_release(struct atlas_page *p);
  * then left), in which it fits. ST_DATA: a tile larger than a page. Tiles keep their order. */
 enum status atlas_pack(struct atlas *a, struct err *err);
 
-/* Writes FOLDER/pageN.exr, which appears whole or not at all. */
+/* FOLDER/pageN.exr. */
+enum status atlas_page_path(char path[FILE_PATH], const char *folder, int page, struct err *err);
+/* Writes FOLDER/pageN.exr, which appears whole or not at all. A colour below 0, which a gradient solve may leave, becomes
+ * 0. ST_DATA: NaN. */
 enum status atlas_write_page(const struct atlas_page *p, const char *folder, int page, const struct provenance *prov,
                              struct err *err);
-/* Writes FOLDER/atlas.txt, when all pages have been written, and removes pages that an earlier atlas had beyond these. */
+/* Writes FOLDER/atlas.txt, when all pages have been written, and removes pages that an earlier atlas had beyond these.
+ * Tiles are written in order; they may be in any order in memory. prov may be NULL. ST_DATA: a name that textfile_quote()
+ * refuses. */
 enum status atlas_write_list(const struct atlas *a, const char *folder, const struct provenance *prov, struct err *err);
 /* Both, for page_count pages. */
 enum status atlas_write(const struct atlas *a, const struct atlas_page *pages, const char *folder,
                         const struct provenance *prov, struct err *err);
-/* Reads atlas.txt. Afterwards indices are in range, rectangles inside their pages, numbers finite; otherwise ST_DATA
- * with file and line. */
+/* Reads atlas.txt. Afterwards indices are in range, rectangles inside their pages, numbers finite, names and tiles in
+ * order; otherwise ST_DATA with file and line. */
 enum status atlas_read(struct atlas *a, const char *folder, struct err *err);
-/* Reads a page. ST_DATA: another size than atlas.txt says, a source that it does not list. */
+/* Reads a page. ST_DATA: another size than atlas.txt says, a source that it does not list, a negative colour, alpha other
+ * than 1 where there is a source and 0 elsewhere. */
 enum status atlas_page_read(struct atlas_page *p, const struct atlas *a, int page, const char *folder, struct err *err);
 
+/* The tile of a face that shows a point of the model's frame, and the page pixel there; NULL: none does. Of several tiles
+ * it is the one in which the pixel lies farthest from the rectangle's edges. So tiles that share a border texel meet at
+ * its centre, and their look-ups there are equal. Tiles must be in order, as atlas_read() leaves them. */
+const struct atlas_tile *atlas_find(const struct atlas *a, int face, struct vec3 p, double *x, double *y);
 /* The page pixel of a point of the model's frame in a tile; false: the look-up does not count. */
 bool atlas_tile_project(const struct atlas_tile *t, struct vec3 p, double *x, double *y);
 /* The colour there, bilinear over the texels that exist; false: none of the four does. *nearest (may be NULL): source

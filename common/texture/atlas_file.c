@@ -14,11 +14,13 @@
 
 #define HEADER "remodel-atlas"
 
+enum { NAME_SIZE = 1024 }; /* of a quoted name */
+
 static const char *const channels[] = {"R", "G", "B", "A", "source"};
 
 /* ---------------------------------------------------------------------------------------------------------- writing */
 
-static enum status page_path(char path[FILE_PATH], const char *folder, int page, struct err *err)
+enum status atlas_page_path(char path[FILE_PATH], const char *folder, int page, struct err *err)
 {
     char name[32];
     snprintf(name, sizeof name, "page%d", page);
@@ -31,12 +33,15 @@ enum status atlas_write_page(const struct atlas_page *p, const char *folder, int
     const size_t texels = (size_t)p->width * (size_t)p->height;
     struct exr_image exr = {0};
     char path[FILE_PATH];
-    enum status st = page_path(path, folder, page, err);
+    enum status st = atlas_page_path(path, folder, page, err);
     if (!st) st = exr_image_init(&exr, p->width, p->height, err);
     for (int k = 0; !st && k < 5; k++) st = exr_add_plane(&exr, channels[k], k < 4 ? EXR_HALF : EXR_UINT, NULL, err);
     for (size_t i = 0; !st && i < texels; i++) {
         if (p->source[i] == ATLAS_NONE) continue;
-        for (int c = 0; c < 3; c++) exr.planes[c].f[i] = p->rgb[3 * i + (size_t)c];
+        for (int c = 0; c < 3; c++) {
+            const float value = p->rgb[3 * i + (size_t)c];
+            exr.planes[c].f[i] = value < 0 ? 0 : value;
+        }
         exr.planes[3].f[i] = 1;
         exr.planes[4].u[i] = p->source[i];
     }
@@ -53,22 +58,59 @@ static void print_tile(FILE *to, const struct atlas_tile *t)
     fputc('\n', to);
 }
 
+/* The order of tiles in the file: by face, then view, then as they were. */
+static int compare_tiles(const void *a, const void *b)
+{
+    const struct atlas_tile *p = *(const struct atlas_tile *const *)a, *q = *(const struct atlas_tile *const *)b;
+    if (p->face != q->face) return p->face < q->face ? -1 : 1;
+    if (p->view != q->view) return p->view < q->view ? -1 : 1;
+    return p < q ? -1 : p > q;
+}
+
+static enum status print_tiles(FILE *to, const struct atlas *a, struct err *err)
+{
+    const size_t n = (size_t)a->tile_count;
+    const struct atlas_tile **order = malloc((n + 1) * sizeof *order);
+    if (!order) return err_nomem(err, "tiles", n * sizeof *order);
+    for (size_t i = 0; i < n; i++) order[i] = &a->tiles[i];
+    qsort(order, n, sizeof *order, compare_tiles);
+    for (size_t i = 0; i < n; i++) print_tile(to, order[i]);
+    free(order);
+    return ST_OK;
+}
+
+static enum status print_names(FILE *to, const char *what, char *const *names, int count, struct err *err)
+{
+    char name[NAME_SIZE];
+    for (int i = 0; i < count; i++) {
+        if (textfile_quote(names[i], name, sizeof name, err)) return err->status;
+        fprintf(to, "%s %s\n", what, name);
+    }
+    return ST_OK;
+}
+
+static enum status print_list(FILE *to, const struct atlas *a, struct err *err)
+{
+    char name[NAME_SIZE];
+    fprintf(to, HEADER " 1\n");
+    if (a->viewpoint) {
+        if (textfile_quote(a->viewpoint, name, sizeof name, err)) return err->status;
+        fprintf(to, "viewpoint %s %.17g %.17g %.17g\n", name, a->centre.x, a->centre.y, a->centre.z);
+    }
+    if (print_names(to, "view", a->views, a->view_count, err) ||
+        print_names(to, "source", a->sources, a->source_count, err))
+        return err->status;
+    for (int i = 0; i < a->page_count; i++) fprintf(to, "page %d %d\n", a->page_sizes[i][0], a->page_sizes[i][1]);
+    return print_tiles(to, a, err);
+}
+
 static enum status write_list(const struct atlas *a, const char *path, const struct provenance *prov, struct err *err)
 {
     struct outfile file = {0};
     enum status st = outfile_open(&file, path, err);
-    if (!st) {
-        fprintf(file.fp, HEADER " 1\n");
-        provenance_print(prov, file.fp);
-        if (a->viewpoint)
-            fprintf(file.fp, "viewpoint %s %.17g %.17g %.17g\n", a->viewpoint, a->centre.x, a->centre.y, a->centre.z);
-        for (int i = 0; i < a->view_count; i++) fprintf(file.fp, "view %s\n", a->views[i]);
-        for (int i = 0; i < a->source_count; i++) fprintf(file.fp, "source %s\n", a->sources[i]);
-        for (int i = 0; i < a->page_count; i++)
-            fprintf(file.fp, "page %d %d\n", a->page_sizes[i][0], a->page_sizes[i][1]);
-        for (int i = 0; i < a->tile_count; i++) print_tile(file.fp, &a->tiles[i]);
-        st = outfile_commit(&file, err);
-    }
+    if (!st && prov) provenance_print(prov, file.fp);
+    if (!st) st = print_list(file.fp, a, err);
+    if (!st) st = outfile_commit(&file, err);
     outfile_discard(&file);
     return st;
 }
@@ -79,7 +121,7 @@ enum status atlas_write_list(const struct atlas *a, const char *folder, const st
     enum status st = file_path(path, folder, "atlas", ".txt", err);
     if (!st) st = write_list(a, path, prov, err);
     for (int i = a->page_count; !st; i++) {
-        st = page_path(path, folder, i, err);
+        st = atlas_page_path(path, folder, i, err);
         if (!st && unlink(path)) break;
     }
     return st;
@@ -95,100 +137,181 @@ enum status atlas_write(const struct atlas *a, const struct atlas_page *pages, c
 
 /* ---------------------------------------------------------------------------------------------------------- reading */
 
-static enum status read_name(char ***names, int *count, struct textfile *t, const char *what, struct err *err)
+/* The first word of the next line; NULL: there is no line. */
+static enum status next_word(struct textfile *t, char **word, struct err *err)
 {
-    char *word = NULL;
-    enum status st = textfile_word(t, what, &word, err);
-    if (!st) st = array_append(names, (size_t)*count, sizeof **names, what, err);
-    if (!st && !((*names)[*count] = strdup(word))) st = err_nomem(err, "a name", strlen(word));
-    if (!st) ++*count;
-    return st ? st : textfile_end(t, err);
+    *word = NULL;
+    return textfile_next(t) ? textfile_word(t, "viewpoint, view, source, page or tile", word, err) : ST_OK;
 }
 
-static enum status read_viewpoint(struct atlas *a, struct textfile *t, struct err *err)
+static enum status copy_name(char **name, struct textfile *t, const char *what, char **word, struct err *err)
 {
-    char *word = NULL;
-    if (a->viewpoint) return textfile_error(t, err, "viewpoint", "one line viewpoint");
-    enum status st = textfile_word(t, "photo", &word, err);
-    if (!st && !(a->viewpoint = strdup(word))) st = err_nomem(err, "a name", strlen(word));
-    if (!st) st = textfile_double(t, "X", &a->centre.x, err);
-    if (!st) st = textfile_double(t, "Y", &a->centre.y, err);
-    if (!st) st = textfile_double(t, "Z", &a->centre.z, err);
-    return st ? st : textfile_end(t, err);
+    if (textfile_word(t, what, word, err)) return err->status;
+    *name = strdup(*word);
+    return *name ? ST_OK : err_nomem(err, "a name", strlen(*word) + 1);
 }
 
-static enum status read_ints(struct textfile *t, const char *const *what, const int (*limits)[2], int *values,
-                             int count, struct err *err)
+/* Lines WHAT NAME. *word: the first word of the current line, and of the line after them. */
+static enum status read_names(char ***names, int *count, struct textfile *t, const char *what, char **word,
+                              struct err *err)
 {
-    enum status st = ST_OK;
-    for (int i = 0; !st && i < count; i++) {
+    while (*word && !strcmp(*word, what)) {
+        char *found = NULL;
+        if (array_append(names, (size_t)*count, sizeof **names, "names", err)) return err->status;
+        if (copy_name(&(*names)[*count], t, "a name", &found, err)) return err->status;
+        const int i = (*count)++;
+        if (i && strcmp((*names)[i - 1], (*names)[i]) >= 0)
+            return textfile_error(t, err, found, "a name after %s, as each is listed once, in order", (*names)[i - 1]);
+        if (textfile_end(t, err) || next_word(t, word, err)) return err->status;
+    }
+    return ST_OK;
+}
+
+static enum status read_viewpoint(struct atlas *a, struct textfile *t, char **word, struct err *err)
+{
+    char *found;
+    if (!*word || strcmp(*word, "viewpoint")) return ST_OK;
+    if (copy_name(&a->viewpoint, t, "a photo", &found, err) || textfile_double(t, "X", &a->centre.x, err) ||
+        textfile_double(t, "Y", &a->centre.y, err) || textfile_double(t, "Z", &a->centre.z, err) ||
+        textfile_end(t, err))
+        return err->status;
+    return next_word(t, word, err);
+}
+
+struct number {
+    const char *what;
+    int min, max;
+};
+
+static enum status read_numbers(struct textfile *t, const struct number *n, int count, int *values, struct err *err)
+{
+    for (int i = 0; i < count; i++) {
         int64_t value = 0;
-        st = textfile_int(t, what[i], limits[i][0], limits[i][1], &value, err);
+        if (textfile_int(t, n[i].what, n[i].min, n[i].max, &value, err)) return err->status;
         values[i] = (int)value;
     }
-    return st;
+    return ST_OK;
 }
 
-static enum status read_page_size(struct atlas *a, struct textfile *t, struct err *err)
+static enum status read_pages(struct atlas *a, struct textfile *t, char **word, struct err *err)
 {
-    static const char *const what[] = {"width", "height"};
-    static const int limits[][2] = {{1, ATLAS_PAGE}, {1, ATLAS_PAGE}};
-    int size[2];
-    enum status st = read_ints(t, what, limits, size, 2, err);
-    if (!st) st = array_append(&a->page_sizes, (size_t)a->page_count, sizeof *a->page_sizes, "pages", err);
-    if (!st) memcpy(a->page_sizes[a->page_count++], size, sizeof size);
-    return st ? st : textfile_end(t, err);
+    static const struct number sides[] = {{"width", 1, ATLAS_PAGE}, {"height", 1, ATLAS_PAGE}};
+    while (*word && !strcmp(*word, "page")) {
+        if (array_append(&a->page_sizes, (size_t)a->page_count, sizeof *a->page_sizes, "pages", err) ||
+            read_numbers(t, sides, 2, a->page_sizes[a->page_count], err) || textfile_end(t, err))
+            return err->status;
+        a->page_count++;
+        if (next_word(t, word, err)) return err->status;
+    }
+    return ST_OK;
+}
+
+static enum status read_rectangle(struct atlas_tile *tile, const struct atlas *a, struct textfile *t, struct err *err)
+{
+    int v[4];
+    const int *page = a->page_sizes[tile->page];
+    const struct number corner[] = {{"x", 0, page[0] - 1}, {"y", 0, page[1] - 1}};
+    if (read_numbers(t, corner, 2, v, err)) return err->status;
+    const struct number sides[] = {{"width inside the page", 1, page[0] - v[0]},
+                                   {"height inside the page", 1, page[1] - v[1]}};
+    if (read_numbers(t, sides, 2, v + 2, err)) return err->status;
+    tile->x = v[0], tile->y = v[1], tile->width = v[2], tile->height = v[3];
+    return ST_OK;
 }
 
 static enum status read_tile(struct atlas *a, struct textfile *t, struct err *err)
 {
-    static const char *const what[] = {"face", "view", "page", "x", "y", "width", "height"};
-    const int limits[][2] = {{1, INT_MAX},           {a->viewpoint ? 0 : -1, a->viewpoint ? a->view_count - 1 : -1},
-                             {0, a->page_count - 1}, {0, ATLAS_PAGE - 1},
-                             {0, ATLAS_PAGE - 1},    {1, ATLAS_PAGE},
-                             {1, ATLAS_PAGE}};
-    int v[7];
-    enum status st = read_ints(t, what, limits, v, 7, err);
-    struct atlas_tile tile = {v[0], v[1], v[2], v[3], v[4], v[5], v[6], {{0}}};
-    if (!st &&
-        (tile.x + tile.width > a->page_sizes[tile.page][0] || tile.y + tile.height > a->page_sizes[tile.page][1]))
-        st = textfile_error(t, err, "a tile that is larger", "a tile inside its page of %d x %d texels",
-                            a->page_sizes[tile.page][0], a->page_sizes[tile.page][1]);
-    for (int i = 0; !st && i < 12; i++)
-        st = textfile_double(t, "an element of the matrix", &tile.matrix[i / 4][i % 4], err);
-    if (!st) st = array_append(&a->tiles, (size_t)a->tile_count, sizeof *a->tiles, "tiles", err);
-    if (!st) a->tiles[a->tile_count++] = tile;
-    return st ? st : textfile_end(t, err);
+    const int first_view = a->viewpoint ? 0 : -1, last_view = a->viewpoint ? a->view_count - 1 : -1;
+    const struct number numbers[] = {
+        {"face", 1, INT_MAX}, {"view", first_view, last_view}, {"page", 0, a->page_count - 1}};
+    int v[3];
+    if (array_append(&a->tiles, (size_t)a->tile_count, sizeof *a->tiles, "tiles", err) ||
+        read_numbers(t, numbers, 3, v, err))
+        return err->status;
+    struct atlas_tile *tile = &a->tiles[a->tile_count];
+    *tile = (struct atlas_tile){.face = v[0], .view = v[1], .page = v[2]};
+    if (a->tile_count && (tile[-1].face > v[0] || (tile[-1].face == v[0] && tile[-1].view > v[1])))
+        return textfile_wrong_number(t, v[0], "tiles in order of face, then view", err);
+    if (read_rectangle(tile, a, t, err)) return err->status;
+    for (int i = 0; i < 12; i++)
+        if (textfile_double(t, "an element of the matrix", &tile->matrix[i / 4][i % 4], err)) return err->status;
+    a->tile_count++;
+    return textfile_end(t, err);
 }
 
-static enum status read_line(struct atlas *a, struct textfile *t, struct err *err)
+static enum status read_tiles(struct atlas *a, struct textfile *t, char **word, struct err *err)
+{
+    while (*word) {
+        if (strcmp(*word, "tile")) return textfile_error(t, err, *word, "viewpoint, view, source, page, tile in order");
+        if (read_tile(a, t, err) || next_word(t, word, err)) return err->status;
+    }
+    return ST_OK;
+}
+
+static enum status read_list(struct atlas *a, struct textfile *t, struct err *err)
 {
     char *word = NULL;
-    enum status st = textfile_word(t, "viewpoint, view, source, page or tile", &word, err);
-    if (st) return st;
-    if (!strcmp(word, "viewpoint")) return read_viewpoint(a, t, err);
-    if (!strcmp(word, "view")) return read_name(&a->views, &a->view_count, t, "view", err);
-    if (!strcmp(word, "source")) return read_name(&a->sources, &a->source_count, t, "source", err);
-    if (!strcmp(word, "page")) return read_page_size(a, t, err);
-    if (!strcmp(word, "tile")) return read_tile(a, t, err);
-    return textfile_error(t, err, word, "viewpoint, view, source, page or tile");
+    int64_t version;
+    if (textfile_expect_line(t, HEADER, err) || textfile_int(t, "version", 1, 1, &version, err) ||
+        textfile_end(t, err) || next_word(t, &word, err) || read_viewpoint(a, t, &word, err) ||
+        read_names(&a->views, &a->view_count, t, "view", &word, err))
+        return err->status;
+    if (!a->viewpoint != !a->view_count)
+        return textfile_error(t, err, word, a->viewpoint ? "a view of the viewpoint" : "a viewpoint before its views");
+    if (read_names(&a->sources, &a->source_count, t, "source", &word, err) || read_pages(a, t, &word, err))
+        return err->status;
+    return read_tiles(a, t, &word, err);
 }
 
 enum status atlas_read(struct atlas *a, const char *folder, struct err *err)
 {
     struct textfile t = {0};
     char path[FILE_PATH];
-    int64_t version;
     *a = (struct atlas){0};
     enum status st = file_path(path, folder, "atlas", ".txt", err);
     if (!st) st = textfile_open(&t, path, err);
-    if (!st) st = textfile_expect_line(&t, HEADER, err);
-    if (!st) st = textfile_int(&t, "version", 1, 1, &version, err);
-    if (!st) st = textfile_end(&t, err);
-    while (!st && textfile_next(&t)) st = read_line(a, &t, err);
+    if (!st) st = read_list(a, &t, err);
     textfile_release(&t);
     if (st) atlas_release(a);
     return st;
+}
+
+static enum status wrong_texel(const struct exr_image *exr, size_t at, uint32_t source, int sources, const char *path,
+                               struct err *err)
+{
+    return err_set(err, ST_DATA,
+                   "%s: texel (%zu, %zu) has R G B %g %g %g, A %g and source %u; wanted colours of 0 or more, a source "
+                   "below %d, and A 1 with a source, or all 0 without. Bake it again.",
+                   path, at % (size_t)exr->width, at / (size_t)exr->width, (double)exr_find(exr, "R")->f[at],
+                   (double)exr_find(exr, "G")->f[at], (double)exr_find(exr, "B")->f[at],
+                   (double)exr_find(exr, "A")->f[at], source, ATLAS_VIEWS + sources);
+}
+
+static enum status take_page(struct atlas_page *p, const struct exr_image *exr, const struct atlas *a, const char *path,
+                             struct err *err)
+{
+    const struct exr_plane *planes[5];
+    for (int k = 0; k < 5; k++) {
+        planes[k] = exr_find(exr, channels[k]);
+        if (k < 4 ? !planes[k]->f : !planes[k]->u)
+            return err_set(err, ST_DATA, "%s: channel %s has the wrong type; bake it again.", path, channels[k]);
+    }
+    if (atlas_page_init(p, exr->width, exr->height, err)) return err->status;
+    const size_t texels = (size_t)exr->width * (size_t)exr->height;
+    const uint32_t sources = (uint32_t)ATLAS_VIEWS + (uint32_t)a->source_count;
+    for (size_t i = 0; i < texels; i++) {
+        const uint32_t source = planes[4]->u[i];
+        const float alpha = planes[3]->f[i];
+        bool right = source < sources && alpha == (source == ATLAS_NONE ? 0 : 1);
+        for (int c = 0; c < 3; c++) {
+            const float value = planes[c]->f[i];
+            right &= source == ATLAS_NONE ? value == 0 : value >= 0;
+            p->rgb[3 * i + (size_t)c] = value;
+        }
+        if (!right) return wrong_texel(exr, i, source, a->source_count, path, err);
+        p->source[i] = source;
+    }
+    return ST_OK;
 }
 
 enum status atlas_page_read(struct atlas_page *p, const struct atlas *a, int page, const char *folder, struct err *err)
@@ -196,28 +319,12 @@ enum status atlas_page_read(struct atlas_page *p, const struct atlas *a, int pag
     struct exr_image exr = {0};
     char path[FILE_PATH];
     *p = (struct atlas_page){0};
-    enum status st = page_path(path, folder, page, err);
+    enum status st = atlas_page_path(path, folder, page, err);
     if (!st) st = exr_read(&exr, path, channels, 5, err);
     if (!st && (exr.width != a->page_sizes[page][0] || exr.height != a->page_sizes[page][1]))
         st = err_set(err, ST_DATA, "%s has %d x %d texels, but atlas.txt says %d x %d; bake it again.", path, exr.width,
                      exr.height, a->page_sizes[page][0], a->page_sizes[page][1]);
-    for (int k = 0; !st && k < 5; k++)
-        if ((k < 4) != (exr_find(&exr, channels[k])->f != NULL))
-            st = err_set(err, ST_DATA, "%s: channel %s has the wrong type; bake it again.", path, channels[k]);
-    if (!st) st = atlas_page_init(p, exr.width, exr.height, err);
-    const size_t texels = st ? 0 : (size_t)exr.width * (size_t)exr.height;
-    const uint32_t *source = st ? NULL : exr_find(&exr, "source")->u;
-    for (size_t i = 0; !st && i < texels; i++) {
-        p->source[i] = source[i];
-        if (source[i] >= (uint32_t)ATLAS_VIEWS + (uint32_t)a->source_count)
-            st =
-                err_set(err, ST_DATA, "%s: texel %zu, %zu comes from source %u, but atlas.txt lists %d; bake it again.",
-                        path, i % (size_t)exr.width, i / (size_t)exr.width, source[i] - ATLAS_VIEWS, a->source_count);
-    }
-    for (int c = 0; !st && c < 3; c++) {
-        const float *from = exr_find(&exr, channels[c])->f;
-        for (size_t i = 0; i < texels; i++) p->rgb[3 * i + (size_t)c] = from[i];
-    }
+    if (!st) st = take_page(p, &exr, a, path, err);
     exr_image_release(&exr);
     if (st) atlas_page_release(p);
     return st;

@@ -18,6 +18,8 @@
 
 enum { NOTE_SIZE = 1024, PICTURE_HEIGHT = 240, HELD_HEIGHT = 360, AXES_HEIGHT = 480 };
 
+enum { PAGES_SHOWN = 8 }; /* of an atlas */
+
 struct photo_card {
     const struct photo_record *record;
     int views; /* number of views made from it; 0: SfM could not place it, or it is held out */
@@ -80,7 +82,31 @@ struct model_card {                 /* a solid model */
     char name[256];                 /* the edit; "": the unedited model */
     char *plan, *view;              /* files of its pictures, owned; NULL: not made */
     char **overlays, **overlay_ids; /* files with its edges on photographs, and the photographs' ids; owned */
-    int overlay_count;
+    int overlay_count, overlays_left_out;
+};
+
+struct texture_view { /* what a view shows of the model, with the atlas's texture */
+    char name[256];
+    struct picture photo, texture, sources; /* sources: where the texels come from, in colours */
+};
+
+struct texture_source {
+    char *name; /* of a view; owned */
+    bool original;
+    unsigned char rgb[3];
+    long long pixels; /* of the pictures of sources */
+};
+
+struct texture_card { /* an atlas */
+    char name[256];   /* the photo; "": the view-independent one */
+    struct texture_view *views;
+    int view_count;
+    struct picture pages[PAGES_SHOWN];
+    int page_sizes[PAGES_SHOWN][2];
+    int page_count, tile_count; /* of the atlas; the first PAGES_SHOWN pages have pictures */
+    struct texture_source *sources;
+    int source_count;
+    long long empty, synthesised, by_default, total; /* pixels of the pictures of sources that show the model */
 };
 
 struct contents {
@@ -103,6 +129,8 @@ struct contents {
     int axes_count;
     struct model_card *models;
     int model_count;
+    struct texture_card *textures;
+    int texture_count, viewpoint_count; /* cards; viewpoints that have an atlas, shown or not */
     bool has_metrics;
     struct metric_rows metrics, view_metrics;
     char (*left_out)[256]; /* photographs of the folder that are not in the list */

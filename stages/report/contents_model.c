@@ -8,6 +8,8 @@
 #include "common/base/array.h"
 #include "common/image/photo.h"
 
+enum { OVERLAYS_OF_EDIT = 6 }; /* pictures of edges that the page has of an edit */
+
 static enum status read_axes_card(struct contents *c, const char *path, const char *view, struct err *err)
 {
     struct photo photo = {0};
@@ -57,9 +59,39 @@ static char *file_if_there(const char *folder, const char *name)
     return path_is_file(path) ? strdup(path) : NULL;
 }
 
-static enum status read_model(struct contents *c, const char *folder, const char *name, struct err *err)
+static int is_jpeg(const struct dirent *e)
+{
+    const char *dot = strrchr(e->d_name, '.');
+    return e->d_name[0] != '.' && dot && !strcmp(dot, ".jpg");
+}
+
+/* Edges on photographs: all of the unedited model, some of an edit, evenly spaced. */
+static enum status list_overlays(struct model_card *m, const char *folder, struct err *err)
 {
     struct dirent **names = NULL;
+    char path[PATH_SIZE];
+    snprintf(path, sizeof path, "%s/overlay", folder);
+    const int found = scandir(path, &names, is_jpeg, alphasort), all = found > 0 ? found : 0;
+    const int shown = m->name[0] && all > OVERLAYS_OF_EDIT ? OVERLAYS_OF_EDIT : all;
+    enum status st = ST_OK;
+    m->overlays = calloc((size_t)shown + 1, sizeof *m->overlays);
+    m->overlay_ids = calloc((size_t)shown + 1, sizeof *m->overlay_ids);
+    if (!m->overlays || !m->overlay_ids)
+        st = err_nomem(err, "pictures of a model", (size_t)shown * sizeof *m->overlay_ids);
+    for (int i = 0; !st && i < shown; i++) {
+        const char *file = names[(int64_t)i * all / shown]->d_name;
+        m->overlays[m->overlay_count] = file_if_there(path, file);
+        m->overlay_ids[m->overlay_count] = strndup(file, strlen(file) - strlen(".jpg"));
+        m->overlay_count += m->overlays[m->overlay_count] && m->overlay_ids[m->overlay_count];
+    }
+    m->overlays_left_out = all - shown;
+    for (int i = 0; i < all; i++) free(names[i]);
+    free(names);
+    return st;
+}
+
+static enum status read_model(struct contents *c, const char *folder, const char *name, struct err *err)
+{
     char path[PATH_SIZE];
     snprintf(path, sizeof path, "%s/model.txt", folder);
     if (!path_is_file(path)) return ST_OK;
@@ -67,24 +99,7 @@ static enum status read_model(struct contents *c, const char *folder, const char
     struct model_card *m = &c->models[c->model_count++];
     *m = (struct model_card){.plan = file_if_there(folder, "plan.svg"), .view = file_if_there(folder, "view.png")};
     snprintf(m->name, sizeof m->name, "%s", name);
-    snprintf(path, sizeof path, "%s/overlay", folder);
-    const int count = scandir(path, &names, NULL, alphasort);
-    enum status st = ST_OK;
-    m->overlays = calloc((size_t)(count > 0 ? count : 0) + 1, sizeof *m->overlays);
-    m->overlay_ids = calloc((size_t)(count > 0 ? count : 0) + 1, sizeof *m->overlay_ids);
-    if (!m->overlays || !m->overlay_ids)
-        st = err_nomem(err, "pictures of a model", (size_t)count * sizeof *m->overlay_ids);
-    for (int i = 0; i < count; i++) {
-        const char *file = names[i]->d_name, *dot = strrchr(file, '.');
-        if (!st && dot && dot != file && file[0] != '.' && !strcmp(dot, ".jpg")) {
-            m->overlays[m->overlay_count] = file_if_there(path, file);
-            m->overlay_ids[m->overlay_count] = strndup(file, (size_t)(dot - file));
-            m->overlay_count += m->overlays[m->overlay_count] && m->overlay_ids[m->overlay_count];
-        }
-        free(names[i]);
-    }
-    free(names);
-    return st;
+    return list_overlays(m, folder, err);
 }
 
 /* model/, and remodel/EDIT/ for every edit */

@@ -50,7 +50,8 @@ enum status contents_read(struct contents *c, const struct contents_sources *fro
                        folder);
     if (read_photos(c, from->shared, from->photos, err) || read_metrics(c, folder, err) || read_views(c, folder, err) ||
         read_lens(c, folder, err) || read_held(c, folder, err) || check_age(c, folder, err) ||
-        read_effects(c, folder, err) || read_axes(c, folder, err) || read_models(c, folder, err))
+        read_effects(c, folder, err) || read_axes(c, folder, err) || read_models(c, folder, err) ||
+        read_textures(c, folder, err))
         return err->status;
     return read_runs(c, from, err);
 }
@@ -75,6 +76,8 @@ void contents_release(struct contents *c)
     free(c->lens_forms);
     for (int i = 0; i < c->model_count; i++) model_card_release(&c->models[i]);
     free(c->models);
+    for (int i = 0; i < c->texture_count; i++) texture_card_release(&c->textures[i]);
+    free(c->textures);
     free(c->photo_cards);
     free(c->view_cards);
     free(c->held_cards);

@@ -31,6 +31,7 @@ static void put_head(FILE *to, const char *scene, const struct contents *c)
     fputs(" · remodel " REMODEL_VERSION "</p>\n<nav aria-label=\"Contents\">", to);
     if (page_has_videos(c)) fputs("<a href=\"#video\">Video</a>", to);
     if (c->model_count) fputs("<a href=\"#model\">Model</a>", to);
+    if (c->texture_count) fputs("<a href=\"#textures\">Textures</a>", to);
     if (c->has_metrics || c->held.view_count) fputs("<a href=\"#evaluation\">Evaluation</a>", to);
     fputs("<a href=\"#photos\">Photographs</a>"
           "<a href=\"#depth\">Depth</a>",
@@ -48,8 +49,8 @@ static void put_head(FILE *to, const char *scene, const struct contents *c)
 enum status page_write(FILE *to, const char *scene, const struct contents *c, struct err *err)
 {
     put_head(to, scene, c);
-    if (page_videos(to, c, err) || page_models(to, c, err) || page_evaluation(to, c, err) || page_photos(to, c, err) ||
-        page_depths(to, c, err) || page_axes(to, c, err))
+    if (page_videos(to, c, err) || page_models(to, c, err) || page_textures(to, c, err) ||
+        page_evaluation(to, c, err) || page_photos(to, c, err) || page_depths(to, c, err) || page_axes(to, c, err))
         return err->status;
     page_numbers(to, c);
     page_lens(to, c);

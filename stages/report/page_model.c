@@ -54,7 +54,15 @@ enum status page_models(FILE *to, const struct contents *c, struct err *err)
         for (int k = 0; k < m->overlay_count; k++)
             if (put_model_picture(to, m->overlays[k], "jpeg", "edges of the model", m->overlay_ids[k], err))
                 return err->status;
-        fputs("</div>\n</details>\n", to);
+        fputs("</div>\n", to);
+        if (m->overlays_left_out) {
+            fputs("<p class=\"muted\">", to);
+            put_plural(to, m->overlays_left_out, "more photograph is", "more photographs are");
+            fputs(" in the folder remodel/", to);
+            html_text(to, m->name);
+            fputs("/overlay.</p>\n", to);
+        }
+        fputs("</details>\n", to);
     }
     fputs("</section>\n", to);
     return ST_OK;

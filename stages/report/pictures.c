@@ -11,6 +11,13 @@
 #include "common/base/sort.h"
 #include "common/math/numbers.h"
 
+enum status picture_init(struct picture *p, int width, int height, struct err *err)
+{
+    const size_t bytes = (size_t)width * (size_t)height * 3;
+    *p = (struct picture){width, height, calloc(bytes, 1)};
+    return p->rgb ? ST_OK : err_nomem(err, "a thumbnail", bytes);
+}
+
 void picture_release(struct picture *p)
 {
     free(p->rgb);
@@ -53,8 +60,7 @@ void upright_source(int orientation, int width, int height, int x, int y, int *s
     }
 }
 
-/* Size of the thumbnail before it is turned: `upright` px high afterwards, never larger than the source. */
-static void thumb_size(int width, int height, int orientation, int upright, int *thumb_width, int *thumb_height)
+void thumb_size(int width, int height, int orientation, int upright, int *thumb_width, int *thumb_height)
 {
     int side = orientation >= 5 ? width : height; /* the upright height */
     double scale = side > upright ? (double)upright / side : 1;
@@ -81,13 +87,6 @@ static void box_mean(const struct source *s, int x0, int x1, int y0, int y1, uns
         }
     double area = (double)(x1 - x0) * (y1 - y0);
     for (int c = 0; c < 3; c++) rgb[c] = (unsigned char)(255 * srgb_from_linear((float)(sum[c] / area)) + 0.5f);
-}
-
-static enum status picture_init(struct picture *p, int width, int height, struct err *err)
-{
-    size_t bytes = (size_t)width * (size_t)height * 3;
-    *p = (struct picture){width, height, malloc(bytes)};
-    return p->rgb ? ST_OK : err_nomem(err, "a thumbnail", bytes);
 }
 
 static enum status shrink(struct picture *p, const struct source *s, int upright, struct err *err)
@@ -152,11 +151,8 @@ enum status depth_thumb_make(struct depth_thumb *d, const float *z, int width, i
     return ST_OK;
 }
 
-void depth_colour(double t, unsigned char rgb[3])
+static void colour_from_oklab(double light, double a, double b, unsigned char rgb[3])
 {
-    t = t > 0 ? t < 1 ? t : 1 : 0;
-    double light = 0.20 + 0.72 * t, hue = (285 + 165 * t) * DEGREE;
-    double chroma = 0.095 + 0.42 * t * pow(1 - t, 1.5), a = chroma * cos(hue), b = chroma * sin(hue);
     double l = pow(light + 0.3963377774 * a + 0.2158037573 * b, 3);
     double m = pow(light - 0.1055613458 * a - 0.0638541728 * b, 3);
     double s = pow(light - 0.0894841775 * a - 1.2914855480 * b, 3);
@@ -164,6 +160,22 @@ void depth_colour(double t, unsigned char rgb[3])
                         -1.2684380046 * l + 2.6097574011 * m - 0.3413193965 * s,
                         -0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s};
     for (int c = 0; c < 3; c++) rgb[c] = (unsigned char)(255 * srgb_from_linear((float)linear[c]) + 0.5f);
+}
+
+void depth_colour(double t, unsigned char rgb[3])
+{
+    t = t > 0 ? t < 1 ? t : 1 : 0;
+    double light = 0.20 + 0.72 * t, hue = (285 + 165 * t) * DEGREE;
+    double chroma = 0.095 + 0.42 * t * pow(1 - t, 1.5), a = chroma * cos(hue), b = chroma * sin(hue);
+    colour_from_oklab(light, a, b, rgb);
+}
+
+/* Steps of the golden ratio spread any number of hues evenly; magenta is at 328 degrees. */
+void category_colour(int n, unsigned char rgb[3])
+{
+    static const double LIGHT[3] = {0.72, 0.60, 0.84};
+    const double turn = 0.6180339887498949 * n, hue = (30 + 250 * (turn - floor(turn))) * DEGREE;
+    colour_from_oklab(LIGHT[n % 3], 0.13 * cos(hue), 0.13 * sin(hue), rgb);
 }
 
 enum status picture_from_depth(struct picture *p, const struct depth_thumb *d, double near, double far, struct err *err)

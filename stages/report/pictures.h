@@ -21,6 +21,8 @@ struct depth_thumb {
     double known; /* share of the full-size pixels that have a depth */
 };
 
+/* Black. */
+enum status picture_init(struct picture *p, int width, int height, struct err *err);
 void picture_release(struct picture *p);
 void depth_thumb_release(struct depth_thumb *d);
 
@@ -31,6 +33,9 @@ enum status picture_from_photo(struct picture *p, const struct photo *photo, int
 enum status picture_from_exr(struct picture *p, const struct exr_image *im, int orientation, int height,
                              struct err *err);
 
+/* Size of a thumbnail as stored: `upright` px high once it is turned, never larger than its source. */
+void thumb_size(int width, int height, int orientation, int upright, int *thumb_width, int *thumb_height);
+
 /* z: width x height in the stored orientation; upright: the maximum height once turned, px. */
 enum status depth_thumb_make(struct depth_thumb *d, const float *z, int width, int height, int orientation, int upright,
                              struct err *err);
@@ -40,6 +45,9 @@ void upright_source(int orientation, int width, int height, int x, int y, int *s
 
 /* t: 0 far, 1 near, clamped; a NaN is far. Lightness grows strictly with t. */
 void depth_colour(double t, unsigned char rgb[3]);
+
+/* The n-th of a row of colours that differ from their neighbours, and all from grey and magenta. */
+void category_colour(int n, unsigned char rgb[3]);
 
 /* t is (1/z - 1/far) / (1/near - 1/far); unknown pixels are hatched in grey. */
 enum status picture_from_depth(struct picture *p, const struct depth_thumb *d, double near, double far,

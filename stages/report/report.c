@@ -3,6 +3,7 @@
  * reads   FOLDER/{views,depth,parallax,log,slice}, SHARED/{photos,log,slice}   as far as they exist
  *         FOLDER/metrics.tsv, evaluate, holdout   metrics, the truth, held-out photographs
  *         FOLDER/model, remodel          pictures of the solid models
+ *         FOLDER/{vdta,vita,ids}         texture atlases, and what the views show of the model
  *         PHOTOS/FILE                    the photographs, for thumbnails
  *         DEFAULTS                       the default parameters; the page marks those that differ
  * writes  OUT                            self-contained HTML; it lists the products that are missing */

@@ -13,6 +13,7 @@
 #include "common/capture/point_cloud.h"
 #include "common/image/exr.h"
 #include "common/image/photo.h"
+#include "common/texture/atlas.h"
 
 static enum status verify_exr(const char *path, struct err *err)
 {
@@ -167,6 +168,28 @@ static enum status verify_json(const char *path, struct err *err)
     return ST_OK;
 }
 
+/* atlas.txt, and the sizes of the pages beside it. */
+static enum status verify_atlas(const char *path, struct err *err)
+{
+    struct atlas atlas = {0};
+    struct exr_image page = {0};
+    char folder[FILE_PATH], name[FILE_PATH];
+    const char *slash = strrchr(path, '/');
+    snprintf(folder, sizeof folder, "%.*s", slash ? (int)(slash - path) : 1, slash ? path : ".");
+    enum status st = atlas_read(&atlas, folder, err);
+    for (int i = 0; !st && i < atlas.page_count; i++) {
+        const int *size = atlas.page_sizes[i];
+        st = atlas_page_path(name, folder, i, err);
+        if (!st) st = exr_read(&page, name, NULL, 0, err);
+        if (!st && (page.width != size[0] || page.height != size[1]))
+            st = err_set(err, ST_DATA, "%s: found %d x %d texels, wanted %d x %d by atlas.txt; make it again.", name,
+                         page.width, page.height, size[0], size[1]);
+        exr_image_release(&page);
+    }
+    atlas_release(&atlas);
+    return st;
+}
+
 static enum status verify_not_empty(const char *path, struct err *err)
 {
     struct stat info;
@@ -187,7 +210,8 @@ enum status product_verify(const char *path, struct err *err)
         {".mk", verify_text},    {".cfg", verify_text}, {".obj", verify_text}, {".mtl", verify_text},
         {".py", verify_text},    {".log", verify_text}, {".md", verify_text},  {".round", verify_text},
     };
-    const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
+    const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path, *dot = strrchr(name, '.');
+    if (!strcmp(name, "atlas.txt")) return verify_atlas(path, err);
     for (size_t i = 0; dot && i < sizeof kinds / sizeof *kinds; i++)
         if (!strcasecmp(dot, kinds[i].extension)) return kinds[i].verify(path, err);
     return verify_not_empty(path, err);

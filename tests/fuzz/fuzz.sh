@@ -12,6 +12,6 @@ mkdir -p "out/fuzz/$name/found"
 packages="OpenEXR libturbojpeg libpng libtiff-4 libraw_r libexif inih libxxhash qhull_r libdeflate"
 # shellcheck disable=SC2046,SC2086 # lists of flags
 clang -std=c11 -D_GNU_SOURCE -O1 -g -mavx2 -mf16c -fopenmp -fsanitize=fuzzer,address,undefined -I. $(pkg-config --cflags $packages) \
-    -o "out/fuzz/$name/fuzz" "tests/fuzz/fuzz_$name.c" $(sed -nE 's|^#include "(stages/.*)\.h"$|\1.c|p' "tests/fuzz/fuzz_$name.c") common/*/*.c -lOpenEXRCore -lembree3 $(pkg-config --libs $packages) -lm
+    -o "out/fuzz/$name/fuzz" "tests/fuzz/fuzz_$name.c" $(sed -nE 's|^#include "(stages/.*)\.h"$|\1.c|p' "tests/fuzz/fuzz_$name.c") common/*/*.c -lOpenEXRCore -lembree3 -lcholmod $(pkg-config --libs $packages) -lm
 cd "out/fuzz/$name"
 OMP_NUM_THREADS=1 ASAN_OPTIONS=detect_leaks=0 ./fuzz -max_total_time="$seconds" -timeout=20 -rss_limit_mb=4096 found "$OLDPWD/tests/fuzz/corpus/$name"

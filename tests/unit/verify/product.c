@@ -6,6 +6,7 @@
 #include "common/capture/point_cloud.h"
 #include "common/image/exr.h"
 #include "common/image/photo.h"
+#include "common/texture/atlas.h"
 
 static void assert_whole(const char *name)
 {
@@ -30,6 +31,41 @@ static void cut(const char *from, const char *to, long size)
     const size_t count = fread(bytes, 1, sizeof bytes, f);
     fclose(f);
     scratch_write_bytes(to, bytes, size < 0 ? count - (size_t)-size : (size_t)size);
+}
+
+/* An atlas of one tile, whose page has `width` texels in a row. */
+static void write_atlas(int width)
+{
+    const struct provenance prov = {.stage = "test", .version = "0"};
+    struct atlas_tile tile = {.face = 1, .view = -1, .width = 4, .height = 3, .matrix = {{0}, {0}, {0, 0, 0, 1}}};
+    struct atlas atlas = {.tiles = &tile, .tile_count = 1};
+    struct atlas_page page = {0};
+    struct err err = ERR_INIT;
+    assert_ok(atlas_pack(&atlas, &err), err);
+    assert_ok(atlas_page_init(&page, width, 3, &err), err);
+    assert_ok(atlas_write(&atlas, &page, scratch_path("vita"), &prov, &err), err);
+    atlas_page_release(&page);
+    free(atlas.page_sizes);
+}
+
+static void an_atlas_is_whole_with_its_pages(void **state)
+{
+    (void)state;
+    write_atlas(4);
+    assert_whole("vita/atlas.txt");
+    assert_whole("vita/page0.exr");
+    write_atlas(5);
+    struct err err = ERR_INIT;
+    assert_int_equal(product_verify(scratch_path("vita/atlas.txt"), &err), ST_DATA);
+    assert_err(err, ST_DATA, "vita/page0.exr: found 5 x 3 texels, wanted 4 x 3");
+    assert_int_equal(remove(scratch_path("vita/page0.exr")), 0);
+    err = (struct err)ERR_INIT;
+    assert_int_equal(product_verify(scratch_path("vita/atlas.txt"), &err), ST_IO);
+    assert_non_null(strstr(err.text, "vita/page0.exr"));
+    write_atlas(4);
+    cut("vita/atlas.txt", "vita/cut.txt", -3);
+    assert_int_equal(rename(scratch_path("vita/cut.txt"), scratch_path("vita/atlas.txt")), 0);
+    assert_refused("vita/atlas.txt");
 }
 
 static void pictures_are_decoded(void **state)
@@ -158,6 +194,7 @@ static void files_of_unknown_kind_must_not_be_empty(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(an_atlas_is_whole_with_its_pages),
         cmocka_unit_test(pictures_are_decoded),
         cmocka_unit_test(points_are_decoded),
         cmocka_unit_test(videos_need_their_boxes),

@@ -1,0 +1,258 @@
+/* contents_textures.c - texture atlases: their pages, and the room seen from the views with their texture. */
+#include "stages/report/contents_parts.h"
+
+#include <dirent.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "stages/report/texture_pictures.h"
+
+enum {
+    VIEWPOINTS_SHOWN = 12,
+    VITA_VIEWS = 2,     /* views of the block of the view-independent atlas */
+    SIGHT_HEIGHT = 320, /* px, of the pictures of views, and of pages */
+    PAGE_HEIGHT = 264,
+};
+
+/* What is read for a card, beside what it shows. */
+struct texture_work {
+    struct contents *c;
+    const char *folder; /* of the scene's products */
+    const struct model_axes *axes;
+    struct texture_card *card;
+    struct atlas atlas;
+    struct sight *sights; /* one for each of the card's views */
+};
+
+static enum status read_photo(const struct texture_work *w, struct texture_view *v, int view, struct err *err)
+{
+    static const char *const NAMES[] = {"R", "G", "B"};
+    const struct photo_record *photo = w->c->view_cards[view].photo;
+    struct exr_image im = {0};
+    char path[PATH_SIZE];
+    snprintf(path, sizeof path, "%s/views/%s.exr", w->folder, v->name);
+    enum status st = exr_read(&im, path, NAMES, 3, err);
+    if (!st) st = picture_from_exr(&v->photo, &im, photo ? photo->info.orientation : 1, SIGHT_HEIGHT, err);
+    exr_image_release(&im);
+    return st;
+}
+
+static enum status read_sights(struct texture_work *w, char *const *names, struct err *err)
+{
+    const int count = w->card->view_count;
+    enum status st = ST_OK;
+    for (int i = 0; !st && i < count; i++) {
+        struct texture_view *v = &w->card->views[i];
+        const int view = camera_set_find(&w->c->views, names[i]);
+        char path[PATH_SIZE];
+        if (view < 0) return err_set(err, ST_DATA, "There is no view %s; bake it again.", names[i]);
+        const struct photo_record *photo = w->c->view_cards[view].photo;
+        snprintf(v->name, sizeof v->name, "%s", names[i]);
+        snprintf(path, sizeof path, "%s/ids/%s.exr", w->folder, v->name);
+        st = read_photo(w, v, view, err);
+        if (!st)
+            st = sight_make(&w->sights[i], &w->atlas, &w->c->views.views[view], w->axes, path,
+                            photo ? photo->info.orientation : 1, SIGHT_HEIGHT, err);
+    }
+    return st;
+}
+
+/* Each page once: its own picture, and its texels in all views. */
+static enum status read_pages(struct texture_work *w, const char *folder, struct err *err)
+{
+    struct texture_card *card = w->card;
+    enum status st = ST_OK;
+    for (int i = 0; !st && i < w->atlas.page_count; i++) {
+        struct atlas_page page = {0};
+        st = atlas_page_read(&page, &w->atlas, i, folder, err);
+        for (int k = 0; !st && k < card->view_count; k++) sight_add_page(&w->sights[k], &w->atlas, &page, i);
+        if (!st && i < PAGES_SHOWN) {
+            st = picture_from_atlas_page(&card->pages[i], &page, PAGE_HEIGHT, err);
+            card->page_sizes[i][0] = page.width;
+            card->page_sizes[i][1] = page.height;
+        }
+        atlas_page_release(&page);
+    }
+    return st;
+}
+
+static bool is_listed(char *const *names, int count, const char *name)
+{
+    for (int i = 0; i < count; i++)
+        if (!strcmp(names[i], name)) return true;
+    return false;
+}
+
+/* Most pixels first. */
+static int compare_sources(const void *a, const void *b)
+{
+    const struct texture_source *p = a, *q = b;
+    if (p->pixels != q->pixels) return p->pixels < q->pixels ? 1 : -1;
+    return strcmp(p->name, q->name);
+}
+
+/* A view has the same colour in all atlases. */
+static enum status list_sources(const struct texture_work *w, struct source_colour *colours, struct err *err)
+{
+    struct texture_card *card = w->card;
+    const struct atlas *a = &w->atlas;
+    card->sources = calloc((size_t)a->source_count + 1, sizeof *card->sources);
+    if (!card->sources) return err_nomem(err, "sources", (size_t)a->source_count * sizeof *card->sources);
+    for (int i = 0; i < a->source_count; i++) {
+        struct texture_source *s = &card->sources[i];
+        const int view = camera_set_find(&w->c->views, a->sources[i]);
+        s->name = strdup(a->sources[i]);
+        if (!s->name) return err_nomem(err, "a name", strlen(a->sources[i]));
+        card->source_count++;
+        s->original = is_listed(a->views, a->view_count, s->name);
+        category_colour(view < 0 ? i : view, s->rgb);
+        colours[i].original = s->original;
+        memcpy(colours[i].rgb, s->rgb, sizeof s->rgb);
+    }
+    return ST_OK;
+}
+
+static enum status draw_views(struct texture_work *w, struct err *err)
+{
+    struct texture_card *card = w->card;
+    const size_t kinds = (size_t)ATLAS_VIEWS + (size_t)w->atlas.source_count;
+    struct source_colour *colours = calloc(kinds, sizeof *colours);
+    long long *counts = calloc(kinds, sizeof *counts);
+    enum status st = colours && counts ? list_sources(w, colours, err) : err_nomem(err, "sources", kinds);
+    for (int i = 0; !st && i < card->view_count; i++) {
+        st = picture_from_sight(&card->views[i].texture, &w->sights[i], err);
+        if (!st) st = picture_from_sources(&card->views[i].sources, &w->sights[i], colours, counts, err);
+    }
+    for (size_t i = 0; !st && i < kinds; i++) {
+        card->total += counts[i];
+        if (i >= ATLAS_VIEWS) card->sources[i - ATLAS_VIEWS].pixels = counts[i];
+    }
+    if (!st) {
+        card->empty = counts[ATLAS_NONE];
+        card->synthesised = counts[ATLAS_SYNTHESISED];
+        card->by_default = counts[ATLAS_DEFAULT];
+        qsort(card->sources, (size_t)card->source_count, sizeof *card->sources, compare_sources);
+    }
+    free(colours);
+    free(counts);
+    return st;
+}
+
+static enum status read_card(struct texture_work *w, char *const *names, int count, const char *folder, struct err *err)
+{
+    struct texture_card *card = w->card;
+    card->page_count = w->atlas.page_count;
+    card->tile_count = w->atlas.tile_count;
+    card->views = calloc((size_t)count + 1, sizeof *card->views);
+    w->sights = calloc((size_t)count + 1, sizeof *w->sights);
+    if (!card->views || !w->sights) return err_nomem(err, "views", (size_t)count * sizeof *w->sights);
+    card->view_count = count;
+    if (read_sights(w, names, err) || read_pages(w, folder, err)) return err->status;
+    return draw_views(w, err);
+}
+
+/* Adds a card for an atlas. views: the VITA's; a viewpoint's are those that its atlas lists. A card that cannot be read
+ * becomes a note. */
+static enum status add_card(struct contents *c, const char *folder, const struct model_axes *axes, const char *photo,
+                            char *const *views, int view_count, struct err *err)
+{
+    struct err problem = ERR_INIT;
+    char path[PATH_SIZE + 256];
+    struct texture_card *card = &c->textures[c->texture_count];
+    struct texture_work w = {.c = c, .folder = folder, .axes = axes, .card = card};
+    if (photo)
+        snprintf(path, sizeof path, "%s/vdta/%s", folder, photo);
+    else
+        snprintf(path, sizeof path, "%s/vita", folder);
+    snprintf(card->name, sizeof card->name, "%s", photo ? photo : "");
+    enum status st = atlas_read(&w.atlas, path, &problem);
+    if (!st && photo) views = w.atlas.views, view_count = w.atlas.view_count;
+    if (!st) st = read_card(&w, views, view_count, path, &problem);
+    for (int i = 0; w.sights && i < card->view_count; i++) sight_release(&w.sights[i]);
+    free(w.sights);
+    atlas_release(&w.atlas);
+    c->texture_count += !st;
+    if (!st) return ST_OK;
+    texture_card_release(card);
+    return contents_note(c, err, "The texture atlas %s is not shown. %s", path, problem.text);
+}
+
+void texture_card_release(struct texture_card *t)
+{
+    for (int i = 0; t->views && i < t->view_count; i++) {
+        picture_release(&t->views[i].photo);
+        picture_release(&t->views[i].texture);
+        picture_release(&t->views[i].sources);
+    }
+    for (int i = 0; i < PAGES_SHOWN; i++) picture_release(&t->pages[i]);
+    for (int i = 0; i < t->source_count; i++) free(t->sources[i].name);
+    free(t->views);
+    free(t->sources);
+    *t = (struct texture_card){0};
+}
+
+/* The viewpoints that have an atlas, in order of name; the caller frees each and the list. */
+static enum status list_viewpoints(char ***names, int *count, const char *folder, struct err *err)
+{
+    struct dirent **entries = NULL;
+    char path[PATH_SIZE], below[PATH_SIZE + 512];
+    snprintf(path, sizeof path, "%s/vdta", folder);
+    const int found = scandir(path, &entries, NULL, alphasort);
+    const size_t room = (size_t)(found > 0 ? found : 0) + 1;
+    *names = calloc(room, sizeof **names);
+    enum status st = *names ? ST_OK : err_nomem(err, "names", room * sizeof **names);
+    for (int i = 0; i < found; i++) {
+        snprintf(below, sizeof below, "%s/%s/atlas.txt", path, entries[i]->d_name);
+        if (!st && entries[i]->d_name[0] != '.' && path_is_file(below)) {
+            (*names)[*count] = strdup(entries[i]->d_name);
+            if ((*names)[*count])
+                ++*count;
+            else
+                st = err_nomem(err, "a name", strlen(entries[i]->d_name));
+        }
+        free(entries[i]);
+    }
+    free(entries);
+    return st;
+}
+
+/* The VITA as two views show it: the first ones of two viewpoints, or of the scene. */
+static enum status add_vita(struct contents *c, const char *folder, const struct model_axes *axes, struct err *err)
+{
+    char path[PATH_SIZE];
+    char *views[VITA_VIEWS];
+    snprintf(path, sizeof path, "%s/vita/atlas.txt", folder);
+    if (!path_is_file(path)) return ST_OK;
+    const int choices = c->texture_count ? c->texture_count : c->views.view_count;
+    const int count = choices < VITA_VIEWS ? choices : VITA_VIEWS;
+    for (int i = 0; i < count; i++) {
+        const int at = i * choices / count;
+        views[i] = c->texture_count ? c->textures[at].views[0].name : (char *)c->view_cards[at].view->name;
+    }
+    return add_card(c, folder, axes, NULL, views, count, err);
+}
+
+enum status read_textures(struct contents *c, const char *folder, struct err *err)
+{
+    struct model_axes axes;
+    struct err problem = ERR_INIT;
+    char path[PATH_SIZE], vita[PATH_SIZE];
+    char **names = NULL;
+    enum status st = list_viewpoints(&names, &c->viewpoint_count, folder, err);
+    const int shown = c->viewpoint_count < VIEWPOINTS_SHOWN ? c->viewpoint_count : VIEWPOINTS_SHOWN;
+    snprintf(vita, sizeof vita, "%s/vita/atlas.txt", folder);
+    snprintf(path, sizeof path, "%s/model/axes.txt", folder);
+    const bool any = !st && c->has_views && (shown || path_is_file(vita));
+    if (any && model_axes_read(&axes, path, &problem)) {
+        st = contents_note(c, err, "The texture atlases are not shown. %s", problem.text);
+    } else if (any) {
+        c->textures = calloc((size_t)shown + 1, sizeof *c->textures);
+        if (!c->textures) st = err_nomem(err, "texture atlases", (size_t)shown * sizeof *c->textures);
+        for (int i = 0; !st && i < shown; i++)
+            st = add_card(c, folder, &axes, names[(int64_t)i * c->viewpoint_count / shown], NULL, 0, err);
+        if (!st) st = add_vita(c, folder, &axes, err);
+    }
+    for (int i = 0; names && i < c->viewpoint_count; i++) free(names[i]);
+    free(names);
+    return st;
+}
