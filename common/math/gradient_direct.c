@@ -7,6 +7,7 @@
  *
  * The factors are simplicial: CHOLMOD's supernodal ones call the BLAS that is installed, whose sums depend on its
  * version and on its threads. */
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -83,37 +84,31 @@ static enum status factor_and_solve(double (*v)[4], double (*r)[4], const struct
         gradient_system_residual(r, s, (const double(*)[4])v);
         ok = correct(v, (const double(*)[4])r, s->count, b, l, cm);
     }
+    const bool singular = cm->status == CHOLMOD_NOT_POSDEF;
     cholmod_free_dense(&b, cm);
     cholmod_free_factor(&l, cm);
     cholmod_free_sparse(&a, cm);
     if (ok) return ST_OK;
-    if (cm->status == CHOLMOD_NOT_POSDEF)
-        return err_set(err, ST_INTERNAL,
-                       "CHOLMOD finds no Cholesky factors of %d equations: their weights differ by too many orders of "
-                       "magnitude.",
-                       s->count);
-    return err_nomem(err, "the Cholesky factors of a gradient problem", cm->memory_usage);
+    return singular ? err_set(err, ST_INTERNAL,
+                              "CHOLMOD finds no factors of %d gradient equations: their weights differ by too many "
+                              "orders of magnitude.",
+                              s->count)
+                    : err_nomem(err, "the factors of a gradient problem", cm->memory_usage);
 }
 
-enum status gradient_solve_direct(const struct gradient_problem *p, struct gradient_report *report, struct err *err)
+enum status gradient_direct(const struct gradient_system *s, double (*v)[4], int *iterations, struct err *err)
 {
-    struct gradient_system s = {0};
-    if (gradient_system_init(&s, p, err)) return err->status;
-    const size_t n = (size_t)s.count + 1, bytes = n * sizeof(double[4]);
-    double(*v)[4] = calloc(n, sizeof *v), (*r)[4] = calloc(n, sizeof *r);
-    enum status status = v && r ? ST_OK : err_nomem(err, "the values of a gradient problem", 2 * bytes);
-    if (!status && s.count) {
-        cholmod_common cm;
-        cholmod_start(&cm);
-        cm.supernodal = CHOLMOD_SIMPLICIAL;
-        cm.print = 0;
-        status = factor_and_solve(v, r, &s, &cm, err);
-        cholmod_finish(&cm);
-    }
-    report->iterations = 0;
-    if (!status) status = gradient_system_finish(&s, p, v, r, report, err);
-    free(v);
+    *iterations = 0;
+    if (!s->count) return ST_OK;
+    const size_t bytes = (size_t)s->count * sizeof(double[4]);
+    double(*r)[4] = malloc(bytes);
+    if (!r) return err_nomem(err, "the residual of a gradient problem", bytes);
+    cholmod_common cm;
+    cholmod_start(&cm);
+    cm.supernodal = CHOLMOD_SIMPLICIAL;
+    cm.print = 0;
+    const enum status status = factor_and_solve(v, r, s, &cm, err);
+    cholmod_finish(&cm);
     free(r);
-    gradient_system_release(&s);
     return status;
 }

@@ -44,5 +44,8 @@ struct gradient_report {
 enum status gradient_solve(const struct gradient_problem *p, struct gradient_report *report, struct err *err);
 /* The same by sparse Cholesky factors (CHOLMOD): the reference. */
 enum status gradient_solve_direct(const struct gradient_problem *p, struct gradient_report *report, struct err *err);
+/* The same by multigrid alone. Its largest error is about 1e-5 of the range of the values. ST_INTERNAL, too: a weight
+ * above 0 is less than 1e-7 of the largest. */
+enum status gradient_solve_multigrid(const struct gradient_problem *p, struct gradient_report *report, struct err *err);
 
 #endif

@@ -95,10 +95,14 @@ static enum status find_parts(struct gradient_system *s, struct err *err)
         }
     /* a parent is before its children: its part is known when they need it */
     for (int i = 0; i < s->count; i++) s->part[i] = s->part[i] == i ? s->part_count++ : s->part[s->part[i]];
-    s->determined = calloc((size_t)s->part_count + 1, 1);
-    if (!s->determined) return err_nomem(err, "parts of a gradient problem", (size_t)s->part_count + 1);
-    for (int i = 0; i < s->count; i++)
+    const size_t n = (size_t)s->part_count + 1; /* never 0 bytes */
+    s->size = calloc(n, sizeof *s->size);
+    s->determined = calloc(n, 1);
+    if (!s->size || !s->determined) return err_nomem(err, "parts of a gradient problem", n * (sizeof *s->size + 1));
+    for (int i = 0; i < s->count; i++) {
+        s->size[s->part[i]]++;
         if (s->excess[i] > 0) s->determined[s->part[i]] = 1;
+    }
     return ST_OK;
 }
 
@@ -120,9 +124,15 @@ static enum status allocate(struct gradient_system *s, struct err *err)
 /* unknown: of each pixel; -1: none */
 static void fill(struct gradient_system *s, const struct gradient_problem *p, const int *unknown)
 {
+    s->low = INFINITY;
+    s->high = -INFINITY;
     const size_t width = (size_t)p->width, pixels = width * (size_t)p->height;
     for (size_t at = 0; at < pixels; at++) {
         const int i = unknown[at];
+        for (size_t c = 0; c < 3 && p->role[at] == GRADIENT_FIXED; c++) {
+            s->low = fmin(s->low, (double)p->value[3 * at + c]);
+            s->high = fmax(s->high, (double)p->value[3 * at + c]);
+        }
         if (i >= 0) {
             s->pixel[i] = (int)at;
             s->next[i][0] = s->next[i][1] = -1;
@@ -163,6 +173,7 @@ void gradient_system_release(struct gradient_system *s)
     free(s->excess);
     free(s->rhs);
     free(s->part);
+    free(s->size);
     free(s->determined);
     *s = (struct gradient_system){0};
 }
@@ -181,67 +192,4 @@ void gradient_system_residual(double (*r)[4], const struct gradient_system *s, c
                 r[j][c] -= flow;
             }
         }
-}
-
-static double largest(const double (*v)[4], int count)
-{
-    double most = 0;
-    for (int i = 0; i < count; i++)
-        for (int c = 0; c < 3; c++) most = fmax(most, fabs(v[i][c]));
-    return most;
-}
-
-double gradient_system_relative(const struct gradient_system *s, const double (*r)[4])
-{
-    const double b = largest((const double(*)[4])s->rhs, s->count);
-    return largest(r, s->count) / (b > 0 ? b : 1);
-}
-
-void gradient_system_start(double (*v)[4], const struct gradient_system *s, const struct gradient_problem *p)
-{
-    for (int i = 0; i < s->count; i++) {
-        const float *start = p->value + 3 * (size_t)s->pixel[i];
-        for (int c = 0; c < 4; c++) v[i][c] = c < 3 ? start[c] : 0;
-    }
-}
-
-/* Sums over undetermined parts. */
-struct mean {
-    double start[3], now[3];
-    int count;
-};
-
-static void keep_means(const struct gradient_system *s, const struct gradient_problem *p, double (*v)[4],
-                       struct mean *means)
-{
-    for (int i = 0; i < s->count; i++) {
-        struct mean *m = &means[s->part[i]];
-        m->count++;
-        for (size_t c = 0; c < 3; c++) {
-            m->start[c] += p->value[3 * (size_t)s->pixel[i] + c];
-            m->now[c] += v[i][c];
-        }
-    }
-    for (int i = 0; i < s->count; i++) {
-        const struct mean *m = &means[s->part[i]];
-        for (int c = 0; c < 3 && !s->determined[s->part[i]]; c++) v[i][c] += (m->start[c] - m->now[c]) / m->count;
-    }
-}
-
-enum status gradient_system_finish(const struct gradient_system *s, const struct gradient_problem *p, double (*v)[4],
-                                   double (*r)[4], struct gradient_report *report, struct err *err)
-{
-    struct mean *means = calloc((size_t)s->part_count + 1, sizeof *means);
-    if (!means) return err_nomem(err, "parts of a gradient problem", ((size_t)s->part_count + 1) * sizeof *means);
-    keep_means(s, p, v, means);
-    gradient_system_residual(r, s, (const double(*)[4])v);
-    report->residual = gradient_system_relative(s, (const double(*)[4])r);
-    report->free = s->count;
-    report->undetermined = 0;
-    for (int k = 0; k < s->part_count; k++)
-        if (!s->determined[k]) report->undetermined += means[k].count;
-    for (int i = 0; i < s->count; i++)
-        for (size_t c = 0; c < 3; c++) p->value[3 * (size_t)s->pixel[i] + c] = (float)v[i][c];
-    free(means);
-    return ST_OK;
 }

@@ -18,7 +18,9 @@ struct gradient_system {
     double (*rhs)[4];
     int *part; /* of each unknown: connected by links; numbered in order of their first unknown */
     int part_count;
+    int *size;           /* of each part: unknowns */
     uint8_t *determined; /* of each part: 1: by data or a fixed pixel */
+    double low, high;    /* least and largest value of fixed pixels; INFINITY, -INFINITY if there are none */
 };
 
 /* Checks the problem and sets up its equations; s is empty on entry. ST_DATA, ST_NOMEM: s is empty. */
@@ -27,13 +29,9 @@ void gradient_system_release(struct gradient_system *s);
 
 /* r = b - A v */
 void gradient_system_residual(double (*r)[4], const struct gradient_system *s, const double (*v)[4]);
-/* Largest |r|, over the largest |b|, or over 1 if b = 0. */
-double gradient_system_relative(const struct gradient_system *s, const double (*r)[4]);
-/* v: the unknowns' values in p. */
-void gradient_system_start(double (*v)[4], const struct gradient_system *s, const struct gradient_problem *p);
-/* Gives undetermined parts the mean of their start, stores v in p->value and fills the report but iterations. r is
- * scratch memory. */
-enum status gradient_system_finish(const struct gradient_system *s, const struct gradient_problem *p, double (*v)[4],
-                                   double (*r)[4], struct gradient_report *report, struct err *err);
+
+/* Solves A v = b from the start v; *iterations: those needed, 0 for a direct method, -1 without convergence. */
+typedef enum status gradient_method(const struct gradient_system *s, double (*v)[4], int *iterations, struct err *err);
+gradient_method gradient_direct, gradient_multigrid;
 
 #endif
