@@ -17,7 +17,8 @@
  * sure depth (docs/evaluation.md), and without them a white room would have no texture.
  *
  * Clutter narrower than 2 min_clutter + 1 px is noise of the depth and becomes 0.5 (opening); what is left grows by
- * clutter_margin, because outlines of segments are off by a pixel or two, and blurred. */
+ * clutter_margin, because outlines of segments are off by a pixel or two, and blurred. Pixels that the view does not have are 1, with
+ * the same rim. */
 #include <math.h>
 #include <stdlib.h>
 
