@@ -22,8 +22,8 @@ printf 'remodel-script 1\nremove block\n' >scenes/t/edits/bare.txt
 m() { make -s DEPS=manual PHOTOS=set/photos SFM=set/model SCENE=t "$@" >log 2>&1 || { cat log; fail "make $*"; }; }
 m ids
 O=out/t
-view=$(basename "$(ls $O/ids/*.exr | head -1)" .exr)
-inputs=(--model $O/model/model.txt --axes $O/model/axes.txt --views $O/views)
+view=$(basename "$(ls $O/ids/*.exr | sed -n 1p)" .exr)
+inputs=(--model "$O/model/model.txt" --axes "$O/model/axes.txt" --views "$O/views")
 
 # trace CODE WORD ARGUMENT...: runs trace_ids; checks its exit status and a word on standard error
 trace()
@@ -41,7 +41,7 @@ list() { find $O/ids $O/reveal -type f -printf '%p %T@\n' | LC_ALL=C sort; }
 make_makes_ids_reveals_and_an_index()
 {
     local n; n=$(ls $O/views/*.exr | wc -l)
-    for f in $O/ids/*.exr $O/reveal/*.exr; do [ -s "$f" ] || fail "no $f"; done
+    for f in "$O"/ids/*.exr "$O"/reveal/*.exr; do [ -s "$f" ] || fail "no $f"; done
     [ "$(ls $O/ids/*.exr | wc -l)" = "$n" ] && [ "$(ls $O/reveal/*.exr | wc -l)" = "$n" ] || fail "wanted $n views"
     grep -q '^face [0-9]* [0-9]* [0-9]* ' $O/ids/"$view".txt || { cat $O/ids/"$view".txt; fail "no face"; }
     grep -q '^edit bare ' $O/reveal/"$view".txt || fail "no edit"
@@ -52,7 +52,7 @@ make_makes_ids_reveals_and_an_index()
 a_closed_room_fills_every_view()
 {
     # the faces' pixels add up to those of the view
-    for f in $O/ids/*.txt; do
+    for f in "$O"/ids/*.txt; do
         [ "${f##*/}" != index.txt ] || continue
         [ "$(awk '$1 == "face" { n += $3 } END { print n }' "$f")" = $((160 * 120)) ] || { cat "$f"; fail "$f: empty pixels"; }
     done
