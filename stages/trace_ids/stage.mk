@@ -23,8 +23,8 @@ EDIT_MODELS := $(EDITS:%=$(O)/remodel/%/model.txt)
 # an edit that went is a change whatever the times of the others
 $(O)/stamp/edits.txt: FORCE
 	+@mkdir -p $(@D); echo '$(EDITS)' | cmp -s - $@ || echo '$(EDITS)' >$@
-# $(1): a view. VIEW.exr of reveal is replaced only if its bytes change: VIEW.txt is what Make goes by, and what reads
-# VIEW.exr is made again only if it changed.
+# $(1): a view. VIEW.exr of reveal is replaced only if its bytes change: VIEW.txt is what Make goes by, and the next call of
+# Make sees whether VIEW.exr changed.
 define ids_rules
 $(O)/ids/$(1).txt $(O)/ids/$(1).exr &: $(IDS_NEEDS) $(O)/depth/$(1).exr $(O)/depth/$(1).txt
 	$$(hide)$$(call farm,trace_ids,$(1),$(O)/ids/$(1).txt $(O)/ids/$(1).exr,$(IDS_ARGS) --view $(1) --depth $(O)/depth \
@@ -32,8 +32,7 @@ $(O)/ids/$(1).txt $(O)/ids/$(1).exr &: $(IDS_NEEDS) $(O)/depth/$(1).exr $(O)/dep
 $(O)/reveal/$(1).txt: $(IDS_NEEDS) $(EDIT_MODELS) $(O)/stamp/edits.txt $(if $(wildcard $(O)/reveal/$(1).exr),,FORCE)
 	$$(hide)$$(call farm,trace_ids,reveal-$(1),$(O)/reveal/$(1).txt,$(IDS_ARGS) --view $(1) --reveal \
 	  $(EDIT_MODELS:%=--edit %) --out $(O)/reveal/$(1).exr)
-$(O)/reveal/$(1).exr: $(O)/reveal/$(1).txt
-	@:
+$(O)/reveal/$(1).exr: | $(O)/reveal/$(1).txt
 endef
 $(foreach v,$(IDS_VIEWS),$(eval $(call ids_rules,$(v))))
 $(IDS_INDEX): $(IDS_TXT) $(IDS_NEEDS)

@@ -147,7 +147,7 @@ static enum status write_reveal(const struct reveal *r, const struct job *j, con
     bool changed = false;
     enum status st = reveal_result(&result, r, err);
     if (!st) st = view_reveal_write(&result, view, j->out, &prov, &changed, err);
-    if (!st && !changed) log_note("%s: nothing new is revealed", view->name);
+    if (!st && !changed) log_note("%s: what edits reveal has not changed", view->name);
     view_reveal_release(&result);
     return st;
 }
