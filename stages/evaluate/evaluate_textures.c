@@ -21,6 +21,7 @@ struct texture_result { /* of the atlases of a kind */
     struct texture_error error;
     struct texture_seams seams;
     int atlases, unknown_tiles; /* tiles of faces that the unedited model lacks */
+    uint64_t texels;
 };
 
 static int shell_of_photo(const struct shell_points *s, int photo)
@@ -142,10 +143,20 @@ static enum status find_sources(struct atlas_truth *t, const struct atlas *a, co
     return read_own_photo(t, job, e, err);
 }
 
+static uint64_t texels_in(const struct atlas_page *page, const struct atlas_tile *tile)
+{
+    uint64_t count = 0;
+    for (int y = tile->y; y < tile->y + tile->height; y++)
+        for (int x = tile->x; x < tile->x + tile->width; x++)
+            count += page->source[(size_t)y * (size_t)page->width + (size_t)x] != ATLAS_NONE;
+    return count;
+}
+
 static enum status add_tile(struct texture_result *r, const struct texture_job *job, const struct texel_truth *truth,
                             const struct atlas_page *page, const struct atlas_tile *tile, struct err *err)
 {
     const int face = textures_face(&job->textures, tile->face);
+    r->texels += texels_in(page, tile);
     const size_t count = (size_t)tile->width * (size_t)tile->height;
     texture_seams_add(&r->seams, page, tile, job->compared ? truth->white / truth->scale : 1);
     if (face < 0) r->unknown_tiles++;
@@ -243,6 +254,7 @@ static enum status add_result(struct evaluation *e, const struct texture_result 
 {
     double ratio;
     enum status st = evaluation_metric(e, NULL, r->prefix, "atlases", r->atlases, "1", "none", err);
+    if (!st) st = evaluation_metric(e, NULL, r->prefix, "megapixels", 1e-6 * (double)r->texels, "Mpx", "none", err);
     if (!st && texture_seams_ratio(&r->seams, &ratio))
         st = evaluation_metric(e, NULL, r->prefix, "seam_energy", ratio, "1", "lower", err);
     else if (!st)
