@@ -29,7 +29,7 @@ CXXFLAGS := -std=c++17 -mavx2 -mno-fma -ffp-contract=off -Wall -Wextra -Wshadow 
   -I. -isystem /usr/include/eigen3 -isystem /usr/include/opencv4 $(shell pkg-config --cflags OpenEXR 2>/dev/null)
 LDLIBS := -lOpenEXRCore $(shell pkg-config --libs $(PKGS) 2>/dev/null) -lm
 # what a stage alone needs, and common/math and common/light; a program gets those libraries that its objects use
-MORE_LIBS := $(sort $(foreach s,$(STAGES),$(LIBS.$(s)))) -lembree3 -lceres -lglog -lstdc++
+MORE_LIBS := $(sort $(foreach s,$(STAGES),$(LIBS.$(s)))) -lembree3 -lceres -lglog -lcholmod -lstdc++
 
 objs = $(patsubst %.c,$(B)/obj/%.o,$(patsubst %.cc,$(B)/obj/%.o,$(wildcard $(1))))
 COMMON_OBJS := $(call objs,common/*/*.c common/*/*.cc)

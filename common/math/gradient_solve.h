@@ -33,14 +33,14 @@ struct gradient_problem {
 struct gradient_report {
     double residual; /* largest |A v - b| over free pixels and channels, divided by the largest |b|, or by 1 if b = 0 */
     int free;        /* unknowns a channel */
-    int undetermined; /* free pixels that no data and no fixed pixel reaches: they keep the value they had */
+    int undetermined; /* free pixels in parts that neither data nor a fixed pixel determines */
     int iterations;   /* 0: a direct solve */
 };
 
-/* Solves in double precision with the same bytes for any number of threads. Each connected part of free pixels (joined
- * by pairs of weight above 0) that neither data nor a fixed pixel determines keeps the mean of its start. ST_DATA: a
- * weight that is negative or not finite, or a value, a datum or a gradient that is not finite, named by pixel; ST_NOMEM;
- * ST_INTERNAL: no convergence. */
+/* Same bytes for any number of threads. Each connected part of free pixels (joined by pairs of weight above 0) that
+ * neither data nor a fixed pixel determines keeps the mean of its start. Only what counts is read: no datum or gradient
+ * of weight 0, no pair of fixed pixels. ST_DATA: a weight that is negative or not finite, or a value, a datum or a
+ * gradient that is not finite, named by pixel; ST_NOMEM; ST_INTERNAL: no convergence. On failure values stay. */
 enum status gradient_solve(const struct gradient_problem *p, struct gradient_report *report, struct err *err);
 /* The same by sparse Cholesky factors (CHOLMOD): the reference. */
 enum status gradient_solve_direct(const struct gradient_problem *p, struct gradient_report *report, struct err *err);

@@ -1,0 +1,175 @@
+/* source_view.c - see source_view.h. Colours are read at the level whose pixels are about as large as the texel, so that
+ * a fine photograph does not alias in a coarse texture. */
+#include "common/texture/source_view.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "common/base/file_path.h"
+#include "common/image/exr.h"
+
+enum { R, G, B, A, SIGMA, CLIPPED, VIEW_CHANNELS };
+enum { ID, JUMP, CLUTTER, ID_CHANNELS };
+static const char *const view_channels[VIEW_CHANNELS] = {"R", "G", "B", "A", "sigma", "clipped"};
+static const char *const id_channels[ID_CHANNELS] = {"id", "jump", "clutter"};
+
+static enum status read_channels(struct exr_image *exr, const char *folder, const struct view *camera,
+                                 const char *const *names, int count, uint64_t *bytes, struct err *err)
+{
+    char path[FILE_PATH];
+    struct stat file;
+    enum status st = file_path(path, folder, camera->name, ".exr", err);
+    if (!st) st = exr_read(exr, path, names, count, err);
+    if (!st && (exr->width != camera->width || exr->height != camera->height))
+        st = err_set(err, ST_DATA, "%s has %d x %d pixels, but its camera %d x %d; make it again.", path, exr->width,
+                     exr->height, camera->width, camera->height);
+    for (int k = 0; !st && k < count; k++)
+        if (!strcmp(names[k], "id") != !exr_find(exr, names[k])->f)
+            st = err_set(err, ST_DATA, "%s: channel %s has the wrong type; make the file again.", path, names[k]);
+    if (!st && !stat(path, &file)) *bytes += (uint64_t)file.st_size;
+    return st;
+}
+
+/* Whether a pixel shows the surface that the model has there. */
+static uint8_t state_of(float alpha, float jump, float clutter, const struct texture_params *p)
+{
+    if (!(alpha > 0.999f) || jump < (float)p->edge) return SOURCE_NONE;
+    if (!(p->max_clutter < 1)) return SOURCE_CLEAN;
+    if (clutter >= (float)p->max_clutter) return SOURCE_HIDDEN;
+    return clutter >= (float)p->min_clutter ? SOURCE_UNSURE : SOURCE_CLEAN;
+}
+
+static enum status level_init(struct source_level *l, int width, int height, struct err *err)
+{
+    *l = (struct source_level){width, height, calloc((size_t)width * (size_t)height, 4 * sizeof(float))};
+    return l->rgba ? ST_OK : err_nomem(err, "a picture", (size_t)width * (size_t)height * 4 * sizeof(float));
+}
+
+/* Half the size: each pixel is the sum of four over 4, a missing one counting as transparent. usable: of the finer
+ * level's pixels, NULL: all. */
+static void halve(struct source_level *to, const struct source_level *from, const uint8_t *state)
+{
+    for (int y = 0; y < to->height; y++)
+        for (int x = 0; x < to->width; x++) {
+            float *out = to->rgba + 4 * ((size_t)y * (size_t)to->width + (size_t)x);
+            for (int k = 0; k < 4; k++) {
+                const int sx = 2 * x + (k & 1), sy = 2 * y + (k >> 1);
+                if (sx >= from->width || sy >= from->height) continue;
+                const size_t at = (size_t)sy * (size_t)from->width + (size_t)sx;
+                if (state && state[at] <= SOURCE_HIDDEN) continue;
+                for (int c = 0; c < 4; c++) out[c] += 0.25f * from->rgba[4 * at + (size_t)c];
+            }
+        }
+}
+
+static enum status make_levels(struct source_view *v, struct err *err)
+{
+    enum status st = ST_OK;
+    while (!st && v->level_count < SOURCE_LEVELS) {
+        const struct source_level *finer = &v->levels[v->level_count - 1];
+        if (finer->width < 2 || finer->height < 2) break;
+        st = level_init(&v->levels[v->level_count], (finer->width + 1) / 2, (finer->height + 1) / 2, err);
+        if (!st) halve(&v->levels[v->level_count], finer, v->level_count == 1 ? v->state : NULL);
+        v->level_count++;
+    }
+    return st;
+}
+
+static void set_projection(struct source_view *v)
+{
+    const struct view *c = &v->camera;
+    const double t[3] = {c->translation.x, c->translation.y, c->translation.z};
+    for (int i = 0; i < 4; i++) {
+        const double x = i < 3 ? c->cam_from_world.m[0][i] : t[0], y = i < 3 ? c->cam_from_world.m[1][i] : t[1];
+        const double z = i < 3 ? c->cam_from_world.m[2][i] : t[2];
+        v->project[0][i] = c->fx * x + c->cx * z;
+        v->project[1][i] = c->fy * y + c->cy * z;
+        v->project[2][i] = z;
+    }
+}
+
+static void take_pixels(struct source_view *v, const struct exr_image *picture, const struct exr_image *ids,
+                        const struct texture_params *params)
+{
+    const size_t pixels = (size_t)v->camera.width * (size_t)v->camera.height;
+    const float *channel[VIEW_CHANNELS];
+    for (int k = 0; k < VIEW_CHANNELS; k++) channel[k] = exr_find(picture, view_channels[k])->f;
+    const float *jump = exr_find(ids, "jump")->f, *clutter = exr_find(ids, "clutter")->f;
+    memcpy(v->id, exr_find(ids, "id")->u, pixels * sizeof *v->id);
+    for (size_t i = 0; i < pixels; i++) {
+        v->own[i] = state_of(channel[A][i], jump[i], clutter[i], params);
+        v->state[i] = channel[CLIPPED][i] > 0 || channel[SIGMA][i] > (float)params->max_noise ? SOURCE_NONE : v->own[i];
+        const float alpha = channel[A][i] > 0.999f;
+        for (int c = 0; c < 3; c++) v->levels[0].rgba[4 * i + (size_t)c] = alpha * channel[c][i];
+        v->levels[0].rgba[4 * i + 3] = alpha;
+    }
+}
+
+static enum status list_faces(struct source_view *v, struct err *err)
+{
+    const size_t pixels = (size_t)v->camera.width * (size_t)v->camera.height;
+    for (size_t i = 0; i < pixels; i++)
+        if (v->id[i] >= v->ids) v->ids = v->id[i] + 1;
+    v->shows = calloc((size_t)v->ids + 1, 1);
+    if (!v->shows) return err_nomem(err, "the faces of a view", v->ids);
+    for (size_t i = 0; i < pixels; i++)
+        if (v->state[i] > SOURCE_NONE) v->shows[v->id[i]] = 1;
+    return ST_OK;
+}
+
+enum status source_view_read(struct source_view *v, const char *views, const char *ids, const struct view *camera,
+                             const struct texture_params *params, struct err *err)
+{
+    const size_t pixels = (size_t)camera->width * (size_t)camera->height;
+    struct exr_image picture = {0}, faces = {0};
+    *v = (struct source_view){.camera = *camera};
+    set_projection(v);
+    enum status st = read_channels(&picture, views, camera, view_channels, VIEW_CHANNELS, &v->bytes, err);
+    if (!st) st = read_channels(&faces, ids, camera, id_channels, ID_CHANNELS, &v->bytes, err);
+    v->id = malloc(pixels * sizeof *v->id);
+    v->state = malloc(pixels);
+    v->own = malloc(pixels);
+    if (!st && (!v->id || !v->state || !v->own)) st = err_nomem(err, "a view's surfaces", pixels * sizeof *v->id);
+    if (!st) st = level_init(&v->levels[0], camera->width, camera->height, err);
+    v->level_count = 1;
+    if (!st) take_pixels(v, &picture, &faces, params);
+    if (!st) st = make_levels(v, err);
+    if (!st) st = list_faces(v, err);
+    exr_image_release(&picture);
+    exr_image_release(&faces);
+    return st;
+}
+
+void source_view_release(struct source_view *v)
+{
+    free(v->id);
+    free(v->state);
+    free(v->own);
+    free(v->shows);
+    for (int k = 0; k < SOURCE_LEVELS; k++) free(v->levels[k].rgba);
+    *v = (struct source_view){0};
+}
+
+bool source_view_sample(float rgb[3], const struct source_view *v, double x, double y, double footprint)
+{
+    int level = footprint > 1.5 ? (int)lround(log2(footprint)) : 0;
+    if (level >= v->level_count) level = v->level_count - 1;
+    const struct source_level *l = &v->levels[level];
+    const double size = 1 << level;
+    const double u = x / size - 0.5, w = y / size - 0.5;
+    const int x0 = (int)floor(u), y0 = (int)floor(w);
+    const float fx = (float)(u - x0), fy = (float)(w - y0);
+    float sum[4] = {0};
+    for (int k = 0; k < 4; k++) {
+        const int px = x0 + (k & 1), py = y0 + (k >> 1);
+        if (px < 0 || py < 0 || px >= l->width || py >= l->height) continue;
+        const float weight = (k & 1 ? fx : 1 - fx) * (k >> 1 ? fy : 1 - fy);
+        const float *p = l->rgba + 4 * ((size_t)py * (size_t)l->width + (size_t)px);
+        for (int c = 0; c < 4; c++) sum[c] += weight * p[c];
+    }
+    if (!(sum[3] > 0)) return false;
+    for (int c = 0; c < 3; c++) rgb[c] = sum[c] / sum[3];
+    return true;
+}

@@ -1,0 +1,170 @@
+/* surfaces.c - see surfaces.h.
+ *
+ * Filling: seen through a plane, a line of the surface is a line of the raster. For an edge of a triangle with the plane
+ * through it that is square to the surface, e . (X, Y, Z, W) >= 0 on the triangle's side; since (X, Y, Z, W) is linear in
+ * the pixel, so is e. A row of pixels inside a triangle is therefore an interval, the intersection of three half lines
+ * and of W > 0, and nothing needs clipping. */
+#include "common/texture/surfaces.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/base/array.h"
+
+#define SAME_PLANE   1e-6 /* of the model's size */
+#define SAME_NORMALS 1e-6 /* 1 - cosine */
+
+static bool is_glass(const struct solid_mesh *m, int face)
+{
+    return !strncmp(m->bodies[m->faces[face].body].name, "glass/", 6);
+}
+
+static bool same_plane(const struct surface *a, struct vec3 normal, double offset, double size)
+{
+    return vec3_dot(a->normal, normal) > 1 - SAME_NORMALS && fabs(a->offset - offset) <= SAME_PLANE * size;
+}
+
+static double size_of(const struct solid_mesh *models, int count)
+{
+    double size = 0;
+    for (int k = 0; k < count; k++)
+        for (int i = 0; i < models[k].vertex_count; i++) {
+            const struct vec3 p = models[k].vertices[i].p;
+            size = fmax(size, fmax(fabs(p.x), fmax(fabs(p.y), fabs(p.z))));
+        }
+    return size;
+}
+
+static int compare_surfaces(const void *a, const void *b)
+{
+    const struct surface *p = a, *q = b;
+    if (p->id != q->id) return p->id < q->id ? -1 : 1;
+    return p->first < q->first ? -1 : p->first > q->first;
+}
+
+/* The surfaces of the unedited model; `first` is, until they are sorted, the face that made each. */
+static enum status list_surfaces(struct surfaces *s, const struct solid_mesh *m, struct err *err)
+{
+    for (int f = 0; f < m->face_count; f++) {
+        const struct solid_face *face = &m->faces[f];
+        const int id = solid_face_id(m, f);
+        int k = 0;
+        while (k < s->count && !(s->list[k].id == id && same_plane(&s->list[k], face->normal, face->offset, s->size)))
+            k++;
+        if (k < s->count) continue;
+        if (array_append(&s->list, (size_t)s->count, sizeof *s->list, "surfaces", err)) return err->status;
+        s->list[s->count++] = (struct surface){
+            .id = id, .normal = face->normal, .offset = face->offset, .glass = is_glass(m, f), .first = f};
+    }
+    if (s->count) qsort(s->list, (size_t)s->count, sizeof *s->list, compare_surfaces);
+    return ST_OK;
+}
+
+/* Adds the triangles of one surface in one model. */
+static enum status add_triangles(struct surfaces *s, struct surface *of, const struct solid_mesh *m,
+                                 const struct solid_triangles *t, struct err *err)
+{
+    for (int f = 0; f < m->face_count; f++) {
+        const struct solid_face *face = &m->faces[f];
+        if (solid_face_id(m, f) != of->id || !same_plane(of, face->normal, face->offset, s->size)) continue;
+        for (int i = t->first[f]; i < t->first[f + 1]; i++) {
+            if (array_append(&s->triangles, (size_t)s->triangle_count, sizeof *s->triangles, "triangles", err))
+                return err->status;
+            for (int k = 0; k < 3; k++) s->triangles[s->triangle_count][k] = m->vertices[t->triangles[i].v[k]].p;
+            s->triangle_count++;
+            of->triangles++;
+        }
+    }
+    return ST_OK;
+}
+
+enum status surfaces_make(struct surfaces *s, const struct solid_mesh *models, int count, struct err *err)
+{
+    struct solid_triangles *parts = calloc((size_t)count, sizeof *parts);
+    *s = (struct surfaces){.size = size_of(models, count)};
+    enum status st =
+        parts ? list_surfaces(s, &models[0], err) : err_nomem(err, "models", (size_t)count * sizeof *parts);
+    for (int k = 0; !st && k < count; k++) st = solid_mesh_triangulate(&parts[k], &models[k], err);
+    for (int i = 0; !st && i < s->count; i++) {
+        s->list[i].first = s->triangle_count;
+        for (int k = 0; !st && k < count; k++) st = add_triangles(s, &s->list[i], &models[k], &parts[k], err);
+    }
+    for (int k = 0; parts && k < count; k++) solid_triangles_release(&parts[k]);
+    free(parts);
+    return st;
+}
+
+void surfaces_release(struct surfaces *s)
+{
+    free(s->list);
+    free(s->triangles);
+    *s = (struct surfaces){0};
+}
+
+int surfaces_find(const struct surfaces *s, int id)
+{
+    int low = 0, high = s->count;
+    while (low < high) {
+        const int middle = (low + high) / 2;
+        if (s->list[middle].id < id)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < s->count && s->list[low].id == id ? low : -1;
+}
+
+int surfaces_find_at(const struct surfaces *s, int id, struct vec3 p, double tolerance)
+{
+    int best = -1;
+    double nearest = tolerance;
+    const int first = surfaces_find(s, id);
+    for (int i = first; i >= 0 && i < s->count && s->list[i].id == id; i++) {
+        const double off = fabs(vec3_dot(s->list[i].normal, p) - s->list[i].offset);
+        if (off <= nearest) best = i, nearest = off;
+    }
+    return best;
+}
+
+/* Narrows [*low, *high] to where a + b x >= 0. */
+static void narrow(double *low, double *high, double a, double b)
+{
+    if (b > 0)
+        *low = fmax(*low, -a / b);
+    else if (b < 0)
+        *high = fmin(*high, -a / b);
+    else if (!(a >= 0))
+        *high = -INFINITY;
+}
+
+/* The half planes of a triangle as linear functions of the pixel: line[k] . (x, y, 1) >= 0 inside. */
+static void triangle_lines(double line[4][3], const struct vec3 t[3], struct vec3 normal,
+                           const struct surface_raster *r)
+{
+    for (int k = 0; k < 3; k++) {
+        const struct vec3 side = vec3_cross(normal, vec3_sub(t[(k + 1) % 3], t[k]));
+        const double inner = vec3_dot(side, vec3_sub(t[(k + 2) % 3], t[k])) < 0 ? -1 : 1;
+        const double e[4] = {inner * side.x, inner * side.y, inner * side.z, -inner * vec3_dot(side, t[k])};
+        for (int c = 0; c < 3; c++) {
+            line[k][c] = 0;
+            for (int i = 0; i < 4; i++) line[k][c] += e[i] * r->point[i][c];
+        }
+    }
+    memcpy(line[3], r->point[3], sizeof line[3]);
+}
+
+void surface_fill(uint8_t *inside, const struct surfaces *s, int surface, const struct surface_raster *r)
+{
+    const struct surface *of = &s->list[surface];
+    for (int i = of->first; i < of->first + of->triangles; i++) {
+        double line[4][3];
+        triangle_lines(line, s->triangles[i], of->normal, r);
+        for (int y = 0; y < r->height; y++) {
+            double low = 0.5, high = r->width - 0.5;
+            for (int k = 0; k < 4; k++) narrow(&low, &high, line[k][1] * (y + 0.5) + line[k][2], line[k][0]);
+            if (!(low <= high)) continue;
+            const int first = (int)ceil(low - 0.5), last = (int)floor(high - 0.5);
+            if (first <= last) memset(inside + (size_t)y * (size_t)r->width + first, 1, (size_t)(last - first + 1));
+        }
+    }
+}

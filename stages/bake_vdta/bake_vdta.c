@@ -1,0 +1,106 @@
+/* bake_vdta.c - view-dependent texture atlases: the faces of the model as one viewpoint sees them, without what hides them.
+ *
+ * reads   MODEL                                         the unedited model
+ *         AXES                                          its frame in the scene
+ *         VIEWS/cameras.txt, images.txt, points3D.txt   the cameras
+ *         VIEWS/lenses.txt                              which views are of one photo: a viewpoint
+ *         VIEWS/VIEW.exr, IDS/VIEW.exr                  the viewpoint's views and those that show hidden texels
+ *         IDS/index.txt                                 which views show a face
+ *         REVEAL/VIEW.exr                               what the edits reveal to the viewpoint's views
+ * writes  OUT/PHOTO/page0.exr, ..., atlas.txt           an atlas for each photo
+ *         DEPS                                          make dependencies: the views that were read */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/base/cli.h"
+#include "common/base/file_path.h"
+#include "common/base/log.h"
+#include "stages/bake_vdta/viewpoint.h"
+
+_Static_assert(offsetof(struct vdta_params, texture) == 0, "the table below has offsets into struct texture_params");
+static const struct param vdta_param_table[] = {
+#define PARAM_STRUCT struct texture_params
+    TEXTURE_PARAMS(PARAM_ROW)
+#undef PARAM_STRUCT
+#define PARAM_STRUCT struct vdta_params
+        VDTA_PARAMS(PARAM_ROW) PARAM_END};
+#undef PARAM_STRUCT
+
+static enum status check_params(const void *values, struct err *err)
+{
+    const struct vdta_params *p = values;
+    if (p->texture.min_clutter <= p->texture.max_clutter) return ST_OK;
+    return err_set(err, ST_USAGE, "min_clutter = %g is above max_clutter = %g.", p->texture.min_clutter,
+                   p->texture.max_clutter);
+}
+
+struct files {
+    const char *model, *axes;
+    struct cli_list photos;
+};
+
+static enum status read_scene(struct bake_scene *s, const struct files *f, struct provenance *prov, struct err *err)
+{
+    char path[FILE_PATH];
+    enum status st = camera_set_read(&s->set, s->views, err);
+    if (!st) st = camera_set_add_inputs(prov, s->views, err);
+    if (!st) st = provenance_add_in(prov, "views", s->views, "lenses", ".txt", path, err);
+    if (!st) st = lens_list_read(&s->lenses, path, err);
+    if (!st) st = model_axes_read(&s->axes, f->axes, err);
+    if (!st) st = provenance_add_file(prov, "model/axes.txt", f->axes, err);
+    if (!st) st = solid_mesh_read(&s->model, f->model, err);
+    if (!st) st = provenance_add_file(prov, "model/model.txt", f->model, err);
+    if (!st) st = surfaces_make(&s->surfaces, &s->model, 1, err);
+    for (int i = 0; !st && i < s->set.view_count; i++)
+        s->set.views[i] = model_from_world_view(&s->axes, &s->set.views[i]);
+    return st;
+}
+
+static void release_scene(struct bake_scene *s)
+{
+    camera_set_release(&s->set);
+    lens_list_release(&s->lenses);
+    surfaces_release(&s->surfaces);
+    solid_mesh_release(&s->model);
+}
+
+static enum status bake_all(struct bake_scene *s, const struct files *f, struct provenance *prov, struct err *err)
+{
+    enum status st = read_scene(s, f, prov, err);
+    for (int i = 0; !st && i < f->photos.count; i++) st = viewpoint_bake(s, f->photos.items[i], prov, err);
+    release_scene(s);
+    return st;
+}
+
+int main(int argc, char **argv)
+{
+    struct vdta_params params = VDTA_PARAMS_DEFAULT;
+    struct bake_scene scene = {.params = &params};
+    struct files f = {0};
+    const struct cli_opt opts[] = {
+        CLI_ABOUT("Bakes view-dependent texture atlases: the model's faces as a viewpoint sees them."),
+        CLI_STR("model", &f.model, CLI_REQUIRED, "the unedited model, model.txt"),
+        CLI_STR("axes", &f.axes, CLI_REQUIRED, "the model's frame, axes.txt"),
+        CLI_STR("views", &scene.views, CLI_REQUIRED, "folder of cameras and rectified views"),
+        CLI_STR("ids", &scene.ids, CLI_REQUIRED, "folder of the faces that each view shows, and of their index"),
+        CLI_STR("reveal", &scene.reveal, CLI_REQUIRED, "folder of what the edits reveal to each view"),
+        CLI_LIST("photo", &f.photos, CLI_REQUIRED, "viewpoint to bake, as a photo's id; repeat for several"),
+        CLI_STR("out", &scene.out, CLI_REQUIRED, "folder in which each viewpoint gets a folder"),
+        CLI_STR("deps", &scene.deps, CLI_OPTIONAL,
+                "make dependencies to write, with one --photo: the views that were read"),
+        CLI_PARAMS(vdta_param_table, &params, check_params),
+        CLI_END,
+    };
+    struct provenance prov = {0};
+    struct err err = ERR_INIT;
+    const enum cli_verdict verdict = cli_parse(argc, argv, "bake_vdta", opts, &prov, &err);
+    if (verdict == CLI_RUN && scene.deps && f.photos.count > 1)
+        err_set(&err, ST_USAGE, "--deps is for one --photo, but %d were given.", f.photos.count);
+    else if (verdict == CLI_RUN)
+        bake_all(&scene, &f, &prov, &err);
+    err_report(&err);
+    cli_list_release(&f.photos);
+    provenance_release(&prov);
+    return err_exit_code(&err);
+}

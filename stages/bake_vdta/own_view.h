@@ -1,0 +1,22 @@
+/* own_view.h - one of the viewpoint's own views, and what of the model it shows or can be made to show. */
+#ifndef REMODEL_OWN_VIEW_H
+#define REMODEL_OWN_VIEW_H
+
+#include "common/texture/bake.h"
+
+struct own_view {
+    struct source_view view;
+    float *z;            /* depth of the surface at each pixel, model units, 0: none; owned */
+    int layers;          /* revealed surfaces that a pixel has at most */
+    uint32_t **layer_id; /* per layer and pixel: 0: none; owned */
+    float **layer_z;     /* owned */
+};
+
+/* Reads VIEWS/VIEW.exr, IDS/VIEW.exr and REVEAL/VIEW.exr. camera: in the model's frame; scale: model units per scene
+ * unit. v is overwritten; the caller releases it in each case. */
+enum status own_view_read(struct own_view *v, const char *views, const char *ids, const char *reveal,
+                          const struct view *camera, double scale, const struct texture_params *params,
+                          struct err *err);
+void own_view_release(struct own_view *v);
+
+#endif

@@ -1,0 +1,205 @@
+/* viewpoint.c - see viewpoint.h. The viewpoint's own views say which texels are wanted; then the other views that show
+ * these faces are read one after the other, so that memory does not grow with their number. */
+#include "stages/bake_vdta/viewpoint.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/base/array.h"
+#include "common/base/log.h"
+#include "common/base/progress.h"
+#include "common/capture/photo_quality.h"
+#include "stages/bake_vdta/sources.h"
+#include "stages/bake_vdta/view_tiles.h"
+
+enum { MAX_OWN = 16 };                 /* views of one photo */
+enum { SAMPLE = 7 };                   /* every SAMPLE-th pixel counts for the level of white */
+static const double WHITE_SHARE = 0.9; /* of the viewpoint's pixels are below white */
+
+struct work {
+    const struct bake_scene *scene;
+    const char *photo;
+    struct provenance *prov;
+    int own[MAX_OWN]; /* views of the photo, in order of name */
+    int own_count;
+    int *views; /* that are sources, own ones among them, in order of name */
+    int view_count;
+    struct bake bake;
+};
+
+static const char *photo_of(const struct bake_scene *s, int view)
+{
+    const int lens = lens_list_find(&s->lenses, s->set.views[view].name);
+    return lens < 0 ? NULL : s->lenses.lenses[lens].photo;
+}
+
+static enum status find_own_views(struct work *w, struct err *err)
+{
+    const struct bake_scene *s = w->scene;
+    for (int i = 0; i < s->set.view_count; i++) {
+        const char *photo = photo_of(s, i);
+        if (!photo || strcmp(photo, w->photo)) continue;
+        if (w->own_count == MAX_OWN) return err_set(err, ST_DATA, "photo %s has more than %d views.", photo, MAX_OWN);
+        w->own[w->own_count++] = i;
+    }
+    if (w->own_count) return ST_OK;
+    return err_set(err, ST_USAGE,
+                   "there is no photo %s in %s/lenses.txt, where the second word of each line is a photo.", w->photo,
+                   s->views);
+}
+
+static int compare_floats(const void *a, const void *b)
+{
+    const float p = *(const float *)a, q = *(const float *)b;
+    return p < q ? -1 : p > q;
+}
+
+/* Adds luminances of a view's pixels to a list. */
+static enum status add_levels(float **levels, size_t *count, size_t *room, const struct source_view *v, struct err *err)
+{
+    const size_t pixels = (size_t)v->camera.width * (size_t)v->camera.height;
+    if (array_reserve(levels, room, *count + pixels / SAMPLE + 1, sizeof **levels, "pixels", err)) return err->status;
+    for (size_t i = 0; i < pixels; i += SAMPLE) {
+        const float *p = v->levels[0].rgba + 4 * i;
+        if (p[3] > 0) (*levels)[(*count)++] = photo_luminance(p);
+    }
+    return ST_OK;
+}
+
+/* The radiance below which WHITE_SHARE of the viewpoint's pixels lie; 1 if all are black. */
+static double white_of(float *levels, size_t count)
+{
+    if (!count) return 1;
+    qsort(levels, count, sizeof *levels, compare_floats);
+    const double white = levels[(size_t)(WHITE_SHARE * (double)(count - 1))];
+    return white > 0 ? white : 1;
+}
+
+static enum status add_inputs(struct work *w, int view, bool own, struct err *err)
+{
+    const struct bake_scene *s = w->scene;
+    const char *name = s->set.views[view].name;
+    enum status st = provenance_add_in(w->prov, "views", s->views, name, ".exr", NULL, err);
+    if (!st) st = provenance_add_in(w->prov, "ids", s->ids, name, ".exr", NULL, err);
+    if (!st && own) st = provenance_add_in(w->prov, "reveal", s->reveal, name, ".exr", NULL, err);
+    return st;
+}
+
+/* The tiles of all own views, and the level of white. */
+static enum status add_tiles(struct work *w, struct err *err)
+{
+    const struct bake_scene *s = w->scene;
+    float *levels = NULL;
+    size_t count = 0, room = 0;
+    enum status st = ST_OK;
+    for (int k = 0; !st && k < w->own_count; k++) {
+        struct own_view own = {0};
+        const struct view *camera = &s->set.views[w->own[k]];
+        st = add_inputs(w, w->own[k], true, err);
+        if (!st) st = own_view_read(&own, s->views, s->ids, s->reveal, camera, s->axes.scale, &s->params->texture, err);
+        if (!st) st = add_levels(&levels, &count, &room, &own.view, err);
+        if (!st) st = view_tiles_add(&w->bake, &own, k, !strcmp(s->params->reveal, "all"), err);
+        own_view_release(&own);
+    }
+    w->bake.white = white_of(levels, count);
+    free(levels);
+    return st;
+}
+
+/* Sources, and own texels made from them. */
+static enum status set_sources(struct work *w, struct err *err)
+{
+    const struct bake_scene *s = w->scene;
+    const size_t n = (size_t)w->view_count;
+    const char **names = malloc(n * sizeof *names);
+    int *groups = malloc(n * sizeof *groups);
+    bool *own = calloc(n, sizeof *own);
+    uint32_t made[MAX_OWN] = {0};
+    enum status st = names && groups && own ? ST_OK : err_nomem(err, "sources", n * sizeof *names);
+    for (int i = 0; !st && i < w->view_count; i++) {
+        names[i] = s->set.views[w->views[i]].name;
+        /* the first view of the photo stands for it */
+        for (groups[i] = 0; strcmp(photo_of(s, groups[i]), photo_of(s, w->views[i])); groups[i]++) {
+        }
+        for (int k = 0; k < w->own_count; k++)
+            if (w->own[k] == w->views[i]) own[i] = true, made[k] = (uint32_t)i, w->bake.own_group = groups[i];
+    }
+    if (!st) st = bake_set_sources(&w->bake, names, groups, own, w->view_count, err);
+    for (size_t i = 0; !st && i < w->bake.texel_count; i++)
+        if (w->bake.made[i] >= ATLAS_VIEWS) w->bake.made[i] = ATLAS_VIEWS + made[w->bake.made[i] - ATLAS_VIEWS];
+    free(names);
+    free(groups);
+    free(own);
+    return st;
+}
+
+static enum status read_sources(struct work *w, uint64_t *bytes, struct err *err)
+{
+    const struct bake_scene *s = w->scene;
+    struct progress progress;
+    enum status st = ST_OK;
+    progress_start(&progress, w->photo, w->view_count, "views");
+    for (int i = 0; !st && i < w->view_count; i++) {
+        struct source_view view = {0};
+        st = add_inputs(w, w->views[i], false, err);
+        if (!st) st = source_view_read(&view, s->views, s->ids, &s->set.views[w->views[i]], &s->params->texture, err);
+        if (!st) bake_add_view(&w->bake, &view, i);
+        *bytes += view.bytes;
+        source_view_release(&view);
+        progress_add(&progress, 1);
+    }
+    progress_end(&progress);
+    return st;
+}
+
+static enum status write_all(struct work *w, uint64_t bytes, const struct bake_totals *t, struct err *err)
+{
+    char folder[FILE_PATH];
+    char *names[MAX_OWN];
+    size_t texels = 0;
+    for (int k = 0; k < w->own_count; k++) names[k] = (char *)w->scene->set.views[w->own[k]].name;
+    enum status st = file_path(folder, w->scene->out, w->photo, "", err);
+    if (!st) st = bake_write_atlas(&w->bake, w->photo, names, w->own_count, folder, w->prov, &texels, err);
+    if (!st)
+        log_note(
+            "%s: %.2f million texels, %.1f %% original, %.1f %% warped, %.1f %% synthesised, %.1f %% of faces that "
+            "no view shows; pages of %.2f million; %d views and %.1f MiB read; largest residual %.1e",
+            w->photo, 1e-6 * (double)t->texels, 100.0 * (double)t->original / (double)(t->texels ? t->texels : 1),
+            100.0 * (double)t->warped / (double)(t->texels ? t->texels : 1),
+            100.0 * (double)t->synthesised / (double)(t->texels ? t->texels : 1),
+            100.0 * (double)t->by_default / (double)(t->texels ? t->texels : 1), 1e-6 * (double)texels, w->view_count,
+            (double)bytes / (1 << 20), t->residual);
+    return st;
+}
+
+static enum status bake_work(struct work *w, struct err *err)
+{
+    struct bake_totals totals = {0};
+    uint64_t bytes = 0;
+    w->bake = (struct bake){.surfaces = &w->scene->surfaces, .params = &w->scene->params->texture, .has_centre = true};
+    enum status st = find_own_views(w, err);
+    if (!st) w->bake.centre = w->scene->set.views[w->own[0]].center;
+    if (!st) st = add_tiles(w, err);
+    if (!st) st = sources_choose(&w->views, &w->view_count, w->scene, w->own, w->own_count, &w->bake, w->prov, err);
+    if (!st) st = set_sources(w, err);
+    if (!st) st = bake_list_texels(&w->bake, err);
+    if (!st) st = read_sources(w, &bytes, err);
+    if (!st) st = bake_find_gains(&w->bake, err);
+    if (!st) bake_choose(&w->bake);
+    if (!st) st = bake_composite(&w->bake, &totals, err);
+    if (!st) st = write_all(w, bytes, &totals, err);
+    return st;
+}
+
+enum status viewpoint_bake(const struct bake_scene *scene, const char *photo, struct provenance *prov, struct err *err)
+{
+    struct work w = {.scene = scene, .photo = photo, .prov = prov};
+    const int shared = prov->count;
+    enum status st = bake_work(&w, err);
+    /* the next viewpoint has other inputs */
+    while (prov->count > shared) free(prov->inputs[--prov->count].name);
+    free(w.views);
+    bake_release(&w.bake);
+    return st;
+}

@@ -1,0 +1,26 @@
+/* viewpoint.h - bakes the view-dependent atlas of one viewpoint [Colburn 2014, 4.5]. */
+#ifndef REMODEL_BAKE_VIEWPOINT_H
+#define REMODEL_BAKE_VIEWPOINT_H
+
+#include "common/capture/lens_list.h"
+#include "common/model/model_axes.h"
+#include "common/texture/bake_atlas.h"
+#include "stages/bake_vdta/vdta_params.h"
+
+/* What all viewpoints of a run share. */
+struct bake_scene {
+    struct camera_set set; /* cameras in the model's frame */
+    struct lens_list lenses;
+    struct model_axes axes;
+    struct solid_mesh model;
+    struct surfaces surfaces;
+    const char *views, *ids, *reveal, *out; /* folders */
+    const char *deps;                       /* file of make dependencies to write; NULL: none */
+    const struct vdta_params *params;
+};
+
+/* Writes OUT/PHOTO/. prov: with the inputs that all viewpoints share; more are added for this one and taken off again.
+ * ST_USAGE: there is no such photo. */
+enum status viewpoint_bake(const struct bake_scene *scene, const char *photo, struct provenance *prov, struct err *err);
+
+#endif
