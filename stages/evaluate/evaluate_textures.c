@@ -9,6 +9,7 @@
 
 struct texture_job {
     struct textures textures;
+    struct traced_model model;
     struct shell_points shell;
     struct model_frame frame;
     struct photo_view *views;
@@ -60,7 +61,7 @@ static enum status read_views(struct texture_job *job, struct evaluation *e, str
     enum status st = job->views ? ST_OK : err_nomem(err, "views", (size_t)cameras->view_count * sizeof *job->views);
     for (int i = 0; !st && i < cameras->view_count; i++) {
         const int shell = shell_of_photo(&job->shell, photo_of_view(e, &e->views, i));
-        if (shell < 0 || !job->shell.views[shell].furniture) continue;
+        if (shell < 0 || !job->shell.views[shell].clutter) continue;
         struct photo_view *v = &job->views[job->view_count++];
         *v = (struct photo_view){&cameras->views[i], shell, NULL};
         st = read_known(v, e, err);
@@ -73,6 +74,7 @@ static void job_release(struct texture_job *job)
     for (int i = 0; i < job->view_count; i++) free(job->views[i].known);
     free(job->views);
     shell_points_release(&job->shell);
+    traced_model_release(&job->model);
     textures_release(&job->textures);
 }
 
@@ -152,6 +154,12 @@ static uint64_t texels_in(const struct atlas_page *page, const struct atlas_tile
     return count;
 }
 
+/* The truth shows what is behind a pane of glass, not in its plane. */
+static bool is_glass(const struct solid_mesh *mesh, int face)
+{
+    return !strncmp(mesh->bodies[mesh->faces[face].body].name, "glass/", 6);
+}
+
 static enum status add_tile(struct texture_result *r, const struct texture_job *job, const struct texel_truth *truth,
                             const struct atlas_page *page, const struct atlas_tile *tile, struct err *err)
 {
@@ -160,7 +168,7 @@ static enum status add_tile(struct texture_result *r, const struct texture_job *
     const size_t count = (size_t)tile->width * (size_t)tile->height;
     texture_seams_add(&r->seams, page, tile, job->compared ? truth->white / truth->scale : 1);
     if (face < 0) r->unknown_tiles++;
-    if (face < 0 || !job->compared) return ST_OK;
+    if (face < 0 || !job->compared || is_glass(&job->textures.mesh, face)) return ST_OK;
     struct texel_facts *facts = malloc(count * sizeof *facts);
     if (!facts) return err_nomem(err, "texels", count * sizeof *facts);
     const struct solid_face *f = &job->textures.mesh.faces[face];
@@ -239,10 +247,10 @@ static enum status add_errors(struct evaluation *e, const struct texture_result 
     if (!st) st = add_share(e, r, "compared", t->compared, t->texels, "none", "there is no texel of a known face", err);
     if (!st && strcmp(r->prefix, "texture.vita"))
         st = add_share(e, r, "clutter_avoided", t->avoided, t->clutter, "higher",
-                       "no texel's own photo is known to show furniture of another colour", err);
+                       "no texel's own photo is known to show clutter of another colour", err);
     if (!st)
         st = add_share(e, r, "clutter_baked", t->baked, t->from_views, "lower",
-                       "no texel has both a true radiance and a source whose furniture is known", err);
+                       "no texel has both a true radiance and a source whose clutter is known", err);
     if (!st)
         st = add_share(e, r, "unknown_clean", t->clean_unknown, t->clean, "lower",
                        "no photo is known to show any texel's surface", err);
@@ -265,26 +273,34 @@ static enum status add_result(struct evaluation *e, const struct texture_result 
     return st || !job->compared ? st : add_errors(e, r, job, err);
 }
 
+/* Reads the truth and the model that it is compared with. */
+static enum status read_truth(struct texture_job *job, struct evaluation *e, struct err *err)
+{
+    static const struct mat3 same = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    char path[FILE_PATH];
+    enum status st = model_frame_read(&job->frame, e, same, vec3_make(0, 0, 0), err);
+    if (!st) st = evaluation_input(e, path, "model", "model.txt", "", err);
+    if (!st) st = traced_model_read(&job->model, path, err);
+    if (!st) st = shell_points_read(&job->shell, e, &job->model, &job->frame, err);
+    return st ? st : read_views(job, e, err);
+}
+
 /* Whether texels can be compared with the truth; a note says why not. */
 static enum status prepare(struct texture_job *job, struct evaluation *e, struct err *err)
 {
-    static const struct mat3 same = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
     const char *why = NULL;
     enum status st = ST_OK;
-    if (e->truth_folder) st = shell_points_read(&job->shell, e, err);
     evaluation_set_white(e);
     if (!e->truth_folder)
         why = "no TRUTH is given";
     else if (!e->aligned)
         why = "the cameras do not tell where the truth is";
-    else if (!job->shell.count)
-        why = "the truth has no shell with depths";
     else if (!(e->radiance_scale > 0))
         why = "the scale of radiance is unknown, because no view of a photo with a true radiance gives it";
+    else if (!(st = read_truth(job, e, err)) && !job->shell.count)
+        why = "the truth has no shell with depths";
     job->compared = !st && !why;
-    if (!st && why) return metric_note(&e->table, err, "skipped errors of textures: %s", why);
-    if (!st) st = model_frame_read(&job->frame, e, same, vec3_make(0, 0, 0), err);
-    return st ? st : read_views(job, e, err);
+    return st || !why ? st : metric_note(&e->table, err, "skipped errors of textures: %s", why);
 }
 
 static enum status measure(struct texture_job *job, struct evaluation *e, const char *prefix, bool vita,

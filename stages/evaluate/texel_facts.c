@@ -2,7 +2,7 @@
  *
  * The tile's matrix and the plane of its face say where in the model a texel is; the model's axes and the similarity of
  * the cameras, where in the truth. There a picture of the shell gives its true radiance, and the pictures of the photo
- * that it was taken from say whether furniture stood in front of it. Texels are computed independently. */
+ * that it was taken from say whether clutter stood in front of it. Texels are computed independently. */
 #include "stages/evaluate/texel_facts.h"
 
 #include "common/base/parallel.h"
@@ -24,14 +24,14 @@ static uint32_t source_flags(const struct texel_truth *t, int source, const stru
 {
     const int at = t->source_shell[source];
     const uint32_t flags = t->source_own[source] ? 0 : TEXEL_WARPED;
-    if (at < 0 || !t->shell->views[at].furniture) return flags;
-    switch (shell_view_sight(&t->shell->views[at], p, t->shell->tolerance)) {
-    case SHELL_FURNITURE:
-        return flags | TEXEL_SOURCE_KNOWN | TEXEL_SOURCE_FURNITURE;
+    if (at < 0 || !t->shell->views[at].clutter) return flags;
+    switch (shell_view_sight(&t->shell->views[at], p)) {
+    case SHELL_CLUTTER:
+        return flags | TEXEL_SOURCE_KNOWN | TEXEL_SOURCE_CLUTTER;
     case SHELL_CLEAN:
         return flags | TEXEL_SOURCE_KNOWN | TEXEL_SOURCE_CLEAN;
     default:
-        return flags | TEXEL_SOURCE_KNOWN; /* it shows another face: a wrong texel, but not for furniture */
+        return flags | TEXEL_SOURCE_KNOWN; /* it shows another face: a wrong texel, but not for clutter */
     }
 }
 
@@ -43,19 +43,20 @@ static bool clean_somewhere(const struct texel_truth *t, struct vec3 scene, cons
         if (!v->known || !(view_project(v->view, scene, &x, &y) > 0)) continue;
         if (!(x >= 0 && y >= 0 && x < v->view->width && y < v->view->height)) continue;
         if (!v->known[(size_t)y * (size_t)v->view->width + (size_t)x]) continue;
-        if (shell_view_sight(&t->shell->views[v->shell], p, t->shell->tolerance) == SHELL_CLEAN) return true;
+        if (shell_view_sight(&t->shell->views[v->shell], p) == SHELL_CLEAN) return true;
     }
     return false;
 }
 
-/* The viewpoint's own photo shows furniture at the point, of another colour than the surface's. */
+/* The viewpoint's own photo shows clutter at the point, of another colour than the surface's. */
 static bool own_clutter(const struct texel_truth *t, const struct surface_point *p, const float radiance[3])
 {
     float shown[3];
     if (t->own < 0 || !t->own_photo->data) return false;
     const struct shell_view *own = &t->shell->views[t->own];
-    if (shell_view_sight(own, p, t->shell->tolerance) != SHELL_FURNITURE) return false;
-    return shell_view_radiance(shown, own, t->own_photo, p, t->shell->tolerance) && texel_differs(shown, radiance);
+    if (shell_view_sight(own, p) != SHELL_CLUTTER) return false;
+    return shell_view_radiance(shown, own, t->own_photo, p, t->shell->tolerance, false) &&
+           texel_differs(shown, radiance);
 }
 
 static struct texel_facts facts_of(const struct tile_job *job, int x, int y)
@@ -67,7 +68,7 @@ static struct texel_facts facts_of(const struct tile_job *job, int x, int y)
     struct vec3 model;
     float radiance[3], found[3];
     if (source == ATLAS_NONE || !texel_place(&model, &job->places, x + 0.5, y + 0.5)) return (struct texel_facts){0, 0};
-    const struct surface_point p = {truth_from_model_point(t->frame, model), job->normal};
+    const struct surface_point p = {truth_from_model_point(t->frame, model), job->normal, job->tile->face};
     facts.flags |= source < ATLAS_VIEWS ? TEXEL_FILLED : source_flags(t, (int)(source - ATLAS_VIEWS), &p);
     if (clean_somewhere(t, world_from_model_point(&t->frame->axes, model), &p)) facts.flags |= TEXEL_CLEAN_SOMEWHERE;
     if (!shell_radiance(radiance, t->shell, &p, t->own)) return facts;

@@ -36,8 +36,7 @@ static void add_compared(struct texture_sum *face, const struct texel_facts *t)
         return;
     }
     if (t->flags & TEXEL_WARPED) add_square(&face[TEXTURE_WARPED], t->square);
-    if (t->flags & TEXEL_SOURCE_KNOWN && !(t->flags & TEXEL_SOURCE_FURNITURE))
-        add_square(&face[TEXTURE_SEEN], t->square);
+    if (t->flags & TEXEL_SOURCE_KNOWN && !(t->flags & TEXEL_SOURCE_CLUTTER)) add_square(&face[TEXTURE_SEEN], t->square);
 }
 
 void texture_error_add(struct texture_error *e, int face, const struct texel_facts *facts, size_t count)
@@ -52,7 +51,7 @@ void texture_error_add(struct texture_error *e, int face, const struct texel_fac
         }
         if (f & TEXEL_COMPARED && f & TEXEL_SOURCE_KNOWN) {
             e->from_views++;
-            e->baked += f & TEXEL_SOURCE_FURNITURE && f & TEXEL_DIFFERS;
+            e->baked += f & TEXEL_SOURCE_CLUTTER && f & TEXEL_DIFFERS;
         }
         if (f & TEXEL_OWN_CLUTTER) {
             e->clutter++;

@@ -15,15 +15,15 @@
 /* What is known of a texel. */
 enum texel_flag {
     TEXEL_EXISTS = 1 << 0,
-    TEXEL_WARPED = 1 << 1,           /* from another view than the viewpoint's own */
-    TEXEL_FILLED = 1 << 2,           /* synthesised, or the default colour: no view shows it clean */
-    TEXEL_COMPARED = 1 << 3,         /* its true radiance is known: `square` counts */
-    TEXEL_DIFFERS = 1 << 4,          /* from the truth, by more than TEXTURE_DIFFERS */
-    TEXEL_SOURCE_KNOWN = 1 << 5,     /* the truth says what stands in front of it in its source's photo */
-    TEXEL_SOURCE_FURNITURE = 1 << 6, /* that is furniture */
-    TEXEL_SOURCE_CLEAN = 1 << 7,     /* nothing does, and the source sees the point */
-    TEXEL_OWN_CLUTTER = 1 << 8,      /* the viewpoint's own photo shows furniture of another colour there */
-    TEXEL_CLEAN_SOMEWHERE = 1 << 9,  /* some photo shows it clean and unclipped */
+    TEXEL_WARPED = 1 << 1,          /* from another view than the viewpoint's own */
+    TEXEL_FILLED = 1 << 2,          /* synthesised, or the default colour: no view shows it clean */
+    TEXEL_COMPARED = 1 << 3,        /* its true radiance is known: `square` counts */
+    TEXEL_DIFFERS = 1 << 4,         /* from the truth, by more than TEXTURE_DIFFERS */
+    TEXEL_SOURCE_KNOWN = 1 << 5,    /* the truth says what stands in front of it in its source's photo */
+    TEXEL_SOURCE_CLUTTER = 1 << 6,  /* that is clutter */
+    TEXEL_SOURCE_CLEAN = 1 << 7,    /* nothing does, and the source sees the point */
+    TEXEL_OWN_CLUTTER = 1 << 8,     /* the viewpoint's own photo shows clutter of another colour there */
+    TEXEL_CLEAN_SOMEWHERE = 1 << 9, /* some photo shows it clean and unclipped */
 };
 
 struct texel_facts {
@@ -43,7 +43,7 @@ struct texture_error {
     int face_count;
     uint64_t texels, compared;
     uint64_t clutter, avoided;     /* texels whose own photo shows clutter; of them, those that do not */
-    uint64_t from_views, baked;    /* compared texels of known sources; of them, those that show furniture */
+    uint64_t from_views, baked;    /* compared texels of known sources; of them, those that show clutter */
     uint64_t clean, clean_unknown; /* texels that some photo shows clean; of them, those that were filled */
 };
 

@@ -92,14 +92,14 @@ mix_suns()
 {
     local v kind
     mkdir -p "$kept/mixed/photos" "$kept/mixed/truth/hdr" "$kept/mixed/truth/shell/hdr"
-    ln -sf "$kept"/room/photos/* "$kept/mixed/photos/"
-    ln -sf "$kept"/suns/photos/* "$kept/mixed/photos/"
-    ln -sf "$kept"/room/truth/*.txt "$kept"/room/truth/{ids,depth} "$kept/mixed/truth/"
-    [ ! -d "$kept/room/truth/novel" ] || ln -sfn "$kept/room/truth/novel" "$kept/mixed/truth/novel"
-    for kind in ids depth; do ln -sfn "$kept/room/truth/shell/$kind" "$kept/mixed/truth/shell/$kind"; done
-    ln -sf "$kept"/room/truth/hdr/* "$kept/mixed/truth/hdr/"
-    ln -sf "$kept"/suns/truth/hdr/* "$kept/mixed/truth/hdr/"
-    ln -sf "$kept"/room/truth/shell/hdr/* "$kept/mixed/truth/shell/hdr/"
+    ln -srf "$kept"/room/photos/* "$kept/mixed/photos/"
+    ln -srf "$kept"/suns/photos/* "$kept/mixed/photos/"
+    ln -srf "$kept"/room/truth/*.txt "$kept"/room/truth/{ids,depth} "$kept/mixed/truth/"
+    [ ! -d "$kept/room/truth/novel" ] || ln -srfn "$kept/room/truth/novel" "$kept/mixed/truth/novel"
+    for kind in ids depth; do ln -srfn "$kept/room/truth/shell/$kind" "$kept/mixed/truth/shell/$kind"; done
+    ln -srf "$kept"/room/truth/hdr/* "$kept/mixed/truth/hdr/"
+    ln -srf "$kept"/suns/truth/hdr/* "$kept/mixed/truth/hdr/"
+    ln -srf "$kept"/room/truth/shell/hdr/* "$kept/mixed/truth/shell/hdr/"
     for v in $(photos_of "$described" | every_second); do rm -f "$kept/mixed/truth/shell/hdr/$v.exr"; done
 }
 
@@ -109,7 +109,7 @@ mix_suns()
 scaled()
 {
     if [ "$scale" = 1 ]; then cat "$1"; return; fi
-    awk -v s="$scale" -v photos="$(photos_of "$described" | tr '\n' ' ')" '
+    awk -v CONVFMT=%.12g -v s="$scale" -v photos="$(photos_of "$described" | tr '\n' ' ')" '
         BEGIN { n = split(photos, p, " "); for (i = 1; i <= n; i++) known[p[i]] = 1 }
         /^#/ { print; next }
         { for (i = 1; i < NF; i++) if ($i in known) for (k = i + 1; k <= NF && $k ~ /^[0-9.]+$/; k++) $k *= s; print }' "$1"
@@ -122,7 +122,7 @@ new_scene() # NAME PHOTOS TRUTH
     mkdir -p "$to/edits"
     for f in model.txt scale.txt axes_fix.txt; do [ ! -e "$described/$f" ] || scaled "$described/$f" >"$to/$f"; done
     for f in "$described"/edits/*.txt; do scaled "$f" >"$to/edits/${f##*/}"; done
-    awk -v s="$scale" '$1 == "camera_params" { $3 *= s } { print }' "$described/scene.cfg" >"$to/scene.cfg"
+    awk -v CONVFMT=%.12g -v s="$scale" '$1 == "camera_params" { $3 *= s } { print }' "$described/scene.cfg" >"$to/scene.cfg"
     printf 'PHOTOS := %s\nTRUTH := %s\nPRODUCTS := model\n' "$2" "$3" >"$to/scene.mk"
 }
 
@@ -136,14 +136,14 @@ prepare()
     [ -n "$shell_photos" ] || shell_photos=$(default_shell)
     shoot
     mkdir -p "$kept/project/out"
-    for f in Makefile stages common configs tests; do ln -sfn "$PWD/$f" "$kept/project/$f"; done
-    ln -sfn "$PWD/out/build" "$kept/project/out/build"
+    for f in Makefile stages common configs tests; do ln -srfn "$PWD/$f" "$kept/project/$f"; done
+    ln -srfn "$PWD/out/build" "$kept/project/out/build"
     new_scene room "$kept/room/photos" "$kept/room/truth"
     new_scene mixed "$kept/mixed/photos" "$kept/mixed/truth"
-    made SCENE=room face_index
+    made SCENE=room vdta
     # the same cameras, so that rows differ by light alone
     echo "SFM := out/room/sfm/0" >>"$kept/project/scenes/mixed/scene.mk"
-    made SCENE=mixed face_index
+    made SCENE=mixed vdta
 }
 
 settings()

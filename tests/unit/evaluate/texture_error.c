@@ -58,7 +58,12 @@ static struct shot shoot(struct vec3 from)
             s.whole.data[3 * i + c] = hidden ? 0.05f : gray;
         }
     }
-    assert_ok(shell_view_make(&s.view, &photo, ids, whole, &err), err);
+    static float none[W * H];
+    uint32_t *faces = malloc(W * H * sizeof *faces);
+    for (int i = 0; i < W * H; i++) faces[i] = WALL;
+    assert_ok(shell_view_make(&s.view, &photo, &err), err);
+    assert_ok(shell_view_mark(&s.view, &(struct shell_pixel_ids){ids, whole, faces, none}, 0.05, &err), err);
+    free(faces);
     s.view.rgb = shell;
     free(photo.depth);
     free(ids);
@@ -136,8 +141,8 @@ static struct room *room_make(void)
                                     r->source_own, 0,         &r->shots[0].whole};
     for (int i = 0; i < TEXELS; i++) {
         const struct vec3 p = place_of(r, i);
-        const struct surface_point at = {p, wall_normal};
-        const bool clean = shell_view_sight(&r->shell_views[0], &at, 0.05) == SHELL_CLEAN;
+        const struct surface_point at = {p, wall_normal, WALL};
+        const bool clean = shell_view_sight(&r->shell_views[0], &at) == SHELL_CLEAN;
         r->page.source[i] = ATLAS_VIEWS + (clean ? 0 : 1);
         for (int c = 0; c < 3; c++) r->page.rgb[3 * i + c] = gray_of_wall(p.x, p.z) / 2; /* the scale is 2 */
     }
@@ -168,8 +173,8 @@ static struct texture_error measure(struct room *r)
 static int behind_box(const struct room *r, int texel)
 {
     const struct vec3 p = place_of(r, texel);
-    const struct surface_point at = {p, wall_normal};
-    return shell_view_sight(&r->shell_views[0], &at, 0.05) == SHELL_FURNITURE;
+    const struct surface_point at = {p, wall_normal, WALL};
+    return shell_view_sight(&r->shell_views[0], &at) == SHELL_CLUTTER;
 }
 
 /* --------------------------------------------------------------------------------------------------------------- tests */
@@ -210,11 +215,11 @@ static void right_textures_have_no_error(void **state)
     assert_true(texture_face_psnr(&e, WALL, TEXTURE_SEEN, &db) && db > 60); /* half a step of 8 bits at most */
     uint64_t clutter = 0, avoided = 0; /* the second photo sees a part of what the box hides from the first */
     for (int i = 0; i < TEXELS; i++) {
-        const struct surface_point at = {place_of(r, i), wall_normal};
+        const struct surface_point at = {place_of(r, i), wall_normal, WALL};
         if (!(r->facts[i].flags & TEXEL_OWN_CLUTTER)) continue;
         assert_true(behind_box(r, i));
         clutter++;
-        avoided += shell_view_sight(&r->shell_views[1], &at, 0.05) == SHELL_CLEAN;
+        avoided += shell_view_sight(&r->shell_views[1], &at) == SHELL_CLEAN;
     }
     assert_true(avoided > 100 && avoided < clutter);
     assert_int_equal(e.clutter, clutter);
@@ -279,10 +284,10 @@ static void synthesised_texels_avoid_clutter_but_not_where_a_photo_is_clean(void
     uint64_t filled = 0, clean = 0;
     for (int i = 0; i < TEXELS; i++) {
         if (!behind_box(r, i)) continue;
-        const struct surface_point at = {place_of(r, i), wall_normal};
+        const struct surface_point at = {place_of(r, i), wall_normal, WALL};
         r->page.source[i] = ATLAS_SYNTHESISED;
         filled++;
-        clean += shell_view_sight(&r->shell_views[1], &at, 0.05) == SHELL_CLEAN;
+        clean += shell_view_sight(&r->shell_views[1], &at) == SHELL_CLEAN;
     }
     struct texture_error e = measure(r);
     assert_int_equal(e.avoided, e.clutter);
@@ -302,13 +307,37 @@ static void a_point_behind_another_wall_has_no_true_radiance(void **state)
 {
     (void)state;
     struct room *r = room_make();
-    const struct surface_point behind = {{2, 3.2, 1.8}, {0, -1, 0}}, turned = {{2, 3, 1.8}, {0, 1, 0}};
+    const struct surface_point behind = {{2, 3.2, 1.8}, {0, -1, 0}, WALL}, turned = {{2, 3, 1.8}, {0, 1, 0}, WALL};
     float rgb[3];
     assert_false(shell_radiance(rgb, &r->shell, &behind, -1));
     assert_false(shell_radiance(rgb, &r->shell, &turned, -1));
-    const struct surface_point there = {{2, 3.01, 1.8}, {0, -1, 0}}; /* within the tolerance */
+    const struct surface_point there = {{2, 3.01, 1.8}, {0, -1, 0}, WALL}; /* within the tolerance */
     assert_true(shell_radiance(rgb, &r->shell, &there, -1));
     assert_true(fabsf(rgb[0] - gray_of_wall(2, 1.8)) < 1e-3f);
+    room_release(r);
+}
+
+static void what_the_model_lacks_is_clutter_and_another_face_hides(void **state)
+{
+    (void)state;
+    struct room *r = room_make();
+    struct err err = ERR_INIT;
+    static uint32_t same[W * H], faces[W * H];
+    static float distance[W * H];
+    for (int i = 0; i < W * H; i++) {
+        same[i] = WALL;
+        faces[i] = i / W < 20 ? WALL + 1 : WALL;    /* the upper rows show another face of the model */
+        distance[i] = i % W < W / 2 ? 0.2f : 0.04f; /* a lamp in the left half */
+    }
+    struct shell_view *v = &r->shell_views[0];
+    free(v->faces);
+    free(v->clutter);
+    assert_ok(shell_view_mark(v, &(struct shell_pixel_ids){same, same, faces, distance}, 0.05, &err), err);
+    const struct surface_point left = {{1.5, 3, 1.2}, wall_normal, WALL}, right = {{2.5, 3, 1.2}, wall_normal, WALL};
+    const struct surface_point high = {{2.5, 3, 2.5}, wall_normal, WALL};
+    assert_int_equal(shell_view_sight(v, &left), SHELL_CLUTTER);
+    assert_int_equal(shell_view_sight(v, &right), SHELL_CLEAN);
+    assert_int_equal(shell_view_sight(v, &high), SHELL_HIDDEN_POINT);
     room_release(r);
 }
 
@@ -364,6 +393,7 @@ int main(void)
         cmocka_unit_test(a_smeared_box_is_counted_as_baked_clutter),
         cmocka_unit_test(synthesised_texels_avoid_clutter_but_not_where_a_photo_is_clean),
         cmocka_unit_test(a_point_behind_another_wall_has_no_true_radiance),
+        cmocka_unit_test(what_the_model_lacks_is_clutter_and_another_face_hides),
         cmocka_unit_test(a_step_between_sources_has_more_energy_than_a_ramp),
         cmocka_unit_test(one_and_two_threads_find_the_same),
     };
