@@ -66,8 +66,12 @@ void atlas_page_release(struct atlas_page *p);
  * then left), in which it fits. ST_DATA: a tile larger than a page. Tiles keep their order. */
 enum status atlas_pack(struct atlas *a, struct err *err);
 
-/* Writes FOLDER/page0.exr, ..., then atlas.txt; each appears whole or not at all. Pages that an earlier atlas had beyond
- * these are removed. pages: page_count of them. */
+/* Writes FOLDER/pageN.exr, which appears whole or not at all. */
+enum status atlas_write_page(const struct atlas_page *p, const char *folder, int page, const struct provenance *prov,
+                             struct err *err);
+/* Writes FOLDER/atlas.txt, when all pages have been written, and removes pages that an earlier atlas had beyond these. */
+enum status atlas_write_list(const struct atlas *a, const char *folder, const struct provenance *prov, struct err *err);
+/* Both, for page_count pages. */
 enum status atlas_write(const struct atlas *a, const struct atlas_page *pages, const char *folder,
                         const struct provenance *prov, struct err *err);
 /* Reads atlas.txt. Afterwards indices are in range, rectangles inside their pages, numbers finite; otherwise ST_DATA

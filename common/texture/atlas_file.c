@@ -25,12 +25,14 @@ static enum status page_path(char path[FILE_PATH], const char *folder, int page,
     return file_path(path, folder, name, ".exr", err);
 }
 
-static enum status write_page(const struct atlas_page *p, const char *path, const struct provenance *prov,
-                              struct err *err)
+enum status atlas_write_page(const struct atlas_page *p, const char *folder, int page, const struct provenance *prov,
+                             struct err *err)
 {
     const size_t texels = (size_t)p->width * (size_t)p->height;
     struct exr_image exr = {0};
-    enum status st = exr_image_init(&exr, p->width, p->height, err);
+    char path[FILE_PATH];
+    enum status st = page_path(path, folder, page, err);
+    if (!st) st = exr_image_init(&exr, p->width, p->height, err);
     for (int k = 0; !st && k < 5; k++) st = exr_add_plane(&exr, channels[k], k < 4 ? EXR_HALF : EXR_UINT, NULL, err);
     for (size_t i = 0; !st && i < texels; i++) {
         if (p->source[i] == ATLAS_NONE) continue;
@@ -71,22 +73,24 @@ static enum status write_list(const struct atlas *a, const char *path, const str
     return st;
 }
 
-enum status atlas_write(const struct atlas *a, const struct atlas_page *pages, const char *folder,
-                        const struct provenance *prov, struct err *err)
+enum status atlas_write_list(const struct atlas *a, const char *folder, const struct provenance *prov, struct err *err)
 {
     char path[FILE_PATH];
-    enum status st = make_folders(folder, err);
-    for (int i = 0; !st && i < a->page_count; i++) {
-        st = page_path(path, folder, i, err);
-        if (!st) st = write_page(&pages[i], path, prov, err);
-    }
-    if (!st) st = file_path(path, folder, "atlas", ".txt", err);
+    enum status st = file_path(path, folder, "atlas", ".txt", err);
     if (!st) st = write_list(a, path, prov, err);
     for (int i = a->page_count; !st; i++) {
         st = page_path(path, folder, i, err);
         if (!st && unlink(path)) break;
     }
     return st;
+}
+
+enum status atlas_write(const struct atlas *a, const struct atlas_page *pages, const char *folder,
+                        const struct provenance *prov, struct err *err)
+{
+    enum status st = ST_OK;
+    for (int i = 0; !st && i < a->page_count; i++) st = atlas_write_page(&pages[i], folder, i, prov, err);
+    return st ? st : atlas_write_list(a, folder, prov, err);
 }
 
 /* ---------------------------------------------------------------------------------------------------------- reading */

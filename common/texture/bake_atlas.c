@@ -4,85 +4,91 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/base/array.h"
+
 /* The tile's matrix, moved to its place on the page. */
-static void move_matrix(double out[3][4], const struct bake_tile *t, const struct atlas_tile *place)
+static void move_matrix(struct atlas_tile *place, const struct bake_tile *t)
 {
     for (int i = 0; i < 4; i++) {
-        out[0][i] = t->matrix[0][i] + place->x * t->matrix[2][i];
-        out[1][i] = t->matrix[1][i] + place->y * t->matrix[2][i];
-        out[2][i] = t->matrix[2][i];
+        place->matrix[0][i] = t->matrix[0][i] + place->x * t->matrix[2][i];
+        place->matrix[1][i] = t->matrix[1][i] + place->y * t->matrix[2][i];
+        place->matrix[2][i] = t->matrix[2][i];
     }
 }
 
 static void copy_tile(struct atlas_page *page, const struct bake *b, const struct bake_tile *t,
-                      const struct atlas_tile *place)
+                      const struct atlas_tile *place, const int *source_of)
 {
     for (int y = 0; y < place->height; y++)
         for (int x = 0; x < place->width; x++) {
             const size_t from = t->first + (size_t)y * (size_t)place->width + (size_t)x;
             const size_t to = (size_t)(place->y + y) * (size_t)page->width + (size_t)(place->x + x);
             if (b->role[from] == TEXEL_NONE) continue;
-            page->source[to] = b->made[from];
+            const uint32_t made = b->made[from];
+            page->source[to] = made < ATLAS_VIEWS || !source_of
+                                   ? made
+                                   : (uint32_t)ATLAS_VIEWS + (uint32_t)source_of[made - ATLAS_VIEWS];
             memcpy(page->rgb + 3 * to, b->rgb + 3 * from, 3 * sizeof *page->rgb);
         }
 }
 
-static enum status copy_names(char ***names, int *copied, char *const *from, int count, struct err *err)
+/* The bake's tiles, packed. */
+static enum status pack(struct atlas *part, const struct bake *b, struct err *err)
 {
-    *names = calloc((size_t)count + 1, sizeof **names);
-    if (!*names) return err_nomem(err, "names", (size_t)count * sizeof **names);
-    for (*copied = 0; *copied < count; (*copied)++)
-        if (!((*names)[*copied] = strdup(from[*copied]))) return err_nomem(err, "a name", strlen(from[*copied]));
-    return ST_OK;
-}
-
-static enum status describe(struct atlas *a, const struct bake *b, const char *viewpoint, char *const *views,
-                            int view_count, struct err *err)
-{
-    char **sources = calloc((size_t)b->source_count + 1, sizeof *sources);
-    a->tiles = calloc((size_t)b->tile_count + 1, sizeof *a->tiles);
-    if (!sources || !a->tiles) {
-        free(sources);
-        return err_nomem(err, "tiles", (size_t)b->tile_count * sizeof *a->tiles);
-    }
-    for (int i = 0; i < b->source_count; i++) sources[i] = b->sources[i].name;
-    enum status st = copy_names(&a->sources, &a->source_count, sources, b->source_count, err);
-    if (!st && viewpoint) st = copy_names(&a->views, &a->view_count, views, view_count, err);
-    if (!st && viewpoint && !(a->viewpoint = strdup(viewpoint))) st = err_nomem(err, "a name", strlen(viewpoint));
-    a->centre = b->centre;
-    a->tile_count = b->tile_count;
+    part->tiles = calloc((size_t)b->tile_count + 1, sizeof *part->tiles);
+    if (!part->tiles) return err_nomem(err, "tiles", (size_t)b->tile_count * sizeof *part->tiles);
+    part->tile_count = b->tile_count;
     for (int i = 0; i < b->tile_count; i++) {
         const struct bake_tile *t = &b->tiles[i];
-        a->tiles[i] = (struct atlas_tile){.face = b->surfaces->list[t->surface].id,
-                                          .view = t->view,
-                                          .width = t->raster.width,
-                                          .height = t->raster.height};
+        part->tiles[i] = (struct atlas_tile){.face = b->surfaces->list[t->surface].id,
+                                             .view = t->view,
+                                             .width = t->raster.width,
+                                             .height = t->raster.height};
     }
-    free(sources);
+    return atlas_pack(part, err);
+}
+
+static enum status write_page(const struct atlas *part, int page, int number, const struct bake *b,
+                              const int *source_of, const char *folder, const struct provenance *prov, struct err *err)
+{
+    struct atlas_page pixels = {0};
+    enum status st = atlas_page_init(&pixels, part->page_sizes[page][0], part->page_sizes[page][1], err);
+    for (int i = 0; !st && i < part->tile_count; i++)
+        if (part->tiles[i].page == page) copy_tile(&pixels, b, &b->tiles[i], &part->tiles[i], source_of);
+    if (!st) st = atlas_write_page(&pixels, folder, number, prov, err);
+    atlas_page_release(&pixels);
     return st;
 }
 
-enum status bake_write_atlas(const struct bake *b, const char *viewpoint, char *const *views, int view_count,
-                             const char *folder, const struct provenance *prov, size_t *texels, struct err *err)
+/* Adds the part's tiles and pages to the atlas. */
+static enum status append(struct atlas *a, const struct atlas *part, const struct bake *b, struct err *err)
 {
-    struct atlas a = {0};
-    struct atlas_page *pages = NULL;
-    enum status st = describe(&a, b, viewpoint, views, view_count, err);
-    *texels = 0;
-    if (!st) st = atlas_pack(&a, err);
-    if (!st && !(pages = calloc((size_t)a.page_count + 1, sizeof *pages)))
-        st = err_nomem(err, "pages", (size_t)a.page_count * sizeof *pages);
-    for (int i = 0; !st && i < a.page_count; i++) {
-        st = atlas_page_init(&pages[i], a.page_sizes[i][0], a.page_sizes[i][1], err);
-        *texels += (size_t)a.page_sizes[i][0] * (size_t)a.page_sizes[i][1];
+    const int before = a->page_count;
+    for (int i = 0; i < part->page_count; i++) {
+        if (array_append(&a->page_sizes, (size_t)a->page_count, sizeof *a->page_sizes, "pages", err))
+            return err->status;
+        memcpy(a->page_sizes[a->page_count++], part->page_sizes[i], sizeof *a->page_sizes);
     }
-    for (int i = 0; !st && i < a.tile_count; i++) {
-        move_matrix(a.tiles[i].matrix, &b->tiles[i], &a.tiles[i]);
-        copy_tile(&pages[a.tiles[i].page], b, &b->tiles[i], &a.tiles[i]);
+    for (int i = 0; i < part->tile_count; i++) {
+        if (array_append(&a->tiles, (size_t)a->tile_count, sizeof *a->tiles, "tiles", err)) return err->status;
+        struct atlas_tile *t = &a->tiles[a->tile_count++];
+        *t = part->tiles[i];
+        t->page += before;
+        move_matrix(t, &b->tiles[i]);
     }
-    if (!st) st = atlas_write(&a, pages, folder, prov, err);
-    for (int i = 0; pages && i < a.page_count; i++) atlas_page_release(&pages[i]);
-    free(pages);
-    atlas_release(&a);
+    return ST_OK;
+}
+
+enum status bake_write_pages(struct atlas *a, const struct bake *b, const int *source_of, const char *folder,
+                             const struct provenance *prov, size_t *texels, struct err *err)
+{
+    struct atlas part = {0};
+    enum status st = pack(&part, b, err);
+    for (int i = 0; !st && i < part.page_count; i++) {
+        st = write_page(&part, i, a->page_count + i, b, source_of, folder, prov, err);
+        *texels += (size_t)part.page_sizes[i][0] * (size_t)part.page_sizes[i][1];
+    }
+    if (!st) st = append(a, &part, b, err);
+    atlas_release(&part);
     return st;
 }

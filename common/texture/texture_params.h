@@ -27,4 +27,7 @@ struct texture_params {
         TEXTURE_PARAMS(PARAM_DEFAULT) \
     }
 
+/* ST_USAGE: parameters that contradict each other. */
+enum status texture_params_check(const struct texture_params *p, struct err *err);
+
 #endif

@@ -29,10 +29,7 @@ static const struct param vdta_param_table[] = {
 
 static enum status check_params(const void *values, struct err *err)
 {
-    const struct vdta_params *p = values;
-    if (p->texture.min_clutter <= p->texture.max_clutter) return ST_OK;
-    return err_set(err, ST_USAGE, "min_clutter = %g is above max_clutter = %g.", p->texture.min_clutter,
-                   p->texture.max_clutter);
+    return texture_params_check(&((const struct vdta_params *)values)->texture, err);
 }
 
 struct files {

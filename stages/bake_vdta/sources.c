@@ -1,10 +1,10 @@
 /* sources.c - see sources.h.
  *
  * The choice by texel comes later (common/texture/candidates.c) and sees each view's pixels; here only their number is
- * limited. Every face asks for views in proportion to its texels that the viewpoint does not show. A view's worth to a
- * face is the number of its clean pixels, up to those asked for, times what [Buehler 2001] prefers: a small angle
- * between the rays of the two, from the middle of the face's missing texels, and enough resolution. Views are taken one
- * at a time, and what a view offers counts less and less where others were taken for the same face. */
+ * limited. Each face is represented by some of the texels that the viewpoint does not show. The index says which views
+ * show the face; a view's worth to a sample inside its picture is the clean share of the face in it, times what
+ * [Buehler 2001] prefers: a small angle between the rays of the two, and enough resolution. Views are taken one at a
+ * time, and what a view offers a sample counts less and less where others were taken for it. */
 #include "stages/bake_vdta/sources.h"
 
 #include <math.h>
@@ -14,118 +14,134 @@
 #include "common/base/array.h"
 #include "common/texture/face_index.h"
 
+enum { SAMPLES = 100 };             /* of a tile, about */
 static const double ANGLE = 0.5;    /* radians: an angle at which a view is worth half */
-static const double SATURATION = 3; /* a face is served when the views taken show it as often as this */
+static const double SATURATION = 3; /* a sample that views of this worth were taken for counts a quarter */
 
-struct demand { /* of a face */
-    int id;
-    double texels; /* that the viewpoint does not show */
-    struct vec3 middle;
-    double served; /* share of its texels that the views taken show, added up */
+struct sample {
+    int id;       /* of its face */
+    size_t order; /* of its making */
+    struct vec3 p, normal;
+    double texels; /* that it stands for */
+    double served; /* worth of the views taken, added up */
+};
+
+struct samples {
+    struct sample *list; /* owned */
+    size_t count, room;
 };
 
 struct offer {
-    int view, demand;
-    double worth; /* 0..1 of the face */
+    int view;
+    size_t sample;
+    double worth; /* 0 to 1 */
 };
 
-static int compare_ids(const void *a, const void *b)
+static int compare_samples(const void *a, const void *b)
 {
-    const struct demand *p = a, *q = b;
-    return p->id < q->id ? -1 : p->id > q->id;
+    const struct sample *p = a, *q = b;
+    if (p->id != q->id) return p->id < q->id ? -1 : 1;
+    return p->order < q->order ? -1 : p->order > q->order;
 }
 
-/* One demand for each face, in order of id. */
-static enum status find_demands(struct demand **demands, int *count, const struct bake *b, struct err *err)
+/* Every step-th texel of a tile in x and y, of those that the viewpoint does not show. */
+static enum status add_samples(struct samples *s, const struct bake *b, const struct bake_tile *t, struct err *err)
 {
-    struct demand *d = calloc((size_t)b->tile_count + 1, sizeof *d);
-    if (!d) return err_nomem(err, "faces", (size_t)b->tile_count * sizeof *d);
-    int n = 0;
-    for (int i = 0; i < b->tile_count; i++) {
-        const struct bake_tile *t = &b->tiles[i];
-        struct demand one = {.id = b->surfaces->list[t->surface].id};
-        for (int y = 0; y < t->raster.height; y++)
-            for (int x = 0; x < t->raster.width; x++) {
-                struct vec3 p;
-                const uint8_t role = b->role[t->first + (size_t)y * (size_t)t->raster.width + (size_t)x];
-                if (role == TEXEL_NONE || role == TEXEL_ORIGINAL || !bake_tile_point(&p, t, x + 0.5, y + 0.5)) continue;
-                one.middle = vec3_add(one.middle, p);
-                one.texels++;
-            }
-        if (one.texels > 0) d[n++] = one;
-    }
-    if (n) qsort(d, (size_t)n, sizeof *d, compare_ids);
-    *demands = d;
-    *count = 0;
-    for (int i = 0; i < n; i++) {
-        if (*count && d[*count - 1].id == d[i].id) {
-            d[*count - 1].texels += d[i].texels;
-            d[*count - 1].middle = vec3_add(d[*count - 1].middle, d[i].middle);
-        } else
-            d[(*count)++] = d[i];
-    }
-    for (int i = 0; i < *count; i++) d[i].middle = vec3_scale(d[i].middle, 1 / d[i].texels);
+    const struct surface *of = &b->surfaces->list[t->surface];
+    const int step = 1 + (int)sqrt((double)t->raster.width * t->raster.height / SAMPLES);
+    for (int y = step / 2; y < t->raster.height; y += step)
+        for (int x = step / 2; x < t->raster.width; x += step) {
+            const uint8_t role = b->role[t->first + (size_t)y * (size_t)t->raster.width + (size_t)x];
+            struct sample one = {.id = of->id, .normal = of->normal, .order = s->count, .texels = (double)step * step};
+            if (role == TEXEL_NONE || role == TEXEL_ORIGINAL || !bake_tile_point(&one.p, t, x + 0.5, y + 0.5)) continue;
+            if (array_reserve(&s->list, &s->room, s->count + 1, sizeof *s->list, "samples", err)) return err->status;
+            s->list[s->count++] = one;
+        }
     return ST_OK;
 }
 
-static double worth_of(const struct demand *d, const struct face_view *f, const struct view *camera,
-                       const struct bake *b, double own_focal)
+static enum status find_samples(struct samples *s, const struct bake *b, struct err *err)
 {
-    const struct vec3 to_view = vec3_sub(camera->center, d->middle), to_own = vec3_sub(b->centre, d->middle);
-    const double far = vec3_length(to_view), own_far = vec3_length(to_own);
-    if (!(far > 0 && own_far > 0)) return 0;
-    const double angle = acos(fmax(-1, fmin(1, vec3_dot(to_view, to_own) / (far * own_far))));
-    const double coarser = far * own_focal / (own_far * camera->fx);
-    const double shown = fmin(1, f->clean / d->texels);
-    return shown / (1 + (angle / ANGLE) * (angle / ANGLE)) / fmax(1, coarser);
+    enum status st = ST_OK;
+    for (int i = 0; !st && i < b->tile_count; i++) st = add_samples(s, b, &b->tiles[i], err);
+    return st;
 }
 
-static enum status find_offers(struct offer **offers, size_t *count, struct demand *demands, int demand_count,
+/* Whether the photo of a view has a pixel where the view shows p. */
+static bool is_in_photo(const struct bake_scene *s, int view, struct vec3 p)
+{
+    const struct view *v = &s->set.views[view];
+    double u, w;
+    if (!(view_project(v, p, &u, &w) > 0) || u < 0 || w < 0 || u >= v->width || w >= v->height) return false;
+    const int lens = lens_list_find(&s->lenses, v->name);
+    if (lens < 0) return true;
+    const struct lens *l = &s->lenses.lenses[lens];
+    const struct vec3 ray = {(u - v->cx) / v->fx, (w - v->cy) / v->fy, 1};
+    const struct vec3 in_photo = mat3_apply(mat3_transpose(mat3_from_quat(l->view_from_photo)), ray);
+    return camera_project(&l->camera, in_photo, &u, &w) && u >= 0 && w >= 0 && u < l->camera.width &&
+           w < l->camera.height;
+}
+
+static double worth_of(const struct sample *s, const struct face_view *f, const struct bake_scene *scene, int view,
+                       const struct bake *b, double own_focal)
+{
+    const struct view *camera = &scene->set.views[view];
+    const struct vec3 to_view = vec3_sub(camera->center, s->p), to_own = vec3_sub(b->centre, s->p);
+    const double far = vec3_length(to_view), own_far = vec3_length(to_own);
+    const double min_cos = cos(scene->params->texture.max_slant * M_PI / 180);
+    if (!(own_far > 0) || !(vec3_dot(to_view, s->normal) > min_cos * far) || !is_in_photo(scene, view, s->p)) return 0;
+    const double angle = acos(fmax(-1, fmin(1, vec3_dot(to_view, to_own) / (far * own_far))));
+    const double coarser = far * own_focal / (own_far * camera->fx);
+    return (double)f->clean / f->pixels / (1 + (angle / ANGLE) * (angle / ANGLE)) / fmax(1, coarser);
+}
+
+static enum status find_offers(struct offer **offers, size_t *count, const struct samples *samples,
                                const struct face_index *index, const struct bake_scene *s, const struct bake *b,
                                double own_focal, struct err *err)
 {
     size_t room = 0;
-    for (int i = 0; i < demand_count; i++) {
-        const struct face_views *f = face_index_find(index, demands[i].id);
+    for (size_t i = 0; i < samples->count; i++) {
+        const struct face_views *f = face_index_find(index, samples->list[i].id);
         for (int k = 0; f && k < f->count; k++) {
             const int view = camera_set_find(&s->set, f->views[k].view);
-            if (view < 0) continue;
+            const double worth = view < 0 ? 0 : worth_of(&samples->list[i], &f->views[k], s, view, b, own_focal);
+            if (!(worth > 0)) continue;
             if (array_reserve(offers, &room, *count + 1, sizeof **offers, "views of faces", err)) return err->status;
-            (*offers)[(*count)++] =
-                (struct offer){view, i, worth_of(&demands[i], &f->views[k], &s->set.views[view], b, own_focal)};
+            (*offers)[(*count)++] = (struct offer){view, i, worth};
         }
     }
     return ST_OK;
 }
 
 /* Takes the view that is worth most, again and again. */
-static void take_views(bool *taken, int view_count, const struct offer *offers, size_t count, struct demand *demands,
+static void take_views(bool *taken, int view_count, const struct offer *offers, size_t count, struct samples *samples,
                        int limit, double *worth)
 {
     for (int n = 0; n < limit; n++) {
         int best = -1;
         memset(worth, 0, (size_t)view_count * sizeof *worth);
         for (size_t i = 0; i < count; i++) {
-            const struct demand *d = &demands[offers[i].demand];
-            worth[offers[i].view] += offers[i].worth * d->texels / (1 + SATURATION * d->served);
+            const struct sample *s = &samples->list[offers[i].sample];
+            worth[offers[i].view] += offers[i].worth * s->texels / (1 + SATURATION * s->served);
         }
         for (int v = 0; v < view_count; v++)
             if (!taken[v] && worth[v] > 0 && (best < 0 || worth[v] > worth[best])) best = v;
         if (best < 0) return;
         taken[best] = true;
         for (size_t i = 0; i < count; i++)
-            if (offers[i].view == best) demands[offers[i].demand].served += offers[i].worth;
+            if (offers[i].view == best) samples->list[offers[i].sample].served += offers[i].worth;
     }
 }
 
-static enum status read_index(struct face_index *index, const struct bake_scene *s, const struct demand *demands,
-                              int count, struct provenance *prov, struct err *err)
+static enum status read_index(struct face_index *index, const struct bake_scene *s, const struct samples *samples,
+                              struct provenance *prov, struct err *err)
 {
     char path[FILE_PATH];
-    int *ids = malloc(((size_t)count + 1) * sizeof *ids);
+    int *ids = malloc((samples->count + 1) * sizeof *ids), count = 0;
     enum status st = ids ? provenance_add_in(prov, "ids", s->ids, "index", ".txt", path, err)
-                         : err_nomem(err, "faces", (size_t)count * sizeof *ids);
-    for (int i = 0; !st && i < count; i++) ids[i] = demands[i].id;
+                         : err_nomem(err, "faces", samples->count * sizeof *ids);
+    for (size_t i = 0; !st && i < samples->count; i++)
+        if (!count || ids[count - 1] != samples->list[i].id) ids[count++] = samples->list[i].id;
     if (!st) st = face_index_read(index, path, ids, count, err);
     free(ids);
     return st;
@@ -135,27 +151,25 @@ enum status sources_choose(int **views, int *count, const struct bake_scene *sce
                            const struct bake *b, struct provenance *prov, struct err *err)
 {
     const int n = scene->set.view_count;
-    struct demand *demands = NULL;
+    struct samples samples = {0};
     struct offer *offers = NULL;
     struct face_index index = {0};
     size_t offer_count = 0;
-    int demand_count = 0;
     bool *taken = calloc((size_t)n + 1, sizeof *taken);
     double *worth = malloc(((size_t)n + 1) * sizeof *worth);
     *views = malloc(((size_t)n + 1) * sizeof **views);
     *count = 0;
     enum status st = taken && worth && *views ? ST_OK : err_nomem(err, "views", (size_t)n * sizeof *worth);
-    if (!st) st = find_demands(&demands, &demand_count, b, err);
-    if (!st) st = read_index(&index, scene, demands, demand_count, prov, err);
-    if (!st)
-        st = find_offers(&offers, &offer_count, demands, demand_count, &index, scene, b, scene->set.views[own[0]].fx,
-                         err);
+    if (!st) st = find_samples(&samples, b, err);
+    if (!st && samples.count) qsort(samples.list, samples.count, sizeof *samples.list, compare_samples);
+    if (!st) st = read_index(&index, scene, &samples, prov, err);
+    if (!st) st = find_offers(&offers, &offer_count, &samples, &index, scene, b, scene->set.views[own[0]].fx, err);
     for (int i = 0; !st && i < own_count; i++) taken[own[i]] = true;
-    if (!st) take_views(taken, n, offers, offer_count, demands, scene->params->texture.max_sources, worth);
+    if (!st) take_views(taken, n, offers, offer_count, &samples, scene->params->texture.max_sources, worth);
     for (int v = 0; !st && v < n; v++)
         if (taken[v]) (*views)[(*count)++] = v;
     face_index_release(&index);
-    free(demands);
+    free(samples.list);
     free(offers);
     free(taken);
     free(worth);

@@ -8,6 +8,7 @@
 
 #include "common/base/array.h"
 #include "common/base/log.h"
+#include "common/base/make_deps.h"
 #include "common/base/progress.h"
 #include "common/capture/photo_quality.h"
 #include "stages/bake_vdta/sources.h"
@@ -153,14 +154,57 @@ static enum status read_sources(struct work *w, uint64_t *bytes, struct err *err
     return st;
 }
 
+/* What atlas.txt says beside tiles and pages. */
+static enum status describe(struct atlas *a, const struct work *w, struct err *err)
+{
+    const struct bake_scene *s = w->scene;
+    a->views = calloc(MAX_OWN, sizeof *a->views);
+    a->sources = calloc((size_t)w->view_count, sizeof *a->sources);
+    a->viewpoint = strdup(w->photo);
+    if (!a->views || !a->sources || !a->viewpoint) return err_nomem(err, "names", (size_t)w->view_count);
+    a->centre = w->bake.centre;
+    for (; a->view_count < w->own_count; a->view_count++)
+        if (!(a->views[a->view_count] = strdup(s->set.views[w->own[a->view_count]].name)))
+            return err_nomem(err, "a name", 1);
+    for (; a->source_count < w->view_count; a->source_count++)
+        if (!(a->sources[a->source_count] = strdup(s->set.views[w->views[a->source_count]].name)))
+            return err_nomem(err, "a name", 1);
+    return ST_OK;
+}
+
+/* The views that were read, for make. */
+static enum status write_deps(const struct work *w, const char *folder, struct err *err)
+{
+    const struct bake_scene *s = w->scene;
+    const size_t n = (size_t)w->view_count;
+    char(*paths)[FILE_PATH] = malloc((2 * n + 1) * sizeof *paths);
+    const char **files = malloc((2 * n + 1) * sizeof *files);
+    enum status st = paths && files ? file_path(paths[2 * n], folder, "atlas", ".txt", err)
+                                    : err_nomem(err, "file names", 2 * n * sizeof *paths);
+    for (size_t i = 0; !st && i < n; i++) {
+        const char *name = s->set.views[w->views[i]].name;
+        st = file_path(paths[2 * i], s->views, name, ".exr", err);
+        if (!st) st = file_path(paths[2 * i + 1], s->ids, name, ".exr", err);
+        files[2 * i] = paths[2 * i];
+        files[2 * i + 1] = paths[2 * i + 1];
+    }
+    if (!st) st = make_deps_write(s->deps, paths[2 * n], files, (int)(2 * n), err);
+    free(paths);
+    free(files);
+    return st;
+}
+
 static enum status write_all(struct work *w, uint64_t bytes, const struct bake_totals *t, struct err *err)
 {
     char folder[FILE_PATH];
-    char *names[MAX_OWN];
+    struct atlas a = {0};
     size_t texels = 0;
-    for (int k = 0; k < w->own_count; k++) names[k] = (char *)w->scene->set.views[w->own[k]].name;
     enum status st = file_path(folder, w->scene->out, w->photo, "", err);
-    if (!st) st = bake_write_atlas(&w->bake, w->photo, names, w->own_count, folder, w->prov, &texels, err);
+    if (!st) st = describe(&a, w, err);
+    if (!st) st = bake_write_pages(&a, &w->bake, NULL, folder, w->prov, &texels, err);
+    if (!st && w->scene->deps) st = write_deps(w, folder, err);
+    if (!st) st = atlas_write_list(&a, folder, w->prov, err);
+    atlas_release(&a);
     if (!st)
         log_note(
             "%s: %.2f million texels, %.1f %% original, %.1f %% warped, %.1f %% synthesised, %.1f %% of faces that "

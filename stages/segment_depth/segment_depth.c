@@ -20,7 +20,7 @@
 #include "common/base/cli.h"
 #include "common/base/file_path.h"
 #include "common/base/log.h"
-#include "common/base/outfile.h"
+#include "common/base/make_deps.h"
 #include "common/capture/view_image.h"
 #include "stages/segment_depth/estimate.h"
 #include "stages/segment_depth/given_depth.h"
@@ -79,38 +79,20 @@ static enum status read_given(void *ctx, int view_idx, float **z, struct err *er
     return st;
 }
 
-static void print_escaped(FILE *to, const char *path)
-{
-    for (; *path; path++) {
-        if (*path == ' ' || *path == '#' || *path == '\\') fputc('\\', to);
-        if (*path == '$') fputc('$', to);
-        fputc(*path, to);
-    }
-}
-
-/* Writes "OUT: VIEWS/A.exr VIEWS/B.exr ... BEFORE/B.exr ...", and an empty rule for each, so that make does not stop at
- * a view that has been removed. */
+/* Writes the views and the depth of the round before that were read. */
 static enum status write_deps(const char *deps, const char *out, const char *const folders[2],
                               const struct camera_set *set, const int *read, int count, struct err *err)
 {
-    struct outfile file = {0};
-    enum status st = outfile_open(&file, deps, err);
-    if (!st) {
-        print_escaped(file.fp, out);
-        fputc(':', file.fp);
-        for (int rule = 0; rule < 2; rule++) {
-            for (int f = 0; f < 2 && folders[f]; f++)
-                for (int i = 0; i < count; i++) {
-                    fputs(rule ? "" : " ", file.fp);
-                    print_escaped(file.fp, folders[f]);
-                    fprintf(file.fp, "/%s.exr%s", set->views[read[i]].name, rule ? ":\n" : "");
-                }
-            if (!rule) fputc('\n', file.fp);
+    char paths[2 * (1 + MAX_NEIGHBOURS)][FILE_PATH];
+    const char *files[2 * (1 + MAX_NEIGHBOURS)];
+    int n = 0;
+    enum status st = ST_OK;
+    for (int f = 0; f < 2 && folders[f]; f++)
+        for (int i = 0; !st && i < count; i++, n++) {
+            st = file_path(paths[n], folders[f], set->views[read[i]].name, ".exr", err);
+            files[n] = paths[n];
         }
-        st = outfile_commit(&file, err);
-    }
-    outfile_discard(&file);
-    return st;
+    return st ? st : make_deps_write(deps, out, files, n, err);
 }
 
 static void log_coverage(const char *view, const struct layered_depth *d)

@@ -1,0 +1,104 @@
+/* bake_vita.c - the view-independent texture atlas: every face of the model, seen orthogonally.
+ *
+ * reads   MODEL, EDIT...                                the unedited model, those of the edits
+ *         AXES                                          their frame in the scene
+ *         VIEWS/cameras.txt, images.txt, points3D.txt   the cameras
+ *         VIEWS/lenses.txt                              which views are of one photo
+ *         VIEWS/VIEW.exr, IDS/VIEW.exr                  the views that show faces best
+ *         IDS/index.txt                                 which views show a face
+ * writes  OUT/page0.exr, ..., atlas.txt */
+#include <stdlib.h>
+
+#include "common/base/cli.h"
+#include "common/base/file_path.h"
+#include "stages/bake_vita/vita.h"
+
+_Static_assert(offsetof(struct vita_params, texture) == 0, "the table below has offsets into struct texture_params");
+static const struct param vita_param_table[] = {
+#define PARAM_STRUCT struct texture_params
+    TEXTURE_PARAMS(PARAM_ROW)
+#undef PARAM_STRUCT
+#define PARAM_STRUCT struct vita_params
+        VITA_PARAMS(PARAM_ROW) PARAM_END};
+#undef PARAM_STRUCT
+
+static enum status check_params(const void *values, struct err *err)
+{
+    return texture_params_check(&((const struct vita_params *)values)->texture, err);
+}
+
+struct files {
+    const char *model, *axes;
+    struct cli_list edits;
+};
+
+static enum status read_models(struct vita_scene *s, const struct files *f, struct provenance *prov, struct err *err)
+{
+    s->models = calloc((size_t)f->edits.count + 1, sizeof *s->models);
+    if (!s->models) return err_nomem(err, "models", (size_t)f->edits.count * sizeof *s->models);
+    s->model_count = 1 + f->edits.count;
+    enum status st = solid_mesh_read(&s->models[0], f->model, err);
+    if (!st) st = provenance_add_file(prov, "model/model.txt", f->model, err);
+    for (int i = 0; !st && i < f->edits.count; i++) {
+        char name[64];
+        snprintf(name, sizeof name, "edit %d", i + 1);
+        st = solid_mesh_read(&s->models[1 + i], f->edits.items[i], err);
+        if (!st) st = provenance_add_file(prov, name, f->edits.items[i], err);
+    }
+    return st ? st : surfaces_make(&s->surfaces, s->models, s->model_count, err);
+}
+
+static enum status read_scene(struct vita_scene *s, const struct files *f, struct provenance *prov, struct err *err)
+{
+    char path[FILE_PATH];
+    enum status st = camera_set_read(&s->set, s->views, err);
+    if (!st) st = camera_set_add_inputs(prov, s->views, err);
+    if (!st) st = provenance_add_in(prov, "views", s->views, "lenses", ".txt", path, err);
+    if (!st) st = lens_list_read(&s->lenses, path, err);
+    if (!st) st = model_axes_read(&s->axes, f->axes, err);
+    if (!st) st = provenance_add_file(prov, "model/axes.txt", f->axes, err);
+    if (!st) st = read_models(s, f, prov, err);
+    if (!st) st = provenance_add_in(prov, "ids", s->ids, "index", ".txt", path, err);
+    if (!st) st = face_index_read(&s->index, path, NULL, 0, err);
+    for (int i = 0; !st && i < s->set.view_count; i++)
+        s->set.views[i] = model_from_world_view(&s->axes, &s->set.views[i]);
+    return st;
+}
+
+static void release_scene(struct vita_scene *s)
+{
+    camera_set_release(&s->set);
+    lens_list_release(&s->lenses);
+    surfaces_release(&s->surfaces);
+    face_index_release(&s->index);
+    for (int i = 0; s->models && i < s->model_count; i++) solid_mesh_release(&s->models[i]);
+    free(s->models);
+}
+
+int main(int argc, char **argv)
+{
+    struct vita_params params = VITA_PARAMS_DEFAULT;
+    struct vita_scene scene = {.params = &params};
+    struct files f = {0};
+    const struct cli_opt opts[] = {
+        CLI_ABOUT("Bakes the view-independent texture atlas: every face of the model, seen orthogonally."),
+        CLI_STR("model", &f.model, CLI_REQUIRED, "the unedited model, model.txt"),
+        CLI_LIST("edit", &f.edits, CLI_OPTIONAL,
+                 "model.txt of an edit, whose part of the faces is baked too; repeat for several"),
+        CLI_STR("axes", &f.axes, CLI_REQUIRED, "the models' frame, axes.txt"),
+        CLI_STR("views", &scene.views, CLI_REQUIRED, "folder of cameras and rectified views"),
+        CLI_STR("ids", &scene.ids, CLI_REQUIRED, "folder of the faces that each view shows, and of their index"),
+        CLI_STR("out", &scene.out, CLI_REQUIRED, "folder to write to"),
+        CLI_PARAMS(vita_param_table, &params, check_params),
+        CLI_END,
+    };
+    struct provenance prov = {0};
+    struct err err = ERR_INIT;
+    if (cli_parse(argc, argv, "bake_vita", opts, &prov, &err) == CLI_RUN && !read_scene(&scene, &f, &prov, &err))
+        vita_bake(&scene, &prov, &err);
+    err_report(&err);
+    release_scene(&scene);
+    cli_list_release(&f.edits);
+    provenance_release(&prov);
+    return err_exit_code(&err);
+}

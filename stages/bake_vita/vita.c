@@ -1,0 +1,247 @@
+/* vita.c - see vita.h. Faces are baked in batches, whose size bounds the memory; a batch reads the views that show its
+ * faces best. A face that no view shows gets large texels of the default colour. */
+#include "stages/bake_vita/vita.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/base/array.h"
+#include "common/base/log.h"
+#include "common/base/progress.h"
+#include "common/capture/photo_quality.h"
+#include "common/math/weighted.h"
+#include "stages/bake_vita/ortho_tiles.h"
+
+enum { UNSEEN = 16 }; /* times the side of a texel, for faces that no view shows */
+enum { MAX_BATCH_VIEWS = 250 };
+enum { SAMPLE = 17 };                  /* every SAMPLE-th texel counts for the level of white */
+static const double WHITE_SHARE = 0.9; /* of the texels are below white */
+
+struct work {
+    const struct vita_scene *scene;
+    struct provenance *prov;
+    double side;
+    struct atlas atlas;
+    int *source_of_view; /* among the atlas's sources; -1: none yet */
+    struct progress progress;
+    struct bake_totals totals;
+    size_t texels;
+    uint64_t bytes;
+};
+
+/* ---------------------------------------------------------------------------------------------------- which views */
+
+/* The best views of a face, at most max_sources. */
+static int views_of(const struct vita_scene *s, int surface, const struct face_views **f)
+{
+    *f = face_index_find(&s->index, s->surfaces.list[surface].id);
+    if (!*f) return 0;
+    return (*f)->count < s->params->texture.max_sources ? (*f)->count : s->params->texture.max_sources;
+}
+
+static bool is_seen(const struct vita_scene *s, int surface)
+{
+    const struct face_views *f;
+    return views_of(s, surface, &f) > 0;
+}
+
+/* Marks the views of a batch's faces: of each face the best first, until there are enough. */
+static void choose_views(bool *taken, const struct vita_scene *s, int first, int last)
+{
+    int count = 0;
+    memset(taken, 0, (size_t)s->set.view_count * sizeof *taken);
+    for (int rank = 0; rank < s->params->texture.max_sources; rank++)
+        for (int i = first; i < last; i++) {
+            const struct face_views *f;
+            if (rank >= views_of(s, i, &f)) continue;
+            const int view = camera_set_find(&s->set, f->views[rank].view);
+            if (view < 0 || taken[view] || count == MAX_BATCH_VIEWS) continue;
+            taken[view] = true;
+            count++;
+        }
+}
+
+/* The atlas's sources: every view that any batch reads, in order of name. */
+static enum status list_sources(struct work *w, const int *batches, int batch_count, bool *taken, struct err *err)
+{
+    const struct vita_scene *s = w->scene;
+    for (int v = 0; v < s->set.view_count; v++) w->source_of_view[v] = -1;
+    for (int i = 0; i < batch_count; i++) {
+        choose_views(taken, s, batches[i], batches[i + 1]);
+        for (int v = 0; v < s->set.view_count; v++)
+            if (taken[v]) w->source_of_view[v] = 0;
+    }
+    for (int v = 0; v < s->set.view_count; v++) {
+        if (w->source_of_view[v] < 0) continue;
+        const int n = w->atlas.source_count;
+        if (array_append(&w->atlas.sources, (size_t)n, sizeof *w->atlas.sources, "sources", err)) return err->status;
+        if (!(w->atlas.sources[n] = strdup(s->set.views[v].name))) return err_nomem(err, "a name", 1);
+        w->source_of_view[v] = w->atlas.source_count++;
+    }
+    return ST_OK;
+}
+
+/* ------------------------------------------------------------------------------------------------------- one batch */
+
+static int photo_of(const struct vita_scene *s, int view)
+{
+    const int lens = lens_list_find(&s->lenses, s->set.views[view].name);
+    int first = 0;
+    if (lens < 0) return view;
+    /* the photo's first view stands for it; the list is in order of view, so it is near */
+    for (first = lens; first > 0 && !strcmp(s->lenses.lenses[first - 1].photo, s->lenses.lenses[lens].photo); first--) {
+    }
+    return first;
+}
+
+static enum status set_sources(struct bake *b, const struct vita_scene *s, const bool *taken, int *view_of,
+                               struct err *err)
+{
+    const char *names[MAX_BATCH_VIEWS];
+    int groups[MAX_BATCH_VIEWS], count = 0;
+    bool own[MAX_BATCH_VIEWS] = {false};
+    for (int v = 0; v < s->set.view_count; v++)
+        if (taken[v]) {
+            names[count] = s->set.views[v].name;
+            groups[count] = photo_of(s, v);
+            view_of[count++] = v;
+        }
+    b->own_group = -1;
+    return bake_set_sources(b, names, groups, own, count, err);
+}
+
+static enum status read_views(struct work *w, struct bake *b, const int *view_of, struct err *err)
+{
+    const struct vita_scene *s = w->scene;
+    enum status st = ST_OK;
+    for (int i = 0; !st && i < b->source_count; i++) {
+        const struct view *camera = &s->set.views[view_of[i]];
+        struct source_view view = {0};
+        st = provenance_add_in(w->prov, "views", s->views, camera->name, ".exr", NULL, err);
+        if (!st) st = provenance_add_in(w->prov, "ids", s->ids, camera->name, ".exr", NULL, err);
+        if (!st) st = source_view_read(&view, s->views, s->ids, camera, &s->params->texture, err);
+        if (!st) bake_add_view(b, &view, i);
+        w->bytes += view.bytes;
+        source_view_release(&view);
+        progress_add(&w->progress, 1);
+    }
+    return st;
+}
+
+/* The radiance below which WHITE_SHARE of the texels lie. */
+static enum status find_white(struct bake *b, struct err *err)
+{
+    struct weighted *levels = malloc((b->list_count / SAMPLE + 1) * sizeof *levels);
+    size_t count = 0;
+    if (!levels) return err_nomem(err, "levels", b->list_count / SAMPLE * sizeof *levels);
+    for (size_t i = 0; i < b->list_count; i += SAMPLE)
+        if (b->counts[i]) levels[count++] = (struct weighted){photo_luminance(b->lists[i][0].rgb), 1};
+    b->white = weighted_percentile(levels, count, WHITE_SHARE);
+    if (!(b->white > 0)) b->white = 1;
+    free(levels);
+    return ST_OK;
+}
+
+static void add_totals(struct bake_totals *sum, const struct bake_totals *t)
+{
+    sum->texels += t->texels;
+    sum->warped += t->warped;
+    sum->synthesised += t->synthesised;
+    sum->by_default += t->by_default;
+    sum->residual = fmax(sum->residual, t->residual);
+}
+
+static enum status bake_batch(struct work *w, int first, int last, bool *taken, struct err *err)
+{
+    const struct vita_scene *s = w->scene;
+    struct bake b = {.surfaces = &s->surfaces, .params = &s->params->texture, .white = 1};
+    struct bake_totals totals = {0};
+    int view_of[MAX_BATCH_VIEWS], source_of[MAX_BATCH_VIEWS];
+    enum status st = ST_OK;
+    for (int i = first; !st && i < last; i++)
+        st = ortho_tiles_add(&b, i, is_seen(s, i) ? w->side : UNSEEN * w->side, err);
+    choose_views(taken, s, first, last);
+    if (!st) st = set_sources(&b, s, taken, view_of, err);
+    if (!st) st = bake_list_texels(&b, err);
+    if (!st) st = read_views(w, &b, view_of, err);
+    if (!st) st = find_white(&b, err);
+    if (!st) st = bake_find_gains(&b, err);
+    if (!st) bake_choose(&b);
+    if (!st) st = bake_composite(&b, &totals, err);
+    for (int i = 0; i < b.source_count; i++) source_of[i] = w->source_of_view[view_of[i]];
+    if (!st) st = bake_write_pages(&w->atlas, &b, source_of, s->out, w->prov, &w->texels, err);
+    if (!st) add_totals(&w->totals, &totals);
+    bake_release(&b);
+    return st;
+}
+
+/* ---------------------------------------------------------------------------------------------------- all batches */
+
+/* batches[i] .. batches[i + 1] - 1 are the surfaces of batch i. */
+static int cut_batches(int *batches, const struct work *w)
+{
+    const struct vita_scene *s = w->scene;
+    const size_t limit = (size_t)(1e6 * s->params->batch);
+    size_t texels = 0;
+    int count = 0;
+    batches[0] = 0;
+    for (int i = 0; i < s->surfaces.count; i++) {
+        const size_t more = ortho_texels(&s->surfaces, i, is_seen(s, i) ? w->side : UNSEEN * w->side);
+        if (i > batches[count] && texels + more > limit) batches[++count] = i, texels = 0;
+        texels += more;
+    }
+    if (s->surfaces.count) batches[++count] = s->surfaces.count;
+    return count;
+}
+
+static int64_t count_views(const struct vita_scene *s, const int *batches, int count, bool *taken)
+{
+    int64_t n = 0;
+    for (int i = 0; i < count; i++) {
+        choose_views(taken, s, batches[i], batches[i + 1]);
+        for (int v = 0; v < s->set.view_count; v++) n += taken[v];
+    }
+    return n;
+}
+
+/* The side of a texel: the height of the model over its texels. */
+static double texel_side(const struct vita_scene *s)
+{
+    double low = INFINITY, high = -INFINITY;
+    for (int i = 0; i < s->models[0].vertex_count; i++) {
+        low = fmin(low, s->models[0].vertices[i].p.z);
+        high = fmax(high, s->models[0].vertices[i].p.z);
+    }
+    return high > low ? (high - low) / s->params->texels : 1;
+}
+
+enum status vita_bake(const struct vita_scene *scene, struct provenance *prov, struct err *err)
+{
+    const size_t views = (size_t)scene->set.view_count;
+    struct work w = {.scene = scene, .prov = prov, .side = texel_side(scene)};
+    int *batches = malloc(((size_t)scene->surfaces.count + 2) * sizeof *batches);
+    bool *taken = malloc((views + 1) * sizeof *taken);
+    w.source_of_view = malloc((views + 1) * sizeof *w.source_of_view);
+    enum status st = batches && taken && w.source_of_view ? ST_OK : err_nomem(err, "views", views * sizeof(int));
+    const int count = st ? 0 : cut_batches(batches, &w);
+    if (!st) st = list_sources(&w, batches, count, taken, err);
+    if (!st) progress_start(&w.progress, "textures", count_views(scene, batches, count, taken), "views");
+    for (int i = 0; !st && i < count; i++) st = bake_batch(&w, batches[i], batches[i + 1], taken, err);
+    if (!st) progress_end(&w.progress);
+    if (!st) st = atlas_write_list(&w.atlas, scene->out, prov, err);
+    if (!st) {
+        const double all = w.totals.texels ? (double)w.totals.texels : 1;
+        log_note("%.2f million texels of %.3g, %.1f %% from views, %.1f %% synthesised, %.1f %% of faces that no view "
+                 "shows; "
+                 "pages of %.2f million; %.1f MiB of views read; largest residual %.1e",
+                 1e-6 * all, w.side, 100 * (double)w.totals.warped / all, 100 * (double)w.totals.synthesised / all,
+                 100 * (double)w.totals.by_default / all, 1e-6 * (double)w.texels, (double)w.bytes / (1 << 20),
+                 w.totals.residual);
+    }
+    atlas_release(&w.atlas);
+    free(w.source_of_view);
+    free(batches);
+    free(taken);
+    return st;
+}

@@ -1,0 +1,26 @@
+/* vita.h - bakes the view-independent atlas of a model [Colburn 2014, 4.5.3]. */
+#ifndef REMODEL_VITA_H
+#define REMODEL_VITA_H
+
+#include "common/capture/lens_list.h"
+#include "common/model/model_axes.h"
+#include "common/texture/bake_atlas.h"
+#include "common/texture/face_index.h"
+#include "stages/bake_vita/vita_params.h"
+
+struct vita_scene {
+    struct camera_set set; /* cameras in the model's frame */
+    struct lens_list lenses;
+    struct model_axes axes;
+    struct solid_mesh *models; /* the unedited one, then those of the edits */
+    int model_count;
+    struct surfaces surfaces;
+    struct face_index index;
+    const char *views, *ids, *out; /* folders */
+    const struct vita_params *params;
+};
+
+/* Writes OUT/atlas.txt and its pages. prov: with the inputs of the scene; the views that are read are added. */
+enum status vita_bake(const struct vita_scene *scene, struct provenance *prov, struct err *err);
+
+#endif

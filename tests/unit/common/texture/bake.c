@@ -1,0 +1,362 @@
+/* bake.c - textures of a floor from views that look down on it, against the radiance that it has. */
+#include "common/texture/bake.h"
+
+#include "common/base/parallel.h"
+#include "tests/unit/scratch.h"
+
+/* The floor is a square of 4 x 4 at z = 0, with id 5. All cameras are at a height of 4 and look straight down, so a pixel
+ * is 1/16 wide on the floor. */
+enum { SIZE = 64, ID = 5 };
+static const double FOCAL = 64, HEIGHT = 4;
+
+static struct vec3 floor_triangles[2][3] = {{{0, 0, 0}, {4, 0, 0}, {4, 4, 0}}, {{0, 0, 0}, {4, 4, 0}, {0, 4, 0}}};
+static struct surface floor_surface = {.id = ID, .normal = {0, 0, 1}, .triangles = 2};
+static const struct surfaces floor_only = {&floor_surface, floor_triangles, 1, 2, 4};
+
+/* Smooth, so that resampling changes it little. */
+static void radiance_at(float rgb[3], double x, double y)
+{
+    rgb[0] = (float)(0.5 + 0.1 * sin(1.3 * x) * cos(0.9 * y));
+    rgb[1] = (float)(0.4 + 0.08 * cos(0.7 * x + 1.1 * y));
+    rgb[2] = (float)(0.3 + 0.05 * sin(0.8 * y));
+}
+
+/* A view from above (x, y), whose colours are the floor's times `gain`. */
+static void make_view(struct source_view *v, double x, double y, float gain)
+{
+    *v = (struct source_view){
+        .camera = {.name = "v", .width = SIZE, .height = SIZE, .fx = FOCAL, .fy = FOCAL, .cx = 32, .cy = 32}};
+    struct view *c = &v->camera;
+    c->cam_from_world = (struct mat3){{{1, 0, 0}, {0, -1, 0}, {0, 0, -1}}};
+    c->center = vec3_make(x, y, HEIGHT);
+    c->translation = vec3_scale(mat3_apply(c->cam_from_world, c->center), -1);
+    const double p[3][4] = {
+        {FOCAL, 0, -32, -FOCAL * x + 32 * HEIGHT}, {0, -FOCAL, -32, FOCAL * y + 32 * HEIGHT}, {0, 0, -1, HEIGHT}};
+    memcpy(v->project, p, sizeof p);
+    v->id = calloc(SIZE * SIZE, sizeof *v->id);
+    v->state = calloc(SIZE * SIZE, 1);
+    v->own = calloc(SIZE * SIZE, 1);
+    v->shows = calloc(ID + 1, 1);
+    v->shows[ID] = 1;
+    v->ids = ID + 1;
+    v->level_count = 1;
+    v->levels[0] = (struct source_level){SIZE, SIZE, calloc(SIZE * SIZE * 4, sizeof(float))};
+    for (int py = 0; py < SIZE; py++)
+        for (int px = 0; px < SIZE; px++) {
+            const int at = py * SIZE + px;
+            const double fx = x + (px + 0.5 - 32) * HEIGHT / FOCAL, fy = y - (py + 0.5 - 32) * HEIGHT / FOCAL;
+            float *rgba = v->levels[0].rgba + 4 * at;
+            v->id[at] = fx >= 0 && fy >= 0 && fx <= 4 && fy <= 4 ? ID : 0;
+            v->state[at] = v->own[at] = SOURCE_CLEAN;
+            radiance_at(rgba, fx, fy);
+            for (int c2 = 0; c2 < 3; c2++) rgba[c2] *= gain;
+            rgba[3] = 1;
+        }
+}
+
+/* A tile of the pixels of the view above (2, 2). */
+static struct bake_tile own_tile(void)
+{
+    struct bake_tile t = {.side = 1 / FOCAL};
+    const double q = HEIGHT / FOCAL;
+    t.raster = (struct surface_raster){SIZE, SIZE, {{q, 0, 2 - 32 * q}, {0, -q, 2 + 32 * q}, {0, 0, 0}, {0, 0, 1}}};
+    return t;
+}
+
+struct fixture {
+    struct bake bake;
+    struct source_view own;
+    struct texture_params params;
+};
+
+/* A bake of the view above (2, 2): original but for a disk of 12 texels in the middle, which is wanted. */
+static void begin(struct fixture *f, int sources)
+{
+    static const char *const names[] = {"a", "b", "c", "d"};
+    static const int groups[] = {0, 1, 2, 3};
+    static const bool own[] = {true, false, false, false};
+    const struct texture_params defaults = TEXTURE_PARAMS_DEFAULT;
+    struct err err = ERR_INIT;
+    *f = (struct fixture){.params = defaults};
+    f->bake = (struct bake){
+        .surfaces = &floor_only, .params = &f->params, .has_centre = true, .centre = {2, 2, HEIGHT}, .white = 1};
+    make_view(&f->own, 2, 2, 1);
+    assert_ok(bake_add_tile(&f->bake, own_tile(), &err), err);
+    assert_ok(bake_set_sources(&f->bake, names, groups, own, sources, &err), err);
+    for (int i = 0; i < SIZE * SIZE; i++) {
+        const int dx = i % SIZE - 32, dy = i / SIZE - 32;
+        f->bake.role[i] = dx * dx + dy * dy < 12 * 12 ? TEXEL_WANTED : TEXEL_ORIGINAL;
+        f->bake.made[i] = ATLAS_VIEWS;
+        memcpy(f->bake.rgb + 3 * i, f->own.levels[0].rgba + 4 * i, 3 * sizeof(float));
+    }
+}
+
+static void finish(struct fixture *f, struct source_view *views, int count, struct bake_totals *totals)
+{
+    struct err err = ERR_INIT;
+    assert_ok(bake_list_texels(&f->bake, &err), err);
+    for (int i = 0; i < count; i++) bake_add_view(&f->bake, &views[i], 1 + i);
+    assert_ok(bake_find_gains(&f->bake, &err), err);
+    bake_choose(&f->bake);
+    assert_ok(bake_composite(&f->bake, totals, &err), err);
+}
+
+static void end(struct fixture *f, struct source_view *views, int count)
+{
+    for (int i = 0; i < count; i++) source_view_release(&views[i]);
+    source_view_release(&f->own);
+    bake_release(&f->bake);
+}
+
+/* Largest relative error of the texels that are not original. */
+static double worst_error(const struct fixture *f)
+{
+    double worst = 0;
+    for (int i = 0; i < SIZE * SIZE; i++) {
+        float truth[3];
+        if (f->bake.role[i] == TEXEL_ORIGINAL) continue;
+        radiance_at(truth, 2 + (i % SIZE + 0.5 - 32) * HEIGHT / FOCAL, 2 - (i / SIZE + 0.5 - 32) * HEIGHT / FOCAL);
+        for (int c = 0; c < 3; c++) worst = fmax(worst, fabs(f->bake.rgb[3 * i + c] / truth[c] - 1));
+    }
+    return worst;
+}
+
+static void original_texels_keep_their_bits(void **state)
+{
+    (void)state;
+    struct fixture f;
+    struct source_view view;
+    struct bake_totals totals;
+    begin(&f, 2);
+    make_view(&view, 2.4, 2.2, 1.5f);
+    finish(&f, &view, 1, &totals);
+    for (int i = 0; i < SIZE * SIZE; i++)
+        if (f.bake.role[i] == TEXEL_ORIGINAL) {
+            assert_memory_equal(f.bake.rgb + 3 * i, f.own.levels[0].rgba + 4 * i, 3 * sizeof(float));
+            assert_int_equal(f.bake.made[i], ATLAS_VIEWS);
+        }
+    assert_int_equal(totals.original + totals.warped, SIZE * SIZE);
+    end(&f, &view, 1);
+}
+
+static void a_hidden_texel_takes_the_colour_that_another_view_shows(void **state)
+{
+    (void)state;
+    struct fixture f;
+    struct source_view view;
+    struct bake_totals totals;
+    begin(&f, 2);
+    make_view(&view, 2.4, 2.2, 1);
+    finish(&f, &view, 1, &totals);
+    assert_true(worst_error(&f) < 0.01);
+    assert_int_equal(f.bake.made[32 * SIZE + 32], ATLAS_VIEWS + 1);
+    end(&f, &view, 1);
+}
+
+static void a_view_with_another_exposure_is_brought_to_the_viewpoints(void **state)
+{
+    (void)state;
+    struct fixture f;
+    struct source_view view;
+    struct bake_totals totals;
+    begin(&f, 2);
+    make_view(&view, 2.4, 2.2, 1.6f);
+    finish(&f, &view, 1, &totals);
+    for (int c = 0; c < 3; c++) assert_true(fabs(f.bake.sources[1].gain[c] * 1.6 - 1) < 0.02);
+    assert_true(worst_error(&f) < 0.02);
+    end(&f, &view, 1);
+}
+
+/* Half of the hole is best in a view whose light differs by a factor that no gain may remove, as it is not everywhere in
+ * the view: the differences across the border are those of the neighbourhood. */
+static void no_seam_shows_where_two_sources_meet(void **state)
+{
+    (void)state;
+    struct fixture f;
+    struct source_view views[2];
+    struct bake_totals totals;
+    begin(&f, 3);
+    make_view(&views[0], 1.7, 2, 1);
+    make_view(&views[1], 2.3, 2, 1);
+    for (int i = 0; i < SIZE * SIZE; i++)
+        for (int c = 0; c < 3; c++)
+            if (abs(i % SIZE - 27) < 14 && abs(i / SIZE - 32) < 14) views[1].levels[0].rgba[4 * i + c] *= 1.3f;
+    finish(&f, views, 2, &totals);
+    double across = 0, along = 0;
+    for (int y = 22; y < 42; y++)
+        for (int x = 22; x < 42; x++) {
+            const size_t at = (size_t)y * SIZE + (size_t)x;
+            if (f.bake.made[at] < ATLAS_VIEWS + 1 || f.bake.made[at + 1] < ATLAS_VIEWS + 1) continue;
+            const double step = fabs(f.bake.rgb[3 * (at + 1)] - f.bake.rgb[3 * at]);
+            if (f.bake.made[at] != f.bake.made[at + 1])
+                across = fmax(across, step);
+            else
+                along = fmax(along, step);
+        }
+    assert_true(across > 0 && across <= 1.2 * along);
+    end(&f, views, 2);
+}
+
+static void views_outvote_one_that_something_stands_in_front_of(void **state)
+{
+    (void)state;
+    struct fixture f;
+    struct source_view views[3];
+    struct bake_totals totals;
+    begin(&f, 4);
+    const double at[3][2] = {{2.1, 2.0}, {1.5, 2.4}, {2.6, 1.5}}; /* the first is preferred */
+    for (int k = 0; k < 3; k++) {
+        make_view(&views[k], at[k][0], at[k][1], 1);
+        memset(views[k].state, SOURCE_UNSURE, SIZE * SIZE);
+    }
+    for (int i = 0; i < SIZE * SIZE; i++)
+        if (abs(i % SIZE - 32) < 14 && abs(i / SIZE - 32) < 14) views[0].levels[0].rgba[4 * i] = 2;
+    finish(&f, views, 3, &totals);
+    assert_true(worst_error(&f) < 0.05);
+    end(&f, views, 3);
+}
+
+static void a_doubted_pixel_of_the_viewpoint_is_copied_unless_others_contradict_it(void **state)
+{
+    (void)state;
+    for (int wrong = 0; wrong < 2; wrong++) {
+        struct fixture f;
+        struct source_view views[2];
+        struct bake_totals totals;
+        begin(&f, 3);
+        make_view(&views[0], 1.7, 2, 1);
+        make_view(&views[1], 2.3, 2, 1);
+        const size_t at = 32 * SIZE + 32;
+        for (int i = 0; i < SIZE * SIZE; i++)
+            if (f.bake.role[i] == TEXEL_WANTED) f.bake.role[i] = TEXEL_DOUBTED;
+        if (wrong)
+            for (int i = 0; i < SIZE * SIZE; i++)
+                if (f.bake.role[i] == TEXEL_DOUBTED) f.bake.rgb[3 * i + 1] = 3;
+        finish(&f, views, 2, &totals);
+        assert_int_equal(f.bake.role[at], wrong ? TEXEL_WANTED : TEXEL_ORIGINAL);
+        assert_true(worst_error(&f) < 0.02);
+        end(&f, views, 2);
+    }
+}
+
+static void what_no_view_shows_is_filled_from_the_nearest_texels(void **state)
+{
+    (void)state;
+    struct fixture f;
+    struct bake_totals totals;
+    begin(&f, 1);
+    for (int i = 0; i < SIZE * SIZE; i++)
+        for (int c = 0; c < 3; c++) f.bake.rgb[3 * i + c] = (i % SIZE < 32) == (c == 0) ? 0.8f : 0.1f;
+    finish(&f, NULL, 0, &totals);
+    const float *left = f.bake.rgb + 3 * (32 * SIZE + 22), *right = f.bake.rgb + 3 * (32 * SIZE + 41);
+    assert_int_equal(f.bake.made[32 * SIZE + 32], ATLAS_SYNTHESISED);
+    assert_true(left[0] > 0.6 && left[1] < 0.3 && right[0] < 0.3 && right[1] > 0.6);
+    for (int i = 0; i < 3 * SIZE * SIZE; i++) assert_true(f.bake.rgb[i] >= 0.09f && f.bake.rgb[i] <= 0.81f);
+    end(&f, NULL, 0);
+}
+
+static void a_face_that_no_view_shows_gets_the_default_colour(void **state)
+{
+    (void)state;
+    struct fixture f;
+    struct bake_totals totals;
+    begin(&f, 1);
+    memset(f.bake.role, TEXEL_WANTED, SIZE * SIZE);
+    finish(&f, NULL, 0, &totals);
+    assert_int_equal(totals.by_default, SIZE * SIZE);
+    for (int i = 0; i < SIZE * SIZE; i++) {
+        assert_int_equal(f.bake.made[i], ATLAS_DEFAULT);
+        assert_true(fabsf(f.bake.rgb[3 * i] - 0.5f) < 1e-3f);
+    }
+    end(&f, NULL, 0);
+}
+
+static void a_source_is_refused_where_it_may_not_be_used(void **state)
+{
+    (void)state;
+    for (int kind = 0; kind < 3; kind++) {
+        struct fixture f;
+        struct source_view view;
+        struct bake_totals totals;
+        begin(&f, 2);
+        make_view(&view, 2.2, 2, 1);
+        if (kind == 0) memset(view.state, SOURCE_NONE, SIZE * SIZE);
+        if (kind == 1) memset(view.id, 0, SIZE * SIZE * sizeof *view.id);
+        if (kind == 2) f.params.max_slant = 1;
+        finish(&f, &view, 1, &totals);
+        assert_int_equal(totals.warped > 0, kind == 2); /* seen straight from above it is within a degree somewhere */
+        if (kind == 2) assert_true(totals.synthesised > totals.warped);
+        end(&f, &view, 1);
+    }
+}
+
+static void a_range_of_1e8_stays_finite_and_not_negative(void **state)
+{
+    (void)state;
+    struct fixture f;
+    struct source_view view;
+    struct bake_totals totals;
+    begin(&f, 2);
+    make_view(&view, 2.4, 2.2, 1);
+    for (int i = 0; i < SIZE * SIZE; i++)
+        for (int c = 0; c < 3; c++) {
+            const float light = i % SIZE % 7 == 0 ? 1e4f : i % SIZE % 7 == 3 ? 0 : 1e-4f;
+            f.bake.rgb[3 * i + c] = light;
+            view.levels[0].rgba[4 * i + c] = light;
+        }
+    finish(&f, &view, 1, &totals);
+    for (int i = 0; i < 3 * SIZE * SIZE; i++) assert_true(isfinite(f.bake.rgb[i]) && f.bake.rgb[i] >= 0);
+    end(&f, &view, 1);
+}
+
+static void threads_do_not_change_a_bit(void **state)
+{
+    (void)state;
+    float *first = NULL;
+    for (int threads = 1; threads <= 2; threads++) {
+        struct fixture f;
+        struct source_view views[2];
+        struct bake_totals totals;
+        parallel_set_threads(threads);
+        begin(&f, 3);
+        make_view(&views[0], 1.7, 2.1, 1.2f);
+        make_view(&views[1], 2.3, 1.8, 0.9f);
+        finish(&f, views, 2, &totals);
+        if (threads == 1) {
+            first = malloc(3 * SIZE * SIZE * sizeof *first);
+            memcpy(first, f.bake.rgb, 3 * SIZE * SIZE * sizeof *first);
+        } else
+            assert_memory_equal(first, f.bake.rgb, 3 * SIZE * SIZE * sizeof *first);
+        end(&f, views, 2);
+    }
+    parallel_set_threads(0);
+    free(first);
+}
+
+static void display_units_go_both_ways(void **state)
+{
+    (void)state;
+    assert_true(fabsf(bake_display(2, 2) - 1) < 1e-6f && fabsf(bake_display(0, 2)) < 1e-12f);
+    for (double r = 1e-5; r < 1e5; r *= 3)
+        assert_true(fabs(bake_radiance(bake_display((float)r, 2), 2) / r - 1) < 1e-4);
+    assert_true(bake_radiance(-1, 2) >= 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(original_texels_keep_their_bits),
+        cmocka_unit_test(a_hidden_texel_takes_the_colour_that_another_view_shows),
+        cmocka_unit_test(a_view_with_another_exposure_is_brought_to_the_viewpoints),
+        cmocka_unit_test(no_seam_shows_where_two_sources_meet),
+        cmocka_unit_test(views_outvote_one_that_something_stands_in_front_of),
+        cmocka_unit_test(a_doubted_pixel_of_the_viewpoint_is_copied_unless_others_contradict_it),
+        cmocka_unit_test(what_no_view_shows_is_filled_from_the_nearest_texels),
+        cmocka_unit_test(a_face_that_no_view_shows_gets_the_default_colour),
+        cmocka_unit_test(a_source_is_refused_where_it_may_not_be_used),
+        cmocka_unit_test(a_range_of_1e8_stays_finite_and_not_negative),
+        cmocka_unit_test(threads_do_not_change_a_bit),
+        cmocka_unit_test(display_units_go_both_ways),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
