@@ -12,6 +12,9 @@
 #   clutter kept    reveal=all, without refusing texels in front of which something stands, as [Colburn 2014]
 #   another sun     reveal=all, with half of the photos under another sun; the atlases of the other half
 #   single texture  the VITA alone: one texture per face, as texturing tools make it
+# BENCH_HELDOUT (apartment, if ../shared/data has it) is a scene of real or described photos with a model: every eighth is
+# left out of the bake and predicted from the others, by reveal=all and by the single texture (heldout_psnr). Empty: none.
+#
 # core_s_per_mp is the CPU time of the bake per million texels. The other columns are the metrics texture.* of
 # docs/evaluation.md, texture.vita.* of the single texture.
 title="Texture atlases: PSNR against time"
@@ -19,7 +22,8 @@ note="Loft without its furniture. Upper left is better."
 repeats=1 # atlases repeat exactly
 baseline="single texture"
 timed="core_s_per_mp"
-line=series label=-
+match=scene
+line=series label=- panel=scene
 x=core_s_per_mp x_label="Core-seconds per megapixel of atlas" y=psnr_seen y_label="PSNR, seen texels (dB)" zero=no
 
 scene=${BENCH_SCENE:-loft}
@@ -30,6 +34,8 @@ threads=${BENCH_THREADS:-1}
 sun=${BENCH_SUN:--62 28} # azimuth, elevation
 kept=$PWD/out/bench/vdta/$scale
 described=scenes/$scene
+data=${BENCH_DATA:-../shared/data}
+heldout=${BENCH_HELDOUT-$([ ! -d "$data/apartment/photos" ] || echo apartment)}
 
 say() { echo "vdta: $*" >&2; }
 quietly() { "$@" >"$work/messages" 2>&1 || { tail -n 5 "$work/messages" >&2; missing "'${*:0:6} ...' failed."; }; }
@@ -144,26 +150,43 @@ prepare()
     # the same cameras, so that rows differ by light alone
     echo "SFM := out/room/sfm/0" >>"$kept/project/scenes/mixed/scene.mk"
     made SCENE=mixed vdta
+    if [ -n "$heldout" ]; then prepare_heldout; fi
+}
+
+# the photos of a folder, or those that the scene names
+prepare_heldout()
+{
+    local photos=() mk=scenes/$heldout/scene.mk
+    [ -e "scenes/$heldout/model.txt" ] || missing "scenes/$heldout has no model.txt; BENCH_HELDOUT=NAME is a scene with one, or empty."
+    [ ! -d "$data/$heldout/photos" ] || photos=(PHOTOS="$(realpath "$data/$heldout/photos")")
+    [ ${#photos[@]} -gt 0 ] || grep -q '^PHOTOS' "$mk" || missing "there is no $data/$heldout/photos, and $mk names no PHOTOS; BENCH_HELDOUT= leaves the scene out."
+    mkdir -p "$kept/project/scenes"
+    ln -srfn "scenes/$heldout" "$kept/project/scenes/$heldout"
+    made SCENE="$heldout" HOLDOUT=8 "${photos[@]}" vdta
 }
 
 settings()
 {
-    printf 'series\treveal\tclutter\n'
-    printf 'single texture\t-\trefused\n'
-    printf 'reveal=edits\tedits\trefused\n'
-    printf 'reveal=all\tall\trefused\n'
-    printf 'clutter kept\tall\tkept\n'
-    printf 'another sun\tall\trefused\n'
+    printf 'series\tscene\treveal\tclutter\n'
+    row() { printf '%s\t%s\t%s\t%s\n' "$@"; }
+    row 'single texture' "$scene" - refused
+    row 'reveal=edits' "$scene" edits refused
+    row 'reveal=all' "$scene" all refused
+    row 'clutter kept' "$scene" all kept
+    row 'another sun' "$scene" all refused
+    [ -n "$heldout" ] || return 0
+    row 'single texture' "$heldout" - refused
+    row 'reveal=all' "$heldout" all refused
 }
 
 # ------------------------------------------------------------------------------------------------------------- the rows
 
 # the layout that `evaluate` reads, without depth maps, which would be compared each time
-row_folder() # NAME
+row_folder() # PRODUCTS
 {
-    local from=$kept/project/out/$1+draft f
-    rm -rf "$fast/row"; mkdir "$fast/row"
-    for f in views model remodel ids reveal; do [ ! -e "$from/$f" ] || ln -s "$from/$f" "$fast/row/$f"; done
+    local f
+    rm -rf "$fast/row"; mkdir -p "$fast/row/holdout"
+    for f in views model remodel ids reveal holdout/views; do [ ! -e "$1/$f" ] || ln -s "$(realpath "$1/$f")" "$fast/row/$f"; done
 }
 
 # the atlases of a row; their time goes to $fast/time
@@ -181,19 +204,24 @@ bake_vdta() # FROM REVEAL CLUTTER PHOTOS...
     measured "$B/bin/bake_vdta" --threads "$threads" --model "$from/model/model.txt" --axes "$from/model/axes.txt" --views "$from/views" --ids "$from/ids" --reveal "$from/reveal" --set "reveal=$reveal" "${args[@]}" --out "$fast/row/vdta" >"$fast/time"
 }
 
-sample() # SERIES REVEAL CLUTTER
+sample() # SERIES SCENE REVEAL CLUTTER
 {
-    local name=room of=texture photos=()
+    local name=room of=texture photos=() products out=$kept/project/out truth=()
     mapfile -t photos < <(photos_of "$described")
     if [ "$1" = 'another sun' ]; then name=mixed; mapfile -t photos < <(photos_of "$described" | awk 'NR % 2'); fi
-    row_folder "$name"
+    products=$out/$name+draft truth=(--truth "$kept/$name/truth")
+    if [ "$2" != "$scene" ]; then
+        name=$2 products=$out/$2+draft+holdout8 truth=()
+        mapfile -t photos < <(awk '!/^#/ && NF > 2 && !seen[$2]++ { print $2 }' "$products/views/lenses.txt")
+    fi
+    row_folder "$products"
     if [ "$1" = 'single texture' ]; then
         of=texture.vita
-        bake_vita "$kept/project/out/$name+draft" || return
+        bake_vita "$products" || return
     else
-        bake_vdta "$kept/project/out/$name+draft" "$2" "$3" "${photos[@]}" || return
+        bake_vdta "$products" "$3" "$4" "${photos[@]}" || return
     fi
-    "$B/bin/evaluate" --folder "$fast/row" --shared "$kept/project/out/$name" --truth "$kept/$name/truth" --out "$fast/row/metrics.tsv" 2>"$work/err" || return
+    "$B/bin/evaluate" --folder "$fast/row" --shared "$out/$name" "${truth[@]}" --out "$fast/row/metrics.tsv" 2>"$work/err" || return
     report_row "$of"
 }
 
@@ -205,7 +233,7 @@ report_row() # PREFIX
         FNR == NR { split($0, t, " "); time[t[1]] = t[2]; next }
         index($1, of) != 1 { next }
         { name = substr($1, length(of) + 1) }
-        name ~ /^(psnr_(warped|seen|synthesised)|clutter_avoided|clutter_baked|unknown_clean|seam_energy|covered|megapixels)$/ {
+        name ~ /^(psnr_(warped|seen|synthesised)|clutter_avoided|clutter_baked|unknown_clean|seam_energy|covered|heldout_psnr|heldout_filled|megapixels)$/ {
             printf "%s %.5g\n", name, $2
             if (name == "megapixels" && $2 > 0) printf "core_s_per_mp %.4g\n", time["cpu_seconds"] / $2 }' "$fast/time" "$fast/row/metrics.tsv"
 }
