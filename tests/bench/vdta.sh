@@ -38,7 +38,7 @@ data=${BENCH_DATA:-../shared/data}
 heldout=${BENCH_HELDOUT-$([ ! -d "$data/apartment/photos" ] || echo apartment)}
 
 say() { echo "vdta: $*" >&2; }
-quietly() { "$@" >"$work/messages" 2>&1 || { tail -n 5 "$work/messages" >&2; missing "'${*:0:6} ...' failed."; }; }
+quietly() { "$@" >"$work/messages" 2>&1 || { tail -n 5 "$work/messages" >&2; missing "${1##*/} failed."; }; }
 simulated() { quietly "$B/bin/simulate" --set "scale=$scale" --set irradiance_points=0 "$@"; }
 photos_of() { awk '$1 == "photo" { print $2 }' "$1/cameras.txt"; }
 witnesses() { awk '$1 == "witness" { print $2 }' "$described/cameras.txt"; }
