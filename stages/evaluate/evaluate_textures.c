@@ -206,7 +206,7 @@ static enum status add_atlas(struct texture_result *r, const struct texture_job 
 
 /* --------------------------------------------------------------------------------------------------------- the table */
 
-static const char *const part_names[TEXTURE_PARTS] = {"psnr_warped", "psnr_seen", "psnr_synthesised"};
+static const char *const part_names[TEXTURE_PARTS] = {"psnr_original", "psnr_warped", "psnr_seen", "psnr_synthesised"};
 
 static enum status add_faces(struct evaluation *e, const struct texture_result *r, const struct texture_job *job,
                              struct err *err)
@@ -230,12 +230,15 @@ static enum status add_share(struct evaluation *e, const struct texture_result *
     return evaluation_metric(e, NULL, r->prefix, name, 100 * (double)part / (double)of, "%", direction, err);
 }
 
+/* No view is a VITA's own. */
+static bool is_vita(const struct texture_result *r) { return !strcmp(r->prefix, "texture.vita"); }
+
 static enum status add_errors(struct evaluation *e, const struct texture_result *r, const struct texture_job *job,
                               struct err *err)
 {
     const struct texture_error *t = &r->error;
     enum status st = ST_OK;
-    for (int k = 0; !st && k < TEXTURE_PARTS; k++) {
+    for (int k = is_vita(r) ? TEXTURE_WARPED : TEXTURE_ORIGINAL; !st && k < TEXTURE_PARTS; k++) {
         double db = 0;
         bool found = false;
         st = texture_median_psnr(t, (enum texture_part)k, &db, &found, err);
@@ -245,7 +248,7 @@ static enum status add_errors(struct evaluation *e, const struct texture_result 
                              r->prefix, part_names[k], MIN_FACE_TEXELS);
     }
     if (!st) st = add_share(e, r, "compared", t->compared, t->texels, "none", "there is no texel of a known face", err);
-    if (!st && strcmp(r->prefix, "texture.vita"))
+    if (!st && !is_vita(r))
         st = add_share(e, r, "clutter_avoided", t->avoided, t->clutter, "higher",
                        "no texel's own photo is known to show clutter of another colour", err);
     if (!st)

@@ -35,8 +35,10 @@ static void add_compared(struct texture_sum *face, const struct texel_facts *t)
         add_square(&face[TEXTURE_SYNTHESISED], t->square);
         return;
     }
+    const bool seen = t->flags & TEXEL_SOURCE_KNOWN && !(t->flags & TEXEL_SOURCE_CLUTTER);
     if (t->flags & TEXEL_WARPED) add_square(&face[TEXTURE_WARPED], t->square);
-    if (t->flags & TEXEL_SOURCE_KNOWN && !(t->flags & TEXEL_SOURCE_CLUTTER)) add_square(&face[TEXTURE_SEEN], t->square);
+    if (seen) add_square(&face[TEXTURE_SEEN], t->square);
+    if (seen && !(t->flags & TEXEL_WARPED)) add_square(&face[TEXTURE_ORIGINAL], t->square);
 }
 
 void texture_error_add(struct texture_error *e, int face, const struct texel_facts *facts, size_t count)

@@ -31,7 +31,7 @@ struct texel_facts {
     uint32_t flags;
 };
 
-enum texture_part { TEXTURE_WARPED, TEXTURE_SEEN, TEXTURE_SYNTHESISED, TEXTURE_PARTS };
+enum texture_part { TEXTURE_ORIGINAL, TEXTURE_WARPED, TEXTURE_SEEN, TEXTURE_SYNTHESISED, TEXTURE_PARTS };
 
 struct texture_sum {
     double square;

@@ -74,6 +74,7 @@ const char *metric_meaning(const char *name)
         {"irradiance.*_other", "the same on other surfaces"},
         {"shell.*_hidden", "over pixels that furniture hides"},
         {"shell.*_seen", "over pixels that photographs show"},
+        {"texture*.psnr_original", "PSNR of textures from the viewpoint's own photograph, median over faces"},
         {"texture*.psnr_warped", "PSNR of textures from other views, median over faces"},
         {"texture*.psnr_seen", "PSNR of textures that a photograph shows without clutter, median over faces"},
         {"texture*.psnr_synthesised", "PSNR of textures that were filled in, median over faces"},

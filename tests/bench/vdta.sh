@@ -233,7 +233,7 @@ report_row() # PREFIX
         FNR == NR { split($0, t, " "); time[t[1]] = t[2]; next }
         index($1, of) != 1 { next }
         { name = substr($1, length(of) + 1) }
-        name ~ /^(psnr_(warped|seen|synthesised)|clutter_avoided|clutter_baked|unknown_clean|seam_energy|covered|heldout_psnr|heldout_filled|megapixels)$/ {
+        name ~ /^(psnr_(original|warped|seen|synthesised)|clutter_avoided|clutter_baked|unknown_clean|seam_energy|covered|heldout_psnr|heldout_filled|megapixels)$/ {
             printf "%s %.5g\n", name, $2
             if (name == "megapixels" && $2 > 0) printf "core_s_per_mp %.4g\n", time["cpu_seconds"] / $2 }' "$fast/time" "$fast/row/metrics.tsv"
 }

@@ -213,6 +213,8 @@ static void right_textures_have_no_error(void **state)
     assert_int_equal(e.texels, TEXELS);
     assert_true(e.compared == TEXELS);
     assert_true(texture_face_psnr(&e, WALL, TEXTURE_SEEN, &db) && db > 60); /* half a step of 8 bits at most */
+    assert_int_equal(e.faces[WALL][TEXTURE_ORIGINAL].texels + e.faces[WALL][TEXTURE_WARPED].texels, TEXELS);
+    assert_true(e.faces[WALL][TEXTURE_ORIGINAL].texels > 1000 && e.faces[WALL][TEXTURE_WARPED].texels > 100);
     uint64_t clutter = 0, avoided = 0; /* the second photo sees a part of what the box hides from the first */
     for (int i = 0; i < TEXELS; i++) {
         const struct surface_point at = {place_of(r, i), wall_normal, WALL};
