@@ -219,6 +219,7 @@ sample() # SERIES SCENE REVEAL CLUTTER
         of=texture.vita
         bake_vita "$products" || return
     else
+        [ "$2" = "$scene" ] || bake_vita "$products" || return # what the nearest viewpoint does not have
         bake_vdta "$products" "$3" "$4" "${photos[@]}" || return
     fi
     "$B/bin/evaluate" --folder "$fast/row" --shared "$out/$name" "${truth[@]}" --out "$fast/row/metrics.tsv" 2>"$work/err" || return
