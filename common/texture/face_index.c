@@ -1,202 +1,240 @@
-/* face_index.c - see face_index.h. */
+/* face_index.c - reading and writing ids/index.txt, see face_index.h. */
 #include "common/texture/face_index.h"
 
+#include <errno.h>
+#include <fcntl.h>
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "common/base/array.h"
-#include "common/base/file_path.h"
 #include "common/base/outfile.h"
 #include "common/base/textfile.h"
 
-#define RECORD_HEADER "remodel-view-faces"
-#define INDEX_HEADER  "remodel-face-index"
+enum {
+    HEAD = 8192,      /* bytes in which the table begins: the provenance is before it */
+    LIST = 1 << 26,   /* bytes of the longest list */
+    NAME_SIZE = 1024, /* of a view's name, quoted */
+};
+#define VIEW_FORMAT "view %s %d %d %.9g %.9g\n"
+#define ROW_FORMAT  "at %10d %14lld %9lld %7d %14lld"
 
-static enum status read_header(struct textfile *t, const char *header, struct err *err)
-{
-    int64_t version;
-    enum status st = textfile_expect_line(t, header, err);
-    if (!st) st = textfile_int(t, "version", 1, 1, &version, err);
-    return st ? st : textfile_end(t, err);
-}
-
-/* PIXELS CLEAN Z COSINE, to the end of the line. */
-static enum status read_seen(struct textfile *t, struct face_view *v, struct err *err)
-{
-    int64_t pixels, clean;
-    enum status st = textfile_int(t, "pixels", 1, INT_MAX, &pixels, err);
-    if (!st) st = textfile_int(t, "clean pixels", 0, pixels, &clean, err);
-    if (!st) st = textfile_double(t, "mean depth", &v->z, err);
-    if (!st && !(v->z > 0)) st = textfile_wrong_number(t, v->z, "a depth above 0", err);
-    if (!st) st = textfile_double(t, "mean cosine", &v->cosine, err);
-    if (!st && !(v->cosine >= 0 && v->cosine <= 1))
-        st = textfile_wrong_number(t, v->cosine, "a cosine from 0 to 1", err);
-    if (!st) st = textfile_end(t, err);
-    if (!st) v->pixels = (int)pixels, v->clean = (int)clean;
-    return st;
-}
-
-static void print_seen(FILE *to, const struct face_view *v)
-{
-    fprintf(to, "%d %d %.9g %.9g\n", v->pixels, v->clean, v->z, v->cosine);
-}
-
-enum status face_records_write(const struct face_record *records, int count, const char *path,
-                               const struct provenance *prov, struct err *err)
-{
-    struct outfile file = {0};
-    enum status st = outfile_open(&file, path, err);
-    if (!st) {
-        fprintf(file.fp, RECORD_HEADER " 1\n");
-        provenance_print(prov, file.fp);
-        for (int i = 0; i < count; i++) {
-            fprintf(file.fp, "face %d ", records[i].id);
-            print_seen(file.fp, &records[i].seen);
-        }
-        st = outfile_commit(&file, err);
-    }
-    outfile_discard(&file);
-    return st;
-}
-
-/* ------------------------------------------------------------------------------------------------ making the index */
-
-struct entry {
-    int id, view; /* index into the views' names */
-    struct face_view seen;
+struct row {
+    int64_t id, offset, bytes, views, line;
 };
 
-static double worth(const struct face_view *v) { return v->clean * v->cosine; }
-
-static int compare_entries(const void *a, const void *b)
+void face_views_release(struct face_views *list)
 {
-    const struct entry *p = a, *q = b;
-    if (p->id != q->id) return p->id < q->id ? -1 : 1;
-    const double worth_p = worth(&p->seen), worth_q = worth(&q->seen);
-    if (worth_p != worth_q) return worth_p > worth_q ? -1 : 1;
-    return p->view < q->view ? -1 : p->view > q->view;
+    if (!list) return;
+    for (int i = 0; i < list->count; i++) free(list->views[i].name);
+    free(list->views);
+    *list = (struct face_views){0};
 }
 
-static enum status read_record(struct entry **entries, size_t *count, size_t *room, const char *path, int view,
-                               struct err *err)
+/* Reads a piece of the file as a text file of its own, whose first line has the number `line`. */
+static enum status read_piece(struct textfile *t, struct face_index *index, int64_t offset, int64_t bytes, int line,
+                              struct err *err)
+{
+    *t = (struct textfile){.path = strdup(index->path), .bytes = malloc((size_t)bytes + 1), .line = line - 1};
+    if (!t->path || !t->bytes) return err_nomem(err, "a list of views", (size_t)bytes);
+    while ((int64_t)t->size < bytes) {
+        const ssize_t got = pread(index->file, t->bytes + t->size, (size_t)bytes - t->size, offset + (int64_t)t->size);
+        if (got < 0) return err_errno(err, "read", index->path);
+        if (!got) return err_set(err, ST_DATA, "%s has changed while it was read; try again.", index->path);
+        t->size += (size_t)got;
+    }
+    t->bytes[t->size] = 0;
+    index->bytes_read += bytes;
+    if (!memchr(t->bytes, 0, t->size)) return ST_OK;
+    return err_set(err, ST_DATA, "%s has a NUL byte; run trace_ids again.", index->path);
+}
+
+static enum status read_head(struct face_index *index, struct err *err)
 {
     struct textfile t = {0};
-    enum status st = textfile_open(&t, path, err);
-    if (!st) st = read_header(&t, RECORD_HEADER, err);
-    while (!st && textfile_next(&t)) {
-        struct entry e = {.view = view};
-        int64_t id;
-        st = textfile_expect(&t, "face", err);
-        if (!st) st = textfile_int(&t, "face id", 1, INT_MAX, &id, err);
-        if (!st) st = read_seen(&t, &e.seen, err);
-        if (!st) st = array_reserve(entries, room, *count + 1, sizeof **entries, "faces of views", err);
-        if (!st) e.id = (int)id, (*entries)[(*count)++] = e;
-    }
+    int64_t version = 0, faces = 0;
+    enum status st = read_piece(&t, index, 0, index->size < HEAD ? index->size : HEAD, 1, err);
+    if (!st) st = textfile_expect_line(&t, "remodel-face-index", err);
+    if (!st) st = textfile_int(&t, "version", 1, 1, &version, err);
+    if (!st) st = textfile_end(&t, err);
+    if (!st) st = textfile_expect_line(&t, "faces", err);
+    if (!st) st = textfile_int(&t, "number of faces", 0, index->size / FACE_INDEX_ROW, &faces, err);
+    if (!st) st = textfile_end(&t, err);
+    index->faces = (int)faces;
+    index->table = (int64_t)t.at;
+    if (!st && index->table + faces * FACE_INDEX_ROW > index->size)
+        st = err_set(err, ST_DATA, "%s ends within its table of %d faces; run trace_ids again.", index->path,
+                     index->faces);
     textfile_release(&t);
     return st;
 }
 
-enum status face_index_write(const char *folder, const char *const *views, int view_count, const char *path,
-                             struct provenance *prov, struct err *err)
+enum status face_index_open(struct face_index *index, const char *path, struct err *err)
 {
-    struct entry *entries = NULL;
-    size_t count = 0, room = 0;
-    struct outfile file = {0};
-    enum status st = ST_OK;
-    for (int i = 0; !st && i < view_count; i++) {
-        char record[FILE_PATH];
-        st = provenance_add_in(prov, "ids", folder, views[i], ".txt", record, err);
-        if (!st) st = read_record(&entries, &count, &room, record, i, err);
+    *index = (struct face_index){.file = open(path, O_RDONLY | O_CLOEXEC)};
+    if (index->file < 0) return err_errno(err, "open", path);
+    index->path = strdup(path);
+    if (!index->path) {
+        close(index->file);
+        return err_nomem(err, "a file name", strlen(path));
     }
-    if (!st && count) qsort(entries, count, sizeof *entries, compare_entries);
-    if (!st) st = outfile_open(&file, path, err);
-    if (!st) {
-        fprintf(file.fp, INDEX_HEADER " 1\n");
-        for (size_t i = 0; i < count; i++) {
-            fprintf(file.fp, "face %d %s ", entries[i].id, views[entries[i].view]);
-            print_seen(file.fp, &entries[i].seen);
-        }
-        st = outfile_commit(&file, err);
-    }
-    outfile_discard(&file);
-    free(entries);
+    index->size = lseek(index->file, 0, SEEK_END);
+    enum status st = index->size < 0 ? err_errno(err, "read", path) : read_head(index, err);
+    if (st) face_index_close(index);
     return st;
 }
 
-/* ------------------------------------------------------------------------------------------------------- reading it */
-
-static bool is_asked_for(int id, const int *ids, int count)
+void face_index_close(struct face_index *index)
 {
-    int low = 0, high = count;
-    if (!ids) return true;
-    while (low < high) {
-        const int middle = (low + high) / 2;
-        if (ids[middle] < id)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low < count && ids[low] == id;
+    if (!index) return;
+    if (index->path) close(index->file);
+    free(index->path);
+    *index = (struct face_index){0};
 }
 
-static enum status add_view(struct face_index *index, int id, const struct face_view *seen, const char *view,
-                            struct err *err)
+static enum status read_row(struct row *r, struct face_index *index, int at, struct err *err)
 {
-    if (!index->count || index->faces[index->count - 1].id != id) {
-        if (array_append(&index->faces, (size_t)index->count, sizeof *index->faces, "faces", err)) return err->status;
-        index->faces[index->count++] = (struct face_views){.id = id};
+    struct textfile t = {0};
+    const int64_t end = index->table + (int64_t)index->faces * FACE_INDEX_ROW;
+    enum status st = read_piece(&t, index, index->table + (int64_t)at * FACE_INDEX_ROW, FACE_INDEX_ROW, 1, err);
+    if (!st && t.bytes[FACE_INDEX_ROW - 1] != '\n')
+        st = textfile_error(&t, err, NULL, "a row of %d bytes", FACE_INDEX_ROW);
+    if (!st) st = textfile_expect_line(&t, "at", err);
+    if (!st) st = textfile_int(&t, "face id", 1, INT_MAX, &r->id, err);
+    if (!st) st = textfile_int(&t, "offset behind the table", end, index->size, &r->offset, err);
+    if (!st) st = textfile_int(&t, "bytes within the file", 1, index->size - r->offset, &r->bytes, err);
+    if (!st) st = textfile_int(&t, "number of views", 1, r->bytes, &r->views, err);
+    if (!st) st = textfile_int(&t, "number of a line", 1, INT_MAX, &r->line, err);
+    if (!st) st = textfile_end(&t, err);
+    if (!st && r->bytes > LIST) st = textfile_wrong_number(&t, (double)r->bytes, "fewer bytes", err);
+    textfile_release(&t);
+    return st ? err_context(err, "row %d of the table of faces", at + 1) : ST_OK;
+}
+
+/* Sets row to the face's, or its id to 0. */
+static enum status find_row(struct row *row, struct face_index *index, int face, struct err *err)
+{
+    int low = 0, high = index->faces;
+    while (low < high) {
+        const int mid = low + (high - low) / 2;
+        if (read_row(row, index, mid, err)) return err->status;
+        if (row->id == face) return ST_OK;
+        if (row->id < face)
+            low = mid + 1;
+        else
+            high = mid;
     }
-    struct face_views *f = &index->faces[index->count - 1];
-    if (array_append(&f->views, (size_t)f->count, sizeof *f->views, "views of a face", err)) return err->status;
-    f->views[f->count] = *seen;
-    f->views[f->count].view = strdup(view);
-    if (!f->views[f->count].view) return err_nomem(err, "a name", strlen(view));
-    f->count++;
+    row->id = 0;
     return ST_OK;
 }
 
-enum status face_index_read(struct face_index *index, const char *path, const int *ids, int id_count, struct err *err)
+static enum status read_view(struct face_view *v, struct textfile *t, struct err *err)
+{
+    char *name = NULL;
+    int64_t pixels = 0, clean = 0;
+    if (textfile_expect_line(t, "view", err) || textfile_word(t, "name of a view", &name, err) ||
+        textfile_int(t, "pixels", 1, INT_MAX, &pixels, err) ||
+        textfile_int(t, "clean pixels", 0, pixels, &clean, err) || textfile_double(t, "distance", &v->distance, err) ||
+        textfile_double(t, "cosine", &v->cosine, err) || textfile_end(t, err))
+        return err->status;
+    if (!(v->distance > 0)) return textfile_wrong_number(t, v->distance, "a distance above 0", err);
+    if (!(v->cosine >= 0 && v->cosine <= 1)) return textfile_wrong_number(t, v->cosine, "a cosine from 0 to 1", err);
+    v->pixels = (int)pixels;
+    v->clean = (int)clean;
+    v->name = strdup(name);
+    return v->name ? ST_OK : err_nomem(err, "a name", strlen(name));
+}
+
+enum status face_index_load(struct face_views *list, struct face_index *index, int face, struct err *err)
 {
     struct textfile t = {0};
-    int64_t last = 0;
-    *index = (struct face_index){0};
-    enum status st = textfile_open(&t, path, err);
-    if (!st) st = read_header(&t, INDEX_HEADER, err);
-    while (!st && textfile_next(&t)) {
-        struct face_view seen = {0};
-        char *view = NULL;
-        int64_t id;
-        st = textfile_expect(&t, "face", err);
-        if (!st) st = textfile_int(&t, "face id, in ascending order", last > 1 ? last : 1, INT_MAX, &id, err);
-        if (!st) st = textfile_word(&t, "view", &view, err);
-        if (!st) st = read_seen(&t, &seen, err);
-        if (!st) last = id;
-        if (!st && is_asked_for((int)id, ids, id_count)) st = add_view(index, (int)id, &seen, view, err);
+    struct row row = {0};
+    *list = (struct face_views){0};
+    enum status st = find_row(&row, index, face, err);
+    if (st || !row.id) return st;
+    st = read_piece(&t, index, row.offset, row.bytes, (int)row.line, err);
+    for (int64_t i = 0; !st && i < row.views; i++) {
+        st = array_append(&list->views, (size_t)list->count, sizeof *list->views, "views", err);
+        if (st) break;
+        struct face_view *v = &list->views[list->count++];
+        *v = (struct face_view){0};
+        st = read_view(v, &t, err);
     }
+    if (!st) st = textfile_end_of_file(&t, err);
     textfile_release(&t);
-    if (st) face_index_release(index);
+    if (st) face_views_release(list);
     return st;
 }
 
-static int compare_faces(const void *id, const void *face)
+/* -------------------------------------------------------------------------------------------------------- writing */
+
+static enum status print_view(char *line, size_t size, const struct face_view *v, int *length, struct err *err)
 {
-    const int a = *(const int *)id, b = ((const struct face_views *)face)->id;
-    return a < b ? -1 : a > b;
+    char name[NAME_SIZE];
+    if (textfile_quote(v->name, name, sizeof name, err)) return err->status;
+    *length = snprintf(line, size, VIEW_FORMAT, name, v->pixels, v->clean, v->distance, v->cosine);
+    return ST_OK;
 }
 
-const struct face_views *face_index_find(const struct face_index *index, int id)
+/* The table; the lists follow it. offset: of the first list; line: its first line. */
+static enum status write_table(FILE *to, const int *ids, const struct face_views *lists, int count, int64_t offset,
+                               int64_t line, struct err *err)
 {
-    if (!index->count) return NULL;
-    return bsearch(&id, index->faces, (size_t)index->count, sizeof *index->faces, compare_faces);
-}
-
-void face_index_release(struct face_index *index)
-{
-    for (int i = 0; i < index->count; i++) {
-        for (int k = 0; k < index->faces[i].count; k++) free(index->faces[i].views[k].view);
-        free(index->faces[i].views);
+    char text[NAME_SIZE + 128];
+    for (int i = 0; i < count; i++) {
+        int64_t bytes = 0;
+        for (int k = 0; k < lists[i].count; k++) {
+            int length = 0;
+            if (print_view(text, sizeof text, &lists[i].views[k], &length, err)) return err->status;
+            bytes += length;
+        }
+        if (bytes > LIST) return err_set(err, ST_DATA, "face %d: the list of its views is too long.", ids[i]);
+        snprintf(text, sizeof text, ROW_FORMAT, ids[i], (long long)offset, (long long)bytes, lists[i].count,
+                 (long long)line);
+        fprintf(to, "%-*s\n", FACE_INDEX_ROW - 1, text);
+        offset += bytes;
+        line += lists[i].count;
     }
-    free(index->faces);
-    *index = (struct face_index){0};
+    return ST_OK;
+}
+
+/* Lines that were written so far: those of the provenance are counted by reading it again. */
+static int64_t count_lines(const struct provenance *prov)
+{
+    char *text = NULL;
+    size_t size = 0;
+    int64_t lines = 0;
+    FILE *f = prov ? open_memstream(&text, &size) : NULL;
+    if (f) {
+        provenance_print(prov, f);
+        fclose(f);
+    }
+    for (size_t i = 0; i < size; i++) lines += text[i] == '\n';
+    free(text);
+    return lines;
+}
+
+enum status face_index_write(const char *path, const int *ids, const struct face_views *lists, int count,
+                             const struct provenance *prov, struct err *err)
+{
+    struct outfile f = {0};
+    char text[NAME_SIZE + 128];
+    enum status st = outfile_open(&f, path, err);
+    if (!st) {
+        if (prov) provenance_print(prov, f.fp);
+        fprintf(f.fp, "remodel-face-index 1\nfaces %d\n", count);
+        const int64_t table = ftell(f.fp);
+        st = write_table(f.fp, ids, lists, count, table + (int64_t)count * FACE_INDEX_ROW,
+                         count_lines(prov) + 3 + count, err);
+    }
+    for (int i = 0; !st && i < count; i++)
+        for (int k = 0; !st && k < lists[i].count; k++) {
+            int length = 0;
+            st = print_view(text, sizeof text, &lists[i].views[k], &length, err);
+            if (!st) fwrite(text, 1, (size_t)length, f.fp);
+        }
+    if (!st) st = outfile_commit(&f, err);
+    outfile_discard(&f);
+    return st;
 }

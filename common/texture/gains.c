@@ -17,7 +17,7 @@ enum { BINS = 121, STRIDE = 3 };             /* of the ratio's logarithm; every 
 enum { MIN_SHARED = 40, MAX_SHARED = 1000 }; /* texels that two views must share; more than that count no more */
 enum { SWEEPS = 300 };
 static const double LARGEST = 1.2; /* logarithm of a ratio in the last bin */
-static const double PULL = 0.5;      /* weight of a gain of 1, in texels */
+static const double PULL = 0.5;    /* weight of a gain of 1, in texels */
 static const double DARK = 0.02;   /* of white: darker texels are left out */
 
 /* Node 0 is the viewpoint, node 1 + i source i. */

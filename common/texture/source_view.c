@@ -10,25 +10,39 @@
 #include "common/base/file_path.h"
 #include "common/image/exr.h"
 
-enum { R, G, B, A, SIGMA, CLIPPED, VIEW_CHANNELS };
-enum { ID, JUMP, CLUTTER, ID_CHANNELS };
-static const char *const view_channels[VIEW_CHANNELS] = {"R", "G", "B", "A", "sigma", "clipped"};
-static const char *const id_channels[ID_CHANNELS] = {"id", "jump", "clutter"};
+enum { R, G, B, A, SIGMA, CLIPPED, CHANNELS };
+static const char *const channels[CHANNELS] = {"R", "G", "B", "A", "sigma", "clipped"};
 
-static enum status read_channels(struct exr_image *exr, const char *folder, const struct view *camera,
-                                 const char *const *names, int count, uint64_t *bytes, struct err *err)
+static void add_size(uint64_t *bytes, const char *path)
+{
+    struct stat file;
+    if (!stat(path, &file)) *bytes += (uint64_t)file.st_size;
+}
+
+static enum status read_picture(struct exr_image *exr, const char *folder, const struct view *camera, uint64_t *bytes,
+                                struct err *err)
 {
     char path[FILE_PATH];
-    struct stat file;
     enum status st = file_path(path, folder, camera->name, ".exr", err);
-    if (!st) st = exr_read(exr, path, names, count, err);
+    if (!st) st = exr_read(exr, path, channels, CHANNELS, err);
     if (!st && (exr->width != camera->width || exr->height != camera->height))
-        st = err_set(err, ST_DATA, "%s has %d x %d pixels, but its camera %d x %d; make it again.", path, exr->width,
-                     exr->height, camera->width, camera->height);
-    for (int k = 0; !st && k < count; k++)
-        if (!strcmp(names[k], "id") != !exr_find(exr, names[k])->f)
-            st = err_set(err, ST_DATA, "%s: channel %s has the wrong type; make the file again.", path, names[k]);
-    if (!st && !stat(path, &file)) *bytes += (uint64_t)file.st_size;
+        st = err_set(err, ST_DATA, "%s has %d x %d pixels, but its camera %d x %d; make the views again.", path,
+                     exr->width, exr->height, camera->width, camera->height);
+    for (int k = 0; !st && k < CHANNELS; k++)
+        if (!exr_find(exr, channels[k])->f)
+            st = err_set(err, ST_DATA, "%s: channel %s contains integers, wanted half or float; make the views again.",
+                         path, channels[k]);
+    if (!st) add_size(bytes, path);
+    return st;
+}
+
+static enum status read_ids(struct view_ids *ids, const char *folder, const struct view *camera, uint64_t *bytes,
+                            struct err *err)
+{
+    char path[FILE_PATH];
+    enum status st = file_path(path, folder, camera->name, ".exr", err);
+    if (!st) st = view_ids_read(ids, camera, path, err);
+    if (!st) add_size(bytes, path);
     return st;
 }
 
@@ -90,16 +104,14 @@ static void set_projection(struct source_view *v)
     }
 }
 
-static void take_pixels(struct source_view *v, const struct exr_image *picture, const struct exr_image *ids,
+static void take_pixels(struct source_view *v, const struct exr_image *picture, const struct view_ids *ids,
                         const struct texture_params *params)
 {
     const size_t pixels = (size_t)v->camera.width * (size_t)v->camera.height;
-    const float *channel[VIEW_CHANNELS];
-    for (int k = 0; k < VIEW_CHANNELS; k++) channel[k] = exr_find(picture, view_channels[k])->f;
-    const float *jump = exr_find(ids, "jump")->f, *clutter = exr_find(ids, "clutter")->f;
-    memcpy(v->id, exr_find(ids, "id")->u, pixels * sizeof *v->id);
+    const float *channel[CHANNELS];
+    for (int k = 0; k < CHANNELS; k++) channel[k] = exr_find(picture, channels[k])->f;
     for (size_t i = 0; i < pixels; i++) {
-        v->own[i] = state_of(channel[A][i], jump[i], clutter[i], params);
+        v->own[i] = state_of(channel[A][i], ids->jump[i], ids->clutter[i], params);
         v->state[i] = channel[CLIPPED][i] > 0 || channel[SIGMA][i] > (float)params->max_noise ? SOURCE_NONE : v->own[i];
         const float alpha = channel[A][i] > 0.999f;
         for (int c = 0; c < 3; c++) v->levels[0].rgba[4 * i + (size_t)c] = alpha * channel[c][i];
@@ -119,26 +131,33 @@ static enum status list_faces(struct source_view *v, struct err *err)
     return ST_OK;
 }
 
-enum status source_view_read(struct source_view *v, const char *views, const char *ids, const struct view *camera,
-                             const struct texture_params *params, struct err *err)
+enum status source_view_read(struct source_view *v, struct view_ids *ids, const char *views, const char *folder,
+                             const struct view *camera, const struct texture_params *params, struct err *err)
 {
     const size_t pixels = (size_t)camera->width * (size_t)camera->height;
-    struct exr_image picture = {0}, faces = {0};
-    *v = (struct source_view){.camera = *camera};
+    struct exr_image picture = {0};
+    struct view_ids faces = {0};
+    *v = (struct source_view){.camera = *camera, .level_count = 1};
     set_projection(v);
-    enum status st = read_channels(&picture, views, camera, view_channels, VIEW_CHANNELS, &v->bytes, err);
-    if (!st) st = read_channels(&faces, ids, camera, id_channels, ID_CHANNELS, &v->bytes, err);
-    v->id = malloc(pixels * sizeof *v->id);
+    enum status st = read_picture(&picture, views, camera, &v->bytes, err);
+    if (!st) st = read_ids(&faces, folder, camera, &v->bytes, err);
     v->state = malloc(pixels);
     v->own = malloc(pixels);
-    if (!st && (!v->id || !v->state || !v->own)) st = err_nomem(err, "a view's surfaces", pixels * sizeof *v->id);
+    if (!st && (!v->state || !v->own)) st = err_nomem(err, "a view's surfaces", pixels);
     if (!st) st = level_init(&v->levels[0], camera->width, camera->height, err);
-    v->level_count = 1;
-    if (!st) take_pixels(v, &picture, &faces, params);
-    if (!st) st = make_levels(v, err);
+    if (!st) {
+        take_pixels(v, &picture, &faces, params);
+        v->id = faces.id;
+        faces.id = NULL;
+        st = make_levels(v, err);
+    }
     if (!st) st = list_faces(v, err);
+    if (!st && ids) {
+        *ids = faces;
+        faces = (struct view_ids){0};
+    }
     exr_image_release(&picture);
-    exr_image_release(&faces);
+    view_ids_release(&faces);
     return st;
 }
 

@@ -8,6 +8,7 @@
 
 #include "common/capture/camera_set.h"
 #include "common/texture/texture_params.h"
+#include "common/texture/view_ids.h"
 
 enum { SOURCE_LEVELS = 4 }; /* full, half, quarter, eighth size */
 
@@ -37,10 +38,11 @@ struct source_view {
     uint64_t bytes; /* read from disk */
 };
 
-/* Reads VIEWS/VIEW.exr and IDS/VIEW.exr. camera: in the model's frame. v is overwritten; the caller releases it in each
+/* Reads VIEWS/VIEW.exr and IDS/VIEW.exr. camera: in the model's frame. ids, if not NULL, gets the rest of the second
+ * file (without id, which v has), in scene units; the caller releases it. v is overwritten; the caller releases it in each
  * case. ST_DATA: a missing channel, sizes that differ. */
-enum status source_view_read(struct source_view *v, const char *views, const char *ids, const struct view *camera,
-                             const struct texture_params *params, struct err *err);
+enum status source_view_read(struct source_view *v, struct view_ids *ids, const char *views, const char *folder,
+                             const struct view *camera, const struct texture_params *params, struct err *err);
 /* Whether a usable pixel shows a face. */
 static inline bool source_view_shows(const struct source_view *v, int id)
 {

@@ -6,10 +6,8 @@
 
 struct own_view {
     struct source_view view;
-    float *z;            /* depth of the surface at each pixel, model units, 0: none; owned */
-    int layers;          /* revealed surfaces that a pixel has at most */
-    uint32_t **layer_id; /* per layer and pixel: 0: none; owned */
-    float **layer_z;     /* owned */
+    struct view_ids ids;       /* without id, which the view has; z in model units */
+    struct view_reveal reveal; /* what the edits reveal; z in model units */
 };
 
 /* Reads VIEWS/VIEW.exr, IDS/VIEW.exr and REVEAL/VIEW.exr. camera: in the model's frame; scale: model units per scene

@@ -37,6 +37,11 @@ struct offer {
     double worth; /* 0 to 1 */
 };
 
+struct offers {
+    struct offer *list; /* owned */
+    size_t count, room;
+};
+
 static int compare_samples(const void *a, const void *b)
 {
     const struct sample *p = a, *q = b;
@@ -95,56 +100,60 @@ static double worth_of(const struct sample *s, const struct face_view *f, const 
     return (double)f->clean / f->pixels / (1 + (angle / ANGLE) * (angle / ANGLE)) / fmax(1, coarser);
 }
 
-static enum status find_offers(struct offer **offers, size_t *count, const struct samples *samples,
-                               const struct face_index *index, const struct bake_scene *s, const struct bake *b,
-                               double own_focal, struct err *err)
+/* What the views that show a face offer to its samples, first .. last - 1. */
+static enum status add_offers(struct offers *o, const struct samples *samples, size_t first, size_t last,
+                              const struct face_views *f, const struct bake_scene *s, const struct bake *b,
+                              double own_focal, struct err *err)
 {
-    size_t room = 0;
-    for (size_t i = 0; i < samples->count; i++) {
-        const struct face_views *f = face_index_find(index, samples->list[i].id);
-        for (int k = 0; f && k < f->count; k++) {
-            const int view = camera_set_find(&s->set, f->views[k].view);
-            const double worth = view < 0 ? 0 : worth_of(&samples->list[i], &f->views[k], s, view, b, own_focal);
+    for (int k = 0; k < f->count; k++) {
+        const int view = camera_set_find(&s->set, f->views[k].name);
+        for (size_t i = first; view >= 0 && i < last; i++) {
+            const double worth = worth_of(&samples->list[i], &f->views[k], s, view, b, own_focal);
             if (!(worth > 0)) continue;
-            if (array_reserve(offers, &room, *count + 1, sizeof **offers, "views of faces", err)) return err->status;
-            (*offers)[(*count)++] = (struct offer){view, i, worth};
+            if (array_reserve(&o->list, &o->room, o->count + 1, sizeof *o->list, "views of faces", err))
+                return err->status;
+            o->list[o->count++] = (struct offer){view, i, worth};
         }
     }
     return ST_OK;
 }
 
+static enum status find_offers(struct offers *o, const struct samples *samples, const struct bake_scene *s,
+                               const struct bake *b, double own_focal, struct provenance *prov, struct err *err)
+{
+    struct face_index index = {0};
+    char path[FILE_PATH];
+    enum status st = provenance_add_in(prov, "ids", s->ids, "index", ".txt", path, err);
+    if (!st) st = face_index_open(&index, path, err);
+    for (size_t first = 0, last; !st && first < samples->count; first = last) {
+        struct face_views shown_by = {0};
+        for (last = first; last < samples->count && samples->list[last].id == samples->list[first].id;) last++;
+        st = face_index_load(&shown_by, &index, samples->list[first].id, err);
+        if (!st) st = add_offers(o, samples, first, last, &shown_by, s, b, own_focal, err);
+        face_views_release(&shown_by);
+    }
+    face_index_close(&index);
+    return st;
+}
+
 /* Takes the view that is worth most, again and again. */
-static void take_views(bool *taken, int view_count, const struct offer *offers, size_t count, struct samples *samples,
-                       int limit, double *worth)
+static void take_views(bool *taken, int view_count, const struct offers *o, struct samples *samples, int limit,
+                       double *worth)
 {
     for (int n = 0; n < limit; n++) {
         int best = -1;
         memset(worth, 0, (size_t)view_count * sizeof *worth);
-        for (size_t i = 0; i < count; i++) {
-            const struct sample *s = &samples->list[offers[i].sample];
-            worth[offers[i].view] += offers[i].worth * s->texels / (1 + SATURATION * s->served);
+        for (size_t i = 0; i < o->count; i++) {
+            const struct sample *s = &samples->list[o->list[i].sample];
+            worth[o->list[i].view] += o->list[i].worth * s->texels / (1 + SATURATION * s->served);
         }
         for (int v = 0; v < view_count; v++)
             if (!taken[v] && worth[v] > 0 && (best < 0 || worth[v] > worth[best])) best = v;
         if (best < 0) return;
         taken[best] = true;
-        for (size_t i = 0; i < count; i++)
-            if (offers[i].view == best) samples->list[offers[i].sample].served += offers[i].worth;
+        for (size_t i = 0; i < o->count; i++)
+            if (o->list[i].view == best) samples->list[o->list[i].sample].served += o->list[i].worth;
     }
-}
-
-static enum status read_index(struct face_index *index, const struct bake_scene *s, const struct samples *samples,
-                              struct provenance *prov, struct err *err)
-{
-    char path[FILE_PATH];
-    int *ids = malloc((samples->count + 1) * sizeof *ids), count = 0;
-    enum status st = ids ? provenance_add_in(prov, "ids", s->ids, "index", ".txt", path, err)
-                         : err_nomem(err, "faces", samples->count * sizeof *ids);
-    for (size_t i = 0; !st && i < samples->count; i++)
-        if (!count || ids[count - 1] != samples->list[i].id) ids[count++] = samples->list[i].id;
-    if (!st) st = face_index_read(index, path, ids, count, err);
-    free(ids);
-    return st;
 }
 
 enum status sources_choose(int **views, int *count, const struct bake_scene *scene, const int *own, int own_count,
@@ -152,9 +161,7 @@ enum status sources_choose(int **views, int *count, const struct bake_scene *sce
 {
     const int n = scene->set.view_count;
     struct samples samples = {0};
-    struct offer *offers = NULL;
-    struct face_index index = {0};
-    size_t offer_count = 0;
+    struct offers offers = {0};
     bool *taken = calloc((size_t)n + 1, sizeof *taken);
     double *worth = malloc(((size_t)n + 1) * sizeof *worth);
     *views = malloc(((size_t)n + 1) * sizeof **views);
@@ -162,15 +169,13 @@ enum status sources_choose(int **views, int *count, const struct bake_scene *sce
     enum status st = taken && worth && *views ? ST_OK : err_nomem(err, "views", (size_t)n * sizeof *worth);
     if (!st) st = find_samples(&samples, b, err);
     if (!st && samples.count) qsort(samples.list, samples.count, sizeof *samples.list, compare_samples);
-    if (!st) st = read_index(&index, scene, &samples, prov, err);
-    if (!st) st = find_offers(&offers, &offer_count, &samples, &index, scene, b, scene->set.views[own[0]].fx, err);
+    if (!st) st = find_offers(&offers, &samples, scene, b, scene->set.views[own[0]].fx, prov, err);
     for (int i = 0; !st && i < own_count; i++) taken[own[i]] = true;
-    if (!st) take_views(taken, n, offers, offer_count, &samples, scene->params->texture.max_sources, worth);
+    if (!st) take_views(taken, n, &offers, &samples, scene->params->texture.max_sources, worth);
     for (int v = 0; !st && v < n; v++)
         if (taken[v]) (*views)[(*count)++] = v;
-    face_index_release(&index);
     free(samples.list);
-    free(offers);
+    free(offers.list);
     free(taken);
     free(worth);
     return st;

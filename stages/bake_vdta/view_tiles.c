@@ -41,9 +41,9 @@ static void for_pixels(const struct builder *w, struct rectangle r, void (*visit
                        void *ctx)
 {
     const int width = w->v->view.camera.width;
-    for (int layer = -1; layer < w->v->layers; layer++) {
-        const uint32_t *id = layer < 0 ? w->v->view.id : w->v->layer_id[layer];
-        const float *z = layer < 0 ? w->v->z : w->v->layer_z[layer];
+    for (int layer = -1; layer < w->v->reveal.layers; layer++) {
+        const uint32_t *id = layer < 0 ? w->v->view.id : w->v->reveal.id[layer];
+        const float *z = layer < 0 ? w->v->ids.z : w->v->reveal.z[layer];
         for (int y = r.y0; y < r.y1; y++)
             for (int x = r.x0; x < r.x1; x++) {
                 const size_t at = (size_t)y * (size_t)width + (size_t)x;
@@ -144,7 +144,7 @@ static enum status add_part(const struct builder *w, int surface, struct rectang
         for (int x = 0; x < t.raster.width; x++) {
             const size_t pixel = (size_t)(r.y0 + y) * (size_t)width + (size_t)(r.x0 + x);
             if (!wanted[(size_t)y * (size_t)stride + (size_t)x]) continue;
-            const bool visible = surface_at(w, w->v->view.id[pixel], w->v->z[pixel], r.x0 + x, r.y0 + y) == surface;
+            const bool visible = surface_at(w, w->v->view.id[pixel], w->v->ids.z[pixel], r.x0 + x, r.y0 + y) == surface;
             set_role(b, w, added->first + (size_t)y * (size_t)t.raster.width + (size_t)x, pixel, id, visible);
         }
     return ST_OK;

@@ -144,7 +144,8 @@ static enum status read_sources(struct work *w, uint64_t *bytes, struct err *err
     for (int i = 0; !st && i < w->view_count; i++) {
         struct source_view view = {0};
         st = add_inputs(w, w->views[i], false, err);
-        if (!st) st = source_view_read(&view, s->views, s->ids, &s->set.views[w->views[i]], &s->params->texture, err);
+        if (!st)
+            st = source_view_read(&view, NULL, s->views, s->ids, &s->set.views[w->views[i]], &s->params->texture, err);
         if (!st) bake_add_view(&w->bake, &view, i);
         *bytes += view.bytes;
         source_view_release(&view);

@@ -48,6 +48,18 @@ static enum status read_models(struct vita_scene *s, const struct files *f, stru
     return st ? st : surfaces_make(&s->surfaces, s->models, s->model_count, err);
 }
 
+static enum status read_index(struct vita_scene *s, const char *path, struct err *err)
+{
+    struct face_index index = {0};
+    s->shown_by = calloc((size_t)s->surfaces.count + 1, sizeof *s->shown_by);
+    if (!s->shown_by) return err_nomem(err, "faces", (size_t)s->surfaces.count * sizeof *s->shown_by);
+    enum status st = face_index_open(&index, path, err);
+    for (int i = 0; !st && i < s->surfaces.count; i++)
+        st = face_index_load(&s->shown_by[i], &index, s->surfaces.list[i].id, err);
+    face_index_close(&index);
+    return st;
+}
+
 static enum status read_scene(struct vita_scene *s, const struct files *f, struct provenance *prov, struct err *err)
 {
     char path[FILE_PATH];
@@ -59,7 +71,7 @@ static enum status read_scene(struct vita_scene *s, const struct files *f, struc
     if (!st) st = provenance_add_file(prov, "model/axes.txt", f->axes, err);
     if (!st) st = read_models(s, f, prov, err);
     if (!st) st = provenance_add_in(prov, "ids", s->ids, "index", ".txt", path, err);
-    if (!st) st = face_index_read(&s->index, path, NULL, 0, err);
+    if (!st) st = read_index(s, path, err);
     for (int i = 0; !st && i < s->set.view_count; i++)
         s->set.views[i] = model_from_world_view(&s->axes, &s->set.views[i]);
     return st;
@@ -69,8 +81,9 @@ static void release_scene(struct vita_scene *s)
 {
     camera_set_release(&s->set);
     lens_list_release(&s->lenses);
+    for (int i = 0; s->shown_by && i < s->surfaces.count; i++) face_views_release(&s->shown_by[i]);
+    free(s->shown_by);
     surfaces_release(&s->surfaces);
-    face_index_release(&s->index);
     for (int i = 0; s->models && i < s->model_count; i++) solid_mesh_release(&s->models[i]);
     free(s->models);
 }

@@ -4,12 +4,12 @@ READS.bake_vita := the model, those of the edits, axes.txt, the views that show 
 WRITES.bake_vita := vita/atlas.txt, page0.exr, ...
 STEPS.bake_vita := vita
 HELP.vita := + one texture atlas of the model, each face seen orthogonally
-NEEDS.vita := face_index
+NEEDS.vita := ids
 
 ifdef GRAPH
 VITA_TXT := $(if $(MODEL_SCRIPT),$(O)/vita/atlas.txt)
 .PHONY: vita
 vita: $(VITA_TXT)
-$(VITA_TXT): $(MODEL_TXT) $(EDIT_TXT) $(AXES) $(CAMERAS) $(O)/views/lenses.txt $(FACE_INDEX) $(VIEW_EXR) $(IDS_EXR) $(call needs,bake_vita)
-	$(call stage,bake_vita,all,$(O),--model $(MODEL_TXT) $(EDIT_TXT:%=--edit %) --axes $(AXES) --views $(O)/views --ids $(O)/ids --out $(O)/vita)
+$(VITA_TXT): $(O)/model/model.txt $(EDIT_MODELS) $(AXES) $(CAMERAS) $(O)/views/lenses.txt $(IDS_INDEX) $(VIEW_EXR) $(IDS_EXR) $(call needs,bake_vita)
+	$(call stage,bake_vita,all,$(O),--model $(O)/model/model.txt $(EDIT_MODELS:%=--edit %) --axes $(AXES) --views $(O)/views --ids $(O)/ids --out $(O)/vita)
 endif

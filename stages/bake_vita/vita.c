@@ -35,8 +35,7 @@ struct work {
 /* The best views of a face, at most max_sources. */
 static int views_of(const struct vita_scene *s, int surface, const struct face_views **f)
 {
-    *f = face_index_find(&s->index, s->surfaces.list[surface].id);
-    if (!*f) return 0;
+    *f = &s->shown_by[surface];
     return (*f)->count < s->params->texture.max_sources ? (*f)->count : s->params->texture.max_sources;
 }
 
@@ -55,7 +54,7 @@ static void choose_views(bool *taken, const struct vita_scene *s, int first, int
         for (int i = first; i < last; i++) {
             const struct face_views *f;
             if (rank >= views_of(s, i, &f)) continue;
-            const int view = camera_set_find(&s->set, f->views[rank].view);
+            const int view = camera_set_find(&s->set, f->views[rank].name);
             if (view < 0 || taken[view] || count == MAX_BATCH_VIEWS) continue;
             taken[view] = true;
             count++;
@@ -120,7 +119,7 @@ static enum status read_views(struct work *w, struct bake *b, const int *view_of
         struct source_view view = {0};
         st = provenance_add_in(w->prov, "views", s->views, camera->name, ".exr", NULL, err);
         if (!st) st = provenance_add_in(w->prov, "ids", s->ids, camera->name, ".exr", NULL, err);
-        if (!st) st = source_view_read(&view, s->views, s->ids, camera, &s->params->texture, err);
+        if (!st) st = source_view_read(&view, NULL, s->views, s->ids, camera, &s->params->texture, err);
         if (!st) bake_add_view(b, &view, i);
         w->bytes += view.bytes;
         source_view_release(&view);

@@ -15,7 +15,7 @@ struct vita_scene {
     struct solid_mesh *models; /* the unedited one, then those of the edits */
     int model_count;
     struct surfaces surfaces;
-    struct face_index index;
+    struct face_views *shown_by;   /* for each surface: the views that show its face, best first */
     const char *views, *ids, *out; /* folders */
     const struct vita_params *params;
 };

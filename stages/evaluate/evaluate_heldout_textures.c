@@ -7,16 +7,16 @@
 #include <string.h>
 
 #include "common/base/parallel.h"
+#include "common/light/model_rays.h"
 #include "common/model/model_axes.h"
 #include "stages/evaluate/loaded_atlas.h"
 #include "stages/evaluate/metrics.h"
-#include "stages/evaluate/traced_model.h"
 
 enum { ROWS = 4 };
 
 struct heldout_job {
     struct textures textures;
-    struct traced_model model;
+    struct model_rays model;
     struct model_axes axes;
     struct loaded_atlas vita;
     struct vec3 *centres; /* of the viewpoints, in the model's frame */
@@ -29,20 +29,24 @@ static const char *const prefixes[2] = {"texture", "texture.vita"};
 /* ------------------------------------------------------------------------------------------------------ one picture */
 
 struct predict_job {
-    const struct traced_model *model;
+    const struct solid_mesh *mesh;
     const struct view *view;               /* in the model's frame */
+    const uint32_t *faces;                 /* 1 + the index of the face at each pixel; 0: none */
     const struct loaded_atlas *atlases[2]; /* tried in this order; NULL: none */
     struct image *out;                     /* 3 channels */
-    uint8_t *state;                        /* a pixel each: 0 no face, 1 a face without colour, 2 predicted */
+    uint8_t *predicted;                    /* a pixel each: 1 where an atlas has a colour */
 };
 
-static void predict_pixel(const struct predict_job *job, size_t at, const struct ray_hit *hit)
+static void predict_pixel(const struct predict_job *job, size_t at)
 {
-    const int id = solid_face_id(&job->model->mesh, (int)hit->id);
-    job->state[at] = 1;
-    for (int k = 0; k < 2 && job->state[at] == 1; k++)
-        if (job->atlases[k] && loaded_atlas_look_up(job->out->data + 3 * at, job->atlases[k], id, hit->point))
-            job->state[at] = 2;
+    const struct solid_face *f = &job->mesh->faces[job->faces[at] - 1];
+    const int id = solid_face_id(job->mesh, (int)job->faces[at] - 1);
+    const double x = (double)(at % (size_t)job->view->width) + 0.5, y = (double)(at / (size_t)job->view->width) + 0.5;
+    const struct vec3 from = job->view->center, ray = vec3_sub(view_unproject(job->view, x, y, 1), from);
+    const struct vec3 p =
+        vec3_add(from, vec3_scale(ray, (f->offset - vec3_dot(f->normal, from)) / vec3_dot(f->normal, ray)));
+    for (int k = 0; k < 2 && !job->predicted[at]; k++)
+        job->predicted[at] = job->atlases[k] && loaded_atlas_look_up(job->out->data + 3 * at, job->atlases[k], id, p);
 }
 
 static void predict_rows(void *ctx, size_t begin, size_t end, int thread)
@@ -50,20 +54,8 @@ static void predict_rows(void *ctx, size_t begin, size_t end, int thread)
     const struct predict_job *job = ctx;
     const size_t width = (size_t)job->view->width;
     (void)thread;
-    for (size_t i = begin * width; i < end * width; i += RAY_PACKET) {
-        struct vec3 from[RAY_PACKET], direction[RAY_PACKET];
-        struct ray_hit hits[RAY_PACKET];
-        unsigned active = 0;
-        for (size_t k = 0; k < RAY_PACKET && i + k < end * width; k++) {
-            const double x = (double)((i + k) % width) + 0.5, y = (double)((i + k) / width) + 0.5;
-            from[k] = job->view->center;
-            direction[k] = vec3_sub(view_unproject(job->view, x, y, 1), job->view->center);
-            active |= 1u << k;
-        }
-        const unsigned hit = ray_scene_hit_packet(&job->model->rays, from, direction, active, hits);
-        for (size_t k = 0; k < RAY_PACKET; k++)
-            if (hit >> k & 1) predict_pixel(job, i + k, &hits[k]);
-    }
+    for (size_t i = begin * width; i < end * width; i++)
+        if (job->faces[i]) predict_pixel(job, i);
 }
 
 /* Predicts a view and compares it with its photograph. *found: some pixel shows the model. */
@@ -77,13 +69,13 @@ static enum status predict(struct predict_job *job, const struct linear_picture 
     size_t counted = 0, predicted = 0;
     if (!bytes) return err_nomem(err, "pictures", 8 * pixels);
     job->out = &out;
-    job->state = bytes + 6 * pixels;
+    job->predicted = bytes + 6 * pixels;
     enum status st = image_init(&out, width, height, 3, err);
     if (!st) parallel_for((size_t)height, ROWS, predict_rows, job);
     for (size_t i = 0; !st && i < pixels; i++) {
-        mask[i] = photo->known[i] && job->state[i];
+        mask[i] = photo->known[i] && job->faces[i];
         counted += mask[i];
-        predicted += mask[i] && job->state[i] == 2;
+        predicted += mask[i] && job->predicted[i];
     }
     *found = counted > 0;
     if (!st && *found) {
@@ -112,25 +104,37 @@ static int nearest_viewpoint(const struct heldout_job *job, struct vec3 centre)
 static int first_kind(const struct heldout_job *job) { return job->textures.viewpoint_count ? 0 : 1; }
 static int kinds(const struct heldout_job *job) { return job->textures.vita ? 2 : 1; }
 
-static enum status add_picture(struct heldout_job *job, struct evaluation *e, const struct view *view, struct err *err)
+/* The photograph of a held-out view. */
+static enum status read_photo(struct linear_picture *photo, struct evaluation *e, const struct view *view,
+                              struct err *err)
 {
-    struct linear_picture photo = {0};
-    struct loaded_atlas nearest = {0};
     char path[FILE_PATH];
-    bool found = false;
-    const struct view inside = model_from_world_view(&job->axes, view);
-    const int viewpoint = nearest_viewpoint(job, inside.center);
-    const struct loaded_atlas *vita = job->textures.vita ? &job->vita : NULL;
     enum status st = evaluation_input(e, path, "holdout/views", view->name, ".exr", err);
-    if (!st) st = linear_picture_read(&photo, path, err);
-    if (!st && (photo.rgb.width != view->width || photo.rgb.height != view->height))
-        st = err_set(err, ST_DATA, "%s is %d x %d px, but its camera %d x %d; make it again.", path, photo.rgb.width,
-                     photo.rgb.height, view->width, view->height);
-    if (!st && viewpoint >= 0) st = loaded_atlas_read(&nearest, e, job->textures.viewpoints[viewpoint], err);
+    if (!st) st = linear_picture_read(photo, path, err);
+    if (!st && (photo->rgb.width != view->width || photo->rgb.height != view->height))
+        st = err_set(err, ST_DATA, "%s is %d x %d px, but its camera %d x %d; make it again.", path, photo->rgb.width,
+                     photo->rgb.height, view->width, view->height);
+    return st;
+}
+
+static enum status add_predictions(struct heldout_job *job, struct evaluation *e, const struct view *view,
+                                   const struct linear_picture *photo, const struct loaded_atlas *nearest,
+                                   struct err *err)
+{
+    const struct view inside = model_from_world_view(&job->axes, view);
+    uint32_t *faces = malloc((size_t)view->width * (size_t)view->height * sizeof *faces);
+    bool found = false;
+    enum status st = faces ? ST_OK : err_nomem(err, "faces", (size_t)view->width * (size_t)view->height);
+    if (!st) model_rays_view(faces, &job->model, &inside);
     for (int k = first_kind(job); !st && k < kinds(job); k++) {
-        struct predict_job one = {&job->model, &inside, {k == 0 && viewpoint >= 0 ? &nearest : NULL, vita}, NULL, NULL};
+        struct predict_job one = {&job->model.mesh,
+                                  &inside,
+                                  faces,
+                                  {k == 0 ? nearest : NULL, job->textures.vita ? &job->vita : NULL},
+                                  NULL,
+                                  NULL};
         double psnr = 0, filled = 0;
-        st = predict(&one, &photo, &found, &psnr, &filled, err);
+        st = predict(&one, photo, &found, &psnr, &filled, err);
         if (st || !found) break;
         job->psnr[k] += psnr;
         job->filled[k] += filled;
@@ -139,6 +143,18 @@ static enum status add_picture(struct heldout_job *job, struct evaluation *e, co
     job->pictures += !st && found;
     if (!st && !found)
         st = metric_note(&e->table, err, "skipped the textures of %s: it does not see the model", view->name);
+    free(faces);
+    return st;
+}
+
+static enum status add_picture(struct heldout_job *job, struct evaluation *e, const struct view *view, struct err *err)
+{
+    struct linear_picture photo = {0};
+    struct loaded_atlas nearest = {0};
+    const int viewpoint = nearest_viewpoint(job, model_from_world_view(&job->axes, view).center);
+    enum status st = read_photo(&photo, e, view, err);
+    if (!st && viewpoint >= 0) st = loaded_atlas_read(&nearest, e, job->textures.viewpoints[viewpoint], err);
+    if (!st) st = add_predictions(job, e, view, &photo, viewpoint < 0 ? NULL : &nearest, err);
     loaded_atlas_release(&nearest);
     linear_picture_release(&photo);
     return st;
@@ -154,7 +170,7 @@ static enum status prepare(struct heldout_job *job, struct evaluation *e, struct
     enum status st = evaluation_input(e, path, "model", "axes.txt", "", err);
     if (!st) st = model_axes_read(&job->axes, path, err);
     if (!st) st = evaluation_input(e, path, "model", "model.txt", "", err);
-    if (!st) st = traced_model_read(&job->model, path, err);
+    if (!st) st = model_rays_read(&job->model, path, MODEL_WITHOUT_GLASS, err);
     if (!st && job->textures.vita) st = loaded_atlas_read(&job->vita, e, NULL, err);
     for (int i = 0; !st && i < job->textures.viewpoint_count; i++) {
         struct atlas a = {0};
@@ -185,7 +201,7 @@ enum status evaluate_heldout_textures(struct evaluation *e, struct err *err)
     for (int i = 0; !st && some && i < e->held.cameras.view_count; i++)
         st = add_picture(&job, e, &e->held.cameras.views[i], err);
     if (!st && some) st = add_means(e, &job, err);
-    traced_model_release(&job.model);
+    model_rays_release(&job.model);
     loaded_atlas_release(&job.vita);
     free(job.centres);
     textures_release(&job.textures);

@@ -10,8 +10,8 @@
 
 #include "common/base/array.h"
 #include "common/base/parallel.h"
-#include "common/image/exr.h"
 #include "common/model/model_axes.h"
+#include "common/texture/view_ids.h"
 #include "stages/evaluate/loaded_atlas.h"
 
 enum { CHUNK = 4096, SAMPLES = 100000 };
@@ -68,20 +68,15 @@ static void add_sum(struct cover_sum *sum, struct cover_points *points, const st
 
 /* -------------------------------------------------------------------------------------------------- what is revealed */
 
-static enum status add_layer(struct cover_points *c, const struct exr_image *im, int k, const struct view *view,
+static enum status add_layer(struct cover_points *c, const struct view_reveal *r, int k, const struct view *view,
                              const struct model_axes *axes, struct err *err)
 {
-    char names[2][32];
-    snprintf(names[0], sizeof names[0], "layer%d.id", k);
-    snprintf(names[1], sizeof names[1], "layer%d.Z", k);
-    const struct exr_plane *id = exr_find(im, names[0]), *z = exr_find(im, names[1]);
-    const size_t width = (size_t)im->width, pixels = width * (size_t)im->height;
-    if (!id->u || !z || !z->f)
-        return err_set(err, ST_DATA, "found no channels %s of uint and %s of float.", names[0], names[1]);
+    const size_t width = (size_t)r->width, pixels = width * (size_t)r->height;
     for (size_t i = 0; i < pixels; i++) {
-        if (!id->u[i] || !(z->f[i] > 0)) continue;
-        const struct vec3 scene = view_unproject(view, (double)(i % width) + 0.5, (double)(i / width) + 0.5, z->f[i]);
-        const struct cover_point p = {model_from_world_point(axes, scene), (int)id->u[i], 1, false};
+        if (!r->id[k][i]) continue;
+        const struct vec3 scene =
+            view_unproject(view, (double)(i % width) + 0.5, (double)(i / width) + 0.5, r->z[k][i]);
+        const struct cover_point p = {model_from_world_point(axes, scene), (int)r->id[k][i], 1, false};
         if (add_point(c, p, err)) return err->status;
     }
     return ST_OK;
@@ -91,23 +86,15 @@ static enum status add_layer(struct cover_points *c, const struct exr_image *im,
 static enum status read_revealed(struct cover_points *c, struct evaluation *e, const struct view *view,
                                  const struct model_axes *axes, struct err *err)
 {
-    struct exr_image im = {0};
-    char path[FILE_PATH], folder[FILE_PATH], name[32];
-    struct err why = ERR_INIT;
+    struct view_reveal revealed = {0};
+    char path[FILE_PATH], folder[FILE_PATH];
     if (file_path(folder, e->folder, "reveal", "", err) || file_path(path, folder, view->name, ".exr", err))
         return err->status;
     if (!path_is_file(path)) return ST_OK;
     enum status st = evaluation_input(e, path, "reveal", view->name, ".exr", err);
-    if (!st) st = exr_read(&im, path, NULL, 0, err);
-    if (!st && (im.width != view->width || im.height != view->height))
-        st = err_set(err, ST_DATA, "%s is %d x %d px, but its camera %d x %d; make it again.", path, im.width,
-                     im.height, view->width, view->height);
-    for (int k = 0; !st; k++) {
-        snprintf(name, sizeof name, "layer%d.id", k);
-        if (!exr_find(&im, name)) break;
-        if (add_layer(c, &im, k, view, axes, &why)) st = err_set(err, why.status, "%s: %s", path, why.text);
-    }
-    exr_image_release(&im);
+    if (!st) st = view_reveal_read(&revealed, view, path, err);
+    for (int k = 0; !st && k < revealed.layers; k++) st = add_layer(c, &revealed, k, view, axes, err);
+    view_reveal_release(&revealed);
     return st;
 }
 

@@ -9,7 +9,7 @@
 
 struct texture_job {
     struct textures textures;
-    struct traced_model model;
+    struct model_rays model;
     struct shell_points shell;
     struct model_frame frame;
     struct photo_view *views;
@@ -74,7 +74,7 @@ static void job_release(struct texture_job *job)
     for (int i = 0; i < job->view_count; i++) free(job->views[i].known);
     free(job->views);
     shell_points_release(&job->shell);
-    traced_model_release(&job->model);
+    model_rays_release(&job->model);
     textures_release(&job->textures);
 }
 
@@ -283,7 +283,7 @@ static enum status read_truth(struct texture_job *job, struct evaluation *e, str
     char path[FILE_PATH];
     enum status st = model_frame_read(&job->frame, e, same, vec3_make(0, 0, 0), err);
     if (!st) st = evaluation_input(e, path, "model", "model.txt", "", err);
-    if (!st) st = traced_model_read(&job->model, path, err);
+    if (!st) st = model_rays_read(&job->model, path, MODEL_WITHOUT_GLASS, err);
     if (!st) st = shell_points_read(&job->shell, e, &job->model, &job->frame, err);
     return st ? st : read_views(job, e, err);
 }

@@ -153,7 +153,7 @@ bool shell_radiance(float rgb[3], const struct shell_points *s, const struct sur
 /* ----------------------------------------------------------------------------------------------------------- reading */
 
 struct model_trace {
-    const struct traced_model *model;
+    const struct model_rays *model;
     const struct model_frame *frame;
 };
 
@@ -263,7 +263,7 @@ static enum status add_view(struct shell_points *s, struct evaluation *e, const 
     return st;
 }
 
-enum status shell_points_read(struct shell_points *s, struct evaluation *e, const struct traced_model *model,
+enum status shell_points_read(struct shell_points *s, struct evaluation *e, const struct model_rays *model,
                               const struct model_frame *frame, struct err *err)
 {
     const struct model_trace trace = {model, frame};

@@ -40,7 +40,7 @@ struct shell_points {
 
 /* Reads the pictures of TRUTH/shell that have depths, and traces the model from their cameras. Without any, count is 0.
  * ST_DATA: a damaged picture. */
-enum status shell_points_read(struct shell_points *s, struct evaluation *e, const struct traced_model *model,
+enum status shell_points_read(struct shell_points *s, struct evaluation *e, const struct model_rays *model,
                               const struct model_frame *frame, struct err *err);
 void shell_points_release(struct shell_points *s);
 

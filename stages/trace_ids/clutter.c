@@ -1,58 +1,115 @@
-/* clutter.c - view_faces_find_clutter(): where something that the model does not hold stands in front of it. */
+/* clutter.c - where something that the model does not hold stands in front of it.
+ *
+ * Furniture must not be painted onto the wall behind it. The view's layered depth says what the photograph shows; the
+ * model says how far its face is. With z the depth of the view and w = 1 / z_model, d = 1 - z w is the part of the way
+ * to the model that is missing: above 0 the photograph shows something nearer. d has a tolerance for the model and the
+ * cameras (depth_tolerance), and the uncertainty of the segment's depth (common/layers/depth_sigma.h) times
+ * depth_sigmas. What lies behind the model is never clutter: a pane of glass has the street as its texture.
+ *
+ *   1     nearer by more than the tolerance, by either layer of the view's depth
+ *   0.75  the same, by a segment of little confidence
+ *   0.5   no depth to compare
+ *   0.25  not nearer, by a segment of little confidence
+ *   0     not nearer, and the depth is sure enough to tell
+ *
+ * A segment of little confidence (below min_confidence) has inherited its depth from its neighbours. On plain walls,
+ * which give nothing to match, that depth is right most of the time: such pixels are nearly as often clean as those of
+ * sure depth (docs/evaluation.md), and without them a white room would have no texture.
+ *
+ * Clutter narrower than 2 min_clutter + 1 px is noise of the depth and becomes 0.5 (opening); what is left grows by
+ * clutter_margin, because outlines of segments are off by a pixel or two, and blurred. */
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
+#include "common/base/parallel.h"
 #include "common/layers/depth_sigma.h"
 #include "common/math/distance.h"
-#include "stages/trace_ids/view_faces.h"
+#include "stages/trace_ids/view_trace.h"
 
-static const double SIGMAS = 3;          /* of depth, within which it agrees with the model */
-static const double MODEL_ERROR = 0.015; /* relative error of the model's inverse depth */
-static const double UNKNOWN = 0.5;
-static const double DOUBT = 0.6; /* of what unsure depth says, the rest being unknown */
-static const double OUTLINE = 3; /* pixels around clutter that count as clutter */
-static const double SURE_CLUTTER = 0.6;
+#define MIN_ALPHA 0.1f  /* of a boundary layer that counts */
+#define RATHER    0.25f /* what a segment of little confidence says counts half: 0.5 +- this */
 
-static bool is_glass(const struct solid_mesh *m, int face)
+enum { ROWS = 16 };
+
+struct clutter_job {
+    float *clutter;
+    const struct view_ids *ids;
+    const struct layered_depth *depth;
+    const struct trace_params *params;
+};
+
+static float judge(const struct clutter_job *job, uint32_t id, float z, double z_model)
 {
-    return !strncmp(m->bodies[m->faces[face].body].name, "glass/", 6);
+    const struct depth_segment *s = &job->depth->segments[id - 1];
+    if (!(z > 0)) return CLUTTER_UNSURE;
+    const double nearer = 1 - (double)z / z_model, sigma = depth_sigma(s);
+    const bool sure = s->confidence >= job->params->min_confidence;
+    if (nearer > job->params->depth_tolerance + job->params->depth_sigmas * sigma)
+        return sure ? 1 : CLUTTER_UNSURE + RATHER;
+    if (sigma > job->params->max_depth_error) return CLUTTER_UNSURE;
+    return sure ? 0 : CLUTTER_UNSURE - RATHER;
 }
 
-/* Of a depth, with the segment that it is of: 0 agrees, 1 in front. */
-static double clutter_of(double z, const struct depth_segment *s, double model_z, bool glass)
+static void judge_rows(void *ctx, size_t begin, size_t end, int thread)
 {
-    const double nearer = model_z / z - 1; /* relative difference of inverse depth */
-    const double sigma = depth_sigma(s), tolerance = hypot(SIGMAS * sigma, MODEL_ERROR);
-    const enum depth_class class = depth_class(s->confidence);
-    if (class == DEPTH_CLASS_INHERITED) return glass && nearer < 0 ? 0 : UNKNOWN;
-    double c = fmax(0, fmin(1, (nearer / tolerance - 0.7) / 0.6));
-    if (!glass && nearer < -2 * tolerance) c = UNKNOWN;
-    return class == DEPTH_CLASS_SURE ? c : UNKNOWN + DOUBT * (c - UNKNOWN);
-}
-
-enum status view_faces_find_clutter(struct view_faces *f, const struct solid_mesh *mesh, const struct layered_depth *d,
-                                    double scale, struct err *err)
-{
-    const size_t pixels = (size_t)f->width * (size_t)f->height;
-    if (d->width != f->width || d->height != f->height)
-        return err_set(err, ST_DATA, "the depth has %d x %d pixels, but the view %d x %d; make the depth again.",
-                       d->width, d->height, f->width, f->height);
-    uint8_t *clear = calloc(pixels, 1);
-    float *squared = malloc(pixels * sizeof *squared);
-    enum status st = clear && squared ? ST_OK : err_nomem(err, "clutter", pixels * sizeof *squared);
-    for (size_t i = 0; !st && i < pixels; i++) {
-        const uint32_t id = d->interior.id[i];
-        f->clutter[i] = (float)UNKNOWN;
-        if (id && f->face[i] >= 0 && d->interior.z[i] > 0)
-            f->clutter[i] =
-                (float)clutter_of(scale * d->interior.z[i], &d->segments[id - 1], f->z[i], is_glass(mesh, f->face[i]));
-        clear[i] = f->clutter[i] < (float)SURE_CLUTTER;
+    const struct clutter_job *job = ctx;
+    const struct layer *inner = &job->depth->interior, *outer = &job->depth->boundary;
+    const size_t width = (size_t)job->ids->width;
+    (void)thread;
+    for (size_t i = begin * width; i < end * width; i++) {
+        const double z = (double)job->ids->z[i];
+        job->clutter[i] = CLUTTER_UNSURE;
+        if (!inner->id[i]) {
+            job->clutter[i] = 1;
+            continue;
+        }
+        if (!(z > 0)) continue;
+        job->clutter[i] = judge(job, inner->id[i], inner->z[i], z);
+        if (outer->id[i] && outer->rgba[4 * i + 3] > MIN_ALPHA)
+            job->clutter[i] = fmaxf(job->clutter[i], judge(job, outer->id[i], outer->z[i], z));
     }
-    if (!st) st = distance_squared(squared, clear, f->width, f->height, err);
-    for (size_t i = 0; !st && i < pixels; i++)
-        if (squared[i] <= (float)(OUTLINE * OUTLINE)) f->clutter[i] = fmaxf(f->clutter[i], 1);
-    free(clear);
-    free(squared);
+}
+
+struct outline_scratch {
+    uint8_t *mask;
+    float *squared, *grown;
+};
+
+/* Clutter of at least `level` is eroded by min_clutter, and what is left dilated by min_clutter and clutter_margin. Raises
+ * `grown` to the level there. */
+static enum status grow(struct outline_scratch *s, const struct clutter_job *job, float level, struct err *err)
+{
+    const int width = job->ids->width, height = job->ids->height;
+    const size_t pixels = (size_t)width * (size_t)height;
+    const float core = (float)job->params->min_clutter, rim = core + (float)job->params->clutter_margin;
+    for (size_t i = 0; i < pixels; i++) s->mask[i] = job->clutter[i] >= level;
+    if (distance_squared(s->squared, s->mask, width, height, err)) return err->status;
+    for (size_t i = 0; i < pixels; i++) s->mask[i] = s->squared[i] <= core * core;
+    if (distance_squared(s->squared, s->mask, width, height, err)) return err->status;
+    for (size_t i = 0; i < pixels; i++)
+        if (s->squared[i] <= rim * rim) s->grown[i] = fmaxf(s->grown[i], level);
+    return ST_OK;
+}
+
+static enum status clean_outlines(const struct clutter_job *job, struct err *err)
+{
+    static const float levels[] = {CLUTTER_UNSURE + RATHER, 1};
+    const size_t pixels = (size_t)job->ids->width * (size_t)job->ids->height;
+    struct outline_scratch s = {malloc(pixels), malloc(pixels * sizeof *s.squared), malloc(pixels * sizeof *s.grown)};
+    enum status st = s.mask && s.squared && s.grown ? ST_OK : err_nomem(err, "clutter", pixels * 9);
+    for (size_t i = 0; !st && i < pixels; i++) s.grown[i] = fminf(job->clutter[i], CLUTTER_UNSURE);
+    for (int k = 0; !st && k < 2; k++) st = grow(&s, job, levels[k], err);
+    for (size_t i = 0; !st && i < pixels; i++) job->clutter[i] = job->depth->interior.id[i] ? s.grown[i] : 1;
+    free(s.mask);
+    free(s.squared);
+    free(s.grown);
     return st;
+}
+
+enum status find_clutter(struct view_ids *ids, const struct view_trace *t, const struct layered_depth *depth,
+                         const struct trace_params *params, struct err *err)
+{
+    struct clutter_job job = {ids->clutter, ids, depth, params};
+    parallel_for((size_t)t->height, ROWS, judge_rows, &job);
+    return clean_outlines(&job, err);
 }

@@ -1,145 +1,144 @@
-/* reveal.c - see reveal.h. */
+/* reveal.c - surfaces of the unedited model that a view would see after an edit.
+ *
+ * An atlas must hold texture for what an edit can reveal: the street wall behind a partition that is removed, the floor
+ * that a wider door shows. The view is traced in each edited model. A pixel's face there counts if the unedited model has
+ * a face of the same id on the same plane (its normal and offset agree within 1e-6 of the model's size), and does not
+ * show it in this pixel. Faces that only the edit has get their texture otherwise, and are left out. Its depth is that
+ * of the unedited model's plane, so that two edits that reveal one surface add it once, with the same bits. */
 #include "stages/trace_ids/reveal.h"
 
-#include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
-#include <unistd.h>
 
-#include "common/base/file_path.h"
-#include "common/image/exr.h"
+#include "common/base/array.h"
 
-static const double SAME_PLANE = 1e-6; /* of the offset's magnitude or 1 */
+#define SAME_PLANE 1e-6 /* of the model's size */
 
-static enum status add_layer(struct revealed *r, struct err *err)
+void reveal_release(struct reveal *r)
 {
-    const size_t pixels = (size_t)r->width * (size_t)r->height, layers = (size_t)r->layers + 1;
-    uint32_t **id = realloc(r->id, layers * sizeof *id);
-    if (id) r->id = id;
-    float **z = realloc(r->z, layers * sizeof *z);
-    if (z) r->z = z;
-    if (!id || !z) return err_nomem(err, "layers", layers * sizeof *z);
-    r->id[r->layers] = calloc(pixels, sizeof **r->id);
-    r->z[r->layers] = calloc(pixels, sizeof **r->z);
+    if (!r) return;
+    for (int k = 0; k < r->layers; k++) free(r->faces[k]);
+    free(r->faces);
+    *r = (struct reveal){0};
+}
+
+static bool same_surface(const struct solid_mesh *a, int f, const struct solid_mesh *b, int g, double reach)
+{
+    const struct solid_face *p = &a->faces[f], *q = &b->faces[g];
+    return solid_face_id(a, f) == solid_face_id(b, g) && vec3_length(vec3_sub(p->normal, q->normal)) <= SAME_PLANE &&
+           fabs(p->offset - q->offset) <= reach;
+}
+
+/* Sets to[i], for each face of `mesh`, to 1 + the first face of the base on the same surface; 0: there is none. */
+static void map_surfaces(uint32_t *to, const struct solid_mesh *mesh, const struct solid_mesh *base, const int *by_id,
+                         const int *first, int ids, double reach)
+{
+    for (int i = 0; i < mesh->face_count; i++) {
+        const int id = solid_face_id(mesh, i);
+        for (int k = id < ids ? first[id] : 0; id < ids && !to[i] && k < first[id + 1]; k++)
+            if (same_surface(mesh, i, base, by_id[k], reach)) to[i] = (uint32_t)by_id[k] + 1;
+    }
+}
+
+/* The faces of a mesh in order of id: those of id k from first[k] to first[k + 1]. */
+static void sort_faces(int *by_id, int *first, const struct solid_mesh *mesh, int ids)
+{
+    for (int i = 0; i < mesh->face_count; i++) first[solid_face_id(mesh, i) + 1]++;
+    for (int k = 0; k < ids; k++) first[k + 1] += first[k];
+    for (int i = 0; i < mesh->face_count; i++) by_id[first[solid_face_id(mesh, i)]++] = i;
+    for (int k = ids; k > 0; k--) first[k] = first[k - 1];
+    first[0] = 0;
+}
+
+/* Surfaces of the edited and of the base model, by face. Owned. */
+struct surfaces {
+    uint32_t *edited, *base;
+};
+
+static enum status find_surfaces(struct surfaces *s, const struct model_rays *edited, const struct model_rays *base,
+                                 struct err *err)
+{
+    const int ids = base->ids;
+    const double reach = SAME_PLANE * model_rays_size(base);
+    int *first = calloc((size_t)ids + 2, sizeof *first);
+    int *by_id = calloc((size_t)base->mesh.face_count + 1, sizeof *by_id);
+    s->edited = calloc((size_t)edited->mesh.face_count + 1, sizeof *s->edited);
+    s->base = calloc((size_t)base->mesh.face_count + 1, sizeof *s->base);
+    enum status st = first && by_id && s->edited && s->base ? ST_OK : err_nomem(err, "surfaces", (size_t)ids * 4);
+    if (!st) {
+        sort_faces(by_id, first, &base->mesh, ids);
+        map_surfaces(s->edited, &edited->mesh, &base->mesh, by_id, first, ids, reach);
+        map_surfaces(s->base, &base->mesh, &base->mesh, by_id, first, ids, reach);
+    }
+    free(first);
+    free(by_id);
+    return st;
+}
+
+static enum status add_layer(struct reveal *r, struct err *err)
+{
+    const size_t pixels = (size_t)r->base->width * (size_t)r->base->height;
+    if (array_append(&r->faces, (size_t)r->layers, sizeof *r->faces, "layers", err)) return err->status;
+    r->faces[r->layers] = calloc(pixels, sizeof **r->faces);
+    if (!r->faces[r->layers]) return err_nomem(err, "a layer of revealed surfaces", pixels * sizeof **r->faces);
     r->layers++;
-    return r->id[r->layers - 1] && r->z[r->layers - 1] ? ST_OK : err_nomem(err, "a layer", pixels * sizeof **r->z);
-}
-
-/* The face of the unedited model with this face's id and plane; -1: none. */
-static int counterpart(const struct solid_mesh *base, const struct solid_mesh *edit, int face)
-{
-    const struct solid_face *f = &edit->faces[face];
-    const int id = solid_face_id(edit, face);
-    for (int i = 0; i < base->face_count; i++) {
-        const struct solid_face *g = &base->faces[i];
-        if (solid_face_id(base, i) == id && vec3_dot(f->normal, g->normal) > 1 - SAME_PLANE &&
-            fabs(f->offset - g->offset) <= SAME_PLANE * (1 + fabs(g->offset)))
-            return i;
-    }
-    return -1;
-}
-
-/* Puts a surface into a pixel's layers, in order of depth, unless it is there. */
-static enum status insert(struct revealed *r, size_t at, uint32_t id, float z, struct err *err)
-{
-    int k = 0;
-    while (k < r->layers && r->id[k][at] && (r->z[k][at] < z || (r->z[k][at] == z && r->id[k][at] < id))) k++;
-    for (int i = 0; i < r->layers && r->id[i][at]; i++)
-        if (r->id[i][at] == id && fabsf(r->z[i][at] - z) <= 1e-4f * z) return ST_OK;
-    if (!r->layers || r->id[r->layers - 1][at]) {
-        if (add_layer(r, err)) return err->status;
-    }
-    for (int i = r->layers - 1; i > k; i--) r->id[i][at] = r->id[i - 1][at], r->z[i][at] = r->z[i - 1][at];
-    r->id[k][at] = id;
-    r->z[k][at] = z;
     return ST_OK;
 }
 
-static bool same_surface(const struct solid_mesh *m, int a, int b)
+static double depth_of(const struct reveal *r, uint32_t face, size_t pixel)
 {
-    return a == b || (a >= 0 && b >= 0 && m->faces[a].name == m->faces[b].name &&
-                      fabs(m->faces[a].offset - m->faces[b].offset) <= SAME_PLANE * (1 + fabs(m->faces[a].offset)));
+    const size_t width = (size_t)r->base->width;
+    return 1 / view_trace_inverse_depth(r->base, face, (double)(pixel % width) + 0.5, (double)(pixel / width) + 0.5);
 }
 
-static enum status add_edit(struct revealed *r, const struct solid_mesh *base, const struct view_faces *shown,
-                            const struct solid_mesh *edit, const struct view *camera, struct err *err)
+/* Puts a face into a pixel's list, which is in order of depth, then of id. */
+static enum status insert(struct reveal *r, size_t pixel, uint32_t face, double z, struct err *err)
 {
-    struct ray_scene rays = {0};
-    const size_t pixels = (size_t)r->width * (size_t)r->height;
-    int32_t *face = malloc(pixels * sizeof *face);
-    float *z = malloc(pixels * sizeof *z);
-    int *of_base = malloc(((size_t)edit->face_count + 1) * sizeof *of_base);
-    enum status st = face && z && of_base ? model_rays_make(&rays, edit, true, err)
-                                          : err_nomem(err, "an edit's faces", pixels * sizeof *z);
-    if (!st) model_rays_view(face, z, &rays, camera);
-    for (int i = 0; !st && i < edit->face_count; i++) of_base[i] = counterpart(base, edit, i);
-    for (size_t i = 0; !st && i < pixels; i++) {
-        const int known = face[i] < 0 ? -1 : of_base[face[i]];
-        if (known >= 0 && !same_surface(base, known, shown->face[i]))
-            st = insert(r, i, (uint32_t)solid_face_id(base, known), z[i], err);
+    int at = 0;
+    for (; at < r->layers && r->faces[at][pixel]; at++) {
+        if (r->faces[at][pixel] == face) return ST_OK;
+        const double there = depth_of(r, r->faces[at][pixel], pixel);
+        if (there > z || (there >= z && r->faces[at][pixel] > face)) break;
     }
-    ray_scene_release(&rays);
-    free(face);
-    free(z);
-    free(of_base);
+    for (; face; at++) {
+        if (at == r->layers && add_layer(r, err)) return err->status;
+        const uint32_t next = r->faces[at][pixel];
+        if (next == face) return ST_OK;
+        r->faces[at][pixel] = face;
+        face = next;
+    }
+    return ST_OK;
+}
+
+enum status reveal_add(struct reveal *r, const struct view_trace *edited, int64_t *pixels, struct err *err)
+{
+    const size_t count = (size_t)r->base->width * (size_t)r->base->height;
+    struct surfaces s = {0};
+    *pixels = 0;
+    if (r->base->in_solid) return ST_OK;
+    enum status st = find_surfaces(&s, edited->model, r->base->model, err);
+    for (size_t i = 0; !st && i < count; i++) {
+        const uint32_t face = edited->faces[i] ? s.edited[edited->faces[i] - 1] : 0, now = r->base->faces[i];
+        if (!face || (now && s.base[now - 1] == face)) continue;
+        const double z = depth_of(r, face, i);
+        if (!((float)z > 0 && isfinite((float)z))) continue; /* a plane through the camera */
+        (*pixels)++;
+        st = insert(r, i, face, z, err);
+    }
+    free(s.edited);
+    free(s.base);
     return st;
 }
 
-enum status reveal_find(struct revealed *r, const struct solid_mesh *base, const struct view_faces *shown,
-                        const struct solid_mesh *edits, int edit_count, const struct view *camera, struct err *err)
+enum status reveal_result(struct view_reveal *result, const struct reveal *r, struct err *err)
 {
-    enum status st = ST_OK;
-    *r = (struct revealed){shown->width, shown->height, 0, NULL, NULL};
-    for (int e = 0; !st && e < edit_count; e++) st = add_edit(r, base, shown, &edits[e], camera, err);
-    return st;
-}
-
-void reveal_release(struct revealed *r)
-{
-    for (int k = 0; k < r->layers; k++) {
-        free(r->id[k]);
-        free(r->z[k]);
-    }
-    free(r->id);
-    free(r->z);
-    *r = (struct revealed){0};
-}
-
-static bool same_bytes(const char *a, const char *b)
-{
-    FILE *p = fopen(a, "rb"), *q = fopen(b, "rb");
-    bool same = p && q;
-    int c = 0;
-    while (same && c != EOF) same = (c = getc(p)) == getc(q);
-    if (p) fclose(p);
-    if (q) fclose(q);
-    return same;
-}
-
-enum status reveal_write(const struct revealed *r, double scale, const char *path, const struct provenance *prov,
-                         struct err *err)
-{
-    const size_t pixels = (size_t)r->width * (size_t)r->height;
-    struct exr_image exr = {0};
-    struct exr_plane *plane;
-    char fresh[FILE_PATH], name[EXR_NAME_SIZE];
-    enum status st = exr_image_init(&exr, r->width, r->height, err);
-    for (int k = 0; !st && k < (r->layers ? r->layers : 1); k++) {
-        snprintf(name, sizeof name, "layer%d.id", k);
-        st = exr_add_plane(&exr, name, EXR_UINT, &plane, err);
-        if (!st && r->layers) memcpy(plane->u, r->id[k], pixels * sizeof *plane->u);
-        snprintf(name, sizeof name, "layer%d.Z", k);
-        if (!st) st = exr_add_plane(&exr, name, EXR_FLOAT, &plane, err);
-        for (size_t i = 0; !st && r->layers && i < pixels; i++) plane->f[i] = (float)(r->z[k][i] / scale);
-    }
-    if (!st && snprintf(fresh, sizeof fresh, "%s.new", path) >= (int)sizeof fresh)
-        st = err_set(err, ST_USAGE, "%s: the path is too long.", path);
-    if (!st) st = exr_write(&exr, fresh, prov, err);
-    if (!st && same_bytes(fresh, path))
-        unlink(fresh);
-    else if (!st && rename(fresh, path))
-        st = err_set(err, ST_IO, "%s cannot be put in place of %s: %m.", fresh, path);
-    exr_image_release(&exr);
-    return st;
+    const size_t count = (size_t)r->base->width * (size_t)r->base->height;
+    if (view_reveal_init(result, r->base->width, r->base->height, r->layers, err)) return err->status;
+    for (int k = 0; k < r->layers; k++)
+        for (size_t i = 0; i < count; i++) {
+            const uint32_t face = r->faces[k][i];
+            if (!face) continue;
+            result->id[k][i] = (uint32_t)solid_face_id(&r->base->model->mesh, (int)face - 1);
+            result->z[k][i] = (float)depth_of(r, face, i);
+        }
+    return ST_OK;
 }

@@ -1,34 +1,41 @@
-# trace_ids: the faces of the model that each view shows, and what the edits reveal to it.
-FOLLOWS.trace_ids := segment_depth build_model
-READS.trace_ids := the model, those of the edits, axes.txt, cameras, the view's depth
-WRITES.trace_ids := ids/VIEW.exr, VIEW.txt, index.txt; reveal/VIEW.exr
+# trace_ids: the faces of the solid model in each view, where furniture hides them, and what edits reveal.
+FOLLOWS.trace_ids := build_model rectify segment_depth
+READS.trace_ids := the model, its axes and edits, cameras, one view's depth
+WRITES.trace_ids := ids/VIEW.exr, VIEW.txt; reveal/VIEW.exr, VIEW.txt; ids/index.txt
 LIBS.trace_ids := -lembree3
-STEPS.trace_ids := ids face_index
-HELP.ids := + the faces of the model that each view shows, and what edits reveal
+STEPS.trace_ids := ids
+HELP.ids := + faces of the solid model in each view, where furniture hides them, and what edits reveal
 NEEDS.ids := model
-RUN.ids := farm
-NEEDS.face_index := ids
 
 ifdef GRAPH
-# nothing to trace without a model
-IDS_EXR := $(if $(MODEL_SCRIPT),$(VIEWS:%=$(O)/ids/%.exr))
-REVEAL_EXR := $(if $(MODEL_SCRIPT),$(VIEWS:%=$(O)/reveal/%.exr))
-FACE_INDEX := $(if $(MODEL_SCRIPT),$(O)/ids/index.txt)
-MODEL_TXT := $(O)/model/model.txt
-EDIT_TXT := $(EDITS:%=$(O)/remodel/%/model.txt)
-TRACE_ARGS := --views $(O)/views --model $(MODEL_TXT) --axes $(AXES)
-.PHONY: ids face_index
-ids: $(IDS_EXR) $(REVEAL_EXR)
-face_index: $(FACE_INDEX)
-$(FACE_INDEX): $(IDS_EXR) $(call needs,trace_ids)
-	$(call stage,trace_ids,index,$(O),--views $(O)/views --ids $(O)/ids --index $@)
-define trace_rules
-$(O)/ids/$(1).exr $(O)/ids/$(1).txt &: $(MODEL_TXT) $(AXES) $(CAMERAS) $(O)/depth/$(1).exr $(O)/depth/$(1).txt $(call needs,trace_ids)
-	$$(hide)$$(call farm,trace_ids,$(1),$(O)/ids/$(1).txt $(O)/ids/$(1).exr,$(TRACE_ARGS) --depth $(O)/depth --view $(1) --out $(O)/ids/$(1).exr)
-$(O)/reveal/$(1).done: $(MODEL_TXT) $(EDIT_TXT) $(AXES) $(CAMERAS) $(call needs,trace_ids)
-	$$(hide)$$(call farm,trace_ids,reveal-$(1),$(O)/reveal/$(1).exr,$(TRACE_ARGS) $(EDIT_TXT:%=--edit %) --view $(1) --reveal $(O)/reveal/$(1).exr && touch $$@)
-# its time changes only if the edits reveal something else
-$(O)/reveal/$(1).exr: $(O)/reveal/$(1).done ;
+IDS_VIEWS := $(if $(MODEL_SCRIPT),$(VIEWS))
+IDS_EXR := $(IDS_VIEWS:%=$(O)/ids/%.exr)
+IDS_TXT := $(IDS_VIEWS:%=$(O)/ids/%.txt)
+IDS_INDEX := $(if $(IDS_VIEWS),$(O)/ids/index.txt)
+REVEAL_EXR := $(IDS_VIEWS:%=$(O)/reveal/%.exr)
+.PHONY: ids ids-views ids-reveal
+ids: ids-views ids-reveal $(IDS_INDEX)
+ids-views: $(IDS_EXR) $(IDS_TXT)
+ids-reveal: $(REVEAL_EXR)
+IDS_NEEDS := $(O)/model/model.txt $(AXES) $(CAMERAS) $(call needs,trace_ids)
+IDS_ARGS := --model $(O)/model/model.txt --axes $(AXES) --views $(O)/views
+EDIT_MODELS := $(EDITS:%=$(O)/remodel/%/model.txt)
+# an edit that went is a change whatever the times of the others
+$(O)/stamp/edits.txt: FORCE
+	+@mkdir -p $(@D); echo '$(EDITS)' | cmp -s - $@ || echo '$(EDITS)' >$@
+# $(1): a view. VIEW.exr of reveal is replaced only if its bytes change: VIEW.txt is what Make goes by, and what reads
+# VIEW.exr is made again only if it changed.
+define ids_rules
+$(O)/ids/$(1).txt $(O)/ids/$(1).exr &: $(IDS_NEEDS) $(O)/depth/$(1).exr $(O)/depth/$(1).txt
+	$$(hide)$$(call farm,trace_ids,$(1),$(O)/ids/$(1).txt $(O)/ids/$(1).exr,$(IDS_ARGS) --view $(1) --depth $(O)/depth \
+	  --out $(O)/ids/$(1).exr)
+$(O)/reveal/$(1).txt: $(IDS_NEEDS) $(EDIT_MODELS) $(O)/stamp/edits.txt $(if $(wildcard $(O)/reveal/$(1).exr),,FORCE)
+	$$(hide)$$(call farm,trace_ids,reveal-$(1),$(O)/reveal/$(1).txt,$(IDS_ARGS) --view $(1) --reveal \
+	  $(EDIT_MODELS:%=--edit %) --out $(O)/reveal/$(1).exr)
+$(O)/reveal/$(1).exr: $(O)/reveal/$(1).txt
+	@:
 endef
-$(if $(MODEL_SCRIPT),$(foreach v,$(VIEWS),$(eval $(call trace_rules,$(v)))))
+$(foreach v,$(IDS_VIEWS),$(eval $(call ids_rules,$(v))))
+$(IDS_INDEX): $(IDS_TXT) $(IDS_NEEDS)
+	$(call stage,trace_ids,index,$(O),$(IDS_ARGS) --index $(O)/ids --out $@)
 endif

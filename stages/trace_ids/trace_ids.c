@@ -1,154 +1,260 @@
-/* trace_ids.c - which face of the model each pixel of a view shows, at which depth, and what stands in front of it.
+/* trace_ids.c - which faces of the solid model each view shows, how far they are, and where furniture hides them.
  *
- * reads   MODEL, EDIT...                                the unedited model, those of the edits
- *         AXES                                          their frame in the scene
+ * reads   MODEL, AXES                                   the solid model and its frame
  *         VIEWS/cameras.txt, images.txt, points3D.txt   the cameras
- *         DEPTH/VIEW.exr, VIEW.txt                      the view's depth, for what stands in front of the model
- * writes  OUT, OUT with .txt for .exr                   faces of a view, and their list
- *         REVEAL                                        faces that the edits reveal to the view
- *         INDEX                                         with --index: which views show a face, from all lists in IDS */
+ *         DEPTH/VIEW.exr, VIEW.txt                      the view's layered depth
+ * writes  VIEW.txt beside OUT                           the faces that the view shows
+ *         OUT                                           face id, depth, distance from depth jumps, clutter
+ * With --reveal instead:
+ * reads   MODEL, AXES, VIEWS; EDIT, ...                 the edited models
+ * writes  OUT, only if its bytes change                 surfaces that some edit reveals in the view
+ *         VIEW.txt beside OUT                           how many pixels each edit reveals
+ * With --index instead:
+ * reads   MODEL, AXES, VIEWS; IDS/VIEW.txt of all views
+ * writes  OUT                                           the views of each face, best first */
+#include <inttypes.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "common/base/cli.h"
 #include "common/base/file_path.h"
 #include "common/base/log.h"
-#include "common/model/model_axes.h"
-#include "common/texture/face_index.h"
+#include "common/base/outfile.h"
+#include "common/base/textfile.h"
 #include "stages/trace_ids/reveal.h"
-#include "stages/trace_ids/view_records.h"
+#include "stages/trace_ids/view_ranks.h"
 
-struct request {
-    const char *model, *axes, *views, *depth, *view, *out, *reveal, *index, *ids;
+#define PARAM_STRUCT struct trace_params
+const struct param trace_param_table[] = {TRACE_PARAMS(PARAM_ROW) PARAM_END};
+#undef PARAM_STRUCT
+
+struct job {
+    const char *model, *axes, *views, *view, *depth, *index, *out;
+    bool reveal;
     struct cli_list edits;
-};
-
-struct inputs {
+    struct trace_params params;
+    struct provenance prov;
+    struct model_rays rays;
+    struct model_axes frame;
     struct camera_set set;
-    struct model_axes axes;
-    struct solid_mesh mesh;
-    struct ray_scene rays;
-    struct view camera; /* in the model's frame */
 };
 
-static enum status read_inputs(struct inputs *in, const struct request *r, struct provenance *prov, struct err *err)
+static enum status read_inputs(struct job *j, struct err *err)
 {
-    int view = -1;
-    enum status st = camera_set_read(&in->set, r->views, err);
-    if (!st) st = camera_set_add_inputs(prov, r->views, err);
-    if (!st && (view = camera_set_find(&in->set, r->view)) < 0)
-        st = err_set(err, ST_USAGE, "there is no view %s in %s/images.txt; the views are listed in %s/views.mk.",
-                     r->view, r->views, r->views);
-    if (!st) st = model_axes_read(&in->axes, r->axes, err);
-    if (!st) st = provenance_add_file(prov, "model/axes.txt", r->axes, err);
-    if (!st) st = solid_mesh_read(&in->mesh, r->model, err);
-    if (!st) st = provenance_add_file(prov, "model/model.txt", r->model, err);
-    if (!st) st = model_rays_make(&in->rays, &in->mesh, true, err);
-    if (!st) in->camera = model_from_world_view(&in->axes, &in->set.views[view]);
-    return st;
+    if (provenance_add_file(&j->prov, "model/model.txt", j->model, err) ||
+        model_rays_read(&j->rays, j->model, MODEL_WITH_GLASS, err) ||
+        provenance_add_file(&j->prov, "model/axes.txt", j->axes, err) || model_axes_read(&j->frame, j->axes, err) ||
+        camera_set_add_inputs(&j->prov, j->views, err) || camera_set_read(&j->set, j->views, err))
+        return err->status;
+    return ST_OK;
 }
 
-static void release_inputs(struct inputs *in)
+static enum status find_view(const struct view **view, const struct job *j, struct err *err)
 {
-    ray_scene_release(&in->rays);
-    solid_mesh_release(&in->mesh);
-    camera_set_release(&in->set);
+    const int at = camera_set_find(&j->set, j->view);
+    if (at < 0) return err_set(err, ST_DATA, "%s/images.txt has no view %s.", j->views, j->view);
+    *view = &j->set.views[at];
+    return ST_OK;
 }
 
-static enum status add_clutter(struct view_faces *f, const struct inputs *in, const struct request *r,
-                               struct provenance *prov, struct err *err)
+static enum status read_depth(struct layered_depth *depth, struct job *j, const struct view *view, struct err *err)
+{
+    char path[FILE_PATH];
+    if (provenance_add_in(&j->prov, "depth", j->depth, view->name, ".txt", path, err) ||
+        provenance_add_in(&j->prov, "depth", j->depth, view->name, ".exr", path, err) ||
+        layered_depth_read(depth, path, err))
+        return err->status;
+    if (depth->width == view->width && depth->height == view->height) return ST_OK;
+    return err_set(err, ST_DATA, "%s is %d x %d px, but the view is %d x %d px; make the depth again.", path,
+                   depth->width, depth->height, view->width, view->height);
+}
+
+/* OUT with .txt in place of .exr */
+static enum status record_path(char path[FILE_PATH], const char *out, struct err *err)
+{
+    const size_t n = strlen(out);
+    if (n < 5 || strcmp(out + n - 4, ".exr") || n >= FILE_PATH)
+        return err_set(err, ST_USAGE, "--out %s: wanted a name that ends in .exr.", out);
+    snprintf(path, FILE_PATH, "%.*s.txt", (int)n - 4, out);
+    return ST_OK;
+}
+
+static enum status trace_view(struct job *j, struct err *err)
 {
     struct layered_depth depth = {0};
-    char path[FILE_PATH];
-    enum status st = provenance_add_in(prov, "depth", r->depth, r->view, ".txt", path, err);
-    if (!st) st = provenance_add_in(prov, "depth", r->depth, r->view, ".exr", path, err);
-    if (!st) st = layered_depth_read_interior(&depth, path, err);
-    if (!st) st = view_faces_find_clutter(f, &in->mesh, &depth, in->axes.scale, err);
+    struct view_trace trace = {0};
+    struct view_ids ids = {0};
+    struct view_record record = {0};
+    const struct view *view = NULL;
+    char text[FILE_PATH];
+    enum status st = record_path(text, j->out, err);
+    if (!st) st = read_inputs(j, err);
+    if (!st) st = find_view(&view, j, err);
+    if (!st) st = read_depth(&depth, j, view, err);
+    if (!st) st = view_trace(&trace, &j->rays, &j->frame, view, err);
+    if (!st && trace.in_solid)
+        log_warn("the camera of view %s is inside a solid of the model, or on its surface: the view shows no face.",
+                 view->name);
+    if (!st) st = view_ids_init(&ids, view->width, view->height, err);
+    if (!st) view_trace_ids(&ids, &trace);
+    if (!st) st = find_jumps(&ids, &trace, &depth, &j->params, err);
+    if (!st) st = find_clutter(&ids, &trace, &depth, &j->params, err);
+    if (!st) st = view_record_make(&record, &ids, &trace, &j->params, err);
+    if (!st) st = view_record_write(&record, text, &j->prov, err);
+    if (!st) st = view_ids_write(&ids, view, j->out, &j->prov, err);
+    view_record_release(&record);
+    view_ids_release(&ids);
+    view_trace_release(&trace);
     layered_depth_release(&depth);
     return st;
 }
 
-static enum status write_reveal(const struct view_faces *f, const struct inputs *in, const struct request *r,
-                                const struct provenance *prov, struct err *err)
+/* The name of an edit, from .../E/model.txt. */
+static void edit_name(char name[FILE_PATH], const char *path)
 {
-    struct revealed revealed = {0};
-    struct solid_mesh *edits = calloc((size_t)r->edits.count + 1, sizeof *edits);
-    enum status st = edits ? ST_OK : err_nomem(err, "edits", (size_t)r->edits.count * sizeof *edits);
-    for (int i = 0; !st && i < r->edits.count; i++) st = solid_mesh_read(&edits[i], r->edits.items[i], err);
-    if (!st) st = reveal_find(&revealed, &in->mesh, f, edits, r->edits.count, &in->camera, err);
-    if (!st) st = reveal_write(&revealed, in->axes.scale, r->reveal, prov, err);
-    for (int i = 0; edits && i < r->edits.count; i++) solid_mesh_release(&edits[i]);
-    free(edits);
-    reveal_release(&revealed);
+    const char *end = strrchr(path, '/'), *begin = end;
+    while (begin && begin > path && begin[-1] != '/') begin--;
+    snprintf(name, FILE_PATH, "%.*s", end ? (int)(end - begin) : 0, begin ? begin : "");
+}
+
+/* Adds what one edit reveals, and a line to the record. */
+static enum status add_edit(struct reveal *r, FILE *record, struct job *j, const struct view *view, const char *path,
+                            struct err *err)
+{
+    struct model_rays model = {0};
+    struct view_trace trace = {0};
+    char name[FILE_PATH], input[FILE_PATH + 32], quoted[FILE_PATH];
+    int64_t pixels = 0;
+    edit_name(name, path);
+    snprintf(input, sizeof input, "remodel/%s/model.txt", name);
+    enum status st = provenance_add_file(&j->prov, input, path, err);
+    if (!st) st = model_rays_read(&model, path, MODEL_WITH_GLASS, err);
+    if (!st) st = view_trace(&trace, &model, &j->frame, view, err);
+    if (!st) st = reveal_add(r, &trace, &pixels, err);
+    if (!st) st = textfile_quote(name, quoted, sizeof quoted, err);
+    if (!st) fprintf(record, "edit %s %" PRId64 "\n", quoted, pixels);
+    view_trace_release(&trace);
+    model_rays_release(&model);
     return st;
 }
 
-static enum status trace_view(const struct request *r, struct provenance *prov, struct err *err)
+static enum status write_reveal(const struct reveal *r, const struct job *j, const struct view *view, struct err *err)
 {
-    struct inputs in = {0};
-    struct view_faces faces = {0};
-    enum status st = read_inputs(&in, r, prov, err);
-    if (!st) st = view_faces_trace(&faces, &in.mesh, &in.rays, &in.camera, err);
-    if (!st && r->reveal) st = write_reveal(&faces, &in, r, prov, err);
-    if (!st && r->out) st = add_clutter(&faces, &in, r, prov, err);
-    if (!st && r->out) st = view_records_write(&faces, &in.mesh, &in.camera, in.axes.scale, r->out, prov, err);
-    view_faces_release(&faces);
-    release_inputs(&in);
+    /* without inputs and parameters: the bytes change only with what is revealed */
+    const struct provenance prov = {.stage = j->prov.stage, .version = j->prov.version};
+    struct view_reveal result = {0};
+    bool changed = false;
+    enum status st = reveal_result(&result, r, err);
+    if (!st) st = view_reveal_write(&result, view, j->out, &prov, &changed, err);
+    if (!st && !changed) log_note("%s: nothing new is revealed", view->name);
+    view_reveal_release(&result);
     return st;
 }
 
-static enum status make_index(const struct request *r, struct provenance *prov, struct err *err)
+static enum status write_reveal_record(const struct job *j, const char *path, const char *lines, struct err *err)
 {
-    struct camera_set set = {0};
-    enum status st = camera_set_read(&set, r->views, err);
-    const char **names = malloc(((size_t)set.view_count + 1) * sizeof *names);
-    if (!st && !names) st = err_nomem(err, "views", (size_t)set.view_count * sizeof *names);
-    for (int i = 0; !st && i < set.view_count; i++) names[i] = set.views[i].name;
-    if (!st) st = face_index_write(r->ids, names, set.view_count, r->index, prov, err);
-    free(names);
-    camera_set_release(&set);
+    struct outfile f = {0};
+    enum status st = outfile_open(&f, path, err);
+    if (!st) {
+        provenance_print(&j->prov, f.fp);
+        fprintf(f.fp, "remodel-reveal 1\n%s", lines);
+        st = outfile_commit(&f, err);
+    }
+    outfile_discard(&f);
     return st;
 }
 
-static enum status check_request(const struct request *r, struct err *err)
+static enum status reveal_view(struct job *j, struct err *err)
 {
-    if (r->index)
-        return r->ids ? ST_OK : err_set(err, ST_USAGE, "--index wants --ids, the folder of the views' lists.");
-    if (!r->view || !r->model || !r->axes || (!r->out && !r->reveal))
-        return err_set(err, ST_USAGE, "give --view, --model, --axes and --out or --reveal; or else --index.");
-    if (r->out && !r->depth) return err_set(err, ST_USAGE, "--out wants --depth, the folder of the views' depth.");
+    struct view_trace trace = {0};
+    struct reveal reveal = {.base = &trace};
+    const struct view *view = NULL;
+    char text[FILE_PATH], *lines = NULL;
+    size_t size = 0;
+    FILE *record = open_memstream(&lines, &size);
+    enum status st = record ? record_path(text, j->out, err) : err_nomem(err, "a record", 1);
+    if (!st) st = read_inputs(j, err);
+    if (!st) st = find_view(&view, j, err);
+    if (!st) st = view_trace(&trace, &j->rays, &j->frame, view, err);
+    for (int i = 0; !st && i < j->edits.count; i++) st = add_edit(&reveal, record, j, view, j->edits.items[i], err);
+    if (record) fclose(record);
+    if (!st) st = write_reveal(&reveal, j, view, err);
+    if (!st) st = write_reveal_record(j, text, lines, err);
+    free(lines);
+    reveal_release(&reveal);
+    view_trace_release(&trace);
+    return st;
+}
+
+/* Warns if no camera is within the model's bounding box: then the axes or the model are wrong. */
+static void warn_if_outside(const struct job *j)
+{
+    int within = 0;
+    for (int i = 0; i < j->set.view_count; i++)
+        within += model_rays_near(&j->rays, model_from_world_view(&j->frame, &j->set.views[i]).center);
+    if (!within && j->set.view_count)
+        log_warn("all %d cameras are outside the model, so no view shows its rooms from within; check axes.txt, the "
+                 "scale and the script of the model.",
+                 j->set.view_count);
+}
+
+static enum status index_faces(struct job *j, struct err *err)
+{
+    struct view_ranks ranks = {.max_views = j->params.index_views};
+    int empty = 0;
+    enum status st = read_inputs(j, err);
+    if (!st) warn_if_outside(j);
+    for (int i = 0; !st && i < j->set.view_count; i++) {
+        struct view_record record = {0};
+        char path[FILE_PATH];
+        st = file_path(path, j->index, j->set.views[i].name, ".txt", err);
+        if (!st) st = view_record_read(&record, path, err);
+        if (!st) st = view_ranks_add(&ranks, j->set.views[i].name, &record, err);
+        empty += !st && !record.count;
+        view_record_release(&record);
+    }
+    if (!st) st = view_ranks_write(&ranks, j->out, &j->prov, err);
+    if (!st && empty) log_note("%d of %d views show no face of the model", empty, j->set.view_count);
+    view_ranks_release(&ranks);
+    return st;
+}
+
+static enum status check_usage(const struct job *j, struct err *err)
+{
+    if (j->reveal && j->index) return err_set(err, ST_USAGE, "--reveal and --index exclude each other.");
+    if (j->edits.count && !j->reveal) return err_set(err, ST_USAGE, "--edit is only for --reveal.");
+    if (!j->index && !j->view) return err_set(err, ST_USAGE, "--view is missing; see --help.");
+    if (!j->index && !j->reveal && !j->depth) return err_set(err, ST_USAGE, "--depth is missing; see --help.");
     return ST_OK;
 }
 
 int main(int argc, char **argv)
 {
-    struct request r = {0};
+    struct job j = {.params = TRACE_PARAMS_DEFAULT};
     const struct cli_opt opts[] = {
-        CLI_ABOUT("Finds the face of the model that each pixel of a view shows, and what stands in front of it."),
-        CLI_STR("views", &r.views, CLI_REQUIRED, "folder of cameras"),
-        CLI_STR("model", &r.model, CLI_OPTIONAL, "the unedited model, model.txt"),
-        CLI_LIST("edit", &r.edits, CLI_OPTIONAL, "model.txt of an edit; repeat for several; for --reveal"),
-        CLI_STR("axes", &r.axes, CLI_OPTIONAL, "the models' frame, axes.txt"),
-        CLI_STR("depth", &r.depth, CLI_OPTIONAL, "folder of the views' depth"),
-        CLI_STR("view", &r.view, CLI_OPTIONAL, "view to work on"),
-        CLI_STR("out", &r.out, CLI_OPTIONAL, "EXR of the view's faces to write, with a list beside it"),
-        CLI_STR("reveal", &r.reveal, CLI_OPTIONAL,
-                "EXR to write of the faces that the edits reveal; kept if nothing changed"),
-        CLI_STR("ids", &r.ids, CLI_OPTIONAL, "with --index: folder of the views' lists"),
-        CLI_STR("index", &r.index, CLI_OPTIONAL,
-                "index of the views that show each face to write, in place of a view's faces"),
+        CLI_ABOUT("Face ids, depth, depth jumps and clutter of the solid model in a view."),
+        CLI_STR("model", &j.model, CLI_REQUIRED, "model.txt of the unedited model"),
+        CLI_STR("axes", &j.axes, CLI_REQUIRED, "the model's frame, axes.txt"),
+        CLI_STR("views", &j.views, CLI_REQUIRED, "folder of cameras"),
+        CLI_STR("view", &j.view, CLI_OPTIONAL, "view to trace"),
+        CLI_STR("depth", &j.depth, CLI_OPTIONAL, "folder of the views' depth"),
+        CLI_FLAG("reveal", &j.reveal, "find what edits reveal in the view, in place of its ids"),
+        CLI_LIST("edit", &j.edits, CLI_OPTIONAL, "with --reveal: model.txt of an edited model"),
+        CLI_STR("index", &j.index, CLI_OPTIONAL, "folder of the views' lists of faces: index them, in place of a view"),
+        CLI_STR("out", &j.out, CLI_REQUIRED, "EXR to write, with a list beside it; with --index the index"),
+        CLI_PARAMS(trace_param_table, &j.params, NULL),
         CLI_END,
     };
-    struct provenance prov = {0};
     struct err err = ERR_INIT;
-    if (cli_parse(argc, argv, "trace_ids", opts, &prov, &err) == CLI_RUN && !check_request(&r, &err)) {
-        if (r.index)
-            make_index(&r, &prov, &err);
-        else
-            trace_view(&r, &prov, &err);
-    }
-    err_report(&err);
-    cli_list_release(&r.edits);
-    provenance_release(&prov);
+    if (cli_parse(argc, argv, "trace_ids", opts, &j.prov, &err) != CLI_RUN || check_usage(&j, &err) ||
+        (j.index    ? index_faces(&j, &err)
+         : j.reveal ? reveal_view(&j, &err)
+                    : trace_view(&j, &err)))
+        err_report(&err);
+    cli_list_release(&j.edits);
+    camera_set_release(&j.set);
+    model_rays_release(&j.rays);
+    provenance_release(&j.prov);
     return err_exit_code(&err);
 }
