@@ -2,6 +2,7 @@
  *
  * reads   FOLDER/views, depth, holdout   cameras, views, depth maps, held-out photographs and their rendered frames
  *         FOLDER/model, remodel/E        axes, plans and solids of the model and of its edits
+ *         FOLDER/vdta, vita, reveal      texture atlases, and what edits reveal to the views
  *         FOLDER/relight                 irradiance.txt: irradiance at points; pictures of it like those in RENDERED
  *         SHARED/photos, hdr             the photos' records, merged exposures
  *         RENDERED/novel, edited-E, shell, irradiance, edited-E/irradiance   rendered pictures, and their cameras

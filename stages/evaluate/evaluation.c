@@ -77,6 +77,9 @@ enum status evaluate(const struct evaluate_inputs *from, const char *out, const 
     if (!st && truth) st = evaluate_renders(&e, err);
     if (!st && truth) st = evaluate_irradiance(&e, err);
     if (!st && truth) st = evaluate_shell(&e, err);
+    if (!st) st = evaluate_textures(&e, err);
+    if (!st) st = evaluate_texture_cover(&e, err);
+    if (!st && e.has_held) st = evaluate_heldout_textures(&e, err);
     if (!st) st = file_path(path, folder, "evaluate/views.tsv", "", err);
     if (!st) st = metric_table_write(&e.table, true, path, prov, err);
     if (!st) st = metric_table_write(&e.table, false, out, prov, err);

@@ -17,7 +17,7 @@
     X(max_offset, double, 0.1, 0, 1e9, "m",                                                                     \
       "maximum distance of a rendered picture's camera from the true one; pictures farther away are skipped")   \
     X(surface_distance, double, 0.05, 0, 1e9, "m",                                                              \
-      "maximum distance of an irradiance point from a face of the model that it counts as lying on")
+      "maximum distance of a true point from a face of the model that it counts as lying on")
 
 struct evaluate_params {
     EVALUATE_PARAMS(PARAM_FIELD)

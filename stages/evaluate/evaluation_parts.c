@@ -39,3 +39,8 @@ enum status evaluation_metric(struct evaluation *e, const char *view, const char
         return err_set(err, ST_INTERNAL, "the name of the metric %s.%s is too long.", prefix, name);
     return metric_add(&e->table, view, text, value, unit, direction, err);
 }
+
+void evaluation_set_white(struct evaluation *e)
+{
+    e->white = e->params->white > 0 ? e->params->white : e->radiance_scale;
+}

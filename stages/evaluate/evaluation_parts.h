@@ -45,14 +45,20 @@ enum status evaluate_faces(struct evaluation *e, struct err *err);        /* mod
 enum status evaluate_depths(struct evaluation *e, struct err *err);       /* depth.* */
 enum status evaluate_pictures(struct evaluation *e, struct err *err);     /* holdout.* */
 
-enum status evaluate_radiance(struct evaluation *e, struct err *err);   /* radiance.*; sets radiance_scale */
-enum status evaluate_renders(struct evaluation *e, struct err *err);    /* novel.*, edited.E.* */
-enum status evaluate_irradiance(struct evaluation *e, struct err *err); /* irradiance.* */
-enum status evaluate_shell(struct evaluation *e, struct err *err);      /* shell.* */
+enum status evaluate_radiance(struct evaluation *e, struct err *err);         /* radiance.*; sets radiance_scale */
+enum status evaluate_renders(struct evaluation *e, struct err *err);          /* novel.*, edited.E.* */
+enum status evaluate_irradiance(struct evaluation *e, struct err *err);       /* irradiance.* */
+enum status evaluate_shell(struct evaluation *e, struct err *err);            /* shell.* */
+enum status evaluate_textures(struct evaluation *e, struct err *err);         /* texture.* */
+enum status evaluate_texture_cover(struct evaluation *e, struct err *err);    /* texture.covered */
+enum status evaluate_heldout_textures(struct evaluation *e, struct err *err); /* texture.heldout_* */
 
 /* metric_add() of "PREFIX.NAME"; ST_INTERNAL: a longer name than a table holds. */
 enum status evaluation_metric(struct evaluation *e, const char *view, const char *prefix, const char *name,
                               double value, const char *unit, const char *direction, struct err *err);
+
+/* Sets e->white, the radiance that is white in 8 bits; 0: it is not given, and the scale of radiance is unknown. */
+void evaluation_set_white(struct evaluation *e);
 
 /* path: FOLDER/WHERE/FILESUFFIX, an input of the evaluation; its hash goes into the provenance as WHERE/FILESUFFIX. */
 enum status evaluation_input(struct evaluation *e, char path[FILE_PATH], const char *where, const char *file,

@@ -162,13 +162,11 @@ enum status render_read(struct evaluation *e, const struct renders *list, struct
 
 /* ----------------------------------------------------------------------------------------------- scale and cameras */
 
-static void set_white(struct evaluation *e) { e->white = e->params->white > 0 ? e->params->white : e->radiance_scale; }
-
 enum status renders_scale(struct evaluation *e, struct renders *list, struct err *err)
 {
     struct quantiles ratios = {0};
     bool encoded = false;
-    set_white(e);
+    evaluation_set_white(e);
     if (e->radiance_scale > 0) return ST_OK;
     enum status st = quantiles_init(&ratios, err);
     for (int i = 0; !st && i < list->count; i++) {
@@ -188,7 +186,7 @@ enum status renders_scale(struct evaluation *e, struct renders *list, struct err
                          "note: the scale of rendered radiance is the median ratio %.5g of the pictures of %s, because "
                          "no view of a photo with a true radiance gives it",
                          e->radiance_scale, list->set->prefix);
-        set_white(e);
+        evaluation_set_white(e);
     } else if (!st && !(e->white > 0)) {
         st = metric_note(&e->table, err, "skipped pictures of %s: %s", list->set->prefix,
                          encoded ? "8-bit pictures need [evaluate] white, the true radiance that is white in them"

@@ -1,6 +1,6 @@
 # evaluate: the products, compared with a truth and with photos held out.
 FOLLOWS.evaluate = $(filter-out evaluate report verify,$(STAGE_FOLDERS))
-READS.evaluate := cameras, views, depth maps, models, held-out photos and their frames, rendered pictures, a truth
+READS.evaluate := cameras, views, depth maps, models, texture atlases, held-out photos and their frames, rendered pictures, a truth
 WRITES.evaluate := metrics.tsv, evaluate/
 VARIABLES.evaluate := TRUTH RENDERED
 LIBS.evaluate := -lembree3
@@ -16,10 +16,12 @@ RENDERED_FOLDER := $${REMODEL_RENDERED:-$(O)/rendered}
 # models of edits, and the irradiance that a relighting program wrote
 EDITED_MODELS := $(if $(value REMODEL_TRUTH),$(call $(if $(and $(MODELLED),$(MODELS)),made,wildcard),$(MODELS:%=%/model.txt)) \
   $(wildcard $(foreach e,exr txt,$(addprefix $(O)/relight/,irradiance.txt irradiance/*.$(e) edited-*/irradiance/*.$(e)))))
+# atlases that were baked
+ATLASES := $(wildcard $(O)/vdta/*/atlas.txt $(O)/vita/atlas.txt)
 .PHONY: evaluate
 evaluate: $(O)/metrics.tsv
 $(O)/metrics.tsv: $(CAMERAS) $(O)/views/lenses.txt $(MEASURED) $(HELD_CAMERAS) $(HELD_EXR) $(HELD_FRAMES) \
-  $(S)/photos/list.txt $(EDITED_MODELS) $(O)/stamp/truth.txt $(O)/stamp/rendered.txt $(call needs,evaluate)
+  $(S)/photos/list.txt $(EDITED_MODELS) $(ATLASES) $(O)/stamp/truth.txt $(O)/stamp/rendered.txt $(call needs,evaluate)
 	$(call stage,evaluate,all,$(O),--folder $(O) --shared $(S) $${REMODEL_TRUTH:+--truth "$$REMODEL_TRUTH"} \
 	  --rendered "$(RENDERED_FOLDER)" --out $@)
 SHOWN += $(if $(HELDOUT)$(TRUTH),$(O)/metrics.tsv)
