@@ -10,7 +10,7 @@
 # the pieces of work that were not made, why, and their logs; there is no such file if all were. The next run makes those.
 # Where a task ran out of time or memory, the next run gives twice as much.
 #
-# FOLDER: tasks/N lines of task N, verdicts/N.ATTEMPT, N.out its words, limits "MIB MINUTES", jobs, failed.txt
+# FOLDER: tasks/N lines of task N, verdicts/N.ATTEMPT, N.out its words, limits "MIB MINUTES", jobs, reserve, failed.txt
 set -euo pipefail
 stage=$1 plan=$2 folder=$3 cpus=$4 lines=$5; shift 5
 here=$(dirname "$0")
@@ -34,7 +34,10 @@ echo "$mib $minutes" >"$folder/limits"
 awk '{ print NR "\t" $0 }' "$plan" | split -l "$lines" -d -a 6 - "$folder/tasks/"
 count=$(wc -l <"$plan")
 tasks=$(((count + lines - 1) / lines))
-piece_kib=$(awk -v items="${1:-0}" -v bytes="${4:-0}" 'BEGIN { k = items > 0 ? int(bytes / items / 1024) : 0; print k > 1024 ? k : 1024 }')
+piece_kib=$(awk -v items="${1:-0}" -v bytes="${4:-0}" 'BEGIN { k = items > 0 ? int(bytes / items / 1024) : 0; print (k > 1024 ? k : 1024) }')
+
+# room for failed.txt, should the disk be full by then
+head -c $((count * 300)) /dev/zero >"$folder/reserve"
 
 # an index must be below MaxArraySize, so that a large plan is several arrays
 most=$(scontrol show config | sed -nE 's/^MaxArraySize *= *([0-9]+).*/\1/p' || true)
@@ -72,6 +75,6 @@ while state=$(squeue -h -j "$all" -o '%i %r' 2>&1) || [[ $state != *[Ii]nvalid\ 
         printf '%s %d/%d on the cluster%s\n' "$stage" "$done" "$count" "$([ "$done" = 0 ] || printf ', about %d:%02d left' $((left / 60)) $((left % 60)))" >&2
     fi
     sleep "$pause"
-    pause=$(awk -v p="$pause" 'BEGIN { p *= 1.05; print p < 10 ? p : 10 }')
+    pause=$(awk -v p="$pause" 'BEGIN { p *= 1.05; print (p < 10 ? p : 10) }')
 done
 "$here/slurm_verdicts.sh" "$stage" "$plan" "$folder" "$lines" "$most" "$all"

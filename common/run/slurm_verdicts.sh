@@ -82,7 +82,7 @@ judge()
 judge
 # on a shared file system what a node wrote may show a little later
 for ((try = 0; try < 5 && ${#bad[@]} > 0; try++)); do sleep 0.2; judge; done
-[ "${#bad[@]}" -gt 0 ] || exit 0
+[ "${#bad[@]}" -gt 0 ] || { rm -f "$folder/reserve"; exit 0; }
 read_states
 mapfile -t all <"$plan"
 list=
@@ -92,10 +92,11 @@ for i in "${bad[@]}"; do
     log=${words[3]-}/log/${words[1]-}.${words[2]-}.log
     list+="${words[2]-line $i}"$'\t'$(why "$i" "$log")$'\t'$log$'\n'
 done
+rm -f "$folder/reserve"
 {
     head -n 3 <<<"${list%$'\n'}" | awk -F '\t' -v stage="$stage" '{ print stage ": " $1 ": " $2 " (" $3 ")" }'
     printf '%s' "$list" >"$folder/failed.txt.new" && mv "$folder/failed.txt.new" "$folder/failed.txt" ||
-        { rm -f "$folder/failed.txt.new"; echo "$stage: $folder/failed.txt could not be written; all pieces that were not made:"; printf '%s' "$list"; }
+        { rm -f "$folder/failed.txt.new"; echo "$stage: $folder/failed.txt could not be written. The pieces that were not made:"; printf '%s' "$list"; }
     echo "$stage: ${#bad[@]} of ${#all[@]} pieces of work failed on the cluster; $folder/failed.txt lists them. What was made is kept; run make again to make the rest."
 } >&2
 exit 1
