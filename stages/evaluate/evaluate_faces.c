@@ -13,7 +13,7 @@ struct faces_job { /* one model against one scene */
     const char *prefix;
     struct true_set set;
     struct true_faces truth;
-    struct traced_model model;
+    struct model_rays model;
     struct model_frame frame;
     struct face_agreement agreement;
     const char **names; /* of the pictures that were added */
@@ -132,7 +132,7 @@ static enum status run_job(struct evaluation *e, struct faces_job *job, const ch
     static const struct mat3 same = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
     char path[FILE_PATH];
     enum status st = evaluation_input(e, path, model, "model.txt", "", err);
-    if (!st) st = traced_model_read(&job->model, path, err);
+    if (!st) st = model_rays_read(&job->model, path, MODEL_WITHOUT_GLASS, err);
     if (!st) st = model_frame_read(&job->frame, e, same, vec3_make(0, 0, 0), err);
     if (!st) st = add_input(e, faces, err);
     if (!st) st = true_faces_read(&job->truth, faces, err);
@@ -145,7 +145,7 @@ static enum status run_job(struct evaluation *e, struct faces_job *job, const ch
     free(job->names);
     face_agreement_release(&job->agreement);
     true_faces_release(&job->truth);
-    traced_model_release(&job->model);
+    model_rays_release(&job->model);
     return st;
 }
 

@@ -5,9 +5,10 @@
 #include <stdlib.h>
 
 #include "common/base/outfile.h"
+#include "common/light/model_rays.h"
 #include "stages/evaluate/evaluation_parts.h"
 #include "stages/evaluate/irradiance_error.h"
-#include "stages/evaluate/traced_model.h"
+#include "stages/evaluate/model_frame.h"
 
 #define MIN_COSINE 0.93969262078590838 /* cos 20 degrees: between a point's normal and that of the face it lies on */
 
@@ -47,7 +48,7 @@ static void bring_to_truth(struct irradiance_list *found, const struct similarit
 }
 
 /* Whether a face of the model with the point's normal is within `reach` (m) of it. */
-static bool on_model(const struct traced_model *m, const struct model_frame *frame, const struct irradiance_at *p,
+static bool on_model(const struct model_rays *m, const struct model_frame *frame, const struct irradiance_at *p,
                      double reach)
 {
     const double unit = truth_per_model_unit(frame);
@@ -63,7 +64,7 @@ static enum status mark_model(bool *on, bool *known, struct evaluation *e, const
                               struct err *err)
 {
     static const struct mat3 same = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-    struct traced_model model = {0};
+    struct model_rays model = {0};
     struct model_frame frame;
     char path[FILE_PATH];
     if (file_path(path, e->folder, "model/model.txt", "", err)) return err->status;
@@ -71,11 +72,11 @@ static enum status mark_model(bool *on, bool *known, struct evaluation *e, const
     if (!*known)
         return metric_note(&e->table, err, "skipped irradiance on surfaces of the model: there is no model/model.txt");
     enum status st = evaluation_input(e, path, "model", "model.txt", "", err);
-    if (!st) st = traced_model_read(&model, path, err);
+    if (!st) st = model_rays_read(&model, path, MODEL_WITHOUT_GLASS, err);
     if (!st) st = model_frame_read(&frame, e, same, vec3_make(0, 0, 0), err);
     for (int i = 0; !st && i < truth->count; i++)
         on[i] = on_model(&model, &frame, &truth->points[i], e->params->surface_distance);
-    traced_model_release(&model);
+    model_rays_release(&model);
     return st;
 }
 

@@ -1,0 +1,147 @@
+/* view_record.c - see view_record.h. Pixels are sorted by face id with a counting sort, so that memory and time do not
+ * depend on how many faces the model has beyond a count for each. */
+#include "stages/trace_ids/view_record.h"
+
+#include <limits.h>
+#include <math.h>
+#include <stdlib.h>
+
+#include "common/base/array.h"
+#include "common/base/outfile.h"
+#include "common/base/sort.h"
+#include "common/base/textfile.h"
+
+/* The face that the photo shows at a pixel; 0: none. */
+static uint32_t shown(const struct view_ids *v, int pixel) { return v->jump[pixel] > 0 ? v->id[pixel] : 0; }
+
+/* Where the pixels of each id are in a list that is sorted by id: those of k from first[k] to first[k + 1]. */
+static void sort_pixels(int *order, int *first, int ids, const struct view_ids *v, int pixels)
+{
+    for (int i = 0; i < pixels; i++) first[shown(v, i) + 1]++;
+    for (int k = 0; k < ids; k++) first[k + 1] += first[k];
+    for (int i = 0; i < pixels; i++) order[first[shown(v, i)]++] = i;
+    for (int k = ids; k > 0; k--) first[k] = first[k - 1];
+    first[0] = 0;
+}
+
+/* Distance of the face at a pixel, and the cosine of the angle of its ray. */
+static double pixel_distance(const struct view_trace *t, const struct view_ids *ids, int pixel, double *cosine)
+{
+    const struct view *v = &t->view;
+    const double x = (pixel % ids->width + 0.5 - v->cx) / v->fx, y = (pixel / ids->width + 0.5 - v->cy) / v->fy;
+    const struct vec3 ray = {x, y, 1};
+    const double length = vec3_length(ray);
+    const struct vec3 n = mat3_apply(v->cam_from_world, t->model->mesh.faces[t->faces[pixel] - 1].normal);
+    *cosine = fmin(1, fabs(vec3_dot(ray, n)) / length);
+    return length * (double)ids->z[pixel];
+}
+
+static void measure(struct seen_face *f, const int *pixels, int count, const struct view_ids *ids,
+                    const struct view_trace *t, float *distances, const struct trace_params *params)
+{
+    double clean = 0, cosines = 0;
+    int used = 0;
+    for (int i = 0; i < count; i++)
+        if (ids->jump[pixels[i]] > (float)params->clean_margin) clean += 1 - (double)ids->clutter[pixels[i]];
+    for (int i = 0; i < count; i++) {
+        const int p = pixels[i];
+        double cosine;
+        if (clean > 0 && !(ids->jump[p] > (float)params->clean_margin && ids->clutter[p] < 1)) continue;
+        distances[used++] = (float)pixel_distance(t, ids, p, &cosine);
+        cosines += cosine;
+    }
+    sort_floats(distances, (size_t)used);
+    f->pixels = count;
+    f->clean = (int)floor(clean + 0.5);
+    f->distance = (double)distances[used / 2];
+    f->cosine = cosines / used;
+}
+
+enum status view_record_make(struct view_record *r, const struct view_ids *ids, const struct view_trace *t,
+                             const struct trace_params *params, struct err *err)
+{
+    const int pixels = ids->width * ids->height, count = t->model->ids;
+    int *order = malloc((size_t)pixels * sizeof *order);
+    int *first = calloc((size_t)count + 2, sizeof *first);
+    float *distances = malloc((size_t)pixels * sizeof *distances);
+    *r = (struct view_record){0};
+    enum status st = order && first && distances ? ST_OK : err_nomem(err, "faces of a view", (size_t)pixels * 8);
+    if (!st) sort_pixels(order, first, count, ids, pixels);
+    for (int id = 1; !st && id < count; id++) {
+        if (first[id] == first[id + 1]) continue;
+        st = array_append(&r->faces, (size_t)r->count, sizeof *r->faces, "faces", err);
+        if (st) break;
+        struct seen_face *f = &r->faces[r->count++];
+        *f = (struct seen_face){.id = id};
+        measure(f, order + first[id], first[id + 1] - first[id], ids, t, distances, params);
+    }
+    free(order);
+    free(first);
+    free(distances);
+    if (st) view_record_release(r);
+    return st;
+}
+
+void view_record_release(struct view_record *r)
+{
+    if (!r) return;
+    free(r->faces);
+    *r = (struct view_record){0};
+}
+
+enum status view_record_write(const struct view_record *r, const char *path, const struct provenance *prov,
+                              struct err *err)
+{
+    struct outfile f = {0};
+    enum status st = outfile_open(&f, path, err);
+    if (!st) {
+        if (prov) provenance_print(prov, f.fp);
+        fputs("remodel-view-faces 1\n", f.fp);
+        for (int i = 0; i < r->count; i++) {
+            const struct seen_face *s = &r->faces[i];
+            fprintf(f.fp, "face %d %d %d %.9g %.9g\n", s->id, s->pixels, s->clean, s->distance, s->cosine);
+        }
+        st = outfile_commit(&f, err);
+    }
+    outfile_discard(&f);
+    return st;
+}
+
+static enum status read_face(struct seen_face *f, struct textfile *t, int last, struct err *err)
+{
+    int64_t id, pixels, clean;
+    if (textfile_expect(t, "face", err) ||
+        textfile_int(t, "id of a face, above the last", last + 1, INT_MAX, &id, err) ||
+        textfile_int(t, "pixels", 1, INT_MAX, &pixels, err) ||
+        textfile_int(t, "clean pixels", 0, pixels, &clean, err) || textfile_double(t, "distance", &f->distance, err) ||
+        textfile_double(t, "cosine", &f->cosine, err) || textfile_end(t, err))
+        return err->status;
+    if (!(f->distance > 0)) return textfile_wrong_number(t, f->distance, "a distance above 0", err);
+    if (!(f->cosine >= 0 && f->cosine <= 1)) return textfile_wrong_number(t, f->cosine, "a cosine from 0 to 1", err);
+    f->id = (int)id;
+    f->pixels = (int)pixels;
+    f->clean = (int)clean;
+    return ST_OK;
+}
+
+enum status view_record_read(struct view_record *r, const char *path, struct err *err)
+{
+    struct textfile t = {0};
+    int64_t version = 0;
+    *r = (struct view_record){0};
+    enum status st = textfile_open(&t, path, err);
+    if (!st) st = textfile_expect_line(&t, "remodel-view-faces", err);
+    if (!st) st = textfile_int(&t, "version", 1, 1, &version, err);
+    if (!st) st = textfile_end(&t, err);
+    while (!st && textfile_next(&t)) {
+        st = array_append(&r->faces, (size_t)r->count, sizeof *r->faces, "faces", err);
+        if (st) break;
+        struct seen_face *f = &r->faces[r->count];
+        *f = (struct seen_face){0};
+        st = read_face(f, &t, r->count ? f[-1].id : 0, err);
+        r->count++;
+    }
+    textfile_release(&t);
+    if (st) view_record_release(r);
+    return st;
+}

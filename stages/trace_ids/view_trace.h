@@ -1,0 +1,43 @@
+/* view_trace.h - a view of the solid model: face and depth of each pixel, depth jumps, clutter. */
+#ifndef REMODEL_VIEW_TRACE_H
+#define REMODEL_VIEW_TRACE_H
+
+#include "common/layers/layered_depth.h"
+#include "common/light/model_rays.h"
+#include "common/model/model_axes.h"
+#include "common/texture/view_ids.h"
+#include "stages/trace_ids/trace_params.h"
+
+/* {0} is the empty state. */
+struct view_trace {
+    const struct model_rays *model;
+    struct view view; /* in the model's frame */
+    int width, height;
+    uint32_t *faces;     /* 1 + index of the face in each pixel; 0: nothing is hit. Owned */
+    double (*planes)[3]; /* of each face: its inverse depth in scene units, 1 / z = a u + b v + c. Owned */
+    bool in_solid;       /* the camera is inside a solid, or on its surface: faces are 0 */
+};
+
+/* view: in the frame of the scene. The model must outlive the trace. */
+enum status view_trace(struct view_trace *t, const struct model_rays *model, const struct model_axes *axes,
+                       const struct view *view, struct err *err);
+void view_trace_release(struct view_trace *t);
+
+static inline double view_trace_inverse_depth(const struct view_trace *t, uint32_t face, double u, double v)
+{
+    const double *p = t->planes[face - 1];
+    return p[0] * u + p[1] * v + p[2];
+}
+
+/* Sets ids->id and z. */
+void view_trace_ids(struct view_ids *ids, const struct view_trace *t);
+
+/* Sets ids->jump. depth: of the view, for the pixels that the view does not have. */
+enum status find_jumps(struct view_ids *ids, const struct view_trace *t, const struct layered_depth *depth,
+                       const struct trace_params *params, struct err *err);
+
+/* Sets ids->clutter. */
+enum status find_clutter(struct view_ids *ids, const struct view_trace *t, const struct layered_depth *depth,
+                         const struct trace_params *params, struct err *err);
+
+#endif
