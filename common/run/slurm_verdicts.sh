@@ -88,7 +88,8 @@ mapfile -t all <"$plan"
 list=
 for i in "${bad[@]}"; do
     # the command of a line: common/run/run_stage.sh MODE STAGE ITEM FOLDER ...
-    read -r -a words <<<"$(sed 's|.*/run_stage.sh ||' <<<"${all[$((i - 1))]#*$'\t'}")"
+    command=${all[$((i - 1))]#*$'\t'}
+    read -r -a words <<<"${command#*/run_stage.sh }"
     log=${words[3]-}/log/${words[1]-}.${words[2]-}.log
     list+="${words[2]-line $i}"$'\t'$(why "$i" "$log")$'\t'$log$'\n'
 done
