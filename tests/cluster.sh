@@ -42,7 +42,6 @@ SlurmdLogFile=$scratch/%n.log
 ReturnToService=2
 SlurmdTimeout=4
 KillWait=2
-SchedulerParameters=sched_interval=1
 MailProg=/bin/true
 SwitchType=switch/none
 MpiDefault=none

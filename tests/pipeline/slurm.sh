@@ -2,7 +2,7 @@
 . tests/lib.sh
 . tests/cluster.sh
 project slurm
-with_cluster
+with_cluster SchedulerParameters=sched_interval=1
 
 photos set --views 4 >/dev/null
 small local; small cluster

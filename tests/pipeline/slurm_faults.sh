@@ -3,7 +3,7 @@
 . tests/lib.sh
 . tests/cluster.sh
 project faults
-with_cluster MaxArraySize=4
+with_cluster SchedulerParameters=sched_interval=1 MaxArraySize=4
 
 # piece FOLDER N COMMAND: a line of a plan; COMMAND runs before the product is written
 piece()
