@@ -26,7 +26,7 @@ prepare()
     done
 }
 # the first view of the room in the middle
-first_of() { echo $(($1 / 24 * 12)); }
+first_of() { local room=$(($1 / 24)); echo $((12 * room)); }
 
 sample() # SERIES VIEWS
 {
