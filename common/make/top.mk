@@ -8,20 +8,23 @@ export REMODEL_PASSED := $(PASSED)
 export REMODEL_STAGES := $(STAGES)
 
 export VIEWS_PER_JOB SLURM_ARGS
+## TO=GOAL: the goal that `make plan` counts up to (what plain make makes)
+export REMODEL_TO = $(call literal,TO)
 dry = $(findstring n,$(filter-out --%,$(firstword -$(MAKEFLAGS))))
 # several goals of a scene follow each other: a run locks it, and takes all cores by itself
 .NOTPARALLEL:
-.PHONY: all list-stages help why check check-long sequences fuzz bench bench-compare regress regress-accept generated deps deps-check deps-bench clean $(GOALS)
+.PHONY: all list-stages help why plan check check-long sequences fuzz bench bench-compare regress regress-accept generated deps deps-check deps-bench clean $(GOALS)
 
 ifeq ($(SCENE),)
 all: deps ## everything a scene asks for; without SCENE builds the programs and runs SCENES, at draft quality by default
 	+@$(BUILD) build
 	+@common/run/run_scenes.sh '$(if $(filter file,$(origin QUALITY)),draft,$(QUALITY))' '$(SCENES)' $(SUB)
 why:    ## what is stale, and because of what
-$(GOALS) why:
+plan:   ## what a run would do: pieces of work, jobs, core-hours, memory, bytes written; TO=GOAL; makes and submits nothing
+$(GOALS) why plan:
 	@echo "make $@ works on a scene: make $@ SCENE=NAME ('make help' lists the scenes)." >&2; exit 2
 else
-all $(GOALS) why: deps
+all $(GOALS) why plan: deps
 	+@$(BUILD) build
 	+@common/run/run_scene.sh '$(SCENE)' '$(S)' '$(O)' '$@' '$(dry)' '$(JOBS)' '$(CORES)' '$(B)/bin' $(SUB)
 endif
@@ -41,7 +44,7 @@ check-long: deps-check ## the tests that take longer: whole runs, the build with
 bench: deps-bench ## measure everything in tests/bench: tables and plots under out/bench
 	+@$(BUILD) bench-build
 	+@rc=0; for b in tests/bench/*.sh; do tests/bench/run "$$(basename $$b .sh)" '$(B)' || rc=1; done; exit $$rc
-bench-%: deps-bench FORCE ## one of them: bench-depth, bench-exr, bench-hdr, bench-moves, bench-render, bench-simulate, bench-solve, bench-unite, bench-vdta
+bench-%: deps-bench FORCE ## one of them: bench-depth, bench-exr, bench-hdr, bench-moves, bench-render, bench-scaling, bench-simulate, bench-solve, bench-unite, bench-vdta
 	+@$(BUILD) bench-build
 	+@tests/bench/run '$*' '$(B)'
 bench-compare: deps-bench ## NAME=exr OLD=REVISION: the same bench on another revision's code, alternating

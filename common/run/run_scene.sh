@@ -11,13 +11,14 @@
 #   prepare_STAGE  makes what must exist before the photos can be read
 #   look_STAGE     runs after the photos have been read
 #   run_STEP       makes a step, in place of what RUN.STEP says
+#   estimate_STAGE  reads the commands of per-view work, one a line, and prints what the stage's --estimate says of it
+#                  (common/base/work_estimate.h): it sets the size of the tasks on a cluster, and `make plan` adds it up
 # They use the variables and functions of this script: scene, folder, S, O, goal, dry, jobs, cores, max_jobs, bin, work, the
-# films of this run in `effects`, auto or all in `choose`; usage, graph, one, farm, farm_frames.
+# films of this run in `effects`, auto or all in `choose`; usage, graph, one, farm, farm_frames, items.
 set -euo pipefail
 scene=$1 S=$2 O=$3 goal=$4 dry=$5 jobs=$6 cores=$7 bin=$8; shift 8
 make=("$@")
 folder=scenes/$scene
-export VIEWS_PER_JOB=${VIEWS_PER_JOB:-4}
 
 usage() { echo "$*" >&2; exit 2; }
 # graph ...: the graph of products, with this run's films
@@ -25,8 +26,13 @@ graph() { "${make[@]}" PHASE=graph EFFECTS="${effects[*]}" CHOOSE="$choose" "$@"
 # one TARGET...: made here, with all cores
 one() { graph $quiet -j1 T="$cores" "$@"; }
 
-# farm STAGE TARGET [THREADS] [LINES]: the stale products of a per-view stage, here or on the cluster, where a task has LINES of
-# the plan, VIEWS_PER_JOB by default, and THREADS cores
+# items: of commands, one a line, the pieces of work
+items() { sed -nE 's|.*/run_stage.sh [a-z]+ [a-z_]+ ([^ ]+) .*|\1|p'; }
+# work_of STAGE: of commands, one a line, "ITEMS SECONDS MIB BYTES LONGEST"; nothing where the stage does not say. What makes an
+# estimate fail makes the stage fail too, which then says why
+work_of() { ! is_function "estimate_$1" || { "estimate_$1" 2>/dev/null || true; } | sed -n 's/^estimate //p'; }
+# farm STAGE TARGET [THREADS] [LINES]: the stale products of a per-view stage, here or on the cluster, where a task has THREADS
+# cores and LINES of the plan; otherwise VIEWS_PER_JOB, or what the stage's estimate says
 farm()
 {
     local plan=$work/$1.plan count wide threads
@@ -35,7 +41,8 @@ farm()
     count=$(wc -l <"$plan")
     [ "$count" -gt 0 ] || return 0
     if [ "$jobs" = slurm ]; then
-        REMODEL_BIN=$bin common/run/slurm.sh "$1" "$plan" "$O/jobs/$1" "${4:-$VIEWS_PER_JOB}" "${3:-1}"
+        # shellcheck disable=SC2046 # five numbers, or none
+        REMODEL_BIN=$bin common/run/slurm.sh "$1" "$plan" "$O/jobs/$1" "${3:-1}" "${4:-${VIEWS_PER_JOB-}}" $(cut -f2- "$plan" | work_of "$1")
         graph -q "$2" || { echo "$1: the cluster's jobs have ended, but something of '$2' is still stale; see make why SCENE=$scene." >&2; exit 1; }
         return
     fi
@@ -83,6 +90,9 @@ case " $REMODEL_PRODUCTS $goal " in
 *) [ -n "$REMODEL_EFFECT_NAMED" ] || effects=() choose= ;;
 esac
 hooks check
+# a plan is a dry run whose commands are counted
+planning=
+[ "$goal" != plan ] || { planning=yes dry=n goal=${REMODEL_TO:-all}; }
 
 if [ ! -e "$folder/scene.mk" ]; then
     [ -n "${REMODEL_PHOTOS-}" ] || usage "There is no $folder/scene.mk. Give the folder of photos to begin: make PHOTOS=DIR SCENE=$scene"
@@ -99,7 +109,7 @@ if [ "$dry" != n ] && [ "$goal" != why ]; then
         exit 1
     fi
 fi
-if [ "$dry" != n ]; then
+if [ "$dry" != n ] || [ -n "$planning" ]; then
     work=$(mktemp -d "${TMPDIR:-/tmp}/remodel.XXXXXX")
     trap 'rm -rf "$work"' EXIT
 fi
@@ -112,6 +122,7 @@ if [ "$goal" = why ]; then
     exit 0
 fi
 [ "$goal" != all ] || goal=report
+[ -z "$planning" ] || . common/run/plan_scene.sh
 if [ "$dry" = n ]; then
     [ -e "$O/views/views.mk" ] || echo "# not known before structure from motion has run: which views there are"
     first=()

@@ -1,62 +1,80 @@
 #!/usr/bin/env bash
-# slurm.sh STAGE PLAN FOLDER LINES CPUS - runs a plan's lines as one Slurm job array and waits for it.
+# slurm.sh STAGE PLAN FOLDER CPUS LINES [ITEMS SECONDS MIB BYTES LONGEST] - runs a plan's lines as Slurm job arrays.
 #
-# PLAN: lines of "PRODUCTS<tab>COMMAND", frozen now: jobs do not look at the graph again. LINES of them make a task of CPUS
-# cores. Nothing is taken on trust: each line must have left its verdict and whole products. A task that Slurm starts
-# again on another node skips the lines whose verdict is good.
+# PLAN: lines of "PRODUCTS<tab>COMMAND", frozen now: jobs do not look at the graph again. A task has CPUS cores; LINES of the
+# plan make one, or what job_size.sh finds where LINES is empty. The last five are the stage's estimate; it sets memory and
+# time limit of a task. SLURM_ARGS comes after them, so that a user's word counts.
+#
+# Nothing is taken on trust: each line needs a good verdict, which its task writes after `verify` has read the products on the
+# node. A task that Slurm starts again on another node skips the lines that have one. Afterwards FOLDER/failed.txt lists
+# the pieces of work that were not made, why, and their logs; there is no such file if all were. The next run makes those.
+# Where a task ran out of time or memory, the next run gives twice as much.
+#
+# FOLDER: tasks/N lines of task N, verdicts/N.ATTEMPT, N.out its words, limits "MIB MINUTES", jobs, reserve, failed.txt
 set -euo pipefail
-stage=$1 plan=$2 folder=$3 lines=$4 cpus=$5
+stage=$1 plan=$2 folder=$3 cpus=$4 lines=$5; shift 5
+here=$(dirname "$0")
 command -v sbatch >/dev/null || { echo "JOBS=slurm: sbatch is not there. Install slurm-client, or run with JOBS=local." >&2; exit 2; }
 
-rm -rf "$folder"; mkdir -p "$folder"
-cp "$plan" "$folder/plan"
-count=$(wc -l <"$folder/plan")
+# what a run left behind that was killed may still be at work
+if [ -e "$folder/jobs" ]; then
+    left=$(paste -sd, "$folder/jobs")
+    # shellcheck disable=SC2046 # a list of numbers
+    scancel --quiet --name="remodel-$stage" $(cat "$folder/jobs") 2>/dev/null || true
+    while [ -n "$(squeue -h --name="remodel-$stage" -j "$left" -o '%i' 2>/dev/null)" ]; do sleep 0.5; done
+fi
+read -r lines mib minutes <<<"$("$here/job_size.sh" "$cpus" "$lines" "$@")"
+if [ -e "$folder/failed.txt" ] && [ "$minutes" -gt 0 ]; then
+    read -r old_mib old_minutes <"$folder/limits"
+    ! grep -q 'ran out of time' "$folder/failed.txt" || minutes=$((minutes > 2 * old_minutes ? minutes : 2 * old_minutes))
+    ! grep -q 'ran out of memory' "$folder/failed.txt" || mib=$((mib > 2 * old_mib ? mib : 2 * old_mib))
+fi
+rm -rf "$folder"; mkdir -p "$folder/tasks" "$folder/verdicts"
+echo "$mib $minutes" >"$folder/limits"
+awk '{ print NR "\t" $0 }' "$plan" | split -l "$lines" -d -a 6 - "$folder/tasks/"
+count=$(wc -l <"$plan")
 tasks=$(((count + lines - 1) / lines))
-cat >"$folder/task" <<TASK
-#!/usr/bin/env bash
-set -u
-first=\$((SLURM_ARRAY_TASK_ID * $lines + 1))
-for ((i = first; i < first + $lines && i <= $count; i++)); do
-    [ "\$(cat "$folder/\$i.rc" 2>/dev/null)" != 0 ] || continue
-    command=\$(sed -n "\${i}p" "$folder/plan" | cut -f2)
-    bash -c "\$command"
-    echo \$? >"$folder/\$i.rc.\$\$" && mv "$folder/\$i.rc.\$\$" "$folder/\$i.rc"
-done
-TASK
+piece_kib=$(awk -v items="${1:-0}" -v bytes="${4:-0}" 'BEGIN { k = items > 0 ? int(bytes / items / 1024) : 0; print (k > 1024 ? k : 1024) }')
 
-# shellcheck disable=SC2086 # SLURM_ARGS is a list of options
-id=$(sbatch --parsable --array=0-$((tasks - 1)) --cpus-per-task="$cpus" --job-name="remodel-$stage" --chdir="$PWD" \
-    --output="$folder/%a.out" --export=ALL --requeue --open-mode=append ${SLURM_ARGS-} "$folder/task")
-id=${id%%;*}
-trap 'scancel "$id" 2>/dev/null || true' INT TERM
-echo "$stage: job $id of $tasks tasks, $count pieces of work" >&2
-began=$(date +%s) shown=-1
-while state=$(squeue -h -r -j "$id" -o '%T' 2>&1) || [[ $state != *[Ii]nvalid\ job\ id* ]]; do
+# room for failed.txt, should the disk be full by then
+head -c $((count * 300)) /dev/zero >"$folder/reserve"
+
+# an index must be below MaxArraySize, so that a large plan is several arrays
+most=$(scontrol show config | sed -nE 's/^MaxArraySize *= *([0-9]+).*/\1/p' || true)
+most=${most:-1001}
+limits=()
+[ "$mib" = 0 ] || limits=(--mem="${mib}M" --time="$minutes")
+ids=()
+trap '[ "${#ids[@]}" = 0 ] || scancel "${ids[@]}" 2>/dev/null || true' INT TERM
+for ((first = 0; first < tasks; first += most)); do
+    last=$((tasks - first < most ? tasks - first - 1 : most - 1))
+    # shellcheck disable=SC2086 # SLURM_ARGS is a list of options
+    id=$(sbatch --parsable --array=0-"$last" --cpus-per-task="$cpus" --job-name="remodel-$stage" --chdir="$PWD" \
+        --output="$folder/$first+%a.out" --export=ALL --requeue --open-mode=append "${limits[@]}" ${SLURM_ARGS-} \
+        "$here/slurm_task.sh" "$folder" "$first" "$piece_kib" "${REMODEL_BIN:?}") ||
+        { echo "$stage: sbatch refused the job array; its words are above." >&2
+          [ "${#ids[@]}" = 0 ] || scancel "${ids[@]}"; exit 1; }
+    ids+=("${id%%;*}")
+    echo "${id%%;*}" >>"$folder/jobs"
+done
+all=$(IFS=,; echo "${ids[*]}")
+echo "$stage: job $all of $tasks tasks, $count pieces of work$([ "$mib" = 0 ] || echo ", $lines a task with $mib MiB and $minutes minutes")" >&2
+
+# waits until no task is left; asks less and less often, so that many runs do not burden the scheduler
+began=$(date +%s) shown=-1 pause=0.5
+while state=$(squeue -h -j "$all" -o '%i %r' 2>&1) || [[ $state != *[Ii]nvalid\ job\ id* ]]; do
     [ -n "$state" ] || break
-    done=$(find "$folder" -name '*.rc' | wc -l)
+    # Slurm holds a task whose launch failed on its node; nobody would release it
+    held=$(sed -n 's/ launch failed requeued held$//p' <<<"$state")
+    # shellcheck disable=SC2086 # a list of tasks
+    [ -z "$held" ] || { echo "$held" >>"$folder/held"; scancel $held 2>/dev/null || true; }
+    done=$(cat "$folder"/verdicts/* 2>/dev/null | grep -c ' 0 end$' || true)
     if [ "$done" -ne "$shown" ]; then
         shown=$done
         left=$((($(date +%s) - began) * (count - done) / (done > 0 ? done : 1)))
         printf '%s %d/%d on the cluster%s\n' "$stage" "$done" "$count" "$([ "$done" = 0 ] || printf ', about %d:%02d left' $((left / 60)) $((left % 60)))" >&2
     fi
-    sleep 0.5
+    sleep "$pause"
+    pause=$(awk -v p="$pause" 'BEGIN { p *= 1.05; print (p < 10 ? p : 10) }')
 done
-# on a shared file system what a node wrote may show a little later: give it time before judging
-bad=0
-for ((i = 1; i <= count; i++)); do
-    for ((try = 0; try < 10; try++)); do [ -e "$folder/$i.rc" ] && break; [ "$try" -lt 9 ] && sleep 0.2; done
-    products=$(sed -n "${i}p" "$folder/plan" | cut -f1)
-    verdict=$(cat "$folder/$i.rc" 2>/dev/null || echo none)
-    if [ "$verdict" != 0 ]; then
-        bad=$((bad + 1))
-        [ "$bad" -gt 3 ] || { echo "$stage: line $i of $folder/plan ($products): $([ "$verdict" = none ] && echo 'its job ended without a verdict (node lost, cancelled, or out of time or memory)' || echo "exit $verdict")"; tail -n 6 "$folder/$(((i - 1) / lines)).out" 2>/dev/null | sed 's/^/    /'; } >&2
-    else
-        files=()
-        for p in $products; do files+=(--file "$p"); done
-        "${REMODEL_BIN:?}/verify" "${files[@]}" 2>>"$folder/verify.log" || { tail -n 2 "$folder/verify.log" >&2; bad=$((bad + 1)); }
-    fi
-done
-if [ "$bad" -gt 0 ]; then
-    echo "$stage: $bad of $count pieces of work failed on the cluster. What was made is kept; run make again to redo the rest." >&2
-    exit 1
-fi
+"$here/slurm_verdicts.sh" "$stage" "$plan" "$folder" "$lines" "$most" "$all"

@@ -8,17 +8,20 @@
 #include "common/base/log.h"
 #include "common/base/parallel.h"
 #include "common/base/textfile.h"
+#include "common/base/work_estimate.h"
 #include "stages/segment_depth/neighbours.h"
 
 /* User seconds and peak memory per view, measured with --threads 1 on one core of a 2-core machine. Views of 0.39
  * megapixels: 11 core-seconds per megapixel in the first round and 8 in the second with 4 neighbours, 14 and 10 with 8
- * of which each segment is matched with 4; 250 MiB per megapixel with 4. */
+ * of which each segment is matched with 4; 250 MiB per megapixel with 4. Layers and segments take 4.9 (loft) to 8.4
+ * (still-life) bytes per pixel. */
 static const struct {
     double seconds, seconds_neighbour; /* per megapixel: over-segmentation, features, sweep, layers */
     double pass, pass_neighbour; /* per megapixel and pass with segments of 64 pixels; x 8 / sqrt(segment_pixels) */
     double later;                /* cost of a later round's passes relative to the first round's */
     double mib, mib_megapixel, mib_neighbour; /* the program itself; per megapixel; per megapixel and neighbour */
-} cost = {1, 0.45, 0.6, 0.62, 0.5, 20, 110, 28};
+    double bytes;                             /* per pixel */
+} cost = {1, 0.45, 0.6, 0.62, 0.5, 20, 110, 28, 8.5};
 
 struct depth_work depth_work(double pixels, int neighbours, bool first, const struct segment_params *params)
 {
@@ -28,6 +31,7 @@ struct depth_work depth_work(double pixels, int neighbours, bool first, const st
         .core_seconds = mp * (cost.seconds + cost.seconds_neighbour * neighbours +
                               passes * (first ? 1 : cost.later) * (cost.pass + cost.pass_neighbour * matched)),
         .mib = cost.mib + mp * (cost.mib_megapixel + cost.mib_neighbour * neighbours),
+        .bytes = pixels * cost.bytes,
     };
 }
 
@@ -99,7 +103,8 @@ struct tally {
     int views[MAX_ROUNDS]; /* by round */
     int width, height, min_neighbours, max_neighbours;
     bool sizes_differ;
-    double pixels, core_seconds, mib; /* pixels, mib: maxima; core_seconds: sum */
+    double pixels; /* maximum */
+    struct work_estimate work;
 };
 
 static void tally_add(struct tally *t, const struct view *v, int round, struct depth_work work, int neighbours)
@@ -111,8 +116,7 @@ static void tally_add(struct tally *t, const struct view *v, int round, struct d
     if (pixels > t->pixels) t->width = v->width, t->height = v->height, t->pixels = pixels;
     if (first || neighbours < t->min_neighbours) t->min_neighbours = neighbours;
     if (neighbours > t->max_neighbours) t->max_neighbours = neighbours;
-    t->core_seconds += work.core_seconds;
-    t->mib = fmax(t->mib, work.mib);
+    work_estimate_add(&t->work, work.core_seconds, work.mib, work.bytes);
 }
 
 static enum status read_list(struct tally *t, const char *list, const struct camera_set *set,
@@ -121,7 +125,7 @@ static enum status read_list(struct tally *t, const char *list, const struct cam
     struct textfile file = {0};
     enum status st = textfile_open(&file, list, err);
     while (!st && textfile_next(&file)) {
-        struct depth_work work = {0, 0};
+        struct depth_work work = {0, 0, 0};
         char *name;
         int64_t round = 0;
         int neighbours = 0, view_idx = -1;
@@ -167,23 +171,23 @@ enum status estimate_print(FILE *to, const char *list, const struct camera_set *
     fprintf(to, "depth: %d view%s of %s%d x %d, %s neighbour%s, %d round%s: ", views, views == 1 ? "" : "s",
             t.sizes_differ ? "up to " : "", t.width, t.height, neighbours, t.max_neighbours == 1 ? "" : "s", rounds,
             rounds == 1 ? "" : "s");
-    format_time(time, t.core_seconds / (jobs ? cores : 1));
-    format_memory(memory, t.mib * (jobs ? jobs : 1));
-    if (!jobs) {
-        fprintf(to, "about %s of one core in all, up to %s a view (SLURM_ARGS=\"--mem=%.0fM\" asks for it)\n", time,
-                memory, ceil(round_up(1.25 * t.mib)));
-        return ST_OK;
-    }
-    fprintf(to, "about %s on %d core%s, %s at a time\n", time, cores, cores == 1 ? "" : "s", memory);
-    memory_warning(warning, t.mib * jobs);
+    format_time(time, t.work.seconds / (jobs ? cores : 1));
+    format_memory(memory, t.work.mib * (jobs ? jobs : 1));
+    *warning = '\0';
+    if (jobs) {
+        fprintf(to, "about %s on %d core%s, %s at a time\n", time, cores, cores == 1 ? "" : "s", memory);
+        memory_warning(warning, t.work.mib * jobs);
+    } else
+        fprintf(to, "about %s of one core in all, up to %s a view\n", time, memory);
     if (*warning) fprintf(to, "depth: warning: %s.\n", warning);
+    work_estimate_print(to, &t.work);
     return ST_OK;
 }
 
 enum status estimate_log(const struct camera_set *set, int view_idx, bool first, const struct segment_params *params,
                          struct err *err)
 {
-    struct depth_work work = {0, 0};
+    struct depth_work work = {0, 0, 0};
     char time[32], memory[32], warning[512];
     int neighbours = 0;
     enum status st = estimate_view(&work, &neighbours, set, view_idx, first, params, err);

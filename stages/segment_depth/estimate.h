@@ -10,7 +10,7 @@
 #include "stages/segment_depth/segment_params.h"
 
 struct depth_work {
-    double core_seconds, mib; /* of one view in one round; mib: peak memory */
+    double core_seconds, mib, bytes; /* of one view in one round; mib: peak memory; bytes: written */
 };
 
 /* pixels: of the view; neighbours: number of views that it is matched with; first: whether this is the first round. */
@@ -21,8 +21,8 @@ enum status estimate_view(struct depth_work *work, int *neighbours, const struct
                           bool first, const struct segment_params *params, struct err *err);
 
 /* Prints the work of the views in a list: a text file with a line "VIEW ROUND" for every view and round that is still
- * to be made. jobs: number of views made at a time, each with all threads; 0: on a cluster. Prints nothing for an empty
- * list. */
+ * to be made. First a sentence, then the line of work_estimate.h. jobs: number of views made at a time, each with all
+ * threads; 0: on a cluster. Prints nothing for an empty list. */
 enum status estimate_print(FILE *to, const char *list, const struct camera_set *set, int jobs,
                            const struct segment_params *params, struct err *err);
 

@@ -23,24 +23,40 @@ report_given_depth()
     [ -z "$of_none" ] || echo "warning: DEPTH=$REMODEL_DEPTH has files that belong to no view:$of_none; $O/views/views.mk lists the views." >&2
 }
 
-# estimate_depth LAST: time and memory of what is stale in all rounds up to LAST
-estimate_depth()
+# views_and_rounds LAST: of commands, one a line, "VIEW ROUND" of those that make depth; LAST: the last round
+views_and_rounds()
 {
-    local list=$work/depth.list wide
-    # where this fails, making it will fail and say why
-    graph -n -s depth 2>/dev/null | awk -v last="$1" '
+    awk -v last="$1" '
         {
             view = out = ""
             for (i = 2; i < NF; i++) { if ($i == "segment_depth" && $(i - 2) ~ /run_stage.sh$/) view = $(i + 1); if ($i == "--out") out = $(i + 1) }
             if (view == "") next
             print view, match(out, /\/round[0-9]+\//) ? substr(out, RSTART + 6, RLENGTH - 7) : last
-        }' >"$list" || return 0
+        }'
+}
+last_round() { sed -n 's/^rounds = //p' "$O/slice/segment_depth.cfg"; }
+# ask_depth LIST WIDE: what segment_depth says of the views and rounds in LIST, WIDE at a time; 0: on a cluster
+ask_depth()
+{
+    "$bin/segment_depth" --config "$O/slice/segment_depth.cfg" --threads $(($2 ? cores / $2 : 1)) --views "$O/views" \
+        --estimate "$1" --jobs "$2"
+}
+estimate_segment_depth()
+{
+    views_and_rounds "$(last_round)" >"$work/pieces.list"
+    ask_depth "$work/pieces.list" 0
+}
+# announce_depth LAST: time and memory of what is stale in all rounds up to LAST
+announce_depth()
+{
+    local list=$work/depth.list wide
+    # where this fails, making it will fail and say why
+    graph -n -s depth 2>/dev/null | views_and_rounds "$1" >"$list" || return 0
     [ -s "$list" ] || return 0
     wide=$(cut -d' ' -f2 "$list" | sort | uniq -c | awk '$1 > n { n = $1 } END { print n }')
     wide=$((wide < max_jobs ? wide : max_jobs))
     [ "$jobs" != slurm ] || wide=0
-    "$bin/segment_depth" --config "$O/slice/segment_depth.cfg" --threads $((wide ? cores / wide : 1)) --views "$O/views" \
-        --estimate "$list" --jobs "$wide" >&2 2>"$work/words" || cat "$work/words" >&2
+    ask_depth "$list" "$wide" 2>"$work/words" | sed '/^estimate /d' >&2 || cat "$work/words" >&2
     [ "$1" -lt 2 ] || echo "depth: it takes less if some views need no estimate in the third round or later." >&2
 }
 
@@ -62,8 +78,8 @@ run_depth()
 {
     local last round
     report_given_depth
-    last=$(sed -n 's/^rounds = //p' "$O/slice/segment_depth.cfg")
-    estimate_depth "$last"
+    last=$(last_round)
+    announce_depth "$last"
     # rounds in which no view needs an estimate only copy
     for round in $(seq 0 "$last"); do farm segment_depth "depth-round$round"; done
     one depth
