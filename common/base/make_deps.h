@@ -5,7 +5,6 @@
 #include "common/base/err.h"
 
 /* Writes "TARGET: FILES", and an empty rule for each file, so that make does not stop at one that has been removed. */
-enum status make_deps_write(const char *path, const char *target, const char *const *files, int count,
-                            struct err *err);
+enum status make_deps_write(const char *path, const char *target, const char *const *files, int count, struct err *err);
 
 #endif

@@ -18,7 +18,7 @@
  *
  * A segment of little confidence (below min_confidence) has inherited its depth from its neighbours. On plain walls,
  * which give nothing to match, that depth is right most of the time: such pixels are nearly as often clean as those of
- * sure depth (docs/decisions/47-clutter.md), and without them a white room would have no texture.
+ * sure depth (docs/decisions/0028-clutter.md), and without them a white room would have no texture.
  *
  * Clutter narrower than 2 min_clutter + 1 px is noise of the depth and becomes 0.5 (opening); what is left grows by
  * clutter_margin, because outlines of segments are off by a pixel or two, and blurred. Pixels that the view does not have are 1, with
