@@ -4,4 +4,4 @@ PHOTOS := out/loft/simulated/photos
 LRI := out/loft/simulated/lri
 LRI_SFM := out/loft/simulated/truth/lri
 TRUTH := out/loft/simulated/truth
-PRODUCTS := model
+PRODUCTS := model textures

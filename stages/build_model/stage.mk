@@ -37,7 +37,7 @@ $(1)/overlay/$(2).jpg: $(1)/model.txt $(AXES) $(CAMERAS) $(O)/views/lenses.txt $
 	  --views $(O)/views --photos $$(PICTURES) --records $(S)/photos --out $$@)
 endef
 $(foreach m,$(MODELS),$(foreach p,$(VIEWED),$(eval $(call overlay_rule,$(m),$(p)))))
-MODELLED := $(filter model,$(PRODUCTS))
+MODELLED := $(filter model textures,$(PRODUCTS))
 MEASURED += $(call $(if $(and $(MODELLED),$(MODELS)),made,wildcard),$(AXES) $(if $(MODELS),$(O)/model/plan.txt))
 SHOWN_ALWAYS += $(call $(if $(MODELLED),made,wildcard),$(foreach m,$(MODELS),$(call model_files,$(m))) $(OVERLAYS))
 endif

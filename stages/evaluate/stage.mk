@@ -16,8 +16,6 @@ RENDERED_FOLDER := $${REMODEL_RENDERED:-$(O)/rendered}
 # models of edits, and the irradiance that a relighting program wrote
 EDITED_MODELS := $(if $(value REMODEL_TRUTH),$(call $(if $(and $(MODELLED),$(MODELS)),made,wildcard),$(MODELS:%=%/model.txt)) \
   $(wildcard $(foreach e,exr txt,$(addprefix $(O)/relight/,irradiance.txt irradiance/*.$(e) edited-*/irradiance/*.$(e)))))
-# atlases that were baked
-ATLASES := $(wildcard $(O)/vdta/*/atlas.txt $(O)/vita/atlas.txt)
 .PHONY: evaluate
 evaluate: $(O)/metrics.tsv
 $(O)/metrics.tsv: $(CAMERAS) $(O)/views/lenses.txt $(MEASURED) $(HELD_CAMERAS) $(HELD_EXR) $(HELD_FRAMES) \

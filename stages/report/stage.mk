@@ -11,7 +11,7 @@ ifdef GRAPH
 .PHONY: report
 report: $(O)/index.html
 $(O)/index.html: $(if $(PAIR),$(M)/video.mp4,$(CAMERAS) $(SHOWN)) $(SHOWN_ALWAYS) $(S)/photos/list.txt \
-  $(STAGES:%=$(O)/slice/%.cfg) $(wildcard $(O)/vdta/*/atlas.txt $(O)/vita/atlas.txt) $(call needs,report)
+  $(STAGES:%=$(O)/slice/%.cfg) $(call needs,report)
 	$(call stage,report,page,$(O),--scene $(SCENE) --folder $(O) --shared $(S) --photos $(PICTURES) \
 	  --defaults configs/default.cfg --stages '$(STAGES)' --out $@)
 endif
