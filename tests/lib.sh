@@ -68,6 +68,27 @@ parallax_side = 48
 CFG
 }
 
+# boxed SCENE PRODUCTS: a scene of set/photos inside a closed room of 60 x 60 x 20, modelled, with a box on its floor; an edit removes the box
+boxed()
+{
+    small "$1"
+    printf 'PRODUCTS := %s\nPHOTOS := set/photos\n' "$2" >"scenes/$1/scene.mk"
+    mkdir -p "scenes/$1/edits"
+    cat >"scenes/$1/model.txt" <<'END'
+remodel-script 1
+set ceiling 20
+set slab 1
+wall south from 30 -30 to -30 -30 thickness 1
+wall west from -30 -30 to -30 30 thickness 1
+wall north from -30 30 to 30 30 thickness 1
+wall east from 30 30 to 30 -30 thickness 1
+join south west north east south
+room hall south west north east
+box block from -2 -2 to 2 2 top 0.01
+END
+    printf 'remodel-script 1\nremove block\n' >"scenes/$1/edits/bare.txt"
+}
+
 # tiny SCENE: writes a scene.cfg for films that are as small as possible, of three frames
 tiny()
 {

@@ -200,8 +200,7 @@ bool atlas_tile_project(const struct atlas_tile *t, struct vec3 p, double *x, do
     return *x >= t->x && *y >= t->y && *x <= t->x + t->width && *y <= t->y + t->height;
 }
 
-/* The first tile whose face is not below `face`. */
-static int first_tile(const struct atlas *a, int face)
+int atlas_first_tile(const struct atlas *a, int face)
 {
     int low = 0, high = a->tile_count;
     while (low < high) {
@@ -218,7 +217,7 @@ const struct atlas_tile *atlas_find(const struct atlas *a, int face, struct vec3
 {
     const struct atlas_tile *found = NULL;
     double deepest = -1;
-    for (int i = first_tile(a, face); i < a->tile_count && a->tiles[i].face == face; i++) {
+    for (int i = atlas_first_tile(a, face); i < a->tile_count && a->tiles[i].face == face; i++) {
         const struct atlas_tile *t = &a->tiles[i];
         double px, py;
         if (!atlas_tile_project(t, p, &px, &py)) continue;

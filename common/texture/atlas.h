@@ -86,6 +86,8 @@ enum status atlas_read(struct atlas *a, const char *folder, struct err *err);
  * than 1 where there is a source and 0 elsewhere. */
 enum status atlas_page_read(struct atlas_page *p, const struct atlas *a, int page, const char *folder, struct err *err);
 
+/* The first tile whose face is not below `face`; tile_count: none. The tiles of a face follow each other. */
+int atlas_first_tile(const struct atlas *a, int face);
 /* The tile of a face that shows a point of the model's frame, and the page pixel there; NULL: none does. Of several tiles
  * it is the one in which the pixel lies farthest from the rectangle's edges. So tiles that share a border texel meet at
  * its centre, and their look-ups there are equal. Tiles must be in order, as atlas_read() leaves them. */

@@ -23,23 +23,9 @@ void loaded_atlas_release(struct loaded_atlas *a)
     *a = (struct loaded_atlas){0};
 }
 
-/* The first tile of a face, or of the next face; tiles are in order of face. */
-static int first_tile(const struct atlas *a, int face)
-{
-    int low = 0, high = a->tile_count;
-    while (low < high) {
-        const int middle = low + (high - low) / 2;
-        if (a->tiles[middle].face < face)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low;
-}
-
 bool loaded_atlas_look_up(float rgb[3], const struct loaded_atlas *a, int face, struct vec3 p)
 {
-    for (int i = first_tile(&a->atlas, face); i < a->atlas.tile_count && a->atlas.tiles[i].face == face; i++) {
+    for (int i = atlas_first_tile(&a->atlas, face); i < a->atlas.tile_count && a->atlas.tiles[i].face == face; i++) {
         const struct atlas_tile *t = &a->atlas.tiles[i];
         double x, y;
         if (!atlas_tile_project(t, p, &x, &y)) continue;

@@ -2,23 +2,7 @@
 . tests/lib.sh
 project bakes
 photos set >/dev/null
-small t
-echo 'PRODUCTS := textures' >scenes/t/scene.mk
-echo 'PHOTOS := set/photos' >>scenes/t/scene.mk
-mkdir -p scenes/t/edits
-cat >scenes/t/model.txt <<'END'
-remodel-script 1
-set ceiling 20
-set slab 1
-wall south from 30 -30 to -30 -30 thickness 1
-wall west from -30 -30 to -30 30 thickness 1
-wall north from -30 30 to 30 30 thickness 1
-wall east from 30 30 to 30 -30 thickness 1
-join south west north east south
-room hall south west north east
-box block from -2 -2 to 2 2 top 0.01
-END
-printf 'remodel-script 1\nremove block\n' >scenes/t/edits/bare.txt
+boxed t textures
 m() { make -s DEPS=manual PHOTOS=set/photos SFM=set/model SCENE=t "$@" >log 2>&1 || { cat log; fail "make $*"; }; }
 m textures
 O=out/t
