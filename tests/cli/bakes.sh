@@ -26,7 +26,7 @@ every_photo_has_an_atlas_and_the_model_has_one()
 {
     local n; n=$(awk '!/^#/ && NF > 2 { print $2 }' $O/views/lenses.txt | sort -u | wc -l)
     [ "$(ls $O/vdta/*/atlas.txt | wc -l)" = "$n" ] || fail "wanted $n atlases"
-    for f in $O/vdta/*/atlas.txt $O/vita/atlas.txt; do
+    for f in "$O"/vdta/*/atlas.txt $O/vita/atlas.txt; do
         grep -q '^tile ' "$f" || fail "$f: no tile"
         "$B/bin/verify" --file "$f" || fail "$f is not whole"
     done

@@ -39,6 +39,19 @@ chunks_of_one_and_of_seven_give_the_same_bytes()
     done
 }
 
+atlases_baked_on_the_cluster_are_those_of_a_local_run()
+{
+    boxed flat textures; boxed farm textures
+    make -s DEPS=manual SFM=set/model SCENE=flat textures >log 2>&1 || { cat log; fail "local run"; }
+    for lines in 1 7; do
+        rm -rf out/farm/vdta
+        make -s DEPS=manual SFM=set/model SCENE=farm JOBS=slurm VIEWS_PER_JOB=$lines textures >log 2>&1 || { cat log; fail "chunks of $lines"; }
+        grep -q "bake_vdta: job .* of $((lines == 1 ? 4 : 1)) tasks" log || { cat log; fail "VIEWS_PER_JOB=$lines does not cut the array of bakes"; }
+        diff -r -x '*.d' out/flat/vdta out/farm/vdta || fail "the cluster gives other atlases"
+    done
+    diff -r out/flat/vita out/farm/vita
+}
+
 brackets_are_merged_on_the_cluster()
 {
     photos bracketed --brackets 3 --views 3 >/dev/null
@@ -84,5 +97,6 @@ a_cancelled_job_fails_the_run_and_is_redone()
     depth_is_that_of_local
 }
 
-for t in the_cluster_gives_the_bytes_of_a_local_run chunks_of_one_and_of_seven_give_the_same_bytes brackets_are_merged_on_the_cluster a_failed_task_fails_the_run_and_is_redone \
+for t in the_cluster_gives_the_bytes_of_a_local_run chunks_of_one_and_of_seven_give_the_same_bytes \
+    atlases_baked_on_the_cluster_are_those_of_a_local_run brackets_are_merged_on_the_cluster a_failed_task_fails_the_run_and_is_redone \
     a_cancelled_job_fails_the_run_and_is_redone; do run "$t"; done
