@@ -8,7 +8,9 @@
  *         IDS/index.txt                                 which views show a face
  *         REVEAL/VIEW.exr                               what the edits reveal to the viewpoint's views
  * writes  OUT/PHOTO/page0.exr, ..., atlas.txt           an atlas for each photo
- *         DEPS                                          make dependencies: the views that were read */
+ *         DEPS                                          make dependencies: the views that were read
+ *
+ * --estimate prints what viewpoints will take instead. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,7 +18,7 @@
 #include "common/base/cli.h"
 #include "common/base/file_path.h"
 #include "common/base/log.h"
-#include "stages/bake_vdta/viewpoint.h"
+#include "stages/bake_vdta/estimate.h"
 
 _Static_assert(offsetof(struct vdta_params, texture) == 0, "the table below has offsets into struct texture_params");
 static const struct param vdta_param_table[] = {
@@ -33,7 +35,7 @@ static enum status check_params(const void *values, struct err *err)
 }
 
 struct files {
-    const char *model, *axes;
+    const char *model, *axes, *estimate;
     struct cli_list photos;
 };
 
@@ -65,6 +67,7 @@ static void release_scene(struct bake_scene *s)
 static enum status bake_all(struct bake_scene *s, const struct files *f, struct provenance *prov, struct err *err)
 {
     enum status st = read_scene(s, f, prov, err);
+    if (!st && f->estimate) st = estimate_print(stdout, f->estimate, s, err);
     for (int i = 0; !st && i < f->photos.count; i++) st = viewpoint_bake(s, f->photos.items[i], prov, err);
     release_scene(s);
     return st;
@@ -82,17 +85,21 @@ int main(int argc, char **argv)
         CLI_STR("views", &scene.views, CLI_REQUIRED, "folder of cameras and rectified views"),
         CLI_STR("ids", &scene.ids, CLI_REQUIRED, "folder of the faces that each view shows, and of their index"),
         CLI_STR("reveal", &scene.reveal, CLI_REQUIRED, "folder of what the edits reveal to each view"),
-        CLI_LIST("photo", &f.photos, CLI_REQUIRED, "viewpoint to bake, as a photo's id; repeat for several"),
+        CLI_LIST("photo", &f.photos, CLI_OPTIONAL, "viewpoint to bake, as a photo's id; repeat for several"),
         CLI_STR("out", &scene.out, CLI_REQUIRED, "folder in which each viewpoint gets a folder"),
         CLI_STR("deps", &scene.deps, CLI_OPTIONAL,
                 "make dependencies to write, with one --photo: the views that were read"),
+        CLI_STR("estimate", &f.estimate, CLI_OPTIONAL,
+                "file with a photo on each line: bakes nothing, but prints the time and memory that these will take"),
         CLI_PARAMS(vdta_param_table, &params, check_params),
         CLI_END,
     };
     struct provenance prov = {0};
     struct err err = ERR_INIT;
     const enum cli_verdict verdict = cli_parse(argc, argv, "bake_vdta", opts, &prov, &err);
-    if (verdict == CLI_RUN && scene.deps && f.photos.count > 1)
+    if (verdict == CLI_RUN && !f.estimate == !f.photos.count)
+        err_set(&err, ST_USAGE, "give --photo, or else --estimate.");
+    else if (verdict == CLI_RUN && scene.deps && f.photos.count > 1)
         err_set(&err, ST_USAGE, "--deps is for one --photo, but %d were given.", f.photos.count);
     else if (verdict == CLI_RUN)
         bake_all(&scene, &f, &prov, &err);

@@ -45,7 +45,7 @@ bytes_do_not_depend_on_threads()
 
 errors_say_what_is_wrong()
 {
-    bake 2 '--photo is missing' bake_vdta "${inputs[@]}" --reveal $O/reveal --out made
+    bake 2 'give --photo' bake_vdta "${inputs[@]}" --reveal $O/reveal --out made
     bake 2 'there is no photo nobody' bake_vdta "${inputs[@]}" --reveal $O/reveal --photo nobody --out made
     bake 2 'is for one --photo' bake_vdta "${inputs[@]}" --reveal $O/reveal --photo a --photo b --deps made/d --out made
     bake 1 'no-such/' bake_vdta "${inputs[@]}" --reveal no-such --photo "$photo" --out made
@@ -53,6 +53,21 @@ errors_say_what_is_wrong()
     bake 1 'no-such' bake_vita "${inputs[@]}" --edit no-such/model.txt --out made
     mkdir -p broken; cp $O/ids/*.exr broken/; printf 'remodel-face-index 2\n' >broken/index.txt
     bake 1 'broken/index.txt' bake_vdta --model $O/model/model.txt --axes $O/model/axes.txt --views $O/views --ids broken --reveal $O/reveal --photo "$photo" --out made
+}
+
+an_estimate_says_what_the_viewpoints_take()
+{
+    awk '!/^#/ && NF > 2 { print $2 }' $O/views/lenses.txt | sort -u >list
+    bake 0 used bake_vdta "${inputs[@]}" --reveal $O/reveal --out made --estimate list
+    awk -v n="$(wc -l <list)" '$1 == "estimate" { found = NF == 6 && $2 == n && $3 > 0 && $4 > 60 && $5 > 0 && $6 <= $3 } END { exit !found }' out.txt ||
+        { cat out.txt; fail "no line of the estimate, or a wrong one"; }
+    [ ! -e made ] || fail "an estimate wrote something"
+    echo nobody >list
+    bake 2 'there is no photo nobody' bake_vdta "${inputs[@]}" --reveal $O/reveal --out made --estimate list
+    rm -rf out/t/vdta
+    make -s plan DEPS=manual SFM=set/model SCENE=t TO=vdta >plan 2>&1 || { cat plan; fail "make plan"; }
+    grep -qE '^bake_vdta +[0-9]+ +[0-9]+ +[0-9.]+ ' plan || { cat plan; fail "make plan does not count the bakes"; }
+    m textures
 }
 
 an_edit_that_reveals_nothing_new_bakes_no_viewpoint_again()
@@ -67,4 +82,5 @@ an_edit_that_reveals_nothing_new_bakes_no_viewpoint_again()
     grep /vdta/ before | diff - now || fail "an edit that reveals nothing else baked viewpoints again"
 }
 
-for t in every_photo_has_an_atlas_and_the_model_has_one bytes_do_not_depend_on_threads errors_say_what_is_wrong an_edit_that_reveals_nothing_new_bakes_no_viewpoint_again; do run "$t"; done
+for t in every_photo_has_an_atlas_and_the_model_has_one bytes_do_not_depend_on_threads errors_say_what_is_wrong \
+    an_estimate_says_what_the_viewpoints_take an_edit_that_reveals_nothing_new_bakes_no_viewpoint_again; do run "$t"; done
