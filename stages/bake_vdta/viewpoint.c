@@ -35,6 +35,14 @@ static const char *photo_of(const struct bake_scene *s, int view)
     return lens < 0 ? NULL : s->lenses.lenses[lens].photo;
 }
 
+/* The first view of the view's photo, which stands for all; they follow each other in order of name. */
+static int first_view(const struct bake_scene *s, int view)
+{
+    const char *photo = photo_of(s, view);
+    while (view > 0 && photo && photo_of(s, view - 1) && !strcmp(photo_of(s, view - 1), photo)) view--;
+    return view;
+}
+
 static enum status find_own_views(struct work *w, struct err *err)
 {
     const struct bake_scene *s = w->scene;
@@ -120,9 +128,7 @@ static enum status set_sources(struct work *w, struct err *err)
     enum status st = names && groups && own ? ST_OK : err_nomem(err, "sources", n * sizeof *names);
     for (int i = 0; !st && i < w->view_count; i++) {
         names[i] = s->set.views[w->views[i]].name;
-        /* the first view of the photo stands for it */
-        for (groups[i] = 0; strcmp(photo_of(s, groups[i]), photo_of(s, w->views[i])); groups[i]++) {
-        }
+        groups[i] = first_view(s, w->views[i]);
         for (int k = 0; k < w->own_count; k++)
             if (w->own[k] == w->views[i]) own[i] = true, made[k] = (uint32_t)i, w->bake.own_group = groups[i];
     }

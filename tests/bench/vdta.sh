@@ -18,7 +18,7 @@
 # psnr is psnr_seen, or heldout_psnr where photos are held out. core_s_per_mp is the CPU time of the bake per million texels. The other columns are the metrics texture.* of
 # docs/evaluation.md, texture.vita.* of the single texture.
 title="Texture atlases: PSNR against time"
-note="Upper left is better. Loft: texels that photos show, against the room without furniture. Apartment: held-out photos."
+note="Upper left is better. Texels that photos show, against the room without furniture; or held-out photos."
 repeats=1 # atlases repeat exactly
 baseline="single texture"
 timed="core_s_per_mp"
