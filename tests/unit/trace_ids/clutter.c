@@ -26,12 +26,15 @@ static struct seen see_wall(double z)
     return see(&model, &v, z);
 }
 
-static void judge_again(struct seen *s)
+/* scale: model units per scene unit; a larger one makes the room smaller, and its furniture flatter */
+static void judge_at_scale(struct seen *s, double scale)
 {
     const struct trace_params params = TRACE_PARAMS_DEFAULT;
     struct err err = ERR_INIT;
-    assert_ok(find_clutter(&s->ids, &s->trace, &s->depth, &params, &err), err);
+    assert_ok(find_clutter(&s->ids, &s->trace, &s->depth, scale, &params, &err), err);
 }
+
+static void judge_again(struct seen *s) { judge_at_scale(s, 1); }
 
 /* A rectangle of another segment. */
 static void put(struct seen *s, int left, int top, int right, int bottom, uint32_t id, float z)
@@ -165,6 +168,20 @@ static void pixels_that_the_view_lacks_are_clutter(void **state)
     see_release(&s);
 }
 
+/* Depth 2 % in front of the wall is within the tolerance. It shows the wall clean only if furniture would be farther off. */
+static void a_surface_is_clean_only_where_furniture_would_be_told_apart(void **state)
+{
+    (void)state;
+    struct seen s = see_wall(0);
+    const int middle = H / 2 * W + W / 2;
+    for (int i = 0; i < W * H; i++) s.depth.interior.z[i] *= 0.98f;
+    judge_at_scale(&s, 0.01);
+    assert_true(s.ids.clutter[middle] < 0.01f);
+    judge_at_scale(&s, 100);
+    assert_true(fabsf(s.ids.clutter[middle] - CLUTTER_UNSURE) < 0.01f);
+    see_release(&s);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -177,6 +194,7 @@ int main(void)
         cmocka_unit_test(little_confidence_counts_half),
         cmocka_unit_test(unknown_depth_is_unsure),
         cmocka_unit_test(pixels_that_the_view_lacks_are_clutter),
+        cmocka_unit_test(a_surface_is_clean_only_where_furniture_would_be_told_apart),
     };
     return cmocka_run_group_tests(tests, make_model, release_model);
 }

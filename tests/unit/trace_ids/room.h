@@ -111,7 +111,7 @@ static inline struct seen see(const struct model_rays *m, const struct view *vie
         s.depth.interior.z[i] = z > 0 ? (float)z : s.ids.z[i];
     }
     assert_ok(find_jumps(&s.ids, &s.trace, &s.depth, &params, &err), err);
-    assert_ok(find_clutter(&s.ids, &s.trace, &s.depth, &params, &err), err);
+    assert_ok(find_clutter(&s.ids, &s.trace, &s.depth, 1, &params, &err), err);
     return s;
 }
 
