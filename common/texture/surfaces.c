@@ -35,42 +35,79 @@ static double size_of(const struct solid_mesh *models, int count)
     return size;
 }
 
-static int compare_surfaces(const void *a, const void *b)
+struct face_of_id {
+    int id, face;
+};
+
+/* The faces of a model in order of id, then of face, and its triangles. */
+struct sorted_model {
+    const struct solid_mesh *mesh;
+    struct solid_triangles triangles;
+    struct face_of_id *faces; /* owned */
+};
+
+static int compare_faces(const void *a, const void *b)
 {
-    const struct surface *p = a, *q = b;
+    const struct face_of_id *p = a, *q = b;
     if (p->id != q->id) return p->id < q->id ? -1 : 1;
-    return p->first < q->first ? -1 : p->first > q->first;
+    return p->face < q->face ? -1 : p->face > q->face;
 }
 
-/* The surfaces of the unedited model; `first` is, until they are sorted, the face that made each. */
-static enum status list_surfaces(struct surfaces *s, const struct solid_mesh *m, struct err *err)
+static enum status sort_model(struct sorted_model *s, const struct solid_mesh *m, struct err *err)
 {
-    for (int f = 0; f < m->face_count; f++) {
-        const struct solid_face *face = &m->faces[f];
-        const int id = solid_face_id(m, f);
-        int k = 0;
-        while (k < s->count && !(s->list[k].id == id && same_plane(&s->list[k], face->normal, face->offset, s->size)))
-            k++;
+    s->mesh = m;
+    s->faces = malloc(((size_t)m->face_count + 1) * sizeof *s->faces);
+    if (!s->faces) return err_nomem(err, "faces", (size_t)m->face_count * sizeof *s->faces);
+    for (int f = 0; f < m->face_count; f++) s->faces[f] = (struct face_of_id){solid_face_id(m, f), f};
+    if (m->face_count) qsort(s->faces, (size_t)m->face_count, sizeof *s->faces, compare_faces);
+    return solid_mesh_triangulate(&s->triangles, m, err);
+}
+
+/* The place of the first face of an id, or of the next id. */
+static int first_face(const struct sorted_model *s, int id)
+{
+    int low = 0, high = s->mesh->face_count;
+    while (low < high) {
+        const int middle = low + (high - low) / 2;
+        if (s->faces[middle].id < id)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+/* The surfaces of the unedited model, in order of id, then of the first face. */
+static enum status list_surfaces(struct surfaces *s, const struct sorted_model *m, struct err *err)
+{
+    int first = 0; /* surface of the id */
+    for (int i = 0; i < m->mesh->face_count; i++) {
+        const struct solid_face *face = &m->mesh->faces[m->faces[i].face];
+        if (i > 0 && m->faces[i].id != m->faces[i - 1].id) first = s->count;
+        int k = first;
+        while (k < s->count && !same_plane(&s->list[k], face->normal, face->offset, s->size)) k++;
         if (k < s->count) continue;
         if (array_append(&s->list, (size_t)s->count, sizeof *s->list, "surfaces", err)) return err->status;
-        s->list[s->count++] = (struct surface){
-            .id = id, .normal = face->normal, .offset = face->offset, .glass = is_glass(m, f), .first = f};
+        s->list[s->count++] = (struct surface){.id = m->faces[i].id,
+                                               .normal = face->normal,
+                                               .offset = face->offset,
+                                               .glass = is_glass(m->mesh, m->faces[i].face)};
     }
-    if (s->count) qsort(s->list, (size_t)s->count, sizeof *s->list, compare_surfaces);
     return ST_OK;
 }
 
 /* Adds the triangles of one surface in one model. */
-static enum status add_triangles(struct surfaces *s, struct surface *of, const struct solid_mesh *m,
-                                 const struct solid_triangles *t, struct err *err)
+static enum status add_triangles(struct surfaces *s, struct surface *of, const struct sorted_model *m, struct err *err)
 {
-    for (int f = 0; f < m->face_count; f++) {
-        const struct solid_face *face = &m->faces[f];
-        if (solid_face_id(m, f) != of->id || !same_plane(of, face->normal, face->offset, s->size)) continue;
-        for (int i = t->first[f]; i < t->first[f + 1]; i++) {
+    for (int k = first_face(m, of->id); k < m->mesh->face_count && m->faces[k].id == of->id; k++) {
+        const int f = m->faces[k].face;
+        const struct solid_face *face = &m->mesh->faces[f];
+        if (!same_plane(of, face->normal, face->offset, s->size)) continue;
+        for (int i = m->triangles.first[f]; i < m->triangles.first[f + 1]; i++) {
             if (array_append(&s->triangles, (size_t)s->triangle_count, sizeof *s->triangles, "triangles", err))
                 return err->status;
-            for (int k = 0; k < 3; k++) s->triangles[s->triangle_count][k] = m->vertices[t->triangles[i].v[k]].p;
+            for (int c = 0; c < 3; c++)
+                s->triangles[s->triangle_count][c] = m->mesh->vertices[m->triangles.triangles[i].v[c]].p;
             s->triangle_count++;
             of->triangles++;
         }
@@ -80,17 +117,20 @@ static enum status add_triangles(struct surfaces *s, struct surface *of, const s
 
 enum status surfaces_make(struct surfaces *s, const struct solid_mesh *models, int count, struct err *err)
 {
-    struct solid_triangles *parts = calloc((size_t)count, sizeof *parts);
+    struct sorted_model *sorted = calloc((size_t)count, sizeof *sorted);
     *s = (struct surfaces){.size = size_of(models, count)};
-    enum status st =
-        parts ? list_surfaces(s, &models[0], err) : err_nomem(err, "models", (size_t)count * sizeof *parts);
-    for (int k = 0; !st && k < count; k++) st = solid_mesh_triangulate(&parts[k], &models[k], err);
+    enum status st = sorted ? ST_OK : err_nomem(err, "models", (size_t)count * sizeof *sorted);
+    for (int k = 0; !st && k < count; k++) st = sort_model(&sorted[k], &models[k], err);
+    if (!st) st = list_surfaces(s, &sorted[0], err);
     for (int i = 0; !st && i < s->count; i++) {
         s->list[i].first = s->triangle_count;
-        for (int k = 0; !st && k < count; k++) st = add_triangles(s, &s->list[i], &models[k], &parts[k], err);
+        for (int k = 0; !st && k < count; k++) st = add_triangles(s, &s->list[i], &sorted[k], err);
     }
-    for (int k = 0; parts && k < count; k++) solid_triangles_release(&parts[k]);
-    free(parts);
+    for (int k = 0; sorted && k < count; k++) {
+        solid_triangles_release(&sorted[k].triangles);
+        free(sorted[k].faces);
+    }
+    free(sorted);
     return st;
 }
 

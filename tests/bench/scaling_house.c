@@ -258,11 +258,14 @@ static enum status fill_view(struct image *im, struct layered_depth *d, const st
     return ST_OK;
 }
 
+#define NOISE 0.01f /* of the radiance */
+
 static enum status write_view(const struct house *h, const struct model_rays *model, int k, struct err *err)
 {
     struct view view = camera_of(h, k);
     struct layered_depth d = {0};
     struct image im = {0};
+    struct photo_quality quality = {0};
     char name[16], path[PATH];
     uint32_t *faces = calloc((size_t)h->size * (size_t)h->size, sizeof *faces);
     enum status st = faces ? ST_OK : err_nomem(err, "a view", (size_t)h->size * (size_t)h->size * 4);
@@ -273,7 +276,13 @@ static enum status write_view(const struct house *h, const struct model_rays *mo
     if (!st) st = layered_depth_init(&d, h->size, h->size, err);
     if (!st) st = fill_view(&im, &d, &view, model, faces, err);
     snprintf(path, sizeof path, "%s/views/%s.exr", h->out, name);
-    if (!st) st = view_image_write(&im, NULL, path, &view, h->prov, "relative", err);
+    if (!st) st = photo_quality_init(&quality, h->size, h->size, err);
+    for (int i = 0; !st && i < h->size * h->size; i++) {
+        const float sigma = NOISE * photo_luminance(im.data + 4 * i);
+        quality.variance[i] = sigma * sigma;
+    }
+    if (!st) st = view_image_write(&im, &quality, path, &view, h->prov, "relative", err);
+    photo_quality_release(&quality);
     snprintf(path, sizeof path, "%s/depth/%s.exr", h->out, name);
     if (!st) st = layered_depth_write(&d, &view, path, h->prov, err);
     layered_depth_release(&d);
