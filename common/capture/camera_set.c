@@ -67,10 +67,9 @@ static enum status sort_views(struct camera_set *set, struct err *err)
     return st;
 }
 
-enum status camera_set_read(struct camera_set *set, const char *folder, struct err *err)
+/* The views of set->model, unless reading it failed. */
+static enum status make_views(struct camera_set *set, const char *folder, enum status st, struct err *err)
 {
-    *set = (struct camera_set){0};
-    enum status st = sfm_model_read_text(&set->model, folder, err);
     if (!st) {
         set->views = calloc((size_t)set->model.image_count, sizeof *set->views);
         if (!set->views) st = err_nomem(err, "views", (size_t)set->model.image_count * sizeof *set->views);
@@ -82,6 +81,18 @@ enum status camera_set_read(struct camera_set *set, const char *folder, struct e
     if (!st) st = sort_views(set, err);
     if (st) camera_set_release(set);
     return st;
+}
+
+enum status camera_set_read(struct camera_set *set, const char *folder, struct err *err)
+{
+    *set = (struct camera_set){0};
+    return make_views(set, folder, sfm_model_read_text(&set->model, folder, err), err);
+}
+
+enum status camera_set_read_cameras(struct camera_set *set, const char *folder, struct err *err)
+{
+    *set = (struct camera_set){0};
+    return make_views(set, folder, sfm_model_read_cameras(&set->model, folder, err), err);
 }
 
 /* Drops the views that go (-1 in new_idx) from a point's track; returns the number of those that stay. */
@@ -131,10 +142,14 @@ enum status camera_set_keep(struct camera_set *set, const bool *keep, struct err
 
 enum status camera_set_add_inputs(struct provenance *prov, const char *folder, struct err *err)
 {
-    static const char *const files[] = {"cameras.txt", "images.txt", "points3D.txt"};
-    enum status st = ST_OK;
-    for (int i = 0; !st && i < 3; i++) st = provenance_add_in(prov, "views", folder, files[i], "", NULL, err);
-    return st;
+    const enum status st = camera_set_add_camera_inputs(prov, folder, err);
+    return st ? st : provenance_add_in(prov, "views", folder, "points3D.txt", "", NULL, err);
+}
+
+enum status camera_set_add_camera_inputs(struct provenance *prov, const char *folder, struct err *err)
+{
+    const enum status st = provenance_add_in(prov, "views", folder, "cameras.txt", "", NULL, err);
+    return st ? st : provenance_add_in(prov, "views", folder, "images.txt", "", NULL, err);
 }
 
 int camera_set_find(const struct camera_set *set, const char *name)

@@ -2,7 +2,7 @@
  *
  * reads   MODEL                                         the unedited model
  *         AXES                                          its frame in the scene
- *         VIEWS/cameras.txt, images.txt, points3D.txt   the cameras
+ *         VIEWS/cameras.txt, images.txt                 the cameras
  *         VIEWS/lenses.txt                              which views are of one photo: a viewpoint
  *         VIEWS/VIEW.exr, IDS/VIEW.exr                  the viewpoint's views and those that show hidden texels
  *         IDS/index.txt                                 which views show a face
@@ -42,8 +42,8 @@ struct files {
 static enum status read_scene(struct bake_scene *s, const struct files *f, struct provenance *prov, struct err *err)
 {
     char path[FILE_PATH];
-    enum status st = camera_set_read(&s->set, s->views, err);
-    if (!st) st = camera_set_add_inputs(prov, s->views, err);
+    enum status st = camera_set_read_cameras(&s->set, s->views, err);
+    if (!st) st = camera_set_add_camera_inputs(prov, s->views, err);
     if (!st) st = provenance_add_in(prov, "views", s->views, "lenses", ".txt", path, err);
     if (!st) st = lens_list_read(&s->lenses, path, err);
     if (!st) st = model_axes_read(&s->axes, f->axes, err);

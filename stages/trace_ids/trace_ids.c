@@ -1,7 +1,7 @@
 /* trace_ids.c - which faces of the solid model each view shows, how far they are, and where furniture hides them.
  *
  * reads   MODEL, AXES                                   the solid model and its frame
- *         VIEWS/cameras.txt, images.txt, points3D.txt   the cameras
+ *         VIEWS/cameras.txt, images.txt                 the cameras
  *         DEPTH/VIEW.exr, VIEW.txt                      the view's layered depth
  * writes  VIEW.txt beside OUT                           the faces that the view shows
  *         OUT                                           face id, depth, distance from depth jumps, clutter
@@ -45,7 +45,7 @@ static enum status read_inputs(struct job *j, struct err *err)
     if (provenance_add_file(&j->prov, "model/model.txt", j->model, err) ||
         model_rays_read(&j->rays, j->model, MODEL_WITH_GLASS, err) ||
         provenance_add_file(&j->prov, "model/axes.txt", j->axes, err) || model_axes_read(&j->frame, j->axes, err) ||
-        camera_set_add_inputs(&j->prov, j->views, err) || camera_set_read(&j->set, j->views, err))
+        camera_set_add_camera_inputs(&j->prov, j->views, err) || camera_set_read_cameras(&j->set, j->views, err))
         return err->status;
     return ST_OK;
 }
