@@ -117,12 +117,13 @@ an_array_may_be_larger_than_slurm_allows()
 # processes_on NODE: of its daemon, of its tasks, and of their parents, which are Slurm's
 processes_on()
 {
-    local p
+    local p parent
     cat "$scratch/$1.process"
     for p in $(grep -lsz "^SLURM_CONF=$SLURM_CONF\$" /proc/[0-9]*/environ | cut -d/ -f3); do
         grep -qz "^SLURMD_NODENAME=$1\$" "/proc/$p/environ" 2>/dev/null || continue
         echo "$p"
-        [ "$(cat "/proc/$(ps -o ppid= -p "$p" | tr -d ' ')/comm")" != slurmstepd ] || ps -o ppid= -p "$p"
+        parent=$(sed -n 's/^PPid:[[:space:]]*//p' "/proc/$p/status" 2>/dev/null)
+        [ "$(cat "/proc/${parent:-0}/comm" 2>/dev/null)" != slurmstepd ] || echo "$parent"
     done
 }
 # last, since the node does not come back
