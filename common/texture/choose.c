@@ -3,8 +3,9 @@
  * A candidate whose depth agrees with the model is trusted. Where the depth of a view is not sure, something that the
  * model does not hold may stand in front: then the views vote. Two photographs that show the surface agree in colour
  * (after their gains); one that shows furniture in front of it agrees with others only by chance, since furniture moves
- * against the surface from view to view [Waechter 2014]. The views of one photo have one vote. The same decides whether
- * the viewpoint's own pixel may be copied where its depth is not sure. */
+ * against the surface from view to view [Waechter 2014]. The views of one photo have one vote. A view in which something
+ * surely stands in front of the texel votes against those that are not sure, and if all are outvoted the texel is left to
+ * be synthesised. The same decides whether the viewpoint's own pixel may be copied where its depth is not sure. */
 #include <math.h>
 #include <string.h>
 
@@ -13,7 +14,7 @@
 
 enum { CHUNK = 4096 };
 static const double DIM = 0.02;     /* of white: differences of darker colours count less */
-static float HIDDEN = 0.5f;         /* weight of a view in which something surely stands in front */
+static const float HIDDEN = 0.5f;   /* weight of a view in which something surely stands in front */
 static const float OUTVOTED = 1e6f; /* penalty: chosen only if nothing else is there */
 
 struct vote {
@@ -96,9 +97,4 @@ static void choose_range(void *ctx, size_t begin, size_t end, int thread)
         if (b->list[i] >= 0) choose_texel(b, i);
 }
 
-#include <stdlib.h>
-void bake_choose(struct bake *b)
-{
-    if (getenv("HID")) HIDDEN = (float)atof(getenv("HID"));
-    parallel_for(b->texel_count, CHUNK, choose_range, b);
-}
+void bake_choose(struct bake *b) { parallel_for(b->texel_count, CHUNK, choose_range, b); }
