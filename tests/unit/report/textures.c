@@ -453,7 +453,7 @@ static void at_most_twelve_viewpoints_are_shown(void **state)
     char *one[1] = {p0};
     write_views(1);
     for (int i = 0; i < 14; i++) {
-        char photo[16];
+        char photo[32];
         snprintf(photo, sizeof photo, "photo%02d", i);
         write_room(photo, one, 1);
     }
