@@ -1,0 +1,32 @@
+/* outdoors.h - what lies outside of a model, by direction: out/SCENE/outdoors/outdoors.exr, made by bake_outdoors.
+ *
+ * An equirectangular picture in the model's frame: column x + 0.5 of W is the azimuth 2 pi (x + 0.5) / W - pi, counted
+ * from +x towards +y; row y + 0.5 of H the elevation pi / 2 - pi (y + 0.5) / H, z up. R G B half, radiance, scene-linear;
+ * A half: 1 where some picture shows the direction, 0 where it is guessed from those that are; source uint: 0 guessed,
+ * 1 a lighting reference image, 2 a photograph. */
+#ifndef REMODEL_OUTDOORS_H
+#define REMODEL_OUTDOORS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "common/base/provenance.h"
+#include "common/math/vec.h"
+
+enum outdoors_source { OUTDOORS_GUESSED, OUTDOORS_REFERENCE, OUTDOORS_PHOTO };
+
+/* {0} is the empty state. */
+struct outdoors {
+    int width, height; /* width = 2 height */
+    float *rgb;        /* 3 a pixel; owned */
+    uint8_t *source;   /* enum outdoors_source; owned */
+};
+
+void outdoors_release(struct outdoors *o);
+enum status outdoors_read(struct outdoors *o, const char *path, struct err *err);
+enum status outdoors_write(const struct outdoors *o, const char *path, const struct provenance *prov, struct err *err);
+/* The radiance from a direction of any length, bilinear; returns the source of the nearest pixel. An empty `outdoors`
+ * gives 0 and OUTDOORS_GUESSED. */
+enum outdoors_source outdoors_sample(float rgb[3], const struct outdoors *o, struct vec3 direction);
+
+#endif

@@ -1,0 +1,88 @@
+/* texture_map.h - where the faces of an edited model take their texture: out/SCENE/remodel/E/texture.txt, written by
+ * build_model [Colburn 2014, 4.5.4, 4.7].
+ *
+ * Models are united anew after an edit, so corners have no counterpart. Instead each plane of the edited model that
+ * carries a face's id has rules, in order: the first rule that covers a point of the face gives its texture there.
+ * "The baked domain" is the area of the unedited model and of all declared edits (surfaces.h), which the atlases hold.
+ *
+ *   remodel-texture 1
+ *   base E|none                                        the edit that this one stands on
+ *   face ID NX NY NZ OFFSET NAME                       a plane of the edited model; its rules follow
+ *   place FROM M [within X Y Z X Y Z X Y Z X Y Z]      the face FROM of the unedited model at M p, where it is baked
+ *   edge FROM M [within ...]                           the baked texel of FROM nearest to M p: covers every point
+ *   outdoors                                           a pane: what lies outside, by direction; covers every point
+ *   colour R G B lit FROM FROM ... [within ...]        an albedo under the light of these unedited faces; every point
+ *   new COUNT                                          triangles of the face that the unedited model does not have in
+ *   triangle X Y Z X Y Z X Y Z                         this plane under this id, COUNT lines
+ *   clear ROOM LOW HIGH COUNT X Y ...                  clutter is left out in this footprint, from LOW to HIGH
+ *   keep NAME LOW HIGH COUNT X Y ...                   but not in this one
+ *
+ * Points are of the edited model's frame, which is the unedited one's. M is twelve numbers, a 3 x 4 matrix by rows, that
+ * takes a point of the edited model to one of the unedited model: the identity for texture that stays in place (crop),
+ * a shift for a wall that carries its texture along, a scale for a pane that is stretched. `within` limits a rule to a
+ * quadrilateral of the face. */
+#ifndef REMODEL_TEXTURE_MAP_H
+#define REMODEL_TEXTURE_MAP_H
+
+#include <stdbool.h>
+
+#include "common/base/provenance.h"
+#include "common/math/vec.h"
+
+enum texture_rule_kind { TEXTURE_PLACE, TEXTURE_EDGE, TEXTURE_OUTDOORS, TEXTURE_COLOUR };
+
+struct texture_rule {
+    enum texture_rule_kind kind;
+    int from;              /* id of a face of the unedited model: PLACE, EDGE */
+    double matrix[3][4];   /* PLACE, EDGE */
+    float albedo[3];       /* COLOUR */
+    int *lit;              /* COLOUR: faces of the unedited model that show the light there; owned */
+    int lit_count;         /* 0: the whole model does */
+    bool limited;          /* to `within` */
+    struct vec3 within[4]; /* corners in order */
+};
+
+struct texture_face {
+    int id;
+    char *name;         /* owned */
+    struct vec3 normal; /* unit, outward, as in model.txt: normal . p = offset */
+    double offset;
+    struct texture_rule *rules; /* owned */
+    int rule_count;
+    struct vec3 (*added)[3]; /* triangles that the unedited model lacks; owned */
+    int added_count;
+};
+
+/* A part of the building, by its footprint, in which clutter is left out or kept. */
+struct texture_zone {
+    char *name; /* owned */
+    bool keep;
+    double low, high;
+    double (*corners)[2]; /* counter-clockwise; owned */
+    int corner_count;
+};
+
+/* {0} is the empty state. */
+struct texture_map {
+    char *base;                 /* NULL: none; owned */
+    struct texture_face *faces; /* in order of id, then of the edited model's faces; owned */
+    int face_count;
+    struct texture_zone *zones; /* owned */
+    int zone_count;
+};
+
+void texture_map_release(struct texture_map *map);
+/* The face of an id whose plane holds p best; NULL: there is none of that id. */
+const struct texture_face *texture_map_find(const struct texture_map *map, int id, struct vec3 p);
+/* Whether the limits of a rule hold p, a point of the rule's face. */
+bool texture_rule_holds(const struct texture_rule *rule, struct vec3 normal, struct vec3 p);
+struct vec3 texture_rule_place(const struct texture_rule *rule, struct vec3 p); /* M p */
+/* Whether clutter at p is left out: p is in a zone to clear and in none to keep. */
+bool texture_map_clears(const struct texture_map *map, struct vec3 p);
+
+enum status texture_map_write(const struct texture_map *map, const char *path, const struct provenance *prov,
+                              struct err *err);
+/* ST_DATA with file and line. A failure leaves map empty. */
+enum status texture_map_read(struct texture_map *map, const char *path, struct err *err);
+
+#endif

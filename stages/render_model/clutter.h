@@ -1,0 +1,31 @@
+/* clutter.h - draws what stands in front of the model, furniture, from the views' layers [Colburn 2014, 3.6]: each pixel
+ * of a view's layered depth that stands in front of the model by more than its uncertainty, at its own depth. */
+#ifndef REMODEL_RENDER_CLUTTER_H
+#define REMODEL_RENDER_CLUTTER_H
+
+#include "common/model/model_axes.h"
+#include "common/texture/model_picture.h"
+#include "common/texture/texture_map.h"
+
+struct clutter_scene; /* the views of a scene; their layers are read when they are needed */
+
+struct clutter_files {
+    const char *views, *depth, *ids; /* folders of O */
+    int memory;                      /* MiB of views that are kept */
+};
+
+/* set: cameras in the scene's frame, which must outlive the clutter. */
+enum status clutter_open(struct clutter_scene **scene, const struct clutter_files *files, const struct camera_set *set,
+                         const struct model_axes *axes, struct err *err);
+void clutter_close(struct clutter_scene *scene); /* NULL is allowed */
+
+/* Draws clutter over the shell `p`, which was drawn from the same camera (model frame): pixels that it covers get its
+ * colour, blended by its coverage, and MADE_CLUTTER where that is at least a half. Clutter behind the shell's z is
+ * hidden. Shell pixels where depth is too unsure to tell become MADE_UNSURE. map: zones to clear (NULL: none).
+ * views, count: indices into the set that clutter may come from, nearest first; NULL: chosen here. The views that were
+ * read are added to prov (may be NULL). Same bits for any number of threads. */
+enum status clutter_draw(struct model_picture *p, struct clutter_scene *scene, const struct view *camera,
+                         const struct texture_map *map, const int *views, int count, struct provenance *prov,
+                         struct err *err);
+
+#endif

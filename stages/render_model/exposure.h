@@ -1,0 +1,14 @@
+/* exposure.h - the exposure of a picture [Colburn 2014, 4.6]: radiance times exposure is 1 at white. */
+#ifndef REMODEL_RENDER_EXPOSURE_H
+#define REMODEL_RENDER_EXPOSURE_H
+
+#include "common/texture/model_picture.h"
+
+/* The exposure that a camera would have chosen: `saturated` (a fraction) of the pixels that show something are at white
+ * or above. 1 if nothing is seen. */
+double exposure_choose(const struct model_picture *p, double saturated);
+
+/* Writes the picture as an 8-bit sRGB JPEG or PNG, by the ending of `path`. Pixels of MADE_NOTHING are black. */
+enum status exposure_write(const struct model_picture *p, double exposure, const char *path, struct err *err);
+
+#endif
