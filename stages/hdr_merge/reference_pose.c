@@ -1,137 +1,10 @@
-/* reference_pose.c - moves the pose of a lighting reference image to the scene's frame.
- *
- * SfM gives every model a frame and a unit of its own, so the pose in a model that was made for reference images says
- * nothing in the scene's. If the model has photographs of the scene, too, the similarity that maps their places in the
- * scene to those in the model,
- *   p_model = s R p_scene + t,
- * is the least-squares one of their centres (common/capture/camera_alignment.c). It is also given by axes.txt for a pose in
- * the frame of the room's model. With x_cam = Q p_model + u, a camera of the model is
- *   x_cam / s = Q R p_scene + (Q t + u) / s
- * in the scene: the same picture in the scene's unit.
- *
- * The photographs' distances after alignment show whether the models are of one place: three centres always agree
- * somewhat, a wrong photograph or a bent model does not. */
+/* reference_pose.c - moves the pose of a lighting reference image to the scene's frame: by the photographs that its model
+ * and the scene have in common (common/capture/photo_alignment.c), or by axes.txt for a pose in the frame of the room's
+ * model. */
 #include "stages/hdr_merge/reference_pose.h"
 
-#include <math.h>
-#include <stdlib.h>
-
 #include "common/base/file_path.h"
-#include "common/capture/photo_camera.h"
-#include "common/capture/photo_list.h"
-#include "common/capture/photo_match.h"
 #include "common/model/model_axes.h"
-
-enum { MIN_PHOTOS = 3 };
-
-static const double max_turn = 2; /* degrees: median between the axes of common photographs; more is another place */
-
-static struct pose pose_in_scene(const struct pose *p, const struct similarity *model_from_scene)
-{
-    const struct mat3 turn = mat3_from_quat(p->rotation);
-    const struct vec3 at = vec3_add(mat3_apply(turn, model_from_scene->translation), p->translation);
-    return (struct pose){quat_from_mat3(mat3_multiply(turn, model_from_scene->rotation)),
-                         vec3_scale(at, 1 / model_from_scene->scale)};
-}
-
-struct common_photos {
-    struct pose *scene, *model; /* owned */
-    int count;
-};
-
-/* Finds the images of the model that are photographs with a pose in the scene. */
-static enum status find_common(struct common_photos *c, const struct sfm_model *model,
-                               const struct reference_frame *frame, struct err *err)
-{
-    struct camera_set set = {0};
-    struct lens_list lenses = {0};
-    struct photo_list photos = {0};
-    char path[FILE_PATH];
-    enum status st = file_path(path, frame->views, "lenses.txt", "", err);
-    if (!st) st = camera_set_read(&set, frame->views, err);
-    if (!st) st = lens_list_read(&lenses, path, err);
-    if (!st) st = photo_list_read(&photos, frame->records, err);
-    bool *taken = calloc((size_t)photos.count + 1, sizeof *taken);
-    c->scene = calloc((size_t)model->image_count + 1, sizeof *c->scene);
-    c->model = calloc((size_t)model->image_count + 1, sizeof *c->model);
-    if (!st && (!taken || !c->scene || !c->model))
-        st = err_nomem(err, "poses", (size_t)model->image_count * sizeof *c->scene);
-    for (int i = 0; !st && i < model->image_count; i++) {
-        const int photo = photo_list_match(&photos, model->images[i].name);
-        struct photo_camera camera;
-        struct err absent = ERR_INIT; /* a photo without a pose is no error */
-        if (photo < 0 || taken[photo] ||
-            photo_camera_find(&camera, photos.photos[photo].id, &set, &lenses, path, 0, &absent))
-            continue;
-        taken[photo] = true;
-        c->scene[c->count] = (struct pose){quat_from_mat3(camera.cam_from_world), camera.translation};
-        c->model[c->count++] = model->images[i].cam_from_world;
-    }
-    free(taken);
-    photo_list_release(&photos);
-    lens_list_release(&lenses);
-    camera_set_release(&set);
-    return st;
-}
-
-/* The largest distance of a centre from their mean. */
-static double extent_of(const struct pose *poses, int count)
-{
-    struct vec3 mean = {0, 0, 0};
-    double extent = 0;
-    for (int i = 0; i < count; i++) mean = vec3_add(mean, vec3_scale(pose_center(&poses[i]), 1.0 / count));
-    for (int i = 0; i < count; i++) extent = fmax(extent, vec3_length(vec3_sub(pose_center(&poses[i]), mean)));
-    return extent;
-}
-
-static enum status check_agreement(const struct frame_agreement *a, const char *folder,
-                                   const struct reference_frame *frame, const struct merge_params *params,
-                                   struct err *err)
-{
-    const struct camera_errors *e = &a->errors;
-    if (100 * e->center_median <= params->max_misfit && e->rotation_median <= max_turn) return ST_OK;
-    return err_set(
-        err, ST_DATA,
-        "the %d photographs that %s and %s have in common disagree: after alignment their places differ by "
-        "%.3g %% (median) of the photographs' extent, wanted at most %.3g %%, and their axes by %.3g degrees, "
-        "wanted at most %.3g. Give a model of the same photographs, or raise [hdr_merge] max_misfit.",
-        a->photos, folder, frame->views, 100 * e->center_median, params->max_misfit, e->rotation_median, max_turn);
-}
-
-static enum status align_photos(struct similarity *model_from_scene, struct frame_agreement *a,
-                                const struct sfm_model *model, const char *folder, const struct reference_frame *frame,
-                                const struct merge_params *params, struct err *err)
-{
-    struct common_photos c = {0};
-    struct err apart = ERR_INIT; /* in words about found and true cameras */
-    enum status st = find_common(&c, model, frame, err);
-    if (!st && c.count < MIN_PHOTOS)
-        st =
-            err_set(err, ST_DATA,
-                    "%s has %d of the scene's photographs with a pose in %s, wanted at least %d: otherwise the pose of "
-                    "the lighting reference images in the scene is unknown. Give a model made from photographs of the "
-                    "scene and reference images together, or set LRI_FRAME = scene or model if the poses are in one of "
-                    "these frames.",
-                    folder, c.count, frame->views, (int)MIN_PHOTOS);
-    if (!st && align_cameras(model_from_scene, c.scene, c.model, c.count, &apart))
-        st =
-            err_set(err, ST_DATA,
-                    "the %d photographs that %s and %s have in common are all in one place in one of them, or no scale "
-                    "fits; give a model of photographs from several places.",
-                    c.count, folder, frame->views);
-    if (!st) st = measure_cameras(&a->errors, model_from_scene, c.scene, c.model, c.count, err);
-    if (!st) {
-        a->photos = c.count;
-        a->extent = extent_of(c.scene, c.count);
-        const double unit = 1 / (model_from_scene->scale * a->extent);
-        a->errors.center_median *= unit;
-        a->errors.center_max *= unit;
-        st = check_agreement(a, folder, frame, params, err);
-    }
-    free(c.scene);
-    free(c.model);
-    return st;
-}
 
 static enum status add_inputs(struct provenance *prov, const struct reference_frame *frame, struct err *err)
 {
@@ -157,7 +30,14 @@ enum status reference_pose_find(struct pose *cam_from_world, struct frame_agreem
         st = model_axes_read(&axes, frame->axes, err);
         model_from_scene = (struct similarity){axes.scale, mat3_from_quat(axes.rotation), axes.translation};
     } else {
-        st = align_photos(&model_from_scene, agreement, model, folder, frame, params, err);
+        const struct scene_photos scene = {frame->views, frame->records};
+        const struct alignment_rules rules = {
+            params->max_misfit,
+            "Otherwise the pose of the lighting reference images in the scene is unknown. Give a model made from "
+            "photographs of the scene and reference images together, or set LRI_FRAME = scene or model if the poses "
+            "are in one of these frames.",
+            "Give a model of the same photographs, or raise [hdr_merge] max_misfit."};
+        st = align_with_photos(&model_from_scene, agreement, model, folder, &scene, &rules, err);
     }
     if (!st) *cam_from_world = pose_in_scene(cam_from_world, &model_from_scene);
     return st;

@@ -3,8 +3,7 @@
 #define REMODEL_REFERENCE_POSE_H
 
 #include "common/base/provenance.h"
-#include "common/capture/camera_alignment.h"
-#include "common/capture/sfm_model.h"
+#include "common/capture/photo_alignment.h"
 #include "stages/hdr_merge/merge_params.h"
 
 /* Where the frame of the image's pose comes from; all NULL: the pose is in the scene's frame already. */
@@ -12,13 +11,6 @@ struct reference_frame {
     const char *views, *records; /* the scene's views and the records of its photos: some are in the model, too */
     const char *axes;            /* axes.txt: the pose is in the frame of the room's model */
     const char *marks, *plan;    /* lri.txt and plan.txt, with axes: marks in the image give the pose (marked_pose.h) */
-};
-
-/* How well the photographs that both models have agree, after alignment. */
-struct frame_agreement {
-    int photos;                  /* 0: the frame was not found from photographs */
-    struct camera_errors errors; /* centres in units of `extent` */
-    double extent;               /* of the scene's common photographs: largest distance from their mean, scene units */
 };
 
 /* Moves *cam_from_world, a camera of `model` (of the folder `folder`), to the scene's frame. ST_DATA: too few common
