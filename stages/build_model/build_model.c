@@ -25,14 +25,14 @@
 #include "stages/build_model/unite.h"
 
 struct job {
-    const char *script, *edit, *axes, *views, *points, *base, *out;
+    const char *script, *edit, *axes, *views, *held, *points, *base, *out;
     const char *overlay, *model, *photos, *records;
     struct model_params params;
     struct provenance prov;
 
     struct model_axes frame;
-    struct camera_set set;
-    struct lens_list lenses;
+    struct camera_set set, held_set;
+    struct lens_list lenses, held_lenses;
     struct placer placer;
 };
 
@@ -47,9 +47,13 @@ static enum status read_frame(struct job *j, struct err *err)
     if (!st) st = camera_set_add_inputs(&j->prov, j->views, err);
     if (!st) st = provenance_add_in(&j->prov, "views", j->views, "lenses.txt", "", path, err);
     if (!st) st = lens_list_read(&j->lenses, path, err);
+    if (!st && j->held) st = camera_set_read_cameras(&j->held_set, j->held, err);
+    if (!st && j->held) st = provenance_add_in(&j->prov, "holdout/views", j->held, "lenses.txt", "", path, err);
+    if (!st && j->held) st = lens_list_read(&j->held_lenses, path, err);
+    const struct placer_views views[2] = {{&j->set, &j->lenses}, {&j->held_set, &j->held_lenses}};
     if (!st && j->points) st = point_cloud_read(&cloud, j->points, err);
     if (!st && j->points) st = provenance_add_file(&j->prov, "points/points.ply", j->points, err);
-    if (!st) st = placer_init(&j->placer, &j->set, &j->lenses, &j->frame, j->points ? &cloud : NULL, &j->params, err);
+    if (!st) st = placer_init(&j->placer, views, &j->frame, j->points ? &cloud : NULL, &j->params, err);
     point_cloud_release(&cloud);
     return st;
 }
@@ -163,7 +167,7 @@ static enum status check_usage(const struct job *j, struct err *err)
         return err_set(err, ST_USAGE, "--overlay also needs --model, --views, --photos and --records.");
     if (j->base && !j->edit)
         return err_set(err, ST_USAGE, "--base is only for --edit: it is the model before the edit.");
-    if (j->points && !j->views) return err_set(err, ST_USAGE, "--points also needs --views.");
+    if ((j->points || j->held) && !j->views) return err_set(err, ST_USAGE, "--points and --held also need --views.");
     return ST_OK;
 }
 
@@ -177,6 +181,8 @@ int main(int argc, char **argv)
         CLI_STR("base", &j.base, CLI_OPTIONAL, "with --edit: model.txt of the unedited model, whose face ids are kept"),
         CLI_STR("axes", &j.axes, CLI_REQUIRED, "the model's frame, axes.txt"),
         CLI_STR("views", &j.views, CLI_OPTIONAL, "folder of cameras, for places in photographs and for the pictures"),
+        CLI_STR("held", &j.held, CLI_OPTIONAL,
+                "folder of cameras of photos held out, in which places may be drawn too"),
         CLI_STR("points", &j.points, CLI_OPTIONAL, "PLY of oriented points, for walls given by rectangles"),
         CLI_STR("overlay", &j.overlay, CLI_OPTIONAL,
                 "photo on which to draw the edges of --model; --out is then a JPEG"),
@@ -192,6 +198,8 @@ int main(int argc, char **argv)
         (j.overlay ? overlay(&j, &err) : build(&j, &err)))
         err_report(&err);
     placer_release(&j.placer);
+    lens_list_release(&j.held_lenses);
+    camera_set_release(&j.held_set);
     lens_list_release(&j.lenses);
     camera_set_release(&j.set);
     provenance_release(&j.prov);

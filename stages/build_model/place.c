@@ -41,29 +41,40 @@ static struct photo_camera model_camera(const struct photo_camera *world, const 
     return c;
 }
 
-enum status placer_init(struct placer *placer, const struct camera_set *set, const struct lens_list *lenses,
-                        const struct model_axes *axes, const struct point_cloud *points,
-                        const struct model_params *params, struct err *err)
+static enum status add_photos(struct placer *placer, const struct placer_views *views, const struct model_axes *axes,
+                              struct err *err)
 {
-    const size_t count = points ? points->count : 0;
-    *placer = (struct placer){.lenses = lenses, .params = params, .count = count};
-    placer->photos = calloc((size_t)lenses->count + 1, sizeof *placer->photos);
-    placer->points = calloc(count + 1, sizeof *placer->points);
-    if (!placer->photos || !placer->points) {
-        placer_release(placer);
-        return err_nomem(err, "the points of a model", count * sizeof *placer->points);
-    }
-    for (int i = 0; i < lenses->count; i++) {
-        const struct lens *lens = &lenses->lenses[i];
+    for (int i = 0; i < views->lenses->count; i++) {
+        const struct lens *lens = &views->lenses->lenses[i];
         struct photo_camera camera;
-        bool known = camera_set_find(set, lens->view) < 0;
+        bool known = camera_set_find(views->set, lens->view) < 0;
         for (int k = 0; k < placer->photo_count; k++) known |= !strcmp(placer->photos[k].id, lens->photo);
         if (known) continue;
-        if (photo_camera_find(&camera, lens->view, set, lenses, "lenses.txt", 0, err)) {
-            placer_release(placer);
-            return err->status;
-        }
+        if (photo_camera_find(&camera, lens->view, views->set, views->lenses, "lenses.txt", 0, err)) return err->status;
         placer->photos[placer->photo_count++] = (struct placer_photo){lens->photo, model_camera(&camera, axes)};
+    }
+    return ST_OK;
+}
+
+enum status placer_init(struct placer *placer, const struct placer_views views[2], const struct model_axes *axes,
+                        const struct point_cloud *points, const struct model_params *params, struct err *err)
+{
+    const size_t count = points ? points->count : 0;
+    size_t photos = 1;
+    *placer = (struct placer){.params = params, .count = count};
+    for (int k = 0; k < 2; k++) {
+        placer->lenses[k] = views[k].lenses;
+        photos += (size_t)views[k].lenses->count;
+    }
+    placer->photos = calloc(photos, sizeof *placer->photos);
+    placer->points = calloc(count + 1, sizeof *placer->points);
+    enum status st = ST_OK;
+    if (!placer->photos || !placer->points)
+        st = err_nomem(err, "the points of a model", count * sizeof *placer->points);
+    for (int k = 0; !st && k < 2; k++) st = add_photos(placer, &views[k], axes, err);
+    if (st) {
+        placer_release(placer);
+        return st;
     }
     for (size_t i = 0; i < count; i++) {
         const struct cloud_point *p = &points->points[i];
@@ -78,7 +89,12 @@ enum status placer_init(struct placer *placer, const struct camera_set *set, con
 
 static const char *known_photo(const void *ctx, int i)
 {
-    const struct lens_list *lenses = ctx;
+    const struct placer *placer = ctx;
+    const struct lens_list *lenses = placer->lenses[0];
+    if (i >= 2 * lenses->count) {
+        i -= 2 * lenses->count;
+        lenses = placer->lenses[1];
+    }
     if (i >= 2 * lenses->count) return NULL;
     return i % 2 ? lenses->lenses[i / 2].view : lenses->lenses[i / 2].photo;
 }
@@ -88,15 +104,17 @@ static enum status find_photo(const struct placer_photo **found, const struct pl
                               const char *path, int line, struct err *err)
 {
     const char *photo = view;
-    const int at = lens_list_find(placer->lenses, view);
     char quoted[SCAN_QUOTED];
-    if (at >= 0) photo = placer->lenses->lenses[at].photo;
+    for (int k = 0; k < 2; k++) {
+        const int at = lens_list_find(placer->lenses[k], view);
+        if (at >= 0) photo = placer->lenses[k]->lenses[at].photo;
+    }
     for (int i = 0; i < placer->photo_count; i++)
         if (!strcmp(placer->photos[i].id, photo)) {
             *found = &placer->photos[i];
             return ST_OK;
         }
-    const char *near = scan_nearest(view, known_photo, placer->lenses);
+    const char *near = scan_nearest(view, known_photo, placer);
     scan_quote(quoted, view);
     if (near)
         return err_set(err, ST_DATA, "%s:%d: found %s, wanted a photo's id or a view's name; did you mean %s?", path,

@@ -23,9 +23,15 @@ struct placer_photo {
     struct photo_camera camera; /* in the model's frame */
 };
 
-struct placer {
+/* The cameras of views and their photographs. */
+struct placer_views {
+    const struct camera_set *set;
     const struct lens_list *lenses;
-    struct placer_photo *photos; /* in order of id; all views of a photo are one item */
+};
+
+struct placer {
+    const struct lens_list *lenses[2];
+    struct placer_photo *photos; /* in order of id, those held out last; all views of a photo are one item */
     int photo_count;
     struct placed_point *points;
     size_t count;
@@ -33,10 +39,10 @@ struct placer {
     const struct model_params *params;
 };
 
-/* points may be NULL: then walls cannot be placed by rectangles. Keeps pointers to lenses and params. */
-enum status placer_init(struct placer *placer, const struct camera_set *set, const struct lens_list *lenses,
-                        const struct model_axes *axes, const struct point_cloud *points,
-                        const struct model_params *params, struct err *err);
+/* views[1]: those that were held out, in which places may be drawn too. points may be NULL: then walls cannot be placed by
+ * rectangles. Keeps pointers to lenses and params. */
+enum status placer_init(struct placer *placer, const struct placer_views views[2], const struct model_axes *axes,
+                        const struct point_cloud *points, const struct model_params *params, struct err *err);
 void placer_release(struct placer *placer);
 
 struct placed_wall {

@@ -20,8 +20,8 @@ overlays: $(OVERLAYS)
 # a script that places nothing in photographs needs no points
 MODEL_POINTS := $(if $(MODEL_SCRIPT),$(if $(shell grep -lE '^[ \t]*(wall|adjust)[ \t]+[^ \t]+[ \t]+in[ \t]' \
   $(MODEL_SCRIPT) $(EDITS:%=scenes/$(SCENE)/edits/%.txt)),$(POINTS)))
-MODEL_NEEDS := $(AXES) $(CAMERAS) $(O)/views/lenses.txt $(MODEL_POINTS) $(call needs,build_model)
-MODEL_ARGS := --axes $(AXES) --views $(O)/views $(MODEL_POINTS:%=--points %)
+MODEL_NEEDS := $(AXES) $(CAMERAS) $(O)/views/lenses.txt $(HELD_CAMERAS) $(MODEL_POINTS) $(call needs,build_model)
+MODEL_ARGS := --axes $(AXES) --views $(O)/views $(if $(HELD_CAMERAS),--held $(H)/views) $(MODEL_POINTS:%=--points %)
 $(call model_files,$(O)/model) &: $(MODEL_SCRIPT) $(MODEL_NEEDS)
 	$(call stage,build_model,model,$(O),--script $(MODEL_SCRIPT) $(MODEL_ARGS) --out $(O)/model)
 define edit_rule
