@@ -43,6 +43,11 @@ enum status provenance_add_in(struct provenance *prov, const char *as, const cha
     return provenance_add_file(prov, name, path, err);
 }
 
+void provenance_drop(struct provenance *prov, int count)
+{
+    while (prov->count > count) free(prov->inputs[--prov->count].name);
+}
+
 void provenance_print(const struct provenance *prov, FILE *to)
 {
     fprintf(to, "# remodel %s %s\n", prov->stage, prov->version);

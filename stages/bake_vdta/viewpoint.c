@@ -249,7 +249,7 @@ enum status viewpoint_bake(const struct bake_scene *scene, const char *photo, st
     const int shared = prov->count;
     enum status st = bake_work(&w, err);
     /* the next viewpoint has other inputs */
-    while (prov->count > shared) free(prov->inputs[--prov->count].name);
+    provenance_drop(prov, shared);
     free(w.views);
     bake_release(&w.bake);
     return st;

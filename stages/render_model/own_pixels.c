@@ -1,0 +1,140 @@
+/* own_pixels.c - which pixels of a view an edit leaves alone; see own_pixels.h.
+ *
+ * [Colburn 2014, 4.6] compares the ids of faces. A wall that is moved keeps its id, so the planes are compared too: by
+ * the inverse depth of the face at the pixel. */
+#include "stages/render_model/own_pixels.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/capture/view_image.h"
+#include "common/layers/layered_depth.h"
+#include "common/math/distance.h"
+#include "common/texture/view_ids.h"
+
+static const double same_depth = 1e-5; /* relative: rounding of the models' corners */
+enum { CLEARED_MARGIN = 4 };           /* px around cleared clutter: its blurred border */
+
+struct traced { /* a view in a model */
+    uint32_t *faces;
+    double (*planes)[3]; /* inverse depth of each face of the model */
+};
+
+static void traced_release(struct traced *t)
+{
+    free(t->faces);
+    free(t->planes);
+}
+
+static enum status trace(struct traced *t, const struct model_rays *model, const struct view *camera, struct err *err)
+{
+    const size_t pixels = (size_t)camera->width * (size_t)camera->height, faces = (size_t)model->mesh.face_count;
+    t->faces = malloc(pixels * sizeof *t->faces);
+    t->planes = malloc((faces + 1) * sizeof *t->planes);
+    if (!t->faces || !t->planes) return err_nomem(err, "faces of a view", pixels * sizeof *t->faces);
+    model_rays_view(t->faces, model, camera);
+    for (size_t f = 0; f < faces; f++) solid_face_inverse_depth(t->planes[f], &model->mesh.faces[f], camera);
+    return ST_OK;
+}
+
+static double inverse_depth(const struct traced *t, uint32_t face, double u, double v)
+{
+    const double *p = t->planes[face - 1];
+    return p[0] * u + p[1] * v + p[2];
+}
+
+/* Sets same to 1 where both models have one face in one plane. */
+static void compare(uint8_t *same, const struct room *room, const struct traced *base, const struct traced *edited,
+                    const struct view *camera)
+{
+    for (int y = 0; y < camera->height; y++)
+        for (int x = 0; x < camera->width; x++) {
+            const size_t i = (size_t)y * (size_t)camera->width + (size_t)x;
+            const uint32_t a = base->faces[i], b = edited->faces[i];
+            same[i] = !a && !b;
+            if (!a || !b) continue;
+            if (solid_face_id(&room->base.mesh, (int)a - 1) != solid_face_id(&room->model.mesh, (int)b - 1)) continue;
+            const double za = inverse_depth(base, a, x + 0.5, y + 0.5), zb = inverse_depth(edited, b, x + 0.5, y + 0.5);
+            same[i] = fabs(za - zb) <= same_depth * fabs(za);
+        }
+}
+
+/* Clears `same` within `margin` px of the pixels that have `same` 0. */
+static enum status grow(uint8_t *same, const struct view *camera, double margin, struct err *err)
+{
+    const size_t pixels = (size_t)camera->width * (size_t)camera->height;
+    float *squared = malloc(pixels * sizeof *squared);
+    enum status st = squared ? distance_squared(squared, same, camera->width, camera->height, err)
+                             : err_nomem(err, "distances", pixels * sizeof *squared);
+    for (size_t i = 0; !st && i < pixels; i++) same[i] = same[i] && squared[i] > margin * margin;
+    free(squared);
+    return st;
+}
+
+/* Clears `same` where the photo shows clutter of a zone that is cleared, and a little around it. */
+static enum status leave_cleared(uint8_t *same, const struct room *room, int view, struct provenance *prov,
+                                 struct err *err)
+{
+    const struct view *camera = &room->cameras[view], *world = &room->set.views[view];
+    const struct texture_map *map = shell_map(room->shell);
+    const size_t pixels = (size_t)camera->width * (size_t)camera->height;
+    char path[FILE_PATH];
+    struct view_ids ids = {0};
+    struct layered_depth depth = {0};
+    enum status st = provenance_add_in(prov, "ids", room->files.ids, world->name, ".exr", path, err);
+    if (!st) st = view_ids_read(&ids, world, path, err);
+    if (!st) st = provenance_add_in(prov, "depth", room->files.depth, world->name, ".exr", path, err);
+    if (!st) st = layered_depth_read_interior(&depth, path, err);
+    uint8_t *stays = malloc(pixels);
+    if (!st && !stays) st = err_nomem(err, "cleared clutter", pixels);
+    if (!st && (depth.width != camera->width || depth.height != camera->height))
+        st = err_set(err, ST_DATA, "%s is %d x %d px, but its camera is %d x %d px. Run make depth again.", path,
+                     depth.width, depth.height, camera->width, camera->height);
+    for (int y = 0; !st && y < camera->height; y++)
+        for (int x = 0; x < camera->width; x++) {
+            const size_t i = (size_t)y * (size_t)camera->width + (size_t)x;
+            const double z = depth.interior.z[i] * room->axes.scale;
+            stays[i] = !(z > 0 && ids.clutter[i] > CLUTTER_UNSURE &&
+                         texture_map_clears(map, view_unproject(camera, x + 0.5, y + 0.5, z)));
+        }
+    if (!st) st = grow(stays, camera, CLEARED_MARGIN, err);
+    for (size_t i = 0; !st && i < pixels; i++) same[i] &= stays[i];
+    free(stays);
+    layered_depth_release(&depth);
+    view_ids_release(&ids);
+    return st;
+}
+
+enum status own_pixels_find(uint8_t *same, const struct room *room, int view, struct provenance *prov, struct err *err)
+{
+    const struct view *camera = &room->cameras[view];
+    struct traced base = {0}, edited = {0};
+    memset(same, 1, (size_t)camera->width * (size_t)camera->height);
+    if (!room->files.base) return ST_OK;
+    enum status st = trace(&base, &room->base, camera, err) ? err->status : trace(&edited, &room->model, camera, err);
+    if (!st) compare(same, room, &base, &edited, camera);
+    if (!st) st = grow(same, camera, room->params->margin, err);
+    if (!st && shell_map(room->shell)->zone_count && room->files.depth && room->files.ids)
+        st = leave_cleared(same, room, view, prov, err);
+    traced_release(&base);
+    traced_release(&edited);
+    return st;
+}
+
+enum status own_pixels_draw(struct model_picture *picture, const uint8_t *same, const struct room *room, int view,
+                            struct provenance *prov, struct err *err)
+{
+    const struct view *world = &room->set.views[view];
+    const size_t pixels = (size_t)world->width * (size_t)world->height;
+    struct image photo = {0};
+    enum status st = provenance_add_in(prov, "views", room->files.views, world->name, ".exr", NULL, err);
+    if (!st) st = view_image_read(&photo, room->files.views, world, err);
+    for (size_t i = 0; !st && i < pixels; i++) {
+        if (!same[i] || photo.data[4 * i + 3] <= 0) continue;
+        memcpy(picture->rgb + 3 * i, photo.data + 4 * i, 3 * sizeof *picture->rgb);
+        picture->made[i] = MADE_PHOTO;
+    }
+    image_release(&photo);
+    return st;
+}

@@ -1,0 +1,266 @@
+/* pictures.c - draws and writes pictures; see pictures.h. Formats: docs/formats.md, O/remodel/E/pictures. */
+#include "stages/render_model/pictures.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/base/file_path.h"
+#include "common/base/outfile.h"
+#include "common/base/progress.h"
+#include "common/capture/view_image.h"
+#include "common/image/exr.h"
+#include "stages/render_model/choose_pair.h"
+#include "stages/render_model/exposure.h"
+#include "stages/render_model/own_pixels.h"
+
+static const char *const made_names[MADE_COUNT] = {
+    [MADE_NOTHING] = "nothing",   [MADE_PHOTO] = "photo",         [MADE_ORIGINAL] = "original",
+    [MADE_WARPED] = "warped",     [MADE_SYNTHESISED] = "guessed", [MADE_COLOUR] = "colour",
+    [MADE_OUTDOORS] = "outdoors", [MADE_CLUTTER] = "clutter",     [MADE_UNSURE] = "unsure",
+};
+
+/* The list of what the pixels come from, in percent. */
+static enum status write_record(const struct model_picture *p, double exposure, double changed, const char *path,
+                                const struct provenance *prov, struct err *err)
+{
+    const size_t pixels = (size_t)p->width * (size_t)p->height;
+    size_t counts[MADE_COUNT] = {0};
+    struct outfile out = {0};
+    enum status st = outfile_open(&out, path, err);
+    if (st) return st;
+    for (size_t i = 0; i < pixels; i++) counts[p->made[i]]++;
+    fputs("remodel-picture 1\n", out.fp);
+    provenance_print(prov, out.fp);
+    fprintf(out.fp, "size %d %d\nexposure %.9g\nchanged %.6g\n", p->width, p->height, exposure, changed);
+    for (int k = 0; k < MADE_COUNT; k++)
+        fprintf(out.fp, "made %s %.6g\n", made_names[k], 100.0 * (double)counts[k] / (double)pixels);
+    st = outfile_commit(&out, err);
+    outfile_discard(&out);
+    return st;
+}
+
+static enum status picture_exposure(double *exposure, const struct room *room, const struct model_picture *p)
+{
+    *exposure = room->params->exposure > 0 ? room->params->exposure : exposure_choose(p, room->params->saturated);
+    return ST_OK;
+}
+
+/* camera: for the EXR's attributes. The record is written last. */
+static enum status write_picture(const struct model_picture *p, const struct room *room, const struct view *camera,
+                                 double changed, bool radiance, const char *out, const char *name,
+                                 const struct provenance *prov, struct err *err)
+{
+    char path[FILE_PATH];
+    double exposure;
+    enum status st = picture_exposure(&exposure, room, p);
+    if (!st && radiance) st = file_path(path, out, name, ".exr", err);
+    if (!st && radiance) st = model_picture_write(p, camera, path, prov, err);
+    if (!st && changed > 0) st = file_path(path, out, name, ".jpg", err);
+    if (!st && changed > 0) st = exposure_write(p, exposure, path, err);
+    if (!st) st = file_path(path, out, name, ".txt", err);
+    return st ? st : write_record(p, exposure, changed, path, prov, err);
+}
+
+/* ----------------------------------------------------------------------------------------------------- original views */
+
+static enum status draw_view(struct model_picture *picture, double *changed, struct room *room, int view,
+                             struct provenance *prov, struct err *err)
+{
+    const struct view *camera = &room->cameras[view];
+    const struct texture_pair pair = {{room_viewpoint_of(room, view), -1}, 0};
+    const size_t pixels = (size_t)camera->width * (size_t)camera->height;
+    uint8_t *same = malloc(pixels);
+    enum status st = same ? ST_OK : err_nomem(err, "pixels of a view", pixels);
+    size_t differ = 0;
+    if (!st) st = own_pixels_find(same, room, view, prov, err);
+    for (size_t i = 0; !st && i < pixels; i++) differ += !same[i];
+    const bool own = !strcmp(room->params->photo, "where_unchanged");
+    if (!st && (differ || !own))
+        st = room_draw(picture, room, camera, &pair, view, prov, err);
+    else if (!st)
+        st = model_picture_resize(picture, camera->width, camera->height, err);
+    if (!st && own) st = own_pixels_draw(picture, same, room, view, prov, err);
+    *changed = own ? 100.0 * (double)differ / (double)pixels : 100;
+    free(same);
+    return st;
+}
+
+static enum status find_views(bool *wanted, const struct room *room, const struct cli_list *names, struct err *err)
+{
+    for (int i = 0; i < names->count; i++) {
+        const int at = camera_set_find(&room->set, names->items[i]);
+        if (at < 0)
+            return err_set(err, ST_USAGE, "there is no view %s in %s. Its images.txt lists the views.", names->items[i],
+                           room->files.views);
+        wanted[at] = true;
+    }
+    return ST_OK;
+}
+
+enum status pictures_of_views(struct room *room, const struct cli_list *views, const char *out, struct provenance *prov,
+                              struct err *err)
+{
+    struct model_picture picture = {0};
+    struct progress progress;
+    const bool radiance = !strcmp(room->params->radiance, "yes");
+    bool *wanted = calloc((size_t)room->set.view_count + 1, sizeof *wanted);
+    enum status st = wanted ? find_views(wanted, room, views, err)
+                            : err_nomem(err, "views", (size_t)room->set.view_count * sizeof *wanted);
+    progress_start(&progress, "rendering", views->count, "views");
+    for (int i = 0; !st && i < room->set.view_count; i++) {
+        if (!wanted[i]) continue;
+        const int inputs = prov->count;
+        double changed = 0;
+        st = draw_view(&picture, &changed, room, i, prov, err);
+        if (!st)
+            st = write_picture(&picture, room, &room->set.views[i], changed, radiance && changed > 0, out,
+                               room->set.views[i].name, prov, err);
+        provenance_drop(prov, inputs);
+        progress_add(&progress, 1);
+    }
+    progress_end(&progress);
+    model_picture_release(&picture);
+    free(wanted);
+    return st;
+}
+
+/* ------------------------------------------------------------------------------------------------------ given cameras */
+
+static const struct room_camera *find_camera(const struct room_cameras *cameras, const char *name)
+{
+    for (int i = 0; i < cameras->count; i++)
+        if (!strcmp(cameras->list[i].name, name)) return &cameras->list[i];
+    return NULL;
+}
+
+static enum status check_names(const struct room_cameras *cameras, const struct camera_source *source,
+                               const struct cli_list *names, struct err *err)
+{
+    for (int i = 0; i < names->count; i++)
+        if (!find_camera(cameras, names->items[i]))
+            return err_set(err, ST_USAGE, "there is no camera %s in %s/images.txt.", names->items[i], source->folder);
+    return ST_OK;
+}
+
+static bool is_wanted(const struct cli_list *names, const char *name)
+{
+    for (int i = 0; i < names->count; i++)
+        if (!strcmp(names->items[i], name)) return true;
+    return names->count == 0;
+}
+
+enum status pictures_of_cameras(struct room *room, const struct camera_source *source, const struct cli_list *names,
+                                const char *out, struct provenance *prov, struct err *err)
+{
+    struct room_cameras cameras = {0};
+    struct model_picture picture = {0};
+    struct progress progress;
+    enum status st = room_cameras_read(&cameras, source, room, prov, err);
+    if (!st) st = check_names(&cameras, source, names, err);
+    progress_start(&progress, "rendering", names->count ? names->count : cameras.count, "pictures");
+    for (int i = 0; !st && i < cameras.count; i++) {
+        const struct room_camera *camera = &cameras.list[i];
+        if (!is_wanted(names, camera->name)) continue;
+        const struct texture_pair pair = choose_pair(room, camera);
+        const int inputs = prov->count;
+        struct view view;
+        st = room_camera_draw(&picture, room, camera, &pair, prov, err);
+        room_camera_view(&view, camera);
+        if (!st) st = write_picture(&picture, room, &view, 100, true, out, camera->name, prov, err);
+        provenance_drop(prov, inputs);
+        progress_add(&progress, 1);
+    }
+    progress_end(&progress);
+    model_picture_release(&picture);
+    room_cameras_release(&cameras);
+    return st;
+}
+
+/* --------------------------------------------------------------------------------------------------- frames of a film */
+
+static enum status frame_pair(struct texture_pair *pair, const struct room *room, const struct view *camera,
+                              const struct viewpoint_pairs *pairs, struct err *err)
+{
+    const struct viewpoint_pair *given = pairs ? viewpoint_pairs_find(pairs, camera->name) : NULL;
+    if (!given) {
+        struct room_camera c = {.lens = {.model = CAMERA_PINHOLE, .width = camera->width, .height = camera->height},
+                                .pose = {quat_from_mat3(camera->cam_from_world), camera->translation}};
+        const double focal[4] = {camera->fx, camera->fy, camera->cx, camera->cy};
+        memcpy(c.lens.params, focal, sizeof focal);
+        *pair = choose_pair(room, &c);
+        return ST_OK;
+    }
+    for (int k = 0; k < 2; k++) {
+        pair->viewpoint[k] = room_find_viewpoint(room, given->photos[k]);
+        if (pair->viewpoint[k] < 0)
+            return err_set(err, ST_DATA, "pairs.txt names the photo %s for frame %s, which has no view in %s.",
+                           given->photos[k], given->frame, room->files.views);
+    }
+    pair->t = given->t;
+    return ST_OK;
+}
+
+/* Between those of the pair's cameras, so that it changes as slowly as the film moves. */
+static enum status frame_exposure(double *exposure, struct room *room, const struct texture_pair *pair, struct err *err)
+{
+    double of[2] = {1, 1};
+    *exposure = room->params->exposure;
+    if (*exposure > 0) return ST_OK;
+    enum status st = ST_OK;
+    for (int k = 0; !st && k < 2; k++)
+        if (pair->viewpoint[k] >= 0) st = room_exposure(&of[k], room, pair->viewpoint[k], err);
+    if (pair->viewpoint[0] < 0) of[0] = of[1];
+    if (pair->viewpoint[1] < 0) of[1] = of[0];
+    *exposure = exp((1 - pair->t) * log(of[0]) + pair->t * log(of[1]));
+    return st;
+}
+
+static enum status write_frame(const struct model_picture *p, double exposure, const struct view *camera,
+                               const char *path, const struct provenance *prov, struct err *err)
+{
+    const size_t pixels = (size_t)p->width * (size_t)p->height;
+    struct exr_image im = {0};
+    float *rgba = malloc(4 * pixels * sizeof *rgba);
+    enum status st = rgba ? ST_OK : err_nomem(err, "a frame", 4 * pixels * sizeof *rgba);
+    for (size_t i = 0; !st && i < pixels; i++) {
+        for (size_t c = 0; c < 3; c++) rgba[4 * i + c] = (float)(exposure * p->rgb[3 * i + c]);
+        rgba[4 * i + 3] = p->made[i] != MADE_NOTHING;
+    }
+    if (!st) st = exr_init_rgba(&im, rgba, p->width, p->height, err);
+    if (!st) exr_set_camera(&im, camera);
+    if (!st) st = exr_set_number(&im, "remodel:exposure", exposure, err);
+    if (!st) st = exr_write(&im, path, prov, err);
+    exr_image_release(&im);
+    free(rgba);
+    return st;
+}
+
+enum status pictures_of_frames(struct room *room, const struct camera_path *path, const struct viewpoint_pairs *pairs,
+                               const bool *wanted, const char *out, struct provenance *prov, struct err *err)
+{
+    struct model_picture picture = {0};
+    struct progress progress;
+    enum status st = ST_OK;
+    int count = 0;
+    for (int i = 0; i < path->frame_count; i++) count += wanted[i];
+    progress_start(&progress, "rendering", count, "frames");
+    for (int i = 0; !st && i < path->frame_count; i++) {
+        const struct view *scene = &path->frames[i].camera, camera = model_from_world_view(&room->axes, scene);
+        const int inputs = prov->count;
+        struct texture_pair pair;
+        char file[FILE_PATH];
+        double exposure = 1;
+        if (!wanted[i]) continue;
+        st = frame_pair(&pair, room, &camera, pairs, err);
+        if (!st) st = frame_exposure(&exposure, room, &pair, err);
+        if (!st) st = room_draw(&picture, room, &camera, &pair, -1, prov, err);
+        if (!st) st = file_path(file, out, scene->name, ".exr", err);
+        if (!st) st = write_frame(&picture, exposure, scene, file, prov, err);
+        provenance_drop(prov, inputs);
+        progress_add(&progress, 1);
+    }
+    progress_end(&progress);
+    model_picture_release(&picture);
+    return st;
+}

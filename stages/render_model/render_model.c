@@ -1,0 +1,134 @@
+/* render_model.c - draws the model, or an edited model, under its photographic texture [Colburn 2014, 4.6, 4.7].
+ *
+ * reads   MODEL, BASE, MAP                              model.txt; of an edit also the unedited one, and texture.txt
+ *         AXES                                          their frame in the scene
+ *         VIEWS/cameras.txt, images.txt, lenses.txt     the cameras
+ *         VIEWS/VIEW.exr, IDS/VIEW.exr, DEPTH/VIEW.exr  pixels, faces and layers of the views that are used
+ *         VDTA/PHOTO/, VITA/                            texture atlases
+ *         OUTDOORS                                      what lies outside
+ *         CAMERAS/cameras.txt, images.txt               with --cameras: the cameras to draw from
+ *         PATH/path.txt, path/, pairs.txt               with --path: a film
+ * writes  OUT/VIEW.txt, VIEW.jpg, VIEW.exr              of each --view
+ *         OUT/NAME.exr, NAME.jpg, NAME.txt              of each camera
+ *         OUT/NNNN.exr                                  of each frame */
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/base/cli.h"
+#include "common/base/file_path.h"
+#include "common/base/frame_list.h"
+#include "stages/render_model/pictures.h"
+
+static const struct param render_model_param_table[] = {
+#define PARAM_STRUCT struct render_model_params
+    RENDER_MODEL_PARAMS(PARAM_ROW) PARAM_END};
+#undef PARAM_STRUCT
+
+struct job { /* the command line */
+    struct room_files files;
+    struct render_model_params params;
+    struct cli_list views, names;
+    struct camera_source cameras;
+    const char *frame, *path, *frames, *out;
+};
+
+static enum status read_usage(struct job *job, struct err *err)
+{
+    const int kinds = (job->views.count > 0) + (job->cameras.folder != NULL) + (job->path != NULL);
+    if (kinds != 1) return err_set(err, ST_USAGE, "wanted one of --view, --cameras and --path; see --help.");
+    if (job->names.count && !job->cameras.folder) return err_set(err, ST_USAGE, "--camera goes with --cameras.");
+    if (!job->path != !job->frames) return err_set(err, ST_USAGE, "--path and --frames go together.");
+    if (!job->files.base != !job->files.map) return err_set(err, ST_USAGE, "--base and --map go together.");
+    if (!job->files.ids != !job->files.depth) return err_set(err, ST_USAGE, "--ids and --depth go together.");
+    if (!job->frame || !strcmp(job->frame, "scene"))
+        job->cameras.frame = FRAME_SCENE;
+    else if (!strcmp(job->frame, "model"))
+        job->cameras.frame = FRAME_MODEL;
+    else
+        return err_set(err, ST_USAGE, "--frame %s: wanted scene or model.", job->frame);
+    if (!job->cameras.photos) return ST_OK;
+    if (job->frame) return err_set(err, ST_USAGE, "wanted either --frame or --frame-of, not both.");
+    if (!job->cameras.records) return err_set(err, ST_USAGE, "--frame-of also needs --records.");
+    job->cameras.frame = FRAME_PHOTOS;
+    return ST_OK;
+}
+
+static enum status render_film(struct job *job, struct room *room, struct provenance *prov, struct err *err)
+{
+    struct camera_path path = {0};
+    struct viewpoint_pairs pairs = {0};
+    bool *wanted = NULL;
+    char file[FILE_PATH];
+    enum status st = camera_path_read(&path, job->path, err);
+    if (!st) st = provenance_add_in(prov, "film", job->path, "path.txt", "", NULL, err);
+    if (!st) st = provenance_add_in(prov, "film", job->path, "path/images.txt", "", NULL, err);
+    if (!st) st = provenance_add_in(prov, "film", job->path, "path/cameras.txt", "", NULL, err);
+    if (!st) st = file_path(file, job->path, "pairs.txt", "", err);
+    const bool paired = !st && path_is_file(file);
+    if (!st && paired) st = viewpoint_pairs_read(&pairs, file, err);
+    if (!st && paired) st = provenance_add_file(prov, "film/pairs.txt", file, err);
+    if (!st) {
+        wanted = calloc((size_t)path.frame_count + 1, sizeof *wanted);
+        st = wanted ? frame_list_read(wanted, path.frame_count, job->frames, err)
+                    : err_nomem(err, "the frames of a film", (size_t)path.frame_count);
+    }
+    if (!st) st = pictures_of_frames(room, &path, paired ? &pairs : NULL, wanted, job->out, prov, err);
+    free(wanted);
+    viewpoint_pairs_release(&pairs);
+    camera_path_release(&path);
+    return st;
+}
+
+static enum status render(struct job *job, struct provenance *prov, struct err *err)
+{
+    struct room room = {0};
+    enum status st = read_usage(job, err);
+    if (!st) st = room_open(&room, &job->files, &job->params, prov, err);
+    if (!st && job->views.count)
+        st = pictures_of_views(&room, &job->views, job->out, prov, err);
+    else if (!st && job->path)
+        st = render_film(job, &room, prov, err);
+    else if (!st)
+        st = pictures_of_cameras(&room, &job->cameras, &job->names, job->out, prov, err);
+    room_close(&room);
+    return st;
+}
+
+int main(int argc, char **argv)
+{
+    struct job job = {.params = RENDER_MODEL_PARAMS_DEFAULT};
+    const struct cli_opt opts[] = {
+        CLI_ABOUT("Draws the model, or an edited model, under its photographic texture."),
+        CLI_STR("model", &job.files.model, CLI_REQUIRED, "the model to draw, model.txt"),
+        CLI_STR("base", &job.files.base, CLI_OPTIONAL, "of an edited model: model.txt of the unedited one"),
+        CLI_STR("map", &job.files.map, CLI_OPTIONAL, "of an edited model: its texture.txt"),
+        CLI_STR("axes", &job.files.axes, CLI_REQUIRED, "the models' frame, axes.txt"),
+        CLI_STR("views", &job.files.views, CLI_REQUIRED, "folder of cameras and rectified views"),
+        CLI_STR("vdta", &job.files.vdta, CLI_REQUIRED, "folder of the viewpoints' texture atlases"),
+        CLI_STR("vita", &job.files.vita, CLI_REQUIRED, "folder of the atlas of all faces"),
+        CLI_STR("ids", &job.files.ids, CLI_OPTIONAL, "for clutter: folder of the faces that each view shows"),
+        CLI_STR("depth", &job.files.depth, CLI_OPTIONAL, "for clutter: folder of layered depth maps"),
+        CLI_STR("outdoors", &job.files.outdoors, CLI_OPTIONAL, "picture of what lies outside, outdoors.exr"),
+        CLI_LIST("view", &job.views, CLI_OPTIONAL, "draw this original view; repeat for several"),
+        CLI_STR("cameras", &job.cameras.folder, CLI_OPTIONAL,
+                "instead: draw the cameras of this folder (COLMAP text, any lens)"),
+        CLI_LIST("camera", &job.names, CLI_OPTIONAL, "with --cameras: draw only the camera of this name"),
+        CLI_STR("frame", &job.frame, CLI_OPTIONAL, "with --cameras: their frame: scene (default) or model"),
+        CLI_STR("frame-of", &job.cameras.photos, CLI_OPTIONAL,
+                "with --cameras: a COLMAP text model in their frame that has the scene's photographs"),
+        CLI_STR("records", &job.cameras.records, CLI_OPTIONAL, "with --frame-of: folder of the photos' records"),
+        CLI_STR("path", &job.path, CLI_OPTIONAL, "instead: draw frames of the film of this folder, path.txt and path/"),
+        CLI_STR("frames", &job.frames, CLI_OPTIONAL, "frames of the film to draw: 1:30 or 1:30,45"),
+        CLI_STR("out", &job.out, CLI_REQUIRED, "folder to write to"),
+        CLI_PARAMS(render_model_param_table, &job.params, NULL),
+        CLI_END,
+    };
+    struct provenance prov = {0};
+    struct err err = ERR_INIT;
+    if (cli_parse(argc, argv, "render_model", opts, &prov, &err) == CLI_RUN) render(&job, &prov, &err);
+    err_report(&err);
+    cli_list_release(&job.views);
+    cli_list_release(&job.names);
+    provenance_release(&prov);
+    return err_exit_code(&err);
+}
