@@ -3,8 +3,8 @@
 check_build_model()
 {
     case $goal in
-    model | ids | vdta | vita | textures) ;;
-    all | report) case " $REMODEL_PRODUCTS " in *" model "* | *" textures "*) ;; *) return 0 ;; esac ;;
+    model | ids | vdta | vita | textures | outdoors | remodel | tour-path | tour | exports) ;;
+    all | report) case " $REMODEL_PRODUCTS " in *" model "* | *" textures "* | *" remodel "*) ;; *) return 0 ;; esac ;;
     *) return 0 ;;
     esac
     [ ! -e "$folder/model.txt" ] || return 0

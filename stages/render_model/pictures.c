@@ -8,6 +8,7 @@
 #include "common/base/file_path.h"
 #include "common/base/outfile.h"
 #include "common/base/progress.h"
+#include "common/base/textfile.h"
 #include "common/capture/view_image.h"
 #include "common/image/exr.h"
 #include "stages/render_model/choose_pair.h"
@@ -150,6 +151,27 @@ static bool is_wanted(const struct cli_list *names, const char *name)
     return names->count == 0;
 }
 
+/* Lists the pictures, when all are there. */
+static enum status write_list(const struct room_cameras *cameras, const struct cli_list *names, const char *out,
+                              const struct provenance *prov, struct err *err)
+{
+    char path[FILE_PATH], quoted[2 * FILE_PATH];
+    struct outfile list = {0};
+    enum status st = file_path(path, out, "pictures.txt", "", err);
+    if (!st) st = outfile_open(&list, path, err);
+    if (st) return st;
+    fputs("remodel-pictures 1\n", list.fp);
+    provenance_print(prov, list.fp);
+    for (int i = 0; !st && i < cameras->count; i++) {
+        if (!is_wanted(names, cameras->list[i].name)) continue;
+        st = textfile_quote(cameras->list[i].name, quoted, sizeof quoted, err);
+        fprintf(list.fp, "picture %s\n", quoted);
+    }
+    if (!st) st = outfile_commit(&list, err);
+    outfile_discard(&list);
+    return st;
+}
+
 enum status pictures_of_cameras(struct room *room, const struct camera_source *source, const struct cli_list *names,
                                 const char *out, struct provenance *prov, struct err *err)
 {
@@ -172,6 +194,7 @@ enum status pictures_of_cameras(struct room *room, const struct camera_source *s
         progress_add(&progress, 1);
     }
     progress_end(&progress);
+    if (!st) st = write_list(&cameras, names, out, prov, err);
     model_picture_release(&picture);
     room_cameras_release(&cameras);
     return st;

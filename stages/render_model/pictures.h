@@ -12,7 +12,8 @@
 enum status pictures_of_views(struct room *room, const struct cli_list *views, const char *out, struct provenance *prov,
                               struct err *err);
 
-/* Writes OUT/NAME.exr, NAME.jpg and NAME.txt of each camera; names: those wanted, empty: all. ST_USAGE: no such name. */
+/* Writes OUT/NAME.exr, NAME.jpg and NAME.txt of each camera, then OUT/pictures.txt, the list of them; names: those wanted,
+ * empty: all. ST_USAGE: no such name. */
 enum status pictures_of_cameras(struct room *room, const struct camera_source *source, const struct cli_list *names,
                                 const char *out, struct provenance *prov, struct err *err);
 

@@ -1,0 +1,20 @@
+# run.sh - pictures and films of the remodelled rooms. Sourced by common/run/run_scene.sh.
+
+check_render_model()
+{
+    [ -z "${REMODEL_CAMERAS-}" ] || [ -e "$REMODEL_CAMERAS/images.txt" ] ||
+        usage "CAMERAS=$REMODEL_CAMERAS has no images.txt. Give a folder with cameras.txt and images.txt, COLMAP's text format."
+    case ${REMODEL_CAMERAS_FRAME:-scene} in
+    scene | model) ;;
+    truth) [ -d "${REMODEL_TRUTH-}" ] || usage "CAMERAS_FRAME=truth wants TRUTH=DIR, whose images.txt has the photos in the same frame." ;;
+    *) usage "CAMERAS_FRAME=$REMODEL_CAMERAS_FRAME: wanted scene, model or truth." ;;
+    esac
+    case $goal in remodel | tour) ;; *) return 0 ;; esac
+    [ -z "${EDIT-}" ] || [ -e "$folder/edits/$EDIT.txt" ] || usage "EDIT=$EDIT: there is no $folder/edits/$EDIT.txt."
+}
+
+run_tour()
+{
+    farm_frames render_model tour-frames
+    one tour
+}
