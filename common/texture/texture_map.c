@@ -1,0 +1,357 @@
+/* texture_map.c - reads and writes texture.txt; see texture_map.h. */
+#include "common/texture/texture_map.h"
+
+#include <limits.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/base/array.h"
+#include "common/base/outfile.h"
+#include "common/base/textfile.h"
+
+#define HEADER "remodel-texture"
+
+enum { NAME_SIZE = 1024, MAX_CORNERS = 100000 };
+
+static void face_release(struct texture_face *face)
+{
+    for (int i = 0; i < face->rule_count; i++) free(face->rules[i].lit);
+    free(face->rules);
+    free(face->added);
+    free(face->name);
+}
+
+void texture_map_release(struct texture_map *map)
+{
+    if (!map) return;
+    for (int i = 0; i < map->face_count; i++) face_release(&map->faces[i]);
+    for (int i = 0; i < map->zone_count; i++) {
+        free(map->zones[i].name);
+        free(map->zones[i].corners);
+    }
+    free(map->faces);
+    free(map->zones);
+    free(map->base);
+    *map = (struct texture_map){0};
+}
+
+/* --------------------------------------------------------------------------------------------------------- look-ups */
+
+const struct texture_face *texture_map_find(const struct texture_map *map, int id, struct vec3 p)
+{
+    const struct texture_face *best = NULL;
+    double least = INFINITY;
+    int low = 0, high = map->face_count;
+    while (low < high) {
+        const int middle = (low + high) / 2;
+        if (map->faces[middle].id < id)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    for (int i = low; i < map->face_count && map->faces[i].id == id; i++) {
+        const double off = fabs(vec3_dot(map->faces[i].normal, p) - map->faces[i].offset);
+        if (off < least) {
+            least = off;
+            best = &map->faces[i];
+        }
+    }
+    return best;
+}
+
+/* The quadrilateral is convex; its corners run in either direction. */
+bool texture_rule_holds(const struct texture_rule *rule, struct vec3 normal, struct vec3 p)
+{
+    bool left = true, right = true;
+    for (int i = 0; rule->limited && i < 4; i++) {
+        const struct vec3 a = rule->within[i], b = rule->within[(i + 1) % 4];
+        const double side = vec3_dot(vec3_cross(vec3_sub(b, a), vec3_sub(p, a)), normal);
+        left = left && side >= 0;
+        right = right && side <= 0;
+    }
+    return left || right;
+}
+
+struct vec3 texture_rule_place(const struct texture_rule *rule, struct vec3 p)
+{
+    double to[3];
+    for (int i = 0; i < 3; i++) {
+        const double *m = rule->matrix[i];
+        to[i] = m[0] * p.x + m[1] * p.y + m[2] * p.z + m[3];
+    }
+    return vec3_make(to[0], to[1], to[2]);
+}
+
+static bool zone_holds(const struct texture_zone *zone, struct vec3 p)
+{
+    bool inside = false;
+    if (p.z < zone->low || p.z > zone->high) return false;
+    for (int i = 0, j = zone->corner_count - 1; i < zone->corner_count; j = i++) {
+        const double *a = zone->corners[i], *b = zone->corners[j];
+        if ((a[1] > p.y) != (b[1] > p.y) && p.x < (b[0] - a[0]) * (p.y - a[1]) / (b[1] - a[1]) + a[0]) inside = !inside;
+    }
+    return inside;
+}
+
+bool texture_map_clears(const struct texture_map *map, struct vec3 p)
+{
+    bool clear = false;
+    for (int i = 0; i < map->zone_count; i++) {
+        if (!zone_holds(&map->zones[i], p)) continue;
+        if (map->zones[i].keep) return false;
+        clear = true;
+    }
+    return clear;
+}
+
+/* ---------------------------------------------------------------------------------------------------------- writing */
+
+static void print_point(FILE *to, struct vec3 p) { fprintf(to, " %.17g %.17g %.17g", p.x, p.y, p.z); }
+
+static void print_rule(FILE *to, const struct texture_rule *r)
+{
+    switch (r->kind) {
+    case TEXTURE_PLACE:
+    case TEXTURE_EDGE:
+        fprintf(to, "%s %d", r->kind == TEXTURE_PLACE ? "place" : "edge", r->from);
+        for (int i = 0; i < 12; i++) fprintf(to, " %.17g", r->matrix[i / 4][i % 4]);
+        break;
+    case TEXTURE_OUTDOORS:
+        fprintf(to, "outdoors");
+        break;
+    case TEXTURE_COLOUR:
+        fprintf(to, "colour %.9g %.9g %.9g lit", r->albedo[0], r->albedo[1], r->albedo[2]);
+        for (int i = 0; i < r->lit_count; i++) fprintf(to, " %d", r->lit[i]);
+        break;
+    }
+    if (r->limited) fprintf(to, " within");
+    for (int i = 0; r->limited && i < 4; i++) print_point(to, r->within[i]);
+    fputc('\n', to);
+}
+
+static enum status print_face(FILE *to, const struct texture_face *face, struct err *err)
+{
+    char name[NAME_SIZE];
+    if (textfile_quote(face->name, name, sizeof name, err)) return err->status;
+    fprintf(to, "face %d", face->id);
+    print_point(to, face->normal);
+    fprintf(to, " %.17g %s\n", face->offset, name);
+    for (int i = 0; i < face->rule_count; i++) print_rule(to, &face->rules[i]);
+    if (face->added_count) fprintf(to, "new %d\n", face->added_count);
+    for (int i = 0; i < face->added_count; i++) {
+        fprintf(to, "triangle");
+        for (int k = 0; k < 3; k++) print_point(to, face->added[i][k]);
+        fputc('\n', to);
+    }
+    return ST_OK;
+}
+
+static enum status print_zone(FILE *to, const struct texture_zone *zone, struct err *err)
+{
+    char name[NAME_SIZE];
+    if (textfile_quote(zone->name, name, sizeof name, err)) return err->status;
+    fprintf(to, "%s %s %.17g %.17g %d", zone->keep ? "keep" : "clear", name, zone->low, zone->high, zone->corner_count);
+    for (int i = 0; i < zone->corner_count; i++) fprintf(to, " %.17g %.17g", zone->corners[i][0], zone->corners[i][1]);
+    fputc('\n', to);
+    return ST_OK;
+}
+
+enum status texture_map_write(const struct texture_map *map, const char *path, const struct provenance *prov,
+                              struct err *err)
+{
+    struct outfile file = {0};
+    char base[NAME_SIZE];
+    enum status st = textfile_quote(map->base ? map->base : "none", base, sizeof base, err);
+    if (!st) st = outfile_open(&file, path, err);
+    if (!st) fprintf(file.fp, HEADER " 1\n");
+    if (!st && prov) provenance_print(prov, file.fp);
+    if (!st) fprintf(file.fp, "base %s\n", base);
+    for (int i = 0; !st && i < map->face_count; i++) st = print_face(file.fp, &map->faces[i], err);
+    for (int i = 0; !st && i < map->zone_count; i++) st = print_zone(file.fp, &map->zones[i], err);
+    if (!st) st = outfile_commit(&file, err);
+    outfile_discard(&file);
+    return st;
+}
+
+/* ---------------------------------------------------------------------------------------------------------- reading */
+
+static enum status read_point(struct textfile *t, struct vec3 *p, struct err *err)
+{
+    return textfile_double(t, "X", &p->x, err) || textfile_double(t, "Y", &p->y, err) ||
+                   textfile_double(t, "Z", &p->z, err)
+               ? err->status
+               : ST_OK;
+}
+
+static enum status copy_word(char **to, struct textfile *t, const char *what, struct err *err)
+{
+    char *word;
+    if (textfile_word(t, what, &word, err)) return err->status;
+    *to = strdup(word);
+    return *to ? ST_OK : err_nomem(err, "a name", strlen(word) + 1);
+}
+
+static enum status read_count(struct textfile *t, const char *what, int least, int *count, struct err *err)
+{
+    int64_t value;
+    if (textfile_int(t, what, least, MAX_CORNERS, &value, err)) return err->status;
+    *count = (int)value;
+    return ST_OK;
+}
+
+/* The limits of a rule, if `word` begins them, and the end of the line. */
+static enum status read_limits(struct texture_rule *rule, struct textfile *t, const char *word, struct err *err)
+{
+    if (word && strcmp(word, "within")) return textfile_error(t, err, word, "\"within\", or the end of the line");
+    rule->limited = word != NULL;
+    enum status st = ST_OK;
+    for (int i = 0; !st && rule->limited && i < 4; i++) st = read_point(t, &rule->within[i], err);
+    return st ? st : textfile_end(t, err);
+}
+
+static enum status read_place(struct texture_rule *rule, struct textfile *t, struct err *err)
+{
+    int64_t from;
+    char *word = NULL;
+    enum status st = textfile_int(t, "the id of a face", 1, INT_MAX, &from, err);
+    for (int i = 0; !st && i < 12; i++) st = textfile_double(t, "a number of M", &rule->matrix[i / 4][i % 4], err);
+    if (!st) rule->from = (int)from;
+    if (!st && textfile_more(t)) st = textfile_word(t, "within", &word, err);
+    return st ? st : read_limits(rule, t, word, err);
+}
+
+static enum status read_colour(struct texture_rule *rule, struct textfile *t, struct err *err)
+{
+    enum status st = ST_OK;
+    char *word = NULL;
+    for (int c = 0; !st && c < 3; c++) {
+        double value;
+        st = textfile_double(t, "a share of light, from 0 to 1", &value, err);
+        if (!st && (value < 0 || value > 1)) st = textfile_wrong_number(t, value, "a share of light, from 0 to 1", err);
+        if (!st) rule->albedo[c] = (float)value;
+    }
+    if (!st) st = textfile_expect(t, "lit", err);
+    while (!st && textfile_more(t)) {
+        st = textfile_word(t, "the id of a face", &word, err);
+        if (st || !strcmp(word, "within")) break;
+        char *end;
+        const long id = strtol(word, &end, 10);
+        if (*end || id < 1 || id > INT_MAX) return textfile_error(t, err, word, "the id of a face, or \"within\"");
+        st = array_append(&rule->lit, (size_t)rule->lit_count, sizeof *rule->lit, "faces", err);
+        if (!st) rule->lit[rule->lit_count++] = (int)id;
+        word = NULL;
+    }
+    return st ? st : read_limits(rule, t, word, err);
+}
+
+static enum status read_rule(struct texture_face *face, struct textfile *t, const char *word, struct err *err)
+{
+    if (array_append(&face->rules, (size_t)face->rule_count, sizeof *face->rules, "rules", err)) return err->status;
+    struct texture_rule *rule = &face->rules[face->rule_count++];
+    *rule = (struct texture_rule){0};
+    if (!strcmp(word, "outdoors")) {
+        rule->kind = TEXTURE_OUTDOORS;
+        return textfile_end(t, err);
+    }
+    if (!strcmp(word, "colour")) {
+        rule->kind = TEXTURE_COLOUR;
+        return read_colour(rule, t, err);
+    }
+    rule->kind = !strcmp(word, "edge") ? TEXTURE_EDGE : TEXTURE_PLACE;
+    return read_place(rule, t, err);
+}
+
+static enum status read_added(struct texture_face *face, struct textfile *t, struct err *err)
+{
+    int count;
+    if (face->added) return textfile_error(t, err, "new", "one line \"new\" in a face");
+    enum status st = read_count(t, "a number of triangles", 1, &count, err);
+    if (!st) st = textfile_end(t, err);
+    for (int i = 0; !st && i < count; i++) {
+        st = textfile_expect_line(t, "triangle", err);
+        if (!st) st = array_append(&face->added, (size_t)face->added_count, sizeof *face->added, "triangles", err);
+        if (st) break;
+        for (int k = 0; !st && k < 3; k++) st = read_point(t, &face->added[face->added_count][k], err);
+        if (!st) face->added_count++;
+        if (!st) st = textfile_end(t, err);
+    }
+    return st;
+}
+
+static enum status read_face(struct texture_map *map, struct textfile *t, struct err *err)
+{
+    int64_t id;
+    if (map->zone_count) return textfile_error(t, err, "face", "faces before the lines \"clear\" and \"keep\"");
+    if (array_append(&map->faces, (size_t)map->face_count, sizeof *map->faces, "faces", err)) return err->status;
+    struct texture_face *face = &map->faces[map->face_count++];
+    *face = (struct texture_face){0};
+    if (textfile_int(t, "the id of a face", 1, INT_MAX, &id, err) || read_point(t, &face->normal, err) ||
+        textfile_double(t, "an offset", &face->offset, err) || copy_word(&face->name, t, "a name", err))
+        return err->status;
+    face->id = (int)id;
+    const double length = vec3_length(face->normal);
+    if (fabs(length - 1) > 1e-6) return textfile_wrong_number(t, length, "a normal of length 1", err);
+    if (map->face_count > 1 && face[-1].id > face->id)
+        return textfile_wrong_number(t, face->id, "an id that is not below the one before: faces are in order", err);
+    return textfile_end(t, err);
+}
+
+static enum status read_zone(struct texture_map *map, struct textfile *t, bool keep, struct err *err)
+{
+    int count = 0;
+    if (array_append(&map->zones, (size_t)map->zone_count, sizeof *map->zones, "zones", err)) return err->status;
+    struct texture_zone *zone = &map->zones[map->zone_count++];
+    *zone = (struct texture_zone){.keep = keep};
+    enum status st = copy_word(&zone->name, t, "a name", err);
+    if (!st) st = textfile_double(t, "the lowest height", &zone->low, err);
+    if (!st) st = textfile_double(t, "the greatest height", &zone->high, err);
+    if (!st && zone->high < zone->low) st = textfile_wrong_number(t, zone->high, "a height above the lowest", err);
+    if (!st) st = read_count(t, "a number of corners", 3, &count, err);
+    for (int i = 0; !st && i < count; i++) {
+        st = array_append(&zone->corners, (size_t)i, sizeof *zone->corners, "corners", err);
+        if (!st) st = textfile_double(t, "X", &zone->corners[i][0], err);
+        if (!st) st = textfile_double(t, "Y", &zone->corners[i][1], err);
+        if (!st) zone->corner_count = i + 1;
+    }
+    return st ? st : textfile_end(t, err);
+}
+
+static enum status read_line(struct texture_map *map, struct textfile *t, struct err *err)
+{
+    static const char wanted[] = "face, place, edge, outdoors, colour, new, clear or keep";
+    char *word;
+    if (textfile_word(t, wanted, &word, err)) return err->status;
+    if (!strcmp(word, "face")) return read_face(map, t, err);
+    if (!strcmp(word, "clear") || !strcmp(word, "keep")) return read_zone(map, t, !strcmp(word, "keep"), err);
+    struct texture_face *face = map->face_count && !map->zone_count ? &map->faces[map->face_count - 1] : NULL;
+    const bool rule =
+        !strcmp(word, "place") || !strcmp(word, "edge") || !strcmp(word, "outdoors") || !strcmp(word, "colour");
+    if (!rule && strcmp(word, "new")) return textfile_error(t, err, word, "%s", wanted);
+    if (!face) return textfile_error(t, err, word, "a line \"face\" before it");
+    return rule ? read_rule(face, t, word, err) : read_added(face, t, err);
+}
+
+enum status texture_map_read(struct texture_map *map, const char *path, struct err *err)
+{
+    struct textfile t = {0};
+    char *base = NULL;
+    int64_t version;
+    *map = (struct texture_map){0};
+    if (textfile_open(&t, path, err)) return err->status;
+    enum status st = textfile_expect_line(&t, HEADER, err);
+    if (!st) st = textfile_int(&t, "version", 1, 1, &version, err);
+    if (!st) st = textfile_end(&t, err);
+    if (!st) st = textfile_expect_line(&t, "base", err);
+    if (!st) st = copy_word(&base, &t, "an edit or \"none\"", err);
+    if (!st) st = textfile_end(&t, err);
+    if (!st && strcmp(base, "none"))
+        map->base = base;
+    else
+        free(base);
+    while (!st && textfile_next(&t)) st = read_line(map, &t, err);
+    if (st) texture_map_release(map);
+    textfile_release(&t);
+    return st;
+}
