@@ -265,7 +265,7 @@ static enum status read_rule(struct texture_face *face, struct textfile *t, cons
 
 static enum status read_added(struct texture_face *face, struct textfile *t, struct err *err)
 {
-    int count;
+    int count = 0;
     if (face->added) return textfile_error(t, err, "new", "one line \"new\" in a face");
     enum status st = read_count(t, "a number of triangles", 1, &count, err);
     if (!st) st = textfile_end(t, err);

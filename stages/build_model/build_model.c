@@ -22,6 +22,7 @@
 #include "stages/build_model/layout.h"
 #include "stages/build_model/plan_file.h"
 #include "stages/build_model/plan_picture.h"
+#include "stages/build_model/texture_rules.h"
 #include "stages/build_model/unite.h"
 
 struct job {
@@ -85,6 +86,19 @@ static enum status write_model(struct job *j, const struct plan *plan, const str
     return ST_OK;
 }
 
+/* texture.txt of an edited model. */
+static enum status write_texture(struct job *j, const struct solid_mesh *mesh, const struct solid_mesh *base,
+                                 const struct plan_places *before, const struct plan *plan, struct err *err)
+{
+    struct texture_map map = {0};
+    char path[FILE_PATH];
+    enum status st = texture_rules_make(&map, mesh, base, before, plan, err);
+    if (!st) st = file_path(path, j->out, "texture.txt", "", err);
+    if (!st) st = texture_map_write(&map, path, &j->prov, err);
+    texture_map_release(&map);
+    return st;
+}
+
 static void log_summary(const struct plan *plan, const struct solid_mesh *mesh, const struct unite_log *log,
                         const struct solid_report *report)
 {
@@ -106,11 +120,13 @@ static enum status build(struct job *j, struct err *err)
     struct solid_mesh mesh = {0}, base = {0};
     struct unite_log log = {0};
     struct solid_report report = {0};
+    struct plan_places before = {0};
     enum status st = read_frame(j, err);
     if (!st) {
         plan_begin(&plan, &j->frame);
         st = apply_script(j, &plan, j->script, false, err);
     }
+    if (!st) st = plan_places_keep(&before, &plan, err);
     if (!st && j->edit) st = apply_script(j, &plan, j->edit, true, err);
     if (!st) st = layout_solids(&solids, &plan, err);
     if (!st && !solids.count)
@@ -120,6 +136,7 @@ static enum status build(struct job *j, struct err *err)
     if (!st && j->base) st = solid_mesh_read(&base, j->base, err);
     if (!st && j->base) st = provenance_add_file(&j->prov, "model/model.txt", j->base, err);
     if (!st && j->base) st = solid_mesh_carry_ids(&mesh, &base, err);
+    if (!st && j->base) st = write_texture(j, &mesh, &base, &before, &plan, err);
     if (!st) st = write_model(j, &plan, &mesh, &log, err);
     if (!st) log_summary(&plan, &mesh, &log, &report);
     solid_report_release(&report);
@@ -127,6 +144,7 @@ static enum status build(struct job *j, struct err *err)
     solid_mesh_release(&base);
     solid_mesh_release(&mesh);
     solid_list_release(&solids);
+    plan_places_release(&before);
     plan_release(&plan);
     return st;
 }

@@ -1,7 +1,7 @@
 # build_model: solid models of rooms, by a script and its edits.
 FOLLOWS.build_model := find_axes suggest_model
 READS.build_model := scenes/NAME/model.txt and edits/E.txt, axes.txt, cameras, points.ply; the photos for overlays
-WRITES.build_model := model/, remodel/E/: model.txt, model.obj, plan.txt, merged.txt, plan.svg, view.png, overlay/PHOTO.jpg
+WRITES.build_model := model/, remodel/E/: model.txt, model.obj, plan.txt, merged.txt, plan.svg, view.png, overlay/PHOTO.jpg; remodel/E/texture.txt
 STEPS.build_model := model
 HELP.model := the solid model of scenes/SCENE/model.txt and of each edit in edits/, with pictures to check them
 NEEDS.model := depth
@@ -11,11 +11,12 @@ ifdef GRAPH
 # the model of model.txt, and one of each edit
 model_files = $(addprefix $(1)/,model.txt model.obj plan.txt merged.txt plan.svg view.png)
 MODEL_SCRIPT := $(wildcard scenes/$(SCENE)/model.txt)
+edit_files = $(call model_files,$(1)) $(1)/texture.txt
 EDITS := $(if $(MODEL_SCRIPT),$(patsubst scenes/$(SCENE)/edits/%.txt,%,$(wildcard scenes/$(SCENE)/edits/*.txt)))
 MODELS := $(if $(MODEL_SCRIPT),$(O)/model $(EDITS:%=$(O)/remodel/%))
 OVERLAYS := $(foreach m,$(MODELS),$(VIEWED:%=$(m)/overlay/%.jpg))
 .PHONY: model overlays
-model: $(foreach m,$(MODELS),$(call model_files,$(m)))
+model: $(foreach m,$(MODELS),$(call model_files,$(m))) $(EDITS:%=$(O)/remodel/%/texture.txt)
 overlays: $(OVERLAYS)
 # a script that places nothing in photographs needs no points
 MODEL_POINTS := $(if $(MODEL_SCRIPT),$(if $(shell grep -lE '^[ \t]*(wall|adjust)[ \t]+[^ \t]+[ \t]+in[ \t]' \
@@ -25,7 +26,7 @@ MODEL_ARGS := --axes $(AXES) --views $(O)/views $(if $(HELD_CAMERAS),--held $(H)
 $(call model_files,$(O)/model) &: $(MODEL_SCRIPT) $(MODEL_NEEDS)
 	$(call stage,build_model,model,$(O),--script $(MODEL_SCRIPT) $(MODEL_ARGS) --out $(O)/model)
 define edit_rule
-$(call model_files,$(O)/remodel/$(1)) &: $(MODEL_SCRIPT) scenes/$(SCENE)/edits/$(1).txt $(O)/model/model.txt $(MODEL_NEEDS)
+$(call edit_files,$(O)/remodel/$(1)) &: $(MODEL_SCRIPT) scenes/$(SCENE)/edits/$(1).txt $(O)/model/model.txt $(MODEL_NEEDS)
 	$$(call stage,build_model,$(1),$(O),--script $(MODEL_SCRIPT) --edit scenes/$(SCENE)/edits/$(1).txt \
 	  --base $(O)/model/model.txt $(MODEL_ARGS) --out $(O)/remodel/$(1))
 endef
