@@ -156,7 +156,9 @@ static enum status add_rule(struct texture_face *face, struct texture_rule rule,
 static struct texture_rule shifted(enum texture_rule_kind kind, int from, struct vec3 by)
 {
     return (struct texture_rule){
-        .kind = kind, .from = from, .matrix = {{1, 0, 0, by.x}, {0, 1, 0, by.y}, {0, 0, 1, by.z}}};
+        .kind = kind,
+        .from = from,
+        .matrix = {{1, 0, 0, by.x + 0.0}, {0, 1, 0, by.y + 0.0}, {0, 0, 1, by.z + 0.0}}}; /* -0 is 0 */
 }
 
 /* The face's own place: the face of the base with its id whose plane, moved along with the item, is nearest; -1: the base

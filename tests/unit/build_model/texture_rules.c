@@ -1,0 +1,212 @@
+/* texture_rules.c - edited faces take the texture of their place in the unedited model. */
+#include "stages/build_model/texture_rules.h"
+
+#include <math.h>
+
+#include "stages/build_model/unite.h"
+#include "tests/unit/build_model/scripted.h"
+
+struct made { /* an edit of a script, with its rules */
+    struct plan base_plan, plan;
+    struct solid_list solids[2];
+    struct solid_mesh base, edited;
+    struct plan_places before;
+    struct texture_map map;
+};
+
+static void make(struct made *m, const char *text, const char *edit)
+{
+    struct err err = ERR_INIT;
+    char whole[4096];
+    *m = (struct made){0};
+    snprintf(whole, sizeof whole, "remodel-script 1\n%s", edit);
+    build(&m->base_plan, &m->solids[0], text, NULL);
+    build(&m->plan, &m->solids[1], text, whole);
+    assert_ok(plan_places_keep(&m->before, &m->base_plan, &err), err);
+    assert_ok(solids_unite(&m->base, &m->solids[0], NULL, &err), err);
+    assert_ok(solids_unite(&m->edited, &m->solids[1], NULL, &err), err);
+    assert_ok(solid_mesh_carry_ids(&m->edited, &m->base, &err), err);
+    assert_ok(texture_rules_make(&m->map, &m->edited, &m->base, &m->before, &m->plan, &err), err);
+}
+
+static void release(struct made *m)
+{
+    texture_map_release(&m->map);
+    plan_places_release(&m->before);
+    solid_mesh_release(&m->base);
+    solid_mesh_release(&m->edited);
+    drop(&m->base_plan, &m->solids[0]);
+    drop(&m->plan, &m->solids[1]);
+}
+
+static const struct texture_face *face_of(const struct made *m, const char *name, struct vec3 p)
+{
+    for (int i = 0; i < m->map.face_count; i++)
+        if (!strcmp(m->map.faces[i].name, name)) return texture_map_find(&m->map, m->map.faces[i].id, p);
+    fail_msg("there is no face %s", name);
+    return NULL;
+}
+
+/* The face shows the unedited face `from` at `to` for its point `at`. */
+static void assert_shows(const struct made *m, const char *name, struct vec3 at, const char *from, struct vec3 to)
+{
+    const struct texture_face *face = face_of(m, name, at);
+    assert_int_equal(face->rules[0].kind, TEXTURE_PLACE);
+    assert_string_equal(m->base.names[face->rules[0].from - 1].name, from);
+    const struct vec3 place = texture_rule_place(&face->rules[0], at);
+    assert_true(vec3_length(vec3_sub(place, to)) < 1e-9);
+}
+
+static double new_area(const struct texture_face *face)
+{
+    double area = 0;
+    for (int i = 0; i < face->added_count; i++) {
+        const struct vec3 *t = face->added[i];
+        area += vec3_dot(vec3_cross(vec3_sub(t[1], t[0]), vec3_sub(t[2], t[0])), face->normal) / 2;
+    }
+    return area;
+}
+
+static double all_new_area(const struct made *m)
+{
+    double area = 0;
+    for (int i = 0; i < m->map.face_count; i++) area += new_area(&m->map.faces[i]);
+    return area;
+}
+
+static void a_face_that_does_not_change_shows_itself(void **state)
+{
+    struct made m;
+    (void)state;
+    make(&m, TWO "window w on south from 3 1 to 3.5 2\n", "remove w\n");
+    assert_shows(&m, "wall/north/in", vec3_make(1, 3, 1), "wall/north/in", vec3_make(1, 3, 1));
+    assert_shows(&m, "floor/left", vec3_make(1, 2, 0), "floor/left", vec3_make(1, 2, 0));
+    /* but the wall, where the window was, on both sides */
+    assert_true(fabs(all_new_area(&m) - 2 * 0.5) < 1e-9);
+    assert_true(fabs(new_area(face_of(&m, "wall/south/in", vec3_make(3, 0, 1))) - 0.5) < 1e-9);
+    release(&m);
+}
+
+static void a_wall_that_moves_carries_its_texture(void **state)
+{
+    struct made m;
+    (void)state;
+    make(&m, TWO, "move west by 0.5\n");
+    assert_shows(&m, "wall/west/in", vec3_make(-0.5, 1, 1), "wall/west/in", vec3_make(0, 1, 1));
+    assert_shows(&m, "wall/west/out", vec3_make(-0.7, 1, 1), "wall/west/out", vec3_make(-0.2, 1, 1));
+    /* the floor stays where it is, and goes on */
+    assert_shows(&m, "floor/left", vec3_make(0.1, 1, 0), "floor/left", vec3_make(0.1, 1, 0));
+    assert_true(new_area(face_of(&m, "floor/left", vec3_make(0, 1, 0))) > 0.5 * 3 - 1e-9);
+    assert_int_equal(face_of(&m, "wall/west/in", vec3_make(-0.5, 1, 1))->added_count, 0);
+    release(&m);
+}
+
+static void reveals_of_a_wider_opening_move_with_its_sides(void **state)
+{
+    struct made m;
+    (void)state;
+    make(&m, TWO "passage p on middle from 1 0 to 2 2\n", "resize p left 0.25\n");
+    const struct texture_face *side = NULL;
+    for (int i = 0; i < m.map.face_count; i++)
+        if (!strcmp(m.map.faces[i].name, "passage/p/left")) side = &m.map.faces[i];
+    assert_non_null(side);
+    const struct vec3 at = vec3_add(vec3_scale(side->normal, side->offset), vec3_make(2.05, 0, 1));
+    const struct vec3 to = texture_rule_place(&side->rules[0], at);
+    assert_true(fabs(vec3_length(vec3_sub(at, to)) - 0.25) < 1e-9);
+    assert_int_equal(side->added_count, 0);
+    release(&m);
+}
+
+static void a_box_that_moves_carries_its_texture(void **state)
+{
+    struct made m;
+    (void)state;
+    make(&m, ROOM "box b from 1 1 to 1.5 1.5 top 1\n", "move b by 0.4 0.2\n");
+    assert_shows(&m, "box/b/top", vec3_make(1.6, 1.5, 1), "box/b/top", vec3_make(1.2, 1.3, 1));
+    assert_shows(&m, "box/b/right", vec3_make(1.9, 1.5, 0.5), "box/b/right", vec3_make(1.5, 1.3, 0.5));
+    release(&m);
+}
+
+static void a_new_opening_has_sides_of_the_default_colour_lit_by_its_neighbours(void **state)
+{
+    struct made m;
+    (void)state;
+    make(&m, TWO, "passage p on middle from 1 0 to 2 2\n");
+    for (int i = 0; i < m.map.face_count; i++) {
+        const struct texture_face *f = &m.map.faces[i];
+        if (strcmp(f->name, "passage/p/left")) continue;
+        assert_int_equal(f->rule_count, 1);
+        assert_int_equal(f->rules[0].kind, TEXTURE_COLOUR);
+        assert_true(f->rules[0].lit_count >= 2);
+        assert_true(fabs(new_area(f) - 2 * 0.1) < 1e-9);
+    }
+    release(&m);
+}
+
+static void a_wall_that_was_split_shows_what_was_there(void **state)
+{
+    struct made m;
+    (void)state;
+    make(&m, TWO, "split middle from 1 to 2 into rest\n");
+    const struct texture_face *face = NULL;
+    for (int i = 0; i < m.map.face_count; i++)
+        if (!strcmp(m.map.faces[i].name, "wall/rest/in")) face = &m.map.faces[i];
+    assert_non_null(face);
+    assert_int_equal(face->rules[0].kind, TEXTURE_PLACE);
+    assert_string_equal(m.base.names[face->rules[0].from - 1].name, "wall/middle/in");
+    release(&m);
+}
+
+static void panes_show_what_lies_outdoors(void **state)
+{
+    struct made m;
+    (void)state;
+    make(&m, TWO "window w on south from 3 1 to 3.5 2\n", "resize w left 0.1\n");
+    int panes = 0;
+    for (int i = 0; i < m.map.face_count; i++) {
+        if (strncmp(m.map.faces[i].name, "glass/", 6)) continue;
+        assert_int_equal(m.map.faces[i].rules[0].kind, TEXTURE_OUTDOORS);
+        panes++;
+    }
+    assert_int_equal(panes, 6);
+    release(&m);
+}
+
+/* Every point of every edited face has a rule that covers it, whatever the edit. */
+static void every_face_has_a_rule_that_covers_all_of_it(void **state)
+{
+    static const char *const edits[] = {"remove middle\n",
+                                        "move south by 0.3\nmove east by -0.2\n",
+                                        "box b from 1 1 to 2 2 top 1\n",
+                                        "change left ceiling 3\n",
+                                        "wall new parallel to west by 1 between south north\n",
+                                        "remove left\n",
+                                        "remove south\nremove west\nremove north\nremove east\nremove middle\n"};
+    (void)state;
+    for (size_t e = 0; e < sizeof edits / sizeof *edits; e++) {
+        struct made m;
+        make(&m, TWO, edits[e]);
+        for (int i = 0; i < m.map.face_count; i++) {
+            const struct texture_face *f = &m.map.faces[i];
+            const struct texture_rule *last = &f->rules[f->rule_count - 1];
+            assert_true(f->rule_count > 0 && last->kind != TEXTURE_PLACE && !last->limited);
+            assert_true(!i || m.map.faces[i - 1].id <= f->id);
+        }
+        release(&m);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_face_that_does_not_change_shows_itself),
+        cmocka_unit_test(a_wall_that_moves_carries_its_texture),
+        cmocka_unit_test(reveals_of_a_wider_opening_move_with_its_sides),
+        cmocka_unit_test(a_box_that_moves_carries_its_texture),
+        cmocka_unit_test(a_new_opening_has_sides_of_the_default_colour_lit_by_its_neighbours),
+        cmocka_unit_test(a_wall_that_was_split_shows_what_was_there),
+        cmocka_unit_test(panes_show_what_lies_outdoors),
+        cmocka_unit_test(every_face_has_a_rule_that_covers_all_of_it),
+    };
+    return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
+}
