@@ -4,62 +4,28 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/image/exr.h"
 #include "stages/evaluate/evaluation_parts.h"
 #include "stages/evaluate/renders.h"
 #include "stages/evaluate/shell_error.h"
 #include "stages/evaluate/true_faces.h"
+#include "stages/evaluate/true_planes.h"
 
 static const char *const suffixes[SHELL_PARTS] = {"_seen", "_hidden"};
-
-/* The ids of a true picture at the pixels of a rendered one; 0 outside. */
-static enum status ids_seen(uint32_t *ids, struct evaluation *e, const char *path, const struct picture_map *map,
-                            struct err *err)
-{
-    static const char *const names[] = {"id"};
-    const size_t pixels = (size_t)map->lens.width * (size_t)map->lens.height;
-    struct exr_image im = {0};
-    char name[FILE_PATH];
-    int32_t *index = malloc(pixels * sizeof *index);
-    enum status st = index ? ST_OK : err_nomem(err, "pixels", pixels * sizeof *index);
-    snprintf(name, sizeof name, "truth%s", path + strlen(e->truth_folder));
-    if (!st) st = provenance_add_file(e->prov, name, path, err);
-    if (!st) st = exr_read(&im, path, names, 1, err);
-    const struct exr_plane *plane = st ? NULL : exr_find(&im, "id");
-    if (!st && !plane->u) st = err_set(err, ST_DATA, "%s: channel id holds no integers, wanted uint.", path);
-    if (!st) {
-        true_pixels_seen(index, im.width, im.height, map);
-        for (size_t i = 0; i < pixels; i++) ids[i] = index[i] < 0 ? 0 : plane->u[index[i]];
-    }
-    exr_image_release(&im);
-    free(index);
-    return st;
-}
-
-/* The ordinary ids of a picture: those of the photo, or of the view that nobody photographed. */
-static bool whole_file(char path[FILE_PATH], const struct evaluation *e, const char *name)
-{
-    static const char *const folders[] = {"ids", "novel/ids"};
-    for (int k = 0; k < 2; k++) {
-        const int n = snprintf(path, FILE_PATH, "%s/%s/%s.exr", e->truth_folder, folders[k], name);
-        if (n > 0 && n < FILE_PATH && path_is_file(path)) return true;
-    }
-    return false;
-}
 
 static enum status measure(struct evaluation *e, const struct renders *list, struct render *r,
                            struct shell_error *errors, int *measured, struct err *err)
 {
     char shell_path[FILE_PATH], whole_path[FILE_PATH];
     struct image truth = {0};
-    if (!true_set_file(shell_path, list->set, "ids", r->of->name) || !whole_file(whole_path, e, r->of->name))
+    if (!true_set_file(shell_path, list->set, "ids", r->of->name) ||
+        !true_plain_file(whole_path, e, "ids", r->of->name))
         return metric_note(&e->table, err, "skipped %s of shell: the truth has no ids of it with and without furniture",
                            r->name);
     const size_t pixels = (size_t)r->map.lens.width * (size_t)r->map.lens.height;
     uint32_t *ids = malloc(2 * pixels * sizeof *ids);
     enum status st = ids ? render_read(e, list, r, &truth, err) : err_nomem(err, "ids", 2 * pixels * sizeof *ids);
-    if (!st) st = ids_seen(ids, e, shell_path, &r->map, err);
-    if (!st) st = ids_seen(ids + pixels, e, whole_path, &r->map, err);
+    if (!st) st = true_ids_seen(ids, e, shell_path, &r->map, err);
+    if (!st) st = true_ids_seen(ids + pixels, e, whole_path, &r->map, err);
     if (!st) {
         const struct shell_pixels p = {
             {r->picture.rgb.data, truth.data, NULL, pixels, r->scale, r->picture.encoded ? e->white : 0},

@@ -47,6 +47,7 @@ enum status evaluate_pictures(struct evaluation *e, struct err *err);     /* hol
 
 enum status evaluate_radiance(struct evaluation *e, struct err *err);         /* radiance.*; sets radiance_scale */
 enum status evaluate_renders(struct evaluation *e, struct err *err);          /* novel.*, edited.E.* */
+enum status evaluate_revealed(struct evaluation *e, struct err *err);         /* edited.E.revealed* */
 enum status evaluate_irradiance(struct evaluation *e, struct err *err);       /* irradiance.* */
 enum status evaluate_shell(struct evaluation *e, struct err *err);            /* shell.* */
 enum status evaluate_textures(struct evaluation *e, struct err *err);         /* texture.* */

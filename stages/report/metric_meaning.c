@@ -56,6 +56,8 @@ const char *metric_meaning(const char *name)
         {"model.ceilings", "error of a ceiling's height, maximum"},
         {"model.faces", "pixels where the model shows the true face, away from edges"},
         {"model.faces_measured", "pixels where faces were compared"},
+        {"edited.*.revealed", "pixels of the pictures that the edit reveals"},
+        {"edited.*.revealed_psnr", "PSNR over these, after one gain for each face"},
         {"edited.*.missing", "openings of the edited scene that the edited model lacks"},
         {"edited.*.strange", "walls and openings of the edited model that the edited scene lacks"},
         {"edited.*.walls", "error of a wall after the edit, maximum"},

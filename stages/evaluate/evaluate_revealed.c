@@ -1,0 +1,118 @@
+/* evaluate_revealed.c - pictures of edited scenes where the edit reveals something: edited.E.revealed* */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "stages/evaluate/evaluation_parts.h"
+#include "stages/evaluate/renders.h"
+#include "stages/evaluate/revealed_error.h"
+#include "stages/evaluate/true_planes.h"
+
+enum { MIN_REVEALED = 200 }; /* pixels of a picture, for a value of its own */
+
+/* True ids and depths before and after the edit; false: the truth lacks some of them. */
+static bool surface_files(char paths[4][FILE_PATH], const struct evaluation *e, const struct true_set *set,
+                          const char *name)
+{
+    return true_plain_file(paths[0], e, "ids", name) && true_set_file(paths[1], set, "ids", name) &&
+           true_plain_file(paths[2], e, "depth", name) && true_set_file(paths[3], set, "depth", name);
+}
+
+struct planes { /* of a picture */
+    uint32_t *ids[2];
+    float *depths[2];
+    uint8_t *mask;
+};
+
+static void planes_release(struct planes *p)
+{
+    for (int k = 0; k < 2; k++) {
+        free(p->ids[k]);
+        free(p->depths[k]);
+    }
+    free(p->mask);
+}
+
+static enum status planes_read(struct planes *p, struct evaluation *e, char paths[4][FILE_PATH],
+                               const struct picture_map *map, struct err *err)
+{
+    const size_t pixels = (size_t)map->lens.width * (size_t)map->lens.height;
+    enum status st = ST_OK;
+    p->mask = malloc(pixels);
+    for (int k = 0; !st && k < 2; k++) {
+        p->ids[k] = malloc(pixels * sizeof *p->ids[k]);
+        p->depths[k] = malloc(pixels * sizeof *p->depths[k]);
+        if (!p->mask || !p->ids[k] || !p->depths[k]) st = err_nomem(err, "ids and depths", pixels * sizeof *p->ids[k]);
+        if (!st) st = true_ids_seen(p->ids[k], e, paths[k], map, err);
+        if (!st) st = true_depths_seen(p->depths[k], e, paths[2 + k], map, err);
+    }
+    return st;
+}
+
+struct revealed_sums {
+    double square, pixels; /* sums over pictures, weighted by revealed pixels */
+    size_t all;
+    int pictures;
+};
+
+static enum status measure(struct evaluation *e, const struct renders *list, struct render *r, struct revealed_sums *s,
+                           struct err *err)
+{
+    char paths[4][FILE_PATH];
+    struct planes planes = {{NULL, NULL}, {NULL, NULL}, NULL};
+    struct image truth = {0};
+    double psnr;
+    if (!surface_files(paths, e, list->set, r->of->name)) return ST_OK;
+    const size_t pixels = (size_t)r->map.lens.width * (size_t)r->map.lens.height;
+    enum status st = render_read(e, list, r, &truth, err);
+    if (!st) st = planes_read(&planes, e, paths, &r->map, err);
+    if (!st) {
+        const struct true_surface surface = {{planes.ids[0], planes.ids[1]}, {planes.depths[0], planes.depths[1]}};
+        const size_t revealed = revealed_find(planes.mask, &surface, pixels);
+        const struct radiance_pixels p = {r->picture.rgb.data, truth.data, planes.mask, pixels, r->scale, e->white};
+        s->pictures++;
+        s->all += pixels;
+        if (revealed && revealed_psnr(&psnr, &p, planes.ids[1])) {
+            s->square += (double)revealed * pow(10, -psnr / 10);
+            s->pixels += (double)revealed;
+            if (revealed >= MIN_REVEALED)
+                st = evaluation_metric(e, r->name, list->set->prefix, "revealed_psnr", psnr, "dB", "higher", err);
+        }
+    }
+    planes_release(&planes);
+    image_release(&truth);
+    linear_picture_release(&r->picture);
+    return st;
+}
+
+static enum status measure_edit(struct evaluation *e, const char *where, struct err *err)
+{
+    struct true_set set = {0};
+    struct renders list = {0};
+    struct revealed_sums s = {0};
+    enum status st = true_set_read(&set, e->truth_folder, where, e->prov, err);
+    if (!st && set.count) st = renders_find(&list, e, &set, err);
+    if (!st && list.count) st = renders_scale(e, &list, err);
+    for (int i = 0; !st && e->white > 0 && i < list.count; i++) st = measure(e, &list, &list.list[i], &s, err);
+    if (!st && s.all)
+        st = evaluation_metric(e, NULL, set.prefix, "revealed", 100 * s.pixels / (double)s.all, "%", "none", err);
+    if (!st && s.pixels > 0)
+        st = evaluation_metric(e, NULL, set.prefix, "revealed_psnr", -10 * log10(s.square / s.pixels), "dB", "higher",
+                               err);
+    renders_release(&list);
+    true_set_release(&set);
+    return st;
+}
+
+enum status evaluate_revealed(struct evaluation *e, struct err *err)
+{
+    struct name_list edits = {0};
+    enum status st = true_edits_find(&edits, e->truth_folder, err);
+    for (int i = 0; !st && i < edits.count; i++) {
+        char where[64];
+        snprintf(where, sizeof where, "edited-%s", edits.names[i]);
+        st = measure_edit(e, where, err);
+    }
+    name_list_release(&edits);
+    return st;
+}
