@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "common/image/image.h"
-#include "tests/unit/unit.h"
+#include "tests/unit/scratch.h"
 
 enum { N = 64 };
 
