@@ -11,15 +11,23 @@
 #include "common/base/textfile.h"
 #include "common/capture/view_image.h"
 #include "common/image/exr.h"
+#include "common/image/photo.h"
+#include "common/texture/picture_made.h"
 #include "stages/render_model/choose_pair.h"
 #include "stages/render_model/exposure.h"
 #include "stages/render_model/own_pixels.h"
 
-static const char *const made_names[MADE_COUNT] = {
-    [MADE_NOTHING] = "nothing",   [MADE_PHOTO] = "photo",         [MADE_ORIGINAL] = "original",
-    [MADE_WARPED] = "warped",     [MADE_SYNTHESISED] = "guessed", [MADE_COLOUR] = "colour",
-    [MADE_OUTDOORS] = "outdoors", [MADE_CLUTTER] = "clutter",     [MADE_UNSURE] = "unsure",
-};
+/* What each pixel comes from, in colours. */
+static enum status write_sources(const struct model_picture *p, const char *path, struct err *err)
+{
+    const size_t pixels = (size_t)p->width * (size_t)p->height;
+    unsigned char *rgb = malloc(3 * pixels + 1);
+    if (!rgb) return err_nomem(err, "a picture of sources", 3 * pixels);
+    for (size_t i = 0; i < pixels; i++) memcpy(rgb + 3 * i, picture_made_kind(p->made[i])->rgb, 3);
+    const enum status st = png_write(path, rgb, p->width, p->height, 3, err);
+    free(rgb);
+    return st;
+}
 
 /* The list of what the pixels come from, in percent. */
 static enum status write_record(const struct model_picture *p, double exposure, double changed, const char *path,
@@ -35,16 +43,11 @@ static enum status write_record(const struct model_picture *p, double exposure, 
     provenance_print(prov, out.fp);
     fprintf(out.fp, "size %d %d\nexposure %.9g\nchanged %.6g\n", p->width, p->height, exposure, changed);
     for (int k = 0; k < MADE_COUNT; k++)
-        fprintf(out.fp, "made %s %.6g\n", made_names[k], 100.0 * (double)counts[k] / (double)pixels);
+        fprintf(out.fp, "made %s %.6g\n", picture_made_kind((enum picture_made)k)->word,
+                100.0 * (double)counts[k] / (double)pixels);
     st = outfile_commit(&out, err);
     outfile_discard(&out);
     return st;
-}
-
-static enum status picture_exposure(double *exposure, const struct room *room, const struct model_picture *p)
-{
-    *exposure = room->params->exposure > 0 ? room->params->exposure : exposure_choose(p, room->params->saturated);
-    return ST_OK;
 }
 
 /* camera: for the EXR's attributes. The record is written last. */
@@ -53,12 +56,15 @@ static enum status write_picture(const struct model_picture *p, const struct roo
                                  const struct provenance *prov, struct err *err)
 {
     char path[FILE_PATH];
-    double exposure;
-    enum status st = picture_exposure(&exposure, room, p);
-    if (!st && radiance) st = file_path(path, out, name, ".exr", err);
+    const double given = room->params->exposure;
+    const double exposure = given > 0 ? given : exposure_choose(p, room->params->saturated);
+    enum status st = ST_OK;
+    if (radiance) st = file_path(path, out, name, ".exr", err);
     if (!st && radiance) st = model_picture_write(p, camera, path, prov, err);
     if (!st && changed > 0) st = file_path(path, out, name, ".jpg", err);
     if (!st && changed > 0) st = exposure_write(p, exposure, path, err);
+    if (!st && changed > 0) st = file_path(path, out, name, "-sources.png", err);
+    if (!st && changed > 0) st = write_sources(p, path, err);
     if (!st) st = file_path(path, out, name, ".txt", err);
     return st ? st : write_record(p, exposure, changed, path, prov, err);
 }
