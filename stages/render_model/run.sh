@@ -13,6 +13,15 @@ check_render_model()
     [ -z "${EDIT-}" ] || [ -e "$folder/edits/$EDIT.txt" ] || usage "EDIT=$EDIT: there is no $folder/edits/$EDIT.txt."
 }
 
+run_remodel()
+{
+    farm render_model remodel
+    if [ -n "${REMODEL_CAMERAS-}" ]; then echo "pictures  $O/model/cameras, $O/remodel/*/cameras"; else
+        one remodel-page
+        echo "page   $O/remodel/index.html"
+    fi
+}
+
 run_tour()
 {
     farm_frames render_model tour-frames

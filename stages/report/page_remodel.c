@@ -1,0 +1,190 @@
+/* page_remodel.c - see page_remodel.h. */
+#include "stages/report/page_remodel.h"
+
+#include "common/base/version.h"
+#include "common/texture/picture_made.h"
+#include "stages/report/page_parts.h"
+#include "stages/report/style.h"
+
+enum { QUALITY = 88 };
+
+static const char style[] =
+    ".ba{position:relative;--p:50%;border-radius:6px;overflow:hidden;touch-action:pan-y}\n"
+    ".ba img{width:100%;border-radius:0}.ba .before,.ba .sources{position:absolute;inset:0}\n"
+    ".ba .before{clip-path:inset(0 calc(100% - var(--p)) 0 0)}\n"
+    ".ba .sources{opacity:0;clip-path:inset(0 0 0 var(--p))}.show:checked~.ba .sources{opacity:.8}\n"
+    ".ba i{position:absolute;top:0;bottom:0;left:var(--p);width:2px;background:#fff;box-shadow:0 0 4px #0008}\n"
+    ".ba b{position:absolute;top:8px;padding:1px 8px;border-radius:4px;background:#000a;color:#fff;font-size:.8rem}\n"
+    ".ba b:first-of-type{left:8px}.ba b:last-of-type{right:8px}\n"
+    ".ba input{position:absolute;inset:0;width:100%;height:100%;margin:0;opacity:0;cursor:ew-resize}\n"
+    ".ba:has(:focus-visible){outline:3px solid var(--accent);outline-offset:2px}\n"
+    ".rooms{display:grid;gap:24px;grid-template-columns:repeat(auto-fill,minmax(min(100%,480px),1fr))}\n"
+    ".plans{display:grid;gap:20px;grid-template-columns:repeat(auto-fill,minmax(min(100%,340px),1fr));margin:18px 0}\n"
+    ".plans img{background:#fff;width:100%}.rooms label{font-size:.85rem;color:var(--muted)}\n"
+    ".rooms p{font-size:.85rem;margin:4px 0 0}.key .flat{height:12px;width:22px}\n";
+
+static void put_head(FILE *to, const char *scene, const struct remodel_contents *c)
+{
+    fputs("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
+          "content=\"width=device-width, initial-scale=1\">\n<meta http-equiv=\"Content-Security-Policy\" "
+          "content=\"default-src 'none'; img-src data:; media-src 'self' file:; style-src 'unsafe-inline'; script-src "
+          "'unsafe-inline'\">\n<meta name=\"generator\" content=\"remodel " REMODEL_VERSION
+          "\">\n<link rel=\"icon\" href=\"data:,\">\n<title>",
+          to);
+    html_text(to, scene);
+    fputs(", remodelled</title>\n<style>\n", to);
+    fputs(page_style, to);
+    fputs(style, to);
+    fputs("</style>\n</head>\n<body>\n<header>\n<h1>", to);
+    html_text(to, scene);
+    fputs(", remodelled</h1>\n<p class=\"lead\">Your rooms as they would look after each change. Move the line over a "
+          "picture to compare: left of it the room as it is, right of it the room after the change.</p>\n<nav "
+          "aria-label=\"Changes\">",
+          to);
+    for (int i = 0; i < c->edit_count; i++) {
+        fprintf(to, "<a href=\"#edit%d\">", i);
+        put_spaced(to, c->edits[i].name);
+        fputs("</a>", to);
+    }
+    fputs("<a href=\"#how\">What is real</a></nav>\n</header>\n<main>\n", to);
+}
+
+static enum status put_layer(FILE *to, const struct picture *p, const char *name, const char *alt, const char *view,
+                             struct err *err)
+{
+    fprintf(to, "<div class=\"%s\">", name);
+    const enum status st = put_picture(to, p, QUALITY, alt, view, err);
+    fputs("</div>\n", to);
+    return st;
+}
+
+/* How much of the picture is photograph, and how much is guessed. */
+static void put_shares(FILE *to, const struct edit_sight *s)
+{
+    const double photo = s->shares[MADE_PHOTO] + s->shares[MADE_ORIGINAL];
+    const double other = s->shares[MADE_WARPED] + s->shares[MADE_OUTDOORS] + s->shares[MADE_CLUTTER];
+    const double guessed = s->shares[MADE_SYNTHESISED] + s->shares[MADE_UNSURE];
+    fprintf(to, "<p class=\"muted\">%.0f %% of this picture is the photograph", photo);
+    if (other >= 0.5) fprintf(to, ", %.0f %% comes from other photographs", other);
+    if (guessed >= 0.5) fprintf(to, ", %.0f %% is guessed", guessed);
+    if (s->shares[MADE_COLOUR] >= 0.5) fprintf(to, ", %.0f %% is a plain colour", s->shares[MADE_COLOUR]);
+    if (s->shares[MADE_NOTHING] >= 0.5) fprintf(to, ", %.0f %% is unknown (black)", s->shares[MADE_NOTHING]);
+    fputs(".</p>\n", to);
+}
+
+static enum status put_sight(FILE *to, const struct edit_sight *s, int edit, int number, struct err *err)
+{
+    fprintf(to,
+            "<figure>\n<input type=\"checkbox\" class=\"show\" id=\"s%d-%d\"><label for=\"s%d-%d\"> show what is "
+            "real</label>\n<div class=\"ba\">\n",
+            edit, number, edit, number);
+    if (put_layer(to, &s->after, "after", "After the change, seen from", s->view, err) ||
+        put_layer(to, &s->sources, "sources", "What each part comes from, seen from", s->view, err) ||
+        put_layer(to, &s->before, "before", "Before the change, seen from", s->view, err))
+        return err->status;
+    fputs("<i></i><b>before</b><b>after</b><input type=\"range\" min=\"0\" max=\"100\" value=\"50\" step=\"0.5\" "
+          "aria-label=\"Line between before and after\" "
+          "oninput=\"this.parentNode.style.setProperty('--p',this.value+'%')\">\n</div>\n<figcaption>Seen from "
+          "photograph <b>",
+          to);
+    html_text(to, s->photo);
+    fputs("</b></figcaption>\n", to);
+    put_shares(to, s);
+    fputs("</figure>\n", to);
+    return ST_OK;
+}
+
+static enum status put_plan(FILE *to, const char *file, const char *caption, struct err *err)
+{
+    if (!file) return ST_OK;
+    fprintf(to, "<figure><img alt=\"Plan %s\" src=\"data:image/svg+xml;base64,", caption);
+    if (html_base64_file(to, file, err)) return err->status;
+    fprintf(to, "\"><figcaption>Plan %s</figcaption></figure>\n", caption);
+    return ST_OK;
+}
+
+static void put_link(FILE *to, bool exists, const char *edit, const char *file, const char *text)
+{
+    if (!exists) return;
+    fputs("<li><a href=\"", to);
+    html_text(to, edit);
+    fprintf(to, "/%s\">%s</a></li>\n", file, text);
+}
+
+static void put_film(FILE *to, const char *folder, const char *caption)
+{
+    fputs("<figure><video controls preload=\"metadata\" src=\"", to);
+    html_text(to, folder);
+    fprintf(to, "/tour/video.mp4\"></video><figcaption>%s</figcaption></figure>\n", caption);
+}
+
+static enum status put_edit(FILE *to, const struct remodel_contents *c, int number, struct err *err)
+{
+    const struct edit_card *card = &c->edits[number];
+    fprintf(to, "<section id=\"edit%d\">\n<h2>", number);
+    put_spaced(to, card->name);
+    fputs("</h2>\n", to);
+    if (card->about[0]) {
+        fputs("<p>", to);
+        html_text(to, card->about);
+        fputs("</p>\n", to);
+    }
+    fputs("<div class=\"rooms\">\n", to);
+    for (int i = 0; i < card->sight_count; i++)
+        if (put_sight(to, &card->sights[i], number, i, err)) return err->status;
+    fputs("</div>\n", to);
+    if (!card->changed) fputs("<p>No photograph shows this change.</p>\n", to);
+    fputs("<div class=\"plans\">\n", to);
+    if (put_plan(to, c->plan, "before", err) || put_plan(to, card->plan, "after", err)) return err->status;
+    if (card->film) put_film(to, card->name, "A walk through the rooms after the change");
+    fputs("</div>\n", to);
+    if (card->obj || card->gltf || card->ifc) {
+        fputs("<p>For an architect, or another program:</p>\n<ul class=\"list\">\n", to);
+        put_link(to, card->ifc, card->name, "export/model.ifc", "building model (IFC4)");
+        put_link(to, card->gltf, card->name, "export/model.glb", "3D model (glTF)");
+        put_link(to, card->obj, card->name, "export/model.obj", "3D model (OBJ)");
+        fputs("</ul>\n", to);
+    }
+    fputs("</section>\n", to);
+    return ST_OK;
+}
+
+static void put_how(FILE *to, const struct remodel_contents *c)
+{
+    fputs(
+        "<section id=\"how\">\n<h2>What is real</h2>\n<p>Where the change alters nothing, a picture is the photograph "
+        "itself. Where it reveals something, other photographs fill in if they show it. What no photograph shows is "
+        "guessed from what is beside it. The light is that of the day of the photographs: a new window does not "
+        "brighten the room yet. Tick \"show what is real\" to see this in colours:</p>\n<ul class=\"key\">\n",
+        to);
+    for (int k = MADE_PHOTO; k < MADE_COUNT; k++) {
+        const struct picture_made_kind *kind = picture_made_kind((enum picture_made)k);
+        fprintf(to, "<li><i class=\"flat\" style=\"background:#%02x%02x%02x\"></i>%s</li>\n", kind->rgb[0],
+                kind->rgb[1], kind->rgb[2], kind->label);
+    }
+    fputs("</ul>\n", to);
+    if (c->note_count) fputs("<ul class=\"list\">\n", to);
+    for (int i = 0; i < c->note_count; i++) {
+        fputs("<li>", to);
+        html_text(to, c->notes[i]);
+        fputs("</li>\n", to);
+    }
+    if (c->note_count) fputs("</ul>\n", to);
+    fputs("</section>\n", to);
+}
+
+enum status remodel_page_write(FILE *to, const char *scene, const struct remodel_contents *c, struct err *err)
+{
+    put_head(to, scene, c);
+    if (c->film) {
+        fputs("<section>\n<h2>The rooms as they are</h2>\n<div class=\"plans\">\n", to);
+        put_film(to, "../model", "A walk through the rooms before any change");
+        fputs("</div>\n</section>\n", to);
+    }
+    for (int i = 0; i < c->edit_count; i++)
+        if (put_edit(to, c, i, err)) return err->status;
+    if (!c->edit_count) fputs("<p>There are no pictures of edits yet.</p>\n", to);
+    put_how(to, c);
+    fputs("</main>\n<footer>Made by remodel " REMODEL_VERSION ".</footer>\n</body>\n</html>\n", to);
+    return ST_OK;
+}
