@@ -28,15 +28,11 @@
 #include "common/base/array.h"
 #include "common/base/parallel.h"
 #include "common/light/model_rays.h"
+#include "stages/render_model/visible_lanes.h"
 
-enum { LANES = 8, GROUPS = VISIBLE_TILE / LANES };
 static const double NEAR = 1e-6;     /* of the model's size: nothing nearer to the camera is seen */
 static const double EDGE_ON = 1e-10; /* of the model's size: a camera nearer to a face's plane does not see the face */
 static const double SLACK = 0.01;    /* px around a triangle's corners, for rounding */
-
-struct linear { /* x column + y row + origin */
-    double x, y, origin;
-};
 
 struct visible_triangle {
     struct linear edges[3], inverse_z;
@@ -166,7 +162,7 @@ static struct span tiles_between(float low, float high, int count)
 static double largest_in_tile(const struct linear *e, int x, int y)
 {
     const double side = VISIBLE_TILE - 1;
-    return e->x * x + e->y * y + e->origin + fmax(0, side * e->x) + fmax(0, side * e->y);
+    return linear_at(e, x, y) + fmax(0, side * e->x) + fmax(0, side * e->y);
 }
 
 /* Whether a triangle may show in the tile whose first pixel is (x, y). */
@@ -210,25 +206,6 @@ static enum status bin_triangles(struct visible *v, int count, struct err *err)
     return ST_OK;
 }
 
-/* A linear function in a tile, in single precision. */
-struct lanes {
-    __m256 row; /* at the first eight pixels of a row */
-    __m256 down, right;
-};
-
-static inline struct lanes lanes_at(const struct linear *e, int x, int y)
-{
-    const __m256 slope = _mm256_set1_ps((float)e->x);
-    const __m256 start = _mm256_set1_ps((float)(e->x * x + e->y * y + e->origin));
-    const __m256 steps = _mm256_set_ps(7, 6, 5, 4, 3, 2, 1, 0);
-    return (struct lanes){_mm256_add_ps(start, _mm256_mul_ps(slope, steps)), _mm256_set1_ps((float)e->y), slope};
-}
-
-static inline __m256 lanes_value(const struct lanes *l, __m256 down, __m256 right)
-{
-    return _mm256_add_ps(_mm256_add_ps(l->row, _mm256_mul_ps(l->down, down)), _mm256_mul_ps(l->right, right));
-}
-
 struct rectangle { /* of a tile: rows, and groups of eight pixels */
     int top, bottom, left, right;
 };
@@ -248,8 +225,8 @@ static void draw_triangle(uint32_t *face, float *inverse_z, const struct visible
                           float largest)
 {
     const struct rectangle part = part_of_tile(t, x, y);
-    const struct lanes e0 = lanes_at(&t->edges[0], x, y), e1 = lanes_at(&t->edges[1], x, y);
-    const struct lanes e2 = lanes_at(&t->edges[2], x, y), depth = lanes_at(&t->inverse_z, x, y);
+    const struct lanes e0 = lanes_from(&t->edges[0], x, y), e1 = lanes_from(&t->edges[1], x, y);
+    const struct lanes e2 = lanes_from(&t->edges[2], x, y), depth = lanes_from(&t->inverse_z, x, y);
     /* a value of 0 passes if the triangle owns the edge */
     const __m256 zero0 = _mm256_set1_ps(t->owns_edge[0] ? -1e-45f : 0);
     const __m256 zero1 = _mm256_set1_ps(t->owns_edge[1] ? -1e-45f : 0);
