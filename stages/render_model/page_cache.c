@@ -185,7 +185,7 @@ static enum status read_set(struct page_cache *c, const char *photo, struct text
     if (!s) return err_nomem(err, "an atlas", sizeof *s);
     if (photo && !(s->photo = strdup(photo))) return err_nomem(err, "a photo's id", strlen(photo) + 1);
     if (find_folder(s, c, err) || atlas_read(&s->atlas, s->folder, err)) return err->status;
-    if (!s->atlas.viewpoint != !photo)
+    if (photo ? !s->atlas.viewpoint || strcmp(s->atlas.viewpoint, photo) : s->atlas.viewpoint != NULL)
         return err_set(err, ST_DATA, "%s/atlas.txt is the atlas of %s, wanted that of %s.", s->folder,
                        s->atlas.viewpoint ? s->atlas.viewpoint : "no viewpoint", photo ? photo : "no viewpoint");
     if (place_tiles(s, err) || array_append(&c->sets, (size_t)c->count, sizeof *c->sets, "atlases", err))
