@@ -30,6 +30,7 @@ struct job {
     const char *overlay, *model, *photos, *records;
     struct model_params params;
     struct provenance prov;
+    char *edit_base; /* the edit that the edit stands on; NULL: none; owned */
 
     struct model_axes frame;
     struct camera_set set, held_set;
@@ -60,13 +61,55 @@ static enum status read_frame(struct job *j, struct err *err)
 }
 
 /* The provenance has the script's file name without its folder: the product does not depend on the scene's folder. */
-static enum status apply_script(struct job *j, struct plan *plan, const char *path, bool edit, struct err *err)
+static enum status add_script(struct job *j, const char *path, struct err *err)
+{
+    const char *slash = strrchr(path, '/');
+    return provenance_add_file(&j->prov, slash ? slash + 1 : path, path, err);
+}
+
+static enum status apply_model(struct job *j, struct plan *plan, const char *path, struct err *err)
 {
     struct script script = {0};
-    const char *slash = strrchr(path, '/');
     enum status st = script_read(&script, path, err);
-    if (!st) st = provenance_add_file(&j->prov, slash ? slash + 1 : path, path, err);
-    if (!st) st = plan_apply(plan, &script, edit, j->views ? &j->placer : NULL, err);
+    if (!st && script.base)
+        st = err_set(err, ST_DATA, "%s:%d: found base %s, but only an edit stands on another edit.", path,
+                     script.base_line, script.base);
+    if (!st) st = add_script(j, path, err);
+    if (!st) st = plan_apply(plan, &script, false, j->views ? &j->placer : NULL, err);
+    script_release(&script);
+    return st;
+}
+
+/* An edit, after the one that it stands on, which is in the same folder. above: the edits that stand on it, the nearest
+ * first. */
+struct edit_chain {
+    const char *path;
+    const struct edit_chain *above;
+};
+
+static enum status apply_edit(struct job *j, struct plan *plan, const struct edit_chain *edit, struct err *err)
+{
+    struct script script = {0};
+    char path[FILE_PATH];
+    enum status st = script_read(&script, edit->path, err);
+    if (!st) st = add_script(j, edit->path, err);
+    if (!st && script.base) {
+        const struct edit_chain base = {path, edit};
+        const char *slash = strrchr(edit->path, '/');
+        const int folder = slash ? (int)(slash - edit->path) : 1;
+        const int length = snprintf(path, sizeof path, "%.*s/%s.txt", folder, slash ? edit->path : ".", script.base);
+        if (length >= (int)sizeof path) st = err_set(err, ST_IO, "%s: the path is too long.", edit->path);
+        for (const struct edit_chain *e = edit; !st && e; e = e->above)
+            if (!strcmp(strrchr(path, '/') + 1, strrchr(e->path, '/') ? strrchr(e->path, '/') + 1 : e->path))
+                st = err_set(err, ST_DATA, "%s:%d: base %s goes in a circle: that edit stands on this one.", edit->path,
+                             script.base_line, script.base);
+        if (!st && !path_is_file(path))
+            st = err_set(err, ST_DATA, "%s:%d: found base %s, but there is no %s.", edit->path, script.base_line,
+                         script.base, path);
+        if (!st && !edit->above) j->edit_base = strdup(script.base);
+        if (!st) st = apply_edit(j, plan, &base, err);
+    }
+    if (!st) st = plan_apply(plan, &script, true, j->views ? &j->placer : NULL, err);
     script_release(&script);
     return st;
 }
@@ -90,8 +133,9 @@ static enum status write_model(struct job *j, const struct plan *plan, const str
 static enum status write_texture(struct job *j, const struct solid_mesh *mesh, const struct solid_mesh *base,
                                  const struct plan_places *before, const struct plan *plan, struct err *err)
 {
-    struct texture_map map = {0};
+    struct texture_map map = {.base = j->edit_base};
     char path[FILE_PATH];
+    j->edit_base = NULL;
     enum status st = texture_rules_make(&map, mesh, base, before, plan, err);
     if (!st) st = file_path(path, j->out, "texture.txt", "", err);
     if (!st) st = texture_map_write(&map, path, &j->prov, err);
@@ -124,10 +168,11 @@ static enum status build(struct job *j, struct err *err)
     enum status st = read_frame(j, err);
     if (!st) {
         plan_begin(&plan, &j->frame);
-        st = apply_script(j, &plan, j->script, false, err);
+        st = apply_model(j, &plan, j->script, err);
     }
+    const struct edit_chain edit = {j->edit, NULL};
     if (!st) st = plan_places_keep(&before, &plan, err);
-    if (!st && j->edit) st = apply_script(j, &plan, j->edit, true, err);
+    if (!st && j->edit) st = apply_edit(j, &plan, &edit, err);
     if (!st) st = layout_solids(&solids, &plan, err);
     if (!st && !solids.count)
         st = err_set(err, ST_DATA, "%s: the script describes no solid; add walls, rooms or boxes.", j->script);
@@ -215,6 +260,7 @@ int main(int argc, char **argv)
     if (cli_parse(argc, argv, "build_model", opts, &j.prov, &err) != CLI_RUN || check_usage(&j, &err) ||
         (j.overlay ? overlay(&j, &err) : build(&j, &err)))
         err_report(&err);
+    free(j.edit_base);
     placer_release(&j.placer);
     lens_list_release(&j.held_lenses);
     camera_set_release(&j.held_set);

@@ -120,6 +120,27 @@ struct plan_room {
     int part_count;
 };
 
+/* What a script says of textures; resolved when the faces are known (texture_rules.h). */
+enum wish_kind { WISH_STRETCH, WISH_CROP, WISH_COLOUR, WISH_COPY };
+struct plan_wish {
+    enum wish_kind kind;
+    char *path; /* of the script, for messages; owned */
+    int line;
+    char *face; /* the item (STRETCH, CROP), the face or faces (COLOUR), the face that gets texture (COPY); owned */
+    char *from; /* COPY: the face that has it; owned */
+    double patch[4];  /* COPY: S and Z, or X and Y, of the patch's corners */
+    double target[4]; /* the same of the place that gets it */
+    bool whole;       /* COPY: the whole face gets it */
+    double colour[3]; /* COLOUR: albedo */
+};
+
+/* Clutter is left out, or kept, in a footprint. */
+struct plan_zone {
+    bool keep, all;
+    int room; /* its footprint; -1: the rectangle, or all rooms */
+    double low[3], high[3];
+};
+
 enum name_kind { NAMED_NONE, NAMED_WALL, NAMED_OPENING, NAMED_BOX, NAMED_ROOM, NAMED_SLOT };
 
 struct plan_name {
@@ -137,6 +158,10 @@ struct plan {
     struct plan_box *boxes;
     struct plan_room *rooms;
     int wall_count, opening_count, slot_count, box_count, room_count;
+    double colour[3];         /* albedo of faces without a texture; -1: the default one */
+    struct plan_wish *wishes; /* in the scripts' order */
+    struct plan_zone *zones;
+    int wish_count, zone_count;
     struct plan_name *names; /* a hash table */
     int name_capacity, name_count;
 };

@@ -30,12 +30,13 @@ void plan_release(struct plan *plan)
     free(plan->boxes);
     free(plan->rooms);
     free(plan->names);
+    plan_wishes_release(plan);
     *plan = (struct plan){0};
 }
 
 void plan_begin(struct plan *plan, const struct model_axes *axes)
 {
-    *plan = (struct plan){0};
+    *plan = (struct plan){.colour = {-1, -1, -1}};
     if (!axes || axes->metric) {
         plan->thickness = 0.15;
         plan->glass = 0.02;
@@ -85,6 +86,15 @@ static enum status apply_statement(struct plan_context *c)
     case VERB_CLOSE:
     case VERB_FILL:
         return apply_fill(c);
+    case VERB_TEXTURE:
+        return apply_texture(c);
+    case VERB_COPY:
+        return apply_copy(c);
+    case VERB_COLOUR:
+        return apply_colour(c);
+    case VERB_CLEAR:
+    case VERB_KEEP:
+        return apply_zone(c);
     default:
         return apply_remove(c);
     }
@@ -92,9 +102,9 @@ static enum status apply_statement(struct plan_context *c)
 
 static enum status needs_views(struct plan_context *c)
 {
-    if (c->s->place.kind != PLACE_VIEW || c->placer) return ST_OK;
-    return statement_error(c, "the statement names the view %s, but no views are known; give --views.",
-                           c->s->place.view);
+    const struct script_place *place = c->s->place.kind == PLACE_VIEW ? &c->s->place : &c->s->target;
+    if (place->kind != PLACE_VIEW || c->placer) return ST_OK;
+    return statement_error(c, "the statement names the view %s, but no views are known; give --views.", place->view);
 }
 
 /* An edit's statement that changes nothing is a mistake. A default that is set must be used further down. */
@@ -133,7 +143,7 @@ static enum status watch_set(struct plan_context *c, struct edit_watch *w)
 static enum status apply_watched(struct plan_context *c, struct edit_watch *w)
 {
     char *after = NULL;
-    if (c->s->verb == VERB_SET) return watch_set(c, w) ? c->err->status : apply_set(c);
+    if (c->s->verb == VERB_SET && strcmp(c->s->name, "colour")) return watch_set(c, w) ? c->err->status : apply_set(c);
     c->used = 0;
     if (apply_statement(c) || plan_check(c->plan, c->path, c->s->line, c->err) || plan_state(&after, c->plan, c->err))
         return c->err->status;

@@ -95,6 +95,12 @@ enum status apply_resize(struct plan_context *c);
 enum status apply_fill(struct plan_context *c);
 enum status apply_remove(struct plan_context *c);
 
+/* plan_textures.c */
+enum status apply_texture(struct plan_context *c);
+enum status apply_copy(struct plan_context *c);
+enum status apply_colour(struct plan_context *c);
+enum status apply_zone(struct plan_context *c);
+void plan_wishes_release(struct plan *plan);
 /* plan_state.c */
 
 /* *state: a text that differs whenever anything differs in the plan that a statement can change, except the defaults;

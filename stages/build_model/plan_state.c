@@ -61,6 +61,8 @@ enum status plan_state(char **state, const struct plan *plan, struct err *err)
         fprintf(to, "box %d", b->removed);
         put(to, (const double[]){b->low[0], b->low[1], b->low[2], b->high[0], b->high[1], b->high[2], b->turn}, 7);
     }
+    put(to, plan->colour, 3);
+    fprintf(to, "wishes %d zones %d\n", plan->wish_count, plan->zone_count);
     const int failed = ferror(to);
     if (!fclose(to) && !failed) return ST_OK;
     free(*state);

@@ -36,6 +36,7 @@ double option_or_default(struct plan_context *c, enum option option, enum plan_d
 enum status apply_set(struct plan_context *c)
 {
     const struct statement *s = c->s;
+    if (!strcmp(s->name, "colour")) memcpy(c->plan->colour, s->values, sizeof c->plan->colour);
     for (int i = 0; i < DEFAULTS; i++) {
         const char *name;
         double *value = default_value(c->plan, (enum plan_default)i, &name);

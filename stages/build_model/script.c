@@ -25,7 +25,7 @@ struct grammar {
 #define BIT(o) (1u << OPTION_##o)
 
 static const struct grammar GRAMMAR[VERB_COUNT] = {
-    [VERB_SET] = {"set", "set thickness|slab|glass|leaf|floor|ceiling NUMBER", 0, ""},
+    [VERB_SET] = {"set", "set thickness|slab|glass|leaf|floor|ceiling NUMBER | set colour R G B", 0, ""},
     [VERB_WALL] =
         {"wall",
          "wall NAME in VIEW X0 Y0 X1 Y1 | wall NAME from X Y to X Y | wall NAME parallel to WALL by D between "
@@ -58,11 +58,17 @@ static const struct grammar GRAMMAR[VERB_COUNT] = {
     [VERB_CLOSE] = {"close", "close NAME", 0, ""},
     [VERB_FILL] = {"fill", "fill NAME with leaf|glass|wall|nothing", 0, ""},
     [VERB_REMOVE] = {"remove", "remove NAME", 0, ""},
+    [VERB_TEXTURE] = {"texture", "texture NAME stretch|crop", 0, ""},
+    [VERB_COPY] = {"copy", "copy texture FACE PLACE to FACE [PLACE]", 0, ""},
+    [VERB_COLOUR] = {"colour", "colour FACE R G B", 0, ""},
+    [VERB_CLEAR] = {"clear", "clear ROOM | clear all | clear PLACE [foot Z] [top Z]", BIT(FOOT) | BIT(TOP), ""},
+    [VERB_KEEP] = {"keep", "keep PLACE [foot Z] [top Z]", BIT(FOOT) | BIT(TOP), ""},
+    [VERB_BASE] = {"base", "base EDIT", 0, ""},
 };
 
 static const char *const OPTIONS[OPTION_COUNT] = {"thickness", "foot", "top",   "floor", "ceiling", "turn",
                                                   "at",        "left", "right", "front", "back",    "bottom"};
-static const char *const QUANTITIES[] = {"thickness", "slab", "glass", "leaf", "floor", "ceiling", NULL};
+static const char *const QUANTITIES[] = {"thickness", "slab", "glass", "leaf", "floor", "ceiling", "colour", NULL};
 
 static const char *const FILLINGS[FILL_COUNT] = {"nothing", "leaf", "glass", "wall"};
 
@@ -196,7 +202,8 @@ static enum status read_place(struct reader *r, struct script_place *p, enum ver
     if (!textfile_more(&r->t)) return usage_error(r, NULL, verb);
     if (textfile_word(&r->t, "\"in\" or \"from\"", &word, r->err)) return r->err->status;
     if (!strcmp(word, "in")) return read_rectangle(r, p);
-    if (!strcmp(word, "at") && verb != VERB_WALL && verb != VERB_BOX) return read_from_end(r, p, verb);
+    if (!strcmp(word, "at") && verb != VERB_WALL && verb != VERB_BOX && verb != VERB_CLEAR && verb != VERB_KEEP)
+        return read_from_end(r, p, verb);
     if (!strcmp(word, "parallel") && verb == VERB_WALL) return read_parallel(r, p, verb);
     if (strcmp(word, "from"))
         return textfile_error(&r->t, r->err, word, "\"in VIEW\" or \"from\", in a line \"%s\"", GRAMMAR[verb].usage);
@@ -276,6 +283,19 @@ static enum status read_options(struct reader *r, struct statement *s)
 
 /* ------------------------------------------------------------------------------------------------------- statements */
 
+/* An albedo. */
+static enum status read_rgb(struct reader *r, struct statement *s)
+{
+    static const char *const what[] = {"a share of red light", "a share of green light", "a share of blue light"};
+    for (int i = 0; i < 3; i++) {
+        if (read_number(r, what[i], &s->values[i])) return r->err->status;
+        if (!(s->values[i] >= 0 && s->values[i] <= 1))
+            return textfile_wrong_number(&r->t, s->values[i], "a share of light, from 0 to 1", r->err);
+    }
+    s->value_count = 3;
+    return ST_OK;
+}
+
 static enum status read_set(struct reader *r, struct statement *s)
 {
     char *word;
@@ -284,6 +304,7 @@ static enum status read_set(struct reader *r, struct statement *s)
     while (QUANTITIES[i] && strcmp(QUANTITIES[i], word)) i++;
     if (!QUANTITIES[i]) return usage_error(r, word, s->verb);
     s->name = QUANTITIES[i];
+    if (!strcmp(s->name, "colour")) return read_rgb(r, s);
     s->value_count = 1;
     return read_number(r, s->name, &s->values[0]);
 }
@@ -357,6 +378,47 @@ static enum status read_fill(struct reader *r, struct statement *s)
     return ST_OK;
 }
 
+/* A face's name, such as wall/south/in, or the first part of several: box/chest. */
+static enum status read_face(struct reader *r, const char **name)
+{
+    static const char wanted[] = "a face, such as wall/south/in (docs/model-script.md lists their names)";
+    char *word;
+    if (textfile_word(&r->t, wanted, &word, r->err)) return r->err->status;
+    for (const char *c = word; *c; c++)
+        if ((unsigned char)*c <= ' ' || *c == '#' || *c == '"') return textfile_error(&r->t, r->err, word, wanted);
+    if (strlen(word) > 2 * MAX_NAME || !strchr(word, '/')) return textfile_error(&r->t, r->err, word, wanted);
+    *name = keep_word(r, word);
+    return ST_OK;
+}
+
+static enum status read_texture(struct reader *r, struct statement *s)
+{
+    char *word;
+    if (read_name(r, "a wall, an opening, a box or a room", &s->name)) return r->err->status;
+    if (textfile_word(&r->t, "\"stretch\" or \"crop\"", &word, r->err)) return r->err->status;
+    if (strcmp(word, "stretch") && strcmp(word, "crop"))
+        return textfile_error(&r->t, r->err, word, "\"stretch\" or \"crop\"");
+    s->other = keep_word(r, word);
+    return ST_OK;
+}
+
+static enum status read_copy(struct reader *r, struct statement *s)
+{
+    if (expect(r, "texture", s->verb) || read_face(r, &s->name) || read_place(r, &s->place, s->verb) ||
+        expect(r, "to", s->verb) || read_face(r, &s->other))
+        return r->err->status;
+    return textfile_more(&r->t) ? read_place(r, &s->target, s->verb) : ST_OK;
+}
+
+/* A place, or for `clear` a room or all of them. */
+static enum status read_zone(struct reader *r, struct statement *s)
+{
+    const char *next = r->t.cursor + strspn(r->t.cursor, " \t");
+    if (s->verb == VERB_KEEP || !strncmp(next, "in ", 3) || !strncmp(next, "from ", 5))
+        return read_place(r, &s->place, s->verb);
+    return read_name(r, "a room, \"all\", \"in VIEW\" or \"from\"", &s->name);
+}
+
 /* A statement that has nothing but options must have one. */
 static enum status read_changes(struct reader *r, struct statement *s)
 {
@@ -379,9 +441,11 @@ static enum status read_statement(struct reader *r, struct statement *s)
     if (v == VERB_COUNT) {
         const char *near = scan_nearest(word, known_verb, NULL);
         if (near) return textfile_error(&r->t, r->err, word, "a statement; did you mean %s?", near);
-        return textfile_error(&r->t, r->err, word,
-                              "a statement: set, wall, room, slope, gable, door, passage, window, skylight, hatch, "
-                              "box, join, extend, split, adjust, move, change, resize, open, close, fill or remove");
+        return textfile_error(
+            &r->t, r->err, word,
+            "a statement: set, wall, room, slope, gable, door, passage, window, skylight, hatch, "
+            "box, join, extend, split, adjust, move, change, resize, open, close, fill, remove, texture, "
+            "copy, colour, clear, keep or base");
     }
     s->verb = (enum verb)v;
     s->line = r->t.line;
@@ -431,6 +495,19 @@ static enum status read_statement(struct reader *r, struct statement *s)
     case VERB_FILL:
         if (read_fill(r, s)) return r->err->status;
         break;
+    case VERB_TEXTURE:
+        if (read_texture(r, s)) return r->err->status;
+        break;
+    case VERB_COPY:
+        if (read_copy(r, s)) return r->err->status;
+        break;
+    case VERB_COLOUR:
+        if (read_face(r, &s->name) || read_rgb(r, s)) return r->err->status;
+        break;
+    case VERB_CLEAR:
+    case VERB_KEEP:
+        if (read_zone(r, s)) return r->err->status;
+        break;
     default:
         if (read_name(r, "a name", &s->name)) return r->err->status;
     }
@@ -447,6 +524,18 @@ static enum status read_header(struct reader *r)
         return textfile_error(&r->t, r->err, word, "the first line \"remodel-script 1\"");
     if (textfile_int(&r->t, "version 1", 1, 1, &version, r->err)) return r->err->status;
     return textfile_end(&r->t, r->err);
+}
+
+/* `base` is no statement of the plan, but must be the first. */
+static enum status take_base(struct script *script, struct reader *r)
+{
+    const struct statement *s = &script->statements[script->count - 1];
+    if (script->count > 1 || script->base)
+        return textfile_error(&r->t, r->err, "base", "\"base EDIT\" as the first statement, once");
+    script->base = s->name;
+    script->base_line = s->line;
+    script->count = 0;
+    return ST_OK;
 }
 
 enum status script_read(struct script *script, const char *path, struct err *err)
@@ -471,6 +560,7 @@ enum status script_read(struct script *script, const char *path, struct err *err
         struct statement *s = &script->statements[script->count++];
         *s = (struct statement){0};
         st = read_statement(&r, s);
+        if (!st && s->verb == VERB_BASE) st = take_base(script, &r);
     }
     textfile_release(&r.t);
     if (st) script_release(script);

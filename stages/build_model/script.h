@@ -34,6 +34,12 @@ enum verb {
     VERB_CLOSE,
     VERB_FILL,
     VERB_REMOVE,
+    VERB_TEXTURE,
+    VERB_COPY,
+    VERB_COLOUR,
+    VERB_CLEAR,
+    VERB_KEEP,
+    VERB_BASE,
     VERB_COUNT,
 };
 
@@ -72,14 +78,16 @@ enum { END_START, END_END, END_NONE };
 struct statement {
     enum verb verb;
     int line;
-    const char *name;   /* what it makes or changes; set: the quantity; join: NULL */
-    const char *other;  /* openings: the wall or room; extend: the wall to reach, or NULL; split: the new wall */
+    const char *name;  /* what it makes or changes; set: the quantity; join: NULL */
+    const char *other; /* openings: the wall or room; extend: the wall to reach, or NULL; split: the new wall; copy: the
+                           face that gets the texture; texture: "stretch" or "crop" */
     const char **names; /* join, room: walls in order; slope, gable: the two walls */
     int name_count;
-    struct script_place place;
-    int end;              /* extend: END_START or END_END */
-    enum filling filling; /* fill */
-    double values[3];     /* set: the value; extend: where; split: from, to; move: by; slope: two heights; gable: also
+    struct script_place place, target; /* target: of copy, PLACE_NONE: the whole face */
+    int end;                           /* extend: END_START or END_END */
+    enum filling filling;              /* fill */
+    double values
+        [3]; /* set: the value, or a colour; colour: R G B; extend: where; split: from, to; move: by; slope: two heights; gable: also
                              the ridge's */
     int value_count;
     double options[OPTION_COUNT];
@@ -88,7 +96,9 @@ struct statement {
 };
 
 struct script {
-    char *path;  /* as messages name it; owned */
+    char *path;       /* as messages name it; owned */
+    const char *base; /* the edit that this one stands on; NULL: none */
+    int base_line;
     char *words; /* all names; owned */
     struct statement *statements;
     int count;

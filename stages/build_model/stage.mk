@@ -25,8 +25,11 @@ MODEL_NEEDS := $(AXES) $(CAMERAS) $(O)/views/lenses.txt $(HELD_CAMERAS) $(MODEL_
 MODEL_ARGS := --axes $(AXES) --views $(O)/views $(if $(HELD_CAMERAS),--held $(H)/views) $(MODEL_POINTS:%=--points %)
 $(call model_files,$(O)/model) &: $(MODEL_SCRIPT) $(MODEL_NEEDS)
 	$(call stage,build_model,model,$(O),--script $(MODEL_SCRIPT) $(MODEL_ARGS) --out $(O)/model)
+# an edit's script, and those that it stands on
+edit_scripts = scenes/$(SCENE)/edits/$(1).txt $(foreach b,$(filter-out $(2) $(1),$(shell sed -nE 's/^[ \t]*base[ \t]+([A-Za-z0-9_-]+).*/\1/p' \
+  scenes/$(SCENE)/edits/$(1).txt 2>/dev/null)),$(call edit_scripts,$(b),$(2) $(1)))
 define edit_rule
-$(call edit_files,$(O)/remodel/$(1)) &: $(MODEL_SCRIPT) scenes/$(SCENE)/edits/$(1).txt $(O)/model/model.txt $(MODEL_NEEDS)
+$(call edit_files,$(O)/remodel/$(1)) &: $(MODEL_SCRIPT) $(call edit_scripts,$(1)) $(O)/model/model.txt $(MODEL_NEEDS)
 	$$(call stage,build_model,$(1),$(O),--script $(MODEL_SCRIPT) --edit scenes/$(SCENE)/edits/$(1).txt \
 	  --base $(O)/model/model.txt $(MODEL_ARGS) --out $(O)/remodel/$(1))
 endef

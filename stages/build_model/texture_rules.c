@@ -6,7 +6,8 @@
  *
  * A face with a new id that lies in the plane of faces of the unedited model (a wall that was split, a pier left of a
  * wall that was removed) shows those at the same place, else the nearest texels of the closest of them, if it is near.
- * Other new faces get the default colour, under the light of the faces next to them. Panes show what lies outdoors.
+ * Other new faces get the default colour, under the light of the faces next to them. Panes show what lies outdoors. What
+ * a script's statements say of textures comes before all this (texture_wishes.c).
  *
  * The new area of a face is what its polygon has beyond the polygons of its id in the unedited model, moved like it. */
 #include "stages/build_model/texture_rules.h"
@@ -17,6 +18,7 @@
 
 #include "common/base/array.h"
 #include "stages/build_model/room_parts.h"
+#include "stages/build_model/texture_wishes.h"
 
 static const float default_albedo[3] = {0.75F, 0.75F, 0.75F}; /* white paint */
 
@@ -124,9 +126,7 @@ static struct vec3 item_shift(const char *face, const struct plan_places *before
 /* ------------------------------------------------------------------------------------------------------------ rules */
 
 struct rules_job {
-    const struct solid_mesh *edited, *base;
-    const struct plan_places *before;
-    const struct plan *plan;
+    struct texture_models models;
     struct solid_triangles triangles[2]; /* of the edited and the unedited model */
     struct err *err;
 };
@@ -146,13 +146,6 @@ static bool coplanar(const struct solid_face *a, const struct solid_face *b)
     return parallel(a, b) && fabs(a->offset - b->offset) <= same_plane;
 }
 
-static enum status add_rule(struct texture_face *face, struct texture_rule rule, struct err *err)
-{
-    if (array_append(&face->rules, (size_t)face->rule_count, sizeof *face->rules, "rules", err)) return err->status;
-    face->rules[face->rule_count++] = rule;
-    return ST_OK;
-}
-
 static struct texture_rule shifted(enum texture_rule_kind kind, int from, struct vec3 by)
 {
     return (struct texture_rule){
@@ -165,17 +158,20 @@ static struct texture_rule shifted(enum texture_rule_kind kind, int from, struct
  * has no face of the id in a parallel plane. *by: from the edited model to the base. */
 static int own_place(const struct rules_job *job, int face, struct vec3 *by)
 {
-    const struct solid_face *f = &job->edited->faces[face];
-    const int id = solid_face_id(job->edited, face);
-    const struct vec3 moved = item_shift(solid_face_name(job->edited, face), job->before, job->plan);
+    const struct solid_face *f = &job->models.edited->faces[face];
+    const int id = solid_face_id(job->models.edited, face);
+    const struct vec3 moved =
+        item_shift(solid_face_name(job->models.edited, face), job->models.before, job->models.plan);
     const double was = f->offset - vec3_dot(f->normal, moved);
     int best = -1;
-    for (int i = 0; i < job->base->face_count; i++) {
-        if (solid_face_id(job->base, i) != id || !parallel(f, &job->base->faces[i])) continue;
-        if (best < 0 || fabs(job->base->faces[i].offset - was) < fabs(job->base->faces[best].offset - was)) best = i;
+    for (int i = 0; i < job->models.base->face_count; i++) {
+        if (solid_face_id(job->models.base, i) != id || !parallel(f, &job->models.base->faces[i])) continue;
+        if (best < 0 ||
+            fabs(job->models.base->faces[i].offset - was) < fabs(job->models.base->faces[best].offset - was))
+            best = i;
     }
     if (best < 0) return -1;
-    const double across = job->base->faces[best].offset - was;
+    const double across = job->models.base->faces[best].offset - was;
     *by = vec3_sub(vec3_scale(f->normal, fabs(across) <= same_plane ? 0 : across), moved);
     return best;
 }
@@ -215,16 +211,17 @@ static bool has_place(const struct texture_face *face, int from)
  * repeated; 0: none. */
 static enum status add_coplanar(const struct rules_job *job, struct texture_face *to, int face, int *edge)
 {
-    const struct bounds own = face_bounds(job->edited, &job->triangles[0], face);
+    const struct bounds own = face_bounds(job->models.edited, &job->triangles[0], face);
     double least = near_gap;
     enum status st = ST_OK;
     *edge = 0;
-    for (int i = 0; !st && i < job->base->face_count; i++) {
-        if (!coplanar(&job->edited->faces[face], &job->base->faces[i]) || is_pane(job->base, i)) continue;
-        const double gap = gap_between(own, face_bounds(job->base, &job->triangles[1], i));
-        const int id = solid_face_id(job->base, i);
+    for (int i = 0; !st && i < job->models.base->face_count; i++) {
+        if (!coplanar(&job->models.edited->faces[face], &job->models.base->faces[i]) || is_pane(job->models.base, i))
+            continue;
+        const double gap = gap_between(own, face_bounds(job->models.base, &job->triangles[1], i));
+        const int id = solid_face_id(job->models.base, i);
         if (gap <= same_plane && !has_place(to, id))
-            st = add_rule(to, shifted(TEXTURE_PLACE, id, vec3_make(0, 0, 0)), job->err);
+            st = texture_face_add(to, shifted(TEXTURE_PLACE, id, vec3_make(0, 0, 0)), job->err);
         if (gap < least) {
             least = gap;
             *edge = id;
@@ -239,65 +236,74 @@ static int compare_ints(const void *a, const void *b)
     return x < y ? -1 : x > y;
 }
 
-/* The default colour, under the light of the faces of the base across the face's edges. */
-static enum status add_colour(const struct rules_job *job, struct texture_face *to, int face)
+/* The faces of the base that show the light of a face: itself, or else those across its edges. */
+static enum status find_lit(int **lit, int *count, const struct rules_job *job, int face, bool own)
 {
-    const struct solid_mesh *m = job->edited;
+    const struct solid_mesh *m = job->models.edited;
     const struct solid_face *f = &m->faces[face];
-    struct texture_rule rule = {.kind = TEXTURE_COLOUR};
     enum status st = ST_OK;
-    memcpy(rule.albedo, default_albedo, sizeof rule.albedo);
+    int kept = 0;
     for (int l = f->loop; !st && l < f->loop + f->loops; l++) {
         int h = m->loops[l].half_edge;
         do {
-            const int other = m->loops[m->half_edges[m->half_edges[h].twin].loop].face;
+            const int other = own ? face : m->loops[m->half_edges[m->half_edges[h].twin].loop].face;
             struct vec3 by;
             if (!is_pane(m, other) && own_place(job, other, &by) >= 0) {
-                st = array_append(&rule.lit, (size_t)rule.lit_count, sizeof *rule.lit, "faces", job->err);
-                if (!st) rule.lit[rule.lit_count++] = solid_face_id(m, other);
+                st = array_append(lit, (size_t)*count, sizeof **lit, "faces", job->err);
+                if (!st) (*lit)[(*count)++] = solid_face_id(m, other);
             }
             h = m->half_edges[h].next;
         } while (!st && h != m->loops[l].half_edge);
     }
-    if (rule.lit_count) qsort(rule.lit, (size_t)rule.lit_count, sizeof *rule.lit, compare_ints);
-    int kept = 0;
-    for (int i = 0; i < rule.lit_count; i++)
-        if (!kept || rule.lit[kept - 1] != rule.lit[i]) rule.lit[kept++] = rule.lit[i];
-    rule.lit_count = kept;
-    if (!st) st = add_rule(to, rule, job->err);
-    if (st) free(rule.lit);
+    if (*count) qsort(*lit, (size_t)*count, sizeof **lit, compare_ints);
+    for (int i = 0; i < *count; i++)
+        if (!kept || (*lit)[kept - 1] != (*lit)[i]) (*lit)[kept++] = (*lit)[i];
+    *count = kept;
     return st;
+}
+
+/* The default colour. The rule takes the list. */
+static enum status add_colour(const struct rules_job *job, struct texture_face *to, int **lit, int count)
+{
+    const double *colour = job->models.plan->colour;
+    struct texture_rule rule = {.kind = TEXTURE_COLOUR, .lit = *lit, .lit_count = count};
+    for (int c = 0; c < 3; c++) rule.albedo[c] = colour[c] < 0 ? default_albedo[c] : (float)colour[c];
+    const enum status st = texture_face_add(to, rule, job->err);
+    if (!st) *lit = NULL;
+    return st;
+}
+
+/* The rules that no statement asks for. */
+static enum status add_defaults(const struct rules_job *job, struct texture_face *to, int face, bool own,
+                                struct vec3 by, int **lit, int lit_count)
+{
+    const int id = solid_face_id(job->models.edited, face);
+    int edge = 0;
+    if (is_pane(job->models.edited, face))
+        return texture_face_add(to, (struct texture_rule){.kind = TEXTURE_OUTDOORS}, job->err);
+    if (own) {
+        const enum status st = texture_face_add(to, shifted(TEXTURE_PLACE, id, by), job->err);
+        return st ? st : texture_face_add(to, shifted(TEXTURE_EDGE, id, by), job->err);
+    }
+    const enum status st = add_coplanar(job, to, face, &edge);
+    if (st || !edge) return st ? st : add_colour(job, to, lit, lit_count);
+    return texture_face_add(to, shifted(TEXTURE_EDGE, edge, vec3_make(0, 0, 0)), job->err);
 }
 
 static enum status add_rules(const struct rules_job *job, struct texture_face *to, int face, bool *own, struct vec3 *by)
 {
-    const int id = solid_face_id(job->edited, face);
-    int edge = 0;
-    *own = own_place(job, face, by) >= 0;
-    if (is_pane(job->edited, face)) return add_rule(to, (struct texture_rule){.kind = TEXTURE_OUTDOORS}, job->err);
-    enum status st = ST_OK;
-    if (*own) {
-        st = add_rule(to, shifted(TEXTURE_PLACE, id, *by), job->err);
-        return st ? st : add_rule(to, shifted(TEXTURE_EDGE, id, *by), job->err);
-    }
-    st = add_coplanar(job, to, face, &edge);
-    if (st || !edge) return st ? st : add_colour(job, to, face);
-    return add_rule(to, shifted(TEXTURE_EDGE, edge, vec3_make(0, 0, 0)), job->err);
+    const int place = own_place(job, face, by);
+    int *lit = NULL, lit_count = 0;
+    bool covered = false;
+    *own = place >= 0;
+    enum status st = find_lit(&lit, &lit_count, job, face, *own);
+    if (!st) st = texture_wishes_add(to, &covered, &job->models, face, place, *by, lit, lit_count, job->err);
+    if (!st && !covered) st = add_defaults(job, to, face, *own, *by, &lit, lit_count);
+    free(lit);
+    return st;
 }
 
 /* --------------------------------------------------------------------------------------------------------- new area */
-
-struct plane_axes {
-    struct vec3 u, v, n; /* u x v = n */
-    double offset;
-};
-
-static struct plane_axes axes_of(const struct solid_face *f)
-{
-    const struct vec3 from = fabs(f->normal.z) < 0.9 ? vec3_make(0, 0, 1) : vec3_make(1, 0, 0);
-    const struct vec3 u = vec3_normalize(vec3_cross(from, f->normal));
-    return (struct plane_axes){u, vec3_cross(f->normal, u), f->normal, f->offset};
-}
 
 /* A triangle as a polygon of the plane; false: it has no area. */
 static bool flat_triangle(struct part_corner c[3], const struct plane_axes *axes, const struct solid_mesh *mesh,
@@ -323,11 +329,6 @@ struct added {
     struct err *err;
 };
 
-static struct vec3 in_space(const struct plane_axes *axes, const double p[2])
-{
-    return vec3_add(vec3_scale(axes->n, axes->offset), vec3_add(vec3_scale(axes->u, p[0]), vec3_scale(axes->v, p[1])));
-}
-
 static enum status add_area(void *ctx, const struct part_corner *c, int count)
 {
     struct added *a = ctx;
@@ -337,7 +338,8 @@ static enum status add_area(void *ctx, const struct part_corner *c, int count)
         if (fabs((p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) - (p[1][1] - p[0][1]) * (p[2][0] - p[0][0])) < 1e-8)
             continue;
         st = array_append(&a->to->added, (size_t)a->to->added_count, sizeof *a->to->added, "triangles", a->err);
-        for (int k = 0; !st && k < 3; k++) a->to->added[a->to->added_count][k] = in_space(a->axes, p[k]);
+        for (int k = 0; !st && k < 3; k++)
+            a->to->added[a->to->added_count][k] = plane_axes_point(a->axes, p[k][0], p[k][1]);
         if (!st) a->to->added_count++;
     }
     return st;
@@ -348,19 +350,19 @@ static enum status base_parts(struct room_part **parts, struct part_corner **cor
                               const struct rules_job *job, int face, const struct plane_axes *axes, struct vec3 by)
 {
     const struct solid_triangles *t = &job->triangles[1];
-    const struct solid_face *f = &job->edited->faces[face];
+    const struct solid_face *f = &job->models.edited->faces[face];
     const size_t most = (size_t)t->count + 1;
     *parts = malloc(most * sizeof **parts);
     *corners = malloc(3 * most * sizeof **corners);
     *count = 0;
     if (!*parts || !*corners) return err_nomem(job->err, "triangles", 3 * most * sizeof **corners);
-    for (int i = 0; i < job->base->face_count; i++) {
-        const struct solid_face *b = &job->base->faces[i];
-        if (solid_face_id(job->base, i) != solid_face_id(job->edited, face) || !parallel(f, b)) continue;
+    for (int i = 0; i < job->models.base->face_count; i++) {
+        const struct solid_face *b = &job->models.base->faces[i];
+        if (solid_face_id(job->models.base, i) != solid_face_id(job->models.edited, face) || !parallel(f, b)) continue;
         if (fabs(b->offset - f->offset - vec3_dot(f->normal, by)) > same_plane) continue;
         for (int k = t->first[i]; k < t->first[i + 1]; k++) {
             struct part_corner *c = *corners + 3 * *count;
-            if (!flat_triangle(c, axes, job->base, &t->triangles[k], vec3_scale(by, -1))) continue;
+            if (!flat_triangle(c, axes, job->models.base, &t->triangles[k], vec3_scale(by, -1))) continue;
             (*parts)[(*count)++] = (struct room_part){c, 3};
         }
     }
@@ -370,7 +372,7 @@ static enum status base_parts(struct room_part **parts, struct part_corner **cor
 static enum status add_new_area(const struct rules_job *job, struct texture_face *to, int face, bool own,
                                 struct vec3 by)
 {
-    const struct plane_axes axes = axes_of(&job->edited->faces[face]);
+    const struct plane_axes axes = plane_axes_of(&job->models.edited->faces[face]);
     const struct solid_triangles *t = &job->triangles[0];
     struct added added = {to, &axes, job->err};
     struct room_part *parts = NULL;
@@ -378,7 +380,7 @@ static enum status add_new_area(const struct rules_job *job, struct texture_face
     int count = 0;
     enum status st = own ? base_parts(&parts, &corners, &count, job, face, &axes, by) : ST_OK;
     for (int i = t->first[face]; !st && i < t->first[face + 1]; i++) {
-        if (!flat_triangle(c, &axes, job->edited, &t->triangles[i], vec3_make(0, 0, 0))) continue;
+        if (!flat_triangle(c, &axes, job->models.edited, &t->triangles[i], vec3_make(0, 0, 0))) continue;
         st = parts_outside(c, 3, parts, count, add_area, &added, job->err);
     }
     free(parts);
@@ -390,15 +392,16 @@ static enum status add_new_area(const struct rules_job *job, struct texture_face
 
 static enum status add_face(struct texture_map *map, const struct rules_job *job, int face)
 {
-    const struct solid_face *f = &job->edited->faces[face];
+    const struct solid_face *f = &job->models.edited->faces[face];
     struct vec3 by = {0, 0, 0};
     bool own;
     enum status st = array_append(&map->faces, (size_t)map->face_count, sizeof *map->faces, "faces", job->err);
     if (st) return st;
     struct texture_face *to = &map->faces[map->face_count++];
-    *to = (struct texture_face){.id = solid_face_id(job->edited, face), .normal = f->normal, .offset = f->offset};
-    to->name = strdup(solid_face_name(job->edited, face));
-    if (!to->name) return err_nomem(job->err, "a name", strlen(solid_face_name(job->edited, face)));
+    *to =
+        (struct texture_face){.id = solid_face_id(job->models.edited, face), .normal = f->normal, .offset = f->offset};
+    to->name = strdup(solid_face_name(job->models.edited, face));
+    if (!to->name) return err_nomem(job->err, "a name", strlen(solid_face_name(job->models.edited, face)));
     st = add_rules(job, to, face, &own, &by);
     return st ? st : add_new_area(job, to, face, own, by);
 }
@@ -430,8 +433,9 @@ static int compare_texture_faces(const void *a, const void *b)
 enum status texture_rules_make(struct texture_map *map, const struct solid_mesh *edited, const struct solid_mesh *base,
                                const struct plan_places *before, const struct plan *plan, struct err *err)
 {
-    struct rules_job job = {.edited = edited, .base = base, .before = before, .plan = plan, .err = err};
-    enum status st = solid_mesh_triangulate(&job.triangles[0], edited, err);
+    struct rules_job job = {.models = {edited, base, before, plan}, .err = err};
+    enum status st = texture_wishes_check(&job.models, err);
+    if (!st) st = solid_mesh_triangulate(&job.triangles[0], edited, err);
     if (!st) st = solid_mesh_triangulate(&job.triangles[1], base, err);
     for (int f = 0; !st && f < edited->face_count; f++) {
         struct vec3 by;
@@ -441,6 +445,7 @@ enum status texture_rules_make(struct texture_map *map, const struct solid_mesh 
         else
             st = add_new_area(&job, &map->faces[at], f, own_place(&job, f, &by) >= 0, by);
     }
+    if (!st) st = texture_zones_add(map, plan, err);
     if (map->face_count) qsort(map->faces, (size_t)map->face_count, sizeof *map->faces, compare_texture_faces);
     for (int k = 0; k < 2; k++) solid_triangles_release(&job.triangles[k]);
     return st;

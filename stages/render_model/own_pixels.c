@@ -131,9 +131,10 @@ enum status own_pixels_draw(struct model_picture *picture, const uint8_t *same, 
     enum status st = provenance_add_in(prov, "views", room->files.views, world->name, ".exr", NULL, err);
     if (!st) st = view_image_read(&photo, room->files.views, world, err);
     for (size_t i = 0; !st && i < pixels; i++) {
-        if (!same[i] || photo.data[4 * i + 3] <= 0) continue;
-        memcpy(picture->rgb + 3 * i, photo.data + 4 * i, 3 * sizeof *picture->rgb);
-        picture->made[i] = MADE_PHOTO;
+        const bool shown = photo.data[4 * i + 3] > 0; /* the view may look past the photo's border */
+        if (!same[i] && shown) continue;
+        for (size_t c = 0; c < 3; c++) picture->rgb[3 * i + c] = shown ? photo.data[4 * i + c] : 0;
+        picture->made[i] = shown ? MADE_PHOTO : MADE_NOTHING;
     }
     image_release(&photo);
     return st;

@@ -9,7 +9,7 @@
  * of glass count as faces. Without an edit all is 1. */
 enum status own_pixels_find(uint8_t *same, const struct room *room, int view, struct provenance *prov, struct err *err);
 
-/* Gives `picture` the photo's own pixels where `same` is 1 and the photo has a pixel. */
+/* Gives `picture` the photo's own pixels where `same` is 1. Where the view looks past the photo's border nothing is shown. */
 enum status own_pixels_draw(struct model_picture *picture, const uint8_t *same, const struct room *room, int view,
                             struct provenance *prov, struct err *err);
 

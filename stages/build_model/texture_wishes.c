@@ -1,0 +1,277 @@
+/* texture_wishes.c - statements about textures as rules; see texture_wishes.h.
+ *
+ * A patch that is copied keeps its scale and is repeated over the place that gets it, from the lower left corner: one
+ * limited rule for each copy. Stretched texture goes from the bounding rectangle of the face to that of its own place in
+ * the base, in the axes of its plane. */
+#include "stages/build_model/texture_wishes.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/base/array.h"
+#include "common/base/scan.h"
+
+enum { MAX_COPIES = 4096 };
+
+struct plane_axes plane_axes_of(const struct solid_face *f)
+{
+    const struct vec3 n = f->normal;
+    const struct vec3 u = fabs(n.z) < 0.999 ? vec3_normalize(vec3_cross(vec3_make(0, 0, 1), n)) : vec3_make(1, 0, 0);
+    return (struct plane_axes){u, vec3_cross(n, u), n, f->offset};
+}
+
+struct vec3 plane_axes_point(const struct plane_axes *axes, double u, double v)
+{
+    return vec3_add(vec3_scale(axes->n, axes->offset), vec3_add(vec3_scale(axes->u, u), vec3_scale(axes->v, v)));
+}
+
+enum status texture_face_add(struct texture_face *face, struct texture_rule rule, struct err *err)
+{
+    if (array_append(&face->rules, (size_t)face->rule_count, sizeof *face->rules, "rules", err)) return err->status;
+    face->rules[face->rule_count++] = rule;
+    return ST_OK;
+}
+
+/* ------------------------------------------------------------------------------------------------- names of faces */
+
+static bool is_face_or_part(const char *face, const char *wished)
+{
+    const size_t length = strlen(wished);
+    return !strncmp(face, wished, length) && (!face[length] || face[length] == '/');
+}
+
+/* Whether a face belongs to the item NAME: KIND/NAME or KIND/NAME/PART. */
+static bool is_of_item(const char *face, const char *item)
+{
+    const char *slash = strchr(face, '/');
+    return slash && is_face_or_part(slash + 1, item);
+}
+
+/* The first face of a name; -1: none. */
+static int find_face(const struct solid_mesh *mesh, const char *name)
+{
+    for (int i = 0; i < mesh->face_count; i++)
+        if (!strcmp(solid_face_name(mesh, i), name)) return i;
+    return -1;
+}
+
+static const char *nth_face(const void *ctx, int i)
+{
+    const struct solid_mesh *mesh = ctx;
+    return i < mesh->name_count ? mesh->names[i].name : NULL;
+}
+
+static enum status unknown_face(const struct plan_wish *w, const struct solid_mesh *mesh, const char *name,
+                                const char *model, struct err *err)
+{
+    const char *near = scan_nearest(name, nth_face, mesh);
+    if (near)
+        return err_set(err, ST_DATA, "%s:%d: the %s model has no face %s; did you mean %s?", w->path, w->line, model,
+                       name, near);
+    return err_set(err, ST_DATA,
+                   "%s:%d: the %s model has no face %s. It may have become part of another: see merged.txt.", w->path,
+                   w->line, model, name);
+}
+
+static enum status check_wish(const struct texture_models *m, const struct plan_wish *w, struct err *err)
+{
+    bool found = false;
+    for (int i = 0; i < m->edited->name_count && !found; i++) {
+        const char *name = m->edited->names[i].name;
+        found = w->kind == WISH_COLOUR ? is_face_or_part(name, w->face)
+                : w->kind == WISH_COPY ? !strcmp(name, w->face)
+                                       : is_of_item(name, w->face);
+    }
+    if (!found) return unknown_face(w, m->edited, w->face, "edited", err);
+    if (w->kind != WISH_COPY || find_face(m->base, w->from) >= 0) return ST_OK;
+    return unknown_face(w, m->base, w->from, "unedited", err);
+}
+
+enum status texture_wishes_check(const struct texture_models *m, struct err *err)
+{
+    enum status st = ST_OK;
+    for (int i = 0; !st && i < m->plan->wish_count; i++) st = check_wish(m, &m->plan->wishes[i], err);
+    return st;
+}
+
+/* ------------------------------------------------------------------------------------------------------ rectangles */
+
+struct rect { /* in the axes of a plane */
+    double u[2], v[2];
+};
+
+static struct rect rect_of(const struct plane_axes *axes, struct vec3 a, struct vec3 b)
+{
+    const double ua = vec3_dot(axes->u, a), ub = vec3_dot(axes->u, b);
+    const double va = vec3_dot(axes->v, a), vb = vec3_dot(axes->v, b);
+    return (struct rect){{fmin(ua, ub), fmax(ua, ub)}, {fmin(va, vb), fmax(va, vb)}};
+}
+
+static struct rect face_rect(const struct solid_mesh *mesh, int face, const struct plane_axes *axes)
+{
+    const int first = mesh->loops[mesh->faces[face].loop].half_edge;
+    struct rect r = {{INFINITY, -INFINITY}, {INFINITY, -INFINITY}};
+    int h = first;
+    do {
+        const struct vec3 p = mesh->vertices[mesh->half_edges[h].origin].p;
+        const double u = vec3_dot(axes->u, p), v = vec3_dot(axes->v, p);
+        r = (struct rect){{fmin(r.u[0], u), fmax(r.u[1], u)}, {fmin(r.v[0], v), fmax(r.v[1], v)}};
+        h = mesh->half_edges[h].next;
+    } while (h != first);
+    return r;
+}
+
+/* A place on a wall, by S and Z, or on a floor or ceiling, by X and Y. */
+static struct rect place_rect(const double place[4], const char *face, const struct plan_wall *walls, int wall_count,
+                              const struct plane_axes *axes)
+{
+    struct vec3 corners[2] = {{place[0], place[1], 0}, {place[2], place[3], 0}};
+    for (int i = 0; i < wall_count; i++) {
+        if (strncmp(face, "wall/", 5) || !is_of_item(face, walls[i].name)) continue;
+        for (int k = 0; k < 2; k++) {
+            double p[2];
+            wall_point(&walls[i], place[2 * k], 0, p);
+            corners[k] = vec3_make(p[0], p[1], place[2 * k + 1]);
+        }
+    }
+    return rect_of(axes, corners[0], corners[1]);
+}
+
+/* The map that takes `from` in one plane to `to` in another. */
+static void set_matrix(double m[3][4], const struct plane_axes *a, const struct rect *from, const struct plane_axes *b,
+                       const struct rect *to)
+{
+    const double su = (to->u[1] - to->u[0]) / (from->u[1] - from->u[0]);
+    const double sv = (to->v[1] - to->v[0]) / (from->v[1] - from->v[0]);
+    const struct vec3 at = plane_axes_point(b, to->u[0] - su * from->u[0], to->v[0] - sv * from->v[0]);
+    const double bu[3] = {b->u.x, b->u.y, b->u.z}, bv[3] = {b->v.x, b->v.y, b->v.z}, origin[3] = {at.x, at.y, at.z};
+    const double au[3] = {a->u.x, a->u.y, a->u.z}, av[3] = {a->v.x, a->v.y, a->v.z};
+    for (int i = 0; i < 3; i++) {
+        for (int k = 0; k < 3; k++) m[i][k] = su * bu[i] * au[k] + sv * bv[i] * av[k] + 0.0;
+        m[i][3] = origin[i] + 0.0;
+    }
+}
+
+/* ----------------------------------------------------------------------------------------------------------- rules */
+
+static enum status add_copies(struct texture_face *to, const struct texture_models *m, const struct plan_wish *w,
+                              int face, struct err *err)
+{
+    const int source = find_face(m->base, w->from);
+    const struct plane_axes a = plane_axes_of(&m->edited->faces[face]), b = plane_axes_of(&m->base->faces[source]);
+    const struct rect patch = place_rect(w->patch, w->from, m->before->walls, m->before->wall_count, &b);
+    const struct rect target = w->whole ? face_rect(m->edited, face, &a)
+                                        : place_rect(w->target, w->face, m->plan->walls, m->plan->wall_count, &a);
+    const double width = patch.u[1] - patch.u[0], height = patch.v[1] - patch.v[0];
+    const double columns = ceil((target.u[1] - target.u[0]) / width - 1e-6);
+    const double rows = ceil((target.v[1] - target.v[0]) / height - 1e-6);
+    if (!(columns * rows <= MAX_COPIES))
+        return err_set(err, ST_DATA, "%s:%d: the patch would be repeated %.0f times; copy a larger one (at most %d).",
+                       w->path, w->line, columns * rows, (int)MAX_COPIES);
+    enum status st = ST_OK;
+    for (int i = 0; !st && i < (int)(columns * rows); i++) {
+        const double u = target.u[0] + width * (i % (int)columns), v = target.v[0] + height * (i / (int)columns);
+        const struct rect cell = {{u, u + width}, {v, v + height}};
+        const double right = fmin(u + width, target.u[1]), upper = fmin(v + height, target.v[1]);
+        struct texture_rule rule = {
+            .kind = TEXTURE_PLACE, .from = solid_face_id(m->base, source), .limited = !w->whole || columns * rows > 1};
+        set_matrix(rule.matrix, &a, &cell, &b, &patch);
+        rule.within[0] = plane_axes_point(&a, u, v);
+        rule.within[1] = plane_axes_point(&a, right, v);
+        rule.within[2] = plane_axes_point(&a, right, upper);
+        rule.within[3] = plane_axes_point(&a, u, upper);
+        st = texture_face_add(to, rule, err);
+    }
+    return st;
+}
+
+static enum status add_colour(struct texture_face *to, const struct plan_wish *w, const int *lit, int lit_count,
+                              struct err *err)
+{
+    struct texture_rule rule = {.kind = TEXTURE_COLOUR, .lit_count = lit_count};
+    for (int c = 0; c < 3; c++) rule.albedo[c] = (float)w->colour[c];
+    rule.lit = malloc(((size_t)lit_count + 1) * sizeof *rule.lit);
+    if (!rule.lit) return err_nomem(err, "faces", (size_t)lit_count * sizeof *rule.lit);
+    if (lit_count) memcpy(rule.lit, lit, (size_t)lit_count * sizeof *rule.lit);
+    const enum status st = texture_face_add(to, rule, err);
+    if (st) free(rule.lit);
+    return st;
+}
+
+static enum status add_own(struct texture_face *to, const struct texture_models *m, const struct plan_wish *w, int face,
+                           int base_face, struct vec3 by, struct err *err)
+{
+    const struct plane_axes a = plane_axes_of(&m->edited->faces[face]), b = plane_axes_of(&m->base->faces[base_face]);
+    const struct rect from = face_rect(m->edited, face, &a), stretched = face_rect(m->base, base_face, &b);
+    const double u = vec3_dot(b.u, by), v = vec3_dot(b.v, by);
+    const struct rect cropped = {{from.u[0] + u, from.u[1] + u}, {from.v[0] + v, from.v[1] + v}};
+    struct texture_rule rule = {.kind = TEXTURE_PLACE, .from = solid_face_id(m->base, base_face)};
+    set_matrix(rule.matrix, &a, &from, &b, w->kind == WISH_STRETCH ? &stretched : &cropped);
+    enum status st = texture_face_add(to, rule, err);
+    rule.kind = TEXTURE_EDGE;
+    return st ? st : texture_face_add(to, rule, err);
+}
+
+enum status texture_wishes_add(struct texture_face *to, bool *covered, const struct texture_models *m, int face,
+                               int base_face, struct vec3 by, const int *lit, int lit_count, struct err *err)
+{
+    const char *name = solid_face_name(m->edited, face);
+    enum status st = ST_OK;
+    *covered = false;
+    for (int i = m->plan->wish_count - 1; !st && !*covered && i >= 0; i--) {
+        const struct plan_wish *w = &m->plan->wishes[i];
+        if (w->kind == WISH_COPY && !strcmp(name, w->face)) {
+            st = add_copies(to, m, w, face, err);
+        } else if (w->kind == WISH_COLOUR && is_face_or_part(name, w->face)) {
+            st = add_colour(to, w, lit, lit_count, err);
+            *covered = true;
+        } else if ((w->kind == WISH_STRETCH || w->kind == WISH_CROP) && base_face >= 0 && is_of_item(name, w->face)) {
+            st = add_own(to, m, w, face, base_face, by, err);
+            *covered = true;
+        }
+    }
+    return st;
+}
+
+/* ----------------------------------------------------------------------------------------------------------- zones */
+
+static enum status add_zone(struct texture_map *map, const struct plan_zone *zone, const char *name,
+                            const double (*corners)[2], int count, struct err *err)
+{
+    if (array_append(&map->zones, (size_t)map->zone_count, sizeof *map->zones, "zones", err)) return err->status;
+    struct texture_zone *z = &map->zones[map->zone_count++];
+    *z = (struct texture_zone){.keep = zone->keep, .low = zone->low[2], .high = zone->high[2]};
+    z->name = strdup(name);
+    z->corners = malloc((size_t)count * sizeof *z->corners);
+    if (!z->name || !z->corners) return err_nomem(err, "a zone", (size_t)count * sizeof *z->corners);
+    memcpy(z->corners, corners, (size_t)count * sizeof *z->corners);
+    z->corner_count = count;
+    return ST_OK;
+}
+
+static enum status add_room(struct texture_map *map, const struct plan_zone *zone, const struct plan_room *room,
+                            struct err *err)
+{
+    double(*corners)[2] = malloc(((size_t)room->edge_count + 1) * sizeof *corners);
+    if (!corners) return err_nomem(err, "a room's corners", (size_t)room->edge_count * sizeof *corners);
+    for (int i = 0; i < room->edge_count; i++) memcpy(corners[i], room->edges[i].corner, sizeof *corners);
+    const enum status st = add_zone(map, zone, room->name, corners, room->edge_count, err);
+    free(corners);
+    return st;
+}
+
+enum status texture_zones_add(struct texture_map *map, const struct plan *plan, struct err *err)
+{
+    enum status st = ST_OK;
+    for (int i = 0; !st && i < plan->zone_count; i++) {
+        const struct plan_zone *z = &plan->zones[i];
+        const double rectangle[4][2] = {
+            {z->low[0], z->low[1]}, {z->high[0], z->low[1]}, {z->high[0], z->high[1]}, {z->low[0], z->high[1]}};
+        for (int r = 0; !st && r < plan->room_count; r++)
+            if (!plan->rooms[r].removed && plan->rooms[r].edge_count > 2 && (z->all || z->room == r))
+                st = add_room(map, z, &plan->rooms[r], err);
+        if (!st && !z->all && z->room < 0) st = add_zone(map, z, "place", rectangle, 4, err);
+    }
+    return st;
+}
