@@ -196,6 +196,178 @@ static void every_face_has_a_rule_that_covers_all_of_it(void **state)
     }
 }
 
+/* ------------------------------------------------------------------------------------------------------ statements */
+
+static void a_colour_covers_a_face_or_all_of_a_box(void **state)
+{
+    struct made m;
+    (void)state;
+    make(&m, ROOM, "box b from 1 1 to 2 2 top 1\ncolour box/b 0.2 0.4 0.6\ncolour wall/west/in 1 0 0\n");
+    int sides = 0;
+    for (int i = 0; i < m.map.face_count; i++) {
+        const struct texture_face *f = &m.map.faces[i];
+        if (strncmp(f->name, "box/b/", 6)) continue;
+        sides++;
+        assert_int_equal(f->rules[0].kind, TEXTURE_COLOUR);
+        assert_true(fabsf(f->rules[0].albedo[2] - 0.6F) < 1e-6F);
+    }
+    assert_int_equal(sides, 5);
+    /* a face with a place of its own is lit like itself */
+    const struct texture_face *west = face_of(&m, "wall/west/in", vec3_make(0, 1, 1));
+    assert_int_equal(west->rules[0].kind, TEXTURE_COLOUR);
+    assert_int_equal(west->rules[0].lit_count, 1);
+    assert_int_equal(west->rules[0].lit[0], west->id);
+    release(&m);
+}
+
+static void the_default_colour_is_that_of_the_script(void **state)
+{
+    struct made m;
+    (void)state;
+    make(&m, ROOM, "set colour 0.5 0.25 0\nbox b from 1 1 to 2 2 top 1\n");
+    for (int i = 0; i < m.map.face_count; i++)
+        if (!strncmp(m.map.faces[i].name, "box/b/", 6))
+            assert_true(fabsf(m.map.faces[i].rules[0].albedo[1] - 0.25F) < 1e-6F);
+    release(&m);
+}
+
+/* The point of the base that the first rule shows which holds `at`. */
+static struct vec3 shown_at(const struct made *m, const char *name, struct vec3 at, int *from)
+{
+    const struct texture_face *f = face_of(m, name, at);
+    for (int i = 0; i < f->rule_count; i++) {
+        if (!texture_rule_holds(&f->rules[i], f->normal, at)) continue;
+        *from = f->rules[i].from;
+        return texture_rule_place(&f->rules[i], at);
+    }
+    fail_msg("no rule of %s holds the point", name);
+    return at;
+}
+
+static void a_copied_patch_keeps_its_scale_and_is_repeated(void **state)
+{
+    struct made m;
+    int from;
+    (void)state;
+    /* the wall runs from x 4 to x 0: seen from inside, its left is at x 4 */
+    make(&m, ROOM, "copy texture wall/south/in from 1 1 to 2 1.5 to wall/north/in from 0.5 0.5 to 3 1.25\n");
+    struct vec3 p = shown_at(&m, "wall/north/in", vec3_make(0.5, 3, 0.5), &from);
+    assert_string_equal(m.base.names[from - 1].name, "wall/south/in");
+    assert_true(vec3_length(vec3_sub(p, vec3_make(2, 0, 1))) < 1e-9); /* the left corner of both */
+    p = shown_at(&m, "wall/north/in", vec3_make(0.7, 3, 0.6), &from);
+    assert_true(vec3_length(vec3_sub(p, vec3_make(1.8, 0, 1.1))) < 1e-9);
+    p = shown_at(&m, "wall/north/in", vec3_make(1.7, 3, 1.1), &from); /* the next copy, and the one above */
+    assert_true(vec3_length(vec3_sub(p, vec3_make(1.8, 0, 1.1))) < 1e-9);
+    p = shown_at(&m, "wall/north/in", vec3_make(3.5, 3, 1), &from); /* outside of the place */
+    assert_string_equal(m.base.names[from - 1].name, "wall/north/in");
+    release(&m);
+}
+
+static void the_last_statement_about_a_face_counts(void **state)
+{
+    struct made m;
+    int from;
+    (void)state;
+    make(&m, ROOM,
+         "copy texture wall/south/in from 1 1 to 2 2 to wall/north/in\n"
+         "copy texture wall/west/in from 1 1 to 2 2 to wall/north/in from 0.5 0.5 to 1.5 1.5\n");
+    shown_at(&m, "wall/north/in", vec3_make(1, 3, 1), &from);
+    assert_string_equal(m.base.names[from - 1].name, "wall/west/in");
+    shown_at(&m, "wall/north/in", vec3_make(2, 3, 1), &from);
+    assert_string_equal(m.base.names[from - 1].name, "wall/south/in");
+    release(&m);
+}
+
+static void a_stretched_pane_shows_its_whole_picture(void **state)
+{
+    struct made m;
+    (void)state;
+    make(&m, ROOM "window w on south from 1 1 to 2 2\n", "resize w right 1 top 0.25\ntexture w stretch\n");
+    for (int i = 0; i < m.map.face_count; i++) {
+        const struct texture_face *f = &m.map.faces[i];
+        if (strcmp(f->name, "glass/w/in")) continue;
+        assert_int_equal(f->rules[0].kind, TEXTURE_PLACE);
+        /* seen from inside, right is towards smaller x: the pane is now from x 0 to 2 */
+        const struct vec3 low = texture_rule_place(&f->rules[0], vec3_make(0, f->offset * f->normal.y, 1));
+        const struct vec3 high = texture_rule_place(&f->rules[0], vec3_make(2, f->offset * f->normal.y, 2.25));
+        assert_true(fabs(low.x - 1) < 1e-5 && fabs(low.z - 1) < 1e-5);
+        assert_true(fabs(high.x - 2) < 1e-5 && fabs(high.z - 2) < 1e-5);
+        release(&m);
+        return;
+    }
+    fail_msg("there is no pane");
+}
+
+static void rooms_are_cleared_but_for_what_is_kept(void **state)
+{
+    struct made m;
+    (void)state;
+    make(&m, TWO, "clear left\nkeep from 0.5 0.5 to 1 1 top 1\n");
+    assert_true(texture_map_clears(&m.map, vec3_make(1.5, 1.5, 0.5)));
+    assert_false(texture_map_clears(&m.map, vec3_make(3, 1.5, 0.5)));     /* the other room */
+    assert_false(texture_map_clears(&m.map, vec3_make(0.75, 0.75, 0.5))); /* kept */
+    assert_true(texture_map_clears(&m.map, vec3_make(0.75, 0.75, 1.5)));  /* above that */
+    release(&m);
+    make(&m, TWO, "clear all\n");
+    assert_true(texture_map_clears(&m.map, vec3_make(1.5, 1.5, 0.5)));
+    assert_true(texture_map_clears(&m.map, vec3_make(3, 1.5, 0.5)));
+    release(&m);
+}
+
+static void faces_that_are_not_there_are_named(void **state)
+{
+    static const struct {
+        const char *edit, *words;
+    } cases[] = {
+        {"colour wall/sout/in 0 0 0\n",
+         "edit.txt:2: the edited model has no face wall/sout/in; did you mean wall/south/in?"},
+        {"remove west\ncolour wall/west/in 0 0 0\n", "the edited model has no face wall/west/in"},
+        {"box b from 1 1 to 2 2\ncopy texture wall/east/in from 1 1 to 2 2 to box/c/top\n", "no face box/c/top"},
+        {"copy texture wall/west/in from 1 1 to 1.01 1.01 to wall/east/in\n", "repeated"},
+    };
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct err err = ERR_INIT;
+        struct made m = {0};
+        char whole[1024];
+        snprintf(whole, sizeof whole, "remodel-script 1\n%s", cases[i].edit);
+        build(&m.base_plan, &m.solids[0], ROOM, NULL);
+        build(&m.plan, &m.solids[1], ROOM, whole);
+        assert_ok(plan_places_keep(&m.before, &m.base_plan, &err), err);
+        assert_ok(solids_unite(&m.base, &m.solids[0], NULL, &err), err);
+        assert_ok(solids_unite(&m.edited, &m.solids[1], NULL, &err), err);
+        assert_ok(solid_mesh_carry_ids(&m.edited, &m.base, &err), err);
+        assert_int_not_equal(texture_rules_make(&m.map, &m.edited, &m.base, &m.before, &m.plan, &err), ST_OK);
+        assert_err(err, ST_DATA, cases[i].words);
+        release(&m);
+    }
+}
+
+static void statements_without_meaning_are_refused(void **state)
+{
+    static const struct {
+        const char *edit, *words;
+    } cases[] = {
+        {"texture west strech\n", "\"stretch\" or \"crop\""},
+        {"texture wst crop\n", "did you mean west?"},
+        {"colour wall/west/in 0 0 1.5\n", "a share of light, from 0 to 1"},
+        {"colour west 0 0 0\n", "a face, such as wall/south/in"},
+        {"clear hal\n", "did you mean hall?"},
+        {"keep hall\n", "\"in VIEW\" or \"from\""},
+        {"keep from 1 1 to 2 2 foot 2 top 1\n", "a top above the foot"},
+        {"copy texture box/b/top from 0 0 to 1 1 to wall/west/in\n", "a place on box/b/top cannot be given"},
+        {"remove west\nbase other\n", "as the first statement"},
+        {"set colour 1 1\n", "a share of blue light"},
+        {"set colour 0.5 0.5 0.5\nset colour 0.5 0.5 0.5\n", "changes nothing"},
+    };
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char whole[1024];
+        snprintf(whole, sizeof whole, "remodel-script 1\n%s", cases[i].edit);
+        refused(ROOM, whole, cases[i].words);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -207,6 +379,14 @@ int main(void)
         cmocka_unit_test(a_wall_that_was_split_shows_what_was_there),
         cmocka_unit_test(panes_show_what_lies_outdoors),
         cmocka_unit_test(every_face_has_a_rule_that_covers_all_of_it),
+        cmocka_unit_test(a_colour_covers_a_face_or_all_of_a_box),
+        cmocka_unit_test(the_default_colour_is_that_of_the_script),
+        cmocka_unit_test(a_copied_patch_keeps_its_scale_and_is_repeated),
+        cmocka_unit_test(the_last_statement_about_a_face_counts),
+        cmocka_unit_test(a_stretched_pane_shows_its_whole_picture),
+        cmocka_unit_test(rooms_are_cleared_but_for_what_is_kept),
+        cmocka_unit_test(faces_that_are_not_there_are_named),
+        cmocka_unit_test(statements_without_meaning_are_refused),
     };
     return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }
