@@ -79,15 +79,15 @@ static enum status draw_view(struct model_picture *picture, double *changed, str
     const size_t pixels = (size_t)camera->width * (size_t)camera->height;
     uint8_t *same = malloc(pixels);
     enum status st = same ? ST_OK : err_nomem(err, "pixels of a view", pixels);
+    const bool own = !strcmp(room->params->photo, "where_unchanged");
     size_t differ = 0;
     if (!st) st = own_pixels_find(same, room, view, prov, err);
-    for (size_t i = 0; !st && i < pixels; i++) differ += !same[i];
-    const bool own = !strcmp(room->params->photo, "where_unchanged");
-    if (!st && (differ || !own))
+    if (!st && (memchr(same, 0, pixels) || !own))
         st = room_draw(picture, room, camera, &pair, view, prov, err);
     else if (!st)
         st = model_picture_resize(picture, camera->width, camera->height, err);
     if (!st && own) st = own_pixels_draw(picture, same, room, view, prov, err);
+    for (size_t i = 0; !st && i < pixels; i++) differ += !same[i] && picture->made[i] != MADE_NOTHING;
     *changed = own ? 100.0 * (double)differ / (double)pixels : 100;
     free(same);
     return st;
