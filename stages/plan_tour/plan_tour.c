@@ -1,0 +1,118 @@
+/* plan_tour.c - plans a walk through the rooms of a model, from viewpoint to viewpoint [Colburn 2014, 4.7.1].
+ *
+ * reads   MODEL/model.txt, plan.txt                     the model, edited or not, and its rooms
+ *         AXES                                          its frame in the scene
+ *         VIEWS/cameras.txt, images.txt, lenses.txt     the viewpoints
+ *         SCRIPT                                        with --script: where the tour stops, tour.txt
+ * writes  OUT/path/, path.txt                           the cameras of the frames
+ *         OUT/pairs.txt                                 the viewpoints that each frame blends */
+#include <stdlib.h>
+
+#include "common/base/cli.h"
+#include "common/base/file_path.h"
+#include "common/base/log.h"
+#include "stages/plan_tour/tour_frames.h"
+#include "stages/plan_tour/tour_stops.h"
+
+static const struct param tour_param_table[] = {
+#define PARAM_STRUCT struct tour_params
+    TOUR_PARAMS(PARAM_ROW) PARAM_END};
+#undef PARAM_STRUCT
+
+struct job {
+    const char *model, *axes_file, *views, *script, *out;
+    struct tour_params params;
+    struct model_rays rays;
+    struct model_plan plan;
+    struct model_axes axes;
+    struct camera_set set;
+    struct lens_list lenses;
+};
+
+static enum status check_params(const void *values, struct err *err)
+{
+    const struct tour_params *p = values;
+    if (p->width % 2 == 0 && p->height % 2 == 0) return ST_OK;
+    return err_set(err, ST_USAGE,
+                   "[plan_tour] width and height are %d and %d, wanted even numbers, as videos need them.", p->width,
+                   p->height);
+}
+
+static enum status read_inputs(struct job *j, struct provenance *prov, struct err *err)
+{
+    char path[FILE_PATH];
+    enum status st = provenance_add_in(prov, "model", j->model, "model.txt", "", path, err);
+    if (!st) st = model_rays_read(&j->rays, path, MODEL_WITH_GLASS, err);
+    if (!st) st = provenance_add_in(prov, "model", j->model, "plan.txt", "", path, err);
+    if (!st) st = model_plan_read(&j->plan, path, err);
+    if (!st) st = model_axes_read(&j->axes, j->axes_file, err);
+    if (!st) st = provenance_add_file(prov, "model/axes.txt", j->axes_file, err);
+    if (!st) st = camera_set_read_cameras(&j->set, j->views, err);
+    if (!st) st = camera_set_add_camera_inputs(prov, j->views, err);
+    if (!st) st = provenance_add_in(prov, "views", j->views, "lenses", ".txt", path, err);
+    if (!st) st = lens_list_read(&j->lenses, path, err);
+    if (!st && j->script) st = provenance_add_file(prov, "tour.txt", j->script, err);
+    return st;
+}
+
+static void release_inputs(struct job *j)
+{
+    lens_list_release(&j->lenses);
+    camera_set_release(&j->set);
+    model_plan_release(&j->plan);
+    model_rays_release(&j->rays);
+}
+
+/* pairs.txt goes first: path.txt is the product that the graph of products looks at. */
+static enum status write_tour(const struct camera_path *path, const struct viewpoint_pairs *pairs, const char *out,
+                              const struct provenance *prov, struct err *err)
+{
+    char file[FILE_PATH];
+    enum status st = file_path(file, out, "pairs.txt", "", err);
+    if (!st) st = viewpoint_pairs_write(pairs, file, prov, err);
+    return st ? st : camera_path_write(path, out, prov, err);
+}
+
+static enum status plan_tour(struct job *j, struct provenance *prov, struct err *err)
+{
+    struct tour_graph g = {0};
+    struct camera_path path = {0};
+    struct viewpoint_pairs pairs = {0};
+    struct tour_key *keys = NULL;
+    int *stops = NULL, stop_count = 0, key_count = 0;
+    enum status st = read_inputs(j, prov, err);
+    if (!st) st = tour_graph_make(&g, &j->set, &j->lenses, &j->axes, &j->rays, &j->params, err);
+    if (!st) st = tour_stops_find(&stops, &stop_count, &g, &j->plan, j->script, err);
+    if (!st) st = tour_keys_make(&keys, &key_count, &g, stops, stop_count, &j->params, err);
+    if (!st) st = tour_frames_make(&path, &pairs, keys, key_count, &g, &j->axes, &j->rays, &j->params, err);
+    if (!st) st = write_tour(&path, &pairs, j->out, prov, err);
+    if (!st) log_note("a tour of %d stops, %.1f s, %d frames", stop_count, keys[key_count - 1].time, path.frame_count);
+    free(stops);
+    free(keys);
+    viewpoint_pairs_release(&pairs);
+    camera_path_release(&path);
+    tour_graph_release(&g);
+    return st;
+}
+
+int main(int argc, char **argv)
+{
+    struct job j = {.params = TOUR_PARAMS_DEFAULT};
+    const struct cli_opt opts[] = {
+        CLI_ABOUT("Plans a walk through the rooms of a model, from viewpoint to viewpoint."),
+        CLI_STR("model", &j.model, CLI_REQUIRED, "folder of the model: model.txt and plan.txt"),
+        CLI_STR("axes", &j.axes_file, CLI_REQUIRED, "the model's frame, axes.txt"),
+        CLI_STR("views", &j.views, CLI_REQUIRED, "folder of the views' cameras"),
+        CLI_STR("script", &j.script, CLI_OPTIONAL, "where the tour stops, tour.txt; default: in each room"),
+        CLI_STR("out", &j.out, CLI_REQUIRED, "folder to write to"),
+        CLI_PARAMS(tour_param_table, &j.params, check_params),
+        CLI_END,
+    };
+    struct provenance prov = {0};
+    struct err err = ERR_INIT;
+    if (cli_parse(argc, argv, "plan_tour", opts, &prov, &err) == CLI_RUN) plan_tour(&j, &prov, &err);
+    err_report(&err);
+    release_inputs(&j);
+    provenance_release(&prov);
+    return err_exit_code(&err);
+}

@@ -1,0 +1,206 @@
+/* tour_frames.c - the frames of a tour; see tour_frames.h.
+ *
+ * On a leg from one stop to the next the camera walks from viewpoint to viewpoint at a constant speed. It begins with the
+ * axis of the first photo and looks along the way one second later; each inner viewpoint looks towards the next one; half
+ * a second before the end it begins to turn to the axis of the last photo. At each stop it rests a moment.
+ *
+ * [Colburn 2014, 4.7.1] interpolates axes linearly. Here their azimuth and elevation are, because vectors that point in
+ * opposite directions have nothing between them. A way on which the camera has to turn much takes as long as turning
+ * takes, so that two photographs from one place do not make a jump. */
+#include "stages/plan_tour/tour_frames.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/base/array.h"
+
+static const double ease_out = 1, ease_in = 0.5; /* seconds */
+
+struct keys {
+    struct tour_key **list;
+    int *count;
+    const struct tour_graph *g;
+    const struct tour_params *params;
+    struct err *err;
+};
+
+static double azimuth_of(struct vec3 axis) { return atan2(axis.y, axis.x); }
+
+static double elevation_of(struct vec3 axis) { return atan2(axis.z, hypot(axis.x, axis.y)); }
+
+static enum status add_key(const struct keys *k, double time, struct vec3 at, double azimuth, double elevation,
+                           int node)
+{
+    if (array_append(k->list, (size_t)*k->count, sizeof **k->list, "places of a tour", k->err)) return k->err->status;
+    const struct tour_key *last = *k->count ? &(*k->list)[*k->count - 1] : NULL;
+    if (last) azimuth = last->azimuth + remainder(azimuth - last->azimuth, 2 * M_PI);
+    (*k->list)[(*k->count)++] = (struct tour_key){time, at, azimuth, elevation, node};
+    return ST_OK;
+}
+
+static enum status add_axis(const struct keys *k, double time, struct vec3 at, struct vec3 axis, int node)
+{
+    return add_key(k, time, at, azimuth_of(axis), elevation_of(axis), node);
+}
+
+/* The axis that a node of a leg has: its photo's at the ends, else towards the next node, or its own if that is here. */
+static struct vec3 node_axis(const struct tour_graph *g, const int *leg, int count, int i)
+{
+    if (i == 0 || i == count - 1) return g->nodes[leg[i]].axis;
+    const struct vec3 ahead = vec3_sub(g->nodes[leg[i + 1]].centre, g->nodes[leg[i]].centre);
+    return vec3_length(ahead) > 1e-9 ? vec3_normalize(ahead) : g->nodes[leg[i]].axis;
+}
+
+/* How long the way between two nodes of a leg takes. */
+static double way_time(const struct keys *k, const int *leg, int count, int i)
+{
+    const struct vec3 a = node_axis(k->g, leg, count, i), b = node_axis(k->g, leg, count, i + 1);
+    const double theta = atan2(vec3_length(vec3_cross(a, b)), vec3_dot(a, b));
+    const double d = vec3_length(vec3_sub(k->g->nodes[leg[i]].centre, k->g->nodes[leg[i + 1]].centre));
+    return fmax(d / (k->params->speed * k->g->unit), theta / (k->params->turn * M_PI / 180));
+}
+
+/* A key between two nodes, at a time after the first, which looks along the way. */
+static enum status add_ease(const struct keys *k, const int *leg, int i, double start, double after, double whole)
+{
+    const struct vec3 a = k->g->nodes[leg[i]].centre, b = k->g->nodes[leg[i + 1]].centre, way = vec3_sub(b, a);
+    if (vec3_length(way) <= 1e-9 || !(whole > 0)) return ST_OK;
+    return add_axis(k, start + after, vec3_add(a, vec3_scale(way, after / whole)), vec3_normalize(way), leg[i]);
+}
+
+/* Adds the keys of a leg after its first node. *time: at its first node, then at its last. */
+static enum status add_leg(const struct keys *k, const int *leg, int count, double *time)
+{
+    enum status st = ST_OK;
+    for (int i = 0; !st && i + 1 < count; i++) {
+        const double whole = way_time(k, leg, count, i);
+        const bool first = i == 0, last = i + 2 == count;
+        /* on a short way the two share it */
+        const double out = first ? fmin(ease_out, whole * (last ? 0.5 : 1)) : 0;
+        const double in = last ? fmin(ease_in, whole * (first ? 0.5 : 1)) : 0;
+        if (first && out < whole) st = add_ease(k, leg, i, *time, out, whole);
+        if (!st && last && whole - in > out + 1e-9) st = add_ease(k, leg, i, *time, whole - in, whole);
+        *time += whole;
+        if (!st)
+            st = add_axis(k, *time, k->g->nodes[leg[i + 1]].centre, node_axis(k->g, leg, count, i + 1), leg[i + 1]);
+    }
+    return st;
+}
+
+/* The nodes of the shortest way; the caller frees them. */
+static enum status find_leg(int **leg, int *count, const struct tour_graph *g, int from, int to, struct err *err)
+{
+    const size_t n = (size_t)g->count;
+    double *costs = malloc((n + 1) * sizeof *costs);
+    int *before = malloc((n + 1) * sizeof *before);
+    *leg = malloc((n + 1) * sizeof **leg);
+    *count = 0;
+    enum status st = costs && before && *leg ? ST_OK : err_nomem(err, "ways", n * sizeof *costs);
+    if (!st) st = tour_shortest(costs, before, g, from, err);
+    for (int at = st ? -1 : to; at >= 0; at = before[at]) (*leg)[(*count)++] = at;
+    for (int i = 0; i < *count / 2; i++) {
+        const int swap = (*leg)[i];
+        (*leg)[i] = (*leg)[*count - 1 - i];
+        (*leg)[*count - 1 - i] = swap;
+    }
+    free(costs);
+    free(before);
+    return st;
+}
+
+enum status tour_keys_make(struct tour_key **keys, int *count, const struct tour_graph *g, const int *stops,
+                           int stop_count, const struct tour_params *params, struct err *err)
+{
+    const struct keys k = {keys, count, g, params, err};
+    const struct tour_node *first = &g->nodes[stops[0]];
+    double time = params->hold;
+    *keys = NULL;
+    *count = 0;
+    enum status st = add_axis(&k, 0, first->centre, first->axis, stops[0]);
+    if (!st) st = add_axis(&k, time, first->centre, first->axis, stops[0]);
+    for (int i = 0; !st && i + 1 < stop_count; i++) {
+        int *leg = NULL, nodes = 0;
+        st = find_leg(&leg, &nodes, g, stops[i], stops[i + 1], err);
+        if (!st) st = add_leg(&k, leg, nodes, &time);
+        free(leg);
+        time += params->hold;
+        const struct tour_node *stop = &g->nodes[stops[i + 1]];
+        if (!st) st = add_axis(&k, time, stop->centre, stop->axis, stops[i + 1]);
+    }
+    return st;
+}
+
+/* ---------------------------------------------------------------------------------------------------------- frames */
+
+/* The key that begins the interval of a time. */
+static int interval_of(const struct tour_key *keys, int count, double time)
+{
+    int i = 0;
+    while (i + 2 < count && keys[i + 1].time <= time) i++;
+    return i;
+}
+
+static struct view camera_at(const struct tour_key *a, const struct tour_key *b, double t,
+                             const struct tour_params *params)
+{
+    const double azimuth = a->azimuth + t * (b->azimuth - a->azimuth);
+    const double elevation = a->elevation + t * (b->elevation - a->elevation);
+    const struct vec3 z = {cos(elevation) * cos(azimuth), cos(elevation) * sin(azimuth), sin(elevation)};
+    const struct vec3 x = {sin(azimuth), -cos(azimuth), 0}, y = vec3_cross(z, x);
+    struct view v = {.width = params->width, .height = params->height};
+    v.cam_from_world = (struct mat3){{{x.x, x.y, x.z}, {y.x, y.y, y.z}, {z.x, z.y, z.z}}};
+    v.center = vec3_add(a->at, vec3_scale(vec3_sub(b->at, a->at), t));
+    v.fx = v.fy = params->width / (2 * tan(params->fov * M_PI / 360));
+    v.cx = params->width / 2.0;
+    v.cy = params->height / 2.0;
+    return v;
+}
+
+/* From the model's frame to that of O/views. */
+static void move_to_scene(struct view *v, const struct model_axes *axes)
+{
+    v->cam_from_world = mat3_multiply(v->cam_from_world, mat3_from_quat(axes->rotation));
+    v->center = world_from_model_point(axes, v->center);
+    v->translation = vec3_scale(mat3_apply(v->cam_from_world, v->center), -1);
+}
+
+/* The viewpoints on either side of a key's interval, and how far the camera is between them. */
+static enum status add_pair(struct viewpoint_pairs *pairs, const char *frame, const struct tour_graph *g,
+                            const struct tour_key *keys, int count, int i, struct vec3 at, struct err *err)
+{
+    int next = i + 1;
+    const int from = keys[i].node;
+    while (next + 1 < count && keys[next].node == from) next++;
+    const int to = keys[next].node;
+    const struct vec3 a = g->nodes[from].centre, b = g->nodes[to].centre;
+    const double whole = vec3_length(vec3_sub(b, a)), gone = vec3_length(vec3_sub(at, a));
+    /* between two viewpoints in one place the time counts */
+    double t = whole > 1e-9 ? fmin(1, gone / whole) : 0;
+    return viewpoint_pairs_add(pairs, frame, g->nodes[from].photo, g->nodes[to].photo, t, err);
+}
+
+enum status tour_frames_make(struct camera_path *path, struct viewpoint_pairs *pairs, const struct tour_key *keys,
+                             int key_count, const struct tour_graph *g, const struct model_axes *axes,
+                             const struct model_rays *model, const struct tour_params *params, struct err *err)
+{
+    const double end = keys[key_count - 1].time;
+    const int frames = 1 + (int)floor(end * params->fps + 1e-9);
+    enum status st = camera_path_init(path, "tour", params->fps, frames, err);
+    for (int f = 0; !st && f < frames; f++) {
+        const double time = f / params->fps;
+        const int i = interval_of(keys, key_count, time);
+        const double whole = keys[i + 1].time - keys[i].time;
+        const double t = whole > 0 ? fmin(1, (time - keys[i].time) / whole) : 1;
+        struct view camera = camera_at(&keys[i], &keys[i + 1], t, params);
+        const struct vec3 at = camera.center;
+        if (model_rays_inside(model, at, 0.99 * params->clearance))
+            return err_set(err, ST_INTERNAL, "frame %d of the tour is nearer to the model than the clearance of %.3g.",
+                           f + 1, params->clearance);
+        move_to_scene(&camera, axes);
+        camera.name = path->frames[f].camera.name;
+        path->frames[f].camera = camera;
+        st = add_pair(pairs, camera.name, g, keys, key_count, i, at, err);
+    }
+    return st;
+}

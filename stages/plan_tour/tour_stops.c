@@ -1,0 +1,198 @@
+/* tour_stops.c - see tour_stops.h. */
+#include "stages/plan_tour/tour_stops.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/base/array.h"
+#include "common/base/log.h"
+#include "common/base/scan.h"
+#include "common/base/textfile.h"
+
+bool tour_room_holds(const struct model_room *room, struct vec3 p)
+{
+    bool inside = false;
+    for (int i = 0, j = room->corner_count - 1; i < room->corner_count; j = i++) {
+        const struct model_room_corner *a = &room->corners[i], *b = &room->corners[j];
+        if ((a->y > p.y) != (b->y > p.y) && p.x < (b->x - a->x) * (p.y - a->y) / (b->y - a->y) + a->x) inside = !inside;
+    }
+    return inside && p.z > room->floor && p.z < model_room_ceiling(room, p.x, p.y);
+}
+
+/* The usable viewpoint in a room that is nearest to the middle of its corners; -1: none. */
+static int room_stop(const struct tour_graph *g, const struct model_room *room)
+{
+    double x = 0, y = 0, least = INFINITY;
+    int best = -1;
+    for (int i = 0; i < room->corner_count; i++) {
+        x += room->corners[i].x / room->corner_count;
+        y += room->corners[i].y / room->corner_count;
+    }
+    for (int i = 0; i < g->count; i++) {
+        const struct vec3 p = g->nodes[i].centre;
+        if (!g->nodes[i].usable || !tour_room_holds(room, p) || hypot(p.x - x, p.y - y) >= least) continue;
+        least = hypot(p.x - x, p.y - y);
+        best = i;
+    }
+    return best;
+}
+
+static enum status add_stop(int **stops, int *count, int node, struct err *err)
+{
+    if (*count && (*stops)[*count - 1] == node) return ST_OK;
+    if (array_append(stops, (size_t)*count, sizeof **stops, "stops", err)) return err->status;
+    (*stops)[(*count)++] = node;
+    return ST_OK;
+}
+
+/* ------------------------------------------------------------------------------------------------------- tour.txt */
+
+static const char *nth_room(const void *ctx, int i)
+{
+    const struct model_plan *plan = ctx;
+    return i < plan->room_count ? plan->rooms[i].name : NULL;
+}
+
+static const char *nth_photo(const void *ctx, int i)
+{
+    const struct tour_graph *g = ctx;
+    return i < g->count ? g->nodes[i].photo : NULL;
+}
+
+static enum status unknown(const struct textfile *t, const char *name, const char *what, const char *near,
+                           struct err *err)
+{
+    if (near) return textfile_error(t, err, name, "%s; did you mean %s?", what, near);
+    return textfile_error(t, err, name, "%s", what);
+}
+
+static enum status read_stop(int *node, struct textfile *t, const struct tour_graph *g, const struct model_plan *plan,
+                             struct err *err)
+{
+    char *kind, *name;
+    if (textfile_word(t, "room or photo", &kind, err) || textfile_word(t, "a name", &name, err) || textfile_end(t, err))
+        return err->status;
+    *node = -1;
+    if (!strcmp(kind, "room")) {
+        const int room = model_plan_find_room(plan, name);
+        if (room < 0) return unknown(t, name, "a room of the model", scan_nearest(name, nth_room, plan), err);
+        *node = room_stop(g, &plan->rooms[room]);
+        if (*node >= 0) return ST_OK;
+        return textfile_error(t, err, name, "a room in which a photograph was taken, away from its walls");
+    }
+    if (strcmp(kind, "photo")) return textfile_error(t, err, kind, "\"room NAME\" or \"photo ID\"");
+    for (int i = 0; i < g->count; i++)
+        if (!strcmp(g->nodes[i].photo, name)) *node = i;
+    if (*node < 0) return unknown(t, name, "a photo's id", scan_nearest(name, nth_photo, g), err);
+    if (g->nodes[*node].usable) return ST_OK;
+    return textfile_error(t, err, name, "a photo that was not taken inside a wall of this model, or too near to one");
+}
+
+static enum status check_way(const struct textfile *t, const struct tour_graph *g, int from, int to, struct err *err)
+{
+    const size_t n = (size_t)g->count;
+    double *costs = malloc((n + 1) * sizeof *costs);
+    int *before = malloc((n + 1) * sizeof *before);
+    enum status st = costs && before ? ST_OK : err_nomem(err, "ways", n * sizeof *costs);
+    if (!st) st = tour_shortest(costs, before, g, from, err);
+    if (!st && !isfinite(costs[to]))
+        st =
+            textfile_error(t, err, g->nodes[to].photo,
+                           "a stop that a way leads to from the stop before, at %s: walls are between them, or the gap "
+                           "is narrower than twice [plan_tour] clearance",
+                           g->nodes[from].photo);
+    free(costs);
+    free(before);
+    return st;
+}
+
+static enum status read_script(int **stops, int *count, const struct tour_graph *g, const struct model_plan *plan,
+                               const char *path, struct err *err)
+{
+    struct textfile t = {0};
+    int64_t version;
+    if (textfile_open(&t, path, err)) return err->status;
+    enum status st = textfile_expect_line(&t, "remodel-tour", err);
+    if (!st) st = textfile_int(&t, "version", 1, 1, &version, err);
+    if (!st) st = textfile_end(&t, err);
+    while (!st && textfile_next(&t)) {
+        int node = -1;
+        st = read_stop(&node, &t, g, plan, err);
+        if (!st && *count) st = check_way(&t, g, (*stops)[*count - 1], node, err);
+        if (!st) st = add_stop(stops, count, node, err);
+    }
+    if (!st && !*count) st = textfile_error(&t, err, NULL, "\"room NAME\" or \"photo ID\"");
+    textfile_release(&t);
+    return st;
+}
+
+/* ---------------------------------------------------------------------------------------------------------- rooms */
+
+/* The viewpoint that sees farthest. */
+static int best_start(const struct tour_graph *g)
+{
+    int best = -1;
+    for (int i = 0; i < g->count; i++)
+        if (g->nodes[i].usable && (best < 0 || g->nodes[i].open > g->nodes[best].open)) best = i;
+    return best;
+}
+
+/* The stop of the room that is nearest to the last one, of those not visited; -1: none can be reached. */
+static int next_room(const struct tour_graph *g, const struct model_plan *plan, const bool *visited,
+                     const double *costs)
+{
+    int best = -1;
+    for (int r = 0; r < plan->room_count; r++) {
+        const int stop = visited[r] ? -1 : room_stop(g, &plan->rooms[r]);
+        if (stop < 0 || !isfinite(costs[stop])) continue;
+        if (best < 0 || costs[stop] < costs[room_stop(g, &plan->rooms[best])]) best = r;
+    }
+    return best;
+}
+
+static int farthest(const struct tour_graph *g, const double *costs)
+{
+    int best = -1;
+    for (int i = 0; i < g->count; i++)
+        if (isfinite(costs[i]) && (best < 0 || costs[i] > costs[best])) best = i;
+    return best;
+}
+
+static enum status visit_rooms(int **stops, int *count, const struct tour_graph *g, const struct model_plan *plan,
+                               struct err *err)
+{
+    const size_t n = (size_t)g->count;
+    bool *visited = calloc((size_t)plan->room_count + 1, sizeof *visited);
+    double *costs = malloc((n + 1) * sizeof *costs);
+    int *before = malloc((n + 1) * sizeof *before);
+    enum status st = visited && costs && before ? ST_OK : err_nomem(err, "rooms", n * sizeof *costs);
+    if (!st) st = add_stop(stops, count, best_start(g), err);
+    for (int r = 0; !st && r < plan->room_count; r++)
+        visited[r] = tour_room_holds(&plan->rooms[r], g->nodes[(*stops)[0]].centre);
+    for (int room = 0; !st && room >= 0;) {
+        st = tour_shortest(costs, before, g, (*stops)[*count - 1], err);
+        room = st ? -1 : next_room(g, plan, visited, costs);
+        if (room < 0) break;
+        visited[room] = true;
+        st = add_stop(stops, count, room_stop(g, &plan->rooms[room]), err);
+    }
+    for (int r = 0; !st && r < plan->room_count; r++)
+        if (!visited[r])
+            log_warn("room %s is left out of the tour: no way leads there, or no photograph was taken in it",
+                     plan->rooms[r].name);
+    /* a flat of one room */
+    if (!st && *count == 1) st = add_stop(stops, count, farthest(g, costs), err);
+    free(visited);
+    free(costs);
+    free(before);
+    return st;
+}
+
+enum status tour_stops_find(int **stops, int *count, const struct tour_graph *g, const struct model_plan *plan,
+                            const char *script, struct err *err)
+{
+    *stops = NULL;
+    *count = 0;
+    return script ? read_script(stops, count, g, plan, script, err) : visit_rooms(stops, count, g, plan, err);
+}
