@@ -1,0 +1,86 @@
+/* export_model.c - writes a model, or an edited one, with its photographic texture for other programs.
+ *
+ * reads   MODEL/model.txt, plan.txt                     the model; of an edit also MAP, texture.txt
+ *         AXES                                          whether its lengths are metres
+ *         VITA/atlas.txt, page0.exr, ...                the view-independent texture atlas
+ * writes  OUT/page0.png, ...                            its pages, sRGB
+ *         OUT/model.obj, model.mtl, model.glb, model.ifc */
+#include "common/base/cli.h"
+#include "common/base/file_path.h"
+#include "common/model/model_axes.h"
+#include "stages/export_model/export_pages.h"
+#include "stages/export_model/writers.h"
+
+struct job {
+    const char *name, *model, *map, *axes, *vita, *out;
+    struct solid_mesh mesh;
+    struct model_plan plan;
+    struct texture_map texture;
+    struct atlas atlas;
+    struct export_faces faces;
+};
+
+static enum status read_inputs(struct job *j, struct model_axes *axes, struct provenance *prov, struct err *err)
+{
+    char path[FILE_PATH];
+    enum status st = provenance_add_in(prov, "model", j->model, "model.txt", "", path, err);
+    if (!st) st = solid_mesh_read(&j->mesh, path, err);
+    if (!st) st = provenance_add_in(prov, "model", j->model, "plan.txt", "", path, err);
+    if (!st) st = model_plan_read(&j->plan, path, err);
+    if (!st) st = model_axes_read(axes, j->axes, err);
+    if (!st) st = provenance_add_file(prov, "model/axes.txt", j->axes, err);
+    if (!st && j->map) st = texture_map_read(&j->texture, j->map, err);
+    if (!st && j->map) st = provenance_add_file(prov, "texture.txt", j->map, err);
+    if (!st) st = atlas_read(&j->atlas, j->vita, err);
+    if (!st) st = provenance_add_in(prov, "vita", j->vita, "atlas.txt", "", NULL, err);
+    return st;
+}
+
+static enum status export_all(struct job *j, struct provenance *prov, struct err *err)
+{
+    struct model_axes axes = {0};
+    double exposure = 1;
+    enum status st = read_inputs(j, &axes, prov, err);
+    if (!st) st = export_faces_make(&j->faces, &j->mesh, j->map ? &j->texture : NULL, &j->atlas, err);
+    if (!st) st = export_exposure(&exposure, &j->atlas, j->vita, err);
+    if (!st) st = export_pages_write(&j->atlas, j->vita, exposure, j->out, err);
+    const struct export_scene scene = {.name = j->name,
+                                       .mesh = &j->mesh,
+                                       .faces = &j->faces,
+                                       .plan = &j->plan,
+                                       .page_sizes = (const int(*)[2])j->atlas.page_sizes,
+                                       .page_count = j->atlas.page_count,
+                                       .exposure = exposure,
+                                       .metric = axes.metric,
+                                       .out = j->out,
+                                       .prov = prov};
+    if (!st) st = write_obj(&scene, err);
+    if (!st) st = write_gltf(&scene, err);
+    return st ? st : write_ifc(&scene, err);
+}
+
+int main(int argc, char **argv)
+{
+    struct job j = {0};
+    const struct cli_opt opts[] = {
+        CLI_ABOUT("Writes a model with its photographic texture for other programs: OBJ, glTF, IFC4."),
+        CLI_STR("name", &j.name, CLI_REQUIRED, "name of the model, for titles"),
+        CLI_STR("model", &j.model, CLI_REQUIRED, "folder of the model: model.txt and plan.txt"),
+        CLI_STR("map", &j.map, CLI_OPTIONAL, "of an edited model: its texture.txt"),
+        CLI_STR("axes", &j.axes, CLI_REQUIRED, "the model's frame, axes.txt"),
+        CLI_STR("vita", &j.vita, CLI_REQUIRED, "folder of the view-independent texture atlas"),
+        CLI_STR("out", &j.out, CLI_REQUIRED, "folder to write to"),
+        CLI_END,
+    };
+    struct provenance prov = {0};
+    struct err err = ERR_INIT;
+    if (cli_parse(argc, argv, "export_model", opts, &prov, &err) == CLI_RUN) export_all(&j, &prov, &err);
+    err_report(&err);
+    export_faces_release(&j.faces);
+    atlas_release(&j.atlas);
+    texture_map_release(&j.texture);
+    model_plan_release(&j.plan);
+    solid_mesh_release(&j.mesh);
+    provenance_release(&prov);
+    return err_exit_code(&err);
+}

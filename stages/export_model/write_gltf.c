@@ -1,0 +1,283 @@
+/* write_gltf.c - glTF 2.0 in its binary form: JSON, then vertices and pictures. */
+#include <jansson.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/base/array.h"
+#include "common/base/file_path.h"
+#include "common/base/outfile.h"
+#include "common/base/version.h"
+#include "stages/export_model/writers.h"
+
+enum { FLOATS = 5126, ARRAY_BUFFER = 34962 }; /* numbers of the format */
+
+struct bytes {
+    unsigned char *data; /* owned */
+    size_t size, room;
+};
+
+struct gltf {
+    const struct export_scene *s;
+    struct bytes bin;
+    json_t *views, *accessors, *meshes, *nodes, *materials, *children;
+    int colours; /* materials of colours so far */
+    struct err *err;
+};
+
+static enum status put_bytes(struct gltf *g, const void *data, size_t size)
+{
+    struct bytes *b = &g->bin;
+    const size_t padded = (size + 3) / 4 * 4;
+    if (array_reserve(&b->data, &b->room, b->size + padded, 1, "a glTF file", g->err)) return g->err->status;
+    memcpy(b->data + b->size, data, size);
+    memset(b->data + b->size + size, 0, padded - size);
+    b->size += padded;
+    return ST_OK;
+}
+
+/* *index: of the new view of the buffer. */
+static enum status add_view(struct gltf *g, const void *data, size_t size, bool vertices, json_int_t *index)
+{
+    const size_t at = g->bin.size;
+    if (put_bytes(g, data, size)) return g->err->status;
+    json_t *view =
+        json_pack("{s:i, s:I, s:I}", "buffer", 0, "byteOffset", (json_int_t)at, "byteLength", (json_int_t)size);
+    if (vertices) json_object_set_new(view, "target", json_integer(ARRAY_BUFFER));
+    *index = (json_int_t)json_array_size(g->views);
+    json_array_append_new(g->views, view);
+    return ST_OK;
+}
+
+/* An accessor of `count` vectors of `size` floats. bounds: with the least and the greatest, as positions need them. */
+static enum status add_vectors(struct gltf *g, const float *data, size_t count, int size, bool bounds,
+                               json_int_t *index)
+{
+    json_int_t view;
+    if (add_view(g, data, count * (size_t)size * sizeof *data, true, &view)) return g->err->status;
+    json_t *a = json_pack("{s:I, s:i, s:I, s:s}", "bufferView", view, "componentType", (int)FLOATS, "count",
+                          (json_int_t)count, "type", size == 3 ? "VEC3" : "VEC2");
+    if (bounds) {
+        json_t *low = json_array(), *high = json_array();
+        for (int k = 0; k < size; k++) {
+            float least = INFINITY, most = -INFINITY;
+            for (size_t i = 0; i < count; i++) {
+                least = fminf(least, data[i * (size_t)size + (size_t)k]);
+                most = fmaxf(most, data[i * (size_t)size + (size_t)k]);
+            }
+            json_array_append_new(low, json_real((double)least));
+            json_array_append_new(high, json_real((double)most));
+        }
+        json_object_set_new(a, "min", low);
+        json_object_set_new(a, "max", high);
+    }
+    *index = (json_int_t)json_array_size(g->accessors);
+    json_array_append_new(g->accessors, a);
+    return ST_OK;
+}
+
+/* ------------------------------------------------------------------------------------------------------- materials */
+
+static json_t *unlit(const char *name, json_t *pbr)
+{
+    json_object_set_new(pbr, "metallicFactor", json_real(0));
+    json_object_set_new(pbr, "roughnessFactor", json_real(1));
+    return json_pack("{s:s, s:o, s:{s:{}}}", "name", name, "pbrMetallicRoughness", pbr, "extensions",
+                     "KHR_materials_unlit");
+}
+
+static void add_materials(struct gltf *g)
+{
+    char name[32];
+    for (int i = 0; i < g->s->page_count; i++) {
+        snprintf(name, sizeof name, "page%d", i);
+        json_array_append_new(g->materials, unlit(name, json_pack("{s:{s:i}}", "baseColorTexture", "index", i)));
+    }
+    json_t *glass = unlit("glass", json_pack("{s:[f,f,f,f]}", "baseColorFactor", 0.8, 0.9, 0.95, 0.2));
+    json_object_set_new(glass, "alphaMode", json_string("BLEND"));
+    json_array_append_new(g->materials, glass);
+}
+
+static int material_of(struct gltf *g, const struct export_triangle *t)
+{
+    if (t->material >= 0) return t->material;
+    if (t->material == MATERIAL_GLASS) return g->s->page_count;
+    char name[96];
+    snprintf(name, sizeof name, "colour %.6g %.6g %.6g", (double)t->albedo[0], (double)t->albedo[1],
+             (double)t->albedo[2]);
+    for (size_t i = 0; i < json_array_size(g->materials); i++)
+        if (!strcmp(json_string_value(json_object_get(json_array_get(g->materials, i), "name")), name)) return (int)i;
+    json_array_append_new(g->materials, unlit(name, json_pack("{s:[f,f,f,f]}", "baseColorFactor", (double)t->albedo[0],
+                                                              (double)t->albedo[1], (double)t->albedo[2], 1.0)));
+    return (int)json_array_size(g->materials) - 1;
+}
+
+/* ---------------------------------------------------------------------------------------------------------- meshes */
+
+/* glTF's y is up: x, z, -y. */
+static void put_point(float to[3], struct vec3 p)
+{
+    to[0] = (float)p.x;
+    to[1] = (float)p.z;
+    to[2] = (float)-p.y;
+}
+
+/* The triangles of a body that have one material, as a primitive; adds nothing without such triangles. */
+static enum status add_primitive(struct gltf *g, json_t *primitives, int body, int material)
+{
+    const struct export_faces *f = g->s->faces;
+    float *at = malloc(((size_t)f->count + 1) * 9 * sizeof *at), *n = malloc(((size_t)f->count + 1) * 9 * sizeof *n);
+    float *uv = malloc(((size_t)f->count + 1) * 6 * sizeof *uv);
+    json_t *faces = json_array();
+    size_t count = 0;
+    int last = -1;
+    enum status st = at && n && uv ? ST_OK : err_nomem(g->err, "vertices", (size_t)f->count * 36);
+    for (int i = 0; !st && i < f->count; i++) {
+        const struct export_triangle *t = &f->triangles[i];
+        if (g->s->mesh->faces[t->face].body != body || material_of(g, t) != material) continue;
+        if (t->face != last)
+            json_array_append_new(faces, json_pack("{s:s, s:I}", "name", solid_face_name(g->s->mesh, t->face), "first",
+                                                   (json_int_t)(count / 3)));
+        last = t->face;
+        for (int k = 0; k < 3; k++, count++) {
+            put_point(at + 3 * count, t->p[k]);
+            put_point(n + 3 * count, g->s->mesh->faces[t->face].normal);
+            uv[2 * count] = (float)t->uv[k][0];
+            uv[2 * count + 1] = (float)t->uv[k][1];
+        }
+    }
+    if (!st && count) {
+        json_int_t a = 0, b = 0, c = 0;
+        st = add_vectors(g, at, count, 3, true, &a);
+        if (!st) st = add_vectors(g, n, count, 3, false, &b);
+        json_t *attributes = json_pack("{s:I, s:I}", "POSITION", a, "NORMAL", b);
+        if (!st && material < g->s->page_count) {
+            st = add_vectors(g, uv, count, 2, false, &c);
+            json_object_set_new(attributes, "TEXCOORD_0", json_integer(c));
+        }
+        json_array_append_new(primitives, json_pack("{s:o, s:i, s:{s:O}}", "attributes", attributes, "material",
+                                                    material, "extras", "faces", faces));
+    }
+    json_decref(faces);
+    free(at);
+    free(n);
+    free(uv);
+    return st;
+}
+
+static enum status add_bodies(struct gltf *g)
+{
+    enum status st = ST_OK;
+    for (int i = 0; i < g->s->faces->count; i++) material_of(g, &g->s->faces->triangles[i]); /* in order of triangles */
+    for (int body = 0; !st && body < g->s->mesh->body_count; body++) {
+        json_t *primitives = json_array();
+        for (int m = 0; !st && m < (int)json_array_size(g->materials); m++) st = add_primitive(g, primitives, body, m);
+        if (!json_array_size(primitives)) {
+            json_decref(primitives);
+            continue;
+        }
+        const char *name = g->s->mesh->bodies[body].name;
+        const json_int_t mesh = (json_int_t)json_array_size(g->meshes);
+        json_array_append_new(g->meshes, json_pack("{s:s, s:o}", "name", name, "primitives", primitives));
+        json_array_append_new(g->children, json_integer((json_int_t)json_array_size(g->nodes)));
+        json_array_append_new(g->nodes, json_pack("{s:s, s:I}", "name", name, "mesh", mesh));
+    }
+    return st;
+}
+
+static enum status add_picture(struct gltf *g, json_t *images, json_t *textures, int page)
+{
+    char path[FILE_PATH], name[32];
+    json_int_t view;
+    snprintf(name, sizeof name, "page%d", page);
+    if (file_path(path, g->s->out, name, ".png", g->err)) return g->err->status;
+    FILE *file = fopen(path, "rb");
+    unsigned char *data = NULL;
+    long size = -1;
+    if (file && !fseek(file, 0, SEEK_END) && (size = ftell(file)) > 0) {
+        rewind(file);
+        data = malloc((size_t)size);
+    }
+    const bool whole = data && fread(data, 1, (size_t)size, file) == (size_t)size;
+    if (file) fclose(file);
+    enum status st = whole ? add_view(g, data, (size_t)size, false, &view)
+                           : err_set(g->err, ST_IO, "%s cannot be read again.", path);
+    free(data);
+    if (st) return st;
+    json_array_append_new(images,
+                          json_pack("{s:s, s:I, s:s}", "name", name, "bufferView", view, "mimeType", "image/png"));
+    json_array_append_new(textures, json_pack("{s:i, s:i}", "source", page, "sampler", 0));
+    return ST_OK;
+}
+
+/* ------------------------------------------------------------------------------------------------------------ file */
+
+static void put_u32(FILE *to, size_t value)
+{
+    for (int k = 0; k < 4; k++) fputc((int)(value >> (8 * k) & 255), to);
+}
+
+static enum status write_file(struct gltf *g, const char *json)
+{
+    const size_t length = strlen(json), padded = (length + 3) / 4 * 4;
+    struct outfile out = {0};
+    char path[FILE_PATH];
+    enum status st = file_path(path, g->s->out, "model.glb", "", g->err);
+    if (!st) st = outfile_open(&out, path, g->err);
+    if (!st) {
+        fputs("glTF", out.fp);
+        put_u32(out.fp, 2);
+        put_u32(out.fp, 12 + 8 + padded + 8 + g->bin.size);
+        put_u32(out.fp, padded);
+        fputs("JSON", out.fp);
+        fputs(json, out.fp);
+        for (size_t i = length; i < padded; i++) fputc(' ', out.fp);
+        put_u32(out.fp, g->bin.size);
+        fwrite("BIN", 1, 4, out.fp);
+        fwrite(g->bin.data, 1, g->bin.size, out.fp);
+        st = outfile_commit(&out, g->err);
+    }
+    outfile_discard(&out);
+    return st;
+}
+
+enum status write_gltf(const struct export_scene *s, struct err *err)
+{
+    struct gltf g = {.s = s, .err = err, .views = json_array(), .accessors = json_array(), .meshes = json_array()};
+    g.nodes = json_array();
+    g.materials = json_array();
+    g.children = json_array();
+    json_t *images = json_array(), *textures = json_array();
+    enum status st = ST_OK;
+    add_materials(&g);
+    for (int i = 0; !st && i < s->page_count; i++) st = add_picture(&g, images, textures, i);
+    if (!st) st = add_bodies(&g);
+    json_t *root = json_pack("{s:{s:s, s:s}, s:[s], s:i, s:[{s:s, s:O}], s:O, s:O, s:O, s:O, s:O, s:[{s:I}]}", "asset",
+                             "version", "2.0", "generator", "remodel " REMODEL_VERSION, "extensionsUsed",
+                             "KHR_materials_unlit", "scene", 0, "scenes", "name", s->name, "nodes", g.children, "nodes",
+                             g.nodes, "meshes", g.meshes, "materials", g.materials, "accessors", g.accessors,
+                             "bufferViews", g.views, "buffers", "byteLength", (json_int_t)g.bin.size);
+    if (s->page_count) {
+        json_object_set(root, "images", images);
+        json_object_set(root, "textures", textures);
+        /* clamped at the edges, linear with mipmaps */
+        json_object_set_new(
+            root, "samplers",
+            json_pack("[{s:i, s:i, s:i, s:i}]", "magFilter", 9729, "minFilter", 9987, "wrapS", 33071, "wrapT", 33071));
+    }
+    char *text = root ? json_dumps(root, JSON_COMPACT | JSON_REAL_PRECISION(9)) : NULL;
+    if (!st && !text) st = err_set(err, ST_DATA, "the model cannot be written as glTF: a name is not UTF-8.");
+    if (!st) st = write_file(&g, text);
+    free(text);
+    free(g.bin.data);
+    json_decref(root);
+    json_decref(images);
+    json_decref(textures);
+    json_decref(g.views);
+    json_decref(g.accessors);
+    json_decref(g.meshes);
+    json_decref(g.nodes);
+    json_decref(g.materials);
+    json_decref(g.children);
+    return st;
+}

@@ -1,0 +1,80 @@
+/* write_obj.c - Wavefront OBJ. */
+#include <stdio.h>
+
+#include "common/base/file_path.h"
+#include "common/base/outfile.h"
+#include "stages/export_model/writers.h"
+
+static void put_material(FILE *to, const struct export_triangle *t)
+{
+    if (t->material >= 0)
+        fprintf(to, "usemtl page%d\n", t->material);
+    else if (t->material == MATERIAL_GLASS)
+        fputs("usemtl glass\n", to);
+    else
+        fprintf(to, "usemtl colour_%.6g_%.6g_%.6g\n", (double)t->albedo[0], (double)t->albedo[1], (double)t->albedo[2]);
+}
+
+static bool same_material(const struct export_triangle *a, const struct export_triangle *b)
+{
+    return a->material == b->material && a->albedo[0] == b->albedo[0] && a->albedo[1] == b->albedo[1] &&
+           a->albedo[2] == b->albedo[2];
+}
+
+static void put_faces(FILE *to, const struct export_scene *s)
+{
+    const struct export_faces *f = s->faces;
+    int body = -1;
+    for (int i = 0; i < f->count; i++) {
+        const struct export_triangle *t = &f->triangles[i], *last = i ? t - 1 : NULL;
+        const struct solid_face *face = &s->mesh->faces[t->face];
+        const bool first = !last || last->face != t->face;
+        if (face->body != body) fprintf(to, "o %s\n", s->mesh->bodies[body = face->body].name);
+        if (first) fprintf(to, "g %s\n", solid_face_name(s->mesh, t->face));
+        if (first || !same_material(t, last)) put_material(to, t);
+        for (int k = 0; k < 3; k++) fprintf(to, "v %.9g %.9g %.9g\n", t->p[k].x, t->p[k].y, t->p[k].z);
+        for (int k = 0; k < 3; k++) fprintf(to, "vt %.9g %.9g\n", t->uv[k][0], 1 - t->uv[k][1]);
+        if (first) fprintf(to, "vn %.9g %.9g %.9g\n", face->normal.x, face->normal.y, face->normal.z);
+        fprintf(to, "f -3/-3/-1 -2/-2/-1 -1/-1/-1\n");
+    }
+}
+
+static void put_materials(FILE *to, const struct export_scene *s)
+{
+    fprintf(to, "# pages hold radiance times %.9g, as sRGB\n", s->exposure);
+    for (int i = 0; i < s->page_count; i++)
+        fprintf(to, "newmtl page%d\nKa 0 0 0\nKd 1 1 1\nKs 0 0 0\nillum 1\nmap_Kd page%d.png\n", i, i);
+    fputs("newmtl glass\nKa 0 0 0\nKd 0.8 0.9 0.95\nKs 0 0 0\nd 0.2\nillum 1\n", to);
+    for (int i = 0; i < s->faces->count; i++) {
+        const struct export_triangle *t = &s->faces->triangles[i];
+        bool known = t->material != MATERIAL_COLOUR;
+        for (int k = 0; k < i && !known; k++) known = same_material(t, &s->faces->triangles[k]);
+        if (known) continue;
+        fprintf(to, "newmtl colour_%.6g_%.6g_%.6g\nKa 0 0 0\nKd %.6g %.6g %.6g\nKs 0 0 0\nillum 1\n",
+                (double)t->albedo[0], (double)t->albedo[1], (double)t->albedo[2], (double)t->albedo[0],
+                (double)t->albedo[1], (double)t->albedo[2]);
+    }
+}
+
+static enum status write_text(const struct export_scene *s, const char *file, const char *head,
+                              void (*put)(FILE *, const struct export_scene *), struct err *err)
+{
+    struct outfile out = {0};
+    char path[FILE_PATH];
+    enum status st = file_path(path, s->out, file, "", err);
+    if (!st) st = outfile_open(&out, path, err);
+    if (!st) {
+        provenance_print(s->prov, out.fp);
+        fputs(head, out.fp);
+        put(out.fp, s);
+        st = outfile_commit(&out, err);
+    }
+    outfile_discard(&out);
+    return st;
+}
+
+enum status write_obj(const struct export_scene *s, struct err *err)
+{
+    const enum status st = write_text(s, "model.mtl", "", put_materials, err);
+    return st ? st : write_text(s, "model.obj", "# z is up\nmtllib model.mtl\n", put_faces, err);
+}
