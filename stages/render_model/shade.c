@@ -21,7 +21,7 @@
 #include "common/base/parallel.h"
 #include "stages/render_model/shade_tiles.h"
 
-enum { SLOTS = 16 }; /* faces of a tile of the picture that are kept ready */
+enum { SLOTS = 32 }; /* faces of a tile of the picture that are kept ready */
 
 /* --------------------------------------------------------------------------------------------------------- places */
 

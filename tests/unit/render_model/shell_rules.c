@@ -47,6 +47,24 @@ static void rays_that_leave_the_model_show_what_is_outdoors(void **state)
     shell_close(scene);
 }
 
+/* What remains when an edit removes the last wall. */
+static void a_model_without_faces_shows_what_is_outdoors(void **state)
+{
+    (void)state;
+    paint_room(FLAT, 1, 3, 5);
+    struct shell_scene *scene = make_scene_with((struct solid_mesh){0}, (struct texture_map){0}, scratch_path("vita"));
+    const struct view view = view_between();
+    struct model_picture p = draw(scene, &view, "a", "b", 0.5);
+    assert_int_equal(pixels_made(&p, MADE_OUTDOORS), W * H);
+    const char *const none[2] = {NULL, NULL};
+    struct err err = ERR_INIT;
+    assert_ok(shell_draw(&p, scene, &view, none, 0, NULL, &err), err);
+    assert_int_equal(pixels_made(&p, MADE_NOTHING), W * H);
+    for (int i = 0; i < 3 * W * H; i++) assert_true(p.rgb[i] == 0);
+    model_picture_release(&p);
+    shell_close(scene);
+}
+
 /* ------------------------------------------------------------------------------------------------------- texture maps */
 
 static const struct texture_rule in_place = {.matrix = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
@@ -260,6 +278,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(panes_are_looked_through),
         cmocka_unit_test(rays_that_leave_the_model_show_what_is_outdoors),
+        cmocka_unit_test(a_model_without_faces_shows_what_is_outdoors),
         cmocka_unit_test(a_moved_wall_carries_its_texture_along),
         cmocka_unit_test(a_rule_counts_within_its_limits_and_the_next_one_elsewhere),
         cmocka_unit_test(a_colour_is_shown_under_the_median_radiance_of_the_lit_faces),
