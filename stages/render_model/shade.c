@@ -21,7 +21,7 @@
 #include "common/base/parallel.h"
 #include "stages/render_model/shade_tiles.h"
 
-enum { SLOTS = 16 }; /* faces of a tile of the picture that are kept ready */
+enum { SLOTS = 32 }; /* faces of a tile of the picture that are kept ready */
 
 /* --------------------------------------------------------------------------------------------------------- places */
 
@@ -269,10 +269,33 @@ static bool shade_row(struct worker *w, const struct shade_pass *pass, const uin
     return left;
 }
 
+/* z and id of eight pixels. Where there is no face, 1 / z is 0. */
+static void begin_eight(float *z, uint32_t *id, const struct shade_pass *pass, size_t from)
+{
+    const __m256 inverse = _mm256_loadu_ps(pass->seen->inverse_z + from);
+    const __m256 there = _mm256_cmp_ps(inverse, _mm256_setzero_ps(), _CMP_GT_OQ);
+    const __m256i face = _mm256_loadu_si256((const __m256i *)(pass->seen->face + from));
+    _mm256_storeu_ps(z, _mm256_and_ps(there, _mm256_div_ps(_mm256_set1_ps(1), inverse)));
+    _mm256_storeu_si256((__m256i *)id, _mm256_i32gather_epi32((const int *)pass->ids, face, sizeof *pass->ids));
+}
+
+static void begin_row(const struct shade_pass *pass, size_t from, struct area area, int row)
+{
+    const size_t to = (size_t)(area.y + row) * (size_t)pass->out->width + (size_t)area.x;
+    const size_t count = (size_t)area.width;
+    struct model_picture *out = pass->out;
+    float z[VISIBLE_TILE];
+    uint32_t id[VISIBLE_TILE];
+    for (int x = 0; x < VISIBLE_TILE; x += LANES) begin_eight(z + x, id + x, pass, from + (size_t)x);
+    memcpy(out->z + to, z, count * sizeof *z);
+    memcpy(out->id + to, id, count * sizeof *id);
+    memset(out->rgb + 3 * to, 0, 3 * count * sizeof *out->rgb);
+    memset(out->made + to, MADE_NOTHING, count);
+}
+
 struct shade_job {
     const struct shade_pass *pass;
     struct worker *workers;
-    const uint32_t *ids;
 };
 
 static void shade_some(void *ctx, size_t begin, size_t end, int thread)
@@ -283,10 +306,13 @@ static void shade_some(void *ctx, size_t begin, size_t end, int thread)
     for (size_t tile = begin; tile < end; tile++) {
         const struct area area = area_of(pass->seen, tile);
         bool left = false;
-        if (pass->done[tile]) continue;
+        if (!pass->first && pass->done[tile]) continue;
         w->count = w->next = 0;
-        for (int row = 0; row < area.height; row++)
-            left |= shade_row(w, pass, pass->seen->face + tile * VISIBLE_PIXELS + row * VISIBLE_TILE, area, row);
+        for (int row = 0; row < area.height; row++) {
+            const size_t from = tile * VISIBLE_PIXELS + (size_t)(row * VISIBLE_TILE);
+            if (pass->first) begin_row(pass, from, area, row);
+            left |= shade_row(w, pass, pass->seen->face + from, area, row);
+        }
         pass->done[tile] = !left;
     }
 }
@@ -312,42 +338,19 @@ enum status shade_pixels(const struct shade_pass *pass, struct err *err)
     return st;
 }
 
-/* ----------------------------------------------------------------------------------------------------- the beginning */
-
-static void begin_row(const struct shade_job *job, size_t from, size_t to, int count)
+static void mark_some(void *ctx, size_t begin, size_t end, int thread)
 {
-    const struct visible *v = job->pass->seen;
-    struct model_picture *out = job->pass->out;
-    memset(out->rgb + 3 * to, 0, (size_t)count * 3 * sizeof *out->rgb);
-    memset(out->made + to, MADE_NOTHING, (size_t)count);
-    for (int x = 0; x < count; x++) {
-        const uint32_t face = v->face[from + (size_t)x];
-        out->id[to + (size_t)x] = face ? job->ids[face - 1] : 0;
-        out->z[to + (size_t)x] = face ? 1 / v->inverse_z[from + (size_t)x] : 0;
-    }
-    for (uint32_t x = 0, last = UINT32_MAX; x < (uint32_t)count; x++) {
-        const uint32_t face = v->face[from + x];
-        if (face == last) continue;
-        last = face;
-        atomic_store_explicit(&job->pass->open[face], 1, memory_order_relaxed);
-    }
-}
-
-static void begin_some(void *ctx, size_t begin, size_t end, int thread)
-{
-    const struct shade_job *job = ctx;
+    const struct shade_pass *pass = ctx;
     (void)thread;
     for (size_t tile = begin; tile < end; tile++) {
-        const struct area area = area_of(job->pass->seen, tile);
-        job->pass->done[tile] = false;
-        for (int row = 0; row < area.height; row++)
-            begin_row(job, tile * VISIBLE_PIXELS + (size_t)(row * VISIBLE_TILE),
-                      (size_t)(area.y + row) * (size_t)job->pass->out->width + (size_t)area.x, area.width);
+        const struct area area = area_of(pass->seen, tile);
+        for (int row = 0; row < area.height; row++) {
+            const uint32_t *faces = pass->seen->face + tile * VISIBLE_PIXELS + row * VISIBLE_TILE;
+            for (int x = 0; x < area.width; x++)
+                if (!x || faces[x] != faces[x - 1])
+                    atomic_store_explicit(&pass->open[faces[x]], 1, memory_order_relaxed);
+        }
     }
 }
 
-void shade_begin(const struct shade_pass *pass, const uint32_t *ids)
-{
-    struct shade_job job = {.pass = pass, .ids = ids};
-    parallel_for(tile_count(pass->seen), 1, begin_some, &job);
-}
+void shade_mark_seen(struct shade_pass *pass) { parallel_for(tile_count(pass->seen), 1, mark_some, pass); }

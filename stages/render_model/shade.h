@@ -54,6 +54,8 @@ struct shade_pass {
     const struct outdoors *outdoors;
     const struct shade_step *steps; /* of each face, [0] where there is none: indices are those of `seen` */
     const struct shade_tile *tiles;
+    bool first;                  /* sets z and id of all pixels, and MADE_NOTHING, before */
+    const uint32_t *ids;         /* of faces: [1 + faces], [0] is 0 */
     float t;                     /* share of b where both a and b have a texel */
     int most_tiles;              /* of a step */
     _Atomic unsigned char *open; /* [1 + faces]: set to 1 for those with pixels that have no colour yet */
@@ -61,8 +63,8 @@ struct shade_pass {
     struct model_picture *out;
 };
 
-/* Sets z and id of all pixels, MADE_NOTHING, and `open` of the faces that are seen. ids: of each face, from 1. */
-void shade_begin(const struct shade_pass *pass, const uint32_t *ids);
+/* Sets `open` of the faces that are seen. */
+void shade_mark_seen(struct shade_pass *pass);
 /* Same bits for any number of threads. */
 enum status shade_pixels(const struct shade_pass *pass, struct err *err);
 

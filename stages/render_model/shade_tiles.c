@@ -12,7 +12,7 @@
 #include <limits.h>
 #include <math.h>
 
-enum { STEPS = 256, SHIFT = 8 };    /* positions between neighbouring texels */
+enum { STEPS = 1 << TEXELS_SHIFT };
 static const float OWN = 1e6f;      /* added to the distance from a tile's edges */
 static const double INSIDE = 0.01;  /* texels: a tile in whose inside, less this, all pixels look needs no test */
 static const double OUTSIDE = 1e-3; /* texels: rounding */
@@ -124,7 +124,7 @@ static inline struct places place_in_whole(const struct tile_lanes *l, __m256 do
 /* Weighted sum of the four texels around a place. */
 static inline __m128 blend_texels(const struct shade_tile *s, int x, int y)
 {
-    const uint16_t *at = s->texels + 4 * ((y >> SHIFT) * (ptrdiff_t)s->stride + (x >> SHIFT));
+    const uint16_t *at = s->texels + 4 * ((y >> TEXELS_SHIFT) * (ptrdiff_t)s->stride + (x >> TEXELS_SHIFT));
     const __m256 upper = _mm256_cvtph_ps(_mm_loadu_si128((const __m128i *)at));
     const __m256 lower = _mm256_cvtph_ps(_mm_loadu_si128((const __m128i *)(at + 4 * (ptrdiff_t)s->stride)));
     const __m256 down = _mm256_set1_ps((float)(y & (STEPS - 1)) * (1.0f / STEPS));
@@ -185,14 +185,13 @@ unsigned texels_find(struct texels *t, const struct tile_lanes *list, int count,
     return found == lanes ? found : found | look_further(t, list, count, p, lanes & ~found, rows, columns);
 }
 
-enum picture_made texels_made(const struct texels *t, const struct tile_lanes *list, int lane)
+enum picture_made texels_made_near(const struct texels *t, const struct tile_lanes *list, int lane)
 {
     const struct shade_tile *s = list[t->tile[lane]].tile;
     const int x = t->x[lane], y = t->y[lane];
-    const int right = (x >> (SHIFT - 1)) & 1, down = (y >> (SHIFT - 1)) & 1;
-    const uint8_t *at = s->made + (y >> SHIFT) * (ptrdiff_t)s->stride + (x >> SHIFT);
-    /* the nearest one, then its neighbours in the row and the column, then the one across */
-    for (int k = 0; k < 4; k++) {
+    const int right = (x >> (TEXELS_SHIFT - 1)) & 1, down = (y >> (TEXELS_SHIFT - 1)) & 1;
+    const uint8_t *at = s->made + (y >> TEXELS_SHIFT) * (ptrdiff_t)s->stride + (x >> TEXELS_SHIFT);
+    for (int k = 1; k < 4; k++) {
         const uint8_t made = at[(down ^ k >> 1) * (ptrdiff_t)s->stride + (right ^ (k & 1))];
         if (made != MADE_NOTHING) return made;
     }

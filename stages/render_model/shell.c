@@ -56,7 +56,7 @@ static enum status set_face(struct shell_scene *s, int face, bool *drawn, struct
     const struct texture_rule itself = {.kind = TEXTURE_PLACE,
                                         .from = solid_face_id(&s->mesh, face),
                                         .matrix = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
-    s->ids[face] = (uint32_t)itself.from;
+    s->ids[face + 1] = (uint32_t)itself.from;
     s->faces[face].first = s->rule_count;
     *drawn = !is_glass(&s->mesh, face) || (t && t->rule_count && t->rules[0].kind != TEXTURE_OUTDOORS);
     if (!t) return add_rule(s, face, &itself, err);
@@ -218,16 +218,18 @@ static enum status draw_once(struct model_picture *out, struct shell_scene *s, c
                               .camera = camera,
                               .outdoors = outdoors,
                               .steps = s->steps,
+                              .ids = s->ids,
                               .t = (float)(a->pair[0] && a->pair[1] ? t : 0),
                               .open = s->open,
                               .done = s->done,
                               .out = out};
     memset((void *)s->open, 0, faces + 1);
-    shade_begin(&pass, s->ids);
+    shade_mark_seen(&pass);
     for (int i = 0;; i++) {
         bool any;
         if (shell_steps_make(s, i, camera, a, outdoors, &any, err)) return err->status;
-        if (!any) return ST_OK;
+        if (!any && i) return ST_OK;
+        pass.first = !i;
         pass.tiles = s->tiles;
         pass.most_tiles = most_tiles(s);
         memset((void *)s->open, 0, faces + 1);

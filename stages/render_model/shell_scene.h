@@ -23,7 +23,7 @@ struct shell_scene {
     char *model_path, *map_path; /* NULL: they were not read from files */
     struct shell_face *faces;    /* of the mesh */
     struct shell_rule *rules;
-    uint32_t *ids; /* of each face */
+    uint32_t *ids; /* [1 + faces], [0] is 0 */
     int rule_count;
     struct visible_model model;
     struct visible seen;

@@ -162,7 +162,7 @@ static void what_was_not_used_longest_goes_first_and_the_picture_keeps_all_it_us
     assert_int_equal(page_cache_stats(c).pages_read, 3);
     page_cache_next(c, NULL);
     for (int i = 0; i < 3; i++) load_all(c, find(c, photos[i])); /* one picture needs more than the memory */
-    assert_int_equal(page_cache_stats(c).pages_read, 5); /* b in place of c, then c beyond the memory */
+    assert_int_equal(page_cache_stats(c).pages_read, 5);         /* b in place of c, then c beyond the memory */
     assert_true(page_cache_stats(c).bytes > (2 << 20));
     for (int i = 0; i < 3; i++) assert_non_null(find(c, photos[i])->pages[0].texels);
     page_cache_next(c, NULL);
