@@ -1,8 +1,8 @@
 /* guess.c - what lies in directions that no picture shows.
  *
  * Overview. The outdoors depend on elevation more than on anything else: the sky is above the horizon, the ground below.
- * So the known pixels are split into a profile, one colour for each row, and the residual, by which a pixel differs from
- * its row. The profile is carried on to rows of which little or nothing is known, without crossing the horizon; the
+ * So the known pixels are split into a profile, the median colour of each row, and the residual, by which a pixel differs
+ * from its row. The profile is carried on to rows of which little or nothing is known, without crossing the horizon; the
  * residual is carried on in all directions, so that a guess joins what is known without an edge. Both are logarithms: a
  * guess is never negative, and the sun, which is 10^5 times brighter than the sky, does not spread.
  *
@@ -10,19 +10,24 @@
  * (of 2 x 2 pixels), its weight the sum of theirs, at most 1. Push: from the coarsest level down, a value v of weight w
  * becomes w v + (1 - w) coarser, the coarser level interpolated bilinearly; columns wrap around. A row's weight is the
  * share of it that is known. A side of the horizon of which nothing is known takes the mean profile of the other side.
- * All columns of a row meet in a pole, so the residual fades out within POLE degrees of it.
+ * What stands at one place says little of places far from it: from FAR_LEVEL up, a residual becomes smaller by FADE at
+ * each level. All columns of a row meet in a pole, so it also fades out within POLE degrees of one.
  *
  * What differs from the source: the profile, and logarithms. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/base/parallel.h"
 #include "common/math/numbers.h"
+#include "common/math/weighted.h"
 #include "stages/bake_outdoors/gather.h"
 
-enum { MAX_LEVELS = 16 };
-#define POLE    15.0 /* degrees */
-#define DARKEST 1e-4 /* of the mean radiance: darker pixels count as that dark */
+enum { MAX_LEVELS = 16, FAR_LEVEL = 5, ROWS = 8 };
+enum { STRIDE = 4 };  /* every STRIDE-th known pixel counts for a row's median */
+#define POLE    15.0  /* degrees */
+#define FADE    0.75f /* of a residual, from one level to the next coarser one */
+#define DARKEST 1e-4  /* of the mean radiance: darker pixels count as that dark */
 
 /* Values and their weights, 4 a pixel: three colours times the weight, and the weight. */
 struct level {
@@ -41,8 +46,8 @@ static enum status level_init(struct level *l, int width, int height, struct err
     return l->v ? ST_OK : err_nomem(err, "a level of a picture", (size_t)width * (size_t)height * 16);
 }
 
-/* Means of 2 x 2 pixels; of 1 x 2 in a column. */
-static void pull(struct level *to, const struct level *from)
+/* Means of 2 x 2 pixels, times `fade`; of 1 x 2 in a column. */
+static void pull(struct level *to, const struct level *from, float fade)
 {
     for (int y = 0; y < to->height; y++)
         for (int x = 0; x < to->width; x++) {
@@ -53,7 +58,7 @@ static void pull(struct level *to, const struct level *from)
                 for (int c = 0; c < 4; c++) out[c] += pixel(from, sx, sy)[c];
             }
             const float scale = out[3] > 1 ? 1 / out[3] : 1;
-            for (int c = 0; c < 4; c++) out[c] *= scale;
+            for (int c = 0; c < 4; c++) out[c] *= c < 3 ? scale * fade : scale;
         }
 }
 
@@ -77,8 +82,9 @@ static void push(struct level *to, const struct level *from)
         }
 }
 
-/* Gives every pixel of `base` the weight 1. Where no pixel has any weight, all become `fallback`. */
-static enum status pull_push(struct level *base, const float fallback[3], struct err *err)
+/* Gives every pixel of `base` the weight 1. Where no pixel has any weight, all become `fallback`. fade: of each level
+ * from FAR_LEVEL up. */
+static enum status pull_push(struct level *base, float fade, const float fallback[3], struct err *err)
 {
     struct level levels[MAX_LEVELS] = {*base};
     enum status st = ST_OK;
@@ -86,7 +92,7 @@ static enum status pull_push(struct level *base, const float fallback[3], struct
     for (; !st && (levels[count - 1].width > 1 || levels[count - 1].height > 1); count++) {
         const struct level *fine = &levels[count - 1];
         st = level_init(&levels[count], (fine->width + 1) / 2, (fine->height + 1) / 2, err);
-        if (!st) pull(&levels[count], fine);
+        if (!st) pull(&levels[count], fine, count < FAR_LEVEL ? 1 : fade);
     }
     for (int k = count - 1; !st && k >= 0; k--) {
         if (k < count - 1) {
@@ -125,16 +131,45 @@ static void take_logarithms(struct level *l, const struct outdoors *o, double da
     }
 }
 
-/* One side of the horizon: rows from `first`, a column of a pixel a row, weighted by the share that is known. */
+/* The median colour of a row's known pixels, weighted by the share that is known. */
+static void sum_row(float out[4], const struct level *known, int y, struct weighted *scratch)
+{
+    size_t seen = 0;
+    for (int x = 0; x < known->width; x++) seen += pixel(known, x, y)[3] > 0;
+    out[3] = (float)seen / (float)known->width;
+    for (int c = 0; c < 3; c++) {
+        size_t count = 0, at = 0;
+        for (int x = 0; x < known->width; x++)
+            if (pixel(known, x, y)[3] > 0 && at++ % STRIDE == 0)
+                scratch[count++] = (struct weighted){(double)pixel(known, x, y)[c], 1};
+        out[c] = out[3] * (float)weighted_percentile(scratch, count, 0.5);
+    }
+}
+
+struct row_job {
+    const struct level *known, *column;
+    struct weighted *scratch; /* a row for each thread */
+    int first;
+};
+
+static void sum_row_range(void *ctx, size_t begin, size_t end, int thread)
+{
+    const struct row_job *job = ctx;
+    struct weighted *scratch = job->scratch + (size_t)thread * (size_t)job->known->width;
+    for (size_t y = begin; y < end; y++)
+        sum_row(pixel(job->column, 0, (int)y), job->known, job->first + (int)y, scratch);
+}
+
+/* One side of the horizon: rows from `first`, a column of a pixel a row. */
 static enum status sum_rows(struct level *column, const struct level *known, int first, struct err *err)
 {
     if (level_init(column, 1, known->height / 2, err)) return err->status;
-    for (int y = 0; y < column->height; y++) {
-        double sum[4] = {0};
-        for (int x = 0; x < known->width; x++)
-            for (int c = 0; c < 4; c++) sum[c] += (double)pixel(known, x, first + y)[c];
-        for (int c = 0; c < 4; c++) pixel(column, 0, y)[c] = (float)(sum[c] / known->width);
-    }
+    struct row_job job = {known, column, NULL, first};
+    const size_t samples = (size_t)known->width * (size_t)parallel_threads();
+    job.scratch = malloc(samples * sizeof *job.scratch);
+    if (!job.scratch) return err_nomem(err, "rows", samples * sizeof *job.scratch);
+    parallel_for((size_t)column->height, ROWS, sum_row_range, &job);
+    free(job.scratch);
     return ST_OK;
 }
 
@@ -159,7 +194,7 @@ static enum status find_profile(float *profile, const struct level *known, struc
     for (int k = 0; !st && k < 2; k++)
         if (!mean_of(means[k], &sides[k])) mean_of(means[k], &sides[1 - k]);
     for (int k = 0; !st && k < 2; k++) {
-        st = pull_push(&sides[k], means[k], err);
+        st = pull_push(&sides[k], 1, means[k], err);
         if (!st) memcpy(profile + 4 * (size_t)(k * half), sides[k].v, (size_t)half * 4 * sizeof *profile);
     }
     free(sides[0].v);
@@ -201,7 +236,7 @@ enum status outdoors_guess(struct outdoors *o, struct err *err)
         if (!st) st = find_profile(profile, &known, err);
         if (!st) {
             subtract_profile(&known, profile);
-            st = pull_push(&known, none, err);
+            st = pull_push(&known, FADE, none, err);
         }
         if (!st) fill(o, &known, profile);
     }
