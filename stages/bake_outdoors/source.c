@@ -4,7 +4,8 @@
  * a pixel shows the outdoors unless
  *   - it is within `edge` px of one that does not: the model's frames and the cameras are not that exact;
  *   - something stands before the pane, by the view's clutter;
- *   - the photograph has no pixel there, or, in a reference image, it is black: beyond the circle of a fisheye.
+ *   - the photograph has no pixel there, or, in a reference image, it is black but for noise: beyond the circle of a
+ *     fisheye.
  * Where a colour saturates or drowns in noise the pixel counts as clipped: it is used where no other picture helps.
  *
  * How squarely a ray passes an opening is |direction . normal| of the pane. An opening without a pane lies in a wall
@@ -24,6 +25,7 @@
 #include "common/texture/view_ids.h"
 
 #define ON_SURFACE 1e-6 /* of the model's size: nearer to a solid, a camera is on its surface */
+#define MAX_SIGMA  0.5f /* relative noise of a pixel from which it counts as dark */
 
 /* --------------------------------------------------------------------------------------------------------- the model */
 
@@ -155,18 +157,31 @@ static size_t trace(uint8_t *leaves, uint32_t *faces, const struct outdoors_pict
     return count;
 }
 
-/* Reads colours and marks: state becomes 0 beyond the photo and where nothing is measured. */
+/* What one pixel is good for; of the channels' values, in the order of the files below. */
+static uint8_t judge(bool reference, const float rgb[3], unsigned marks, float fourth, float fifth)
+{
+    if (!reference && !(fourth > 0.999f)) return SHOWS_NOTHING;
+    const float sigma = reference ? photo_relative_sigma(fourth, photo_luminance(rgb)) : fifth;
+    const bool dark = marks & PHOTO_DARK || sigma > MAX_SIGMA;
+    if (reference && dark) return SHOWS_NOTHING;
+    return dark || marks ? SHOWS_CLIPPED : SHOWS_OUTDOORS;
+}
+
+/* Reads the colours, and judges the pixels whose rays leave the model. */
 static enum status read_pixels(struct outdoors_picture *p, struct err *err)
 {
-    static const char *const names[] = {"R", "G", "B", "clipped", "A"};
+    static const char *const of_view[] = {"R", "G", "B", "clipped", "A", "sigma"};
+    static const char *const of_reference[] = {"R", "G", "B", "clipped", "variance"};
+    const int count = p->reference ? 5 : 6;
+    const char *const *names = p->reference ? of_reference : of_view;
     const size_t pixels = (size_t)p->lens.width * (size_t)p->lens.height;
     struct exr_image im = {0};
-    const struct exr_plane *plane[5] = {0};
-    enum status st = exr_read(&im, p->path, names, p->reference ? 4 : 5, err);
+    const struct exr_plane *plane[6] = {0};
+    enum status st = exr_read(&im, p->path, names, count, err);
     if (!st && (im.width != p->lens.width || im.height != p->lens.height))
         st = err_set(err, ST_DATA, "%s has %d x %d pixels, but its camera %d x %d; make the views again.", p->path,
                      im.width, im.height, p->lens.width, p->lens.height);
-    for (int k = 0; !st && k < (p->reference ? 4 : 5); k++) {
+    for (int k = 0; !st && k < count; k++) {
         plane[k] = exr_find(&im, names[k]);
         if (!plane[k]->f && k != 3)
             st = err_set(err, ST_DATA, "%s: channel %s contains integers, wanted half or float.", p->path, names[k]);
@@ -174,10 +189,8 @@ static enum status read_pixels(struct outdoors_picture *p, struct err *err)
     for (size_t i = 0; !st && i < pixels; i++) {
         const unsigned marks = plane[3]->u ? plane[3]->u[i] : (unsigned)plane[3]->f[i];
         for (size_t c = 0; c < 3; c++) p->rgb[3 * i + c] = fmaxf(plane[c]->f[i], 0);
-        if (p->reference ? marks & PHOTO_DARK : !(plane[4]->f[i] > 0.999f))
-            p->state[i] = SHOWS_NOTHING;
-        else if (p->state[i])
-            p->state[i] = marks ? SHOWS_CLIPPED : SHOWS_OUTDOORS;
+        if (p->state[i])
+            p->state[i] = judge(p->reference, p->rgb + 3 * i, marks, plane[4]->f[i], p->reference ? 0 : plane[5]->f[i]);
     }
     exr_image_release(&im);
     return st;
@@ -218,7 +231,8 @@ static void face_lens(struct outdoors_picture *p)
         }
 }
 
-/* Pixels within `edge` of one that shows something else. A clipped pixel is outdoors too. */
+/* Leaves out pixels within `edge` of one that shows something else; a clipped pixel is outdoors too. The circle of a
+ * fisheye may touch the ends of its picture, so they count as dark. */
 static enum status erode(struct outdoors_picture *p, double edge, struct err *err)
 {
     const int width = p->lens.width, height = p->lens.height;
@@ -226,8 +240,12 @@ static enum status erode(struct outdoors_picture *p, double edge, struct err *er
     float *squared = malloc(pixels * sizeof *squared);
     enum status st = squared ? distance_squared(squared, p->state, width, height, err)
                              : err_nomem(err, "distances", pixels * sizeof *squared);
-    for (size_t i = 0; !st && i < pixels; i++)
-        if ((double)squared[i] <= edge * edge) p->state[i] = SHOWS_NOTHING;
+    for (int y = 0; !st && y < height; y++)
+        for (int x = 0; x < width; x++) {
+            const size_t i = (size_t)y * (size_t)width + (size_t)x;
+            const double end = fmin(fmin(x + 1, width - x), fmin(y + 1, height - y));
+            if ((double)squared[i] <= edge * edge || (p->reference && end <= edge)) p->state[i] = SHOWS_NOTHING;
+        }
     free(squared);
     return st;
 }
