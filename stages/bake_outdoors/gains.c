@@ -10,7 +10,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/capture/photo_quality.h"
 #include "common/math/weighted.h"
 #include "stages/bake_outdoors/gather.h"
 
@@ -42,10 +41,7 @@ static int list_length(const struct outdoors_candidate list[MAX_CANDIDATES])
     return n;
 }
 
-static double luminance_level(const struct outdoors_candidate *c)
-{
-    return log((double)fmaxf(photo_luminance(c->rgb), DARKEST));
-}
+static double luminance_level(const struct outdoors_candidate *c) { return log((double)fmaxf(c->luminance, DARKEST)); }
 
 /* Whether a candidate counts, given the cell's number of candidates that measure. */
 static bool counts(const struct shares *s, const struct outdoors_candidate *c, int measured)

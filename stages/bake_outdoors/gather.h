@@ -9,10 +9,11 @@ enum { MAX_CANDIDATES = 12 }; /* of a cell */
 
 /* What a picture shows at the centre of a cell. */
 struct outdoors_candidate {
-    float rgb[3];
+    float luminance;
     float score; /* of candidates of the same rank, the one to prefer */
     int picture; /* index; -1: none, and none follows */
     bool clipped;
+    bool outvoted; /* set by outdoors_choose() */
 };
 
 /* The cells of the picture of the outdoors, CELL px wide. */

@@ -1,0 +1,300 @@
+/* gather.c - the picture of the outdoors: which pictures it is taken from, gains, guesses. */
+#include "stages/bake_outdoors/gather.h"
+
+#include "tests/unit/scratch.h"
+
+#include "common/base/parallel.h"
+#include "common/capture/view_image.h"
+#include "common/image/exr.h"
+#include "common/math/numbers.h"
+#include "common/texture/view_ids.h"
+
+enum { SIDE = 160, HEIGHT = 512 };
+
+/* A room 4 m wide, its centre in the origin, with a square hole of 2 m in the wall x = 2. */
+static void make_room(struct outdoors_model *m)
+{
+    static const struct vec3 c[8] = {{-2, -2, -2}, {2, -2, -2}, {2, 2, -2}, {-2, 2, -2},
+                                     {-2, -2, 2},  {2, -2, 2},  {2, 2, 2},  {-2, 2, 2}};
+    static const int quads[5][4] = {{0, 1, 2, 3}, {4, 5, 6, 7}, {0, 1, 5, 4}, {3, 2, 6, 7}, {0, 3, 7, 4}};
+    struct err err = ERR_INIT;
+    *m = (struct outdoors_model){0};
+    m->rays.ids = 1;
+    m->normals = calloc(1, sizeof *m->normals);
+    for (int q = 0; q < 5; q++)
+        for (int k = 1; k < 3; k++) {
+            const struct vec3 t[3] = {c[quads[q][0]], c[quads[q][k]], c[quads[q][k + 1]]};
+            assert_ok(ray_scene_add_triangle(&m->rays.rays, t, 0, &err), err);
+        }
+    for (int s = 0; s < 4; s++) { /* the frame around the hole: turned by s times 90 degrees about x */
+        const double co = s == 0 ? 1 : s == 2 ? -1 : 0, si = s == 1 ? 1 : s == 3 ? -1 : 0;
+        const double yz[4][2] = {{-2, -2}, {2, -2}, {1, -1}, {-1, -1}};
+        struct vec3 p[4];
+        for (int k = 0; k < 4; k++) p[k] = vec3_make(2, co * yz[k][0] - si * yz[k][1], si * yz[k][0] + co * yz[k][1]);
+        for (int k = 1; k < 3; k++)
+            assert_ok(ray_scene_add_triangle(&m->rays.rays, (const struct vec3[]){p[0], p[k], p[k + 1]}, 0, &err), err);
+    }
+    assert_ok(ray_scene_commit(&m->rays.rays, &err), err);
+}
+
+/* The truth: what lies in a direction. */
+static double truth_of(struct vec3 d) { return 1 + 0.5 * d.y + 0.25 * d.z; }
+
+/* A view from (0, y, z) along +x, 90 degrees wide. */
+static struct view make_view(const char *name, double y, double z)
+{
+    struct view v = {.name = name, .width = SIDE, .height = SIDE, .fx = SIDE / 2, .fy = SIDE / 2, .cx = SIDE / 2};
+    v.cy = SIDE / 2;
+    v.cam_from_world = (struct mat3){{{0, -1, 0}, {0, 0, -1}, {1, 0, 0}}};
+    v.center = vec3_make(0, y, z);
+    v.translation = vec3_scale(mat3_apply(v.cam_from_world, v.center), -1);
+    return v;
+}
+
+struct shot {
+    struct view view;
+    double factor;  /* of its exposure */
+    int black, cut; /* px: columns from the middle to the right that a curtain hides; that clip */
+};
+
+static struct vec3 ray_of(const struct view *v, int x, int y)
+{
+    const struct vec3 ray = {(x + 0.5 - v->cx) / v->fx, (y + 0.5 - v->cy) / v->fy, 1};
+    return vec3_normalize(mat3_apply(mat3_transpose(v->cam_from_world), ray));
+}
+
+/* Writes what the view sees if everything were outdoors: the model says where it is. */
+static void write_shot(struct outdoors_picture *p, const struct shot *shot, int photo)
+{
+    static const char *const names[] = {"R", "G", "B", "A", "sigma", "clipped"};
+    const struct view *v = &shot->view;
+    struct exr_image im = {0};
+    struct exr_plane *plane;
+    struct view_ids ids = {0};
+    struct err err = ERR_INIT;
+    char picture[64], faces[64], path[PATH_MAX];
+    snprintf(picture, sizeof picture, "%s.exr", v->name);
+    snprintf(faces, sizeof faces, "%s-ids.exr", v->name);
+    snprintf(path, sizeof path, "%s", scratch_path(picture));
+    assert_ok(exr_image_init(&im, SIDE, SIDE, &err), err);
+    for (int k = 0; k < 6; k++) {
+        assert_ok(exr_add_plane(&im, names[k], EXR_HALF, &plane, &err), err);
+        for (int i = 0; i < SIDE * SIDE; i++) {
+            const int right = i % SIDE - SIDE / 2;
+            const float value = (float)(shot->factor * truth_of(ray_of(v, i % SIDE, i / SIDE)));
+            if (k < 3) plane->f[i] = right >= 0 && right < shot->black ? 0.01f : value;
+            if (k == 3) plane->f[i] = 1;
+            if (k == 5) plane->f[i] = right >= 0 && right < shot->cut;
+        }
+    }
+    assert_ok(exr_write(&im, path, NULL, &err), err);
+    assert_ok(view_ids_init(&ids, SIDE, SIDE, &err), err);
+    assert_ok(view_ids_write(&ids, v, scratch_path(faces), NULL, &err), err);
+    assert_ok(outdoors_picture_of_view(p, v, path, scratch_path(faces), &err), err);
+    p->photo = photo;
+    view_ids_release(&ids);
+    exr_image_release(&im);
+}
+
+static void gather(struct outdoors *o, struct outdoors_totals *totals, const struct shot *shots, int count)
+{
+    const struct outdoors_params params = {.height = HEIGHT, .edge = 2, .max_clutter = 0.6, .agree = 0.3};
+    struct outdoors_picture pictures[8] = {{0}};
+    struct provenance prov = {0};
+    struct outdoors_model model;
+    struct err err = ERR_INIT;
+    make_room(&model);
+    *o = (struct outdoors){0};
+    for (int i = 0; i < count; i++) write_shot(&pictures[i], &shots[i], i);
+    assert_ok(outdoors_gather(o, totals, pictures, count, count, &model, &params, &prov, &err), err);
+    for (int i = 0; i < count; i++) outdoors_picture_release(&pictures[i]);
+    provenance_release(&prov);
+    outdoors_model_release(&model);
+}
+
+/* The largest relative error over the pixels that a photo shows; *count: their number. */
+static double error_of(const struct outdoors *o, int *count)
+{
+    double largest = 0;
+    *count = 0;
+    for (int y = 0; y < o->height; y++)
+        for (int x = 0; x < o->width; x++) {
+            const size_t at = (size_t)y * (size_t)o->width + (size_t)x;
+            if (!o->source[at]) continue;
+            largest =
+                fmax(largest, fabs((double)o->rgb[3 * at] / truth_of(outdoors_direction(o, x + 0.5, y + 0.5)) - 1));
+            ++*count;
+        }
+    return largest;
+}
+
+static void a_view_shows_the_outdoors_through_an_opening_and_nothing_of_the_walls(void **state)
+{
+    (void)state;
+    const struct shot shot = {.view = make_view("a", 0, 0), .factor = 1};
+    struct outdoors o;
+    struct outdoors_totals totals;
+    int count;
+    gather(&o, &totals, &shot, 1);
+    assert_true(
+        error_of(&o, &count) <
+        0.0025); /* a pixel at the rim may be a quarter of its width off: pi / 512 / 4 * 0.56, and half floats */
+    assert_int_equal(totals.photos, 1);
+    /* a square seen at 2 m, 2 m wide: a cube's face has a sixth of the sphere, this one as in the closed form */
+    const double opening = 4 * asin(sin(atan(0.5)) * sin(atan(0.5))) / (4 * PI);
+    assert_true(totals.by_photos < opening && totals.by_photos > 0.8 * opening);
+    for (int y = 0; y < o.height; y++)
+        for (int x = 0; x < o.width; x++) {
+            const struct vec3 d = outdoors_direction(&o, x + 0.5, y + 0.5);
+            const bool leaves = d.x > 0 && fabs(d.y) < d.x / 2 && fabs(d.z) < d.x / 2;
+            if (o.source[y * o.width + x]) assert_true(leaves);
+        }
+    outdoors_release(&o);
+}
+
+static void a_curtain_in_one_photo_is_outvoted(void **state)
+{
+    (void)state;
+    const struct shot shots[] = {{make_view("a", 0, 0), 1, 20, 0},
+                                 {make_view("b", 0.1, 0), 1, 0, 0},
+                                 {make_view("c", 0, 0.1), 1, 0, 0},
+                                 {make_view("d", -0.1, 0), 1, 0, 0}};
+    struct outdoors o;
+    struct outdoors_totals totals;
+    int count;
+    gather(&o, &totals, shots, 4);
+    assert_true(error_of(&o, &count) < 0.05);
+    assert_true(count > 10000);
+    outdoors_release(&o);
+}
+
+static void clipped_pixels_give_way_to_another_photo(void **state)
+{
+    (void)state;
+    /* the clipped photo is also too dark there: were it used, the error would show it */
+    const struct shot shots[] = {{make_view("a", 0, 0), 1, 20, 20}, {make_view("b", 0.4, 0), 1, 0, 0}};
+    struct outdoors o;
+    struct outdoors_totals totals;
+    float rgb[3];
+    gather(&o, &totals, shots, 2);
+    const struct vec3 d = vec3_normalize(vec3_make(1, -0.1, 0)); /* 8 px right of the middle of `a` */
+    assert_int_equal(outdoors_sample(rgb, &o, d), OUTDOORS_PHOTO);
+    assert_true(fabs((double)rgb[0] / truth_of(d) - 1) < 0.02);
+    outdoors_release(&o);
+}
+
+static void photos_of_different_exposure_get_gains(void **state)
+{
+    (void)state;
+    const struct shot shots[] = {
+        {make_view("a", 0, 0), 1, 0, 0}, {make_view("b", 0.3, 0), 1.2, 0, 0}, {make_view("c", -0.3, 0), 1 / 1.2, 0, 0}};
+    struct outdoors o;
+    struct outdoors_totals totals;
+    int count;
+    gather(&o, &totals, shots, 3);
+    assert_true(totals.max_gain > 1.15 && totals.max_gain < 1.2);
+    assert_true(totals.min_gain < 1 / 1.15 && totals.min_gain > 1 / 1.2);
+    assert_true(error_of(&o, &count) < 0.04);
+    outdoors_release(&o);
+}
+
+static void without_an_opening_in_sight_the_picture_is_black_and_guessed(void **state)
+{
+    (void)state;
+    struct shot shot = {.view = make_view("a", 0, 0), .factor = 1};
+    shot.view.cam_from_world = (struct mat3){{{0, 1, 0}, {0, 0, -1}, {-1, 0, 0}}}; /* looks at the wall behind */
+    struct outdoors o;
+    struct outdoors_totals totals;
+    gather(&o, &totals, &shot, 1);
+    assert_int_equal(totals.photos + totals.references, 0);
+    for (int i = 0; i < o.width * o.height; i++) assert_true(!o.source[i] && o.rgb[3 * i] == 0);
+    outdoors_release(&o);
+}
+
+static void the_same_bytes_for_any_number_of_threads(void **state)
+{
+    (void)state;
+    const struct shot shots[] = {
+        {make_view("a", 0, 0), 1, 20, 0}, {make_view("b", 0.3, 0.2), 1.1, 0, 9}, {make_view("c", -0.3, 0), 0.9, 0, 0}};
+    struct outdoors o[2];
+    struct outdoors_totals totals;
+    for (int k = 0; k < 2; k++) {
+        parallel_set_threads(1 + 2 * k);
+        gather(&o[k], &totals, shots, 3);
+    }
+    parallel_set_threads(0);
+    assert_memory_equal(o[0].rgb, o[1].rgb, (size_t)o[0].width * (size_t)o[0].height * 3 * sizeof(float));
+    assert_memory_equal(o[0].source, o[1].source, (size_t)o[0].width * (size_t)o[0].height);
+    outdoors_release(&o[0]);
+    outdoors_release(&o[1]);
+}
+
+/* ------------------------------------------------------------------------------------------------------------ guesses */
+
+/* A sky of 3, ground of 0.5; known: columns from `first` to `last` of rows from `top` to `bottom`. */
+static void make_known(struct outdoors *o, int first, int last, int top, int bottom)
+{
+    struct err err = ERR_INIT;
+    assert_ok(outdoors_init(o, 64, &err), err);
+    for (int y = top; y < bottom; y++)
+        for (int x = first; x < last; x++) {
+            const size_t at = (size_t)y * (size_t)o->width + (size_t)x;
+            o->source[at] = OUTDOORS_PHOTO;
+            for (size_t c = 0; c < 3; c++) o->rgb[3 * at + c] = y < 32 ? 3 : 0.5f;
+        }
+    assert_ok(outdoors_guess(o, &err), err);
+}
+
+static void guesses_are_sky_above_the_horizon_and_ground_below(void **state)
+{
+    (void)state;
+    struct outdoors o = {0};
+    make_known(&o, 10, 50, 25, 40);
+    for (int i = 0; i < o.width * o.height; i++)
+        assert_true(fabsf(o.rgb[3 * i] / (i / o.width < 32 ? 3 : 0.5f) - 1) < 1e-4f);
+    outdoors_release(&o);
+}
+
+static void a_side_of_the_horizon_that_nothing_shows_takes_the_other_side(void **state)
+{
+    (void)state;
+    struct outdoors o = {0};
+    make_known(&o, 120, 128, 10, 20);
+    for (int i = 0; i < o.width * o.height; i++) assert_true(fabsf(o.rgb[3 * i] / 3 - 1) < 1e-4f);
+    outdoors_release(&o);
+}
+
+static void guesses_join_what_is_known_across_azimuth_pi(void **state)
+{
+    (void)state;
+    struct outdoors o = {0};
+    struct err err = ERR_INIT;
+    assert_ok(outdoors_init(&o, 64, &err), err);
+    for (int y = 20; y < 30; y++)
+        for (int x = 0; x < 100; x++) { /* bright in the first columns, dark in the last ones */
+            const size_t at = (size_t)y * (size_t)o.width + (size_t)x;
+            o.source[at] = OUTDOORS_PHOTO;
+            for (size_t c = 0; c < 3; c++) o.rgb[3 * at + c] = x < 50 ? 4 : 1;
+        }
+    assert_ok(outdoors_guess(&o, &err), err);
+    const float *row = o.rgb + 3 * (size_t)25 * (size_t)o.width;
+    assert_true(row[3 * 127] > 2.5f && row[3 * 101] < 1.6f); /* the column before 0 is like column 0 */
+    for (int x = 100; x < 128; x++) assert_true(row[3 * x] > 0.9f && row[3 * x] < 4.4f);
+    outdoors_release(&o);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_view_shows_the_outdoors_through_an_opening_and_nothing_of_the_walls),
+        cmocka_unit_test(a_curtain_in_one_photo_is_outvoted),
+        cmocka_unit_test(clipped_pixels_give_way_to_another_photo),
+        cmocka_unit_test(photos_of_different_exposure_get_gains),
+        cmocka_unit_test(without_an_opening_in_sight_the_picture_is_black_and_guessed),
+        cmocka_unit_test(the_same_bytes_for_any_number_of_threads),
+        cmocka_unit_test(guesses_are_sky_above_the_horizon_and_ground_below),
+        cmocka_unit_test(a_side_of_the_horizon_that_nothing_shows_takes_the_other_side),
+        cmocka_unit_test(guesses_join_what_is_known_across_azimuth_pi),
+    };
+    return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
+}
