@@ -10,7 +10,7 @@
  *      weight, which only counts where the chosen ones show nothing. A pixel is the mean of 2 x 2 samples.
  * What remains is guessed (guess.c).
  *
- * Source: looking up what lies outside by direction in a lighting reference image is [Colburn 2014, 5.3.1]. Different
+ * Source: looking up what lies outside by direction in a lighting reference image is [Colburn 2014, 5.3.2]. Different
  * here: photographs fill what no reference image shows, and directions that nothing shows are guessed and marked. */
 #include "stages/bake_outdoors/gather.h"
 
