@@ -78,8 +78,10 @@ static enum status add_references(struct job *j, struct err *err)
                 p->name);
             outdoors_picture_release(p);
             j->count--;
+            continue;
         }
         p->photo = j->photos++;
+        p->order = !strcmp(j->params.prefer, "references");
     }
     return ST_OK;
 }
@@ -97,7 +99,9 @@ static enum status list_pictures(struct job *j, struct err *err)
         st = file_path(picture, j->views, view.name, ".exr", err);
         if (!st) st = file_path(ids, j->ids, view.name, ".exr", err);
         if (!st) st = outdoors_picture_of_view(&j->pictures[j->count++], &view, picture, ids, err);
-        if (!st) j->pictures[j->count - 1].photo = photo_of(j, i);
+        if (st) break;
+        j->pictures[j->count - 1].photo = photo_of(j, i);
+        j->pictures[j->count - 1].order = !strcmp(j->params.prefer, "photos");
     }
     return st;
 }

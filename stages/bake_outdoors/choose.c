@@ -9,7 +9,8 @@
  * is blurred. The score favours rays that pass the opening squarely and photos that show much of the outdoors, so that
  * neighbouring cells mostly come from the same photo.
  *
- * Reference images are taken in the opening or outside, where nothing stands in the way: they are all believed. */
+ * Reference images are taken in the opening or outside, where nothing stands in the way: they are all believed, and by
+ * default come before photos. With `prefer = photos` they only show what no photo does. */
 #include <math.h>
 
 #include "common/base/parallel.h"
@@ -28,7 +29,7 @@ struct choose_job {
 
 int outdoors_rank(const struct outdoors_candidate *c, const struct outdoors_picture *pictures)
 {
-    return 2 * !c->clipped + pictures[c->picture].reference;
+    return c->clipped ? 0 : 1 + pictures[c->picture].order;
 }
 
 static double level_of(const struct choose_job *job, const struct outdoors_candidate *c)
@@ -51,7 +52,7 @@ static void vote(const struct choose_job *job, struct outdoors_candidate list[MA
         if (outdoors_rank(&list[count], job->pictures) != rank) break;
         levels[count] = (struct weighted){level_of(job, &list[count]), 1};
     }
-    if (count < MIN_VOTES || rank & 1) return;
+    if (count < MIN_VOTES || job->pictures[list[0].picture].reference) return;
     const double median = weighted_percentile(levels, (size_t)count, 0.5);
     for (int k = 0; k < count; k++) list[k].outvoted = fabs(level_of(job, &list[k]) - median) > job->agree;
 }

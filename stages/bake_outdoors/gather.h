@@ -23,7 +23,7 @@ struct outdoors_cells {
     int *chosen;                                        /* picture of each cell, -1: none; owned */
 };
 
-/* Whether a candidate is of a reference image that measures, a photo that measures, or of pictures that clip: 3 to 0. */
+/* 0: the candidate is clipped; otherwise 1 plus the order of its picture. */
 int outdoors_rank(const struct outdoors_candidate *c, const struct outdoors_picture *pictures);
 
 /* gains.c. Sets gain[photo] for the photos of the pictures; photos are numbered from 0. Those that reference images have

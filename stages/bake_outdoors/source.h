@@ -15,6 +15,7 @@ struct outdoors_picture {
     char *name; /* owned */
     int photo;  /* pictures of the same photo have the same gain */
     bool reference;
+    int order;  /* of pictures that measure a direction, those of the highest order show it */
     char *path; /* owned; of the picture */
     char *ids;  /* owned; of the view's ids, NULL: a reference image */
     struct camera lens;
