@@ -229,6 +229,112 @@ static void the_same_bytes_for_any_number_of_threads(void **state)
     outdoors_release(&o[1]);
 }
 
+/* ---------------------------------------------------------------------------------------------------- reference images */
+
+enum { FISHEYE = 120 };
+
+/* Writes a fisheye of 180 degrees that looks along +x out of the hole, of `factor` times the truth and black beyond its
+ * circle, and reads it. lens: NULL: the true one. */
+static enum status read_reference(struct outdoors_picture *p, double factor, const char *lens, bool *placed,
+                                  struct err *err)
+{
+    static const char *const names[] = {"R", "G", "B", "clipped", "variance"};
+    const struct camera camera = camera_equisolid(FISHEYE, FISHEYE, FISHEYE / (2 * sqrt(2)), FISHEYE / 2, FISHEYE / 2);
+    const struct model_axes axes = {.rotation = {1, 0, 0, 0}, .scale = 1};
+    struct view v = make_view("r", 0.25, -0.5);
+    struct exr_image im = {0};
+    struct exr_plane *plane;
+    struct err made = ERR_INIT;
+    char text[256];
+    v.center.x = 2.5;
+    v.translation = vec3_scale(mat3_apply(v.cam_from_world, v.center), -1);
+    assert_ok(exr_image_init(&im, FISHEYE, FISHEYE, &made), made);
+    for (int k = 0; k < 5; k++) {
+        assert_ok(exr_add_plane(&im, names[k], k == 3 ? EXR_UINT : EXR_FLOAT, &plane, &made), made);
+        for (int i = 0; i < FISHEYE * FISHEYE; i++) {
+            const double x = i % FISHEYE + 0.5, y = (double)(i / FISHEYE) + 0.5;
+            struct vec3 ray;
+            const bool inside =
+                hypot(x - FISHEYE / 2, y - FISHEYE / 2) < FISHEYE / 2 && camera_unproject(&camera, x, y, &ray);
+            if (inside) ray = mat3_apply(mat3_transpose(v.cam_from_world), ray);
+            if (k < 3) plane->f[i] = inside ? (float)(factor * truth_of(ray)) : 0;
+            if (k == 4) plane->f[i] = inside ? 1e-6f : 1;
+        }
+    }
+    snprintf(text, sizeof text, "OPENCV_FISHEYE %d %d %.9g %.9g %.9g %.9g %.9g %.9g %.9g %.9g", FISHEYE, FISHEYE,
+             camera.params[0], camera.params[1], camera.params[2], camera.params[3], camera.params[4], camera.params[5],
+             camera.params[6], camera.params[7]);
+    exr_set_camera(&im, &v);
+    assert_ok(exr_set_attribute(&im, "remodel:lens", lens ? lens : text, &made), made);
+    assert_ok(exr_write(&im, scratch_path("sky.exr"), NULL, &made), made);
+    exr_image_release(&im);
+    return outdoors_picture_of_reference(p, scratch_path("sky.exr"), &axes, placed, err);
+}
+
+static void a_reference_image_has_its_lens_and_pose_in_its_file(void **state)
+{
+    (void)state;
+    struct outdoors_picture p = {0};
+    struct err err = ERR_INIT;
+    bool placed;
+    assert_ok(read_reference(&p, 1, NULL, &placed, &err), err);
+    assert_true(placed && p.reference && !p.ids);
+    assert_string_equal(p.name, "sky");
+    assert_true(vec3_length(vec3_sub(p.center, vec3_make(2.5, 0.25, -0.5))) < 1e-6);
+    const struct vec3 ahead = mat3_apply(p.cam_from_model, vec3_make(1, 0, 0));
+    assert_true(vec3_length(vec3_sub(ahead, vec3_make(0, 0, 1))) < 1e-6);
+    outdoors_picture_release(&p);
+    assert_err((read_reference(&p, 1, "PINHOLE 7 7 3 3 3 3", &placed, &err), err), ST_DATA, "remodel:lens says 7 x 7");
+    outdoors_picture_release(&p);
+    err = (struct err)ERR_INIT;
+    assert_err((read_reference(&p, 1, "TELESCOPE 7 7", &placed, &err), err), ST_DATA, "TELESCOPE");
+    outdoors_picture_release(&p);
+}
+
+/* The outdoors of a reference image and a photo that is darker by a tenth. order: of the reference image, the photo. */
+static void gather_both(struct outdoors *o, struct outdoors_totals *totals, int of_reference, int of_photo)
+{
+    const struct outdoors_params params = {.height = HEIGHT, .edge = 2, .max_clutter = 0.6, .agree = 0.3};
+    const struct shot shot = {make_view("a", 0, 0), 0.9, 0, 0};
+    struct outdoors_picture pictures[2] = {{0}};
+    struct provenance prov = {0};
+    struct outdoors_model model;
+    struct err err = ERR_INIT;
+    bool placed;
+    make_room(&model);
+    *o = (struct outdoors){0};
+    assert_ok(read_reference(&pictures[0], 1, NULL, &placed, &err), err);
+    write_shot(&pictures[1], &shot, 0);
+    pictures[0].photo = 1;
+    pictures[0].order = of_reference;
+    pictures[1].order = of_photo;
+    assert_ok(outdoors_gather(o, totals, pictures, 2, 2, &model, &params, &prov, &err), err);
+    for (int i = 0; i < 2; i++) outdoors_picture_release(&pictures[i]);
+    provenance_release(&prov);
+    outdoors_model_release(&model);
+}
+
+static void a_reference_image_comes_before_photos_and_sets_their_level(void **state)
+{
+    (void)state;
+    struct outdoors o;
+    struct outdoors_totals totals;
+    int count;
+    gather_both(&o, &totals, 1, 0);
+    assert_int_equal(totals.references, 1);
+    assert_true(totals.by_photos == 0);
+    /* half of the sphere, less a rim of 2 px of 60 */
+    assert_true(totals.by_references < 0.5 && totals.by_references > 0.5 * 0.9);
+    assert_true(error_of(&o, &count) < 0.02);
+    outdoors_release(&o);
+    gather_both(&o, &totals, 0, 1);
+    assert_int_equal(totals.photos, 1);
+    assert_true(totals.by_photos > 0.03);
+    assert_true(fabs(totals.max_gain - 1 / 0.9) < 0.01);
+    assert_true(error_of(&o, &count) < 0.02);
+    outdoors_release(&o);
+}
+
 /* ------------------------------------------------------------------------------------------------------------ guesses */
 
 /* A sky of 3, ground of 0.5; known: columns from `first` to `last` of rows from `top` to `bottom`. */
@@ -292,6 +398,8 @@ int main(void)
         cmocka_unit_test(photos_of_different_exposure_get_gains),
         cmocka_unit_test(without_an_opening_in_sight_the_picture_is_black_and_guessed),
         cmocka_unit_test(the_same_bytes_for_any_number_of_threads),
+        cmocka_unit_test(a_reference_image_has_its_lens_and_pose_in_its_file),
+        cmocka_unit_test(a_reference_image_comes_before_photos_and_sets_their_level),
         cmocka_unit_test(guesses_are_sky_above_the_horizon_and_ground_below),
         cmocka_unit_test(a_side_of_the_horizon_that_nothing_shows_takes_the_other_side),
         cmocka_unit_test(guesses_join_what_is_known_across_azimuth_pi),
