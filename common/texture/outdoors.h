@@ -3,7 +3,8 @@
  * An equirectangular picture in the model's frame: column x + 0.5 of W is the azimuth 2 pi (x + 0.5) / W - pi, counted
  * from +x towards +y; row y + 0.5 of H the elevation pi / 2 - pi (y + 0.5) / H, z up. R G B half, radiance, scene-linear;
  * A half: 1 where some picture shows the direction, 0 where it is guessed from those that are; source uint: 0 guessed,
- * 1 a lighting reference image, 2 a photograph. */
+ * 1 a lighting reference image, 2 a photograph. How far things outside are is unknown: whatever is looked up here moves
+ * with the camera as if it were infinitely far away. */
 #ifndef REMODEL_OUTDOORS_H
 #define REMODEL_OUTDOORS_H
 
@@ -22,7 +23,12 @@ struct outdoors {
     uint8_t *source;   /* enum outdoors_source; owned */
 };
 
+/* A black picture of 2 height x height px, all of it guessed. ST_DATA: height is not 1 to 8192. */
+enum status outdoors_init(struct outdoors *o, int height, struct err *err);
 void outdoors_release(struct outdoors *o);
+/* The unit direction at a place of the picture; pixel (x, y) has its centre at (x + 0.5, y + 0.5). */
+struct vec3 outdoors_direction(const struct outdoors *o, double x, double y);
+/* ST_DATA: a width other than twice the height, a missing channel, a negative radiance, an unknown source. */
 enum status outdoors_read(struct outdoors *o, const char *path, struct err *err);
 enum status outdoors_write(const struct outdoors *o, const char *path, const struct provenance *prov, struct err *err);
 /* The radiance from a direction of any length, bilinear; returns the source of the nearest pixel. An empty `outdoors`

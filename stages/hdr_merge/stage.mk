@@ -6,7 +6,7 @@ SHARED.hdr_merge := yes
 VARIABLES.hdr_merge := LRI LRI_SFM LRI_FRAME
 STEPS.hdr_merge := hdr lri
 HELP.hdr := bracketed photos merged; nothing where photos are no brackets
-HELP.lri := lighting reference images of LRI merged: linear, on the scene's scale, still fisheye (no later step reads them)
+HELP.lri := lighting reference images of LRI merged: linear, on the scene's scale, still fisheye
 RUN.hdr := farm
 RUN.lri := farm
 # the scene's cameras, its axes or its model, where the poses of the images must be moved to its frame or found in it

@@ -1,0 +1,168 @@
+/* bake_outdoors.c - what lies outside of the model, by direction: what its openings let the pictures see.
+ *
+ * reads   MODEL, AXES                                   the unedited model and its frame
+ *         VIEWS/cameras.txt, images.txt                 the cameras
+ *         VIEWS/lenses.txt                              which views are of one photo
+ *         VIEWS/VIEW.exr, IDS/VIEW.exr                  the views of which some ray leaves the model
+ *         REFERENCE...                                  lighting reference images
+ * writes  OUT                                           an equirectangular picture */
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/base/cli.h"
+#include "common/base/file_path.h"
+#include "common/base/log.h"
+#include "stages/bake_outdoors/gather.h"
+
+#define PARAM_STRUCT struct outdoors_params
+static const struct param outdoors_param_table[] = {OUTDOORS_PARAMS(PARAM_ROW) PARAM_END};
+#undef PARAM_STRUCT
+
+static enum status check_params(const void *values, struct err *err)
+{
+    const struct outdoors_params *p = values;
+    if (p->height % CELL == 0) return ST_OK;
+    return err_set(err, ST_USAGE, "height = %d is no multiple of %d; give %d.", p->height, CELL,
+                   p->height / CELL * CELL + CELL);
+}
+
+struct job {
+    const char *model_path, *axes_path, *views, *ids, *out;
+    struct cli_list references;
+    struct outdoors_params params;
+    struct provenance prov;
+    struct outdoors_model model;
+    struct model_axes axes;
+    struct camera_set set;
+    struct lens_list lenses;
+    struct outdoors_picture *pictures;
+    int count, photos;
+};
+
+static enum status read_inputs(struct job *j, struct err *err)
+{
+    char path[FILE_PATH];
+    if (provenance_add_file(&j->prov, "model/model.txt", j->model_path, err) ||
+        outdoors_model_read(&j->model, j->model_path, err) ||
+        provenance_add_file(&j->prov, "model/axes.txt", j->axes_path, err) ||
+        model_axes_read(&j->axes, j->axes_path, err) || camera_set_add_camera_inputs(&j->prov, j->views, err) ||
+        camera_set_read_cameras(&j->set, j->views, err) ||
+        provenance_add_in(&j->prov, "views", j->views, "lenses", ".txt", path, err) ||
+        lens_list_read(&j->lenses, path, err))
+        return err->status;
+    return ST_OK;
+}
+
+/* The number of the photo of each view: that of the photo's first view. Views of one photo follow each other. */
+static int photo_of(const struct job *j, int view)
+{
+    int lens = lens_list_find(&j->lenses, j->set.views[view].name);
+    if (lens < 0) return view;
+    const char *photo = j->lenses.lenses[lens].photo;
+    while (lens > 0 && !strcmp(j->lenses.lenses[lens - 1].photo, photo)) lens--;
+    const int first = camera_set_find(&j->set, j->lenses.lenses[lens].view);
+    return first < 0 ? view : first;
+}
+
+static enum status add_references(struct job *j, struct err *err)
+{
+    for (int i = 0; i < j->references.count; i++) {
+        struct outdoors_picture *p = &j->pictures[j->count++];
+        bool placed;
+        enum status st = outdoors_picture_of_reference(p, j->references.items[i], &j->axes, &placed, err);
+        if (st) return st;
+        if (!placed) {
+            log_warn(
+                "lighting reference image %s is left out, because its pose in the scene is unknown; give it one by "
+                "LRI_SFM or scenes/NAME/lri.txt.",
+                p->name);
+            outdoors_picture_release(p);
+            j->count--;
+            continue;
+        }
+        p->photo = j->photos++;
+        p->order = !strcmp(j->params.prefer, "references");
+    }
+    return ST_OK;
+}
+
+static enum status list_pictures(struct job *j, struct err *err)
+{
+    const size_t most = (size_t)j->references.count + (size_t)j->set.view_count + 1;
+    char picture[FILE_PATH], ids[FILE_PATH];
+    j->pictures = calloc(most, sizeof *j->pictures);
+    if (!j->pictures) return err_nomem(err, "pictures", most * sizeof *j->pictures);
+    j->photos = j->set.view_count;
+    enum status st = add_references(j, err);
+    for (int i = 0; !st && i < j->set.view_count; i++) {
+        const struct view view = model_from_world_view(&j->axes, &j->set.views[i]);
+        st = file_path(picture, j->views, view.name, ".exr", err);
+        if (!st) st = file_path(ids, j->ids, view.name, ".exr", err);
+        if (!st) st = outdoors_picture_of_view(&j->pictures[j->count++], &view, picture, ids, err);
+        if (st) break;
+        j->pictures[j->count - 1].photo = photo_of(j, i);
+        j->pictures[j->count - 1].order = !strcmp(j->params.prefer, "photos");
+    }
+    return st;
+}
+
+static void report(const struct outdoors_totals *t)
+{
+    if (!t->references && !t->photos) {
+        log_note("no picture looks out of the model, so the outdoors are black; cut openings into the model if there "
+                 "are any.");
+        return;
+    }
+    log_note(
+        "%.1f %% of all directions from %d lighting reference images, %.1f %% from %d views with gains from %.3f to "
+        "%.3f; the rest is guessed",
+        100 * t->by_references, t->references, 100 * t->by_photos, t->photos, t->min_gain, t->max_gain);
+}
+
+static enum status bake(struct job *j, struct err *err)
+{
+    struct outdoors outdoors = {0};
+    struct outdoors_totals totals;
+    enum status st = read_inputs(j, err);
+    if (!st) st = list_pictures(j, err);
+    if (!st)
+        st =
+            outdoors_gather(&outdoors, &totals, j->pictures, j->count, j->photos, &j->model, &j->params, &j->prov, err);
+    if (!st) report(&totals);
+    if (!st) st = outdoors_write(&outdoors, j->out, &j->prov, err);
+    outdoors_release(&outdoors);
+    return st;
+}
+
+static void release(struct job *j)
+{
+    for (int i = 0; i < j->count; i++) outdoors_picture_release(&j->pictures[i]);
+    free(j->pictures);
+    lens_list_release(&j->lenses);
+    camera_set_release(&j->set);
+    outdoors_model_release(&j->model);
+    cli_list_release(&j->references);
+    provenance_release(&j->prov);
+}
+
+int main(int argc, char **argv)
+{
+    struct job j = {.params = OUTDOORS_PARAMS_DEFAULT};
+    const struct cli_opt opts[] = {
+        CLI_ABOUT("What lies outside of the model, by direction, from the pictures that look out of its openings."),
+        CLI_STR("model", &j.model_path, CLI_REQUIRED, "the unedited model, model.txt"),
+        CLI_STR("axes", &j.axes_path, CLI_REQUIRED, "the model's frame, axes.txt"),
+        CLI_STR("views", &j.views, CLI_REQUIRED, "folder of cameras and rectified views"),
+        CLI_STR("ids", &j.ids, CLI_REQUIRED, "folder of the faces that each view shows"),
+        CLI_LIST("reference", &j.references, CLI_OPTIONAL,
+                 "lighting reference image with lens and pose; comes before the views; repeat for several"),
+        CLI_STR("out", &j.out, CLI_REQUIRED, "EXR to write"),
+        CLI_PARAMS(outdoors_param_table, &j.params, check_params),
+        CLI_END,
+    };
+    struct err err = ERR_INIT;
+    if (cli_parse(argc, argv, "bake_outdoors", opts, &j.prov, &err) == CLI_RUN) bake(&j, &err);
+    err_report(&err);
+    release(&j);
+    return err_exit_code(&err);
+}
