@@ -38,16 +38,14 @@
 #define MIN_ALPHA  0.02f
 #define HIDDEN     0.02  /* of the depth: what the shell may be in front of a fragment without hiding it */
 #define BEHIND     0.015 /* of the depth: a surface this far behind P is not P's */
-#define DENIED (float)ENV("DEN",0.35)
-static double env_(const char*n,double d){return getenv(n)?atof(getenv(n)):d;}
-#define ENV(n,d) ({static double v_=-99; if(v_==-99)v_=env_(n,d); v_;})
-#define SUPPORTED (float)ENV("SUP",0.6)
-#define BLUR ENV("BLUR",0.03) /* radians */
+#define DENIED     0.2f
+#define SUPPORTED  0.45f
+#define BLUR       0.08 /* radians */
 #define MIN_INSIDE 1e-3f
-#define PRESENT    0.1f  /* fade * inside of a view that is fully present */
-#define WIDTHS     8.0f  /* of the soft z-buffer, in uncertainties */
-#define MAX_SLACK  ENV("SLACK",0.03)
-#define OPEN       (float)ENV("OPEN",0.25) /* more support that clutter before the outdoors needs */
+#define PRESENT    0.1f /* fade * inside of a view that is fully present */
+#define WIDTHS     8.0f /* of the soft z-buffer, in uncertainties */
+#define MAX_SLACK  0.03
+#define OPEN       0.5f /* more support that clutter needs where the camera looks outdoors */
 #define COVERED    0.5f
 
 enum { FRAGMENTS = 2 * CLUTTER_VIEWS };
@@ -72,10 +70,10 @@ struct blend_job {
 };
 
 struct fragment {
-    float rgba[4]; /* premultiplied */
+    float rgba[4];  /* premultiplied */
     float z, sigma; /* sigma: relative */
     int slot;
-    bool open; /* no shell is behind it */
+    bool open;         /* no shell is behind it */
     struct vec3 point; /* scene frame */
     float weight, opacity, present;
     float raw;   /* what the shell leaves of it */
@@ -190,10 +188,10 @@ static void judge(const struct blend_job *job, struct fragment *f)
         const double z = view_project(view, f->point, &u, &v);
         if (!(z > 0) || !(u >= 0 && v >= 0 && u < view->width && v < view->height)) continue;
         const size_t pixel = (size_t)v * (size_t)view->width + (size_t)u;
-        const double nearest = (double)source->nearest[pixel], sure = (double)source->sure[pixel] / (double)CLUTTER_SURE;
+        const double nearest = (double)source->nearest[pixel],
+                     sure = (double)source->sure[pixel] / (double)CLUTTER_SURE;
         const double penalty = clutter_penalty(f->point, job->camera->center, view->center);
-        const double weight =
-            (double)(job->choice->fade[k] * border(view, u, v)) / (BLUR * BLUR + penalty * penalty);
+        const double weight = (double)(job->choice->fade[k] * border(view, u, v)) / (BLUR * BLUR + penalty * penalty);
         if (k == f->slot) f->weight = (float)weight;
         if (!(nearest > 0)) continue;
         const double tolerance = BEHIND + slack(f->sigma), beyond = 1 / (z * nearest) - 1;
@@ -287,8 +285,8 @@ static void blend_tiles(void *ctx, size_t begin, size_t end, int thread)
 }
 
 enum status clutter_blend(struct model_picture *p, float *cover, struct clutter_scene *scene,
-                          const struct clutter_choice *choice, const struct view *camera,
-                          const struct texture_map *map, struct err *err)
+                          const struct clutter_choice *choice, const struct view *camera, const struct texture_map *map,
+                          struct err *err)
 {
     const size_t threads = (size_t)parallel_threads();
     struct blend_job job = {.p = p, .cover = cover, .scene = scene, .choice = choice, .camera = camera, .map = map};

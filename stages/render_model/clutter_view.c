@@ -24,7 +24,7 @@
 #define CONTACT   0.006f /* the same, in segments that are clutter */
 #define GRADE     0.6f   /* of a pixel of clutter, from trace_ids */
 #define DOUBT     0.4f   /* confidence in segments whose depth is inherited */
-#define MAX_SIGMA 0.04 /* relative uncertainty of a depth that deserves its full confidence */
+#define MAX_SIGMA 0.04   /* relative uncertainty of a depth that deserves its full confidence */
 #define LEAST     0.02f  /* weights below are 0 */
 #define JUMP      0.03f  /* of inverse depth: where a part of the model ends before another */
 
