@@ -1,0 +1,243 @@
+/* clutter.c - clutter over the shell: the views that are kept, and the picture's camera in their frame; see clutter.h.
+ *
+ * Overview. A view's layers hold all that it shows. clutter_view.c leaves in them what stands in front of the model;
+ * clutter_choose.c elects the views for a camera; clutter_blend.c draws their segments at their own depths, lets the
+ * views vote on what is there, and blends what remains over the shell. From an original view itself the photo's own
+ * pixels are drawn, so that no blending can change them.
+ *
+ * Source: soft z-buffer and segments [Colburn 2014, 3.6]. What differs: the thesis draws whole views; here the model is
+ * drawn under clean texture, and the layers hold its furniture alone. */
+#include "stages/render_model/clutter.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/base/array.h"
+#include "common/capture/view_image.h"
+#include "stages/render_model/clutter_scene.h"
+
+#define MIB ((size_t)1 << 20)
+
+enum { FEWEST = 2 }; /* views of a picture, however little memory is allowed */
+
+/* ------------------------------------------------------------------------------------------------------------- views */
+
+enum status clutter_open(struct clutter_scene **scene, const struct clutter_files *files, const struct camera_set *set,
+                         const struct model_axes *axes, struct err *err)
+{
+    struct clutter_scene *s = calloc(1, sizeof *s);
+    *scene = s;
+    if (!s) return err_nomem(err, "clutter", sizeof *s);
+    s->set = set;
+    s->axes = *axes;
+    s->budget = (size_t)files->memory * MIB;
+    s->views = strdup(files->views);
+    s->depth = strdup(files->depth);
+    s->ids = strdup(files->ids);
+    s->sources = calloc((size_t)set->view_count + 1, sizeof *s->sources);
+    if (s->views && s->depth && s->ids && s->sources) return ST_OK;
+    clutter_close(s);
+    *scene = NULL;
+    return err_nomem(err, "the views of the clutter", (size_t)set->view_count * sizeof *s->sources);
+}
+
+static void drop(struct clutter_scene *s, struct clutter_source *source)
+{
+    if (source->loaded) s->bytes -= source->view.bytes;
+    clutter_view_release(&source->view);
+    source->loaded = false;
+}
+
+void clutter_close(struct clutter_scene *s)
+{
+    if (!s) return;
+    for (int i = 0; s->sources && i < s->set->view_count; i++) {
+        drop(s, &s->sources[i]);
+        for (int k = 0; k < 2; k++) free(s->sources[i].inputs[k].name);
+    }
+    for (int k = 0; k < CLUTTER_VIEWS; k++) drawn_view_release(&s->drawn[k]);
+    free(s->views);
+    free(s->depth);
+    free(s->ids);
+    free(s->sources);
+    free(s);
+}
+
+/* Hashes a file of a source, once. */
+static enum status note_input(struct provenance_input *input, const char *as, const char *folder, const char *view,
+                              char path[FILE_PATH], struct err *err)
+{
+    struct provenance one = {0};
+    enum status st = file_path(path, folder, view, ".exr", err);
+    if (!st && !input->name) {
+        st = provenance_add_in(&one, as, folder, view, ".exr", NULL, err);
+        if (!st) {
+            *input = one.inputs[0];
+            one.count = 0;
+        }
+    }
+    provenance_release(&one);
+    return st;
+}
+
+static enum status add_input(struct provenance *prov, const struct provenance_input *input, struct err *err)
+{
+    struct provenance_input copy = *input;
+    for (int i = 0; i < prov->count; i++)
+        if (!strcmp(prov->inputs[i].name, input->name)) return ST_OK;
+    const enum status st = array_append(&prov->inputs, (size_t)prov->count, sizeof copy, "inputs", err);
+    if (st) return st;
+    copy.name = strdup(input->name);
+    if (!copy.name) return err_nomem(err, "the name of an input", strlen(input->name) + 1);
+    prov->inputs[prov->count++] = copy;
+    return ST_OK;
+}
+
+static enum status read_source(struct clutter_scene *s, int at, struct err *err)
+{
+    const struct view *view = &s->set->views[at];
+    struct clutter_source *source = &s->sources[at];
+    struct layered_depth depth = {0};
+    struct view_ids ids = {0};
+    char path[FILE_PATH];
+    enum status st = note_input(&source->inputs[0], "depth", s->depth, view->name, path, err);
+    if (!st) st = layered_depth_read(&depth, path, err);
+    if (!st) st = note_input(&source->inputs[1], "ids", s->ids, view->name, path, err);
+    if (!st) st = view_ids_read(&ids, view, path, err);
+    if (!st) st = clutter_view_make(&source->view, &depth, &ids, view->name, err);
+    if (!st) {
+        source->loaded = true;
+        s->bytes += source->view.bytes;
+    }
+    view_ids_release(&ids);
+    layered_depth_release(&depth);
+    return st;
+}
+
+/* Drops views that the present picture does not need, until `more` bytes fit into the budget. */
+static void make_room(struct clutter_scene *s, size_t more)
+{
+    while (s->bytes + more > s->budget) {
+        struct clutter_source *oldest = NULL;
+        for (int i = 0; i < s->set->view_count; i++) {
+            struct clutter_source *source = &s->sources[i];
+            if (source->loaded && source->used < s->picture && (!oldest || source->used < oldest->used))
+                oldest = source;
+        }
+        if (!oldest) return;
+        drop(s, oldest);
+    }
+}
+
+enum status clutter_load(struct clutter_scene *s, const struct clutter_choice *choice, struct provenance *prov,
+                         struct err *err)
+{
+    enum status st = ST_OK;
+    s->picture++;
+    for (int k = 0; k < choice->count; k++) s->sources[choice->view[k]].used = s->picture;
+    for (int k = 0; !st && k < choice->count; k++) {
+        struct clutter_source *source = &s->sources[choice->view[k]];
+        if (!source->loaded) {
+            make_room(s, clutter_view_bytes(&s->set->views[choice->view[k]]));
+            st = read_source(s, choice->view[k], err);
+        }
+        for (int i = 0; !st && prov && i < 2; i++) st = add_input(prov, &source->inputs[i], err);
+    }
+    return st;
+}
+
+/* ------------------------------------------------------------------------------------------------------------ picture */
+
+/* The inverse of model_from_world_view(). */
+static struct view world_from_model_view(const struct model_axes *axes, const struct view *model)
+{
+    struct view v = *model;
+    v.cam_from_world = mat3_multiply(model->cam_from_world, mat3_from_quat(axes->rotation));
+    v.center = world_from_model_point(axes, model->center);
+    v.translation = vec3_scale(mat3_apply(v.cam_from_world, v.center), -1);
+    return v;
+}
+
+/* Whether the camera, of the model's frame, is that view of the set. */
+static bool is_camera_of(const struct clutter_scene *s, const struct view *camera, int view)
+{
+    const struct view own = model_from_world_view(&s->axes, &s->set->views[view]);
+    return own.width == camera->width && own.height == camera->height && own.fx == camera->fx && own.fy == camera->fy &&
+           own.cx == camera->cx && own.cy == camera->cy && own.center.x == camera->center.x &&
+           own.center.y == camera->center.y && own.center.z == camera->center.z &&
+           !memcmp(&own.cam_from_world, &camera->cam_from_world, sizeof own.cam_from_world);
+}
+
+/* The set's view whose camera this is; -1: none. */
+static int find_own(const struct clutter_scene *s, const struct view *camera, const int *views, int count)
+{
+    for (int i = 0; i < (views ? count : s->set->view_count); i++)
+        if (is_camera_of(s, camera, views ? views[i] : i)) return views ? views[i] : i;
+    return -1;
+}
+
+/* As many views as fit into memory. */
+static int most_views(const struct clutter_scene *s)
+{
+    size_t largest = 1;
+    for (int i = 0; i < s->set->view_count; i++) {
+        const size_t bytes = clutter_view_bytes(&s->set->views[i]);
+        if (bytes > largest) largest = bytes;
+    }
+    const size_t fit = s->budget / largest;
+    return fit < FEWEST ? FEWEST : fit < CLUTTER_VIEWS ? (int)fit : CLUTTER_VIEWS;
+}
+
+static void take_given(struct clutter_choice *choice, const int *views, int count)
+{
+    choice->count = count < CLUTTER_VIEWS ? count : CLUTTER_VIEWS;
+    for (int k = 0; k < choice->count; k++) {
+        choice->view[k] = views[k];
+        choice->fade[k] = 1;
+    }
+}
+
+/* Over the shell the clutter of the camera's own view is the photo: whatever covers at least half of a pixel hides the
+ * shell there. */
+static enum status draw_own(struct model_picture *p, struct clutter_scene *s, int view, const struct view *camera,
+                            const struct texture_map *map, struct provenance *prov, struct err *err)
+{
+    const size_t pixels = (size_t)p->width * (size_t)p->height;
+    const struct clutter_choice choice = {.view = {view}, .fade = {1}, .count = 1};
+    float *cover = malloc(pixels * sizeof *cover);
+    struct image photo = {0};
+    enum status st = cover ? ST_OK : err_nomem(err, "the coverage of a picture", pixels * sizeof *cover);
+    if (!st) st = clutter_load(s, &choice, prov, err);
+    if (!st) st = clutter_blend(p, cover, s, &choice, camera, map, err);
+    if (!st) st = view_image_read(&photo, s->views, &s->set->views[view], err);
+    if (!st && prov) st = provenance_add_in(prov, "views", s->views, s->set->views[view].name, ".exr", NULL, err);
+    for (size_t i = 0; !st && i < pixels; i++) {
+        const float part = cover[i] < 0.5f ? 2 * cover[i] : 1;
+        for (size_t c = 0; c < 3 && part > 0; c++)
+            p->rgb[3 * i + c] = part < 1 ? p->rgb[3 * i + c] + part * (photo.data[4 * i + c] - p->rgb[3 * i + c])
+                                         : photo.data[4 * i + c];
+    }
+    image_release(&photo);
+    free(cover);
+    return st;
+}
+
+enum status clutter_draw(struct model_picture *p, struct clutter_scene *s, const struct view *camera,
+                         const struct texture_map *map, const int *views, int count, struct provenance *prov,
+                         struct err *err)
+{
+    const struct view scene_camera = world_from_model_view(&s->axes, camera);
+    const int own = find_own(s, camera, views, count);
+    struct clutter_choice choice = {0};
+    if (p->width != camera->width || p->height != camera->height)
+        return err_set(err, ST_INTERNAL, "the picture has %d x %d pixels, but its camera %d x %d.", p->width, p->height,
+                       camera->width, camera->height);
+    if (own >= 0) return draw_own(p, s, own, &scene_camera, map, prov, err);
+    enum status st = ST_OK;
+    if (views)
+        take_given(&choice, views, count);
+    else
+        st = clutter_choose(&choice, s->set, &scene_camera, p->z, 1 / s->axes.scale, most_views(s), err);
+    if (!st) st = clutter_load(s, &choice, prov, err);
+    return st ? st : clutter_blend(p, NULL, s, &choice, &scene_camera, map, err);
+}

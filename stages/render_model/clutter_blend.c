@@ -1,0 +1,306 @@
+/* clutter_blend.c - clutter of several views over the shell: visibility, votes, blending.
+ *
+ * Overview. Each view draws its segments of clutter into the picture as planes at their own depths, so nothing is
+ * stretched between a sofa and the wall behind it. A pixel then has fragments: of each view the nearest surface and the
+ * one behind it, with colour, alpha, depth z and the uncertainty of z. Four questions are answered for each fragment.
+ *
+ * 1. Does the shell hide it? An edit may have put a wall there. A fragment behind the shell's depth by more than its
+ *    uncertainty fades out. One in a zone that is to be cleared is left out.
+ * 2. Do the views agree? The fragment's point P is projected into each view. A view whose nearest surface there is clearly
+ *    behind P looks through it and denies it; one whose surface is at P confirms it; one whose surface is in front, or
+ *    whose picture P is not in, has no vote. With weights w_j (below) and confidences c_j, the fragment's support is
+ *      s = sum_confirming w_j c_j / (sum_confirming w_j + sum_denying w_j c_j)
+ *    and its opacity o = smoothstep(s), from DENIED to SUPPORTED. A segment of little confidence that no view confirms
+ *    has s = c below that: the shell wins.
+ * 3. What hides it? With e_ij in [0, 1] how far two fragments are the same surface (the soft z-buffer's weight of their
+ *    depths), fragment i is left 1 - max_j a_j o_j (1 - e_ij) over those in front of it.
+ * 4. How much does it count? As in unstructured lumigraph rendering [Buehler 2001], views that see P under nearly the
+ *    camera's angle count most: w = fade inside / (BLUR^2 + penalty^2), where `penalty` is the angle, with a fee for
+ *    distance, `inside` falls to 0 at the border of the view's picture and `fade` with the view's rank
+ *    (clutter_choose.c).
+ *
+ * The pixel's coverage is sum_i (w_i / W_i) a_i o_i left_i, W_i = sum_j e_ij w_j: a mean over the views of one surface, a
+ * sum over surfaces. Soft borders are those of the layers' alpha.
+ *
+ * Source: soft z-buffer [Pulli 1997], [Colburn 2014, 3.6]. What differs: the votes; coverage instead of normalised
+ * weights, as what is not covered shows the shell.
+ *
+ * Pixels are independent of each other and the order of sums is that of the views: the same bits for any number of
+ * threads. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/base/parallel.h"
+#include "common/layers/soft_z.h"
+#include "stages/render_model/clutter_scene.h"
+
+#define MIN_ALPHA  0.02f
+#define HIDDEN     0.02  /* of the depth: what the shell may be in front of a fragment without hiding it */
+#define BEHIND     0.015 /* of the depth: a surface this far behind P is not P's */
+#define DENIED     0.2f
+#define SUPPORTED  0.45f
+#define BLUR       0.08 /* radians */
+#define MIN_INSIDE 1e-3f
+#define PRESENT    0.1f /* fade * inside of a view that is fully present */
+#define WIDTHS     8.0f /* of the soft z-buffer, in uncertainties */
+#define MAX_SLACK  0.03
+#define OPEN       0.5f /* more support that clutter needs where the camera looks outdoors */
+#define COVERED    0.5f
+
+enum { FRAGMENTS = 2 * CLUTTER_VIEWS };
+
+struct blend_tile { /* one per thread */
+    struct tile_visibility visibility;
+    struct view_samples front[CLUTTER_VIEWS], behind[CLUTTER_VIEWS];
+    bool drawn[CLUTTER_VIEWS];
+};
+
+struct blend_job {
+    struct model_picture *p;
+    float *cover; /* may be NULL */
+    const struct clutter_scene *scene;
+    const struct clutter_choice *choice;
+    const struct view *camera;
+    const struct texture_map *map; /* NULL: nothing is cleared */
+    double scale;                  /* scene units per model unit */
+    int tiles_x, tiles;
+    struct blend_tile *tile; /* one per thread */
+    enum status prepared[CLUTTER_VIEWS];
+};
+
+struct fragment {
+    float rgba[4];  /* premultiplied */
+    float z, sigma; /* sigma: relative */
+    int slot;
+    bool open;         /* no shell is behind it */
+    struct vec3 point; /* scene frame */
+    float weight, opacity, present;
+    float raw;   /* what the shell leaves of it */
+    float doubt; /* opacity if all confidences were full */
+};
+
+static float smooth(double x)
+{
+    const double t = x < 0 ? 0 : x > 1 ? 1 : x;
+    return (float)(t * t * (3 - 2 * t));
+}
+
+/* ---------------------------------------------------------------------------------------------------------- drawing */
+
+static void prepare_views(void *ctx, size_t begin, size_t end, int thread)
+{
+    struct blend_job *job = ctx;
+    (void)thread;
+    for (size_t k = begin; k < end; k++) {
+        const int at = job->choice->view[k];
+        const struct clutter_view *v = &job->scene->sources[at].view;
+        job->prepared[k] = drawn_view_prepare((struct drawn_view *)&job->scene->drawn[k], &v->depth, &v->layers,
+                                              &job->scene->set->views[at], job->camera, NULL);
+    }
+}
+
+/* Draws the views' segments into a tile; false: there are none. */
+static bool draw_tile(const struct blend_job *job, struct blend_tile *t, int tile, int x, int y, int width, int height)
+{
+    bool any = false;
+    for (int k = 0; k < job->choice->count; k++) {
+        const struct drawn_view *drawn = &job->scene->drawn[k];
+        const struct layer_view *layers = &job->scene->sources[job->choice->view[k]].view.layers;
+        t->drawn[k] = drawn->tile_begin[tile] != drawn->tile_begin[tile + 1];
+        if (!t->drawn[k]) continue;
+        any = true;
+        for (size_t i = 0; i < TILE_PIXELS; i++) t->visibility.inverse_front[i] = t->visibility.inverse_behind[i] = 0;
+        for (size_t i = 0; i < TILE_PIXELS; i++) t->visibility.front[i] = t->visibility.behind[i] = VISIBLE_NONE;
+        for (int row = 0; row < TILE_HEIGHT; row++) {
+            t->visibility.first[row] = 0;
+            t->visibility.last[row] = row < height ? width - 1 : -1;
+        }
+        visibility_draw(&t->visibility, drawn, layers, tile);
+        for (int row = 0; row < height; row++)
+            for (int column = 0; column < width; column += 8)
+                visibility_sample8(&t->front[k], &t->behind[k], &t->visibility, drawn, layers,
+                                   (size_t)row * TILE_STRIDE + (size_t)column, x, y);
+    }
+    return any;
+}
+
+/* -------------------------------------------------------------------------------------------------------- fragments */
+
+/* What a depth may be off, relative to it: estimators state more than that (common/layers/depth_sigma.c). */
+static double slack(float sigma) { return fmin((double)sigma, MAX_SLACK); }
+
+/* What the shell, and zones to clear, leave of a fragment. */
+static float left_by_shell(const struct blend_job *job, const struct fragment *f, float shell)
+{
+    const double spare = HIDDEN + slack(f->sigma), over = shell > 0 ? (double)f->z / (double)shell - 1 : 0;
+    const float left = over > spare ? 1 - smooth((over - spare) / spare) : 1;
+    if (!(left > 0) || !job->map || !job->map->zone_count) return left;
+    return texture_map_clears(job->map, model_from_world_point(&job->scene->axes, f->point)) ? 0 : left;
+}
+
+static int add_fragment(const struct blend_job *job, struct fragment *list, int count, const struct view_samples *from,
+                        size_t i, int slot, float inside, int x, int y)
+{
+    struct fragment *f = &list[count];
+    const float alpha = from->rgba[i][3];
+    if (!(from->alpha[i] > 0) || !(alpha > MIN_ALPHA)) return count;
+    *f = (struct fragment){.z = from->z[i], .sigma = from->sigma[i], .slot = slot};
+    memcpy(f->rgba, from->rgba[i], sizeof f->rgba);
+    f->point = view_unproject(job->camera, x + 0.5, y + 0.5, (double)f->z);
+    const float shell = job->p->z[(size_t)y * (size_t)job->p->width + (size_t)x] * (float)job->scale;
+    f->open = !(shell > 0);
+    f->raw = left_by_shell(job, f, shell);
+    const float standing = job->choice->fade[slot] * fmaxf(MIN_INSIDE, inside);
+    f->present = fminf(1, standing / PRESENT);
+    return f->raw > 0 ? count + 1 : count;
+}
+
+/* Near to far; of equal depths in the order of the views. */
+static void sort_fragments(struct fragment *list, int count)
+{
+    for (int i = 1; i < count; i++) {
+        const struct fragment f = list[i];
+        int k = i;
+        for (; k > 0 && f.z < list[k - 1].z; k--) list[k] = list[k - 1];
+        list[k] = f;
+    }
+}
+
+static float border(const struct view *v, double x, double y)
+{
+    const double across = 0.05 * (v->width > v->height ? v->width : v->height);
+    const double at = fmin(fmin(x, v->width - x), fmin(y, v->height - y)) / across;
+    return at < (double)MIN_INSIDE ? MIN_INSIDE : at < 1 ? (float)at : 1;
+}
+
+static float opaque(double support) { return smooth((support - (double)DENIED) / (double)(SUPPORTED - DENIED)); }
+
+/* The votes on a fragment; sets its weight and opacity. */
+static void judge(const struct blend_job *job, struct fragment *f)
+{
+    double confirmed = 0, agreeing = 0, denied = 0;
+    for (int k = 0; k < job->choice->count; k++) {
+        const int at = job->choice->view[k];
+        const struct view *view = &job->scene->set->views[at];
+        const struct clutter_view *source = &job->scene->sources[at].view;
+        double u, v;
+        const double z = view_project(view, f->point, &u, &v);
+        if (!(z > 0) || !(u >= 0 && v >= 0 && u < view->width && v < view->height)) continue;
+        const size_t pixel = (size_t)v * (size_t)view->width + (size_t)u;
+        const double nearest = (double)source->nearest[pixel],
+                     sure = (double)source->sure[pixel] / (double)CLUTTER_SURE;
+        const double penalty = clutter_penalty(f->point, job->camera->center, view->center);
+        const double weight = (double)(job->choice->fade[k] * border(view, u, v)) / (BLUR * BLUR + penalty * penalty);
+        if (k == f->slot) f->weight = (float)weight;
+        if (!(nearest > 0)) continue;
+        const double tolerance = BEHIND + slack(f->sigma), beyond = 1 / (z * nearest) - 1;
+        if (k != f->slot && beyond < -tolerance) continue; /* hidden from this view */
+        const double through = k == f->slot ? 0 : (double)smooth((beyond - tolerance) / tolerance);
+        confirmed += weight * sure * (1 - through);
+        agreeing += weight * (1 - through);
+        denied += weight * sure * through;
+    }
+    const double sum = agreeing + denied;
+    f->opacity = sum > 0 ? opaque(confirmed / sum - (f->open ? (double)OPEN : 0)) : 0;
+    f->doubt = sum > 0 ? opaque(agreeing / sum) : 0;
+}
+
+/* How far two fragments are the same surface, b behind a. */
+static float same_surface(const struct fragment *a, const struct fragment *b)
+{
+    const float sa = fmaxf(a->sigma, SOFT_Z_MIN_SIGMA) * a->z, sb = fmaxf(b->sigma, SOFT_Z_MIN_SIGMA) * b->z;
+    const float rho = 2 * WIDTHS * sqrtf(sa * sa + sb * sb), gamma = 0.1f * rho;
+    return 1 - smooth((double)((b->z - a->z - gamma) / (rho - 2 * gamma)));
+}
+
+/* ---------------------------------------------------------------------------------------------------------- blending */
+
+/* Composites sorted fragments: premultiplied colour and coverage; *doubtful: coverage if all depths were sure. */
+static void composite(float rgba[4], float *doubtful, const struct fragment *list, int count)
+{
+    float same[FRAGMENTS][FRAGMENTS];
+    memset(rgba, 0, 4 * sizeof *rgba);
+    *doubtful = 0;
+    for (int i = 0; i < count; i++) {
+        same[i][i] = 1;
+        for (int j = 0; j < i; j++) same[i][j] = same[j][i] = same_surface(&list[j], &list[i]);
+    }
+    for (int i = 0; i < count; i++) {
+        const struct fragment *f = &list[i];
+        float sum = 0, left = 1;
+        for (int j = 0; j < count; j++) sum += same[i][j] * list[j].weight;
+        for (int j = 0; j < i; j++) {
+            const struct fragment *g = &list[j];
+            left = fminf(left, 1 - g->rgba[3] * g->opacity * g->raw * g->present * (1 - same[i][j]));
+        }
+        const float part = sum > 0 ? f->weight / sum * f->raw * left : 0;
+        for (int c = 0; c < 4; c++) rgba[c] += part * f->opacity * f->rgba[c];
+        *doubtful += part * f->doubt * f->rgba[3];
+    }
+    if (rgba[3] > 1)
+        for (int c = 3; c >= 0; c--) rgba[c] /= rgba[3];
+}
+
+static void blend_pixel(const struct blend_job *job, const struct blend_tile *t, size_t i, int x, int y)
+{
+    struct fragment list[FRAGMENTS];
+    float rgba[4], doubtful;
+    int count = 0;
+    for (int k = 0; k < job->choice->count; k++) {
+        if (!t->drawn[k]) continue;
+        const float inside = t->front[k].inside[i];
+        count = add_fragment(job, list, count, &t->front[k], i, k, inside, x, y);
+        count = add_fragment(job, list, count, &t->behind[k], i, k, inside, x, y);
+    }
+    if (!count) return;
+    for (int k = 0; k < count; k++) judge(job, &list[k]);
+    sort_fragments(list, count);
+    composite(rgba, &doubtful, list, count);
+    const size_t at = (size_t)y * (size_t)job->p->width + (size_t)x;
+    if (job->cover)
+        job->cover[at] = rgba[3];
+    else
+        for (size_t c = 0; c < 3; c++)
+            job->p->rgb[3 * at + c] = job->p->rgb[3 * at + c] * (1 - rgba[3]) + fmaxf(0, rgba[c]);
+    if (rgba[3] >= COVERED)
+        job->p->made[at] = MADE_CLUTTER;
+    else if (doubtful >= COVERED && job->p->made[at] != MADE_NOTHING)
+        job->p->made[at] = MADE_UNSURE;
+}
+
+static void blend_tiles(void *ctx, size_t begin, size_t end, int thread)
+{
+    const struct blend_job *job = ctx;
+    struct blend_tile *t = &job->tile[thread];
+    for (size_t tile = begin; tile < end; tile++) {
+        const int x = (int)tile % job->tiles_x * TILE_WIDTH, y = (int)tile / job->tiles_x * TILE_HEIGHT;
+        const int width = job->p->width - x < TILE_WIDTH ? job->p->width - x : TILE_WIDTH;
+        const int height = job->p->height - y < TILE_HEIGHT ? job->p->height - y : TILE_HEIGHT;
+        if (!draw_tile(job, t, (int)tile, x, y, width, height)) continue;
+        for (int row = 0; row < height; row++)
+            for (int column = 0; column < width; column++)
+                blend_pixel(job, t, (size_t)row * TILE_STRIDE + (size_t)column, x + column, y + row);
+    }
+}
+
+enum status clutter_blend(struct model_picture *p, float *cover, struct clutter_scene *scene,
+                          const struct clutter_choice *choice, const struct view *camera, const struct texture_map *map,
+                          struct err *err)
+{
+    const size_t threads = (size_t)parallel_threads();
+    struct blend_job job = {.p = p, .cover = cover, .scene = scene, .choice = choice, .camera = camera, .map = map};
+    enum status st = ST_OK;
+    if (cover) memset(cover, 0, (size_t)p->width * (size_t)p->height * sizeof *cover);
+    job.scale = 1 / scene->axes.scale;
+    job.tiles_x = (p->width + TILE_WIDTH - 1) / TILE_WIDTH;
+    job.tiles = job.tiles_x * ((p->height + TILE_HEIGHT - 1) / TILE_HEIGHT);
+    job.tile = malloc(threads * sizeof *job.tile);
+    if (!job.tile) return err_nomem(err, "tiles of clutter", threads * sizeof *job.tile);
+    parallel_for((size_t)choice->count, 1, prepare_views, &job);
+    for (int k = 0; !st && k < choice->count; k++)
+        if (job.prepared[k]) st = err_nomem(err, "a view's segments", sizeof(struct drawn_segment));
+    if (!st) parallel_for((size_t)job.tiles, 1, blend_tiles, &job);
+    free(job.tile);
+    return st;
+}

@@ -1,0 +1,103 @@
+/* clutter_choose.c - which views a picture's clutter is drawn from.
+ *
+ * A few points of what the camera sees stand for all: on a lattice over the picture, on the shell and half way to it, as
+ * nothing is known of the clutter yet. Each view is weighted at each point as in unstructured lumigraph rendering
+ * [Buehler 2001]: by the angle between the rays from the view and from the camera, and by how much farther away the view
+ * is. Weights are normalised per point, so that each point elects its views; those with the largest sums are chosen. Their
+ * influence falls to 0 towards the first one that is left out, so that no view pops in or out as the camera moves. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "stages/render_model/clutter_scene.h"
+
+enum { COLUMNS = 12, ROWS = 9, PLACES = 2 };
+
+#define FAR_FEE   0.1 /* radians per doubling of the distance */
+#define SHARPNESS 0.02
+#define FADE      3.0
+
+double clutter_penalty(struct vec3 point, struct vec3 camera, struct vec3 view)
+{
+    const struct vec3 a = vec3_sub(camera, point), b = vec3_sub(view, point);
+    const double la = vec3_length(a), lb = vec3_length(b);
+    if (!(la > 0 && lb > 0)) return 0;
+    const double sine = vec3_length(vec3_cross(a, b)) / (la * lb), cosine = vec3_dot(a, b) / (la * lb);
+    const double angle = cosine > 0 ? sine * (1 + sine * sine / 6) : 2 - fmin(sine, 1) * 0.8;
+    return angle + FAR_FEE * fmax(0, lb / la - 1);
+}
+
+static void vote(double *score, double *weight, const struct camera_set *set, struct vec3 point, struct vec3 camera)
+{
+    double sum = 0;
+    for (int i = 0; i < set->view_count; i++) {
+        double u, v;
+        const struct view *view = &set->views[i];
+        weight[i] = 0;
+        if (!(view_project(view, point, &u, &v) > 0) || !(u >= 0 && v >= 0 && u < view->width && v < view->height))
+            continue;
+        const double penalty = clutter_penalty(point, camera, view->center);
+        weight[i] = 1 / (SHARPNESS + penalty * penalty);
+        sum += weight[i];
+    }
+    for (int i = 0; i < set->view_count && sum > 0; i++) score[i] += weight[i] / sum;
+}
+
+static void elect(struct clutter_choice *choice, double *score, int views, int most)
+{
+    double scores[CLUTTER_VIEWS];
+    for (choice->count = 0; choice->count < most; choice->count++) {
+        int best = -1;
+        for (int i = 0; i < views; i++)
+            if (score[i] > 0 && (best < 0 || score[i] > score[best])) best = i;
+        if (best < 0) break;
+        choice->view[choice->count] = best;
+        scores[choice->count] = score[best];
+        score[best] = 0;
+    }
+    double next = 0;
+    for (int i = 0; i < views; i++) next = fmax(next, score[i]);
+    int kept = 0;
+    for (int k = 0; k < choice->count; k++) {
+        const double fade = FADE * (1 - next / scores[k]);
+        if (!(fade > 0)) continue;
+        choice->view[kept] = choice->view[k];
+        choice->fade[kept++] = (float)fmin(1, fade);
+    }
+    choice->count = kept;
+}
+
+/* By insertion: in the order of the set. */
+static void sort_choice(struct clutter_choice *c)
+{
+    for (int i = 1; i < c->count; i++)
+        for (int k = i; k > 0 && c->view[k] < c->view[k - 1]; k--) {
+            const int view = c->view[k];
+            const float fade = c->fade[k];
+            c->view[k] = c->view[k - 1];
+            c->fade[k] = c->fade[k - 1];
+            c->view[k - 1] = view;
+            c->fade[k - 1] = fade;
+        }
+}
+
+enum status clutter_choose(struct clutter_choice *choice, const struct camera_set *set, const struct view *camera,
+                           const float *z, double scale, int most, struct err *err)
+{
+    double *score = calloc(2 * (size_t)set->view_count + 1, sizeof *score);
+    *choice = (struct clutter_choice){0};
+    if (!score) return err_nomem(err, "scores of views", 2 * (size_t)set->view_count * sizeof *score);
+    for (int y = 0; y < ROWS; y++)
+        for (int x = 0; x < COLUMNS; x++) {
+            const double u = (x + 0.5) * camera->width / COLUMNS, v = (y + 0.5) * camera->height / ROWS;
+            const float shell = z[(size_t)v * (size_t)camera->width + (size_t)u];
+            if (!(shell > 0)) continue;
+            for (int k = 1; k <= PLACES; k++)
+                vote(score, score + set->view_count, set,
+                     view_unproject(camera, u, v, (double)shell * scale * k / PLACES), camera->center);
+        }
+    elect(choice, score, set->view_count, most);
+    sort_choice(choice);
+    free(score);
+    return ST_OK;
+}

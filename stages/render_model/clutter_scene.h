@@ -1,0 +1,54 @@
+/* clutter_scene.h - the views of a scene as sources of clutter: which are kept in memory, and which a camera needs. */
+#ifndef REMODEL_RENDER_CLUTTER_SCENE_H
+#define REMODEL_RENDER_CLUTTER_SCENE_H
+
+#include "common/layers/layer_visibility.h"
+#include "stages/render_model/clutter.h"
+#include "stages/render_model/clutter_view.h"
+
+enum { CLUTTER_VIEWS = 12 }; /* the most that a picture is drawn from */
+
+struct clutter_source { /* a view of the set */
+    struct clutter_view view;
+    bool loaded;
+    uint64_t used;                     /* number of the picture that needed it last */
+    struct provenance_input inputs[2]; /* its files, once they were read */
+};
+
+struct clutter_scene {
+    char *views, *depth, *ids; /* folders; owned */
+    size_t budget, bytes;      /* of memory: allowed, and held by the sources */
+    const struct camera_set *set;
+    struct model_axes axes;
+    struct clutter_source *sources; /* one per view; owned */
+    uint64_t picture;               /* number of the present one */
+    struct drawn_view drawn[CLUTTER_VIEWS];
+};
+
+/* The views that a picture is drawn from, in the order of the set. */
+struct clutter_choice {
+    int view[CLUTTER_VIEWS];
+    float fade[CLUTTER_VIEWS]; /* in (0, 1]: falls to 0 as the view leaves the choice */
+    int count;
+};
+
+/* Chooses the views that see best what the camera may see. camera: scene frame; z: width * height depths of the shell
+ * in scene units, scaled by `scale`, 0: none. most: at most CLUTTER_VIEWS. */
+enum status clutter_choose(struct clutter_choice *choice, const struct camera_set *set, const struct view *camera,
+                           const float *z, double scale, int most, struct err *err);
+
+/* How much worse a view shows the point than the camera's own place would: 0 along the same ray, and the angle in
+ * radians otherwise, with a fee for distance. */
+double clutter_penalty(struct vec3 point, struct vec3 camera, struct vec3 view);
+
+/* Reads the views of the choice that are not in memory; drops others, those first that were not used longest. */
+enum status clutter_load(struct clutter_scene *scene, const struct clutter_choice *choice, struct provenance *prov,
+                         struct err *err);
+
+/* Draws the clutter of the loaded views of the choice over p; see clutter_blend.c. camera: in the scene's frame. cover, if
+ * not NULL, gets how much of each pixel is clutter; then p->rgb is left alone. */
+enum status clutter_blend(struct model_picture *p, float *cover, struct clutter_scene *scene,
+                          const struct clutter_choice *choice, const struct view *camera, const struct texture_map *map,
+                          struct err *err);
+
+#endif

@@ -1,0 +1,27 @@
+/* clutter_view.h - what a view shows in front of the model: its layers without the model's own surfaces, ready to be
+ * drawn, and what it sees everywhere, by which it confirms or denies the clutter of other views. */
+#ifndef REMODEL_RENDER_CLUTTER_VIEW_H
+#define REMODEL_RENDER_CLUTTER_VIEW_H
+
+#include "common/layers/layer_view.h"
+#include "common/texture/view_ids.h"
+
+/* {0} is the empty state; everything is owned. Depths are in scene units. */
+struct clutter_view {
+    struct layered_depth depth; /* size and segments only */
+    struct layer_view layers;   /* texels of clutter; the others are empty */
+    float *nearest;             /* per pixel: 1 / z of the nearest surface within one pixel, 0: not known */
+    uint8_t *sure;              /* per pixel: confidence that the view's depth deserves here, 255: full */
+    size_t bytes;               /* of memory */
+};
+
+#define CLUTTER_SURE 255.0f
+
+/* Takes the contents of `depth`, also on failure. ids: of the same view. ST_DATA: their sizes differ, or a pixel's id
+ * has no segment. */
+enum status clutter_view_make(struct clutter_view *v, struct layered_depth *depth, const struct view_ids *ids,
+                              const char *name, struct err *err);
+size_t clutter_view_bytes(const struct view *view); /* of memory that it needs, about */
+void clutter_view_release(struct clutter_view *v);
+
+#endif
