@@ -26,7 +26,7 @@ MODEL_ARGS := --axes $(AXES) --views $(O)/views $(if $(HELD_CAMERAS),--held $(H)
 $(call model_files,$(O)/model) &: $(MODEL_SCRIPT) $(MODEL_NEEDS)
 	$(call stage,build_model,model,$(O),--script $(MODEL_SCRIPT) $(MODEL_ARGS) --out $(O)/model)
 # an edit's script, and those that it stands on
-edit_scripts = scenes/$(SCENE)/edits/$(1).txt $(foreach b,$(filter-out $(2) $(1),$(shell sed -nE 's/^[ \t]*base[ \t]+([A-Za-z0-9_-]+).*/\1/p' \
+edit_scripts = $(wildcard scenes/$(SCENE)/edits/$(1).txt) $(foreach b,$(filter-out $(2) $(1),$(shell sed -nE 's/^[ \t]*base[ \t]+([A-Za-z0-9_-]+).*/\1/p' \
   scenes/$(SCENE)/edits/$(1).txt 2>/dev/null)),$(call edit_scripts,$(b),$(2) $(1)))
 define edit_rule
 $(call edit_files,$(O)/remodel/$(1)) &: $(MODEL_SCRIPT) $(call edit_scripts,$(1)) $(O)/model/model.txt $(MODEL_NEEDS)
@@ -41,7 +41,7 @@ $(1)/overlay/$(2).jpg: $(1)/model.txt $(AXES) $(CAMERAS) $(O)/views/lenses.txt $
 	  --views $(O)/views --photos $$(PICTURES) --records $(S)/photos --out $$@)
 endef
 $(foreach m,$(MODELS),$(foreach p,$(VIEWED),$(eval $(call overlay_rule,$(m),$(p)))))
-MODELLED := $(filter model textures,$(PRODUCTS))
+MODELLED := $(filter model textures remodel,$(PRODUCTS))
 MEASURED += $(call $(if $(and $(MODELLED),$(MODELS)),made,wildcard),$(AXES) $(if $(MODELS),$(O)/model/plan.txt))
 SHOWN_ALWAYS += $(call $(if $(MODELLED),made,wildcard),$(foreach m,$(MODELS),$(call model_files,$(m))) $(OVERLAYS))
 endif

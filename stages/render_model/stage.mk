@@ -12,6 +12,7 @@ PRODUCT.remodel := remodel
 HELP.tour := films through the rooms, of the model and of each edit
 NEEDS.tour := textures outdoors tour-path
 
+## EDIT=E: for `make remodel` and `make tour`: after this edit alone
 ## CAMERAS=DIR: a COLMAP text model whose cameras `make remodel` draws the model and its edits from
 ## CAMERAS_FRAME=scene|model|truth: its frame: O/views (default), the room's model, or TRUTH, which has the photos' cameras
 
@@ -39,7 +40,7 @@ PICTURES_TXT := $(foreach e,$(DRAWN_EDITS),$(VIEWS:%=$(O)/remodel/$(e)/pictures/
 remodel-views: $(PICTURES_TXT)
 
 # given cameras may see any room: which views and atlases they use is known when they have been drawn
-CAMERA_ARGS = --cameras "$$$$REMODEL_CAMERAS" $(if $(filter truth,$(CAMERAS_FRAME)),--frame-of "$$$$REMODEL_TRUTH" --records $(S)/photos,$(if \
+CAMERA_ARGS = --cameras "$$REMODEL_CAMERAS" $(if $(filter truth,$(CAMERAS_FRAME)),--frame-of "$$REMODEL_TRUTH" --records $(S)/photos,$(if \
   $(CAMERAS_FRAME),--frame $(CAMERAS_FRAME)))
 define cameras_rule
 $(1)/cameras/pictures.txt: $(call model_needs,$(1)) $(VDTA_TXT) $(VIEW_EXR) $(IDS_EXR) $(DEPTH_EXR) $(S)/photos/list.txt $(O)/stamp/cameras.txt

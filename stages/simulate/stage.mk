@@ -15,7 +15,7 @@ HELP.edited := truth of the edited scenes EDITS of a described scene, from the s
 EDIT_NAMES := $(sort $(EDIT) $(if $(filter all,$(EDITS)),$(patsubst scenes/$(SCENE)/scene-%.txt,%,$(wildcard \
   scenes/$(SCENE)/scene-*.txt)),$(EDITS)))
 ifndef GRAPH
-ifneq ($(SCENE),)
+ifneq ($(and $(SCENE),$(filter edited,$(MAKECMDGOALS))),)
   $(foreach e,$(EDIT_NAMES),$(if $(wildcard scenes/$(SCENE)/scene-$(e).txt),,$(error EDITS: there is no scenes/$(SCENE)/scene-$(e).txt)))
 endif
 else
