@@ -7,26 +7,31 @@
  * 1. Does the shell hide it? An edit may have put a wall there. A fragment behind the shell's depth by more than its
  *    uncertainty fades out. One in a zone that is to be cleared is left out.
  * 2. Do the views agree? The fragment's point P is projected into each view. A view whose nearest surface there is clearly
- *    behind P looks through it and denies it; one whose surface is at P confirms it; one whose surface is in front, or
- *    whose picture P is not in, has no vote. With weights w_j (below) and confidences c_j, the fragment's support is
- *      s = sum_confirming w_j c_j / (sum_confirming w_j + sum_denying w_j c_j)
- *    and its opacity o = smoothstep(s), from DENIED to SUPPORTED. A segment of little confidence that no view confirms
- *    has s = c below that: the shell wins.
+ *    behind P looks through it and denies it, as does one that shows the model's own surface there; one with clutter at P
+ *    confirms it; one whose surface is in front, or whose picture P is not in, has no vote. With weights w_j (below) and confidences c_j,
+ *      votes v = sum_confirming w_j / (sum_confirming w_j + sum_denying w_j c_j)
+ *      confidence c = sum_confirming w_j c_j / sum_confirming w_j
+ *    and the opacity is o = smoothstep(v) smoothstep(c). Without confidence the shell wins, and the pixel is marked. Where
+ *    the camera looks outdoors both must be higher: the sky in a window has no texture, and its depth is anything.
  * 3. What hides it? With e_ij in [0, 1] how far two fragments are the same surface (the soft z-buffer's weight of their
- *    depths), fragment i is left 1 - max_j a_j o_j (1 - e_ij) over those in front of it.
+ *    depths; 1 for those of one view) and p_j the share of fragment j in its surface, fragment i is left
+ *      1 - sum_j p_j a_j o_j (1 - e_ij) over those in front of it.
  * 4. How much does it count? As in unstructured lumigraph rendering [Buehler 2001], views that see P under nearly the
  *    camera's angle count most: w = fade inside / (BLUR^2 + penalty^2), where `penalty` is the angle, with a fee for
  *    distance, `inside` falls to 0 at the border of the view's picture and `fade` with the view's rank
  *    (clutter_choose.c).
  *
- * The pixel's coverage is sum_i (w_i / W_i) a_i o_i left_i, W_i = sum_j e_ij w_j: a mean over the views of one surface, a
- * sum over surfaces. Soft borders are those of the layers' alpha.
+ * The pixel's coverage is sum_i p_i a_i o_i with p_i = (w_i / W_i) left_i, where W_i = sum over views of max e_ij w_j: a
+ * mean over the views of one surface, a sum over surfaces. Soft borders are those of the layers' alpha.
  *
  * Source: soft z-buffer [Pulli 1997], [Colburn 2014, 3.6]. What differs: the votes; coverage instead of normalised
  * weights, as what is not covered shows the shell.
  *
+ * The limits were chosen on the witnesses n0 and n2 of the scene loft.
+ *
  * Pixels are independent of each other and the order of sums is that of the views: the same bits for any number of
  * threads. */
+#include <immintrin.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -38,14 +43,18 @@
 #define MIN_ALPHA  0.02f
 #define HIDDEN     0.02  /* of the depth: what the shell may be in front of a fragment without hiding it */
 #define BEHIND     0.015 /* of the depth: a surface this far behind P is not P's */
-#define DENIED     0.2f
-#define SUPPORTED  0.45f
+#define DENIED     0.45  /* share of the votes up to which a fragment is not there, ... */
+#define CONFIRMED  0.75  /* ... and from which it is */
+#define UNSURE     0.2   /* the same of the confidence of those who confirm it */
+#define SURE       0.45
+#define OPEN       0.7 /* the same of both, multiplied, where the camera looks outdoors */
+#define OPEN_SURE  0.95
 #define BLUR       0.08 /* radians */
 #define MIN_INSIDE 1e-3f
 #define PRESENT    0.1f /* fade * inside of a view that is fully present */
 #define WIDTHS     8.0f /* of the soft z-buffer, in uncertainties */
 #define MAX_SLACK  0.03
-#define OPEN       0.5f /* more support that clutter needs where the camera looks outdoors */
+#define TOGETHER   0.004f /* relative difference of depths */
 #define COVERED    0.5f
 
 enum { FRAGMENTS = 2 * CLUTTER_VIEWS };
@@ -127,6 +136,21 @@ static bool draw_tile(const struct blend_job *job, struct blend_tile *t, int til
 
 /* -------------------------------------------------------------------------------------------------------- fragments */
 
+/* How much of the view is clutter at a position in its picture, bilinear. */
+static float cover_at(const struct layer_view *layers, double u, double v)
+{
+    const double x = u + 0.5, y = v + 0.5; /* the padding is one texel, and texels have their centres at + 0.5 */
+    const int i = (int)x, j = (int)y;
+    const float fx = (float)(x - i), fy = (float)(y - j);
+    const uint16_t(*t)[4] = (const uint16_t(*)[4])layers->photo + (size_t)j * (size_t)layers->stride + (size_t)i;
+    const uint16_t(*b)[4] = t + layers->stride;
+    float a[4];
+    _mm_storeu_ps(
+        a, _mm_cvtph_ps(_mm_setr_epi16((short)t[0][3], (short)t[1][3], (short)b[0][3], (short)b[1][3], 0, 0, 0, 0)));
+    const float top = a[0] + fx * (a[1] - a[0]), bottom = a[2] + fx * (a[3] - a[2]);
+    return top + fy * (bottom - top);
+}
+
 /* What a depth may be off, relative to it: estimators state more than that (common/layers/depth_sigma.c). */
 static double slack(float sigma) { return fmin((double)sigma, MAX_SLACK); }
 
@@ -156,6 +180,22 @@ static int add_fragment(const struct blend_job *job, struct fragment *list, int 
     return f->raw > 0 ? count + 1 : count;
 }
 
+/* Gives a view's fragments at a pixel the share that the view's clutter has there. Where two surfaces meet in an edge, the
+ * pieces of each may cover less than both together. */
+static void complete(const struct blend_job *job, struct fragment *list, int count)
+{
+    const int at = job->choice->view[list[0].slot];
+    double u, v;
+    float sum = 0;
+    for (int k = 0; k < count; k++) sum += list[k].rgba[3];
+    const struct view *view = &job->scene->set->views[at];
+    if (!(view_project(view, list[0].point, &u, &v) > 0) || !(u >= 0 && v >= 0 && u < view->width && v < view->height))
+        return;
+    const float cover = fminf(1, cover_at(&job->scene->sources[at].view.layers, u, v));
+    for (int k = 0; k < count && cover > sum; k++)
+        for (int c = 0; c < 4; c++) list[k].rgba[c] *= cover / sum;
+}
+
 /* Near to far; of equal depths in the order of the views. */
 static void sort_fragments(struct fragment *list, int count)
 {
@@ -174,41 +214,70 @@ static float border(const struct view *v, double x, double y)
     return at < (double)MIN_INSIDE ? MIN_INSIDE : at < 1 ? (float)at : 1;
 }
 
-static float opaque(double support) { return smooth((support - (double)DENIED) / (double)(SUPPORTED - DENIED)); }
+static float opaque(double support, double from, double to) { return smooth((support - from) / (to - from)); }
 
-/* The votes on a fragment; sets its weight and opacity. */
-static void judge(const struct blend_job *job, struct fragment *f)
+struct votes {
+    double confirmed, agreeing, denied;
+};
+
+/* The vote of view k on a fragment; own: the view shows it itself. Returns the view's weight there. */
+static double vote(struct votes *votes, const struct blend_job *job, const struct fragment *f, int k, bool own)
 {
-    double confirmed = 0, agreeing = 0, denied = 0;
-    for (int k = 0; k < job->choice->count; k++) {
-        const int at = job->choice->view[k];
-        const struct view *view = &job->scene->set->views[at];
-        const struct clutter_view *source = &job->scene->sources[at].view;
-        double u, v;
-        const double z = view_project(view, f->point, &u, &v);
-        if (!(z > 0) || !(u >= 0 && v >= 0 && u < view->width && v < view->height)) continue;
-        const size_t pixel = (size_t)v * (size_t)view->width + (size_t)u;
-        const double nearest = (double)source->nearest[pixel],
-                     sure = (double)source->sure[pixel] / (double)CLUTTER_SURE;
-        const double penalty = clutter_penalty(f->point, job->camera->center, view->center);
-        const double weight = (double)(job->choice->fade[k] * border(view, u, v)) / (BLUR * BLUR + penalty * penalty);
-        if (k == f->slot) f->weight = (float)weight;
-        if (!(nearest > 0)) continue;
-        const double tolerance = BEHIND + slack(f->sigma), beyond = 1 / (z * nearest) - 1;
-        if (k != f->slot && beyond < -tolerance) continue; /* hidden from this view */
-        const double through = k == f->slot ? 0 : (double)smooth((beyond - tolerance) / tolerance);
-        confirmed += weight * sure * (1 - through);
-        agreeing += weight * (1 - through);
-        denied += weight * sure * through;
-    }
-    const double sum = agreeing + denied;
-    f->opacity = sum > 0 ? opaque(confirmed / sum - (f->open ? (double)OPEN : 0)) : 0;
-    f->doubt = sum > 0 ? opaque(agreeing / sum) : 0;
+    const int at = job->choice->view[k];
+    const struct view *view = &job->scene->set->views[at];
+    const struct clutter_view *source = &job->scene->sources[at].view;
+    double u, v;
+    const double z = view_project(view, f->point, &u, &v);
+    if (!(z > 0) || !(u >= 0 && v >= 0 && u < view->width && v < view->height)) return 0;
+    const size_t pixel = (size_t)v * (size_t)view->width + (size_t)u;
+    const double nearest = (double)source->nearest[pixel], sure = (double)source->sure[pixel] / (double)CLUTTER_SURE;
+    const double tolerance = BEHIND + slack(f->sigma), beyond = nearest > 0 ? 1 / (z * nearest) - 1 : 0;
+    const bool blind = !(nearest > 0) || beyond < -tolerance; /* it knows nothing of P, or P is hidden from it */
+    if (blind && !own) return 0;
+    const double penalty = clutter_penalty(f->point, job->camera->center, view->center);
+    const double weight = (double)(job->choice->fade[k] * border(view, u, v)) / (BLUR * BLUR + penalty * penalty);
+    const double through = own ? 0 : (double)smooth((beyond - tolerance) / tolerance);
+    const double here = (1 - through) * (own ? 1 : (double)source->shows[pixel] / (double)CLUTTER_SURE);
+    votes->confirmed += weight * sure * here;
+    votes->agreeing += weight * here;
+    votes->denied += weight * sure * (1 - here);
+    return weight;
 }
 
-/* How far two fragments are the same surface, b behind a. */
+/* Lets the views vote on fragments at nearly one place; sets their weights and opacities. */
+static void judge(const struct blend_job *job, struct fragment *list, int count)
+{
+    struct votes votes = {0};
+    for (int k = 0; k < job->choice->count; k++) {
+        bool own = false;
+        for (int i = 0; i < count; i++) own |= list[i].slot == k;
+        const double weight = vote(&votes, job, &list[0], k, own);
+        for (int i = 0; i < count; i++)
+            if (list[i].slot == k) list[i].weight = (float)weight;
+    }
+    if (!(votes.agreeing > 0)) return;
+    const double sure = votes.confirmed / votes.agreeing, share = votes.agreeing / (votes.agreeing + votes.denied);
+    for (int i = 0; i < count; i++) {
+        struct fragment *f = &list[i];
+        f->doubt = opaque(share, DENIED, CONFIRMED);
+        f->opacity = f->doubt * opaque(sure, UNSURE, SURE);
+        if (f->open) f->opacity *= opaque(sure * share, OPEN, OPEN_SURE);
+    }
+}
+
+/* Judges sorted fragments; those within TOGETHER of each other at once, as most of a pixel's are. */
+static void judge_all(const struct blend_job *job, struct fragment *list, int count)
+{
+    for (int first = 0, end; first < count; first = end) {
+        for (end = first + 1; end < count && list[end].z < list[first].z * (1 + TOGETHER); end++) continue;
+        judge(job, list + first, end - first);
+    }
+}
+
+/* How far two fragments are the same surface, b behind a. Those of one view share the pixel's area already. */
 static float same_surface(const struct fragment *a, const struct fragment *b)
 {
+    if (a->slot == b->slot) return 1;
     const float sa = fmaxf(a->sigma, SOFT_Z_MIN_SIGMA) * a->z, sb = fmaxf(b->sigma, SOFT_Z_MIN_SIGMA) * b->z;
     const float rho = 2 * WIDTHS * sqrtf(sa * sa + sb * sb), gamma = 0.1f * rho;
     return 1 - smooth((double)((b->z - a->z - gamma) / (rho - 2 * gamma)));
@@ -216,10 +285,19 @@ static float same_surface(const struct fragment *a, const struct fragment *b)
 
 /* ---------------------------------------------------------------------------------------------------------- blending */
 
+/* The weights of the views that show a surface, each once: a view's two fragments share the pixel. */
+static float weight_of_surface(const struct fragment *list, const float *same, int count)
+{
+    float of_view[CLUTTER_VIEWS] = {0}, sum = 0;
+    for (int j = 0; j < count; j++) of_view[list[j].slot] = fmaxf(of_view[list[j].slot], same[j] * list[j].weight);
+    for (int k = 0; k < CLUTTER_VIEWS; k++) sum += of_view[k];
+    return sum;
+}
+
 /* Composites sorted fragments: premultiplied colour and coverage; *doubtful: coverage if all depths were sure. */
 static void composite(float rgba[4], float *doubtful, const struct fragment *list, int count)
 {
-    float same[FRAGMENTS][FRAGMENTS];
+    float same[FRAGMENTS][FRAGMENTS], share[FRAGMENTS];
     memset(rgba, 0, 4 * sizeof *rgba);
     *doubtful = 0;
     for (int i = 0; i < count; i++) {
@@ -228,15 +306,12 @@ static void composite(float rgba[4], float *doubtful, const struct fragment *lis
     }
     for (int i = 0; i < count; i++) {
         const struct fragment *f = &list[i];
-        float sum = 0, left = 1;
-        for (int j = 0; j < count; j++) sum += same[i][j] * list[j].weight;
-        for (int j = 0; j < i; j++) {
-            const struct fragment *g = &list[j];
-            left = fminf(left, 1 - g->rgba[3] * g->opacity * g->raw * g->present * (1 - same[i][j]));
-        }
-        const float part = sum > 0 ? f->weight / sum * f->raw * left : 0;
-        for (int c = 0; c < 4; c++) rgba[c] += part * f->opacity * f->rgba[c];
-        *doubtful += part * f->doubt * f->rgba[3];
+        const float sum = weight_of_surface(list, same[i], count);
+        float hidden = 0;
+        for (int j = 0; j < i; j++) hidden += share[j] * list[j].opacity * list[j].rgba[3] * (1 - same[i][j]);
+        share[i] = sum > 0 ? f->weight / sum * f->raw * f->present * fmaxf(0, 1 - hidden) : 0;
+        for (int c = 0; c < 4; c++) rgba[c] += share[i] * f->opacity * f->rgba[c];
+        *doubtful += share[i] * f->doubt * f->rgba[3];
     }
     if (rgba[3] > 1)
         for (int c = 3; c >= 0; c--) rgba[c] /= rgba[3];
@@ -250,12 +325,14 @@ static void blend_pixel(const struct blend_job *job, const struct blend_tile *t,
     for (int k = 0; k < job->choice->count; k++) {
         if (!t->drawn[k]) continue;
         const float inside = t->front[k].inside[i];
+        const int first = count;
         count = add_fragment(job, list, count, &t->front[k], i, k, inside, x, y);
         count = add_fragment(job, list, count, &t->behind[k], i, k, inside, x, y);
+        if (count > first) complete(job, list + first, count - first);
     }
     if (!count) return;
-    for (int k = 0; k < count; k++) judge(job, &list[k]);
     sort_fragments(list, count);
+    judge_all(job, list, count);
     composite(rgba, &doubtful, list, count);
     const size_t at = (size_t)y * (size_t)job->p->width + (size_t)x;
     if (job->cover)
