@@ -30,6 +30,9 @@ enum status provenance_add_file(struct provenance *prov, const char *name, const
 enum status provenance_add_in(struct provenance *prov, const char *as, const char *folder, const char *file,
                               const char *suffix, char path[FILE_PATH], struct err *err);
 
+/* Forgets all inputs but the first `count`: the next product of the process has others. */
+void provenance_keep(struct provenance *prov, int count);
+
 /* Prints the header of text products: "# remodel STAGE VERSION", a line "# key = value" per parameter, a line
  * "# input NAME HASH" per input. */
 void provenance_print(const struct provenance *prov, FILE *to);

@@ -1,10 +1,10 @@
 # scaling.sh - cost of a view of a house, by the number of its views (docs/scaling.md).
 #
 # The houses are made by scaling_house.c: twelve views and about fourteen faces a room. Of each house the twelve views of a room
-# in the middle are worked on, one process each, with one thread. `trace`: trace_ids; `read`: the same of a view of 8 x 8
-# px, which is what is paid before the first ray: the model, the cameras and the points are read. `bake`: bake_vdta of four
-# of the room's viewpoints; the views of other rooms stand in the index without a face. Seconds, core-seconds
-# and MiB read are those of one view. BENCH_VIEWS ("100 1000 10000") sets other houses.
+# in the middle are worked on, by one process, with one thread. `trace`: trace_ids; `bake`: bake_vdta; the views of other rooms
+# stand in the index without a face. `trace_alone`, `bake_alone`: a process for each view. `read`: a process for each view of 8 x 8
+# px, which is what is paid before the first ray: the model and the cameras are read. Seconds, core-seconds and MiB read
+# are those of one view. BENCH_VIEWS ("100 1000 10000") sets other houses.
 title="cost of a view in a house of many"
 note="Views of 853 x 853 px; one thread."
 x=views x_label="Views of the house" y=view_cpu_s y_label="Core-seconds a view"
@@ -14,7 +14,7 @@ repeats=3
 settings()
 {
     printf 'series\tviews\n'
-    for n in ${BENCH_VIEWS:-100 1000 10000}; do printf 'trace\t%s\nread\t%s\nbake\t%s\n' "$n" "$n" "$n"; done
+    for n in ${BENCH_VIEWS:-100 1000 10000}; do printf '%s\n' trace trace_alone read bake bake_alone | sed "s/\$/\t$n/"; done
 }
 
 prepare()
@@ -48,27 +48,32 @@ index_house() # VIEWS
 # the first view of the room in the middle
 first_of() { local room=$(($1 / 24)); echo $((12 * room)); }
 
-sample_bake() # VIEWS
+# command_of SERIES HOUSE VIEW...: the program and its options
+command_of()
 {
-    # shellcheck disable=SC2016
-    measured bash -c 'for ((k = $2; k < $2 + 4; k++)); do
-            "$0/bin/bake_vdta" --threads 1 --model "$1/model/model.txt" --axes "$1/model/axes.txt" --views "$1/views" --ids "$1/ids" --reveal "$1/reveal" --photo "$(printf v%06d $k)" --out "$1/vdta" 2>/dev/null || exit 1
-        done; sed -n "s/^rchar: /rchar /p" /proc/$$/io' "$B" "$fast/trace$1" "$(first_of "$1")" |
-        awk '$1 == "seconds" { print "seconds", $2 / 4 } $1 == "cpu_seconds" { print "view_cpu_s", $2 / 4 } $1 == "peak_mib" { print }
-             $1 == "rchar" { printf "read_mib %.1f\n", $2 / 4 / 2^20 }'
+    local series=$1 house=$2 v; shift 2
+    case $series in
+    bake*)
+        echo "bake_vdta --ids $house/ids --reveal $house/reveal --out $house/vdta"
+        printf -- '--photo %s\n' "$@" ;;
+    *)
+        echo "trace_ids --depth $house/depth"
+        for v; do echo "--view $v --out $house/ids/$v.exr"; done ;;
+    esac
+    house "$house"
 }
-
 sample() # SERIES VIEWS
 {
-    local house=$fast/$1$2
-    if [ "$1" = bake ]; then sample_bake "$2"; return; fi
+    local house=$fast/$1$2 k v views=() each=1
+    case $1 in trace* | bake*) house=$fast/trace$2 ;; esac
+    case $1 in trace | bake) each=12 ;; esac
+    for ((k = $(first_of "$2"); k < $(first_of "$2") + 12; k++)); do views+=("$(printf v%06d $k)"); done
+    for ((k = 0; k < 12; k += each)); do command_of "$1" "$house" "${views[@]:k:each}" | tr '\n' ' '; echo; done >"$fast/commands"
     # a shell's counters include those of the processes that it has waited for
     # shellcheck disable=SC2016
-    measured bash -c 'for ((k = $2; k < $2 + 12; k++)); do
-            v=$(printf v%06d $k)
-            "$0/bin/trace_ids" --threads 1 --model "$1/model/model.txt" --axes "$1/model/axes.txt" --views "$1/views" --depth "$1/depth" --view $v --out "$1/ids/$v.exr" 2>/dev/null || exit 1
-        done; sed -n "s/^rchar: /rchar /p" /proc/$$/io' "$B" "$house" "$(first_of "$2")" |
+    measured bash -c 'while read -r command; do "$0/bin/"$command --threads 1 2>/dev/null </dev/null || exit 1; done <"$1"
+            sed -n "s/^rchar: /rchar /p" /proc/$$/io' "$B" "$fast/commands" |
         awk '$1 == "seconds" { print "seconds", $2 / 12 } $1 == "cpu_seconds" { print "view_cpu_s", $2 / 12 } $1 == "peak_mib" { print }
              $1 == "rchar" { printf "read_mib %.1f\n", $2 / 12 / 2^20 }'
-    awk '$1 == "face" { n++ } END { print "faces_seen", n / 12 }' "$house"/ids/*.txt
+    [ "$house" = "$fast/read$2" ] || awk '$1 == "face" { n++ } END { print "faces_seen", n / 12 }' "$house"/ids/*.txt
 }
