@@ -16,8 +16,7 @@
 #include <string.h>
 
 #include "common/base/cli.h"
-#include "common/base/file_path.h"
-#include "common/base/log.h"
+#include "common/texture/bake_inputs.h"
 #include "stages/bake_vdta/estimate.h"
 
 _Static_assert(offsetof(struct vdta_params, texture) == 0, "the table below has offsets into struct texture_params");
@@ -41,18 +40,10 @@ struct files {
 
 static enum status read_scene(struct bake_scene *s, const struct files *f, struct provenance *prov, struct err *err)
 {
-    char path[FILE_PATH];
-    enum status st = camera_set_read_cameras(&s->set, s->views, err);
-    if (!st) st = camera_set_add_camera_inputs(prov, s->views, err);
-    if (!st) st = provenance_add_in(prov, "views", s->views, "lenses", ".txt", path, err);
-    if (!st) st = lens_list_read(&s->lenses, path, err);
-    if (!st) st = model_axes_read(&s->axes, f->axes, err);
-    if (!st) st = provenance_add_file(prov, "model/axes.txt", f->axes, err);
+    enum status st = bake_inputs_read(&s->set, &s->lenses, &s->axes, s->views, f->axes, prov, err);
     if (!st) st = solid_mesh_read(&s->model, f->model, err);
     if (!st) st = provenance_add_file(prov, "model/model.txt", f->model, err);
     if (!st) st = surfaces_make(&s->surfaces, &s->model, 1, err);
-    for (int i = 0; !st && i < s->set.view_count; i++)
-        s->set.views[i] = model_from_world_view(&s->axes, &s->set.views[i]);
     return st;
 }
 
