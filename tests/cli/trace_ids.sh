@@ -53,10 +53,26 @@ bytes_do_not_depend_on_threads()
     cmp two/index1.txt $O/ids/index.txt || diff <(grep -v '^#' two/index1.txt) <(grep -v '^#' $O/ids/index.txt)
 }
 
+several_views_of_a_process_have_the_bytes_of_one_alone()
+{
+    local v options=() n
+    for v in $O/ids/*.exr; do v=$(basename "$v" .exr); options+=(--view "$v" --out "two/all/$v.exr"); done
+    n=$((${#options[@]} / 4))
+    trace 0 "made 2 of $n: " "${inputs[@]}" --depth $O/depth "${options[@]}"
+    diff -r -x index.txt two/all $O/ids; rm -r two/all
+    trace 0 "made $n of $n: " "${inputs[@]}" --reveal --edit $O/remodel/bare/model.txt "${options[@]}"
+    diff -r two/all $O/reveal; rm -r two/all
+    options[1]=nobody
+    trace 1 "1 of $n failed" "${inputs[@]}" --depth $O/depth "${options[@]}"
+    grep -q "failed 1 of $n: nobody\$" err.txt || { cat err.txt; fail "it is not named"; }
+    [ "$(ls two/all/*.exr | wc -l)" = $((n - 1)) ] || fail "the others were not made"
+}
+
 errors_say_what_is_wrong()
 {
     trace 2 '--view is missing' "${inputs[@]}" --depth $O/depth --out made/a.exr
     trace 2 '--depth is missing' "${inputs[@]}" --view "$view" --out made/a.exr
+    trace 2 'found 2 --view and 1 --out' "${inputs[@]}" --depth $O/depth --view a --view b --out made/a.exr
     trace 2 'exclude each other' "${inputs[@]}" --reveal --index $O/ids --out made/a.txt
     trace 2 '--edit is only for --reveal' "${inputs[@]}" --view "$view" --depth $O/depth --edit x/model.txt --out made/a.exr
     trace 2 'ends in .exr' "${inputs[@]}" --view "$view" --depth $O/depth --out made/a
@@ -92,4 +108,4 @@ make_remakes_only_what_changed()
     ! grep -q '^edit' $O/reveal/"$view".txt || fail "an edit that went is still listed"
 }
 
-for t in make_makes_ids_reveals_and_an_index a_closed_room_fills_every_view bytes_do_not_depend_on_threads errors_say_what_is_wrong cameras_outside_the_model_give_a_warning make_remakes_only_what_changed; do run "$t"; done
+for t in make_makes_ids_reveals_and_an_index a_closed_room_fills_every_view bytes_do_not_depend_on_threads several_views_of_a_process_have_the_bytes_of_one_alone errors_say_what_is_wrong cameras_outside_the_model_give_a_warning make_remakes_only_what_changed; do run "$t"; done
