@@ -103,10 +103,29 @@ static bool winds_around(const struct model_rays *m, struct vec3 p)
     return sum > 2 * M_PI;
 }
 
+static bool is_between(double x, double a, double b, double c, double margin)
+{
+    return x >= fmin(a, fmin(b, c)) - margin && x <= fmax(a, fmax(b, c)) + margin;
+}
+
+/* Whether p is within `margin` of the bounding box of a triangle. */
+static bool is_near_a_triangle(const struct model_rays *m, struct vec3 p, double margin)
+{
+    for (int i = 0; i < m->rays.triangle_count; i++) {
+        const struct vec3 *c = m->rays.triangles[i].corner;
+        if (is_between(p.x, c[0].x, c[1].x, c[2].x, margin) && is_between(p.y, c[0].y, c[1].y, c[2].y, margin) &&
+            is_between(p.z, c[0].z, c[1].z, c[2].z, margin))
+            return true;
+    }
+    return false;
+}
+
 bool model_rays_inside(const struct model_rays *m, struct vec3 p, double margin)
 {
     if (winds_around(m, p)) return true;
-    for (int i = 0; margin > 0 && i < 27; i++) { /* towards the sides, edges and corners of a cube */
+    /* on the way to a point that is no further than margin there is then no surface */
+    if (!(margin > 0) || !is_near_a_triangle(m, p, margin)) return false;
+    for (int i = 0; i < 27; i++) { /* towards the sides, edges and corners of a cube */
         const struct vec3 d = {i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1};
         if (winds_around(m, vec3_add(p, vec3_scale(vec3_normalize(d), margin)))) return true;
     }
