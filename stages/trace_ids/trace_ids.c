@@ -13,7 +13,9 @@
  *         VIEW.txt beside OUT                           how many pixels each edit reveals
  * With --index instead:
  * reads   MODEL, AXES, VIEWS; IDS/VIEW.txt of all views
- * writes  OUT                                           the views of each face, best first */
+ * writes  OUT                                           the views of each face, best first
+ *
+ * --estimate prints what views will take instead, and reads nothing but the cameras. */
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -24,6 +26,7 @@
 #include "common/base/log.h"
 #include "common/base/outfile.h"
 #include "common/base/textfile.h"
+#include "stages/trace_ids/estimate.h"
 #include "stages/trace_ids/reveal.h"
 #include "stages/trace_ids/view_ranks.h"
 
@@ -32,7 +35,7 @@ const struct param trace_param_table[] = {TRACE_PARAMS(PARAM_ROW) PARAM_END};
 #undef PARAM_STRUCT
 
 struct job {
-    const char *model, *axes, *views, *depth, *index;
+    const char *model, *axes, *views, *depth, *index, *estimate;
     bool reveal;
     struct cli_list view, out, edits;
     struct trace_params params;
@@ -246,6 +249,9 @@ static enum status index_faces(struct job *j, struct err *err)
 
 static enum status check_usage(const struct job *j, struct err *err)
 {
+    if (j->estimate && (j->view.count || j->reveal || j->index))
+        return err_set(err, ST_USAGE, "--estimate excludes --view, --reveal and --index.");
+    if (j->estimate) return ST_OK;
     if (j->reveal && j->index) return err_set(err, ST_USAGE, "--reveal and --index exclude each other.");
     if (j->edits.count && !j->reveal) return err_set(err, ST_USAGE, "--edit is only for --reveal.");
     if (!j->index && !j->view.count) return err_set(err, ST_USAGE, "--view is missing; see --help.");
@@ -256,8 +262,15 @@ static enum status check_usage(const struct job *j, struct err *err)
     return ST_OK;
 }
 
+static enum status estimate(struct job *j, struct err *err)
+{
+    enum status st = camera_set_read_cameras(&j->set, j->views, err);
+    return st ? st : estimate_print(stdout, j->estimate, &j->set, j->views, j->edits.count, err);
+}
+
 static enum status run(struct job *j, struct err *err)
 {
+    if (j->estimate) return estimate(j, err);
     enum status st = read_inputs(j, err);
     if (!st) st = read_edits(j, err);
     if (st) return st;
@@ -276,10 +289,13 @@ int main(int argc, char **argv)
         CLI_LIST("view", &j.view, CLI_OPTIONAL, "view to trace; repeat for several"),
         CLI_STR("depth", &j.depth, CLI_OPTIONAL, "folder of the views' depth"),
         CLI_FLAG("reveal", &j.reveal, "find what edits reveal in the view, in place of its ids"),
-        CLI_LIST("edit", &j.edits, CLI_OPTIONAL, "with --reveal: model.txt of an edited model"),
+        CLI_LIST("edit", &j.edits, CLI_OPTIONAL, "with --reveal, or --estimate: model.txt of an edited model"),
         CLI_STR("index", &j.index, CLI_OPTIONAL, "folder of the views' lists of faces: index them, in place of a view"),
         CLI_LIST("out", &j.out, CLI_REQUIRED,
                  "EXR to write, with a list beside it, one for each --view; with --index the index"),
+        CLI_STR("estimate", &j.estimate, CLI_OPTIONAL,
+                "file with lines VIEW ids and VIEW reveal: traces nothing, but prints the time and memory that these "
+                "will take"),
         CLI_PARAMS(trace_param_table, &j.params, NULL),
         CLI_END,
     };

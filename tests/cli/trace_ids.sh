@@ -85,6 +85,25 @@ errors_say_what_is_wrong()
     trace 1 "bad/$view.txt" "${inputs[@]}" --index bad --out made/index.txt
 }
 
+an_estimate_says_what_the_views_take()
+{
+    printf '%s ids\n%s reveal\n' "$view" "$view" >list
+    trace 0 used "${inputs[@]}" --out made/a.exr --estimate list --edit $O/remodel/bare/model.txt
+    awk '$1 == "estimate" { found = NF == 6 && $2 == 2 && $3 > 0 && $4 > 10 && $5 > 0 && $6 < $3 } END { exit !found }' out.txt ||
+        { cat out.txt; fail "no line of the estimate, or a wrong one"; }
+    [ ! -e made ] || fail "an estimate wrote something"
+    echo nobody ids >list
+    trace 2 'there is no view nobody' "${inputs[@]}" --out made/a.exr --estimate list
+    echo "$view" depth >list
+    trace 1 'list:1: found "depth", wanted ids or reveal' "${inputs[@]}" --out made/a.exr --estimate list
+    trace 2 '--estimate excludes' "${inputs[@]}" --out made/a.exr --estimate list --view "$view"
+    rm -rf $O/ids $O/reveal
+    make -s plan DEPS=manual SFM=set/model SCENE=t TO=ids >plan 2>&1 || { cat plan; fail "make plan"; }
+    # six views twice, and the index
+    grep -qE '^trace_ids +13 +4 +[0-9.]+ +0.25 ' plan || { cat plan; fail "make plan does not say what the views take"; }
+    m ids
+}
+
 cameras_outside_the_model_give_a_warning()
 {
     sed 's/^translation .*/translation 1000 0 0/' $O/model/axes.txt >far.txt
@@ -108,4 +127,4 @@ make_remakes_only_what_changed()
     ! grep -q '^edit' $O/reveal/"$view".txt || fail "an edit that went is still listed"
 }
 
-for t in make_makes_ids_reveals_and_an_index a_closed_room_fills_every_view bytes_do_not_depend_on_threads several_views_of_a_process_have_the_bytes_of_one_alone errors_say_what_is_wrong cameras_outside_the_model_give_a_warning make_remakes_only_what_changed; do run "$t"; done
+for t in make_makes_ids_reveals_and_an_index a_closed_room_fills_every_view bytes_do_not_depend_on_threads several_views_of_a_process_have_the_bytes_of_one_alone errors_say_what_is_wrong an_estimate_says_what_the_views_take cameras_outside_the_model_give_a_warning make_remakes_only_what_changed; do run "$t"; done
