@@ -55,7 +55,7 @@ farm()
     unset REMODEL_TALLY REMODEL_COUNT
 }
 # farm_plan PLAN TARGET WIDE THREADS: runs the plan of a stage whose processes make several pieces of work, WIDE processes at a
-# time. Like Make, begins no other process once a piece has failed
+# time, each with VIEWS_PER_JOB pieces, or a quarter of its share, at most 50. Like Make, begins no other once a piece has failed
 farm_plan()
 {
     local chunks=$1.chunks lines
@@ -64,8 +64,9 @@ farm_plan()
         graph -s -j1 LAUNCH=plan PLAN="$1" T="$4" "$2"
     fi
     lines=$((($(wc -l <"$1") + 4 * $3 - 1) / (4 * $3)))
+    lines=${VIEWS_PER_JOB:-$((lines < 50 ? lines : 50))}
     rm -rf "$chunks" "$1.failed"; mkdir "$chunks"
-    split -l $((lines < 50 ? lines : 50)) -d -a 6 "$1" "$chunks/"
+    split -l "$lines" -d -a 6 "$1" "$chunks/"
     # shellcheck disable=SC2016
     printf '%s\n' "$chunks"/* | xargs -d '\n' -P "$3" -n 1 bash -c '[ -e "$0" ] || common/run/run_lines.sh <"$1" >/dev/null || : >"$0"' "$1.failed"
     [ ! -e "$1.failed" ] || { echo "$(basename "$1" .plan): something failed; its words are above. What was made is kept." >&2; exit 2; }

@@ -83,6 +83,19 @@ a_bake_killed_in_the_middle_and_resumed_gives_the_same_bytes()
     m textures
 }
 
+chunks_of_one_and_of_seven_give_the_same_bytes()
+{
+    local lines
+    for lines in 1 7; do
+        rm -rf $O/vdta $O/ids/*.exr $O/reveal/*.txt
+        m CORES=$((lines == 1 ? 2 : 1)) VIEWS_PER_JOB=$lines vdta
+        diff -r -x '.*' whole $O/vdta || fail "chunks of $lines give other bytes"
+    done
+    # a log for each viewpoint, with its own words
+    [ "$(grep -l ' used ' $O/log/bake_vdta.*.log | wc -l)" = "$(ls $O/vdta/*/atlas.txt | wc -l)" ] || fail "a log lacks its words"
+    m textures
+}
+
 make_names_what_fails_and_keeps_the_rest()
 {
     local victim=$O/reveal/$photo.exr
@@ -138,5 +151,5 @@ an_edit_that_reveals_nothing_new_bakes_no_viewpoint_again()
 
 for t in every_photo_has_an_atlas_and_the_model_has_one bytes_do_not_depend_on_threads errors_say_what_is_wrong \
     several_viewpoints_of_a_process_have_the_bytes_of_one_alone a_viewpoint_that_fails_is_named_and_the_others_are_baked \
-    a_bake_killed_in_the_middle_and_resumed_gives_the_same_bytes make_names_what_fails_and_keeps_the_rest \
+    a_bake_killed_in_the_middle_and_resumed_gives_the_same_bytes chunks_of_one_and_of_seven_give_the_same_bytes make_names_what_fails_and_keeps_the_rest \
     an_estimate_says_what_the_viewpoints_take an_edit_that_reveals_nothing_new_bakes_no_viewpoint_again; do run "$t"; done
