@@ -16,6 +16,7 @@ verdict()
     printf '\n%s %s end\n' "$line" "$1" >>"$attempt" || exit 75
 }
 disk_is_full() { [ "$(df --output=avail -k "$folder" | tail -n 1)" -lt "$kib" ]; }
+# shellcheck disable=SC2317 # a trap runs it
 ended()
 {
     local had

@@ -18,8 +18,8 @@ struct bake_scene {
     const struct vdta_params *params;
 };
 
-/* Writes OUT/PHOTO/, and, unless it is NULL, the file of make dependencies `deps`. prov: with the inputs that all viewpoints share; more are added for this one and taken off again.
- * ST_USAGE: there is no such photo. */
+/* Writes OUT/PHOTO/, and, unless it is NULL, the file of make dependencies `deps`. prov: with the inputs that all
+ * viewpoints share; more are added for this one and taken off again. ST_USAGE: there is no such photo. */
 enum status viewpoint_bake(const struct bake_scene *scene, const char *photo, const char *deps, struct provenance *prov,
                            struct err *err);
 

@@ -1,7 +1,7 @@
-/* estimate.c - see estimate.h. All is linear in the pixels of the view, and what edits reveal takes a picture of each model. What
- * a process pays once, 0.01 s for each thousand views with their share of the model, is left out. Measured on nine views of
- * loft (853 x 853 px): ids took 0.13 to 0.21 core-seconds and 2.0 MB, and what six edits reveal 0.15 to 0.29 and 0.4 MB, at
- * 108 MiB. */
+/* estimate.c - see estimate.h. All is linear in the pixels of the view, and what edits reveal takes a picture of each
+ * model. What a process pays once, 0.01 s for each thousand views with their share of the model, is left out. Measured
+ * on nine views of loft (853 x 853 px): ids took 0.13 to 0.21 core-seconds and 2.0 MB, and what six edits reveal 0.15
+ * to 0.29 and 0.4 MB, at 108 MiB. */
 #include "stages/trace_ids/estimate.h"
 
 #include <string.h>

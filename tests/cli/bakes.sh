@@ -46,7 +46,7 @@ bytes_do_not_depend_on_threads()
 several_viewpoints_of_a_process_have_the_bytes_of_one_alone()
 {
     local p options=()
-    for p in $O/vdta/*/; do p=${p%/}; options+=(--photo "${p##*/}" --deps "two/${p##*/}.d"); done
+    for p in "$O"/vdta/*/; do p=${p%/}; options+=(--photo "${p##*/}" --deps "two/${p##*/}.d"); done
     for n in 1 2; do
         rm -rf two/all
         bake 0 "made 2 of $((${#options[@]} / 4)): " bake_vdta "${inputs[@]}" --reveal $O/reveal --out two/all "${options[@]}" --threads $n
@@ -58,7 +58,7 @@ several_viewpoints_of_a_process_have_the_bytes_of_one_alone()
 a_viewpoint_that_fails_is_named_and_the_others_are_baked()
 {
     local p others=()
-    for p in $O/vdta/*/; do p=${p%/}; others+=("${p##*/}"); done
+    for p in "$O"/vdta/*/; do p=${p%/}; others+=("${p##*/}"); done
     mkdir -p few; cp $O/reveal/*.exr few/; rm few/"${others[1]}".exr
     rm -rf two/some
     bake 1 '1 of 3 failed' bake_vdta "${inputs[@]}" --reveal few --out two/some --photo "${others[0]}" --photo "${others[1]}" --photo "${others[2]}"

@@ -128,8 +128,8 @@ processes_on()
     done
 }
 
-# bakes [ARGUMENT...]: the atlases of the scene below, on the cluster
-bakes() { make -s DEPS=manual SFM=set/model SCENE=baked JOBS=slurm VIEWS_PER_JOB=6 "$@" vdta >bakes.log 2>&1; }
+# bakes: the atlases of the scene below, on the cluster
+bakes() { make -s DEPS=manual SFM=set/model SCENE=baked JOBS=slurm VIEWS_PER_JOB=6 vdta >bakes.log 2>&1; }
 J=out/baked/jobs/bake_vdta
 a_local_run_bakes_what_the_cluster_must()
 {
