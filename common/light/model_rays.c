@@ -66,8 +66,8 @@ static void bounds(const struct model_rays *m, struct vec3 *low, struct vec3 *hi
     *low = *high = m->mesh.vertex_count ? m->mesh.vertices[0].p : vec3_make(0, 0, 0);
     for (int i = 1; i < m->mesh.vertex_count; i++) {
         const struct vec3 p = m->mesh.vertices[i].p;
-        *low = vec3_make(fmin(low->x, p.x), fmin(low->y, p.y), fmin(low->z, p.z));
-        *high = vec3_make(fmax(high->x, p.x), fmax(high->y, p.y), fmax(high->z, p.z));
+        *low = vec3_make(p.x < low->x ? p.x : low->x, p.y < low->y ? p.y : low->y, p.z < low->z ? p.z : low->z);
+        *high = vec3_make(p.x > high->x ? p.x : high->x, p.y > high->y ? p.y : high->y, p.z > high->z ? p.z : high->z);
     }
 }
 
@@ -105,7 +105,8 @@ static bool winds_around(const struct model_rays *m, struct vec3 p)
 
 static bool is_between(double x, double a, double b, double c, double margin)
 {
-    return x >= fmin(a, fmin(b, c)) - margin && x <= fmax(a, fmax(b, c)) + margin;
+    const double low = x - margin, high = x + margin;
+    return !(a < low && b < low && c < low) && !(a > high && b > high && c > high);
 }
 
 /* Whether p is within `margin` of the bounding box of a triangle. */
