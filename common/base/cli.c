@@ -20,7 +20,7 @@ enum { MAX_THREADS = 1024 };
 
 /* ------------------------------------------------------------------------------------------ the last line on stderr */
 
-static double started;
+static double started, used_cpu; /* since when, and what had been used by then */
 static pid_t owner;
 
 static double cpu_seconds(const struct rusage *u)
@@ -29,6 +29,7 @@ static double cpu_seconds(const struct rusage *u)
            1e-6 * (double)(u->ru_utime.tv_usec + u->ru_stime.tv_usec);
 }
 
+/* What has been used since the last report. */
 static void report_use(void)
 {
     struct rusage self = {0}, children = {0};
@@ -37,8 +38,27 @@ static void report_use(void)
     getrusage(RUSAGE_SELF, &self);
     getrusage(RUSAGE_CHILDREN, &children);
     const long peak = self.ru_maxrss > children.ru_maxrss ? self.ru_maxrss : children.ru_maxrss; /* KiB */
-    log_note("used %.2f s wall, %.2f s cpu, %ld MiB peak", clock_seconds() - started,
-             cpu_seconds(&self) + cpu_seconds(&children), (peak + 1023) / 1024);
+    const double now = clock_seconds(), cpu = cpu_seconds(&self) + cpu_seconds(&children);
+    log_note("used %.2f s wall, %.2f s cpu, %ld MiB peak", now - started, cpu - used_cpu, (peak + 1023) / 1024);
+    started = now;
+    used_cpu = cpu;
+}
+
+enum status cli_make_each(const struct cli_list *names, cli_make_one *make, void *ctx, struct err *err)
+{
+    int failed = 0;
+
+    if (names->count == 1) return make(ctx, 0, err);
+    for (int i = 0; i < names->count; i++) {
+        struct err one = ERR_INIT;
+        const enum status st = make(ctx, i, &one);
+        err_report(&one);
+        failed += st != ST_OK;
+        report_use();
+        log_note("%s %d of %d: %s", st ? "failed" : "made", i + 1, names->count, names->items[i]);
+    }
+    if (!failed) return ST_OK;
+    return err_set(err, ST_DATA, "%d of %d failed; the reasons are above.", failed, names->count);
 }
 
 /* ---------------------------------------------------------------------------------------------------- the options */

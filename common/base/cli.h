@@ -88,4 +88,12 @@ enum cli_verdict { CLI_RUN, CLI_DONE, CLI_FAILED };
 enum cli_verdict cli_parse(int argc, char **argv, const char *stage, const struct cli_opt *opts,
                            struct provenance *prov, struct err *err);
 
+/* Makes piece i of a stage's work: those that the i-th names of its options describe. */
+typedef enum status cli_make_one(void *ctx, int i, struct err *err);
+
+/* Makes the pieces called `names` in order. If there are several, one that fails does not keep the others from being
+ * made: its error is reported, and err is set at the end. After each of several, "STAGE: used ..." says what it took,
+ * and a line "STAGE: made 2 of 7: NAME", or "failed", ends its part of the log: common/run/run_lines.sh goes by it. */
+enum status cli_make_each(const struct cli_list *names, cli_make_one *make, void *ctx, struct err *err);
+
 #endif

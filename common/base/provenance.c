@@ -43,11 +43,6 @@ enum status provenance_add_in(struct provenance *prov, const char *as, const cha
     return provenance_add_file(prov, name, path, err);
 }
 
-void provenance_drop(struct provenance *prov, int count)
-{
-    while (prov->count > count) free(prov->inputs[--prov->count].name);
-}
-
 void provenance_print(const struct provenance *prov, FILE *to)
 {
     fprintf(to, "# remodel %s %s\n", prov->stage, prov->version);
@@ -75,10 +70,15 @@ char *provenance_inputs_text(const struct provenance *prov)
     return text;
 }
 
+void provenance_keep(struct provenance *prov, int count)
+{
+    while (prov->count > count) free(prov->inputs[--prov->count].name);
+}
+
 void provenance_release(struct provenance *prov)
 {
     if (!prov) return;
-    for (int i = 0; i < prov->count; i++) free(prov->inputs[i].name);
+    provenance_keep(prov, 0);
     free(prov->inputs);
     free(prov->params);
     *prov = (struct provenance){0};

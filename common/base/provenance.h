@@ -30,8 +30,8 @@ enum status provenance_add_file(struct provenance *prov, const char *name, const
 enum status provenance_add_in(struct provenance *prov, const char *as, const char *folder, const char *file,
                               const char *suffix, char path[FILE_PATH], struct err *err);
 
-/* Takes off the inputs after the first `count`: of a product that others follow, which have other inputs. */
-void provenance_drop(struct provenance *prov, int count);
+/* Forgets all inputs but the first `count`: the next product of the process has others. */
+void provenance_keep(struct provenance *prov, int count);
 
 /* Prints the header of text products: "# remodel STAGE VERSION", a line "# key = value" per parameter, a line
  * "# input NAME HASH" per input. */

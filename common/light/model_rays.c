@@ -66,8 +66,8 @@ static void bounds(const struct model_rays *m, struct vec3 *low, struct vec3 *hi
     *low = *high = m->mesh.vertex_count ? m->mesh.vertices[0].p : vec3_make(0, 0, 0);
     for (int i = 1; i < m->mesh.vertex_count; i++) {
         const struct vec3 p = m->mesh.vertices[i].p;
-        *low = vec3_make(fmin(low->x, p.x), fmin(low->y, p.y), fmin(low->z, p.z));
-        *high = vec3_make(fmax(high->x, p.x), fmax(high->y, p.y), fmax(high->z, p.z));
+        *low = vec3_make(p.x < low->x ? p.x : low->x, p.y < low->y ? p.y : low->y, p.z < low->z ? p.z : low->z);
+        *high = vec3_make(p.x > high->x ? p.x : high->x, p.y > high->y ? p.y : high->y, p.z > high->z ? p.z : high->z);
     }
 }
 
@@ -103,10 +103,30 @@ static bool winds_around(const struct model_rays *m, struct vec3 p)
     return sum > 2 * M_PI;
 }
 
+static bool is_between(double x, double a, double b, double c, double margin)
+{
+    const double low = x - margin, high = x + margin;
+    return !(a < low && b < low && c < low) && !(a > high && b > high && c > high);
+}
+
+/* Whether p is within `margin` of the bounding box of a triangle. */
+static bool is_near_a_triangle(const struct model_rays *m, struct vec3 p, double margin)
+{
+    for (int i = 0; i < m->rays.triangle_count; i++) {
+        const struct vec3 *c = m->rays.triangles[i].corner;
+        if (is_between(p.x, c[0].x, c[1].x, c[2].x, margin) && is_between(p.y, c[0].y, c[1].y, c[2].y, margin) &&
+            is_between(p.z, c[0].z, c[1].z, c[2].z, margin))
+            return true;
+    }
+    return false;
+}
+
 bool model_rays_inside(const struct model_rays *m, struct vec3 p, double margin)
 {
     if (winds_around(m, p)) return true;
-    for (int i = 0; margin > 0 && i < 27; i++) { /* towards the sides, edges and corners of a cube */
+    /* on the way to a point that is no further than margin there is then no surface */
+    if (!(margin > 0) || !is_near_a_triangle(m, p, margin)) return false;
+    for (int i = 0; i < 27; i++) { /* towards the sides, edges and corners of a cube */
         const struct vec3 d = {i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1};
         if (winds_around(m, vec3_add(p, vec3_scale(vec3_normalize(d), margin)))) return true;
     }

@@ -13,10 +13,13 @@ shared_needs = $(S)/slice/$(1).cfg $(B)/code/$(1)
 
 # $(call stage,NAME,ITEM,FOLDER,ARGS): runs it here; what it says goes to the screen and to FOLDER/log
 stage = $(hide)common/run/run_stage.sh live $(1) $(2) $(3) $(BIN)/$(1) --threads $(T) --config $(3)/slice/$(1).cfg $(4)
-# $(call farm,NAME,ITEM,PRODUCTS,ARGS[,SHELLWORD[,FOLDER]]): the same for per-view work, which may be planned (LAUNCH=plan) for a
-# cluster; a plan's line is PRODUCTS, a tab, and the command with SHELLWORD already expanded behind it; FOLDER is O by default
+# $(call farm,NAME,ITEM,PRODUCTS,ARGS[,SHELLWORD[,FOLDER[,OWN]]]): the same for per-view work, which may be planned (LAUNCH=plan).
+# FOLDER is O by default. OWN, behind ARGS: options that a process may be given several times, for items whose ARGS are the same.
+# A plan's line, for common/run/run_lines.sh: PRODUCTS, a tab, the command with SHELLWORD already expanded behind it, and with OWN
+# a tab and OWN
 farm_line = common/run/run_stage.sh quiet $(1) $(2) $(or $(6),$(O)) $(BIN)/$(1) --threads $(T) --config $(or $(6),$(O))/slice/$(1).cfg $(4)
-farm = $(if $(filter plan,$(LAUNCH)),printf '%s\t%s %s\n' '$(3)' '$(farm_line)' "$(5)" >>$(PLAN),$(farm_line) $(5))
+farm = $(if $(filter plan,$(LAUNCH)),printf '%s\t%s %s$(if $(7),\t%s)\n' '$(3)' '$(farm_line)' "$(5)" $(if $(7),'$(7)') >>$(PLAN),$(farm_line) \
+  $(5) $(7))
 # $(call chunks,RULE,FRAMES,WORD): a rule for each FRAMES_PER_JOB of FRAMES
 chunks = $(if $(2),$(eval $(call $(1),$(wordlist 1,$(FRAMES_PER_JOB),$(2)),$(3)))$(call chunks,$(1),$(wordlist \
   $(words x $(wordlist 1,$(FRAMES_PER_JOB),$(2))),$(words $(2)),$(2)),$(3)))

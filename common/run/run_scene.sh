@@ -42,14 +42,34 @@ farm()
     [ "$count" -gt 0 ] || return 0
     if [ "$jobs" = slurm ]; then
         # shellcheck disable=SC2046 # five numbers, or none
-        REMODEL_BIN=$bin common/run/slurm.sh "$1" "$plan" "$O/jobs/$1" "${3:-1}" "${4:-${VIEWS_PER_JOB-}}" $(cut -f2- "$plan" | work_of "$1")
+        REMODEL_BIN=$bin common/run/slurm.sh "$1" "$plan" "$O/jobs/$1" "${3:-1}" "${4:-${VIEWS_PER_JOB-}}" $(cut -f2- "$plan" | tr '\t' ' ' | work_of "$1")
         graph -q "$2" || { echo "$1: the cluster's jobs have ended, but something of '$2' is still stale; see make why SCENE=$scene." >&2; exit 1; }
         return
     fi
     wide=$((count < max_jobs ? count : max_jobs))
     threads=$((cores / wide))
     date +%s >"$work/$1.tally"
-    REMODEL_TALLY=$work/$1.tally REMODEL_COUNT=$count graph $quiet -j"$wide" T="$threads" "$2"
+    export REMODEL_TALLY=$work/$1.tally REMODEL_COUNT=$count
+    if [ -n "$(cut -sf3 "$plan")" ]; then farm_plan "$plan" "$2" "$wide" "$threads"
+    else graph $quiet -j"$wide" T="$threads" "$2"; fi
+    unset REMODEL_TALLY REMODEL_COUNT
+}
+# farm_plan PLAN TARGET WIDE THREADS: runs the plan of a stage whose processes make several pieces of work, WIDE processes at a
+# time, each with VIEWS_PER_JOB pieces, or a quarter of its share, at most 50. Like Make, begins no other once a piece has failed
+farm_plan()
+{
+    local chunks=$1.chunks lines
+    if [ "$4" != 1 ]; then
+        : >"$1"
+        graph -s -j1 LAUNCH=plan PLAN="$1" T="$4" "$2"
+    fi
+    lines=$((($(wc -l <"$1") + 4 * $3 - 1) / (4 * $3)))
+    lines=${VIEWS_PER_JOB:-$((lines < 50 ? lines : 50))}
+    rm -rf "$chunks" "$1.failed"; mkdir "$chunks"
+    split -l "$lines" -d -a 6 "$1" "$chunks/"
+    # shellcheck disable=SC2016
+    printf '%s\n' "$chunks"/* | xargs -d '\n' -P "$3" -n 1 bash -c '[ -e "$0" ] || common/run/run_lines.sh <"$1" >/dev/null || : >"$0"' "$1.failed"
+    [ ! -e "$1.failed" ] || { echo "$(basename "$1" .plan): something failed; its words are above. What was made is kept." >&2; exit 2; }
 }
 # farm_frames STAGE TARGET: few processes with all threads each, since every one of them holds all views in memory
 farm_frames()

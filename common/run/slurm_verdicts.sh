@@ -56,7 +56,7 @@ why()
     0) echo "its products are missing on this side of the file system" ;;
     unwhole) echo "its products are not whole" ;;
     disk) echo "the disk is full${last:+; $last}" ;;
-    term) case $(why_no_verdict $((($1 - 1) / lines))) in
+    term | 143) case $(why_no_verdict $((($1 - 1) / lines))) in
           *out\ of\ time*) echo "its task ran out of time" ;;
           *way*) echo "its task had to make way for another job" ;;
           *) echo "it was ended by a signal" ;;

@@ -10,14 +10,13 @@
  * writes  OUT/PHOTO/page0.exr, ..., atlas.txt           an atlas for each photo
  *         DEPS                                          make dependencies: the views that were read
  *
- * --estimate prints what viewpoints will take instead. */
+ * With several --photo, what they share is read once. --estimate prints what viewpoints will take instead. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "common/base/cli.h"
-#include "common/base/file_path.h"
-#include "common/base/log.h"
+#include "common/texture/bake_inputs.h"
 #include "stages/bake_vdta/estimate.h"
 
 _Static_assert(offsetof(struct vdta_params, texture) == 0, "the table below has offsets into struct texture_params");
@@ -36,23 +35,15 @@ static enum status check_params(const void *values, struct err *err)
 
 struct files {
     const char *model, *axes, *estimate;
-    struct cli_list photos;
+    struct cli_list photos, deps;
 };
 
 static enum status read_scene(struct bake_scene *s, const struct files *f, struct provenance *prov, struct err *err)
 {
-    char path[FILE_PATH];
-    enum status st = camera_set_read_cameras(&s->set, s->views, err);
-    if (!st) st = camera_set_add_camera_inputs(prov, s->views, err);
-    if (!st) st = provenance_add_in(prov, "views", s->views, "lenses", ".txt", path, err);
-    if (!st) st = lens_list_read(&s->lenses, path, err);
-    if (!st) st = model_axes_read(&s->axes, f->axes, err);
-    if (!st) st = provenance_add_file(prov, "model/axes.txt", f->axes, err);
+    enum status st = bake_inputs_read(&s->set, &s->lenses, &s->axes, s->views, f->axes, prov, err);
     if (!st) st = solid_mesh_read(&s->model, f->model, err);
     if (!st) st = provenance_add_file(prov, "model/model.txt", f->model, err);
     if (!st) st = surfaces_make(&s->surfaces, &s->model, 1, err);
-    for (int i = 0; !st && i < s->set.view_count; i++)
-        s->set.views[i] = model_from_world_view(&s->axes, &s->set.views[i]);
     return st;
 }
 
@@ -64,12 +55,27 @@ static void release_scene(struct bake_scene *s)
     solid_mesh_release(&s->model);
 }
 
-static enum status bake_all(struct bake_scene *s, const struct files *f, struct provenance *prov, struct err *err)
+struct job {
+    struct bake_scene *scene;
+    const struct files *files;
+    struct provenance *prov;
+};
+
+static enum status bake_one(void *ctx, int i, struct err *err)
 {
-    enum status st = read_scene(s, f, prov, err);
-    if (!st && f->estimate) st = estimate_print(stdout, f->estimate, s, err);
-    for (int i = 0; !st && i < f->photos.count; i++) st = viewpoint_bake(s, f->photos.items[i], prov, err);
-    release_scene(s);
+    const struct job *j = ctx;
+    const struct files *f = j->files;
+    return viewpoint_bake(j->scene, f->photos.items[i], f->deps.count ? f->deps.items[i] : NULL, j->prov, err);
+}
+
+static enum status run(struct job *j, struct err *err)
+{
+    enum status st = read_scene(j->scene, j->files, j->prov, err);
+    if (!st && j->files->estimate)
+        st = estimate_print(stdout, j->files->estimate, j->scene, err);
+    else if (!st)
+        st = cli_make_each(&j->files->photos, bake_one, j, err);
+    release_scene(j->scene);
     return st;
 }
 
@@ -87,23 +93,26 @@ int main(int argc, char **argv)
         CLI_STR("reveal", &scene.reveal, CLI_REQUIRED, "folder of what the edits reveal to each view"),
         CLI_LIST("photo", &f.photos, CLI_OPTIONAL, "viewpoint to bake, as a photo's id; repeat for several"),
         CLI_STR("out", &scene.out, CLI_REQUIRED, "folder in which each viewpoint gets a folder"),
-        CLI_STR("deps", &scene.deps, CLI_OPTIONAL,
-                "make dependencies to write, with one --photo: the views that were read"),
+        CLI_LIST("deps", &f.deps, CLI_OPTIONAL,
+                 "make dependencies to write, one for each --photo or none: the views that were read"),
         CLI_STR("estimate", &f.estimate, CLI_OPTIONAL,
                 "file with a photo on each line: bakes nothing, but prints the time and memory that these will take"),
         CLI_PARAMS(vdta_param_table, &params, check_params),
         CLI_END,
     };
     struct provenance prov = {0};
+    struct job job = {&scene, &f, &prov};
     struct err err = ERR_INIT;
     const enum cli_verdict verdict = cli_parse(argc, argv, "bake_vdta", opts, &prov, &err);
     if (verdict == CLI_RUN && !f.estimate == !f.photos.count)
         err_set(&err, ST_USAGE, "give --photo, or else --estimate.");
-    else if (verdict == CLI_RUN && scene.deps && f.photos.count > 1)
-        err_set(&err, ST_USAGE, "--deps is for one --photo, but %d were given.", f.photos.count);
+    else if (verdict == CLI_RUN && f.deps.count && f.deps.count != f.photos.count)
+        err_set(&err, ST_USAGE, "found %d --photo and %d --deps; give one for each photo, or none.", f.photos.count,
+                f.deps.count);
     else if (verdict == CLI_RUN)
-        bake_all(&scene, &f, &prov, &err);
+        run(&job, &err);
     err_report(&err);
+    cli_list_release(&f.deps);
     cli_list_release(&f.photos);
     provenance_release(&prov);
     return err_exit_code(&err);

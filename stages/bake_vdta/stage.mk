@@ -17,7 +17,7 @@ define vdta_rule
 $(O)/vdta/$(1)/atlas.txt: $(O)/model/model.txt $(AXES) $(CAMERAS) $(O)/views/lenses.txt $(IDS_INDEX) $(foreach v,$(2),$(O)/views/$(v).exr \
   $(O)/ids/$(v).exr $(O)/reveal/$(v).exr) $(call needs,bake_vdta) | $(VIEW_EXR) $(IDS_EXR)
 	$$(hide)$$(call farm,bake_vdta,$(1),$$@,--model $(O)/model/model.txt --axes $(AXES) --views $(O)/views --ids $(O)/ids \
-	  --reveal $(O)/reveal --photo $(1) --out $(O)/vdta --deps $(O)/vdta/$(1).d)
+	  --reveal $(O)/reveal --out $(O)/vdta,,,--photo $(1) --deps $(O)/vdta/$(1).d)
 endef
 $(if $(MODEL_SCRIPT),$(foreach p,$(VIEWPOINTS),$(eval $(call vdta_rule,$(p),$(filter $(p) $(p)@%,$(VIEWS))))))
 -include $(wildcard $(VIEWPOINTS:%=$(O)/vdta/%.d)) # the views that each one really read

@@ -20,7 +20,7 @@ static const double WHITE_SHARE = 0.9; /* of the viewpoint's pixels are below wh
 
 struct work {
     const struct bake_scene *scene;
-    const char *photo;
+    const char *photo, *deps;
     struct provenance *prov;
     int own[MAX_OWN]; /* views of the photo, in order of name */
     int own_count;
@@ -195,7 +195,7 @@ static enum status write_deps(const struct work *w, const char *folder, struct e
         files[2 * i] = paths[2 * i];
         files[2 * i + 1] = paths[2 * i + 1];
     }
-    if (!st) st = make_deps_write(s->deps, paths[2 * n], files, (int)(2 * n), err);
+    if (!st) st = make_deps_write(w->deps, paths[2 * n], files, (int)(2 * n), err);
     free(paths);
     free(files);
     return st;
@@ -209,7 +209,7 @@ static enum status write_all(struct work *w, uint64_t bytes, const struct bake_t
     enum status st = file_path(folder, w->scene->out, w->photo, "", err);
     if (!st) st = describe(&a, w, err);
     if (!st) st = bake_write_pages(&a, &w->bake, NULL, folder, w->prov, &texels, err);
-    if (!st && w->scene->deps) st = write_deps(w, folder, err);
+    if (!st && w->deps) st = write_deps(w, folder, err);
     if (!st) st = atlas_write_list(&a, folder, w->prov, err);
     atlas_release(&a);
     if (!st)
@@ -243,13 +243,14 @@ static enum status bake_work(struct work *w, struct err *err)
     return st;
 }
 
-enum status viewpoint_bake(const struct bake_scene *scene, const char *photo, struct provenance *prov, struct err *err)
+enum status viewpoint_bake(const struct bake_scene *scene, const char *photo, const char *deps, struct provenance *prov,
+                           struct err *err)
 {
-    struct work w = {.scene = scene, .photo = photo, .prov = prov};
+    struct work w = {.scene = scene, .photo = photo, .deps = deps, .prov = prov};
     const int shared = prov->count;
     enum status st = bake_work(&w, err);
     /* the next viewpoint has other inputs */
-    provenance_drop(prov, shared);
+    provenance_keep(prov, shared);
     free(w.views);
     bake_release(&w.bake);
     return st;

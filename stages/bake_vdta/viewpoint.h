@@ -15,12 +15,12 @@ struct bake_scene {
     struct solid_mesh model;
     struct surfaces surfaces;
     const char *views, *ids, *reveal, *out; /* folders */
-    const char *deps;                       /* file of make dependencies to write; NULL: none */
     const struct vdta_params *params;
 };
 
-/* Writes OUT/PHOTO/. prov: with the inputs that all viewpoints share; more are added for this one and taken off again.
- * ST_USAGE: there is no such photo. */
-enum status viewpoint_bake(const struct bake_scene *scene, const char *photo, struct provenance *prov, struct err *err);
+/* Writes OUT/PHOTO/, and, unless it is NULL, the file of make dependencies `deps`. prov: with the inputs that all
+ * viewpoints share; more are added for this one and taken off again. ST_USAGE: there is no such photo. */
+enum status viewpoint_bake(const struct bake_scene *scene, const char *photo, const char *deps, struct provenance *prov,
+                           struct err *err);
 
 #endif

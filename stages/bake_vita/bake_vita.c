@@ -11,6 +11,7 @@
 
 #include "common/base/cli.h"
 #include "common/base/file_path.h"
+#include "common/texture/bake_inputs.h"
 #include "stages/bake_vita/vita.h"
 
 _Static_assert(offsetof(struct vita_params, texture) == 0, "the table below has offsets into struct texture_params");
@@ -63,17 +64,10 @@ static enum status read_index(struct vita_scene *s, const char *path, struct err
 static enum status read_scene(struct vita_scene *s, const struct files *f, struct provenance *prov, struct err *err)
 {
     char path[FILE_PATH];
-    enum status st = camera_set_read_cameras(&s->set, s->views, err);
-    if (!st) st = camera_set_add_camera_inputs(prov, s->views, err);
-    if (!st) st = provenance_add_in(prov, "views", s->views, "lenses", ".txt", path, err);
-    if (!st) st = lens_list_read(&s->lenses, path, err);
-    if (!st) st = model_axes_read(&s->axes, f->axes, err);
-    if (!st) st = provenance_add_file(prov, "model/axes.txt", f->axes, err);
+    enum status st = bake_inputs_read(&s->set, &s->lenses, &s->axes, s->views, f->axes, prov, err);
     if (!st) st = read_models(s, f, prov, err);
     if (!st) st = provenance_add_in(prov, "ids", s->ids, "index", ".txt", path, err);
     if (!st) st = read_index(s, path, err);
-    for (int i = 0; !st && i < s->set.view_count; i++)
-        s->set.views[i] = model_from_world_view(&s->axes, &s->set.views[i]);
     return st;
 }
 

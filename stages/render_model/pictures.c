@@ -123,7 +123,7 @@ enum status pictures_of_views(struct room *room, const struct cli_list *views, c
         if (!st)
             st = write_picture(&picture, room, &room->set.views[i], changed, radiance && changed > 0, out,
                                room->set.views[i].name, prov, err);
-        provenance_drop(prov, inputs);
+        provenance_keep(prov, inputs);
         progress_add(&progress, 1);
     }
     progress_end(&progress);
@@ -196,7 +196,7 @@ enum status pictures_of_cameras(struct room *room, const struct camera_source *s
         st = room_camera_draw(&picture, room, camera, &pair, prov, err);
         room_camera_view(&view, camera);
         if (!st) st = write_picture(&picture, room, &view, 100, true, out, camera->name, prov, err);
-        provenance_drop(prov, inputs);
+        provenance_keep(prov, inputs);
         progress_add(&progress, 1);
     }
     progress_end(&progress);
@@ -286,7 +286,7 @@ enum status pictures_of_frames(struct room *room, const struct camera_path *path
         if (!st) st = room_draw(&picture, room, &camera, &pair, -1, prov, err);
         if (!st) st = file_path(file, out, scene->name, ".exr", err);
         if (!st) st = write_frame(&picture, exposure, scene, file, prov, err);
-        provenance_drop(prov, inputs);
+        provenance_keep(prov, inputs);
         progress_add(&progress, 1);
     }
     progress_end(&progress);

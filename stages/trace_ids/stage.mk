@@ -27,11 +27,11 @@ $(O)/stamp/edits.txt: FORCE
 # Make sees whether VIEW.exr changed.
 define ids_rules
 $(O)/ids/$(1).txt $(O)/ids/$(1).exr &: $(IDS_NEEDS) $(O)/depth/$(1).exr $(O)/depth/$(1).txt
-	$$(hide)$$(call farm,trace_ids,$(1),$(O)/ids/$(1).txt $(O)/ids/$(1).exr,$(IDS_ARGS) --view $(1) --depth $(O)/depth \
+	$$(hide)$$(call farm,trace_ids,$(1),$(O)/ids/$(1).txt $(O)/ids/$(1).exr,$(IDS_ARGS) --depth $(O)/depth,,,--view $(1) \
 	  --out $(O)/ids/$(1).exr)
 $(O)/reveal/$(1).txt: $(IDS_NEEDS) $(EDIT_MODELS) $(O)/stamp/edits.txt $(if $(wildcard $(O)/reveal/$(1).exr),,FORCE)
-	$$(hide)$$(call farm,trace_ids,reveal-$(1),$(O)/reveal/$(1).txt,$(IDS_ARGS) --view $(1) --reveal \
-	  $(EDIT_MODELS:%=--edit %) --out $(O)/reveal/$(1).exr)
+	$$(hide)$$(call farm,trace_ids,reveal-$(1),$(O)/reveal/$(1).txt,$(IDS_ARGS) --reveal $(EDIT_MODELS:%=--edit %),,,--view $(1) \
+	  --out $(O)/reveal/$(1).exr)
 $(O)/reveal/$(1).exr: | $(O)/reveal/$(1).txt
 endef
 $(foreach v,$(IDS_VIEWS),$(eval $(call ids_rules,$(v))))

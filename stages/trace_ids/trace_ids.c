@@ -1,5 +1,7 @@
 /* trace_ids.c - which faces of the solid model each view shows, how far they are, and where furniture hides them.
  *
+ * With several --view, as many --out; the model and the cameras are read once for all of them.
+ *
  * reads   MODEL, AXES                                   the solid model and its frame
  *         VIEWS/cameras.txt, images.txt                 the cameras
  *         DEPTH/VIEW.exr, VIEW.txt                      the view's layered depth
@@ -11,7 +13,9 @@
  *         VIEW.txt beside OUT                           how many pixels each edit reveals
  * With --index instead:
  * reads   MODEL, AXES, VIEWS; IDS/VIEW.txt of all views
- * writes  OUT                                           the views of each face, best first */
+ * writes  OUT                                           the views of each face, best first
+ *
+ * --estimate prints what views will take instead, and reads nothing but the cameras. */
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -22,6 +26,7 @@
 #include "common/base/log.h"
 #include "common/base/outfile.h"
 #include "common/base/textfile.h"
+#include "stages/trace_ids/estimate.h"
 #include "stages/trace_ids/reveal.h"
 #include "stages/trace_ids/view_ranks.h"
 
@@ -30,12 +35,12 @@ const struct param trace_param_table[] = {TRACE_PARAMS(PARAM_ROW) PARAM_END};
 #undef PARAM_STRUCT
 
 struct job {
-    const char *model, *axes, *views, *view, *depth, *index, *out;
+    const char *model, *axes, *views, *depth, *index, *estimate;
     bool reveal;
-    struct cli_list edits;
+    struct cli_list view, out, edits;
     struct trace_params params;
     struct provenance prov;
-    struct model_rays rays;
+    struct model_rays rays, *edited; /* edited: a model for each of edits; owned */
     struct model_axes frame;
     struct camera_set set;
 };
@@ -50,10 +55,41 @@ static enum status read_inputs(struct job *j, struct err *err)
     return ST_OK;
 }
 
-static enum status find_view(const struct view **view, const struct job *j, struct err *err)
+/* The name of an edit, from .../E/model.txt. */
+static void edit_name(char name[FILE_PATH], const char *path)
 {
-    const int at = camera_set_find(&j->set, j->view);
-    if (at < 0) return err_set(err, ST_DATA, "%s/images.txt has no view %s.", j->views, j->view);
+    const char *end = strrchr(path, '/'), *begin = end;
+    while (begin && begin > path && begin[-1] != '/') begin--;
+    snprintf(name, FILE_PATH, "%.*s", end ? (int)(end - begin) : 0, begin ? begin : "");
+}
+
+static enum status read_edits(struct job *j, struct err *err)
+{
+    const size_t n = (size_t)j->edits.count;
+    if (!(j->edited = calloc(n + 1, sizeof *j->edited))) return err_nomem(err, "models", n * sizeof *j->edited);
+    for (size_t i = 0; i < n; i++) {
+        char name[FILE_PATH], input[FILE_PATH + 32];
+        edit_name(name, j->edits.items[i]);
+        snprintf(input, sizeof input, "remodel/%s/model.txt", name);
+        if (provenance_add_file(&j->prov, input, j->edits.items[i], err) ||
+            model_rays_read(&j->edited[i], j->edits.items[i], MODEL_WITH_GLASS, err))
+            return err->status;
+    }
+    return ST_OK;
+}
+
+static void release_inputs(struct job *j)
+{
+    for (int i = 0; j->edited && i < j->edits.count; i++) model_rays_release(&j->edited[i]);
+    free(j->edited);
+    camera_set_release(&j->set);
+    model_rays_release(&j->rays);
+}
+
+static enum status find_view(const struct view **view, const struct job *j, const char *name, struct err *err)
+{
+    const int at = camera_set_find(&j->set, name);
+    if (at < 0) return err_set(err, ST_DATA, "%s/images.txt has no view %s.", j->views, name);
     *view = &j->set.views[at];
     return ST_OK;
 }
@@ -80,17 +116,19 @@ static enum status record_path(char path[FILE_PATH], const char *out, struct err
     return ST_OK;
 }
 
-static enum status trace_view(struct job *j, struct err *err)
+static enum status trace_view(void *ctx, int i, struct err *err)
 {
+    struct job *j = ctx;
+    const int shared = j->prov.count;
+    const char *out = j->out.items[i];
     struct layered_depth depth = {0};
     struct view_trace trace = {0};
     struct view_ids ids = {0};
     struct view_record record = {0};
     const struct view *view = NULL;
     char text[FILE_PATH];
-    enum status st = record_path(text, j->out, err);
-    if (!st) st = read_inputs(j, err);
-    if (!st) st = find_view(&view, j, err);
+    enum status st = record_path(text, out, err);
+    if (!st) st = find_view(&view, j, j->view.items[i], err);
     if (!st) st = read_depth(&depth, j, view, err);
     if (!st) st = view_trace(&trace, &j->rays, &j->frame, view, err);
     if (!st && trace.in_solid)
@@ -102,7 +140,8 @@ static enum status trace_view(struct job *j, struct err *err)
     if (!st) st = find_clutter(&ids, &trace, &depth, j->frame.scale, &j->params, err);
     if (!st) st = view_record_make(&record, &ids, &trace, &j->params, err);
     if (!st) st = view_record_write(&record, text, &j->prov, err);
-    if (!st) st = view_ids_write(&ids, view, j->out, &j->prov, err);
+    if (!st) st = view_ids_write(&ids, view, out, &j->prov, err);
+    provenance_keep(&j->prov, shared);
     view_record_release(&record);
     view_ids_release(&ids);
     view_trace_release(&trace);
@@ -110,43 +149,31 @@ static enum status trace_view(struct job *j, struct err *err)
     return st;
 }
 
-/* The name of an edit, from .../E/model.txt. */
-static void edit_name(char name[FILE_PATH], const char *path)
-{
-    const char *end = strrchr(path, '/'), *begin = end;
-    while (begin && begin > path && begin[-1] != '/') begin--;
-    snprintf(name, FILE_PATH, "%.*s", end ? (int)(end - begin) : 0, begin ? begin : "");
-}
-
 /* Adds what one edit reveals, and a line to the record. */
-static enum status add_edit(struct reveal *r, FILE *record, struct job *j, const struct view *view, const char *path,
+static enum status add_edit(struct reveal *r, FILE *record, const struct job *j, const struct view *view, int edit,
                             struct err *err)
 {
-    struct model_rays model = {0};
     struct view_trace trace = {0};
-    char name[FILE_PATH], input[FILE_PATH + 32], quoted[FILE_PATH];
+    char name[FILE_PATH], quoted[FILE_PATH];
     int64_t pixels = 0;
-    edit_name(name, path);
-    snprintf(input, sizeof input, "remodel/%s/model.txt", name);
-    enum status st = provenance_add_file(&j->prov, input, path, err);
-    if (!st) st = model_rays_read(&model, path, MODEL_WITH_GLASS, err);
-    if (!st) st = view_trace(&trace, &model, &j->frame, view, err);
+    edit_name(name, j->edits.items[edit]);
+    enum status st = view_trace(&trace, &j->edited[edit], &j->frame, view, err);
     if (!st) st = reveal_add(r, &trace, &pixels, err);
     if (!st) st = textfile_quote(name, quoted, sizeof quoted, err);
     if (!st) fprintf(record, "edit %s %" PRId64 "\n", quoted, pixels);
     view_trace_release(&trace);
-    model_rays_release(&model);
     return st;
 }
 
-static enum status write_reveal(const struct reveal *r, const struct job *j, const struct view *view, struct err *err)
+static enum status write_reveal(const struct reveal *r, const struct job *j, const struct view *view, const char *out,
+                                struct err *err)
 {
     /* without inputs and parameters: the bytes change only with what is revealed */
     const struct provenance prov = {.stage = j->prov.stage, .version = j->prov.version};
     struct view_reveal result = {0};
     bool changed = false;
     enum status st = reveal_result(&result, r, err);
-    if (!st) st = view_reveal_write(&result, view, j->out, &prov, &changed, err);
+    if (!st) st = view_reveal_write(&result, view, out, &prov, &changed, err);
     if (!st && !changed) log_note("%s: what edits reveal has not changed", view->name);
     view_reveal_release(&result);
     return st;
@@ -165,21 +192,21 @@ static enum status write_reveal_record(const struct job *j, const char *path, co
     return st;
 }
 
-static enum status reveal_view(struct job *j, struct err *err)
+static enum status reveal_view(void *ctx, int i, struct err *err)
 {
+    const struct job *j = ctx;
     struct view_trace trace = {0};
     struct reveal reveal = {.base = &trace};
     const struct view *view = NULL;
     char text[FILE_PATH], *lines = NULL;
     size_t size = 0;
     FILE *record = open_memstream(&lines, &size);
-    enum status st = record ? record_path(text, j->out, err) : err_nomem(err, "a record", 1);
-    if (!st) st = read_inputs(j, err);
-    if (!st) st = find_view(&view, j, err);
+    enum status st = record ? record_path(text, j->out.items[i], err) : err_nomem(err, "a record", 1);
+    if (!st) st = find_view(&view, j, j->view.items[i], err);
     if (!st) st = view_trace(&trace, &j->rays, &j->frame, view, err);
-    for (int i = 0; !st && i < j->edits.count; i++) st = add_edit(&reveal, record, j, view, j->edits.items[i], err);
+    for (int e = 0; !st && e < j->edits.count; e++) st = add_edit(&reveal, record, j, view, e, err);
     if (record) fclose(record);
-    if (!st) st = write_reveal(&reveal, j, view, err);
+    if (!st) st = write_reveal(&reveal, j, view, j->out.items[i], err);
     if (!st) st = write_reveal_record(j, text, lines, err);
     free(lines);
     reveal_release(&reveal);
@@ -203,8 +230,8 @@ static enum status index_faces(struct job *j, struct err *err)
 {
     struct view_ranks ranks = {.max_views = j->params.index_views};
     int empty = 0;
-    enum status st = read_inputs(j, err);
-    if (!st) warn_if_outside(j);
+    enum status st = ST_OK;
+    warn_if_outside(j);
     for (int i = 0; !st && i < j->set.view_count; i++) {
         struct view_record record = {0};
         char path[FILE_PATH];
@@ -214,7 +241,7 @@ static enum status index_faces(struct job *j, struct err *err)
         empty += !st && !record.count;
         view_record_release(&record);
     }
-    if (!st) st = view_ranks_write(&ranks, j->out, &j->prov, err);
+    if (!st) st = view_ranks_write(&ranks, j->out.items[0], &j->prov, err);
     if (!st && empty) log_note("%d of %d views show no face of the model", empty, j->set.view_count);
     view_ranks_release(&ranks);
     return st;
@@ -222,11 +249,33 @@ static enum status index_faces(struct job *j, struct err *err)
 
 static enum status check_usage(const struct job *j, struct err *err)
 {
+    if (j->estimate && (j->view.count || j->reveal || j->index))
+        return err_set(err, ST_USAGE, "--estimate excludes --view, --reveal and --index.");
+    if (j->estimate) return ST_OK;
     if (j->reveal && j->index) return err_set(err, ST_USAGE, "--reveal and --index exclude each other.");
     if (j->edits.count && !j->reveal) return err_set(err, ST_USAGE, "--edit is only for --reveal.");
-    if (!j->index && !j->view) return err_set(err, ST_USAGE, "--view is missing; see --help.");
+    if (!j->index && !j->view.count) return err_set(err, ST_USAGE, "--view is missing; see --help.");
     if (!j->index && !j->reveal && !j->depth) return err_set(err, ST_USAGE, "--depth is missing; see --help.");
+    if (j->out.count != (j->index ? 1 : j->view.count))
+        return err_set(err, ST_USAGE, "found %d --view and %d --out; give an --out for each view, or one for --index.",
+                       j->view.count, j->out.count);
     return ST_OK;
+}
+
+static enum status estimate(struct job *j, struct err *err)
+{
+    enum status st = camera_set_read_cameras(&j->set, j->views, err);
+    return st ? st : estimate_print(stdout, j->estimate, &j->set, j->views, j->edits.count, err);
+}
+
+static enum status run(struct job *j, struct err *err)
+{
+    if (j->estimate) return estimate(j, err);
+    enum status st = read_inputs(j, err);
+    if (!st) st = read_edits(j, err);
+    if (st) return st;
+    if (j->index) return index_faces(j, err);
+    return cli_make_each(&j->view, j->reveal ? reveal_view : trace_view, j, err);
 }
 
 int main(int argc, char **argv)
@@ -237,24 +286,26 @@ int main(int argc, char **argv)
         CLI_STR("model", &j.model, CLI_REQUIRED, "model.txt of the unedited model"),
         CLI_STR("axes", &j.axes, CLI_REQUIRED, "the model's frame, axes.txt"),
         CLI_STR("views", &j.views, CLI_REQUIRED, "folder of cameras"),
-        CLI_STR("view", &j.view, CLI_OPTIONAL, "view to trace"),
+        CLI_LIST("view", &j.view, CLI_OPTIONAL, "view to trace; repeat for several"),
         CLI_STR("depth", &j.depth, CLI_OPTIONAL, "folder of the views' depth"),
         CLI_FLAG("reveal", &j.reveal, "find what edits reveal in the view, in place of its ids"),
-        CLI_LIST("edit", &j.edits, CLI_OPTIONAL, "with --reveal: model.txt of an edited model"),
+        CLI_LIST("edit", &j.edits, CLI_OPTIONAL, "with --reveal, or --estimate: model.txt of an edited model"),
         CLI_STR("index", &j.index, CLI_OPTIONAL, "folder of the views' lists of faces: index them, in place of a view"),
-        CLI_STR("out", &j.out, CLI_REQUIRED, "EXR to write, with a list beside it; with --index the index"),
+        CLI_LIST("out", &j.out, CLI_REQUIRED,
+                 "EXR to write, with a list beside it, one for each --view; with --index the index"),
+        CLI_STR("estimate", &j.estimate, CLI_OPTIONAL,
+                "file with lines VIEW ids and VIEW reveal: traces nothing, but prints the time and memory that these "
+                "will take"),
         CLI_PARAMS(trace_param_table, &j.params, NULL),
         CLI_END,
     };
     struct err err = ERR_INIT;
-    if (cli_parse(argc, argv, "trace_ids", opts, &j.prov, &err) != CLI_RUN || check_usage(&j, &err) ||
-        (j.index    ? index_faces(&j, &err)
-         : j.reveal ? reveal_view(&j, &err)
-                    : trace_view(&j, &err)))
+    if (cli_parse(argc, argv, "trace_ids", opts, &j.prov, &err) != CLI_RUN || check_usage(&j, &err) || run(&j, &err))
         err_report(&err);
+    release_inputs(&j);
+    cli_list_release(&j.view);
+    cli_list_release(&j.out);
     cli_list_release(&j.edits);
-    camera_set_release(&j.set);
-    model_rays_release(&j.rays);
     provenance_release(&j.prov);
     return err_exit_code(&err);
 }

@@ -1,10 +1,10 @@
 # scaling.sh - cost of a view of a house, by the number of its views (docs/scaling.md).
 #
-# The houses are made by scaling_house.c: twelve views and about fourteen faces a room. Of each house the twelve views of a room
-# in the middle are worked on, one process each, with one thread. `trace`: trace_ids; `read`: the same of a view of 8 x 8
-# px, which is what is paid before the first ray: the model, the cameras and the points are read. `bake`: bake_vdta of four
-# of the room's viewpoints; the views of other rooms stand in the index without a face. Seconds, core-seconds
-# and MiB read are those of one view. BENCH_VIEWS ("100 1000 10000") sets other houses.
+# The houses are made by scaling_house.c: twelve views and about fourteen faces a room. Of each house the 48 views of four rooms
+# in the middle are worked on, by one process with one thread; a run puts up to 50 into one here, and as many as take ten
+# minutes on a cluster. `trace`: trace_ids; `bake`: bake_vdta; the views of other rooms stand in the index without a face.
+# `trace_alone`, `bake_alone`: a process for each view, of twelve of them. `read`: the same for views of 8 x 8 px, which is what
+# is paid before the first ray: the model and the cameras are read. Seconds, core-seconds and MiB read are those of one view. BENCH_VIEWS ("100 1000 10000") sets other houses.
 title="cost of a view in a house of many"
 note="Views of 853 x 853 px; one thread."
 x=views x_label="Views of the house" y=view_cpu_s y_label="Core-seconds a view"
@@ -14,7 +14,7 @@ repeats=3
 settings()
 {
     printf 'series\tviews\n'
-    for n in ${BENCH_VIEWS:-100 1000 10000}; do printf 'trace\t%s\nread\t%s\nbake\t%s\n' "$n" "$n" "$n"; done
+    for n in ${BENCH_VIEWS:-100 1000 10000}; do printf '%s\n' trace trace_alone read bake bake_alone | sed "s/\$/\t$n/"; done
 }
 
 prepare()
@@ -22,7 +22,7 @@ prepare()
     [ -x "$B/bin/trace_ids" ] || missing "there is no program $B/bin/trace_ids; this revision has no index of faces."
     local n
     for n in ${BENCH_VIEWS:-100 1000 10000}; do
-        "$B/tests/bench/scaling_house" --out "$fast/trace$n" --views "$n" --size 853 --first "$(first_of "$n")" --count 12 >/dev/null 2>&1
+        "$B/tests/bench/scaling_house" --out "$fast/trace$n" --views "$n" --size 853 --first "$(first_of "$n")" --count 48 >/dev/null 2>&1
         index_house "$n"
         "$B/tests/bench/scaling_house" --out "$fast/read$n" --views "$n" --size 8 --first "$(first_of "$n")" --count 12 >/dev/null 2>&1
     done
@@ -32,43 +32,47 @@ house() { printf -- '--model %s/model/model.txt --axes %s/model/axes.txt --views
 # the faces of the room's views, and the index that a bake reads
 index_house() # VIEWS
 {
-    local to=$fast/trace$1 k v
+    local to=$fast/trace$1
     mkdir -p "$to/ids"
     seq 0 $(($1 - 1)) | awk -v ids="$to/ids" '{ f = sprintf("%s/v%06d.txt", ids, $1); print "remodel-view-faces 1" >f; close(f) }'
-    for ((k = $(first_of "$1"); k < $(first_of "$1") + 12; k++)); do
-        v=$(printf v%06d $k)
-        # shellcheck disable=SC2046 # a list of options
-        "$B/bin/trace_ids" $(house "$to") --depth "$to/depth" --view "$v" --out "$to/ids/$v.exr" 2>/dev/null
-        # shellcheck disable=SC2046
-        "$B/bin/trace_ids" $(house "$to") --view "$v" --reveal --out "$to/reveal/$v.exr" 2>/dev/null
-    done
+    # shellcheck disable=SC2046 # a list of options
+    "$B/bin/trace_ids" $(house "$to") --depth "$to/depth" $(views_of "$1" 48 | sed "s|.*|--view & --out $to/ids/&.exr|") 2>/dev/null
+    # shellcheck disable=SC2046
+    "$B/bin/trace_ids" $(house "$to") --reveal $(views_of "$1" 48 | sed "s|.*|--view & --out $to/reveal/&.exr|") 2>/dev/null
     # shellcheck disable=SC2046
     "$B/bin/trace_ids" $(house "$to") --index "$to/ids" --out "$to/ids/index.txt" 2>/dev/null
 }
 # the first view of the room in the middle
 first_of() { local room=$(($1 / 24)); echo $((12 * room)); }
+# views_of VIEWS COUNT: the names of COUNT views from there on
+views_of() { seq -f v%06g "$(first_of "$1")" $(($(first_of "$1") + $2 - 1)); }
 
-sample_bake() # VIEWS
+# command_of SERIES HOUSE VIEW...: the program and its options
+command_of()
 {
-    # shellcheck disable=SC2016
-    measured bash -c 'for ((k = $2; k < $2 + 4; k++)); do
-            "$0/bin/bake_vdta" --threads 1 --model "$1/model/model.txt" --axes "$1/model/axes.txt" --views "$1/views" --ids "$1/ids" --reveal "$1/reveal" --photo "$(printf v%06d $k)" --out "$1/vdta" 2>/dev/null || exit 1
-        done; sed -n "s/^rchar: /rchar /p" /proc/$$/io' "$B" "$fast/trace$1" "$(first_of "$1")" |
-        awk '$1 == "seconds" { print "seconds", $2 / 4 } $1 == "cpu_seconds" { print "view_cpu_s", $2 / 4 } $1 == "peak_mib" { print }
-             $1 == "rchar" { printf "read_mib %.1f\n", $2 / 4 / 2^20 }'
+    local series=$1 house=$2 v; shift 2
+    case $series in
+    bake*)
+        echo "bake_vdta --ids $house/ids --reveal $house/reveal --out $house/vdta"
+        printf -- '--photo %s\n' "$@" ;;
+    *)
+        echo "trace_ids --depth $house/depth"
+        for v; do echo "--view $v --out $house/ids/$v.exr"; done ;;
+    esac
+    house "$house"
 }
-
 sample() # SERIES VIEWS
 {
-    local house=$fast/$1$2
-    if [ "$1" = bake ]; then sample_bake "$2"; return; fi
+    local house=$fast/$1$2 k views count=12 each=1
+    case $1 in trace* | bake*) house=$fast/trace$2 ;; esac
+    case $1 in trace | bake) count=48 each=48 ;; esac
+    mapfile -t views < <(views_of "$2" $count)
+    for ((k = 0; k < count; k += each)); do command_of "$1" "$house" "${views[@]:k:each}" | tr '\n' ' '; echo; done >"$fast/commands"
     # a shell's counters include those of the processes that it has waited for
     # shellcheck disable=SC2016
-    measured bash -c 'for ((k = $2; k < $2 + 12; k++)); do
-            v=$(printf v%06d $k)
-            "$0/bin/trace_ids" --threads 1 --model "$1/model/model.txt" --axes "$1/model/axes.txt" --views "$1/views" --depth "$1/depth" --view $v --out "$1/ids/$v.exr" 2>/dev/null || exit 1
-        done; sed -n "s/^rchar: /rchar /p" /proc/$$/io' "$B" "$house" "$(first_of "$2")" |
-        awk '$1 == "seconds" { print "seconds", $2 / 12 } $1 == "cpu_seconds" { print "view_cpu_s", $2 / 12 } $1 == "peak_mib" { print }
-             $1 == "rchar" { printf "read_mib %.1f\n", $2 / 12 / 2^20 }'
-    awk '$1 == "face" { n++ } END { print "faces_seen", n / 12 }' "$house"/ids/*.txt
+    measured bash -c 'while read -r command; do "$0/bin/"$command --threads 1 2>/dev/null </dev/null || exit 1; done <"$1"
+            sed -n "s/^rchar: /rchar /p" /proc/$$/io' "$B" "$fast/commands" |
+        awk -v n=$count '$1 == "seconds" { print "seconds", $2 / n } $1 == "cpu_seconds" { print "view_cpu_s", $2 / n } $1 == "peak_mib" { print }
+             $1 == "rchar" { printf "read_mib %.1f\n", $2 / n / 2^20 }'
+    [ "$house" = "$fast/read$2" ] || awk '$1 == "face" { n++ } END { print "faces_seen", n / 48 }' "$house"/ids/*.txt
 }

@@ -53,10 +53,26 @@ bytes_do_not_depend_on_threads()
     cmp two/index1.txt $O/ids/index.txt || diff <(grep -v '^#' two/index1.txt) <(grep -v '^#' $O/ids/index.txt)
 }
 
+several_views_of_a_process_have_the_bytes_of_one_alone()
+{
+    local v options=() n
+    for v in "$O"/ids/*.exr; do v=$(basename "$v" .exr); options+=(--view "$v" --out "two/all/$v.exr"); done
+    n=$((${#options[@]} / 4))
+    trace 0 "made 2 of $n: " "${inputs[@]}" --depth $O/depth "${options[@]}"
+    diff -r -x index.txt two/all $O/ids; rm -r two/all
+    trace 0 "made $n of $n: " "${inputs[@]}" --reveal --edit $O/remodel/bare/model.txt "${options[@]}"
+    diff -r two/all $O/reveal; rm -r two/all
+    options[1]=nobody
+    trace 1 "1 of $n failed" "${inputs[@]}" --depth $O/depth "${options[@]}"
+    grep -q "failed 1 of $n: nobody\$" err.txt || { cat err.txt; fail "it is not named"; }
+    [ "$(ls two/all/*.exr | wc -l)" = $((n - 1)) ] || fail "the others were not made"
+}
+
 errors_say_what_is_wrong()
 {
     trace 2 '--view is missing' "${inputs[@]}" --depth $O/depth --out made/a.exr
     trace 2 '--depth is missing' "${inputs[@]}" --view "$view" --out made/a.exr
+    trace 2 'found 2 --view and 1 --out' "${inputs[@]}" --depth $O/depth --view a --view b --out made/a.exr
     trace 2 'exclude each other' "${inputs[@]}" --reveal --index $O/ids --out made/a.txt
     trace 2 '--edit is only for --reveal' "${inputs[@]}" --view "$view" --depth $O/depth --edit x/model.txt --out made/a.exr
     trace 2 'ends in .exr' "${inputs[@]}" --view "$view" --depth $O/depth --out made/a
@@ -67,6 +83,25 @@ errors_say_what_is_wrong()
     trace 1 "bad/$view.txt:" "${inputs[@]}" --index bad --out made/index.txt
     rm bad/"$view".txt
     trace 1 "bad/$view.txt" "${inputs[@]}" --index bad --out made/index.txt
+}
+
+an_estimate_says_what_the_views_take()
+{
+    printf '%s ids\n%s reveal\n' "$view" "$view" >list
+    trace 0 used "${inputs[@]}" --out made/a.exr --estimate list --edit $O/remodel/bare/model.txt
+    awk '$1 == "estimate" { found = NF == 6 && $2 == 2 && $3 > 0 && $4 > 10 && $5 > 0 && $6 < $3 } END { exit !found }' out.txt ||
+        { cat out.txt; fail "no line of the estimate, or a wrong one"; }
+    [ ! -e made ] || fail "an estimate wrote something"
+    echo nobody ids >list
+    trace 2 'there is no view nobody' "${inputs[@]}" --out made/a.exr --estimate list
+    echo "$view" depth >list
+    trace 1 'list:1: found "depth", wanted ids or reveal' "${inputs[@]}" --out made/a.exr --estimate list
+    trace 2 '--estimate excludes' "${inputs[@]}" --out made/a.exr --estimate list --view "$view"
+    rm -rf $O/ids $O/reveal
+    make -s plan DEPS=manual SFM=set/model SCENE=t TO=ids >plan 2>&1 || { cat plan; fail "make plan"; }
+    # six views twice, and the index
+    grep -qE '^trace_ids +13 +4 +[0-9.]+ +0.25 ' plan || { cat plan; fail "make plan does not say what the views take"; }
+    m ids
 }
 
 cameras_outside_the_model_give_a_warning()
@@ -92,4 +127,4 @@ make_remakes_only_what_changed()
     ! grep -q '^edit' $O/reveal/"$view".txt || fail "an edit that went is still listed"
 }
 
-for t in make_makes_ids_reveals_and_an_index a_closed_room_fills_every_view bytes_do_not_depend_on_threads errors_say_what_is_wrong cameras_outside_the_model_give_a_warning make_remakes_only_what_changed; do run "$t"; done
+for t in make_makes_ids_reveals_and_an_index a_closed_room_fills_every_view bytes_do_not_depend_on_threads several_views_of_a_process_have_the_bytes_of_one_alone errors_say_what_is_wrong an_estimate_says_what_the_views_take cameras_outside_the_model_give_a_warning make_remakes_only_what_changed; do run "$t"; done

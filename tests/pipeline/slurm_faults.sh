@@ -1,5 +1,6 @@
 # What goes wrong on a cluster ends with the right bytes, or with a list of what was not made and why; the next run makes just
-# that. The stage is a stand-in: a shell command that writes a known product.
+# that. In most tests the stage is a stand-in: a shell command that writes a known product; in the last ones it is bake_vdta, six
+# viewpoints by one process.
 . tests/lib.sh
 . tests/cluster.sh
 project faults
@@ -126,21 +127,68 @@ processes_on()
         [ "$(cat "/proc/${parent:-0}/comm" 2>/dev/null)" != slurmstepd ] || echo "$parent"
     done
 }
-# last, since the node does not come back
-a_node_killed_in_the_middle_costs_nothing_but_time()
+
+# bakes: the atlases of the scene below, on the cluster
+bakes() { make -s DEPS=manual SFM=set/model SCENE=baked JOBS=slurm VIEWS_PER_JOB=6 vdta >bakes.log 2>&1; }
+J=out/baked/jobs/bake_vdta
+a_local_run_bakes_what_the_cluster_must()
 {
-    plan_missing lost 9 'sleep 1'
-    SLURM_ARGS=--exclusive farm lost 3 &
-    local run=$! task node
-    wait_for some_verdict lost/jobs 1
-    node=$(squeue -h -r -t R -j "$(job_of lost)" -o '%K %N' | sed -n 's/^1 //p')
+    photos set >/dev/null
+    boxed baked textures
+    make -s DEPS=manual SFM=set/model SCENE=baked vdta >local.log 2>&1 || { cat local.log; fail "local run"; }
+    [ "$(ls out/baked/vdta/*/atlas.txt | wc -l)" = 6 ] || fail "wanted six atlases"
+    cp -a out/baked/vdta whole
+}
+# hold: bakes wait in the fourth viewpoint, which reads a pipe that nobody writes to; go_on: no longer
+held=out/baked/reveal/photo_4.exr
+hold() { rm -rf out/baked/vdta $J; mv $held held.exr; mkfifo $held; }
+go_on() { rm $held; mv held.exr $held; }
+three_are_good() { [ "$(cat $J/verdicts/0.0 2>/dev/null | grep -c ' 0 end$')" = 3 ]; }
+times_of_three() { stat -c '%n %Y %i' out/baked/vdta/photo_[123]/atlas.txt; }
+bakes_are_right()
+{
+    [ ! -e $J/failed.txt ] || fail "there is a failed.txt"
+    times_of_three | diff three - || fail "what was made before was made again"
+    diff -r -x '.*' whole out/baked/vdta || fail "other bytes came out"
+}
+
+bakes_that_are_told_to_end_are_listed_and_made_by_the_next_run()
+{
+    hold
+    bakes &
+    local run=$! rc=0
+    wait_for three_are_good
+    scancel --signal=TERM --full "$(cat $J/jobs)_0" || scancel --signal=TERM --full "$(cat $J/jobs)"
+    wait "$run" || rc=$?
+    go_on
+    [ "$rc" != 0 ] || { cat bakes.log; fail "the run did not fail"; }
+    [ "$(cut -f1 $J/failed.txt | tr '\n' ' ')" = "photo_4 photo_5 photo_6 " ] || { cat $J/failed.txt bakes.log; fail "other viewpoints are listed"; }
+    grep -qP '^photo_4\tit was ended by a signal\t' $J/failed.txt || { cat $J/failed.txt; fail "it does not say why"; }
+    times_of_three >three
+    bakes || { cat bakes.log; fail "the next run"; }
+    grep -q '^bake_vdta: job [0-9]* of 1 tasks, 3 pieces of work' bakes.log || { cat bakes.log; fail "the next run makes something else than the rest"; }
+    bakes_are_right
+}
+
+# last, since the node does not come back
+a_node_killed_in_the_middle_of_bakes_costs_nothing_but_time()
+{
+    hold
+    SLURM_ARGS=--exclusive bakes &
+    local run=$! node
+    wait_for three_are_good
+    times_of_three >three
+    node=$(squeue -h -r -t R -j "$(cat $J/jobs)" -o '%K %N' | sed -n 's/^0 //p')
     # the node's daemon, and all that it started, are gone at once
     for p in $(processes_on "$node"); do kill -9 "$p" 2>/dev/null || true; done
-    wait "$run" || { cat lost.log; fail "the run failed"; }
-    [ -e lost/jobs/verdicts/1.1 ] || { ls lost/jobs/verdicts; fail "no task was started again"; }
-    right lost 9
+    go_on
+    wait "$run" || { cat bakes.log; fail "the run failed"; }
+    [ -e $J/verdicts/0.1 ] || { ls $J/verdicts; fail "the task was not started again"; }
+    bakes_are_right
 }
 
 for t in a_task_that_is_started_again_skips_what_is_made a_task_that_is_told_to_end_is_listed_and_made_by_the_next_run \
     a_task_over_its_time_limit_is_listed_and_gets_twice_the_time a_full_disk_is_listed_and_the_next_run_makes_the_rest \
-    an_array_may_be_larger_than_slurm_allows a_node_killed_in_the_middle_costs_nothing_but_time; do run "$t"; done
+    an_array_may_be_larger_than_slurm_allows; do run "$t"; done
+for t in a_local_run_bakes_what_the_cluster_must bakes_that_are_told_to_end_are_listed_and_made_by_the_next_run \
+    a_node_killed_in_the_middle_of_bakes_costs_nothing_but_time; do run "$t"; done

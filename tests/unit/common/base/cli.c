@@ -251,6 +251,67 @@ static void forked_children_print_no_report(void **state)
     free(output);
 }
 
+/* Fails for a name that begins with "bad". */
+static enum status make_one(void *ctx, int i, struct err *err)
+{
+    const struct cli_list *names = ctx;
+    if (!strncmp(names->items[i], "bad", 3)) return err_set(err, ST_IO, "%s cannot be made.", names->items[i]);
+    log_note("at work on %s", names->items[i]);
+    return ST_OK;
+}
+
+static int making_main(void *ctx)
+{
+    char **argv = ctx;
+    struct cli_list names = {0};
+    const struct cli_opt opts[] = {CLI_LIST("name", &names, CLI_REQUIRED, "what to make"), CLI_END};
+    struct provenance prov = {0};
+    struct err err = ERR_INIT;
+    int argc = 0;
+    while (argv[argc]) argc++;
+    if (cli_parse(argc, argv, "making", opts, &prov, &err) == CLI_RUN) cli_make_each(&names, make_one, &names, &err);
+    err_report(&err);
+    cli_list_release(&names);
+    provenance_release(&prov);
+    return err_exit_code(&err);
+}
+
+static void one_piece_is_made_without_further_words(void **state)
+{
+    const char *good[] = {"making", "--name=a", NULL}, *bad[] = {"making", "--name=bad", NULL};
+    char *output;
+    (void)state;
+    assert_int_equal(child_run(making_main, good, &output), 0);
+    assert_ptr_equal(strstr(output, "making: at work on a\nmaking: used "), output);
+    assert_null(strstr(output, "made"));
+    free(output);
+    assert_int_equal(child_run(making_main, bad, &output), 1);
+    assert_ptr_equal(strstr(output, "making: error: bad cannot be made.\nmaking: used "), output);
+    assert_null(strstr(output, "failed"));
+    free(output);
+}
+
+static void of_several_pieces_each_has_its_own_end(void **state)
+{
+    const char *argv[] = {"making", "--name=a", "--name=bad", "--name=c", NULL};
+    static const char *const parts[] = {"making: at work on a\nmaking: used ",
+                                        "\nmaking: made 1 of 3: a\n",
+                                        "making: error: bad cannot be made.\nmaking: used ",
+                                        "\nmaking: failed 2 of 3: bad\n",
+                                        "making: at work on c\nmaking: used ",
+                                        "\nmaking: made 3 of 3: c\n",
+                                        "making: error: 1 of 3 failed; the reasons are above.\n"};
+    char *output;
+    (void)state;
+    assert_int_equal(child_run(making_main, argv, &output), 1);
+    const char *at = output;
+    for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
+        at = strstr(at, parts[i]);
+        if (!at) fail_msg("no \"%s\" in its place in \"%s\"", parts[i], output);
+    }
+    free(output);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -262,6 +323,8 @@ int main(void)
         cmocka_unit_test(an_option_can_set_a_parameter),
         cmocka_unit_test(the_last_line_reports_resource_use),
         cmocka_unit_test(forked_children_print_no_report),
+        cmocka_unit_test(one_piece_is_made_without_further_words),
+        cmocka_unit_test(of_several_pieces_each_has_its_own_end),
     };
 
     return cmocka_run_group_tests_name("cli", tests, scratch_make, scratch_remove);

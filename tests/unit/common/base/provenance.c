@@ -34,6 +34,16 @@ static void provenance_is_printed(void **state)
     text = provenance_inputs_text(&prov);
     assert_string_equal(text, wanted);
     free(text);
+
+    provenance_keep(&prov, 2);
+    assert_int_equal(prov.count, 2);
+    provenance_keep(&prov, 1);
+    snprintf(wanted, sizeof wanted, "photos/b.jpg %s\n", a);
+    text = provenance_inputs_text(&prov);
+    assert_string_equal(text, wanted);
+    free(text);
+    assert_ok(provenance_add_file(&prov, "photos/a b.jpg", scratch_path("two"), &err), err); /* it was forgotten */
+    assert_int_equal(prov.count, 2);
     provenance_release(&prov);
     provenance_release(&prov);
     provenance_release(NULL);
