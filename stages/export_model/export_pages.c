@@ -1,7 +1,7 @@
 /* export_pages.c - see export_pages.h.
  *
  * The nearest texel is found by two sweeps over the tile, forth and back, that pass on where the nearest texel of a
- * neighbour is [Danielsson 1980]: exact but for rare ties, which do not matter here. */
+ * neighbour is (Danielsson): exact but for rare ties, which do not matter here. */
 #include "stages/export_model/export_pages.h"
 
 #include <math.h>

@@ -55,7 +55,7 @@ enum status room_open(struct room *room, const struct room_files *files, const s
 {
     const struct shell_files shell = {files->model, files->map, files->vdta, files->vita, params->memory};
     const struct clutter_files clutter = {files->views, files->depth, files->ids, params->memory};
-    *room = (struct room){.files = *files, .params = params};
+    *room = (struct room){.files = *files, .params = params, .prov = prov};
     enum status st = read_cameras(room, prov, err);
     if (!st) st = model_rays_read(&room->model, files->model, MODEL_WITH_GLASS, err);
     if (!st && files->base) st = model_rays_read(&room->base, files->base, MODEL_WITH_GLASS, err);
@@ -63,6 +63,7 @@ enum status room_open(struct room *room, const struct room_files *files, const s
     if (!st && files->outdoors) st = outdoors_read(&room->outdoors, files->outdoors, err);
     if (!st && files->outdoors) st = provenance_add_file(prov, "outdoors/outdoors.exr", files->outdoors, err);
     if (!st) st = shell_open(&room->shell, &shell, prov, err);
+    if (!st) shell_set_samples(room->shell, params->samples);
     if (!st && files->depth && !strcmp(params->clutter, "drawn"))
         st = clutter_open(&room->clutter, &clutter, &room->set, &room->axes, err);
     return st;
@@ -121,6 +122,8 @@ enum status room_exposure(double *exposure, struct room *room, int viewpoint, st
     struct model_picture small = {0};
     enum status st = ST_OK;
     double sum = 0;
+    /* what an exposure is chosen from is the same for every picture, whether it is known already or not */
+    shell_set_provenance(room->shell, NULL);
     for (int i = v->first; !st && v->exposure <= 0 && i < v->first + v->count; i++) {
         struct view camera = room->cameras[i];
         if (camera.width > SMALL)
@@ -128,6 +131,7 @@ enum status room_exposure(double *exposure, struct room *room, int viewpoint, st
         st = shell_draw(&small, room->shell, &camera, photos, 0, room->files.outdoors ? &room->outdoors : NULL, err);
         if (!st) sum += log(exposure_choose(&small, room->params->saturated));
     }
+    shell_set_provenance(room->shell, room->prov);
     if (!st && v->exposure <= 0) v->exposure = exp(sum / v->count);
     *exposure = v->exposure;
     model_picture_release(&small);

@@ -26,6 +26,7 @@ struct room_files {
 struct room {
     struct room_files files;
     const struct render_model_params *params;
+    struct provenance *prov;
     struct model_axes axes;
     struct camera_set set; /* scene frame */
     struct view *cameras;  /* the same in the model's frame; owned */

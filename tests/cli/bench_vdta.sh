@@ -41,6 +41,7 @@ bench()
 {
     work=$scratch/work fast=$scratch/work here=tests/bench
     mkdir -p "$work"
+    # shellcheck disable=SC2317 # the bench calls it
     missing() { cat "$work/messages" "$scratch/err"; fail "$*"; }
     BENCH_SCENE=room BENCH_SCALE=$1 BENCH_SAMPLES=1 BENCH_SHELL_SAMPLES=2 BENCH_SHELL="a c"
     . "$root/tests/bench/vdta.sh"

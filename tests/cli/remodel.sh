@@ -26,7 +26,7 @@ every_edit_has_a_record_of_each_view()
         "$B/bin/verify" --file $O/remodel/$e/texture.txt || fail "$e: texture.txt is not whole"
     done
     awk '$1 == "changed" { most = $2 > most ? $2 : most } END { exit !(most > 1) }' $O/remodel/chest/pictures/*.txt || fail "the chest changes no view"
-    for f in $O/remodel/chest/pictures/*.jpg; do [ -s "${f%.jpg}-sources.png" ] || fail "$f has no picture of its sources"; done
+    for f in "$O"/remodel/chest/pictures/*.jpg; do [ -s "${f%.jpg}-sources.png" ] || fail "$f has no picture of its sources"; done
     ! grep -rqF "$PWD" $O/remodel/*/pictures || fail "a product names a folder of this machine"
     [ -s $O/remodel/index.html ] || fail "there is no page"
     grep -q 'A blue chest, in an empty room.' $O/remodel/index.html || fail "the page does not say what the edit is"
