@@ -1,13 +1,14 @@
-/* composite.c - bake_composite(): joins the chosen candidates in the gradient domain [Perez 2003; Bhat 2010;
- * Colburn 2014, 4.5.2], and fills what no view shows.
+/* composite.c - bake_composite(): joins the chosen candidates in the gradient domain [Perez 2003; Bhat 2010; Colburn
+ * 2014, 4.5.2], and fills what no view shows.
  *
- * The unknowns are the texels in display units (bake.h), for which a gain of light is nearly a shift. Original texels are
- * fixed. A warped texel is drawn weakly to its colour in the best view. Each pair of neighbours takes the difference that
- * the best view of either has between them, if that view shows both; a difference above max_gradient, an edge that may
- * not be where the neighbour's source has it, counts little. Where no view shows both, the difference is to be 0.
- * Texels that no view shows are found afterwards, with the others fixed, so that a fill never moves what is seen. They take
- * the differences of texture elsewhere on the face (fill.h), or 0 where there is none, and are drawn weakly to the nearest
- * seen texel that is not beside what hides the face: a face's mean would mix its materials. */
+ * The unknowns are the texels in display units (bake.h), for which a gain of light is nearly a shift. Original
+ * texels are fixed. A warped texel is drawn weakly to its colour in the best view. Each pair of neighbours takes the
+ * difference that the best view of either has between them, if that view shows both; a difference above
+ * max_gradient, an edge that may not be where the neighbour's source has it, counts little. Where no view shows
+ * both, the difference is to be 0. Texels that no view shows are found afterwards, with the others fixed, so that a
+ * fill never moves what is seen. They take the differences of texture elsewhere on the face (fill.h), or 0 where
+ * there is none, and are drawn weakly to the nearest seen texel that is not beside what hides the face: a face's
+ * mean would mix its materials. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -101,7 +102,7 @@ static void set_pair(struct composite *c, int side, size_t at, size_t next)
     if (!known && c->fill.choice) take_fill(c, side, at, next);
 }
 
-/* nearest[i]: the texel of `from` that is fewest steps away, by a search from all of them at once; -1: there is none. */
+/* nearest[i]: the texel of `from` that is fewest steps away, by a search from all at once; -1: there is none. */
 static bool find_nearest(struct composite *c, const uint8_t *from)
 {
     const int width = c->t->raster.width, height = c->t->raster.height;
