@@ -1,12 +1,14 @@
-/* composite.c - bake_composite(): joins the chosen candidates in the gradient domain [Perez 2003; Bhat 2010;
- * Colburn 2014, 4.5.2], and fills what no view shows.
+/* composite.c - bake_composite(): joins the chosen candidates in the gradient domain [Perez 2003; Bhat 2010; Colburn
+ * 2014, 4.5.2], and fills what no view shows.
  *
- * The unknowns are the texels in display units (bake.h), for which a gain of light is nearly a shift. Original texels are
- * fixed. A warped texel is drawn weakly to its colour in the best view. Each pair of neighbours takes the difference that
- * the best view of either has between them, if that view shows both; a difference above max_gradient, an edge that may
- * not be where the neighbour's source has it, counts little. Where no view shows both, the difference is to be 0.
- * A texel that no view shows is drawn weakly to the nearest texel of its tile that some view shows: a face's mean would
- * mix its materials. */
+ * The unknowns are the texels in display units (bake.h), for which a gain of light is nearly a shift. Original
+ * texels are fixed. A warped texel is drawn weakly to its colour in the best view. Each pair of neighbours takes the
+ * difference that the best view of either has between them, if that view shows both; a difference above
+ * max_gradient, an edge that may not be where the neighbour's source has it, counts little. Where no view shows
+ * both, the difference is to be 0. Texels that no view shows are found afterwards, with the others fixed, so that a
+ * fill never moves what is seen. They take the differences of texture elsewhere on the face (fill.h), or 0 where
+ * there is none, and are drawn weakly to the nearest seen texel that is not beside what hides the face: a face's
+ * mean would mix its materials. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,9 +16,11 @@
 #include "common/base/parallel.h"
 #include "common/math/gradient_solve.h"
 #include "common/texture/bake.h"
+#include "common/texture/fill.h"
 
 static const float WEAK = 1e-5f;        /* weight of data, and of outlying differences */
 static const double DEFAULT_GREY = 0.5; /* of white */
+enum { RIM = 3 };                       /* texels beside unseen ones, which may hold the shadow of what hides them */
 
 struct composite { /* of a tile; all per texel */
     const struct bake *b;
@@ -25,6 +29,8 @@ struct composite { /* of a tile; all per texel */
     float *data, *data_weight, *value;
     float *gradient[2], *weight[2]; /* to the right, below */
     int32_t *nearest, *queue;       /* the nearest seen texel */
+    uint8_t *unseen, *clean;        /* no view shows the texel; some does, and it is not within RIM of an unseen one */
+    struct texture_fill fill;
 };
 
 static size_t texels_of(const struct bake_tile *t) { return (size_t)t->raster.width * (size_t)t->raster.height; }
@@ -71,6 +77,16 @@ static bool add_difference(struct composite *c, int side, size_t at, size_t p, s
     return true;
 }
 
+/* The difference of a pair that no view shows, from the texture that is copied to its ends. */
+static void take_fill(struct composite *c, int side, size_t at, size_t next)
+{
+    float forward[3], back[3];
+    const bool a = texture_fill_difference(forward, &c->fill, at, next);
+    const bool b = texture_fill_difference(back, &c->fill, next, at);
+    float *g = c->gradient[side] + 3 * at;
+    for (int k = 0; k < 3; k++) g[k] = a && b ? 0.5f * (forward[k] - back[k]) : a ? forward[k] : b ? -back[k] : 0;
+}
+
 /* The pair of a texel and its neighbour to the right or below. */
 static void set_pair(struct composite *c, int side, size_t at, size_t next)
 {
@@ -83,18 +99,17 @@ static void set_pair(struct composite *c, int side, size_t at, size_t next)
     bool known = best[0] >= 0 && add_difference(c, side, at, p, q, best[0]);
     if (best[1] >= 0 && best[1] != best[0] && add_difference(c, side, at, p, q, best[1])) known = true;
     if (!known) c->weight[side][at] = 1;
+    if (!known && c->fill.choice) take_fill(c, side, at, next);
 }
 
-/* nearest[i]: the seen texel that is fewest steps away, by a search from all of them at once; -1: the tile has none. */
-static void find_nearest(struct composite *c)
+/* nearest[i]: the texel of `from` that is fewest steps away, by a search from all at once; -1: there is none. */
+static bool find_nearest(struct composite *c, const uint8_t *from)
 {
     const int width = c->t->raster.width, height = c->t->raster.height;
     size_t head = 0, tail = 0;
     for (size_t i = 0; i < texels_of(c->t); i++) {
-        const bool seen =
-            c->role[i] == GRADIENT_FIXED || (c->role[i] == GRADIENT_FREE && is_warped(c->b, c->t->first + i));
-        c->nearest[i] = seen ? (int32_t)i : -1;
-        if (seen) c->queue[tail++] = (int32_t)i;
+        c->nearest[i] = from[i] ? (int32_t)i : -1;
+        if (from[i]) c->queue[tail++] = (int32_t)i;
     }
     while (head < tail) {
         const int32_t at = c->queue[head++];
@@ -107,27 +122,38 @@ static void find_nearest(struct composite *c)
             c->queue[tail++] = around[k];
         }
     }
+    return tail > 0;
 }
 
-/* Roles, fixed values, and what draws free texels. */
-static void set_texels(struct composite *c)
+/* Roles where views show the texels, and their values. Unseen texels are out. */
+static void set_seen(struct composite *c)
 {
     const struct bake *b = c->b;
     for (size_t i = 0; i < texels_of(c->t); i++) {
         const size_t texel = c->t->first + i;
-        c->role[i] = b->role[texel] == TEXEL_NONE       ? GRADIENT_OUT
-                     : b->role[texel] == TEXEL_ORIGINAL ? GRADIENT_FIXED
-                                                        : GRADIENT_FREE;
+        c->unseen[i] = b->role[texel] != TEXEL_NONE && b->role[texel] != TEXEL_ORIGINAL && !is_warped(b, texel);
+        c->role[i] = b->role[texel] == TEXEL_NONE || c->unseen[i] ? GRADIENT_OUT
+                     : b->role[texel] == TEXEL_ORIGINAL           ? GRADIENT_FIXED
+                                                                  : GRADIENT_FREE;
         if (c->role[i] == GRADIENT_FIXED)
             for (int k = 0; k < 3; k++)
                 c->value[3 * i + (size_t)k] = bake_display(b->rgb[3 * texel + (size_t)k], b->white);
-        if (c->role[i] != GRADIENT_FREE || !is_warped(b, texel)) continue;
-        display_of(c->value + 3 * i, b, &b->lists[b->list[texel]][0]);
-    }
-    find_nearest(c);
-    for (size_t i = 0; i < texels_of(c->t); i++) {
         if (c->role[i] != GRADIENT_FREE) continue;
+        display_of(c->value + 3 * i, b, &b->lists[b->list[texel]][0]);
+        memcpy(c->data + 3 * i, c->value + 3 * i, 3 * sizeof *c->value);
+        c->data_weight[i] = WEAK;
+    }
+}
+
+/* Now the seen texels are fixed and the unseen ones free. */
+static void set_unseen(struct composite *c)
+{
+    const struct bake *b = c->b;
+    for (size_t i = 0; i < texels_of(c->t); i++) {
+        if (c->role[i] == GRADIENT_FREE) c->role[i] = GRADIENT_FIXED;
+        if (!c->unseen[i]) continue;
         float *value = c->value + 3 * i;
+        c->role[i] = GRADIENT_FREE;
         if (c->nearest[i] >= 0)
             memcpy(value, c->value + 3 * (size_t)c->nearest[i], 3 * sizeof *value);
         else
@@ -135,6 +161,20 @@ static void set_texels(struct composite *c)
         memcpy(c->data + 3 * i, value, 3 * sizeof *value);
         c->data_weight[i] = WEAK;
     }
+}
+
+/* Which texels are clean. */
+static void find_clean(struct composite *c)
+{
+    const int width = c->t->raster.width, height = c->t->raster.height;
+    for (size_t i = 0; i < texels_of(c->t); i++) c->clean[i] = c->role[i] != GRADIENT_OUT;
+    for (int y = 0; y < height; y++)
+        for (int x = 0; x < width; x++) {
+            if (!c->unseen[(size_t)y * (size_t)width + (size_t)x]) continue;
+            for (int v = y > RIM ? y - RIM : 0; v <= y + RIM && v < height; v++)
+                for (int u = x > RIM ? x - RIM : 0; u <= x + RIM && u < width; u++)
+                    c->clean[(size_t)v * (size_t)width + (size_t)u] = 0;
+        }
 }
 
 static void set_pairs(struct composite *c)
@@ -153,9 +193,9 @@ static void take_texels(struct bake *b, const struct composite *c, struct bake_t
 {
     for (size_t i = 0; i < texels_of(c->t); i++) {
         const size_t texel = c->t->first + i;
-        if (c->role[i] == GRADIENT_OUT) continue;
+        if (b->role[texel] == TEXEL_NONE) continue;
         totals->texels++;
-        if (c->role[i] == GRADIENT_FIXED) {
+        if (b->role[texel] == TEXEL_ORIGINAL) {
             totals->original++; /* made[] has the view already */
             continue;
         }
@@ -174,6 +214,39 @@ static void take_texels(struct bake *b, const struct composite *c, struct bake_t
     }
 }
 
+static enum status solve(struct composite *c, struct bake_totals *totals, struct err *err)
+{
+    const struct gradient_problem problem = {
+        c->t->raster.width, c->t->raster.height, c->role,      c->data_weight, c->data,
+        c->weight[0],       c->gradient[0],      c->weight[1], c->gradient[1], c->value};
+    struct gradient_report report = {0};
+    const size_t n = texels_of(c->t);
+    memset(c->gradient[0], 0, 2 * 4 * n * sizeof(float)); /* and the weights behind them */
+    set_pairs(c);
+    const enum status st = gradient_solve(&problem, &report, err);
+    totals->residual = fmax(totals->residual, report.residual);
+    return st;
+}
+
+/* Seen texels first: what is filled must not move them. */
+static enum status solve_tile(struct composite *c, struct bake_totals *totals, struct err *err)
+{
+    const size_t n = texels_of(c->t);
+    set_seen(c);
+    enum status st = solve(c, totals, err);
+    if (st || !memchr(c->unseen, 1, n)) return st;
+    find_clean(c);
+    if (!find_nearest(c, c->clean)) {
+        for (size_t i = 0; i < n; i++) c->clean[i] = c->role[i] != GRADIENT_OUT;
+        find_nearest(c, c->clean);
+    }
+    const struct vec3 normal = c->b->surfaces->list[c->t->surface].normal;
+    st = texture_fill_find(&c->fill, c->t, normal, c->unseen, c->clean, c->value, err);
+    if (st) return st;
+    set_unseen(c);
+    return solve(c, totals, err);
+}
+
 static enum status composite_tile(struct bake *b, const struct bake_tile *t, struct bake_totals *totals,
                                   struct err *err)
 {
@@ -181,27 +254,28 @@ static enum status composite_tile(struct bake *b, const struct bake_tile *t, str
     const size_t n = texels_of(t);
     float *memory = calloc(n, FLOATS * sizeof *memory);
     int32_t *indices = malloc(2 * n * sizeof *indices);
-    struct composite c = {.b = b, .t = t, .role = malloc(n), .nearest = indices, .queue = indices + n};
-    struct gradient_report report = {0};
-    enum status st = memory && indices && c.role ? ST_OK : err_nomem(err, "a tile", n * FLOATS * sizeof *memory);
+    uint8_t *flags = malloc(3 * n);
+    enum status st = memory && indices && flags ? ST_OK : err_nomem(err, "a tile", n * FLOATS * sizeof *memory);
     if (!st) {
-        c.data = memory, c.value = memory + 3 * n, c.data_weight = memory + 6 * n;
-        c.gradient[0] = memory + 7 * n, c.gradient[1] = memory + 10 * n;
-        c.weight[0] = memory + 13 * n, c.weight[1] = memory + 14 * n;
-        set_texels(&c);
-        set_pairs(&c);
-        const struct gradient_problem problem = {t->raster.width, t->raster.height, c.role,        c.data_weight,
-                                                 c.data,          c.weight[0],      c.gradient[0], c.weight[1],
-                                                 c.gradient[1],   c.value};
-        st = gradient_solve(&problem, &report, err);
-    }
-    if (!st) {
-        totals->residual = fmax(totals->residual, report.residual);
-        take_texels(b, &c, totals);
+        struct composite c = {.b = b,
+                              .t = t,
+                              .role = flags,
+                              .unseen = flags + n,
+                              .clean = flags + 2 * n,
+                              .nearest = indices,
+                              .queue = indices + n,
+                              .data = memory,
+                              .value = memory + 3 * n,
+                              .data_weight = memory + 6 * n,
+                              .gradient = {memory + 7 * n, memory + 10 * n},
+                              .weight = {memory + 13 * n, memory + 14 * n}};
+        st = solve_tile(&c, totals, err);
+        if (!st) take_texels(b, &c, totals);
+        texture_fill_release(&c.fill);
     }
     free(memory);
     free(indices);
-    free(c.role);
+    free(flags);
     return st;
 }
 

@@ -59,6 +59,8 @@ static struct bake_tile own_tile(void)
 {
     struct bake_tile t = {.side = 1 / FOCAL};
     const double q = HEIGHT / FOCAL;
+    const double m[3][4] = {{1 / q, 0, 0, 32 - 2 / q}, {0, -1 / q, 0, 32 + 2 / q}, {0, 0, 0, 1}};
+    memcpy(t.matrix, m, sizeof m);
     t.raster = (struct surface_raster){SIZE, SIZE, {{q, 0, 2 - 32 * q}, {0, -q, 2 + 32 * q}, {0, 0, 0}, {0, 0, 1}}};
     return t;
 }
@@ -255,6 +257,21 @@ static void what_no_view_shows_is_filled_from_the_nearest_texels(void **state)
     end(&f, NULL, 0);
 }
 
+static void boards_continue_where_no_view_shows_them(void **state)
+{
+    (void)state;
+    struct fixture f;
+    struct bake_totals totals;
+    begin(&f, 1);
+    float board[SIZE];
+    for (int x = 0; x < SIZE; x++) board[x] = 0.3f + 0.2f * sinf(0.785f * (float)x);
+    for (int i = 0; i < 3 * SIZE * SIZE; i++) f.bake.rgb[i] = board[i / 3 % SIZE];
+    finish(&f, NULL, 0, &totals);
+    assert_true(totals.synthesised > 400);
+    for (int i = 0; i < SIZE * SIZE; i++) assert_true(fabsf(f.bake.rgb[3 * i] - board[i % SIZE]) < 0.05f);
+    end(&f, NULL, 0);
+}
+
 static void a_face_that_no_view_shows_gets_the_default_colour(void **state)
 {
     (void)state;
@@ -352,6 +369,7 @@ int main(void)
         cmocka_unit_test(views_outvote_one_that_something_stands_in_front_of),
         cmocka_unit_test(a_doubted_pixel_of_the_viewpoint_is_copied_unless_others_contradict_it),
         cmocka_unit_test(what_no_view_shows_is_filled_from_the_nearest_texels),
+        cmocka_unit_test(boards_continue_where_no_view_shows_them),
         cmocka_unit_test(a_face_that_no_view_shows_gets_the_default_colour),
         cmocka_unit_test(a_source_is_refused_where_it_may_not_be_used),
         cmocka_unit_test(a_range_of_1e8_stays_finite_and_not_negative),
