@@ -125,35 +125,34 @@ static bool find_nearest(struct composite *c, const uint8_t *from)
     return tail > 0;
 }
 
-/* Roles where views show the texels, and their values. Unseen texels are out. */
+/* Roles, and the values of texels that views show. */
 static void set_seen(struct composite *c)
 {
     const struct bake *b = c->b;
     for (size_t i = 0; i < texels_of(c->t); i++) {
         const size_t texel = c->t->first + i;
         c->unseen[i] = b->role[texel] != TEXEL_NONE && b->role[texel] != TEXEL_ORIGINAL && !is_warped(b, texel);
-        c->role[i] = b->role[texel] == TEXEL_NONE || c->unseen[i] ? GRADIENT_OUT
-                     : b->role[texel] == TEXEL_ORIGINAL           ? GRADIENT_FIXED
-                                                                  : GRADIENT_FREE;
+        c->role[i] = b->role[texel] == TEXEL_NONE       ? GRADIENT_OUT
+                     : b->role[texel] == TEXEL_ORIGINAL ? GRADIENT_FIXED
+                                                        : GRADIENT_FREE;
         if (c->role[i] == GRADIENT_FIXED)
             for (int k = 0; k < 3; k++)
                 c->value[3 * i + (size_t)k] = bake_display(b->rgb[3 * texel + (size_t)k], b->white);
-        if (c->role[i] != GRADIENT_FREE) continue;
+        if (c->role[i] != GRADIENT_FREE || c->unseen[i]) continue;
         display_of(c->value + 3 * i, b, &b->lists[b->list[texel]][0]);
         memcpy(c->data + 3 * i, c->value + 3 * i, 3 * sizeof *c->value);
         c->data_weight[i] = WEAK;
     }
 }
 
-/* Now the seen texels are fixed and the unseen ones free. */
-static void set_unseen(struct composite *c)
+/* Unseen texels are drawn to the nearest of the texels that are listed as such. seen: the role of seen ones from now. */
+static void set_unseen(struct composite *c, int seen)
 {
     const struct bake *b = c->b;
     for (size_t i = 0; i < texels_of(c->t); i++) {
-        if (c->role[i] == GRADIENT_FREE) c->role[i] = GRADIENT_FIXED;
+        if (c->role[i] == GRADIENT_FREE && !c->unseen[i]) c->role[i] = (uint8_t)seen;
         if (!c->unseen[i]) continue;
         float *value = c->value + 3 * i;
-        c->role[i] = GRADIENT_FREE;
         if (c->nearest[i] >= 0)
             memcpy(value, c->value + 3 * (size_t)c->nearest[i], 3 * sizeof *value);
         else
@@ -167,7 +166,7 @@ static void set_unseen(struct composite *c)
 static void find_clean(struct composite *c)
 {
     const int width = c->t->raster.width, height = c->t->raster.height;
-    for (size_t i = 0; i < texels_of(c->t); i++) c->clean[i] = c->role[i] != GRADIENT_OUT;
+    for (size_t i = 0; i < texels_of(c->t); i++) c->clean[i] = c->role[i] != GRADIENT_OUT && !c->unseen[i];
     for (int y = 0; y < height; y++)
         for (int x = 0; x < width; x++) {
             if (!c->unseen[(size_t)y * (size_t)width + (size_t)x]) continue;
@@ -228,22 +227,26 @@ static enum status solve(struct composite *c, struct bake_totals *totals, struct
     return st;
 }
 
-/* Seen texels first: what is filled must not move them. */
+static bool find_nearest_seen(struct composite *c)
+{
+    for (size_t i = 0; i < texels_of(c->t); i++) c->clean[i] = c->role[i] != GRADIENT_OUT && !c->unseen[i];
+    return find_nearest(c, c->clean);
+}
+
+/* All texels together first, unseen ones smooth; then the unseen ones again, with texture, between fixed seen ones. */
 static enum status solve_tile(struct composite *c, struct bake_totals *totals, struct err *err)
 {
-    const size_t n = texels_of(c->t);
     set_seen(c);
+    find_nearest_seen(c);
+    set_unseen(c, GRADIENT_FREE);
     enum status st = solve(c, totals, err);
-    if (st || !memchr(c->unseen, 1, n)) return st;
+    if (st || !memchr(c->unseen, 1, texels_of(c->t))) return st;
     find_clean(c);
-    if (!find_nearest(c, c->clean)) {
-        for (size_t i = 0; i < n; i++) c->clean[i] = c->role[i] != GRADIENT_OUT;
-        find_nearest(c, c->clean);
-    }
+    if (!find_nearest(c, c->clean) && !find_nearest_seen(c)) return ST_OK;
     const struct vec3 normal = c->b->surfaces->list[c->t->surface].normal;
     st = texture_fill_find(&c->fill, c->t, normal, c->unseen, c->clean, c->value, err);
     if (st) return st;
-    set_unseen(c);
+    set_unseen(c, GRADIENT_FIXED);
     return solve(c, totals, err);
 }
 

@@ -20,14 +20,18 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/base/sort.h"
+
 enum { SAMPLES = 192, LATTICE = 12, TRIED = (2 * LATTICE + 1) * (2 * LATTICE + 1), BAND = 12, MIN_TEXELS = 64 };
-static const float MAX_COST = 0.02f; /* variance, squared display units: nothing similar is there */
+static const float MAX_COST = 0.02f;               /* variance, squared display units: nothing similar is there */
+static const float LEAST_RANGE = 0.02f, RANGE = 3; /* display units; median deviations of the rim */
 static const double MIN_COVER = 0.05;
 
 struct search {
     const struct texture_fill *f;
     struct vec3 u, v; /* one texel on the face, at the hole */
     size_t rim[SAMPLES], inside[SAMPLES];
+    float middle[3], range[3]; /* of the rim's colours; a copy lies within the range about the middle */
     int rim_count, inside_count;
     bool covered[SAMPLES];
 };
@@ -82,13 +86,36 @@ static float cost_of(const struct search *s, struct vec3 shift)
     return (float)(fmax(0, squares) / count);
 }
 
+/* Median and range of the colours around a hole. A picture that hangs there too moves neither much. */
+static void find_colours(struct search *s)
+{
+    float values[SAMPLES];
+    const size_t count = (size_t)s->rim_count;
+    for (size_t k = 0; k < 3; k++) {
+        for (size_t i = 0; i < count; i++) values[i] = s->f->value[3 * s->rim[i] + k];
+        sort_floats(values, count);
+        s->middle[k] = values[count / 2];
+        for (size_t i = 0; i < count; i++) values[i] = fabsf(s->f->value[3 * s->rim[i] + k] - s->middle[k]);
+        sort_floats(values, count);
+        s->range[k] = LEAST_RANGE + RANGE * values[count / 2];
+    }
+}
+
+/* Whether a copy has a colour as around the hole: a picture on a wall does not, and is not copied. */
+static bool fits(const struct search *s, float value[3], size_t at, struct vec3 shift)
+{
+    if (!shifted_value(value, s->f, at, shift)) return false;
+    for (int k = 0; k < 3; k++)
+        if (fabsf(value[k] - s->middle[k]) > s->range[k]) return false;
+    return true;
+}
+
 /* The share of the hole that the shift serves and no earlier one does. */
 static double cover_of(const struct search *s, struct vec3 shift)
 {
     int count = 0;
     float value[3];
-    for (int i = 0; i < s->inside_count; i++)
-        count += !s->covered[i] && shifted_value(value, s->f, s->inside[i], shift);
+    for (int i = 0; i < s->inside_count; i++) count += !s->covered[i] && fits(s, value, s->inside[i], shift);
     return (double)count / s->inside_count;
 }
 
@@ -142,7 +169,7 @@ static enum status search_shifts(const struct search *start, struct fill_hole *h
         if (best < 0) break;
         float value[3];
         for (int i = 0; i < s.inside_count; i++)
-            s.covered[i] = s.covered[i] || shifted_value(value, s.f, s.inside[i], tried[best].shift);
+            s.covered[i] = s.covered[i] || fits(&s, value, s.inside[i], tried[best].shift);
         hole->shift[hole->shifts++] = tried[best].shift;
     }
     free(tried);
@@ -198,13 +225,14 @@ static enum status fill_hole(struct texture_fill *f, int index, const int32_t *l
     s.inside_count = take_samples(s.inside, list, count);
     s.rim_count = take_samples(s.rim, rim, list_rim(rim, f, box, index, BAND));
     if (s.rim_count < 16) return ST_OK;
+    find_colours(&s);
     struct fill_hole *hole = &f->holes[index];
     const int wide = box[2] - box[0], high = box[3] - box[1];
     const enum status st = search_shifts(&s, hole, (wide > high ? wide : high) + 2 * BAND, err);
     for (size_t i = 0; i < count; i++) {
         float value[3];
         int k = 0;
-        while (k < hole->shifts && !shifted_value(value, f, (size_t)list[i], hole->shift[k])) k++;
+        while (k < hole->shifts && !fits(&s, value, (size_t)list[i], hole->shift[k])) k++;
         f->choice[list[i]] = (uint8_t)(k < hole->shifts ? k : FILL_SHIFTS);
     }
     return st;

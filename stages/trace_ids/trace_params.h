@@ -18,7 +18,7 @@
     X(min_confidence, double, 0.1, 0, 1, "",                                                                          \
       "confidence of a segment of the view's depth below which what it says of clutter counts half")                  \
     X(min_clutter, int, 1, 0, 100, "px", "half width of the narrowest clutter; narrower spots count as unsure")       \
-    X(clutter_margin, int, 3, 0, 100, "px", "width of the rim around clutter that counts as clutter")                 \
+    X(clutter_margin, int, 6, 0, 100, "px", "width of the rim around clutter that counts as clutter")                 \
     X(clean_margin, int, 5, 0, 32, "px", "distance from depth jumps at which a pixel of a face counts as clean")      \
     X(index_views, int, 256, 1, 100000, "", "maximum number of views that the index lists for a face")
 
