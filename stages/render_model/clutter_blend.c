@@ -38,12 +38,14 @@
 #define MIN_ALPHA  0.02f
 #define HIDDEN     0.02  /* of the depth: what the shell may be in front of a fragment without hiding it */
 #define BEHIND     0.015 /* of the depth: a surface this far behind P is not P's */
-#define DENIED     0.35f
-#define SUPPORTED  0.6f
-#define BLUR       0.03  /* radians */
+#define DENIED     0.2f
+#define SUPPORTED  0.45f
+#define BLUR       0.08 /* radians */
 #define MIN_INSIDE 1e-3f
-#define PRESENT    0.1f  /* fade * inside of a view that is fully present */
-#define WIDTHS     8.0f  /* of the soft z-buffer, in uncertainties */
+#define PRESENT    0.1f /* fade * inside of a view that is fully present */
+#define WIDTHS     8.0f /* of the soft z-buffer, in uncertainties */
+#define MAX_SLACK  0.03
+#define OPEN       0.5f /* more support that clutter needs where the camera looks outdoors */
 #define COVERED    0.5f
 
 enum { FRAGMENTS = 2 * CLUTTER_VIEWS };
@@ -68,11 +70,14 @@ struct blend_job {
 };
 
 struct fragment {
-    float rgba[4]; /* premultiplied */
+    float rgba[4];  /* premultiplied */
     float z, sigma; /* sigma: relative */
     int slot;
+    bool open;         /* no shell is behind it */
     struct vec3 point; /* scene frame */
-    float weight, opacity, present, raw; /* raw: 1 - what the shell hides */
+    float weight, opacity, present;
+    float raw;   /* what the shell leaves of it */
+    float doubt; /* opacity if all confidences were full */
 };
 
 static float smooth(double x)
@@ -122,10 +127,13 @@ static bool draw_tile(const struct blend_job *job, struct blend_tile *t, int til
 
 /* -------------------------------------------------------------------------------------------------------- fragments */
 
+/* What a depth may be off, relative to it: estimators state more than that (common/layers/depth_sigma.c). */
+static double slack(float sigma) { return fmin((double)sigma, MAX_SLACK); }
+
 /* What the shell, and zones to clear, leave of a fragment. */
 static float left_by_shell(const struct blend_job *job, const struct fragment *f, float shell)
 {
-    const double spare = HIDDEN + 2 * (double)f->sigma, over = shell > 0 ? (double)f->z / (double)shell - 1 : 0;
+    const double spare = HIDDEN + slack(f->sigma), over = shell > 0 ? (double)f->z / (double)shell - 1 : 0;
     const float left = over > spare ? 1 - smooth((over - spare) / spare) : 1;
     if (!(left > 0) || !job->map || !job->map->zone_count) return left;
     return texture_map_clears(job->map, model_from_world_point(&job->scene->axes, f->point)) ? 0 : left;
@@ -141,6 +149,7 @@ static int add_fragment(const struct blend_job *job, struct fragment *list, int 
     memcpy(f->rgba, from->rgba[i], sizeof f->rgba);
     f->point = view_unproject(job->camera, x + 0.5, y + 0.5, (double)f->z);
     const float shell = job->p->z[(size_t)y * (size_t)job->p->width + (size_t)x] * (float)job->scale;
+    f->open = !(shell > 0);
     f->raw = left_by_shell(job, f, shell);
     const float standing = job->choice->fade[slot] * fmaxf(MIN_INSIDE, inside);
     f->present = fminf(1, standing / PRESENT);
@@ -165,6 +174,8 @@ static float border(const struct view *v, double x, double y)
     return at < (double)MIN_INSIDE ? MIN_INSIDE : at < 1 ? (float)at : 1;
 }
 
+static float opaque(double support) { return smooth((support - (double)DENIED) / (double)(SUPPORTED - DENIED)); }
+
 /* The votes on a fragment; sets its weight and opacity. */
 static void judge(const struct blend_job *job, struct fragment *f)
 {
@@ -177,13 +188,13 @@ static void judge(const struct blend_job *job, struct fragment *f)
         const double z = view_project(view, f->point, &u, &v);
         if (!(z > 0) || !(u >= 0 && v >= 0 && u < view->width && v < view->height)) continue;
         const size_t pixel = (size_t)v * (size_t)view->width + (size_t)u;
-        const double nearest = (double)source->nearest[pixel], sure = (double)source->sure[pixel] / (double)CLUTTER_SURE;
+        const double nearest = (double)source->nearest[pixel],
+                     sure = (double)source->sure[pixel] / (double)CLUTTER_SURE;
         const double penalty = clutter_penalty(f->point, job->camera->center, view->center);
-        const double weight =
-            (double)(job->choice->fade[k] * border(view, u, v)) / (BLUR * BLUR + penalty * penalty);
+        const double weight = (double)(job->choice->fade[k] * border(view, u, v)) / (BLUR * BLUR + penalty * penalty);
         if (k == f->slot) f->weight = (float)weight;
         if (!(nearest > 0)) continue;
-        const double tolerance = BEHIND + 2 * (double)f->sigma, beyond = 1 / (z * nearest) - 1;
+        const double tolerance = BEHIND + slack(f->sigma), beyond = 1 / (z * nearest) - 1;
         if (k != f->slot && beyond < -tolerance) continue; /* hidden from this view */
         const double through = k == f->slot ? 0 : (double)smooth((beyond - tolerance) / tolerance);
         confirmed += weight * sure * (1 - through);
@@ -191,7 +202,8 @@ static void judge(const struct blend_job *job, struct fragment *f)
         denied += weight * sure * through;
     }
     const double sum = agreeing + denied;
-    f->opacity = sum > 0 ? smooth((confirmed / sum - (double)DENIED) / (double)(SUPPORTED - DENIED)) : 0;
+    f->opacity = sum > 0 ? opaque(confirmed / sum - (f->open ? (double)OPEN : 0)) : 0;
+    f->doubt = sum > 0 ? opaque(agreeing / sum) : 0;
 }
 
 /* How far two fragments are the same surface, b behind a. */
@@ -204,7 +216,7 @@ static float same_surface(const struct fragment *a, const struct fragment *b)
 
 /* ---------------------------------------------------------------------------------------------------------- blending */
 
-/* Composites sorted fragments: premultiplied colour and coverage; *doubtful: coverage if all of them were supported. */
+/* Composites sorted fragments: premultiplied colour and coverage; *doubtful: coverage if all depths were sure. */
 static void composite(float rgba[4], float *doubtful, const struct fragment *list, int count)
 {
     float same[FRAGMENTS][FRAGMENTS];
@@ -224,7 +236,7 @@ static void composite(float rgba[4], float *doubtful, const struct fragment *lis
         }
         const float part = sum > 0 ? f->weight / sum * f->raw * left : 0;
         for (int c = 0; c < 4; c++) rgba[c] += part * f->opacity * f->rgba[c];
-        *doubtful += part * f->rgba[3];
+        *doubtful += part * f->doubt * f->rgba[3];
     }
     if (rgba[3] > 1)
         for (int c = 3; c >= 0; c--) rgba[c] /= rgba[3];
@@ -273,8 +285,8 @@ static void blend_tiles(void *ctx, size_t begin, size_t end, int thread)
 }
 
 enum status clutter_blend(struct model_picture *p, float *cover, struct clutter_scene *scene,
-                          const struct clutter_choice *choice, const struct view *camera,
-                          const struct texture_map *map, struct err *err)
+                          const struct clutter_choice *choice, const struct view *camera, const struct texture_map *map,
+                          struct err *err)
 {
     const size_t threads = (size_t)parallel_threads();
     struct blend_job job = {.p = p, .cover = cover, .scene = scene, .choice = choice, .camera = camera, .map = map};

@@ -11,8 +11,8 @@ enum { CLUTTER_VIEWS = 12 }; /* the most that a picture is drawn from */
 struct clutter_source { /* a view of the set */
     struct clutter_view view;
     bool loaded;
-    uint64_t used;                        /* number of the picture that needed it last */
-    struct provenance_input inputs[2];    /* its files, once they were read */
+    uint64_t used;                     /* number of the picture that needed it last */
+    struct provenance_input inputs[2]; /* its files, once they were read */
 };
 
 struct clutter_scene {
@@ -48,7 +48,7 @@ enum status clutter_load(struct clutter_scene *scene, const struct clutter_choic
 /* Draws the clutter of the loaded views of the choice over p; see clutter_blend.c. camera: in the scene's frame. cover, if
  * not NULL, gets how much of each pixel is clutter; then p->rgb is left alone. */
 enum status clutter_blend(struct model_picture *p, float *cover, struct clutter_scene *scene,
-                          const struct clutter_choice *choice, const struct view *camera,
-                          const struct texture_map *map, struct err *err);
+                          const struct clutter_choice *choice, const struct view *camera, const struct texture_map *map,
+                          struct err *err);
 
 #endif

@@ -14,6 +14,7 @@
 #include "stages/render_model/clutter_view.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <stdlib.h>
 
 #include "common/layers/depth_sigma.h"
@@ -23,7 +24,11 @@
 #define CONTACT   0.006f /* the same, in segments that are clutter */
 #define GRADE     0.6f   /* of a pixel of clutter, from trace_ids */
 #define DOUBT     0.4f   /* confidence in segments whose depth is inherited */
+#define MAX_SIGMA 0.04   /* relative uncertainty of a depth that deserves its full confidence */
 #define LEAST     0.02f  /* weights below are 0 */
+#define JUMP      0.03f  /* of inverse depth: where a part of the model ends before another */
+
+enum { REACH = 32 }; /* px: that depth bleeds over a jump of the model */
 
 struct judged_segment {
     float tolerance, contact; /* t in general, and in a segment of clutter */
@@ -40,6 +45,14 @@ static float smooth(float x)
 
 static float nearness(float z, float z_model) { return z > 0 && z_model > 0 ? 1 - z / z_model : 0; }
 
+/* DOUBT for inherited depth, up to 1 for what counts as sure; less for depth of large uncertainty. */
+static float sureness(double confidence, double sigma)
+{
+    const double rise = (confidence - DEPTH_INHERITED) / (DEPTH_SURE - DEPTH_INHERITED);
+    const double sharp = sigma > MAX_SIGMA ? MAX_SIGMA / sigma : 1;
+    return (DOUBT + (1 - DOUBT) * (float)fmin(1, fmax(0, rise))) * (float)sharp;
+}
+
 static struct judged_segment *judge_segments(const struct layered_depth *d, const struct view_ids *ids, struct err *err)
 {
     const size_t pixels = (size_t)d->width * (size_t)d->height;
@@ -52,7 +65,7 @@ static struct judged_segment *judge_segments(const struct layered_depth *d, cons
         const float sigma = (float)depth_sigma(&d->segments[i]);
         list[i].tolerance = TOLERANCE + SIGMAS * sigma;
         list[i].contact = CONTACT;
-        list[i].sure = d->segments[i].confidence < DEPTH_INHERITED ? DOUBT : 1;
+        list[i].sure = sureness(d->segments[i].confidence, (double)sigma);
     }
     for (size_t p = 0; p < pixels; p++) {
         if (!d->interior.id[p]) continue;
@@ -73,12 +86,77 @@ static float texel_weight(const struct judged_segment *s, float z, float z_model
     return fmaxf(whole, smooth((near - s->tolerance) / s->tolerance));
 }
 
-/* Empties the texels of a layer that show the model, and lets the others fade by their weight. */
-static void keep_clutter(struct layer *l, const struct judged_segment *list, const struct view_ids *ids, size_t pixels)
+/* -------------------------------------------------------------------------------------------------------------- rims */
+
+enum { INTERIOR = 1, BOUNDARY = 2 }; /* bits of a pixel's mask */
+
+/* A walk along a row or a column, over inverse depths of the model. */
+struct walk {
+    float plane, slope; /* the nearer plane that ended at a jump, continued to this pixel; 0: none */
+    int away;           /* px from its end */
+    float last, before; /* of the two pixels before */
+};
+
+static void step(struct walk *w, float inverse)
 {
+    const float expected = w->before > 0 ? 2 * w->last - w->before : w->last;
+    w->plane += w->plane > 0 ? w->slope : 0;
+    w->away++;
+    if (w->last > 0 && inverse < fminf(w->last, expected) * (1 - JUMP) && expected > w->plane)
+        *w = (struct walk){.plane = expected, .slope = expected - w->last, .away = 1, .last = w->last};
+    else if (!(inverse < w->plane * (1 - JUMP)))
+        w->plane = 0;
+    w->before = w->last;
+    w->last = inverse;
+}
+
+/* Whether a layer's depth only continues the plane of the walk. */
+static bool continues(const struct walk *w, uint32_t id, float z, const struct judged_segment *list)
+{
+    if (!id || !(w->plane > 0)) return false;
+    const struct judged_segment *s = &list[id - 1];
+    return fabsf(w->plane * z - 1) < s->tolerance && (w->away <= REACH || s->sure < 1);
+}
+
+static void walk_line(uint8_t *rim, const struct layered_depth *d, const struct judged_segment *list,
+                      const struct view_ids *ids, size_t first, ptrdiff_t stride, int count)
+{
+    struct walk w = {0};
+    size_t p = first;
+    for (int i = 0; i < count; i++, p = (size_t)((ptrdiff_t)p + stride)) {
+        step(&w, ids->z[p] > 0 ? 1 / ids->z[p] : 0);
+        if (continues(&w, d->interior.id[p], d->interior.z[p], list)) rim[p] |= INTERIOR;
+        if (continues(&w, d->boundary.id[p], d->boundary.z[p], list)) rim[p] |= BOUNDARY;
+    }
+}
+
+/* Marks the layers that continue a nearer part of the model beyond its end. Depth bleeds: the sky in a window inherits
+ * the depth of its frame, and what shows through a door that of the wall. The planes of the model are continued over
+ * its jumps, in rows and columns, and what lies in them is no clutter: REACH px far, and all the way to the other end of
+ * the opening if it is not sure. */
+static void find_rims(uint8_t *rim, const struct layered_depth *d, const struct judged_segment *list,
+                      const struct view_ids *ids)
+{
+    const size_t width = (size_t)d->width, height = (size_t)d->height;
+    for (size_t y = 0; y < height; y++) {
+        walk_line(rim, d, list, ids, y * width, 1, d->width);
+        walk_line(rim, d, list, ids, (y + 1) * width - 1, -1, d->width);
+    }
+    for (size_t x = 0; x < width; x++) {
+        walk_line(rim, d, list, ids, x, (ptrdiff_t)width, d->height);
+        walk_line(rim, d, list, ids, (height - 1) * width + x, -(ptrdiff_t)width, d->height);
+    }
+}
+
+/* Empties the texels of a layer that show the model, and lets the others fade by their weight. */
+static void keep_clutter(struct layer *l, const uint8_t *rim, uint8_t bit, const struct judged_segment *list,
+                         const struct view_ids *ids)
+{
+    const size_t pixels = (size_t)ids->width * (size_t)ids->height;
     for (size_t p = 0; p < pixels; p++) {
         if (!l->id[p]) continue;
-        const float w = texel_weight(&list[l->id[p] - 1], l->z[p], ids->z[p], ids->clutter[p]);
+        const struct judged_segment *s = &list[l->id[p] - 1];
+        const float w = rim[p] & bit ? 0 : texel_weight(s, l->z[p], ids->z[p], ids->clutter[p]);
         for (size_t c = 0; c < 4; c++) l->rgba[4 * p + c] *= w < LEAST ? 0 : w;
         if (w < LEAST) l->id[p] = 0;
     }
@@ -143,6 +221,7 @@ enum status clutter_view_make(struct clutter_view *v, struct layered_depth *dept
     const size_t pixels = (size_t)depth->width * (size_t)depth->height;
     struct judged_segment *list = NULL;
     float *rows = NULL;
+    uint8_t *rim = NULL;
     *v = (struct clutter_view){.depth = *depth};
     *depth = (struct layered_depth){0};
     enum status st = check(&v->depth, ids, name, err);
@@ -152,16 +231,19 @@ enum status clutter_view_make(struct clutter_view *v, struct layered_depth *dept
         rows = malloc(pixels * sizeof *rows);
         v->nearest = malloc(pixels * sizeof *v->nearest);
         v->sure = malloc(pixels);
-        if (!rows || !v->nearest || !v->sure) st = err_nomem(err, "what a view sees", pixels * 9);
+        rim = calloc(pixels, 1);
+        if (!rows || !rim || !v->nearest || !v->sure) st = err_nomem(err, "what a view sees", pixels * 10);
     }
     if (!st) {
         find_nearest(v, &v->depth, list, rows);
-        keep_clutter(&v->depth.interior, list, ids, pixels);
-        keep_clutter(&v->depth.boundary, list, ids, pixels);
+        find_rims(rim, &v->depth, list, ids);
+        keep_clutter(&v->depth.interior, rim, INTERIOR, list, ids);
+        keep_clutter(&v->depth.boundary, rim, BOUNDARY, list, ids);
         st = layer_view_pack(&v->layers, &v->depth, name, err);
     }
     v->bytes = bytes_of(v->depth.width, v->depth.height);
     free(rows);
+    free(rim);
     free(list);
     if (st) clutter_view_release(v);
     return st;
