@@ -8,10 +8,11 @@
  *    uncertainty fades out. One in a zone that is to be cleared is left out.
  * 2. Do the views agree? The fragment's point P is projected into each view. A view whose nearest surface there is clearly
  *    behind P looks through it and denies it; one whose surface is at P confirms it; one whose surface is in front, or
- *    whose picture P is not in, has no vote. With weights w_j (below) and confidences c_j, the fragment's support is
- *      s = sum_confirming w_j c_j / (sum_confirming w_j + sum_denying w_j c_j)
- *    and its opacity o = smoothstep(s), from DENIED to SUPPORTED. A segment of little confidence that no view confirms
- *    has s = c below that: the shell wins.
+ *    whose picture P is not in, has no vote. With weights w_j (below) and confidences c_j,
+ *      votes v = sum_confirming w_j / (sum_confirming w_j + sum_denying w_j c_j)
+ *      confidence c = sum_confirming w_j c_j / sum_confirming w_j
+ *    and the opacity is o = smoothstep(v) smoothstep(c). Without confidence the shell wins, and the pixel is marked. Where
+ *    the camera looks outdoors both must be higher: the sky in a window has no texture, and its depth is anything.
  * 3. What hides it? With e_ij in [0, 1] how far two fragments are the same surface (the soft z-buffer's weight of their
  *    depths), fragment i is left 1 - max_j a_j o_j (1 - e_ij) over those in front of it.
  * 4. How much does it count? As in unstructured lumigraph rendering [Buehler 2001], views that see P under nearly the
@@ -25,8 +26,11 @@
  * Source: soft z-buffer [Pulli 1997], [Colburn 2014, 3.6]. What differs: the votes; coverage instead of normalised
  * weights, as what is not covered shows the shell.
  *
+ * The limits were chosen on the witnesses n0 and n2 of the scene loft.
+ *
  * Pixels are independent of each other and the order of sums is that of the views: the same bits for any number of
  * threads. */
+#include <immintrin.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -38,14 +42,17 @@
 #define MIN_ALPHA  0.02f
 #define HIDDEN     0.02  /* of the depth: what the shell may be in front of a fragment without hiding it */
 #define BEHIND     0.015 /* of the depth: a surface this far behind P is not P's */
-#define DENIED     0.2f
-#define SUPPORTED  0.45f
+#define DENIED     0.45  /* share of the votes up to which a fragment is not there, ... */
+#define CONFIRMED  0.75  /* ... and from which it is */
+#define UNSURE     0.2   /* the same of the confidence of those who confirm it */
+#define SURE       0.45
+#define OPEN       0.7 /* the same of both, multiplied, where the camera looks outdoors */
+#define OPEN_SURE  0.95
 #define BLUR       0.08 /* radians */
 #define MIN_INSIDE 1e-3f
 #define PRESENT    0.1f /* fade * inside of a view that is fully present */
 #define WIDTHS     8.0f /* of the soft z-buffer, in uncertainties */
 #define MAX_SLACK  0.03
-#define OPEN       0.5f /* more support that clutter needs where the camera looks outdoors */
 #define COVERED    0.5f
 
 enum { FRAGMENTS = 2 * CLUTTER_VIEWS };
@@ -127,6 +134,21 @@ static bool draw_tile(const struct blend_job *job, struct blend_tile *t, int til
 
 /* -------------------------------------------------------------------------------------------------------- fragments */
 
+/* How much of the view is clutter at a position in its picture, bilinear. */
+static float cover_at(const struct layer_view *layers, double u, double v)
+{
+    const double x = u + 0.5, y = v + 0.5; /* the padding is one texel, and texels have their centres at + 0.5 */
+    const int i = (int)x, j = (int)y;
+    const float fx = (float)(x - i), fy = (float)(y - j);
+    const uint16_t(*t)[4] = (const uint16_t(*)[4])layers->photo + (size_t)j * (size_t)layers->stride + (size_t)i;
+    const uint16_t(*b)[4] = t + layers->stride;
+    float a[4];
+    _mm_storeu_ps(
+        a, _mm_cvtph_ps(_mm_setr_epi16((short)t[0][3], (short)t[1][3], (short)b[0][3], (short)b[1][3], 0, 0, 0, 0)));
+    const float top = a[0] + fx * (a[1] - a[0]), bottom = a[2] + fx * (a[3] - a[2]);
+    return top + fy * (bottom - top);
+}
+
 /* What a depth may be off, relative to it: estimators state more than that (common/layers/depth_sigma.c). */
 static double slack(float sigma) { return fmin((double)sigma, MAX_SLACK); }
 
@@ -156,6 +178,22 @@ static int add_fragment(const struct blend_job *job, struct fragment *list, int 
     return f->raw > 0 ? count + 1 : count;
 }
 
+/* Gives a view's fragments at a pixel the share that the view's clutter has there. Where two surfaces meet in an edge, the
+ * pieces of each may cover less than both together. */
+static void complete(const struct blend_job *job, struct fragment *list, int count)
+{
+    const int at = job->choice->view[list[0].slot];
+    double u, v;
+    float sum = 0;
+    for (int k = 0; k < count; k++) sum += list[k].rgba[3];
+    const struct view *view = &job->scene->set->views[at];
+    if (!(view_project(view, list[0].point, &u, &v) > 0) || !(u >= 0 && v >= 0 && u < view->width && v < view->height))
+        return;
+    const float cover = fminf(1, cover_at(&job->scene->sources[at].view.layers, u, v));
+    for (int k = 0; k < count && cover > sum; k++)
+        for (int c = 0; c < 4; c++) list[k].rgba[c] *= cover / sum;
+}
+
 /* Near to far; of equal depths in the order of the views. */
 static void sort_fragments(struct fragment *list, int count)
 {
@@ -174,7 +212,7 @@ static float border(const struct view *v, double x, double y)
     return at < (double)MIN_INSIDE ? MIN_INSIDE : at < 1 ? (float)at : 1;
 }
 
-static float opaque(double support) { return smooth((support - (double)DENIED) / (double)(SUPPORTED - DENIED)); }
+static float opaque(double support, double from, double to) { return smooth((support - from) / (to - from)); }
 
 /* The votes on a fragment; sets its weight and opacity. */
 static void judge(const struct blend_job *job, struct fragment *f)
@@ -202,8 +240,11 @@ static void judge(const struct blend_job *job, struct fragment *f)
         denied += weight * sure * through;
     }
     const double sum = agreeing + denied;
-    f->opacity = sum > 0 ? opaque(confirmed / sum - (f->open ? (double)OPEN : 0)) : 0;
-    f->doubt = sum > 0 ? opaque(agreeing / sum) : 0;
+    if (!(agreeing > 0)) return;
+    const double sure = confirmed / agreeing, share = agreeing / sum;
+    f->doubt = opaque(share, DENIED, CONFIRMED);
+    f->opacity = f->doubt * opaque(sure, UNSURE, SURE);
+    if (f->open) f->opacity *= opaque(sure * share, OPEN, OPEN_SURE);
 }
 
 /* How far two fragments are the same surface, b behind a. */
@@ -215,6 +256,15 @@ static float same_surface(const struct fragment *a, const struct fragment *b)
 }
 
 /* ---------------------------------------------------------------------------------------------------------- blending */
+
+/* The weights of the views that show a surface, each once: a view's two fragments share the pixel. */
+static float weight_of_surface(const struct fragment *list, const float *same, int count)
+{
+    float of_view[CLUTTER_VIEWS] = {0}, sum = 0;
+    for (int j = 0; j < count; j++) of_view[list[j].slot] = fmaxf(of_view[list[j].slot], same[j] * list[j].weight);
+    for (int k = 0; k < CLUTTER_VIEWS; k++) sum += of_view[k];
+    return sum;
+}
 
 /* Composites sorted fragments: premultiplied colour and coverage; *doubtful: coverage if all depths were sure. */
 static void composite(float rgba[4], float *doubtful, const struct fragment *list, int count)
@@ -228,8 +278,8 @@ static void composite(float rgba[4], float *doubtful, const struct fragment *lis
     }
     for (int i = 0; i < count; i++) {
         const struct fragment *f = &list[i];
-        float sum = 0, left = 1;
-        for (int j = 0; j < count; j++) sum += same[i][j] * list[j].weight;
+        const float sum = weight_of_surface(list, same[i], count);
+        float left = 1;
         for (int j = 0; j < i; j++) {
             const struct fragment *g = &list[j];
             left = fminf(left, 1 - g->rgba[3] * g->opacity * g->raw * g->present * (1 - same[i][j]));
@@ -250,8 +300,10 @@ static void blend_pixel(const struct blend_job *job, const struct blend_tile *t,
     for (int k = 0; k < job->choice->count; k++) {
         if (!t->drawn[k]) continue;
         const float inside = t->front[k].inside[i];
+        const int first = count;
         count = add_fragment(job, list, count, &t->front[k], i, k, inside, x, y);
         count = add_fragment(job, list, count, &t->behind[k], i, k, inside, x, y);
+        if (count > first) complete(job, list + first, count - first);
     }
     if (!count) return;
     for (int k = 0; k < count; k++) judge(job, &list[k]);

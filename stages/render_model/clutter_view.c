@@ -162,33 +162,43 @@ static void keep_clutter(struct layer *l, const uint8_t *rim, uint8_t bit, const
     }
 }
 
-/* The nearest surface of both layers within one pixel: outlines of segments are off by as much, and a view must not
- * deny what another one shows for that. */
-static void find_nearest(struct clutter_view *v, const struct layered_depth *d, const struct judged_segment *list,
-                         float *rows)
+static void see_pixels(struct clutter_view *v, const struct layered_depth *d, const struct judged_segment *list)
 {
-    const int width = d->width, height = d->height;
-    for (int y = 0; y < height; y++)
-        for (int x = 0; x < width; x++) {
-            const size_t p = (size_t)y * (size_t)width + (size_t)x;
-            const float inner = d->interior.z[p] > 0 ? 1 / d->interior.z[p] : 0;
-            const float outer = d->boundary.id[p] && d->boundary.z[p] > 0 ? 1 / d->boundary.z[p] : 0;
-            v->nearest[p] = fmaxf(inner, outer);
-            v->sure[p] = d->interior.id[p] ? (uint8_t)(CLUTTER_SURE * list[d->interior.id[p] - 1].sure) : 0;
+    const size_t pixels = (size_t)d->width * (size_t)d->height;
+    for (size_t p = 0; p < pixels; p++) {
+        const float inner = d->interior.z[p] > 0 ? 1 / d->interior.z[p] : 0;
+        const float outer = d->boundary.id[p] && d->boundary.z[p] > 0 ? 1 / d->boundary.z[p] : 0;
+        v->nearest[p] = fmaxf(inner, outer);
+        v->sure[p] = inner > 0 ? (uint8_t)(CLUTTER_SURE * list[d->interior.id[p] - 1].sure) : 0;
+    }
+}
+
+/* Lets each pixel of a line see the nearest surface of its neighbours, with the least confidence. */
+static void spread_line(struct clutter_view *v, size_t first, size_t stride, int count)
+{
+    float before = 0;
+    uint8_t sure_before = UINT8_MAX;
+    for (int i = 0; i < count; i++) {
+        const size_t p = first + (size_t)i * stride, next = i + 1 < count ? p + stride : p;
+        const float own = v->nearest[p];
+        const uint8_t sure = v->sure[p];
+        if (own > 0) {
+            v->nearest[p] = fmaxf(own, fmaxf(before, v->nearest[next]));
+            if (v->nearest[next] > 0 && v->sure[next] < v->sure[p]) v->sure[p] = v->sure[next];
+            if (before > 0 && sure_before < v->sure[p]) v->sure[p] = sure_before;
         }
-    for (int y = 0; y < height; y++)
-        for (int x = 0; x < width; x++) {
-            const float *row = v->nearest + (size_t)y * (size_t)width;
-            const float side = fmaxf(row[x > 0 ? x - 1 : x], row[x + 1 < width ? x + 1 : x]);
-            rows[(size_t)y * (size_t)width + (size_t)x] = row[x] > 0 ? fmaxf(row[x], side) : 0;
-        }
-    for (int y = 0; y < height; y++)
-        for (int x = 0; x < width; x++) {
-            const size_t p = (size_t)y * (size_t)width + (size_t)x;
-            const float above = y > 0 ? rows[p - (size_t)width] : 0;
-            const float below = y + 1 < height ? rows[p + (size_t)width] : 0;
-            v->nearest[p] = rows[p] > 0 ? fmaxf(rows[p], fmaxf(above, below)) : 0;
-        }
+        before = own;
+        sure_before = sure;
+    }
+}
+
+/* What the view sees within one pixel, of both layers: outlines of segments are off by as much, and a view must not deny
+ * what another one shows for that. */
+static void find_nearest(struct clutter_view *v, const struct layered_depth *d, const struct judged_segment *list)
+{
+    see_pixels(v, d, list);
+    for (int y = 0; y < d->height; y++) spread_line(v, (size_t)y * (size_t)d->width, 1, d->width);
+    for (int x = 0; x < d->width; x++) spread_line(v, (size_t)x, (size_t)d->width, d->height);
 }
 
 static enum status check(const struct layered_depth *d, const struct view_ids *ids, const char *name, struct err *err)
@@ -220,7 +230,6 @@ enum status clutter_view_make(struct clutter_view *v, struct layered_depth *dept
 {
     const size_t pixels = (size_t)depth->width * (size_t)depth->height;
     struct judged_segment *list = NULL;
-    float *rows = NULL;
     uint8_t *rim = NULL;
     *v = (struct clutter_view){.depth = *depth};
     *depth = (struct layered_depth){0};
@@ -228,21 +237,19 @@ enum status clutter_view_make(struct clutter_view *v, struct layered_depth *dept
     if (!st) list = judge_segments(&v->depth, ids, err);
     if (!st && !list) st = err->status;
     if (!st) {
-        rows = malloc(pixels * sizeof *rows);
         v->nearest = malloc(pixels * sizeof *v->nearest);
         v->sure = malloc(pixels);
         rim = calloc(pixels, 1);
-        if (!rows || !rim || !v->nearest || !v->sure) st = err_nomem(err, "what a view sees", pixels * 10);
+        if (!rim || !v->nearest || !v->sure) st = err_nomem(err, "what a view sees", pixels * 6);
     }
     if (!st) {
-        find_nearest(v, &v->depth, list, rows);
+        find_nearest(v, &v->depth, list);
         find_rims(rim, &v->depth, list, ids);
         keep_clutter(&v->depth.interior, rim, INTERIOR, list, ids);
         keep_clutter(&v->depth.boundary, rim, BOUNDARY, list, ids);
         st = layer_view_pack(&v->layers, &v->depth, name, err);
     }
     v->bytes = bytes_of(v->depth.width, v->depth.height);
-    free(rows);
     free(rim);
     free(list);
     if (st) clutter_view_release(v);

@@ -1,0 +1,499 @@
+/* Furniture in front of the model, from the views' layers: a box room with a cube on its floor, traced exactly. */
+#include "tests/unit/scratch.h"
+
+#include "common/base/parallel.h"
+#include "common/capture/view_image.h"
+#include "common/layers/layered_depth.h"
+#include "common/texture/view_ids.h"
+#include "stages/render_model/clutter.h"
+
+enum { W = 160, H = 120, VIEWS = 4, ROOM_FACES = 6, RIM = 3 };
+
+struct block {
+    struct vec3 low, high;
+};
+
+static const struct block room = {{-2, -2, 0}, {2, 2, 2.5}}, cube = {{-0.35, 0.8, 0}, {0.35, 1.5, 0.7}};
+static const struct model_axes same_frame = {.rotation = {1, 0, 0, 0}, .scale = 1};
+
+struct scene {
+    struct view views[VIEWS];
+    struct camera_set set;
+    struct clutter_scene *clutter;
+};
+
+struct hit { /* face: 0 to 5 of the room, 6 to 11 of the cube; -1: none */
+    int face;
+    double z;
+    struct vec3 point;
+};
+
+/* What a test changes in the depth of a view. */
+struct change {
+    double confidence, sigma; /* of the cube's segments */
+    int blind;                /* this view's depth shows the room without the cube; -1: none */
+};
+
+static const struct provenance no_inputs = {.stage = "test", .version = "1"};
+static const struct change sure = {1, 0.004, -1};
+
+static double axis_of(struct vec3 v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
+
+static struct view camera_at(double x, double y, double z, double tx, double ty, double tz)
+{
+    struct view v = {.name = "camera", .width = W, .height = H, .fx = 130, .fy = 130, .cx = W / 2.0, .cy = H / 2.0};
+    const struct vec3 at = vec3_make(x, y, z), ahead = vec3_normalize(vec3_sub(vec3_make(tx, ty, tz), at));
+    const struct vec3 right = vec3_normalize(vec3_cross(vec3_make(0, 0, -1), ahead)), down = vec3_cross(ahead, right);
+    v.cam_from_world =
+        (struct mat3){{{right.x, right.y, right.z}, {down.x, down.y, down.z}, {ahead.x, ahead.y, ahead.z}}};
+    v.center = at;
+    v.translation = vec3_scale(mat3_apply(v.cam_from_world, at), -1);
+    return v;
+}
+
+/* Where a ray leaves the room, or enters the cube. d has depth 1 along the camera's axis, so the parameter is z. */
+static void meet(struct hit *h, const struct block *b, struct vec3 from, struct vec3 d, bool inside, int first)
+{
+    double enter = -INFINITY, leave = INFINITY;
+    int enter_face = -1, leave_face = -1;
+    for (int axis = 0; axis < 3; axis++) {
+        const double o = axis_of(from, axis), s = axis_of(d, axis);
+        const double a = (axis_of(b->low, axis) - o) / s, c = (axis_of(b->high, axis) - o) / s;
+        const double near = fmin(a, c), far = fmax(a, c);
+        if (near > enter) enter = near, enter_face = 2 * axis + (a > c);
+        if (far < leave) leave = far, leave_face = 2 * axis + (c > a);
+    }
+    const double z = inside ? leave : enter;
+    if (enter > leave || !(z > 0) || (h->face >= 0 && z >= h->z)) return;
+    *h = (struct hit){first + (inside ? leave_face : enter_face), z, vec3_add(from, vec3_scale(d, z))};
+}
+
+static struct hit trace(const struct view *v, double x, double y, bool with_cube)
+{
+    const struct vec3 d = vec3_sub(view_unproject(v, x, y, 1), v->center);
+    struct hit h = {.face = -1};
+    meet(&h, &room, v->center, d, true, 0);
+    if (with_cube) meet(&h, &cube, v->center, d, false, ROOM_FACES);
+    return h;
+}
+
+static void colour_of(float rgb[3], const struct hit *h)
+{
+    const double wave = sin(2 * h->point.x + 1) * cos(2 * h->point.y) * cos(3 * h->point.z);
+    for (int c = 0; c < 3; c++) rgb[c] = (float)((h->face >= ROOM_FACES ? 0.2 + 0.3 * c : 0.9 - 0.2 * c) + 0.06 * wave);
+}
+
+/* Coefficients of 1/z over a view's pixels, of the plane of a face. */
+static void plane_of(double plane[3], const struct view *v, int face)
+{
+    const struct block *b = face < ROOM_FACES ? &room : &cube;
+    const int axis = face % ROOM_FACES / 2;
+    const double place = axis_of(face % 2 ? b->high : b->low, axis), d = place - axis_of(v->center, axis);
+    const double n[3] = {v->cam_from_world.m[0][axis] / v->fx, v->cam_from_world.m[1][axis] / v->fy,
+                         v->cam_from_world.m[2][axis]};
+    plane[0] = n[0] / d;
+    plane[1] = n[1] / d;
+    plane[2] = (n[2] - n[0] * v->cx - n[1] * v->cy) / d;
+}
+
+static void write_depth(const struct view *v, const struct change *change, bool blind)
+{
+    struct layered_depth d = {0};
+    struct err err = ERR_INIT;
+    assert_ok(layered_depth_init(&d, W, H, &err), err);
+    d.segment_count = 2 * ROOM_FACES;
+    d.segments = calloc((size_t)d.segment_count, sizeof *d.segments);
+    assert_non_null(d.segments);
+    for (int i = 0; i < d.segment_count; i++) {
+        const bool of_cube = i >= ROOM_FACES;
+        d.segments[i] = (struct depth_segment){.id = (uint32_t)i + 1,
+                                               .sigma = of_cube ? change->sigma : sure.sigma,
+                                               .confidence = of_cube ? change->confidence : 1};
+        plane_of(d.segments[i].plane, v, i);
+    }
+    for (size_t p = 0; p < (size_t)W * H; p++) {
+        const struct hit h = trace(v, (double)(p % W) + 0.5, (double)(p / W) + 0.5, !blind);
+        d.interior.id[p] = (uint32_t)h.face + 1;
+        d.interior.z[p] = (float)h.z;
+        colour_of(d.interior.rgba + 4 * p, &h);
+        d.interior.rgba[4 * p + 3] = 1;
+        d.segments[h.face].pixels++;
+    }
+    char name[64];
+    snprintf(name, sizeof name, "depth/%s.exr", v->name);
+    assert_ok(layered_depth_write(&d, v, scratch_path(name), &no_inputs, &err), err);
+    layered_depth_release(&d);
+}
+
+static bool is_cube(const struct view *v, int x, int y) { return trace(v, x + 0.5, y + 0.5, true).face >= ROOM_FACES; }
+
+/* Whether a pixel within `reach` px is of the cube (of: true), or is not (false). */
+static bool near_cube(const struct view *v, int x, int y, int reach, bool of)
+{
+    for (int dy = -reach; dy <= reach; dy++)
+        for (int dx = -reach; dx <= reach; dx++)
+            if (is_cube(v, x + dx, y + dy) == of) return true;
+    return false;
+}
+
+static void write_ids(const struct view *v)
+{
+    struct view_ids ids = {0};
+    struct err err = ERR_INIT;
+    char name[64];
+    assert_ok(view_ids_init(&ids, W, H, &err), err);
+    for (int y = 0; y < H; y++)
+        for (int x = 0; x < W; x++) {
+            const size_t p = (size_t)(y * W + x);
+            const struct hit h = trace(v, x + 0.5, y + 0.5, false);
+            ids.id[p] = (uint32_t)h.face + 1;
+            ids.z[p] = (float)h.z;
+            ids.jump[p] = VIEW_IDS_FAR;
+            ids.clutter[p] = near_cube(v, x, y, RIM, true);
+        }
+    snprintf(name, sizeof name, "ids/%s.exr", v->name);
+    assert_ok(view_ids_write(&ids, v, scratch_path(name), &no_inputs, &err), err);
+    view_ids_release(&ids);
+}
+
+static void write_view(const struct view *v)
+{
+    struct image im = {0};
+    struct err err = ERR_INIT;
+    char name[64];
+    assert_ok(image_init(&im, W, H, 4, &err), err);
+    for (size_t p = 0; p < (size_t)W * H; p++) {
+        const struct hit h = trace(v, (double)(p % W) + 0.5, (double)(p / W) + 0.5, true);
+        colour_of(im.data + 4 * p, &h);
+        im.data[4 * p + 3] = 1;
+    }
+    snprintf(name, sizeof name, "views/%s.exr", v->name);
+    assert_ok(view_image_write(&im, NULL, scratch_path(name), v, &no_inputs, "relative", &err), err);
+    image_release(&im);
+}
+
+/* ------------------------------------------------------------------------------------------------------------ scenes */
+
+/* Two views to the left and right of the cube, one farther to the left, and one above. */
+static void scene_make(struct scene *s, const struct change *change, int memory)
+{
+    static const char *const names[VIEWS] = {"a", "b", "c", "d"};
+    static const char *const folders[] = {"views", "depth", "ids"};
+    struct err err = ERR_INIT;
+    *s = (struct scene){.views = {camera_at(-0.5, -1.5, 1.3, 0, 1, 0.4), camera_at(0.5, -1.5, 1.3, 0, 1, 0.4),
+                                  camera_at(-1.1, -1.4, 1.2, 0, 1, 0.4), camera_at(0.1, -1.2, 1.9, 0, 1, 0.4)}};
+    s->set = (struct camera_set){.views = s->views, .view_count = VIEWS};
+    for (int k = 0; k < 3; k++) mkdir(scratch_path(folders[k]), 0777);
+    for (int i = 0; i < VIEWS; i++) {
+        s->views[i].name = names[i];
+        write_depth(&s->views[i], change, i == change->blind);
+        write_ids(&s->views[i]);
+        write_view(&s->views[i]);
+    }
+    const struct clutter_files files = {scratch_path("views"), scratch_path("depth"), scratch_path("ids"), memory};
+    assert_ok(clutter_open(&s->clutter, &files, &s->set, &same_frame, &err), err);
+}
+
+/* The empty room. */
+static void draw_shell(struct model_picture *p, const struct view *camera)
+{
+    struct err err = ERR_INIT;
+    assert_ok(model_picture_resize(p, W, H, &err), err);
+    for (size_t i = 0; i < (size_t)W * H; i++) {
+        const struct hit h = trace(camera, (double)(i % W) + 0.5, (double)(i / W) + 0.5, false);
+        colour_of(p->rgb + 3 * i, &h);
+        p->z[i] = (float)h.z;
+        p->id[i] = (uint32_t)h.face + 1;
+        p->made[i] = MADE_ORIGINAL;
+    }
+}
+
+static void draw(struct model_picture *p, struct scene *s, const struct view *camera, const struct texture_map *map,
+                 const int *views, int count)
+{
+    struct err err = ERR_INIT;
+    draw_shell(p, camera);
+    assert_ok(clutter_draw(p, s->clutter, camera, map, views, count, NULL, &err), err);
+}
+
+static struct view mid_way(void) { return camera_at(0, -1.5, 1.3, 0, 1, 0.4); }
+
+static size_t count_made(const struct model_picture *p, enum picture_made made)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < (size_t)W * H; i++) count += p->made[i] == made;
+    return count;
+}
+
+static void assert_same_picture(const struct model_picture *a, const struct model_picture *b)
+{
+    assert_memory_equal(a->rgb, b->rgb, 3 * (size_t)W * H * sizeof *a->rgb);
+    assert_memory_equal(a->made, b->made, (size_t)W * H);
+}
+
+/* Nothing is drawn from this camera. */
+static void assert_shell(struct scene *s, const struct view *camera, const struct texture_map *map)
+{
+    struct model_picture p = {0}, shell = {0};
+    draw_shell(&shell, camera);
+    draw(&p, s, camera, map, NULL, 0);
+    assert_same_picture(&p, &shell);
+    model_picture_release(&p);
+    model_picture_release(&shell);
+}
+
+/* ------------------------------------------------------------------------------------------------------------- tests */
+
+static void assert_pixel_of_cube(const struct model_picture *p, const struct hit *h, size_t i)
+{
+    float rgb[3];
+    colour_of(rgb, h);
+    assert_int_equal(p->made[i], MADE_CLUTTER);
+    for (int c = 0; c < 3; c++) assert_float_equal(p->rgb[3 * i + (size_t)c], rgb[c], 0.02);
+}
+
+static void assert_cube_and_shell(const struct model_picture *p, const struct view *camera)
+{
+    struct model_picture shell = {0};
+    size_t inside = 0, outside = 0;
+    draw_shell(&shell, camera);
+    for (int y = 2; y < H - 2; y++)
+        for (int x = 2; x < W - 2; x++) {
+            const size_t i = (size_t)(y * W + x);
+            const struct hit h = trace(camera, x + 0.5, y + 0.5, true);
+            if (!near_cube(camera, x, y, 2, true)) {
+                assert_memory_equal(p->rgb + 3 * i, shell.rgb + 3 * i, 3 * sizeof *p->rgb);
+                assert_int_equal(p->made[i], MADE_ORIGINAL);
+                outside++;
+            } else if (!near_cube(camera, x, y, 2, false) && h.z < (double)(shell.z[i] * 0.95f)) {
+                assert_pixel_of_cube(p, &h, i);
+                inside++;
+            }
+        }
+    assert_true(inside > 500 && outside > 10000);
+    model_picture_release(&shell);
+}
+
+static void a_view_mid_way_shows_the_cube_at_its_place(void **state)
+{
+    (void)state;
+    const struct view camera = mid_way();
+    const int pair[] = {0, 1};
+    struct model_picture p = {0};
+    struct scene s;
+    scene_make(&s, &sure, 100);
+    draw(&p, &s, &camera, NULL, pair, 2);
+    assert_cube_and_shell(&p, &camera);
+    draw(&p, &s, &camera, NULL, NULL, 0);
+    assert_cube_and_shell(&p, &camera);
+    model_picture_release(&p);
+    clutter_close(s.clutter);
+}
+
+static void a_new_wall_hides_it(void **state)
+{
+    (void)state;
+    const struct view camera = mid_way();
+    struct model_picture p = {0}, wall = {0};
+    struct err err = ERR_INIT;
+    struct scene s;
+    scene_make(&s, &sure, 100);
+    draw_shell(&p, &camera);
+    draw_shell(&wall, &camera);
+    for (size_t i = 0; i < (size_t)W * H; i++) { /* the plane y = 0.5, before the cube */
+        const struct vec3 d =
+            vec3_sub(view_unproject(&camera, (double)(i % W) + 0.5, (double)(i / W) + 0.5, 1), camera.center);
+        const float z = (float)((0.5 - camera.center.y) / d.y);
+        if (z < p.z[i]) p.z[i] = wall.z[i] = z;
+    }
+    assert_ok(clutter_draw(&p, s.clutter, &camera, NULL, NULL, 0, NULL, &err), err);
+    assert_same_picture(&p, &wall);
+    model_picture_release(&p);
+    model_picture_release(&wall);
+    clutter_close(s.clutter);
+}
+
+static void a_zone_clears_it_and_another_keeps_it(void **state)
+{
+    (void)state;
+    double square[4][2] = {{-1, 0.5}, {1, 0.5}, {1, 1.8}, {-1, 1.8}};
+    struct texture_zone zones[] = {{.low = -0.5, .high = 3, .corners = square, .corner_count = 4},
+                                   {.keep = true, .low = -0.5, .high = 3, .corners = square, .corner_count = 4}};
+    struct texture_map map = {.zones = zones, .zone_count = 1};
+    const struct view camera = mid_way();
+    struct model_picture p = {0};
+    struct scene s;
+    scene_make(&s, &sure, 100);
+    assert_shell(&s, &camera, &map);
+    map.zone_count = 2;
+    draw(&p, &s, &camera, &map, NULL, 0);
+    assert_cube_and_shell(&p, &camera);
+    model_picture_release(&p);
+    clutter_close(s.clutter);
+}
+
+/* The cube's depth is not known to better than a third of it. */
+static void where_depth_is_unsure_the_shell_wins_and_says_so(void **state)
+{
+    (void)state;
+    const struct change unsure = {0.02, 0.3, -1};
+    const struct view camera = mid_way();
+    struct model_picture p = {0}, shell = {0};
+    struct scene s;
+    scene_make(&s, &unsure, 100);
+    draw(&p, &s, &camera, NULL, NULL, 0);
+    draw_shell(&shell, &camera);
+    for (size_t i = 0; i < 3 * (size_t)W * H; i++) assert_float_equal(p.rgb[i], shell.rgb[i], 0.02);
+    assert_int_equal(count_made(&p, MADE_CLUTTER), 0);
+    for (int y = 2; y < H - 2; y++)
+        for (int x = 2; x < W - 2; x++)
+            if (!near_cube(&camera, x, y, 2, true)) assert_int_equal(p.made[y * W + x], MADE_ORIGINAL);
+    assert_true(count_made(&p, MADE_UNSURE) > 500);
+    model_picture_release(&p);
+    model_picture_release(&shell);
+    clutter_close(s.clutter);
+}
+
+/* One view invents the cube; three see the floor and the wall that it would hide. */
+static void views_deny_what_they_see_through(void **state)
+{
+    (void)state;
+    const struct view camera = mid_way();
+    struct err err = ERR_INIT;
+    struct scene s;
+    scene_make(&s, &sure, 100);
+    clutter_close(s.clutter);
+    for (int i = 1; i < VIEWS; i++) write_depth(&s.views[i], &sure, true);
+    const struct clutter_files files = {scratch_path("views"), scratch_path("depth"), scratch_path("ids"), 100};
+    assert_ok(clutter_open(&s.clutter, &files, &s.set, &same_frame, &err), err);
+    assert_shell(&s, &camera, NULL);
+    clutter_close(s.clutter);
+}
+
+static void one_view_that_misses_it_leaves_no_hole(void **state)
+{
+    (void)state;
+    const struct change one_blind = {1, 0.004, 2};
+    const struct view camera = mid_way();
+    struct model_picture p = {0};
+    struct scene s;
+    scene_make(&s, &one_blind, 100);
+    draw(&p, &s, &camera, NULL, NULL, 0);
+    assert_cube_and_shell(&p, &camera);
+    model_picture_release(&p);
+    clutter_close(s.clutter);
+}
+
+static void from_an_original_view_it_is_the_photo(void **state)
+{
+    (void)state;
+    const int own = 0;
+    struct model_picture p = {0}, shell = {0};
+    struct image photo = {0};
+    struct err err = ERR_INIT;
+    struct scene s;
+    size_t clutter = 0;
+    scene_make(&s, &sure, 100);
+    draw(&p, &s, &s.views[own], NULL, &own, 1);
+    draw_shell(&shell, &s.views[own]);
+    assert_ok(view_image_read(&photo, scratch_path("views"), &s.views[own], &err), err);
+    for (size_t i = 0; i < (size_t)W * H; i++) {
+        const struct hit h = trace(&s.views[own], (double)(i % W) + 0.5, (double)(i / W) + 0.5, true);
+        if (p.made[i] == MADE_CLUTTER) {
+            assert_true(h.face >= ROOM_FACES);
+            assert_memory_equal(p.rgb + 3 * i, photo.data + 4 * i, 3 * sizeof *p.rgb);
+            clutter++;
+        } else if (h.face < ROOM_FACES)
+            assert_memory_equal(p.rgb + 3 * i, shell.rgb + 3 * i, 3 * sizeof *p.rgb);
+    }
+    assert_true(clutter > 500);
+    image_release(&photo);
+    model_picture_release(&p);
+    model_picture_release(&shell);
+    clutter_close(s.clutter);
+}
+
+static void threads_and_memory_do_not_matter(void **state)
+{
+    (void)state;
+    const struct view camera = mid_way(), other = camera_at(-0.7, -1.3, 1.5, 0, 1, 0.4);
+    const int pair[] = {0, 1}, far_pair[] = {2, 3};
+    struct model_picture p[3] = {{0}};
+    struct scene s;
+    scene_make(&s, &sure, 1); /* fewer than the views need: each picture reads its own */
+    parallel_set_threads(1);
+    draw(&p[0], &s, &camera, NULL, pair, 2);
+    draw(&p[1], &s, &other, NULL, far_pair, 2);
+    parallel_set_threads(3);
+    draw(&p[1], &s, &camera, NULL, pair, 2);
+    assert_same_picture(&p[0], &p[1]);
+    clutter_close(s.clutter);
+    scene_make(&s, &sure, 100);
+    draw(&p[2], &s, &camera, NULL, pair, 2);
+    parallel_set_threads(0);
+    assert_same_picture(&p[0], &p[2]);
+    for (int i = 0; i < 3; i++) model_picture_release(&p[i]);
+    clutter_close(s.clutter);
+}
+
+static void the_views_that_were_read_are_recorded(void **state)
+{
+    (void)state;
+    const struct view camera = mid_way();
+    const int pair[] = {0, 2};
+    struct provenance prov = {0};
+    struct model_picture p = {0};
+    struct err err = ERR_INIT;
+    struct scene s;
+    scene_make(&s, &sure, 100);
+    for (int again = 0; again < 2; again++) { /* also when they are in memory */
+        draw_shell(&p, &camera);
+        assert_ok(clutter_draw(&p, s.clutter, &camera, NULL, pair, 2, &prov, &err), err);
+        assert_int_equal(prov.count, 4);
+        assert_string_equal(prov.inputs[0].name, "depth/a.exr");
+        assert_string_equal(prov.inputs[3].name, "ids/c.exr");
+        provenance_release(&prov);
+        prov = (struct provenance){0};
+    }
+    model_picture_release(&p);
+    clutter_close(s.clutter);
+}
+
+static void faces_of_another_size_are_refused(void **state)
+{
+    (void)state;
+    const struct view camera = mid_way();
+    const int own = 1;
+    struct model_picture p = {0};
+    struct view_ids small = {0};
+    struct err err = ERR_INIT;
+    struct scene s;
+    scene_make(&s, &sure, 100);
+    assert_ok(view_ids_init(&small, W / 2, H, &err), err);
+    struct view half = s.views[own];
+    half.width = W / 2;
+    assert_ok(view_ids_write(&small, &half, scratch_path("ids/b.exr"), &no_inputs, &err), err);
+    draw_shell(&p, &camera);
+    assert_int_equal(clutter_draw(&p, s.clutter, &camera, NULL, &own, 1, NULL, &err), ST_DATA);
+    assert_non_null(strstr(err.text, "b.exr"));
+    view_ids_release(&small);
+    model_picture_release(&p);
+    clutter_close(s.clutter);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_view_mid_way_shows_the_cube_at_its_place),
+        cmocka_unit_test(a_new_wall_hides_it),
+        cmocka_unit_test(a_zone_clears_it_and_another_keeps_it),
+        cmocka_unit_test(where_depth_is_unsure_the_shell_wins_and_says_so),
+        cmocka_unit_test(views_deny_what_they_see_through),
+        cmocka_unit_test(one_view_that_misses_it_leaves_no_hole),
+        cmocka_unit_test(from_an_original_view_it_is_the_photo),
+        cmocka_unit_test(threads_and_memory_do_not_matter),
+        cmocka_unit_test(the_views_that_were_read_are_recorded),
+        cmocka_unit_test(faces_of_another_size_are_refused),
+    };
+    return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
+}
