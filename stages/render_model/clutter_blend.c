@@ -7,8 +7,8 @@
  * 1. Does the shell hide it? An edit may have put a wall there. A fragment behind the shell's depth by more than its
  *    uncertainty fades out. One in a zone that is to be cleared is left out.
  * 2. Do the views agree? The fragment's point P is projected into each view. A view whose nearest surface there is clearly
- *    behind P looks through it and denies it; one whose surface is at P confirms it; one whose surface is in front, or
- *    whose picture P is not in, has no vote. With weights w_j (below) and confidences c_j,
+ *    behind P looks through it and denies it, as does one that shows the model's own surface there; one with clutter at P
+ *    confirms it; one whose surface is in front, or whose picture P is not in, has no vote. With weights w_j (below) and confidences c_j,
  *      votes v = sum_confirming w_j / (sum_confirming w_j + sum_denying w_j c_j)
  *      confidence c = sum_confirming w_j c_j / sum_confirming w_j
  *    and the opacity is o = smoothstep(v) smoothstep(c). Without confidence the shell wins, and the pixel is marked. Where
@@ -235,9 +235,10 @@ static void judge(const struct blend_job *job, struct fragment *f)
         const double tolerance = BEHIND + slack(f->sigma), beyond = 1 / (z * nearest) - 1;
         if (k != f->slot && beyond < -tolerance) continue; /* hidden from this view */
         const double through = k == f->slot ? 0 : (double)smooth((beyond - tolerance) / tolerance);
-        confirmed += weight * sure * (1 - through);
-        agreeing += weight * (1 - through);
-        denied += weight * sure * through;
+        const double here = (1 - through) * (k == f->slot ? 1 : (double)source->shows[pixel] / (double)CLUTTER_SURE);
+        confirmed += weight * sure * here;
+        agreeing += weight * here;
+        denied += weight * sure * (1 - here);
     }
     const double sum = agreeing + denied;
     if (!(agreeing > 0)) return;

@@ -192,6 +192,29 @@ static void spread_line(struct clutter_view *v, size_t first, size_t stride, int
     }
 }
 
+static uint8_t greater(uint8_t a, uint8_t b) { return a > b ? a : b; }
+
+static void spread_shows(uint8_t *shows, size_t first, size_t stride, int count)
+{
+    uint8_t before = 0;
+    for (int i = 0; i < count; i++) {
+        const size_t p = first + (size_t)i * stride;
+        const uint8_t own = shows[p], next = i + 1 < count ? shows[p + stride] : 0;
+        shows[p] = greater(own, greater(before, next));
+        before = own;
+    }
+}
+
+/* Call it when the layers hold clutter alone. */
+static void find_shows(struct clutter_view *v, const struct layered_depth *d)
+{
+    const size_t pixels = (size_t)d->width * (size_t)d->height;
+    for (size_t p = 0; p < pixels; p++)
+        v->shows[p] = (uint8_t)(CLUTTER_SURE * fminf(1, d->interior.rgba[4 * p + 3] + d->boundary.rgba[4 * p + 3]));
+    for (int y = 0; y < d->height; y++) spread_shows(v->shows, (size_t)y * (size_t)d->width, 1, d->width);
+    for (int x = 0; x < d->width; x++) spread_shows(v->shows, (size_t)x, (size_t)d->width, d->height);
+}
+
 /* What the view sees within one pixel, of both layers: outlines of segments are off by as much, and a view must not deny
  * what another one shows for that. */
 static void find_nearest(struct clutter_view *v, const struct layered_depth *d, const struct judged_segment *list)
@@ -220,7 +243,7 @@ static enum status check(const struct layered_depth *d, const struct view_ids *i
 static size_t bytes_of(int width, int height)
 {
     const size_t texel = sizeof(struct texel) + 8 + 2 * sizeof(uint32_t); /* with the photo and the cells */
-    return (size_t)(width + 3) * (size_t)(height + 3) * (texel + sizeof(float) + 1);
+    return (size_t)(width + 3) * (size_t)(height + 3) * (texel + sizeof(float) + 2);
 }
 
 size_t clutter_view_bytes(const struct view *view) { return bytes_of(view->width, view->height); }
@@ -239,14 +262,16 @@ enum status clutter_view_make(struct clutter_view *v, struct layered_depth *dept
     if (!st) {
         v->nearest = malloc(pixels * sizeof *v->nearest);
         v->sure = malloc(pixels);
+        v->shows = malloc(pixels);
         rim = calloc(pixels, 1);
-        if (!rim || !v->nearest || !v->sure) st = err_nomem(err, "what a view sees", pixels * 6);
+        if (!rim || !v->nearest || !v->sure || !v->shows) st = err_nomem(err, "what a view sees", pixels * 7);
     }
     if (!st) {
         find_nearest(v, &v->depth, list);
         find_rims(rim, &v->depth, list, ids);
         keep_clutter(&v->depth.interior, rim, INTERIOR, list, ids);
         keep_clutter(&v->depth.boundary, rim, BOUNDARY, list, ids);
+        find_shows(v, &v->depth);
         st = layer_view_pack(&v->layers, &v->depth, name, err);
     }
     v->bytes = bytes_of(v->depth.width, v->depth.height);
@@ -263,5 +288,6 @@ void clutter_view_release(struct clutter_view *v)
     layer_view_release(&v->layers);
     free(v->nearest);
     free(v->sure);
+    free(v->shows);
     *v = (struct clutter_view){0};
 }

@@ -12,6 +12,7 @@ struct clutter_view {
     struct layer_view layers;   /* texels of clutter; the others are empty */
     float *nearest;             /* per pixel: 1 / z of the nearest surface within one pixel, 0: not known */
     uint8_t *sure;              /* per pixel: confidence that the view's depth deserves here, 255: full */
+    uint8_t *shows;             /* per pixel: clutter within one pixel, 255: all of one */
     size_t bytes;               /* of memory */
 };
 
