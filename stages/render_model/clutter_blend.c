@@ -14,14 +14,15 @@
  *    and the opacity is o = smoothstep(v) smoothstep(c). Without confidence the shell wins, and the pixel is marked. Where
  *    the camera looks outdoors both must be higher: the sky in a window has no texture, and its depth is anything.
  * 3. What hides it? With e_ij in [0, 1] how far two fragments are the same surface (the soft z-buffer's weight of their
- *    depths), fragment i is left 1 - max_j a_j o_j (1 - e_ij) over those in front of it.
+ *    depths; 1 for those of one view) and p_j the share of fragment j in its surface, fragment i is left
+ *      1 - sum_j p_j a_j o_j (1 - e_ij) over those in front of it.
  * 4. How much does it count? As in unstructured lumigraph rendering [Buehler 2001], views that see P under nearly the
  *    camera's angle count most: w = fade inside / (BLUR^2 + penalty^2), where `penalty` is the angle, with a fee for
  *    distance, `inside` falls to 0 at the border of the view's picture and `fade` with the view's rank
  *    (clutter_choose.c).
  *
- * The pixel's coverage is sum_i (w_i / W_i) a_i o_i left_i, W_i = sum_j e_ij w_j: a mean over the views of one surface, a
- * sum over surfaces. Soft borders are those of the layers' alpha.
+ * The pixel's coverage is sum_i p_i a_i o_i with p_i = (w_i / W_i) left_i, where W_i = sum over views of max e_ij w_j: a
+ * mean over the views of one surface, a sum over surfaces. Soft borders are those of the layers' alpha.
  *
  * Source: soft z-buffer [Pulli 1997], [Colburn 2014, 3.6]. What differs: the votes; coverage instead of normalised
  * weights, as what is not covered shows the shell.
@@ -248,9 +249,10 @@ static void judge(const struct blend_job *job, struct fragment *f)
     if (f->open) f->opacity *= opaque(sure * share, OPEN, OPEN_SURE);
 }
 
-/* How far two fragments are the same surface, b behind a. */
+/* How far two fragments are the same surface, b behind a. Those of one view share the pixel's area already. */
 static float same_surface(const struct fragment *a, const struct fragment *b)
 {
+    if (a->slot == b->slot) return 1;
     const float sa = fmaxf(a->sigma, SOFT_Z_MIN_SIGMA) * a->z, sb = fmaxf(b->sigma, SOFT_Z_MIN_SIGMA) * b->z;
     const float rho = 2 * WIDTHS * sqrtf(sa * sa + sb * sb), gamma = 0.1f * rho;
     return 1 - smooth((double)((b->z - a->z - gamma) / (rho - 2 * gamma)));
@@ -270,7 +272,7 @@ static float weight_of_surface(const struct fragment *list, const float *same, i
 /* Composites sorted fragments: premultiplied colour and coverage; *doubtful: coverage if all depths were sure. */
 static void composite(float rgba[4], float *doubtful, const struct fragment *list, int count)
 {
-    float same[FRAGMENTS][FRAGMENTS];
+    float same[FRAGMENTS][FRAGMENTS], share[FRAGMENTS];
     memset(rgba, 0, 4 * sizeof *rgba);
     *doubtful = 0;
     for (int i = 0; i < count; i++) {
@@ -280,14 +282,11 @@ static void composite(float rgba[4], float *doubtful, const struct fragment *lis
     for (int i = 0; i < count; i++) {
         const struct fragment *f = &list[i];
         const float sum = weight_of_surface(list, same[i], count);
-        float left = 1;
-        for (int j = 0; j < i; j++) {
-            const struct fragment *g = &list[j];
-            left = fminf(left, 1 - g->rgba[3] * g->opacity * g->raw * g->present * (1 - same[i][j]));
-        }
-        const float part = sum > 0 ? f->weight / sum * f->raw * left : 0;
-        for (int c = 0; c < 4; c++) rgba[c] += part * f->opacity * f->rgba[c];
-        *doubtful += part * f->doubt * f->rgba[3];
+        float hidden = 0;
+        for (int j = 0; j < i; j++) hidden += share[j] * list[j].opacity * list[j].rgba[3] * (1 - same[i][j]);
+        share[i] = sum > 0 ? f->weight / sum * f->raw * f->present * fmaxf(0, 1 - hidden) : 0;
+        for (int c = 0; c < 4; c++) rgba[c] += share[i] * f->opacity * f->rgba[c];
+        *doubtful += share[i] * f->doubt * f->rgba[3];
     }
     if (rgba[3] > 1)
         for (int c = 3; c >= 0; c--) rgba[c] /= rgba[3];

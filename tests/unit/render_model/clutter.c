@@ -332,11 +332,11 @@ static void a_zone_clears_it_and_another_keeps_it(void **state)
     clutter_close(s.clutter);
 }
 
-/* The cube's depth is not known to better than a third of it. */
+/* The depth of the cube is inherited, and may be off by a sixth. */
 static void where_depth_is_unsure_the_shell_wins_and_says_so(void **state)
 {
     (void)state;
-    const struct change unsure = {0.02, 0.3, -1};
+    const struct change unsure = {0, 0.15, -1};
     const struct view camera = mid_way();
     struct model_picture p = {0}, shell = {0};
     struct scene s;
@@ -348,7 +348,7 @@ static void where_depth_is_unsure_the_shell_wins_and_says_so(void **state)
     for (int y = 2; y < H - 2; y++)
         for (int x = 2; x < W - 2; x++)
             if (!near_cube(&camera, x, y, 2, true)) assert_int_equal(p.made[y * W + x], MADE_ORIGINAL);
-    assert_true(count_made(&p, MADE_UNSURE) > 500);
+    assert_true(count_made(&p, MADE_UNSURE) > 300);
     model_picture_release(&p);
     model_picture_release(&shell);
     clutter_close(s.clutter);
