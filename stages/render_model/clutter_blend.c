@@ -54,6 +54,7 @@
 #define PRESENT    0.1f /* fade * inside of a view that is fully present */
 #define WIDTHS     8.0f /* of the soft z-buffer, in uncertainties */
 #define MAX_SLACK  0.03
+#define TOGETHER   0.004f /* relative difference of depths */
 #define COVERED    0.5f
 
 enum { FRAGMENTS = 2 * CLUTTER_VIEWS };
@@ -215,38 +216,62 @@ static float border(const struct view *v, double x, double y)
 
 static float opaque(double support, double from, double to) { return smooth((support - from) / (to - from)); }
 
-/* The votes on a fragment; sets its weight and opacity. */
-static void judge(const struct blend_job *job, struct fragment *f)
+struct votes {
+    double confirmed, agreeing, denied;
+};
+
+/* The vote of view k on a fragment; own: the view shows it itself. Returns the view's weight there. */
+static double vote(struct votes *votes, const struct blend_job *job, const struct fragment *f, int k, bool own)
 {
-    double confirmed = 0, agreeing = 0, denied = 0;
+    const int at = job->choice->view[k];
+    const struct view *view = &job->scene->set->views[at];
+    const struct clutter_view *source = &job->scene->sources[at].view;
+    double u, v;
+    const double z = view_project(view, f->point, &u, &v);
+    if (!(z > 0) || !(u >= 0 && v >= 0 && u < view->width && v < view->height)) return 0;
+    const size_t pixel = (size_t)v * (size_t)view->width + (size_t)u;
+    const double nearest = (double)source->nearest[pixel], sure = (double)source->sure[pixel] / (double)CLUTTER_SURE;
+    const double tolerance = BEHIND + slack(f->sigma), beyond = nearest > 0 ? 1 / (z * nearest) - 1 : 0;
+    const bool blind = !(nearest > 0) || beyond < -tolerance; /* it knows nothing of P, or P is hidden from it */
+    if (blind && !own) return 0;
+    const double penalty = clutter_penalty(f->point, job->camera->center, view->center);
+    const double weight = (double)(job->choice->fade[k] * border(view, u, v)) / (BLUR * BLUR + penalty * penalty);
+    const double through = own ? 0 : (double)smooth((beyond - tolerance) / tolerance);
+    const double here = (1 - through) * (own ? 1 : (double)source->shows[pixel] / (double)CLUTTER_SURE);
+    votes->confirmed += weight * sure * here;
+    votes->agreeing += weight * here;
+    votes->denied += weight * sure * (1 - here);
+    return weight;
+}
+
+/* Lets the views vote on fragments at nearly one place; sets their weights and opacities. */
+static void judge(const struct blend_job *job, struct fragment *list, int count)
+{
+    struct votes votes = {0};
     for (int k = 0; k < job->choice->count; k++) {
-        const int at = job->choice->view[k];
-        const struct view *view = &job->scene->set->views[at];
-        const struct clutter_view *source = &job->scene->sources[at].view;
-        double u, v;
-        const double z = view_project(view, f->point, &u, &v);
-        if (!(z > 0) || !(u >= 0 && v >= 0 && u < view->width && v < view->height)) continue;
-        const size_t pixel = (size_t)v * (size_t)view->width + (size_t)u;
-        const double nearest = (double)source->nearest[pixel],
-                     sure = (double)source->sure[pixel] / (double)CLUTTER_SURE;
-        const double penalty = clutter_penalty(f->point, job->camera->center, view->center);
-        const double weight = (double)(job->choice->fade[k] * border(view, u, v)) / (BLUR * BLUR + penalty * penalty);
-        if (k == f->slot) f->weight = (float)weight;
-        if (!(nearest > 0)) continue;
-        const double tolerance = BEHIND + slack(f->sigma), beyond = 1 / (z * nearest) - 1;
-        if (k != f->slot && beyond < -tolerance) continue; /* hidden from this view */
-        const double through = k == f->slot ? 0 : (double)smooth((beyond - tolerance) / tolerance);
-        const double here = (1 - through) * (k == f->slot ? 1 : (double)source->shows[pixel] / (double)CLUTTER_SURE);
-        confirmed += weight * sure * here;
-        agreeing += weight * here;
-        denied += weight * sure * (1 - here);
+        bool own = false;
+        for (int i = 0; i < count; i++) own |= list[i].slot == k;
+        const double weight = vote(&votes, job, &list[0], k, own);
+        for (int i = 0; i < count; i++)
+            if (list[i].slot == k) list[i].weight = (float)weight;
     }
-    const double sum = agreeing + denied;
-    if (!(agreeing > 0)) return;
-    const double sure = confirmed / agreeing, share = agreeing / sum;
-    f->doubt = opaque(share, DENIED, CONFIRMED);
-    f->opacity = f->doubt * opaque(sure, UNSURE, SURE);
-    if (f->open) f->opacity *= opaque(sure * share, OPEN, OPEN_SURE);
+    if (!(votes.agreeing > 0)) return;
+    const double sure = votes.confirmed / votes.agreeing, share = votes.agreeing / (votes.agreeing + votes.denied);
+    for (int i = 0; i < count; i++) {
+        struct fragment *f = &list[i];
+        f->doubt = opaque(share, DENIED, CONFIRMED);
+        f->opacity = f->doubt * opaque(sure, UNSURE, SURE);
+        if (f->open) f->opacity *= opaque(sure * share, OPEN, OPEN_SURE);
+    }
+}
+
+/* Judges sorted fragments; those within TOGETHER of each other at once, as most of a pixel's are. */
+static void judge_all(const struct blend_job *job, struct fragment *list, int count)
+{
+    for (int first = 0, end; first < count; first = end) {
+        for (end = first + 1; end < count && list[end].z < list[first].z * (1 + TOGETHER); end++) continue;
+        judge(job, list + first, end - first);
+    }
 }
 
 /* How far two fragments are the same surface, b behind a. Those of one view share the pixel's area already. */
@@ -306,8 +331,8 @@ static void blend_pixel(const struct blend_job *job, const struct blend_tile *t,
         if (count > first) complete(job, list + first, count - first);
     }
     if (!count) return;
-    for (int k = 0; k < count; k++) judge(job, &list[k]);
     sort_fragments(list, count);
+    judge_all(job, list, count);
     composite(rgba, &doubtful, list, count);
     const size_t at = (size_t)y * (size_t)job->p->width + (size_t)x;
     if (job->cover)

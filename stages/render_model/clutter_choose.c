@@ -22,9 +22,8 @@ double clutter_penalty(struct vec3 point, struct vec3 camera, struct vec3 view)
     const struct vec3 a = vec3_sub(camera, point), b = vec3_sub(view, point);
     const double la = vec3_length(a), lb = vec3_length(b);
     if (!(la > 0 && lb > 0)) return 0;
-    const double sine = vec3_length(vec3_cross(a, b)) / (la * lb), cosine = vec3_dot(a, b) / (la * lb);
-    const double angle = cosine > 0 ? sine * (1 + sine * sine / 6) : 2 - fmin(sine, 1) * 0.8;
-    return angle + FAR_FEE * fmax(0, lb / la - 1);
+    const double chord = vec3_length(vec3_sub(vec3_scale(a, 1 / la), vec3_scale(b, 1 / lb)));
+    return chord + FAR_FEE * fmax(0, lb / la - 1);
 }
 
 static void vote(double *score, double *weight, const struct camera_set *set, struct vec3 point, struct vec3 camera)

@@ -37,8 +37,8 @@ struct clutter_choice {
 enum status clutter_choose(struct clutter_choice *choice, const struct camera_set *set, const struct view *camera,
                            const float *z, double scale, int most, struct err *err);
 
-/* How much worse a view shows the point than the camera's own place would: 0 along the same ray, and the angle in
- * radians otherwise, with a fee for distance. */
+/* How much worse a view shows the point than the camera's own place would: the angle between the two rays, in radians
+ * while it is small (the chord of the unit circle), with a fee for distance. */
 double clutter_penalty(struct vec3 point, struct vec3 camera, struct vec3 view);
 
 /* Reads the views of the choice that are not in memory; drops others, those first that were not used longest. */
