@@ -229,15 +229,15 @@ static double vote(struct votes *votes, const struct blend_job *job, const struc
     double u, v;
     const double z = view_project(view, f->point, &u, &v);
     if (!(z > 0) || !(u >= 0 && v >= 0 && u < view->width && v < view->height)) return 0;
-    const size_t pixel = (size_t)v * (size_t)view->width + (size_t)u;
-    const double nearest = (double)source->nearest[pixel], sure = (double)source->sure[pixel] / (double)CLUTTER_SURE;
+    const struct clutter_sight *sight = &source->sight[(size_t)v * (size_t)view->width + (size_t)u];
+    const double nearest = (double)sight->nearest, sure = (double)sight->sure / (double)CLUTTER_SURE;
     const double tolerance = BEHIND + slack(f->sigma), beyond = nearest > 0 ? 1 / (z * nearest) - 1 : 0;
     const bool blind = !(nearest > 0) || beyond < -tolerance; /* it knows nothing of P, or P is hidden from it */
     if (blind && !own) return 0;
     const double penalty = clutter_penalty(f->point, job->camera->center, view->center);
     const double weight = (double)(job->choice->fade[k] * border(view, u, v)) / (BLUR * BLUR + penalty * penalty);
     const double through = own ? 0 : (double)smooth((beyond - tolerance) / tolerance);
-    const double here = (1 - through) * (own ? 1 : (double)source->shows[pixel] / (double)CLUTTER_SURE);
+    const double here = (1 - through) * (own ? 1 : (double)sight->shows / (double)CLUTTER_SURE);
     votes->confirmed += weight * sure * here;
     votes->agreeing += weight * here;
     votes->denied += weight * sure * (1 - here);

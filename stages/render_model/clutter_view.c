@@ -168,8 +168,8 @@ static void see_pixels(struct clutter_view *v, const struct layered_depth *d, co
     for (size_t p = 0; p < pixels; p++) {
         const float inner = d->interior.z[p] > 0 ? 1 / d->interior.z[p] : 0;
         const float outer = d->boundary.id[p] && d->boundary.z[p] > 0 ? 1 / d->boundary.z[p] : 0;
-        v->nearest[p] = fmaxf(inner, outer);
-        v->sure[p] = inner > 0 ? (uint8_t)(CLUTTER_SURE * list[d->interior.id[p] - 1].sure) : 0;
+        v->sight[p].nearest = fmaxf(inner, outer);
+        v->sight[p].sure = inner > 0 ? (uint8_t)(CLUTTER_SURE * list[d->interior.id[p] - 1].sure) : 0;
     }
 }
 
@@ -180,12 +180,13 @@ static void spread_line(struct clutter_view *v, size_t first, size_t stride, int
     uint8_t sure_before = UINT8_MAX;
     for (int i = 0; i < count; i++) {
         const size_t p = first + (size_t)i * stride, next = i + 1 < count ? p + stride : p;
-        const float own = v->nearest[p];
-        const uint8_t sure = v->sure[p];
+        const float own = v->sight[p].nearest;
+        const uint8_t sure = v->sight[p].sure;
         if (own > 0) {
-            v->nearest[p] = fmaxf(own, fmaxf(before, v->nearest[next]));
-            if (v->nearest[next] > 0 && v->sure[next] < v->sure[p]) v->sure[p] = v->sure[next];
-            if (before > 0 && sure_before < v->sure[p]) v->sure[p] = sure_before;
+            v->sight[p].nearest = fmaxf(own, fmaxf(before, v->sight[next].nearest));
+            if (v->sight[next].nearest > 0 && v->sight[next].sure < v->sight[p].sure)
+                v->sight[p].sure = v->sight[next].sure;
+            if (before > 0 && sure_before < v->sight[p].sure) v->sight[p].sure = sure_before;
         }
         before = own;
         sure_before = sure;
@@ -194,13 +195,13 @@ static void spread_line(struct clutter_view *v, size_t first, size_t stride, int
 
 static uint8_t greater(uint8_t a, uint8_t b) { return a > b ? a : b; }
 
-static void spread_shows(uint8_t *shows, size_t first, size_t stride, int count)
+static void spread_shows(struct clutter_view *v, size_t first, size_t stride, int count)
 {
     uint8_t before = 0;
     for (int i = 0; i < count; i++) {
         const size_t p = first + (size_t)i * stride;
-        const uint8_t own = shows[p], next = i + 1 < count ? shows[p + stride] : 0;
-        shows[p] = greater(own, greater(before, next));
+        const uint8_t own = v->sight[p].shows, next = i + 1 < count ? v->sight[p + stride].shows : 0;
+        v->sight[p].shows = greater(own, greater(before, next));
         before = own;
     }
 }
@@ -210,9 +211,10 @@ static void find_shows(struct clutter_view *v, const struct layered_depth *d)
 {
     const size_t pixels = (size_t)d->width * (size_t)d->height;
     for (size_t p = 0; p < pixels; p++)
-        v->shows[p] = (uint8_t)(CLUTTER_SURE * fminf(1, d->interior.rgba[4 * p + 3] + d->boundary.rgba[4 * p + 3]));
-    for (int y = 0; y < d->height; y++) spread_shows(v->shows, (size_t)y * (size_t)d->width, 1, d->width);
-    for (int x = 0; x < d->width; x++) spread_shows(v->shows, (size_t)x, (size_t)d->width, d->height);
+        v->sight[p].shows =
+            (uint8_t)(CLUTTER_SURE * fminf(1, d->interior.rgba[4 * p + 3] + d->boundary.rgba[4 * p + 3]));
+    for (int y = 0; y < d->height; y++) spread_shows(v, (size_t)y * (size_t)d->width, 1, d->width);
+    for (int x = 0; x < d->width; x++) spread_shows(v, (size_t)x, (size_t)d->width, d->height);
 }
 
 /* What the view sees within one pixel, of both layers: outlines of segments are off by as much, and a view must not deny
@@ -243,7 +245,7 @@ static enum status check(const struct layered_depth *d, const struct view_ids *i
 static size_t bytes_of(int width, int height)
 {
     const size_t texel = sizeof(struct texel) + 8 + 2 * sizeof(uint32_t); /* with the photo and the cells */
-    return (size_t)(width + 3) * (size_t)(height + 3) * (texel + sizeof(float) + 2);
+    return (size_t)(width + 3) * (size_t)(height + 3) * (texel + sizeof(struct clutter_sight));
 }
 
 size_t clutter_view_bytes(const struct view *view) { return bytes_of(view->width, view->height); }
@@ -260,11 +262,9 @@ enum status clutter_view_make(struct clutter_view *v, struct layered_depth *dept
     if (!st) list = judge_segments(&v->depth, ids, err);
     if (!st && !list) st = err->status;
     if (!st) {
-        v->nearest = malloc(pixels * sizeof *v->nearest);
-        v->sure = malloc(pixels);
-        v->shows = malloc(pixels);
+        v->sight = malloc(pixels * sizeof *v->sight);
         rim = calloc(pixels, 1);
-        if (!rim || !v->nearest || !v->sure || !v->shows) st = err_nomem(err, "what a view sees", pixels * 7);
+        if (!rim || !v->sight) st = err_nomem(err, "what a view sees", pixels * (sizeof *v->sight + 1));
     }
     if (!st) {
         find_nearest(v, &v->depth, list);
@@ -286,8 +286,6 @@ void clutter_view_release(struct clutter_view *v)
     if (!v) return;
     layered_depth_release(&v->depth);
     layer_view_release(&v->layers);
-    free(v->nearest);
-    free(v->sure);
-    free(v->shows);
+    free(v->sight);
     *v = (struct clutter_view){0};
 }

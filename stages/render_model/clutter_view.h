@@ -6,14 +6,19 @@
 #include "common/layers/layer_view.h"
 #include "common/texture/view_ids.h"
 
+/* What a view sees at a pixel, and within one pixel of it. */
+struct clutter_sight {
+    float nearest; /* 1 / z of the nearest surface, 0: not known */
+    uint8_t sure;  /* least confidence that the depths deserve, 255: full */
+    uint8_t shows; /* largest part of a pixel that clutter covers, 255: all */
+};
+
 /* {0} is the empty state; everything is owned. Depths are in scene units. */
 struct clutter_view {
-    struct layered_depth depth; /* size and segments only */
-    struct layer_view layers;   /* texels of clutter; the others are empty */
-    float *nearest;             /* per pixel: 1 / z of the nearest surface within one pixel, 0: not known */
-    uint8_t *sure;              /* per pixel: confidence that the view's depth deserves here, 255: full */
-    uint8_t *shows;             /* per pixel: clutter within one pixel, 255: all of one */
-    size_t bytes;               /* of memory */
+    struct layered_depth depth;  /* size and segments only */
+    struct layer_view layers;    /* texels of clutter; the others are empty */
+    struct clutter_sight *sight; /* per pixel */
+    size_t bytes;                /* of memory */
 };
 
 #define CLUTTER_SURE 255.0f
