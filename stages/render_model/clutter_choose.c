@@ -11,10 +11,10 @@
 
 #include "stages/render_model/clutter_scene.h"
 
-enum { COLUMNS = 12, ROWS = 9, PLACES = 2 };
+enum { COLUMNS = 16, ROWS = 12, PLACES = 2 };
 
-#define FAR_FEE   0.1 /* radians per doubling of the distance */
-#define SHARPNESS 0.02
+#define FAR_FEE   0.1   /* radians per doubling of the distance */
+#define SHARPNESS 0.005 /* radians^2 */
 #define FADE      3.0
 
 double clutter_penalty(struct vec3 point, struct vec3 camera, struct vec3 view)
@@ -36,7 +36,7 @@ static void vote(double *score, double *weight, const struct camera_set *set, st
         if (!(view_project(view, point, &u, &v) > 0) || !(u >= 0 && v >= 0 && u < view->width && v < view->height))
             continue;
         const double penalty = clutter_penalty(point, camera, view->center);
-        weight[i] = 1 / (SHARPNESS + penalty * penalty);
+        weight[i] = 1 / pow(SHARPNESS + penalty * penalty, 2);
         sum += weight[i];
     }
     for (int i = 0; i < set->view_count && sum > 0; i++) score[i] += weight[i] / sum;
