@@ -68,7 +68,7 @@ struct blend_tile { /* one per thread */
 struct blend_job {
     struct model_picture *p;
     float *cover; /* may be NULL */
-    const struct clutter_scene *scene;
+    struct clutter_scene *scene;
     const struct clutter_choice *choice;
     const struct view *camera;
     const struct texture_map *map; /* NULL: nothing is cleared */
@@ -104,8 +104,8 @@ static void prepare_views(void *ctx, size_t begin, size_t end, int thread)
     for (size_t k = begin; k < end; k++) {
         const int at = job->choice->view[k];
         const struct clutter_view *v = &job->scene->sources[at].view;
-        job->prepared[k] = drawn_view_prepare((struct drawn_view *)&job->scene->drawn[k], &v->depth, &v->layers,
-                                              &job->scene->set->views[at], job->camera, NULL);
+        job->prepared[k] = drawn_view_prepare(&job->scene->drawn[k], &v->depth, &v->layers, &job->scene->set->views[at],
+                                              job->camera, NULL);
     }
 }
 
