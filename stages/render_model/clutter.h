@@ -11,7 +11,7 @@ struct clutter_scene; /* the views of a scene; their layers are read when they a
 
 struct clutter_files {
     const char *views, *depth, *ids; /* folders of O */
-    int memory;                      /* MiB of views that are kept */
+    int memory; /* MiB of views that are kept; where they hold fewer than 12 views, pictures are made of fewer */
 };
 
 /* set: cameras in the scene's frame, which must outlive the clutter. */

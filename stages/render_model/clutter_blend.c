@@ -6,9 +6,10 @@
  *
  * 1. Does the shell hide it? An edit may have put a wall there. A fragment behind the shell's depth by more than its
  *    uncertainty fades out. One in a zone that is to be cleared is left out.
- * 2. Do the views agree? The fragment's point P is projected into each view. A view whose nearest surface there is clearly
- *    behind P looks through it and denies it, as does one that shows the model's own surface there; one with clutter at P
- *    confirms it; one whose surface is in front, or whose picture P is not in, has no vote. With weights w_j (below) and confidences c_j,
+ * 2. Do the views agree? The fragment's point P is projected into each view. A view whose nearest surface there is
+ *    clearly behind P looks through it and denies it, as does one that shows the model's own surface there; one with
+ *    clutter at P confirms it; one whose surface is in front, or whose picture P is not in, has no vote. With weights
+ *    w_j (below) and confidences c_j,
  *      votes v = sum_confirming w_j / (sum_confirming w_j + sum_denying w_j c_j)
  *      confidence c = sum_confirming w_j c_j / sum_confirming w_j
  *    and the opacity is o = smoothstep(v) smoothstep(c). Without confidence the shell wins, and the pixel is marked. Where
@@ -51,9 +52,9 @@
 #define OPEN_SURE  0.95
 #define BLUR       0.08 /* radians */
 #define MIN_INSIDE 1e-3f
-#define PRESENT    0.1f /* fade * inside of a view that is fully present */
-#define WIDTHS     8.0f /* of the soft z-buffer, in uncertainties */
-#define MAX_SLACK  0.03
+#define PRESENT    0.1f   /* fade * inside of a view that is fully present */
+#define WIDTHS     8.0f   /* of the soft z-buffer, in uncertainties */
+#define MAX_SLACK  0.03   /* of the depth */
 #define TOGETHER   0.004f /* relative difference of depths */
 #define COVERED    0.5f
 
