@@ -1,5 +1,5 @@
-/* clutter.h - draws what stands in front of the model, furniture, from the views' layers [Colburn 2014, 3.6]: each pixel
- * of a view's layered depth that stands in front of the model by more than its uncertainty, at its own depth. */
+/* clutter.h - draws what stands in front of the model, furniture, from the views' layers [Colburn 2014, 3.6]: each
+ * pixel of a view's layered depth that stands in front of the model by more than its uncertainty, at its own depth. */
 #ifndef REMODEL_RENDER_CLUTTER_H
 #define REMODEL_RENDER_CLUTTER_H
 

@@ -2,7 +2,8 @@
  *
  * trace_ids has compared the view's depth with the model's and graded each pixel (stages/trace_ids/clutter.c), with a
  * rim, so that no texture shows furniture. Here the rim must stay with the shell, and the two layers of a pixel are
- * judged one by one. With n = 1 - z / z_model, the part of the way to the model that is missing, a texel of a layer is clutter by
+ * judged one by one. With n = 1 - z / z_model, the part of the way to the model that is missing, a texel of a layer is
+ * clutter by
  *
  *   w = smoothstep((n - t) / t),   t = TOLERANCE + SIGMAS sigma
  *
@@ -89,7 +90,7 @@ static float texel_weight(const struct judged_segment *s, float z, float z_model
     return fmaxf(whole, smooth((near - s->tolerance) / s->tolerance));
 }
 
-/* -------------------------------------------------------------------------------------------------------------- rims */
+/* ------------------------------------------------------------------------------------------------------------- rims */
 
 enum { INTERIOR = 1, BOUNDARY = 2 }; /* bits of a pixel's mask */
 
@@ -135,8 +136,8 @@ static void walk_line(uint8_t *rim, const struct layered_depth *d, const struct 
 
 /* Marks the layers that continue a nearer part of the model beyond its end. Depth bleeds: the sky in a window inherits
  * the depth of its frame, and what shows through a door that of the wall. The planes of the model are continued over
- * its jumps, in rows and columns, and what lies in them is no clutter: REACH px far, and all the way to the other end of
- * the opening if it is not sure. */
+ * its jumps, in rows and columns, and what lies in them is no clutter: REACH px far, and all the way to the other end
+ * of the opening if it is not sure. */
 static void find_rims(uint8_t *rim, const struct layered_depth *d, const struct judged_segment *list,
                       const struct view_ids *ids)
 {
@@ -220,8 +221,8 @@ static void find_shows(struct clutter_view *v, const struct layered_depth *d)
     for (int x = 0; x < d->width; x++) spread_shows(v, (size_t)x, (size_t)d->width, d->height);
 }
 
-/* What the view sees within one pixel, of both layers: outlines of segments are off by as much, and a view must not deny
- * what another one shows for that. */
+/* What the view sees within one pixel, of both layers: outlines of segments are off by as much, and a view must not
+ * deny what another one shows for that. */
 static void find_nearest(struct clutter_view *v, const struct layered_depth *d, const struct judged_segment *list)
 {
     see_pixels(v, d, list);
