@@ -285,6 +285,7 @@ enum status texture_fill_find(struct texture_fill *f, const struct bake_tile *ti
 bool texture_fill_difference(float difference[3], const struct texture_fill *f, size_t at, size_t next)
 {
     if (f->choice[at] == FILL_SHIFTS) return false;
+    if (f->hole[next] >= 0 && f->choice[next] == FILL_SHIFTS) return false; /* its copy does not fit in here */
     const struct vec3 shift = f->holes[f->hole[at]].shift[f->choice[at]];
     float here[3], there[3];
     if (!shifted_value(here, f, at, shift) || !shifted_value(there, f, next, shift)) return false;

@@ -20,7 +20,7 @@
 
 enum { FEWEST = 2 }; /* views of a picture, however little memory is allowed */
 
-/* ------------------------------------------------------------------------------------------------------------- views */
+/* ------------------------------------------------------------------------------------------------------------ views */
 
 enum status clutter_open(struct clutter_scene **scene, const struct clutter_files *files, const struct camera_set *set,
                          const struct model_axes *axes, struct err *err)
@@ -146,7 +146,7 @@ enum status clutter_load(struct clutter_scene *s, const struct clutter_choice *c
     return st;
 }
 
-/* ------------------------------------------------------------------------------------------------------------ picture */
+/* ---------------------------------------------------------------------------------------------------------- picture */
 
 /* The inverse of model_from_world_view(). */
 static struct view world_from_model_view(const struct model_axes *axes, const struct view *model)

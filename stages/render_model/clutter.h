@@ -1,5 +1,5 @@
-/* clutter.h - draws what stands in front of the model, furniture, from the views' layers [Colburn 2014, 3.6]: each pixel
- * of a view's layered depth that stands in front of the model by more than its uncertainty, at its own depth. */
+/* clutter.h - draws what stands in front of the model, furniture, from the views' layers [Colburn 2014, 3.6]: each
+ * pixel of a view's layered depth that stands in front of the model by more than its uncertainty, at its own depth. */
 #ifndef REMODEL_RENDER_CLUTTER_H
 #define REMODEL_RENDER_CLUTTER_H
 
@@ -11,7 +11,7 @@ struct clutter_scene; /* the views of a scene; their layers are read when they a
 
 struct clutter_files {
     const char *views, *depth, *ids; /* folders of O */
-    int memory;                      /* MiB of views that are kept */
+    int memory; /* MiB of views that are kept; where they hold fewer than 12 views, pictures are made of fewer */
 };
 
 /* set: cameras in the scene's frame, which must outlive the clutter. */

@@ -6,23 +6,24 @@
  *
  * 1. Does the shell hide it? An edit may have put a wall there. A fragment behind the shell's depth by more than its
  *    uncertainty fades out. One in a zone that is to be cleared is left out.
- * 2. Do the views agree? The fragment's point P is projected into each view. A view whose nearest surface there is clearly
- *    behind P looks through it and denies it, as does one that shows the model's own surface there; one with clutter at P
- *    confirms it; one whose surface is in front, or whose picture P is not in, has no vote. With weights w_j (below) and confidences c_j,
+ * 2. Do the views agree? The fragment's point P is projected into each view. A view whose nearest surface there is
+ *    clearly behind P looks through it and denies it, as does one that shows the model's own surface there; one with
+ *    clutter at P confirms it; one whose surface is in front, or whose picture P is not in, has no vote. With weights
+ *    w_j (below) and confidences c_j,
  *      votes v = sum_confirming w_j / (sum_confirming w_j + sum_denying w_j c_j)
  *      confidence c = sum_confirming w_j c_j / sum_confirming w_j
- *    and the opacity is o = smoothstep(v) smoothstep(c). Without confidence the shell wins, and the pixel is marked. Where
- *    the camera looks outdoors both must be higher: the sky in a window has no texture, and its depth is anything.
- * 3. What hides it? With e_ij in [0, 1] how far two fragments are the same surface (the soft z-buffer's weight of their
- *    depths; 1 for those of one view) and p_j the share of fragment j in its surface, fragment i is left
- *      1 - sum_j p_j a_j o_j (1 - e_ij) over those in front of it.
+ *    and the opacity is o = smoothstep(v) smoothstep(c). Without confidence the shell wins, and the pixel is marked.
+ *    Where the camera looks outdoors both must be higher: the sky in a window has no texture, and any depth.
+ * 3. What hides it? With e_ij in [0, 1] how far two fragments are the same surface (the soft z-buffer's weight of
+ *    their depths; 1 for those of one view) and p_j the share of fragment j in its surface, fragment i is left
+ *      1 - sum_j p_j a_j o_j (1 - e_ij), over those in front of it.
  * 4. How much does it count? As in unstructured lumigraph rendering [Buehler 2001], views that see P under nearly the
  *    camera's angle count most: w = fade inside / (BLUR^2 + penalty^2), where `penalty` is the angle, with a fee for
  *    distance, `inside` falls to 0 at the border of the view's picture and `fade` with the view's rank
  *    (clutter_choose.c).
  *
- * The pixel's coverage is sum_i p_i a_i o_i with p_i = (w_i / W_i) left_i, where W_i = sum over views of max e_ij w_j: a
- * mean over the views of one surface, a sum over surfaces. Soft borders are those of the layers' alpha.
+ * The pixel's coverage is sum_i p_i a_i o_i with p_i = (w_i / W_i) left_i, where W_i = sum over views of max e_ij w_j:
+ * a mean over the views of one surface, a sum over surfaces. Soft borders are those of the layers' alpha.
  *
  * Source: soft z-buffer [Pulli 1997], [Colburn 2014, 3.6]. What differs: the votes; coverage instead of normalised
  * weights, as what is not covered shows the shell.
@@ -51,9 +52,9 @@
 #define OPEN_SURE  0.95
 #define BLUR       0.08 /* radians */
 #define MIN_INSIDE 1e-3f
-#define PRESENT    0.1f /* fade * inside of a view that is fully present */
-#define WIDTHS     8.0f /* of the soft z-buffer, in uncertainties */
-#define MAX_SLACK  0.03
+#define PRESENT    0.1f   /* fade * inside of a view that is fully present */
+#define WIDTHS     8.0f   /* of the soft z-buffer, in uncertainties */
+#define MAX_SLACK  0.03   /* of the depth */
 #define TOGETHER   0.004f /* relative difference of depths */
 #define COVERED    0.5f
 
@@ -180,8 +181,8 @@ static int add_fragment(const struct blend_job *job, struct fragment *list, int 
     return f->raw > 0 ? count + 1 : count;
 }
 
-/* Gives a view's fragments at a pixel the share that the view's clutter has there. Where two surfaces meet in an edge, the
- * pieces of each may cover less than both together. */
+/* Gives a view's fragments at a pixel the share that the view's clutter has there. Where two surfaces meet in an edge,
+ * the pieces of each may cover less than both together. */
 static void complete(const struct blend_job *job, struct fragment *list, int count)
 {
     const int at = job->choice->view[list[0].slot];
@@ -283,7 +284,7 @@ static float same_surface(const struct fragment *a, const struct fragment *b)
     return 1 - smooth((double)((b->z - a->z - gamma) / (rho - 2 * gamma)));
 }
 
-/* ---------------------------------------------------------------------------------------------------------- blending */
+/* --------------------------------------------------------------------------------------------------------- blending */
 
 /* The weights of the views that show a surface, each once: a view's two fragments share the pixel. */
 static float weight_of_surface(const struct fragment *list, const float *same, int count)

@@ -1,10 +1,11 @@
 /* clutter_choose.c - which views a picture's clutter is drawn from.
  *
- * A few points of what the camera sees stand for all: on a lattice over the picture, on the shell and half way to it, as
- * nothing is known of the clutter yet. Each view is weighted at each point as in unstructured lumigraph rendering
- * [Buehler 2001]: by the angle between the rays from the view and from the camera, and by how much farther away the view
- * is. Weights are normalised per point, so that each point elects its views; those with the largest sums are chosen. Their
- * influence falls to 0 towards the first one that is left out, so that no view pops in or out as the camera moves. */
+ * A few points of what the camera sees stand for all: on a lattice over the picture, on the shell and half way to it,
+ * as nothing is known of the clutter yet. Each view is weighted at each point as in unstructured lumigraph rendering
+ * [Buehler 2001]: by the angle between the rays from the view and from the camera, and by how much farther away the
+ * view is. Weights are normalised per point, so that each point elects its views; those with the largest sums are
+ * chosen. Their influence falls to 0 towards the first one that is left out, so that no view pops in or out as the
+ * camera moves. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -45,8 +45,8 @@ double clutter_penalty(struct vec3 point, struct vec3 camera, struct vec3 view);
 enum status clutter_load(struct clutter_scene *scene, const struct clutter_choice *choice, struct provenance *prov,
                          struct err *err);
 
-/* Draws the clutter of the loaded views of the choice over p; see clutter_blend.c. camera: in the scene's frame. cover, if
- * not NULL, gets how much of each pixel is clutter; then p->rgb is left alone. */
+/* Draws the clutter of the loaded views of the choice over p; see clutter_blend.c. camera: in the scene's frame. cover,
+ * if not NULL, gets how much of each pixel is clutter; then p->rgb is left alone. */
 enum status clutter_blend(struct model_picture *p, float *cover, struct clutter_scene *scene,
                           const struct clutter_choice *choice, const struct view *camera, const struct texture_map *map,
                           struct err *err);

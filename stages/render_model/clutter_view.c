@@ -1,8 +1,9 @@
 /* clutter_view.c - parts a view into the model's surfaces and what stands in front of them.
  *
- * trace_ids has compared the view's depth with the model's and graded each pixel (stages/trace_ids/clutter.c), with a rim,
- * so that no texture shows furniture. Here the rim must stay with the shell, and the two layers of a pixel are judged one
- * by one. With n = 1 - z / z_model, the part of the way to the model that is missing, a texel of a layer is clutter by
+ * trace_ids has compared the view's depth with the model's and graded each pixel (stages/trace_ids/clutter.c), with a
+ * rim, so that no texture shows furniture. Here the rim must stay with the shell, and the two layers of a pixel are
+ * judged one by one. With n = 1 - z / z_model, the part of the way to the model that is missing, a texel of a layer is
+ * clutter by
  *
  *   w = smoothstep((n - t) / t),   t = TOLERANCE + SIGMAS sigma
  *
@@ -10,7 +11,11 @@
  * there the segment decides. One whose texels are mostly clutter is clutter as a whole, and its t shrinks to CONTACT. A
  * segment that covers a chair and the wall keeps only its chair.
  *
- * What lies below the tolerance everywhere, a rug or a poster, is texture of the shell, and so are shadows. */
+ * What lies below the tolerance everywhere, a rug or a poster, is texture of the shell, and so are shadows.
+ *
+ * Depth also bleeds over the model's jumps; see find_rims().
+ *
+ * Source: none. The thesis draws whole views [Colburn 2014, 3.6]. */
 #include "stages/render_model/clutter_view.h"
 
 #include <math.h>
@@ -31,7 +36,7 @@
 enum { REACH = 32 }; /* px: that depth bleeds over a jump of the model */
 
 struct judged_segment {
-    float tolerance, contact; /* t in general, and in a segment of clutter */
+    float tolerance; /* t */
     float sure;
     float share; /* 0: part of it is clutter; 1: all of it is */
     uint32_t texels, near;
@@ -64,7 +69,6 @@ static struct judged_segment *judge_segments(const struct layered_depth *d, cons
     for (int i = 0; i < d->segment_count; i++) {
         const float sigma = (float)depth_sigma(&d->segments[i]);
         list[i].tolerance = TOLERANCE + SIGMAS * sigma;
-        list[i].contact = CONTACT;
         list[i].sure = sureness(d->segments[i].confidence, (double)sigma);
     }
     for (size_t p = 0; p < pixels; p++) {
@@ -81,12 +85,12 @@ static struct judged_segment *judge_segments(const struct layered_depth *d, cons
 static float texel_weight(const struct judged_segment *s, float z, float z_model, float grade)
 {
     if (!(z_model > 0)) return 0; /* outdoors */
-    const float near = nearness(z, z_model), whole = smooth((near - s->contact) / s->contact) * s->share;
+    const float near = nearness(z, z_model), whole = smooth((near - CONTACT) / CONTACT) * s->share;
     if (!(grade > GRADE)) return whole;
     return fmaxf(whole, smooth((near - s->tolerance) / s->tolerance));
 }
 
-/* -------------------------------------------------------------------------------------------------------------- rims */
+/* ------------------------------------------------------------------------------------------------------------- rims */
 
 enum { INTERIOR = 1, BOUNDARY = 2 }; /* bits of a pixel's mask */
 
@@ -132,8 +136,8 @@ static void walk_line(uint8_t *rim, const struct layered_depth *d, const struct 
 
 /* Marks the layers that continue a nearer part of the model beyond its end. Depth bleeds: the sky in a window inherits
  * the depth of its frame, and what shows through a door that of the wall. The planes of the model are continued over
- * its jumps, in rows and columns, and what lies in them is no clutter: REACH px far, and all the way to the other end of
- * the opening if it is not sure. */
+ * its jumps, in rows and columns, and what lies in them is no clutter: REACH px far, and all the way to the other end
+ * of the opening if it is not sure. */
 static void find_rims(uint8_t *rim, const struct layered_depth *d, const struct judged_segment *list,
                       const struct view_ids *ids)
 {
@@ -217,8 +221,8 @@ static void find_shows(struct clutter_view *v, const struct layered_depth *d)
     for (int x = 0; x < d->width; x++) spread_shows(v, (size_t)x, (size_t)d->width, d->height);
 }
 
-/* What the view sees within one pixel, of both layers: outlines of segments are off by as much, and a view must not deny
- * what another one shows for that. */
+/* What the view sees within one pixel, of both layers: outlines of segments are off by as much, and a view must not
+ * deny what another one shows for that. */
 static void find_nearest(struct clutter_view *v, const struct layered_depth *d, const struct judged_segment *list)
 {
     see_pixels(v, d, list);

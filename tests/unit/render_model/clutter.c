@@ -172,7 +172,7 @@ static void write_view(const struct view *v)
     image_release(&im);
 }
 
-/* ------------------------------------------------------------------------------------------------------------ scenes */
+/* ----------------------------------------------------------------------------------------------------------- scenes */
 
 /* Two views to the left and right of the cube, one farther to the left, and one above. */
 static void scene_make(struct scene *s, const struct change *change, int memory)
@@ -242,7 +242,7 @@ static void assert_shell(struct scene *s, const struct view *camera, const struc
     model_picture_release(&shell);
 }
 
-/* ------------------------------------------------------------------------------------------------------------- tests */
+/* ------------------------------------------------------------------------------------------------------------ tests */
 
 static void assert_pixel_of_cube(const struct model_picture *p, const struct hit *h, size_t i)
 {
