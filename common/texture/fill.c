@@ -23,15 +23,17 @@
 #include "common/base/sort.h"
 
 enum { SAMPLES = 192, LATTICE = 12, TRIED = (2 * LATTICE + 1) * (2 * LATTICE + 1), BAND = 12, MIN_TEXELS = 64 };
-static const float MAX_COST = 0.02f;               /* variance, squared display units: nothing similar is there */
-static const float LEAST_RANGE = 0.02f, RANGE = 3; /* display units; median deviations of the rim */
+static const float MAX_COST = 0.02f; /* variance, squared display units: nothing similar is there */
+static const float MARGIN = 0.02f;   /* display units */
+static const double OUTER = 0.06;    /* of the rim's texels */
+static const float MAX_STEP = 0.15f; /* display units: between a seen texel and the copy of its place */
 static const double MIN_COVER = 0.05;
 
 struct search {
     const struct texture_fill *f;
     struct vec3 u, v; /* one texel on the face, at the hole */
     size_t rim[SAMPLES], inside[SAMPLES];
-    float middle[3], range[3]; /* of the rim's colours; a copy lies within the range about the middle */
+    float low[3], high[3]; /* range of the rim's colours, in which copies must lie */
     int rim_count, inside_count;
     bool covered[SAMPLES];
 };
@@ -86,18 +88,16 @@ static float cost_of(const struct search *s, struct vec3 shift)
     return (float)(fmax(0, squares) / count);
 }
 
-/* Median and range of the colours around a hole. A picture that hangs there too moves neither much. */
+/* The range of the colours around a hole, without OUTER at either end: a small picture that hangs there is left out. */
 static void find_colours(struct search *s)
 {
     float values[SAMPLES];
-    const size_t count = (size_t)s->rim_count;
+    const size_t count = (size_t)s->rim_count, outer = (size_t)(OUTER * (double)(count - 1));
     for (size_t k = 0; k < 3; k++) {
         for (size_t i = 0; i < count; i++) values[i] = s->f->value[3 * s->rim[i] + k];
         sort_floats(values, count);
-        s->middle[k] = values[count / 2];
-        for (size_t i = 0; i < count; i++) values[i] = fabsf(s->f->value[3 * s->rim[i] + k] - s->middle[k]);
-        sort_floats(values, count);
-        s->range[k] = LEAST_RANGE + RANGE * values[count / 2];
+        s->low[k] = values[outer] - MARGIN;
+        s->high[k] = values[count - 1 - outer] + MARGIN;
     }
 }
 
@@ -106,7 +106,7 @@ static bool fits(const struct search *s, float value[3], size_t at, struct vec3 
 {
     if (!shifted_value(value, s->f, at, shift)) return false;
     for (int k = 0; k < 3; k++)
-        if (fabsf(value[k] - s->middle[k]) > s->range[k]) return false;
+        if (value[k] < s->low[k] || value[k] > s->high[k]) return false;
     return true;
 }
 
@@ -282,6 +282,15 @@ enum status texture_fill_find(struct texture_fill *f, const struct bake_tile *ti
     return st;
 }
 
+/* Whether the copy beside a seen texel is like it: otherwise an edge of the copy would show there. */
+static bool joins(const struct texture_fill *f, size_t at, const float copy[3])
+{
+    if (f->hole[at] >= 0) return true;
+    for (size_t k = 0; k < 3; k++)
+        if (fabsf(copy[k] - f->value[3 * at + k]) > MAX_STEP) return false;
+    return true;
+}
+
 bool texture_fill_difference(float difference[3], const struct texture_fill *f, size_t at, size_t next)
 {
     if (f->choice[at] == FILL_SHIFTS) return false;
@@ -289,6 +298,7 @@ bool texture_fill_difference(float difference[3], const struct texture_fill *f, 
     const struct vec3 shift = f->holes[f->hole[at]].shift[f->choice[at]];
     float here[3], there[3];
     if (!shifted_value(here, f, at, shift) || !shifted_value(there, f, next, shift)) return false;
+    if (!joins(f, next, there)) return false;
     for (int k = 0; k < 3; k++) difference[k] = there[k] - here[k];
     return true;
 }
