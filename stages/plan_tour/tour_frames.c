@@ -5,8 +5,9 @@
  * a second before the end it begins to turn to the axis of the last photo. At each stop it rests a moment.
  *
  * [Colburn 2014, 4.7.1] interpolates axes linearly. Here their azimuth and elevation are, because vectors that point in
- * opposite directions have nothing between them. A way on which the camera has to turn much takes as long as turning
- * takes, so that two photographs from one place do not make a jump. */
+ * opposite directions have nothing between them. No turn is faster than `turn`: one second and half a second become
+ * longer where the camera turns farther, and a way takes at least as long as the turns on it, so that two photographs
+ * from one place do not make a jump. */
 #include "stages/plan_tour/tour_frames.h"
 
 #include <math.h>
@@ -14,8 +15,10 @@
 #include <string.h>
 
 #include "common/base/array.h"
+#include "stages/plan_tour/tour_clearance.h"
 
 static const double ease_out = 1, ease_in = 0.5; /* seconds */
+static const double same_place = 1e-9;           /* model units */
 
 struct keys {
     struct tour_key **list;
@@ -49,23 +52,44 @@ static struct vec3 node_axis(const struct tour_graph *g, const int *leg, int cou
 {
     if (i == 0 || i == count - 1) return g->nodes[leg[i]].axis;
     const struct vec3 ahead = vec3_sub(g->nodes[leg[i + 1]].centre, g->nodes[leg[i]].centre);
-    return vec3_length(ahead) > 1e-9 ? vec3_normalize(ahead) : g->nodes[leg[i]].axis;
+    return vec3_length(ahead) > same_place ? vec3_normalize(ahead) : g->nodes[leg[i]].axis;
 }
 
-/* How long the way between two nodes of a leg takes. */
-static double way_time(const struct keys *k, const int *leg, int count, int i)
+/* How far the camera turns from one axis to another: about the vertical plus up or down, which the axis itself does not
+ * exceed. */
+static double way_turn(struct vec3 a, struct vec3 b)
+{
+    return fabs(remainder(azimuth_of(b) - azimuth_of(a), 2 * M_PI)) + fabs(elevation_of(b) - elevation_of(a));
+}
+
+/* Seconds of a way between two nodes of a leg: on the whole, of easing out of the first photo's axis (0: this is not
+ * the leg's first way), and of easing into the last one's. */
+struct way_times {
+    double whole, out, in;
+};
+
+static struct way_times way_times(const struct keys *k, const int *leg, int count, int i)
 {
     const struct vec3 a = node_axis(k->g, leg, count, i), b = node_axis(k->g, leg, count, i + 1);
-    const double theta = atan2(vec3_length(vec3_cross(a, b)), vec3_dot(a, b));
-    const double d = vec3_length(vec3_sub(k->g->nodes[leg[i]].centre, k->g->nodes[leg[i + 1]].centre));
-    return fmax(d / (k->params->speed * k->g->unit), theta / (k->params->turn * M_PI / 180));
+    const struct vec3 way = vec3_sub(k->g->nodes[leg[i + 1]].centre, k->g->nodes[leg[i]].centre);
+    const double d = vec3_length(way), walk = d / (k->params->speed * k->g->unit), turn = k->params->turn * M_PI / 180;
+    const bool first = i == 0, last = i + 2 == count;
+    struct way_times t = {0};
+    if (d <= same_place) { /* it only turns */
+        t.whole = fmax(walk, way_turn(a, b) / turn);
+        return t;
+    }
+    if (first) t.out = fmax(ease_out, way_turn(a, way) / turn);
+    if (last) t.in = fmax(ease_in, way_turn(way, b) / turn);
+    t.whole = fmax(walk, t.out + (last ? t.in : way_turn(way, b) / turn));
+    return t;
 }
 
 /* A key between two nodes, at a time after the first, which looks along the way. */
 static enum status add_ease(const struct keys *k, const int *leg, int i, double start, double after, double whole)
 {
     const struct vec3 a = k->g->nodes[leg[i]].centre, b = k->g->nodes[leg[i + 1]].centre, way = vec3_sub(b, a);
-    if (vec3_length(way) <= 1e-9 || !(whole > 0)) return ST_OK;
+    if (vec3_length(way) <= same_place || !(whole > 0)) return ST_OK;
     return add_axis(k, start + after, vec3_add(a, vec3_scale(way, after / whole)), vec3_normalize(way), leg[i]);
 }
 
@@ -74,14 +98,10 @@ static enum status add_leg(const struct keys *k, const int *leg, int count, doub
 {
     enum status st = ST_OK;
     for (int i = 0; !st && i + 1 < count; i++) {
-        const double whole = way_time(k, leg, count, i);
-        const bool first = i == 0, last = i + 2 == count;
-        /* on a short way the two share it */
-        const double out = first ? fmin(ease_out, whole * (last ? 0.5 : 1)) : 0;
-        const double in = last ? fmin(ease_in, whole * (first ? 0.5 : 1)) : 0;
-        if (first && out < whole) st = add_ease(k, leg, i, *time, out, whole);
-        if (!st && last && whole - in > out + 1e-9) st = add_ease(k, leg, i, *time, whole - in, whole);
-        *time += whole;
+        const struct way_times t = way_times(k, leg, count, i);
+        if (t.out > 0) st = add_ease(k, leg, i, *time, t.out, t.whole);
+        if (!st && t.in > 0 && t.whole - t.in > t.out + 1e-9) st = add_ease(k, leg, i, *time, t.whole - t.in, t.whole);
+        *time += t.whole;
         if (!st)
             st = add_axis(k, *time, k->g->nodes[leg[i + 1]].centre, node_axis(k->g, leg, count, i + 1), leg[i + 1]);
     }
@@ -167,7 +187,7 @@ static void move_to_scene(struct view *v, const struct model_axes *axes)
 
 /* The viewpoints on either side of a key's interval, and how far the camera is between them. */
 static enum status add_pair(struct viewpoint_pairs *pairs, const char *frame, const struct tour_graph *g,
-                            const struct tour_key *keys, int count, int i, struct vec3 at, struct err *err)
+                            const struct tour_key *keys, int count, int i, double time, struct vec3 at, struct err *err)
 {
     int next = i + 1;
     const int from = keys[i].node;
@@ -175,9 +195,12 @@ static enum status add_pair(struct viewpoint_pairs *pairs, const char *frame, co
     const int to = keys[next].node;
     const struct vec3 a = g->nodes[from].centre, b = g->nodes[to].centre;
     const double whole = vec3_length(vec3_sub(b, a)), gone = vec3_length(vec3_sub(at, a));
-    /* between two viewpoints in one place the time counts */
-    double t = whole > 1e-9 ? fmin(1, gone / whole) : 0;
-    return viewpoint_pairs_add(pairs, frame, g->nodes[from].photo, g->nodes[to].photo, t, err);
+    double t = 0;
+    if (whole > same_place)
+        t = gone / whole;
+    else if (to != from && i == next - 1 && keys[next].time > keys[i].time) /* in one place the time counts */
+        t = (time - keys[i].time) / (keys[next].time - keys[i].time);
+    return viewpoint_pairs_add(pairs, frame, g->nodes[from].photo, g->nodes[to].photo, fmin(1, t), err);
 }
 
 enum status tour_frames_make(struct camera_path *path, struct viewpoint_pairs *pairs, const struct tour_key *keys,
@@ -194,13 +217,14 @@ enum status tour_frames_make(struct camera_path *path, struct viewpoint_pairs *p
         const double t = whole > 0 ? fmin(1, (time - keys[i].time) / whole) : 1;
         struct view camera = camera_at(&keys[i], &keys[i + 1], t, params);
         const struct vec3 at = camera.center;
-        if (model_rays_inside(model, at, 0.99 * params->clearance))
+        /* a hair less, as a place on a way is rounded */
+        if (!tour_way_is_free(model, at, at, (1 - 1e-9) * params->clearance))
             return err_set(err, ST_INTERNAL, "frame %d of the tour is nearer to the model than the clearance of %.3g.",
                            f + 1, params->clearance);
         move_to_scene(&camera, axes);
         camera.name = path->frames[f].camera.name;
         path->frames[f].camera = camera;
-        st = add_pair(pairs, camera.name, g, keys, key_count, i, at, err);
+        st = add_pair(pairs, camera.name, g, keys, key_count, i, time, at, err);
     }
     return st;
 }

@@ -1,9 +1,8 @@
 /* tour_graph.c - the graph of a tour; see tour_graph.h.
  *
  * [Colburn 2014, 4.7.1] joins two viewpoints if the segment between their centres does not meet the model, with the
- * weight 1 + d + (2/pi) theta / d. Here the segment also keeps a clearance from the model: points along it, half a
- * clearance apart, must have none of it within the clearance. And theta / d, which has no limit for two photographs from
- * one place, is theta / max(d, 2/pi). */
+ * weight 1 + d + (2/pi) theta / d. Here the segment also keeps a clearance from the model (tour_clearance.h). And
+ * theta / d, which has no limit for two photographs from one place, is theta / max(d, 2/pi). */
 #include "stages/plan_tour/tour_graph.h"
 
 #include <math.h>
@@ -12,9 +11,9 @@
 
 #include "common/base/log.h"
 #include "common/base/sort.h"
+#include "stages/plan_tour/tour_clearance.h"
 
 enum { RAYS = 128 };
-static const double step_part = 0.5; /* of the clearance: between points that are checked on a way */
 
 void tour_graph_release(struct tour_graph *g)
 {
@@ -27,18 +26,6 @@ double tour_weight(double d, double theta)
 {
     const double k = 2 / M_PI;
     return 1 + d + k * theta / fmax(d, k);
-}
-
-bool tour_way_is_free(const struct model_rays *model, struct vec3 from, struct vec3 to, double clearance)
-{
-    const struct vec3 way = vec3_sub(to, from);
-    const double length = vec3_length(way);
-    const int steps = (int)ceil(length / (step_part * clearance));
-    if (length > 0 && ray_scene_blocked(&model->rays, from, way, 1)) return false;
-    for (int i = 0; i <= steps; i++)
-        if (model_rays_inside(model, vec3_add(from, vec3_scale(way, steps ? (double)i / steps : 0)), clearance))
-            return false;
-    return true;
 }
 
 static struct vec3 photo_axis(const struct view *view, const struct lens *lens)
@@ -78,7 +65,7 @@ static enum status find_nodes(struct tour_graph *g, const struct camera_set *set
         const struct view view = model_from_world_view(axes, &set->views[i]);
         struct tour_node *n = &g->nodes[g->count++];
         *n = (struct tour_node){.photo = lens->photo, .centre = view.center, .axis = photo_axis(&view, lens)};
-        n->usable = !model_rays_inside(model, n->centre, clearance);
+        n->usable = tour_way_is_free(model, n->centre, n->centre, clearance);
         n->open = n->usable ? openness(model, n->centre) : 0;
         usable += n->usable;
         if (!n->usable)

@@ -33,9 +33,6 @@ void tour_graph_release(struct tour_graph *g);
  * walking theta. d in units of the graph, theta in radians. */
 double tour_weight(double d, double theta);
 
-/* Whether the straight way keeps the clearance all along. */
-bool tour_way_is_free(const struct model_rays *model, struct vec3 from, struct vec3 to, double clearance);
-
 /* The shortest way from one node to all others (Dijkstra): costs (INFINITY: none) and the node before each on the
  * way (-1: none). Arrays of g->count. ST_NOMEM. */
 enum status tour_shortest(double *costs, int *before, const struct tour_graph *g, int from, struct err *err);

@@ -7,7 +7,7 @@
 /* name, type, default, min, max, unit, help */
 #define TOUR_PARAMS(X)                                                                                             \
     X(speed, double, 1, 0.01, 100, "m/s", "walking speed; without a scale in median distances between viewpoints") \
-    X(turn, double, 50, 1, 720, "degrees/s", "greatest speed of turning on a way between two viewpoints")          \
+    X(turn, double, 50, 1, 720, "degrees/s", "greatest speed of turning; turns that need more time slow the walk") \
     X(hold, double, 1, 0, 60, "s", "rest at each stop")                                                            \
     X(clearance, double, 0.2, 0.01, 10, "m",                                                                       \
       "the camera keeps this distance from walls; without a scale in model units")                                 \
