@@ -179,8 +179,9 @@ static enum status visit_rooms(int **stops, int *count, const struct tour_graph 
     }
     for (int r = 0; !st && r < plan->room_count; r++)
         if (!visited[r])
-            log_warn("room %s is left out of the tour: no way leads there, or no photograph was taken in it",
-                     plan->rooms[r].name);
+            log_warn("room %s is left out of the tour: %s", plan->rooms[r].name,
+                     room_stop(g, &plan->rooms[r]) < 0 ? "no photograph was taken in it, away from its walls"
+                                                       : "no way between viewpoints leads there");
     /* a flat of one room */
     if (!st && *count == 1) st = add_stop(stops, count, farthest(g, costs), err);
     free(visited);
