@@ -4,7 +4,8 @@
  *         AXES                                          its frame in the scene
  *         VIEWS/cameras.txt, images.txt, lenses.txt     the viewpoints
  *         SCRIPT                                        with --script: where the tour stops, tour.txt
- * writes  OUT/path/, path.txt                           the cameras of the frames
+ * writes  OUT/plan.svg                                  the tour drawn on the plan
+ *         OUT/path/, path.txt                           the cameras of the frames
  *         OUT/pairs.txt                                 the viewpoints that each frame blends */
 #include <stdlib.h>
 
@@ -12,6 +13,7 @@
 #include "common/base/file_path.h"
 #include "common/base/log.h"
 #include "stages/plan_tour/tour_frames.h"
+#include "stages/plan_tour/tour_picture.h"
 #include "stages/plan_tour/tour_stops.h"
 
 static const struct param tour_param_table[] = {
@@ -80,13 +82,18 @@ static enum status plan_tour(struct job *j, struct provenance *prov, struct err 
     struct viewpoint_pairs pairs = {0};
     struct tour_key *keys = NULL;
     int *stops = NULL, stop_count = 0, key_count = 0;
+    char file[FILE_PATH];
     enum status st = read_inputs(j, prov, err);
     if (!st) st = tour_graph_make(&g, &j->set, &j->lenses, &j->axes, &j->rays, &j->params, err);
     if (!st) st = tour_stops_find(&stops, &stop_count, &g, &j->plan, j->script, err);
     if (!st) st = tour_keys_make(&keys, &key_count, &g, stops, stop_count, &j->params, err);
     if (!st) st = tour_frames_make(&path, &pairs, keys, key_count, &g, &j->axes, &j->rays, &j->params, err);
+    if (!st) st = file_path(file, j->out, "plan.svg", "", err);
+    if (!st) st = tour_picture_write(&path, &g, stops, stop_count, &j->plan, &j->axes, file, err);
     if (!st) st = write_tour(&path, &pairs, j->out, prov, err);
-    if (!st) log_note("a tour of %d stops, %.1f s, %d frames", stop_count, keys[key_count - 1].time, path.frame_count);
+    if (!st)
+        log_note("a tour of %d stop%s, %.1f s, %d frames", stop_count, stop_count == 1 ? "" : "s",
+                 keys[key_count - 1].time, path.frame_count);
     free(stops);
     free(keys);
     viewpoint_pairs_release(&pairs);

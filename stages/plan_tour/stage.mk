@@ -1,7 +1,7 @@
 # plan_tour: walks through the rooms of the model and of each edit.
 FOLLOWS.plan_tour := build_model
 READS.plan_tour := a model, its plan and axes, cameras, scenes/NAME/tour.txt
-WRITES.plan_tour := model/tour/, remodel/E/tour/: path.txt, path/, pairs.txt
+WRITES.plan_tour := model/tour/, remodel/E/tour/: path.txt, path/, pairs.txt, plan.svg
 LIBS.plan_tour := -lembree3
 STEPS.plan_tour := tour-path
 NEEDS.tour-path := model
@@ -9,7 +9,7 @@ NEEDS.tour-path := model
 ifdef GRAPH
 TOUR_MODELS := $(MODELS)
 TOUR_SCRIPT := $(wildcard scenes/$(SCENE)/tour.txt)
-tour_files = $(addprefix $(1)/tour/,path.txt pairs.txt path/cameras.txt path/images.txt)
+tour_files = $(addprefix $(1)/tour/,path.txt pairs.txt plan.svg path/cameras.txt path/images.txt path/points3D.txt)
 .PHONY: tour-path
 tour-path: $(foreach m,$(TOUR_MODELS),$(call tour_files,$(m)))
 define tour_path_rule
