@@ -1,6 +1,8 @@
 /* The frames of a tour: where the camera is, where it looks, which viewpoints it blends; tours of one and two. */
 #include "tests/unit/plan_tour/walk.h"
 
+#include "stages/plan_tour/tour_picture.h"
+
 static const struct box gap[] = {HALL_OUTSIDE, HALL_INSIDE, PARTITION_WITH_GAP};
 static const struct place around[] = {{"p1", {-2, -1, 1.5}, 170}, {"p2", {0, 1.4, 1.5}, 0}, {"p3", {2, -1, 1.4}, 100}};
 
@@ -143,6 +145,41 @@ static void one_viewpoint_alone_gives_a_film_that_rests(void **state)
     }
 }
 
+static int count_of(const char *text, const char *part)
+{
+    int n = 0;
+    for (; (text = strstr(text, part)); text++) n++;
+    return n;
+}
+
+static void the_picture_shows_rooms_stops_and_viewpoints(void **state)
+{
+    (void)state;
+    struct model_room_corner corners[] = {{.x = -3, .y = -2}, {.x = 3, .y = -2}, {.x = 3, .y = 2}, {.x = -3, .y = 2}};
+    struct model_room hall = {.name = (char *)"a < b & c", .corners = corners, .corner_count = 4};
+    struct model_wall wall = {.name = (char *)"s", .normal = {0, 1}, .offset = -2, .thickness = 0.3, .span = {-3, 3}};
+    const struct model_plan plan = {.rooms = &hall, .room_count = 1, .walls = &wall, .wall_count = 1};
+    const int stops[] = {0, 2};
+    struct walk w;
+    struct err err = ERR_INIT;
+    walk_around(&w);
+    w.g.nodes[1].usable = false;
+    const char *file = scratch_path("plan.svg");
+    assert_ok(tour_picture_write(&w.path, &w.g, stops, 2, &plan, &w.axes, file, &err), err);
+    char *text = scratch_read(file);
+    assert_int_equal(count_of(text, "<circle class=\"view\""), 2);
+    assert_int_equal(count_of(text, "<circle class=\"left\""), 1);
+    assert_int_equal(count_of(text, "<circle class=\"stop\""), 2);
+    assert_int_equal(count_of(text, "<path class=\"look\""), 1 + (w.path.frame_count - 1) / 15);
+    assert_contains(text, ">a &lt; b &amp; c</text>");
+    /* 1000 px are 6 model units and 8 % on either side; the wall's body lies below its face */
+    assert_contains(text, "<path class=\"wall\" d=\"M68.97 643.68L931.03 643.68L931.03 686.78L68.97 686.78Z\"/>");
+    assert_lacks(text, "nan");
+    assert_lacks(text, "inf");
+    free(text);
+    walk_release(&w);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -153,6 +190,7 @@ int main(void)
         cmocka_unit_test(shares_of_a_pair_go_by_the_length_of_the_way),
         cmocka_unit_test(between_coincident_viewpoints_the_camera_turns_in_its_time),
         cmocka_unit_test(one_viewpoint_alone_gives_a_film_that_rests),
+        cmocka_unit_test(the_picture_shows_rooms_stops_and_viewpoints),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }
