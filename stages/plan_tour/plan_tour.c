@@ -81,11 +81,12 @@ static enum status plan_tour(struct job *j, struct provenance *prov, struct err 
     struct camera_path path = {0};
     struct viewpoint_pairs pairs = {0};
     struct tour_key *keys = NULL;
-    int *stops = NULL, stop_count = 0, key_count = 0;
+    struct tour_stop *stops = NULL;
+    int stop_count = 0, key_count = 0;
     char file[FILE_PATH];
     enum status st = read_inputs(j, prov, err);
     if (!st) st = tour_graph_make(&g, &j->set, &j->lenses, &j->axes, &j->rays, &j->params, err);
-    if (!st) st = tour_stops_find(&stops, &stop_count, &g, &j->plan, j->script, err);
+    if (!st) st = tour_stops_find(&stops, &stop_count, &g, &j->plan, j->params.speed, j->script, err);
     if (!st) st = tour_keys_make(&keys, &key_count, &g, stops, stop_count, &j->params, err);
     if (!st) st = tour_frames_make(&path, &pairs, keys, key_count, &g, &j->axes, &j->rays, &j->params, err);
     if (!st) st = file_path(file, j->out, "plan.svg", "", err);

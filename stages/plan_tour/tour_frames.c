@@ -25,6 +25,7 @@ struct keys {
     int *count;
     const struct tour_graph *g;
     const struct tour_params *params;
+    double speed; /* of the leg */
     struct err *err;
 };
 
@@ -72,7 +73,7 @@ static struct way_times way_times(const struct keys *k, const int *leg, int coun
 {
     const struct vec3 a = node_axis(k->g, leg, count, i), b = node_axis(k->g, leg, count, i + 1);
     const struct vec3 way = vec3_sub(k->g->nodes[leg[i + 1]].centre, k->g->nodes[leg[i]].centre);
-    const double d = vec3_length(way), walk = d / (k->params->speed * k->g->unit), turn = k->params->turn * M_PI / 180;
+    const double d = vec3_length(way), walk = d / (k->speed * k->g->unit), turn = k->params->turn * M_PI / 180;
     const bool first = i == 0, last = i + 2 == count;
     struct way_times t = {0};
     if (d <= same_place) { /* it only turns */
@@ -129,24 +130,26 @@ static enum status find_leg(int **leg, int *count, const struct tour_graph *g, i
     return st;
 }
 
-enum status tour_keys_make(struct tour_key **keys, int *count, const struct tour_graph *g, const int *stops,
-                           int stop_count, const struct tour_params *params, struct err *err)
+enum status tour_keys_make(struct tour_key **keys, int *count, const struct tour_graph *g,
+                           const struct tour_stop *stops, int stop_count, const struct tour_params *params,
+                           struct err *err)
 {
-    const struct keys k = {keys, count, g, params, err};
-    const struct tour_node *first = &g->nodes[stops[0]];
+    struct keys k = {keys, count, g, params, stops[0].speed, err};
+    const struct tour_node *first = &g->nodes[stops[0].node];
     double time = params->hold;
     *keys = NULL;
     *count = 0;
-    enum status st = add_axis(&k, 0, first->centre, first->axis, stops[0]);
-    if (!st) st = add_axis(&k, time, first->centre, first->axis, stops[0]);
+    enum status st = add_axis(&k, 0, first->centre, first->axis, stops[0].node);
+    if (!st) st = add_axis(&k, time, first->centre, first->axis, stops[0].node);
     for (int i = 0; !st && i + 1 < stop_count; i++) {
         int *leg = NULL, nodes = 0;
-        st = find_leg(&leg, &nodes, g, stops[i], stops[i + 1], err);
+        st = find_leg(&leg, &nodes, g, stops[i].node, stops[i + 1].node, err);
+        k.speed = stops[i + 1].speed;
         if (!st) st = add_leg(&k, leg, nodes, &time);
         free(leg);
         time += params->hold;
-        const struct tour_node *stop = &g->nodes[stops[i + 1]];
-        if (!st) st = add_axis(&k, time, stop->centre, stop->axis, stops[i + 1]);
+        const struct tour_node *stop = &g->nodes[stops[i + 1].node];
+        if (!st) st = add_axis(&k, time, stop->centre, stop->axis, stops[i + 1].node);
     }
     return st;
 }

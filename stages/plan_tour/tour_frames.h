@@ -15,8 +15,9 @@ struct tour_key {
 };
 
 /* The whole tour as keys, between which place and axis are interpolated linearly. *keys is malloc'ed. */
-enum status tour_keys_make(struct tour_key **keys, int *count, const struct tour_graph *g, const int *stops,
-                           int stop_count, const struct tour_params *params, struct err *err);
+enum status tour_keys_make(struct tour_key **keys, int *count, const struct tour_graph *g,
+                           const struct tour_stop *stops, int stop_count, const struct tour_params *params,
+                           struct err *err);
 
 /* Cameras of the frames, in the frame of O/views, and the viewpoints that each blends. path and pairs are empty on entry;
  * the caller releases both in each case. ST_INTERNAL: a frame is nearer to the model than the clearance. */

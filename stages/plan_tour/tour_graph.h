@@ -23,6 +23,12 @@ struct tour_graph {
     double unit; /* model units of one step of distance: 1 with a scale, else the median distance to the nearest node */
 };
 
+/* Where a tour rests. */
+struct tour_stop {
+    int node;
+    double speed; /* of walking here, in units of the graph per second, > 0 */
+};
+
 /* The caller releases the graph in each case. ST_DATA: no viewpoint is usable; warns of those that are not. */
 enum status tour_graph_make(struct tour_graph *g, const struct camera_set *set, const struct lens_list *lenses,
                             const struct model_axes *axes, const struct model_rays *model,

@@ -149,22 +149,23 @@ static void put_way(const struct sheet *s, const struct camera_path *path, const
     }
 }
 
-static void put_viewpoints(const struct sheet *s, const struct tour_graph *g, const int *stops, int stop_count)
+static void put_viewpoints(const struct sheet *s, const struct tour_graph *g, const struct tour_stop *stops,
+                           int stop_count)
 {
     for (int i = 0; i < g->count; i++)
         fprintf(s->to, "<circle class=\"%s\" cx=\"%.2f\" cy=\"%.2f\" r=\"3\"/>\n", g->nodes[i].usable ? "view" : "left",
                 sheet_x(s, g->nodes[i].centre.x), sheet_y(s, g->nodes[i].centre.y));
     for (int i = 0; i < stop_count; i++) {
-        const struct tour_node *n = &g->nodes[stops[i]];
+        const struct tour_node *n = &g->nodes[stops[i].node];
         fprintf(s->to, "<circle class=\"stop\" cx=\"%.2f\" cy=\"%.2f\" r=\"6\"/>\n", sheet_x(s, n->centre.x),
                 sheet_y(s, n->centre.y));
         put_text(s, n->centre.x, n->centre.y + 14 / s->scale, "photo", n->photo);
     }
 }
 
-enum status tour_picture_write(const struct camera_path *path, const struct tour_graph *g, const int *stops,
-                               int stop_count, const struct model_plan *plan, const struct model_axes *axes,
-                               const char *file, struct err *err)
+enum status tour_picture_write(const struct camera_path *path, const struct tour_graph *g,
+                               const struct tour_stop *stops, int stop_count, const struct model_plan *plan,
+                               const struct model_axes *axes, const char *file, struct err *err)
 {
     struct outfile f = {0};
     if (outfile_open(&f, file, err)) return err->status;

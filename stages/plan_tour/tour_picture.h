@@ -8,8 +8,8 @@
 
 /* SVG: rooms, walls, openings, boxes, viewpoints (hollow: left out), the stops with their photos' ids, the way of the
  * frames, and where the camera looks, twice a second. Walls that are parallel to no axis are shown by their rooms. */
-enum status tour_picture_write(const struct camera_path *path, const struct tour_graph *g, const int *stops,
-                               int stop_count, const struct model_plan *plan, const struct model_axes *axes,
-                               const char *file, struct err *err);
+enum status tour_picture_write(const struct camera_path *path, const struct tour_graph *g,
+                               const struct tour_stop *stops, int stop_count, const struct model_plan *plan,
+                               const struct model_axes *axes, const char *file, struct err *err);
 
 #endif

@@ -38,11 +38,11 @@ static int room_stop(const struct tour_graph *g, const struct model_room *room)
     return best;
 }
 
-static enum status add_stop(int **stops, int *count, int node, struct err *err)
+static enum status add_stop(struct tour_stop **stops, int *count, int node, double speed, struct err *err)
 {
-    if (*count && (*stops)[*count - 1] == node) return ST_OK;
+    if (*count && (*stops)[*count - 1].node == node) return ST_OK;
     if (array_append(stops, (size_t)*count, sizeof **stops, "stops", err)) return err->status;
-    (*stops)[(*count)++] = node;
+    (*stops)[(*count)++] = (struct tour_stop){node, speed};
     return ST_OK;
 }
 
@@ -67,12 +67,11 @@ static enum status unknown(const struct textfile *t, const char *name, const cha
     return textfile_error(t, err, name, "%s", what);
 }
 
-static enum status read_stop(int *node, struct textfile *t, const struct tour_graph *g, const struct model_plan *plan,
-                             struct err *err)
+static enum status read_stop(int *node, const char *kind, struct textfile *t, const struct tour_graph *g,
+                             const struct model_plan *plan, struct err *err)
 {
-    char *kind, *name;
-    if (textfile_word(t, "room or photo", &kind, err) || textfile_word(t, "a name", &name, err) || textfile_end(t, err))
-        return err->status;
+    char *name;
+    if (textfile_word(t, "a name", &name, err) || textfile_end(t, err)) return err->status;
     *node = -1;
     if (!strcmp(kind, "room")) {
         const int room = model_plan_find_room(plan, name);
@@ -81,7 +80,6 @@ static enum status read_stop(int *node, struct textfile *t, const struct tour_gr
         if (*node >= 0) return ST_OK;
         return textfile_error(t, err, name, "a room in which a photograph was taken, away from its walls");
     }
-    if (strcmp(kind, "photo")) return textfile_error(t, err, kind, "\"room NAME\" or \"photo ID\"");
     for (int i = 0; i < g->count; i++)
         if (!strcmp(g->nodes[i].photo, name)) *node = i;
     if (*node < 0) return unknown(t, name, "a photo's id", scan_nearest(name, nth_photo, g), err);
@@ -107,8 +105,28 @@ static enum status check_way(const struct textfile *t, const struct tour_graph *
     return st;
 }
 
-static enum status read_script(int **stops, int *count, const struct tour_graph *g, const struct model_plan *plan,
-                               const char *path, struct err *err)
+static enum status read_speed(double *speed, struct textfile *t, struct err *err)
+{
+    if (textfile_double(t, "a speed", speed, err) || textfile_end(t, err)) return err->status;
+    return *speed >= 0.01 && *speed <= 100 ? ST_OK : textfile_wrong_number(t, *speed, "a speed from 0.01 to 100", err);
+}
+
+static enum status read_statement(struct tour_stop **stops, int *count, double *speed, struct textfile *t,
+                                  const struct tour_graph *g, const struct model_plan *plan, struct err *err)
+{
+    char *kind;
+    int node = -1;
+    if (textfile_word(t, "room, photo or speed", &kind, err)) return err->status;
+    if (!strcmp(kind, "speed")) return read_speed(speed, t, err);
+    if (strcmp(kind, "room") && strcmp(kind, "photo"))
+        return textfile_error(t, err, kind, "\"room NAME\", \"photo ID\" or \"speed M\"");
+    enum status st = read_stop(&node, kind, t, g, plan, err);
+    if (!st && *count) st = check_way(t, g, (*stops)[*count - 1].node, node, err);
+    return st ? st : add_stop(stops, count, node, *speed, err);
+}
+
+static enum status read_script(struct tour_stop **stops, int *count, const struct tour_graph *g,
+                               const struct model_plan *plan, double speed, const char *path, struct err *err)
 {
     struct textfile t = {0};
     int64_t version;
@@ -116,12 +134,7 @@ static enum status read_script(int **stops, int *count, const struct tour_graph 
     enum status st = textfile_expect_line(&t, "remodel-tour", err);
     if (!st) st = textfile_int(&t, "version", 1, 1, &version, err);
     if (!st) st = textfile_end(&t, err);
-    while (!st && textfile_next(&t)) {
-        int node = -1;
-        st = read_stop(&node, &t, g, plan, err);
-        if (!st && *count) st = check_way(&t, g, (*stops)[*count - 1], node, err);
-        if (!st) st = add_stop(stops, count, node, err);
-    }
+    while (!st && textfile_next(&t)) st = read_statement(stops, count, &speed, &t, g, plan, err);
     if (!st && !*count) st = textfile_error(&t, err, NULL, "\"room NAME\" or \"photo ID\"");
     textfile_release(&t);
     return st;
@@ -159,23 +172,23 @@ static int farthest(const struct tour_graph *g, const double *costs)
     return best;
 }
 
-static enum status visit_rooms(int **stops, int *count, const struct tour_graph *g, const struct model_plan *plan,
-                               struct err *err)
+static enum status visit_rooms(struct tour_stop **stops, int *count, const struct tour_graph *g,
+                               const struct model_plan *plan, double speed, struct err *err)
 {
     const size_t n = (size_t)g->count;
     bool *visited = calloc((size_t)plan->room_count + 1, sizeof *visited);
     double *costs = malloc((n + 1) * sizeof *costs);
     int *before = malloc((n + 1) * sizeof *before);
     enum status st = visited && costs && before ? ST_OK : err_nomem(err, "rooms", n * sizeof *costs);
-    if (!st) st = add_stop(stops, count, best_start(g), err);
+    if (!st) st = add_stop(stops, count, best_start(g), speed, err);
     for (int r = 0; !st && r < plan->room_count; r++)
-        visited[r] = tour_room_holds(&plan->rooms[r], g->nodes[(*stops)[0]].centre);
+        visited[r] = tour_room_holds(&plan->rooms[r], g->nodes[(*stops)[0].node].centre);
     for (int room = 0; !st && room >= 0;) {
-        st = tour_shortest(costs, before, g, (*stops)[*count - 1], err);
+        st = tour_shortest(costs, before, g, (*stops)[*count - 1].node, err);
         room = st ? -1 : next_room(g, plan, visited, costs);
         if (room < 0) break;
         visited[room] = true;
-        st = add_stop(stops, count, room_stop(g, &plan->rooms[room]), err);
+        st = add_stop(stops, count, room_stop(g, &plan->rooms[room]), speed, err);
     }
     for (int r = 0; !st && r < plan->room_count; r++)
         if (!visited[r])
@@ -183,17 +196,18 @@ static enum status visit_rooms(int **stops, int *count, const struct tour_graph 
                      room_stop(g, &plan->rooms[r]) < 0 ? "no photograph was taken in it, away from its walls"
                                                        : "no way between viewpoints leads there");
     /* a flat of one room */
-    if (!st && *count == 1) st = add_stop(stops, count, farthest(g, costs), err);
+    if (!st && *count == 1) st = add_stop(stops, count, farthest(g, costs), speed, err);
     free(visited);
     free(costs);
     free(before);
     return st;
 }
 
-enum status tour_stops_find(int **stops, int *count, const struct tour_graph *g, const struct model_plan *plan,
-                            const char *script, struct err *err)
+enum status tour_stops_find(struct tour_stop **stops, int *count, const struct tour_graph *g,
+                            const struct model_plan *plan, double speed, const char *script, struct err *err)
 {
     *stops = NULL;
     *count = 0;
-    return script ? read_script(stops, count, g, plan, script, err) : visit_rooms(stops, count, g, plan, err);
+    return script ? read_script(stops, count, g, plan, speed, script, err)
+                  : visit_rooms(stops, count, g, plan, speed, err);
 }

@@ -22,7 +22,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     const struct model_plan plan = {.rooms = rooms, .room_count = 2};
     const struct tour_graph g = {.nodes = nodes, .weights = weights, .count = NODES, .unit = 1};
     char path[FUZZ_PATH], names[2][2] = {"a", "b"};
-    int *stops = NULL, count = 0;
+    struct tour_stop *stops = NULL;
+    int count = 0;
     struct err err = ERR_INIT;
 
     for (int r = 0; r < 2; r++)
@@ -35,14 +36,17 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     weights[1 * NODES + 2] = weights[2 * NODES + 1] = 2;
 
     fuzz_file(path, data, size);
-    if (tour_stops_find(&stops, &count, &g, &plan, path, &err)) {
+    if (tour_stops_find(&stops, &count, &g, &plan, 1, path, &err)) {
         if (!strstr(err.text, path)) abort();
     } else if (count < 1)
         abort();
     else
         for (int i = 0; i < count; i++) {
-            if (stops[i] < 0 || stops[i] > 2) abort();
-            if (i && (stops[i] == stops[i - 1] || !isfinite(weights[stops[i] * NODES + stops[i - 1]]))) abort();
+            if (stops[i].node < 0 || stops[i].node > 2) abort();
+            if (!(stops[i].speed >= 0.01 && stops[i].speed <= 100)) abort();
+            if (i &&
+                (stops[i].node == stops[i - 1].node || !isfinite(weights[stops[i].node * NODES + stops[i - 1].node])))
+                abort();
         }
     free(stops);
     unlink(path);

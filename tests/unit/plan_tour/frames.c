@@ -75,6 +75,23 @@ static void easing_takes_one_second_and_half_a_second(void **state)
     walk_release(&w);
 }
 
+static void a_leg_has_the_speed_of_the_stop_that_it_leads_to(void **state)
+{
+    (void)state;
+    const struct box hall[] = {HALL_OUTSIDE, HALL_INSIDE};
+    const struct place places[] = {{"p1", {-2, 0, 1.5}, 20}, {"p2", {2, 0, 1.5}, -20}};
+    const struct tour_stop stops[] = {{0, 9}, {1, 0.5}, {0, 2}};
+    struct walk w;
+    struct err err = ERR_INIT;
+    walk_make(&w, hall, 2, places, 2);
+    assert_ok(walk_graph(&w, &err), err);
+    assert_ok(tour_keys_make(&w.keys, &w.key_count, &w.g, stops, 3, &w.params, &err), err);
+    /* 4 m at 0.5 m/s; back, the turns of 160 degrees take longer than walking 4 m at 2 m/s */
+    assert_float_equal(w.keys[4].time, 1 + 8, 1e-9);
+    assert_float_equal(w.keys[w.key_count - 1].time, 1 + 8 + 1 + 2 * 160 / w.params.turn + 1, 1e-9);
+    walk_release(&w);
+}
+
 static void shares_of_a_pair_go_by_the_length_of_the_way(void **state)
 {
     (void)state;
@@ -132,9 +149,9 @@ static void one_viewpoint_alone_gives_a_film_that_rests(void **state)
         walk_make(&w, hall, 2, around, 1);
         w.params.hold = hold;
         assert_ok(walk_graph(&w, &err), err);
-        assert_ok(tour_stops_find(&w.stops, &w.stop_count, &w.g, &plan, NULL, &err), err);
+        assert_ok(tour_stops_find(&w.stops, &w.stop_count, &w.g, &plan, w.params.speed, NULL, &err), err);
         assert_int_equal(w.stop_count, 1);
-        walk_along(&w, w.stops, 1);
+        walk_along(&w, &w.stops[0].node, 1);
         assert_int_equal(w.path.frame_count, hold ? 31 : 1);
         for (int f = 0; f < w.path.frame_count; f++) {
             const struct viewpoint_pair *p = &w.pairs.list[f];
@@ -159,7 +176,7 @@ static void the_picture_shows_rooms_stops_and_viewpoints(void **state)
     struct model_room hall = {.name = (char *)"a < b & c", .corners = corners, .corner_count = 4};
     struct model_wall wall = {.name = (char *)"s", .normal = {0, 1}, .offset = -2, .thickness = 0.3, .span = {-3, 3}};
     const struct model_plan plan = {.rooms = &hall, .room_count = 1, .walls = &wall, .wall_count = 1};
-    const int stops[] = {0, 2};
+    const struct tour_stop stops[] = {{0, 1}, {2, 1}};
     struct walk w;
     struct err err = ERR_INIT;
     walk_around(&w);
@@ -187,6 +204,7 @@ int main(void)
         cmocka_unit_test(orientation_is_continuous),
         cmocka_unit_test(a_tour_of_two_begins_and_ends_with_the_photos_axes),
         cmocka_unit_test(easing_takes_one_second_and_half_a_second),
+        cmocka_unit_test(a_leg_has_the_speed_of_the_stop_that_it_leads_to),
         cmocka_unit_test(shares_of_a_pair_go_by_the_length_of_the_way),
         cmocka_unit_test(between_coincident_viewpoints_the_camera_turns_in_its_time),
         cmocka_unit_test(one_viewpoint_alone_gives_a_film_that_rests),

@@ -28,7 +28,7 @@ static void run(struct trial *t, const struct box *flat, const char *script)
     *t = (struct trial){.err = ERR_INIT};
     walk_make(&t->w, flat, 3, places, 4);
     assert_ok(walk_graph(&t->w, &t->err), t->err);
-    t->status = tour_stops_find(&t->w.stops, &t->w.stop_count, &t->w.g, &plan,
+    t->status = tour_stops_find(&t->w.stops, &t->w.stop_count, &t->w.g, &plan, t->w.params.speed,
                                 script ? scratch_write("tour.txt", script) : NULL, &t->err);
 }
 
@@ -40,9 +40,9 @@ static void a_tour_visits_each_room(void **state)
     run(&t, open_flat, NULL);
     assert_int_equal(t.status, ST_OK);
     for (int i = 0; i < t.w.stop_count; i++)
-        for (int r = 0; r < 2; r++) seen[r] |= tour_room_holds(&rooms[r], t.w.g.nodes[t.w.stops[i]].centre);
+        for (int r = 0; r < 2; r++) seen[r] |= tour_room_holds(&rooms[r], t.w.g.nodes[t.w.stops[i].node].centre);
     assert_true(seen[0] && seen[1]);
-    for (int i = 0; i < 4; i++) assert_true(t.w.g.nodes[t.w.stops[0]].open >= t.w.g.nodes[i].open);
+    for (int i = 0; i < 4; i++) assert_true(t.w.g.nodes[t.w.stops[0].node].open >= t.w.g.nodes[i].open);
     walk_release(&t.w);
 }
 
@@ -71,12 +71,14 @@ static void a_script_names_rooms_and_photos_in_order(void **state)
 {
     (void)state;
     struct trial t;
-    run(&t, open_flat, "remodel-tour 1\n# east, then back\nroom east\nphoto p1\nroom west\n");
+    run(&t, open_flat, "remodel-tour 1\n# east, then back\nroom east\nspeed 0.5\nphoto p1\nroom west\n");
     assert_int_equal(t.status, ST_OK);
     assert_int_equal(t.w.stop_count, 3);
-    assert_string_equal(t.w.g.nodes[t.w.stops[0]].photo, "p4");
-    assert_string_equal(t.w.g.nodes[t.w.stops[1]].photo, "p1");
-    assert_string_equal(t.w.g.nodes[t.w.stops[2]].photo, "p2");
+    assert_string_equal(t.w.g.nodes[t.w.stops[0].node].photo, "p4");
+    assert_string_equal(t.w.g.nodes[t.w.stops[1].node].photo, "p1");
+    assert_string_equal(t.w.g.nodes[t.w.stops[2].node].photo, "p2");
+    assert_true(t.w.stops[0].speed == t.w.params.speed);
+    assert_true(t.w.stops[1].speed == 0.5 && t.w.stops[2].speed == 0.5);
     walk_release(&t.w);
 }
 
@@ -102,6 +104,9 @@ static void errors_name_the_file_and_the_line(void **state)
         {"remodel-tour 1\nview p1\n", "tour.txt:2: found \"view\""},
         {"remodel-tour 1\nroom west east\n", "tour.txt:2: found \"east\""},
         {"remodel-tour 1\nphoto\n", "tour.txt:2: "},
+        {"remodel-tour 1\nspeed 0\nroom west\n", "tour.txt:2: found \"0\", wanted a speed from 0.01 to 100"},
+        {"remodel-tour 1\nspeed fast\n", "tour.txt:2: found \"fast\""},
+        {"remodel-tour 1\nspeed 1 2\n", "tour.txt:2: found \"2\""},
     };
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
         struct trial t;

@@ -47,7 +47,8 @@ struct walk {
     struct model_axes axes;
     struct tour_params params;
     struct tour_graph g;
-    int *stops, stop_count;
+    struct tour_stop *stops;
+    int stop_count;
     struct tour_key *keys;
     int key_count;
     struct camera_path path;
@@ -87,8 +88,10 @@ static inline enum status walk_graph(struct walk *w, struct err *err)
 }
 
 /* A tour over nodes of the graph. */
-static inline void walk_along(struct walk *w, const int *stops, int count)
+static inline void walk_along(struct walk *w, const int *nodes, int count)
 {
+    struct tour_stop stops[MAX_PHOTOS];
+    for (int i = 0; i < count; i++) stops[i] = (struct tour_stop){nodes[i], w->params.speed};
     struct err err = ERR_INIT;
     assert_ok(tour_keys_make(&w->keys, &w->key_count, &w->g, stops, count, &w->params, &err), err);
     assert_ok(tour_frames_make(&w->path, &w->pairs, w->keys, w->key_count, &w->g, &w->axes, &w->rays, &w->params, &err),
