@@ -4,6 +4,8 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "stages/plan_tour/tour_clearance.h"
+#include "stages/plan_tour/tour_graph.h"
 #include "stages/plan_tour/tour_stops.h"
 #include "tests/fuzz/fuzz.h"
 #include "tests/fuzz/fuzz_scratch.h"
