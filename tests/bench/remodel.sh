@@ -10,7 +10,7 @@
 #   render_views    the same from the photos' layers alone
 # And if BENCH_APARTMENT (../shared/data/apartment) is there, its four views that nobody photographed, three rows like the
 # last. BENCH_SCALE is the size of the photos (1), BENCH_EDIT_SAMPLES the samples of edits (64).
-BENCH_HELDOUT= . "${BENCHES:-tests/bench}/vdta.sh"
+BENCH_HELDOUT='' . "${BENCHES:-tests/bench}/vdta.sh"
 title="Remodelled rooms and new views: PSNR against time"
 note="Upper left is better. Edits: what they reveal, after one gain for each face."
 baseline="render_views"
