@@ -76,11 +76,14 @@ static int is_record(const struct dirent *e)
     return e->d_name[0] != '.' && dot && !strcmp(dot, ".txt");
 }
 
-/* Most changed first, then by name. */
+/* What is changed, less where the view looks past the photo's border. */
+static double worth(const struct record *r) { return r->changed * (100 - r->shares[MADE_NOTHING]); }
+
+/* The best first, then by name. */
 static int compare_records(const void *a, const void *b)
 {
     const struct record *p = a, *q = b;
-    if (p->changed != q->changed) return p->changed < q->changed ? 1 : -1;
+    if (worth(p) != worth(q)) return worth(p) < worth(q) ? 1 : -1;
     return strcmp(p->view, q->view);
 }
 

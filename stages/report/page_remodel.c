@@ -1,6 +1,8 @@
 /* page_remodel.c - see page_remodel.h. */
 #include "stages/report/page_remodel.h"
 
+#include <math.h>
+
 #include "common/base/version.h"
 #include "common/texture/picture_made.h"
 #include "stages/report/page_parts.h"
@@ -23,6 +25,16 @@ static const char style[] =
     ".plans img{background:#fff;width:100%}.rooms label{font-size:.85rem;color:var(--muted)}\n"
     ".rooms p{font-size:.85rem;margin:4px 0 0}.key .flat{height:12px;width:22px}\n";
 
+/* The name of an edit as words. */
+static void put_name(FILE *to, const char *name)
+{
+    for (const char *c = name; *c; c++)
+        if (*c == '-' || *c == '_')
+            fputc(' ', to);
+        else
+            html_bytes(to, c, 1);
+}
+
 static void put_head(FILE *to, const char *scene, const struct remodel_contents *c)
 {
     fputs("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
@@ -43,7 +55,7 @@ static void put_head(FILE *to, const char *scene, const struct remodel_contents 
           to);
     for (int i = 0; i < c->edit_count; i++) {
         fprintf(to, "<a href=\"#edit%d\">", i);
-        put_spaced(to, c->edits[i].name);
+        put_name(to, c->edits[i].name);
         fputs("</a>", to);
     }
     fputs("<a href=\"#how\">What is real</a></nav>\n</header>\n<main>\n", to);
@@ -58,17 +70,18 @@ static enum status put_layer(FILE *to, const struct picture *p, const char *name
     return st;
 }
 
-/* How much of the picture is photograph, and how much is guessed. */
+/* How much of the picture is photograph, and how much is guessed; of what the photo's frame shows. */
 static void put_shares(FILE *to, const struct edit_sight *s)
 {
-    const double photo = s->shares[MADE_PHOTO] + s->shares[MADE_ORIGINAL];
-    const double other = s->shares[MADE_WARPED] + s->shares[MADE_OUTDOORS] + s->shares[MADE_CLUTTER];
-    const double guessed = s->shares[MADE_SYNTHESISED] + s->shares[MADE_UNSURE];
+    const double scale = 100 / fmax(1, 100 - s->shares[MADE_NOTHING]);
+    const double photo = scale * (s->shares[MADE_PHOTO] + s->shares[MADE_ORIGINAL]);
+    const double other = scale * (s->shares[MADE_WARPED] + s->shares[MADE_OUTDOORS] + s->shares[MADE_CLUTTER]);
+    const double guessed = scale * (s->shares[MADE_SYNTHESISED] + s->shares[MADE_UNSURE]);
+    const double colour = scale * s->shares[MADE_COLOUR];
     fprintf(to, "<p class=\"muted\">%.0f %% of this picture is the photograph", photo);
     if (other >= 0.5) fprintf(to, ", %.0f %% comes from other photographs", other);
     if (guessed >= 0.5) fprintf(to, ", %.0f %% is guessed", guessed);
-    if (s->shares[MADE_COLOUR] >= 0.5) fprintf(to, ", %.0f %% is a plain colour", s->shares[MADE_COLOUR]);
-    if (s->shares[MADE_NOTHING] >= 0.5) fprintf(to, ", %.0f %% is unknown (black)", s->shares[MADE_NOTHING]);
+    if (colour >= 0.5) fprintf(to, ", %.0f %% is a plain colour", colour);
     fputs(".</p>\n", to);
 }
 
@@ -122,7 +135,7 @@ static enum status put_edit(FILE *to, const struct remodel_contents *c, int numb
 {
     const struct edit_card *card = &c->edits[number];
     fprintf(to, "<section id=\"edit%d\">\n<h2>", number);
-    put_spaced(to, card->name);
+    put_name(to, card->name);
     fputs("</h2>\n", to);
     if (card->about[0]) {
         fputs("<p>", to);
