@@ -208,6 +208,9 @@ static enum status read_limits(struct texture_rule *rule, struct textfile *t, co
     rule->limited = word != NULL;
     enum status st = ST_OK;
     for (int i = 0; !st && rule->limited && i < 4; i++) st = read_point(t, &rule->within[i], err);
+    const struct vec3 *w = rule->within;
+    if (!st && rule->limited && !(vec3_length(vec3_cross(vec3_sub(w[2], w[0]), vec3_sub(w[3], w[1]))) > 0))
+        return textfile_error(t, err, "within", "four corners around an area");
     return st ? st : textfile_end(t, err);
 }
 

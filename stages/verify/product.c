@@ -14,6 +14,7 @@
 #include "common/image/exr.h"
 #include "common/image/photo.h"
 #include "common/texture/atlas.h"
+#include "common/texture/texture_map.h"
 
 static enum status verify_exr(const char *path, struct err *err)
 {
@@ -190,6 +191,14 @@ static enum status verify_atlas(const char *path, struct err *err)
     return st;
 }
 
+static enum status verify_texture_map(const char *path, struct err *err)
+{
+    struct texture_map map = {0};
+    const enum status st = texture_map_read(&map, path, err);
+    texture_map_release(&map);
+    return st;
+}
+
 static enum status verify_not_empty(const char *path, struct err *err)
 {
     struct stat info;
@@ -212,6 +221,7 @@ enum status product_verify(const char *path, struct err *err)
     };
     const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path, *dot = strrchr(name, '.');
     if (!strcmp(name, "atlas.txt")) return verify_atlas(path, err);
+    if (!strcmp(name, "texture.txt")) return verify_texture_map(path, err);
     for (size_t i = 0; dot && i < sizeof kinds / sizeof *kinds; i++)
         if (!strcasecmp(dot, kinds[i].extension)) return kinds[i].verify(path, err);
     return verify_not_empty(path, err);

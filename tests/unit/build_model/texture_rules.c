@@ -196,6 +196,51 @@ static void every_face_has_a_rule_that_covers_all_of_it(void **state)
     }
 }
 
+static double area_of_all(const struct solid_mesh *mesh)
+{
+    double area = 0;
+    for (int i = 0; i < mesh->face_count; i++) area += solid_mesh_area(mesh, i);
+    return area;
+}
+
+/* The floor and the ceiling remain; no texture comes from the walls that went. */
+static void an_edit_that_removes_the_last_wall_leaves_floor_and_ceiling(void **state)
+{
+    struct made m;
+    struct err err = ERR_INIT;
+    (void)state;
+    make(&m, ROOM, "remove south\nremove west\nremove north\nremove east\n");
+    assert_ok(solid_mesh_check(&m.edited, 0, NULL, &err), err);
+    for (int i = 0; i < m.map.face_count; i++) {
+        const struct texture_face *f = &m.map.faces[i];
+        assert_true(!strncmp(f->name, "floor/", 6) || !strncmp(f->name, "ceiling/", 8));
+        const bool inside = !strcmp(f->name, "floor/hall") || !strcmp(f->name, "ceiling/hall");
+        for (int k = 0; inside && k < f->rule_count; k++)
+            if (f->rules[k].kind == TEXTURE_PLACE)
+                assert_true(strncmp(m.base.names[f->rules[k].from - 1].name, "wall/", 5) != 0);
+    }
+    release(&m);
+}
+
+/* Two boxes that share an edge: their faces have their own rules, and all of their area is new. */
+static void an_edit_whose_solids_touch_in_an_edge_has_rules_for_all_faces(void **state)
+{
+    struct made m;
+    struct err err = ERR_INIT;
+    double added = 0;
+    (void)state;
+    make(&m, ROOM, "box a from 1 1 to 1.5 1.5 foot 0.5 top 1\nbox b from 1.5 1.5 to 2 2 foot 0.5 top 1\n");
+    assert_ok(solid_mesh_check(&m.edited, 0, NULL, &err), err);
+    for (int i = 0; i < m.map.face_count; i++) {
+        const struct texture_face *f = &m.map.faces[i];
+        assert_true(f->rule_count > 0);
+        added += new_area(f);
+    }
+    assert_true(fabs(added - (area_of_all(&m.edited) - area_of_all(&m.base))) < 1e-6);
+    assert_true(fabs(added - 2 * 6 * 0.25) < 1e-6);
+    release(&m);
+}
+
 /* ------------------------------------------------------------------------------------------------------ statements */
 
 static void a_colour_covers_a_face_or_all_of_a_box(void **state)
@@ -379,6 +424,8 @@ int main(void)
         cmocka_unit_test(a_wall_that_was_split_shows_what_was_there),
         cmocka_unit_test(panes_show_what_lies_outdoors),
         cmocka_unit_test(every_face_has_a_rule_that_covers_all_of_it),
+        cmocka_unit_test(an_edit_that_removes_the_last_wall_leaves_floor_and_ceiling),
+        cmocka_unit_test(an_edit_whose_solids_touch_in_an_edge_has_rules_for_all_faces),
         cmocka_unit_test(a_colour_covers_a_face_or_all_of_a_box),
         cmocka_unit_test(the_default_colour_is_that_of_the_script),
         cmocka_unit_test(a_copied_patch_keeps_its_scale_and_is_repeated),
