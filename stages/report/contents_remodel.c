@@ -29,7 +29,7 @@ struct reading {
 static enum status note(struct remodel_contents *c, const char *what, const struct err *problem, struct err *err)
 {
     if (array_append(&c->notes, (size_t)c->note_count, sizeof *c->notes, "notes", err)) return err->status;
-    snprintf(c->notes[c->note_count++], sizeof *c->notes, "%s: %s", what, problem->text);
+    snprintf(c->notes[c->note_count++], sizeof *c->notes, "%.100s: %.800s", what, problem->text);
     return ST_OK;
 }
 
