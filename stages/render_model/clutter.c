@@ -35,10 +35,13 @@ enum status clutter_open(struct clutter_scene **scene, const struct clutter_file
     s->depth = strdup(files->depth);
     s->ids = strdup(files->ids);
     s->sources = calloc((size_t)set->view_count + 1, sizeof *s->sources);
-    if (s->views && s->depth && s->ids && s->sources) return ST_OK;
+    enum status st = pane_fronts_find(&s->panes, files->unedited, err);
+    if (!st && !(s->views && s->depth && s->ids && s->sources))
+        st = err_nomem(err, "the views of the clutter", (size_t)set->view_count * sizeof *s->sources);
+    if (!st) return ST_OK;
     clutter_close(s);
     *scene = NULL;
-    return err_nomem(err, "the views of the clutter", (size_t)set->view_count * sizeof *s->sources);
+    return st;
 }
 
 static void drop(struct clutter_scene *s, struct clutter_source *source)
@@ -56,6 +59,7 @@ void clutter_close(struct clutter_scene *s)
         for (int k = 0; k < 2; k++) free(s->sources[i].inputs[k].name);
     }
     for (int k = 0; k < CLUTTER_VIEWS; k++) drawn_view_release(&s->drawn[k]);
+    pane_fronts_release(&s->panes);
     free(s->views);
     free(s->depth);
     free(s->ids);
@@ -104,6 +108,10 @@ static enum status read_source(struct clutter_scene *s, int at, struct err *err)
     if (!st) st = layered_depth_read(&depth, path, err);
     if (!st) st = note_input(&source->inputs[1], "ids", s->ids, view->name, path, err);
     if (!st) st = view_ids_read(&ids, view, path, err);
+    if (!st) {
+        const struct view camera = model_from_world_view(&s->axes, view);
+        pane_fronts_apply(&ids, &s->panes, &camera, s->axes.scale);
+    }
     if (!st) st = clutter_view_make(&source->view, &depth, &ids, view->name, err);
     if (!st) {
         source->loaded = true;

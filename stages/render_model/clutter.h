@@ -4,13 +4,15 @@
 #define REMODEL_RENDER_CLUTTER_H
 
 #include "common/model/model_axes.h"
+#include "common/model/solid_mesh.h"
 #include "common/texture/model_picture.h"
 #include "common/texture/texture_map.h"
 
 struct clutter_scene; /* the views of a scene; their layers are read when they are needed */
 
 struct clutter_files {
-    const char *views, *depth, *ids; /* folders of O */
+    const char *views, *depth, *ids;   /* folders of O */
+    const struct solid_mesh *unedited; /* NULL: no panes are known; must outlive the clutter */
     int memory; /* MiB of views that are kept; where they hold fewer than 12 views, pictures are made of fewer */
 };
 

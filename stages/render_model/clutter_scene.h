@@ -5,6 +5,7 @@
 #include "common/layers/layer_visibility.h"
 #include "stages/render_model/clutter.h"
 #include "stages/render_model/clutter_view.h"
+#include "stages/render_model/pane_fronts.h"
 
 enum { CLUTTER_VIEWS = 12 }; /* the most that a picture is drawn from */
 
@@ -20,6 +21,7 @@ struct clutter_scene {
     size_t budget, bytes;      /* of memory: allowed, and held by the sources */
     const struct camera_set *set;
     struct model_axes axes;
+    struct pane_fronts panes;
     struct clutter_source *sources; /* one per view; owned */
     uint64_t picture;               /* number of the present one */
     struct drawn_view drawn[CLUTTER_VIEWS];

@@ -54,7 +54,8 @@ enum status room_open(struct room *room, const struct room_files *files, const s
                       struct provenance *prov, struct err *err)
 {
     const struct shell_files shell = {files->model, files->map, files->vdta, files->vita, params->memory};
-    const struct clutter_files clutter = {files->views, files->depth, files->ids, params->memory};
+    const struct solid_mesh *unedited = files->base ? &room->base.mesh : &room->model.mesh;
+    const struct clutter_files clutter = {files->views, files->depth, files->ids, unedited, params->memory};
     *room = (struct room){.files = *files, .params = params, .prov = prov};
     enum status st = read_cameras(room, prov, err);
     if (!st) st = model_rays_read(&room->model, files->model, MODEL_WITH_GLASS, err);
