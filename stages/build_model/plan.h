@@ -137,7 +137,9 @@ struct plan_wish {
 /* Clutter is left out, or kept, in a footprint. */
 struct plan_zone {
     bool keep, all;
-    int room; /* its footprint; -1: the rectangle, or all rooms */
+    int room;      /* its footprint; -1: another one */
+    int opening;   /* the space before it, on both sides of its wall; -1: the rectangle, or all rooms */
+    double before; /* how far from the wall */
     double low[3], high[3];
 };
 

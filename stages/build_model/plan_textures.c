@@ -120,7 +120,7 @@ enum status apply_zone(struct plan_context *c)
 {
     const struct statement *s = c->s;
     struct plan *p = c->plan;
-    struct plan_zone zone = {.keep = s->verb == VERB_KEEP, .room = -1};
+    struct plan_zone zone = {.keep = s->verb == VERB_KEEP, .room = -1, .opening = -1};
     zone.low[2] = s->has_option[OPTION_FOOT] ? s->options[OPTION_FOOT] : -ABOVE_ALL;
     zone.high[2] = s->has_option[OPTION_TOP] ? s->options[OPTION_TOP] : ABOVE_ALL;
     if (!(zone.low[2] < zone.high[2]))
@@ -128,7 +128,15 @@ enum status apply_zone(struct plan_context *c)
                                zone.high[2]);
     zone.all = s->name && !strcmp(s->name, "all");
     if (s->name && !zone.all && find_room(c, s->name, &zone.room)) return c->err->status;
-    if (!s->name) {
+    if (s->other) {
+        enum name_kind kind;
+        zone.before = s->values[0];
+        if (find_named(c, s->other, 1u << NAMED_OPENING, "a door, passage or window", &kind, &zone.opening))
+            return c->err->status;
+        if (!(zone.before >= MIN_SIZE))
+            return statement_error(c, "found a distance of %.9g from the wall, wanted %g or more.", zone.before,
+                                   MIN_SIZE);
+    } else if (!s->name) {
         const double at = s->has_option[OPTION_FOOT] ? s->options[OPTION_FOOT] : 0;
         if (place_footprint(c, at, zone.low, zone.high)) return c->err->status;
     }

@@ -61,8 +61,11 @@ static const struct grammar GRAMMAR[VERB_COUNT] = {
     [VERB_TEXTURE] = {"texture", "texture NAME stretch|crop", 0, ""},
     [VERB_COPY] = {"copy", "copy texture FACE PLACE to FACE [PLACE]", 0, ""},
     [VERB_COLOUR] = {"colour", "colour FACE R G B", 0, ""},
-    [VERB_CLEAR] = {"clear", "clear ROOM | clear all | clear PLACE [foot Z] [top Z]", BIT(FOOT) | BIT(TOP), ""},
-    [VERB_KEEP] = {"keep", "keep PLACE [foot Z] [top Z]", BIT(FOOT) | BIT(TOP), ""},
+    [VERB_CLEAR] =
+        {"clear", "clear ROOM | clear all | clear PLACE [foot Z] [top Z] | clear before OPENING by D [foot Z] [top Z]",
+         BIT(FOOT) | BIT(TOP), ""},
+    [VERB_KEEP] = {"keep", "keep PLACE [foot Z] [top Z] | keep before OPENING by D [foot Z] [top Z]",
+                   BIT(FOOT) | BIT(TOP), ""},
     [VERB_BASE] = {"base", "base EDIT", 0, ""},
 };
 
@@ -410,13 +413,20 @@ static enum status read_copy(struct reader *r, struct statement *s)
     return textfile_more(&r->t) ? read_place(r, &s->target, s->verb) : ST_OK;
 }
 
-/* A place, or for `clear` a room or all of them. */
+/* A place, the space before an opening, or for `clear` a room or all of them. */
 static enum status read_zone(struct reader *r, struct statement *s)
 {
     const char *next = r->t.cursor + strspn(r->t.cursor, " \t");
+    if (!strncmp(next, "before ", 7)) {
+        s->value_count = 1;
+        return expect(r, "before", s->verb) || read_name(r, "a door, passage or window", &s->other) ||
+                       expect(r, "by", s->verb) || read_number(r, "a distance from the wall", &s->values[0])
+                   ? r->err->status
+                   : ST_OK;
+    }
     if (s->verb == VERB_KEEP || !strncmp(next, "in ", 3) || !strncmp(next, "from ", 5))
         return read_place(r, &s->place, s->verb);
-    return read_name(r, "a room, \"all\", \"in VIEW\" or \"from\"", &s->name);
+    return read_name(r, "a room, \"all\", \"in VIEW\", \"from\" or \"before\"", &s->name);
 }
 
 /* A statement that has nothing but options must have one. */

@@ -80,7 +80,7 @@ struct statement {
     int line;
     const char *name;  /* what it makes or changes; set: the quantity; join: NULL */
     const char *other; /* openings: the wall or room; extend: the wall to reach, or NULL; split: the new wall; copy: the
-                           face that gets the texture; texture: "stretch" or "crop" */
+                           face that gets the texture; texture: "stretch" or "crop"; clear, keep: the opening */
     const char **names; /* join, room: walls in order; slope, gable: the two walls */
     int name_count;
     struct script_place place, target; /* target: of copy, PLACE_NONE: the whole face */

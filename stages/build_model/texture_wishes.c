@@ -261,17 +261,30 @@ static enum status add_room(struct texture_map *map, const struct plan_zone *zon
     return st;
 }
 
+/* The space before an opening, on both sides of its wall. Things that stand there often reach a little beyond. */
+static void corners_before(double corners[4][2], const struct plan *plan, const struct plan_zone *zone)
+{
+    const struct plan_opening *o = &plan->openings[zone->opening];
+    const struct plan_wall *w = &plan->walls[o->wall];
+    const double wider = zone->before / 10, from = o->s[0] - wider, to = o->s[1] + wider;
+    wall_point(w, from, -zone->before, corners[0]);
+    wall_point(w, to, -zone->before, corners[1]);
+    wall_point(w, to, w->thickness + zone->before, corners[2]);
+    wall_point(w, from, w->thickness + zone->before, corners[3]);
+}
+
 enum status texture_zones_add(struct texture_map *map, const struct plan *plan, struct err *err)
 {
     enum status st = ST_OK;
     for (int i = 0; !st && i < plan->zone_count; i++) {
         const struct plan_zone *z = &plan->zones[i];
-        const double rectangle[4][2] = {
+        double place[4][2] = {
             {z->low[0], z->low[1]}, {z->high[0], z->low[1]}, {z->high[0], z->high[1]}, {z->low[0], z->high[1]}};
+        if (z->opening >= 0) corners_before(place, plan, z);
         for (int r = 0; !st && r < plan->room_count; r++)
             if (!plan->rooms[r].removed && plan->rooms[r].edge_count > 2 && (z->all || z->room == r))
                 st = add_room(map, z, &plan->rooms[r], err);
-        if (!st && !z->all && z->room < 0) st = add_zone(map, z, "place", rectangle, 4, err);
+        if (!st && !z->all && z->room < 0) st = add_zone(map, z, "place", place, 4, err);
     }
     return st;
 }

@@ -359,6 +359,23 @@ static void rooms_are_cleared_but_for_what_is_kept(void **state)
     release(&m);
 }
 
+/* The wall `middle` between the rooms is at x = 2, thickness as TWO says; the passage goes from y = 1 to 1.5. */
+static void the_space_before_an_opening_is_cleared_on_both_sides(void **state)
+{
+    struct made m;
+    (void)state;
+    make(&m, TWO, "passage p on middle from 1 0 to 1.5 2\nclear before p by 0.5 top 1.8\n");
+    for (int side = -1; side <= 1; side += 2) {
+        const double middle = 2, x = middle + side * 0.4;
+        assert_true(texture_map_clears(&m.map, vec3_make(x, 1.25, 1)));
+        assert_true(texture_map_clears(&m.map, vec3_make(x, 0.96, 1)));
+        assert_false(texture_map_clears(&m.map, vec3_make(x, 0.94, 1)));
+        assert_false(texture_map_clears(&m.map, vec3_make(x, 1.25, 1.9)));
+        assert_false(texture_map_clears(&m.map, vec3_make(middle + side * 0.9, 1.25, 1)));
+    }
+    release(&m);
+}
+
 static void faces_that_are_not_there_are_named(void **state)
 {
     static const struct {
@@ -399,6 +416,8 @@ static void statements_without_meaning_are_refused(void **state)
         {"colour west 0 0 0\n", "a face, such as wall/south/in"},
         {"clear hal\n", "did you mean hall?"},
         {"keep hall\n", "\"in VIEW\" or \"from\""},
+        {"clear before hall by 1\n", "a door, passage or window"},
+        {"passage p on west from 1 0 to 1.5 2\nclear before p by 0\n", "a distance of 0 from the wall"},
         {"keep from 1 1 to 2 2 foot 2 top 1\n", "a top above the foot"},
         {"copy texture box/b/top from 0 0 to 1 1 to wall/west/in\n", "a place on box/b/top cannot be given"},
         {"remove west\nbase other\n", "as the first statement"},
@@ -432,6 +451,7 @@ int main(void)
         cmocka_unit_test(the_last_statement_about_a_face_counts),
         cmocka_unit_test(a_stretched_pane_shows_its_whole_picture),
         cmocka_unit_test(rooms_are_cleared_but_for_what_is_kept),
+        cmocka_unit_test(the_space_before_an_opening_is_cleared_on_both_sides),
         cmocka_unit_test(faces_that_are_not_there_are_named),
         cmocka_unit_test(statements_without_meaning_are_refused),
     };
