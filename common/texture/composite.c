@@ -20,6 +20,9 @@
 
 static const float WEAK = 1e-5f;        /* weight of data, and of outlying differences */
 static const double DEFAULT_GREY = 0.5; /* of white */
+enum { REACH = 12 };                    /* texels: of the clean ones that an unseen one continues */
+enum { LEAST = 8 };                     /* of these */
+enum { ALIKE = 8 };                     /* neighbours are alike: this many count as one */
 enum { RIM = 3 };                       /* texels beside unseen ones, which may hold the shadow of what hides them */
 
 struct composite { /* of a tile; all per texel */
@@ -87,6 +90,57 @@ static void take_fill(struct composite *c, int side, size_t at, size_t next)
     for (int k = 0; k < 3; k++) g[k] = a && b ? 0.5f * (forward[k] - back[k]) : a ? forward[k] : b ? -back[k] : 0;
 }
 
+/* How far seen texels are above the texture that is copied to a hole; per colour. */
+struct excess {
+    double mean[3], variance[3]; /* variance: of the mean */
+};
+
+/* The excess of the seen texels around `at`, of clean ones or of others; false: there are fewer than LEAST. */
+static bool excess_around(struct excess *e, const struct composite *c, size_t hole, size_t at, int reach, bool clean)
+{
+    const int width = c->t->raster.width, height = c->t->raster.height;
+    const int x = (int)(at % (size_t)width), y = (int)(at / (size_t)width);
+    double sum[3] = {0}, squares[3] = {0};
+    int count = 0;
+    for (int v = y > reach ? y - reach : 0; v <= y + reach && v < height; v++)
+        for (int u = x > reach ? x - reach : 0; u <= x + reach && u < width; u++) {
+            const size_t i = (size_t)v * (size_t)width + (size_t)u;
+            float copy[3];
+            if (c->role[i] != GRADIENT_FIXED || (c->clean[i] != 0) != clean) continue;
+            if (!texture_fill_copy(copy, &c->fill, hole, i)) continue;
+            for (size_t k = 0; k < 3; k++) {
+                const double d = (double)(c->value[3 * i + k] - copy[k]);
+                sum[k] += d;
+                squares[k] += d * d;
+            }
+            count++;
+        }
+    for (int k = 0; k < 3 && count >= LEAST; k++) {
+        e->mean[k] = sum[k] / count;
+        e->variance[k] = fmax(0, squares[k] / count - e->mean[k] * e->mean[k]) * ALIKE / count;
+    }
+    return count >= LEAST;
+}
+
+/* Lets an unseen texel beside a seen one continue the clean texels behind that, if nothing stands before it: its hole is
+ * one that an edit walls up, and the rim may hold the reveal of a window that the model puts a little elsewhere. Only
+ * what the rim surely has above the clean texels is left out. */
+static void leave_rim(struct composite *c, int side, size_t at, size_t next)
+{
+    const size_t hole = c->unseen[at] ? at : next, rim = c->unseen[at] ? next : at;
+    const int32_t list = c->b->list[c->t->first + hole];
+    struct excess clean, soiled;
+    if (c->unseen[at] == c->unseen[next] || c->role[rim] != GRADIENT_FIXED || c->clean[rim]) return;
+    if (list >= 0 && c->b->hidden[list]) return;
+    if (!excess_around(&clean, c, hole, rim, REACH, true) || !excess_around(&soiled, c, hole, rim, RIM, false)) return;
+    const double sign = c->unseen[at] ? -1 : 1;
+    for (size_t k = 0; k < 3; k++) {
+        const double above = clean.mean[k] - soiled.mean[k], doubt = 4 * (clean.variance[k] + soiled.variance[k]);
+        if (above * above > doubt)
+            c->gradient[side][3 * at + k] += (float)(sign * above * (1 - doubt / (above * above)));
+    }
+}
+
 /* The pair of a texel and its neighbour to the right or below. */
 static void set_pair(struct composite *c, int side, size_t at, size_t next)
 {
@@ -100,6 +154,7 @@ static void set_pair(struct composite *c, int side, size_t at, size_t next)
     if (best[1] >= 0 && best[1] != best[0] && add_difference(c, side, at, p, q, best[1])) known = true;
     if (!known) c->weight[side][at] = 1;
     if (!known && c->fill.choice) take_fill(c, side, at, next);
+    if (!known && c->fill.choice) leave_rim(c, side, at, next);
 }
 
 /* nearest[i]: the texel of `from` that is fewest steps away, by a search from all at once; -1: there is none. */

@@ -291,6 +291,12 @@ static bool joins(const struct texture_fill *f, size_t at, const float copy[3])
     return true;
 }
 
+bool texture_fill_copy(float copy[3], const struct texture_fill *f, size_t at, size_t of)
+{
+    if (f->choice[at] == FILL_SHIFTS) return false;
+    return shifted_value(copy, f, of, f->holes[f->hole[at]].shift[f->choice[at]]);
+}
+
 bool texture_fill_difference(float difference[3], const struct texture_fill *f, size_t at, size_t next)
 {
     if (f->choice[at] == FILL_SHIFTS) return false;

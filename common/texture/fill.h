@@ -25,6 +25,8 @@ struct texture_fill {
  * arrays are of the tile's texels. Same bits for any number of threads. */
 enum status texture_fill_find(struct texture_fill *f, const struct bake_tile *tile, struct vec3 normal,
                               const uint8_t *unseen, const uint8_t *clean, const float *value, struct err *err);
+/* The texture that belongs at texel `of`, a hole's or another one, by the shift of the hole texel `at`; false: none. */
+bool texture_fill_copy(float copy[3], const struct texture_fill *f, size_t at, size_t of);
 /* The difference from texel `at` to `next` of the texture that is copied to `at`; false: none is. */
 bool texture_fill_difference(float difference[3], const struct texture_fill *f, size_t at, size_t next);
 void texture_fill_release(struct texture_fill *f);
