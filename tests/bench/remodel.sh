@@ -22,12 +22,11 @@ edits() { find "$described/edits" -name '*.txt' -printf '%f\n' | sed 's/\.txt$//
 # edits whose scene is described, too
 described_edits() { local e; for e in $(edits); do [ ! -e "$described/scene-$e.txt" ] || echo "$e"; done; }
 
-eval "prepare_textures() $(declare -f prepare | sed 1d)"
 prepare()
 {
     local e v
     for v in render_model bake_outdoors render_views; do [ -x "$B/bin/$v" ] || missing "there is no program $B/bin/$v."; done
-    prepare_textures
+    prepare_room
     made SCENE=room textures outdoors
     for v in $(witnesses); do shown "" "$v"; done
     for e in $(described_edits); do for v in $shell_photos $(witnesses); do shown "$e" "$v"; done; done

@@ -134,7 +134,8 @@ new_scene() # NAME PHOTOS TRUTH
 
 made() { say "make $*"; quietly "${MAKE:-make}" -C "$kept/project" --no-print-directory DEPS=manual QUALITY=draft "$@"; }
 
-prepare()
+# the scene `room`, with its atlases
+prepare_room()
 {
     local f p
     for p in simulate trace_ids bake_vdta bake_vita evaluate; do [ -x "$B/bin/$p" ] || missing "there is no program $B/bin/$p."; done
@@ -145,8 +146,13 @@ prepare()
     for f in Makefile stages common configs tests; do ln -srfn "$PWD/$f" "$kept/project/$f"; done
     ln -srfn "$PWD/out/build" "$kept/project/out/build"
     new_scene room "$kept/room/photos" "$kept/room/truth"
-    new_scene mixed "$kept/mixed/photos" "$kept/mixed/truth"
     made SCENE=room vdta
+}
+
+prepare()
+{
+    prepare_room
+    new_scene mixed "$kept/mixed/photos" "$kept/mixed/truth"
     # the same cameras, so that rows differ by light alone
     echo "SFM := out/room/sfm/0" >>"$kept/project/scenes/mixed/scene.mk"
     made SCENE=mixed vdta
