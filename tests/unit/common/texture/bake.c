@@ -272,6 +272,30 @@ static void boards_continue_where_no_view_shows_them(void **state)
     end(&f, NULL, 0);
 }
 
+/* The hole is that of a window which an edit walls up; the texels beside it are too light. */
+static void what_is_walled_up_continues_the_wall_and_not_its_rim(void **state)
+{
+    (void)state;
+    struct fixture f;
+    struct bake_totals totals;
+    float board[SIZE];
+    double above = 0;
+    begin(&f, 1);
+    for (int x = 0; x < SIZE; x++) board[x] = 0.3f + 0.2f * sinf(0.785f * (float)x);
+    for (int i = 0; i < SIZE * SIZE; i++) {
+        const int dx = i % SIZE - 32, dy = i / SIZE - 32;
+        const float light = dx * dx + dy * dy < 15 * 15 ? 1.2f : 1;
+        for (int c = 0; c < 3; c++) f.bake.rgb[3 * i + c] = light * board[i % SIZE];
+    }
+    finish(&f, NULL, 0, &totals);
+    for (int i = 0; i < SIZE * SIZE; i++)
+        if (f.bake.made[i] == ATLAS_SYNTHESISED)
+            above += (double)(f.bake.rgb[3 * i] / board[i % SIZE] - 1) / (double)totals.synthesised;
+    assert_true(totals.synthesised > 400);
+    assert_true(fabs(above) < 0.05);
+    end(&f, NULL, 0);
+}
+
 static void a_face_that_no_view_shows_gets_the_default_colour(void **state)
 {
     (void)state;
@@ -370,6 +394,7 @@ int main(void)
         cmocka_unit_test(a_doubted_pixel_of_the_viewpoint_is_copied_unless_others_contradict_it),
         cmocka_unit_test(what_no_view_shows_is_filled_from_the_nearest_texels),
         cmocka_unit_test(boards_continue_where_no_view_shows_them),
+        cmocka_unit_test(what_is_walled_up_continues_the_wall_and_not_its_rim),
         cmocka_unit_test(a_face_that_no_view_shows_gets_the_default_colour),
         cmocka_unit_test(a_source_is_refused_where_it_may_not_be_used),
         cmocka_unit_test(a_range_of_1e8_stays_finite_and_not_negative),
