@@ -18,6 +18,7 @@ static const double COARSER = 0.5;  /* penalty, in radians, of a source with hal
 static const double OUTWARDS = 0.1; /* in a corner of the picture */
 static const double DISTANCE = 0.5; /* at a distance of the model's size; without a viewpoint */
 static const double UNSURE = 1.0;   /* when something may stand in front */
+static const double POOR = 100;     /* when the pixel is clipped or too noisy: after all others */
 
 enum { ROWS = 16 };
 static const double AROUND = 4; /* texels: the width of the area whose colour is compared with other views' */
@@ -87,8 +88,10 @@ static void try_texel(const struct view_job *job, const struct bake_tile *t, con
     if (!(cosine > m->min_cos)) return;
     struct candidate c = {.source = (uint16_t)job->source, .state = v->state[at]};
     double footprint;
-    c.penalty = (float)(penalty_of(&footprint, job->b, t, m, v, p, distance, cosine, u, r) +
-                        (c.state == SOURCE_UNSURE ? UNSURE : 0));
+    c.penalty =
+        (float)(penalty_of(&footprint, job->b, t, m, v, p, distance, cosine, u, r) + (c.state == SOURCE_UNSURE ? UNSURE
+                                                                                      : c.state == SOURCE_POOR ? POOR
+                                                                                                               : 0));
     if (!source_view_sample(c.rgb, v, u, r, footprint)) return;
     if (!source_view_sample(c.around, v, u, r, fmax(1, footprint) * AROUND)) memcpy(c.around, c.rgb, sizeof c.around);
     insert(job->b, list, &c);

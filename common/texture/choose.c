@@ -5,14 +5,15 @@
  * (after their gains); one that shows furniture in front of it agrees with others only by chance, since furniture moves
  * against the surface from view to view [Waechter 2014]. The views of one photo have one vote. A view in which something
  * surely stands in front of the texel votes against those that are not sure, and if all are outvoted the texel is left to
- * be synthesised. The same decides whether the viewpoint's own pixel may be copied where its depth is not sure. */
+ * be synthesised. Clipped or noisy pixels are taken where POOR_PHOTOS show nothing else and none sees something in front:
+ * that is a lamp, lit or not; glare moves from photo to photo. The same decides whether the viewpoint's own pixel may be copied where its depth is not sure. */
 #include <math.h>
 #include <string.h>
 
 #include "common/base/parallel.h"
 #include "common/texture/bake.h"
 
-enum { CHUNK = 4096 };
+enum { CHUNK = 4096, POOR_PHOTOS = 4 };
 static const double DIM = 0.02;     /* of white: differences of darker colours count less */
 static const float HIDDEN = 0.5f;   /* weight of a view in which something surely stands in front */
 static const float OUTVOTED = 1e6f; /* penalty: chosen only if nothing else is there */
@@ -42,10 +43,22 @@ static void count_votes(float *in_favour, float *against, const struct vote *vot
 {
     *in_favour = *against = 0;
     for (int j = 0; j < count; j++) {
-        if (j == i || votes[j].group == votes[i].group) continue;
+        if (j == i || votes[j].group == votes[i].group || votes[j].state == SOURCE_POOR) continue;
         const float weight = votes[j].state == SOURCE_CLEAN ? 2 : 1;
         *(agree(&votes[i], &votes[j], limit) ? in_favour : against) += weight;
     }
+}
+
+/* The number of photos that candidates come from. */
+static int photos_of(const struct bake *b, const struct candidate *in, int count)
+{
+    int photos = 0;
+    for (int i = 0; i < count; i++) {
+        int before = 0;
+        while (before < i && b->sources[in[before].source].group != b->sources[in[i].source].group) before++;
+        photos += before == i;
+    }
+    return photos;
 }
 
 /* Puts the best candidate of the texel first; the order of the others is kept. Drops the doubt of the viewpoint's own
@@ -83,6 +96,8 @@ static void choose_texel(struct bake *b, size_t texel)
         if (penalty < least) least = penalty, best = i;
     }
     if (least >= OUTVOTED && b->hidden[list]) b->counts[list] = 0;
+    if (count && in[best].state == SOURCE_POOR && (photos_of(b, in, count) < POOR_PHOTOS || b->hidden[list]))
+        b->counts[list] = 0;
     if (best == 0) return;
     const struct candidate first = in[best];
     memmove(in + 1, in, (size_t)best * sizeof *in);

@@ -57,8 +57,10 @@ static void count_texel(struct ratios *r, const struct bake *b, size_t texel)
     const int count = b->counts[b->list[texel]];
     for (int i = 0; i < count; i++) {
         const int node = node_of(b, c[i].source);
+        if (c[i].state == SOURCE_POOR) break; /* and all after it */
         if (b->role[texel] == TEXEL_ORIGINAL) count_pair(r, 0, b->rgb + 3 * texel, node, c[i].rgb);
-        for (int j = i + 1; j < count; j++) count_pair(r, node, c[i].rgb, node_of(b, c[j].source), c[j].rgb);
+        for (int j = i + 1; j < count && c[j].state != SOURCE_POOR; j++)
+            count_pair(r, node, c[i].rgb, node_of(b, c[j].source), c[j].rgb);
     }
 }
 

@@ -61,18 +61,31 @@ static enum status level_init(struct source_level *l, int width, int height, str
     return l->rgba ? ST_OK : err_nomem(err, "a picture", (size_t)width * (size_t)height * 4 * sizeof(float));
 }
 
-/* Half the size: each pixel is the sum of four over 4, a missing one counting as transparent. usable: of the finer
- * level's pixels, NULL: all. */
+static uint8_t best_of_four(const struct source_level *from, const uint8_t *state, int x, int y)
+{
+    uint8_t best = 0;
+    for (int k = 0; k < 4; k++) {
+        const int sx = 2 * x + (k & 1), sy = 2 * y + (k >> 1);
+        if (sx >= from->width || sy >= from->height) continue;
+        const uint8_t here = state[(size_t)sy * (size_t)from->width + (size_t)sx];
+        if (here > best) best = here;
+    }
+    return best;
+}
+
+/* Half the size: each pixel is the sum of four over 4, a missing one counting as transparent. state: of the finer level's
+ * pixels, NULL: all are used; poor ones only where there is nothing better. */
 static void halve(struct source_level *to, const struct source_level *from, const uint8_t *state)
 {
     for (int y = 0; y < to->height; y++)
         for (int x = 0; x < to->width; x++) {
             float *out = to->rgba + 4 * ((size_t)y * (size_t)to->width + (size_t)x);
+            const uint8_t least = state && best_of_four(from, state, x, y) > SOURCE_POOR ? SOURCE_UNSURE : SOURCE_POOR;
             for (int k = 0; k < 4; k++) {
                 const int sx = 2 * x + (k & 1), sy = 2 * y + (k >> 1);
                 if (sx >= from->width || sy >= from->height) continue;
                 const size_t at = (size_t)sy * (size_t)from->width + (size_t)sx;
-                if (state && state[at] <= SOURCE_HIDDEN) continue;
+                if (state && state[at] < least) continue;
                 for (int c = 0; c < 4; c++) out[c] += 0.25f * from->rgba[4 * at + (size_t)c];
             }
         }
@@ -112,7 +125,8 @@ static void take_pixels(struct source_view *v, const struct exr_image *picture, 
     for (int k = 0; k < CHANNELS; k++) channel[k] = exr_find(picture, channels[k])->f;
     for (size_t i = 0; i < pixels; i++) {
         v->own[i] = state_of(channel[A][i], ids->jump[i], ids->clutter[i], params);
-        v->state[i] = channel[CLIPPED][i] > 0 || channel[SIGMA][i] > (float)params->max_noise ? SOURCE_NONE : v->own[i];
+        const bool poor = channel[CLIPPED][i] > 0 || channel[SIGMA][i] > (float)params->max_noise;
+        v->state[i] = !poor ? v->own[i] : v->own[i] == SOURCE_CLEAN ? SOURCE_POOR : SOURCE_NONE;
         const float alpha = channel[A][i] > 0.999f;
         for (int c = 0; c < 3; c++) v->levels[0].rgba[4 * i + (size_t)c] = alpha * channel[c][i];
         v->levels[0].rgba[4 * i + 3] = alpha;

@@ -14,8 +14,9 @@ enum { SOURCE_LEVELS = 4 }; /* full, half, quarter, eighth size */
 
 /* What a pixel is good for. */
 enum source_state {
-    SOURCE_NONE,   /* outside the photo, near a jump, clipped, too noisy */
+    SOURCE_NONE,   /* outside the photo, near a jump */
     SOURCE_HIDDEN, /* something stands in front */
+    SOURCE_POOR,   /* clipped or too noisy: only if nothing better shows the place, such as a lamp */
     SOURCE_UNSURE, /* something may stand in front: other views decide */
     SOURCE_CLEAN,
 };

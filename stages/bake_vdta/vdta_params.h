@@ -5,9 +5,11 @@
 #include "common/texture/texture_params.h"
 
 /* name, type, default, min, max, unit, help */
-#define VDTA_PARAMS(X)                            \
-    X(reveal, choice, "edits", 0, 0, "edits|all", \
-      "faces that the viewpoint does not show: what the edits reveal of them, or all that is in the frame")
+#define VDTA_PARAMS(X)                                                                                      \
+    X(reveal, choice, "edits", 0, 0, "edits|all",                                                           \
+      "faces that the viewpoint does not show: what the edits reveal of them, or all that is in the frame") \
+    X(own_photo, choice, "used", 0, 0, "used|withheld",                                                     \
+      "withheld: the viewpoint's texels come from the other photos alone; to measure how well these predict it")
 
 struct vdta_params {
     struct texture_params texture; /* first: its rows of the table have offsets into it */

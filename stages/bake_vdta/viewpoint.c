@@ -95,6 +95,15 @@ static enum status add_inputs(struct work *w, int view, bool own, struct err *er
     return st;
 }
 
+static bool is_withheld(const struct bake_scene *s) { return !strcmp(s->params->own_photo, "withheld"); }
+
+static bool is_own(const struct work *w, int view)
+{
+    for (int k = 0; k < w->own_count; k++)
+        if (w->own[k] == view) return true;
+    return false;
+}
+
 /* The tiles of all own views, and the level of white. */
 static enum status add_tiles(struct work *w, struct err *err)
 {
@@ -108,6 +117,7 @@ static enum status add_tiles(struct work *w, struct err *err)
         st = add_inputs(w, w->own[k], true, err);
         if (!st) st = own_view_read(&own, s->views, s->ids, s->reveal, camera, s->axes.scale, &s->params->texture, err);
         if (!st) st = add_levels(&levels, &count, &room, &own.view, err);
+        if (!st && is_withheld(s)) memset(own.view.own, SOURCE_NONE, (size_t)camera->width * (size_t)camera->height);
         if (!st) st = view_tiles_add(&w->bake, &own, k, !strcmp(s->params->reveal, "all"), err);
         own_view_release(&own);
     }
@@ -152,7 +162,7 @@ static enum status read_sources(struct work *w, uint64_t *bytes, struct err *err
         st = add_inputs(w, w->views[i], false, err);
         if (!st)
             st = source_view_read(&view, NULL, s->views, s->ids, &s->set.views[w->views[i]], &s->params->texture, err);
-        if (!st) bake_add_view(&w->bake, &view, i);
+        if (!st && !(is_withheld(s) && is_own(w, w->views[i]))) bake_add_view(&w->bake, &view, i);
         *bytes += view.bytes;
         source_view_release(&view);
         progress_add(&progress, 1);
