@@ -190,7 +190,8 @@ static void scene_make(struct scene *s, const struct change *change, int memory)
         write_ids(&s->views[i]);
         write_view(&s->views[i]);
     }
-    const struct clutter_files files = {scratch_path("views"), scratch_path("depth"), scratch_path("ids"), NULL, memory};
+    const struct clutter_files files = {scratch_path("views"), scratch_path("depth"), scratch_path("ids"), NULL,
+                                        memory};
     assert_ok(clutter_open(&s->clutter, &files, &s->set, &same_frame, &err), err);
 }
 

@@ -331,6 +331,45 @@ static void a_source_is_refused_where_it_may_not_be_used(void **state)
     }
 }
 
+/* begin() has three sources besides the viewpoint; a lamp needs four photos, so the viewpoint's own view is one here. */
+static void pixels_clipped_in_four_photos_are_shown_and_in_three_are_not(void **state)
+{
+    (void)state;
+    for (int photos = 3; photos <= 4; photos++) {
+        struct fixture f;
+        struct source_view views[4];
+        struct bake_totals totals;
+        struct err err = ERR_INIT;
+        begin(&f, 4);
+        for (int k = 0; k < photos; k++) {
+            make_view(&views[k], 1.9 + 0.1 * k, 2, 1);
+            memset(views[k].state, SOURCE_POOR, SIZE * SIZE);
+        }
+        assert_ok(bake_list_texels(&f.bake, &err), err);
+        for (int i = 0; i < photos; i++) bake_add_view(&f.bake, &views[i], (1 + i) % 4);
+        assert_ok(bake_find_gains(&f.bake, &err), err);
+        bake_choose(&f.bake);
+        assert_ok(bake_composite(&f.bake, &totals, &err), err);
+        assert_int_equal(totals.warped > 0, photos == 4);
+        assert_int_equal(totals.synthesised > 0, photos == 3);
+        end(&f, views, photos);
+    }
+}
+
+static void a_clipped_pixel_gives_way_to_a_clean_one(void **state)
+{
+    (void)state;
+    struct fixture f;
+    struct source_view views[3];
+    struct bake_totals totals;
+    begin(&f, 4);
+    for (int k = 0; k < 3; k++) make_view(&views[k], 1.9 + 0.1 * k, 2, k ? 3 : 1);
+    for (int k = 1; k < 3; k++) memset(views[k].state, SOURCE_POOR, SIZE * SIZE);
+    finish(&f, views, 3, &totals);
+    assert_true(worst_error(&f) < 0.02);
+    end(&f, views, 3);
+}
+
 static void a_range_of_1e8_stays_finite_and_not_negative(void **state)
 {
     (void)state;
@@ -397,6 +436,8 @@ int main(void)
         cmocka_unit_test(what_is_walled_up_continues_the_wall_and_not_its_rim),
         cmocka_unit_test(a_face_that_no_view_shows_gets_the_default_colour),
         cmocka_unit_test(a_source_is_refused_where_it_may_not_be_used),
+        cmocka_unit_test(pixels_clipped_in_four_photos_are_shown_and_in_three_are_not),
+        cmocka_unit_test(a_clipped_pixel_gives_way_to_a_clean_one),
         cmocka_unit_test(a_range_of_1e8_stays_finite_and_not_negative),
         cmocka_unit_test(threads_do_not_change_a_bit),
         cmocka_unit_test(display_units_go_both_ways),
