@@ -78,12 +78,12 @@ static enum status write_model(struct job *j, const struct plan *plan, const str
 
 /* texture.txt of an edited model. */
 static enum status write_texture(struct job *j, const struct solid_mesh *mesh, const struct solid_mesh *base,
-                                 const struct plan_places *before, const struct plan *plan, struct err *err)
+                                 const struct plan *plan, struct err *err)
 {
     struct texture_map map = {.base = j->edit_base};
     char path[FILE_PATH];
     j->edit_base = NULL;
-    enum status st = texture_rules_make(&map, mesh, base, before, plan, err);
+    enum status st = texture_rules_make(&map, mesh, base, plan, err);
     if (!st) st = file_path(path, j->out, "texture.txt", "", err);
     if (!st) st = texture_map_write(&map, path, &j->prov, err);
     texture_map_release(&map);
@@ -112,13 +112,11 @@ static enum status build(struct job *j, struct err *err)
     struct solid_mesh mesh = {0}, base = {0};
     struct unite_log log = {0};
     struct solid_report report = {0};
-    struct plan_places before = {0};
     enum status st = read_frame(j, err);
     if (!st) {
         plan_begin(&plan, &j->frame);
         st = plan_apply_model(&plan, j->script, placer, &j->prov, err);
     }
-    if (!st) st = plan_places_keep(&before, &plan, err);
     if (!st && j->edit) st = plan_apply_edit(&plan, &j->edit_base, j->edit, placer, &j->prov, err);
     if (!st) st = layout_solids(&solids, &plan, err);
     if (!st && !solids.count)
@@ -128,7 +126,7 @@ static enum status build(struct job *j, struct err *err)
     if (!st && j->base) st = solid_mesh_read(&base, j->base, err);
     if (!st && j->base) st = provenance_add_file(&j->prov, "model/model.txt", j->base, err);
     if (!st && j->base) st = solid_mesh_carry_ids(&mesh, &base, err);
-    if (!st && j->base) st = write_texture(j, &mesh, &base, &before, &plan, err);
+    if (!st && j->base) st = write_texture(j, &mesh, &base, &plan, err);
     if (!st) st = write_model(j, &plan, &mesh, &log, err);
     if (!st) log_summary(&plan, &mesh, &log, &report);
     solid_report_release(&report);
@@ -136,7 +134,6 @@ static enum status build(struct job *j, struct err *err)
     solid_mesh_release(&base);
     solid_mesh_release(&mesh);
     solid_list_release(&solids);
-    plan_places_release(&before);
     plan_release(&plan);
     return st;
 }

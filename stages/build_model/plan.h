@@ -164,6 +164,9 @@ struct plan {
     int wish_count, zone_count;
     struct plan_name *names; /* a hash table */
     int name_capacity, name_count;
+    /* A copy from before the first edit, in which texture has its places; NULL: there was no edit. Its names belong to
+     * this plan; it has no wishes and zones, and its rooms have no walls, edges and parts. */
+    struct plan *unedited;
 };
 
 /* Sets a plan's defaults: those of homes, in metres; without a scale they are unknown, except `ceiling` and `thickness`
@@ -171,8 +174,8 @@ struct plan {
 void plan_begin(struct plan *plan, const struct model_axes *axes);
 
 /* Applies the statements in order, then checks the whole plan; edit: checks it after every statement, so that the error
- * names the statement that breaks the building, and refuses a statement that changes nothing. placer may be NULL if no statement names a view. ST_DATA with file and
- * line. */
+ * names the statement that breaks the building, and refuses a statement that changes nothing. placer may be NULL if no
+ * statement names a view. ST_DATA with file and line. */
 enum status plan_apply(struct plan *plan, const struct script *script, bool edit, const struct placer *placer,
                        struct err *err);
 void plan_release(struct plan *plan);

@@ -3,7 +3,7 @@
  * Computes where there is matter from the script alone (docs/model-script.md): walls between their faces and ends minus
  * openings, slabs under and above rooms, boxes, leaves, panes. Volumes are exact sums over the cells of the grid of all
  * planes. Anything angled, sloped or turned clears `exact`: then only names are tracked. Statements must be valid
- * (build_model accepted them). */
+ * (build_model accepted them). script_volume.h has the matter, script_textures.h what the faces show. */
 #ifndef REMODEL_TESTS_SCRIPT_MODEL_H
 #define REMODEL_TESTS_SCRIPT_MODEL_H
 
@@ -11,7 +11,7 @@
 
 #include <math.h>
 
-enum { MAX_ITEMS = 64, NAME_SIZE = 16, MAX_WORDS = 40 };
+enum { MAX_ITEMS = 64, NAME_SIZE = 16, FACE_SIZE = 48, MAX_WORDS = 40 };
 
 enum expected_kind { MODEL_FREE, MODEL_CORNER, MODEL_MEET };
 
@@ -23,10 +23,10 @@ struct expected_end {
 
 struct expected_wall {
     char name[NAME_SIZE];
-    bool gone, has_top;
-    int axis;       /* along x or y */
-    int start;      /* its start is ends[start] */
-    double in, out; /* its faces, across */
+    bool gone, has_top, angled; /* angled: S is not x or y */
+    int axis;                   /* along x or y */
+    int start;                  /* its start is ends[start] */
+    double in, out;             /* its faces, across */
     double foot, top;
     struct expected_end ends[2]; /* at low and at high S */
 };
@@ -65,6 +65,20 @@ struct expected_room {
     double face[MAX_ITEMS], border[MAX_ITEMS];
 };
 
+/* A statement about textures. Rectangles: S and Z of a wall, X and Y of a floor or ceiling. */
+struct expected_wish {
+    enum { MODEL_STRETCH, MODEL_CROP, MODEL_COLOUR, MODEL_COPY } kind;
+    char face[FACE_SIZE], from[FACE_SIZE]; /* STRETCH and CROP: the item */
+    double patch[4], target[4], colour[3];
+    bool whole, unsure; /* unsure: a rectangle is not known */
+};
+
+struct expected_zone { /* clutter that is cleared or kept in a rectangle, a room or all rooms */
+    bool keep, all;
+    int room;
+    double low[3], high[3];
+};
+
 struct expected {
     double thickness, slab, glass, leaf, floor, ceiling;
     bool exact;
@@ -74,11 +88,17 @@ struct expected {
     struct expected_box boxes[MAX_ITEMS];
     struct expected_room rooms[MAX_ITEMS];
     int wall_count, hole_count, slot_count, box_count, room_count;
+    struct expected_wish wishes[MAX_ITEMS];
+    struct expected_zone zones[MAX_ITEMS];
+    int wish_count, zone_count;
+    double colour[3];                /* of new faces */
+    const struct expected *unedited; /* NULL: this is the unedited model */
 };
 
 static inline void expected_begin(struct expected *t)
 {
-    *t = (struct expected){.thickness = 0.15, .glass = 0.02, .leaf = 0.04, .ceiling = 2.5, .exact = true};
+    *t = (struct expected){
+        .thickness = 0.15, .glass = 0.02, .leaf = 0.04, .ceiling = 2.5, .exact = true, .colour = {0.75, 0.75, 0.75}};
 }
 
 #define FIND_BY_NAME(what, field)                                                 \
@@ -150,7 +170,8 @@ static inline void expected_add_parallel(struct expected *t, char **w, int n)
     const double thickness = expected_option(w, n, "thickness", t->thickness);
     struct expected_wall *x = &t->walls[t->wall_count++];
     assert_true(t->wall_count < MAX_ITEMS);
-    *x = (struct expected_wall){.axis = o->axis, .start = o->start, .foot = expected_option(w, n, "foot", t->floor)};
+    *x = (struct expected_wall){
+        .axis = o->axis, .start = o->start, .angled = o->angled, .foot = expected_option(w, n, "foot", t->floor)};
     expected_copy_name(x->name, w[1]);
     x->has_top = expected_has_word(w, n, "top");
     x->top = expected_option(w, n, "top", t->ceiling);
@@ -173,7 +194,8 @@ static inline void expected_add_wall(struct expected *t, char **w, int n)
     *x = (struct expected_wall){.axis = fabs(a[0] - b[0]) < fabs(a[1] - b[1]),
                                 .foot = expected_option(w, n, "foot", t->floor)};
     expected_copy_name(x->name, w[1]);
-    if (expected_has_word(w, n, "angled")) t->exact = false;
+    x->angled = expected_has_word(w, n, "angled");
+    if (x->angled) t->exact = false;
     x->has_top = expected_has_word(w, n, "top");
     x->top = expected_option(w, n, "top", t->ceiling);
     x->start = a[x->axis] > b[x->axis];
@@ -452,6 +474,59 @@ static inline void expected_remove(struct expected *t, const char *name)
     }
 }
 
+/* A place on a wall's face, a floor or a ceiling: S and Z, or X and Y. Returns the number of its words. *unsure: it is on
+ * an angled wall, or measured from the end of a wall that may end at one. */
+static inline int expected_face_place(const struct expected *t, const char *face, char **w, double rect[4],
+                                      bool *unsure)
+{
+    char item[NAME_SIZE] = "";
+    double s[2] = {0, 0}, z[2] = {0, 0};
+    if (!strncmp(face, "wall/", 5)) {
+        snprintf(item, sizeof item, "%.*s", (int)strcspn(face + 5, "/"), face + 5);
+        const int wall = expected_wall(t, item);
+        expected_place(t, wall, w, s, z);
+        *unsure |= t->walls[wall].angled || (!strcmp(w[0], "at") && !t->exact);
+    } else {
+        expected_rectangle(w + 1, s, z);
+    }
+    memcpy(rect, (const double[]){s[0], z[0], s[1], z[1]}, 4 * sizeof *rect);
+    return strcmp(w[0], "at") ? 6 : 9;
+}
+
+static inline void expected_add_wish(struct expected *t, char **w, int n)
+{
+    struct expected_wish *x = &t->wishes[t->wish_count++];
+    assert_true(t->wish_count < MAX_ITEMS);
+    *x = (struct expected_wish){.kind = MODEL_COLOUR};
+    snprintf(x->face, sizeof x->face, "%s", w[1]);
+    if (w[0][0] == 't') {
+        x->kind = !strcmp(w[2], "stretch") ? MODEL_STRETCH : MODEL_CROP;
+    } else if (!strcmp(w[0], "colour")) {
+        for (int c = 0; c < 3; c++) x->colour[c] = atof(w[2 + c]);
+    } else { /* copy texture FACE PLACE to FACE [PLACE] */
+        x->kind = MODEL_COPY;
+        snprintf(x->from, sizeof x->from, "%s", w[2]);
+        const int to = 3 + expected_face_place(t->unedited, w[2], w + 3, x->patch, &x->unsure);
+        snprintf(x->face, sizeof x->face, "%s", w[to + 1]);
+        x->whole = n == to + 2;
+        if (!x->whole) expected_face_place(t, x->face, w + to + 2, x->target, &x->unsure);
+    }
+}
+
+static inline void expected_add_zone(struct expected *t, char **w, int n)
+{
+    struct expected_zone *z = &t->zones[t->zone_count++];
+    assert_true(t->zone_count < MAX_ITEMS);
+    *z = (struct expected_zone){.keep = w[0][0] == 'k', .all = !strcmp(w[1], "all"), .room = expected_room(t, w[1])};
+    z->low[2] = expected_option(w, n, "foot", -HUGE_VAL);
+    z->high[2] = expected_option(w, n, "top", HUGE_VAL);
+    if (strcmp(w[1], "from")) return;
+    for (int k = 0; k < 2; k++) {
+        z->low[k] = fmin(atof(w[2 + k]), atof(w[5 + k]));
+        z->high[k] = fmax(atof(w[2 + k]), atof(w[5 + k]));
+    }
+}
+
 /* Applies one valid statement. */
 static inline void expected_apply(struct expected *t, const char *line)
 {
@@ -465,6 +540,11 @@ static inline void expected_apply(struct expected *t, const char *line)
         static const char *const names[] = {"thickness", "slab", "glass", "leaf", "floor", "ceiling"};
         for (int i = 0; i < 6; i++)
             if (!strcmp(names[i], w[1])) *values[i] = atof(w[2]);
+        for (int c = 0; c < 3 && !strcmp(w[1], "colour"); c++) t->colour[c] = atof(w[2 + c]);
+    } else if (!strcmp(w[0], "texture") || !strcmp(w[0], "colour") || !strcmp(w[0], "copy")) {
+        expected_add_wish(t, w, n);
+    } else if (!strcmp(w[0], "clear") || !strcmp(w[0], "keep")) {
+        expected_add_zone(t, w, n);
     } else if (!strcmp(w[0], "wall")) {
         expected_add_wall(t, w, n);
     } else if (!strcmp(w[0], "join")) {

@@ -75,15 +75,22 @@ static inline bool expected_between_rooms(const struct expected *t, int wall)
     return sides == 3;
 }
 
-static inline bool expected_under_room(const struct expected *t, const struct expected_room *r, const double p[3])
+/* at: where the room's edges are: r->border, of its slabs, or r->face. */
+static inline bool expected_in_outline(const struct expected *t, const struct expected_room *r, const double *at,
+                                       const double p[3])
 {
     int crossed = 0;
     for (int e = 0; e < r->edge_count; e++) {
-        if (t->walls[r->edges[e]].axis != 1 || r->border[e] <= p[0]) continue;
-        const double a = r->border[(e + r->edge_count - 1) % r->edge_count], b = r->border[(e + 1) % r->edge_count];
+        if (t->walls[r->edges[e]].axis != 1 || at[e] <= p[0]) continue;
+        const double a = at[(e + r->edge_count - 1) % r->edge_count], b = at[(e + 1) % r->edge_count];
         crossed += (a < p[1]) != (b < p[1]);
     }
     return crossed % 2;
+}
+
+static inline bool expected_under_room(const struct expected *t, const struct expected_room *r, const double p[3])
+{
+    return expected_in_outline(t, r, r->border, p);
 }
 
 /* Where no room lists the wall, it goes up to the ceilings of the rooms in which it stands. */

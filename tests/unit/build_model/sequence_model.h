@@ -6,6 +6,8 @@
 #include "tests/unit/build_model/scripted.h"
 #include "tests/unit/build_model/unions.h"
 
+#include "stages/build_model/texture_rules.h"
+
 enum { MAX_HITS = 1024 };
 
 /* -------------------------------------------------------------------------------------------------------- models */
@@ -16,10 +18,12 @@ struct model {
     struct solid_mesh mesh;
     struct solid_report report;
     struct unite_log log;
+    struct texture_map map; /* of an edited model */
 };
 
 static inline void drop_model(struct model *m)
 {
+    texture_map_release(&m->map);
     unite_log_release(&m->log);
     solid_report_release(&m->report);
     solid_mesh_release(&m->mesh);
@@ -31,9 +35,17 @@ static inline void explain(const char *base, const char *edit)
     fprintf(stderr, "sequence %d:\n%s%s%s", (int)sequence, base, edit ? "---- edit\n" : "", edit ? edit : "");
 }
 
-/* Makes the model of a script and an edit (or NULL). False: the plan was rejected with an error message; line: of the
- * statement that it must name, 0 for any. */
-static inline bool make_model(struct model *m, const char *base, const char *edit, int line)
+static inline void assert_names_the_line(const struct err *err, const char *place, const char *base, const char *edit)
+{
+    if (err->status == ST_DATA && strstr(err->text, place) && strchr(".?", err->text[strlen(err->text) - 1])) return;
+    explain(base, edit);
+    fail_msg("rejected without file and line: %s", err->text);
+}
+
+/* Makes the model of a script, or of an edit of it; then unedited is its model, else NULL. False: the plan was rejected
+ * with an error message; line: of the statement that it must name, 0 for any. */
+static inline bool make_model(struct model *m, const struct model *unedited, const char *base, const char *edit,
+                              int line)
 {
     struct err err = ERR_INIT;
     *m = (struct model){0};
@@ -43,19 +55,21 @@ static inline bool make_model(struct model *m, const char *base, const char *edi
             snprintf(place, sizeof place, "/edit.txt:%d: ", line);
         else
             strcpy(place, edit ? "/edit.txt:" : "/model.txt:");
-        if (err.status != ST_DATA || !strstr(err.text, place) || !strchr(".?", err.text[strlen(err.text) - 1])) {
-            explain(base, edit);
-            fail_msg("rejected without file and line: %s", err.text);
-        }
+        assert_names_the_line(&err, place, base, edit);
         plan_release(&m->plan);
         return false;
     }
     if (layout_solids(&m->list, &m->plan, &err) || solids_unite(&m->mesh, &m->list, &m->log, &err) ||
-        solid_mesh_check(&m->mesh, 0, &m->report, &err)) {
+        solid_mesh_check(&m->mesh, 0, &m->report, &err) ||
+        (edit && solid_mesh_carry_ids(&m->mesh, &unedited->mesh, &err))) {
         explain(base, edit);
         fail_msg("accepted, but not a solid: %s", err.text);
     }
-    return true;
+    if (!edit || !texture_rules_make(&m->map, &m->mesh, &unedited->mesh, &m->plan, &err)) return true;
+    assert_names_the_line(&err, "/edit.txt:", base,
+                          edit); /* a face that this or another statement names is not there */
+    drop_model(m);
+    return false;
 }
 
 /* --------------------------------------------------------------------------------------------------------- lines */
@@ -68,6 +82,7 @@ struct hit {
     double t;
     int way; /* 1 into matter, -1 out of it */
     const char *name, *body;
+    int face; /* of the mesh */
 };
 
 static inline int compare_hits(const void *a, const void *b)
@@ -106,7 +121,7 @@ static inline int hit_mesh(const struct solid_mesh *mesh, const struct ray *r, s
         const double t = (face->offset - vec3_dot(face->normal, r->o)) / slant;
         if (!isfinite(t) || !on_face(mesh, face, vec3_add(r->o, vec3_scale(r->d, t)))) continue;
         assert_true(n < MAX_HITS);
-        hits[n++] = (struct hit){t, slant < 0 ? 1 : -1, solid_face_name(mesh, f), mesh->bodies[face->body].name};
+        hits[n++] = (struct hit){t, slant < 0 ? 1 : -1, solid_face_name(mesh, f), mesh->bodies[face->body].name, f};
     }
     if (n) qsort(hits, (size_t)n, sizeof *hits, compare_hits);
     return n;
@@ -130,8 +145,8 @@ static inline bool hit_solids(const struct solid_list *list, const struct ray *r
         }
         if (to <= from) continue;
         assert_true(*count + 2 <= MAX_HITS);
-        hits[(*count)++] = (struct hit){from, 1, NULL, s->body};
-        hits[(*count)++] = (struct hit){to, -1, NULL, s->body};
+        hits[(*count)++] = (struct hit){from, 1, NULL, s->body, -1};
+        hits[(*count)++] = (struct hit){to, -1, NULL, s->body, -1};
     }
     if (*count) qsort(hits, (size_t)*count, sizeof *hits, compare_hits);
     return true;

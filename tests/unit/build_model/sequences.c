@@ -5,17 +5,22 @@
  * line, and is left out. After each accepted one: the model is closed, 2-manifold and free of self-intersections; along
  * random lines it has matter where the solids do; if everything is along the axes, its volume is that of
  * script_model.h; faces have the ids of the base by name; a point of the surface that was on the base's surface keeps
- * its face name unless the named thing was touched, or the log records a merge.
+ * its face name unless the named thing was touched, or the log records a merge; texture.txt reads back, covers every
+ * face, and points show what the statements about textures say (script_textures.h), or their own place if nothing
+ * changed them; clutter is cleared where the script says so; the edit as two scripts, one on the other, gives the same.
  *
  * `make sequences` draws 10 000. In the environment, SEQUENCES=N sets their number, and SEQUENCE=N runs and prints
  * sequence N alone. */
-#include "tests/unit/build_model/script_model.h"
-#include "tests/unit/build_model/sequence_identity.h"
+#include "tests/unit/build_model/random_textures.h"
+#include "tests/unit/build_model/sequence_textures.h"
+
+#include "stages/build_model/edit_chain.h"
+#include "stages/build_model/plan_internal.h"
 
 enum { DEFAULT_SEQUENCES = 300, FURNISHINGS = 6, EDITS = 8, LINES = 10 };
 enum { MANY_SEQUENCES = 2000 }; /* in many sequences each statement is accepted in some edit */
 
-static int accepted, rejected, exact_models, points, by_verb[VERB_COUNT];
+static int accepted, rejected, exact_models, points, textures, by_verb[VERB_COUNT];
 
 /* Counts the accepted statement. */
 static void count_verb(const char *line)
@@ -25,13 +30,11 @@ static void count_verb(const char *line)
         by_verb[v] += strlen(verb_name((enum verb)v)) == length && !strncmp(verb_name((enum verb)v), line, length);
 }
 
-static void check_identity(const struct model *base, struct model *m, const struct touched *touched,
+static void check_identity(const struct model *base, const struct model *m, const struct touched *touched,
                            const struct ray *rays, const char *text, const char *edit)
 {
     static struct hit old[MAX_HITS], new[MAX_HITS];
     const struct solid_mesh *b = &base->mesh, *e = &m->mesh;
-    struct err err = ERR_INIT;
-    assert_ok(solid_mesh_carry_ids(&m->mesh, &base->mesh, &err), err);
     const int max_id = b->names[b->name_count - 1].id;
     for (int i = 0; i < e->name_count; i++) {
         int k = 0;
@@ -113,19 +116,73 @@ static void accept_line(struct expected *expected, const char *line)
     expected_apply(expected, line);
 }
 
+static bool is_about_textures(const char *line)
+{
+    static const char *const begins[] = {"texture ", "copy ", "colour ", "set colour ", "clear ", "keep "};
+    for (size_t i = 0; i < sizeof begins / sizeof *begins; i++)
+        if (!strncmp(line, begins[i], strlen(begins[i]))) return true;
+    return false;
+}
+
+/* Draws a statement of an edit; user: a second one, if the first sets a default, which some statement must use. */
+static void draw_edit(const struct expected *expected, const struct model *base, char *line, char *user, int *step)
+{
+    *user = '\0';
+    if (one_of(4))
+        random_statement(expected, line, ++*step);
+    else
+        texture_statement(expected, &base->mesh, line);
+    if (!strncmp(line, "set ", 4) && !is_about_textures(line)) new_user(expected, user, ++*step);
+    if (with_crumbs()) add_crumbs(line);
+}
+
+/* The edit as two scripts, the second of which stands on the first, gives the same plan and the same textures. */
+static void check_chain(const struct model *base, const struct model *edited, const char *text, const char *edit)
+{
+    static char lower[TEXT], upper[TEXT];
+    const char *cut = strchr(edit, '\n') + 1;
+    for (int skip = one_of(EDITS); skip > 0 && *cut; skip--) {
+        const bool with_user = !strncmp(cut, "set ", 4) && !is_about_textures(cut);
+        for (int i = 0; i < (with_user ? 2 : 1); i++) cut = strchr(cut, '\n') + 1;
+    }
+    snprintf(lower, sizeof lower, "%.*s", (int)(cut - edit), edit);
+    snprintf(upper, sizeof upper, "remodel-script 1\nbase lower\n%s", cut);
+    scratch_write("lower.txt", lower);
+    struct model chained = {0};
+    struct provenance prov = {0};
+    struct err err = ERR_INIT;
+    char *name, *states[2];
+    plan_begin(&chained.plan, NULL);
+    if (plan_apply_model(&chained.plan, scratch_write("model.txt", text), NULL, &prov, &err) ||
+        plan_apply_edit(&chained.plan, &name, scratch_write("upper.txt", upper), NULL, &prov, &err) ||
+        texture_rules_make(&chained.map, &edited->mesh, &base->mesh, &chained.plan, &err) ||
+        plan_state(&states[0], &chained.plan, &err) || plan_state(&states[1], &edited->plan, &err)) {
+        explain(text, upper);
+        fail_msg("an edit on an edit was refused: %s", err.text);
+    }
+    assert_string_equal(name, "lower");
+    assert_string_equal(states[0], states[1]);
+    assert_true(same_map(&chained.map, &edited->map));
+    count_verb("base");
+    for (int i = 0; i < 2; i++) free(states[i]);
+    free(name);
+    provenance_release(&prov);
+    drop_model(&chained);
+}
+
 static void one_sequence(void)
 {
     static char base[TEXT], edit[TEXT], tried[TEXT];
-    static struct expected expected, before;
+    static struct expected expected, before, unedited;
     struct touched touched = {.count = 0};
     struct model m, edited;
     struct ray rays[LINES];
-    char line[LINE];
+    char line[LINE], user[LINE];
     int step = 0, lines = 1;
 
     drawn = 0;
     do add_base(base);
-    while (!make_model(&m, base, NULL, 0)); /* rejected if walls are thicker than rooms */
+    while (!make_model(&m, NULL, base, NULL, 0)); /* rejected if walls are thicker than rooms */
     drop_model(&m);
     interpret(&expected, base);
     for (int i = 0; i < FURNISHINGS; i++) {
@@ -133,12 +190,12 @@ static void one_sequence(void)
         if (with_crumbs()) add_crumbs(line);
         strcpy(tried, base);
         append(tried, "%s", line);
-        if (!make_model(&m, tried, NULL, 0)) continue;
+        if (!make_model(&m, NULL, tried, NULL, 0)) continue;
         drop_model(&m);
         strcpy(base, tried);
         expected_apply(&expected, line);
     }
-    assert_true(make_model(&m, base, NULL, 0));
+    assert_true(make_model(&m, NULL, base, NULL, 0));
     if (!m.mesh.face_count) {
         drop_model(&m);
         return;
@@ -146,14 +203,13 @@ static void one_sequence(void)
     for (int r = 0; r < LINES; r++) rays[r] = random_ray(&m.mesh);
     check_model(&m, &expected, rays, base, NULL);
     strcpy(edit, "remodel-script 1\n");
+    unedited = expected;
+    expected.unedited = &unedited;
     for (int i = 0; i < EDITS; i++) {
-        char user[LINE] = ""; /* of a default: a set that no statement uses is rejected */
-        random_statement(&expected, line, ++step);
-        if (!strncmp(line, "set ", 4)) new_user(&expected, user, ++step);
-        if (with_crumbs()) add_crumbs(line);
+        draw_edit(&expected, &m, line, user, &step);
         strcpy(tried, edit);
         append(tried, "%s%s", line, user);
-        if (!make_model(&edited, base, tried, *user ? 0 : lines + 1)) {
+        if (!make_model(&edited, &m, base, tried, *user ? 0 : lines + 1)) {
             rejected++;
             continue;
         }
@@ -162,11 +218,15 @@ static void one_sequence(void)
         before = expected;
         accept_line(&expected, line);
         if (*user) accept_line(&expected, user);
-        touch_line(&touched, &before, line);
-        touch_line(&touched, &expected, line);
-        touch_line(&touched, &expected, user);
+        if (!is_about_textures(line)) {
+            touch_line(&touched, &before, line);
+            touch_line(&touched, &expected, line);
+            touch_line(&touched, &expected, user);
+        }
         check_model(&edited, &expected, rays, base, edit);
         check_identity(&m, &edited, &touched, rays, base, edit);
+        check_textures(&m, &edited, &expected, &touched, rays, LINES, &textures, base, edit);
+        if (one_of(EDITS) == 0) check_chain(&m, &edited, base, edit);
         if (i == EDITS - 1) assert_triangles_closed(&edited.mesh);
         drop_model(&edited);
     }
@@ -189,14 +249,15 @@ static void random_sequences_of_edits_give_the_described_solids(void **state)
         one_sequence();
         return;
     }
-    print_message("%d sequences: %d edits accepted, %d rejected; %d volumes, %d points compared\n", count, accepted,
-                  rejected, exact_models, points);
+    print_message("%d sequences: %d edits accepted, %d rejected; %d volumes, %d points, %d textures compared\n", count,
+                  accepted, rejected, exact_models, points, textures);
     for (int v = 0; v < VERB_COUNT; v++) {
         print_message("%s %d%s", verb_name((enum verb)v), by_verb[v],
                       v + 1 < VERB_COUNT ? ", " : " accepted in edits\n");
         assert_true(by_verb[v] > 0 || count < MANY_SEQUENCES);
     }
-    assert_true(accepted >= 3 * count / 2 && rejected >= count && exact_models >= 2 * count && points >= 10 * count);
+    assert_true(accepted >= 3 * count / 2 && rejected >= count && exact_models >= 2 * count && points >= 10 * count &&
+                textures >= 10 * count);
 }
 
 int main(void)
