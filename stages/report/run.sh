@@ -9,6 +9,7 @@ look_report()
     case $goal in all | report)
         scene_page=yes
         case " $REMODEL_PRODUCTS " in *" remodel "*) remodel_page=yes ;; esac ;;
+    remodel) if [ -z "${REMODEL_CAMERAS-}" ]; then remodel_page=yes; fi ;;
     esac
     common/run/keep.sh "$O/stamp/scene-page.txt" "$scene_page"
     common/run/keep.sh "$O/stamp/remodel-page.txt" "$remodel_page"
