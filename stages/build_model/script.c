@@ -532,6 +532,8 @@ static enum status take_base(struct script *script, struct reader *r)
     const struct statement *s = &script->statements[script->count - 1];
     if (script->count > 1 || script->base)
         return textfile_error(&r->t, r->err, "base", "\"base EDIT\" as the first statement, once");
+    if (!strcmp(s->name, "none"))
+        return textfile_error(&r->t, r->err, "none", "the name of another edit: \"none\" is the word for no edit");
     script->base = s->name;
     script->base_line = s->line;
     script->count = 0;

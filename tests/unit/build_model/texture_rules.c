@@ -465,6 +465,7 @@ static void statements_without_meaning_are_refused(void **state)
          "edit.txt:3: new is not in the unedited model, whose texture is copied."},
         {"copy texture wall/wst/in from 0 0 to 1 1 to wall/west/in\n", "did you mean west?"},
         {"remove west\nbase other\n", "as the first statement"},
+        {"base none\n", "edit.txt:2: found \"none\", wanted the name of another edit"},
         {"set colour 1 1\n", "a share of blue light"},
         {"set colour 0.5 0.5 0.5\nset colour 0.5 0.5 0.5\n", "changes nothing"},
     };
