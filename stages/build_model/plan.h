@@ -200,6 +200,8 @@ double plan_wall_top(const struct plan *plan, int wall, double s0, double s1); /
 bool opening_is_there(const struct plan *plan, const struct plan_opening *o);
 /* The slot is there: neither it nor its room is removed, and it is not walled up. */
 bool slot_is_there(const struct plan *plan, const struct plan_slot *slot);
+/* The corners of a wall in plan, in order around it: in and out face at its start, out and in face at its end. */
+void wall_corners(const struct plan *plan, int wall, double corners[4][2]);
 double top_at(const struct plan_top *top, const double p[2]);
 struct plan_top level_top(double z);
 
